@@ -1,0 +1,403 @@
+/* apm.c - see apm.h. */
+#include "apm.h"
+
+#include <ctype.h>
+#include <limits.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define WORD_DIGITS 19                    /* 10^19 is the largest power of ten in 64 bits */
+
+static const unsigned long power10[WORD_DIGITS + 1] = {
+    1UL, 10UL, 100UL, 1000UL, 10000UL, 100000UL, 1000000UL, 10000000UL, 100000000UL,
+    1000000000UL, 10000000000UL, 100000000000UL, 1000000000000UL, 10000000000000UL,
+    100000000000000UL, 1000000000000000UL, 10000000000000000UL, 100000000000000000UL,
+    1000000000000000000UL, 10000000000000000000UL
+};
+_Static_assert(sizeof(unsigned long) == 8, "apm assumes 64-bit words");
+
+/* r = x * 10^n, n >= 0.  Word by word for the short shifts that fill a proof, in one product
+   for the long ones. */
+static void shift_up(mpz_t r, const mpz_t x, long n)
+{
+    if (n > 8 * WORD_DIGITS) {
+        mpz_t p;
+        mpz_init(p);
+        mpz_ui_pow_ui(p, 10UL, (unsigned long)n);
+        mpz_mul(r, x, p);
+        mpz_clear(p);
+        return;
+    }
+    if (n <= WORD_DIGITS) {
+        mpz_mul_ui(r, x, power10[n]);
+        return;
+    }
+    mpz_mul_ui(r, x, power10[WORD_DIGITS]);
+    for (n -= WORD_DIGITS; n > WORD_DIGITS; n -= WORD_DIGITS)
+        mpz_mul_ui(r, r, power10[WORD_DIGITS]);
+    mpz_mul_ui(r, r, power10[n]);
+}
+
+static void divide(mpz_t r, const mpz_t x, const mpz_t y, apm_round_t dir)
+{
+    if (dir == APM_DOWN)
+        mpz_fdiv_q(r, x, y);
+    else if (dir == APM_UP)
+        mpz_cdiv_q(r, x, y);
+    else
+        mpz_tdiv_q(r, x, y);
+}
+
+static void divide_word(mpz_t r, const mpz_t x, unsigned long y, apm_round_t dir)
+{
+    if (dir == APM_DOWN)
+        mpz_fdiv_q_ui(r, x, y);
+    else if (dir == APM_UP)
+        mpz_cdiv_q_ui(r, x, y);
+    else
+        mpz_tdiv_q_ui(r, x, y);
+}
+
+/* r = x / 10^n rounded, n >= 0.  Rounding word by word in one direction is the same as
+   rounding once: floor(floor(x/p)/q) = floor(x/(pq)). */
+static void shift_down(mpz_t r, const mpz_t x, long n, apm_round_t dir)
+{
+    if (n > 8 * WORD_DIGITS) {
+        mpz_t p;
+        mpz_init(p);
+        mpz_ui_pow_ui(p, 10UL, (unsigned long)n);
+        divide(r, x, p, dir);
+        mpz_clear(p);
+        return;
+    }
+    if (n <= WORD_DIGITS) {
+        divide_word(r, x, power10[n], dir);
+        return;
+    }
+    divide_word(r, x, power10[WORD_DIGITS], dir);
+    for (n -= WORD_DIGITS; n > WORD_DIGITS; n -= WORD_DIGITS)
+        divide_word(r, r, power10[WORD_DIGITS], dir);
+    divide_word(r, r, power10[n], dir);
+}
+
+void apm_init(apm_t x)
+{
+    mpz_init(x->mant);
+    x->exp = 0;
+}
+
+void apm_clear(apm_t x) { mpz_clear(x->mant); }
+
+void apm_set(apm_t r, const apm_t x)
+{
+    mpz_set(r->mant, x->mant);
+    r->exp = x->exp;
+}
+
+void apm_set_si(apm_t r, long n, long exp)
+{
+    mpz_set_si(r->mant, n);
+    r->exp = exp;
+}
+
+int apm_set_str(apm_t r, const char *text)
+{
+    const char *s = text;
+    size_t n = 0, len = strlen(text);
+    long places = 0, exp = 0;
+    int seen_point = 0, status = APM_ESYNTAX;
+    char *digits = malloc(len + 2);
+
+    if (digits == NULL)
+        return APM_ERANGE;
+    if (*s == '+' || *s == '-') {
+        if (*s == '-')
+            digits[n++] = '-';
+        s++;
+    }
+    const size_t sign = n;
+    for (; isdigit((unsigned char)*s) || (*s == '.' && !seen_point); s++) {
+        if (*s == '.') {
+            seen_point = 1;
+        } else {
+            digits[n++] = *s;
+            places += seen_point;
+        }
+    }
+    if (n > sign && (*s == 'e' || *s == 'E')) {
+        char *end;
+        const char *e = s + 1;
+        if (*e == '+' || *e == '-')
+            e++;
+        if (isdigit((unsigned char)*e)) {
+            exp = strtol(s + 1, &end, 10);      /* saturates, and is then out of range */
+            s = end;
+        }
+    }
+    digits[n] = '\0';
+    if (n > sign && *s == '\0') {
+        if (exp > APM_MAX_EXP || exp < -APM_MAX_EXP || places > APM_MAX_EXP) {
+            status = APM_ERANGE;
+        } else {
+            mpz_set_str(r->mant, digits, 10);
+            r->exp = exp - places;
+            status = APM_OK;
+        }
+    }
+    free(digits);
+    return status;
+}
+
+void apm_set_d(apm_t r, double x)
+{
+    int e;
+    const double m = ldexp(frexp(x, &e), 53);           /* an integer */
+
+    e -= 53;
+    mpz_set_d(r->mant, m);
+    r->exp = 0;
+    if (e >= 0) {
+        mpz_mul_2exp(r->mant, r->mant, (mp_bitcnt_t)e);
+    } else if (mpz_sgn(r->mant) != 0) {
+        /* 2^-k = 5^k 10^-k; strip the twos first so that short binary fractions stay short */
+        const mp_bitcnt_t twos = mpz_scan1(r->mant, 0);
+        const mp_bitcnt_t k = (mp_bitcnt_t)-e;
+        const mp_bitcnt_t strip = twos < k ? twos : k;
+        mpz_t p;
+        mpz_init(p);
+        mpz_tdiv_q_2exp(r->mant, r->mant, strip);
+        mpz_ui_pow_ui(p, 5UL, k - strip);
+        mpz_mul(r->mant, r->mant, p);
+        r->exp = -(long)(k - strip);
+        mpz_clear(p);
+    }
+}
+
+double apm_get_d(const apm_t x)
+{
+    /* Bring the integer near 17 digits first, so that neither factor can overflow. */
+    const long excess = (long)mpz_sizeinbase(x->mant, 10) - 20;
+    double result;
+    mpz_t m;
+
+    if (mpz_sgn(x->mant) == 0)
+        return 0.0;
+    mpz_init(m);
+    if (excess > 0)
+        shift_down(m, x->mant, excess, APM_TRUNC);
+    else
+        mpz_set(m, x->mant);
+    const long exp = x->exp + (excess > 0 ? excess : 0);
+    /* A decimal string and strtod would round correctly and cost ten times as much. */
+    if (exp < -330)
+        result = 0.0;
+    else if (exp > 310)
+        result = mpz_sgn(m) * HUGE_VAL;
+    else if (exp < -22)
+        result = mpz_get_d(m) / pow(10.0, 22) * pow(10.0, (double)(exp + 22));
+    else
+        result = exp < 0 ? mpz_get_d(m) / pow(10.0, (double)-exp)
+                         : mpz_get_d(m) * pow(10.0, (double)exp);
+    mpz_clear(m);
+    return result;
+}
+
+char *apm_get_str(const apm_t x)
+{
+    const size_t digits = mpz_sizeinbase(x->mant, 10);
+    char *text = malloc(digits + 32);
+    size_t n;
+
+    if (text == NULL)
+        return NULL;
+    mpz_get_str(text, 10, x->mant);
+    n = strlen(text);
+    if (x->exp != 0 && mpz_sgn(x->mant) != 0) {
+        long e = x->exp;
+        char buf[24];
+        size_t k = sizeof buf;
+        unsigned long u = e < 0 ? 0UL - (unsigned long)e : (unsigned long)e;
+        while (u > 0) {
+            buf[--k] = (char)('0' + u % 10);
+            u /= 10;
+        }
+        text[n++] = 'e';
+        if (e < 0)
+            text[n++] = '-';
+        memcpy(text + n, buf + k, sizeof buf - k);
+        n += sizeof buf - k;
+        text[n] = '\0';
+    }
+    return text;
+}
+
+void apm_swap(apm_t x, apm_t y)
+{
+    const long e = x->exp;
+    mpz_swap(x->mant, y->mant);
+    x->exp = y->exp;
+    y->exp = e;
+}
+
+void apm_neg(apm_t r, const apm_t x)
+{
+    mpz_neg(r->mant, x->mant);
+    r->exp = x->exp;
+}
+
+void apm_abs(apm_t r, const apm_t x)
+{
+    mpz_abs(r->mant, x->mant);
+    r->exp = x->exp;
+}
+
+/* r = x + y or x - y, by bringing the operand of the larger exponent to the smaller one. */
+static void add_or_sub(apm_t r, const apm_t x, const apm_t y, int subtract)
+{
+    if (x->exp == y->exp) {
+        if (subtract)
+            mpz_sub(r->mant, x->mant, y->mant);
+        else
+            mpz_add(r->mant, x->mant, y->mant);
+        r->exp = x->exp;
+    } else if (mpz_sgn(y->mant) == 0) {
+        apm_set(r, x);
+    } else if (mpz_sgn(x->mant) == 0) {
+        if (subtract)
+            apm_neg(r, y);
+        else
+            apm_set(r, y);
+    } else {
+        const int shift_x = x->exp > y->exp;
+        const long exp = shift_x ? y->exp : x->exp;
+        mpz_t t;
+        mpz_init(t);
+        if (shift_x)
+            shift_up(t, x->mant, x->exp - exp);
+        else
+            shift_up(t, y->mant, y->exp - exp);
+        const mpz_srcptr first = shift_x ? t : x->mant, second = shift_x ? y->mant : t;
+        if (subtract)
+            mpz_sub(r->mant, first, second);
+        else
+            mpz_add(r->mant, first, second);
+        r->exp = exp;
+        mpz_clear(t);
+    }
+}
+
+void apm_add(apm_t r, const apm_t x, const apm_t y) { add_or_sub(r, x, y, 0); }
+void apm_sub(apm_t r, const apm_t x, const apm_t y) { add_or_sub(r, x, y, 1); }
+
+void apm_mul(apm_t r, const apm_t x, const apm_t y)
+{
+    const long exp = x->exp + y->exp;
+    mpz_mul(r->mant, x->mant, y->mant);
+    r->exp = exp;
+}
+
+void apm_mul_si(apm_t r, const apm_t x, long n)
+{
+    mpz_mul_si(r->mant, x->mant, n);
+    r->exp = x->exp;
+}
+
+void apm_scale(apm_t r, const apm_t x, long places)
+{
+    apm_set(r, x);
+    r->exp += places;
+}
+
+int apm_sgn(const apm_t x) { return mpz_sgn(x->mant); }
+
+int apm_cmp(const apm_t x, const apm_t y)
+{
+    const int sx = mpz_sgn(x->mant), sy = mpz_sgn(y->mant);
+    int c;
+
+    if (sx != sy || sx == 0)
+        return sx < sy ? -1 : sx > sy;
+    if (x->exp == y->exp) {
+        c = mpz_cmp(x->mant, y->mant);
+    } else {
+        mpz_t t;
+        mpz_init(t);
+        if (x->exp > y->exp) {
+            shift_up(t, x->mant, x->exp - y->exp);
+            c = mpz_cmp(t, y->mant);
+        } else {
+            shift_up(t, y->mant, y->exp - x->exp);
+            c = mpz_cmp(x->mant, t);
+        }
+        mpz_clear(t);
+    }
+    return c < 0 ? -1 : c > 0;
+}
+
+int apm_div(apm_t r, const apm_t x, const apm_t y, long dp, apm_round_t dir)
+{
+    /* x/y = (X/Y) 10^(ex-ey), wanted as an integer times 10^-dp. */
+    const long shift = x->exp - y->exp + dp;
+    mpz_t t;
+
+    if (mpz_sgn(y->mant) == 0)
+        return APM_EDIVZERO;
+    mpz_init(t);
+    if (shift >= 0) {
+        shift_up(t, x->mant, shift);
+        divide(r->mant, t, y->mant, dir);
+    } else {
+        shift_up(t, y->mant, -shift);
+        divide(r->mant, x->mant, t, dir);
+    }
+    r->exp = -dp;
+    mpz_clear(t);
+    return APM_OK;
+}
+
+int apm_sqrt(apm_t r, const apm_t x, long dp, apm_round_t dir)
+{
+    /* sqrt(X 10^e) 10^dp = sqrt(X 10^(e + 2 dp)); the integer square root is the floor of it. */
+    const long shift = x->exp + 2 * dp;
+    int exact = 1;
+    mpz_t t, rest;
+
+    if (mpz_sgn(x->mant) < 0)
+        return APM_ENEGATIVE;
+    mpz_init(t);
+    mpz_init(rest);
+    if (shift >= 0) {
+        shift_up(t, x->mant, shift);
+    } else {
+        shift_down(t, x->mant, -shift, APM_DOWN);
+        shift_up(rest, t, -shift);
+        exact = mpz_cmp(rest, x->mant) == 0;
+    }
+    mpz_sqrtrem(r->mant, rest, t);
+    if (dir == APM_UP && (!exact || mpz_sgn(rest) != 0))
+        mpz_add_ui(r->mant, r->mant, 1UL);
+    r->exp = -dp;
+    mpz_clear(t);
+    mpz_clear(rest);
+    return APM_OK;
+}
+
+void apm_round(apm_t r, const apm_t x, long dp, apm_round_t dir)
+{
+    if (x->exp >= -dp) {
+        apm_set(r, x);
+        return;
+    }
+    shift_down(r->mant, x->mant, -dp - x->exp, dir);
+    r->exp = -dp;
+}
+
+void apm_floor(apm_t r, const apm_t x) { apm_round(r, x, 0, APM_DOWN); }
+
+long apm_order(const apm_t x)
+{
+    if (mpz_sgn(x->mant) == 0)
+        return 0;
+    return (long)mpz_sizeinbase(x->mant, 10) + x->exp;
+}

@@ -1,0 +1,73 @@
+/* converse.h - what Python sees of the C core; the builder hands this file to cffi.
+
+   Nothing here prints, reads a file or ends the process, and nothing is global: two searches
+   may run in two threads.  Numbers cross the border as decimal strings, exactly. */
+
+enum {                       /* what the functions return */
+    CV_OK = 0,
+    CV_RUNNING = 1,          /* the search wants to be stepped again */
+    CV_ENOMEM = -1,
+    CV_ENUMBER = -2,         /* a string is not a decimal number, or out of range */
+    CV_EARGUMENT = -3,       /* an argument makes no sense (a negative half-width, dp < 1, ...) */
+    CV_ETREE = -4,           /* the text given to cv_restore is not the tree of such a search */
+    CV_EARITHMETIC = -5,     /* division by zero, a root of a negative number, lost precision */
+    CV_ESINGULAR = -6,       /* the matrix could not be inverted at any sensible precision */
+    CV_EMACHINE = -7         /* the floating-point unit or the build breaks the rules of rigor */
+};
+
+enum {                       /* why a try of a prism ended without a proof (index of reasons[]) */
+    CV_REASON_CENTRE,        /* not even the orbit of the centre contradicts minimality */
+    CV_REASON_TOO_BIG,       /* an image prism outgrew MAX_SUM */
+    CV_REASON_TOO_LONG,      /* the orbit reached `furthest` steps */
+    CV_REASON_SINGULAR,      /* a matrix could not be inverted */
+    CV_REASON_ARITHMETIC,    /* overflow, NaN, division by zero, lost precision */
+    CV_REASON_DISAGREE,      /* the double-precision try succeeded, the rigorous one did not */
+    CV_N_REASONS
+};
+
+enum { CV_BY_MAXBLAM, CV_BY_MINBLAM, CV_BY_TRACE };   /* index of ll_used[] */
+
+typedef struct {             /* the statistics of the report; names from the thesis, follow.c */
+    long quick_tries, tries, Rtries;
+    long cuts, proved, symmetric, undecided;          /* nodes of the tree by kind */
+    long HermSuccess, LLSuccess;                      /* proved by the trace, by the eigenvalue */
+    long ll_used[3];         /* which criterion gave the last bound of each proved prism */
+    long reasons[6];         /* tries that ended without a proof, by reason */
+    long most_cuts;          /* depth of the deepest proved prism */
+    long max_steps;          /* longest orbit of the double-precision tries */
+    long max_NTsteps;        /* longest orbit of the successful rigorous tries */
+} cv_counts;
+
+typedef struct cv_search cv_search;
+
+/* A new search.  region[0..4] and half[0..4]: centre and half-width of a, b, c, v0, v1 as in the
+   input file, that is, angles in units of pi; the search covers an enclosure of that region.  xstar: the two coordinates of the starting point, or NULL to have one
+   chosen.  On success *s must be freed with cv_search_free. */
+int cv_search_new(cv_search **s, const char *const region[5], const char *const half[5],
+                  const char *const xstar[2], int dp, int depth, int stubborn, int as_printed);
+void cv_search_free(cv_search *s);
+
+/* Decides at most max_leaves further prisms, or works for about max_seconds.
+   CV_RUNNING: there is more to do.  CV_OK: the tree is complete, or an undecided prism ended a
+   search that is not stubborn.  Negative: an error; the tree so far is good. */
+int cv_step(cv_search *s, long max_leaves, double max_seconds);
+
+/* Replays the tree of an earlier run of the same problem; to be called before the first step. */
+int cv_restore(cv_search *s, const char *tree, size_t length, const cv_counts *counts);
+
+const char *cv_tree(const cv_search *s, size_t *length);   /* nodes so far, in preorder */
+const cv_counts *cv_get_counts(const cv_search *s);
+double cv_volume_decided(const cv_search *s);              /* 0 .. 1; for a progress bar only */
+int cv_last_steps(const cv_search *s);                     /* orbit length of the last leaf */
+/* Numbers of the search as exact decimals; the caller frees.  which: 0, 1 the starting point;
+   2 T, 3 Tr_-, 4 Tr_+, 5 B, 6 lambda_-min, 7 lambda_-max (thesis, section 3.3.4);
+   8 centre and 9 half-width of v0, 10 and 11 of v1, in radians.  NULL: no memory. */
+char *cv_constant(const cv_search *s, int which);
+void cv_free(char *text);
+
+/* ---- the rigorous routines one at a time, for tests and sceptics -------------------------
+   in: nin decimal strings.  out: nout strings, which the caller frees with cv_free.
+   The work is done in arbitrary precision with dp decimal places or, where as_double is set,
+   by the double-precision instance of the same source. */
+int cv_kernel(const char *name, int as_double, int as_printed, int dp,
+              int nin, const char *const in[], int nout, char *out[]);

@@ -1,0 +1,110 @@
+/* cv_kernel.c - one routine at a time, from decimal strings to decimal strings. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "converse.h"
+#include "memory.h"
+#include "special.h"
+#include "unit.h"
+
+enum { MAX_DP = 100000, MAX_IN = 64, MAX_OUT = 64 };
+
+/* The operations of apm.h and special.h, which stand below num_t.
+   pi: -> pi          add, sub, mul: x, y -> r       cmp: x, y -> -1, 0 or 1
+   div: x, y -> quotient rounded down, up, towards zero
+   sqrt: x -> root rounded down, up                  round: x -> down, up, towards zero
+   floor: x -> r      scale: x, n -> x 10^n          order: x -> apm_order
+   double: x -> the double apm_get_d makes of it, exactly */
+static int apm_kernel(const char *name, long dp, int nin, apm_t in[], int nout, apm_t out[])
+{
+    static const struct { const char *name; int nin, nout; } shapes[] = {
+        { "pi", 0, 1 }, { "add", 2, 1 }, { "sub", 2, 1 }, { "mul", 2, 1 }, { "cmp", 2, 1 },
+        { "div", 2, 3 }, { "sqrt", 1, 2 }, { "round", 1, 3 }, { "floor", 1, 1 },
+        { "scale", 2, 1 }, { "order", 1, 1 }, { "double", 1, 1 }
+    };
+    static const apm_round_t directions[3] = { APM_DOWN, APM_UP, APM_TRUNC };
+    size_t which = 0;
+    int status = APM_OK;
+
+    while (which < sizeof shapes / sizeof *shapes && strcmp(name, shapes[which].name) != 0)
+        which++;
+    if (which == sizeof shapes / sizeof *shapes || nin != shapes[which].nin ||
+        nout != shapes[which].nout)
+        return CV_EARGUMENT;
+    switch (which) {
+    case 0: apm_pi(out[0], dp); break;
+    case 1: apm_add(out[0], in[0], in[1]); break;
+    case 2: apm_sub(out[0], in[0], in[1]); break;
+    case 3: apm_mul(out[0], in[0], in[1]); break;
+    case 4: apm_set_si(out[0], apm_cmp(in[0], in[1]), 0); break;
+    case 5:
+        for (int j = 0; j < 3 && status == APM_OK; j++)
+            status = apm_div(out[j], in[0], in[1], dp, directions[j]);
+        break;
+    case 6:
+        for (int j = 0; j < 2 && status == APM_OK; j++)
+            status = apm_sqrt(out[j], in[0], dp, directions[j]);
+        break;
+    case 7:
+        for (int j = 0; j < 3; j++)
+            apm_round(out[j], in[0], dp, directions[j]);
+        break;
+    case 8: apm_floor(out[0], in[0]); break;
+    case 9: apm_scale(out[0], in[0], (long)apm_get_d(in[1])); break;
+    case 10: apm_set_si(out[0], apm_order(in[0]), 0); break;
+    default: apm_set_d(out[0], apm_get_d(in[0]));
+    }
+    return status == APM_OK ? CV_OK : CV_EARITHMETIC;
+}
+
+int cv_kernel(const char *name, int as_double, int as_printed, int dp,
+              int nin, const char *const in[], int nout, char *out[])
+{
+    apm_t x[MAX_IN + MAX_OUT];
+    Runit *volatile exact = NULL;
+    unit *volatile quick = NULL;
+    jmp_buf here, *before;
+    volatile int status = CV_OK;
+
+    if (nin < 0 || nin > MAX_IN || nout < 0 || nout > MAX_OUT || dp < 1 || dp > MAX_DP)
+        return CV_EARGUMENT;
+    for (int j = 0; j < nout; j++)
+        out[j] = NULL;
+    for (int j = 0; j < MAX_IN + MAX_OUT; j++)
+        apm_init(x[j]);
+    before = memory_guard(&here);
+    if (setjmp(here) != 0) {
+        status = CV_ENOMEM;
+    } else {
+        for (int j = 0; j < nin && status == CV_OK; j++)
+            if (apm_set_str(x[j], in[j]) != APM_OK)
+                status = CV_ENUMBER;
+        if (status == CV_OK) {
+            status = apm_kernel(name, dp, nin, x, nout, x + MAX_IN);
+            if (status == CV_EARGUMENT && as_double) {
+                quick = unit_new(dp, as_printed);
+                status = quick == NULL ? CV_ENOMEM
+                                       : kernel(quick, name, nin, x, nout, x + MAX_IN);
+            } else if (status == CV_EARGUMENT) {
+                exact = Runit_new(dp, as_printed);
+                status = exact == NULL ? CV_ENOMEM
+                                       : Rkernel(exact, name, nin, x, nout, x + MAX_IN);
+            }
+        }
+    }
+    memory_guard(before);
+    for (int j = 0; j < nout && status == CV_OK; j++) {
+        out[j] = apm_get_str(x[MAX_IN + j]);
+        if (out[j] == NULL)
+            status = CV_ENOMEM;
+    }
+    for (int j = 0; j < nout && status != CV_OK; j++) {
+        free(out[j]);
+        out[j] = NULL;
+    }
+    Runit_free(exact);
+    unit_free(quick);
+    for (int j = 0; j < MAX_IN + MAX_OUT; j++)
+        apm_clear(x[j]);
+    return status;
+}

@@ -1,0 +1,3 @@
+/* double.c - the algorithms in double precision: the quick filter, which proves nothing. */
+#define NUM_DOUBLE
+#include "instance.h"

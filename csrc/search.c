@@ -1,0 +1,435 @@
+/* search.c - the list of untested prisms and the main loop (thesis, Appendix C, main).
+
+   The list is a stack: a prism that fails is replaced by its two halves, the first of which is
+   tried next.  So the tree of all prisms is met in preorder, and one character per node,
+   written as it is decided, is the whole of the proof. */
+#define _POSIX_C_SOURCE 200809L
+
+#include <fenv.h>
+#include <float.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#include "converse.h"
+#include "memory.h"
+#include "special.h"
+#include "unit.h"
+
+#ifdef __FAST_MATH__
+#error "-ffast-math breaks the rules of rigor"
+#endif
+#if FLT_EVAL_METHOD != 0
+#error "doubles must be evaluated as doubles"
+#endif
+
+enum { MAX_DP = 100000, MAX_DEPTH = 100000 };
+enum { V0 = 3, V1 = 4 };                /* indices into a box */
+
+struct cv_search {
+    Runit *exact;
+    unit *quick;
+    box root, *stack;
+    int pending, allocated;             /* prisms on the stack; boxes ever made */
+    char *tree;
+    size_t length, capacity;
+    cv_counts counts, before;           /* before: as it was when the node at hand was begun */
+    apm_t constants[N_CONSTANTS], t[2];
+    double decided;
+    int depth, stubborn, symmetric, last_steps, status;
+};
+
+static void box_init(box *b)
+{
+    for (int j = 0; j < 5; j++) {
+        apm_init(b->centre[j]);
+        apm_init(b->half[j]);
+    }
+    apm_init(b->xstar[0]);
+    apm_init(b->xstar[1]);
+    b->n_cuts = 0;
+}
+
+static void box_clear(box *b)
+{
+    for (int j = 0; j < 5; j++) {
+        apm_clear(b->centre[j]);
+        apm_clear(b->half[j]);
+    }
+    apm_clear(b->xstar[0]);
+    apm_clear(b->xstar[1]);
+}
+
+static void box_set(box *r, const box *b)
+{
+    for (int j = 0; j < 5; j++) {
+        apm_set(r->centre[j], b->centre[j]);
+        apm_set(r->half[j], b->half[j]);
+    }
+    apm_set(r->xstar[0], b->xstar[0]);
+    apm_set(r->xstar[1], b->xstar[1]);
+    r->n_cuts = b->n_cuts;
+}
+
+/* Adds one node to the tree; room is made in advance so that a node is never half decided. */
+static int make_room(cv_search *s)
+{
+    if (s->length == s->capacity) {
+        const size_t capacity = 2 * s->capacity + 4096;
+        char *tree = realloc(s->tree, capacity);
+        if (tree == NULL)
+            return CV_ENOMEM;
+        s->tree = tree;
+        s->capacity = capacity;
+    }
+    if (s->pending + 1 >= s->allocated) {
+        const int allocated = 2 * s->allocated + 16;
+        box *stack = realloc(s->stack, (size_t)allocated * sizeof *stack);
+        if (stack == NULL)
+            return CV_ENOMEM;
+        s->stack = stack;
+        while (s->allocated < allocated)
+            box_init(&s->stack[s->allocated++]);
+    }
+    return CV_OK;
+}
+
+/* The prism is cut in half across axis; the lower half comes first.  Thesis: refinePrism. */
+static void cut(cv_search *s, int axis)
+{
+    box *upper = &s->stack[s->pending - 1], *lower = upper + 1;
+
+    apm_mul_si(upper->half[axis], upper->half[axis], 5);
+    apm_scale(upper->half[axis], upper->half[axis], -1);
+    upper->n_cuts++;
+    box_set(lower, upper);
+    apm_add(upper->centre[axis], upper->centre[axis], upper->half[axis]);
+    apm_sub(lower->centre[axis], lower->centre[axis], lower->half[axis]);
+    s->pending++;
+    s->tree[s->length++] = (char)('0' + axis - V0);
+    s->counts.cuts++;
+}
+
+static void leaf(cv_search *s, char kind)
+{
+    const box *b = &s->stack[--s->pending];
+
+    s->tree[s->length++] = kind;
+    s->decided += ldexp(1.0, -b->n_cuts);
+    if (kind == 'P') {
+        s->counts.proved++;
+        if (b->n_cuts > s->counts.most_cuts)
+            s->counts.most_cuts = b->n_cuts;
+    } else if (kind == 'S') {
+        s->counts.symmetric++;
+    } else {
+        s->counts.undecided++;
+        if (!s->stubborn)
+            s->status = CV_OK;          /* one prism too hard, and all is lost */
+    }
+    if (s->pending == 0)
+        s->status = CV_OK;
+}
+
+/* Exchanging v0 and v1 exchanges a and b, and leaves x* alone if it lies on the diagonal.  If
+   all the data of the problem are symmetric so is the set of minimizing states: of two mirror
+   images one will do, and the prisms wholly on the side v1 >= v0 are skipped.  Their mirror
+   images are covered by the prisms that are not.  Thesis: consultTree, section 3.4.4. */
+static int may_skip(cv_search *s, const box *b)
+{
+    if (!s->symmetric)
+        return 0;
+    apm_sub(s->t[0], b->centre[V1], b->half[V1]);
+    apm_add(s->t[1], b->centre[V0], b->half[V0]);
+    return apm_cmp(s->t[0], s->t[1]) >= 0;
+}
+
+/* One prism of the list: skip it, prove it, cut it or give it up.  Thesis: main. */
+static void decide(cv_search *s)
+{
+    box *b = &s->stack[s->pending - 1];
+    verdict v;
+
+    s->last_steps = 0;
+    if (may_skip(s, b)) {
+        leaf(s, 'S');
+        return;
+    }
+    s->counts.quick_tries++;
+    quick_try(s->quick, b, &v);
+    if (v.no_tori) {
+        s->counts.tries++;
+        try_prism(s->quick, b, &v);
+        if (v.nsteps > s->counts.max_steps)
+            s->counts.max_steps = v.nsteps;
+    }
+    if (v.no_tori) {
+        s->counts.Rtries++;
+        Rtry_prism(s->exact, b, &v);
+        if (!v.no_tori && v.reason != CV_REASON_ARITHMETIC && v.reason != CV_REASON_SINGULAR)
+            v.reason = CV_REASON_DISAGREE;
+    }
+    s->last_steps = v.nsteps;
+    if (v.no_tori) {
+        if (v.by_trace)
+            s->counts.HermSuccess++;
+        else
+            s->counts.LLSuccess++;
+        s->counts.ll_used[v.ll_used]++;
+        if (v.nsteps > s->counts.max_NTsteps)
+            s->counts.max_NTsteps = v.nsteps;
+        leaf(s, 'P');
+        return;
+    }
+    s->counts.reasons[v.reason]++;
+    if (b->n_cuts < s->depth)
+        cut(s, apm_cmp(b->half[V1], b->half[V0]) > 0 ? V1 : V0);    /* the wider; ties to v0 */
+    else
+        leaf(s, 'U');
+}
+
+static double now(void)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+static long decided_leaves(const cv_search *s)
+{
+    return s->counts.proved + s->counts.symmetric + s->counts.undecided;
+}
+
+int cv_step(cv_search *s, long max_leaves, double max_seconds)
+{
+    const double end = now() + max_seconds;
+    const long stop = decided_leaves(s) + max_leaves;
+    jmp_buf here, *const before = memory_guard(&here);
+
+    if (setjmp(here) != 0) {            /* the node at hand is forgotten, the rest stands */
+        s->counts = s->before;
+        s->status = CV_ENOMEM;
+    }
+    while (s->status == CV_RUNNING && decided_leaves(s) < stop) {
+        if (make_room(s) != CV_OK) {
+            s->status = CV_ENOMEM;
+            break;
+        }
+        s->before = s->counts;
+        decide(s);
+        if (now() >= end)
+            break;
+    }
+    memory_guard(before);
+    return s->status;
+}
+
+int cv_restore(cv_search *s, const char *tree, size_t length, const cv_counts *counts)
+{
+    jmp_buf here, *const before = memory_guard(&here);
+    const int stubborn = s->stubborn;
+
+    if (setjmp(here) != 0)
+        s->status = CV_ENOMEM;
+    s->stubborn = 1;                    /* an undecided leaf of old does not end the replay */
+    for (size_t i = 0; i < length && s->status >= 0; i++) {
+        if (s->pending == 0)
+            s->status = CV_ETREE;
+        else if (make_room(s) != CV_OK)
+            s->status = CV_ENOMEM;
+        else if (tree[i] == 'S' && may_skip(s, &s->stack[s->pending - 1]))
+            leaf(s, 'S');
+        else if (tree[i] == 'P' || tree[i] == 'U')
+            leaf(s, tree[i]);
+        else if ((tree[i] == '0' || tree[i] == '1') &&
+                 s->stack[s->pending - 1].n_cuts < s->depth)
+            cut(s, tree[i] == '0' ? V0 : V1);
+        else
+            s->status = CV_ETREE;
+    }
+    s->stubborn = stubborn;
+    if (s->status >= 0) {
+        if (s->counts.proved != counts->proved || s->counts.symmetric != counts->symmetric ||
+            s->counts.undecided != counts->undecided || s->counts.cuts != counts->cuts ||
+            s->counts.most_cuts != counts->most_cuts)
+            s->status = CV_ETREE;
+        else if (s->counts.undecided > 0 && !stubborn)
+            s->status = CV_OK;
+        s->counts = *counts;
+    }
+    memory_guard(before);
+    return s->status < 0 ? s->status : CV_OK;
+}
+
+const char *cv_tree(const cv_search *s, size_t *length)
+{
+    *length = s->length;
+    return s->tree;
+}
+
+const cv_counts *cv_get_counts(const cv_search *s) { return &s->counts; }
+double cv_volume_decided(const cv_search *s) { return s->decided; }
+int cv_last_steps(const cv_search *s) { return s->last_steps; }
+void cv_free(char *text) { free(text); }
+
+char *cv_constant(const cv_search *s, int which)
+{
+    if (which < 0 || which > 11)
+        return NULL;
+    if (which < 2)
+        return apm_get_str(s->root.xstar[which]);
+    if (which < 8)
+        return apm_get_str(s->constants[which - 2]);
+    return apm_get_str(which % 2 == 0 ? s->root.centre[V0 + (which - 8) / 2]
+                                      : s->root.half[V0 + (which - 8) / 2]);
+}
+
+void cv_search_free(cv_search *s)
+{
+    if (s == NULL)
+        return;
+    Runit_free(s->exact);
+    unit_free(s->quick);
+    box_clear(&s->root);
+    for (int j = 0; j < s->allocated; j++)
+        box_clear(&s->stack[j]);
+    free(s->stack);
+    free(s->tree);
+    for (int j = 0; j < N_CONSTANTS; j++)
+        apm_clear(s->constants[j]);
+    apm_clear(s->t[0]);
+    apm_clear(s->t[1]);
+    free(s);
+}
+
+/* What the double-precision unit is for must hold, or the filter and every later use of
+   rigorous doubles is void: rounding to nearest, and numbers below the normal ones. */
+static int machine_is_sound(void)
+{
+    volatile double tiny = DBL_MIN, one = 1.0, third;
+
+    tiny *= 0.5;
+    third = one / 3.0;
+    return fegetround() == FE_TONEAREST && tiny > 0.0 && third * 3.0 == 1.0 &&
+           one + 0.5 * DBL_EPSILON == 1.0 && one - 0.25 * DBL_EPSILON == 1.0;
+}
+
+/* The angles of the root, from units of pi to radians: an enclosure of the region meant, with pi
+   cut off after dp places, which is SAFETY_DP places short of what sines are good for.  So the
+   centres of prisms lie a little below the multiples of pi they stand for, by more than the
+   errors of their sines, and what depends on the sign of such a sine (the column rotor) is the
+   same on every machine.  The pi of 1989 was short, too. */
+static void to_radians(cv_search *s, long dp)
+{
+    apm_t pi, ulp;
+
+    apm_init(pi);
+    apm_init(ulp);
+    apm_pi(pi, dp);
+    apm_set_si(ulp, 1, -dp);
+    for (int j = V0; j <= V1; j++) {
+        apm_abs(s->t[0], s->root.centre[j]);            /* how far |centre pi| may be off */
+        apm_mul(s->t[0], s->t[0], ulp);
+        apm_mul(s->root.centre[j], s->root.centre[j], pi);
+        apm_add(pi, pi, ulp);
+        apm_mul(s->root.half[j], s->root.half[j], pi);
+        apm_sub(pi, pi, ulp);
+        apm_add(s->root.half[j], s->root.half[j], s->t[0]);
+        apm_round(s->t[1], s->root.centre[j], dp, APM_TRUNC);
+        if (apm_cmp(s->t[1], s->root.centre[j]) != 0)
+            apm_add(s->root.half[j], s->root.half[j], ulp);
+        apm_swap(s->t[1], s->root.centre[j]);
+        apm_round(s->root.half[j], s->root.half[j], dp, APM_UP);
+    }
+    apm_clear(pi);
+    apm_clear(ulp);
+}
+
+static int read_problem(cv_search *s, const char *const region[5], const char *const half[5],
+                        const char *const xstar[2], long dp, int as_printed)
+{
+    double abc[3], start[2][2];
+    char text[40];
+    int status;
+
+    for (int j = 0; j < 5; j++) {
+        if (apm_set_str(s->root.centre[j], region[j]) != APM_OK ||
+            apm_set_str(s->root.half[j], half[j]) != APM_OK)
+            return CV_ENUMBER;
+        if (apm_sgn(s->root.half[j]) < 0)
+            return CV_EARGUMENT;
+    }
+    s->symmetric = apm_cmp(s->root.centre[0], s->root.centre[1]) == 0 &&
+                   apm_cmp(s->root.half[0], s->root.half[1]) == 0 &&
+                   apm_cmp(s->root.centre[V0], s->root.centre[V1]) == 0 &&
+                   apm_cmp(s->root.half[V0], s->root.half[V1]) == 0;
+    to_radians(s, dp);
+    for (int j = 0; j < 3; j++)
+        abc[j] = apm_get_d(s->root.centre[j]);
+    set_LL_start(start[1], abc, s->symmetric);
+    for (int j = 0; j < 2; j++) {
+        if (xstar == NULL)
+            snprintf(text, sizeof text, "%.17g", start[1][j]);
+        if (apm_set_str(s->root.xstar[j], xstar == NULL ? text : xstar[j]) != APM_OK)
+            return CV_ENUMBER;
+    }
+    if (apm_cmp(s->root.xstar[0], s->root.xstar[1]) != 0)
+        s->symmetric = 0;
+
+    /* 1989 forced Herman's point onto the diagonal; the bounds look for it everywhere */
+    set_Herm_start(start[0], abc, as_printed);
+    set_LL_start(start[1], abc, 0);
+    status = Rprepare_trial(s->exact, &s->root, start, NULL);
+    if (status != CV_OK)
+        return status;
+    Runit_constants(s->exact, s->constants);
+    return prepare_trial(s->quick, &s->root, start, s->constants);
+}
+
+int cv_search_new(cv_search **result, const char *const region[5], const char *const half[5],
+                  const char *const xstar[2], int dp, int depth, int stubborn, int as_printed)
+{
+    cv_search *s;
+    jmp_buf here, *before;
+    int status;
+
+    *result = NULL;
+    if (dp < 1 || dp > MAX_DP || depth < 0 || depth > MAX_DEPTH)
+        return CV_EARGUMENT;
+    if (!machine_is_sound())
+        return CV_EMACHINE;
+    s = calloc(1, sizeof *s);
+    if (s == NULL)
+        return CV_ENOMEM;
+    box_init(&s->root);
+    for (int j = 0; j < N_CONSTANTS; j++)
+        apm_init(s->constants[j]);
+    apm_init(s->t[0]);
+    apm_init(s->t[1]);
+    s->depth = depth;
+    s->stubborn = stubborn;
+    s->status = CV_RUNNING;
+
+    before = memory_guard(&here);
+    if (setjmp(here) != 0) {
+        status = CV_ENOMEM;
+    } else {
+        s->exact = Runit_new(dp, as_printed);
+        s->quick = unit_new(dp, as_printed);
+        status = s->exact == NULL || s->quick == NULL ? CV_ENOMEM : make_room(s);
+        if (status == CV_OK)
+            status = read_problem(s, region, half, xstar, dp, as_printed);
+        if (status == CV_OK) {
+            box_set(&s->stack[0], &s->root);
+            s->pending = 1;
+        }
+    }
+    memory_guard(before);
+    if (status == CV_OK)
+        *result = s;
+    else
+        cv_search_free(s);
+    return status;
+}

@@ -1,0 +1,50 @@
+/* unit.h - what the search sees of the two instances of the algorithms. */
+#ifndef CONVERSE_UNIT_H
+#define CONVERSE_UNIT_H
+
+#include "apm.h"
+
+/* A prism of the list: {parameters} x {x*} x {possible successors}.  Order: a, b, c, v0, v1. */
+typedef struct {
+    apm_t centre[5], half[5];
+    apm_t xstar[2];
+    int n_cuts;
+} box;
+
+typedef struct {
+    int no_tori;              /* proved (by this arithmetic) */
+    int reason;               /* CV_REASON_... if not */
+    int nsteps;               /* length of the orbit followed */
+    int by_trace;             /* proved by the trace, not by the least eigenvalue */
+    int ll_used;              /* CV_BY_...: whence the last bound of the least eigenvalue */
+} verdict;
+
+/* The constants of the theorem: T, Tr_-, Tr_+, B, lambda_-min, lambda_-max. */
+enum { C_T, C_TRACE_MIN, C_TRACE_MAX, C_B, C_LAM_MIN, C_LAM_MAX, N_CONSTANTS };
+
+#define DECLARE_UNIT(R)                                                                        \
+    typedef struct R##unit R##unit;                                                            \
+    R##unit *R##unit_new(long dp, int as_printed);              /* NULL: no memory */          \
+    void R##unit_free(R##unit *u);                                                             \
+    /* Sets the constants for the parameters of root and the first block of the second         \
+       variation for its xstar; start: where trace and least eigenvalue are thought least.     \
+       Returns CV_OK or a negative code. */                                                    \
+    int R##prepare_trial(R##unit *u, const box *root, double start[2][2],                \
+                         apm_t constants[N_CONSTANTS]);                                  \
+    void R##unit_constants(R##unit *u, apm_t constants[N_CONSTANTS]);                          \
+    void R##try_prism(R##unit *u, const box *b, verdict *v);                                   \
+    int R##kernel(R##unit *u, const char *name, int nin, apm_t in[], int nout, apm_t out[]);
+
+DECLARE_UNIT(R)
+DECLARE_UNIT()
+
+/* quick_try: may the centre's orbit, in double precision, be a minimizing one?  (quick.c part
+   of the double instance only) */
+void quick_try(unit *u, const box *b, verdict *v);
+
+/* start.c: where the trace, and where the least eigenvalue of beta attains its minimum, roughly.
+   Nothing rigorous depends on the result. */
+void set_Herm_start(double x[2], const double abc[3], int on_diagonal);
+void set_LL_start(double x[2], const double abc[3], int on_diagonal);
+
+#endif
