@@ -271,8 +271,10 @@ static void add_or_sub(apm_t r, const apm_t x, const apm_t y, int subtract)
     } else {
         const int shift_x = x->exp > y->exp;
         const long exp = shift_x ? y->exp : x->exp;
-        mpz_t t;
-        mpz_init(t);
+        const int in_place = r != (shift_x ? y : x);    /* no temporary: saves an allocation */
+        mpz_t temporary;
+        const mpz_ptr t = in_place ? r->mant : temporary;
+        mpz_init(temporary);
         if (shift_x)
             shift_up(t, x->mant, x->exp - exp);
         else
@@ -283,7 +285,7 @@ static void add_or_sub(apm_t r, const apm_t x, const apm_t y, int subtract)
         else
             mpz_add(r->mant, first, second);
         r->exp = exp;
-        mpz_clear(t);
+        mpz_clear(temporary);
     }
 }
 

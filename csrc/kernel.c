@@ -47,13 +47,14 @@ enum { PRISM_SZ = MAT_DIM + MAT_DIM * MAT_DIM };
    inverse: 4 x 4 matrix -> inverse, err    image: prism -> prism
    btrace: prism -> lo, hi                  Blams: prism -> least lo, hi, largest lo, hi
    torus: lo, hi of a, b, c -> T, B         least_lambda: prism, Tr d, lam d, lam_-min -> the same
-   cone: M, k -> low, high */
+   cone: M, k -> low, high                  image_ns: prism, n -> nanoseconds per image, of n */
 int R(kernel)(state *s, const char *name, int nin, apm_t in[], int nout, apm_t out[])
 {
     static const struct { const char *name; int nin, nout; } shapes[] = {
         { "sincos", 1, 2 }, { "bound_sincos", 2, 4 }, { "inverse", 16, 17 },
         { "image", PRISM_SZ, PRISM_SZ }, { "btrace", PRISM_SZ, 2 }, { "Blams", PRISM_SZ, 4 },
-        { "torus", 6, 2 }, { "least_lambda", PRISM_SZ + 3, 2 }, { "cone", 2, 2 }
+        { "torus", 6, 2 }, { "least_lambda", PRISM_SZ + 3, 2 }, { "cone", 2, 2 },
+        { "image_ns", PRISM_SZ + 1, 1 }
     };
     numbers *n = &s->n;
     prism *pz = &n->work[0];
@@ -108,17 +109,12 @@ int R(kernel)(state *s, const char *name, int nin, apm_t in[], int nout, apm_t o
         break;
     case 6: {
         bdd *const parm[N_PARMS] = { &n->a, &n->b, &n->c };
-        double abc[N_PARMS], seed[2];
         for (int j = 0; j < N_PARMS; j++) {
             num_set_apm(parm[j]->lb, in[2 * j]);
             num_set_apm(parm[j]->ub, in[2 * j + 1]);
         }
-        for (int j = 0; j < N_PARMS; j++)
-            abc[j] = 0.5 * (num_get_d(parm[j]->lb) + num_get_d(parm[j]->ub));
-        set_Herm_start(seed, abc, 0);
-        torus_max(s, n->constants[C_T], 0, seed);
-        set_LL_start(seed, abc, 0);
-        torus_max(s, n->constants[C_B], 1, seed);
+        torus_max(s, n->constants[C_T], 0);
+        torus_max(s, n->constants[C_B], 1);
         put(out[0], n->constants[C_T]);
         put(out[1], n->constants[C_B]);
         break;
@@ -132,6 +128,15 @@ int R(kernel)(state *s, const char *name, int nin, apm_t in[], int nout, apm_t o
         put(out[0], n->slope);
         put(out[1], n->least_lam);
         break;
+    case 9: {
+        const long repeat = (long)apm_get_d(in[PRISM_SZ]);
+        const clock_t begin = clock();
+        for (long j = 0; j < repeat && !s->inverse_failed; j++)
+            prismatic_image(s, &n->work[1], pz);
+        apm_set_d(out[0], 1e9 * (double)(clock() - begin) / CLOCKS_PER_SEC /
+                          (double)(repeat > 0 ? repeat : 1));
+        break;
+    }
     default:
         num_set_apm(n->t[5], in[0]);
         uniform_cone(s, n->t[6], n->t[7], n->t[5], (long)apm_get_d(in[1]));

@@ -35,7 +35,7 @@ static void set_cone_as_printed(state *s, const num_t margin)
 }
 
 /* Thesis: prepare_trial.  Sound: T and B are theorems (torus.c). */
-int R(prepare_trial)(state *s, const box *root, double start[2][2],
+int R(prepare_trial)(state *s, const box *root, const double herman_start[2],
                      apm_t constants[N_CONSTANTS])
 {
     numbers *n = &s->n;
@@ -53,7 +53,7 @@ int R(prepare_trial)(state *s, const box *root, double start[2][2],
         }
         set_earliest(s, root, 0);
         for (int j = 0; j < DEG_FREE; j++)
-            num_set_d(n->earliest.centre.v[j], start[0][j]);
+            num_set_d(n->earliest.centre.v[j], herman_start[j]);
         set_cone_as_printed(s, *margin);
         set_LL_bounds_as_printed(s, *margin);
     } else if (constants != NULL) {
@@ -62,8 +62,8 @@ int R(prepare_trial)(state *s, const box *root, double start[2][2],
     } else {
         set_earliest(s, root, 1);
         global_bounds(s, &n->earliest);                 /* for a, b, c */
-        torus_max(s, n->constants[C_T], 0, start[0]);
-        torus_max(s, n->constants[C_B], 1, start[1]);
+        torus_max(s, n->constants[C_T], 0);
+        torus_max(s, n->constants[C_B], 1);
         uniform_cone(s, n->constants[C_TRACE_MIN], n->constants[C_TRACE_MAX],
                      n->constants[C_T], 16);
         uniform_cone(s, n->constants[C_LAM_MIN], n->constants[C_LAM_MAX], n->constants[C_B], 4);

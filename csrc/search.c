@@ -348,9 +348,9 @@ static void to_radians(cv_search *s, long dp)
 }
 
 static int read_problem(cv_search *s, const char *const region[5], const char *const half[5],
-                        const char *const xstar[2], long dp, int as_printed)
+                        const char *const xstar[2], long dp)
 {
-    double abc[3], start[2][2];
+    double abc[3], start[2], herman_start[2];
     char text[40];
     int status;
 
@@ -368,24 +368,22 @@ static int read_problem(cv_search *s, const char *const region[5], const char *c
     to_radians(s, dp);
     for (int j = 0; j < 3; j++)
         abc[j] = apm_get_d(s->root.centre[j]);
-    set_LL_start(start[1], abc, s->symmetric);
+    set_LL_start(start, abc, s->symmetric);
+    set_Herm_start(herman_start, abc, 1);
     for (int j = 0; j < 2; j++) {
         if (xstar == NULL)
-            snprintf(text, sizeof text, "%.17g", start[1][j]);
+            snprintf(text, sizeof text, "%.17g", start[j]);
         if (apm_set_str(s->root.xstar[j], xstar == NULL ? text : xstar[j]) != APM_OK)
             return CV_ENUMBER;
     }
     if (apm_cmp(s->root.xstar[0], s->root.xstar[1]) != 0)
         s->symmetric = 0;
 
-    /* 1989 forced Herman's point onto the diagonal; the bounds look for it everywhere */
-    set_Herm_start(start[0], abc, as_printed);
-    set_LL_start(start[1], abc, 0);
-    status = Rprepare_trial(s->exact, &s->root, start, NULL);
+    status = Rprepare_trial(s->exact, &s->root, herman_start, NULL);
     if (status != CV_OK)
         return status;
     Runit_constants(s->exact, s->constants);
-    return prepare_trial(s->quick, &s->root, start, s->constants);
+    return prepare_trial(s->quick, &s->root, herman_start, s->constants);
 }
 
 int cv_search_new(cv_search **result, const char *const region[5], const char *const half[5],
@@ -420,7 +418,7 @@ int cv_search_new(cv_search **result, const char *const region[5], const char *c
         s->quick = unit_new(dp, as_printed);
         status = s->exact == NULL || s->quick == NULL ? CV_ENOMEM : make_room(s);
         if (status == CV_OK)
-            status = read_problem(s, region, half, xstar, dp, as_printed);
+            status = read_problem(s, region, half, xstar, dp);
         if (status == CV_OK) {
             box_set(&s->stack[0], &s->root);
             s->pending = 1;

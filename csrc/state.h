@@ -5,6 +5,7 @@
 
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 
 #include "converse.h"
 #include "num.h"
@@ -70,6 +71,14 @@ struct R(unit) {
 };
 
 typedef struct R(unit) state;
+
+/* To how many places quotients, roots, sines and roundings are taken from now on. */
+static void set_precision(state *s, long precision)
+{
+    s->precision = precision;
+    s->trig.dp = precision;
+    num_set_si(s->n.ulp, 1, -precision);
+}
 
 /* r += x y, r -= x y */
 static void num_addmul(state *s, num_t r, const num_t x, const num_t y)

@@ -2,7 +2,7 @@
    parameters, by branch and bound.  The thesis found them by Newton's method and added a
    margin; that is a guess, and everything else rests on these two numbers. */
 
-enum { TORUS_CELLS = 400000 };
+enum { TORUS_CELLS = 400000, TORUS_DP = 25 };
 
 /* r >= p sin(v + t) for every p of the parameter's interval, given s0 and c0, the sine and
    cosine of v to within an ulp: sup p (s0 + c0 t) + |p| (t^2/2 + (1 + |t|) ulp), since
@@ -74,62 +74,40 @@ static void cell_bound(state *s, num_t r, cell *k, int eigenvalue)
     }
 }
 
-/* r = the trace or the largest eigenvalue of 2I + W at the cell's centre, plus 5e-7; leaves
-   the waves of that point. */
-static void value_at(state *s, num_t r, cell *k, int eigenvalue)
-{
-    num_t *x = s->n.tor;
-
-    set_waves(s, k->v);
-    num_set_si(x[0], 0, 0);
-    displaced_bound(s, r, x[0], x[0], eigenvalue);
-    num_set_si(x[0], 5, -7);
-    num_add(r, r, x[0]);
-}
-
-/* max >= the largest trace (or eigenvalue) of beta over the torus and the parameters a, b, c
-   of the state, and within about 1e-6 of it.  seed is where the maximum of W is expected: a
-   good one saves work, a bad one does no harm.
+/* One pass over the torus: best becomes the largest value seen at any centre, if larger than
+   before; max >= every value on the torus, and at most best + tolerance unless depth or patience
+   ran out, when it is looser, and still a bound.
 
    beta(-v) = 2I + W(v), and the torus is its own mirror image, so W serves.  A cell is done
-   when its bound is at most 5e-7 above the best value seen at a centre; otherwise it is halved
-   along the side that moves the waves most.  A cell that is not done when depth or patience run
-   out counts with its own bound: max is then looser, and still a bound. */
-static void torus_max(state *s, num_t max, int eigenvalue, const double seed[2])
+   when its bound is at most best + tolerance; otherwise it is halved along the side that moves
+   the waves most. */
+static void torus_pass(state *s, num_t max, num_t best, const num_t tolerance, int eigenvalue,
+                       const double reach[N_PARMS])
 {
     numbers *n = &s->n;
     cell *stack = n->cells;
     num_t *x = n->tor;
-    double reach[3] = { 0.0, 0.0, 0.0 };                /* of a, b, c; only guides the cuts */
-    long done = 0;
+    long cells = 0;
     int top = 0;
 
-    num_t *const parm_ends[3][2] = { { &n->a.lb, &n->a.ub }, { &n->b.lb, &n->b.ub },
-                                     { &n->c.lb, &n->c.ub } };
-    for (int j = 0; j < 3; j++)
-        for (int e = 0; e < 2; e++) {
-            const double p = num_get_d(*parm_ends[j][e]);
-            reach[j] = p > reach[j] ? p : -p > reach[j] ? -p : reach[j];
-        }
-    for (int j = 0; j < 2; j++) {
+    for (int j = 0; j < DEG_FREE; j++) {
         num_set_si(stack[0].v[j], 0, 0);
         num_set(stack[0].r[j], n->pi_ub);
     }
     s->cell_depth[0] = 0;
-    for (int j = 0; j < 2; j++)
-        num_set_d(stack[1].v[j], seed[j]);
-    value_at(s, x[9], stack + 1, eigenvalue);          /* the best value seen, plus 5e-7 */
-    num_set(max, x[9]);
+    num_set(max, best);
     while (top >= 0) {
         cell *k = stack + top, *other = stack + top + 1;
 
-        value_at(s, x[8], k, eigenvalue);
-        num_max(x[9], x[8]);
-        cell_bound(s, x[14], k, eigenvalue);
-        if (num_cmp(x[14], x[9]) <= 0) {
-            top--;
-        } else if (s->cell_depth[top] == TORUS_DEPTH || ++done > TORUS_CELLS) {
-            num_max(max, x[14]);
+        set_waves(s, k->v);
+        num_set_si(x[0], 0, 0);
+        displaced_bound(s, x[8], x[0], x[0], eigenvalue);
+        num_max(best, x[8]);
+        cell_bound(s, x[9], k, eigenvalue);
+        num_add(x[8], best, tolerance);
+        if (num_cmp(x[9], x[8]) <= 0 || s->cell_depth[top] == TORUS_DEPTH ||
+            ++cells > TORUS_CELLS) {
+            num_max(max, x[9]);
             top--;
         } else {
             const int j = num_get_d(k->r[0]) * (reach[0] + reach[2])
@@ -137,7 +115,7 @@ static void torus_max(state *s, num_t max, int eigenvalue, const double seed[2])
             s->cell_depth[top]++;
             s->cell_depth[top + 1] = s->cell_depth[top];
             num_half(k->r[j], k->r[j]);
-            for (int i = 0; i < 2; i++) {
+            for (int i = 0; i < DEG_FREE; i++) {
                 num_set(other->v[i], k->v[i]);
                 num_set(other->r[i], k->r[i]);
             }
@@ -146,5 +124,35 @@ static void torus_max(state *s, num_t max, int eigenvalue, const double seed[2])
             top++;
         }
     }
-    num_max(max, x[9]);
+}
+
+/* max >= the largest trace (or eigenvalue) of beta over the torus and the parameters a, b, c
+   of the state, and within 5e-7 of it, or within 1e-12 of the size of parameters beyond 1e5.
+   Each pass looks a thousand times more closely than the last, whose best value spares it all
+   but the neighbourhood of the maximum.  TORUS_DP places are plenty for that, whatever the
+   precision of the proof. */
+static void torus_max(state *s, num_t max, int eigenvalue)
+{
+    numbers *n = &s->n;
+    bdd *const parm[N_PARMS] = { &n->a, &n->b, &n->c };
+    num_t *best = n->tor + 14, *tolerance = n->tor + 15;
+    double reach[N_PARMS], last, t;                     /* sizes: they only guide the search */
+    const long precision = s->precision;
+
+    for (int j = 0; j < N_PARMS; j++) {
+        num_set_si(*best, 0, 0);
+        add_max_abs(s, *best, parm[j]);
+        reach[j] = num_get_d(*best);
+    }
+    last = 5e-7 + 1e-12 * (reach[0] + reach[1] + reach[2]);
+    t = 0.5 * (reach[0] + reach[1] + reach[2]);
+    set_precision(s, TORUS_DP);
+    num_set_si(*best, 0, 0);                            /* the average of either is above */
+    for (; t > 2.0 * last; t *= 1e-3) {
+        num_set_d(*tolerance, t);
+        torus_pass(s, max, *best, *tolerance, eigenvalue, reach);
+    }
+    num_set_d(*tolerance, last);
+    torus_pass(s, max, *best, *tolerance, eigenvalue, reach);
+    set_precision(s, precision);
 }

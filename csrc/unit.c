@@ -31,13 +31,12 @@ state *R(unit_new)(long dp, int as_printed)
     dp = DOUBLE_DP;
 #endif
     s->dp = dp;
-    s->precision = dp + SAFETY_DP;
     s->as_printed = as_printed;
-    trig_init(&s->trig, s->precision);
+    trig_init(&s->trig, dp + SAFETY_DP);
     for (int j = 0; j < (int)N_NUMBERS; j++)
         num_init(first_number(s)[j]);
     num_set_si(n->max_error, 1, -dp);
-    num_set_si(n->ulp, 1, -s->precision);
+    set_precision(s, dp + SAFETY_DP);
 
     apm_init(pi);
     apm_init(angle);

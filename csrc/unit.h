@@ -26,10 +26,9 @@ enum { C_T, C_TRACE_MIN, C_TRACE_MAX, C_B, C_LAM_MIN, C_LAM_MAX, N_CONSTANTS };
     typedef struct R##unit R##unit;                                                            \
     R##unit *R##unit_new(long dp, int as_printed);              /* NULL: no memory */          \
     void R##unit_free(R##unit *u);                                                             \
-    /* Sets the constants for the parameters of root and the first block of the second         \
-       variation for its xstar; start: where trace and least eigenvalue are thought least.     \
-       Returns CV_OK or a negative code. */                                                    \
-    int R##prepare_trial(R##unit *u, const box *root, double start[2][2],                \
+    /* Sets the constants, to those given or, where NULL, by itself, and the first block of    \
+       the second variation.  herman_start is used as printed only.  CV_OK or an error. */     \
+    int R##prepare_trial(R##unit *u, const box *root, const double herman_start[2],            \
                          apm_t constants[N_CONSTANTS]);                                  \
     void R##unit_constants(R##unit *u, apm_t constants[N_CONSTANTS]);                          \
     void R##try_prism(R##unit *u, const box *b, verdict *v);                                   \

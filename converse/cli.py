@@ -1,0 +1,157 @@
+"""The command: converse [flags] < input > report."""
+
+import argparse
+import contextlib
+import math
+import os
+import sys
+
+from . import ConverseError, InputError, __version__, files, picture, prove, read_input
+from .proof import LIMIT, check_backup
+from .report import header, verdict
+
+THEOREM, UNDECIDED, BAD, INTERRUPTED = 0, 1, 2, 130
+KIND_NAMES = {"P": "proved", "S": "symmetric", "U": "undecided"}
+
+
+class Parser(argparse.ArgumentParser):
+    def error(self, message):
+        raise ConverseError(message + "; see converse --help")
+
+
+def _whole(least):
+    def convert(text):
+        try:
+            number = int(text)
+        except ValueError:
+            number = None
+        if number is None or not least <= number <= LIMIT:
+            raise argparse.ArgumentTypeError("'%s' is not a whole number from %d to %d"
+                                             % (text, least, LIMIT))
+        return number
+    return convert
+
+
+def parser():
+    p = Parser(prog="converse", allow_abbrev=False, description=(
+        "Tries to prove that a family of symplectic maps has no invariant tori."), epilog=(
+        "Exit status: 0 a theorem; 1 undecided; 2 bad usage, input or file; 130 interrupted."))
+    p.add_argument("input", nargs="?", default="-", help="input file; standard input by default")
+    p.add_argument("-d", "--depth", type=_whole(0), default=30, metavar="N",
+                   help="give up on a prism that was cut N times (default 30)")
+    p.add_argument("-b", "--backup", metavar="FILE",
+                   help="keep a backup in FILE, from which the run can be continued")
+    p.add_argument("-r", "--restore", metavar="FILE",
+                   help="continue the run whose backup is FILE")
+    p.add_argument("-g", "--graphics", metavar="FILE",
+                   help="draw the prisms in FILE, by its name as SVG, PNG or PDF, else as "
+                        "PostScript; 'off' draws none (default)")
+    p.add_argument("-p", "--precision", type=_whole(1), default=35, metavar="DP",
+                   help="decimal places of the rigorous arithmetic (default 35)")
+    p.add_argument("-s", "--stubborn", action="store_true",
+                   help="go on after a prism that cannot be decided")
+    p.add_argument("-t", "--verbose", action="store_true",
+                   help="print a line for every decided prism")
+    p.add_argument("--as-printed", action="store_true",
+                   help="follow the thesis's listing to the letter; not a proof")
+    p.add_argument("--version", action="version", version="converse " + __version__)
+    return p
+
+
+def _leaf_line(leaf, steps):
+    """A line of -t: kind, centre and half-widths in radians, cuts, steps."""
+    numbers = ["%.10g" % (x * math.pi) for x in leaf.centre + leaf.half]
+    return "%-9s (%s, %s) +- (%s, %s), %d cuts, %d steps" % (
+        KIND_NAMES[leaf.kind], *numbers, leaf.depth, steps)
+
+
+def _say(text):
+    sys.stdout.write(text)
+    sys.stdout.flush()
+
+
+class Progress:
+    """Prints the header when the search gets under way; then keeps a bar on a terminal."""
+
+    def __init__(self, problem, as_printed, with_bar):
+        self.problem, self.as_printed, self.with_bar = problem, as_printed, with_bar
+        self.started, self.bar = False, None
+
+    def __call__(self, fraction, counts, depth):
+        if not self.started:
+            self.started = True
+            if self.as_printed:
+                print("converse: --as-printed is a historical reconstruction, not a proof",
+                      file=sys.stderr)
+            _say(header(self.problem))
+            if self.with_bar:
+                from tqdm import tqdm
+                self.bar = tqdm(total=100, leave=False, file=sys.stderr, bar_format=(
+                    "{percentage:5.1f}% |{bar}| {elapsed}{postfix}"))
+        if self.bar is not None:
+            prisms = counts.proved + counts.symmetric + counts.undecided
+            self.bar.n = 100 * fraction
+            self.bar.set_postfix_str("%d prisms, depth %d" % (prisms, depth))
+
+    def close(self):
+        if self.bar is not None:
+            self.bar.close()
+
+
+def run(options):
+    problem = read_input(sys.stdin if options.input == "-" else options.input)
+    graphics = None if options.graphics == "off" else options.graphics
+    if graphics is not None:
+        if graphics in (options.input, options.backup, options.restore):
+            raise ConverseError("the figure would overwrite '%s'; name another file" % graphics)
+        files.check_writable(graphics)
+        if graphics.endswith(picture.FORMATS):
+            picture.check()
+    if options.backup is not None:
+        check_backup(options.backup)
+
+    def on_leaf(leaf, steps):
+        _say(_leaf_line(leaf, steps) + "\n")
+
+    progress = Progress(problem, options.as_printed,
+                        sys.stderr.isatty() and not options.verbose)
+    with contextlib.closing(progress):
+        proof = prove(problem, options.depth, options.precision, options.stubborn,
+                      options.as_printed, progress, options.backup, options.restore,
+                      on_leaf if options.verbose else None)
+    _say(verdict(proof))
+    if graphics is not None:
+        proof.figure(graphics)
+    return THEOREM if proof.all_decided else UNDECIDED
+
+
+def main(argv=None):
+    """Runs the command and returns its exit status; every failure is one line on stderr."""
+    options = None
+    try:
+        if None in (sys.stdin, sys.stdout, sys.stderr):
+            return BAD                      # a standard stream is closed: nowhere to say so
+        for stream in (sys.stdout, sys.stderr):
+            stream.reconfigure(errors="backslashreplace")
+        options = parser().parse_args(argv)
+        return run(options)
+    except SystemExit as end:               # of --help and --version
+        return end.code
+    except KeyboardInterrupt:
+        message, status = "interrupted; without -b nothing is kept", INTERRUPTED
+        if options and options.backup and os.path.exists(options.backup):
+            message = "interrupted; continue with -r " + options.backup
+    except (ConverseError, InputError, MemoryError) as error:
+        message, status = str(error), BAD
+    except OSError as error:
+        message, status = "the output cannot be written (%s)" % files.reason(error), BAD
+        # The interpreter must not try again when it ends.
+        with contextlib.suppress(OSError):
+            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    with contextlib.suppress(OSError):
+        print("converse: " + " ".join(message.split()), file=sys.stderr)
+    return status
+
+
+if __name__ == "__main__":
+    sys.exit(main())

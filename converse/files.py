@@ -1,0 +1,96 @@
+"""Files that are either whole or as they were before."""
+
+import contextlib
+import fcntl
+import os
+import tempfile
+
+
+class ConverseError(RuntimeError):
+    """Something outside the mathematics went wrong; the text is one plain sentence."""
+
+
+def reason(error):
+    """An OSError in words."""
+    return error.strerror or str(error)
+
+
+def check_writable(path, regular=False):
+    """Finds out before the work starts whether a file may be written."""
+    if os.path.isdir(path or os.curdir):
+        raise ConverseError("'%s': is a directory; name a file" % path)
+    if os.path.exists(path) and not os.path.isfile(path):
+        if regular:
+            raise ConverseError("%s: is not a regular file; name one" % path)
+        return
+    real = os.path.realpath(path)
+    if os.path.exists(real) and not os.access(real, os.W_OK):
+        raise ConverseError("%s: cannot be written (Permission denied); choose another file" % path)
+    try:
+        handle, name = tempfile.mkstemp(dir=os.path.dirname(real), prefix=".converse-")
+        os.close(handle)
+        os.unlink(name)
+    except OSError as error:
+        raise ConverseError("%s: its directory cannot be written (%s); choose another place"
+                            % (path, reason(error))) from None
+
+
+def write(path, data):
+    """Writes bytes to a file at once: a failure leaves the older file as it was."""
+    name = None
+    try:
+        if os.path.exists(path) and not os.path.isfile(path):       # a device or a pipe
+            with open(path, "wb") as file:
+                file.write(data)
+            return
+        real = os.path.realpath(path)
+        handle, name = tempfile.mkstemp(dir=os.path.dirname(real), prefix=".converse-")
+        with open(handle, "wb") as file:
+            file.write(data)
+            file.flush()
+            os.fsync(file.fileno())
+        os.chmod(name, _mode(real))
+        os.replace(name, real)
+        name = None
+    except OSError as error:
+        raise ConverseError("%s: cannot be written (%s); the older file, if any, is intact"
+                            % (path, reason(error))) from None
+    finally:
+        if name:
+            with contextlib.suppress(OSError):
+                os.unlink(name)
+
+
+def _mode(path):
+    """The permissions of the older file, or those that a new file would get."""
+    try:
+        return os.stat(path).st_mode & 0o777
+    except OSError:
+        return 0o644
+
+
+@contextlib.contextmanager
+def lock(path):
+    """Keeps other runs away from a file that this one writes again and again."""
+    name = os.path.realpath(path) + ".lock"
+    while True:
+        try:
+            handle = os.open(name, os.O_RDWR | os.O_CREAT, 0o644)
+        except OSError as error:
+            raise ConverseError("%s: cannot be written (%s); choose another file"
+                                % (name, reason(error))) from None
+        try:
+            fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except OSError:
+            os.close(handle)
+            raise ConverseError("%s: another run is writing this file; name another" % path) \
+                from None
+        with contextlib.suppress(OSError):
+            if os.path.samestat(os.fstat(handle), os.stat(name)):
+                break
+        os.close(handle)                    # its holder has just removed it: try again
+    try:
+        yield
+    finally:
+        os.unlink(name)
+        os.close(handle)

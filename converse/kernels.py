@@ -1,0 +1,118 @@
+"""The rigorous C routines one at a time, from exact numbers to exact numbers."""
+
+from decimal import Decimal
+from fractions import Fraction
+
+from ._native import ffi, lib
+from .problem import decimal_text
+from .proof import MESSAGES, check
+
+ARITHMETICS = ("apm", "double")
+
+
+def _exact(x):
+    """An int, a Fraction or a Decimal of finite decimals, or a string, for the C side."""
+    if isinstance(x, str):
+        return x
+    if isinstance(x, bool) or not isinstance(x, (int, Fraction, Decimal)):
+        raise TypeError("%r is not an exact number: give an int, a Fraction, a Decimal or a "
+                        "decimal string" % (x,))
+    if isinstance(x, Decimal) and not x.is_finite():
+        raise ValueError("%s is not a finite number" % x)
+    return str(x) if isinstance(x, Decimal) else decimal_text(x)
+
+
+def call(name, values, nout, dp, arithmetic="apm", as_printed=False):
+    """Calls a routine of the core with these numbers and returns its nout results."""
+    if arithmetic not in ARITHMETICS:
+        raise ValueError("the arithmetic is 'apm' or 'double', not %r" % (arithmetic,))
+    owners = [ffi.new("char[]", _exact(x).encode("utf-8")) for x in values]
+    out = ffi.new("char *[]", nout)
+    code = lib.cv_kernel(name.encode("utf-8"), arithmetic == "double", as_printed, dp,
+                         len(owners), ffi.new("char *[]", owners), nout, out)
+    texts = [ffi.string(text).decode("ascii") for text in out if text]
+    for text in filter(None, out):
+        lib.cv_free(text)
+    if code in (lib.CV_EARITHMETIC, lib.CV_ESINGULAR):
+        raise ArithmeticError("%s: %s" % (name, MESSAGES[code]))
+    if code in (lib.CV_ENUMBER, lib.CV_EARGUMENT):
+        raise ValueError("%s: %s" % (name, MESSAGES[code]))
+    check(code)
+    return [Fraction(Decimal(text)) for text in texts]
+
+
+def pi(dp, **options):
+    """pi to dp decimal places."""
+    return call("pi", [], 1, dp, **options)[0]
+
+
+def sin(x, dp, **options):
+    """The sine of x to dp decimal places."""
+    return call("sincos", [x], 2, dp, **options)[0]
+
+
+def cos(x, dp, **options):
+    """The cosine of x to dp decimal places."""
+    return call("sincos", [x], 2, dp, **options)[1]
+
+
+def sqrt(x, dp, **options):
+    """The square root of x to dp decimal places."""
+    return call("sqrt", [x], 2, dp, **options)[0]
+
+
+def div(x, y, dp, **options):
+    """An interval (lo, hi) that holds x / y."""
+    return tuple(call("div", [x, y], 3, dp, **options)[:2])
+
+
+def bound_sin(lo, hi, dp, **options):
+    """An interval (lo, hi) that holds the sine of every number from lo to hi."""
+    return tuple(call("bound_sincos", [lo, hi], 4, dp, **options)[:2])
+
+
+def bound_cos(lo, hi, dp, **options):
+    """An interval (lo, hi) that holds the cosine of every number from lo to hi."""
+    return tuple(call("bound_sincos", [lo, hi], 4, dp, **options)[2:])
+
+
+def bound_inverse(matrix, dp, **options):
+    """An approximate inverse of a 4 x 4 matrix, a list of rows, and a bound of its error."""
+    out = call("inverse", [x for row in matrix for x in row], 17, dp, **options)
+    return _rows(out[:16], 4), out[16]
+
+
+def inverse(matrix, dp, **options):
+    """The approximate inverse alone."""
+    return bound_inverse(matrix, dp, **options)[0]
+
+
+def image(prism, dp, **options):
+    """A prism that holds the image of a prism (centre, matrix): 7 numbers, 7 rows of 7."""
+    out = call("image", _flat(prism), 56, dp, **options)
+    return out[:7], _rows(out[7:], 7)
+
+
+def btrace(prism, dp, **options):
+    """An interval (lo, hi) that holds the trace of beta at every point of a prism."""
+    return tuple(call("btrace", _flat(prism), 2, dp, **options))
+
+
+def Blams(prism, dp, **options):
+    """Intervals that hold the least and the largest eigenvalue of beta over a prism."""
+    out = call("Blams", _flat(prism), 4, dp, **options)
+    return tuple(out[:2]), tuple(out[2:])
+
+
+def torus(a, b, c, dp, **options):
+    """The bounds (T, B) over the whole torus for ranges (lo, hi) of the parameters."""
+    return tuple(call("torus", [*a, *b, *c], 2, dp, **options))
+
+
+def _flat(prism):
+    centre, matrix = prism
+    return list(centre) + [x for row in matrix for x in row]
+
+
+def _rows(values, n):
+    return [values[i:i + n] for i in range(0, n * n, n)]

@@ -1,0 +1,120 @@
+"""The report of 1989 (thesis, Appendix B), in the same words and number formats."""
+
+import math
+
+from . import tree
+from .problem import exact_decimal
+
+PLUSES = "+" * 48
+REASONS = (                             # in the order of csrc/converse.h
+    "the orbit of the centre contradicts nothing",
+    "an image prism grew too big",
+    "the orbit grew too long",
+    "a matrix could not be inverted",
+    "the arithmetic failed",
+    "only the double-precision try succeeded",
+)
+
+
+def header(problem):
+    """What is known before the search: parameters, region, comments."""
+    lines = ["Parameters :"]
+    lines += ["%s : %.14e \t %.14e" % row
+              for row in zip("abc", map(float, problem.centre), map(float, problem.half))]
+    lines += ["", "Initial region :"]
+    lines += ["v[%d] : %.14e \t %.14e" % (i, problem.centre[3 + i] * math.pi,
+                                          problem.half[3 + i] * math.pi) for i in range(2)]
+    lines += ["", "Comments :", "", *problem.comments, "", PLUSES]
+    return "\n".join(lines) + "\n"
+
+
+def verdict(proof):
+    """What the search found."""
+    lines = _theorem(proof) + [""] + _statistics(proof)
+    if not proof.as_printed:
+        lines += [""] + _method(proof)
+    return "\n".join(lines) + "\n"
+
+
+def report(proof):
+    return header(proof.problem) + verdict(proof)
+
+
+def _theorem(proof):
+    problem = proof.problem
+    if not proof.all_decided:
+        first = ["I could not decide whether there are invariant tori "
+                 "for the range of parameters :"]
+    elif problem.full_torus or proof.as_printed:
+        first = ["I find no invariant tori for the range of parameters :"]
+    else:
+        first = ["I find no invariant tori whose successor of x* lies in the region :"]
+        first += [_range("v[%d] / pi" % i, problem.centre[3 + i], problem.half[3 + i])
+                  for i in range(2)]
+        first += ["for the range of parameters :"]
+    lines = first + [_range(name, centre, half, not proof.as_printed)
+                     for name, centre, half in zip("abc", problem.centre, problem.half)]
+    if not proof.all_decided:
+        lines += [""] + _gaps(proof)
+    return lines
+
+
+def _range(name, centre, half, exactly=True):
+    """The bounds of a range, exactly, or to the six places of 1989."""
+    low, high = (_bound(x) if exactly else "%f" % x for x in (centre - half, centre + half))
+    if exactly and low == high:
+        return "%s = %s" % (name, low)
+    return "%s < %s < %s" % (low, name, high)
+
+
+def _bound(x):
+    x = exact_decimal(x)
+    return "{:.{}f}".format(x, max(6, -x.as_tuple().exponent))
+
+
+def _gaps(proof):
+    """What stands in the way of a theorem."""
+    undecided = proof.undecided
+    lines = ["Undecided prisms : %d" % len(undecided)]
+    if undecided:
+        lines += ["The deepest of them was cut %d times." % max(leaf.depth for leaf in undecided)]
+    if not tree.complete(proof.tree):
+        lines += ["The search ended before the whole region was examined."]
+    return lines
+
+
+def _statistics(proof):
+    counts = proof.counts
+    used = counts.ll_used
+    if proof.as_printed:                # the listing exchanged these two labels
+        used = (used[1], used[0], used[2])
+    share = [100.0 * n / counts.proved if counts.proved else 0.0 for n in used]
+    return [
+        "Did %d quick checks, %d semi-rigorous bounding tries," % (counts.quick_tries,
+                                                                   counts.tries),
+        "and %d rigorous bounding tries." % counts.Rtries,
+        "The most deeply refined prism was cut %d times." % counts.most_cuts,
+        "The longest semi-rigorous orbit ran for %d iterations," % counts.max_steps,
+        "the longest successful orbit, %d iterations." % counts.max_NTsteps,
+        "Of the %d successful prisms, %d fell to the trace criterion," % (counts.proved,
+                                                                         counts.HermSuccess),
+        "%d to the least eigenvalue test." % counts.LLSuccess,
+        "The best upper bound on the least eigenvalue came from",
+        "the maxBlam criterion %.1f%% of the time," % share[0],
+        "the minBlam criterion %.1f%% of the time," % share[1],
+        "and from the trace criterion %.1f%% of the time." % share[2],
+        "",
+        "This investigation took %.2f seconds." % proof.seconds,
+    ]
+
+
+def _method(proof):
+    """What the word of the report rests on."""
+    lines = ["Program : converse " + proof.version,
+             "Method : that of the thesis, its listing corrected",
+             "Arithmetic : %d decimal places" % proof.digits,
+             "x* : %s %s" % proof.xstar]
+    lines += ["%s : %s" % (name, proof.constants[name]) for name in ("T", "B")]
+    lines += ["Tries that failed : %d" % sum(proof.counts.reasons)]
+    lines += ["%d : %s" % pair for pair in zip(proof.counts.reasons, REASONS) if pair[0]]
+    return lines

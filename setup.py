@@ -1,0 +1,48 @@
+"""Builds the C core; everything else about the package is in pyproject.toml."""
+
+import os
+import sys
+import tempfile
+
+from setuptools import setup
+from setuptools.command.build_ext import build_ext
+
+NEEDS = """
+converse cannot be built: {what}.
+Install a C compiler, the headers of Python and the headers of GMP, then try again:
+    Debian, Ubuntu:  apt-get install gcc python3-dev libgmp-dev
+    Fedora:          dnf install gcc python3-devel gmp-devel
+    macOS:           brew install gmp
+    conda:           conda install -c conda-forge c-compiler gmp
+"""
+
+PROBES = [
+    ("there is no working C compiler", "int main(void) { return 0; }", []),
+    ("the header Python.h is missing", "#include <Python.h>\nint main(void) { return 0; }", []),
+    ("the GMP library or its header gmp.h is missing",
+     "#include <gmp.h>\nint main(void) { mpz_t x; mpz_init(x); mpz_clear(x); return 0; }",
+     ["gmp"]),
+]
+
+
+class BuildExt(build_ext):
+    """Checks what the build needs before it starts, and names what is missing."""
+
+    def build_extensions(self):
+        with tempfile.TemporaryDirectory() as directory:
+            source = os.path.join(directory, "probe.c")
+            for what, text, libraries in PROBES:
+                with open(source, "w") as file:
+                    file.write(text)
+                try:
+                    objects = self.compiler.compile([source], output_dir=directory,
+                                                    include_dirs=self.include_dirs)
+                    self.compiler.link_shared_object(
+                        objects, os.path.join(directory, "probe.so"), libraries=libraries,
+                        library_dirs=self.library_dirs)
+                except Exception:       # the kinds of error differ between setuptools versions
+                    sys.exit(NEEDS.format(what=what))
+        super().build_extensions()
+
+
+setup(cffi_modules=["converse/_build.py:ffi"], cmdclass={"build_ext": BuildExt})

@@ -1,0 +1,77 @@
+"""Wall time, peak memory and prisms for every input and precision, and the price of an image.
+
+    python tests/bench [REPEAT]
+
+Prints figures and judges nothing.  Machines differ and are shared: the time is the least of
+REPEAT runs (3), and ratios within one run say more than seconds.
+"""
+
+import os
+import platform
+import sys
+import time
+from fractions import Fraction
+from pathlib import Path
+
+from converse import kernels
+
+ROOT = Path(__file__).resolve().parent.parent.parent
+COMMAND = str(Path(sys.executable).parent / "converse")
+DIGITS = (10, 20, 35, 50, 100, 200)
+
+
+def run(arguments):
+    """Seconds of wall time and peak memory in MB of one process; its output is dropped."""
+    begin = time.perf_counter()
+    pid = os.fork()
+    if pid == 0:
+        null = os.open(os.devnull, os.O_RDWR)
+        os.dup2(null, 1)
+        os.dup2(null, 2)
+        os.execv(arguments[0], arguments)
+    _, status, usage = os.wait4(pid, 0)
+    assert os.WIFEXITED(status) and os.WEXITSTATUS(status) in (0, 1), arguments
+    return time.perf_counter() - begin, usage.ru_maxrss / 1024
+
+
+def proofs(repeat):
+    import converse
+    empty = min(run([COMMAND, "--version"])[0] for _ in range(repeat))
+    print("whole processes; starting Python and importing alone takes %.3f s" % empty)
+    print("%-8s %6s %9s %9s %8s %8s" % ("input", "digits", "seconds", "search", "MB", "prisms"))
+    for path in sorted((ROOT / "inputs").glob("trig*.in")):
+        for digits in DIGITS:
+            runs = [run([COMMAND, "-d30", "-p%d" % digits, str(path)]) for _ in range(repeat)]
+            searches = []
+            for _ in range(repeat):
+                proof = converse.prove(converse.read_input(path), digits=digits)
+                searches.append(proof.seconds)
+            print("%-8s %6d %9.3f %9.3f %8.1f %8d" % (
+                path.stem, digits, min(r[0] for r in runs), min(searches),
+                max(r[1] for r in runs), proof.counts.proved))
+
+
+def images():
+    """Nanoseconds for the image of a prism of the list, and of that image."""
+    centre = [Fraction(x) for x in ("0.3085", "0.3085", "0.617", "0.82", "0.82", "2.5", "2.1")]
+    widths = ("0.00125", "0.00125", "0.0025", "0", "0", "0.02", "0.02")
+    first = (centre, [[Fraction(w) if j == k else Fraction(0) for k in range(7)]
+                      for j, w in enumerate(widths)])
+    print("nanoseconds per image of a prism (without bounding its sines)")
+    print("%-10s %12s %12s" % ("", "fixed form", "column rotor"))
+    rows = [("double", 35, {"arithmetic": "double"})]
+    rows += [("%d digits" % digits, digits, {}) for digits in DIGITS]
+    for name, digits, options in rows:
+        figures = []
+        for prism in (first, kernels.image(first, digits, **options)):
+            values = [*prism[0], *(x for row in prism[1] for x in row)]
+            repeat = 20000 if options else 2000
+            figures.append(min(kernels.call("image_ns", values + [repeat], 1, digits, **options)[0]
+                               for _ in range(3)))
+        print("%-10s %12.0f %12.0f" % (name, *figures))
+
+
+if __name__ == "__main__":
+    print("%s, %s, Python %s" % (platform.machine(), platform.system(), platform.python_version()))
+    proofs(int(sys.argv[1]) if len(sys.argv) > 1 else 3)
+    images()

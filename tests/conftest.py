@@ -1,0 +1,58 @@
+"""What several tests share."""
+
+import subprocess
+import sys
+from fractions import Fraction
+from pathlib import Path
+
+import pytest
+
+from converse import Counts, Problem, Proof
+
+ROOT = Path(__file__).resolve().parent.parent
+COMMAND = str(Path(sys.executable).parent / "converse")
+
+
+@pytest.fixture(scope="session")
+def root():
+    """The project's directory, for its inputs and golden outputs."""
+    return ROOT
+
+
+@pytest.fixture(scope="session")
+def start():
+    """Starts the command; the streams are binary."""
+    def start(*arguments, **options):
+        options = {"stdin": subprocess.DEVNULL, "stdout": subprocess.PIPE,
+                   "stderr": subprocess.PIPE, **options}
+        return subprocess.Popen([COMMAND, *map(str, arguments)], **options)
+    return start
+
+
+@pytest.fixture(scope="session")
+def command(start):
+    """Runs the command to its end: (exit status, stdout, stderr)."""
+    def command(*arguments, stdin=b"", **options):
+        with start(*arguments, stdin=subprocess.PIPE, **options) as process:
+            out, err = process.communicate(stdin, timeout=300)
+        return (process.returncode, out.decode("utf-8") if out is not None else None,
+                err.decode("utf-8"))
+    return command
+
+
+@pytest.fixture(scope="session")
+def made_up():
+    """A proof from a tree that the test makes up; its other numbers serve the format only."""
+    def made_up(tree, a="0.3085", v=("1", "1", "1", "1"), comments=(), counts=None, **options):
+        a, (c0, c1, h0, h1) = Fraction(a), map(Fraction, v)
+        problem = Problem((a, a, 2 * a, c0, c1),
+                          (*map(Fraction, ("0.00125", "0.00125", "0.0025")), h0, h1), comments)
+        counts = counts or Counts(cuts=tree.count("0") + tree.count("1"), proved=tree.count("P"),
+                                  symmetric=tree.count("S"), undecided=tree.count("U"))
+        facts = dict(depth=30, digits=35, stubborn=False, as_printed=False,
+                     xstar=("1.5", "1.5"), seconds=12.5,
+                     constants={name: "1.25" for name in
+                                ("T", "Tr-", "Tr+", "B", "lambda-min", "lambda-max")})
+        facts.update(options)
+        return Proof(problem=problem, tree=tree, counts=counts, **facts)
+    return made_up

@@ -1,0 +1,238 @@
+"""The command: its flags, its messages, its exit status."""
+
+import os
+import re
+
+import pytest
+
+from converse import Proof
+from converse.cli import main
+
+GOOD = b"0.3085 0.00125\n0.3085 0.00125\n0.617 0.0025\n\n1.0 1.0\n1.0 1.0\n\n"
+
+
+@pytest.fixture(scope="session")
+def sample(root):
+    return root / "inputs" / "trig274.in"
+
+
+@pytest.fixture(scope="session")
+def output(command, sample):
+    status, out, err = command("-d30", stdin=sample.read_bytes())
+    assert (status, err) == (0, "")
+    return timeless(out)
+
+
+def timeless(text):
+    return re.sub(r"took [0-9.]+ seconds", "took ... seconds", text)
+
+
+def one_line(err):
+    """A diagnostic is one line and no traceback."""
+    return err.startswith("converse: ") and err.endswith("\n") and err.count("\n") == 1
+
+
+def test_the_1989_way(output):
+    assert output.startswith("Parameters :\na : 3.08500000000000e-01 \t 1.25000000000000e-03\n")
+    assert "I find no invariant tori for the range of parameters :\n0.307250 < a < 0.309750\n" \
+        in output
+
+
+@pytest.mark.parametrize("arguments", [
+    [], ["-d30"], ["-d", "30"], ["--depth", "30"], ["--depth=30"], ["-p35"], ["-p", "35"],
+    ["--precision", "35"], ["-g", "off"], ["-goff"], ["--graphics=off"], ["-s"], ["--stubborn"],
+    ["-sd30", "-p35"], ["-p", "35", "-s", "-d", "30"], ["-d", "30", "-goff", "-s", "-p35"],
+])
+def test_flags_in_any_form_and_order(command, sample, output, arguments):
+    for source in ([sample], [], ["-"]):
+        status, out, err = command(*arguments, *source,
+                                   stdin=b"" if source == [sample] else sample.read_bytes())
+        assert (status, timeless(out), err) == (0, output, "")
+        if arguments:
+            break
+
+
+def test_input_name_before_the_flags(command, sample, output):
+    assert timeless(command(sample, "-d", "30")[1]) == output
+
+
+def test_depth_and_undecided(command, sample):
+    status, out, err = command("-d3", sample)
+    assert status == 1 and err == ""
+    assert "I could not decide" in out and "Undecided prisms : 1\n" in out
+    stubborn = command("-d3", "-s", sample)
+    assert stubborn[0] == 1 and "Undecided prisms : 1\n" not in stubborn[1]
+
+
+def test_precision(command, sample):
+    assert "Arithmetic : 50 decimal places" in command("-p", "50", sample)[1]
+
+
+def test_verbose(command, sample, output):
+    status, out, err = command("-t", sample)
+    assert status == 0 and err == ""
+    leaf = re.compile(r"(proved|symmetric|undecided) +\(\S+, \S+\) \+- \(\S+, \S+\), "
+                      r"[0-9]+ cuts, [0-9]+ steps")
+    lines = out.split("\n")
+    found = [line for line in lines if leaf.fullmatch(line)]
+    assert timeless("\n".join(line for line in lines if line not in found)) == output
+    proved = sum(line.startswith("proved") for line in found)
+    assert "Of the %d successful prisms" % proved in out and len(found) > proved
+    assert lines[lines.index("+" * 48) + 1] == found[0]
+    assert command("--verbose", sample)[1].count(" cuts, ") == len(found)
+
+
+def test_as_printed(command, sample):
+    status, out, err = command("--as-printed", sample)
+    assert status == 0
+    assert one_line(err) and "not a proof" in err
+    assert out.endswith(" seconds.\n") and "Program :" not in out and "Method" not in out
+    status, out, err = command("--as-printed", "-d2", sample)
+    assert status == 1 and one_line(err)
+
+
+def test_help_and_version(command):
+    status, out, err = command("--help")
+    assert status == 0 and err == ""
+    for flag in ("-d", "-b", "-r", "-g", "-p", "-s", "-t", "--as-printed", "--depth", "--backup",
+                 "--restore", "--graphics", "--precision", "--stubborn", "--verbose", "--version"):
+        assert flag in out
+    assert command("--version") == (0, "converse 1.0.0\n", "")
+
+
+def test_figure(command, sample, output, tmp_path):
+    path = tmp_path / "figure.ps"
+    status, out, err = command("-g", path, sample)
+    assert (status, timeless(out), err) == (0, output, "")
+    assert path.read_text("ascii").startswith("%!PS-Adobe")
+    assert command("-d3", "-g%s" % path, sample)[0] == 1
+    assert "undecided (1)" in path.read_text("ascii")
+
+
+def test_backup_and_restore(command, sample, output, tmp_path):
+    backup = tmp_path / "backup"
+    status, out, err = command("-b", backup, sample)
+    assert (status, timeless(out), err) == (0, output, "")
+    assert Proof.load(backup).no_tori
+    for arguments in (["-r", backup], ["-r%s" % backup, "-b%s" % backup],
+                      ["--restore", backup, "--backup", tmp_path / "other.gz"]):
+        status, out, err = command(*arguments, sample)
+        assert (status, timeless(out), err) == (0, output, "")
+    assert Proof.load(tmp_path / "other.gz").no_tori
+
+
+def test_marked_backup_is_no_proof(command, sample, tmp_path):
+    backup = tmp_path / "backup"
+    assert command("--as-printed", "-b", backup, sample)[0] == 0
+    assert "kind: as printed, not a proof\n" in backup.read_text()
+    status, out, err = command("-r", backup, sample)
+    assert status == 2 and out == "" and one_line(err) and "as printed" in err
+    assert command("--as-printed", "-r", backup, sample)[0] == 0
+
+
+# ---- bad usage and bad input ------------------------------------------------------------
+
+@pytest.mark.parametrize("arguments, word", [
+    (["-p", "0"], "'0'"), (["-p0"], "'0'"), (["-p", "-5"], "-5"), (["-p-5"], "-5"),
+    (["-d", "x"], "'x'"), (["-dx"], "'x'"), (["-d", "-1"], "-1"), (["-d", "1.5"], "1.5"),
+    (["-d", "9" * 30], "9999"), (["-d"], "-d"), (["-z"], "-z"), (["--dept", "3"], "--dept"),
+    (["--unknown"], "--unknown"), (["-b"], "-b"), (["one", "two"], "two"),
+    (["/missing/file.in"], "/missing/file.in"), (["/"], "/"),
+])
+def test_bad_usage(command, arguments, word):
+    status, out, err = command(*arguments, stdin=GOOD)
+    assert status == 2 and out == ""
+    assert one_line(err) and word in err
+
+
+@pytest.mark.parametrize("text, line", [
+    (b"", 1), (b"\n\n", 1), (GOOD[:40], 3), (GOOD.replace(b"0.3085", b"hello", 1), 1),
+    (GOOD.replace(b"0.617", b"nan"), 3), (GOOD.replace(b"0.0025", b"inf"), 3),
+    (GOOD.replace(b"0.617", b"1e400"), 3), (GOOD.replace(b"0.0025", b"-0.0025"), 3),
+    (GOOD.replace(b"0.617", b"0.617 1"), 3), (GOOD.replace(b" 0.0025", b""), 3),
+    (bytes(range(256)), 1), (b"\0" * 100, 1),
+])
+def test_bad_input(command, text, line, tmp_path):
+    status, out, err = command("-b", tmp_path / "b", "-g", tmp_path / "g", stdin=text)
+    assert status == 2 and out == ""
+    assert one_line(err) and ": <stdin>, line %d: " % line in err and "; " in err
+    assert list(tmp_path.iterdir()) == []
+    path = tmp_path / "bad.in"
+    path.write_bytes(text)
+    status, out, err = command(path)
+    assert status == 2 and one_line(err) and "%s, line %d: " % (path, line) in err
+
+
+@pytest.mark.parametrize("text", [
+    GOOD.replace(b"\n", b"\r\n"), GOOD.replace(b" ", b"\t"), b"\n\n" + GOOD,
+    GOOD.replace(b"\n", b"\n\n"), GOOD.rstrip(b"\n"),
+])
+def test_layouts(command, text, output):
+    out = timeless(command(stdin=text)[1])
+    assert out.split("+" * 48)[1] == output.split("+" * 48)[1]
+
+
+@pytest.mark.parametrize("environment", [{}, {"LC_ALL": "C", "PYTHONIOENCODING": "ascii"}])
+def test_foreign_letters_in_comments(command, environment, tmp_path):
+    status, out, err = command("-b", tmp_path / "b", stdin=GOOD + "\u03b5 \u2264 1".encode(),
+                               env={**os.environ, "PYTHONUTF8": "1", **environment})
+    assert status == 0 and err == ""
+    assert ("\u03b5 \u2264 1" in out) or ("\\u03b5 \\u2264 1" in out)
+    assert Proof.load(tmp_path / "b").problem.comments == ("\u03b5 \u2264 1",)
+
+
+def test_zero_half_widths(command):
+    status, out, err = command(stdin=b"0.32 0\n0.32 0\n0.64 0\n1 1\n1 1\n")
+    assert (status, err) == (0, "")
+    assert "a = 0.320000\nb = 0.320000\nc = 0.640000\n" in out
+
+
+@pytest.mark.parametrize("flag", ["-b", "-g"])
+def test_unwritable_places(command, flag, sample, tmp_path):
+    plain = tmp_path / "plain"
+    plain.write_text("")
+    for place in (tmp_path, tmp_path / "missing" / "file", plain / "file", "/proc/file", ""):
+        status, out, err = command(flag, place, sample)
+        assert status == 2 and out == "" and one_line(err)
+        assert str(place) in err
+
+
+def test_backup_over_something_else(command, sample, tmp_path):
+    path = tmp_path / "notes"
+    path.write_text("precious")
+    status, out, err = command("-b", path, sample)
+    assert status == 2 and out == "" and one_line(err) and "notes" in err
+    assert path.read_text() == "precious"
+
+
+def test_figure_over_something_else(command, sample, tmp_path):
+    path = tmp_path / "copy.in"
+    path.write_bytes(sample.read_bytes())
+    for arguments in ([path, "-g", path], [sample, "-b", tmp_path / "b", "-g", tmp_path / "b"]):
+        status, out, err = command(*arguments)
+        assert status == 2 and out == "" and one_line(err) and "overwrite" in err
+    assert path.read_bytes() == sample.read_bytes()
+
+
+def test_bad_backups(command, sample, root, tmp_path):
+    good = tmp_path / "good"
+    assert command("-b", good, sample)[0] == 0
+    truncated, edited = tmp_path / "truncated", tmp_path / "edited"
+    truncated.write_bytes(good.read_bytes()[:-40])
+    edited.write_text(good.read_text().replace("depth: 30", "depth: 31"))
+    for path, word in ((truncated, "truncated"), (edited, "damaged"), (sample, "not a proof file"),
+                       (tmp_path, "cannot be read"), (tmp_path / "missing", "cannot be read")):
+        status, out, err = command("-r", path, sample)
+        assert status == 2 and out == "" and one_line(err)
+        assert str(path) in err and word in err
+    status, out, err = command("-r", good, root / "inputs" / "trig276.in")
+    assert status == 2 and one_line(err) and "its a is 0.3085 +- 0.00125" in err
+    assert command("-r", good, "-p40", sample)[0] == 2
+
+
+def test_main_returns_the_status(sample, capsys):
+    assert main(["-d2", str(sample)]) == 1
+    assert main(["--version"]) == 0
+    assert main(["-dx"]) == 2
+    out, err = capsys.readouterr()
+    assert "I could not decide" in out and one_line(err)

@@ -1,0 +1,197 @@
+"""What goes wrong around a run: kill -9, Ctrl-C, closed pipes, full disks, terminals."""
+
+import fcntl
+import os
+import pty
+import random
+import re
+import resource
+import signal
+import struct
+import subprocess
+import sys
+import termios
+import time
+from pathlib import Path
+
+import pytest
+
+from converse import Proof
+
+@pytest.fixture(scope="session")
+def sample(root):
+    return root / "inputs" / "trig272.in"
+
+
+@pytest.fixture(scope="session")
+def slow_run(command, sample):
+    """Digits enough for a run of a second or more on any machine, and its report."""
+    digits = 50
+    while True:
+        begin = time.monotonic()
+        status, out, err = command("-p", digits, sample)
+        assert (status, err) == (0, "")
+        if time.monotonic() - begin > 1.2:
+            return ["-p", str(digits)], timeless(out)
+        digits *= 2
+
+
+@pytest.fixture
+def slow(slow_run):
+    return slow_run[0]
+
+
+@pytest.fixture
+def output(slow_run):
+    return slow_run[1]
+
+
+def timeless(text):
+    return re.sub(r"took [0-9.]+ seconds", "took ... seconds", text)
+
+
+def wait_for(path, seconds=60):
+    end = time.monotonic() + seconds
+    while not path.exists() and time.monotonic() < end:
+        time.sleep(0.01)
+    assert path.exists()
+
+
+def test_kill_at_random_moments(start, command, sample, output, tmp_path, slow):
+    rng = random.Random(20)
+    backup = tmp_path / "backup"
+    trees, arguments = [""], slow + ["-b", backup]
+    for _ in range(5):
+        with start(*arguments, sample) as process:
+            if len(trees) == 1:
+                wait_for(backup)        # it is written at once
+            time.sleep(rng.uniform(0, 1.6))
+            process.kill()
+        half = Proof.load(backup)       # whole, whenever the run was killed
+        assert half.tree.startswith(trees[-1])
+        trees.append(half.tree)
+        arguments = slow + ["-b", backup, "-r", backup]
+    assert trees[-1]                    # some of the work was kept
+    status, out, err = command(*arguments, sample)
+    assert (status, timeless(out), err) == (0, output, "")
+    whole = Proof.load(backup)
+    assert whole.no_tori and whole.tree.startswith(trees[-1])
+
+
+def test_interrupt(start, command, sample, output, tmp_path, slow):
+    backup = tmp_path / "backup"
+    with start(*slow, "-b", backup, sample) as process:
+        wait_for(backup)
+        time.sleep(0.3)
+        process.send_signal(signal.SIGINT)
+        out, err = process.communicate(timeout=60)
+    assert process.returncode == 130
+    assert err.decode() == "converse: interrupted; continue with -r %s\n" % backup
+    assert "Parameters :" in out.decode() and "I find" not in out.decode()
+    half = Proof.load(backup)
+    assert half.tree and not half.no_tori
+    status, out, err = command(*slow, "-r", backup, sample)
+    assert (status, timeless(out)) == (0, output)
+
+
+def test_interrupt_without_backup(start, sample, slow):
+    with start(*slow, sample) as process:
+        process.stdout.readline()       # the header comes before the work
+        time.sleep(0.3)
+        process.send_signal(signal.SIGINT)
+        err = process.communicate(timeout=60)[1].decode()
+    assert process.returncode == 130
+    assert err.startswith("converse: interrupted") and err.count("\n") == 1
+
+
+def test_closed_pipe(start, sample, tmp_path):
+    backup = tmp_path / "backup"
+    with start("-p20", "-b", backup, sample) as process:
+        assert process.stdout.readline() == b"Parameters :\n"
+        process.stdout.close()
+        err = process.stderr.read().decode()
+        assert process.wait(timeout=60) == 2
+    assert err == "converse: the output cannot be written (Broken pipe)\n"
+    assert Proof.load(backup).no_tori
+
+
+def test_full_standard_output(command, sample):
+    with open("/dev/full", "wb") as full:
+        status, _, err = command("-p20", sample, stdout=full)
+    assert status == 2
+    assert err == "converse: the output cannot be written (No space left on device)\n"
+
+
+def test_full_disk_keeps_the_older_backup(start, command, sample, output, tmp_path, slow):
+    backup = tmp_path / "backup"
+    with start(*slow, "-b", backup, sample) as process:
+        wait_for(backup)
+        time.sleep(0.3)
+        process.send_signal(signal.SIGINT)
+        process.communicate()
+    before = backup.read_bytes()
+
+    def small_files():
+        resource.setrlimit(resource.RLIMIT_FSIZE, (100, 100))
+
+    status, out, err = command(*slow, "-b", backup, "-r", backup, sample, preexec_fn=small_files)
+    assert status == 2
+    assert err.startswith("converse: %s: cannot be written" % backup) and err.count("\n") == 1
+    assert "intact" in err
+    assert backup.read_bytes() == before
+    assert command(*slow, "-r", backup, sample)[0] == 0
+
+
+def test_full_disk_for_the_figure(command, root, tmp_path):
+    def small_files():
+        resource.setrlimit(resource.RLIMIT_FSIZE, (100, 100))
+
+    figure = tmp_path / "figure.ps"
+    status, out, err = command("-g", figure, root / "inputs" / "trig278.in",
+                               preexec_fn=small_files)
+    assert status == 2 and "I find no invariant tori" in out
+    assert err.startswith("converse: ") and err.count("\n") == 1
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_two_runs_with_one_backup(start, command, sample, tmp_path, slow):
+    backup = tmp_path / "backup"
+    with start(*slow, "-b", backup, sample) as process:
+        wait_for(backup)
+        status, out, err = command(*slow, "-b", backup, sample)
+        process.kill()
+    assert status == 2 and out == ""
+    assert "another run" in err and err.count("\n") == 1
+    assert command("-p20", "-b", backup, sample)[0] == 0       # the lock died with its holder
+
+
+@pytest.mark.parametrize("redirection", ["<&-", ">&-", "2>&-"])
+def test_closed_streams(redirection):
+    program = Path(sys.executable).parent / "converse"
+    result = subprocess.run(["sh", "-c", '"$0" -p20 ' + redirection, str(program)],
+                            stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+                            stderr=subprocess.PIPE, check=False)
+    assert result.returncode == 2
+    assert b"Traceback" not in result.stdout + result.stderr
+
+
+def test_bar_on_a_terminal_only(start, command, sample):
+    assert command("-p20", sample)[2] == ""
+    master, slave = pty.openpty()
+    fcntl.ioctl(slave, termios.TIOCSWINSZ, struct.pack("4H", 24, 80, 0, 0))
+    with start("-p20", sample, stderr=slave) as process:
+        os.close(slave)
+        shown = b""
+        try:
+            while True:
+                piece = os.read(master, 4096)
+                if not piece:
+                    break
+                shown += piece
+        except OSError:                 # the other end is closed
+            pass
+        out = process.stdout.read()
+    os.close(master)
+    assert process.returncode == 0 and b"I find no invariant tori" in out
+    assert b"%" in shown and b"prisms, depth" in shown
+    assert b"%|" not in out and b"prisms, depth" not in out

@@ -1,0 +1,295 @@
+"""Proofs: what prove returns, the proof file, and continuing from it."""
+
+import gzip
+import threading
+from dataclasses import replace
+from fractions import Fraction
+
+import pytest
+
+from converse import ConverseError, Counts, Problem, Proof, prove, read_input
+from converse.tree import leaves
+
+NUMBERS = dict(ll_used=(3, 2, 1), reasons=(1, 2, 3, 4, 5, 6), quick_tries=7)
+
+
+@pytest.fixture(scope="session")
+def problem(root):
+    return read_input(root / "inputs" / "trig274.in")
+
+
+@pytest.fixture(scope="session")
+def proof(problem):
+    return prove(problem)
+
+
+def timeless(proof):
+    return replace(proof, seconds=0)
+
+
+def test_theorem(proof):
+    assert proof.no_tori and proof.all_decided and proof.undecided == []
+    counts = proof.counts
+    assert (counts.cuts, counts.proved, counts.symmetric, counts.undecided) == (
+        sum(map(proof.tree.count, "01")), *map(proof.tree.count, "PSU"))
+    assert counts.proved + counts.symmetric == counts.cuts + 1
+    assert counts.most_cuts == max(leaf.depth for leaf in leaves(proof.problem, proof.tree, "P"))
+    assert counts.HermSuccess + counts.LLSuccess == counts.proved
+    assert "I find no invariant tori" in proof.report()
+
+
+def test_symmetric_prisms_mirror_examined_ones(proof):
+    """A prism is skipped only on the side v1 >= v0 of the diagonal."""
+    for leaf in leaves(proof.problem, proof.tree, "S"):
+        assert leaf.centre[1] - leaf.half[1] >= leaf.centre[0] + leaf.half[0]
+
+
+def test_same_again(problem, proof):
+    assert timeless(prove(problem)) == timeless(proof)
+
+
+def test_as_printed_is_no_proof(problem):
+    result = prove(problem, as_printed=True)
+    assert result.all_decided and not result.no_tori
+
+
+def test_undecided(problem):
+    stopped = prove(problem, depth=3)
+    assert not stopped.no_tori and len(stopped.undecided) == 1
+    assert stopped.tree.endswith("U") and stopped.counts.undecided == 1
+    stubborn = prove(problem, depth=3, stubborn=True)
+    assert not stubborn.no_tori
+    assert len(stubborn.undecided) == stubborn.counts.undecided > 1
+    assert all(leaf.depth == 3 for leaf in stubborn.undecided)
+    assert stubborn.tree.startswith(stopped.tree)
+
+
+def test_progress_and_leaves(problem, proof):
+    fractions, seen = [], []
+    result = prove(problem, progress=lambda fraction, counts, depth: fractions.append(fraction),
+                   on_leaf=lambda leaf, steps: seen.append(leaf))
+    assert timeless(result) == timeless(proof)
+    assert seen == list(leaves(problem, proof.tree))
+    assert fractions == sorted(fractions)
+    assert fractions[0] < 0.01 and fractions[-1] == pytest.approx(1)
+
+
+def test_two_threads(problem, proof, root):
+    other = read_input(root / "inputs" / "trig272.in")
+    results = {}
+
+    def work(name, *arguments, **options):
+        results[name] = prove(*arguments, **options)
+
+    threads = [threading.Thread(target=work, args=(name, it), kwargs=options)
+               for name, it, options in (("first", problem, {}), ("second", problem, {}),
+                                         ("other", other, {"digits": 20}))]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert timeless(results["first"]) == timeless(results["second"]) == timeless(proof)
+    assert timeless(results["other"]) == timeless(prove(other, digits=20))
+
+
+@pytest.mark.parametrize("options", [{"digits": 0}, {"digits": -5}, {"depth": -1}])
+def test_bad_arguments(problem, options):
+    with pytest.raises(ValueError):
+        prove(problem, **options)
+
+
+# ---- the proof file ---------------------------------------------------------------------
+
+@pytest.mark.parametrize("name", ["a.proof", "a.proof.gz"])
+def test_round_trip(tmp_path, made_up, name):
+    for tree, options in (
+            ("0P1SU", {"stubborn": True, "seconds": 3.25}), ("", {}), ("0" * 300, {}),
+            ("0PS", {"as_printed": True, "comments": ("", "a: b", "tree:", "\u03b5 \u00fc"),
+                     "a": "0.123456789012345678901234567890"})):
+        proof = made_up(tree, **options)
+        proof = replace(proof, counts=replace(proof.counts, **NUMBERS))
+        proof.save(tmp_path / name)
+        assert Proof.load(tmp_path / name) == proof
+        assert Proof.load(str(tmp_path / name)).report() == proof.report()
+    assert [path.name for path in tmp_path.iterdir()] == [name]
+
+
+def test_file_says_what_it_is(tmp_path, made_up):
+    made_up("0PS").save(tmp_path / "sound")
+    made_up("0PS", as_printed=True).save(tmp_path / "printed")
+    sound, printed = [(tmp_path / name).read_text().split("\n") for name in ("sound", "printed")]
+    assert sound[0] == printed[0] == "converse proof 1" and sound[-2:] == ["end", ""]
+    assert "kind: sound" in sound and "kind: as printed, not a proof" in printed
+    assert {"a: 0.3085 0.00125", "v0: 1 1", "depth: 30", "program: converse 1.0.0"} <= set(sound)
+    assert all(len(line) < 82 for line in sound)
+
+
+@pytest.mark.parametrize("name", ["a.proof", "a.proof.gz"])
+def test_truncation_and_damage_are_noticed(tmp_path, made_up, name):
+    path = tmp_path / name
+    made_up("0P1SU", comments=("one",)).save(path)
+    data = path.read_bytes()
+    for length in range(len(data)):
+        path.write_bytes(data[:length])
+        with pytest.raises(ConverseError, match="a.proof.*, line [0-9]+: ") as caught:
+            Proof.load(path)
+        assert "\n" not in str(caught.value)
+    if name.endswith(".gz"):
+        return
+    for place in range(len(data)):
+        path.write_bytes(data[:place] + bytes([data[place] ^ 1]) + data[place + 1:])
+        with pytest.raises(ConverseError):
+            Proof.load(path)
+    path.write_bytes(data + b"\n")
+    with pytest.raises(ConverseError):
+        Proof.load(path)
+
+
+def test_foreign_files(tmp_path, root):
+    with pytest.raises(ConverseError, match="line 1: this is not a proof file"):
+        Proof.load(root / "inputs" / "trig274.in")
+    (tmp_path / "noise").write_bytes(bytes(range(256)))
+    (tmp_path / "noise.gz").write_bytes(gzip.compress(b"hello"))
+    for name in "noise", "noise.gz", "missing", ".":
+        with pytest.raises(ConverseError):
+            Proof.load(tmp_path / name)
+
+
+def test_save_keeps_the_older_file(tmp_path, made_up, monkeypatch):
+    path = tmp_path / "a.proof"
+    made_up("P").save(path)
+    before = path.read_bytes()
+
+    def full(*_):
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr("os.fsync", full)
+    with pytest.raises(ConverseError, match="No space left on device.*intact"):
+        made_up("0PP").save(path)
+    assert path.read_bytes() == before
+    assert list(tmp_path.iterdir()) == [path]
+
+
+# ---- continuing -------------------------------------------------------------------------
+
+def interrupted(problem, backup, leaves_done, **options):
+    """A run that Ctrl-C ends after so many leaves."""
+    left = [leaves_done]
+
+    def on_leaf(*_):
+        left[0] -= 1
+        if left[0] == 0:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        prove(problem, backup=backup, on_leaf=on_leaf, **options)
+
+
+@pytest.mark.parametrize("leaves_done", [1, 2, 7, 30])
+def test_interrupt_and_continue(tmp_path, problem, proof, leaves_done):
+    backup = tmp_path / "backup"
+    interrupted(problem, backup, leaves_done)
+    half = Proof.load(backup)
+    assert not half.no_tori and proof.tree.startswith(half.tree)
+    assert sum(map(half.tree.count, "PSU")) == leaves_done
+    assert "before the whole region was examined" in half.report()
+    whole = prove(problem, resume=backup, backup=backup)
+    assert timeless(whole) == timeless(proof)
+    assert whole.seconds >= half.seconds
+    assert timeless(Proof.load(backup)) == timeless(proof)
+    assert [path.name for path in tmp_path.iterdir()] == ["backup"]
+
+
+def test_continue_in_several_goes(tmp_path, problem, proof):
+    backup = tmp_path / "backup.gz"
+    interrupted(problem, backup, 5)
+    interrupted(problem, backup, 6, resume=backup)
+    half = Proof.load(backup)
+    assert sum(map(half.tree.count, "PSU")) == 11
+    assert timeless(prove(problem, resume=half)) == timeless(proof)
+
+
+def test_continue_a_finished_proof(tmp_path, problem, proof):
+    proof.save(tmp_path / "whole")
+    again = prove(problem, resume=tmp_path / "whole")
+    assert timeless(again) == timeless(proof)
+    assert again.report().split("This inv")[0] == proof.report().split("This inv")[0]
+
+
+def test_continue_after_an_undecided_prism(problem):
+    stopped = prove(problem, depth=4)
+    assert timeless(prove(problem, depth=4, resume=stopped)) == timeless(stopped)
+    stubborn = prove(problem, depth=4, resume=stopped, stubborn=True)
+    assert timeless(stubborn) == timeless(prove(problem, depth=4, stubborn=True))
+
+
+def test_continue_as_printed(tmp_path, problem):
+    interrupted(problem, tmp_path / "backup", 9, as_printed=True)
+    assert timeless(prove(problem, resume=tmp_path / "backup", as_printed=True)) \
+        == timeless(prove(problem, as_printed=True))
+
+
+@pytest.mark.parametrize("name, change, options", [
+    ("kind", {}, {"as_printed": True}), ("digits", {}, {"digits": 36}),
+    ("depth", {}, {"depth": 29}), ("program", {"version": "0.9"}, {}),
+    ("kind", {"as_printed": True}, {}),
+])
+def test_another_run_is_refused(problem, proof, name, change, options):
+    with pytest.raises(ConverseError, match="its %s is .*, this one's is " % name):
+        prove(problem, resume=replace(proof, **change), **options)
+
+
+@pytest.mark.parametrize("place, name", list(enumerate(("a", "b", "c", "v0", "v1"))))
+def test_another_problem_is_refused(problem, proof, place, name):
+    for field in "centre", "half":
+        numbers = list(getattr(problem, field))
+        numbers[place] += Fraction(1, 10 ** 30)
+        other = replace(problem, **{field: tuple(numbers)})
+        with pytest.raises(ConverseError, match="its %s is " % name):
+            prove(other, resume=proof)
+
+
+def test_other_comments_are_no_other_problem(problem, proof):
+    renamed = replace(problem, comments=("mine",))
+    assert prove(renamed, resume=proof).problem == renamed
+
+
+def test_a_tree_that_does_not_fit_is_refused(problem, proof):
+    for tree in "PP", "1" * 40 + "P", "0P?":
+        with pytest.raises((ConverseError, ValueError)):
+            prove(problem, resume=replace(proof, tree=tree, counts=Counts()))
+
+
+def test_one_backup_for_two_runs_is_refused(tmp_path, problem):
+    backup = tmp_path / "backup"
+    messages = []
+
+    def second(*_):
+        with pytest.raises(ConverseError) as caught:
+            prove(problem, backup=backup)
+        messages.append(str(caught.value))
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        prove(problem, backup=backup, on_leaf=second)
+    assert "another run is writing this file" in messages[0]
+    assert prove(problem, backup=backup, resume=backup).no_tori
+
+
+def test_a_backup_destroys_nothing_else(tmp_path, problem):
+    path = tmp_path / "precious"
+    path.write_text("my notes")
+    for place in path, tmp_path, "/dev/null", tmp_path / "missing" / "backup":
+        with pytest.raises(ConverseError):
+            prove(problem, backup=place)
+    assert path.read_text() == "my notes"
+
+
+def test_zero_half_widths(tmp_path):
+    point = Problem((Fraction("0.32"), Fraction("0.32"), Fraction("0.64"), Fraction(1),
+                     Fraction(1)), (Fraction(0),) * 3 + (Fraction(1),) * 2)
+    assert prove(point).no_tori
+    spot = Problem(point.centre[:3] + (Fraction("0.75"), Fraction("0.5")), (Fraction(0),) * 5)
+    result = prove(spot, depth=2)
+    assert set(result.tree) <= set("01PSU")
+    result.figure(tmp_path / "spot.ps")

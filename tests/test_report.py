@@ -1,0 +1,82 @@
+"""The report: the thesis's words to the letter, and no claim beyond what was examined."""
+
+import pytest
+
+from converse import Counts
+from converse.report import header, verdict
+
+COUNTS = Counts(quick_tries=322, tries=318, Rtries=156, cuts=166, proved=156, symmetric=11,
+                HermSuccess=0, LLSuccess=156, ll_used=(155, 0, 1), reasons=(4, 158, 4, 0, 0, 0),
+                most_cuts=13, max_steps=5, max_NTsteps=4)
+COMMENTS = ("0.0274 < epsilon < 0.0276", "Run on kastor", "May 2, 1989")
+
+
+def test_the_thesis_to_the_letter(root, made_up):
+    proof = made_up("P", comments=COMMENTS, counts=COUNTS, as_printed=True, seconds=2697.53)
+    thesis = (root / "golden_outputs" / "thesis" / "trig274.out").read_text("utf-8")
+    assert "apmValidate : null APM value in map.c at line 296.\n" + proof.report() == thesis
+    assert proof.all_decided and not proof.no_tori
+
+
+def test_sound_labels_are_right(made_up):
+    text = made_up("P", counts=COUNTS).report()
+    assert "the maxBlam criterion 99.4% of the time,\nthe minBlam criterion 0.0%" in text
+
+
+def test_sound_mode_adds_its_grounds(made_up):
+    text = made_up("P", counts=COUNTS, digits=50, xstar=("1.5", "1.625")).report()
+    assert text.startswith("Parameters :\n")
+    end = text[text.index("seconds.\n"):]
+    for words in ("converse 1.0.0", "50 decimal places", "x* : 1.5 1.625", "T : 1.25", "B : 1.25",
+                  "Tries that failed : 166", "158 : an image prism grew too big"):
+        assert words in end
+    assert "\n0 : " not in end
+
+
+def test_header_without_comments(made_up):
+    assert header(made_up("P").problem).endswith(
+        "v[1] : 3.14159265358979e+00 \t 3.14159265358979e+00\n\nComments :\n\n\n"
+        + "+" * 48 + "\n")
+
+
+def test_no_trailing_blanks(made_up):
+    for line in made_up("0PU", counts=COUNTS, comments=("one", "", "two")).report().split("\n"):
+        assert line == line.rstrip()
+
+
+def test_bounds_are_exact(made_up):
+    text = verdict(made_up("P", a="0.30851234567"))
+    assert "0.30726234567 < a < 0.30976234567" in text
+    assert "0.61452469134 < c < 0.61952469134" in text
+
+
+def test_single_values(made_up):
+    proof = made_up("P")
+    problem = type(proof.problem)(proof.problem.centre, (0, 0, 0, 1, 1), ())
+    text = verdict(type(proof)(**{**vars(proof), "problem": problem}))
+    assert "a = 0.308500\nb = 0.308500\nc = 0.617000\n" in text and "<" not in text
+
+
+def test_part_of_the_torus(made_up):
+    text = verdict(made_up("P", v=("0.5", "1", "0.25", "1")))
+    assert text.startswith(
+        "I find no invariant tori whose successor of x* lies in the region :\n"
+        "0.250000 < v[0] / pi < 0.750000\n0.000000 < v[1] / pi < 2.000000\n"
+        "for the range of parameters :\n0.307250 < a < 0.309750\n")
+
+
+@pytest.mark.parametrize("tree, stubborn, number, deepest, ended", [
+    ("0PU", True, 1, 1, False), ("0P1UU", True, 2, 2, False), ("00U", False, 1, 2, True),
+    ("0P", False, 0, None, True), ("", False, 0, None, True), ("U", False, 1, 0, False),
+])
+def test_undecided(made_up, tree, stubborn, number, deepest, ended):
+    for as_printed in False, True:
+        proof = made_up(tree, stubborn=stubborn, as_printed=as_printed)
+        text = verdict(proof)
+        assert not proof.no_tori and not proof.all_decided
+        assert len(proof.undecided) == number
+        assert text.startswith("I could not decide whether there are invariant tori")
+        assert "I find no" not in text
+        assert "Undecided prisms : %d\n" % number in text
+        assert ("The deepest of them was cut %s times.\n" % deepest in text) == (number > 0)
+        assert ("before the whole region was examined" in text) == ended

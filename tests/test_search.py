@@ -1,0 +1,176 @@
+"""The search as a whole: what is proved is true, what is not true is not proved."""
+
+from fractions import Fraction
+from threading import Thread
+
+import mpmath
+import pytest
+
+import converse
+from converse import Problem
+from converse.tree import leaves
+from truth import TORTURE, beta, decimal, eigenvalues, inverse, mp, rng_for, uniform
+
+FULL = (("1", "1"), ("1", "1"))
+
+
+def problem(a, b, c, v=FULL):
+    """(centre, half) pairs of decimal strings."""
+    pairs = [a, b, c, *v]
+    return Problem(tuple(Fraction(x) for x, _ in pairs), tuple(Fraction(x) for _, x in pairs), ())
+
+
+def line(epsilon, width="0"):
+    """The thesis's line of parameters a = b = c/2 near k = 52.9549 epsilon."""
+    a = Fraction("11.21436") * Fraction(epsilon)
+    a, h = decimal(a, 8), Fraction(width)
+    return problem((a, h), (a, h), (2 * a, 2 * h))
+
+
+@pytest.fixture(scope="module")
+def proofs(root):
+    """The four theorems, sound."""
+    return {name: converse.prove(converse.read_input(root / "inputs" / (name + ".in")))
+            for name in ("trig278", "trig276", "trig274", "trig272")}
+
+
+def test_the_four_theorems(proofs):
+    for proof in proofs.values():
+        assert proof.no_tori
+
+
+def test_as_printed_counts(root):
+    """The thesis's sample run: all its counts but one (319 tries where it has 318)."""
+    proof = converse.prove(converse.read_input(root / "inputs" / "trig274.in"), as_printed=True)
+    c = proof.counts
+    assert (c.quick_tries, c.tries, c.Rtries) == (322, 319, 156)
+    assert (c.cuts, c.proved, c.symmetric, c.undecided) == (166, 156, 11, 0)
+    assert (c.most_cuts, c.max_steps, c.max_NTsteps) == (13, 5, 4)
+    assert (c.HermSuccess, c.LLSuccess) == (0, 156)
+    assert not proof.no_tori            # a reconstruction is not a proof
+
+
+@pytest.mark.parametrize("name, thesis", [("trig278", (3, 10, 39)), ("trig276", (4, 11, 64)),
+                                          ("trig274", (4, 13, 156)), ("trig272", (6, 21, 933))])
+def test_as_printed_table(root, name, thesis):
+    """Longest orbit within one, depth exact, prisms within 6 % of the thesis's table."""
+    c = converse.prove(converse.read_input(root / "inputs" / (name + ".in")),
+                       as_printed=True).counts
+    longest, deepest, prisms = thesis
+    assert abs(c.max_NTsteps - longest) <= 1
+    assert c.most_cuts == deepest
+    assert abs(c.proved - prisms) <= 0.06 * prisms
+
+
+def second_variation_fails(a, b, c, x0, x1, reach=40):
+    """Is some finite segment of the orbit through x0, x1 not a minimum?"""
+    forward, backward = [x0, x1], [x1, x0]
+    for orbit in (forward, backward):
+        for _ in range(reach):
+            (u0, u1), (v0, v1) = orbit[-2:]
+            mixed = c * mpmath.cos(v0 + v1)
+            orbit.append((2 * v0 - u0 + a * mpmath.cos(v0) + mixed,
+                          2 * v1 - u1 + b * mpmath.cos(v1) + mixed))
+    d = None
+    for v in backward[:1:-1] + forward:
+        m = beta(a, b, c, *v)
+        if d is not None:
+            m = tuple(x - y for x, y in zip(m, inverse(d)))
+        if eigenvalues(m)[0] <= 0:
+            return True
+        d = m
+    return False
+
+
+def test_no_orbit_through_a_proved_prism_minimizes(proofs):
+    """At random points of proved prisms the true second variation is not positive definite."""
+    rng = rng_for("criterion")
+    with mpmath.workdps(120):           # the orbits are unstable
+        for proof in proofs.values():
+            proved = [leaf for leaf in leaves(proof.problem, proof.tree) if leaf[0] == "P"]
+            for _ in range(100 * TORTURE):
+                _, centre, half, _ = rng.choice(proved)
+                v = [mp(uniform(rng, c - h, c + h)) * mpmath.pi for c, h in zip(centre, half)]
+                p = [mp(uniform(rng, c - h, c + h))
+                     for c, h in zip(proof.problem.centre[:3], proof.problem.half[:3])]
+                x0 = tuple(mp(Fraction(x)) for x in proof.xstar)
+                assert second_variation_fails(*p, x0, tuple(v))
+
+
+@pytest.mark.parametrize("stubborn", [False, True])
+@pytest.mark.parametrize("digits", [1, 2, 3, 10, 35])
+@pytest.mark.parametrize("a, b, c", [
+    (("0", "0"), ("0", "0"), ("0", "0")),
+    (("0.001", "0.0005"), ("0.001", "0.0005"), ("0.002", "0.001")),     # epsilon 0.0001
+    (("0.112", "0"), ("0.112", "0"), ("0.224", "0")),                   # epsilon 0.01
+    (("0.15", "0.15"), ("0.15", "0.15"), ("0.3", "0.3")),               # down to zero
+    (("0.5", "0.01"), ("0", "0"), ("0", "0")),      # the standard map at k = 0.5, far below
+    (("0.9", "0.01"), ("0", "0"), ("0", "0")),      # its last circle at 0.9716
+    (("-0.1", "0.01"), ("0.1", "0.01"), ("0.05", "0")),
+])
+def test_tori_that_exist_are_not_denied(a, b, c, digits, stubborn):
+    for depth in (0, 5) if stubborn else (0, 1, 8, 30):
+        proof = converse.prove(problem(a, b, c), depth=depth, digits=digits, stubborn=stubborn)
+        assert not proof.no_tori
+        assert proof.counts.undecided > 0
+
+
+@pytest.mark.parametrize("digits", [1, 2, 3, 4, 5, 6, 8, 10, 15])
+def test_few_digits_lose_the_proof_but_not_the_truth(root, digits):
+    """With too few digits the answer is undecided, never a crash; if proved, the same theorem."""
+    proof = converse.prove(converse.read_input(root / "inputs" / "trig274.in"), digits=digits)
+    assert proof.no_tori == (proof.counts.undecided == 0)
+    if digits >= 6:
+        assert proof.no_tori
+
+
+def test_only_symmetric_problems_skip():
+    assert converse.prove(line("0.0275", "0.0005")).counts.symmetric > 0
+    for b, c, v in ((("0.3085", "0.0004"), ("0.617", "0"), FULL),
+                    (("0.3086", "0.0005"), ("0.617", "0"), FULL),
+                    (("0.3085", "0.0005"), ("0.617", "0"), (("1", "1"), ("1", "1.0001")))):
+        proof = converse.prove(problem(("0.3085", "0.0005"), b, c, v))
+        assert proof.counts.symmetric == 0
+        assert proof.no_tori
+
+
+def test_single_parameter_values():
+    """Half-widths of zero: nothing divides by them."""
+    assert converse.prove(line("0.0275")).no_tori
+
+
+@pytest.mark.parametrize("v", [(("1", "0"), ("1", "1")), (("0.25", "0"), ("0.75", "0")),
+                               (("0", "0"), ("0", "0"))])
+def test_regions_without_width(v):
+    """A line or a point of successors is a legal region; it is not the torus."""
+    proof = converse.prove(problem(("0.3085", "0"), ("0.3085", "0"), ("0.617", "0"), v))
+    assert not proof.problem.full_torus
+    assert proof.counts.undecided == 0
+
+
+@pytest.mark.parametrize("a, b, c", [
+    (("1e6", "0"), ("1e6", "0"), ("2e6", "0")),
+    (("1000", "1"), ("-500", "1"), ("200", "1")),
+    (("1e30", "0"), ("1", "0"), ("1", "0")),
+])
+def test_huge_parameters(a, b, c):
+    """Far beyond the frontier: a theorem at once, and no overflow on the way."""
+    assert converse.prove(problem(a, b, c), depth=12).no_tori
+
+
+def test_two_threads_do_not_meet(root):
+    """Nothing in the core is global."""
+    names = ["trig272", "trig274", "trig276", "trig272"]
+    problems = [converse.read_input(root / "inputs" / (n + ".in")) for n in names]
+    alone = [converse.prove(p, digits=d).tree for p, d in zip(problems, (20, 35, 50, 60))]
+    found = [None] * 4
+
+    def run(i, digits):
+        found[i] = converse.prove(problems[i], digits=digits).tree
+
+    threads = [Thread(target=run, args=x) for x in enumerate((20, 35, 50, 60))]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert found == alone
