@@ -27,7 +27,7 @@ test: $(VENV)/stamp
 	$(VENV)/bin/pytest tests
 
 sanitize: $(SANITIZED)/stamp
-	LD_PRELOAD="$$(gcc -print-file-name=libasan.so)" ASAN_OPTIONS=detect_leaks=0 \
+	LD_PRELOAD="$$(gcc -print-file-name=libasan.so) $$(gcc -print-file-name=libstdc++.so.6)" ASAN_OPTIONS=detect_leaks=0 \
 	UBSAN_OPTIONS=halt_on_error=1:print_stacktrace=1 $(SANITIZED)/bin/pytest tests
 
 bench: $(VENV)/stamp
