@@ -32,6 +32,16 @@ def _whole(least):
     return convert
 
 
+def _seconds(text):
+    try:
+        seconds = float(text)
+    except ValueError:
+        seconds = math.nan
+    if not seconds >= 0:
+        raise argparse.ArgumentTypeError("'%s' is not a number of seconds" % text)
+    return seconds
+
+
 def parser():
     p = Parser(prog="converse", allow_abbrev=False, description=(
         "Tries to prove that a family of symplectic maps has no invariant tori."), epilog=(
@@ -54,6 +64,8 @@ def parser():
                    help="print a line for every decided prism")
     p.add_argument("--as-printed", action="store_true",
                    help="follow the thesis's listing to the letter; not a proof")
+    p.add_argument("--time-limit", type=_seconds, default=math.inf, metavar="SECONDS",
+                   help="stop after about so long; what is left is undecided")
     p.add_argument("--version", action="version", version="converse " + __version__)
     return p
 
@@ -118,7 +130,7 @@ def run(options):
     with contextlib.closing(progress):
         proof = prove(problem, options.depth, options.precision, options.stubborn,
                       options.as_printed, progress, options.backup, options.restore,
-                      on_leaf if options.verbose else None)
+                      on_leaf if options.verbose else None, options.time_limit)
     _say(verdict(proof))
     if graphics is not None:
         proof.figure(graphics)

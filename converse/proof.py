@@ -3,6 +3,7 @@
 import contextlib
 import gzip
 import hashlib
+import math
 import os
 import time
 import zlib
@@ -244,7 +245,7 @@ class _Search:
 
 
 def prove(problem, depth=30, digits=35, stubborn=False, as_printed=False, progress=None,
-          backup=None, resume=None, on_leaf=None):
+          backup=None, resume=None, on_leaf=None, time_limit=math.inf):
     """Tries to prove that there are no invariant tori, and returns a Proof either way.
 
     depth and digits are the most cuts of a prism and the decimal places of the rigorous
@@ -253,12 +254,14 @@ def prove(problem, depth=30, digits=35, stubborn=False, as_printed=False, progre
     progress(fraction, counts, depth) is called a few times a second.
     backup names a file that is kept up to date, and resume a proof (or its file) to continue.
     on_leaf(leaf, steps) is called for every leaf of the tree as it is decided.
+    time_limit: after about so many seconds of this run the search is left as it is.
     """
     if not 1 <= digits <= LIMIT:
         raise ValueError("digits must be from 1 to %d" % LIMIT)
     if not 0 <= depth <= LIMIT:
         raise ValueError("depth must be from 0 to %d" % LIMIT)
     began = time.monotonic()
+    end = began + time_limit
     keep = backup is not None
     if keep:
         check_backup(backup)
@@ -306,7 +309,7 @@ def prove(problem, depth=30, digits=35, stubborn=False, as_printed=False, progre
         try:
             saved = time.monotonic()
             running = True
-            while running:
+            while running and time.monotonic() < end:
                 running = search.step(1 if on_leaf else MANY)
                 if on_leaf or progress:
                     look()

@@ -104,49 +104,53 @@ void apm_set_si(apm_t r, long n, long exp)
 int apm_set_str(apm_t r, const char *text)
 {
     const char *s = text;
-    size_t n = 0, len = strlen(text);
-    long places = 0, exp = 0;
-    int seen_point = 0, status = APM_ESYNTAX;
-    char *digits = malloc(len + 2);
+    const int negative = *s == '-';
+    long digits = 0, places = 0, exp = 0;
+    unsigned long word = 0;
+    int seen_point = 0, length = 0;         /* of the digits gathered in word */
+    mpz_t mant;
 
-    if (digits == NULL)
-        return APM_ERANGE;
-    if (*s == '+' || *s == '-') {
-        if (*s == '-')
-            digits[n++] = '-';
-        s++;
+    /* Look first, so that a number is either read whole or not at all. */
+    s += *s == '+' || *s == '-';
+    for (const char *const start = s; isdigit((unsigned char)*s) || (*s == '.' && !seen_point); s++) {
+        seen_point |= *s == '.';
+        places += seen_point && *s != '.';
+        digits = s - start + 1 - seen_point;
     }
-    const size_t sign = n;
-    for (; isdigit((unsigned char)*s) || (*s == '.' && !seen_point); s++) {
-        if (*s == '.') {
-            seen_point = 1;
-        } else {
-            digits[n++] = *s;
-            places += seen_point;
-        }
-    }
-    if (n > sign && (*s == 'e' || *s == 'E')) {
-        char *end;
-        const char *e = s + 1;
-        if (*e == '+' || *e == '-')
-            e++;
+    const char *const end_of_digits = s;
+    if (digits > 0 && (*s == 'e' || *s == 'E')) {
+        const char *const e = s + 1 + (s[1] == '+' || s[1] == '-');
         if (isdigit((unsigned char)*e)) {
-            exp = strtol(s + 1, &end, 10);      /* saturates, and is then out of range */
+            char *end;
+            exp = strtol(s + 1, &end, 10);  /* saturates, and is then out of range */
             s = end;
         }
     }
-    digits[n] = '\0';
-    if (n > sign && *s == '\0') {
-        if (exp > APM_MAX_EXP || exp < -APM_MAX_EXP || places > APM_MAX_EXP) {
-            status = APM_ERANGE;
-        } else {
-            mpz_set_str(r->mant, digits, 10);
-            r->exp = exp - places;
-            status = APM_OK;
+    if (digits == 0 || *s != '\0')
+        return APM_ESYNTAX;
+    if (exp > APM_MAX_EXP || exp < -APM_MAX_EXP || digits > APM_MAX_EXP)
+        return APM_ERANGE;
+
+    mpz_init(mant);
+    for (s = text; s < end_of_digits; s++) {
+        if (!isdigit((unsigned char)*s))
+            continue;
+        word = 10 * word + (unsigned long)(*s - '0');
+        if (++length == WORD_DIGITS - 1) {
+            mpz_mul_ui(mant, mant, power10[length]);
+            mpz_add_ui(mant, mant, word);
+            word = 0;
+            length = 0;
         }
     }
-    free(digits);
-    return status;
+    mpz_mul_ui(mant, mant, power10[length]);
+    mpz_add_ui(mant, mant, word);
+    if (negative)
+        mpz_neg(mant, mant);
+    mpz_swap(r->mant, mant);
+    mpz_clear(mant);
+    r->exp = exp - places;
+    return APM_OK;
 }
 
 void apm_set_d(apm_t r, double x)

@@ -102,9 +102,11 @@ int cv_kernel(const char *name, int as_double, int as_printed, int dp,
         free(out[j]);
         out[j] = NULL;
     }
-    Runit_free(exact);
-    unit_free(quick);
-    for (int j = 0; j < MAX_IN + MAX_OUT; j++)
-        apm_clear(x[j]);
+    if (status != CV_ENOMEM) {          /* after that the numbers are abandoned: memory.c */
+        Runit_free(exact);
+        unit_free(quick);
+        for (int j = 0; j < MAX_IN + MAX_OUT; j++)
+            apm_clear(x[j]);
+    }
     return status;
 }

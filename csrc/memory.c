@@ -2,14 +2,20 @@
 
    GMP's allocation functions belong to the process and must not return NULL.  Ours are malloc's,
    so blocks of others who share the library stay valid; only a thread that armed a guard jumps.
-   What GMP held in temporaries at that moment leaks; the numbers themselves stay whole, as a
-   failed realloc leaves its block alone. */
+   The number at hand may by then have lost its memory (mpz_mul frees the old before it asks for
+   the new), so whoever is jumped to must neither use nor free the numbers of its state again:
+   they are abandoned. */
 #include "memory.h"
 
 #include <gmp.h>
 #include <stdlib.h>
 
+/* Made with the thread and not at first use, which could itself run out of memory. */
+#ifdef __ELF__
+static _Thread_local jmp_buf *armed __attribute__((tls_model("initial-exec")));
+#else
 static _Thread_local jmp_buf *armed;
+#endif
 
 static void *checked(void *p)
 {

@@ -286,21 +286,24 @@ char *cv_constant(const cv_search *s, int which)
                                       : s->root.half[V0 + (which - 8) / 2]);
 }
 
+/* After CV_ENOMEM the numbers are abandoned, not freed: see memory.c. */
 void cv_search_free(cv_search *s)
 {
     if (s == NULL)
         return;
-    Runit_free(s->exact);
-    unit_free(s->quick);
-    box_clear(&s->root);
-    for (int j = 0; j < s->allocated; j++)
-        box_clear(&s->stack[j]);
+    if (s->status != CV_ENOMEM) {
+        Runit_free(s->exact);
+        unit_free(s->quick);
+        box_clear(&s->root);
+        for (int j = 0; j < s->allocated; j++)
+            box_clear(&s->stack[j]);
+        for (int j = 0; j < N_CONSTANTS; j++)
+            apm_clear(s->constants[j]);
+        apm_clear(s->t[0]);
+        apm_clear(s->t[1]);
+    }
     free(s->stack);
     free(s->tree);
-    for (int j = 0; j < N_CONSTANTS; j++)
-        apm_clear(s->constants[j]);
-    apm_clear(s->t[0]);
-    apm_clear(s->t[1]);
     free(s);
 }
 
@@ -425,9 +428,11 @@ int cv_search_new(cv_search **result, const char *const region[5], const char *c
         }
     }
     memory_guard(before);
-    if (status == CV_OK)
+    if (status == CV_OK) {
         *result = s;
-    else
+    } else {
+        s->status = status;
         cv_search_free(s);
+    }
     return status;
 }

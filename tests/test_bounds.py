@@ -173,3 +173,46 @@ def test_next_block():
                 after = [x - y for x, y in zip(m, inverse(d))]
                 assert exact(after[0] + after[2]) <= next_slope
                 assert exact(eigenvalues(after)[0]) <= next_least
+
+
+@pytest.mark.parametrize("dp", [1, 2, 5, 35])
+def test_next_block_where_nothing_is_lost(dp):
+    """beta and d multiples of the identity: all three bounds are equalities, but for rounding."""
+    rng = rng_for("equality%d" % dp)
+    for _ in range(500 * TORTURE):
+        a, v, d = (decimal(uniform(rng, *ends), 12) for ends in ((0, 1), (0, 6), ("0.1", 4)))
+        prism = [a, a, 0, 0, 0, v, v] + [0] * 49
+        slope, least = kernels.call("least_lambda", prism + [2 * d, d, d], 2, dp)
+        with mpmath.workdps(DIGITS):
+            true = exact(2 - mp(a) * mpmath.sin(mp(v)) - 1 / mp(d))
+        assert 0 <= least - true <= Fraction(20, 10**(dp + 5))
+        assert 0 <= slope - 2 * true <= Fraction(20, 10**(dp + 5))
+
+
+@pytest.mark.parametrize("dp", [1, 2, 3])
+def test_few_digits(dp):
+    """The bounds over a prism about as small as the last place."""
+    rng = rng_for("few%d" % dp)
+    for _ in range(1000 * TORTURE):
+        centre, matrix = list_prism(rng, Fraction(1, 10**(dp + 3)), (-2, 2))
+        prism = (centre, [[x / 10**(dp + 2) for x in row] for row in matrix])
+        t_lo, t_hi = kernels.btrace(prism, dp)
+        (m_lo, m_hi), (b_lo, b_hi) = kernels.Blams(prism, dp)
+        m = beta_at(point_of(prism, cube_point(rng)))
+        with mpmath.workdps(DIGITS):
+            least, largest = map(exact, eigenvalues(m))
+            assert t_lo <= exact(m[0] + m[2]) <= t_hi
+        assert m_lo <= least <= m_hi
+        assert b_lo <= largest <= b_hi
+
+
+@pytest.mark.parametrize("dp", [1, 2, 3])
+def test_uniform_cone_with_few_digits(dp):
+    rng = rng_for("cone%d" % dp)
+    for k in (4, 16):
+        for _ in range(1000 * TORTURE):
+            M = decimal(uniform(rng, 0, 5) + (2 if k == 4 else 4), 30)
+            low, high = kernels.call("cone", [M, k], 2, dp)
+            with mpmath.workdps(DIGITS):
+                root = exact(mpmath.sqrt(mp(M * M - k)))
+            assert low <= (M - root) / 2 and (M + root) / 2 <= high

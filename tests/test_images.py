@@ -108,6 +108,30 @@ def test_image_holds_every_image(make, scheme, as_printed):
         assert largest > -0.5           # some image comes near the wall: it is not the universe
 
 
+@pytest.mark.parametrize("dp", [1, 2, 3, 5])
+@pytest.mark.parametrize("make", [list_prism, random_prism])
+def test_image_with_few_digits(make, dp):
+    """Prisms about as small as the last place: here the error terms are all that holds."""
+    rng = rng_for("few digits %d" % dp)
+    tested = 0
+    for _ in range(400 * TORTURE):
+        centre, matrix = make(rng)
+        largest = max(max(map(abs, row)) for row in matrix) or 1
+        scale = Fraction(rng.randrange(1, 100), 10**(dp + rng.randrange(1, 7))) / largest
+        centre = [decimal(x, dp + 5) for x in centre[:3]] + centre[3:]
+        prism = (centre, [[decimal(x * scale, 40) for x in row] for row in matrix])
+        if rng.random() < 0.2:
+            prism = (prism[0], [[Fraction(0)] * 7 for _ in range(7)])
+        try:
+            image = kernels.image(prism, dp)
+        except ArithmeticError:
+            continue
+        for _ in range(6):
+            assert outside(image, step(point_of(prism, cube_point(rng)))) <= CLOSE * 10**20
+            tested += 1
+    assert tested > 100
+
+
 def test_along_orbits():
     """The orbits of exact points stay in the prisms that follow a prism of the list."""
     rng = rng_for("orbits")

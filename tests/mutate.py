@@ -1,0 +1,209 @@
+"""Flips one place of the C core at a time, rebuilds, and sees whether a kernel test notices.
+
+    python tests/mutate.py [NUMBER ...]
+
+A rounding direction, an error term, an upper for a lower bound, a sign, an index.  Prints a
+table of caught and survived; exit status 1 if one survived that matters (see HARMLESS).
+"""
+
+import os
+import shutil
+import subprocess
+import sys
+import sysconfig
+import tempfile
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+TESTS = ["test_apm.py", "test_special.py", "test_bd_trig.py", "test_bounds.py", "test_images.py",
+         "test_search.py"]
+FLAGS = ["-std=c11", "-O1", "-fPIC", "-ffp-contract=off", "-I", "csrc",
+         "-I", sysconfig.get_paths()["include"]]
+
+# file, what stands there (once), what to put in its place
+MUTATIONS = [
+    ("apm.c", "mpz_fdiv_q(r, x, y)", "mpz_cdiv_q(r, x, y)"),
+    ("apm.c", "mpz_cdiv_q_ui(r, x, y)", "mpz_tdiv_q_ui(r, x, y)"),
+    ("apm.c", "mpz_add_ui(r->mant, r->mant, 1UL);\n    r->exp = -dp;", "r->exp = -dp;"),
+    ("apm.c", "if (dir == APM_UP && (!exact || mpz_sgn(rest) != 0))",
+     "if (dir == APM_UP && mpz_sgn(rest) != 0)"),
+    ("apm.c", "apm_round(r, x, 0, APM_DOWN)", "apm_round(r, x, 0, APM_TRUNC)"),
+    ("apm.c", "shift_up(t, x->mant, x->exp - exp);", "shift_up(t, x->mant, x->exp - exp - 1);"),
+    ("apm.c", "const mpz_srcptr first = shift_x ? t : x->mant, second = shift_x ? y->mant : t;",
+     "const mpz_srcptr first = shift_x ? t : y->mant, second = shift_x ? y->mant : t;"),
+    ("special.c", "* 3322 / 1000 + 28;", "* 3322 / 1000 - 8;"),
+    ("special.c", "const mp_bitcnt_t big = order > 0 ?", "const mp_bitcnt_t big = order > 1000 ?"),
+    ("special.c", "negative != (quadrant == 2)", "negative"),
+    ("special.c", "odd ? 2 * n : 2 * n - 1", "odd ? 2 * n + 1 : 2 * n - 1"),
+    ("special.c", "mpz_sub_ui(lower, lower, 1UL);", ""),
+    ("bounding.c", "for (int j = 1; j < 4; j++) {", "for (int j = 1; j < 3; j++) {"),
+    ("bounding.c", "negative ? x->ub : x->lb", "negative ? x->lb : x->ub"),
+    ("bounding.c", "n < 0 ? x->lb : x->ub, n", "n < 0 ? x->ub : x->ub, n"),
+    ("bounding.c", "        num_set_si(r->lb, 0, 0);\n", "        ;\n"),
+    ("bounding.c", "num_cmp(t[4], t[5]) > 0", "num_cmp(t[4], t[5]) < 0"),
+    ("bd_trig.c", "(s->as_printed ? num_truncate : num_floor)", "num_truncate"),
+    ("bd_trig.c", "num_cmp(hi, t[1]) >= 0 || num_sgn(lo) == 0", "num_sgn(lo) == 0"),
+    ("bd_trig.c", "num_cmp(hi, t[3]) >= 0 ||", ""),
+    ("bd_trig.c", "s->as_printed ? s->n.max_error : s->n.ulp", "s->n.max_error"),
+    ("bd_trig.c", "bound_widen(r, s->as_printed", "if (s->as_printed) bound_widen(r, s->as_printed"),
+    ("bd_trig.c", "(num_sgn(x) >= 0) == (dir == APM_DOWN)", "(num_sgn(x) >= 0) != (dir == APM_DOWN)"),
+    ("bd_trig.c", "turns(s, t[5], theta->ub, APM_UP);", "turns(s, t[5], theta->ub, APM_DOWN);"),
+    ("bd_trig.c", "num_set_si(t[6], 25, -2);", "num_set_si(t[6], -25, -2);"),
+    ("map.c", "num_addmul(s, n->t[0], x->p[2], n->cos_c[2]);",
+     "num_submul(s, n->t[0], x->p[2], n->cos_c[2]);"),
+    ("map.c", "num_mul(n->centre_err, n->centre_err, n->ulp);",
+     "num_set_si(n->centre_err, 0, 0);"),
+    ("map.c", "num_neg(d->beta[0][1], n->t[0]);", "num_set(d->beta[0][1], n->t[0]);"),
+    ("row_sums.c", "num_add(parm[j]->ub, pz->centre.p[j], pz->matrix[j][j]);",
+     "num_set(parm[j]->ub, pz->centre.p[j]);"),
+    ("row_sums.c", "row_sum(s, n->t[2], pz->matrix[V + j], 0, MAT_DIM);",
+     "row_sum(s, n->t[2], pz->matrix[V + j], U, MAT_DIM);"),
+    ("row_sums.c", "num_add(n->bx[2].ub, n->bx[2].ub, theta->ub);",
+     "num_add(n->bx[2].ub, n->bx[2].ub, theta->lb);"),
+    ("row_sums.c", "num_mul_si(n->t[0], d->beta[0][1], 2);", "num_set(n->t[0], d->beta[0][1]);"),
+    ("row_sums.c", "        if (j == 2) ", "        if (j == 7) "),
+    ("row_sums.c", "&d->gamma[j == 1][j]", "&d->gamma[0][j]"),
+    ("trace.c", "bound_add_multiple(s, r, -2, &n->c_sin);", "bound_add_multiple(s, r, -1, &n->c_sin);"),
+    ("lambda.c", "bound_add_multiple(s, disc, 4, square);", "bound_add_multiple(s, disc, 2, square);"),
+    ("lambda.c", "bound_add_multiple(s, disc, -2, square);", "bound_add_multiple(s, disc, 2, square);"),
+    ("lambda.c", "num_sqrt(s, t[0], disc->lb, APM_DOWN);", "num_sqrt(s, t[0], disc->lb, APM_UP);"),
+    ("lambda.c", "num_sqrt(s, t[1], disc->ub, APM_UP);", "num_sqrt(s, t[1], disc->ub, APM_DOWN);"),
+    ("lambda.c", "num_sub(t[2], trace->ub, t[0]);", "num_sub(t[2], trace->ub, t[1]);"),
+    ("lambda.c", "num_sqrt(s, t[2], t[0], APM_UP);", "num_sqrt(s, t[2], t[0], APM_DOWN);"),
+    ("lambda.c", "num_div(s, low, t[3], t[2], APM_DOWN);", "num_div(s, low, t[3], t[2], APM_UP);"),
+    ("lambda.c", "num_div(s, t[1], t[0], least_lam, APM_DOWN);",
+     "num_div(s, t[1], t[0], least_lam, APM_UP);"),
+    ("lambda.c", "num_div(s, t[2], t[0], t[1], APM_DOWN);", "num_div(s, t[2], t[0], t[1], APM_UP);"),
+    ("lambda.c", "num_sub(t[1], slope, n->constants[C_LAM_MIN]);",
+     "num_sub(t[1], slope, least_lam);"),
+    ("lambda.c", "num_div(s, t[1], t[0], slope, APM_DOWN);", "num_div(s, t[1], t[0], slope, APM_UP);"),
+    ("lambda.c", "num_set_si(t[0], DEG_FREE * DEG_FREE, 0);", "num_set_si(t[0], 5, 0);"),
+    ("lambda.c", "num_round(s, slope, t[1], APM_UP);", "num_round(s, slope, t[1], APM_DOWN);"),
+    ("lambda.c", "num_round(s, least_lam, t[0], APM_UP);", "num_round(s, least_lam, t[0], APM_DOWN);"),
+    ("torus.c", "num_add(x[1], x[1], s->n.ulp);", "num_set_si(x[1], 0, 0);"),
+    ("torus.c", "corner < 4", "corner < 3"),
+    ("torus.c", "num_max(max, x[9]);", "num_max(max, best);"),
+    ("torus.c", "num_mul_si(x[7], x[7], 4);", "num_mul_si(x[7], x[7], 2);"),
+    ("ff_rows.c", "num_div(s, n->w[U + j], t[4], t[5], APM_UP);",
+     "num_div(s, n->w[U + j], t[4], t[5], APM_DOWN);"),
+    ("ff_rows.c", "num_mul_si(t[2], n->centre_err, 2);", "num_set_si(t[2], 0, 0);"),
+    ("ff_rows.c", "num_mul_si(t[2], n->ulp, 10);", "num_set_si(t[2], 0, 0);"),
+    ("ff_rows.c", "num_add(t[1], t[1], n->gamma_dif);", ""),
+    ("ff_rows.c", "num_submul(s, t[3], A[V][U + 1], A[V + 1][U]);",
+     "num_addmul(s, t[3], A[V][U + 1], A[V + 1][U]);"),
+    ("ff_rows.c", "num_addabs(s, t[4], A[V + j][U + 1 - j]);",
+     "num_addabs(s, t[4], A[V + 1 - j][U + j]);"),
+    ("cr_rows.c", "num_submul(s, t[0], B2[i], pz->matrix[U + i][k]);",
+     "num_addmul(s, t[0], B2[i], pz->matrix[U + i][k]);"),
+    ("cr_rows.c", "num_add(t[2], *S1[0], *S1[1]);", "num_set(t[2], *S1[0]);"),
+    ("cr_rows.c", "num_add(t[3], t[3], t[4]);\n    num_mul_si(t[4], n->centre_err, 2);",
+     "num_mul_si(t[4], n->centre_err, 2);"),
+    ("cr_rows.c", "num_add(t[6], t[1], n->centre_err);", "num_set(t[6], t[1]);"),
+    ("cr_rows.c", "num_add(t[1], t[1], n->gamma_dif);", ""),
+    ("cr_rows.c", "num_mul_si(t[6], n->ulp, 3);", "num_set_si(t[6], 0, 0);"),
+    ("cr_rows.c", "num_add(n->w[U + half + j], n->w[U + half + j], t[3]);", ""),
+    ("cr_rows.c", "row_sum(s, t[4], n->inverse[half + j], DEG_FREE, TWO_DF);",
+     "row_sum(s, t[4], n->inverse[j], DEG_FREE, TWO_DF);"),
+    ("cr_rows.c", "        bound_rows(s, n->w + U + half, half, pz, V);\n", ""),
+    ("gauss.c", "num_max(g[4], g[6]);                        /* row_max */", ""),
+    ("gauss.c", "        num_mul(g[1], g[1], g[0]);\n", ""),
+    ("gauss.c", "num_addmul(s, g[8], g[4], g[6]);", ""),
+    ("gauss.c", "num_add(err, g[8], g[7]);", "num_set(err, g[8]);"),
+    ("gauss.c", "fails = fails || num_cmp(n->inverse_err, n->ulp) > 0;", ""),
+    ("gauss.c", "num_add(n->inverse_err, n->inverse_err, n->ulp);", ""),
+    ("prismatic.c", "num_round_width(s, n->w[k], n->w[k]);",
+     "num_round(s, n->w[k], n->w[k], APM_DOWN);"),
+    ("state.h", "apm_sgn(x) < 0 ? APM_DOWN : APM_UP", "APM_DOWN"),
+    ("follow.c", "num_cmp(n->least_lam, n->constants[C_LAM_MIN]) < 0;",
+     "num_cmp(n->least_lam, n->constants[C_LAM_MAX]) < 0;"),
+    ("follow.c", "        v->no_tori = 0;\n", ""),
+    ("search.c", "return apm_cmp(s->t[0], s->t[1]) >= 0;", "return apm_cmp(s->t[0], s->t[1]) <= 0;"),
+    ("search.c", "apm_cmp(s->root.half[0], s->root.half[1]) == 0 &&", ""),
+    ("search.c", "if (apm_cmp(s->root.xstar[0], s->root.xstar[1]) != 0)", "if (0)"),
+    ("search.c", "apm_sub(lower->centre[axis], lower->centre[axis], lower->half[axis]);",
+     "apm_add(lower->centre[axis], lower->centre[axis], lower->half[axis]);"),
+    ("search.c", "        leaf(s, 'U');", "        leaf(s, 'P');"),
+]
+
+# Survivors that do not matter, by number, with the reason.
+HARMLESS = {}
+
+
+def build(base, work):
+    """Compiles the unit that holds each changed file, and links; base has all other objects."""
+    (work / "converse").mkdir(parents=True)
+    for path in (ROOT / "converse").glob("*.py"):
+        shutil.copy(path, work / "converse")
+    changed = {"apm.c", "special.c", "memory.c", "start.c", "search.c", "cv_kernel.c"}
+    name = next(p.name for p in (work / "csrc").iterdir()
+                if p.read_bytes() != (ROOT / "csrc" / p.name).read_bytes())
+    units = [name] if name in changed else ["rigorous.c", "double.c"]
+    for unit in units:
+        subprocess.run(["gcc", *FLAGS, "-c", "csrc/" + unit, "-o", unit + ".o"], cwd=work,
+                       check=True, capture_output=True)
+    objects = [str(work / o.name if o.name[:-2] in units else o) for o in base.glob("*.o")]
+    suffix = sysconfig.get_config_var("EXT_SUFFIX")
+    subprocess.run(["gcc", "-shared", *objects, "-lgmp", "-lm",
+                    "-o", str(work / "converse" / ("_native" + suffix))], check=True)
+
+
+def prepare(base):
+    """The objects of the unchanged core."""
+    code = "exec(open('converse/_build.py').read()); ffi.emit_c_code(%r); print(*SOURCES)"
+    sources = subprocess.run([sys.executable, "-c", code % str(base / "native.c")], cwd=ROOT,
+                             check=True, capture_output=True, text=True).stdout.split()
+    sources = [word for word in sources if word.startswith("csrc/")]
+    for source in [str(base / "native.c"), *sources]:
+        subprocess.run(["gcc", *FLAGS, "-c", source, "-o", str(base / (Path(source).name + ".o"))],
+                       cwd=ROOT, check=True)
+
+
+def try_mutation(base, number):
+    """'caught by ...' or 'SURVIVED'."""
+    file, old, new = MUTATIONS[number]
+    text = (ROOT / "csrc" / file).read_text()
+    if text.count(old) != 1:
+        return "STALE: stands %d times" % text.count(old)
+    with tempfile.TemporaryDirectory() as directory:
+        work = Path(directory)
+        shutil.copytree(ROOT / "csrc", work / "csrc")
+        (work / "csrc" / file).write_text(text.replace(old, new))
+        build(base, work)
+        environment = dict(os.environ, PYTHONPATH=str(work))
+        for test in TESTS:
+            command = [sys.executable, "-m", "pytest", "-x", "-q", "-p", "no:cacheprovider",
+                       "--no-header", str(ROOT / "tests" / test)]
+            try:
+                result = subprocess.run(command, cwd=work, env=environment, text=True,
+                                        capture_output=True, timeout=300)
+            except subprocess.TimeoutExpired:
+                return "caught by %s (no end)" % test
+            if result.returncode:
+                failed = [line for line in result.stdout.splitlines()
+                          if line.startswith(("FAILED", "ERROR"))]
+                where = failed[0].split("::")[-1].split(" - ")[0] if failed else "a crash"
+                return "caught by %s, %s" % (test, where)
+    return "harmless: " + HARMLESS[number] if number in HARMLESS else "SURVIVED"
+
+
+def main(numbers):
+    numbers = numbers or range(len(MUTATIONS))
+    with tempfile.TemporaryDirectory() as directory:
+        base = Path(directory)
+        prepare(base)
+        with ThreadPoolExecutor(os.cpu_count()) as pool:
+            results = pool.map(lambda n: try_mutation(base, n), numbers)
+            bad = caught = 0
+            for number, result in zip(numbers, results):
+                file, old, new = MUTATIONS[number]
+                print("%3d %-12s %-60.60s %s" % (number, file, " ".join(old.split()), result),
+                      flush=True)
+                caught += result.startswith("caught")
+                bad += result.startswith(("SURVIVED", "STALE"))
+    print("%d caught, %d survived that matter" % (caught, bad))
+    return 1 if bad else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main([int(word) for word in sys.argv[1:]]))

@@ -1,0 +1,163 @@
+"""Builds and machines that break the rules are refused; memory may run out anywhere."""
+
+import ctypes
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import converse
+
+ROOT = Path(__file__).resolve().parent.parent
+needs_gcc = pytest.mark.skipif(not shutil.which("gcc"), reason="needs gcc")
+
+
+@needs_gcc
+@pytest.mark.parametrize("flag", ["-ffast-math", "-Ofast"])
+def test_a_fast_math_build_is_refused(flag):
+    result = subprocess.run(["gcc", "-std=c11", flag, "-c", "csrc/search.c", "-o", os.devnull],
+                            cwd=ROOT, capture_output=True, text=True)
+    assert result.returncode != 0
+    assert "rules of rigor" in result.stderr
+
+
+SHIM = r"""
+#define _GNU_SOURCE
+#include <dlfcn.h>
+#include <fenv.h>
+#include <stdlib.h>
+#include <string.h>
+#if defined(__x86_64__)
+#include <xmmintrin.h>
+void flush_to_zero(int on) { _mm_setcsr((_mm_getcsr() & ~0x8040u) | (on ? 0x8040u : 0u)); }
+#else
+void flush_to_zero(int on) { (void)on; }
+#endif
+void direction(int which)
+{
+    static const int modes[] = { FE_TONEAREST, FE_UPWARD, FE_DOWNWARD, FE_TOWARDZERO };
+    fesetround(modes[which]);
+}
+"""
+
+
+@pytest.fixture(scope="module")
+def shim(tmp_path_factory):
+    """A little library that spoils the floating-point unit."""
+    directory = tmp_path_factory.mktemp("shim")
+    (directory / "shim.c").write_text(SHIM)
+    subprocess.run(["gcc", "-shared", "-fPIC", "-O1", "shim.c", "-o", "shim.so", "-lm"],
+                   cwd=directory, check=True)
+    return directory / "shim.so"
+
+
+@needs_gcc
+@pytest.mark.parametrize("spoil, mend", [
+    (lambda lib: lib.direction(1), lambda lib: lib.direction(0)),
+    (lambda lib: lib.direction(2), lambda lib: lib.direction(0)),
+    (lambda lib: lib.direction(3), lambda lib: lib.direction(0)),
+    (lambda lib: lib.flush_to_zero(1), lambda lib: lib.flush_to_zero(0)),
+])
+def test_a_spoilt_machine_is_refused(shim, root, spoil, mend):
+    lib = ctypes.CDLL(str(shim))
+    problem = converse.read_input(root / "inputs" / "trig278.in")
+    if os.uname().machine != "x86_64" and spoil.__code__.co_names[0] == "flush_to_zero":
+        pytest.skip("only for x86-64")
+    spoil(lib)
+    try:
+        with pytest.raises(converse.ConverseError, match="floating-point"):
+            converse.prove(problem)
+    finally:
+        mend(lib)
+    assert converse.prove(problem).no_tori
+
+
+FAILING = r"""
+#define _GNU_SOURCE
+#include <dlfcn.h>
+#include <stdlib.h>
+static _Thread_local long left = -1;        /* allocations until all fail; -1: never */
+static _Thread_local int failed;
+void fail_after(long n) { left = n; failed = 0; }
+int has_failed(void) { left = -1; return failed; }
+static int fails(void) { if (left < 0) return 0; if (left > 0) { left--; return 0; } failed = 1; return 1; }
+extern void *__libc_malloc(size_t), *__libc_calloc(size_t, size_t), *__libc_realloc(void *, size_t);
+void *malloc(size_t n) { return fails() ? NULL : __libc_malloc(n); }
+void *calloc(size_t n, size_t m) { return fails() ? NULL : __libc_calloc(n, m); }
+void *realloc(void *p, size_t n) { return fails() ? NULL : __libc_realloc(p, n); }
+"""
+
+STARVED = r"""
+import ctypes, sys
+import converse
+from converse._native import ffi, lib
+shim = ctypes.CDLL(None)
+shim.fail_after.argtypes = [ctypes.c_long]
+def strings(words):
+    owners = [ffi.new("char[]", w.encode()) for w in words]
+    return ffi.new("char *[]", owners), owners
+region, keep1 = strings(["0.311", "0.311", "0.622", "1", "1"])
+half, keep2 = strings(["0.00125", "0.00125", "0.0025", "1", "1"])
+handle = ffi.new("cv_search **")
+value, keep3 = strings(["0.3", "0.4"])
+out = ffi.new("char *[]", 8)
+assert lib.cv_search_new(handle, region, half, ffi.NULL, 0, 30, 0, 0) == lib.CV_EARGUMENT
+seen = {"new": 0, "step": 0, "kernel": 0}
+for n in list(range(0, 3000, 29)) + list(range(3000, 60000, 2999)):
+    shim.fail_after(n)
+    code = lib.cv_search_new(handle, region, half, ffi.NULL, 35, 30, 0, 0)
+    failed = shim.has_failed()
+    assert code == (lib.CV_ENOMEM if failed else 0), (n, code, failed)
+    assert (handle[0] == ffi.NULL) == bool(failed)
+    seen["new"] += bool(failed)
+    if not failed:
+        lib.cv_search_free(handle[0])
+assert lib.cv_search_new(handle, region, half, ffi.NULL, 35, 30, 0, 0) == 0
+lib.cv_step(handle[0], 10**6, 60.0)
+length = ffi.new("size_t *")
+def tree():
+    text = lib.cv_tree(handle[0], length)
+    return ffi.unpack(text, length[0]) if length[0] else b""
+whole = tree()
+lib.cv_search_free(handle[0])
+for n in list(range(0, 2000, 41)) + list(range(2000, 200000, 4999)):
+    assert lib.cv_search_new(handle, region, half, ffi.NULL, 35, 30, 0, 0) == 0
+    shim.fail_after(n)
+    code = lib.cv_step(handle[0], 10**6, 60.0)
+    failed = shim.has_failed()
+    assert code == (lib.CV_ENOMEM if failed else 0), (n, code, failed)
+    part = tree()
+    assert whole.startswith(part) and (failed or part == whole)
+    counts = lib.cv_get_counts(handle[0])
+    assert counts.cuts == sum(map(part.count, (b"0", b"1")))
+    assert counts.proved == part.count(b"P") and counts.symmetric == part.count(b"S")
+    seen["step"] += bool(failed)
+    lib.cv_search_free(handle[0])
+for n in range(0, 300):
+    shim.fail_after(n)
+    code = lib.cv_kernel(b"bound_sincos", n % 2, 0, 35, 2, value, 4, out)
+    failed = shim.has_failed()
+    assert code == (lib.CV_ENOMEM if failed else 0), (n, code, failed)
+    for j in range(4):
+        assert (out[j] == ffi.NULL) == bool(failed)
+        lib.cv_free(out[j])
+    seen["kernel"] += bool(failed)
+print(seen)
+assert all(seen.values())
+"""
+
+
+@needs_gcc
+@pytest.mark.skipif("libasan" in os.environ.get("LD_PRELOAD", ""), reason="asan has its own malloc")
+def test_every_allocation_may_fail(tmp_path):
+    """The core returns an error wherever memory runs out, and what it had decided stands."""
+    (tmp_path / "failing.c").write_text(FAILING)
+    subprocess.run(["gcc", "-shared", "-fPIC", "-O1", "failing.c", "-o", "failing.so"],
+                   cwd=tmp_path, check=True)
+    result = subprocess.run([sys.executable, "-c", STARVED], capture_output=True, text=True,
+                            env=dict(os.environ, LD_PRELOAD=str(tmp_path / "failing.so")),
+                            timeout=300)
+    assert result.returncode == 0, result.stdout + result.stderr
