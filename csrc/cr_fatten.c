@@ -4,9 +4,11 @@
    rotor's angle, turns the shorter one away from the other.  The rows are the listing's: u0, u1
    for neighbours, u1, v0 for the next but one, v0, v1 for the outermost.
 
-   In the first step of the rotor the area is a multiple of sin(v0 + v1), which all but vanishes
-   for many centres; see to_radians for why its sign is no accident.  Erratum: the listing looks
-   at the sign of the area alone and so turns nearly opposite columns together.
+   In the first step of the rotor columns 1 and 3 are exactly parallel in the rows u1 and v0, and
+   the area of 0 and 2 is a multiple of sin(v0 + v1), which all but vanishes for many centres.
+   Which way to turn is then not for rounding errors to say: columns that are parallel to ten
+   places count as having a positive area, and see to_radians for the sine.  Erratum: the listing
+   looks at the sign of the area alone and so turns nearly opposite columns together.
    Thesis: Rsubspace_rot. */
 static void subspace_rot(state *s, num_t A[MAT_DIM][MAT_DIM], int j, int k)
 {
@@ -29,7 +31,9 @@ static void subspace_rot(state *s, num_t A[MAT_DIM][MAT_DIM], int j, int k)
     num_mul(t[5], t[3], n->small_sinsq);
     if (num_cmp(t[4], t[5]) >= 0)
         return;
-    sign = num_sgn(t[0]) < 0 ? -1 : 1;
+    num_set_si(t[5], 1, -20);
+    num_mul(t[5], t[5], t[3]);
+    sign = num_cmp(t[4], t[5]) > 0 && num_sgn(t[0]) < 0 ? -1 : 1;
     num_mul(t[5], upper[one], upper[two]);
     num_addmul(s, t[5], lower[one], lower[two]);
     if (!s->as_printed && num_sgn(t[5]) < 0)

@@ -47,14 +47,15 @@ enum { PRISM_SZ = MAT_DIM + MAT_DIM * MAT_DIM };
    inverse: 4 x 4 matrix -> inverse, err    image: prism -> prism
    btrace: prism -> lo, hi                  Blams: prism -> least lo, hi, largest lo, hi
    torus: lo, hi of a, b, c -> T, B         least_lambda: prism, Tr d, lam d, lam_-min -> the same
-   cone: M, k -> low, high                  image_ns: prism, n -> nanoseconds per image, of n */
+   cone: M, k -> low, high                  image_ns: prism, n -> nanoseconds per image, of n
+   product: x lo, hi, y lo, hi -> lo, hi    square: lo, hi -> lo, hi */
 int R(kernel)(state *s, const char *name, int nin, apm_t in[], int nout, apm_t out[])
 {
     static const struct { const char *name; int nin, nout; } shapes[] = {
         { "sincos", 1, 2 }, { "bound_sincos", 2, 4 }, { "inverse", 16, 17 },
         { "image", PRISM_SZ, PRISM_SZ }, { "btrace", PRISM_SZ, 2 }, { "Blams", PRISM_SZ, 4 },
         { "torus", 6, 2 }, { "least_lambda", PRISM_SZ + 3, 2 }, { "cone", 2, 2 },
-        { "image_ns", PRISM_SZ + 1, 1 }
+        { "image_ns", PRISM_SZ + 1, 1 }, { "product", 4, 2 }, { "square", 2, 2 }
     };
     numbers *n = &s->n;
     prism *pz = &n->work[0];
@@ -137,6 +138,19 @@ int R(kernel)(state *s, const char *name, int nin, apm_t in[], int nout, apm_t o
                           (double)(repeat > 0 ? repeat : 1));
         break;
     }
+    case 10:
+    case 11:
+        num_set_apm(n->bx[0].lb, in[0]);
+        num_set_apm(n->bx[0].ub, in[1]);
+        if (which == 10) {
+            num_set_apm(n->bx[1].lb, in[2]);
+            num_set_apm(n->bx[1].ub, in[3]);
+            bound_product(s, &n->bx[2], &n->bx[0], &n->bx[1]);
+        } else {
+            bound_square(&n->bx[2], &n->bx[0]);
+        }
+        put_bdd(out, &n->bx[2]);
+        break;
     default:
         num_set_apm(n->t[5], in[0]);
         uniform_cone(s, n->t[6], n->t[7], n->t[5], (long)apm_get_d(in[1]));

@@ -27,6 +27,7 @@
 
 enum { MAX_DP = 100000, MAX_DEPTH = 100000 };
 enum { V0 = 3, V1 = 4 };                /* indices into a box */
+enum { PI_SHORT = 5 };                  /* see to_radians */
 
 struct cv_search {
     Runit *exact;
@@ -320,10 +321,10 @@ static int machine_is_sound(void)
 }
 
 /* The angles of the root, from units of pi to radians: an enclosure of the region meant, with pi
-   cut off after dp places, which is SAFETY_DP places short of what sines are good for.  So the
-   centres of prisms lie a little below the multiples of pi they stand for, by more than the
-   errors of their sines, and what depends on the sign of such a sine (the column rotor) is the
-   same on every machine.  The pi of 1989 was short, too. */
+   cut off after dp places, PI_SHORT places before the errors of sines begin.  So the centres of
+   prisms lie a little below the multiples of pi they stand for, by more than the errors of their
+   sines, and what depends on the sign of such a sine (the column rotor) is no accident.  The pi
+   of 1989 was short, too. */
 static void to_radians(cv_search *s, long dp)
 {
     apm_t pi, ulp;
@@ -351,7 +352,7 @@ static void to_radians(cv_search *s, long dp)
 }
 
 static int read_problem(cv_search *s, const char *const region[5], const char *const half[5],
-                        const char *const xstar[2], long dp)
+                        const char *const xstar[2], long pi_dp)
 {
     double abc[3], start[2], herman_start[2];
     char text[40];
@@ -368,7 +369,7 @@ static int read_problem(cv_search *s, const char *const region[5], const char *c
                    apm_cmp(s->root.half[0], s->root.half[1]) == 0 &&
                    apm_cmp(s->root.centre[V0], s->root.centre[V1]) == 0 &&
                    apm_cmp(s->root.half[V0], s->root.half[V1]) == 0;
-    to_radians(s, dp);
+    to_radians(s, pi_dp);
     for (int j = 0; j < 3; j++)
         abc[j] = apm_get_d(s->root.centre[j]);
     set_LL_start(start, abc, s->symmetric);
@@ -421,7 +422,8 @@ int cv_search_new(cv_search **result, const char *const region[5], const char *c
         s->quick = unit_new(dp, as_printed);
         status = s->exact == NULL || s->quick == NULL ? CV_ENOMEM : make_room(s);
         if (status == CV_OK)
-            status = read_problem(s, region, half, xstar, dp);
+            status = read_problem(s, region, half, xstar,
+                                  as_printed ? dp : dp > PI_SHORT ? dp - PI_SHORT : 1);
         if (status == CV_OK) {
             box_set(&s->stack[0], &s->root);
             s->pending = 1;

@@ -14,10 +14,10 @@
 
 enum { N_PARMS = 3, DEG_FREE = 2, TWO_DF = 4, MAT_DIM = 7 };
 enum { P = 0, U = N_PARMS, V = N_PARMS + DEG_FREE };    /* first row or column of a block */
-enum { SAFETY_DP = 5 };                 /* digits carried beyond dp (thesis, Appendix B) */
+enum { SAFETY_DP = 5 };                 /* as printed: digits carried beyond dp */
 enum { W_DIGITS = 12 };                 /* significant digits kept of the widths w_j */
-enum { THETA_ROT = 12 };                /* the column rotor's angle, in hundredths of pi */
-enum { MAX_SUM = 83 };                  /* a prism is too big beyond it, in hundredths */
+enum { THETA_ROT = 11 };                /* the column rotor's angle, in hundredths of pi */
+enum { MAX_SUM = 85 };                  /* a prism is too big beyond it, in hundredths */
 enum { START_SZ = 6 };                  /* as printed: the start is off by 10^-START_SZ */
 
 typedef struct { num_t lb, ub; } bdd;                   /* a number between two bounds */
@@ -35,7 +35,7 @@ typedef struct { num_t v[DEG_FREE], r[DEG_FREE]; } cell;
    Names after the thesis; t[] and the like are scratch of the function or file they name. */
 typedef struct {
     num_t pi_lb, pi_ub;
-    num_t max_error;                    /* 10^-dp: what the listing adds wherever in doubt */
+    num_t max_error;                    /* 10^-dp; as printed: what is added wherever in doubt */
     num_t ulp;                          /* 10^-precision: what a rounding can cost */
     num_t theta_cos, theta_sin, small_sinsq;            /* of the column rotor's angle */
     num_t max_sum;

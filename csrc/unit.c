@@ -1,7 +1,7 @@
 /* unit.c - one instance's memory. */
 
 #ifdef NUM_DOUBLE
-enum { DOUBLE_DP = 10 };                /* what a double is good for here (thesis: DBL_ERR) */
+enum { DOUBLE_DP = 15 };                /* what a double is good for (thesis: DBL_ERR) */
 #endif
 
 /* The numbers of a state as one array: it has no members but num_t's. */
@@ -32,11 +32,11 @@ state *R(unit_new)(long dp, int as_printed)
 #endif
     s->dp = dp;
     s->as_printed = as_printed;
-    trig_init(&s->trig, dp + SAFETY_DP);
+    trig_init(&s->trig, dp);
     for (int j = 0; j < (int)N_NUMBERS; j++)
         num_init(first_number(s)[j]);
     num_set_si(n->max_error, 1, -dp);
-    set_precision(s, dp + SAFETY_DP);
+    set_precision(s, as_printed ? dp + SAFETY_DP : dp);
 
     apm_init(pi);
     apm_init(angle);

@@ -16,8 +16,12 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
-TESTS = ["test_apm.py", "test_special.py", "test_bd_trig.py", "test_bounds.py", "test_images.py",
+TESTS = ["test_apm.py", "test_special.py", "test_bounding.py", "test_bd_trig.py", "test_bounds.py", "test_images.py",
          "test_search.py"]
+# The test to begin with; without one it is test_images.py.
+FIRST = {"apm.c": "test_apm.py", "special.c": "test_special.py", "bounding.c": "test_bounding.py",
+         "bd_trig.c": "test_bd_trig.py", "trace.c": "test_bounds.py", "lambda.c": "test_bounds.py",
+         "torus.c": "test_bounds.py", "follow.c": "test_search.py", "search.c": "test_search.py"}
 FLAGS = ["-std=c11", "-O1", "-fPIC", "-ffp-contract=off", "-I", "csrc",
          "-I", sysconfig.get_paths()["include"]]
 
@@ -127,7 +131,9 @@ MUTATIONS = [
 ]
 
 # Survivors that do not matter, by number, with the reason.
-HARMLESS = {}
+HARMLESS = {
+    11: "without it pi is right unless fifteen digits of it coincide with nines or zeros",
+}
 
 
 def build(base, work):
@@ -171,7 +177,8 @@ def try_mutation(base, number):
         (work / "csrc" / file).write_text(text.replace(old, new))
         build(base, work)
         environment = dict(os.environ, PYTHONPATH=str(work))
-        for test in TESTS:
+        first = FIRST.get(file, "test_images.py")
+        for test in sorted(TESTS, key=lambda test: test != first):
             command = [sys.executable, "-m", "pytest", "-x", "-q", "-p", "no:cacheprovider",
                        "--no-header", str(ROOT / "tests" / test)]
             try:

@@ -9,7 +9,7 @@ from converse import kernels
 from truth import DIGITS, TORTURE, decimal, exact, mp, rng_for, uniform
 
 DP = 35
-SLACK = Fraction(3, 10**(DP + 5))       # three ulps: what bounds may exceed the range by
+SLACK = Fraction(3, 10**DP)       # three ulps: what bounds may exceed the range by
 
 
 def true_range(function, low, high):
@@ -68,7 +68,7 @@ def test_encloses_and_is_tight(arithmetic):
         size = max(1, abs(low), abs(high))
         if arithmetic == "apm":
             # turns are known to an ulp each, so very far away an extremum may be imagined
-            slack = SLACK + (2 if size * Fraction(1, 10**(DP + 5)) > Fraction(1, 10**20) else 0)
+            slack = SLACK + (2 if size * Fraction(1, 10**DP) > Fraction(1, 10**20) else 0)
             miss = Fraction(0)
         elif size > 10**9:
             continue
