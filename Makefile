@@ -16,7 +16,7 @@ define install
 	touch $(1)/stamp
 endef
 
-.PHONY: prove test sanitize warnings bench clean
+.PHONY: prove test torture mutate sanitize memcheck warnings bench clean
 
 prove: $(VENV)/stamp
 	@mkdir -p build
@@ -25,6 +25,18 @@ prove: $(VENV)/stamp
 
 test: $(VENV)/stamp
 	$(VENV)/bin/pytest tests
+
+# A hundred times as many random cases; hours.
+torture: $(VENV)/stamp
+	CONVERSE_TORTURE=100 $(VENV)/bin/pytest tests
+
+# Breaks the C core in one place after another and sees whether a test notices; half an hour.
+mutate: $(VENV)/stamp
+	$(VENV)/bin/python tests/mutate.py
+
+# A proof, the kernels and a failing proof under valgrind's memcheck.
+memcheck: $(VENV)/stamp
+	PYTHONMALLOC=malloc valgrind -q --error-exitcode=9 --suppressions=tests/memcheck.supp $(VENV)/bin/python tests/memcheck.py
 
 sanitize: $(SANITIZED)/stamp
 	LD_PRELOAD="$$(gcc -print-file-name=libasan.so) $$(gcc -print-file-name=libstdc++.so.6)" ASAN_OPTIONS=detect_leaks=0 \

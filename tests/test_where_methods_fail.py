@@ -1,0 +1,150 @@
+"""Where the methods fail: a right answer, or "undecided" with the true reason counted."""
+
+import time
+from fractions import Fraction
+
+import pytest
+
+import converse
+from converse import Problem, kernels
+from truth import cube_coordinates, cube_point, decimal, point_of, rng_for, step, uniform
+
+REASONS = ("centre", "too big", "too long", "singular", "arithmetic", "disagree")
+FULL = (("1", "1"), ("1", "1"))
+
+
+def problem(a, b, c, v=FULL):
+    pairs = [a, b, c, *v]
+    return Problem(tuple(Fraction(x) for x, _ in pairs), tuple(Fraction(x) for _, x in pairs), ())
+
+
+def line(epsilon):
+    """One point of the thesis's line."""
+    a = decimal(Fraction("11.21436") * Fraction(epsilon), 8)
+    return problem((a, 0), (a, 0), (2 * a, 0))
+
+
+def reasons(proof):
+    return dict(zip(REASONS, proof.counts.reasons))
+
+
+def test_digits_shrink(root):
+    """Three places prove 0.0274 and four 0.0272; with fewer the rigorous tries fail, and say so."""
+    for name, enough in (("trig274", 3), ("trig272", 4)):
+        proofs = [converse.prove(converse.read_input(root / "inputs" / (name + ".in")), digits=d)
+                  for d in range(1, 8)]
+        assert [p.no_tori for p in proofs] == [d >= enough for d in range(1, 8)]
+        for proof in proofs[:enough - 1]:
+            lost = reasons(proof)
+            assert lost["disagree"] + lost["singular"] > 0
+            assert "rigor" in proof.report() or "double-precision" in proof.report()
+        prisms = [p.counts.proved for p in proofs[enough - 1:]]
+        assert prisms[0] > prisms[-1]           # it costs prisms first
+
+
+def needle(rng, thin):
+    """A prism whose columns of u and v are parallel but for a part in 1/thin."""
+    centre = [Fraction(x) for x in ("0.3", "0.3", "0.6")] + [decimal(uniform(rng, 0, 6))
+                                                            for _ in range(4)]
+    matrix = [[Fraction(0)] * 7 for _ in range(7)]
+    along = [decimal(uniform(rng, -1, 1) / 100) for _ in range(4)]
+    for k in range(3, 7):
+        for j in range(3, 7):
+            matrix[j][k] = decimal(along[j - 3] * (k - 2) + thin * uniform(rng, -1, 1) / 100, 80)
+    return centre, matrix
+
+
+@pytest.mark.parametrize("thin", ["1e-3", "1e-10", "1e-20", "1e-30", "1e-34"])
+def test_needles(thin):
+    """The rotor opens a needle; what cannot be inverted is given up; the image always holds."""
+    rng = rng_for("needle" + thin)
+    for _ in range(60):
+        prism = needle(rng, Fraction(thin))
+        try:
+            image = kernels.image(prism, 35)
+        except ArithmeticError:
+            continue
+        for _ in range(4):
+            worst = max(map(abs, cube_coordinates(image, step(point_of(prism, cube_point(rng))))))
+            assert worst <= 1 + Fraction(1, 10**20)
+
+
+def test_exactly_flat_prisms_are_given_up_or_right():
+    """Without the rotation nothing could be inverted; with it some flat prisms still cannot."""
+    rng = rng_for("flat")
+    given_up = 0
+    for _ in range(50):
+        prism = needle(rng, Fraction(0))
+        try:
+            kernels.image(prism, 35)
+        except ArithmeticError:
+            given_up += 1
+    assert given_up < 50
+
+
+def test_towards_the_wall():
+    """The thesis's criterion has a wall near 0.0270: prisms and depth grow without bound."""
+    table = []
+    for epsilon in ("0.0280", "0.0276", "0.0274", "0.0272", "0.0271"):
+        proof = converse.prove(line(epsilon), depth=60)
+        assert proof.no_tori
+        table.append((proof.counts.proved, proof.counts.most_cuts))
+    assert table == sorted(table)
+    assert table[-1][0] > 8 * table[1][0]
+    beyond = converse.prove(line("0.0265"), depth=16)
+    assert not beyond.no_tori and beyond.counts.undecided == 1
+    assert sum(reasons(beyond).values()) > 0
+
+
+@pytest.mark.parametrize("a, b, c", [
+    (("0.30", "0.001"), ("0.32", "0.001"), ("0.62", "0.001")),
+    (("0.9", "0"), ("0.3", "0"), ("0.5", "0")),
+    (("0.32", "0"), ("0.32", "0"), ("-0.64", "0")),
+    (("-0.32", "0"), ("-0.32", "0"), ("0.64", "0")),
+])
+def test_unsymmetric_and_negative(a, b, c):
+    """No symmetry is assumed that is not there, and signs do not matter."""
+    proof = converse.prove(problem(a, b, c))
+    assert proof.no_tori
+    if a != b:
+        assert proof.counts.symmetric == 0
+
+
+@pytest.mark.parametrize("k, theorem", [("1.34", True), ("1.3", False), ("0.9", False)])
+def test_the_cylinder(k, theorem):
+    """b = c = 0: two standard maps, one of them trivial.  The thesis's bound of the largest
+    eigenvalue of a block, Tr d - lam_-, knows nothing of the other angle, and so Mather's 4/3
+    is as far as it goes; where circles exist nothing is claimed."""
+    proof = converse.prove(problem((k, 0), ("0", 0), ("0", 0)), depth=12)
+    if not theorem:
+        assert not proof.no_tori and proof.counts.undecided > 0
+    if proof.no_tori:
+        assert Fraction(k) > Fraction(4, 3)
+
+
+def test_huge_angles():
+    """The region may lie far away, as long as a double, the quick filter's, still has digits
+    to tell its points apart; then it is undecided, and the filter is the reason."""
+    def there(turns):
+        v = ((Fraction(turns) + 1, "1"),) * 2
+        return problem(("0.3085", "0"), ("0.3085", "0"), ("0.617", "0"), v)
+
+    assert converse.prove(there(10**6)).no_tori
+    far = converse.prove(there(10**20))
+    assert not far.no_tori and reasons(far)["centre"] > 0
+
+
+def test_time_limit():
+    """A search that would take ages stops when it is told to, and says what it left."""
+    begin = time.monotonic()
+    proof = converse.prove(line("0.0262"), depth=10000, stubborn=True, time_limit=1.0)
+    assert time.monotonic() - begin < 20
+    assert not proof.no_tori
+    assert "ended before the whole region was examined" in proof.report()
+    assert converse.prove(line("0.0280"), time_limit=0).tree == ""
+
+
+def test_many_digits():
+    """A thousand places, for those who want them."""
+    proof = converse.prove(line("0.0276"), digits=1000)
+    assert proof.no_tori and proof.digits == 1000
