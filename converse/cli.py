@@ -154,7 +154,7 @@ def main(argv=None):
         if options and options.backup and os.path.exists(options.backup):
             message = "interrupted; continue with -r " + options.backup
     except (ConverseError, InputError, MemoryError) as error:
-        message, status = str(error), BAD
+        message, status = str(error) or "there is not enough memory", BAD
     except OSError as error:
         message, status = "the output cannot be written (%s)" % files.reason(error), BAD
         # The interpreter must not try again when it ends.

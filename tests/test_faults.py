@@ -17,6 +17,7 @@ from pathlib import Path
 import pytest
 
 from converse import Proof
+from truth import TORTURE
 
 @pytest.fixture(scope="session")
 def sample(root):
@@ -61,7 +62,7 @@ def test_kill_at_random_moments(start, command, sample, output, tmp_path, slow):
     rng = random.Random(20)
     backup = tmp_path / "backup"
     trees, arguments = [""], slow + ["-b", backup]
-    for _ in range(5):
+    for _ in range(5 * TORTURE):
         with start(*arguments, sample) as process:
             if len(trees) == 1:
                 wait_for(backup)        # it is written at once

@@ -161,3 +161,34 @@ def test_every_allocation_may_fail(tmp_path):
                             env=dict(os.environ, LD_PRELOAD=str(tmp_path / "failing.so")),
                             timeout=300)
     assert result.returncode == 0, result.stdout + result.stderr
+
+
+HUNGRY = r"""
+import resource, sys
+from converse.cli import main
+slack, backup, path = int(sys.argv[1]), sys.argv[2], sys.argv[3]
+pages = int(open("/proc/self/statm").read().split()[0])
+limit = pages * resource.getpagesize() + slack
+resource.setrlimit(resource.RLIMIT_AS, (limit, limit))
+sys.exit(main(["-p", "4000", "-d", "4", "-r", backup, "-b", backup, path]))
+"""
+
+
+@pytest.mark.skipif(not Path("/proc/self/statm").exists(), reason="needs /proc")
+@pytest.mark.skipif("libasan" in os.environ.get("LD_PRELOAD", ""), reason="asan needs room")
+def test_a_memory_limit_ends_with_a_line_and_an_intact_backup(root, tmp_path):
+    path = str(root / "inputs" / "trig272.in")
+    problem = converse.read_input(path)
+    seen = set()
+    for slack in (0, 10**6, 10**8):
+        backup = tmp_path / "backup.proof"
+        before = converse.prove(problem, depth=4, digits=4000, time_limit=0, backup=backup)
+        result = subprocess.run([sys.executable, "-c", HUNGRY, str(slack), str(backup), path],
+                                capture_output=True, text=True, timeout=120)
+        assert "Traceback" not in result.stderr
+        seen.add(result.returncode)
+        if result.returncode == 2:
+            assert result.stderr.count("\n") == 1 and "memory" in result.stderr.lower()
+        after = converse.Proof.load(backup)
+        assert after.tree.startswith(before.tree)
+    assert seen == {1, 2}
