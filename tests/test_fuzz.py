@@ -126,3 +126,23 @@ def test_any_bytes_as_backup(tmp_path_factory, data):
     with pytest.raises(ConverseError) as caught:
         Proof.load(path)
     one_line(caught.value)
+
+
+@MANY
+@given(edits=edits, seal=st.booleans(), zipped=st.booleans())
+def test_any_change_of_a_certificate(proof_bytes, tmp_path_factory, edits, seal, zipped):
+    """The checker verifies a changed file only if the change leaves a theorem that is true: an
+    intact tree of the same problem.  Everything else is rejected, or unusable, in one line."""
+    from converse.check import Rejected, Unusable, verify
+
+    data = edited(proof_bytes, edits)
+    if seal:
+        data = resealed(data)
+    path = tmp_path_factory.getbasetemp() / ("certificate-%d" % os.getpid())
+    path.write_bytes(gzip.compress(data, 1) if zipped else data)
+    try:
+        verify(path)
+    except (Rejected, Unusable) as error:
+        one_line(error)
+    else:
+        assert seal or data == proof_bytes
