@@ -192,6 +192,19 @@ def test_zero_widths():
         assert abs(image[0][j] - x[j]) <= reach <= Fraction(1, 10**(DP - 3))
 
 
+@pytest.mark.parametrize("dp", [2, 35])
+def test_the_error_of_the_centre_grows_with_the_parameters(dp):
+    """Sines are good to the last place; times a large parameter they are off by many."""
+    rng = rng_for("large%d" % dp)
+    for _ in range(300 * TORTURE):
+        centre = [decimal(uniform(rng, -10**5, 10**5), 2) for _ in range(3)]
+        centre += [decimal(uniform(rng, -7, 7)) for _ in range(4)]
+        image = kernels.image((centre, [[Fraction(0)] * 7 for _ in range(7)]), dp)
+        x = step(centre)
+        for j in range(7):
+            assert abs(image[0][j] - x[j]) <= sum(map(abs, image[1][j]))
+
+
 def test_mapped_centre():
     with mpmath.workdps(DIGITS):
         rng = rng_for("centre")
