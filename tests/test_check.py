@@ -333,7 +333,8 @@ def test_as_a_command(texts, tmp_path, root):
     path = tmp_path / "x"
     path.write_text(texts["trig274"], encoding="utf-8")
     for command in (["-m", "converse.check"], [str(root / "converse" / "check.py")]):
-        done = subprocess.run([sys.executable, *command, path, "--jobs", "2"], capture_output=True)
+        done = subprocess.run([sys.executable, *command, path, "--jobs", "2"], cwd=tmp_path,
+                              capture_output=True)
         assert done.returncode == 0 and done.stdout.startswith(b"Verified") and not done.stderr
 
 

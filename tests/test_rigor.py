@@ -157,7 +157,8 @@ def test_every_allocation_may_fail(tmp_path):
     (tmp_path / "failing.c").write_text(FAILING)
     subprocess.run(["gcc", "-shared", "-fPIC", "-O1", "failing.c", "-o", "failing.so"],
                    cwd=tmp_path, check=True)
-    result = subprocess.run([sys.executable, "-c", STARVED], capture_output=True, text=True,
+    result = subprocess.run([sys.executable, "-c", STARVED], cwd=tmp_path,
+                            capture_output=True, text=True,
                             env=dict(os.environ, LD_PRELOAD=str(tmp_path / "failing.so")),
                             timeout=300)
     assert result.returncode == 0, result.stdout + result.stderr
@@ -184,7 +185,7 @@ def test_a_memory_limit_ends_with_a_line_and_an_intact_backup(root, tmp_path):
         backup = tmp_path / "backup.proof"
         before = converse.prove(problem, depth=4, digits=4000, time_limit=0, backup=backup)
         result = subprocess.run([sys.executable, "-c", HUNGRY, str(slack), str(backup), path],
-                                capture_output=True, text=True, timeout=120)
+                                cwd=tmp_path, capture_output=True, text=True, timeout=120)
         assert "Traceback" not in result.stderr
         seen.add(result.returncode)
         if result.returncode == 2:
