@@ -135,6 +135,13 @@ HARMLESS = {
         "without it pi is right unless fifteen digits of it coincide with nines or zeros",
     "        if (j == 2) ":
         "the sum over both rows is more than the larger row, which would do",
+    "num_add(t[1], t[1], n->gamma_dif);":
+        "the map is affine in the parameters: on a path that changes them first, at the centre's v, "
+        "gamma is gamma_c, and the bound of beta - beta_c alone serves for the rest",
+    "num_add(t[3], t[3], t[4]);\n    num_mul_si(t[4], n->centre_err, 2);":
+        "twelve ulps times the error of the inverse, beside the prism times the same",
+    "num_div(s, n->w[U + j], t[4], t[5], APM_UP);":
+        "an ulp of w, beside the ten ulps over the prism's width that are in t[4]",
 }
 
 

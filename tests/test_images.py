@@ -205,6 +205,66 @@ def test_the_error_of_the_centre_grows_with_the_parameters(dp):
             assert abs(image[0][j] - x[j]) <= sum(map(abs, image[1][j]))
 
 
+def test_the_error_of_the_centre_grows_with_the_parameters_of_any_prism():
+    """The same for the column rotor: a prism hardly larger than the last place."""
+    rng, dp = rng_for("large rotor"), 6
+    ulp, tested = Fraction(1, 10**dp), 0
+    for _ in range(300 * TORTURE):
+        centre = [decimal(uniform(rng, -10**4, 10**4), 2) for _ in range(3)]
+        centre += [decimal(uniform(rng, -7, 7)) for _ in range(4)]
+        matrix = [[Fraction(0)] * 7 for _ in range(7)]
+        for j in range(3, 7):
+            for k in range(3, 7):
+                matrix[j][k] = ulp * (20 * (j == k) + rng.randrange(-3, 4))
+        try:
+            image = kernels.image((centre, matrix), dp)
+        except ArithmeticError:
+            continue
+        tested += 1
+        for _ in range(4):
+            x = step(point_of((centre, matrix), cube_point(rng)))
+            assert outside(image, x) <= CLOSE * 10**20
+    assert tested > 100
+
+
+@pytest.mark.parametrize("dp", [1, 2, 4])
+def test_the_error_of_the_inverse(dp):
+    """Without parameters the map is linear, and large prisms leave the bounds no slack but that."""
+    rng, tested = rng_for("linear%d" % dp), 0
+    ulp = Fraction(1, 10**dp)
+    for _ in range(200 * TORTURE):
+        matrix = [[Fraction(0)] * 7 for _ in range(7)]
+        for j in range(3, 7):
+            for k in range(3, 7):
+                matrix[j][k] = ulp * rng.randrange(-50 * 10**dp, 50 * 10**dp)
+        prism = ([Fraction(0)] * 7, matrix)
+        try:
+            image = kernels.image(prism, dp)
+        except ArithmeticError:
+            continue
+        tested += 1
+        for _ in range(6):
+            eta = [Fraction(rng.choice((-1, 1))) for _ in range(7)]
+            assert outside(image, step(point_of(prism, eta))) <= CLOSE * 10**20
+    assert tested > 100
+
+
+@pytest.mark.parametrize("dp", [2, 4])
+def test_the_roundings_of_the_fixed_form(dp):
+    """No parameters to speak of, widths just below a unit of the last place."""
+    rng = rng_for("roundings%d" % dp)
+    ulp = Fraction(1, 10**dp)
+    for _ in range(500 * TORTURE):
+        centre = [Fraction(0)] * 3 + [decimal(uniform(rng, 0, 1)) for _ in range(2)]
+        centre += [ulp * rng.randrange(-3, 4) for _ in range(2)]
+        half = [ulp * 99 / 100] * 3 + [0, 0] + [ulp * rng.randrange(2, 9)] * 2
+        prism = (centre, [[Fraction(half[j]) if j == k else Fraction(0) for k in range(7)]
+                          for j in range(7)])
+        image = kernels.image(prism, dp)
+        for eta in ([1] * 7, [-1] * 7, [1, 1, 1, 0, 0, -1, -1], [-1, -1, -1, 0, 0, 1, 1]):
+            assert outside(image, step(point_of(prism, eta))) <= CLOSE * 10**20
+
+
 def test_mapped_centre():
     with mpmath.workdps(DIGITS):
         rng = rng_for("centre")
