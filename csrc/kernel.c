@@ -48,14 +48,16 @@ enum { PRISM_SZ = MAT_DIM + MAT_DIM * MAT_DIM };
    btrace: prism -> lo, hi                  Blams: prism -> least lo, hi, largest lo, hi
    torus: lo, hi of a, b, c -> T, B         least_lambda: prism, Tr d, lam d, lam_-min -> the same
    cone: M, k -> low, high                  image_ns: prism, n -> nanoseconds per image, of n
-   product: x lo, hi, y lo, hi -> lo, hi    square: lo, hi -> lo, hi */
+   product: x lo, hi, y lo, hi -> lo, hi    square: lo, hi -> lo, hi
+   gauss_jordan: 4 x 4 matrix -> inverse to the places of the state, err, in a single try */
 int R(kernel)(state *s, const char *name, int nin, apm_t in[], int nout, apm_t out[])
 {
     static const struct { const char *name; int nin, nout; } shapes[] = {
         { "sincos", 1, 2 }, { "bound_sincos", 2, 4 }, { "inverse", 16, 17 },
         { "image", PRISM_SZ, PRISM_SZ }, { "btrace", PRISM_SZ, 2 }, { "Blams", PRISM_SZ, 4 },
         { "torus", 6, 2 }, { "least_lambda", PRISM_SZ + 3, 2 }, { "cone", 2, 2 },
-        { "image_ns", PRISM_SZ + 1, 1 }, { "product", 4, 2 }, { "square", 2, 2 }
+        { "image_ns", PRISM_SZ + 1, 1 }, { "product", 4, 2 }, { "square", 2, 2 },
+        { "gauss_jordan", 16, 17 }
     };
     numbers *n = &s->n;
     prism *pz = &n->work[0];
@@ -150,6 +152,14 @@ int R(kernel)(state *s, const char *name, int nin, apm_t in[], int nout, apm_t o
             bound_square(&n->bx[2], &n->bx[0]);
         }
         put_bdd(out, &n->bx[2]);
+        break;
+    case 12:
+        for (int j = 0; j < TWO_DF * TWO_DF; j++)
+            num_set_apm(n->gauss[j / TWO_DF][j % TWO_DF], in[j]);
+        s->inverse_failed = gauss_jordan(s, n->gauss, n->inverse_err, s->precision);
+        for (int j = 0; j < TWO_DF * TWO_DF; j++)
+            put(out[j], n->gauss[j / TWO_DF][j % TWO_DF]);
+        put(out[16], n->inverse_err);
         break;
     default:
         num_set_apm(n->t[5], in[0]);

@@ -51,6 +51,25 @@ def test_inverse(as_printed):
                 assert abs(found[j][k] - true[j][k]) <= error
 
 
+@pytest.mark.parametrize("dp", [4, 8, 20])
+def test_gauss_jordan_knows_its_error(dp):
+    """A single try with no digits to spare: what it says of its error holds, and is no idle talk."""
+    rng, ratios = rng_for("gauss%d" % dp), []
+    for _ in range(1500 * TORTURE):
+        scale = 10 ** rng.randrange(-1, 3)
+        matrix = [[decimal(uniform(rng, -1, 1) * scale, dp + 9) for _ in range(4)]
+                  for _ in range(4)]
+        try:
+            *found, error = kernels.call("gauss_jordan", [x for row in matrix for x in row], 17, dp)
+        except ArithmeticError:
+            continue
+        true = [x for row in exact_inverse(matrix) for x in row]
+        worst = max(abs(x - y) for x, y in zip(found, true))
+        assert worst <= error
+        ratios.append(worst / error)
+    assert len(ratios) > 500 and max(ratios) > Fraction(1, 1000)
+
+
 def exact_inverse(matrix):
     """Gauss-Jordan in rational arithmetic."""
     n = len(matrix)
