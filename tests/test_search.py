@@ -174,3 +174,15 @@ def test_two_threads_do_not_meet(root):
     for thread in threads:
         thread.join()
     assert found == alone
+
+
+def test_no_symmetry_where_the_start_is_off_the_diagonal():
+    """A starting point of one's own (from a backup) may lie anywhere; then nothing is skipped."""
+    from converse.proof import _Search
+
+    for xstar, skips in ((("0.82", "0.82"), True), (("0.82", "0.83"), False)):
+        search = _Search(line("0.0275"), 30, 20, False, False, xstar)
+        while search.step(1000):
+            pass
+        counts = search.counts()
+        assert counts.proved > 0 and (counts.symmetric > 0) == skips
