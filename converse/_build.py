@@ -5,7 +5,7 @@ import os
 
 from cffi import FFI
 
-SOURCES = ["apm", "special", "memory", "start", "rigorous", "double", "search", "cv_kernel"]
+SOURCES = ["apm", "special", "memory", "start", "rigorous", "double", "loewner", "search", "cv_kernel"]
 SOURCES = ["csrc/%s.c" % name for name in SOURCES]
 
 # The flags are part of the proof: no fused, reordered or extended floating-point arithmetic.

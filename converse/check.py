@@ -74,11 +74,13 @@ class Rejected(Exception):
 # ---- the proof file
 
 NAMES = ("a", "b", "c", "v0", "v1")
+AXES = "01234"                          # of cuts: v0, v1, then a, b, c or, together, 2 for all
 COUNTS = ("depth", "cuts", "proved", "symmetric", "undecided", "most_cuts")
 IGNORED = ("program", "method", "digits", "stubborn", "seconds", "quick_tries", "tries", "Rtries",
            "HermSuccess", "LLSuccess", "ll_used", "reasons", "max_steps", "max_NTsteps",
-           "T", "Tr-", "Tr+", "B", "lambda-min", "lambda-max")
-FIELDS = {*NAMES, *COUNTS, *IGNORED, "kind", "xstar"}
+           "B", "pending")
+OPTIONAL = {"T", "Tr-", "Tr+", "lambda-min", "lambda-max", "comment"}     # ignored, too
+FIELDS = {*NAMES, *COUNTS, *IGNORED, "kind", "xstar", "together", "at once"}
 NUMBER = re.compile(r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]{1,3})?", re.ASCII)
 
 
@@ -90,6 +92,8 @@ class Claim:
     half: tuple
     xstar: tuple
     counts: dict
+    together: bool                      # the parameters move as one, from end to end
+    at_once: bool                       # the claim covers larger multiples of them, too
     tree: str
     sha256: str                         # of the bytes of the file
 
@@ -113,8 +117,8 @@ def read(path):
         raise Unusable("is larger than %d bytes" % MAX_BYTES)
     if not text.startswith("converse proof "):
         raise Unusable("is not a proof file")
-    if not text.startswith("converse proof 1\n"):
-        raise Rejected("the format is not version 1")
+    if not text.startswith("converse proof 2\n"):
+        raise Rejected("the format is not version 2")
     body, marker, end = text.rpartition("checksum: sha256 ")
     if not body.endswith("\n") or not re.fullmatch("[0-9a-f]{64}\nend\n", end):
         raise Rejected("the file does not end with its checksum; it is truncated or altered")
@@ -131,7 +135,7 @@ def parse(lines, tree, sha256):
     header = {}
     for line in lines:
         name, colon, value = line.partition(": ")
-        if not colon or name not in FIELDS | {"comment"}:
+        if not colon or name not in FIELDS | OPTIONAL:
             raise Rejected("the header has a line of unknown meaning: '%.40s'" % line)
         if name in header and name != "comment":
             raise Rejected("the header gives %s twice" % name)
@@ -154,30 +158,41 @@ def parse(lines, tree, sha256):
     for name in COUNTS:
         if not re.fullmatch("[0-9]{1,18}", header[name], re.ASCII):
             raise Rejected("the header's %s is not a count" % name)
-    return Claim(*zip(*ranges), xstar, {name: int(header[name]) for name in COUNTS}, tree, sha256)
+    for name in ("together", "at once"):
+        if header[name] not in ("yes", "no"):
+            raise Rejected("the header's %s is neither yes nor no" % name)
+    return Claim(*zip(*ranges), xstar, {name: int(header[name]) for name in COUNTS},
+                 header["together"] == "yes", header["at once"] == "yes", tree, sha256)
 
 
 # ---- the tree
-# A cell (i, k, j, l) is the i-th of the 2^k equal slices of the region along v0 and the j-th of
-# the 2^l along v1.  Cutting a cell replaces it by its two halves, so the leaves of a complete
-# tree tile the region exactly.
+# A cell (index, cuts) is slice index[k] of the 2^cuts[k] equal slices of the region along each of
+# the five axes k.  Cutting a cell replaces it by its two halves, so the leaves of a complete tree
+# tile the region exactly.
+
+ROOT = (0,) * 5, (0,) * 5
+
+
+def changed(values, axis, value):
+    return values[:axis] + (value,) + values[axis + 1:]
+
 
 def leaves(tree):
     """Yields (position, cell) for each leaf, in preorder; Rejected if it is not a whole tree."""
-    pending = [(0, 0, 0, 0)]
+    pending = [ROOT]
     for position, node in enumerate(tree):
         if not pending:
             raise Rejected("the tree ends before its text does, at node %d" % position)
-        i, k, j, l = pending.pop()
-        if node == "0":
-            pending += (2 * i + 1, k + 1, j, l), (2 * i, k + 1, j, l)
-        elif node == "1":
-            pending += (i, k, 2 * j + 1, l + 1), (i, k, 2 * j, l + 1)
+        index, cuts = cell = pending.pop()
+        axis = AXES.find(node)
+        if axis >= 0:
+            cuts = changed(cuts, axis, cuts[axis] + 1)
+            pending += ((changed(index, axis, 2 * index[axis] + upper), cuts) for upper in (1, 0))
         elif node in "PSU":
-            yield position, (i, k, j, l)
+            yield position, cell
         else:
-            raise Rejected("'%s' is not a node of a tree, at node %d" % (node, position))
-        if k + l >= MAX_CUTS:
+            raise Rejected("'%s' is not a node of a finished tree, at node %d" % (node, position))
+        if sum(cuts) > MAX_CUTS:
             raise Rejected("node %d lies below %d cuts" % (position, MAX_CUTS))
     if pending:
         raise Rejected("the tree is incomplete: %d of its parts are missing" % len(pending))
@@ -186,14 +201,17 @@ def leaves(tree):
 def check_tree(claim):
     """The number of leaves, if the tree is whole, decided, and what the header's counts say."""
     total = most_cuts = 0
-    for position, (_, k, _, l) in leaves(claim.tree):
+    if claim.together and set("34") & set(claim.tree):
+        raise Rejected("parameters that move together are cut one at a time")
+    for position, (_, cuts) in leaves(claim.tree):
         total += 1
+        depth = sum(cuts)
         if claim.tree[position] == "U":
             raise Rejected("leaf %d is undecided" % total)
-        if k + l > claim.counts["depth"]:
+        if depth > claim.counts["depth"]:
             raise Rejected("leaf %d was cut more often than the depth allows" % total)
         if claim.tree[position] == "P":
-            most_cuts = max(most_cuts, k + l)
+            most_cuts = max(most_cuts, depth)
     found = {"cuts": total - 1, "proved": claim.tree.count("P"),
              "symmetric": claim.tree.count("S"), "undecided": 0, "most_cuts": most_cuts}
     for name, value in found.items():
@@ -210,11 +228,11 @@ class Mirror:
         """The exchange maps orbits to orbits; the rest must be its own image."""
         a, b, _, v0, v1 = zip(claim.centre, claim.half)
         self.symmetric = a == b and v0 == v1 and claim.xstar[0] == claim.xstar[1]
-        self.tree = claim.tree
+        self.tree, self.together = claim.tree, claim.together
         self.upper = array("q", bytes(8 * len(self.tree)))  # where a node's upper half begins
         unfinished = []                                     # nodes whose lower half goes on
         for position, node in enumerate(self.tree):
-            if node in "01":
+            if node in AXES:
                 unfinished.append(position)
             elif unfinished:
                 self.upper[unfinished.pop()] = position + 1
@@ -223,22 +241,26 @@ class Mirror:
         """Why the symmetric leaf may not be skipped, or None if its mirror image is proved."""
         if not self.symmetric:
             return "is skipped by symmetry, but the problem is not symmetric"
-        i, k, j, l = cell
-        todo = [(0, j, l, i, k)]            # a node, and the image's cell within that node
+        image = [(index, cuts) for index, cuts in zip(*cell)]
+        image[0], image[1] = image[1], image[0]
+        if not self.together:
+            image[2], image[3] = image[3], image[2]
+        todo = [(0, tuple(image))]          # a node, and the image's cell within that node
         while todo:
-            position, i, k, j, l = todo.pop()
+            position, image = todo.pop()
             node, lower = self.tree[position], position + 1
             if node == "P":
                 continue
-            if node not in "01":
+            axis = AXES.find(node)
+            if axis < 0:
                 return "is skipped by symmetry, but its mirror image is not proved"
             halves = lower, self.upper[position]
-            if (k if node == "0" else l) == 0:              # the image has both halves
-                todo += [(half, i, k, j, l) for half in halves]
-            elif node == "0":
-                todo.append((halves[i >> k - 1], i & (1 << k - 1) - 1, k - 1, j, l))
+            index, cuts = image[axis]
+            if cuts == 0:                                   # the image has both halves
+                todo += [(half, image) for half in halves]
             else:
-                todo.append((halves[j >> l - 1], i, k, j & (1 << l - 1) - 1, l - 1))
+                rest = index & (1 << cuts - 1) - 1, cuts - 1
+                todo.append((halves[index >> cuts - 1], changed(image, axis, rest)))
         return None
 
 
@@ -247,6 +269,7 @@ class Mirror:
 GUARD = 64                              # more bits, in which constants are computed
 SLICES = 256                            # of the circle, in the table of sines and cosines
 SINE_ERROR = 16                         # units; see Fixed.sincos
+PARAMETER_ERROR = 32                    # units; see Criterion.piece
 
 
 def arctan_inverse(n, one):
@@ -357,14 +380,16 @@ def cell_bound(fixed, abc, y, w):
     return corners + bend + slack, eigenvalue(0, 0) + slack
 
 
-def torus_bound(fixed, low, high):
-    """An upper bound B of the largest eigenvalue of beta over the torus and low <= a, b, c <= high.
+def torus_bound(fixed, corners):
+    """An upper bound B of the largest eigenvalue of beta over the torus and the parameters between
+    these corners.
 
     beta(x) is affine in the parameters and its largest eigenvalue convex: for each x the maximum
-    is at one of the eight corners.  At each, branch and bound over cells that cover the torus,
+    is at one of the corners.  At each, branch and bound over cells that cover the torus,
     until the worst cell is within 2^-20 (relative to the parameters) of a value taken.
     """
-    tolerance = (fixed.one + sum(map(abs, (*low, *high)))) >> 20
+    corners = sorted(set(corners))
+    tolerance = (fixed.one + max(sum(map(abs, abc)) for abc in corners)) >> 20
     heap, taken, order = [], 0, itertools.count()
 
     def push(abc, y, w):
@@ -373,7 +398,7 @@ def torus_bound(fixed, low, high):
         taken = max(taken, value)
         heapq.heappush(heap, (-bound, next(order), abc, y, w))
 
-    for abc in sorted(set(itertools.product(*zip(low, high)))):
+    for abc in corners:
         push(abc, (0, 0), fixed.pi + 2)
     while -heap[0][0] > taken + tolerance:
         _, _, abc, (y0, y1), w = heapq.heappop(heap)
@@ -386,7 +411,8 @@ def torus_bound(fixed, low, high):
 # ---- orbits: first-order Taylor models
 # A piece is a box of (a, b, c, v0, v1): centres and half-widths.  A number that depends on the
 # point of the piece is enclosed as centre + sum of column * symbol, each symbol in [-1, 1]: first
-# five symbols for the piece, two for the rounding of x*, then three for the errors of each step.
+# five symbols for the piece (parameters that move together all have the first), two for the rounding
+# of x*, then three for the errors of each step.
 
 class Point:
     """x[j] on all orbits of a piece: its centre x, its rows of columns, and models of p sin."""
@@ -411,16 +437,18 @@ def model(bits, p, h, f, g, rho):
 
     cos d is in [1 - rho^2/2, 1], and |sin d - d| <= rho^3/6, so f cos d + g sin d is within
     bend = |f| rho^2/4 + |g| rho^3/6 + 2 SINE_ERROR of f (1 - rho^2/4) + g d.  Hence the error
-    (|p| + h) bend + h |g| rho; each of value, slope, tilt d and the error loses 1 or 2 units.
+    (|p| + h) bend + h |g| rho; each of value, slope, tilt d and the error loses 1 or 2 units, and
+    p + h e is off by PARAMETER_ERROR, which the wave, at most 1, does not enlarge.
     """
     square = (rho * rho >> bits) + 1
     sag = f * square >> bits + 2
     bend = abs(sag) + (abs(g) * square * rho // 6 >> 2 * bits) + 2 * SINE_ERROR + 4
-    error = ((abs(p) + h) * bend + ((h * abs(g) >> bits) + 1) * rho >> bits) + 6
+    error = ((abs(p) + h) * bend + ((h * abs(g) >> bits) + 1) * rho >> bits) \
+        + PARAMETER_ERROR + 7
     return p * (f - sag) >> bits, h * (f - sag) >> bits, p * g >> bits, error
 
 
-def step(fixed, parameters, point, before, known):
+def step(fixed, parameters, symbols, point, before, known):
     """The point after next: 2 x - before - V'(x).  Time may run either way: the map is reversible.
 
     -V'(x) is (g0 + g2, g1 + g2) with g = p cos(angle); each g has a new symbol for its error, after
@@ -434,10 +462,11 @@ def step(fixed, parameters, point, before, known):
     row0, row1, old0, old1 = [row + [0] * (known - len(row)) for row in point.rows + before.rows]
     new0 = [(m0 * p + t2 * q >> bits) - o for p, q, o in zip(row0, row1, old0)]
     new1 = [(t2 * p + m1 * q >> bits) - o for p, q, o in zip(row0, row1, old1)]
-    new0[0] += s0
-    new0[2] += s2
-    new1[1] += s1
-    new1[2] += s2
+    a, b, c = symbols
+    new0[a] += s0
+    new0[c] += s2
+    new1[b] += s1
+    new1[c] += s2
     x = (2 * point.x[0] - before.x[0] + v0 + v2, 2 * point.x[1] - before.x[1] + v1 + v2)
     return Point(fixed, parameters, x, (new0 + [e0 + known, 0, e2], new1 + [0, e1 + known, e2]))
 
@@ -490,7 +519,7 @@ def witness(betas, l):
     return [*list(outwards(left))[::-1], n, *outwards(right)]
 
 
-def second_variation(fixed, l, orbit, vectors):
+def second_variation(fixed, symbols, l, orbit, vectors):
     """Bounds the left side of (3) over a piece: (upper bound, columns of the symbols).
 
     All products are exact; the unit of the result is 2^-(2 bits + 2 NU_BITS).
@@ -508,7 +537,7 @@ def second_variation(fixed, l, orbit, vectors):
         k0, k1 = w0 * t0 + w2 * t2, w1 * t1 + w2 * t2
         row0, row1 = point.rows
         columns[:len(row0)] = [k - k0 * p - k1 * q for k, p, q in zip(columns, row0, row1)]
-        for k, change in enumerate((w0 * s0, w1 * s1, w2 * s2)):
+        for k, change in zip(symbols, (w0 * s0, w1 * s1, w2 * s2)):
             columns[k] -= change << bits
     return (centre + error << bits) + sum(map(abs, columns)), columns
 
@@ -520,59 +549,99 @@ class Criterion:
         narrow = max([h.denominator.bit_length() - h.numerator.bit_length()
                       for h in claim.half if h] + [0])
         self.fixed = fixed = Fixed(max(96, 64 + narrow + claim.counts["most_cuts"]))
-        self.parameters = ([math.floor(c * fixed.one) for c in claim.centre[:3]],
-                           [math.ceil(h * fixed.one) + 1 for h in claim.half[:3]])
-        ends = [(c - h, c + h) for c, h in zip(*self.parameters)]
-        self.B = B = torus_bound(fixed, *zip(*ends))
-        if B <= 2 * fixed.one:
-            # The tails of step 2 must be square-summable, l < 1, which needs B > 2.  (The mean of
-            # beta over the torus is 2I, so this would say that there are no parameters.)
-            raise Rejected("beta has no eigenvalue above 2: the criterion does not apply")
-        # l falls as B grows, so with an upper bound of B, and the divisor rounded up, it is a
-        # lower bound of l; lesser l makes (3) larger.
-        self.l = 2 * fixed.one ** 2 // (B + upper_sqrt(B * B - (2 * fixed.one) ** 2))
-        if self.l <= 0:
-            # Harmless, since a lesser l only makes (3) harder; but the witness needs 1/l, and no
-            # theorem is wanted from numbers that have lost all their digits.
-            raise Rejected("the parameters are too large for this checker")
+        self.parameters = [[math.floor(x * fixed.one) for x in claim.centre[:3]],
+                           [math.floor(x * fixed.one) for x in claim.half[:3]]]
+        self.together = claim.together
+        self.symbols = (0, 0, 0) if claim.together else (0, 1, 2)
         self.xstar = [math.floor(x * fixed.one) for x in claim.xstar]
         # Orbits that differ by 2 pi in x[1] differ by 2 pi j in x[j]: nothing else changes.
         self.region = [(math.floor(c % 2 * fixed.pi), math.floor(h * fixed.pi),
                         4 * math.ceil(h) + 10) for c, h in zip(claim.centre[3:], claim.half[3:])]
+        # The ends of the parameters: a cell's B is no larger than what lies between B there.
+        signs = [(s, s, s) for s in (-1, 1)] if claim.together else \
+            list(itertools.product((-1, 1), repeat=3))
+        corners = [tuple(c + s * (h + PARAMETER_ERROR) for c, h, s in zip(*self.parameters, sign))
+                   for sign in signs]
+        if set("234") & set(claim.tree):
+            self.B_at = [torus_bound(fixed, [corner]) for corner in corners]
+        else:
+            self.B_at = [torus_bound(fixed, corners)]
+        self.B = max(self.B_at)
+        if self.B <= 2 * fixed.one:
+            # The tails of step 2 must be square-summable, l < 1, which needs B > 2.  (The mean of
+            # beta over the torus is 2I, so this would say that there are no parameters.)
+            raise Rejected("beta has no eigenvalue above 2: the criterion does not apply")
+        self.l_of = {}                      # by the cell's slices of the parameters
+
+    def least_pivot(self, cell):
+        """l of step 2 for the parameters of the cell, from below.
+
+        The largest eigenvalue is convex in the parameters, so between two ends it lies below the
+        straight line, and over the cell below the largest value, at a corner of the cell, of the
+        product of such lines.  l falls as B grows, so an upper bound of B, and of the divisor,
+        make a lower bound of l; lesser l makes (3) larger.
+        """
+        key = tuple(x[2:] for x in cell)
+        if key not in self.l_of:
+            one, axes = self.fixed.one, len(self.B_at).bit_length() - 1
+            B = 0
+            for corner in itertools.product((0, 1), repeat=axes):
+                values = self.B_at
+                for i, k, upper in zip(*key, corner):       # the first axis is the slowest
+                    half = len(values) // 2
+                    values = [((1 << k) - i - upper) * low + (i + upper) * high
+                              for low, high in zip(values[:half], values[half:])]
+                B = max(B, -(-values[0] >> sum(key[1][:axes])))
+            B = max(B, 2 * one + 1)
+            l = 2 * one ** 2 // (B + upper_sqrt(B * B - (2 * one) ** 2))
+            if l <= 0:
+                # Harmless, since a lesser l only makes (3) harder; but the witness needs 1/l, and
+                # no theorem is wanted from numbers that have lost all their digits.
+                raise Rejected("the parameters are too large for this checker")
+            self.l_of[key] = l
+        return self.l_of[key]
 
     def piece(self, cell):
-        """The cell as a box that covers it, with the whole range of the parameters.
+        """The cell as a box that covers it: centres and half-widths of a, b, c, v0 and v1.
 
-        The centre c + h (2i + 1 - 2^k) / 2^k and the half-width h / 2^k, in units of pi: pi is off
-        by 2 units and c mod 2 below 2, so with the floors 4 h + 10 units are enough.
+        An angle: the centre c + h (2i + 1 - 2^k) / 2^k and the half-width h / 2^k, in units of pi:
+        pi is off by 2 units and c mod 2 below 2, so with the floors 4 h + 10 units are enough.
+        A parameter is followed along its symbol to within 5 units (four floors, one of them of a
+        number that is doubled), and each halving of the piece may add one: PARAMETER_ERROR.
         """
-        (i, k, j, l), (centre, half) = cell, self.parameters
-        (c0, h0, e0), (c1, h1, e1) = self.region
-        return (centre + [c0 + (h0 * (2 * i + 1 - (1 << k)) >> k),
-                          c1 + (h1 * (2 * j + 1 - (1 << l)) >> l)],
-                half + [(h0 >> k) + e0, (h1 >> l) + e1])
+        index, cuts = cell
+        centre, half = [], []
+        for n, (c, h) in enumerate(zip(*self.parameters)):
+            axis = 2 if self.together else 2 + n
+            i, k = index[axis], cuts[axis]
+            centre.append(c + (h * (2 * i + 1 - (1 << k)) >> k))
+            half.append(h >> k)
+        for (c, h, e), i, k in zip(self.region, index, cuts):
+            centre.append(c + (h * (2 * i + 1 - (1 << k)) >> k))
+            half.append((h >> k) + e)
+        return centre, half
 
-    def attempt(self, piece):
+    def attempt(self, l, piece):
         """Is (3) true of the whole piece?  None if so, or else why not, and where to halve it."""
         try:
-            return self._follow(*piece)
+            return self._follow(l, *piece)
         except (OverflowError, ValueError, ZeroDivisionError):
             # An angle or a double too large, a singular pivot, a NaN: no bound was established,
             # and an attempt that establishes none excludes nothing.
             return "the arithmetic failed", piece[1]
 
-    def _follow(self, centre, half):
+    def _follow(self, l, centre, half):
         """Lengthens the orbit at the end that is better known until (3) is true or all is lost."""
-        fixed, parameters = self.fixed, list(zip(centre[:3], half[:3]))
+        fixed, symbols, parameters = self.fixed, self.symbols, list(zip(centre[:3], half[:3]))
         why, columns, known = "the orbit of its centre contradicts nothing", half, 7
         orbit = collections.deque()
         point = Point(fixed, parameters, self.xstar, ([0] * 5 + [1, 0], [0] * 5 + [0, 1]))
         ahead = True
         while max(point.reach) <= fixed.one and len(orbit) < MAX_POINTS:
             (orbit.append if ahead else orbit.appendleft)(point)
-            vectors = witness([point.beta for point in orbit], self.l / fixed.one)
+            vectors = witness([point.beta for point in orbit], l / fixed.one)
             if vectors:
-                bound, columns = second_variation(fixed, self.l, orbit, vectors)
+                bound, columns = second_variation(fixed, symbols, l, orbit, vectors)
                 if bound < 0:
                     return None
                 why = "its second variation may be positive"
@@ -582,27 +651,60 @@ class Criterion:
                 continue
             ahead = max(orbit[-1].reach) < max(orbit[0].reach)
             ends = (orbit[-1], orbit[-2]) if ahead else (orbit[0], orbit[1])
-            point = step(fixed, parameters, *ends, known)
+            point = step(fixed, parameters, symbols, *ends, known)
             known += 3
         return why, columns
 
     def excluded(self, cell):
         """Does no minimizing orbit go from x* to the cell?  (None or else why not, pieces tried)"""
-        todo, pieces = [(self.piece(cell), 0)], 0
+        l, todo, pieces = self.least_pivot(cell), [(*self.piece(cell), 0)], 0
         while todo:
-            (centre, half), halvings = todo.pop()
+            centre, half, halvings = todo.pop()
             pieces += 1
-            failed = self.attempt((centre, half))
+            failed = self.attempt(l, (centre, half))
             if not failed:
                 continue
             if halvings == MAX_HALVINGS or pieces + len(todo) >= MAX_PIECES:
                 return failed[0], pieces
-            k = max(range(5), key=lambda k: abs(failed[1][k]))
-            h = half[k] + 1 >> 1
-            half = half[:k] + [h] + half[k + 1:]
-            todo += [((centre[:k] + [centre[k] + d] + centre[k + 1:], half), halvings + 1)
-                     for d in (h, -h)]
+            worst = max(range(5), key=lambda k: abs(failed[1][k]))
+            axes = {0, 1, 2} if self.together and worst == 0 else {worst}
+            step = [h + 1 >> 1 if k in axes else 0 for k, h in enumerate(half)]
+            half = [s if k in axes else h for k, (h, s) in enumerate(zip(half, step))]
+            todo += [([c + sign * s for c, s in zip(centre, step)], half, halvings + 1)
+                     for sign in (1, -1)]
         return None, pieces
+
+    def at_once(self):
+        """Is B > 10/3 for all parameters of the box, or where they move together, at the upper end?
+
+        V is odd, so the least eigenvalue of beta over the torus is 4 - B; where it is attained,
+        (3) with that point and its eigenvector alone is 4 - B - 2l < 0, that is B > 10/3; and B - 2
+        grows in proportion with the parameters.  So it is enough that n.beta(x)n < 2/3 |n|^2 for
+        some x and n: found on a grid in double precision, and then bounded for all parameters.
+        """
+        one = self.fixed.one
+        centre, half = self.parameters
+        if self.together:
+            centre, half = [c + h for c, h in zip(centre, half)], [0, 0, 0]
+        half = [h + PARAMETER_ERROR for h in half]
+        a, b, c = [x / one for x in centre]
+
+        def beta(x):
+            s0, s1, s2 = math.sin(x[0]), math.sin(x[1]), math.sin(sum(x))
+            return 2 - a * s0 - c * s2, -c * s2, 2 - b * s1 - c * s2
+
+        grid = [math.pi * k / 32 for k in range(64)]
+        x = min(itertools.product(grid, repeat=2), key=lambda x: least(beta(x))[0])
+        for width in (2.0 ** -k for k in range(4, 20)):
+            x = min(itertools.product(*((y - width, y, y + width) for y in x)),
+                    key=lambda x: least(beta(x))[0])
+        n0, n1 = [round(u * 2 ** NU_BITS) for u in least(beta(x))[1]]
+        x = [math.floor(y * one) for y in x]
+        total = 4 * (n0 * n0 + n1 * n1) * one               # three times 2 |n|^2 - 2/3 |n|^2
+        for p, h, y, w in zip(centre, half, (*x, sum(x)), (n0 * n0, n1 * n1, (n0 + n1) ** 2)):
+            sine, _ = self.fixed.sincos(y)
+            total -= 3 * w * ((p * sine - h * abs(sine) - (abs(p) + h) * SINE_ERROR) // one)
+        return total < 0
 
 
 # ---- the whole file
@@ -659,6 +761,8 @@ def verify(path, jobs=1, sample=None, quiet=True):
     total = check_tree(claim)
     mirror = Mirror(claim) if "S" in claim.tree else None
     criterion = Criterion(claim)
+    if claim.at_once and not criterion.at_once():
+        raise Rejected("it is not confirmed that larger parameters are excluded at once")
     chosen = range(total)
     if sample is not None:
         chosen = set(random.Random(claim.sha256).sample(chosen, min(sample, total)))
@@ -696,11 +800,13 @@ def range_text(name, centre, half):
 def failure_text(claim, total, ordinal, cell, why):
     """Names a leaf by its number in preorder, its depth and where it lies."""
     sides = []
-    for axis, (i, k) in enumerate((cell[:2], cell[2:]), 3):
+    for axis, i, k in zip((3, 4, 0, 1, 2), *cell):
+        if claim.together and axis in (1, 2):
+            i, k = cell[0][2], cell[1][2]
         low = claim.centre[axis] - claim.half[axis] + 2 * claim.half[axis] * i / (1 << k)
         sides.append("[%.9g, %.9g]" % (low, low + 2 * claim.half[axis] / (1 << k)))
-    return "leaf %d of %d (v in %s pi, %d cuts) %s" % (ordinal + 1, total, " x ".join(sides),
-                                                       cell[1] + cell[3], why)
+    return "leaf %d of %d (v in %s pi, (a, b, c) in %s, %d cuts) %s" % (
+        ordinal + 1, total, " x ".join(sides[:2]), " x ".join(sides[2:]), sum(cell[1]), why)
 
 
 def report(claim, criterion, total, checked, pieces, sampled):
@@ -719,6 +825,12 @@ def report(claim, criterion, total, checked, pieces, sampled):
                   "(only successors in this region were examined, which is not the full torus)"]
     lines[-1] += " for any parameters with"
     lines += [range_text(name, claim.centre[k], claim.half[k]) for k, name in enumerate("abc")]
+    if claim.together:
+        lines += ["moving together, on the segment from all lower to all upper ends"]
+    if claim.at_once:
+        lines += ["and for any multiple s >= 1 of " + ("the upper ends of these ranges (B > 10/3)"
+                                                      if claim.together else
+                                                      "such parameters (B > 10/3)")]
     places = 9
     bound = -(-criterion.B * 10 ** places // criterion.fixed.one)       # rounded up
     return lines + [

@@ -89,7 +89,7 @@ class Progress:
         self.problem, self.as_printed, self.with_bar = problem, as_printed, with_bar
         self.started, self.bar = False, None
 
-    def __call__(self, fraction, counts, depth):
+    def __call__(self, fraction, counts):
         if not self.started:
             self.started = True
             if self.as_printed:
@@ -103,7 +103,7 @@ class Progress:
         if self.bar is not None:
             prisms = counts.proved + counts.symmetric + counts.undecided
             self.bar.n = 100 * fraction
-            self.bar.set_postfix_str("%d prisms, depth %d" % (prisms, depth))
+            self.bar.set_postfix_str("%d prisms, cut %d times" % (prisms, counts.most_cuts))
 
     def close(self):
         if self.bar is not None:

@@ -23,12 +23,13 @@ PROLOG = """\
     x e 2 div add y e 2 div add w e sub h e sub rectstroke
   } if
 } bind def
-/kinds 8 dict def       % what to do with the prism x y w h on the stack
+/kinds 12 dict def       % what to do with the prism x y w h on the stack
 kinds begin
   (0) 0 get { /h exch def /w exch def /y exch def /x exch def
     x w 2 div add y w 2 div h   x y w 2 div h } bind def
   (1) 0 get { /h exch def /w exch def /y exch def /x exch def
     x y h 2 div add w h 2 div   x y w h 2 div } bind def
+  (234) { { 4 copy } bind def } forall          % a cut of a parameter shows both halves
   (P) 0 get { 0 0.35 box } bind def
   (S) 0 get { 0.65 0.85 box } bind def
   (U) 0 get { 0.65 1 box } bind def
@@ -79,7 +80,7 @@ def postscript(proof):
     cuts, proved, symmetric, undecided = (
         sum(map(proof.tree.count, kinds)) for kinds in (tree.CUTS, "P", "S", "U"))
     untried = 1 + cuts - proved - symmetric - undecided
-    nodes = proof.tree + tree.UNTRIED * untried + "."
+    nodes = proof.tree + tree.UNTRIED * (untried - proof.tree.count(tree.UNTRIED)) + "."
     lines = [
         "%!PS-Adobe-3.0 EPSF-3.0",
         "%%%%BoundingBox: 0 0 %d %d" % (WIDTH, HEIGHT),
@@ -124,7 +125,7 @@ def postscript(proof):
 
 
 def _rectangle(cell):
-    i, k, j, l = cell
+    (i, j, *_), (k, l, *_) = cell
     w, h = SIDE / 2 ** k, SIDE / 2 ** l
     return i * w, j * h, w, h
 
@@ -159,7 +160,7 @@ def _title(proof):
 
 
 def _subtitle(proof):
-    words = "converse %s, %d decimal places" % (proof.version, proof.digits)
+    words = "converse %s, %s" % (proof.version, proof.arithmetic)
     if proof.as_printed:
         words += "; as printed in the thesis: a historical reconstruction, not a proof"
     return words

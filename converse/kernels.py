@@ -5,7 +5,7 @@ from fractions import Fraction
 
 from ._native import ffi, lib
 from .problem import decimal_text
-from .proof import MESSAGES, check
+from .search import MESSAGES, check
 
 ARITHMETICS = ("apm", "double")
 

@@ -35,7 +35,7 @@ def picture(proof, path):
     fig = Figure(figsize=(6.4, 7.0))
     axes = fig.add_subplot()
     boxes = {kind: [] for kind in COLOURS}
-    for kind, (i, k, j, l) in tree.cells(proof.tree):
+    for kind, ((i, j, *_), (k, l, *_)) in tree.cells(proof.tree):
         x0, x1 = (low[0] + side[0] * n / 2 ** k for n in (i, i + 1))
         y0, y1 = (low[1] + side[1] * n / 2 ** l for n in (j, j + 1))
         boxes[kind].append(((x0, y0), (x1, y0), (x1, y1), (x0, y1)))
@@ -79,4 +79,4 @@ def _title(proof):
     ranges = ",  ".join("%.9g < %s < %.9g" % (c - h, name, c + h)
                         for name, c, h in zip("abc", centre, half))
     words = "as printed: not a proof" if proof.as_printed else "converse " + proof.version
-    return "%s\n%s, %d decimal places" % (ranges, words, proof.digits)
+    return "%s\n%s, %s" % (ranges, words, proof.arithmetic)

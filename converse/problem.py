@@ -19,11 +19,14 @@ class InputError(ValueError):
 
 @dataclass(frozen=True)
 class Problem:
-    """Five ranges centre +- half; exact numbers, the angles v0 and v1 in units of pi."""
+    """Five ranges centre +- half; exact numbers, the angles v0 and v1 in units of pi.
+
+    together: a, b and c move together, along the segment from all lower to all upper ends."""
 
     centre: Tuple[Fraction, ...]
     half: Tuple[Fraction, ...]
     comments: Tuple[str, ...] = ()
+    together: bool = False
 
     def decimals(self):
         """The centres and the half-widths, each as a list of exact decimal strings."""

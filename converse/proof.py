@@ -1,5 +1,6 @@
 """A proof: the tree of prisms with its statistics; how it is found, saved and loaded."""
 
+import concurrent.futures
 import contextlib
 import gzip
 import hashlib
@@ -8,54 +9,24 @@ import os
 import time
 import zlib
 from dataclasses import asdict, dataclass, field, fields
-from decimal import Decimal
 from typing import Dict, Tuple
 
 from . import __version__, files, tree
-from ._native import ffi, lib
 from .files import ConverseError
 from .problem import NAMES, Problem, decimal_text, parse_number
+from .search import (ALONE_SECONDS, LOOK_SECONDS, MANY, METHODS, Counts, Growth, Part, Search,
+                     Task)
 
-STEP_SECONDS = 0.1                  # between two looks at the clock, at Ctrl-C, at the bar
 BACKUP_SECONDS = 1.0
-MANY = 2 ** 30
+BACKUP_SHARE = 20                   # of the time, at most one part in so many goes into backups
 LIMIT = 100000                      # of the depth and of the digits
 
-FIRST_LINE = "converse proof 1"
-METHOD = "thesis"
+FIRST_LINE = "converse proof 2"
 KINDS = {False: "sound", True: "as printed, not a proof"}       # by as_printed
-CONSTANTS = {"T": 2, "Tr-": 3, "Tr+": 4, "B": 5, "lambda-min": 6, "lambda-max": 7}
-
-MESSAGES = {
-    lib.CV_ENUMBER: "a number is malformed or out of range",
-    lib.CV_EARGUMENT: "an argument makes no sense",
-    lib.CV_ETREE: "the tree does not belong to a search of this kind",
-    lib.CV_EARITHMETIC: "the arithmetic failed: a division by zero, a root of a negative number "
-                        "or lost precision; try more digits",
-    lib.CV_ESINGULAR: "the matrix could not be inverted at any sensible precision",
-    lib.CV_EMACHINE: "this machine's floating-point arithmetic, or the way the program was "
-                     "built, breaks the rules that the proof relies on",
+CONSTANTS = {                       # by method, the numbers of the theorem that are recorded
+    "thesis": {"T": 2, "Tr-": 3, "Tr+": 4, "B": 5, "lambda-min": 6, "lambda-max": 7},
+    "loewner": {"B": 5},
 }
-
-
-@dataclass(frozen=True)
-class Counts:
-    """The statistics of a search; the names are those of csrc/converse.h."""
-
-    quick_tries: int = 0
-    tries: int = 0
-    Rtries: int = 0
-    cuts: int = 0
-    proved: int = 0
-    symmetric: int = 0
-    undecided: int = 0
-    HermSuccess: int = 0
-    LLSuccess: int = 0
-    ll_used: Tuple[int, ...] = (0, 0, 0)
-    reasons: Tuple[int, ...] = (0,) * lib.CV_N_REASONS
-    most_cuts: int = 0
-    max_steps: int = 0
-    max_NTsteps: int = 0
 
 
 @dataclass(frozen=True)
@@ -73,6 +44,9 @@ class Proof:
     constants: Dict[str, str] = field(default_factory=dict)
     seconds: float = 0.0
     version: str = __version__          # of the program that did the work
+    method: str = "thesis"
+    pending: Tuple[int, ...] = ()       # what is known of the untried prisms, in their order
+    at_once: bool = False               # method Loewner: larger parameters cannot have tori, either
 
     @property
     def all_decided(self):
@@ -83,6 +57,10 @@ class Proof:
     def no_tori(self):
         """Is it proved that there are no invariant tori?"""
         return self.all_decided and not self.as_printed
+
+    @property
+    def arithmetic(self):
+        return "%d decimal places" % self.digits if self.method == "thesis" else "double precision"
 
     @property
     def undecided(self):
@@ -106,12 +84,14 @@ class Proof:
 
     def _text(self):
         lines = [FIRST_LINE, "kind: " + KINDS[self.as_printed],
-                 "program: converse " + self.version, "method: " + METHOD]
+                 "program: converse " + self.version, "method: " + self.method,
+                 "together: " + _yes(self.problem.together)]
         lines += ["%s: %s %s" % (name, decimal_text(centre), decimal_text(half))
                   for name, centre, half in zip(NAMES, self.problem.centre, self.problem.half)]
         lines += ["xstar: %s %s" % self.xstar, "depth: %d" % self.depth,
-                  "digits: %d" % self.digits, "stubborn: %s" % ("yes" if self.stubborn else "no"),
-                  "seconds: %.2f" % self.seconds]
+                  "digits: %d" % self.digits, "stubborn: " + _yes(self.stubborn),
+                  "at once: " + _yes(self.at_once), "seconds: %.2f" % self.seconds,
+                  "pending: " + " ".join(map(str, self.pending))]
         for name, value in asdict(self.counts).items():
             values = value if isinstance(value, tuple) else (value,)
             lines.append("%s: %s" % (name, " ".join(map(str, values))))
@@ -158,16 +138,21 @@ class Proof:
                 numbers = tuple(int(word) for word in values[item.name].split())
                 counts[item.name] = numbers if isinstance(item.default, tuple) else numbers[0]
             x0, x1 = values["xstar"].split()
-            proof = cls(Problem(centre, half, tuple(comments)), int(values["depth"]),
-                        int(values["digits"]), values["stubborn"] == "yes",
+            proof = cls(Problem(centre, half, tuple(comments), values["together"] == "yes"),
+                        int(values["depth"]), int(values["digits"]), values["stubborn"] == "yes",
                         {kind: printed for printed, kind in KINDS.items()}[values["kind"]],
                         "".join(lines[start + 1:-3]), Counts(**counts), (x0, x1),
-                        {name: values[name] for name in CONSTANTS}, float(values["seconds"]),
-                        values["program"].split()[1])
+                        {name: values[name] for name in CONSTANTS[values["method"]]},
+                        float(values["seconds"]), values["program"].split()[1], values["method"],
+                        tuple(map(int, values["pending"].split())), values["at once"] == "yes")
             tree.complete(proof.tree)
         except (KeyError, IndexError, ValueError) as error:
             fail(start + 1, "the header or the tree makes no sense (%s)" % error)
         return proof
+
+
+def _yes(truth):
+    return "yes" if truth else "no"
 
 
 def _sha256(text):
@@ -189,137 +174,160 @@ def _read(path):
                             "program; use an intact copy or start anew" % path) from None
 
 
-def check(code):
-    """Turns an error code of the C core into an exception; passes any other code on."""
-    if code == lib.CV_ENOMEM:
-        raise MemoryError("there is not enough memory")
-    if code < 0:
-        raise ConverseError(MESSAGES.get(code, "the C core failed with code %d" % code))
-    return code
-
-
-def _strings(texts):
-    """The texts as a C array of C strings, which lives as long as the result."""
-    owners = [ffi.new("char[]", text.encode("ascii")) for text in texts]
-    return ffi.new("char *[]", owners), owners
-
-
-class _Search:
-    """The search in the C core, in terms of Python."""
-
-    def __init__(self, problem, depth, digits, stubborn, as_printed, xstar=None):
-        (centre, keep1), (half, keep2) = map(_strings, problem.decimals())
-        start, keep3 = _strings(xstar) if xstar else (ffi.NULL, None)
-        handle = ffi.new("cv_search **")
-        check(lib.cv_search_new(handle, centre, half, start, digits, depth, stubborn, as_printed))
-        self.handle = ffi.gc(handle[0], lib.cv_search_free)
-
-    def restore(self, proof):
-        text = proof.tree.encode("ascii")
-        check(lib.cv_restore(self.handle, text, len(text),
-                             ffi.new("cv_counts *", asdict(proof.counts))))
-
-    def step(self, max_leaves):
-        """Works a while; is there more to do?"""
-        return check(lib.cv_step(self.handle, max_leaves, STEP_SECONDS)) == lib.CV_RUNNING
-
-    def tree(self, start=0):
-        """The text of the tree from this position on."""
-        length = ffi.new("size_t *")
-        text = lib.cv_tree(self.handle, length)
-        return ffi.unpack(text + start, length[0] - start).decode("ascii") \
-            if length[0] > start else ""
-
-    def counts(self):
-        counts = lib.cv_get_counts(self.handle)
-        values = {item.name: getattr(counts, item.name) for item in fields(Counts)}
-        return Counts(**{name: value if isinstance(value, int) else tuple(value)
-                         for name, value in values.items()})
-
-    def constant(self, which):
-        text = lib.cv_constant(self.handle, which)
-        if not text:
-            raise MemoryError("there is not enough memory")
-        text = ffi.gc(text, lib.cv_free)
-        return str(Decimal(ffi.string(text).decode("ascii")))
-
-
-def prove(problem, depth=30, digits=35, stubborn=False, as_printed=False, progress=None,
-          backup=None, resume=None, on_leaf=None, time_limit=math.inf):
+def prove(problem, depth=None, digits=35, stubborn=False, as_printed=False, progress=None,
+          backup=None, resume=None, on_leaf=None, time_limit=math.inf, method="thesis", jobs=None,
+          executor=None):
     """Tries to prove that there are no invariant tori, and returns a Proof either way.
 
-    depth and digits are the most cuts of a prism and the decimal places of the rigorous
-    arithmetic; a stubborn search goes on after an undecided prism.  as_printed follows the
+    method: "thesis", in decimals of so many digits, or "loewner", the sharper criterion in doubles.
+    depth: the most cuts of a prism, by default 30, or 120 with the sharper method.
+    A stubborn search goes on after an undecided prism.  as_printed follows the
     listing of the thesis to the letter, which proves nothing.
-    progress(fraction, counts, depth) is called a few times a second.
+    progress(fraction, counts) is called a few times a second.
     backup names a file that is kept up to date, and resume a proof (or its file) to continue.
     on_leaf(leaf, steps) is called for every leaf of the tree as it is decided.
     time_limit: after about so many seconds of this run the search is left as it is.
+    jobs: how many workers at a time, by default one per core; executor: a
+    concurrent.futures.Executor whose workers they are, by default threads of this process (with
+    on_leaf there is only one).  The result does not depend on either.
+
+    ConverseError, MemoryError: nothing is lost of the backup; ValueError: an argument is wrong.
     """
+    if method not in METHODS:
+        raise ValueError("the method is one of %s, not %r" % (", ".join(METHODS), method))
+    if depth is None:
+        depth = 30 if method == "thesis" else 120
     if not 1 <= digits <= LIMIT:
         raise ValueError("digits must be from 1 to %d" % LIMIT)
     if not 0 <= depth <= LIMIT:
         raise ValueError("depth must be from 0 to %d" % LIMIT)
+    if method == "thesis" and problem.together:
+        raise ValueError("parameters that move together need the method loewner")
+    if method == "loewner" and as_printed:
+        raise ValueError("only the method thesis was ever printed")
+    if jobs is None:
+        jobs = _workers(executor)
+    if jobs < 1:
+        raise ValueError("there must be a worker: jobs must be 1 or more")
     began = time.monotonic()
     end = began + time_limit
     keep = backup is not None
     if keep:
         check_backup(backup)
-    with files.lock(backup) if keep else contextlib.nullcontext():
+    with contextlib.ExitStack() as stack:
+        if keep:
+            stack.enter_context(files.lock(backup))
         name = "the proof to resume"
         if resume is not None and not isinstance(resume, Proof):
             name, resume = os.fspath(resume), Proof.load(resume)
         if resume:
-            _check_same(name, resume, problem, depth, digits, as_printed)
+            _check_same(name, resume, problem, method, depth, digits, as_printed)
             began -= resume.seconds
-        search = _Search(problem, depth, digits, stubborn, as_printed,
-                         resume.xstar if resume else None)
-        if resume:
-            try:
-                search.restore(resume)
-            except ConverseError as error:
-                raise ConverseError("%s: %s; use an intact copy or start anew"
-                                    % (name, error)) from None
+        centre, half = map(tuple, problem.decimals())
+        xstar = resume.xstar if resume else None
+        search = Search(Task(centre, half, xstar, problem.together, method, depth, digits,
+                             stubborn, as_printed))
         xstar = search.constant(0), search.constant(1)
-        constants = {name: search.constant(which) for name, which in CONSTANTS.items()}
-
-        def snapshot():
-            return Proof(problem, depth, digits, stubborn, as_printed, search.tree(),
-                         search.counts(), xstar, constants, time.monotonic() - began)
-
+        task = Task(centre, half, xstar, problem.together, method, depth, digits, stubborn,
+                    as_printed)
+        growth = Growth(task, search, _parts(name, resume, search) if resume
+                        else [Part([(*tree.ROOT, 0)])], executor, jobs)
+        if resume:
+            growth.counts = resume.counts
+            growth.volume = sum(math.ldexp(1.0, -sum(cuts)) for kind, (_, cuts)
+                                in tree.cells(resume.tree) if kind != tree.UNTRIED)
+        constants = {name: search.constant(which) for name, which in CONSTANTS[method].items()}
         walk, prism = tree.Walk(), tree.prisms(problem)
         seen = 0
 
-        def look(on_leaf=on_leaf):
+        def snapshot():
+            text, pending = growth.text()
+            return Proof(problem, depth, digits, stubborn, as_printed, text, growth.counts, xstar,
+                         constants, time.monotonic() - began, method=method,
+                         pending=tuple(pending), at_once=search.at_once)
+
+        def look(new=True):
             """Follows the tree since the last look."""
             nonlocal seen
-            text = search.tree(seen)
-            seen += len(text)
-            for kind, cell in walk.feed(text):
-                if on_leaf:
-                    on_leaf(tree.Leaf(kind, *prism(cell), cell[1] + cell[3]),
-                            lib.cv_last_steps(search.handle))
-            if progress:
-                _, k, _, l = walk.pending[-1] if walk.pending else (0, 0, 0, 0)
-                progress(lib.cv_volume_decided(search.handle), search.counts(), k + l)
+            text, _ = growth.text()
+            for kind, cell in walk.feed(text[seen:]):
+                if new:
+                    on_leaf(tree.Leaf(kind, *prism(cell), sum(cell[1])), growth.steps)
+            seen = len(text)
 
-        look(on_leaf=None)              # the part that was restored
+        if on_leaf:
+            look(new=False)             # the part that was restored
+        pause = BACKUP_SECONDS
+        saved = time.monotonic()
         if keep:
             snapshot().save(backup)
         try:
-            saved = time.monotonic()
-            running = True
-            while running and time.monotonic() < end:
-                running = search.step(1 if on_leaf else MANY)
-                if on_leaf or progress:
+            while not growth.finished and time.monotonic() < end:
+                now = time.monotonic()
+                if on_leaf:
+                    growth.alone(LOOK_SECONDS, 1)
                     look()
-                if keep and running and time.monotonic() - saved >= BACKUP_SECONDS:
+                elif jobs == 1 and executor is None:
+                    growth.alone(min(LOOK_SECONDS, end - now))
+                elif growth.executor is None and now - began < ALONE_SECONDS:
+                    growth.alone(min(ALONE_SECONDS, end - now))
+                else:
+                    if growth.executor is None:
+                        growth.executor = stack.enter_context(
+                            concurrent.futures.ThreadPoolExecutor(jobs))
+                    growth.together(min(LOOK_SECONDS, end - now))
+                if progress:
+                    progress(growth.volume, growth.counts)
+                if keep and time.monotonic() - saved >= pause:
+                    now = time.monotonic()
                     snapshot().save(backup)
                     saved = time.monotonic()
+                    pause = max(BACKUP_SECONDS, BACKUP_SHARE * (saved - now))
         finally:
+            growth.settle()
             if keep:
                 snapshot().save(backup)
         return snapshot()
+
+
+def _workers(executor):
+    """How many tasks keep an executor busy."""
+    if executor is None:
+        try:
+            return len(os.sched_getaffinity(0))
+        except AttributeError:          # not everywhere
+            return os.cpu_count() or 1
+    return 2 * (getattr(executor, "_max_workers", None) or 4)
+
+
+def _parts(name, proof, search):
+    """The parts of an unfinished tree, if it is one of such a search."""
+    found = dict.fromkeys(("cuts", "proved", "symmetric", "undecided", "most_cuts"), 0)
+    kinds = {"P": "proved", "S": "symmetric", "U": "undecided"}
+    axes = "01" if proof.method == "thesis" else "012" if proof.problem.together else tree.CUTS
+    walk, hints, parts, begin = tree.Walk(), iter(proof.pending), [], 0
+    good = True
+    for position, node in enumerate(proof.tree):
+        if node in tree.CUTS:
+            found["cuts"] += 1
+            good = good and node in axes
+        for kind, (index, cuts) in walk.feed(node):
+            if kind == tree.UNTRIED:
+                parts += [Part([], proof.tree[begin:position]),
+                          Part([(index, cuts, next(hints, 0))])]
+                begin = position + 1
+                continue
+            found[kinds[kind]] += 1
+            good = good and sum(cuts) <= proof.depth
+            if kind == "P":
+                found["most_cuts"] = max(found["most_cuts"], sum(cuts))
+            elif kind == "S":
+                good = good and search.symmetric and tree.above_diagonal((index, cuts))
+    if not good or any(getattr(proof.counts, name) != value for name, value in found.items()):
+        raise ConverseError("%s: %s; use an intact copy or start anew"
+                            % (name, "the tree does not belong to a search of this kind"))
+    return parts + [Part([], proof.tree[begin:]),
+                    Part([(*cell, next(hints, 0)) for cell in reversed(walk.pending)])]
 
 
 def check_backup(path):
@@ -337,16 +345,17 @@ def check_backup(path):
                                 "name another file or remove it" % path)
 
 
-def _check_same(name, proof, problem, depth, digits, as_printed):
+def _check_same(name, proof, problem, method, depth, digits, as_printed):
     """Refuses to continue the proof of anything else, and names the first difference."""
     def facts(problem, **others):
         ranges = {key: "%s +- %s" % (centre, half)
                   for key, centre, half in zip(NAMES, *problem.decimals())}
-        return {**others, **ranges}
+        return {**others, **ranges, "together": _yes(problem.together)}
 
     theirs = facts(proof.problem, kind=KINDS[proof.as_printed], program=proof.version,
-                   digits=proof.digits, depth=proof.depth)
-    ours = facts(problem, kind=KINDS[as_printed], program=__version__, digits=digits, depth=depth)
+                   method=proof.method, digits=proof.digits, depth=proof.depth)
+    ours = facts(problem, kind=KINDS[as_printed], program=__version__, method=method,
+                 digits=digits, depth=depth)
     for key, value in ours.items():
         if theirs[key] != value:
             raise ConverseError("%s: is of another run: its %s is %s, this one's is %s; "

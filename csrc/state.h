@@ -9,6 +9,7 @@
 
 #include "converse.h"
 #include "num.h"
+#include "sine.h"
 #include "special.h"
 #include "unit.h"
 
@@ -143,8 +144,12 @@ static void num_sincos(state *s, num_t sine, num_t cosine, const num_t x)
 {
     const double y = x[0];
     (void)s;
-    sine[0] = sin(y);
-    cosine[0] = cos(y);
+    if (fabs(y) < SINE_LIMIT) {
+        double_sincos(sine, cosine, y);
+    } else {                            /* nothing that far is more than a filter's guess */
+        sine[0] = sin(y);
+        cosine[0] = cos(y);
+    }
 }
 
 #else

@@ -156,3 +156,21 @@ static void torus_max(state *s, num_t max, int eigenvalue)
     torus_pass(s, max, *best, *tolerance, eigenvalue, reach);
     set_precision(s, precision);
 }
+
+#ifdef NUM_DOUBLE
+
+/* The same for one point of the parameters, as a double computes it: off by roundings, for which
+   the caller makes up. */
+double quick_largest(unit *s, const double p[N_PARMS])
+{
+    bdd *const parm[N_PARMS] = { &s->n.a, &s->n.b, &s->n.c };
+
+    for (int j = 0; j < N_PARMS; j++) {
+        num_set_d(parm[j]->lb, p[j]);
+        num_set_d(parm[j]->ub, p[j]);
+    }
+    torus_max(s, s->n.constants[C_B], 1);
+    return num_get_d(s->n.constants[C_B]);
+}
+
+#endif

@@ -41,9 +41,14 @@ DECLARE_UNIT()
    of the double instance only) */
 void quick_try(unit *u, const box *b, verdict *v);
 
+/* An upper bound, but for roundings, of the largest eigenvalue of beta over the torus for the
+   parameters p.  (torus.c, the double instance.) */
+double quick_largest(unit *u, const double p[3]);
+
 /* start.c: where the trace, and where the least eigenvalue of beta attains its minimum, roughly.
    Nothing rigorous depends on the result. */
 void set_Herm_start(double x[2], const double abc[3], int on_diagonal);
 void set_LL_start(double x[2], const double abc[3], int on_diagonal);
+void set_gap_start(double x[2], const double abc[3], int on_diagonal);
 
 #endif

@@ -66,7 +66,7 @@ def test_undecided(problem):
 
 def test_progress_and_leaves(problem, proof):
     fractions, seen = [], []
-    result = prove(problem, progress=lambda fraction, counts, depth: fractions.append(fraction),
+    result = prove(problem, progress=lambda fraction, counts: fractions.append(fraction),
                    on_leaf=lambda leaf, steps: seen.append(leaf))
     assert timeless(result) == timeless(proof)
     assert seen == list(leaves(problem, proof.tree))
@@ -118,7 +118,7 @@ def test_file_says_what_it_is(tmp_path, made_up):
     made_up("0PS").save(tmp_path / "sound")
     made_up("0PS", as_printed=True).save(tmp_path / "printed")
     sound, printed = [(tmp_path / name).read_text().split("\n") for name in ("sound", "printed")]
-    assert sound[0] == printed[0] == "converse proof 1" and sound[-2:] == ["end", ""]
+    assert sound[0] == printed[0] == "converse proof 2" and sound[-2:] == ["end", ""]
     assert "kind: sound" in sound and "kind: as printed, not a proof" in printed
     assert {"a: 0.3085 0.00125", "v0: 1 1", "depth: 30", "program: converse 1.0.0"} <= set(sound)
     assert all(len(line) < 82 for line in sound)

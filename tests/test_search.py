@@ -178,11 +178,11 @@ def test_two_threads_do_not_meet(root):
 
 def test_no_symmetry_where_the_start_is_off_the_diagonal():
     """A starting point of one's own (from a backup) may lie anywhere; then nothing is skipped."""
-    from converse.proof import _Search
+    from converse.search import MANY, Search, Task
+    from converse.tree import ROOT
 
+    centre, half = map(tuple, line("0.0275").decimals())
     for xstar, skips in ((("0.82", "0.82"), True), (("0.82", "0.83"), False)):
-        search = _Search(line("0.0275"), 30, 20, False, False, xstar)
-        while search.step(1000):
-            pass
-        counts = search.counts()
+        search = Search(Task(centre, half, xstar, False, "thesis", 30, 20, False, False))
+        counts = search.grow([(*ROOT, 0)], 60, MANY).counts
         assert counts.proved > 0 and (counts.symmetric > 0) == skips

@@ -1,6 +1,7 @@
 """Trees as text: the leaves tile the region, exactly."""
 
 from fractions import Fraction
+from math import prod
 
 import pytest
 from hypothesis import given
@@ -10,7 +11,7 @@ from converse import Problem
 from converse.tree import Leaf, TreeError, Walk, cells, complete, leaves
 
 TREES = st.recursive(st.sampled_from("PSU"),
-                     lambda sub: st.tuples(st.sampled_from("01"), sub, sub).map("".join),
+                     lambda sub: st.tuples(st.sampled_from("01234"), sub, sub).map("".join),
                      max_leaves=40)
 SMALL = Problem((Fraction(0),) * 3 + (Fraction("0.3"), Fraction("-0.7")),
                 (Fraction(0),) * 3 + (Fraction("0.1"), Fraction("2.5")))
@@ -38,16 +39,30 @@ def test_order_and_halves():
     assert [leaf.depth for leaf in (lower, below, above)] == [1, 2, 2]
 
 
+BOXES = Problem(tuple(map(Fraction, (1, 2, 3, 0, "-0.7"))),
+                tuple(map(Fraction, ("0.5", "0.25", 1, "0.1", "2.5"))))
+
+
+def box(cell):
+    """The cell as five exact ranges."""
+    index, cuts = cell
+    order = (3, 4, 0, 1, 2)                 # of the problem's ranges, by axis
+    return [(BOXES.centre[n] - BOXES.half[n] + 2 * BOXES.half[n] * Fraction(i, 2 ** k),
+             BOXES.centre[n] - BOXES.half[n] + 2 * BOXES.half[n] * Fraction(i + 1, 2 ** k))
+            for n, i, k in zip(order, index, cuts)]
+
+
 @given(TREES, st.data())
 def test_leaves_tile_the_region(text, data):
     assert complete(text)
     text = text[:data.draw(st.integers(0, len(text)))]
-    tiles = [rectangle(leaf) for leaf in leaves(SMALL, text)]
-    area = sum((b - a) * (d - c) for (a, b), (c, d) in tiles)
-    assert area == Fraction("0.2") * 5
-    for n, ((a, b), (c, d)) in enumerate(tiles):
-        assert a < b and c < d
-        assert not any(a < f and e < b and c < h and g < d for (e, f), (g, h) in tiles[n + 1:])
+    tiles = [box(cell) for _, cell in cells(text)]
+    volume = sum(prod(b - a for a, b in tile) for tile in tiles)
+    assert volume == prod(2 * half for half in BOXES.half)
+    for n, tile in enumerate(tiles):
+        assert all(a < b for a, b in tile)
+        assert not any(all(a < d and c < b for (a, b), (c, d) in zip(tile, other))
+                       for other in tiles[n + 1:])
 
 
 @given(TREES, st.data())
@@ -56,7 +71,7 @@ def test_unfinished(text, data):
     assert not complete(text[:cut])
     kinds = [kind for kind, _ in cells(text[:cut])]
     assert kinds == sorted(kinds, key=lambda kind: kind == "?")     # untried ones at the end
-    assert kinds.count("?") == 1 + sum(text[:cut].count(c) for c in "01") \
+    assert kinds.count("?") == 1 + sum(text[:cut].count(c) for c in "01234") \
         - sum(text[:cut].count(c) for c in "PSU")
 
 
@@ -66,13 +81,18 @@ def test_growing(text):
     assert [leaf for c in text for leaf in walk.feed(c)] == list(cells(text))
 
 
+def test_untried_in_the_middle():
+    assert not complete("0?P") and complete("0PP")
+    assert [kind for kind, _ in cells("00?PP")] == ["?", "P", "P"]
+
+
 def test_choice_of_kinds():
     assert [leaf.kind for leaf in leaves(SMALL, "0PU", "U")] == ["U"]
     assert list(leaves(SMALL, "0PS", "U")) == []
     assert [leaf.kind for leaf in leaves(SMALL, "0P", "?")] == ["?"]
 
 
-@pytest.mark.parametrize("text", ["2", "0P?", "PP", "0PSU", "P ", "p"])
+@pytest.mark.parametrize("text", ["5", "0P!", "PP", "0PSU", "P ", "p"])
 def test_not_a_tree(text):
     with pytest.raises(TreeError):
         complete(text)
