@@ -5,6 +5,7 @@ import contextlib
 import math
 import os
 import sys
+from dataclasses import replace
 
 from . import ConverseError, InputError, __version__, files, picture, prove, read_input
 from .proof import LIMIT, check_backup
@@ -47,8 +48,8 @@ def parser():
         "Tries to prove that a family of symplectic maps has no invariant tori."), epilog=(
         "Exit status: 0 a theorem; 1 undecided; 2 bad usage, input or file; 130 interrupted."))
     p.add_argument("input", nargs="?", default="-", help="input file; standard input by default")
-    p.add_argument("-d", "--depth", type=_whole(0), default=30, metavar="N",
-                   help="give up on a prism that was cut N times (default 30)")
+    p.add_argument("-d", "--depth", type=_whole(0), metavar="N",
+                   help="give up on a prism that was cut N times (default 30; loewner: 120)")
     p.add_argument("-b", "--backup", metavar="FILE",
                    help="keep a backup in FILE, from which the run can be continued")
     p.add_argument("-r", "--restore", metavar="FILE",
@@ -57,13 +58,23 @@ def parser():
                    help="draw the prisms in FILE, by its name as SVG, PNG or PDF, else as "
                         "PostScript; 'off' draws none (default)")
     p.add_argument("-p", "--precision", type=_whole(1), default=35, metavar="DP",
-                   help="decimal places of the rigorous arithmetic (default 35)")
+                   help="decimal places of the thesis's rigorous arithmetic (default 35)")
     p.add_argument("-s", "--stubborn", action="store_true",
                    help="go on after a prism that cannot be decided")
     p.add_argument("-t", "--verbose", action="store_true",
                    help="print a line for every decided prism")
     p.add_argument("--as-printed", action="store_true",
                    help="follow the thesis's listing to the letter; not a proof")
+    p.add_argument("--method", choices=("thesis", "loewner"), default="thesis",
+                   help="the thesis's criterion (default), or the sharper one, in doubles")
+    p.add_argument("--together", action="store_true",
+                   help="a, b and c move together, from all lower to all upper ends (loewner)")
+    p.add_argument("--jobs", type=_whole(1), metavar="N",
+                   help="work on N parts at a time (default: one per core)")
+    p.add_argument("--dask", metavar="ADDRESS", help="let the Dask cluster at ADDRESS work")
+    p.add_argument("--mpi", action="store_true",
+                   help="let MPI processes work: mpiexec -n N python -m mpi4py.futures "
+                        "-m converse.cli --mpi ...")
     p.add_argument("--time-limit", type=_seconds, default=math.inf, metavar="SECONDS",
                    help="stop after about so long; what is left is undecided")
     p.add_argument("--version", action="version", version="converse " + __version__)
@@ -110,8 +121,39 @@ class Progress:
             self.bar.close()
 
 
+@contextlib.contextmanager
+def workers(options):
+    """The executor that the options ask for, or None, and how many tasks to give it."""
+    if options.dask is None and not options.mpi:
+        yield None, options.jobs
+    elif options.mpi:
+        try:
+            from mpi4py.futures import MPIPoolExecutor
+        except ImportError:
+            raise ConverseError("--mpi needs mpi4py; pip install mpi4py") from None
+        with MPIPoolExecutor() as executor:
+            yield executor, options.jobs
+    else:
+        try:
+            from distributed import Client
+        except ImportError:
+            raise ConverseError("--dask needs dask; pip install 'converse[dask]'") from None
+        try:
+            client = Client(options.dask, timeout=10)
+        except (OSError, ValueError, TypeError) as error:
+            raise ConverseError("there is no Dask scheduler at %s (%s); name another address"
+                                % (options.dask, error or type(error).__name__)) from None
+        with client:
+            yield client.get_executor(), options.jobs or 2 * max(1, sum(client.nthreads().values()))
+
+
 def run(options):
     problem = read_input(sys.stdin if options.input == "-" else options.input)
+    if options.method == "thesis" and options.together:
+        raise ConverseError("--together needs --method loewner")
+    if options.method == "loewner" and options.as_printed:
+        raise ConverseError("--as-printed is the thesis's method; leave out --method loewner")
+    problem = replace(problem, together=options.together)
     graphics = None if options.graphics == "off" else options.graphics
     if graphics is not None:
         if graphics in (options.input, options.backup, options.restore):
@@ -127,10 +169,11 @@ def run(options):
 
     progress = Progress(problem, options.as_printed,
                         sys.stderr.isatty() and not options.verbose)
-    with contextlib.closing(progress):
+    with contextlib.closing(progress), workers(options) as (executor, jobs):
         proof = prove(problem, options.depth, options.precision, options.stubborn,
                       options.as_printed, progress, options.backup, options.restore,
-                      on_leaf if options.verbose else None, options.time_limit)
+                      on_leaf if options.verbose else None, options.time_limit, options.method,
+                      jobs, executor)
     _say(verdict(proof))
     if graphics is not None:
         proof.figure(graphics)

@@ -79,4 +79,6 @@ def _title(proof):
     ranges = ",  ".join("%.9g < %s < %.9g" % (c - h, name, c + h)
                         for name, c, h in zip("abc", centre, half))
     words = "as printed: not a proof" if proof.as_printed else "converse " + proof.version
+    if proof.sha256:
+        words += ", proof " + proof.sha256[:16]
     return "%s\n%s, %s" % (ranges, words, proof.arithmetic)

@@ -8,14 +8,14 @@ import math
 import os
 import time
 import zlib
-from dataclasses import asdict, dataclass, field, fields
+from dataclasses import asdict, dataclass, field, fields, replace
 from typing import Dict, Tuple
 
 from . import __version__, files, tree
 from .files import ConverseError
 from .problem import NAMES, Problem, decimal_text, parse_number
-from .search import (ALONE_SECONDS, LOOK_SECONDS, MANY, METHODS, Counts, Growth, Part, Search,
-                     Task)
+from .search import (ALONE_SECONDS, LOOK_SECONDS, METHODS, Counts, Growth, Part, Search, Task,
+                     count_workers)
 
 BACKUP_SECONDS = 1.0
 BACKUP_SHARE = 20                   # of the time, at most one part in so many goes into backups
@@ -47,6 +47,7 @@ class Proof:
     method: str = "thesis"
     pending: Tuple[int, ...] = ()       # what is known of the untried prisms, in their order
     at_once: bool = False               # method Loewner: larger parameters cannot have tori, either
+    sha256: str = field(default="", compare=False)      # of its file, if there is one
 
     @property
     def all_decided(self):
@@ -76,11 +77,13 @@ class Proof:
         figure(self, path)
 
     def save(self, path):
-        """Writes the proof file; compressed when the name ends in .gz."""
-        data = self._text().encode("utf-8")
+        """Writes the proof file, compressed when the name ends in .gz; returns its SHA-256 (that
+        of the uncompressed file)."""
+        text = data = self._text().encode("utf-8")
         if os.fspath(path).endswith(".gz"):
-            data = gzip.compress(data, 6, mtime=0)
+            data = gzip.compress(text, 6, mtime=0)
         files.write(path, data)
+        return hashlib.sha256(text).hexdigest()
 
     def _text(self):
         lines = [FIRST_LINE, "kind: " + KINDS[self.as_printed],
@@ -144,7 +147,8 @@ class Proof:
                         "".join(lines[start + 1:-3]), Counts(**counts), (x0, x1),
                         {name: values[name] for name in CONSTANTS[values["method"]]},
                         float(values["seconds"]), values["program"].split()[1], values["method"],
-                        tuple(map(int, values["pending"].split())), values["at once"] == "yes")
+                        tuple(map(int, values["pending"].split())), values["at once"] == "yes",
+                        _sha256(text))
             tree.complete(proof.tree)
         except (KeyError, IndexError, ValueError) as error:
             fail(start + 1, "the header or the tree makes no sense (%s)" % error)
@@ -206,7 +210,7 @@ def prove(problem, depth=None, digits=35, stubborn=False, as_printed=False, prog
     if method == "loewner" and as_printed:
         raise ValueError("only the method thesis was ever printed")
     if jobs is None:
-        jobs = _workers(executor)
+        jobs = count_workers(executor)
     if jobs < 1:
         raise ValueError("there must be a worker: jobs must be 1 or more")
     began = time.monotonic()
@@ -283,21 +287,14 @@ def prove(problem, depth=None, digits=35, stubborn=False, as_printed=False, prog
                     snapshot().save(backup)
                     saved = time.monotonic()
                     pause = max(BACKUP_SECONDS, BACKUP_SHARE * (saved - now))
-        finally:
+        except BaseException:
             growth.settle()
             if keep:
                 snapshot().save(backup)
-        return snapshot()
-
-
-def _workers(executor):
-    """How many tasks keep an executor busy."""
-    if executor is None:
-        try:
-            return len(os.sched_getaffinity(0))
-        except AttributeError:          # not everywhere
-            return os.cpu_count() or 1
-    return 2 * (getattr(executor, "_max_workers", None) or 4)
+            raise
+        growth.settle()
+        proof = snapshot()
+        return replace(proof, sha256=proof.save(backup)) if keep else proof
 
 
 def _parts(name, proof, search):

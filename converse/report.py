@@ -6,6 +6,10 @@ from . import tree
 from .problem import exact_decimal
 
 PLUSES = "+" * 48
+METHODS = {
+    "thesis": "that of the thesis, its listing corrected",
+    "loewner": "the Loewner criterion, by witness and multipliers",
+}
 REASONS = (                             # in the order of csrc/converse.h
     "the orbit of the centre contradicts nothing",
     "an image prism grew too big",
@@ -54,8 +58,13 @@ def _theorem(proof):
         first += ["for the range of parameters :"]
     lines = first + [_range(name, centre, half, not proof.as_printed)
                      for name, centre, half in zip("abc", problem.centre, problem.half)]
+    if problem.together:
+        lines += ["which move together, from all lower to all upper ends."]
     if not proof.all_decided:
         lines += [""] + _gaps(proof)
+    elif proof.at_once:
+        lines += ["Nor are there any for s times %s, s > 1." % (
+            "the upper ends" if problem.together else "such parameters")]
     return lines
 
 
@@ -85,6 +94,17 @@ def _gaps(proof):
 
 def _statistics(proof):
     counts = proof.counts
+    if proof.method == "loewner":
+        return [
+            "Did %d rigorous bounding tries in double precision." % counts.tries,
+            "The most deeply refined prism was cut %d times." % counts.most_cuts,
+            "The longest successful orbit had %d points." % counts.max_NTsteps,
+            "Of the %d prisms %d were proved, %d skipped by symmetry." % (
+                counts.proved + counts.symmetric + counts.undecided, counts.proved,
+                counts.symmetric),
+            "",
+            "This investigation took %.2f seconds." % proof.seconds,
+        ]
     used = counts.ll_used
     if proof.as_printed:                # the listing exchanged these two labels
         used = (used[1], used[0], used[2])
@@ -111,10 +131,13 @@ def _statistics(proof):
 def _method(proof):
     """What the word of the report rests on."""
     lines = ["Program : converse " + proof.version,
-             "Method : that of the thesis, its listing corrected",
-             "Arithmetic : %d decimal places" % proof.digits,
+             "Method : " + METHODS[proof.method],
+             "Arithmetic : " + proof.arithmetic,
              "x* : %s %s" % proof.xstar]
-    lines += ["%s : %s" % (name, proof.constants[name]) for name in ("T", "B")]
+    lines += ["%s : %s" % (name, proof.constants[name]) for name in ("T", "B")
+              if name in proof.constants]
     lines += ["Tries that failed : %d" % sum(proof.counts.reasons)]
     lines += ["%d : %s" % pair for pair in zip(proof.counts.reasons, REASONS) if pair[0]]
+    if proof.sha256:
+        lines += ["Proof file : SHA-256 " + proof.sha256]
     return lines

@@ -5,9 +5,9 @@ the same however the work is divided.
 """
 
 import concurrent.futures
-import math
+import contextlib
+import os
 import threading
-import time
 from dataclasses import asdict, dataclass, field, fields
 from decimal import Decimal
 from typing import List, Optional, Tuple
@@ -173,6 +173,17 @@ def grow(task, cells, seconds):
     return _mine.search.grow(cells, seconds)
 
 
+def count_workers(executor=None):
+    """How many tasks keep the cores of this machine, or an executor, busy."""
+    if executor is not None:
+        return 2 * (getattr(executor, "num_workers", None)
+                    or getattr(executor, "_max_workers", None) or 4)
+    try:
+        return len(os.sched_getaffinity(0))
+    except AttributeError:              # not everywhere
+        return os.cpu_count() or 1
+
+
 class Growth:
     """The tree while it grows: its parts in preorder, some of them being worked on."""
 
@@ -281,9 +292,10 @@ class Growth:
 
     def settle(self):
         """Waits a little for those who still work, and takes what they bring."""
-        for future in list(self.running):
-            part, _ = self.running.pop(future)
-            try:
-                self._take(part, future.result(4 * TASK_SECONDS + 1))
-            except Exception:               # not in time, or dead: the part is as it was
-                future.cancel()
+        done, late = concurrent.futures.wait(self.running, 4 * TASK_SECONDS + 1)
+        for future in done:
+            with contextlib.suppress(Exception):        # else the part is as it was
+                self._take(self.running[future][0], future.result())
+        for future in late:
+            future.cancel()
+        self.running.clear()

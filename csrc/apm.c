@@ -207,6 +207,22 @@ double apm_get_d(const apm_t x)
     return result;
 }
 
+double apm_nearest_d(const apm_t x)
+{
+    const double d = apm_get_d(x);
+    apm_t rest;
+    double result;
+
+    if (!isfinite(d))
+        return d;
+    apm_init(rest);
+    apm_set_d(rest, d);
+    apm_sub(rest, x, rest);
+    result = d + apm_get_d(rest);
+    apm_clear(rest);
+    return result;
+}
+
 char *apm_get_str(const apm_t x)
 {
     const size_t digits = mpz_sizeinbase(x->mant, 10);

@@ -1,13 +1,16 @@
 /* cv_kernel.c - one routine at a time, from decimal strings to decimal strings. */
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 
-#include "converse.h"
+#include "loewner.h"
 #include "memory.h"
 #include "special.h"
+#include "sine.h"
 #include "unit.h"
 
-enum { MAX_DP = 100000, MAX_IN = 64, MAX_OUT = 64 };
+enum { MAX_DP = 100000, MAX_IN = 64, MAX_OUT = 128 };
 
 /* The operations of apm.h and special.h, which stand below num_t.
    pi: -> pi          add, sub, mul: x, y -> r       cmp: x, y -> -1, 0 or 1
@@ -57,6 +60,75 @@ static int apm_kernel(const char *name, long dp, int nin, apm_t in[], int nout, 
     return status == APM_OK ? CV_OK : CV_EARITHMETIC;
 }
 
+/* The routines of sine.h and loewner.h; all take doubles only.
+   double_sincos: x -> sine, cosine
+   The others begin with centres and half-widths of a, b, c, v0, v1, x* and together (0 or 1).
+   loewner_orbit: ..., n -> 2 coordinates, 2 rows of 5 columns, 2 rests, 3 reaches of point n
+   loewner_bound: ..., s, t -> bound, l, index of the first site, number of sites, the vectors n,
+                  for the orbit of s..t, s < 0
+   loewner_step: ..., n, repeat -> the reaches of both coordinates of point n, nanoseconds per step */
+static int loewner_kernel(const char *name, long dp, int nin, apm_t in[], int nout, apm_t out[])
+{
+    enum { BOX = 13, POINT = 17, SITES = 60 };
+    const int sine = strcmp(name, "double_sincos") == 0, orbit = strcmp(name, "loewner_orbit") == 0;
+    const int bound = strcmp(name, "loewner_bound") == 0, time = strcmp(name, "loewner_step") == 0;
+    double x[MAX_IN], y[MAX_OUT] = { 0 }, n[SITES][2];
+    loewner_point p;
+    unit *quick;
+    loewner *w;
+    int good;
+
+    if (nin != (sine ? 1 : orbit ? BOX + 1 : BOX + 2) || !(sine || orbit || bound || time) ||
+        nout != (sine ? 2 : orbit ? POINT : bound ? 4 + 2 * SITES : 3))
+        return CV_EARGUMENT;
+    for (int j = 0; j < nin; j++)
+        x[j] = apm_nearest_d(in[j]);
+    if (sine) {
+        double_sincos(&y[0], &y[1], x[0]);
+        good = isfinite(y[0]);
+    } else {
+        box b;
+        for (int j = 0; j < 5; j++) {                   /* borrowed, and only read */
+            *b.centre[j] = *in[j];
+            *b.half[j] = *in[5 + j];
+        }
+        *b.xstar[0] = *in[10];
+        *b.xstar[1] = *in[11];
+        quick = bound ? unit_new(dp, 0) : NULL;         /* only the bound needs B */
+        w = bound && quick == NULL ? NULL : loewner_new(&b, x[12] != 0.0, quick);
+        unit_free(quick);
+        if (w == NULL)
+            return CV_ENOMEM;
+        good = fabs(x[BOX]) < SITES && fabs(x[nin - 1]) < (time ? 1e9 : SITES) &&
+               (bound ? loewner_follow(w, (int)x[BOX], (int)x[BOX + 1], &p)
+                      : loewner_follow(w, x[BOX] < 0 ? (int)x[BOX] : 0, x[BOX] < 0 ? 0 : (int)x[BOX], &p));
+        if (orbit && good) {
+            memcpy(y, &p, sizeof p);
+        } else if (bound && good) {
+            int first = 0;
+            y[3] = loewner_bound(w, &y[0], &y[1], &first, n, SITES);
+            y[2] = first;
+            memcpy(y + 4, n, sizeof n);
+            good = y[3] > 0.0;
+        } else if (good) {
+            const clock_t begin = clock();
+            for (int j = 0; j < (int)x[BOX + 1]; j++)
+                loewner_follow(w, x[BOX] < 0 ? (int)x[BOX] : 0, x[BOX] < 0 ? 0 : (int)x[BOX], &p);
+            y[0] = p.reach[0];
+            y[1] = p.reach[1];
+            y[2] = 1e9 * (double)(clock() - begin) / CLOCKS_PER_SEC / fmax(x[BOX + 1], 1.0)
+                   / fmax(fabs(x[BOX]), 1.0);
+        }
+        loewner_free(w);
+    }
+    for (int j = 0; j < nout && good; j++) {
+        if (!isfinite(y[j]))
+            return CV_EARITHMETIC;
+        apm_set_d(out[j], y[j]);
+    }
+    return good ? CV_OK : CV_EARITHMETIC;
+}
+
 int cv_kernel(const char *name, int as_double, int as_printed, int dp,
               int nin, const char *const in[], int nout, char *out[])
 {
@@ -81,6 +153,8 @@ int cv_kernel(const char *name, int as_double, int as_printed, int dp,
                 status = CV_ENUMBER;
         if (status == CV_OK) {
             status = apm_kernel(name, dp, nin, x, nout, x + MAX_IN);
+            if (status == CV_EARGUMENT)
+                status = loewner_kernel(name, dp, nin, x, nout, x + MAX_IN);
             if (status == CV_EARGUMENT && as_double) {
                 quick = unit_new(dp, as_printed);
                 status = quick == NULL ? CV_ENOMEM

@@ -564,6 +564,49 @@ void loewner_try(loewner *w, const cv_cell *cell, verdict *v, int *axis, int *fr
     *from = contradicted > 3 ? contradicted - 2 : 0;
 }
 
+/* ---- for tests */
+
+int loewner_follow(loewner *w, int s, int t, loewner_point *p)
+{
+    static const cv_cell whole = { { 0, 0, 0, 0, 0 }, { 0, 0, 0, 0, 0 }, 0 };
+    const point *q;
+
+    set_prism(w, &whole);
+    begin_orbit(w);
+    w->last++;
+    while (w->last < ORIGIN + t) {
+        point *const end = w->orbit + w->last;
+        if (!step(w, end + 1, end, end - 1, w->last == ORIGIN + 1))
+            return 0;
+        w->last++;
+    }
+    while (w->first > ORIGIN + s) {
+        point *const end = w->orbit + w->first;
+        if (!step(w, end - 1, end, end + 1, w->first == ORIGIN))
+            return 0;
+        w->first--;
+    }
+    q = w->orbit + ORIGIN + (t == 0 ? s : t);
+    memcpy(p->x, q->x, sizeof p->x);
+    memcpy(p->column, q->column, sizeof p->column);
+    memcpy(p->rest, q->rest, sizeof p->rest);
+    memcpy(p->reach, q->reach, sizeof p->reach);
+    return 1;
+}
+
+int loewner_bound(loewner *w, double *bound, double *l, int *first, double n[][2], int most)
+{
+    if (!witness(w) || w->to - w->from >= most)
+        return 0;
+    bound_second_variation(w);
+    *bound = w->bound;
+    *l = w->l;
+    *first = w->from - ORIGIN;
+    for (int j = w->from; j <= w->to; j++)
+        memcpy(n[j - w->from], w->orbit[j].n, sizeof n[0]);
+    return w->to - w->from + 1;
+}
+
 /* ---- the problem */
 
 /* B at one corner of the parameters, from the double instance.  Each of its bounds is a sum of less
@@ -577,10 +620,12 @@ static double corner_largest(unit *quick, const double p[3])
 /* A double d with |d - x| <= 2^-50 |x|, or else NaN, with which nothing is proved. */
 static double near(const apm_t x)
 {
-    const double d = apm_get_d(x);
+    const double d = apm_nearest_d(x);
     apm_t error, scaled;
     int good;
 
+    if (!isfinite(d))
+        return NAN;
     apm_init(error);
     apm_init(scaled);
     apm_set_d(error, d);
@@ -619,7 +664,7 @@ loewner *loewner_new(const box *root, int together, unit *quick)
             const int upper = corner >> (together ? 0 : k) & 1;
             p[k] = w->centre[2 + k] + (upper ? 1.0 : -1.0) * w->half[2 + k];
         }
-        w->corner[corner] = corner_largest(quick, p);
+        w->corner[corner] = quick == NULL ? HUGE_VAL : corner_largest(quick, p);
     }
     return w;
 }

@@ -28,7 +28,7 @@
 
 enum { MAX_DP = 100000, MAX_DEPTH = 100000 };
 enum { AXES = 5, V0 = 0, V1 = 1, FINEST = 61 };         /* of a cell; cuts that its index can hold */
-enum { PI_SHORT = 5 };                  /* see to_radians */
+enum { PI_SHORT = 5, B_PLACES = 12 };   /* see to_radians; B as it is reported */
 
 struct cv_search {
     Runit *exact;                       /* method thesis */
@@ -419,7 +419,10 @@ static int read_problem(cv_search *s, const char *const region[5], const char *c
         s->sharp = loewner_new(&s->root, s->together, s->quick);
         if (s->sharp == NULL)
             return CV_ENOMEM;
-        apm_set_d(s->constants[C_B], loewner_largest(s->sharp));
+        if (!isfinite(loewner_largest(s->sharp)))
+            return CV_EARITHMETIC;
+        apm_set_d(s->t[0], loewner_largest(s->sharp));
+        apm_round(s->constants[C_B], s->t[0], B_PLACES, APM_UP);
         if (s->together)
             for (int j = 0; j < 3; j++)
                 abc[j] += apm_get_d(s->root.half[j]);

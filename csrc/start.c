@@ -123,7 +123,7 @@ void set_LL_start(double x[2], const double abc[3], int on_diagonal)
     find_start(least_eigenvalue, x, abc, on_diagonal);
 }
 
-/* Between where beta is least and where the potential is, a quarter of the way: roughly the middle
+/* Between where beta is least and where the potential is, two sevenths of the way: roughly the middle
    of the gap that minimizing orbits leave, from where they are contradicted soonest. */
 void set_gap_start(double x[2], const double abc[3], int on_diagonal)
 {
@@ -132,5 +132,5 @@ void set_gap_start(double x[2], const double abc[3], int on_diagonal)
     find_start(least_eigenvalue, x, abc, on_diagonal);
     find_start(potential, least, abc, on_diagonal);
     for (int j = 0; j < 2; j++)
-        x[j] += 0.25 * (least[j] - x[j]);
+        x[j] += 0.28 * (least[j] - x[j]);
 }

@@ -127,7 +127,8 @@ static void torus_pass(state *s, num_t max, num_t best, const num_t tolerance, i
 }
 
 /* max >= the largest trace (or eigenvalue) of beta over the torus and the parameters a, b, c
-   of the state, and within 5e-7 of it, or within 1e-12 of the size of parameters beyond 1e5.
+   of the state, and within 5e-7 + 1e-12 (|a| + |b| + |c|) of it, unless the cells ran out: where c
+   alone is large, the maximum is a ridge, and the bound that of the last pass that had enough.
    Each pass looks a thousand times more closely than the last, whose best value spares it all
    but the neighbourhood of the maximum.  TORUS_DP places are plenty for that, whatever the
    precision of the proof. */
@@ -135,7 +136,7 @@ static void torus_max(state *s, num_t max, int eigenvalue)
 {
     numbers *n = &s->n;
     bdd *const parm[N_PARMS] = { &n->a, &n->b, &n->c };
-    num_t *best = n->tor + 14, *tolerance = n->tor + 15;
+    num_t *best = n->tor + 14, *tolerance = n->tor + 15, *pass = n->tor + 16;
     double reach[N_PARMS], last, t;                     /* sizes: they only guide the search */
     const long precision = s->precision;
 
@@ -148,12 +149,19 @@ static void torus_max(state *s, num_t max, int eigenvalue)
     t = 0.5 * (reach[0] + reach[1] + reach[2]);
     set_precision(s, TORUS_DP);
     num_set_si(*best, 0, 0);                            /* the average of either is above */
-    for (; t > 2.0 * last; t *= 1e-3) {
+    for (int first = 1, done = 0; !done; t *= 1e-3, first = 0) {
+        if (t <= 2.0 * last) {
+            t = last;
+            done = 1;
+        }
         num_set_d(*tolerance, t);
-        torus_pass(s, max, *best, *tolerance, eigenvalue, reach);
+        torus_pass(s, *pass, *best, *tolerance, eigenvalue, reach);
+        if (first || num_cmp(*pass, max) < 0)
+            num_set(max, *pass);
+        num_add(*tolerance, *best, *tolerance);
+        if (num_cmp(*pass, *tolerance) > 0)
+            break;                                      /* the cells ran out */
     }
-    num_set_d(*tolerance, last);
-    torus_pass(s, max, *best, *tolerance, eigenvalue, reach);
     set_precision(s, precision);
 }
 
