@@ -1,0 +1,158 @@
+"""The same tree, counts and theorem however the work is divided, and whoever dies on the way."""
+
+import concurrent.futures
+import os
+import signal
+import subprocess
+import sys
+import threading
+import time
+from dataclasses import replace
+from fractions import Fraction
+
+import pytest
+
+from converse import ConverseError, Problem, Proof, prove, search
+
+
+def line(low, high):
+    low, high = Fraction(low) * Fraction("11.21436"), Fraction(high) * Fraction("11.21436")
+    c, h = (low + high) / 2, (high - low) / 2
+    return Problem((c, c, 2 * c, Fraction(1), Fraction(1)), (h, h, 2 * h, Fraction(1), Fraction(1)),
+                   together=True)
+
+
+LONG = line("0.0146", "0.0149")             # a second or so
+
+
+@pytest.fixture(autouse=True)
+def early(monkeypatch):
+    """Divides the work sooner and more finely than usual."""
+    monkeypatch.setattr(search, "TASK_SECONDS", 0.02)
+    monkeypatch.setattr("converse.proof.ALONE_SECONDS", 0.01)
+
+
+def timeless(proof):
+    return replace(proof, seconds=0)
+
+
+@pytest.fixture(scope="module")
+def proof():
+    return timeless(prove(LONG, method="loewner", jobs=1))
+
+
+def test_threads(proof):
+    assert proof.no_tori
+    for jobs in (2, 3, 7):
+        assert timeless(prove(LONG, method="loewner", jobs=jobs)) == proof
+
+
+def test_the_method_of_the_thesis_too():
+    a, b = Fraction("0.306"), Fraction("0.00125")
+    problem = Problem((a, a, 2 * a, Fraction(1), Fraction(1)),
+                      (b, b, 2 * b, Fraction(1), Fraction(1)))
+    assert timeless(prove(problem, jobs=3)) == timeless(prove(problem, jobs=1))
+
+
+@pytest.mark.parametrize("stubborn", [False, True])
+def test_undecided_prisms(stubborn):
+    problem = line("0.0100", "0.0280")
+    alone, many = (timeless(prove(problem, 13, stubborn=stubborn, method="loewner", jobs=jobs))
+                   for jobs in (1, 3))
+    assert alone.undecided and alone.tree == many.tree
+    if stubborn:                            # else some worked on what became of no use
+        assert alone == many
+
+
+def test_processes(proof):
+    with concurrent.futures.ProcessPoolExecutor(2) as executor:
+        assert timeless(prove(LONG, method="loewner", executor=executor)) == proof
+
+
+class Unreliable(concurrent.futures.ThreadPoolExecutor):
+    """Every third task is lost with its worker."""
+
+    tasks = 0
+
+    def submit(self, work, *args):
+        Unreliable.tasks += 1
+        return super().submit(die if Unreliable.tasks % 3 == 0 else work, *args)
+
+
+def die(*args):
+    raise OSError("the worker died")
+
+
+def test_lost_tasks_are_given_out_again(proof):
+    with Unreliable(2) as executor:
+        assert timeless(prove(LONG, method="loewner", executor=executor)) == proof
+
+
+def test_workers_that_always_die():
+    class Dead(concurrent.futures.ThreadPoolExecutor):
+        def submit(self, work, *args):
+            return super().submit(die)
+
+    with Dead(2) as executor, pytest.raises(ConverseError, match="keep failing.*died"):
+        prove(LONG, method="loewner", executor=executor)
+
+
+def test_an_executor_that_is_gone():
+    executor = concurrent.futures.ThreadPoolExecutor(1)
+    executor.shutdown()
+    with pytest.raises(ConverseError, match="workers are gone"):
+        prove(LONG, method="loewner", executor=executor)
+
+
+def test_time_limit_and_resume(proof, tmp_path):
+    path, result, runs = tmp_path / "a.proof", None, 0
+    while result is None or not result.all_decided:
+        result = prove(LONG, method="loewner", jobs=3, time_limit=0.2, backup=path, resume=result)
+        assert timeless(Proof.load(path)) == timeless(result)
+        result = Proof.load(path)
+        runs += 1
+    assert runs > 1 and timeless(result) == proof
+
+
+KILLED = """
+import sys
+from converse import Proof, prove, search
+sys.path.insert(0, %r)
+from test_parallel import LONG
+path, resume = sys.argv[1:]
+prove(LONG, method="loewner", jobs=2, backup=path, resume=resume or None)
+"""
+
+
+def test_a_killed_coordinator_goes_on_from_its_backup(proof, tmp_path, monkeypatch):
+    path = tmp_path / "a.proof.gz"
+    tests = os.path.dirname(os.path.abspath(__file__))
+    code = "import converse.proof as p; p.BACKUP_SECONDS = 0.05\n" + KILLED % tests
+    for n in range(40):
+        resume = str(path) if path.exists() else ""
+        process = subprocess.Popen([sys.executable, "-c", code, str(path), resume], cwd=tmp_path)
+        try:
+            process.wait(1.0 + 0.1 * n)
+        except subprocess.TimeoutExpired:
+            process.send_signal(signal.SIGKILL)
+            process.wait()
+            continue
+        assert process.returncode == 0
+        break
+    assert timeless(Proof.load(path)) == proof
+
+
+def test_dask_loses_a_worker(proof, tmp_path):
+    distributed = pytest.importorskip("distributed")
+    with distributed.LocalCluster(n_workers=3, threads_per_worker=1, processes=True,
+                                  dashboard_address=None, local_directory=str(tmp_path)) as cluster, \
+            distributed.Client(cluster) as client:
+        problem = line("0.0144", "0.0149")
+        whole = timeless(prove(problem, method="loewner", jobs=2))
+        pid = next(iter(client.run(os.getpid).values()))
+        killer = threading.Timer(0.5, os.kill, (pid, signal.SIGKILL))
+        killer.start()
+        began = time.monotonic()
+        result = prove(problem, method="loewner", executor=client.get_executor(), jobs=4)
+        assert killer.finished.is_set() and time.monotonic() - began > 0.5
+        assert timeless(result) == whole
