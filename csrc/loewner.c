@@ -43,20 +43,24 @@
 #include "loewner.h"
 #include "sine.h"
 
-enum { WAVES = 3, COLUMNS = 5, V_AXES = 2, MAX_POINTS = 400, ORIGIN = MAX_POINTS };
+enum { WAVES = 3, COLUMNS = 5, MAX_POINTS = 4000, ORIGIN = MAX_POINTS };
 enum { FINEST = 46 };                   /* cuts along one axis: then doubles run out */
-static const double FAR = 1000.0;       /* |x0| + |x1| where orbits end */
+enum { PATIENCE = 12 };                 /* tries follow each other by a twelfth of the orbit */
+static const double TWO_PI = 0x1.921fb54442d18p+2;      /* less than 2^-51 below it */
+static const double FAR = 1e5;          /* turns in one step after which orbits end */
 static const double WIDEN = 1.0 + 0x1p-43;
 
 /* One point of the orbit of the prism's centre, and all that is known of its neighbours. */
 typedef struct {
-    double x[2];
+    double x[2], turns[2];              /* x modulo 2 pi; turns taken off when it was reached */
+    double missed[2];                   /* by the step from here: a bound of |E| at the centre */
     double column[2][COLUMNS];          /* v0, v1, then the parameters */
     double rest[2], force[2];           /* r and f: bounds */
     double d[3];                        /* the factor: d00, d01, d11 */
     double sine[WAVES], cosine[WAVES];
     double reach[WAVES];                /* rho: |D0|, |D1|, |D0 + D1| */
     double beta[3];                     /* beta00, beta01, beta11 */
+    double far;                         /* how large a rounded angle is */
     double fuzz;                        /* how far p sin, p cos and entries of beta may be off */
     double n[2], mu[2], gradient[2];
     double left[3], right[3];           /* the blocks of the recursion from either end */
@@ -88,22 +92,23 @@ static double size(const loewner *w, int wave)
 
 /* The sines at q->x; what follows from them and from the columns and the rest.
 
-   Sines and cosines are off by SINE_ERROR, those of the sum by u |x0 + x1| more, and products with p
-   by u/2: p sin is off by less than 2^-50 |p| (1 + |x0| + |x1|), and an entry of beta, a sum of two
-   and an integer, by less than fuzz.  Reaches are sums of at most 8 positive terms. */
+   Sines and cosines are off by SINE_ERROR, those of a rounded sum by u |x0 + x1| more, and products
+   with p by u/2: p sin is off by less than 2^-50 |p| (1 + |x0| + |x1|), and an entry of beta, a sum of
+   two and an integer, by less than fuzz.  Reaches are sums of at most 8 positive terms; that of a
+   wave that is not there is of no interest. */
 static void finish(const loewner *w, point *q)
 {
     const double y[WAVES] = { q->x[0], q->x[1], q->x[0] + q->x[1] };
-    const double far = fabs(q->x[0]) + fabs(q->x[1]);
     double sum[WAVES] = { 0, 0, 0 }, c_sin;
 
+    q->far = size(w, 2) > 0.0 ? fabs(q->x[0]) + fabs(q->x[1]) : 0.0;
     for (int j = 0; j < WAVES; j++)
         double_sincos(&q->sine[j], &q->cosine[j], y[j]);
     c_sin = w->p[2] * q->sine[2];
     q->beta[0] = 2.0 - w->p[0] * q->sine[0] - c_sin;
     q->beta[1] = -c_sin;
     q->beta[2] = 2.0 - w->p[1] * q->sine[1] - c_sin;
-    q->fuzz = 0x1p-49 * (1.0 + size(w, 0) + size(w, 1) + size(w, 2)) * (1.0 + far);
+    q->fuzz = 0x1p-49 * (1.0 + size(w, 0) + size(w, 1) + size(w, 2)) * (1.0 + q->far);
     for (int k = 0; k < w->columns; k++) {
         sum[0] += fabs(q->column[0][k]);
         sum[1] += fabs(q->column[1][k]);
@@ -129,6 +134,7 @@ static double bend(const loewner *w, const point *q, int wave)
 /* next = the point after q, seen from o before it; time may run either way.  The factor begins
    with d = beta, and f then holds r(o), which is zero or the rounding of x*.  0: the factor cannot go on.
 
+   The coordinates are kept modulo 2 pi; a turn costs 2^-51, less than its share of missed.
    The rest obeys r' = beta r - r(o) + e, where e is what the waves bend, what the step of the
    centre missed, and the roundings of the columns.  Writing r' = d r + f and, from the last step,
    r(o) = (r - f(o))/d(o), gives f = f(o)/d(o) + e + (beta - 1/d(o) - d) r, where the last bracket is
@@ -143,7 +149,11 @@ static int step(const loewner *w, point *next, point *q, const point *o, int is_
     }
     for (int i = 0; i < 2; i++) {
         const double b0 = q->beta[i], b1 = q->beta[i + 1];
-        next->x[i] = (2.0 * q->x[i] - o->x[i]) + (g[i] + g[2]);
+        const double before = o->x[i] - q->turns[i] * TWO_PI;
+        const double x = (2.0 * q->x[i] - before) + (g[i] + g[2]);
+        next->turns[i] = floor(x / TWO_PI + 0.5);
+        next->x[i] = x - next->turns[i] * TWO_PI;
+        q->missed[i] = 0x1p-50 * (fabs(q->x[i]) + fabs(o->x[i]) + fabs(before) + fabs(x)) + q->fuzz;
         for (int k = 0; k < w->columns; k++)
             next->column[i][k] = b0 * q->column[0][k] + b1 * q->column[1][k] - o->column[i][k];
     }
@@ -167,7 +177,7 @@ static int step(const loewner *w, point *next, point *q, const point *o, int is_
         const double i0 = fabs(inverse[i]) + rounded, i1 = fabs(inverse[i + 1]) + rounded;
         double e = bent[i] + bent[2];
 
-        e += 0x1p-50 * (fabs(q->x[i]) + fabs(o->x[i]) + fabs(next->x[i])) + q->fuzz;
+        e += q->missed[i];
         for (int k = 0; k < w->columns; k++)
             e += 0x1p-50 * fabs(next->column[i][k]);
         e += 4.0 * q->fuzz * (q->reach[0] + q->reach[1] + w->h[i] + w->h[2])
@@ -351,7 +361,7 @@ static void bound_second_variation(loewner *w)
             centre -= 2.0 * (n0 * next[0] + n1 * next[1]);
             mass += 2.0 * (fabs(n0 * next[0]) + fabs(n1 * next[1]));
         }
-        far = larger(far, fabs(q->x[0]) + fabs(q->x[1]));
+        far = larger(far, q->far);
         for (int i = 0; i < WAVES; i++) {
             const double s = q->sine[i], c = q->cosine[i], p = w->p[i], rho = q->reach[i];
             const double h = w->h[i] + w->loose[i], half_square = 0.5 * rho * rho;
@@ -384,8 +394,7 @@ static void bound_second_variation(loewner *w)
             }
             rounding += left * q->reach[i];
             if (j > w->from && j < w->until)
-                rounding += fabs(q->mu[i]) * (q->fuzz + 0x1p-50 * (fabs(q->x[i])
-                            + fabs(q[-1].x[i]) + fabs(q[1].x[i])));
+                rounding += fabs(q->mu[i]) * q->missed[i];
         }
     }
     tails = w->l * (square(w->orbit[w->from].n[0]) + square(w->orbit[w->from].n[1])
@@ -460,9 +469,15 @@ static int set_prism(loewner *w, const cv_cell *cell)
     return 1;
 }
 
-static double far_reach(const point *q)
+/* The largest reach of a wave. */
+static double far_reach(const loewner *w, const point *q)
 {
-    return larger(q->reach[2], larger(q->reach[0], q->reach[1]));
+    double reach = 0.0;
+
+    for (int j = 0; j < WAVES; j++)
+        if (size(w, j) > 0.0)
+            reach = q->reach[j] > reach || isnan(q->reach[j]) ? q->reach[j] : reach;
+    return reach;
 }
 
 /* Tries to prove the prism with the orbit as far as it is known.  Returns whether at least its
@@ -492,7 +507,8 @@ static void begin_orbit(loewner *w)
     }
     finish(w, origin);
     finish(w, origin + 1);
-    w->first = w->last = ORIGIN;
+    w->first = ORIGIN;
+    w->last = ORIGIN - 1;               /* none of them is in use yet */
 }
 
 /* One more point, at the end that is better known.  0: that end is known too badly, or the orbit
@@ -502,17 +518,17 @@ static int lengthen(loewner *w, int *why)
     static const double LONGEST_REACH = 0.5;
     point *const q = w->orbit;
 
-    if (w->last == ORIGIN) {
+    if (w->last <= ORIGIN) {
         w->last++;
         return 1;
     }
-    const int ahead = far_reach(q + w->last) < far_reach(q + w->first);
+    const int ahead = far_reach(w, q + w->last) < far_reach(w, q + w->first);
     point *const end = q + (ahead ? w->last : w->first);
     *why = CV_REASON_TOO_BIG;
-    if (!(far_reach(end) <= LONGEST_REACH))
+    if (!(far_reach(w, end) <= LONGEST_REACH))
         return 0;
     *why = CV_REASON_TOO_LONG;
-    if (w->last - w->first + 1 == MAX_POINTS || fabs(end->x[0]) + fabs(end->x[1]) > FAR)
+    if (w->last - w->first + 1 == MAX_POINTS || fabs(end->turns[0]) + fabs(end->turns[1]) > FAR)
         return 0;
     *why = CV_REASON_SINGULAR;
     if (ahead ? step(w, end + 1, end, end - 1, w->last == ORIGIN + 1)
@@ -526,7 +542,7 @@ static int lengthen(loewner *w, int *why)
 
 void loewner_try(loewner *w, const cv_cell *cell, verdict *v, int *axis, int *from)
 {
-    int points = 1, contradicted = 0, why;
+    int points = 0, next = cell->from, contradicted = 0, why;
 
     memset(v, 0, sizeof *v);
     v->reason = CV_REASON_ARITHMETIC;
@@ -534,19 +550,19 @@ void loewner_try(loewner *w, const cv_cell *cell, verdict *v, int *axis, int *fr
     if (!set_prism(w, cell))
         return;
     begin_orbit(w);
-    for (;;) {
-        if (points >= cell->from && attempt(w, v) && !contradicted)
-            contradicted = points;
-        if (v->no_tori)
-            return;
-        if (!lengthen(w, &why))
-            break;
-        points++;
+    for (int more = 1; more;) {
+        more = lengthen(w, &why);
+        points += more;
+        if (points >= next || !more) {
+            if (attempt(w, v)) {
+                if (v->no_tori)
+                    return;
+                if (!contradicted)
+                    contradicted = points;
+            }
+            next = points + 1 + points / PATIENCE;
+        }
     }
-    if (points < cell->from && attempt(w, v))
-        contradicted = points;
-    if (v->no_tori)
-        return;
     v->nsteps = points;
     if (!contradicted) {                /* blame whoever is widest at the ends */
         v->reason = why;
@@ -554,8 +570,9 @@ void loewner_try(loewner *w, const cv_cell *cell, verdict *v, int *axis, int *fr
         for (int k = 0; k < w->columns; k++) {
             w->share[k] = 0.0;
             for (int i = 0; i < 2; i++)
-                w->share[k] += fabs(w->orbit[w->last].column[i][k])
-                               + fabs(w->orbit[w->first].column[i][k]);
+                if (size(w, i) > 0.0 || size(w, 2) > 0.0)
+                    w->share[k] += fabs(w->orbit[w->last].column[i][k])
+                                   + fabs(w->orbit[w->first].column[i][k]);
         }
     }
     for (int k = 1; k < w->columns; k++)
@@ -573,7 +590,7 @@ int loewner_follow(loewner *w, int s, int t, loewner_point *p)
 
     set_prism(w, &whole);
     begin_orbit(w);
-    w->last++;
+    w->last = ORIGIN + 1;
     while (w->last < ORIGIN + t) {
         point *const end = w->orbit + w->last;
         if (!step(w, end + 1, end, end - 1, w->last == ORIGIN + 1))

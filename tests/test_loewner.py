@@ -95,6 +95,8 @@ def test_orbits_stay_within_reach():
         assert all(abs(s) <= 1 for s in symbols)
         symbols += e[:3]                                # in the order of the columns
         x = orbit(point, prism[10:12], min(n, 0), max(n, 1))[n]
+        x = [y - 2 * mpmath.pi * mpmath.nint((y - mp(near)) / (2 * mpmath.pi))
+             for y, near in zip(x, centre)]             # the core keeps them modulo 2 pi
         for i in range(2):
             moved = sum(k * s for k, s in zip(columns[i], symbols))
             off = abs(x[i] - mp(centre[i] + moved))

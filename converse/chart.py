@@ -1,0 +1,419 @@
+"""The command: converse-chart [DIRECTORY], four charts of what is measured on this machine.
+
+Needs matplotlib (the extra "plot").  All on the line a = b = c/2 = 11.21436 epsilon.
+"""
+
+import argparse
+import contextlib
+import csv
+import io
+import itertools
+import math
+import os
+import platform
+import random
+import sys
+from fractions import Fraction
+
+from . import __version__, files, kernels, picture
+from .files import ConverseError
+from .problem import Problem
+from .proof import prove
+
+FINE, BAD, INTERRUPTED = 0, 2, 130
+FORMATS = tuple(ending[1:] for ending in picture.FORMATS)
+SCALE = Fraction("11.21436")            # a = SCALE epsilon
+TOP = "0.0280"                          # above it there is nothing left to prove
+
+# The thesis, table of results: bound and seconds on a Sun-4; it gives no time for 0.0272.
+SUN = (("0.0278", 500), ("0.0276", 759), ("0.0274", 2698))
+BOXES = (("0.0278", "0.313"), ("0.0276", "0.311"), ("0.0274", "0.3085"), ("0.0272", "0.306"))
+LIMITS = {"thesis": 0.0271, "loewner": 0.0141}
+
+BOUNDS = ("0.0272", "0.0250", "0.0220", "0.0200", "0.0180", "0.0160", "0.0152", "0.0148", "0.0145")
+DIGITS = (1, 2, 3, 4, 5, 7, 10, 15, 20, 35, 50, 75, 100, 150, 200)
+WALLS = {
+    "thesis": ("0.0280", "0.0278", "0.0276", "0.0274", "0.0272", "0.0271", "0.02706", "0.02704",
+               "0.02703", "0.02702"),
+    "loewner": ("0.0250", "0.0240", "0.0220", "0.0200", "0.0180", "0.0170", "0.0160", "0.0155",
+                "0.0150", "0.0147", "0.0145", "0.0144", "0.0143", "0.0142", "0.01415", "0.0141",
+                "0.01405"),
+}
+QUICK = {"bound": 0.0160, "thesis": 0.02704, "loewner": 0.0147}     # --quick stops there
+WALL_SECONDS = 20.0
+
+# A prism of the size that proofs near the wall cut to, on an orbit of trig274: the centre and the
+# half-width of a, b, c, then x*, then the centre and the half-width of x_1, in radians.
+PARAMETERS = ("0.3085", "0.3085", "0.617"), ("0.00125", "0.00125", "0.0025")
+XSTAR = ("0.827732913851",) * 2
+SUCCESSOR = ("4.9578", "0.0982"), ("0.003", "0.006")
+POINTS = (2, 3, 4)                      # of the orbit, x* being number 0
+SAMPLES = 2000
+
+COLOURS = {"1989": "0.1", "thesis": "#1f5f94", "loewner": "#d98a2b"}
+FAILED = "#c03030"
+SMALL = {"textcoords": "offset points", "fontsize": 7, "color": "0.3"}
+STYLE = {                               # the hashsalt: the same numbers, the same file
+    "svg.hashsalt": "converse", "lines.linewidth": 1, "lines.markersize": 5.5,
+    "legend.frameon": False, "legend.fontsize": 8, "xtick.labelsize": 8, "ytick.labelsize": 8,
+    "axes.spines.top": False, "axes.spines.right": False, "axes.grid": True,
+    "axes.axisbelow": True, "grid.color": "0.92", "grid.linewidth": 0.6,
+}
+
+
+# ---- measuring: each function yields the rows of a table
+
+def on_line(low, high=None, together=False):
+    """The problem for epsilon from low to high, both given as decimals; by default low alone."""
+    low, high = (SCALE * Fraction(x) for x in (low, high or low))
+    return _problem((low + high) / 2, (high - low) / 2, together)
+
+
+def _problem(centre, half, together=False):
+    one = Fraction(1)
+    return Problem((centre, centre, 2 * centre, one, one), (half, half, 2 * half, one, one),
+                   together=together)
+
+
+def timed(problem, **options):
+    """A proof and its seconds: the least of a few runs, if they are short."""
+    proofs = []
+    while len(proofs) < 5 and sum(proof.seconds for proof in proofs) < 1:
+        proofs.append(prove(problem, **options))
+    return proofs[-1], min(proof.seconds for proof in proofs)
+
+
+def _yes(truth):
+    return "yes" if truth else "no"
+
+
+def bound(quick):
+    for epsilon, seconds in SUN:
+        yield "1989", epsilon, seconds, "yes"
+    for epsilon, centre in BOXES:
+        proof, seconds = timed(_problem(Fraction(centre), Fraction("0.00125")))
+        yield "thesis", epsilon, seconds, _yes(proof.no_tori)
+    for epsilon in BOUNDS:
+        if not quick or float(epsilon) >= QUICK["bound"]:
+            proof, seconds = timed(on_line(epsilon, TOP, together=True), method="loewner")
+            yield "loewner", epsilon, seconds, _yes(proof.no_tori)
+
+
+def digits(quick):
+    problem = _problem(Fraction("0.3085"), Fraction("0.00125"))
+    for places in DIGITS:
+        proofs, before = zip(*((prove(problem, digits=places, jobs=1),
+                                prove(problem, digits=places, jobs=1, time_limit=0))
+                               for _ in range(3 if quick else 12)))
+        yield (places, min(proof.seconds for proof in proofs),
+               min(proof.seconds for proof in before), proofs[0].counts.proved,
+               _yes(proofs[0].no_tori))
+
+
+def true_extents():
+    """From corners and random points of the prism, in plain doubles: n -> extents of x_n."""
+    (p, dp), (v, dv), x = PARAMETERS, SUCCESSOR, tuple(map(float, XSTAR))
+    box = [(float(c), float(h)) for c, h in zip(p + v, dp + dv)]
+    rng = random.Random(1)
+    places = list(itertools.product((-1, 1), repeat=len(box)))
+    places += [[rng.uniform(-1, 1) for _ in box] for _ in range(SAMPLES)]
+    found = {n: [] for n in POINTS}
+    for place in places:
+        a, b, c, v0, v1 = (centre + t * half for (centre, half), t in zip(box, place))
+        u0, u1 = x
+        for n in range(2, max(POINTS) + 1):
+            mixed = c * math.cos(v0 + v1)
+            u0, u1, v0, v1 = (v0, v1, 2 * v0 - u0 + a * math.cos(v0) + mixed,
+                              2 * v1 - u1 + b * math.cos(v1) + mixed)
+            if n in found:
+                found[n].append((v0, v1))
+    return {n: [max(xs) - min(xs) for xs in zip(*points)] for n, points in found.items()}
+
+
+def _ratio(halves, extents):
+    """The geometric mean of how much too wide both coordinates are."""
+    return math.sqrt(math.prod(2 * float(h) / extent for h, extent in zip(halves, extents)))
+
+
+def width(quick):
+    (p, dp), (v, dv) = PARAMETERS, SUCCESSOR
+    extents = true_extents()
+    zero = Fraction(0)
+    first = ([Fraction(x) for x in p + XSTAR + v],
+             [[Fraction(half) if j == k else zero for k in range(7)]
+              for j, half in enumerate(dp + ("0", "0") + dv)])
+    rows = [("double", 17, {"arithmetic": "double"})]
+    rows += [(str(places), places, {}) for places in (10, 35, 100)]
+    for name, places, options in rows:
+        prism = first
+        for n in POINTS:
+            values = [*prism[0], *itertools.chain(*prism[1])]
+            repeat = (2000 if quick else 20000) if options else (200 if quick else 2000)
+            try:
+                ns = min(float(kernels.call("image_ns", values + [repeat], 1, places, **options)[0])
+                         for _ in range(3))
+                prism = kernels.image(prism, places, **options)
+            except ArithmeticError:         # a matrix could not be inverted
+                break
+            halves = [sum(map(abs, row)) for row in prism[1][5:]]
+            yield ("fixed form" if n == POINTS[0] else "column rotor", name, n, ns,
+                   _ratio(halves, extents[n]))
+    yield from taylor_width(extents)
+
+
+def taylor_width(extents):
+    """The same for first-order Taylor models; nothing, where the core has no such routine."""
+    (p, dp), (v, dv) = PARAMETERS, SUCCESSOR
+    for n in POINTS:
+        values = [*p, *v, *dp, *dv, *XSTAR, 0, n, 20000]
+        try:
+            results = [kernels.call("loewner_step", values, 3, 17, arithmetic="double")
+                       for _ in range(3)]
+        except ValueError:
+            return
+        *halves, ns = min(results, key=lambda result: result[2])
+        yield "Taylor model", "double", n, float(ns), _ratio(halves, extents[n])
+
+
+def wall(quick):
+    for method, values in WALLS.items():
+        for epsilon in values:
+            if quick and float(epsilon) < QUICK[method]:
+                break
+            proof = prove(on_line(epsilon, together=method == "loewner"), digits=20, method=method,
+                          time_limit=WALL_SECONDS)
+            counts = proof.counts
+            yield method, epsilon, counts.proved, counts.most_cuts, _yes(proof.no_tori)
+            if not proof.no_tori:
+                break
+
+
+# ---- drawing: each function draws the rows of such a table, and returns a caption
+
+def _pick(rows, column, value):
+    return [row for row in rows if row[column] == value]
+
+
+def _legend(axes, **options):
+    axes.legend(frameon=False, fontsize=8, **options)
+
+
+def draw_bound(figure, rows):
+    axes = figure.subplots()
+    for name, marker, line, label in (("1989", "^", "none", "the thesis, Sun-4, 1989"),
+                                      ("thesis", "s", "none", "the thesis's method, 35 digits"),
+                                      ("loewner", "o", "-", "method loewner")):
+        good = [row for row in rows if row[0] == name and row[3] == "yes"]
+        axes.plot([row[2] for row in good], [float(row[1]) for row in good], marker=marker,
+                  linestyle=line, color=COLOURS[name], label=label)
+    for name, words in (("thesis", "limit of the thesis's criterion (as run in 1989)"),
+                        ("loewner", "about the limit of the Loewner criterion")):
+        axes.axhline(LIMITS[name], color=COLOURS[name], linewidth=0.9, linestyle="--")
+        axes.text(0.985, LIMITS[name] - 0.0001, "%s, %.4f" % (words, LIMITS[name]), fontsize=7.5,
+                  color="0.25", ha="right", va="top", transform=axes.get_yaxis_transform())
+    axes.set(xscale="log", ylim=(LIMITS["loewner"] - 0.0012, 0.0286),
+             xlabel="time of the proof (seconds)", ylabel=r"proven upper bound of $\varepsilon_c$",
+             title="What is proved, and how long the proof takes")
+    axes.legend(loc="center right", bbox_to_anchor=(1, 0.55))
+    return ("thesis: one box 0.0002 wide for each point (the time for 0.0272 is not known);\n"
+            "loewner: everything above the point, in one proof")
+
+
+def draw_digits(figure, rows):
+    from matplotlib import ticker
+
+    axes = figure.subplots()
+    good = [row for row in rows if row[4] == "yes"]
+    bad = [row for row in rows if row[4] != "yes"]
+    axes.plot([row[0] for row in good], [1000 * row[1] for row in good], "s-",
+              color=COLOURS["thesis"], label="whole proof")
+    axes.plot([row[0] for row in rows], [1000 * row[2] for row in rows], "--", color="0.45",
+              label="of which before the search (bounds over the torus)")
+    if bad:
+        axes.plot([row[0] for row in bad], [1000 * row[1] for row in bad], "o", markersize=7,
+                  markerfacecolor="none", color=FAILED, label="undecided: too few digits")
+    changes = [row for row, last in zip(good, [None] + good) if not last or row[3] != last[3]]
+    for k, row in enumerate(changes):       # the number of prisms, where it changes
+        axes.annotate(str(row[3]), (row[0], 1000 * row[1]), (0, 15 if k % 2 else 7),
+                      ha="center", **SMALL)
+    axes.set(xscale="log", ylim=(0, 1150 * max(row[1] for row in rows)),
+             xlabel="digits (decimal places)", ylabel="time (milliseconds)",
+             title=r"The price of digits: 0.0274 < $\varepsilon$ < 0.0276, the thesis's method")
+    axes.xaxis.set_major_locator(ticker.FixedLocator(
+        [row[0] for row in rows if row[0] not in (4, 15, 75, 150)]))
+    axes.xaxis.set_minor_locator(ticker.NullLocator())
+    axes.xaxis.set_major_formatter("{x:g}")
+    axes.legend(loc="lower right")
+    return "one core; small numbers: prisms proved, where their number changes"
+
+
+def draw_width(figure, rows):
+    axes = figure.subplots()
+    rows = [(*row[:4], 100 * max(row[4] - 1, 1e-5)) for row in rows]
+    for n in POINTS:
+        mine = [row for row in rows if row[2] == n and row[0] != "Taylor model"]
+        axes.plot([row[3] for row in mine], [row[4] for row in mine], color="0.75", linewidth=0.8)
+    for form, marker, colour in (("fixed form", "o", COLOURS["1989"]),
+                                 ("column rotor", "s", COLOURS["thesis"]),
+                                 ("Taylor model", "^", COLOURS["loewner"])):
+        mine = [row for row in rows if row[0] == form]
+        if mine:
+            axes.plot([row[3] for row in mine], [row[4] for row in mine], marker, color=colour,
+                      label=form)
+    for form, name, n, ns, excess in rows:
+        taylor = form == "Taylor model"
+        if not taylor:
+            axes.annotate(name, (ns, excess), (5, 6), ha="right", **SMALL)
+        if name == "double":
+            axes.annotate("$x_%d$" % n, (ns, excess), (6, -4) if taylor else (-7, 0),
+                          va="center", ha="left" if taylor else "right",
+                          **{**SMALL, "fontsize": 9})
+    axes.margins(x=0.12, y=0.12)
+    axes.set(xscale="log", yscale="log", xlabel="time of an image (nanoseconds)",
+             ylabel="excess width of the enclosure",
+             title="How tightly, and how fast, the orbits of a prism are enclosed")
+    axes.yaxis.set_major_formatter("{x:g}%")
+    axes.legend(loc="lower right")
+    return ("small: digits; geometric mean over both angles of $x_n$ on the orbits of $x^*$ and "
+            "$x_1$ in a prism (half-widths %s, %s;\na, b, c as in trig274), beside its corners' "
+            "and %d random points' orbits; bounds of sines not counted" % (*SUCCESSOR[1], SAMPLES))
+
+
+def draw_wall(figure, rows):
+    upper, lower = figure.subplots(2, 1, sharex=True, gridspec_kw={"hspace": 0.08})
+    for axes, column, what in ((upper, 2, "prisms proved"), (lower, 3, "deepest cut")):
+        for name, marker, label in (("thesis", "s", "the thesis's method, 20 digits"),
+                                    ("loewner", "o", "method loewner")):
+            points = [(float(row[1]), row[column], row[4]) for row in rows if row[0] == name]
+            axes.plot([x for x, _, _ in points], [y for _, y, _ in points], marker + "-",
+                      color=COLOURS[name], label=label)
+            bad = [(x, y) for x, y, good in points if good != "yes"]
+            axes.plot([x for x, _ in bad], [y for _, y in bad], marker, color=COLOURS[name],
+                      markerfacecolor="white")
+        axes.set_ylabel(what)
+    upper.set(yscale="log", title="Where the methods fail")
+    lower.set(ylim=(-2, None),
+              xlabel=r"$\varepsilon$, a single value (a = b = c/2 = 11.21436 $\varepsilon$)")
+    upper.legend(loc="upper center", bbox_to_anchor=(0.55, 1))
+    return "on all cores; open: not proved within %g seconds" % WALL_SECONDS
+
+
+CHARTS = {
+    "bound": (("method", "epsilon_c", "seconds", "proved"), bound, draw_bound),
+    "digits": (("digits", "seconds", "before_search", "prisms", "proved"), digits, draw_digits),
+    "width": (("form", "digits", "point", "nanoseconds", "ratio"), width, draw_width),
+    "wall": (("method", "epsilon", "prisms", "deepest_cut", "proved"), wall, draw_wall),
+}
+
+
+def machine():
+    """The program and the machine, in a line."""
+    model = ""
+    with contextlib.suppress(OSError), open("/proc/cpuinfo", encoding="utf-8",
+                                            errors="replace") as file:
+        lines = [line.partition(":") for line in file if line.startswith("model name")]
+        model = " ".join(lines[0][2].split()) + ", " if lines else ""
+    count = os.cpu_count() or 1
+    return "converse %s; %s, %s%d core%s" % (__version__, platform.machine(), model, count,
+                                             "" if count == 1 else "s")
+
+
+def chart(name, rows, kind):
+    """A chart of these rows, as the bytes of a file of that kind."""
+    from matplotlib import rc_context
+    from matplotlib.figure import Figure
+
+    height = 5.4 if name == "wall" else 4.3
+    data = io.BytesIO()
+    with rc_context(STYLE):
+        figure = Figure(figsize=(7.2, height))
+        caption = CHARTS[name][2](figure, rows) + "\n" + machine().replace("$", "")
+        figure.subplots_adjust(left=0.11, right=0.97, bottom=0.5 / height, top=1 - 0.4 / height)
+        figure.text(0.11, -0.04 / height, caption, fontsize=7, color="0.35", va="top",
+                    linespacing=1.4)
+        figure.savefig(data, format=kind, dpi=150, bbox_inches="tight", pad_inches=0.12,
+                       metadata={"Date": None} if kind == "svg" else
+                       {"CreationDate": None} if kind == "pdf" else None)
+    return data.getvalue()
+
+
+def _words(row):
+    return ["%.4g" % item if isinstance(item, float) else str(item) for item in row]
+
+
+def table(name, rows):
+    """The rows as the bytes of a CSV file."""
+    text = io.StringIO(newline="")
+    csv.writer(text, lineterminator="\n").writerows(
+        [CHARTS[name][0]] + [_words(row) for row in rows])
+    return text.getvalue().encode("utf-8")
+
+
+class Parser(argparse.ArgumentParser):
+    def error(self, message):
+        raise ConverseError(message + "; see converse-chart --help")
+
+
+def parser():
+    p = Parser(prog="converse-chart", allow_abbrev=False, description=(
+        "Measures on this machine and draws four charts: bound, digits, width, wall."), epilog=(
+        "Exit status: 0 all are written; 2 bad usage or directory; 130 interrupted."))
+    p.add_argument("directory", nargs="?", default=os.curdir,
+                   help="where to write chart-NAME.svg and chart-NAME.csv (default: here)")
+    p.add_argument("--format", choices=FORMATS, default=FORMATS[0], help="of the charts")
+    p.add_argument("--quick", action="store_true", help="leave out what takes long")
+    p.add_argument("--version", action="version", version="converse-chart " + __version__)
+    return p
+
+
+def run(options):
+    try:
+        picture.check()
+    except ConverseError:
+        raise ConverseError("charts need matplotlib; pip install 'converse[plot]'") from None
+    try:
+        os.makedirs(options.directory, exist_ok=True)
+    except OSError as error:
+        raise ConverseError("%s: cannot be made a directory (%s); name another place"
+                            % (options.directory, files.reason(error))) from None
+    paths = {name: [os.path.join(options.directory, "chart-%s.%s" % (name, ending))
+                    for ending in (options.format, "csv")] for name in CHARTS}
+    for path in itertools.chain(*paths.values()):
+        files.check_writable(path)
+    for name, (header, measure, _) in CHARTS.items():
+        rows = []
+        for row in measure(options.quick):
+            rows.append(row)
+            print("%s: %s" % (name, ", ".join(map(" ".join, zip(header, _words(row))))),
+                  flush=True)
+        for path, data in zip(paths[name], (chart(name, rows, options.format), table(name, rows))):
+            files.write(path, data)
+    print("written: " + " ".join(itertools.chain(*paths.values())), flush=True)
+    return FINE
+
+
+def main(argv=None):
+    """Runs the command and returns its exit status; every failure is one line on stderr."""
+    try:
+        if None in (sys.stdout, sys.stderr):
+            return BAD                      # a standard stream is closed: nowhere to say so
+        for stream in (sys.stdout, sys.stderr):
+            stream.reconfigure(errors="backslashreplace")
+        return run(parser().parse_args(argv))
+    except SystemExit as end:               # of --help and --version
+        return end.code
+    except KeyboardInterrupt:
+        message, status = "interrupted; the charts that were finished are kept", INTERRUPTED
+    except (ConverseError, MemoryError) as error:
+        message, status = str(error) or "there is not enough memory", BAD
+    except OSError as error:
+        message, status = "the output cannot be written (%s)" % files.reason(error), BAD
+        with contextlib.suppress(OSError):  # the interpreter must not try again when it ends
+            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    with contextlib.suppress(OSError):
+        print("converse-chart: " + " ".join(message.split()), file=sys.stderr)
+    return status
+
+
+if __name__ == "__main__":
+    sys.exit(main())

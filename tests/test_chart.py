@@ -1,0 +1,143 @@
+"""The charts: drawn from made-up numbers; the command is not run to its end, which takes long."""
+
+import csv
+import io
+import os
+import re
+import subprocess
+import sys
+import xml.etree.ElementTree as ET
+
+import pytest
+
+from converse import __version__, chart, kernels
+
+ROWS = {
+    "bound": [("1989", "0.0274", 2698, "yes"), ("thesis", "0.0274", 0.05, "yes"),
+              ("loewner", "0.0250", 0.001, "yes"), ("loewner", "0.0145", 3.0, "no")],
+    "digits": [(1, 0.04, 0.03, 0, "no"), (3, 0.05, 0.04, 243, "yes"), (200, 0.1, 0.09, 111, "yes")],
+    "width": [("fixed form", "double", 2, 150.0, 1.02), ("column rotor", "35", 3, 5e4, 1.4),
+              ("Taylor model", "double", 4, 160.0, 1.0)],
+    "wall": [("thesis", "0.0280", 1, 0, "yes"), ("thesis", "0.0270", 71804, 28, "no"),
+             ("loewner", "0.0141", 216165, 36, "yes")],
+}
+START = {"svg": b"<?xml", "png": b"\x89PNG", "pdf": b"%PDF"}
+
+
+@pytest.fixture
+def quick(monkeypatch):
+    """The measurements take no time: they are made up."""
+    pytest.importorskip("matplotlib")
+    for name, (header, _, draw) in chart.CHARTS.items():
+        monkeypatch.setitem(chart.CHARTS, name, (header, lambda quick, name=name: iter(ROWS[name]),
+                                                 draw))
+
+
+def one_line(capsys):
+    out, err = capsys.readouterr()
+    assert err.startswith("converse-chart: ") and err.count("\n") == 1
+    return out, err
+
+
+@pytest.mark.parametrize("kind", chart.FORMATS)
+@pytest.mark.parametrize("name", sorted(chart.CHARTS))
+def test_charts(name, kind):
+    pytest.importorskip("matplotlib")
+    data = chart.chart(name, ROWS[name], kind)
+    assert data.startswith(START[kind])
+    if kind == "svg":
+        ET.fromstring(data)
+        assert b"dc:date" not in data and data == chart.chart(name, ROWS[name], kind)
+
+
+def test_files(quick, tmp_path, capsys):
+    place = tmp_path / "new" / "place"
+    assert chart.main([str(place), "--quick", "--format", "svg"]) == chart.FINE
+    out, err = capsys.readouterr()
+    assert err == ""
+    assert sorted(os.listdir(place)) == sorted(
+        "chart-%s.%s" % (name, ending) for name in ROWS for ending in ("svg", "csv"))
+    for name, rows in ROWS.items():
+        lines = list(csv.reader(io.StringIO((place / ("chart-%s.csv" % name)).read_text())))
+        assert tuple(lines[0]) == chart.CHARTS[name][0] and len(lines) == len(rows) + 1
+        for words, row in zip(lines[1:], rows):
+            for word, item in zip(words, row):
+                assert word == item if isinstance(item, str) else float(word) == item
+    assert out.count("\n") == sum(map(len, ROWS.values())) + 1
+    assert "digits: digits 3, seconds 0.05, before_search 0.04, prisms 243, proved yes\n" in out
+    last = out.splitlines()[-1]
+    assert last.startswith("written: ") and all("chart-%s.svg" % name in last for name in ROWS)
+
+
+def test_bad_places(quick, tmp_path, capsys):
+    (tmp_path / "file").write_text("")
+    assert chart.main([str(tmp_path / "file")]) == chart.BAD
+    assert "file" in one_line(capsys)[1]
+    (tmp_path / "chart-wall.csv").mkdir()
+    assert chart.main([str(tmp_path)]) == chart.BAD
+    out, err = one_line(capsys)
+    assert out == "" and "chart-wall.csv" in err        # before anything is measured
+    if os.geteuid():
+        (tmp_path / "closed").mkdir(mode=0o500)
+        assert chart.main([str(tmp_path / "closed")]) == chart.BAD
+        one_line(capsys)
+
+
+def test_bad_usage(capsys):
+    assert chart.main(["--format", "gif"]) == chart.BAD
+    assert "--help" in one_line(capsys)[1]
+    assert chart.main(["a", "b"]) == chart.BAD
+    one_line(capsys)
+
+
+def test_no_matplotlib(tmp_path, monkeypatch, capsys):
+    monkeypatch.setitem(sys.modules, "matplotlib", None)
+    assert chart.main([str(tmp_path / "place")]) == chart.BAD
+    assert "converse[plot]" in one_line(capsys)[1] and not os.listdir(tmp_path)
+
+
+def test_interrupted(quick, tmp_path, monkeypatch, capsys):
+    def interrupted(quick):
+        yield ROWS["wall"][0]
+        raise KeyboardInterrupt
+
+    monkeypatch.setitem(chart.CHARTS, "wall", (*chart.CHARTS["wall"][:1], interrupted,
+                                               chart.CHARTS["wall"][2]))
+    assert chart.main([str(tmp_path)]) == chart.INTERRUPTED
+    one_line(capsys)
+    assert (tmp_path / "chart-width.svg").exists() and not (tmp_path / "chart-wall.svg").exists()
+
+
+def test_help(tmp_path):
+    for flag, word in (("--help", "DIRECTORY"), ("--version", __version__)):
+        done = subprocess.run([sys.executable, "-m", "converse.chart", flag], cwd=tmp_path,
+                              stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+        assert done.returncode == 0 and done.stderr == b""
+        assert word.lower() in done.stdout.decode().lower()
+
+
+def test_caption():
+    text = chart.machine()
+    assert re.fullmatch(r"converse %s; .*\d+ cores?" % re.escape(__version__), text)
+
+
+def test_width():
+    """An enclosure is never narrower than the orbits of sampled points."""
+    rows = list(chart.width(True))
+    assert {row[0] for row in rows} >= {"fixed form", "column rotor"}
+    assert all(row[3] > 0 and 1 <= row[4] < 10 for row in rows)
+
+
+def test_a_core_without_taylor_models(monkeypatch):
+    def call(*_, **__):
+        raise ValueError
+    monkeypatch.setattr(kernels, "call", call)
+    assert list(chart.taylor_width(chart.true_extents())) == []
+
+
+def test_the_line():
+    problem = chart.on_line("0.0274", "0.0276", together=True)
+    low, high = (float(problem.centre[0] + sign * problem.half[0]) for sign in (-1, 1))
+    assert low == pytest.approx(0.0274 * 11.21436) and high == pytest.approx(0.0276 * 11.21436)
+    assert problem.centre[2] == 2 * problem.centre[1] == 2 * problem.centre[0]
+    assert problem.together and problem.full_torus
