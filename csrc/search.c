@@ -408,7 +408,7 @@ static int read_problem(cv_search *s, const char *const region[5], const char *c
     set_Herm_start(herman_start, abc, 1);
     for (int j = 0; j < 2; j++) {
         if (xstar == NULL)
-            snprintf(text, sizeof text, "%.17g", start[j]);
+            snprintf(text, sizeof text, method == CV_LOEWNER ? "%.6f" : "%.17g", start[j]);
         if (apm_set_str(s->root.xstar[j], xstar == NULL ? text : xstar[j]) != APM_OK)
             return CV_ENUMBER;
     }
