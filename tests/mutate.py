@@ -17,11 +17,12 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
 TESTS = ["test_apm.py", "test_special.py", "test_bounding.py", "test_bd_trig.py", "test_bounds.py", "test_images.py",
-         "test_search.py"]
+         "test_search.py", "test_loewner.py"]
 # The test to begin with; without one it is test_images.py.
 FIRST = {"apm.c": "test_apm.py", "special.c": "test_special.py", "bounding.c": "test_bounding.py",
          "bd_trig.c": "test_bd_trig.py", "trace.c": "test_bounds.py", "lambda.c": "test_bounds.py",
-         "torus.c": "test_bounds.py", "follow.c": "test_search.py", "search.c": "test_search.py"}
+         "torus.c": "test_bounds.py", "follow.c": "test_search.py", "search.c": "test_search.py", "sine.h": "test_loewner.py",
+         "loewner.c": "test_loewner.py"}
 FLAGS = ["-std=c11", "-O1", "-fPIC", "-ffp-contract=off", "-I", "csrc",
          "-I", sysconfig.get_paths()["include"]]
 
@@ -121,12 +122,43 @@ MUTATIONS = [
     ("follow.c", "num_cmp(n->least_lam, n->constants[C_LAM_MIN]) < 0;",
      "num_cmp(n->least_lam, n->constants[C_LAM_MAX]) < 0;"),
     ("follow.c", "        v->no_tori = 0;\n", ""),
-    ("search.c", "return apm_cmp(s->t[0], s->t[1]) >= 0;", "return apm_cmp(s->t[0], s->t[1]) <= 0;"),
+    ("search.c", "c->index[V1] << (k - l) > c->index[V0]", "c->index[V1] << (k - l) >= c->index[V0]"),
+    ("search.c", "c->index[V1] >= (c->index[V0] + 1) << (l - k)",
+     "c->index[V1] >= c->index[V0] << (l - k)"),
     ("search.c", "apm_cmp(s->root.half[0], s->root.half[1]) == 0 &&", ""),
     ("search.c", "if (apm_cmp(s->root.xstar[0], s->root.xstar[1]) != 0)", "if (0)"),
-    ("search.c", "apm_sub(lower->centre[axis], lower->centre[axis], lower->half[axis]);",
-     "apm_add(lower->centre[axis], lower->centre[axis], lower->half[axis]);"),
+    ("search.c", "    upper->index[axis]++;\n", ""),
+    ("search.c", "2 * (long)c->index[axis] + 1 - (1L", "2 * (long)c->index[axis] - (1L"),
     ("search.c", "        leaf(s, 'U');", "        leaf(s, 'P');"),
+    ("sine.h", " - n * 0x1.3198a2e037073p-69", ""),
+    ("sine.h", "z * (1.0 / 355687428096000.0)", "z * (2.0 / 355687428096000.0)"),
+    ("sine.h", "(bits & 2) << 62", "(bits & 1) << 63"),
+    ("loewner.c", "q->reach[2] = (sum[2] + q->rest[0] + q->rest[1]) * WIDEN;",
+     "q->reach[2] = (sum[2] + q->rest[0]) * WIDEN;"),
+    ("loewner.c", "        sum[1] += fabs(q->column[1][k]);", "        sum[1] += q->column[1][k];"),
+    ("loewner.c", "(c * 0.5 + s * rho", "(c * 0.25 + s * rho"),
+    ("loewner.c", "(w->h[wave] + w->loose[wave]) * s * rho", "w->loose[wave] * s * rho"),
+    ("loewner.c", "double e = bent[i] + bent[2];", "double e = bent[i];"),
+    ("loewner.c", "i0 * o->force[0] + i1 * o->force[1];", "i0 * o->force[0];"),
+    ("loewner.c", " + fabs(q->d[i + 1]) * q->rest[1]\n", "\n"),
+    ("loewner.c", "next->column[i][w->together ? 2 : 4] += w->h[2] * q->cosine[2];", ""),
+    ("loewner.c", "q[j].mu[1] - q[j + 1].mu[i];", "q[j].mu[1] + q[j + 1].mu[i];"),
+    ("loewner.c", "larger(0.0, -p * A)", "larger(0.0, p * A)"),
+    ("loewner.c", " + h * fabs(A)) * half_square", ") * half_square"),
+    ("loewner.c", "(1.0 / 3.0) + h * rho)", "(1.0 / 3.0))"),
+    ("loewner.c", "centre -= omega[i] * p * s;", "centre -= omega[i] * p * s + 1e-9;"),
+    ("loewner.c", "                rest += slope * q->reach[i];\n", ""),
+    ("loewner.c", "total = w->together ? total + part : fabs(part);", "total = total + part;"),
+    ("loewner.c", "    centre -= tails;\n", "    centre -= 2.0 * tails;\n"),
+    ("loewner.c", "largest = larger(largest, sum);", "largest = sum;"),
+    ("loewner.c", "(2.0 * (double)cell->index[k] + 1.0)", "(2.0 * (double)cell->index[k])"),
+    ("loewner.c", "w->h[i] = w->half[2 + i] * part[axis];", "w->h[i] = 0.0;"),
+    ("loewner.c", "w->width[i] = w->half[i] * part[i]", "w->width[i] = 0.5 * w->half[i] * part[i]"),
+    ("loewner.c", "w->p[i] = w->centre[2 + i] + w->half[2 + i] * at[axis];",
+     "w->p[i] = w->centre[2 + i];"),
+    ("loewner.c", "upper ? 1.0 : -1.0", "upper ? 1.0 : 1.0"),
+    ("loewner.c", "sum += w->half[2 + i] * fabs(s[i]) * omega[i];", ""),
+    ("loewner.c", "(w->together ? w->half[2 + i] : 0.0)", "0.0"),
 ]
 
 # Survivors that do not matter, by what stands there, with the reason.
@@ -150,10 +182,12 @@ def build(base, work):
     (work / "converse").mkdir(parents=True)
     for path in (ROOT / "converse").glob("*.py"):
         shutil.copy(path, work / "converse")
-    changed = {"apm.c", "special.c", "memory.c", "start.c", "search.c", "cv_kernel.c"}
+    changed = {"apm.c", "special.c", "memory.c", "start.c", "search.c", "cv_kernel.c", "loewner.c"}
     name = next(p.name for p in (work / "csrc").iterdir()
                 if p.read_bytes() != (ROOT / "csrc" / p.name).read_bytes())
     units = [name] if name in changed else ["rigorous.c", "double.c"]
+    if name == "sine.h":
+        units = ["double.c", "loewner.c", "cv_kernel.c"]
     for unit in units:
         subprocess.run(["gcc", *FLAGS, "-c", "csrc/" + unit, "-o", unit + ".o"], cwd=work,
                        check=True, capture_output=True)

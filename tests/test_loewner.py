@@ -4,6 +4,7 @@ Random prisms, random exact points inside, their orbits with many digits: they m
 core says; and the second variation along them must be below the bound.
 """
 
+from dataclasses import replace
 from fractions import Fraction
 
 import mpmath
@@ -11,7 +12,8 @@ import pytest
 from truth import TORTURE, beta, mp, rng_for
 
 from converse import ConverseError, Problem, kernels, prove
-from converse.tree import cells
+from converse.search import Search, Task
+from converse.tree import ROOT, cells
 
 CASES = 10000 * TORTURE
 SITES = 60                              # of the core's longest vector
@@ -141,7 +143,7 @@ def test_l_is_below_the_truth():
     rng = rng_for("loewner l")
     for _ in range(CASES // 20):
         prism = draw(rng)
-        prism[5:8] = [0, 0, 0]
+        prism[5:8] = [x * rng.choice([0, 1, 30]) for x in prism[5:8]]
         try:
             out = kernels.call("loewner_bound", [*prism, 0, 1], 4 + 2 * SITES, 20)
         except ArithmeticError:
@@ -149,7 +151,7 @@ def test_l_is_below_the_truth():
         l = mp(out[1])
         for _ in range(40):
             x = [rng.uniform(0, 7), rng.uniform(0, 7)]
-            p, q, r = beta(*map(mp, prism[:3]), *x)
+            p, q, r = beta(*map(mp, inside(rng, prism)[1][:3]), *x)
             assert (p + r + mpmath.sqrt((p - r) ** 2 + 4 * q * q)) / 2 <= l + 1 / l
 
 
@@ -218,6 +220,40 @@ def test_never_a_false_theorem(problem):
         result = prove(problem, depth, stubborn=stubborn, method="loewner", time_limit=3)
         assert not result.no_tori and "I could not decide" in result.report()
         assert result.undecided or not stubborn
+
+
+def test_a_cell_is_what_it_says(proof):
+    """A cell of the tree fares like the root of a problem that is just this cell."""
+    rng, problem, same = rng_for("loewner cells"), proof.problem, 0
+    prisms, task = [], Task(*map(tuple, problem.decimals()), proof.xstar, True, "loewner", 120, 35,
+                            False, False)
+    for _, (index, cuts) in cells(proof.tree):
+        index = tuple(i >> k // 2 for i, k in zip(index, cuts))
+        cuts = tuple(k - k // 2 for k in cuts)
+        if index[1] + 1 << cuts[0] <= index[0] << cuts[1]:      # below the diagonal
+            prisms.append((index, cuts))
+    search = Search(task)
+    for index, cuts in rng.sample(prisms, 200):
+        part = [Fraction(1, 2 ** k) for k in cuts]
+        axes = 2, 2, 2, 0, 1                # of a, b, c, v0, v1
+        centre = [c + h * ((2 * index[k] + 1) * part[k] - 1)
+                  for c, h, k in zip(problem.centre, problem.half, axes)]
+        half = [h * part[k] for h, k in zip(problem.half, axes)]
+        cell = Problem(tuple(centre), tuple(half), together=True)
+        whole = Search(replace(task, centre=tuple(cell.decimals()[0]),
+                               half=tuple(cell.decimals()[1])))
+        below = search.grow([(index, cuts, 0)], 10).text
+        same += below == whole.grow([(*ROOT, 0)], 10).text
+    assert same > 190                       # rounding may tell them apart
+
+
+@pytest.mark.parametrize("low, high, together, expected", [
+    ("0.0250", "0.02517", True, False), ("0.0250", "0.0252", True, True),
+    ("0.0250", "0.0260", False, False), ("0.0252", "0.0253", False, True)])
+def test_at_once_above_ten_thirds(low, high, together, expected):
+    """B = 2 + 52.955 epsilon > 10/3."""
+    result = prove(line(low, high, together), method="loewner", time_limit=0)
+    assert result.at_once == expected
 
 
 def test_other_parameters():
