@@ -95,7 +95,7 @@ class Claim:
     together: bool                      # the parameters move as one, from end to end
     at_once: bool                       # the claim covers larger multiples of them, too
     tree: str
-    sha256: str                         # of the bytes of the file
+    sha256: str                         # of the file, uncompressed
 
 
 def read(path):
@@ -127,7 +127,7 @@ def read(path):
     head, marker, tree = body.partition("\ntree:\n")
     if not marker:
         raise Rejected("there is no tree")
-    return parse(head.split("\n")[1:], tree.replace("\n", ""), hashlib.sha256(raw).hexdigest())
+    return parse(head.split("\n")[1:], tree.replace("\n", ""), hashlib.sha256(data).hexdigest())
 
 
 def parse(lines, tree, sha256):
@@ -269,7 +269,7 @@ class Mirror:
 GUARD = 64                              # more bits, in which constants are computed
 SLICES = 256                            # of the circle, in the table of sines and cosines
 SINE_ERROR = 16                         # units; see Fixed.sincos
-PARAMETER_ERROR = 32                    # units; see Criterion.piece
+PARAMETER_ERROR = 32                    # units; see Criterion and its piece
 
 
 def arctan_inverse(n, one):
@@ -483,40 +483,50 @@ def least(d):
 
 
 def pivots(betas, l):
-    """The recursion d = beta - l, then beta - 1/d, in double precision; None if it fails."""
+    """The recursion d = beta - l, then beta - 1/d, in double precision, up to the first d that is
+    not above l, or to the end."""
     d, found = (1 / l, 0.0, 1 / l), []
-    for beta in betas:
-        found.append(d)
+    for b0, b1, b2 in betas:
         p, q, r = d
         det = p * r - q * q
-        if not (p > 0 and det > 0):     # The orbit contradicts without the rest, but no bound was
-            return None                 # computed; without a witness nothing is claimed.
-        d = beta[0] - r / det, beta[1] + q / det, beta[2] - p / det
-    return found + [d]
+        d = p, q, r = b0 - r / det, b1 + q / det, b2 - p / det
+        found.append(d)
+        if not (p > l and (p - l) * (r - l) > q * q):
+            break
+    return found
 
 
 def witness(betas, l):
     """Vectors n of negative second variation at the centres of an orbit with these betas, or None.
 
-    The recursion is run from both ends to the site where beta is least, and there the least
-    eigenvector is taken; outwards n[j-1] = 1/d[j-1] n[j].  Double precision: nothing rests on it.
+    The recursion from the left falls below l at some site, that from the right at another, and
+    all blocks between them are above it; if they cross, the part up to the left one is enough.
+    Between them, where beta is least, n is the least eigenvector of what the others leave there;
+    outwards n[j-1] = 1/d[j-1] n[j].  The last sites may go without.  Double precision: nothing
+    rests on it.
     """
-    site = min(range(len(betas)), key=lambda j: least(betas[j])[0])
-    left, right = pivots(betas[:site + 1], l), pivots(betas[:site:-1] + [(0.0, 0.0, 0.0)], l)
-    if not left or not right:
+    left, end = pivots(betas, l), len(betas)
+    fall = len(left) - 1
+    p, q, r = left[-1]
+    if p > l and (p - l) * (r - l) > q * q:
         return None
-    value, n = least([d + e for d, e in zip(left[-1], right[-1])])
-    if not value < 0:
-        return None
+    right = pivots(betas[::-1], l)
+    if end - len(right) > fall:
+        end = len(left)
+        right = pivots(betas[end - 1::-1], l)
+    first = min(end - len(right), fall)
+    site = min(range(first, fall + 1), key=lambda j: least(betas[j])[0])
+    form = [d + e - b for d, e, b in zip(left[site], right[end - 1 - site], betas[site])]
 
     def outwards(side):
         m = n
-        for p, q, r in side[-2:0:-1]:
+        for p, q, r in side:
             det = p * r - q * q
             m = (r * m[0] - q * m[1]) / det, (p * m[1] - q * m[0]) / det
             yield m
 
-    return [*list(outwards(left))[::-1], n, *outwards(right)]
+    n = least(form)[1]
+    return [*[*outwards(left[:site][::-1])][::-1], n, *outwards(right[:end - 1 - site][::-1])]
 
 
 def second_variation(fixed, symbols, l, orbit, vectors):
@@ -525,6 +535,8 @@ def second_variation(fixed, symbols, l, orbit, vectors):
     All products are exact; the unit of the result is 2^-(2 bits + 2 NU_BITS).
     """
     bits = fixed.bits
+    if len(vectors) > len(orbit):
+        raise ValueError("a vector without its site")
     nu = [(round(u * 2 ** NU_BITS), round(v * 2 ** NU_BITS)) for u, v in vectors]
     centre = -l * sum(n * n for n in (*nu[0], *nu[-1]))
     centre -= 2 * sum(m[0] * n[0] + m[1] * n[1] for m, n in zip(nu, nu[1:])) << bits
@@ -557,15 +569,14 @@ class Criterion:
         # Orbits that differ by 2 pi in x[1] differ by 2 pi j in x[j]: nothing else changes.
         self.region = [(math.floor(c % 2 * fixed.pi), math.floor(h * fixed.pi),
                         4 * math.ceil(h) + 10) for c, h in zip(claim.centre[3:], claim.half[3:])]
-        # The ends of the parameters: a cell's B is no larger than what lies between B there.
+        # The ends of the parameters: a cell's B is no larger than what lies between B there.  The
+        # eigenvalue grows by at most max(|da|, |db|) + 2 |dc|; an end is off by less than 2 units,
+        # and so is a point along its symbol: B is off by less than PARAMETER_ERROR.
         signs = [(s, s, s) for s in (-1, 1)] if claim.together else \
             list(itertools.product((-1, 1), repeat=3))
-        corners = [tuple(c + s * (h + PARAMETER_ERROR) for c, h, s in zip(*self.parameters, sign))
-                   for sign in signs]
-        if set("234") & set(claim.tree):
-            self.B_at = [torus_bound(fixed, [corner]) for corner in corners]
-        else:
-            self.B_at = [torus_bound(fixed, corners)]
+        corners = [tuple(c + s * h for c, h, s in zip(*self.parameters, sign)) for sign in signs]
+        apart = [[x] for x in corners] if set("234") & set(claim.tree) else [corners]
+        self.B_at = [torus_bound(fixed, ends) + PARAMETER_ERROR for ends in apart]
         self.B = max(self.B_at)
         if self.B <= 2 * fixed.one:
             # The tails of step 2 must be square-summable, l < 1, which needs B > 2.  (The mean of
@@ -655,6 +666,15 @@ class Criterion:
             known += 3
         return why, columns
 
+    def halves(self, centre, half, columns):
+        """The halves of a piece along the symbol that matters most: of an angle or a parameter, or
+        of all three parameters where they move together, since they have one symbol."""
+        worst = max(range(5), key=lambda k: abs(columns[k]))
+        axes = {0, 1, 2} if self.together and worst < 3 else {worst}
+        step = [h + 1 >> 1 if k in axes else 0 for k, h in enumerate(half)]
+        half = [s if k in axes else h for k, (h, s) in enumerate(zip(half, step))]
+        return [([c + sign * s for c, s in zip(centre, step)], half) for sign in (1, -1)]
+
     def excluded(self, cell):
         """Does no minimizing orbit go from x* to the cell?  (None or else why not, pieces tried)"""
         l, todo, pieces = self.least_pivot(cell), [(*self.piece(cell), 0)], 0
@@ -666,12 +686,7 @@ class Criterion:
                 continue
             if halvings == MAX_HALVINGS or pieces + len(todo) >= MAX_PIECES:
                 return failed[0], pieces
-            worst = max(range(5), key=lambda k: abs(failed[1][k]))
-            axes = {0, 1, 2} if self.together and worst == 0 else {worst}
-            step = [h + 1 >> 1 if k in axes else 0 for k, h in enumerate(half)]
-            half = [s if k in axes else h for k, (h, s) in enumerate(zip(half, step))]
-            todo += [([c + sign * s for c, s in zip(centre, step)], half, halvings + 1)
-                     for sign in (1, -1)]
+            todo += [(*piece, halvings + 1) for piece in self.halves(centre, half, failed[1])]
         return None, pieces
 
     def at_once(self):

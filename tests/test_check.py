@@ -3,6 +3,7 @@
 import gzip
 import hashlib
 import itertools
+import math
 import random
 import re
 import subprocess
@@ -12,7 +13,7 @@ from fractions import Fraction
 import mpmath
 import pytest
 
-from converse import check, prove, read_input
+from converse import Problem, check, prove, read_input
 
 INPUTS = ("trig272", "trig274", "trig276", "trig278")
 mp = mpmath.mp.clone()
@@ -65,37 +66,56 @@ def with_tree(text, tree, counted=True):
     head, middle, rest = text.partition("\ntree:\n")
     text = head + middle + tree + "\n" + rest[rest.rindex("checksum"):]
     if counted:
-        for name, kinds in (("cuts", "01"), ("proved", "P"), ("symmetric", "S"), ("undecided", "U")):
+        for name, kinds in (("cuts", check.AXES), ("proved", "P"), ("symmetric", "S"),
+                            ("undecided", "U")):
             text = with_field(text, name, sum(map(tree.count, kinds)))
         try:
             text = with_field(text, "most_cuts", max(
-                [k + l for at, (_, k, _, l) in check.leaves(tree) if tree[at] == "P"] + [0]))
+                [sum(cuts) for at, (_, cuts) in check.leaves(tree) if tree[at] == "P"] + [0]))
         except check.Rejected:
             pass
     return text
 
 
+def with_parameters(text, *pairs):
+    """The text with other centres and half-widths of a, b and c."""
+    for name, pair in zip("abc", pairs):
+        text = with_field(text, name, " ".join(check.decimal_text(Fraction(x)) for x in pair))
+    return text
+
+
+def claim_of(text):
+    return check.parse(text.split("\ntree:")[0].split("\n")[1:], tree_of(text), "")
+
+
+def halves(cell, axis):
+    index, cuts = cell
+    cuts = check.changed(cuts, axis, cuts[axis] + 1)
+    return [(check.changed(index, axis, 2 * index[axis] + upper), cuts) for upper in (0, 1)]
+
+
+def above(cell):
+    """Does the cell lie above the diagonal of the angles?"""
+    (i, j, *_), (k, l, *_) = cell
+    return j << k >= i + 1 << l
+
+
 def built(a, half, depth, text):
     """A proof file whose leaves need orbits; the tree is cut until one attempt settles a leaf."""
-    for name, factor in (("a", 1), ("b", 1), ("c", 2)):
-        text = with_field(text, name, "%s %s" % (check.decimal_text(factor * Fraction(a)),
-                                                 check.decimal_text(factor * Fraction(half))))
+    text = with_parameters(text, *((k * Fraction(a), k * Fraction(half)) for k in (1, 1, 2)))
     text = with_tree(with_field(with_field(text, "depth", 99), "most_cuts", depth), "P", False)
-    claim = check.parse(text.split("\ntree:")[0].split("\n")[1:], "P", "")
-    criterion, tree, todo = check.Criterion(claim), [], [(0, 0, 0, 0)]
+    criterion, tree, todo = check.Criterion(claim_of(text)), [], [check.ROOT]
     while todo:
-        i, k, j, l = cell = todo.pop()
+        cell = todo.pop()
         failed = None
-        if j << k >= i + 1 << l:
+        if above(cell):
             tree.append("S")
-        elif k + l == depth or not (failed := criterion.attempt(criterion.piece(cell))):
+        elif sum(cell[1]) == depth or not (failed := criterion.attempt(
+                criterion.least_pivot(cell), criterion.piece(cell))):
             tree.append("P")
-        elif abs(failed[1][3]) > abs(failed[1][4]):
-            tree.append("0")
-            todo += (2 * i + 1, k + 1, j, l), (2 * i, k + 1, j, l)
         else:
-            tree.append("1")
-            todo += (i, k, 2 * j + 1, l + 1), (i, k, 2 * j, l + 1)
+            tree.append("0" if abs(failed[1][3]) > abs(failed[1][4]) else "1")
+            todo += reversed(halves(cell, int(tree[-1])))
     return sealed(with_tree(text, "".join(tree)))
 
 
@@ -103,6 +123,31 @@ def built(a, half, depth, text):
 def deep(texts):
     """a = b = c/2 = 0.2: beyond the thesis's method; no leaf is settled at once."""
     return built("0.2", "0.0001", 30, texts["trig274"])
+
+
+@pytest.fixture(scope="module")
+def moving(tmp_path_factory):
+    """Proof files of the method loewner, by name: parameters on a segment, that of the inputs or
+    another, or in a box about a piece of it; with cuts of the parameters or without."""
+    inputs = [Fraction("11.21436") * k for k in (1, 1, 2)]          # times epsilon
+    slanted = (Fraction(12), Fraction("10.5"), Fraction(23))
+    found = {}
+    for name, direction, low, high, together in (
+            ("segment", inputs, "0.0200", "0.0280", True),
+            ("beginning", inputs, "0.0200", "0.0202", True),
+            ("slanted", slanted, "0.0216", "0.0284", True),
+            ("point", inputs, "0.0240", "0.0240", True),
+            ("box", inputs, "0.0230", "0.0250", False),
+            ("narrow box", inputs, "0.0239", "0.0241", False),
+            ("slanted box", slanted, "0.0236", "0.0250", False)):
+        ends = [[k * Fraction(x) for k in direction] for x in (low, high)]
+        problem = Problem((*((p + q) / 2 for p, q in zip(*ends)), Fraction(1), Fraction(1)),
+                          (*((q - p) / 2 for p, q in zip(*ends)), Fraction(1), Fraction(1)), (),
+                          together)
+        path = tmp_path_factory.mktemp("proofs") / "moving"
+        prove(problem, method="loewner").save(path)
+        found[name] = path.read_text(encoding="utf-8")
+    return found
 
 
 # ---- confirmed
@@ -127,6 +172,37 @@ def test_confirms_what_needs_orbits(deep, run):
     assert pieces == tree_of(deep).count("P")
 
 
+@pytest.mark.parametrize("name, cuts, at_once", [
+    ("segment", "2", True), ("beginning", "", False), ("slanted", "2", True), ("point", "", False),
+    ("box", "4", False), ("narrow box", "", False), ("slanted box", None, False)])
+def test_confirms_ranges_of_parameters(moving, run, name, cuts, at_once):
+    text = moving[name]
+    status, out, err = run(text)
+    assert (status, err) == (0, "") and out.startswith("Verified :")
+    assert cuts is None or set(tree_of(text)) & set("234") == set(cuts)
+    assert ("moving together" in out) == ("together: yes" in text) == ("box" not in name)
+    assert ("any multiple s >= 1 of the upper ends" in out) == ("at once: yes" in text) == at_once
+    assert ("symmetric" in out and "0 symmetric" in out) == ("slanted" in name)
+    if name == "segment":
+        assert "\n0.2242872 <= a <= 0.31400208\n" in out and "region" not in out
+
+
+def test_confirms_cuts_along_every_parameter(moving, run):
+    """Halved and halved again along a, b and c, the same tree proves the same; and B falls."""
+    for name, axes in (("segment", "22"), ("narrow box", "234"), ("narrow box", "3"),
+                       ("slanted box", "42"), ("point", "2")):
+        text, tree = moving[name], tree_of(moving[name])
+        for axis in axes:
+            tree = axis + tree + tree
+        text = with_field(text, "depth", 99)
+        assert run(sealed(with_tree(text, tree)))[0] == 0
+    ends = [0, (1 << 3) - 1]
+    for name in ("segment", "narrow box", "slanted box"):
+        criterion = check.Criterion(claim_of(with_tree(moving[name], "2PP")))
+        low, high = (criterion.least_pivot(((0, 0, i, i, i), (0, 0, 3, 3, 3))) for i in ends)
+        assert low > high == criterion.least_pivot(check.ROOT)
+
+
 def test_halves_leaves_that_are_too_large(deep, texts, run):
     tree = tree_of(deep)
     while "0PP" in tree and tree.count("P") > 200:
@@ -144,9 +220,10 @@ def test_same_output_for_any_jobs(deep, run):
 
 
 def test_gzip(texts, run):
-    data = gzip.compress(texts["trig278"].encode())
+    text = texts["trig278"].encode()
+    data = gzip.compress(text)
     status, out, _ = run(data, name="some.proof.gz")
-    assert status == 0 and hashlib.sha256(data).hexdigest() in out
+    assert status == 0 and hashlib.sha256(text).hexdigest() in out
     assert run(data, name="named.otherwise")[0] == 0
 
 
@@ -228,7 +305,9 @@ def test_a_leaf_without_a_proved_mirror_image(texts, run):
 @pytest.mark.parametrize("tree, why", [
     ("S", "mirror image"), ("0PS", "mirror image"), ("0SS", "mirror"), ("", "incomplete"),
     ("0P", "incomplete"), ("PP", "ends before"), ("0PPP", "ends before"), ("U", "undecided"),
-    ("0PU", "undecided"), ("2PPP", "not a node"), ("p", "not a node"), ("0 PP", "not a node"),
+    ("0PU", "undecided"), ("2PPP", "ends before"), ("2P", "incomplete"), ("p", "not a node"),
+    ("0 PP", "not a node"),
+    ("5PP", "not a node"), ("?", "not a node"), ("3P?", "not a node"), ("4?P", "not a node"),
     ("0" * 1200, "lies below"), ("0" * 40 + "P" * 41, "depth")])
 def test_trees(texts, run, tree, why):
     status, _, err = run(sealed(with_tree(texts["trig278"], tree)))
@@ -245,6 +324,114 @@ def test_shortened_and_lengthened(texts, deep, run, name):
             assert status == 1 and "tree" in err
     assert "truncated" in run(text[:-1])[2]
     assert run(text + "\n")[0] == 1
+
+
+@pytest.mark.parametrize("name", ["segment", "beginning", "slanted"])
+def test_together_flipped_to_apart(moving, run, name):
+    """The box about a segment is much more than the segment."""
+    text = with_field(moving[name], "together", "no")
+    if "at once: yes" in text:
+        assert "larger parameters" in run(sealed(text))[2]
+        text = with_field(text, "at once", "no")
+    if name == "beginning":                             # hardly more, and true
+        assert run(sealed(text))[0] == 0
+        for key, pair in (("a", "0.23 0.02"), ("b", "0.23 0.02"), ("c", "0.45 0.04")):
+            text = with_field(text, key, pair)
+    status, out, err = run(sealed(text))
+    assert (status, out) == (1, "") and "not excluded" in err
+
+
+@pytest.mark.parametrize("name", ["box", "narrow box", "slanted box"])
+def test_apart_flipped_to_together(moving, run, name):
+    """The segment is less than its box; but it has no cuts along one parameter."""
+    text = with_field(moving[name], "together", "yes")
+    cut = set(tree_of(text)) & set("34")
+    status, out, err = run(sealed(text))
+    assert status == (1 if cut else 0)
+    assert "cut one at a time" in err if cut else "moving together" in out
+
+
+@pytest.mark.parametrize("name", ["beginning", "point", "box", "narrow box", "slanted box"])
+def test_at_once_flipped(moving, run, name):
+    status, out, err = run(sealed(with_field(moving[name], "at once", "yes")))
+    assert (status, out) == (1, "") and "not confirmed that larger parameters" in err
+    assert run(with_field(moving[name], "at once", "yes"))[2].count("wrong checksum") == 1
+    assert "multiple" not in run(sealed(with_field(moving["segment"], "at once", "no")))[1]
+
+
+@pytest.mark.parametrize("name", ["segment", "slanted", "box", "slanted box"])
+@pytest.mark.parametrize("into", "01234?x")
+def test_flipped_cuts(moving, run, generator, name, into):
+    """Any cut becomes any other: the claim is the same, so what still passes is still true."""
+    text, tree = moving[name], tree_of(moving[name])
+    for kind in check.AXES:
+        places = [n for n, node in enumerate(tree) if node == kind and kind != into]
+        for place in generator.sample(places, min(2, len(places))) + places[:1]:
+            other = with_tree(text, tree[:place] + into + tree[place + 1:])
+            status, out, err = run(sealed(other))
+            if into in "?x":
+                assert status == 1 and "not a node of a finished tree" in err
+            elif into in "34" and "together: yes" in text:
+                assert status == 1 and "cut one at a time" in err
+            else:
+                assert status == 0 or "not excluded" in err or "mirror" in err
+
+
+def test_flipped_leaves_below_cuts_of_parameters(moving, run, generator):
+    for name in ("segment", "box", "slanted"):
+        text, tree = moving[name], tree_of(moving[name])
+        leaves = [n for n, node in enumerate(tree) if node in "PS"]
+        for place in generator.sample(leaves, 3):
+            for into in "?USP2":
+                other = with_tree(text, tree[:place] + into + tree[place + 1:])
+                status, _, err = run(sealed(other))
+                if into == "P":
+                    assert status == 0 and tree[place] in "PS"
+                elif into == "S":
+                    assert status == 0 or "mirror" in err or "not symmetric" in err
+                else:
+                    why = {"?": "not a node", "U": "undecided", "2": "incomplete"}[into]
+                    assert status == 1 and why in err
+
+
+def test_parameters_widened_and_moved(moving, run):
+    """Down to where there are tori; and the segment only changes its slope."""
+    for name, pairs, why in (
+            ("segment", [("0.2", "0.12"), ("0.2", "0.12"), ("0.4", "0.24")], "not excluded"),
+            ("slanted", [("0.19", "0.15"), ("0.17", "0.13"), ("0.35", "0.3")], "not excluded"),
+            ("box", [("0.27", "0.2"), ("0.27", "0.2"), ("0.54", "0.01")], "not excluded"),
+            ("point", [("0.25", "0.2"), ("0.25", "0.2"), ("0.5", "0.4")], "not excluded"),
+            ("segment", [("-0.1", "0.4"), ("-0.1", "0.4"), ("-0.2", "0.8")], "not excluded"),
+            ("segment", [("0.27", "0.045"), ("0.27", "0.046"), ("0.54", "0.09")], "not symmetric"),
+            ("beginning", [("0.1", "0"), ("0.1", "0"), ("0.2", "0")], "not excluded")):
+        text = with_parameters(moving[name], *pairs)
+        assert "wrong checksum" in run(text)[2]
+        status, out, err = run(sealed(with_field(text, "at once", "no")))
+        assert (status, out) == (1, "") and why in err, (name, pairs)
+
+
+def test_mirror_images_in_slices_of_the_parameters(moving, run):
+    """Of a leaf that is skipped and its mirror image, cut along the parameters and skipped in part:
+    the exchange of the angles exchanges a and b, too, unless they move together."""
+    for name, cases in (
+            ("narrow box", {"P/2PP": 0, "2SP/P": 0, "S/2PS": 1, "2SP/2PP": 0, "2PS/3SP": 0,
+                            "2PS/2SP": 1, "2PS/3PS": 1, "4PS/4SP": 0, "4PS/4PS": 1, "3SP/2PS": 0,
+                            "3SP/3PS": 1, "34SPP/42SPP": 1, "34SPP/42PSP": 0, "2SS/3PP": 0}),
+            ("beginning", {"S/2PS": 1, "2SP/P": 0, "2PS/2SP": 0, "2PS/2PS": 1, "2SS/2PP": 0,
+                           "22SPS/22PSP": 0, "22SPS/22SPP": 1})):
+        text, tree = with_field(moving[name], "depth", 99), tree_of(moving[name])
+        at = {cell: place for place, cell in check.leaves(tree)}
+        for cell, place in at.items():
+            (i, j, *rest), (k, l, *cuts) = cell
+            image = at.get(((j, i, *rest), (l, k, *cuts)))
+            if tree[place] == "S" and image is not None:
+                break
+        for case, refused in cases.items():
+            skipped, mirrored = case.split("/")
+            other = list(tree)
+            other[place], other[image] = skipped, mirrored
+            status, _, err = run(sealed(with_tree(text, "".join(other))))
+            assert (status, "mirror image is not proved" in err) == (refused, refused == 1), case
 
 
 @pytest.mark.parametrize("name", ["cuts", "proved", "symmetric", "undecided", "most_cuts"])
@@ -285,7 +472,11 @@ def test_header_lines(texts, run):
     for other, why in ((text.replace("depth:", "deepth:"), "unknown meaning"),
                        (text.replace("depth: 30\n", ""), "lacks depth"),
                        (text.replace("depth: 30\n", "depth: 30\ndepth: 30\n"), "twice"),
-                       (text.replace("converse proof 1", "converse proof 2"), "version 1"),
+                       (text.replace("converse proof 2", "converse proof 1"), "version 2"),
+                       (text.replace("together: no", "together: perhaps"), "neither yes nor no"),
+                       (text.replace("at once: no", "at once: No"), "neither yes nor no"),
+                       (text.replace("together: no\n", ""), "lacks together"),
+                       (text.replace("at once: no\n", "at once: no\nat once: yes\n"), "twice"),
                        (text.replace("\ntree:\n", "\ntrees:\n"), "no tree")):
         status, _, err = run(sealed(other))
         assert status == 1 and why in err
@@ -294,7 +485,7 @@ def test_header_lines(texts, run):
 
 
 @pytest.mark.parametrize("data", [b"", b"\x00\xff\xfe junk" * 99, b"\x1f\x8b", b"\x1f\x8b\x08junk",
-                                  b"converse proof 1\n\xff", b"tree", bytes(range(256)) * 10])
+                                  b"converse proof 2\n\xff", b"tree", bytes(range(256)) * 10])
 def test_unreadable(run, data):
     status, out, err = run(data)
     assert (status, out) == (2, "") and err.count("\n") == 1
@@ -344,16 +535,48 @@ def test_as_a_command(texts, tmp_path, root):
 @pytest.mark.parametrize("tree", ["P", "01PP1PP"])
 def test_forged(texts, run, a, tree):
     text = texts["trig278"]
-    for name, factor in (("a", 1), ("b", 1), ("c", 2)):
-        text = with_field(text, name, "%s 0" % check.decimal_text(factor * Fraction(a)))
+    text = with_parameters(text, *((k * Fraction(a), 0) for k in (1, 1, 2)))
     status, out, err = run(sealed(with_tree(text, tree)))
     assert (status, out) == (1, "") and "leaf 1 of" in err and "not excluded" in err
 
 
+def test_parameters_that_move_together_are_halved_together(texts, run):
+    """Tori exist in the middle of this segment, where the map is a rotation.  With c alone halved,
+    a and b would be followed from their lower to their upper ends while c is above (or below) 0."""
+    text = with_parameters(with_tree(texts["trig278"], "P"), ("0", "20"), ("0", "20"), ("0", "22"))
+    for name, value in (("v0", "-0.25 0.01"), ("v1", "-0.25 0.01"), ("together", "yes"),
+                        ("xstar", "0.785398 0.785398")):
+        text = with_field(text, name, value)
+    assert "not excluded" in run(sealed(text))[2]
+
+
+@pytest.mark.parametrize("tree", ["P", "22PP2PP"])
+@pytest.mark.parametrize("centre, half", [
+    ("0", "0.3"), ("0", "3"), ("-0.3", "0.3"), ("0.001", "0"), ("0.15", "0"), ("0.15", "0.16"),
+    ("-0.15", "0.05"), ("1", "1"), ("1", "0.9999"), ("0", "0"), ("-1", "1.1")])
+def test_forged_segments(texts, run, tree, centre, half):
+    """Segments to, from or through where there are tori, in any cuts and any region."""
+    text = with_field(with_tree(texts["trig278"], tree), "together", "yes")
+    c, h = Fraction(centre), Fraction(half)
+    text = with_parameters(text, (c, h), (c, h), (2 * c, 2 * h))
+    for region in ("1 1", "0 0.1", "1e9 3", "0 0"):
+        for name in ("v0", "v1"):
+            text = with_field(text, name, region)
+        status, out, err = run(sealed(text))
+        if status == 0:             # a single successor, and the truth
+            assert (region, half) == ("0 0", "0")
+            x0 = [mp.mpf("0.82773291385109182")] * 2
+            assert not definite([real(k * c) for k in (1, 1, 2)], x0, [mp.mpf(0)] * 2, 20)
+        else:
+            assert (status, out) == (1, "") and "not excluded" in err
+    status, out, err = run(sealed(with_field(text, "at once", "yes")))
+    upper = 472 * (c + h) > 133             # B > 10/3 there
+    assert (status, out) == (1, "") and ("not excluded" if upper else "larger") in err
+
+
 def test_nearly_everything_is_not_everything(deep, run):
     """Among boxes that are excluded, hide one whose parameters are not."""
-    text = with_field(with_field(with_field(deep, "a", "0.13 0.071"), "b", "0.13 0.071"),
-                      "c", "0.26 0.142")
+    text = with_parameters(deep, *[("0.13", "0.071")] * 2, ("0.26", "0.142"))
     assert run(sealed(text))[0] == 1
 
 
@@ -422,18 +645,27 @@ def test_model(bits, generator):
         if generator.random() < 0.5:        # as far from the truth as the contract allows
             f, g = ((k + generator.choice((-12, 12)) for k in (f, g)))
         value, slope, tilt, error = check.model(bits, p, h, f, g, rho)
-        e, d = near(generator), near(generator) * rho
+        e, d, off = near(generator), near(generator) * rho, near(generator) * check.PARAMETER_ERROR
         y = real(Fraction(int(angle * 2 ** bits))) * unit + real(d) * unit
-        true = (p + real(h * e)) * wave(y)
+        true = (p + real(h * e + off)) * wave(y)
         linear = value + real(slope * e) + real(tilt * d) * unit
         assert abs(true - linear) <= error
-        assert error <= 40 * (abs(p) + h) * unit + 20 + (
+        assert error <= 40 * (abs(p) + h) * unit + 20 + check.PARAMETER_ERROR + (
             (abs(p) + h) * (rho * unit) ** 2 + h * rho * unit)
 
 
-def v_prime(abc, y):
-    wave = abc[2] * mp.cos(y[0] + y[1])
-    return [-abc[0] * mp.cos(y[0]) - wave, -abc[1] * mp.cos(y[1]) - wave]
+def v_prime(abc, y, m=mp):
+    wave = abc[2] * m.cos(y[0] + y[1])
+    return [-abc[0] * m.cos(y[0]) - wave, -abc[1] * m.cos(y[1]) - wave]
+
+
+TOGETHER, APART = (0, 0, 0), (0, 1, 2)          # the symbols of a, b and c
+
+
+def random_parameters(generator, symbols, centre, half, eta, unit):
+    """Where eta is, and off by as much as the contract allows."""
+    return [real(c + h * eta[k] + near(generator) * check.PARAMETER_ERROR) * unit
+            for k, c, h in zip(symbols, centre, half)]
 
 
 def random_piece(generator, bits):
@@ -449,19 +681,20 @@ def test_orbits(generator):
     for _ in range(400):
         bits = generator.choice(list(FIXED))
         fixed, unit = FIXED[bits], mp.mpf(2) ** -bits
+        symbols = generator.choice((TOGETHER, APART))
         centre, half, xstar = random_piece(generator, bits)
         parameters = list(zip(centre[:3], half[:3]))
         first = check.Point(fixed, parameters, xstar, ([0] * 5 + [1, 0], [0] * 5 + [0, 1]))
         second = check.Point(fixed, parameters, centre[3:], ([0, 0, 0, half[3], 0, 0, 0],
                                                              [0, 0, 0, 0, half[4], 0, 0]))
         eta = [near(generator) for _ in range(7)]
-        point = [real(c + h * e) * unit for c, h, e in zip(centre, half, eta)]
+        abc = random_parameters(generator, symbols, centre, half, eta, unit)
+        x1 = [real(c + h * e) * unit for c, h, e in zip(centre[3:], half[3:], eta[3:])]
         inside = [real(c + e) * unit for c, e in zip(xstar, eta[5:])]
-        abc, x1 = point[:3], point[3:]
         for orbit, true in (([first, second], [inside, x1]), ([second, first], [x1, inside])):
             known = 7
             while max(orbit[-1].reach) < fixed.one and len(orbit) < 9:
-                orbit.append(check.step(fixed, parameters, orbit[-1], orbit[-2], known))
+                orbit.append(check.step(fixed, parameters, symbols, orbit[-1], orbit[-2], known))
                 known += 3
                 force = v_prime(abc, true[-1])
                 true.append([2 * x - w - f for x, w, f in zip(true[-1], true[-2], force)])
@@ -484,7 +717,7 @@ def test_errors_of_orbits_are_of_second_order():
                  check.Point(fixed, parameters, [fixed.one * 2] * 2,
                              ([0, 0, 0, half[3], 0, 0, 0], [0, 0, 0, 0, half[4], 0, 0]))]
         for n in range(4):
-            orbit.append(check.step(fixed, parameters, orbit[-1], orbit[-2], 7 + 3 * n))
+            orbit.append(check.step(fixed, parameters, APART, orbit[-1], orbit[-2], 7 + 3 * n))
         errors.append(sum(map(abs, orbit[-1].rows[0][7:])) / sum(map(abs, orbit[-1].rows[0][:7])))
     assert errors[0] < 0.02 and errors[1] < errors[0] / 3.5
 
@@ -502,11 +735,12 @@ def test_second_variation(generator):
                               for _ in "01"]) for _ in range(generator.randint(1, 5))]
         vectors = [[float(near(generator)) for _ in "01"] for _ in orbit]
         l = int(abs(near(generator)) * 2 ** bits)
-        bound, columns = check.second_variation(fixed, l, orbit, vectors)
+        symbols = generator.choice((TOGETHER, APART))
+        bound, columns = check.second_variation(fixed, symbols, l, orbit, vectors)
         nu = [[mp.mpf(round(u * 2 ** check.NU_BITS)) for u in n] for n in vectors]
         for _ in range(12):
             eta = [near(generator) for _ in range(12)]
-            abc = [real(c + h * e) * unit for c, h, e in zip(centre, half, eta)]
+            abc = random_parameters(generator, symbols, centre, half, eta, unit)
             total = -l * unit * sum(u * u for u in nu[0] + nu[-1])
             total -= 2 * sum(m[0] * n[0] + m[1] * n[1] for m, n in zip(nu, nu[1:]))
             for point, (n0, n1) in zip(orbit, nu):
@@ -520,42 +754,139 @@ def test_second_variation(generator):
     assert cases > 3000
 
 
+def exact_decimal(generator, size, places=9):
+    return Fraction(generator.randint(-10 ** places, 10 ** places), 10 ** places) * Fraction(size)
+
+
+def random_claim(generator, text, size=1, width=1):
+    """Any parameters, one in four of them without width, and any region of angles."""
+    for name in check.NAMES:
+        half = abs(exact_decimal(generator, width)) * generator.choice((0, 1, 1, 1))
+        centre = exact_decimal(generator, size if name in "abc" else 9)
+        text = with_field(text, name, "%s %s" % tuple(map(check.decimal_text, (centre, half))))
+    return with_field(text, "together", generator.choice(("yes", "no")))
+
+
+def random_slice(generator, most):
+    k = generator.randint(0, most)
+    return generator.choice((0, (1 << k) - 1, generator.randrange(1 << k))), k
+
+
+def random_cell(generator, together, most=40):
+    slices = [random_slice(generator, most) for _ in range(3 if together else 5)]
+    return tuple(zip(*slices + [(0, 0)] * (5 - len(slices))))
+
+
+def random_point(generator, claim, cell):
+    """Exact a, b, c, v0, v1 of a cell, often at its ends, and where they lie along its sides."""
+    eta = [near(generator) for _ in range(5)]
+    if claim.together:
+        eta[:3] = eta[:1] * 3
+    axes = (2, 2, 2, 0, 1) if claim.together else (2, 3, 4, 0, 1)
+    point = []
+    for c, h, e, axis in zip(claim.centre, claim.half, eta, axes):
+        i, k = (x[axis] for x in cell)
+        point.append(c + h * (Fraction(2 * i + 1 + e, 1 << k) - 1))
+    return point, eta
+
+
+def reached(offsets, half, spare):
+    """Is there one symbol in [-1, 1] that leads to within spare units of all of these offsets?"""
+    low, high = -1, 1
+    for off, h in zip(offsets, half):
+        if h == 0 and abs(off) > spare:
+            return False
+        if h:
+            low, high = max(low, (off - spare) / h), min(high, (off + spare) / h)
+    return low <= high
+
+
 def test_pieces_cover_their_cells(texts, generator):
-    text = texts["trig274"]
-    lines = text.split("\ntree:")[0].split("\n")[1:]
-    for _ in range(30):
-        c, h = ("%d.%06d" % (generator.randint(-9, 9), generator.randint(0, 999999)) for _ in "01")
-        h = h.lstrip("-")
-        changed = [re.sub("^(v[01]): .*", r"\1: %s %s" % (c, h), line) for line in lines]
-        criterion = check.Criterion(check.parse(changed, "P", ""))
+    """A parameter is reached by its symbol, all three by one where they move together, and an
+    angle, modulo 2 pi, by its own; so also by the symbols of one half of any half of a piece."""
+    for _ in range(60):
+        claim = claim_of(random_claim(generator, with_tree(texts["trig274"], "P"), 1, 9))
+        criterion = check.Criterion(claim)
         unit = mp.mpf(2) ** -criterion.fixed.bits
-        c, h = Fraction(c), Fraction(h)
-        shift = c % 2 - c
-        for _ in range(100):
-            k = generator.randint(0, 40)
-            i = generator.choice((0, (1 << k) - 1, generator.randrange(1 << k)))
-            centre, half = criterion.piece((i, k, 0, 0))
-            low = real(c + shift - h + 2 * h * i / (1 << k)) * mp.pi / unit
-            high = real(c + shift - h + 2 * h * (i + 1) / (1 << k)) * mp.pi / unit
-            assert centre[3] - half[3] <= low and high <= centre[3] + half[3]
-            assert low - (centre[3] - half[3]) < 200
-        for n, (p, width) in enumerate((("0.3085", "0.00125"), ("0.3085", "0.00125"),
-                                        ("0.617", "0.0025"))):
-            low, high = (Fraction(p) + k * Fraction(width) for k in (-1, 1))
-            assert Fraction(centre[n] - half[n]) / criterion.fixed.one <= low
-            assert Fraction(centre[n] + half[n]) / criterion.fixed.one >= high
+        for _ in range(25):
+            cell = random_cell(generator, claim.together)
+            point, _ = random_point(generator, claim, cell)
+            scaled = [p * criterion.fixed.one for p in point[:3]] + [
+                real(p + c % 2 - c) * mp.pi / unit for p, c in zip(point[3:], claim.centre[3:])]
+
+            def holds(centre, half, spare):
+                offsets = [x - c for x, c in zip(scaled, centre)]
+                return all(reached(offsets[n:m], half[n:m], spare if n < 3 else 0) for n, m in (
+                    ((0, 3),) if claim.together else ((0, 1), (1, 2), (2, 3))) + ((3, 4), (4, 5)))
+
+            centre, half = criterion.piece(cell)
+            assert holds(centre, half, 5)
+            for n in (3, 4):                        # and the intervals are hardly too long
+                assert half[n] <= real(claim.half[n] / (1 << cell[1][n - 3])) * mp.pi / unit \
+                    + 9 * claim.half[n] + 30
+            for n in range(1, check.MAX_HALVINGS + 1):
+                columns = [generator.randint(-9, 9) for _ in range(5)]
+                both = criterion.halves(centre, half, generator.choice((half, columns)))
+                fitting = [piece for piece in both if holds(*piece, 5 + n)]
+                assert fitting and 5 + n < check.PARAMETER_ERROR
+                centre, half = generator.choice(fitting)
 
 
-def definite(abc, x0, x1, steps):
+def test_second_variation_of_cells(texts, generator):
+    """From the cell of a claim to the bound: at exact parameters and successors of the cell and
+    along their orbit, the true second variation is below it."""
+    cases = 0
+    for _ in range(40):
+        claim = claim_of(random_claim(generator, with_tree(texts["trig274"], "P"), 1, "0.5"))
+        criterion = check.Criterion(claim)
+        fixed, symbols = criterion.fixed, criterion.symbols
+        unit = mp.mpf(2) ** -fixed.bits
+        cell = random_cell(generator, claim.together, 12)
+        l, (centre, half) = criterion.least_pivot(cell), criterion.piece(cell)
+        parameters = list(zip(centre[:3], half[:3]))
+        orbit = [check.Point(fixed, parameters, criterion.xstar, ([0] * 5 + [1, 0],
+                                                                  [0] * 5 + [0, 1])),
+                 check.Point(fixed, parameters, centre[3:], ([0, 0, 0, half[3], 0, 0, 0],
+                                                             [0, 0, 0, 0, half[4], 0, 0]))]
+        while max(orbit[-1].reach) <= fixed.one and len(orbit) < 6:
+            orbit.append(check.step(fixed, parameters, symbols, *orbit[:-3:-1],
+                                    3 * len(orbit) + 1))
+        if max(orbit[-1].reach) > fixed.one:
+            orbit.pop()
+        if len(orbit) < 2:
+            continue
+        vectors = check.witness([point.beta for point in orbit], l / fixed.one) or [
+            [float(near(generator)) for _ in "01"] for _ in orbit]
+        bound, _ = check.second_variation(fixed, symbols, l, orbit, vectors)
+        nu = [[round(u * 2 ** check.NU_BITS) for u in n] for n in vectors]
+        for _ in range(10):
+            point, _ = random_point(generator, claim, cell)
+            abc = [real(x) for x in point[:3]]
+            true = [[real(x) for x in claim.xstar], [real(x) * mp.pi for x in point[3:]]]
+            while len(true) < len(orbit):
+                force = v_prime(abc, true[-1])
+                true.append([2 * x - w - f for x, w, f in zip(true[-1], true[-2], force)])
+            total = -l * unit * sum(u * u for u in nu[0] + nu[-1])
+            total -= 2 * sum(m[0] * n[0] + m[1] * n[1] for m, n in zip(nu, nu[1:]))
+            for y, (n0, n1) in zip(true, nu):
+                total += 2 * (n0 * n0 + n1 * n1) - (abc[0] * mp.sin(y[0]) * n0 * n0
+                                                    + abc[1] * mp.sin(y[1]) * n1 * n1
+                                                    + abc[2] * mp.sin(y[0] + y[1]) * (n0 + n1) ** 2)
+            assert total <= bound * unit ** 2
+            cases += 1
+    assert cases > 200
+
+
+def definite(abc, x0, x1, steps, m=mp):
     """Is the second variation along the true orbit, steps to either side, positive definite?"""
     back, ahead = [x1, x0], [x0, x1]
     for _ in range(steps):
         for orbit in (back, ahead):
-            force = v_prime(abc, orbit[-1])
+            force = v_prime(abc, orbit[-1], m)
             orbit.append([2 * x - w - f for x, w, f in zip(orbit[-1], orbit[-2], force)])
     d = None
     for y in back[:0:-1] + ahead[1:]:
-        m0, m1, m2 = (p * mp.sin(t) for p, t in zip(abc, (y[0], y[1], y[0] + y[1])))
+        m0, m1, m2 = (p * m.sin(t) for p, t in zip(abc, (y[0], y[1], y[0] + y[1])))
         p, q, r = 2 - m0 - m2, -m2, 2 - m1 - m2
         if d:
             det = d[0] * d[2] - d[1] ** 2
@@ -568,8 +899,7 @@ def definite(abc, x0, x1, steps):
 
 def test_no_orbit_of_a_proved_leaf_minimizes(deep, generator):
     """The checker's word against exact orbits; and there are orbits on which it says nothing."""
-    lines = deep.split("\ntree:")[0].split("\n")[1:]
-    criterion = check.Criterion(check.parse(lines, tree_of(deep), ""))
+    criterion = check.Criterion(claim_of(deep))
     unit = mp.mpf(2) ** -criterion.fixed.bits
     x0 = [mp.mpf("0.82773291385109182")] * 2
     cells = [cell for at, cell in check.leaves(tree_of(deep)) if tree_of(deep)[at] == "P"]
@@ -609,7 +939,7 @@ def test_bound_over_the_torus(generator):
     for n in range(30):
         low = [int(near(generator) * one) for _ in range(3)]
         high = [p + int(abs(near(generator)) * one / 8) * (n % 3) for p in low]
-        bound = check.torus_bound(fixed, low, high) / one
+        bound = check.torus_bound(fixed, list(itertools.product(*zip(low, high)))) / one
         best = 2
         for abc in itertools.product(*zip((p / one for p in low), (p / one for p in high))):
             y = max(((i * step, j * step) for i in range(48) for j in range(48)),
@@ -623,28 +953,136 @@ def test_bound_over_the_torus(generator):
         assert -1e-13 <= bound - best < 1e-5
 
 
+def true_bound(abc):
+    """The largest eigenvalue over the torus, in doubles: on a grid, and on from its best points."""
+    step = mpmath.fp.pi / 24
+    starts = sorted(((i * step, j * step) for i in range(48) for j in range(48)),
+                    key=lambda y: -eigenvalue(abc, y))[:4]
+    best = 2
+    for y in starts:
+        reach = step
+        for _ in range(25):
+            y = max(((y[0] + p * reach / 2, y[1] + q * reach / 2) for p in range(-2, 3)
+                     for q in range(-2, 3)), key=lambda y: eigenvalue(abc, y))
+            reach /= 2
+        best = max(best, eigenvalue(abc, y))
+    return best
+
+
+def test_least_pivot(texts, generator):
+    """l is at most what the true B of the parameters of a cell gives, and hardly less than what
+    the true B at the ends of all parameters give, between them."""
+    for n in range(12):
+        text = with_tree(texts["trig274"], generator.choice("234") + "PP" if n % 3 else "P", False)
+        claim = claim_of(random_claim(generator, text, 1, "0.3"))
+        criterion, one = check.Criterion(claim), check.Fixed(96).one
+        axes = 1 if claim.together else 3
+        ends = {corner: true_bound([float(c + s * h) for c, h, s in zip(
+            claim.centre, claim.half, corner * 3)]) for corner in itertools.product(
+                (-1, 1), repeat=axes)}
+        for _ in range(6):
+            index, cuts = random_cell(generator, claim.together, 4)
+            if n % 3 == 0:                      # no cuts of parameters
+                index, cuts = index[:2] + (0, 0, 0), cuts[:2] + (0, 0, 0)
+            l = criterion.least_pivot((index, cuts)) * 2.0 ** -criterion.fixed.bits
+            assert criterion.fixed.one == one and 0 < l < 1
+            for _ in range(3):
+                point, _ = random_point(generator, claim, (index, cuts))
+                B = true_bound(list(map(float, point[:3])))
+                assert l + 1 / l >= B - 1e-12
+            between = [sum(B * math.prod((i + u) / 2 ** k if s > 0 else 1 - (i + u) / 2 ** k
+                                         for i, k, u, s in zip(index[2:], cuts[2:], upper, corner))
+                           for corner, B in ends.items())
+                       for upper in itertools.product((0, 1), repeat=axes)]
+            assert abs(l + 1 / l - max(between)) < 1e-5
+
+
+def test_least_pivot_to_the_last_unit(texts, generator, monkeypatch):
+    """With a bound that leaves nothing to spare, and that grows as fast as an eigenvalue can."""
+    def bound(abc):
+        return 2 + max(abs(abc[0]), abs(abc[1])) + 2 * abs(abc[2])
+
+    monkeypatch.setattr(check, "torus_bound", lambda fixed, corners: max(
+        2 * fixed.one + max(abs(a), abs(b)) + 2 * abs(c) for a, b, c in corners))
+    for n in range(300):
+        text = with_tree(texts["trig274"], "2PP" if n % 3 else "P", False)
+        claim = claim_of(random_claim(generator, text, 2, 1))
+        criterion = check.Criterion(claim)
+        for _ in range(10):
+            index, cuts = random_cell(generator, claim.together, 9)
+            if n % 3 == 0:
+                index, cuts = index[:2] + (0, 0, 0), cuts[:2] + (0, 0, 0)
+            l = Fraction(criterion.least_pivot((index, cuts)), criterion.fixed.one)
+            B = bound(random_point(generator, claim, (index, cuts))[0])
+            assert 0 < l < 1 and l * l - B * l + 1 >= 0         # l is at most the lesser root
+
+
+def test_parameters_without_an_eigenvalue_above_2(texts, run):
+    """B is hardly above 2, l hardly below 1; but nothing is excluded."""
+    for together, tree in (("no", "P"), ("yes", "P"), ("yes", "2PP"), ("no", "432PPPP")):
+        text = with_field(with_tree(texts["trig274"], tree), "together", together)
+        for half in ("0", "1e-30", "0.001"):
+            changed = with_parameters(text, *[("0", half)] * 3)
+            criterion = check.Criterion(claim_of(changed))
+            assert 0.9 < criterion.least_pivot(check.ROOT) / criterion.fixed.one < 1
+            assert "not excluded" in run(sealed(changed))[2]
+            assert "at once" in run(sealed(with_field(changed, "at once", "yes")))[2]
+
+
+def at_once(text, centre, half, together):
+    text = with_parameters(with_tree(text, "P"), *zip(centre, half))
+    return check.Criterion(claim_of(with_field(text, "together", together))).at_once()
+
+
+def test_at_once(texts, generator, monkeypatch):
+    """True above B = 10/3, false below, of either sign; false with the origin in the box."""
+    monkeypatch.setattr(check, "torus_bound", lambda fixed, corners: 4 * fixed.one)     # unused
+    text = texts["trig274"]
+    for n in range(12):
+        abc = [exact_decimal(generator, 1) * generator.choice((0, 1, 1)) for _ in range(3)]
+        B = true_bound(list(map(float, abc)))
+        scale = Fraction(round(4e9 / 3 / (B - 2)), 10 ** 9) if any(abc) else 1
+        for factor, right in (("1.001", any(abc)), ("3", any(abc)), ("0.999", False), ("0", False)):
+            centre = [p * scale * Fraction(factor) for p in abc]
+            for together in ("no", "yes"):
+                assert at_once(text, centre, (0, 0, 0), together) is right
+            # A box is as good as its worst point; parameters that move together as their upper end.
+            assert not at_once(text, centre, [abs(p) * Fraction("1.01") for p in centre], "no")
+            lower = [p - Fraction("0.25") for p in centre]
+            assert at_once(text, lower, [Fraction("0.25")] * 3, "yes") is right
+            half = [abs(exact_decimal(generator, "0.01")) for _ in range(3)]
+            found = at_once(text, centre, half, "no")
+            assert not found or right
+            if found and n < 2:
+                assert min(true_bound([float(p + s * h) for p, h, s in zip(centre, half, corner)])
+                           for corner in itertools.product((-1, 0, 1), repeat=3)) > 10 / 3
+            assert not right or found or factor == "1.001"
+
+
 # ---- the tree
 
-def random_tree(generator, depth):
+def random_tree(generator, depth, axes="01"):
     if depth == 0 or generator.random() < 0.25:
         return generator.choice("PPPS")
-    return generator.choice("01") + "".join(random_tree(generator, depth - 1) for _ in "01")
+    return generator.choice(axes) + "".join(random_tree(generator, depth - 1, axes) for _ in "01")
 
 
-def test_mirror_images_against_rectangles(texts, generator):
-    lines = texts["trig274"].split("\ntree:")[0].split("\n")[1:]
-    seen = set()
+@pytest.mark.parametrize("together, axes", [("no", "01"), ("no", "01234"), ("yes", "012"),
+                                            ("no", "23"), ("no", "0123")])
+def test_mirror_images_against_boxes(texts, generator, together, axes):
+    text, seen = with_field(texts["trig274"], "together", together), set()
+    swapped = (1, 0, 2, 3, 4) if together == "yes" else (1, 0, 3, 2, 4)
     for _ in range(600):
-        tree = random_tree(generator, generator.randint(1, 7))
-        mirror = check.Mirror(check.parse(lines, tree, ""))
-        boxes = [(tree[at], Fraction(i, 2 ** k), Fraction(i + 1, 2 ** k), Fraction(j, 2 ** l),
-                  Fraction(j + 1, 2 ** l), (i, k, j, l))
-                 for at, (i, k, j, l) in check.leaves(tree)]
-        assert sum((b - a) * (d - c) for _, a, b, c, d, _ in boxes) == 1
-        for node, a, b, c, d, cell in boxes:
+        tree = random_tree(generator, generator.randint(1, 7), axes)
+        mirror = check.Mirror(claim_of(with_tree(text, tree)))
+        boxes = [(tree[at], [(Fraction(i, 2 ** k), Fraction(i + 1, 2 ** k))
+                             for i, k in zip(*cell)], cell) for at, cell in check.leaves(tree)]
+        assert sum(math.prod(high - low for low, high in box) for _, box, _ in boxes) == 1
+        for node, box, cell in boxes:
             if node == "S":
-                clear = all(kind == "P" for kind, e, f, g, h, _ in boxes
-                            if e < d and c < f and g < b and a < h)
+                image = [box[axis] for axis in swapped]
+                clear = all(kind == "P" for kind, other, _ in boxes
+                            if all(a < d and c < b for (a, b), (c, d) in zip(image, other)))
                 assert (mirror.refusal(cell) is None) == clear
                 seen.add(clear)
     assert seen == {True, False}

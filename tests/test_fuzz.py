@@ -2,15 +2,20 @@
 
 import gzip
 import io
+import itertools
+import math
 import os
+import random
+from fractions import Fraction
 
 import pytest
 from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as st
 
 import converse
-from converse import InputError, Problem, Proof
+from converse import InputError, Problem, Proof, check
 from converse.files import ConverseError
+from test_check import definite, sealed, tree_of, true_bound, with_field, with_tree
 from truth import TORTURE
 
 MANY = settings(max_examples=1000 * TORTURE, deadline=None,
@@ -119,7 +124,8 @@ def test_any_change_of_a_backup(proof_bytes, tmp_path_factory, edits, seal, zipp
 @given(data=st.binary(max_size=400))
 @example(b"\x1f\x8b")
 @example(b"converse proof 1\n")
-@example(b"converse proof 1\ntree:\nend\n")
+@example(b"converse proof 2\n")
+@example(b"converse proof 2\ntree:\nend\n")
 def test_any_bytes_as_backup(tmp_path_factory, data):
     path = tmp_path_factory.getbasetemp() / ("bytes-%d" % os.getpid())
     path.write_bytes(data)
@@ -133,16 +139,140 @@ def test_any_bytes_as_backup(tmp_path_factory, data):
 def test_any_change_of_a_certificate(proof_bytes, tmp_path_factory, edits, seal, zipped):
     """The checker verifies a changed file only if the change leaves a theorem that is true: an
     intact tree of the same problem.  Everything else is rejected, or unusable, in one line."""
-    from converse.check import Rejected, Unusable, verify
-
     data = edited(proof_bytes, edits)
     if seal:
         data = resealed(data)
     path = tmp_path_factory.getbasetemp() / ("certificate-%d" % os.getpid())
     path.write_bytes(gzip.compress(data, 1) if zipped else data)
     try:
-        verify(path)
-    except (Rejected, Unusable) as error:
+        check.verify(path)
+    except (check.Rejected, check.Unusable) as error:
         one_line(error)
     else:
         assert seal or data == proof_bytes
+
+
+# ---- changes that make sense: another claim or tree, with the counts and the checksum it needs
+
+@pytest.fixture(scope="module")
+def certificates(root, tmp_path_factory):
+    """Whole proofs: of both methods, with parameters together and apart, cut and not."""
+    path = tmp_path_factory.mktemp("fuzz") / "whole.proof"
+    found = []
+    for name in ("trig274", "trig278"):
+        converse.prove(converse.read_input(root / "inputs" / (name + ".in"))).save(path)
+        found.append(path.read_text(encoding="utf-8"))
+    for a, b, c, together in (("0.29 0.02", "0.29 0.02", "0.58 0.04", True),
+                              ("0.28 0.01", "0.29 0.015", "0.59 0.03", True),
+                              ("0.27 0", "0.27 0", "0.54 0", True),
+                              ("0.285 0.015", "0.285 0.015", "0.57 0.03", False),
+                              ("0.27 0.01", "0.29 0.01", "0.57 0.02", False)):
+        ranges = [map(Fraction, pair.split()) for pair in (a, b, c, "1 1", "1 1")]
+        converse.prove(Problem(*zip(*ranges), (), together), method="loewner").save(path)
+        found.append(path.read_text(encoding="utf-8"))
+    return found
+
+
+numbers = st.one_of(
+    st.sampled_from(["0", "-0.3", "0.3", "1", "-1", "2", "0.001", "1e-20", "20", "1e300"]),
+    st.decimals(-2, 2, places=3).map(str))
+changes = st.lists(st.one_of(
+    st.tuples(st.just("centre"), st.sampled_from(check.NAMES), numbers),
+    st.tuples(st.just("half"), st.sampled_from(check.NAMES), numbers.map(lambda x: x.lstrip("-"))),
+    st.tuples(st.just("stretch"), st.sampled_from(["0", "0.5", "1.001", "1.1", "2", "20"]),
+              st.none()),
+    st.tuples(st.just("scale"), st.sampled_from(["0", "-1", "0.1", "0.7", "0.9", "1.2", "9"]),
+              st.none()),
+    st.tuples(st.just("region"), numbers, numbers.map(lambda x: x.lstrip("-"))),
+    st.tuples(st.just("xstar"), numbers, numbers),
+    st.tuples(st.just("flag"), st.sampled_from(["together", "at once"]),
+              st.sampled_from(["yes", "no"])),
+    st.tuples(st.just("node"), st.integers(0, 10**6), st.sampled_from("01234PPPSU?")),
+    st.tuples(st.just("prune"), st.integers(0, 10**6), st.sampled_from("PPS")),
+    st.tuples(st.just("graft"), st.integers(0, 10**6),
+              st.sampled_from(["2PP", "3PS", "4SP", "0SP", "2P2SP", "43PPP"])),
+    st.tuples(st.just("double"), st.sampled_from(check.AXES), st.none())),
+    min_size=1, max_size=4)
+
+
+def subtree_end(tree, at):
+    missing = 1
+    while missing and at < len(tree):
+        missing += 1 if tree[at] in check.AXES else -1
+        at += 1
+    return at
+
+
+def changed(text, changes):
+    """The text after these changes, with the counts of its tree, sealed."""
+    ranges = {name: [Fraction(word) for word in value.split()] for name, value in
+              (line.split(": ") for line in text.split("\n") if line.split(": ")[0] in check.NAMES)}
+    tree = tree_of(text)
+    for kind, what, new in changes:
+        if kind in ("centre", "half"):
+            ranges[what][kind == "half"] = Fraction(new)
+        elif kind in ("stretch", "scale"):
+            for name in "abc":
+                ranges[name][kind == "stretch"] *= Fraction(what)
+        elif kind == "region":
+            ranges["v0"] = ranges["v1"] = [Fraction(what), Fraction(new)]
+        elif kind == "xstar":
+            text = with_field(text, "xstar", what + " " + new)
+        elif kind == "flag":
+            text = with_field(text, what, new)
+        elif kind == "double":
+            tree = what + tree + tree
+        else:
+            at = what % len(tree)
+            if kind == "graft":
+                at = min((n for n in range(len(tree)) if tree[n] in "PS"), default=0,
+                         key=lambda n: abs(n - at))
+            end = at + 1 if kind == "node" else subtree_end(tree, at)
+            tree = tree[:at] + new + tree[end:]
+    for name, pair in ranges.items():
+        text = with_field(text, name, " ".join(map(check.decimal_text, pair)))
+    return sealed(with_tree(with_field(text, "depth", 99), tree))
+
+
+def refuted(claim, cases):
+    """Parameters of the claim for which it is wrong, if some are found in so many cases: x* goes on
+    to a point of the region on an orbit whose second variation is definite for 14 steps each way;
+    or B <= 10/3 where larger parameters are said to be excluded at once."""
+    rng = random.Random(claim.sha256)
+    for n in range(cases):
+        eta = [rng.choice((-1, 0, 1, rng.uniform(-1, 1), rng.uniform(-1, 1))) for _ in range(5)]
+        if claim.together:
+            eta[:3] = eta[:1] * 3
+        point = [float(c + h * Fraction(e)) for c, h, e in zip(claim.centre, claim.half, eta)]
+        x0, x1 = list(map(float, claim.xstar)), [math.pi * math.fmod(v, 2) for v in point[3:]]
+        if definite(point[:3], x0, x1, 14, math):
+            return point
+    if claim.at_once:
+        corners = [(1, 1, 1)] if claim.together else itertools.product((-1, 0, 1), repeat=3)
+        for corner in corners:
+            abc = [float(c + s * h) for c, h, s in zip(claim.centre, claim.half, corner)]
+            if max(map(abs, abc)) < 9 and true_bound(abc) <= 10 / 3 - 1e-9:
+                return abc
+    return None
+
+
+@settings(MANY, max_examples=150 * TORTURE)
+@given(which=st.integers(0, 6), changes=changes)
+@example(2, [("flag", "together", "no")])
+@example(2, [("stretch", "20", None)])
+@example(5, [("flag", "together", "yes")])
+@example(6, [("scale", "-1", None)])
+@example(4, [("flag", "at once", "yes")])
+def test_any_other_claim_or_tree(certificates, tmp_path_factory, which, changes):
+    """A changed certificate that counts right and has its checksum is verified only if no
+    counterexample to what it says can be found."""
+    text = changed(certificates[which], changes)
+    path = tmp_path_factory.getbasetemp() / ("other-%d" % os.getpid())
+    path.write_text(text, encoding="utf-8")
+    try:
+        lines = check.verify(path)
+    except (check.Rejected, check.Unusable) as error:
+        one_line(error)
+    else:
+        assert lines[0] == "Verified :"
+        assert refuted(check.read(path), 40) is None

@@ -6,9 +6,11 @@ Prints figures and judges nothing.  Machines differ and are shared: the time is 
 REPEAT runs (3), and ratios within one run say more than seconds.
 """
 
+import math
 import os
 import platform
 import sys
+import tempfile
 import time
 from fractions import Fraction
 from pathlib import Path
@@ -39,7 +41,7 @@ def proofs(repeat):
     empty = min(run([COMMAND, "--version"])[0] for _ in range(repeat))
     print("whole processes; starting Python and importing alone takes %.3f s" % empty)
     print("%-8s %6s %9s %9s %8s %8s" % ("input", "digits", "seconds", "search", "MB", "prisms"))
-    for path in sorted((ROOT / "inputs").glob("trig*.in")):
+    for path in sorted((ROOT / "inputs").glob("trig27*.in")):
         for digits in DIGITS:
             runs = [run([COMMAND, "-d30", "-p%d" % digits, str(path)]) for _ in range(repeat)]
             searches = []
@@ -71,7 +73,52 @@ def images():
         print("%-10s %12.0f %12.0f" % (name, *figures))
 
 
+def frontier(repeat, longest=60):
+    """The theorems of the sharper method, one core against all, and the checker."""
+    import converse
+    jobs = converse.search.count_workers()
+    print("method loewner, together, down to epsilon; %d cores; the checker on a sample" % jobs)
+    print("%-8s %9s %9s %6s %9s %7s %7s %12s" % ("epsilon", "1 core", "all", "ratio", "prisms",
+                                                 "points", "deepest", "checked/s"))
+    with tempfile.TemporaryDirectory() as directory:
+        for low in ("0.0272", "0.0180", "0.0160", "0.0152", "0.0148", "0.0144", "0.0142", "0.0141"):
+            ends = [Fraction(e) * Fraction("11.21436") for e in (low, "0.0280")]
+            centre, half = sum(ends) / 2, (ends[1] - ends[0]) / 2
+            problem = converse.Problem((centre, centre, 2 * centre, Fraction(1), Fraction(1)),
+                                       (half, half, 2 * half, Fraction(1), Fraction(1)),
+                                       together=True)
+            seconds = {}
+            for n in (1, jobs):
+                for _ in range(repeat):
+                    if seconds.get(n, 0) < longest / repeat:
+                        proof = converse.prove(problem, method="loewner", jobs=n)
+                        assert proof.no_tori
+                        seconds[n] = min(seconds.get(n, math.inf), proof.seconds)
+            path = os.path.join(directory, low)
+            proof.save(path)
+            rate = [run([COMMAND + "-check", "--quiet", "--sample", str(k), path])[0]
+                    for k in (1, 401)]
+            print("%-8s %9.4f %9.4f %6.2f %9d %7d %7d %12.0f" % (
+                low, seconds[1], seconds[jobs], seconds[1] / seconds[jobs], proof.counts.proved,
+                proof.counts.max_NTsteps, proof.counts.most_cuts,
+                min(400, proof.counts.proved) / max(rate[1] - rate[0], 1e-3)), flush=True)
+
+
+def steps():
+    """Nanoseconds per orbit step of the sharper method, and of its six sines alone."""
+    a = Fraction("0.166")
+    prism = [a, a, 2 * a, Fraction("3.1"), Fraction("2.9"), *[Fraction(1, 10 ** 9)] * 5,
+             Fraction("0.858"), Fraction("0.858")]
+    step = [min(kernels.call("loewner_step", [*prism, together, 18, 20000], 3, 20)[2]
+                for _ in range(5)) for together in (1, 0)]
+    sines = min(kernels.call("double_sincos_ns", [3, 300000], 1, 20)[0] for _ in range(5))
+    print("nanoseconds per orbit step: %.0f with one parameter, %.0f with three; "
+          "its six sines alone: %.0f" % (*step, sines))
+
+
 if __name__ == "__main__":
     print("%s, %s, Python %s" % (platform.machine(), platform.system(), platform.python_version()))
     proofs(int(sys.argv[1]) if len(sys.argv) > 1 else 3)
     images()
+    steps()
+    frontier(3)
