@@ -155,7 +155,8 @@ def _star(proof):
 
 def _title(proof):
     return ",   ".join(
-        "%.9g < %s < %.9g" % (centre - half, name, centre + half) for name, centre, half in zip(
+        "%.9g < %s < %.9g" % (centre - half, name, centre + half) if half else
+        "%s = %.9g" % (name, centre) for name, centre, half in zip(
             "abc", proof.problem.centre, proof.problem.half))
 
 

@@ -131,7 +131,7 @@ MUTATIONS = [
     ("search.c", "2 * (long)c->index[axis] + 1 - (1L", "2 * (long)c->index[axis] - (1L"),
     ("search.c", "        leaf(s, 'U');", "        leaf(s, 'P');"),
     ("sine.h", " - n * 0x1.3198a2e037073p-69", ""),
-    ("sine.h", "z * (1.0 / 355687428096000.0)", "z * (2.0 / 355687428096000.0)"),
+    ("sine.h", "z * (-1.0 / 1307674368000.0", "z * (1.0 / 1307674368000.0"),
     ("sine.h", "(bits & 2) << 62", "(bits & 1) << 63"),
     ("loewner.c", "q->reach[2] = (sum[2] + q->rest[0] + q->rest[1]) * WIDEN;",
      "q->reach[2] = (sum[2] + q->rest[0]) * WIDEN;"),
@@ -172,6 +172,9 @@ HARMLESS = {
         "gamma is gamma_c, and the bound of beta - beta_c alone serves for the rest",
     "num_add(t[3], t[3], t[4]);\n    num_mul_si(t[4], n->centre_err, 2);":
         "twelve ulps times the error of the inverse, beside the prism times the same",
+    "        v->no_tori = 0;\n":
+        "a second belt: each divisor was just found to be above a positive bound, and comparisons "
+        "with NaN are false",
     "num_div(s, n->w[U + j], t[4], t[5], APM_UP);":
         "an ulp of w, beside the ten ulps over the prism's width that are in t[4]",
 }

@@ -24,7 +24,8 @@ def draw(rng):
     size = 10.0 ** rng.uniform(-2, 0.3)
     centre = [rng.choice([size, -size, size * rng.uniform(-1, 1), 0.0]) for _ in range(3)]
     centre[0] = centre[0] or size           # c alone would make the bound B slow
-    half = [rng.choice([0.0, 10.0 ** rng.uniform(-14, -1.5) * size]) for _ in range(3)]
+    half = [rng.choice([0.0, 10.0 ** rng.uniform(-14, -1.5) * size,
+                        rng.uniform(0, 2) * size]) for _ in range(3)]
     centre += [rng.choice([rng.uniform(-7, 7), 1e-9, 1.5707963267948966]) for _ in range(2)]
     half += [rng.choice([0.0, 10.0 ** rng.uniform(-13, -1)]) for _ in range(2)]
     star = [rng.choice([rng.uniform(-4, 4), 0.8547]) for _ in range(2)]
