@@ -261,6 +261,8 @@ def prove(problem, depth=None, digits=35, stubborn=False, as_printed=False, prog
 
         if on_leaf:
             look(new=False)             # the part that was restored
+        if progress:
+            progress(growth.volume, growth.counts)
         pause = BACKUP_SECONDS
         saved = time.monotonic()
         if keep:

@@ -64,8 +64,8 @@ static int apm_kernel(const char *name, long dp, int nin, apm_t in[], int nout, 
    double_sincos: x -> sine, cosine          double_sincos_ns: x, repeat -> ns of three
    The others begin with centres and half-widths of a, b, c, v0, v1, x* and together (0 or 1).
    loewner_orbit: ..., n -> 2 coordinates, 2 rows of 5 columns, 2 rests, 3 reaches of point n
-   loewner_bound: ..., s, t -> bound, l, index of the first site, number of sites, the vectors n,
-                  for the orbit of s..t, s < 0
+   loewner_bound: ..., s, t -> bound, l, index of the first site, number of sites (0: no
+                  witness), the vectors n, for the orbit of s..t
    loewner_step: ..., n, repeat -> the reaches of both coordinates of point n, nanoseconds per step */
 static int loewner_kernel(const char *name, long dp, int nin, apm_t in[], int nout, apm_t out[])
 {
@@ -119,8 +119,10 @@ static int loewner_kernel(const char *name, long dp, int nin, apm_t in[], int no
             int first = 0;
             y[3] = loewner_bound(w, &y[0], &y[1], &first, n, SITES);
             y[2] = first;
-            memcpy(y + 4, n, sizeof n);
-            good = y[3] > 0.0;
+            for (int j = 0; j < (int)y[3]; j++) {
+                y[4 + 2 * j] = n[j][0];
+                y[5 + 2 * j] = n[j][1];
+            }
         } else if (good) {
             const clock_t begin = clock();
             for (int j = 0; j < (int)x[BOX + 1]; j++)

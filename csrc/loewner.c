@@ -35,7 +35,7 @@
    Rounding.  All numbers are doubles rounded to nearest (unit u = 2^-53).  n, mu, x, L and d are what
    they are: any values make a valid proof.  Only the bounds are to be trusted: sums of positive
    terms, widened in the end by more than their roundings, and the few sums with signs, whose
-   roundings are bounded by 2^-43 times the sums of absolute values: less than 2^10 terms each. */
+   roundings are bounded by the sums of absolute values. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -336,13 +336,15 @@ static void set_multipliers(loewner *w)
    w->rounding: how much of it roundings are.  Needs a witness.
 
    The sums with signs are the constant `centre` and the coefficients of the parameters; `mass` is
-   the sum of their terms' absolute values, an error of 2^-43 of which covers the roundings of 400
-   sums of a dozen terms (each rounds by u of the partial sums), and, with 2^-49 (1 + |x0| + |x1|),
-   that of the sines.  Where a wave comes with a reach, so does its part of the mass. */
+   the sum of their terms' absolute values.  At each site less than 16 numbers are added to any sum,
+   each addition rounds by u of the partial sums, and each number by a few u of itself: together by
+   less than `each` = 32 u for every site.  The sines add 2^-49 (1 + |x0| + |x1|).  Where a wave comes
+   with a reach, so does its part of the mass. */
 static void bound_second_variation(loewner *w)
 {
     double centre = 0.0, mass = 0.0, rest = 0.0, rounding = 0.0, far = 0.0;
     double along[WAVES] = { 0, 0, 0 }, along_mass = 0.0, tails, total;
+    const double each = 0x1p-48 * (double)(w->until - w->from + 2);
 
     set_multipliers(w);
     for (int k = 0; k < COLUMNS; k++)
@@ -411,9 +413,9 @@ static void bound_second_variation(loewner *w)
             rest += fabs(total);
         }
     }
-    rounding += (mass + along_mass) * (0x1p-43 + 0x1p-49 * (1.0 + far));
-    w->rounding = rounding * WIDEN;
-    w->bound = centre + (rest + w->rounding) * WIDEN;
+    rounding += (mass + along_mass) * (each + 0x1p-49 * (1.0 + far));
+    w->rounding = rounding * (1.0 + each);
+    w->bound = centre + (rest + w->rounding) * (1.0 + each);
 }
 
 /* ---- one prism */
@@ -613,11 +615,11 @@ int loewner_follow(loewner *w, int s, int t, loewner_point *p)
 
 int loewner_bound(loewner *w, double *bound, double *l, int *first, double n[][2], int most)
 {
+    *l = w->l;
     if (!witness(w) || w->to - w->from >= most)
         return 0;
     bound_second_variation(w);
     *bound = w->bound;
-    *l = w->l;
     *first = w->from - ORIGIN;
     for (int j = w->from; j <= w->to; j++)
         memcpy(n[j - w->from], w->orbit[j].n, sizeof n[0]);

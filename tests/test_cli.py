@@ -1,6 +1,7 @@
 """The command: its flags, its messages, its exit status."""
 
 import os
+import hashlib
 import re
 
 import pytest
@@ -112,12 +113,13 @@ def test_figure(command, sample, output, tmp_path):
 def test_backup_and_restore(command, sample, output, tmp_path):
     backup = tmp_path / "backup"
     status, out, err = command("-b", backup, sample)
-    assert (status, timeless(out), err) == (0, output, "")
+    sha256 = hashlib.sha256(backup.read_bytes()).hexdigest()
+    assert (status, timeless(out), err) == (0, output + "Proof file : SHA-256 %s\n" % sha256, "")
     assert Proof.load(backup).no_tori
     for arguments in (["-r", backup], ["-r%s" % backup, "-b%s" % backup],
                       ["--restore", backup, "--backup", tmp_path / "other.gz"]):
         status, out, err = command(*arguments, sample)
-        assert (status, timeless(out), err) == (0, output, "")
+        assert (status, timeless(out).split("Proof file")[0], err) == (0, output, "")
     assert Proof.load(tmp_path / "other.gz").no_tori
 
 
@@ -128,6 +130,21 @@ def test_marked_backup_is_no_proof(command, sample, tmp_path):
     status, out, err = command("-r", backup, sample)
     assert status == 2 and out == "" and one_line(err) and "as printed" in err
     assert command("--as-printed", "-r", backup, sample)[0] == 0
+
+
+def test_the_sharper_method(command, root, tmp_path):
+    sample, path = root / "inputs" / "trig180.in", tmp_path / "a.proof"
+    status, out, err = command("--method", "loewner", "--together", "-b", path, "--jobs", "2", sample)
+    assert status == 0 and err == ""
+    assert "which move together" in out and "s times the upper ends" in out
+    assert "SHA-256 " + hashlib.sha256(path.read_bytes()).hexdigest() in out
+    again = command("--method", "loewner", "--together", "-r", path, sample)
+    assert again[0] == 0 and "Proof file" not in again[1]
+    picture = tmp_path / "a.svg"
+    assert command("--method=loewner", "--together", "-g", picture, sample)[0] == 0
+    assert b"<svg" in picture.read_bytes()[:1000]
+    leaves = command("--method=loewner", "--together", "-t", sample)[1]
+    assert leaves.count("proved  ") == int(re.search(r"([0-9]+) were proved", out)[1])
 
 
 # ---- bad usage and bad input ------------------------------------------------------------
