@@ -16,7 +16,7 @@ define install
 	touch $(1)/stamp
 endef
 
-.PHONY: prove test torture mutate sanitize memcheck warnings bench clean
+.PHONY: prove test torture mutate accuracy sanitize memcheck warnings bench charts clean
 
 prove: $(VENV)/stamp
 	@mkdir -p build
@@ -34,6 +34,10 @@ torture: $(VENV)/stamp
 mutate: $(VENV)/stamp
 	$(VENV)/bin/python tests/mutate.py
 
+# The table of proven bounds and worst errors, measured anew.
+accuracy: $(VENV)/stamp
+	$(VENV)/bin/python tests/accuracy.py > docs/accuracy.md
+
 # A proof, the kernels and a failing proof under valgrind's memcheck.
 memcheck: $(VENV)/stamp
 	PYTHONMALLOC=malloc valgrind -q --error-exitcode=9 --suppressions=tests/memcheck.supp $(VENV)/bin/python tests/memcheck.py
@@ -44,6 +48,9 @@ sanitize: $(SANITIZED)/stamp
 
 bench: $(VENV)/stamp
 	$(VENV)/bin/python tests/bench
+
+charts: $(VENV)/stamp
+	$(VENV)/bin/converse-chart docs
 
 # Every translation unit that converse/_build.py lists, with all warnings as errors.
 warnings: $(VENV)/stamp

@@ -21,6 +21,7 @@ from converse import kernels
 from test_bd_trig import boxes, true_range
 from test_bounds import beta_at, grid_maxima
 from test_images import exact_inverse, outside, random_prism
+from test_loewner import displacements, variations
 from truth import (CLOSE, cube_coordinates, cube_point, decimal, eigenvalues, exact, list_prism,
                    mp, point_of, rng_for, step, uniform)
 
@@ -212,6 +213,16 @@ TORI = [(0, 0, 0), (1, 0, 0), (0, "-0.25", 0), ("0.2", "0.5", "0.6"), ("1e-9", 0
         (("-1", "1"),) * 3, (("-0.4", "-0.1"), ("0.2", "0.3"), ("-0.7", "-0.5"))]
 LARGE = [(100, -30, 55), ("1e5", "2e4", "-1e5"), ("1e9", "1e9", "1e9"), (0, "1e6", 0)]
 FLAT = [(0, 0, 100)]
+def rests(rng, n, dp, **options):
+    yield from (exact(rest / off) for _, _, off, rest, _, _ in displacements(rng, n)
+                if off > 1e-30)
+
+
+def witnesses(rng, n, dp, **options):
+    yield from (exact((bound - max(totals)) / abs(max(totals)))
+                for _, bound, totals in variations(rng, n))
+
+
 TOLERANCE = "tolerances, 5e-7 + 1e-12 (\\|a\\| + \\|b\\| + \\|c\\|)"
 CENTRE_ERR = "times 1 + \\|a\\| + \\|b\\| + \\|c\\| places"
 GAUSS, ROOTS = "Gauss-Jordan, full pivoting; gauss.c", "(Tr beta -+ sqrt(disc)) / 2; lambda.c"
@@ -262,13 +273,13 @@ ROWS = [
     ("eigenvalues of beta over a prism", ROOTS, "over the prism: " + LEAST,
      0, None, WIDTHS, suites, {"wanted": [1, 2], "kind": "prism"}, ALL, 300),
     ("T, B over the torus, parameters to 1", BRANCH,
-     "max >= the largest trace (or eigenvalue), and within 5e-7 of it",
+     "max >= the largest trace (or eigenvalue), and within 5e-7 + 1e-12 (\\|a\\| + \\|b\\| + \\|c\\|)",
      0, 1, TOLERANCE, torus, {"cases": TORI}, ALL, 20),
     ("T, B over the torus, parameters to 10^9", BRANCH,
-     "or within 1e-12 of the size of parameters beyond 1e5",
+     "the same",
      0, 1, TOLERANCE, torus, {"cases": LARGE, "largest": 9}, ALL, 10),
     ("T, B over the torus, c = 100 alone", BRANCH,
-     "unless depth or patience ran out, when it is looser, and still a bound",
+     "unless the cells ran out: then it is looser, and still a bound",
      0, None, TOLERANCE, torus, {"cases": FLAT}, ALL, 0),
     ("image of a point: its centre", "equation code-map; map.c",
      "each coordinate of v' is off by at most centre_err",
@@ -287,6 +298,12 @@ ROWS = [
      0, None, HALF, images, {"make": random_prism, "want": "slack"}, ALL, 150),
     ("image of any prism: widths", ROTOR, HOLDS,
      1, None, WIDTHS, images, {"make": random_prism, "want": "widths"}, ALL, 300),
+    ("orbit of a prism, 1 to 8 steps either way: rest / error", "factors of the map; loewner.c",
+     "x[j] + D[j], D[j] = L[j] e + r[j], \\|r[j]\\| <= rest",
+     1, None, "", rests, {}, DOUBLE, 2000),
+    ("second variation over a prism: bound less truth", "witness and multipliers; loewner.c",
+     "bound >= (1) over the whole prism",
+     0, None, "true values", witnesses, {}, DOUBLE, 2000),
 ]
 
 HEAD = """\
@@ -295,7 +312,7 @@ HEAD = """\
 Each number is a bound's or a result's distance from the truth, which is rational arithmetic or
 mpmath with %d digits, in the unit of its row: least and largest seen, rounded outwards to three
 digits, and the median in brackets where nothing limits the distance upwards. A place is 10^-dp with
-dp places; in double precision, which promises nothing but its sines, it is 10^-15 relative to the
+dp places; in double precision, which promises only what loewner.c and sine.h do, it is 10^-15 relative to the
 arguments (for the inverse: error relative to its largest entry times the condition number).
 """
 COLUMNS = ("operation", "algorithm", "promised in csrc", "limits", *DP, "cases")

@@ -2,6 +2,7 @@
 
 import concurrent.futures
 import os
+import shutil
 import signal
 import subprocess
 import sys
@@ -156,3 +157,18 @@ def test_dask_loses_a_worker(proof, tmp_path):
         result = prove(problem, method="loewner", executor=client.get_executor(), jobs=4)
         assert killer.finished.is_set() and time.monotonic() - began > 0.5
         assert timeless(result) == whole
+
+
+@pytest.mark.skipif(not shutil.which("mpiexec"), reason="there is no MPI here")
+def test_mpi(proof, tmp_path):
+    pytest.importorskip("mpi4py")
+    (tmp_path / "a.in").write_text("\n".join(
+        "%s %s" % pair for pair in zip(*LONG.decimals())) + "\n")
+    environment = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1",
+                       OMPI_MCA_rmaps_base_oversubscribe="1")
+    subprocess.run(["mpiexec", "-n", "3", sys.executable, "-m", "mpi4py.futures", "-m",
+                    "converse.cli", "--mpi", "--method", "loewner", "--together", "-b", "a.proof",
+                    "a.in"], cwd=tmp_path, env=environment, check=True, timeout=120,
+                   stdout=subprocess.DEVNULL)
+    assert timeless(Proof.load(tmp_path / "a.proof")) == replace(
+        proof, problem=replace(LONG, comments=()))
