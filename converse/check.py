@@ -58,7 +58,7 @@ VERIFIED, REJECTED, UNUSABLE, INTERRUPTED = 0, 1, 2, 130
 MAX_BYTES = 1 << 28                     # of a proof file, uncompressed
 MAX_CUTS = 1000                         # of a leaf
 MAX_HALVINGS, MAX_PIECES = 12, 512      # of a leaf, by the checker itself
-MAX_POINTS = 200                        # of an orbit
+MAX_POINTS = 330                        # of an orbit
 CHUNK = 64                              # leaves per task
 NU_BITS = 20                            # of the test vectors
 
@@ -642,28 +642,42 @@ class Criterion:
             return "the arithmetic failed", piece[1]
 
     def _follow(self, l, centre, half):
-        """Lengthens the orbit at the end that is better known until (3) is true or all is lost."""
+        """Lengthens the orbit at the end that is better known until (3) is true or all is lost.
+
+        (3) is tried each time the orbit has grown by a twelfth, and in the end.  How far the angle
+        of a wave that is not there moves is of no interest.
+        """
         fixed, symbols, parameters = self.fixed, self.symbols, list(zip(centre[:3], half[:3]))
+        waves = [k for k, parameter in enumerate(parameters) if any(parameter)]
         why, columns, known = "the orbit of its centre contradicts nothing", half, 7
         orbit = collections.deque()
         point = Point(fixed, parameters, self.xstar, ([0] * 5 + [1, 0], [0] * 5 + [0, 1]))
-        ahead = True
-        while max(point.reach) <= fixed.one and len(orbit) < MAX_POINTS:
+        ahead, due = True, 1
+
+        def reach(point):
+            return max([point.reach[k] for k in waves] or [0])
+
+        while point:
             (orbit.append if ahead else orbit.appendleft)(point)
+            if len(orbit) == 1:
+                point = Point(fixed, parameters, centre[3:], ([0, 0, 0, half[3], 0, 0, 0],
+                                                              [0, 0, 0, 0, half[4], 0, 0]))
+            else:
+                ahead = reach(orbit[-1]) < reach(orbit[0])
+                ends = (orbit[-1], orbit[-2]) if ahead else (orbit[0], orbit[1])
+                point = step(fixed, parameters, symbols, *ends, known)
+                known += 3
+            if reach(point) > fixed.one or len(orbit) == MAX_POINTS:
+                point = None
+            if point and len(orbit) < due:
+                continue
+            due = len(orbit) + 1 + len(orbit) // 12
             vectors = witness([point.beta for point in orbit], l / fixed.one)
             if vectors:
                 bound, columns = second_variation(fixed, symbols, l, orbit, vectors)
                 if bound < 0:
                     return None
                 why = "its second variation may be positive"
-            if len(orbit) == 1:
-                point = Point(fixed, parameters, centre[3:], ([0, 0, 0, half[3], 0, 0, 0],
-                                                              [0, 0, 0, 0, half[4], 0, 0]))
-                continue
-            ahead = max(orbit[-1].reach) < max(orbit[0].reach)
-            ends = (orbit[-1], orbit[-2]) if ahead else (orbit[0], orbit[1])
-            point = step(fixed, parameters, symbols, *ends, known)
-            known += 3
         return why, columns
 
     def halves(self, centre, half, columns):

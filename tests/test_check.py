@@ -1086,3 +1086,11 @@ def test_mirror_images_against_boxes(texts, generator, together, axes):
                 assert (mirror.refusal(cell) is None) == clear
                 seen.add(clear)
     assert seen == {True, False}
+
+
+def test_confirms_the_standard_map(root, tmp_path):
+    """b = c = 0: the free angle costs nothing."""
+    proof = prove(read_input(root / "inputs" / "standard-63-64.in"), method="loewner")
+    proof.save(tmp_path / "a.proof")
+    lines = check.verify(str(tmp_path / "a.proof"))
+    assert lines[0] == "Verified :" and "0.984375 <= a <= 0.985" in lines
