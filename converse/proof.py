@@ -289,10 +289,11 @@ def prove(problem, depth=None, digits=35, stubborn=False, as_printed=False, prog
                     snapshot().save(backup)
                     saved = time.monotonic()
                     pause = max(BACKUP_SECONDS, BACKUP_SHARE * (saved - now))
-        except BaseException:
-            growth.settle()
-            if keep:
-                snapshot().save(backup)
+        except BaseException:           # what stands is saved, if it is whole; else the last backup
+            with contextlib.suppress(AssertionError):
+                growth.settle()
+                if keep:
+                    snapshot().save(backup)
             raise
         growth.settle()
         proof = snapshot()

@@ -170,7 +170,11 @@ def grow(task, cells, seconds):
     if getattr(_mine, "task", None) != task:
         _mine.search = Search(task)
         _mine.task = task
-    return _mine.search.grow(cells, seconds)
+    try:
+        return _mine.search.grow(cells, seconds)
+    except BaseException:
+        _mine.task = _mine.search = None    # nobody knows in what state it is
+        raise
 
 
 def count_workers(executor=None):
@@ -215,7 +219,20 @@ class Growth:
             if self.task.stubborn or not part.stopped:
                 pieces += [tree.UNTRIED * len(part.cells)]
                 hints += [hint for _, _, hint in part.cells]
-        return "".join(pieces).rstrip(tree.UNTRIED), hints
+        text = "".join(pieces)
+        self._check(text)
+        return text.rstrip(tree.UNTRIED), hints
+
+    def _check(self, text):
+        """AssertionError if the text lacks a prism or has one too many, as it might after an
+        exception in the middle of a change: such a tree must never be saved."""
+        cuts, proved, symmetric, undecided, untried = (
+            sum(map(text.count, kinds)) for kinds in (tree.CUTS, "P", "S", "U", tree.UNTRIED))
+        if undecided and not self.task.stubborn:
+            return                          # it ends there, and can never become a theorem
+        if proved + symmetric + undecided + untried != cuts + 1 or self.counts.cuts != cuts or (
+                self.counts.proved, self.counts.symmetric) != (proved, symmetric):
+            raise AssertionError("the tree is not whole")
 
     def _take(self, part, grown):
         """Adds to a part what was grown from its cells."""
@@ -245,9 +262,11 @@ class Growth:
             part = max(queue, key=lambda part: len(part.cells))
             if len(part.cells) == 1:
                 break
-            rest = Part([part.cells.pop()])         # the last cell is the largest
-            self.parts.insert(self.parts.index(part) + 1, rest)
-            queue.insert(queue.index(part) + 1, rest)
+            first, rest = Part(part.cells[:-1]), Part(part.cells[-1:])  # the last is the largest
+            first.pieces, first.stopped = part.pieces, part.stopped
+            at, place = self.parts.index(part), queue.index(part)
+            self.parts = self.parts[:at] + [first, rest] + self.parts[at + 1:]
+            queue[place:place + 1] = [first, rest]
         return queue
 
     def together(self, seconds):

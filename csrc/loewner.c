@@ -121,11 +121,12 @@ static void finish(const loewner *w, point *q)
 
 /* How far a wave p cos(y + d) may be from p cos y - p d sin y + h e cos y, e in [-1, 1] the symbol
    of the parameter: (|p| + h)(|cos y| d^2/2 + |sin y| |d|^3/6) + h |sin y d| + loose.  Sines are off
-   by less than 2^-40. */
+   by far less than 2^-40 (1 + |x0| + |x1|). */
 static double bend(const loewner *w, const point *q, int wave)
 {
     const double rho = q->reach[wave];
-    const double c = fabs(q->cosine[wave]) + 0x1p-40, s = fabs(q->sine[wave]) + 0x1p-40;
+    const double off = 0x1p-40 * (1.0 + q->far);
+    const double c = fabs(q->cosine[wave]) + off, s = fabs(q->sine[wave]) + off;
 
     return size(w, wave) * rho * rho * (c * 0.5 + s * rho * (1.0 / 6.0)) +
            (w->h[wave] + w->loose[wave]) * s * rho + w->loose[wave] * c;
@@ -273,7 +274,7 @@ static int witness(loewner *w)
 {
     point *q = w->orbit;
     double value = HUGE_VAL, form[3], ignored[2];
-    int site = 0, from, to = w->last;
+    int site, from, to = w->last;
     const int fall = fall_left(w, w->first, w->last);
 
     if (fall > w->last)
@@ -285,6 +286,7 @@ static int witness(loewner *w)
         if (from < w->first)
             from = fall;                                /* by a rounding only */
     }
+    site = from;
     for (int j = from; j <= fall; j++) {
         const double v = least(q[j].beta, ignored);
         if (v < value) {
@@ -374,7 +376,7 @@ static void bound_second_variation(loewner *w)
             centre -= omega[i] * p * s;
             mass += omega[i] * fabs(p);
             along[i] += A;
-            along_mass += (omega[i] + fabs(m[i])) * (h + (size(w, i) * rho + h) * rho);
+            along_mass += (omega[i] + fabs(m[i])) * (h + (size(w, i) * rho * (1.0 + rho) + h) * rho);
             rest += term;
             if (rho > 0.0) {
                 const double part = term / rho;
@@ -631,9 +633,13 @@ int loewner_bound(loewner *w, double *bound, double *l, int *first, double n[][2
 /* B at one corner of the parameters, from the double instance.  Each of its bounds is a sum of less
    than 40 rounded terms of at most 4 (1 + |a| + |b| + |c|); its sines are off by SINE_ERROR and, where
    their angle is a rounded sum, by u 2 pi; and the corner is rounded: all far below 10^-12 of it. */
-static double corner_largest(unit *quick, const double p[3])
+static double corner_largest(const loewner *w, unit *quick, const double p[3])
 {
-    return quick_largest(quick, p) + 1e-12 * (1.0 + fabs(p[0]) + fabs(p[1]) + fabs(p[2]));
+    double all = 1.0;
+
+    for (int k = 2; k < COLUMNS; k++)
+        all += fabs(w->centre[k]) + w->half[k];
+    return quick_largest(quick, p) + 1e-12 * all;
 }
 
 /* A double d with |d - x| <= 2^-50 |x|, or else NaN, with which nothing is proved. */
@@ -683,7 +689,7 @@ loewner *loewner_new(const box *root, int together, unit *quick)
             const int upper = corner >> (together ? 0 : k) & 1;
             p[k] = w->centre[2 + k] + (upper ? 1.0 : -1.0) * w->half[2 + k];
         }
-        w->corner[corner] = quick == NULL ? HUGE_VAL : corner_largest(quick, p);
+        w->corner[corner] = quick == NULL ? HUGE_VAL : corner_largest(w, quick, p);
     }
     return w;
 }

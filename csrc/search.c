@@ -260,6 +260,8 @@ int cv_step(cv_search *s, long max_leaves, double max_seconds)
 
 int cv_restart(cv_search *s, int n, const cv_cell *cells)
 {
+    if (s->status == CV_ENOMEM)         /* its numbers are abandoned */
+        return CV_ENOMEM;
     if (n < 0)
         return CV_EARGUMENT;
     for (int j = 0; j < n; j++)

@@ -2,6 +2,7 @@
 
 import concurrent.futures
 import os
+import random
 import shutil
 import signal
 import subprocess
@@ -113,6 +114,48 @@ def test_time_limit_and_resume(proof, tmp_path):
         result = Proof.load(path)
         runs += 1
     assert runs > 1 and timeless(result) == proof
+
+
+class Inline(concurrent.futures.Executor):
+    """Works in the thread that asks."""
+
+    def submit(self, work, *args):
+        future = concurrent.futures.Future()
+        future.set_result(work(*args))
+        return future
+
+
+@pytest.mark.parametrize("error", [KeyboardInterrupt, MemoryError])
+def test_interrupted_anywhere(error, tmp_path, monkeypatch):
+    """Whatever line of the bookkeeping an exception strikes, what was saved leads to the same tree."""
+    monkeypatch.setattr(search, "TASK_SECONDS", 0.001)
+    monkeypatch.setattr("converse.proof.BACKUP_SECONDS", 0.005)
+    problem, path = line("0.0165", "0.0280"), tmp_path / "a.proof"
+    whole = timeless(prove(problem, method="loewner", jobs=1))
+    rng, struck, lines = random.Random(1), 0, [0, 0]
+
+    def trace(frame, event, _):
+        if frame.f_code.co_filename != search.__file__ or "self" not in frame.f_locals:
+            return None
+        if event == "line":
+            lines[0] += 1
+            if lines[0] == lines[1]:
+                raise error
+        return trace
+
+    for _ in range(60):
+        path.unlink(missing_ok=True)
+        lines[:] = [0, rng.randrange(20, 1500)]
+        sys.settrace(trace)
+        try:
+            prove(problem, method="loewner", executor=Inline(), jobs=5, backup=path)
+        except error:
+            struck += 1
+        finally:
+            sys.settrace(None)
+        resume = path if path.exists() else None
+        assert timeless(prove(problem, method="loewner", jobs=1, resume=resume)) == whole
+    assert struck > 30
 
 
 KILLED = """
