@@ -8,6 +8,7 @@ import concurrent.futures
 import contextlib
 import os
 import threading
+import time
 from dataclasses import asdict, dataclass, field, fields
 from decimal import Decimal
 from typing import List, Optional, Tuple
@@ -18,8 +19,8 @@ from .files import ConverseError
 
 METHODS = {"thesis": lib.CV_THESIS, "loewner": lib.CV_LOEWNER}
 MANY = 2 ** 30
-ALONE_SECONDS = 0.1                 # before anyone else is asked
-TASK_SECONDS = 0.25                 # that a worker grows its part before it reports
+ALONE_SECONDS = 0.03                # before anyone else is asked
+TASK_SECONDS = 0.25                 # that a worker grows its part before it reports, in the long run
 LOOK_SECONDS = 0.1                  # between two looks at the clock, at Ctrl-C, at the bar
 ATTEMPTS = 4                        # at a part whose workers die
 
@@ -195,7 +196,7 @@ class Growth:
         """search: one for this thread; parts: the parts of the tree, in preorder."""
         self.task, self.search, self.parts = task, search, parts
         self.counts, self.volume, self.steps = Counts(), 0.0, 0
-        self.executor, self.jobs = executor, jobs
+        self.executor, self.jobs, self.began = executor, jobs, time.monotonic()
         self.running = {}                   # future -> (part, attempts left)
 
     def _relevant(self):
@@ -290,8 +291,9 @@ class Growth:
         self._merge()
 
     def _submit(self, part, attempts):
+        seconds = min(TASK_SECONDS, 0.1 * (time.monotonic() - self.began))
         try:
-            future = self.executor.submit(grow, self.task, part.cells, TASK_SECONDS)
+            future = self.executor.submit(grow, self.task, part.cells, seconds)
         except RuntimeError as error:
             raise ConverseError("the workers are gone (%s)" % error) from None
         self.running[future] = part, attempts
