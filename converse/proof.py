@@ -229,8 +229,11 @@ def prove(problem, depth=None, digits=35, stubborn=False, as_printed=False, prog
             began -= resume.seconds
         centre, half = map(tuple, problem.decimals())
         xstar = resume.xstar if resume else None
+        before = time.monotonic()
         search = Search(Task(centre, half, xstar, problem.together, method, depth, digits,
                              stubborn, as_printed))
+        # Every worker makes a search of its own: that must pay.
+        alone = time.monotonic() + max(ALONE_SECONDS, 10 * (time.monotonic() - before))
         xstar = search.constant(0), search.constant(1)
         task = Task(centre, half, xstar, problem.together, method, depth, digits, stubborn,
                     as_printed)
@@ -275,8 +278,8 @@ def prove(problem, depth=None, digits=35, stubborn=False, as_printed=False, prog
                     look()
                 elif jobs == 1 and executor is None:
                     growth.alone(min(LOOK_SECONDS, end - now))
-                elif growth.executor is None and now - began < ALONE_SECONDS:
-                    growth.alone(min(ALONE_SECONDS, end - now))
+                elif growth.executor is None and now < alone:
+                    growth.alone(min(alone, end) - now)
                 else:
                     if growth.executor is None:
                         growth.executor = stack.enter_context(

@@ -53,7 +53,8 @@ def test_the_method_of_the_thesis_too():
     a, b = Fraction("0.306"), Fraction("0.00125")
     problem = Problem((a, a, 2 * a, Fraction(1), Fraction(1)),
                       (b, b, 2 * b, Fraction(1), Fraction(1)))
-    assert timeless(prove(problem, jobs=3)) == timeless(prove(problem, jobs=1))
+    with concurrent.futures.ThreadPoolExecutor(3) as executor:
+        assert timeless(prove(problem, executor=executor)) == timeless(prove(problem, jobs=1))
 
 
 @pytest.mark.parametrize("stubborn", [False, True])
