@@ -9,7 +9,7 @@ import contextlib
 import os
 import threading
 import time
-from dataclasses import asdict, dataclass, field, fields
+from dataclasses import asdict, dataclass, fields
 from decimal import Decimal
 from typing import List, Optional, Tuple
 
