@@ -279,7 +279,7 @@ def prove(problem, depth=None, digits=35, stubborn=False, as_printed=False, prog
                 elif jobs == 1 and executor is None:
                     growth.alone(min(LOOK_SECONDS, end - now))
                 elif growth.executor is None and now < alone:
-                    growth.alone(min(alone, end) - now)
+                    growth.alone(min(LOOK_SECONDS, alone - now, end - now))
                 else:
                     if growth.executor is None:
                         growth.executor = stack.enter_context(

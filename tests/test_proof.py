@@ -110,7 +110,8 @@ def test_round_trip(tmp_path, made_up, name):
         proof = replace(proof, counts=replace(proof.counts, **NUMBERS))
         proof.save(tmp_path / name)
         assert Proof.load(tmp_path / name) == proof
-        assert Proof.load(str(tmp_path / name)).report() == proof.report()
+        report = Proof.load(str(tmp_path / name)).report()
+        assert report.split("Proof file")[0] == proof.report()
     assert [path.name for path in tmp_path.iterdir()] == [name]
 
 

@@ -104,18 +104,18 @@ half, keep2 = strings(["0.00125", "0.00125", "0.0025", "1", "1"])
 handle = ffi.new("cv_search **")
 value, keep3 = strings(["0.3", "0.4"])
 out = ffi.new("char *[]", 8)
-assert lib.cv_search_new(handle, region, half, ffi.NULL, 0, 30, 0, 0) == lib.CV_EARGUMENT
-seen = {"new": 0, "step": 0, "kernel": 0}
+assert lib.cv_search_new(handle, region, half, ffi.NULL, 0, 0, 0, 30, 0, 0) == lib.CV_EARGUMENT
+seen = {"new": 0, "step": 0, "kernel": 0, "loewner": 0}
 for n in list(range(0, 3000, 29)) + list(range(3000, 60000, 2999)):
     shim.fail_after(n)
-    code = lib.cv_search_new(handle, region, half, ffi.NULL, 35, 30, 0, 0)
+    code = lib.cv_search_new(handle, region, half, ffi.NULL, 0, 0, 35, 30, 0, 0)
     failed = shim.has_failed()
     assert code == (lib.CV_ENOMEM if failed else 0), (n, code, failed)
     assert (handle[0] == ffi.NULL) == bool(failed)
     seen["new"] += bool(failed)
     if not failed:
         lib.cv_search_free(handle[0])
-assert lib.cv_search_new(handle, region, half, ffi.NULL, 35, 30, 0, 0) == 0
+assert lib.cv_search_new(handle, region, half, ffi.NULL, 0, 0, 35, 30, 0, 0) == 0
 lib.cv_step(handle[0], 10**6, 60.0)
 length = ffi.new("size_t *")
 def tree():
@@ -124,7 +124,7 @@ def tree():
 whole = tree()
 lib.cv_search_free(handle[0])
 for n in list(range(0, 2000, 41)) + list(range(2000, 200000, 4999)):
-    assert lib.cv_search_new(handle, region, half, ffi.NULL, 35, 30, 0, 0) == 0
+    assert lib.cv_search_new(handle, region, half, ffi.NULL, 0, 0, 35, 30, 0, 0) == 0
     shim.fail_after(n)
     code = lib.cv_step(handle[0], 10**6, 60.0)
     failed = shim.has_failed()
@@ -135,6 +135,15 @@ for n in list(range(0, 2000, 41)) + list(range(2000, 200000, 4999)):
     assert counts.cuts == sum(map(part.count, (b"0", b"1")))
     assert counts.proved == part.count(b"P") and counts.symmetric == part.count(b"S")
     seen["step"] += bool(failed)
+    lib.cv_search_free(handle[0])
+for n in range(0, 700):                      # the sharper method: making it, then a step
+    shim.fail_after(n)
+    code = lib.cv_search_new(handle, region, half, ffi.NULL, 1, 1, 35, 60, 0, 0)
+    if code == 0:
+        code = lib.cv_step(handle[0], 10**6, 60.0)
+    failed = shim.has_failed()
+    assert code == (lib.CV_ENOMEM if failed else 0), (n, code, failed)
+    seen["loewner"] += bool(failed)
     lib.cv_search_free(handle[0])
 for n in range(0, 300):
     shim.fail_after(n)
@@ -171,6 +180,12 @@ slack, backup, path = int(sys.argv[1]), sys.argv[2], sys.argv[3]
 pages = int(open("/proc/self/statm").read().split()[0])
 limit = pages * resource.getpagesize() + slack
 resource.setrlimit(resource.RLIMIT_AS, (limit, limit))
+hold = []
+try:
+    while slack == 0:                   # what the heap has left
+        hold.append(bytearray(16384))
+except MemoryError:
+    del hold[-20:]
 sys.exit(main(["-p", "4000", "-d", "4", "-r", backup, "-b", backup, path]))
 """
 
