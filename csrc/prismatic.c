@@ -31,7 +31,7 @@ static void prismatic_image(state *s, prism *pz_prime, prism *pz)
     if (s->inverse_failed)
         return;
     for (int k = 0; k < MAT_DIM; k++) {
-        num_round_width(s, n->w[k], n->w[k]);
+        num_round_width(n->w[k], n->w[k]);
         for (int j = 0; j < MAT_DIM; j++)
             num_mul(pz_prime->matrix[j][k], pz_prime->matrix[j][k], n->w[k]);
     }

@@ -131,11 +131,7 @@ static void num_round(state *s, num_t r, const num_t x, apm_round_t dir)
     r[0] = x[0];
 }
 
-static void num_round_width(state *s, num_t r, const num_t x)
-{
-    (void)s;
-    r[0] = x[0];
-}
+static void num_round_width(num_t r, const num_t x) { r[0] = x[0]; }
 
 static void num_floor(num_t r, const num_t x) { r[0] = floor(x[0]); }
 static void num_truncate(num_t r, const num_t x) { r[0] = trunc(x[0]); }
@@ -171,12 +167,11 @@ static void num_round(state *s, num_t r, const num_t x, apm_round_t dir)
     apm_round(r, x, s->precision, dir);
 }
 
-/* |r| >= |x| with W_DIGITS or one more significant digits: widths may only grow, and short ones
-   keep the matrices short. */
-static void num_round_width(state *s, num_t r, const num_t x)
+/* r >= x with W_DIGITS or one more significant digits: widths may only grow, and short ones keep
+   the matrices short. */
+static void num_round_width(num_t r, const num_t x)
 {
-    (void)s;
-    apm_round(r, x, W_DIGITS - apm_order(x), apm_sgn(x) < 0 ? APM_DOWN : APM_UP);
+    apm_round(r, x, W_DIGITS - apm_order(x), APM_UP);
 }
 
 static void num_floor(num_t r, const num_t x) { apm_floor(r, x); }

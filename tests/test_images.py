@@ -1,5 +1,6 @@
 """The image of a prism holds the image of every point of it; inverses are as good as they say."""
 
+import itertools
 from fractions import Fraction
 
 import mpmath
@@ -29,6 +30,9 @@ def random_prism(rng):
         for k in range(7):
             if k >= 3 or matrix[k][k] != 0:
                 matrix[j][k] = decimal(uniform(rng, -1, 1) * size / 5)
+    if rng.randrange(10) == 0:
+        matrix = [[x if j == k else Fraction(0) for k, x in enumerate(row)]
+                  for j, row in enumerate(matrix)]
     return centre, matrix
 
 
@@ -68,6 +72,23 @@ def test_gauss_jordan_knows_its_error(dp):
         assert worst <= error
         ratios.append(worst / error)
     assert len(ratios) > 500 and max(ratios) > Fraction(1, 1000)
+
+
+def test_every_rounding_of_gauss_jordan_counts():
+    """Three eliminations whose six roundings are all nearly a unit, and all to the same side."""
+    rng, dp = rng_for("gauss roundings"), 20
+    unit, most = Fraction(1, 10**dp), Fraction(99, 100)
+    matrix = [[Fraction(0)] * 4 for _ in range(4)]
+    for j in range(3):
+        while matrix[j][j] == 0:
+            pivot, right = Fraction(rng.randrange(1000, 2000)), decimal(uniform(rng, "0.99", 1))
+            quotient = decimal(1 / pivot, dp)
+            if min((1 / pivot - quotient) / unit, right * quotient / unit % 1) > most:
+                matrix[j][j], matrix[j][3], matrix[3][j] = pivot, right, Fraction(1)
+    *found, error = kernels.call("gauss_jordan", [x for row in matrix for x in row], 17, dp)
+    true = exact_inverse(matrix)[3][3]
+    lost = abs(1 / found[15] - 1 / true)
+    assert lost > 5 * most * unit and abs(found[15] - true) <= error
 
 
 def exact_inverse(matrix):
@@ -198,6 +219,25 @@ def test_image_is_not_too_wide():
         ratios.sort()
         assert ratios[0] > Fraction(99, 100)
         assert ratios[len(ratios) // 2] < cap
+
+
+@pytest.mark.parametrize("make", [list_prism, random_prism])
+def test_widths_are_rounded_up(make):
+    """Of prisms so small that nothing else counts: the corners' images touch the image's wall."""
+    rng, dp, closest = rng_for("tiny" + make.__name__), 60, -1
+    for _ in range(40 * TORTURE):
+        centre, matrix = make(rng)
+        prism = (centre, [[x / 10**18 for x in row] for row in matrix])
+        try:
+            image = kernels.image(prism, dp)
+        except ArithmeticError:
+            continue
+        for signs in itertools.product((-1, 1), repeat=7):
+            if all(matrix[j][j] or signs[j] > 0 for j in range(3)):
+                worst = outside(image, step(point_of(prism, signs)))
+                assert worst <= Fraction(1, 10**30)
+                closest = max(closest, worst)
+    assert closest > Fraction(-1, 10**10)
 
 
 def test_zero_widths():
