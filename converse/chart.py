@@ -3,7 +3,6 @@
 Needs matplotlib (the extra "plot").  All on the line a = b = c/2 = 11.21436 epsilon.
 """
 
-import argparse
 import contextlib
 import csv
 import io
@@ -16,11 +15,11 @@ import sys
 from fractions import Fraction
 
 from . import __version__, files, kernels, picture
+from .cli import Parser, ended
 from .files import ConverseError
 from .problem import Problem
 from .proof import prove
 
-FINE, BAD, INTERRUPTED = 0, 2, 130
 FORMATS = tuple(ending[1:] for ending in picture.FORMATS)
 SCALE = Fraction("11.21436")            # a = SCALE epsilon
 TOP = "0.0280"                          # above it there is nothing left to prove
@@ -349,11 +348,6 @@ def table(name, rows):
     return text.getvalue().encode("utf-8")
 
 
-class Parser(argparse.ArgumentParser):
-    def error(self, message):
-        raise ConverseError(message + "; see converse-chart --help")
-
-
 def parser():
     p = Parser(prog="converse-chart", allow_abbrev=False, description=(
         "Measures on this machine and draws four charts: bound, digits, width, wall."), epilog=(
@@ -389,30 +383,13 @@ def run(options):
         for path, data in zip(paths[name], (chart(name, rows, options.format), table(name, rows))):
             files.write(path, data)
     print("written: " + " ".join(itertools.chain(*paths.values())), flush=True)
-    return FINE
+    return 0
 
 
 def main(argv=None):
-    """Runs the command and returns its exit status; every failure is one line on stderr."""
-    try:
-        if None in (sys.stdout, sys.stderr):
-            return BAD                      # a standard stream is closed: nowhere to say so
-        for stream in (sys.stdout, sys.stderr):
-            stream.reconfigure(errors="backslashreplace")
-        return run(parser().parse_args(argv))
-    except SystemExit as end:               # of --help and --version
-        return end.code
-    except KeyboardInterrupt:
-        message, status = "interrupted; the charts that were finished are kept", INTERRUPTED
-    except (ConverseError, MemoryError) as error:
-        message, status = str(error) or "there is not enough memory", BAD
-    except OSError as error:
-        message, status = "the output cannot be written (%s)" % files.reason(error), BAD
-        with contextlib.suppress(OSError):  # the interpreter must not try again when it ends
-            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-    with contextlib.suppress(OSError):
-        print("converse-chart: " + " ".join(message.split()), file=sys.stderr)
-    return status
+    """Runs the command and returns its exit status."""
+    return ended("converse-chart", lambda: run(parser().parse_args(argv)),
+                 lambda: "the charts that were finished are kept")
 
 
 if __name__ == "__main__":

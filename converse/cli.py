@@ -17,7 +17,7 @@ KIND_NAMES = {"P": "proved", "S": "symmetric", "U": "undecided"}
 
 class Parser(argparse.ArgumentParser):
     def error(self, message):
-        raise ConverseError(message + "; see converse --help")
+        raise ConverseError("%s; see %s --help" % (message, self.prog))
 
 
 def _whole(least):
@@ -180,32 +180,40 @@ def run(options):
     return THEOREM if proof.all_decided else UNDECIDED
 
 
-def main(argv=None):
-    """Runs the command and returns its exit status; every failure is one line on stderr."""
-    options = None
+def ended(command, run, interrupted):
+    """The exit status of run(); every failure is one line on stderr, headed by the command's name.
+    interrupted() says what Ctrl-C leaves behind."""
     try:
         if None in (sys.stdin, sys.stdout, sys.stderr):
             return BAD                      # a standard stream is closed: nowhere to say so
         for stream in (sys.stdout, sys.stderr):
             stream.reconfigure(errors="backslashreplace")
-        options = parser().parse_args(argv)
-        return run(options)
+        return run()
     except SystemExit as end:               # of --help and --version
         return end.code
     except KeyboardInterrupt:
-        message, status = "interrupted; without -b nothing is kept", INTERRUPTED
-        if options and options.backup and os.path.exists(options.backup):
-            message = "interrupted; continue with -r " + options.backup
+        message, status = "interrupted; " + interrupted(), INTERRUPTED
     except (ConverseError, InputError, MemoryError) as error:
         message, status = str(error) or "there is not enough memory", BAD
     except OSError as error:
         message, status = "the output cannot be written (%s)" % files.reason(error), BAD
-        # The interpreter must not try again when it ends.
-        with contextlib.suppress(OSError):
+        with contextlib.suppress(OSError):  # the interpreter must not try again when it ends
             os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
     with contextlib.suppress(OSError):
-        print("converse: " + " ".join(message.split()), file=sys.stderr)
+        print("%s: %s" % (command, " ".join(message.split())), file=sys.stderr)
     return status
+
+
+def main(argv=None):
+    """Runs the command and returns its exit status."""
+    options = argparse.Namespace(backup=None)
+
+    def interrupted():
+        if options.backup and os.path.exists(options.backup):
+            return "continue with -r " + options.backup
+        return "without -b nothing is kept"
+
+    return ended("converse", lambda: run(parser().parse_args(argv, options)), interrupted)
 
 
 if __name__ == "__main__":

@@ -27,7 +27,6 @@ ATTEMPTS = 4                        # at a part whose workers die
 MESSAGES = {
     lib.CV_ENUMBER: "a number is malformed or out of range",
     lib.CV_EARGUMENT: "an argument makes no sense",
-    lib.CV_ETREE: "the tree does not belong to a search of this kind",
     lib.CV_EARITHMETIC: "the arithmetic failed: a division by zero, a root of a negative number "
                         "or lost precision; try more digits",
     lib.CV_ESINGULAR: "the matrix could not be inverted at any sensible precision",

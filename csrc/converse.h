@@ -9,10 +9,9 @@ enum {                       /* what the functions return */
     CV_ENOMEM = -1,
     CV_ENUMBER = -2,         /* a string is not a decimal number, or out of range */
     CV_EARGUMENT = -3,       /* an argument makes no sense (a negative half-width, dp < 1, ...) */
-    CV_ETREE = -4,           /* the text given to cv_restore is not the tree of such a search */
-    CV_EARITHMETIC = -5,     /* division by zero, a root of a negative number, lost precision */
-    CV_ESINGULAR = -6,       /* the matrix could not be inverted at any sensible precision */
-    CV_EMACHINE = -7         /* the floating-point unit or the build breaks the rules of rigor */
+    CV_EARITHMETIC = -4,     /* division by zero, a root of a negative number, lost precision */
+    CV_ESINGULAR = -5,       /* the matrix could not be inverted at any sensible precision */
+    CV_EMACHINE = -6         /* the floating-point unit or the build breaks the rules of rigor */
 };
 
 enum {                       /* why a try of a prism ended without a proof (index of reasons[]) */

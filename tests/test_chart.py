@@ -10,7 +10,7 @@ import xml.etree.ElementTree as ET
 
 import pytest
 
-from converse import __version__, chart, kernels
+from converse import __version__, chart, cli, kernels
 
 ROWS = {
     "bound": [("1989", "0.0274", 2698, "yes"), ("thesis", "0.0274", 0.05, "yes"),
@@ -52,7 +52,7 @@ def test_charts(name, kind):
 
 def test_files(quick, tmp_path, capsys):
     place = tmp_path / "new" / "place"
-    assert chart.main([str(place), "--quick", "--format", "svg"]) == chart.FINE
+    assert chart.main([str(place), "--quick", "--format", "svg"]) == 0
     out, err = capsys.readouterr()
     assert err == ""
     assert sorted(os.listdir(place)) == sorted(
@@ -71,28 +71,28 @@ def test_files(quick, tmp_path, capsys):
 
 def test_bad_places(quick, tmp_path, capsys):
     (tmp_path / "file").write_text("")
-    assert chart.main([str(tmp_path / "file")]) == chart.BAD
+    assert chart.main([str(tmp_path / "file")]) == cli.BAD
     assert "file" in one_line(capsys)[1]
     (tmp_path / "chart-wall.csv").mkdir()
-    assert chart.main([str(tmp_path)]) == chart.BAD
+    assert chart.main([str(tmp_path)]) == cli.BAD
     out, err = one_line(capsys)
     assert out == "" and "chart-wall.csv" in err        # before anything is measured
     if os.geteuid():
         (tmp_path / "closed").mkdir(mode=0o500)
-        assert chart.main([str(tmp_path / "closed")]) == chart.BAD
+        assert chart.main([str(tmp_path / "closed")]) == cli.BAD
         one_line(capsys)
 
 
 def test_bad_usage(capsys):
-    assert chart.main(["--format", "gif"]) == chart.BAD
+    assert chart.main(["--format", "gif"]) == cli.BAD
     assert "--help" in one_line(capsys)[1]
-    assert chart.main(["a", "b"]) == chart.BAD
+    assert chart.main(["a", "b"]) == cli.BAD
     one_line(capsys)
 
 
 def test_no_matplotlib(tmp_path, monkeypatch, capsys):
     monkeypatch.setitem(sys.modules, "matplotlib", None)
-    assert chart.main([str(tmp_path / "place")]) == chart.BAD
+    assert chart.main([str(tmp_path / "place")]) == cli.BAD
     assert "converse[plot]" in one_line(capsys)[1] and not os.listdir(tmp_path)
 
 
@@ -103,7 +103,7 @@ def test_interrupted(quick, tmp_path, monkeypatch, capsys):
 
     monkeypatch.setitem(chart.CHARTS, "wall", (*chart.CHARTS["wall"][:1], interrupted,
                                                chart.CHARTS["wall"][2]))
-    assert chart.main([str(tmp_path)]) == chart.INTERRUPTED
+    assert chart.main([str(tmp_path)]) == cli.INTERRUPTED
     one_line(capsys)
     assert (tmp_path / "chart-width.svg").exists() and not (tmp_path / "chart-wall.svg").exists()
 
