@@ -1,5 +1,6 @@
 """What make memcheck runs under valgrind: proofs of both kinds and every sort of kernel."""
 
+from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
 
