@@ -73,13 +73,16 @@ def test_processes(proof):
 
 
 class Unreliable(concurrent.futures.ThreadPoolExecutor):
-    """Every third task is lost with its worker."""
+    """Every third task is lost with its worker, but none a second time."""
 
-    tasks = 0
+    tasks, lost = 0, []
 
-    def submit(self, work, *args):
-        Unreliable.tasks += 1
-        return super().submit(die if Unreliable.tasks % 3 == 0 else work, *args)
+    def submit(self, work, task, cells, seconds):
+        self.tasks += 1
+        if self.tasks % 3 == 0 and cells not in self.lost:
+            self.lost.append(cells)
+            work = die
+        return super().submit(work, task, cells, seconds)
 
 
 def die(*args):
@@ -89,6 +92,7 @@ def die(*args):
 def test_lost_tasks_are_given_out_again(proof):
     with Unreliable(2) as executor:
         assert timeless(prove(LONG, method="loewner", executor=executor)) == proof
+        assert executor.lost
 
 
 def test_workers_that_always_die():
@@ -110,7 +114,8 @@ def test_an_executor_that_is_gone():
 def test_time_limit_and_resume(proof, tmp_path):
     path, result, runs = tmp_path / "a.proof", None, 0
     while result is None or not result.all_decided:
-        result = prove(LONG, method="loewner", jobs=3, time_limit=0.2, backup=path, resume=result)
+        result = prove(LONG, method="loewner", jobs=3, time_limit=0.02 * 2**runs,
+                       backup=path, resume=result)
         assert timeless(Proof.load(path)) == timeless(result)
         result = Proof.load(path)
         runs += 1
