@@ -174,8 +174,6 @@ HARMLESS = {
     "        v->no_tori = 0;\n":
         "a second belt: each divisor was just found to be above a positive bound, and comparisons "
         "with NaN are false",
-    "num_div(s, n->w[U + j], t[4], t[5], APM_UP);":
-        "an ulp of w, beside the ten ulps over the prism's width that are in t[4]",
 }
 
 
