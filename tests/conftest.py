@@ -1,5 +1,6 @@
 """What several tests share."""
 
+import signal
 import subprocess
 import sys
 from fractions import Fraction
@@ -11,6 +12,10 @@ from converse import Counts, Problem, Proof
 
 ROOT = Path(__file__).resolve().parent.parent
 COMMAND = str(Path(sys.executable).parent / "converse")
+
+# A shell without job control starts what it puts in the background with Ctrl-C ignored, and so
+# would be all that is started here.
+signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 @pytest.fixture(scope="session")
