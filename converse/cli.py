@@ -148,6 +148,8 @@ def workers(options):
 
 
 def run(options):
+    if options.input == "-" and sys.stdin is None:
+        raise ConverseError("standard input is closed; name an input file")
     problem = read_input(sys.stdin if options.input == "-" else options.input)
     if options.method == "thesis" and options.together:
         raise ConverseError("--together needs --method loewner")
@@ -184,7 +186,7 @@ def ended(command, run, interrupted):
     """The exit status of run(); every failure is one line on stderr, headed by the command's name.
     interrupted() says what Ctrl-C leaves behind."""
     try:
-        if None in (sys.stdin, sys.stdout, sys.stderr):
+        if None in (sys.stdout, sys.stderr):
             return BAD                      # a standard stream is closed: nowhere to say so
         for stream in (sys.stdout, sys.stderr):
             stream.reconfigure(errors="backslashreplace")

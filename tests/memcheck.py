@@ -16,6 +16,12 @@ for as_printed in (False, True):
     assert not converse.prove(problem, digits=1, as_printed=as_printed, stubborn=True,
                               depth=4).all_decided
 
+for name, together, decided in (("trig180", True, True), ("standard-63-64", False, True),
+                                ("standard-972", False, False)):
+    problem = replace(converse.read_input(INPUTS / (name + ".in")), together=together)
+    proof = converse.prove(problem, method="loewner", jobs=2, time_limit=300 if decided else 5)
+    assert proof.all_decided == decided
+
 centre = [Fraction(x) for x in ("0.3", "0.3", "0.6", "0.8", "0.8", "2", "1")]
 prism = (centre, [[Fraction(j == k and j not in (3, 4), 100) for k in range(7)]
                   for j in range(7)])

@@ -176,6 +176,7 @@ def test_closed_streams(redirection):
                             stderr=subprocess.PIPE, check=False)
     assert result.returncode == 2
     assert b"Traceback" not in result.stdout + result.stderr
+    assert (b"standard input is closed" in result.stderr) == (redirection == "<&-")
 
 
 def test_bar_on_a_terminal_only(start, command, sample):
