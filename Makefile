@@ -3,7 +3,7 @@
 PYTHON = python3
 VENV = .venv
 SANITIZED = .venv-sanitize
-SOURCES = $(wildcard csrc/* converse/*.py) setup.py pyproject.toml MANIFEST.in
+SOURCES = $(wildcard csrc/* csrc/*/* converse/*.py) setup.py pyproject.toml MANIFEST.in
 SANITIZE = -fsanitize=address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer -g -O1
 
 # Installs the package with its tests' needs into a virtual environment; $(1) is that directory.
@@ -57,7 +57,7 @@ warnings: $(VENV)/stamp
 	$(VENV)/bin/python -c 'exec(open("converse/_build.py").read()); print(*SOURCES, sep="\n")' \
 	| while read source; do \
 	    echo $$source; \
-	    gcc -std=c11 -O2 -ffp-contract=off -Wall -Wextra -Wpedantic -Wconversion -Werror \
+	    gcc -std=c11 -O2 -ffp-contract=off -Wall -Wextra -Wpedantic -Wconversion -Werror -Icsrc \
 	        -c $$source -o /dev/null || exit 1; \
 	done
 

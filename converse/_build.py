@@ -5,7 +5,10 @@ import os
 
 from cffi import FFI
 
-SOURCES = ["apm", "special", "memory", "start", "rigorous", "double", "loewner", "search", "cv_kernel"]
+SOURCES = ["numbers/apm", "numbers/special", "numbers/memory",
+           "thesis/start", "thesis/rigorous", "thesis/double",
+           "loewner/orbit", "loewner/witness", "loewner/bound", "loewner/try",
+           "search", "kernels"]
 SOURCES = ["csrc/%s.c" % name for name in SOURCES]
 
 # The flags are part of the proof: no fused, reordered or extended floating-point arithmetic.
@@ -18,4 +21,4 @@ with open("csrc/converse.h") as header:
     ffi.cdef(header.read())
 ffi.set_source("converse._native", '#include "converse.h"', sources=SOURCES,
                include_dirs=["csrc"], libraries=["gmp"], extra_compile_args=FLAGS,
-               depends=sorted(glob.glob("csrc/*")))
+               depends=sorted(glob.glob("csrc/**/*.[ch]", recursive=True)))

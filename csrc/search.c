@@ -14,10 +14,10 @@
 #include <string.h>
 #include <time.h>
 
-#include "loewner.h"
-#include "memory.h"
-#include "special.h"
-#include "unit.h"
+#include "loewner/loewner.h"
+#include "numbers/memory.h"
+#include "numbers/special.h"
+#include "thesis/unit.h"
 
 #ifdef __FAST_MATH__
 #error "-ffast-math breaks the rules of rigor"

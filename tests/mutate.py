@@ -18,109 +18,111 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parent.parent
 TESTS = ["test_apm.py", "test_special.py", "test_bounding.py", "test_bd_trig.py", "test_bounds.py", "test_images.py",
          "test_search.py", "test_loewner.py"]
-# The test to begin with; without one it is test_images.py.
-FIRST = {"apm.c": "test_apm.py", "special.c": "test_special.py", "bounding.c": "test_bounding.py",
-         "bd_trig.c": "test_bd_trig.py", "trace.c": "test_bounds.py", "lambda.c": "test_bounds.py",
-         "torus.c": "test_bounds.py", "follow.c": "test_search.py", "search.c": "test_search.py", "sine.h": "test_loewner.py",
-         "loewner.c": "test_loewner.py"}
+# The test to begin with, by file or room; without one it is test_images.py.
+FIRST = {"numbers/apm.c": "test_apm.py", "numbers/special.c": "test_special.py",
+         "numbers/sine.h": "test_loewner.py", "thesis/bounding.c": "test_bounding.py",
+         "thesis/bd_trig.c": "test_bd_trig.py", "thesis/trace.c": "test_bounds.py",
+         "thesis/lambda.c": "test_bounds.py", "thesis/torus.c": "test_bounds.py",
+         "thesis/follow.c": "test_search.py", "search.c": "test_search.py",
+         "loewner": "test_loewner.py"}
 FLAGS = ["-std=c11", "-O1", "-fPIC", "-ffp-contract=off", "-I", "csrc",
          "-I", sysconfig.get_paths()["include"]]
 
 # file, what stands there (once), what to put in its place
 MUTATIONS = [
-    ("apm.c", "mpz_fdiv_q(r, x, y)", "mpz_cdiv_q(r, x, y)"),
-    ("apm.c", "mpz_cdiv_q_ui(r, x, y)", "mpz_tdiv_q_ui(r, x, y)"),
-    ("apm.c", "mpz_add_ui(r->mant, r->mant, 1UL);\n    r->exp = -dp;", "r->exp = -dp;"),
-    ("apm.c", "if (dir == APM_UP && (!exact || mpz_sgn(rest) != 0))",
+    ("numbers/apm.c", "mpz_fdiv_q(r, x, y)", "mpz_cdiv_q(r, x, y)"),
+    ("numbers/apm.c", "mpz_cdiv_q_ui(r, x, y)", "mpz_tdiv_q_ui(r, x, y)"),
+    ("numbers/apm.c", "mpz_add_ui(r->mant, r->mant, 1UL);\n    r->exp = -dp;", "r->exp = -dp;"),
+    ("numbers/apm.c", "if (dir == APM_UP && (!exact || mpz_sgn(rest) != 0))",
      "if (dir == APM_UP && mpz_sgn(rest) != 0)"),
-    ("apm.c", "apm_round(r, x, 0, APM_DOWN)", "apm_round(r, x, 0, APM_TRUNC)"),
-    ("apm.c", "shift_up(t, x->mant, x->exp - exp);", "shift_up(t, x->mant, x->exp - exp - 1);"),
-    ("apm.c", "const mpz_srcptr first = shift_x ? t : x->mant, second = shift_x ? y->mant : t;",
+    ("numbers/apm.c", "apm_round(r, x, 0, APM_DOWN)", "apm_round(r, x, 0, APM_TRUNC)"),
+    ("numbers/apm.c", "shift_up(t, x->mant, x->exp - exp);", "shift_up(t, x->mant, x->exp - exp - 1);"),
+    ("numbers/apm.c", "const mpz_srcptr first = shift_x ? t : x->mant, second = shift_x ? y->mant : t;",
      "const mpz_srcptr first = shift_x ? t : y->mant, second = shift_x ? y->mant : t;"),
-    ("special.c", "* 3322 / 1000 + 28;", "* 3322 / 1000 - 8;"),
-    ("special.c", "const mp_bitcnt_t big = order > 0 ?", "const mp_bitcnt_t big = order > 1000 ?"),
-    ("special.c", "negative != (quadrant == 2)", "negative"),
-    ("special.c", "odd ? 2 * n : 2 * n - 1", "odd ? 2 * n + 1 : 2 * n - 1"),
-    ("special.c", "mpz_sub_ui(lower, lower, 1UL);", ""),
-    ("bounding.c", "for (int j = 1; j < 4; j++) {", "for (int j = 1; j < 3; j++) {"),
-    ("bounding.c", "negative ? x->ub : x->lb", "negative ? x->lb : x->ub"),
-    ("bounding.c", "n < 0 ? x->lb : x->ub, n", "n < 0 ? x->ub : x->ub, n"),
-    ("bounding.c", "        num_set_si(r->lb, 0, 0);\n", "        ;\n"),
-    ("bounding.c", "num_cmp(t[4], t[5]) > 0", "num_cmp(t[4], t[5]) < 0"),
-    ("bd_trig.c", "(s->as_printed ? num_truncate : num_floor)", "num_truncate"),
-    ("bd_trig.c", "num_cmp(hi, t[1]) >= 0 || num_sgn(lo) == 0", "num_sgn(lo) == 0"),
-    ("bd_trig.c", "num_cmp(hi, t[3]) >= 0 ||", ""),
-    ("bd_trig.c", "bound_widen(r, s->as_printed", "if (s->as_printed) bound_widen(r, s->as_printed"),
-    ("bd_trig.c", "(num_sgn(x) >= 0) == (dir == APM_DOWN)", "(num_sgn(x) >= 0) != (dir == APM_DOWN)"),
-    ("bd_trig.c", "turns(s, t[5], theta->ub, APM_UP);", "turns(s, t[5], theta->ub, APM_DOWN);"),
-    ("bd_trig.c", "num_set_si(t[6], 25, -2);", "num_set_si(t[6], -25, -2);"),
-    ("map.c", "num_addmul(s, n->t[0], x->p[2], n->cos_c[2]);",
+    ("numbers/special.c", "* 3322 / 1000 + 28;", "* 3322 / 1000 - 8;"),
+    ("numbers/special.c", "const mp_bitcnt_t big = order > 0 ?", "const mp_bitcnt_t big = order > 1000 ?"),
+    ("numbers/special.c", "negative != (quadrant == 2)", "negative"),
+    ("numbers/special.c", "odd ? 2 * n : 2 * n - 1", "odd ? 2 * n + 1 : 2 * n - 1"),
+    ("numbers/special.c", "mpz_sub_ui(lower, lower, 1UL);", ""),
+    ("thesis/bounding.c", "for (int j = 1; j < 4; j++) {", "for (int j = 1; j < 3; j++) {"),
+    ("thesis/bounding.c", "negative ? x->ub : x->lb", "negative ? x->lb : x->ub"),
+    ("thesis/bounding.c", "n < 0 ? x->lb : x->ub, n", "n < 0 ? x->ub : x->ub, n"),
+    ("thesis/bounding.c", "        num_set_si(r->lb, 0, 0);\n", "        ;\n"),
+    ("thesis/bounding.c", "num_cmp(t[4], t[5]) > 0", "num_cmp(t[4], t[5]) < 0"),
+    ("thesis/bd_trig.c", "(s->as_printed ? num_truncate : num_floor)", "num_truncate"),
+    ("thesis/bd_trig.c", "num_cmp(hi, t[1]) >= 0 || num_sgn(lo) == 0", "num_sgn(lo) == 0"),
+    ("thesis/bd_trig.c", "num_cmp(hi, t[3]) >= 0 ||", ""),
+    ("thesis/bd_trig.c", "bound_widen(r, s->as_printed", "if (s->as_printed) bound_widen(r, s->as_printed"),
+    ("thesis/bd_trig.c", "(num_sgn(x) >= 0) == (dir == APM_DOWN)", "(num_sgn(x) >= 0) != (dir == APM_DOWN)"),
+    ("thesis/bd_trig.c", "turns(s, t[5], theta->ub, APM_UP);", "turns(s, t[5], theta->ub, APM_DOWN);"),
+    ("thesis/bd_trig.c", "num_set_si(t[6], 25, -2);", "num_set_si(t[6], -25, -2);"),
+    ("thesis/map.c", "num_addmul(s, n->t[0], x->p[2], n->cos_c[2]);",
      "num_submul(s, n->t[0], x->p[2], n->cos_c[2]);"),
-    ("map.c", "num_mul(n->centre_err, n->centre_err, n->ulp);",
+    ("thesis/map.c", "num_mul(n->centre_err, n->centre_err, n->ulp);",
      "num_set_si(n->centre_err, 0, 0);"),
-    ("map.c", "num_neg(d->beta[0][1], n->t[0]);", "num_set(d->beta[0][1], n->t[0]);"),
-    ("row_sums.c", "num_add(parm[j]->ub, pz->centre.p[j], pz->matrix[j][j]);",
+    ("thesis/map.c", "num_neg(d->beta[0][1], n->t[0]);", "num_set(d->beta[0][1], n->t[0]);"),
+    ("thesis/row_sums.c", "num_add(parm[j]->ub, pz->centre.p[j], pz->matrix[j][j]);",
      "num_set(parm[j]->ub, pz->centre.p[j]);"),
-    ("row_sums.c", "row_sum(s, n->t[2], pz->matrix[V + j], 0, MAT_DIM);",
+    ("thesis/row_sums.c", "row_sum(s, n->t[2], pz->matrix[V + j], 0, MAT_DIM);",
      "row_sum(s, n->t[2], pz->matrix[V + j], U, MAT_DIM);"),
-    ("row_sums.c", "num_add(n->bx[2].ub, n->bx[2].ub, theta->ub);",
+    ("thesis/row_sums.c", "num_add(n->bx[2].ub, n->bx[2].ub, theta->ub);",
      "num_add(n->bx[2].ub, n->bx[2].ub, theta->lb);"),
-    ("row_sums.c", "num_mul_si(n->t[0], d->beta[0][1], 2);", "num_set(n->t[0], d->beta[0][1]);"),
-    ("row_sums.c", "        if (j == 2) ", "        if (j == 7) "),
-    ("row_sums.c", "&d->gamma[j == 1][j]", "&d->gamma[0][j]"),
-    ("trace.c", "bound_add_multiple(s, r, -2, &n->c_sin);", "bound_add_multiple(s, r, -1, &n->c_sin);"),
-    ("lambda.c", "bound_add_multiple(s, disc, 4, square);", "bound_add_multiple(s, disc, 2, square);"),
-    ("lambda.c", "bound_add_multiple(s, disc, -2, square);", "bound_add_multiple(s, disc, 2, square);"),
-    ("lambda.c", "num_sqrt(s, t[0], disc->lb, APM_DOWN);", "num_sqrt(s, t[0], disc->lb, APM_UP);"),
-    ("lambda.c", "num_sqrt(s, t[1], disc->ub, APM_UP);", "num_sqrt(s, t[1], disc->ub, APM_DOWN);"),
-    ("lambda.c", "num_sub(t[2], trace->ub, t[0]);", "num_sub(t[2], trace->ub, t[1]);"),
-    ("lambda.c", "num_sqrt(s, t[2], t[0], APM_UP);", "num_sqrt(s, t[2], t[0], APM_DOWN);"),
-    ("lambda.c", "num_div(s, low, t[3], t[2], APM_DOWN);", "num_div(s, low, t[3], t[2], APM_UP);"),
-    ("lambda.c", "num_div(s, t[1], t[0], least_lam, APM_DOWN);",
+    ("thesis/row_sums.c", "num_mul_si(n->t[0], d->beta[0][1], 2);", "num_set(n->t[0], d->beta[0][1]);"),
+    ("thesis/row_sums.c", "        if (j == 2) ", "        if (j == 7) "),
+    ("thesis/row_sums.c", "&d->gamma[j == 1][j]", "&d->gamma[0][j]"),
+    ("thesis/trace.c", "bound_add_multiple(s, r, -2, &n->c_sin);", "bound_add_multiple(s, r, -1, &n->c_sin);"),
+    ("thesis/lambda.c", "bound_add_multiple(s, disc, 4, square);", "bound_add_multiple(s, disc, 2, square);"),
+    ("thesis/lambda.c", "bound_add_multiple(s, disc, -2, square);", "bound_add_multiple(s, disc, 2, square);"),
+    ("thesis/lambda.c", "num_sqrt(s, t[0], disc->lb, APM_DOWN);", "num_sqrt(s, t[0], disc->lb, APM_UP);"),
+    ("thesis/lambda.c", "num_sqrt(s, t[1], disc->ub, APM_UP);", "num_sqrt(s, t[1], disc->ub, APM_DOWN);"),
+    ("thesis/lambda.c", "num_sub(t[2], trace->ub, t[0]);", "num_sub(t[2], trace->ub, t[1]);"),
+    ("thesis/lambda.c", "num_sqrt(s, t[2], t[0], APM_UP);", "num_sqrt(s, t[2], t[0], APM_DOWN);"),
+    ("thesis/lambda.c", "num_div(s, low, t[3], t[2], APM_DOWN);", "num_div(s, low, t[3], t[2], APM_UP);"),
+    ("thesis/lambda.c", "num_div(s, t[1], t[0], least_lam, APM_DOWN);",
      "num_div(s, t[1], t[0], least_lam, APM_UP);"),
-    ("lambda.c", "num_div(s, t[2], t[0], t[1], APM_DOWN);", "num_div(s, t[2], t[0], t[1], APM_UP);"),
-    ("lambda.c", "num_sub(t[1], slope, n->constants[C_LAM_MIN]);",
+    ("thesis/lambda.c", "num_div(s, t[2], t[0], t[1], APM_DOWN);", "num_div(s, t[2], t[0], t[1], APM_UP);"),
+    ("thesis/lambda.c", "num_sub(t[1], slope, n->constants[C_LAM_MIN]);",
      "num_sub(t[1], slope, least_lam);"),
-    ("lambda.c", "num_div(s, t[1], t[0], slope, APM_DOWN);", "num_div(s, t[1], t[0], slope, APM_UP);"),
-    ("lambda.c", "num_set_si(t[0], DEG_FREE * DEG_FREE, 0);", "num_set_si(t[0], 5, 0);"),
-    ("lambda.c", "num_round(s, slope, t[1], APM_UP);", "num_round(s, slope, t[1], APM_DOWN);"),
-    ("lambda.c", "num_round(s, least_lam, t[0], APM_UP);", "num_round(s, least_lam, t[0], APM_DOWN);"),
-    ("torus.c", "num_add(x[1], x[1], s->n.ulp);", "num_set_si(x[1], 0, 0);"),
-    ("torus.c", "corner < 4", "corner < 3"),
-    ("torus.c", "num_max(max, x[9]);", "num_max(max, best);"),
-    ("torus.c", "num_mul_si(x[7], x[7], 4);", "num_mul_si(x[7], x[7], 2);"),
-    ("ff_rows.c", "num_div(s, n->w[U + j], t[4], t[5], APM_UP);",
+    ("thesis/lambda.c", "num_div(s, t[1], t[0], slope, APM_DOWN);", "num_div(s, t[1], t[0], slope, APM_UP);"),
+    ("thesis/lambda.c", "num_set_si(t[0], DEG_FREE * DEG_FREE, 0);", "num_set_si(t[0], 5, 0);"),
+    ("thesis/lambda.c", "num_round(s, slope, t[1], APM_UP);", "num_round(s, slope, t[1], APM_DOWN);"),
+    ("thesis/lambda.c", "num_round(s, least_lam, t[0], APM_UP);", "num_round(s, least_lam, t[0], APM_DOWN);"),
+    ("thesis/torus.c", "num_add(x[1], x[1], s->n.ulp);", "num_set_si(x[1], 0, 0);"),
+    ("thesis/torus.c", "corner < 4", "corner < 3"),
+    ("thesis/torus.c", "num_max(max, x[9]);", "num_max(max, best);"),
+    ("thesis/torus.c", "num_mul_si(x[7], x[7], 4);", "num_mul_si(x[7], x[7], 2);"),
+    ("thesis/ff_rows.c", "num_div(s, n->w[U + j], t[4], t[5], APM_UP);",
      "num_div(s, n->w[U + j], t[4], t[5], APM_DOWN);"),
-    ("ff_rows.c", "num_mul_si(t[2], n->centre_err, 2);", "num_set_si(t[2], 0, 0);"),
-    ("ff_rows.c", "num_mul_si(t[2], n->ulp, 10);", "num_set_si(t[2], 0, 0);"),
-    ("ff_rows.c", "num_add(t[1], t[1], n->gamma_dif);", ""),
-    ("ff_rows.c", "num_submul(s, t[3], A[V][U + 1], A[V + 1][U]);",
+    ("thesis/ff_rows.c", "num_mul_si(t[2], n->centre_err, 2);", "num_set_si(t[2], 0, 0);"),
+    ("thesis/ff_rows.c", "num_mul_si(t[2], n->ulp, 10);", "num_set_si(t[2], 0, 0);"),
+    ("thesis/ff_rows.c", "num_add(t[1], t[1], n->gamma_dif);", ""),
+    ("thesis/ff_rows.c", "num_submul(s, t[3], A[V][U + 1], A[V + 1][U]);",
      "num_addmul(s, t[3], A[V][U + 1], A[V + 1][U]);"),
-    ("ff_rows.c", "num_addabs(s, t[4], A[V + j][U + 1 - j]);",
+    ("thesis/ff_rows.c", "num_addabs(s, t[4], A[V + j][U + 1 - j]);",
      "num_addabs(s, t[4], A[V + 1 - j][U + j]);"),
-    ("cr_rows.c", "num_submul(s, t[0], B2[i], pz->matrix[U + i][k]);",
+    ("thesis/cr_rows.c", "num_submul(s, t[0], B2[i], pz->matrix[U + i][k]);",
      "num_addmul(s, t[0], B2[i], pz->matrix[U + i][k]);"),
-    ("cr_rows.c", "num_add(t[2], *S1[0], *S1[1]);", "num_set(t[2], *S1[0]);"),
-    ("cr_rows.c", "num_add(t[3], t[3], t[4]);\n    num_mul_si(t[4], n->centre_err, 2);",
+    ("thesis/cr_rows.c", "num_add(t[2], *S1[0], *S1[1]);", "num_set(t[2], *S1[0]);"),
+    ("thesis/cr_rows.c", "num_add(t[3], t[3], t[4]);\n    num_mul_si(t[4], n->centre_err, 2);",
      "num_mul_si(t[4], n->centre_err, 2);"),
-    ("cr_rows.c", "num_add(t[6], t[1], n->centre_err);", "num_set(t[6], t[1]);"),
-    ("cr_rows.c", "num_add(t[1], t[1], n->gamma_dif);", ""),
-    ("cr_rows.c", "num_mul_si(t[6], n->ulp, 3);", "num_set_si(t[6], 0, 0);"),
-    ("cr_rows.c", "num_add(n->w[U + half + j], n->w[U + half + j], t[3]);", ""),
-    ("cr_rows.c", "row_sum(s, t[4], n->inverse[half + j], DEG_FREE, TWO_DF);",
+    ("thesis/cr_rows.c", "num_add(t[6], t[1], n->centre_err);", "num_set(t[6], t[1]);"),
+    ("thesis/cr_rows.c", "num_add(t[1], t[1], n->gamma_dif);", ""),
+    ("thesis/cr_rows.c", "num_mul_si(t[6], n->ulp, 3);", "num_set_si(t[6], 0, 0);"),
+    ("thesis/cr_rows.c", "num_add(n->w[U + half + j], n->w[U + half + j], t[3]);", ""),
+    ("thesis/cr_rows.c", "row_sum(s, t[4], n->inverse[half + j], DEG_FREE, TWO_DF);",
      "row_sum(s, t[4], n->inverse[j], DEG_FREE, TWO_DF);"),
-    ("cr_rows.c", "        bound_rows(s, n->w + U + half, half, pz, V);\n", ""),
-    ("gauss.c", "num_max(g[4], g[6]);                        /* row_max */", ""),
-    ("gauss.c", "        num_mul(g[1], g[1], g[0]);\n", ""),
-    ("gauss.c", "num_addmul(s, g[8], g[4], g[6]);", ""),
-    ("gauss.c", "num_add(err, g[8], g[7]);", "num_set(err, g[8]);"),
-    ("gauss.c", "fails = fails || num_cmp(n->inverse_err, n->ulp) > 0;", ""),
-    ("gauss.c", "num_add(n->inverse_err, n->inverse_err, n->ulp);", ""),
-    ("prismatic.c", "(j != k || (j >= U && j < V))", "j != k"),
-    ("state.h", "W_DIGITS - apm_order(x), APM_UP", "W_DIGITS - apm_order(x), APM_DOWN"),
-    ("follow.c", "num_cmp(n->least_lam, n->constants[C_LAM_MIN]) < 0;",
+    ("thesis/cr_rows.c", "        bound_rows(s, n->w + U + half, half, pz, V);\n", ""),
+    ("thesis/gauss.c", "num_max(g[4], g[6]);                        /* row_max */", ""),
+    ("thesis/gauss.c", "        num_mul(g[1], g[1], g[0]);\n", ""),
+    ("thesis/gauss.c", "num_addmul(s, g[8], g[4], g[6]);", ""),
+    ("thesis/gauss.c", "num_add(err, g[8], g[7]);", "num_set(err, g[8]);"),
+    ("thesis/gauss.c", "fails = fails || num_cmp(n->inverse_err, n->ulp) > 0;", ""),
+    ("thesis/gauss.c", "num_add(n->inverse_err, n->inverse_err, n->ulp);", ""),
+    ("thesis/prismatic.c", "(j != k || (j >= U && j < V))", "j != k"),
+    ("thesis/state.h", "W_DIGITS - apm_order(x), APM_UP", "W_DIGITS - apm_order(x), APM_DOWN"),
+    ("thesis/follow.c", "num_cmp(n->least_lam, n->constants[C_LAM_MIN]) < 0;",
      "num_cmp(n->least_lam, n->constants[C_LAM_MAX]) < 0;"),
-    ("follow.c", "        v->no_tori = 0;\n", ""),
+    ("thesis/follow.c", "        v->no_tori = 0;\n", ""),
     ("search.c", "c->index[V1] << (k - l) > c->index[V0]", "c->index[V1] << (k - l) >= c->index[V0]"),
     ("search.c", "c->index[V1] >= (c->index[V0] + 1) << (l - k)",
      "c->index[V1] >= c->index[V0] << (l - k)"),
@@ -129,35 +131,35 @@ MUTATIONS = [
     ("search.c", "    upper->index[axis]++;\n", ""),
     ("search.c", "2 * (long)c->index[axis] + 1 - (1L", "2 * (long)c->index[axis] - (1L"),
     ("search.c", "        leaf(s, 'U');", "        leaf(s, 'P');"),
-    ("sine.h", " - n * 0x1.3198a2e037073p-69", ""),
-    ("sine.h", "z * (-1.0 / 1307674368000.0", "z * (1.0 / 1307674368000.0"),
-    ("sine.h", "(bits & 2) << 62", "(bits & 1) << 63"),
-    ("loewner.c", "q->reach[2] = (sum[2] + q->rest[0] + q->rest[1]) * WIDEN;",
+    ("numbers/sine.h", " - n * 0x1.3198a2e037073p-69", ""),
+    ("numbers/sine.h", "z * (-1.0 / 1307674368000.0", "z * (1.0 / 1307674368000.0"),
+    ("numbers/sine.h", "(bits & 2) << 62", "(bits & 1) << 63"),
+    ("loewner/orbit.c", "q->reach[2] = (sum[2] + q->rest[0] + q->rest[1]) * WIDEN;",
      "q->reach[2] = (sum[2] + q->rest[0]) * WIDEN;"),
-    ("loewner.c", "        sum[1] += fabs(q->column[1][k]);", "        sum[1] += q->column[1][k];"),
-    ("loewner.c", "(c * 0.5 + s * rho", "(c * 0.25 + s * rho"),
-    ("loewner.c", "(w->h[wave] + w->loose[wave]) * s * rho", "w->loose[wave] * s * rho"),
-    ("loewner.c", "double e = bent[i] + bent[2];", "double e = bent[i];"),
-    ("loewner.c", "i0 * o->force[0] + i1 * o->force[1];", "i0 * o->force[0];"),
-    ("loewner.c", " + fabs(q->d[i + 1]) * q->rest[1]\n", "\n"),
-    ("loewner.c", "next->column[i][w->together ? 2 : 4] += w->h[2] * q->cosine[2];", ""),
-    ("loewner.c", "q[j].mu[1] - q[j + 1].mu[i];", "q[j].mu[1] + q[j + 1].mu[i];"),
-    ("loewner.c", "larger(0.0, -p * A)", "larger(0.0, p * A)"),
-    ("loewner.c", " + h * fabs(A)) * half_square", ") * half_square"),
-    ("loewner.c", "(1.0 / 3.0) + h * rho)", "(1.0 / 3.0))"),
-    ("loewner.c", "centre -= omega[i] * p * s;", "centre -= omega[i] * p * s + 1e-9;"),
-    ("loewner.c", "                rest += slope * q->reach[i];\n", ""),
-    ("loewner.c", "total = w->together ? total + part : fabs(part);", "total = total + part;"),
-    ("loewner.c", "    centre -= tails;\n", "    centre -= 2.0 * tails;\n"),
-    ("loewner.c", "largest = larger(largest, sum);", "largest = sum;"),
-    ("loewner.c", "(2.0 * (double)cell->index[k] + 1.0)", "(2.0 * (double)cell->index[k])"),
-    ("loewner.c", "w->h[i] = w->half[2 + i] * part[axis];", "w->h[i] = 0.0;"),
-    ("loewner.c", "w->width[i] = w->half[i] * part[i]", "w->width[i] = 0.5 * w->half[i] * part[i]"),
-    ("loewner.c", "w->p[i] = w->centre[2 + i] + w->half[2 + i] * at[axis];",
+    ("loewner/orbit.c", "        sum[1] += fabs(q->column[1][k]);", "        sum[1] += q->column[1][k];"),
+    ("loewner/orbit.c", "(c * 0.5 + s * rho", "(c * 0.25 + s * rho"),
+    ("loewner/orbit.c", "(w->h[wave] + w->loose[wave]) * s * rho", "w->loose[wave] * s * rho"),
+    ("loewner/orbit.c", "double e = bent[i] + bent[2];", "double e = bent[i];"),
+    ("loewner/orbit.c", "i0 * o->force[0] + i1 * o->force[1];", "i0 * o->force[0];"),
+    ("loewner/orbit.c", " + fabs(q->d[i + 1]) * q->rest[1]\n", "\n"),
+    ("loewner/orbit.c", "next->column[i][w->together ? 2 : 4] += w->h[2] * q->cosine[2];", ""),
+    ("loewner/bound.c", "q[j].mu[1] - q[j + 1].mu[i];", "q[j].mu[1] + q[j + 1].mu[i];"),
+    ("loewner/bound.c", "larger(0.0, -p * A)", "larger(0.0, p * A)"),
+    ("loewner/bound.c", " + h * fabs(A)) * half_square", ") * half_square"),
+    ("loewner/bound.c", "(1.0 / 3.0) + h * rho)", "(1.0 / 3.0))"),
+    ("loewner/bound.c", "centre -= omega[i] * p * s;", "centre -= omega[i] * p * s + 1e-9;"),
+    ("loewner/bound.c", "                rest += slope * q->reach[i];\n", ""),
+    ("loewner/bound.c", "total = w->together ? total + part : fabs(part);", "total = total + part;"),
+    ("loewner/bound.c", "    centre -= tails;\n", "    centre -= 2.0 * tails;\n"),
+    ("loewner/try.c", "largest = larger(largest, sum);", "largest = sum;"),
+    ("loewner/try.c", "(2.0 * (double)cell->index[k] + 1.0)", "(2.0 * (double)cell->index[k])"),
+    ("loewner/try.c", "w->h[i] = w->half[2 + i] * part[axis];", "w->h[i] = 0.0;"),
+    ("loewner/try.c", "w->width[i] = w->half[i] * part[i]", "w->width[i] = 0.5 * w->half[i] * part[i]"),
+    ("loewner/try.c", "w->p[i] = w->centre[2 + i] + w->half[2 + i] * at[axis];",
      "w->p[i] = w->centre[2 + i];"),
-    ("loewner.c", "upper ? 1.0 : -1.0", "upper ? 1.0 : 1.0"),
-    ("loewner.c", "sum += w->half[2 + i] * fabs(s[i]) * omega[i];", ""),
-    ("loewner.c", "(w->together ? w->half[2 + i] : 0.0)", "0.0"),
+    ("loewner/try.c", "upper ? 1.0 : -1.0", "upper ? 1.0 : 1.0"),
+    ("loewner/try.c", "sum += w->half[2 + i] * fabs(s[i]) * omega[i];", ""),
+    ("loewner/try.c", "(w->together ? w->half[2 + i] : 0.0)", "0.0"),
 ]
 
 # Survivors that do not matter, by what stands there, with the reason.
@@ -177,35 +179,35 @@ HARMLESS = {
 }
 
 
-def build(base, work):
-    """Compiles the unit that holds each changed file, and links; base has all other objects."""
+def build(base, work, file):
+    """Compiles the units that the changed file belongs to, and links; base has all other objects."""
     (work / "converse").mkdir(parents=True)
     for path in (ROOT / "converse").glob("*.py"):
         shutil.copy(path, work / "converse")
-    changed = {"apm.c", "special.c", "memory.c", "start.c", "search.c", "cv_kernel.c", "loewner.c"}
-    name = next(p.name for p in (work / "csrc").iterdir()
-                if p.read_bytes() != (ROOT / "csrc" / p.name).read_bytes())
-    units = [name] if name in changed else ["rigorous.c", "double.c"]
-    if name == "sine.h":
-        units = ["double.c", "loewner.c", "cv_kernel.c"]
-    for unit in units:
-        subprocess.run(["gcc", *FLAGS, "-c", "csrc/" + unit, "-o", unit + ".o"], cwd=work,
-                       check=True, capture_output=True)
-    objects = [str(work / o.name if o.name[:-2] in units else o) for o in base.glob("*.o")]
+    objects = []
+    for source in sorted(base.glob("*.d")):
+        words = source.read_text().replace("\\\n", " ").split()
+        objects.append(base / (source.stem + ".o"))
+        if "csrc/" + file in words:
+            objects[-1] = work / (source.stem + ".o")
+            subprocess.run(["gcc", *FLAGS, "-c", words[1], "-o", str(objects[-1])], cwd=work,
+                           check=True)
     suffix = sysconfig.get_config_var("EXT_SUFFIX")
     subprocess.run(["gcc", "-shared", *objects, "-lgmp", "-lm",
                     "-o", str(work / "converse" / ("_native" + suffix))], check=True)
 
 
 def prepare(base):
-    """The objects of the unchanged core."""
+    """The objects of the unchanged core, and what each is made of."""
     code = "exec(open('converse/_build.py').read()); ffi.emit_c_code(%r); print(*SOURCES)"
     sources = subprocess.run([sys.executable, "-c", code % str(base / "native.c")], cwd=ROOT,
                              check=True, capture_output=True, text=True).stdout.split()
     sources = [word for word in sources if word.startswith("csrc/")]
     for source in [str(base / "native.c"), *sources]:
-        subprocess.run(["gcc", *FLAGS, "-c", source, "-o", str(base / (Path(source).name + ".o"))],
-                       cwd=ROOT, check=True)
+        unit = str(base / source.replace("csrc/", "").replace("/", "-").removesuffix(".c")) \
+            if source in sources else str(base / "native")
+        subprocess.run(["gcc", *FLAGS, "-MMD", "-c", source, "-o", unit + ".o"], cwd=ROOT,
+                       check=True)
 
 
 def try_mutation(base, number):
@@ -218,9 +220,9 @@ def try_mutation(base, number):
         work = Path(directory)
         shutil.copytree(ROOT / "csrc", work / "csrc")
         (work / "csrc" / file).write_text(text.replace(old, new))
-        build(base, work)
+        build(base, work, file)
         environment = dict(os.environ, PYTHONPATH=str(work))
-        first = FIRST.get(file, "test_images.py")
+        first = FIRST.get(file, FIRST.get(file.split("/")[0], "test_images.py"))
         for test in sorted(TESTS, key=lambda test: test != first):
             command = [sys.executable, "-m", "pytest", "-x", "-q", "-p", "no:cacheprovider",
                        "--no-header", str(ROOT / "tests" / test)]
@@ -247,7 +249,7 @@ def main(numbers):
             bad = caught = 0
             for number, result in zip(numbers, results):
                 file, old, new = MUTATIONS[number]
-                print("%3d %-12s %-60.60s %s" % (number, file, " ".join(old.split()), result),
+                print("%3d %-18s %-60.60s %s" % (number, file, " ".join(old.split()), result),
                       flush=True)
                 caught += result.startswith("caught")
                 bad += result.startswith(("SURVIVED", "STALE"))

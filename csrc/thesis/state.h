@@ -9,8 +9,8 @@
 
 #include "converse.h"
 #include "num.h"
-#include "sine.h"
-#include "special.h"
+#include "numbers/sine.h"
+#include "numbers/special.h"
 #include "unit.h"
 
 enum { N_PARMS = 3, DEG_FREE = 2, TWO_DF = 4, MAT_DIM = 7 };

@@ -1,14 +1,14 @@
-/* cv_kernel.c - one routine at a time, from decimal strings to decimal strings. */
+/* kernels.c - one routine at a time, from decimal strings to decimal strings. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
 
-#include "loewner.h"
-#include "memory.h"
-#include "special.h"
-#include "sine.h"
-#include "unit.h"
+#include "loewner/loewner.h"
+#include "numbers/memory.h"
+#include "numbers/special.h"
+#include "numbers/sine.h"
+#include "thesis/unit.h"
 
 enum { MAX_DP = 100000, MAX_IN = 64, MAX_OUT = 128 };
 

@@ -2,8 +2,10 @@
 #ifndef CONVERSE_LOEWNER_H
 #define CONVERSE_LOEWNER_H
 
+#include <stddef.h>
+
 #include "converse.h"
-#include "unit.h"
+#include "thesis/unit.h"
 
 typedef struct loewner loewner;
 

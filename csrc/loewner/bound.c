@@ -1,0 +1,123 @@
+/* bound.c - the second variation over a whole prism, by multipliers.
+
+   Let x[j] be the orbit of the centre and x[j] + D[j] any other one, and write the map as
+   E[j] = 2x[j] - x[j-1] - x[j+1] - V'(x[j]) = 0.  So for any multipliers mu the sum
+   Q + sum mu[j].E[j] is Q, and with
+
+       mu[j-1] = gradient of n[j].beta(x[j])n[j] + beta(x[j])mu[j] - mu[j+1]   from the future,     (2)
+
+   and likewise from the past, all terms linear in the D[j] cancel, except those in D[0] and D[1],
+   which are the prism itself.  What is left of each wave, of weight omega = (n.u)^2 and with
+   m = mu.u, A = m cos y - omega sin y, B = -omega cos y - m sin y, is
+
+       p (A (cos d - 1) + B (sin d - d)),   |d| <= rho,                                        (3)
+
+   and at most max(0, -pA) rho^2/2 + |pB| rho^3/6.  (2) is an identity in exact arithmetic; in
+   doubles its rest, too, is multiplied by |D[j]| and added. */
+#include "prism.h"
+
+/* The multipliers, by (2): zero outside, and from either end up to the sites 0 and 1. */
+static void set_multipliers(loewner *w)
+{
+    point *q = w->orbit;
+
+    for (int j = w->from - 1; j <= w->until + 1; j++)
+        q[j].mu[0] = q[j].mu[1] = 0.0;
+    for (int j = w->from; j <= w->until; j++) {
+        const double omega = square(q[j].n[0] + q[j].n[1]);
+        const double sum = omega * w->p[2] * q[j].cosine[2];
+        for (int i = 0; i < 2; i++)
+            q[j].gradient[i] = -(square(q[j].n[i]) * w->p[i] * q[j].cosine[i] + sum);
+    }
+    for (int j = w->until; j > ORIGIN + 1; j--)
+        for (int i = 0; i < 2; i++)
+            q[j - 1].mu[i] = q[j].gradient[i] + q[j].beta[i] * q[j].mu[0]
+                             + q[j].beta[i + 1] * q[j].mu[1] - q[j + 1].mu[i];
+    for (int j = w->from; j < ORIGIN; j++)
+        for (int i = 0; i < 2; i++)
+            q[j + 1].mu[i] = q[j].gradient[i] + q[j].beta[i] * q[j].mu[0]
+                             + q[j].beta[i + 1] * q[j].mu[1] - q[j - 1].mu[i];
+}
+
+/* The sums with signs are the constant `centre` and the coefficients of the parameters; `mass` is
+   the sum of their terms' absolute values.  At each site less than 16 numbers are added to any sum,
+   each addition rounds by u of the partial sums, and each number by a few u of itself: together by
+   less than `each` = 32 u for every site.  The sines add 2^-49 (1 + |x0| + |x1|).  Where a wave comes
+   with a reach, so does its part of the mass. */
+void bound_second_variation(loewner *w)
+{
+    double centre = 0.0, mass = 0.0, rest = 0.0, rounding = 0.0, far = 0.0;
+    double along[WAVES] = { 0, 0, 0 }, along_mass = 0.0, tails, total;
+    const double each = 0x1p-48 * (double)(w->until - w->from + 2);
+
+    set_multipliers(w);
+    for (int k = 0; k < COLUMNS; k++)
+        w->share[k] = 0.0;
+    for (int j = w->from; j <= w->until; j++) {
+        const point *q = w->orbit + j;
+        const double n0 = q->n[0], n1 = q->n[1], mu0 = q->mu[0], mu1 = q->mu[1];
+        const double omega[WAVES] = { n0 * n0, n1 * n1, square(n0 + n1) };
+        const double m[WAVES] = { mu0, mu1, mu0 + mu1 };
+        const double weights = omega[0] + omega[1] + omega[2] + fabs(mu0) + fabs(mu1);
+
+        centre += 2.0 * (omega[0] + omega[1]);
+        mass += 2.0 * (omega[0] + omega[1]);
+        if (j < w->to) {
+            const double *next = q[1].n;
+            centre -= 2.0 * (n0 * next[0] + n1 * next[1]);
+            mass += 2.0 * (fabs(n0 * next[0]) + fabs(n1 * next[1]));
+        }
+        far = larger(far, q->far);
+        for (int i = 0; i < WAVES; i++) {
+            const double s = q->sine[i], c = q->cosine[i], p = w->p[i], rho = q->reach[i];
+            const double h = w->h[i] + w->loose[i], half_square = 0.5 * rho * rho;
+            const double A = m[i] * c - omega[i] * s, B = -omega[i] * c - m[i] * s;
+            const double term = (larger(0.0, -p * A) + h * fabs(A)) * half_square
+                + fabs(B) * (size(w, i) * rho * half_square * (1.0 / 3.0) + h * rho);
+
+            centre -= omega[i] * p * s;
+            mass += omega[i] * fabs(p);
+            along[i] += A;
+            along_mass += (omega[i] + fabs(m[i])) * (h + (size(w, i) * rho * (1.0 + rho) + h) * rho);
+            rest += term;
+            if (rho > 0.0) {
+                const double part = term / rho;
+                for (int k = 0; k < w->columns; k++)
+                    w->share[k] += part * fabs(i < 2 ? q->column[i][k]
+                                                     : q->column[0][k] + q->column[1][k]);
+            }
+        }
+        /* what (2) leaves, and what the centre's steps missed */
+        for (int i = 0; i < 2; i++) {
+            const double before = q[-1].mu[i], after = q[1].mu[i];
+            double left = 4.0 * q->fuzz * weights + 0x1p-50 * (fabs(before) + fabs(after));
+            if (j == ORIGIN || j == ORIGIN + 1) {
+                const double slope = fabs(q->gradient[i] + q->beta[i] * mu0
+                                          + q->beta[i + 1] * mu1 - before - after);
+                if (j == ORIGIN + 1)
+                    w->share[i] += slope * q->reach[i];
+                rest += slope * q->reach[i];
+            }
+            rounding += left * q->reach[i];
+            if (j > w->from && j < w->until)
+                rounding += fabs(q->mu[i]) * q->missed[i];
+        }
+    }
+    tails = w->l * (square(w->orbit[w->from].n[0]) + square(w->orbit[w->from].n[1])
+                    + square(w->orbit[w->to].n[0]) + square(w->orbit[w->to].n[1]));
+    centre -= tails;
+    mass += tails;
+    total = 0.0;
+    for (int i = 0; i < WAVES; i++) {
+        const double part = w->h[i] * along[i];
+        rest += w->loose[i] * fabs(along[i]);
+        total = w->together ? total + part : fabs(part);
+        if (!w->together || i == WAVES - 1) {
+            w->share[w->together ? 2 : 2 + i] += fabs(total);
+            rest += fabs(total);
+        }
+    }
+    rounding += (mass + along_mass) * (each + 0x1p-49 * (1.0 + far));
+    w->rounding = rounding * (1.0 + each);
+    w->bound = centre + (rest + w->rounding) * (1.0 + each);
+}

@@ -1,0 +1,256 @@
+/* try.c - one prism from beginning to end, and the problem it belongs to. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "prism.h"
+#include "numbers/sine.h"
+
+enum { FINEST = 46 };                   /* cuts along one axis: then doubles run out */
+enum { PATIENCE = 12 };                 /* tries follow each other by a twelfth of the orbit */
+
+/* ---- one prism */
+
+/* B >= the largest eigenvalue over the torus for all parameters of the cell.  It is convex in the
+   parameters, so along each edge of the root it lies below the straight line between the ends, and
+   so below the product of these lines, which over a cell is largest at a corner. */
+static double cell_largest(const loewner *w, const double low[3], const double high[3])
+{
+    const int axes = w->together ? 1 : 3;
+    double largest = 0.0;
+
+    for (int corner = 0; corner < 1 << axes; corner++) {
+        double sum = 0.0;
+        for (int root = 0; root < 1 << axes; root++) {
+            double part = w->corner[root];
+            for (int k = 0; k < axes; k++) {
+                const double at = corner >> k & 1 ? high[k] : low[k];       /* 0 .. 1 */
+                part *= root >> k & 1 ? at : 1.0 - at;
+            }
+            sum += part;
+        }
+        largest = larger(largest, sum);
+    }
+    return largest * (1.0 + 0x1p-46);
+}
+
+/* The prism of the cell.  0: it is too thin for doubles. */
+static int set_prism(loewner *w, const cv_cell *cell)
+{
+    double at[COLUMNS], part[COLUMNS], low[3], high[3], B;
+
+    for (int k = 0; k < COLUMNS; k++) {
+        if (cell->cuts[k] > FINEST)
+            return 0;
+        part[k] = ldexp(1.0, -cell->cuts[k]);
+        at[k] = (2.0 * (double)cell->index[k] + 1.0) * part[k] - 1.0;       /* exact */
+    }
+    for (int i = 0; i < 2; i++) {
+        w->v[i] = w->centre[i] + w->half[i] * at[i];
+        w->width[i] = w->half[i] * part[i] + w->slack[i];
+    }
+    for (int i = 0; i < WAVES; i++) {
+        const int axis = w->together ? 2 : 2 + i;
+        w->p[i] = w->centre[2 + i] + w->half[2 + i] * at[axis];
+        w->h[i] = w->half[2 + i] * part[axis];
+        w->loose[i] = w->slack[2 + i];
+        low[i] = 0.5 * (1.0 + at[axis] - part[axis]);
+        high[i] = 0.5 * (1.0 + at[axis] + part[axis]);
+    }
+    B = cell_largest(w, low, high);
+    w->l = B > 2.0 ? 2.0 / (B + sqrt((B - 2.0) * (B + 2.0))) * (1.0 - 0x1p-46) : 0.0;
+    return 1;
+}
+
+/* Tries to prove the prism with the orbit as far as it is known.  Returns whether at least its
+   centre contradicts; then w->share says why the bound failed, if it did. */
+static int attempt(loewner *w, verdict *v)
+{
+    if (!witness(w))
+        return 0;
+    bound_second_variation(w);
+    v->nsteps = w->to - w->from + 1;
+    v->no_tori = w->bound < 0.0;
+    v->reason = w->bound - 2.0 * w->rounding < 0.0 ? CV_REASON_ARITHMETIC : CV_REASON_TOO_BIG;
+    return 1;
+}
+
+void loewner_try(loewner *w, const cv_cell *cell, verdict *v, int *axis, int *from)
+{
+    int points = 0, next = cell->from, contradicted = 0, why;
+
+    memset(v, 0, sizeof *v);
+    v->reason = CV_REASON_ARITHMETIC;
+    *axis = 0;
+    if (!set_prism(w, cell))
+        return;
+    orbit_begin(w);
+    for (int more = 1; more;) {
+        more = orbit_lengthen(w, &why);
+        points += more;
+        if (points >= next || !more) {
+            if (attempt(w, v)) {
+                if (v->no_tori)
+                    return;
+                if (!contradicted)
+                    contradicted = points;
+            }
+            next = points + 1 + points / PATIENCE;
+        }
+    }
+    v->nsteps = points;
+    if (!contradicted) {                /* blame whoever is widest at the ends */
+        v->reason = why;
+        contradicted = points;
+        for (int k = 0; k < w->columns; k++) {
+            w->share[k] = 0.0;
+            for (int i = 0; i < 2; i++)
+                if (size(w, i) > 0.0 || size(w, 2) > 0.0)
+                    w->share[k] += fabs(w->orbit[w->last].column[i][k])
+                                   + fabs(w->orbit[w->first].column[i][k]);
+        }
+    }
+    for (int k = 1; k < w->columns; k++)
+        if (w->share[k] > w->share[*axis])
+            *axis = k;
+    *from = contradicted > 3 ? contradicted - 2 : 0;
+}
+
+/* ---- for tests */
+
+int loewner_follow(loewner *w, int s, int t, loewner_point *p)
+{
+    static const cv_cell whole = { { 0, 0, 0, 0, 0 }, { 0, 0, 0, 0, 0 }, 0 };
+    const point *q;
+
+    set_prism(w, &whole);
+    orbit_begin(w);
+    w->last = ORIGIN + 1;
+    while (w->last < ORIGIN + t)
+        if (!orbit_step(w, 1))
+            return 0;
+    while (w->first > ORIGIN + s)
+        if (!orbit_step(w, 0))
+            return 0;
+    q = w->orbit + ORIGIN + (t == 0 ? s : t);
+    memcpy(p->x, q->x, sizeof p->x);
+    memcpy(p->column, q->column, sizeof p->column);
+    memcpy(p->rest, q->rest, sizeof p->rest);
+    memcpy(p->reach, q->reach, sizeof p->reach);
+    return 1;
+}
+
+int loewner_bound(loewner *w, double *bound, double *l, int *first, double n[][2], int most)
+{
+    *l = w->l;
+    if (!witness(w) || w->to - w->from >= most)
+        return 0;
+    bound_second_variation(w);
+    *bound = w->bound;
+    *first = w->from - ORIGIN;
+    for (int j = w->from; j <= w->to; j++)
+        memcpy(n[j - w->from], w->orbit[j].n, sizeof n[0]);
+    return w->to - w->from + 1;
+}
+
+/* ---- the problem */
+
+/* B at one corner of the parameters, from the double instance.  Each of its bounds is a sum of less
+   than 40 rounded terms of at most 4 (1 + |a| + |b| + |c|); its sines are off by SINE_ERROR and, where
+   their angle is a rounded sum, by u 2 pi; and the corner is rounded: all far below 10^-12 of it. */
+static double corner_largest(const loewner *w, unit *quick, const double p[3])
+{
+    double all = 1.0;
+
+    for (int k = 2; k < COLUMNS; k++)
+        all += fabs(w->centre[k]) + w->half[k];
+    return quick_largest(quick, p) + 1e-12 * all;
+}
+
+/* A double d with |d - x| <= 2^-50 |x|, or else NaN, with which nothing is proved. */
+static double near(const apm_t x)
+{
+    const double d = apm_nearest_d(x);
+    apm_t error, scaled;
+    int good;
+
+    if (!isfinite(d))
+        return NAN;
+    apm_init(error);
+    apm_init(scaled);
+    apm_set_d(error, d);
+    apm_sub(error, error, x);
+    apm_set_d(scaled, 0x1p50);
+    apm_mul(error, error, scaled);
+    apm_abs(error, error);
+    apm_abs(scaled, x);
+    good = apm_cmp(error, scaled) <= 0;
+    apm_clear(error);
+    apm_clear(scaled);
+    return good ? d : NAN;
+}
+
+loewner *loewner_new(const box *root, int together, unit *quick)
+{
+    loewner *w = calloc(1, sizeof *w);
+
+    if (w == NULL)
+        return NULL;
+    for (int k = 0; k < COLUMNS; k++) {
+        const int axis = k < 2 ? 3 + k : k - 2;
+        w->centre[k] = near(root->centre[axis]);
+        w->half[k] = near(root->half[axis]);
+        w->slack[k] = 0x1p-48 * (fabs(w->centre[k]) + w->half[k]);
+    }
+    for (int i = 0; i < 2; i++) {
+        w->xstar[i] = near(root->xstar[i]);
+        w->xstar_err[i] = 0x1p-49 * fabs(w->xstar[i]);
+    }
+    w->together = together;
+    w->columns = together ? 3 : 5;
+    for (int corner = 0; corner < (together ? 2 : 8); corner++) {
+        double p[3];
+        for (int k = 0; k < 3; k++) {
+            const int upper = corner >> (together ? 0 : k) & 1;
+            p[k] = w->centre[2 + k] + (upper ? 1.0 : -1.0) * w->half[2 + k];
+        }
+        w->corner[corner] = quick == NULL ? HUGE_VAL : corner_largest(w, quick, p);
+    }
+    return w;
+}
+
+void loewner_free(loewner *w) { free(w); }
+
+double loewner_largest(const loewner *w)
+{
+    const double low[3] = { 0, 0, 0 }, high[3] = { 1, 1, 1 };
+
+    return cell_largest(w, low, high);
+}
+
+/* With n the eigenvector at the centre, n.beta n = 2|n|^2 - sum p sin(y) (n.u)^2 is linear in the
+   parameters; 2^-45 of the sum of the terms' absolute values covers a dozen roundings and sines. */
+int loewner_at_once(const loewner *w, const double x[2])
+{
+    double n[2], d[3], s[WAVES], c, sum, mass, omega[WAVES], p[WAVES];
+    const double y[WAVES] = { x[0], x[1], x[0] + x[1] };
+
+    for (int i = 0; i < WAVES; i++) {
+        double_sincos(&s[i], &c, y[i]);
+        p[i] = w->centre[2 + i] + (w->together ? w->half[2 + i] : 0.0);
+    }
+    d[0] = 2.0 - p[0] * s[0] - p[2] * s[2];
+    d[1] = -p[2] * s[2];
+    d[2] = 2.0 - p[1] * s[1] - p[2] * s[2];
+    least_eigenvector(d, n);
+    omega[0] = square(n[0]);
+    omega[1] = square(n[1]);
+    omega[2] = square(n[0] + n[1]);
+    sum = mass = 4.0 / 3.0 * (omega[0] + omega[1]);     /* 2 |n|^2 less 2/3 |n|^2 */
+    for (int i = 0; i < WAVES; i++) {
+        sum -= p[i] * s[i] * omega[i];
+        if (!w->together)
+            sum += w->half[2 + i] * fabs(s[i]) * omega[i];
+        mass += (fabs(p[i]) + w->half[2 + i] + w->slack[2 + i]) * omega[i];
+    }
+    return sum + 0x1p-45 * mass < 0.0;
+}
