@@ -5,7 +5,7 @@ import os
 
 from cffi import FFI
 
-SOURCES = ["numbers/apm", "numbers/special", "numbers/memory",
+SOURCES = ["numbers/apm", "numbers/special", "numbers/guard",
            "thesis/start", "thesis/rigorous", "thesis/double",
            "loewner/orbit", "loewner/witness", "loewner/bound", "loewner/try",
            "search", "kernels"]

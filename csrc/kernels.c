@@ -5,7 +5,7 @@
 #include <time.h>
 
 #include "loewner/loewner.h"
-#include "numbers/memory.h"
+#include "numbers/guard.h"
 #include "numbers/special.h"
 #include "numbers/sine.h"
 #include "thesis/unit.h"
@@ -148,7 +148,7 @@ int cv_kernel(const char *name, int as_double, int as_printed, int dp,
     apm_t x[MAX_IN + MAX_OUT];
     Runit *volatile exact = NULL;
     unit *volatile quick = NULL;
-    jmp_buf here, *before;
+    guard g = { .stop = NULL }, *before;
     volatile int status = CV_OK;
 
     if (nin < 0 || nin > MAX_IN || nout < 0 || nout > MAX_OUT || dp < 1 || dp > MAX_DP)
@@ -157,8 +157,8 @@ int cv_kernel(const char *name, int as_double, int as_printed, int dp,
         out[j] = NULL;
     for (int j = 0; j < MAX_IN + MAX_OUT; j++)
         apm_init(x[j]);
-    before = memory_guard(&here);
-    if (setjmp(here) != 0) {
+    before = guard_arm(&g);
+    if (setjmp(g.here) != 0) {
         status = CV_ENOMEM;
     } else {
         for (int j = 0; j < nin && status == CV_OK; j++)
@@ -179,7 +179,7 @@ int cv_kernel(const char *name, int as_double, int as_printed, int dp,
             }
         }
     }
-    memory_guard(before);
+    guard_arm(before);
     for (int j = 0; j < nout && status == CV_OK; j++) {
         out[j] = apm_get_str(x[MAX_IN + j]);
         if (out[j] == NULL)
@@ -189,7 +189,7 @@ int cv_kernel(const char *name, int as_double, int as_printed, int dp,
         free(out[j]);
         out[j] = NULL;
     }
-    if (status != CV_ENOMEM) {          /* after that the numbers are abandoned: memory.c */
+    if (status != CV_ENOMEM) {          /* after that the numbers are abandoned: guard.c */
         Runit_free(exact);
         unit_free(quick);
         for (int j = 0; j < MAX_IN + MAX_OUT; j++)

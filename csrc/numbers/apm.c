@@ -1,5 +1,6 @@
 /* apm.c - see apm.h. */
 #include "apm.h"
+#include "guard.h"
 
 #include <ctype.h>
 #include <limits.h>
@@ -365,6 +366,7 @@ int apm_div(apm_t r, const apm_t x, const apm_t y, long dp, apm_round_t dir)
 
     if (mpz_sgn(y->mant) == 0)
         return APM_EDIVZERO;
+    guard_poll();
     mpz_init(t);
     if (shift >= 0) {
         shift_up(t, x->mant, shift);
@@ -407,6 +409,7 @@ int apm_sqrt(apm_t r, const apm_t x, long dp, apm_round_t dir)
 
 void apm_round(apm_t r, const apm_t x, long dp, apm_round_t dir)
 {
+    guard_poll();
     if (x->exp >= -dp) {
         apm_set(r, x);
         return;

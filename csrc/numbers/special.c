@@ -4,6 +4,7 @@
    has the three parts of the thesis's equation for reducedSin: that of the reduced argument,
    that of the truncated intermediate results, and the rest of the Taylor series. */
 #include "special.h"
+#include "guard.h"
 
 /* r += sign * scale * arctan(1/n) in ulps of 2^-w; the error is below 2 ulps of each of the
    fewer than w terms, times scale, since every quotient is truncated. */
@@ -16,6 +17,7 @@ static void add_arctan(mpz_t r, unsigned long n, long scale, mp_bitcnt_t w)
     mpz_mul_2exp(power, power, w);
     mpz_tdiv_q_ui(power, power, n);
     for (unsigned long k = 1; mpz_sgn(power) != 0; k += 2) {
+        guard_poll();
         mpz_tdiv_q_ui(term, power, k);
         if (k % 4 == 1)
             mpz_add(r, r, term);
@@ -107,6 +109,7 @@ static void taylor(mpz_t sum, mpz_t term, const mpz_t t, const mpz_t t2, mp_bitc
     mpz_set(sum, term);
     for (unsigned long n = 1; mpz_sgn(term) != 0; n++) {
         const unsigned long k = odd ? 2 * n : 2 * n - 1;
+        guard_poll();
         mpz_mul(term, term, t2);
         mpz_tdiv_q_2exp(term, term, w);
         mpz_tdiv_q_ui(term, term, k * (k + 1));
