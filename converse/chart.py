@@ -14,11 +14,12 @@ import random
 import sys
 from fractions import Fraction
 
-from . import __version__, files, kernels, picture
+from . import files, kernels, picture
 from .cli import Parser, ended
 from .files import ConverseError
 from .problem import Problem
-from .proof import prove
+from .run import prove
+from .version import __version__
 
 FORMATS = tuple(ending[1:] for ending in picture.FORMATS)
 SCALE = Fraction("11.21436")            # a = SCALE epsilon
@@ -69,9 +70,8 @@ def on_line(low, high=None, together=False):
 
 
 def _problem(centre, half, together=False):
-    one = Fraction(1)
-    return Problem((centre, centre, 2 * centre, one, one), (half, half, 2 * half, one, one),
-                   together=together)
+    return Problem.around((centre, centre, 2 * centre, 1, 1), (half, half, 2 * half, 1, 1),
+                          together=together)
 
 
 def timed(problem, **options):

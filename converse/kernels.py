@@ -3,9 +3,9 @@
 from decimal import Decimal
 from fractions import Fraction
 
-from ._native import ffi, lib
+from .core import ffi, lib
 from .problem import decimal_text
-from .search import MESSAGES, check
+from .core import MESSAGES, check
 
 ARITHMETICS = ("apm", "double")
 

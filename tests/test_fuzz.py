@@ -168,7 +168,7 @@ def certificates(root, tmp_path_factory):
                               ("0.285 0.015", "0.285 0.015", "0.57 0.03", False),
                               ("0.27 0.01", "0.29 0.01", "0.57 0.02", False)):
         ranges = [map(Fraction, pair.split()) for pair in (a, b, c, "1 1", "1 1")]
-        converse.prove(Problem(*zip(*ranges), (), together), method="loewner").save(path)
+        converse.prove(Problem.around(*zip(*ranges), (), together), method="loewner").save(path)
         found.append(path.read_text(encoding="utf-8"))
     return found
 

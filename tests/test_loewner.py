@@ -14,7 +14,7 @@ import pytest
 from truth import TORTURE, beta, mp, rng_for
 
 from converse import ConverseError, Problem, kernels, prove
-from converse.search import Search, Task
+from converse.core import Search, Task
 from converse.tree import ROOT, cells
 
 CASES = 10000 * TORTURE
@@ -187,7 +187,7 @@ def line(low, high, together=True, region=(1, 1), skew=1):
     low, high = Fraction(low) * Fraction("11.21436"), Fraction(high) * Fraction("11.21436")
     c, h = (low + high) / 2, (high - low) / 2
     skew = Fraction(skew)
-    return Problem((c, skew * c, 2 * c, Fraction(1), Fraction(1)),
+    return Problem.around((c, skew * c, 2 * c, Fraction(1), Fraction(1)),
                    (h, skew * h, 2 * h, *map(Fraction, region)), together=together)
 
 
@@ -236,7 +236,7 @@ def falls(betas, l):
 
 
 @pytest.mark.parametrize("problem", [
-    Problem((Fraction(0),) * 3 + (Fraction(1),) * 2, (Fraction(0),) * 3 + (Fraction(1),) * 2),
+    Problem.around((Fraction(0),) * 3 + (Fraction(1),) * 2, (Fraction(0),) * 3 + (Fraction(1),) * 2),
     line("0.0001", "0.0001"), line("0.001", "0.001"), line("0.01", "0.01"), line("0", "0.0280"),
     line("0.0120", "0.0280"), line("-0.001", "0.001"), line("0.01", "0.01", skew="0.5"),
     line("0.005", "0.0280", together=False)])
@@ -264,7 +264,7 @@ def test_a_cell_is_what_it_says(proof):
         centre = [c + h * ((2 * index[k] + 1) * part[k] - 1)
                   for c, h, k in zip(problem.centre, problem.half, axes)]
         half = [h * part[k] for h, k in zip(problem.half, axes)]
-        cell = Problem(tuple(centre), tuple(half), together=True)
+        cell = Problem.around(tuple(centre), tuple(half), together=True)
         whole = Search(replace(task, centre=tuple(cell.decimals()[0]),
                                half=tuple(cell.decimals()[1])))
         below = search.grow([(index, cuts, 0)], 10).text
@@ -289,18 +289,18 @@ def test_other_parameters():
     part = prove(line("0.0200", "0.0201", region=("0.1", "0.1")), method="loewner")
     assert part.no_tori and "successor" in part.report()
     minus = line("0.0200", "0.0210")        # V(y + pi) changes the signs of a and b
-    minus = Problem(tuple(-x for x in minus.centre[:2]) + minus.centre[2:], minus.half,
+    minus = Problem.around(tuple(-x for x in minus.centre[:2]) + minus.centre[2:], minus.half,
                     together=False)
     assert prove(minus, method="loewner").no_tori
 
 
 def test_huge_and_tiny_numbers():
-    huge = Problem((Fraction(10) ** 100,) * 3 + (Fraction(1),) * 2,
+    huge = Problem.around((Fraction(10) ** 100,) * 3 + (Fraction(1),) * 2,
                    (Fraction(0),) * 3 + (Fraction(1),) * 2)
     far = line("0.0200", "0.0200")
-    far = Problem(far.centre[:3] + (Fraction(10) ** 12,) * 2, far.half, together=True)
+    far = Problem.around(far.centre[:3] + (Fraction(10) ** 12,) * 2, far.half, together=True)
     assert prove(huge, 10, method="loewner").no_tori    # and rightly so
     assert prove(far, 10, method="loewner", stubborn=True, time_limit=3).undecided
     with pytest.raises(ConverseError, match="arithmetic"):
-        prove(Problem((Fraction(10) ** 250,) * 3 + (Fraction(1),) * 2, huge.half),
+        prove(Problem.around((Fraction(10) ** 250,) * 3 + (Fraction(1),) * 2, huge.half),
               method="loewner")

@@ -20,7 +20,7 @@ from converse import ConverseError, Problem, Proof, prove, search
 def line(low, high):
     low, high = Fraction(low) * Fraction("11.21436"), Fraction(high) * Fraction("11.21436")
     c, h = (low + high) / 2, (high - low) / 2
-    return Problem((c, c, 2 * c, Fraction(1), Fraction(1)), (h, h, 2 * h, Fraction(1), Fraction(1)),
+    return Problem.around((c, c, 2 * c, Fraction(1), Fraction(1)), (h, h, 2 * h, Fraction(1), Fraction(1)),
                    together=True)
 
 
@@ -51,7 +51,7 @@ def test_threads(proof):
 
 def test_the_method_of_the_thesis_too():
     a, b = Fraction("0.306"), Fraction("0.00125")
-    problem = Problem((a, a, 2 * a, Fraction(1), Fraction(1)),
+    problem = Problem.around((a, a, 2 * a, Fraction(1), Fraction(1)),
                       (b, b, 2 * b, Fraction(1), Fraction(1)))
     with concurrent.futures.ThreadPoolExecutor(3) as executor:
         assert timeless(prove(problem, executor=executor)) == timeless(prove(problem, jobs=1))

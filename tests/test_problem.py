@@ -87,7 +87,7 @@ def changed(number, line):
     (changed(2, "0.3085 -0.00125"), 2, "negative"), (changed(6, "1 -1"), 6, "negative"),
     (changed(5, "1.0"), 5, "1 number where two"), (changed(5, "1 1 1"), 5, "3 numbers where two"),
     (changed(1, "0x10 1"), 1, "0x10"), (changed(1, "1_0 1"), 1, "1_0"),
-    (changed(1, "\u0661 1"), 1, "not a decimal"), (changed(1, "1/3 1"), 1, "1/3"),
+    (changed(1, "\u0661 1"), 1, "not a decimal"), (changed(1, "1/0 1"), 1, "1/0"), (changed(1, "1/3/5 1"), 1, "1/3/5"),
     (changed(1, "0.3,1"), 1, "0.3,1"), (changed(1, ". 1"), 1, "'.'"),
 ])
 def test_mistakes(text, line, words):

@@ -17,7 +17,7 @@ FULL = (("1", "1"), ("1", "1"))
 def problem(a, b, c, v=FULL):
     """(centre, half) pairs of decimal strings."""
     pairs = [a, b, c, *v]
-    return Problem(tuple(Fraction(x) for x, _ in pairs), tuple(Fraction(x) for _, x in pairs), ())
+    return Problem.around(tuple(Fraction(x) for x, _ in pairs), tuple(Fraction(x) for _, x in pairs), ())
 
 
 def line(epsilon, width="0"):
@@ -178,7 +178,7 @@ def test_two_threads_do_not_meet(root):
 
 def test_no_symmetry_where_the_start_is_off_the_diagonal():
     """A starting point of one's own (from a backup) may lie anywhere; then nothing is skipped."""
-    from converse.search import MANY, Search, Task
+    from converse.core import Search, Task, stop_token
     from converse.tree import ROOT
 
     centre, half = map(tuple, line("0.0275").decimals())

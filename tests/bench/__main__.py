@@ -84,7 +84,7 @@ def frontier(repeat, longest=60):
         for low in ("0.0272", "0.0180", "0.0160", "0.0152", "0.0148", "0.0144", "0.0142", "0.0141"):
             ends = [Fraction(e) * Fraction("11.21436") for e in (low, "0.0280")]
             centre, half = sum(ends) / 2, (ends[1] - ends[0]) / 2
-            problem = converse.Problem((centre, centre, 2 * centre, Fraction(1), Fraction(1)),
+            problem = converse.Problem.around((centre, centre, 2 * centre, Fraction(1), Fraction(1)),
                                        (half, half, 2 * half, Fraction(1), Fraction(1)),
                                        together=True)
             seconds = {}
