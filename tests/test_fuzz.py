@@ -114,8 +114,7 @@ def test_any_change_of_a_backup(proof_bytes, tmp_path_factory, edits, seal, zipp
         return
     assert seal or data == proof_bytes
     try:
-        converse.prove(proof.problem, proof.depth, proof.digits, proof.stubborn,
-                       proof.as_printed, resume=path, time_limit=0.05)
+        converse.prove(resume=path, time_limit=0.05)
     except (ConverseError, ValueError) as error:
         one_line(error)
 

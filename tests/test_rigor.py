@@ -105,18 +105,28 @@ handle = ffi.new("cv_search **")
 value, keep3 = strings(["0.3", "0.4"])
 out = ffi.new("char *[]", 8)
 assert lib.cv_search_new(handle, region, half, ffi.NULL, 0, 0, 0, 30, 0, 0) == lib.CV_EARGUMENT
+def new(dp=35, method=0, together=0, depth=30):
+    code = lib.cv_search_new(handle, region, half, ffi.NULL, method, together, dp, depth, 0, 0)
+    if code == 0:
+        code = lib.cv_prepare(handle[0], ffi.NULL)
+        if code:
+            lib.cv_search_free(handle[0])
+            handle[0] = ffi.NULL
+    return code
+def step():
+    return lib.cv_step(handle[0], 10**6, 60.0, ffi.NULL)
 seen = {"new": 0, "step": 0, "kernel": 0, "loewner": 0}
 for n in list(range(0, 3000, 29)) + list(range(3000, 60000, 2999)):
     shim.fail_after(n)
-    code = lib.cv_search_new(handle, region, half, ffi.NULL, 0, 0, 35, 30, 0, 0)
+    code = new()
     failed = shim.has_failed()
     assert code == (lib.CV_ENOMEM if failed else 0), (n, code, failed)
     assert (handle[0] == ffi.NULL) == bool(failed)
     seen["new"] += bool(failed)
     if not failed:
         lib.cv_search_free(handle[0])
-assert lib.cv_search_new(handle, region, half, ffi.NULL, 0, 0, 35, 30, 0, 0) == 0
-lib.cv_step(handle[0], 10**6, 60.0)
+assert new() == 0
+step()
 length = ffi.new("size_t *")
 def tree():
     text = lib.cv_tree(handle[0], length)
@@ -124,9 +134,9 @@ def tree():
 whole = tree()
 lib.cv_search_free(handle[0])
 for n in list(range(0, 2000, 41)) + list(range(2000, 200000, 4999)):
-    assert lib.cv_search_new(handle, region, half, ffi.NULL, 0, 0, 35, 30, 0, 0) == 0
+    assert new() == 0
     shim.fail_after(n)
-    code = lib.cv_step(handle[0], 10**6, 60.0)
+    code = step()
     failed = shim.has_failed()
     assert code == (lib.CV_ENOMEM if failed else 0), (n, code, failed)
     part = tree()
@@ -138,9 +148,9 @@ for n in list(range(0, 2000, 41)) + list(range(2000, 200000, 4999)):
     lib.cv_search_free(handle[0])
 for n in range(0, 700):                      # the sharper method: making it, then a step
     shim.fail_after(n)
-    code = lib.cv_search_new(handle, region, half, ffi.NULL, 1, 1, 35, 60, 0, 0)
+    code = new(method=1, together=1, depth=60)
     if code == 0:
-        code = lib.cv_step(handle[0], 10**6, 60.0)
+        code = step()
     failed = shim.has_failed()
     assert code == (lib.CV_ENOMEM if failed else 0), (n, code, failed)
     seen["loewner"] += bool(failed)
@@ -186,7 +196,7 @@ try:
         hold.append(bytearray(16384))
 except MemoryError:
     del hold[-20:]
-sys.exit(main(["-p", "4000", "-d", "4", "-r", backup, "-b", backup, path]))
+sys.exit(main(["-r", backup, path]))
 """
 
 
@@ -198,6 +208,7 @@ def test_a_memory_limit_ends_with_a_line_and_an_intact_backup(root, tmp_path):
     seen = set()
     for slack in (0, 10**8):
         backup = tmp_path / "backup.proof"
+        backup.unlink(missing_ok=True)
         before = converse.prove(problem, depth=4, digits=4000, time_limit=0, backup=backup)
         result = subprocess.run([sys.executable, "-c", HUNGRY, str(slack), str(backup), path],
                                 cwd=tmp_path, capture_output=True, text=True, timeout=120)

@@ -178,11 +178,12 @@ def test_two_threads_do_not_meet(root):
 
 def test_no_symmetry_where_the_start_is_off_the_diagonal():
     """A starting point of one's own (from a backup) may lie anywhere; then nothing is skipped."""
-    from converse.core import Search, Task, stop_token
+    from converse.core import Search, Settings, Task, stop_token
+    from converse.growth import MANY
     from converse.tree import ROOT
 
-    centre, half = map(tuple, line("0.0275").decimals())
     for xstar, skips in ((("0.82", "0.82"), True), (("0.82", "0.83"), False)):
-        search = Search(Task(centre, half, xstar, False, "thesis", 30, 20, False, False))
-        counts = search.grow([(*ROOT, 0)], 60, MANY).counts
+        search = Search(Task(line("0.0275"), Settings(digits=20), xstar))
+        assert search.prepare(stop_token())
+        counts = search.grow([(*ROOT, 0)], 60, MANY, stop_token(), False).counts
         assert counts.proved > 0 and (counts.symmetric > 0) == skips

@@ -15,7 +15,7 @@ import time
 from fractions import Fraction
 from pathlib import Path
 
-from converse import kernels
+from converse import growth, kernels
 
 ROOT = Path(__file__).resolve().parent.parent.parent
 COMMAND = str(Path(sys.executable).parent / "converse")
@@ -76,7 +76,7 @@ def images():
 def frontier(repeat, longest=60):
     """The theorems of the sharper method, one core against all, and the checker."""
     import converse
-    jobs = converse.search.count_workers()
+    jobs = growth.count_workers()
     print("method loewner, together, down to epsilon; %d cores; the checker on a sample" % jobs)
     print("%-8s %9s %9s %6s %9s %7s %7s %12s" % ("epsilon", "1 core", "all", "ratio", "prisms",
                                                  "points", "deepest", "checked/s"))
