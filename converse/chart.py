@@ -102,7 +102,7 @@ def digits(quick):
     problem = _problem(Fraction("0.3085"), Fraction("0.00125"))
     for places in DIGITS:
         proofs, before = zip(*((prove(problem, digits=places, jobs=1),
-                                prove(problem, digits=places, jobs=1, time_limit=0))
+                                prove(problem, digits=places, jobs=1, depth=0))
                                for _ in range(3 if quick else 12)))
         yield (places, min(proof.seconds for proof in proofs),
                min(proof.seconds for proof in before), proofs[0].counts.proved,
