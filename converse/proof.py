@@ -82,7 +82,7 @@ class Proof:
     @property
     def undecided(self):
         """The prisms on which the search gave up: a list of Leaf, angles in units of pi."""
-        return list(tree.leaves(self.problem, self.tree, "U"))
+        return list(tree.leaves(self.problem, self.tree, "U")) if "U" in self.tree else []
 
     def report(self) -> str:
         """The report of 1989, and what a reader needs beside it."""

@@ -107,10 +107,9 @@ def _gaps(proof):
         lines += ["The search ended before the whole region was examined."]
     if proof.as_printed:
         return lines
-    first = undecided[0] if undecided else next(tree.leaves(proof.problem, proof.tree, tree.UNTRIED))
-    lines += ["The first %s : %s." % ("of them" if undecided else "untried", ", ".join(
+    lines += ["The first of them : %s." % ", ".join(
         "%.9g < v[%d] / pi < %.9g" % (c - h, i, c + h)
-        for i, (c, h) in enumerate(zip(first.centre, first.half))))]
+        for i, (c, h) in enumerate(zip(leaf.centre, leaf.half))) for leaf in undecided[:1]]
     if proof.method == "thesis":
         advice = "the sharper criterion (--method loewner)"
     elif undecided:

@@ -1,13 +1,17 @@
 """Proofs: what prove returns, the proof file, and continuing from it."""
 
 import gzip
+import os
+import signal
 import threading
+import time
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from fractions import Fraction
 
 import pytest
 
-from converse import ConverseError, Counts, Problem, Proof, Settings, growth, prove, read_input
+from converse import ConverseError, Counts, Problem, Proof, Settings, files, growth, prove, read_input
 from converse.tree import leaves
 from converse.version import __version__
 
@@ -302,3 +306,122 @@ def test_zero_half_widths(tmp_path):
     result = prove(spot, depth=2)
     assert set(result.tree) <= set("01PSU")
     result.figure(tmp_path / "spot.ps")
+
+
+# ---- what a proof says of itself ---------------------------------------------------------
+
+def test_what_is_claimed(made_up):
+    """Only the whole torus, wholly decided by the sound program, is a theorem, and true."""
+    for tree, v, as_printed, conclusion in (
+            ("0PS", ("1", "1", "1", "1"), False, "theorem"),
+            ("0PS", ("3", "-1", "1.5", "1"), False, "theorem"),
+            ("0PS", ("1", "1", "1", "0.999"), False, "region"),
+            ("0PS", ("1", "1", "1", "1"), True, "as printed"),
+            ("0PU", ("1", "1", "1", "1"), False, "undecided"),
+            ("0P", ("1", "1", "1", "1"), False, "undecided"),
+            ("", ("1", "1", "1", "1"), True, "undecided")):
+        proof = made_up(tree, v=v, as_printed=as_printed)
+        assert proof.conclusion == conclusion
+        assert proof.no_tori == bool(proof) == (conclusion == "theorem")
+        assert len(repr(proof)) < 150 and "tree" not in repr(proof)
+
+
+@pytest.mark.parametrize("name", ["a.proof", "a.proof.gz"])
+def test_two_runs_write_one_file(tmp_path, problem, name, interrupted):
+    first, second = tmp_path / ("1" + name), tmp_path / ("2" + name)
+    prove(problem, backup=first, jobs=1)
+    interrupted(problem, second, 7)
+    assert "seconds: " in _text(second)
+    prove(resume=second, jobs=3)
+    assert "seconds: " not in _text(second) and first.read_bytes() == second.read_bytes()
+
+
+def _text(path):
+    data = path.read_bytes()
+    return (gzip.decompress(data) if path.suffix == ".gz" else data).decode()
+
+
+def test_deeper(tmp_path, problem, proof):
+    """What was given up for its depth is tried again; the rest is as it was."""
+    path = tmp_path / "a.proof"
+    shallow = prove(problem, depth=8, stubborn=True, backup=path)
+    assert shallow.undecided
+    deeper = prove(resume=path, depth=30)
+    assert deeper.no_tori and deeper.tree == proof.tree and deeper.settings.stubborn
+    assert deeper.restored == shallow.counts.proved + shallow.counts.symmetric
+    assert Proof.load(path).no_tori
+    with pytest.raises(ConverseError, match="its depth is 30, this one's is 29"):
+        prove(resume=path, depth=29)
+    stopped = prove(problem, depth=8)
+    assert timeless(prove(resume=stopped, depth=30)).tree == proof.tree
+
+
+def test_a_failing_backup_does_not_end_the_run(tmp_path, problem, proof, monkeypatch):
+    path = tmp_path / "a.proof"
+    monkeypatch.setattr("converse.backup.SECONDS", 0.0)
+    monkeypatch.setattr("converse.backup.SHARE", 0)
+    monkeypatch.setattr(growth, "MANY", 1)
+    writes, write = [], files.write
+
+    def full(name, data):
+        writes.append(name)
+        if 1 < len(writes) < 20:
+            raise ConverseError("%s: cannot be written (No space left on device)" % name)
+        write(name, data)
+
+    monkeypatch.setattr(files, "write", full)
+    with pytest.warns(RuntimeWarning, match="No space left on device.*tries again"):
+        result = prove(problem, backup=path, jobs=1)
+    assert len(writes) > 20 and timeless(result) == timeless(proof)
+    assert Proof.load(path) == timeless(proof) and result.sha256
+
+
+def test_a_backup_that_cannot_be_begun_is_an_error(tmp_path, problem, monkeypatch):
+    def full(name, data):
+        raise ConverseError("%s: cannot be written" % name)
+
+    monkeypatch.setattr(files, "write", full)
+    with pytest.raises(ConverseError, match="cannot be written"):
+        prove(problem, backup=tmp_path / "a.proof")
+
+
+@pytest.mark.parametrize("jobs", [1, 4])
+def test_leaves_in_order_by_many_workers(problem, proof, jobs, monkeypatch):
+    """on_leaf hears of every leaf in preorder, with its orbit's length, whoever decided it."""
+    monkeypatch.setattr(growth, "ALONE_SECONDS", 0.0)
+    expected = []
+    prove(problem, jobs=1, on_leaf=lambda *leaf: expected.append(leaf))
+    assert [leaf for leaf, _ in expected] == list(leaves(problem, proof.tree))
+    assert max(points for leaf, points in expected if leaf.kind == "P") == proof.counts.max_NTsteps
+    with ThreadPoolExecutor(jobs) as executor:
+        seen = []
+        assert prove(problem, jobs=jobs, executor=executor,
+                     on_leaf=lambda *leaf: seen.append(leaf)).no_tori
+    assert seen == expected
+
+
+def test_only_new_leaves_are_told(problem, proof, interrupted):
+    half = prove(problem, depth=9, stubborn=True)
+    seen = []
+    prove(resume=half, depth=30, on_leaf=lambda leaf, points: seen.append(leaf))
+    old = set(leaves(problem, half.tree, "PS"))
+    assert seen == [leaf for leaf in leaves(problem, proof.tree) if leaf not in old] and seen
+
+
+def test_a_long_set_up_obeys(problem):
+    """At a hundred thousand places pi alone takes seconds."""
+    began = time.monotonic()
+    result = prove(problem, digits=100000, time_limit=0.2)
+    assert time.monotonic() - began < 5 and result.tree == "" and result.constants == {}
+    threading.Timer(0.3, os.kill, (os.getpid(), signal.SIGINT)).start()
+    with pytest.raises(KeyboardInterrupt):
+        prove(problem, digits=100000)
+    assert time.monotonic() - began < 10
+
+
+def test_a_long_prism_obeys(problem):
+    """A rigorous try with thousands of digits is left in the middle."""
+    began = time.monotonic()
+    result = prove(problem, digits=20000, time_limit=4, jobs=2)
+    assert time.monotonic() - began < 9 and not result.all_decided
+    assert prove(problem).no_tori

@@ -5,6 +5,7 @@ import os
 import shutil
 import subprocess
 import sys
+import sysconfig
 from pathlib import Path
 
 import pytest
@@ -73,6 +74,59 @@ def test_a_spoilt_machine_is_refused(shim, root, spoil, mend):
     finally:
         mend(lib)
     assert converse.prove(problem).no_tori
+
+
+@needs_gcc
+@pytest.mark.parametrize("method", ["thesis", "loewner"])
+def test_a_machine_spoilt_in_mid_run_is_noticed(shim, root, method):
+    """Each step looks at the arithmetic; nothing that a bad one did is taken."""
+    from converse.core import Search, Settings, Task, ffi
+    from converse.tree import ROOT as WHOLE
+
+    lib = ctypes.CDLL(str(shim))
+    search = Search(Task(converse.read_input(root / "inputs" / "trig278.in"), Settings(method)))
+    assert search.prepare(ffi.NULL)
+    grow = lambda: search.grow([(*WHOLE, 0)], 10, 2 ** 30, ffi.NULL, False).text
+    good = grow()
+    for which in (1, 2, 3):
+        lib.direction(which)
+        try:
+            with pytest.raises(converse.ConverseError, match="floating-point"):
+                grow()
+        finally:
+            lib.direction(0)
+        assert grow() == good
+
+
+CONTRACTED = """
+import converse
+try:
+    converse.prove(converse.Problem(1, 1, 1), method="loewner")
+except converse.ConverseError as error:
+    assert "the way the program was built" in str(error), error
+else:
+    raise SystemExit("it proves")
+"""
+
+
+@needs_gcc
+@pytest.mark.skipif("fma" not in Path("/proc/cpuinfo").read_text() if os.path.exists("/proc/cpuinfo")
+                    else True, reason="needs a processor with fused operations")
+@pytest.mark.skipif("libasan" in os.environ.get("LD_PRELOAD", ""), reason="another build")
+def test_a_core_that_fuses_is_refused(tmp_path):
+    """Built by flags that contract products and sums it compiles, and proves nothing."""
+    code = "exec(open('converse/_build.py').read()); ffi.emit_c_code(%r); print(*SOURCES)"
+    sources = subprocess.run([sys.executable, "-c", code % str(tmp_path / "native.c")], cwd=ROOT,
+                             check=True, capture_output=True, text=True).stdout.split()[-12:]
+    package = tmp_path / "converse"
+    shutil.copytree(Path(converse.__file__).parent, package,
+                    ignore=shutil.ignore_patterns("*.so", "__pycache__"))
+    subprocess.run(["gcc", "-std=c11", "-O2", "-fPIC", "-shared", "-mfma", "-ffp-contract=fast",
+                    "-Icsrc", "-I", sysconfig.get_paths()["include"], str(tmp_path / "native.c"),
+                    *sources, "-lgmp", "-lm", "-o", str(package / "_native.abi3.so")],
+                   cwd=ROOT, check=True)
+    subprocess.run([sys.executable, "-c", CONTRACTED], cwd=tmp_path, check=True, timeout=60,
+                   env=dict(os.environ, PYTHONPATH=str(tmp_path)))
 
 
 FAILING = r"""
