@@ -8,7 +8,6 @@ import concurrent.futures
 import contextlib
 import os
 import time
-from itertools import accumulate
 
 from . import core, tree
 from .core import Counts
@@ -51,7 +50,7 @@ class Growth:
         """executor: of somebody else, for the work that is worth dividing; jobs: parts at a time."""
         self.task, self.jobs, self.executor = task, jobs, executor
         self.want_steps, self.stubborn = want_steps, task.settings.stubborn
-        self.parts, self.counts, self.levels = [], Counts(), ((0,) * 128,) * 2
+        self.parts, self.counts, self.history = [], Counts(), core.History()
         self.running = {}                   # future -> (part, attempts left)
         self.stop = core.stop_token()
         self.threads = concurrent.futures.ThreadPoolExecutor(jobs if executor is None else 1)
@@ -90,7 +89,7 @@ class Growth:
         for piece, cell in zip(pieces, cells):
             self.parts += [Part([], piece), Part([cell])]
         self.parts += [Part([], last), Part(cells[len(pieces):])]
-        self.counts, self.levels = counts, begun.levels
+        self.counts = counts
         return begun
 
     # ---- what there is
@@ -140,17 +139,11 @@ class Growth:
 
     @property
     def done(self):
-        """The share of the work that is behind us, as far as can be seen.
-
-        A cell of n cuts is expected to become as many nodes as such cells became on the average so
-        far: one, and if it is cut, as many as its two halves."""
-        nodes, cuts = self.levels
-        size = list(accumulate(zip(reversed(nodes), reversed(cuts)), lambda size, level:
-                               1 + 2 * size * level[1] / level[0] if level[0] else 1, initial=1))
-        size.reverse()                      # size[n]: nodes expected of a cell of n cuts
-        left = sum(size[min(sum(cell[1]), len(nodes) - 1)]
-                   for part in self._relevant() for cell in part.cells)
-        return sum(nodes) / (sum(nodes) + left) if self.parts else 0.0
+        """The share of the work that is behind us, as far as can be seen."""
+        counts = self.counts
+        nodes = counts.cuts + counts.proved + counts.symmetric + counts.undecided
+        cells = [cell for part in self._relevant() for cell in part.cells]
+        return nodes / (nodes + self.history.expected(cells)) if nodes or cells else 0.0
 
     # ---- growing
 
@@ -161,7 +154,7 @@ class Growth:
         part.cells = grown.cells
         part.stopped = part.stopped or grown.counts.undecided > 0
         self.counts += grown.counts
-        self.levels = tuple(tuple(map(sum, zip(*both))) for both in zip(self.levels, grown.levels))
+        self.history.add(grown.history)
 
     def _queue(self):
         """The parts that wait for a worker, in preorder."""

@@ -47,10 +47,12 @@ typedef struct {
     int from;                /* learnt from the prism it was cut from; 0 for the root */
 } cv_cell;
 
-/* How far the tree has come: nodes decided at each number of cuts, and how many of them were cut
-   again; the last level takes in all that is deeper. */
-enum { CV_LEVELS = 128 };
-typedef struct { long nodes[128], cut[128]; } cv_levels;
+/* What became of cells so far, to guess from it what will become of others.  Cells are of one kind
+   if they were cut as often and their parents learnt about as much: nodes[level][class] of them were
+   tried and cut[level][class] cut again; became[class][class]: the classes of these and of their
+   halves.  The last level takes in all that is deeper. */
+enum { CV_LEVELS = 128, CV_CLASSES = 16 };
+typedef struct { int nodes[128][16], cut[128][16], became[16][16]; } cv_history;
 
 typedef struct cv_search cv_search;
 
@@ -90,7 +92,8 @@ int cv_pending(const cv_search *s, cv_cell *cells);
 const char *cv_tree(const cv_search *s, size_t *length);   /* nodes so far, in preorder */
 const cv_counts *cv_get_counts(const cv_search *s);
 const int *cv_steps(const cv_search *s);                   /* of each node: its orbit's length */
-const cv_levels *cv_get_levels(const cv_search *s);
+const cv_history *cv_get_history(const cv_search *s);
+int cv_class(int from);                                    /* of a cell with this from */
 int cv_symmetric(const cv_search *s);                      /* are mirror images skipped? */
 /* Method Loewner: is B > 10/3 for all parameters (together: at the upper end)?  Then the theorem
    holds for every multiple s >= 1 of them, too. */

@@ -45,7 +45,7 @@ struct cv_search {
     int *steps;                         /* of the orbit of each leaf */
     size_t length, capacity;
     cv_counts counts, before;           /* before: as it was when the node at hand was begun */
-    cv_levels levels;
+    cv_history history;
     apm_t constants[N_CONSTANTS], t[2];
     int method, dp, depth, stubborn, as_printed, together, symmetric, at_once;
     int prepared, last_steps, status;
@@ -94,8 +94,6 @@ static void set_box(cv_search *s, const cv_cell *c)
     b->n_cuts = all_cuts(c);
 }
 
-static int level(int cuts) { return cuts < CV_LEVELS ? cuts : CV_LEVELS - 1; }
-
 /* Adds one node to the tree; room is made in advance so that a node is never half decided. */
 static int make_room(cv_search *s)
 {
@@ -125,7 +123,6 @@ static int make_room(cv_search *s)
 /* Counts a leaf of so many cuts. */
 static void count_leaf(cv_search *s, char kind, int cuts)
 {
-    s->levels.nodes[level(cuts)]++;
     if (kind == 'P') {
         s->counts.proved++;
         if (cuts > s->counts.most_cuts)
@@ -161,8 +158,6 @@ static void halve(cv_search *s, int axis)
 {
     cv_cell *upper = &s->stack[s->pending - 1], *lower = upper + 1;
 
-    s->levels.nodes[level(all_cuts(upper))]++;
-    s->levels.cut[level(all_cuts(upper))]++;
     s->counts.cuts++;
     upper->cuts[axis]++;
     upper->index[axis] *= 2;
@@ -268,6 +263,30 @@ static int machine_is_sound(void)
            one + 0.5 * DBL_EPSILON == 1.0 && one - 0.25 * DBL_EPSILON == 1.0;
 }
 
+/* The class of a cell: logarithmic, two to an octave. */
+int cv_class(int from)
+{
+    int class = 0;
+
+    for (int bound = 2; class < CV_CLASSES - 1 && from >= bound; class++)
+        bound = class % 2 == 0 ? bound / 2 * 3 : bound / 3 * 4;
+    return class;
+}
+
+static void decide_and_remember(cv_search *s)
+{
+    const cv_cell *c = &s->stack[s->pending - 1];
+    const int cuts = all_cuts(c), level = cuts < CV_LEVELS ? cuts : CV_LEVELS - 1;
+    const int class = cv_class(c->from), pending = s->pending;
+
+    decide(s);
+    s->history.nodes[level][class]++;
+    if (s->pending > pending) {
+        s->history.cut[level][class]++;
+        s->history.became[class][cv_class(s->stack[pending].from)]++;
+    }
+}
+
 static double now(void)
 {
     struct timespec t;
@@ -299,7 +318,7 @@ int cv_step(cv_search *s, long max_leaves, double max_seconds, const volatile in
             break;
         }
         s->before = s->counts;
-        decide(s);
+        decide_and_remember(s);
         if (now() >= end || (stop != NULL && *stop))
             break;
     }
@@ -332,7 +351,7 @@ int cv_restart(cv_search *s, int n, const cv_cell *cells)
     s->pending = n;
     s->length = 0;
     memset(&s->counts, 0, sizeof s->counts);
-    memset(&s->levels, 0, sizeof s->levels);
+    memset(&s->history, 0, sizeof s->history);
     s->status = n > 0 ? CV_RUNNING : CV_OK;
     return CV_OK;
 }
@@ -402,7 +421,7 @@ const char *cv_tree(const cv_search *s, size_t *length)
 }
 
 const cv_counts *cv_get_counts(const cv_search *s) { return &s->counts; }
-const cv_levels *cv_get_levels(const cv_search *s) { return &s->levels; }
+const cv_history *cv_get_history(const cv_search *s) { return &s->history; }
 const int *cv_steps(const cv_search *s) { return s->steps; }
 int cv_symmetric(const cv_search *s) { return s->symmetric; }
 int cv_at_once(const cv_search *s) { return s->at_once; }

@@ -11,7 +11,7 @@ from fractions import Fraction
 
 import pytest
 
-from converse import ConverseError, Counts, Problem, Proof, Settings, files, growth, prove, read_input
+from converse import ConverseError, Counts, Problem, Proof, Settings, core, files, growth, prove, read_input
 from converse.tree import leaves
 from converse.version import __version__
 
@@ -75,8 +75,7 @@ def test_progress_and_leaves(problem, proof):
                    on_leaf=lambda leaf, steps: seen.append(leaf))
     assert timeless(result) == timeless(proof)
     assert seen == list(leaves(problem, proof.tree))
-    assert fractions == sorted(fractions)
-    assert fractions[0] < 0.01 and fractions[-1] == pytest.approx(1)
+    assert fractions[0] == 0 and fractions[-1] == 1 and all(0 <= x <= 1 for x in fractions)
 
 
 def test_two_threads(problem, proof, root):
@@ -425,3 +424,22 @@ def test_a_long_prism_obeys(problem):
     result = prove(problem, digits=20000, time_limit=4, jobs=2)
     assert time.monotonic() - began < 9 and not result.all_decided
     assert prove(problem).no_tori
+
+
+def test_the_work_left_is_estimated():
+    """Exactly, where cells of a kind fare alike; unseen kinds are taken for their like one deeper."""
+    history = core.History()
+    history.nodes = {(0, 0): 1, (1, 0): 2, (2, 0): 4, (2, 3): 4}
+    history.cut = {(0, 0): 1, (1, 0): 2, (2, 3): 2}
+    history.became = {(0, 0): 2, (0, 3): 1, (3, 3): 2}
+    cell = lambda cuts, hint: ((0,) * 5, (cuts, 0, 0, 0, 0), hint)
+    assert [core.lib.cv_class(n) for n in (0, 1, 2, 3, 4, 5, 6, 8, 12, 10 ** 9)] == [
+        0, 0, 1, 2, 3, 3, 4, 5, 6, 15]
+    for cells, expected in (([], 0), ([cell(9, 0)], 1), ([cell(2, 0)], 1), ([cell(2, 4)], 2),
+                            ([cell(1, 0)], 1 + 2 * (2 * 1 + 2) / 3), ([cell(1, 4)], 2),
+                            ([cell(2, 4), cell(9, 4), cell(200, 9)], 4)):
+        assert history.expected(cells) == pytest.approx(expected)
+    twice = core.History()
+    twice.add(history)
+    twice.add(history)
+    assert twice.expected([cell(1, 0)]) == history.expected([cell(1, 0)])
