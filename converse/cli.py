@@ -12,10 +12,8 @@ from dataclasses import replace
 from . import files, picture
 from .files import ConverseError
 from .problem import InputError, read_input
-from .proof import AS_PRINTED, REGION, THEOREM, UNDECIDED, Proof
 from .report import header, verdict
-from .run import prove
-from .settings import LIMIT, METHODS, Settings
+from .settings import AS_PRINTED, LIMIT, METHODS, REGION, THEOREM, UNDECIDED, Settings
 from .version import __version__
 
 STATUS = {THEOREM: 0, UNDECIDED: 1, REGION: 3, AS_PRINTED: 4}
@@ -198,6 +196,9 @@ def _check_graphics(options):
 
 
 def run(options):
+    from .proof import Proof            # these need the C core, and say so where it is missing
+    from .run import prove
+
     if options.graphics == "off":
         options.graphics = None
     if options.graphics is not None:

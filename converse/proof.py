@@ -12,13 +12,11 @@ from . import files, tree
 from .core import CONSTANTS, Counts
 from .files import ConverseError
 from .problem import NAMES, Problem, decimal_text, parse_number
-from .settings import Settings
+from .settings import AS_PRINTED, REGION, THEOREM, UNDECIDED, Settings
 from .version import __version__
 
 FIRST_LINE = "converse proof 2"
 KINDS = {False: "sound", True: "as printed, not a proof"}       # by as_printed
-
-THEOREM, REGION, UNDECIDED, AS_PRINTED = "theorem", "region", "undecided", "as printed"
 
 
 @dataclass(frozen=True, repr=False)

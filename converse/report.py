@@ -4,7 +4,7 @@ import math
 
 from . import tree
 from .problem import exact_decimal
-from .proof import AS_PRINTED, REGION, THEOREM, UNDECIDED
+from .settings import AS_PRINTED, REGION, THEOREM, UNDECIDED
 
 PLUSES = "+" * 48
 MAP = ("y' = y + J', J' = J - dV(y), V(y) = -a sin y0 - b sin y1 - c sin(y0 + y1)",

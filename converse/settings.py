@@ -1,10 +1,12 @@
-"""How a search goes about it."""
+"""How a search goes about it, and what it can come to."""
 
 from dataclasses import dataclass
 from typing import Optional
 
 METHODS = {"thesis": 30, "loewner": 120}            # by name, how often they may cut a prism
 LIMIT = 100000                                      # of the depth and of the digits
+
+THEOREM, REGION, UNDECIDED, AS_PRINTED = "theorem", "region", "undecided", "as printed"
 
 
 @dataclass(frozen=True)
