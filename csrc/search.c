@@ -203,6 +203,8 @@ static void decide(cv_search *s)
     if (v.no_tori) {
         s->counts.tries++;
         try_prism(s->quick, b, &v);
+        for (int j = 0; j < 3; j++)
+            s->counts.ll_used[j] += v.ll_used[j];
         if (v.nsteps > s->counts.max_steps)
             s->counts.max_steps = v.nsteps;
     }
@@ -217,7 +219,6 @@ static void decide(cv_search *s)
             s->counts.HermSuccess++;
         else
             s->counts.LLSuccess++;
-        s->counts.ll_used[v.ll_used]++;
     }
     conclude(s, &v, apm_cmp(b->half[4], b->half[3]) > 0 ? V1 : V0);     /* the wider; ties to v0 */
 }

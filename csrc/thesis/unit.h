@@ -16,7 +16,7 @@ typedef struct {
     int reason;               /* CV_REASON_... if not */
     int nsteps;               /* length of the orbit followed */
     int by_trace;             /* proved by the trace, not by the least eigenvalue */
-    int ll_used;              /* CV_BY_...: whence the last bound of the least eigenvalue */
+    int ll_used[3];           /* how often the least eigenvalue's best bound was CV_BY_... */
 } verdict;
 
 /* The constants of the theorem: T, Tr_-, Tr_+, B, lambda_-min, lambda_-max. */
