@@ -6,7 +6,7 @@ import os
 from cffi import FFI
 
 SOURCES = ["numbers/apm", "numbers/special", "numbers/guard",
-           "thesis/start", "thesis/rigorous", "thesis/double",
+           "thesis/start", "thesis/region", "thesis/rigorous", "thesis/double",
            "loewner/orbit", "loewner/witness", "loewner/bound", "loewner/try",
            "search", "kernels"]
 SOURCES = ["csrc/%s.c" % name for name in SOURCES]

@@ -9,6 +9,19 @@ from .core import MESSAGES, check
 
 ARITHMETICS = ("apm", "double")
 
+# What the routines take for granted; the C side looks.
+_PRISM = "a prism whose parameters depend on nothing else and have no negative widths"
+TAKES = {
+    "bound_sincos": "lo <= hi", "product": "lo <= hi", "square": "lo <= hi",
+    "torus": "lo <= hi of each parameter", "image": _PRISM, "btrace": _PRISM, "Blams": _PRISM,
+    "image_ns": _PRISM + ", and at most 1e9 repetitions",
+    "least_lambda": _PRISM + ", and positive bounds of a positive definite block",
+    "cone": "k = 4 or k = 16", "scale": "at most 100000 places",
+    "cell": "lo <= hi of each parameter, and no negative half-widths",
+    "region": "a half-width that is not negative",
+    "constants": "half-widths that are not negative",
+}
+
 
 def _exact(x):
     """An int, a Fraction or a Decimal of finite decimals, or a string, for the C side."""
@@ -35,6 +48,9 @@ def call(name, values, nout, dp, arithmetic="apm", as_printed=False):
         lib.cv_free(text)
     if code in (lib.CV_EARITHMETIC, lib.CV_ESINGULAR):
         raise ArithmeticError("%s: %s" % (name, MESSAGES[code]))
+    if code == lib.CV_EARGUMENT and name in TAKES:
+        raise ValueError("%s: too many or too few numbers, or some that make no sense; it takes %s"
+                         % (name, TAKES[name]))
     if code in (lib.CV_ENUMBER, lib.CV_EARGUMENT):
         raise ValueError("%s: %s" % (name, MESSAGES[code]))
     check(code)
@@ -107,6 +123,23 @@ def Blams(prism, dp, **options):
 def torus(a, b, c, dp, **options):
     """The bounds (T, B) over the whole torus for ranges (lo, hi) of the parameters."""
     return tuple(call("torus", [*a, *b, *c], 2, dp, **options))
+
+
+def cell(a, b, c, centre, half, dp, **options):
+    """Bounds of the trace and of the largest eigenvalue of 2I + W over a cell of the torus, a
+    rectangle centre +- half, for ranges (lo, hi) of the parameters (csrc/thesis/torus.c)."""
+    return tuple(call("cell", [*a, *b, *c, *centre, *half], 2, dp, **options))
+
+
+def region(centre, half, dp, **options):
+    """An interval (centre, half) in radians that holds one in units of pi."""
+    return tuple(call("region", [centre, half], 2, dp, **options))
+
+
+def constants(centre, half, xstar, dp, **options):
+    """What a search begins with, for parameters centre +- half: T, Tr-, Tr+, B, lambda-min and
+    lambda-max, and upper bounds of the trace and of the least eigenvalue of the block d_0."""
+    return tuple(call("constants", [*centre, *half, *xstar], 8, dp, **options))
 
 
 def _flat(prism):

@@ -137,7 +137,7 @@ def _statistics(proof):
     used = counts.ll_used
     if proof.as_printed:                # the listing exchanged these two labels
         used = (used[1], used[0], used[2])
-    share = [100.0 * n / counts.proved if counts.proved else 0.0 for n in used]
+    share = [100.0 * n / max(1, sum(used)) for n in used]
     return [
         "Did %d quick checks, %d semi-rigorous bounding tries," % (counts.quick_tries,
                                                                    counts.tries),

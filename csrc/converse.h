@@ -30,7 +30,7 @@ typedef struct {             /* the statistics of the report; names from the the
     long quick_tries, tries, Rtries;
     long cuts, proved, symmetric, undecided;          /* nodes of the tree by kind */
     long HermSuccess, LLSuccess;                      /* proved by the trace, by the eigenvalue */
-    long ll_used[3];         /* which criterion gave the last bound of each proved prism */
+    long ll_used[3];         /* which criterion gave each bound of the tries */
     long reasons[6];         /* tries that ended without a proof, by reason */
     long most_cuts;          /* depth of the deepest proved prism */
     long max_steps;          /* longest orbit of the double-precision tries */

@@ -30,7 +30,7 @@
 enum { MAX_DP = 100000, MAX_DEPTH = 100000 };
 enum { MOST = 300 };                    /* no number of a problem is beyond 10^MOST */
 enum { AXES = 5, V0 = 0, V1 = 1, FINEST = 61 };         /* of a cell; cuts that its index can hold */
-enum { PI_SHORT = 5, B_PLACES = 12 };   /* see to_radians; B as it is reported */
+enum { PI_SHORT = 5, B_PLACES = 12 };   /* see region.c; B as it is reported */
 
 static const cv_cell whole = { { 0, 0, 0, 0, 0 }, { 0, 0, 0, 0, 0 }, 0 };
 
@@ -231,6 +231,8 @@ static void decide(cv_search *s)
     if (v.no_tori) {
         s->counts.tries++;
         try_prism(s->quick, b, &v);
+        for (int j = 0; j < 3; j++)
+            s->counts.ll_used[j] += v.ll_used[j];
         if (v.nsteps > s->counts.max_steps)
             s->counts.max_steps = v.nsteps;
     }
@@ -245,7 +247,6 @@ static void decide(cv_search *s)
             s->counts.HermSuccess++;
         else
             s->counts.LLSuccess++;
-        s->counts.ll_used[v.ll_used]++;
     }
     conclude(s, &v, apm_cmp(b->half[4], b->half[3]) > 0 ? V1 : V0);     /* the wider; ties to v0 */
 }
@@ -461,37 +462,6 @@ void cv_search_free(cv_search *s)
     free(s);
 }
 
-/* The angles of the root, from units of pi to radians: an enclosure of the region meant, with pi
-   cut off after dp places, PI_SHORT places before the errors of sines begin.  So the centres of
-   prisms lie a little below the multiples of pi they stand for, by more than the errors of their
-   sines, and what depends on the sign of such a sine (the column rotor) is no accident.  The pi
-   of 1989 was short, too. */
-static void to_radians(cv_search *s, long dp)
-{
-    apm_t pi, ulp;
-
-    apm_init(pi);
-    apm_init(ulp);
-    apm_pi(pi, dp);
-    apm_set_si(ulp, 1, -dp);
-    for (int j = 3; j < 5; j++) {
-        apm_abs(s->t[0], s->root.centre[j]);            /* how far |centre pi| may be off */
-        apm_mul(s->t[0], s->t[0], ulp);
-        apm_mul(s->root.centre[j], s->root.centre[j], pi);
-        apm_add(pi, pi, ulp);
-        apm_mul(s->root.half[j], s->root.half[j], pi);
-        apm_sub(pi, pi, ulp);
-        apm_add(s->root.half[j], s->root.half[j], s->t[0]);
-        apm_round(s->t[1], s->root.centre[j], dp, APM_TRUNC);
-        if (apm_cmp(s->t[1], s->root.centre[j]) != 0)
-            apm_add(s->root.half[j], s->root.half[j], ulp);
-        apm_swap(s->t[1], s->root.centre[j]);
-        apm_round(s->root.half[j], s->root.half[j], dp, APM_UP);
-    }
-    apm_clear(pi);
-    apm_clear(ulp);
-}
-
 /* The problem as it is given, and the starting point. */
 static int read_problem(cv_search *s, const char *const region[5], const char *const half[5],
                         const char *const xstar[2])
@@ -544,9 +514,8 @@ static int prepare_loewner(cv_search *s)
     s->sharp = loewner_new(&s->root, s->together, s->quick);
     if (s->sharp == NULL)
         return CV_ENOMEM;
-    if (!isfinite(loewner_largest(s->sharp)))
+    if (apm_set_d(s->t[0], loewner_largest(s->sharp)) != APM_OK)
         return CV_EARITHMETIC;
-    apm_set_d(s->t[0], loewner_largest(s->sharp));
     apm_round(s->constants[C_B], s->t[0], B_PLACES, APM_UP);
     for (int j = 0; j < 3; j++)
         abc[j] = apm_get_d(s->root.centre[j]) + (s->together ? apm_get_d(s->root.half[j]) : 0.0);
@@ -572,13 +541,19 @@ static int prepare_thesis(cv_search *s)
     status = Rprepare_trial(s->exact, &s->root, herman_start, NULL);
     if (status != CV_OK)
         return status;
-    Runit_constants(s->exact, s->constants);
+    status = Runit_constants(s->exact, s->constants);
+    if (status != CV_OK)
+        return status;
     return prepare_trial(s->quick, &s->root, herman_start, s->constants);
 }
 
 static int prepare(cv_search *s)
 {
-    to_radians(s, s->as_printed ? s->dp : s->dp > PI_SHORT ? s->dp - PI_SHORT : 1);
+    const long pi_dp = s->as_printed ? s->dp : s->dp > PI_SHORT ? s->dp - PI_SHORT : 1;
+
+    apm_pi(s->t[0], pi_dp);
+    for (int j = 3; j < 5; j++)
+        to_radians(s->root.centre[j], s->root.half[j], s->t[0], pi_dp);
     s->exact = Runit_new(s->dp, s->as_printed);
     s->quick = unit_new(s->dp, s->as_printed);
     if (s->exact == NULL || s->quick == NULL)

@@ -47,6 +47,7 @@ def test_as_printed_counts(root):
     assert (c.cuts, c.proved, c.symmetric, c.undecided) == (166, 156, 11, 0)
     assert (c.most_cuts, c.max_steps, c.max_NTsteps) == (13, 5, 4)
     assert (c.HermSuccess, c.LLSuccess) == (0, 156)
+    assert c.ll_used == (522, 0, 0)     # where it has 99.4, 0.0 and 0.6 percent
     assert not proof.no_tori            # a reconstruction is not a proof
 
 
@@ -60,6 +61,13 @@ def test_as_printed_table(root, name, thesis):
     assert abs(c.max_NTsteps - longest) <= 1
     assert abs(c.most_cuts - deepest) <= 1
     assert abs(c.proved - prisms) <= 0.08 * prisms
+
+
+def test_statistics_count_the_bounds_of_tries_that_fail(root):
+    """A prism that falls to the eigenvalue never had its last bound from the trace."""
+    c = converse.prove(converse.read_input(root / "inputs" / "trig272.in"), as_printed=True).counts
+    assert c.HermSuccess == 0
+    assert c.ll_used == (5562, 0, 82)
 
 
 def second_variation_fails(a, b, c, x0, x1, reach=40):

@@ -154,11 +154,13 @@ int apm_set_str(apm_t r, const char *text)
     return APM_OK;
 }
 
-void apm_set_d(apm_t r, double x)
+int apm_set_d(apm_t r, double x)
 {
     int e;
     const double m = ldexp(frexp(x, &e), 53);           /* an integer */
 
+    if (!isfinite(x))
+        return APM_ERANGE;
     e -= 53;
     mpz_set_d(r->mant, m);
     r->exp = 0;
@@ -177,6 +179,7 @@ void apm_set_d(apm_t r, double x)
         r->exp = -(long)(k - strip);
         mpz_clear(p);
     }
+    return APM_OK;
 }
 
 double apm_get_d(const apm_t x)
