@@ -7,7 +7,7 @@ import os
 import sys
 from dataclasses import replace
 
-from . import ConverseError, InputError, __version__, files, picture, prove, read_input
+from . import ConverseError, InputError, __version__, figure, files, picture, prove, read_input
 from .proof import LIMIT, check_backup
 from .report import header, verdict
 
@@ -161,7 +161,7 @@ def run(options):
         if graphics in (options.input, options.backup, options.restore):
             raise ConverseError("the figure would overwrite '%s'; name another file" % graphics)
         files.check_writable(graphics)
-        if graphics.endswith(picture.FORMATS):
+        if figure.format_of(graphics) != "ps":
             picture.check()
     if options.backup is not None:
         check_backup(options.backup)

@@ -60,6 +60,14 @@ class Proof:
         return self.all_decided and not self.as_printed
 
     @property
+    def conclusion(self):
+        if not self.all_decided:
+            return "undecided"
+        if self.as_printed:
+            return "as printed"
+        return "theorem" if self.problem.full_torus else "region"
+
+    @property
     def arithmetic(self):
         return "%d decimal places" % self.digits if self.method == "thesis" else "double precision"
 
@@ -72,9 +80,17 @@ class Proof:
         from .report import report
         return report(self)
 
-    def figure(self, path):
+    def figure(self, target=None, *, ax=None, format=None):
         from .figure import figure
-        figure(self, path)
+        return figure(self, target, ax, format)
+
+    def _repr_svg_(self):
+        from .figure import svg
+        return svg(self)
+
+    def _repr_html_(self):
+        from .figure import html
+        return html(self)
 
     def save(self, path):
         """Writes the proof file, compressed when the name ends in .gz; returns its SHA-256 (that
