@@ -233,7 +233,7 @@ TITLES = {
     "plain": {}, "as printed": {"as_printed": True},
     "part": {"v": ("0.5", "1", "0.25", "1"), "as_printed": True, "sha256": SHA},
     "long": {"a": LONG, "sha256": SHA},
-    "strange version": {"version": "1(\\2", "sha256": SHA},
+    "strange version": {"version": "1(\\2" + "0" * 120, "sha256": SHA},
     "narrow": {"v": ("1.2345678901234567", "-0.3333", "1e-15", "1e-5")},
     "flat": {"v": ("1", "0.5", "1", "0")},
 }
