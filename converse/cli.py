@@ -9,7 +9,7 @@ import sys
 import warnings
 from dataclasses import replace
 
-from . import files, picture
+from . import figure, files, picture
 from .files import ConverseError
 from .problem import InputError, read_input
 from .report import header, verdict
@@ -191,7 +191,7 @@ def _check_graphics(options):
     if any(other is not None and files.same(path, other) for other in others):
         raise ConverseError("the figure would overwrite '%s'; name another file" % path)
     files.check_writable(path)
-    if path.endswith(picture.FORMATS):
+    if figure.format_of(path) != "ps":
         picture.check()
 
 

@@ -3,10 +3,11 @@
 import gzip
 import hashlib
 import os
+import tempfile
 import zlib
 from dataclasses import asdict, dataclass, field, fields
 from functools import cached_property
-from typing import Dict, Optional, Tuple, Union
+from typing import TYPE_CHECKING, Dict, Optional, Tuple, Union
 
 from . import files, tree
 from .core import CONSTANTS, Counts
@@ -14,6 +15,9 @@ from .files import ConverseError
 from .problem import NAMES, Problem, decimal_text, parse_number
 from .settings import AS_PRINTED, REGION, THEOREM, UNDECIDED, Settings
 from .version import __version__
+
+if TYPE_CHECKING:
+    from . import check
 
 FIRST_LINE = "converse proof 2"
 KINDS = {False: "sound", True: "as printed, not a proof"}       # by as_printed
@@ -87,9 +91,31 @@ class Proof:
         from .report import report
         return report(self)
 
-    def figure(self, path):
+    def figure(self, target=None, *, ax=None, format: Optional[str] = None):
+        """Draws the prisms: see figure.figure."""
         from .figure import figure
-        figure(self, path)
+        return figure(self, target, ax, format)
+
+    def verify(self, jobs: int = 1) -> "check.Result":
+        """Verifies the proof anew by the code of converse-check, which believes nothing of it and
+        shares nothing with the program that found it; jobs: processes.
+
+        The Result is true if the theorem is verified; its text is the checker's report.
+        check.Rejected, check.NotConfirmed, check.Unusable: it is not, and why.
+        """
+        from . import check
+        with tempfile.TemporaryDirectory() as directory:
+            path = os.path.join(directory, "proof")
+            self.save(path)
+            return check.verify(path, jobs)
+
+    def _repr_svg_(self):
+        from .figure import svg
+        return svg(self)
+
+    def _repr_html_(self):
+        from .figure import html
+        return html(self)
 
     def save(self, path: Union[str, "os.PathLike[str]"]) -> str:
         """Writes the proof file, compressed when the name ends in .gz; returns its SHA-256 (that

@@ -11,7 +11,7 @@ from fractions import Fraction
 
 import pytest
 
-from converse import ConverseError, Counts, Problem, Proof, Settings, core, files, growth, prove, read_input
+from converse import ConverseError, Counts, Problem, Proof, Settings, check, core, files, growth, prove, read_input
 from converse.tree import leaves
 from converse.version import __version__
 
@@ -443,3 +443,14 @@ def test_the_work_left_is_estimated():
     twice.add(history)
     twice.add(history)
     assert twice.expected([cell(1, 0)]) == history.expected([cell(1, 0)])
+
+
+def test_verify(proof, problem, made_up):
+    """The independent checker, from Python; what is not proved it does not verify."""
+    result = proof.verify(jobs=2)
+    assert result and "no invariant Lagrangian graph" in result.text
+    assert not prove(replace(problem, v0=("0.5", "1")), depth=40).verify()
+    for bad in (prove(problem, depth=3), prove(problem, as_printed=True),
+                replace(proof, tree=proof.tree.replace("S", "P"))):
+        with pytest.raises(check.Rejected):
+            bad.verify()
