@@ -318,10 +318,10 @@ def draw_wall(figure, rows):
     for axes, column, what in ((upper, 2, "prisms proved"), (lower, 3, "deepest cut")):
         for name, marker, label in (("thesis", "s", "the thesis's method, 20 digits"),
                                     ("loewner", "o", "method loewner")):
-            points = [(float(row[1]), row[column], row[4]) for row in rows if row[0] == name]
-            axes.plot([x for x, _, _ in points], [y for _, y, _ in points], marker + "-",
+            good, bad = ([(float(row[1]), row[column]) for row in rows
+                          if row[0] == name and row[4] == word] for word in ("yes", "no"))
+            axes.plot([x for x, _ in good], [y for _, y in good], marker + "-",
                       color=COLOURS[name], label=label)
-            bad = [(x, y) for x, y, good in points if good != "yes"]
             axes.plot([x for x, _ in bad], [y for _, y in bad], marker, color=COLOURS[name],
                       markerfacecolor="white")
         axes.set_ylabel(what)
@@ -330,7 +330,8 @@ def draw_wall(figure, rows):
               xlabel=r"$\varepsilon$, a single value (a = b = c/2 = 11.21436 $\varepsilon$)")
     upper.legend(loc="upper center", bbox_to_anchor=(0.55, 1))
     return "on all cores" + (
-        "; open: not proved within %g seconds, with the prisms proved until then" % WALL_SECONDS
+        "; open: given up, or not finished in %g seconds; the prisms proved until then"
+        % WALL_SECONDS
         if _pick(rows, 4, "no") else "")
 
 
