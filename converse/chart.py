@@ -14,11 +14,12 @@ import random
 import sys
 from fractions import Fraction
 
-from . import files, kernels, picture
+import converse
+
+from . import files, picture
 from .cli import Parser, ended
 from .files import ConverseError
 from .problem import Problem
-from .run import prove
 from .version import __version__
 
 SCALE = Fraction("11.21436")            # a = SCALE epsilon
@@ -79,7 +80,7 @@ def timed(problem, **options):
     """A proof and its seconds: the least of a few runs, if they are short."""
     proofs = []
     while len(proofs) < 5 and sum(proof.seconds for proof in proofs) < 1:
-        proofs.append(prove(problem, **options))
+        proofs.append(converse.prove(problem, **options))
     return proofs[-1], min(proof.seconds for proof in proofs)
 
 
@@ -108,8 +109,8 @@ def _bound_row(name, epsilon, problem, **options):
 def digits(quick):
     problem = _problem(Fraction("0.3085"), Fraction("0.00125"))
     for places in DIGITS:
-        proofs, before = zip(*((prove(problem, digits=places, jobs=1),
-                                prove(problem, digits=places, jobs=1, depth=0))
+        proofs, before = zip(*((converse.prove(problem, digits=places, jobs=1),
+                                converse.prove(problem, digits=places, jobs=1, depth=0))
                                for _ in range(3 if quick else 12)))
         yield (places, min(proof.seconds for proof in proofs),
                min(proof.seconds for proof in before), proofs[0].counts.proved,
@@ -156,9 +157,9 @@ def width(quick):
             values = [*prism[0], *itertools.chain(*prism[1])]
             repeat = (2000 if quick else 20000) if options else (200 if quick else 2000)
             try:
-                ns = min(float(kernels.call("image_ns", values + [repeat], 1, places, **options)[0])
-                         for _ in range(3))
-                prism = kernels.image(prism, places, **options)
+                ns = min(float(converse.kernels.call("image_ns", values + [repeat], 1, places,
+                                                     **options)[0]) for _ in range(3))
+                prism = converse.kernels.image(prism, places, **options)
             except ArithmeticError:         # a matrix could not be inverted
                 break
             halves = [sum(map(abs, row)) for row in prism[1][5:]]
@@ -173,7 +174,7 @@ def taylor_width(extents):
     for n in POINTS:
         values = [*p, *v, *dp, *dv, *XSTAR, 0, n, 20000]
         try:
-            results = [kernels.call("loewner_step", values, 3, 17, arithmetic="double")
+            results = [converse.kernels.call("loewner_step", values, 3, 17, arithmetic="double")
                        for _ in range(3)]
         except ValueError:
             return
@@ -186,7 +187,8 @@ def wall(quick):
         for epsilon in values:
             if quick and float(epsilon) < QUICK[method]:
                 break
-            proof = prove(on_line(epsilon, together=method == "loewner"), digits=20, method=method,
+            proof = converse.prove(on_line(epsilon, together=method == "loewner"), digits=20,
+                                   method=method,
                           time_limit=WALL_SECONDS)
             counts = proof.counts
             yield method, epsilon, counts.proved, counts.most_cuts, _yes(proof.no_tori)

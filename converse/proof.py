@@ -182,14 +182,17 @@ class Proof:
             for item in fields(Counts):
                 numbers = tuple(int(word) for word in values[item.name].split())
                 counts[item.name] = numbers if isinstance(item.default, tuple) else numbers[0]
-            x0, x1 = values["xstar"].split() if "xstar" in values else (None, None)
+            xstar = None
+            if "xstar" in values:
+                x0, x1 = xstar = tuple(values["xstar"].split())
+                parse_number(x0), parse_number(x1)
             nodes = "".join(lines[start + 1:-3])
             settings = Settings(values["method"], int(values["depth"]), int(values["digits"]),
                                 values["stubborn"] == "yes",
                                 {kind: printed for printed, kind in KINDS.items()}[values["kind"]])
             proof = cls(
                 Problem.around(centre, half, comments, values["together"] == "yes"),
-                settings, nodes, Counts(**counts), x0 and (x0, x1),
+                settings, nodes, Counts(**counts), xstar,
                 {name: values[name] for name in CONSTANTS[settings.method] if name in values},
                 float(values.get("seconds", 0)), values["program"].split()[1],
                 tuple(map(int, values["pending"].split())), values["at once"] == "yes",

@@ -106,7 +106,7 @@ def test_interrupted(quick, tmp_path, monkeypatch, capsys):
 
     monkeypatch.setitem(chart.CHARTS, "wall", (*chart.CHARTS["wall"][:1], interrupted,
                                                chart.CHARTS["wall"][2]))
-    assert chart.main([str(tmp_path)]) == cli.INTERRUPTED
+    assert chart.main([str(tmp_path)]) == 130
     one_line(capsys)
     assert (tmp_path / "chart-width.svg").exists() and not (tmp_path / "chart-wall.svg").exists()
 

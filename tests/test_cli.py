@@ -111,7 +111,7 @@ def test_figure(command, sample, output, tmp_path):
     assert (status, timeless(out), err) == (0, output, "")
     assert path.read_text("ascii").startswith("%!PS-Adobe")
     assert command("-d3", "-g%s" % path, sample)[0] == 1
-    assert "undecided (1)" in path.read_text("ascii")
+    assert r"crossed: undecided \(1\)" in path.read_text("ascii")
 
 
 def test_backup_and_restore(command, sample, output, tmp_path):
