@@ -188,8 +188,7 @@ def wall(quick):
             if quick and float(epsilon) < QUICK[method]:
                 break
             proof = converse.prove(on_line(epsilon, together=method == "loewner"), digits=20,
-                                   method=method,
-                          time_limit=WALL_SECONDS)
+                                   method=method, time_limit=WALL_SECONDS)
             counts = proof.counts
             yield method, epsilon, counts.proved, counts.most_cuts, _yes(proof.no_tori)
             if not proof.no_tori:

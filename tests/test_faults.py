@@ -200,3 +200,30 @@ def test_bar_on_a_terminal_only(start, command, sample):
     assert process.returncode == 0 and b"I find no invariant tori" in out
     assert b"%" in shown and b"prisms, cut" in shown
     assert b"%|" not in out and b"prisms, cut" not in out
+
+
+def test_reading_from_a_terminal_says_so(start):
+    """Whoever types the command alone is told what it waits for."""
+    master, slave = pty.openpty()
+    with start(stdin=slave) as process:
+        os.close(slave)
+        said = process.stderr.readline().decode()
+        os.write(master, b"0.32 0\n0.32 0\n0.64 0\n1 1\n1 1\n\x04")
+        out = process.communicate(timeout=60)[0].decode()
+        os.close(master)
+    assert said == "converse: reading the problem from standard input; end it with Ctrl-D\n"
+    assert process.returncode == 0 and "I find no invariant tori" in out
+
+
+@pytest.mark.parametrize("options", [["-p", "100000"], ["--method", "loewner", "-p", "100000"],
+                                     ["-p", "100000", "--time-limit", "0.5"]])
+def test_long_arithmetic_obeys(start, sample, options):
+    """Ctrl-C and the time limit also count while the search is set up, and within a prism."""
+    began = time.monotonic()
+    with start(*options, sample) as process:
+        if "--time-limit" not in options:
+            time.sleep(1.0)
+            process.send_signal(signal.SIGINT)
+        out, err = process.communicate(timeout=60)
+    assert process.returncode == (1 if "--time-limit" in options else
+                                  130 if err else 0) and time.monotonic() - began < 20
