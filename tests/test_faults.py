@@ -225,5 +225,6 @@ def test_long_arithmetic_obeys(start, sample, options):
             time.sleep(1.0)
             process.send_signal(signal.SIGINT)
         out, err = process.communicate(timeout=60)
-    assert process.returncode == (1 if "--time-limit" in options else
-                                  130 if err else 0) and time.monotonic() - began < 20
+    assert time.monotonic() - began < 20
+    assert process.returncode == (1 if "--time-limit" in options else 130 if err else 0)
+    assert process.returncode or "loewner" in options       # which may be done before
