@@ -907,7 +907,9 @@ class State:
 
 # ---- the whole file
 
-_worker = []                            # in each process: a Claim and its Criterion
+_worker = []                            # in each process: its Criterion
+SIGNALS = [getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP")
+           if hasattr(signal, name)]
 
 
 def cost(cell):
@@ -918,25 +920,38 @@ def cost(cell):
 
 def check_chunk(chunk):
     """Checks leaves in order: (how many are confirmed, their cost and pieces, what then fails)."""
-    claim, criterion = _worker
+    criterion, = _worker
     spent = pieces = 0
     for n, (ordinal, cell) in enumerate(chunk):
         why, tried = criterion.excluded(cell)
         if why:
-            return n, spent, pieces, (
-                "%s is not excluded: %s; the claim is false or its proof beyond the limits of this "
-                "checker" % (leaf_text(claim, "P", ordinal, cell), why))
+            return n, spent, pieces, (ordinal, cell, why)
         spent += cost(cell)
         pieces += tried
     return len(chunk), spent, pieces, None
 
 
-def begin_apart(claim, criterion, stop):
+@contextlib.contextmanager
+def undisturbed():
+    """Signals wait, also in a process that is begun meanwhile."""
+    if not hasattr(signal, "pthread_sigmask"):
+        yield
+        return
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, SIGNALS)
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
+def begin_apart(criterion, stop):
     """Starts a worker process.  Signals are for the parent to notice; a worker ends when its parent
     says so, or has died."""
     for number in SIGNALS:
         signal.signal(number, signal.SIG_IGN)
-    _worker[:] = claim, criterion
+    if hasattr(signal, "pthread_sigmask"):
+        signal.pthread_sigmask(signal.SIG_UNBLOCK, SIGNALS)
+    _worker[:] = [criterion]
     threading.Thread(target=end_with_parent, args=(stop,), daemon=True).start()
 
 
@@ -946,21 +961,22 @@ def end_with_parent(stop):
     os._exit(1)
 
 
-def in_order(chunks, jobs, claim, criterion):
+def in_order(chunks, jobs, criterion):
     """Yields the results of the chunks in their order, few of them being in memory at a time."""
     if jobs == 1:
-        _worker[:] = claim, criterion
+        _worker[:] = [criterion]
         yield from map(check_chunk, chunks)
         return
     import concurrent.futures.process       # where there are no processes, one job still works
     import multiprocessing
     stop, stopper = multiprocessing.Pipe(duplex=False)
     pool = concurrent.futures.ProcessPoolExecutor(jobs, initializer=begin_apart,
-                                                  initargs=(claim, criterion, stop))
+                                                  initargs=(criterion, stop))
     waiting, over = collections.deque(), False
     try:
         for chunk in chunks:
-            waiting.append(pool.submit(check_chunk, chunk))
+            with undisturbed():
+                waiting.append(pool.submit(check_chunk, chunk))
             if len(waiting) > 4 * jobs:
                 yield waiting.popleft().result()
         while waiting:
@@ -1022,12 +1038,15 @@ def verify(path, jobs=1, sample=None, state=None, bar=False):
     chunks = iter(lambda: list(itertools.islice(queue, CHUNK)), [])
     try:
         with Bar(work() if bar else (), len(chosen)) as progress, \
-                contextlib.closing(in_order(chunks, jobs, claim, criterion)) as results:
+                contextlib.closing(in_order(chunks, jobs, criterion)) as results:
             for n, spent, pieces, failure in results:
                 done.advance(n, pieces)
                 progress.advance(n, spent)
                 if failure:
-                    raise NotConfirmed(failure)
+                    *leaf, why = failure
+                    raise NotConfirmed(
+                        "%s is not excluded: %s; the claim is false or its proof beyond the limits "
+                        "of this checker" % (leaf_text(claim, "P", *leaf), why))
     finally:
         done.save()
     return report(claim, criterion, done, earlier, sample is not None)
@@ -1156,10 +1175,6 @@ def report(claim, criterion, done, earlier, sampled):
 
 # ---- the command
 
-SIGNALS = [getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP")
-           if hasattr(signal, name)]
-
-
 def interrupt(number, frame):
     """The first signal ends the check; the end itself is quick and must not be interrupted."""
     for heard in SIGNALS:
@@ -1232,17 +1247,18 @@ def command(argv, options):
         parser().parse_args(argv, options)
         result = verify(options.file, min(options.jobs, 61), options.sample, options.state,
                         not options.quiet)
-        if result.status != VERIFIED or not options.quiet:
-            print(result.text, flush=True)
-        return result.status
+        try:
+            if result.status != VERIFIED or not options.quiet:
+                print(result.text, flush=True)
+            return result.status
+        except OSError as error:
+            with contextlib.suppress(OSError):  # the interpreter must not try again when it ends
+                os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+            raise Unusable("the output cannot be written (%s)" % reason(error)) from None
     except SystemExit as end:                   # of --help and --version
         return end.code
     except Failure as error:
         status, message = error.status, error.word + str(error)
-    except OSError as error:
-        status, message = UNUSABLE, "the output cannot be written (%s)" % reason(error)
-        with contextlib.suppress(OSError):      # the interpreter must not try again when it ends
-            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
     except Exception as error:                  # whatever went wrong must not look like success
         status, message = UNUSABLE, "the checker failed (%s: %s)" % (type(error).__name__, error)
     complain((options.file and options.file + ": ") + message)

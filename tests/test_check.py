@@ -6,6 +6,7 @@ import gzip
 import hashlib
 import itertools
 import math
+import multiprocessing
 import os
 import random
 import re
@@ -722,6 +723,69 @@ def test_streams_that_are_closed_or_full(texts, tmp_path, stream):
         done.returncode in (0, 2) if stream == "| true" else done.returncode == 2
 
 
+# ---- docs/format.md
+
+def test_the_example_of_the_format(root, run):
+    """A second reader, written from the page alone, finds in its example what the page says; the
+    checker verifies it."""
+    page = (root / "docs" / "format.md").read_text(encoding="utf-8")
+    example = page[page.rindex("    converse proof 2\n"):].split("\n\n")[0]
+    data = "".join(line[4:] + "\n" for line in example.split("\n")).encode()
+    body, end = data[:data.rindex(b"checksum: ")], data[data.rindex(b"checksum: "):]
+    assert end == b"checksum: sha256 %s\nend\n" % hashlib.sha256(body).hexdigest().encode()
+    head, tree = body.decode().split("\ntree:\n")
+    fields = dict(line.split(": ", 1) for line in head.split("\n")[1:])
+    tree = tree.replace("\n", "")
+    centre, half = zip(*([Fraction(x) for x in fields[name].split()] for name in
+                         ("v0", "v1", "a", "b", "c")))
+    assert fields["together"] == fields["at once"] == "yes"
+
+    def walk(at, box):
+        """The leaves of the subtree that begins there, and where it ends."""
+        if tree[at] not in "012":
+            return [(tree[at], box)], at + 1
+        axis, found, at = int(tree[at]), [], at + 1
+        i, k = box[axis]
+        for side in (0, 1):
+            more, at = walk(at, [*box[:axis], (2 * i + side, k + 1), *box[axis + 1:]])
+            found += more
+        return found, at
+
+    found, end = walk(0, [(0, 0)] * 3)
+    assert end == len(tree)
+    rows = []
+    for kind, box in found:
+        ends = [[c - h + 2 * h * (i + upper) / 2 ** k for upper in (0, 1)] for (i, k), c, h in
+                zip(box, (*centre[:2], Fraction(0)), (*half[:2], Fraction(1)))]
+        rows.append("| %s | %s to %s | %s to %s | %s to %s |\n" % (kind, *sum(ends, [])))
+    assert "|---|---|---|---|\n" + "".join(rows) + "\n" in page
+    for name, kind in (("proved", "P"), ("symmetric", "S"), ("undecided", "U")):
+        assert int(fields[name]) == tree.count(kind)
+    assert int(fields["cuts"]) == len(found) - 1
+    assert int(fields["most_cuts"]) == max(sum(k for _, k in box) for kind, box in found)
+    status, out, _ = run(data)
+    assert status == 0 and hashlib.sha256(data).hexdigest() in out
+    for k, name in enumerate("abc", 2):
+        low, high = (check.decimal_text(centre[k] + sign * half[k]) for sign in (-1, 1))
+        assert "\n%s <= %s <= %s\n" % (low, name, high) in out
+
+
+def test_the_format_names_what_the_checker_knows(root, texts):
+    """Each field, each limit, each status; and nothing that is in no file."""
+    page = (root / "docs" / "format.md").read_text(encoding="utf-8")
+    header = page[page.index("## The header"):page.index("## The tree")]
+    names = set(re.findall("`([^`\n]+)`", header)) - {"sound", "yes", "no",
+                                                      "as printed, not a proof"}
+    assert names == check.KNOWN
+    for value in (check.MAX_CHARACTERS, check.MAX_CUTS, check.MAX_BITS, check.MAX_POINTS,
+                  check.MAX_PIECES, check.MAX_HALVINGS):
+        assert re.search("\\b{:,}\\b".format(value), page[page.index("limits: "):])
+    assert 1 << 28 == check.MAX_BYTES and 1 << 24 == check.MAX_LINE and 10 ** 300 == check.MAX_SIZE
+    for status in range(6):
+        assert "\n| %d | " % status in page
+    assert check.STATE.partition("\n")[0] in page and check.STATE_SECONDS == 10
+
+
 # ---- going on after an interruption
 
 @pytest.fixture(scope="module")
@@ -834,19 +898,20 @@ def test_states_that_are_refused(deep, texts, run, tmp_path):
     assert seal(good) == good
     more = re.sub("confirmed: .*", "confirmed: 999999", good)
     other = re.sub("checker: sha256 .{8}", "checker: sha256 01234567", good)
-    cases = [(good, texts["trig278"], "another certificate"), (seal(other), deep, "another checker"),
-             (more, deep, "damaged"), (seal(more), deep, "damaged"), (other, deep, "damaged"),
+    cases = [(good, texts["trig278"], "another certificate"),
+             (seal(other), deep, "another checker"), (other, deep, "damaged"),
+             (more, deep, "damaged"), (seal(more), deep, "damaged"),
              (seal(re.sub("confirmed: .*", "confirmed: -1", good)), deep, "damaged"),
              (seal(re.sub("confirmed: .*", "confirmed: \u0661", good)), deep, "damaged"),
-             (good + "\n", deep, "damaged"), (good * 2, deep, "damaged"), (good + "x" * 9999, deep,
-                                                                           "damaged"),
+             (good + "\n", deep, "damaged"), (good * 2, deep, "damaged"),
+             (good + "x" * 9999, deep, "damaged"),
              ("", deep, "not a state"), ("\0" * 300, deep, "not a state"),
              (deep, deep, "not a state"), ("precious\n", deep, "not a state"),
              (good.replace("state 1", "state 2"), deep, "not a state")]
     cases += [(good[:n], deep, "state") for n in range(0, len(good), 23)]
     cases += [(good.replace("\n", "\r\n"), deep, "damaged")]
     for content, text, why in cases:
-        path.write_text(content, newline="")
+        path.write_bytes(content.encode())
         status, out, err = run(text, "--state", str(path))
         assert (status, out) == (2, "") and why in err and err.count("\n") == 1, content
         assert path.read_bytes() == content.encode()
@@ -876,6 +941,31 @@ def test_a_state_that_cannot_be_written_later(deep, run, tmp_path, monkeypatch):
     assert status == 0 and out.startswith("Verified :") and "No space left" in err
     assert link.is_symlink() and confirmed(path) == 2 * check.CHUNK
     assert set(os.listdir(tmp_path)) == {"state", "link", "some.proof"}
+
+
+@pytest.mark.skipif(multiprocessing.get_start_method() != "fork", reason="the worker is a copy")
+def test_a_worker_that_dies(deep, run, tmp_path, monkeypatch):
+    """It is said, and what was confirmed before stands."""
+    left = tree_of(deep).count("P") - 100
+    last = [cell for at, cell in check.leaves(tree_of(deep)) if tree_of(deep)[at] == "P"][left]
+    excluded = check.Criterion.excluded
+    monkeypatch.setattr(check.Criterion, "excluded", lambda self, cell: (
+        os._exit(3) if cell == last else excluded(self, cell)))
+    status, out, err = run(deep, "--jobs", "2", "--state", str(tmp_path / "state"))
+    assert (status, out) == (2, "") and "a worker process died; nothing was verified" in err
+    assert err.count("\n") == 1 and 0 < confirmed(tmp_path / "state") <= left
+    monkeypatch.undo()
+    status, out, err = run(deep, "--jobs", "2", "--state", str(tmp_path / "state"))
+    assert status == 0 and "earlier run" in out
+
+
+def test_a_failure_of_its_own_is_no_success(deep, run, monkeypatch):
+    for error in (MemoryError(), OSError(11, "Resource temporarily unavailable"), KeyError("x")):
+        def fails(self, cell):
+            raise error
+        monkeypatch.setattr(check.Criterion, "excluded", fails)
+        status, out, err = run(deep)
+        assert (status, out) == (2, "") and "the checker failed" in err and err.count("\n") == 1
 
 
 def test_the_bar(deep, tmp_path, monkeypatch, capsys):
@@ -1447,6 +1537,31 @@ def test_at_once(texts, generator, monkeypatch):
                 assert min(true_bound([float(p + s * h) for p, h, s in zip(centre, half, corner)])
                            for corner in itertools.product((-1, 0, 1), repeat=3)) > 10 / 3
             assert not right or found or factor == "1.001"
+
+
+def test_not_at_once(texts, run, generator):
+    """Said only if B <= 10/3 somewhere in the box, to the last thousandth; between the two
+    answers lies what the checker cannot tell."""
+    text = texts["trig274"]
+    for n in range(3):
+        abc = [exact_decimal(generator, 1) for _ in range(3)]
+        scale = Fraction(round(4e9 / 3 / (true_bound(list(map(float, abc))) - 2)), 10 ** 9)
+        for factor, right in (("1.001", False), ("0.999", True), ("0", True)):
+            centre = [p * scale * Fraction(factor) for p in abc]
+            half = [abs(exact_decimal(generator, "0.1")) for _ in range(3)]
+            for together, box in (("no", (centre, (0, 0, 0))), ("yes", (centre, (0, 0, 0))),
+                                  ("yes", ([p - h for p, h in zip(centre, half)], half))):
+                changed = with_parameters(with_tree(text, "P"), *zip(*box))
+                criterion = check.Criterion(claim_of(with_field(changed, "together", together)))
+                assert criterion.not_at_once() is right and not (right and criterion.at_once())
+            criterion = check.Criterion(claim_of(with_parameters(with_tree(text, "P"),
+                                                                 *zip(centre, half))))
+            if criterion.not_at_once():
+                assert min(true_bound([float(p + s * h) for p, h, s in zip(centre, half, corner)])
+                           for corner in itertools.product((-1, 0, 1), repeat=3)) < 3.36
+    text = with_parameters(with_tree(text, "P"), ("2", "0"), ("2", "0"), ("0", "2"))
+    status, out, err = run(sealed(with_field(text, "at once", "yes")))
+    assert (status, out) == (5, "") and "not confirmed: that larger parameters" in err
 
 
 # ---- the tree

@@ -1,6 +1,7 @@
 """Whatever is read, the answer is a problem, a proof or one clear line."""
 
 import gzip
+import hashlib
 import io
 import itertools
 import math
@@ -91,7 +92,6 @@ def edited(data, edits):
 
 def resealed(data):
     """The same with its checksum put right, so that what lies behind it is read."""
-    import hashlib
     head, found, _ = data.rpartition(b"checksum: sha256 ")
     if not found:
         return data
@@ -149,6 +149,55 @@ def test_any_change_of_a_certificate(proof_bytes, tmp_path_factory, edits, seal,
         one_line(error)
     else:
         assert seal or data == proof_bytes
+
+
+@MANY
+@given(start=st.sampled_from([b"", b"converse proof 2\n", b"\x1f\x8b", b"converse proof "]),
+       data=st.binary(max_size=300), seal=st.booleans())
+@example(b"converse proof 2\n", b"checksum: sha256 ", True)
+@example(b"converse proof 2\n", b"\ntree:\n\n", True)
+@example(b"converse proof 2\n", b"tree:\nP\n", True)
+def test_any_bytes_as_certificate(tmp_path_factory, start, data, seal):
+    path = tmp_path_factory.getbasetemp() / ("any-%d" % os.getpid())
+    data = start + data + b"\nchecksum: sha256 \n" * seal
+    path.write_bytes(resealed(data))
+    with pytest.raises(check.Failure) as caught:
+        check.verify(path)
+    one_line(caught.value)
+
+
+@pytest.fixture(scope="module")
+def kept(proof_bytes, tmp_path_factory):
+    """A claim and a state of it."""
+    path = tmp_path_factory.mktemp("fuzz") / "whole.proof"
+    path.write_bytes(proof_bytes)
+    claim = check.read(path)
+    state = check.State(path.with_suffix(".state"), claim)
+    state.advance(7, 9)
+    state.save()
+    return claim, path.with_suffix(".state").read_bytes()
+
+
+@MANY
+@given(edits=edits, seal=st.booleans())
+@example([("insert", 30, b" ")], True)
+def test_any_change_of_a_state(kept, tmp_path_factory, edits, seal):
+    """A changed state is refused and left as it is, unless it is resealed on purpose."""
+    path = tmp_path_factory.getbasetemp() / ("state-%d" % os.getpid())
+    claim, good = kept
+    data = edited(good, edits)
+    if seal:
+        head, found, _ = data.rpartition(b"checksum: sha256 ")
+        data = head + found + hashlib.sha256(head).hexdigest().encode() + b"\n"
+    path.write_bytes(data)
+    try:
+        found = check.State(path, claim)
+    except check.Unusable as error:
+        one_line(error)
+        assert path.read_bytes() == data != good
+    else:
+        assert seal or (data, found.confirmed, found.pieces) == (good, 7, 9)
+        assert 0 <= found.confirmed <= claim.tree.count("P")
 
 
 # ---- changes that make sense: another claim or tree, with the counts and the checksum it needs
