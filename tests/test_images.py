@@ -344,7 +344,8 @@ def test_needles_of_a_linear_map(tall, dp):
             continue
         tested += 1
         corner = [row[3:] for row in matrix[3:]]
-        after = corner[2:] + [[2 * x - y for x, y in zip(corner[2 + j], corner[j])] for j in range(2)]
+        after = corner[2:] + [[2 * x - y for x, y in zip(corner[2 + j], corner[j])]
+                              for j in range(2)]
         for row in exact_inverse([row[3:] for row in image[1][3:]]):
             assert sum(abs(sum(x * y[k] for x, y in zip(row, after))) for k in range(4)) <= 1
     assert tested > 100
