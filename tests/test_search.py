@@ -1,5 +1,6 @@
 """The search as a whole: what is proved is true, what is not true is not proved."""
 
+import contextlib
 from fractions import Fraction
 from threading import Thread
 
@@ -7,9 +8,10 @@ import mpmath
 import pytest
 
 import converse
-from converse import Problem
+from converse import Problem, kernels
 from converse.tree import leaves
-from truth import TORTURE, beta, decimal, eigenvalues, inverse, mp, rng_for, uniform
+from truth import (TORTURE, beta, decimal, eigenvalues, exact, inverse, mp, rng_for,
+                   uniform)
 
 FULL = (("1", "1"), ("1", "1"))
 
@@ -34,9 +36,42 @@ def proofs(root):
             for name in ("trig278", "trig276", "trig274", "trig272")}
 
 
-def test_the_four_theorems(proofs):
-    for proof in proofs.values():
-        assert proof.no_tori
+@pytest.mark.parametrize("name, prisms, T, B", [
+    ("trig278", 1, "5.7194602845228966301628796", "3.4839109898447162007213635"),
+    ("trig276", 45, "5.7085170209778026181968469", "3.4744668467112573863969635"),
+    ("trig274", 111, "5.6948379415464351032393061", "3.4626616677944338684914634"),
+    ("trig272", 468, "5.6811588621150675882817653", "3.4508564888776103505859632"),
+])
+def test_the_four_theorems(proofs, name, prisms, T, B):
+    """To the last digit: T and B have 25 decimal places whatever the precision."""
+    proof = proofs[name]
+    assert proof.no_tori and proof.counts.undecided == 0
+    assert proof.counts.proved == prisms
+    assert (proof.constants["T"], proof.constants["B"]) == (T, B)
+
+
+@pytest.mark.parametrize("dp", [1, 2, 3, 4, 5, 30])
+def test_the_region_in_radians_holds_the_region(dp):
+    """With few places every margin counts; none is wider than need be."""
+    rng, ulp = rng_for("region%d" % dp), Fraction(1, 10**dp)
+    with mpmath.workdps(60):
+        pi = exact(mpmath.pi)
+    for _ in range(1000 * TORTURE):
+        centre, half = (decimal(uniform(rng, -1, 1, 9) * 10**rng.randrange(-2, 4), 12) *
+                        rng.choice((0, 1, 1)) for _ in range(2))
+        half = abs(half)
+        found, reach = kernels.region(centre, half, dp)
+        assert abs(centre * pi - found) + half * pi <= reach
+        assert reach <= half * pi + (abs(centre) + half + 2) * ulp
+
+
+def test_no_double_too_large_crashes():
+    """Numbers that no double holds: undecided, or an error in words."""
+    for method in ("thesis", "loewner"):
+        for a, b in (("1e320", "0"), ("1e320", "1e319"), ("1e300", "1e320")):
+            with contextlib.suppress(converse.ConverseError):
+                assert not converse.prove(problem((a, b), ("1", "0"), ("1", "0")), depth=0,
+                                          method=method).no_tori
 
 
 def test_as_printed_counts(root):
