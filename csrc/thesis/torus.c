@@ -107,6 +107,8 @@ static void torus_pass(state *s, num_t max, num_t best, const num_t tolerance, i
         num_add(x[8], best, tolerance);
         if (num_cmp(x[9], x[8]) <= 0 || s->cell_depth[top] == TORUS_DEPTH ||
             ++cells > TORUS_CELLS) {
+            if (!num_is_finite(x[9]))
+                s->failed = 1;                          /* NaN, which is no larger than anything */
             num_max(max, x[9]);
             top--;
         } else {
@@ -168,7 +170,7 @@ static void torus_max(state *s, num_t max, int eigenvalue)
 #ifdef NUM_DOUBLE
 
 /* The same for one point of the parameters, as a double computes it: off by roundings, for which
-   the caller makes up. */
+   the caller makes up; NaN if the numbers grew too large. */
 double quick_largest(unit *s, const double p[N_PARMS])
 {
     bdd *const parm[N_PARMS] = { &s->n.a, &s->n.b, &s->n.c };
@@ -177,8 +179,9 @@ double quick_largest(unit *s, const double p[N_PARMS])
         num_set_d(parm[j]->lb, p[j]);
         num_set_d(parm[j]->ub, p[j]);
     }
+    s->failed = 0;
     torus_max(s, s->n.constants[C_B], 1);
-    return num_get_d(s->n.constants[C_B]);
+    return s->failed ? NAN : num_get_d(s->n.constants[C_B]);
 }
 
 #endif
