@@ -12,31 +12,34 @@ static void get_prism(prism *pz, apm_t in[])
     }
 }
 
-static void put(apm_t r, const num_t x)
+static void put(state *s, apm_t r, const num_t x)
 {
 #ifdef NUM_DOUBLE
     if (isfinite(x[0]))
         apm_set_d(r, x[0]);
+    else
+        s->failed = 1;
 #else
+    (void)s;
     apm_set(r, x);
 #endif
 }
 
-static void put_bdd(apm_t r[2], const bdd *x)
+static void put_bdd(state *s, apm_t r[2], const bdd *x)
 {
-    put(r[0], x->lb);
-    put(r[1], x->ub);
+    put(s, r[0], x->lb);
+    put(s, r[1], x->ub);
 }
 
-static void put_prism(apm_t out[], prism *pz)
+static void put_prism(state *s, apm_t out[], prism *pz)
 {
     num_t *const x[MAT_DIM] = { &pz->centre.p[0], &pz->centre.p[1], &pz->centre.p[2],
                                 &pz->centre.u[0], &pz->centre.u[1],
                                 &pz->centre.v[0], &pz->centre.v[1] };
     for (int j = 0; j < MAT_DIM; j++) {
-        put(out[j], *x[j]);
+        put(s, out[j], *x[j]);
         for (int k = 0; k < MAT_DIM; k++)
-            put(out[MAT_DIM + j * MAT_DIM + k], pz->matrix[j][k]);
+            put(s, out[MAT_DIM + j * MAT_DIM + k], pz->matrix[j][k]);
     }
 }
 
@@ -79,15 +82,15 @@ int R(kernel)(state *s, const char *name, int nin, apm_t in[], int nout, apm_t o
     case 0:
         num_set_apm(n->t[0], in[0]);
         num_sincos(s, n->t[1], n->t[2], n->t[0]);
-        put(out[0], n->t[1]);
-        put(out[1], n->t[2]);
+        put(s, out[0], n->t[1]);
+        put(s, out[1], n->t[2]);
         break;
     case 1:
         num_set_apm(n->bx[0].lb, in[0]);
         num_set_apm(n->bx[0].ub, in[1]);
         bd_sincos(s, &n->sin[0], &n->cos[0], &n->bx[0]);
-        put_bdd(out, &n->sin[0]);
-        put_bdd(out + 2, &n->cos[0]);
+        put_bdd(s, out, &n->sin[0]);
+        put_bdd(s, out + 2, &n->cos[0]);
         break;
     case 2:
         for (int j = 0; j < TWO_DF; j++)
@@ -95,20 +98,20 @@ int R(kernel)(state *s, const char *name, int nin, apm_t in[], int nout, apm_t o
                 num_set_apm(pz->matrix[U + j][U + k], in[j * TWO_DF + k]);
         invert_corner(s, pz->matrix);
         for (int j = 0; j < TWO_DF * TWO_DF; j++)
-            put(out[j], n->inverse[j / TWO_DF][j % TWO_DF]);
-        put(out[16], n->inverse_err);
+            put(s, out[j], n->inverse[j / TWO_DF][j % TWO_DF]);
+        put(s, out[16], n->inverse_err);
         break;
     case 3:
         prismatic_image(s, &n->work[1], pz);
-        put_prism(out, &n->work[1]);
+        put_prism(s, out, &n->work[1]);
         break;
     case 4:
-        put_bdd(out, &n->b_trace);
+        put_bdd(s, out, &n->b_trace);
         break;
     case 5:
         bd_Blams(s, &n->minBlam, &n->maxBlam, &n->b_trace);
-        put_bdd(out, &n->minBlam);
-        put_bdd(out + 2, &n->maxBlam);
+        put_bdd(s, out, &n->minBlam);
+        put_bdd(s, out + 2, &n->maxBlam);
         break;
     case 6: {
         bdd *const parm[N_PARMS] = { &n->a, &n->b, &n->c };
@@ -118,8 +121,8 @@ int R(kernel)(state *s, const char *name, int nin, apm_t in[], int nout, apm_t o
         }
         torus_max(s, n->constants[C_T], 0);
         torus_max(s, n->constants[C_B], 1);
-        put(out[0], n->constants[C_T]);
-        put(out[1], n->constants[C_B]);
+        put(s, out[0], n->constants[C_T]);
+        put(s, out[1], n->constants[C_B]);
         break;
     }
     case 7:
@@ -128,8 +131,8 @@ int R(kernel)(state *s, const char *name, int nin, apm_t in[], int nout, apm_t o
         num_set_apm(n->least_lam, in[PRISM_SZ + 1]);
         num_set_apm(n->constants[C_LAM_MIN], in[PRISM_SZ + 2]);
         least_lambda(s, n->slope, n->least_lam, &used);
-        put(out[0], n->slope);
-        put(out[1], n->least_lam);
+        put(s, out[0], n->slope);
+        put(s, out[1], n->least_lam);
         break;
     case 9: {
         const long repeat = (long)apm_get_d(in[PRISM_SZ]);
@@ -151,21 +154,21 @@ int R(kernel)(state *s, const char *name, int nin, apm_t in[], int nout, apm_t o
         } else {
             bound_square(&n->bx[2], &n->bx[0]);
         }
-        put_bdd(out, &n->bx[2]);
+        put_bdd(s, out, &n->bx[2]);
         break;
     case 12:
         for (int j = 0; j < TWO_DF * TWO_DF; j++)
             num_set_apm(n->gauss[j / TWO_DF][j % TWO_DF], in[j]);
         s->inverse_failed = gauss_jordan(s, n->gauss, n->inverse_err, s->precision);
         for (int j = 0; j < TWO_DF * TWO_DF; j++)
-            put(out[j], n->gauss[j / TWO_DF][j % TWO_DF]);
-        put(out[16], n->inverse_err);
+            put(s, out[j], n->gauss[j / TWO_DF][j % TWO_DF]);
+        put(s, out[16], n->inverse_err);
         break;
     default:
         num_set_apm(n->t[5], in[0]);
         uniform_cone(s, n->t[6], n->t[7], n->t[5], (long)apm_get_d(in[1]));
-        put(out[0], n->t[6]);
-        put(out[1], n->t[7]);
+        put(s, out[0], n->t[6]);
+        put(s, out[1], n->t[7]);
     }
     return s->inverse_failed ? CV_ESINGULAR : s->failed ? CV_EARITHMETIC : CV_OK;
 }
