@@ -132,12 +132,12 @@ static void leaf(cv_search *s, char kind)
 }
 
 /* The cell is cut in half across axis, the lower half to come first, or given up if it has been
-   cut too often.  Thesis: refinePrism. */
+   cut too often or, axis < 0, if that would not help.  Thesis: refinePrism. */
 static void cut(cv_search *s, int axis)
 {
     cv_cell *upper = &s->stack[s->pending - 1], *lower = upper + 1;
 
-    if (all_cuts(upper) >= s->depth || upper->cuts[axis] == FINEST) {
+    if (axis < 0 || all_cuts(upper) >= s->depth || upper->cuts[axis] == FINEST) {
         leaf(s, 'U');
         return;
     }
