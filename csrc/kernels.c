@@ -10,7 +10,7 @@
 #include "numbers/sine.h"
 #include "thesis/unit.h"
 
-enum { MAX_DP = 100000, MAX_IN = 64, MAX_OUT = 128 };
+enum { MAX_DP = 100000, MAX_IN = 64, MAX_OUT = 400 };
 
 /* The operations of apm.h and special.h, which stand below num_t.
    pi: -> pi          add, sub, mul: x, y -> r       cmp: x, y -> -1, 0 or 1
@@ -79,28 +79,24 @@ static int apm_kernel(const char *name, long dp, int nin, apm_t in[], int nout, 
     return status == APM_OK ? CV_OK : CV_EARITHMETIC;
 }
 
-/* The routines of sine.h and loewner.h; all take doubles only.
-   double_sincos: x -> sine, cosine          double_sincos_ns: x, repeat -> ns of three
-   The others begin with centres and half-widths of a, b, c, v0, v1, x* and together (0 or 1).
-   loewner_orbit: ..., n -> 2 coordinates, 2 rows of 5 columns, 2 rests, 3 reaches of point n
-   loewner_bound: ..., s, t -> bound, l, index of the first site, number of sites (0: no
-                  witness), the vectors n, for the orbit of s..t
-   loewner_step: ..., n, repeat -> the reaches of both coordinates of point n, nanoseconds per step */
-static int loewner_kernel(const char *name, long dp, int nin, apm_t in[], int nout, apm_t out[])
+/* The routines of sine.h: double_sincos: x -> sine, cosine; double_sincos_ns: x, repeat -> ns of
+   three. */
+static int sine_kernel(const char *name, int nin, apm_t in[], int nout, apm_t out[])
 {
-    enum { BOX = 13, POINT = 17, SITES = 60 };
-    const int sine = strcmp(name, "double_sincos") == 0, orbit = strcmp(name, "loewner_orbit") == 0;
-    const int bound = strcmp(name, "loewner_bound") == 0, time = strcmp(name, "loewner_step") == 0;
-    double x[MAX_IN], y[MAX_OUT] = { 0 }, n[SITES][2];
-    loewner_point p;
-    unit *quick;
-    loewner *w;
-    int good;
+    double t[3] = { 0.0, 1.0, 2.0 }, cosine[3] = { 0.0, 0.0, 0.0 };
 
+    if (strcmp(name, "double_sincos") == 0 && nin == 1 && nout == 2) {
+        double_sincos(&t[0], &cosine[0], apm_nearest_d(in[0]));
+        if (!isfinite(t[0]) || !isfinite(cosine[0]))
+            return CV_EARITHMETIC;
+        apm_set_d(out[0], t[0]);
+        apm_set_d(out[1], cosine[0]);
+        return CV_OK;
+    }
     if (strcmp(name, "double_sincos_ns") == 0 && nin == 2 && nout == 1) {
-        double t[3] = { apm_nearest_d(in[0]), 1.0, 2.0 }, cosine[3] = { 0.0, 0.0, 0.0 };
         const double repeat = apm_nearest_d(in[1]);
         const clock_t begin = clock();
+        t[0] = apm_nearest_d(in[0]);
         for (double j = 0.0; j < repeat && j < 1e9; j++)
             for (int k = 0; k < 3; k++)
                 double_sincos(&t[k], &cosine[k], t[k] + cosine[k]);
@@ -108,51 +104,105 @@ static int loewner_kernel(const char *name, long dp, int nin, apm_t in[], int no
                          : 1e9 * (double)(clock() - begin) / CLOCKS_PER_SEC / fmax(repeat, 1.0))
                == APM_OK ? CV_OK : CV_EARITHMETIC;
     }
-    if (nin != (sine ? 1 : orbit ? BOX + 1 : BOX + 2) || !(sine || orbit || bound || time) ||
-        nout != (sine ? 2 : orbit ? POINT : bound ? 4 + 2 * SITES : 3))
+    return CV_EARGUMENT;
+}
+
+/* The orbit of the root's prism from point n or 0 to point 0 or n. */
+static int follow_to(loewner *w, double n)
+{
+    return loewner_follow(w, n < 0.0 ? (int)n : 0, n > 0.0 ? (int)n : 0);
+}
+
+/* The routines of loewner.h; all take doubles only, and begin with centres and half-widths of a, b,
+   c, v0, v1, x* and together (0 or 1).
+   loewner_cell: ..., index and cuts of five axes -> centres and widths of v0, v1; p, h and loose
+                 of a, b, c; l; B at the corners (together: at two), the lower end of a first
+   loewner_orbit: ..., n -> 2 coordinates, 2 rows of 5 columns, 2 rests, 3 reaches of point n
+   loewner_bound: ..., s, t -> bound, l, index of the first site, number of sites (0: no witness),
+                  how much of the bound roundings are, the vectors n; for the orbit of s..t
+   loewner_sites: ..., s, t -> of each point of that orbit, at most 13, what loewner_orbit tells,
+                  and missed, force, beta, d, fuzz and mu
+   loewner_step: ..., n, repeat -> the reaches of both coordinates of point n, ns per step */
+static int loewner_kernel(const char *name, long dp, int nin, apm_t in[], int nout, apm_t out[])
+{
+    enum { BOX = 13, POINT = 17, SITE = 30, SITES = 60, SHOWN = 13 };
+    enum { CELL, ORBIT, BOUND, ALL, STEP, N_SHAPES };
+    static const struct { const char *name; int nin, nout; } shapes[N_SHAPES] = {
+        { "loewner_cell", BOX + 10, 22 }, { "loewner_orbit", BOX + 1, POINT },
+        { "loewner_bound", BOX + 2, 5 + 2 * SITES }, { "loewner_sites", BOX + 2, SITE * SHOWN },
+        { "loewner_step", BOX + 2, 3 }
+    };
+    double x[MAX_IN], y[MAX_OUT] = { 0 }, n[SITES][2] = { { 0.0, 0.0 } };
+    const double *const more = x + BOX;
+    int which = 0, first = 0, good = 1, without_B;
+    cv_cell cell = { { 0, 0, 0, 0, 0 }, { 0, 0, 0, 0, 0 }, 0 };
+    loewner_cell prism;
+    loewner_point p;
+    unit *quick;
+    loewner *w;
+    clock_t begin;
+    box b;
+
+    while (which < N_SHAPES && strcmp(name, shapes[which].name) != 0)
+        which++;
+    if (which == N_SHAPES || nin != shapes[which].nin || nout != shapes[which].nout)
         return CV_EARGUMENT;
     for (int j = 0; j < nin; j++)
         x[j] = apm_nearest_d(in[j]);
-    if (sine) {
-        double_sincos(&y[0], &y[1], x[0]);
-        good = isfinite(y[0]);
-    } else {
-        box b;
-        for (int j = 0; j < 5; j++) {                   /* borrowed, and only read */
-            *b.centre[j] = *in[j];
-            *b.half[j] = *in[5 + j];
-        }
-        *b.xstar[0] = *in[10];
-        *b.xstar[1] = *in[11];
-        quick = bound ? unit_new(dp, 0) : NULL;         /* only the bound needs B */
-        w = bound && quick == NULL ? NULL : loewner_new(&b, x[12] != 0.0, quick);
-        unit_free(quick);
-        if (w == NULL)
-            return CV_ENOMEM;
-        good = fabs(x[BOX]) < SITES && fabs(x[nin - 1]) < (time ? 1e9 : SITES) &&
-               (bound ? loewner_follow(w, (int)x[BOX], (int)x[BOX + 1], &p)
-                      : loewner_follow(w, x[BOX] < 0 ? (int)x[BOX] : 0, x[BOX] < 0 ? 0 : (int)x[BOX], &p));
-        if (orbit && good) {
-            memcpy(y, &p, sizeof p);
-        } else if (bound && good) {
-            int first = 0;
-            y[3] = loewner_bound(w, &y[0], &y[1], &first, n, SITES);
-            y[2] = first;
-            for (int j = 0; j < (int)y[3]; j++) {
-                y[4 + 2 * j] = n[j][0];
-                y[5 + 2 * j] = n[j][1];
-            }
-        } else if (good) {
-            const clock_t begin = clock();
-            for (int j = 0; j < (int)x[BOX + 1]; j++)
-                loewner_follow(w, x[BOX] < 0 ? (int)x[BOX] : 0, x[BOX] < 0 ? 0 : (int)x[BOX], &p);
-            y[0] = p.reach[0];
-            y[1] = p.reach[1];
-            y[2] = 1e9 * (double)(clock() - begin) / CLOCKS_PER_SEC / fmax(x[BOX + 1], 1.0)
-                   / fmax(fabs(x[BOX]), 1.0);
-        }
-        loewner_free(w);
+    for (int j = 0; j < nin - BOX; j++)
+        good = good && fabs(more[j]) < (which == CELL ? 0x1p60
+                                        : which == STEP && j > 0 ? 1e9 : SITES);
+    if (!good)
+        return CV_EARITHMETIC;
+    for (int j = 0; j < 5; j++) {                       /* borrowed, and only read */
+        *b.centre[j] = *in[j];
+        *b.half[j] = *in[5 + j];
     }
+    *b.xstar[0] = *in[10];
+    *b.xstar[1] = *in[11];
+    without_B = which == ORBIT || which == STEP;
+    quick = without_B ? NULL : unit_new(dp, 0);
+    w = quick == NULL && !without_B ? NULL : loewner_new(&b, x[12] != 0.0, quick);
+    unit_free(quick);
+    if (w == NULL)
+        return CV_ENOMEM;
+    switch (which) {
+    case CELL:
+        for (int j = 0; j < 5; j++) {
+            cell.index[j] = (unsigned long long)fabs(more[j]);
+            cell.cuts[j] = (int)fmin(fabs(more[5 + j]), 100.0);
+        }
+        good = loewner_prism(w, &cell, &prism);
+        memcpy(y, &prism, sizeof prism);
+        break;
+    case ORBIT:
+        good = follow_to(w, more[0]);
+        loewner_look(w, (int)more[0], &p);
+        memcpy(y, &p, POINT * sizeof y[0]);
+        break;
+    case STEP:
+        begin = clock();
+        for (int j = 0; j < (int)more[1]; j++)
+            good = follow_to(w, more[0]);
+        loewner_look(w, (int)more[0], &p);
+        y[0] = p.reach[0];
+        y[1] = p.reach[1];
+        y[2] = 1e9 * (double)(clock() - begin) / CLOCKS_PER_SEC / fmax(more[1], 1.0)
+               / fmax(fabs(more[0]), 1.0);
+        break;
+    default:
+        good = loewner_follow(w, (int)more[0], (int)more[1]);
+        y[3] = good ? loewner_bound(w, &y[0], &y[1], &y[4], &first, n, SITES) : 0;
+        y[2] = first;
+        memcpy(y + 5, n, sizeof n);
+        for (int j = 0; j < SHOWN && which == ALL; j++) {
+            memset(&p, 0, sizeof p);
+            if (more[0] + j <= fmax(more[1], 1.0))
+                loewner_look(w, (int)more[0] + j, &p);
+            memcpy(y + SITE * j, &p, sizeof p);
+        }
+    }
+    loewner_free(w);
     for (int j = 0; j < nout && good; j++) {
         if (apm_set_d(out[j], y[j]) != APM_OK)
             return CV_EARITHMETIC;
@@ -184,6 +234,8 @@ int cv_kernel(const char *name, int as_double, int as_printed, int dp,
                 status = CV_ENUMBER;
         if (status == CV_OK) {
             status = apm_kernel(name, dp, nin, x, nout, x + MAX_IN);
+            if (status == CV_EARGUMENT)
+                status = sine_kernel(name, nin, x, nout, x + MAX_IN);
             if (status == CV_EARGUMENT)
                 status = loewner_kernel(name, dp, nin, x, nout, x + MAX_IN);
             if (status == CV_EARGUMENT && as_double) {

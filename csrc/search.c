@@ -166,10 +166,11 @@ static void halve(cv_search *s, int axis)
     s->pending++;
 }
 
-/* The cell is cut across axis, or given up if it has been cut too often.  Thesis: refinePrism. */
+/* The cell is cut across axis, or given up if it has been cut too often or, axis < 0, if that would
+   not help.  Thesis: refinePrism. */
 static void cut(cv_search *s, int axis)
 {
-    if (!may_cut(s, &s->stack[s->pending - 1], axis)) {
+    if (axis < 0 || !may_cut(s, &s->stack[s->pending - 1], axis)) {
         leaf(s, 'U');
         return;
     }

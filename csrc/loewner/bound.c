@@ -1,10 +1,10 @@
 /* bound.c - the second variation over a whole prism, by multipliers.
 
-   Let x[j] be the orbit of the centre and x[j] + D[j] any other one, and write the map as
-   E[j] = 2x[j] - x[j-1] - x[j+1] - V'(x[j]) = 0.  So for any multipliers mu the sum
-   Q + sum mu[j].E[j] is Q, and with
+   Let x[j] be the orbit of the centre and x[j] + D[j] any true one, on which
+   E[j] = 2x[j] - x[j-1] - x[j+1] - V'(x[j]) = 0.  So for any multipliers mu, zero but at sites both
+   of whose neighbours are in the orbit, the sum Q + sum mu[j].E[j] is Q, and with
 
-       mu[j-1] = gradient of n[j].beta(x[j])n[j] + beta(x[j])mu[j] - mu[j+1]   from the future,     (2)
+       mu[j-1] = gradient of n[j].beta(x[j])n[j] + beta(x[j])mu[j] - mu[j+1]  from the future,  (2)
 
    and likewise from the past, all terms linear in the D[j] cancel, except those in D[0] and D[1],
    which are the prism itself.  What is left of each wave, of weight omega = (n.u)^2 and with
@@ -12,8 +12,9 @@
 
        p (A (cos d - 1) + B (sin d - d)),   |d| <= rho,                                        (3)
 
-   and at most max(0, -pA) rho^2/2 + |pB| rho^3/6.  (2) is an identity in exact arithmetic; in
-   doubles its rest, too, is multiplied by |D[j]| and added. */
+   and at most max(0, -pA) rho^2/2 + |pB| rho^3/6; where the parameter is p + w, w A, which is
+   summed over the orbit before it is bounded, and w (A (cos d - 1) + B sin d).  (2) is an identity
+   in exact arithmetic; in doubles what is left of it is multiplied by |D[j]| and added. */
 #include "prism.h"
 
 /* The multipliers, by (2): zero outside, and from either end up to the sites 0 and 1. */
@@ -39,11 +40,14 @@ static void set_multipliers(loewner *w)
                              + q[j].beta[i + 1] * q[j].mu[1] - q[j - 1].mu[i];
 }
 
-/* The sums with signs are the constant `centre` and the coefficients of the parameters; `mass` is
-   the sum of their terms' absolute values.  At each site less than 16 numbers are added to any sum,
-   each addition rounds by u of the partial sums, and each number by a few u of itself: together by
-   less than `each` = 32 u for every site.  The sines add 2^-49 (1 + |x0| + |x1|).  Where a wave comes
-   with a reach, so does its part of the mass. */
+/* The sums with signs are the constant `centre` and the coefficients `along` of the parameters;
+   their masses are the sums of their terms' absolute values.  At each of N sites at most 5 numbers
+   are added to either, each addition rounds by u of the partial sums, and each number is off by
+   5 u of itself: together by (5 N + 8) u of the mass; `each` is 32 (N + 1) u.  The sines add
+   (4 + far) u of it; 2^-49 (1 + far) is 16 (1 + far) u.  A and B are off by (9 + far) u of
+   omega + |m|: where a wave comes with a reach, so does its part of the mass.  Positive sums are
+   off by (3 N + 25) u of themselves, which `each` covers, too.  (2) leaves at most
+   11 u (1 + sizes)(1 + far) of the weights and 2 u of the neighbours' mu; `left` has 64 and 8. */
 void bound_second_variation(loewner *w)
 {
     double centre = 0.0, mass = 0.0, rest = 0.0, rounding = 0.0, far = 0.0;
@@ -58,7 +62,7 @@ void bound_second_variation(loewner *w)
         const double n0 = q->n[0], n1 = q->n[1], mu0 = q->mu[0], mu1 = q->mu[1];
         const double omega[WAVES] = { n0 * n0, n1 * n1, square(n0 + n1) };
         const double m[WAVES] = { mu0, mu1, mu0 + mu1 };
-        const double weights = omega[0] + omega[1] + omega[2] + fabs(mu0) + fabs(mu1);
+        const double weights = omega[0] + omega[1] + omega[2] + fabs(mu0) + fabs(mu1) + TINY;
 
         centre += 2.0 * (omega[0] + omega[1]);
         mass += 2.0 * (omega[0] + omega[1]);
@@ -71,6 +75,7 @@ void bound_second_variation(loewner *w)
         for (int i = 0; i < WAVES; i++) {
             const double s = q->sine[i], c = q->cosine[i], p = w->p[i], rho = q->reach[i];
             const double h = w->h[i] + w->loose[i], half_square = 0.5 * rho * rho;
+            const double weight = omega[i] + fabs(m[i]) + TINY;
             const double A = m[i] * c - omega[i] * s, B = -omega[i] * c - m[i] * s;
             const double term = (larger(0.0, -p * A) + h * fabs(A)) * half_square
                 + fabs(B) * (size(w, i) * rho * half_square * (1.0 / 3.0) + h * rho);
@@ -78,7 +83,7 @@ void bound_second_variation(loewner *w)
             centre -= omega[i] * p * s;
             mass += omega[i] * fabs(p);
             along[i] += A;
-            along_mass += (omega[i] + fabs(m[i])) * (h + (size(w, i) * rho * (1.0 + rho) + h) * rho);
+            along_mass += weight * (h + (size(w, i) * rho * (1.0 + rho) + h) * rho);
             rest += term;
             if (rho > 0.0) {
                 const double part = term / rho;
@@ -119,5 +124,5 @@ void bound_second_variation(loewner *w)
     }
     rounding += (mass + along_mass) * (each + 0x1p-49 * (1.0 + far));
     w->rounding = rounding * (1.0 + each);
-    w->bound = centre + (rest + w->rounding) * (1.0 + each);
+    w->bound = mass >= 1.0 ? centre + (rest + w->rounding) * (1.0 + each) : HUGE_VAL;
 }

@@ -15,8 +15,11 @@ loewner *loewner_new(const box *root, int together, unit *quick);
 void loewner_free(loewner *w);
 
 /* Is it impossible that a minimizing orbit leads from x* to the cell?  If that is not proved,
-   *axis is where to cut the cell, and *from what its halves should know: fewer points of the
-   orbit than that will hardly do.  Reason CV_REASON_ARITHMETIC: it is the doubles that failed. */
+   *axis is where to cut the cell, or -1 if it is too fine for doubles already, and *from what the
+   halves should know: fewer points of the orbit than that will hardly do.  (So what becomes of a
+   cell depends on itself and on cell->from, what its parent learnt: that decides at which lengths
+   the orbit is tried, not whether a try that succeeds is right.)  Reason CV_REASON_ARITHMETIC: it
+   is the doubles that failed. */
 void loewner_try(loewner *w, const cv_cell *cell, verdict *v, int *axis, int *from);
 
 /* Is the least eigenvalue of beta below 2/3 at x, for all parameters (together: for those at
@@ -26,14 +29,26 @@ int loewner_at_once(const loewner *w, const double x[2]);
 /* The upper bound of the largest eigenvalue over the torus that belongs to the whole root. */
 double loewner_largest(const loewner *w);
 
-/* For tests: the orbit of the root's prism from point s or 0 to point t or 1, and what is known of
-   point s if t is 0, or else of t: x, the columns (x0's five, then x1's), the rest, the reach.
-   0: it cannot be followed so far. */
-typedef struct { double x[2], column[2][5], rest[2], reach[3]; } loewner_point;
-int loewner_follow(loewner *w, int s, int t, loewner_point *p);
+/* For tests: the prism of a cell as doubles have it, and B at the corners of the parameters.
+   0: it is too thin for them. */
+typedef struct { double v[2], width[2], p[3], h[3], loose[3], l, corner[8]; } loewner_cell;
+int loewner_prism(loewner *w, const cv_cell *cell, loewner_cell *c);
 
-/* For tests: the bound of the second variation that loewner_follow's orbit gives, the l it was made
-   with, and the vectors n from the first to the last site; their number, 0 without a witness. */
-int loewner_bound(loewner *w, double *bound, double *l, int *first, double n[][2], int most);
+/* For tests: follows the root's prism from point s <= 0 to point t >= 0.  0: it cannot be done. */
+int loewner_follow(loewner *w, int s, int t);
+
+/* For tests: the bound of the second variation that this orbit gives, the l it was made with, how
+   much of it roundings are, and the vectors n from the first to the last site; their number, 0
+   without a witness. */
+int loewner_bound(loewner *w, double *bound, double *l, double *rounding, int *first, double n[][2],
+                  int most);
+
+/* For tests: what is known of point n of this orbit.  mu: after loewner_bound, and only where it
+   is not zero. */
+typedef struct {
+    double x[2], column[2][5], rest[2], reach[3];       /* the columns: x0's five, then x1's */
+    double missed[2], force[2], beta[3], d[3], fuzz, mu[2];
+} loewner_point;
+void loewner_look(const loewner *w, int n, loewner_point *p);
 
 #endif

@@ -1,10 +1,10 @@
 /* orbit.c - the orbits of a prism, enclosed.
 
-   Let x[j] be the orbit of the prism's centre and x[j] + D[j] any other one.  D[j] = L[j] e + r[j], e in
-   the unit cube, the columns L as the linearized map carries them, the rest r bounded by two
-   first-order recursions that follow the factors of the linearized map, r[j+1] = d[j] r[j] + f[j],
-   f[j] = f[j-1]/d[j-1] + e[j], d[j] = beta - 1/d[j-1], which grow as the orbits do and not as
-   absolute values would.  The reach rho bounds |D[j]| along each wave. */
+   Let x[j] be the orbit of the prism's centre, as doubles have it, and x[j] + D[j] any true one.
+   D[j] = L[j] e + r[j], e in the unit cube, the columns L as the linearized map carries them, the
+   rest r bounded by two first-order recursions that follow the factors of the linearized map,
+   r[j+1] = d[j] r[j] + f[j], f[j] = f[j-1]/d[j-1] + e[j], d[j] = beta - 1/d[j-1], which grow as the
+   orbits do and not as absolute values would.  The reach rho bounds |D[j]| along each wave. */
 #include <string.h>
 
 #include "prism.h"
@@ -16,10 +16,10 @@ static const double WIDEN = 1.0 + 0x1p-43;
 
 /* The sines at q->x; what follows from them and from the columns and the rest.
 
-   Sines and cosines are off by SINE_ERROR, those of a rounded sum by u |x0 + x1| more, and products
-   with p by u/2: p sin is off by less than 2^-50 |p| (1 + |x0| + |x1|), and an entry of beta, a sum of
-   two and an integer, by less than fuzz.  Reaches are sums of at most 8 positive terms; that of a
-   wave that is not there is of no interest. */
+   Sines and cosines are off by SINE_ERROR = 4 u, those of a rounded sum by u far more, and products
+   with p by u: p sin and p cos are off by (5 + far) u |p|.  An entry of beta, a sum of two and an
+   integer, is rounded twice more, and off by u (4 + 7 |p0| + (6 + far) |p2|) at most; fuzz is
+   16 u (1 + sizes)(1 + far).  Reaches are sums of at most 8 positive terms. */
 static void finish(const loewner *w, point *q)
 {
     const double y[WAVES] = { q->x[0], q->x[1], q->x[0] + q->x[1] };
@@ -44,8 +44,9 @@ static void finish(const loewner *w, point *q)
 }
 
 /* How far a wave p cos(y + d) may be from p cos y - p d sin y + h e cos y, e in [-1, 1] the symbol
-   of the parameter: (|p| + h)(|cos y| d^2/2 + |sin y| |d|^3/6) + h |sin y d| + loose.  Sines are off
-   by far less than 2^-40 (1 + |x0| + |x1|). */
+   of the parameter: (|p| + h + loose)(|cos y| d^2/2 + |sin y d^3|/6) + (h + loose) |sin y d|
+   + loose |cos y|.  Sines are off by (4 + far) u, and the dozen roundings are relative: 2^-40 is
+   a thousand times as much as either needs. */
 static double bend(const loewner *w, const point *q, int wave)
 {
     const double rho = q->reach[wave];
@@ -57,13 +58,18 @@ static double bend(const loewner *w, const point *q, int wave)
 }
 
 /* next = the point after q, seen from o before it; time may run either way.  The factor begins
-   with d = beta, and f then holds r(o), which is zero or the rounding of x*.  0: the factor cannot go on.
+   with d = beta, and f then holds r(o), which is zero or the rounding of x*.  0: the factor cannot
+   go on.
 
-   The coordinates are kept modulo 2 pi; a turn costs 2^-51, less than its share of missed.
+   The coordinates are kept modulo 2 pi.  The step of the centre misses, with every rounding and
+   turn, 2 u |q| + 1.4 u |o| + 3.4 u |before| + 4.7 u |x| and what its waves are off: `missed` has
+   8 u of each, and fuzz.
    The rest obeys r' = beta r - r(o) + e, where e is what the waves bend, what the step of the
    centre missed, and the roundings of the columns.  Writing r' = d r + f and, from the last step,
-   r(o) = (r - f(o))/d(o), gives f = f(o)/d(o) + e + (beta - 1/d(o) - d) r, where the last bracket is
-   rounding: below 2 fuzz and 8 units of the inverse, times 1 + its condition. */
+   r(o) = (r - f(o))/d(o), gives f = f(o)/d(o) + e + (beta - 1/d(o) - d) r, where the last bracket
+   is rounding: of beta, below fuzz with that of the difference; of the inverse, whose determinant
+   is off by 1 + condition units, 3 + condition units of its trace, where `rounded` has
+   8 (1 + condition). */
 static int step(const loewner *w, point *next, point *q, const point *o, int is_first)
 {
     double g[WAVES], bent[WAVES], inverse[3] = { 0, 0, 0 }, rounded = 0.0, rest_sum;
@@ -90,7 +96,7 @@ static int step(const loewner *w, point *next, point *q, const point *o, int is_
     if (!is_first) {
         const double *d = o->d, det = d[0] * d[2] - d[1] * d[1];
         const double condition = (fabs(d[0] * d[2]) + d[1] * d[1]) / det;
-        if (!(d[0] > 0.0 && det > 0.0 && condition < 0x1p20))
+        if (!(d[0] > 0.0 && det > TINY && condition < 0x1p20))
             return 0;
         inverse[0] = d[2] / det;
         inverse[1] = -d[1] / det;
@@ -126,7 +132,7 @@ static double far_reach(const loewner *w, const point *q)
 
     for (int j = 0; j < WAVES; j++)
         if (size(w, j) > 0.0)
-            reach = q->reach[j] > reach || isnan(q->reach[j]) ? q->reach[j] : reach;
+            reach = larger(reach, q->reach[j]);
     return reach;
 }
 

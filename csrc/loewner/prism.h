@@ -1,10 +1,11 @@
 /* prism.h - what the files of this room share: the prism at hand and the orbits that start in it.
 
-   The criterion.  Orbits on an invariant Lagrangian graph minimize, so their second variation
+   The criterion (docs/proof.md has all of this file's mathematics, step by step).  Orbits on an
+   invariant Lagrangian graph minimize, so their second variation
    Q(n) = sum of n[j].beta(x[j])n[j] - 2 n[j].n[j+1] is not negative for any square-summable n
    (Katok; MacKay, Meiss and Stark, Nonlinearity 2, 1989).  With B >= the largest eigenvalue of beta
-   over the torus, l + 1/l = B, l < 1, and n decaying outwards by l from its ends s and t, the two
-   tails add at most -l |n[s]|^2 and -l |n[t]|^2.  So there is no torus if for some s, t and n
+   over the torus, l + 1/l >= B, 0 < l < 1, and n decaying outwards by l from its ends s and t, the
+   two tails add at most -l |n[s]|^2 and -l |n[t]|^2.  So there is no torus if for some s, t and n
 
        Q = sum n[j].beta(x[j])n[j] - 2 sum n[j].n[j+1] - l (|n[s]|^2 + |n[t]|^2) < 0.           (1)
 
@@ -12,10 +13,13 @@
    box.  orbit.c follows it, witness.c chooses n for the orbit of its centre, bound.c bounds (1) for
    that n over all of it, and try.c does one after the other until it is proved or hopeless.
 
-   Rounding.  All numbers are doubles rounded to nearest (unit u = 2^-53).  n, mu, x, L and d are what
-   they are: any values make a valid proof.  Only the bounds are to be trusted: sums of positive
-   terms, widened in the end by more than their roundings, and the few sums with signs, whose
-   roundings are bounded by the sums of absolute values. */
+   Rounding.  All numbers are doubles rounded to nearest (unit u = 2^-53).  n, mu, x, L and d are
+   what they are: any values make a valid proof.  Only the bounds are to be trusted: sums of
+   positive terms, widened in the end by more than their roundings, and the few sums with signs,
+   whose roundings are bounded by the sums of absolute values.  These margins are relative, but a
+   product below 2^-1022 loses up to 2^-1075 whatever its size.  So what a bound rests on is never
+   that small: each step misses 2^-49 or more, weights count TINY more than they are, determinants
+   are above TINY, and a bound of (1) counts only if the terms it sums have a mass of 1 or more. */
 #ifndef CONVERSE_PRISM_H
 #define CONVERSE_PRISM_H
 
@@ -56,8 +60,11 @@ struct loewner {
     point orbit[2 * MAX_POINTS + 1];
 };
 
+static const double TINY = 0x1p-800;
+
 static inline double square(double x) { return x * x; }
-static inline double larger(double x, double y) { return x > y ? x : y; }
+/* NaN if either is. */
+static inline double larger(double x, double y) { return x > y || isnan(x) ? x : y; }
 
 /* |p| + h + loose */
 static inline double size(const loewner *w, int wave)
@@ -84,8 +91,8 @@ int witness(loewner *w);
 
 /* bound.c */
 
-/* w->bound >= (1) over the whole prism; w->share[k]: how much of it each column is to blame for;
-   w->rounding: how much of it roundings are.  Needs a witness. */
+/* w->bound >= (1) over the whole prism, whatever n is; w->share[k]: how much of it each column is
+   to blame for; w->rounding: how much of it roundings are.  Needs a witness. */
 void bound_second_variation(loewner *w);
 
 #endif

@@ -12,7 +12,8 @@ enum { PATIENCE = 12 };                 /* tries follow each other by a twelfth 
 
 /* B >= the largest eigenvalue over the torus for all parameters of the cell.  It is convex in the
    parameters, so along each edge of the root it lies below the straight line between the ends, and
-   so below the product of these lines, which over a cell is largest at a corner. */
+   so below the product of these lines, which over a cell is largest at a corner.  The shares are
+   exact, their products and the sum of 8 are off by 10 u, of which 2^-46 is 128. */
 static double cell_largest(const loewner *w, const double low[3], const double high[3])
 {
     const int axes = w->together ? 1 : 3;
@@ -33,7 +34,7 @@ static double cell_largest(const loewner *w, const double low[3], const double h
     return largest * (1.0 + 0x1p-46);
 }
 
-/* The prism of the cell.  0: it is too thin for doubles. */
+/* The prism of the cell.  0: it is too thin for doubles, or its parameters are too large. */
 static int set_prism(loewner *w, const cv_cell *cell)
 {
     double at[COLUMNS], part[COLUMNS], low[3], high[3], B;
@@ -57,8 +58,8 @@ static int set_prism(loewner *w, const cv_cell *cell)
         high[i] = 0.5 * (1.0 + at[axis] + part[axis]);
     }
     B = cell_largest(w, low, high);
-    w->l = B > 2.0 ? 2.0 / (B + sqrt((B - 2.0) * (B + 2.0))) * (1.0 - 0x1p-46) : 0.0;
-    return 1;
+    w->l = 2.0 / (B + sqrt((B - 2.0) * (B + 2.0))) * (1.0 - 0x1p-46);   /* off by 5 u before */
+    return w->l > 0.0;
 }
 
 /* Tries to prove the prism with the orbit as far as it is known.  Returns whether at least its
@@ -74,13 +75,25 @@ static int attempt(loewner *w, verdict *v)
     return 1;
 }
 
+/* Would cutting the cell across axis help?  Not where its width is the slack of doubles, but for
+   a fifth of it. */
+static int may_cut(const loewner *w, const cv_cell *cell, int axis)
+{
+    const int last = w->together && axis == 2 ? COLUMNS - 1 : axis;
+    int wide = 0;
+
+    for (int k = axis; k <= last; k++)
+        wide = wide || ldexp(w->half[k], 2 - cell->cuts[axis]) > w->slack[k];
+    return wide && cell->cuts[axis] < FINEST;
+}
+
 void loewner_try(loewner *w, const cv_cell *cell, verdict *v, int *axis, int *from)
 {
-    int points = 0, next = cell->from, contradicted = 0, why;
+    int points = 0, next = cell->from, contradicted = 0, worst = 0, why;
 
     memset(v, 0, sizeof *v);
     v->reason = CV_REASON_ARITHMETIC;
-    *axis = 0;
+    *axis = -1;
     if (!set_prism(w, cell))
         return;
     orbit_begin(w);
@@ -110,17 +123,34 @@ void loewner_try(loewner *w, const cv_cell *cell, verdict *v, int *axis, int *fr
         }
     }
     for (int k = 1; k < w->columns; k++)
-        if (w->share[k] > w->share[*axis])
-            *axis = k;
+        if (w->share[k] > w->share[worst])
+            worst = k;
+    if (may_cut(w, cell, worst))
+        *axis = worst;
+    else if (v->reason == CV_REASON_TOO_BIG)
+        v->reason = CV_REASON_ARITHMETIC;
     *from = contradicted > 3 ? contradicted - 2 : 0;
 }
 
 /* ---- for tests */
 
-int loewner_follow(loewner *w, int s, int t, loewner_point *p)
+int loewner_prism(loewner *w, const cv_cell *cell, loewner_cell *c)
+{
+    const int good = set_prism(w, cell);
+
+    memcpy(c->v, w->v, sizeof c->v);
+    memcpy(c->width, w->width, sizeof c->width);
+    memcpy(c->p, w->p, sizeof c->p);
+    memcpy(c->h, w->h, sizeof c->h);
+    memcpy(c->loose, w->loose, sizeof c->loose);
+    c->l = w->l;
+    memcpy(c->corner, w->corner, sizeof c->corner);
+    return good;
+}
+
+int loewner_follow(loewner *w, int s, int t)
 {
     static const cv_cell whole = { { 0, 0, 0, 0, 0 }, { 0, 0, 0, 0, 0 }, 0 };
-    const point *q;
 
     set_prism(w, &whole);
     orbit_begin(w);
@@ -131,32 +161,51 @@ int loewner_follow(loewner *w, int s, int t, loewner_point *p)
     while (w->first > ORIGIN + s)
         if (!orbit_step(w, 0))
             return 0;
-    q = w->orbit + ORIGIN + (t == 0 ? s : t);
-    memcpy(p->x, q->x, sizeof p->x);
-    memcpy(p->column, q->column, sizeof p->column);
-    memcpy(p->rest, q->rest, sizeof p->rest);
-    memcpy(p->reach, q->reach, sizeof p->reach);
     return 1;
 }
 
-int loewner_bound(loewner *w, double *bound, double *l, int *first, double n[][2], int most)
+int loewner_bound(loewner *w, double *bound, double *l, double *rounding, int *first, double n[][2],
+                  int most)
 {
     *l = w->l;
     if (!witness(w) || w->to - w->from >= most)
         return 0;
     bound_second_variation(w);
     *bound = w->bound;
+    *rounding = w->rounding;
     *first = w->from - ORIGIN;
     for (int j = w->from; j <= w->to; j++)
         memcpy(n[j - w->from], w->orbit[j].n, sizeof n[0]);
     return w->to - w->from + 1;
 }
 
+void loewner_look(const loewner *w, int n, loewner_point *p)
+{
+    const point *q = w->orbit + ORIGIN + n;
+
+    memcpy(p->x, q->x, sizeof p->x);
+    memcpy(p->column, q->column, sizeof p->column);
+    memcpy(p->rest, q->rest, sizeof p->rest);
+    memcpy(p->reach, q->reach, sizeof p->reach);
+    memcpy(p->missed, q->missed, sizeof p->missed);
+    memcpy(p->force, q->force, sizeof p->force);
+    memcpy(p->beta, q->beta, sizeof p->beta);
+    memcpy(p->d, q->d, sizeof p->d);
+    p->fuzz = q->fuzz;
+    memcpy(p->mu, q->mu, sizeof p->mu);
+}
+
 /* ---- the problem */
 
-/* B at one corner of the parameters, from the double instance.  Each of its bounds is a sum of less
-   than 40 rounded terms of at most 4 (1 + |a| + |b| + |c|); its sines are off by SINE_ERROR and, where
-   their angle is a rounded sum, by u 2 pi; and the corner is rounded: all far below 10^-12 of it. */
+/* B at one corner of the parameters, from the double instance (torus.c), which makes up for no
+   rounding.  On a cell as large as the torus the bound of c sin(v0 + v1) is |c| (1 + t + t^2/2)
+   with t = 2 pi, 27 |c|; those of the others are 9.1 |a| and 9.1 |b|.  Sines and cosines are off by
+   4 u, by 8 u where their angle is a rounded sum; with the roundings on the way these bounds are
+   off by 214 u |c|, 57 u |a| and 57 u |b|, and the eigenvalue by 57 u max(|a|, |b|) + 428 u |c|.
+   Its formula rounds by 50 u (|a| + |b|) + 257 u |c| + 2 u.  The centre of a cell is rounded by 2 u
+   at each of at most 100 cuts, so cells may fail to meet by as much: 200 u (max(|a|, |b|) + 2 |c|).
+   The corner is off by 9 u, B by 9 u (max(|a|, |b|) + 2 |c|).  Together less than 1200 u all;
+   10^-12 is 9007 u. */
 static double corner_largest(const loewner *w, unit *quick, const double p[3])
 {
     double all = 1.0;
@@ -228,7 +277,9 @@ double loewner_largest(const loewner *w)
 }
 
 /* With n the eigenvector at the centre, n.beta n = 2|n|^2 - sum p sin(y) (n.u)^2 is linear in the
-   parameters; 2^-45 of the sum of the terms' absolute values covers a dozen roundings and sines. */
+   parameters.  Its terms are off by 10 u for p, (4 + |x0| + |x1|) u for the sine and 6 u, and 7
+   numbers are added: 27 + |x0| + |x1| units of the sum of absolute values, the mass; the margin is
+   256 (1 + |x0| + |x1|). */
 int loewner_at_once(const loewner *w, const double x[2])
 {
     double n[2], d[3], s[WAVES], c, sum, mass, omega[WAVES], p[WAVES];
@@ -252,5 +303,5 @@ int loewner_at_once(const loewner *w, const double x[2])
             sum += w->half[2 + i] * fabs(s[i]) * omega[i];
         mass += (fabs(p[i]) + w->half[2 + i] + w->slack[2 + i]) * omega[i];
     }
-    return sum + 0x1p-45 * mass < 0.0;
+    return mass >= 1.0 && sum + 0x1p-45 * (1.0 + fabs(x[0]) + fabs(x[1])) * mass < 0.0;
 }

@@ -1,8 +1,9 @@
 /* witness.c - the vector n on which the second variation is most plainly negative.
 
-   Some n makes (1) negative for one orbit if and only if the recursion d[s] = beta - l, d[j+1] = beta - 1/d[j]
-   of the Loewner bounds leads to a d[j] that is not above l; past and future are used alike.  n is
-   chosen for the orbit of the prism's centre and then kept.  Nothing rigorous rests on it. */
+   Some n makes (1) negative for one orbit if and only if the recursion d[s] = beta - l, d[j+1] =
+   beta - 1/d[j] of the Loewner bounds leads to a d[j] that is not above l; past and future are used
+   alike.  n is chosen for the orbit of the prism's centre and then kept.  Nothing rigorous rests on
+   it. */
 #include "prism.h"
 
 double least_eigenvector(const double d[3], double n[2])
