@@ -201,9 +201,14 @@ def test_bounds_over_the_torus_take_about_a_second(a, b, c):
     assert found[1] <= 2 + max(sizes[:2]) + 2 * sizes[2] + slack
 
 
-def test_no_double_is_a_bound_beyond_the_doubles():
+@pytest.mark.parametrize("size", ["1e155", "1e308", "1e400"])
+@pytest.mark.parametrize("which", range(3))
+def test_no_double_is_a_bound_beyond_the_doubles(size, which):
+    """The squares under the root overflow, or what is summed does."""
+    p = [(0, 0)] * 3
+    p[which] = (size, size)
     with pytest.raises(ArithmeticError):
-        kernels.torus(("1e400", "1e400"), (0, 0), (0, 0), DP, arithmetic="double")
+        kernels.torus(*p, DP, arithmetic="double")
 
 
 def test_constants():

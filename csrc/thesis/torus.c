@@ -54,6 +54,8 @@ static void displaced_bound(state *s, num_t r, const num_t t0, const num_t t1, i
     num_set_si(x[7], eigenvalue ? 2 : 4, 0);
     num_add(r, r, x[7]);
     num_round(s, r, r, APM_UP);
+    if (!num_is_finite(r))
+        s->failed = 1;                                  /* NaN is not larger than anything */
 }
 
 /* r >= the same for every point of the cell: a convex function is largest at a corner. */
@@ -104,10 +106,8 @@ static void torus_pass(state *s, num_t max, num_t best, const num_t tolerance, i
         displaced_bound(s, x[8], x[0], x[0], eigenvalue);
         num_max(best, x[8]);
         cell_bound(s, x[9], k, eigenvalue);
-        if (!num_is_finite(x[9])) {
-            s->failed = 1;
+        if (s->failed)
             return;
-        }
         num_add(x[8], best, tolerance);
         if (num_cmp(x[9], x[8]) <= 0 || s->cell_depth[top] == TORUS_DEPTH ||
             ++*cells > TORUS_CELLS) {
