@@ -8,7 +8,7 @@ from cffi import FFI
 SOURCES = ["numbers/apm", "numbers/special", "numbers/guard",
            "thesis/start", "thesis/region", "thesis/rigorous", "thesis/double",
            "loewner/orbit", "loewner/witness", "loewner/bound", "loewner/try",
-           "search", "kernels"]
+           "setup", "search", "kernels"]
 SOURCES = ["csrc/%s.c" % name for name in SOURCES]
 
 # The flags are part of the proof: no fused, reordered or extended floating-point arithmetic.
