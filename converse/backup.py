@@ -1,7 +1,6 @@
 """The backup: a file that is kept up to date with a proof while it is found."""
 
 import contextlib
-import os
 import time
 import warnings
 
@@ -29,11 +28,11 @@ class Keeper:
         if path is not None:
             files.check_writable(path, regular=True)
             self.lock.enter_context(files.lock(path))
-            if os.path.exists(path) and os.path.getsize(path) and not (
-                    self.resumed is not None and files.same(path, self.resumed)):
+            try:
+                files.check_new(path, self.resumed)
+            except ConverseError:
                 self.lock.close()
-                raise ConverseError("%s: exists; to continue it, name it with -r (resume=), or else "
-                                    "name another file or remove it" % path)
+                raise
         return self
 
     def __exit__(self, *_):

@@ -192,6 +192,8 @@ def parse(head, tree, sha256):
         if name in header and name != "comment":
             raise Rejected("the header gives %s twice" % name)
         header[name] = value
+    if "xstar" not in header:
+        raise Rejected("the search had not begun when it was left: there is no x* yet")
     if FIELDS - header.keys():
         raise Rejected("the header lacks %s" % ", ".join(sorted(FIELDS - header.keys())))
     if header["kind"] != "sound":

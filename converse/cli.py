@@ -10,7 +10,7 @@ import warnings
 from dataclasses import replace
 
 from . import figure, files, picture
-from .files import ConverseError
+from .files import ConverseError, plain
 from .problem import InputError, read_input
 from .report import header, verdict
 from .settings import AS_PRINTED, LIMIT, METHODS, REGION, THEOREM, UNDECIDED, Settings
@@ -108,22 +108,25 @@ def _say(text):
     sys.stdout.flush()
 
 
-def _tell(message):
+def _tell(message, command="converse"):
+    """A line on stderr, whatever the message."""
     with contextlib.suppress(OSError):
-        print("converse: " + " ".join(str(message).split()), file=sys.stderr, flush=True)
+        print("%s: %s" % (command, plain(" ".join(str(message).split()))), file=sys.stderr,
+              flush=True)
 
 
 class Progress:
     """Prints the header when the search gets under way; then, on a terminal, keeps a bar that says
     how much of the work is behind, and an estimate of the time left."""
 
-    def __init__(self, problem, as_printed, with_bar):
+    def __init__(self, problem, as_printed, with_bar, begun):
         self.problem, self.as_printed, self.with_bar = problem, as_printed, with_bar
-        self.started, self.bar = False, None
+        self.started, self.bar, self.begun = False, None, begun
 
     def __call__(self, done, counts):
         if not self.started:
             self.started = True
+            self.begun()
             if self.as_printed:
                 _tell("--as-printed is a historical reconstruction, not a proof")
             _say(header(self.problem, self.as_printed))
@@ -184,12 +187,15 @@ def _read_problem(options, restored):
 
 
 def _check_graphics(options):
-    """Refuses a figure that cannot be written or would overwrite what the run reads or writes."""
+    """Refuses a figure that cannot be written or would overwrite what the run reads or writes, or a
+    proof."""
     path, others = options.graphics, [options.input, options.backup, options.restore]
     with contextlib.suppress(AttributeError, OSError, ValueError):
         others.append(sys.stdin.fileno())
-    if any(other is not None and files.same(path, other) for other in others):
-        raise ConverseError("the figure would overwrite '%s'; name another file" % path)
+    if not os.path.exists(path) or os.path.isfile(path):
+        if any(other is not None and files.same(path, other) for other in others) or \
+                files.is_proof(path):
+            raise ConverseError("the figure would overwrite '%s'; name another file" % path)
     files.check_writable(path)
     if figure.format_of(path) != "ps":
         picture.check()
@@ -205,7 +211,12 @@ def run(options):
         _check_graphics(options)
     if options.method == "loewner" and options.as_printed:
         raise ConverseError("--as-printed is the thesis's method; leave out --method loewner")
+    if options.backup is not None:
+        files.check_new(options.backup, options.restore)
     restored = None if options.restore is None else Proof.load(options.restore)
+    if options.together and restored is not None and not restored.problem.together:
+        raise ConverseError("%s: is of another run: its parameters do not move together; leave out "
+                            "--together" % options.restore)
     problem = _read_problem(options, restored)
     settings = Settings() if restored is None else restored.settings
     if problem.together and (options.method or settings.method) != "loewner":
@@ -214,8 +225,11 @@ def run(options):
     def on_leaf(leaf, points):
         _say(_leaf_line(leaf, points) + "\n")
 
+    def begun():
+        options.kept = bool(options.backup or options.restore)
+
     progress = Progress(problem, options.as_printed or settings.as_printed,
-                        sys.stderr.isatty() and not options.verbose)
+                        sys.stderr.isatty() and not options.verbose, begun)
     asked = {name: getattr(options, name) for name in (
         "method", "depth", "digits", "stubborn", "as_printed", "backup", "time_limit")}
     with contextlib.closing(progress), workers(options) as (executor, jobs):
@@ -233,14 +247,17 @@ def run(options):
 
 @contextlib.contextmanager
 def _signals_end():
-    """Meanwhile SIGTERM and SIGHUP end the program as Ctrl-C does, unless they were ignored."""
+    """Meanwhile SIGTERM and SIGHUP end the program as Ctrl-C does, unless they were ignored.  Only
+    the first signal counts: another would strike while the backup is saved, or the process ends."""
     def end(number, _):
+        while before:
+            signal.signal(before.popitem()[0], signal.SIG_IGN)
         raise Signalled(number)
 
     before = {}
     try:
-        for number in (signal.SIGTERM, signal.SIGHUP):
-            if signal.getsignal(number) == signal.SIG_DFL:
+        for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+            if signal.getsignal(number) in (signal.SIG_DFL, signal.default_int_handler):
                 before[number] = signal.signal(number, end)
     except ValueError:                  # not the main thread, which alone hears of signals
         pass
@@ -255,8 +272,7 @@ def _signals_end():
 def _warnings_in_lines(command):
     with warnings.catch_warnings():
         warnings.simplefilter("always", RuntimeWarning)
-        warnings.showwarning = lambda message, *_: print(
-            "%s: %s" % (command, " ".join(str(message).split())), file=sys.stderr, flush=True)
+        warnings.showwarning = lambda message, *_: _tell(message, command)
         yield
 
 
@@ -281,20 +297,19 @@ def ended(command, run, interrupted):
         message, status = "the output cannot be written (%s)" % files.reason(error), BAD
         with contextlib.suppress(OSError):  # the interpreter must not try again when it ends
             os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-    with contextlib.suppress(OSError):
-        print("%s: %s" % (command, " ".join(message.split())), file=sys.stderr)
+    _tell(message, command)
     return status
 
 
 def main(argv=None):
     """Runs the command and returns its exit status."""
-    options = argparse.Namespace(backup=None, restore=None)
+    options = argparse.Namespace(backup=None, restore=None, kept=False)
 
     def interrupted():
         backup = options.backup or options.restore
-        if backup and os.path.exists(backup):
+        if options.kept:
             return "continue with -r " + backup
-        return "without -b nothing is kept"
+        return "nothing was found yet" if backup else "without -b nothing is kept"
 
     return ended("converse", lambda: run(parser().parse_args(argv, options)), interrupted)
 

@@ -25,11 +25,18 @@ MESSAGES = {
     lib.CV_ENUMBER: "a number is malformed or out of range",
     lib.CV_EARGUMENT: "an argument makes no sense",
     lib.CV_EARITHMETIC: "the arithmetic failed: a division by zero, a root of a negative number "
-                        "or lost precision; try more digits",
+                        "or lost precision; try more digits, or parameters that are not as large",
     lib.CV_ESINGULAR: "the matrix could not be inverted at any sensible precision",
     lib.CV_EMACHINE: "this machine's floating-point arithmetic, or the way the program was "
                      "built, breaks the rules that the proof relies on",
 }
+
+
+class WrongTree(ConverseError):
+    """A tree that no search of this kind can have grown."""
+
+    def __init__(self):
+        super().__init__("the tree does not belong to a search of this kind")
 
 
 def check(code):
@@ -43,22 +50,22 @@ def check(code):
 
 @dataclass(frozen=True)
 class Counts:
-    """The statistics of a search; the names are those of csrc/converse.h."""
+    """The statistics of a search; names after the thesis and csrc/converse.h."""
 
-    quick_tries: int = 0
-    tries: int = 0
-    Rtries: int = 0
-    cuts: int = 0
+    quick_tries: int = 0        # of prisms on their centre alone (thesis's method)
+    tries: int = 0              # in double precision; with the sharper method, rigorous ones
+    Rtries: int = 0             # in exact decimals
+    cuts: int = 0               # nodes of the tree by kind
     proved: int = 0
     symmetric: int = 0
     undecided: int = 0
-    HermSuccess: int = 0
+    HermSuccess: int = 0        # prisms proved by the trace, and by the least eigenvalue
     LLSuccess: int = 0
-    ll_used: Tuple[int, ...] = (0, 0, 0)
-    reasons: Tuple[int, ...] = (0,) * lib.CV_N_REASONS
-    most_cuts: int = 0
-    max_steps: int = 0
-    max_NTsteps: int = 0
+    ll_used: Tuple[int, ...] = (0, 0, 0)    # best bounds by maxBlam, minBlam and the trace
+    reasons: Tuple[int, ...] = (0,) * lib.CV_N_REASONS  # tries without a proof, as report.REASONS
+    most_cuts: int = 0          # of a proved prism
+    max_steps: int = 0          # longest orbit of the tries in double precision (thesis's method)
+    max_NTsteps: int = 0        # longest orbit of a proved prism
 
     def __add__(self, other):
         """The statistics of both searches together."""
@@ -171,7 +178,7 @@ class Search:
         text = tree.encode("ascii", "replace")
         code = lib.cv_resume(self.handle, text, len(text))
         if code == lib.CV_EARGUMENT:
-            raise ConverseError("the tree does not belong to a search of this kind")
+            raise WrongTree()
         check(code)
         return Begun((self._constant(0), self._constant(1)),
                      {name: self._constant(which) for name, which

@@ -3,11 +3,35 @@
 import contextlib
 import fcntl
 import os
+import secrets
 import tempfile
 
 
 class ConverseError(RuntimeError):
     """Something outside the mathematics went wrong; the text is one plain sentence."""
+
+
+def plain(text):
+    """The text without what a terminal would obey."""
+    return "".join(c if c.isprintable() or c == "\t" else
+                   c.encode("unicode_escape", "surrogatepass").decode("ascii") for c in text)
+
+
+def is_proof(path):
+    """Does the file look like a proof file, perhaps a compressed one?"""
+    try:
+        with open(path, "rb") as file:
+            return file.read(14).startswith((b"converse proof", b"\x1f\x8b"))
+    except OSError:
+        return False
+
+
+def check_new(path, resumed=None):
+    """Refuses to begin a backup over a file, but for an empty one or that which is continued."""
+    if os.path.exists(path) and os.path.getsize(path) and not (
+            resumed is not None and same(path, resumed)):
+        raise ConverseError("%s: exists; to continue it, name it with -r (resume=), or else name "
+                            "another file or remove it" % path)
 
 
 def reason(error):
@@ -52,12 +76,14 @@ def write(path, data):
                 file.write(data)
             return
         real = os.path.realpath(path)
-        handle, name = tempfile.mkstemp(dir=os.path.dirname(real), prefix=".converse-")
+        name = os.path.join(os.path.dirname(real), ".converse-" + secrets.token_hex(8))
+        handle = os.open(name, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o666)    # less the umask
         with open(handle, "wb") as file:
             file.write(data)
             file.flush()
             os.fsync(file.fileno())
-        os.chmod(name, _mode(real))
+        with contextlib.suppress(FileNotFoundError):
+            os.chmod(name, os.stat(real).st_mode & 0o777)
         os.replace(name, real)
         name = None
     except OSError as error:
@@ -67,14 +93,6 @@ def write(path, data):
         if name:
             with contextlib.suppress(OSError):
                 os.unlink(name)
-
-
-def _mode(path):
-    """The permissions of the older file, or those that a new file would get."""
-    try:
-        return os.stat(path).st_mode & 0o777
-    except OSError:
-        return 0o644
 
 
 @contextlib.contextmanager
@@ -100,5 +118,7 @@ def lock(path):
     try:
         yield
     finally:
-        os.unlink(name)
+        with contextlib.suppress(OSError):          # if it is still ours
+            if os.path.samestat(os.fstat(handle), os.stat(name)):
+                os.unlink(name)
         os.close(handle)

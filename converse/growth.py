@@ -82,7 +82,7 @@ class Growth:
         self.alone_until = self.began + max(ALONE_SECONDS, 10 * (self.began - began))
         for name in "cuts", "proved", "symmetric", "undecided", "most_cuts":
             if getattr(begun.counts, name) != getattr(counts, name):
-                raise ConverseError("the tree does not belong to a search of this kind")
+                raise core.WrongTree()
         hints = iter(hints)
         cells = [(index, cuts, next(hints, 0)) for index, cuts, _ in begun.cells]
         *pieces, last = text.split(tree.UNTRIED)

@@ -63,8 +63,10 @@ def counts(proof):
 
 def star(proof):
     """The place of x*, moved by multiples of 2 pi, as parts of the region's sides; None, if the
-    region does not show it."""
+    region does not show it or the search did not come so far as to choose it."""
     places = []
+    if proof.xstar is None:
+        return None
     for axis, text in enumerate(proof.xstar):
         centre, half = proof.problem.centre[3 + axis], proof.problem.half[3 + axis]
         offset = (Fraction(text) / Fraction(math.pi) - centre + 1) % 2 - 1

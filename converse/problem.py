@@ -50,7 +50,11 @@ class Problem:
     def __post_init__(self):
         for name in NAMES:
             object.__setattr__(self, name, _range(name, getattr(self, name)))
-        comments = [self.comments] if isinstance(self.comments, str) else self.comments
+        if not isinstance(self.together, bool):
+            raise TypeError("together must be True or False, not %r" % (self.together,))
+        comments = [self.comments] if isinstance(self.comments, str) else list(self.comments)
+        if not all(isinstance(comment, str) for comment in comments):
+            raise TypeError("comments are strings")
         object.__setattr__(self, "comments", tuple(
             line.encode("utf-8", "backslashreplace").decode("utf-8")
             for comment in comments for line in (comment.splitlines() or [""])))

@@ -3,42 +3,62 @@
 import gzip
 import hashlib
 import os
+import re
 import tempfile
 import zlib
 from dataclasses import asdict, dataclass, field, fields
 from functools import cached_property
-from typing import TYPE_CHECKING, Dict, Optional, Tuple, Union
+from typing import TYPE_CHECKING, Dict, List, Optional, Tuple, Union
 
 from . import files, tree
 from .core import CONSTANTS, Counts
 from .files import ConverseError
-from .problem import NAMES, Problem, decimal_text, parse_number
+from .problem import NAMES, NUMBER, Problem, decimal_text, parse_number
 from .settings import AS_PRINTED, REGION, THEOREM, UNDECIDED, Settings
+from .tree import Leaf
 from .version import __version__
 
 if TYPE_CHECKING:
     from . import check
 
 FIRST_LINE = "converse proof 2"
+PROGRAM = re.compile(r"converse ([0-9A-Za-z.+-]{1,40})")
 KINDS = {False: "sound", True: "as printed, not a proof"}       # by as_printed
 
 
 @dataclass(frozen=True, repr=False)
 class Proof:
-    """A search and its result, finished or not.  It is true if it proves that there are no tori."""
+    """A search and its result, finished or not: true if it proves that there are no invariant tori.
+
+    What it proves rests on its tree, which prove() grew; a Proof that was loaded, or made by hand,
+    is believed.  verify() believes nothing.
+
+    problem, settings: what was asked.
+    tree: one character for each prism, in preorder (docs/format.md).
+    counts: the statistics of the search.
+    xstar: the two angles of the starting point, in radians, as decimal strings; None: not yet chosen.
+    constants: the numbers of the theorem, as decimal strings: B, a bound of the largest eigenvalue of
+    beta, and with the thesis's method T, of its trace, and the limits of the uniform cones.
+    seconds: that the search took, as far as is known.
+    version: of the program that did the work.
+    pending: what is known of the untried prisms, in their order.
+    at_once: nor have any s times these parameters tori, s > 1 (together: s times the upper ends).
+    restored: how many leaves of the tree come from a file.
+    sha256: of the proof's file, uncompressed; "" if there is none.
+    """
 
     problem: Problem
     settings: Settings = Settings()
-    tree: str = ""                      # see tree.py
+    tree: str = ""
     counts: Counts = Counts()
-    xstar: Optional[Tuple[str, str]] = None     # the starting point, in radians
+    xstar: Optional[Tuple[str, str]] = None
     constants: Dict[str, str] = field(default_factory=dict)
-    seconds: float = 0.0                # that it took, as far as is known
-    version: str = __version__          # of the program that did the work
-    pending: Tuple[int, ...] = ()       # what is known of the untried prisms, in their order
-    at_once: bool = False               # method Loewner: larger parameters cannot have tori, either
-    restored: int = field(default=0, compare=False)     # leaves that a file brought, believed
-    sha256: str = field(default="", compare=False)      # of its file, if there is one
+    seconds: float = field(default=0.0, compare=False)
+    version: str = __version__
+    pending: Tuple[int, ...] = ()
+    at_once: bool = False
+    restored: int = field(default=0, compare=False)
+    sha256: str = field(default="", compare=False)
 
     def __bool__(self):
         return self.no_tori
@@ -50,11 +70,21 @@ class Proof:
             self.counts.proved, self.counts.symmetric, self.counts.undecided, self.method,
             self.arithmetic)
 
-    method = property(lambda self: self.settings.method)
-    depth = property(lambda self: self.settings.depth)
-    digits = property(lambda self: self.settings.digits)
-    stubborn = property(lambda self: self.settings.stubborn)
-    as_printed = property(lambda self: self.settings.as_printed)
+    @property
+    def method(self) -> str:
+        return self.settings.method
+
+    @property
+    def depth(self) -> int:
+        return self.settings.depth or 0
+
+    @property
+    def digits(self) -> int:
+        return self.settings.digits
+
+    @property
+    def as_printed(self) -> bool:
+        return self.settings.as_printed
 
     @cached_property
     def all_decided(self) -> bool:
@@ -79,10 +109,11 @@ class Proof:
 
     @property
     def arithmetic(self) -> str:
+        """What the bounds were computed in, in words."""
         return "%d decimal places" % self.digits if self.method == "thesis" else "double precision"
 
     @property
-    def undecided(self):
+    def undecided(self) -> List[Leaf]:
         """The prisms on which the search gave up: a list of Leaf, angles in units of pi."""
         return list(tree.leaves(self.problem, self.tree, "U")) if "U" in self.tree else []
 
@@ -119,7 +150,8 @@ class Proof:
 
     def save(self, path: Union[str, "os.PathLike[str]"]) -> str:
         """Writes the proof file, compressed when the name ends in .gz; returns its SHA-256 (that
-        of the uncompressed file).  Two runs of one proof give the same file."""
+        of the uncompressed file).  However it was interrupted and continued, and whoever did the
+        work, the same search gives the same file."""
         text = data = self._text().encode("utf-8")
         if os.fspath(path).endswith(".gz"):
             data = gzip.compress(text, 6, mtime=0)
@@ -134,7 +166,7 @@ class Proof:
                   for name, centre, half in zip(NAMES, self.problem.centre, self.problem.half)]
         lines += ["xstar: " + " ".join(self.xstar)] if self.xstar else []
         lines += ["depth: %d" % self.depth, "digits: %d" % self.digits,
-                  "stubborn: " + _yes(self.stubborn), "at once: " + _yes(self.at_once)]
+                  "stubborn: " + _yes(self.settings.stubborn), "at once: " + _yes(self.at_once)]
         lines += [] if self.all_decided else ["seconds: %.2f" % self.seconds]
         lines += ["pending: " + " ".join(map(str, self.pending))]
         for name, value in asdict(self.counts).items():
@@ -184,8 +216,8 @@ class Proof:
                 counts[item.name] = numbers if isinstance(item.default, tuple) else numbers[0]
             xstar = None
             if "xstar" in values:
-                x0, x1 = xstar = tuple(values["xstar"].split())
-                parse_number(x0), parse_number(x1)
+                x0, x1 = values["xstar"].split()
+                xstar = _number(x0), _number(x1)
             nodes = "".join(lines[start + 1:-3])
             settings = Settings(values["method"], int(values["depth"]), int(values["digits"]),
                                 values["stubborn"] == "yes",
@@ -193,14 +225,22 @@ class Proof:
             proof = cls(
                 Problem.around(centre, half, comments, values["together"] == "yes"),
                 settings, nodes, Counts(**counts), xstar,
-                {name: values[name] for name in CONSTANTS[settings.method] if name in values},
-                float(values.get("seconds", 0)), values["program"].split()[1],
+                {name: _number(values[name]) for name in CONSTANTS[settings.method]
+                 if name in values},
+                float(values.get("seconds", 0)), PROGRAM.fullmatch(values["program"])[1],
                 tuple(map(int, values["pending"].split())), values["at once"] == "yes",
                 nodes.count("P") + nodes.count("S"), _sha256(text))
             tree.complete(proof.tree)
         except (KeyError, IndexError, TypeError, ValueError) as error:
             fail(start + 1, "the header or the tree makes no sense (%s)" % error)
         return proof
+
+
+def _number(text):
+    """The text, which must be that of a decimal number."""
+    if not NUMBER.fullmatch(text):
+        raise ValueError("'%.40s' is not a decimal number" % text)
+    return text
 
 
 def _yes(truth):

@@ -3,8 +3,9 @@
 import math
 
 from . import tree
+from .files import plain
 from .problem import exact_decimal
-from .settings import AS_PRINTED, REGION, THEOREM, UNDECIDED
+from .settings import AS_PRINTED, LIMIT, REGION, THEOREM, UNDECIDED
 
 PLUSES = "+" * 48
 MAP = ("y' = y + J', J' = J - dV(y), V(y) = -a sin y0 - b sin y1 - c sin(y0 + y1)",
@@ -33,16 +34,10 @@ def header(problem, as_printed=False):
     lines += ["v[%d] : %.14e \t %.14e" % (i, problem.centre[3 + i] * math.pi,
                                           problem.half[3 + i] * math.pi) for i in range(2)]
     lines += ["", "Comments :", "",
-              *(_plain(comment) if as_printed else ("> " + _plain(comment)).rstrip()
+              *(plain(comment) if as_printed else ("> " + plain(comment)).rstrip()
                 for comment in problem.comments),
               "", PLUSES]
     return "\n".join(lines) + "\n"
-
-
-def _plain(text):
-    """The text without what a terminal would obey."""
-    return "".join(c if c.isprintable() or c == "\t" else
-                   c.encode("unicode_escape").decode("ascii") for c in text)
 
 
 def verdict(proof):
@@ -116,8 +111,8 @@ def _gaps(proof):
         advice = "a smaller range of parameters, or larger parameters"
     else:
         advice = "more time, from a backup (-b FILE, then -r FILE)"
-    if undecided:
-        advice += ", or deeper cuts (-d %d)" % (2 * proof.depth)
+    if any(leaf.depth == proof.depth for leaf in undecided) and proof.depth < LIMIT:
+        advice += ", or deeper cuts (-d %d)" % min(max(2 * proof.depth, 10), LIMIT)
     return lines + ["To try : %s." % advice]
 
 

@@ -56,10 +56,17 @@ def prove(problem: Optional[Problem] = None, *, method: Optional[str] = None,
         ("as_printed", as_printed)) if value is not None}
     if problem is None and resume is None:
         raise TypeError("there must be a problem, or a proof to resume")
+    if problem is not None and not isinstance(problem, Problem):
+        raise TypeError("the problem is a Problem, not %r" % (problem,))
+    if isinstance(time_limit, bool) or not isinstance(time_limit, (int, float)) or \
+            not time_limit >= 0:
+        raise ValueError("time_limit is a number of seconds, not %r" % (time_limit,))
     if jobs is None:
         jobs = count_workers(executor)
-    if jobs < 1:
-        raise ValueError("there must be a worker: jobs must be 1 or more")
+    if isinstance(jobs, bool) or not isinstance(jobs, int) or jobs < 1:
+        raise ValueError("jobs must be a whole number, 1 or more, not %r" % (jobs,))
+    if executor is not None and not hasattr(executor, "submit"):
+        raise TypeError("the executor is a concurrent.futures.Executor, not %r" % (executor,))
     file = None if resume is None or isinstance(resume, Proof) else resume
     with Keeper(file if backup is None else backup, resumed=file) as keeper:
         if resume is None:
@@ -71,9 +78,9 @@ def prove(problem: Optional[Problem] = None, *, method: Optional[str] = None,
         run = _Run(before, keeper, jobs, executor, time_limit, progress, on_leaf)
         try:
             return run.run()
-        except ConverseError as error:
-            raise ConverseError("%s: %s; use an intact copy or start anew" % (file, error)
-                                if file and "tree" in str(error) else str(error)) from None
+        except core.WrongTree as error:
+            raise ConverseError("%s: %s; use an intact copy or start anew"
+                                % (_name(file), error)) from None
 
 
 class _Run:
@@ -146,9 +153,13 @@ class _Run:
         return replace(proof, sha256=self.keeper.finish(proof))
 
 
+def _name(file):
+    return "the proof to resume" if file is None else os.fspath(file)
+
+
 def _continued(resume, file, problem, given):
     """The proof to continue, with the settings it is to be continued with."""
-    name = "the proof to resume" if file is None else os.fspath(file)
+    name = _name(file)
     proof = resume if file is None else Proof.load(file)
     settings = replace(proof.settings, **{key: value for key, value in given.items()
                                           if key in ("depth", "stubborn")})

@@ -30,7 +30,7 @@ class Settings:
     as_printed: bool = False
 
     def __post_init__(self):
-        if self.method not in METHODS:
+        if not isinstance(self.method, str) or self.method not in METHODS:
             raise ValueError("the method is one of %s, not %r" % (", ".join(METHODS), self.method))
         if self.depth is None:
             object.__setattr__(self, "depth", METHODS[self.method])
@@ -39,6 +39,9 @@ class Settings:
             if isinstance(value, bool) or not isinstance(value, int) or not least <= value <= LIMIT:
                 raise ValueError("%s must be a whole number from %d to %d, not %r"
                                  % (name, least, LIMIT, value))
+        for name in "stubborn", "as_printed":
+            if not isinstance(getattr(self, name), bool):
+                raise ValueError("%s must be True or False, not %r" % (name, getattr(self, name)))
         if self.method == "loewner" and self.as_printed:
             raise ValueError("only the method thesis was ever printed: as_printed does not go "
                              "with loewner")

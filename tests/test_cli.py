@@ -308,3 +308,49 @@ def test_main_returns_the_status(sample, capsys):
     assert main(["-dx"]) == 2
     out, err = capsys.readouterr()
     assert "I could not decide" in out and one_line(err)
+
+
+def test_the_figure_destroys_no_proof(command, sample, tmp_path):
+    for name in "a.proof", "a.proof.gz":
+        assert command("-b", tmp_path / name, sample)[0] == 0
+        before = (tmp_path / name).read_bytes()
+        status, out, err = command("-g", tmp_path / name, sample)
+        assert (status, out) == (2, "") and one_line(err) and "overwrite" in err
+        assert (tmp_path / name).read_bytes() == before
+
+
+def test_a_figure_of_nothing(command, sample, tmp_path):
+    for name in "a.ps", "a.svg":
+        assert command("--time-limit", "0", "-g", tmp_path / name, sample)[0] == 1
+        assert (tmp_path / name).stat().st_size > 1000
+
+
+def test_nothing_that_a_terminal_obeys(command, sample, tmp_path):
+    """In messages, whatever name or text they quote."""
+    backup, evil = tmp_path / "b", tmp_path / "\x1b[31mx"
+    assert command("-b", backup, sample)[0] == 0
+    forged = backup.read_text().replace("program: converse 1", "program: converse \x1b[2J1")
+    body = forged[:forged.index("checksum:")]
+    evil.write_text(body + "checksum: sha256 %s\nend\n" % hashlib.sha256(body.encode()).hexdigest())
+    for arguments, stdin in ((["-r", evil], b""), ([evil], b""), ([], b"1 0\n\x1b[31mx 0\n"),
+                             (["-g", evil, "-b", evil, sample], b"")):
+        status, out, err = command(*arguments, stdin=stdin)
+        assert status == 2 and one_line(err) and "\x1b" not in err + out
+
+
+def test_options_that_do_not_fit_a_backup(command, sample, tmp_path):
+    backup = tmp_path / "b"
+    assert command("-b", backup, sample)[0] == 0
+    status, out, err = command("-r", backup, "--together")
+    assert (status, out) == (2, "") and one_line(err) and "do not move together" in err
+
+
+@pytest.mark.parametrize("arguments, advice", [
+    (["-d", "0"], "or deeper cuts (-d 10)."), (["-d", "3"], "or deeper cuts (-d 10)."),
+    (["-d", "60"], "or deeper cuts (-d 120)."),
+    (["--method", "loewner", "-d", "60000"], "or larger parameters.")])
+def test_advice_that_can_be_taken(command, sample, arguments, advice):
+    stdin = sample.read_bytes() if arguments == ["-d", "3"] else b"0 0\n0 0\n0 0\n1 1\n1 1\n"
+    status, out, err = command(*arguments, stdin=stdin)
+    assert status == 1 and err == ""
+    assert re.search(r"To try : .*\.", out)[0].endswith(advice)

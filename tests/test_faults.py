@@ -6,6 +6,7 @@ import pty
 import random
 import re
 import resource
+import shutil
 import signal
 import struct
 import subprocess
@@ -16,7 +17,7 @@ from pathlib import Path
 
 import pytest
 
-from converse import Proof
+from converse import Proof, files
 from truth import TORTURE
 
 @pytest.fixture(scope="session")
@@ -162,7 +163,7 @@ def test_two_runs_with_one_backup(start, command, sample, tmp_path, slow):
     backup = tmp_path / "backup"
     with start(*slow, "-b", backup, sample) as process:
         wait_for(backup)
-        status, out, err = command(*slow, "-b", backup, sample)
+        status, out, err = command("-r", backup)
         process.kill()
     assert status == 2 and out == ""
     assert "another run" in err and err.count("\n") == 1
@@ -228,3 +229,72 @@ def test_long_arithmetic_obeys(start, sample, options):
     assert time.monotonic() - began < 20
     assert process.returncode == (1 if "--time-limit" in options else 130 if err else 0)
     assert process.returncode or "loewner" in options       # which may be done before
+
+
+@pytest.mark.parametrize("first, second", [
+    (signal.SIGTERM, signal.SIGHUP), (signal.SIGHUP, signal.SIGTERM), (signal.SIGINT, signal.SIGTERM),
+    (signal.SIGINT, signal.SIGINT)])
+def test_two_signals_at_once(start, sample, tmp_path, slow, first, second):
+    """As at the end of a session; the second must not strike while the first is obeyed."""
+    for pause in (0.0, 0.005, 0.03):
+        backup = tmp_path / ("%g.proof" % pause)
+        with start(*slow, "-b", backup, sample) as process:
+            wait_for(backup)
+            time.sleep(0.3)
+            process.send_signal(first)
+            time.sleep(pause)
+            process.send_signal(second)
+            err = process.communicate(timeout=60)[1].decode()
+        assert process.returncode in (128 + first, 128 + second)
+        assert err == "converse: interrupted; continue with -r %s\n" % backup
+        assert not Proof.load(backup).no_tori
+
+
+def test_a_lock_that_is_gone(start, root, tmp_path):
+    """Whatever became of the lock, or of the directory, what was found is said."""
+    for gone in "lock", "directory":
+        home = tmp_path / gone
+        home.mkdir()
+        backup = home / "a.proof"
+        with start("--method", "loewner", "-b", backup, root / "inputs" / "standard-972.in") as process:
+            wait_for(backup)
+            os.unlink(str(backup) + ".lock")
+            if gone == "directory":
+                shutil.rmtree(home)
+            out, err = (text.decode() for text in process.communicate(timeout=120))
+        assert "I find no invariant tori" in out
+        if gone == "lock":
+            assert (process.returncode, err) == (0, "") and Proof.load(backup).no_tori
+        else:
+            assert process.returncode == 2 and "what was found is not saved" in err
+
+
+def test_a_lock_of_another_run_is_left_alone(tmp_path):
+    path = str(tmp_path / "a")
+    with files.lock(path):
+        os.unlink(path + ".lock")
+        open(path + ".lock", "w").close()       # as if another run had come
+    assert os.path.exists(path + ".lock")
+
+
+@pytest.mark.parametrize("mask, mode", [(0o077, 0o600), (0o022, 0o644)])
+def test_permissions_of_a_new_file(tmp_path, mask, mode):
+    before = os.umask(mask)
+    try:
+        files.write(tmp_path / "new", b"")
+    finally:
+        os.umask(before)
+    assert (tmp_path / "new").stat().st_mode & 0o777 == mode
+    (tmp_path / "new").chmod(0o640)
+    files.write(tmp_path / "new", b"x")
+    assert (tmp_path / "new").stat().st_mode & 0o777 == 0o640
+
+
+def test_interrupted_before_anything_was_found(start, sample, tmp_path):
+    backup = tmp_path / "a.proof"
+    with start("-p", "100000", "-b", backup, sample) as process:
+        time.sleep(1.5)
+        process.send_signal(signal.SIGINT)
+        err = process.communicate(timeout=60)[1].decode()
+    assert process.returncode == 130 and err == "converse: interrupted; nothing was found yet\n"
+    assert not backup.exists()

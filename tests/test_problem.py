@@ -200,3 +200,9 @@ def test_comments_are_lines(tmp_path):
     proof = prove(problem, method="loewner", backup=tmp_path / "a.proof")
     assert type(proof).load(tmp_path / "a.proof") == replace(proof, seconds=0)
     assert Problem(2, 2, 2, comments="one line").comments == ("one line",)
+
+
+@pytest.mark.parametrize("options", [{"together": "no"}, {"together": 1}, {"comments": (5,)}])
+def test_other_bad_arguments(options):
+    with pytest.raises(TypeError):
+        Problem(1, 1, 1, **options)

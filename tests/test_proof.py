@@ -454,3 +454,25 @@ def test_verify(proof, problem, made_up):
                 replace(proof, tree=proof.tree.replace("S", "P"))):
         with pytest.raises(check.Rejected):
             bad.verify()
+
+
+@pytest.mark.parametrize("options, error", [
+    ({"time_limit": float("nan")}, ValueError), ({"time_limit": -1}, ValueError),
+    ({"time_limit": "5"}, ValueError), ({"time_limit": None}, ValueError), ({"jobs": 0}, ValueError),
+    ({"jobs": "2"}, ValueError), ({"jobs": 2.5}, ValueError), ({"executor": 5}, TypeError),
+    ({"as_printed": "no"}, ValueError), ({"stubborn": 1}, ValueError), ({"method": 3}, ValueError),
+    ({"digits": "35"}, ValueError), ({"depth": 3.0}, ValueError)])
+def test_what_prove_refuses(problem, options, error):
+    with pytest.raises(error) as caught:
+        prove(problem, **options)
+    assert len(str(caught.value)) > 20
+    for wrong in "x", None, 5:
+        with pytest.raises(TypeError):
+            prove(wrong)
+
+
+def test_a_proof_of_nothing_can_be_shown(problem):
+    nothing = prove(problem, time_limit=0)
+    assert not nothing and nothing.xstar is None and nothing.report()
+    assert nothing._repr_html_().startswith("<pre>")
+    assert prove(problem) == prove(problem)         # however long each took
