@@ -250,8 +250,9 @@ def _signals_end():
     """Meanwhile SIGTERM and SIGHUP end the program as Ctrl-C does, unless they were ignored.  Only
     the first signal counts: another would strike while the backup is saved, or the process ends."""
     def end(number, _):
-        while before:
-            signal.signal(before.popitem()[0], signal.SIG_IGN)
+        for other in before:            # a handler, since Python complains of one that is ignored
+            before[other] = signal.SIG_IGN
+            signal.signal(other, lambda *_: None)
         raise Signalled(number)
 
     before = {}
