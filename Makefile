@@ -1,4 +1,4 @@
-# make prove, make test: each alone does everything it needs, from a fresh clone.
+# make (that is, make prove), make test: each alone does everything it needs, from a fresh clone.
 
 PYTHON = python3
 VENV = .venv
@@ -6,54 +6,61 @@ SANITIZED = .venv-sanitize
 SOURCES = $(wildcard csrc/* csrc/*/* converse/*.py) setup.py pyproject.toml MANIFEST.in
 SANITIZE = -fsanitize=address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer -g -O1
 
-# Installs the package with its tests' needs into a virtual environment; $(1) is that directory.
-# Objects of an earlier build may have been compiled with other flags, so they go first.
+PIP_INSTALL = pip install --quiet --disable-pip-version-check
+
+# Installs $(2) into the virtual environment $(1).  One that was not finished, or not by these
+# rules, is made anew; objects of an earlier build may have been compiled with other flags.
 define install
 	sh .ci/packages $(PYTHON)
-	test -x $(1)/bin/pip || $(PYTHON) -m venv --clear $(1)
+	test -e $@ || $(PYTHON) -m venv --clear $(1)
 	rm -rf build/lib* build/temp* build/bdist*
-	$(1)/bin/pip install --quiet --disable-pip-version-check '.[test]'
-	touch $(1)/stamp
+	$(1)/bin/$(PIP_INSTALL) $(2)
+	touch $@
 endef
 
-.PHONY: prove test torture mutate accuracy sanitize memcheck warnings bench charts clean
+.PHONY: prove test torture mutate accuracy sanitize memcheck warnings bench charts man clean
 
-prove: $(VENV)/stamp
+prove: $(VENV)/installed
 	@mkdir -p build
 	$(VENV)/bin/converse -d30 -g build/trig274.ps inputs/trig274.in
 	@echo 'The figure of the prisms is build/trig274.ps.'
 
-test: $(VENV)/stamp
+test: $(VENV)/with-test
 	$(VENV)/bin/pytest tests
 
 # A hundred times as many random cases; hours.
-torture: $(VENV)/stamp
+torture: $(VENV)/with-test
 	CONVERSE_TORTURE=100 $(VENV)/bin/pytest tests
 
 # Breaks the C core in one place after another and sees whether a test notices; half an hour.
-mutate: $(VENV)/stamp
+mutate: $(VENV)/with-test
 	$(VENV)/bin/python tests/mutate.py
 
 # The table of proven bounds and worst errors, measured anew.
-accuracy: $(VENV)/stamp
+accuracy: $(VENV)/with-test
 	$(VENV)/bin/python tests/accuracy.py > docs/accuracy.md
 
 # A proof, the kernels and a failing proof under valgrind's memcheck.
-memcheck: $(VENV)/stamp
+memcheck: $(VENV)/installed
 	PYTHONMALLOC=malloc valgrind -q --error-exitcode=9 --suppressions=tests/memcheck.supp $(VENV)/bin/python tests/memcheck.py
 
-sanitize: $(SANITIZED)/stamp
-	LD_PRELOAD="$$(gcc -print-file-name=libasan.so) $$(gcc -print-file-name=libstdc++.so.6)" ASAN_OPTIONS=detect_leaks=0 \
+# Safe path: the clone, where this starts, holds a core without sanitizers.
+sanitize: $(SANITIZED)/installed
+	PYTHONSAFEPATH=1 LD_PRELOAD="$$(gcc -print-file-name=libasan.so) $$(gcc -print-file-name=libstdc++.so.6)" ASAN_OPTIONS=detect_leaks=0 \
 	UBSAN_OPTIONS=halt_on_error=1:print_stacktrace=1 $(SANITIZED)/bin/pytest tests
 
-bench: $(VENV)/stamp
+bench: $(VENV)/installed
 	$(VENV)/bin/python tests/bench
 
-charts: $(VENV)/stamp
+charts: $(VENV)/with-plot
 	$(VENV)/bin/converse-chart docs
 
+# Manual pages and completions, from the commands' own parsers.
+man: $(VENV)/with-man
+	$(VENV)/bin/python docs/manual.py
+
 # Every translation unit that converse/_build.py lists, with all warnings as errors.
-warnings: $(VENV)/stamp
+warnings: $(VENV)/installed
 	$(VENV)/bin/python -c 'exec(open("converse/_build.py").read()); print(*SOURCES, sep="\n")' \
 	| while read source; do \
 	    echo $$source; \
@@ -61,14 +68,22 @@ warnings: $(VENV)/stamp
 	        -c $$source -o /dev/null || exit 1; \
 	done
 
-$(VENV)/stamp: $(SOURCES)
-	$(call install,$(VENV))
+# Editable: Python started in the clone, or anywhere with this environment, sees these very files.
+$(VENV)/installed: $(SOURCES)
+	$(call install,$(VENV),--editable .)
 
-$(SANITIZED)/stamp: export CFLAGS = $(SANITIZE)
-$(SANITIZED)/stamp: export LDFLAGS = -fsanitize=address,undefined
-$(SANITIZED)/stamp: $(SOURCES)
-	$(call install,$(SANITIZED))
+# What an extra of pyproject.toml adds to it.
+$(VENV)/with-%: $(VENV)/installed
+	$(VENV)/bin/$(PIP_INSTALL) 'converse-kam[$*]'
+	touch $@
+
+# Not editable: its core has other flags and must not take the other one's place in the clone.
+$(SANITIZED)/installed: export CFLAGS = $(SANITIZE)
+$(SANITIZED)/installed: export LDFLAGS = -fsanitize=address,undefined
+$(SANITIZED)/installed: $(SOURCES)
+	$(call install,$(SANITIZED),'.[test]')
 
 clean:
 	rm -rf build dist *.egg-info $(VENV) $(SANITIZED) .pytest_cache .hypothesis
+	rm -f converse/_native.*
 	find . -name __pycache__ -prune -exec rm -rf {} +

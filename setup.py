@@ -2,6 +2,7 @@
 
 import os
 import sys
+import sysconfig
 import tempfile
 
 from setuptools import setup
@@ -14,6 +15,8 @@ Install a C compiler, the headers of Python and the headers of GMP, then try aga
     Fedora:          dnf install gcc python3-devel gmp-devel
     macOS:           brew install gmp
     conda:           conda install -c conda-forge c-compiler gmp
+To check proofs you need none of these: CONVERSE_WITHOUT_CORE=1 leaves the core out, and
+converse/check.py also runs alone.
 """
 
 PROBES = [
@@ -45,4 +48,10 @@ class BuildExt(build_ext):
         super().build_extensions()
 
 
-setup(cffi_modules=["converse/_build.py:ffi"], cmdclass={"build_ext": BuildExt})
+# Without the core the package proves nothing, but converse-check works.
+core = [] if os.environ.get("CONVERSE_WITHOUT_CORE") else ["converse/_build.py:ffi"]
+
+# The core keeps to Python's stable ABI, which free-threaded Pythons do not have yet.
+stable = {} if sysconfig.get_config_var("Py_GIL_DISABLED") else {"py_limited_api": "cp39"}
+
+setup(cffi_modules=core, cmdclass={"build_ext": BuildExt}, options={"bdist_wheel": stable})

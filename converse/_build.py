@@ -5,10 +5,10 @@ import os
 
 from cffi import FFI
 
-SOURCES = ["numbers/apm", "numbers/special", "numbers/memory",
-           "thesis/start", "thesis/rigorous", "thesis/double",
+SOURCES = ["numbers/apm", "numbers/special", "numbers/guard",
+           "thesis/start", "thesis/region", "thesis/rigorous", "thesis/double",
            "loewner/orbit", "loewner/witness", "loewner/bound", "loewner/try",
-           "search", "kernels"]
+           "setup", "search", "kernels"]
 SOURCES = ["csrc/%s.c" % name for name in SOURCES]
 
 # The flags are part of the proof: no fused, reordered or extended floating-point arithmetic.

@@ -14,32 +14,35 @@ import random
 import sys
 from fractions import Fraction
 
-from . import __version__, files, kernels, picture
+import converse
+
+from . import files, picture
 from .cli import Parser, ended
 from .files import ConverseError
 from .problem import Problem
-from .proof import prove
+from .version import __version__
 
-FORMATS = tuple(ending[1:] for ending in picture.FORMATS)
 SCALE = Fraction("11.21436")            # a = SCALE epsilon
 TOP = "0.0280"                          # above it there is nothing left to prove
 
-# The thesis, table of results: bound and seconds on a Sun-4; it gives no time for 0.0272.
-SUN = (("0.0278", 500), ("0.0276", 759), ("0.0274", 2698))
+# The thesis, table of results: bound, seconds on a Sun-4 (it gives none for 0.0272), longest orbit.
+SUN = (("0.0278", 500, 3), ("0.0276", 759, 4), ("0.0274", 2698, 4))
 BOXES = (("0.0278", "0.313"), ("0.0276", "0.311"), ("0.0274", "0.3085"), ("0.0272", "0.306"))
-LIMITS = {"thesis": 0.0271, "loewner": 0.0141}
+SINGLES = ("0.0271", "0.02704", "0.0270")       # for the thesis's method, without width
 
-BOUNDS = ("0.0272", "0.0250", "0.0220", "0.0200", "0.0180", "0.0160", "0.0152", "0.0148", "0.0145")
+BOUNDS = ("0.0272", "0.0250", "0.0220", "0.0200", "0.0180", "0.0160", "0.0152", "0.0148", "0.0144",
+          "0.0142", "0.0141")
+LONG = 30                               # orbits from which the end of the curve is estimated
 DIGITS = (1, 2, 3, 4, 5, 7, 10, 15, 20, 35, 50, 75, 100, 150, 200)
 WALLS = {
     "thesis": ("0.0280", "0.0278", "0.0276", "0.0274", "0.0272", "0.0271", "0.02706", "0.02704",
-               "0.02703", "0.02702"),
+               "0.02703", "0.02702", "0.0270"),
     "loewner": ("0.0250", "0.0240", "0.0220", "0.0200", "0.0180", "0.0170", "0.0160", "0.0155",
                 "0.0150", "0.0147", "0.0145", "0.0144", "0.0143", "0.0142", "0.01415", "0.0141",
-                "0.01405"),
+                "0.01405", "0.0140"),
 }
 QUICK = {"bound": 0.0160, "thesis": 0.02704, "loewner": 0.0147}     # --quick stops there
-WALL_SECONDS = 20.0
+WALL_SECONDS = 40.0
 
 # A prism of the size that proofs near the wall cut to, on an orbit of trig274: the centre and the
 # half-width of a, b, c, then x*, then the centre and the half-width of x_1, in radians.
@@ -52,8 +55,8 @@ SAMPLES = 2000
 COLOURS = {"1989": "0.1", "thesis": "#1f5f94", "loewner": "#d98a2b"}
 FAILED = "#c03030"
 SMALL = {"textcoords": "offset points", "fontsize": 7, "color": "0.3"}
-STYLE = {                               # the hashsalt: the same numbers, the same file
-    "svg.hashsalt": "converse", "lines.linewidth": 1, "lines.markersize": 5.5,
+STYLE = {
+    **picture.SALT, "lines.linewidth": 1, "lines.markersize": 5.5,
     "legend.frameon": False, "legend.fontsize": 8, "xtick.labelsize": 8, "ytick.labelsize": 8,
     "axes.spines.top": False, "axes.spines.right": False, "axes.grid": True,
     "axes.axisbelow": True, "grid.color": "0.92", "grid.linewidth": 0.6,
@@ -69,16 +72,15 @@ def on_line(low, high=None, together=False):
 
 
 def _problem(centre, half, together=False):
-    one = Fraction(1)
-    return Problem((centre, centre, 2 * centre, one, one), (half, half, 2 * half, one, one),
-                   together=together)
+    return Problem.around((centre, centre, 2 * centre, 1, 1), (half, half, 2 * half, 1, 1),
+                          together=together)
 
 
 def timed(problem, **options):
     """A proof and its seconds: the least of a few runs, if they are short."""
     proofs = []
     while len(proofs) < 5 and sum(proof.seconds for proof in proofs) < 1:
-        proofs.append(prove(problem, **options))
+        proofs.append(converse.prove(problem, **options))
     return proofs[-1], min(proof.seconds for proof in proofs)
 
 
@@ -87,22 +89,28 @@ def _yes(truth):
 
 
 def bound(quick):
-    for epsilon, seconds in SUN:
-        yield "1989", epsilon, seconds, "yes"
+    for epsilon, seconds, orbit in SUN:
+        yield "1989", epsilon, seconds, orbit, "yes"
     for epsilon, centre in BOXES:
-        proof, seconds = timed(_problem(Fraction(centre), Fraction("0.00125")))
-        yield "thesis", epsilon, seconds, _yes(proof.no_tori)
+        yield _bound_row("thesis", epsilon, _problem(Fraction(centre), Fraction("0.00125")))
+    for epsilon in SINGLES:
+        yield _bound_row("thesis, single value", epsilon, on_line(epsilon), digits=20)
     for epsilon in BOUNDS:
         if not quick or float(epsilon) >= QUICK["bound"]:
-            proof, seconds = timed(on_line(epsilon, TOP, together=True), method="loewner")
-            yield "loewner", epsilon, seconds, _yes(proof.no_tori)
+            yield _bound_row("loewner", epsilon, on_line(epsilon, TOP, together=True),
+                             method="loewner")
+
+
+def _bound_row(name, epsilon, problem, **options):
+    proof, seconds = timed(problem, **options)
+    return name, epsilon, seconds, proof.counts.max_NTsteps, _yes(proof.no_tori)
 
 
 def digits(quick):
     problem = _problem(Fraction("0.3085"), Fraction("0.00125"))
     for places in DIGITS:
-        proofs, before = zip(*((prove(problem, digits=places, jobs=1),
-                                prove(problem, digits=places, jobs=1, time_limit=0))
+        proofs, before = zip(*((converse.prove(problem, digits=places, jobs=1),
+                                converse.prove(problem, digits=places, jobs=1, depth=0))
                                for _ in range(3 if quick else 12)))
         yield (places, min(proof.seconds for proof in proofs),
                min(proof.seconds for proof in before), proofs[0].counts.proved,
@@ -149,9 +157,9 @@ def width(quick):
             values = [*prism[0], *itertools.chain(*prism[1])]
             repeat = (2000 if quick else 20000) if options else (200 if quick else 2000)
             try:
-                ns = min(float(kernels.call("image_ns", values + [repeat], 1, places, **options)[0])
-                         for _ in range(3))
-                prism = kernels.image(prism, places, **options)
+                ns = min(float(converse.kernels.call("image_ns", values + [repeat], 1, places,
+                                                     **options)[0]) for _ in range(3))
+                prism = converse.kernels.image(prism, places, **options)
             except ArithmeticError:         # a matrix could not be inverted
                 break
             halves = [sum(map(abs, row)) for row in prism[1][5:]]
@@ -166,7 +174,7 @@ def taylor_width(extents):
     for n in POINTS:
         values = [*p, *v, *dp, *dv, *XSTAR, 0, n, 20000]
         try:
-            results = [kernels.call("loewner_step", values, 3, 17, arithmetic="double")
+            results = [converse.kernels.call("loewner_step", values, 3, 17, arithmetic="double")
                        for _ in range(3)]
         except ValueError:
             return
@@ -179,8 +187,8 @@ def wall(quick):
         for epsilon in values:
             if quick and float(epsilon) < QUICK[method]:
                 break
-            proof = prove(on_line(epsilon, together=method == "loewner"), digits=20, method=method,
-                          time_limit=WALL_SECONDS)
+            proof = converse.prove(on_line(epsilon, together=method == "loewner"), digits=20,
+                                   method=method, time_limit=WALL_SECONDS)
             counts = proof.counts
             yield method, epsilon, counts.proved, counts.most_cuts, _yes(proof.no_tori)
             if not proof.no_tori:
@@ -197,25 +205,53 @@ def _legend(axes, **options):
     axes.legend(frameon=False, fontsize=8, **options)
 
 
+def estimated_end(rows):
+    """Where proofs would need orbits without end: once orbits are long, the inverse of the longest
+    falls about linearly with epsilon, and the line of least squares says where it is 0.  An
+    estimate; None where the proofs do not give one."""
+    points = [(float(row[1]), 1 / row[3]) for row in rows
+              if row[0] == "loewner" and row[4] == "yes" and row[3] >= LONG]
+    if len(points) < 3:
+        return None
+    x, y = (sum(values) / len(points) for values in zip(*points))
+    rise = sum((p - x) * (q - y) for p, q in points)
+    end = x - y * sum((p - x) ** 2 for p, _ in points) / rise if rise > 0 else 0
+    return end if 0 < end < min(points)[0] else None
+
+
 def draw_bound(figure, rows):
     axes = figure.subplots()
     for name, marker, line, label in (("1989", "^", "none", "the thesis, Sun-4, 1989"),
                                       ("thesis", "s", "none", "the thesis's method, 35 digits"),
                                       ("loewner", "o", "-", "method loewner")):
-        good = [row for row in rows if row[0] == name and row[3] == "yes"]
+        good = [row for row in rows if row[0] == name and row[4] == "yes"]
         axes.plot([row[2] for row in good], [float(row[1]) for row in good], marker=marker,
                   linestyle=line, color=COLOURS[name], label=label)
-    for name, words in (("thesis", "limit of the thesis's criterion (as run in 1989)"),
-                        ("loewner", "about the limit of the Loewner criterion")):
-        axes.axhline(LIMITS[name], color=COLOURS[name], linewidth=0.9, linestyle="--")
-        axes.text(0.985, LIMITS[name] - 0.0001, "%s, %.4f" % (words, LIMITS[name]), fontsize=7.5,
-                  color="0.25", ha="right", va="top", transform=axes.get_yaxis_transform())
-    axes.set(xscale="log", ylim=(LIMITS["loewner"] - 0.0012, 0.0286),
+    lines = []
+    singles = _pick(rows, 0, "thesis, single value")
+    good, bad = ([row[1] for row in singles if row[4] == word] for word in ("yes", "no"))
+    if good:
+        words = "the thesis's method: %s alone is proved" % good[-1]
+        lines.append((float(good[-1]), "--", COLOURS["thesis"],
+                      words + ", %s is not" % bad[0] if bad else words))
+    end = estimated_end(rows)
+    if end is not None:
+        lines.append((end, ":", COLOURS["loewner"],
+                      "estimate: the orbits needed grow without end towards about %.4f" % end))
+    for value, style, colour, words in lines:
+        axes.axhline(value, color=colour, linewidth=0.9, linestyle=style)
+        axes.text(0.985, value - 0.0001, words, fontsize=7.5, color="0.25", ha="right", va="top",
+                  transform=axes.get_yaxis_transform())
+    lowest = min([float(row[1]) for row in rows] + [line[0] for line in lines])
+    axes.set(xscale="log", ylim=(lowest - 0.0012, 0.0286),
              xlabel="time of the proof (seconds)", ylabel=r"proven upper bound of $\varepsilon_c$",
              title="What is proved, and how long the proof takes")
     axes.legend(loc="center right", bbox_to_anchor=(1, 0.55))
-    return ("thesis: one box 0.0002 wide for each point (the time for 0.0272 is not known);\n"
-            "loewner: everything above the point, in one proof")
+    caption = ("thesis: one box 0.0002 wide for each point (the time for 0.0272 is not known);\n"
+               "loewner: everything above the point, in one proof")
+    if end is not None:
+        caption += "; the estimate: where 1 / (longest orbit) falls to 0"
+    return caption
 
 
 def draw_digits(figure, rows):
@@ -283,10 +319,10 @@ def draw_wall(figure, rows):
     for axes, column, what in ((upper, 2, "prisms proved"), (lower, 3, "deepest cut")):
         for name, marker, label in (("thesis", "s", "the thesis's method, 20 digits"),
                                     ("loewner", "o", "method loewner")):
-            points = [(float(row[1]), row[column], row[4]) for row in rows if row[0] == name]
-            axes.plot([x for x, _, _ in points], [y for _, y, _ in points], marker + "-",
+            good, bad = ([(float(row[1]), row[column]) for row in rows
+                          if row[0] == name and row[4] == word] for word in ("yes", "no"))
+            axes.plot([x for x, _ in good], [y for _, y in good], marker + "-",
                       color=COLOURS[name], label=label)
-            bad = [(x, y) for x, y, good in points if good != "yes"]
             axes.plot([x for x, _ in bad], [y for _, y in bad], marker, color=COLOURS[name],
                       markerfacecolor="white")
         axes.set_ylabel(what)
@@ -294,11 +330,14 @@ def draw_wall(figure, rows):
     lower.set(ylim=(-2, None),
               xlabel=r"$\varepsilon$, a single value (a = b = c/2 = 11.21436 $\varepsilon$)")
     upper.legend(loc="upper center", bbox_to_anchor=(0.55, 1))
-    return "on all cores; open: not proved within %g seconds" % WALL_SECONDS
+    return "on all cores" + (
+        "; open: given up, or not finished in %g seconds; the prisms proved until then"
+        % WALL_SECONDS
+        if _pick(rows, 4, "no") else "")
 
 
 CHARTS = {
-    "bound": (("method", "epsilon_c", "seconds", "proved"), bound, draw_bound),
+    "bound": (("method", "epsilon_c", "seconds", "longest_orbit", "proved"), bound, draw_bound),
     "digits": (("digits", "seconds", "before_search", "prisms", "proved"), digits, draw_digits),
     "width": (("form", "digits", "point", "nanoseconds", "ratio"), width, draw_width),
     "wall": (("method", "epsilon", "prisms", "deepest_cut", "proved"), wall, draw_wall),
@@ -319,21 +358,17 @@ def machine():
 
 def chart(name, rows, kind):
     """A chart of these rows, as the bytes of a file of that kind."""
-    from matplotlib import rc_context
+    from matplotlib import style
     from matplotlib.figure import Figure
 
     height = 5.4 if name == "wall" else 4.3
-    data = io.BytesIO()
-    with rc_context(STYLE):
+    with style.context(["default", STYLE]):
         figure = Figure(figsize=(7.2, height))
         caption = CHARTS[name][2](figure, rows) + "\n" + machine().replace("$", "")
         figure.subplots_adjust(left=0.11, right=0.97, bottom=0.5 / height, top=1 - 0.4 / height)
         figure.text(0.11, -0.04 / height, caption, fontsize=7, color="0.35", va="top",
                     linespacing=1.4)
-        figure.savefig(data, format=kind, dpi=150, bbox_inches="tight", pad_inches=0.12,
-                       metadata={"Date": None} if kind == "svg" else
-                       {"CreationDate": None} if kind == "pdf" else None)
-    return data.getvalue()
+        return picture.encode(figure, kind, dpi=150, pad_inches=0.12)
 
 
 def _words(row):
@@ -354,7 +389,8 @@ def parser():
         "Exit status: 0 all are written; 2 bad usage or directory; 130 interrupted."))
     p.add_argument("directory", nargs="?", default=os.curdir,
                    help="where to write chart-NAME.svg and chart-NAME.csv (default: here)")
-    p.add_argument("--format", choices=FORMATS, default=FORMATS[0], help="of the charts")
+    p.add_argument("--format", choices=picture.FORMATS, default=picture.FORMATS[0],
+                   help="of the charts")
     p.add_argument("--quick", action="store_true", help="leave out what takes long")
     p.add_argument("--version", action="version", version="converse-chart " + __version__)
     return p
@@ -364,7 +400,7 @@ def run(options):
     try:
         picture.check()
     except ConverseError:
-        raise ConverseError("charts need matplotlib; pip install 'converse[plot]'") from None
+        raise ConverseError("charts need matplotlib; pip install matplotlib") from None
     try:
         os.makedirs(options.directory, exist_ok=True)
     except OSError as error:

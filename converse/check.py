@@ -5,8 +5,12 @@ beta(x) = 2I - V''(x).  Its orbits are stationary for the sum of |x[j+1] - x[j]|
 whose second variation is  Q(n) = sum of n[j].beta(x[j])n[j] - 2 n[j].n[j+1].
 
 The criterion (the Loewner criterion of converse KAM, by its witness).
-1. Orbits on an invariant Lagrangian graph minimize (Katok; MacKay, Meiss and Stark, Nonlinearity 2,
-   1989), so Q(n) >= 0 for every finite sequence n; hence also for every square-summable one.
+1. Orbits on an invariant graph p = P + S'(x), S of class C1, minimize (MacKay, Meiss and Stark,
+   Nonlinearity 2, 1989).  For F(x, y) = |y - x|^2 / 2 - V(x) + P.(x - y) + S(x) - S(y) has a least
+   value over y, taken where y - x = P + S'(y), that is at the successor of x on the graph alone;
+   as a function of x this least value has the derivative dF/dx = 0 there (Danskin), so it is
+   constant, and no other segment between the same ends sums up to less.  So Q(n) >= 0 for every
+   finite sequence n; hence also for every square-summable one, since beta is bounded.
    A graph lies over the whole torus: it has an orbit through x[0] = x*, and x[1] is somewhere.
 2. Let B > 2 bound the largest eigenvalue of beta over the torus and the parameters, and let
    l = 2 / (B + sqrt(B^2 - 4)), the lesser root of l + 1/l = B.  Choose n[s..t] at will and let it
@@ -24,12 +28,17 @@ error made on the way), so the sum is bounded as a whole: effects that cancel, c
 
 The arithmetic.  Python integers, in units of 2^-bits: exact, unbounded, and each rounding, a >> or a
 //, is to be seen where it happens.  Errors are counted in units.  This file shares no code with the
-prover: of the package it takes the version, for its report, and nothing else.
+prover: of the package it takes the version, for its report, and nothing else; and it needs nothing
+but Python, so a copy of this one file will do.
+
+What is said.  "Rejected" is a file that is wrong whatever the truth about the map: altered, without
+a whole and decided tree, with a leaf skipped whose mirror image is not proved.  A leaf that is not
+excluded is not thereby refuted, since a longer orbit might exclude it: then the file is "not
+confirmed".  docs/format.md has the format and the exit statuses.
 """
 
 import argparse
 import collections
-import concurrent.futures.process
 import contextlib
 import gzip
 import hashlib
@@ -41,34 +50,56 @@ import os
 import random
 import re
 import signal
+import stat
 import sys
+import tempfile
+import threading
+import time
 import zlib
 from array import array
 from dataclasses import dataclass
 from fractions import Fraction
 
-from tqdm import tqdm
-
 try:
-    from converse import __version__
+    from converse.version import __version__
 except ImportError:                     # the file also works alone
     __version__ = "(standing alone)"
 
-VERIFIED, REJECTED, UNUSABLE, INTERRUPTED = 0, 1, 2, 130
+VERIFIED, REJECTED, UNUSABLE, PART, SPOT_CHECK, NOT_CONFIRMED = range(6)    # exit statuses
+INTERRUPTED = 128                       # and the number of the signal
 MAX_BYTES = 1 << 28                     # of a proof file, uncompressed
 MAX_CUTS = 1000                         # of a leaf
+MAX_LINE = 1 << 24                      # of the header
+MAX_CHARACTERS = 1000                   # of a number in the header
+MAX_SIZE = 10 ** 300                    # of such a number
+MAX_BITS = 4096                         # of the arithmetic
 MAX_HALVINGS, MAX_PIECES = 12, 512      # of a leaf, by the checker itself
 MAX_POINTS = 330                        # of an orbit
-CHUNK = 64                              # leaves per task
+CHUNK = 16                              # leaves per task
 NU_BITS = 20                            # of the test vectors
+STATE_SECONDS, BAR_SECONDS = 10, 0.2    # between two writes
 
 
-class Unusable(Exception):
+class Failure(Exception):
+    """Nothing was verified; the text says why."""
+
+
+class Rejected(Failure):
+    """The file is wrong, whatever the truth about the map may be."""
+
+    status, word = REJECTED, "rejected: "
+
+
+class NotConfirmed(Failure):
+    """The checker has reached a limit of its own: what the file claims may be true or false."""
+
+    status, word = NOT_CONFIRMED, "not confirmed: "
+
+
+class Unusable(Failure):
     """The arguments or the file cannot be used at all."""
 
-
-class Rejected(Exception):
-    """The file does not prove what it claims, or its format is broken."""
+    status, word = UNUSABLE, ""
 
 
 # ---- the proof file
@@ -76,12 +107,21 @@ class Rejected(Exception):
 NAMES = ("a", "b", "c", "v0", "v1")
 AXES = "01234"                          # of cuts: v0, v1, then a, b, c or, together, 2 for all
 COUNTS = ("depth", "cuts", "proved", "symmetric", "undecided", "most_cuts")
-IGNORED = ("program", "method", "digits", "stubborn", "seconds", "quick_tries", "tries", "Rtries",
+IGNORED = ("program", "method", "digits", "stubborn", "quick_tries", "tries", "Rtries",
            "HermSuccess", "LLSuccess", "ll_used", "reasons", "max_steps", "max_NTsteps",
            "B", "pending")
-OPTIONAL = {"T", "Tr-", "Tr+", "lambda-min", "lambda-max", "comment"}     # ignored, too
+OPTIONAL = {"T", "Tr-", "Tr+", "lambda-min", "lambda-max", "seconds", "comment"}    # ignored, too
 FIELDS = {*NAMES, *COUNTS, *IGNORED, "kind", "xstar", "together", "at once"}
+KNOWN = FIELDS | OPTIONAL
 NUMBER = re.compile(r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]{1,3})?", re.ASCII)
+
+
+MAGIC = b"converse proof "               # and the version, alone on the first line
+
+
+def reason(error):
+    """An OSError in words."""
+    return getattr(error, "strerror", None) or str(error)
 
 
 @dataclass(frozen=True)
@@ -102,56 +142,72 @@ def read(path):
     """Reads a proof file; nothing in it is believed but what the claim is."""
     try:
         with open(path, "rb") as file:
-            data = raw = file.read(MAX_BYTES + 1)
-        if raw[:2] == b"\x1f\x8b":
-            with gzip.GzipFile(fileobj=io.BytesIO(raw)) as file:
-                data = file.read(MAX_BYTES + 1)
-        text = data.decode("utf-8")
+            packed = file.peek(2)[:2] == b"\x1f\x8b"
+            stream = gzip.GzipFile(fileobj=file) if packed else file
+            data = bytearray(stream.read(len(MAGIC)))
+            if data != MAGIC:
+                raise Unusable("is not a proof file")
+            while (more := stream.read(1 << 20)) and len(data) <= MAX_BYTES:
+                data += more
     except (EOFError, zlib.error, gzip.BadGzipFile):
         raise Unusable("the compressed file is damaged or truncated") from None
-    except UnicodeDecodeError:
-        raise Unusable("is not a proof file") from None
     except (OSError, ValueError) as error:
-        raise Unusable("cannot be read (%s)" % (getattr(error, "strerror", 0) or error)) from None
-    if max(len(raw), len(data)) > MAX_BYTES:
-        raise Unusable("is larger than %d bytes" % MAX_BYTES)
-    if not text.startswith("converse proof "):
-        raise Unusable("is not a proof file")
-    if not text.startswith("converse proof 2\n"):
-        raise Rejected("the format is not version 2")
-    body, marker, end = text.rpartition("checksum: sha256 ")
-    if not body.endswith("\n") or not re.fullmatch("[0-9a-f]{64}\nend\n", end):
+        raise Unusable("cannot be read (%s)" % reason(error)) from None
+    if len(data) > MAX_BYTES:
+        raise NotConfirmed("the file is larger than %d bytes, the checker's limit" % MAX_BYTES)
+    first = data[len(MAGIC):len(MAGIC) + 9].partition(b"\n")[0]
+    if first.endswith(b"\r"):
+        raise Rejected("its lines end in CR LF: it was altered on its way; ask for the original")
+    if first != b"2":
+        raise Unusable("is a proof file of another version; this checker knows version 2")
+    marker = b"checksum: sha256 "
+    end = data.rfind(b"\n" + marker) + 1
+    end_line = data[end + len(marker):]
+    if not end or not re.fullmatch(b"[0-9a-f]{64}\nend\n", end_line):
         raise Rejected("the file does not end with its checksum; it is truncated or altered")
-    if end[:64] != hashlib.sha256(body.encode("utf-8")).hexdigest():
+    whole = memoryview(data)
+    if end_line[:64] != hashlib.sha256(whole[:end]).hexdigest().encode():
         raise Rejected("wrong checksum: the file was changed or damaged")
-    head, marker, tree = body.partition("\ntree:\n")
-    if not marker:
+    start = data.find(b"\ntree:\n", 0, end) + 1
+    if not start:
         raise Rejected("there is no tree")
-    return parse(head.split("\n")[1:], tree.replace("\n", ""), hashlib.sha256(data).hexdigest())
+    tree = data[start + len(b"tree:\n"):end].translate(None, b"\n").decode("latin-1")
+    return parse(bytes(whole[:start]), tree, hashlib.sha256(whole).hexdigest())
 
 
-def parse(lines, tree, sha256):
-    """The claim; the header must give each field once, and nothing of unknown meaning."""
-    header = {}
-    for line in lines:
-        name, colon, value = line.partition(": ")
-        if not colon or name not in FIELDS | OPTIONAL:
-            raise Rejected("the header has a line of unknown meaning: '%.40s'" % line)
+def parse(head, tree, sha256):
+    """The claim; the header must give each field once, and nothing of unknown meaning.
+
+    Nothing of it is repeated in a message but the names of fields that are known.
+    """
+    header, file = {}, io.BytesIO(head)
+    file.readline()                                     # which read has seen to
+    for number, line in enumerate(iter(lambda: file.readline(MAX_LINE), b""), 2):
+        if len(line) == MAX_LINE:
+            raise NotConfirmed("line %d is longer than the checker's limit, %d bytes"
+                               % (number, MAX_LINE - 1))
+        name, colon, value = line.decode("utf-8", "replace").rstrip("\n").partition(": ")
+        if not colon or name not in KNOWN:
+            raise Rejected("line %d, in the header, is of unknown meaning" % number)
         if name in header and name != "comment":
             raise Rejected("the header gives %s twice" % name)
         header[name] = value
     if FIELDS - header.keys():
         raise Rejected("the header lacks %s" % ", ".join(sorted(FIELDS - header.keys())))
     if header["kind"] != "sound":
-        raise Rejected("the file says '%.40s': it is not meant as a proof" % header["kind"])
+        raise Rejected("the file's kind is not 'sound': it is not meant as a proof")
     pairs = []
     for name in (*NAMES, "xstar"):
-        words = header[name].split(" ")
-        if len(words) != 2 or len(header[name]) > 4000 or not all(map(NUMBER.fullmatch, words)):
+        words = header[name].split(" ", 2)
+        if len(words) != 2 or not all(map(NUMBER.fullmatch, words)):
             raise Rejected("the header's %s is not two decimal numbers" % name)
+        if max(map(len, words)) > MAX_CHARACTERS:
+            raise NotConfirmed("the header's %s has more than %d characters, the checker's limit"
+                               % (name, MAX_CHARACTERS))
         pairs.append(tuple(map(Fraction, words)))
-        if max(map(abs, pairs[-1])) > 10 ** 300:
-            raise Rejected("the header's %s is out of range" % name)
+        if max(map(abs, pairs[-1])) > MAX_SIZE:
+            raise NotConfirmed("the header's %s is out of range: the checker's limit is 1e300"
+                               % name)
     *ranges, xstar = pairs
     if min(half for _, half in ranges) < 0:
         raise Rejected("a half-width is negative")
@@ -191,15 +247,16 @@ def leaves(tree):
         elif node in "PSU":
             yield position, cell
         else:
-            raise Rejected("'%s' is not a node of a finished tree, at node %d" % (node, position))
+            raise Rejected("%a is not a node of a finished tree, at node %d" % (node, position))
         if sum(cuts) > MAX_CUTS:
-            raise Rejected("node %d lies below %d cuts" % (position, MAX_CUTS))
+            raise NotConfirmed("node %d lies below %d cuts, the checker's limit"
+                               % (position, MAX_CUTS))
     if pending:
         raise Rejected("the tree is incomplete: %d of its parts are missing" % len(pending))
 
 
 def check_tree(claim):
-    """The number of leaves, if the tree is whole, decided, and what the header's counts say."""
+    """Rejected, if the tree is not whole, decided, and what the header's counts say."""
     total = most_cuts = 0
     if claim.together and set("34") & set(claim.tree):
         raise Rejected("parameters that move together are cut one at a time")
@@ -207,7 +264,7 @@ def check_tree(claim):
         total += 1
         depth = sum(cuts)
         if claim.tree[position] == "U":
-            raise Rejected("leaf %d is undecided" % total)
+            raise Rejected("leaf %d is undecided: the file claims no theorem" % total)
         if depth > claim.counts["depth"]:
             raise Rejected("leaf %d was cut more often than the depth allows" % total)
         if claim.tree[position] == "P":
@@ -218,7 +275,6 @@ def check_tree(claim):
         if claim.counts[name] != value:
             raise Rejected("the header's %s is %d, the tree's %d"
                            % (name, claim.counts[name], value))
-    return total
 
 
 class Mirror:
@@ -229,7 +285,7 @@ class Mirror:
         a, b, _, v0, v1 = zip(claim.centre, claim.half)
         self.symmetric = a == b and v0 == v1 and claim.xstar[0] == claim.xstar[1]
         self.tree, self.together = claim.tree, claim.together
-        self.upper = array("q", bytes(8 * len(self.tree)))  # where a node's upper half begins
+        self.upper = array("i", [0]) * len(self.tree)       # where a node's upper half begins
         unfinished = []                                     # nodes whose lower half goes on
         for position, node in enumerate(self.tree):
             if node in AXES:
@@ -240,7 +296,7 @@ class Mirror:
     def refusal(self, cell):
         """Why the symmetric leaf may not be skipped, or None if its mirror image is proved."""
         if not self.symmetric:
-            return "is skipped by symmetry, but the problem is not symmetric"
+            return "is skipped, but the problem is not symmetric"
         image = [(index, cuts) for index, cuts in zip(*cell)]
         image[0], image[1] = image[1], image[0]
         if not self.together:
@@ -253,7 +309,7 @@ class Mirror:
                 continue
             axis = AXES.find(node)
             if axis < 0:
-                return "is skipped by symmetry, but its mirror image is not proved"
+                return "is skipped, but its mirror image is not proved"
             halves = lower, self.upper[position]
             index, cuts = image[axis]
             if cuts == 0:                                   # the image has both halves
@@ -262,6 +318,19 @@ class Mirror:
                 rest = index & (1 << cuts - 1) - 1, cuts - 1
                 todo.append((halves[index >> cuts - 1], changed(image, axis, rest)))
         return None
+
+
+def check_mirror_images(claim):
+    """Rejected, if a leaf is skipped by symmetry that may not be."""
+    if "S" not in claim.tree:
+        return
+    mirror, skipped = Mirror(claim), 0
+    for position, cell in leaves(claim.tree):
+        if claim.tree[position] == "S":
+            why = mirror.refusal(cell)
+            if why:
+                raise Rejected(leaf_text(claim, "S", skipped, cell) + " " + why)
+            skipped += 1
 
 
 # ---- fixed-point numbers: integers in units of 2^-bits
@@ -560,9 +629,15 @@ class Criterion:
     def __init__(self, claim):
         narrow = max([h.denominator.bit_length() - h.numerator.bit_length()
                       for h in claim.half if h] + [0])
-        self.fixed = fixed = Fixed(max(96, 64 + narrow + claim.counts["most_cuts"]))
+        bits = max(96, 64 + narrow + claim.counts["most_cuts"])
+        if bits > MAX_BITS:
+            raise NotConfirmed("numbers of %d bits are needed; the checker's limit is %d"
+                               % (bits, MAX_BITS))
+        self.fixed = fixed = Fixed(bits)
         self.parameters = [[math.floor(x * fixed.one) for x in claim.centre[:3]],
                            [math.floor(x * fixed.one) for x in claim.half[:3]]]
+        if max(map(abs, sum(self.parameters, []))) >> 2 * bits:     # l would have no digit left
+            raise NotConfirmed("the parameters are too large for this checker")
         self.together = claim.together
         self.symbols = (0, 0, 0) if claim.together else (0, 1, 2)
         self.xstar = [math.floor(x * fixed.one) for x in claim.xstar]
@@ -581,7 +656,7 @@ class Criterion:
         if self.B <= 2 * fixed.one:
             # The tails of step 2 must be square-summable, l < 1, which needs B > 2.  (The mean of
             # beta over the torus is 2I, so this would say that there are no parameters.)
-            raise Rejected("beta has no eigenvalue above 2: the criterion does not apply")
+            raise NotConfirmed("beta has no eigenvalue above 2: the criterion does not apply")
         self.l_of = {}                      # by the cell's slices of the parameters
 
     def least_pivot(self, cell):
@@ -608,7 +683,7 @@ class Criterion:
             if l <= 0:
                 # Harmless, since a lesser l only makes (3) harder; but the witness needs 1/l, and
                 # no theorem is wanted from numbers that have lost all their digits.
-                raise Rejected("the parameters are too large for this checker")
+                raise NotConfirmed("the parameters are too large for this checker")
             self.l_of[key] = l
         return self.l_of[key]
 
@@ -649,7 +724,7 @@ class Criterion:
         """
         fixed, symbols, parameters = self.fixed, self.symbols, list(zip(centre[:3], half[:3]))
         waves = [k for k, parameter in enumerate(parameters) if any(parameter)]
-        why, columns, known = "the orbit of its centre contradicts nothing", half, 7
+        why, columns, known = None, half, 7
         orbit = collections.deque()
         point = Point(fixed, parameters, self.xstar, ([0] * 5 + [1, 0], [0] * 5 + [0, 1]))
         ahead, due = True, 1
@@ -678,7 +753,9 @@ class Criterion:
                 if bound < 0:
                     return None
                 why = "its second variation may be positive"
-        return why, columns
+        return why or "the orbit of its centre contradicts nothing over %d points, %s" % (
+            len(orbit), "the most that are followed" if len(orbit) == MAX_POINTS else
+            "beyond which it is too uncertain"), columns
 
     def halves(self, centre, half, columns):
         """The halves of a piece along the symbol that matters most: of an angle or a parameter, or
@@ -699,7 +776,7 @@ class Criterion:
             if not failed:
                 continue
             if halvings == MAX_HALVINGS or pieces + len(todo) >= MAX_PIECES:
-                return failed[0], pieces
+                return "%s (piece %d, halved %d times)" % (failed[0], pieces, halvings), pieces
             todo += [(*piece, halvings + 1) for piece in self.halves(centre, half, failed[1])]
         return None, pieces
 
@@ -735,81 +812,295 @@ class Criterion:
             total -= 3 * w * ((p * sine - h * abs(sine) - (abs(p) + h) * SINE_ERROR) // one)
         return total < 0
 
+    def not_at_once(self):
+        """Is B <= 10/3 for some parameters of the box, or where they move together, at their end?
+
+        Those nearest to 0 are tried.  They are known to within 2 units, as in __init__.
+        """
+        nearest = [c + h if self.together else max(c - h, min(c + h, 0))
+                   for c, h in zip(*self.parameters)]
+        return 3 * (torus_bound(self.fixed, [tuple(nearest)]) + PARAMETER_ERROR) \
+            <= 10 * self.fixed.one
+
+
+# ---- what was confirmed already
+
+STATE = """converse-check state 1
+certificate: sha256 %s
+checker: sha256 %s
+confirmed: %d
+pieces: %d
+"""
+
+
+class State:
+    """How many of a certificate's proved leaves are confirmed, in their order; and if a path is
+    given, a small file that knows it, so that a check that was interrupted can go on.
+
+    The file belongs to one certificate and to this very checker.  It is believed: its checksum
+    guards against accidents, not against forgers.
+    """
+
+    def __init__(self, path, claim):
+        self.confirmed = self.pieces = 0
+        self.path, self.sha256, self.saved = path and os.path.realpath(path), claim.sha256, 0
+        if path is None:
+            return
+        self.checker = hashlib.sha256(__loader__.get_data(__file__)).hexdigest()
+        try:
+            if not os.path.lexists(self.path):
+                self._write()
+                return
+            if not stat.S_ISREG(os.stat(self.path).st_mode):
+                raise Unusable("the state %s is not a regular file; name another" % path)
+            with open(self.path, "rb") as file:
+                text = file.read(1000).decode("ascii", "replace")
+        except (OSError, ValueError) as error:
+            raise Unusable("the state %s cannot be kept (%s); name another file"
+                           % (path, reason(error))) from None
+        if not text.startswith(STATE.partition("\n")[0]):
+            raise Unusable("%s is not a state of this checker; name another file" % path)
+        words = re.findall("(?m)^(?:certificate|checker): sha256 ([0-9a-f]{64})$", text)
+        found = [int(n) for n in re.findall("(?m)^(?:confirmed|pieces): ([0-9]{1,18})$", text)]
+        if len(words) != 2 or len(found) != 2 or text != self._sealed(*words, *found) \
+                or found[0] > claim.tree.count("P") and words[0] == claim.sha256:
+            raise Unusable("the state %s is damaged; delete it to begin anew" % path)
+        if words != [self.sha256, self.checker]:
+            raise Unusable("the state %s belongs to another %s; name another file" % (
+                path, "checker" if words[0] == self.sha256 else "certificate"))
+        self.confirmed, self.pieces = found
+
+    @staticmethod
+    def _sealed(*values):
+        text = STATE % values
+        return text + "checksum: sha256 %s\n" % hashlib.sha256(text.encode()).hexdigest()
+
+    def _write(self):
+        """The file is whole at any time, the older one or the newer."""
+        handle, name = tempfile.mkstemp(dir=os.path.dirname(self.path), prefix=".converse-check-")
+        try:
+            with open(handle, "w") as file:
+                file.write(self._sealed(self.sha256, self.checker, self.confirmed, self.pieces))
+                file.flush()
+                os.fsync(file.fileno())
+            os.replace(name, self.path)
+        except BaseException:
+            os.unlink(name)
+            raise
+        self.saved = time.monotonic()
+
+    def advance(self, leaves, pieces):
+        self.confirmed, self.pieces = self.confirmed + leaves, self.pieces + pieces
+        if self.path and time.monotonic() > self.saved + STATE_SECONDS:
+            self.save()
+
+    def save(self):
+        """A failure does not end a check of hours: it is said, and there will be another time."""
+        if self.path:
+            try:
+                self._write()
+            except OSError as error:
+                self.saved = time.monotonic()
+                complain("the state %s cannot be written (%s); what it says stands, and the check "
+                         "goes on" % (self.path, reason(error)))
+
 
 # ---- the whole file
 
-_worker = []                            # in each process: a Criterion and a Mirror
+_worker = []                            # in each process: its Criterion
+SIGNALS = [getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP")
+           if hasattr(signal, name)]
 
 
-def begin_apart(*state):
-    """Starts a worker process; it is for the parent process to notice Ctrl-C."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-    _worker[:] = state
+def cost(cell):
+    """About what it takes to confirm a leaf: orbits are as long as their leaves are deep, and the
+    work grows with the square of their length."""
+    return 1 + sum(cell[1]) ** 2
 
 
 def check_chunk(chunk):
-    """Checks leaves in order: (how many, pieces tried, None or the first failure)."""
-    criterion, mirror = _worker
-    pieces = 0
-    for n, (ordinal, node, cell) in enumerate(chunk, 1):
-        if node == "P":
-            why, tried = criterion.excluded(cell)
-            pieces += tried
-            why = why and "is not excluded: " + why
-        else:
-            why = mirror.refusal(cell) if node == "S" else "is undecided"
+    """Checks leaves in order: (how many are confirmed, their cost and pieces, what then fails)."""
+    criterion, = _worker
+    spent = pieces = 0
+    for n, (ordinal, cell) in enumerate(chunk):
+        why, tried = criterion.excluded(cell)
         if why:
-            return n, pieces, (ordinal, cell, why)
-    return len(chunk), pieces, None
+            return n, spent, pieces, (ordinal, cell, why)
+        spent += cost(cell)
+        pieces += tried
+    return len(chunk), spent, pieces, None
 
 
-def in_order(chunks, jobs, state):
+@contextlib.contextmanager
+def undisturbed():
+    """Signals wait, also in a process that is begun meanwhile."""
+    if not hasattr(signal, "pthread_sigmask"):
+        yield
+        return
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, SIGNALS)
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
+def begin_apart(criterion, stop):
+    """Starts a worker process.  Signals are for the parent to notice; a worker ends when its parent
+    says so, or has died."""
+    for number in SIGNALS:
+        signal.signal(number, signal.SIG_IGN)
+    if hasattr(signal, "pthread_sigmask"):
+        signal.pthread_sigmask(signal.SIG_UNBLOCK, SIGNALS)
+    _worker[:] = [criterion]
+    threading.Thread(target=end_with_parent, args=(stop,), daemon=True).start()
+
+
+def end_with_parent(stop):
+    import multiprocessing.connection
+    multiprocessing.connection.wait([stop, multiprocessing.parent_process().sentinel])
+    os._exit(1)
+
+
+def in_order(chunks, jobs, criterion):
     """Yields the results of the chunks in their order, few of them being in memory at a time."""
     if jobs == 1:
-        _worker[:] = state
+        _worker[:] = [criterion]
         yield from map(check_chunk, chunks)
         return
-    pool = concurrent.futures.ProcessPoolExecutor(jobs, initializer=begin_apart, initargs=state)
+    import concurrent.futures.process       # where there are no processes, one job still works
+    import multiprocessing
+    stop, stopper = multiprocessing.Pipe(duplex=False)
+    pool = concurrent.futures.ProcessPoolExecutor(jobs, initializer=begin_apart,
+                                                  initargs=(criterion, stop))
+    waiting, over = collections.deque(), False
     try:
-        waiting = collections.deque()
         for chunk in chunks:
-            waiting.append(pool.submit(check_chunk, chunk))
+            with undisturbed():
+                waiting.append(pool.submit(check_chunk, chunk))
             if len(waiting) > 4 * jobs:
                 yield waiting.popleft().result()
         while waiting:
             yield waiting.popleft().result()
+        over = True
     except concurrent.futures.process.BrokenProcessPool:
         raise Unusable("a worker process died; nothing was verified") from None
     finally:
+        if not over:                        # what the workers still do is of no use to anybody
+            stopper.send_bytes(b"stop")
         pool.shutdown(cancel_futures=True)
+        stop.close()
+        stopper.close()
 
 
-def verify(path, jobs=1, sample=None, quiet=True):
-    """Verifies a proof file and returns the lines of the report; Rejected says what is wrong."""
+@dataclass(frozen=True)
+class Result:
+    """What came of a check in which nothing failed: true only if the whole claim is verified and
+    its region is the whole torus.  (All else ends in an exception.)"""
+
+    status: int                         # VERIFIED, PART or SPOT_CHECK: the exit status, too
+    verdict: str                        # "verified", "verified in part" or "spot check"
+    text: str                           # the report
+
+    def __bool__(self):
+        return self.status == VERIFIED
+
+
+def verify(path, jobs=1, sample=None, state=None, bar=False):
+    """Verifies a proof file: returns a Result, or raises Rejected, NotConfirmed or Unusable.
+
+    jobs: processes.  sample: so many leaves only, chosen by chance: a spot check.
+    state: a file that remembers what was confirmed, so that an interrupted check can go on; it
+    is kept in the end.  bar: show the progress on stderr, if that is a terminal.
+    """
+    if jobs < 1 or sample is not None and sample < 1:
+        raise ValueError("jobs and sample are 1 or more")
+    if sample is not None and state is not None:
+        raise Unusable("a spot check keeps no state; give --sample or --state")
     claim = read(path)
-    total = check_tree(claim)
-    mirror = Mirror(claim) if "S" in claim.tree else None
+    check_tree(claim)
+    check_mirror_images(claim)
     criterion = Criterion(claim)
     if claim.at_once and not criterion.at_once():
-        raise Rejected("it is not confirmed that larger parameters are excluded at once")
-    chosen = range(total)
+        if criterion.not_at_once():
+            raise Rejected("larger parameters are not excluded at once: B <= 10/3 for some")
+        raise NotConfirmed("that larger parameters are excluded at once (B > 10/3)")
+    done = State(state, claim)
+    earlier, proved = done.confirmed, claim.tree.count("P")
+    chosen = range(earlier, proved)
     if sample is not None:
-        chosen = set(random.Random(claim.sha256).sample(chosen, min(sample, total)))
-    work = ((n, claim.tree[position], cell)
-            for n, (position, cell) in enumerate(leaves(claim.tree)) if n in chosen)
-    chunks = iter(lambda: list(itertools.islice(work, CHUNK)), [])
-    pieces = 0
-    with tqdm(total=len(chosen), unit=" leaves", leave=False, file=sys.stderr,
-              disable=True if quiet else None) as bar:      # None: unless stderr is a terminal
-        for done, tried, failure in in_order(chunks, jobs, (criterion, mirror)):
-            if failure:
-                raise Rejected(failure_text(claim, total, *failure))
-            pieces += tried
-            bar.update(done)
-    return report(claim, criterion, total, len(chosen), pieces, sample is not None)
+        chosen = set(random.SystemRandom().sample(chosen, min(sample, proved)))
+
+    def work():
+        cells = (cell for position, cell in leaves(claim.tree) if claim.tree[position] == "P")
+        return ((n, cell) for n, cell in enumerate(cells) if n in chosen)
+
+    queue = work()
+    chunks = iter(lambda: list(itertools.islice(queue, CHUNK)), [])
+    try:
+        with Bar(work() if bar else (), len(chosen)) as progress, \
+                contextlib.closing(in_order(chunks, jobs, criterion)) as results:
+            for n, spent, pieces, failure in results:
+                done.advance(n, pieces)
+                progress.advance(n, spent)
+                if failure:
+                    *leaf, why = failure
+                    raise NotConfirmed(
+                        "%s is not excluded: %s; the claim is false or its proof beyond the limits "
+                        "of this checker" % (leaf_text(claim, "P", *leaf), why))
+    finally:
+        done.save()
+    return report(claim, criterion, done, earlier, sample is not None)
 
 
 # ---- what is said
+
+def shown(text):
+    """The text without anything that could steer a terminal, on one line."""
+    return "".join([x if x.isprintable() else x.encode("unicode_escape").decode() for x in text])
+
+
+def complain(text):
+    with contextlib.suppress(OSError, AttributeError):      # closed, or there is none
+        print("converse-check: " + shown(text), file=sys.stderr, flush=True)
+
+
+class Bar:
+    """The progress on stderr, if it is a terminal: leaves, and by their cost what is left."""
+
+    def __init__(self, work, total):
+        self.total, self.done, self.spent, self.began = total, 0, 0, time.monotonic()
+        self.drawn, self.width = self.began + 5 * BAR_SECONDS, 0    # a short check has none
+        self.on = bool(work) and sys.stderr is not None and sys.stderr.isatty()
+        self.cost = sum(cost(cell) for _, cell in work) if self.on else 0
+
+    def __enter__(self):
+        return self
+
+    def advance(self, leaves, spent):
+        self.done, self.spent = self.done + leaves, self.spent + spent
+        now = time.monotonic()
+        if self.on and self.spent and now > self.drawn + BAR_SECONDS:
+            self.drawn = now
+            self.draw("{:,} of {:,} leaves, {:.0%}, about {} left".format(
+                self.done, self.total, self.spent / self.cost,
+                duration((now - self.began) * (self.cost / self.spent - 1))))
+
+    def draw(self, text):
+        with contextlib.suppress(OSError):
+            print("\r" + text.ljust(self.width), end="\r", file=sys.stderr, flush=True)
+        self.width = len(text)
+
+    def __exit__(self, *_):
+        if self.width:
+            self.draw("")
+
+
+def duration(seconds):
+    for unit, length in (("days", 86400), ("h", 3600), ("min", 60)):
+        if seconds >= 2 * length:
+            return "%d %s" % (seconds / length, unit)
+    return "%d s" % seconds
+
 
 def decimal_text(x):
     """A finite decimal, exactly."""
@@ -826,28 +1117,35 @@ def range_text(name, centre, half):
     return "%s = %s" % (name, low) if half == 0 else "%s <= %s <= %s" % (low, name, high)
 
 
-def failure_text(claim, total, ordinal, cell, why):
-    """Names a leaf by its number in preorder, its depth and where it lies."""
+def leaf_text(claim, kind, ordinal, cell):
+    """Names a leaf by its number among those of its kind, its depth and where it lies."""
     sides = []
     for axis, i, k in zip((3, 4, 0, 1, 2), *cell):
         if claim.together and axis in (1, 2):
             i, k = cell[0][2], cell[1][2]
         low = claim.centre[axis] - claim.half[axis] + 2 * claim.half[axis] * i / (1 << k)
         sides.append("[%.9g, %.9g]" % (low, low + 2 * claim.half[axis] / (1 << k)))
-    return "leaf %d of %d (v in %s pi, (a, b, c) in %s, %d cuts) %s" % (
-        ordinal + 1, total, " x ".join(sides[:2]), " x ".join(sides[2:]), sum(cell[1]), why)
+    return "%s leaf %d of %d (v in %s pi, (a, b, c) in %s, %d cuts)" % (
+        {"P": "proved", "S": "symmetric"}[kind], ordinal + 1, claim.tree.count(kind),
+        " x ".join(sides[:2]), " x ".join(sides[2:]), sum(cell[1]))
 
 
-def report(claim, criterion, total, checked, pieces, sampled):
+def report(claim, criterion, done, earlier, sampled):
     """The theorem, exactly as far as it was verified; or the result of a spot check."""
-    lines = ["No leaf that was looked at fails, but this is a SPOT CHECK of %d of %d leaves"
-             % (checked, total), "and NOT a verification.  The file claims this :"] if sampled else \
-            ["Verified :"]
+    proved, torus = claim.tree.count("P"), min(claim.half[3:]) >= 1
+    if sampled:
+        status, verdict = SPOT_CHECK, "spot check"
+        lines = ["Spot check of %d of %d proved leaves, NOT a verification: none of them fails."
+                 % (done.confirmed, proved), "What is claimed and NOT verified :"]
+    else:
+        status, verdict = (VERIFIED, "verified") if torus else (PART, "verified in part")
+        lines = ["Verified" + ", for a part of the torus only" * (not torus)
+                 + ", %d of %d leaves by an earlier run" % (earlier, proved) * (earlier > 0) + " :"]
     lines += ["The map x[j+1] = 2 x[j] - x[j-1] - V'(x[j]) of two angles (modulo 2 pi),",
               "V(y) = -a sin y0 - b sin y1 - c sin(y0 + y1), has no invariant Lagrangian graph",
               "(no invariant torus p = P + S'(x) over the angles, where p[j] = x[j] - x[j-1], P is",
-              "constant, S periodic and C1; so none that is a C1 or a Lipschitz graph)"]
-    if min(claim.half[3:]) < 1:
+              "constant, S periodic and C1)"]
+    if not torus:
         lines += ["whose orbit through x[0] = x* goes on to x[1] = (v0, v1) in the region",
                   *(range_text(name + " / pi", claim.centre[k], claim.half[k])
                     for k, name in ((3, "v0"), (4, "v1"))),
@@ -862,15 +1160,46 @@ def report(claim, criterion, total, checked, pieces, sampled):
                                                       "such parameters (B > 10/3)")]
     places = 9
     bound = -(-criterion.B * 10 ** places // criterion.fixed.one)       # rounded up
-    return lines + [
+    lines += [
         "", "Checker : converse-check " + __version__,
         "Method : Loewner criterion, Taylor models in integers of %d bits" % criterion.fixed.bits,
         "x* : %s %s" % tuple(map(decimal_text, claim.xstar)),
         "B : %s" % decimal_text(Fraction(bound, 10 ** places)),
         "Leaves : %d, of which %d proved and %d symmetric" % (
-            total, claim.tree.count("P"), claim.tree.count("S")),
-        "Leaves checked : %d, in %d pieces" % (checked, pieces),
-        "SHA-256 : " + claim.sha256]
+            proved + claim.tree.count("S"), proved, claim.tree.count("S")),
+        "Proved leaves checked : %d, in %d pieces" % (done.confirmed, done.pieces)]
+    if earlier:
+        lines += ["Of these, by an earlier run whose state was believed : %d" % earlier]
+    return Result(status, verdict, "\n".join(lines + ["SHA-256 : " + claim.sha256]))
+
+
+# ---- the command
+
+def interrupt(number, frame):
+    """The first signal ends the check; the end itself is quick and must not be interrupted."""
+    for heard in SIGNALS:
+        signal.signal(heard, signal.SIG_IGN)
+    raise KeyboardInterrupt(number)
+
+
+@contextlib.contextmanager
+def interruptible(alone):
+    """Lets the signals interrupt, but those that are ignored (nohup); only the main thread may.
+
+    Where nothing else is to come in this process (alone), they are left to end it in silence.
+    """
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    before = {number: signal.getsignal(number) for number in SIGNALS}
+    heard = [number for number, handler in before.items() if handler not in (None, signal.SIG_IGN)]
+    try:
+        for number in heard:
+            signal.signal(number, interrupt)
+        yield
+    finally:
+        for number in heard:
+            signal.signal(number, signal.SIG_DFL if alone else before[number])
 
 
 class Parser(argparse.ArgumentParser):
@@ -885,49 +1214,69 @@ def whole(text):
 
 
 def parser():
-    p = Parser(prog="converse-check", allow_abbrev=False, description=(
+    p = Parser(prog="converse-check", allow_abbrev=False,
+               formatter_class=argparse.RawDescriptionHelpFormatter, description=(
         "Verifies the theorem of a proof file, independently of the program that wrote it."),
-        epilog="Exit status: 0 verified; 1 rejected; 2 bad usage or unreadable; 130 interrupted.")
+        epilog="""exit status:
+  0    verified
+  1    rejected: the file is wrong (altered, unfinished, with undecided or missing
+       parts, wrong counts, a skipped part without its mirror image)
+  2    bad usage, or a file that cannot be read
+  3    verified, but for successors in a part of the torus only
+  4    a spot check in which nothing failed: NOT a verification
+  5    not confirmed: the claim is false or its proof beyond the checker's limits
+  130  interrupted (129, 143: by SIGHUP, SIGTERM)""")
     p.add_argument("file", help="a finished proof file, perhaps compressed by gzip")
     p.add_argument("--jobs", type=whole, default=1, metavar="N", help="processes (default 1)")
     p.add_argument("--sample", type=whole, metavar="K",
-                   help="only a spot check, of K leaves; not a verification")
-    p.add_argument("--quiet", action="store_true", help="no report of success, no bar")
+                   help="only a spot check, of K leaves chosen by chance; not a verification")
+    p.add_argument("--state", metavar="FILE", help=(
+        "remember in FILE what was confirmed, and go on from there if it exists; it is believed"))
+    p.add_argument("--quiet", action="store_true", help="no report of status 0, no bar")
     p.add_argument("--version", action="version", version="converse-check " + __version__)
     return p
 
 
-def main(argv=None):
-    """Runs the command and returns its exit status; every failure is one line."""
-    name = ""
+def command(argv, options):
+    """Fills in the options and does what they say; returns the exit status."""
     try:
-        if sys.stdout is None or sys.stderr is None:
-            return UNUSABLE                     # a standard stream is closed: nowhere to say so
-        for stream in (sys.stdout, sys.stderr):
+        if sys.stdout is None:
+            raise Unusable("the standard output is closed: nowhere to report to")
+        for stream in filter(None, (sys.stdout, sys.stderr)):
             stream.reconfigure(errors="backslashreplace")
-        options = parser().parse_args(argv)
-        name = options.file + ": "
-        lines = verify(options.file, min(options.jobs, 61), options.sample, options.quiet)
-        if not options.quiet or options.sample:         # a spot check never passes in silence
-            print("\n".join(lines), flush=True)
-        return VERIFIED
+        parser().parse_args(argv, options)
+        result = verify(options.file, min(options.jobs, 61), options.sample, options.state,
+                        not options.quiet)
+        try:
+            if result.status != VERIFIED or not options.quiet:
+                print(result.text, flush=True)
+            return result.status
+        except OSError as error:
+            with contextlib.suppress(OSError):  # the interpreter must not try again when it ends
+                os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+            raise Unusable("the output cannot be written (%s)" % reason(error)) from None
     except SystemExit as end:                   # of --help and --version
         return end.code
-    except KeyboardInterrupt:
-        status, message = INTERRUPTED, "interrupted; nothing was verified"
-    except Rejected as error:
-        status, message = REJECTED, "rejected: %s" % error
-    except Unusable as error:
-        status, message = UNUSABLE, str(error)
-    except OSError as error:
-        status, message = UNUSABLE, "the output cannot be written (%s)" % (error.strerror or error)
-        with contextlib.suppress(OSError):      # the interpreter must not try again when it ends
-            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    except Failure as error:
+        status, message = error.status, error.word + str(error)
     except Exception as error:                  # whatever went wrong must not look like success
         status, message = UNUSABLE, "the checker failed (%s: %s)" % (type(error).__name__, error)
-    with contextlib.suppress(OSError):
-        print("converse-check: " + " ".join((name + message).split()), file=sys.stderr)
+    complain((options.file and options.file + ": ") + message)
     return status
+
+
+def main(argv=None):
+    """Runs the command and returns its exit status; every failure is one line."""
+    options = argparse.Namespace(file="", state=None)
+    with interruptible(argv is None):
+        try:
+            return command(argv, options)
+        except KeyboardInterrupt as end:
+            message = "interrupted; nothing was verified"
+            if options.state is not None:
+                message += ", but the same command goes on from " + options.state
+            complain((options.file and options.file + ": ") + message)
+            return INTERRUPTED + (end.args[0] if end.args else signal.SIGINT)
 
 
 if __name__ == "__main__":

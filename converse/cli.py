@@ -4,15 +4,25 @@ import argparse
 import contextlib
 import math
 import os
+import signal
 import sys
+import warnings
 from dataclasses import replace
 
-from . import ConverseError, InputError, __version__, files, picture, prove, read_input
-from .proof import LIMIT, check_backup
+from . import figure, files, picture
+from .files import ConverseError
+from .problem import InputError, read_input
 from .report import header, verdict
+from .settings import AS_PRINTED, LIMIT, METHODS, REGION, THEOREM, UNDECIDED, Settings
+from .version import __version__
 
-THEOREM, UNDECIDED, BAD, INTERRUPTED = 0, 1, 2, 130
+STATUS = {THEOREM: 0, UNDECIDED: 1, REGION: 3, AS_PRINTED: 4}
+BAD, ENDED_BY = 2, 128                  # the second plus the number of the signal
 KIND_NAMES = {"P": "proved", "S": "symmetric", "U": "undecided"}
+
+
+class Signalled(KeyboardInterrupt):
+    """A signal that asks the program to end, as Ctrl-C does; its argument is the number."""
 
 
 class Parser(argparse.ArgumentParser):
@@ -46,26 +56,31 @@ def _seconds(text):
 def parser():
     p = Parser(prog="converse", allow_abbrev=False, description=(
         "Tries to prove that a family of symplectic maps has no invariant tori."), epilog=(
-        "Exit status: 0 a theorem; 1 undecided; 2 bad usage, input or file; 130 interrupted."))
-    p.add_argument("input", nargs="?", default="-", help="input file; standard input by default")
+        "Exit status: 0 a theorem; 1 undecided; 2 bad usage, input or file; 3 decided for a part of "
+        "the torus only; 4 as printed, not a proof; 129, 130 or 143 ended by a signal."))
+    p.add_argument("input", nargs="?", help="input file, by default, and as -, standard input; with -r "
+                   "it is not needed, and must agree if given")
     p.add_argument("-d", "--depth", type=_whole(0), metavar="N",
-                   help="give up on a prism that was cut N times (default 30; loewner: 120)")
+                   help="give up on a prism that was cut N times (default %d; loewner: %d)"
+                   % (METHODS["thesis"], METHODS["loewner"]))
     p.add_argument("-b", "--backup", metavar="FILE",
-                   help="keep a backup in FILE, from which the run can be continued")
+                   help="keep a backup in FILE, a new one, from which the run can be continued and "
+                   "which in the end is the proof")
     p.add_argument("-r", "--restore", metavar="FILE",
-                   help="continue the run whose backup is FILE")
+                   help="continue the run whose backup is FILE, as it was asked for then, though "
+                   "perhaps deeper (-d), and keep FILE up to date unless -b names another")
     p.add_argument("-g", "--graphics", metavar="FILE",
                    help="draw the prisms in FILE, by its name as SVG, PNG or PDF, else as "
                         "PostScript; 'off' draws none (default)")
-    p.add_argument("-p", "--precision", type=_whole(1), default=35, metavar="DP",
+    p.add_argument("-p", "--precision", dest="digits", type=_whole(1), metavar="DP",
                    help="decimal places of the thesis's rigorous arithmetic (default 35)")
-    p.add_argument("-s", "--stubborn", action="store_true",
+    p.add_argument("-s", "--stubborn", action="store_true", default=None,
                    help="go on after a prism that cannot be decided")
     p.add_argument("-t", "--verbose", action="store_true",
                    help="print a line for every decided prism")
-    p.add_argument("--as-printed", action="store_true",
+    p.add_argument("--as-printed", action="store_true", default=None,
                    help="follow the thesis's listing to the letter; not a proof")
-    p.add_argument("--method", choices=("thesis", "loewner"), default="thesis",
+    p.add_argument("--method", choices=tuple(METHODS),
                    help="the thesis's criterion (default), or the sharper one, in doubles")
     p.add_argument("--together", action="store_true",
                    help="a, b and c move together, from all lower to all upper ends (loewner)")
@@ -81,11 +96,11 @@ def parser():
     return p
 
 
-def _leaf_line(leaf, steps):
+def _leaf_line(leaf, points):
     """A line of -t: kind, centre and half-widths in radians, cuts, steps."""
     numbers = ["%.10g" % (x * math.pi) for x in leaf.centre + leaf.half]
     return "%-9s (%s, %s) +- (%s, %s), %d cuts, %d steps" % (
-        KIND_NAMES[leaf.kind], *numbers, leaf.depth, steps)
+        KIND_NAMES[leaf.kind], *numbers, leaf.depth, points)
 
 
 def _say(text):
@@ -93,27 +108,33 @@ def _say(text):
     sys.stdout.flush()
 
 
+def _tell(message):
+    with contextlib.suppress(OSError):
+        print("converse: " + " ".join(str(message).split()), file=sys.stderr, flush=True)
+
+
 class Progress:
-    """Prints the header when the search gets under way; then keeps a bar on a terminal."""
+    """Prints the header when the search gets under way; then, on a terminal, keeps a bar that says
+    how much of the work is behind, and an estimate of the time left."""
 
     def __init__(self, problem, as_printed, with_bar):
         self.problem, self.as_printed, self.with_bar = problem, as_printed, with_bar
         self.started, self.bar = False, None
 
-    def __call__(self, fraction, counts):
+    def __call__(self, done, counts):
         if not self.started:
             self.started = True
             if self.as_printed:
-                print("converse: --as-printed is a historical reconstruction, not a proof",
-                      file=sys.stderr)
-            _say(header(self.problem))
-            if self.with_bar:
-                from tqdm import tqdm
-                self.bar = tqdm(total=100, leave=False, file=sys.stderr, bar_format=(
-                    "{percentage:5.1f}% |{bar}| {elapsed}{postfix}"))
+                _tell("--as-printed is a historical reconstruction, not a proof")
+            _say(header(self.problem, self.as_printed))
+            with contextlib.suppress(ImportError):      # the extra "progress"
+                if self.with_bar:
+                    from tqdm import tqdm
+                    self.bar = tqdm(total=1.0, leave=False, file=sys.stderr, bar_format=(
+                        "{percentage:5.1f}% |{bar}| {elapsed}, about {remaining} left{postfix}"))
         if self.bar is not None:
             prisms = counts.proved + counts.symmetric + counts.undecided
-            self.bar.n = 100 * fraction
+            self.bar.n = done
             self.bar.set_postfix_str("%d prisms, cut %d times" % (prisms, counts.most_cuts))
 
     def close(self):
@@ -137,7 +158,7 @@ def workers(options):
         try:
             from distributed import Client
         except ImportError:
-            raise ConverseError("--dask needs dask; pip install 'converse[dask]'") from None
+            raise ConverseError("--dask needs dask; pip install 'converse-kam[dask]'") from None
         try:
             client = Client(options.dask, timeout=10)
         except (OSError, ValueError, TypeError) as error:
@@ -147,39 +168,96 @@ def workers(options):
             yield client.get_executor(), options.jobs or 2 * max(1, sum(client.nthreads().values()))
 
 
+def _read_problem(options, restored):
+    """The problem that the input is, or that of the restored proof where there is no input."""
+    if restored is not None and options.input is None:
+        return restored.problem
+    source = options.input
+    if source in (None, "-"):
+        source = sys.stdin
+        if source is None:
+            raise ConverseError("standard input is closed; name an input file")
+        if source.isatty():
+            _tell("reading the problem from standard input; end it with Ctrl-D")
+    return replace(read_input(source), together=(
+        options.together or (restored is not None and restored.problem.together)))
+
+
+def _check_graphics(options):
+    """Refuses a figure that cannot be written or would overwrite what the run reads or writes."""
+    path, others = options.graphics, [options.input, options.backup, options.restore]
+    with contextlib.suppress(AttributeError, OSError, ValueError):
+        others.append(sys.stdin.fileno())
+    if any(other is not None and files.same(path, other) for other in others):
+        raise ConverseError("the figure would overwrite '%s'; name another file" % path)
+    files.check_writable(path)
+    if figure.format_of(path) != "ps":
+        picture.check()
+
+
 def run(options):
-    if options.input == "-" and sys.stdin is None:
-        raise ConverseError("standard input is closed; name an input file")
-    problem = read_input(sys.stdin if options.input == "-" else options.input)
-    if options.method == "thesis" and options.together:
-        raise ConverseError("--together needs --method loewner")
+    from .proof import Proof            # these need the C core, and say so where it is missing
+    from .run import prove
+
+    if options.graphics == "off":
+        options.graphics = None
+    if options.graphics is not None:
+        _check_graphics(options)
     if options.method == "loewner" and options.as_printed:
         raise ConverseError("--as-printed is the thesis's method; leave out --method loewner")
-    problem = replace(problem, together=options.together)
-    graphics = None if options.graphics == "off" else options.graphics
-    if graphics is not None:
-        if graphics in (options.input, options.backup, options.restore):
-            raise ConverseError("the figure would overwrite '%s'; name another file" % graphics)
-        files.check_writable(graphics)
-        if graphics.endswith(picture.FORMATS):
-            picture.check()
-    if options.backup is not None:
-        check_backup(options.backup)
+    restored = None if options.restore is None else Proof.load(options.restore)
+    problem = _read_problem(options, restored)
+    settings = Settings() if restored is None else restored.settings
+    if problem.together and (options.method or settings.method) != "loewner":
+        raise ConverseError("--together needs --method loewner")
 
-    def on_leaf(leaf, steps):
-        _say(_leaf_line(leaf, steps) + "\n")
+    def on_leaf(leaf, points):
+        _say(_leaf_line(leaf, points) + "\n")
 
-    progress = Progress(problem, options.as_printed,
+    progress = Progress(problem, options.as_printed or settings.as_printed,
                         sys.stderr.isatty() and not options.verbose)
+    asked = {name: getattr(options, name) for name in (
+        "method", "depth", "digits", "stubborn", "as_printed", "backup", "time_limit")}
     with contextlib.closing(progress), workers(options) as (executor, jobs):
-        proof = prove(problem, options.depth, options.precision, options.stubborn,
-                      options.as_printed, progress, options.backup, options.restore,
-                      on_leaf if options.verbose else None, options.time_limit, options.method,
-                      jobs, executor)
+        proof = prove(problem, resume=options.restore, jobs=jobs, executor=executor,
+                      progress=progress, on_leaf=on_leaf if options.verbose else None, **asked)
+    if not progress.started:            # there was no time even to set the search up
+        progress(0.0, proof.counts)
     _say(verdict(proof))
-    if graphics is not None:
-        proof.figure(graphics)
-    return THEOREM if proof.all_decided else UNDECIDED
+    if options.graphics is not None:
+        proof.figure(options.graphics)
+    if not proof.sha256 and (options.backup or options.restore):
+        raise ConverseError("what was found is not saved")
+    return STATUS[proof.conclusion]
+
+
+@contextlib.contextmanager
+def _signals_end():
+    """Meanwhile SIGTERM and SIGHUP end the program as Ctrl-C does, unless they were ignored."""
+    def end(number, _):
+        raise Signalled(number)
+
+    before = {}
+    try:
+        for number in (signal.SIGTERM, signal.SIGHUP):
+            if signal.getsignal(number) == signal.SIG_DFL:
+                before[number] = signal.signal(number, end)
+    except ValueError:                  # not the main thread, which alone hears of signals
+        pass
+    try:
+        yield
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
+
+
+@contextlib.contextmanager
+def _warnings_in_lines(command):
+    with warnings.catch_warnings():
+        warnings.simplefilter("always", RuntimeWarning)
+        warnings.showwarning = lambda message, *_: print(
+            "%s: %s" % (command, " ".join(str(message).split())), file=sys.stderr, flush=True)
+        yield
 
 
 def ended(command, run, interrupted):
@@ -190,11 +268,13 @@ def ended(command, run, interrupted):
             return BAD                      # a standard stream is closed: nowhere to say so
         for stream in (sys.stdout, sys.stderr):
             stream.reconfigure(errors="backslashreplace")
-        return run()
+        with _signals_end(), _warnings_in_lines(command):
+            return run()
     except SystemExit as end:               # of --help and --version
         return end.code
-    except KeyboardInterrupt:
-        message, status = "interrupted; " + interrupted(), INTERRUPTED
+    except KeyboardInterrupt as end:
+        number = end.args[0] if isinstance(end, Signalled) else signal.SIGINT
+        message, status = "interrupted; " + interrupted(), ENDED_BY + number
     except (ConverseError, InputError, MemoryError) as error:
         message, status = str(error) or "there is not enough memory", BAD
     except OSError as error:
@@ -208,11 +288,12 @@ def ended(command, run, interrupted):
 
 def main(argv=None):
     """Runs the command and returns its exit status."""
-    options = argparse.Namespace(backup=None)
+    options = argparse.Namespace(backup=None, restore=None)
 
     def interrupted():
-        if options.backup and os.path.exists(options.backup):
-            return "continue with -r " + options.backup
+        backup = options.backup or options.restore
+        if backup and os.path.exists(backup):
+            return "continue with -r " + backup
         return "without -b nothing is kept"
 
     return ended("converse", lambda: run(parser().parse_args(argv, options)), interrupted)

@@ -1,53 +1,67 @@
-"""The figure of a system of prisms, as in the thesis, written as a PostScript program.
+"""The figure of a system of prisms, as in the thesis: in PostScript, or as matplotlib draws it.
 
-The program carries the tree itself, a byte for each node, and draws it by walking it.
+The PostScript program carries the tree itself, a byte for each node, and draws it by walking it,
+once for each kind of prism: where parameters were cut prisms share their place, and what is not
+proved must lie on top.
 """
 
-import math
+import base64
+import html as markup
 import os
 
-from . import files, picture, tree
+from . import files, legend, picture, tree
+from .report import verdict
 
 SIDE = 400                              # of the square, in points
-LEFT, BELOW, RIGHT, ABOVE = 44, 56, 10, 42
-WIDTH, HEIGHT = LEFT + SIDE + RIGHT, BELOW + SIDE + ABOVE
+LEFT, RIGHT = 44, 24                    # of it
+WIDTH = LEFT + SIDE + RIGHT
+LINE, SMALL_LINE = 13, 10               # from one line of text to the next
+NODES = 60000                           # of the tree in a string, which may hold 65535 characters
+
+MARKS = {"P": "dark", "S": "light", "?": "white", "U": "crossed"}
 
 PROLOG = """\
-/box {                  % x y w h outline fill: a rectangle with its outline inside
-  setgray /edge exch def 4 copy rectfill
-  /h exch def /w exch def /y exch def /x exch def
+/outline {              % x y w h gray: inside the rectangle, if there is room
+  setgray /h exch def /w exch def /y exch def /x exch def
   /r w h lt { w } { h } ifelse def
   r 1 gt {
     /e r 0.05 mul dup 0.25 gt { pop 0.25 } if def
-    edge setgray e setlinewidth
+    e setlinewidth
     x e 2 div add y e 2 div add w e sub h e sub rectstroke
   } if
 } bind def
-/kinds 12 dict def       % what to do with the prism x y w h on the stack
-kinds begin
+/box {                  % x y w h outline fill
+  setgray 5 1 roll 4 copy rectfill 5 -1 roll outline
+} bind def
+/widen { dup least lt { dup least sub 2 div 3 -1 roll add exch pop least } if } bind def
+/seen {                 % x y w h: the rectangle, made large enough to be seen
+  /h exch def /w exch def /y exch def /x exch def
+  x w widen /w exch def /x exch def   y h widen /h exch def /y exch def
+  x y w h
+} bind def
+/cross {                % x y w h
+  4 copy 1 setgray rectfill
+  1 0 0 setrgbcolor 0.4 setlinewidth
+  /h exch def /w exch def /y exch def /x exch def
+  x y w h rectstroke
+  x y moveto w h rlineto x y h add moveto w h neg rlineto stroke
+} bind def
+/drop { pop pop pop pop } bind def
+/nodes 12 dict def      % what to do with the prism x y w h on the stack
+nodes begin
   (0) 0 get { /h exch def /w exch def /y exch def /x exch def
     x w 2 div add y w 2 div h   x y w 2 div h } bind def
   (1) 0 get { /h exch def /w exch def /y exch def /x exch def
     x y h 2 div add w h 2 div   x y w h 2 div } bind def
-  (234) { { 4 copy } bind def } forall          % a cut of a parameter shows both halves
-  (P) 0 get { 0 0.35 box } bind def
-  (S) 0 get { 0.65 0.85 box } bind def
-  (U) 0 get { 0.65 1 box } bind def
-  (?) 0 get { 0.65 1 box } bind def
+  (234) { { 4 copy } bind def } forall          % a cut of a parameter: two in one place
+  (PSU?) { { drop } bind def } forall
 end
-/walk {                 % the tree follows in the file, up to a full stop
-  { currentfile read not { exit } if
-    dup (.) 0 get eq { pop exit } if
-    kinds exch 2 copy known { get exec } { pop pop } ifelse
-  } loop
-} bind def
-/widen { dup 3 lt { dup 3 sub 2 div 3 -1 roll add exch pop 3 } if } bind def
-/mark {                 % x y w h: an undecided prism, large enough to be seen
-  1 0 0 setrgbcolor 0.4 setlinewidth
-  /h exch def /w exch def /y exch def /x exch def
-  x w widen /w exch def /x exch def   y h widen /h exch def /y exch def
-  x y w h rectstroke
-  x y moveto w h rlineto x y h add moveto w h neg rlineto stroke
+/each {                 % (kind) procedure: for each prism x y w h of that kind
+  nodes begin 1 index 0 get exch def end
+  0 0 side side tree {
+    { nodes exch 2 copy known { get exec } { pop pop } ifelse } forall
+  } forall
+  0 get nodes exch { drop } put
 } bind def
 /star {                 % x y: the starting point
   gsave translate newpath 0 0 3 0 360 arc gsave 1 setgray fill grestore
@@ -56,112 +70,146 @@ end
 /text /Helvetica findfont 10 scalefont def
 /small /Helvetica findfont 7 scalefont def
 /greek /Symbol findfont 10 scalefont def
+/fit { 2 copy gt { exch div dup scale } { pop pop } ifelse } bind def   % width room
 /width { text setfont stringwidth pop greek setfont exch stringwidth pop add } bind def
-/angle {                % (pi) (number) x y shift: a multiple of pi; shift -1 left of x, -0.5 centred
-  /shift exch def moveto 2 copy width shift mul 0 rmoveto
-  text setfont show greek setfont show
+/angle {                % (pi) (number) x y room shift: a multiple of pi, from shift times its width
+  /shift exch def /room exch def
+  gsave translate
+  2 copy width dup room fit shift mul 0 moveto
+  text setfont show greek setfont show grestore
 } bind def
 /axis { moveto text setfont (v) show small setfont 0 -2 rmoveto show } bind def
-/centred { moveto dup stringwidth pop -2 div 0 rmoveto show } bind def
+/line {                 % (words) x y room: centred
+  /room exch def
+  gsave translate
+  dup stringwidth pop dup room fit -2 div 0 moveto show grestore
+} bind def
 """
 
 
-def figure(proof, path):
-    """Writes the figure of a proof, finished or not: SVG, PNG or PDF by the file's name, else
-    PostScript."""
-    if os.fspath(path).endswith(picture.FORMATS):
-        picture.picture(proof, path)
+def figure(proof, target=None, ax=None, format=None):
+    """Draws a proof, finished or not.  The target is a path or a binary file; the format svg, png,
+    pdf or ps, by default that of the file's name, else PostScript.  ax: Axes of matplotlib, which
+    are drawn into and returned: only the prisms and x*, their labels ready for ax.legend().
+    With neither, returns a Figure of matplotlib."""
+    if target is None:
+        if format is not None:
+            raise ValueError("a format needs a target: a path or a binary file")
+        return picture.page(proof) if ax is None else picture.draw(proof, ax)
+    if ax is not None:
+        raise ValueError("draw into ax or write to a target, not both")
+    kind = format_of(target) if format is None else format
+    if kind != "ps" and kind not in picture.FORMATS:
+        raise ValueError("the format is one of %s, ps, not %r" % (", ".join(picture.FORMATS), kind))
+    data = postscript(proof).encode("ascii", "replace") if kind == "ps" \
+        else picture.picture(proof, kind)
+    if hasattr(target, "write"):
+        target.write(data)
     else:
-        files.write(path, postscript(proof).encode("ascii"))
+        files.write(target, data)
+    return None
+
+
+def format_of(target):
+    """The format that the name of a file asks for."""
+    name = getattr(target, "name", "") if hasattr(target, "write") else os.fspath(target)
+    ending = os.path.splitext(name)[1][1:].lower() if isinstance(name, str) else ""
+    return ending if ending in picture.FORMATS else "ps"
+
+
+def svg(proof):
+    """The figure as the text of an SVG file; None without matplotlib."""
+    try:
+        return picture.picture(proof, "svg").decode("utf-8")
+    except files.ConverseError:
+        return None
+
+
+def html(proof):
+    """The verdict and, where there is matplotlib, the figure.  It is an image, not part of the
+    page, whose style it would change."""
+    text, image = "<pre>%s</pre>" % markup.escape(verdict(proof)), svg(proof)
+    if image:
+        text += '<img alt="the prisms" src="data:image/svg+xml;base64,%s">' \
+            % base64.b64encode(image.encode("utf-8")).decode("ascii")
+    return text
 
 
 def postscript(proof):
-    problem = proof.problem
-    cuts, proved, symmetric, undecided = (
-        sum(map(proof.tree.count, kinds)) for kinds in (tree.CUTS, "P", "S", "U"))
-    untried = 1 + cuts - proved - symmetric - undecided
-    nodes = proof.tree + tree.UNTRIED * (untried - proof.tree.count(tree.UNTRIED)) + "."
+    counts = legend.counts(proof)
+    nodes = proof.tree + tree.UNTRIED * (counts.get("?", 0) - proof.tree.count(tree.UNTRIED))
+    key = ["%s: %s (%d)" % (MARKS[kind], legend.NAMES[kind], count)
+           for kind, count in counts.items()]
+    star = legend.star(proof)
+    if star:
+        key.append("circle: " + legend.STAR)
+    head, foot = legend.head(proof), legend.foot(proof)
+    below = 40 + SMALL_LINE * len(foot)
+    top = SIDE + 16 + SMALL_LINE + LINE * len(head)
+
     lines = [
         "%!PS-Adobe-3.0 EPSF-3.0",
-        "%%%%BoundingBox: 0 0 %d %d" % (WIDTH, HEIGHT),
+        "%%%%BoundingBox: 0 0 %d %d" % (WIDTH, below + top),
         "%%Title: Prisms of a converse KAM proof",
-        "%%Creator: converse " + proof.version,
+        "%%Creator: converse " + _escape(proof.version),
         "%%LanguageLevel: 2",
         "%%DocumentNeededResources: font Helvetica Symbol",
         "%%Pages: 1",
         "%%EndComments",
         "%%BeginProlog",
+        "/side %d def" % SIDE,
+        "/least %g def" % (SIDE * legend.LEAST),
         PROLOG + "%%EndProlog",
         "%%Page: 1 1",
-        "gsave %d %d translate" % (LEFT, BELOW),
-        "0 0 %d %d walk" % (SIDE, SIDE),
+        "/tree [                 % line ends in it say nothing",
     ]
-    lines += [nodes[i:i + 78] for i in range(0, len(nodes), 78)]
-    lines += ["%g %g %g %g mark" % _rectangle(cell)
-              for kind, cell in tree.Walk().feed(proof.tree) if kind == "U"]
-    lines += ["0 setgray 0.6 setlinewidth 0 0 %d %d rectstroke" % (SIDE, SIDE)]
-    lines += _star(proof)
+    for start in range(0, len(nodes), NODES):
+        part = nodes[start:start + NODES]
+        lines += ["("] + [part[i:i + 78] for i in range(0, len(part), 78)] + [")"]
+    lines += ["] def", "gsave %d %d translate" % (LEFT, below)]
+    lines += ["(%s) { %s } each" % (kind, paint) for kind, paint in (
+        ("S", "0.65 0.85 box"), ("P", "0.35 setgray rectfill"), ("P", "0 outline"),
+        ("?", "seen 0.65 1 box"), ("U", "seen cross")) if kind in counts]
+    lines += ["0 setgray 0.6 setlinewidth 0 0 side side rectstroke"]
+    if star:
+        lines += ["%g %g star" % tuple(SIDE * part for part in star)]
     lines += ["0 setgray 0.6 setlinewidth"]
     for axis in range(2):
-        for place in range(3):
-            lines += _tick(problem, axis, place)
-    lines += [
-        "(0) %d -30 axis" % (SIDE // 2 - 4),
-        "(1) -40 %d axis" % (SIDE // 2 + 16),
-        "text setfont",
-        "(%s) %d %d centred" % (_title(proof), SIDE // 2, SIDE + 30),
-        "small setfont",
-        "(%s) %d %d centred" % (
-            "dark: proved (%d)   light: skipped by symmetry (%d)   white: untried (%d)   "
-            "crossed: undecided (%d)" % (proved, symmetric, untried, undecided),
-            SIDE // 2, SIDE + 14),
-        "(%s) %d -50 centred" % (_subtitle(proof), SIDE // 2),
-        "grestore",
-        "showpage",
-        "%%Trailer",
-        "%%EOF",
-    ]
+        for place in range(3) if proof.problem.half[3 + axis] else (1,):
+            lines += _tick(proof.problem, axis, place)
+    lines += ["(0) %d -28 axis" % (SIDE // 2 - 4), "(1) %d %d axis" % (4 - LEFT, SIDE // 2 + 16)]
+    lines += _text("small", SIDE + 10, SMALL_LINE, ["   ".join(key)])
+    lines += _text("text", SIDE + 10 + SMALL_LINE + 4, LINE, head)
+    lines += _text("small", 4 - below, SMALL_LINE, foot)
+    lines += ["grestore", "showpage", "%%Trailer", "%%EOF"]
     return "\n".join(lines) + "\n"
-
-
-def _rectangle(cell):
-    (i, j, *_), (k, l, *_) = cell
-    w, h = SIDE / 2 ** k, SIDE / 2 ** l
-    return i * w, j * h, w, h
 
 
 def _tick(problem, axis, place):
     """The tick at the lower end (place 0), in the middle (1) or at the upper end (2)."""
     at = place * SIDE // 2
-    value = problem.centre[3 + axis] + (place - 1) * problem.half[3 + axis]
-    number = {0: "0", 1: "", -1: "-"}.get(value, "%.6g" % value)
-    text = "(%s) (%s)" % ("p" if value else "", number)
+    half = problem.half[3 + axis]
+    value = problem.centre[3 + axis] + (place - 1) * half
+    words = {0: "0", 1: "", -1: "-"}.get(value) if value in (0, 1, -1) \
+        else legend.number(value, half / 100)
+    text = "(%s) (%s)" % ("p" if value else "", words)
     if axis == 0:
-        return ["%d 0 moveto 0 -5 rlineto stroke" % at, "%s %d -16 -0.5 angle" % (text, at)]
-    return ["0 %d moveto -5 0 rlineto stroke" % at, "%s -8 %d -1 angle" % (text, at - 3)]
+        x, shift = at, -0.5
+        if len(words) > 7:              # from one end of the page to the other
+            x, shift = ((4 - LEFT, 0), (at, -0.5), (SIDE + RIGHT - 4, -1))[place]
+        return ["%d 0 moveto 0 -5 rlineto stroke" % at,
+                "%s %d -16 %d %g angle" % (text, x, WIDTH // 3 - 8, shift)]
+    return ["0 %d moveto -5 0 rlineto stroke" % at,
+            "%s -8 %d %d -1 angle" % (text, at - 3, LEFT - 12)]
 
 
-def _star(proof):
-    """The starting point, where the region shows it."""
-    places = []
-    for axis, text in enumerate(proof.xstar):
-        centre, half = (float(x[3 + axis]) for x in (proof.problem.centre, proof.problem.half))
-        offset = math.remainder(float(text) / math.pi - centre, 2)
-        if half == 0 or abs(offset) > half:
-            return []
-        places.append((offset / half + 1) * SIDE / 2)
-    return ["%g %g star" % tuple(places)]
+def _text(font, y, step, words):
+    """Lines of text in the middle of the page, the lowest at y."""
+    return [font + " setfont"] + [
+        "(%s) %g %g %d line" % (_escape(line), WIDTH / 2 - LEFT, y - step * k, WIDTH - 10)
+        for k, line in enumerate(words, 1 - len(words))]
 
 
-def _title(proof):
-    return ",   ".join(
-        "%.9g < %s < %.9g" % (centre - half, name, centre + half) if half else
-        "%s = %.9g" % (name, centre) for name, centre, half in zip(
-            "abc", proof.problem.centre, proof.problem.half))
-
-
-def _subtitle(proof):
-    words = "converse %s, %s" % (proof.version, proof.arithmetic)
-    if proof.as_printed:
-        words += "; as printed in the thesis: a historical reconstruction, not a proof"
-    return words
+def _escape(text):
+    """For a string of PostScript."""
+    return "".join("\\" + char if char in "()\\" else char for char in text)

@@ -15,6 +15,14 @@ def reason(error):
     return error.strerror or str(error)
 
 
+def same(path, other):
+    """Do both lead to one file, whether it exists or not?  other may be a file descriptor."""
+    try:
+        return os.path.samefile(path, other)
+    except OSError:
+        return not isinstance(other, int) and os.path.realpath(path) == os.path.realpath(other)
+
+
 def check_writable(path, regular=False):
     """Finds out before the work starts whether a file may be written."""
     if os.path.isdir(path or os.curdir):

@@ -2,18 +2,36 @@
 
 from decimal import Decimal
 from fractions import Fraction
+from typing import List, Sequence, Tuple
 
-from ._native import ffi, lib
-from .problem import decimal_text
-from .search import MESSAGES, check
+from .core import MESSAGES, check, ffi, lib
+from .problem import Number, decimal_text, parse_number
+
+Interval = Tuple[Fraction, Fraction]
+Rows = List[List[Fraction]]
+Prism = Tuple[Sequence[Number], Sequence[Sequence[Number]]]     # centre: 7; matrix: 7 rows of 7
+Range = Sequence[Number]                                        # lo, hi
 
 ARITHMETICS = ("apm", "double")
+
+# What the routines take for granted; the C side looks.
+_PRISM = "a prism whose parameters depend on nothing else and have no negative widths"
+TAKES = {
+    "bound_sincos": "lo <= hi", "product": "lo <= hi", "square": "lo <= hi",
+    "torus": "lo <= hi of each parameter", "image": _PRISM, "btrace": _PRISM, "Blams": _PRISM,
+    "image_ns": _PRISM + ", and at most 1e9 repetitions",
+    "least_lambda": _PRISM + ", and positive bounds of a positive definite block",
+    "cone": "k = 4 or k = 16", "scale": "at most 100000 places",
+    "cell": "lo <= hi of each parameter, and no negative half-widths",
+    "region": "a half-width that is not negative",
+    "constants": "half-widths that are not negative",
+}
 
 
 def _exact(x):
     """An int, a Fraction or a Decimal of finite decimals, or a string, for the C side."""
     if isinstance(x, str):
-        return x
+        return decimal_text(parse_number(x)) if "/" in x else x
     if isinstance(x, bool) or not isinstance(x, (int, Fraction, Decimal)):
         raise TypeError("%r is not an exact number: give an int, a Fraction, a Decimal or a "
                         "decimal string" % (x,))
@@ -22,7 +40,8 @@ def _exact(x):
     return str(x) if isinstance(x, Decimal) else decimal_text(x)
 
 
-def call(name, values, nout, dp, arithmetic="apm", as_printed=False):
+def call(name: str, values: Sequence[Number], nout: int, dp: int, arithmetic: str = "apm",
+         as_printed: bool = False) -> List[Fraction]:
     """Calls a routine of the core with these numbers and returns its nout results."""
     if arithmetic not in ARITHMETICS:
         raise ValueError("the arithmetic is 'apm' or 'double', not %r" % (arithmetic,))
@@ -35,78 +54,101 @@ def call(name, values, nout, dp, arithmetic="apm", as_printed=False):
         lib.cv_free(text)
     if code in (lib.CV_EARITHMETIC, lib.CV_ESINGULAR):
         raise ArithmeticError("%s: %s" % (name, MESSAGES[code]))
+    if code == lib.CV_EARGUMENT and name in TAKES:
+        raise ValueError("%s: too many or too few numbers, or some that make no sense; it takes %s"
+                         % (name, TAKES[name]))
     if code in (lib.CV_ENUMBER, lib.CV_EARGUMENT):
         raise ValueError("%s: %s" % (name, MESSAGES[code]))
     check(code)
     return [Fraction(Decimal(text)) for text in texts]
 
 
-def pi(dp, **options):
+def pi(dp: int, **options) -> Fraction:
     """pi to dp decimal places."""
     return call("pi", [], 1, dp, **options)[0]
 
 
-def sin(x, dp, **options):
+def sin(x: Number, dp: int, **options) -> Fraction:
     """The sine of x to dp decimal places."""
     return call("sincos", [x], 2, dp, **options)[0]
 
 
-def cos(x, dp, **options):
+def cos(x: Number, dp: int, **options) -> Fraction:
     """The cosine of x to dp decimal places."""
     return call("sincos", [x], 2, dp, **options)[1]
 
 
-def sqrt(x, dp, **options):
+def sqrt(x: Number, dp: int, **options) -> Fraction:
     """The square root of x to dp decimal places."""
     return call("sqrt", [x], 2, dp, **options)[0]
 
 
-def div(x, y, dp, **options):
+def div(x: Number, y: Number, dp: int, **options) -> Interval:
     """An interval (lo, hi) that holds x / y."""
     return tuple(call("div", [x, y], 3, dp, **options)[:2])
 
 
-def bound_sin(lo, hi, dp, **options):
+def bound_sin(lo: Number, hi: Number, dp: int, **options) -> Interval:
     """An interval (lo, hi) that holds the sine of every number from lo to hi."""
     return tuple(call("bound_sincos", [lo, hi], 4, dp, **options)[:2])
 
 
-def bound_cos(lo, hi, dp, **options):
+def bound_cos(lo: Number, hi: Number, dp: int, **options) -> Interval:
     """An interval (lo, hi) that holds the cosine of every number from lo to hi."""
     return tuple(call("bound_sincos", [lo, hi], 4, dp, **options)[2:])
 
 
-def bound_inverse(matrix, dp, **options):
+def bound_inverse(matrix: Sequence[Sequence[Number]], dp: int,
+                  **options) -> Tuple[Rows, Fraction]:
     """An approximate inverse of a 4 x 4 matrix, a list of rows, and a bound of its error."""
     out = call("inverse", [x for row in matrix for x in row], 17, dp, **options)
     return _rows(out[:16], 4), out[16]
 
 
-def inverse(matrix, dp, **options):
+def inverse(matrix: Sequence[Sequence[Number]], dp: int, **options) -> Rows:
     """The approximate inverse alone."""
     return bound_inverse(matrix, dp, **options)[0]
 
 
-def image(prism, dp, **options):
+def image(prism: Prism, dp: int, **options) -> Tuple[List[Fraction], Rows]:
     """A prism that holds the image of a prism (centre, matrix): 7 numbers, 7 rows of 7."""
     out = call("image", _flat(prism), 56, dp, **options)
     return out[:7], _rows(out[7:], 7)
 
 
-def btrace(prism, dp, **options):
+def btrace(prism: Prism, dp: int, **options) -> Interval:
     """An interval (lo, hi) that holds the trace of beta at every point of a prism."""
     return tuple(call("btrace", _flat(prism), 2, dp, **options))
 
 
-def Blams(prism, dp, **options):
+def Blams(prism: Prism, dp: int, **options) -> Tuple[Interval, Interval]:
     """Intervals that hold the least and the largest eigenvalue of beta over a prism."""
     out = call("Blams", _flat(prism), 4, dp, **options)
     return tuple(out[:2]), tuple(out[2:])
 
 
-def torus(a, b, c, dp, **options):
+def torus(a: Range, b: Range, c: Range, dp: int, **options) -> Tuple[Fraction, Fraction]:
     """The bounds (T, B) over the whole torus for ranges (lo, hi) of the parameters."""
     return tuple(call("torus", [*a, *b, *c], 2, dp, **options))
+
+
+def cell(a: Range, b: Range, c: Range, centre: Sequence[Number], half: Sequence[Number],
+         dp: int, **options) -> Tuple[Fraction, Fraction]:
+    """Bounds of the trace and of the largest eigenvalue of 2I + W over a cell of the torus, a
+    rectangle centre +- half, for ranges (lo, hi) of the parameters (csrc/thesis/torus.c)."""
+    return tuple(call("cell", [*a, *b, *c, *centre, *half], 2, dp, **options))
+
+
+def region(centre: Number, half: Number, dp: int, **options) -> Tuple[Fraction, Fraction]:
+    """An interval (centre, half) in radians that holds one in units of pi."""
+    return tuple(call("region", [centre, half], 2, dp, **options))
+
+
+def constants(centre: Sequence[Number], half: Sequence[Number], xstar: Sequence[Number],
+              dp: int, **options) -> Tuple[Fraction, ...]:
+    """What a search begins with, for parameters centre +- half: T, Tr-, Tr+, B, lambda-min and
+    lambda-max, and upper bounds of the trace and of the least eigenvalue of the block d_0."""
+    return tuple(call("constants", [*centre, *half, *xstar], 8, dp, **options))
 
 
 def _flat(prism):

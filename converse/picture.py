@@ -1,117 +1,170 @@
-"""The figure as SVG, PNG or PDF, drawn with matplotlib (the extra "plot")."""
+"""The figure as matplotlib draws it (the extra "plot"): SVG, PNG, PDF, or into the user's axes.
+
+Nothing of matplotlib's is changed: neither its backend nor its settings.
+"""
 
 import io
-import os
+import math
+from fractions import Fraction
 
-from . import files, tree
+from . import files, legend, tree
 
-FORMATS = (".svg", ".png", ".pdf")
+FORMATS = "svg", "png", "pdf"
 COLOURS = {"P": "0.35", "S": "0.85", "?": "1.0", "U": "#ffd0d0"}
-LABELS = {"P": "proved", "S": "skipped by symmetry", "?": "untried", "U": "undecided"}
-RASTER = 5000                           # with more prisms than this the depth of the cuts is drawn
+EDGES = {"P": "0.1", "S": "0.6", "?": "0.6", "U": "red"}
+WIDTHS = {"U": 0.8}                     # of the edges, in points
+LAYERS = "SP?U"                         # from below: nothing hides what is not proved
+RASTER = 2000                           # with more prisms than this the depth of the cuts is drawn
 PIXELS = 1200
+SINGLE = Fraction(1, 10 ** 200)         # matplotlib takes ranges not much smaller for none
+DEPTHS, SHADE = "viridis_r", "#35b779"  # of the cuts; one for the legend
+RASTER_COLOURS = {"S": (217, 217, 217, 255), "?": (255, 255, 255, 255), "U": (204, 0, 0, 255)}
+SALT = {"svg.hashsalt": "converse"}     # the same picture, the same file
+DATES = {"svg": {"Date": None}, "pdf": {"CreationDate": None}}
 
 
 def check():
     """ConverseError if matplotlib is missing."""
     try:
-        import matplotlib
+        import matplotlib                           # noqa: F401
     except ImportError:
-        raise files.ConverseError("SVG, PNG and PDF need matplotlib; pip install 'converse[plot]' "
+        raise files.ConverseError("SVG, PNG and PDF need matplotlib; pip install matplotlib, "
                                   "or name the figure .ps") from None
-    matplotlib.use("Agg")
 
 
-def picture(proof, path):
-    """Draws a proof, finished or not, in the format that the name of the file asks for."""
+def picture(proof, kind):
+    """The figure as the bytes of a file; the user's settings do not matter to it."""
     check()
-    from matplotlib import rcParams
-    from matplotlib.collections import PolyCollection
-    from matplotlib.figure import Figure
-    from matplotlib.patches import Patch
+    from matplotlib import style
 
-    rcParams["svg.hashsalt"] = "converse"           # the same picture, the same file
-    low, side = zip(*((float(c - h), float(2 * h)) for c, h in zip(
-        proof.problem.centre[3:], proof.problem.half[3:])))
-    fig = Figure(figsize=(6.4, 7.0))
-    axes = fig.add_subplot()
-    counts = {kind: proof.tree.count(kind) for kind in COLOURS}
-    counts["?"] = sum(kind == "?" for kind, _ in tree.cells(proof.tree))
-    colours = dict(COLOURS)
-    if sum(counts.values()) > RASTER:
-        colours["P"] = "#35b779"
-        _raster(fig, axes, proof, low, side)
-    else:
-        boxes = {kind: [] for kind in COLOURS}
-        for kind, ((i, j, *_), (k, l, *_)) in tree.cells(proof.tree):
-            x0, x1 = (low[0] + side[0] * n / 2 ** k for n in (i, i + 1))
-            y0, y1 = (low[1] + side[1] * n / 2 ** l for n in (j, j + 1))
-            boxes[kind].append((k + l, ((x0, y0), (x1, y0), (x1, y1), (x0, y1))))
-        for kind, prisms in boxes.items():          # small ones above the large ones they share
-            polygons = [box for _, box in sorted(prisms)]
-            edge = {"U": "red"}.get(kind, "0.1" if kind == "P" else "0.6")
-            axes.add_collection(PolyCollection(polygons, facecolors=COLOURS[kind],
-                                               edgecolors=edge, linewidths=0.3))
-    axes.plot(*_star(proof, low, side), "o", markersize=5, markerfacecolor="white",
-              markeredgecolor="black", label="x*")
-    axes.set_xlim(low[0], low[0] + (side[0] or 1))
-    axes.set_ylim(low[1], low[1] + (side[1] or 1))
-    axes.set_aspect("equal" if side[0] == side[1] else "auto")
-    axes.set_xlabel(r"$v_0 / \pi$")
-    axes.set_ylabel(r"$v_1 / \pi$")
-    axes.set_title(_title(proof), fontsize=9)
-    handles = [Patch(facecolor=colours[kind], edgecolor="0.1",
-                     label="%s (%d)" % (LABELS[kind], count))
-               for kind, count in counts.items() if count]
-    axes.legend(handles=handles, loc="upper center", bbox_to_anchor=(0.5, -0.09),
-                ncol=len(handles), fontsize=8, frameon=False)
+    with style.context(["default", SALT]):
+        return encode(page(proof), kind, dpi=300)
+
+
+def encode(figure, kind, **options):
+    """A Figure as the bytes of a file of that kind, without a date."""
     data = io.BytesIO()
-    kind = os.fspath(path)[-3:]
-    fig.savefig(data, format=kind, dpi=300, bbox_inches="tight",
-                metadata={"Date": None} if kind == "svg" else
-                {"CreationDate": None} if kind == "pdf" else None)
-    files.write(path, data.getvalue())
+    figure.savefig(data, format=kind, bbox_inches="tight", metadata=DATES.get(kind), **options)
+    return data.getvalue()
 
 
-def _raster(fig, axes, proof, low, side):
+def page(proof):
+    """A Figure with all its words."""
+    check()
+    from matplotlib.figure import Figure
+    from matplotlib.ticker import MaxNLocator
+
+    fig = Figure(figsize=(6.4, 7.0))
+    axes = draw(proof, fig.add_subplot())
+    head, foot = ("\n".join(lines).replace("$", r"\$")
+                  for lines in (legend.head(proof), legend.foot(proof)))
+    axes.annotate(foot, (0.5, 1), (0, 5), "axes fraction", "offset points", fontsize=6.5,
+                  ha="center", va="bottom")
+    axes.set_title(head, fontsize=9, pad=10 + 8.5 * len(legend.foot(proof)))
+    axes.legend(loc="upper center", bbox_to_anchor=(0.5, 0), borderaxespad=5, ncol=3, fontsize=8,
+                frameon=False)          # so far below the axes that their labels have room
+    for image in axes.images[:1]:
+        fig.colorbar(image, ax=axes, shrink=0.6, ticks=MaxNLocator(integer=True),
+                     label="cuts of the smallest prism along both angles")
+    return fig
+
+
+def draw(proof, axes):
+    """Draws the prisms and x* into axes, the angles in units of pi: no title and no legend, but
+    the labels that a legend needs."""
+    check()
+    (left, width), (bottom, height) = (_axis(proof.problem, axes, k) for k in range(2))
+    count = legend.counts(proof)
+    if sum(count.values()) <= RASTER:
+        paths, colours = _paths(proof.tree), COLOURS
+    else:
+        _raster(axes, proof.tree, (left, left + width, bottom, bottom + height))
+        paths = {}
+        colours = {"P": SHADE, **{kind: [x / 255 for x in colour]
+                                  for kind, colour in RASTER_COLOURS.items()}}
+    for kind, number in count.items():
+        _patch(axes, [(left + width * x, bottom + height * y) for x, y in paths.get(kind, ())],
+               facecolor=colours[kind], edgecolor=EDGES[kind], linewidth=WIDTHS.get(kind, 0.3),
+               zorder=1 + LAYERS.index(kind) / 10,
+               label="%s (%d)" % (legend.NAMES[kind], number))
+    star = legend.star(proof)
+    if star:
+        axes.plot(left + width * star[0], bottom + height * star[1], "o", linestyle="none",
+                  markersize=5, markerfacecolor="white", markeredgecolor="black",
+                  label=legend.STAR)
+    axes.set_aspect("equal" if width == height else "auto")
+    return axes
+
+
+def _axis(problem, axes, k):
+    """Makes an axis ready for the angle k; returns where it begins, and its length.  A single value
+    is drawn as a strip; in a narrow range, which doubles may not resolve, the centre is at 0."""
+    centre, half = problem.centre[3 + k], problem.half[3 + k]
+    single = half < SINGLE
+    strip = Fraction(1, 2) if single else half
+    origin = centre if strip < abs(centre) / 10 ** 4 else 0
+    low, side = float(centre - origin - strip), float(2 * strip)
+    axis = (axes.xaxis, axes.yaxis)[k]
+    axis.set_label_text(r"$v_%d / \pi$" % k + (
+        " %s %s" % ("-" if origin > 0 else "+", legend.number(abs(origin))) if origin else ""))
+    (axes.set_xlim, axes.set_ylim)[k](low, low + side)
+    axis.set_major_formatter("{x:.7g}")
+    if origin:                          # long numbers
+        axis.get_major_locator().set_params(nbins=4)
+    if single:
+        axis.set_ticks([float(centre - origin)])
+    return low, side
+
+
+def _patch(axes, corners, **style):
+    """One shape of many rectangles."""
+    from matplotlib.patches import PathPatch
+    from matplotlib.path import Path
+
+    codes = [Path.MOVETO, Path.LINETO, Path.LINETO, Path.LINETO, Path.CLOSEPOLY]
+    axes.add_patch(PathPatch(Path(corners, codes * (len(corners) // 5)) if corners
+                             else Path([(0, 0)]), **style))
+
+
+def _spread(kind, index, cuts):
+    """From where to where a prism is drawn along an axis, as parts of the region's side."""
+    low, side = index / 2 ** cuts, 1 / 2 ** cuts
+    if kind not in "PS" and side < legend.LEAST:
+        low = min(max(low + (side - legend.LEAST) / 2, 0), 1 - legend.LEAST)
+        side = legend.LEAST
+    return low, low + side
+
+
+def _paths(text):
+    """The corners of the prisms, by kind."""
+    paths = {}
+    for kind, ((i, j, *_), (k, l, *_)) in tree.cells(text):
+        (x0, x1), (y0, y1) = _spread(kind, i, k), _spread(kind, j, l)
+        paths.setdefault(kind, []).extend([(x0, y0), (x1, y0), (x1, y1), (x0, y1), (x0, y0)])
+    return paths
+
+
+def _raster(axes, text, extent):
     """Draws for each place how often the smallest prism there was cut; a place may lie in many
     where the parameters were cut."""
     import numpy
-    depth = numpy.zeros((PIXELS, PIXELS), numpy.float32)
-    kind_at = {kind: numpy.zeros((PIXELS, PIXELS), bool) for kind in "SU?"}
-    for kind, ((i, j, *_), (k, l, *_)) in tree.cells(proof.tree):
-        x0, x1 = i * PIXELS >> k, -(-(i + 1) * PIXELS >> k)
-        y0, y1 = j * PIXELS >> l, -(-(j + 1) * PIXELS >> l)
+
+    depth = numpy.full((PIXELS, PIXELS), -1, numpy.int16)
+    others = {kind: numpy.zeros((PIXELS, PIXELS), bool) for kind in RASTER_COLOURS}
+    for kind, ((i, j, *_), (k, l, *_)) in tree.cells(text):
         if kind == "P":
-            part = depth[y0:y1, x0:x1]
+            part = depth[j * PIXELS >> l:-(-(j + 1) * PIXELS >> l),
+                         i * PIXELS >> k:-(-(i + 1) * PIXELS >> k)]
             numpy.maximum(part, k + l, out=part)
         else:
-            kind_at[kind][y0:y1, x0:x1] = True
-    extent = low[0], low[0] + (side[0] or 1), low[1], low[1] + (side[1] or 1)
-    image = axes.imshow(numpy.ma.masked_equal(depth, 0), cmap="viridis_r", origin="lower",
-                        extent=extent, interpolation="nearest")
-    for kind, places in kind_at.items():
-        colour = {"S": (0.85, 0.85, 0.85, 1), "U": (0.8, 0, 0, 1), "?": (1, 1, 1, 1)}[kind]
-        shown = places if kind != "S" else places & (depth == 0)
-        axes.imshow(shown[..., None] * numpy.array(colour), origin="lower", extent=extent,
-                    interpolation="nearest")
-    fig.colorbar(image, ax=axes, shrink=0.6, label="cuts of the smallest prism along both angles")
-
-
-def _star(proof, low, side):
-    """The starting point moved into the region by multiples of 2 pi, or nothing."""
-    from math import pi
-
-    place = [(float(x) / pi - a) % 2 + a for x, a in zip(proof.xstar, low)]
-    inside = all(x <= a + s for x, a, s in zip(place, low, side))
-    return ([place[0]], [place[1]]) if inside else ([], [])
-
-
-def _title(proof):
-    centre, half = proof.problem.centre, proof.problem.half
-    ranges = ",  ".join("%.9g < %s < %.9g" % (c - h, name, c + h) if h else
-                        "%s = %.9g" % (name, c) for name, c, h in zip("abc", centre, half))
-    words = "as printed: not a proof" if proof.as_printed else "converse " + proof.version
-    if proof.sha256:
-        words += ", proof " + proof.sha256[:16]
-    return "%s\n%s, %s" % (ranges, words, proof.arithmetic)
+            (x0, x1), (y0, y1) = (
+                (math.floor(low * PIXELS), math.ceil(high * PIXELS))
+                for low, high in (_spread(kind, i, k), _spread(kind, j, l)))
+            others[kind][y0:y1, x0:x1] = True
+    others["S"] &= depth < 0
+    above = numpy.zeros((PIXELS, PIXELS, 4), numpy.uint8)
+    for kind in LAYERS:
+        if kind in others:
+            above[others[kind]] = RASTER_COLOURS[kind]
+    for image, options in ((numpy.ma.masked_less(depth, 0), {"cmap": DEPTHS}), (above, {})):
+        axes.imshow(image, origin="lower", extent=extent, interpolation="nearest", **options)

@@ -1,84 +1,125 @@
-"""A proof: the tree of prisms with its statistics; how it is found, saved and loaded."""
+"""A proof: the tree of prisms with its statistics, and its file."""
 
-import concurrent.futures
-import contextlib
 import gzip
 import hashlib
-import math
 import os
-import time
+import tempfile
 import zlib
-from dataclasses import asdict, dataclass, field, fields, replace
-from typing import Dict, Tuple
+from dataclasses import asdict, dataclass, field, fields
+from functools import cached_property
+from typing import TYPE_CHECKING, Dict, Optional, Tuple, Union
 
-from . import __version__, files, tree
+from . import files, tree
+from .core import CONSTANTS, Counts
 from .files import ConverseError
 from .problem import NAMES, Problem, decimal_text, parse_number
-from .search import (ALONE_SECONDS, LOOK_SECONDS, METHODS, Counts, Growth, Part, Search, Task,
-                     count_workers)
+from .settings import AS_PRINTED, REGION, THEOREM, UNDECIDED, Settings
+from .version import __version__
 
-BACKUP_SECONDS = 1.0
-BACKUP_SHARE = 20                   # of the time, at most one part in so many goes into backups
-LIMIT = 100000                      # of the depth and of the digits
+if TYPE_CHECKING:
+    from . import check
 
 FIRST_LINE = "converse proof 2"
 KINDS = {False: "sound", True: "as printed, not a proof"}       # by as_printed
-CONSTANTS = {                       # by method, the numbers of the theorem that are recorded
-    "thesis": {"T": 2, "Tr-": 3, "Tr+": 4, "B": 5, "lambda-min": 6, "lambda-max": 7},
-    "loewner": {"B": 5},
-}
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Proof:
-    """A search and its result, finished or not."""
+    """A search and its result, finished or not.  It is true if it proves that there are no tori."""
 
     problem: Problem
-    depth: int
-    digits: int
-    stubborn: bool
-    as_printed: bool
-    tree: str
-    counts: Counts
-    xstar: Tuple[str, str]              # the starting point, in radians
+    settings: Settings = Settings()
+    tree: str = ""                      # see tree.py
+    counts: Counts = Counts()
+    xstar: Optional[Tuple[str, str]] = None     # the starting point, in radians
     constants: Dict[str, str] = field(default_factory=dict)
-    seconds: float = 0.0
+    seconds: float = 0.0                # that it took, as far as is known
     version: str = __version__          # of the program that did the work
-    method: str = "thesis"
     pending: Tuple[int, ...] = ()       # what is known of the untried prisms, in their order
     at_once: bool = False               # method Loewner: larger parameters cannot have tori, either
+    restored: int = field(default=0, compare=False)     # leaves that a file brought, believed
     sha256: str = field(default="", compare=False)      # of its file, if there is one
 
-    @property
-    def all_decided(self):
+    def __bool__(self):
+        return self.no_tori
+
+    def __repr__(self):
+        return "<Proof: %s; %d prisms proved, %d skipped, %d undecided; %s, %s>" % (
+            {THEOREM: "no invariant tori", REGION: "none through a part of the torus",
+             UNDECIDED: "undecided", AS_PRINTED: "as printed, not a proof"}[self.conclusion],
+            self.counts.proved, self.counts.symmetric, self.counts.undecided, self.method,
+            self.arithmetic)
+
+    method = property(lambda self: self.settings.method)
+    depth = property(lambda self: self.settings.depth)
+    digits = property(lambda self: self.settings.digits)
+    stubborn = property(lambda self: self.settings.stubborn)
+    as_printed = property(lambda self: self.settings.as_printed)
+
+    @cached_property
+    def all_decided(self) -> bool:
         """Is the tree whole and without an undecided prism?"""
         return "U" not in self.tree and tree.complete(self.tree)
 
     @property
-    def no_tori(self):
-        """Is it proved that there are no invariant tori?"""
-        return self.all_decided and not self.as_printed
+    def conclusion(self) -> str:
+        """What the search came to: "theorem", that there are no invariant tori; "region", that none
+        goes through the successors of x* which the problem names, only a part of the torus;
+        "undecided"; or "as printed", decided as the listing of 1989 would, which is no proof."""
+        if not self.all_decided:
+            return UNDECIDED
+        if self.as_printed:
+            return AS_PRINTED
+        return THEOREM if self.problem.full_torus else REGION
 
     @property
-    def arithmetic(self):
+    def no_tori(self) -> bool:
+        """Is it proved that there are no invariant tori?"""
+        return self.conclusion == THEOREM
+
+    @property
+    def arithmetic(self) -> str:
         return "%d decimal places" % self.digits if self.method == "thesis" else "double precision"
 
     @property
     def undecided(self):
-        """The prisms on which the search gave up."""
-        return list(tree.leaves(self.problem, self.tree, "U"))
+        """The prisms on which the search gave up: a list of Leaf, angles in units of pi."""
+        return list(tree.leaves(self.problem, self.tree, "U")) if "U" in self.tree else []
 
-    def report(self):
+    def report(self) -> str:
+        """The report of 1989, and what a reader needs beside it."""
         from .report import report
         return report(self)
 
-    def figure(self, path):
+    def figure(self, target=None, *, ax=None, format: Optional[str] = None):
+        """Draws the prisms: see figure.figure."""
         from .figure import figure
-        figure(self, path)
+        return figure(self, target, ax, format)
 
-    def save(self, path):
+    def verify(self, jobs: int = 1) -> "check.Result":
+        """Verifies the proof anew by the code of converse-check, which believes nothing of it and
+        shares nothing with the program that found it; jobs: processes.
+
+        The Result is true if the theorem is verified; its text is the checker's report.
+        check.Rejected, check.NotConfirmed, check.Unusable: it is not, and why.
+        """
+        from . import check
+        with tempfile.TemporaryDirectory() as directory:
+            path = os.path.join(directory, "proof")
+            self.save(path)
+            return check.verify(path, jobs)
+
+    def _repr_svg_(self):
+        from .figure import svg
+        return svg(self)
+
+    def _repr_html_(self):
+        from .figure import html
+        return html(self)
+
+    def save(self, path: Union[str, "os.PathLike[str]"]) -> str:
         """Writes the proof file, compressed when the name ends in .gz; returns its SHA-256 (that
-        of the uncompressed file)."""
+        of the uncompressed file).  Two runs of one proof give the same file."""
         text = data = self._text().encode("utf-8")
         if os.fspath(path).endswith(".gz"):
             data = gzip.compress(text, 6, mtime=0)
@@ -91,10 +132,11 @@ class Proof:
                  "together: " + _yes(self.problem.together)]
         lines += ["%s: %s %s" % (name, decimal_text(centre), decimal_text(half))
                   for name, centre, half in zip(NAMES, self.problem.centre, self.problem.half)]
-        lines += ["xstar: %s %s" % self.xstar, "depth: %d" % self.depth,
-                  "digits: %d" % self.digits, "stubborn: " + _yes(self.stubborn),
-                  "at once: " + _yes(self.at_once), "seconds: %.2f" % self.seconds,
-                  "pending: " + " ".join(map(str, self.pending))]
+        lines += ["xstar: " + " ".join(self.xstar)] if self.xstar else []
+        lines += ["depth: %d" % self.depth, "digits: %d" % self.digits,
+                  "stubborn: " + _yes(self.stubborn), "at once: " + _yes(self.at_once)]
+        lines += [] if self.all_decided else ["seconds: %.2f" % self.seconds]
+        lines += ["pending: " + " ".join(map(str, self.pending))]
         for name, value in asdict(self.counts).items():
             values = value if isinstance(value, tuple) else (value,)
             lines.append("%s: %s" % (name, " ".join(map(str, values))))
@@ -106,8 +148,9 @@ class Proof:
         return text + "checksum: sha256 %s\nend\n" % _sha256(text)
 
     @classmethod
-    def load(cls, path):
-        """Reads a proof file; ConverseError says in one line what is wrong with it."""
+    def load(cls, path: Union[str, "os.PathLike[str]"]) -> "Proof":
+        """Reads a proof file; ConverseError says in one line what is wrong with it.  Its leaves are
+        believed: verify() and converse-check do not believe them."""
         text = _read(path)
         lines = text.split("\n")
 
@@ -134,23 +177,28 @@ class Proof:
             else:
                 values[key] = value
         try:
-            pairs = [[parse_number(word) for word in values[name].split()] for name in NAMES]
-            centre, half = zip(*pairs)
+            centre, half = zip(*(map(parse_number, values[name].split()) for name in NAMES))
             counts = {}
             for item in fields(Counts):
                 numbers = tuple(int(word) for word in values[item.name].split())
                 counts[item.name] = numbers if isinstance(item.default, tuple) else numbers[0]
-            x0, x1 = values["xstar"].split()
-            proof = cls(Problem(centre, half, tuple(comments), values["together"] == "yes"),
-                        int(values["depth"]), int(values["digits"]), values["stubborn"] == "yes",
-                        {kind: printed for printed, kind in KINDS.items()}[values["kind"]],
-                        "".join(lines[start + 1:-3]), Counts(**counts), (x0, x1),
-                        {name: values[name] for name in CONSTANTS[values["method"]]},
-                        float(values["seconds"]), values["program"].split()[1], values["method"],
-                        tuple(map(int, values["pending"].split())), values["at once"] == "yes",
-                        _sha256(text))
+            xstar = None
+            if "xstar" in values:
+                x0, x1 = xstar = tuple(values["xstar"].split())
+                parse_number(x0), parse_number(x1)
+            nodes = "".join(lines[start + 1:-3])
+            settings = Settings(values["method"], int(values["depth"]), int(values["digits"]),
+                                values["stubborn"] == "yes",
+                                {kind: printed for printed, kind in KINDS.items()}[values["kind"]])
+            proof = cls(
+                Problem.around(centre, half, comments, values["together"] == "yes"),
+                settings, nodes, Counts(**counts), xstar,
+                {name: values[name] for name in CONSTANTS[settings.method] if name in values},
+                float(values.get("seconds", 0)), values["program"].split()[1],
+                tuple(map(int, values["pending"].split())), values["at once"] == "yes",
+                nodes.count("P") + nodes.count("S"), _sha256(text))
             tree.complete(proof.tree)
-        except (KeyError, IndexError, ValueError) as error:
+        except (KeyError, IndexError, TypeError, ValueError) as error:
             fail(start + 1, "the header or the tree makes no sense (%s)" % error)
         return proof
 
@@ -176,191 +224,3 @@ def _read(path):
     except (EOFError, zlib.error, UnicodeDecodeError):
         raise ConverseError("%s, line 1: the file is truncated or not a proof file of this "
                             "program; use an intact copy or start anew" % path) from None
-
-
-def prove(problem, depth=None, digits=35, stubborn=False, as_printed=False, progress=None,
-          backup=None, resume=None, on_leaf=None, time_limit=math.inf, method="thesis", jobs=None,
-          executor=None):
-    """Tries to prove that there are no invariant tori, and returns a Proof either way.
-
-    method: "thesis", in decimals of so many digits, or "loewner", the sharper criterion in doubles.
-    depth: the most cuts of a prism, by default 30, or 120 with the sharper method.
-    A stubborn search goes on after an undecided prism.  as_printed follows the
-    listing of the thesis to the letter, which proves nothing.
-    progress(fraction, counts) is called a few times a second.
-    backup names a file that is kept up to date, and resume a proof (or its file) to continue.
-    on_leaf(leaf, steps) is called for every leaf of the tree as it is decided.
-    time_limit: after about so many seconds of this run the search is left as it is.
-    jobs: how many workers at a time, by default one per core; executor: a
-    concurrent.futures.Executor whose workers they are, by default threads of this process (with
-    on_leaf there is only one).  The result does not depend on either.
-
-    ConverseError, MemoryError: nothing is lost of the backup; ValueError: an argument is wrong.
-    """
-    if method not in METHODS:
-        raise ValueError("the method is one of %s, not %r" % (", ".join(METHODS), method))
-    if depth is None:
-        depth = 30 if method == "thesis" else 120
-    if not 1 <= digits <= LIMIT:
-        raise ValueError("digits must be from 1 to %d" % LIMIT)
-    if not 0 <= depth <= LIMIT:
-        raise ValueError("depth must be from 0 to %d" % LIMIT)
-    if method == "thesis" and problem.together:
-        raise ValueError("parameters that move together need the method loewner")
-    if method == "loewner" and as_printed:
-        raise ValueError("only the method thesis was ever printed")
-    if jobs is None:
-        jobs = count_workers(executor)
-    if jobs < 1:
-        raise ValueError("there must be a worker: jobs must be 1 or more")
-    began = time.monotonic()
-    end = began + time_limit
-    keep = backup is not None
-    if keep:
-        check_backup(backup)
-    with contextlib.ExitStack() as stack:
-        if keep:
-            stack.enter_context(files.lock(backup))
-        name = "the proof to resume"
-        if resume is not None and not isinstance(resume, Proof):
-            name, resume = os.fspath(resume), Proof.load(resume)
-        if resume:
-            _check_same(name, resume, problem, method, depth, digits, as_printed)
-            began -= resume.seconds
-        centre, half = map(tuple, problem.decimals())
-        xstar = resume.xstar if resume else None
-        before = time.monotonic()
-        search = Search(Task(centre, half, xstar, problem.together, method, depth, digits,
-                             stubborn, as_printed))
-        # Every worker makes a search of its own: that must pay.
-        alone = time.monotonic() + max(ALONE_SECONDS, 10 * (time.monotonic() - before))
-        xstar = search.constant(0), search.constant(1)
-        task = Task(centre, half, xstar, problem.together, method, depth, digits, stubborn,
-                    as_printed)
-        growth = Growth(task, search, _parts(name, resume, search) if resume
-                        else [Part([(*tree.ROOT, 0)])], executor, jobs)
-        if resume:
-            growth.counts = resume.counts
-            growth.volume = sum(math.ldexp(1.0, -sum(cuts)) for kind, (_, cuts)
-                                in tree.cells(resume.tree) if kind != tree.UNTRIED)
-        constants = {name: search.constant(which) for name, which in CONSTANTS[method].items()}
-        walk, prism = tree.Walk(), tree.prisms(problem)
-        seen = 0
-
-        def snapshot():
-            text, pending = growth.text()
-            return Proof(problem, depth, digits, stubborn, as_printed, text, growth.counts, xstar,
-                         constants, time.monotonic() - began, method=method,
-                         pending=tuple(pending), at_once=search.at_once)
-
-        def look(new=True):
-            """Follows the tree since the last look."""
-            nonlocal seen
-            text, _ = growth.text()
-            for kind, cell in walk.feed(text[seen:]):
-                if new:
-                    on_leaf(tree.Leaf(kind, *prism(cell), sum(cell[1])), growth.steps)
-            seen = len(text)
-
-        if on_leaf:
-            look(new=False)             # the part that was restored
-        if progress:
-            progress(growth.volume, growth.counts)
-        pause = BACKUP_SECONDS
-        saved = time.monotonic()
-        if keep:
-            snapshot().save(backup)
-        try:
-            while not growth.finished and time.monotonic() < end:
-                now = time.monotonic()
-                if on_leaf:
-                    growth.alone(LOOK_SECONDS, 1)
-                    look()
-                elif jobs == 1 and executor is None:
-                    growth.alone(min(LOOK_SECONDS, end - now))
-                elif growth.executor is None and now < alone:
-                    growth.alone(min(LOOK_SECONDS, alone - now, end - now))
-                else:
-                    if growth.executor is None:
-                        growth.executor = stack.enter_context(
-                            concurrent.futures.ThreadPoolExecutor(jobs))
-                    growth.together(min(LOOK_SECONDS, end - now))
-                if progress:
-                    progress(growth.volume, growth.counts)
-                if keep and time.monotonic() - saved >= pause:
-                    now = time.monotonic()
-                    snapshot().save(backup)
-                    saved = time.monotonic()
-                    pause = max(BACKUP_SECONDS, BACKUP_SHARE * (saved - now))
-        except BaseException:           # what stands is saved, if it is whole; else the last backup
-            with contextlib.suppress(AssertionError):
-                growth.settle()
-                if keep:
-                    snapshot().save(backup)
-            raise
-        growth.settle()
-        proof = snapshot()
-        return replace(proof, sha256=proof.save(backup)) if keep else proof
-
-
-def _parts(name, proof, search):
-    """The parts of an unfinished tree, if it is one of such a search."""
-    found = dict.fromkeys(("cuts", "proved", "symmetric", "undecided", "most_cuts"), 0)
-    kinds = {"P": "proved", "S": "symmetric", "U": "undecided"}
-    axes = "01" if proof.method == "thesis" else "012" if proof.problem.together else tree.CUTS
-    walk, hints, parts, begin = tree.Walk(), iter(proof.pending), [], 0
-    good = True
-    for position, node in enumerate(proof.tree):
-        if node in tree.CUTS:
-            found["cuts"] += 1
-            good = good and node in axes
-        for kind, (index, cuts) in walk.feed(node):
-            if kind == tree.UNTRIED:
-                parts += [Part([], proof.tree[begin:position]),
-                          Part([(index, cuts, next(hints, 0))])]
-                begin = position + 1
-                continue
-            found[kinds[kind]] += 1
-            good = good and sum(cuts) <= proof.depth
-            if kind == "P":
-                found["most_cuts"] = max(found["most_cuts"], sum(cuts))
-            elif kind == "S":
-                good = good and search.symmetric and tree.above_diagonal((index, cuts))
-    if not good or any(getattr(proof.counts, name) != value for name, value in found.items()):
-        raise ConverseError("%s: %s; use an intact copy or start anew"
-                            % (name, "the tree does not belong to a search of this kind"))
-    return parts + [Part([], proof.tree[begin:]),
-                    Part([(*cell, next(hints, 0)) for cell in reversed(walk.pending)])]
-
-
-def check_backup(path):
-    """Refuses to write a backup where it cannot be written or would destroy something else."""
-    files.check_writable(path, regular=True)
-    if os.path.exists(path) and os.path.getsize(path):
-        opener = gzip.open if os.fspath(path).endswith(".gz") else open
-        try:
-            with opener(path, "rb") as file:
-                ours = file.read(len(FIRST_LINE)) == FIRST_LINE.encode("ascii")
-        except (OSError, EOFError, zlib.error):
-            ours = False
-        if not ours:
-            raise ConverseError("%s: exists and is not a backup of this program; "
-                                "name another file or remove it" % path)
-
-
-def _check_same(name, proof, problem, method, depth, digits, as_printed):
-    """Refuses to continue the proof of anything else, and names the first difference."""
-    def facts(problem, **others):
-        ranges = {key: "%s +- %s" % (centre, half)
-                  for key, centre, half in zip(NAMES, *problem.decimals())}
-        return {**others, **ranges, "together": _yes(problem.together)}
-
-    theirs = facts(proof.problem, kind=KINDS[proof.as_printed], program=proof.version,
-                   method=proof.method, digits=proof.digits, depth=proof.depth)
-    ours = facts(problem, kind=KINDS[as_printed], program=__version__, method=method,
-                 digits=digits, depth=depth)
-    for key, value in ours.items():
-        if theirs[key] != value:
-            raise ConverseError("%s: is of another run: its %s is %s, this one's is %s; "
-                                "name the backup of this run or start anew"
-                                % (name, key, theirs[key], value))

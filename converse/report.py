@@ -4,8 +4,11 @@ import math
 
 from . import tree
 from .problem import exact_decimal
+from .settings import AS_PRINTED, REGION, THEOREM, UNDECIDED
 
 PLUSES = "+" * 48
+MAP = ("y' = y + J', J' = J - dV(y), V(y) = -a sin y0 - b sin y1 - c sin(y0 + y1)",
+       "x* and v : the angles y at one time and at the next, modulo 2 pi")
 METHODS = {
     "thesis": "that of the thesis, its listing corrected",
     "loewner": "the Loewner criterion, by witness and multipliers",
@@ -20,16 +23,26 @@ REASONS = (                             # in the order of csrc/converse.h
 )
 
 
-def header(problem):
-    """What is known before the search: parameters, region, comments."""
+def header(problem, as_printed=False):
+    """What is known before the search: parameters, region, comments.  Comments are the input's and
+    not the program's words: but for a run as printed they are quoted."""
     lines = ["Parameters :"]
     lines += ["%s : %.14e \t %.14e" % row
               for row in zip("abc", map(float, problem.centre), map(float, problem.half))]
     lines += ["", "Initial region :"]
     lines += ["v[%d] : %.14e \t %.14e" % (i, problem.centre[3 + i] * math.pi,
                                           problem.half[3 + i] * math.pi) for i in range(2)]
-    lines += ["", "Comments :", "", *problem.comments, "", PLUSES]
+    lines += ["", "Comments :", "",
+              *(_plain(comment) if as_printed else ("> " + _plain(comment)).rstrip()
+                for comment in problem.comments),
+              "", PLUSES]
     return "\n".join(lines) + "\n"
+
+
+def _plain(text):
+    """The text without what a terminal would obey."""
+    return "".join(c if c.isprintable() or c == "\t" else
+                   c.encode("unicode_escape").decode("ascii") for c in text)
 
 
 def verdict(proof):
@@ -41,26 +54,28 @@ def verdict(proof):
 
 
 def report(proof):
-    return header(proof.problem) + verdict(proof)
+    return header(proof.problem, proof.as_printed) + verdict(proof)
+
+
+FINDINGS = {
+    THEOREM: "I find no invariant tori for the range of parameters :",
+    REGION: "I find no invariant tori whose successor of x* lies in the region :",
+    UNDECIDED: "I could not decide whether there are invariant tori for the range of parameters :",
+    AS_PRINTED: "I find no invariant tori for the range of parameters :",
+}
 
 
 def _theorem(proof):
-    problem = proof.problem
-    if not proof.all_decided:
-        first = ["I could not decide whether there are invariant tori "
-                 "for the range of parameters :"]
-    elif problem.full_torus or proof.as_printed:
-        first = ["I find no invariant tori for the range of parameters :"]
-    else:
-        first = ["I find no invariant tori whose successor of x* lies in the region :"]
-        first += [_range("v[%d] / pi" % i, problem.centre[3 + i], problem.half[3 + i])
-                  for i in range(2)]
-        first += ["for the range of parameters :"]
-    lines = first + [_range(name, centre, half, not proof.as_printed)
-                     for name, centre, half in zip("abc", problem.centre, problem.half)]
+    problem, exactly = proof.problem, not proof.as_printed
+    lines = [FINDINGS[proof.conclusion]]
+    if proof.conclusion == REGION:
+        lines += [_range("v[%d] / pi" % i, *ends) for i, ends in enumerate((problem.v0, problem.v1))]
+        lines += ["(only a part of the torus: other successors were not examined)",
+                  "for the range of parameters :"]
+    lines += [_range(name, *getattr(problem, name), exactly) for name in "abc"]
     if problem.together:
         lines += ["which move together, from all lower to all upper ends."]
-    if not proof.all_decided:
+    if proof.conclusion == UNDECIDED:
         lines += [""] + _gaps(proof)
     elif proof.at_once:
         lines += ["Nor are there any for s times %s, s > 1." % (
@@ -68,9 +83,9 @@ def _theorem(proof):
     return lines
 
 
-def _range(name, centre, half, exactly=True):
+def _range(name, low, high, exactly=True):
     """The bounds of a range, exactly, or to the six places of 1989."""
-    low, high = (_bound(x) if exactly else "%f" % x for x in (centre - half, centre + half))
+    low, high = (_bound(x) if exactly else "%f" % x for x in (low, high))
     if exactly and low == high:
         return "%s = %s" % (name, low)
     return "%s < %s < %s" % (low, name, high)
@@ -82,14 +97,28 @@ def _bound(x):
 
 
 def _gaps(proof):
-    """What stands in the way of a theorem."""
+    """What stands in the way of a theorem, and what may help."""
     undecided = proof.undecided
+    unfinished = not tree.complete(proof.tree)
     lines = ["Undecided prisms : %d" % len(undecided)]
     if undecided:
         lines += ["The deepest of them was cut %d times." % max(leaf.depth for leaf in undecided)]
-    if not tree.complete(proof.tree):
+    if unfinished:
         lines += ["The search ended before the whole region was examined."]
-    return lines
+    if proof.as_printed:
+        return lines
+    lines += ["The first of them : %s." % ", ".join(
+        "%.9g < v[%d] / pi < %.9g" % (c - h, i, c + h)
+        for i, (c, h) in enumerate(zip(leaf.centre, leaf.half))) for leaf in undecided[:1]]
+    if proof.method == "thesis":
+        advice = "the sharper criterion (--method loewner)"
+    elif undecided:
+        advice = "a smaller range of parameters, or larger parameters"
+    else:
+        advice = "more time, from a backup (-b FILE, then -r FILE)"
+    if undecided:
+        advice += ", or deeper cuts (-d %d)" % (2 * proof.depth)
+    return lines + ["To try : %s." % advice]
 
 
 def _statistics(proof):
@@ -108,7 +137,7 @@ def _statistics(proof):
     used = counts.ll_used
     if proof.as_printed:                # the listing exchanged these two labels
         used = (used[1], used[0], used[2])
-    share = [100.0 * n / counts.proved if counts.proved else 0.0 for n in used]
+    share = [100.0 * n / max(1, sum(used)) for n in used]
     return [
         "Did %d quick checks, %d semi-rigorous bounding tries," % (counts.quick_tries,
                                                                    counts.tries),
@@ -130,14 +159,18 @@ def _statistics(proof):
 
 def _method(proof):
     """What the word of the report rests on."""
-    lines = ["Program : converse " + proof.version,
+    lines = ["Map : " + MAP[0], MAP[1],
+             "Program : converse " + proof.version,
              "Method : " + METHODS[proof.method],
-             "Arithmetic : " + proof.arithmetic,
-             "x* : %s %s" % proof.xstar]
+             "Arithmetic : " + proof.arithmetic]
+    lines += ["x* : %s %s" % proof.xstar] if proof.xstar else []
     lines += ["%s : %s" % (name, proof.constants[name]) for name in ("T", "B")
               if name in proof.constants]
     lines += ["Tries that failed : %d" % sum(proof.counts.reasons)]
     lines += ["%d : %s" % pair for pair in zip(proof.counts.reasons, REASONS) if pair[0]]
+    if proof.restored:
+        lines += ["Restored : %d of the %d prisms come from a backup, which is believed" % (
+            proof.restored, proof.counts.proved + proof.counts.symmetric + proof.counts.undecided)]
     if proof.sha256:
         lines += ["Proof file : SHA-256 " + proof.sha256]
     return lines

@@ -5,11 +5,15 @@ together); the lower half comes first.  The leaves are P (proved), S (skipped by
 U (undecided) and ? (untried); where a text ends too early, untried prisms are missing.
 """
 
+import re
+from array import array
 from collections import namedtuple
+from itertools import accumulate
 
 CUTS = "01234"
 UNTRIED = "?"
 KINDS = "PSU" + UNTRIED
+UNDECIDED_OR_UNTRIED = re.compile("[U?]")
 ROOT = (0,) * 5, (0,) * 5
 
 Leaf = namedtuple("Leaf", "kind centre half depth")     # centre and half: (v0, v1), units of pi
@@ -85,23 +89,16 @@ def leaves(problem, text, kinds=KINDS):
             yield Leaf(kind, *prism(cell), sum(cell[1]))
 
 
-def above_diagonal(cell):
-    """Does the prism lie where v1 >= v0, if both angles have the same range?"""
-    (i, j, *_), (k, l, *_) = cell
-    return j << k >= i + 1 << l
+_OPENS = bytes(1 if chr(n) in CUTS else 255 if chr(n) in KINDS else 0 for n in range(256))
 
 
 def complete(text):
     """Is this a whole tree, all of it tried?  TreeError where it is not the beginning of one."""
-    open_cells, untried = 1, False
-    for kind in text:
-        if open_cells == 0:
-            raise TreeError("text follows the end of the tree: %r" % kind)
-        if kind in CUTS:
-            open_cells += 1
-        elif kind in KINDS:
-            open_cells -= 1
-            untried = untried or kind == UNTRIED
-        else:
-            raise TreeError("%r is not a node of a tree" % kind)
-    return open_cells == 0 and not untried
+    wrong = text.translate(dict.fromkeys(map(ord, CUTS + KINDS)))
+    if wrong:
+        raise TreeError("%r is not a node of a tree" % wrong[0])
+    opened = array("b", text.encode("ascii").translate(_OPENS))     # 1 for a cut, -1 for a leaf
+    balance = sum(opened)
+    if min(accumulate(opened[:-1]), default=0) < 0 or balance < -1:
+        raise TreeError("text follows the end of the tree")
+    return balance == -1 and UNTRIED not in text

@@ -30,7 +30,7 @@ typedef struct {             /* the statistics of the report; names from the the
     long quick_tries, tries, Rtries;
     long cuts, proved, symmetric, undecided;          /* nodes of the tree by kind */
     long HermSuccess, LLSuccess;                      /* proved by the trace, by the eigenvalue */
-    long ll_used[3];         /* which criterion gave the last bound of each proved prism */
+    long ll_used[3];         /* which criterion gave each bound of the tries */
     long reasons[6];         /* tries that ended without a proof, by reason */
     long most_cuts;          /* depth of the deepest proved prism */
     long max_steps;          /* longest orbit of the double-precision tries */
@@ -47,40 +47,60 @@ typedef struct {
     int from;                /* learnt from the prism it was cut from; 0 for the root */
 } cv_cell;
 
+/* What became of cells so far, to guess from it what will become of others.  Cells are of one kind
+   if they were cut as often and their parents learnt about as much: nodes[level][class] of them were
+   tried and cut[level][class] cut again; became[class][class]: the classes of these and of their
+   halves.  The last level takes in all that is deeper. */
+enum { CV_LEVELS = 128, CV_CLASSES = 16 };
+typedef struct { int nodes[128][16], cut[128][16], became[16][16]; } cv_history;
+
 typedef struct cv_search cv_search;
 
 /* A new search.  region[0..4] and half[0..4]: centre and half-width of a, b, c, v0, v1 as in the
    input file, that is, angles in units of pi; the search covers an enclosure of that region.
    together: the parameters move together, from all lower to all upper ends (method Loewner).
    xstar: the two coordinates of the starting point, or NULL to have one chosen.
-   On success *s must be freed with cv_search_free.  It begins with the root as its only prism. */
+   On success *s must be freed with cv_search_free.  It begins with the root as its only prism.
+
+   stop, below: NULL, or where another thread may write a 1 to have the call return soon. */
 int cv_search_new(cv_search **s, const char *const region[5], const char *const half[5],
                   const char *const xstar[2], int method, int together, int dp, int depth,
                   int stubborn, int as_printed);
 void cv_search_free(cv_search *s);
 
+/* Sets up what every step needs, the bounds over the torus first of all.  CV_RUNNING: it was
+   stopped, and the search can only be freed. */
+int cv_prepare(cv_search *s, const volatile int *stop);
+
 /* Forgets tree and counts; n prisms are to be decided now, the first of them first. */
 int cv_restart(cv_search *s, int n, const cv_cell *cells);
 
-/* Decides at most max_leaves further prisms, or works for about max_seconds.
-   CV_RUNNING: there is more to do.  CV_OK: all prisms are decided, or an undecided one ended a
-   search that is not stubborn.  Negative: an error; the tree so far is good. */
-int cv_step(cv_search *s, long max_leaves, double max_seconds);
+/* Takes up a tree that a search of this kind grew before: its nodes are counted, and the prisms
+   that it leaves untried, '?' or missing at its end, are pending.  CV_EARGUMENT: it is no such tree. */
+int cv_resume(cv_search *s, const char *tree, size_t length);
+
+/* Decides at most max_leaves further prisms, or works for about max_seconds; stopped, it forgets
+   the prism at hand.  CV_RUNNING: there is more to do.  CV_OK: all prisms are decided, or an
+   undecided one ended a search that is not stubborn.  CV_ENOMEM: the tree so far is good.
+   CV_EMACHINE: the arithmetic breaks the rules, before the step or after it: nothing that the search
+   did since cv_restart may be used. */
+int cv_step(cv_search *s, long max_leaves, double max_seconds, const volatile int *stop);
 
 /* The prisms yet to be decided, the next one first: how many, and, unless cells is NULL, which. */
 int cv_pending(const cv_search *s, cv_cell *cells);
 
 const char *cv_tree(const cv_search *s, size_t *length);   /* nodes so far, in preorder */
 const cv_counts *cv_get_counts(const cv_search *s);
-double cv_volume_decided(const cv_search *s);              /* of the root; for a progress bar */
-int cv_last_steps(const cv_search *s);                     /* orbit length of the last leaf */
+const int *cv_steps(const cv_search *s);                   /* of each node: its orbit's length */
+const cv_history *cv_get_history(const cv_search *s);
+int cv_class(int from);                                    /* of a cell with this from */
 int cv_symmetric(const cv_search *s);                      /* are mirror images skipped? */
 /* Method Loewner: is B > 10/3 for all parameters (together: at the upper end)?  Then the theorem
    holds for every multiple s >= 1 of them, too. */
 int cv_at_once(const cv_search *s);
 /* Numbers of the search as exact decimals; the caller frees.  which: 0, 1 the starting point;
    2 T, 3 Tr_-, 4 Tr_+, 5 B, 6 lambda_-min, 7 lambda_-max (thesis, section 3.3.4; 5 alone with the
-   method Loewner); 8 centre and 9 half-width of v0, 10 and 11 of v1, in radians.  NULL: no memory. */
+   method Loewner; from 2 on not before cv_prepare); 8 centre and 9 half-width of v0, 10 and 11 of v1, in radians.  NULL: no memory. */
 char *cv_constant(const cv_search *s, int which);
 void cv_free(char *text);
 

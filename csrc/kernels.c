@@ -5,7 +5,7 @@
 #include <time.h>
 
 #include "loewner/loewner.h"
-#include "numbers/memory.h"
+#include "numbers/guard.h"
 #include "numbers/special.h"
 #include "numbers/sine.h"
 #include "thesis/unit.h"
@@ -17,17 +17,20 @@ enum { MAX_DP = 100000, MAX_IN = 64, MAX_OUT = 400 };
    div: x, y -> quotient rounded down, up, towards zero
    sqrt: x -> root rounded down, up                  round: x -> down, up, towards zero
    floor: x -> r      scale: x, n -> x 10^n          order: x -> apm_order
-   double: x -> the double apm_get_d makes of it, exactly */
+   double: x -> the double apm_get_d makes of it, exactly
+   region: centre, half in units of pi -> the same in radians, with dp places of pi */
 static int apm_kernel(const char *name, long dp, int nin, apm_t in[], int nout, apm_t out[])
 {
     static const struct { const char *name; int nin, nout; } shapes[] = {
         { "pi", 0, 1 }, { "add", 2, 1 }, { "sub", 2, 1 }, { "mul", 2, 1 }, { "cmp", 2, 1 },
         { "div", 2, 3 }, { "sqrt", 1, 2 }, { "round", 1, 3 }, { "floor", 1, 1 },
-        { "scale", 2, 1 }, { "order", 1, 1 }, { "double", 1, 1 }
+        { "scale", 2, 1 }, { "order", 1, 1 }, { "double", 1, 1 },
+        { "region", 2, 2 }
     };
     static const apm_round_t directions[3] = { APM_DOWN, APM_UP, APM_TRUNC };
     size_t which = 0;
     int status = APM_OK;
+    double places;
 
     while (which < sizeof shapes / sizeof *shapes && strcmp(name, shapes[which].name) != 0)
         which++;
@@ -53,9 +56,25 @@ static int apm_kernel(const char *name, long dp, int nin, apm_t in[], int nout, 
             apm_round(out[j], in[0], dp, directions[j]);
         break;
     case 8: apm_floor(out[0], in[0]); break;
-    case 9: apm_scale(out[0], in[0], (long)apm_get_d(in[1])); break;
+    case 9:
+        places = apm_get_d(in[1]);
+        if (!(fabs(places) <= APM_MAX_EXP))
+            return CV_EARGUMENT;
+        apm_scale(out[0], in[0], (long)places);
+        break;
     case 10: apm_set_si(out[0], apm_order(in[0]), 0); break;
-    default: apm_set_d(out[0], apm_get_d(in[0]));
+    case 11: status = apm_set_d(out[0], apm_get_d(in[0])); break;
+    default: {
+        apm_t pi;
+        if (apm_sgn(in[1]) < 0)
+            return CV_EARGUMENT;
+        apm_init(pi);
+        apm_pi(pi, dp);
+        apm_set(out[0], in[0]);
+        apm_set(out[1], in[1]);
+        to_radians(out[0], out[1], pi, dp);
+        apm_clear(pi);
+    }
     }
     return status == APM_OK ? CV_OK : CV_EARITHMETIC;
 }
@@ -81,9 +100,9 @@ static int sine_kernel(const char *name, int nin, apm_t in[], int nout, apm_t ou
         for (double j = 0.0; j < repeat && j < 1e9; j++)
             for (int k = 0; k < 3; k++)
                 double_sincos(&t[k], &cosine[k], t[k] + cosine[k]);
-        apm_set_d(out[0], t[0] + t[1] + t[2] > 4.0 ? 0.0        /* never: but t is used */
-                  : 1e9 * (double)(clock() - begin) / CLOCKS_PER_SEC / fmax(repeat, 1.0));
-        return CV_OK;
+        return apm_set_d(out[0], t[0] + t[1] + t[2] > 4.0 ? 0.0         /* never: but t is used */
+                         : 1e9 * (double)(clock() - begin) / CLOCKS_PER_SEC / fmax(repeat, 1.0))
+               == APM_OK ? CV_OK : CV_EARITHMETIC;
     }
     return CV_EARGUMENT;
 }
@@ -185,9 +204,8 @@ static int loewner_kernel(const char *name, long dp, int nin, apm_t in[], int no
     }
     loewner_free(w);
     for (int j = 0; j < nout && good; j++) {
-        if (!isfinite(y[j]))
+        if (apm_set_d(out[j], y[j]) != APM_OK)
             return CV_EARITHMETIC;
-        apm_set_d(out[j], y[j]);
     }
     return good ? CV_OK : CV_EARITHMETIC;
 }
@@ -198,7 +216,7 @@ int cv_kernel(const char *name, int as_double, int as_printed, int dp,
     apm_t x[MAX_IN + MAX_OUT];
     Runit *volatile exact = NULL;
     unit *volatile quick = NULL;
-    jmp_buf here, *before;
+    guard g = { .stop = NULL }, *before;
     volatile int status = CV_OK;
 
     if (nin < 0 || nin > MAX_IN || nout < 0 || nout > MAX_OUT || dp < 1 || dp > MAX_DP)
@@ -207,8 +225,8 @@ int cv_kernel(const char *name, int as_double, int as_printed, int dp,
         out[j] = NULL;
     for (int j = 0; j < MAX_IN + MAX_OUT; j++)
         apm_init(x[j]);
-    before = memory_guard(&here);
-    if (setjmp(here) != 0) {
+    before = guard_arm(&g);
+    if (setjmp(g.here) != 0) {
         status = CV_ENOMEM;
     } else {
         for (int j = 0; j < nin && status == CV_OK; j++)
@@ -231,7 +249,7 @@ int cv_kernel(const char *name, int as_double, int as_printed, int dp,
             }
         }
     }
-    memory_guard(before);
+    guard_arm(before);
     for (int j = 0; j < nout && status == CV_OK; j++) {
         out[j] = apm_get_str(x[MAX_IN + j]);
         if (out[j] == NULL)
@@ -241,7 +259,7 @@ int cv_kernel(const char *name, int as_double, int as_printed, int dp,
         free(out[j]);
         out[j] = NULL;
     }
-    if (status != CV_ENOMEM) {          /* after that the numbers are abandoned: memory.c */
+    if (status != CV_ENOMEM) {          /* after that the numbers are abandoned: guard.c */
         Runit_free(exact);
         unit_free(quick);
         for (int j = 0; j < MAX_IN + MAX_OUT; j++)

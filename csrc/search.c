@@ -3,68 +3,20 @@
    The list is a stack: a prism that fails is replaced by its two halves, the first of which is
    tried next.  So the tree of all prisms is met in preorder, and one character per node,
    written as it is decided, is the whole of the proof.  What becomes of a prism depends on
-   nothing but itself, so parts of the tree can be grown apart. */
+   itself and on what its parent learnt (cv_cell's from), so parts of the tree can be grown
+   apart. */
 #define _POSIX_C_SOURCE 200809L
 
-#include <fenv.h>
-#include <float.h>
-#include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
 
-#include "loewner/loewner.h"
-#include "numbers/memory.h"
-#include "numbers/special.h"
-#include "thesis/unit.h"
+#include "numbers/guard.h"
+#include "search.h"
 
-#ifdef __FAST_MATH__
-#error "-ffast-math breaks the rules of rigor"
-#endif
-#if FLT_EVAL_METHOD != 0
-#error "doubles must be evaluated as doubles"
-#endif
-
-enum { MAX_DP = 100000, MAX_DEPTH = 100000 };
 enum { AXES = 5, V0 = 0, V1 = 1, FINEST = 61 };         /* of a cell; cuts that its index can hold */
-enum { PI_SHORT = 5, B_PLACES = 12 };   /* see to_radians; B as it is reported */
 
-struct cv_search {
-    Runit *exact;                       /* method thesis */
-    unit *quick;
-    loewner *sharp;                     /* method Loewner */
-    box root, prism;                    /* prism: the cell at hand, for the thesis's method */
-    cv_cell *stack;
-    int pending, allocated;             /* cells on the stack; room for */
-    char *tree;
-    size_t length, capacity;
-    cv_counts counts, before;           /* before: as it was when the node at hand was begun */
-    apm_t constants[N_CONSTANTS], t[2];
-    double decided;
-    int depth, stubborn, together, symmetric, at_once, last_steps, status;
-};
-
-static void box_init(box *b)
-{
-    for (int j = 0; j < 5; j++) {
-        apm_init(b->centre[j]);
-        apm_init(b->half[j]);
-    }
-    apm_init(b->xstar[0]);
-    apm_init(b->xstar[1]);
-    b->n_cuts = 0;
-}
-
-static void box_clear(box *b)
-{
-    for (int j = 0; j < 5; j++) {
-        apm_clear(b->centre[j]);
-        apm_clear(b->half[j]);
-    }
-    apm_clear(b->xstar[0]);
-    apm_clear(b->xstar[1]);
-}
+static const cv_cell whole = { { 0, 0, 0, 0, 0 }, { 0, 0, 0, 0, 0 }, 0 };
 
 static int all_cuts(const cv_cell *c)
 {
@@ -97,6 +49,10 @@ static int make_room(cv_search *s)
         if (tree == NULL)
             return CV_ENOMEM;
         s->tree = tree;
+        int *steps = realloc(s->steps, capacity * sizeof *steps);
+        if (steps == NULL)
+            return CV_ENOMEM;
+        s->steps = steps;
         s->capacity = capacity;
     }
     if (s->pending + 1 >= s->allocated) {
@@ -110,12 +66,9 @@ static int make_room(cv_search *s)
     return CV_OK;
 }
 
-static void leaf(cv_search *s, char kind)
+/* Counts a leaf of so many cuts. */
+static void count_leaf(cv_search *s, char kind, int cuts)
 {
-    const int cuts = all_cuts(&s->stack[--s->pending]);
-
-    s->tree[s->length++] = kind;
-    s->decided += ldexp(1.0, -cuts);
     if (kind == 'P') {
         s->counts.proved++;
         if (cuts > s->counts.most_cuts)
@@ -124,6 +77,15 @@ static void leaf(cv_search *s, char kind)
         s->counts.symmetric++;
     } else {
         s->counts.undecided++;
+    }
+}
+
+static void leaf(cv_search *s, char kind)
+{
+    s->tree[s->length] = kind;
+    s->steps[s->length++] = s->last_steps;
+    count_leaf(s, kind, all_cuts(&s->stack[--s->pending]));
+    if (kind == 'U') {
         if (!s->stubborn)
             s->status = CV_OK;          /* one prism too hard, and all is lost */
     }
@@ -131,23 +93,36 @@ static void leaf(cv_search *s, char kind)
         s->status = CV_OK;
 }
 
-/* The cell is cut in half across axis, the lower half to come first, or given up if it has been
-   cut too often or, axis < 0, if that would not help.  Thesis: refinePrism. */
-static void cut(cv_search *s, int axis)
+/* May the cell be cut again across axis? */
+static int may_cut(const cv_search *s, const cv_cell *c, int axis)
+{
+    return all_cuts(c) < s->depth && c->cuts[axis] < FINEST;
+}
+
+/* Cuts the cell on top of the stack in half, the lower half to come first. */
+static void halve(cv_search *s, int axis)
 {
     cv_cell *upper = &s->stack[s->pending - 1], *lower = upper + 1;
 
-    if (axis < 0 || all_cuts(upper) >= s->depth || upper->cuts[axis] == FINEST) {
-        leaf(s, 'U');
-        return;
-    }
+    s->counts.cuts++;
     upper->cuts[axis]++;
     upper->index[axis] *= 2;
     *lower = *upper;
     upper->index[axis]++;
     s->pending++;
+}
+
+/* The cell is cut across axis, or given up if it has been cut too often or, axis < 0, if that would
+   not help.  Thesis: refinePrism. */
+static void cut(cv_search *s, int axis)
+{
+    if (axis < 0 || !may_cut(s, &s->stack[s->pending - 1], axis)) {
+        leaf(s, 'U');
+        return;
+    }
+    halve(s, axis);
+    s->steps[s->length] = 0;
     s->tree[s->length++] = (char)('0' + axis);
-    s->counts.cuts++;
 }
 
 /* Exchanging v0 and v1 exchanges a and b, and leaves x* alone if it lies on the diagonal.  If
@@ -203,6 +178,8 @@ static void decide(cv_search *s)
     if (v.no_tori) {
         s->counts.tries++;
         try_prism(s->quick, b, &v);
+        for (int j = 0; j < 3; j++)
+            s->counts.ll_used[j] += v.ll_used[j];
         if (v.nsteps > s->counts.max_steps)
             s->counts.max_steps = v.nsteps;
     }
@@ -217,9 +194,32 @@ static void decide(cv_search *s)
             s->counts.HermSuccess++;
         else
             s->counts.LLSuccess++;
-        s->counts.ll_used[v.ll_used]++;
     }
     conclude(s, &v, apm_cmp(b->half[4], b->half[3]) > 0 ? V1 : V0);     /* the wider; ties to v0 */
+}
+
+/* The class of a cell: logarithmic, two to an octave. */
+int cv_class(int from)
+{
+    int class = 0;
+
+    for (int bound = 2; class < CV_CLASSES - 1 && from >= bound; class++)
+        bound = class % 2 == 0 ? bound / 2 * 3 : bound / 3 * 4;
+    return class;
+}
+
+static void decide_and_remember(cv_search *s)
+{
+    const cv_cell *c = &s->stack[s->pending - 1];
+    const int cuts = all_cuts(c), level = cuts < CV_LEVELS ? cuts : CV_LEVELS - 1;
+    const int class = cv_class(c->from), pending = s->pending;
+
+    decide(s);
+    s->history.nodes[level][class]++;
+    if (s->pending > pending) {
+        s->history.cut[level][class]++;
+        s->history.became[class][cv_class(s->stack[pending].from)]++;
+    }
 }
 
 static double now(void)
@@ -234,27 +234,32 @@ static long decided_leaves(const cv_search *s)
     return s->counts.proved + s->counts.symmetric + s->counts.undecided;
 }
 
-int cv_step(cv_search *s, long max_leaves, double max_seconds)
+int cv_step(cv_search *s, long max_leaves, double max_seconds, const volatile int *stop)
 {
     const double end = now() + max_seconds;
-    const long stop = decided_leaves(s) + max_leaves;
-    jmp_buf here, *const before = memory_guard(&here);
+    const long enough = decided_leaves(s) + max_leaves;
+    guard g = { .stop = stop }, *const before = guard_arm(&g);
+    const int jumped = setjmp(g.here);
 
-    if (setjmp(here) != 0) {            /* the node at hand is forgotten, the rest stands */
+    if (jumped != 0)                    /* the node at hand is forgotten, the rest stands */
         s->counts = s->before;
+    if (jumped == GUARD_MEMORY)
         s->status = CV_ENOMEM;
-    }
-    while (s->status == CV_RUNNING && decided_leaves(s) < stop) {
+    else if (s->status == CV_RUNNING && (!s->prepared || !machine_is_sound()))
+        s->status = s->prepared ? CV_EMACHINE : CV_EARGUMENT;
+    while (jumped == 0 && s->status == CV_RUNNING && decided_leaves(s) < enough) {
         if (make_room(s) != CV_OK) {
             s->status = CV_ENOMEM;
             break;
         }
         s->before = s->counts;
-        decide(s);
-        if (now() >= end)
+        decide_and_remember(s);
+        if (now() >= end || (stop != NULL && *stop))
             break;
     }
-    memory_guard(before);
+    guard_arm(before);
+    if (s->status >= CV_OK && !machine_is_sound())
+        s->status = CV_EMACHINE;        /* who knows since when: see converse.h */
     return s->status;
 }
 
@@ -280,10 +285,61 @@ int cv_restart(cv_search *s, int n, const cv_cell *cells)
         s->stack[j] = cells[n - 1 - j];
     s->pending = n;
     s->length = 0;
-    s->decided = 0.0;
     memset(&s->counts, 0, sizeof s->counts);
+    memset(&s->history, 0, sizeof s->history);
     s->status = n > 0 ? CV_RUNNING : CV_OK;
     return CV_OK;
+}
+
+/* The nodes of a tree that was grown before are counted, and leave their untried prisms. */
+static int take_up(cv_search *s, const char *tree, size_t length, cv_cell **untried, int *n)
+{
+    const int axes = s->method == CV_THESIS ? 2 : s->together ? 3 : AXES;
+    int allocated = 0;
+
+    for (size_t j = 0; j < length; j++) {
+        const int axis = tree[j] - '0';
+        if (s->pending == 0 || make_room(s) != CV_OK)
+            return s->pending == 0 ? CV_EARGUMENT : CV_ENOMEM;
+        cv_cell *const c = &s->stack[s->pending - 1];
+        if (axis >= 0 && axis < axes && may_cut(s, c, axis)) {
+            halve(s, axis);
+            continue;
+        }
+        s->pending--;
+        if (tree[j] == '?') {
+            if (*n == allocated) {
+                allocated = 2 * allocated + 64;
+                cv_cell *const more = realloc(*untried, (size_t)allocated * sizeof *more);
+                if (more == NULL)
+                    return CV_ENOMEM;
+                *untried = more;
+            }
+            (*untried)[(*n)++] = *c;
+        } else if (tree[j] == 'P' || tree[j] == 'U' || (tree[j] == 'S' && may_skip(s, c))) {
+            count_leaf(s, tree[j], all_cuts(c));
+        } else {
+            return CV_EARGUMENT;
+        }
+    }
+    return CV_OK;
+}
+
+int cv_resume(cv_search *s, const char *tree, size_t length)
+{
+    cv_cell *untried = NULL;
+    int n = 0, status = cv_restart(s, 1, &whole);
+
+    if (status == CV_OK)
+        status = take_up(s, tree, length, &untried, &n);
+    while (status == CV_OK && n > 0) {              /* they come before those that are missing */
+        if (make_room(s) != CV_OK)
+            status = CV_ENOMEM;
+        else
+            s->stack[s->pending++] = untried[--n];
+    }
+    free(untried);
+    return status;
 }
 
 int cv_pending(const cv_search *s, cv_cell *cells)
@@ -300,15 +356,15 @@ const char *cv_tree(const cv_search *s, size_t *length)
 }
 
 const cv_counts *cv_get_counts(const cv_search *s) { return &s->counts; }
-double cv_volume_decided(const cv_search *s) { return s->decided; }
-int cv_last_steps(const cv_search *s) { return s->last_steps; }
+const cv_history *cv_get_history(const cv_search *s) { return &s->history; }
+const int *cv_steps(const cv_search *s) { return s->steps; }
 int cv_symmetric(const cv_search *s) { return s->symmetric; }
 int cv_at_once(const cv_search *s) { return s->at_once; }
 void cv_free(char *text) { free(text); }
 
 char *cv_constant(const cv_search *s, int which)
 {
-    if (which < 0 || which > 11)
+    if (which < 0 || which > 11 || (which >= 2 && !s->prepared))
         return NULL;
     if (which < 2)
         return apm_get_str(s->root.xstar[which]);
@@ -316,183 +372,4 @@ char *cv_constant(const cv_search *s, int which)
         return apm_get_str(s->constants[which - 2]);
     return apm_get_str(which % 2 == 0 ? s->root.centre[3 + (which - 8) / 2]
                                       : s->root.half[3 + (which - 8) / 2]);
-}
-
-/* After CV_ENOMEM the numbers are abandoned, not freed: see memory.c. */
-void cv_search_free(cv_search *s)
-{
-    if (s == NULL)
-        return;
-    if (s->status != CV_ENOMEM) {
-        Runit_free(s->exact);
-        unit_free(s->quick);
-        loewner_free(s->sharp);
-        box_clear(&s->root);
-        box_clear(&s->prism);
-        for (int j = 0; j < N_CONSTANTS; j++)
-            apm_clear(s->constants[j]);
-        apm_clear(s->t[0]);
-        apm_clear(s->t[1]);
-    }
-    free(s->stack);
-    free(s->tree);
-    free(s);
-}
-
-/* What the double-precision unit is for must hold, or the filter and every later use of
-   rigorous doubles is void: rounding to nearest, and numbers below the normal ones. */
-static int machine_is_sound(void)
-{
-    volatile double tiny = DBL_MIN, one = 1.0, third;
-
-    tiny *= 0.5;
-    third = one / 3.0;
-    return fegetround() == FE_TONEAREST && tiny > 0.0 && third * 3.0 == 1.0 &&
-           one + 0.5 * DBL_EPSILON == 1.0 && one - 0.25 * DBL_EPSILON == 1.0;
-}
-
-/* The angles of the root, from units of pi to radians: an enclosure of the region meant, with pi
-   cut off after dp places, PI_SHORT places before the errors of sines begin.  So the centres of
-   prisms lie a little below the multiples of pi they stand for, by more than the errors of their
-   sines, and what depends on the sign of such a sine (the column rotor) is no accident.  The pi
-   of 1989 was short, too. */
-static void to_radians(cv_search *s, long dp)
-{
-    apm_t pi, ulp;
-
-    apm_init(pi);
-    apm_init(ulp);
-    apm_pi(pi, dp);
-    apm_set_si(ulp, 1, -dp);
-    for (int j = 3; j < 5; j++) {
-        apm_abs(s->t[0], s->root.centre[j]);            /* how far |centre pi| may be off */
-        apm_mul(s->t[0], s->t[0], ulp);
-        apm_mul(s->root.centre[j], s->root.centre[j], pi);
-        apm_add(pi, pi, ulp);
-        apm_mul(s->root.half[j], s->root.half[j], pi);
-        apm_sub(pi, pi, ulp);
-        apm_add(s->root.half[j], s->root.half[j], s->t[0]);
-        apm_round(s->t[1], s->root.centre[j], dp, APM_TRUNC);
-        if (apm_cmp(s->t[1], s->root.centre[j]) != 0)
-            apm_add(s->root.half[j], s->root.half[j], ulp);
-        apm_swap(s->t[1], s->root.centre[j]);
-        apm_round(s->root.half[j], s->root.half[j], dp, APM_UP);
-    }
-    apm_clear(pi);
-    apm_clear(ulp);
-}
-
-static int read_problem(cv_search *s, const char *const region[5], const char *const half[5],
-                        const char *const xstar[2], int method, long pi_dp)
-{
-    double abc[3], start[2], herman_start[2];
-    char text[40];
-    int status;
-
-    for (int j = 0; j < 5; j++) {
-        if (apm_set_str(s->root.centre[j], region[j]) != APM_OK ||
-            apm_set_str(s->root.half[j], half[j]) != APM_OK)
-            return CV_ENUMBER;
-        if (apm_sgn(s->root.half[j]) < 0)
-            return CV_EARGUMENT;
-    }
-    s->symmetric = apm_cmp(s->root.centre[0], s->root.centre[1]) == 0 &&
-                   apm_cmp(s->root.half[0], s->root.half[1]) == 0 &&
-                   apm_cmp(s->root.centre[3], s->root.centre[4]) == 0 &&
-                   apm_cmp(s->root.half[3], s->root.half[4]) == 0;
-    to_radians(s, pi_dp);
-    for (int j = 0; j < 3; j++)
-        abc[j] = apm_get_d(s->root.centre[j]);
-    if (method == CV_LOEWNER)
-        set_gap_start(start, abc, s->symmetric);
-    else
-        set_LL_start(start, abc, s->symmetric);
-    set_Herm_start(herman_start, abc, 1);
-    for (int j = 0; j < 2; j++) {
-        if (xstar == NULL)
-            snprintf(text, sizeof text, method == CV_LOEWNER ? "%.6f" : "%.17g", start[j]);
-        if (apm_set_str(s->root.xstar[j], xstar == NULL ? text : xstar[j]) != APM_OK)
-            return CV_ENUMBER;
-    }
-    if (apm_cmp(s->root.xstar[0], s->root.xstar[1]) != 0)
-        s->symmetric = 0;
-
-    if (method == CV_LOEWNER) {
-        s->sharp = loewner_new(&s->root, s->together, s->quick);
-        if (s->sharp == NULL)
-            return CV_ENOMEM;
-        if (!isfinite(loewner_largest(s->sharp)))
-            return CV_EARITHMETIC;
-        apm_set_d(s->t[0], loewner_largest(s->sharp));
-        apm_round(s->constants[C_B], s->t[0], B_PLACES, APM_UP);
-        if (s->together)
-            for (int j = 0; j < 3; j++)
-                abc[j] += apm_get_d(s->root.half[j]);
-        set_LL_start(start, abc, s->symmetric);
-        s->at_once = loewner_at_once(s->sharp, start);
-        return CV_OK;
-    }
-    for (int j = 0; j < 5; j++) {
-        apm_set(s->prism.centre[j], s->root.centre[j]);
-        apm_set(s->prism.half[j], s->root.half[j]);
-    }
-    apm_set(s->prism.xstar[0], s->root.xstar[0]);
-    apm_set(s->prism.xstar[1], s->root.xstar[1]);
-    status = Rprepare_trial(s->exact, &s->root, herman_start, NULL);
-    if (status != CV_OK)
-        return status;
-    Runit_constants(s->exact, s->constants);
-    return prepare_trial(s->quick, &s->root, herman_start, s->constants);
-}
-
-int cv_search_new(cv_search **result, const char *const region[5], const char *const half[5],
-                  const char *const xstar[2], int method, int together, int dp, int depth,
-                  int stubborn, int as_printed)
-{
-    static const cv_cell whole = { { 0, 0, 0, 0, 0 }, { 0, 0, 0, 0, 0 }, 0 };
-    cv_search *s;
-    jmp_buf here, *before;
-    int status;
-
-    *result = NULL;
-    if (dp < 1 || dp > MAX_DP || depth < 0 || depth > MAX_DEPTH ||
-        (method != CV_THESIS && method != CV_LOEWNER) ||
-        (method == CV_THESIS ? together : as_printed))
-        return CV_EARGUMENT;
-    if (!machine_is_sound())
-        return CV_EMACHINE;
-    s = calloc(1, sizeof *s);
-    if (s == NULL)
-        return CV_ENOMEM;
-    box_init(&s->root);
-    box_init(&s->prism);
-    for (int j = 0; j < N_CONSTANTS; j++)
-        apm_init(s->constants[j]);
-    apm_init(s->t[0]);
-    apm_init(s->t[1]);
-    s->depth = depth;
-    s->stubborn = stubborn;
-    s->together = together;
-    s->status = CV_RUNNING;
-
-    before = memory_guard(&here);
-    if (setjmp(here) != 0) {
-        status = CV_ENOMEM;
-    } else {
-        s->exact = Runit_new(dp, as_printed);
-        s->quick = unit_new(dp, as_printed);
-        status = s->exact == NULL || s->quick == NULL ? CV_ENOMEM
-                 : read_problem(s, region, half, xstar, method,
-                                as_printed ? dp : dp > PI_SHORT ? dp - PI_SHORT : 1);
-        if (status == CV_OK)
-            status = cv_restart(s, 1, &whole);
-    }
-    memory_guard(before);
-    if (status == CV_OK) {
-        *result = s;
-    } else {
-        s->status = status;
-        cv_search_free(s);
-    }
-    return status;
 }

@@ -30,7 +30,7 @@ ALLOWED = [
      "Did 322 quick checks, 319 semi-rigorous bounding tries,",
      "quick_try is lost; no rule for its length of the form cuts/k + 2 gives 318 with this tree"),
     ("the minBlam criterion 99.4% of the time,", "the minBlam criterion 100.0% of the time,",
-     "where the program of 1989 counted is lost; here one count for each proved prism"),
+     "MAX_SUM and THETA_ROT are lost; with ours none of the 522 bounds comes from the trace"),
     ("and from the trace criterion 0.6% of the time.",
      "and from the trace criterion 0.0% of the time.", "the same"),
 ]
@@ -58,7 +58,7 @@ def modes(problem):
 def run(mode, flags, problem):
     result = subprocess.run([str(CONVERSE), *flags, str(problem)], stdout=subprocess.PIPE,
                             check=False)
-    if result.returncode not in (0, 1):
+    if result.returncode not in ((4, 1) if "--as-printed" in flags else (0, 1)):
         sys.exit("%s on %s ended with status %d" % (mode, problem.name, result.returncode))
     return result.stdout.decode("utf-8")
 

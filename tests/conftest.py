@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from converse import Counts, Problem, Proof
+from converse import Counts, Problem, Proof, Settings
 
 ROOT = Path(__file__).resolve().parent.parent
 COMMAND = str(Path(sys.executable).parent / "converse")
@@ -50,14 +50,16 @@ def made_up():
     """A proof from a tree that the test makes up; its other numbers serve the format only."""
     def made_up(tree, a="0.3085", v=("1", "1", "1", "1"), comments=(), counts=None, **options):
         a, (c0, c1, h0, h1) = Fraction(a), map(Fraction, v)
-        problem = Problem((a, a, 2 * a, c0, c1),
-                          (*map(Fraction, ("0.00125", "0.00125", "0.0025")), h0, h1), comments)
+        problem = Problem.around((a, a, 2 * a, c0, c1),
+                                 ("0.00125", "0.00125", "0.0025", h0, h1), comments)
         counts = counts or Counts(cuts=tree.count("0") + tree.count("1"), proved=tree.count("P"),
                                   symmetric=tree.count("S"), undecided=tree.count("U"))
-        facts = dict(depth=30, digits=35, stubborn=False, as_printed=False,
-                     xstar=("1.5", "1.5"), seconds=12.5,
+        settings = Settings(**{name: options.pop(name) for name in
+                               ("method", "depth", "digits", "stubborn", "as_printed")
+                               if name in options})
+        facts = dict(xstar=("1.5", "1.5"), seconds=12.5,
                      constants={name: "1.25" for name in
                                 ("T", "Tr-", "Tr+", "B", "lambda-min", "lambda-max")})
         facts.update(options)
-        return Proof(problem=problem, tree=tree, counts=counts, **facts)
+        return Proof(problem=problem, settings=settings, tree=tree, counts=counts, **facts)
     return made_up

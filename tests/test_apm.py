@@ -126,6 +126,12 @@ def test_doubles_are_written_exactly():
     assert call("add", "0.1", "0") == [Fraction(1, 10)]
 
 
+@pytest.mark.parametrize("text", ["1e309", "-2e400"])
+def test_what_no_double_holds_is_an_error(text):
+    with pytest.raises(ArithmeticError):
+        call("double", text)
+
+
 @pytest.mark.parametrize("text", ["", "-", "+", ".", "1.2.3", "1e", "1e+", "e5", "0x10", "1 ",
                                   " 1", "nan", "inf", "1_000", "--1", "1e400000", "1e-400000",
                                   "١", "1,5"])

@@ -1,5 +1,7 @@
 """Trace and eigenvalues of beta, over prisms and over the torus, and the blocks d_j."""
 
+import math
+import time
 from fractions import Fraction
 from itertools import product
 
@@ -120,6 +122,123 @@ def test_bounds_over_the_torus_for_random_parameters():
         assert e - 1e-9 <= B <= e + 1e-6
 
 
+def torus_values(p, v):
+    """Trace and largest eigenvalue of 2I + W, that is of beta at -v, as exact numbers."""
+    with mpmath.workdps(DIGITS):
+        m = beta(*map(mp, p), *(-mp(x) for x in v))
+        return exact(m[0] + m[2]), exact(eigenvalues(m)[1])
+
+
+@pytest.mark.parametrize("dp", [1, 2, 3, 5, 25])
+def test_bounds_over_a_cell_of_the_torus(dp):
+    """Ranges of either sign, the longer side up or down, down to single numbers; cells down to
+    points, where nothing but roundings separates the bounds from the truth."""
+    rng = rng_for("cell%d" % dp)
+    for _ in range(600 * TORTURE):
+        size = Fraction(1, 10**rng.randrange(0, dp + 2))
+        ends = [[decimal(uniform(rng, -2, 2) * size * rng.choice((1, 1, Fraction(1, 50))))
+                 for _ in range(2)] for _ in range(3)]
+        ranges = [sorted(x) if rng.random() < 0.6 else [x[0]] * 2 for x in ends]
+        centre = [decimal(uniform(rng, -7, 7)) for _ in range(2)]
+        reach = Fraction(rng.choice((0, 3, 3)), 10**rng.randrange(0, 4))
+        half = [decimal(uniform(rng, 0, reach)) for _ in range(2)]
+        bounds = kernels.cell(*ranges, centre, half, dp)
+        for _ in range(8):
+            at = [rng.choice(((-1, 1), (-1, 1), (0, 0), (uniform(rng, -1, 1),) * 2))
+                  for _ in range(2)]
+            v = [c + h * rng.choice(t) for c, h, t in zip(centre, half, at)]
+            true = torus_values([rng.choice(x) for x in ranges], v)
+            assert true[0] <= bounds[0] and true[1] <= bounds[1]
+        if not any(half) and all(x[0] == x[1] for x in ranges):
+            slack = Fraction(4 + 4 * sum(abs(x[0]) for x in ranges), 10**dp)
+            assert bounds[0] - true[0] <= slack and bounds[1] - true[1] <= slack
+
+
+@pytest.mark.parametrize("a, b, c, T, B", [
+    ("0", "0", "1", "6", "4"),
+    ("0", "0", "-0.75", "5.5", "3.5"),
+    ("1000", "1", "0", "1005", "1002"),
+    ("1", "-1000", "0", "1005", "1002"),
+])
+def test_a_ridge_is_bounded_by_what_no_sines_exceed(a, b, c, T, B):
+    """The maximum is attained along a line, which cells as small as they would have to be cannot
+    cover in a sensible time."""
+    found = kernels.torus((a, a), (b, b), (c, c), DP)
+    assert 0 <= found[0] - Fraction(T) <= Fraction(1, 10**6) and found[1] == Fraction(B)
+
+
+@pytest.mark.parametrize("a, b, c", [("1e-5", "-2e-5", "1"), ("-3e-6", "1e-6", "-1")])
+def test_a_ridge_that_is_not_level(a, b, c):
+    """Along v0 + v1 = +-pi/2, where the wave of c is largest, the others add hypot(a, b)."""
+    T, B = kernels.torus((a, a), (b, b), (c, c), DP)
+    sizes = [abs(Fraction(x)) for x in (a, b)]
+    rest = Fraction(math.hypot(*map(float, sizes)))
+    assert 6 + rest - Fraction(1, 10**12) <= T <= 6 + sum(sizes) + Fraction(1, 10**6)
+    assert 4 + rest / 2 - Fraction(1, 10**12) <= B <= 4 + max(sizes) + Fraction(1, 10**6)
+
+
+@pytest.mark.parametrize("a, b, c", [
+    ("-9.6e8", "0.9", "0.3"), ("1", "1", "1e9"), ("1e-5", "-1e-5", "1"), ("1e5", "-1", "1000"),
+    ("1e300", "1", "1"), ("1", "1", "-1e400"),
+])
+def test_bounds_over_the_torus_take_about_a_second(a, b, c):
+    """Bounds of what is attained where a wave or two have their maxima; not far from them."""
+    begin = time.process_time()
+    found = kernels.torus((a, a), (b, b), (c, c), DP)
+    assert time.process_time() - begin < 10
+    p = list(map(Fraction, (a, b, c)))
+    half_pi = kernels.pi(500) / 2
+    signs = [1 if x >= 0 else -1 for x in p]
+    points = [(signs[0] * half_pi, signs[1] * half_pi), (signs[2] * half_pi / 2,) * 2,
+              (signs[0] * half_pi, (signs[2] - signs[0]) * half_pi)]
+    with mpmath.workdps(450):
+        for v in points:
+            m = beta(*map(mp, p), *(-mp(x) for x in v))
+            assert exact(m[0] + m[2]) <= found[0] and exact(eigenvalues(m)[1]) <= found[1]
+    sizes = list(map(abs, p))
+    slack = Fraction(1, 10**6) + sum(sizes) / 10**11
+    assert found[0] <= 4 + sizes[0] + sizes[1] + 2 * sizes[2] + slack
+    assert found[1] <= 2 + max(sizes[:2]) + 2 * sizes[2] + slack
+
+
+@pytest.mark.parametrize("size", ["1e155", "1e308", "1e400"])
+@pytest.mark.parametrize("which", range(3))
+def test_no_double_is_a_bound_beyond_the_doubles(size, which):
+    """The squares under the root overflow, or what is summed does."""
+    p = [(0, 0)] * 3
+    p[which] = (size, size)
+    with pytest.raises(ArithmeticError):
+        kernels.torus(*p, DP, arithmetic="double")
+
+
+def test_constants():
+    """T and B hold for all parameters of the box, the cones are theirs, and the first block is
+    bounded for every block before it that lies in them."""
+    rng = rng_for("constants")
+    for k in range(30 * TORTURE):
+        centre = [decimal(uniform(rng, -1, 1), 4) for _ in range(3)]
+        half = [decimal(uniform(rng, 0, "0.3"), 4) * rng.choice((0, 1, 1)) for _ in range(3)]
+        xstar = [decimal(uniform(rng, -4, 4), 17) for _ in range(2)]
+        dp = (1, 2, 3, 5, DP)[k % 5]
+        T, low, high, B, least, most, slope, first = kernels.constants(centre, half, xstar, dp)
+        # moving an angle by pi, or all to their opposites, turns two signs, or all three: the
+        # maxima depend on |a|, |b|, |c| alone, and being convex they grow with them
+        t, e = grid_maxima(*(float(abs(c) + h) for c, h in zip(centre, half)))
+        assert t - 1e-9 <= T <= t + 1e-6 and e - 1e-9 <= B <= e + 1e-6
+        blocks = [(min(most, high / 2),) * 2, (most, min(most, high - most))]
+        with mpmath.workdps(DIGITS):
+            for M, k4, ends in ((T, 16, (low, high)), (B, 4, (least, most))):
+                root = exact(mpmath.sqrt(mp(M * M - k4)))
+                assert 0 <= (M - root) / 2 - ends[0] <= Fraction(2, 10**dp)
+                assert 0 <= ends[1] - (M + root) / 2 <= Fraction(2, 10**dp)
+            for corner in product(*({c - h, c + h} for c, h in zip(centre, half))):
+                m = beta(*map(mp, corner), *map(mp, xstar))
+                for x, y in blocks:
+                    after = (m[0] - 1 / mp(x), m[1], m[2] - 1 / mp(y))
+                    assert exact(after[0] + after[2]) <= slope
+                    assert exact(eigenvalues(after)[0]) <= first
+
+
 def test_uniform_cone():
     """low and high are the roots of d = M - k/(4 d), rounded outwards."""
     rng = rng_for("cone")
@@ -204,6 +323,20 @@ def test_few_digits(dp):
             assert t_lo <= exact(m[0] + m[2]) <= t_hi
         assert m_lo <= least <= m_hi
         assert b_lo <= largest <= b_hi
+
+
+@pytest.mark.parametrize("name, numbers, nout", [
+    ("bound_sincos", [1, 0], 4), ("product", [0, 1, 1, 0], 2), ("square", [1, 0], 2),
+    ("torus", [0, 1, 1, 0, 0, 1], 2), ("cell", [0, 1, 1, 0, 0, 1, 0, 0, 1, 1], 2),
+    ("cell", [0, 1, 0, 1, 0, 1, 0, 0, 1, -1], 2), ("constants", [0, 0, 0, 1, -1, 1, 0, 0], 8),
+    ("region", [0, -1], 2), ("cone", [5, 5], 2), ("scale", [1, 10**30], 1),
+    ("least_lambda", [0] * 56 + [1, 0, 1], 2), ("least_lambda", [0] * 56 + [-1, 1, 1], 2),
+    ("image_ns", [0] * 56 + [10**10], 1),
+])
+def test_what_makes_no_sense_is_refused(name, numbers, nout):
+    for arithmetic in kernels.ARITHMETICS:
+        with pytest.raises(ValueError, match="it takes"):
+            kernels.call(name, numbers, nout, DP, arithmetic=arithmetic)
 
 
 @pytest.mark.parametrize("dp", [1, 2, 3])

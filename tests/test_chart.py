@@ -2,6 +2,7 @@
 
 import csv
 import io
+import math
 import os
 import re
 import subprocess
@@ -10,11 +11,13 @@ import xml.etree.ElementTree as ET
 
 import pytest
 
-from converse import __version__, chart, cli, kernels
+from converse import __version__, chart, cli, kernels, picture
 
 ROWS = {
-    "bound": [("1989", "0.0274", 2698, "yes"), ("thesis", "0.0274", 0.05, "yes"),
-              ("loewner", "0.0250", 0.001, "yes"), ("loewner", "0.0145", 3.0, "no")],
+    "bound": [("1989", "0.0274", 2698, 4, "yes"), ("thesis", "0.0274", 0.05, 3, "yes"),
+              ("thesis, single value", "0.0271", 0.1, 5, "yes"),
+              ("thesis, single value", "0.0270", 0.1, 7, "no"),
+              ("loewner", "0.0250", 0.001, 3, "yes"), ("loewner", "0.0145", 3.0, 50, "no")],
     "digits": [(1, 0.04, 0.03, 0, "no"), (3, 0.05, 0.04, 243, "yes"), (200, 0.1, 0.09, 111, "yes")],
     "width": [("fixed form", "double", 2, 150.0, 1.02), ("column rotor", "35", 3, 5e4, 1.4),
               ("Taylor model", "double", 4, 160.0, 1.0)],
@@ -39,7 +42,7 @@ def one_line(capsys):
     return out, err
 
 
-@pytest.mark.parametrize("kind", chart.FORMATS)
+@pytest.mark.parametrize("kind", picture.FORMATS)
 @pytest.mark.parametrize("name", sorted(chart.CHARTS))
 def test_charts(name, kind):
     pytest.importorskip("matplotlib")
@@ -93,7 +96,7 @@ def test_bad_usage(capsys):
 def test_no_matplotlib(tmp_path, monkeypatch, capsys):
     monkeypatch.setitem(sys.modules, "matplotlib", None)
     assert chart.main([str(tmp_path / "place")]) == cli.BAD
-    assert "converse[plot]" in one_line(capsys)[1] and not os.listdir(tmp_path)
+    assert "pip install matplotlib" in one_line(capsys)[1] and not os.listdir(tmp_path)
 
 
 def test_interrupted(quick, tmp_path, monkeypatch, capsys):
@@ -103,7 +106,7 @@ def test_interrupted(quick, tmp_path, monkeypatch, capsys):
 
     monkeypatch.setitem(chart.CHARTS, "wall", (*chart.CHARTS["wall"][:1], interrupted,
                                                chart.CHARTS["wall"][2]))
-    assert chart.main([str(tmp_path)]) == cli.INTERRUPTED
+    assert chart.main([str(tmp_path)]) == 130
     one_line(capsys)
     assert (tmp_path / "chart-width.svg").exists() and not (tmp_path / "chart-wall.svg").exists()
 
@@ -119,6 +122,66 @@ def test_help(tmp_path):
 def test_caption():
     text = chart.machine()
     assert re.fullmatch(r"converse %s; .*\d+ cores?" % re.escape(__version__), text)
+
+
+def drawn(name, rows):
+    """The caption and all other words of a chart, and its markers."""
+    pytest.importorskip("matplotlib")
+    from matplotlib.figure import Figure
+
+    figure = Figure()
+    caption = chart.CHARTS[name][2](figure, rows)
+    words = [text.get_text() for axes in figure.axes for text in axes.texts]
+    return caption, "\n".join(words), [line for axes in figure.axes for line in axes.get_lines()]
+
+
+def test_the_wall_names_its_markers():
+    """Open ones are explained where there are such, and only there."""
+    for rows in (ROWS["wall"], _pick(ROWS["wall"], "yes"), _pick(ROWS["wall"], "no")):
+        caption, _, lines = drawn("wall", rows)
+        hollow = [line for line in lines if line.get_markerfacecolor() == "white"
+                  and len(line.get_xdata())]
+        assert bool(hollow) == ("open" in caption) == bool(_pick(rows, "no"))
+
+
+def _pick(rows, word):
+    return [row for row in rows if row[-1] == word]
+
+
+def loewner(points):
+    return [("loewner", "%.5f" % epsilon, 1.0, orbit, "yes") for epsilon, orbit in points]
+
+
+def test_estimate_of_the_end():
+    """Where the inverse of the longest orbit falls to 0: never in the midst of what is proved, and
+    not from short orbits."""
+    law = [(0.013 + step, round(0.06 / step)) for step in (0.0016, 0.0012, 0.0008, 0.0004, 0.0002)]
+    assert chart.estimated_end(loewner(law)) == pytest.approx(0.013, abs=2e-5)
+    assert chart.estimated_end(loewner(law[:2])) is None
+    assert chart.estimated_end(loewner([(e, n // 10) for e, n in law[:4]])) is None
+    assert chart.estimated_end(loewner([(e, 100) for e, _ in law])) is None
+    assert chart.estimated_end(loewner([(e, 100 - n // 10) for e, n in law])) is None
+    assert chart.estimated_end([]) is None
+    rows = ROWS["bound"] + loewner(law)
+    caption, words, lines = drawn("bound", rows)
+    assert "estimate" in words and "0.0130" in words and "estimate" in caption
+    levels = [line.get_ydata()[0] for line in lines if len(set(line.get_ydata())) == 1
+              and list(line.get_xdata()) == [0, 1]]
+    assert sorted(levels) == pytest.approx([0.013, 0.0271], abs=2e-5)
+    caption, words, _ = drawn("bound", ROWS["bound"])
+    assert "estimate" not in words + caption and "0.0271 alone is proved, 0.0270 is not" in words
+
+
+def test_no_line_above_a_proof():
+    """What is drawn as a limit of a method is not above anything that it proves."""
+    rows = list(chart.bound(True))
+    _, words, _ = drawn("bound", rows)
+    for name in ("thesis", "loewner"):
+        proved = [float(row[1]) for row in rows if row[0].startswith(name) and row[4] == "yes"]
+        lost = [float(row[1]) for row in rows if row[0].startswith(name) and row[4] == "no"]
+        assert min(proved) > max(lost, default=0)
+    assert "%s alone is proved, %s is not" % chart.SINGLES[-2:] in words
+    assert all(row[3] >= 1 and math.isfinite(row[2]) for row in rows)
 
 
 def test_width():

@@ -1,13 +1,17 @@
 """The command: its flags, its messages, its exit status."""
 
-import os
 import hashlib
+import os
 import re
+import subprocess
+import sys
 
 import pytest
+from conftest import COMMAND
 
-from converse import Proof
+from converse import Proof, check
 from converse.cli import main
+from converse.version import __version__
 
 GOOD = b"0.3085 0.00125\n0.3085 0.00125\n0.617 0.0025\n\n1.0 1.0\n1.0 1.0\n\n"
 
@@ -85,7 +89,7 @@ def test_verbose(command, sample, output):
 
 def test_as_printed(command, sample):
     status, out, err = command("--as-printed", sample)
-    assert status == 0
+    assert status == 4
     assert one_line(err) and "not a proof" in err
     assert out.endswith(" seconds.\n") and "Program :" not in out and "Method" not in out
     status, out, err = command("--as-printed", "-d2", sample)
@@ -98,7 +102,7 @@ def test_help_and_version(command):
     for flag in ("-d", "-b", "-r", "-g", "-p", "-s", "-t", "--as-printed", "--depth", "--backup",
                  "--restore", "--graphics", "--precision", "--stubborn", "--verbose", "--version"):
         assert flag in out
-    assert command("--version") == (0, "converse 1.0.0\n", "")
+    assert command("--version") == (0, "converse %s\n" % __version__, "")
 
 
 def test_figure(command, sample, output, tmp_path):
@@ -107,7 +111,7 @@ def test_figure(command, sample, output, tmp_path):
     assert (status, timeless(out), err) == (0, output, "")
     assert path.read_text("ascii").startswith("%!PS-Adobe")
     assert command("-d3", "-g%s" % path, sample)[0] == 1
-    assert "undecided (1)" in path.read_text("ascii")
+    assert r"crossed: undecided \(1\)" in path.read_text("ascii")
 
 
 def test_backup_and_restore(command, sample, output, tmp_path):
@@ -116,20 +120,64 @@ def test_backup_and_restore(command, sample, output, tmp_path):
     sha256 = hashlib.sha256(backup.read_bytes()).hexdigest()
     assert (status, timeless(out), err) == (0, output + "Proof file : SHA-256 %s\n" % sha256, "")
     assert Proof.load(backup).no_tori
-    for arguments in (["-r", backup], ["-r%s" % backup, "-b%s" % backup],
+    for arguments in (["-r", backup], ["-r", backup, sample], ["-r%s" % backup, "-b%s" % backup],
                       ["--restore", backup, "--backup", tmp_path / "other.gz"]):
-        status, out, err = command(*arguments, sample)
-        assert (status, timeless(out).split("Proof file")[0], err) == (0, output, "")
+        status, out, err = command(*arguments)
+        assert (status, timeless(out).split("Restored")[0], err) == (0, output, "")
+        assert "Restored : 121 of the 121 prisms come from a backup, which is believed\n" in out
     assert Proof.load(tmp_path / "other.gz").no_tori
+    assert hashlib.sha256(backup.read_bytes()).hexdigest() == sha256
+
+
+def test_restore_alone(command, sample, root, tmp_path):
+    """Everything is taken from the file, which is kept up to date; it may go deeper."""
+    backup = tmp_path / "backup"
+    loewner = "--method", "loewner", "--together"
+    assert command("-d9", *loewner, "-s", "-b", backup, root / "inputs" / "trig180.in")[0] == 1
+    half = Proof.load(backup)
+    status, out, err = command("-r", backup, "-d", "120")
+    assert (status, err) == (0, "") and "which move together" in out
+    whole = Proof.load(backup)
+    assert whole.no_tori and whole.problem == half.problem and whole.depth == 120
+    assert check.verify(backup)
+    for arguments in (["-d", "9"], ["--method", "thesis"], ["-p", "36"], ["--as-printed"],
+                      ["--together", sample], [sample]):
+        status, out, err = command("-r", backup, *arguments)
+        assert (status, out) == (2, "") and one_line(err)
+    assert command("-r", backup, root / "inputs" / "trig180.in")[0] == 0
+    assert Proof.load(backup) == whole
+
+
+def test_a_backup_is_never_overwritten(command, sample, root, tmp_path):
+    backup = tmp_path / "backup"
+    assert command("-b", backup, sample)[0] == 0
+    before = backup.read_bytes()
+    for path in (backup, tmp_path / "." / "backup", os.path.relpath(backup)):
+        status, out, err = command("-b", path, root / "inputs" / "trig276.in")
+        assert (status, out) == (2, "") and one_line(err) and "exists" in err and "-r" in err
+    assert backup.read_bytes() == before
+
+
+def test_a_part_of_the_torus(command):
+    status, out, err = command(stdin=GOOD.replace(b"1.0 1.0", b"0.5 0.25", 1))
+    assert (status, err) == (3, "")
+    assert "whose successor of x* lies in the region" in out and "only a part of the torus" in out
+
+
+def test_python_m(sample):
+    for module, status in ("converse", 1), ("converse.check", 2):
+        result = subprocess.run([sys.executable, "-m", module, *(["-d0", sample] if status == 1 else [])],
+                                stdin=subprocess.DEVNULL, capture_output=True, check=False)
+        assert result.returncode == status and b"Traceback" not in result.stderr
 
 
 def test_marked_backup_is_no_proof(command, sample, tmp_path):
     backup = tmp_path / "backup"
-    assert command("--as-printed", "-b", backup, sample)[0] == 0
+    assert command("--as-printed", "-b", backup, sample)[0] == 4
     assert "kind: as printed, not a proof\n" in backup.read_text()
-    status, out, err = command("-r", backup, sample)
-    assert status == 2 and out == "" and one_line(err) and "as printed" in err
-    assert command("--as-printed", "-r", backup, sample)[0] == 0
+    for arguments in [], ["--as-printed"]:
+        status, out, err = command("-r", backup, *arguments, sample)
+        assert status == 4 and one_line(err) and "not a proof" in err
 
 
 def test_the_sharper_method(command, root, tmp_path):
@@ -139,7 +187,7 @@ def test_the_sharper_method(command, root, tmp_path):
     assert "which move together" in out and "s times the upper ends" in out
     assert "SHA-256 " + hashlib.sha256(path.read_bytes()).hexdigest() in out
     again = command("--method", "loewner", "--together", "-r", path, sample)
-    assert again[0] == 0 and "Proof file" not in again[1]
+    assert again[0] == 0 and "SHA-256 " + hashlib.sha256(path.read_bytes()).hexdigest() in again[1]
     picture = tmp_path / "a.svg"
     assert command("--method=loewner", "--together", "-g", picture, sample)[0] == 0
     assert b"<svg" in picture.read_bytes()[:1000]
@@ -225,9 +273,16 @@ def test_backup_over_something_else(command, sample, tmp_path):
 def test_figure_over_something_else(command, sample, tmp_path):
     path = tmp_path / "copy.in"
     path.write_bytes(sample.read_bytes())
-    for arguments in ([path, "-g", path], [sample, "-b", tmp_path / "b", "-g", tmp_path / "b"]):
+    (tmp_path / "link").symlink_to(path)
+    for arguments in ([path, "-g", path], [sample, "-b", tmp_path / "b", "-g", tmp_path / "b"],
+                      [path, "-g", "%s/./copy.in" % tmp_path], [path, "-g", tmp_path / "link"],
+                      [sample, "-b", tmp_path / "b", "-g", "%s/./b" % tmp_path]):
         status, out, err = command(*arguments)
         assert status == 2 and out == "" and one_line(err) and "overwrite" in err
+    with open(path, "rb") as file, subprocess.Popen(
+            [COMMAND, "-g", path], stdin=file, stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE) as process:
+        assert b"overwrite" in process.communicate()[1] and process.returncode == 2
     assert path.read_bytes() == sample.read_bytes()
 
 
@@ -243,7 +298,7 @@ def test_bad_backups(command, sample, root, tmp_path):
         assert status == 2 and out == "" and one_line(err)
         assert str(path) in err and word in err
     status, out, err = command("-r", good, root / "inputs" / "trig276.in")
-    assert status == 2 and one_line(err) and "its a is 0.3085 +- 0.00125" in err
+    assert status == 2 and one_line(err) and "its a is 0.30725 .. 0.30975" in err
     assert command("-r", good, "-p40", sample)[0] == 2
 
 

@@ -73,28 +73,29 @@ def test_kill_at_random_moments(start, command, sample, output, tmp_path, slow):
         half = Proof.load(backup)       # whole, whenever the run was killed
         assert half.tree.startswith(trees[-1])
         trees.append(half.tree)
-        arguments = slow + ["-b", backup, "-r", backup]
+        arguments = slow + ["-r", backup]
     assert trees[-1]                    # some of the work was kept
     status, out, err = command(*arguments, sample)
-    assert (status, timeless(out), err) == (0, output, "")
+    assert (status, timeless(out).split("Restored")[0], err) == (0, output, "")
     whole = Proof.load(backup)
     assert whole.no_tori and whole.tree.startswith(trees[-1])
 
 
-def test_interrupt(start, command, sample, output, tmp_path, slow):
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
+def test_interrupt(start, command, sample, output, tmp_path, slow, number):
     backup = tmp_path / "backup"
     with start(*slow, "-b", backup, sample) as process:
         wait_for(backup)
         time.sleep(0.3)
-        process.send_signal(signal.SIGINT)
+        process.send_signal(number)
         out, err = process.communicate(timeout=60)
-    assert process.returncode == 130
+    assert process.returncode == 128 + number
     assert err.decode() == "converse: interrupted; continue with -r %s\n" % backup
     assert "Parameters :" in out.decode() and "I find" not in out.decode()
     half = Proof.load(backup)
     assert half.tree and not half.no_tori
-    status, out, err = command(*slow, "-r", backup, sample)
-    assert (status, timeless(out)) == (0, output)
+    status, out, err = command("-r", backup)
+    assert (status, timeless(out).split("Restored")[0]) == (0, output)
 
 
 def test_interrupt_without_backup(start, sample, slow):
@@ -137,7 +138,7 @@ def test_full_disk_keeps_the_older_backup(start, command, sample, output, tmp_pa
     def small_files():
         resource.setrlimit(resource.RLIMIT_FSIZE, (100, 100))
 
-    status, out, err = command(*slow, "-b", backup, "-r", backup, sample, preexec_fn=small_files)
+    status, out, err = command("-r", backup, preexec_fn=small_files)
     assert status == 2
     assert err.startswith("converse: %s: cannot be written" % backup) and err.count("\n") == 1
     assert "intact" in err
@@ -165,7 +166,7 @@ def test_two_runs_with_one_backup(start, command, sample, tmp_path, slow):
         process.kill()
     assert status == 2 and out == ""
     assert "another run" in err and err.count("\n") == 1
-    assert command("-p20", "-b", backup, sample)[0] == 0       # the lock died with its holder
+    assert command("-r", backup)[0] == 0        # the lock died with its holder
 
 
 @pytest.mark.parametrize("redirection", ["<&-", ">&-", "2>&-"])
@@ -199,3 +200,31 @@ def test_bar_on_a_terminal_only(start, command, sample):
     assert process.returncode == 0 and b"I find no invariant tori" in out
     assert b"%" in shown and b"prisms, cut" in shown
     assert b"%|" not in out and b"prisms, cut" not in out
+
+
+def test_reading_from_a_terminal_says_so(start):
+    """Whoever types the command alone is told what it waits for."""
+    master, slave = pty.openpty()
+    with start(stdin=slave) as process:
+        os.close(slave)
+        said = process.stderr.readline().decode()
+        os.write(master, b"0.32 0\n0.32 0\n0.64 0\n1 1\n1 1\n\x04")
+        out = process.communicate(timeout=60)[0].decode()
+        os.close(master)
+    assert said == "converse: reading the problem from standard input; end it with Ctrl-D\n"
+    assert process.returncode == 0 and "I find no invariant tori" in out
+
+
+@pytest.mark.parametrize("options", [["-p", "100000"], ["--method", "loewner", "-p", "100000"],
+                                     ["-p", "100000", "--time-limit", "0.5"]])
+def test_long_arithmetic_obeys(start, sample, options):
+    """Ctrl-C and the time limit also count while the search is set up, and within a prism."""
+    began = time.monotonic()
+    with start(*options, sample) as process:
+        if "--time-limit" not in options:
+            time.sleep(1.0)
+            process.send_signal(signal.SIGINT)
+        out, err = process.communicate(timeout=60)
+    assert time.monotonic() - began < 20
+    assert process.returncode == (1 if "--time-limit" in options else 130 if err else 0)
+    assert process.returncode or "loewner" in options       # which may be done before

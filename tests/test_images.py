@@ -86,6 +86,16 @@ def test_every_rounding_of_gauss_jordan_counts():
     assert error / 2 < max(abs(x - y) for x, y in zip(found, true)) <= error
 
 
+def test_a_pivot_hardly_larger_than_its_error():
+    """The reciprocal of 982 is cut off by nearly a unit, and the last pivot is one and a half times
+    what becomes of that."""
+    rows = ["500 0 0 0", "0 500 0 0", "0 0 982 972.18", "0 0 972.18 962.463271267968"]
+    matrix = [[Fraction(word) for word in row.split()] for row in rows]
+    *found, error = kernels.call("gauss_jordan", [x for row in matrix for x in row], 17, 8)
+    true = [x for row in exact_inverse(matrix) for x in row]
+    assert error * 9 / 10 < max(abs(x - y) for x, y in zip(found, true)) <= error
+
+
 def exact_inverse(matrix):
     """Gauss-Jordan in rational arithmetic."""
     n = len(matrix)
@@ -312,6 +322,74 @@ def test_the_error_of_the_inverse(dp):
             eta = [Fraction(rng.choice((-1, 1))) for _ in range(7)]
             assert outside(image, step(point_of(prism, eta))) <= CLOSE * 10**20
     assert tested > 100
+
+
+@pytest.mark.parametrize("dp", [2, 4])
+@pytest.mark.parametrize("tall", [(3, 4), (5, 6)])
+def test_needles_of_a_linear_map(tall, dp):
+    """Without parameters, and one half of the rows far above the other: all rows of |P'^-1 DG P|,
+    in rational arithmetic, are at most one."""
+    rng, tested = rng_for("needles%d%d" % (dp, tall[0])), 0
+    for _ in range(700 * TORTURE):
+        scale = rng.choice((10, 50, 200, 1000))
+        tiny = rng.choice((1, 2, 5, 20, 100))
+        matrix = [[Fraction(0)] * 7 for _ in range(7)]
+        for j in range(3, 7):
+            most = scale * 10**dp if j in tall else tiny
+            for k in range(3, 7):
+                matrix[j][k] = Fraction(rng.randrange(-most, most + 1), 10**dp)
+        try:
+            image = kernels.image(([Fraction(0)] * 7, matrix), dp)
+        except ArithmeticError:
+            continue
+        tested += 1
+        corner = [row[3:] for row in matrix[3:]]
+        after = corner[2:] + [[2 * x - y for x, y in zip(corner[2 + j], corner[j])]
+                              for j in range(2)]
+        for row in exact_inverse([row[3:] for row in image[1][3:]]):
+            assert sum(abs(sum(x * y[k] for x, y in zip(row, after))) for k in range(4)) <= 1
+    assert tested > 100
+
+
+def test_every_rounding_of_the_column_rotor_counts():
+    """The columns of the parameters and the centre all lose nearly a unit of the last place, in
+    the same direction; the corner of u and v loses nothing."""
+    ulp, part = Fraction(1, 100), Fraction(99, 10000)
+    matrix = [[Fraction(0)] * 7 for _ in range(7)]
+    for j in range(3):
+        matrix[j][j] = Fraction(1, 10**9)
+    for j in range(2):
+        matrix[3 + j] = [part] * 3 + [Fraction(0)] * 4
+        matrix[5 + j] = [part] * 3 + [Fraction(0)] * 4
+        matrix[3 + j][3 + j], matrix[3 + j][5 + j] = 20 * ulp, -10 * ulp
+        matrix[5 + j][3 + j] = 10 * ulp
+    centre = [Fraction(0)] * 3 + [Fraction(1) - part] * 2 + [Fraction(1, 2)] * 2
+    image = kernels.image((centre, matrix), 2)
+    worst = outside(image, step(point_of((centre, matrix), [1] * 7)))
+    assert Fraction(-1, 20) < worst <= CLOSE
+
+
+def test_the_sign_of_a_width_does_not_matter():
+    """A prism of the list turned over is the same set; the parameters must not be."""
+    rng = rng_for("signs")
+    for _ in range(100 * TORTURE):
+        centre, matrix = list_prism(rng)
+        for j in (5, 6):
+            matrix[j][j] *= rng.choice((-1, -1, 1))
+        image = kernels.image((centre, matrix), DP)
+        for _ in range(8):
+            assert outside(image, step(point_of((centre, matrix), cube_point(rng)))) <= CLOSE
+
+
+@pytest.mark.parametrize("row, column, entry", [(0, 0, -1), (2, 2, -1), (0, 1, 1), (1, 5, -1)])
+@pytest.mark.parametrize("name, nout", [("image", 56), ("btrace", 2), ("Blams", 4)])
+def test_what_is_no_prism_is_refused(name, nout, row, column, entry):
+    matrix = [[Fraction(j == k) / 100 for k in range(7)] for j in range(7)]
+    matrix[row][column] = Fraction(entry, 100)
+    numbers = [0] * 7 + [x for row in matrix for x in row]
+    for arithmetic in kernels.ARITHMETICS:
+        with pytest.raises(ValueError, match="no negative widths"):
+            kernels.call(name, numbers, nout, DP, arithmetic=arithmetic)
 
 
 @pytest.mark.parametrize("dp", [2, 4])

@@ -16,8 +16,9 @@ import mpmath
 import pytest
 from truth import TORTURE, beta, mp, rng_for, uniform
 
-from converse import ConverseError, Problem, kernels, prove
-from converse.search import Search, Task
+from converse import ConverseError, Problem, Settings, kernels, prove
+from converse.core import Search, Task, ffi
+from converse.growth import MANY
 from converse.tree import ROOT, cells, complete
 
 CASES = 10000 * TORTURE
@@ -449,7 +450,7 @@ def line(low, high, together=True, region=(1, 1), skew=1):
     low, high = Fraction(low) * Fraction("11.21436"), Fraction(high) * Fraction("11.21436")
     c, h = (low + high) / 2, (high - low) / 2
     skew = Fraction(skew)
-    return Problem((c, skew * c, 2 * c, Fraction(1), Fraction(1)),
+    return Problem.around((c, skew * c, 2 * c, Fraction(1), Fraction(1)),
                    (h, skew * h, 2 * h, *map(Fraction, region)), together=together)
 
 
@@ -498,39 +499,41 @@ def falls(betas, l):
 
 
 @pytest.mark.parametrize("problem", [
-    Problem((Fraction(0),) * 3 + (Fraction(1),) * 2, (Fraction(0),) * 3 + (Fraction(1),) * 2),
+    Problem.around((Fraction(0),) * 3 + (Fraction(1),) * 2, (Fraction(0),) * 3 + (Fraction(1),) * 2),
     line("0.0001", "0.0001"), line("0.001", "0.001"), line("0.01", "0.01"), line("0", "0.0280"),
     line("0.0120", "0.0280"), line("-0.001", "0.001"), line("0.01", "0.01", skew="0.5"),
     line("0.005", "0.0280", together=False)])
 def test_never_a_false_theorem(problem):
     for stubborn, depth in ((False, 40), (True, 12)):
-        result = prove(problem, depth, stubborn=stubborn, method="loewner", time_limit=3)
+        result = prove(problem, depth=depth, stubborn=stubborn, method="loewner", time_limit=3)
         assert not result.no_tori and "I could not decide" in result.report()
         assert result.undecided or not stubborn
+
+
+def grow(task, cell, max_leaves=MANY):
+    search = Search(task)
+    assert search.prepare(ffi.NULL)
+    return search.grow([cell], 10, max_leaves, ffi.NULL, False)
 
 
 def test_a_cell_is_what_it_says(proof):
     """A cell of the tree fares like the root of a problem that is just this cell."""
     rng, problem, same = rng_for("loewner cells"), proof.problem, 0
-    prisms, task = [], Task(*map(tuple, problem.decimals()), proof.xstar, True, "loewner", 120, 35,
-                            False, False)
+    prisms, task = [], Task(problem, proof.settings, proof.xstar)
     for _, (index, cuts) in cells(proof.tree):
         index = tuple(i >> k // 2 for i, k in zip(index, cuts))
         cuts = tuple(k - k // 2 for k in cuts)
         if index[1] + 1 << cuts[0] <= index[0] << cuts[1]:      # below the diagonal
             prisms.append((index, cuts))
-    search = Search(task)
     for index, cuts in rng.sample(prisms, 200):
         part = [Fraction(1, 2 ** k) for k in cuts]
         axes = 2, 2, 2, 0, 1                # of a, b, c, v0, v1
         centre = [c + h * ((2 * index[k] + 1) * part[k] - 1)
                   for c, h, k in zip(problem.centre, problem.half, axes)]
         half = [h * part[k] for h, k in zip(problem.half, axes)]
-        cell = Problem(tuple(centre), tuple(half), together=True)
-        whole = Search(replace(task, centre=tuple(cell.decimals()[0]),
-                               half=tuple(cell.decimals()[1])))
-        below = search.grow([(index, cuts, 0)], 10).text
-        same += below == whole.grow([(*ROOT, 0)], 10).text
+        cell = Problem.around(tuple(centre), tuple(half), together=True)
+        same += grow(task, (index, cuts, 0)).text == \
+            grow(replace(task, problem=cell), (*ROOT, 0)).text
     assert same > 190                       # rounding may tell them apart
 
 
@@ -539,7 +542,7 @@ def test_a_cell_is_what_it_says(proof):
     ("0.0250", "0.0260", False, False), ("0.0252", "0.0253", False, True)])
 def test_at_once_above_ten_thirds(low, high, together, expected):
     """B = 2 + 52.955 epsilon > 10/3."""
-    result = prove(line(low, high, together), method="loewner", time_limit=0)
+    result = prove(line(low, high, together), method="loewner", depth=0)
     assert result.at_once == expected
 
 
@@ -547,16 +550,15 @@ def test_not_at_once_by_a_rounding():
     """a and B stay below 4/3 and 10/3; but centre and half-width as doubles add up to more."""
     centre, half = Fraction("0.636378608205740996"), Fraction("0.696954725127592337")
     assert centre + half < Fraction(4, 3) < Fraction(float(centre) + float(half))
-    problem = Problem((centre, *map(Fraction, (0, 0, 1, 1))), (half, *map(Fraction, (0, 0, 1, 1))),
-                      together=True)
-    assert not prove(problem, method="loewner", time_limit=0).at_once
+    problem = Problem((centre - half, centre + half), 0, 0, together=True)
+    assert not prove(problem, method="loewner", depth=0).at_once
 
 
 @pytest.mark.parametrize("half, nodes", [("0", 1), ("1e-15", 10), ("1e-14", 500)])
 def test_what_is_too_fine_for_doubles_is_given_up(half, nodes):
     """Where tori exist, a stubborn search ends as soon as doubles do, and says that they did."""
     problem = line("0.001", "0.001", region=(half, half))
-    result = prove(problem, 120, method="loewner", stubborn=True, time_limit=5)
+    result = prove(problem, method="loewner", stubborn=True, time_limit=5)
     assert complete(result.tree) and len(result.tree) <= nodes
     assert 0 < result.counts.undecided <= result.counts.reasons[4]
 
@@ -564,11 +566,10 @@ def test_what_is_too_fine_for_doubles_is_given_up(half, nodes):
 def test_the_finest_cell():
     """Where a torus is near it is tried, and not cut; what is finer is not even tried."""
     problem = line("0.001", "0.001")
-    search = Search(Task(*map(tuple, problem.decimals()), ("2", "2"), True, "loewner", 1000, 35,
-                         True, False))
+    task = Task(problem, Settings("loewner", 1000, stubborn=True), ("2", "2"))
     for cuts in (45, 46, 47):
         index = [int(2 ** cuts * ((1 / math.pi + x) % 1)) for x in (0.5698402909, 0.7548776662)]
-        grown = search.grow([((*index, 0, 0, 0), (cuts, cuts, 0, 0, 0), 0)], 10, max_leaves=1)
+        grown = grow(task, ((*index, 0, 0, 0), (cuts, cuts, 0, 0, 0), 0), 1)
         if cuts == 45:
             assert grown.text[0] in "01" and grown.counts.reasons[1] > 0
         else:
@@ -584,23 +585,23 @@ def test_other_parameters():
     free = prove(line("0.0240", "0.0245", together=False), method="loewner")
     assert skew.no_tori and "S" not in skew.tree and free.no_tori and "S" in free.tree
     part = prove(line("0.0200", "0.0201", region=("0.1", "0.1")), method="loewner")
-    assert part.no_tori and "successor" in part.report()
+    assert part.conclusion == "region" and not part.no_tori and "successor" in part.report()
     minus = line("0.0200", "0.0210")        # V(y + pi) changes the signs of a and b
-    minus = Problem(tuple(-x for x in minus.centre[:2]) + minus.centre[2:], minus.half,
+    minus = Problem.around(tuple(-x for x in minus.centre[:2]) + minus.centre[2:], minus.half,
                     together=False)
     assert prove(minus, method="loewner").no_tori
 
 
 def test_huge_and_tiny_numbers():
-    huge = Problem((Fraction(10) ** 100,) * 3 + (Fraction(1),) * 2,
+    huge = Problem.around((Fraction(10) ** 100,) * 3 + (Fraction(1),) * 2,
                    (Fraction(0),) * 3 + (Fraction(1),) * 2)
     far = line("0.0200", "0.0200")
-    far = Problem(far.centre[:3] + (Fraction(10) ** 12,) * 2, far.half, together=True)
-    assert prove(huge, 10, method="loewner").no_tori    # and rightly so
-    assert prove(far, 10, method="loewner", stubborn=True, time_limit=3).undecided
+    far = Problem.around(far.centre[:3] + (Fraction(10) ** 12,) * 2, far.half, together=True)
+    assert prove(huge, depth=10, method="loewner").no_tori    # and rightly so
+    assert prove(far, depth=10, method="loewner", stubborn=True, time_limit=3).undecided
     for name, numbers in (("torus", 6), ("product", 4)):
         with pytest.raises(ArithmeticError):
             kernels.call(name, [10 ** 160] * numbers, 2, 15, "double")
     with pytest.raises(ConverseError, match="arithmetic"):
-        prove(Problem((Fraction(10) ** 250,) * 3 + (Fraction(1),) * 2, huge.half),
+        prove(Problem.around((Fraction(10) ** 250,) * 3 + (Fraction(1),) * 2, huge.half),
               method="loewner")

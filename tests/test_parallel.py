@@ -14,13 +14,13 @@ from fractions import Fraction
 
 import pytest
 
-from converse import ConverseError, Problem, Proof, prove, search
+from converse import ConverseError, Problem, Proof, growth, prove
 
 
 def line(low, high):
     low, high = Fraction(low) * Fraction("11.21436"), Fraction(high) * Fraction("11.21436")
     c, h = (low + high) / 2, (high - low) / 2
-    return Problem((c, c, 2 * c, Fraction(1), Fraction(1)), (h, h, 2 * h, Fraction(1), Fraction(1)),
+    return Problem.around((c, c, 2 * c, Fraction(1), Fraction(1)), (h, h, 2 * h, Fraction(1), Fraction(1)),
                    together=True)
 
 
@@ -30,8 +30,8 @@ LONG = line("0.0146", "0.0149")             # a second or so
 @pytest.fixture(autouse=True)
 def early(monkeypatch):
     """Divides the work sooner and more finely than usual."""
-    monkeypatch.setattr(search, "TASK_SECONDS", 0.02)
-    monkeypatch.setattr("converse.proof.ALONE_SECONDS", 0.01)
+    monkeypatch.setattr(growth, "TASK_SECONDS", 0.02)
+    monkeypatch.setattr(growth, "ALONE_SECONDS", 0.01)
 
 
 def timeless(proof):
@@ -51,7 +51,7 @@ def test_threads(proof):
 
 def test_the_method_of_the_thesis_too():
     a, b = Fraction("0.306"), Fraction("0.00125")
-    problem = Problem((a, a, 2 * a, Fraction(1), Fraction(1)),
+    problem = Problem.around((a, a, 2 * a, Fraction(1), Fraction(1)),
                       (b, b, 2 * b, Fraction(1), Fraction(1)))
     with concurrent.futures.ThreadPoolExecutor(3) as executor:
         assert timeless(prove(problem, executor=executor)) == timeless(prove(problem, jobs=1))
@@ -60,7 +60,7 @@ def test_the_method_of_the_thesis_too():
 @pytest.mark.parametrize("stubborn", [False, True])
 def test_undecided_prisms(stubborn):
     problem = line("0.0100", "0.0280")
-    alone, many = (timeless(prove(problem, 13, stubborn=stubborn, method="loewner", jobs=jobs))
+    alone, many = (timeless(prove(problem, depth=13, stubborn=stubborn, method="loewner", jobs=jobs))
                    for jobs in (1, 3))
     assert alone.undecided and alone.tree == many.tree
     if stubborn:                            # else some worked on what became of no use
@@ -77,12 +77,12 @@ class Unreliable(concurrent.futures.ThreadPoolExecutor):
 
     tasks, lost = 0, []
 
-    def submit(self, work, task, cells, seconds):
+    def submit(self, work, task, cells, *rest):
         self.tasks += 1
         if self.tasks % 3 == 0 and cells not in self.lost:
             self.lost.append(cells)
             work = die
-        return super().submit(work, task, cells, seconds)
+        return super().submit(work, task, cells, *rest)
 
 
 def die(*args):
@@ -112,14 +112,13 @@ def test_an_executor_that_is_gone():
 
 
 def test_time_limit_and_resume(proof, tmp_path):
-    path, result, runs = tmp_path / "a.proof", None, 0
-    while result is None or not result.all_decided:
-        result = prove(LONG, method="loewner", jobs=3, time_limit=0.02 * 2**runs,
-                       backup=path, resume=result)
+    path, runs = tmp_path / "a.proof", 1
+    result = prove(LONG, method="loewner", jobs=3, time_limit=0.02, backup=path)
+    while not result.all_decided:
         assert timeless(Proof.load(path)) == timeless(result)
-        result = Proof.load(path)
+        result = prove(resume=path, jobs=3, time_limit=0.02 * 2**runs)
         runs += 1
-    assert runs > 1 and timeless(result) == proof
+    assert runs > 1 and timeless(result) == timeless(Proof.load(path)) == proof
 
 
 class Inline(concurrent.futures.Executor):
@@ -134,14 +133,14 @@ class Inline(concurrent.futures.Executor):
 @pytest.mark.parametrize("error", [KeyboardInterrupt, MemoryError])
 def test_interrupted_anywhere(error, tmp_path, monkeypatch):
     """Whatever line of the bookkeeping an exception strikes, what was saved leads to the same tree."""
-    monkeypatch.setattr(search, "TASK_SECONDS", 0.001)
-    monkeypatch.setattr("converse.proof.BACKUP_SECONDS", 0.005)
+    monkeypatch.setattr(growth, "TASK_SECONDS", 0.001)
+    monkeypatch.setattr("converse.backup.SECONDS", 0.005)
     problem, path = line("0.0165", "0.0280"), tmp_path / "a.proof"
     whole = timeless(prove(problem, method="loewner", jobs=1))
     rng, struck, lines = random.Random(1), 0, [0, 0]
 
     def trace(frame, event, _):
-        if frame.f_code.co_filename != search.__file__ or "self" not in frame.f_locals:
+        if frame.f_code.co_filename != growth.__file__ or "self" not in frame.f_locals:
             return None
         if event == "line":
             lines[0] += 1
@@ -159,25 +158,25 @@ def test_interrupted_anywhere(error, tmp_path, monkeypatch):
             struck += 1
         finally:
             sys.settrace(None)
-        resume = path if path.exists() else None
-        assert timeless(prove(problem, method="loewner", jobs=1, resume=resume)) == whole
+        result = prove(resume=path, jobs=1) if path.exists() else prove(problem, method="loewner")
+        assert timeless(result) == whole
     assert struck > 30
 
 
 KILLED = """
 import sys
-from converse import Proof, prove, search
+from converse import prove
 sys.path.insert(0, %r)
 from test_parallel import LONG
 path, resume = sys.argv[1:]
-prove(LONG, method="loewner", jobs=2, backup=path, resume=resume or None)
+prove(LONG, method="loewner", jobs=2, **{"resume" if resume else "backup": path})
 """
 
 
 def test_a_killed_coordinator_goes_on_from_its_backup(proof, tmp_path, monkeypatch):
     path = tmp_path / "a.proof.gz"
     tests = os.path.dirname(os.path.abspath(__file__))
-    code = "import converse.proof as p; p.BACKUP_SECONDS = 0.05\n" + KILLED % tests
+    code = "import converse.backup as b; b.SECONDS = 0.05\n" + KILLED % tests
     for n in range(40):
         resume = str(path) if path.exists() else ""
         process = subprocess.Popen([sys.executable, "-c", code, str(path), resume], cwd=tmp_path)

@@ -1,6 +1,7 @@
 """Reading the input: exact numbers, tolerant layout, one clear line for every mistake."""
 
 import io
+from dataclasses import replace
 from decimal import Decimal
 from fractions import Fraction
 
@@ -8,6 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from converse import ConverseError, Problem, prove
 from converse.problem import InputError, decimal_text, exact_decimal, read_input
 
 GOOD = "0.3085 0.00125\n0.3085 0.00125\n0.617 0.0025\n\n1.0 1.0\n1.0 1.0\n\n"
@@ -87,7 +89,8 @@ def changed(number, line):
     (changed(2, "0.3085 -0.00125"), 2, "negative"), (changed(6, "1 -1"), 6, "negative"),
     (changed(5, "1.0"), 5, "1 number where two"), (changed(5, "1 1 1"), 5, "3 numbers where two"),
     (changed(1, "0x10 1"), 1, "0x10"), (changed(1, "1_0 1"), 1, "1_0"),
-    (changed(1, "\u0661 1"), 1, "not a decimal"), (changed(1, "1/3 1"), 1, "1/3"),
+    (changed(1, "\u0661 1"), 1, "not a decimal"), (changed(1, "1/0 1"), 1, "1/0"),
+    (changed(1, "1/3/5 1"), 1, "1/3/5"),
     (changed(1, "0.3,1"), 1, "0.3,1"), (changed(1, ". 1"), 1, "'.'"),
 ])
 def test_mistakes(text, line, words):
@@ -122,3 +125,78 @@ def test_decimal_text():
     assert Fraction(Decimal(decimal_text(long))) == long
     with pytest.raises(ValueError):
         decimal_text(Fraction(1, 3))
+
+
+# ---- named ranges
+
+def test_named_ranges(root):
+    problem = read_input(root / "inputs" / "trig274.in")
+    named = Problem(a=("0.30725", "0.30975"), b=(Decimal("0.30725"), Fraction("0.30975")),
+                    c=("6145e-4", "0.6195"), comments=problem.comments)
+    assert named == problem == Problem.around(problem.centre, problem.half, problem.comments)
+    assert repr(named) == "Problem(a=0.30725..0.30975, b=0.30725..0.30975, c=0.6145..0.6195, " \
+                          "v0=0..2, v1=0..2)"
+    point = Problem("63/64", 0, 0, together=True)
+    assert point.a == (Fraction(63, 64),) * 2 and point.half[:3] == (0, 0, 0)
+    assert point.full_torus and repr(point).endswith(", together)")
+
+
+def test_what_is_no_decimal_is_enclosed():
+    """4/3 is no finite decimal: the range that is covered holds it, and is hardly wider."""
+    for third in "4/3", Fraction(4, 3):
+        low, high = Problem(third, 0, 0).a
+        assert low < Fraction(4, 3) < high and high - low == Fraction(1, 10 ** 40)
+    low, high = Problem(("-4/3", "-2/3"), 0, 0).a
+    assert low < Fraction(-4, 3) and high > Fraction(-2, 3)
+    assert decimal_text(low) and decimal_text(high)
+    assert read(GOOD.replace("0.3085 0.00125", "4/3 1/7", 1)).a[0] < Fraction(4, 3) - Fraction(1, 7)
+    assert prove(Problem(("4/3", "3/2"), 0, 0), method="loewner").no_tori
+
+
+@pytest.mark.parametrize("ranges, error, words", [
+    ({"a": 0.3}, TypeError, "a: 0.3 is not an exact number"),
+    ({"a": ("0.3", 0.4)}, TypeError, "a: 0.4 is not an exact number"),
+    ({"a": True}, TypeError, "True"), ({"b": None}, TypeError, "b: None"),
+    ({"b": ()}, ValueError, "not 0 numbers"), ({"c": (1, 2, 3)}, ValueError, "not 3 numbers"),
+    ({"c": ("0.4", "0.3")}, ValueError, "lower end, 0.4, is above"),
+    ({"v0": "x"}, ValueError, "v0: 'x' is not a decimal number"),
+    ({"v1": 10 ** 309}, ValueError, "out of range"), ({"a": "1e309"}, ValueError, "out of range"),
+    ({"a": Decimal("nan")}, ValueError, "'NaN'"), ({"a": Decimal("inf")}, ValueError, "Infinity"),
+    ({"a": Fraction(1, 10 ** 301)}, ValueError, "out of range"),
+])
+def test_bad_ranges(ranges, error, words):
+    with pytest.raises(error) as caught:
+        Problem(**{"a": 0, "b": 0, "c": 0, **ranges})
+    assert words in str(caught.value) and "\n" not in str(caught.value)
+
+
+def test_four_ranges_or_unequal_ones():
+    for centre, half in (((1,) * 4, (0,) * 4), ((1,) * 5, (0,) * 4), ((1,) * 6, (0,) * 6)):
+        with pytest.raises(ValueError, match="where five belong"):
+            Problem.around(centre, half)
+    with pytest.raises(ValueError, match="half-width of b is negative"):
+        Problem.around((1,) * 5, (0, -1, 0, 1, 1))
+    with pytest.raises(TypeError):
+        Problem("1", "1")
+
+
+@pytest.mark.parametrize("text", ["1e309", "-1e309", "1e99999", "nan", "", "1e400000"])
+def test_the_core_refuses_what_no_problem_can_say(text, monkeypatch):
+    """Also when it is asked behind the back of Problem."""
+    problem = Problem(1, 1, 1)
+    decimals = problem.decimals()
+    for which in (0, 1):
+        for axis in range(5):
+            bad = [list(numbers) for numbers in decimals]
+            bad[which][axis] = text
+            monkeypatch.setattr(Problem, "decimals", lambda self, bad=bad: bad)
+            with pytest.raises(ConverseError, match="malformed or out of range|no sense"):
+                prove(problem)
+
+
+def test_comments_are_lines(tmp_path):
+    problem = Problem(2, 2, 2, comments=("one\ntwo\r\nthree", "", "a\udc80b", "tree:"))
+    assert problem.comments == ("one", "two", "three", "", "a\\udc80b", "tree:")
+    proof = prove(problem, method="loewner", backup=tmp_path / "a.proof")
+    assert type(proof).load(tmp_path / "a.proof") == replace(proof, seconds=0)
+    assert Problem(2, 2, 2, comments="one line").comments == ("one line",)

@@ -1,9 +1,13 @@
 """The report: the thesis's words to the letter, and no claim beyond what was examined."""
 
+import re
+from dataclasses import replace
+
 import pytest
 
-from converse import Counts
+from converse import Counts, Problem
 from converse.report import header, verdict
+from converse.version import __version__
 
 COUNTS = Counts(quick_tries=322, tries=318, Rtries=156, cuts=166, proved=156, symmetric=11,
                 HermSuccess=0, LLSuccess=156, ll_used=(155, 0, 1), reasons=(4, 158, 4, 0, 0, 0),
@@ -27,7 +31,7 @@ def test_sound_mode_adds_its_grounds(made_up):
     text = made_up("P", counts=COUNTS, digits=50, xstar=("1.5", "1.625")).report()
     assert text.startswith("Parameters :\n")
     end = text[text.index("seconds.\n"):]
-    for words in ("converse 1.0.0", "50 decimal places", "x* : 1.5 1.625", "T : 1.25", "B : 1.25",
+    for words in ("converse " + __version__, "50 decimal places", "x* : 1.5 1.625", "T : 1.25", "B : 1.25",
                   "Tries that failed : 166", "158 : an image prism grew too big"):
         assert words in end
     assert "\n0 : " not in end
@@ -52,8 +56,7 @@ def test_bounds_are_exact(made_up):
 
 def test_single_values(made_up):
     proof = made_up("P")
-    problem = type(proof.problem)(proof.problem.centre, (0, 0, 0, 1, 1), ())
-    text = verdict(type(proof)(**{**vars(proof), "problem": problem}))
+    text = verdict(replace(proof, problem=Problem("0.3085", "0.3085", "0.617")))
     assert "a = 0.308500\nb = 0.308500\nc = 0.617000\n" in text and "<" not in text
 
 
@@ -62,6 +65,7 @@ def test_part_of_the_torus(made_up):
     assert text.startswith(
         "I find no invariant tori whose successor of x* lies in the region :\n"
         "0.250000 < v[0] / pi < 0.750000\n0.000000 < v[1] / pi < 2.000000\n"
+        "(only a part of the torus: other successors were not examined)\n"
         "for the range of parameters :\n0.307250 < a < 0.309750\n")
 
 
@@ -80,3 +84,29 @@ def test_undecided(made_up, tree, stubborn, number, deepest, ended):
         assert "Undecided prisms : %d\n" % number in text
         assert ("The deepest of them was cut %s times.\n" % deepest in text) == (number > 0)
         assert ("before the whole region was examined" in text) == ended
+        assert ("To try : " in text) == (not as_printed)
+        assert bool(re.search(r"\nThe first of them : [0-9.]+ < v\[0\] / pi < [0-9.]+, ", text)) == (
+            number > 0 and not as_printed)
+        assert ("--method loewner" in text) == (not as_printed)
+
+
+def test_comments_are_not_the_programs_words(made_up):
+    """Neither what a terminal obeys nor a sentence of the program's can be smuggled in."""
+    claim = "I find no invariant tori for the range of parameters :"
+    proof = made_up("U", comments=(claim, "\x1b]0;x\x07 \u202e \x9b2J", "tab\tstays", "two\nlines"))
+    text = proof.report()
+    assert claim not in text.split("\n") and "> " + claim in text.split("\n")
+    assert "\x1b" not in text and "\x07" not in text and "\x9b" not in text and "\u202e" not in text
+    assert "> \\x1b]0;x\\x07 \\u202e \\x9b2J\n> tab\tstays\n> two\n> lines\n" in text
+    assert proof.problem.comments[3:] == ("two", "lines")
+
+
+def test_a_loaded_proof_says_whence_it_is(made_up):
+    assert "Restored" not in made_up("0PS").report()
+    assert "\nRestored : 2 of the 2 prisms come from a backup, which is believed" in \
+        made_up("0PS", restored=2).report()
+
+
+def test_the_map_is_stated(made_up):
+    for tree in "P", "U":
+        assert "\nMap : y' = y + J', J' = J - dV(y), V(y) = -a sin y0" in made_up(tree).report()

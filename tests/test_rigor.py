@@ -5,6 +5,7 @@ import os
 import shutil
 import subprocess
 import sys
+import sysconfig
 from pathlib import Path
 
 import pytest
@@ -18,7 +19,7 @@ needs_gcc = pytest.mark.skipif(not shutil.which("gcc"), reason="needs gcc")
 @needs_gcc
 @pytest.mark.parametrize("flag", ["-ffast-math", "-Ofast"])
 def test_a_fast_math_build_is_refused(flag):
-    result = subprocess.run(["gcc", "-std=c11", flag, "-Icsrc", "-c", "csrc/search.c", "-o", os.devnull],
+    result = subprocess.run(["gcc", "-std=c11", flag, "-Icsrc", "-c", "csrc/setup.c", "-o", os.devnull],
                             cwd=ROOT, capture_output=True, text=True)
     assert result.returncode != 0
     assert "rules of rigor" in result.stderr
@@ -75,6 +76,60 @@ def test_a_spoilt_machine_is_refused(shim, root, spoil, mend):
     assert converse.prove(problem).no_tori
 
 
+@needs_gcc
+@pytest.mark.parametrize("method", ["thesis", "loewner"])
+def test_a_machine_spoilt_in_mid_run_is_noticed(shim, root, method):
+    """Each step looks at the arithmetic; nothing that a bad one did is taken."""
+    from converse.core import Search, Settings, Task, ffi
+    from converse.tree import ROOT as WHOLE
+
+    lib = ctypes.CDLL(str(shim))
+    search = Search(Task(converse.read_input(root / "inputs" / "trig278.in"), Settings(method)))
+    assert search.prepare(ffi.NULL)
+    grow = lambda: search.grow([(*WHOLE, 0)], 10, 2 ** 30, ffi.NULL, False).text
+    good = grow()
+    for which in (1, 2, 3):
+        lib.direction(which)
+        try:
+            with pytest.raises(converse.ConverseError, match="floating-point"):
+                grow()
+        finally:
+            lib.direction(0)
+        assert grow() == good
+
+
+CONTRACTED = """
+import converse
+try:
+    converse.prove(converse.Problem(1, 1, 1), method="loewner")
+except converse.ConverseError as error:
+    assert "the way the program was built" in str(error), error
+else:
+    raise SystemExit("it proves")
+"""
+
+
+@needs_gcc
+@pytest.mark.skipif("fma" not in Path("/proc/cpuinfo").read_text() if os.path.exists("/proc/cpuinfo")
+                    else True, reason="needs a processor with fused operations")
+@pytest.mark.skipif("libasan" in os.environ.get("LD_PRELOAD", ""), reason="another build")
+def test_a_core_that_fuses_is_refused(tmp_path):
+    """Built by flags that contract products and sums it compiles, and proves nothing."""
+    code = "exec(open('converse/_build.py').read()); ffi.emit_c_code(%r); print(*SOURCES)"
+    sources = subprocess.run([sys.executable, "-c", code % str(tmp_path / "native.c")], cwd=ROOT,
+                             check=True, capture_output=True, text=True).stdout.split()
+    sources = [word for word in sources if word.startswith("csrc/")]
+    package = tmp_path / "converse"
+    shutil.copytree(Path(converse.__file__).parent, package,
+                    ignore=shutil.ignore_patterns("*.so", "__pycache__"))
+    subprocess.run(["gcc", "-std=c11", "-O2", "-fPIC", "-shared", "-mfma", "-ffp-contract=fast",
+                    "-Icsrc", "-I", sysconfig.get_paths()["include"], str(tmp_path / "native.c"),
+                    *sources, "-lgmp", "-lm", "-o", str(package / "_native.abi3.so")],
+                   cwd=ROOT, check=True)
+    subprocess.run([sys.executable, "-c", CONTRACTED], cwd=tmp_path, check=True, timeout=60,
+                   env=dict(os.environ, PYTHONPATH=str(tmp_path)))
+
+
 FAILING = r"""
 #define _GNU_SOURCE
 #include <dlfcn.h>
@@ -105,18 +160,28 @@ handle = ffi.new("cv_search **")
 value, keep3 = strings(["0.3", "0.4"])
 out = ffi.new("char *[]", 8)
 assert lib.cv_search_new(handle, region, half, ffi.NULL, 0, 0, 0, 30, 0, 0) == lib.CV_EARGUMENT
+def new(dp=35, method=0, together=0, depth=30):
+    code = lib.cv_search_new(handle, region, half, ffi.NULL, method, together, dp, depth, 0, 0)
+    if code == 0:
+        code = lib.cv_prepare(handle[0], ffi.NULL)
+        if code:
+            lib.cv_search_free(handle[0])
+            handle[0] = ffi.NULL
+    return code
+def step():
+    return lib.cv_step(handle[0], 10**6, 60.0, ffi.NULL)
 seen = {"new": 0, "step": 0, "kernel": 0, "loewner": 0}
 for n in list(range(0, 3000, 29)) + list(range(3000, 60000, 2999)):
     shim.fail_after(n)
-    code = lib.cv_search_new(handle, region, half, ffi.NULL, 0, 0, 35, 30, 0, 0)
+    code = new()
     failed = shim.has_failed()
     assert code == (lib.CV_ENOMEM if failed else 0), (n, code, failed)
     assert (handle[0] == ffi.NULL) == bool(failed)
     seen["new"] += bool(failed)
     if not failed:
         lib.cv_search_free(handle[0])
-assert lib.cv_search_new(handle, region, half, ffi.NULL, 0, 0, 35, 30, 0, 0) == 0
-lib.cv_step(handle[0], 10**6, 60.0)
+assert new() == 0
+step()
 length = ffi.new("size_t *")
 def tree():
     text = lib.cv_tree(handle[0], length)
@@ -124,9 +189,9 @@ def tree():
 whole = tree()
 lib.cv_search_free(handle[0])
 for n in list(range(0, 2000, 41)) + list(range(2000, 200000, 4999)):
-    assert lib.cv_search_new(handle, region, half, ffi.NULL, 0, 0, 35, 30, 0, 0) == 0
+    assert new() == 0
     shim.fail_after(n)
-    code = lib.cv_step(handle[0], 10**6, 60.0)
+    code = step()
     failed = shim.has_failed()
     assert code == (lib.CV_ENOMEM if failed else 0), (n, code, failed)
     part = tree()
@@ -138,9 +203,9 @@ for n in list(range(0, 2000, 41)) + list(range(2000, 200000, 4999)):
     lib.cv_search_free(handle[0])
 for n in range(0, 700):                      # the sharper method: making it, then a step
     shim.fail_after(n)
-    code = lib.cv_search_new(handle, region, half, ffi.NULL, 1, 1, 35, 60, 0, 0)
+    code = new(method=1, together=1, depth=60)
     if code == 0:
-        code = lib.cv_step(handle[0], 10**6, 60.0)
+        code = step()
     failed = shim.has_failed()
     assert code == (lib.CV_ENOMEM if failed else 0), (n, code, failed)
     seen["loewner"] += bool(failed)
@@ -186,7 +251,7 @@ try:
         hold.append(bytearray(16384))
 except MemoryError:
     del hold[-20:]
-sys.exit(main(["-p", "4000", "-d", "4", "-r", backup, "-b", backup, path]))
+sys.exit(main(["-r", backup, path]))
 """
 
 
@@ -198,6 +263,7 @@ def test_a_memory_limit_ends_with_a_line_and_an_intact_backup(root, tmp_path):
     seen = set()
     for slack in (0, 10**8):
         backup = tmp_path / "backup.proof"
+        backup.unlink(missing_ok=True)
         before = converse.prove(problem, depth=4, digits=4000, time_limit=0, backup=backup)
         result = subprocess.run([sys.executable, "-c", HUNGRY, str(slack), str(backup), path],
                                 cwd=tmp_path, capture_output=True, text=True, timeout=120)

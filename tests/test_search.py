@@ -1,5 +1,6 @@
 """The search as a whole: what is proved is true, what is not true is not proved."""
 
+import contextlib
 from fractions import Fraction
 from threading import Thread
 
@@ -7,9 +8,10 @@ import mpmath
 import pytest
 
 import converse
-from converse import Problem
+from converse import Problem, kernels
 from converse.tree import leaves
-from truth import TORTURE, beta, decimal, eigenvalues, inverse, mp, rng_for, uniform
+from truth import (TORTURE, beta, decimal, eigenvalues, exact, inverse, mp, rng_for,
+                   uniform)
 
 FULL = (("1", "1"), ("1", "1"))
 
@@ -17,7 +19,7 @@ FULL = (("1", "1"), ("1", "1"))
 def problem(a, b, c, v=FULL):
     """(centre, half) pairs of decimal strings."""
     pairs = [a, b, c, *v]
-    return Problem(tuple(Fraction(x) for x, _ in pairs), tuple(Fraction(x) for _, x in pairs), ())
+    return Problem.around(tuple(Fraction(x) for x, _ in pairs), tuple(Fraction(x) for _, x in pairs), ())
 
 
 def line(epsilon, width="0"):
@@ -34,9 +36,44 @@ def proofs(root):
             for name in ("trig278", "trig276", "trig274", "trig272")}
 
 
-def test_the_four_theorems(proofs):
-    for proof in proofs.values():
-        assert proof.no_tori
+@pytest.mark.parametrize("name, prisms, T, B", [
+    ("trig278", 1, "5.7194602845228966301628796", "3.4839109898447162007213635"),
+    ("trig276", 45, "5.7085170209778026181968469", "3.4744668467112573863969635"),
+    ("trig274", 111, "5.6948379415464351032393061", "3.4626616677944338684914634"),
+    ("trig272", 468, "5.6811588621150675882817653", "3.4508564888776103505859632"),
+])
+def test_the_four_theorems(proofs, name, prisms, T, B):
+    """To the last digit: T and B have 25 decimal places whatever the precision."""
+    proof = proofs[name]
+    assert proof.no_tori and proof.counts.undecided == 0
+    assert proof.counts.proved == prisms
+    assert (proof.constants["T"], proof.constants["B"]) == (T, B)
+
+
+@pytest.mark.parametrize("dp", [1, 2, 3, 4, 5, 30])
+def test_the_region_in_radians_holds_the_region(dp):
+    """With few places every margin counts; none is wider than need be."""
+    rng, ulp = rng_for("region%d" % dp), Fraction(1, 10**dp)
+    with mpmath.workdps(60):
+        pi = exact(mpmath.pi)
+    for _ in range(1000 * TORTURE):
+        centre, half = (decimal(uniform(rng, -1, 1, 9) * 10**rng.randrange(-2, 4), 12) *
+                        rng.choice((0, 1, 1)) for _ in range(2))
+        half = abs(half)
+        found, reach = kernels.region(centre, half, dp)
+        assert abs(centre * pi - found) + half * pi <= reach
+        assert reach <= half * pi + (abs(centre) + half + 2) * ulp
+
+
+def test_no_double_too_large_crashes():
+    """Numbers whose squares, or sums, no double holds: an answer, or an error in words; and none
+    that denies the tori of a = b = c = 0."""
+    for method in ("thesis", "loewner"):
+        for a, b in (("1e300", "0"), ("9e299", "1e299"), ("0", "1e300"), ("-1e200", "1e200")):
+            with contextlib.suppress(converse.ConverseError):
+                proof = converse.prove(problem((a, b), ("0", "0"), ("0", "0")), depth=0,
+                                       method=method)
+                assert not proof.no_tori or Fraction(b) < abs(Fraction(a))
 
 
 def test_as_printed_counts(root):
@@ -47,6 +84,7 @@ def test_as_printed_counts(root):
     assert (c.cuts, c.proved, c.symmetric, c.undecided) == (166, 156, 11, 0)
     assert (c.most_cuts, c.max_steps, c.max_NTsteps) == (13, 5, 4)
     assert (c.HermSuccess, c.LLSuccess) == (0, 156)
+    assert c.ll_used == (522, 0, 0)     # where it has 99.4, 0.0 and 0.6 percent
     assert not proof.no_tori            # a reconstruction is not a proof
 
 
@@ -60,6 +98,13 @@ def test_as_printed_table(root, name, thesis):
     assert abs(c.max_NTsteps - longest) <= 1
     assert abs(c.most_cuts - deepest) <= 1
     assert abs(c.proved - prisms) <= 0.08 * prisms
+
+
+def test_statistics_count_the_bounds_of_tries_that_fail(root):
+    """A prism that falls to the eigenvalue never had its last bound from the trace."""
+    c = converse.prove(converse.read_input(root / "inputs" / "trig272.in"), as_printed=True).counts
+    assert c.HermSuccess == 0
+    assert c.ll_used == (5562, 0, 82)
 
 
 def second_variation_fails(a, b, c, x0, x1, reach=40):
@@ -178,11 +223,12 @@ def test_two_threads_do_not_meet(root):
 
 def test_no_symmetry_where_the_start_is_off_the_diagonal():
     """A starting point of one's own (from a backup) may lie anywhere; then nothing is skipped."""
-    from converse.search import MANY, Search, Task
+    from converse.core import Search, Settings, Task, stop_token
+    from converse.growth import MANY
     from converse.tree import ROOT
 
-    centre, half = map(tuple, line("0.0275").decimals())
     for xstar, skips in ((("0.82", "0.82"), True), (("0.82", "0.83"), False)):
-        search = Search(Task(centre, half, xstar, False, "thesis", 30, 20, False, False))
-        counts = search.grow([(*ROOT, 0)], 60, MANY).counts
+        search = Search(Task(line("0.0275"), Settings(digits=20), xstar))
+        assert search.prepare(stop_token())
+        counts = search.grow([(*ROOT, 0)], 60, MANY, stop_token(), False).counts
         assert counts.proved > 0 and (counts.symmetric > 0) == skips

@@ -1,5 +1,6 @@
 /* apm.c - see apm.h. */
 #include "apm.h"
+#include "guard.h"
 
 #include <ctype.h>
 #include <limits.h>
@@ -153,11 +154,13 @@ int apm_set_str(apm_t r, const char *text)
     return APM_OK;
 }
 
-void apm_set_d(apm_t r, double x)
+int apm_set_d(apm_t r, double x)
 {
     int e;
     const double m = ldexp(frexp(x, &e), 53);           /* an integer */
 
+    if (!isfinite(x))
+        return APM_ERANGE;
     e -= 53;
     mpz_set_d(r->mant, m);
     r->exp = 0;
@@ -176,6 +179,7 @@ void apm_set_d(apm_t r, double x)
         r->exp = -(long)(k - strip);
         mpz_clear(p);
     }
+    return APM_OK;
 }
 
 double apm_get_d(const apm_t x)
@@ -365,6 +369,7 @@ int apm_div(apm_t r, const apm_t x, const apm_t y, long dp, apm_round_t dir)
 
     if (mpz_sgn(y->mant) == 0)
         return APM_EDIVZERO;
+    guard_poll();
     mpz_init(t);
     if (shift >= 0) {
         shift_up(t, x->mant, shift);
@@ -407,6 +412,7 @@ int apm_sqrt(apm_t r, const apm_t x, long dp, apm_round_t dir)
 
 void apm_round(apm_t r, const apm_t x, long dp, apm_round_t dir)
 {
+    guard_poll();
     if (x->exp >= -dp) {
         apm_set(r, x);
         return;

@@ -30,7 +30,7 @@ void apm_clear(apm_t x);
 void apm_set(apm_t r, const apm_t x);
 void apm_set_si(apm_t r, long n, long exp);             /* n * 10^exp */
 int  apm_set_str(apm_t r, const char *text);            /* [+-]digits[.digits][e[+-]digits] */
-void apm_set_d(apm_t r, double x);                      /* exactly; x must be finite */
+int  apm_set_d(apm_t r, double x);      /* exactly; APM_ERANGE if x is not finite */
 double apm_get_d(const apm_t x);                        /* within an ulp or two; 0 if too small */
 double apm_nearest_d(const apm_t x);    /* and of a double itself that double */
 char *apm_get_str(const apm_t x);                       /* exact; the caller frees; NULL: no memory */

@@ -4,9 +4,12 @@
    has the three parts of the thesis's equation for reducedSin: that of the reduced argument,
    that of the truncated intermediate results, and the rest of the Taylor series. */
 #include "special.h"
+#include "guard.h"
 
-/* r += sign * scale * arctan(1/n) in ulps of 2^-w; the error is below 2 ulps of each of the
-   fewer than w terms, times scale, since every quotient is truncated. */
+/* r += scale * arctan(1/n) in ulps of 2^-w, n >= 5, |scale| <= 16; off by less than 2w ulps.
+   Every quotient is truncated: a power is short by less than 1/(1 - 1/25) < 2 ulps, a term by less
+   than 2.  The series alternates and decreases, so what is left out is below the first power that
+   came out zero, which is below 2; and there are fewer than w - 1 terms. */
 static void add_arctan(mpz_t r, unsigned long n, long scale, mp_bitcnt_t w)
 {
     mpz_t power, term;
@@ -16,6 +19,7 @@ static void add_arctan(mpz_t r, unsigned long n, long scale, mp_bitcnt_t w)
     mpz_mul_2exp(power, power, w);
     mpz_tdiv_q_ui(power, power, n);
     for (unsigned long k = 1; mpz_sgn(power) != 0; k += 2) {
+        guard_poll();
         mpz_tdiv_q_ui(term, power, k);
         if (k % 4 == 1)
             mpz_add(r, r, term);
@@ -27,9 +31,9 @@ static void add_arctan(mpz_t r, unsigned long n, long scale, mp_bitcnt_t w)
     mpz_clear(term);
 }
 
-/* r = pi 2^bits to within 1, by Machin's formula pi = 16 arctan(1/5) - 4 arctan(1/239).
-   There are fewer than bits + 64 terms, each off by less than 2 ulps, so 64 guard bits make the
-   error before the final shift smaller than one unit of the result by far. */
+/* r - 1 < pi 2^bits < r + 2, by Machin's formula pi = 16 arctan(1/5) - 4 arctan(1/239).  The sum
+   is off by less than 4 (bits + 64) ulps of 2^-64, less than 1 by far; then it is cut off, which
+   takes less than 1 away. */
 static void fixed_pi(mpz_t r, mp_bitcnt_t bits)
 {
     mpz_set_ui(r, 0UL);
@@ -53,7 +57,7 @@ void apm_pi(apm_t r, long dp)
     while (!settled) {                      /* until both ends have the same dp decimals */
         bits += 32;
         fixed_pi(lower, bits);
-        mpz_add_ui(upper, lower, 1UL);
+        mpz_add_ui(upper, lower, 2UL);
         mpz_sub_ui(lower, lower, 1UL);
         mpz_mul(lower, lower, scale);
         mpz_mul(upper, upper, scale);
@@ -92,10 +96,12 @@ void trig_clear(trig_t *trig)
 
 /* sum = the Taylor series of cos t (odd = 0) or sin t (odd = 1), in ulps.
    Promise: off by at most 2N + 2 ulps, N < w the number of terms, for 0 <= t <= 0.8.
-   A term is the one before, T, times t2 (short of t^2 by less than an ulp), shifted, over
-   d >= 2, truncated twice.  If T was short by at most 2 ulps the new term is short by at most
-   (2 t^2 + T + 1)/d + 1 <= 2 ulps.  The series alternates and decreases, so what is left out
-   is below the first term that came out zero, which is below 2 ulps. */
+   A term is the one before, T <= 1, times t2 (short of t^2 by less than an ulp), shifted, over
+   d, truncated twice.  If T was short by e ulps, the new term is short by less than
+   (e t^2 + T + 1)/d + 1 ulps.  The first term is exact, e = 0, so the second is short by less than
+   (0 + 1 + 1)/2 + 1 = 2; from then on e <= 2 and d >= 6, and (1.28 + 1 + 1)/6 + 1 < 2.  The series
+   alternates and decreases, so what is left out is below the first term that came out zero, which
+   is below 2 ulps. */
 static void taylor(mpz_t sum, mpz_t term, const mpz_t t, const mpz_t t2, mp_bitcnt_t w, int odd)
 {
     if (odd) {
@@ -107,6 +113,7 @@ static void taylor(mpz_t sum, mpz_t term, const mpz_t t, const mpz_t t2, mp_bitc
     mpz_set(sum, term);
     for (unsigned long n = 1; mpz_sgn(term) != 0; n++) {
         const unsigned long k = odd ? 2 * n : 2 * n - 1;
+        guard_poll();
         mpz_mul(term, term, t2);
         mpz_tdiv_q_2exp(term, term, w);
         mpz_tdiv_q_ui(term, term, k * (k + 1));
@@ -137,8 +144,8 @@ static void to_decimal(apm_t r, const mpz_t sum, int negative, long dp, mp_bitcn
 
 void apm_sincos(apm_t s, apm_t c, const apm_t x, trig_t *trig)
 {
-    /* dp + 1 decimals and 26 guard bits: the errors counted below come to at most 2N + 5 ulps
-       with N < w < 2^24, that is to less than 10^-(dp+1), and rounding adds 10^-dp / 2. */
+    /* dp + 1 decimals and at least 26 guard bits: the errors counted below come to at most 2N + 5
+       ulps with N < w < 2^24, that is to less than 10^-(dp+1), and rounding adds 10^-dp / 2. */
     const mp_bitcnt_t w = (mp_bitcnt_t)(trig->dp + 1) * 3322 / 1000 + 28;
     const long order = apm_order(x);
     const mp_bitcnt_t big = order > 0 ? (mp_bitcnt_t)order * 3322 / 1000 + 2 : 0;
@@ -160,8 +167,9 @@ void apm_sincos(apm_t s, apm_t c, const apm_t x, trig_t *trig)
     else
         mpz_mul(trig->t, trig->t, q);
 
-    /* t -= q pi/2 with q = round(t / (pi/2)): |t| <= pi/4 + 2 ulps.  |q| < 2^big and pi/2 is
-       known to 2^-(w+big), so q pi/2 is off by less than an ulp; the shift adds another. */
+    /* t -= q pi/2 with q = round(t / (pi/2)): |t| <= pi/4 + 3 ulps < 0.8.  |q| < 2^(big-1) and
+       pi/2 is known to 2 2^-(w+big), so q pi/2 is off by less than an ulp; the shift adds
+       another. */
     mpz_mul_2exp(q, trig->t, trig->half_pi_bits - w + 1);
     mpz_add(q, q, trig->half_pi);
     mpz_mul_2exp(trig->t2, trig->half_pi, 1);

@@ -7,7 +7,7 @@
    In the first step of the rotor columns 1 and 3 are exactly parallel in the rows u1 and v0, and
    the area of 0 and 2 is a multiple of sin(v0 + v1), which all but vanishes for many centres.
    Which way to turn is then not for rounding errors to say: columns that are parallel to ten
-   places count as having a positive area, and see to_radians for the sine.  Erratum: the listing
+   places count as having a positive area, and see region.c for the sine.  Erratum: the listing
    looks at the sign of the area alone and so turns nearly opposite columns together.
    Thesis: Rsubspace_rot. */
 static void subspace_rot(state *s, num_t A[MAT_DIM][MAT_DIM], int j, int k)

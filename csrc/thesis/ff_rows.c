@@ -17,7 +17,7 @@ static void ff_rows(state *s, num_t A[MAT_DIM][MAT_DIM], jacobian *d, prism *pz)
 
     bound_beta(s, d);
     bound_gamma(s, d, pz);
-    num_add(t[0], pz->matrix[V][V], pz->matrix[V + 1][V + 1]);
+    block_sum(s, t[0], pz->matrix, V, V, MAT_DIM);
     num_mul(t[1], n->beta_dif, t[0]);
     num_add(t[1], t[1], n->gamma_dif);
     num_mul_si(t[2], n->ulp, 10);

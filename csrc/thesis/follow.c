@@ -21,12 +21,11 @@ static int big_prism(state *s, prism *pz)
 }
 
 /* Is the bound already below what an invariant torus allows? */
-static int contradiction(state *s, verdict *v, int nsteps, int used)
+static int contradiction(state *s, verdict *v, int nsteps)
 {
     numbers *n = &s->n;
 
     v->nsteps = nsteps;
-    v->ll_used = used;
     v->by_trace = num_cmp(n->slope, n->constants[C_TRACE_MIN]) < 0;
     v->no_tori = v->by_trace || num_cmp(n->least_lam, n->constants[C_LAM_MIN]) < 0;
     if (s->failed || !num_is_finite(n->slope) || !num_is_finite(n->least_lam)) {
@@ -46,12 +45,12 @@ static void follow(state *s, verdict *v, int limit)
 {
     numbers *n = &s->n;
     prism *pz = &n->work[0], *pz_prime = &n->work[1], *swap;
-    int used = CV_BY_MINBLAM, count = 1;
+    int used, count = 1;
 
     s->failed = 0;
     num_set(n->slope, n->first_slope);
     num_set(n->least_lam, n->first_least_lam);
-    if (contradiction(s, v, count, used))
+    if (contradiction(s, v, count))
         return;
     v->reason = CV_REASON_TOO_BIG;
     while (!big_prism(s, pz)) {
@@ -60,7 +59,8 @@ static void follow(state *s, verdict *v, int limit)
         bound_btrace(s, &n->b_trace);
         bd_Blams(s, &n->minBlam, &n->maxBlam, &n->b_trace);
         least_lambda(s, n->slope, n->least_lam, &used);
-        if (contradiction(s, v, count, used))
+        v->ll_used[used]++;
+        if (contradiction(s, v, count))
             return;
         if (count == (limit > 0 ? limit : FURTHEST)) {
             v->reason = CV_REASON_TOO_LONG;
@@ -103,7 +103,7 @@ static void set_work(state *s, const box *b, int with_v)
         num_set_apm(pz->centre.u[j], b->xstar[j]);
         num_set_apm(pz->centre.v[j], b->centre[N_PARMS + j]);
 #ifdef NUM_DOUBLE
-        pz->centre.v[j][0] *= 1.0 - 1e-15;              /* below, like the decimals: to_radians */
+        pz->centre.v[j][0] *= 1.0 - 1e-15;              /* below, like the decimals: region.c */
 #endif
         if (with_v)
             num_set_apm(pz->matrix[V + j][V + j], b->half[N_PARMS + j]);

@@ -14,15 +14,8 @@ static void get_prism(prism *pz, apm_t in[])
 
 static void put(state *s, apm_t r, const num_t x)
 {
-#ifdef NUM_DOUBLE
-    if (isfinite(x[0]))
-        apm_set_d(r, x[0]);
-    else
+    if (num_get_apm(r, x) != APM_OK)
         s->failed = 1;
-#else
-    (void)s;
-    apm_set(r, x);
-#endif
 }
 
 static void put_bdd(state *s, apm_t r[2], const bdd *x)
@@ -45,6 +38,16 @@ static void put_prism(state *s, apm_t out[], prism *pz)
 
 enum { PRISM_SZ = MAT_DIM + MAT_DIM * MAT_DIM };
 
+static void get_parameters(state *s, apm_t in[])
+{
+    bdd *const parm[N_PARMS] = { &s->n.a, &s->n.b, &s->n.c };
+
+    for (int j = 0; j < N_PARMS; j++) {
+        num_set_apm(parm[j]->lb, in[2 * j]);
+        num_set_apm(parm[j]->ub, in[2 * j + 1]);
+    }
+}
+
 /* name: what goes in -> what comes out
    sincos: x -> sin, cos                    bound_sincos: lo, hi -> sin lo, hi, cos lo, hi
    inverse: 4 x 4 matrix -> inverse, err    image: prism -> prism
@@ -52,47 +55,108 @@ enum { PRISM_SZ = MAT_DIM + MAT_DIM * MAT_DIM };
    torus: lo, hi of a, b, c -> T, B         least_lambda: prism, Tr d, lam d, lam_-min -> the same
    cone: M, k -> low, high                  image_ns: prism, n -> nanoseconds per image, of n
    product: x lo, hi, y lo, hi -> lo, hi    square: lo, hi -> lo, hi
-   gauss_jordan: 4 x 4 matrix -> inverse to the places of the state, err, in a single try */
+   gauss_jordan: 4 x 4 matrix -> inverse to the places of the state, err, in a single try
+   cell: lo, hi of a, b, c, centre and half-widths of a cell of the torus -> its two bounds
+   constants: centres and half-widths of a, b, c, x* -> the constants, Tr d and lam d of d_0 */
+enum { SINCOS, BOUND_SINCOS, INVERSE, IMAGE, BTRACE, BLAMS, TORUS, LEAST_LAMBDA, CONE, IMAGE_NS,
+       PRODUCT, SQUARE, GAUSS_JORDAN, CELL, CONSTANTS, N_KERNELS };
+
+/* intervals: as many pairs lo, hi come first; prism: a prism does */
+static const struct { const char *name; int nin, nout, intervals, prism; } kernels[N_KERNELS] = {
+    { "sincos", 1, 2, 0, 0 }, { "bound_sincos", 2, 4, 1, 0 }, { "inverse", 16, 17, 0, 0 },
+    { "image", PRISM_SZ, PRISM_SZ, 0, 1 }, { "btrace", PRISM_SZ, 2, 0, 1 },
+    { "Blams", PRISM_SZ, 4, 0, 1 }, { "torus", 6, 2, 3, 0 },
+    { "least_lambda", PRISM_SZ + 3, 2, 0, 1 }, { "cone", 2, 2, 0, 0 },
+    { "image_ns", PRISM_SZ + 1, 1, 0, 1 }, { "product", 4, 2, 2, 0 }, { "square", 2, 2, 1, 0 },
+    { "gauss_jordan", 16, 17, 0, 0 }, { "cell", 10, 2, 3, 0 }, { "constants", 8, 8, 0, 0 }
+};
+
+/* Is what the routines take for granted true?  Intervals do not end before they begin.  Of a
+   prism, the parameters depend on nothing but themselves, and their widths are not negative; the
+   signs of the other rows do not matter.  Blocks d are positive definite.  Nor are the half-widths
+   of a cell or of parameters negative.  The k of a cone is 4 or 16. */
+static int makes_sense(int which, apm_t in[])
+{
+    for (int j = 0; j < kernels[which].intervals; j++)
+        if (apm_cmp(in[2 * j], in[2 * j + 1]) > 0)
+            return 0;
+    for (int j = 0; j < N_PARMS && kernels[which].prism; j++)
+        for (int k = 0; k < MAT_DIM; k++) {
+            const int sign = apm_sgn(in[MAT_DIM + j * MAT_DIM + k]);
+            if (j == k ? sign < 0 : sign != 0)
+                return 0;
+        }
+    switch (which) {
+    case LEAST_LAMBDA:
+        return apm_sgn(in[PRISM_SZ]) > 0 && apm_sgn(in[PRISM_SZ + 1]) > 0;
+    case CONE:
+        return apm_get_d(in[1]) == 4.0 || apm_get_d(in[1]) == 16.0;
+    case IMAGE_NS:
+        return apm_sgn(in[PRISM_SZ]) >= 0 && apm_get_d(in[PRISM_SZ]) <= 1e9;
+    case CELL:
+        return apm_sgn(in[8]) >= 0 && apm_sgn(in[9]) >= 0;
+    case CONSTANTS:
+        return apm_sgn(in[3]) >= 0 && apm_sgn(in[4]) >= 0 && apm_sgn(in[5]) >= 0;
+    default:
+        return 1;
+    }
+}
+
+/* The numbers that a search begins with. */
+static int constants(state *s, apm_t in[], apm_t out[])
+{
+    double abc[N_PARMS], herman_start[2];
+    box root;
+    int status;
+
+    for (int j = 0; j < N_PARMS; j++) {                 /* borrowed, and only read */
+        *root.centre[j] = *in[j];
+        *root.half[j] = *in[N_PARMS + j];
+        abc[j] = apm_get_d(in[j]);
+    }
+    for (int j = 0; j < DEG_FREE; j++)
+        *root.xstar[j] = *in[2 * N_PARMS + j];
+    set_Herm_start(herman_start, abc, 1);
+    status = R(prepare_trial)(s, &root, herman_start, NULL);
+    if (status == CV_OK)
+        status = R(unit_constants)(s, out);
+    put(s, out[N_CONSTANTS], s->n.first_slope);
+    put(s, out[N_CONSTANTS + 1], s->n.first_least_lam);
+    return status;
+}
+
 int R(kernel)(state *s, const char *name, int nin, apm_t in[], int nout, apm_t out[])
 {
-    static const struct { const char *name; int nin, nout; } shapes[] = {
-        { "sincos", 1, 2 }, { "bound_sincos", 2, 4 }, { "inverse", 16, 17 },
-        { "image", PRISM_SZ, PRISM_SZ }, { "btrace", PRISM_SZ, 2 }, { "Blams", PRISM_SZ, 4 },
-        { "torus", 6, 2 }, { "least_lambda", PRISM_SZ + 3, 2 }, { "cone", 2, 2 },
-        { "image_ns", PRISM_SZ + 1, 1 }, { "product", 4, 2 }, { "square", 2, 2 },
-        { "gauss_jordan", 16, 17 }
-    };
     numbers *n = &s->n;
     prism *pz = &n->work[0];
-    size_t which = 0;
-    int used;
+    int which = 0, status = CV_OK, used;
 
-    while (which < sizeof shapes / sizeof *shapes && strcmp(name, shapes[which].name) != 0)
+    while (which < N_KERNELS && strcmp(name, kernels[which].name) != 0)
         which++;
-    if (which == sizeof shapes / sizeof *shapes || nin != shapes[which].nin ||
-        nout != shapes[which].nout)
+    if (which == N_KERNELS || nin != kernels[which].nin || nout != kernels[which].nout ||
+        !makes_sense(which, in))
         return CV_EARGUMENT;
     s->failed = s->inverse_failed = 0;
-    if (nin >= PRISM_SZ) {
+    if (kernels[which].prism) {
         get_prism(pz, in);
         global_bounds(s, pz);
         bound_btrace(s, &n->b_trace);
     }
     switch (which) {
-    case 0:
+    case SINCOS:
         num_set_apm(n->t[0], in[0]);
         num_sincos(s, n->t[1], n->t[2], n->t[0]);
         put(s, out[0], n->t[1]);
         put(s, out[1], n->t[2]);
         break;
-    case 1:
+    case BOUND_SINCOS:
         num_set_apm(n->bx[0].lb, in[0]);
         num_set_apm(n->bx[0].ub, in[1]);
         bd_sincos(s, &n->sin[0], &n->cos[0], &n->bx[0]);
         put_bdd(s, out, &n->sin[0]);
         put_bdd(s, out + 2, &n->cos[0]);
         break;
-    case 2:
+    case INVERSE:
         for (int j = 0; j < TWO_DF; j++)
             for (int k = 0; k < TWO_DF; k++)
                 num_set_apm(pz->matrix[U + j][U + k], in[j * TWO_DF + k]);
@@ -101,31 +165,26 @@ int R(kernel)(state *s, const char *name, int nin, apm_t in[], int nout, apm_t o
             put(s, out[j], n->inverse[j / TWO_DF][j % TWO_DF]);
         put(s, out[16], n->inverse_err);
         break;
-    case 3:
+    case IMAGE:
         prismatic_image(s, &n->work[1], pz);
         put_prism(s, out, &n->work[1]);
         break;
-    case 4:
+    case BTRACE:
         put_bdd(s, out, &n->b_trace);
         break;
-    case 5:
+    case BLAMS:
         bd_Blams(s, &n->minBlam, &n->maxBlam, &n->b_trace);
         put_bdd(s, out, &n->minBlam);
         put_bdd(s, out + 2, &n->maxBlam);
         break;
-    case 6: {
-        bdd *const parm[N_PARMS] = { &n->a, &n->b, &n->c };
-        for (int j = 0; j < N_PARMS; j++) {
-            num_set_apm(parm[j]->lb, in[2 * j]);
-            num_set_apm(parm[j]->ub, in[2 * j + 1]);
-        }
+    case TORUS:
+        get_parameters(s, in);
         torus_max(s, n->constants[C_T], 0);
         torus_max(s, n->constants[C_B], 1);
         put(s, out[0], n->constants[C_T]);
         put(s, out[1], n->constants[C_B]);
         break;
-    }
-    case 7:
+    case LEAST_LAMBDA:
         bd_Blams(s, &n->minBlam, &n->maxBlam, &n->b_trace);
         num_set_apm(n->slope, in[PRISM_SZ]);
         num_set_apm(n->least_lam, in[PRISM_SZ + 1]);
@@ -134,7 +193,7 @@ int R(kernel)(state *s, const char *name, int nin, apm_t in[], int nout, apm_t o
         put(s, out[0], n->slope);
         put(s, out[1], n->least_lam);
         break;
-    case 9: {
+    case IMAGE_NS: {
         const long repeat = (long)apm_get_d(in[PRISM_SZ]);
         const clock_t begin = clock();
         for (long j = 0; j < repeat && !s->inverse_failed; j++)
@@ -143,11 +202,11 @@ int R(kernel)(state *s, const char *name, int nin, apm_t in[], int nout, apm_t o
                           (double)(repeat > 0 ? repeat : 1));
         break;
     }
-    case 10:
-    case 11:
+    case PRODUCT:
+    case SQUARE:
         num_set_apm(n->bx[0].lb, in[0]);
         num_set_apm(n->bx[0].ub, in[1]);
-        if (which == 10) {
+        if (which == PRODUCT) {
             num_set_apm(n->bx[1].lb, in[2]);
             num_set_apm(n->bx[1].ub, in[3]);
             bound_product(s, &n->bx[2], &n->bx[0], &n->bx[1]);
@@ -156,7 +215,7 @@ int R(kernel)(state *s, const char *name, int nin, apm_t in[], int nout, apm_t o
         }
         put_bdd(s, out, &n->bx[2]);
         break;
-    case 12:
+    case GAUSS_JORDAN:
         for (int j = 0; j < TWO_DF * TWO_DF; j++)
             num_set_apm(n->gauss[j / TWO_DF][j % TWO_DF], in[j]);
         s->inverse_failed = gauss_jordan(s, n->gauss, n->inverse_err, s->precision);
@@ -164,11 +223,28 @@ int R(kernel)(state *s, const char *name, int nin, apm_t in[], int nout, apm_t o
             put(s, out[j], n->gauss[j / TWO_DF][j % TWO_DF]);
         put(s, out[16], n->inverse_err);
         break;
+    case CELL: {
+        cell *k = n->cells;
+        get_parameters(s, in);
+        for (int j = 0; j < DEG_FREE; j++) {
+            num_set_apm(k->v[j], in[6 + j]);
+            num_set_apm(k->r[j], in[8 + j]);
+        }
+        set_waves(s, k->v);
+        for (int j = 0; j < 2; j++) {
+            cell_bound(s, n->tor[9], k, j);
+            put(s, out[j], n->tor[9]);
+        }
+        break;
+    }
+    case CONSTANTS:
+        status = constants(s, in, out);
+        break;
     default:
         num_set_apm(n->t[5], in[0]);
-        uniform_cone(s, n->t[6], n->t[7], n->t[5], (long)apm_get_d(in[1]));
+        uniform_cone(s, n->t[6], n->t[7], n->t[5], apm_get_d(in[1]) == 4.0 ? 4 : 16);
         put(s, out[0], n->t[6]);
         put(s, out[1], n->t[7]);
     }
-    return s->inverse_failed ? CV_ESINGULAR : s->failed ? CV_EARITHMETIC : CV_OK;
+    return s->inverse_failed ? CV_ESINGULAR : s->failed ? CV_EARITHMETIC : status;
 }

@@ -39,9 +39,10 @@ static void bd_Blams(state *s, bdd *least, bdd *big, const bdd *trace)
     }
 }
 
-/* From an upper bound M of a recursion d' <= M - k/d, k = 4 or 16: the limits between which d
-   must stay, low <= (M - sqrt(M^2 - k))/2 and high >= (M + sqrt(M^2 - k))/2.  The first is
-   computed as k/4 over the second, where nothing cancels.  Thesis, section 3.3.4. */
+/* From an upper bound M of a recursion d' <= M - (k/4)/d, k = 4 for eigenvalues and 16 for
+   traces: the limits between which d must stay, low <= (M - sqrt(M^2 - k))/2 and
+   high >= (M + sqrt(M^2 - k))/2.  The first is computed as k/4 over the second, where nothing
+   cancels.  Thesis, section 3.3.4. */
 static void uniform_cone(state *s, num_t low, num_t high, const num_t M, long k)
 {
     num_t *t = s->n.blam;

@@ -53,7 +53,8 @@ int R(prepare_trial)(state *s, const box *root, const double herman_start[2],
         }
         set_earliest(s, root, 0);
         for (int j = 0; j < DEG_FREE; j++)
-            num_set_d(n->earliest.centre.v[j], herman_start[j]);
+            if (num_set_d(n->earliest.centre.v[j], herman_start[j]) != APM_OK)
+                s->failed = 1;
         set_cone_as_printed(s, *margin);
         set_LL_bounds_as_printed(s, *margin);
     } else if (constants != NULL) {
@@ -76,12 +77,10 @@ int R(prepare_trial)(state *s, const box *root, const double herman_start[2],
     return s->failed ? CV_EARITHMETIC : CV_OK;
 }
 
-void R(unit_constants)(state *s, apm_t constants[N_CONSTANTS])
+int R(unit_constants)(state *s, apm_t constants[N_CONSTANTS])
 {
     for (int j = 0; j < N_CONSTANTS; j++)
-#ifdef NUM_DOUBLE
-        apm_set_d(constants[j], s->n.constants[j][0]);
-#else
-        apm_set(constants[j], s->n.constants[j]);
-#endif
+        if (num_get_apm(constants[j], s->n.constants[j]) != APM_OK)
+            return CV_EARITHMETIC;
+    return CV_OK;
 }

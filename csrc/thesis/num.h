@@ -25,8 +25,14 @@ static inline void num_clear(num_t x) { (void)x; }
 static inline void num_set(num_t r, const num_t x) { r[0] = x[0]; }
 static inline void num_set_si(num_t r, long n, long exp) { r[0] = (double)n * pow(10.0, (double)exp); }
 static inline void num_set_apm(num_t r, const apm_t x) { r[0] = apm_get_d(x); }
-static inline void num_set_d(num_t r, double x) { r[0] = x; }
+static inline int num_set_d(num_t r, double x)
+{
+    r[0] = x;
+    return isfinite(x) ? APM_OK : APM_ERANGE;
+}
+
 static inline double num_get_d(const num_t x) { return x[0]; }
+static inline int num_get_apm(apm_t r, const num_t x) { return apm_set_d(r, x[0]); }
 static inline void num_neg(num_t r, const num_t x) { r[0] = -x[0]; }
 static inline void num_abs(num_t r, const num_t x) { r[0] = fabs(x[0]); }
 static inline void num_add(num_t r, const num_t x, const num_t y) { r[0] = x[0] + y[0]; }
@@ -65,6 +71,12 @@ static inline void num_half(apm_t r, const apm_t x)
 {
     apm_mul_si(r, x, 5);
     r->exp -= 1;
+}
+
+static inline int num_get_apm(apm_t r, const apm_t x)
+{
+    apm_set(r, x);
+    return APM_OK;
 }
 
 static inline int num_is_finite(const apm_t x)

@@ -55,7 +55,7 @@ typedef struct {
 
     prism work[2], earliest;
     num_t slope, least_lam, maxBlam_ll, minBlam_ll, trace_ll;
-    num_t mul, t[8], bd[8], ex[8], blam[8], cr[12], ff[8], tor[17];
+    num_t mul, t[8], bd[8], ex[8], blam[8], cr[12], ff[8], tor[23];
     bdd bx[4];
     num_t gauss[TWO_DF][TWO_DF], g[12];
     cell cells[TORUS_DEPTH + 2];

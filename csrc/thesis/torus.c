@@ -2,7 +2,7 @@
    parameters, by branch and bound.  The thesis found them by Newton's method and added a
    margin; that is a guess, and everything else rests on these two numbers. */
 
-enum { TORUS_CELLS = 400000, TORUS_DP = 25 };
+enum { TORUS_CELLS = 20000, TORUS_DP = 25 };
 
 /* r >= p sin(v + t) for every p of the parameter's interval, given s0 and c0, the sine and
    cosine of v to within an ulp: sup p (s0 + c0 t) + |p| (t^2/2 + (1 + |t|) ulp), since
@@ -54,6 +54,8 @@ static void displaced_bound(state *s, num_t r, const num_t t0, const num_t t1, i
     num_set_si(x[7], eigenvalue ? 2 : 4, 0);
     num_add(r, r, x[7]);
     num_round(s, r, r, APM_UP);
+    if (!num_is_finite(r))
+        s->failed = 1;                                  /* NaN is not larger than anything */
 }
 
 /* r >= the same for every point of the cell: a convex function is largest at a corner. */
@@ -76,18 +78,18 @@ static void cell_bound(state *s, num_t r, cell *k, int eigenvalue)
 
 /* One pass over the torus: best becomes the largest value seen at any centre, if larger than
    before; max >= every value on the torus, and at most best + tolerance unless depth or patience
-   ran out, when it is looser, and still a bound.
+   ran out, when it is looser, and still a bound.  cells: how many were halved so far.
 
    beta(-v) = 2I + W(v), and the torus is its own mirror image, so W serves.  A cell is done
-   when its bound is at most best + tolerance; otherwise it is halved along the side that moves
-   the waves most. */
+   when its bound is at most best + tolerance; otherwise it is halved along the side whose square
+   moves the waves most, since it is at their maxima, where they are parabolas, that cells have
+   to be small. */
 static void torus_pass(state *s, num_t max, num_t best, const num_t tolerance, int eigenvalue,
-                       const double reach[N_PARMS])
+                       num_t reach[DEG_FREE], long *cells)
 {
     numbers *n = &s->n;
     cell *stack = n->cells;
     num_t *x = n->tor;
-    long cells = 0;
     int top = 0;
 
     for (int j = 0; j < DEG_FREE; j++) {
@@ -104,16 +106,20 @@ static void torus_pass(state *s, num_t max, num_t best, const num_t tolerance, i
         displaced_bound(s, x[8], x[0], x[0], eigenvalue);
         num_max(best, x[8]);
         cell_bound(s, x[9], k, eigenvalue);
+        if (s->failed)
+            return;
         num_add(x[8], best, tolerance);
         if (num_cmp(x[9], x[8]) <= 0 || s->cell_depth[top] == TORUS_DEPTH ||
-            ++cells > TORUS_CELLS) {
-            if (!num_is_finite(x[9]))
-                s->failed = 1;                          /* NaN, which is no larger than anything */
+            ++*cells > TORUS_CELLS) {
             num_max(max, x[9]);
             top--;
         } else {
-            const int j = num_get_d(k->r[0]) * (reach[0] + reach[2])
-                          < num_get_d(k->r[1]) * (reach[1] + reach[2]);
+            int j;
+            for (j = 0; j < DEG_FREE; j++) {
+                num_mul(x[j], k->r[j], k->r[j]);
+                num_mul(x[j], x[j], reach[j]);
+            }
+            j = num_cmp(x[0], x[1]) < 0;
             s->cell_depth[top]++;
             s->cell_depth[top + 1] = s->cell_depth[top];
             num_half(k->r[j], k->r[j]);
@@ -129,8 +135,11 @@ static void torus_pass(state *s, num_t max, num_t best, const num_t tolerance, i
 }
 
 /* max >= the largest trace (or eigenvalue) of beta over the torus and the parameters a, b, c
-   of the state, and within 5e-7 + 1e-12 (|a| + |b| + |c|) of it, unless the cells ran out: where c
-   alone is large, the maximum is a ridge, and the bound that of the last pass that had enough.
+   of the state, and within 5e-7 + 1e-12 (|a| + |b| + |c|) of it, unless the cells run out, as
+   they do where the maximum is a ridge: across the cells if |c| is much larger than |a| or |b|,
+   along them if c = 0 and |a| and |b| differ, since the larger of two waves does not depend on
+   the other's angle.  Then max is the best bound of the passes or, if that is less, what no sines
+   exceed, 4 + |a| + |b| + 2|c| (or 2 + max(|a|, |b|) + 2|c|); a ridge nearly reaches it.
    Each pass looks a thousand times more closely than the last, whose best value spares it all
    but the neighbourhood of the maximum.  TORUS_DP places are plenty for that, whatever the
    precision of the proof. */
@@ -139,30 +148,51 @@ static void torus_max(state *s, num_t max, int eigenvalue)
     numbers *n = &s->n;
     bdd *const parm[N_PARMS] = { &n->a, &n->b, &n->c };
     num_t *best = n->tor + 14, *tolerance = n->tor + 15, *pass = n->tor + 16;
-    double reach[N_PARMS], last, t;                     /* sizes: they only guide the search */
+    num_t *reach = n->tor + 17, *last = n->tor + 20, *t = n->tor + 21, *most = n->tor + 22;
     const long precision = s->precision;
+    long cells = 0;
 
-    for (int j = 0; j < N_PARMS; j++) {
-        num_set_si(*best, 0, 0);
-        add_max_abs(s, *best, parm[j]);
-        reach[j] = num_get_d(*best);
-    }
-    last = 5e-7 + 1e-12 * (reach[0] + reach[1] + reach[2]);
-    t = 0.5 * (reach[0] + reach[1] + reach[2]);
     set_precision(s, TORUS_DP);
+    num_set_si(*t, 0, 0);
+    for (int j = 0; j < N_PARMS; j++) {
+        num_set_si(reach[j], 0, 0);
+        add_max_abs(s, reach[j], parm[j]);
+        num_add(*t, *t, reach[j]);
+    }
+    num_set_si(*last, 1, -12);
+    num_mul(*last, *last, *t);
+    num_set_si(*most, 5, -7);
+    num_add(*last, *last, *most);
+    num_half(*t, *t);
+
+    num_set_si(*most, eigenvalue ? 2 : 4, 0);           /* what no sines exceed */
+    num_add(*most, *most, reach[2]);
+    num_add(*most, *most, reach[2]);
+    num_set(*pass, reach[0]);
+    num_max(*pass, reach[1]);
+    num_add(*most, *most, *pass);
+    if (!eigenvalue) {
+        num_set(*pass, reach[0]);
+        num_min(*pass, reach[1]);
+        num_add(*most, *most, *pass);
+    }
+
+    num_add(reach[0], reach[0], reach[2]);              /* what each side of a cell moves */
+    num_add(reach[1], reach[1], reach[2]);
     num_set_si(*best, 0, 0);                            /* the average of either is above */
-    for (int first = 1, done = 0; !done; t *= 1e-3, first = 0) {
-        if (t <= 2.0 * last) {
-            t = last;
-            done = 1;
-        }
-        num_set_d(*tolerance, t);
-        torus_pass(s, *pass, *best, *tolerance, eigenvalue, reach);
+    for (int first = 1, done = 0; !done && !s->failed; first = 0) {
+        num_mul_si(*tolerance, *last, 2);
+        done = num_cmp(*t, *tolerance) <= 0;
+        num_set(*tolerance, done ? *last : *t);
+        torus_pass(s, *pass, *best, *tolerance, eigenvalue, reach, &cells);
         if (first || num_cmp(*pass, max) < 0)
             num_set(max, *pass);
-        num_add(*tolerance, *best, *tolerance);
-        if (num_cmp(*pass, *tolerance) > 0)
-            break;                                      /* the cells ran out */
+        if (cells > TORUS_CELLS) {
+            num_min(max, *most);
+            done = 1;
+        }
+        num_set_si(*tolerance, 1, -3);
+        num_mul(*t, *t, *tolerance);
     }
     set_precision(s, precision);
 }
@@ -170,7 +200,7 @@ static void torus_max(state *s, num_t max, int eigenvalue)
 #ifdef NUM_DOUBLE
 
 /* The same for one point of the parameters, as a double computes it: off by roundings, for which
-   the caller makes up; NaN if the numbers grew too large. */
+   the caller makes up; HUGE_VAL if they overflow. */
 double quick_largest(unit *s, const double p[N_PARMS])
 {
     bdd *const parm[N_PARMS] = { &s->n.a, &s->n.b, &s->n.c };
@@ -181,7 +211,7 @@ double quick_largest(unit *s, const double p[N_PARMS])
     }
     s->failed = 0;
     torus_max(s, s->n.constants[C_B], 1);
-    return s->failed ? NAN : num_get_d(s->n.constants[C_B]);
+    return s->failed ? HUGE_VAL : num_get_d(s->n.constants[C_B]);
 }
 
 #endif

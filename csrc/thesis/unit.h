@@ -16,7 +16,7 @@ typedef struct {
     int reason;               /* CV_REASON_... if not */
     int nsteps;               /* length of the orbit followed */
     int by_trace;             /* proved by the trace, not by the least eigenvalue */
-    int ll_used;              /* CV_BY_...: whence the last bound of the least eigenvalue */
+    int ll_used[3];           /* how often the least eigenvalue's best bound was CV_BY_... */
 } verdict;
 
 /* The constants of the theorem: T, Tr_-, Tr_+, B, lambda_-min, lambda_-max. */
@@ -30,7 +30,7 @@ enum { C_T, C_TRACE_MIN, C_TRACE_MAX, C_B, C_LAM_MIN, C_LAM_MAX, N_CONSTANTS };
        the second variation.  herman_start is used as printed only.  CV_OK or an error. */     \
     int R##prepare_trial(R##unit *u, const box *root, const double herman_start[2],            \
                          apm_t constants[N_CONSTANTS]);                                  \
-    void R##unit_constants(R##unit *u, apm_t constants[N_CONSTANTS]);                          \
+    int R##unit_constants(R##unit *u, apm_t constants[N_CONSTANTS]);    /* CV_OK or an error */\
     void R##try_prism(R##unit *u, const box *b, verdict *v);                                   \
     int R##kernel(R##unit *u, const char *name, int nin, apm_t in[], int nout, apm_t out[]);
 
@@ -42,8 +42,12 @@ DECLARE_UNIT()
 void quick_try(unit *u, const box *b, verdict *v);
 
 /* An upper bound, but for roundings, of the largest eigenvalue of beta over the torus for the
-   parameters p.  (torus.c, the double instance.) */
+   parameters p; HUGE_VAL if doubles cannot tell.  (torus.c, the double instance.) */
 double quick_largest(unit *u, const double p[3]);
+
+/* region.c: centre +- half, in units of pi, becomes an interval in radians that encloses it.
+   pi: cut off after dp places, to which the results are rounded. */
+void to_radians(apm_t centre, apm_t half, const apm_t pi, long dp);
 
 /* start.c: where the trace, and where the least eigenvalue of beta attains its minimum, roughly.
    Nothing rigorous depends on the result. */

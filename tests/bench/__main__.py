@@ -15,7 +15,7 @@ import time
 from fractions import Fraction
 from pathlib import Path
 
-from converse import kernels
+from converse import growth, kernels
 
 ROOT = Path(__file__).resolve().parent.parent.parent
 COMMAND = str(Path(sys.executable).parent / "converse")
@@ -76,7 +76,7 @@ def images():
 def frontier(repeat, longest=60):
     """The theorems of the sharper method, one core against all, and the checker."""
     import converse
-    jobs = converse.search.count_workers()
+    jobs = growth.count_workers()
     print("method loewner, together, down to epsilon; %d cores; the checker on a sample" % jobs)
     print("%-8s %9s %9s %6s %9s %7s %7s %12s" % ("epsilon", "1 core", "all", "ratio", "prisms",
                                                  "points", "deepest", "checked/s"))
@@ -84,7 +84,7 @@ def frontier(repeat, longest=60):
         for low in ("0.0272", "0.0180", "0.0160", "0.0152", "0.0148", "0.0144", "0.0142", "0.0141"):
             ends = [Fraction(e) * Fraction("11.21436") for e in (low, "0.0280")]
             centre, half = sum(ends) / 2, (ends[1] - ends[0]) / 2
-            problem = converse.Problem((centre, centre, 2 * centre, Fraction(1), Fraction(1)),
+            problem = converse.Problem.around((centre, centre, 2 * centre, Fraction(1), Fraction(1)),
                                        (half, half, 2 * half, Fraction(1), Fraction(1)),
                                        together=True)
             seconds = {}

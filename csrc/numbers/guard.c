@@ -1,20 +1,20 @@
-/* memory.c - see memory.h.
+/* guard.c - see guard.h.
 
    GMP's allocation functions belong to the process and must not return NULL.  Ours are malloc's,
    so blocks of others who share the library stay valid; only a thread that armed a guard jumps.
    The number at hand may by then have lost its memory (mpz_mul frees the old before it asks for
-   the new), so whoever is jumped to must neither use nor free the numbers of its state again:
-   they are abandoned. */
-#include "memory.h"
+   the new), so whoever is jumped to for want of memory must neither use nor free the numbers of its
+   state again: they are abandoned. */
+#include "guard.h"
 
 #include <gmp.h>
 #include <stdlib.h>
 
 /* Made with the thread and not at first use, which could itself run out of memory. */
 #ifdef __ELF__
-static _Thread_local jmp_buf *armed __attribute__((tls_model("initial-exec")));
+static _Thread_local guard *armed __attribute__((tls_model("initial-exec")));
 #else
-static _Thread_local jmp_buf *armed;
+static _Thread_local guard *armed;
 #endif
 
 static void *checked(void *p)
@@ -22,7 +22,7 @@ static void *checked(void *p)
     if (p == NULL) {
         if (armed == NULL)
             abort();                        /* what GMP itself does */
-        longjmp(*armed, 1);
+        longjmp(armed->here, GUARD_MEMORY);
     }
     return p;
 }
@@ -35,14 +35,20 @@ static void *reallocate(void *p, size_t old, size_t n)
     return checked(realloc(p, n));
 }
 
-jmp_buf *memory_guard(jmp_buf *here)
+guard *guard_arm(guard *g)
 {
-    jmp_buf *const before = armed;
+    guard *const before = armed;
     void *(*current)(size_t);
 
     mp_get_memory_functions(&current, NULL, NULL);
     if (current != allocate)
         mp_set_memory_functions(allocate, reallocate, release);
-    armed = here;
+    armed = g;
     return before;
+}
+
+void guard_poll(void)
+{
+    if (armed != NULL && armed->stop != NULL && *armed->stop)
+        longjmp(armed->here, GUARD_STOP);
 }

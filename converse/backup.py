@@ -1,0 +1,66 @@
+"""The backup: a file that is kept up to date with a proof while it is found."""
+
+import contextlib
+import os
+import time
+import warnings
+
+from . import files
+from .files import ConverseError
+from .proof import Proof
+
+SECONDS = 1.0                       # between two writes
+SHARE = 20                          # of the time, at most one part in so many goes into them
+
+
+class Keeper:
+    """Keeps path up to date; with None it keeps nothing.
+
+    The file must be new, or empty, or that of the run which is continued: nothing is overwritten.
+    ConverseError: it is not, or cannot be written, or another run writes it."""
+
+    def __init__(self, path, resumed=None):
+        self.path, self.resumed = path, resumed
+        self.due, self.pause = 0.0, SECONDS
+        self.lock = contextlib.ExitStack()
+
+    def __enter__(self):
+        path = self.path
+        if path is not None:
+            files.check_writable(path, regular=True)
+            self.lock.enter_context(files.lock(path))
+            if os.path.exists(path) and os.path.getsize(path) and not (
+                    self.resumed is not None and files.same(path, self.resumed)):
+                self.lock.close()
+                raise ConverseError("%s: exists; to continue it, name it with -r (resume=), or else "
+                                    "name another file or remove it" % path)
+        return self
+
+    def __exit__(self, *_):
+        self.lock.close()
+
+    def keep(self, snapshot):
+        """Writes what snapshot() returns, if it is time; what goes wrong is tried again later."""
+        if self.path is None or time.monotonic() < self.due:
+            return
+        now = time.monotonic()
+        try:
+            snapshot().save(self.path)
+        except (ConverseError, MemoryError) as error:
+            if self.due == 0.0:         # nothing is lost yet
+                self.path = None
+                raise
+            warnings.warn("%s; the run goes on and tries again" % error, RuntimeWarning,
+                          stacklevel=2)
+        self.pause = max(SECONDS, SHARE * (time.monotonic() - now))
+        self.due = time.monotonic() + self.pause
+
+    def finish(self, proof: Proof) -> str:
+        """Writes the end of a run; returns the SHA-256 of the file, "" if there is none."""
+        if self.path is None:
+            return ""
+        try:
+            return proof.save(self.path)
+        except ConverseError as error:
+            warnings.warn("%s; this run is not saved" % error, RuntimeWarning, stacklevel=2)
+            return ""

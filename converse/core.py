@@ -1,0 +1,244 @@
+"""The C core in terms of Python."""
+
+import threading
+from dataclasses import asdict, dataclass, fields
+from decimal import Decimal
+from typing import Dict, List, Optional, Tuple
+
+from .files import ConverseError
+from .problem import Problem
+from .settings import Settings
+
+try:
+    from ._native import ffi, lib
+except ImportError as error:            # not built, or for another Python, or without cffi
+    raise ConverseError(
+        "the C core is missing (%s); in a clone run make and use .venv/bin/python, elsewhere "
+        "pip install . with a C compiler and GMP" % error) from None
+
+METHODS = {"thesis": lib.CV_THESIS, "loewner": lib.CV_LOEWNER}
+CONSTANTS = {                       # by method, the numbers of the theorem that are recorded
+    "thesis": {"T": 2, "Tr-": 3, "Tr+": 4, "B": 5, "lambda-min": 6, "lambda-max": 7},
+    "loewner": {"B": 5},
+}
+MESSAGES = {
+    lib.CV_ENUMBER: "a number is malformed or out of range",
+    lib.CV_EARGUMENT: "an argument makes no sense",
+    lib.CV_EARITHMETIC: "the arithmetic failed: a division by zero, a root of a negative number "
+                        "or lost precision; try more digits",
+    lib.CV_ESINGULAR: "the matrix could not be inverted at any sensible precision",
+    lib.CV_EMACHINE: "this machine's floating-point arithmetic, or the way the program was "
+                     "built, breaks the rules that the proof relies on",
+}
+
+
+def check(code):
+    """Turns an error code of the C core into an exception; passes any other code on."""
+    if code == lib.CV_ENOMEM:
+        raise MemoryError("there is not enough memory")
+    if code < 0:
+        raise ConverseError(MESSAGES.get(code, "the C core failed with code %d" % code))
+    return code
+
+
+@dataclass(frozen=True)
+class Counts:
+    """The statistics of a search; the names are those of csrc/converse.h."""
+
+    quick_tries: int = 0
+    tries: int = 0
+    Rtries: int = 0
+    cuts: int = 0
+    proved: int = 0
+    symmetric: int = 0
+    undecided: int = 0
+    HermSuccess: int = 0
+    LLSuccess: int = 0
+    ll_used: Tuple[int, ...] = (0, 0, 0)
+    reasons: Tuple[int, ...] = (0,) * lib.CV_N_REASONS
+    most_cuts: int = 0
+    max_steps: int = 0
+    max_NTsteps: int = 0
+
+    def __add__(self, other):
+        """The statistics of both searches together."""
+        both = {}
+        for name, mine in asdict(self).items():
+            theirs = getattr(other, name)
+            if isinstance(mine, tuple):
+                both[name] = tuple(map(sum, zip(mine, theirs)))
+            else:
+                both[name] = (max if name.startswith("m") else int.__add__)(mine, theirs)
+        return Counts(**both)
+
+
+@dataclass(frozen=True)
+class Task:
+    """All that a worker must know of a search, as plain data.  xstar None: one is to be chosen."""
+
+    problem: Problem
+    settings: Settings
+    xstar: Optional[Tuple[str, str]] = None
+
+
+@dataclass(frozen=True)
+class Begun:
+    """What is known before the first prism is tried, and what there is of the tree.
+
+    A cell here is (index, cuts, hint), the hint being what the C core learnt from its parent."""
+
+    xstar: Tuple[str, str]
+    constants: Dict[str, str]
+    at_once: bool
+    cells: List[tuple]                  # yet to be decided, in preorder
+    counts: Counts                      # of the nodes of the tree alone
+
+
+@dataclass
+class Grown:
+    """What a worker grew: the text, the cells that are to follow it, the orbits' lengths."""
+
+    text: str
+    steps: List[int]                    # of each node; empty if nobody wants them
+    cells: List[tuple]
+    counts: Counts
+    history: "History"
+
+
+class History:
+    """What became of cells so far, by kinds of cells: see cv_history in csrc/converse.h."""
+
+    def __init__(self, history=None):
+        self.nodes, self.cut, self.became = (
+            {} if history is None else
+            {(i, k): n for i, row in enumerate(getattr(history, name)) for k, n in enumerate(row) if n}
+            for name in ("nodes", "cut", "became"))
+
+    def add(self, other):
+        for mine, theirs in ((self.nodes, other.nodes), (self.cut, other.cut),
+                             (self.became, other.became)):
+            for key, n in theirs.items():
+                mine[key] = mine.get(key, 0) + n
+
+    def expected(self, cells):
+        """How many nodes these cells will become, if each fares as those of its kind did on the
+        average: one, and if it is cut, as many as its two halves.  Kinds that were not seen are
+        taken for their like one level deeper."""
+        heirs = {}
+        for (before, after), n in self.became.items():
+            heirs.setdefault(before, []).append((after, n))
+        classes = {kind for _, kind in self.nodes} | set(map(lib.cv_class, {c[2] for c in cells}))
+        size = dict.fromkeys(classes, 1.0)
+        by_level = {}
+        for level in range(lib.CV_LEVELS - 1, -1, -1):
+            deeper, size = size, dict(size)
+            for kind in classes:
+                tried = self.nodes.get((level, kind))
+                cut = self.cut.get((level, kind), 0)
+                if tried:
+                    total = sum(n for _, n in heirs.get(kind, ()))
+                    size[kind] = 1 + (2 * cut / tried * sum(
+                        n * deeper[heir] for heir, n in heirs[kind]) / total if cut else 0)
+            by_level[level] = size
+        return sum(by_level[min(sum(cuts), lib.CV_LEVELS - 1)][lib.cv_class(hint)]
+                   for _, cuts, hint in cells)
+
+
+class Search:
+    """A search in the C core."""
+
+    def __init__(self, task):
+        def strings(texts):
+            owners.extend(ffi.new("char[]", text.encode("ascii")) for text in texts)
+            return ffi.new("char *[]", owners[-len(texts):])
+
+        owners, settings = [], task.settings
+        handle = ffi.new("cv_search **")
+        check(lib.cv_search_new(
+            handle, *map(strings, task.problem.decimals()),
+            strings(task.xstar) if task.xstar else ffi.NULL, METHODS[settings.method],
+            task.problem.together, settings.digits, settings.depth, settings.stubborn,
+            settings.as_printed))
+        self.handle = ffi.gc(handle[0], lib.cv_search_free)
+        self.task = task
+
+    def prepare(self, stop):
+        """Sets the search up; False if it was stopped, and then it is good for nothing."""
+        return check(lib.cv_prepare(self.handle, stop)) == lib.CV_OK
+
+    def begin(self, tree):
+        """Takes up a tree; ConverseError if it does not belong to a search of this kind."""
+        text = tree.encode("ascii", "replace")
+        code = lib.cv_resume(self.handle, text, len(text))
+        if code == lib.CV_EARGUMENT:
+            raise ConverseError("the tree does not belong to a search of this kind")
+        check(code)
+        return Begun((self._constant(0), self._constant(1)),
+                     {name: self._constant(which) for name, which
+                      in CONSTANTS[self.task.settings.method].items()},
+                     bool(lib.cv_at_once(self.handle)), *self._state())
+
+    def grow(self, cells, seconds, max_leaves, stop, want_steps):
+        """Decides cells, and those they are cut into, for about so long or up to so many leaves."""
+        check(lib.cv_restart(self.handle, len(cells), cells))
+        check(lib.cv_step(self.handle, max_leaves, seconds, stop))
+        size = ffi.new("size_t *")
+        text, size = lib.cv_tree(self.handle, size), size[0]
+        return Grown(ffi.unpack(text, size).decode("ascii") if size else "",
+                     ffi.unpack(lib.cv_steps(self.handle), size) if size and want_steps else [],
+                     *self._state(), History(lib.cv_get_history(self.handle)))
+
+    def _state(self):
+        pending = ffi.new("cv_cell[]", lib.cv_pending(self.handle, ffi.NULL))
+        lib.cv_pending(self.handle, pending)
+        counts = lib.cv_get_counts(self.handle)
+        values = {item.name: getattr(counts, item.name) for item in fields(Counts)}
+        return ([(tuple(cell.index), tuple(cell.cuts), getattr(cell, "from")) for cell in pending],
+                Counts(**{name: value if isinstance(value, int) else tuple(value)
+                          for name, value in values.items()}))
+
+    def _constant(self, which):
+        text = lib.cv_constant(self.handle, which)
+        if not text:
+            raise MemoryError("there is not enough memory")
+        text = ffi.gc(text, lib.cv_free)
+        return str(Decimal(ffi.string(text).decode("ascii")))
+
+
+_mine = threading.local()               # each thread's last search: making one takes time
+
+
+def _search(task, stop):
+    """This thread's search for a task, or None if it was stopped while it was made."""
+    if getattr(_mine, "task", None) != task:
+        _mine.task = None
+        search = Search(task)
+        if not search.prepare(stop):
+            return None
+        _mine.search, _mine.task = search, task
+    return _mine.search
+
+
+def stop_token():
+    """What another thread of this process sets, token[0] = 1, to have begin or grow return soon."""
+    return ffi.new("int *")
+
+
+def begin(task, tree, stop):
+    """What a worker does first, with the tree as far as it is known: Begun, or None if stopped."""
+    search = _search(task, stop)
+    if search is None:
+        return None
+    begun = search.begin(tree)
+    _mine.task = Task(task.problem, task.settings, begun.xstar)     # the search serves this, too
+    return begun
+
+
+def grow(task, cells, seconds, max_leaves, want_steps, stop=None):
+    """What a worker does: Grown, or None if it was stopped before it could begin."""
+    try:
+        search = _search(task, stop or ffi.NULL)
+        return search and search.grow(cells, seconds, max_leaves, stop or ffi.NULL, want_steps)
+    except BaseException:
+        _mine.task = _mine.search = None    # nobody knows in what state it is
+        raise

@@ -1,0 +1,89 @@
+"""What a figure of a proof says in words, whatever draws it."""
+
+import math
+import textwrap
+from decimal import Context, Decimal
+from fractions import Fraction
+
+from . import tree
+
+NAMES = {"P": "proved", "S": "skipped by symmetry", "?": "untried", "U": "undecided"}
+STAR = "x*, whose successors these are"
+LINE = 78                               # characters of a line of the head, at most
+LEAST = 1 / 128                         # what is not proved is drawn no smaller, as part of a side
+FEWEST, MOST = 6, 10000                 # digits of a number
+CONCLUSIONS = {
+    "theorem": "no invariant tori",
+    "region": "no invariant tori whose successor of x* lies in this part of the torus",
+    "undecided": "undecided whether there are invariant tori",
+    "as printed": "every prism decided",
+}
+
+
+def head(proof):
+    """The lines on what is proved: the parameters, exactly, and the conclusion."""
+    problem = proof.problem
+    low, high = ([number(c + sign * h) for c, h in zip(problem.centre[:3], problem.half)]
+                 for sign in (-1, 1))
+    ranges = ["%s < %s < %s" % (a, name, b) if a != b else "%s = %s" % (name, a)
+              for a, name, b in zip(low, "abc", high)]
+    if problem.together:
+        ranges = ["(a, b, c) moving together", "from (%s)" % ", ".join(low),
+                  "to (%s)" % ", ".join(high)]
+    # A range is divided between two lines only where it is too long for one.
+    text = (" " if problem.together else ",  ").join(
+        part.replace(" ", "\xa0") if len(part) < LINE else part for part in ranges)
+    words = [CONCLUSIONS[proof.conclusion]]
+    if not problem.full_torus and proof.conclusion != "region":
+        words.append("a part of the torus only")
+    if proof.as_printed:
+        words.append("as printed in the thesis, a historical reconstruction: not a proof")
+    return [line.replace("\xa0", " ")
+            for line in textwrap.wrap(text, LINE) + textwrap.wrap("; ".join(words), LINE)]
+
+
+def foot(proof):
+    """The lines on where it comes from."""
+    lines = ["converse %s, method %s, %s" % (proof.version, proof.method, proof.arithmetic)]
+    if any(map(proof.tree.count, tree.CUTS[2:])) and not proof.all_decided:
+        lines.append("where prisms of several parameters share a place, "
+                     "what is not proved lies on top")
+    if proof.sha256:
+        lines.append("proof file: SHA-256 " + proof.sha256)
+    return lines
+
+
+def counts(proof):
+    """How many prisms there are of each kind, those kinds that there are."""
+    found = {kind: proof.tree.count(kind) for kind in NAMES}
+    cuts = sum(map(proof.tree.count, tree.CUTS))
+    found["?"] += 1 + cuts - sum(found.values())        # those that are missing at the end
+    return {kind: count for kind, count in found.items() if count}
+
+
+def star(proof):
+    """The place of x*, moved by multiples of 2 pi, as parts of the region's sides; None, if the
+    region does not show it."""
+    places = []
+    for axis, text in enumerate(proof.xstar):
+        centre, half = proof.problem.centre[3 + axis], proof.problem.half[3 + axis]
+        offset = (Fraction(text) / Fraction(math.pi) - centre + 1) % 2 - 1
+        if half == 0 or abs(offset) > half:
+            return None
+        places.append(float((offset / half + 1) / 2))
+    return tuple(places)
+
+
+def number(x, error=0):
+    """A rational number as a decimal, no more than the error away; where there is none of sensible
+    length, as a quotient."""
+    x = Fraction(x)
+    digits = FEWEST
+    while digits <= MOST:
+        context = Context(prec=digits)
+        value = context.divide(Decimal(x.numerator), Decimal(x.denominator))
+        if abs(Fraction(value) - x) <= error:
+            value = value.normalize(context)
+            return format(value, "f") if -7 < value.adjusted() < 16 else str(value).lower()
+        digits *= 2
+    return str(x)

@@ -1,0 +1,183 @@
+"""A proof is looked for."""
+
+import concurrent.futures
+import math
+import os
+import time
+from dataclasses import replace
+from typing import Callable, Optional, Union
+
+from . import core, tree
+from .backup import Keeper
+from .core import Counts, Task
+from .files import ConverseError
+from .growth import OLD, Growth, count_workers
+from .problem import NAMES, Problem, decimal_text
+from .proof import Proof
+from .settings import Settings
+from .version import __version__
+
+LOOK_SECONDS = 0.1                  # between two looks at the clock, at Ctrl-C, at the bar
+
+Path = Union[str, "os.PathLike[str]"]
+
+
+def prove(problem: Optional[Problem] = None, *, method: Optional[str] = None,
+          depth: Optional[int] = None, digits: Optional[int] = None,
+          stubborn: Optional[bool] = None, as_printed: Optional[bool] = None,
+          jobs: Optional[int] = None, executor: Optional[concurrent.futures.Executor] = None,
+          backup: Optional[Path] = None, resume: Union[Proof, Path, None] = None,
+          time_limit: float = math.inf,
+          progress: Optional[Callable[[float, Counts], None]] = None,
+          on_leaf: Optional[Callable[[tree.Leaf, int], None]] = None) -> Proof:
+    """Tries to prove that there are no invariant tori, and returns a Proof either way.
+
+    method, depth, digits, stubborn, as_printed: see Settings.
+
+    jobs: how many workers at a time, by default one per core; executor: a
+    concurrent.futures.Executor whose workers they are, by default threads of this process.  The
+    result does not depend on either.
+
+    backup: a new file that is kept up to date.
+    resume: an unfinished proof, or its file, to continue; what is not said otherwise is as it was,
+    but depth may be greater.  A file is kept up to date, too, unless backup names another.
+
+    time_limit: after about so many seconds of this run the search is left as it is.
+    progress(done, counts) is called a few times a second; done, from 0 to 1, is an estimate of the
+    share of the work that is behind.
+    on_leaf(leaf, points) is called for every leaf that this run decides, in preorder; points: the
+    length of its orbit.
+
+    ConverseError, MemoryError: nothing is lost of the backup; ValueError, TypeError: an argument is
+    wrong.  RuntimeWarning: the backup cannot be written now, and will be tried again.
+    """
+    given = {name: value for name, value in (
+        ("method", method), ("depth", depth), ("digits", digits), ("stubborn", stubborn),
+        ("as_printed", as_printed)) if value is not None}
+    if problem is None and resume is None:
+        raise TypeError("there must be a problem, or a proof to resume")
+    if jobs is None:
+        jobs = count_workers(executor)
+    if jobs < 1:
+        raise ValueError("there must be a worker: jobs must be 1 or more")
+    file = None if resume is None or isinstance(resume, Proof) else resume
+    with Keeper(file if backup is None else backup, resumed=file) as keeper:
+        if resume is None:
+            before = Proof(problem, Settings(**given))
+        else:
+            before = _continued(resume, file, problem, given)
+        if before.settings.method == "thesis" and before.problem.together:
+            raise ValueError("parameters that move together need the method loewner")
+        run = _Run(before, keeper, jobs, executor, time_limit, progress, on_leaf)
+        try:
+            return run.run()
+        except ConverseError as error:
+            raise ConverseError("%s: %s; use an intact copy or start anew" % (file, error)
+                                if file and "tree" in str(error) else str(error)) from None
+
+
+class _Run:
+    """One run of a search, from what was known before it to a Proof."""
+
+    def __init__(self, before, keeper, jobs, executor, time_limit, progress, on_leaf):
+        self.before, self.keeper = before, keeper
+        self.progress, self.on_leaf = progress, on_leaf
+        self.began = time.monotonic()
+        self.end = self.began + time_limit
+        self.growth = Growth(Task(before.problem, before.settings, before.xstar), jobs, executor,
+                             want_steps=on_leaf is not None)
+        self.walk, self.prism, self.seen = tree.Walk(), tree.prisms(before.problem), 0
+
+    def run(self):
+        with self.growth as growth:
+            before = self.before
+            begun = growth.begin(before.tree, before.pending, before.counts, self._wait)
+            if begun is None:           # no time even to set it up
+                return self._finished(replace(before, seconds=self._seconds()))
+            self.before = replace(before, xstar=begun.xstar, constants=begun.constants,
+                                  at_once=begun.at_once)
+            try:
+                self._look()
+                while not growth.finished and time.monotonic() < self.end:
+                    growth.work(min(LOOK_SECONDS, max(0.0, self.end - time.monotonic())))
+                    self._look()
+            except BaseException:       # what stands is saved, if it is whole; else the last backup
+                growth.settle()
+                self._save_what_stands()
+                raise
+            growth.settle()
+            self._look()
+            return self._finished(self._snapshot())
+
+    def _wait(self, future):
+        """Waits for a future as long as there is time, and says whether it is done."""
+        while not future.done() and time.monotonic() < self.end:
+            concurrent.futures.wait([future], min(LOOK_SECONDS, max(0.0, self.end - time.monotonic())))
+        return future.done()
+
+    def _look(self):
+        """Tells whoever wants to know how far things are."""
+        if self.on_leaf:
+            text, steps = self.growth.beginning(self.seen)
+            self.seen += len(text)
+            for node, points in zip(text, steps):
+                for kind, cell in self.walk.feed(node):
+                    if points != OLD:
+                        self.on_leaf(tree.Leaf(kind, *self.prism(cell), sum(cell[1])), points)
+        if self.progress:
+            self.progress(self.growth.done, self.growth.counts)
+        self.keeper.keep(self._snapshot)
+
+    def _seconds(self):
+        return self.before.seconds + time.monotonic() - self.began
+
+    def _snapshot(self):
+        text, pending = self.growth.text()
+        return replace(self.before, tree=text, counts=self.growth.counts, pending=tuple(pending),
+                       seconds=self._seconds(), version=__version__, sha256="")
+
+    def _save_what_stands(self):
+        try:
+            self.keeper.finish(self._snapshot())
+        except AssertionError:          # an exception struck in the middle of a change
+            pass
+
+    def _finished(self, proof):
+        return replace(proof, sha256=self.keeper.finish(proof))
+
+
+def _continued(resume, file, problem, given):
+    """The proof to continue, with the settings it is to be continued with."""
+    name = "the proof to resume" if file is None else os.fspath(file)
+    proof = resume if file is None else Proof.load(file)
+    settings = replace(proof.settings, **{key: value for key, value in given.items()
+                                          if key in ("depth", "stubborn")})
+
+    def differs(what, theirs, ours):
+        raise ConverseError("%s: is of another run: its %s is %s, this one's is %s; "
+                            "name the backup of this run or start anew" % (name, what, theirs, ours))
+
+    if proof.version != __version__:
+        differs("program", proof.version, __version__)
+    for key in "method", "digits", "as_printed":
+        if key in given and given[key] != getattr(proof.settings, key):
+            differs(key.replace("_", " "), getattr(proof.settings, key), given[key])
+    if settings.depth < proof.settings.depth:
+        differs("depth", proof.settings.depth, settings.depth)
+    if problem is not None:
+        for key in NAMES:
+            theirs, ours = getattr(proof.problem, key), getattr(problem, key)
+            if theirs != ours:
+                differs(key, *(" .. ".join(map(decimal_text, ends)) for ends in (theirs, ours)))
+        if problem.together != proof.problem.together:
+            differs("together", proof.problem.together, problem.together)
+    text, pending = proof.tree, proof.pending
+    if settings.depth > proof.settings.depth:       # what was given up is tried again
+        known, hints = iter(pending), []
+        for leaf in tree.UNDECIDED_OR_UNTRIED.findall(text):
+            hints.append(next(known, 0) if leaf == tree.UNTRIED else 0)
+        pending = (*hints, *known)
+        text = text.replace("U", tree.UNTRIED)
+    return replace(proof, settings=settings, problem=problem or proof.problem, tree=text,
+                   pending=pending, counts=replace(proof.counts, undecided=text.count("U")),
+                   restored=sum(map(text.count, "PS")))

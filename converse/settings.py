@@ -1,0 +1,44 @@
+"""How a search goes about it, and what it can come to."""
+
+from dataclasses import dataclass
+from typing import Optional
+
+METHODS = {"thesis": 30, "loewner": 120}            # by name, how often they may cut a prism
+LIMIT = 100000                                      # of the depth and of the digits
+
+THEOREM, REGION, UNDECIDED, AS_PRINTED = "theorem", "region", "undecided", "as printed"
+
+
+@dataclass(frozen=True)
+class Settings:
+    """All that the tree of a search depends on beside the problem.
+
+    method: "thesis", the criterion of 1989 in exact decimals, or "loewner", the sharper one in
+    doubles with proved rounding.
+    depth: the most cuts of a prism (None: 30, or 120 with the sharper method).
+    digits: decimal places of the thesis's rigorous arithmetic.
+    stubborn: go on after a prism that cannot be decided.
+    as_printed: follow the thesis's listing to the letter, which proves nothing.
+
+    ValueError: a value makes no sense, or two do not go together.
+    """
+
+    method: str = "thesis"
+    depth: Optional[int] = None
+    digits: int = 35
+    stubborn: bool = False
+    as_printed: bool = False
+
+    def __post_init__(self):
+        if self.method not in METHODS:
+            raise ValueError("the method is one of %s, not %r" % (", ".join(METHODS), self.method))
+        if self.depth is None:
+            object.__setattr__(self, "depth", METHODS[self.method])
+        for name, least in (("depth", 0), ("digits", 1)):
+            value = getattr(self, name)
+            if isinstance(value, bool) or not isinstance(value, int) or not least <= value <= LIMIT:
+                raise ValueError("%s must be a whole number from %d to %d, not %r"
+                                 % (name, least, LIMIT, value))
+        if self.method == "loewner" and self.as_printed:
+            raise ValueError("only the method thesis was ever printed: as_printed does not go "
+                             "with loewner")

@@ -1,0 +1,3 @@
+"""The program's version, in the one place where it stands."""
+
+__version__ = "1.1.0"

@@ -1,0 +1,28 @@
+/* search.h - a search, as its two files see it: search.c grows the tree, setup.c makes all ready. */
+#ifndef CONVERSE_SEARCH_H
+#define CONVERSE_SEARCH_H
+
+#include "loewner/loewner.h"
+#include "thesis/unit.h"
+
+struct cv_search {
+    Runit *exact;                       /* method thesis */
+    unit *quick;
+    loewner *sharp;                     /* method Loewner */
+    box root, prism;                    /* prism: the cell at hand, for the thesis's method */
+    cv_cell *stack;
+    int pending, allocated;             /* cells on the stack; room for */
+    char *tree;
+    int *steps;                         /* of the orbit of each leaf */
+    size_t length, capacity;
+    cv_counts counts, before;           /* before: as it was when the node at hand was begun */
+    cv_history history;
+    apm_t constants[N_CONSTANTS], t[2];
+    int method, dp, depth, stubborn, as_printed, together, symmetric, at_once;
+    int prepared, last_steps, status;
+};
+
+/* Do doubles keep the rules that everything rigorous relies on?  (setup.c) */
+int machine_is_sound(void);
+
+#endif

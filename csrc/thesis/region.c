@@ -1,0 +1,29 @@
+/* region.c - the region of successors in radians. */
+#include "unit.h"
+
+/* An enclosure of the region meant, with pi cut off.  The search takes a pi that is cut off well
+   before the errors of sines begin.  So the centres of prisms lie a little below the multiples of
+   pi they stand for, by more than the errors of their sines, and what depends on the sign of such
+   a sine (the column rotor) is no accident.  The pi of 1989 was short, too. */
+void to_radians(apm_t centre, apm_t half, const apm_t pi, long dp)
+{
+    apm_t ulp, off, exact;
+
+    apm_init(ulp);
+    apm_init(off);
+    apm_init(exact);
+    apm_set_si(ulp, 1, -dp);                            /* pi < pi cut off + ulp */
+    apm_abs(off, centre);
+    apm_mul(off, off, ulp);                             /* how far |centre pi| may be off */
+    apm_mul(exact, centre, pi);
+    apm_round(centre, exact, dp, APM_TRUNC);
+    if (apm_cmp(centre, exact) != 0)
+        apm_add(off, off, ulp);
+    apm_add(exact, pi, ulp);
+    apm_mul(half, half, exact);
+    apm_add(half, half, off);
+    apm_round(half, half, dp, APM_UP);
+    apm_clear(ulp);
+    apm_clear(off);
+    apm_clear(exact);
+}

@@ -1,0 +1,51 @@
+"""Writes manual pages and shell completions to build/, from the commands' own parsers."""
+
+import re
+from importlib import import_module
+from pathlib import Path
+
+import shtab
+from argparse_manpage.manpage import Manpage
+
+from converse.version import __version__
+
+BUILD = Path(__file__).resolve().parent.parent / "build"
+SHELLS = ("bash", "zsh", "fish")
+SUMMARIES = {
+    "cli": "prove that a family of symplectic maps has no invariant tori",
+    "check": "verify the theorem of a proof file, independently of its prover",
+    "chart": "measure what is proved how fast, and draw it",
+}
+
+
+def page(parser, summary):
+    """The manual page's text, with what argparse-manpage leaves open."""
+    text = str(Manpage(parser, {"project_name": "converse", "version": __version__,
+                                "manual_title": "converse", "description": summary},
+                       format="single-commands-section"))
+    text = text.replace(".SH COMMENTS\nExit status: ", ".SH EXIT STATUS\n")
+    text = text.replace(" - " + summary, " \\- " + summary)         # the form that whatis reads
+    return re.sub("^'", r"\\&'", text, flags=re.MULTILINE)          # a quote would begin a request
+
+
+def with_files(parser):
+    """The same parser, whose files and directories can be completed."""
+    for action in parser._actions:
+        if action.dest == "directory":
+            action.complete = shtab.DIRECTORY
+        elif action.metavar == "FILE" or not action.option_strings:
+            action.complete = shtab.FILE
+    return parser
+
+
+def write(path, text):
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(text, encoding="utf-8")
+    print(path)
+
+
+for module, summary in SUMMARIES.items():
+    parser = with_files(import_module("converse." + module).parser())
+    write(BUILD / "man" / (parser.prog + ".1"), page(parser, summary))
+    for shell in SHELLS:
+        write(BUILD / "completion" / shell / parser.prog, shtab.complete(parser, shell))

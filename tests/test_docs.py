@@ -1,0 +1,95 @@
+"""The README and docs/: what they show runs, what they link to exists, what they list is all."""
+
+import re
+import shlex
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from converse import check, chart, cli
+from converse.version import __version__
+
+ROOT = Path(__file__).resolve().parent.parent
+PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
+TEXTS = {page.name: page.read_text("utf-8") for page in PAGES}
+PARSERS = {"converse": cli.parser, "converse-check": check.parser, "converse-chart": chart.parser}
+
+
+@pytest.mark.parametrize("name", [name for name, text in TEXTS.items() if "```python" in text])
+def test_python_examples_run(name, tmp_path):
+    """In the order of the page, one after the other, where the inputs are."""
+    blocks = re.findall(r"^```python\n(.*?)^```$", TEXTS[name], re.MULTILINE | re.DOTALL)
+    (tmp_path / "inputs").symlink_to(ROOT / "inputs")
+    (tmp_path / "example.py").write_text(
+        "def main():\n" + re.sub("^(?=.)", "    ", "\n".join(blocks), flags=re.MULTILINE)
+        + "\nif __name__ == '__main__':\n    main()\n")     # for the example's processes
+    result = subprocess.run([sys.executable, "example.py"], cwd=tmp_path, capture_output=True,
+                            text=True, timeout=300)
+    assert (result.returncode, result.stderr) == (0, "")
+    assert "no invariant tori" in result.stdout
+
+
+def test_commands_are_understood():
+    """Each command line that a page shows, if it is one of ours."""
+    shown = 0
+    for text in TEXTS.values():
+        lines = re.findall(r"^    (?:\S*/)?(converse\S*) *(.*)$", text, re.MULTILINE)
+        spans = re.findall(r"`(converse\S*) ([^`[]*)`", text)
+        for command, arguments in lines + spans:
+            file = re.match("(proof|state) [0-9]$", arguments)      # its first line
+            if command in PARSERS and "..." not in arguments and not file:
+                arguments = re.sub(r"\b[KN]\b", "3", arguments.partition("#")[0])
+                PARSERS[command]().parse_args(shlex.split(arguments))
+                shown += 1
+    assert shown >= 4
+
+
+@pytest.mark.parametrize("name", TEXTS)
+def test_links_lead_somewhere(name):
+    home = ROOT if name == "README.md" else ROOT / "docs"
+    for target in re.findall(r"\]\(([^)]+)\)", re.sub("(?m)^    .*", "", TEXTS[name])):
+        path, _, section = target.partition("#")
+        assert "//" not in path and (home / path).is_file(), target
+        if section:
+            titles = re.findall("^#+ (.*)$", (home / path).read_text("utf-8"), re.MULTILINE)
+            assert section in [title.lower().replace(" ", "-") for title in titles]
+
+
+def test_the_readme_lists_every_flag():
+    table = re.search(r"^\| flag \|.*?\n\n", TEXTS["README.md"], re.MULTILINE | re.DOTALL)[0]
+    listed = set(re.findall(r"`(?:-\w [A-Z]+`, `|-\w`, `)?(--[a-z-]+)", table))
+    known = {option for action in cli.parser()._actions for option in action.option_strings
+             if option.startswith("--")}
+    assert listed == known - {"--help", "--version"}
+    assert set(re.findall(r"`(-\w)\b", table)) == {
+        option for action in cli.parser()._actions for option in action.option_strings
+        if not option.startswith("--") and option != "-h"}
+
+
+@pytest.mark.parametrize("column, command", [(1, "converse"), (2, "converse-check")])
+def test_the_readme_lists_every_status(column, command):
+    rows = re.findall(r"^\| ([0-9]+) \| *(.*?) *\| *(.*?) *\|$", TEXTS["README.md"], re.MULTILINE)
+    listed = {number for row in rows if row[column]
+              for number in re.findall("[0-9]+", row[0] + row[column])}
+    told = PARSERS[command]().epilog
+    assert listed == set(re.findall(r"\b[0-9]+\b", re.split("(?i)exit status", told)[1]))
+
+
+@pytest.mark.parametrize("name", ["trig278", "trig276", "trig274", "trig272"])
+def test_the_table_beside_the_thesis(name):
+    row = re.search(r"^\|.*`%s\.in`.*$" % name, TEXTS["README.md"], re.MULTILINE)[0]
+    for kind, cell in zip(("as_printed", "sound"), row.split("|")[3:5]):
+        report = (ROOT / "golden_outputs" / kind / (name + ".out")).read_text("utf-8")
+        found = re.search(r"the longest successful orbit, ([0-9]+) iter", report)[1], \
+            re.search(r"most deeply refined prism was cut ([0-9]+) times", report)[1], \
+            re.search(r"Of the ([0-9]+) successful prisms", report)[1]
+        assert " / ".join(found) == cell.strip()
+
+
+def test_one_version():
+    assert re.search("^version: (.*)$", (ROOT / "CITATION.cff").read_text(), re.MULTILINE)[1] \
+        == __version__
+    assert re.search("^## (.*)$", (ROOT / "CHANGELOG.md").read_text(), re.MULTILINE)[1] \
+        == __version__
