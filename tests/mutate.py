@@ -180,6 +180,59 @@ MUTATIONS = [
     ("loewner/try.c", "upper ? 1.0 : -1.0", "upper ? 1.0 : 1.0"),
     ("loewner/try.c", "sum += w->half[2 + i] * fabs(s[i]) * omega[i];", ""),
     ("loewner/try.c", "(w->together ? w->half[2 + i] : 0.0)", "0.0"),
+    ("loewner/orbit.c", "static const double WIDEN = 1.0 + 0x1p-43;",
+     "static const double WIDEN = 1.0;"),
+    ("loewner/orbit.c", "q->fuzz = 0x1p-49 * (1.0", "q->fuzz = 0x1p-55 * (1.0"),
+    ("loewner/orbit.c", "* (1.0 + q->far);\n    for (int k", ";\n    for (int k"),
+    ("loewner/orbit.c", "size(w, 2) > 0.0 ? fabs(q->x[0]) + fabs(q->x[1]) : 0.0", "0.0"),
+    ("loewner/orbit.c", "const double off = 0x1p-40 * (1.0 + q->far);", "const double off = 0.0;"),
+    ("loewner/orbit.c",
+     "0x1p-50 * (fabs(q->x[i]) + fabs(o->x[i]) + fabs(before) + fabs(x)) + q->fuzz;", "q->fuzz;"),
+    ("loewner/orbit.c", "fabs(before) + fabs(x)) + q->fuzz;", "fabs(before) + fabs(x));"),
+    ("loewner/orbit.c", "        e += q->missed[i];\n", ""),
+    ("loewner/orbit.c", "            e += 0x1p-50 * fabs(next->column[i][k]);", "            ;"),
+    ("loewner/orbit.c", "e += 4.0 * q->fuzz * (q->reach[0] + q->reach[1] + w->h[i] + w->h[2])\n",
+     "e += 0.0\n"),
+    ("loewner/orbit.c", "(1.0 + condition);", "0.0;"),
+    ("loewner/orbit.c", "(2.0 * q->fuzz + rounded) * rest_sum", "0.0"),
+    ("loewner/orbit.c", "is_first ? o->rest[i] :", "is_first ? 0.0 :"),
+    ("loewner/orbit.c", "det > TINY", "det > 0.0"),
+    ("loewner/bound.c",
+     "double left = 4.0 * q->fuzz * weights + 0x1p-50 * (fabs(before) + fabs(after));",
+     "double left = 0.0;"),
+    ("loewner/bound.c", "                rounding += fabs(q->mu[i]) * q->missed[i];\n",
+     "                ;\n"),
+    ("loewner/bound.c", "rounding += (mass + along_mass) * (each + 0x1p-49 * (1.0 + far));", ""),
+    ("loewner/bound.c", "(mass + along_mass) * (", "along_mass * ("),
+    ("loewner/bound.c", "(mass + along_mass) * (", "mass * ("),
+    ("loewner/bound.c", "const double each = 0x1p-48 * (double)(w->until - w->from + 2);",
+     "const double each = 0.0;"),
+    ("loewner/bound.c", "0x1p-49 * (1.0 + far)", "0.0"),
+    ("loewner/bound.c", "rest += w->loose[i] * fabs(along[i]);", ""),
+    ("loewner/bound.c", "mass >= 1.0 ?", "1 ?"),
+    ("loewner/bound.c", "fabs(mu1) + TINY;", "fabs(mu1);"),
+    ("loewner/prism.h", "x > y || isnan(x) ? x : y", "x > y ? x : y"),
+    ("loewner/try.c", "w->slack[k] = 0x1p-48 * (fabs(w->centre[k]) + w->half[k]);",
+     "w->slack[k] = 0.0;"),
+    ("loewner/try.c", "0x1p-48 * (fabs(w->centre[k]) + w->half[k])",
+     "0x1p-54 * (fabs(w->centre[k]) + w->half[k])"),
+    ("loewner/try.c", "w->xstar_err[i] = 0x1p-49 * fabs(w->xstar[i]);", "w->xstar_err[i] = 0.0;"),
+    ("loewner/try.c", "return largest * (1.0 + 0x1p-46);", "return largest;"),
+    ("loewner/try.c", " * (1.0 - 0x1p-46);   /*", ";   /*"),
+    ("loewner/try.c", "quick_largest(quick, p) + 1e-12 * all", "quick_largest(quick, p)"),
+    ("loewner/try.c", "sum + 0x1p-45 * (1.0 + fabs(x[0]) + fabs(x[1])) * mass < 0.0", "sum < 0.0"),
+    ("loewner/try.c", "mass >= 1.0 && sum", "sum"),
+    ("loewner/try.c", "return wide && cell->cuts[axis] < FINEST;", "return wide;"),
+    ("loewner/try.c", "ldexp(w->half[k], 2 - cell->cuts[axis]) > w->slack[k]", "1"),
+    ("loewner/try.c", "cell->cuts[k] > FINEST", "0"),
+    ("search.c", "axis < 0 || !may_cut(s", "!may_cut(s"),
+    ("numbers/sine.h", "0x1.0b4611a6p-34) - n", "0x1.0b4611a7p-34) - n"),
+    ("thesis/torus.c", "s->failed = 1;                                  /* NaN", "; /* NaN"),
+    ("loewner/try.c", "quick_largest(quick, p) + 1e-12 * all",
+     "quick_largest(quick, p) - 6e-7 * all"),
+    ("loewner/try.c", "return largest * (1.0 + 0x1p-46);", "return largest - 1e-9;"),
+    ("thesis/kernel.c", "    if (num_get_apm(r, x) != APM_OK)\n        s->failed = 1;\n",
+     "    num_get_apm(r, x);\n"),
 ]
 
 # Survivors that do not matter, by what stands there, with the reason.
@@ -196,6 +249,17 @@ HARMLESS = {
     "        v->no_tori = 0;\n":
         "a second belt: each divisor was just found to be above a positive bound, and comparisons "
         "with NaN are false",
+    "det > TINY":
+        "a determinant below 2^-800 would need two entries of beta that are differences from 2 and "
+        "yet as small as 2^-400",
+    "mass >= 1.0 ?": "a second belt: one of the vectors n is a unit vector",
+    "mass >= 1.0 && sum": "a second belt: n is a unit vector",
+    "fabs(mu1) + TINY;":
+        "TINY is for products that underflow beside parameters and reaches of more than 10^100",
+    "x > y || isnan(x) ? x : y":
+        "a second belt: where far or B is NaN, so are sines or all corners, and the bound",
+    "s->failed = 1;                                  /* NaN":
+        "a second belt: where a cell's squares overflow, so do those of the cell that is largest",
 }
 
 

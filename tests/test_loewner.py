@@ -7,6 +7,7 @@ core says; and the second variation along them must be below the bound.
 import itertools
 import math
 import re
+from contextlib import nullcontext
 from dataclasses import replace
 from fractions import Fraction
 from types import SimpleNamespace
@@ -245,14 +246,22 @@ def cell_margins(rng, cases):
             assert top - 1e-14 * scale <= B <= top + 6e-7 + 3e-12 * scale, abc
 
 
+def star_margins(rng, cases):
+    """The same of x*."""
+    for _ in range(cases):
+        star = [uniform(rng, -4, 4) for _ in range(2)]
+        out = kernels.call("loewner_orbit", [1, 0, 0, 1, 1, 0, 0, 0, 0, 0, *star, 0, 0], 17, 20)
+        yield from (("star", abs(x - y), rest) for x, y, rest in zip(star, out, out[12:]))
+
+
 def corner_margins(rng, cases):
     """The same of B at one corner, against torus.c in decimals with 35 places."""
     for _ in range(cases):
         abc = [Fraction(rng.uniform(-1, 1)) for _ in range(3)]
-        ranges = [x for p in abc for x in (p, p)]
-        (_, exactly), (_, B) = (kernels.call("torus", ranges, 2, 35, arithmetic)
-                                for arithmetic in ("apm", "double"))
-        yield "corner", exactly - B, (1 + sum(map(abs, abc))) / 10 ** 12
+        _, exactly = kernels.call("torus", [x for p in abc for x in (p, p)], 2, 35)
+        out = kernels.call("loewner_cell", [*abc, *[0] * 9, 1, *[0] * 10], 22, 20)
+        margin = (1 + sum(map(abs, abc))) / 10 ** 12
+        yield "corner", exactly - (out[14] - margin), margin
 
 
 # ---- the margins along orbits: docs/proof.md says what each must cover
@@ -288,49 +297,55 @@ def missed(p, q, o, following, i):
 
 
 def step_margins(prism, q, o, following, is_first):
-    """Of the step from q, which has o before it."""
+    """Of the step from q, which has o before it; and of force, which is to hold the others."""
     p, h, loose, size, parameter = prism_of(prism)
-    det = o.d[0] * o.d[2] - o.d[1] ** 2
-    inverse = [0, 0, 0] if is_first else [o.d[2] / det, -o.d[1] / det, o.d[0] / det]
-    bracket = [x - y - z for x, y, z in zip(q.beta, inverse, q.d)]
+    inverse, rounded = [0, 0, 0], 0
     if not is_first:
+        det = o.d[0] * o.d[2] - o.d[1] ** 2
+        inverse = [o.d[2] / det, -o.d[1] / det, o.d[0] / det]
         condition = (o.d[0] * o.d[2] + o.d[1] ** 2) / det
-        yield "rounded", max(map(abs, bracket)), \
-            2 * q.fuzz + 8 * UNIT * (inverse[0] + inverse[2]) * (1 + condition)
+        rounded = 8 * UNIT * (inverse[0] + inverse[2]) * (1 + condition)
+        bracket = [x - y - z for x, y, z in zip(q.beta, inverse, q.d)]
+        yield "rounded", max(map(abs, bracket)), 2 * q.fuzz + rounded
     for i in range(2):
-        E, e = missed(p, q, o, following, i), 0
-        yield "missed", E, q.missed[i]
+        needed = 0
         for k in range(5):
             true = q.beta[i] * q.column[0][k] + q.beta[i + 1] * q.column[1][k] - o.column[i][k]
             true += h[i] * q.cos[i] * (k == parameter[i]) + h[2] * q.cos[2] * (k == parameter[2])
-            e += abs(true - following.column[i][k])
-        yield "columns", e, 4 * q.fuzz * (q.reach[0] + q.reach[1] + h[i] + h[2]) + 8 * UNIT * (
+            needed += abs(true - following.column[i][k])
+        columns = 4 * q.fuzz * (q.reach[0] + q.reach[1] + h[i] + h[2]) + 8 * UNIT * (
             sum(map(abs, following.column[i])) + o.reach[i])
-        for k in (i, 2):
-            rho, c, s = q.reach[k], abs(q.cos[k]), abs(q.sin[k])
-            e += size[k] * rho ** 2 * (c / 2 + s * rho / 6)
-            e += (h[k] + loose[k]) * s * rho + loose[k] * c
-        e += o.rest[i] if is_first else \
+        yield "columns", needed, columns
+        yield "missed", missed(p, q, o, following, i), q.missed[i]
+        force = q.missed[i] + columns + (2 * q.fuzz + rounded) * sum(q.rest)
+        force += o.rest[i] if is_first else \
             abs(inverse[i]) * o.force[0] + abs(inverse[i + 1]) * o.force[1]
-        e += E + abs(bracket[i]) * q.rest[0] + abs(bracket[i + 1]) * q.rest[1]
-        yield "force", e, q.force[i]
+        for k in (i, 2):
+            off = 2 ** 13 * UNIT * (1 + (abs(q.x[0]) + abs(q.x[1])) * (size[2] > 0))
+            rho, c, s = q.reach[k], abs(q.cos[k]) + off * 3 / 4, abs(q.sin[k]) + off * 3 / 4
+            force += size[k] * rho ** 2 * (c / 2 + s * rho / 6)
+            force += (h[k] + loose[k]) * s * rho + loose[k] * c
+        yield "force", force, q.force[i]
         total = abs(q.d[i]) * q.rest[0] + abs(q.d[i + 1]) * q.rest[1] + q.force[i]
         yield "widen", total - following.rest[i] / WIDEN, total * (WIDEN - 1)
 
 
 def bound_margins(prism, q, out):
-    """Of the bound of the second variation: `exact` is what bound.c says, in exact arithmetic."""
+    """Of the bound of the second variation, and of its part `rounding`, which is to hold them."""
     p, h, loose, size, _ = prism_of(prism)
     bound, l, first, count, rounding = out[:5]
-    last = int(first + count) - 1
-    n = {int(first) + k: (out[5 + 2 * k], out[6 + 2 * k]) for k in range(int(count))}
-    none, until, along = (mp(0), mp(0)), max(last, 1), [mp(0)] * 3
-    mu = {j: q[j].mu if first < j < until else none for j in range(int(first) - 1, until + 2)}
-    exact = -l * sum(x * x for x in (*n[int(first)], *n[last]))
-    for j in range(int(first), until + 1):
+    first, last = int(first), int(first + count) - 1
+    n = {first + k: (out[5 + 2 * k], out[6 + 2 * k]) for k in range(int(count))}
+    none, until, along, far = (mp(0), mp(0)), max(last, 1), [mp(0)] * 3, 0
+    mu = {j: q[j].mu if first < j < until else none for j in range(first - 1, until + 2)}
+    exact = -l * sum(x * x for x in (*n[first], *n[last]))
+    mass, claimed, sums = -exact, 0, 0                  # sums: of exact, what they do not hold
+    for j in range(first, until + 1):
         (n0, n1), m, after = n.get(j, none), [*mu[j], sum(mu[j])], n.get(j + 1, none)
         omega = [n0 ** 2, n1 ** 2, (n0 + n1) ** 2]
         exact += 2 * (omega[0] + omega[1]) - 2 * (n0 * after[0] + n1 * after[1])
+        mass += 2 * (omega[0] + omega[1] + abs(n0 * after[0]) + abs(n1 * after[1]))
+        far = max(far, (abs(q[j].x[0]) + abs(q[j].x[1])) * (size[2] > 0))
         for k in range(3):
             A = m[k] * q[j].cos[k] - omega[k] * q[j].sin[k]
             B = -omega[k] * q[j].cos[k] - m[k] * q[j].sin[k]
@@ -338,18 +353,30 @@ def bound_margins(prism, q, out):
             along[k] += A
             exact += (max(0, -p[k] * A) + moves * abs(A)) * rho ** 2 / 2
             exact += abs(B) * (size[k] * rho ** 3 / 6 + moves * rho) - omega[k] * p[k] * q[j].sin[k]
+            mass += omega[k] * abs(p[k]) + (omega[k] + abs(m[k])) * (
+                moves + (size[k] * rho * (1 + rho) + moves) * rho)
         for i in range(2):
             slope = -omega[i] * p[i] * q[j].cos[i] - omega[2] * p[2] * q[j].cos[2]
             slope += q[j].beta[i] * m[0] + q[j].beta[i + 1] * m[1] - mu[j - 1][i] - mu[j + 1][i]
             exact += abs(slope) * q[j].reach[i]
-            if j not in (0, 1):
-                yield "left", abs(slope), 4 * q[j].fuzz * (sum(omega) + abs(m[0]) + abs(m[1])) \
-                    + 8 * UNIT * (abs(mu[j - 1][i]) + abs(mu[j + 1][i]))
+            sums += abs(slope) * q[j].reach[i] * (j not in (0, 1))
+            left = 4 * q[j].fuzz * (sum(omega) + abs(m[0]) + abs(m[1])) \
+                + 8 * UNIT * (abs(mu[j - 1][i]) + abs(mu[j + 1][i]))
+            claimed += left * q[j].reach[i]
+            if j in (0, 1):
+                sums += left * q[j].reach[i]
+            else:
+                yield "left", abs(slope), left
             if first < j < until:
                 exact += abs(m[i]) * missed(p, q[j], q[j - 1], q[j + 1], i)
+                sums += abs(m[i]) * missed(p, q[j], q[j - 1], q[j + 1], i)
+                claimed += abs(m[i]) * q[j].missed[i]
     moved = [x * y for x, y in zip(h, along)]
     exact += abs(sum(moved)) if prism[12] else sum(map(abs, moved))
     exact += sum(x * abs(y) for x, y in zip(loose, along))
+    mass *= 32 * UNIT * (until - first + 2) + 16 * UNIT * (1 + far)
+    yield "sums", exact - sums - (bound - rounding), mass
+    yield "rounding", claimed + mass, rounding
     yield "bound", exact - (bound - rounding), rounding
 
 
@@ -397,7 +424,7 @@ def sine_margins(rng, cases):
 def worst_margins(cases):
     """The largest share of each margin that was needed."""
     worst = {}
-    for measure, n in ((sine_margins, 25 * cases), (cell_margins, cases),
+    for measure, n in ((sine_margins, 25 * cases), (cell_margins, cases), (star_margins, cases),
                        (corner_margins, cases // 5), (orbit_margins, 3 * cases)):
         for name, need, there in measure(rng_for(measure.__name__), n):
             if need > 0:
@@ -547,6 +574,9 @@ def test_the_finest_cell():
             assert grown.text[0] in "01" and grown.counts.reasons[1] > 0
         else:
             assert grown.text == "U" and grown.counts.reasons == (0, 0, 0, 0, 1, 0)
+    for cuts in (46, 47):
+        with pytest.raises(ArithmeticError) if cuts > 46 else nullcontext():
+            kernels.call("loewner_cell", [1] * 13 + [0] * 5 + [cuts] * 5, 22, 20)
 
 
 def test_other_parameters():
@@ -569,6 +599,9 @@ def test_huge_and_tiny_numbers():
     far = Problem.around(far.centre[:3] + (Fraction(10) ** 12,) * 2, far.half, together=True)
     assert prove(huge, depth=10, method="loewner").no_tori    # and rightly so
     assert prove(far, depth=10, method="loewner", stubborn=True, time_limit=3).undecided
+    for name, numbers in (("torus", 6), ("product", 4)):
+        with pytest.raises(ArithmeticError):
+            kernels.call(name, [10 ** 160] * numbers, 2, 15, "double")
     with pytest.raises(ConverseError, match="arithmetic"):
         prove(Problem.around((Fraction(10) ** 250,) * 3 + (Fraction(1),) * 2, huge.half),
               method="loewner")

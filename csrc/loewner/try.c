@@ -277,9 +277,9 @@ double loewner_largest(const loewner *w)
 }
 
 /* With n the eigenvector at the centre, n.beta n = 2|n|^2 - sum p sin(y) (n.u)^2 is linear in the
-   parameters.  Its terms are off by 10 u for p, (4 + |x0| + |x1|) u for the sine and 6 u, and 7
-   numbers are added: 27 + |x0| + |x1| units of the sum of absolute values, the mass; the margin is
-   256 (1 + |x0| + |x1|). */
+   parameters.  Its terms are off by 16 u for p and its half-width, (4 + |x0| + |x1|) u for the sine
+   and 6 u, and 7 numbers are added: 33 + |x0| + |x1| units of the sum of absolute values, the mass;
+   the margin is 256 (1 + |x0| + |x1|). */
 int loewner_at_once(const loewner *w, const double x[2])
 {
     double n[2], d[3], s[WAVES], c, sum, mass, omega[WAVES], p[WAVES];
