@@ -9,7 +9,8 @@ from .settings import AS_PRINTED, LIMIT, REGION, THEOREM, UNDECIDED
 
 PLUSES = "+" * 48
 MAP = ("y' = y + J', J' = J - dV(y), V(y) = -a sin y0 - b sin y1 - c sin(y0 + y1)",
-       "x* and v : the angles y at one time and at the next, modulo 2 pi")
+       "x* and v : the angles y at one time and at the next, modulo 2 pi",
+       "Tori : invariant graphs J = P + S'(y) over all angles, P constant, S periodic and C1")
 METHODS = {
     "thesis": "that of the thesis, its listing corrected",
     "loewner": "the Loewner criterion, by witness and multipliers",
@@ -154,7 +155,7 @@ def _statistics(proof):
 
 def _method(proof):
     """What the word of the report rests on."""
-    lines = ["Map : " + MAP[0], MAP[1],
+    lines = ["Map : " + MAP[0], *MAP[1:],
              "Program : converse " + proof.version,
              "Method : " + METHODS[proof.method],
              "Arithmetic : " + proof.arithmetic]
