@@ -5,7 +5,7 @@ import os
 
 from cffi import FFI
 
-SOURCES = ["numbers/apm", "numbers/special", "numbers/guard",
+SOURCES = ["numbers/apm", "numbers/special", "numbers/guard", "numbers/machine",
            "thesis/start", "thesis/region", "thesis/rigorous", "thesis/double",
            "loewner/orbit", "loewner/witness", "loewner/bound", "loewner/try",
            "setup", "search", "kernels"]

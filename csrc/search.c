@@ -12,6 +12,7 @@
 #include <time.h>
 
 #include "numbers/guard.h"
+#include "numbers/machine.h"
 #include "search.h"
 
 enum { AXES = 5, V0 = 0, V1 = 1, FINEST = 61 };         /* of a cell; cuts that its index can hold */

@@ -22,7 +22,4 @@ struct cv_search {
     int prepared, last_steps, status;
 };
 
-/* Do doubles keep the rules that everything rigorous relies on?  (setup.c) */
-int machine_is_sound(void);
-
 #endif

@@ -1,37 +1,16 @@
 /* setup.c - a search is made: the problem is read, and what every step needs is set up. */
-#include <fenv.h>
-#include <float.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 
 #include "numbers/guard.h"
+#include "numbers/machine.h"
 #include "numbers/special.h"
 #include "search.h"
-
-#ifdef __FAST_MATH__
-#error "-ffast-math breaks the rules of rigor"
-#endif
-#if FLT_EVAL_METHOD != 0
-#error "doubles must be evaluated as doubles"
-#endif
 
 enum { MAX_DP = 100000, MAX_DEPTH = 100000 };
 enum { MOST = 300 };                    /* no number of a problem is beyond 10^MOST */
 enum { PI_SHORT = 5, B_PLACES = 12 };   /* see region.c; B as it is reported */
-
-/* What doubles are for must hold, or the filter and every rigorous double are void: rounding to
-   nearest, numbers below the normal ones, and no product that is added before it is rounded. */
-int machine_is_sound(void)
-{
-    volatile double tiny = DBL_MIN, one = 1.0, third, more = 1.0 + 0x1p-30;
-    const double x = more, fused = x * x - (1.0 + 0x1p-29);        /* 2^-60 where it is contracted */
-
-    tiny *= 0.5;
-    third = one / 3.0;
-    return fegetround() == FE_TONEAREST && tiny > 0.0 && third * 3.0 == 1.0 && fused == 0.0 &&
-           one + 0.5 * DBL_EPSILON == 1.0 && one - 0.25 * DBL_EPSILON == 1.0;
-}
 
 static void box_init(box *b)
 {
