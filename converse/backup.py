@@ -49,7 +49,7 @@ class Keeper:
             if self.due == 0.0:         # nothing is lost yet
                 self.path = None
                 raise
-            warnings.warn("%s; the run goes on and tries again" % error, RuntimeWarning,
+            warnings.warn("%s; the run goes on and tries again" % _words(error), RuntimeWarning,
                           stacklevel=2)
         self.pause = max(SECONDS, SHARE * (time.monotonic() - now))
         self.due = time.monotonic() + self.pause
@@ -60,6 +60,11 @@ class Keeper:
             return ""
         try:
             return proof.save(self.path)
-        except ConverseError as error:
-            warnings.warn("%s; this run is not saved" % error, RuntimeWarning, stacklevel=2)
+        except (ConverseError, MemoryError) as error:
+            warnings.warn("%s; this run is not saved" % _words(error), RuntimeWarning,
+                          stacklevel=2)
             return ""
+
+
+def _words(error):
+    return str(error) or "there is not enough memory"

@@ -116,10 +116,14 @@ class History:
     """What became of cells so far, by kinds of cells: see cv_history in csrc/converse.h."""
 
     def __init__(self, history=None):
-        self.nodes, self.cut, self.became = (
-            {} if history is None else
-            {(i, k): n for i, row in enumerate(getattr(history, name)) for k, n in enumerate(row) if n}
-            for name in ("nodes", "cut", "became"))
+        self.nodes, self.cut, self.became = {}, {}, {}
+        if history is not None:
+            wide, long = lib.CV_CLASSES, lib.CV_LEVELS * lib.CV_CLASSES
+            numbers = ffi.unpack(ffi.cast("int *", history), 2 * long + wide * wide)
+            for k, n in enumerate(numbers):
+                if n:
+                    which, place = divmod(k, long)
+                    (self.nodes, self.cut, self.became)[which][divmod(place, wide)] = n
 
     def add(self, other):
         for mine, theirs in ((self.nodes, other.nodes), (self.cut, other.cut),
@@ -145,7 +149,8 @@ class History:
                 if tried:
                     total = sum(n for _, n in heirs.get(kind, ()))
                     size[kind] = 1 + (2 * cut / tried * sum(
-                        n * deeper[heir] for heir, n in heirs[kind]) / total if cut else 0)
+                        n * deeper.get(heir, 1.0) for heir, n in heirs[kind]) / total
+                        if total else 0)
             by_level[level] = size
         return sum(by_level[min(sum(cuts), lib.CV_LEVELS - 1)][lib.cv_class(hint)]
                    for _, cuts, hint in cells)
@@ -175,8 +180,9 @@ class Search:
 
     def begin(self, tree):
         """Takes up a tree; ConverseError if it does not belong to a search of this kind."""
-        text = tree.encode("ascii", "replace")
-        code = lib.cv_resume(self.handle, text, len(text))
+        if not tree.isascii():
+            raise WrongTree()
+        code = lib.cv_resume(self.handle, tree.encode("ascii"), len(tree))
         if code == lib.CV_EARGUMENT:
             raise WrongTree()
         check(code)

@@ -111,6 +111,9 @@ def lock(path):
             os.close(handle)
             raise ConverseError("%s: another run is writing this file; name another" % path) \
                 from None
+        if os.fstat(handle).st_size:
+            os.close(handle)
+            raise ConverseError("%s: exists and is no lock of this program; rename it" % name)
         with contextlib.suppress(OSError):
             if os.path.samestat(os.fstat(handle), os.stat(name)):
                 break

@@ -8,6 +8,7 @@ import concurrent.futures
 import contextlib
 import os
 import time
+from dataclasses import replace
 
 from . import core, tree
 from .core import Counts
@@ -26,7 +27,22 @@ class Part:
     def __init__(self, cells, text=""):
         self.cells, self.pieces = list(cells), [text]
         self.steps = [OLD] * len(text)      # of each node of the text, if they are wanted
-        self.stopped = "U" in text          # and a search that is not stubborn ends here
+        self.kinds = _kinds(text)
+
+    @property
+    def stopped(self):
+        """Is there an undecided prism?  A search that is not stubborn ends here."""
+        return self.kinds[3] > 0
+
+    def append(self, pieces, steps, kinds):
+        self.pieces += pieces
+        self.steps += steps
+        self.kinds = tuple(map(int.__add__, self.kinds, kinds))
+
+
+def _kinds(text):
+    """How many nodes are cuts, proved, symmetric, undecided."""
+    return (sum(map(text.count, tree.CUTS)), *map(text.count, "PSU"))
 
 
 def count_workers(executor=None):
@@ -50,7 +66,8 @@ class Growth:
         """executor: of somebody else, for the work that is worth dividing; jobs: parts at a time."""
         self.task, self.jobs, self.executor = task, jobs, executor
         self.want_steps, self.stubborn = want_steps, task.settings.stubborn
-        self.parts, self.counts, self.history = [], Counts(), core.History()
+        self.parts, self.statistics, self.history = [], Counts(), core.History()
+        self.changes = 0                    # under way: see _change
         self.running = {}                   # future -> (part, attempts left)
         self.stop = core.stop_token()
         self.threads = concurrent.futures.ThreadPoolExecutor(jobs if executor is None else 1)
@@ -80,7 +97,7 @@ class Growth:
         # Every worker makes a search of its own: that must pay.
         self.began = time.monotonic()
         self.alone_until = self.began + max(ALONE_SECONDS, 10 * (self.began - began))
-        for name in "cuts", "proved", "symmetric", "undecided", "most_cuts":
+        for name in "cuts", "proved", "symmetric", "undecided":
             if getattr(begun.counts, name) != getattr(counts, name):
                 raise core.WrongTree()
         hints = iter(hints)
@@ -89,7 +106,7 @@ class Growth:
         for piece, cell in zip(pieces, cells):
             self.parts += [Part([], piece), Part([cell])]
         self.parts += [Part([], last), Part(cells[len(pieces):])]
-        self.counts = counts
+        self.statistics = replace(counts, most_cuts=begun.counts.most_cuts)
         return begun
 
     # ---- what there is
@@ -102,13 +119,25 @@ class Growth:
                 return
 
     @property
+    def counts(self):
+        """The statistics; the nodes are those of the tree as it is, while tries, too, count that
+        came to nothing since an undecided prism before them ended the search."""
+        cuts, proved, symmetric, undecided = map(sum, zip(*(part.kinds for part in self._relevant()),
+                                                          (0,) * 4))
+        return replace(self.statistics, cuts=cuts, proved=proved, symmetric=symmetric,
+                       undecided=undecided)
+
+    @property
     def finished(self):
         """Is everything decided that is to be decided?"""
         return not any(part.cells for part in self._relevant()
                        if self.stubborn or not part.stopped)
 
     def text(self):
-        """The tree so far, and the hints of the untried prisms in it."""
+        """The tree so far, and the hints of the untried prisms in it.  AssertionError: an exception
+        struck in the middle of a change, and no tree is to be had any more."""
+        if self.changes:
+            raise AssertionError("the tree is not whole")
         pieces, hints = [], []
         for part in self._relevant():
             pieces += part.pieces
@@ -120,15 +149,20 @@ class Growth:
         return text.rstrip(tree.UNTRIED), hints
 
     def _check(self, text):
-        """AssertionError if the text lacks a prism or has one too many, as it might after an
-        exception in the middle of a change: such a tree must never be saved."""
-        cuts, proved, symmetric, undecided, untried = (
-            sum(map(text.count, kinds)) for kinds in (tree.CUTS, "P", "S", "U", tree.UNTRIED))
-        if undecided and not self.stubborn:
-            return                          # it ends there, and can never become a theorem
-        if proved + symmetric + undecided + untried != cuts + 1 or self.counts.cuts != cuts or (
-                self.counts.proved, self.counts.symmetric) != (proved, symmetric):
+        """AssertionError if the text lacks a prism or has one too many: it must never be saved."""
+        kinds = cuts, proved, symmetric, undecided = _kinds(text)
+        missing = cuts + 1 - proved - symmetric - undecided - text.count(tree.UNTRIED)
+        counts = self.counts
+        if (missing < 0 if undecided and not self.stubborn else missing != 0) or kinds != (
+                counts.cuts, counts.proved, counts.symmetric, counts.undecided):
             raise AssertionError("the tree is not whole")
+
+    @contextlib.contextmanager
+    def _change(self):
+        """Around every change of the parts: what an exception leaves half done must not be saved."""
+        self.changes += 1
+        yield
+        self.changes -= 1
 
     def beginning(self, start):
         """The tree up to its first gap, from node number start on: the text and the lengths of the
@@ -149,12 +183,11 @@ class Growth:
 
     def _take(self, part, grown):
         """Adds to a part what was grown from its cells."""
-        part.pieces.append(grown.text)
-        part.steps += grown.steps
-        part.cells = grown.cells
-        part.stopped = part.stopped or grown.counts.undecided > 0
-        self.counts += grown.counts
-        self.history.add(grown.history)
+        with self._change():
+            part.append([grown.text], grown.steps, _kinds(grown.text))
+            part.cells = grown.cells
+            self.statistics += grown.counts
+            self.history.add(grown.history)
 
     def _queue(self):
         """The parts that wait for a worker, in preorder."""
@@ -168,37 +201,51 @@ class Growth:
             part = max(queue, key=lambda part: len(part.cells))
             if len(part.cells) == 1:
                 break
-            first, rest = Part(part.cells[:-1]), Part(part.cells[-1:])  # the last is the largest
-            first.pieces, first.steps, first.stopped = part.pieces, part.steps, part.stopped
+            rest = Part(part.cells[-1:])        # the last is the largest
             at, place = self.parts.index(part), queue.index(part)
-            self.parts = self.parts[:at] + [first, rest] + self.parts[at + 1:]
-            queue[place:place + 1] = [first, rest]
+            with self._change():
+                part.cells = part.cells[:-1]
+                self.parts.insert(at + 1, rest)
+            queue.insert(place + 1, rest)
         return queue
 
     def work(self, seconds):
-        """Hands parts to workers and takes what comes back within so many seconds."""
-        left = self.alone_until - time.monotonic()
-        if left > 0 or (self.jobs == 1 and self.executor is None):
-            for part in self._queue()[:1 - len(self.running)]:
-                self._submit(part, ATTEMPTS, self.threads, min(seconds, left if left > 0 else seconds))
+        """Hands parts to workers and takes what comes back, for so many seconds at most; returns
+        when something came back and no part waits any more."""
+        end = time.monotonic() + seconds
+        alone = self.alone_until - time.monotonic()
+        if alone > 0 or (self.jobs == 1 and self.executor is None):
+            executor, workers = self.threads, 1
+            seconds = min(seconds, alone) if alone > 0 else seconds
+            queue = self._queue()
         else:
-            idle = self.jobs - len(self.running)
-            for part in self._divide(self._queue(), idle)[:idle]:
-                self._submit(part, ATTEMPTS, self.executor or self.threads,
-                             min(TASK_SECONDS, 0.1 * (time.monotonic() - self.began)))
-        done, _ = concurrent.futures.wait(self.running, seconds,
-                                          concurrent.futures.FIRST_COMPLETED)
-        for future in done:
-            part, attempts = self.running.pop(future)
-            try:
-                self._take(part, future.result())
-            except (ConverseError, MemoryError):
-                raise
-            except Exception as error:      # a worker died: its part is as it was
-                if attempts == 1:
-                    raise ConverseError("the workers keep failing (%s: %s)"
-                                        % (type(error).__name__, error)) from None
-                self._submit(part, attempts - 1, self.executor or self.threads, TASK_SECONDS)
+            executor, workers = self.executor or self.threads, self.jobs
+            seconds = min(TASK_SECONDS, 0.1 * (time.monotonic() - self.began))
+            queue = self._divide(self._queue(), workers - len(self.running))
+        queue.reverse()
+        while True:
+            while queue and len(self.running) < workers:
+                self._submit(queue.pop(), ATTEMPTS, executor, seconds)
+            done, _ = concurrent.futures.wait(self.running, max(0.0, end - time.monotonic()),
+                                              concurrent.futures.FIRST_COMPLETED)
+            stopped = False
+            for future in done:
+                part, attempts = self.running.pop(future)
+                try:
+                    grown = future.result()
+                except (ConverseError, MemoryError):
+                    raise
+                except Exception as error:      # a worker died: its part is as it was
+                    if attempts == 1:
+                        raise ConverseError("the workers keep failing (%s: %s)"
+                                            % (type(error).__name__, error)) from None
+                    self._submit(part, attempts - 1, executor, TASK_SECONDS)
+                else:
+                    self._take(part, grown)
+                    stopped = stopped or (part.stopped and not self.stubborn)
+            if not (queue or self.running) or (done and not queue) or stopped or \
+                    time.monotonic() >= end:
+                break
         self._merge()
 
     def _submit(self, part, attempts, executor, seconds):
@@ -217,24 +264,28 @@ class Growth:
     def _merge(self):
         """Gives the text of parts whose predecessors are finished to these."""
         parts = []
-        for part in self.parts:
-            if parts and not parts[-1].cells and (self.stubborn or not parts[-1].stopped):
-                parts[-1].pieces += part.pieces
-                parts[-1].steps += part.steps
-                parts[-1].stopped = parts[-1].stopped or part.stopped
-                part.pieces, part.steps = [], []
-                if not part.cells:
-                    continue
-            parts.append(part)
-        self.parts = parts
+        with self._change():
+            for part in self.parts:
+                if parts and not parts[-1].cells and (self.stubborn or not parts[-1].stopped):
+                    parts[-1].append(part.pieces, part.steps, part.kinds)
+                    part.pieces, part.steps, part.kinds = [], [], _kinds("")
+                    if not part.cells:
+                        continue
+                parts.append(part)
+            self.parts = parts
 
     def settle(self):
         """Waits a little for those who still work, and takes what they bring."""
         self.stop[0] = 1
         done, late = concurrent.futures.wait(self.running, 4 * TASK_SECONDS + 1)
         for future in done:
-            with contextlib.suppress(Exception):        # else the part is as it was
-                self._take(self.running[future][0], future.result())
+            try:
+                grown = future.result()
+            except Exception:               # the part is as it was
+                continue
+            if grown is not None:           # not stopped before it began
+                self._take(self.running[future][0], grown)
         for future in late:
             future.cancel()
         self.running.clear()
+        self._merge()

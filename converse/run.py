@@ -182,6 +182,9 @@ def _continued(resume, file, problem, given):
                 differs(key, *(" .. ".join(map(decimal_text, ends)) for ends in (theirs, ours)))
         if problem.together != proof.problem.together:
             differs("together", proof.problem.together, problem.together)
+    if "U" in proof.tree and proof.settings.stubborn and not settings.stubborn and \
+            settings.depth == proof.settings.depth:
+        differs("stubborn", True, False)
     text, pending = proof.tree, proof.pending
     if settings.depth > proof.settings.depth:       # what was given up is tried again
         known, hints = iter(pending), []

@@ -69,7 +69,7 @@ int cv_search_new(cv_search **s, const char *const region[5], const char *const 
 void cv_search_free(cv_search *s);
 
 /* Sets up what every step needs, the bounds over the torus first of all.  CV_RUNNING: it was
-   stopped, and the search can only be freed. */
+   stopped; then, and after an error, the search can only be freed. */
 int cv_prepare(cv_search *s, const volatile int *stop);
 
 /* Forgets tree and counts; n prisms are to be decided now, the first of them first. */

@@ -248,13 +248,13 @@ int cv_kernel(const char *name, int as_double, int as_printed, int dp,
                                        : Rkernel(exact, name, nin, x, nout, x + MAX_IN);
             }
         }
+        for (int j = 0; j < nout && status == CV_OK; j++) {
+            out[j] = apm_get_str(x[MAX_IN + j]);
+            if (out[j] == NULL)
+                status = CV_ENOMEM;
+        }
     }
     guard_arm(before);
-    for (int j = 0; j < nout && status == CV_OK; j++) {
-        out[j] = apm_get_str(x[MAX_IN + j]);
-        if (out[j] == NULL)
-            status = CV_ENOMEM;
-    }
     for (int j = 0; j < nout && status != CV_OK; j++) {
         free(out[j]);
         out[j] = NULL;

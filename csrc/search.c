@@ -248,7 +248,7 @@ int cv_step(cv_search *s, long max_leaves, double max_seconds, const volatile in
         s->status = CV_ENOMEM;
     else if (s->status == CV_RUNNING && (!s->prepared || !machine_is_sound()))
         s->status = s->prepared ? CV_EMACHINE : CV_EARGUMENT;
-    while (jumped == 0 && s->status == CV_RUNNING && decided_leaves(s) < enough) {
+    while (jumped == 0 && s->status == CV_RUNNING && s->pending > 0 && decided_leaves(s) < enough) {
         if (make_room(s) != CV_OK) {
             s->status = CV_ENOMEM;
             break;
@@ -268,7 +268,7 @@ int cv_restart(cv_search *s, int n, const cv_cell *cells)
 {
     if (s->status == CV_ENOMEM)         /* its numbers are abandoned */
         return CV_ENOMEM;
-    if (n < 0)
+    if (n < 0 || s->spoilt)
         return CV_EARGUMENT;
     for (int j = 0; j < n; j++)
         for (int axis = 0; axis < AXES; axis++)
@@ -340,6 +340,10 @@ int cv_resume(cv_search *s, const char *tree, size_t length)
             s->stack[s->pending++] = untried[--n];
     }
     free(untried);
+    if (status != CV_OK)
+        s->pending = 0;
+    if (s->status != CV_ENOMEM)
+        s->status = status != CV_OK ? status : s->pending > 0 ? CV_RUNNING : CV_OK;
     return status;
 }
 
@@ -365,12 +369,13 @@ void cv_free(char *text) { free(text); }
 
 char *cv_constant(const cv_search *s, int which)
 {
-    if (which < 0 || which > 11 || (which >= 2 && !s->prepared))
-        return NULL;
-    if (which < 2)
-        return apm_get_str(s->root.xstar[which]);
-    if (which < 8)
-        return apm_get_str(s->constants[which - 2]);
-    return apm_get_str(which % 2 == 0 ? s->root.centre[3 + (which - 8) / 2]
-                                      : s->root.half[3 + (which - 8) / 2]);
+    guard g = { .stop = NULL }, *const before = guard_arm(&g);
+    char *volatile text = NULL;
+
+    if (setjmp(g.here) == 0 && which >= 0 && which < 12 && (which < 2 || s->prepared))
+        text = apm_get_str(which < 2 ? s->root.xstar[which] : which < 8 ? s->constants[which - 2]
+                           : which % 2 == 0 ? s->root.centre[3 + (which - 8) / 2]
+                                            : s->root.half[3 + (which - 8) / 2]);
+    guard_arm(before);
+    return text;
 }

@@ -19,7 +19,7 @@ struct cv_search {
     cv_history history;
     apm_t constants[N_CONSTANTS], t[2];
     int method, dp, depth, stubborn, as_printed, together, symmetric, at_once;
-    int prepared, last_steps, status;
+    int prepared, spoilt, last_steps, status;        /* spoilt: setting up was broken off */
 };
 
 #endif

@@ -2,6 +2,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "numbers/guard.h"
 #include "numbers/machine.h"
@@ -55,6 +56,19 @@ void cv_search_free(cv_search *s)
     free(s);
 }
 
+/* Whatever the locale writes between whole numbers and decimals, a point replaces it. */
+static void with_a_point(char *text)
+{
+    char *end = text;
+
+    for (const char *c = text; *c != '\0'; c++)
+        if (strchr("0123456789+-e", *c) != NULL)
+            *end++ = *c;
+        else if (end == text || end[-1] != '.')
+            *end++ = '.';
+    *end = '\0';
+}
+
 /* The problem as it is given, and the starting point. */
 static int read_problem(cv_search *s, const char *const region[5], const char *const half[5],
                         const char *const xstar[2])
@@ -90,8 +104,10 @@ static int read_problem(cv_search *s, const char *const region[5], const char *c
     else
         set_LL_start(start, abc, s->symmetric);
     for (int j = 0; j < 2; j++) {
-        if (xstar == NULL)
+        if (xstar == NULL) {
             snprintf(text, sizeof text, s->method == CV_LOEWNER ? "%.6f" : "%.17g", start[j]);
+            with_a_point(text);
+        }
         if (apm_set_str(s->root.xstar[j], xstar == NULL ? text : xstar[j]) != APM_OK)
             return CV_ENUMBER;
     }
@@ -158,10 +174,11 @@ int cv_prepare(cv_search *s, const volatile int *stop)
 {
     guard g = { .stop = stop }, *before;
 
-    if (s->prepared || s->status != CV_RUNNING)
-        return s->prepared ? CV_OK : s->status == CV_OK ? CV_EARGUMENT : s->status;
+    if (s->prepared || s->spoilt || s->status != CV_RUNNING)
+        return s->prepared ? CV_OK : s->status < CV_OK ? s->status : CV_EARGUMENT;
     if (!machine_is_sound())
-        return s->status = CV_EMACHINE;
+        return CV_EMACHINE;
+    s->spoilt = 1;                      /* until it is done */
     before = guard_arm(&g);
     switch (setjmp(g.here)) {
     case 0:
@@ -179,6 +196,7 @@ int cv_prepare(cv_search *s, const volatile int *stop)
         s->status = CV_EMACHINE;
     if (s->status == CV_OK) {
         s->prepared = 1;
+        s->spoilt = 0;
         s->status = CV_RUNNING;
         return CV_OK;
     }

@@ -21,6 +21,10 @@ import pytest
 
 from converse import Problem, check, prove, read_input
 
+# Of a process without sanitizers, which may import what lies about its file.
+PLAIN = {name: value for name, value in os.environ.items()
+         if name not in ("LD_PRELOAD", "PYTHONSAFEPATH", "PYTHONPATH")}
+
 INPUTS = ("trig272", "trig274", "trig276", "trig278")
 mp = mpmath.mp.clone()
 mp.dps = 60
@@ -681,7 +685,8 @@ def alone(*arguments, before="", stdin=None):
     code = before + "; import runpy, sys; sys.argv = sys.argv[1:]; " \
         "runpy.run_path(sys.argv[0], run_name='__main__')"
     return subprocess.run([sys.executable, "-I", "-S", "-c", code.lstrip("; "), check.__file__,
-                           *map(str, arguments)], capture_output=True, text=True, stdin=stdin)
+                           *map(str, arguments)], capture_output=True, text=True, stdin=stdin,
+                          env=PLAIN)
 
 
 def test_the_file_alone_needs_nothing_but_python(texts, tmp_path):
@@ -699,7 +704,7 @@ def test_the_file_alone_needs_nothing_but_python(texts, tmp_path):
         (package / "__init__.py").write_text("")
         (package / "version.py").write_text(content)
         done = subprocess.run([sys.executable, copy, "--version"], capture_output=True, text=True,
-                              cwd=tmp_path)
+                              cwd=tmp_path, env=PLAIN)
         assert done.stdout.startswith("converse-check " + version)
 
 

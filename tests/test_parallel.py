@@ -220,3 +220,67 @@ def test_mpi(proof, tmp_path):
                    stdout=subprocess.DEVNULL)
     assert timeless(Proof.load(tmp_path / "a.proof")) == replace(
         proof, problem=replace(LONG, comments=()))
+
+
+class Late(concurrent.futures.ThreadPoolExecutor):
+    """Brings what is leftmost of the tree last."""
+
+    def submit(self, work, task, cells, *rest):
+        if cells[0][0] == (0,) * 5:
+            return super().submit(lambda: (time.sleep(0.4), work(task, cells, *rest))[1])
+        return super().submit(work, task, cells, *rest)
+
+
+@pytest.mark.parametrize("jobs", [2, 5])
+def test_an_undecided_prism_before_finished_ones(tmp_path, monkeypatch, jobs):
+    """A search that is not stubborn ends at the first; what others did beyond it is of no account."""
+    monkeypatch.setattr(growth, "ALONE_SECONDS", 0.0)
+    monkeypatch.setattr(growth, "MANY", 40)
+    monkeypatch.setattr(growth.Growth, "alone_until", property(lambda self: 0.0, lambda *_: None),
+                        raising=False)
+    problem, path = line("0.0170", "0.0280"), tmp_path / "a.proof"
+    alone = prove(problem, method="loewner", depth=15, jobs=1)
+    assert alone.undecided
+    with Late(jobs) as executor:
+        many = prove(problem, method="loewner", depth=15, executor=executor, jobs=jobs, backup=path)
+    assert many.counts.tries > alone.counts.tries       # it did go that way
+    assert many.tree == alone.tree and "Undecided prisms : 1\n" in many.report()
+    for kind in "cuts", "proved", "symmetric", "undecided":
+        assert getattr(many.counts, kind) == getattr(alone.counts, kind)
+    with Late(jobs) as executor:            # and it can be continued, deeper
+        deeper = prove(resume=path, depth=120, executor=executor, jobs=jobs)
+    assert deeper.no_tori and deeper.counts.undecided == 0
+    assert deeper.counts.proved == deeper.tree.count("P") and deeper.verify()
+
+
+def test_continuing_less_stubbornly_is_refused(tmp_path):
+    path = tmp_path / "a.proof"
+    half = prove(line("0.0145", "0.0155"), method="loewner", depth=20, stubborn=True, backup=path)
+    before = path.read_bytes()
+    assert half.tree.count("U") > 1
+    with pytest.raises(ConverseError, match="stubborn"):
+        prove(resume=path, stubborn=False)
+    assert path.read_bytes() == before
+    assert prove(resume=path, stubborn=False, depth=120).no_tori
+
+
+def test_what_comes_late_is_kept(tmp_path):
+    """At the time limit the workers are waited for a little, and what they bring is in the backup."""
+    class Slow(concurrent.futures.ThreadPoolExecutor):
+        def submit(self, work, *args):
+            return super().submit(lambda: (work(*args), time.sleep(0.7))[0])
+
+    path = tmp_path / "a.proof"
+    with Slow(2) as executor:
+        result = prove(LONG, method="loewner", executor=executor, time_limit=0.3, backup=path)
+    assert len(Proof.load(path).tree) == len(result.tree) > 1000
+
+
+def test_many_gaps_cost_little(monkeypatch):
+    """Thousands of prisms that were given up are tried again without a look at all of them for each."""
+    shallow = prove(line("0.0140", "0.0280"), method="loewner", depth=16, stubborn=True)
+    assert shallow.tree.count("U") > 2000
+    looks, merge = [], growth.Growth._merge
+    monkeypatch.setattr(growth.Growth, "_merge", lambda self: (looks.append(self), merge(self)))
+    assert prove(resume=shallow, depth=17, jobs=2).counts.cuts > shallow.counts.cuts
+    assert len(looks) < 300

@@ -1,6 +1,11 @@
 """The search as a whole: what is proved is true, what is not true is not proved."""
 
 import contextlib
+import os
+import shutil
+import subprocess
+import sys
+import threading
 from fractions import Fraction
 from threading import Thread
 
@@ -232,3 +237,106 @@ def test_no_symmetry_where_the_start_is_off_the_diagonal():
         assert search.prepare(stop_token())
         counts = search.grow([(*ROOT, 0)], 60, MANY, stop_token(), False).counts
         assert counts.proved > 0 and (counts.symmetric > 0) == skips
+
+
+# ---- what may be asked of a search in C, in which order
+
+def core_search(xstar=None, depth=30, **settings):
+    from converse.core import Search, Settings, Task, ffi
+
+    search = Search(Task(line("0.0275"), Settings(depth=depth, **settings), xstar))
+    assert search.prepare(ffi.NULL)
+    return search
+
+
+def test_a_tree_that_is_taken_up(root):
+    """A whole tree leaves nothing to do, a wrong one nothing that can be stepped."""
+    from converse.core import WrongTree, ffi, lib
+
+    search = core_search()
+    handle, step = search.handle, lambda: lib.cv_step(search.handle, 100, 1.0, ffi.NULL)
+    for text, status, pending in (("P", lib.CV_OK, 0), ("0PU", lib.CV_OK, 0), ("0SP", lib.CV_OK, -1),
+                                  ("0P", lib.CV_OK, 1), ("0??", lib.CV_OK, 2), ("PP", -3, -1),
+                                  ("2PP", -3, -1), ("x", -3, -1), ("0P\0", -3, -1)):
+        found = lib.cv_resume(handle, text.encode(), len(text))
+        if pending < 0:
+            assert found == lib.CV_EARGUMENT and step() == lib.CV_EARGUMENT
+            assert lib.cv_pending(handle, ffi.NULL) == 0
+        else:
+            assert (found, lib.cv_pending(handle, ffi.NULL)) == (status, pending)
+            assert step() in (lib.CV_OK, lib.CV_RUNNING)
+    for text in "0P\u00e9", "0P?\U0001d7d8":
+        with pytest.raises(WrongTree):
+            search.begin(text)
+
+
+@pytest.mark.parametrize("xstar, good", [(("0.82", "0.82"), True), (("0.82", "0.83"), False)])
+def test_what_was_skipped_must_be_symmetric(xstar, good):
+    from converse.core import WrongTree
+
+    search = core_search(xstar)
+    with contextlib.nullcontext() if good else pytest.raises(WrongTree):
+        assert search.begin("01?S?").counts.symmetric == 1
+
+
+def test_the_finest_index():
+    """A cell whose index has no bit left is not cut, whatever the depth."""
+    from converse.core import ffi
+
+    search = core_search(depth=1000, digits=60, stubborn=True)
+    for cuts, text in ((60, "0"), (61, "U")):
+        cell = ((2 ** cuts // 3, 2 ** cuts // 5, 0, 0, 0), (cuts, cuts, 0, 0, 0), 0)
+        grown = search.grow([cell], 10, 1, ffi.NULL, False)
+        assert grown.text.startswith(text) or grown.text == "P"
+        assert all(max(cuts) <= 61 for _, cuts, _ in grown.cells)
+
+
+def test_stopped_in_the_middle_of_a_prism():
+    """The prism at hand is forgotten, with its statistics; then the search goes on as if nothing
+    had been."""
+    from converse.core import ffi, stop_token
+    from converse.tree import ROOT as WHOLE
+
+    search, cells, text, counts, stops = core_search(digits=3000), [(*WHOLE, 0)], "", [], 0
+    whole = core_search(digits=3000).grow(cells, 60, 30, ffi.NULL, False)
+    delay = 0.002
+    while len(text) < len(whole.text):
+        token = stop_token()
+        timer = threading.Timer(delay, token.__setitem__, (0, 1))
+        timer.start()
+        grown = search.grow(cells, 60, 30 - sum(map(text.count, "PSU")), token, False)
+        timer.cancel()
+        stops += not grown.text
+        delay *= 1.1
+        text, cells = text + grown.text, grown.cells
+        counts.append(grown.counts)
+    assert text == whole.text and stops > 0
+    assert sum(c.quick_tries for c in counts) == whole.counts.quick_tries
+
+
+def test_a_search_whose_setting_up_was_stopped_is_good_for_nothing():
+    from converse.core import Search, Settings, Task, ffi, lib, stop_token
+
+    search = Search(Task(line("0.0275"), Settings(digits=20000)))
+    token = stop_token()
+    token[0] = 1
+    assert not search.prepare(token)
+    assert lib.cv_restart(search.handle, 0, ffi.NULL) == lib.CV_EARGUMENT
+    assert lib.cv_prepare(search.handle, ffi.NULL) == lib.CV_EARGUMENT
+
+
+def test_a_locale_with_a_comma(tmp_path):
+    """As a graphical toolkit may set it; the test makes one, since few machines have it."""
+    if not shutil.which("localedef"):
+        pytest.skip("needs localedef")
+    made = subprocess.run(["localedef", "-i", "de_DE", "-f", "UTF-8", str(tmp_path / "de_DE.UTF-8")],
+                          capture_output=True, check=False)
+    code = ("import locale; locale.setlocale(locale.LC_ALL, 'de_DE.UTF-8'); import converse; "
+            "assert locale.localeconv()['decimal_point'] == ','; "
+            "p = converse.Problem('0.32', '0.32', '0.64'); "
+            "assert converse.prove(p) and converse.prove(p, method='loewner')")
+    result = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True,
+                            env=dict(os.environ, LOCPATH=str(tmp_path)), cwd=tmp_path)
+    if "unsupported locale" in result.stderr:
+        pytest.skip("no such locale can be made here: " + made.stderr.decode()[:60])
+    assert result.returncode == 0, result.stderr
