@@ -183,6 +183,8 @@ class Growth:
 
     def _take(self, part, grown):
         """Adds to a part what was grown from its cells."""
+        if grown is None:                   # stopped before it could begin
+            return
         with self._change():
             part.append([grown.text], grown.steps, _kinds(grown.text))
             part.cells = grown.cells
@@ -283,8 +285,7 @@ class Growth:
                 grown = future.result()
             except Exception:               # the part is as it was
                 continue
-            if grown is not None:           # not stopped before it began
-                self._take(self.running[future][0], grown)
+            self._take(self.running[future][0], grown)
         for future in late:
             future.cancel()
         self.running.clear()

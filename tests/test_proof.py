@@ -476,3 +476,12 @@ def test_a_proof_of_nothing_can_be_shown(problem):
     assert not nothing and nothing.xstar is None and nothing.report()
     assert nothing._repr_html_().startswith("<pre>")
     assert prove(problem) == prove(problem)         # however long each took
+
+
+def test_apart_is_not_together(root):
+    """The tree of a segment must not become a theorem about the box around it, nor the other way."""
+    problem = read_input(root / "inputs" / "trig180.in")
+    for together in True, False:
+        half = prove(replace(problem, together=together), method="loewner", depth=8, stubborn=True)
+        with pytest.raises(ConverseError, match="its together is %s, this one's is" % together):
+            prove(replace(problem, together=not together), resume=half, depth=120)
