@@ -271,12 +271,31 @@ def test_what_comes_late_is_kept(tmp_path):
     """At the time limit the workers are waited for a little, and what they bring is in the backup."""
     class Slow(concurrent.futures.ThreadPoolExecutor):
         def submit(self, work, *args):
-            return super().submit(lambda: (work(*args), time.sleep(0.7))[0])
+            def slowly():
+                grown = work(*args)
+                brought.append(grown.text)
+                time.sleep(0.4)
+                return grown
 
-    path = tmp_path / "a.proof"
+            return super().submit(slowly)
+
+    path, brought = tmp_path / "a.proof", []
     with Slow(2) as executor:
         result = prove(LONG, method="loewner", executor=executor, time_limit=0.3, backup=path)
-    assert len(Proof.load(path).tree) == len(result.tree) > 1000
+    tree = Proof.load(path).tree
+    assert tree == result.tree and brought and all(text in tree for text in brought)
+
+
+def test_what_lies_beyond_an_undecided_prism_is_not_its_own():
+    """Unless the search is stubborn: then the next part follows as always."""
+    from converse.core import Settings, Task
+
+    for stubborn, text in (False, "0U"), (True, "0UP"):
+        grown = growth.Growth(Task(LONG, Settings("loewner", stubborn=stubborn)), 1)
+        grown.parts = [growth.Part([], "0U"), growth.Part([], "P")]
+        grown._merge()
+        assert grown.finished and grown.text() == (text, [])
+        assert (grown.counts.proved, grown.counts.undecided) == (int(stubborn), 1)
 
 
 def test_many_gaps_cost_little(monkeypatch):
