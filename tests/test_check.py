@@ -837,9 +837,9 @@ def test_killed_at_random_moments(long, tmp_path, generator, jobs):
                 time.sleep(0.1)
             raise AssertionError("a process is left")
         assert "Traceback" not in err and err.count("\n") <= 1
-        if process.returncode == 0:
+        if out:                                 # it is done, even if struck after its last word
             break
-        assert out == "" and process.returncode in (-kind, 128 + kind), err
+        assert process.returncode in (-kind, 128 + kind), err
         assert process.returncode < 0 or "interrupted; nothing was verified" in err
         words.append("the same command goes on from " in err)
         if state.exists():
@@ -848,7 +848,8 @@ def test_killed_at_random_moments(long, tmp_path, generator, jobs):
             assert set(os.listdir(tmp_path)) <= {"state"}
         for name in set(os.listdir(tmp_path)) - {"state"}:
             os.unlink(tmp_path / name)
-    assert process.returncode == 0 and seen == sorted(seen) and len(set(seen)) > 2 and any(words)
+    assert process.returncode in (0, -kind, 128 + kind)
+    assert seen == sorted(seen) and len(set(seen)) > 2 and any(words)
     assert "earlier run" in out.split("\n")[0] and pieces in out
     assert "\nOf these, by an earlier run whose state was believed : %d\n" % seen[-1] in out
 
