@@ -25,13 +25,8 @@ prove: $(VENV)/installed
 	$(VENV)/bin/converse -d30 -g build/trig274.ps inputs/trig274.in
 	@echo 'The figure of the prisms is build/trig274.ps.'
 
-# In two processes, about equal: one for each of two cores.
-HALF = tests/test_check.py tests/test_figure.py tests/test_fuzz.py tests/test_images.py
-
 test: $(VENV)/with-test
-	$(VENV)/bin/pytest $(HALF) & half=$$!; \
-	$(VENV)/bin/pytest tests $(HALF:%=--ignore=%); rest=$$?; \
-	wait $$half && exit $$rest
+	$(VENV)/bin/pytest tests
 
 # A hundred times as many random cases; hours.
 torture: $(VENV)/with-test
