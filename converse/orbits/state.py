@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from math import isfinite, sqrt
+from math import asinh, isfinite, sinh, sqrt
 from typing import NamedTuple, Optional, Tuple
 
 import numpy as np
@@ -151,21 +151,14 @@ class State:
 
     @cached_property
     def least(self):
-        """The least eigenvalue of the Hessian, to a relative 1e-3 or an absolute 1e-14."""
-        size = float(np.abs(self.blocks).max()) * 2 + 3
-        low, high = -size, size
-        while high - low > max(1e-14, 1e-3 * min(abs(low), abs(high))):
+        """The least eigenvalue of the Hessian, to a relative 1e-5 or an absolute 1e-15, but for the
+        rounding of the Hessian, about 1e-15 too."""
+        high = asinh(1e15 * (2 * float(np.abs(self.blocks).max()) + 2))
+        low = -high
+        for _ in range(24):
             middle = (low + high) / 2
-            if low > 0 and high > 4 * low:
-                middle = sqrt(low * high)
-            elif high < 0 and low < 4 * high:
-                middle = -sqrt(low * high)
-            elif low < 0 < high and high - low > 1e-14:
-                middle = 0.0 if min(-low, high) > 1e-13 else middle
-                if middle == 0.0 and (low, high) != (-size, size):
-                    middle = (low + high) / 2
-            low, high = (low, middle) if self.below(middle) else (middle, high)
-        return (low + high) / 2
+            low, high = (low, middle) if self.below(1e-15 * sinh(middle)) else (middle, high)
+        return 1e-15 * sinh((low + high) / 2)
 
     # ---- what kind of state it is
 
