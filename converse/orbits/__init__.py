@@ -15,8 +15,9 @@ except ImportError:
 
 from .potential import (Fourier, FromPython, Potential, ff, froeschle, parameters, poly, standard,
                         trig)
+from .search import search
 from .solver import Family, flow, follow, newton, straight
 from .state import State
 
 __all__ = ["Family", "Fourier", "FromPython", "Potential", "State", "ff", "flow", "follow",
-           "froeschle", "newton", "parameters", "poly", "standard", "straight", "trig"]
+           "froeschle", "newton", "parameters", "poly", "search", "standard", "straight", "trig"]
