@@ -20,5 +20,6 @@ from .search import search
 from .solver import Family, flow, follow, newton, straight
 from .state import State
 
-__all__ = ["Family", "Fourier", "FromPython", "Potential", "State", "ff", "flow", "follow",
-           "froeschle", "newton", "parameters", "poly", "search", "standard", "straight", "trig"]
+__all__ = ["Family", "Floor", "Fourier", "FromPython", "LeastAction", "Potential", "State",
+           "enclosed_action", "ff", "floor", "flow", "follow", "froeschle", "least_action", "newton",
+           "parameters", "poly", "search", "standard", "straight", "trig"]
