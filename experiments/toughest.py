@@ -6,10 +6,11 @@ Writes into DIRECTORY (build/toughest), and continues there when it was interrup
     sweep.csv     where a thousand vectors, well spread, turn hyperbolic, of q from 300 to 1200
     search-K.csv  the same of vectors near the toughest, ever nearer and with ever larger q
     near.csv, near-fixed.csv, golden.csv, golden-fixed.csv    approximants of one vector
+    chapter.csv   the thesis's two vectors
     map.svg, sequence.svg, frontier.svg
 
-All that is seen here is seen, not proved.  Of a periodic orbit that is not hyperbolic one cannot say
-that a torus is there: only that there is none of those things yet that are left of one.
+All that is found here is seen, not proved: that a periodic orbit of large q is not yet hyperbolic
+speaks for a torus beside it, and proves none.
 """
 
 import argparse
@@ -26,13 +27,13 @@ TRIG = {"step": 0.0005, "width": 1e-5, "top": 0.02}
 STANDARD = {"step": 0.02, "width": 1e-5, "top": 1.5}
 FIXED = 1e-3                            # the other criterion: an exponent, whatever q is
 
-# The two numbers whose multiples modulo 1 are spread most evenly over the square that are known: powers
-# of the spiral mean's tau.
+# 1/tau and 1/tau^2, tau^3 = tau + 1: their multiples modulo 1 fill the square evenly.
 SPREAD = 0.7548776662466927, 0.5698402909980532
 # Invariant tori were seen by Fourier series near this vector up to TORI.
 NEAR = 0.295401276 + 0.003327283, 0.295401276 - 0.003327283
 TORI = 0.0121
 PROVED = (("this program", 0.0141), ("the thesis, 1989", 0.0272))     # no tori from there on
+TOP = 0.032                             # of the picture
 CHAPTER = ((1432, 1897), 2513), ((377, 2330), 3770)
 K_C = 0.971635406                       # where the standard map's golden torus breaks up (Greene)
 RESONANCES = [(k0, k1) for k0 in range(4) for k1 in range(-3, 4)
@@ -135,87 +136,88 @@ def draw(path, size, fill, *arguments):
 
 
 def draw_map(figure, table, best):
+    from matplotlib.patches import Polygon
+
     axes = figure.subplots()
+    inside = axes.add_patch(Polygon([(0, 0), (1, 0), (0.5, 0.5)], facecolor="none",
+                                    edgecolor="0.75", linewidth=0.7))
     for k0, k1 in RESONANCES:
         for m in range(-3, 4):
-            ends = [(m / k0, 0.0), ((m - k1 * 0.5) / k0, 0.5)] if k0 else [(0, m / k1), (1, m / k1)]
-            axes.plot(*zip(*ends), color="0.85", linewidth=0.7, zorder=0)
+            ends = [(m / k0, 0), ((m - k1 / 2) / k0, 0.5)] if k0 else [(0, m / k1), (1, m / k1)]
+            line, = axes.plot(*zip(*ends), color="0.85", linewidth=0.7, zorder=0)
+            line.set_clip_path(inside)
     table = table[np.isfinite(middle(table))]
-    shown = axes.scatter(*(table["p"] / table["q"][:, None]).T, c=middle(table), s=11, cmap="viridis",
-                         vmin=0, vmax=0.0125, linewidths=0)
-    axes.scatter(*(best["p"][:1] / best["q"][:1, None]).T, marker="*", s=70, facecolor="none",
-                 edgecolor="red", linewidth=0.8, label="the toughest found by the search")
-    axes.scatter(*NEAR, marker="D", s=28, facecolor="none", edgecolor="red", linewidth=0.8,
-                 label="tori seen by Fourier series up to %g" % TORI)
-    axes.set(xlim=(0, 1), ylim=(0, 0.505), aspect="equal", xlabel="$w_0$", ylabel="$w_1$",
+    shown = axes.scatter(*(table["p"] / table["q"][:, None]).T, c=middle(table), s=12, vmin=0,
+                         vmax=0.0125, cmap="viridis", linewidths=0)
+    mark = {"facecolor": "none", "edgecolor": "red", "linewidth": 0.8}
+    axes.scatter(*(best["p"][:1] / best["q"][:1, None]).T, marker="*", s=80, **mark,
+                 label="the toughest that the search met")
+    axes.scatter(*NEAR, marker="D", s=30, **mark, label="tori seen by Fourier series, to %g" % TORI)
+    axes.set(xlim=(0, 1), ylim=(0, 0.51), aspect="equal", xlabel="$w_0$", ylabel="$w_1$",
              title="Where the orbits of %d rotation vectors turn hyperbolic (trig)" % len(table))
-    axes.legend(loc="upper left")
+    axes.legend(loc="upper right", bbox_to_anchor=(1.12, 1.08))
     figure.colorbar(shown, ax=axes, shrink=0.55, label=r"$\varepsilon$")
-    axes.text(0, -0.2, "seen, not proved; q from %d to %d.  All other vectors are mirror images of these.  "
-              "Grey: resonances $k\\cdot w$ = integer, $|k_0| + |k_1|$ up to 3."
+    axes.text(0, -0.2, "Seen, not proved; q from %d to %d.  All other vectors are mirror images of "
+              "these.\nGrey: resonances, $k\\cdot w$ whole, $|k_0| + |k_1|$ up to 3."
               % (table["q"].min(), table["q"].max()), transform=axes.transAxes, fontsize=7,
-              color="0.35")
+              va="top", color="0.35")
 
 
 def draw_sequence(figure, near, near_fixed, gold, gold_fixed):
     left, right = figure.subplots(1, 2, gridspec_kw={"wspace": 0.3})
-    for axes, free, fixed, title in (
-            (left, gold, gold_fixed, "the standard map, golden mean"),
-            (right, near, near_fixed, "trig, (%.6f, %.6f)" % NEAR)):
-        axes.plot(fixed["q"], middle(fixed), "o", color="0.65", markersize=3.5,
-                  label="first exponent above %g" % FIXED)
+    for axes, free, fixed, title, span, line, words in (
+            (left, gold, gold_fixed, "the standard map, golden mean", (0.958, 0.978), K_C,
+             "it breaks up: %.6f" % K_C),
+            (right, near, near_fixed, "trig, (%.6f, %.6f)" % NEAR, (0.0119, 0.0135), TORI,
+             "tori seen by Fourier series: %g" % TORI)):
         axes.plot(free["q"], middle(free), "s", color=BLUE, markersize=3.5,
                   label="first exponent above 1/q")
-        axes.set(xscale="log", xlabel="q", title=title)
+        axes.plot(fixed["q"], middle(fixed), "o", color="0.65", markersize=3.5,
+                  label="above %g, whatever q is" % FIXED)
+        axes.axhline(line, color=ORANGE, zorder=0)
+        axes.annotate(words, (1, line), (-2, -3), ha="right", va="top", color=ORANGE,
+                      xycoords=("axes fraction", "data"), textcoords="offset points")
+        axes.set(xscale="log", xlabel="q", title=title, ylim=span)
+        axes.xaxis.set_minor_formatter("")
         axes.grid(color="0.93")
-    left.axhline(K_C, color=ORANGE, zorder=0)
-    left.annotate("0.971635: it breaks up", (1, K_C), (-2, -10), ha="right",
-                  xycoords=("axes fraction", "data"), textcoords="offset points", color=ORANGE)
     left.set_ylabel("k where the orbit turns hyperbolic")
-    right.axhline(TORI, color=ORANGE, zorder=0)
-    right.annotate("%g: tori seen by Fourier series" % TORI, (1, TORI), (-2, 4), ha="right",
-                   xycoords=("axes fraction", "data"), textcoords="offset points", color=ORANGE)
     right.set_ylabel(r"$\varepsilon$ where the orbit turns hyperbolic")
-    left.legend(loc="lower right", bbox_to_anchor=(1, 0.1))
+    left.legend(loc="lower right")
 
 
 def draw_frontier(figure, table, last, chapter):
     axes = figure.subplots()
     eps = np.sort(middle(table)[np.isfinite(middle(table))])
-    share = 100 * (1 - np.arange(1, len(eps) + 1) / len(eps))
-    share[-1] = share[-2]               # as far as the last one
-    axes.fill_between(np.concatenate([[0], eps]), np.concatenate([[100], share]), 0.05, step="post",
-                      color=BLUE, alpha=0.25, linewidth=0)
-    axes.step(np.concatenate([[0], eps]), np.concatenate([[100], share]), where="post", color=BLUE)
+    left = 100 * np.arange(len(eps), 0, -1) / len(eps)          # per cent, just before each onset
+    shown = sorted({0, *range(0, len(eps), 10), *range(max(0, len(eps) - 40), len(eps))})
+    curve = eps[shown], left[shown]
+    axes.fill_between(*curve, 0.05, step="pre", color=BLUE, alpha=0.2, linewidth=0)
+    axes.step(*curve, where="pre", color=BLUE)
     (program, bound), (thesis, old) = PROVED
-    top = 0.03
-    axes.axvspan(bound, top, color=DARK, alpha=0.16, linewidth=0)
-    axes.axvspan(old, top, color=DARK, alpha=0.3, linewidth=0)
-    axes.set(yscale="log", xlim=(0, top), ylim=(0.05, 130), xlabel=r"$\varepsilon$",
-             ylabel="share of rotation vectors (%)")
+    for low, high, grey in ((bound, old, "0.86"), (old, TOP, "0.74")):
+        axes.axvspan(low, high, color=grey, linewidth=0)
+    axes.set(yscale="log", xlim=(0, TOP), ylim=(0.05, 130), xlabel=r"$\varepsilon$",
+             ylabel="rotation vectors (%)",
+             title="The two sides of the frontier (trig; a = b = c/2 = 11.21436 $\\varepsilon$)")
     axes.yaxis.set_major_formatter("{x:g}")
-    axes.text(bound + 0.0004, 60, "PROVED by %s:\nno tori, whatever their\nrotation vector, from %g on"
-              % (program, bound), va="top", fontsize=8)
-    axes.text(old + 0.0002, 0.07, "%s: %g" % (thesis, old), rotation=90, va="bottom", fontsize=8)
-    axes.text(0.0004, 0.07, "SEEN: orbits of so many of\n%d vectors (q = %d to %d)\nare not yet hyperbolic"
-              % (len(eps), table["q"].min(), table["q"].max()), va="bottom", fontsize=8, color=BLUE)
+    axes.text(bound + 0.0004, 80, "PROVED by %s: no tori,\nwhatever their rotation vector,\n"
+              "from %g on" % (program, bound), va="top", fontsize=8)
+    axes.text(old + 0.0003, 80, "%s:\nfrom %g on" % (thesis, old), va="top", fontsize=8)
+    axes.text(0.0004, 0.07, "SEEN: of so many of %d vectors,\nq = %d to %d, the orbits are\n"
+              "not yet hyperbolic" % (len(eps), table["q"].min(), table["q"].max()),
+              va="bottom", fontsize=8)
 
-    def mark(x, y, words, marker, **options):
-        axes.plot(x, y, marker, color=ORANGE, markersize=6, zorder=3)
-        axes.annotate(words, (x, y), **{"textcoords": "offset points", "fontsize": 7.5, **options})
+    def mark(x, y, marker, words):
+        axes.plot(x, np.full(np.shape(x), y), marker, color=ORANGE, markersize=6, zorder=3)
+        axes.annotate(words, (np.max(x), y), (bound + 0.0006, y), va="center", fontsize=7.5,
+                      arrowprops={"arrowstyle": "-", "color": "0.5", "linewidth": 0.6})
 
-    for x in chapter:
-        axes.plot(x, 30, "|", color=ORANGE, markersize=6)
-    mark(np.mean(chapter), 30, "the thesis's two vectors", "|", xytext=(0, 8), ha="center")
-    mark(TORI, 0.3, "smooth tori seen\nby Fourier series", "D", xytext=(-8, 0), ha="right", va="center",
-         color="0.25")
-    mark(last, 0.7, "the toughest orbits\nseen, q in the thousands", "*", xytext=(-8, 6), ha="right",
-         va="center", color="0.25")
-    axes.annotate("", (last, 12), (bound, 12), arrowprops={"arrowstyle": "<->", "color": "0.3"})
-    axes.annotate("open", ((last + bound) / 2, 12), (0, 4), textcoords="offset points", ha="center",
-                  fontsize=7.5)
-    axes.set_title("Where order ends: what is seen, what is proved (trig, a = b = c/2 = 11.21436 "
-                   r"$\varepsilon$)", fontsize=9)
+    mark(chapter, 8, "|", "seen: the thesis's two vectors")
+    mark(last, 2.5, "*", "seen: the toughest, q in the thousands")
+    mark(TORI, 0.8, "D", "seen: tori, by Fourier series")
+    axes.annotate("", (last, 0.2), (bound, 0.2), arrowprops={"arrowstyle": "<->", "color": "0.3"})
+    axes.annotate("open", ((last + bound) / 2, 0.2), (0, 4), textcoords="offset points",
+                  ha="center", fontsize=7.5)
 
 
 # ---- all together
@@ -244,8 +246,9 @@ def main():
         chapter = find("chapter.csv", orbits.trig, CHAPTER, **TRIG)
         near, gold = approximants(NEAR, sizes["near"]), list(golden(sizes["golden"]))
         sequences = [find("%s%s.csv" % (name, end), potential, vectors, **how, **criterion)
-                     for name, potential, vectors, how in (("near", orbits.trig, near, TRIG),
-                                                           ("golden", orbits.standard, gold, STANDARD))
+                     for name, potential, vectors, how in (
+                         ("near", orbits.trig, near, TRIG),
+                         ("golden", orbits.standard, gold, STANDARD))
                      for end, criterion in (("", {}), ("-fixed", {"exponent": FIXED}))]
     for eps in (0.004, 0.006, 0.008, 0.010, 0.011, 0.012):
         print("not yet hyperbolic at %.3f: %4.1f %%" % (eps, 100 * (middle(table) > eps).mean()))
@@ -257,8 +260,8 @@ def main():
     for row, fixed in zip(*sequences[:2]):
         print("    (%d, %d)/%d at %.5f, by the fixed exponent at %.5f"
               % (*row["p"], row["q"], middle(row), middle(fixed)))
-    last = max(middle(best)[0], middle(toughest(sequences[0][sequences[0]["q"] >= sizes["near"] // 7],
-                                                1))[0])
+    long = np.concatenate([best, sequences[0]])
+    last = middle(toughest(long[long["q"] >= sizes["near"] // 7], 1))[0]
     draw(path("map.svg"), (8.4, 4.4), draw_map, table, best)
     draw(path("sequence.svg"), (8.4, 3.2), draw_sequence, *sequences)
     draw(path("frontier.svg"), (7.2, 3.6), draw_frontier, table, last, middle(chapter))

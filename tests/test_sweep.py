@@ -16,9 +16,9 @@ import pytest
 from converse import files, orbits
 from converse.files import ConverseError
 from converse.orbits.solver import LEAST_STEP
-from converse.orbits.sweep import LOST, ONSET_COLUMNS, growth
+from converse.orbits.sweep import LOST, ONSET_COLUMNS
 
-MODULE = sys.modules[growth.__module__]         # its name in the package is the function's
+MODULE = sys.modules[orbits.sweep.__module__]   # its name in the package is the function's
 VECTORS = [((5, 7), 9), ((3, 4), 5), ((12, 16), 21), ((1, 2), 4), ((2, 1), 8)]
 EPS = [0.004, 0.01]
 K_C = 0.971635406                               # Greene
@@ -43,45 +43,29 @@ def same(table, other):
 
 # ---- growth and onset
 
-def test_growth_of_a_fixed_point():
-    """The multipliers of DF are those of [[1 - b, 1], [-b, 1]], b = eps V''(x)."""
-    for k in (0.3, 2.0, 50.0):
-        minimum = orbits.straight(orbits.standard, (0,), 1).relax(k)
-        assert growth(minimum) == pytest.approx(math.acosh(1 + k / 2), rel=1e-12)
-    elliptic = orbits.State(orbits.standard, (0,), 1, 2.0, np.zeros((1, 1)), (0.0,))
-    assert growth(elliptic) == pytest.approx(0, abs=1e-12)
-    straight = orbits.straight(orbits.trig, (2, 3), 1001)       # a shear, all eigenvalues 1
-    assert abs(growth(straight)) < 1e-3
-
-
-@pytest.mark.parametrize("potential, p, q, eps", [
-    (orbits.trig, (65, 86), 114, 0.03), (orbits.trig, (1432, 1897), 2513, 0.04),
-    (orbits.ff, (65, 86), 114, 0.01), (orbits.poly, (65, 86), 114, 0.005),
-    (orbits.standard, (89,), 233, 1.1)])
-def test_growth_is_q_times_the_first_exponent(potential, p, q, eps):
-    state = orbits.follow(potential, p, q, [eps])[0]
-    assert state.exponents[0] > 0.003
-    assert growth(state) == pytest.approx(q * state.exponents[0], rel=1e-6)
-
-
-def test_growth_of_saddles_too():
-    """Of a minimax orbit between two minima it is 0: there the pivots tell nothing."""
-    minimum = orbits.straight(orbits.standard, (1,), 3).relax(0.5)
-    minimax = orbits.straight(orbits.standard, (1,), 3, origin=(0.0,))
-    minimax = orbits.newton(minimax, 0.5)[0]
-    assert minimax.label == "saddle" and np.isnan(minimax.exponents[0])
-    assert growth(minimum) > 0.1 and abs(growth(minimax)) < 1e-6
-
-
 def test_onsets_of_golden_approximants_tend_to_where_the_torus_breaks_up():
     found = {}
     for p, q in (((34,), 89), ((89,), 233), ((233,), 610)):
         below, above = orbits.onset(orbits.standard, p, q, width=1e-5)
-        assert growth(below) <= 1 < growth(above) and 0 < above.eps - below.eps <= 1e-5
+        assert below.exponents[0] <= 1 / q < above.exponents[0]
+        assert 0 < above.eps - below.eps <= 1e-5
         assert below.q == above.q == q and above.label == "minimum"
         found[q] = (below.eps + above.eps) / 2
     assert abs(found[89] - K_C) < 1e-3
     assert abs(found[233] - K_C) < 3e-4 and abs(found[610] - K_C) < 1e-4
+    assert found[610] > K_C             # e against e^0.96: at the very onset nothing is closer
+
+
+def test_greenes_residue_at_the_golden_onset():
+    """The minimizing orbit's residue (2 - l - 1/l)/4 there tends to -0.2555: growth 0.968."""
+    state = orbits.follow(orbits.standard, (233,), 610, [K_C])[0]
+    assert -math.sinh(610 * state.exponents[0] / 2) ** 2 == pytest.approx(-0.2555, abs=0.001)
+
+
+def test_what_is_no_minimum_is_not_hyperbolic(monkeypatch):
+    """NaN, the exponents of a saddle, exceed nothing."""
+    monkeypatch.setattr(orbits.State, "exponents", np.array([np.nan, np.nan]))
+    assert orbits.onset(orbits.trig, (65, 86), 114, step=0.001, width=1e-4, top=0.004).above is None
 
 
 def test_a_given_exponent_is_late():
@@ -106,9 +90,10 @@ def test_no_onset_up_to_the_end():
 
 
 @pytest.mark.parametrize("how, words", [
-    ({"width": 0}, "positive"), ({"step": -1}, "positive"), ({"step": 1e-4, "width": 1e-3}, "no larger"),
-    ({"top": math.inf}, "positive"), ({"exponent": 0}, "exponent"), ({"exponent": math.nan}, "exponent"),
-    ({"width": math.nan}, "positive")])
+    ({"width": 0}, "positive"), ({"step": -1}, "positive"), ({"step": 1e-4, "width": 1e-3}, "at most"),
+    ({"top": math.inf}, "positive"), ({"width": math.nan}, "positive"),
+    ({"exponent": 0}, "too small"), ({"exponent": math.nan}, "too small"),
+    ({"exponent": 9e-6}, "too small")])
 def test_onset_refuses(how, words):
     with pytest.raises(ValueError, match=words):
         orbits.onset(orbits.trig, (1, 1), 3, **how)
@@ -157,8 +142,9 @@ def test_the_table_is_read_again(path):
     assert same(orbits.read_csv(path), table) and tuple(table.dtype.names) == ONSET_COLUMNS
     below, above = orbits.onset(orbits.standard, (2,), 5, width=0.001)
     assert table["p"].tolist() == [[1], [2]]
-    assert table[1].tolist()[3:] == (above.label, below.eps, above.eps, growth(below), growth(above))
-    path.write_text(path.read_text().replace("growth", "stretch"))
+    assert table[1].tolist()[3:] == (
+        above.label, below.eps, above.eps, below.exponents[0], above.exponents[0])
+    path.write_text(path.read_text().replace("exponent", "stretch"))
     for bad in (path, path.parent / "none.csv", path.parent):
         with pytest.raises(ConverseError, match=bad.name):
             orbits.read_csv(bad)

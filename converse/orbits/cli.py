@@ -22,15 +22,15 @@ COMMAND = "converse-orbits"
 NAMES = "trig", "poly", "ff", "froeschle", "standard"
 MANY = 10000                            # values of eps, at most
 SIZES = 300, 1200                       # q of a sweep, unless others are asked for
-STATUS = ("Exit status: 0 all was found that was asked for; 1 a state was not found, is no minimum, or "
-          "is not proved though --prove was given; 2 bad usage, input or file; 129, 130 or 143 ended by "
-          "a signal.")
-POTENTIAL = ("trig, poly, ff, froeschle, standard, or a file whose lines 'k0 k1 cosine sine' (with one "
-             "angle: 'k cosine sine') are the terms of V")
+STATUS = ("Exit status: 0 all was found that was asked for; 1 a state was not found, is no "
+          "minimum, or is not proved though --prove was given; 2 bad usage, input or file; 129, 130 or 143 "
+          "ended by a signal.")
+POTENTIAL = ("trig, poly, ff, froeschle, standard, or a file whose lines 'k0 k1 cosine sine' (with "
+             "one angle: 'k cosine sine') are the terms of V")
 MEANINGS = {                            # of labels
     "minimum": "seen in doubles, not proved: no state near it has less action, others may",
     "best": "seen in doubles, not proved: a minimum, and the least action met",
-    "saddle": "seen in doubles: its action can be lowered, perhaps when it is run through several times",
+    "saddle": "seen in doubles: its action can be lowered, perhaps when it is run through often",
     "stationary": "seen in doubles: rounding hides whether it is a minimum",
     "not stationary": "not an orbit",
 }
@@ -46,7 +46,8 @@ def _eps(text):
         if len(ends) not in (1, 3) or not all(abs(x) < 10 ** 9 for x in ends):
             raise ValueError
     except (ValueError, ZeroDivisionError):
-        raise argparse.ArgumentTypeError("'%s' is no number and no range LOW:HIGH:STEP" % text) from None
+        raise argparse.ArgumentTypeError("'%s' is no number and no range LOW:HIGH:STEP"
+                                         % text) from None
     if len(ends) == 1:
         return [float(ends[0])]
     low, high, step = ends
@@ -60,14 +61,16 @@ def _vector(text):
     """'1432,1897/2513': ((1432, 1897), 2513)."""
     match = re.fullmatch(r"\(?(-?\d{1,9})(?:, *(-?\d{1,9}))?\)?/(\d{1,9})", text.strip(), re.ASCII)
     if not match or not int(match[3]):
-        raise argparse.ArgumentTypeError("'%s' is no type: write p0,p1/q, or p/q for one angle" % text)
+        raise argparse.ArgumentTypeError("'%s' is no type: write p0,p1/q, or p/q for one angle"
+                                         % text)
     return tuple(int(p) for p in match.groups()[:2] if p is not None), int(match[3])
 
 
 def _sizes(text):
     match = re.fullmatch(r"(\d{1,9}):(\d{1,9})", text, re.ASCII)
     if not match or not 1 <= int(match[1]) <= int(match[2]):
-        raise argparse.ArgumentTypeError("'%s' is no range LOW:HIGH of whole numbers above 0" % text)
+        raise argparse.ArgumentTypeError("'%s' is no range LOW:HIGH of whole numbers above 0"
+                                         % text)
     return int(match[1]), int(match[2])
 
 
@@ -114,8 +117,8 @@ def read_potential(source):
             if len(words) not in (3, 4) or k in terms or any(abs(x) > 10 ** 9 for x in term):
                 raise ValueError
         except (ValueError, ZeroDivisionError):
-            raise ConverseError("%s: line %d is no new term 'k0 k1 cosine sine' (one angle: 'k cosine "
-                                "sine')" % (source, number)) from None
+            raise ConverseError("%s: line %d is no new term 'k0 k1 cosine sine' (one angle: 'k "
+                                "cosine sine')" % (source, number)) from None
         terms[k] = term
     try:
         return orbits.Fourier(terms, plain(os.path.splitext(os.path.basename(source))[0]))
@@ -169,53 +172,55 @@ def vectors_of(options, potential):
 
 def parser():
     p = Parser(prog=COMMAND, allow_abbrev=False, description=(
-        "Finds periodic orbits of least action of the map x' = x + p', p' = p - eps grad V(x), angles "
-        "of period 1, by continuation from eps 0."), epilog=STATUS)
+        "Finds periodic orbits of least action of the map x' = x + p', p' = p - eps grad V(x), "
+        "angles of period 1, by continuation from eps 0."), epilog=STATUS)
     p.add_argument("--version", action="version", version="%s %s" % (COMMAND, __version__))
     commands = p.add_subparsers(metavar="COMMAND", required=True)
 
-    find = commands.add_parser("find", allow_abbrev=False, epilog=STATUS, help="find the states of one "
-                               "type and report on them", description=(
-                                   "Finds the states of one type, and says what is known of them."))
+    find = commands.add_parser(
+        "find", allow_abbrev=False, epilog=STATUS, help="find the states of one type",
+        description="Finds the states of one type, and says what is known of them.")
     find.add_argument("potential", metavar="POTENTIAL", help=POTENTIAL)
     find.add_argument("type", metavar="TYPE", type=_vector, help="p0,p1/q, such as 1432,1897/2513; "
                       "p/q for one angle")
-    find.add_argument("eps", metavar="EPS", type=_eps, nargs="+", help="a number, or LOW:HIGH:STEP; "
-                      "states are followed from one to the next")
+    find.add_argument("eps", metavar="EPS", type=_eps, nargs="+", help="a number, or "
+                      "LOW:HIGH:STEP; states are followed from one to the next")
     find.add_argument("--search", type=whole(1), metavar="N", help="look for less action than "
                       "continuation finds, N times")
-    find.add_argument("--prove", action="store_true", help="prove that an orbit is beside each state, "
-                      "that it is a minimum, its action and its exponents")
+    find.add_argument("--prove", action="store_true", help="prove that an orbit is beside each "
+                      "state, that it is a minimum, its action and its exponents")
     find.add_argument("--csv", metavar="FILE", help="write a row for each state")
     find.add_argument("-g", "--graphics", metavar="FILE", help="draw the angles and the momenta of "
                       "the states: SVG, PNG or PDF by the name")
     find.add_argument("--seed", type=whole(0), default=0, metavar="N", help="of the search (0)")
     find.set_defaults(run=find_states)
 
-    sweep = commands.add_parser("sweep", allow_abbrev=False, epilog=STATUS, help="states of many types, "
-                                "or where they turn hyperbolic", description=(
-                                    "Writes a table of the states of many types at each eps or, "
-                                    "without one, of where each type's orbit turns hyperbolic.  An "
-                                    "interrupted sweep is continued by the same command."))
+    sweep = commands.add_parser(
+        "sweep", allow_abbrev=False, epilog=STATUS, help="tabulate the states of many types",
+        description="Writes a table of the states of many types at each eps or, without eps, of "
+        "where the orbit of each type turns hyperbolic.  The same command continues a sweep that "
+        "was interrupted.")
     sweep.add_argument("potential", metavar="POTENTIAL", help=POTENTIAL)
     sweep.add_argument("csv", metavar="FILE", help="the table; if it exists, the beginning of this "
                        "same sweep")
-    sweep.add_argument("eps", metavar="EPS", type=_eps, nargs="*", help="a number, or LOW:HIGH:STEP")
+    sweep.add_argument("eps", metavar="EPS", type=_eps, nargs="*", help="a number, or "
+                       "LOW:HIGH:STEP")
     which = sweep.add_mutually_exclusive_group(required=True)
-    which.add_argument("--vectors", metavar="FILE", help="types from a file, one p0,p1/q a line")
+    which.add_argument("--vectors", metavar="FILE", help="types from a file, a p0,p1/q in each "
+                       "line")
     which.add_argument("--farey", metavar="W0,W1", type=_target, help="the mediants of the Farey "
                        "triangles (one angle: intervals) that contain these numbers, exactly")
     which.add_argument("--random", type=whole(1), metavar="N", help="N random types")
     sweep.add_argument("--sizes", type=_sizes, default=SIZES, metavar="LOW:HIGH", help="of q, for "
                        "--farey and --random (%d:%d)" % SIZES)
     sweep.add_argument("--seed", type=whole(0), default=0, metavar="N", help="of --random (0)")
-    sweep.add_argument("--jobs", type=whole(1), metavar="N", help="work on N types at a time (default: "
-                       "one per core)")
+    sweep.add_argument("--jobs", type=whole(1), metavar="N", help="work on N types at a time "
+                       "(default: one per core)")
     sweep.set_defaults(run=sweep_types)
 
-    figures = commands.add_parser("figures", allow_abbrev=False, epilog=STATUS, help="draw the "
-                                  "thesis's computed figures", description=(
-                                      "Computes and draws the figures of the thesis's chapter 2."))
+    figures = commands.add_parser(
+        "figures", allow_abbrev=False, epilog=STATUS, help="draw the thesis's figures",
+        description="Computes and draws the figures of the thesis's chapter 2.")
     figures.add_argument("directory", metavar="DIR", help="where to write them")
     figures.add_argument("--format", choices=picture.FORMATS, default=picture.FORMATS[0],
                          help="of the figures")
@@ -245,7 +250,7 @@ def _exponent(state, x):
     """Of an exponent below what the pivots can tell, no digits."""
     from .state import ROUNDS
 
-    least = 2 * max(1 / ROUNDS, 1 / (5 * state.q))
+    least = 2 / max(ROUNDS, 5 * state.q)
     return "unknown" if math.isnan(x) else "below %.0e" % least if abs(x) < least else "%.10g" % x
 
 
@@ -259,8 +264,8 @@ def report(state):
         "Gradient : largest %.2g, root mean square %.2g" % (state.shadow, state.grad_size),
         "Deviation : %.10g from the line through x_0, %.10g from the line at eps 0, %.10g from the "
         "best line" % state.deviation,
-        "Phases : " + ("determined" if not state.undetermined else "undetermined along %d direction%s, in "
-                       "which the points can be moved at almost no cost"
+        "Phases : " + ("determined" if not state.undetermined else "undetermined along %d "
+                       "direction%s, in which the points can be moved at almost no cost"
                        % (state.undetermined, "s" * (state.undetermined > 1)))]
     return "\n".join(lines) + "\n"
 
@@ -345,9 +350,8 @@ def sweep_types(options):
         table = orbits.sweep(potential, vectors, eps, **common) if eps else \
             orbits.onsets(potential, vectors, **common)
     lost = int((table["label"] == LOST).sum())
-    say("written: %s, %d row%s of %d type%s%s\n" % (
-        plain(options.csv), len(table), "s" * (len(table) != 1), len(vectors), "s" * (len(vectors) != 1),
-        ", %d of them lost" % lost if lost else ""))
+    say("written: %s, %d types, %d rows%s\n" % (
+        plain(options.csv), len(vectors), len(table), ", %d of them lost" % lost if lost else ""))
     return 1 if lost else 0
 
 
@@ -372,7 +376,8 @@ class _Bar:
 def draw_figures(options):
     from .figures import figures
 
-    figures(options.directory, kind=options.format, progress=lambda path: say("written: %s\n" % path))
+    figures(options.directory, kind=options.format,
+            progress=lambda path: say("written: %s\n" % plain(path)))
     return 0
 
 
@@ -381,8 +386,10 @@ def main(argv=None):
     options = argparse.Namespace(run=None)
 
     def interrupted():
-        return {find_states: "nothing is written", draw_figures: "the figures that were finished are kept",
-                sweep_types: "the same command continues"}.get(options.run, "nothing was begun")
+        return {find_states: "neither table nor figure is written",
+                sweep_types: "the same command continues it",
+                draw_figures: "the figures that were finished are kept"}.get(options.run,
+                                                                             "nothing was begun")
 
     return ended(COMMAND, lambda: parser().parse_args(argv, options).run(options), interrupted)
 

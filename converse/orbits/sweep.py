@@ -21,17 +21,17 @@ from .. import files
 from ..files import ConverseError
 from ..growth import count_workers
 from .solver import COLUMNS, follow, row, straight
-from .state import State
+from .state import ROUNDS, State
 
 LOST = "lost"                           # in place of a label: continuation has lost the branch
 TOLERANCE = 1e-12                       # of gradients: before break-up, rounding hides what is less
-MOST_STEPS = 1000                       # of the solver before a smaller step of eps is tried
+MOST_STEPS = 3000                       # of the solver before a smaller step of eps is tried
 HALVINGS = 10
 AHEAD = 2                               # tasks for each that is worked on
-PER_CURVATURE = 0.03, 0.0006, 4.0       # step, width and top of onset(), times 1/potential.curvature
+PER_CURVATURE = 0.03, 0.0006, 4.0       # onset's step, width and top times potential.curvature
 
-ONSET_COLUMNS = ("potential", "p", "q", "label", "eps_below", "eps_above", "growth_below",
-                 "growth_above")
+ONSET_COLUMNS = ("potential", "p", "q", "label", "eps_below", "eps_above", "exponent_below",
+                 "exponent_above")
 
 
 # ---- where an orbit turns hyperbolic
@@ -43,40 +43,22 @@ class Onset(NamedTuple):
     above: Optional[State]
 
 
-def growth(state):
-    """log |l|, l the largest eigenvalue of DF^q: q times the first exponent, of any orbit.
-
-    It is 0 where the pivots of a state, nearly degenerate as on a torus, tell nothing."""
-    n = state.potential.n
-    bend = state.eps * state.potential.evaluate(state.base + state.u)[2]
-    step = np.zeros((state.q, 2 * n, 2 * n))
-    step[:, :n, :n], step[:, n:, :n] = np.eye(n) - bend, -bend
-    step[:, :n, n:] = step[:, n:, n:] = np.eye(n)
-    logs = 0.0
-    while len(step) > 1:                # products of neighbours, then of those, each of size one
-        if len(step) % 2:
-            step = np.concatenate([step, np.eye(2 * n)[None]])
-        step = step[1::2] @ step[::2]
-        size = np.abs(step).max((1, 2))
-        step /= size[:, None, None]
-        logs += float(np.log(size).sum())
-    return logs + math.log(np.abs(np.linalg.eigvals(step[0])).max())
-
-
 def onset(potential, p, q, exponent=None, step=None, width=None, top=None):
-    """Where the orbit of type (p, q) that continuation from eps 0 follows turns hyperbolic: where its
-    first exponent exceeds the given one.  An Onset; its states' eps are at most width apart.
+    """Where the orbit of type (p, q) that continuation from eps 0 follows turns hyperbolic: a
+    minimum whose first exponent exceeds the given one.  An Onset; its two eps are at most width
+    apart.
 
-    exponent -- by default 1/q, with which DF^q stretches something e-fold.  When a torus breaks up
-        the stretching of the orbits beside it neither vanishes, as it does on smooth tori, nor grows
-        with q, as on what is left: Greene's residue -1/4 of the golden torus of the standard map is
-        growth 0.96.  So the onsets of its approximants tend to where it breaks up, and soon: within
-        1e-4 from q = 233 on.  A given exponent says the same of every q, and is late for each.
-    step, width -- of eps, at which the first growth beyond it is looked for, and to which it is then
-        cut down; top -- of eps, where the search ends.  By default in units of 1/potential.curvature,
-        to one digit: see PER_CURVATURE.
+    exponent -- by default 1/q, an e-fold stretching by all of the orbit.  When a torus breaks up,
+        the stretching along the orbits beside it neither vanishes with growing q, as it does on a
+        smooth torus, nor grows, as it does on what is left: for the golden torus of the standard
+        map (Greene: residue -1/4) it is e^0.96.  So the onsets of approximants tend to where the
+        torus breaks up, and soon: there they are within 3e-4 from q = 233 on.  An exponent that is
+        the same for all q is early for small and late for large ones.
+    step, width -- of eps: with what steps the first such minimum is looked for, and to what the
+        onset is then cut down.  top -- the eps where the search ends.  By default what
+        PER_CURVATURE says over potential.curvature, to one digit.
 
-    What is seen in one orbit is evidence, not proof, that a torus is there, or is not.
+    What is seen of one orbit is evidence, not proof, that a torus is near it, or that none is.
     ConverseError if continuation loses the branch."""
     given = (step, width, top)
     if None in given and not potential.curvature:
@@ -85,24 +67,22 @@ def onset(potential, p, q, exponent=None, step=None, width=None, top=None):
     step, width, top = (float("%.0e" % (x / potential.curvature)) if y is None else float(y)
                         for x, y in zip(PER_CURVATURE, given))
     if not (0 < width <= step and 0 < top < math.inf):
-        raise ValueError("step, width and top are positive numbers, and the width is no larger than "
-                         "the step, not %r, %r, %r" % (step, width, top))
-    limit = 1.0 if exponent is None else float(exponent) * q
-    if not limit > 0:
-        raise ValueError("exponent is a positive number, not %r" % (exponent,))
+        raise ValueError("step, width and top are positive, the width at most the step, not %r, "
+                         "%r, %r" % (step, width, top))
+    limit = 1 / q if exponent is None else float(exponent)
+    if not limit >= 2 / max(ROUNDS, 5 * q):
+        raise ValueError("an exponent of %r is too small to be seen" % limit)
     below, above, k = straight(potential, p, q), None, 0
-    while above is None:
-        k += 1
-        if below.eps >= top:
-            return Onset(below, None)
-        state = _further(below, min(k * step, top))
-        if growth(state) > limit:
-            above = state
+    while above is None or above.eps - below.eps > width:
+        if above is None:
+            if below.eps >= top:
+                break
+            k += 1
+            eps = min(k * step, top)
         else:
-            below = state
-    while above.eps - below.eps > width:
-        state = _further(below, (below.eps + above.eps) / 2)
-        if growth(state) > limit:
+            eps = (below.eps + above.eps) / 2
+        state = _further(below, eps)
+        if state.exponents[0] > limit:          # false where it is NaN, since it is no minimum
             above = state
         else:
             below = state
@@ -127,8 +107,8 @@ def sweep(potential, vectors, eps, executor=None, file=None, progress=None):
 
     executor -- a concurrent.futures.Executor, of threads, processes or others; by default this
         thread does all
-    file -- a CSV file that grows with every vector.  If it is there already it must be the beginning
-        of this very sweep, and is continued.
+    file -- a CSV file that grows with every vector.  If it is there already it must be the
+        beginning of this very sweep, and is continued.
     progress(done, of) -- is told how many vectors are finished
 
     Where continuation loses a branch the rest of its rows has the label "lost" and no numbers."""
@@ -136,21 +116,21 @@ def sweep(potential, vectors, eps, executor=None, file=None, progress=None):
     if not eps or not all(map(math.isfinite, eps)):
         raise ValueError("eps is a list of finite numbers, one at least, not %r" % (eps,))
     return _sweep(functools.partial(_family, potential, eps), COLUMNS, potential, vectors,
-                  [repr(x) for x in eps], executor, file, progress)
+                  [[repr(x)] for x in eps], executor, file, progress)
 
 
 def onsets(potential, vectors, executor=None, file=None, progress=None, **how):
     """onset() of many rotation vectors; how is handed to it, all else is as in sweep().
 
-    The columns eps_below and eps_above enclose each onset; eps_above is inf where there is none, and
-    the label is that of the state above."""
-    return _sweep(functools.partial(_onset, potential, how), ONSET_COLUMNS, potential, vectors, [None],
-                  executor, file, progress)
+    The columns eps_below and eps_above enclose each onset; eps_above is inf where there is none.
+    The exponents are the first ones there, and the label is that of the state above."""
+    return _sweep(functools.partial(_onset, potential, how), ONSET_COLUMNS, potential, vectors,
+                  [[]], executor, file, progress)
 
 
 def read_csv(file):
-    """The table in a CSV file of this module or of Family.write_csv: an array with the columns' names
-    as its fields, p an array of integers; a number that is missing is NaN."""
+    """The table in a CSV file of this module or of Family.write_csv: an array with the columns'
+    names as its fields, p an array of integers; a number that is missing is NaN."""
     try:
         with open(file, encoding="utf-8", newline="") as stream:
             return _table(stream.read())
@@ -162,17 +142,18 @@ def read_csv(file):
 
 def _table(text):
     header, *rows = csv.reader(io.StringIO(text))
-    if set(header) not in (set(COLUMNS), set(ONSET_COLUMNS)) or any(
-            len(each) != len(header) for each in rows):
+    if tuple(header) not in (COLUMNS, ONSET_COLUMNS) or any(len(row) != len(header)
+                                                            for row in rows):
         raise ValueError("no such columns")
+    words = "U%d" % max((len(word) for row in rows for word in row), default=1)
     n = len(rows[0][header.index("p")].split()) if rows else 1
-    kinds = {"potential": (str, "U"), "label": (str, "U"), "q": (int, "i8"), "undetermined": (int, "i8"),
-             "p": (lambda word: tuple(map(int, word.split())), "(%d,)i8" % n)}
-    columns = [(name, *kinds.get(name, (lambda word: float(word or "nan"), "f8"))) for name in header]
-    table = [tuple(read(word) for word, (_, read, _) in zip(each, columns)) for each in rows]
-    longest = max([len(word) for each in rows for word in each], default=1)
-    return np.array(table, dtype=[(name, kind + str(longest) if kind == "U" else kind)
-                                  for name, _, kind in columns])
+    kinds = {"potential": (str, words), "label": (str, words), "q": (int, "i8"),
+             "p": (lambda word: tuple(map(int, word.split())), ("i8", (n,))),
+             "undetermined": (int, "i8")}
+    read, kind = zip(*(kinds.get(name, (lambda word: float(word or "nan"), "f8"))
+                       for name in header))
+    return np.array([tuple(convert(word) for convert, word in zip(read, row)) for row in rows],
+                    dtype=list(zip(header, kind)))
 
 
 def _text(rows):
@@ -189,23 +170,25 @@ def _family(potential, eps, vector):
     states = []
     with contextlib.suppress(ConverseError):
         follow(potential, *vector, eps, progress=lambda _, state: states.append(state))
-    empty = [""] * (len(COLUMNS) - 6)
-    return _text([row(state) for state in states]
-                 + [_type(potential, vector) + [repr(x), LOST, *empty, 0] for x in eps[len(states):]])
+    lost = [[*_type(potential, vector), repr(x), LOST] + [""] * (len(COLUMNS) - 6) + [0]
+            for x in eps[len(states):]]
+    return _text([*map(row, states), *lost])
 
 
 def _onset(potential, how, vector):
     try:
         below, above = onset(potential, *vector, **how)
     except ConverseError:
-        return _text([_type(potential, vector) + [LOST, "", "", "", ""]])
-    ends = [below.label, below.eps, math.inf, growth(below), math.nan] if above is None else \
-        [above.label, below.eps, above.eps, growth(below), growth(above)]
-    return _text([_type(potential, vector) + ends[:1] + [repr(float(x)) for x in ends[1:]]])
+        found = LOST, "", "", "", ""
+    else:
+        ends = [(state.eps, state.exponents[0]) if state else (math.inf, math.nan)
+                for state in (below, above)]
+        found = (above or below).label, *(repr(float(x)) for pair in zip(*ends) for x in pair)
+    return _text([[*_type(potential, vector), *found]])
 
 
 def _sweep(task, columns, potential, vectors, eps, executor, file, progress):
-    """Does all tasks; eps: of each row of a vector."""
+    """Does all tasks.  eps: of each row of a vector, what follows its type there."""
     if not potential.name.isprintable():
         raise ValueError("in a table the name of a potential is printable, not %r" % potential.name)
     if executor is not None and not hasattr(executor, "submit"):
@@ -267,15 +250,16 @@ class _File:
 
     def __init__(self, path, text):
         self.path = path
-        data = text.encode("utf-8")
         with self._told():
             self.stream = open(path, "r+b" if os.path.exists(path) else "wb", buffering=0)
-            self.stream.truncate(len(data))         # of a line that was torn
-            self.stream.write(data)
+            self.stream.truncate(len(text.encode("utf-8")))     # without a line that was torn
+        self.add(text)
 
     def add(self, text):
+        data = text.encode("utf-8")
         with self._told():
-            self.stream.write(text.encode("utf-8"))
+            while data:                 # a disk that is almost full takes a part
+                data = data[self.stream.write(data):]
 
     def close(self):
         self.stream.close()
@@ -291,7 +275,8 @@ class _File:
 
 def _finished(path, header, potential, vectors, eps, task):
     """The texts of the vectors that a file has, whole ones only.  ConverseError if it is another
-    sweep's: its rows are not of these vectors and eps, or those of the first, computed anew, differ."""
+    sweep's: its rows are not of these vectors and eps, or those of the first, computed anew, are
+    others."""
     try:
         with open(path, "rb") as stream:
             lines = stream.read().decode("utf-8", "replace").split("\n")
@@ -301,8 +286,8 @@ def _finished(path, header, potential, vectors, eps, task):
         raise ConverseError("%s: cannot be read (%s)" % (path, files.reason(error))) from None
 
     def refuse(why):
-        raise ConverseError("%s: is not the beginning of this sweep: %s; name another file, or remove "
-                            "it" % (path, why))
+        raise ConverseError("%s: is not the beginning of this sweep: %s; name another file, or "
+                            "remove it" % (path, why))
 
     lines, torn = [line + "\n" for line in lines[:-1]], lines[-1]
     if not lines and header.startswith(torn):
@@ -313,8 +298,7 @@ def _finished(path, header, potential, vectors, eps, task):
     if len(rows) > len(eps) * len(vectors):
         refuse("it has more rows")
     for k, line in enumerate(rows):
-        vector, x = vectors[k // len(eps)], eps[k % len(eps)]
-        key = _type(potential, vector) + ([x] if x is not None else [])
+        key = _type(potential, vectors[k // len(eps)]) + eps[k % len(eps)]
         if next(csv.reader([line]))[:len(key)] != [str(word) for word in key]:
             refuse("its line %d is of another potential, type or eps" % (k + 2))
     texts = ["".join(rows[k:k + len(eps)]) for k in range(0, len(rows) - len(eps) + 1, len(eps))]
