@@ -1,4 +1,4 @@
-"""The cffi builder: csrc/converse.h is both the header and the list of what Python sees."""
+"""The cffi builder: csrc/converse.h and csrc/orbits.h are headers and the list of what Python sees."""
 
 import glob
 import os
@@ -8,7 +8,8 @@ from cffi import FFI
 SOURCES = ["numbers/apm", "numbers/special", "numbers/guard", "numbers/machine",
            "thesis/start", "thesis/region", "thesis/rigorous", "thesis/double",
            "loewner/orbit", "loewner/witness", "loewner/bound", "loewner/try",
-           "setup", "search", "kernels"]
+           "setup", "search", "kernels",
+           "orbits/potential", "orbits/band", "orbits/relax", "orbits/measure"]
 SOURCES = ["csrc/%s.c" % name for name in SOURCES]
 
 # The flags are part of the proof: no fused, reordered or extended floating-point arithmetic.
@@ -17,8 +18,13 @@ if "CFLAGS" not in os.environ:
     FLAGS.append("-O2")
 
 ffi = FFI()
-with open("csrc/converse.h") as header:
-    ffi.cdef(header.read())
-ffi.set_source("converse._native", '#include "converse.h"', sources=SOURCES,
+HEADERS = ["converse.h", "orbits.h"]
+for name in HEADERS:
+    with open("csrc/" + name) as header:
+        ffi.cdef(header.read())
+# What C calls, and converse/orbits/potential.py defines.
+ffi.cdef("""extern "Python+C" int cv_python_potential(
+    void *self, long m, const double *x, double *value, double *gradient, double *hessian);""")
+ffi.set_source("converse._native", "".join(map('#include "%s"\n'.__mod__, HEADERS)), sources=SOURCES,
                include_dirs=["csrc"], libraries=["gmp"], extra_compile_args=FLAGS,
                depends=sorted(glob.glob("csrc/**/*.[ch]", recursive=True)))

@@ -1,0 +1,261 @@
+"""Potentials V on the torus of period 1, n = 1 or 2 dimensions (thesis, section 2.2).
+
+The map is x' = x + p', p' = p - eps grad V(x).
+"""
+
+import math
+from fractions import Fraction
+from typing import Callable, Dict, Optional, Tuple
+
+import numpy as np
+
+from .._native import ffi, lib
+from ..files import ConverseError
+
+Bounds = Tuple[Fraction, Fraction]
+
+
+def points(x, n):
+    """x as a C-contiguous array (m, 2) of floats, its idle coordinate zero; ValueError if it is none."""
+    array = np.ascontiguousarray(x, dtype=float)
+    if array.ndim != 2 or array.shape[1] != n:
+        raise ValueError("points are an array of shape (m, %d), not %r" % (n, array.shape))
+    return array if n == 2 else np.column_stack([array, np.zeros_like(array)])
+
+
+def address(array, kind="double(*)[2]"):
+    """Where C finds an array."""
+    return ffi.cast(kind, ffi.from_buffer(array))
+
+
+class Potential:
+    """A potential V(x), of period 1 in each of its n coordinates.
+
+    name       -- for reports
+    n          -- dimensions, 1 or 2
+    start      -- a maximum of V, where orbits begin
+    curvature  -- an upper bound of the spectral norm of V'' anywhere; None: not known
+    lipschitz  -- K with |V''(x) - V''(y)| <= K |x - y|, spectral and Euclidean norm; None: not known
+    """
+
+    def __init__(self, kind, name, n, start, curvature=None, lipschitz=None):
+        if n not in (1, 2):
+            raise ValueError("a potential has one or two coordinates, not %r" % (n,))
+        self.name, self.n, self.start = name, n, tuple(float(x) for x in start)
+        if len(self.start) != n or not all(map(math.isfinite, self.start)):
+            raise ValueError("the start of an orbit is %d numbers, not %r" % (n, start))
+        self.curvature, self.lipschitz = curvature, lipschitz
+        self.native = ffi.new("cv_potential *", {"kind": kind, "n": n})
+
+    def __repr__(self):
+        return "orbits.%s" % self.name if self.name in STUDIED else "<potential %s>" % self.name
+
+    def __reduce__(self):
+        if STUDIED.get(self.name) is self:
+            return _studied, (self.name,)
+        raise TypeError("the potential %s cannot be sent to another process" % self.name)
+
+    def evaluate(self, x):
+        """V, its gradient and its Hessian at x (m, n): arrays (m,), (m, n) and (m, n, n)."""
+        x = points(x, self.n)
+        value, gradient, bend = np.empty(len(x)), np.empty((len(x), 2)), np.empty((len(x), 3))
+        done(lib.cv_evaluate(self.native, len(x), address(x), address(value, "double *"),
+                             address(gradient), address(bend, "double(*)[3]")))
+        hessian = np.empty((len(x), 2, 2))
+        hessian[:, 0, 0], hessian[:, 1, 1] = bend[:, 0], bend[:, 2]
+        hessian[:, 0, 1] = hessian[:, 1, 0] = bend[:, 1]
+        return value, gradient[:, :self.n], hessian[:, :self.n, :self.n]
+
+
+class Fourier(Potential):
+    """A finite Fourier sum, V(x) = scale * sum of cosine cos(2 pi k.x) + sine sin(2 pi k.x).
+
+    terms -- {k: (cosine, sine)}, k a tuple of n integers; floats are taken as what they are exactly
+    start -- a maximum of V; by default one is looked for
+    scale_enclosure(digits) -- two Fractions around the scale, no further apart than 10^-digits
+    """
+
+    def __init__(self, terms: Dict[Tuple[int, ...], tuple], name: str = "fourier",
+                 start: Optional[Tuple[float, ...]] = None,
+                 scale_enclosure: Callable[[int], Bounds] = lambda digits: (Fraction(1),) * 2):
+        try:
+            self.terms = {tuple(map(int, k)): (Fraction(c), Fraction(s))
+                          for k, (c, s) in terms.items()}
+        except (AttributeError, TypeError, ValueError, OverflowError):
+            raise ValueError("terms are {(k0, k1): (cosine, sine)} with finite numbers, not %r"
+                             % (terms,)) from None
+        widths = {len(k) for k in self.terms}
+        if len(widths) != 1 or not widths <= {1, 2} or any(abs(i) > 1000 for k in self.terms for i in k):
+            raise ValueError("a Fourier sum has terms, all with one or all with two integers from "
+                             "-1000 to 1000; there are %r" % sorted(self.terms))
+        n, = widths
+        self.scale_enclosure = scale_enclosure
+        self.scale = float(sum(scale_enclosure(30)) / 2)
+        size = [(math.hypot(*k), math.hypot(c, s)) for k, (c, s) in self.terms.items()]
+        bound = [abs(self.scale) * (2 * math.pi) ** order * (1 + 1e-12)
+                 * math.fsum(k ** order * c for k, c in size) for order in (2, 3)]
+        super().__init__(lib.CV_FOURIER, name, n, start or (0.0,) * n, *bound)
+        self._arrays = [np.array([tuple(k) + (0,) * (2 - n) for k in self.terms], dtype=np.intc)] + [
+            np.array([float(term[i]) * self.scale for term in self.terms.values()]) for i in (0, 1)]
+        self.native.terms = len(self.terms)
+        self.native.k, self.native.cosine, self.native.sine = (
+            address(array, kind) for array, kind in zip(self._arrays, ("int *",) + 2 * ("double *",)))
+        if start is None:
+            self.start = self._maximum()
+
+    def __reduce__(self):
+        if STUDIED.get(self.name) is self:
+            return super().__reduce__()
+        return Fourier, (self.terms, self.name, self.start)
+
+    def _maximum(self):
+        """The best of a grid of points, then Newton."""
+        axis = (np.arange(64) + 0.5) / 64
+        grid = np.stack(np.meshgrid(*[axis] * self.n, indexing="ij"), -1).reshape(-1, self.n)
+        best = grid[np.argmax(self.evaluate(grid)[0])][None]
+        for _ in range(20):
+            value, gradient, hessian = self.evaluate(best)
+            with np.errstate(all="ignore"):
+                step = np.linalg.lstsq(hessian[0], gradient[0], rcond=1e-9)[0]
+            better = best - step
+            if not self.evaluate(better)[0][0] > value[0]:
+                break
+            best = better
+        return tuple(map(float, best[0]))
+
+
+class FromPython(Potential):
+    """A potential given by an object: value(x), gradient(x) and hessian(x) take an array (m, n) and
+    return arrays (m,), (m, n) and (m, n, n)."""
+
+    def __init__(self, source, n, name="python", start=None, curvature=None, lipschitz=None):
+        for method in ("value", "gradient", "hessian"):
+            if not callable(getattr(source, method, None)):
+                raise ValueError("a potential needs value(x), gradient(x) and hessian(x); %r has no %s"
+                                 % (source, method))
+        super().__init__(lib.CV_PYTHON, name, n, start or (0.0,) * n, curvature, lipschitz)
+        self.source = source
+        self.error = None
+        self._handle = ffi.new_handle(self)
+        self.native.self = self._handle
+
+    def __reduce__(self):
+        return FromPython, (self.source, self.n, self.name, self.start, self.curvature,
+                            self.lipschitz)
+
+
+@ffi.def_extern(error=lib.CV_EARGUMENT)
+def cv_python_potential(handle, m, x, value, gradient, hessian):
+    potential = ffi.from_handle(handle)
+    n = potential.n
+
+    def array(pointer, width):
+        return np.frombuffer(ffi.buffer(pointer, 8 * m * width)).reshape(m, width)
+
+    try:
+        at = array(x, 2)[:, :n]
+        if value:
+            array(value, 1)[:, 0] = potential.source.value(at)
+        if gradient:
+            array(gradient, 2)[:, n:] = 0.0
+            array(gradient, 2)[:, :n] = potential.source.gradient(at)
+        if hessian:
+            bend = np.asarray(potential.source.hessian(at), dtype=float)
+            if bend.shape != (m, n, n):
+                raise ValueError("hessian(x) has the shape %r, not %r" % (bend.shape, (m, n, n)))
+            flat = array(hessian, 3)
+            flat[:] = 0.0
+            flat[:, 0] = bend[:, 0, 0]
+            if n == 2:
+                flat[:, 1], flat[:, 2] = bend[:, 0, 1], bend[:, 1, 1]
+    except Exception as error:
+        potential.error = error
+        return lib.CV_EARGUMENT
+    return lib.CV_OK
+
+
+def done(code, potential=None):
+    """A code of C, unless it is an error, which is raised; that of a potential from Python is its own."""
+    if code == lib.CV_ENOMEM:
+        raise MemoryError("there is not enough memory")
+    if code < 0:
+        if potential is not None and getattr(potential, "error", None) is not None:
+            error, potential.error = potential.error, None
+            raise error
+        raise ConverseError("the C core failed with code %d" % code)
+    return code
+
+
+def _root(x, digits):
+    """Two Fractions around the square root of a Fraction, 10^-digits apart."""
+    scale = 10 ** digits
+    low = math.isqrt(x.numerator * scale ** 2 // x.denominator)
+    return Fraction(low, scale), Fraction(low + 1, scale)
+
+
+def _trig_scale(digits):
+    """1/M_trig, M_trig = sqrt(207 + 33 sqrt 33)/(8 sqrt 2): 1/M^2 = 128/(207 + 33 sqrt 33)."""
+    low, high = _root(Fraction(33), digits + 5)
+    return (_root(128 / (207 + 33 * high), digits + 5)[0],
+            _root(128 / (207 + 33 * low), digits + 5)[1])
+
+
+def _pi(digits):
+    """Two Fractions around pi, by Machin's formula: an alternating series of decreasing terms lies
+    between any two successive sums."""
+    def arctan(n):
+        total, k = Fraction(0), 0
+        while True:
+            term = Fraction(1, (2 * k + 1) * n ** (2 * k + 1))
+            if term < Fraction(1, 10 ** (digits + 5)):
+                return (total, total + term) if k % 2 == 0 else (total - term, total)
+            total += term if k % 2 == 0 else -term
+            k += 1
+
+    (low5, high5), (low239, high239) = arctan(5), arctan(239)
+    return 16 * low5 - 4 * high239, 16 * high5 - 4 * low239
+
+
+def _standard_scale(digits):
+    low, high = _pi(digits + 2)
+    return 1 / (4 * high ** 2), 1 / (4 * low ** 2)
+
+
+_HALF = Fraction(1, 2)
+
+# Curvature and lipschitz.  ff: |c''| <= 48, |c'''| = 192.  V'' is diag(c''(x0), c''(x1))/4, of norm 12
+# at most, and c''(x0 + x1)/2 times [[1, 1], [1, 1]], whose norm is 2; x0 + x1 moves by sqrt 2 |dx| at
+# most: 12 + 48, and 48 + 96 2 sqrt 2 < 320.
+_FF_BOUNDS = (60.0, 320.0)
+
+# poly: V = -4096 f(y0) g(y1), y = x mod 1 - 1/2.  With a = 1/4 - y^2, from 0 to 1/4,
+# f = a^2 (a - 3/16), f'' = -30 a^2 + 33 a/4 - 3/8, f''' = 2 y (60 a - 33/4); g = a^2, g'' = 2 - 12 a,
+# g''' = 24 y.  Derivatives 0 to 3 are at most 1/256, 0.022, 3/8, 33/4 and 1/16, 0.1925, 2, 12.
+# The norm of V'' is at most its larger diagonal entry and |V_01|; of the third derivative along a
+# unit vector v the terms with v0^3 and v1^3 make at most the larger one, and v0^2 v1 and v0 v1^2,
+# three times each, are at most 0.385.
+_POLY_BOUNDS = (4096 * (3 / 8 / 16 + 0.022 * 0.1925),
+                4096 * (33 / 4 / 16 + 3 * 0.385 * (3 / 8 * 0.1925 + 0.022 * 2)))
+
+# The thesis's three, the real Froeschle map, and the standard map, whose eps is its parameter k.
+# V = 1 at the start of trig, 1/4 at poly's, 27/49 at ff's, 9/16 at froeschle's.
+trig = Fourier({(1, 0): (0, -_HALF), (0, 1): (0, -_HALF), (1, 1): (0, -1)}, "trig",
+               (0.8510422, 0.8510422), _trig_scale)
+poly = Potential(lib.CV_POLY, "poly", 2, ((2 - math.sqrt(2)) / 4, 0.5), *_POLY_BOUNDS)
+ff = Potential(lib.CV_FF, "ff", 2, (2 / 7, 2 / 7), *_FF_BOUNDS)
+froeschle = Fourier({(1, 0): (-_HALF / 2, 0), (0, 1): (-_HALF / 2, 0), (1, 1): (-_HALF, 0)},
+                    "froeschle", (0.29021531, 0.29021531))
+standard = Fourier({(1,): (-1, 0)}, "standard", (0.5,), _standard_scale)
+
+STUDIED = {potential.name: potential for potential in (trig, poly, ff, froeschle, standard)}
+
+
+def _studied(name):
+    return STUDIED[name]
+
+
+def parameters(eps):
+    """The a, b, c of the rest of the package, where the angles have period 2 pi, whose map is that of
+    trig and eps: with y = 2 pi x, a = b = c/2 = 2 pi^2 eps/M_trig."""
+    a = 2 * math.pi ** 2 * trig.scale * eps
+    return a, a, 2 * a

@@ -1,0 +1,249 @@
+/* relax.c - minimizes the action of a periodic orbit: damped Newton, and a way off saddles. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "orbits/potential.h"
+
+static const double CAP = 0.1;          /* no coordinate moves further in one step */
+static const double FLAT = 1e-11;       /* of eigenvalues: below it, rounding says which sign */
+enum { MOST_ESCAPES = 50 };
+
+typedef double point[2];
+typedef double block[3];
+
+typedef struct {
+    const cv_potential *v;
+    long q;
+    double eps;
+    const point *base;
+    point *x;                           /* base + u, scratch */
+    double *value;                      /* scratch */
+} action_of;
+
+typedef struct {
+    point *u, *gradient;
+    block *beta;
+    double action, noise, largest, mean_square;     /* noise: of the action's rounding */
+} place;
+
+/* Action, gradient and, unless it is NULL, the Hessian's blocks at at->u. */
+static int look(const action_of *of, place *at)
+{
+    const long q = of->q;
+    double sum = 0.0, size = 0.0, squares = 0.0, largest = 0.0;
+    int status;
+
+    for (long j = 0; j < q; j++)
+        for (int i = 0; i < 2; i++)
+            of->x[j][i] = of->base[j][i] + at->u[j][i];
+    status = cv_evaluate(of->v, q, (const point *)of->x, of->value, at->gradient, at->beta);
+    if (status != CV_OK)
+        return status;
+    for (long j = 0; j < q; j++) {
+        const double *const before = at->u[j > 0 ? j - 1 : q - 1], *const here = at->u[j],
+                     *const after = at->u[j < q - 1 ? j + 1 : 0];
+        for (int i = 0; i < 2; i++) {
+            const double step = after[i] - here[i];
+            const double g = (here[i] - before[i]) - step - of->eps * at->gradient[j][i];
+            sum += 0.5 * step * step;
+            size += step * step;
+            squares += g * g;
+            largest = fmax(largest, fabs(g));
+            at->gradient[j][i] = g;
+        }
+        sum -= of->eps * of->value[j];
+        size += fabs(of->eps * of->value[j]);
+        for (int i = 0; at->beta && i < 3; i++)
+            at->beta[j][i] = (i == 1 ? 0.0 : 2.0) - of->eps * at->beta[j][i];
+    }
+    at->action = sum;
+    at->noise = 1e-15 * size;
+    at->largest = squares < HUGE_VAL ? largest : HUGE_VAL;      /* NaN: nowhere near */
+    at->mean_square = squares / (double)q;
+    return CV_OK;
+}
+
+int cv_action(const cv_potential *v, long q, double eps, const double (*base)[2],
+              const double (*u)[2], double *action, double (*gradient)[2])
+{
+    const size_t size = (size_t)q;
+    action_of of = { v, q, eps, base, malloc(size * sizeof *of.x), malloc(size * sizeof *of.value) };
+    place at = { malloc(size * sizeof *at.u), gradient, NULL, 0.0, 0.0, 0.0, 0.0 };
+    int status = CV_ENOMEM;
+
+    if (of.x && of.value && at.u) {
+        memcpy(at.u, u, size * sizeof *at.u);
+        status = look(&of, &at);
+        *action = at.action;
+    }
+    free(of.x);
+    free(of.value);
+    free(at.u);
+    return status;
+}
+
+/* to = from + t along. */
+static void move(long q, place *to, const place *from, double t, const point *along)
+{
+    for (long j = 0; j < q; j++)
+        for (int i = 0; i < 2; i++)
+            to->u[j][i] = from->u[j][i] + t * along[j][i];
+}
+
+static double widest(long q, const point *v)
+{
+    double most = 0.0;
+    for (long j = 0; j < q; j++)
+        for (int i = 0; i < 2; i++)
+            most = fmax(most, fabs(v[j][i]));
+    return most;
+}
+
+/* The eigenvector of the least eigenvalue, which is below -FLAT: inverse iteration with a shift that
+   the counts of negative eigenvalues bring within a twentieth of it. */
+static long downhill(int n, long q, const block *beta, point *v)
+{
+    double low = FLAT, high = 1.0, most;
+    unsigned long long random = 88172645463325252ULL;
+    long negative;
+
+    while ((negative = cv_solve(n, q, beta, high, NULL, NULL)) > 0)
+        high *= 2.0;
+    while (negative >= 0 && high > 1.05 * low) {
+        const double middle = low > 0.01 * high ? 0.5 * (low + high) : sqrt(low * high);
+        negative = cv_solve(n, q, beta, middle, NULL, NULL);
+        if (negative > 0)
+            low = middle;
+        else
+            high = middle;
+    }
+    for (long j = 0; j < q; j++)
+        for (int i = 0; i < 2; i++) {
+            random ^= random << 13;
+            random ^= random >> 7;
+            random ^= random << 17;
+            v[j][i] = i < n ? (double)(random >> 11) * 0x1p-53 - 0.5 : 0.0;
+        }
+    for (int k = 0; k < 12 && negative >= 0; k++) {
+        negative = cv_solve(n, q, beta, high, (const point *)v, v);
+        most = widest(q, (const point *)v);
+        for (long j = 0; j < q; j++)
+            for (int i = 0; i < 2; i++)
+                v[j][i] /= most;
+    }
+    return negative < 0 ? negative : 0;
+}
+
+static void swap(place *a, place *b)
+{
+    const place c = *a;
+    *a = *b;
+    *b = c;
+}
+
+/* One state lies lower than another if its action says so or, where rounding hides that, its
+   gradient is smaller. */
+static int lower(const place *a, const place *b)
+{
+    return a->action < b->action - b->noise
+        || (a->action <= b->action + b->noise && a->mean_square < b->mean_square);
+}
+
+/* Steps off a saddle, to the lower one of both sides, as far as that is lower than here.  Returns
+   whether there is such a step, or an error. */
+static long escape(const action_of *of, place *at, place *other, point *along)
+{
+    long status = downhill(of->v->n, of->q, (const block *)at->beta, along);
+    double best = at->action - at->noise, chosen = 0.0;
+
+    for (double t = 0.5 * CAP; t > 1e-7 && chosen == 0.0 && status == CV_OK; t *= 0.25)
+        for (int sign = -1; sign <= 1 && status == CV_OK; sign += 2) {
+            move(of->q, other, at, sign * t, (const point *)along);
+            status = look(of, other);
+            if (other->action < best) {
+                best = other->action;
+                chosen = sign * t;
+            }
+        }
+    if (status != CV_OK || chosen == 0.0)
+        return status;
+    move(of->q, other, at, chosen, (const point *)along);
+    status = look(of, other);
+    swap(at, other);
+    return status < 0 ? status : 1;
+}
+
+static int descend(const action_of *of, place *at, place *other, point *along, double tol,
+                   long max_steps, const volatile int *stop, cv_relaxed *how)
+{
+    const long q = of->q;
+    double mu = 0.0;
+    int status = look(of, at);
+
+    while (status == CV_OK) {
+        const double slope = sqrt(at->mean_square);
+        long negative;
+        how->largest = at->largest;
+        if (at->largest <= tol) {
+            negative = cv_solve(of->v->n, q, (const block *)at->beta, FLAT, NULL, NULL);
+            if (negative > 0 && how->escapes < MOST_ESCAPES) {
+                how->escapes++;
+                negative = escape(of, at, other, along);
+                if (negative > 0)
+                    continue;
+            }
+            return negative < 0 ? (int)negative : CV_OK;
+        }
+        if (how->steps >= max_steps || (stop && *stop) || !(at->largest < HUGE_VAL) || mu > 1e9)
+            return CV_RUNNING;
+        how->steps++;
+        while ((negative = cv_solve(of->v->n, q, (const block *)at->beta, mu,
+                                    (const point *)at->gradient, along)) > 0 && mu < 1e9)
+            mu = fmax(4.0 * mu, fmax(0.01 * slope, 1e-15));
+        if (negative < 0)
+            return (int)negative;
+        move(q, other, at, -fmin(1.0, CAP / widest(q, (const point *)along)), (const point *)along);
+        status = look(of, other);
+        if (status == CV_OK && lower(other, at)) {
+            swap(at, other);
+            mu = mu > 1e-14 ? 0.1 * mu : 0.0;
+        } else {
+            mu = fmax(4.0 * mu, fmax(0.1 * slope, 1e-15));
+        }
+    }
+    return status;
+}
+
+int cv_relax(const cv_potential *v, long q, double eps, const double (*base)[2], double (*u)[2],
+             double tol, long max_steps, const volatile int *stop, cv_relaxed *how)
+{
+    const size_t size = (size_t)q;
+    const action_of of = { v, q, eps, base, malloc(size * sizeof *of.x),
+                           malloc(size * sizeof *of.value) };
+    place places[2], *const at = &places[0], *const other = &places[1];
+    point *const along = malloc(size * sizeof *along);
+    int status = CV_ENOMEM, complete = of.x && of.value && along;
+
+    how->steps = how->escapes = 0;
+    how->largest = HUGE_VAL;
+    for (int k = 0; k < 2; k++) {
+        places[k] = (place){ malloc(size * sizeof *at->u), malloc(size * sizeof *at->gradient),
+                             malloc(size * sizeof *at->beta), 0.0, 0.0, 0.0, 0.0 };
+        complete = complete && places[k].u && places[k].gradient && places[k].beta;
+    }
+    if (complete) {
+        memcpy(at->u, u, size * sizeof *u);
+        status = descend(&of, at, other, along, tol, max_steps, stop, how);
+        memcpy(u, at->u, size * sizeof *u);
+    }
+    for (int k = 0; k < 2; k++) {
+        free(places[k].u);
+        free(places[k].gradient);
+        free(places[k].beta);
+    }
+    free(of.x);
+    free(of.value);
+    free(along);
+    return status;
+}
