@@ -4,7 +4,7 @@
 Points at most r apart are linked.  A closed chain of links winds round the torus some whole number
 of times in each direction.  Those who hang together are a cluster if all their chains wind (0, 0),
 a curve of type (a, b) if all wind by multiples of (a, b), and a surface otherwise.  The type is the
-one for which this holds over the widest range of r: nothing is to be chosen.  Curves that touch
+one for which this holds over the widest range of r, which begins below WIDEST.  Curves that touch
 count as one in this way; how many there are is therefore counted on lines across.
 """
 
@@ -14,6 +14,7 @@ from typing import NamedTuple, Tuple
 import numpy as np
 
 PARTS = 60                              # more of them are not looked at
+WIDEST = 0.1                            # points with wider gaps between are no curve
 APART = 0.05                            # points on a line with a wider gap between are two clusters
 HALF_WIDTH = 0.02                       # of a line
 LINES = 100
@@ -49,7 +50,7 @@ def filaments(x):
     part = np.arange(label.max(initial=0) + 1)          # of each label
     ways, begin = [], 0.0
     for length, i, j in edges[early:] + [(0.5, 0, 0)]:  # farther off, the way round is as short
-        ways += _one_way(part, loops, begin, length)
+        ways += [way for way in _one_way(part, loops, begin, length) if way[0] <= WIDEST]
         part[part == part[label[j]]] = part[label[i]]
         begin = length
     if not ways:
