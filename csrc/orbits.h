@@ -41,9 +41,9 @@ typedef struct {
     double largest;                         /* coordinate of the gradient */
 } cv_relaxed;
 
-/* Damped Newton: lowers the action until the largest coordinate of its gradient is at most tol,
-   and leaves saddles along their most negative direction.  CV_RUNNING: not there after so many
-   steps, or stopped; u is the best state met. */
+/* Damped Newton: lowers the action until the largest coordinate of its gradient is at most tol, or
+   100 tol if rounding hides what would lower it, and leaves saddles along their most negative
+   direction.  CV_RUNNING: not there after so many steps, or stopped; u is the best state met. */
 int cv_relax(const cv_potential *v, long q, double eps, const double (*base)[2], double (*u)[2],
              double tol, long max_steps, const volatile int *stop, cv_relaxed *how);
 

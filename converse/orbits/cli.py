@@ -15,7 +15,6 @@ from .. import files, picture
 from ..cli import Parser, ended, say, whole
 from ..files import ConverseError, plain
 from ..figure import format_of
-from ..growth import count_workers
 from ..version import __version__
 
 COMMAND = "converse-orbits"
@@ -284,7 +283,11 @@ def _check_outputs(options, potential_file):
         if format_of(options.graphics) == "ps":
             raise ConverseError("'%s': the figure is SVG, PNG or PDF; let its name end so"
                                 % options.graphics)
-        picture.check()
+        from .figures import ROWS, check
+        check([], format_of(options.graphics))
+        if sum(map(len, options.eps)) > ROWS:
+            raise ConverseError("a figure shows %d states at most; choose fewer eps, or no figure"
+                                % ROWS)
 
 
 def find_states(options):
@@ -292,9 +295,9 @@ def find_states(options):
     p, q = _check_type(potential, options.type)
     _check_outputs(options, options.potential)
 
-    from converse import orbits
-    from .solver import Family
+    from .solver import Family, follow, straight
 
+    eps = [x for each in options.eps for x in each]
     states, status = [], 0
 
     def found(state):
@@ -304,23 +307,24 @@ def find_states(options):
         if state.label in NO_MINIMUM:
             status = 1
         if options.prove:
+            from .proved import prove
             try:
-                say(orbits.prove(state).report())
+                say(prove(state).report())
             except ConverseError as reason:
                 say("Not proved : %s\n" % plain(str(reason)))
                 status = 1
 
-    say(header(orbits.straight(potential, p, q)))
-    eps = [x for each in options.eps for x in each]
+    say(header(straight(potential, p, q)))
     if options.search is None:
         try:
-            orbits.follow(potential, p, q, eps, progress=lambda _, state: found(state))
+            follow(potential, p, q, eps, progress=lambda _, state: found(state))
         except ConverseError as reason:
             say("\nNot found : %s\n" % plain(str(reason)))
             status = 1
     else:
+        from .search import search
         for x in eps:
-            found(orbits.search(potential, p, q, x, options.search, seed=options.seed))
+            found(search(potential, p, q, x, options.search, seed=options.seed))
     if options.csv is not None:
         table = io.StringIO(newline="")
         Family(tuple(states)).write_csv(table)
@@ -338,8 +342,8 @@ def sweep_types(options):
         if path is not None and os.path.exists(path) and files.same(path, options.csv):
             raise ConverseError("the table would overwrite '%s'; name another file" % path)
 
-    from converse import orbits
-    from .sweep import LOST
+    from ..growth import count_workers
+    from .sweep import LOST, onsets, sweep
 
     eps = [x for each in options.eps for x in each]
     with contextlib.ExitStack() as stack:
@@ -347,8 +351,8 @@ def sweep_types(options):
         executor = stack.enter_context(concurrent.futures.ThreadPoolExecutor(
             options.jobs or count_workers()))
         common = {"executor": executor, "file": options.csv, "progress": bar}
-        table = orbits.sweep(potential, vectors, eps, **common) if eps else \
-            orbits.onsets(potential, vectors, **common)
+        table = sweep(potential, vectors, eps, **common) if eps else \
+            onsets(potential, vectors, **common)
     lost = int((table["label"] == LOST).sum())
     say("written: %s, %d types, %d rows%s\n" % (
         plain(options.csv), len(vectors), len(table), ", %d of them lost" % lost if lost else ""))
@@ -381,6 +385,13 @@ def draw_figures(options):
     return 0
 
 
+def run(options):
+    from converse import orbits
+
+    orbits.State                        # or a line that says what is missing
+    return options.run(options)
+
+
 def main(argv=None):
     """Runs the command and returns its exit status."""
     options = argparse.Namespace(run=None)
@@ -391,7 +402,7 @@ def main(argv=None):
                 draw_figures: "the figures that were finished are kept"}.get(options.run,
                                                                              "nothing was begun")
 
-    return ended(COMMAND, lambda: parser().parse_args(argv, options).run(options), interrupted)
+    return ended(COMMAND, lambda: run(parser().parse_args(argv, options)), interrupted)
 
 
 if __name__ == "__main__":

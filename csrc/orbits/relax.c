@@ -185,11 +185,14 @@ static int descend(const action_of *of, place *at, place *other, point *along, d
         const double slope = sqrt(at->mean_square);
         long negative;
         how->largest = at->largest;
-        if (at->largest <= tol) {
+        /* Before break-up a gradient along directions that cost nothing may be all that rounding
+           leaves, and no step lowers what it hides. */
+        if (at->largest <= tol || (mu > 1e9 && at->largest <= 100.0 * tol)) {
             negative = cv_solve(of->v->n, q, (const block *)at->beta, FLAT, NULL, NULL);
             if (negative > 0 && how->escapes < MOST_ESCAPES) {
                 how->escapes++;
                 negative = escape(of, at, other, along);
+                mu = 0.0;
                 if (negative > 0)
                     continue;
             }
