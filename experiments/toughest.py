@@ -18,10 +18,12 @@ import concurrent.futures
 import math
 import os
 import random
+import sys
 
 import numpy as np
 
 from converse import files, orbits, picture
+from converse.cli import ended
 
 TRIG = {"step": 0.0005, "width": 1e-5, "top": 0.02}
 STANDARD = {"step": 0.02, "width": 1e-5, "top": 1.5}
@@ -265,7 +267,8 @@ def main():
     draw(path("map.svg"), (8.4, 4.4), draw_map, table, best)
     draw(path("sequence.svg"), (8.4, 3.2), draw_sequence, *sequences)
     draw(path("frontier.svg"), (7.2, 3.6), draw_frontier, table, last, middle(chapter))
+    return 0
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(ended("toughest", main, lambda: "the same command continues"))
