@@ -22,8 +22,8 @@ NAMES = "trig", "poly", "ff", "froeschle", "standard"
 MANY = 10000                            # values of eps, at most
 SIZES = 300, 1200                       # q of a sweep, unless others are asked for
 STATUS = ("Exit status: 0 all was found that was asked for; 1 a state was not found, is no "
-          "minimum, or is not proved though --prove was given; 2 bad usage, input or file; 129, 130 "
-          "or 143 ended by a signal.")
+          "minimum, or is not proved though --prove was given; 2 bad usage, input or file; 129, "
+          "130 or 143 ended by a signal.")
 POTENTIAL = ("trig, poly, ff, froeschle, standard, or a file whose lines 'k0 k1 cosine sine' (with "
              "one angle: 'k cosine sine') are the terms of V")
 MEANINGS = {                            # of labels
