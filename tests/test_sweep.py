@@ -241,6 +241,18 @@ def test_what_is_no_sweep_is_refused(path, data):
     assert path.read_bytes() == data
 
 
+@pytest.mark.parametrize("old, new", [(b"minimum,", b"minimum;"), (b",minimum,", b",minimum,\0,"),
+                                      (b",0.", b",zero."), (b"e-0", b"\xff-0")])
+def test_a_damaged_sweep_is_refused(whole, path, old, new):
+    """Here the last line with such words."""
+    head, _, tail = whole.rpartition(old)
+    path.write_bytes(head + new + tail)
+    with pytest.raises(ConverseError, match="it is damaged"):
+        orbits.sweep(orbits.trig, VECTORS, EPS, file=path)
+    with pytest.raises(ConverseError, match="is no table"):
+        orbits.read_csv(path)
+
+
 def test_two_sweeps_do_not_write_one_file(path):
     with files.lock(path), pytest.raises(ConverseError, match="another run"):
         orbits.sweep(orbits.trig, VECTORS, EPS, file=path)
