@@ -13,6 +13,7 @@ except ImportError:
     from ..files import ConverseError
     raise ConverseError("converse.orbits needs numpy; pip install 'converse-kam[orbits]'") from None
 
+from .floor import Floor, LeastAction, floor, least_action
 from .potential import (Fourier, FromPython, Potential, ff, froeschle, parameters, poly, standard,
                         trig)
 from .solver import Family, flow, follow, newton, straight
