@@ -175,10 +175,10 @@ static long escape(const action_of *of, place *at, place *other, point *along)
 }
 
 static int descend(const action_of *of, place *at, place *other, point *along, double tol,
-                   long max_steps, const volatile int *stop, cv_relaxed *how)
+                   long max_steps, cv_relaxed *how)
 {
     const long q = of->q;
-    double mu = 0.0;
+    double mu = how->damping;
     int status = look(of, at);
 
     while (status == CV_OK) {
@@ -195,7 +195,8 @@ static int descend(const action_of *of, place *at, place *other, point *along, d
             }
             return negative < 0 ? (int)negative : CV_OK;
         }
-        if (how->steps >= max_steps || (stop && *stop) || !(at->largest < HUGE_VAL) || mu > 1e9)
+        how->damping = mu;
+        if (how->steps >= max_steps || !(at->largest < HUGE_VAL) || mu > 1e9)
             return CV_RUNNING;
         how->steps++;
         while ((negative = cv_solve(of->v->n, q, (const block *)at->beta, mu,
@@ -216,7 +217,7 @@ static int descend(const action_of *of, place *at, place *other, point *along, d
 }
 
 int cv_relax(const cv_potential *v, long q, double eps, const double (*base)[2], double (*u)[2],
-             double tol, long max_steps, const volatile int *stop, cv_relaxed *how)
+             double tol, long max_steps, cv_relaxed *how)
 {
     const size_t size = (size_t)q;
     const action_of of = { v, q, eps, base, malloc(size * sizeof *of.x),
@@ -225,8 +226,6 @@ int cv_relax(const cv_potential *v, long q, double eps, const double (*base)[2],
     point *const along = malloc(size * sizeof *along);
     int status = CV_ENOMEM, complete = of.x && of.value && along;
 
-    how->steps = how->escapes = 0;
-    how->largest = HUGE_VAL;
     for (int k = 0; k < 2; k++) {
         places[k] = (place){ malloc(size * sizeof *at->u), malloc(size * sizeof *at->gradient),
                              malloc(size * sizeof *at->beta), 0.0, 0.0, 0.0, 0.0 };
@@ -234,7 +233,7 @@ int cv_relax(const cv_potential *v, long q, double eps, const double (*base)[2],
     }
     if (complete) {
         memcpy(at->u, u, size * sizeof *u);
-        status = descend(&of, at, other, along, tol, max_steps, stop, how);
+        status = descend(&of, at, other, along, tol, max_steps, how);
         memcpy(u, at->u, size * sizeof *u);
     }
     for (int k = 0; k < 2; k++) {
