@@ -32,6 +32,7 @@ long cv_solve(int n, long q, const double (*beta)[3], double mu, const double (*
     sym *const inverse = malloc(size * sizeof *inverse), last = sym_of(beta[q - 1]), d;
     mat *const w = malloc(size * sizeof *w), next;
     double sum[2] = { 0.0, 0.0 };
+    const double idle = n == 2 ? mu : 0.0;      /* an idle coordinate keeps its positive pivots */
     long negative = 0;
 
     if (!inverse || !w) {
@@ -40,7 +41,7 @@ long cv_solve(int n, long q, const double (*beta)[3], double mu, const double (*
         return CV_ENOMEM;
     }
     last.a += mu;
-    last.c += mu;
+    last.c += idle;
     if (q == 1) {
         last.a -= 2.0;
         last.c -= n == 2 ? 2.0 : 0.0;
@@ -49,7 +50,7 @@ long cv_solve(int n, long q, const double (*beta)[3], double mu, const double (*
         mat *const here = &w[j];
         d = sym_of(beta[j]);
         d.a += mu;
-        d.c += mu;
+        d.c += idle;
         if (j > 0)
             d = sym_sub(d, inverse[j - 1]);
         negative += sym_negative(d);
