@@ -69,7 +69,7 @@ class State:
                              "not %r and %r" % (n, self.p, self.q))
         u = np.array(self.u, dtype=float)       # of its own
         if u.shape != (self.q, n) or not (np.abs(u) < FARTHEST).all():
-            raise ValueError("displacements are %d rows of %d numbers below %d in size"
+            raise ValueError("displacements are %d rows of %d finite numbers below %d in size"
                              % (self.q, n, FARTHEST))
         u.flags.writeable = False
         origin = tuple(float(x) for x in self.origin)
