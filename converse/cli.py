@@ -9,7 +9,7 @@ import sys
 import warnings
 from dataclasses import replace
 
-from . import figure, files, picture
+from . import files
 from .files import ConverseError, plain
 from .problem import InputError, read_input
 from .report import header, verdict
@@ -189,6 +189,8 @@ def _read_problem(options, restored):
 def _check_graphics(options):
     """Refuses a figure that cannot be written or would overwrite what the run reads or writes, or a
     proof."""
+    from . import figure, picture       # these take a while
+
     path, others = options.graphics, [options.input, options.backup, options.restore]
     with contextlib.suppress(AttributeError, OSError, ValueError):
         others.append(sys.stdin.fileno())
