@@ -13,10 +13,12 @@ except ImportError:
     from ..files import ConverseError
     raise ConverseError("converse.orbits needs numpy; pip install 'converse-kam[orbits]'") from None
 
+from .measures import Prelude, gram_schmidt_exponents, prelude
 from .potential import (Fourier, FromPython, Potential, ff, froeschle, parameters, poly, standard,
                         trig)
 from .solver import Family, flow, follow, newton, straight
 from .state import State
 
-__all__ = ["Family", "Fourier", "FromPython", "Potential", "State", "ff", "flow", "follow",
-           "froeschle", "newton", "parameters", "poly", "standard", "straight", "trig"]
+__all__ = ["Family", "Fourier", "FromPython", "Potential", "Prelude", "State", "ff", "flow",
+           "follow", "froeschle", "gram_schmidt_exponents", "newton", "parameters", "poly",
+           "prelude", "standard", "straight", "trig"]
