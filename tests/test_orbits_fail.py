@@ -76,9 +76,8 @@ def test_newton_at_the_start_of_poly():
 def test_cholesky_fails_while_the_torus_is_whole_and_the_pivots_do_not():
     """Two eigenvalues are zero but for rounding, which decides whether the Hessian is positive."""
     failed = 0
-    for p, q, eps in [((65, 86), 114, 0.002), ((65, 86), 114, 0.003), ((86, 114), 151, 0.002),
-                      ((86, 114), 151, 0.003), ((114, 151), 200, 0.003), ((151, 200), 265, 0.003)]:
-        state = orbits.follow(orbits.trig, p, q, [eps])[0]
+    p, q = (65, 86), 114
+    for state in orbits.follow(orbits.trig, p, q, [0.0005, 0.001, 0.0015, 0.002, 0.0025, 0.003]):
         band = np.diag(np.tile([2.0], 2 * q))
         for j in range(q):
             a, b, c = state.blocks[j]
@@ -90,7 +89,7 @@ def test_cholesky_fails_while_the_torus_is_whole_and_the_pivots_do_not():
             np.linalg.cholesky(band)
         except np.linalg.LinAlgError:
             failed += 1
-        assert state.label == "minimum" and state.undetermined == 2 and abs(state.least) < 1e-12
+        assert state.label == "minimum" and state.undetermined == 2 and abs(state.least) < 1e-11
         assert not np.isnan(state.exponents).any() and state.exponents[0] < 1e-4
     assert failed
 
@@ -110,14 +109,14 @@ def test_phases_along_soft_directions_are_not_determined():
 
 
 def test_a_direction_so_flat_that_nothing_is_known():
-    """At 0.0075 the gradient is 1e-13 and one eigenvalue -4e-11: along it the orbit may lie anywhere,
-    and neither "minimum" nor "saddle" would be known.  With less of a gradient it would."""
-    state = orbits.follow(orbits.trig, *SPIRAL, [0.0075])[0]
-    flat = orbits.State(orbits.standard, (0,), 1, 1e-11, [[0.0]], (2e-3,))     # near a saddle
-    assert flat.label == "stationary" and flat.undetermined == 1
-    assert state.label in ("minimum", "stationary") and state.undetermined == 2
+    """A saddle as flat as this is one if the gradient is zero; if not, the orbit may lie anywhere along
+    it, and what is said is that this direction is not determined."""
     sure = orbits.State(orbits.standard, (0,), 1, 1e-9, [[0.0]], (0.0,))
     assert sure.label == "saddle" and sure.undetermined == 1
+    flat = orbits.State(orbits.standard, (0,), 1, 1e-9, [[0.0]], (2e-3,))
+    assert flat.label == "stationary" and flat.undetermined == 1
+    state = orbits.follow(orbits.trig, *SPIRAL, [0.0075])[0]        # 1e-13, and -4e-11
+    assert state.label == "minimum" and state.undetermined == 2
 
 
 def test_a_minimum_whose_copies_are_none():

@@ -179,18 +179,16 @@ class State:
     @property
     def label(self):
         """What is known of it, in doubles: "not stationary"; "saddle", if it or an n-fold copy of it
-        has an action that can be lowered to second order; "minimum", if neither can, but for
-        near-null directions (undetermined); "stationary", if rounding hides which, or so flat a
-        direction that what is stationary may lie far along it; "best of N searches", of a minimum
-        found so."""
+        has an action that can be lowered to second order; "minimum", if neither has, but for
+        directions so flat that nobody knows (undetermined); "stationary", if rounding hides which;
+        "best of N searches", of a minimum found so."""
         if not self.shadow < STATIONARY:
             return "not stationary"
         rounds = self._pivots[1]
         if rounds <= 0:
-            negative = self.repeat(1 - rounds).below(-max(ROUNDING, self.shadow / FAR))
-            if negative:
+            if self.repeat(1 - rounds).below(-max(ROUNDING, self.shadow / FAR)):
                 return "saddle"
-            if rounds < 0 or self.below(-ROUNDING):
+            if rounds < 0:
                 return "stationary"
         return "best of %d searches" % self.searches if self.searches else "minimum"
 
