@@ -39,17 +39,21 @@ typedef struct {
     long steps;                             /* tried, accepted or not */
     int escapes;                            /* from saddles */
     double largest;                         /* coordinate of the gradient */
+    double damping;                         /* of the next step */
 } cv_relaxed;
 
 /* Damped Newton: lowers the action until the largest coordinate of its gradient is at most tol,
-   and leaves saddles along their most negative direction.  CV_RUNNING: not there after so many
-   steps, or stopped; u is the best state met. */
+   and leaves saddles along their most negative direction.  CV_RUNNING: not there after max_steps
+   steps in all, or, if there were fewer, no step helps; u is the best state met.  All zero in *how
+   begins; what an earlier call left there goes on where it ended, so that long runs can be broken
+   into calls, and interrupted between them. */
 int cv_relax(const cv_potential *v, long q, double eps, const double (*base)[2], double (*u)[2],
-             double tol, long max_steps, const volatile int *stop, cv_relaxed *how);
+             double tol, long max_steps, cv_relaxed *how);
 
-/* The pivots d_j = beta_j - 1/d_{j-1}, run round the orbit until they repeat to relative 1e-13 or
-   for max_rounds.  Returns the rounds it took, -1 if they did not settle; 0 if one was not positive
-   definite: then the orbit is no minimum, perhaps not before it is run through several times. */
+/* The pivots d_j = beta_j - 1/d_{j-1} from d_0 = beta_0, run round the orbit until they repeat to
+   relative 1e-13 or for max_rounds.  Returns the rounds it took, 0 if they did not settle; -r if one
+   in round r was not positive definite: then the orbit run through r + 1 times is no minimum, since
+   the pivots up to there are those of its Hessian with the other points held fixed. */
 long cv_pivots(int n, long q, const double (*beta)[3], long max_rounds, double (*d)[3]);
 
 /* The logarithms, over q, of the moduli of the eigenvalues of d_{q-1} ... d_0, larger first. */
