@@ -27,7 +27,7 @@ FINE = tuple(k / 800 for k in range(33))
 KICKS = 0.5, 0.97, 2.0                  # k; the thesis: small, the middle, more than 4/3
 CANTORUS = 1.001635, (377,), 987        # k, and the rotation number: near 1/gamma^2
 SEQUENCE = 60, 110, 199, 309, 720, 1330, 2550, 3770     # periods on the way to TENTH
-SMOOTH = 0.0025, 0.0075, 0.0125, 0.02, 0.025, 0.03      # eps; the thesis: small to large
+SMOOTH = 0.005, 0.01, 0.0125, 0.02, 0.025, 0.03      # eps; the thesis: small to large
 PAIRS = 800
 LEVELS = 5                              # of the triangles
 MANY = 5000                             # in more points curves are not looked for
@@ -344,7 +344,7 @@ def smooth(figure, families):
         if distance.max() < 3 * distance.min():
             panel.xaxis.set_major_locator(ticker.MaxNLocator(4))
             panel.xaxis.set_major_formatter("{x:g}")
-            panel.xaxis.set_minor_locator(ticker.NullLocator())
+        panel.xaxis.set_minor_formatter(ticker.NullFormatter())
         panel.set_title("(%s)  eps = %g: L up to %.2g\n%s, shadow %.0e" % (
             letter, eps, ratio.max(), state.label, state.shadow), fontsize=7)
         lost += np.count_nonzero(~apart)
