@@ -51,10 +51,15 @@ def test_surfaces_and_clusters_are_no_filaments():
     assert filaments(np.array([[0.5, 0.5]])) is None
 
 
+def rows(count):
+    """Two rows of so many points, 0.3 apart."""
+    return np.array([(k / count, y) for k in range(count) for y in (0.1, 0.4)])
+
+
 def test_gap_and_distance():
-    """Two rows of ten points: linked along at 0.1, and across at 0.3."""
-    x = np.array([(k / 10, y) for k in range(10) for y in (0.1, 0.4)])
-    assert filaments(x) == Filaments((1, 0), pytest.approx(0.1), pytest.approx(0.3), 0, 2)
+    assert filaments(rows(20)) == Filaments((1, 0), pytest.approx(0.05), pytest.approx(0.3), 0, 2)
+    assert filaments(rows(11)).type == (1, 0)
+    assert filaments(rows(9)) is None                   # no curve has such gaps
 
 
 def test_clusters():
