@@ -42,8 +42,8 @@ typedef struct {
     double damping;                         /* of the next step */
 } cv_relaxed;
 
-/* Damped Newton: lowers the action until the largest coordinate of its gradient is at most tol,
-   and leaves saddles along their most negative direction.  CV_RUNNING: not there after max_steps
+/* Damped Newton: lowers the action until the largest coordinate of its gradient is at most tol, or
+   100 tol where rounding hides what would lower it, and leaves saddles along their most negative direction.  CV_RUNNING: not there after max_steps
    steps in all, or, if there were fewer, no step helps; u is the best state met.  All zero in *how
    begins; what an earlier call left there goes on where it ended, so that long runs can be broken
    into calls, and interrupted between them. */
