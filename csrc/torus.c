@@ -28,6 +28,18 @@ typedef struct { double v[2], r[2]; int depth; } cell;
 /* NaN if either is. */
 static inline double larger(double x, double y) { return x > y || isnan(x) ? x : y; }
 
+static problem problem_of(const double low[3], const double high[3], int which)
+{
+    problem p = { .which = which };
+
+    for (int i = 0; i < WAVES; i++) {
+        p.low[i] = low[i];
+        p.high[i] = high[i];
+        p.size[i] = larger(fabs(low[i]), fabs(high[i]));
+    }
+    return p;
+}
+
 /* >= p sin(v + t) for every p of the range, s and c the sine and cosine of v:
    sup p (s + c t) + |p| t^2/2, since |sin''| <= 1.  As a function of t this is convex. */
 static double wave(const problem *p, int i, double s, double c, double t)
@@ -119,20 +131,14 @@ static double pass(const problem *p, double *best, double tolerance, long *cells
    4 + |a| + |b| + 2|c| or 2 + max(|a|, |b|) + 2|c|; a ridge nearly reaches it. */
 double torus_largest(const double low[3], const double high[3], int which)
 {
-    problem p = { .which = which };
-    double all, best = 0.0, most = HUGE_VAL, last, tolerance, no_more;  /* 0: the mean is above */
+    const problem p = problem_of(low, high, which);
+    const double all = p.size[0] + p.size[1] + p.size[2], last = NEAR + MARGIN * all;
+    const double no_more = 2.0 * p.size[2] + (which == TORUS_TRACE
+        ? 4.0 + p.size[0] + p.size[1] : 2.0 + larger(p.size[0], p.size[1]));
+    double best = 0.0, most = HUGE_VAL;                 /* 0: the mean is above */
     long cells = 0;
 
-    for (int i = 0; i < WAVES; i++) {
-        p.low[i] = low[i];
-        p.high[i] = high[i];
-        p.size[i] = larger(fabs(low[i]), fabs(high[i]));
-    }
-    all = p.size[0] + p.size[1] + p.size[2];
-    no_more = 2.0 * p.size[2] + (which == TORUS_TRACE ? 4.0 + p.size[0] + p.size[1]
-                                                      : 2.0 + larger(p.size[0], p.size[1]));
-    last = NEAR + MARGIN * all;
-    for (tolerance = 0.5 * all; ; tolerance *= 1e-3) {
+    for (double tolerance = 0.5 * all; ; tolerance *= 1e-3) {
         const int done = tolerance <= 2.0 * last;
         const double found = pass(&p, &best, done ? last : tolerance, &cells);
         most = isnan(found) || found < most ? found : most;
@@ -146,13 +152,8 @@ double torus_largest(const double low[3], const double high[3], int which)
 double torus_rectangle(const double low[3], const double high[3], const double centre[2],
                        const double half[2], int which)
 {
-    problem p = { .which = which };
+    const problem p = problem_of(low, high, which);
     double middle;
 
-    for (int i = 0; i < WAVES; i++) {
-        p.low[i] = low[i];
-        p.high[i] = high[i];
-        p.size[i] = larger(fabs(low[i]), fabs(high[i]));
-    }
     return over(&p, centre, half, &middle);
 }
