@@ -97,7 +97,7 @@ MUTATIONS = [
     ("torus.c", "b = 2.0 * z,", "b = z,"),
     ("torus.c", "larger(fabs(low[i]), fabs(high[i]));", "fabs(high[i]);"),
     ("torus.c", ": 2.0 + larger(p.size[0], p.size[1]));", ": 2.0 + p.size[0]);"),
-    ("torus.c", "which == TORUS_TRACE ? 4.0", "0 ? 4.0"),
+    ("torus.c", "? 4.0 + p.size[0]", "? 2.0 + p.size[0]"),
     ("torus.c", "return most + MARGIN * (1.0 + all);", "return most - MARGIN * (1.0 + all);"),
     ("torus.c", "        if (isnan(bound))\n            return bound;\n", ""),
     ("torus.c", "other->v[j] += k->r[j];", "other->v[j] += 0.5 * k->r[j];"),
