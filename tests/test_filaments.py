@@ -51,17 +51,22 @@ def test_surfaces_and_clusters_are_no_filaments():
     assert filaments(np.array([[0.5, 0.5]])) is None
 
 
+def rows(count):
+    """Two rows of so many points, 0.3 apart."""
+    return np.array([(k / count, y) for k in range(count) for y in (0.1, 0.4)])
+
+
 def test_gap_and_distance():
-    """Two rows of ten points: linked along at 0.1, and across at 0.3."""
-    x = np.array([(k / 10, y) for k in range(10) for y in (0.1, 0.4)])
-    assert filaments(x) == Filaments((1, 0), pytest.approx(0.1), pytest.approx(0.3), 0, 2)
+    assert filaments(rows(20)) == Filaments((1, 0), pytest.approx(0.05), pytest.approx(0.3), 0, 2)
+    assert filaments(rows(11)).type == (1, 0)
+    assert filaments(rows(9)) is None                   # no curve has such gaps
 
 
 def test_clusters():
     assert clusters(curves(5, 0, 1, 500), 1) == 5
     assert clusters(curves(5, 1, 0, 500), 0) == 5
     assert clusters(curves(1, 3, 1, 500), 0, 1 / 3) == 3
-    assert clusters(np.array([[0.2, 0.2], [0.2, 0.5], [0.2, 0.54]]), 0) == 2    # where there are any
+    assert clusters(np.array([[0.2, 0.2], [0.2, 0.5], [0.2, 0.54]]), 0) == 2    # where any are
 
 
 def test_bad_points():
@@ -78,8 +83,9 @@ def test_bad_points():
     ("poly", (1432, 1897), 2513, 0.005, 7, (0, 1), (7, 0)),
     ("poly", (377, 2330), 3770, 0.015, 1, (1, -4), (4, 1))] * (TORTURE > 1))
 def test_the_thesis(potential, p, q, eps, count, kind, resonance):
-    """Continuation as in the figures.  Three curves of type (1, 1), seven of (0, 1), one of (4, 1): the thesis names the last by its
-    resonance, and leaves out signs.  The curves cross the resonance k: its k.p/q is nearly whole."""
+    """Continuation as in the figures.  Three curves of type (1, 1), seven of (0, 1), one of (4, 1):
+    the thesis names the last by its resonance, and leaves out signs.  The curves cross the resonance
+    k: its k.p/q is nearly whole."""
     steps = [0.0025 * k for k in range(1, round(eps / 0.0025) + 1)]
     state = orbits.follow(getattr(orbits, potential), p, q, steps)[-1]
     found = filaments(state.x)

@@ -8,8 +8,12 @@ The torus has period 1 here, 2 pi in the rest of the package; potential.paramete
 """
 
 try:
+    from .floor import Floor, LeastAction, floor, least_action
+    from .measures import Prelude, gram_schmidt_exponents, prelude
     from .potential import (Fourier, FromPython, Potential, ff, froeschle, parameters, poly,
                             standard, trig)
+    from .proved import NotProved, ProvedOrbit, prove
+    from .search import search
     from .solver import Family, flow, follow, newton, straight
     from .state import State
     from .sweep import Onset, onset, onsets, read_csv, sweep
@@ -23,6 +27,8 @@ except ImportError as _error:           # said when something is asked for: the 
             raise AttributeError(name)
         raise ConverseError(_MISSING)
 
-__all__ = ["Family", "Fourier", "FromPython", "Onset", "Potential", "State", "ff", "flow", "follow",
-           "froeschle", "newton", "onset", "onsets", "parameters", "poly", "read_csv", "standard",
-           "straight", "sweep", "trig"]
+__all__ = ["Family", "Floor", "Fourier", "FromPython", "LeastAction", "NotProved", "Onset",
+           "Potential", "Prelude", "ProvedOrbit", "State", "ff", "floor", "flow", "follow",
+           "froeschle", "gram_schmidt_exponents", "least_action", "newton", "onset", "onsets",
+           "parameters", "poly", "prelude", "prove", "read_csv", "search", "standard", "straight",
+           "sweep", "trig"]

@@ -27,7 +27,7 @@ FINE = tuple(k / 800 for k in range(33))
 KICKS = 0.5, 0.97, 2.0                  # k; the thesis: small, the middle, more than 4/3
 CANTORUS = 1.001635, (377,), 987        # k, and the rotation number: near 1/gamma^2
 SEQUENCE = 60, 110, 199, 309, 720, 1330, 2550, 3770     # periods on the way to TENTH
-SMOOTH = 0.0025, 0.0075, 0.0125, 0.02, 0.025, 0.03      # eps; the thesis: small to large
+SMOOTH = 0.005, 0.01, 0.0125, 0.02, 0.025, 0.03      # eps; the thesis: small to large
 PAIRS = 800
 LEVELS = 5                              # of the triangles
 MANY = 5000                             # in more points curves are not looked for
@@ -55,7 +55,7 @@ COLOURS = {"trig": DARK, "poly": BLUE, "ff": ORANGE}
 STYLE = {
     **picture.SALT, "lines.linewidth": 1, "legend.frameon": False, "legend.fontsize": 8,
     "axes.titlesize": 8, "axes.labelsize": 9, "axes.linewidth": 0.6, "xtick.labelsize": 7,
-    "ytick.labelsize": 7, "svg.fonttype": "path",
+    "ytick.labelsize": 7,
 }
 POINTS = {"linestyle": "none", "marker": "o", "markersize": 1.3, "markeredgewidth": 0,
           "rasterized": True}
@@ -81,8 +81,8 @@ class Families:
 
 # ---- words
 
-LABELS = ("Minimum: a local one, as far as doubles show; nothing is proved, and there may be states "
-          "of less action.")
+LABELS = ("Minimum: a local one, as far as doubles show; nothing is proved, and there may be "
+          "states of less action.")
 HOW = "Found by continuation from eps = 0 in steps of at most %g.  %s" % (STEP, LABELS)
 
 
@@ -322,9 +322,9 @@ def lyaps(figure, families):
         panel.set_ylabel("exponents")
     for panel in rows[1]:
         panel.set_xlabel("eps")
-    return ("The two Lyapunov exponents >= 0 against eps; %g is about what 1989's method gave where "
-            "they are 0.  The thesis does not say the range; 0 to %g in steps of %g was chosen "
-            "here.  %s  %s" % (NOISE, STEPS[-1], STEPS[1], labels(states), HOW))
+    return ("The two Lyapunov exponents >= 0 against eps; %g is about what 1989's method gave "
+            "where they are 0.  The thesis does not say the range; 0 to %g in steps of %g was "
+            "chosen here.  %s  %s" % (NOISE, STEPS[-1], STEPS[1], labels(states), HOW))
 
 
 # ---- section 2.4: smoothness
@@ -344,7 +344,7 @@ def smooth(figure, families):
         if distance.max() < 3 * distance.min():
             panel.xaxis.set_major_locator(ticker.MaxNLocator(4))
             panel.xaxis.set_major_formatter("{x:g}")
-            panel.xaxis.set_minor_locator(ticker.NullLocator())
+        panel.xaxis.set_minor_formatter(ticker.NullFormatter())
         panel.set_title("(%s)  eps = %g: L up to %.2g\n%s, shadow %.0e" % (
             letter, eps, ratio.max(), state.label, state.shadow), fontsize=7)
         lost += np.count_nonzero(~apart)
@@ -382,9 +382,10 @@ def deev(figure, families):
     rows[1].set_xlabel("eps")
     return ("The largest displacement of a point of the state from where it would be without "
             "perturbation, %.3f at most (dotted: from the straight line through x_0, which depends "
-            "on which point is called x_0); dashed: 1/sqrt 2, half the diagonal of the unit square.  "
-            "In %d of %d states a phase is arbitrary, and with it a part of the displacement.  The "
-            "thesis does not say the vectors or the steps; these (%g) were chosen here.  %s  %s"
+            "on which point is called x_0); dashed: 1/sqrt 2, half the diagonal of the unit "
+            "square.  In %d of %d states a phase is arbitrary, and with it a part of the "
+            "displacement.  The thesis does not say the vectors or the steps; these (%g) were "
+            "chosen here.  %s  %s"
             % (max(state.deviation.from_start for state in states),
                sum(state.undetermined > 0 for state in states), len(states), FINE[1],
                labels(states), HOW))
@@ -432,8 +433,8 @@ def tree(figure, families):
     axes.set(xlim=(-0.2, 1.05), ylim=(-2.3, 0.3))
     axes.set_axis_off()
     return ("Farey's tree: above, the ends of a level's intervals, below, their mediants.  The dot "
-            "is the golden mean; in bold its approximant, the mediant with the largest p + q of its "
-            "level.")
+            "is the golden mean; in bold its approximant, the mediant with the largest p + q of "
+            "its level.")
 
 
 def trimed(figure, families):
@@ -545,7 +546,10 @@ def _page(width, height, kind, fill):
 
 def check(names, kind):
     """Finds out before the work starts what is wrong with an order for figures."""
-    picture.check()
+    try:
+        picture.check()
+    except files.ConverseError:
+        raise files.ConverseError("figures need matplotlib; pip install matplotlib") from None
     if kind not in picture.FORMATS:
         raise ValueError("figures are %s, not %s" % (", ".join(picture.FORMATS), kind))
     for name in names:
