@@ -117,24 +117,23 @@ def test_a_potential_in_a_file(run, tmp_path):
     assert (mine.name, mine.n, mine.terms) == ("mine.v2", 2, orbits.trig.terms)
     status, out, err = run("find", path, SMALL, repr(0.02 * orbits.trig.scale))
     assert (status, err) == (0, "") and "Potential : mine.v2\n" in out
+    assert " k c s = 1 0 0 -1/2, 0 1 0 -1/2, 1 1 0 -1\n" in out
     state = orbits.follow(orbits.trig, (65, 86), 114, [0.02])[0]
     action, = numbers(out, "Action per point less |p/q|^2/2")[0]
     assert action == pytest.approx(state.action, abs=1e-11)
     path.write_text("1 -1 0")
     assert cli.read_potential(str(path)).n == 1
+    path = path.rename(tmp_path / "trig")               # another potential, another name
+    assert "Potential : trig.txt\nV(x) : " in run("find", path, "1/3", "0.1")[1]
 
 
 def test_proof_and_search(run):
     """--prove gives the theorem of prove, --search the state of search."""
-    pytest.importorskip("converse.orbits.proved")
-    search = pytest.importorskip("converse.orbits.search").search
-    from converse.orbits.proved import prove
-
     status, out, err = run("find", "trig", "5,7/9", "0.03", "--search=5", "--seed=3", "--prove")
     assert (status, err) == (0, "")
-    state = search(orbits.trig, (5, 7), 9, 0.03, 5, seed=3)
+    state = orbits.search(orbits.trig, (5, 7), 9, 0.03, 5, seed=3)
     assert "State : %s (seen in doubles, not proved" % state.label in out
-    assert state.label.startswith("best of ") and out.endswith(prove(state).report())
+    assert state.label.startswith("best of ") and out.endswith(orbits.prove(state).report())
     status, out, err = run("find", "trig", "200,265/351", "0", "--prove")
     assert (status, err) == (1, "") and "\nNot proved : " in out
 
@@ -223,7 +222,7 @@ def test_help_and_version(run):
         "1,2/0", "1,2,3/4", "1,2", "1.5,2/3", "a,b/c", "1,2/-3", "", "1" * 10 + ",2/3",
         "1,2/3\n4")],
     *[(["find", "trig", SMALL, bad], "is no number") for bad in (
-        "x", "nan", "inf", "1e400", "1/0", "1:2", "1:2:3:4", "")],
+        "x", "nan", "inf", "1e400", "1e9999999999", "1/0", "1:2", "1:2:3:4", "")],
     *[(["find", "trig", SMALL, bad], "range of no values") for bad in (
         "1:2:0", "2:1:0.1", "0:1:1e-9")],
     (["find", "none", SMALL, "0.01"], "no potential and no file"),
@@ -271,6 +270,7 @@ def test_bad_usage(run, tmp_path, arguments, words):
     (b"", "has terms"), (b"1 0 0\n1 0 0 1\n", "has terms"), (b"1 0 x 1\n", "line 1"),
     (b"1 0 0 1\n1 0 2 2\n", "line 2"), (b"1 0 0 1 1\n", "line 1"), (b"1.5 0 0 1\n", "line 1"),
     (b"1 0 nan 1\n", "line 1"), (b"1 0 1/0 1\n", "line 1"), (b"1 0 1e10 1\n", "line 1"),
+    (b"1 0 1e-9999999999 1\n", "line 1"),
     (b"2000 0 1 1\n", "-1000 to 1000"), (b"\xff\xfe\n", "not a text file")])
 def test_a_bad_potential(run, tmp_path, text, words):
     path = tmp_path / "mine"
