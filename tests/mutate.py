@@ -17,7 +17,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
 TESTS = ["test_apm.py", "test_special.py", "test_bounding.py", "test_bd_trig.py", "test_bounds.py", "test_images.py",
-         "test_search.py", "test_loewner.py"]
+         "test_search.py", "test_loewner.py", "test_floor.py"]
 # The test to begin with, by file or room; without one it is test_images.py.
 FIRST = {"numbers/apm.c": "test_apm.py", "numbers/special.c": "test_special.py",
          "numbers/sine.h": "test_loewner.py", "thesis/bounding.c": "test_bounding.py",
@@ -25,7 +25,7 @@ FIRST = {"numbers/apm.c": "test_apm.py", "numbers/special.c": "test_special.py",
          "thesis/lambda.c": "test_bounds.py", "torus.c": "test_bounds.py",
          "thesis/lipschitz.c": "test_bounds.py", "thesis/region.c": "test_search.py",
          "thesis/follow.c": "test_search.py", "search.c": "test_search.py", "setup.c": "test_search.py",
-         "loewner": "test_loewner.py"}
+         "loewner": "test_loewner.py", "orbits/minplus.c": "test_floor.py"}
 FLAGS = ["-std=c11", "-O1", "-fPIC", "-ffp-contract=off", "-I", "csrc",
          "-I", sysconfig.get_paths()["include"]]
 
@@ -229,6 +229,29 @@ MUTATIONS = [
     ("loewner/try.c", "return largest * (1.0 + 0x1p-46);", "return largest - 1e-9;"),
     ("thesis/kernel.c", "    if (num_get_apm(r, x) != APM_OK)\n        s->failed = 1;\n",
      "    num_get_apm(r, x);\n"),
+    ("orbits/minplus.c", "((2.0 + fabs(eps) * curvature) * squares", "((0.0 + fabs(eps) * curvature) * squares"),
+    ("orbits/minplus.c", "((2.0 + fabs(eps) * curvature) * squares", "((2.0 + fabs(eps)) * squares"),
+    ("orbits/minplus.c", "squares * 0.125", "squares * 0.01"),
+    ("orbits/minplus.c", "most + r->bend < lowest", "most < lowest"),
+    ("orbits/minplus.c", "first->W, &where) - first->bend;", "first->W, &where);"),
+    ("orbits/minplus.c", "known + margin, lowest", "known, lowest"),
+    ("orbits/minplus.c", "    *least -= margin;\n", ""),
+    ("orbits/minplus.c", "? -c->u[i] : HUGE_VAL", "? c->u[i] : HUGE_VAL"),
+    ("orbits/minplus.c", "? c->end[i] - c->u[i] : HUGE_VAL", "? c->end[i] : HUGE_VAL"),
+    ("orbits/minplus.c", "last[axis] + (r->nodes[axis] > 1)", "last[axis]"),
+    ("orbits/minplus.c", "        first = middle + 1;\n        left = best;", "        first = middle + 1;\n        left = best + 1;"),
+    ("orbits/minplus.c", "cheapest(l, first, middle, left, best);", "cheapest(l, first, middle, left, best - 1);"),
+    ("orbits/minplus.c", "(int)floor(grid * (-c - 0.5))", "(int)floor(grid * -c)"),
+    ("orbits/minplus.c", "count = 2 * grid + 3", "count = grid + 1"),
+    ("orbits/minplus.c", "part *= 6.3 * k)", "part *= 6.3)"),
+    ("orbits/minplus.c", "double part = 0x1p-48 *", "double part = 0x1p-54 *"),
+    ("orbits/minplus.c", "{ 0x1p-43, 0x1p-41, 0x1p-39 }", "{ 0x1p-51, 0x1p-51, 0x1p-48 }"),
+    ("orbits/minplus.c", "{ 0x1p-47, 0x1p-43, 0x1p-40 }", "{ 0x1p-53, 0x1p-51, 0x1p-48 }"),
+    ("orbits/minplus.c", "v->kind == CV_PYTHON || !(reach < 1000.0)", "!(reach < 1000.0)"),
+    ("orbits/minplus.c", "v->kind == CV_PYTHON || !(reach < 1000.0)", "v->kind == CV_PYTHON"),
+    ("orbits/minplus.c", "    if (!(sum < 1e300))\n        return CV_EARITHMETIC;\n", ""),
+    ("orbits/minplus.c", "here[0] < 1 || here[0] > MAX_NODES ||", "here[0] < 1 ||"),
+    ("orbits/minplus.c", "finite += value < HUGE_VAL;", "finite++;"),
 ]
 
 # Survivors that do not matter, by what stands there, with the reason.
@@ -259,9 +282,8 @@ HARMLESS = {
 
 def build(base, work, file):
     """Compiles the units that the changed file belongs to, and links; base has all other objects."""
-    (work / "converse").mkdir(parents=True)
-    for path in (ROOT / "converse").glob("*.py"):
-        shutil.copy(path, work / "converse")
+    shutil.copytree(ROOT / "converse", work / "converse",
+                    ignore=shutil.ignore_patterns("*.so", "__pycache__"))
     objects = []
     for source in sorted(base.glob("*.d")):
         words = source.read_text().replace("\\\n", " ").split()
