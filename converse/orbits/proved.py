@@ -22,7 +22,7 @@ from .state import NEAR_NULL, STATIONARY, State
 
 DIGITS = 20                 # the radius is at most 10^-DIGITS unless another number is asked for
 MOST = 1000                 # places, with which no orbit is tried any more
-MORE = 200                  # places that are added in vain, at most
+MORE = 100                  # places that are added in vain, at most
 STEPS = 60                  # of Newton's method, at most
 SOFT = Fraction(NEAR_NULL)  # eigenvalues of the Hessian below it in size are none in doubles
 GUARD = 10                  # places by which what must be seen stands above rounding
