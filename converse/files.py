@@ -3,8 +3,6 @@
 import contextlib
 import fcntl
 import os
-import secrets
-import tempfile
 
 
 class ConverseError(RuntimeError):
@@ -47,6 +45,11 @@ def same(path, other):
         return not isinstance(other, int) and os.path.realpath(path) == os.path.realpath(other)
 
 
+def _beside(path):
+    """A name for a file in the same directory that nobody else uses."""
+    return os.path.join(os.path.dirname(path), ".converse-" + os.urandom(8).hex())
+
+
 def check_writable(path, regular=False):
     """Finds out before the work starts whether a file may be written."""
     if os.path.isdir(path or os.curdir):
@@ -59,8 +62,8 @@ def check_writable(path, regular=False):
     if os.path.exists(real) and not os.access(real, os.W_OK):
         raise ConverseError("%s: cannot be written (Permission denied); choose another file" % path)
     try:
-        handle, name = tempfile.mkstemp(dir=os.path.dirname(real), prefix=".converse-")
-        os.close(handle)
+        name = _beside(real)
+        os.close(os.open(name, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600))
         os.unlink(name)
     except OSError as error:
         raise ConverseError("%s: its directory cannot be written (%s); choose another place"
@@ -76,7 +79,7 @@ def write(path, data):
                 file.write(data)
             return
         real = os.path.realpath(path)
-        name = os.path.join(os.path.dirname(real), ".converse-" + secrets.token_hex(8))
+        name = _beside(real)
         handle = os.open(name, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o666)    # less the umask
         with open(handle, "wb") as file:
             file.write(data)

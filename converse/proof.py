@@ -1,10 +1,7 @@
 """A proof: the tree of prisms with its statistics, and its file."""
 
-import gzip
-import hashlib
 import os
 import re
-import tempfile
 import zlib
 from dataclasses import asdict, dataclass, field, fields
 from functools import cached_property
@@ -134,6 +131,8 @@ class Proof:
         The Result is true if the theorem is verified; its text is the checker's report.
         check.Rejected, check.NotConfirmed, check.Unusable: it is not, and why.
         """
+        import tempfile
+
         from . import check
         with tempfile.TemporaryDirectory() as directory:
             path = os.path.join(directory, "proof")
@@ -154,9 +153,10 @@ class Proof:
         work, the same search gives the same file."""
         text = data = self._text().encode("utf-8")
         if os.fspath(path).endswith(".gz"):
+            import gzip
             data = gzip.compress(text, 6, mtime=0)
         files.write(path, data)
-        return hashlib.sha256(text).hexdigest()
+        return _sha256(text)
 
     def _text(self):
         lines = [FIRST_LINE, "kind: " + KINDS[self.as_printed],
@@ -177,7 +177,7 @@ class Proof:
         lines += ["tree:"]
         lines += [self.tree[i:i + 78] for i in range(0, len(self.tree), 78)]
         text = "\n".join(lines) + "\n"
-        return text + "checksum: sha256 %s\nend\n" % _sha256(text)
+        return text + "checksum: sha256 %s\nend\n" % _sha256(text.encode("utf-8"))
 
     @classmethod
     def load(cls, path: Union[str, "os.PathLike[str]"]) -> "Proof":
@@ -195,7 +195,7 @@ class Proof:
         if lines[-2:] != ["end", ""]:
             fail(len(lines), "the file is truncated")
         body = text[:text.rfind("\n", 0, len(text) - len("\nend\n")) + 1]
-        if lines[-3] != "checksum: sha256 " + _sha256(body):
+        if lines[-3] != "checksum: sha256 " + _sha256(body.encode("utf-8")):
             fail(len(lines) - 2, "the file was changed or damaged (wrong checksum)")
 
         start = lines.index("tree:") if "tree:" in lines else fail(len(lines), "there is no tree")
@@ -229,7 +229,7 @@ class Proof:
                  if name in values},
                 float(values.get("seconds", 0)), PROGRAM.fullmatch(values["program"])[1],
                 tuple(map(int, values["pending"].split())), values["at once"] == "yes",
-                nodes.count("P") + nodes.count("S"), _sha256(text))
+                nodes.count("P") + nodes.count("S"), _sha256(text.encode("utf-8")))
             tree.complete(proof.tree)
         except (KeyError, IndexError, TypeError, ValueError) as error:
             fail(start + 1, "the header or the tree makes no sense (%s)" % error)
@@ -247,8 +247,9 @@ def _yes(truth):
     return "yes" if truth else "no"
 
 
-def _sha256(text):
-    return hashlib.sha256(text.encode("utf-8")).hexdigest()
+def _sha256(data):
+    import hashlib                      # for OpenSSL a tenth of a short run, as gzip is
+    return hashlib.sha256(data).hexdigest()
 
 
 def _read(path):
@@ -256,6 +257,7 @@ def _read(path):
         with open(path, "rb") as file:
             data = file.read()
         if data[:2] == b"\x1f\x8b":
+            import gzip
             data = gzip.decompress(data)
         return data.decode("utf-8")
     except OSError as error:

@@ -39,17 +39,21 @@ typedef struct {
     long steps;                             /* tried, accepted or not */
     int escapes;                            /* from saddles */
     double largest;                         /* coordinate of the gradient */
+    double damping;                         /* of the next step */
 } cv_relaxed;
 
-/* Damped Newton: lowers the action until the largest coordinate of its gradient is at most tol,
-   and leaves saddles along their most negative direction.  CV_RUNNING: not there after so many
-   steps, or stopped; u is the best state met. */
+/* Damped Newton: lowers the action until the largest coordinate of its gradient is at most tol, or
+   100 tol where rounding hides what would lower it, and leaves saddles along their most negative direction.  CV_RUNNING: not there after max_steps
+   steps in all, or, if there were fewer, no step helps; u is the best state met.  All zero in *how
+   begins; what an earlier call left there goes on where it ended, so that long runs can be broken
+   into calls, and interrupted between them. */
 int cv_relax(const cv_potential *v, long q, double eps, const double (*base)[2], double (*u)[2],
-             double tol, long max_steps, const volatile int *stop, cv_relaxed *how);
+             double tol, long max_steps, cv_relaxed *how);
 
-/* The pivots d_j = beta_j - 1/d_{j-1}, run round the orbit until they repeat to relative 1e-13 or
-   for max_rounds.  Returns the rounds it took, -1 if they did not settle; 0 if one was not positive
-   definite: then the orbit is no minimum, perhaps not before it is run through several times. */
+/* The pivots d_j = beta_j - 1/d_{j-1} from d_0 = beta_0, run round the orbit until they repeat to
+   relative 1e-13 or for max_rounds.  Returns the rounds it took, 0 if they did not settle; -r if one
+   in round r was not positive definite: then the orbit run through r + 1 times is no minimum, since
+   the pivots up to there are those of its Hessian with the other points held fixed. */
 long cv_pivots(int n, long q, const double (*beta)[3], long max_rounds, double (*d)[3]);
 
 /* The logarithms, over q, of the moduli of the eigenvalues of d_{q-1} ... d_0, larger first. */
@@ -111,3 +115,28 @@ int cv_exact_pivots(cv_exact *o, const char *m, const char *away, int *kind);
    cv_free.  NULL: no memory. */
 char *cv_exact_bound(const cv_exact *o, int which);
 char *cv_exact_point(const cv_exact *o, long j, int i);
+
+/* ---- the least action over all orbits: minplus.c */
+
+/* What cv_evaluate may be off by, in V, its gradient and its Hessian (Euclidean and spectral norm), at
+   points with coordinates up to reach that are off by 2^-53 (reach + 2) themselves.  CV_EARGUMENT:
+   nothing is known of a potential of Python, or so far out. */
+int cv_errors(const cv_potential *v, double reach, double errors[3]);
+
+/* Which states of least action of type (p, q), q points z_j + j p/q, may have z_j in the rectangle
+   low[j] to high[j] for all j, and V at z_0 (eps < 0: at least -V) as large as at any other?  base[j] is
+   (j p mod q)/q rounded, curvature >= the norm of V'', and `known` no less than their action, which
+   is meant less that of the straight orbit.  Their points lie in the smaller rectangles that are
+   left in low and high, and their action is no less than *least, infinite if there can be none;
+   otherwise path may be near one.  nodes: how many to lay along each axis, 1 to 1025, both ends
+   included; of an idle one 1. */
+int cv_corridor(const cv_potential *v, int q, double eps, double curvature, const double (*base)[2],
+                double known, const int (*nodes)[2], double (*low)[2], double (*high)[2],
+                double *least, double (*path)[2]);
+
+/* On the n-torus's grid of nodes i/grid: out(y) = min over nodes x and all their images of
+   u(x) + W(x) + |y - x - c|^2/2, the last coordinate running fastest.  back, unless it is NULL: how many
+   pitches y - x has along each axis.  For |c| < 1000 and 2 <= grid <= 2048, off by less than
+   2^-45 (max |u| + max |W| + 8 max(1, |c|)). */
+int cv_lax_oleinik(int n, int grid, const double c[2], const double *W, const double *u,
+                   double *out, int (*back)[2]);

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from math import isfinite, sqrt
+from math import asinh, isfinite, sinh, sqrt
 from typing import NamedTuple, Optional, Tuple
 
 import numpy as np
@@ -12,8 +12,12 @@ from ..files import ConverseError
 from .potential import Potential, address, done
 
 STATIONARY = 1e-9           # of the gradient's largest coordinate: above it a state is no orbit
+ROUNDING = 1e-12            # of eigenvalues
+FAR = 1e-3                  # further along a direction than that, its eigenvalue may be another
 NEAR_NULL = 1e-8            # of eigenvalues: along their directions the phase is not determined
 ROUNDS = 200000             # points that the pivots run through at most, but five rounds
+POINTS = 1000000            # times steps, of relax, before Ctrl-C is looked for
+FARTHEST = 1000             # displacement: beyond, too few digits are left of where a point is
 
 
 class Deviation(NamedTuple):
@@ -64,8 +68,9 @@ class State:
             raise ValueError("a type is %d whole numbers p and a whole number q > 0, below 2^31, "
                              "not %r and %r" % (n, self.p, self.q))
         u = np.array(self.u, dtype=float)       # of its own
-        if u.shape != (self.q, n) or not np.isfinite(u).all():
-            raise ValueError("displacements are %d rows of %d finite numbers" % (self.q, n))
+        if u.shape != (self.q, n) or not (np.abs(u) < FARTHEST).all():
+            raise ValueError("displacements are %d rows of %d finite numbers below %d in size"
+                             % (self.q, n, FARTHEST))
         u.flags.writeable = False
         origin = tuple(float(x) for x in self.origin)
         if len(origin) != n or not all(map(isfinite, origin)) or not isfinite(self.eps):
@@ -151,28 +156,21 @@ class State:
 
     @cached_property
     def least(self):
-        """The least eigenvalue of the Hessian, to a relative 1e-3 or an absolute 1e-14."""
-        size = float(np.abs(self.blocks).max()) * 2 + 3
-        low, high = -size, size
-        while high - low > max(1e-14, 1e-3 * min(abs(low), abs(high))):
+        """The least eigenvalue of the Hessian, to a relative 1e-5 or an absolute 1e-15, but for the
+        rounding of the Hessian, about 1e-15 too."""
+        high = asinh(1e15 * (2 * float(np.abs(self.blocks).max()) + 2))
+        low = -high
+        for _ in range(24):
             middle = (low + high) / 2
-            if low > 0 and high > 4 * low:
-                middle = sqrt(low * high)
-            elif high < 0 and low < 4 * high:
-                middle = -sqrt(low * high)
-            elif low < 0 < high and high - low > 1e-14:
-                middle = 0.0 if min(-low, high) > 1e-13 else middle
-                if middle == 0.0 and (low, high) != (-size, size):
-                    middle = (low + high) / 2
-            low, high = (low, middle) if self.below(middle) else (middle, high)
-        return (low + high) / 2
+            low, high = (low, middle) if self.below(1e-15 * sinh(middle)) else (middle, high)
+        return 1e-15 * sinh((low + high) / 2)
 
     # ---- what kind of state it is
 
     @cached_property
     def _pivots(self):
-        """d_j = beta_j - 1/d_{j-1}, array (q, 3), and how many rounds it took to repeat; 0: not all
-        are positive definite; -1: they did not repeat."""
+        """d_j = beta_j - 1/d_{j-1}, array (q, 3), and how many rounds it took to repeat; 0: they did
+        not; -r: not all are positive definite, in round r."""
         pivots = np.zeros((self.q, 3))
         rounds = lib.cv_pivots(self.potential.n, self.q, address(self.blocks, "double(*)[3]"),
                                max(5, ROUNDS // self.q), address(pivots, "double(*)[3]"))
@@ -180,19 +178,19 @@ class State:
 
     @property
     def label(self):
-        """What is known of it, in doubles: "not stationary"; "saddle", if an n-fold copy of it has
-        an action that can be lowered to second order; "minimum", if it has none; "stationary", if
-        rounding hides which; "best of N searches", of a minimum found so."""
+        """What is known of it, in doubles: "not stationary"; "saddle", if it or an n-fold copy of it
+        has an action that can be lowered to second order; "minimum", if neither has, but for
+        directions so flat that nobody knows (undetermined); "stationary", if rounding hides which;
+        "best of N searches", of a minimum found so."""
         if not self.shadow < STATIONARY:
             return "not stationary"
-        if not self._pivots[1]:
-            return "saddle" if self.least < -1e-12 or self._doubled < -1e-12 else "stationary"
+        rounds = self._pivots[1]
+        if rounds <= 0:
+            if self.repeat(1 - rounds).below(-max(ROUNDING, self.shadow / FAR)):
+                return "saddle"
+            if rounds < 0:
+                return "stationary"
         return "best of %d searches" % self.searches if self.searches else "minimum"
-
-    @property
-    def _doubled(self):
-        """The least eigenvalue of several copies."""
-        return min(self.repeat(k).least for k in (2, 3, 5))
 
     @property
     def undetermined(self):
@@ -207,10 +205,10 @@ class State:
         whichever is larger, is that small, not more exactly known."""
         pivots, rounds = self._pivots
         growth = ffi.new("double[2]")
-        if not rounds:
+        if rounds < 0:
             return np.full(self.potential.n, np.nan)
         lib.cv_growth(self.q, address(pivots, "double(*)[3]"), growth)
-        return np.array(list(growth)[:self.potential.n])
+        return np.maximum(list(growth)[:self.potential.n], 0.0)
 
     # ---- measures
 
@@ -246,14 +244,19 @@ class State:
 
     def relax(self, eps=None, tol=1e-13, max_steps=10000):
         """A state of least action near this one, at this or another eps, by damped Newton: the
-        gradient's coordinates are at most tol.  ConverseError if that many steps do not reach it."""
+        gradient's coordinates are at most tol, or 100 tol where rounding hides
+        what would lower them.  ConverseError if that many steps do not reach it."""
         n, q = self.potential.n, self.q
         eps = self.eps if eps is None else float(eps)
         u, base = np.zeros((q, 2)), np.zeros((q, 2))
         u[:, :n], base[:, :n] = self.u, self.base
-        how, stop = ffi.new("cv_relaxed *"), ffi.new("int *")
-        code = done(lib.cv_relax(self.potential.native, q, eps, address(base), address(u), tol,
-                                 max_steps, stop, how), self.potential)
+        how, code = ffi.new("cv_relaxed *"), lib.CV_RUNNING
+        while code == lib.CV_RUNNING:
+            until = min(max_steps, how.steps + max(1, POINTS // q))
+            code = done(lib.cv_relax(self.potential.native, q, eps, address(base), address(u), tol,
+                                     until, how), self.potential)
+            if how.steps < until or until == max_steps:
+                break
         if code != lib.CV_OK:
             raise ConverseError(
                 "no orbit of type (%s)/%d found at eps %r: the gradient is still %.1e after %d steps"

@@ -6,13 +6,18 @@
 #include "converse.h"
 #include "orbits/band.h"
 
-typedef struct { double m[2][2]; } mat;
+typedef struct { double v[2][2]; } mat;         /* two columns */
 
 static inline void times(double r[2], sym m, const double v[2])
 {
     const double v0 = v[0], v1 = v[1];
     r[0] = m.a * v0 + m.b * v1;
     r[1] = m.b * v0 + m.c * v1;
+}
+
+static inline double dot(const double v[2], const double w[2])
+{
+    return v[0] * w[0] + v[1] * w[1];
 }
 
 /* Block elimination of the first q - 1 points, one after the other, leaves d_j of point j; w_j, its
@@ -25,8 +30,9 @@ long cv_solve(int n, long q, const double (*beta)[3], double mu, const double (*
     const mat corner = { { { -1.0, 0.0 }, { 0.0, n == 2 ? -1.0 : 0.0 } } };
     const size_t size = (size_t)q;
     sym *const inverse = malloc(size * sizeof *inverse), last = sym_of(beta[q - 1]), d;
-    mat *const w = malloc(size * sizeof *w);
+    mat *const w = malloc(size * sizeof *w), next;
     double sum[2] = { 0.0, 0.0 };
+    const double idle = n == 2 ? mu : 0.0;      /* an idle coordinate keeps its positive pivots */
     long negative = 0;
 
     if (!inverse || !w) {
@@ -35,39 +41,28 @@ long cv_solve(int n, long q, const double (*beta)[3], double mu, const double (*
         return CV_ENOMEM;
     }
     last.a += mu;
-    last.c += mu;
+    last.c += idle;
     if (q == 1) {
         last.a -= 2.0;
         last.c -= n == 2 ? 2.0 : 0.0;
     }
     for (long j = 0; j < q - 1; j++) {
         mat *const here = &w[j];
-        double column[2][2];
         d = sym_of(beta[j]);
         d.a += mu;
-        d.c += mu;
-        *here = (mat){ { { 0.0, 0.0 }, { 0.0, 0.0 } } };
-        if (j == 0)
-            *here = corner;
-        else
+        d.c += idle;
+        if (j > 0)
             d = sym_sub(d, inverse[j - 1]);
-        for (int k = 0; k < 2; k++) {
-            if (j > 0)
-                for (int i = 0; i < 2; i++)
-                    here->m[i][k] += (i == 0 ? inverse[j - 1].a : inverse[j - 1].b) * w[j - 1].m[0][k]
-                                   + (i == 0 ? inverse[j - 1].b : inverse[j - 1].c) * w[j - 1].m[1][k];
-            if (j == q - 2)
-                here->m[k][k] += corner.m[k][k];
-        }
         negative += sym_negative(d);
         inverse[j] = sym_inverse(d);
-        for (int k = 0; k < 2; k++) {
-            const double v[2] = { here->m[0][k], here->m[1][k] };
-            times(column[k], inverse[j], v);
-        }
-        last.a -= here->m[0][0] * column[0][0] + here->m[1][0] * column[0][1];
-        last.b -= here->m[0][0] * column[1][0] + here->m[1][0] * column[1][1];
-        last.c -= here->m[0][1] * column[1][0] + here->m[1][1] * column[1][1];
+        *here = j > 0 ? next : corner;
+        for (int k = 0; j == q - 2 && k < 2; k++)
+            here->v[k][k] += corner.v[k][k];
+        for (int k = 0; k < 2; k++)
+            times(next.v[k], inverse[j], here->v[k]);
+        last.a -= dot(here->v[0], next.v[0]);
+        last.b -= dot(here->v[0], next.v[1]);
+        last.c -= dot(here->v[1], next.v[1]);
     }
     negative += sym_negative(last);
     if (b && u) {
@@ -77,7 +72,7 @@ long cv_solve(int n, long q, const double (*beta)[3], double mu, const double (*
                 r[i] += u[j - 1][i];
             times(u[j], inverse[j], r);
             for (int k = 0; k < 2; k++)
-                sum[k] += w[j].m[0][k] * u[j][0] + w[j].m[1][k] * u[j][1];
+                sum[k] += dot(w[j].v[k], u[j]);
         }
         sum[0] = b[q - 1][0] - sum[0];
         sum[1] = b[q - 1][1] - sum[1];
@@ -85,7 +80,7 @@ long cv_solve(int n, long q, const double (*beta)[3], double mu, const double (*
         for (long j = q - 2; j >= 0; j--) {
             double r[2];
             for (int i = 0; i < 2; i++) {
-                r[i] = -(w[j].m[i][0] * u[q - 1][0] + w[j].m[i][1] * u[q - 1][1]);
+                r[i] = -(w[j].v[0][i] * u[q - 1][0] + w[j].v[1][i] * u[q - 1][1]);
                 if (j < q - 2)
                     r[i] += u[j + 1][i];
             }
@@ -99,16 +94,18 @@ long cv_solve(int n, long q, const double (*beta)[3], double mu, const double (*
     return negative;
 }
 
+static const double HELD = 1e100;       /* the pivot of a point that cannot move */
+
 long cv_pivots(int n, long q, const double (*beta)[3], long max_rounds, double (*d)[3])
 {
-    sym here = { 2.5, 0.0, n == 2 ? 2.5 : 1.0 };        /* the idle coordinate's stays at one */
+    sym here = { HELD, 0.0, n == 2 ? HELD : 1.0 };      /* the idle coordinate's stays at one */
 
     for (long round = 1; round <= max_rounds; round++) {
         double moved = 0.0;
         for (long j = 0; j < q; j++) {
             here = sym_sub(sym_of(beta[j]), sym_inverse(here));
             if (sym_negative(here) != 0)
-                return 0;
+                return -round;
             moved = fmax(moved, (fabs(here.a - d[j][0]) + fabs(here.b - d[j][1])
                                  + fabs(here.c - d[j][2])) / (here.a + here.c));
             d[j][0] = here.a;
@@ -118,7 +115,7 @@ long cv_pivots(int n, long q, const double (*beta)[3], long max_rounds, double (
         if (round > 1 && moved < 1e-13)
             return round;
     }
-    return -1;
+    return 0;
 }
 
 /* The product is carried as a matrix of size about one and the logarithm of what was divided out.
@@ -130,22 +127,18 @@ void cv_growth(long q, const double (*d)[3], double growth[2])
     double size = 0.0, both = 0.0, half, disc;
 
     for (long j = 0; j < q; j++) {
-        const sym m = sym_of(d[j]);
         double scale = 0.0;
         for (int k = 0; k < 2; k++) {
-            double v[2] = { p.m[0][k], p.m[1][k] };
-            times(v, m, v);
-            p.m[0][k] = v[0];
-            p.m[1][k] = v[1];
-            scale = fmax(scale, fmax(fabs(v[0]), fabs(v[1])));
+            times(p.v[k], sym_of(d[j]), p.v[k]);
+            scale = fmax(scale, fmax(fabs(p.v[k][0]), fabs(p.v[k][1])));
         }
         for (int k = 0; k < 4; k++)
-            p.m[k / 2][k % 2] /= scale;
+            p.v[k / 2][k % 2] /= scale;
         size += log(scale);
-        both += log(sym_det(m));
+        both += log(sym_det(sym_of(d[j])));
     }
-    half = 0.5 * (p.m[0][0] + p.m[1][1]);
-    disc = half * half - (p.m[0][0] * p.m[1][1] - p.m[0][1] * p.m[1][0]);
+    half = 0.5 * (p.v[0][0] + p.v[1][1]);
+    disc = half * half - (p.v[0][0] * p.v[1][1] - p.v[0][1] * p.v[1][0]);
     growth[0] = disc > 0.0 ? size + log(fabs(half) + sqrt(disc)) : 0.5 * both;
     growth[1] = both - growth[0];
     for (int i = 0; i < 2; i++)
