@@ -110,13 +110,20 @@ def prove(state: State, digits: Optional[int] = None) -> ProvedOrbit:
         raise NotProved("the state is a saddle: the least eigenvalue of its Hessian is about %.1e"
                         % state.least)
     places, most = wanted + 2 * GUARD, min(MOST, wanted + 2 * GUARD + MORE)
+    orbit, reason = None, None
     while True:
         try:
-            return _attempt(state, exact, places, wanted)
+            orbit = _attempt(state, exact, places, wanted)
+            if all(high - low <= high / 10 ** GUARD for low, high in orbit.exponents):
+                return orbit
         except _TooFewPlaces as error:
-            if places == most:
-                raise NotProved("%s: %d decimal places do not tell" % (error, places)) from None
-            places = min(most, max(places + 15, places * 3 // 2))
+            reason = error
+        if places == most:
+            break
+        places = min(most, max(places + 15, places * 3 // 2))
+    if orbit is None:
+        raise NotProved("%s: %d decimal places do not tell" % (reason, places))
+    return orbit
 
 
 class _TooFewPlaces(Exception):
@@ -224,10 +231,8 @@ def _attempt(state, exact, places, wanted):
     displacements = exact.displacements()
     moved = max(abs(float(new - Fraction(old))) for row, olds in zip(displacements, state.u.tolist())
                 for new, old in zip(row, olds))
-    exponents = _exponents(state, exact, kind)
-    if (state.potential.n == 1 or kind != lib.CV_UNDECIDED) and any(high - low > high / 10 ** GUARD for low, high in exponents):
-        raise _TooFewPlaces("the exponents are so small")
-    return ProvedOrbit(state, places, radius, left, action, exponents, moved, displacements)
+    return ProvedOrbit(state, places, radius, left, action, _exponents(state, exact, kind), moved,
+                       displacements)
 
 
 def _refine(state, exact, places, floor):
