@@ -17,7 +17,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
 TESTS = ["test_apm.py", "test_special.py", "test_bounding.py", "test_bd_trig.py", "test_bounds.py", "test_images.py",
-         "test_search.py", "test_loewner.py", "test_floor.py"]
+         "test_search.py", "test_loewner.py", "test_floor.py", "test_proved.py"]
 # The test to begin with, by file or room; without one it is test_images.py.
 FIRST = {"numbers/apm.c": "test_apm.py", "numbers/special.c": "test_special.py",
          "numbers/sine.h": "test_loewner.py", "thesis/bounding.c": "test_bounding.py",
@@ -25,7 +25,9 @@ FIRST = {"numbers/apm.c": "test_apm.py", "numbers/special.c": "test_special.py",
          "thesis/lambda.c": "test_bounds.py", "torus.c": "test_bounds.py",
          "thesis/lipschitz.c": "test_bounds.py", "thesis/region.c": "test_search.py",
          "thesis/follow.c": "test_search.py", "search.c": "test_search.py", "setup.c": "test_search.py",
-         "loewner": "test_loewner.py", "orbits/minplus.c": "test_floor.py"}
+         "loewner": "test_loewner.py",
+         "orbits/minplus.c": "test_floor.py",
+         "orbits/enclose.c": "test_proved.py"}
 FLAGS = ["-std=c11", "-O1", "-fPIC", "-ffp-contract=off", "-I", "csrc",
          "-I", sysconfig.get_paths()["include"]]
 
@@ -252,6 +254,42 @@ MUTATIONS = [
     ("orbits/minplus.c", "    if (!(sum < 1e300))\n        return CV_EARITHMETIC;\n", ""),
     ("orbits/minplus.c", "here[0] < 1 || here[0] > MAX_NODES ||", "here[0] < 1 ||"),
     ("orbits/minplus.c", "finite += value < HUGE_VAL;", "finite++;"),
+    ("orbits/enclose.c", "        apm_mul_si(t[0], t[0], 2);\n        apm_sincos",
+     "        apm_sincos"),
+    ("orbits/enclose.c", "apm_mul_si(t[1], t[1], 120 * (1 + size * size));",
+     "apm_set_si(t[1], 0, 0);"),
+    ("orbits/enclose.c", "apm_mul_si(o->blur, t[1], 2);", "apm_set_si(o->blur, 0, 0);"),
+    ("orbits/enclose.c", "    add_product(o->blur, t[0], t[1], t[2]);\n", ""),
+    ("orbits/enclose.c", "    apm_add(t[2], t[2], o->fuzz);\n", ""),
+    ("orbits/enclose.c", "apm_add(o->bound[CV_GRADIENT], o->bound[CV_GRADIENT], t[1]);", ""),
+    ("orbits/enclose.c", "apm_sub(o->bound[CV_ACTION_LOW], t[1], t[2]);",
+     "apm_set(o->bound[CV_ACTION_LOW], t[1]);"),
+    ("orbits/enclose.c", "apm_set_si(t[5], -1875, -4);", "apm_set_si(t[5], -1874, -4);"),
+    ("orbits/enclose.c", "apm_set_si(t[5], 825, -2);", "apm_set_si(t[5], 826, -2);"),
+    ("orbits/enclose.c", "            sign = -1;\n", ""),
+    ("orbits/enclose.c", "apm_mul_si(t[2], t[0], -(long)k[i / 2] * k[(i + 1) / 2]);",
+     "apm_mul_si(t[2], t[0], (long)k[i / 2] * k[(i + 1) / 2]);"),
+    ("orbits/enclose.c", "apm_set_si(t[0], j * o->p[i] % o->q, 0);",
+     "apm_set_si(t[0], (j + 1) * o->p[i] % o->q, 0);"),
+    ("orbits/enclose.c", "    return apm_sgn(o->t[0]) > 0 && apm_sgn(x->m[0]) > 0;",
+     "    return apm_sgn(o->t[0]) > 0;"),
+    ("orbits/enclose.c", "    apm_neg(t[1], x->m[1]);\n", "    apm_set(t[1], x->m[1]);\n"),
+    ("orbits/enclose.c", "        apm_add(r->m[2], r->m[2], shift);\n", "        ;\n"),
+    ("orbits/enclose.c", "    apm_add(t[12], t[12], o->blur);\n", ""),
+    ("orbits/enclose.c", "    apm_add(t[12], t[12], m);\n", ""),
+    ("orbits/enclose.c", "    apm_add(t[13], t[13], t[15]);\n", ""),
+    ("orbits/enclose.c", "    apm_add(t[13], t[13], o->blur);\n", ""),
+    ("orbits/enclose.c", "    apm_mul_si(off, here->wide, 2);\n",
+     "    apm_set_si(off, 0, 0);\n"),
+    ("orbits/enclose.c", "        add_product(c, d, kappa, t[0]);\n", ""),
+    ("orbits/enclose.c", "        apm_sub(d, a, b);\n        apm_add(a, a, b);\n",
+     "        apm_set(d, a);\n"),
+    ("orbits/enclose.c", "if (apm_cmp(t[12], t[13]) <= 0)", "if (1)"),
+    ("orbits/enclose.c", "    if (turn < 0) {\n", "    if (0) {\n"),
+    ("orbits/enclose.c", "        apm_add(b, b, off);\n        apm_mul(b, b, kappa);\n",
+     "        apm_mul(b, b, kappa);\n"),
+    ("orbits/enclose.c", "        apm_add(b, b, off);                             /* how",
+     "        /* how"),
 ]
 
 # Survivors that do not matter, by what stands there, with the reason.
