@@ -18,6 +18,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parent.parent
 TESTS = ["test_apm.py", "test_special.py", "test_bounding.py", "test_bd_trig.py", "test_bounds.py", "test_images.py",
          "test_search.py", "test_loewner.py"]
+ORBITS = ["test_orbits.py", "test_orbits_fail.py"]     # for the room of that name
 # The test to begin with, by file or room; without one it is test_images.py.
 FIRST = {"numbers/apm.c": "test_apm.py", "numbers/special.c": "test_special.py",
          "numbers/sine.h": "test_loewner.py", "thesis/bounding.c": "test_bounding.py",
@@ -233,6 +234,52 @@ MUTATIONS = [
     ("loewner/try.c", "return largest * (1.0 + 0x1p-46);", "return largest - 1e-9;"),
     ("thesis/kernel.c", "    if (num_get_apm(r, x) != APM_OK)\n        s->failed = 1;\n",
      "    num_get_apm(r, x);\n"),
+    ("orbits/potential.c", "slope = v->sine[t] * c - v->cosine[t] * s;",
+     "slope = v->sine[t] * c + v->cosine[t] * s;"),
+    ("orbits/potential.c", "h01 -= k0 * k1 * here;", "h01 += k0 * k1 * here;"),
+    ("orbits/potential.c", "2.0 * fs + 4.0 * s * fss", "2.0 * fs + 2.0 * s * fss"),
+    ("orbits/potential.c", "-4.0 * e + 8.0 * t", "-4.0 * e - 8.0 * t"),
+    ("orbits/potential.c", "turn > 0.5 ? -1.0 : 1.0", "1.0"),
+    ("orbits/potential.c", "hessian[2] = -0.25 * c1.second", "hessian[2] = -0.25 * c0.second"),
+    ("orbits/relax.c", "j > 0 ? j - 1 : q - 1", "j > 0 ? j - 1 : 0"),
+    ("orbits/relax.c", "(i == 1 ? 0.0 : 2.0) - of->eps", "2.0 - of->eps"),
+    ("orbits/relax.c", "squares < HUGE_VAL ? largest : HUGE_VAL", "largest"),
+    ("orbits/relax.c", "fabs(difference) <= a->noise", "fabs(difference) <= 0.0"),
+    ("orbits/relax.c", "return difference < 0.0;", "return difference > 0.0;"),
+    ("orbits/relax.c", "return may_walk && along < 0.0 &&", "return may_walk && along > 0.0 &&"),
+    ("orbits/relax.c", "return may_walk && along < 0.0 &&", "return 0 &&"),
+    ("orbits/relax.c", "if (negative > 0 && how->escapes < MOST_ESCAPES) {", "if (0) {"),
+    ("orbits/relax.c", "move(of->q, other, at, chosen,", "move(of->q, other, at, -chosen,"),
+    ("orbits/relax.c", "double low = FLAT, high = 1.0, most;", "double low = 1.0, high = 1.0, most;"),
+    ("orbits/relax.c", "-fmin(1.0, CAP / widest(q, (const point *)along))", "-1.0"),
+    ("orbits/relax.c", "double mu = how->damping;", "double mu = 0.0;"),
+    ("orbits/relax.c", "if (status == CV_OK && lower(q, other, at, how->steps < WALK)) {",
+     "if (status == CV_OK) {"),
+    ("orbits/relax.c", "        status = descend(&of, at, other, along, tol, max_steps, how);\n"
+     "        memcpy(u, at->u, size * sizeof *u);\n",
+     "        status = descend(&of, at, other, along, tol, max_steps, how);\n"
+     "        memcpy(u, places[0].u == at->u ? other->u : at->u, size * sizeof *u);\n"),
+    ("orbits/band.c", "j == q - 2 && k < 2", "j == q && k < 2"),
+    ("orbits/band.c", "        last.b -= dot(here->v[0], next.v[1]);\n", ""),
+    ("orbits/band.c", "if (j < q - 2)\n                    r[i] += u[j + 1][i];", ""),
+    ("orbits/band.c", "        last.c -= n == 2 ? 2.0 : 0.0;\n", ""),
+    ("orbits/band.c", "const double idle = n == 2 ? mu : 0.0;", "const double idle = mu;"),
+    ("orbits/band.h", "det > 0.0 ? (m.a > 0.0 ? 0 : 2)", "det > 0.0 ? 0"),
+    ("orbits/band.c", "return -round;", "return 0;"),
+    ("orbits/band.c", "sym here = { HELD, 0.0, n == 2 ? HELD : 1.0 };",
+     "sym here = { 0.6, 0.0, n == 2 ? 0.6 : 1.0 };"),
+    ("orbits/band.c", "if (round > 1 && moved < 1e-13)", "if (round > 1 && moved < 1e-3)"),
+    ("orbits/band.c", "both += log(sym_det(sym_of(d[j])));", "both += log(d[j][0] * d[j][2]);"),
+    ("orbits/band.c", "fabs(half) + sqrt(disc)", "half + sqrt(disc)"),
+    ("orbits/band.c", "disc > 0.0 ? size", "disc > 1e300 ? size"),
+    ("orbits/measure.c", "const double across = right->x[0] - left->x[0] + (a + step >= q ? 1.0 : 0.0);",
+     "const double across = right->x[0] - left->x[0];"),
+    ("orbits/measure.c", "fmin(up, 1.0 - up)", "up"),
+    ("orbits/measure.c", "across == 0.5 && left->index > right->index", "0"),
+    ("orbits/measure.c", "heap[child + 1].square > heap[child].square",
+     "heap[child + 1].square < heap[child].square"),
+    ("orbits/measure.c", "(kept == count && across * across >= heap[0].square)", "kept == count"),
+    ("orbits/measure.c", "if (kept == count && square >= heap[0].square)\n                continue;", ""),
 ]
 
 # Survivors that do not matter, by what stands there, with the reason.
@@ -258,6 +305,8 @@ HARMLESS = {
         "TINY is for products that underflow beside parameters and reaches of more than 10^100",
     "x > y || isnan(x) ? x : y":
         "a second belt: where far or B is NaN, so are sines or all corners, and the bound",
+    "squares < HUGE_VAL ? largest : HUGE_VAL":
+        "a second belt: what a potential from Python answers is finite, and so is what ours do",
     "s->failed = 1;                                  /* NaN":
         "a second belt: where a cell's squares overflow, so do those of the cell that is largest",
 }
@@ -266,8 +315,9 @@ HARMLESS = {
 def build(base, work, file):
     """Compiles the units that the changed file belongs to, and links; base has all other objects."""
     (work / "converse").mkdir(parents=True)
-    for path in (ROOT / "converse").glob("*.py"):
-        shutil.copy(path, work / "converse")
+    for path in (ROOT / "converse").rglob("*.py"):
+        (work / path.relative_to(ROOT)).parent.mkdir(exist_ok=True)
+        shutil.copy(path, work / path.relative_to(ROOT))
     objects = []
     for source in sorted(base.glob("*.d")):
         words = source.read_text().replace("\\\n", " ").split()
@@ -307,7 +357,8 @@ def try_mutation(base, number):
         build(base, work, file)
         environment = dict(os.environ, PYTHONPATH=str(work))
         first = FIRST.get(file, FIRST.get(file.split("/")[0], "test_images.py"))
-        for test in sorted(TESTS, key=lambda test: test != first):
+        tests = ORBITS if file.startswith("orbits") else sorted(TESTS, key=lambda test: test != first)
+        for test in tests:
             command = [sys.executable, "-m", "pytest", "-x", "-q", "-p", "no:cacheprovider",
                        "--no-header", str(ROOT / "tests" / test)]
             try:
