@@ -42,8 +42,8 @@ typedef struct {
     double damping;                         /* of the next step */
 } cv_relaxed;
 
-/* Damped Newton: lowers the action until the largest coordinate of its gradient is at most tol,
-   and leaves saddles along their most negative direction.  CV_RUNNING: not there after max_steps
+/* Damped Newton: lowers the action until the largest coordinate of its gradient is at most tol, or
+   100 tol where rounding hides what would lower it, and leaves saddles along their most negative direction.  CV_RUNNING: not there after max_steps
    steps in all, or, if there were fewer, no step helps; u is the best state met.  All zero in *how
    begins; what an earlier call left there goes on where it ended, so that long runs can be broken
    into calls, and interrupted between them. */
@@ -61,3 +61,76 @@ void cv_growth(long q, const double (*d)[3], double growth[2]);
 
 /* The count closest pairs of q points on the torus, closest first.  Returns how many there are. */
 long cv_pairs(int n, long q, const double (*x)[2], long count, long *i, long *j, double *distance);
+
+/* ---- proved orbits: a state in decimals; docs/orbits-proof.md.  Here, promises are kept. ---- */
+
+typedef struct cv_exact cv_exact;
+
+enum {                      /* which bound */
+    CV_GRADIENT,            /* >= the Euclidean norm of the state's gradient */
+    CV_NOISE,               /* no promise: about the least that can be had of CV_GRADIENT */
+    CV_ACTION_LOW, CV_ACTION_HIGH,      /* around its action per point less that of the straight orbit */
+    CV_DET_LOW, CV_DET_HIGH,            /* around the product of det D_j */
+    CV_GROWTH_LOW, CV_GROWTH_HIGH       /* around the modulus of an eigenvalue of D_{q-1} ... D_0 */
+};
+
+/* A state with potential of this kind and these terms (see cv_potential), of type (p, q), with
+   displacements u.  number: eps, bounds of |V''| and of the Lipschitz constant of V'', and the origin's
+   coordinates, as exact decimals.  On success *o must be freed. */
+int cv_exact_new(cv_exact **o, int kind, int n, int terms, const int *k, const long p[2], long q,
+                 const char *const number[5], const double (*u)[2]);
+void cv_exact_free(cv_exact *o);
+
+/* Rounds the displacements to dp decimal places and computes gradient, Hessian and action with as
+   many.  amplitude: of all
+   cosines, then of all sines, each within 10^-dp of the truth.  CV_GRADIENT, CV_ACTION_LOW and
+   CV_ACTION_HIGH are bounds then. */
+int cv_exact_evaluate(cv_exact *o, long dp, const char *const amplitude[]);
+
+/* CV_OK: the Hessian of the state evaluated last, + shift, is positive definite.  CV_ESINGULAR: not.  No
+   promise. */
+int cv_exact_bends(cv_exact *o, const char *shift);
+/* A step of Newton's method with the Hessian + shift, from what was evaluated last; no promise.
+   CV_ESINGULAR: that is not positive definite; nothing is moved. */
+int cv_exact_newton(cv_exact *o, const char *shift);
+/* Remembers the displacements, or goes back to those remembered. */
+int cv_exact_keep(cv_exact *o, int back);
+
+/* CV_OK: the Hessian of the state evaluated last, and of every n-fold copy of it, is proved to have no
+   eigenvalue below m > 0.  CV_ESINGULAR: it is not. */
+int cv_exact_least(cv_exact *o, const char *m);
+
+/* Encloses the pivots D_j of every orbit whose blocks beta_j are within `away` of those of the state
+   evaluated last, away < m: CV_DET_LOW and CV_DET_HIGH; with n = 2, if *closed, the modulus of one
+   of the eigenvalues; if not, CV_GROWTH_HIGH bounds both.  CV_ESINGULAR: it could not be done. */
+int cv_exact_pivots(cv_exact *o, const char *m, const char *away, int *closed);
+
+/* A bound, and coordinate i of the displacement of point j, as exact decimals; the caller frees with
+   cv_free.  NULL: no memory. */
+char *cv_exact_bound(const cv_exact *o, int which);
+char *cv_exact_point(const cv_exact *o, long j, int i);
+
+/* ---- the least action over all orbits: minplus.c */
+
+/* What cv_evaluate may be off by, in V, its gradient and its Hessian (Euclidean and spectral norm), at
+   points with coordinates up to reach that are off by 2^-53 (reach + 2) themselves.  CV_EARGUMENT:
+   nothing is known of a potential of Python, or so far out. */
+int cv_errors(const cv_potential *v, double reach, double errors[3]);
+
+/* Which states of least action of type (p, q), q points z_j + j p/q, may have z_j in the rectangle
+   low[j] to high[j] for all j, and V at z_0 (eps < 0: at least -V) as large as at any other?  base[j] is
+   (j p mod q)/q rounded, curvature >= the norm of V'', and `known` no less than their action, which
+   is meant less that of the straight orbit.  Their points lie in the smaller rectangles that are
+   left in low and high, and their action is no less than *least, infinite if there can be none;
+   otherwise path may be near one.  nodes: how many to lay along each axis, 1 to 1025, both ends
+   included; of an idle one 1. */
+int cv_corridor(const cv_potential *v, int q, double eps, double curvature, const double (*base)[2],
+                double known, const int (*nodes)[2], double (*low)[2], double (*high)[2],
+                double *least, double (*path)[2]);
+
+/* On the n-torus's grid of nodes i/grid: out(y) = min over nodes x and all their images of
+   u(x) + W(x) + |y - x - c|^2/2, the last coordinate running fastest.  back, unless it is NULL: how many
+   pitches y - x has along each axis.  For |c| < 1000 and 2 <= grid <= 2048, off by less than
+   2^-45 (max |u| + max |W| + 8 max(1, |c|)). */
+int cv_lax_oleinik(int n, int grid, const double c[2], const double *W, const double *u,
+                   double *out, int (*back)[2]);

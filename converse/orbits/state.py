@@ -244,7 +244,8 @@ class State:
 
     def relax(self, eps=None, tol=1e-13, max_steps=10000):
         """A state of least action near this one, at this or another eps, by damped Newton: the
-        gradient's coordinates are at most tol.  ConverseError if that many steps do not reach it."""
+        gradient's coordinates are at most tol, or 100 tol where rounding hides
+        what would lower them.  ConverseError if that many steps do not reach it."""
         n, q = self.potential.n, self.q
         eps = self.eps if eps is None else float(eps)
         u, base = np.zeros((q, 2)), np.zeros((q, 2))

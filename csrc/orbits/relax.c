@@ -7,6 +7,7 @@
 
 static const double CAP = 0.1;          /* no coordinate moves further in one step */
 static const double FLAT = 1e-11;       /* of eigenvalues: below it, rounding says which sign */
+static const double HOPELESS = 1e9;     /* a damping with which nothing moves any more */
 enum { MOST_ESCAPES = 50, WALK = 1000 };
 
 typedef double point[2];
@@ -195,22 +196,25 @@ static int descend(const action_of *of, place *at, place *other, point *along, d
         const double slope = sqrt(at->mean_square);
         long negative;
         how->largest = at->largest;
-        if (at->largest <= tol) {
+        /* Before break-up a gradient along directions that cost nothing may be all that rounding
+           leaves, and no step lowers what it hides. */
+        if (at->largest <= tol || (mu > HOPELESS && at->largest <= 100.0 * tol)) {
             negative = cv_solve(of->v->n, q, (const block *)at->beta, FLAT, NULL, NULL);
             if (negative > 0 && how->escapes < MOST_ESCAPES) {
                 how->escapes++;
                 negative = escape(of, at, other, along);
+                mu = 0.0;
                 if (negative > 0)
                     continue;
             }
             return negative < 0 ? (int)negative : CV_OK;
         }
         how->damping = mu;
-        if (how->steps >= max_steps || !(at->largest < HUGE_VAL) || mu > 1e9)
+        if (how->steps >= max_steps || !(at->largest < HUGE_VAL) || mu > HOPELESS)
             return CV_RUNNING;
         how->steps++;
         while ((negative = cv_solve(of->v->n, q, (const block *)at->beta, mu,
-                                    (const point *)at->gradient, along)) > 0 && mu < 1e9)
+                                    (const point *)at->gradient, along)) > 0 && mu < HOPELESS)
             mu = fmax(4.0 * mu, fmax(0.01 * slope, 1e-15));
         if (negative < 0)
             return (int)negative;

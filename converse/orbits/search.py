@@ -1,0 +1,270 @@
+"""The least action of a type, looked for everywhere: is continuation's orbit the minimizing one?
+
+Continuation (solver.follow) keeps to one branch of minima.  Here many guesses fall to minima by
+damped Newton.  What makes this work for long orbits is that the action is a sum along the orbit:
+- the better pieces of two states of a type make a third (_mend), and each state, begun at any other
+  of its points, is another state of its type that passes close by;
+- the least states of two shorter types, run through one after the other, nearly are one of the sum
+  of the types (_joint), and those of the two were found so in their turn.
+"""
+
+import math
+import time
+from dataclasses import replace
+
+import numpy as np
+
+from ..files import ConverseError
+from .potential import Potential
+from .solver import follow, straight
+from .state import State
+
+MOST_STEPS = 1000           # of Newton's method in one search; few take more than a hundred
+TURNS = 50                  # of the best state, tried before anything at random
+JOINTS = 12                 # of two shorter states, tried before anything at random
+SHORT = 10000               # points times searches spent on a shorter type
+SAMPLE = 1000               # points of a state that are compared with another's for a joint
+SPACING = 60                # points between pieces moved at once
+PIECE = 10                  # points of a piece, on the average
+AWAY = (0.1, 0.3, 0.6)      # how far pieces are moved: a normal deviate times one of these
+SLIP = 0.4                  # see _mend
+
+
+def search(potential, p, q, eps, searches=200, seconds=math.inf, seed=0, progress=None):
+    """The state of type (p, q) of least action that many searches find; State.searches says how
+    many, and its label "best of N searches" if it is a minimum.  It is not proved to be the least.
+
+    A search is a descent of the action of type (p, q) to a state whose gradient vanishes.  The first
+    is continuation's, so that none worse is returned.  Then come orbits composed of the best of
+    shorter types, whose own searches are not counted; turns of the best state so far; pieces of it
+    moved; and straight orbits elsewhere, some relaxed at a larger eps first.
+
+    searches, seconds -- how many at most, and about how long; without seconds the result depends on
+                         the seed only
+    seed              -- of numpy's random numbers; searches with several, in any executor, are
+                         independent of each other
+    progress          -- called after each search with their number and the best state so far
+
+    ConverseError, if none of the searches ends.
+    """
+    if not isinstance(potential, Potential):
+        raise ValueError("the potential is one of converse.orbits, not %r" % (potential,))
+    if isinstance(searches, bool) or not isinstance(searches, int) or searches < 1:
+        raise ValueError("searches is a whole number, 1 or more, not %r" % (searches,))
+    if isinstance(seconds, bool) or not isinstance(seconds, (int, float)) or not seconds > 0:
+        raise ValueError("seconds is a number above 0, not %r" % (seconds,))
+    try:
+        rng = np.random.default_rng(seed)
+    except (TypeError, ValueError):
+        raise ValueError("the seed is a whole number, 0 or more, not %r" % (seed,)) from None
+    type_ = State(potential, p, q, eps, straight(potential, p, q).u, potential.start)
+    hunt = _Hunt(type_, searches, time.monotonic() + seconds, rng, {}, progress)
+    hunt.run()
+    if hunt.best is None:
+        raise ConverseError("no orbit of type (%s)/%d found at eps %r: none of %d searches ended"
+                            % (", ".join(map(str, type_.p)), q, eps, hunt.begun))
+    return replace(hunt.best, searches=hunt.ended)
+
+
+class _Hunt:
+    """The search for one type: that of a guess, the straight orbit at its eps."""
+
+    def __init__(self, guess, searches, end, rng, known, progress=None):
+        self.guess, self.searches, self.end, self.rng = guess, searches, end, rng
+        self.known, self.progress = known, progress         # known: the best of shorter types
+        self.best, self.begun, self.ended = None, 0, 0
+
+    @property
+    def on(self):
+        return self.begun < self.searches and time.monotonic() < self.end
+
+    def run(self):
+        guess = self.guess
+        try:
+            self.begun += 1
+            self.take(follow(guess.potential, guess.p, guess.q, [guess.eps])[0])
+        except ConverseError:
+            pass
+        joints = self.joints()
+        for _ in range(JOINTS):
+            self.joint(joints)
+        turns, _ = _turns(guess.p, guess.q, 0.0)
+        for r in turns[1:1 + TURNS]:
+            self.turn(r)
+        while self.on:
+            move = self.rng.integers(4) if self.best is not None else 3
+            if move == 0:
+                self.joint(joints)
+            elif move == 1 and guess.q > 1:
+                self.turn(turns[self.nearly_first(1, guess.q)])
+            elif move == 2:
+                self.pieces()
+            else:
+                self.elsewhere()
+
+    def fall(self, guess):
+        """One search; the state where it ends, or None."""
+        if not self.on:
+            return None
+        self.begun += 1
+        try:
+            return self.take(guess.relax(max_steps=MOST_STEPS))
+        except ConverseError:
+            return None
+
+    def take(self, state):
+        self.ended += 1
+        if self.best is None or state.action < self.best.action:
+            self.best = state
+        if self.progress is not None:
+            self.progress(self.ended, self.best)
+        return state
+
+    def nearly_first(self, first, end):
+        """A random index, small more often than not."""
+        return first + int((end - first) * self.rng.random() ** 3)
+
+    # ---- guesses
+
+    def mend(self, other, r=0, shift=0.0):
+        """The better pieces of the best state and another's, turned by r."""
+        if self.best is not None:
+            u = _mend(self.best, np.roll(other.u, -r, 0) + shift)
+            if u is not None:
+                self.fall(self.best.moved(u))
+
+    def turn(self, r):
+        if self.on and self.best is not None:
+            _, shifts = _turns(self.guess.p, self.guess.q, 0.0)
+            self.mend(self.best, r, shifts[r])
+
+    def pieces(self):
+        """Basin hopping, in many places at once: each piece may be kept or not."""
+        best, q = self.best, self.guess.q
+        u = best.u.copy()
+        for start in self.rng.integers(q, size=max(1, q // SPACING)):
+            piece = (start + np.arange(min(q, self.rng.geometric(1 / PIECE)))) % q
+            u[piece] += self.rng.normal(size=u.shape[1]) * self.rng.choice(AWAY)
+        other = self.fall(best.moved(u))
+        if other is not None:
+            self.mend(best if other is self.best else other)
+
+    def elsewhere(self):
+        """A straight orbit that begins anywhere, shaken perhaps, at a larger eps first perhaps."""
+        guess, rng = self.guess, self.rng
+        n, q = guess.u.shape[1], guess.q
+        guess = replace(guess, origin=rng.random(n),
+                        u=rng.normal(size=(q, n)) * rng.choice((0.0, 0.0) + AWAY))
+        try:
+            if rng.random() < 0.3:
+                guess = replace(guess.relax(guess.eps * rng.uniform(1.1, 2.0), max_steps=MOST_STEPS),
+                                eps=guess.eps)
+        except ConverseError:
+            pass
+        before = self.best
+        other = self.fall(guess)
+        if other is not None and before is not None:
+            other = before if other is self.best else other
+            turns, shifts = _turns(guess.p, q, np.subtract(other.origin, self.best.origin))
+            r = turns[self.nearly_first(0, q)]
+            self.mend(other, r, shifts[r])
+
+    def joint(self, joints):
+        if self.on:
+            for guess in joints:
+                self.fall(guess)
+                break
+
+    def joints(self):
+        """Guesses made of the best states of shorter types, most promising first."""
+        p, q = self.guess.p, self.guess.q
+        copies = math.gcd(q, *p)
+        if copies > 1:
+            part = self.shorter([k // copies for k in p], q // copies)
+            if part is not None:
+                yield part.repeat(copies)
+        residue = _residues(p, q)
+        turns = [r for r in _turns(p, q, 0.0)[0] if residue[r].any()]
+        if not turns:
+            return
+        r = int(turns[0])
+        first = [(r * k - int(c)) // q for k, c in zip(p, residue[r])]
+        parts = (self.shorter(first, r), self.shorter([k - i for k, i in zip(p, first)], q - r))
+        if None not in parts:
+            yield from _joints(p, q, *parts, self.rng)
+
+    def shorter(self, p, q):
+        """The best state of a shorter type that a shorter search finds; None: there is none."""
+        key = tuple(p), q
+        if key not in self.known:
+            now = time.monotonic()
+            guess = replace(self.guess, p=p, q=q, u=np.zeros((q, len(p))))
+            hunt = _Hunt(guess, min(self.searches, max(2 * JOINTS, SHORT // q)),
+                         now + (self.end - now) / 2, self.rng, self.known)
+            hunt.run()
+            self.known[key] = hunt.best
+        return self.known[key]
+
+
+def _residues(p, q):
+    """The whole numbers c from -q/2 up to q/2 with c = r p mod q, for each r from 0 up to q."""
+    c = np.arange(q, dtype=np.int64)[:, None] * (np.array(p) % q) % q
+    return np.where(2 * c >= q, c - q, c)
+
+
+def _turns(p, q, away):
+    """How the turns of a state, begun at x_r instead of x_0, lie beside another state of its type:
+    an array of the r, nearest first, and one of the displacements between the two straight orbits
+    for each r.  away: that of the starts."""
+    shifts = _residues(p, q) / q + away
+    shifts -= np.round(shifts)
+    return np.argsort((shifts ** 2).sum(1), kind="stable"), shifts
+
+
+def _mend(state, u):
+    """The displacements of the least path that passes, step by step, from a point of the state to
+    its next or to that of the state displaced by u instead, and back; None, if it never leaves.
+
+    A step across is charged less, by SLIP times half the square of the gap that it bridges: that
+    much of it, about, will go when the path relaxes."""
+    v, eps = state.u, state.eps
+    heights = (-eps * state._local[0], -eps * state.potential.evaluate(state.base + u)[0])
+    gap = ((u - v) ** 2).sum(1)
+    near = int(np.argmin(gap))                          # there, on the state itself, it starts
+    slip = SLIP / 2 * np.minimum(gap, np.roll(gap, -1))
+    costs = [np.roll(((np.roll(b, -1, 0) - a) ** 2).sum(1) / 2 + np.roll(h, -1) - slip * (a is not b),
+                     -near).tolist() for a in (v, u) for b, h in zip((v, u), heights)]
+    here, there, came = 0.0, math.inf, []
+    for stay, leave, back, go_on in zip(*costs):
+        came.append((there + back < here + stay, there + go_on <= here + leave))
+        here, there = min(here + stay, there + back), min(here + leave, there + go_on)
+    away, now = np.zeros(state.q, bool), False
+    for j in range(state.q - 1, -1, -1):
+        away[(near + j + 1) % state.q] = now
+        now = came[j][now]
+    return np.where(away[:, None], u, v) if away.any() else None
+
+
+def _joints(p, q, first, second, rng):
+    """Guesses of type (p, q), first's points and then second's, cut where points of both are near
+    each other: nearest first, but only one of a run of near pairs, which make the same orbit."""
+    some = [rng.permutation(state.q)[:SAMPLE] for state in (first, second)]
+    apart = first.x[some[0]][:, None] - second.x[some[1]]
+    apart -= np.round(apart)
+    nearest = np.argsort((apart ** 2).sum(2), axis=None, kind="stable")[:SAMPLE]
+    cut = []
+    for i, j in zip(*np.unravel_index(nearest, apart.shape[:2])):
+        i, j = int(some[0][i]), int(some[1][j])
+        if not any((i - a) % first.q == (j - b) % second.q or (a - i) % first.q == (b - j) % second.q
+                   for a, b in cut):
+            cut.append((i, j))
+            yield _joint(p, q, first, i, second, j)
+
+
+def _joint(p, q, first, i, second, j):
+    """The points of first from x_i on, then those of second from x_j on, as one state."""
+    path = np.concatenate([
+        np.roll(state.u, -k, 0) - state.u[k] + np.arange(state.q)[:, None] * state.rotation + begin
+        for state, k, begin in ((first, i, 0.0), (second, j, np.array(first.p)))])
+    return State(first.potential, p, q, first.eps,
+                 path - np.arange(q)[:, None] * (np.array(p) / q), first.x[i])
