@@ -205,8 +205,8 @@ class State:
     @cached_property
     def exponents(self) -> Optional[np.ndarray]:
         """The n Lyapunov exponents (1/q) log |l| >= 0 of the orbit, larger first, array (n,); NaN
-        where the pivots are not positive definite.  An exponent below about 1/(200,000) or 1/(5 q),
-        whichever is larger, is that small, not more exactly known."""
+        where the pivots are not positive definite.  An exponent below about 1/200,000 or 1/(5 q),
+        whichever is smaller, is that small, not more exactly known."""
         pivots, rounds = self._pivots
         growth = ffi.new("double[2]")
         if rounds < 0:
