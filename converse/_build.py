@@ -8,8 +8,8 @@ from cffi import FFI
 SOURCES = ["numbers/apm", "numbers/special", "numbers/guard", "numbers/machine",
            "thesis/start", "thesis/region", "thesis/rigorous", "thesis/double",
            "loewner/orbit", "loewner/witness", "loewner/bound", "loewner/try",
-           "setup", "search", "kernels",
-           "orbits/potential", "orbits/band", "orbits/relax", "orbits/measure",
+           "torus", "setup", "search", "kernels",
+           "orbits/potential", "orbits/band", "orbits/relax", "orbits/measure", "orbits/enclose",
            "orbits/minplus"]
 SOURCES = ["csrc/%s.c" % name for name in SOURCES]
 

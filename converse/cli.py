@@ -30,7 +30,7 @@ class Parser(argparse.ArgumentParser):
         raise ConverseError("%s; see %s --help" % (message, self.prog))
 
 
-def _whole(least):
+def whole(least):
     def convert(text):
         try:
             number = int(text)
@@ -60,7 +60,7 @@ def parser():
         "the torus only; 4 as printed, not a proof; 129, 130 or 143 ended by a signal."))
     p.add_argument("input", nargs="?", help="input file, by default, and as -, standard input; with -r "
                    "it is not needed, and must agree if given")
-    p.add_argument("-d", "--depth", type=_whole(0), metavar="N",
+    p.add_argument("-d", "--depth", type=whole(0), metavar="N",
                    help="give up on a prism that was cut N times (default %d; loewner: %d)"
                    % (METHODS["thesis"], METHODS["loewner"]))
     p.add_argument("-b", "--backup", metavar="FILE",
@@ -72,7 +72,7 @@ def parser():
     p.add_argument("-g", "--graphics", metavar="FILE",
                    help="draw the prisms in FILE, by its name as SVG, PNG or PDF, else as "
                         "PostScript; 'off' draws none (default)")
-    p.add_argument("-p", "--precision", dest="digits", type=_whole(1), metavar="DP",
+    p.add_argument("-p", "--precision", dest="digits", type=whole(1), metavar="DP",
                    help="decimal places of the thesis's rigorous arithmetic (default 35)")
     p.add_argument("-s", "--stubborn", action="store_true", default=None,
                    help="go on after a prism that cannot be decided")
@@ -84,7 +84,7 @@ def parser():
                    help="the thesis's criterion (default), or the sharper one, in doubles")
     p.add_argument("--together", action="store_true",
                    help="a, b and c move together, from all lower to all upper ends (loewner)")
-    p.add_argument("--jobs", type=_whole(1), metavar="N",
+    p.add_argument("--jobs", type=whole(1), metavar="N",
                    help="work on N parts at a time (default: one per core)")
     p.add_argument("--dask", metavar="ADDRESS", help="let the Dask cluster at ADDRESS work")
     p.add_argument("--mpi", action="store_true",
@@ -103,7 +103,7 @@ def _leaf_line(leaf, points):
         KIND_NAMES[leaf.kind], *numbers, leaf.depth, points)
 
 
-def _say(text):
+def say(text):
     sys.stdout.write(text)
     sys.stdout.flush()
 
@@ -129,7 +129,7 @@ class Progress:
             self.begun()
             if self.as_printed:
                 _tell("--as-printed is a historical reconstruction, not a proof")
-            _say(header(self.problem, self.as_printed))
+            say(header(self.problem, self.as_printed))
             with contextlib.suppress(ImportError):      # the extra "progress"
                 if self.with_bar:
                     from tqdm import tqdm
@@ -225,7 +225,7 @@ def run(options):
         raise ConverseError("--together needs --method loewner")
 
     def on_leaf(leaf, points):
-        _say(_leaf_line(leaf, points) + "\n")
+        say(_leaf_line(leaf, points) + "\n")
 
     def begun():
         options.kept = bool(options.backup or options.restore)
@@ -239,7 +239,7 @@ def run(options):
                       progress=progress, on_leaf=on_leaf if options.verbose else None, **asked)
     if not progress.started:            # there was no time even to set the search up
         progress(0.0, proof.counts)
-    _say(verdict(proof))
+    say(verdict(proof))
     if options.graphics is not None:
         proof.figure(options.graphics)
     if not proof.sha256 and (options.backup or options.restore):

@@ -9,6 +9,7 @@
 #include "numbers/special.h"
 #include "numbers/sine.h"
 #include "thesis/unit.h"
+#include "torus.h"
 
 enum { MAX_DP = 100000, MAX_IN = 64, MAX_OUT = 400 };
 
@@ -107,6 +108,33 @@ static int sine_kernel(const char *name, int nin, apm_t in[], int nout, apm_t ou
     return CV_EARGUMENT;
 }
 
+/* The bounds over the torus, of trace and largest eigenvalue, for ranges lo <= hi of a, b, c:
+   torus: these -> T, B; cell: these, centre and half-widths of a rectangle -> the same over it, of
+   beta at its mirror image, but for roundings. */
+static int torus_kernel(const char *name, int nin, apm_t in[], int nout, apm_t out[])
+{
+    const int cell = strcmp(name, "cell") == 0;
+    double x[10], low[3], high[3];
+
+    if ((!cell && strcmp(name, "torus") != 0) || nin != (cell ? 10 : 6) || nout != 2)
+        return CV_EARGUMENT;
+    for (int j = 0; j < nin; j++)
+        x[j] = apm_nearest_d(in[j]);
+    for (int j = 0; j < 3; j++) {
+        low[j] = x[2 * j];
+        high[j] = x[2 * j + 1];
+        if (apm_cmp(in[2 * j], in[2 * j + 1]) > 0)
+            return CV_EARGUMENT;
+    }
+    if (cell && (apm_sgn(in[8]) < 0 || apm_sgn(in[9]) < 0))
+        return CV_EARGUMENT;
+    for (int which = 0; which < 2; which++)
+        if (apm_set_d(out[which], cell ? torus_rectangle(low, high, x + 6, x + 8, which)
+                                       : torus_largest(low, high, which)) != APM_OK)
+            return CV_EARITHMETIC;
+    return CV_OK;
+}
+
 /* The orbit of the root's prism from point n or 0 to point 0 or n. */
 static int follow_to(loewner *w, double n)
 {
@@ -123,7 +151,7 @@ static int follow_to(loewner *w, double n)
    loewner_sites: ..., s, t -> of each point of that orbit, at most 13, what loewner_orbit tells,
                   and missed, force, beta, d, fuzz and mu
    loewner_step: ..., n, repeat -> the reaches of both coordinates of point n, ns per step */
-static int loewner_kernel(const char *name, long dp, int nin, apm_t in[], int nout, apm_t out[])
+static int loewner_kernel(const char *name, int nin, apm_t in[], int nout, apm_t out[])
 {
     enum { BOX = 13, POINT = 17, SITE = 30, SITES = 60, SHOWN = 13 };
     enum { CELL, ORBIT, BOUND, ALL, STEP, N_SHAPES };
@@ -134,11 +162,10 @@ static int loewner_kernel(const char *name, long dp, int nin, apm_t in[], int no
     };
     double x[MAX_IN], y[MAX_OUT] = { 0 }, n[SITES][2] = { { 0.0, 0.0 } };
     const double *const more = x + BOX;
-    int which = 0, first = 0, good = 1, without_B;
+    int which = 0, first = 0, good = 1;
     cv_cell cell = { { 0, 0, 0, 0, 0 }, { 0, 0, 0, 0, 0 }, 0 };
     loewner_cell prism;
     loewner_point p;
-    unit *quick;
     loewner *w;
     clock_t begin;
     box b;
@@ -160,10 +187,7 @@ static int loewner_kernel(const char *name, long dp, int nin, apm_t in[], int no
     }
     *b.xstar[0] = *in[10];
     *b.xstar[1] = *in[11];
-    without_B = which == ORBIT || which == STEP;
-    quick = without_B ? NULL : unit_new(dp, 0);
-    w = quick == NULL && !without_B ? NULL : loewner_new(&b, x[12] != 0.0, quick);
-    unit_free(quick);
+    w = loewner_new(&b, x[12] != 0.0, which != ORBIT && which != STEP);
     if (w == NULL)
         return CV_ENOMEM;
     switch (which) {
@@ -237,7 +261,9 @@ int cv_kernel(const char *name, int as_double, int as_printed, int dp,
             if (status == CV_EARGUMENT)
                 status = sine_kernel(name, nin, x, nout, x + MAX_IN);
             if (status == CV_EARGUMENT)
-                status = loewner_kernel(name, dp, nin, x, nout, x + MAX_IN);
+                status = loewner_kernel(name, nin, x, nout, x + MAX_IN);
+            if (status == CV_EARGUMENT)
+                status = torus_kernel(name, nin, x, nout, x + MAX_IN);
             if (status == CV_EARGUMENT && as_double) {
                 quick = unit_new(dp, as_printed);
                 status = quick == NULL ? CV_ENOMEM

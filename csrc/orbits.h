@@ -39,17 +39,21 @@ typedef struct {
     long steps;                             /* tried, accepted or not */
     int escapes;                            /* from saddles */
     double largest;                         /* coordinate of the gradient */
+    double damping;                         /* of the next step */
 } cv_relaxed;
 
-/* Damped Newton: lowers the action until the largest coordinate of its gradient is at most tol,
-   and leaves saddles along their most negative direction.  CV_RUNNING: not there after so many
-   steps, or stopped; u is the best state met. */
+/* Damped Newton: lowers the action until the largest coordinate of its gradient is at most tol, or
+   100 tol where rounding hides what would lower it, and leaves saddles along their most negative direction.  CV_RUNNING: not there after max_steps
+   steps in all, or, if there were fewer, no step helps; u is the best state met.  All zero in *how
+   begins; what an earlier call left there goes on where it ended, so that long runs can be broken
+   into calls, and interrupted between them. */
 int cv_relax(const cv_potential *v, long q, double eps, const double (*base)[2], double (*u)[2],
-             double tol, long max_steps, const volatile int *stop, cv_relaxed *how);
+             double tol, long max_steps, cv_relaxed *how);
 
-/* The pivots d_j = beta_j - 1/d_{j-1}, run round the orbit until they repeat to relative 1e-13 or
-   for max_rounds.  Returns the rounds it took, -1 if they did not settle; 0 if one was not positive
-   definite: then the orbit is no minimum, perhaps not before it is run through several times. */
+/* The pivots d_j = beta_j - 1/d_{j-1} from d_0 = beta_0, run round the orbit until they repeat to
+   relative 1e-13 or for max_rounds.  Returns the rounds it took, 0 if they did not settle; -r if one
+   in round r was not positive definite: then the orbit run through r + 1 times is no minimum, since
+   the pivots up to there are those of its Hessian with the other points held fixed. */
 long cv_pivots(int n, long q, const double (*beta)[3], long max_rounds, double (*d)[3]);
 
 /* The logarithms, over q, of the moduli of the eigenvalues of d_{q-1} ... d_0, larger first. */
@@ -57,6 +61,60 @@ void cv_growth(long q, const double (*d)[3], double growth[2]);
 
 /* The count closest pairs of q points on the torus, closest first.  Returns how many there are. */
 long cv_pairs(int n, long q, const double (*x)[2], long count, long *i, long *j, double *distance);
+
+/* ---- proved orbits: a state in decimals; docs/orbits-proof.md.  Here, promises are kept. ---- */
+
+typedef struct cv_exact cv_exact;
+
+enum {                      /* which bound */
+    CV_GRADIENT,            /* >= the Euclidean norm of the state's gradient */
+    CV_NOISE,               /* no promise: about the least that can be had of CV_GRADIENT */
+    CV_ACTION_LOW, CV_ACTION_HIGH,      /* around its action per point less that of the straight orbit */
+    CV_DET_LOW, CV_DET_HIGH,            /* around the product of det D_j */
+    CV_GROWTH_LOW, CV_GROWTH_HIGH       /* around the modulus of an eigenvalue of D_{q-1} ... D_0 */
+};
+
+/* A state with potential of this kind and these terms (see cv_potential), of type (p, q), with
+   displacements u.  number: eps, bounds of |V''| and of the Lipschitz constant of V'', and the origin's
+   coordinates, as exact decimals.  On success *o must be freed. */
+int cv_exact_new(cv_exact **o, int kind, int n, int terms, const int *k, const long p[2], long q,
+                 const char *const number[5], const double (*u)[2]);
+void cv_exact_free(cv_exact *o);
+
+/* Rounds the displacements to dp decimal places and computes gradient, Hessian and action with as
+   many.  amplitude: of all
+   cosines, then of all sines, each within 10^-dp of the truth.  CV_GRADIENT, CV_ACTION_LOW and
+   CV_ACTION_HIGH are bounds then. */
+int cv_exact_evaluate(cv_exact *o, long dp, const char *const amplitude[]);
+
+/* CV_OK: the Hessian of the state evaluated last, + shift, is positive definite.  CV_ESINGULAR: not.  No
+   promise. */
+int cv_exact_bends(cv_exact *o, const char *shift);
+/* A step of Newton's method with the Hessian + shift, from what was evaluated last; no promise.
+   CV_ESINGULAR: that is not positive definite; nothing is moved. */
+int cv_exact_newton(cv_exact *o, const char *shift);
+/* Remembers the displacements, or goes back to those remembered. */
+int cv_exact_keep(cv_exact *o, int back);
+
+/* CV_OK: the Hessian of the state evaluated last, and of every n-fold copy of it, is proved to have no
+   eigenvalue below m > 0.  CV_ESINGULAR: it is not. */
+int cv_exact_least(cv_exact *o, const char *m);
+
+enum {                      /* the eigenvalues of D_{q-1} ... D_0 with n = 2 */
+    CV_UNDECIDED,           /* CV_GROWTH_HIGH bounds the moduli of both */
+    CV_REAL,                /* proved: CV_GROWTH_LOW and CV_GROWTH_HIGH enclose the modulus of one */
+    CV_COMPLEX              /* proved: both have the same modulus */
+};
+
+/* Encloses the pivots D_j of every orbit whose blocks beta_j are within `away` of those of the state
+   evaluated last, away < m: CV_DET_LOW and CV_DET_HIGH, and, n = 2, the eigenvalues, as *kind says.
+   CV_ESINGULAR: it could not be done. */
+int cv_exact_pivots(cv_exact *o, const char *m, const char *away, int *kind);
+
+/* A bound, and coordinate i of the displacement of point j, as exact decimals; the caller frees with
+   cv_free.  NULL: no memory. */
+char *cv_exact_bound(const cv_exact *o, int which);
+char *cv_exact_point(const cv_exact *o, long j, int i);
 
 /* ---- the least action over all orbits: minplus.c */
 

@@ -8,10 +8,11 @@
 #include "numbers/machine.h"
 #include "numbers/special.h"
 #include "search.h"
+#include "torus.h"
 
 enum { MAX_DP = 100000, MAX_DEPTH = 100000 };
 enum { MOST = 300 };                    /* no number of a problem is beyond 10^MOST */
-enum { PI_SHORT = 5, B_PLACES = 12 };   /* see region.c; B as it is reported */
+enum { PI_SHORT = 5 };                  /* see region.c */
 
 static void box_init(box *b)
 {
@@ -120,12 +121,12 @@ static int prepare_loewner(cv_search *s)
 {
     double abc[3], start[2];
 
-    s->sharp = loewner_new(&s->root, s->together, s->quick);
+    s->sharp = loewner_new(&s->root, s->together, 1);
     if (s->sharp == NULL)
         return CV_ENOMEM;
     if (apm_set_d(s->t[0], loewner_largest(s->sharp)) != APM_OK)
         return CV_EARITHMETIC;
-    apm_round(s->constants[C_B], s->t[0], B_PLACES, APM_UP);
+    apm_round(s->constants[C_B], s->t[0], TORUS_PLACES, APM_UP);
     for (int j = 0; j < 3; j++)
         abc[j] = apm_get_d(s->root.centre[j]) + (s->together ? apm_get_d(s->root.half[j]) : 0.0);
     set_LL_start(start, abc, s->symmetric);
@@ -138,6 +139,10 @@ static int prepare_thesis(cv_search *s)
     double abc[3], herman_start[2];
     int status;
 
+    s->exact = Runit_new(s->dp, s->as_printed);
+    s->quick = unit_new(s->dp, s->as_printed);
+    if (s->exact == NULL || s->quick == NULL)
+        return CV_ENOMEM;
     for (int j = 0; j < 3; j++)
         abc[j] = apm_get_d(s->root.centre[j]);
     set_Herm_start(herman_start, abc, 1);
@@ -163,10 +168,6 @@ static int prepare(cv_search *s)
     apm_pi(s->t[0], pi_dp);
     for (int j = 3; j < 5; j++)
         to_radians(s->root.centre[j], s->root.half[j], s->t[0], pi_dp);
-    s->exact = Runit_new(s->dp, s->as_printed);
-    s->quick = unit_new(s->dp, s->as_printed);
-    if (s->exact == NULL || s->quick == NULL)
-        return CV_ENOMEM;
     return s->method == CV_LOEWNER ? prepare_loewner(s) : prepare_thesis(s);
 }
 

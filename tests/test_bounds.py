@@ -129,29 +129,28 @@ def torus_values(p, v):
         return exact(m[0] + m[2]), exact(eigenvalues(m)[1])
 
 
-@pytest.mark.parametrize("dp", [1, 2, 3, 5, 25])
-def test_bounds_over_a_cell_of_the_torus(dp):
+def test_bounds_over_a_cell_of_the_torus():
     """Ranges of either sign, the longer side up or down, down to single numbers; cells down to
     points, where nothing but roundings separates the bounds from the truth."""
-    rng = rng_for("cell%d" % dp)
-    for _ in range(600 * TORTURE):
-        size = Fraction(1, 10**rng.randrange(0, dp + 2))
+    rng = rng_for("cell")
+    for _ in range(2000 * TORTURE):
+        size = Fraction(10)**rng.randrange(-9, 9)
         ends = [[decimal(uniform(rng, -2, 2) * size * rng.choice((1, 1, Fraction(1, 50))))
                  for _ in range(2)] for _ in range(3)]
         ranges = [sorted(x) if rng.random() < 0.6 else [x[0]] * 2 for x in ends]
         centre = [decimal(uniform(rng, -7, 7)) for _ in range(2)]
         reach = Fraction(rng.choice((0, 3, 3)), 10**rng.randrange(0, 4))
         half = [decimal(uniform(rng, 0, reach)) for _ in range(2)]
-        bounds = kernels.cell(*ranges, centre, half, dp)
+        bounds = kernels.cell(*ranges, centre, half, DP)
+        rounding = (1 + sum(max(map(abs, x)) for x in ranges)) * Fraction(1200, 2**53)
         for _ in range(8):
             at = [rng.choice(((-1, 1), (-1, 1), (0, 0), (uniform(rng, -1, 1),) * 2))
                   for _ in range(2)]
             v = [c + h * rng.choice(t) for c, h, t in zip(centre, half, at)]
             true = torus_values([rng.choice(x) for x in ranges], v)
-            assert true[0] <= bounds[0] and true[1] <= bounds[1]
+            assert true[0] <= bounds[0] + rounding and true[1] <= bounds[1] + rounding
         if not any(half) and all(x[0] == x[1] for x in ranges):
-            slack = Fraction(4 + 4 * sum(abs(x[0]) for x in ranges), 10**dp)
-            assert bounds[0] - true[0] <= slack and bounds[1] - true[1] <= slack
+            assert bounds[0] - true[0] <= rounding and bounds[1] - true[1] <= rounding
 
 
 @pytest.mark.parametrize("a, b, c, T, B", [
@@ -164,7 +163,8 @@ def test_a_ridge_is_bounded_by_what_no_sines_exceed(a, b, c, T, B):
     """The maximum is attained along a line, which cells as small as they would have to be cannot
     cover in a sensible time."""
     found = kernels.torus((a, a), (b, b), (c, c), DP)
-    assert 0 <= found[0] - Fraction(T) <= Fraction(1, 10**6) and found[1] == Fraction(B)
+    assert 0 <= found[0] - Fraction(T) <= Fraction(1, 10**6)
+    assert 0 <= found[1] - Fraction(B) <= Fraction(2, 10**9)
 
 
 @pytest.mark.parametrize("a, b, c", [("1e-5", "-2e-5", "1"), ("-3e-6", "1e-6", "-1")])
@@ -179,7 +179,7 @@ def test_a_ridge_that_is_not_level(a, b, c):
 
 @pytest.mark.parametrize("a, b, c", [
     ("-9.6e8", "0.9", "0.3"), ("1", "1", "1e9"), ("1e-5", "-1e-5", "1"), ("1e5", "-1", "1000"),
-    ("1e300", "1", "1"), ("1", "1", "-1e400"),
+    ("1e300", "1", "1"), ("1", "1", "-1e306"),
 ])
 def test_bounds_over_the_torus_take_about_a_second(a, b, c):
     """Bounds of what is attained where a wave or two have their maxima; not far from them."""
@@ -201,14 +201,14 @@ def test_bounds_over_the_torus_take_about_a_second(a, b, c):
     assert found[1] <= 2 + max(sizes[:2]) + 2 * sizes[2] + slack
 
 
-@pytest.mark.parametrize("size", ["1e155", "1e308", "1e400"])
+@pytest.mark.parametrize("size", ["1.7e308", "1e400"])
 @pytest.mark.parametrize("which", range(3))
 def test_no_double_is_a_bound_beyond_the_doubles(size, which):
-    """The squares under the root overflow, or what is summed does."""
+    """What is summed overflows, or the number itself."""
     p = [(0, 0)] * 3
     p[which] = (size, size)
     with pytest.raises(ArithmeticError):
-        kernels.torus(*p, DP, arithmetic="double")
+        kernels.torus(*p, DP)
 
 
 def test_constants():

@@ -170,6 +170,26 @@ def test_corridors_keep_what_may_be_least(potential):
     assert shrunk > tried / 10
 
 
+def test_corridors_round():
+    """Orbits in corridors so narrow that only rounding could throw them out; known is their action,
+    to the last bit."""
+    for potential, p, q, eps in ((orbits.trig, (5, 7), 9, 0.06), (orbits.standard, (3,), 8, 1.2),
+                                 (orbits.ff, (3, 4), 5, 0.06)):
+        state = orbits.least_action(potential, p, q, eps, gap=1e-9).state
+        _, value = total(potential, q, p, eps, state.u)
+        first = int(np.argmax(value))
+        z = np.roll(state.u, -first, 0) + np.array(p) * first / q
+        state = orbits.State(potential, p, q, eps, z, (0.0,) * potential.n).relax(tol=1e-14)
+        low, high = (number * q for number in orbits.enclosed_action(state))
+        rng = np.random.default_rng(10)
+        for _ in range(20):
+            wide = 10.0 ** rng.uniform(-9, -8, z.shape)
+            left = state.u - wide * rng.uniform(0.1, 0.9, z.shape)
+            least, left, right = corridor(potential, q, p, eps, left, left + wide, np.full(z.shape, 4),
+                                          (low + high) / 2)
+            assert least <= high and (left <= state.u).all() and (state.u <= right).all()
+
+
 def test_the_price_of_a_grid():
     """The middle of a cell at the maximum of V, and points that cannot both be on the grid: there
     each part of what rounding to the grid costs is needed."""

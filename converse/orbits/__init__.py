@@ -8,18 +8,27 @@ The torus has period 1 here, 2 pi in the rest of the package; potential.paramete
 """
 
 try:
-    import numpy  # noqa: F401
-except ImportError:
-    from ..files import ConverseError
-    raise ConverseError("converse.orbits needs numpy; pip install 'converse-kam[orbits]'") from None
+    from .floor import Floor, LeastAction, enclosed_action, floor, least_action
+    from .measures import Prelude, gram_schmidt_exponents, prelude
+    from .potential import (Fourier, FromPython, Potential, ff, froeschle, parameters, poly,
+                            standard, trig)
+    from .proved import NotProved, ProvedOrbit, prove
+    from .search import search
+    from .solver import Family, flow, follow, newton, straight
+    from .state import State
+    from .sweep import Onset, onset, onsets, read_csv, sweep
+except ImportError as _error:           # said when something is asked for: the command needs a line
+    _MISSING = ("converse.orbits needs numpy and the C core (%s); pip install "
+                "'converse-kam[orbits]'" % _error)
 
-from .floor import Floor, LeastAction, enclosed_action, floor, least_action
-from .potential import (Fourier, FromPython, Potential, ff, froeschle, parameters, poly, standard,
-                        trig)
-from .search import search
-from .solver import Family, flow, follow, newton, straight
-from .state import State
+    def __getattr__(name):
+        from ..files import ConverseError
+        if name.startswith("__"):
+            raise AttributeError(name)
+        raise ConverseError(_MISSING)
 
-__all__ = ["Family", "Floor", "Fourier", "FromPython", "LeastAction", "Potential", "State",
-           "enclosed_action", "ff", "floor", "flow", "follow", "froeschle", "least_action", "newton",
-           "parameters", "poly", "search", "standard", "straight", "trig"]
+__all__ = ["Family", "Floor", "Fourier", "FromPython", "LeastAction", "NotProved", "Onset",
+           "Potential", "Prelude", "ProvedOrbit", "State", "enclosed_action", "ff", "floor", "flow",
+           "follow", "froeschle", "gram_schmidt_exponents", "least_action", "newton", "onset",
+           "onsets", "parameters", "poly", "prelude", "prove", "read_csv", "search", "standard",
+           "straight", "sweep", "trig"]

@@ -17,7 +17,7 @@ import numpy as np
 from .._native import ffi, lib
 from ..core import check
 from ..files import ConverseError
-from .potential import address
+from .potential import Potential, address
 from .state import State
 
 U = 2.0 ** -53              # half the distance of the doubles next to 1
@@ -123,7 +123,7 @@ class Floor:
     c        -- low is that of the plane p = c, H - c.(x' - x): any other c bounds, too
     """
 
-    potential: object
+    potential: Potential
     eps: float
     rotation: Tuple[float, ...]
     grid: int
@@ -398,42 +398,41 @@ class _Search:
         whole = gcd(*state.p, self.q)
         for d in range(whole, 1, -1):
             if whole % d == 0:
-                mean = state.u.reshape(d, -1, self.n).mean(0)
-                state = state.moved(np.tile(mean, (d, 1)))
-                g, off = _gradient(state)
-                r = float(min((state.u - low).min(), (high - state.u).min()))
+                same = state.moved(np.tile(state.u.reshape(d, -1, self.n).mean(0), (d, 1)))
+                g, off = _gradient(same)
+                r = float(min((same.u - low).min(), (high - same.u).min()))
                 if r > 2.001 / mu * (sqrt(float((g ** 2).sum())) + off * sqrt(g.size)):
                     return d
         return 1
 
     def run(self, gap, corridors):
-        """Looks into corridors, the lowest first, until the least action is known to gap."""
+        """Looks into corridors, the lowest first, until the least action is known to gap.  Returns a
+        lower bound of it, copies as above, and how many corridors were looked into."""
         self.relaxed(np.zeros((self.q, 2)) + [*self.potential.start, 0.0][:2])
-        pending, settled, count = [(-inf, 0, *self.root())], [], 0
-        pushed = 1
+        pending, settled, count, pushed = [(-inf, 0, *self.root())], [], 0, 0
         while pending and count < corridors and self.known - pending[0][0] > gap:
-            parent, _, low, high = heapq.heappop(pending)
-            if parent > self.known:
-                continue
+            lowest, _, low, high = heapq.heappop(pending)
             done = self.settled(low, high)
             if done is not None:
                 settled.append(done)
                 continue
-            size = (high - low)[:, :self.n]
+            size = high - low
+            least, path = self.narrow(low, high)
             count += 1
-            bound, path = self.narrow(low, high)
-            if bound > self.known:
+            if least > self.known:
                 continue
             self.relaxed(path)
-            halves = [(low, high)]
-            if np.log((high - low)[:, :self.n] / size).sum() > -0.175 * self.n * self.q:
-                halves = self.halves(low, high)
-            for low, high in halves:
-                heapq.heappush(pending, (max(bound, parent), pushed, low, high))
+            shrunk = np.log((high - low)[:, :self.n] / size[:, :self.n]).mean() < -0.175
+            for half in [(low, high)] if shrunk else self.halves(low, high):
                 pushed += 1
-        left = [bound for bound, *_ in pending] + [leaf.bound for leaf in settled]
-        copies = gcd(*(leaf.copies for leaf in settled if leaf.bound <= self.known))
-        return min(left), 1 if pending else copies, count
+                heapq.heappush(pending, (max(lowest, least), pushed, *half))
+        left = [corridor[0] for corridor in pending] + [done.bound for done in settled]
+        if not left or min(left) > self.known:
+            raise ConverseError("every state of the type was excluded, even the best one: the curvature "
+                                "or the Lipschitz constant of %s is too small" % self.potential.name)
+        open_ = bool(pending) and pending[0][0] <= self.known
+        copies = gcd(*(done.copies for done in settled if done.bound <= self.known))
+        return min(left), 1 if open_ else copies, count
 
     @staticmethod
     def halves(low, high):

@@ -60,7 +60,7 @@ class Potential:
         x = points(x, self.n)
         value, gradient, bend = np.empty(len(x)), np.empty((len(x), 2)), np.empty((len(x), 3))
         done(lib.cv_evaluate(self.native, len(x), address(x), address(value, "double *"),
-                             address(gradient), address(bend, "double(*)[3]")))
+                             address(gradient), address(bend, "double(*)[3]")), self)
         hessian = np.empty((len(x), 2, 2))
         hessian[:, 0, 0], hessian[:, 1, 1] = bend[:, 0], bend[:, 2]
         hessian[:, 0, 1] = hessian[:, 1, 0] = bend[:, 1]
@@ -152,23 +152,27 @@ def cv_python_potential(handle, m, x, value, gradient, hessian):
     def array(pointer, width):
         return np.frombuffer(ffi.buffer(pointer, 8 * m * width)).reshape(m, width)
 
+    def ask(method, *shape):
+        found = np.asarray(getattr(potential.source, method)(at), dtype=float)
+        if found.shape != (m, *shape) or not np.isfinite(found).all():
+            raise ValueError("%s(x) of the potential %s is not an array %r of finite numbers"
+                             % (method, potential.name, (m, *shape)))
+        return found
+
     try:
-        at = array(x, 2)[:, :n]
+        at = array(x, 2)[:, :n].copy()      # to be kept or changed as one likes
         if value:
-            array(value, 1)[:, 0] = potential.source.value(at)
+            array(value, 1)[:, 0] = ask("value")
         if gradient:
             array(gradient, 2)[:, n:] = 0.0
-            array(gradient, 2)[:, :n] = potential.source.gradient(at)
+            array(gradient, 2)[:, :n] = ask("gradient", n)
         if hessian:
-            bend = np.asarray(potential.source.hessian(at), dtype=float)
-            if bend.shape != (m, n, n):
-                raise ValueError("hessian(x) has the shape %r, not %r" % (bend.shape, (m, n, n)))
-            flat = array(hessian, 3)
+            bend, flat = ask("hessian", n, n), array(hessian, 3)
             flat[:] = 0.0
             flat[:, 0] = bend[:, 0, 0]
             if n == 2:
                 flat[:, 1], flat[:, 2] = bend[:, 0, 1], bend[:, 1, 1]
-    except Exception as error:
+    except BaseException as error:          # Ctrl-C, too
         potential.error = error
         return lib.CV_EARGUMENT
     return lib.CV_OK

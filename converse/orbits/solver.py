@@ -9,7 +9,7 @@ import numpy as np
 from .._native import lib
 from ..files import ConverseError
 from .potential import address, done
-from .state import State
+from .state import FARTHEST, State
 
 STEP = 0.0025               # of eps, at most, from one state to the next guess
 LEAST_STEP = STEP / 64
@@ -105,17 +105,19 @@ def flow(state, eps=None, grad_size=1e-6, max_steps=10000, dt=0.5):
 
 def newton(state, eps=None, tol=1e-13, max_steps=50):
     """Newton's method without damping (thesis, Appendix A), for comparison: it finds whatever is
-    stationary, or nothing.  Returns the state and the number of steps."""
+    stationary, or nothing.  Returns the last state, "not stationary" perhaps, and the number of
+    steps."""
     state = replace(state, eps=state.eps if eps is None else float(eps), searches=0)
     n = state.potential.n
-    for steps in range(max_steps):
-        if np.abs(state.gradient).max() <= tol:
-            return state, steps
+    for steps in range(max_steps + 1):
+        if steps == max_steps or np.abs(state.gradient).max() <= tol:
+            break
         gradient, step = np.zeros((state.q, 2)), np.zeros((state.q, 2))
         gradient[:, :n] = state.gradient
         done(lib.cv_solve(n, state.q, address(state.blocks, "double(*)[3]"), 0.0,
                           address(gradient), address(step)))
-        if not np.isfinite(step).all():
+        u = state.u - step[:, :n]
+        if not (np.abs(u) < FARTHEST).all():
             break
-        state = state.moved(state.u - step[:, :n])
-    return state, max_steps
+        state = state.moved(u)
+    return state, steps

@@ -12,8 +12,12 @@ from ..files import ConverseError
 from .potential import Potential, address, done
 
 STATIONARY = 1e-9           # of the gradient's largest coordinate: above it a state is no orbit
+ROUNDING = 1e-12            # of eigenvalues
+FAR = 1e-3                  # further along a direction than that, its eigenvalue may be another
 NEAR_NULL = 1e-8            # of eigenvalues: along their directions the phase is not determined
 ROUNDS = 200000             # points that the pivots run through at most, but five rounds
+POINTS = 1000000            # times steps, of relax, before Ctrl-C is looked for
+FARTHEST = 1000             # displacement: beyond, too few digits are left of where a point is
 
 
 class Deviation(NamedTuple):
@@ -64,8 +68,9 @@ class State:
             raise ValueError("a type is %d whole numbers p and a whole number q > 0, below 2^31, "
                              "not %r and %r" % (n, self.p, self.q))
         u = np.array(self.u, dtype=float)       # of its own
-        if u.shape != (self.q, n) or not np.isfinite(u).all():
-            raise ValueError("displacements are %d rows of %d finite numbers" % (self.q, n))
+        if u.shape != (self.q, n) or not (np.abs(u) < FARTHEST).all():
+            raise ValueError("displacements are %d rows of %d finite numbers below %d in size"
+                             % (self.q, n, FARTHEST))
         u.flags.writeable = False
         try:
             origin, eps = tuple(float(x) for x in self.origin), float(self.eps)
@@ -168,8 +173,8 @@ class State:
 
     @cached_property
     def _pivots(self):
-        """d_j = beta_j - 1/d_{j-1}, array (q, 3), and how many rounds it took to repeat; 0: not all
-        are positive definite; -1: they did not repeat."""
+        """d_j = beta_j - 1/d_{j-1}, array (q, 3), and how many rounds it took to repeat; 0: they did
+        not; -r: not all are positive definite, in round r."""
         pivots = np.zeros((self.q, 3))
         rounds = lib.cv_pivots(self.potential.n, self.q, address(self.blocks, "double(*)[3]"),
                                max(5, ROUNDS // self.q), address(pivots, "double(*)[3]"))
@@ -177,19 +182,19 @@ class State:
 
     @property
     def label(self):
-        """What is known of it, in doubles: "not stationary"; "saddle", if an n-fold copy of it has
-        an action that can be lowered to second order; "minimum", if it has none; "stationary", if
-        rounding hides which; "best of N searches", of a minimum found so."""
+        """What is known of it, in doubles: "not stationary"; "saddle", if it or an n-fold copy of it
+        has an action that can be lowered to second order; "minimum", if neither has, but for
+        directions so flat that nobody knows (undetermined); "stationary", if rounding hides which;
+        "best of N searches", of a minimum found so."""
         if not self.shadow < STATIONARY:
             return "not stationary"
-        if not self._pivots[1]:
-            return "saddle" if self.least < -1e-12 or self._doubled < -1e-12 else "stationary"
+        rounds = self._pivots[1]
+        if rounds <= 0:
+            if self.repeat(1 - rounds).below(-max(ROUNDING, self.shadow / FAR)):
+                return "saddle"
+            if rounds < 0:
+                return "stationary"
         return "best of %d searches" % self.searches if self.searches else "minimum"
-
-    @property
-    def _doubled(self):
-        """The least eigenvalue of several copies."""
-        return min(self.repeat(k).least for k in (2, 3, 5))
 
     @property
     def undetermined(self):
@@ -200,14 +205,14 @@ class State:
     @cached_property
     def exponents(self) -> Optional[np.ndarray]:
         """The n Lyapunov exponents (1/q) log |l| >= 0 of the orbit, larger first, array (n,); NaN
-        where the pivots are not positive definite.  An exponent below about 1/(200,000) or 1/(5 q),
-        whichever is larger, is that small, not more exactly known."""
+        where the pivots are not positive definite.  An exponent below about 1/200,000 or 1/(5 q),
+        whichever is smaller, is that small, not more exactly known."""
         pivots, rounds = self._pivots
         growth = ffi.new("double[2]")
-        if not rounds:
+        if rounds < 0:
             return np.full(self.potential.n, np.nan)
         lib.cv_growth(self.q, address(pivots, "double(*)[3]"), growth)
-        return np.array(list(growth)[:self.potential.n])
+        return np.maximum(list(growth)[:self.potential.n], 0.0)
 
     # ---- measures
 
@@ -243,14 +248,19 @@ class State:
 
     def relax(self, eps=None, tol=1e-13, max_steps=10000):
         """A state of least action near this one, at this or another eps, by damped Newton: the
-        gradient's coordinates are at most tol.  ConverseError if that many steps do not reach it."""
+        gradient's coordinates are at most tol, or 100 tol where rounding hides
+        what would lower them.  ConverseError if that many steps do not reach it."""
         n, q = self.potential.n, self.q
         eps = self.eps if eps is None else float(eps)
         u, base = np.zeros((q, 2)), np.zeros((q, 2))
         u[:, :n], base[:, :n] = self.u, self.base
-        how, stop = ffi.new("cv_relaxed *"), ffi.new("int *")
-        code = done(lib.cv_relax(self.potential.native, q, eps, address(base), address(u), tol,
-                                 max_steps, stop, how), self.potential)
+        how, code = ffi.new("cv_relaxed *"), lib.CV_RUNNING
+        while code == lib.CV_RUNNING:
+            until = min(max_steps, how.steps + max(1, POINTS // q))
+            code = done(lib.cv_relax(self.potential.native, q, eps, address(base), address(u), tol,
+                                     until, how), self.potential)
+            if how.steps < until or until == max_steps:
+                break
         if code != lib.CV_OK:
             raise ConverseError(
                 "no orbit of type (%s)/%d found at eps %r: the gradient is still %.1e after %d steps"

@@ -9,9 +9,9 @@
 
 typedef struct loewner loewner;
 
-/* For a root with its angles in radians and x* chosen.  quick: a double instance, for the bounds
-   over the torus, or NULL if nothing is to be proved.  NULL: no memory. */
-loewner *loewner_new(const box *root, int together, unit *quick);
+/* For a root with its angles in radians and x* chosen.  with_bounds: those over the torus, without
+   which nothing can be proved.  NULL: no memory. */
+loewner *loewner_new(const box *root, int together, int with_bounds);
 void loewner_free(loewner *w);
 
 /* Is it impossible that a minimizing orbit leads from x* to the cell?  If that is not proved,

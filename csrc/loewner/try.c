@@ -4,6 +4,7 @@
 
 #include "prism.h"
 #include "numbers/sine.h"
+#include "torus.h"
 
 enum { FINEST = 46 };                   /* cuts along one axis: then doubles run out */
 enum { PATIENCE = 12 };                 /* tries follow each other by a twelfth of the orbit */
@@ -197,24 +198,6 @@ void loewner_look(const loewner *w, int n, loewner_point *p)
 
 /* ---- the problem */
 
-/* B at one corner of the parameters, from the double instance (torus.c), which makes up for no
-   rounding.  On a cell as large as the torus the bound of c sin(v0 + v1) is |c| (1 + t + t^2/2)
-   with t = 2 pi, 27 |c|; those of the others are 9.1 |a| and 9.1 |b|.  Sines and cosines are off by
-   4 u, by 8 u where their angle is a rounded sum; with the roundings on the way these bounds are
-   off by 214 u |c|, 57 u |a| and 57 u |b|, and the eigenvalue by 57 u max(|a|, |b|) + 428 u |c|.
-   Its formula rounds by 50 u (|a| + |b|) + 257 u |c| + 2 u.  The centre of a cell is rounded by 2 u
-   at each of at most 100 cuts, so cells may fail to meet by as much: 200 u (max(|a|, |b|) + 2 |c|).
-   The corner is off by 9 u, B by 9 u (max(|a|, |b|) + 2 |c|).  Together less than 1200 u all;
-   10^-12 is 9007 u. */
-static double corner_largest(const loewner *w, unit *quick, const double p[3])
-{
-    double all = 1.0;
-
-    for (int k = 2; k < COLUMNS; k++)
-        all += fabs(w->centre[k]) + w->half[k];
-    return quick_largest(quick, p) + 1e-12 * all;
-}
-
 /* A double d with |d - x| <= 2^-50 |x|, or else NaN, with which nothing is proved. */
 static double near(const apm_t x)
 {
@@ -238,7 +221,7 @@ static double near(const apm_t x)
     return good ? d : NAN;
 }
 
-loewner *loewner_new(const box *root, int together, unit *quick)
+loewner *loewner_new(const box *root, int together, int with_bounds)
 {
     loewner *w = calloc(1, sizeof *w);
 
@@ -262,7 +245,7 @@ loewner *loewner_new(const box *root, int together, unit *quick)
             const int upper = corner >> (together ? 0 : k) & 1;
             p[k] = w->centre[2 + k] + (upper ? 1.0 : -1.0) * w->half[2 + k];
         }
-        w->corner[corner] = quick == NULL ? HUGE_VAL : corner_largest(w, quick, p);
+        w->corner[corner] = with_bounds ? torus_largest(p, p, TORUS_EIGENVALUE) : HUGE_VAL;
     }
     return w;
 }

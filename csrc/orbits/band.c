@@ -94,16 +94,18 @@ long cv_solve(int n, long q, const double (*beta)[3], double mu, const double (*
     return negative;
 }
 
+static const double HELD = 1e100;       /* the pivot of a point that cannot move */
+
 long cv_pivots(int n, long q, const double (*beta)[3], long max_rounds, double (*d)[3])
 {
-    sym here = { 2.5, 0.0, n == 2 ? 2.5 : 1.0 };        /* the idle coordinate's stays at one */
+    sym here = { HELD, 0.0, n == 2 ? HELD : 1.0 };      /* the idle coordinate's stays at one */
 
     for (long round = 1; round <= max_rounds; round++) {
         double moved = 0.0;
         for (long j = 0; j < q; j++) {
             here = sym_sub(sym_of(beta[j]), sym_inverse(here));
             if (sym_negative(here) != 0)
-                return 0;
+                return -round;
             moved = fmax(moved, (fabs(here.a - d[j][0]) + fabs(here.b - d[j][1])
                                  + fabs(here.c - d[j][2])) / (here.a + here.c));
             d[j][0] = here.a;
@@ -113,7 +115,7 @@ long cv_pivots(int n, long q, const double (*beta)[3], long max_rounds, double (
         if (round > 1 && moved < 1e-13)
             return round;
     }
-    return -1;
+    return 0;
 }
 
 /* The product is carried as a matrix of size about one and the logarithm of what was divided out.

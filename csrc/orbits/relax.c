@@ -7,7 +7,8 @@
 
 static const double CAP = 0.1;          /* no coordinate moves further in one step */
 static const double FLAT = 1e-11;       /* of eigenvalues: below it, rounding says which sign */
-enum { MOST_ESCAPES = 50 };
+static const double HOPELESS = 1e9;     /* a damping with which nothing moves any more */
+enum { MOST_ESCAPES = 50, WALK = 1000 };
 
 typedef double point[2];
 typedef double block[3];
@@ -143,12 +144,22 @@ static void swap(place *a, place *b)
     *b = c;
 }
 
-/* One state lies lower than another if its action says so or, where rounding hides that, its
-   gradient is smaller. */
-static int lower(const place *a, const place *b)
+/* Does b lie lower than a?  Along soft directions the action changes by less than rounding; then b is
+   as good if its gradient is smaller, or, while the state may walk, if the mean of both gradients
+   points from a to b and that of b is not much larger. */
+static int lower(long q, const place *b, const place *a, int may_walk)
 {
-    return a->action < b->action - b->noise
-        || (a->action <= b->action + b->noise && a->mean_square < b->mean_square);
+    const double difference = b->action - a->action;
+    double along = 0.0;
+
+    if (!(fabs(difference) <= a->noise))
+        return difference < 0.0;
+    if (b->mean_square < a->mean_square)
+        return 1;
+    for (long j = 0; j < q; j++)
+        for (int i = 0; i < 2; i++)
+            along += (a->gradient[j][i] + b->gradient[j][i]) * (b->u[j][i] - a->u[j][i]);
+    return may_walk && along < 0.0 && b->largest < 2.0 * a->largest;
 }
 
 /* Steps off a saddle, to the lower one of both sides, as far as that is lower than here.  Returns
@@ -176,37 +187,41 @@ static long escape(const action_of *of, place *at, place *other, point *along)
 }
 
 static int descend(const action_of *of, place *at, place *other, point *along, double tol,
-                   long max_steps, const volatile int *stop, cv_relaxed *how)
+                   long max_steps, cv_relaxed *how)
 {
     const long q = of->q;
-    double mu = 0.0;
+    double mu = how->damping;
     int status = look(of, at);
 
     while (status == CV_OK) {
         const double slope = sqrt(at->mean_square);
         long negative;
         how->largest = at->largest;
-        if (at->largest <= tol) {
+        /* Before break-up a gradient along directions that cost nothing may be all that rounding
+           leaves, and no step lowers what it hides. */
+        if (at->largest <= tol || (mu > HOPELESS && at->largest <= 100.0 * tol)) {
             negative = cv_solve(of->v->n, q, (const block *)at->beta, FLAT, NULL, NULL);
             if (negative > 0 && how->escapes < MOST_ESCAPES) {
                 how->escapes++;
                 negative = escape(of, at, other, along);
+                mu = 0.0;
                 if (negative > 0)
                     continue;
             }
             return negative < 0 ? (int)negative : CV_OK;
         }
-        if (how->steps >= max_steps || (stop && *stop) || !(at->largest < HUGE_VAL) || mu > 1e9)
+        how->damping = mu;
+        if (how->steps >= max_steps || !(at->largest < HUGE_VAL) || mu > HOPELESS)
             return CV_RUNNING;
         how->steps++;
         while ((negative = cv_solve(of->v->n, q, (const block *)at->beta, mu,
-                                    (const point *)at->gradient, along)) > 0 && mu < 1e9)
+                                    (const point *)at->gradient, along)) > 0 && mu < HOPELESS)
             mu = fmax(4.0 * mu, fmax(0.01 * slope, 1e-15));
         if (negative < 0)
             return (int)negative;
         move(q, other, at, -fmin(1.0, CAP / widest(q, (const point *)along)), (const point *)along);
         status = look(of, other);
-        if (status == CV_OK && lower(other, at)) {
+        if (status == CV_OK && lower(q, other, at, how->steps < WALK)) {
             swap(at, other);
             mu = mu > 1e-14 ? 0.1 * mu : 0.0;
         } else {
@@ -217,7 +232,7 @@ static int descend(const action_of *of, place *at, place *other, point *along, d
 }
 
 int cv_relax(const cv_potential *v, long q, double eps, const double (*base)[2], double (*u)[2],
-             double tol, long max_steps, const volatile int *stop, cv_relaxed *how)
+             double tol, long max_steps, cv_relaxed *how)
 {
     const size_t size = (size_t)q;
     const action_of of = { v, q, eps, base, malloc(size * sizeof *of.x),
@@ -226,8 +241,6 @@ int cv_relax(const cv_potential *v, long q, double eps, const double (*base)[2],
     point *const along = malloc(size * sizeof *along);
     int status = CV_ENOMEM, complete = of.x && of.value && along;
 
-    how->steps = how->escapes = 0;
-    how->largest = HUGE_VAL;
     for (int k = 0; k < 2; k++) {
         places[k] = (place){ malloc(size * sizeof *at->u), malloc(size * sizeof *at->gradient),
                              malloc(size * sizeof *at->beta), 0.0, 0.0, 0.0, 0.0 };
@@ -235,7 +248,7 @@ int cv_relax(const cv_potential *v, long q, double eps, const double (*base)[2],
     }
     if (complete) {
         memcpy(at->u, u, size * sizeof *u);
-        status = descend(&of, at, other, along, tol, max_steps, stop, how);
+        status = descend(&of, at, other, along, tol, max_steps, how);
         memcpy(u, at->u, size * sizeof *u);
     }
     for (int k = 0; k < 2; k++) {

@@ -8,7 +8,6 @@
 #include "row_sums.c"
 #include "trace.c"
 #include "lambda.c"
-#include "torus.c"
 #include "lipschitz.c"
 #include "ff_fatten.c"
 #include "ff_rows.c"

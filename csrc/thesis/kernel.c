@@ -38,43 +38,32 @@ static void put_prism(state *s, apm_t out[], prism *pz)
 
 enum { PRISM_SZ = MAT_DIM + MAT_DIM * MAT_DIM };
 
-static void get_parameters(state *s, apm_t in[])
-{
-    bdd *const parm[N_PARMS] = { &s->n.a, &s->n.b, &s->n.c };
-
-    for (int j = 0; j < N_PARMS; j++) {
-        num_set_apm(parm[j]->lb, in[2 * j]);
-        num_set_apm(parm[j]->ub, in[2 * j + 1]);
-    }
-}
-
 /* name: what goes in -> what comes out
    sincos: x -> sin, cos                    bound_sincos: lo, hi -> sin lo, hi, cos lo, hi
    inverse: 4 x 4 matrix -> inverse, err    image: prism -> prism
    btrace: prism -> lo, hi                  Blams: prism -> least lo, hi, largest lo, hi
-   torus: lo, hi of a, b, c -> T, B         least_lambda: prism, Tr d, lam d, lam_-min -> the same
+   least_lambda: prism, Tr d, lam d, lam_-min -> the same two
    cone: M, k -> low, high                  image_ns: prism, n -> nanoseconds per image, of n
    product: x lo, hi, y lo, hi -> lo, hi    square: lo, hi -> lo, hi
    gauss_jordan: 4 x 4 matrix -> inverse to the places of the state, err, in a single try
-   cell: lo, hi of a, b, c, centre and half-widths of a cell of the torus -> its two bounds
    constants: centres and half-widths of a, b, c, x* -> the constants, Tr d and lam d of d_0 */
-enum { SINCOS, BOUND_SINCOS, INVERSE, IMAGE, BTRACE, BLAMS, TORUS, LEAST_LAMBDA, CONE, IMAGE_NS,
-       PRODUCT, SQUARE, GAUSS_JORDAN, CELL, CONSTANTS, N_KERNELS };
+enum { SINCOS, BOUND_SINCOS, INVERSE, IMAGE, BTRACE, BLAMS, LEAST_LAMBDA, CONE, IMAGE_NS,
+       PRODUCT, SQUARE, GAUSS_JORDAN, CONSTANTS, N_KERNELS };
 
 /* intervals: as many pairs lo, hi come first; prism: a prism does */
 static const struct { const char *name; int nin, nout, intervals, prism; } kernels[N_KERNELS] = {
     { "sincos", 1, 2, 0, 0 }, { "bound_sincos", 2, 4, 1, 0 }, { "inverse", 16, 17, 0, 0 },
     { "image", PRISM_SZ, PRISM_SZ, 0, 1 }, { "btrace", PRISM_SZ, 2, 0, 1 },
-    { "Blams", PRISM_SZ, 4, 0, 1 }, { "torus", 6, 2, 3, 0 },
+    { "Blams", PRISM_SZ, 4, 0, 1 },
     { "least_lambda", PRISM_SZ + 3, 2, 0, 1 }, { "cone", 2, 2, 0, 0 },
     { "image_ns", PRISM_SZ + 1, 1, 0, 1 }, { "product", 4, 2, 2, 0 }, { "square", 2, 2, 1, 0 },
-    { "gauss_jordan", 16, 17, 0, 0 }, { "cell", 10, 2, 3, 0 }, { "constants", 8, 8, 0, 0 }
+    { "gauss_jordan", 16, 17, 0, 0 }, { "constants", 8, 8, 0, 0 }
 };
 
 /* Is what the routines take for granted true?  Intervals do not end before they begin.  Of a
    prism, the parameters depend on nothing but themselves, and their widths are not negative; the
    signs of the other rows do not matter.  Blocks d are positive definite.  Nor are the half-widths
-   of a cell or of parameters negative.  The k of a cone is 4 or 16. */
+   of parameters negative.  The k of a cone is 4 or 16. */
 static int makes_sense(int which, apm_t in[])
 {
     for (int j = 0; j < kernels[which].intervals; j++)
@@ -93,8 +82,6 @@ static int makes_sense(int which, apm_t in[])
         return apm_get_d(in[1]) == 4.0 || apm_get_d(in[1]) == 16.0;
     case IMAGE_NS:
         return apm_sgn(in[PRISM_SZ]) >= 0 && apm_get_d(in[PRISM_SZ]) <= 1e9;
-    case CELL:
-        return apm_sgn(in[8]) >= 0 && apm_sgn(in[9]) >= 0;
     case CONSTANTS:
         return apm_sgn(in[3]) >= 0 && apm_sgn(in[4]) >= 0 && apm_sgn(in[5]) >= 0;
     default:
@@ -177,13 +164,6 @@ int R(kernel)(state *s, const char *name, int nin, apm_t in[], int nout, apm_t o
         put_bdd(s, out, &n->minBlam);
         put_bdd(s, out + 2, &n->maxBlam);
         break;
-    case TORUS:
-        get_parameters(s, in);
-        torus_max(s, n->constants[C_T], 0);
-        torus_max(s, n->constants[C_B], 1);
-        put(s, out[0], n->constants[C_T]);
-        put(s, out[1], n->constants[C_B]);
-        break;
     case LEAST_LAMBDA:
         bd_Blams(s, &n->minBlam, &n->maxBlam, &n->b_trace);
         num_set_apm(n->slope, in[PRISM_SZ]);
@@ -223,20 +203,6 @@ int R(kernel)(state *s, const char *name, int nin, apm_t in[], int nout, apm_t o
             put(s, out[j], n->gauss[j / TWO_DF][j % TWO_DF]);
         put(s, out[16], n->inverse_err);
         break;
-    case CELL: {
-        cell *k = n->cells;
-        get_parameters(s, in);
-        for (int j = 0; j < DEG_FREE; j++) {
-            num_set_apm(k->v[j], in[6 + j]);
-            num_set_apm(k->r[j], in[8 + j]);
-        }
-        set_waves(s, k->v);
-        for (int j = 0; j < 2; j++) {
-            cell_bound(s, n->tor[9], k, j);
-            put(s, out[j], n->tor[9]);
-        }
-        break;
-    }
     case CONSTANTS:
         status = constants(s, in, out);
         break;

@@ -34,6 +34,27 @@ static void set_cone_as_printed(state *s, const num_t margin)
     uniform_cone(s, n->constants[C_TRACE_MIN], n->constants[C_TRACE_MAX], n->constants[C_T], 16);
 }
 
+/* r >= the largest trace or eigenvalue of beta over the torus and the parameters of the root, whose
+   ends apm_nearest_d rounds by u or two. */
+static void bound_over_torus(state *s, num_t r, const box *root, int which)
+{
+    double low[N_PARMS], high[N_PARMS];
+    apm_t x;
+
+    apm_init(x);
+    for (int j = 0; j < N_PARMS; j++) {
+        apm_sub(x, root->centre[j], root->half[j]);
+        low[j] = apm_nearest_d(x);
+        apm_add(x, root->centre[j], root->half[j]);
+        high[j] = apm_nearest_d(x);
+    }
+    if (apm_set_d(x, torus_largest(low, high, which)) != APM_OK)
+        s->failed = 1;
+    apm_round(x, x, TORUS_PLACES, APM_UP);
+    num_set_apm(r, x);
+    apm_clear(x);
+}
+
 /* Thesis: prepare_trial.  Sound: T and B are theorems (torus.c). */
 int R(prepare_trial)(state *s, const box *root, const double herman_start[2],
                      apm_t constants[N_CONSTANTS])
@@ -61,10 +82,8 @@ int R(prepare_trial)(state *s, const box *root, const double herman_start[2],
         for (int j = 0; j < N_CONSTANTS; j++)
             num_set_apm(n->constants[j], constants[j]);
     } else {
-        set_earliest(s, root, 1);
-        global_bounds(s, &n->earliest);                 /* for a, b, c */
-        torus_max(s, n->constants[C_T], 0);
-        torus_max(s, n->constants[C_B], 1);
+        bound_over_torus(s, n->constants[C_T], root, TORUS_TRACE);
+        bound_over_torus(s, n->constants[C_B], root, TORUS_EIGENVALUE);
         uniform_cone(s, n->constants[C_TRACE_MIN], n->constants[C_TRACE_MAX],
                      n->constants[C_T], 16);
         uniform_cone(s, n->constants[C_LAM_MIN], n->constants[C_LAM_MAX], n->constants[C_B], 4);

@@ -11,6 +11,7 @@
 #include "num.h"
 #include "numbers/sine.h"
 #include "numbers/special.h"
+#include "torus.h"
 #include "unit.h"
 
 enum { N_PARMS = 3, DEG_FREE = 2, TWO_DF = 4, MAT_DIM = 7 };
@@ -27,10 +28,6 @@ typedef struct { xtnd_pt centre; num_t matrix[MAT_DIM][MAT_DIM]; } prism;
 
 /* beta = 2I - V'' and gamma = the derivative of v' with respect to the parameters. */
 typedef struct { num_t beta[DEG_FREE][DEG_FREE], gamma[DEG_FREE][N_PARMS]; } jacobian;
-
-/* A rectangle of the torus: centre and half-widths (torus.c). */
-enum { TORUS_DEPTH = 100 };
-typedef struct { num_t v[DEG_FREE], r[DEG_FREE]; } cell;
 
 /* All the numbers of a state.  Only num_t's may stand here: they are set up as one array.
    Names after the thesis; t[] and the like are scratch of the function or file they name. */
@@ -55,10 +52,9 @@ typedef struct {
 
     prism work[2], earliest;
     num_t slope, least_lam, maxBlam_ll, minBlam_ll, trace_ll;
-    num_t mul, t[8], bd[8], ex[8], blam[8], cr[12], ff[8], tor[23];
+    num_t mul, t[8], bd[8], ex[8], blam[8], cr[12], ff[8];
     bdd bx[4];
     num_t gauss[TWO_DF][TWO_DF], g[12];
-    cell cells[TORUS_DEPTH + 2];
 } numbers;
 
 struct R(unit) {
@@ -67,7 +63,6 @@ struct R(unit) {
     long dp, precision;
     int as_printed;
     int failed;                         /* an operation had no result: decide nothing */
-    int cell_depth[TORUS_DEPTH + 2];
     int inverse_failed;                 /* the column rotor's matrix could not be inverted */
 };
 

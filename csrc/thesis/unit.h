@@ -41,10 +41,6 @@ DECLARE_UNIT()
    of the double instance only) */
 void quick_try(unit *u, const box *b, verdict *v);
 
-/* An upper bound, but for roundings, of the largest eigenvalue of beta over the torus for the
-   parameters p; HUGE_VAL if doubles cannot tell.  (torus.c, the double instance.) */
-double quick_largest(unit *u, const double p[3]);
-
 /* region.c: centre +- half, in units of pi, becomes an interval in radians that encloses it.
    pi: cut off after dp places, to which the results are rounded. */
 void to_radians(apm_t centre, apm_t half, const apm_t pi, long dp);

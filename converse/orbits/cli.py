@@ -1,0 +1,420 @@
+"""The command: converse-orbits find | sweep | figures."""
+
+import argparse
+import concurrent.futures
+import contextlib
+import io
+import math
+import os
+import random
+import re
+import sys
+from fractions import Fraction
+
+from .. import files, picture
+from ..cli import Parser, ended, say, whole
+from ..files import ConverseError, plain
+from ..figure import format_of
+from ..version import __version__
+
+COMMAND = "converse-orbits"
+NAMES = "trig", "poly", "ff", "froeschle", "standard"
+MANY = 10000                            # values of eps, at most
+SIZES = 300, 1200                       # q of a sweep, unless others are asked for
+STATUS = ("Exit status: 0 all was found that was asked for; 1 a state was not found, is no "
+          "minimum, or is not proved though --prove was given; 2 bad usage, input or file; 129, "
+          "130 or 143 ended by a signal.")
+POTENTIAL = ("trig, poly, ff, froeschle, standard, or a file whose lines 'k0 k1 cosine sine' (with "
+             "one angle: 'k cosine sine') are the terms of V")
+MEANINGS = {                            # of labels
+    "minimum": "seen in doubles, not proved: no state near it has less action, others may",
+    "best": "seen in doubles, not proved: a minimum, and the least action met",
+    "saddle": "seen in doubles: its action can be lowered, perhaps when it is run through often",
+    "stationary": "seen in doubles: rounding hides whether it is a minimum",
+    "not stationary": "not an orbit",
+}
+NO_MINIMUM = "saddle", "stationary", "not stationary"
+
+
+# ---- what is read
+
+def _number(text):
+    """A decimal or a fraction, exactly; ValueError if it is none."""
+    if not re.fullmatch(r"[^e]*(e[-+]?\d{1,3})?", text, re.ASCII | re.IGNORECASE):
+        raise ValueError("an exponent beyond what a double knows")
+    return Fraction(text)
+
+
+def _eps(text):
+    """'0.01' or 'LOW:HIGH:STEP': a list of floats."""
+    try:
+        ends = [_number(word) for word in text.split(":")]
+        if len(ends) not in (1, 3) or not all(abs(x) < 10 ** 9 for x in ends):
+            raise ValueError
+    except (ValueError, ZeroDivisionError):
+        raise argparse.ArgumentTypeError("'%s' is no number and no range LOW:HIGH:STEP"
+                                         % text) from None
+    if len(ends) == 1:
+        return [float(ends[0])]
+    low, high, step = ends
+    if not step or not 0 <= (high - low) / step < MANY:
+        raise argparse.ArgumentTypeError("'%s' is a range of no values, or of more than %d"
+                                         % (text, MANY))
+    return [float(low + k * step) for k in range(int((high - low) / step) + 1)]
+
+
+def _vector(text):
+    """'1432,1897/2513': ((1432, 1897), 2513)."""
+    match = re.fullmatch(r"\(?(-?\d{1,9})(?:, *(-?\d{1,9}))?\)?/(\d{1,9})", text.strip(), re.ASCII)
+    if not match or not int(match[3]):
+        raise argparse.ArgumentTypeError("'%s' is no type: write p0,p1/q, or p/q for one angle"
+                                         % text)
+    return tuple(int(p) for p in match.groups()[:2] if p is not None), int(match[3])
+
+
+def _sizes(text):
+    match = re.fullmatch(r"(\d{1,9}):(\d{1,9})", text, re.ASCII)
+    if not match or not 1 <= int(match[1]) <= int(match[2]):
+        raise argparse.ArgumentTypeError("'%s' is no range LOW:HIGH of whole numbers above 0"
+                                         % text)
+    return int(match[1]), int(match[2])
+
+
+def _target(text):
+    try:
+        target = [_number(word) for word in text.split(",")]
+        if len(target) > 2 or not all(0 < w < 1 for w in target):
+            raise ValueError
+    except (ValueError, ZeroDivisionError):
+        raise argparse.ArgumentTypeError(
+            "'%s' is not one or two decimals or fractions between 0 and 1: w0,w1" % text) from None
+    return target
+
+
+def _lines(path):
+    """The lines of a file that say something, with their numbers."""
+    try:
+        with open(path, encoding="utf-8") as file:
+            for number, line in enumerate(file, 1):
+                words = line.partition("#")[0].strip()
+                if words:
+                    yield number, words
+    except OSError as error:
+        raise ConverseError("%s: cannot be read (%s)" % (path, files.reason(error))) from None
+    except UnicodeDecodeError:
+        raise ConverseError("%s: is not a text file" % path) from None
+
+
+def read_potential(source):
+    """One of those with a name, or a Fourier sum from a file."""
+    from converse import orbits
+
+    if source in NAMES:
+        return getattr(orbits, source)
+    if not os.path.exists(source):
+        raise ConverseError("'%s' is no potential and no file; there are %s, or a file of lines "
+                            "'k0 k1 cosine sine'" % (source, ", ".join(NAMES)))
+    name, terms = plain(os.path.splitext(os.path.basename(source))[0]), {}
+    for number, words in _lines(source):
+        words = words.split()
+        try:
+            k = tuple(map(int, words[:-2]))
+            term = tuple(map(_number, words[-2:]))
+            if len(words) not in (3, 4) or k in terms or any(abs(x) > 10 ** 9 for x in term):
+                raise ValueError
+        except (ValueError, ZeroDivisionError):
+            raise ConverseError("%s: line %d is no new term 'k0 k1 cosine sine' (one angle: 'k "
+                                "cosine sine')" % (source, number)) from None
+        terms[k] = term
+    try:
+        return orbits.Fourier(terms, name + ".txt" if name in NAMES else name)
+    except ValueError as error:
+        raise ConverseError("%s: %s" % (source, error)) from None
+
+
+def _check_type(potential, vector):
+    if len(vector[0]) != potential.n:
+        raise ConverseError("the potential %s has %s: write types as %s" % (
+            potential.name, *(("two angles", "p0,p1/q") if potential.n == 2
+                              else ("one angle", "p/q"))))
+    return vector
+
+
+def vectors_of(options, potential):
+    """The rotation vectors of a sweep: from a file, along the Farey tree or triangle, or random."""
+    low, high = options.sizes
+    if options.vectors is not None:
+        vectors = []
+        for number, words in _lines(options.vectors):
+            try:
+                vectors.append(_check_type(potential, _vector(words)))
+            except (argparse.ArgumentTypeError, ConverseError) as error:
+                raise ConverseError("%s: line %d: %s" % (options.vectors, number, error)) from None
+    elif options.farey is not None:
+        from . import farey
+
+        if len(options.farey) != potential.n:
+            raise ConverseError("the potential %s has %d angle%s: give --farey as many numbers"
+                                % (potential.name, potential.n, "s" * (potential.n - 1)))
+        mediants = farey.triangle(options.farey) if potential.n == 2 else farey.tree(*options.farey)
+        vectors = []
+        for mediant in mediants:
+            if mediant.q > high:
+                break
+            if mediant.q >= low:
+                vectors.append((mediant.p, mediant.q))
+    else:
+        rng, vectors, tries = random.Random(options.seed), [], 0
+        while len(vectors) < options.random:
+            q = rng.randint(low, high)
+            p = tuple(rng.randrange(q) for _ in range(potential.n))
+            tries += 1
+            if math.gcd(*p, q) == 1 or tries > 100 * options.random:
+                vectors.append((p, q))
+    if not vectors:
+        raise ConverseError("there are no rotation vectors; give others, or another --sizes")
+    return vectors
+
+
+def parser():
+    p = Parser(prog=COMMAND, allow_abbrev=False, description=(
+        "Finds periodic orbits of least action of the map x' = x + p', p' = p - eps grad V(x), "
+        "angles of period 1, by continuation from eps 0."), epilog=STATUS)
+    p.add_argument("--version", action="version", version="%s %s" % (COMMAND, __version__))
+    commands = p.add_subparsers(metavar="COMMAND", required=True)
+
+    find = commands.add_parser(
+        "find", allow_abbrev=False, epilog=STATUS, help="find the states of one type",
+        description="Finds the states of one type, and says what is known of them.")
+    find.add_argument("potential", metavar="POTENTIAL", help=POTENTIAL)
+    find.add_argument("type", metavar="TYPE", type=_vector, help="p0,p1/q, such as 1432,1897/2513; "
+                      "p/q for one angle")
+    find.add_argument("eps", metavar="EPS", type=_eps, nargs="+", help="a number, or "
+                      "LOW:HIGH:STEP; states are followed from one to the next")
+    find.add_argument("--search", type=whole(1), metavar="N", help="look for less action than "
+                      "continuation finds, N times")
+    find.add_argument("--prove", action="store_true", help="prove that an orbit is beside each "
+                      "state, that it is a minimum, its action and its exponents")
+    find.add_argument("--csv", metavar="FILE", help="write a row for each state")
+    find.add_argument("-g", "--graphics", metavar="FILE", help="draw the angles and the momenta of "
+                      "the states: SVG, PNG or PDF by the name")
+    find.add_argument("--seed", type=whole(0), default=0, metavar="N", help="of the search (0)")
+    find.set_defaults(run=find_states)
+
+    sweep = commands.add_parser(
+        "sweep", allow_abbrev=False, epilog=STATUS, help="tabulate the states of many types",
+        description="Writes a table of the states of many types at each eps or, without eps, of "
+        "where the orbit of each type turns hyperbolic.  The same command continues a sweep that "
+        "was interrupted.")
+    sweep.add_argument("potential", metavar="POTENTIAL", help=POTENTIAL)
+    sweep.add_argument("csv", metavar="FILE", help="the table; if it exists, the beginning of this "
+                       "same sweep")
+    sweep.add_argument("eps", metavar="EPS", type=_eps, nargs="*", help="a number, or "
+                       "LOW:HIGH:STEP")
+    which = sweep.add_mutually_exclusive_group(required=True)
+    which.add_argument("--vectors", metavar="FILE", help="types from a file, a p0,p1/q in each "
+                       "line")
+    which.add_argument("--farey", metavar="W0,W1", type=_target, help="the mediants of the Farey "
+                       "triangles (one angle: intervals) that contain these numbers, exactly")
+    which.add_argument("--random", type=whole(1), metavar="N", help="N random types")
+    sweep.add_argument("--sizes", type=_sizes, default=SIZES, metavar="LOW:HIGH", help="of q, for "
+                       "--farey and --random (%d:%d)" % SIZES)
+    sweep.add_argument("--seed", type=whole(0), default=0, metavar="N", help="of --random (0)")
+    sweep.add_argument("--jobs", type=whole(1), metavar="N", help="work on N types at a time "
+                       "(default: one per core)")
+    sweep.set_defaults(run=sweep_types)
+
+    figures = commands.add_parser(
+        "figures", allow_abbrev=False, epilog=STATUS, help="draw the thesis's figures",
+        description="Computes and draws the figures of the thesis's chapter 2.")
+    figures.add_argument("directory", metavar="DIR", help="where to write them")
+    figures.add_argument("--format", choices=picture.FORMATS, default=picture.FORMATS[0],
+                         help="of the figures")
+    figures.set_defaults(run=draw_figures)
+    return p
+
+
+# ---- what is said
+
+def type_text(state):
+    return ("(%s)/%d" if len(state.p) > 1 else "%s/%d") % (", ".join(map(str, state.p)), state.q)
+
+
+def header(state):
+    """What is the same for all states of a report."""
+    potential = state.potential
+    lines = ["Map : x' = x + p', p' = p - eps grad V(x), angles of period 1",
+             "Potential : " + potential.name]
+    if potential.name not in NAMES:     # a user's: a theorem must say of what
+        lines.append("V(x) : the sum of c cos 2 pi k.x + s sin 2 pi k.x, k c s = " + ", ".join(
+            " ".join(map(str, k + term)) for k, term in potential.terms.items()))
+    lines.append("Type : %s, rotation vector %s" % (type_text(state), _numbers(state.rotation)))
+    return "\n".join(lines) + "\n"
+
+
+def _numbers(values):
+    return ", ".join("%.10g" % x for x in values)
+
+
+def _exponent(state, x):
+    """Of an exponent below what the pivots can tell, no digits."""
+    from .state import ROUNDS
+
+    least = 2 / max(ROUNDS, 5 * state.q)
+    return "unknown" if math.isnan(x) else "below %.0e" % least if abs(x) < least else "%.10g" % x
+
+
+def report(state):
+    """What is known of a state."""
+    lines = [
+        "eps : %r" % state.eps,
+        "State : %s (%s)" % (state.label, MEANINGS.get(state.label, MEANINGS["best"])),
+        "Action per point less |p/q|^2/2 : %.12g" % state.action,
+        "Exponents : " + ", ".join(_exponent(state, x) for x in state.exponents),
+        "Gradient : largest %.2g, root mean square %.2g" % (state.shadow, state.grad_size),
+        "Deviation : %.10g from the line through x_0, %.10g from the line at eps 0, %.10g from the "
+        "best line" % state.deviation,
+        "Phases : " + ("determined" if not state.undetermined else "undetermined along %d "
+                       "direction%s, in which the points can be moved at almost no cost"
+                       % (state.undetermined, "s" * (state.undetermined > 1)))]
+    return "\n".join(lines) + "\n"
+
+
+# ---- what is done
+
+def _check_outputs(options, potential_file):
+    for path in (options.csv, options.graphics):
+        if path is not None:
+            if os.path.isfile(path) and (files.same(path, potential_file) or files.is_proof(path)):
+                raise ConverseError("the output would overwrite '%s'; name another file" % path)
+            files.check_writable(path)
+    if options.graphics is not None:
+        if options.csv is not None and files.same(options.csv, options.graphics):
+            raise ConverseError("'%s' cannot be both the table and the figure" % options.csv)
+        if format_of(options.graphics) == "ps":
+            raise ConverseError("'%s': the figure is SVG, PNG or PDF; let its name end so"
+                                % options.graphics)
+        from .figures import ROWS, check
+        check([], format_of(options.graphics))
+        if sum(map(len, options.eps)) > ROWS:
+            raise ConverseError("a figure shows %d states at most; choose fewer eps, or no figure"
+                                % ROWS)
+
+
+def find_states(options):
+    potential = read_potential(options.potential)
+    p, q = _check_type(potential, options.type)
+    _check_outputs(options, options.potential)
+
+    from .proved import prove
+    from .search import search
+    from .solver import Family, follow, straight
+
+    eps = [x for each in options.eps for x in each]
+    states, status = [], 0
+
+    def found(state):
+        nonlocal status
+        states.append(state)
+        say("\n" + report(state))
+        if state.label in NO_MINIMUM:
+            status = 1
+        if options.prove:
+            try:
+                say(prove(state).report())
+            except ConverseError as reason:
+                say("Not proved : %s\n" % plain(str(reason)))
+                status = 1
+
+    say(header(straight(potential, p, q)))
+    try:
+        if options.search is None:
+            follow(potential, p, q, eps, progress=lambda _, state: found(state))
+        else:
+            for x in eps:
+                found(search(potential, p, q, x, options.search, seed=options.seed))
+    except ConverseError as reason:
+        say("\nNot found : %s\n" % plain(str(reason)))
+        status = 1
+    if options.csv is not None:
+        table = io.StringIO(newline="")
+        Family(tuple(states)).write_csv(table)
+        files.write(options.csv, table.getvalue().encode("utf-8"))
+    if options.graphics is not None and states:
+        from .figures import states_picture
+        files.write(options.graphics, states_picture(states, format_of(options.graphics)))
+    return status
+
+
+def sweep_types(options):
+    potential = read_potential(options.potential)
+    vectors = vectors_of(options, potential)
+    for path in (options.potential, options.vectors):
+        if path is not None and os.path.exists(path) and files.same(path, options.csv):
+            raise ConverseError("the table would overwrite '%s'; name another file" % path)
+
+    from ..growth import count_workers
+    from .sweep import LOST, onsets, sweep
+
+    eps = [x for each in options.eps for x in each]
+    with contextlib.ExitStack() as stack:
+        bar = stack.enter_context(contextlib.closing(_Bar()))
+        executor = stack.enter_context(concurrent.futures.ThreadPoolExecutor(
+            options.jobs or count_workers()))
+        common = {"executor": executor, "file": options.csv, "progress": bar}
+        table = sweep(potential, vectors, eps, **common) if eps else \
+            onsets(potential, vectors, **common)
+    lost = int((table["label"] == LOST).sum())
+    say("written: %s, %d types, %d rows%s\n" % (
+        plain(options.csv), len(vectors), len(table), ", %d of them lost" % lost if lost else ""))
+    return 1 if lost else 0
+
+
+class _Bar:
+    """On a terminal, how far a sweep is (the extra "progress")."""
+
+    bar = None
+
+    def __call__(self, done, of):
+        with contextlib.suppress(ImportError):
+            if self.bar is None and sys.stderr.isatty():
+                from tqdm import tqdm
+                self.bar = tqdm(total=of, leave=False, file=sys.stderr, initial=done)
+        if self.bar is not None:
+            self.bar.update(done - self.bar.n)
+
+    def close(self):
+        if self.bar is not None:
+            self.bar.close()
+
+
+def draw_figures(options):
+    from .figures import figures
+
+    figures(options.directory, kind=options.format,
+            progress=lambda path: say("written: %s\n" % plain(path)))
+    return 0
+
+
+def run(options):
+    from converse import orbits
+
+    orbits.State                        # or a line that says what is missing
+    return options.run(options)
+
+
+def main(argv=None):
+    """Runs the command and returns its exit status."""
+    options = argparse.Namespace(run=None)
+
+    def interrupted():
+        return {find_states: "neither table nor figure is written",
+                sweep_types: "the same command continues it",
+                draw_figures: "the figures that were finished are kept"}.get(options.run,
+                                                                             "nothing was begun")
+
+    return ended(COMMAND, lambda: run(parser().parse_args(argv, options)), interrupted)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

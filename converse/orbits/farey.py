@@ -1,0 +1,138 @@
+"""Rational approximation of one number or of two at once: thesis, Appendix A; Kim and Ostlund.
+
+All is exact.  Which half of an interval or a triangle a point lies in is decided by the sign of an
+integer or a Fraction, and a point on the cut counts as lying to the right; a double, which could
+decide otherwise, is refused.
+"""
+
+from fractions import Fraction
+from math import isqrt
+from typing import NamedTuple
+
+from ..files import plain
+
+UNIT = 10 ** 60                         # what the constants below are rounded down to
+
+
+class Mediant(NamedTuple):
+    """A rational number or vector p/q; the type (p, q) of a state is made of its first two."""
+    p: tuple
+    q: int
+    address: str                        # the turns, l or r, that led to it
+
+
+def exact(w):
+    """A number as a Fraction: an integer, a Fraction, or text such as "0.618" or "1/10"."""
+    if isinstance(w, float):
+        raise ValueError("%r: a double is not exact; give a fraction or decimals as text, for "
+                         "example Fraction(1, 10), '1/10' or '0.1'" % w)
+    try:
+        return Fraction(w)
+    except (TypeError, ValueError, ZeroDivisionError):
+        raise ValueError("%s: is no number; give a fraction or decimals as text, for example "
+                         "'1/10' or '0.1'" % plain(repr(w))) from None
+
+
+def _largest(holds):
+    """The largest natural number with a property that all smaller ones have as well."""
+    high = 1
+    while holds(high):
+        high *= 2
+    low = 0
+    while high - low > 1:
+        middle = (low + high) // 2
+        low, high = (middle, high) if holds(middle) else (low, middle)
+    return low
+
+
+# (sqrt 5 - 1)/2, and (tau^-2, tau^-1) with tau^3 = tau + 1, 1/tau = tau^2 - 1: all below the true
+# values, by less than 10/UNIT.
+GOLDEN = Fraction(isqrt(5 * UNIT ** 2) - UNIT, 2 * UNIT)
+_TAU = Fraction(_largest(lambda n: n ** 3 <= (n + UNIT) * UNIT ** 2), UNIT)
+SPIRAL = ((_TAU ** 2 - 1) ** 2, _TAU ** 2 - 1)
+
+
+def continued_fraction(w):
+    """The partial quotients of w, one after another: they end, since what is given is rational.
+
+    Of a decimal that stands for an irrational number with n digits, those quotients are its own
+    whose convergents have denominators below 10^(n/2)."""
+    w = exact(w)
+    while True:
+        quotient = w.numerator // w.denominator
+        yield quotient
+        if w == quotient:
+            return
+        w = 1 / (w - quotient)
+
+
+def convergents(w):
+    """The fractions that the partial quotients of w lead to; the last is w."""
+    (p, q), before = (1, 0), (0, 1)
+    for quotient in continued_fraction(w):
+        (p, q), before = (quotient * p + before[0], quotient * q + before[1]), (p, q)
+        yield Fraction(p, q)
+
+
+def tree(w):
+    """The Mediants of the intervals of the Farey tree that contain w, from (1)/2 on; they end with
+    w itself."""
+    w = exact(w)
+    if not 0 < w < 1:
+        raise ValueError("%s: is not between 0 and 1" % w)
+    left, right, address = (0, 1), (1, 1), ""
+    while True:
+        p, q = middle = _sum(left, right)
+        yield Mediant((p,), q, address)
+        if p == w * q:
+            return
+        if p < w * q:
+            left, address = middle, address + "r"
+        else:
+            right, address = middle, address + "l"
+
+
+def _sum(a, b):
+    return tuple(x + y for x, y in zip(a, b))
+
+
+# Triangles are (A, B, C), the right angle at B; points are triples (p0, p1, q).
+LOWER = (1, 0, 1), (0, 0, 1), (0, 1, 1)
+UPPER = (1, 0, 1), (1, 1, 1), (0, 1, 1)
+
+
+def halves(triangle):
+    """The two triangles that the mediant of the hypotenuse, their new right angle, cuts a triangle
+    into: the left one and the right one."""
+    a, b, c = triangle
+    middle = _sum(a, c)
+    return (b, middle, a), (c, middle, b)
+
+
+def triangle(w):
+    """The Mediants of the Farey triangles that contain the vector w, from (1, 1)/2 on; they end
+    with w itself if they ever meet it."""
+    try:
+        w0, w1 = w
+    except (TypeError, ValueError):
+        raise ValueError("%s: is no vector; give two numbers" % plain(repr(w))) from None
+    w0, w1 = exact(w0), exact(w1)
+    if not (0 <= w0 <= 1 and 0 <= w1 <= 1) or {w0, w1} <= {0, 1}:
+        raise ValueError("(%s, %s): is not in the unit square, or is one of its corners" % (w0, w1))
+    point = (w0, w1, 1)
+    cell, address = UPPER if w0 + w1 >= 1 else LOWER, ""
+    while True:
+        a, b, c = cell
+        p0, p1, q = middle = _sum(a, c)
+        yield Mediant((p0, p1), q, address)
+        if (p0, p1) == (w0 * q, w1 * q):
+            return
+        side = determinant(b, middle, point) * determinant(b, middle, c)
+        cell = halves(cell)[side >= 0]
+        address += "lr"[side >= 0]
+
+
+def determinant(a, b, c):
+    """Of three points; between the points that a triangle of the scheme has it is 1 or -1."""
+    return (a[0] * (b[1] * c[2] - b[2] * c[1]) - a[1] * (b[0] * c[2] - b[2] * c[0])
+            + a[2] * (b[0] * c[1] - b[1] * c[0]))

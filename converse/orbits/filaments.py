@@ -1,0 +1,150 @@
+"""The curves that an orbit contracts to, and how often they wind round the torus: thesis, section
+2.3, "shapes".
+
+Points at most r apart are linked.  A closed chain of links winds round the torus some whole number
+of times in each direction.  Those who hang together are a cluster if all their chains wind (0, 0),
+a curve of type (a, b) if all wind by multiples of (a, b), and a surface otherwise.  The type is the
+one for which this holds over the widest range of r, which begins below WIDEST.  Curves that touch
+count as one in this way; how many there are is therefore counted on lines across.
+"""
+
+from math import gcd
+from typing import NamedTuple, Tuple
+
+import numpy as np
+
+PARTS = 60                              # more of them are not looked at
+WIDEST = 0.1                            # points with wider gaps between are no curve
+APART = 0.05                            # points on a line with a wider gap between are two clusters
+HALF_WIDTH = 0.02                       # of a line
+LINES = 100
+
+
+class Filaments(NamedTuple):
+    """What the points of an orbit hang together as."""
+
+    type: Tuple[int, int]               # as (1, -1): the first that is not 0 is positive
+    gap: float                          # with r from gap up to distance they form curves
+    distance: float
+    axis: int                           # the coordinate that is constant on lines across
+    clusters: int                       # the median number of clusters on such a line
+
+    @property
+    def count(self):
+        """How many curves these are, each crossing a line as often as its type says."""
+        return max(1, round(self.clusters / abs(self.type[self.axis])))
+
+
+def filaments(x):
+    """The Filaments that the points x (q, 2), of period 1, lie on, or None.  Takes time in q^2."""
+    x = np.array(x, dtype=float) % 1.0
+    if x.ndim != 2 or x.shape[1] != 2 or not np.isfinite(x).all():
+        raise ValueError("filaments are of points in the plane: give a finite array (q, 2)")
+    edges, lift = _tree(x)
+    early = max(len(edges) - PARTS, 0)
+    label = np.arange(len(x))
+    for _, i, j in edges[:early]:
+        label[label == label[j]] = label[i]
+    label = np.unique(label, return_inverse=True)[1]
+    loops = _loops(x, lift, label)
+    part = np.arange(label.max(initial=0) + 1)          # of each label
+    ways, begin = [], 0.0
+    for length, i, j in edges[early:] + [(0.5, 0, 0)]:  # farther off, the way round is as short
+        ways += [way for way in _one_way(part, loops, begin, length) if way[0] <= WIDEST]
+        part[part == part[label[j]]] = part[label[i]]
+        begin = length
+    if not ways:
+        return None
+    gap, distance, kind = max(ways, key=lambda way: way[1] / way[0])
+    axis = int(abs(kind[1]) >= abs(kind[0]))
+    return Filaments(kind, gap, distance, axis, clusters(x, axis, kind[1 - axis] / kind[axis]))
+
+
+def clusters(x, axis, slope=0.0):
+    """How many clusters there are on a line x[axis] = const, of the points within HALF_WIDTH, moved
+    there along the slope: the median over those of LINES lines that meet any."""
+    counts = []
+    for k in range(LINES):
+        off = x[:, axis] - k / LINES
+        off -= np.rint(off)
+        near = abs(off) <= HALF_WIDTH
+        if near.any():
+            place = np.sort((x[near, 1 - axis] - slope * off[near]) % 1.0)
+            gaps = np.diff(place, append=place[0] + 1.0)
+            counts.append(max(np.count_nonzero(gaps > APART), 1))
+    return int(np.median(counts))
+
+
+def _way(x, y):
+    """From a point to points: the shortest way round the torus, and its length."""
+    step = y - x
+    step -= np.rint(step)
+    return step, np.hypot(step[:, 0], step[:, 1])
+
+
+def _turns(x, step, y):
+    """The whole numbers by which x + step lies in another cell of the plane than y."""
+    return np.rint(x + step - y).astype(int)
+
+
+def _tree(x):
+    """The shortest tree that links all points (Prim): its edges (length, i, j), shortest first, and
+    the cell of the plane, for each point, to which the tree leads from point 0."""
+    lift, link = np.zeros(x.shape, int), np.zeros(len(x), int)
+    far, outside = np.full(len(x), np.inf), np.ones(len(x), bool)
+    edges, i = [], 0
+    for _ in range(len(x) - 1):
+        outside[i], far[i] = False, np.inf
+        length = _way(x[i], x)[1]
+        nearer = outside & (length < far)
+        far[nearer], link[nearer] = length[nearer], i
+        j = int(np.argmin(far))
+        edges.append((float(far[j]), int(link[j]), j))
+        step, _ = _way(x[link[j]], x[j:j + 1])
+        lift[j] = lift[link[j]] + _turns(x[link[j]], step[0], x[j])
+        i = j
+    return sorted(edges), lift
+
+
+def _loops(x, lift, label):
+    """The shortest link of each kind that closes a chain round the torus: rows (length, label of
+    one end, of the other, windings in both directions), shortest first."""
+    reach = 2 * int(abs(lift).max(initial=0)) + 2
+    side = 2 * reach + 1
+    shape = (label.max(initial=0) + 1,) * 2 + (side, side)
+    least = np.full(shape, np.inf).ravel()
+    for i in range(len(x) - 1):
+        step, length = _way(x[i], x[i + 1:])
+        turns = _turns(x[i], step, x[i + 1:]) + lift[i] - lift[i + 1:]
+        round_ = turns.any(axis=1)
+        a, b = turns[round_].T + reach
+        kind = ((label[i] * shape[1] + label[i + 1:][round_]) * side + a) * side + b
+        np.minimum.at(least, kind, length[round_])
+    there, = np.nonzero(least < np.inf)
+    one, other, a, b = np.unravel_index(there, shape)
+    return sorted(zip(least[there].tolist(), one.tolist(), other.tolist(), (a - reach).tolist(),
+                      (b - reach).tolist()))
+
+
+def _one_way(part, loops, begin, end):
+    """For a division into parts that holds for r from begin to end: the least and the largest r for
+    which all parts are curves of one type, and the type; a list of one, or an empty one."""
+    first = {}                                          # of each part: its shortest loop
+    for length, one, other, a, b in loops:
+        if length >= end:
+            break
+        if part[one] == part[other]:
+            c, d, _ = first.setdefault(int(part[one]), (a, b, length))
+            if a * d != b * c:                          # from here on it is a surface
+                end = length
+                break
+    types = {_type(a, b) for a, b, _ in first.values()}
+    begin = max([begin] + [length for _, _, length in first.values()])
+    if len(first) < len(set(part.tolist())) or len(types) > 1 or begin >= end:
+        return []
+    return [(begin, end, types.pop())]
+
+
+def _type(a, b):
+    sign = 1 if (a, b) > (0, 0) else -1
+    return sign * a // gcd(a, b), sign * b // gcd(a, b)

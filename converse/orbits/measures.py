@@ -1,0 +1,70 @@
+"""Measures that the thesis takes otherwise, and its prelude: where no tori can be."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+LIMIT = 100.0               # a modest one: longer, the first vector is shortened
+
+
+class Prelude(NamedTuple):
+    """From which eps on something is impossible (thesis, section 2.3), in doubles.
+
+    lowest  -- that a minimizing state visits the minimum of V
+    worst   -- that it visits the point where V'' is largest
+    graphs  -- that there is an invariant Lagrangian graph
+    """
+
+    lowest: float
+    worst: float
+    graphs: float
+
+
+def prelude(potential):
+    """Where minimizing states and tori are impossible without following an orbit: a Prelude.
+
+    A minimizing state has 2 - eps V'' > 0 wherever it goes.  On an invariant graph, which goes
+    everywhere, 2 - eps V'' >= 2 l even, where l is the smaller root of l + 1/l = B and B = 2 - eps
+    (least eigenvalue of V''): there d_j = beta_j - 1/d_{j-1} > 0 and all beta_j <= B, so all d_j and
+    all 1/d_j are at least l, and beta_j is the sum of two of them.  With V'' between -m and M that
+    ends where 2 - eps M = 2 l, at eps = 4 m/(M (M + 2 m))."""
+    def eigenvalues(x):
+        return np.linalg.eigvalsh(potential.evaluate(x)[2])
+
+    bottom = _highest(lambda x: -potential.evaluate(x)[0], potential.n)
+    most = _highest(lambda x: eigenvalues(x)[:, -1], potential.n)
+    least = _highest(lambda x: -eigenvalues(x)[:, 0], potential.n)
+    top, depth = eigenvalues(most)[0, -1], -eigenvalues(least)[0, 0]
+    return Prelude(float(2 / eigenvalues(bottom)[0, -1]), float(2 / top),
+                   float(4 * depth / (top * (top + 2 * depth))))
+
+
+def _highest(function, n):
+    """Where a function on the torus is largest, as an array (1, n): the best point of a grid, then of
+    ever finer ones around it.  No derivatives: what is looked for may be a kink."""
+    centre, width, size = np.full((1, n), 0.5), 0.5, 120
+    while width > 1e-12:
+        axis = width * np.arange(-size, size + 1) / size
+        grid = centre + np.stack(np.meshgrid(*[axis] * n, indexing="ij"), -1).reshape(-1, n)
+        centre = grid[np.argmax(function(grid))][None]
+        width, size = 2 * width / size, 5
+    return centre
+
+
+def gram_schmidt_exponents(state, rounds=1, seed=0):
+    """The exponents of a state as they were found in 1989 (thesis, Appendix A), for comparison: 2n
+    random vectors are carried along with DF and, whenever the first has grown, orthogonalized; the
+    logarithms of their lengths are added.  Array (n,), larger first.
+
+    Rounds times round the orbit; the error is about log(rounds q)/(rounds q), so that where all
+    exponents are zero one round of q = 2513 gives 0.003."""
+    n, total = state.potential.n, 0.0
+    vectors = np.linalg.qr(np.random.default_rng(seed).standard_normal((2 * n, 2 * n)))[0]
+    for bend in np.concatenate([state.eps * state.potential.evaluate(state.x)[2]] * rounds):
+        vectors[n:] -= bend @ vectors[:n]
+        vectors[:n] += vectors[n:]
+        if np.abs(vectors[:, 0]).max() > LIMIT:
+            vectors, lengths = np.linalg.qr(vectors)
+            total += np.log(np.abs(np.diag(lengths)))
+    total += np.log(np.abs(np.diag(np.linalg.qr(vectors)[1])))
+    return np.sort(total / (rounds * state.q))[::-1][:n]

@@ -1,0 +1,312 @@
+"""Many rotation vectors: their families, and where their orbits turn hyperbolic.
+
+A sweep's rows are those of its vectors, one after the other in the order given, whoever computes
+them: the same sweep always gives the same bytes.  Its file is at any time the beginning of the
+whole, and a sweep that was interrupted continues behind it.
+"""
+
+import concurrent.futures
+import contextlib
+import csv
+import functools
+import io
+import math
+import os
+from collections import deque
+from typing import NamedTuple, Optional
+
+import numpy as np
+
+from .. import files
+from ..files import ConverseError
+from ..growth import count_workers
+from .solver import COLUMNS, follow, row, straight
+from .state import ROUNDS, State
+
+LOST = "lost"                           # in place of a label: continuation has lost the branch
+TOLERANCE = 1e-12                       # of gradients: before break-up, rounding hides what is less
+MOST_STEPS = 3000                       # of the solver before a smaller step of eps is tried
+HALVINGS = 10
+AHEAD = 2                               # tasks for each that is worked on
+PER_CURVATURE = 0.03, 0.0006, 4.0       # onset's step, width and top times potential.curvature
+
+ONSET_COLUMNS = ("potential", "p", "q", "label", "eps_below", "eps_above", "exponent_below",
+                 "exponent_above")
+TABLELESS = ValueError, IndexError, csv.Error       # of a text that is no table
+
+
+# ---- where an orbit turns hyperbolic
+
+class Onset(NamedTuple):
+    """The states on both sides of an onset; above is None where there is none up to the end."""
+
+    below: State
+    above: Optional[State]
+
+
+def onset(potential, p, q, exponent=None, step=None, width=None, top=None):
+    """Where the orbit of type (p, q) that continuation from eps 0 follows turns hyperbolic: a
+    minimum whose first exponent exceeds the given one.  An Onset; its two eps are at most width
+    apart.
+
+    exponent -- by default 1/q, an e-fold stretching by all of the orbit.  When a torus breaks up,
+        the stretching along the orbits beside it neither vanishes with growing q, as it does on a
+        smooth torus, nor grows, as it does on what is left: for the golden torus of the standard
+        map (Greene: residue -1/4) it is e^0.96.  So the onsets of approximants tend to where the
+        torus breaks up, and soon: there they are within 3e-4 from q = 233 on.  An exponent that is
+        the same for all q is early for small and late for large ones.
+    step, width -- of eps: with what steps the first such minimum is looked for, and to what the
+        onset is then cut down.  top -- the eps where the search ends.  By default what
+        PER_CURVATURE says over potential.curvature, to one digit.
+
+    What is seen of one orbit is evidence, not proof, that a torus is near it, or that none is.
+    ConverseError if continuation loses the branch."""
+    given = (step, width, top)
+    if None in given and not potential.curvature:
+        raise ValueError("the potential %s has no known curvature: give step, width and top"
+                         % potential.name)
+    step, width, top = (float("%.0e" % (x / potential.curvature)) if y is None else float(y)
+                        for x, y in zip(PER_CURVATURE, given))
+    if not (0 < width <= step and 0 < top < math.inf):
+        raise ValueError("step, width and top are positive, the width at most the step, not %r, "
+                         "%r, %r" % (step, width, top))
+    limit = 1 / q if exponent is None else float(exponent)
+    if not limit >= 2 / max(ROUNDS, 5 * q):
+        raise ValueError("an exponent of %r is too small to be seen" % limit)
+    below, above, k = straight(potential, p, q), None, 0
+    while above is None or above.eps - below.eps > width:
+        if above is None:
+            if below.eps >= top:
+                break
+            k += 1
+            eps = min(k * step, top)
+        else:
+            eps = (below.eps + above.eps) / 2
+        state = _further(below, eps)
+        if state.exponents[0] > limit:          # false where it is NaN, since it is no minimum
+            above = state
+        else:
+            below = state
+    return Onset(below, above)
+
+
+def _further(state, eps, halvings=HALVINGS):
+    """The state at a larger eps, in smaller steps if the solver fails."""
+    try:
+        return state.relax(eps, tol=TOLERANCE, max_steps=MOST_STEPS)
+    except ConverseError:
+        if not halvings:
+            raise
+    middle = _further(state, (state.eps + eps) / 2, halvings - 1)
+    return _further(middle, eps, halvings - 1)
+
+
+# ---- sweeps
+
+def sweep(potential, vectors, eps, executor=None, file=None, progress=None):
+    """The families of many rotation vectors, (p, q) each, at each eps: a table as of read_csv.
+
+    executor -- a concurrent.futures.Executor, of threads, processes or others; by default this
+        thread does all
+    file -- a CSV file that grows with every vector.  If it is there already it must be the
+        beginning of this very sweep, and is continued.
+    progress(done, of) -- is told how many vectors are finished
+
+    Where continuation loses a branch the rest of its rows has the label "lost" and no numbers."""
+    eps = [float(x) for x in eps]
+    if not eps or not all(map(math.isfinite, eps)):
+        raise ValueError("eps is a list of finite numbers, one at least, not %r" % (eps,))
+    return _sweep(functools.partial(_family, potential, eps), COLUMNS, potential, vectors,
+                  [[repr(x)] for x in eps], executor, file, progress)
+
+
+def onsets(potential, vectors, executor=None, file=None, progress=None, **how):
+    """onset() of many rotation vectors; how is handed to it, all else is as in sweep().
+
+    The columns eps_below and eps_above enclose each onset; eps_above is inf where there is none.
+    The exponents are the first ones there, and the label is that of the state above."""
+    return _sweep(functools.partial(_onset, potential, how), ONSET_COLUMNS, potential, vectors,
+                  [[]], executor, file, progress)
+
+
+def read_csv(file):
+    """The table in a CSV file of this module or of Family.write_csv: an array with the columns'
+    names as its fields, p an array of integers; a number that is missing is NaN."""
+    try:
+        with open(file, encoding="utf-8", newline="") as stream:
+            return _table(stream.read())
+    except OSError as error:
+        raise ConverseError("%s: cannot be read (%s)" % (file, files.reason(error))) from None
+    except TABLELESS:
+        raise ConverseError("%s: is no table of states or of onsets" % file) from None
+
+
+def _table(text):
+    header, *rows = csv.reader(io.StringIO(text))
+    if tuple(header) not in (COLUMNS, ONSET_COLUMNS) or any(len(row) != len(header)
+                                                            for row in rows):
+        raise ValueError("no such columns")
+    words = "U%d" % max((len(word) for row in rows for word in row), default=1)
+    n = len(rows[0][header.index("p")].split()) if rows else 1
+    kinds = {"potential": (str, words), "label": (str, words), "q": (int, "i8"),
+             "p": (lambda word: tuple(map(int, word.split())), ("i8", (n,))),
+             "undetermined": (int, "i8")}
+    read, kind = zip(*(kinds.get(name, (lambda word: float(word or "nan"), "f8"))
+                       for name in header))
+    return np.array([tuple(convert(word) for convert, word in zip(read, row)) for row in rows],
+                    dtype=list(zip(header, kind)))
+
+
+def _text(rows):
+    text = io.StringIO(newline="")
+    csv.writer(text, lineterminator="\n").writerows(rows)
+    return text.getvalue()
+
+
+def _type(potential, vector):
+    return [potential.name, " ".join(map(str, vector[0])), vector[1]]
+
+
+def _family(potential, eps, vector):
+    states = []
+    with contextlib.suppress(ConverseError):
+        follow(potential, *vector, eps, progress=lambda _, state: states.append(state))
+    lost = [[*_type(potential, vector), repr(x), LOST] + [""] * (len(COLUMNS) - 6) + [0]
+            for x in eps[len(states):]]
+    return _text([*map(row, states), *lost])
+
+
+def _onset(potential, how, vector):
+    try:
+        below, above = onset(potential, *vector, **how)
+    except ConverseError:
+        found = LOST, "", "", "", ""
+    else:
+        ends = [(state.eps, state.exponents[0]) if state else (math.inf, math.nan)
+                for state in (below, above)]
+        found = (above or below).label, *(repr(float(x)) for pair in zip(*ends) for x in pair)
+    return _text([[*_type(potential, vector), *found]])
+
+
+def _sweep(task, columns, potential, vectors, eps, executor, file, progress):
+    """Does all tasks.  eps: of each row of a vector, what follows its type there."""
+    if not potential.name.isprintable():
+        raise ValueError("in a table the name of a potential is printable, not %r" % potential.name)
+    if executor is not None and not hasattr(executor, "submit"):
+        raise TypeError("the executor is a concurrent.futures.Executor, not %r" % (executor,))
+    vectors = [_vector(potential, vector) for vector in vectors]
+    texts = [_text([columns])]
+    with contextlib.ExitStack() as stack:
+        out = None
+        if file is not None:
+            files.check_writable(file, regular=True)
+            stack.enter_context(files.lock(file))
+            texts += _finished(file, texts[0], potential, vectors, eps, task)
+            out = stack.enter_context(contextlib.closing(_File(file, "".join(texts))))
+        if progress is not None:
+            progress(len(texts) - 1, len(vectors))
+        results = _in_order(task, vectors[len(texts) - 1:], executor)
+        for text in stack.enter_context(contextlib.closing(results)):
+            texts.append(text)
+            if out is not None:
+                out.add(text)
+            if progress is not None:
+                progress(len(texts) - 1, len(vectors))
+    return _table("".join(texts))
+
+
+def _vector(potential, vector):
+    try:
+        p, q = vector
+    except (TypeError, ValueError):
+        raise ValueError("a rotation vector is a pair (p, q), not %r" % (vector,)) from None
+    state = straight(potential, p, q)
+    return state.p, state.q
+
+
+def _in_order(task, vectors, executor):
+    """The results, in the order of the vectors; as many are under way as keep the executor busy."""
+    if executor is None:
+        yield from map(task, vectors)
+        return
+    waiting, running, room = iter(vectors), deque(), AHEAD * count_workers(executor)
+    try:
+        while True:
+            for vector in waiting:
+                running.append(executor.submit(task, vector))
+                if len(running) >= room:
+                    break
+            if not running:
+                return
+            yield running.popleft().result()
+    except concurrent.futures.BrokenExecutor:
+        raise ConverseError("a worker has died; what was finished is kept, try again") from None
+    finally:
+        for future in running:
+            future.cancel()
+
+
+class _File:
+    """The file of a sweep, which begins with a text and grows."""
+
+    def __init__(self, path, text):
+        self.path = path
+        with self._told():
+            self.stream = open(path, "r+b" if os.path.exists(path) else "wb", buffering=0)
+            self.stream.truncate(len(text.encode("utf-8")))     # without a line that was torn
+        self.add(text)
+
+    def add(self, text):
+        data = text.encode("utf-8")
+        with self._told():
+            while data:                 # a disk that is almost full takes a part
+                data = data[self.stream.write(data):]
+
+    def close(self):
+        self.stream.close()
+
+    @contextlib.contextmanager
+    def _told(self):
+        try:
+            yield
+        except OSError as error:
+            raise ConverseError("%s: cannot be written (%s); what it has can be continued"
+                                % (self.path, files.reason(error))) from None
+
+
+def _finished(path, header, potential, vectors, eps, task):
+    """The texts of the vectors that a file has, whole ones only.  ConverseError if it is another
+    sweep's: its rows are not of these vectors and eps, or those of the first, computed anew, are
+    others."""
+    try:
+        with open(path, "rb") as stream:
+            lines = stream.read().decode("utf-8", "replace").split("\n")
+    except FileNotFoundError:
+        return []
+    except OSError as error:
+        raise ConverseError("%s: cannot be read (%s)" % (path, files.reason(error))) from None
+
+    def refuse(why):
+        raise ConverseError("%s: is not the beginning of this sweep: %s; name another file, or "
+                            "remove it" % (path, why))
+
+    lines, torn = [line + "\n" for line in lines[:-1]], lines[-1]
+    if not lines and header.startswith(torn):
+        return []
+    if lines[:1] != [header]:
+        refuse("its columns are others")
+    rows = lines[1:]
+    if len(rows) > len(eps) * len(vectors):
+        refuse("it has more rows")
+    for k, line in enumerate(rows):
+        key = _type(potential, vectors[k // len(eps)]) + eps[k % len(eps)]
+        if not line.startswith(_text([key])[:-1] + ","):
+            refuse("its line %d is of another potential, type or eps" % (k + 2))
+    texts = ["".join(rows[k:k + len(eps)]) for k in range(0, len(rows) - len(eps) + 1, len(eps))]
+    try:
+        _table(header + "".join(texts))
+    except TABLELESS:
+        refuse("it is damaged")
+    if texts and texts[0] != task(vectors[0]):
+        refuse("its first rows, computed anew, are others")
+    return texts

@@ -1,0 +1,159 @@
+/* torus.c - the largest trace and the largest eigenvalue of beta over the whole torus and all
+   parameters, by branch and bound, in doubles.  The thesis found them by Newton's method and added a
+   margin; that is a guess, and everything else rests on these two numbers.
+
+   beta(-v) = 2I + W(v), W = a sin v0 e0e0' + b sin v1 e1e1' + c sin(v0+v1) (1,1)(1,1)', and the torus
+   is its own mirror image, so W serves.
+
+   Rounding (u = 2^-53).  On a rectangle as large as the torus the bound of c sin(v0 + v1) is
+   |c| (1 + t + t^2/2) with t = 2 pi, 27 |c|; those of the others are 9.1 |a| and 9.1 |b|.  Sines and
+   cosines are off by 4 u, by 8 u where their angle is a rounded sum; with the roundings on the way
+   these bounds are off by 214 u |c|, 57 u |a| and 57 u |b|, the eigenvalue by
+   57 u max(|a|, |b|) + 428 u |c| and the trace by 57 u (|a| + |b|) + 428 u |c|.  The formula of the
+   eigenvalue rounds by 50 u (|a| + |b|) + 257 u |c| + 2 u, that of the trace, four sums, by
+   37 u (|a| + |b|) + 216 u |c| + 16 u.  A centre is rounded by 2 u at each of at most 100 cuts, so
+   rectangles may fail to meet by as much: 200 u (|a| + |b| + 2 |c|).  The ends of the ranges are off by
+   9 u: 9 u (|a| + |b| + 2 |c|).  Together less than 1200 u (1 + |a| + |b| + |c|); MARGIN is 9007 u. */
+#include <math.h>
+
+#include "numbers/sine.h"
+#include "torus.h"
+
+enum { CELLS = 20000, DEPTH = 100, WAVES = 3 };
+static const double MARGIN = 1e-12, NEAR = 5e-7, PI = 0x1.921fb54442d19p+1;     /* not less than pi */
+
+typedef struct { double low[WAVES], high[WAVES], size[WAVES]; int which; } problem;
+typedef struct { double v[2], r[2]; int depth; } cell;
+
+/* NaN if either is. */
+static inline double larger(double x, double y) { return x > y || isnan(x) ? x : y; }
+
+static problem problem_of(const double low[3], const double high[3], int which)
+{
+    problem p = { .which = which };
+
+    for (int i = 0; i < WAVES; i++) {
+        p.low[i] = low[i];
+        p.high[i] = high[i];
+        p.size[i] = larger(fabs(low[i]), fabs(high[i]));
+    }
+    return p;
+}
+
+/* >= p sin(v + t) for every p of the range, s and c the sine and cosine of v:
+   sup p (s + c t) + |p| t^2/2, since |sin''| <= 1.  As a function of t this is convex. */
+static double wave(const problem *p, int i, double s, double c, double t)
+{
+    const double x = s + c * t;
+
+    return x * (x < 0.0 ? p->low[i] : p->high[i]) + 0.5 * t * t * p->size[i];
+}
+
+/* >= the trace or the largest eigenvalue of 2I + W(v + t), s and c the sines and cosines of the waves
+   at v.  As a function of t the bound is convex: so are the three coefficients, W grows with them in
+   the Loewner order, and trace and largest eigenvalue are convex and grow with W.  The root is
+   scaled, so that no square is too large. */
+static double displaced(const problem *p, const double s[WAVES], const double c[WAVES], double t0,
+                        double t1)
+{
+    const double x = wave(p, 0, s[0], c[0], t0), y = wave(p, 1, s[1], c[1], t1);
+    const double z = wave(p, 2, s[2], c[2], t0 + t1), trace = (x + y) + 2.0 * z;
+    const double a = x - y, b = 2.0 * z, scale = larger(larger(fabs(a), fabs(b)), 0x1p-1000);
+    const double e = a / scale, f = b / scale;
+
+    if (p->which == TORUS_TRACE)
+        return trace + 4.0;
+    return 0.5 * (trace + scale * sqrt(e * e + f * f)) + 2.0;
+}
+
+static void waves_at(const double v[2], double s[WAVES], double c[WAVES])
+{
+    double_sincos(&s[0], &c[0], v[0]);
+    double_sincos(&s[1], &c[1], v[1]);
+    double_sincos(&s[2], &c[2], v[0] + v[1]);
+}
+
+/* >= the same for every point of the rectangle: a convex function is largest at a corner.
+   *middle: the value at its centre. */
+static double over(const problem *p, const double v[2], const double r[2], double *middle)
+{
+    double s[WAVES], c[WAVES], most;
+
+    waves_at(v, s, c);
+    *middle = displaced(p, s, c, 0.0, 0.0);
+    most = displaced(p, s, c, r[0], r[1]);
+    most = larger(displaced(p, s, c, -r[0], r[1]), most);
+    most = larger(displaced(p, s, c, r[0], -r[1]), most);
+    return larger(displaced(p, s, c, -r[0], -r[1]), most);
+}
+
+/* One pass over the torus: *best becomes the largest value seen at any centre, if larger than
+   before; the result is >= every value on the torus, and at most *best + tolerance unless depth or
+   patience ran out, when it is looser, and still a bound.  cells: how many were halved so far.
+
+   A cell is done when its bound is at most *best + tolerance; otherwise it is halved along the side
+   whose square moves the waves most, since it is at their maxima, where they are parabolas, that
+   cells have to be small. */
+static double pass(const problem *p, double *best, double tolerance, long *cells)
+{
+    const double reach[2] = { p->size[0] + p->size[2], p->size[1] + p->size[2] };
+    cell stack[DEPTH + 2] = { { { 0.0, 0.0 }, { PI, PI }, 0 } };
+    double most = *best, middle;
+    int top = 0;
+
+    while (top >= 0) {
+        cell *const k = stack + top, *const other = stack + top + 1;
+        const double bound = over(p, k->v, k->r, &middle);
+        if (isnan(bound))
+            return bound;
+        *best = larger(*best, middle);
+        if (bound <= *best + tolerance || k->depth == DEPTH || ++*cells > CELLS) {
+            most = larger(most, bound);
+            top--;
+        } else {
+            const int j = k->r[0] * k->r[0] * reach[0] < k->r[1] * k->r[1] * reach[1];
+            k->depth++;
+            k->r[j] *= 0.5;
+            *other = *k;
+            other->v[j] += k->r[j];
+            k->v[j] -= k->r[j];
+            top++;
+        }
+    }
+    return most;
+}
+
+/* Each pass looks a thousand times more closely than the last, whose best value spares it all but
+   the neighbourhood of the maximum, down to NEAR and 10^-12 of the parameters.  The cells run out
+   where the maximum is a ridge: across the cells if |c| is much larger than |a| or |b|, along them if
+   c = 0 and |a| and |b| differ, since the larger of two waves does not depend on the other's angle.
+   Then the result is the best bound of the passes or, if that is less, what no sines exceed,
+   4 + |a| + |b| + 2|c| or 2 + max(|a|, |b|) + 2|c|; a ridge nearly reaches it. */
+double torus_largest(const double low[3], const double high[3], int which)
+{
+    const problem p = problem_of(low, high, which);
+    const double all = p.size[0] + p.size[1] + p.size[2], last = NEAR + MARGIN * all;
+    const double no_more = 2.0 * p.size[2] + (which == TORUS_TRACE
+        ? 4.0 + p.size[0] + p.size[1] : 2.0 + larger(p.size[0], p.size[1]));
+    double best = 0.0, most = HUGE_VAL;                 /* 0: the mean is above */
+    long cells = 0;
+
+    for (double tolerance = 0.5 * all; ; tolerance *= 1e-3) {
+        const int done = tolerance <= 2.0 * last;
+        const double found = pass(&p, &best, done ? last : tolerance, &cells);
+        most = isnan(found) || found < most ? found : most;
+        if (cells > CELLS)
+            most = no_more < most ? no_more : most;
+        if (done || cells > CELLS || isnan(most))
+            return most + MARGIN * (1.0 + all);
+    }
+}
+
+double torus_rectangle(const double low[3], const double high[3], const double centre[2],
+                       const double half[2], int which)
+{
+    const problem p = problem_of(low, high, which);
+    double middle;
+
+    return over(&p, centre, half, &middle);
+}

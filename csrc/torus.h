@@ -1,0 +1,18 @@
+/* torus.h - the largest trace and the largest eigenvalue of beta over the whole torus. */
+#ifndef CONVERSE_TORUS_H
+#define CONVERSE_TORUS_H
+
+enum { TORUS_TRACE, TORUS_EIGENVALUE };
+enum { TORUS_PLACES = 12 };            /* decimals to which it makes sense to round them */
+
+/* A bound from above of the largest trace, or eigenvalue, of beta over the torus and over all
+   parameters a, b, c of the ranges, whose ends may be off by 9 u of themselves; inf or NaN where
+   doubles end.  It is within 5e-7 + 10^-12 (2 + 2 (|a| + |b| + |c|)) of the truth, but on ridges:
+   see torus.c. */
+double torus_largest(const double low[3], const double high[3], int which);
+
+/* For tests: the same over the rectangle centre +- half alone, of beta at -v, but for roundings. */
+double torus_rectangle(const double low[3], const double high[3], const double centre[2],
+                       const double half[2], int which);
+
+#endif

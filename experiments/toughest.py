@@ -1,0 +1,274 @@
+"""Which ghost is toughest?  Where the orbits of many rotation vectors turn hyperbolic (trig).
+
+    python experiments/toughest.py [DIRECTORY] [--quick] [--jobs N]
+
+Writes into DIRECTORY (build/toughest), and continues there when it was interrupted:
+    sweep.csv     where a thousand vectors, well spread, turn hyperbolic, of q from 300 to 1200
+    search-K.csv  the same of vectors near the toughest, ever nearer and with ever larger q
+    near.csv, near-fixed.csv, golden.csv, golden-fixed.csv    approximants of one vector
+    chapter.csv   the thesis's two vectors
+    map.svg, sequence.svg, frontier.svg
+
+All that is found here is seen, not proved: that a periodic orbit of large q is not yet hyperbolic
+speaks for a torus beside it, and proves none.
+"""
+
+import argparse
+import concurrent.futures
+import math
+import os
+import random
+import sys
+
+import numpy as np
+
+from converse import files, orbits, picture
+from converse.cli import ended
+
+TRIG = {"step": 0.0005, "width": 1e-5, "top": 0.02}
+STANDARD = {"step": 0.02, "width": 1e-5, "top": 1.5}
+FIXED = 1e-3                            # the other criterion: an exponent, whatever q is
+
+# 1/tau and 1/tau^2, tau^3 = tau + 1: their multiples modulo 1 fill the square evenly.
+SPREAD = 0.7548776662466927, 0.5698402909980532
+# Invariant tori were seen by Fourier series near this vector up to TORI.
+NEAR = 0.295401276 + 0.003327283, 0.295401276 - 0.003327283
+TORI = 0.0121
+PROVED = (("this program", 0.0141), ("the thesis, 1989", 0.0272))     # no tori from there on
+TOP = 0.0335                            # of the picture
+CHAPTER = ((1432, 1897), 2513), ((377, 2330), 3770)
+K_C = 0.971635406                       # where the standard map's golden torus breaks up (Greene)
+RESONANCES = [(k0, k1) for k0 in range(4) for k1 in range(-3, 4)
+              if 0 < k0 + abs(k1) <= 3 and math.gcd(k0, k1) == 1 and (k0 or k1 == 1)]
+
+SIZES = {"full": {"vectors": 1000, "q": (300, 1200), "rounds": 7, "children": 4, "near": 7000,
+                  "golden": 3000},
+         "quick": {"vectors": 40, "q": (100, 300), "rounds": 2, "children": 1, "near": 600,
+                   "golden": 400}}
+PARENTS = 8                             # of a round of the search
+
+
+# ---- vectors
+
+def folded(w):
+    """The vector that stands for all that trig's orbits do not tell apart: those that time's
+    direction, whole numbers or an exchange of the angles turn into each other."""
+    w0, w1 = sorted((x % 1 for x in w), reverse=True)
+    return (w0, w1) if w0 + w1 <= 1 else (1 - w1, 1 - w0)
+
+
+def rational(w, q):
+    """The type of size q, or the next one that has lowest terms, nearest to w."""
+    while True:
+        p = tuple(round(x * q) for x in w)
+        if math.gcd(*p, q) == 1:
+            return p, q
+        q += 1
+
+
+def spread(count, sizes):
+    rng = random.Random(1)
+    return [rational(folded([k * x for x in SPREAD]), rng.randint(*sizes))
+            for k in range(1, count + 1)]
+
+
+def approximants(w, most, quality=0.9, least=30):
+    """The types with |q w - p| < quality / sqrt q in both coordinates."""
+    q = np.arange(least, most)[:, None]
+    p = np.round(q * w)
+    good = np.abs(q * w - p).max(1) * np.sqrt(q[:, 0]) < quality
+    return [(tuple(map(int, each)), int(size)) for each, size in zip(p[good], q[good, 0])
+            if math.gcd(*map(int, each), int(size)) == 1]
+
+
+def golden(most):
+    p, q = 1, 2
+    while q < most:
+        if q > 20:
+            yield (p,), q
+        p, q = q, p + q
+
+
+# ---- where they turn hyperbolic
+
+def middle(table):
+    return (table["eps_below"] + table["eps_above"]) / 2
+
+
+def types(table):
+    return [(tuple(map(int, p)), int(q)) for p, q in zip(table["p"], table["q"])]
+
+
+def toughest(table, count):
+    """Of a table, those rows that last longest, longest first."""
+    table = table[np.isfinite(middle(table))]
+    return table[np.argsort(-middle(table), kind="stable")[:count]]
+
+
+def search(first, sizes, find):
+    """Rounds of vectors near the toughest known, each half as far as those before it."""
+    best = toughest(first, PARENTS)
+    low, high = sizes["q"]
+    rng = random.Random(2)
+    for k in range(sizes["rounds"]):
+        low, high = max(low, high // 2), high * 6 // 5
+        children = [rational(folded([rng.gauss(p[i] / q, 0.02 / 2 ** k) for i in (0, 1)]),
+                             rng.randint(low, high))
+                    for p, q in types(best) for _ in range(sizes["children"])]
+        found = find("search-%d.csv" % k, orbits.trig, children, **TRIG)
+        best = toughest(np.concatenate([best, found]), PARENTS)
+    return best
+
+
+# ---- pictures
+
+STYLE = {**picture.SALT, "font.size": 8, "legend.frameon": False, "axes.spines.top": False,
+         "axes.spines.right": False, "lines.linewidth": 1}
+BLUE, ORANGE, DARK = "#1f5f94", "#d98a2b", "0.15"
+
+
+def draw(path, size, fill, *arguments):
+    from matplotlib import style
+    from matplotlib.figure import Figure
+
+    with style.context(["default", STYLE]):
+        figure = Figure(figsize=size)
+        fill(figure, *arguments)
+        files.write(path, picture.encode(figure, "svg", pad_inches=0.08))
+
+
+def draw_map(figure, table, best):
+    from matplotlib.patches import Polygon
+
+    axes = figure.subplots()
+    inside = axes.add_patch(Polygon([(0, 0), (1, 0), (0.5, 0.5)], facecolor="none",
+                                    edgecolor="0.75", linewidth=0.7))
+    for k0, k1 in RESONANCES:
+        for m in range(-3, 4):
+            ends = [(m / k0, 0), ((m - k1 / 2) / k0, 0.5)] if k0 else [(0, m / k1), (1, m / k1)]
+            line, = axes.plot(*zip(*ends), color="0.85", linewidth=0.7, zorder=0)
+            line.set_clip_path(inside)
+    table = table[np.isfinite(middle(table))]
+    shown = axes.scatter(*(table["p"] / table["q"][:, None]).T, c=middle(table), s=12, vmin=0,
+                         vmax=0.0125, cmap="viridis", linewidths=0)
+    mark = {"facecolor": "none", "edgecolor": "red", "linewidth": 0.8}
+    axes.scatter(*(best["p"][:1] / best["q"][:1, None]).T, marker="*", s=80, **mark,
+                 label="the toughest that the search met")
+    axes.scatter(*NEAR, marker="D", s=30, **mark, label="tori seen by Fourier series, to %g" % TORI)
+    axes.set(xlim=(0, 1), ylim=(0, 0.54), aspect="equal", xlabel="$w_0$", ylabel="$w_1$",
+             title="Where the orbits of %d rotation vectors turn hyperbolic (trig)" % len(table))
+    axes.legend(loc="upper right", bbox_to_anchor=(1.13, 1.02))
+    figure.colorbar(shown, ax=axes, shrink=0.55, label=r"$\varepsilon$")
+    axes.text(0, -0.2, "Seen, not proved; q from %d to %d.  All other vectors are mirror images of "
+              "these.\nGrey: resonances, $k\\cdot w$ whole, $|k_0| + |k_1|$ up to 3."
+              % (table["q"].min(), table["q"].max()), transform=axes.transAxes, fontsize=7,
+              va="top", color="0.35")
+
+
+def draw_sequence(figure, near, near_fixed, gold, gold_fixed):
+    left, right = figure.subplots(1, 2, gridspec_kw={"wspace": 0.3})
+    for axes, free, fixed, title, span, line, words in (
+            (left, gold, gold_fixed, "the standard map, golden mean", (0.958, 0.978), K_C,
+             "it breaks up: %.6f" % K_C),
+            (right, near, near_fixed, "trig, (%.6f, %.6f)" % NEAR, (0.0119, 0.0135), TORI,
+             "tori seen by Fourier series: %g" % TORI)):
+        axes.plot(free["q"], middle(free), "s", color=BLUE, markersize=3.5,
+                  label="first exponent above 1/q")
+        axes.plot(fixed["q"], middle(fixed), "o", color="0.65", markersize=3.5,
+                  label="above %g, whatever q is" % FIXED)
+        axes.axhline(line, color=ORANGE, zorder=0)
+        axes.annotate(words, (1, line), (-2, -3), ha="right", va="top", color=ORANGE,
+                      xycoords=("axes fraction", "data"), textcoords="offset points")
+        axes.set(xscale="log", xlabel="q", title=title, ylim=span)
+        axes.xaxis.set_minor_formatter("")
+        axes.grid(color="0.93")
+    left.set_ylabel("k where the orbit turns hyperbolic")
+    right.set_ylabel(r"$\varepsilon$ where the orbit turns hyperbolic")
+    left.legend(loc="upper right")
+
+
+def draw_frontier(figure, table, last, chapter):
+    axes = figure.subplots()
+    eps = np.sort(middle(table)[np.isfinite(middle(table))])
+    left = 100 * np.arange(len(eps), 0, -1) / len(eps)          # per cent, just before each onset
+    shown = sorted({0, *range(0, len(eps), 10), *range(max(0, len(eps) - 40), len(eps))})
+    curve = eps[shown], left[shown]
+    axes.fill_between(*curve, 0.05, step="pre", color=BLUE, alpha=0.2, linewidth=0)
+    axes.step(*curve, where="pre", color=BLUE)
+    (program, bound), (thesis, old) = PROVED
+    for low, high, grey in ((bound, old, "0.86"), (old, TOP, "0.74")):
+        axes.axvspan(low, high, color=grey, linewidth=0)
+    axes.set(yscale="log", xlim=(0, TOP), ylim=(0.05, 130), xlabel=r"$\varepsilon$",
+             ylabel="rotation vectors (%)",
+             title="The two sides of the frontier (trig; a = b = c/2 = 11.21436 $\\varepsilon$)")
+    axes.yaxis.set_major_formatter("{x:g}")
+    axes.text(bound + 0.0004, 80, "PROVED by %s: no tori,\nwhatever their rotation vector,\n"
+              "from %g on" % (program, bound), va="top", fontsize=8)
+    axes.text(old + 0.0003, 80, "%s:\nfrom %g on" % (thesis, old), va="top", fontsize=8)
+    axes.text(0.0004, 0.07, "SEEN: of so many of\n%d vectors, q = %d\nto %d, the orbits are\n"
+              "not yet hyperbolic" % (len(eps), table["q"].min(), table["q"].max()),
+              va="bottom", fontsize=8)
+
+    def mark(x, y, marker, words):
+        axes.plot(x, np.full(np.shape(x), y), marker, color=ORANGE, markersize=6, zorder=3)
+        axes.annotate(words, (np.max(x), y), (bound + 0.0006, y), va="center", fontsize=7.5,
+                      arrowprops={"arrowstyle": "-", "color": "0.5", "linewidth": 0.6})
+
+    mark(chapter, 8, "|", "seen: the thesis's two vectors")
+    mark(last, 2.5, "*", "seen: the toughest, q in the thousands")
+    mark(TORI, 0.8, "D", "seen: tori, by Fourier series")
+    axes.annotate("", (last, 0.2), (bound, 0.2), arrowprops={"arrowstyle": "<->", "color": "0.3"})
+    axes.annotate("open", ((last + bound) / 2, 0.2), (0, 4), textcoords="offset points",
+                  ha="center", fontsize=7.5)
+
+
+# ---- all together
+
+def main():
+    p = argparse.ArgumentParser(description="Which ghost is toughest?")
+    p.add_argument("directory", nargs="?", default=os.path.join("build", "toughest"))
+    p.add_argument("--quick", action="store_true", help="few vectors, small q: seconds")
+    p.add_argument("--jobs", type=int, default=os.cpu_count(), help="vectors at a time")
+    options = p.parse_args()
+    sizes = SIZES["quick" if options.quick else "full"]
+    os.makedirs(options.directory, exist_ok=True)
+
+    def path(name):
+        return os.path.join(options.directory, name)
+
+    with concurrent.futures.ThreadPoolExecutor(options.jobs) as executor:
+        def find(name, potential, vectors, **how):
+            table = orbits.onsets(potential, list(vectors), executor, path(name), **how)
+            print("%s: %d types, %d lost" % (name, len(table), (table["label"] == "lost").sum()),
+                  flush=True)
+            return table
+
+        table = find("sweep.csv", orbits.trig, spread(sizes["vectors"], sizes["q"]), **TRIG)
+        best = search(table, sizes, find)
+        chapter = find("chapter.csv", orbits.trig, CHAPTER, **TRIG)
+        near, gold = approximants(NEAR, sizes["near"]), list(golden(sizes["golden"]))
+        sequences = [find("%s%s.csv" % (name, end), potential, vectors, **how, **criterion)
+                     for name, potential, vectors, how in (
+                         ("near", orbits.trig, near, TRIG),
+                         ("golden", orbits.standard, gold, STANDARD))
+                     for end, criterion in (("", {}), ("-fixed", {"exponent": FIXED}))]
+    for eps in (0.004, 0.006, 0.008, 0.010, 0.011, 0.012):
+        print("not yet hyperbolic at %.3f: %4.1f %%" % (eps, 100 * (middle(table) > eps).mean()))
+    print("the toughest:")
+    for row in best:
+        w0, w1 = row["p"] / row["q"]
+        print("    (%d, %d)/%d = (%.6f, %.6f) at %.5f" % (*row["p"], row["q"], w0, w1, middle(row)))
+    print("approximants of (%.9f, %.9f):" % NEAR)
+    for row, fixed in zip(*sequences[:2]):
+        print("    (%d, %d)/%d at %.5f, by the fixed exponent at %.5f"
+              % (*row["p"], row["q"], middle(row), middle(fixed)))
+    long = np.concatenate([best, sequences[0]])
+    last = middle(toughest(long[long["q"] >= sizes["near"] // 3], 1))[0]
+    draw(path("map.svg"), (8.4, 4.4), draw_map, table, best)
+    draw(path("sequence.svg"), (8.4, 3.2), draw_sequence, *sequences)
+    draw(path("frontier.svg"), (7.2, 3.6), draw_frontier, table, last, middle(chapter))
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(ended("toughest", main, lambda: "the same command continues"))

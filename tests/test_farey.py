@@ -1,0 +1,176 @@
+"""Rational approximation, exact: the facts that the thesis gives, and what theory promises."""
+
+from fractions import Fraction
+from itertools import islice
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from converse.orbits import farey
+
+PADOVAN = [2, 2, 3, 4, 5, 7, 9, 12, 16, 21, 28, 37, 49, 65, 86, 114, 151, 200, 265, 351, 465, 616,
+           816, 1081, 1432, 1897, 2513, 3329, 4410, 5842]
+TENTH = [2, 2, 3, 3, 5, 5, 8, 10, 13, 18, 21, 26, 39, 47, 60, 68, 81, 89, 102, 110, 191, 199, 301,
+         309, 411, 610, 720, 1021, 1330, 1631, 1940, 2241, 2550, 2851, 3160, 3461, 3770]
+ADDRESS = "rlrrlllllrlllrlrlrllrrlrrrrrlrlrlrlr"    # thesis, Appendix A: of (377, 2330)/3770
+
+inside = st.fractions(0, 1).filter(lambda w: 0 < w < 1)
+part = st.fractions(0, 1, max_denominator=10 ** 30)
+vectors = st.tuples(part, part).filter(lambda w: not {*w} <= {0, 1})
+
+
+def take(generator, count):
+    return list(islice(generator, count))
+
+
+def test_the_constants():
+    """Each lies below the root it stands for, and 10/UNIT more lies above."""
+    step = Fraction(10, farey.UNIT)
+    roots = [(farey.GOLDEN, lambda x: x * x + x - 1),
+             (farey.SPIRAL[1], lambda x: x ** 3 + x * x - 1),       # 1/tau
+             (farey.SPIRAL[0], lambda x: x ** 3 - x * x + 2 * x - 1)]         # 1/tau^2
+    for number, polynomial in roots:
+        assert polynomial(number) < 0 < polynomial(number + step)
+    assert [round(float(x), 7) for x in farey.SPIRAL] == [0.5698403, 0.7548777]
+
+
+def test_the_constants_are_exact_enough():
+    """Far beyond any period here, the true numbers' mediants are those of the constants."""
+    step, zero = Fraction(10, farey.UNIT), Fraction(0)
+    first = take(farey.triangle(farey.SPIRAL), 300)
+    for bump in (step, step), (step, zero), (zero, step):
+        assert take(farey.triangle([x + y for x, y in zip(farey.SPIRAL, bump)]), 300) == first
+    assert first[-1].q > 10 ** 30
+    assert take(farey.tree(farey.GOLDEN), 120) == take(farey.tree(farey.GOLDEN + step), 120)
+
+
+def test_spiral_mean():
+    mediants = take(farey.triangle(farey.SPIRAL), 30)
+    assert [m.q for m in mediants] == PADOVAN
+    assert mediants[26] == ((1432, 1897), 2513, "r" * 26)
+
+
+def test_a_tenth_and_the_golden_mean():
+    """A resonant vector: it comes to lie on an edge, and ties decide."""
+    w = Fraction(1, 10), farey.GOLDEN
+    mediants = take(farey.triangle(w), 37)
+    assert [m.q for m in mediants] == TENTH
+    assert mediants[36] == ((377, 2330), 3770, ADDRESS)
+    assert mediants[26] == ((72, 445), 720, ADDRESS[:26])
+    assert mediants == take(farey.triangle(("1/10", farey.GOLDEN)), 37)
+    assert mediants == take(farey.triangle(("0.1", str(float(farey.GOLDEN)))), 37)
+    nearest = Fraction(0.1), farey.GOLDEN                   # the double is above a tenth
+    assert take(farey.triangle(nearest), 37)[36] != mediants[36]
+
+
+def test_golden_mean():
+    """The n-th approximant is the mediant of level n with the largest p + q."""
+    assert set(take(farey.continued_fraction(farey.GOLDEN), 1)) == {0}
+    assert set(take(farey.continued_fraction(farey.GOLDEN), 140)[1:]) == {1}
+    intervals = [((0, 1), (1, 1))]
+    for n, mediant in enumerate(take(farey.tree(farey.GOLDEN), 9)):
+        level = [tuple(map(sum, zip(*ends))) for ends in intervals]
+        assert sum(max(level, key=sum)) == mediant.p[0] + mediant.q
+        assert mediant.address == ("rl" * 9)[:n]
+        assert all(Fraction(*right) - Fraction(*left) <= Fraction(1, n + 1)
+                   for left, right in intervals)
+        intervals = [ends for (left, right), middle in zip(intervals, level)
+                     for ends in ((left, middle), (middle, right))]
+
+
+def test_the_vertices_of_the_interior_have_two_hypotenuses():
+    """Thesis, Appendix A: every vector with a small denominator appears, inside twice, on the
+    boundary once."""
+    cells, seen = [farey.UPPER], []
+    for _ in range(12):
+        seen += [tuple(x + y for x, y in zip(a, c)) for a, _, c in cells]
+        cells = [half for cell in cells for half in farey.halves(cell)]
+    for q in range(2, 6):
+        for p0 in range(q + 1):
+            for p1 in range(q - p0, q + 1):
+                if Fraction(p0, q).denominator == q or Fraction(p1, q).denominator == q:
+                    edge = p0 == q or p1 == q or p0 + p1 == q
+                    assert seen.count((p0, p1, q)) == (1 if edge else 2)
+
+
+@given(inside)
+def test_tree(w):
+    mediants = take(farey.tree(w), 400)
+    low, high, address = (0, 1), (1, 1), ""
+    for (p,), q, turns in mediants:
+        assert turns == address
+        assert high[0] * low[1] - low[0] * high[1] == 1
+        assert (p, q) == (low[0] + high[0], low[1] + high[1])
+        assert Fraction(*low) < w < Fraction(*high)
+        if w > Fraction(p, q):
+            low, address = (p, q), address + "r"
+        else:
+            high, address = (p, q), address + "l"
+    if len(mediants) < 400:
+        assert Fraction(p, q) == w
+    fractions = {Fraction(p, q) for (p,), q, _ in mediants}
+    assert all(x in fractions for x in farey.convergents(w)
+               if 0 < x < 1 and x.denominator <= mediants[-1].q)
+
+
+@given(inside)
+def test_continued_fraction(w):
+    """It ends with w, and each convergent is nearer than what has a smaller denominator."""
+    quotients = list(farey.continued_fraction(w))
+    value = Fraction(quotients[-1])
+    for quotient in reversed(quotients[:-1]):
+        value = quotient + 1 / value
+    fractions = list(farey.convergents(w))
+    assert value == w == fractions[-1] and all(a > 0 for a in quotients[1:])
+    for x, y in zip(fractions, fractions[1:]):
+        assert abs(w - x) <= Fraction(1, x.denominator * y.denominator)
+    for x in fractions[1:]:
+        for q in range(1, min(x.denominator, 50)):
+            assert abs(w - x) < abs(w - Fraction(round(w * q), q))
+
+
+@given(vectors)
+def test_triangle(w):
+    """Each mediant is the sum of the hypotenuse's ends of a triangle that contains the vector and
+    has determinant 1 or -1, and the address leads there."""
+    cell = farey.UPPER if sum(w) >= 1 else farey.LOWER
+    mediants = take(farey.triangle(w), 60)
+    for k, (p, q, address) in enumerate(mediants):
+        assert abs(farey.determinant(*cell)) == 1
+        weights = [farey.determinant(*(cell[:j] + ((*w, 1),) + cell[j + 1:])) for j in range(3)]
+        assert min(weights) >= 0 or max(weights) <= 0       # barycentric coordinates
+        assert (*p, q) == tuple(x + y for x, y in zip(cell[0], cell[2])) and len(address) == k
+        assert address == mediants[-1].address[:k]
+        if k + 1 < len(mediants):
+            cell = farey.halves(cell)["lr".index(mediants[-1].address[k])]
+    if len(mediants) < 60:
+        assert (Fraction(p[0], q), Fraction(p[1], q)) == w
+
+
+@given(st.integers(2, 60).flatmap(lambda q: st.tuples(st.integers(1, q - 1), st.integers(1, q - 1),
+                                                      st.just(q))))
+def test_rational_vectors_are_met(point):
+    p0, p1, q = point
+    *_, last = farey.triangle((Fraction(p0, q), Fraction(p1, q)))
+    assert (last.p[0] * q, last.p[1] * q) == (p0 * last.q, p1 * last.q) and last.q <= q
+
+
+@pytest.mark.parametrize("w", [0.1, "x", "1/0", None, float("nan"), "\x1b[1m"])
+def test_what_is_no_exact_number(w):
+    for call in farey.tree, farey.continued_fraction, lambda w: farey.triangle((w, "0.5")):
+        with pytest.raises(ValueError, match=r"\A[ -~]+\Z"):
+            next(call(w))
+
+
+@pytest.mark.parametrize("w", [("0", "1"), ("1", "1"), ("2", "0.5"), ("-0.1", "0.5"), ("0.5",),
+                               "0.5", 3])
+def test_vectors_out_of_the_square(w):
+    with pytest.raises(ValueError, match=r"\A[ -~]+\Z"):
+        next(farey.triangle(w))
+
+
+def test_numbers_out_of_the_interval():
+    for w in "0", "1", "1.5", "-1/3":
+        with pytest.raises(ValueError, match="between 0 and 1"):
+            next(farey.tree(w))

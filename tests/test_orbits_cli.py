@@ -1,0 +1,323 @@
+"""The command converse-orbits: what it says is what the API finds, and every failure is a line."""
+
+import io
+import re
+import signal
+import subprocess
+import sys
+import time
+
+import numpy as np
+import pytest
+
+from converse import orbits
+from converse.files import ConverseError
+from converse.orbits import cli, farey
+from converse.orbits.sweep import LOST, ONSET_COLUMNS
+
+SMALL = "65,86/114"
+COMMAND = [sys.executable, "-m", "converse.orbits.cli"]
+
+
+@pytest.fixture
+def run(capfd):
+    """Runs the command in this process: (exit status, stdout, stderr)."""
+    def run(*arguments):
+        status = cli.main([str(argument) for argument in arguments])
+        return (status, *capfd.readouterr())
+    return run
+
+
+def one_line(err):
+    return err.startswith("converse-orbits: ") and err.endswith("\n") and err.count("\n") == 1
+
+
+# ---- find
+
+def numbers(out, name):
+    """The numbers behind a name, of each state."""
+    number = r"(?<![\w^/|])-?[0-9][0-9.]*(?:e-?[0-9]+)?(?![\w/])"
+    return [[float(x) for x in re.findall(number, line)]
+            for line in re.findall("^%s : (.*)$" % re.escape(name), out, re.MULTILINE)]
+
+
+@pytest.mark.parametrize("name, vector, eps, values", [
+    ("trig", "65,86/114", "0.01 0.02:0.03:0.005", [0.01, 0.02, 0.025, 0.03]),
+    ("ff", "12,16/21", "0.01", [0.01]), ("poly", "(12, 16)/21", "1/512", [1 / 512]),
+    ("standard", "89/233", "1 1.1", [1.0, 1.1])])
+def test_the_report_is_the_familys(run, name, vector, eps, values):
+    status, out, err = run("find", name, vector, *eps.split())
+    assert (status, err) == (0, "")
+    p, q = cli._vector(vector)
+    family = orbits.follow(getattr(orbits, name), p, q, values)
+    assert re.findall("^eps : (.*)$", out, re.MULTILINE) == [repr(x) for x in values]
+    assert re.findall(r"^State : (.*?) \(seen", out, re.MULTILINE) == [s.label for s in family]
+    for words, expected in (("Action per point less |p/q|^2/2", [[s.action] for s in family]),
+                            ("Exponents", [list(s.exponents) for s in family]),
+                            ("Deviation", [list(s.deviation) for s in family])):
+        found = numbers(out.replace("eps 0", "it").replace("x_0", "it"), words)
+        assert len(found) == len(expected)
+        for mine, theirs in zip(found, expected):
+            assert mine == pytest.approx(theirs, rel=1e-9)
+    assert out.startswith("Map : ") and "Potential : %s\n" % name in out
+    assert "Type : %s," % vector.replace("65,86/114", "(65, 86)/114").replace(
+        "12,16/21", "(12, 16)/21") in out
+
+
+def test_what_is_undetermined_is_said(run):
+    status, out, err = run("find", "trig", "200,265/351", "0.002")
+    state = orbits.follow(orbits.trig, (200, 265), 351, [0.002])[0]
+    assert (status, err, state.undetermined) == (0, "", 2)
+    assert "Phases : undetermined along 2 directions" in out
+    assert "Exponents : below 1e-05, below 1e-05\n" in out and state.exponents.max() < 1e-5
+
+
+def test_what_is_no_minimum_ends_with_status_1(run, monkeypatch):
+    minimax = orbits.newton(orbits.straight(orbits.standard, (1,), 3, origin=(0.0,)), 0.5)[0]
+    assert minimax.label == "saddle"
+    monkeypatch.setattr("converse.orbits.solver.follow",
+                        lambda *_, progress: progress(1, minimax))
+    status, out, err = run("find", "standard", "1/3", "0.5")
+    assert (status, err) == (1, "")
+    assert "State : saddle (seen in doubles: its action can be lowered" in out
+    assert "Exponents : unknown\n" in out
+
+
+def test_what_is_not_found_ends_with_status_1(run, monkeypatch):
+    relax = orbits.State.relax
+
+    def fails(state, eps, *rest, **options):
+        if eps > 0.01:
+            raise ConverseError("no orbit")
+        return relax(state, eps, *rest, **options)
+
+    monkeypatch.setattr(orbits.State, "relax", fails)
+    status, out, err = run("find", "trig", SMALL, "0.01", "0.02")
+    assert (status, err) == (1, "")
+    assert out.count("State : minimum") == 1 and out.endswith("\nNot found : no orbit\n")
+
+
+def test_table_and_figure(run, tmp_path):
+    table, picture = tmp_path / "table.csv", tmp_path / "figure.svg"
+    assert run("find", "trig", SMALL, "0.01:0.02:0.01", "--csv", table, "-g", picture)[0] == 0
+    text = io.StringIO()
+    orbits.follow(orbits.trig, (65, 86), 114, [0.01, 0.02]).write_csv(text)
+    assert table.read_text() == text.getvalue()
+    assert "<svg" in picture.read_text()
+    other = tmp_path / "figure.PNG"
+    assert run("find", "standard", "1/3", "0.5", "--graphics=%s" % other)[0] == 0
+    assert other.read_bytes().startswith(b"\x89PNG")
+
+
+def test_a_potential_in_a_file(run, tmp_path):
+    """Trig's terms; the file's eps are the named one's times its scale."""
+    path = tmp_path / "mine.v2.txt"
+    path.write_text("# half of each angle's\n1 0  0 -1/2\n\n0 1 0 -0.5   # and\n1 1 0 -1\n")
+    mine = cli.read_potential(str(path))
+    assert (mine.name, mine.n, mine.terms) == ("mine.v2", 2, orbits.trig.terms)
+    status, out, err = run("find", path, SMALL, repr(0.02 * orbits.trig.scale))
+    assert (status, err) == (0, "") and "Potential : mine.v2\n" in out
+    assert " k c s = 1 0 0 -1/2, 0 1 0 -1/2, 1 1 0 -1\n" in out
+    state = orbits.follow(orbits.trig, (65, 86), 114, [0.02])[0]
+    action, = numbers(out, "Action per point less |p/q|^2/2")[0]
+    assert action == pytest.approx(state.action, abs=1e-11)
+    path.write_text("1 -1 0")
+    assert cli.read_potential(str(path)).n == 1
+    path = path.rename(tmp_path / "trig")               # another potential, another name
+    assert "Potential : trig.txt\nV(x) : " in run("find", path, "1/3", "0.1")[1]
+
+
+def test_proof_and_search(run):
+    """--prove gives the theorem of prove, --search the state of search."""
+    status, out, err = run("find", "trig", "5,7/9", "0.03", "--search=5", "--seed=3", "--prove")
+    assert (status, err) == (0, "")
+    state = orbits.search(orbits.trig, (5, 7), 9, 0.03, 5, seed=3)
+    assert "State : %s (seen in doubles, not proved" % state.label in out
+    assert state.label.startswith("best of ") and out.endswith(orbits.prove(state).report())
+    status, out, err = run("find", "trig", "200,265/351", "0", "--prove")
+    assert (status, err) == (1, "") and "\nNot proved : " in out
+
+
+# ---- sweep
+
+def test_sweeps(run, tmp_path):
+    """By vectors, by Farey triangles and at random: the rows of the API, twice the same bytes."""
+    vectors = tmp_path / "vectors.txt"
+    vectors.write_text("5,7/9\n(3, 4)/5   # with its name\n\n12,16/21\n")
+    listed = [((5, 7), 9), ((3, 4), 5), ((12, 16), 21)]
+    w = "0.5698402909980532", "0.7548776662466927"
+    mediants = [(m.p, m.q) for m, _ in zip(farey.triangle(w), range(40)) if 20 <= m.q <= 60]
+    for which, expected in ((("--vectors", vectors), listed),
+                            (("--farey", ",".join(w), "--sizes", "20:60"), mediants)):
+        path = tmp_path / ("%s.csv" % which[0])
+        status, out, err = run("sweep", "trig", path, "0.01", *which)
+        assert (status, err) == (0, "")
+        assert out == "written: %s, %d types, %d rows\n" % (path, len(expected), len(expected))
+        table = orbits.read_csv(path)
+        assert repr(table.tolist()) == repr(orbits.sweep(orbits.trig, expected, [0.01]).tolist())
+    assert len(mediants) > 3
+    paths = [tmp_path / name for name in "abc"]
+    for path, seed, jobs in zip(paths, (5, 5, 6), (1, 2, 2)):
+        assert run("sweep", "standard", path, "--random", "4", "--sizes=20:40", "--seed", seed,
+                   "--jobs", jobs)[0] == 0
+    assert paths[0].read_bytes() == paths[1].read_bytes() != paths[2].read_bytes()
+    table = orbits.read_csv(paths[0])
+    assert table.dtype.names == ONSET_COLUMNS and len(table) == 4
+    assert ((20 <= table["q"]) & (table["q"] <= 40)).all()
+    assert (np.gcd(table["p"][:, 0], table["q"]) == 1).all()
+    assert (table["eps_above"] > table["eps_below"]).all()
+
+
+def test_a_sweep_is_continued_and_no_other_is(run, tmp_path):
+    path = tmp_path / "table.csv"
+    arguments = "sweep", "trig", path, "0.01", "--random", "3", "--sizes", "20:30"
+    assert run(*arguments)[0] == 0
+    whole = path.read_bytes()
+    path.write_bytes(whole[:len(whole) // 2])
+    assert run(*arguments)[0] == 0 and path.read_bytes() == whole
+    status, out, err = run(*arguments, "--seed", "1")
+    assert (status, out) == (2, "") and one_line(err) and "not the beginning of this sweep" in err
+    assert path.read_bytes() == whole
+
+
+def test_lost_types_end_with_status_1(run, tmp_path, monkeypatch):
+    def loses(*_, **__):
+        raise ConverseError("no orbit")
+    monkeypatch.setattr(sys.modules[orbits.sweep.__module__], "onset", loses)
+    status, out, err = run("sweep", "trig", tmp_path / "x.csv", "--random", "2", "--sizes", "9:9")
+    assert (status, err) == (1, "") and out.endswith("2 types, 2 rows, 2 of them lost\n")
+    assert (orbits.read_csv(tmp_path / "x.csv")["label"] == LOST).all()
+
+
+# ---- figures, help
+
+def test_figures(run, tmp_path, monkeypatch):
+    seen = []
+
+    def figures(directory, kind, progress):
+        seen.append((directory, kind))
+        progress("one.png")
+
+    monkeypatch.setattr("converse.orbits.figures.figures", figures)
+    assert run("figures", tmp_path, "--format", "png") == (0, "written: one.png\n", "")
+    assert seen == [(str(tmp_path), "png")]
+
+
+def test_help_and_version(run):
+    for command in ((), ("find",), ("sweep",), ("figures",)):
+        status, out, err = run(*command, "--help")
+        assert (status, err) == (0, "") and "Exit status: 0 " in out
+    assert run("--version")[1].startswith("converse-orbits ")
+
+
+# ---- what goes wrong
+
+@pytest.mark.parametrize("arguments, words", [
+    ([], "required"), (["lose"], "choice"), (["find"], "required"),
+    (["find", "trig", SMALL], "EPS"),
+    (["find", "trig", SMALL, "0.01", "--what"], "--what"),
+    (["find", "trig", "1/2", "0.01"], "two angles"),
+    (["find", "standard", SMALL, "0.5"], "one angle"),
+    *[(["find", "trig", bad, "0.01"], "is no type") for bad in (
+        "1,2/0", "1,2,3/4", "1,2", "1.5,2/3", "a,b/c", "1,2/-3", "", "1" * 10 + ",2/3",
+        "1,2/3\n4")],
+    *[(["find", "trig", SMALL, bad], "is no number") for bad in (
+        "x", "nan", "inf", "1e400", "1e9999999999", "1/0", "1:2", "1:2:3:4", "")],
+    *[(["find", "trig", SMALL, bad], "range of no values") for bad in (
+        "1:2:0", "2:1:0.1", "0:1:1e-9")],
+    (["find", "none", SMALL, "0.01"], "no potential and no file"),
+    (["find", "DIR", SMALL, "0.01"], "cannot be read"),
+    (["find", "trig", SMALL, "0.01", "--search", "0"], "whole number"),
+    (["find", "trig", SMALL, "0.01", "--csv", "DIR"], "directory"),
+    (["find", "trig", SMALL, "0.01", "--csv", "DIR/no/x"], "cannot be written"),
+    (["find", "trig", SMALL, "0.01", "-g", "DIR/x.ps"], "SVG, PNG or PDF"),
+    (["find", "trig", SMALL, "0.01", "-g", "DIR/x.svg", "--csv", "DIR/x.svg"], "both"),
+    (["find", "trig", SMALL, "0:0.04:0.0001", "-g", "DIR/x.svg"], "states at most"),
+    (["find", "DIR/terms", "1,2/3", "0.01", "--csv", "DIR/terms"], "overwrite"),
+    (["sweep", "trig", "DIR/x.csv", "0.01"], "required"),
+    (["sweep", "trig", "DIR/x.csv", "--random", "1", "--farey", "0.1,0.2"], "not allowed"),
+    (["sweep", "trig", "DIR/x.csv", "--random", "1", "--sizes", "3"], "LOW:HIGH"),
+    (["sweep", "trig", "DIR/x.csv", "--random", "1", "--sizes", "9:3"], "LOW:HIGH"),
+    (["sweep", "trig", "DIR/x.csv", "--random", "1", "--sizes", "0:3"], "LOW:HIGH"),
+    (["sweep", "trig", "DIR/x.csv", "--random", "1", "--jobs", "0"], "whole number"),
+    (["sweep", "trig", "DIR/x.csv", "--farey", "0.5"], "as many numbers"),
+    (["sweep", "standard", "DIR/x.csv", "--farey", "0.5,0.5"], "as many numbers"),
+    *[(["sweep", "trig", "DIR/x.csv", "--farey", bad], "between 0 and 1") for bad in (
+        "x,y", "0,0.5", "0.5,1.5", "0.1,0.2,0.3", "1/0,0.5")],
+    (["sweep", "trig", "DIR/x.csv", "--farey", "0.51,0.52", "--sizes", "5000:5001"], "no rotation"),
+    (["sweep", "trig", "DIR/x.csv", "--vectors", "DIR/none"], "cannot be read"),
+    (["sweep", "trig", "DIR/x.csv", "--vectors", "DIR/terms"], "line 1: '1 0 0 1' is no type"),
+    (["sweep", "trig", "DIR/x.csv", "--vectors", "DIR/one"], "line 2: the potential trig has two"),
+    (["sweep", "trig", "DIR/x.csv", "--vectors", "DIR/empty"], "no rotation vectors"),
+    (["sweep", "trig", "DIR/two", "--vectors", "DIR/two"], "overwrite"),
+    (["sweep", "trig", "DIR/terms", "--random", "1"], "columns are others"),
+    (["sweep", "trig", "DIR", "--random", "1"], "is a directory"),
+    (["figures"], "required"), (["figures", "DIR/terms"], "cannot be made a directory"),
+    (["figures", "DIR", "--format", "gif"], "choice"),
+])
+def test_bad_usage(run, tmp_path, arguments, words):
+    (tmp_path / "terms").write_text("1 0 0 1\n")
+    (tmp_path / "one").write_text("1,2/3\n1/3\n")
+    (tmp_path / "two").write_text("1,2/3\n")
+    (tmp_path / "empty").write_text("# nothing\n")
+    before = {path: path.read_bytes() for path in tmp_path.iterdir()}
+    status, out, err = run(*[a.replace("DIR", str(tmp_path)) for a in arguments])
+    assert (status, out) == (2, "") and one_line(err) and words in err, err
+    assert {path: path.read_bytes() for path in tmp_path.iterdir()} == before
+
+
+@pytest.mark.parametrize("text, words", [
+    (b"", "has terms"), (b"1 0 0\n1 0 0 1\n", "has terms"), (b"1 0 x 1\n", "line 1"),
+    (b"1 0 0 1\n1 0 2 2\n", "line 2"), (b"1 0 0 1 1\n", "line 1"), (b"1.5 0 0 1\n", "line 1"),
+    (b"1 0 nan 1\n", "line 1"), (b"1 0 1/0 1\n", "line 1"), (b"1 0 1e10 1\n", "line 1"),
+    (b"1 0 1e-9999999999 1\n", "line 1"),
+    (b"2000 0 1 1\n", "-1000 to 1000"), (b"\xff\xfe\n", "not a text file")])
+def test_a_bad_potential(run, tmp_path, text, words):
+    path = tmp_path / "mine"
+    path.write_bytes(text)
+    status, out, err = run("find", path, "1,2/3", "0.01")
+    assert (status, out) == (2, "") and one_line(err) and words in err and str(path) in err
+
+
+@pytest.mark.parametrize("module, arguments", [
+    ("numpy", ["find", "trig", SMALL, "0.01"]), ("numpy", ["sweep", "trig", "x", "--random", "1"]),
+    ("numpy", ["figures", "."]), ("converse._native", ["find", "trig", SMALL, "0.01"]),
+    ("matplotlib", ["find", "trig", SMALL, "0.01", "-g", "x.svg"]),
+    ("matplotlib", ["figures", "."])])
+def test_what_is_missing_is_said(tmp_path, module, arguments):
+    result = subprocess.run(
+        [sys.executable, "-c", "import runpy, sys\nsys.modules[%r] = None\n"
+         "sys.argv[0] = 'x'\nrunpy.run_module('converse.orbits.cli', run_name='__main__')" % module,
+         *arguments], cwd=tmp_path, capture_output=True, text=True, timeout=60)
+    assert (result.returncode, result.stdout) == (2, "") and one_line(result.stderr)
+    assert module.split(".")[0] in result.stderr and "pip install" in result.stderr
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_a_sweep_that_a_signal_ends_is_continued(tmp_path, number):
+    path, other = tmp_path / "table.csv", tmp_path / "whole.csv"
+    common = "0.004:0.012:0.002", "--random", "40", "--sizes", "120:160", "--jobs", "2"
+    with subprocess.Popen([*COMMAND, "sweep", "trig", path, *common], stdout=subprocess.PIPE,
+                          stderr=subprocess.PIPE, text=True) as process:
+        end = time.monotonic() + 60
+        while time.monotonic() < end and not (path.exists() and path.stat().st_size > 3000):
+            time.sleep(0.005)
+        process.send_signal(number)
+        out, err = process.communicate(timeout=60)
+    assert (process.returncode, out) == (128 + number, "") and one_line(err)
+    assert err == "converse-orbits: interrupted; the same command continues it\n"
+    size = path.stat().st_size
+    for file in path, other:
+        subprocess.run([*COMMAND, "sweep", "trig", file, *common], check=True, timeout=100,
+                       stdout=subprocess.DEVNULL)
+    assert path.read_bytes() == other.read_bytes() and 3000 < size < len(other.read_bytes())
+    assert not list(tmp_path.glob("*.lock"))
+
+
+def test_a_closed_pipe():
+    with subprocess.Popen([*COMMAND, "find", "trig", SMALL, "0.001:0.02:0.001"],
+                          stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+        process.stdout.close()
+        err = process.stderr.read()
+    assert process.returncode == 2 and one_line(err) and "output cannot be written" in err

@@ -1,0 +1,474 @@
+"""Where the methods of the orbits fail (thesis, section 2.2 and Appendix A), and that they say so."""
+
+import math
+import signal
+import time
+
+import mpmath
+import numpy as np
+import pytest
+
+import converse
+from converse import orbits
+from converse._native import ffi, lib
+from converse.orbits.potential import address
+from converse.problem import Problem
+from truth import TORTURE
+
+SPIRAL = ((1432, 1897), 2513)
+
+
+def moved(a, b):
+    """The largest distance between the points of two states of one type."""
+    return np.sqrt(((a.u - b.u) ** 2).sum(1)).max()
+
+
+# ---- finding a state
+
+@pytest.mark.parametrize("eps, far", [(0.0025, 1e-4), (0.0075, 0.005), (0.0125, 5e-4)])
+def test_gradient_flow_stops_far_from_the_orbit(eps, far):
+    """A small gradient over a far smaller eigenvalue: the orbit is somewhere else along the soft
+    direction.  What flow returns is not called stationary."""
+    flowed, steps = orbits.flow(orbits.straight(orbits.trig, (151, 200), 265), eps)
+    assert steps > 50 and flowed.grad_size <= 1e-6 and flowed.label == "not stationary"
+    orbit = flowed.relax()
+    assert orbit.label == "minimum" and moved(flowed, orbit) > far > 10 * flowed.shadow
+    assert flowed.action == pytest.approx(orbit.action, abs=1e-7)       # which shows nothing
+    unfinished, steps = orbits.flow(orbits.straight(orbits.trig, (151, 200), 265), eps, max_steps=20)
+    assert steps == 20 and unfinished.grad_size > 1e-6
+
+
+def test_newton_without_damping_finds_saddles_or_nothing():
+    """Continued in small steps beyond 0.0075 it comes upon saddles and then diverges; from the same
+    guess the damped one goes to a minimum.  No label is wrong: the Hessian's eigenvalues tell."""
+    labels = set()
+    for step in (0.0005, 0.0006, 0.0007):
+        state = orbits.follow(orbits.trig, *SPIRAL, [0.0075])[0]
+        while state.eps < 0.013 and "not stationary" != state.label:
+            guess = state
+            state, steps = orbits.newton(guess, round(guess.eps + step, 6))
+            labels.add(state.label)
+            if state.label == "saddle":
+                assert state.shadow < 1e-12 and steps < 50
+                assert state.least < -1e-12 or guess.repeat(2).least < -1e-12
+                assert np.isnan(state.exponents).all()
+                assert guess.relax(state.eps).label == "minimum"
+            elif state.label == "minimum":
+                assert state.least > -1e-12
+        assert state.label == "not stationary" or state.eps >= 0.013
+    assert labels >= {"saddle", "not stationary"}
+
+
+def test_newton_at_the_start_of_poly():
+    """There two eigenvalues of the Hessian are 0, and many are negative once eps is not: the first steps
+    lead anywhere.  Points whose digits are gone are no state."""
+    straight = orbits.straight(orbits.poly, (377, 2330), 3770)
+    assert straight.undetermined == 2
+    begun = orbits.State(orbits.poly, straight.p, straight.q, 0.0025, straight.u, straight.origin)
+    assert begun.below(0) >= 2 and begun.least < -1e-3
+    wild, _ = orbits.newton(straight, 0.0025)
+    assert wild.label == "not stationary" and np.abs(wild.u).max() > 1
+    with pytest.raises(ValueError, match="below 1000"):
+        wild.moved(wild.u + 1e18)           # there V' rounds to the same everywhere, and L' to zero
+    assert straight.relax(0.0025).label == "minimum"
+
+
+def test_cholesky_fails_while_the_torus_is_whole_and_the_pivots_do_not():
+    """Two eigenvalues are zero but for rounding, which decides whether the Hessian is positive."""
+    failed = 0
+    p, q = (65, 86), 114
+    for state in orbits.follow(orbits.trig, p, q, [0.0005, 0.001, 0.0015, 0.002, 0.0025, 0.003]):
+        band = np.diag(np.tile([2.0], 2 * q))
+        for j in range(q):
+            a, b, c = state.blocks[j]
+            band[2 * j:2 * j + 2, 2 * j:2 * j + 2] = [[a, b], [b, c]]
+            for i in (0, 1):
+                there = (2 * j + 2) % (2 * q) + i
+                band[2 * j + i, there] = band[there, 2 * j + i] = -1
+        try:
+            np.linalg.cholesky(band)
+        except np.linalg.LinAlgError:
+            failed += 1
+        assert state.label == "minimum" and state.undetermined == 2 and abs(state.least) < 1e-11
+        assert not np.isnan(state.exponents).any() and state.exponents[0] < 1e-4
+    assert failed
+
+
+def test_phases_along_soft_directions_are_not_determined():
+    """While the torus is whole the orbit may begin anywhere on it: other points, the same action to
+    the last digit.  So for a gap further, where one eigenvalue is small."""
+    for eps, soft in ((0.005, 2), (0.0085, 1)):
+        state = orbits.follow(orbits.trig, *SPIRAL, [eps])[0]
+        assert state.undetermined == soft
+    state = orbits.follow(orbits.trig, *SPIRAL, [0.005])[0]
+    other = orbits.straight(orbits.trig, *SPIRAL, (0.3, 0.1)).relax(0.0025).relax(0.005)
+    apart = (state.x[:, None, :] - other.x[None, :200, :] + 0.5) % 1 - 0.5
+    assert np.sqrt((apart ** 2).sum(2)).min(0).max() > 1e-4            # no point lies on one of these
+    assert other.label == "minimum" and other.action == pytest.approx(state.action, abs=1e-15)
+    assert orbits.follow(orbits.trig, *SPIRAL, [0.0125])[0].undetermined == 0
+
+
+def test_a_direction_so_flat_that_nothing_is_known():
+    """A saddle as flat as this is one if the gradient is zero; if not, the orbit may lie anywhere along
+    it, and what is said is that this direction is not determined."""
+    sure = orbits.State(orbits.standard, (0,), 1, 1e-9, [[0.0]], (0.0,))
+    assert sure.label == "saddle" and sure.undetermined == 1
+    flat = orbits.State(orbits.standard, (0,), 1, 1e-9, [[0.0]], (2e-3,))
+    assert flat.label == "stationary" and flat.undetermined == 1
+    state = orbits.follow(orbits.trig, *SPIRAL, [0.0075])[0]        # 1e-13, and -4e-11
+    assert state.label == "minimum" and state.undetermined == 2
+
+
+def test_a_minimum_whose_copies_are_none():
+    """Eight points of poly, at least action among those of period 8, and beyond doubt; but run
+    through twice there is a direction down; four times, and a minimum lies tenfold lower."""
+    rng = np.random.default_rng(5)
+    for _ in range(400):
+        state = orbits.State(orbits.poly, (1, 8), 8, 0.0619, rng.uniform(-0.5, 0.5, (8, 2)),
+                             orbits.poly.start).relax()
+        if state.label == "saddle":
+            break
+    assert state.below(1e-3) == 0                   # all 16 eigenvalues are clearly positive
+    twice = state.repeat(2)
+    assert twice.least < -1e-3 and twice.label == "saddle"
+    lower = state.repeat(4).relax()                 # which leaves the saddle
+    assert lower.label == "minimum" and lower.action < state.action - 1e-4
+
+
+def test_soft_directions_that_turn():
+    """Why: three blocks soft along directions 60 degrees apart.  Once round, what came along the soft
+    direction returns with its sign changed, as period 3 forbids and period 6 allows."""
+    class Blocks:
+        """V with gradient zero and the Hessian that makes beta_j at (j/3, j/3)."""
+        def value(self, x):
+            return np.zeros(len(x))
+
+        def gradient(self, x):
+            return np.zeros((len(x), 2))
+
+        def hessian(self, x):
+            angle = np.pi / 3 * np.rint(3 * x[:, 0])
+            e = np.stack([np.cos(angle), np.sin(angle)], 1)
+            return (2 - stiff) * np.eye(2) + (stiff - soft) * e[:, :, None] * e[:, None, :]
+
+    for soft, stiff, label in ((0.85, 10, "saddle"), (1.6, 10, "minimum"), (1.6, 30, "minimum")):
+        potential = orbits.FromPython(Blocks(), 2)
+        state = orbits.State(potential, (1, 1), 3, 1.0, np.zeros((3, 2)), (0.0, 0.0))
+        assert state.below(0) == 0 and state.label == label
+        assert (state.repeat(2).least < 0) == (label == "saddle")
+        if label == "minimum":      # DF^3 has complex eigenvalues, then two that are below -1
+            assert state.exponents == pytest.approx(carried(state, 40), abs=1e-12)
+
+
+def test_continuation_loses_the_minimum():
+    """Above eps 0.02 other phases lead lower than continuation from the maximum of V; both are minima,
+    and neither is called more.  At 0.01 all agree."""
+    rng = np.random.default_rng(6)
+    gained = {}
+    for eps in (0.01, 0.04):
+        for p, q in (((5, 7), 9), ((21, 28), 37)):
+            followed, = orbits.follow(orbits.trig, p, q, [eps])
+            others = [orbits.straight(orbits.trig, p, q, tuple(rng.uniform(size=2))).relax(eps)
+                      for _ in range(40)]
+            assert {state.label for state in (followed, *others)} == {"minimum"}
+            gained[eps, q] = followed.action - min(state.action for state in others)
+    assert max(abs(gained[0.01, q]) for q in (9, 37)) < 1e-12
+    assert gained[0.04, 9] == pytest.approx(2.9475e-5, rel=1e-3) and gained[0.04, 37] > 5e-5
+
+
+def test_it_leaves_a_saddle_for_the_lower_side():
+    """From the least V of a skew potential both sides lead down, to the same maximum."""
+    for skew in (0.3, -0.3):
+        potential = orbits.Fourier({(1,): (1, 0), (2,): (0, skew)}, "skew")
+        axis = np.arange(10 ** 6)[:, None] / 10 ** 6
+        low = axis[np.argmin(potential.evaluate(axis)[0])]
+        saddle = orbits.newton(orbits.State(potential, (0,), 1, 0.01, [[0.0]], tuple(low)))[0]
+        assert saddle.label == "saddle"
+        left, right = potential.evaluate([low - 0.05, low + 0.05])[0]
+        assert abs(left - right) > 0.01
+        orbit = saddle.relax()
+        assert orbit.label == "minimum" and (orbit.u[0, 0] > 0) == (right > left)
+
+
+def test_no_step_is_longer_than_a_tenth():
+    """Near an inflection of V Newton's step is longer than the torus."""
+    state = orbits.State(orbits.standard, (0,), 1, 0.5, [[0.251]], (0.0,))
+    wild, _ = orbits.newton(state, max_steps=1)
+    assert abs(wild.u[0, 0] - 0.251) > 10
+    how, u = ffi.new("cv_relaxed *"), np.array([[0.251, 0.0]])
+    assert lib.cv_relax(orbits.standard.native, 1, 0.5, address(np.zeros((1, 2))), address(u), 1e-13,
+                        1, how) == lib.CV_RUNNING
+    assert how.steps == 1 and u[0, 0] == pytest.approx(0.351, abs=1e-12)
+    assert state.relax().x[0, 0] == pytest.approx(0.5, abs=1e-12)
+
+
+def test_no_state_is_said():
+    state = orbits.straight(orbits.trig, (5, 7), 9)
+    with pytest.raises(converse.ConverseError, match=r"type \(5, 7\)/9 found at eps 0.03: .* 1 steps"):
+        state.relax(0.03, max_steps=1)
+    with pytest.raises(converse.ConverseError, match="0 steps"):
+        state.relax(0.03, max_steps=0)
+
+
+# ---- exponents
+
+def carried(state, digits):
+    """The exponents from the eigenvalues of DF^q, multiplied out in many digits."""
+    n = state.potential.n
+    with mpmath.workdps(digits):
+        product = mpmath.eye(2 * n)
+        for bend in state.eps * state.potential.evaluate(state.x)[2]:
+            step = mpmath.eye(2 * n)
+            for i in range(n):
+                step[i, n + i] = 1
+                for k in range(n):
+                    step[n + i, k] = -bend[i, k]
+                    step[i, k] -= bend[i, k]
+            product = step * product
+        moduli = sorted((abs(value) for value in mpmath.eig(product)[0]), reverse=True)
+        return [float(mpmath.log(modulus) / state.q) for modulus in moduli[:n]]
+
+
+@pytest.mark.parametrize("potential, p, q, eps", [
+    (orbits.standard, (0,), 1, 0.5), (orbits.standard, (1,), 2, 0.7), (orbits.standard, (3,), 8, 1.2),
+    (orbits.standard, (34,), 89, 1.5), (orbits.trig, (1, 1), 1, 0.02), (orbits.trig, (1, 1), 2, 0.03),
+    (orbits.trig, (1, 2), 3, 0.03), (orbits.trig, (5, 7), 9, 0.05), (orbits.ff, (12, 16), 21, 0.02),
+    (orbits.poly, (7, 9), 12, 0.03), (orbits.froeschle, (3, 4), 5, 0.04)], ids=str)
+def test_exponents_against_many_digits(potential, p, q, eps):
+    state = orbits.straight(potential, p, q).relax(eps)
+    assert state.label == "minimum"
+    assert state.exponents == pytest.approx(carried(state, 60), abs=1e-9)
+    assert state.repeat(3).exponents == pytest.approx(state.exponents, abs=1e-11)
+    assert orbits.gram_schmidt_exponents(state, 3000 // q) == pytest.approx(
+        state.exponents, abs=math.log(3000) / 3000 + 1e-3)
+
+
+def test_the_product_of_derivatives_overflows():
+    """q times the exponent is 2000: DF^q is beyond doubles, 10^308, the pivots are not."""
+    state = orbits.follow(orbits.trig, *SPIRAL, [0.04])[0]
+    product = np.eye(4)
+    with np.errstate(all="ignore"):
+        for bend in 0.04 * state.potential.evaluate(state.x)[2]:
+            product = np.block([[np.eye(2) - bend, np.eye(2)], [-bend, np.eye(2)]]) @ product
+    assert not np.isfinite(product).all()
+    assert state.q * state.exponents[0] > 1900
+    assert orbits.gram_schmidt_exponents(state, 5) == pytest.approx(state.exponents, abs=5e-4)
+
+
+def test_exponents_of_1989_are_wrong_by_log_q_over_q():
+    """All are zero, and once round the orbit 0.0029, 0.0027 are found, (log q)/q being 0.0031; ten
+    times round they are smaller as predicted.  The pivots' error is 1/200,000."""
+    state = orbits.follow(orbits.trig, *SPIRAL, [0.005])[0]
+    found = orbits.gram_schmidt_exponents(state, seed=1)
+    assert np.round(found, 4) == pytest.approx([0.0029, 0.0027])
+    for rounds, seed in ((1, 2), (1, 3), (10, 2)):
+        n = rounds * state.q
+        found = orbits.gram_schmidt_exponents(state, rounds, seed)
+        assert (0.7 * math.log(n) / n < found).all() and (found < 1.2 * math.log(n) / n).all()
+    assert (0 <= state.exponents).all() and (state.exponents < 1e-5).all()
+    free = orbits.State(orbits.trig, (1, 1), 3, 0.0, np.zeros((3, 2)), (0.0, 0.0))
+    assert (free.exponents < 1e-5).all() and (orbits.gram_schmidt_exponents(free, 1000) < 3e-3).all()
+
+
+# ---- the prelude, and the standard map
+
+@pytest.mark.parametrize("potential, numbers", [
+    (orbits.trig, (0.0385586, 0.0377680, 0.025179)), (orbits.poly, (1 / 24, 1 / 48, 0.010545)),
+    (orbits.ff, (1 / 30, 1 / 30, 0.020962)), (orbits.froeschle, (2 / 49.3480, 2 / 49.3480, 0.025487)),
+    (orbits.standard, (2, 2, 4 / 3))], ids=str)
+def test_prelude(potential, numbers):
+    """The thesis's two eps_c; above the second and the third no state and no torus goes everywhere."""
+    found = orbits.prelude(potential)
+    assert found[:2] == pytest.approx(numbers[:2], abs=1e-7)
+    assert found.graphs == pytest.approx(numbers[2], abs=6e-7)
+    assert found.graphs < found.worst <= found.lowest * (1 + 1e-12)
+
+
+def test_prelude_is_the_other_method_s_first_step():
+    """Without a single cut the Loewner criterion proves what the prelude says, and bounds 2 - eps V''
+    by the same number."""
+    bound = orbits.prelude(orbits.trig).graphs
+    for eps, proved in ((1.004 * bound, True), (0.9996 * bound, False)):
+        a, b, c = (repr(x) for x in orbits.parameters(eps))
+        proof = converse.prove(Problem(a=a, b=b, c=c), method="loewner", depth=0)
+        assert proof.no_tori == proved
+        largest = 2 - eps * np.linalg.eigvalsh(orbits.trig.evaluate(
+            np.full((1, 2), 1 - 0.131738))[2])[0, 0]
+        assert float(proof.constants["B"]) == pytest.approx(largest, abs=1e-6)
+
+
+def test_greene_s_residues():
+    """377/987 at k_c: R = (2 - trace DF^q)/4 is -0.2555 for the minimizing orbit and +0.2501 for the
+    minimax one, a saddle, which Newton finds half-way between the points of the other."""
+    least = orbits.follow(orbits.standard, (377,), 987, [0.971635406])[0]
+    order = np.argsort(least.x[:, 0])
+    after = np.roll(order, -1)
+    gap = (least.x[after, 0] - least.x[order, 0]) % 1
+    u = least.u.copy()
+    u[order, 0] += gap / 2
+    minimax, _ = orbits.newton(least.moved(u), tol=1e-14)
+    assert (least.label, minimax.label) == ("minimum", "saddle")
+    for state, residue in ((least, -0.2555), (minimax, 0.2501)):
+        with mpmath.workdps(50):
+            a, b, c, d = map(mpmath.mpf, (1, 0, 0, 1))
+            for x in state.x[:, 0]:
+                bend = mpmath.mpf("0.971635406") * mpmath.cos(2 * mpmath.pi * mpmath.mpf(float(x)))
+                c, d = c - bend * a, d - bend * b
+                a, b = a + c, b + d
+            found = float((2 - a - d) / 4)
+        assert found == pytest.approx(residue, abs=1e-4)
+    assert (2 - 2 * np.cosh(987 * least.exponents[0])) / 4 == pytest.approx(-0.2555, abs=1e-4)
+
+
+# ---- pairs
+
+@pytest.mark.parametrize("potential, q, count", [
+    (orbits.trig, 2, 800), (orbits.trig, 3, 2), (orbits.trig, 90, 800), (orbits.trig, 90, 4005),
+    (orbits.standard, 1, 800), (orbits.standard, 2, 1), (orbits.standard, 90, 300)], ids=str)
+def test_pairs_against_all_pairs(potential, q, count):
+    rng = np.random.default_rng(q)
+    n = potential.n
+    for scale in (0.5, 1e-3):                   # all over the torus; in a clump over its corner
+        u = scale * rng.uniform(-1, 1, (q, n))
+        state = orbits.State(potential, (0,) * n, q, 0.1, u, (0.0,) * n)
+        i, j = np.triu_indices(q, 1)
+        apart = np.abs(state.x[i] - state.x[j])
+        distance = np.sqrt((np.minimum(apart, 1 - apart) ** 2).sum(1))
+        pairs, first = state.pairs(count), np.argsort(distance)[:count]
+        assert np.allclose(pairs.distance, distance[first], rtol=1e-14, atol=1e-16)
+        if len(first):
+            assert {frozenset(pair) for pair in zip(pairs.i, pairs.j)} \
+                == {frozenset(pair) for pair in zip(i[first], j[first])}
+        assert np.allclose(pairs.momentum, np.linalg.norm(
+            state.momenta[pairs.i] - state.momenta[pairs.j], axis=1), atol=1e-15)
+
+
+def test_pairs_half_way_round():
+    """Two points opposite each other are as far in both directions, and one pair."""
+    state = orbits.State(orbits.trig, (0, 0), 3, 0.0, [[0, 0], [0.5, 0], [0.25, 0.5]], (0, 0))
+    pairs = state.pairs()
+    assert {frozenset(pair) for pair in zip(pairs.i, pairs.j)} == {frozenset(s) for s in
+                                                                   ((0, 1), (0, 2), (1, 2))}
+    assert pairs.distance == pytest.approx([0.5, math.hypot(0.25, 0.5), math.hypot(0.25, 0.5)])
+
+
+def test_pairs_at_the_same_place():
+    """The same points again are at distance zero, as often as there are copies."""
+    double = orbits.straight(orbits.trig, (5, 7), 9).relax(0.03).repeat(2)
+    assert (double.pairs(9).distance == 0).all() and double.pairs(10).distance[9] > 0.01
+    assert sorted((double.pairs(9).j - double.pairs(9).i) % 9) == [0] * 9
+
+
+# ---- potentials from Python that misbehave, Ctrl-C
+
+class Source:
+    """ff, but for one method."""
+
+    def __init__(self, method="", instead=None):
+        self.method, self.instead = method, instead
+
+    def ask(self, k, x):
+        answer = orbits.ff.evaluate(x)[k]
+        return answer if ("value", "gradient", "hessian")[k] != self.method else self.instead(answer)
+
+    def value(self, x):
+        return self.ask(0, x)
+
+    def gradient(self, x):
+        return self.ask(1, x)
+
+    def hessian(self, x):
+        return self.ask(2, x)
+
+
+def raising(error):
+    def instead(answer):
+        raise error
+    return instead
+
+
+@pytest.mark.parametrize("method", ["value", "gradient", "hessian"])
+@pytest.mark.parametrize("instead, error, word", [
+    (raising(KeyError("mine")), KeyError, "mine"), (raising(KeyboardInterrupt()), KeyboardInterrupt, "^$"),
+    (lambda answer: answer[:1], ValueError, "not an array"), (lambda answer: 0.0, ValueError, "finite"),
+    (lambda answer: answer[0], ValueError, "potential mine"), (lambda answer: "x", ValueError, "x"),
+    (lambda answer: answer * np.nan, ValueError, "finite numbers"),
+    (lambda answer: answer / 0.0, ValueError, "finite numbers"),
+], ids=["raises", "interrupt", "one", "scalar", "first", "text", "nan", "infinite"])
+@pytest.mark.filterwarnings("ignore:divide")
+def test_bad_potentials(method, instead, error, word):
+    """What they raise is handed on, what makes no sense is named, wherever it comes up."""
+    bad = orbits.FromPython(Source(method, instead), 2, "mine", orbits.ff.start)
+    state = orbits.straight(bad, (5, 7), 9)
+    for ask in (lambda: bad.evaluate([[0.1, 0.2], [0.3, 0.4]]), lambda: state.relax(0.01),
+                lambda: state.action, lambda: orbits.follow(bad, (5, 7), 9, [0.01]),
+                lambda: orbits.newton(state, 0.01), lambda: orbits.flow(state, 0.01)):
+        with pytest.raises(error, match=word) as raised:
+            ask()
+        assert "\n" not in str(raised.value)
+    again = orbits.FromPython(Source(), 2, "mine", orbits.ff.start)     # nothing is left of it
+    assert orbits.straight(again, (5, 7), 9).relax(0.01).label == "minimum"
+
+
+def test_ctrl_c_ends_a_long_search():
+    """The C core is asked for a few steps at a time."""
+    rng = np.random.default_rng(7)
+    state = orbits.State(orbits.trig, (0, 0), 30000, 0.04, rng.uniform(-0.5, 0.5, (30000, 2)), (0, 0))
+    previous = signal.signal(signal.SIGALRM, lambda *_: signal.raise_signal(signal.SIGINT))
+    begun = time.monotonic()
+    signal.setitimer(signal.ITIMER_REAL, 0.05)
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            for _ in range(1000):
+                state.relax(tol=0.0)            # never there
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0)
+        signal.signal(signal.SIGALRM, previous)
+    assert time.monotonic() - begun < 20
+
+
+def test_a_search_in_pieces_is_the_same(monkeypatch):
+    """However few steps the core is asked for at a time."""
+    guess = orbits.follow(orbits.trig, (151, 200), 265, [0.0075])[0]
+    whole = guess.relax(0.008)
+    monkeypatch.setattr(orbits.state, "POINTS", 1)
+    assert (guess.relax(0.008).u == whole.u).all()
+
+
+# ---- size
+
+def test_short_orbits():
+    """One, two and three points, where both neighbours of a point are one, or itself."""
+    for q in (1, 2, 3):
+        for potential in (orbits.trig, orbits.poly, orbits.ff):
+            state = orbits.straight(potential, (1, 1), q).relax(0.02)
+            assert state.label == "minimum" and state.undetermined == 0
+    fixed = orbits.straight(orbits.standard, (0,), 1).relax(0.5)
+    assert fixed.x[0, 0] == pytest.approx(0.5, abs=1e-12)
+    assert fixed.exponents[0] == pytest.approx(math.acosh(1.25), abs=1e-12)
+    assert fixed.action == pytest.approx(-0.5 / (4 * math.pi ** 2), abs=1e-15)
+
+
+@pytest.mark.skipif(TORTURE == 1, reason="a hundred thousand points")
+def test_a_hundred_thousand_points():
+    begun = time.monotonic()
+    family = orbits.follow(orbits.trig, (57031, 75550), 100083, [0.0025, 0.005, 0.01, 0.02, 0.03])
+    assert family[0].undetermined == 2 and all(state.shadow < 2e-13 for state in family)
+    assert [state.label for state in family] == ["minimum"] * 5
+    # the spiral mean's, as 2513 points have it
+    for state, shorter in zip(family, orbits.follow(orbits.trig, *SPIRAL, family.eps)):
+        assert state.action == pytest.approx(shorter.action, abs=2e-6)
+        assert state.exponents == pytest.approx(shorter.exponents, abs=2e-3)
+    assert time.monotonic() - begun < 300
+
+
+def test_blocks_of_ten_thousand_against_a_dense_step():
+    """The solver's residual on a long band, which no dense matrix holds."""
+    state = orbits.follow(orbits.trig, (5842, 7739), 10252, [0.0025, 0.01])[1]
+    rng = np.random.default_rng(8)
+    b, u = rng.normal(size=(state.q, 2)), np.zeros((state.q, 2))
+    lib.cv_solve(2, state.q, address(state.blocks, "double(*)[3]"), 0.01, address(b), address(u))
+    a, c, d = state.blocks.T
+    left = np.stack([a * u[:, 0] + c * u[:, 1], c * u[:, 0] + d * u[:, 1]], 1) + 0.01 * u \
+        - np.roll(u, 1, 0) - np.roll(u, -1, 0)
+    assert np.abs(left - b).max() < 1e-11
