@@ -112,25 +112,25 @@ char *cv_exact_point(const cv_exact *o, long j, int i);
 
 /* ---- the least action over all orbits: minplus.c */
 
-/* What cv_evaluate may be off by, in V, its gradient and its Hessian (Euclidean and spectral norm), at
-   points with coordinates up to reach that are off by 2^-53 (2 reach + 2) themselves.  CV_EARGUMENT:
-   nothing is known of a potential of Python, or so far out. */
+/* What cv_evaluate may be off by, in V, its gradient and its Hessian (Euclidean and spectral norm),
+   at points with coordinates up to reach that are off by 2^-53 (2 reach + 2) themselves.
+   CV_EARGUMENT: nothing is known of a potential of Python, or so far out. */
 int cv_errors(const cv_potential *v, double reach, double errors[3]);
 
 /* Which states of least action of type (p, q), q points z_j + j p/q, may have z_j in the rectangle
-   low[j] to high[j] for all j, and V at z_0 (eps < 0: at least -V) as large as at any other?  base[j] is
-   (j p mod q)/q rounded, curvature >= the norm of V'', and `known` no less than their action, which
-   is meant less that of the straight orbit.  Their points lie in the smaller rectangles that are
-   left in low and high, and their action is no less than *least, infinite if there can be none;
-   otherwise path may be near one.  nodes: how many to lay along each axis, 1 to 1025, both ends
-   included; of an idle one 1. */
+   low[j] to high[j] for all j, and V at z_0 (eps < 0: at least -V) as large as at any other?
+   base[j] is (j p mod q)/q rounded, curvature >= the norm of V'', and `known` no less than their
+   action, which is meant less that of the straight orbit.  Their points lie in the smaller
+   rectangles that are left in low and high, and their action is no less than *least, infinite if
+   there can be none; otherwise path may be near one.  nodes: how many to lay along each axis, 1 to
+   1025, both ends included; of an idle one 1. */
 int cv_corridor(const cv_potential *v, int q, double eps, double curvature, const double (*base)[2],
                 double known, const int (*nodes)[2], double (*low)[2], double (*high)[2],
                 double *least, double (*path)[2]);
 
 /* On the n-torus's grid of nodes i/grid: out(y) = min over nodes x and all their images of
-   u(x) + W(x) + |y - x - c|^2/2, the last coordinate running fastest.  back, unless it is NULL: how many
-   pitches y - x has along each axis.  For |c| < 1000 and 2 <= grid <= 2048, off by less than
+   u(x) + W(x) + |y - x - c|^2/2, the last coordinate running fastest.  back, unless it is NULL: how
+   many pitches y - x has along each axis.  For |c| < 1000 and 2 <= grid <= 2048, off by less than
    2^-45 (max |u| + max |W| + 8 max(1, |c|)). */
 int cv_lax_oleinik(int n, int grid, const double c[2], const double *W, const double *u,
                    double *out, int (*back)[2]);

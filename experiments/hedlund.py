@@ -1,12 +1,12 @@
-"""Hedlund's pathology: with two degrees of freedom the least orbit of a type, run through twice, need
-not be the least of the doubled type.  With one it is (Aubry).
+"""Hedlund's pathology: with two degrees of freedom the least orbit of a type, run through twice,
+need not be the least of the doubled type.  With one it is (Aubry).
 
     python experiments/hedlund.py [--eps EPS ...] [--type P0,P1,Q] [--times N] [--figure FILE]
 
-For the map of trig: proves that every orbit of type (5, 7)/9 has more action per point than one of type
-(10, 14)/18, first for each EPS and then, without --eps, for all eps from where it begins to 0.08; and
-that just below the least orbit of type (10, 14)/18 is that of type (5, 7)/9 run through twice.
---figure draws the gain against eps and both orbits.  Five minutes.
+For the map of trig: proves that every orbit of type (5, 7)/9 has more action per point than one of
+type (10, 14)/18, first for each EPS and then, without --eps, for all eps from where it begins to
+0.08; and that just below, the least orbit of type (10, 14)/18 is that of type (5, 7)/9 run through
+twice.  --figure draws the gain against eps and both orbits.  One or two minutes.
 """
 
 import argparse
@@ -59,14 +59,14 @@ def at(types, eps):
               "times; %.16f per point.  Proved." % (
                   eps, names[1], names[0], types.times, long.high), flush=True)
     else:
-        print("eps %g: not decided: the least actions per point lie from %.16f to %.16f (%s) and from "
-              "%.16f to %.16f (%s)." % (eps, short.low, short.high, names[0], long.low, long.high,
-                                        names[1]), flush=True)
+        print("eps %g: not decided: the least action per point lies from %.16f to %.16f for %s and "
+              "from %.16f to %.16f for %s." % (eps, short.low, short.high, names[0],
+                                               long.low, long.high, names[1]), flush=True)
     return False
 
 
 def gains(types, eps, long):
-    """By how much the action of the long state, followed to this eps, is less than that of the short
+    """By how much the long state, followed to this eps, has less action per point than the short
     one: seen, not proved."""
     return types.least(TO).state.relax(eps).action - long.relax(eps).action
 
@@ -112,16 +112,17 @@ def draw(types, long, begins, file):
     eps = np.linspace(max(FROM, begins - 0.01) if begins else FROM, TO, 60)
     gain = np.array([gains(types, e, long) for e in eps])
     proved = [(e, types.short[e].low - types.long[e].high) for e in sorted(types.long)]
+    none = [e for e in sorted(types.long) if types.long[e].copies % types.times == 0]
     with style.context(["default", picture.SALT, {"font.size": 8}]):
         figure = Figure(figsize=(9.2, 2.9))
         axes, *planes = figure.subplots(1, 3, gridspec_kw={"wspace": 0.3,
                                                            "width_ratios": (1.5, 1, 1)})
         axes.axhline(0, color="0.8", linewidth=0.8)
         axes.plot(eps, 1e6 * gain, color="#1f5f94", linewidth=1.2, label="followed: seen")
-        axes.plot(*zip(*[(e, 1e6 * g) for e, g in proved if g > 0]), "o", color="#d98a2b", markersize=4,
-                  label="proved")
-        axes.plot(*zip(*[(e, 0) for e, g in proved if g <= 0] or [(np.nan, 0)]), "s", color="0.35",
-                  markersize=4, label="none to be had: proved")
+        axes.plot(*np.array([(e, 1e6 * g) for e, g in proved if g > 0]).reshape(-1, 2).T, "o",
+                  color="#d98a2b", markersize=4, label="proved")
+        axes.plot(*np.array([(e, 0) for e in none]).reshape(-1, 2).T, "s", color="0.35",
+                  markersize=4, label="no gain: proved")
         axes.set(xlabel=r"$\varepsilon$", ylabel=r"$10^6$ times the gain per point",
                  title="%s has less action than %s" % types.names()[::-1])
         axes.legend(frameon=False, fontsize=7)
@@ -163,8 +164,8 @@ def main(arguments=None):
             at(types, below)
             at(types, above)
             pieces = everywhere(types, long, above, TO)
-            print("For all eps from %r to %r every state of type %s has more action per point than one of "
-                  "type %s.  Proved, in %d pieces." % (above, TO, *types.names(), pieces))
+            print("For all eps from %r to %r every state of type %s has more action per point than "
+                  "one of type %s.  Proved, in %d pieces." % (above, TO, *types.names(), pieces))
         if options.figure:
             draw(types, long, begins, options.figure)
     except (ConverseError, ValueError, OSError) as error:
