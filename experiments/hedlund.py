@@ -46,23 +46,20 @@ class Types:
 
 
 def at(types, eps):
-    """Prints what is proved at one eps; returns whether the long type has less."""
+    """Prints what is proved at one eps."""
     short, long = types.least(eps), types.least_long(eps)
-    names = types.names()
+    one, many = types.names()
     if short.low > long.high:
-        print("eps %g: every state of type %s has an action per point above %.16f, one of type %s "
-              "has one below %.16f: less by %.2e.  Proved." % (
-                  eps, names[0], short.low, names[1], long.high, short.low - long.high), flush=True)
-        return True
-    if long.copies % types.times == 0:
-        print("eps %g: the state of least action of type %s is an orbit of type %s run through %d "
-              "times; %.16f per point.  Proved." % (
-                  eps, names[1], names[0], types.times, long.high), flush=True)
+        found = ("every state of type %s has an action per point of %r or more, one of type %s has %r "
+                 "or less: a gain of %.2e.  Proved."
+                 % (one, short.low, many, long.high, short.low - long.high))
+    elif long.copies % types.times == 0:
+        found = ("the state of least action of type %s is an orbit of type %s run through %d times; "
+                 "%.16f per point.  Proved." % (many, one, types.times, long.high))
     else:
-        print("eps %g: not decided: the least action per point lies from %.16f to %.16f for %s and "
-              "from %.16f to %.16f for %s." % (eps, short.low, short.high, names[0],
-                                               long.low, long.high, names[1]), flush=True)
-    return False
+        found = ("not decided: the least action per point lies from %r to %r for %s and from %r to %r "
+                 "for %s." % (short.low, short.high, one, long.low, long.high, many))
+    print("eps %r: %s" % (eps, found), flush=True)
 
 
 def gains(types, eps, long):
@@ -72,16 +69,11 @@ def gains(types, eps, long):
 
 
 def beginning(types, long):
-    """The eps where both are alike, by bisection; None if the long one is less everywhere."""
+    """The eps where both are alike, by bisection, if it is between FROM and TO."""
     low, high = FROM, TO
-    try:
-        if gains(types, low, long) > 0:
-            return None
-        while high - low > 1e-12:
-            middle = (low + high) / 2
-            low, high = (low, middle) if gains(types, middle, long) > 0 else (middle, high)
-    except ConverseError:
-        return None
+    while high - low > 1e-12:
+        middle = (low + high) / 2
+        low, high = (low, middle) if gains(types, middle, long) > 0 else (middle, high)
     return high
 
 
@@ -109,7 +101,7 @@ def draw(types, long, begins, file):
 
     from converse import picture
 
-    eps = np.linspace(max(FROM, begins - 0.01) if begins else FROM, TO, 60)
+    eps = np.linspace(max(FROM, begins - 0.01), TO, 60)
     gain = np.array([gains(types, e, long) for e in eps])
     proved = [(e, types.short[e].low - types.long[e].high) for e in sorted(types.long)]
     none = [e for e in sorted(types.long) if types.long[e].copies % types.times == 0]
@@ -157,7 +149,7 @@ def main(arguments=None):
             return
         long = types.least_long(TO).state
         begins = beginning(types, long)
-        if begins is not None and not options.eps:
+        if not options.eps and types.least(TO).low > types.long[TO].high:
             unit = 10.0 ** -DIGITS
             below, above = (round(unit * round(begins / unit + k), DIGITS) for k in (-1, 1))
             print("They are alike at eps %.10f: seen." % begins)

@@ -73,7 +73,7 @@ def _torus(potential, eps, grid):
     x = np.zeros((grid ** n, 2))
     x[:, :n] = np.indices((grid,) * n).reshape(n, -1).T / grid
     W = -eps * _values(potential, x)
-    off = abs(eps) * _errors(potential, 1.0)[0] + U * float(np.abs(W).max())
+    off = abs(eps) * _errors(potential, 1.0)[0] + 2 * U * float(np.abs(W).max())
     rise = n * (1 + abs(eps) * potential.curvature) / (8 * grid ** 2) * (1 + 2.0 ** -40)
     return W, off, rise
 

@@ -190,7 +190,7 @@ static void exclude(rectangle *r, double lowest, double *wanted)
 }
 
 /* Nodes from low to high, both included, W there, and (1) with all that W may be off by: cv_errors,
-   and u for the product. */
+   u of itself for the product, and u for eps, which stands for a decimal. */
 static int look(rectangle *r, const cv_potential *v, double eps, double curvature,
                 const double base[2], const double low[2], const double high[2], double (*x)[2])
 {
@@ -220,7 +220,7 @@ static int look(rectangle *r, const cv_potential *v, double eps, double curvatur
         largest = larger(largest, fabs(r->W[i]));
     }
     r->bend = ((2.0 + fabs(eps) * curvature) * squares * 0.125
-               + fabs(eps) * errors[0] + 0x1p-53 * largest) * (1.0 + 0x1p-40);
+               + fabs(eps) * errors[0] + 0x1p-52 * largest) * (1.0 + 0x1p-40);
     return status;
 }
 
