@@ -50,15 +50,15 @@ def at(types, eps):
     short, long = types.least(eps), types.least_long(eps)
     one, many = types.names()
     if short.low > long.high:
-        found = ("every state of type %s has an action per point of %r or more, one of type %s has %r "
-                 "or less: a gain of %.2e.  Proved."
+        found = ("every state of type %s has an action per point of %r or more, one of type %s has "
+                 "%r or less: a gain of %.2e.  Proved."
                  % (one, short.low, many, long.high, short.low - long.high))
     elif long.copies % types.times == 0:
-        found = ("the state of least action of type %s is an orbit of type %s run through %d times; "
-                 "%.16f per point.  Proved." % (many, one, types.times, long.high))
+        found = ("the state of least action of type %s is an orbit of type %s run through %d "
+                 "times; %.16f per point.  Proved." % (many, one, types.times, long.high))
     else:
-        found = ("not decided: the least action per point lies from %r to %r for %s and from %r to %r "
-                 "for %s." % (short.low, short.high, one, long.low, long.high, many))
+        found = ("not decided: the least action per point lies from %r to %r for %s and from %r to "
+                 "%r for %s." % (short.low, short.high, one, long.low, long.high, many))
     print("eps %r: %s" % (eps, found), flush=True)
 
 

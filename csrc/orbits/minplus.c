@@ -65,12 +65,13 @@ typedef struct { const double *x, *f, *y; double *out; int *from; long stride; }
 /* out[k] = min over i of f[i] + (y[k] - x[i])^2/2 for first <= k < end, where the least is among
    left <= i <= right; x and y increase.  from[k], unless it is NULL: the i.
 
-   Both terms of y[k] x[i] favour large i for large k: if i < i' and k < k',
+   An infinite f[i] takes no part in a minimum.  The terms -y[k] x[i] favour large i for large k:
+   if i < i' and k < k',
        cost(k, i) + cost(k', i') <= cost(k, i') + cost(k', i).
    So the least of the row in the middle halves the search of the others.  Let a computed cost be
    off by at most c.  The i found is least up to 2c, and so by the inequality the rows below it have
-   an i from it on whose cost is at most 2c above the least, likewise the rows above: with no more
-   than 2048 rows, each comes out within 25c of the truth. */
+   an i from it on whose cost is at most 2c above their least, likewise the rows above.  2048 rows
+   are halved 12 times: each comes out within 25c of the truth. */
 static void cheapest(const line *l, int first, int end, int left, int right)
 {
     while (first < end) {
@@ -95,27 +96,13 @@ static void cheapest(const line *l, int first, int end, int left, int right)
     }
 }
 
-/* The rows of `in`, m numbers at x each, become the columns of `out`, at y; what is infinite is no
-   part of a minimum.  spare: room for 2 m numbers. */
+/* The rows of `in`, m numbers at x each, become the columns of `out`, at y. */
 static void along_axis(int rows, int m, const double *x, const double *in, int k, const double *y,
-                       double *out, double *spare)
+                       double *out)
 {
-    double *const at = spare, *const f = spare + m;
-
     for (int row = 0; row < rows; row++) {
-        const line l = { at, f, y, out + row, NULL, rows };
-        int finite = 0;
-        for (int i = 0; i < m; i++) {
-            const double value = in[(size_t)row * (size_t)m + (size_t)i];
-            at[finite] = x[i];
-            f[finite] = value;
-            finite += value < HUGE_VAL;
-        }
-        if (finite > 0)
-            cheapest(&l, 0, k, 0, finite - 1);
-        else
-            for (int i = 0; i < k; i++)
-                out[(size_t)i * (size_t)rows + (size_t)row] = HUGE_VAL;
+        const line l = { x, in + (size_t)row * (size_t)m, y, out + row, NULL, rows };
+        cheapest(&l, 0, k, 0, m - 1);
     }
 }
 
@@ -133,17 +120,17 @@ typedef struct {
 typedef struct {
     int q;
     rectangle *r;
-    double *u, *end, *G, *T, *spare, *line;
+    double *u, *end, *G, *T, *spare;
 } corridor;
 
 /* out = min over the nodes of `from` of in + |difference|^2/2, at the nodes of `to`. */
 static void step(const corridor *c, const rectangle *from, const double *in, const rectangle *to,
                  double *out)
 {
-    along_axis(from->nodes[0], from->nodes[1], from->at[1], in, to->nodes[1], to->at[1], c->spare,
-               c->line);
-    along_axis(to->nodes[1], from->nodes[0], from->at[0], c->spare, to->nodes[0], to->at[0], out,
-               c->line);
+    along_axis(from->nodes[0], from->nodes[1], from->at[1], in, to->nodes[1], to->at[1],
+               c->spare);
+    along_axis(to->nodes[1], from->nodes[0], from->at[0], c->spare, to->nodes[0], to->at[0],
+               out);
 }
 
 /* The least and the largest of an array's values at the corners of a cell. */
@@ -370,7 +357,7 @@ int cv_corridor(const cv_potential *v, int q, double eps, double curvature, cons
 {
     size_t total = 0, widest = 0, used = 0;
     double *memory, (*x)[2];
-    corridor c = { q, NULL, NULL, NULL, NULL, NULL, NULL, NULL };
+    corridor c = { q, NULL, NULL, NULL, NULL, NULL, NULL };
     int status = CV_OK;
 
     if (!machine_is_sound())
@@ -388,7 +375,7 @@ int cv_corridor(const cv_potential *v, int q, double eps, double curvature, cons
         widest = back > widest ? back : widest;
     }
     c.r = malloc((size_t)q * sizeof *c.r);
-    memory = malloc((total + 5 * widest + 2 * MAX_NODES) * sizeof *memory);
+    memory = malloc((total + 5 * widest) * sizeof *memory);
     x = malloc(widest * sizeof *x);
     if (!c.r || !memory || !x)
         status = CV_ENOMEM;
@@ -405,7 +392,7 @@ int cv_corridor(const cv_potential *v, int q, double eps, double curvature, cons
         status = look(r, v, eps, curvature, base[j], low[j], high[j], x);
     }
     if (status == CV_OK) {
-        double **const parts[] = { &c.u, &c.end, &c.G, &c.T, &c.spare, &c.line };
+        double **const parts[] = { &c.u, &c.end, &c.G, &c.T, &c.spare };
         for (size_t k = 0; k < sizeof parts / sizeof *parts; k++, used += widest)
             *parts[k] = memory + used;
         status = search(&c, known, low, high, least, path);
