@@ -80,7 +80,7 @@ class ProvedOrbit:
         lines = [
             "Proved, with %d decimal places: the map x' = x + p', p' = p - eps grad V(x) with the "
             "potential %s" % (self.digits, state.potential.name),
-            "and eps = %s exactly has one orbit of type %s within %s of the points computed"
+            "and eps = %s has exactly one orbit of type %s within %s of the points computed"
             % (_eps(state), _type(state), _round(self.radius, 2, up=True)),
             "(Euclidean norm of all coordinates together). It is hyperbolic and, run through any number of",
             "times, a nondegenerate local minimum of the action: second variation at least %s."
@@ -96,8 +96,8 @@ def prove(state: State, digits: Optional[int] = None) -> ProvedOrbit:
     The points are made as exact as that needs.  Where phases are undetermined in doubles they are
     determined here, and the points may move: see `moved`.
     NotProved, with a reason: among others, because the state is none of an orbit, or a saddle."""
-    wanted = DIGITS if digits is None else int(digits)
-    if not 1 <= wanted <= MOST - 2 * GUARD:
+    wanted = DIGITS if digits is None else digits
+    if not isinstance(wanted, int) or not 1 <= wanted <= MOST - 2 * GUARD:
         raise ValueError("digits is a number from 1 to %d, not %r" % (MOST - 2 * GUARD, digits))
     if state.eps == 0:
         raise NotProved("without a perturbation, at eps 0, no orbit is isolated")

@@ -798,8 +798,8 @@ static int below(cv_exact *o, const apm_t shift)
     return is_positive(o, &o->at[0].s, 0) && is_positive(o, &o->spare[0], 1);
 }
 
-/* Is every copy's Hessian, less m, positive semidefinite?  The guess is made for a little more than m,
-   which then is what is left between s[0] and last. */
+/* Is every copy's Hessian, less m, positive semidefinite?  The guess is made for 8 ulp more at each
+   point, more than it is rounded by there, so that s[0] comes to lie below last. */
 static int is_least(cv_exact *o, const apm_t m)
 {
     apm_t *const t = o->t;
@@ -808,8 +808,7 @@ static int is_least(cv_exact *o, const apm_t m)
     apm_add(t[12], t[12], o->blur);
     apm_add(t[12], t[12], m);
     apm_neg(t[12], t[12]);                              /* the shift */
-    apm_mul_si(t[13], m, -1);
-    apm_scale(t[13], t[13], -2);
+    apm_mul_si(t[13], o->ulp, -8);
     apm_add(t[13], t[13], t[12]);
     return eliminate(o, t[13], 0) && join(o) && below(o, t[12]);
 }
