@@ -119,7 +119,7 @@ char *cv_exact_point(const cv_exact *o, long j, int i);
 /* ---- the least action over all orbits: minplus.c */
 
 /* What cv_evaluate may be off by, in V, its gradient and its Hessian (Euclidean and spectral norm), at
-   points with coordinates up to reach that are off by 2^-53 (reach + 2) themselves.  CV_EARGUMENT:
+   points with coordinates up to reach that are off by 2^-53 (2 reach + 2) themselves.  CV_EARGUMENT:
    nothing is known of a potential of Python, or so far out. */
 int cv_errors(const cv_potential *v, double reach, double errors[3]);
 

@@ -17,7 +17,8 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
 TESTS = ["test_apm.py", "test_special.py", "test_bounding.py", "test_bd_trig.py", "test_bounds.py", "test_images.py",
-         "test_search.py", "test_loewner.py", "test_proved.py"]
+         "test_search.py", "test_loewner.py"]
+ORBITS = ["test_orbits.py", "test_orbits_fail.py", "test_floor.py", "test_proved.py"]   # for that room
 # The test to begin with, by file or room; without one it is test_images.py.
 FIRST = {"numbers/apm.c": "test_apm.py", "numbers/special.c": "test_special.py",
          "numbers/sine.h": "test_loewner.py", "thesis/bounding.c": "test_bounding.py",
@@ -25,7 +26,8 @@ FIRST = {"numbers/apm.c": "test_apm.py", "numbers/special.c": "test_special.py",
          "thesis/lambda.c": "test_bounds.py", "torus.c": "test_bounds.py",
          "thesis/lipschitz.c": "test_bounds.py", "thesis/region.c": "test_search.py",
          "thesis/follow.c": "test_search.py", "search.c": "test_search.py", "setup.c": "test_search.py",
-         "loewner": "test_loewner.py", "orbits/enclose.c": "test_proved.py"}
+         "loewner": "test_loewner.py", "orbits": "test_orbits.py",
+         "orbits/minplus.c": "test_floor.py", "orbits/enclose.c": "test_proved.py"}
 FLAGS = ["-std=c11", "-O1", "-fPIC", "-ffp-contract=off", "-I", "csrc",
          "-I", sysconfig.get_paths()["include"]]
 
@@ -229,6 +231,29 @@ MUTATIONS = [
     ("loewner/try.c", "return largest * (1.0 + 0x1p-46);", "return largest - 1e-9;"),
     ("thesis/kernel.c", "    if (num_get_apm(r, x) != APM_OK)\n        s->failed = 1;\n",
      "    num_get_apm(r, x);\n"),
+    ("orbits/minplus.c", "((2.0 + fabs(eps) * curvature) * squares", "((0.0 + fabs(eps) * curvature) * squares"),
+    ("orbits/minplus.c", "((2.0 + fabs(eps) * curvature) * squares", "((2.0 + fabs(eps)) * squares"),
+    ("orbits/minplus.c", "squares * 0.125", "squares * 0.01"),
+    ("orbits/minplus.c", "most + r->bend < lowest", "most < lowest"),
+    ("orbits/minplus.c", "first->W, &where) - first->bend;", "first->W, &where);"),
+    ("orbits/minplus.c", "known + margin, lowest", "known, lowest"),
+    ("orbits/minplus.c", "    *least -= margin;\n", ""),
+    ("orbits/minplus.c", "? -c->u[i] : HUGE_VAL", "? c->u[i] : HUGE_VAL"),
+    ("orbits/minplus.c", "? c->end[i] - c->u[i] : HUGE_VAL", "? c->end[i] : HUGE_VAL"),
+    ("orbits/minplus.c", "last[axis] + (r->nodes[axis] > 1)", "last[axis]"),
+    ("orbits/minplus.c", "        first = middle + 1;\n        left = best;", "        first = middle + 1;\n        left = best + 1;"),
+    ("orbits/minplus.c", "cheapest(l, first, middle, left, best);", "cheapest(l, first, middle, left, best - 1);"),
+    ("orbits/minplus.c", "(int)floor(grid * (-c - 0.5))", "(int)floor(grid * -c)"),
+    ("orbits/minplus.c", "count = 2 * grid + 3", "count = grid + 1"),
+    ("orbits/minplus.c", "part *= 6.3 * k)", "part *= 6.3)"),
+    ("orbits/minplus.c", "double part = 0x1p-48 *", "double part = 0x1p-54 *"),
+    ("orbits/minplus.c", "{ 0x1p-43, 0x1p-41, 0x1p-39 }", "{ 0x1p-51, 0x1p-51, 0x1p-48 }"),
+    ("orbits/minplus.c", "{ 0x1p-47, 0x1p-43, 0x1p-40 }", "{ 0x1p-53, 0x1p-51, 0x1p-48 }"),
+    ("orbits/minplus.c", "v->kind == CV_PYTHON || !(reach < 1000.0)", "!(reach < 1000.0)"),
+    ("orbits/minplus.c", "v->kind == CV_PYTHON || !(reach < 1000.0)", "v->kind == CV_PYTHON"),
+    ("orbits/minplus.c", "    if (!(sum < 1e300))\n        return CV_EARITHMETIC;\n", ""),
+    ("orbits/minplus.c", "here[0] < 1 || here[0] > MAX_NODES ||", "here[0] < 1 ||"),
+    ("orbits/minplus.c", "finite += value < HUGE_VAL;", "finite++;"),
     ("orbits/enclose.c", "        apm_mul_si(t[0], t[0], 2);\n        apm_sincos",
      "        apm_sincos"),
     ("orbits/enclose.c", "apm_mul_si(t[1], t[1], 120 * (1 + size * size));",
@@ -263,6 +288,52 @@ MUTATIONS = [
     ("orbits/enclose.c", "    if (turn < 0) {\n", "    if (0) {\n"),
     ("orbits/enclose.c", "        apm_add(b, b, off);                             /* how",
      "        /* how"),
+    ("orbits/potential.c", "slope = v->sine[t] * c - v->cosine[t] * s;",
+     "slope = v->sine[t] * c + v->cosine[t] * s;"),
+    ("orbits/potential.c", "h01 -= k0 * k1 * here;", "h01 += k0 * k1 * here;"),
+    ("orbits/potential.c", "2.0 * fs + 4.0 * s * fss", "2.0 * fs + 2.0 * s * fss"),
+    ("orbits/potential.c", "-4.0 * e + 8.0 * t", "-4.0 * e - 8.0 * t"),
+    ("orbits/potential.c", "turn > 0.5 ? -1.0 : 1.0", "1.0"),
+    ("orbits/potential.c", "hessian[2] = -0.25 * c1.second", "hessian[2] = -0.25 * c0.second"),
+    ("orbits/relax.c", "j > 0 ? j - 1 : q - 1", "j > 0 ? j - 1 : 0"),
+    ("orbits/relax.c", "(i == 1 ? 0.0 : 2.0) - of->eps", "2.0 - of->eps"),
+    ("orbits/relax.c", "squares < HUGE_VAL ? largest : HUGE_VAL", "largest"),
+    ("orbits/relax.c", "fabs(difference) <= a->noise", "fabs(difference) <= 0.0"),
+    ("orbits/relax.c", "return difference < 0.0;", "return difference > 0.0;"),
+    ("orbits/relax.c", "return may_walk && along < 0.0 &&", "return may_walk && along > 0.0 &&"),
+    ("orbits/relax.c", "return may_walk && along < 0.0 &&", "return 0 &&"),
+    ("orbits/relax.c", "if (negative > 0 && how->escapes < MOST_ESCAPES) {", "if (0) {"),
+    ("orbits/relax.c", "move(of->q, other, at, chosen,", "move(of->q, other, at, -chosen,"),
+    ("orbits/relax.c", "double low = FLAT, high = 1.0, most;", "double low = 1.0, high = 1.0, most;"),
+    ("orbits/relax.c", "-fmin(1.0, CAP / widest(q, (const point *)along))", "-1.0"),
+    ("orbits/relax.c", "double mu = how->damping;", "double mu = 0.0;"),
+    ("orbits/relax.c", "if (status == CV_OK && lower(q, other, at, how->steps < WALK)) {",
+     "if (status == CV_OK) {"),
+    ("orbits/relax.c", "        status = descend(&of, at, other, along, tol, max_steps, how);\n"
+     "        memcpy(u, at->u, size * sizeof *u);\n",
+     "        status = descend(&of, at, other, along, tol, max_steps, how);\n"
+     "        memcpy(u, places[0].u == at->u ? other->u : at->u, size * sizeof *u);\n"),
+    ("orbits/band.c", "j == q - 2 && k < 2", "j == q && k < 2"),
+    ("orbits/band.c", "        last.b -= dot(here->v[0], next.v[1]);\n", ""),
+    ("orbits/band.c", "if (j < q - 2)\n                    r[i] += u[j + 1][i];", ""),
+    ("orbits/band.c", "        last.c -= n == 2 ? 2.0 : 0.0;\n", ""),
+    ("orbits/band.c", "const double idle = n == 2 ? mu : 0.0;", "const double idle = mu;"),
+    ("orbits/band.h", "det > 0.0 ? (m.a > 0.0 ? 0 : 2)", "det > 0.0 ? 0"),
+    ("orbits/band.c", "return -round;", "return 0;"),
+    ("orbits/band.c", "sym here = { HELD, 0.0, n == 2 ? HELD : 1.0 };",
+     "sym here = { 0.6, 0.0, n == 2 ? 0.6 : 1.0 };"),
+    ("orbits/band.c", "if (round > 1 && moved < 1e-13)", "if (round > 1 && moved < 1e-3)"),
+    ("orbits/band.c", "both += log(sym_det(sym_of(d[j])));", "both += log(d[j][0] * d[j][2]);"),
+    ("orbits/band.c", "fabs(half) + sqrt(disc)", "half + sqrt(disc)"),
+    ("orbits/band.c", "disc > 0.0 ? size", "disc > 1e300 ? size"),
+    ("orbits/measure.c", "const double across = right->x[0] - left->x[0] + (a + step >= q ? 1.0 : 0.0);",
+     "const double across = right->x[0] - left->x[0];"),
+    ("orbits/measure.c", "fmin(up, 1.0 - up)", "up"),
+    ("orbits/measure.c", "across == 0.5 && left->index > right->index", "0"),
+    ("orbits/measure.c", "heap[child + 1].square > heap[child].square",
+     "heap[child + 1].square < heap[child].square"),
+    ("orbits/measure.c", "(kept == count && across * across >= heap[0].square)", "kept == count"),
+    ("orbits/measure.c", "if (kept == count && square >= heap[0].square)\n                continue;", ""),
 ]
 
 # Survivors that do not matter, by what stands there, with the reason.
@@ -288,12 +359,15 @@ HARMLESS = {
         "TINY is for products that underflow beside parameters and reaches of more than 10^100",
     "x > y || isnan(x) ? x : y":
         "a second belt: where far or B is NaN, so are sines or all corners, and the bound",
+    "squares < HUGE_VAL ? largest : HUGE_VAL":
+        "a second belt: what a potential from Python answers is finite, and so is what ours do",
 }
 
 
 def build(base, work, file):
     """Compiles the units that the changed file belongs to, and links; base has all other objects."""
-    shutil.copytree(ROOT / "converse", work / "converse", ignore=shutil.ignore_patterns("_native*"))
+    shutil.copytree(ROOT / "converse", work / "converse",
+                    ignore=shutil.ignore_patterns("*.so", "__pycache__"))
     objects = []
     for source in sorted(base.glob("*.d")):
         words = source.read_text().replace("\\\n", " ").split()
@@ -333,7 +407,8 @@ def try_mutation(base, number):
         build(base, work, file)
         environment = dict(os.environ, PYTHONPATH=str(work))
         first = FIRST.get(file, FIRST.get(file.split("/")[0], "test_images.py"))
-        for test in sorted(TESTS, key=lambda test: test != first):
+        tests = sorted(ORBITS if file.startswith("orbits") else TESTS, key=lambda test: test != first)
+        for test in tests:
             command = [sys.executable, "-m", "pytest", "-x", "-q", "-p", "no:cacheprovider",
                        "--no-header", str(ROOT / "tests" / test)]
             try:

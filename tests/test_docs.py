@@ -9,12 +9,14 @@ from pathlib import Path
 import pytest
 
 from converse import check, chart, cli
+from converse.orbits import cli as orbits_cli
 from converse.version import __version__
 
 ROOT = Path(__file__).resolve().parent.parent
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
 TEXTS = {page.name: page.read_text("utf-8") for page in PAGES}
-PARSERS = {"converse": cli.parser, "converse-check": check.parser, "converse-chart": chart.parser}
+PARSERS = {"converse": cli.parser, "converse-check": check.parser, "converse-chart": chart.parser,
+           "converse-orbits": orbits_cli.parser}
 
 
 @pytest.mark.parametrize("name", [name for name, text in TEXTS.items() if "```python" in text])
@@ -28,7 +30,7 @@ def test_python_examples_run(name, tmp_path):
     result = subprocess.run([sys.executable, "example.py"], cwd=tmp_path, capture_output=True,
                             text=True, timeout=300)
     assert (result.returncode, result.stderr) == (0, "")
-    assert "no invariant tori" in result.stdout
+    assert ("Proved" if name == "orbits.md" else "no invariant tori") in result.stdout
 
 
 def test_commands_are_understood():
@@ -44,6 +46,11 @@ def test_commands_are_understood():
                 PARSERS[command]().parse_args(shlex.split(arguments))
                 shown += 1
     assert shown >= 4
+
+
+def test_experiments_exist():
+    scripts = set(re.findall(r"`([a-z]+\.py)`", TEXTS["orbits.md"]))
+    assert scripts == {path.name for path in (ROOT / "experiments").glob("*.py")}
 
 
 @pytest.mark.parametrize("name", TEXTS)

@@ -10,7 +10,7 @@ import pytest
 
 import converse
 from converse import orbits
-from converse._native import lib
+from converse._native import ffi, lib
 from converse.orbits.potential import address
 from converse.problem import Problem
 from truth import TORTURE
@@ -149,13 +149,15 @@ def test_soft_directions_that_turn():
         def hessian(self, x):
             angle = np.pi / 3 * np.rint(3 * x[:, 0])
             e = np.stack([np.cos(angle), np.sin(angle)], 1)
-            return (2 - 10) * np.eye(2) + (10 - soft) * e[:, :, None] * e[:, None, :]
+            return (2 - stiff) * np.eye(2) + (stiff - soft) * e[:, :, None] * e[:, None, :]
 
-    for soft, label in ((0.85, "saddle"), (1.6, "minimum")):
+    for soft, stiff, label in ((0.85, 10, "saddle"), (1.6, 10, "minimum"), (1.6, 30, "minimum")):
         potential = orbits.FromPython(Blocks(), 2)
         state = orbits.State(potential, (1, 1), 3, 1.0, np.zeros((3, 2)), (0.0, 0.0))
         assert state.below(0) == 0 and state.label == label
         assert (state.repeat(2).least < 0) == (label == "saddle")
+        if label == "minimum":      # DF^3 has complex eigenvalues, then two that are below -1
+            assert state.exponents == pytest.approx(carried(state, 40), abs=1e-12)
 
 
 def test_continuation_loses_the_minimum():
@@ -172,6 +174,32 @@ def test_continuation_loses_the_minimum():
             gained[eps, q] = followed.action - min(state.action for state in others)
     assert max(abs(gained[0.01, q]) for q in (9, 37)) < 1e-12
     assert gained[0.04, 9] == pytest.approx(2.9475e-5, rel=1e-3) and gained[0.04, 37] > 5e-5
+
+
+def test_it_leaves_a_saddle_for_the_lower_side():
+    """From the least V of a skew potential both sides lead down, to the same maximum."""
+    for skew in (0.3, -0.3):
+        potential = orbits.Fourier({(1,): (1, 0), (2,): (0, skew)}, "skew")
+        axis = np.arange(10 ** 6)[:, None] / 10 ** 6
+        low = axis[np.argmin(potential.evaluate(axis)[0])]
+        saddle = orbits.newton(orbits.State(potential, (0,), 1, 0.01, [[0.0]], tuple(low)))[0]
+        assert saddle.label == "saddle"
+        left, right = potential.evaluate([low - 0.05, low + 0.05])[0]
+        assert abs(left - right) > 0.01
+        orbit = saddle.relax()
+        assert orbit.label == "minimum" and (orbit.u[0, 0] > 0) == (right > left)
+
+
+def test_no_step_is_longer_than_a_tenth():
+    """Near an inflection of V Newton's step is longer than the torus."""
+    state = orbits.State(orbits.standard, (0,), 1, 0.5, [[0.251]], (0.0,))
+    wild, _ = orbits.newton(state, max_steps=1)
+    assert abs(wild.u[0, 0] - 0.251) > 10
+    how, u = ffi.new("cv_relaxed *"), np.array([[0.251, 0.0]])
+    assert lib.cv_relax(orbits.standard.native, 1, 0.5, address(np.zeros((1, 2))), address(u), 1e-13,
+                        1, how) == lib.CV_RUNNING
+    assert how.steps == 1 and u[0, 0] == pytest.approx(0.351, abs=1e-12)
+    assert state.relax().x[0, 0] == pytest.approx(0.5, abs=1e-12)
 
 
 def test_no_state_is_said():
@@ -313,6 +341,15 @@ def test_pairs_against_all_pairs(potential, q, count):
                 == {frozenset(pair) for pair in zip(i[first], j[first])}
         assert np.allclose(pairs.momentum, np.linalg.norm(
             state.momenta[pairs.i] - state.momenta[pairs.j], axis=1), atol=1e-15)
+
+
+def test_pairs_half_way_round():
+    """Two points opposite each other are as far in both directions, and one pair."""
+    state = orbits.State(orbits.trig, (0, 0), 3, 0.0, [[0, 0], [0.5, 0], [0.25, 0.5]], (0, 0))
+    pairs = state.pairs()
+    assert {frozenset(pair) for pair in zip(pairs.i, pairs.j)} == {frozenset(s) for s in
+                                                                   ((0, 1), (0, 2), (1, 2))}
+    assert pairs.distance == pytest.approx([0.5, math.hypot(0.25, 0.5), math.hypot(0.25, 0.5)])
 
 
 def test_pairs_at_the_same_place():

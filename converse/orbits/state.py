@@ -72,12 +72,16 @@ class State:
             raise ValueError("displacements are %d rows of %d finite numbers below %d in size"
                              % (self.q, n, FARTHEST))
         u.flags.writeable = False
-        origin = tuple(float(x) for x in self.origin)
-        if len(origin) != n or not all(map(isfinite, origin)) or not isfinite(self.eps):
+        try:
+            origin, eps = tuple(float(x) for x in self.origin), float(self.eps)
+            valid = len(origin) == n and all(map(isfinite, origin + (eps,)))
+        except (TypeError, ValueError, OverflowError):
+            valid = False
+        if not valid:
             raise ValueError("origin and eps are finite numbers, %d and one, not %r and %r"
                              % (n, self.origin, self.eps))
         for name, value in (("p", p), ("q", int(self.q)), ("u", u), ("origin", origin),
-                            ("eps", float(self.eps))):
+                            ("eps", eps)):
             object.__setattr__(self, name, value)
 
     def __repr__(self):
@@ -201,8 +205,8 @@ class State:
     @cached_property
     def exponents(self) -> Optional[np.ndarray]:
         """The n Lyapunov exponents (1/q) log |l| >= 0 of the orbit, larger first, array (n,); NaN
-        where the pivots are not positive definite.  An exponent below about 1/(200,000) or 1/(5 q),
-        whichever is larger, is that small, not more exactly known."""
+        where the pivots are not positive definite.  An exponent below about 1/200,000 or 1/(5 q),
+        whichever is smaller, is that small, not more exactly known."""
         pivots, rounds = self._pivots
         growth = ffi.new("double[2]")
         if rounds < 0:

@@ -1,0 +1,122 @@
+"""Speed against accuracy of the three ways to find an orbit (thesis, Appendix A).
+
+    python experiments/finders.py [DIRECTORY]
+
+trig, (1432, 1897)/2513, from the minimum at 0.96 eps: gradient flow, Newton's method as it is, and
+damped.  Each is told to stop at ever smaller gradients; the time, the shadow there, and the distance
+to the proved orbit that damped Newton leads to from there.  Writes orbit-finders.svg and .csv into
+DIRECTORY (build).  A minute.
+"""
+
+import csv
+import os
+import sys
+import time
+from dataclasses import replace
+
+import numpy as np
+
+from converse import orbits, picture
+
+TYPE = (1432, 1897), 2513
+EPS = 0.0125, 0.02
+GUESS = 0.96                # of eps
+TOLERANCES = [10.0 ** -k for k in range(3, 14)]
+FLOW_SECONDS = 10.0
+REPEAT = 20
+STYLES = {"gradient flow": ("s", "#d98a2b"), "Newton": ("^", "0.45"),
+          "damped Newton": ("o", "#1f5f94")}
+
+
+def timed(function):
+    """What it returns, and the least of REPEAT times."""
+    seconds = []
+    for _ in range(REPEAT):
+        begun = time.perf_counter()
+        result = function()
+        seconds.append(time.perf_counter() - begun)
+    return result, min(seconds)
+
+
+def runs(guess, eps):
+    """Yields name, tolerance, seconds and the state there."""
+    state, total = replace(guess, eps=eps), 0.0
+    for tolerance in TOLERANCES:
+        begun = time.perf_counter()
+        while state.grad_size > tolerance and total + time.perf_counter() - begun < FLOW_SECONDS:
+            state, _ = orbits.flow(state, grad_size=tolerance, max_steps=100)
+        total += time.perf_counter() - begun
+        yield "gradient flow", tolerance, total, state
+        if total > FLOW_SECONDS:
+            break
+    for tolerance in TOLERANCES:
+        (state, _), seconds = timed(lambda: orbits.newton(guess, eps, tol=tolerance))
+        yield "Newton", tolerance, seconds, state
+    for tolerance in TOLERANCES:
+        yield ("damped Newton", tolerance,
+               *reversed(timed(lambda: guess.relax(eps, tol=tolerance))))
+
+
+def distance(state, known):
+    """To the proved orbit that damped Newton leads to from there."""
+    if state.shadow > 1:
+        return float("inf")                     # it has diverged
+    end = state.relax()
+    for orbit, points in known:
+        if np.abs(orbit.u - end.u).max() < 1e-6:
+            break
+    else:
+        points = np.array(orbits.prove(end).displacements, dtype=float)
+        known.append((end, points))
+    return float(np.sqrt(((state.u - points) ** 2).sum(1)).max())
+
+
+def measure(eps):
+    guess, known = orbits.follow(orbits.trig, *TYPE, [GUESS * eps])[0], []
+    for name, tolerance, seconds, state in runs(guess, eps):
+        row = (eps, name, tolerance, seconds, state.shadow, distance(state, known), state.label)
+        print("%g, %s to %.0e: %.4f s, shadow %.1e, distance %.1e, %s" % row, flush=True)
+        yield row
+
+
+def draw(rows):
+    """The figure, as the bytes of an SVG file."""
+    from matplotlib import style
+    from matplotlib.figure import Figure
+
+    with style.context(["default", picture.SALT]):
+        figure = Figure(figsize=(8, 3.3))
+        for axes, eps in zip(figure.subplots(1, 2, sharey=True), EPS):
+            for name, (marker, colour) in STYLES.items():
+                mine = [row for row in rows if row[:2] == (eps, name)]
+                seconds, shadow, far = ([row[k] for row in mine] for k in (3, 4, 5))
+                axes.plot(seconds, far, marker + "-", color=colour, markersize=4, linewidth=0.9,
+                          label=name + ": distance")
+                axes.plot(seconds, shadow, marker + ":", color=colour, markersize=4, linewidth=0.9,
+                          markerfacecolor="white", label="its shadow")
+            axes.set(xscale="log", yscale="log", ylim=(1e-17, 30), xlabel="time (seconds)")
+            axes.set_title(r"$\varepsilon = %g$" % eps, fontsize=9)
+            axes.grid(color="0.93", linewidth=0.6)
+            axes.tick_params(labelsize=8)
+            if any(row[1] == "Newton" and row[5] > 1 for row in rows if row[0] == eps):
+                axes.text(0.45, 0.93, "Newton's method diverges", color="0.45", fontsize=7,
+                          transform=axes.transAxes)
+        figure.axes[0].set_ylabel("distance to the proved orbit; shadow", fontsize=8)
+        figure.axes[0].legend(fontsize=6.5, frameon=False, loc="lower right")
+        figure.subplots_adjust(wspace=0.06)
+        return picture.encode(figure, "svg")
+
+
+def main(directory="build"):
+    os.makedirs(directory, exist_ok=True)
+    rows = [row for eps in EPS for row in measure(eps)]
+    with open(os.path.join(directory, "orbit-finders.svg"), "wb") as file:
+        file.write(draw(rows))
+    with open(os.path.join(directory, "orbit-finders.csv"), "w", encoding="ascii", newline="") as file:
+        table = csv.writer(file, lineterminator="\n")
+        table.writerow(("eps", "method", "tolerance", "seconds", "shadow", "distance", "label"))
+        table.writerows(rows)
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])

@@ -1,0 +1,158 @@
+"""The smoothness puzzle (thesis, section 2.4): are momenta Lipschitz functions of the angles?
+
+    python experiments/smoothness.py [DIRECTORY]
+
+For the 800 closest pairs of points of an orbit, L = |dp|/|dx|.  Where orbits have contracted into
+filaments the thesis saw the largest L at the smallest |dx|, with slope -1 and in "two populations",
+and suspected noise.  Writes smoothness.svg and smoothness.csv into DIRECTORY (build).  All pairs but
+those at eps 0.0075 are of proved orbits, whose points are known to 10^-20 or better: no noise is
+left.  A few seconds.
+"""
+
+import csv
+import math
+import os
+import sys
+from collections import Counter
+from fractions import Fraction
+
+import numpy as np
+
+from converse import orbits, picture
+
+SPIRAL, LONGER = ((1432, 1897), 2513), ((2513, 3329), 4410)
+# type, eps, digits of the proved orbit; None: the phases are not determined, doubles must do
+STATES = [(SPIRAL, 0.0075, None), (SPIRAL, 0.0125, 20), (LONGER, 0.0125, 20), (SPIRAL, 0.02, 20),
+          (SPIRAL, 0.03, 60)]
+COUNT = 800
+CANDIDATES = 4000           # pairs, closest in doubles, among which are the closest
+WINDOW = 0.07               # of the projection, half its width
+STEEP = 40                  # pairs of largest L, whose distances along the orbit are listed
+
+
+def exact_pairs(proved):
+    """The closest pairs of a proved orbit: i, j, |dx|, |dp|.  Since x_{j+1} = x_j + p_{j+1}, momenta are
+    differences of displacements."""
+    state, u = proved.state, proved.displacements
+    found = []
+    for i, j in zip(*map(np.ndarray.tolist, state.pairs(CANDIDATES)[:2])):
+        dx = [Fraction((i - j) * p % state.q, state.q) + a - b
+              for p, a, b in zip(state.p, u[i], u[j])]
+        dp = [a - b - c + d for a, b, c, d in zip(u[i], u[i - 1], u[j], u[j - 1])]
+        found.append((size([x - round(x) for x in dx]), size(dp), i, j))
+    distance, momentum, i, j = map(np.array, zip(*sorted(found)[:COUNT]))
+    return i, j, distance, momentum
+
+
+def size(vector):
+    """The Euclidean norm of a vector of Fractions."""
+    largest = max(map(abs, vector))
+    return float(largest) * math.hypot(*(float(x / largest) for x in vector)) if largest else 0.0
+
+
+def measure(kind, eps, digits):
+    """A state and its closest pairs; printed, what is said of them."""
+    state = orbits.follow(orbits.trig, *kind, [eps])[0]
+    if digits is None:
+        pairs = state.pairs(COUNT)
+        print("(%d, %d)/%d, eps %g: in doubles, shadow %.0e"
+              % (*state.p, state.q, eps, state.shadow))
+    else:
+        proved = orbits.prove(state, digits)
+        pairs, doubles = exact_pairs(proved), state.pairs(COUNT)
+        print("(%d, %d)/%d, eps %g: proved, radius %.0e, %.0e from the doubles, whose largest L is %.4g"
+              % (*state.p, state.q, eps, proved.radius, proved.moved,
+                 max(doubles.momentum / doubles.distance)))
+    i, j, distance, momentum = pairs
+    steepness = momentum / distance
+    apart = np.minimum(abs(i - j), state.q - abs(i - j))
+    steep = np.argsort(-steepness)[:STEEP]
+    at = steep[0]
+    print("    |dx| %.1e to %.1e; largest L %.4g, points %d and %d, |dx| %.3e, |dp| %.3e"
+          % (distance[0], distance[-1], steepness[at], i[at], j[at], distance[at], momentum[at]))
+    print("    steepest %d:" % STEEP)
+    for d, n in Counter(apart[steep].tolist()).most_common(6):
+        there = momentum[steep][apart[steep] == d]
+        print("        |i - j| = %d: %d pairs, |dp| %.1e to %.1e" % (d, n, there.min(), there.max()),
+              flush=True)
+    return state, i, j, distance, momentum
+
+
+# ---- drawing
+
+def draw(measured):
+    """The figure, as the bytes of an SVG file."""
+    from matplotlib import style
+    from matplotlib.figure import Figure
+
+    with style.context(["default", picture.SALT]):
+        figure = Figure(figsize=(9.6, 3))
+        all_of_them, crossing, there = figure.subplots(1, 3)
+        figure.subplots_adjust(wspace=0.36)
+        draw_all(all_of_them, measured)
+        draw_one(crossing, *measured[2])
+        draw_there(there, *measured[2])
+        for axes in (all_of_them, crossing, there):
+            axes.tick_params(labelsize=7)
+            axes.xaxis.label.set_size(8)
+            axes.yaxis.label.set_size(8)
+        return picture.encode(figure, "svg", dpi=150)
+
+
+def draw_all(axes, measured):
+    for (state, _, _, distance, momentum), colour in zip(
+            measured, ("0.6", "#d98a2b", "#c03030", "#1f5f94", "#35a060")):
+        axes.plot(distance, momentum / distance, ".", markersize=1.5, color=colour, rasterized=True,
+                  label=r"$q=%d$, $\varepsilon=%g$" % (state.q, state.eps))
+    axes.set(xscale="log", yscale="log", ylim=(1e-3, 1e5), xlabel="|dx|", ylabel="L = |dp| / |dx|")
+    axes.legend(fontsize=5.5, markerscale=4, frameon=False, loc="upper left")
+    axes.set_title("the 800 closest pairs", fontsize=8)
+
+
+def draw_one(axes, state, i, j, distance, momentum):
+    """Pairs equally far apart along the orbit, on the same two filaments, that is."""
+    apart = np.minimum(abs(i - j), state.q - abs(i - j))
+    steep = np.argsort(-momentum / distance)[:200]
+    axes.plot(distance, momentum, ".", markersize=1.5, color="0.75", rasterized=True)
+    chosen = [d for d, _ in Counter(apart[steep].tolist()).most_common(5)]
+    for d, colour in zip(sorted(chosen), ("#1f5f94", "#d98a2b", "#35a060", "#c03030", "#8050a0")):
+        of = apart == d
+        axes.plot(distance[of], momentum[of], ".", markersize=2.5, color=colour, label="%d" % d)
+    at = np.argmax(momentum / distance)
+    axes.annotate("L = %.0f" % (momentum[at] / distance[at]), (distance[at], momentum[at]), (3, 6),
+                  textcoords="offset points", fontsize=6.5)
+    axes.set(xscale="log", yscale="log", xlabel="|dx|", ylabel="|dp|")
+    axes.legend(title="|i - j|", fontsize=6, title_fontsize=6, frameon=False, loc="lower left",
+                markerscale=2)
+    axes.set_title(r"$q=%d$, $\varepsilon=%g$: levels of |dp|" % (state.q, state.eps), fontsize=8)
+
+
+def draw_there(axes, state, i, j, distance, momentum):
+    """The projection where the steepest pair is, coloured by the first momentum."""
+    at = np.argmax(momentum / distance)
+    off = (state.x - state.x[i[at]] + 0.5) % 1 - 0.5
+    near = np.abs(off).max(1) < WINDOW
+    p = 1e3 * (state.momenta - state.momenta[i[at]])[near, 0]
+    dots = axes.scatter(*off[near].T, c=p, s=4, cmap="coolwarm", linewidths=0)
+    bar = axes.figure.colorbar(dots, ax=axes, shrink=0.85)
+    bar.set_label(r"$10^3\,p_0$ less the pair's", fontsize=6.5)
+    bar.ax.tick_params(labelsize=6)
+    axes.plot(0, 0, "o", markersize=9, markerfacecolor="none", color="0.2", markeredgewidth=0.7)
+    axes.set(xlabel="$x_0$ less the pair's", ylabel="$x_1$ less the pair's")
+    axes.set_title("the projection where L = %.0f" % (momentum[at] / distance[at]), fontsize=8)
+
+
+def main(directory="build"):
+    os.makedirs(directory, exist_ok=True)
+    measured = [measure(*state) for state in STATES]
+    with open(os.path.join(directory, "smoothness.svg"), "wb") as file:
+        file.write(draw(measured))
+    with open(os.path.join(directory, "smoothness.csv"), "w", encoding="ascii", newline="") as file:
+        rows = csv.writer(file, lineterminator="\n")
+        rows.writerow(("q", "eps", "i", "j", "dx", "dp"))
+        for state, *pairs in measured:
+            rows.writerows((state.q, state.eps, *pair) for pair in zip(*(a.tolist() for a in pairs)))
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])
