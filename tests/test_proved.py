@@ -478,7 +478,9 @@ def rough(rng):
         FOUND[case] = found(*case) if isinstance(case, tuple) else case.relax()
     state = FOUND[case]
     shake = np.random.default_rng(rng.randrange(2**32)).uniform(-1, 1, state.u.shape)
-    state = replace(state, u=state.u + shake * 10 ** rng.uniform(-9, -3))
+    origin = [rng.random() for _ in state.origin]           # with more places than there are
+    state = replace(state, origin=origin, u=state.u + shake * 10 ** rng.uniform(-9, -3)
+                    + np.array(state.origin) - origin)
     exact, places = proved._Exact(state), rng.randrange(10, 12)
     exact.evaluate(places)
     if exact.terms:                     # amplitudes as far off as they may be
