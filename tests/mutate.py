@@ -293,8 +293,6 @@ MUTATIONS = [
      "        apm_set(d, a);\n"),
     ("orbits/enclose.c", "if (apm_cmp(t[12], t[13]) <= 0)", "if (1)"),
     ("orbits/enclose.c", "    if (turn < 0) {\n", "    if (0) {\n"),
-    ("orbits/enclose.c", "        apm_add(b, b, off);\n        apm_mul(b, b, kappa);\n",
-     "        apm_mul(b, b, kappa);\n"),
     ("orbits/enclose.c", "        apm_add(b, b, off);                             /* how",
      "        /* how"),
     ("orbits/potential.c", "slope = v->sine[t] * c - v->cosine[t] * s;",
