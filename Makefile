@@ -3,7 +3,7 @@
 PYTHON = python3
 VENV = .venv
 SANITIZED = .venv-sanitize
-SOURCES = $(wildcard csrc/* csrc/*/* converse/*.py) setup.py pyproject.toml MANIFEST.in
+SOURCES = $(wildcard csrc/* csrc/*/* converse/*.py converse/*/*.py) setup.py pyproject.toml MANIFEST.in
 SANITIZE = -fsanitize=address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer -g -O1
 
 PIP_INSTALL = pip install --quiet --disable-pip-version-check

@@ -100,10 +100,16 @@ int cv_exact_keep(cv_exact *o, int back);
    eigenvalue below m > 0.  CV_ESINGULAR: it is not. */
 int cv_exact_least(cv_exact *o, const char *m);
 
+enum {                      /* the eigenvalues of D_{q-1} ... D_0 with n = 2 */
+    CV_UNDECIDED,           /* CV_GROWTH_HIGH bounds the moduli of both */
+    CV_REAL,                /* proved: CV_GROWTH_LOW and CV_GROWTH_HIGH enclose the modulus of one */
+    CV_COMPLEX              /* proved: both have the same modulus */
+};
+
 /* Encloses the pivots D_j of every orbit whose blocks beta_j are within `away` of those of the state
-   evaluated last, away < m: CV_DET_LOW and CV_DET_HIGH; with n = 2, if *closed, the modulus of one
-   of the eigenvalues; if not, CV_GROWTH_HIGH bounds both.  CV_ESINGULAR: it could not be done. */
-int cv_exact_pivots(cv_exact *o, const char *m, const char *away, int *closed);
+   evaluated last, away < m: CV_DET_LOW and CV_DET_HIGH, and, n = 2, the eigenvalues, as *kind says.
+   CV_ESINGULAR: it could not be done. */
+int cv_exact_pivots(cv_exact *o, const char *m, const char *away, int *kind);
 
 /* A bound, and coordinate i of the displacement of point j, as exact decimals; the caller frees with
    cv_free.  NULL: no memory. */
@@ -113,7 +119,7 @@ char *cv_exact_point(const cv_exact *o, long j, int i);
 /* ---- the least action over all orbits: minplus.c */
 
 /* What cv_evaluate may be off by, in V, its gradient and its Hessian (Euclidean and spectral norm), at
-   points with coordinates up to reach that are off by 2^-53 (reach + 2) themselves.  CV_EARGUMENT:
+   points with coordinates up to reach that are off by 2^-53 (2 reach + 2) themselves.  CV_EARGUMENT:
    nothing is known of a potential of Python, or so far out. */
 int cv_errors(const cv_potential *v, double reach, double errors[3]);
 

@@ -15,6 +15,7 @@ SUMMARIES = {
     "cli": "prove that a family of symplectic maps has no invariant tori",
     "check": "verify the theorem of a proof file, independently of its prover",
     "chart": "measure what is proved how fast, and draw it",
+    "orbits.cli": "find periodic orbits of least action, and where they turn hyperbolic",
 }
 
 
@@ -33,7 +34,11 @@ def with_files(parser):
     for action in parser._actions:
         if action.dest == "directory":
             action.complete = shtab.DIRECTORY
-        elif action.metavar == "FILE" or not action.option_strings:
+        elif isinstance(action.choices, dict):          # subcommands
+            for command in action.choices.values():
+                with_files(command)
+        elif action.metavar in ("FILE", "POTENTIAL") or not (
+                action.metavar or action.option_strings):
             action.complete = shtab.FILE
     return parser
 

@@ -18,7 +18,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parent.parent
 TESTS = ["test_apm.py", "test_special.py", "test_bounding.py", "test_bd_trig.py", "test_bounds.py", "test_images.py",
          "test_search.py", "test_loewner.py"]
-ORBITS = ["test_orbits.py", "test_orbits_fail.py"]     # for the room of that name
+ORBITS = ["test_orbits.py", "test_orbits_fail.py", "test_floor.py", "test_proved.py"]   # for that room
 # The test to begin with, by file or room; without one it is test_images.py.
 FIRST = {"numbers/apm.c": "test_apm.py", "numbers/special.c": "test_special.py",
          "numbers/sine.h": "test_loewner.py", "thesis/bounding.c": "test_bounding.py",
@@ -26,7 +26,8 @@ FIRST = {"numbers/apm.c": "test_apm.py", "numbers/special.c": "test_special.py",
          "thesis/lambda.c": "test_bounds.py", "torus.c": "test_bounds.py",
          "thesis/lipschitz.c": "test_bounds.py", "thesis/region.c": "test_search.py",
          "thesis/follow.c": "test_search.py", "search.c": "test_search.py", "setup.c": "test_search.py",
-         "loewner": "test_loewner.py"}
+         "loewner": "test_loewner.py", "orbits": "test_orbits.py",
+         "orbits/minplus.c": "test_floor.py", "orbits/enclose.c": "test_proved.py"}
 FLAGS = ["-std=c11", "-O1", "-fPIC", "-ffp-contract=off", "-I", "csrc",
          "-I", sysconfig.get_paths()["include"]]
 
@@ -230,6 +231,65 @@ MUTATIONS = [
     ("loewner/try.c", "return largest * (1.0 + 0x1p-46);", "return largest - 1e-9;"),
     ("thesis/kernel.c", "    if (num_get_apm(r, x) != APM_OK)\n        s->failed = 1;\n",
      "    num_get_apm(r, x);\n"),
+    ("orbits/minplus.c", "((2.0 + fabs(eps) * curvature) * squares", "((0.0 + fabs(eps) * curvature) * squares"),
+    ("orbits/minplus.c", "((2.0 + fabs(eps) * curvature) * squares", "((2.0 + fabs(eps)) * squares"),
+    ("orbits/minplus.c", "squares * 0.125", "squares * 0.01"),
+    ("orbits/minplus.c", "most + r->bend < lowest", "most < lowest"),
+    ("orbits/minplus.c", "first->W, &where) - first->bend;", "first->W, &where);"),
+    ("orbits/minplus.c", "known + margin, lowest", "known, lowest"),
+    ("orbits/minplus.c", "    *least -= margin;\n", ""),
+    ("orbits/minplus.c", "? -c->u[i] : HUGE_VAL", "? c->u[i] : HUGE_VAL"),
+    ("orbits/minplus.c", "? c->end[i] - c->u[i] : HUGE_VAL", "? c->end[i] : HUGE_VAL"),
+    ("orbits/minplus.c", "last[axis] + (r->nodes[axis] > 1)", "last[axis]"),
+    ("orbits/minplus.c", "        first = middle + 1;\n        left = best;", "        first = middle + 1;\n        left = best + 1;"),
+    ("orbits/minplus.c", "cheapest(l, first, middle, left, best);", "cheapest(l, first, middle, left, best - 1);"),
+    ("orbits/minplus.c", "(int)floor(grid * (-c - 0.5))", "(int)floor(grid * -c)"),
+    ("orbits/minplus.c", "count = 2 * grid + 3", "count = grid + 1"),
+    ("orbits/minplus.c", "part *= 6.3 * k)", "part *= 6.3)"),
+    ("orbits/minplus.c", "double part = 0x1p-48 *", "double part = 0x1p-54 *"),
+    ("orbits/minplus.c", "{ 0x1p-43, 0x1p-41, 0x1p-39 }", "{ 0x1p-51, 0x1p-51, 0x1p-48 }"),
+    ("orbits/minplus.c", "{ 0x1p-47, 0x1p-43, 0x1p-40 }", "{ 0x1p-53, 0x1p-51, 0x1p-48 }"),
+    ("orbits/minplus.c", "v->kind == CV_PYTHON || !(reach < 1000.0)", "!(reach < 1000.0)"),
+    ("orbits/minplus.c", "v->kind == CV_PYTHON || !(reach < 1000.0)", "v->kind == CV_PYTHON"),
+    ("orbits/minplus.c", "    if (!(sum < 1e300))\n        return CV_EARITHMETIC;\n", ""),
+    ("orbits/minplus.c", "here[0] < 1 || here[0] > MAX_NODES ||", "here[0] < 1 ||"),
+    ("orbits/minplus.c", "finite += value < HUGE_VAL;", "finite++;"),
+    ("orbits/enclose.c", "        apm_mul_si(t[0], t[0], 2);\n        apm_sincos",
+     "        apm_sincos"),
+    ("orbits/enclose.c", "apm_mul_si(t[1], t[1], 120 * (1 + size * size));",
+     "apm_set_si(t[1], 0, 0);"),
+    ("orbits/enclose.c", "apm_mul_si(o->blur, t[1], 2);", "apm_set_si(o->blur, 0, 0);"),
+    ("orbits/enclose.c", "    add_product(o->blur, t[0], t[1], t[2]);\n", ""),
+    ("orbits/enclose.c", "    apm_add(t[2], t[2], o->fuzz);\n", ""),
+    ("orbits/enclose.c", "apm_add(o->bound[CV_GRADIENT], o->bound[CV_GRADIENT], t[1]);", ""),
+    ("orbits/enclose.c", "apm_sub(o->bound[CV_ACTION_LOW], t[1], t[2]);",
+     "apm_set(o->bound[CV_ACTION_LOW], t[1]);"),
+    ("orbits/enclose.c", "apm_set_si(t[5], -1875, -4);", "apm_set_si(t[5], -1874, -4);"),
+    ("orbits/enclose.c", "apm_set_si(t[5], 825, -2);", "apm_set_si(t[5], 826, -2);"),
+    ("orbits/enclose.c", "            sign = -1;\n", ""),
+    ("orbits/enclose.c", "apm_mul_si(t[2], t[0], -(long)k[i / 2] * k[(i + 1) / 2]);",
+     "apm_mul_si(t[2], t[0], (long)k[i / 2] * k[(i + 1) / 2]);"),
+    ("orbits/enclose.c", "apm_set_si(t[0], j * o->p[i] % o->q, 0);",
+     "apm_set_si(t[0], (j + 1) * o->p[i] % o->q, 0);"),
+    ("orbits/enclose.c", "    return apm_sgn(o->t[0]) > 0 && apm_sgn(x->m[0]) > 0;",
+     "    return apm_sgn(o->t[0]) > 0;"),
+    ("orbits/enclose.c", "    apm_neg(t[1], x->m[1]);\n", "    apm_set(t[1], x->m[1]);\n"),
+    ("orbits/enclose.c", "        apm_add(r->m[2], r->m[2], shift);\n", "        ;\n"),
+    ("orbits/enclose.c", "    apm_add(t[12], t[12], o->blur);\n", ""),
+    ("orbits/enclose.c", "    apm_add(t[12], t[12], m);\n", ""),
+    ("orbits/enclose.c", "    apm_add(t[13], t[13], t[15]);\n", ""),
+    ("orbits/enclose.c", "    apm_add(t[13], t[13], o->blur);\n", ""),
+    ("orbits/enclose.c", "    apm_mul_si(off, here->wide, 2);\n",
+     "    apm_set_si(off, 0, 0);\n"),
+    ("orbits/enclose.c", "        add_product(c, d, kappa, t[0]);\n", ""),
+    ("orbits/enclose.c", "        apm_sub(d, a, b);\n        apm_add(a, a, b);\n",
+     "        apm_set(d, a);\n"),
+    ("orbits/enclose.c", "if (apm_cmp(t[12], t[13]) <= 0)", "if (1)"),
+    ("orbits/enclose.c", "    if (turn < 0) {\n", "    if (0) {\n"),
+    ("orbits/enclose.c", "        apm_add(b, b, off);\n        apm_mul(b, b, kappa);\n",
+     "        apm_mul(b, b, kappa);\n"),
+    ("orbits/enclose.c", "        apm_add(b, b, off);                             /* how",
+     "        /* how"),
     ("orbits/potential.c", "slope = v->sine[t] * c - v->cosine[t] * s;",
      "slope = v->sine[t] * c + v->cosine[t] * s;"),
     ("orbits/potential.c", "h01 -= k0 * k1 * here;", "h01 += k0 * k1 * here;"),
@@ -309,10 +369,8 @@ HARMLESS = {
 
 def build(base, work, file):
     """Compiles the units that the changed file belongs to, and links; base has all other objects."""
-    (work / "converse").mkdir(parents=True)
-    for path in (ROOT / "converse").rglob("*.py"):
-        (work / path.relative_to(ROOT)).parent.mkdir(exist_ok=True)
-        shutil.copy(path, work / path.relative_to(ROOT))
+    shutil.copytree(ROOT / "converse", work / "converse",
+                    ignore=shutil.ignore_patterns("*.so", "__pycache__"))
     objects = []
     for source in sorted(base.glob("*.d")):
         words = source.read_text().replace("\\\n", " ").split()
@@ -352,7 +410,7 @@ def try_mutation(base, number):
         build(base, work, file)
         environment = dict(os.environ, PYTHONPATH=str(work))
         first = FIRST.get(file, FIRST.get(file.split("/")[0], "test_images.py"))
-        tests = ORBITS if file.startswith("orbits") else sorted(TESTS, key=lambda test: test != first)
+        tests = sorted(ORBITS if file.startswith("orbits") else TESTS, key=lambda test: test != first)
         for test in tests:
             command = [sys.executable, "-m", "pytest", "-x", "-q", "-p", "no:cacheprovider",
                        "--no-header", str(ROOT / "tests" / test)]

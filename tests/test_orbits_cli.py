@@ -36,17 +36,18 @@ def one_line(err):
 
 def numbers(out, name):
     """The numbers behind a name, of each state."""
-    return [[float(x) for x in re.findall(r"(?<![\w^/|])-?[0-9][0-9.]*(?:e-?[0-9]+)?(?![\w/])", line)]
+    number = r"(?<![\w^/|])-?[0-9][0-9.]*(?:e-?[0-9]+)?(?![\w/])"
+    return [[float(x) for x in re.findall(number, line)]
             for line in re.findall("^%s : (.*)$" % re.escape(name), out, re.MULTILINE)]
 
 
-@pytest.mark.parametrize("name, vector, eps", [
-    ("trig", "65,86/114", ["0.01", "0.02:0.03:0.005"]), ("ff", "12,16/21", ["0.01"]),
-    ("poly", "(12, 16)/21", ["0.002"]), ("standard", "89/233", ["1.0", "1.1"])])
-def test_the_report_is_the_familys(run, name, vector, eps):
-    status, out, err = run("find", name, vector, *eps)
+@pytest.mark.parametrize("name, vector, eps, values", [
+    ("trig", "65,86/114", "0.01 0.02:0.03:0.005", [0.01, 0.02, 0.025, 0.03]),
+    ("ff", "12,16/21", "0.01", [0.01]), ("poly", "(12, 16)/21", "1/512", [1 / 512]),
+    ("standard", "89/233", "1 1.1", [1.0, 1.1])])
+def test_the_report_is_the_familys(run, name, vector, eps, values):
+    status, out, err = run("find", name, vector, *eps.split())
     assert (status, err) == (0, "")
-    values = [0.01, 0.02, 0.025, 0.03] if len(eps) == 2 and name == "trig" else list(map(float, eps))
     p, q = cli._vector(vector)
     family = orbits.follow(getattr(orbits, name), p, q, values)
     assert re.findall("^eps : (.*)$", out, re.MULTILINE) == [repr(x) for x in values]
@@ -113,26 +114,26 @@ def test_a_potential_in_a_file(run, tmp_path):
     path = tmp_path / "mine.v2.txt"
     path.write_text("# half of each angle's\n1 0  0 -1/2\n\n0 1 0 -0.5   # and\n1 1 0 -1\n")
     mine = cli.read_potential(str(path))
-    assert (mine.name, mine.n, len(mine.terms)) == ("mine.v2", 2, 3) and mine.terms == orbits.trig.terms
+    assert (mine.name, mine.n, mine.terms) == ("mine.v2", 2, orbits.trig.terms)
     status, out, err = run("find", path, SMALL, repr(0.02 * orbits.trig.scale))
     assert (status, err) == (0, "") and "Potential : mine.v2\n" in out
+    assert " k c s = 1 0 0 -1/2, 0 1 0 -1/2, 1 1 0 -1\n" in out
     state = orbits.follow(orbits.trig, (65, 86), 114, [0.02])[0]
-    assert numbers(out, "Action per point less |p/q|^2/2")[0][0] == pytest.approx(state.action, abs=1e-11)
+    action, = numbers(out, "Action per point less |p/q|^2/2")[0]
+    assert action == pytest.approx(state.action, abs=1e-11)
     path.write_text("1 -1 0")
     assert cli.read_potential(str(path)).n == 1
+    path = path.rename(tmp_path / "trig")               # another potential, another name
+    assert "Potential : trig.txt\nV(x) : " in run("find", path, "1/3", "0.1")[1]
 
 
 def test_proof_and_search(run):
     """--prove gives the theorem of prove, --search the state of search."""
-    pytest.importorskip("converse.orbits.proved")
-    search = pytest.importorskip("converse.orbits.search").search
-    from converse.orbits.proved import prove
-
-    status, out, err = run("find", "trig", "5,7/9", "0.03", "--search", "5", "--seed", "3", "--prove")
+    status, out, err = run("find", "trig", "5,7/9", "0.03", "--search=5", "--seed=3", "--prove")
     assert (status, err) == (0, "")
-    state = search(orbits.trig, (5, 7), 9, 0.03, 5, seed=3)
+    state = orbits.search(orbits.trig, (5, 7), 9, 0.03, 5, seed=3)
     assert "State : %s (seen in doubles, not proved" % state.label in out
-    assert state.label.startswith("best of ") and out.endswith(prove(state).report())
+    assert state.label.startswith("best of ") and out.endswith(orbits.prove(state).report())
     status, out, err = run("find", "trig", "200,265/351", "0", "--prove")
     assert (status, err) == (1, "") and "\nNot proved : " in out
 
@@ -162,7 +163,8 @@ def test_sweeps(run, tmp_path):
     assert paths[0].read_bytes() == paths[1].read_bytes() != paths[2].read_bytes()
     table = orbits.read_csv(paths[0])
     assert table.dtype.names == ONSET_COLUMNS and len(table) == 4
-    assert ((20 <= table["q"]) & (table["q"] <= 40)).all() and (np.gcd(table["p"][:, 0], table["q"]) == 1).all()
+    assert ((20 <= table["q"]) & (table["q"] <= 40)).all()
+    assert (np.gcd(table["p"][:, 0], table["q"]) == 1).all()
     assert (table["eps_above"] > table["eps_below"]).all()
 
 
@@ -211,13 +213,16 @@ def test_help_and_version(run):
 # ---- what goes wrong
 
 @pytest.mark.parametrize("arguments, words", [
-    ([], "required"), (["lose"], "choice"), (["find"], "required"), (["find", "trig", SMALL], "EPS"),
+    ([], "required"), (["lose"], "choice"), (["find"], "required"),
+    (["find", "trig", SMALL], "EPS"),
     (["find", "trig", SMALL, "0.01", "--what"], "--what"),
-    (["find", "trig", "1/2", "0.01"], "two angles"), (["find", "standard", SMALL, "0.5"], "one angle"),
+    (["find", "trig", "1/2", "0.01"], "two angles"),
+    (["find", "standard", SMALL, "0.5"], "one angle"),
     *[(["find", "trig", bad, "0.01"], "is no type") for bad in (
-        "1,2/0", "1,2,3/4", "1,2", "1.5,2/3", "a,b/c", "1,2/-3", "", "1" * 10 + ",2/3", "1,2/3\n4")],
+        "1,2/0", "1,2,3/4", "1,2", "1.5,2/3", "a,b/c", "1,2/-3", "", "1" * 10 + ",2/3",
+        "1,2/3\n4")],
     *[(["find", "trig", SMALL, bad], "is no number") for bad in (
-        "x", "nan", "inf", "1e400", "1/0", "1:2", "1:2:3:4", "")],
+        "x", "nan", "inf", "1e400", "1e9999999999", "1/0", "1:2", "1:2:3:4", "")],
     *[(["find", "trig", SMALL, bad], "range of no values") for bad in (
         "1:2:0", "2:1:0.1", "0:1:1e-9")],
     (["find", "none", SMALL, "0.01"], "no potential and no file"),
@@ -265,6 +270,7 @@ def test_bad_usage(run, tmp_path, arguments, words):
     (b"", "has terms"), (b"1 0 0\n1 0 0 1\n", "has terms"), (b"1 0 x 1\n", "line 1"),
     (b"1 0 0 1\n1 0 2 2\n", "line 2"), (b"1 0 0 1 1\n", "line 1"), (b"1.5 0 0 1\n", "line 1"),
     (b"1 0 nan 1\n", "line 1"), (b"1 0 1/0 1\n", "line 1"), (b"1 0 1e10 1\n", "line 1"),
+    (b"1 0 1e-9999999999 1\n", "line 1"),
     (b"2000 0 1 1\n", "-1000 to 1000"), (b"\xff\xfe\n", "not a text file")])
 def test_a_bad_potential(run, tmp_path, text, words):
     path = tmp_path / "mine"
@@ -276,7 +282,8 @@ def test_a_bad_potential(run, tmp_path, text, words):
 @pytest.mark.parametrize("module, arguments", [
     ("numpy", ["find", "trig", SMALL, "0.01"]), ("numpy", ["sweep", "trig", "x", "--random", "1"]),
     ("numpy", ["figures", "."]), ("converse._native", ["find", "trig", SMALL, "0.01"]),
-    ("matplotlib", ["find", "trig", SMALL, "0.01", "-g", "x.svg"]), ("matplotlib", ["figures", "."])])
+    ("matplotlib", ["find", "trig", SMALL, "0.01", "-g", "x.svg"]),
+    ("matplotlib", ["figures", "."])])
 def test_what_is_missing_is_said(tmp_path, module, arguments):
     result = subprocess.run(
         [sys.executable, "-c", "import runpy, sys\nsys.modules[%r] = None\n"

@@ -2,6 +2,7 @@
 orbits turn hyperbolic."""
 
 import concurrent.futures
+import importlib.util
 import io
 import math
 import os
@@ -38,7 +39,8 @@ def whole(tmp_path_factory):
 
 
 def same(table, other):
-    return table.dtype == other.dtype and repr(table.tolist()) == repr(other.tolist())     # NaN, too
+    """NaN, too."""
+    return table.dtype == other.dtype and repr(table.tolist()) == repr(other.tolist())
 
 
 # ---- growth and onset
@@ -90,7 +92,8 @@ def test_no_onset_up_to_the_end():
 
 
 @pytest.mark.parametrize("how, words", [
-    ({"width": 0}, "positive"), ({"step": -1}, "positive"), ({"step": 1e-4, "width": 1e-3}, "at most"),
+    ({"width": 0}, "positive"), ({"step": -1}, "positive"),
+    ({"step": 1e-4, "width": 1e-3}, "at most"),
     ({"top": math.inf}, "positive"), ({"width": math.nan}, "positive"),
     ({"exponent": 0}, "too small"), ({"exponent": math.nan}, "too small"),
     ({"exponent": 9e-6}, "too small")])
@@ -199,13 +202,14 @@ def test_what_is_finished_is_not_done_again(whole, path, monkeypatch):
         found.append((p, q)), orbits.follow(v, p, q, *rest, **options))[1])
     seen = []
     orbits.sweep(orbits.trig, VECTORS, EPS, file=path, progress=lambda *done: seen.append(done))
-    assert found == [VECTORS[0], VECTORS[3], VECTORS[4]]        # the first is the proof that it is ours
+    assert found == [VECTORS[0], VECTORS[3], VECTORS[4]]        # the first says that it is ours
     assert path.read_bytes() == whole and seen[0] == (3, 5)
 
 
 @pytest.mark.parametrize("potential, vectors, eps, words", [
-    (orbits.ff, VECTORS, EPS, "another potential"), (orbits.trig, VECTORS[::-1], EPS, "line 2 is of"),
-    (orbits.trig, VECTORS[:3] + VECTORS[:2], EPS, "line 8 is of"), (orbits.trig, VECTORS[:4], EPS, "more rows"),
+    (orbits.ff, VECTORS, EPS, "another potential"),
+    (orbits.trig, VECTORS[::-1], EPS, "line 2 is of"), (orbits.trig, VECTORS[:4], EPS, "more rows"),
+    (orbits.trig, VECTORS[:3] + VECTORS[:2], EPS, "line 8 is of"),
     (orbits.trig, VECTORS, [0.004, 0.011], "line 3 is of another potential, type or eps"),
     (orbits.trig, VECTORS, EPS + [0.02], "line 4 is of"),
     (orbits.Fourier({(1, 0): (0, -1), (0, 1): (0, -1)}, "trig"), VECTORS, EPS, "computed anew")])
@@ -228,12 +232,25 @@ def test_onsets_by_another_criterion_are_refused(path):
     assert path.read_bytes() == data
 
 
-@pytest.mark.parametrize("data", [b"a letter\n", b"\0" * 100, b"\x89PNG\r\n\x1a\n", b"potential,q\n"])
+@pytest.mark.parametrize("data", [
+    b"a letter\n", b"\0" * 100, b"\x89PNG\r\n\x1a\n", b"potential,q\n"])
 def test_what_is_no_sweep_is_refused(path, data):
     path.write_bytes(data)
     with pytest.raises(ConverseError, match="columns are others"):
         orbits.sweep(orbits.trig, VECTORS, EPS, file=path)
     assert path.read_bytes() == data
+
+
+@pytest.mark.parametrize("old, new", [(b"minimum,", b"minimum;"), (b",minimum,", b",minimum,\0,"),
+                                      (b",0.", b",zero."), (b"e-0", b"\xff-0")])
+def test_a_damaged_sweep_is_refused(whole, path, old, new):
+    """Here the last line with such words."""
+    head, _, tail = whole.rpartition(old)
+    path.write_bytes(head + new + tail)
+    with pytest.raises(ConverseError, match="it is damaged"):
+        orbits.sweep(orbits.trig, VECTORS, EPS, file=path)
+    with pytest.raises(ConverseError, match="is no table"):
+        orbits.read_csv(path)
 
 
 def test_two_sweeps_do_not_write_one_file(path):
@@ -282,7 +299,8 @@ def test_killed_and_continued(path, number):
     subprocess.run([sys.executable, "-c", MANY, other], check=True, timeout=100)
     sizes = []
     for share in (0.2, 0.6):
-        with subprocess.Popen([sys.executable, "-c", MANY, path], stderr=subprocess.DEVNULL) as process:
+        with subprocess.Popen([sys.executable, "-c", MANY, path],
+                              stderr=subprocess.DEVNULL) as process:
             end = time.monotonic() + 60
             while time.monotonic() < end and process.poll() is None and not (
                     path.exists() and path.stat().st_size > share * other.stat().st_size):
@@ -348,9 +366,10 @@ class Broken(Cosine):
 
 
 def test_a_worker_dies(path):
+    potential = orbits.FromPython(Deadly(), 1, "deadly", (0.5,))
     with concurrent.futures.ProcessPoolExecutor(1) as executor, \
             pytest.raises(ConverseError, match="a worker has died"):
-        orbits.sweep(orbits.FromPython(Deadly(), 1, "deadly", (0.5,)), [((1,), 3)], EPS, executor, path)
+        orbits.sweep(potential, [((1,), 3)], EPS, executor, path)
     assert path.read_text().count("\n") == 1        # the header: it can be continued
 
 
@@ -373,3 +392,41 @@ def test_bad_arguments(path, arguments, words):
 def test_an_executor_that_is_none(path):
     with pytest.raises(TypeError, match="executor"):
         orbits.sweep(orbits.trig, VECTORS, EPS, executor=2, file=path)
+
+
+# ---- experiments/toughest.py
+
+@pytest.fixture(scope="module")
+def toughest(root):
+    spec = importlib.util.spec_from_file_location("toughest", root / "experiments" / "toughest.py")
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+def test_one_vector_stands_for_its_mirror_images(toughest):
+    """Their orbits are images of one another, so that they turn hyperbolic at the same eps."""
+    images = [(65, 31), (31, 65), (-65, -31), (83, 49), (-31, -65), (49 + 114, 83)]
+    assert len({toughest.rational(toughest.folded(np.array(p) / 114), 114) for p in images}) == 1
+    how = {"step": 0.001, "width": 1e-6}
+    found = [orbits.onset(orbits.trig, p, 114, **how).above.eps for p in images]
+    assert max(found) - min(found) < 5e-6
+    assert abs(orbits.onset(orbits.trig, (64, 31), 115, **how).above.eps - found[0]) > 1e-4
+
+
+def test_its_vectors_are_well_spread(toughest):
+    vectors = toughest.spread(400, (300, 1200))
+    w = np.array([p for p, _ in vectors]) / np.array([q for _, q in vectors])[:, None]
+    assert ((w[:, 1] <= w[:, 0]) & (w.sum(1) <= 1)).all() and len(set(vectors)) == 400
+    assert all(300 <= q <= 1210 and math.gcd(*p, q) == 1 for p, q in vectors)
+    # Of 16 parts of the triangle of one size, each has about 25.
+    t, s = w[:, 0] - w[:, 1], w.sum(1)              # uniform in 0 <= t <= s <= 1
+    count = np.histogram2d(s ** 2, t / s, bins=4, range=((0, 1), (0, 1)))[0]
+    assert count.sum() == 400 and 18 <= count.min() and count.max() <= 32
+
+
+def test_its_approximants(toughest):
+    for p, q in toughest.approximants(toughest.NEAR, 2000):
+        assert max(abs(q * w - k) for w, k in zip(toughest.NEAR, p)) < 0.9 / math.sqrt(q)
+    assert ((449, 439), 1503) in toughest.approximants(toughest.NEAR, 2000)
+    assert list(toughest.golden(100)) == [((13,), 21), ((21,), 34), ((34,), 55), ((55,), 89)]

@@ -8,18 +8,18 @@ The torus has period 1 here, 2 pi in the rest of the package; potential.paramete
 """
 
 try:
-    from .floor import Floor, LeastAction, floor, least_action
+    from .floor import Floor, LeastAction, enclosed_action, floor, least_action
     from .measures import Prelude, gram_schmidt_exponents, prelude
-    from .potential import (Fourier, FromPython, Potential, ff, froeschle, parameters, poly, standard,
-                            trig)
+    from .potential import (Fourier, FromPython, Potential, ff, froeschle, parameters, poly,
+                            standard, trig)
     from .proved import NotProved, ProvedOrbit, prove
     from .search import search
     from .solver import Family, flow, follow, newton, straight
     from .state import State
     from .sweep import Onset, onset, onsets, read_csv, sweep
 except ImportError as _error:           # said when something is asked for: the command needs a line
-    _MISSING = ("converse.orbits needs numpy and the C core (%s); pip install 'converse-kam[orbits]'"
-                % _error)
+    _MISSING = ("converse.orbits needs numpy and the C core (%s); pip install "
+                "'converse-kam[orbits]'" % _error)
 
     def __getattr__(name):
         from ..files import ConverseError
@@ -28,7 +28,7 @@ except ImportError as _error:           # said when something is asked for: the 
         raise ConverseError(_MISSING)
 
 __all__ = ["Family", "Floor", "Fourier", "FromPython", "LeastAction", "NotProved", "Onset",
-           "Potential", "Prelude", "ProvedOrbit", "State", "ff", "floor", "flow", "follow",
-           "froeschle", "gram_schmidt_exponents", "least_action", "newton", "onset", "onsets",
-           "parameters", "poly", "prelude", "prove", "read_csv", "search", "standard", "straight",
-           "sweep", "trig"]
+           "Potential", "Prelude", "ProvedOrbit", "State", "enclosed_action", "ff", "floor", "flow",
+           "follow", "froeschle", "gram_schmidt_exponents", "least_action", "newton", "onset",
+           "onsets", "parameters", "poly", "prelude", "prove", "read_csv", "search", "standard",
+           "straight", "sweep", "trig"]

@@ -22,8 +22,8 @@ NAMES = "trig", "poly", "ff", "froeschle", "standard"
 MANY = 10000                            # values of eps, at most
 SIZES = 300, 1200                       # q of a sweep, unless others are asked for
 STATUS = ("Exit status: 0 all was found that was asked for; 1 a state was not found, is no "
-          "minimum, or is not proved though --prove was given; 2 bad usage, input or file; 129, 130 or 143 "
-          "ended by a signal.")
+          "minimum, or is not proved though --prove was given; 2 bad usage, input or file; 129, "
+          "130 or 143 ended by a signal.")
 POTENTIAL = ("trig, poly, ff, froeschle, standard, or a file whose lines 'k0 k1 cosine sine' (with "
              "one angle: 'k cosine sine') are the terms of V")
 MEANINGS = {                            # of labels
@@ -38,10 +38,17 @@ NO_MINIMUM = "saddle", "stationary", "not stationary"
 
 # ---- what is read
 
+def _number(text):
+    """A decimal or a fraction, exactly; ValueError if it is none."""
+    if not re.fullmatch(r"[^e]*(e[-+]?\d{1,3})?", text, re.ASCII | re.IGNORECASE):
+        raise ValueError("an exponent beyond what a double knows")
+    return Fraction(text)
+
+
 def _eps(text):
     """'0.01' or 'LOW:HIGH:STEP': a list of floats."""
     try:
-        ends = [Fraction(word) for word in text.split(":")]
+        ends = [_number(word) for word in text.split(":")]
         if len(ends) not in (1, 3) or not all(abs(x) < 10 ** 9 for x in ends):
             raise ValueError
     except (ValueError, ZeroDivisionError):
@@ -75,7 +82,7 @@ def _sizes(text):
 
 def _target(text):
     try:
-        target = [Fraction(word) for word in text.split(",")]
+        target = [_number(word) for word in text.split(",")]
         if len(target) > 2 or not all(0 < w < 1 for w in target):
             raise ValueError
     except (ValueError, ZeroDivisionError):
@@ -107,12 +114,12 @@ def read_potential(source):
     if not os.path.exists(source):
         raise ConverseError("'%s' is no potential and no file; there are %s, or a file of lines "
                             "'k0 k1 cosine sine'" % (source, ", ".join(NAMES)))
-    terms = {}
+    name, terms = plain(os.path.splitext(os.path.basename(source))[0]), {}
     for number, words in _lines(source):
         words = words.split()
         try:
             k = tuple(map(int, words[:-2]))
-            term = tuple(map(Fraction, words[-2:]))
+            term = tuple(map(_number, words[-2:]))
             if len(words) not in (3, 4) or k in terms or any(abs(x) > 10 ** 9 for x in term):
                 raise ValueError
         except (ValueError, ZeroDivisionError):
@@ -120,7 +127,7 @@ def read_potential(source):
                                 "cosine sine')" % (source, number)) from None
         terms[k] = term
     try:
-        return orbits.Fourier(terms, plain(os.path.splitext(os.path.basename(source))[0]))
+        return orbits.Fourier(terms, name + ".txt" if name in NAMES else name)
     except ValueError as error:
         raise ConverseError("%s: %s" % (source, error)) from None
 
@@ -235,10 +242,14 @@ def type_text(state):
 
 def header(state):
     """What is the same for all states of a report."""
-    return "\n".join([
-        "Map : x' = x + p', p' = p - eps grad V(x), angles of period 1",
-        "Potential : " + state.potential.name,
-        "Type : %s, rotation vector %s" % (type_text(state), _numbers(state.rotation)), ""])
+    potential = state.potential
+    lines = ["Map : x' = x + p', p' = p - eps grad V(x), angles of period 1",
+             "Potential : " + potential.name]
+    if potential.name not in NAMES:     # a user's: a theorem must say of what
+        lines.append("V(x) : the sum of c cos 2 pi k.x + s sin 2 pi k.x, k c s = " + ", ".join(
+            " ".join(map(str, k + term)) for k, term in potential.terms.items()))
+    lines.append("Type : %s, rotation vector %s" % (type_text(state), _numbers(state.rotation)))
+    return "\n".join(lines) + "\n"
 
 
 def _numbers(values):
@@ -295,6 +306,8 @@ def find_states(options):
     p, q = _check_type(potential, options.type)
     _check_outputs(options, options.potential)
 
+    from .proved import prove
+    from .search import search
     from .solver import Family, follow, straight
 
     eps = [x for each in options.eps for x in each]
@@ -307,7 +320,6 @@ def find_states(options):
         if state.label in NO_MINIMUM:
             status = 1
         if options.prove:
-            from .proved import prove
             try:
                 say(prove(state).report())
             except ConverseError as reason:
@@ -315,16 +327,15 @@ def find_states(options):
                 status = 1
 
     say(header(straight(potential, p, q)))
-    if options.search is None:
-        try:
+    try:
+        if options.search is None:
             follow(potential, p, q, eps, progress=lambda _, state: found(state))
-        except ConverseError as reason:
-            say("\nNot found : %s\n" % plain(str(reason)))
-            status = 1
-    else:
-        from .search import search
-        for x in eps:
-            found(search(potential, p, q, x, options.search, seed=options.seed))
+        else:
+            for x in eps:
+                found(search(potential, p, q, x, options.search, seed=options.seed))
+    except ConverseError as reason:
+        say("\nNot found : %s\n" % plain(str(reason)))
+        status = 1
     if options.csv is not None:
         table = io.StringIO(newline="")
         Family(tuple(states)).write_csv(table)

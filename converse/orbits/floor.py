@@ -9,7 +9,7 @@ and so is high; estimates are called estimates.
 import heapq
 from dataclasses import dataclass
 from itertools import combinations
-from math import gcd, inf, isfinite, sqrt, ulp
+from math import gcd, inf, sqrt, ulp
 from typing import Tuple
 
 import numpy as np
@@ -17,11 +17,13 @@ import numpy as np
 from .._native import ffi, lib
 from ..core import check
 from ..files import ConverseError
-from .potential import address
+from .potential import Potential, address
 from .state import State
 
 U = 2.0 ** -53              # half the distance of the doubles next to 1
 LARGEST_EPS = 1e6
+LARGEST_ROTATION = 100
+LONGEST = 500               # q
 
 
 def _errors(potential, reach):
@@ -35,11 +37,25 @@ def _errors(potential, reach):
     return tuple(errors)
 
 
-def _perturbation(eps):
-    eps = float(eps)
-    if not abs(eps) <= LARGEST_EPS:
-        raise ValueError("eps is a number of at most %g, not %r" % (LARGEST_EPS, eps))
-    return eps
+def _numbers(what, values, most):
+    """As floats; ValueError, unless they are numbers of at most this size."""
+    try:
+        floats = [float(value) for value in values]
+    except (TypeError, ValueError, OverflowError):
+        floats = [inf]
+    if not all(abs(value) <= most for value in floats):
+        raise ValueError("%s: numbers of at most %g, not %r" % (what, most, values))
+    return floats
+
+
+def _whole(what, value, least, most):
+    """ValueError, unless it is a whole number in this range."""
+    try:
+        if int(value) == value and least <= value <= most:
+            return int(value)
+    except (TypeError, ValueError, OverflowError):
+        pass
+    raise ValueError("%s: a whole number from %d to %d, not %r" % (what, least, most, value))
 
 
 def _values(potential, x):
@@ -58,8 +74,43 @@ def _torus(potential, eps, grid):
     x[:, :n] = np.indices((grid,) * n).reshape(n, -1).T / grid
     W = -eps * _values(potential, x)
     off = abs(eps) * _errors(potential, 1.0)[0] + U * float(np.abs(W).max())
-    rise = n * (2 + abs(eps) * potential.curvature) / (8 * grid ** 2) * (1 + 2.0 ** -40)
+    rise = n * (1 + abs(eps) * potential.curvature) / (8 * grid ** 2) * (1 + 2.0 ** -40)
     return W, off, rise
+
+
+# ---- one state
+
+def _reach(state):
+    """How large its points' coordinates are before whole turns are taken off."""
+    return 1 + float(np.abs(state.origin).max()) + float(np.abs(state.u).max())
+
+
+def _action(state):
+    """Two numbers around the sum of |u_{j+1} - u_j|^2/2 - eps V(x_j)."""
+    step, x = np.roll(state.u, -1, 0) - state.u, np.zeros((state.q, 2))
+    x[:, :state.potential.n] = state.base + state.u
+    parts = np.append(step.ravel() ** 2 / 2, -state.eps * _values(state.potential, x))
+    off = (2 * (len(parts) + 8) * U * float(np.abs(parts).sum())
+           + state.q * abs(state.eps) * _errors(state.potential, _reach(state))[0])
+    return float(parts.sum()) - off, float(parts.sum()) + off
+
+
+def _gradient(state):
+    """Of the action, and what each of its coordinates may be off by."""
+    off = 8 * U * (4 * float(np.abs(state.u).max()) + float(np.abs(state.gradient).max()))
+    return (state.gradient,
+            off + 1.001 * abs(state.eps) * _errors(state.potential, _reach(state))[1])
+
+
+def _per_point(low, high, q):
+    low, high = low / q, high / q
+    return low - ulp(low), high + ulp(high)
+
+
+def enclosed_action(state):
+    """Two numbers, proved to be around state.action, whether it is an orbit or not."""
+    _numbers("eps", [state.eps], LARGEST_EPS)
+    return _per_point(*_action(state), state.q)
 
 
 # ---- the floor under all orbits of a rotation vector
@@ -72,7 +123,7 @@ class Floor:
     c        -- low is that of the plane p = c, H - c.(x' - x): any other c bounds, too
     """
 
-    potential: object
+    potential: Potential
     eps: float
     rotation: Tuple[float, ...]
     grid: int
@@ -145,7 +196,7 @@ def _highest(planes, radius):
     rows += [[*(sign * axis), 0.0, radius] for axis in np.eye(n) for sign in (-1.0, 1.0)]
     rows = np.array(rows)
     chosen = rows[np.array(list(combinations(range(len(rows)), n + 1)))]
-    chosen = chosen[np.abs(np.linalg.det(chosen[:, :, :-1])) > 1e-9]
+    chosen = chosen[np.abs(np.linalg.det(chosen[:, :, :-1])) > 1e-12]
     corners = np.linalg.solve(chosen[:, :, :-1], chosen[:, :, -1:])[:, :, 0]
     below = (corners @ rows[:, :-1].T <= rows[:, -1] + 1e-12).all(1)
     best = max(corners[below], key=lambda corner: corner[n])
@@ -162,35 +213,36 @@ def floor(potential, eps, rotation, grid=256):
     The action of a path x_0 ... x_m exceeds c.(x_m - x_0) by at least m times the least average on the
     grid, whatever c is; the c that gives the most is looked for by cutting planes, first on coarse
     grids: each closed path bounds what a c can give."""
-    eps, n = _perturbation(eps), potential.n
-    rotation = tuple(map(float, rotation))
-    if len(rotation) != n or not all(abs(w) <= 100 for w in rotation):
-        raise ValueError("a rotation vector is %d numbers of at most 100, not %r" % (n, rotation))
-    if int(grid) != grid or not 8 <= grid <= 2048:
-        raise ValueError("a grid has 8 to 2048 nodes along an axis, not %r" % (grid,))
-    w, coarse = np.array(rotation), int(grid)
+    (eps,), n = _numbers("eps", [eps], LARGEST_EPS), potential.n
+    w = np.array(_numbers("rotation", rotation, LARGEST_ROTATION))
+    if len(w) != n:
+        raise ValueError("the rotation vectors of %s have %d numbers, not %d"
+                         % (potential.name, n, len(w)))
+    coarse = grid = _whole("grid", grid, 8, 2048)
     while coarse % 2 == 0 and coarse >= 48:
         coarse //= 2
     torus = _Torus(potential, eps, coarse)
     # at c = rotation the bound is min W or more, and elsewhere mean W - |c - rotation|^2/2 or less
     radius = sqrt(2 * float(torus.W.mean() - torus.W.min()) + 1e-12) * 1.1
+    tolerance = _torus(potential, eps, grid)[2] / 20
     planes, b = [], np.zeros(n)
     while True:
-        tolerance = torus.rise / 20
-        low, best = -inf, b
-        for _ in range(60 if torus.grid == coarse else 12):
+        low = -inf
+        for _ in range(max(3, (512 // torus.grid) ** 2)):
             here = torus.settle(w + b, tolerance / 4, 400) - float(b @ b) / 2
-            low, best = max((low, tuple(best)), (here, tuple(b)))
+            if here > low:
+                low, best = here, b
             planes.append(torus.cycle(w + b, w))
+            planes = sorted(planes, key=lambda plane: plane[0] + best @ plane[1])[:40]
             b, estimate = _highest(planes, radius)
             if estimate - low <= tolerance:
                 break
-        b = np.array(best)
+        b = best
         if torus.grid == grid:
             break
         torus = torus.refined(potential, eps)
     size = float(np.abs(w).max() + np.abs(b).max() + 1)
-    return Floor(potential, eps, rotation, torus.grid, low - torus.rise - 64 * U * size ** 2,
+    return Floor(potential, eps, tuple(map(float, w)), grid, low - torus.rise - 64 * U * size ** 2,
                  estimate, tuple(map(float, w + b)))
 
 
@@ -260,27 +312,6 @@ class _Search:
 
     # ---- states
 
-    def action(self, state):
-        """Two numbers around its action."""
-        step, value = np.roll(state.u, -1, 0) - state.u, _values(self.potential, self.points(state))
-        parts = np.append(step.ravel() ** 2 / 2, -self.eps * value)
-        off = (2 * (len(parts) + 8) * U * float(np.abs(parts).sum())
-               + self.q * abs(self.eps) * self.errors(state)[0])
-        return float(parts.sum()) - off, float(parts.sum()) + off
-
-    def points(self, state):
-        points = self.base.copy()
-        points[:, :self.n] += state.u
-        return points
-
-    def errors(self, state):
-        return _errors(self.potential, 1 + float(np.abs(state.u).max()))
-
-    def gradient(self, state):
-        """Of the action, and what each of its coordinates may be off by."""
-        off = 8 * U * (4 * float(np.abs(state.u).max()) + float(np.abs(state.gradient).max()))
-        return state.gradient, off + 1.001 * abs(self.eps) * self.errors(state)[1]
-
     def relaxed(self, z):
         """A state near z, an orbit if there is one, and remembered if it is the best so far."""
         state = self.best.moved(z[:, :self.n])
@@ -288,7 +319,7 @@ class _Search:
             state = state.relax(max_steps=50)
         except ConverseError:
             pass
-        high = self.action(state)[1]
+        high = _action(state)[1]
         if high < self.known:
             self.best, self.known = state, high
         return state
@@ -330,11 +361,11 @@ class _Search:
         state = self.best.moved(centre[:, :self.n])
         n, q, size = self.n, self.q, self.n * self.q
         matrix = np.zeros((q, n, q, n))
-        for j, block in enumerate(self.potential.evaluate(self.points(state)[:, :n])[2]):
+        for j, block in enumerate(self.potential.evaluate(state.base + state.u)[2]):
             matrix[j, :, j] += 2 * np.eye(n) - self.eps * block
             matrix[j, :, (j + 1) % q] -= np.eye(n)
             matrix[(j + 1) % q, :, j] -= np.eye(n)
-        off = 1.001 * abs(self.eps) * self.errors(state)[2] + 32 * U * float(np.abs(matrix).max())
+        off = 1.001 * abs(self.eps) * _errors(state.potential, _reach(state))[2] + 32 * U * float(np.abs(matrix).max())
         return _least_eigenvalue(matrix.reshape(size, size)) - change - off
 
     def settled(self, low, high):
@@ -342,66 +373,66 @@ class _Search:
 
         With mu <= all eigenvalues and g the gradient at z, the action elsewhere exceeds that at z by at
         least g.t + mu |t|^2/2."""
-        mu = self.convexity(low, high)
+        room = (high - low) / 8             # a least state on the edge shall be inside, too
+        mu = self.convexity(low - room, high + room)
         if not mu > 0:
             return None
-        low, high = low[:, :self.n], high[:, :self.n]
+        low, high, room = low[:, :self.n], high[:, :self.n], room[:, :self.n]
         state = self.relaxed((low + high) / 2)
         if not ((low <= state.u) & (state.u <= high)).all():
             state = state.moved(np.clip(state.u, low, high))
-        (least, most), (g, off) = self.action(state), self.gradient(state)
+        (least, most), (g, off) = _action(state), _gradient(state)
         t = np.clip(-g / mu, low - state.u, high - state.u)
         parts = np.append(g * t, mu / 2 * t ** 2)
         bound = (least + float(parts.sum()) - off * float((high - low).sum())
                  - 8 * len(parts) * U * float(np.abs(parts).sum()))
         if bound <= self.known and most - bound > TINY * self.q:
             return None
-        return _Settled(bound, self.copies(state, low, high, mu))
+        return _Settled(bound, self.copies(state, low - room, high + room, mu))
 
     def copies(self, state, low, high, mu):
-        """How many copies of an orbit the only orbit of a corridor is, as far as that is proved.
+        """How many copies of an orbit the only orbit of a convex corridor is, as far as that is proved.
 
         Among states that are d copies, and within r of one with gradient g, the action is least
         inside, not on the edge, if r > 2 |g|/mu; and least among such states, it is an orbit."""
         whole = gcd(*state.p, self.q)
         for d in range(whole, 1, -1):
             if whole % d == 0:
-                mean = state.u.reshape(d, -1, self.n).mean(0)
-                state = state.moved(np.tile(mean, (d, 1)))
-                g, off = self.gradient(state)
-                r = float(min((state.u - low).min(), (high - state.u).min()))
+                same = state.moved(np.tile(state.u.reshape(d, -1, self.n).mean(0), (d, 1)))
+                g, off = _gradient(same)
+                r = float(min((same.u - low).min(), (high - same.u).min()))
                 if r > 2.001 / mu * (sqrt(float((g ** 2).sum())) + off * sqrt(g.size)):
                     return d
         return 1
 
     def run(self, gap, corridors):
-        """Looks into corridors, the lowest first, until the least action is known to gap."""
+        """Looks into corridors, the lowest first, until the least action is known to gap.  Returns a
+        lower bound of it, copies as above, and how many corridors were looked into."""
         self.relaxed(np.zeros((self.q, 2)) + [*self.potential.start, 0.0][:2])
-        pending, settled, count = [(-inf, 0, *self.root())], [], 0
-        pushed = 1
+        pending, settled, count, pushed = [(-inf, 0, *self.root())], [], 0, 0
         while pending and count < corridors and self.known - pending[0][0] > gap:
-            bound, _, low, high = heapq.heappop(pending)
-            if bound > self.known:
-                continue
+            lowest, _, low, high = heapq.heappop(pending)
             done = self.settled(low, high)
             if done is not None:
                 settled.append(done)
                 continue
             size = high - low
+            least, path = self.narrow(low, high)
             count += 1
-            bound, path = self.narrow(low, high)
-            if bound > self.known:
+            if least > self.known:
                 continue
             self.relaxed(path)
-            halves = [(low, high)]
-            if np.log(((high - low) / size)[:, :self.n]).sum() > -0.175 * self.n * self.q:
-                halves = self.halves(low, high)
-            for low, high in halves:
-                heapq.heappush(pending, (bound, pushed, low, high))
+            shrunk = np.log((high - low)[:, :self.n] / size[:, :self.n]).mean() < -0.175
+            for half in [(low, high)] if shrunk else self.halves(low, high):
                 pushed += 1
-        left = [bound for bound, *_ in pending] + [leaf.bound for leaf in settled]
-        copies = gcd(*(leaf.copies for leaf in settled if leaf.bound <= self.known))
-        return min(left), 1 if pending else copies, count
+                heapq.heappush(pending, (max(lowest, least), pushed, *half))
+        left = [corridor[0] for corridor in pending] + [done.bound for done in settled]
+        if not left or min(left) > self.known:
+            raise ConverseError("every state of the type was excluded, even the best one: the curvature "
+                                "or the Lipschitz constant of %s is too small" % self.potential.name)
+        open_ = bool(pending) and pending[0][0] <= self.known
+        copies = gcd(*(done.copies for done in settled if done.bound <= self.known))
+        return min(left), 1 if open_ else copies, count
 
     @staticmethod
     def halves(low, high):
@@ -423,15 +454,13 @@ def least_action(potential, p, q, eps, gap=1e-9, corridors=10000):
     Above the eps where an orbit's tori break, q up to 30 takes seconds to minutes, and a gap of
     1e-12 is as cheap as a larger one.  Below, states slide along each other at no cost, and a small gap
     takes corridors without end."""
-    eps = _perturbation(eps)
-    if not gap >= 0 or not corridors >= 1:
-        raise ValueError("gap is a number from 0 on and corridors one from 1 on, not %r and %r"
-                         % (gap, corridors))
-    state = State(potential, p, q, eps, np.zeros((int(q), potential.n)), (0.0,) * potential.n)
     _errors(potential, 1.0)
+    eps, gap = _numbers("eps and gap", [eps, gap], LARGEST_EPS)
+    corridors = _whole("corridors", corridors, 1, 10 ** 9)
+    q = _whole("q", q, 1, LONGEST)
+    state = State(potential, p, q, eps, np.zeros((q, potential.n)), (0.0,) * potential.n)
     if eps == 0:
         return LeastAction(0.0, 0.0, state, gcd(*state.p, state.q), 0)
     search = _Search(state)
     low, copies, count = search.run(gap * state.q, corridors)
-    low, high = low / state.q, search.known / state.q
-    return LeastAction(low - ulp(low), high + ulp(high), search.best, copies, count)
+    return LeastAction(*_per_point(low, search.known, state.q), search.best, copies, count)

@@ -22,9 +22,8 @@ from .state import NEAR_NULL, STATIONARY, State
 
 DIGITS = 20                 # the radius is at most 10^-DIGITS unless another number is asked for
 MOST = 1000                 # places, with which no orbit is tried any more
-MORE = 200                  # places that are added in vain, at most
+MORE = 100                  # places that are added in vain, at most
 STEPS = 60                  # of Newton's method, at most
-SETTLE = 4                  # more to each, at most
 SOFT = Fraction(NEAR_NULL)  # eigenvalues of the Hessian below it in size are none in doubles
 GUARD = 10                  # places by which what must be seen stands above rounding
 SHOWN = 20                  # places of an interval in a report, at most
@@ -86,9 +85,8 @@ class ProvedOrbit:
             "(Euclidean norm of all coordinates together). It is hyperbolic and, run through any number of",
             "times, a nondegenerate local minimum of the action: second variation at least %s."
             % _round(self.least, 3, up=False),
-            "Action per point less |p/q|^2/2: %s." % _interval(self.action),
-            "Exponent%s: %s." % ("s" if len(self.exponents) > 1 else "",
-                                 ", ".join(map(_interval, self.exponents)))]
+            "Action per point less |p/q|^2/2: %s." % _interval(self.action)] + [
+            "Exponent: %s." % _interval(exponent) for exponent in self.exponents]
         return "\n".join(lines) + "\n"
 
 
@@ -104,20 +102,28 @@ def prove(state: State, digits: Optional[int] = None) -> ProvedOrbit:
     if state.eps == 0:
         raise NotProved("without a perturbation, at eps 0, no orbit is isolated")
     exact = _Exact(state)
-    if not state.shadow < STATIONARY:
-        raise NotProved("the state is not stationary, its gradient is %.1e: relax() it first"
-                        % state.shadow)
+    with np.errstate(all="ignore"):
+        shadow = state.shadow
+    if not shadow < STATIONARY:
+        raise NotProved("the state is not stationary, its gradient is %.1e: relax() it first" % shadow)
     if state.least < -SOFT:
         raise NotProved("the state is a saddle: the least eigenvalue of its Hessian is about %.1e"
                         % state.least)
     places, most = wanted + 2 * GUARD, min(MOST, wanted + 2 * GUARD + MORE)
+    orbit, reason = None, None
     while True:
         try:
-            return _attempt(state, exact, places, wanted)
+            orbit = _attempt(state, exact, places, wanted)
+            if all(high - low <= high / 10 ** GUARD for low, high in orbit.exponents):
+                return orbit
         except _TooFewPlaces as error:
-            if places == most:
-                raise NotProved("%s: %d decimal places do not tell" % (error, places)) from None
-            places = min(most, max(places + 15, places * 3 // 2))
+            reason = error
+        if places == most:
+            break
+        places = min(most, max(places + 15, places * 3 // 2))
+    if orbit is None:
+        raise NotProved("%s: %d decimal places do not tell" % (reason, places))
+    return orbit
 
 
 class _TooFewPlaces(Exception):
@@ -183,11 +189,11 @@ class _Exact:
         return self._succeeds(lib.cv_exact_least(self.handle, _decimal(m, self.places).encode()))
 
     def pivots(self, m, away):
-        """None, or whether a cone closed."""
-        closed = ffi.new("int *")
+        """Encloses the pivots; CV_UNDECIDED, CV_REAL or CV_COMPLEX.  None: it could not be done."""
+        kind = ffi.new("int *")
         if self._succeeds(lib.cv_exact_pivots(self.handle, _decimal(m, self.places).encode(),
-                                              _decimal(away, self.places, up=True).encode(), closed)):
-            return bool(closed[0])
+                                              _decimal(away, self.places, up=True).encode(), kind)):
+            return kind[0]
         return None
 
     def bound(self, which):
@@ -205,7 +211,7 @@ class _Exact:
 def _attempt(state, exact, places, wanted):
     ulp = Fraction(1, 10 ** places)
     floor = ulp * 10 ** (2 * GUARD)
-    _refine(exact, places, floor)
+    _refine(state, exact, places, floor)
     least = _least(state, exact, floor)
     bend = exact.eps * exact.lipschitz
     radius = exact.gradient / least * Fraction(9, 8) + ulp
@@ -218,20 +224,18 @@ def _attempt(state, exact, places, wanted):
     strict = max(4 * away, ulp * 10 ** GUARD)
     if strict > least / 2:
         raise _TooFewPlaces("the minimum is too flat")
-    closed = exact.pivots(strict, away)
-    if closed is None:
+    kind = exact.pivots(strict, away)
+    if kind is None:
         raise _TooFewPlaces("the pivots could not be enclosed")
     action = (exact.action[0] - exact.gradient * radius / state.q, exact.action[1])
     displacements = exact.displacements()
     moved = max(abs(float(new - Fraction(old))) for row, olds in zip(displacements, state.u.tolist())
                 for new, old in zip(row, olds))
-    exponents = _exponents(state, exact, closed)
-    if closed and any(high - low > high / 10 ** GUARD for low, high in exponents):
-        raise _TooFewPlaces("the exponents are so small")
-    return ProvedOrbit(state, places, radius, left, action, exponents, moved, displacements)
+    return ProvedOrbit(state, places, radius, left, action, _exponents(state, exact, kind), moved,
+                       displacements)
 
 
-def _refine(exact, places, floor):
+def _refine(state, exact, places, floor):
     """Newton's method until the gradient is as small as so many places allow.
 
     Where the Hessian is not positive, but for less than what doubles see of it, the step is made
@@ -250,13 +254,15 @@ def _refine(exact, places, floor):
         exact.keep()
         exact.newton(shift)
         exact.evaluate(places)
-        for _ in range(SETTLE):
-            if exact.gradient > max(gradient, noise) and exact.newton(SOFT):
-                exact.evaluate(places)
+        still = None
+        while exact.gradient > max(gradient, noise) and (still is None or 2 * exact.gradient < still):
+            still = exact.gradient
+            exact.newton(SOFT)
+            exact.evaluate(places)
         if exact.action[0] > action[1]:
             exact.back()
             exact.evaluate(places)
-            shift = max(16 * shift, floor)
+            shift = max(16 * shift, floor, gradient / math.isqrt(state.q))     # no further than about 1
         elif not shift and exact.gradient < noise:
             return
         else:
@@ -288,22 +294,24 @@ def _boundary(low, high, holds, ratio):
     return low, high
 
 
-def _exponents(state, exact, closed):
-    """Enclosures of the exponents from those of products of determinants and of growths.
-
-    With both signs of a proved eigenvalue's modulus, g, the other's is the determinant over g.  Without,
-    the larger exponent is at least half the sum, and bounded by the growth."""
+def _exponents(state, exact, kind):
+    """Enclosures of the exponents, from that of the product of the determinants, their sum, and what is
+    known of the two eigenvalues.  If one's modulus is, the other's is the determinant over it; if they
+    are complex, both are the determinant's root; if nothing is, the larger is at least that."""
     total = (log_bounds(exact.bound(lib.CV_DET_LOW))[0], log_bounds(exact.bound(lib.CV_DET_HIGH))[1])
+    half = (total[0] / 2, total[1] / 2)
     if state.potential.n == 1:
         pair = (total,)
+    elif kind == lib.CV_COMPLEX:
+        pair = (half, half)
     else:
         high = log_bounds(exact.bound(lib.CV_GROWTH_HIGH))[1]
-        if closed:
+        if kind == lib.CV_REAL:
             one = (log_bounds(exact.bound(lib.CV_GROWTH_LOW))[0], high)
             other = (total[0] - one[1], total[1] - one[0])
             pair = (tuple(map(max, one, other)), tuple(map(min, one, other)))
         else:
-            pair = ((total[0] / 2, high), (total[0] - high, total[1] / 2))
+            pair = ((half[0], high), (total[0] - high, half[1]))
     return tuple((_places(max(low, 0) / state.q, up=False), _places(high / state.q, up=True))
                  for low, high in pair)
 
@@ -341,7 +349,7 @@ def log_bounds(x: Fraction) -> Bounds:
     x = y 2^k, 1/2 < y < 2, log y = 2 artanh z, z = (y - 1)/(y + 1), |z| < 1/3; log 2 = 2 artanh(1/3).
     The series is cut where a power is below one unit, 10^-60; all further terms together are below
     two.  Each power is off by less than 2 units, each term by less than 3, and fewer than 70 are
-    added: 300 units are more than all of that, twice."""
+    added, so that twice their sum is off by less than 500 units."""
     unit = 10 ** 60
 
     def twice_artanh(z):
@@ -355,7 +363,7 @@ def log_bounds(x: Fraction) -> Bounds:
     k = x.numerator.bit_length() - x.denominator.bit_length()
     y = x / Fraction(2) ** k
     middle = twice_artanh((y - 1) / (y + 1)) + k * twice_artanh(Fraction(1, 3))
-    off = 300 * (1 + abs(k))
+    off = 500 * (1 + abs(k))
     return Fraction(middle - off, unit), Fraction(middle + off, unit)
 
 

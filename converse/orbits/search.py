@@ -22,7 +22,9 @@ from .state import State
 MOST_STEPS = 1000           # of Newton's method in one search; few take more than a hundred
 TURNS = 50                  # of the best state, tried before anything at random
 JOINTS = 12                 # of two shorter states, tried before anything at random
-SHORT = 10000               # points times searches spent on a shorter type
+SHORT = 10000               # points times searches spent on a shorter type, but 2 JOINTS at least
+MOST = 100                  # searches spent on a shorter type
+SHARE = 0.6                 # of the seconds left, at most, likewise
 SAMPLE = 1000               # points of a state that are compared with another's for a joint
 SPACING = 60                # points between pieces moved at once
 PIECE = 10                  # points of a piece, on the average
@@ -51,18 +53,20 @@ def search(potential, p, q, eps, searches=200, seconds=math.inf, seed=0, progres
         raise ValueError("the potential is one of converse.orbits, not %r" % (potential,))
     if isinstance(searches, bool) or not isinstance(searches, int) or searches < 1:
         raise ValueError("searches is a whole number, 1 or more, not %r" % (searches,))
+    if progress is not None and not callable(progress):
+        raise ValueError("progress is a function of two arguments, not %r" % (progress,))
     if isinstance(seconds, bool) or not isinstance(seconds, (int, float)) or not seconds > 0:
         raise ValueError("seconds is a number above 0, not %r" % (seconds,))
     try:
         rng = np.random.default_rng(seed)
     except (TypeError, ValueError):
         raise ValueError("the seed is a whole number, 0 or more, not %r" % (seed,)) from None
-    type_ = State(potential, p, q, eps, straight(potential, p, q).u, potential.start)
-    hunt = _Hunt(type_, searches, time.monotonic() + seconds, rng, {}, progress)
+    guess = replace(straight(potential, p, q), eps=eps)
+    hunt = _Hunt(guess, searches, time.monotonic() + seconds, rng, {}, progress)
     hunt.run()
     if hunt.best is None:
         raise ConverseError("no orbit of type (%s)/%d found at eps %r: none of %d searches ended"
-                            % (", ".join(map(str, type_.p)), q, eps, hunt.begun))
+                            % (", ".join(map(str, guess.p)), guess.q, eps, hunt.begun))
     return replace(hunt.best, searches=hunt.ended)
 
 
@@ -73,6 +77,7 @@ class _Hunt:
         self.guess, self.searches, self.end, self.rng = guess, searches, end, rng
         self.known, self.progress = known, progress         # known: the best of shorter types
         self.best, self.begun, self.ended = None, 0, 0
+        self.turns, self.shifts = _turns(guess.p, guess.q, 0.0)
 
     @property
     def on(self):
@@ -88,15 +93,14 @@ class _Hunt:
         joints = self.joints()
         for _ in range(JOINTS):
             self.joint(joints)
-        turns, _ = _turns(guess.p, guess.q, 0.0)
-        for r in turns[1:1 + TURNS]:
+        for r in self.turns[1:1 + TURNS]:
             self.turn(r)
         while self.on:
             move = self.rng.integers(4) if self.best is not None else 3
             if move == 0:
                 self.joint(joints)
             elif move == 1 and guess.q > 1:
-                self.turn(turns[self.nearly_first(1, guess.q)])
+                self.turn(self.turns[self.nearly_first(1, guess.q)])
             elif move == 2:
                 self.pieces()
             else:
@@ -135,8 +139,7 @@ class _Hunt:
 
     def turn(self, r):
         if self.on and self.best is not None:
-            _, shifts = _turns(self.guess.p, self.guess.q, 0.0)
-            self.mend(self.best, r, shifts[r])
+            self.mend(self.best, r, self.shifts[r])
 
     def pieces(self):
         """Basin hopping, in many places at once: each piece may be kept or not."""
@@ -184,7 +187,7 @@ class _Hunt:
             if part is not None:
                 yield part.repeat(copies)
         residue = _residues(p, q)
-        turns = [r for r in _turns(p, q, 0.0)[0] if residue[r].any()]
+        turns = [r for r in self.turns if residue[r].any()]
         if not turns:
             return
         r = int(turns[0])
@@ -195,12 +198,13 @@ class _Hunt:
 
     def shorter(self, p, q):
         """The best state of a shorter type that a shorter search finds; None: there is none."""
-        key = tuple(p), q
+        key, now = (tuple(p), q), time.monotonic()
         if key not in self.known:
-            now = time.monotonic()
+            if now > self.end:
+                return None
             guess = replace(self.guess, p=p, q=q, u=np.zeros((q, len(p))))
-            hunt = _Hunt(guess, min(self.searches, max(2 * JOINTS, SHORT // q)),
-                         now + (self.end - now) / 2, self.rng, self.known)
+            hunt = _Hunt(guess, min(self.searches, MOST, max(2 * JOINTS, SHORT // q)),
+                         now + SHARE * (self.end - now), self.rng, self.known)
             hunt.run()
             self.known[key] = hunt.best
         return self.known[key]

@@ -17,7 +17,8 @@ LEAST_STEP = STEP / 64
 
 def straight(potential, p, q, origin=None):
     """The state x_j = origin + j p/q, least at eps 0; by default it begins at a maximum of V."""
-    return State(potential, p, q, 0.0, np.zeros((q, potential.n)), origin or potential.start)
+    rows = q if isinstance(q, (int, np.integer)) and q > 0 else 0       # State tells what is wrong
+    return State(potential, p, q, 0.0, np.zeros((rows, potential.n)), origin or potential.start)
 
 
 @dataclass(frozen=True, eq=False)

@@ -72,12 +72,16 @@ class State:
             raise ValueError("displacements are %d rows of %d finite numbers below %d in size"
                              % (self.q, n, FARTHEST))
         u.flags.writeable = False
-        origin = tuple(float(x) for x in self.origin)
-        if len(origin) != n or not all(map(isfinite, origin)) or not isfinite(self.eps):
+        try:
+            origin, eps = tuple(float(x) for x in self.origin), float(self.eps)
+            valid = len(origin) == n and all(map(isfinite, origin + (eps,)))
+        except (TypeError, ValueError, OverflowError):
+            valid = False
+        if not valid:
             raise ValueError("origin and eps are finite numbers, %d and one, not %r and %r"
                              % (n, self.origin, self.eps))
         for name, value in (("p", p), ("q", int(self.q)), ("u", u), ("origin", origin),
-                            ("eps", float(self.eps))):
+                            ("eps", eps)):
             object.__setattr__(self, name, value)
 
     def __repr__(self):

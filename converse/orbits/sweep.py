@@ -32,6 +32,7 @@ PER_CURVATURE = 0.03, 0.0006, 4.0       # onset's step, width and top times pote
 
 ONSET_COLUMNS = ("potential", "p", "q", "label", "eps_below", "eps_above", "exponent_below",
                  "exponent_above")
+TABLELESS = ValueError, IndexError, csv.Error       # of a text that is no table
 
 
 # ---- where an orbit turns hyperbolic
@@ -136,7 +137,7 @@ def read_csv(file):
             return _table(stream.read())
     except OSError as error:
         raise ConverseError("%s: cannot be read (%s)" % (file, files.reason(error))) from None
-    except (UnicodeDecodeError, ValueError, IndexError):
+    except TABLELESS:
         raise ConverseError("%s: is no table of states or of onsets" % file) from None
 
 
@@ -299,9 +300,13 @@ def _finished(path, header, potential, vectors, eps, task):
         refuse("it has more rows")
     for k, line in enumerate(rows):
         key = _type(potential, vectors[k // len(eps)]) + eps[k % len(eps)]
-        if next(csv.reader([line]))[:len(key)] != [str(word) for word in key]:
+        if not line.startswith(_text([key])[:-1] + ","):
             refuse("its line %d is of another potential, type or eps" % (k + 2))
     texts = ["".join(rows[k:k + len(eps)]) for k in range(0, len(rows) - len(eps) + 1, len(eps))]
+    try:
+        _table(header + "".join(texts))
+    except TABLELESS:
+        refuse("it is damaged")
     if texts and texts[0] != task(vectors[0]):
         refuse("its first rows, computed anew, are others")
     return texts

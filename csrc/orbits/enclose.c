@@ -1057,40 +1057,76 @@ static int close_cone(cv_exact *o)
     return 0;
 }
 
-/* Without a cone: an upper bound of the moduli of all eigenvalues, the larger row sum of the product
-   of the absolute values of a, b, c, d. */
-static void bound_growth(cv_exact *o)
+/* Without a cone.  The product of all matrices in the frames is x, each entry within that of r:
+
+       r' = |A| r + off (|x| + r summed down the column) + rounding,   A the matrix with a, b, c, d.
+
+   It is D_{q-1} ... D_0 in the frame at point 0, but for the factors |v|^2, together at most 1 + 10 q
+   ulp and not less than the inverse of that.  The larger row sum bounds the moduli of the eigenvalues;
+   and if the square of the trace is less than four times the determinant, these are not real, so both
+   moduli are the determinant's root.  Returns whether they are. */
+static int bound_growth(cv_exact *o)
 {
     apm_t *const t = o->t;
-    matrix *const x = &o->F;
+    matrix *const x = &o->F, *const r = &o->old;
 
-    for (int i = 0; i < 4; i++)
+    if (o->q > 10000000L || o->dp < 10)
+        return 0;
+    for (int i = 0; i < 4; i++) {
         apm_set_si(x->m[i / 2][i % 2], i % 3 == 0, 0);
-    apm_mul_si(t[9], o->ulp, 5);
-    apm_set_si(t[0], 1, 0);
-    apm_add(t[9], t[9], t[0]);
+        apm_set_si(r->m[i / 2][i % 2], 0, 0);
+    }
     for (long j = 0; j < o->q; j++) {
-        in_frames(o, j, 1, t[4], t[5], t[6], t[7], t[8]);
-        for (int i = 4; i < 8; i++) {
-            apm_abs(t[i], t[i]);
-            apm_add(t[i], t[i], t[8]);
-            apm_mul(t[i], t[i], t[9]);
-        }
+        in_frames(o, j, turn_at(o, j), t[4], t[5], t[6], t[7], t[8]);
         for (int k = 0; k < 2; k++) {
-            apm_mul(t[10], t[4], x->m[0][k]);
-            add_product(t[10], t[5], x->m[1][k], t[0]);
-            apm_mul(t[11], t[6], x->m[0][k]);
-            add_product(t[11], t[7], x->m[1][k], t[0]);
-            apm_round(x->m[0][k], t[10], o->dp - apm_order(t[10]), APM_UP);
-            apm_round(x->m[1][k], t[11], o->dp - apm_order(t[11]), APM_UP);
+            apm_abs(t[9], x->m[0][k]);
+            apm_abs(t[10], x->m[1][k]);
+            apm_add(t[9], t[9], t[10]);
+            apm_add(t[9], t[9], r->m[0][k]);
+            apm_add(t[9], t[9], r->m[1][k]);
+            apm_mul(t[9], t[9], t[8]);                  /* off (...) */
+            for (int i = 0; i < 2; i++) {
+                const int a = i == 0 ? 4 : 6;
+                apm_mul(t[10 + i], t[a], x->m[0][k]);
+                add_product(t[10 + i], t[a + 1], x->m[1][k], t[0]);
+                apm_abs(t[1], t[a]);
+                apm_abs(t[2], t[a + 1]);
+                apm_mul(t[12 + i], t[1], r->m[0][k]);
+                add_product(t[12 + i], t[2], r->m[1][k], t[0]);
+                apm_add(t[12 + i], t[12 + i], t[9]);
+            }
+            for (int i = 0; i < 2; i++) {
+                const long places = o->dp - apm_order(t[10 + i]);
+                apm_round(x->m[i][k], t[10 + i], places, APM_DOWN);
+                apm_set_si(t[0], 1, -places);
+                apm_add(t[12 + i], t[12 + i], t[0]);
+                apm_round(r->m[i][k], t[12 + i], o->dp - apm_order(t[12 + i]), APM_UP);
+            }
         }
     }
-    for (int i = 0; i < 2; i++)
-        apm_add(t[i], x->m[i][0], x->m[i][1]);
-    apm_set(o->bound[CV_GROWTH_HIGH], t[apm_cmp(t[0], t[1]) < 0]);
+    apm_mul_si(t[9], o->ulp, 10 * o->q);
+    apm_set_si(t[0], 1, 0);
+    apm_add(t[9], t[9], t[0]);                          /* the factors */
+    for (int i = 0; i < 2; i++) {
+        apm_set_si(t[i], 0, 0);
+        for (int k = 0; k < 2; k++) {
+            apm_abs(t[2], x->m[i][k]);
+            apm_add(t[i], t[i], t[2]);
+            apm_add(t[i], t[i], r->m[i][k]);
+        }
+    }
+    apm_mul(o->bound[CV_GROWTH_HIGH], t[apm_cmp(t[0], t[1]) < 0], t[9]);
+    apm_add(t[0], x->m[0][0], x->m[1][1]);
+    apm_abs(t[0], t[0]);
+    apm_add(t[0], t[0], r->m[0][0]);
+    apm_add(t[0], t[0], r->m[1][1]);
+    apm_mul(t[0], t[0], t[9]);
+    apm_mul(t[0], t[0], t[0]);
+    apm_mul_si(t[1], o->bound[CV_DET_LOW], 4);
+    return apm_cmp(t[0], t[1]) < 0;
 }
 
-typedef struct { const char *m, *away; int closed; } tubes;
+typedef struct { const char *m, *away; int kind; } tubes;
 
 static int enclose(cv_exact *o, const void *how)
 {
@@ -1107,20 +1143,20 @@ static int enclose(cv_exact *o, const void *how)
     apm_add(t[12], t[13], t[14]);
     if (!eliminate(o, t[12], 0) || !join(o) || !above(o, t[13]))
         return CV_ESINGULAR;
-    if (o->n == 2 && directions(o)) {
-        both->closed = close_cone(o);
-        if (!both->closed)
-            bound_growth(o);
+    if (o->n == 2) {
+        if (!directions(o))
+            return CV_ESINGULAR;
+        both->kind = close_cone(o) ? CV_REAL : bound_growth(o) ? CV_COMPLEX : CV_UNDECIDED;
     }
     return CV_OK;
 }
 
-int cv_exact_pivots(cv_exact *o, const char *m, const char *away, int *closed)
+int cv_exact_pivots(cv_exact *o, const char *m, const char *away, int *kind)
 {
-    tubes both = { .m = m, .away = away, .closed = 0 }, *const how = &both;
+    tubes both = { .m = m, .away = away, .kind = CV_UNDECIDED }, *const how = &both;
     const int status = guarded(o, enclose, &how);
 
-    *closed = both.closed;
+    *kind = both.kind;
     return status;
 }
 

@@ -11,7 +11,9 @@
 
        sum over j and coordinates i of (2 + |eps| K2) e_ji^2/8.                                   (1)
 
-   Whatever bounds all paths on the grid from below, bounds all paths less (1).
+   Whatever bounds all paths on the grid from below, bounds all paths less (1).  Where all points have the
+   same grid, one threshold will do for all of them, y_j = e floor(x_j/e + r) with a random r: then
+   y_{j+1} - y_j, too, is one of two neighbours of its mean, and (1) has 1 in place of 2.
 
    Rounding.  Unit u = 2^-53.  Nodes are doubles, so only W = -eps V is not what it should be there, by
    cv_errors, and what is computed from it rounds: see cheapest, and the margins that refer to it. */
@@ -27,14 +29,13 @@ static inline double larger(double x, double y) { return x > y || isnan(x) ? x :
 
 enum { MAX_NODES = 1025 };              /* along an axis of a corridor */
 
-/* Fourier: u(20 |k|(reach + 1) + 11) is what a sine is off by, |k| the sum of both: the point is off
-   by u(reach + 2), k.x by 2u |k| reach more, 2 pi times what is left of it after whole turns by 7u, the sine
-   by 4u.  The amplitude is off by 3u of itself, the products and 2 pi k by 9u, the sum over the
-   terms by u each.
-   poly: 2^-43, 2^-41, 2^-39 are 1024u, 4096u and 16384u; the roundings of the formulas make 40u, 400u
-   and 6000u of it at most, and the point, off by u(reach + 3) after its whole turns are
-   taken off, moves V by 9 times, its gradient by 116 times, V'' by 2800 times as much.
-   ff: x0 + x1 is off by u(4 reach + 6), and c, c', c'' have slopes of at most 12, 48 and 192. */
+/* Fourier: the point is off by u(2 reach + 2), k.x by 2u |k| reach more, |k| the sum of both, 2 pi times
+   what is left of it after whole turns by 7u, the sine by 4u: u(26 |k|(reach + 1) + 11).  The
+   amplitude is off by 3u of itself, the products and 2 pi k by 9u, the sum over the terms by u each.
+   poly: 2^-43, 2^-41, 2^-39 are 1024u, 4096u and 16384u.  The roundings of the formulas make 40u, 400u
+   and 6000u of them at most, and the point, off by u(2 reach + 3) once its whole turns are taken off,
+   moves V by 9 times, its gradient by 116 times, V'' by 2800 times as much.
+   ff: likewise, c, c', c'' having slopes of at most 12, 48 and 192; x0 + x1 is off by u(6 reach + 6). */
 int cv_errors(const cv_potential *v, double reach, double errors[3])
 {
     static const double of_poly[3] = { 0x1p-43, 0x1p-41, 0x1p-39 },

@@ -52,6 +52,7 @@ static int look(const action_of *of, place *at)
             size += step * step;
             squares += g * g;
             largest = fmax(largest, fabs(g));
+            size += fabs(of->eps * at->gradient[j][i]);     /* V may cancel; its slope seldom does, too */
             at->gradient[j][i] = g;
         }
         total = sum + term;             /* and what its rounding loses, which adds up over long orbits */

@@ -1,0 +1,562 @@
+"""Proved orbits against an independent truth.
+
+The truth: the map alone, iterated with mpmath, its orbits found by shooting, their exponents from the
+derivative of the map; potentials written anew; Hessians of copies by Bloch's waves in numpy.
+"""
+
+import math
+from dataclasses import replace
+from fractions import Fraction
+
+import mpmath
+import numpy as np
+import pytest
+from truth import TORTURE, mp, rng_for
+
+from converse import ConverseError, orbits
+from converse.orbits import proved
+from converse.orbits.proved import NotProved, lib, prove
+
+# ---- potentials, anew: one-variable jets (f, f', f'') of waves, or of factors
+
+
+def sine(x):
+    s, c, w = mpmath.sin(2 * mpmath.pi * x), mpmath.cos(2 * mpmath.pi * x), 2 * mpmath.pi
+    return s, w * c, -w * w * s
+
+
+def cosine(x):
+    return sine(x + mpmath.mpf(1) / 4)
+
+
+def spline(x):
+    x = x - mpmath.floor(x)
+    if x <= 0.5:
+        return 1 - 24 * x**2 + 32 * x**3, -48 * x + 96 * x**2, -48 + 192 * x
+    return (9 - 48 * x + 72 * x**2 - 32 * x**3, -48 + 144 * x - 96 * x**2, 144 - 192 * x)
+
+
+def polynomial(*factors):
+    """Coefficients, highest first, of a product of polynomials."""
+    product = [Fraction(1)]
+    for factor in factors:
+        product = [sum(product[i] * Fraction(factor[k - i]) for i in range(len(product))
+                       if 0 <= k - i < len(factor)) for k in range(len(product) + len(factor) - 1)]
+    return product
+
+
+def jet(coefficients):
+    def f(x):
+        x, c, out = x - mpmath.floor(x), coefficients, []
+        for _ in range(3):
+            value = mpmath.mpf(0)
+            for k in c:
+                value = value * x + mp(k)
+            out.append(value)
+            c = [k * (len(c) - 1 - i) for i, k in enumerate(c[:-1])]
+        return out
+    return f
+
+
+X0 = jet(polynomial((1, 0), (1, 0), (-1, 1), (-1, 1), (1, Fraction(-3, 4)), (-1, Fraction(1, 4))))
+X1 = jet(polynomial((1, 0), (1, 0), (-1, 1), (-1, 1)))
+
+
+def waves(parts):
+    """V = sum of weight f(k.x): value, gradient, Hessian."""
+    def V(x):
+        n = len(x)
+        value, gradient = mpmath.mpf(0), [mpmath.mpf(0)] * n
+        hessian = [[mpmath.mpf(0)] * n for _ in range(n)]
+        for weight, f, k in parts():
+            f0, f1, f2 = f(sum(i * y for i, y in zip(k, x)))
+            value += weight * f0
+            for i in range(n):
+                gradient[i] += weight * k[i] * f1
+                for j in range(n):
+                    hessian[i][j] += weight * k[i] * k[j] * f2
+        return value, gradient, hessian
+    return V
+
+
+def poly(x):
+    (f0, f1, f2), (g0, g1, g2) = X0(x[0]), X1(x[1])
+    return (-4096 * f0 * g0, [-4096 * f1 * g0, -4096 * f0 * g1],
+            [[-4096 * f2 * g0, -4096 * f1 * g1], [-4096 * f1 * g1, -4096 * f0 * g2]])
+
+
+def trig_parts():
+    M = mpmath.sqrt(207 + 33 * mpmath.sqrt(33)) / (8 * mpmath.sqrt(2))
+    return [(-1 / (2 * M), sine, (1, 0)), (-1 / (2 * M), sine, (0, 1)), (-1 / M, sine, (1, 1))]
+
+
+def three(f):
+    quarter = mpmath.mpf(1) / 4
+    return lambda: [(-quarter, f, (1, 0)), (-quarter, f, (0, 1)), (-2 * quarter, f, (1, 1))]
+
+
+ODD = orbits.Fourier({(1, 0): (Fraction(1, 3), Fraction(-1, 7)), (0, 1): (0, Fraction(2, 7)),
+                      (2, -1): (Fraction(1, 11), Fraction(1, 9))}, "odd")
+V = {"trig": waves(trig_parts), "froeschle": waves(three(cosine)), "ff": waves(three(spline)),
+     "poly": poly, "standard": waves(lambda: [(-1 / (4 * mpmath.pi**2), cosine, (1,))]),
+     "odd": waves(lambda: [(mp(w), f, k) for k, both in ODD.terms.items()
+                           for w, f in zip(both, (cosine, sine))])}
+
+# ---- orbits, anew
+
+
+def eps_of(state):
+    return mpmath.mpf(repr(state.eps))
+
+
+def exact_points(state, displacements):
+    """x_j on the lifted orbit."""
+    return [[mp(Fraction(o) + Fraction(j * p, state.q) + d)
+             for o, p, d in zip(state.origin, state.p, u)] for j, u in enumerate(displacements)]
+
+
+def shoot(state, x0, x1):
+    """The true orbit next to these two points: its points, and DF^q with respect to (x_0, x_1)."""
+    n, eps, potential = len(x0), eps_of(state), V[state.potential.name]
+    z, last = list(x0) + list(x1), False
+    for _ in range(60):
+        points = [z[:n], z[n:]]
+        rows = [[mpmath.mpf(i == k) for k in range(2 * n)] for i in range(2 * n)]
+        tangents = [rows[:n], rows[n:]]
+        for j in range(1, state.q + 1):
+            _, gradient, bend = potential(points[j])
+            points.append([2 * b - a - eps * g
+                           for a, b, g in zip(points[j - 1], points[j], gradient)])
+            tangents.append([[2 * tangents[j][i][k] - tangents[j - 1][i][k]
+                              - eps * sum(bend[i][m] * tangents[j][m][k] for m in range(n))
+                              for k in range(2 * n)] for i in range(n)])
+        if last:
+            return points[:state.q], mpmath.matrix(tangents[state.q] + tangents[state.q + 1])
+        miss = [points[state.q + s][i] - state.p[i] - points[s][i] for s in (0, 1) for i in range(n)]
+        M = mpmath.matrix(tangents[state.q] + tangents[state.q + 1])
+        step = mpmath.lu_solve(M - mpmath.eye(2 * n), -mpmath.matrix(miss))
+        z = [a + b for a, b in zip(z, step)]
+        last = max(map(abs, step)) < mpmath.mpf(10) ** -(mpmath.mp.dps // 2)
+    raise AssertionError("the truth did not converge")
+
+
+def truth_exponents(M, q):
+    """From the eigenvalues l, 1/l of a symplectic matrix: l + 1/l = s."""
+    t = sum(M[i, i] for i in range(M.rows))
+    if M.rows == 2:
+        sums = [t]
+    else:
+        square = M * M
+        e2 = (t * t - sum(square[i, i] for i in range(4))) / 2
+        root = mpmath.sqrt(mpmath.mpc(t * t - 4 * (e2 - 2)))
+        sums = [(t + root) / 2, (t - root) / 2]
+    sizes = []
+    for s in sums:
+        root = mpmath.sqrt(mpmath.mpc(s * s - 4))
+        sizes.append(max(abs(s + root), abs(s - root)) / 2)
+    return sorted((mpmath.log(x) / q for x in sizes), reverse=True)
+
+
+def truth_action(state, points):
+    """Per point less |p/q|^2/2."""
+    total = mpmath.mpf(0)
+    for j, x in enumerate(points):
+        after = points[j + 1] if j + 1 < state.q else [a + b for a, b in zip(points[0], state.p)]
+        total += sum((b - a) ** 2 for a, b in zip(x, after)) / 2
+        total -= eps_of(state) * V[state.potential.name](x)[0]
+    return total / state.q - sum(mp(Fraction(p, state.q)) ** 2 for p in state.p) / 2
+
+
+def blocks(state, points):
+    """beta_j in floats."""
+    with mpmath.workdps(30):
+        return np.array([[[float((2 if i == k else 0) - eps_of(state) * h) for k, h in enumerate(row)]
+                          for i, row in enumerate(V[state.potential.name](x)[2])] for x in points])
+
+
+def bottom(beta, waves=24):
+    """The least eigenvalue of all copies: of Bloch's waves."""
+    q, n = beta.shape[:2]
+    least = np.inf
+    for phase in np.pi * np.arange(waves + 1) / waves:
+        H = np.zeros((q * n, q * n), complex)
+        for j in range(q):
+            here, after = slice(j * n, j * n + n), slice((j + 1) % q * n, (j + 1) % q * n + n)
+            H[here, here] += beta[j]
+            turn = np.exp(1j * phase) if j == q - 1 else 1.0
+            H[here, after] -= turn * np.eye(n)
+            H[after, here] -= np.conj(turn) * np.eye(n)
+        least = min(least, np.linalg.eigvalsh(H)[0])
+    return least
+
+
+def inside(x, ends):
+    return mp(ends[0]) <= x <= mp(ends[1])
+
+
+def contains(orbit, near, digits):
+    """Does the theorem hold of the true orbit that lies near these points?  Within that, how sharp?"""
+    state = orbit.state
+    with mpmath.workdps(digits):
+        points, M = shoot(state, *near[:2] if state.q > 1 else (
+            near[0], [x + p for x, p in zip(near[0], state.p)]))
+        centre = exact_points(state, orbit.displacements)
+        apart = mpmath.sqrt(sum((a - b) ** 2 for x, y in zip(points, centre) for a, b in zip(x, y)))
+        assert apart <= mp(orbit.radius)
+        assert inside(truth_action(state, points), orbit.action)
+        for exponent, ends in zip(truth_exponents(M, state.q), orbit.exponents):
+            assert inside(exponent, ends)
+    return points
+
+
+CASES = [
+    ("trig", (5, 7), 9, 0.03), ("trig", (10, 14), 18, 0.06), ("trig", (3, 4), 5, 0.01),
+    ("trig", (1, 1), 2, 0.02), ("trig", (0, 0), 1, 0.02), ("trig", (-3, 2), 4, 0.02),
+    ("ff", (5, 7), 9, 0.03), ("ff", (2, 3), 4, 0.012), ("ff", (0, 1), 1, 0.02),
+    ("poly", (5, 7), 9, 0.03), ("poly", (3, 4), 5, 0.005), ("poly", (1, 0), 2, 0.02),
+    ("froeschle", (5, 7), 9, 0.03), ("froeschle", (2, 2), 3, 0.01),
+    ("standard", (5,), 13, 1.2), ("standard", (1,), 3, 0.3), ("standard", (1,), 2, 2.0),
+    ("standard", (0,), 1, 0.7), ("standard", (2,), 5, -0.9), ("odd", (5, 7), 9, 0.01),
+    ("odd", (1, 2), 3, -0.008),
+]
+
+
+def found(name, p, q, eps):
+    potential = ODD if name == "odd" else getattr(orbits, name)
+    return orbits.straight(potential, p, q, tuple(x + 0.02 for x in potential.start)).relax(eps)
+
+
+@pytest.mark.parametrize("case", CASES, ids=lambda case: "%s-%d-%s" % (case[0], case[2], case[3]))
+def test_contains_the_true_orbit(case):
+    state = found(*case)
+    orbit = prove(state)
+    assert orbit.label == "proved" and orbit.radius <= Fraction(1, 10**20)
+    near = exact_points(state, [[Fraction(float(x)) for x in u] for u in state.u])  # of the doubles
+    points = contains(orbit, near, 70)
+    least = bottom(blocks(state, points))
+    assert 0.9 * least < orbit.least <= least + 1e-13
+    assert all(low >= 0 and high - low < high / 10**9 for low, high in orbit.exponents)
+    assert orbit.moved < 1e-9
+    assert all(0 <= x < 1 for point in orbit.points for x in point)
+
+
+def test_long_types():
+    """Shooting needs more digits than an orbit grows by."""
+    for name, p, q, eps, digits in (("trig", (65, 86), 114, 0.0125, 90), ("ff", (37, 49), 65, 0.02, 90),
+                                    ("poly", (10, 62), 100, 0.01, 110)):
+        orbit = prove(orbits.follow(getattr(orbits, name), p, q, [eps])[0])
+        contains(orbit, exact_points(orbit.state, orbit.displacements), digits)
+    orbit = prove(orbits.follow(orbits.trig, (1432, 1897), 2513, [0.0125])[0])
+    assert orbit.radius < Fraction(1, 10**25) and 1.4e-6 < orbit.least < 1.6e-6
+    assert [float(low) for low, _ in orbit.exponents] == pytest.approx([0.099222812, 0.001306122],
+                                                                      rel=1e-7)
+
+
+def test_far_below_doubles():
+    """Where the least eigenvalue is below the rounding of doubles, phases and all."""
+    orbit = prove(orbits.follow(orbits.trig, (65, 86), 114, [0.004])[0])
+    assert 0 < orbit.least < 1e-11 and orbit.radius <= Fraction(1, 10**20)
+    contains(orbit, exact_points(orbit.state, orbit.displacements), 120)
+
+
+def test_more_digits():
+    state = found("trig", (5, 7), 9, 0.03)
+    coarse, fine = prove(state, digits=5), prove(state, digits=60)
+    assert coarse.radius <= Fraction(1, 10**5) and fine.radius <= Fraction(1, 10**60)
+    apart = sum((a - b) ** 2 for x, y in zip(coarse.displacements, fine.displacements)
+                for a, b in zip(x, y))
+    assert apart <= (coarse.radius + fine.radius) ** 2
+    for wide, narrow in zip((coarse.action,) + coarse.exponents, (fine.action,) + fine.exponents):
+        assert wide[0] <= narrow[0] <= narrow[1] <= wide[1]
+
+
+COMPLEX = orbits.State(orbits.poly, (1, 4), 4, 0.2547, [
+    [-0.13872656450355808, -0.23636730472985026], [-0.11127343549644189, -0.2363673047298503],
+    [-0.1323984999421461, -0.0435489119315375], [-0.11760150005785408, -0.0435489119315374]], (0, 0))
+
+
+def test_complex_exponents_are_equal():
+    orbit = prove(COMPLEX.relax())
+    assert orbit.exponents[0] == orbit.exponents[1]
+    contains(orbit, exact_points(orbit.state, orbit.displacements), 60)
+
+
+# ---- what must not be proved
+
+
+def test_saddles():
+    lowest = {"trig": (0.1489578, 0.1489578), "poly": (0.5, 0.5), "ff": (0.0, 0.0), "standard": (0.0,)}
+    for name, p, q in (("trig", (0, 0), 1), ("trig", (1, 1), 2), ("poly", (0, 1), 1),
+                       ("ff", (1, 0), 2), ("standard", (1,), 3), ("standard", (1,), 1)):
+        potential = getattr(orbits, name)
+        state, _ = orbits.newton(orbits.straight(potential, p, q, lowest[name]), 0.03)
+        assert state.least < -1e-6
+        for copies in (1, 2):
+            with pytest.raises(NotProved, match="saddle"):
+                prove(state.repeat(copies))
+
+
+def test_minimum_that_copies_lose():
+    """Its own Hessian is positive definite, but not that of two copies."""
+    state = orbits.State(orbits.poly, (6, 0), 7, 0.0829, [
+        [0.09001452930093247, 0.22129605034580752], [0.05284261355621051, 0.22129605034580754],
+        [0.10321553783195166, 0.17508214209550613], [0.10488570850555318, 0.0745211942219912],
+        [0.07142857142857154, 0.03396091525211244], [0.0379714343515899, 0.07452119422199109],
+        [0.039641605025191325, 0.17508214209550604]], (0.0, 0.0)).relax()
+    beta = blocks(state, exact_points(state, [[Fraction(float(x)) for x in u] for u in state.u]))
+    assert state.least > 0.05 and bottom(beta, 2) < -0.01
+    with pytest.raises(NotProved, match="run through several times"):
+        prove(state)
+    with pytest.raises(NotProved, match="saddle"):
+        prove(state.repeat(2))
+
+
+def test_perturbed_states():
+    state = found("trig", (5, 7), 9, 0.03)
+    true = prove(state)
+    rng = np.random.default_rng(1)
+    for size in (1e-14, 1e-11, 1e-10, 1e-8, 1e-4, 0.3):
+        other = state.moved(state.u + size * rng.uniform(-1, 1, state.u.shape))
+        if size > 1e-9:
+            with pytest.raises(NotProved, match="not stationary"):
+                prove(other)
+        else:
+            orbit = prove(other)
+            apart = sum((a - b) ** 2 for x, y in zip(orbit.displacements, true.displacements)
+                        for a, b in zip(x, y))
+            assert apart <= (orbit.radius + true.radius) ** 2 and orbit.moved < 1e-9
+    for eps in (0.0300001, -0.03, 0.0, 1e-300, 1e300):
+        with pytest.raises(NotProved, match="eps 0" if eps == 0 else "not stationary|saddle"):
+            prove(replace(state, eps=eps))
+    with pytest.raises(NotProved, match="not stationary"):
+        prove(replace(state, p=(5, 8)))
+    for u in (999.0, 3.7):
+        with pytest.raises(NotProved, match="not stationary"):
+            prove(state.moved(np.vstack([state.u[:4] + u, state.u[4:]])))
+
+
+def test_flat_and_foreign():
+    state = orbits.straight(orbits.standard, (1,), 3)
+    with pytest.raises(NotProved, match="eps 0"):
+        prove(state)
+    flat = orbits.Fourier({(1, 0): (1, 0)}, "flat")           # V does not depend on x_1
+    with pytest.raises(NotProved, match="too flat"):
+        prove(orbits.straight(flat, (1, 1), 2).relax(0.01), digits=1)
+
+    class Cosine:
+        value = staticmethod(lambda x: np.cos(2 * np.pi * x[:, 0]))
+        gradient = staticmethod(lambda x: -2 * np.pi * np.sin(2 * np.pi * x))
+        hessian = staticmethod(lambda x: -4 * np.pi**2 * np.cos(2 * np.pi * x)[:, :, None])
+    mine = orbits.FromPython(Cosine, 1, start=(0.0,), curvature=40.0, lipschitz=250.0)
+    with pytest.raises(ValueError, match="nothing can be proved of the potential python"):
+        prove(orbits.straight(mine, (1,), 3).relax(0.01))
+    loose = orbits.Fourier({(1,): (1, 0)}, "loose", scale_enclosure=lambda digits: (
+        Fraction(9, 10), Fraction(11, 10)))
+    with pytest.raises(ValueError, match="scale_enclosure"):
+        prove(orbits.straight(loose, (1,), 3).relax(0.01))
+    for digits in (0, -1, 10**9):
+        with pytest.raises(ValueError, match="digits is a number"):
+            prove(state, digits)
+    assert issubclass(NotProved, ConverseError)
+
+
+def test_report():
+    orbit = prove(found("trig", (5, 7), 9, 0.03))
+    text = orbit.report()
+    for part in ("Proved", "trig", "eps = 0.03 exactly", "(5, 7)/9", "nondegenerate local minimum",
+                 "from 0.354820971654982389", "from -0.0030426956587949647"):
+        assert part in text
+    assert max(map(len, text.splitlines())) <= 110 and "proved" in orbit.label
+    assert "(5, 7)/9" in repr(orbit)
+
+
+# ---- numbers one at a time
+
+
+def test_logarithms():
+    rng = rng_for("logarithms")
+    with mpmath.workdps(120):
+        for _ in range(300 * TORTURE):
+            x = Fraction(rng.randrange(1, 10**rng.randrange(1, 40)), rng.randrange(1, 10**rng.randrange(1, 40)))
+            x *= Fraction(10) ** rng.choice([0, 0, rng.randrange(-2000, 2000)])
+            low, high = proved.log_bounds(x)
+            assert inside(mpmath.log(mp(x)), (low, high)) and high - low < Fraction(1, 10**50)
+        assert proved.log_bounds(Fraction(1))[0] <= 0 <= proved.log_bounds(Fraction(1))[1]
+
+
+def test_rounded_text():
+    rng = rng_for("rounded text")
+    for _ in range(500):
+        x = Fraction(rng.randrange(1, 10**9)) * Fraction(10) ** rng.randrange(-60, 20)
+        up, down = proved._round(x, 3, up=True), proved._round(x, 3, up=False)
+        assert Fraction(down) <= x <= Fraction(up) <= x * Fraction(102, 100)
+        ends = (-x, -x + x / 10**rng.randrange(1, 9))
+        low, high = proved._interval(ends).split()[1::2]
+        assert Fraction(low) <= ends[0] and ends[1] <= Fraction(high)
+    assert proved._round(Fraction(999999), 2, up=True) == "1.0e6"
+
+
+def test_bounds_of_the_potentials():
+    """Curvature and Lipschitz constant against differences of V'', near the junctions most of all."""
+    rng = rng_for("bounds of potentials")
+
+    def norm(h):
+        return np.abs(np.linalg.eigvalsh(np.array([[float(x) for x in row] for row in h]))).max()
+
+    for name, potential in V.items():
+        ours = ODD if name == "odd" else getattr(orbits, name)
+        exact = proved._Exact(orbits.straight(ours, (0,) * ours.n, 1))
+        seen = [0.0, 0.0]
+        with mpmath.workdps(40):
+            for _ in range(400 * TORTURE):
+                x = [mpmath.mpf(rng.choice([rng.random(), 0.0, 0.5, 0.25, 1e-9])) for _ in range(ours.n)]
+                d = [mpmath.mpf(rng.uniform(-1, 1)) * 10 ** rng.uniform(-6, -1) for _ in x]
+                y = [a + b for a, b in zip(x, d)]
+                hx, hy = potential(x)[2], potential(y)[2]
+                difference = [[b - a for a, b in zip(*rows)] for rows in zip(hx, hy)]
+                seen[0] = max(seen[0], norm(hx))
+                seen[1] = max(seen[1], norm(difference) / float(mpmath.sqrt(sum(b * b for b in d))))
+        assert seen[0] <= exact.curvature * (1 + Fraction(1, 10**9)) < 2 * Fraction(seen[0])
+        assert seen[1] <= exact.lipschitz * (1 + Fraction(1, 10**9)) < 3 * Fraction(seen[1])
+
+
+# ---- the kernels with so few places that roundings matter
+
+
+def rough(rng):
+    """A minimum, its displacements a little off, and so few places that every ulp counts."""
+    name, p, q, eps = rng.choice([case for case in CASES if case[2] > 1 and case[3] > 0.005])
+    state = FOUND.setdefault((name, p, q), found(name, p, q, eps))
+    shake = np.random.default_rng(rng.randrange(2**32)).uniform(-1, 1, state.u.shape)
+    state = replace(state, u=state.u + shake * 10 ** rng.uniform(-9, -3))
+    exact, places = proved._Exact(state), rng.randrange(10, 12)
+    exact.evaluate(places)
+    if exact.terms:                     # amplitudes as far off as they may be
+        off, scale = rng.choice([1, -1]), sum(state.potential.scale_enclosure(40)) / 2
+        words = ["%de-%d" % (math.floor(c * scale * 10**(places + 3)) + off * 999, places + 3)
+                 for i in (0, 1) for c in (term[i] for term in exact.terms.values())]
+        exact._owners, exact._amplitudes = proved._strings(words)
+        exact.evaluate(places)
+    return state, exact, places
+
+
+FOUND = {}
+
+
+def test_few_places_state():
+    rng = rng_for("few places: state")
+    for _ in range(150 * TORTURE):
+        state, exact, places = rough(rng)
+        points = exact_points(state, exact.displacements())
+        with mpmath.workdps(40):
+            square = mpmath.mpf(0)
+            for j, x in enumerate(points):
+                before = points[j - 1] if j else [a - b for a, b in zip(points[-1], state.p)]
+                after = points[j + 1] if j + 1 < state.q else [a + b for a, b in zip(points[0], state.p)]
+                gradient = V[state.potential.name](x)[1]
+                square += sum((2 * b - a - c - eps_of(state) * g) ** 2
+                              for a, b, c, g in zip(before, x, after, gradient))
+            size = mpmath.sqrt(square)
+            assert size <= mp(exact.gradient) <= size + 10**5 * 10.0**-places
+            assert inside(truth_action(state, points), exact.action)
+            assert exact.action[1] - exact.action[0] < Fraction(10**5, 10**places)
+
+
+def test_few_places_least():
+    """The largest m that is proved is below the truth, and hardly below it."""
+    rng = rng_for("few places: least")
+    for _ in range(120 * TORTURE):
+        state, exact, places = rough(rng)
+        points = exact_points(state, exact.displacements())
+        least = bottom(blocks(state, points), 8)
+        for above in (2e-14, 1.5e-10, 1e-9, 1e-8, 1e-6, 1e-3, 1.0):
+            assert not exact.least(Fraction(least + above))
+        assert exact.least(Fraction(least * 0.98 - 1e-6))
+
+
+def pivots(beta):
+    """D_j of these blocks, with mpmath, from far above."""
+    n = beta[0].rows
+    d, rounds, out = mpmath.eye(n) * 1000, 0, []
+    while rounds < 20000:
+        out = []
+        for b in beta:
+            d = b - d ** -1
+            out.append(d)
+        rounds += 1
+        if rounds > 1 and mpmath.norm(d - before, 1) < mpmath.mpf(10) ** -25:
+            return out
+        before = d
+    raise AssertionError("the pivots did not settle")
+
+
+def test_few_places_pivots():
+    """Whatever blocks within `away` of the state's: their pivots' products lie where they must."""
+    rng = rng_for("few places: pivots")
+    kinds = set()
+    for case in range(60 * TORTURE):
+        state, exact, places = rough(rng) if case % 12 else (COMPLEX, proved._Exact(COMPLEX), 14)
+        if case % 12 == 0:
+            exact.evaluate(places)
+        points = exact_points(state, exact.displacements())
+        away = Fraction(rng.choice([0, 1e-9, 1e-6, 1e-5]))
+        kind = exact.pivots(2 * away + Fraction(1, 10**6), away)
+        assert kind is not None
+        kinds.add(kind)
+        with mpmath.workdps(40):
+            truth = [mpmath.matrix(V[state.potential.name](x)[2]) for x in points]
+            truth = [2 * mpmath.eye(h.rows) - eps_of(state) * h for h in truth]
+            same = rng.choice([1, -1, 0])
+            for b in truth:
+                n = b.rows
+                angle = rng.uniform(0, 7)
+                turn = mpmath.matrix([[mpmath.cos(angle), mpmath.sin(angle)],
+                                      [mpmath.sin(angle), -mpmath.cos(angle)]])
+                b += mp(away) * (same * mpmath.eye(n) if same or n == 1 else turn)
+            D = pivots(truth)
+            product, det = mpmath.eye(D[0].rows), mpmath.mpf(1)
+            for d in D:
+                product = d * product
+                det *= mpmath.det(d)
+            assert inside(det, (exact.bound(lib.CV_DET_LOW), exact.bound(lib.CV_DET_HIGH)))
+            if product.rows == 2:
+                half = (product[0, 0] + product[1, 1]) / 2
+                root = mpmath.sqrt(mpmath.mpc(half * half - det))
+                sizes = [abs(half + root), abs(half - root)]
+                high = exact.bound(lib.CV_GROWTH_HIGH)
+                if kind == lib.CV_REAL:
+                    assert any(inside(x, (exact.bound(lib.CV_GROWTH_LOW), high)) for x in sizes)
+                elif kind == lib.CV_COMPLEX:
+                    assert half * half < det
+                else:
+                    assert max(sizes) <= mp(high)
+    assert kinds >= {lib.CV_REAL, lib.CV_COMPLEX}
+
+
+def test_core_refuses():
+    """Wrong arguments of the C core are errors, not crashes."""
+    ffi, u = proved.ffi, np.zeros((1, 2))
+    handle, owners = ffi.new("cv_exact **"), []
+
+    def new(kind=lib.CV_POLY, n=2, q=1, numbers=("1", "1", "1", "0", "0"), u=u):
+        owners[:], array = proved._strings(numbers)
+        return lib.cv_exact_new(handle, kind, n, 0, ffi.new("int[]", 0), [0, 0], q, array,
+                                proved.address(u))
+
+    assert new(kind=lib.CV_PYTHON) == new(n=3) == new(n=0) == new(q=0) == new(n=1) == lib.CV_EARGUMENT
+    assert new(q=2**31) == lib.CV_EARGUMENT
+    for bad in ("", "nan", "1e999999999", "x"):
+        for place in range(5):
+            assert new(numbers=["1"] * place + [bad] + ["1"] * (4 - place)) == lib.CV_ENUMBER
+    for bad in (math.nan, math.inf):
+        assert new(u=np.array([[0.0, bad]])) == lib.CV_ENUMBER
+    assert new() == lib.CV_OK
+    exact = ffi.gc(handle[0], lib.cv_exact_free)
+    assert lib.cv_exact_evaluate(exact, 9, ffi.NULL) == lib.CV_EARGUMENT
+    assert lib.cv_exact_evaluate(exact, 10**6, ffi.NULL) == lib.CV_EARGUMENT
+    assert lib.cv_exact_evaluate(exact, 20, ffi.new("char *[1]")) == lib.CV_OK
+    for call in (lib.cv_exact_newton, lib.cv_exact_least, lib.cv_exact_bends):
+        assert call(exact, b"nonsense") == lib.CV_ENUMBER
+    assert lib.cv_exact_pivots(exact, b"x", b"1", ffi.new("int *")) == lib.CV_ENUMBER
+    assert not lib.cv_exact_bound(exact, -1) and not lib.cv_exact_bound(exact, 99)
+    assert not lib.cv_exact_point(exact, 1, 0) and not lib.cv_exact_point(exact, 0, 2)
