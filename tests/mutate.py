@@ -313,6 +313,7 @@ MUTATIONS = [
     ("orbits/relax.c", "move(of->q, other, at, chosen,", "move(of->q, other, at, -chosen,"),
     ("orbits/relax.c", "double low = FLAT, high = 1.0, most;", "double low = 1.0, high = 1.0, most;"),
     ("orbits/relax.c", "-fmin(1.0, CAP / widest(q, (const point *)along))", "-1.0"),
+    ("orbits/relax.c", "at->action = sum + lost;", "at->action = sum;"),
     ("orbits/relax.c", "double mu = how->damping;", "double mu = 0.0;"),
     ("orbits/relax.c", "if (status == CV_OK && lower(q, other, at, how->steps < WALK)) {",
      "if (status == CV_OK) {"),
