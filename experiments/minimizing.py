@@ -16,11 +16,12 @@ import itertools
 import os
 import sys
 
-from converse import orbits, picture
+from converse import ConverseError, orbits, picture
 
 TYPES = [((28, 37), 49), ((37, 49), 65), ((49, 65), 86), ((65, 86), 114), ((351, 465), 616),
          ((1432, 1897), 2513)]
-EPS = [0.005, 0.01, 0.015, 0.02, 0.025, 0.03, 0.035, 0.04]
+EPS = [0.005, 0.01, 0.015, 0.02, 0.025, 0.03, 0.04]
+QUICK_EPS = [0.01, 0.02, 0.03, 0.04]
 POTENTIALS = [orbits.trig, orbits.ff, orbits.poly]
 SEARCHES, GRID = 100, 256
 COLUMNS = ("potential", "p", "q", "eps", "continuation", "best", "gain", "label", "floor", "estimate")
@@ -90,7 +91,7 @@ def main(arguments=None):
     parser.add_argument("--quick", action="store_true", help="short orbits, few eps, a coarse grid")
     options = parser.parse_args(arguments)
     cases = ((POTENTIALS, TYPES, EPS, SEARCHES, GRID) if not options.quick else
-             (POTENTIALS, TYPES[:4], EPS[1::2], 50, 64))
+             (POTENTIALS, TYPES[:4], QUICK_EPS, 50, 64))
     try:
         os.makedirs(options.directory, exist_ok=True)
         table = []
@@ -107,7 +108,7 @@ def main(arguments=None):
                 out.writerow(row)
                 table.append(row)
         draw(table, os.path.join(options.directory, "minimizing.svg"))
-    except OSError as error:
+    except (ConverseError, OSError) as error:
         sys.exit("minimizing.py: %s" % error)
 
 
