@@ -3,10 +3,10 @@
     python experiments/minimizing.py [DIRECTORY] [--quick]
 
 For each map, type and eps: the action of continuation's orbit, the least that a search finds, and,
-for the longest type's rotation vector, bounds: a floor under the action of all its orbits, proved,
-and what the same computation gives on two grids, extrapolated to none: an estimate.  All actions are per point
-and less the straight orbit's.  Writes minimizing.csv and minimizing.svg to DIRECTORY (.).
-Ten minutes of two cores; --quick: one minute.
+for the longest type's rotation vector, a floor under the action of all its orbits, proved, and an
+estimate of it: what two grids give, extrapolated.  All actions are per point and less the straight
+orbit's.  Writes minimizing.csv and minimizing.svg to DIRECTORY (.).  Five minutes of two cores;
+--quick: half a minute.
 """
 
 import argparse
@@ -24,7 +24,8 @@ EPS = [0.005, 0.01, 0.015, 0.02, 0.025, 0.03, 0.04]
 QUICK_EPS = [0.01, 0.02, 0.03, 0.04]
 POTENTIALS = [orbits.trig, orbits.ff, orbits.poly]
 SEARCHES, GRID = 100, 256
-COLUMNS = ("potential", "p", "q", "eps", "continuation", "best", "gain", "label", "floor", "estimate")
+COLUMNS = ("potential", "p", "q", "eps", "continuation", "best", "gain", "label", "floor",
+           "estimate")
 SAME = 1e-13                        # actions that differ by less are one
 
 
@@ -35,17 +36,18 @@ def states(potential, p, q, eps, searches):
 
 
 def bounds(potential, rotation, eps, grid):
-    """The proved floor, and the estimates of two grids extrapolated: their cost falls as 1/grid^2."""
-    fine, coarse = (orbits.floor(potential, eps, rotation, grid=size) for size in (grid, grid // 2))
+    """The proved floor, and the estimates of two grids extrapolated: a grid costs 1/grid^2."""
+    fine, coarse = (orbits.floor(potential, eps, rotation, grid=k) for k in (grid, grid // 2))
     return fine.low, (4 * fine.estimate - coarse.estimate) / 3
 
 
 def rows(potentials, types, eps, searches, grid):
     """COLUMNS of each case as soon as it is known; of the last type with its bounds."""
     cases = list(itertools.product(potentials, types, eps))
+    rotation = [k / types[-1][1] for k in types[-1][0]]
     with concurrent.futures.ProcessPoolExecutor() as executor:
         found = [executor.submit(states, v, *kind, e, searches) for v, kind, e in cases]
-        bound = {(v, e): executor.submit(bounds, v, [k / types[-1][1] for k in types[-1][0]], e, grid)
+        bound = {(v, e): executor.submit(bounds, v, rotation, e, grid)
                  for v, e in itertools.product(potentials, eps)}
         for (v, (p, q), e), future in zip(cases, found):
             continued, best = future.result()
@@ -67,14 +69,15 @@ def draw(table, file):
         panels = figure.subplots(1, len(names), sharey=True, squeeze=False)[0]
         for axes, name in zip(panels, names):
             for k, q in enumerate(lengths):
-                here = [(row[3], row[6]) for row in table if row[0] == name and row[2] == q and row[6]]
-                axes.plot(*zip(*here or [(float("nan"),) * 2]), "o-", markersize=3, linewidth=1,
-                          color=colormaps["viridis"](0.9 * k / len(lengths)), label="q = %d" % q)
-            last = [row for row in table if row[0] == name and row[2] == lengths[-1]]
-            axes.plot([row[3] for row in last], [row[4] - row[8] for row in last], "--", color="0.3",
-                      linewidth=1, label="at most: proved (q = %d)" % lengths[-1])
-            axes.plot([row[3] for row in last], [row[4] - row[9] for row in last], "x", color="#c44e1b",
-                      markersize=5, label="estimated from grids")
+                here = [row for row in table if row[0] == name and row[2] == q]
+                eps = [row[3] for row in here]
+                axes.plot(eps, [row[6] or float("nan") for row in here], "o-", markersize=3,
+                          linewidth=1, color=colormaps["viridis"](0.9 * k / len(lengths)),
+                          label="q = %d" % q)
+            axes.plot(eps, [row[4] - row[8] for row in here], "--", color="0.3", linewidth=1,
+                      label="at most: proved (q = %d)" % q)
+            axes.plot(eps, [row[4] - row[9] for row in here], "x", color="#c44e1b", markersize=5,
+                      label="estimated from grids")
             axes.set(yscale="log", xlabel=r"$\varepsilon$", title=name,
                      xlim=(0, max(row[3] for row in table) * 1.05))
             axes.grid(color="0.92", linewidth=0.6)
@@ -99,7 +102,8 @@ def main(arguments=None):
             out = csv.writer(file, lineterminator="\n")
             out.writerow(COLUMNS)
             print("%-6s %-15s %6s %17s %17s %9s %17s %17s" % (
-                "map", "type", "eps", "continuation", "best found", "gain", "estimate", "floor, proved"))
+                "map", "type", "eps", "continuation", "best found", "gain", "estimate",
+                "floor, proved"))
             for row in rows(*cases):
                 name, p, q, eps, continued, best, gain, label, floor, estimate = row
                 print("%-6s %-15s %6g %17.12f %17.12f %9.1e %17s %17s" % (

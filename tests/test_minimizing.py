@@ -39,8 +39,8 @@ def dense(potential, p, q, eps, starts):
 
 
 @pytest.mark.parametrize("potential, p, q, eps", [
-    (trig, (2, 3), 4, 0.05), (trig, (3, 4), 5, 0.03), (trig, (5, 7), 9, 0.04), (trig, (5, 7), 9, 0.06),
-    (ff, (4, 5), 7, 0.03), (poly, (3, 4), 5, 0.02), (poly, (5, 7), 9, 0.03)])
+    (trig, (2, 3), 4, 0.05), (trig, (3, 4), 5, 0.03), (trig, (5, 7), 9, 0.04),
+    (trig, (5, 7), 9, 0.06), (ff, (4, 5), 7, 0.03), (poly, (3, 4), 5, 0.02), (poly, (5, 7), 9, 0.03)])
 def test_brute_force_finds_no_less(potential, p, q, eps):
     least = dense(potential, p, q, eps, 150)
     best = orbits.search(potential, p, q, eps, searches=60)
@@ -82,8 +82,8 @@ def test_one_degree_of_freedom():
 
 @pytest.mark.parametrize("eps, gain", [(0.02, 2.115e-6), (0.03, 1.813e-5), (0.04, 1.433e-4)])
 def test_continuation_loses(eps, gain):
-    """By so much per point, to a hundredth and 1e-8: what a search of other kinds (pieces alone) finds
-    in a hundred times as long, too.  The best is above the proved floor."""
+    """By so much per point, to a hundredth and 1e-8: what moved pieces alone find, too, in a
+    hundred times as long.  The best is above the proved floor."""
     followed = follow(trig, *SPIRAL, eps)
     best = orbits.search(trig, *SPIRAL, eps, searches=100)
     assert followed.label == "minimum" and best.label == "best of 100 searches"
@@ -92,9 +92,9 @@ def test_continuation_loses(eps, gain):
 
 
 def test_all_agree_where_tori_are():
-    for potential, (p, q), eps in [(trig, SPIRAL, 0.005), (trig, SPIRAL, 0.01), (trig, ((5, 7), 9), 0.01)]:
-        best = orbits.search(potential, p, q, eps, searches=40)
-        assert best.action == pytest.approx(follow(potential, p, q, eps).action, abs=1e-13)
+    for (p, q), eps in [(SPIRAL, 0.005), (SPIRAL, 0.01), (((5, 7), 9), 0.01)]:
+        best = orbits.search(trig, p, q, eps, searches=40)
+        assert best.action == pytest.approx(follow(trig, p, q, eps).action, abs=1e-13)
 
 
 def test_never_worse_than_continuation():
@@ -141,7 +141,7 @@ def test_the_label_counts_searches():
 
     def counted(state, *arguments, **options):
         found = relax(state, *arguments, **options)
-        if state.q == 49 and not arguments:         # neither continuation's steps nor at another eps
+        if state.q == 49 and not arguments:         # not continuation's, not at another eps
             ended.append(found.action)
         return found
 
@@ -175,8 +175,8 @@ def test_seconds():
     ((trig, (1,), 3, 0.1), {}), ((trig, 5, 3, 0.1), {}), ((trig, (1.5, 1), 3, 0.1), {}),
     ((trig, (1, 1), None, 0.1), {}), ((trig, (1, 1), 3, None), {}), ((trig, (1, 1), 3, "x"), {}),
     ((trig, (1, 1), 3, math.nan), {}), *(((trig, (1, 1), 3, 0.1), options) for options in (
-        {"searches": 0}, {"searches": 2.5}, {"searches": True}, {"seconds": 0}, {"seconds": math.nan},
-        {"seconds": "1"}, {"seed": -1}, {"seed": "a"}, {"progress": 3}))])
+        {"searches": 0}, {"searches": 2.5}, {"searches": True}, {"seconds": 0},
+        {"seconds": math.nan}, {"seconds": "1"}, {"seed": -1}, {"seed": "a"}, {"progress": 3}))])
 def test_hostile_arguments(arguments, options):
     with pytest.raises(ValueError) as error:
         orbits.search(*arguments, **options)
@@ -200,7 +200,8 @@ def test_mend_is_the_least_path(monkeypatch):
         least = min(action_of(state, np.where(np.array(choice)[:, None], u, state.u))
                     for choice in itertools.product((False, True), repeat=7) if not choice[near])
         mended = hunt._mend(state, u)
-        assert action_of(state, state.u if mended is None else mended) == pytest.approx(least, abs=1e-15)
+        found = action_of(state, state.u if mended is None else mended)
+        assert found == pytest.approx(least, abs=1e-15)
 
 
 def test_turns_are_the_same_orbit():
@@ -231,10 +232,11 @@ def test_a_joint_has_the_points_of_both():
 
 # ---- the experiment
 
-def test_the_experiment(root, tmp_path, monkeypatch):
+def test_the_experiment(root, tmp_path):
     name = str(root / "experiments" / "minimizing.py")
-    code = ("import sys; sys.argv = ['minimizing.py', %r, '--quick']; sys.path.insert(0, %r); import minimizing as m;"
-            "m.POTENTIALS, m.TYPES, m.EPS = m.POTENTIALS[:1], m.TYPES[:2]; m.QUICK_EPS = [0.01, 0.04];"
+    code = ("import sys; sys.argv = ['minimizing.py', %r, '--quick']; sys.path.insert(0, %r);"
+            "import minimizing as m;"
+            "m.POTENTIALS, m.TYPES = m.POTENTIALS[:1], m.TYPES[:2]; m.QUICK_EPS = [0.01, 0.04];"
             "m.main()" % (str(tmp_path / "new"), os.path.dirname(name)))
     run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=300)
     assert run.returncode == 0 and not run.stderr
@@ -248,7 +250,7 @@ def test_the_experiment(root, tmp_path, monkeypatch):
 
 def test_the_experiment_s_errors(root, tmp_path):
     (tmp_path / "file").write_text("")
-    run = subprocess.run([sys.executable, str(root / "experiments" / "minimizing.py"), str(tmp_path / "file")],
-                         capture_output=True, text=True, timeout=60)
+    run = subprocess.run([sys.executable, str(root / "experiments" / "minimizing.py"),
+                          str(tmp_path / "file")], capture_output=True, text=True, timeout=60)
     assert run.returncode == 1 and run.stderr.count("\n") == 1
     assert run.stderr.startswith("minimizing.py: ")
