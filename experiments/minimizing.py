@@ -75,14 +75,15 @@ def draw(table, file):
                           linewidth=1, color=colormaps["viridis"](0.9 * k / len(lengths)),
                           label="q = %d" % q)
             axes.plot(eps, [row[4] - row[8] for row in here], "--", color="0.3", linewidth=1,
-                      label="at most: proved (q = %d)" % q)
+                      label="at most, proved (q = %d)" % q)
             axes.plot(eps, [row[4] - row[9] for row in here], "x", color="#c44e1b", markersize=5,
-                      label="estimated from grids")
+                      label="estimated from grids (q = %d)" % q)
             axes.set(yscale="log", xlabel=r"$\varepsilon$", title=name,
                      xlim=(0, max(row[3] for row in table) * 1.05))
             axes.grid(color="0.92", linewidth=0.6)
-        panels[0].set_ylabel("action per point above the least known")
-        panels[-1].legend(frameon=False, fontsize=6.5, loc="lower right")
+        panels[0].set_ylabel("continuation's action per point\nabove the least that is found")
+        figure.legend(*panels[0].get_legend_handles_labels(), frameon=False, fontsize=7,
+                      loc="outside right center")
         data = picture.encode(figure, "svg", dpi=150)
     with open(file, "wb") as out:
         out.write(data)

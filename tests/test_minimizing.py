@@ -40,7 +40,8 @@ def dense(potential, p, q, eps, starts):
 
 @pytest.mark.parametrize("potential, p, q, eps", [
     (trig, (2, 3), 4, 0.05), (trig, (3, 4), 5, 0.03), (trig, (5, 7), 9, 0.04),
-    (trig, (5, 7), 9, 0.06), (ff, (4, 5), 7, 0.03), (poly, (3, 4), 5, 0.02), (poly, (5, 7), 9, 0.03)])
+    (trig, (5, 7), 9, 0.06), (ff, (4, 5), 7, 0.03), (poly, (3, 4), 5, 0.02),
+    (poly, (5, 7), 9, 0.03)])
 def test_brute_force_finds_no_less(potential, p, q, eps):
     least = dense(potential, p, q, eps, 150)
     best = orbits.search(potential, p, q, eps, searches=60)
