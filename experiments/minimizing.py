@@ -5,8 +5,8 @@
 For each map, type and eps: the action of continuation's orbit, the least that a search finds, and,
 for the longest type's rotation vector, a floor under the action of all its orbits, proved, and an
 estimate of it: what two grids give, extrapolated.  All actions are per point and less the straight
-orbit's.  Writes minimizing.csv and minimizing.svg to DIRECTORY (.).  Five minutes of two cores;
---quick: half a minute.
+orbit's.  Writes minimizing.csv and minimizing.svg to DIRECTORY (.).  Two minutes of two cores;
+--quick: a quarter of one.
 """
 
 import argparse
@@ -23,7 +23,7 @@ TYPES = [((28, 37), 49), ((37, 49), 65), ((49, 65), 86), ((65, 86), 114), ((351,
 EPS = [0.005, 0.01, 0.015, 0.02, 0.025, 0.03, 0.04]
 QUICK_EPS = [0.01, 0.02, 0.03, 0.04]
 POTENTIALS = [orbits.trig, orbits.ff, orbits.poly]
-SEARCHES, GRID = 100, 256
+SEARCHES, GRID = 60, 128
 COLUMNS = ("potential", "p", "q", "eps", "continuation", "best", "gain", "label", "floor",
            "estimate")
 SAME = 1e-13                        # actions that differ by less are one
