@@ -36,10 +36,10 @@ def search(potential, p, q, eps, searches=200, seconds=math.inf, seed=0, progres
     """The state of type (p, q) of least action that many searches find; State.searches says how
     many, and its label "best of N searches" if it is a minimum.  It is not proved to be the least.
 
-    A search is a descent of the action of type (p, q) to a state whose gradient vanishes.  The first
-    is continuation's, so that none worse is returned.  Then come orbits composed of the best of
-    shorter types, whose own searches are not counted; turns of the best state so far; pieces of it
-    moved; and straight orbits elsewhere, some relaxed at a larger eps first.
+    A search is a descent of the action of type (p, q) to a state whose gradient vanishes.  The
+    first is continuation's, so that none worse is returned.  Then come orbits composed of the best
+    of shorter types, whose own searches are not counted; turns of the best state so far; pieces of
+    it moved; and straight orbits elsewhere, some relaxed at a larger eps first.
 
     searches, seconds -- how many at most, and about how long; without seconds the result depends on
                          the seed only
@@ -160,8 +160,8 @@ class _Hunt:
                         u=rng.normal(size=(q, n)) * rng.choice((0.0, 0.0) + AWAY))
         try:
             if rng.random() < 0.3:
-                guess = replace(guess.relax(guess.eps * rng.uniform(1.1, 2.0), max_steps=MOST_STEPS),
-                                eps=guess.eps)
+                there = guess.relax(guess.eps * rng.uniform(1.1, 2.0), max_steps=MOST_STEPS)
+                guess = replace(there, eps=guess.eps)
         except ConverseError:
             pass
         before = self.best
@@ -236,10 +236,10 @@ def _mend(state, u):
     gap = ((u - v) ** 2).sum(1)
     near = int(np.argmin(gap))                          # there, on the state itself, it starts
     slip = SLIP / 2 * np.minimum(gap, np.roll(gap, -1))
-    costs = [np.roll(((np.roll(b, -1, 0) - a) ** 2).sum(1) / 2 + np.roll(h, -1) - slip * (a is not b),
-                     -near).tolist() for a in (v, u) for b, h in zip((v, u), heights)]
+    steps = [((np.roll(b, -1, 0) - a) ** 2).sum(1) / 2 + np.roll(h, -1) - slip * (a is not b)
+             for a in (v, u) for b, h in zip((v, u), heights)]
     here, there, came = 0.0, math.inf, []
-    for stay, leave, back, go_on in zip(*costs):
+    for stay, leave, back, go_on in zip(*(np.roll(step, -near).tolist() for step in steps)):
         came.append((there + back < here + stay, there + go_on <= here + leave))
         here, there = min(here + stay, there + back), min(here + leave, there + go_on)
     away, now = np.zeros(state.q, bool), False
@@ -259,8 +259,8 @@ def _joints(p, q, first, second, rng):
     cut = []
     for i, j in zip(*np.unravel_index(nearest, apart.shape[:2])):
         i, j = int(some[0][i]), int(some[1][j])
-        if not any((i - a) % first.q == (j - b) % second.q or (a - i) % first.q == (b - j) % second.q
-                   for a, b in cut):
+        if not any((i - a) % first.q == (j - b) % second.q
+                   or (a - i) % first.q == (b - j) % second.q for a, b in cut):
             cut.append((i, j))
             yield _joint(p, q, first, i, second, j)
 

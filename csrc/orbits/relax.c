@@ -25,14 +25,15 @@ typedef struct {
 typedef struct {
     point *u, *gradient;
     block *beta;
-    double action, noise, largest, mean_square;     /* noise: of the action's rounding */
+    double action, largest, mean_square;
+    double noise, doubt;            /* of the rounding of actions; and where V, not its slope, cancels */
 } place;
 
 /* Action, gradient and, unless it is NULL, the Hessian's blocks at at->u. */
 static int look(const action_of *of, place *at)
 {
     const long q = of->q;
-    double sum = 0.0, lost = 0.0, size = 0.0, squares = 0.0, largest = 0.0;
+    double sum = 0.0, lost = 0.0, size = 0.0, slopes = 0.0, squares = 0.0, largest = 0.0;
     int status;
 
     for (long j = 0; j < q; j++)
@@ -52,7 +53,7 @@ static int look(const action_of *of, place *at)
             size += step * step;
             squares += g * g;
             largest = fmax(largest, fabs(g));
-            size += fabs(of->eps * at->gradient[j][i]);     /* V may cancel; its slope seldom does, too */
+            slopes += fabs(of->eps * at->gradient[j][i]);
             at->gradient[j][i] = g;
         }
         total = sum + term;             /* and what its rounding loses, which adds up over long orbits */
@@ -64,6 +65,7 @@ static int look(const action_of *of, place *at)
     }
     at->action = sum + lost;
     at->noise = 1e-15 * size;
+    at->doubt = at->noise + 1e-15 * slopes;
     at->largest = squares < HUGE_VAL ? largest : HUGE_VAL;      /* NaN: nowhere near */
     at->mean_square = squares / (double)q;
     return CV_OK;
@@ -74,7 +76,7 @@ int cv_action(const cv_potential *v, long q, double eps, const double (*base)[2]
 {
     const size_t size = (size_t)q;
     action_of of = { v, q, eps, base, malloc(size * sizeof *of.x), malloc(size * sizeof *of.value) };
-    place at = { malloc(size * sizeof *at.u), gradient, NULL, 0.0, 0.0, 0.0, 0.0 };
+    place at = { malloc(size * sizeof *at.u), gradient, NULL, 0.0, 0.0, 0.0, 0.0, 0.0 };
     int status = CV_ENOMEM;
 
     if (of.x && of.value && at.u) {
@@ -155,7 +157,7 @@ static int lower(long q, const place *b, const place *a, int may_walk)
     const double difference = b->action - a->action;
     double along = 0.0;
 
-    if (!(fabs(difference) <= a->noise))
+    if (difference < -a->noise || !(difference <= a->doubt))
         return difference < 0.0;
     if (b->mean_square < a->mean_square)
         return 1;
@@ -246,7 +248,7 @@ int cv_relax(const cv_potential *v, long q, double eps, const double (*base)[2],
 
     for (int k = 0; k < 2; k++) {
         places[k] = (place){ malloc(size * sizeof *at->u), malloc(size * sizeof *at->gradient),
-                             malloc(size * sizeof *at->beta), 0.0, 0.0, 0.0, 0.0 };
+                             malloc(size * sizeof *at->beta), 0.0, 0.0, 0.0, 0.0, 0.0 };
         complete = complete && places[k].u && places[k].gradient && places[k].beta;
     }
     if (complete) {

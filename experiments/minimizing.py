@@ -1,0 +1,121 @@
+"""Are continuation's orbits the minimizing ones?  Where, and by how much, does it lose?
+
+    python experiments/minimizing.py [DIRECTORY] [--quick]
+
+For each map, type and eps: the action of continuation's orbit, the least that a search finds, and,
+for the longest type's rotation vector, a floor under the action of all its orbits, proved, and an
+estimate of it: what two grids give, extrapolated.  All actions are per point and less the straight
+orbit's.  Writes minimizing.csv and minimizing.svg to DIRECTORY (.).  Two minutes of two cores;
+--quick: a quarter of one.
+"""
+
+import argparse
+import concurrent.futures
+import csv
+import itertools
+import os
+import sys
+
+from converse import ConverseError, orbits, picture
+
+TYPES = [((28, 37), 49), ((37, 49), 65), ((49, 65), 86), ((65, 86), 114), ((351, 465), 616),
+         ((1432, 1897), 2513)]
+EPS = [0.005, 0.01, 0.015, 0.02, 0.025, 0.03, 0.04]
+QUICK_EPS = [0.01, 0.02, 0.03, 0.04]
+POTENTIALS = [orbits.trig, orbits.ff, orbits.poly]
+SEARCHES, GRID = 60, 128
+COLUMNS = ("potential", "p", "q", "eps", "continuation", "best", "gain", "label", "floor",
+           "estimate")
+SAME = 1e-13                        # actions that differ by less are one
+
+
+def states(potential, p, q, eps, searches):
+    """Continuation's state and the best found."""
+    return (orbits.follow(potential, p, q, [eps])[0],
+            orbits.search(potential, p, q, eps, searches=searches))
+
+
+def bounds(potential, rotation, eps, grid):
+    """The proved floor, and the estimates of two grids extrapolated: a grid costs 1/grid^2."""
+    fine, coarse = (orbits.floor(potential, eps, rotation, grid=k) for k in (grid, grid // 2))
+    return fine.low, (4 * fine.estimate - coarse.estimate) / 3
+
+
+def rows(potentials, types, eps, searches, grid):
+    """COLUMNS of each case as soon as it is known; of the last type with its bounds."""
+    cases = list(itertools.product(potentials, types, eps))
+    rotation = [k / types[-1][1] for k in types[-1][0]]
+    with concurrent.futures.ProcessPoolExecutor() as executor:
+        found = [executor.submit(states, v, *kind, e, searches) for v, kind, e in cases]
+        bound = {(v, e): executor.submit(bounds, v, rotation, e, grid)
+                 for v, e in itertools.product(potentials, eps)}
+        for (v, (p, q), e), future in zip(cases, found):
+            continued, best = future.result()
+            floor, estimate = bound[v, e].result() if (p, q) == types[-1] else ("", "")
+            gain = continued.action - best.action
+            yield (v.name, "%d %d" % p, q, e, continued.action, best.action,
+                   gain if gain > SAME else 0.0, best.label, floor, estimate)
+
+
+def draw(table, file):
+    """The gains, one panel for each map."""
+    from matplotlib import colormaps, style
+    from matplotlib.figure import Figure
+
+    names = list(dict.fromkeys(row[0] for row in table))
+    lengths = sorted({row[2] for row in table})
+    with style.context(["default", picture.SALT, {"font.size": 8}]):
+        figure = Figure(figsize=(9.2, 3.1), layout="constrained")
+        panels = figure.subplots(1, len(names), sharey=True, squeeze=False)[0]
+        for axes, name in zip(panels, names):
+            for k, q in enumerate(lengths):
+                here = [row for row in table if row[0] == name and row[2] == q]
+                eps = [row[3] for row in here]
+                axes.plot(eps, [row[6] or float("nan") for row in here], "o-", markersize=3,
+                          linewidth=1, color=colormaps["viridis"](0.9 * k / len(lengths)),
+                          label="q = %d" % q)
+            axes.plot(eps, [row[4] - row[8] for row in here], "--", color="0.3", linewidth=1,
+                      label="at most, proved (q = %d)" % q)
+            axes.plot(eps, [row[4] - row[9] for row in here], "x", color="#c44e1b", markersize=5,
+                      label="estimated from grids (q = %d)" % q)
+            axes.set(yscale="log", xlabel=r"$\varepsilon$", title=name,
+                     xlim=(0, max(row[3] for row in table) * 1.05))
+            axes.grid(color="0.92", linewidth=0.6)
+        panels[0].set_ylabel("continuation's action per point\nabove the least that is found")
+        figure.legend(*panels[0].get_legend_handles_labels(), frameon=False, fontsize=7,
+                      loc="outside right center")
+        data = picture.encode(figure, "svg", dpi=150)
+    with open(file, "wb") as out:
+        out.write(data)
+
+
+def main(arguments=None):
+    parser = argparse.ArgumentParser(description=__doc__.partition("\n\n")[0])
+    parser.add_argument("directory", nargs="?", default=".", help="for minimizing.csv and .svg (.)")
+    parser.add_argument("--quick", action="store_true", help="short orbits, few eps, a coarse grid")
+    options = parser.parse_args(arguments)
+    cases = ((POTENTIALS, TYPES, EPS, SEARCHES, GRID) if not options.quick else
+             (POTENTIALS, TYPES[:4], QUICK_EPS, 50, 64))
+    try:
+        os.makedirs(options.directory, exist_ok=True)
+        table = []
+        with open(os.path.join(options.directory, "minimizing.csv"), "w", newline="") as file:
+            out = csv.writer(file, lineterminator="\n")
+            out.writerow(COLUMNS)
+            print("%-6s %-15s %6s %17s %17s %9s %17s %17s" % (
+                "map", "type", "eps", "continuation", "best found", "gain", "estimate",
+                "floor, proved"))
+            for row in rows(*cases):
+                name, p, q, eps, continued, best, gain, label, floor, estimate = row
+                print("%-6s %-15s %6g %17.12f %17.12f %9.1e %17s %17s" % (
+                    name, "(%s)/%d" % (p.replace(" ", ","), q), eps, continued, best, gain,
+                    *("%.10f" % x if x != "" else "" for x in (estimate, floor))), flush=True)
+                out.writerow(row)
+                table.append(row)
+        draw(table, os.path.join(options.directory, "minimizing.svg"))
+    except (ConverseError, OSError) as error:
+        sys.exit("minimizing.py: %s" % error)
+
+
+if __name__ == "__main__":
+    main()
