@@ -69,14 +69,14 @@ typedef struct cv_exact cv_exact;
 enum {                      /* which bound */
     CV_GRADIENT,            /* >= the Euclidean norm of the state's gradient */
     CV_NOISE,               /* no promise: about the least that can be had of CV_GRADIENT */
-    CV_ACTION_LOW, CV_ACTION_HIGH,      /* around its action per point less that of the straight orbit */
+    CV_ACTION_LOW, CV_ACTION_HIGH,      /* around its action per point less the straight orbit's */
     CV_DET_LOW, CV_DET_HIGH,            /* around the product of det D_j */
     CV_GROWTH_LOW, CV_GROWTH_HIGH       /* around the modulus of an eigenvalue of D_{q-1} ... D_0 */
 };
 
 /* A state with potential of this kind and these terms (see cv_potential), of type (p, q), with
-   displacements u.  number: eps, bounds of |V''| and of the Lipschitz constant of V'', and the origin's
-   coordinates, as exact decimals.  On success *o must be freed. */
+   displacements u.  number: eps, bounds of |V''| and of the Lipschitz constant of V'', and the
+   origin's coordinates, as exact decimals.  On success *o must be freed. */
 int cv_exact_new(cv_exact **o, int kind, int n, int terms, const int *k, const long p[2], long q,
                  const char *const number[5], const double (*u)[2]);
 void cv_exact_free(cv_exact *o);
@@ -87,8 +87,8 @@ void cv_exact_free(cv_exact *o);
    CV_ACTION_HIGH are bounds then. */
 int cv_exact_evaluate(cv_exact *o, long dp, const char *const amplitude[]);
 
-/* CV_OK: the Hessian of the state evaluated last, + shift, is positive definite.  CV_ESINGULAR: not.  No
-   promise. */
+/* CV_OK: the Hessian of the state evaluated last, + shift, is positive definite.  CV_ESINGULAR: it is
+   not.  No promise. */
 int cv_exact_bends(cv_exact *o, const char *shift);
 /* A step of Newton's method with the Hessian + shift, from what was evaluated last; no promise.
    CV_ESINGULAR: that is not positive definite; nothing is moved. */
@@ -96,47 +96,47 @@ int cv_exact_newton(cv_exact *o, const char *shift);
 /* Remembers the displacements, or goes back to those remembered. */
 int cv_exact_keep(cv_exact *o, int back);
 
-/* CV_OK: the Hessian of the state evaluated last, and of every n-fold copy of it, is proved to have no
-   eigenvalue below m > 0.  CV_ESINGULAR: it is not. */
+/* CV_OK: the Hessian of the state evaluated last, and of every n-fold copy of it, is proved to have
+   no eigenvalue below m > 0.  CV_ESINGULAR: it is not. */
 int cv_exact_least(cv_exact *o, const char *m);
 
 enum {                      /* the eigenvalues of D_{q-1} ... D_0 with n = 2 */
     CV_UNDECIDED,           /* CV_GROWTH_HIGH bounds the moduli of both */
-    CV_REAL,                /* proved: CV_GROWTH_LOW and CV_GROWTH_HIGH enclose the modulus of one */
+    CV_REAL,                /* CV_GROWTH_LOW and CV_GROWTH_HIGH enclose the modulus of one: proved */
     CV_COMPLEX              /* proved: both have the same modulus */
 };
 
-/* Encloses the pivots D_j of every orbit whose blocks beta_j are within `away` of those of the state
-   evaluated last, away < m: CV_DET_LOW and CV_DET_HIGH, and, n = 2, the eigenvalues, as *kind says.
-   CV_ESINGULAR: it could not be done. */
+/* Encloses the pivots D_j of every orbit whose blocks beta_j are within `away` of those of the
+   state evaluated last, away < m: CV_DET_LOW and CV_DET_HIGH, and, n = 2, the eigenvalues, as *kind
+   says.  CV_ESINGULAR: it could not be done. */
 int cv_exact_pivots(cv_exact *o, const char *m, const char *away, int *kind);
 
-/* A bound, and coordinate i of the displacement of point j, as exact decimals; the caller frees with
-   cv_free.  NULL: no memory. */
+/* A bound, and coordinate i of the displacement of point j, as exact decimals; the caller frees
+   with cv_free.  NULL: no memory. */
 char *cv_exact_bound(const cv_exact *o, int which);
 char *cv_exact_point(const cv_exact *o, long j, int i);
 
 /* ---- the least action over all orbits: minplus.c */
 
-/* What cv_evaluate may be off by, in V, its gradient and its Hessian (Euclidean and spectral norm), at
-   points with coordinates up to reach that are off by 2^-53 (2 reach + 2) themselves.  CV_EARGUMENT:
-   nothing is known of a potential of Python, or so far out. */
+/* What cv_evaluate may be off by, in V, its gradient and its Hessian (Euclidean and spectral norm),
+   at points with coordinates up to reach that are off by 2^-53 (2 reach + 2) themselves.
+   CV_EARGUMENT: nothing is known of a potential of Python, or so far out. */
 int cv_errors(const cv_potential *v, double reach, double errors[3]);
 
 /* Which states of least action of type (p, q), q points z_j + j p/q, may have z_j in the rectangle
-   low[j] to high[j] for all j, and V at z_0 (eps < 0: at least -V) as large as at any other?  base[j] is
-   (j p mod q)/q rounded, curvature >= the norm of V'', and `known` no less than their action, which
-   is meant less that of the straight orbit.  Their points lie in the smaller rectangles that are
-   left in low and high, and their action is no less than *least, infinite if there can be none;
-   otherwise path may be near one.  nodes: how many to lay along each axis, 1 to 1025, both ends
-   included; of an idle one 1. */
+   low[j] to high[j] for all j, and V at z_0 (eps < 0: at least -V) as large as at any other?
+   base[j] is (j p mod q)/q rounded, curvature >= the norm of V'', and `known` no less than their
+   action, which is meant less that of the straight orbit.  Their points lie in the smaller
+   rectangles that are left in low and high, and their action is no less than *least, infinite if
+   there can be none; otherwise path may be near one.  nodes: how many to lay along each axis, 1 to
+   1025, both ends included; of an idle one 1. */
 int cv_corridor(const cv_potential *v, int q, double eps, double curvature, const double (*base)[2],
                 double known, const int (*nodes)[2], double (*low)[2], double (*high)[2],
                 double *least, double (*path)[2]);
 
 /* On the n-torus's grid of nodes i/grid: out(y) = min over nodes x and all their images of
-   u(x) + W(x) + |y - x - c|^2/2, the last coordinate running fastest.  back, unless it is NULL: how many
-   pitches y - x has along each axis.  For |c| < 1000 and 2 <= grid <= 2048, off by less than
+   u(x) + W(x) + |y - x - c|^2/2, the last coordinate running fastest.  back, unless it is NULL: how
+   many pitches y - x has along each axis.  For |c| < 1000 and 2 <= grid <= 2048, off by less than
    2^-45 (max |u| + max |W| + 8 max(1, |c|)). */
 int cv_lax_oleinik(int n, int grid, const double c[2], const double *W, const double *u,
                    double *out, int (*back)[2]);

@@ -1,12 +1,12 @@
-"""Hedlund's pathology: with two degrees of freedom the least orbit of a type, run through twice, need
-not be the least of the doubled type.  With one it is (Aubry).
+"""Hedlund's pathology: with two degrees of freedom the least orbit of a type, run through twice,
+need not be the least of the doubled type.  With one it is (Aubry).
 
     python experiments/hedlund.py [--eps EPS ...] [--type P0,P1,Q] [--times N] [--figure FILE]
 
-For the map of trig: proves that every orbit of type (5, 7)/9 has more action per point than one of type
-(10, 14)/18, first for each EPS and then, without --eps, for all eps from where it begins to 0.08; and
-that just below the least orbit of type (10, 14)/18 is that of type (5, 7)/9 run through twice.
---figure draws the gain against eps and both orbits.  Five minutes.
+For the map of trig: proves that every orbit of type (5, 7)/9 has more action per point than one of
+type (10, 14)/18, first for each EPS and then, without --eps, for all eps from where it begins to
+0.08; and that just below, the least orbit of type (10, 14)/18 is that of type (5, 7)/9 run through
+twice.  --figure draws the gain against eps and both orbits.  One or two minutes.
 """
 
 import argparse
@@ -46,42 +46,34 @@ class Types:
 
 
 def at(types, eps):
-    """Prints what is proved at one eps; returns whether the long type has less."""
+    """Prints what is proved at one eps."""
     short, long = types.least(eps), types.least_long(eps)
-    names = types.names()
+    one, many = types.names()
     if short.low > long.high:
-        print("eps %g: every state of type %s has an action per point above %.16f, one of type %s "
-              "has one below %.16f: less by %.2e.  Proved." % (
-                  eps, names[0], short.low, names[1], long.high, short.low - long.high), flush=True)
-        return True
-    if long.copies % types.times == 0:
-        print("eps %g: the state of least action of type %s is an orbit of type %s run through %d "
-              "times; %.16f per point.  Proved." % (
-                  eps, names[1], names[0], types.times, long.high), flush=True)
+        found = ("every state of type %s has an action per point of %r or more, one of type %s has "
+                 "%r or less: a gain of %.2e.  Proved."
+                 % (one, short.low, many, long.high, short.low - long.high))
+    elif long.copies % types.times == 0:
+        found = ("the state of least action of type %s is an orbit of type %s run through %d "
+                 "times; %.16f per point.  Proved." % (many, one, types.times, long.high))
     else:
-        print("eps %g: not decided: the least actions per point lie from %.16f to %.16f (%s) and from "
-              "%.16f to %.16f (%s)." % (eps, short.low, short.high, names[0], long.low, long.high,
-                                        names[1]), flush=True)
-    return False
+        found = ("not decided: the least action per point lies from %r to %r for %s and from %r to "
+                 "%r for %s." % (short.low, short.high, one, long.low, long.high, many))
+    print("eps %r: %s" % (eps, found), flush=True)
 
 
 def gains(types, eps, long):
-    """By how much the action of the long state, followed to this eps, is less than that of the short
+    """By how much the long state, followed to this eps, has less action per point than the short
     one: seen, not proved."""
     return types.least(TO).state.relax(eps).action - long.relax(eps).action
 
 
 def beginning(types, long):
-    """The eps where both are alike, by bisection; None if the long one is less everywhere."""
+    """The eps where both are alike, by bisection, if it is between FROM and TO."""
     low, high = FROM, TO
-    try:
-        if gains(types, low, long) > 0:
-            return None
-        while high - low > 1e-12:
-            middle = (low + high) / 2
-            low, high = (low, middle) if gains(types, middle, long) > 0 else (middle, high)
-    except ConverseError:
-        return None
+    while high - low > 1e-12:
+        middle = (low + high) / 2
+        low, high = (low, middle) if gains(types, middle, long) > 0 else (middle, high)
     return high
 
 
@@ -109,19 +101,20 @@ def draw(types, long, begins, file):
 
     from converse import picture
 
-    eps = np.linspace(max(FROM, begins - 0.01) if begins else FROM, TO, 60)
+    eps = np.linspace(max(FROM, begins - 0.01), TO, 60)
     gain = np.array([gains(types, e, long) for e in eps])
     proved = [(e, types.short[e].low - types.long[e].high) for e in sorted(types.long)]
+    none = [e for e in sorted(types.long) if types.long[e].copies % types.times == 0]
     with style.context(["default", picture.SALT, {"font.size": 8}]):
         figure = Figure(figsize=(9.2, 2.9))
         axes, *planes = figure.subplots(1, 3, gridspec_kw={"wspace": 0.3,
                                                            "width_ratios": (1.5, 1, 1)})
         axes.axhline(0, color="0.8", linewidth=0.8)
         axes.plot(eps, 1e6 * gain, color="#1f5f94", linewidth=1.2, label="followed: seen")
-        axes.plot(*zip(*[(e, 1e6 * g) for e, g in proved if g > 0]), "o", color="#d98a2b", markersize=4,
-                  label="proved")
-        axes.plot(*zip(*[(e, 0) for e, g in proved if g <= 0] or [(np.nan, 0)]), "s", color="0.35",
-                  markersize=4, label="none to be had: proved")
+        axes.plot(*np.array([(e, 1e6 * g) for e, g in proved if g > 0]).reshape(-1, 2).T, "o",
+                  color="#d98a2b", markersize=4, label="proved")
+        axes.plot(*np.array([(e, 0) for e in none]).reshape(-1, 2).T, "s", color="0.35",
+                  markersize=4, label="no gain: proved")
         axes.set(xlabel=r"$\varepsilon$", ylabel=r"$10^6$ times the gain per point",
                  title="%s has less action than %s" % types.names()[::-1])
         axes.legend(frameon=False, fontsize=7)
@@ -156,15 +149,15 @@ def main(arguments=None):
             return
         long = types.least_long(TO).state
         begins = beginning(types, long)
-        if begins is not None and not options.eps:
+        if not options.eps and types.least(TO).low > types.long[TO].high:
             unit = 10.0 ** -DIGITS
             below, above = (round(unit * round(begins / unit + k), DIGITS) for k in (-1, 1))
             print("They are alike at eps %.10f: seen." % begins)
             at(types, below)
             at(types, above)
             pieces = everywhere(types, long, above, TO)
-            print("For all eps from %r to %r every state of type %s has more action per point than one of "
-                  "type %s.  Proved, in %d pieces." % (above, TO, *types.names(), pieces))
+            print("For all eps from %r to %r every state of type %s has more action per point than "
+                  "one of type %s.  Proved, in %d pieces." % (above, TO, *types.names(), pieces))
         if options.figure:
             draw(types, long, begins, options.figure)
     except (ConverseError, ValueError, OSError) as error:

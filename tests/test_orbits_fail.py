@@ -449,11 +449,28 @@ def test_short_orbits():
     assert fixed.action == pytest.approx(-0.5 / (4 * math.pi ** 2), abs=1e-15)
 
 
+def test_the_action_of_a_long_orbit_keeps_its_digits():
+    """The search compares actions; sums of a hundred thousand terms, one after the other, would lose
+    what tells a step down from one up."""
+    rng = np.random.default_rng(9)
+    q = 100083
+    state = orbits.State(orbits.trig, (57031, 75550), q, 0.025, rng.uniform(-0.1, 0.1, (q, 2)),
+                         orbits.trig.start)
+    action, gradient, u = ffi.new("double *"), np.zeros((q, 2)), state.u.copy()
+    assert lib.cv_action(orbits.trig.native, q, 0.025, address(state.base), address(u), action,
+                         address(gradient)) == lib.CV_OK
+    step = np.roll(u, -1, 0) - u
+    terms = [*(0.5 * step ** 2).ravel().tolist(),
+             *(-0.025 * orbits.trig.evaluate(state.base + u)[0]).tolist()]
+    assert action[0] == pytest.approx(math.fsum(terms), rel=0, abs=1e-12)
+    assert np.abs(gradient - state.gradient).max() < 1e-15
+
+
 @pytest.mark.skipif(TORTURE == 1, reason="a hundred thousand points")
 def test_a_hundred_thousand_points():
     begun = time.monotonic()
     family = orbits.follow(orbits.trig, (57031, 75550), 100083, [0.0025, 0.005, 0.01, 0.02, 0.03])
-    assert family[0].undetermined == 2 and all(state.shadow < 2e-13 for state in family)
+    assert family[0].undetermined >= 2 and all(state.shadow < 2e-13 for state in family)
     assert [state.label for state in family] == ["minimum"] * 5
     # the spiral mean's, as 2513 points have it
     for state, shorter in zip(family, orbits.follow(orbits.trig, *SPIRAL, family.eps)):

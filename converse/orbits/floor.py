@@ -18,7 +18,7 @@ from .._native import ffi, lib
 from ..core import check
 from ..files import ConverseError
 from .potential import Potential, address
-from .state import State
+from .state import FARTHEST, State
 
 U = 2.0 ** -53              # half the distance of the doubles next to 1
 LARGEST_EPS = 1e6
@@ -73,7 +73,7 @@ def _torus(potential, eps, grid):
     x = np.zeros((grid ** n, 2))
     x[:, :n] = np.indices((grid,) * n).reshape(n, -1).T / grid
     W = -eps * _values(potential, x)
-    off = abs(eps) * _errors(potential, 1.0)[0] + U * float(np.abs(W).max())
+    off = abs(eps) * _errors(potential, 1.0)[0] + 2 * U * float(np.abs(W).max())
     rise = n * (1 + abs(eps) * potential.curvature) / (8 * grid ** 2) * (1 + 2.0 ** -40)
     return W, off, rise
 
@@ -117,10 +117,11 @@ def enclosed_action(state):
 
 @dataclass(frozen=True, eq=False)
 class Floor:
-    """low      -- the average action per point of any orbit of this rotation vector, and of any other
-                   sequence of points, is no less: proved; less |rotation|^2/2, as State.action
-    estimate -- the same of paths on the grid: where low would be if the grid cost nothing
-    c        -- low is that of the plane p = c, H - c.(x' - x): any other c bounds, too
+    """low      -- the average action per point of any orbit of this rotation vector, and of any
+                   other sequence of points, is no less: proved; less |rotation|^2/2, as
+                   State.action
+    estimate -- the same of paths on the grid: at most so much higher could low be
+    c        -- low is |rotation - c|^2/2 below the least of W + |y - x - c|^2/2; any c bounds
     """
 
     potential: Potential
@@ -133,8 +134,8 @@ class Floor:
 
 
 class _Torus:
-    """The operator T on functions u on a grid, (T u)(y) = min of u(x) + W(x) + |y - x - c|^2/2, and a u
-    with which to begin."""
+    """The operator T on functions u on a grid, (T u)(y) = min of u(x) + W(x) + |y - x - c|^2/2, and
+    a u with which to begin."""
 
     def __init__(self, potential, eps, grid, u=None):
         self.n, self.grid = potential.n, grid
@@ -150,8 +151,8 @@ class _Torus:
         return out
 
     def settle(self, c, tolerance, most):
-        """Makes T u - u constant, but for the tolerance if `most` steps reach it; half steps do not go
-        round with an orbit.  Returns its least value less all roundings: no closed path on the
+        """Makes T u - u constant, but for the tolerance if `most` steps reach it; half steps do not
+        go round with an orbit.  Returns its least value less all roundings: no closed path on the
         grid has less W + |y - x - c|^2/2 per step."""
         for step in range(most):
             change = self.apply(c) - self.u
@@ -164,8 +165,8 @@ class _Torus:
                 - 4 * U * size - self.off)
 
     def cycle(self, c, rotation):
-        """Where the best predecessors lead back to, a closed path: its W + |y - x - rotation|^2/2 per
-        step, and rotation less its average step."""
+        """Where the best predecessors lead back to, a closed path: its W + |y - x - rotation|^2/2
+        per step, and rotation less its average step."""
         back = np.empty((len(self.u), 2), dtype=np.intc)
         self.apply(c, back)
         shape = (self.grid,) * self.n
@@ -204,15 +205,15 @@ def _highest(planes, radius):
 
 
 def floor(potential, eps, rotation, grid=256):
-    """A Floor: how little action per point orbits of this rotation vector can have, by value iteration
-    on grid^n nodes (Mather's beta from below).
+    """A Floor: how little action per point orbits of this rotation vector can have, by value
+    iteration on grid^n nodes (Mather's beta from below).
 
     rotation -- n numbers, as doubles have them
     grid     -- nodes along an axis, 8 to 2048; the cost of the grid falls as 1/grid^2
 
-    The action of a path x_0 ... x_m exceeds c.(x_m - x_0) by at least m times the least average on the
-    grid, whatever c is; the c that gives the most is looked for by cutting planes, first on coarse
-    grids: each closed path bounds what a c can give."""
+    The action of a path x_0 ... x_m exceeds c.(x_m - x_0) by at least m times the least average on
+    the grid, whatever c is; the c that gives the most is looked for by cutting planes, first on
+    coarse grids: each closed path bounds what a c can give."""
     (eps,), n = _numbers("eps", [eps], LARGEST_EPS), potential.n
     w = np.array(_numbers("rotation", rotation, LARGEST_ROTATION))
     if len(w) != n:
@@ -250,12 +251,12 @@ def floor(potential, eps, rotation, grid=256):
 
 @dataclass(frozen=True, eq=False)
 class LeastAction:
-    """low <= the least action of all states of state's type and eps <= high, both per point, less that
-    of the straight orbit, and proved.
+    """low <= the least action of all states of state's type and eps <= high, both per point, less
+    that of the straight orbit, and proved.
 
-    state     -- one whose action is at most high; high is its own
-    copies    -- the state of least action is an orbit run through so many times: proved; 1: nothing is
-                 claimed
+    state     -- one whose action is at most high
+    copies    -- the state of least action is an orbit run through so many times: proved; 1: nothing
+                 is claimed
     corridors -- how many products of rectangles were looked into
     """
 
@@ -298,8 +299,8 @@ def _least_eigenvalue(matrix):
 
 
 class _Search:
-    """Branch and bound over corridors: rectangles low[j] to high[j], one for each point, arrays (q, 2),
-    for its displacement z_j from j p/q.  Actions here are sums over all points.
+    """Branch and bound over corridors: rectangles low[j] to high[j], arrays (q, 2), one for each
+    point's displacement z_j from j p/q.  Actions here are sums over all points.
 
     Of a least state's points that one is called 0 where V is largest (eps < 0: least), and whole
     turns bring it to 0 <= z_0 <= 1."""
@@ -327,12 +328,15 @@ class _Search:
     # ---- corridors
 
     def root(self):
-        """All that a least state can be: sum |z_{j+1} - z_j|^2/2 is its action less the sum of -eps V,
-        and |z_j - z_0|^2 is at most 2 j (q - j)/q times that."""
+        """All that a least state can be: sum |z_{j+1} - z_j|^2/2 is its action less the sum
+        of -eps V, and |z_j - z_0|^2 is at most 2 j (q - j)/q times that."""
         W, off, rise = _torus(self.potential, self.eps, 64)
         energy = self.known - self.q * float(W.min() - off - rise)
         j = np.arange(self.q)
         reach = np.sqrt(2 * max(energy, 0.0) * j * (self.q - j) / self.q)[:, None] * 1.001 + 1e-6
+        if not reach.max() < FARTHEST / 2:
+            raise ValueError("eps %r is too large for %d points: they could lie anywhere"
+                             % (self.eps, self.q))
         low, high = np.zeros((self.q, 2)), np.zeros((self.q, 2))
         low[:, :self.n], high[:, :self.n] = -reach, 1 + reach
         return low, high
@@ -352,8 +356,8 @@ class _Search:
         return least[0], path
 
     def convexity(self, low, high):
-        """A number, proved to be no more than any eigenvalue of the action's Hessian in the corridor:
-        from its centre V'' changes by at most the Lipschitz constant times the distance."""
+        """A number, proved to be no more than any eigenvalue of the action's Hessian in there: from
+        the centre V'' changes by at most the Lipschitz constant times the distance."""
         centre, reach = (low + high) / 2, np.sqrt(((high - low) ** 2).sum(1)).max() * 0.5001
         change = abs(self.eps) * (self.potential.lipschitz * float(reach))
         if change > 1:
@@ -365,14 +369,15 @@ class _Search:
             matrix[j, :, j] += 2 * np.eye(n) - self.eps * block
             matrix[j, :, (j + 1) % q] -= np.eye(n)
             matrix[(j + 1) % q, :, j] -= np.eye(n)
-        off = 1.001 * abs(self.eps) * _errors(state.potential, _reach(state))[2] + 32 * U * float(np.abs(matrix).max())
+        off = (1.001 * abs(self.eps) * _errors(self.potential, _reach(state))[2]
+               + 32 * U * float(np.abs(matrix).max()))
         return _least_eigenvalue(matrix.reshape(size, size)) - change - off
 
     def settled(self, low, high):
         """_Settled, if the action is convex in the corridor and its least value there known.
 
-        With mu <= all eigenvalues and g the gradient at z, the action elsewhere exceeds that at z by at
-        least g.t + mu |t|^2/2."""
+        With mu <= all eigenvalues and g the gradient at z, the action elsewhere exceeds that at z
+        by at least g.t + mu |t|^2/2."""
         room = (high - low) / 8             # a least state on the edge shall be inside, too
         mu = self.convexity(low - room, high + room)
         if not mu > 0:
@@ -391,7 +396,7 @@ class _Search:
         return _Settled(bound, self.copies(state, low - room, high + room, mu))
 
     def copies(self, state, low, high, mu):
-        """How many copies of an orbit the only orbit of a convex corridor is, as far as that is proved.
+        """How many copies of an orbit the only orbit of a convex corridor is, if that is proved.
 
         Among states that are d copies, and within r of one with gradient g, the action is least
         inside, not on the edge, if r > 2 |g|/mu; and least among such states, it is an orbit."""
@@ -406,8 +411,8 @@ class _Search:
         return 1
 
     def run(self, gap, corridors):
-        """Looks into corridors, the lowest first, until the least action is known to gap.  Returns a
-        lower bound of it, copies as above, and how many corridors were looked into."""
+        """Looks into corridors, the lowest first, until the least action is known to gap.  Returns
+        a lower bound of it, copies as above, and how many corridors were looked into."""
         self.relaxed(np.zeros((self.q, 2)) + [*self.potential.start, 0.0][:2])
         pending, settled, count, pushed = [(-inf, 0, *self.root())], [], 0, 0
         while pending and count < corridors and self.known - pending[0][0] > gap:
@@ -428,8 +433,8 @@ class _Search:
                 heapq.heappush(pending, (max(lowest, least), pushed, *half))
         left = [corridor[0] for corridor in pending] + [done.bound for done in settled]
         if not left or min(left) > self.known:
-            raise ConverseError("every state of the type was excluded, even the best one: the curvature "
-                                "or the Lipschitz constant of %s is too small" % self.potential.name)
+            raise ConverseError("every state was excluded, even the best one: the curvature or the "
+                                "Lipschitz constant of %s is too small" % self.potential.name)
         open_ = bool(pending) and pending[0][0] <= self.known
         copies = gcd(*(done.copies for done in settled if done.bound <= self.known))
         return min(left), 1 if open_ else copies, count
@@ -452,8 +457,8 @@ def least_action(potential, p, q, eps, gap=1e-9, corridors=10000):
     corridors -- how many to look into at most: then the bounds are as far apart as they are
 
     Above the eps where an orbit's tori break, q up to 30 takes seconds to minutes, and a gap of
-    1e-12 is as cheap as a larger one.  Below, states slide along each other at no cost, and a small gap
-    takes corridors without end."""
+    1e-12 is as cheap as a larger one.  Below, states slide along each other at no cost, and a small
+    gap takes corridors without end."""
     _errors(potential, 1.0)
     eps, gap = _numbers("eps and gap", [eps, gap], LARGEST_EPS)
     corridors = _whole("corridors", corridors, 1, 10 ** 9)

@@ -42,10 +42,10 @@ class ProvedOrbit:
 
     state     -- the state that was given
     digits    -- decimal places the proof was computed with
-    radius    -- there is exactly one true orbit of the state's type with displacements within radius of
-                 those of points(), in the Euclidean norm of all coordinates of all points together
-    least     -- no eigenvalue of the second variation of its action is below this positive number, however
-                 often the orbit is run through
+    radius    -- there is exactly one true orbit of the state's type whose displacements are within
+                 radius of `displacements`, in the Euclidean norm of all coordinates together
+    least     -- no eigenvalue of the second variation of its action is below this positive number,
+                 however often the orbit is run through
     action    -- (low, high): its action per point less that of the straight orbit, |p/q|^2/2
     exponents -- ((low, high), ...): its n positive Lyapunov exponents, larger first
     moved     -- how far the points are from those of the state, the largest coordinate
@@ -80,24 +80,25 @@ class ProvedOrbit:
         lines = [
             "Proved, with %d decimal places: the map x' = x + p', p' = p - eps grad V(x) with the "
             "potential %s" % (self.digits, state.potential.name),
-            "and eps = %s exactly has one orbit of type %s within %s of the points computed"
+            "and eps = %s has exactly one orbit of type %s within %s of the points computed"
             % (_eps(state), _type(state), _round(self.radius, 2, up=True)),
-            "(Euclidean norm of all coordinates together). It is hyperbolic and, run through any number of",
-            "times, a nondegenerate local minimum of the action: second variation at least %s."
-            % _round(self.least, 3, up=False),
+            "(Euclidean norm of all coordinates together). It is hyperbolic and, run through any",
+            "number of times, a nondegenerate local minimum of the action: second variation at least"
+            " %s." % _round(self.least, 3, up=False),
             "Action per point less |p/q|^2/2: %s." % _interval(self.action)] + [
             "Exponent: %s." % _interval(exponent) for exponent in self.exponents]
         return "\n".join(lines) + "\n"
 
 
 def prove(state: State, digits: Optional[int] = None) -> ProvedOrbit:
-    """Proves that a true orbit lies beside a state of least action, within 10^-digits (by default 20).
+    """Proves that a true orbit lies beside a state of least action: a ProvedOrbit, whose radius is
+    at most 10^-digits, by default 10^-20.
 
     The points are made as exact as that needs.  Where phases are undetermined in doubles they are
     determined here, and the points may move: see `moved`.
     NotProved, with a reason: among others, because the state is none of an orbit, or a saddle."""
-    wanted = DIGITS if digits is None else int(digits)
-    if not 1 <= wanted <= MOST - 2 * GUARD:
+    wanted = DIGITS if digits is None else digits
+    if not isinstance(wanted, int) or not 1 <= wanted <= MOST - 2 * GUARD:
         raise ValueError("digits is a number from 1 to %d, not %r" % (MOST - 2 * GUARD, digits))
     if state.eps == 0:
         raise NotProved("without a perturbation, at eps 0, no orbit is isolated")
@@ -105,7 +106,8 @@ def prove(state: State, digits: Optional[int] = None) -> ProvedOrbit:
     with np.errstate(all="ignore"):
         shadow = state.shadow
     if not shadow < STATIONARY:
-        raise NotProved("the state is not stationary, its gradient is %.1e: relax() it first" % shadow)
+        raise NotProved("the state is not stationary, its gradient is %.1e: relax() it first"
+                        % shadow)
     if state.least < -SOFT:
         raise NotProved("the state is a saddle: the least eigenvalue of its Hessian is about %.1e"
                         % state.least)
@@ -141,8 +143,8 @@ class _Exact:
         elif kind in BOUNDS:
             self.curvature, self.lipschitz = BOUNDS[kind]
         else:
-            raise ValueError("nothing can be proved of the potential %s: only Fourier sums, poly and ff "
-                             "have exact values" % potential.name)
+            raise ValueError("nothing can be proved of the potential %s: only Fourier sums, poly "
+                             "and ff have exact values" % potential.name)
         self.potential = potential
         self.terms = potential.terms if kind == lib.CV_FOURIER else {}
         u = np.zeros((self.q, 2))
@@ -153,7 +155,8 @@ class _Exact:
         waves = ffi.new("int[]", [i for k in self.terms for i in (k + (0,))[:2]])
         handle = ffi.new("cv_exact **")
         check(lib.cv_exact_new(handle, kind, self.n, len(self.terms), waves,
-                               [int(i) for i in state.p] + [0] * (2 - self.n), self.q, array, address(u)))
+                               [int(i) for i in state.p] + [0] * (2 - self.n), self.q, array,
+                               address(u)))
         self.handle = ffi.gc(handle[0], lib.cv_exact_free)
         self.eps = abs(Fraction(_eps(state)))
         self.places = None
@@ -178,21 +181,21 @@ class _Exact:
 
     def newton(self, shift):
         """Makes a step of Newton's method.  False: Hessian + shift is not positive definite."""
-        return self._succeeds(lib.cv_exact_newton(self.handle, _decimal(shift, self.places).encode()))
+        return self._succeeds(lib.cv_exact_newton(self.handle, self._text(shift)))
 
     def bends(self, shift):
         """Is the Hessian + shift positive definite?  No promise."""
-        return self._succeeds(lib.cv_exact_bends(self.handle, _decimal(shift, self.places).encode()))
+        return self._succeeds(lib.cv_exact_bends(self.handle, self._text(shift)))
 
     def least(self, m):
         """Is no eigenvalue of any copy's Hessian below m?"""
-        return self._succeeds(lib.cv_exact_least(self.handle, _decimal(m, self.places).encode()))
+        return self._succeeds(lib.cv_exact_least(self.handle, self._text(m)))
 
     def pivots(self, m, away):
         """Encloses the pivots; CV_UNDECIDED, CV_REAL or CV_COMPLEX.  None: it could not be done."""
         kind = ffi.new("int *")
-        if self._succeeds(lib.cv_exact_pivots(self.handle, _decimal(m, self.places).encode(),
-                                              _decimal(away, self.places, up=True).encode(), kind)):
+        if self._succeeds(lib.cv_exact_pivots(self.handle, self._text(m), self._text(away, up=True),
+                                              kind)):
             return kind[0]
         return None
 
@@ -202,6 +205,9 @@ class _Exact:
     def displacements(self):
         return tuple(tuple(Fraction(Decimal(_text(lib.cv_exact_point(self.handle, j, i))))
                            for i in range(self.n)) for j in range(self.q))
+
+    def _text(self, x, up=False):
+        return _decimal(x, self.places, up).encode()
 
     @staticmethod
     def _succeeds(code):
@@ -229,7 +235,8 @@ def _attempt(state, exact, places, wanted):
         raise _TooFewPlaces("the pivots could not be enclosed")
     action = (exact.action[0] - exact.gradient * radius / state.q, exact.action[1])
     displacements = exact.displacements()
-    moved = max(abs(float(new - Fraction(old))) for row, olds in zip(displacements, state.u.tolist())
+    moved = max(abs(float(new - Fraction(old)))
+                for row, olds in zip(displacements, state.u.tolist())
                 for new, old in zip(row, olds))
     return ProvedOrbit(state, places, radius, left, action, _exponents(state, exact, kind), moved,
                        displacements)
@@ -255,14 +262,15 @@ def _refine(state, exact, places, floor):
         exact.newton(shift)
         exact.evaluate(places)
         still = None
-        while exact.gradient > max(gradient, noise) and (still is None or 2 * exact.gradient < still):
+        while (exact.gradient > max(gradient, noise)
+               and (still is None or 2 * exact.gradient < still)):
             still = exact.gradient
             exact.newton(SOFT)
             exact.evaluate(places)
         if exact.action[0] > action[1]:
             exact.back()
             exact.evaluate(places)
-            shift = max(16 * shift, floor, gradient / math.isqrt(state.q))     # no further than about 1
+            shift = max(16 * shift, floor, gradient / math.isqrt(state.q))  # no further than 1
         elif not shift and exact.gradient < noise:
             return
         else:
@@ -273,20 +281,21 @@ def _refine(state, exact, places, floor):
 
 
 def _least(state, exact, floor):
-    """A number above which all eigenvalues of all copies' Hessians lie, within a few per cent of the
+    """A number that no eigenvalue of any copy's Hessian is below, within a few per cent of the
     largest."""
     guess = max(Fraction(state.least), Fraction(1, 10 ** 11)) * Fraction(49, 50)
     if exact.least(guess):
         return guess
     if not exact.least(floor):
         if exact.bends(-floor * 10 ** GUARD):
-            raise NotProved("the orbit is no minimum of the action when it is run through several times")
+            raise NotProved("the orbit is no minimum of the action when it is run through several "
+                            "times")
         raise _TooFewPlaces("the minimum is too flat")
     return _boundary(floor, guess, lambda m: not exact.least(m), Fraction(21, 20))[0]
 
 
 def _boundary(low, high, holds, ratio):
-    """(low, high) with high at most ratio * low, holds(high) and not holds(low), which are given."""
+    """Brings low and high together, to that ratio, with holds(high) and not holds(low) as given."""
     while high > ratio * low:
         scale = 10 ** (MOST + GUARD)
         middle = Fraction(math.isqrt(int(low * high * scale ** 2)), scale)
@@ -295,10 +304,12 @@ def _boundary(low, high, holds, ratio):
 
 
 def _exponents(state, exact, kind):
-    """Enclosures of the exponents, from that of the product of the determinants, their sum, and what is
-    known of the two eigenvalues.  If one's modulus is, the other's is the determinant over it; if they
-    are complex, both are the determinant's root; if nothing is, the larger is at least that."""
-    total = (log_bounds(exact.bound(lib.CV_DET_LOW))[0], log_bounds(exact.bound(lib.CV_DET_HIGH))[1])
+    """Enclosures of the exponents, from that of the product of the determinants, their sum, and
+    what is known of the two eigenvalues.  If one's modulus is, the other's is the determinant over
+    it; if they are complex, both are the determinant's root; if nothing is, the larger is at least
+    that."""
+    total = (log_bounds(exact.bound(lib.CV_DET_LOW))[0],
+             log_bounds(exact.bound(lib.CV_DET_HIGH))[1])
     half = (total[0] / 2, total[1] / 2)
     if state.potential.n == 1:
         pair = (total,)
@@ -319,8 +330,8 @@ def _exponents(state, exact, kind):
 # ---- numbers
 
 def fourier_bounds(potential: Fourier) -> Bounds:
-    """Upper bounds of |V''| and of the Lipschitz constant of V'' of a Fourier sum: (2 pi)^m times the
-    sum of |k|^m |amplitude|, m = 2, 3."""
+    """Upper bounds of |V''| and of the Lipschitz constant of V'' of a Fourier sum: (2 pi)^m times
+    the sum of |k|^m |amplitude|, m = 2, 3."""
     size = max(map(abs, potential.scale_enclosure(20)))
     sums = [sum(size * _root_up(sum(i * i for i in k)) ** m * _root_up(c * c + s * s)
                 for k, (c, s) in potential.terms.items()) for m in (2, 3)]
@@ -346,7 +357,8 @@ def _amplitude(potential, c, places):
 def log_bounds(x: Fraction) -> Bounds:
     """Two Fractions around the natural logarithm of x > 0.
 
-    x = y 2^k, 1/2 < y < 2, log y = 2 artanh z, z = (y - 1)/(y + 1), |z| < 1/3; log 2 = 2 artanh(1/3).
+    x = y 2^k, 1/2 < y < 2, log y = 2 artanh z, z = (y - 1)/(y + 1), |z| < 1/3, and log 2 is
+    2 artanh(1/3).
     The series is cut where a power is below one unit, 10^-60; all further terms together are below
     two.  Each power is off by less than 2 units, each term by less than 3, and fewer than 70 are
     added, so that twice their sum is off by less than 500 units."""

@@ -29,7 +29,7 @@ typedef struct {
     /* s <= D <= t: the pivots of the true orbit, between those of cv_exact_pivots */
     block s;
     apm_t wide;                 /* >= |t - s| */
-    apm_t v[2];                 /* about the direction that grows most; a unit vector but for 2 ulp */
+    apm_t v[2];                 /* about the direction that grows most; |v| is 1 but for 2 ulp */
 } site;
 
 enum { SCRATCH = 16, BOUNDS = CV_GROWTH_HIGH + 1, STUBBORN = 40 };
@@ -408,8 +408,8 @@ static void point(cv_exact *o, long j, apm_t x[2])
     }
 }
 
-/* The norm of the gradient and the action per point, with every error: the gradient's 2q entries are
-   within |eps| (fuzz + 3 ulp curvature), and so is each eps V. */
+/* The norm of the gradient and the action per point, with every error: the gradient's 2q entries
+   are within |eps| (fuzz + 3 ulp curvature), and so is each eps V. */
 static void sum_up(cv_exact *o, const apm_t squares, const apm_t action)
 {
     apm_t *const t = o->t;
@@ -453,7 +453,8 @@ static int evaluate(cv_exact *o, const void *how)
             apm_round(o->at[j].u[i], o->at[j].u[i], o->dp, APM_DOWN);
     for (long j = 0; j < o->q; j++) {
         site *const here = &o->at[j];
-        const site *const next = &o->at[(j + 1) % o->q], *const before = &o->at[(j + o->q - 1) % o->q];
+        const site *const next = &o->at[(j + 1) % o->q];
+        const site *const before = &o->at[(j + o->q - 1) % o->q];
         point(o, j, x);
         (o->kind == CV_FOURIER ? fourier : o->kind == CV_POLY ? poly : fast_froeschle)(o, x, local);
         for (int i = 0; i < 6; i++) {
@@ -639,9 +640,9 @@ static int eliminate(cv_exact *o, const apm_t shift, int keep)
     return is_positive(o, &o->G, 0);
 }
 
-/* The chain round the orbit is joined to its like, and the result to its like, until the ends do not
-   feel each other any more: then G is the pivot at point 0 after ever so many rounds.  0: there is
-   none; some copies of the orbit together are no minimum. */
+/* The chain round the orbit is joined to its like, and the result to its like, until the ends do
+   not feel each other any more: then G is the pivot at point 0 after ever so many rounds.  0:
+   there is none; some copies of the orbit together are no minimum. */
 static int join(cv_exact *o)
 {
     for (long n = 0; n < 4 * o->dp; n++) {
@@ -711,7 +712,7 @@ static int newton(cv_exact *o, const void *how)
         return CV_ESINGULAR;
     for (int i = 0; i < 2; i++)
         apm_init(along[i]);
-    /* At point 0, whose r now holds its own and its last neighbour's part, add those of all others. */
+    /* At point 0, whose r holds its own and its last neighbour's part, add those of all others. */
     for (long j = 1; j < o->q; j++) {
         site *const here = &o->at[j];
         for (int i = 0; i < 2; i++)
@@ -759,7 +760,8 @@ static int keep(cv_exact *o, const void *how)
 
     for (long j = 0; j < o->q; j++)
         for (int i = 0; i < o->n; i++)
-            apm_set(*back ? o->at[j].u[i] : o->at[j].kept[i], *back ? o->at[j].kept[i] : o->at[j].u[i]);
+            apm_set(*back ? o->at[j].u[i] : o->at[j].kept[i],
+                    *back ? o->at[j].kept[i] : o->at[j].u[i]);
     return CV_OK;
 }
 
@@ -780,12 +782,13 @@ static int pivot(cv_exact *o, long j, const apm_t shift, const block *x)
     return 1;
 }
 
-/* s[0] = G, s[j] = pivot(j), and last, what would follow at point 0.  Returns whether s is such that
+/* s[0] = G, s[j] = pivot(j), and last, what would follow at point 0.  Returns whether s is such
+   that
 
        s[j] + 1/s[j-1] <= beta[j] - m   for all j cyclically,   s > 0,
 
-   with beta that of the state, m = -shift - blur - 2 ulp: for j > 0 that is what pivot promises, and
-   at point 0, where last satisfies it, it is enough that s[0] <= last. */
+   with beta that of the state, m = -shift - blur - 2 ulp: for j > 0 that is what pivot promises,
+   and at point 0, where last satisfies it, it is enough that s[0] <= last. */
 static int below(cv_exact *o, const apm_t shift)
 {
     set_block(&o->at[0].s, &o->G);
@@ -798,8 +801,8 @@ static int below(cv_exact *o, const apm_t shift)
     return is_positive(o, &o->at[0].s, 0) && is_positive(o, &o->spare[0], 1);
 }
 
-/* Is every copy's Hessian, less m, positive semidefinite?  The guess is made for a little more than m,
-   which then is what is left between s[0] and last. */
+/* Is every copy's Hessian, less m, positive semidefinite?  The guess is made for 8 ulp more at each
+   point, more than it is rounded by there, so that s[0] comes to lie below last. */
 static int is_least(cv_exact *o, const apm_t m)
 {
     apm_t *const t = o->t;
@@ -808,8 +811,7 @@ static int is_least(cv_exact *o, const apm_t m)
     apm_add(t[12], t[12], o->blur);
     apm_add(t[12], t[12], m);
     apm_neg(t[12], t[12]);                              /* the shift */
-    apm_mul_si(t[13], m, -1);
-    apm_scale(t[13], t[13], -2);
+    apm_mul_si(t[13], o->ulp, -8);
     apm_add(t[13], t[13], t[12]);
     return eliminate(o, t[13], 0) && join(o) && below(o, t[12]);
 }
@@ -833,9 +835,9 @@ static void grow(const cv_exact *o, apm_t r, const apm_t x, apm_round_t directio
     apm_round(r, r, o->dp - apm_order(r), direction);
 }
 
-/* t[0] = G, t[j] = pivot(j) with shift = away + blur + 2 ulp, so that t[j] + 1/t[j-1] >= beta[j] for
-   every beta within `away` of the state's; at point 0 because last <= t[0].  And s[0] <= t[0].
-   Keeps |t - s| <= its trace at each point, and the products of the determinants. */
+/* t[0] = G, t[j] = pivot(j) with shift = away + blur + 2 ulp, so that t[j] + 1/t[j-1] >= beta[j]
+   for every beta within `away` of the state's; at point 0 because last <= t[0].  And s[0] <=
+   t[0]. Keeps |t - s| <= its trace at each point, and the products of the determinants. */
 static int above(cv_exact *o, const apm_t shift)
 {
     apm_t *const scratch = o->t;
@@ -902,8 +904,8 @@ static void in_frames(cv_exact *o, long j, int turn, apm_t a, apm_t b, apm_t c, 
     apm_mul_si(off, here->wide, 2);
 }
 
-/* v = w/|w| to dp places.  Both quotients are rounded down by less than an ulp, so |v|^2 is within 3
-   ulp of 1, and 4 with the root's error.  0: w is zero. */
+/* v = w/|w| to dp places.  Both quotients are rounded down by less than an ulp, so |v|^2 is
+   within 3 ulp of 1, and 4 with the root's error.  0: w is zero. */
 static int normalize(cv_exact *o, apm_t v[2], apm_t w[2])
 {
     apm_t *const t = o->t;
@@ -998,12 +1000,14 @@ static int turn_at(cv_exact *o, long j)
 
        kappa' = (|c| + off + (|d| + off) kappa)/(a - off - (|b| + off) kappa),
 
-   and x' |v'|^2 is between a - off - (|b| + off) kappa and a + off + (|b| + off) kappa times x; |v'|^2
-   is within 4 ulp of 1, and 5 times that is enough for its inverse.  0: a divisor is not positive. */
+   and x' |v'|^2 is between a - off - (|b| + off) kappa and a + off + (|b| + off) kappa times x;
+   |v'|^2 is within 4 ulp of 1, and 5 times that is enough for its inverse.  0: a divisor is not
+   positive. */
 static int carry_cone(cv_exact *o, apm_t kappa)
 {
     apm_t *const t = o->t;
-    apm_struct *const a = t[4], *const b = t[5], *const c = t[6], *const d = t[7], *const off = t[8];
+    apm_struct *const a = t[4], *const b = t[5], *const c = t[6], *const d = t[7];
+    apm_struct *const off = t[8];
 
     apm_set_si(o->bound[CV_GROWTH_LOW], 1, 0);
     apm_set_si(o->bound[CV_GROWTH_HIGH], 1, 0);
@@ -1061,10 +1065,10 @@ static int close_cone(cv_exact *o)
 
        r' = |A| r + off (|x| + r summed down the column) + rounding,   A the matrix with a, b, c, d.
 
-   It is D_{q-1} ... D_0 in the frame at point 0, but for the factors |v|^2, together at most 1 + 10 q
-   ulp and not less than the inverse of that.  The larger row sum bounds the moduli of the eigenvalues;
-   and if the square of the trace is less than four times the determinant, these are not real, so both
-   moduli are the determinant's root.  Returns whether they are. */
+   It is D_{q-1} ... D_0 in the frame at point 0, but for the factors |v|^2, together at most 1 +
+   10 q ulp and not less than the inverse of that.  The larger row sum bounds the moduli of the
+   eigenvalues; and if the square of the trace is less than four times the determinant, these are
+   not real, so both moduli are the determinant's root.  Returns whether they are. */
 static int bound_growth(cv_exact *o)
 {
     apm_t *const t = o->t;

@@ -3,20 +3,22 @@
    Lax-Oleinik operator).
 
    From the torus to a grid.  Let x_0, x_1, ... be any points and e_j the grid's pitch about x_j.
-   Replace each x_j by a corner y_j of its cell, each coordinate at random, independently, and so that
-   the mean of y_j is x_j.  Then a coordinate of y_j has a variance of e_j^2/4 at most, that of
-   |y_{j+1} - y_j|^2/2 is on the average what it was and half of both variances more, and -eps V(y_j) is at
-   most -eps V(x_j) and |eps| K2/2 times the variance more, K2 >= |V''|.  So on the average, and hence for
-   some choice of corners, the action of the y_j exceeds that of the x_j by at most
+   Replace each x_j by a corner y_j of its cell, each coordinate at random, independently, and so
+   that the mean of y_j is x_j.  Then a coordinate of y_j has a variance of e_j^2/4 at most, that of
+   |y_{j+1} - y_j|^2/2 is on the average what it was and half of both variances more, and
+   -eps V(y_j) is at most -eps V(x_j) and |eps| K2/2 times the variance more, K2 >= |V''|.  So on
+   the average, and hence for some choice of corners, the action of the y_j exceeds that of the x_j
+   by at most
 
-       sum over j and coordinates i of (2 + |eps| K2) e_ji^2/8.                                   (1)
+       sum over j and coordinates i of (2 + |eps| K2) e_ji^2/8.                               (1)
 
-   Whatever bounds all paths on the grid from below, bounds all paths less (1).  Where all points have the
-   same grid, one threshold will do for all of them, y_j = e floor(x_j/e + r) with a random r: then
-   y_{j+1} - y_j, too, is one of two neighbours of its mean, and (1) has 1 in place of 2.
+   Whatever bounds all paths on the grid from below, bounds all paths less (1).  Where all points
+   have the same grid, one threshold will do for all of them, y_j = e floor(x_j/e + r) with a random
+   r: then y_{j+1} - y_j, too, is one of two neighbours of its mean, and (1) has 1 in place of 2.
 
-   Rounding.  Unit u = 2^-53.  Nodes are doubles, so only W = -eps V is not what it should be there, by
-   cv_errors, and what is computed from it rounds: see cheapest, and the margins that refer to it. */
+   Rounding.  Unit u = 2^-53.  Nodes are doubles, so only W = -eps V is not what it should be there,
+   by cv_errors, and what is computed from it rounds: see cheapest, and the margins that refer
+   to it. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -29,13 +31,15 @@ static inline double larger(double x, double y) { return x > y || isnan(x) ? x :
 
 enum { MAX_NODES = 1025 };              /* along an axis of a corridor */
 
-/* Fourier: the point is off by u(2 reach + 2), k.x by 2u |k| reach more, |k| the sum of both, 2 pi times
-   what is left of it after whole turns by 7u, the sine by 4u: u(26 |k|(reach + 1) + 11).  The
-   amplitude is off by 3u of itself, the products and 2 pi k by 9u, the sum over the terms by u each.
-   poly: 2^-43, 2^-41, 2^-39 are 1024u, 4096u and 16384u.  The roundings of the formulas make 40u, 400u
-   and 6000u of them at most, and the point, off by u(2 reach + 3) once its whole turns are taken off,
-   moves V by 9 times, its gradient by 116 times, V'' by 2800 times as much.
-   ff: likewise, c, c', c'' having slopes of at most 12, 48 and 192; x0 + x1 is off by u(6 reach + 6). */
+/* Fourier: the point is off by u(2 reach + 2), k.x by 2u |k| reach more, |k| the sum of both, 2 pi
+   times what is left of it after whole turns by 7u, the sine by 4u: u(26 |k|(reach + 1) + 11).  The
+   amplitude is off by 3u of itself, the products and 2 pi k by 9u, the sum over the terms by u
+   each.
+   poly: 2^-43, 2^-41, 2^-39 are 1024u, 4096u and 16384u.  The roundings of the formulas make 40u,
+   400u and 6000u of them at most, and the point, off by u(2 reach + 3) once its whole turns are
+   taken off, moves V by 9 times, its gradient by 116 times, V'' by 2800 times as much.
+   ff: likewise; c, c', c'' have slopes of at most 12, 48 and 192, and x0 + x1 is off by
+   u(6 reach + 6). */
 int cv_errors(const cv_potential *v, double reach, double errors[3])
 {
     static const double of_poly[3] = { 0x1p-43, 0x1p-41, 0x1p-39 },
@@ -61,12 +65,13 @@ typedef struct { const double *x, *f, *y; double *out; int *from; long stride; }
 /* out[k] = min over i of f[i] + (y[k] - x[i])^2/2 for first <= k < end, where the least is among
    left <= i <= right; x and y increase.  from[k], unless it is NULL: the i.
 
-   Both terms of y[k] x[i] favour large i for large k: if i < i' and k < k',
+   An infinite f[i] takes no part in a minimum.  The terms -y[k] x[i] favour large i for large k:
+   if i < i' and k < k',
        cost(k, i) + cost(k', i') <= cost(k, i') + cost(k', i).
-   So the least of the row in the middle halves the search of the others.  Let a computed cost be off by
-   at most c.  The i found is least up to 2c, and so by the inequality the rows below it have an i
-   from it on whose cost is at most 2c above the least, likewise the rows above: with no more than
-   2048 rows, each comes out within 25c of the truth. */
+   So the least of the row in the middle halves the search of the others.  Let a computed cost be
+   off by at most c.  The i found is least up to 2c, and so by the inequality the rows below it have
+   an i from it on whose cost is at most 2c above their least, likewise the rows above.  2048 rows
+   are halved 12 times: each comes out within 25c of the truth. */
 static void cheapest(const line *l, int first, int end, int left, int right)
 {
     while (first < end) {
@@ -91,27 +96,13 @@ static void cheapest(const line *l, int first, int end, int left, int right)
     }
 }
 
-/* The rows of `in`, m numbers at x each, become the columns of `out`, at y; what is infinite is no
-   part of a minimum.  spare: room for 2 m numbers. */
+/* The rows of `in`, m numbers at x each, become the columns of `out`, at y. */
 static void along_axis(int rows, int m, const double *x, const double *in, int k, const double *y,
-                       double *out, double *spare)
+                       double *out)
 {
-    double *const at = spare, *const f = spare + m;
-
     for (int row = 0; row < rows; row++) {
-        const line l = { at, f, y, out + row, NULL, rows };
-        int finite = 0;
-        for (int i = 0; i < m; i++) {
-            const double value = in[(size_t)row * (size_t)m + (size_t)i];
-            at[finite] = x[i];
-            f[finite] = value;
-            finite += value < HUGE_VAL;
-        }
-        if (finite > 0)
-            cheapest(&l, 0, k, 0, finite - 1);
-        else
-            for (int i = 0; i < k; i++)
-                out[(size_t)i * (size_t)rows + (size_t)row] = HUGE_VAL;
+        const line l = { x, in + (size_t)row * (size_t)m, y, out + row, NULL, rows };
+        cheapest(&l, 0, k, 0, m - 1);
     }
 }
 
@@ -122,28 +113,29 @@ typedef struct {
     size_t size;                        /* of all arrays below: nodes[0] x nodes[1] */
     double *at[2];                      /* where the nodes are */
     double *W;                          /* -eps V there; infinite: excluded */
-    double *F;                          /* the least action of a path from the first rectangle to here */
+    double *F;                          /* the least action of a path that comes here */
     double bend;                        /* (1), this rectangle's part */
 } rectangle;
 
 typedef struct {
     int q;
     rectangle *r;
-    double *u, *end, *G, *T, *spare, *line;
+    double *u, *end, *G, *T, *spare;
 } corridor;
 
 /* out = min over the nodes of `from` of in + |difference|^2/2, at the nodes of `to`. */
 static void step(const corridor *c, const rectangle *from, const double *in, const rectangle *to,
                  double *out)
 {
-    along_axis(from->nodes[0], from->nodes[1], from->at[1], in, to->nodes[1], to->at[1], c->spare,
-               c->line);
-    along_axis(to->nodes[1], from->nodes[0], from->at[0], c->spare, to->nodes[0], to->at[0], out,
-               c->line);
+    along_axis(from->nodes[0], from->nodes[1], from->at[1], in, to->nodes[1], to->at[1],
+               c->spare);
+    along_axis(to->nodes[1], from->nodes[0], from->at[0], c->spare, to->nodes[0], to->at[0],
+               out);
 }
 
 /* The least and the largest of an array's values at the corners of a cell. */
-static void corners(const rectangle *r, const double *values, int i, int k, double *least, double *most)
+static void corners(const rectangle *r, const double *values, int i, int k,
+                    double *least, double *most)
 {
     *least = HUGE_VAL;
     *most = -HUGE_VAL;
@@ -155,7 +147,10 @@ static void corners(const rectangle *r, const double *values, int i, int k, doub
         }
 }
 
-static int cells(const rectangle *r, int axis) { return r->nodes[axis] > 1 ? r->nodes[axis] - 1 : 1; }
+static int cells(const rectangle *r, int axis)
+{
+    return r->nodes[axis] > 1 ? r->nodes[axis] - 1 : 1;
+}
 
 /* Is W below `lowest` in all of the cell?  There it is at most what its corners give, interpolated,
    and `bend` more. */
@@ -182,7 +177,7 @@ static void exclude(rectangle *r, double lowest, double *wanted)
 }
 
 /* Nodes from low to high, both included, W there, and (1) with all that W may be off by: cv_errors,
-   and u for the product. */
+   u of itself for the product, and u for eps, which stands for a decimal. */
 static int look(rectangle *r, const cv_potential *v, double eps, double curvature,
                 const double base[2], const double low[2], const double high[2], double (*x)[2])
 {
@@ -193,7 +188,8 @@ static int look(rectangle *r, const cv_potential *v, double eps, double curvatur
         const int last = r->nodes[axis] - 1;
         double pitch = 0.0;
         for (int i = 0; i <= last; i++)
-            r->at[axis][i] = i == last ? high[axis] : low[axis] + (high[axis] - low[axis]) / last * i;
+            r->at[axis][i] = i == last ? high[axis]
+                           : low[axis] + (high[axis] - low[axis]) / last * i;
         for (int i = 0; i < last; i++)
             pitch = fmax(pitch, r->at[axis][i + 1] - r->at[axis][i]);
         squares += pitch * pitch;
@@ -211,7 +207,7 @@ static int look(rectangle *r, const cv_potential *v, double eps, double curvatur
         largest = larger(largest, fabs(r->W[i]));
     }
     r->bend = ((2.0 + fabs(eps) * curvature) * squares * 0.125
-               + fabs(eps) * errors[0] + 0x1p-53 * largest) * (1.0 + 0x1p-40);
+               + fabs(eps) * errors[0] + 0x1p-52 * largest) * (1.0 + 0x1p-40);
     return status;
 }
 
@@ -291,9 +287,9 @@ static int shrink(const corridor *c, const rectangle *r, double most, double low
     return last[0] >= 0;
 }
 
-/* Rounding: all numbers are sums of parts of one path's, and u's, so none is larger than `sum` below.
-   A cost is off by c = 4u sum: 3u of the square, u of the sum.  So a step along both axes loses 50c, to
-   which W adds u sum, and q steps and the few operations on their sums lose less than
+/* Rounding: all numbers are sums of parts of one path's, and u's, so none is larger than `sum`
+   below.  A cost is off by c = 4u sum: 3u of the square, u of the sum.  So a step along both axes
+   loses 50c, to which W adds u sum, and q steps and the few operations on their sums lose less than
    (q + 1) 2^-45 sum, which is (q + 1) 256u sum. */
 static int search(corridor *c, double known, double (*low)[2], double (*high)[2], double *least,
                   double (*path)[2])
@@ -361,7 +357,7 @@ int cv_corridor(const cv_potential *v, int q, double eps, double curvature, cons
 {
     size_t total = 0, widest = 0, used = 0;
     double *memory, (*x)[2];
-    corridor c = { q, NULL, NULL, NULL, NULL, NULL, NULL, NULL };
+    corridor c = { q, NULL, NULL, NULL, NULL, NULL, NULL };
     int status = CV_OK;
 
     if (!machine_is_sound())
@@ -369,7 +365,8 @@ int cv_corridor(const cv_potential *v, int q, double eps, double curvature, cons
     for (int j = 0; j < q; j++) {
         const int *const here = nodes[j], *const next = nodes[j + 1 < q ? j + 1 : 0];
         const size_t size = (size_t)here[0] * (size_t)here[1],
-                     between = (size_t)here[0] * (size_t)next[1], back = (size_t)next[0] * (size_t)here[1];
+                     between = (size_t)here[0] * (size_t)next[1],
+                     back = (size_t)next[0] * (size_t)here[1];
         if (here[0] < 1 || here[0] > MAX_NODES || here[1] < 1 || here[1] > MAX_NODES)
             return CV_EARGUMENT;
         total += 2 * size + (size_t)here[0] + (size_t)here[1];
@@ -378,7 +375,7 @@ int cv_corridor(const cv_potential *v, int q, double eps, double curvature, cons
         widest = back > widest ? back : widest;
     }
     c.r = malloc((size_t)q * sizeof *c.r);
-    memory = malloc((total + 5 * widest + 2 * MAX_NODES) * sizeof *memory);
+    memory = malloc((total + 5 * widest) * sizeof *memory);
     x = malloc(widest * sizeof *x);
     if (!c.r || !memory || !x)
         status = CV_ENOMEM;
@@ -395,7 +392,7 @@ int cv_corridor(const cv_potential *v, int q, double eps, double curvature, cons
         status = look(r, v, eps, curvature, base[j], low[j], high[j], x);
     }
     if (status == CV_OK) {
-        double **const parts[] = { &c.u, &c.end, &c.G, &c.T, &c.spare, &c.line };
+        double **const parts[] = { &c.u, &c.end, &c.G, &c.T, &c.spare };
         for (size_t k = 0; k < sizeof parts / sizeof *parts; k++, used += widest)
             *parts[k] = memory + used;
         status = search(&c, known, low, high, least, path);

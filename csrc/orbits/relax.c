@@ -33,7 +33,7 @@ typedef struct {
 static int look(const action_of *of, place *at)
 {
     const long q = of->q;
-    double sum = 0.0, size = 0.0, slopes = 0.0, squares = 0.0, largest = 0.0;
+    double sum = 0.0, lost = 0.0, size = 0.0, slopes = 0.0, squares = 0.0, largest = 0.0;
     int status;
 
     for (long j = 0; j < q; j++)
@@ -45,22 +45,25 @@ static int look(const action_of *of, place *at)
     for (long j = 0; j < q; j++) {
         const double *const before = at->u[j > 0 ? j - 1 : q - 1], *const here = at->u[j],
                      *const after = at->u[j < q - 1 ? j + 1 : 0];
+        double term = -of->eps * of->value[j], total;
         for (int i = 0; i < 2; i++) {
             const double step = after[i] - here[i];
             const double g = (here[i] - before[i]) - step - of->eps * at->gradient[j][i];
-            sum += 0.5 * step * step;
+            term += 0.5 * step * step;
             size += step * step;
             squares += g * g;
             largest = fmax(largest, fabs(g));
             slopes += fabs(of->eps * at->gradient[j][i]);
             at->gradient[j][i] = g;
         }
-        sum -= of->eps * of->value[j];
+        total = sum + term;             /* and what its rounding loses, which adds up over long orbits */
+        lost += (sum - (total - (total - sum))) + (term - (total - sum));
+        sum = total;
         size += fabs(of->eps * of->value[j]);
         for (int i = 0; at->beta && i < 3; i++)
             at->beta[j][i] = (i == 1 ? 0.0 : 2.0) - of->eps * at->beta[j][i];
     }
-    at->action = sum;
+    at->action = sum + lost;
     at->noise = 1e-15 * size;
     at->doubt = at->noise + 1e-15 * slopes;
     at->largest = squares < HUGE_VAL ? largest : HUGE_VAL;      /* NaN: nowhere near */
