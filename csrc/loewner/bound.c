@@ -17,6 +17,15 @@
    in exact arithmetic; in doubles what is left of it is multiplied by |D[j]| and added. */
 #include "prism.h"
 
+#ifndef SHARE_REST
+#define SHARE_REST 1.0
+#endif
+enum { TRIPLES = 35 };
+static const unsigned char triple3[3][PAIRS] = { { 0, 1, 2, 3, 4, 5 }, { 1, 3, 4, 6, 7, 8 }, { 2, 4, 5, 7, 8, 9 } };
+static const unsigned char triple5[5][PAIRS] = { { 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14 }, { 1, 5, 6, 7, 8, 15, 16, 17, 18, 19, 20, 21, 22, 23, 24 }, { 2, 6, 9, 10, 11, 16, 19, 20, 21, 25, 26, 27, 28, 29, 30 }, { 3, 7, 10, 12, 13, 17, 20, 22, 23, 26, 28, 29, 31, 32, 33 }, { 4, 8, 11, 13, 14, 18, 21, 23, 24, 27, 29, 30, 32, 33, 34 } };
+static const unsigned char pair_of5[5][5] = { { 0, 1, 2, 3, 4 }, { 0, 5, 6, 7, 8 }, { 0, 0, 9, 10, 11 }, { 0, 0, 0, 12, 13 }, { 0, 0, 0, 0, 14 } };
+static const unsigned char pair_of3[5][5] = { { 0, 1, 2, 0, 0 }, { 0, 3, 4, 0, 0 }, { 0, 0, 5, 0, 0 }, { 0, 0, 0, 0, 0 }, { 0, 0, 0, 0, 0 } };
+
 /* The multipliers, by (2): zero outside, and from either end up to the sites 0 and 1. */
 static void set_multipliers(loewner *w)
 {
@@ -51,8 +60,11 @@ static void set_multipliers(loewner *w)
 void bound_second_variation(loewner *w)
 {
     double centre = 0.0, mass = 0.0, rest = 0.0, rounding = 0.0, far = 0.0;
-    double along[WAVES] = { 0, 0, 0 }, along_mass = 0.0, tails, total;
+    double along[WAVES] = { 0, 0, 0 }, along_mass = 0.0, tails, corners;
+    double slope[COLUMNS] = { 0 }, square_form[PAIRS] = { 0 }, cubic[TRIPLES] = { 0 };
     const double each = 0x1p-48 * (double)(w->until - w->from + 2);
+    const int columns = w->columns, pairs = w->pairs;
+    const unsigned char (*const triple)[PAIRS] = columns == 3 ? triple3 : triple5;
 
     set_multipliers(w);
     for (int k = 0; k < COLUMNS; k++)
@@ -73,23 +85,49 @@ void bound_second_variation(loewner *w)
         }
         far = larger(far, q->far);
         for (int i = 0; i < WAVES; i++) {
-            const double s = q->sine[i], c = q->cosine[i], p = w->p[i], rho = q->reach[i];
-            const double h = w->h[i] + w->loose[i], half_square = 0.5 * rho * rho;
+            const double s = q->sine[i], co = q->cosine[i], p = w->p[i], rho = q->reach[i];
+            const double h = w->h[i], loose = w->loose[i];
             const double weight = omega[i] + fabs(m[i]) + TINY;
-            const double A = m[i] * c - omega[i] * s, B = -omega[i] * c - m[i] * s;
-            const double term = (larger(0.0, -p * A) + h * fabs(A)) * half_square
-                + fabs(B) * (size(w, i) * rho * half_square * (1.0 / 3.0) + h * rho);
+            const double A = m[i] * co - omega[i] * s, B = -omega[i] * co - m[i] * s;
+            const double pA = p * A, pB = p * B;
+            const double a = q->straight[i], b = q->off[i];
+            const double r = i < 2 ? q->rest[i] : q->rest[0] + q->rest[1];
+            const double rho2 = rho * rho, rho4 = rho2 * rho2 * (1.0 / 24.0);
+            const double bent = b * (2.0 * a + b) * 0.5;
+            const double term = (pA > 0.0 ? pA * rho4 : -pA * b * b * 0.5) + fabs(pA) * a * r
+                + fabs(pB) * (b * (3.0 * a * (a + b) + b * b) * (1.0 / 6.0) + rho * rho4 * 0.2)
+                + h * (fabs(A) * (bent + rho4) + fabs(B) * (r + rho * rho2 * (1.0 / 6.0)))
+                + loose * (fabs(A) * rho2 * 0.5 + fabs(B) * rho);
+            const int t = w->together ? 2 : 2 + i;
+            double c[COLUMNS], bow[PAIRS], form[PAIRS];
 
             centre -= omega[i] * p * s;
             mass += omega[i] * fabs(p);
             along[i] += A;
-            along_mass += weight * (h + (size(w, i) * rho * (1.0 + rho) + h) * rho);
+            along_mass += weight * (h + loose + (size(w, i) * rho * (1.0 + rho) + h + loose) * rho);
             rest += term;
-            if (rho > 0.0) {
-                const double part = term / rho;
-                for (int k = 0; k < w->columns; k++)
-                    w->share[k] += part * fabs(i < 2 ? q->column[i][k]
-                                                     : q->column[0][k] + q->column[1][k]);
+            if (rho == 0.0)
+                continue;
+            for (int k = 0; k < columns; k++)
+                c[k] = i < 2 ? q->column[i][k] : q->column[0][k] + q->column[1][k];
+            for (int k = 0; k < pairs; k++)
+                bow[k] = i < 2 ? q->bow[i][k] : q->bow[0][k] + q->bow[1][k];
+            for (int k = 0, kl = 0; k < columns; k++)
+                for (int l = k; l < columns; l++, kl++) {
+                    const double cc = (k == l ? 0.5 : 1.0) * c[k] * c[l];
+                    square_form[kl] -= pA * cc;
+                    form[kl] = -pA * bow[kl] - pB * (1.0 / 3.0) * cc;
+                    cubic[triple[t][kl]] += h * (B * bow[kl] - A * cc);
+                }
+            for (int k = 0; k < columns; k++) {
+                square_form[(columns == 3 ? pair_of3 : pair_of5)[t < k ? t : k][t < k ? k : t]] += h * B * c[k];
+                for (int kl = 0; kl < pairs; kl++)
+                    cubic[triple[k][kl]] += c[k] * form[kl];
+            }
+            {
+                const double part = SHARE_REST * term / rho;
+                for (int k = 0; k < columns; k++)
+                    w->share[k] += part * fabs(c[k]);
             }
         }
         /* what (2) leaves, and what the centre's steps missed */
@@ -97,11 +135,12 @@ void bound_second_variation(loewner *w)
             const double before = q[-1].mu[i], after = q[1].mu[i];
             double left = 4.0 * q->fuzz * weights + 0x1p-50 * (fabs(before) + fabs(after));
             if (j == ORIGIN || j == ORIGIN + 1) {
-                const double slope = fabs(q->gradient[i] + q->beta[i] * mu0
-                                          + q->beta[i + 1] * mu1 - before - after);
+                const double steep = q->gradient[i] + q->beta[i] * mu0
+                                          + q->beta[i + 1] * mu1 - before - after;
                 if (j == ORIGIN + 1)
-                    w->share[i] += slope * q->reach[i];
-                rest += slope * q->reach[i];
+                    slope[i] += steep * q->column[i][i];
+                else
+                    rest += fabs(steep) * q->reach[i];
             }
             rounding += left * q->reach[i];
             if (j > w->from && j < w->until)
@@ -112,17 +151,44 @@ void bound_second_variation(loewner *w)
                     + square(w->orbit[w->to].n[0]) + square(w->orbit[w->to].n[1]));
     centre -= tails;
     mass += tails;
-    total = 0.0;
     for (int i = 0; i < WAVES; i++) {
-        const double part = w->h[i] * along[i];
+        slope[w->together ? 2 : 2 + i] += w->h[i] * along[i];
         rest += w->loose[i] * fabs(along[i]);
-        total = w->together ? total + part : fabs(part);
-        if (!w->together || i == WAVES - 1) {
-            w->share[w->together ? 2 : 2 + i] += fabs(total);
-            rest += fabs(total);
+    }
+    for (int k = 0, kl = 0; k < columns; k++) {
+        w->share[k] += fabs(slope[k]);
+        for (int l = k; l < columns; l++, kl++) {
+            if (k == l) {
+                rest += larger(0.0, square_form[kl]);
+                w->share[k] += 2.0 * larger(0.0, square_form[kl]);
+            } else {
+                w->share[k] += fabs(square_form[kl]);
+                w->share[l] += fabs(square_form[kl]);
+            }
         }
+    }
+    for (int k = 0; k < (columns == 3 ? 10 : 35); k++)
+        rest += fabs(cubic[k]);
+    for (int k = 0, m = 0; k < columns; k++)
+        for (int l = k; l < columns; l++)
+            for (int o = l; o < columns; o++, m++) {
+                w->share[k] += fabs(cubic[m]);
+                w->share[l] += fabs(cubic[m]);
+                w->share[o] += fabs(cubic[m]);
+            }
+    corners = -HUGE_VAL;
+    for (int corner = 0; corner < 1 << (columns - 1); corner++) {
+        double linear = 0.0, mixed = 0.0;
+        for (int k = 0, kl = 0; k < columns; k++) {
+            const double ek = corner >> k & 1 ? -1.0 : 1.0;
+            linear += ek * slope[k];
+            for (int l = k; l < columns; l++, kl++)
+                if (l > k)
+                    mixed += (corner >> l & 1 ? -ek : ek) * square_form[kl];
+        }
+        corners = larger(corners, fabs(linear) + mixed);
     }
     rounding += (mass + along_mass) * (each + 0x1p-49 * (1.0 + far));
     w->rounding = rounding * (1.0 + each);
-    w->bound = mass >= 1.0 ? centre + (rest + w->rounding) * (1.0 + each) : HUGE_VAL;
+    w->bound = mass >= 1.0 ? centre + corners + (rest + w->rounding) * (1.0 + each) : HUGE_VAL;
 }

@@ -23,7 +23,7 @@ static const double WIDEN = 1.0 + 0x1p-43;
 static void finish(const loewner *w, point *q)
 {
     const double y[WAVES] = { q->x[0], q->x[1], q->x[0] + q->x[1] };
-    double sum[WAVES] = { 0, 0, 0 }, c_sin;
+    double sum[WAVES] = { 0, 0, 0 }, bow[WAVES] = { 0, 0, 0 }, c_sin;
 
     q->far = size(w, 2) > 0.0 ? fabs(q->x[0]) + fabs(q->x[1]) : 0.0;
     for (int j = 0; j < WAVES; j++)
@@ -38,9 +38,16 @@ static void finish(const loewner *w, point *q)
         sum[1] += fabs(q->column[1][k]);
         sum[2] += fabs(q->column[0][k] + q->column[1][k]);
     }
-    q->reach[0] = (sum[0] + q->rest[0]) * WIDEN;
-    q->reach[1] = (sum[1] + q->rest[1]) * WIDEN;
-    q->reach[2] = (sum[2] + q->rest[0] + q->rest[1]) * WIDEN;
+    for (int k = 0; k < w->pairs; k++) {
+        bow[0] += fabs(q->bow[0][k]);
+        bow[1] += fabs(q->bow[1][k]);
+        bow[2] += fabs(q->bow[0][k] + q->bow[1][k]);
+    }
+    for (int j = 0; j < WAVES; j++) {
+        q->straight[j] = sum[j] * WIDEN;
+        q->off[j] = (bow[j] + (j < 2 ? q->rest[j] : q->rest[0] + q->rest[1])) * WIDEN;
+        q->reach[j] = (sum[j] + q->off[j]) * WIDEN;
+    }
 }
 
 /* How far a wave p cos(y + d) may be from p cos y - p d sin y + h e cos y, e in [-1, 1] the symbol
@@ -49,12 +56,14 @@ static void finish(const loewner *w, point *q)
    a thousand times as much as either needs. */
 static double bend(const loewner *w, const point *q, int wave)
 {
-    const double rho = q->reach[wave];
+    const double rho = q->reach[wave], a = q->straight[wave], b = q->off[wave];
     const double off = 0x1p-40 * (1.0 + q->far);
     const double c = fabs(q->cosine[wave]) + off, s = fabs(q->sine[wave]) + off;
+    const double h = w->h[wave], loose = w->loose[wave], cube = rho * rho * rho * (1.0 / 6.0);
 
-    return size(w, wave) * rho * rho * (c * 0.5 + s * rho * (1.0 / 6.0)) +
-           (w->h[wave] + w->loose[wave]) * s * rho + w->loose[wave] * c;
+    return (fabs(w->p[wave]) * (c * (b * (2.0 * a + b) + rho * cube * 0.5) * 0.5 + s * cube)
+            + (h + loose) * (c * rho * rho * 0.5 + s * cube)
+            + h * s * b + loose * (s * rho + c));
 }
 
 /* next = the point after q, seen from o before it; time may run either way.  The factor begins
@@ -72,7 +81,7 @@ static double bend(const loewner *w, const point *q, int wave)
    8 (1 + condition). */
 static int step(const loewner *w, point *next, point *q, const point *o, int is_first)
 {
-    double g[WAVES], bent[WAVES], inverse[3] = { 0, 0, 0 }, rounded = 0.0, rest_sum;
+    double source[WAVES][PAIRS], g[WAVES], bent[WAVES], inverse[3] = { 0, 0, 0 }, rounded = 0.0, rest_sum;
 
     for (int j = 0; j < WAVES; j++) {
         g[j] = w->p[j] * q->cosine[j];
@@ -92,6 +101,22 @@ static int step(const loewner *w, point *next, point *q, const point *o, int is_
         next->column[i][w->together ? 2 : 2 + i] += w->h[i] * q->cosine[i];
         next->column[i][w->together ? 2 : 4] += w->h[2] * q->cosine[2];
     }
+    for (int j = 0; j < WAVES; j++) {
+        double c[COLUMNS];
+        const int t = w->together ? 2 : 2 + j;
+        for (int k = 0; k < w->columns; k++)
+            c[k] = j < 2 ? q->column[j][k] : q->column[0][k] + q->column[1][k];
+        for (int k = 0, kl = 0; k < w->columns; k++)
+            for (int l = k; l < w->columns; l++, kl++) {
+                source[j][kl] = -(k == l ? 0.5 : 1.0) * g[j] * c[k] * c[l];
+                if (l == t || k == t)
+                    source[j][kl] -= w->h[j] * q->sine[j] * c[l == t ? k : l];
+            }
+    }
+    for (int i = 0; i < 2; i++)
+        for (int kl = 0; kl < w->pairs; kl++)
+            next->bow[i][kl] = q->beta[i] * q->bow[0][kl] + q->beta[i + 1] * q->bow[1][kl]
+                             - o->bow[i][kl] + (source[i][kl] + source[2][kl]);
 
     if (!is_first) {
         const double *d = o->d, det = d[0] * d[2] - d[1] * d[1];
@@ -111,6 +136,8 @@ static int step(const loewner *w, point *next, point *q, const point *o, int is_
         e += q->missed[i];
         for (int k = 0; k < w->columns; k++)
             e += 0x1p-50 * fabs(next->column[i][k]);
+        for (int k = 0; k < w->pairs; k++)
+            e += 0x1p-50 * fabs(next->bow[i][k]);
         e += 4.0 * q->fuzz * (q->reach[0] + q->reach[1] + w->h[i] + w->h[2])
              + 0x1p-50 * o->reach[i];
         e += is_first ? o->rest[i] : i0 * o->force[0] + i1 * o->force[1];

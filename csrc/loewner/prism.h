@@ -27,17 +27,19 @@
 
 #include "loewner.h"
 
-enum { WAVES = 3, COLUMNS = 5, MAX_POINTS = 4000, ORIGIN = MAX_POINTS };
+enum { WAVES = 3, COLUMNS = 5, PAIRS = 15, MAX_POINTS = 4000, ORIGIN = MAX_POINTS };
 
 /* One point of the orbit of the prism's centre, and all that is known of its neighbours. */
 typedef struct {
     double x[2], turns[2];              /* x modulo 2 pi; turns taken off when it was reached */
     double missed[2];                   /* by the step from here: a bound of |E| at the centre */
     double column[2][COLUMNS];          /* v0, v1, then the parameters */
+    double bow[2][PAIRS];               /* T: the coefficients of e_k e_l, k <= l, see pairs.h */
     double rest[2], force[2];           /* r and f: bounds */
     double d[3];                        /* the factor: d00, d01, d11 */
     double sine[WAVES], cosine[WAVES];
     double reach[WAVES];                /* rho: |D0|, |D1|, |D0 + D1| */
+    double straight[WAVES], off[WAVES]; /* a: what the columns make of it; what r does */
     double beta[3];                     /* beta00, beta01, beta11 */
     double far;                         /* how large a rounded angle is */
     double fuzz;                        /* how far p sin, p cos and entries of beta may be off */
@@ -49,7 +51,7 @@ struct loewner {
     /* the problem */
     double centre[COLUMNS], half[COLUMNS], slack[COLUMNS];      /* v0, v1, a, b, c */
     double xstar[2], xstar_err[2], corner[8];                   /* bounds B at the corners */
-    int together, columns;
+    int together, columns, pairs;
     /* the prism at hand */
     double p[WAVES], h[WAVES], loose[WAVES];    /* p +- h moves with a column, loose by itself */
     double v[2], width[2], l;

@@ -6,7 +6,7 @@
 #include "numbers/sine.h"
 
 enum { FINEST = 46 };                   /* cuts along one axis: then doubles run out */
-enum { PATIENCE = 12 };                 /* tries follow each other by a twelfth of the orbit */
+enum { PATIENCE = 6 };                 /* tries follow each other by a twelfth of the orbit */
 
 /* ---- one prism */
 
@@ -256,6 +256,7 @@ loewner *loewner_new(const box *root, int together, unit *quick)
     }
     w->together = together;
     w->columns = together ? 3 : 5;
+    w->pairs = w->columns * (w->columns + 1) / 2;
     for (int corner = 0; corner < (together ? 2 : 8); corner++) {
         double p[3];
         for (int k = 0; k < 3; k++) {
