@@ -1,8 +1,9 @@
 /* orbit.c - the orbits of a prism, enclosed.
 
    Let x[j] be the orbit of the prism's centre, as doubles have it, and x[j] + D[j] any true one.
-   D[j] = L[j] e + r[j], e in the unit cube, the columns L as the linearized map carries them, the
-   rest r bounded by two first-order recursions that follow the factors of the linearized map,
+   D[j] = L[j] e + T[j][e, e] + r[j], e in the unit cube: the columns L as the linearized map
+   carries them, the bow T as it carries a quadratic form that each wave bends further, and the rest
+   r bounded by two first-order recursions that follow the factors of the linearized map,
    r[j+1] = d[j] r[j] + f[j], f[j] = f[j-1]/d[j-1] + e[j], d[j] = beta - 1/d[j-1], which grow as the
    orbits do and not as absolute values would.  The reach rho bounds |D[j]| along each wave. */
 #include <string.h>
@@ -14,56 +15,100 @@ static const double TWO_PI = 0x1.921fb54442d18p+2;      /* less than 2^-51 below
 static const double FAR = 1e5;          /* turns in one step after which orbits end */
 static const double WIDEN = 1.0 + 0x1p-43;
 
-/* The sines at q->x; what follows from them and from the columns and the rest.
+/* How far the columns and the bow reach along each wave: sums of at most 15 positive terms. */
+static void measure(const loewner *w, point *q)
+{
+    const int pairs = pair(w->columns, w->columns, w->columns);
+
+    for (int i = 0; i < WAVES; i++) {
+        double sum = 0.0;
+        for (int k = 0; k < w->columns; k++)
+            sum += fabs(felt(i, q->column[0][k], q->column[1][k]));
+        q->straight[i] = sum * WIDEN;
+        sum = 0.0;
+        for (int kl = 0; kl < pairs; kl++)
+            sum += fabs(felt(i, q->bow[0][kl], q->bow[1][kl]));
+        q->bowed[i] = sum * WIDEN;
+    }
+}
+
+/* The sines at q->x, and what follows from them; the reaches, of what was measured and the rest.
 
    Sines and cosines are off by SINE_ERROR = 4 u, those of a rounded sum by u far more, and products
    with p by u: p sin and p cos are off by (5 + far) u |p|.  An entry of beta, a sum of two and an
    integer, is rounded twice more, and off by u (4 + 7 |p0| + (6 + far) |p2|) at most; fuzz is
-   16 u (1 + sizes)(1 + far).  Reaches are sums of at most 8 positive terms. */
+   16 u (1 + sizes)(1 + far). */
 static void finish(const loewner *w, point *q)
 {
     const double y[WAVES] = { q->x[0], q->x[1], q->x[0] + q->x[1] };
-    double sum[WAVES] = { 0, 0, 0 }, bow[WAVES] = { 0, 0, 0 }, c_sin;
+    double c_sin;
 
     q->far = size(w, 2) > 0.0 ? fabs(q->x[0]) + fabs(q->x[1]) : 0.0;
-    for (int j = 0; j < WAVES; j++)
-        double_sincos(&q->sine[j], &q->cosine[j], y[j]);
+    for (int i = 0; i < WAVES; i++)
+        double_sincos(&q->sine[i], &q->cosine[i], y[i]);
     c_sin = w->p[2] * q->sine[2];
     q->beta[0] = 2.0 - w->p[0] * q->sine[0] - c_sin;
     q->beta[1] = -c_sin;
     q->beta[2] = 2.0 - w->p[1] * q->sine[1] - c_sin;
     q->fuzz = 0x1p-49 * (1.0 + size(w, 0) + size(w, 1) + size(w, 2)) * (1.0 + q->far);
-    for (int k = 0; k < w->columns; k++) {
-        sum[0] += fabs(q->column[0][k]);
-        sum[1] += fabs(q->column[1][k]);
-        sum[2] += fabs(q->column[0][k] + q->column[1][k]);
-    }
-    for (int k = 0; k < w->pairs; k++) {
-        bow[0] += fabs(q->bow[0][k]);
-        bow[1] += fabs(q->bow[1][k]);
-        bow[2] += fabs(q->bow[0][k] + q->bow[1][k]);
-    }
-    for (int j = 0; j < WAVES; j++) {
-        q->straight[j] = sum[j] * WIDEN;
-        q->off[j] = (bow[j] + (j < 2 ? q->rest[j] : q->rest[0] + q->rest[1])) * WIDEN;
-        q->reach[j] = (sum[j] + q->off[j]) * WIDEN;
+    for (int i = 0; i < WAVES; i++) {
+        q->off[i] = (q->bowed[i] + felt(i, q->rest[0], q->rest[1])) * WIDEN;
+        q->reach[i] = (q->straight[i] + q->off[i]) * WIDEN;
     }
 }
 
-/* How far a wave p cos(y + d) may be from p cos y - p d sin y + h e cos y, e in [-1, 1] the symbol
-   of the parameter: (|p| + h + loose)(|cos y| d^2/2 + |sin y d^3|/6) + (h + loose) |sin y d|
-   + loose |cos y|.  Sines are off by (4 + far) u, and the dozen roundings are relative: 2^-40 is
-   a thousand times as much as either needs. */
+/* How far a wave p' cos(y + z), p' = p + h e + w, may be from what L and T make of it,
+   p cos y - p (z sin y + (c.e)^2/2 cos y) + h e (cos y - (c.e) sin y), where z = c.e and what is
+   off it, |c.e| <= a, |z - c.e| <= b, |z| <= rho, |w| <= loose:
+       |p| (|cos y| (b (2a + b)/2 + rho^4/24) + |sin y| rho^3/6)
+       + h (|cos y| rho^2/2 + |sin y| (b + rho^3/6)) + loose.
+   Sines are off by (4 + far) u, and the dozen roundings are relative: 2^-40 is a thousand times as
+   much as either needs. */
 static double bend(const loewner *w, const point *q, int wave)
 {
-    const double rho = q->reach[wave], a = q->straight[wave], b = q->off[wave];
+    const double a = q->straight[wave], b = q->off[wave], rho = q->reach[wave];
     const double off = 0x1p-40 * (1.0 + q->far);
     const double c = fabs(q->cosine[wave]) + off, s = fabs(q->sine[wave]) + off;
-    const double h = w->h[wave], loose = w->loose[wave], cube = rho * rho * rho * (1.0 / 6.0);
+    const double half_square = 0.5 * rho * rho, cube = rho * half_square * (1.0 / 3.0);
 
-    return (fabs(w->p[wave]) * (c * (b * (2.0 * a + b) + rho * cube * 0.5) * 0.5 + s * cube)
-            + (h + loose) * (c * rho * rho * 0.5 + s * cube)
-            + h * s * b + loose * (s * rho + c));
+    return fabs(w->p[wave]) * (c * (b * (a + 0.5 * b) + 0.25 * rho * cube) + s * cube)
+           + w->h[wave] * (c * half_square + s * (b + cube)) + w->loose[wave]
+           + size(w, wave) * off * rho * (1.0 + rho);
+}
+
+/* The columns and the bow of next, the point after q, seen from o before it: the linearized map of
+   both, and what the waves add to them,
+       h e cos y  and  -p (c.e)^2/2 cos y - h e (c.e) sin y. */
+INLINE void carry(const loewner *w, point *next, const point *q, const point *o, int columns)
+{
+    const int pairs = pair(columns, columns, columns);
+    double source[WAVES][PAIRS];
+
+    for (int i = 0; i < WAVES; i++) {
+        const double g = w->p[i] * q->cosine[i], hs = w->h[i] * q->sine[i];
+        const int e = w->symbol[i];
+        double c[COLUMNS];
+        for (int k = 0; k < columns; k++)
+            c[k] = felt(i, q->column[0][k], q->column[1][k]);
+        for (int k = 0, kl = 0; k < columns; k++) {
+            source[i][kl++] = -0.5 * g * (c[k] * c[k]);
+            for (int l = k + 1; l < columns; l++)
+                source[i][kl++] = -g * (c[k] * c[l]);
+        }
+        if (hs != 0.0)
+            for (int k = 0; k < columns; k++)
+                source[i][k < e ? pair(columns, k, e) : pair(columns, e, k)] -= hs * c[k];
+    }
+    for (int i = 0; i < 2; i++) {
+        const double b0 = q->beta[i], b1 = q->beta[i + 1];
+        for (int k = 0; k < columns; k++)
+            next->column[i][k] = b0 * q->column[0][k] + b1 * q->column[1][k] - o->column[i][k];
+        next->column[i][w->symbol[i]] += w->h[i] * q->cosine[i];
+        next->column[i][w->symbol[2]] += w->h[2] * q->cosine[2];
+        for (int kl = 0; kl < pairs; kl++)
+            next->bow[i][kl] = b0 * q->bow[0][kl] + b1 * q->bow[1][kl] - o->bow[i][kl]
+                               + (source[i][kl] + source[2][kl]);
+    }
 }
 
 /* next = the point after q, seen from o before it; time may run either way.  The factor begins
@@ -81,43 +126,26 @@ static double bend(const loewner *w, const point *q, int wave)
    8 (1 + condition). */
 static int step(const loewner *w, point *next, point *q, const point *o, int is_first)
 {
-    double source[WAVES][PAIRS], g[WAVES], bent[WAVES], inverse[3] = { 0, 0, 0 }, rounded = 0.0, rest_sum;
+    double g[WAVES], bent[WAVES], inverse[3] = { 0, 0, 0 }, rounded = 0.0, rest_sum, reach;
 
     for (int j = 0; j < WAVES; j++) {
         g[j] = w->p[j] * q->cosine[j];
         bent[j] = bend(w, q, j);
     }
     for (int i = 0; i < 2; i++) {
-        const double b0 = q->beta[i], b1 = q->beta[i + 1];
         const double before = o->x[i] - q->turns[i] * TWO_PI;
         const double x = (2.0 * q->x[i] - before) + (g[i] + g[2]);
         next->turns[i] = floor(x / TWO_PI + 0.5);
         next->x[i] = x - next->turns[i] * TWO_PI;
         q->missed[i] = 0x1p-50 * (fabs(q->x[i]) + fabs(o->x[i]) + fabs(before) + fabs(x)) + q->fuzz;
-        for (int k = 0; k < w->columns; k++)
-            next->column[i][k] = b0 * q->column[0][k] + b1 * q->column[1][k] - o->column[i][k];
     }
-    for (int i = 0; i < 2; i++) {
-        next->column[i][w->together ? 2 : 2 + i] += w->h[i] * q->cosine[i];
-        next->column[i][w->together ? 2 : 4] += w->h[2] * q->cosine[2];
+    switch (w->columns) {               /* each count of its own: the compiler unrolls */
+    case 2: carry(w, next, q, o, 2); break;
+    case 3: carry(w, next, q, o, 3); break;
+    case 4: carry(w, next, q, o, 4); break;
+    default: carry(w, next, q, o, 5);
     }
-    for (int j = 0; j < WAVES; j++) {
-        double c[COLUMNS];
-        const int t = w->together ? 2 : 2 + j;
-        for (int k = 0; k < w->columns; k++)
-            c[k] = j < 2 ? q->column[j][k] : q->column[0][k] + q->column[1][k];
-        for (int k = 0, kl = 0; k < w->columns; k++)
-            for (int l = k; l < w->columns; l++, kl++) {
-                source[j][kl] = -(k == l ? 0.5 : 1.0) * g[j] * c[k] * c[l];
-                if (l == t || k == t)
-                    source[j][kl] -= w->h[j] * q->sine[j] * c[l == t ? k : l];
-            }
-    }
-    for (int i = 0; i < 2; i++)
-        for (int kl = 0; kl < w->pairs; kl++)
-            next->bow[i][kl] = q->beta[i] * q->bow[0][kl] + q->beta[i + 1] * q->bow[1][kl]
-                             - o->bow[i][kl] + (source[i][kl] + source[2][kl]);
-
+    measure(w, next);
     if (!is_first) {
         const double *d = o->d, det = d[0] * d[2] - d[1] * d[1];
         const double condition = (fabs(d[0] * d[2]) + d[1] * d[1]) / det;
@@ -129,17 +157,14 @@ static int step(const loewner *w, point *next, point *q, const point *o, int is_
         rounded = 0x1p-50 * (inverse[0] + inverse[2]) * (1.0 + condition);
     }
     rest_sum = q->rest[0] + q->rest[1];
+    reach = q->reach[0] + q->reach[1];
     for (int i = 0; i < 2; i++) {
         const double i0 = fabs(inverse[i]) + rounded, i1 = fabs(inverse[i + 1]) + rounded;
         double e = bent[i] + bent[2];
 
         e += q->missed[i];
-        for (int k = 0; k < w->columns; k++)
-            e += 0x1p-50 * fabs(next->column[i][k]);
-        for (int k = 0; k < w->pairs; k++)
-            e += 0x1p-50 * fabs(next->bow[i][k]);
-        e += 4.0 * q->fuzz * (q->reach[0] + q->reach[1] + w->h[i] + w->h[2])
-             + 0x1p-50 * o->reach[i];
+        e += 4.0 * q->fuzz * (reach + w->h[i] + w->h[2]);
+        e += 0x1p-50 * (next->straight[i] + next->bowed[i] + o->reach[i]);
         e += is_first ? o->rest[i] : i0 * o->force[0] + i1 * o->force[1];
         q->force[i] = (e + (2.0 * q->fuzz + rounded) * rest_sum) * WIDEN;
     }
@@ -174,6 +199,7 @@ void orbit_begin(loewner *w)
         origin[1].x[i] = w->v[i];
         origin[1].column[i][i] = w->width[i];
     }
+    measure(w, origin + 1);
     finish(w, origin);
     finish(w, origin + 1);
     w->first = ORIGIN;

@@ -6,7 +6,12 @@
 #include "numbers/sine.h"
 
 enum { FINEST = 46 };                   /* cuts along one axis: then doubles run out */
-enum { PATIENCE = 6 };                 /* tries follow each other by a twelfth of the orbit */
+#ifndef PATIENCE
+#define PATIENCE 6
+#endif
+#ifndef BACK
+#define BACK 2
+#endif
 
 /* ---- one prism */
 
@@ -89,6 +94,7 @@ static int may_cut(const loewner *w, const cv_cell *cell, int axis)
 
 void loewner_try(loewner *w, const cv_cell *cell, verdict *v, int *axis, int *from)
 {
+    double best = HUGE_VAL; (void)best;
     int points = 0, next = cell->from, contradicted = 0, worst = 0, why;
 
     memset(v, 0, sizeof *v);
@@ -104,6 +110,10 @@ void loewner_try(loewner *w, const cv_cell *cell, verdict *v, int *axis, int *fr
             if (attempt(w, v)) {
                 if (v->no_tori)
                     return;
+#ifdef EARLY
+                if (w->bound > EARLY * best) break;
+                best = w->bound < best ? w->bound : best;
+#endif
                 if (!contradicted)
                     contradicted = points;
             }
@@ -111,7 +121,9 @@ void loewner_try(loewner *w, const cv_cell *cell, verdict *v, int *axis, int *fr
         }
     }
     v->nsteps = points;
-    if (!contradicted) {                /* blame whoever is widest at the ends */
+    if (contradicted)
+        bound_blame(w);
+    else {                /* blame whoever is widest at the ends */
         v->reason = why;
         contradicted = points;
         for (int k = 0; k < w->columns; k++) {
@@ -125,11 +137,11 @@ void loewner_try(loewner *w, const cv_cell *cell, verdict *v, int *axis, int *fr
     for (int k = 1; k < w->columns; k++)
         if (w->share[k] > w->share[worst])
             worst = k;
-    if (may_cut(w, cell, worst))
-        *axis = worst;
+    if (may_cut(w, cell, w->axis[worst]))
+        *axis = w->axis[worst];
     else if (v->reason == CV_REASON_TOO_BIG)
         v->reason = CV_REASON_ARITHMETIC;
-    *from = contradicted > 3 ? contradicted - 2 : 0;
+    *from = contradicted > 3 ? contradicted - BACK : 0;
 }
 
 /* ---- for tests */
@@ -184,7 +196,10 @@ void loewner_look(const loewner *w, int n, loewner_point *p)
     const point *q = w->orbit + ORIGIN + n;
 
     memcpy(p->x, q->x, sizeof p->x);
-    memcpy(p->column, q->column, sizeof p->column);
+    memset(p->column, 0, sizeof p->column);
+    for (int i = 0; i < 2; i++)
+        for (int k = 0; k < w->columns; k++)
+            p->column[i][w->axis[k]] = q->column[i][k];
     memcpy(p->rest, q->rest, sizeof p->rest);
     memcpy(p->reach, q->reach, sizeof p->reach);
     memcpy(p->missed, q->missed, sizeof p->missed);
@@ -255,8 +270,14 @@ loewner *loewner_new(const box *root, int together, unit *quick)
         w->xstar_err[i] = 0x1p-49 * fabs(w->xstar[i]);
     }
     w->together = together;
-    w->columns = together ? 3 : 5;
-    w->pairs = w->columns * (w->columns + 1) / 2;
+    w->columns = 2;
+    w->axis[1] = 1;
+    for (int i = 0; i < WAVES; i++)     /* what does not move needs no symbol */
+        if (w->half[2 + i] > 0.0) {
+            if (!together || w->columns == 2)
+                w->axis[w->columns++] = together ? 2 : 2 + i;
+            w->symbol[i] = w->columns - 1;
+        }
     for (int corner = 0; corner < (together ? 2 : 8); corner++) {
         double p[3];
         for (int k = 0; k < 3; k++) {
