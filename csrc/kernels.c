@@ -192,7 +192,7 @@ static int loewner_kernel(const char *name, long dp, int nin, apm_t in[], int no
         break;
     default:
         good = loewner_follow(w, (int)more[0], (int)more[1]);
-        y[3] = good ? loewner_bound(w, &y[0], &y[1], &y[4], &first, n, SITES) : 0;
+        y[3] = good ? loewner_bound(w, 1, &y[0], &y[1], &y[4], &first, n, SITES) : 0;
         y[2] = first;
         memcpy(y + 5, n, sizeof n);
         for (int j = 0; j < SHOWN && which == ALL; j++) {

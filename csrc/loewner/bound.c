@@ -7,21 +7,26 @@
        mu[j-1] = gradient of n[j].beta(x[j])n[j] + beta(x[j])mu[j] - mu[j+1]  from the future,  (2)
 
    and likewise from the past, all terms linear in the D[j] cancel, except those in D[0] and D[1],
-   which are the prism itself.  What is left of each wave, of weight omega = (n.u)^2 and with
-   m = mu.u, A = m cos y - omega sin y, B = -omega cos y - m sin y, is
+   which are the prism itself.  (2) is an identity in exact arithmetic; in doubles what is left of
+   it is multiplied by |D[j]| and added.  What is left of each wave, of weight omega = (n.u)^2 and
+   with m = mu.u, A = m cos y - omega sin y, B = -omega cos y - m sin y, z = u.D, is
 
-       p (A (cos d - 1) + B (sin d - d)),   |d| <= rho,                                        (3)
+       p (A (cos z - 1) + B (sin z - z)) + (p' - p)(A cos z + B sin z),   p' = p + h e + w.      (3)
 
-   and at most max(0, -pA) rho^2/2 + |pB| rho^3/6; where the parameter is p + w, w A, which is
-   summed over the orbit before it is bounded, and w (A (cos d - 1) + B sin d).  (2) is an identity
-   in exact arithmetic; in doubles what is left of it is multiplied by |D[j]| and added. */
+   Of that, with z = c.e + T + r and Taylor's series, there is in the symbols
+
+       linear     h e A
+       quadratic  -pA (c.e)^2/2 + h e B (c.e)
+       cubic      -pA (c.e) T - pB (c.e)^3/6 + h e (B T - A (c.e)^2/2)                          (4)
+
+   with signs, and summed over the orbit before it is bounded.  With a >= |c.e|, b >= |T| + |r|,
+   rho >= |z| the rest is at most
+
+       |p| (|A| (a |r| + (pA > 0 ? rho^4/24 : b^2/2)) + |B| (b (3a^2 + 3ab + b^2)/6 + rho^5/120))
+       + h (|A| (b (2a + b)/2 + rho^4/24) + |B| (|r| + rho^3/6)) + loose (|A| + |B| rho).       (5) */
 #include <string.h>
 
 #include "prism.h"
-
-#ifndef SHARE_REST
-#define SHARE_REST 1.0
-#endif
 
 /* The multipliers, by (2): zero outside, and from either end up to the sites 0 and 1. */
 static void set_multipliers(loewner *w)
@@ -47,25 +52,28 @@ static void set_multipliers(loewner *w)
 }
 
 
+/* What a pass over the orbit sums, besides the coefficients. */
 typedef struct { double centre, mass, rest, cubes, rounding, far; } sums;
 
-/* The remainder of a wave. */
-static inline double remainder_of(const loewner *w, const point *q, int i)
+/* (5), of one wave. */
+INLINE double remainder_of(const loewner *w, const point *q, int i)
 {
     const double p = w->p[i], h = w->h[i], A = fabs(q->A[i]), B = fabs(q->B[i]);
     const double a = q->straight[i], b = q->off[i], r = felt(i, q->rest[0], q->rest[1]);
     const double rho = q->reach[i], half_square = 0.5 * rho * rho;
     const double fourth = half_square * half_square * (1.0 / 6.0);
 
-    return fabs(p) * (A * a * r + (p * q->A[i] > 0.0 ? A * fourth : A * 0.5 * b * b)
-                      + B * (b * (a * (a + b) * 0.5 + b * b * (1.0 / 6.0)) + 0.2 * rho * fourth))
+    return fabs(p) * (A * (a * r + (p * q->A[i] > 0.0 ? fourth : 0.5 * b * b))
+                      + B * (b * (0.5 * a * (a + b) + b * b * (1.0 / 6.0)) + 0.2 * rho * fourth))
            + h * (A * (b * (a + 0.5 * b) + fourth) + B * (r + rho * half_square * (1.0 / 3.0)))
            + w->loose[i] * (A + B * rho);
 }
 
+/* Constant, linear and quadratic part, and what is bounded by absolute values; `cubes` is the cubic
+   part if it is, too. */
 INLINE void sum_up(loewner *w, sums *t, int columns)
 {
-    double along[WAVES] = { 0, 0, 0 };
+    double along[WAVES] = { 0, 0, 0 }, tails;
 
     for (int j = w->from; j <= w->until; j++) {
         point *q = w->orbit + j;
@@ -84,34 +92,31 @@ INLINE void sum_up(loewner *w, sums *t, int columns)
         t->far = larger(t->far, q->far);
         for (int i = 0; i < WAVES; i++) {
             const double s = q->sine[i], co = q->cosine[i], p = w->p[i], h = w->h[i];
-            const double a = q->straight[i], rho = q->reach[i];
-            const double weight = omega[i] + fabs(m[i]) + TINY;
             const double A = m[i] * co - omega[i] * s, B = -omega[i] * co - m[i] * s;
-            double c[COLUMNS];
+            const double a = q->straight[i], bow = q->bowed[i], weight = omega[i] + fabs(m[i]) + TINY;
+            const double wide = felt(i, q->reach[0], q->reach[1]);
+            double c[COLUMNS], f[COLUMNS];
 
-            if (size(w, i) == 0.0)
-                continue;
             q->A[i] = A;
             q->B[i] = B;
+            if (size(w, i) == 0.0)
+                continue;
             t->centre -= omega[i] * p * s;
-            t->mass += omega[i] * fabs(p)
-                       + weight * (size(w, i) * rho * rho + h + w->loose[i]) * (1.0 + rho) * square(1.0 + rho);
+            t->mass += omega[i] * fabs(p) + weight * (size(w, i) * wide * wide + h + w->loose[i])
+                                            * ((1.0 + wide) * square(1.0 + wide));
             t->rest += remainder_of(w, q, i);
-            t->cubes += fabs(p) * (fabs(A) * a * q->bowed[i] + fabs(B) * (1.0 / 6.0) * a * a * a)
-                        + h * (fabs(A) * 0.5 * a * a + fabs(B) * q->bowed[i]);
+            t->cubes += fabs(p) * a * (fabs(A) * bow + fabs(B) * a * a * (1.0 / 6.0))
+                        + h * (fabs(B) * bow + fabs(A) * 0.5 * a * a);
             along[i] += A;
-            for (int k = 0; k < columns; k++)
+            for (int k = 0; k < columns; k++) {
                 c[k] = felt(i, q->column[0][k], q->column[1][k]);
-            for (int k = 0, kl = 0; k < columns; k++) {
-                const double x = -p * A * c[k];
-                w->square[kl++] += 0.5 * x * c[k];
-                for (int l = k + 1; l < columns; l++)
-                    w->square[kl++] += x * c[l];
+                f[k] = -0.5 * p * A * c[k];
             }
-            if (h > 0.0) {
-                const int e = w->symbol[i];
-                for (int k = 0; k < columns; k++)
-                    w->square[k < e ? pair(columns, k, e) : pair(columns, e, k)] += h * B * c[k];
+            f[w->symbol[i]] += h * B;
+            for (int k = 0, kl = 0; k < columns; k++) {         /* (c.e) (f.e) */
+                w->square[kl++] += c[k] * f[k];
+                for (int l = k + 1; l < columns; l++)
+                    w->square[kl++] += c[k] * f[l] + c[l] * f[k];
             }
         }
         /* what (2) leaves, and what the centre's steps missed */
@@ -119,8 +124,8 @@ INLINE void sum_up(loewner *w, sums *t, int columns)
             const double before = q[-1].mu[i], after = q[1].mu[i];
             const double left = 4.0 * q->fuzz * weights + 0x1p-50 * (fabs(before) + fabs(after));
             if (j == ORIGIN || j == ORIGIN + 1) {
-                const double steep = (q->gradient[i] + q->beta[i] * mu0
-                                      + q->beta[i + 1] * mu1 - before - after);
+                const double steep = q->gradient[i] + q->beta[i] * mu0 + q->beta[i + 1] * mu1
+                                     - before - after;
                 t->mass += fabs(steep) * q->reach[i];
                 if (j == ORIGIN)
                     t->rest += fabs(steep) * q->reach[i];
@@ -134,31 +139,36 @@ INLINE void sum_up(loewner *w, sums *t, int columns)
     }
     for (int i = 0; i < WAVES; i++)
         w->slope[w->symbol[i]] += w->h[i] * along[i];
+    tails = w->l * (square(w->orbit[w->from].n[0]) + square(w->orbit[w->from].n[1])
+                    + square(w->orbit[w->to].n[0]) + square(w->orbit[w->to].n[1]));
+    t->centre -= tails;
+    t->mass += tails;
 }
 
+/* The cubic part of (4): cubic[m] at pair(k, l) is a coefficient of e_m e_k e_l, one of those that
+   make it up.  The third wave's c is the sum of the others'. */
 INLINE void sum_cubic(loewner *w, int columns)
 {
-    const int pairs = pair(columns, columns, columns);
+    const int pairs = columns * (columns + 1) / 2;
 
     for (int j = w->from; j <= w->until; j++) {
         const point *q = w->orbit + j;
         double form[WAVES][PAIRS];
         for (int i = 0; i < WAVES; i++) {
-            const double A = q->A[i], B = q->B[i], pA = w->p[i] * A, h = w->h[i];
-            const double third = w->p[i] * B * (1.0 / 3.0);
-            const int e = w->symbol[i];
-            double c[COLUMNS];
-
-            for (int k = 0; k < columns; k++)
-                c[k] = felt(i, q->column[0][k], q->column[1][k]);
-            for (int k = 0, kl = 0; k < columns; k++)
+            const double A = q->A[i], B = q->B[i], h = w->h[i];
+            const double pA = w->p[i] * A, third = w->p[i] * B * (1.0 / 3.0);
+            double *const moved = w->cubic[w->symbol[i]];
+            for (int k = 0, kl = 0; k < columns; k++) {
+                const double c = felt(i, q->column[0][k], q->column[1][k]);
                 for (int l = k; l < columns; l++, kl++) {
-                    const double cc = (k == l ? 0.5 : 1.0) * c[k] * c[l];
+                    const double half = l == k ? 0.5 : 1.0;     /* of (c.e)^2/2 */
+                    const double cc = half * c * felt(i, q->column[0][l], q->column[1][l]);
                     const double bow = felt(i, q->bow[0][kl], q->bow[1][kl]);
                     form[i][kl] = -pA * bow - third * cc;
                     if (h > 0.0)
-                        w->cubic[e][kl] += h * (B * bow - A * cc);
+                        moved[kl] += h * (B * bow - A * cc);
                 }
+            }
         }
         for (int m = 0; m < columns; m++)
             for (int kl = 0; kl < pairs; kl++)
@@ -167,88 +177,87 @@ INLINE void sum_cubic(loewner *w, int columns)
     }
 }
 
-/* At least the largest value over the cube of the part with signs. */
-INLINE double summit(const loewner *w, int columns, int cubic)
+/* At least the largest value over the cube of the part with signs; without its cubic terms if they
+   are not summed.  e_k^2 lies between 0 and 1, so its coefficient counts half, and half its absolute
+   value; that of e_k^2 e_l likewise with e_l, that of e_k^3 = 3/4 e_k + (4 e_k^3 - 3 e_k)/4 three
+   quarters, and a quarter.  What remains is linear in each symbol and largest at a corner, where it
+   is even + odd or even - odd. */
+INLINE double summit(const loewner *w, int columns, int with_cubic)
 {
-    double slope[COLUMNS], triple[COLUMNS][COLUMNS][COLUMNS], sum = 0.0, top = 0.0;
+    double slope[COLUMNS], triple[COLUMNS][COLUMNS][COLUMNS], sum = 0.0, top = -HUGE_VAL;
 
     for (int k = 0; k < columns; k++) {
         slope[k] = w->slope[k];
         sum += larger(0.0, w->square[pair(columns, k, k)]);
     }
-    for (int k = 0; k < columns && cubic; k++)
+    for (int k = 0; k < columns && with_cubic; k++)
         for (int l = 0; l < columns; l++) {
-            const int kk = pair(columns, k, k);
-            const int kl = l < k ? pair(columns, l, k) : pair(columns, k, l);
-            const double x = l == k ? 0.5 * w->cubic[k][kk] : w->cubic[k][kl] + w->cubic[l][kk];
-            slope[l] += (l == k ? 1.5 : 0.5) * x;       /* e_k^2 e_l */
-            sum += 0.5 * fabs(x);
+            const double *const linear = w->cubic[l], *const other = w->cubic[k];
+            const double x = linear[pair(columns, k, k)]
+                             + (l == k ? 0.0 : other[pair(columns, k, l)]);
+            slope[l] += (l == k ? 0.75 : 0.5) * x;
+            sum += (l == k ? 0.25 : 0.5) * fabs(x);
             for (int m = l + 1; m < columns && k < l; m++)
                 triple[k][l][m] = w->cubic[k][pair(columns, l, m)]
-                                  + w->cubic[l][pair(columns, k, m)] + w->cubic[m][kl];
+                                  + w->cubic[l][pair(columns, k, m)]
+                                  + w->cubic[m][pair(columns, k, l)];
         }
     for (int corner = 0; corner < 1 << (columns - 1); corner++) {
         double odd = 0.0, even = 0.0, sign[COLUMNS];
-        for (int k = 0; k < columns; k++) {
+        for (int k = 0; k < columns; k++)
             sign[k] = corner >> k & 1 ? -1.0 : 1.0;
-            odd += sign[k] * slope[k];
-        }
         for (int k = 0; k < columns; k++) {
-            double row = 0.0;
-            for (int l = k + 1; l < columns; l++)
-                row += sign[l] * w->square[pair(columns, k, l)];
-            even += sign[k] * row;
-            if (cubic) {
-                row = 0.0;
-                for (int l = k + 1; l < columns; l++)
-                    for (int m = l + 1; m < columns; m++)
-                        row += sign[l] * sign[m] * triple[k][l][m];
-                odd += sign[k] * row;
+            double mixed = 0.0, cubic = slope[k];
+            for (int l = k + 1; l < columns; l++) {
+                mixed += sign[l] * w->square[pair(columns, k, l)];
+                for (int m = l + 1; m < columns && with_cubic; m++)
+                    cubic += sign[l] * sign[m] * triple[k][l][m];
             }
+            even += sign[k] * mixed;
+            odd += sign[k] * cubic;
         }
-        top = larger(top, fabs(odd) + even);
+        top = larger(top, even + fabs(odd));
     }
     return sum + top;
 }
 
-INLINE void bound_it(loewner *w, int columns)
+INLINE void bound_with(loewner *w, int signs, int columns)
 {
-    sums t = { 0, 0, 0, 0, 0, 0 };
     const double each = 0x1p-47 * (double)(w->until - w->from + 2);
-    double tails, quadratic;
+    sums t = { 0, 0, 0, 0, 0, 0 };
+    double least, more;
 
     sum_up(w, &t, columns);
-    tails = w->l * (square(w->orbit[w->from].n[0]) + square(w->orbit[w->from].n[1])
-                    + square(w->orbit[w->to].n[0]) + square(w->orbit[w->to].n[1]));
-    t.centre -= tails;
-    t.mass += tails;
     t.rounding += t.mass * (each + 0x1p-49 * (1.0 + t.far));
     w->rounding = t.rounding * (1.0 + each);
-    quadratic = t.centre + summit(w, columns, 0) + (t.rest + w->rounding) * (1.0 + each);
-    w->bound = quadratic + t.cubes * (1.0 + each);
-    if (w->bound >= 0.0 && quadratic < 0.0) {
+    more = t.centre + (t.rest + w->rounding) * (1.0 + each);
+    least = more + summit(w, columns, 0);
+    w->bound = least + t.cubes * (1.0 + each);
+    if (signs || (least < 0.0 && w->bound >= 0.0)) {
         sum_cubic(w, columns);
-        w->bound = t.centre + summit(w, columns, 1) + (t.rest + w->rounding) * (1.0 + each);
+        w->bound = more + summit(w, columns, 1);
     }
     if (!(t.mass >= 1.0))
         w->bound = HUGE_VAL;
 }
 
-void bound_second_variation(loewner *w)
+void bound_second_variation(loewner *w, int signs)
 {
     set_multipliers(w);
     memset(w->slope, 0, sizeof w->slope);
     memset(w->square, 0, sizeof w->square);
     memset(w->cubic, 0, sizeof w->cubic);
     switch (w->columns) {
-    case 2: bound_it(w, 2); break;
-    case 3: bound_it(w, 3); break;
-    case 4: bound_it(w, 4); break;
-    default: bound_it(w, 5);
+    case 2: bound_with(w, signs, 2); break;
+    case 3: bound_with(w, signs, 3); break;
+    case 4: bound_with(w, signs, 4); break;
+    default: bound_with(w, signs, 5);
     }
 }
 
-void bound_blame(loewner *w)
+/* By how much, to first order, the bound falls with the width of each column: each term times its
+   degree in it.  The remainder is of fourth order, and shared like the reaches. */
+void bound_shares(loewner *w)
 {
     const int columns = w->columns;
 
@@ -256,9 +265,9 @@ void bound_blame(loewner *w)
         w->share[k] = fabs(w->slope[k]);
     for (int k = 0; k < columns; k++)
         for (int l = k; l < columns; l++) {
-            const double x = k == l ? larger(0.0, w->square[pair(columns, k, l)]) : fabs(w->square[pair(columns, k, l)]);
-            w->share[k] += x;
-            w->share[l] += x;
+            const double x = w->square[pair(columns, k, l)];
+            w->share[k] += l == k ? larger(0.0, x) : fabs(x);
+            w->share[l] += l == k ? larger(0.0, x) : fabs(x);
             for (int m = 0; m < columns; m++) {
                 const double y = fabs(w->cubic[m][pair(columns, k, l)]);
                 w->share[k] += y;
@@ -270,7 +279,7 @@ void bound_blame(loewner *w)
         const point *q = w->orbit + j;
         for (int i = 0; i < WAVES; i++)
             if (size(w, i) > 0.0 && q->reach[i] > 0.0) {
-                const double part = SHARE_REST * remainder_of(w, q, i) / q->reach[i];
+                const double part = 4.0 * remainder_of(w, q, i) / q->reach[i];
                 for (int k = 0; k < columns; k++)
                     w->share[k] += part * fabs(felt(i, q->column[0][k], q->column[1][k]));
             }

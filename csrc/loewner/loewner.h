@@ -37,11 +37,11 @@ int loewner_prism(loewner *w, const cv_cell *cell, loewner_cell *c);
 /* For tests: follows the root's prism from point s <= 0 to point t >= 0.  0: it cannot be done. */
 int loewner_follow(loewner *w, int s, int t);
 
-/* For tests: the bound of the second variation that this orbit gives, the l it was made with, how
-   much of it roundings are, and the vectors n from the first to the last site; their number, 0
-   without a witness. */
-int loewner_bound(loewner *w, double *bound, double *l, double *rounding, int *first, double n[][2],
-                  int most);
+/* For tests: the bound of the second variation that this orbit gives, with signs of cubic terms or
+   as it is, the l it was made with, how much of it roundings are, and the vectors n from the first
+   to the last site; their number, 0 without a witness. */
+int loewner_bound(loewner *w, int signs, double *bound, double *l, double *rounding, int *first,
+                  double n[][2], int most);
 
 /* For tests: what is known of point n of this orbit.  mu: after loewner_bound, and only where it
    is not zero. */

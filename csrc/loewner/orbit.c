@@ -18,7 +18,7 @@ static const double WIDEN = 1.0 + 0x1p-43;
 /* How far the columns and the bow reach along each wave: sums of at most 15 positive terms. */
 static void measure(const loewner *w, point *q)
 {
-    const int pairs = pair(w->columns, w->columns, w->columns);
+    const int pairs = w->columns * (w->columns + 1) / 2;
 
     for (int i = 0; i < WAVES; i++) {
         double sum = 0.0;
@@ -81,23 +81,22 @@ static double bend(const loewner *w, const point *q, int wave)
        h e cos y  and  -p (c.e)^2/2 cos y - h e (c.e) sin y. */
 INLINE void carry(const loewner *w, point *next, const point *q, const point *o, int columns)
 {
-    const int pairs = pair(columns, columns, columns);
+    const int pairs = columns * (columns + 1) / 2;
     double source[WAVES][PAIRS];
 
     for (int i = 0; i < WAVES; i++) {
-        const double g = w->p[i] * q->cosine[i], hs = w->h[i] * q->sine[i];
-        const int e = w->symbol[i];
-        double c[COLUMNS];
-        for (int k = 0; k < columns; k++)
+        const double half = 0.5 * w->p[i] * q->cosine[i];
+        double c[COLUMNS], f[COLUMNS];
+        for (int k = 0; k < columns; k++) {
             c[k] = felt(i, q->column[0][k], q->column[1][k]);
-        for (int k = 0, kl = 0; k < columns; k++) {
-            source[i][kl++] = -0.5 * g * (c[k] * c[k]);
-            for (int l = k + 1; l < columns; l++)
-                source[i][kl++] = -g * (c[k] * c[l]);
+            f[k] = -half * c[k];
         }
-        if (hs != 0.0)
-            for (int k = 0; k < columns; k++)
-                source[i][k < e ? pair(columns, k, e) : pair(columns, e, k)] -= hs * c[k];
+        f[w->symbol[i]] -= w->h[i] * q->sine[i];
+        for (int k = 0, kl = 0; k < columns; k++) {             /* (c.e) (f.e) */
+            source[i][kl++] = c[k] * f[k];
+            for (int l = k + 1; l < columns; l++)
+                source[i][kl++] = c[k] * f[l] + c[l] * f[k];
+        }
     }
     for (int i = 0; i < 2; i++) {
         const double b0 = q->beta[i], b1 = q->beta[i + 1];

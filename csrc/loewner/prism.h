@@ -59,7 +59,7 @@ struct loewner {
     double v[2], width[2], l;
     /* what bound.c finds */
     double slope[COLUMNS], square[PAIRS], cubic[COLUMNS][PAIRS];        /* Q's part with signs */
-    double bound, hope, rounding, share[COLUMNS];
+    double bound, rounding, share[COLUMNS];
     int first, last;                    /* of the orbit's points */
     int from, to, until;                /* n is zero before from and after to; until: see witness */
     point orbit[2 * MAX_POINTS + 1];
@@ -78,8 +78,11 @@ static inline double square(double x) { return x * x; }
 /* NaN if either is. */
 static inline double larger(double x, double y) { return x > y || isnan(x) ? x : y; }
 
-/* The place of e_k e_l, k <= l, among the products of the symbols, row by row. */
-static inline int pair(int columns, int k, int l) { return k * (2 * columns - k - 1) / 2 + l; }
+/* The place of e_k e_l among the products of the symbols, row by row with k <= l. */
+static inline int pair(int columns, int k, int l)
+{
+    return k <= l ? k * (2 * columns - k - 1) / 2 + l : l * (2 * columns - l - 1) / 2 + k;
+}
 
 /* What a wave feels, of x0, x1 along the coordinates. */
 static inline double felt(int wave, double x0, double x1)
@@ -112,9 +115,11 @@ int witness(loewner *w);
 
 /* bound.c */
 
-/* w->bound >= (1) over the whole prism, whatever n is; w->share[k]: how much of it each column is
-   to blame for; w->rounding: how much of it roundings are.  Needs a witness. */
-void bound_second_variation(loewner *w);
-void bound_blame(loewner *w);
+/* w->bound >= (1) over the whole prism, whatever n is; w->rounding: how much of it roundings are.
+   The cubic terms are bounded by absolute values unless their signs might make the bound negative,
+   or are asked for.  Needs a witness. */
+void bound_second_variation(loewner *w, int signs);
+/* w->share[k] after that: how much of the bound each column is to blame for. */
+void bound_shares(loewner *w);
 
 #endif

@@ -6,12 +6,7 @@
 #include "numbers/sine.h"
 
 enum { FINEST = 46 };                   /* cuts along one axis: then doubles run out */
-#ifndef PATIENCE
-#define PATIENCE 6
-#endif
-#ifndef BACK
-#define BACK 2
-#endif
+enum { PATIENCE = 8 };                  /* tries follow each other by an eighth of the orbit */
 
 /* ---- one prism */
 
@@ -68,12 +63,12 @@ static int set_prism(loewner *w, const cv_cell *cell)
 }
 
 /* Tries to prove the prism with the orbit as far as it is known.  Returns whether at least its
-   centre contradicts; then w->share says why the bound failed, if it did. */
+   centre contradicts; then the bound's shares say why it failed, if it did. */
 static int attempt(loewner *w, verdict *v)
 {
     if (!witness(w))
         return 0;
-    bound_second_variation(w);
+    bound_second_variation(w, 0);
     v->nsteps = w->to - w->from + 1;
     v->no_tori = w->bound < 0.0;
     v->reason = w->bound - 2.0 * w->rounding < 0.0 ? CV_REASON_ARITHMETIC : CV_REASON_TOO_BIG;
@@ -94,7 +89,6 @@ static int may_cut(const loewner *w, const cv_cell *cell, int axis)
 
 void loewner_try(loewner *w, const cv_cell *cell, verdict *v, int *axis, int *from)
 {
-    double best = HUGE_VAL; (void)best;
     int points = 0, next = cell->from, contradicted = 0, worst = 0, why;
 
     memset(v, 0, sizeof *v);
@@ -110,10 +104,6 @@ void loewner_try(loewner *w, const cv_cell *cell, verdict *v, int *axis, int *fr
             if (attempt(w, v)) {
                 if (v->no_tori)
                     return;
-#ifdef EARLY
-                if (w->bound > EARLY * best) break;
-                best = w->bound < best ? w->bound : best;
-#endif
                 if (!contradicted)
                     contradicted = points;
             }
@@ -121,9 +111,9 @@ void loewner_try(loewner *w, const cv_cell *cell, verdict *v, int *axis, int *fr
         }
     }
     v->nsteps = points;
-    if (contradicted)
-        bound_blame(w);
-    else {                /* blame whoever is widest at the ends */
+    if (contradicted) {
+        bound_shares(w);
+    } else {                            /* blame whoever is widest at the ends */
         v->reason = why;
         contradicted = points;
         for (int k = 0; k < w->columns; k++) {
@@ -141,7 +131,7 @@ void loewner_try(loewner *w, const cv_cell *cell, verdict *v, int *axis, int *fr
         *axis = w->axis[worst];
     else if (v->reason == CV_REASON_TOO_BIG)
         v->reason = CV_REASON_ARITHMETIC;
-    *from = contradicted > 3 ? contradicted - BACK : 0;
+    *from = contradicted > 3 ? contradicted - 2 : 0;
 }
 
 /* ---- for tests */
@@ -176,13 +166,13 @@ int loewner_follow(loewner *w, int s, int t)
     return 1;
 }
 
-int loewner_bound(loewner *w, double *bound, double *l, double *rounding, int *first, double n[][2],
-                  int most)
+int loewner_bound(loewner *w, int signs, double *bound, double *l, double *rounding, int *first,
+                  double n[][2], int most)
 {
     *l = w->l;
     if (!witness(w) || w->to - w->from >= most)
         return 0;
-    bound_second_variation(w);
+    bound_second_variation(w, signs);
     *bound = w->bound;
     *rounding = w->rounding;
     *first = w->from - ORIGIN;
