@@ -46,7 +46,8 @@ int loewner_bound(loewner *w, int signs, double *bound, double *l, double *round
 /* For tests: what is known of point n of this orbit.  mu: after loewner_bound, and only where it
    is not zero. */
 typedef struct {
-    double x[2], column[2][5], rest[2], reach[3];       /* the columns: x0's five, then x1's */
+    double x[2], column[2][5], bow[2][15], rest[2];     /* the columns: x0's five, then x1's */
+    double straight[3], bowed[3], off[3], reach[3];
     double missed[2], force[2], beta[3], d[3], fuzz, mu[2];
 } loewner_point;
 void loewner_look(const loewner *w, int n, loewner_point *p);

@@ -16,17 +16,15 @@ static const double FAR = 1e5;          /* turns in one step after which orbits 
 static const double WIDEN = 1.0 + 0x1p-43;
 
 /* How far the columns and the bow reach along each wave: sums of at most 15 positive terms. */
-static void measure(const loewner *w, point *q)
+INLINE void measure(point *q, int columns)
 {
-    const int pairs = w->columns * (w->columns + 1) / 2;
-
     for (int i = 0; i < WAVES; i++) {
         double sum = 0.0;
-        for (int k = 0; k < w->columns; k++)
+        for (int k = 0; k < columns; k++)
             sum += fabs(felt(i, q->column[0][k], q->column[1][k]));
         q->straight[i] = sum * WIDEN;
         sum = 0.0;
-        for (int kl = 0; kl < pairs; kl++)
+        for (int kl = 0; kl < columns * (columns + 1) / 2; kl++)
             sum += fabs(felt(i, q->bow[0][kl], q->bow[1][kl]));
         q->bowed[i] = sum * WIDEN;
     }
@@ -63,7 +61,8 @@ static void finish(const loewner *w, point *q)
        |p| (|cos y| (b (2a + b)/2 + rho^4/24) + |sin y| rho^3/6)
        + h (|cos y| rho^2/2 + |sin y| (b + rho^3/6)) + loose.
    Sines are off by (4 + far) u, and the dozen roundings are relative: 2^-40 is a thousand times as
-   much as either needs. */
+   much as either needs.  The last summand is for what T itself makes of the wave, which roundings
+   put off by (13 + far) u (|p| a^2/2 + h a). */
 static double bend(const loewner *w, const point *q, int wave)
 {
     const double a = q->straight[wave], b = q->off[wave], rho = q->reach[wave];
@@ -108,6 +107,7 @@ INLINE void carry(const loewner *w, point *next, const point *q, const point *o,
             next->bow[i][kl] = b0 * q->bow[0][kl] + b1 * q->bow[1][kl] - o->bow[i][kl]
                                + (source[i][kl] + source[2][kl]);
     }
+    measure(next, columns);
 }
 
 /* next = the point after q, seen from o before it; time may run either way.  The factor begins
@@ -118,7 +118,8 @@ INLINE void carry(const loewner *w, point *next, const point *q, const point *o,
    turn, 2 u |q| + 1.4 u |o| + 3.4 u |before| + 4.7 u |x| and what its waves are off: `missed` has
    8 u of each, and fuzz.
    The rest obeys r' = beta r - r(o) + e, where e is what the waves bend, what the step of the
-   centre missed, and the roundings of the columns.  Writing r' = d r + f and, from the last step,
+   centre missed, and the roundings of columns and bow, 3 u of them and 11/16 fuzz of those of q.
+   Writing r' = d r + f and, from the last step,
    r(o) = (r - f(o))/d(o), gives f = f(o)/d(o) + e + (beta - 1/d(o) - d) r, where the last bracket
    is rounding: of beta, below fuzz with that of the difference; of the inverse, whose determinant
    is off by 1 + condition units, 3 + condition units of its trace, where `rounded` has
@@ -144,7 +145,6 @@ static int step(const loewner *w, point *next, point *q, const point *o, int is_
     case 4: carry(w, next, q, o, 4); break;
     default: carry(w, next, q, o, 5);
     }
-    measure(w, next);
     if (!is_first) {
         const double *d = o->d, det = d[0] * d[2] - d[1] * d[1];
         const double condition = (fabs(d[0] * d[2]) + d[1] * d[1]) / det;
@@ -198,7 +198,7 @@ void orbit_begin(loewner *w)
         origin[1].x[i] = w->v[i];
         origin[1].column[i][i] = w->width[i];
     }
-    measure(w, origin + 1);
+    measure(origin + 1, w->columns);
     finish(w, origin);
     finish(w, origin + 1);
     w->first = ORIGIN;

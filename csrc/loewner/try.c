@@ -185,12 +185,18 @@ void loewner_look(const loewner *w, int n, loewner_point *p)
 {
     const point *q = w->orbit + ORIGIN + n;
 
+    memset(p, 0, sizeof *p);
     memcpy(p->x, q->x, sizeof p->x);
-    memset(p->column, 0, sizeof p->column);
     for (int i = 0; i < 2; i++)
-        for (int k = 0; k < w->columns; k++)
+        for (int k = 0, kl = 0; k < w->columns; k++) {
             p->column[i][w->axis[k]] = q->column[i][k];
+            for (int l = k; l < w->columns; l++)
+                p->bow[i][pair(COLUMNS, w->axis[k], w->axis[l])] = q->bow[i][kl++];
+        }
     memcpy(p->rest, q->rest, sizeof p->rest);
+    memcpy(p->straight, q->straight, sizeof p->straight);
+    memcpy(p->bowed, q->bowed, sizeof p->bowed);
+    memcpy(p->off, q->off, sizeof p->off);
     memcpy(p->reach, q->reach, sizeof p->reach);
     memcpy(p->missed, q->missed, sizeof p->missed);
     memcpy(p->force, q->force, sizeof p->force);
