@@ -117,8 +117,8 @@ static int follow_to(loewner *w, double n)
    c, v0, v1, x* and together (0 or 1).
    loewner_cell: ..., index and cuts of five axes -> centres and widths of v0, v1; p, h and loose
                  of a, b, c; l; B at the corners (together: at two), the lower end of a first
-   loewner_orbit: ..., n -> 2 coordinates, 2 rows of 5 columns, 2 bows of 15, 2 rests of point n, and
-                  for 3 waves the reach of columns, bows, all but the columns, and all
+   loewner_orbit: ..., n -> 2 coordinates, 2 rows of 5 columns, 2 bows of 15, 2 rests of point n,
+                  and for 3 waves the reach of columns, bows, all but the columns, and all
    loewner_bound: ..., s, t, signs -> bound, l, index of the first site, number of sites (0: no
                   witness), how much of the bound roundings are, the vectors n; for the orbit of
                   s..t.  signs: those of cubic terms count

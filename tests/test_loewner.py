@@ -131,14 +131,14 @@ def displacements(rng, cases):
 
 def test_orbits_stay_within_reach():
     followed = tight = bowed = 0
-    for prism, measured, bounds in displacements(rng_for("loewner orbits"), CASES):
+    for prism, measured, bounds in displacements(rng_for("loewner orbits"), CASES // 2):
         for row, bound in zip(measured, bounds):
             assert all(x <= y + 1e-35 for x, y in zip(row, bound)), prism   # mpmath rounds, too
         for i in range(2):
             followed += 1
             tight += bounds[0][i] <= 1e-10 or measured[0][i] > 0.02 * bounds[0][i]
             bowed += bounds[0][i] < 0.01 * measured[1][i]       # the bow tells what columns do not
-    assert followed > CASES // 2 and tight > 0.3 * followed and bowed > 0.02 * followed
+    assert followed > CASES // 4 and tight > 0.3 * followed and bowed > 0.02 * followed
 
 
 def second_variation(point, star, n, first, l, s, t):
@@ -178,12 +178,12 @@ def variations(rng, cases):
 def test_the_bound_holds():
     """The second variation with the core's vectors, along true orbits, is below its bound."""
     proved = seen = close = 0
-    for prism, bound, totals in variations(rng_for("loewner bound"), CASES // 3):
+    for prism, bound, totals in variations(rng_for("loewner bound"), CASES // 4):
         assert max(totals) <= bound, prism
         seen += 1
         proved += bound < 0
         close += bound - max(totals) < 0.1 * abs(max(totals))
-    assert seen > CASES // 60 and proved > seen // 10 and close > seen // 10
+    assert seen > CASES // 80 and proved > seen // 10 and close > seen // 10
 
 
 def quick_variation(point, star, n, first, l, s, t):
@@ -454,7 +454,7 @@ def step_margins(prism, q, o, following, is_first):
         yield "widen", total - following.rest[i] / WIDEN, total * (WIDEN - 1)
 
 
-def summit(terms):
+def cube_top(terms):
     """What bound.c makes of the largest value over the cube of a polynomial of the third degree, by
     its monomials: squares by what they lie between, the rest at the corners."""
     terms, total = dict(terms), 0
@@ -539,7 +539,7 @@ def bound_margins(prism, q, out):
                 exact += abs(m[i]) * missed(p, q[j], q[j - 1], q[j + 1], i)
                 sums += abs(m[i]) * missed(p, q[j], q[j - 1], q[j + 1], i)
                 claimed += abs(m[i]) * q[j].missed[i]
-    exact += summit(terms)
+    exact += cube_top(terms)
     mass *= 64 * UNIT * (until - first + 2) + 16 * UNIT * (1 + far)
     yield "sums", exact - sums - (bound - rounding), mass
     yield "rounding", claimed + mass, rounding

@@ -23,7 +23,7 @@
    rho >= |z| the rest is at most
 
        |p| (|A| (a |r| + (pA > 0 ? rho^4/24 : b^2/2)) + |B| (b (3a^2 + 3ab + b^2)/6 + rho^5/120))
-       + h (|A| (b (2a + b)/2 + rho^4/24) + |B| (|r| + rho^3/6)) + loose (|A| + |B| rho).       (5) */
+       + h (|A| (b (2a + b)/2 + rho^4/24) + |B| (|r| + rho^3/6)) + loose (|A| + |B| rho).     (5) */
 #include <string.h>
 
 #include "prism.h"
@@ -93,8 +93,9 @@ INLINE void sum_up(loewner *w, sums *t, int columns)
         for (int i = 0; i < WAVES; i++) {
             const double s = q->sine[i], co = q->cosine[i], p = w->p[i], h = w->h[i];
             const double A = m[i] * co - omega[i] * s, B = -omega[i] * co - m[i] * s;
-            const double a = q->straight[i], bow = q->bowed[i], weight = omega[i] + fabs(m[i]) + TINY;
+            const double a = q->straight[i], bow = q->bowed[i];
             const double wide = felt(i, q->reach[0], q->reach[1]);
+            const double weight = omega[i] + fabs(m[i]) + TINY;
             double c[COLUMNS], f[COLUMNS];
 
             q->A[i] = A;
@@ -178,10 +179,10 @@ INLINE void sum_cubic(loewner *w, int columns)
 }
 
 /* At least the largest value over the cube of the part with signs; without its cubic terms if they
-   are not summed.  e_k^2 lies between 0 and 1, so its coefficient counts half, and half its absolute
-   value; that of e_k^2 e_l likewise with e_l, that of e_k^3 = 3/4 e_k + (4 e_k^3 - 3 e_k)/4 three
-   quarters, and a quarter.  What remains is linear in each symbol and largest at a corner, where it
-   is even + odd or even - odd. */
+   are not summed.  e_k^2 lies between 0 and 1: half of its coefficient counts, and half of the
+   coefficient's size; that of e_k^2 e_l likewise with e_l, and of that of
+   e_k^3 = 3/4 e_k + (4 e_k^3 - 3 e_k)/4 three quarters, and a quarter.  What remains is linear in
+   each symbol and largest at a corner, where it is even + odd or even - odd. */
 INLINE double summit(const loewner *w, int columns, int with_cubic)
 {
     double slope[COLUMNS], triple[COLUMNS][COLUMNS][COLUMNS], sum = 0.0, top = -HUGE_VAL;
@@ -221,6 +222,17 @@ INLINE double summit(const loewner *w, int columns, int with_cubic)
     return sum + top;
 }
 
+/* The mass is the sum of the absolute values of all that is summed with signs, and of what A and B
+   are multiplied by anywhere, with omega + |m| in their place: with rho = a + b that is at most
+   |p| (e^rho - 1 - rho) + h e^rho + loose (1 + rho) to the fifth order in rho, of which
+   (size rho^2 + h + loose)(1 + rho)^3 is more; for the wave that both coordinates feel rho is the
+   sum of theirs, as its cubic form is shared out among them.  A and B are off by (9 + far) u of
+   omega + |m|, products of them by 12 u more.  At each of N sites at most 5 numbers are added to a
+   sum, and each addition rounds by u of the partial sums; summit and the last sums make 45 of them.
+   So all is off by (5 N + 57) u and (9 + far) u of the mass, where `each` is 64 (N + 1) u and
+   2^-49 (1 + far) is 16 (1 + far) u.  Positive sums are off by (5 N + 30) u of themselves, which
+   `each` covers, too.  (2) leaves at most 11 u (1 + sizes)(1 + far) of the weights and 2 u of the
+   neighbours' mu; `left` has 64 and 8. */
 INLINE void bound_with(loewner *w, int signs, int columns)
 {
     const double each = 0x1p-47 * (double)(w->until - w->from + 2);
