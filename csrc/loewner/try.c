@@ -7,6 +7,7 @@
 
 enum { FINEST = 46 };                   /* cuts along one axis: then doubles run out */
 enum { PATIENCE = 8 };                  /* tries follow each other by an eighth of the orbit */
+static const double HOPELESS = 2.0;     /* times the least bound yet: longer orbits will not do */
 
 /* ---- one prism */
 
@@ -90,6 +91,7 @@ static int may_cut(const loewner *w, const cv_cell *cell, int axis)
 void loewner_try(loewner *w, const cv_cell *cell, verdict *v, int *axis, int *from)
 {
     int points = 0, next = cell->from, contradicted = 0, worst = 0, why;
+    double least = HUGE_VAL;
 
     memset(v, 0, sizeof *v);
     v->reason = CV_REASON_ARITHMETIC;
@@ -106,6 +108,9 @@ void loewner_try(loewner *w, const cv_cell *cell, verdict *v, int *axis, int *fr
                     return;
                 if (!contradicted)
                     contradicted = points;
+                if (w->bound > HOPELESS * least)
+                    break;
+                least = w->bound < least ? w->bound : least;
             }
             next = points + 1 + points / PATIENCE;
         }
