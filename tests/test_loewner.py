@@ -208,9 +208,9 @@ def wide(rng):
     """A prism with sides long enough for the cubic terms to count, and not for what is left out."""
     size, side = rng.uniform(0.2, 1.0), 10.0 ** rng.uniform(-2.5, -1.2)
     centre = [size * rng.uniform(0.3, 1), size * rng.uniform(0.3, 1), rng.choice([0, size])]
-    half = [rng.choice([0, side * rng.uniform(0, 1)]) for _ in range(3)]
+    half = [rng.choice([0, 1, 1]) * side * rng.uniform(0, 1) for _ in range(3)]
     centre += [rng.uniform(-3.2, 3.2) for _ in range(2)]
-    half += [rng.choice([0, side * rng.uniform(0, 1)]) for _ in range(2)]
+    half += [rng.choice([0, 1, 1]) * side * rng.uniform(0, 1) for _ in range(2)]
     star = [rng.uniform(0.5, 2.5) for _ in range(2)]
     return [*map(Fraction, centre + half + star), Fraction(rng.random() < 0.5)]
 
@@ -472,8 +472,9 @@ def cube_top(terms):
                        for e in itertools.product((-1, 1), repeat=len(used)))
 
 
-def bound_margins(prism, q, out):
-    """Of the bound of the second variation, and of its part `rounding`, which is to hold them."""
+def bound_margins(prism, q, out, plain):
+    """Of the bound of the second variation, and of its part `rounding`, which is to hold them; and
+    of the bound without the signs of cubic terms."""
     p, h, loose, size, parameter = prism_of(prism)
     bound, l, first, count, rounding = out[:5]
     first, last = int(first), int(first + count) - 1
@@ -482,7 +483,7 @@ def bound_margins(prism, q, out):
     mu = {j: q[j].mu if first < j < until else none for j in range(first - 1, until + 2)}
     exact = -l * sum(x * x for x in (*n[first], *n[last]))
     mass, claimed, sums = -exact, 0, 0                  # sums: of exact, what they do not hold
-    terms = {}
+    terms, cubes = {}, 0
 
     def add(x, *key):
         if x:
@@ -510,6 +511,9 @@ def bound_margins(prism, q, out):
                 size[k] * wide ** 2 + h[k] + loose[k]) * (1 + wide) ** 3
             if not size[k]:
                 continue
+            bow = q[j].bowed[k]
+            cubes += abs(pA) * a * bow + abs(pB) * a ** 3 / 6 \
+                + h[k] * (abs(B) * bow + abs(A) * a ** 2 / 2)
             add(h[k] * A, e)
             for i in range(5):
                 add(h[k] * B * c[i], e, i)
@@ -539,9 +543,12 @@ def bound_margins(prism, q, out):
                 exact += abs(m[i]) * missed(p, q[j], q[j - 1], q[j + 1], i)
                 sums += abs(m[i]) * missed(p, q[j], q[j - 1], q[j + 1], i)
                 claimed += abs(m[i]) * q[j].missed[i]
+    squares = exact + cube_top({key: x for key, x in terms.items() if len(key) < 3})
     exact += cube_top(terms)
     mass *= 64 * UNIT * (until - first + 2) + 16 * UNIT * (1 + far)
     yield "sums", exact - sums - (bound - rounding), mass
+    if plain != bound:
+        yield "sums", squares + cubes - sums - (plain - rounding), mass
     yield "rounding", claimed + mass, rounding
     yield "bound", exact - (bound - rounding), rounding
 
@@ -556,8 +563,13 @@ def hard(rng):
         prism[4] = Fraction(rng.choice([1e-3, 1e-6]))
     elif kind == 1:
         prism[3:5] = Fraction(rng.uniform(-1e5, 1e5)), Fraction(rng.uniform(-1e5, 1e5))
+    elif kind == 2 and rng.random() < 0.5:
+        prism[2] = Fraction(0)
+        prism[10:12] = Fraction(rng.uniform(-1e5, 1e5)), Fraction(rng.uniform(-1e5, 1e5))
     if rng.random() < 0.5:
         prism[5:10] = [Fraction(rng.choice([0.0, 10.0 ** rng.uniform(-16, -1)])) for _ in range(5)]
+    if not prism[2]:
+        prism[7] = Fraction(0)              # no third wave: no angle is far
     return prism
 
 
@@ -566,6 +578,7 @@ def orbit_margins(rng, cases):
         prism, s, t = hard(rng), -rng.randrange(0, 6), rng.randrange(1, 7)
         try:
             out = [mp(x) for x in kernels.call("loewner_bound", [*prism, s, t, 1], BOUND, 20)]
+            plain = mp(kernels.call("loewner_bound", [*prism, s, t, 0], BOUND, 20)[0])
             q = sites(prism, s, t)
         except ArithmeticError:
             continue
@@ -582,7 +595,7 @@ def orbit_margins(rng, cases):
             if j - ahead in q and j + ahead in q:
                 yield from step_margins(prism, q[j], q[j - ahead], q[j + ahead], j in (0, 1))
         if out[3]:
-            yield from bound_margins(prism, q, out)
+            yield from bound_margins(prism, q, out, plain)
 
 
 def sine_margins(rng, cases):
