@@ -11,7 +11,7 @@
 #include "thesis/unit.h"
 #include "torus.h"
 
-enum { MAX_DP = 100000, MAX_IN = 64, MAX_OUT = 400 };
+enum { MAX_DP = 100000, MAX_IN = 64, MAX_OUT = 900 };
 
 /* The operations of apm.h and special.h, which stand below num_t.
    pi: -> pi          add, sub, mul: x, y -> r       cmp: x, y -> -1, 0 or 1
@@ -145,19 +145,21 @@ static int follow_to(loewner *w, double n)
    c, v0, v1, x* and together (0 or 1).
    loewner_cell: ..., index and cuts of five axes -> centres and widths of v0, v1; p, h and loose
                  of a, b, c; l; B at the corners (together: at two), the lower end of a first
-   loewner_orbit: ..., n -> 2 coordinates, 2 rows of 5 columns, 2 rests, 3 reaches of point n
-   loewner_bound: ..., s, t -> bound, l, index of the first site, number of sites (0: no witness),
-                  how much of the bound roundings are, the vectors n; for the orbit of s..t
+   loewner_orbit: ..., n -> 2 coordinates, 2 rows of 5 columns, 2 bows of 15, 2 rests of point n,
+                  and for 3 waves the reach of columns, bows, all but the columns, and all
+   loewner_bound: ..., s, t, signs -> bound, l, index of the first site, number of sites (0: no
+                  witness), how much of the bound roundings are, the vectors n; for the orbit of
+                  s..t.  signs: those of cubic terms count
    loewner_sites: ..., s, t -> of each point of that orbit, at most 13, what loewner_orbit tells,
                   and missed, force, beta, d, fuzz and mu
    loewner_step: ..., n, repeat -> the reaches of both coordinates of point n, ns per step */
 static int loewner_kernel(const char *name, int nin, apm_t in[], int nout, apm_t out[])
 {
-    enum { BOX = 13, POINT = 17, SITE = 30, SITES = 60, SHOWN = 13 };
+    enum { BOX = 13, POINT = 56, SITE = 69, SITES = 60, SHOWN = 13 };
     enum { CELL, ORBIT, BOUND, ALL, STEP, N_SHAPES };
     static const struct { const char *name; int nin, nout; } shapes[N_SHAPES] = {
         { "loewner_cell", BOX + 10, 22 }, { "loewner_orbit", BOX + 1, POINT },
-        { "loewner_bound", BOX + 2, 5 + 2 * SITES }, { "loewner_sites", BOX + 2, SITE * SHOWN },
+        { "loewner_bound", BOX + 3, 5 + 2 * SITES }, { "loewner_sites", BOX + 2, SITE * SHOWN },
         { "loewner_step", BOX + 2, 3 }
     };
     double x[MAX_IN], y[MAX_OUT] = { 0 }, n[SITES][2] = { { 0.0, 0.0 } };
@@ -216,7 +218,8 @@ static int loewner_kernel(const char *name, int nin, apm_t in[], int nout, apm_t
         break;
     default:
         good = loewner_follow(w, (int)more[0], (int)more[1]);
-        y[3] = good ? loewner_bound(w, &y[0], &y[1], &y[4], &first, n, SITES) : 0;
+        y[3] = good ? loewner_bound(w, which == ALL || more[2] != 0.0, &y[0], &y[1], &y[4], &first,
+                                     n, SITES) : 0;
         y[2] = first;
         memcpy(y + 5, n, sizeof n);
         for (int j = 0; j < SHOWN && which == ALL; j++) {

@@ -37,16 +37,17 @@ int loewner_prism(loewner *w, const cv_cell *cell, loewner_cell *c);
 /* For tests: follows the root's prism from point s <= 0 to point t >= 0.  0: it cannot be done. */
 int loewner_follow(loewner *w, int s, int t);
 
-/* For tests: the bound of the second variation that this orbit gives, the l it was made with, how
-   much of it roundings are, and the vectors n from the first to the last site; their number, 0
-   without a witness. */
-int loewner_bound(loewner *w, double *bound, double *l, double *rounding, int *first, double n[][2],
-                  int most);
+/* For tests: the bound of the second variation that this orbit gives, with signs of cubic terms or
+   as it is, the l it was made with, how much of it roundings are, and the vectors n from the first
+   to the last site; their number, 0 without a witness. */
+int loewner_bound(loewner *w, int signs, double *bound, double *l, double *rounding, int *first,
+                  double n[][2], int most);
 
 /* For tests: what is known of point n of this orbit.  mu: after loewner_bound, and only where it
    is not zero. */
 typedef struct {
-    double x[2], column[2][5], rest[2], reach[3];       /* the columns: x0's five, then x1's */
+    double x[2], column[2][5], bow[2][15], rest[2];     /* the columns: x0's five, then x1's */
+    double straight[3], bowed[3], off[3], reach[3];
     double missed[2], force[2], beta[3], d[3], fuzz, mu[2];
 } loewner_point;
 void loewner_look(const loewner *w, int n, loewner_point *p);

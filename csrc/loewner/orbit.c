@@ -1,8 +1,9 @@
 /* orbit.c - the orbits of a prism, enclosed.
 
    Let x[j] be the orbit of the prism's centre, as doubles have it, and x[j] + D[j] any true one.
-   D[j] = L[j] e + r[j], e in the unit cube, the columns L as the linearized map carries them, the
-   rest r bounded by two first-order recursions that follow the factors of the linearized map,
+   D[j] = L[j] e + T[j][e, e] + r[j], e in the unit cube: the columns L as the linearized map
+   carries them, the bow T as it carries a quadratic form that each wave bends further, and the rest
+   r bounded by two first-order recursions that follow the factors of the linearized map,
    r[j+1] = d[j] r[j] + f[j], f[j] = f[j-1]/d[j-1] + e[j], d[j] = beta - 1/d[j-1], which grow as the
    orbits do and not as absolute values would.  The reach rho bounds |D[j]| along each wave. */
 #include <string.h>
@@ -14,47 +15,99 @@ static const double TWO_PI = 0x1.921fb54442d18p+2;      /* less than 2^-51 below
 static const double FAR = 1e5;          /* turns in one step after which orbits end */
 static const double WIDEN = 1.0 + 0x1p-43;
 
-/* The sines at q->x; what follows from them and from the columns and the rest.
+/* How far the columns and the bow reach along each wave: sums of at most 15 positive terms. */
+INLINE void measure(point *q, int columns)
+{
+    for (int i = 0; i < WAVES; i++) {
+        double sum = 0.0;
+        for (int k = 0; k < columns; k++)
+            sum += fabs(felt(i, q->column[0][k], q->column[1][k]));
+        q->straight[i] = sum * WIDEN;
+        sum = 0.0;
+        for (int kl = 0; kl < columns * (columns + 1) / 2; kl++)
+            sum += fabs(felt(i, q->bow[0][kl], q->bow[1][kl]));
+        q->bowed[i] = sum * WIDEN;
+    }
+}
+
+/* The sines at q->x, and what follows from them; the reaches, of what was measured and the rest.
 
    Sines and cosines are off by SINE_ERROR = 4 u, those of a rounded sum by u far more, and products
    with p by u: p sin and p cos are off by (5 + far) u |p|.  An entry of beta, a sum of two and an
    integer, is rounded twice more, and off by u (4 + 7 |p0| + (6 + far) |p2|) at most; fuzz is
-   16 u (1 + sizes)(1 + far).  Reaches are sums of at most 8 positive terms. */
+   16 u (1 + sizes)(1 + far). */
 static void finish(const loewner *w, point *q)
 {
     const double y[WAVES] = { q->x[0], q->x[1], q->x[0] + q->x[1] };
-    double sum[WAVES] = { 0, 0, 0 }, c_sin;
+    double c_sin;
 
     q->far = size(w, 2) > 0.0 ? fabs(q->x[0]) + fabs(q->x[1]) : 0.0;
-    for (int j = 0; j < WAVES; j++)
-        double_sincos(&q->sine[j], &q->cosine[j], y[j]);
+    for (int i = 0; i < WAVES; i++)
+        double_sincos(&q->sine[i], &q->cosine[i], y[i]);
     c_sin = w->p[2] * q->sine[2];
     q->beta[0] = 2.0 - w->p[0] * q->sine[0] - c_sin;
     q->beta[1] = -c_sin;
     q->beta[2] = 2.0 - w->p[1] * q->sine[1] - c_sin;
     q->fuzz = 0x1p-49 * (1.0 + size(w, 0) + size(w, 1) + size(w, 2)) * (1.0 + q->far);
-    for (int k = 0; k < w->columns; k++) {
-        sum[0] += fabs(q->column[0][k]);
-        sum[1] += fabs(q->column[1][k]);
-        sum[2] += fabs(q->column[0][k] + q->column[1][k]);
+    for (int i = 0; i < WAVES; i++) {
+        q->off[i] = (q->bowed[i] + felt(i, q->rest[0], q->rest[1])) * WIDEN;
+        q->reach[i] = (q->straight[i] + q->off[i]) * WIDEN;
     }
-    q->reach[0] = (sum[0] + q->rest[0]) * WIDEN;
-    q->reach[1] = (sum[1] + q->rest[1]) * WIDEN;
-    q->reach[2] = (sum[2] + q->rest[0] + q->rest[1]) * WIDEN;
 }
 
-/* How far a wave p cos(y + d) may be from p cos y - p d sin y + h e cos y, e in [-1, 1] the symbol
-   of the parameter: (|p| + h + loose)(|cos y| d^2/2 + |sin y d^3|/6) + (h + loose) |sin y d|
-   + loose |cos y|.  Sines are off by (4 + far) u, and the dozen roundings are relative: 2^-40 is
-   a thousand times as much as either needs. */
+/* How far a wave p' cos(y + z), p' = p + h e + w, may be from what L and T make of it,
+   p cos y - p (z sin y + (c.e)^2/2 cos y) + h e (cos y - (c.e) sin y), where z = c.e and what is
+   off it, |c.e| <= a, |z - c.e| <= b, |z| <= rho, |w| <= loose:
+       |p| (|cos y| (b (2a + b)/2 + rho^4/24) + |sin y| rho^3/6)
+       + h (|cos y| rho^2/2 + |sin y| (b + rho^3/6)) + loose.
+   Sines are off by (4 + far) u, and the dozen roundings are relative: 2^-40 is a thousand times as
+   much as either needs.  The last summand is for what T itself makes of the wave, which roundings
+   put off by (13 + far) u (|p| a^2/2 + h a). */
 static double bend(const loewner *w, const point *q, int wave)
 {
-    const double rho = q->reach[wave];
+    const double a = q->straight[wave], b = q->off[wave], rho = q->reach[wave];
     const double off = 0x1p-40 * (1.0 + q->far);
     const double c = fabs(q->cosine[wave]) + off, s = fabs(q->sine[wave]) + off;
+    const double half_square = 0.5 * rho * rho, cube = rho * half_square * (1.0 / 3.0);
 
-    return size(w, wave) * rho * rho * (c * 0.5 + s * rho * (1.0 / 6.0)) +
-           (w->h[wave] + w->loose[wave]) * s * rho + w->loose[wave] * c;
+    return fabs(w->p[wave]) * (c * (b * (a + 0.5 * b) + 0.25 * rho * cube) + s * cube)
+           + w->h[wave] * (c * half_square + s * (b + cube)) + w->loose[wave]
+           + size(w, wave) * off * rho * (1.0 + rho);
+}
+
+/* The columns and the bow of next, the point after q, seen from o before it: the linearized map of
+   both, and what the waves add to them,
+       h e cos y  and  -p (c.e)^2/2 cos y - h e (c.e) sin y. */
+INLINE void carry(const loewner *w, point *next, const point *q, const point *o, int columns)
+{
+    const int pairs = columns * (columns + 1) / 2;
+    double source[WAVES][PAIRS];
+
+    for (int i = 0; i < WAVES; i++) {
+        const double half = 0.5 * w->p[i] * q->cosine[i];
+        double c[COLUMNS], f[COLUMNS];
+        for (int k = 0; k < columns; k++) {
+            c[k] = felt(i, q->column[0][k], q->column[1][k]);
+            f[k] = -half * c[k];
+        }
+        f[w->symbol[i]] -= w->h[i] * q->sine[i];
+        for (int k = 0, kl = 0; k < columns; k++) {             /* (c.e) (f.e) */
+            source[i][kl++] = c[k] * f[k];
+            for (int l = k + 1; l < columns; l++)
+                source[i][kl++] = c[k] * f[l] + c[l] * f[k];
+        }
+    }
+    for (int i = 0; i < 2; i++) {
+        const double b0 = q->beta[i], b1 = q->beta[i + 1];
+        for (int k = 0; k < columns; k++)
+            next->column[i][k] = b0 * q->column[0][k] + b1 * q->column[1][k] - o->column[i][k];
+        next->column[i][w->symbol[i]] += w->h[i] * q->cosine[i];
+        next->column[i][w->symbol[2]] += w->h[2] * q->cosine[2];
+        for (int kl = 0; kl < pairs; kl++)
+            next->bow[i][kl] = b0 * q->bow[0][kl] + b1 * q->bow[1][kl] - o->bow[i][kl]
+                               + (source[i][kl] + source[2][kl]);
+    }
+    measure(next, columns);
 }
 
 /* next = the point after q, seen from o before it; time may run either way.  The factor begins
@@ -65,34 +118,33 @@ static double bend(const loewner *w, const point *q, int wave)
    turn, 2 u |q| + 1.4 u |o| + 3.4 u |before| + 4.7 u |x| and what its waves are off: `missed` has
    8 u of each, and fuzz.
    The rest obeys r' = beta r - r(o) + e, where e is what the waves bend, what the step of the
-   centre missed, and the roundings of the columns.  Writing r' = d r + f and, from the last step,
+   centre missed, and the roundings of columns and bow, 3 u of them and 11/16 fuzz of those of q.
+   Writing r' = d r + f and, from the last step,
    r(o) = (r - f(o))/d(o), gives f = f(o)/d(o) + e + (beta - 1/d(o) - d) r, where the last bracket
    is rounding: of beta, below fuzz with that of the difference; of the inverse, whose determinant
    is off by 1 + condition units, 3 + condition units of its trace, where `rounded` has
    8 (1 + condition). */
 static int step(const loewner *w, point *next, point *q, const point *o, int is_first)
 {
-    double g[WAVES], bent[WAVES], inverse[3] = { 0, 0, 0 }, rounded = 0.0, rest_sum;
+    double g[WAVES], bent[WAVES], inverse[3] = { 0, 0, 0 }, rounded = 0.0, rest_sum, reach;
 
     for (int j = 0; j < WAVES; j++) {
         g[j] = w->p[j] * q->cosine[j];
         bent[j] = bend(w, q, j);
     }
     for (int i = 0; i < 2; i++) {
-        const double b0 = q->beta[i], b1 = q->beta[i + 1];
         const double before = o->x[i] - q->turns[i] * TWO_PI;
         const double x = (2.0 * q->x[i] - before) + (g[i] + g[2]);
         next->turns[i] = floor(x / TWO_PI + 0.5);
         next->x[i] = x - next->turns[i] * TWO_PI;
         q->missed[i] = 0x1p-50 * (fabs(q->x[i]) + fabs(o->x[i]) + fabs(before) + fabs(x)) + q->fuzz;
-        for (int k = 0; k < w->columns; k++)
-            next->column[i][k] = b0 * q->column[0][k] + b1 * q->column[1][k] - o->column[i][k];
     }
-    for (int i = 0; i < 2; i++) {
-        next->column[i][w->together ? 2 : 2 + i] += w->h[i] * q->cosine[i];
-        next->column[i][w->together ? 2 : 4] += w->h[2] * q->cosine[2];
+    switch (w->columns) {               /* each count of its own: the compiler unrolls */
+    case 2: carry(w, next, q, o, 2); break;
+    case 3: carry(w, next, q, o, 3); break;
+    case 4: carry(w, next, q, o, 4); break;
+    default: carry(w, next, q, o, 5);
     }
-
     if (!is_first) {
         const double *d = o->d, det = d[0] * d[2] - d[1] * d[1];
         const double condition = (fabs(d[0] * d[2]) + d[1] * d[1]) / det;
@@ -104,15 +156,14 @@ static int step(const loewner *w, point *next, point *q, const point *o, int is_
         rounded = 0x1p-50 * (inverse[0] + inverse[2]) * (1.0 + condition);
     }
     rest_sum = q->rest[0] + q->rest[1];
+    reach = q->reach[0] + q->reach[1];
     for (int i = 0; i < 2; i++) {
         const double i0 = fabs(inverse[i]) + rounded, i1 = fabs(inverse[i + 1]) + rounded;
         double e = bent[i] + bent[2];
 
         e += q->missed[i];
-        for (int k = 0; k < w->columns; k++)
-            e += 0x1p-50 * fabs(next->column[i][k]);
-        e += 4.0 * q->fuzz * (q->reach[0] + q->reach[1] + w->h[i] + w->h[2])
-             + 0x1p-50 * o->reach[i];
+        e += 4.0 * q->fuzz * (reach + w->h[i] + w->h[2]);
+        e += 0x1p-50 * (next->straight[i] + next->bowed[i] + o->reach[i]);
         e += is_first ? o->rest[i] : i0 * o->force[0] + i1 * o->force[1];
         q->force[i] = (e + (2.0 * q->fuzz + rounded) * rest_sum) * WIDEN;
     }
@@ -147,6 +198,7 @@ void orbit_begin(loewner *w)
         origin[1].x[i] = w->v[i];
         origin[1].column[i][i] = w->width[i];
     }
+    measure(origin + 1, w->columns);
     finish(w, origin);
     finish(w, origin + 1);
     w->first = ORIGIN;

@@ -27,21 +27,24 @@
 
 #include "loewner.h"
 
-enum { WAVES = 3, COLUMNS = 5, MAX_POINTS = 4000, ORIGIN = MAX_POINTS };
+enum { WAVES = 3, COLUMNS = 5, PAIRS = 15, MAX_POINTS = 4000, ORIGIN = MAX_POINTS };
 
 /* One point of the orbit of the prism's centre, and all that is known of its neighbours. */
 typedef struct {
     double x[2], turns[2];              /* x modulo 2 pi; turns taken off when it was reached */
     double missed[2];                   /* by the step from here: a bound of |E| at the centre */
-    double column[2][COLUMNS];          /* v0, v1, then the parameters */
+    double column[2][COLUMNS];          /* L: v0, v1, then the parameters that move */
+    double bow[2][PAIRS];               /* T: the coefficients of e_k e_l, at pair(k, l) */
     double rest[2], force[2];           /* r and f: bounds */
     double d[3];                        /* the factor: d00, d01, d11 */
     double sine[WAVES], cosine[WAVES];
-    double reach[WAVES];                /* rho: |D0|, |D1|, |D0 + D1| */
+    double straight[WAVES], bowed[WAVES];       /* of D0, D1, D0 + D1: |L e| and |T[e, e]| */
+    double off[WAVES], reach[WAVES];    /* |D - L e| and |D| */
     double beta[3];                     /* beta00, beta01, beta11 */
     double far;                         /* how large a rounded angle is */
     double fuzz;                        /* how far p sin, p cos and entries of beta may be off */
     double n[2], mu[2], gradient[2];
+    double A[WAVES], B[WAVES];          /* what Q makes of cos z and sin z */
     double left[3], right[3];           /* the blocks of the recursion from either end */
 } point;
 
@@ -49,22 +52,43 @@ struct loewner {
     /* the problem */
     double centre[COLUMNS], half[COLUMNS], slack[COLUMNS];      /* v0, v1, a, b, c */
     double xstar[2], xstar_err[2], corner[8];                   /* bounds B at the corners */
-    int together, columns;
+    int together, columns;              /* the symbols: v0, v1, and the parameters that move */
+    int axis[COLUMNS], symbol[WAVES];   /* of a column: the cell's; of a wave: the column */
     /* the prism at hand */
-    double p[WAVES], h[WAVES], loose[WAVES];    /* p +- h moves with a column, loose by itself */
+    double p[WAVES], h[WAVES], loose[WAVES];    /* p +- h moves with its symbol, loose by itself */
     double v[2], width[2], l;
-    double share[COLUMNS];
-    double bound, rounding;
+    /* what bound.c finds */
+    double slope[COLUMNS], square[PAIRS], cubic[COLUMNS][PAIRS];        /* Q's part with signs */
+    double bound, rounding, share[COLUMNS];
     int first, last;                    /* of the orbit's points */
     int from, to, until;                /* n is zero before from and after to; until: see witness */
     point orbit[2 * MAX_POINTS + 1];
 };
+
+/* For what is made once for each number of columns, so that its loops have constant ends. */
+#ifdef __GNUC__
+#define INLINE static inline __attribute__((always_inline))
+#else
+#define INLINE static inline
+#endif
 
 static const double TINY = 0x1p-800;
 
 static inline double square(double x) { return x * x; }
 /* NaN if either is. */
 static inline double larger(double x, double y) { return x > y || isnan(x) ? x : y; }
+
+/* The place of e_k e_l among the products of the symbols, row by row with k <= l. */
+static inline int pair(int columns, int k, int l)
+{
+    return k <= l ? k * (2 * columns - k - 1) / 2 + l : l * (2 * columns - l - 1) / 2 + k;
+}
+
+/* What a wave feels, of x0, x1 along the coordinates. */
+static inline double felt(int wave, double x0, double x1)
+{
+    return wave == 0 ? x0 : wave == 1 ? x1 : x0 + x1;
+}
 
 /* |p| + h + loose */
 static inline double size(const loewner *w, int wave)
@@ -91,8 +115,11 @@ int witness(loewner *w);
 
 /* bound.c */
 
-/* w->bound >= (1) over the whole prism, whatever n is; w->share[k]: how much of it each column is
-   to blame for; w->rounding: how much of it roundings are.  Needs a witness. */
-void bound_second_variation(loewner *w);
+/* w->bound >= (1) over the whole prism, whatever n is; w->rounding: how much of it roundings are.
+   The cubic terms are bounded by absolute values unless their signs might make the bound negative,
+   or are asked for.  Needs a witness. */
+void bound_second_variation(loewner *w, int signs);
+/* w->share[k] after that: how much of the bound each column is to blame for. */
+void bound_shares(loewner *w);
 
 #endif

@@ -7,7 +7,8 @@
 #include "torus.h"
 
 enum { FINEST = 46 };                   /* cuts along one axis: then doubles run out */
-enum { PATIENCE = 12 };                 /* tries follow each other by a twelfth of the orbit */
+enum { PATIENCE = 8 };                  /* tries follow each other by an eighth of the orbit */
+static const double HOPELESS = 2.0;     /* times the least bound yet: longer orbits will not do */
 
 /* ---- one prism */
 
@@ -64,12 +65,12 @@ static int set_prism(loewner *w, const cv_cell *cell)
 }
 
 /* Tries to prove the prism with the orbit as far as it is known.  Returns whether at least its
-   centre contradicts; then w->share says why the bound failed, if it did. */
+   centre contradicts; then the bound's shares say why it failed, if it did. */
 static int attempt(loewner *w, verdict *v)
 {
     if (!witness(w))
         return 0;
-    bound_second_variation(w);
+    bound_second_variation(w, 0);
     v->nsteps = w->to - w->from + 1;
     v->no_tori = w->bound < 0.0;
     v->reason = w->bound - 2.0 * w->rounding < 0.0 ? CV_REASON_ARITHMETIC : CV_REASON_TOO_BIG;
@@ -91,6 +92,7 @@ static int may_cut(const loewner *w, const cv_cell *cell, int axis)
 void loewner_try(loewner *w, const cv_cell *cell, verdict *v, int *axis, int *from)
 {
     int points = 0, next = cell->from, contradicted = 0, worst = 0, why;
+    double least = HUGE_VAL;
 
     memset(v, 0, sizeof *v);
     v->reason = CV_REASON_ARITHMETIC;
@@ -107,12 +109,17 @@ void loewner_try(loewner *w, const cv_cell *cell, verdict *v, int *axis, int *fr
                     return;
                 if (!contradicted)
                     contradicted = points;
+                if (w->bound > HOPELESS * least)
+                    break;
+                least = w->bound < least ? w->bound : least;
             }
             next = points + 1 + points / PATIENCE;
         }
     }
     v->nsteps = points;
-    if (!contradicted) {                /* blame whoever is widest at the ends */
+    if (contradicted) {
+        bound_shares(w);
+    } else {                            /* blame whoever is widest at the ends */
         v->reason = why;
         contradicted = points;
         for (int k = 0; k < w->columns; k++) {
@@ -126,8 +133,8 @@ void loewner_try(loewner *w, const cv_cell *cell, verdict *v, int *axis, int *fr
     for (int k = 1; k < w->columns; k++)
         if (w->share[k] > w->share[worst])
             worst = k;
-    if (may_cut(w, cell, worst))
-        *axis = worst;
+    if (may_cut(w, cell, w->axis[worst]))
+        *axis = w->axis[worst];
     else if (v->reason == CV_REASON_TOO_BIG)
         v->reason = CV_REASON_ARITHMETIC;
     *from = contradicted > 3 ? contradicted - 2 : 0;
@@ -165,13 +172,13 @@ int loewner_follow(loewner *w, int s, int t)
     return 1;
 }
 
-int loewner_bound(loewner *w, double *bound, double *l, double *rounding, int *first, double n[][2],
-                  int most)
+int loewner_bound(loewner *w, int signs, double *bound, double *l, double *rounding, int *first,
+                  double n[][2], int most)
 {
     *l = w->l;
     if (!witness(w) || w->to - w->from >= most)
         return 0;
-    bound_second_variation(w);
+    bound_second_variation(w, signs);
     *bound = w->bound;
     *rounding = w->rounding;
     *first = w->from - ORIGIN;
@@ -184,9 +191,18 @@ void loewner_look(const loewner *w, int n, loewner_point *p)
 {
     const point *q = w->orbit + ORIGIN + n;
 
+    memset(p, 0, sizeof *p);
     memcpy(p->x, q->x, sizeof p->x);
-    memcpy(p->column, q->column, sizeof p->column);
+    for (int i = 0; i < 2; i++)
+        for (int k = 0, kl = 0; k < w->columns; k++) {
+            p->column[i][w->axis[k]] = q->column[i][k];
+            for (int l = k; l < w->columns; l++)
+                p->bow[i][pair(COLUMNS, w->axis[k], w->axis[l])] = q->bow[i][kl++];
+        }
     memcpy(p->rest, q->rest, sizeof p->rest);
+    memcpy(p->straight, q->straight, sizeof p->straight);
+    memcpy(p->bowed, q->bowed, sizeof p->bowed);
+    memcpy(p->off, q->off, sizeof p->off);
     memcpy(p->reach, q->reach, sizeof p->reach);
     memcpy(p->missed, q->missed, sizeof p->missed);
     memcpy(p->force, q->force, sizeof p->force);
@@ -238,7 +254,14 @@ loewner *loewner_new(const box *root, int together, int with_bounds)
         w->xstar_err[i] = 0x1p-49 * fabs(w->xstar[i]);
     }
     w->together = together;
-    w->columns = together ? 3 : 5;
+    w->columns = 2;
+    w->axis[1] = 1;
+    for (int i = 0; i < WAVES; i++)     /* what does not move needs no symbol */
+        if (w->half[2 + i] > 0.0) {
+            if (!together || w->columns == 2)
+                w->axis[w->columns++] = together ? 2 : 2 + i;
+            w->symbol[i] = w->columns - 1;
+        }
     for (int corner = 0; corner < (together ? 2 : 8); corner++) {
         double p[3];
         for (int k = 0; k < 3; k++) {
