@@ -300,7 +300,7 @@ def test_what_lies_beyond_an_undecided_prism_is_not_its_own():
 
 def test_many_gaps_cost_little(monkeypatch):
     """Thousands of prisms that were given up are tried again without a look at all of them for each."""
-    shallow = prove(line("0.0138", "0.0280"), method="loewner", depth=16, stubborn=True)
+    shallow = prove(line("0.0130", "0.0280"), method="loewner", depth=16, stubborn=True)
     assert shallow.tree.count("U") > 2000
     looks, merge = [], growth.Growth._merge
     monkeypatch.setattr(growth.Growth, "_merge", lambda self: (looks.append(self), merge(self)))
