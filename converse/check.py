@@ -845,7 +845,7 @@ class Criterion:
 # for the symbols e in the cube.  Of a wave at a site: y = 2 pi u.X, z = u.D, and c = u.L; |z| is
 # at most reach = |c|_1 + rest.  s, c and p sin, p cos below are those at X and P.
 #
-# Orbits.  Let M be any matrix, d[q] any symmetric one and f[q] = D's rest after q less d[q] r[q].  As
+# Orbits.  Let o, q, + be successive sites, M and d any matrices, and f[q] = r[+] - d[q] r[q].  As
 # r[+] = beta r[q] - r[o] + err, and r[q] = d[o] r[o] + f[o],
 #       f[q] = M f[o] + err + (beta - M - d[q]) r[q] - (I - M d[o]) r[o].
 # With M near 1/d[o] and d[q] = beta - M the brackets are roundings, so that r grows like the orbits
@@ -881,9 +881,10 @@ class Criterion:
 #   beta - M - d: F + 2 u |M|.   I - M d: with inv = 1 / det, each rounded, at most 5 u |inv| (|d00
 #       d11| + d01^2) on the diagonal, as the determinant is off by 2.1 u of these products, the
 #       quotient by u, M d by u of each product; and 2 u |inv d01| (|d00| + |d11|) beside it.
-#   sums of positive terms, fewer than 100 with fewer than 100 roundings each: MORE = 1 + 2^-40.
-#   u_2.L, omega: u of the former goes into its rest; omega is off by 3 u, A and B by 24 u size, size =
-#       |m| + omega; in the remainder 2^-48 size = 32 u size are added to |A| and |B|.
+#   sums of positive terms: MORE = 1 + 2^-40 for a hundred roundings one after the other, and 64 u
+#       more for each site.
+#   omega is off by 3 u, A and B by 24 u size, size = |m| + omega: in the remainder 32 u size are
+#       added to |A| and |B|.  That c is a rounded sum for w = 2 goes into rest.
 #   G: 28 u of each |P| size, 3 u of 2 |mu| and the |mu| before; at x[1] and x[0] u more, u of the
 #       mu of the other lane, and u of the product: 48 u.
 #   (i) again: |mu| F.
@@ -998,7 +999,7 @@ class Prisms:
         blank, rounding = np.zeros_like(columns), np.full_like(x, XSTAR_REST)
         self.sides, self.rounding = self.both(sides, none), self.both(none, rounding)
         self.before = self.both(start, x), self.both(blank, columns), self.both(rounding, none)
-        self.first = self.both(x, start), self.both(columns, blank), self.rounding
+        self.first = self.both(x, start), self.both(columns, blank), self.both(none, rounding)
         self.sites = []
 
     @staticmethod
@@ -1027,7 +1028,7 @@ class Prisms:
             size = np.abs(columns).sum(axis=1) * MORE
             rest = np.concatenate((r, (r[0] + r[1] + 2 * UNIT * size[2])[None])) * MORE
             reach = (size + rest) * MORE
-            if not self.sites:                      # where a lane ends, how far each symbol moves it
+            if not self.sites:                      # how far each symbol moves a lane's last site
                 self.last = np.abs(columns[self.present]).sum(axis=0)
             for w in self.present:
                 alive = alive & (reach[w] <= FARTHEST)
@@ -1201,7 +1202,7 @@ class Prisms:
         for i in range(known):
             highest += np.maximum(square[i, i], 0)
         added = np.abs(linear).sum(axis=0) + np.abs(square).sum(axis=(0, 1))
-        error = (error + UNIT * ((4 * K + 64) * mass + 64 * added)) * MORE
+        error = (error + UNIT * ((4 * K + 64) * mass + 64 * added)) * (MORE + 64 * UNIT * K)
         bound = np.where(mass < HUGE, value + (largest + highest + error), math.inf)
         share = self.joined(self.last) + TINY
         share = share / share.sum(axis=0)
@@ -1220,8 +1221,9 @@ class Lockstep:
         XSTAR_REST / 2 pi.
         """
         self.together = claim.together
-        self.centre = [float(x) for x in (*claim.centre[:3], *(v / 2 % 1 for v in claim.centre[3:]))]
-        self.half = [float(x) for x in (*claim.half[:3], *(v / 2 for v in claim.half[3:]))]
+        self.centre = [float(x) for x in claim.centre[:3]] + [float(v / 2 % 1)
+                                                              for v in claim.centre[3:]]
+        self.half = [float(x) for x in claim.half[:3]] + [float(v / 2) for v in claim.half[3:]]
         if max(map(abs, (*self.centre, *self.half, *claim.xstar))) > FAST_SIZE:
             raise ValueError("too large for the fast path")
         self.axes = [2] * any(claim.half[:3]) if claim.together else \
@@ -1311,16 +1313,17 @@ class Lockstep:
 
 
 def lockstep(claim, criterion):
-    """The fast path; None, and a line that says why, if it cannot be gone."""
+    """The fast path, or None: it is not made for the claim's numbers, or, as a line then says, it
+    has not the machine it needs."""
     try:
-        if not sound():
-            raise ValueError("numpy does not round as it must")
-        return Lockstep(claim, criterion)
+        if sound():
+            return Lockstep(claim, criterion)
+        why = "numpy does not round as it must"
     except ImportError:
         why = "numpy is not installed"
-    except ValueError as error:
-        why = str(error)
-    complain("%s: checking in integers alone, hundreds of times slower" % why)
+    except ValueError:
+        return None
+    complain(why + ": all is checked in integers, hundreds of times slower")
     return None
 
 
