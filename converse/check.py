@@ -907,8 +907,9 @@ FAST_SIZE = 2.0 ** 10                   # of parameters, x* and regions
 FAST_CUTS = 52                          # of an axis
 BATCH, SMALLEST_BATCH = 1024, 16
 FAST_SITES, ROOM = 4096, 1 << 19        # of a lane; of all lanes at a time
+FIRST_TRY = 96                          # sites, for lanes that are longer
 FARTHEST = 1.0                          # reach of a wave that is there
-CAUTION = 2.0, 0.3                      # of the choice of n; see witnesses
+CURVED, CAUTION = 0.3, (3.0, 0.3)       # of the choice of n: see witnesses, settle
 
 
 def sound():
@@ -982,13 +983,15 @@ class Prisms:
     """Prisms followed and bounded in lockstep; all arrays end with the axis of lanes, those ahead
     before those back."""
 
-    def __init__(self, box, symbols, xstar, l):
+    def __init__(self, box, symbols, xstar, l, caution=1.0):
         """The box: P, H and W of the waves, X[1] in turns and half the sides of the rectangle in
-        radians, where (symbols) each wave's parameter has its symbol, if it has any."""
+        radians; where (symbols) each wave's parameter has its symbol, if it has any; l; and how
+        much the choice of n shies at sites that are not well known."""
         P, H, W, x, sides = box
         self.size, self.symbols = x.shape[1], symbols
         self.P, self.H, self.W = self.both(P, P), self.both(H, H), self.both(W, W)
         self.magnitude, self.l = np.abs(self.P), self.both(l, l)
+        self.caution = self.both(caution + 0 * l, caution + 0 * l)
         self.present = [w for w in range(3) if (P[w] != 0).any() or W[w].any()]
         self.F = GRAIN * (1 + self.magnitude[:2] + self.magnitude[2])
         self.angles = 1 + max([k for k in symbols if k is not None] + [-1])     # their first symbol
@@ -1013,7 +1016,8 @@ class Prisms:
         return lanes[..., :self.size] + lanes[..., self.size:]
 
     def follow(self):
-        """Follows all lanes until each reaches too far; False if there is no room for that.
+        """Follows all lanes until each reaches too far, and yields True then and wherever an orbit
+        may be long enough; False if there is no room for more.
 
         A lane that has come to its end stays as zeros, alive no more, and nothing is said of it.
         """
@@ -1022,7 +1026,7 @@ class Prisms:
         F2, from_H = GRAIN * magnitude[2], 32 * UNIT * (H[:2] + H[2])
         (X0, L0, r0), (X, L, r) = self.before, self.first
         size0 = np.abs(L0).sum(axis=1)
-        alive, d, f = np.ones(X.shape[1], bool), None, None
+        alive, d, f, due = np.ones(X.shape[1], bool), None, None, FIRST_TRY
         while True:
             columns = np.concatenate((L, (L[0] + L[1])[None]))
             size = np.abs(columns).sum(axis=1) * MORE
@@ -1033,9 +1037,14 @@ class Prisms:
             for w in self.present:
                 alive = alive & (reach[w] <= FARTHEST)
             if self.sites and (not alive.any() or len(self.sites) == FAST_SITES):
-                return True
+                yield True
+                return
             if len(self.sites) * alive.size >= ROOM and self.size > SMALLEST_BATCH:
-                return False
+                yield False
+                return
+            if len(self.sites) == due:
+                yield True
+                due += due // 2
             for array in (L, r, columns, size, rest, reach):
                 np.copyto(array, 0, where=~alive)
             np.copyto(self.last, np.abs(columns[self.present]).sum(axis=0), where=alive)
@@ -1088,7 +1097,7 @@ class Prisms:
         sites, none = self.sites, np.zeros_like(self.l)
         blocks, tail = [], np.stack((self.l, none, self.l))
         for _, _, _, _, _, rest, reach, beta in sites:
-            more = CAUTION[0] * (rest + reach * reach / 6) * reach + CAUTION[1] * reach * reach
+            more = (self.caution * (rest + reach * reach / 6) + CURVED * reach) * reach
             blocks.append(beta + matrices((self.magnitude + self.H) * more))
         outer, back, whole = [], [], []             # the recursion from the end
         inverse, beyond, good = tail, none > 0, none == 0
@@ -1257,22 +1266,28 @@ class Lockstep:
             sides[i] = TWO_PI * MORE * (h * part[i] + (8 * UNIT * (c + h) + TINY))
         return P, H, W, X - np.rint(X), sides
 
-    def attempt(self, index, cuts, l):
+    def attempt(self, index, cuts, l, caution):
         """Is (3) true of all orbits of these cells?  For each, and the axis to cut it along; None
         if their orbits are too long for so many at a time."""
         with np.errstate(all="ignore"):
-            prisms = Prisms(self.box(index, cuts), self.symbols, self.xstar, l)
-            if not prisms.follow():
-                return None
-            bound, blame = prisms.bound()
-        return bound < 0, np.array(self.axes)[blame.argmax(axis=0)]
+            prisms = Prisms(self.box(index, cuts), self.symbols, self.xstar, l, caution)
+            excluded = l < 0
+            for ready in prisms.follow():
+                if not ready:
+                    return None
+                bound, blame = prisms.bound()
+                excluded |= bound < 0
+                if excluded.all():
+                    break
+        return excluded, np.array(self.axes)[blame.argmax(axis=0)]
 
     def settle(self, cells, least, exactly):
         """Decides on cells with these l: (number of the first that is not excluded, why not) or
         None, and how many pieces each took.
 
-        Those that fail are halved and tried again, up to the checker's limits; what fails then,
-        exactly(number) -> (None or why not, pieces) decides on.
+        Those that fail are halved and tried again, up to the checker's limits and with n chosen
+        boldly and cautiously in turn; what fails then, exactly(number) -> (None or why not,
+        pieces) decides on.
         """
         depth = np.array([sum(cuts) for _, cuts in cells])
         pieces, refused = np.zeros(len(cells), int), None
@@ -1292,14 +1307,15 @@ class Lockstep:
             if not keep.any():
                 break
             index, cuts, l, number = [x[..., -self.batch:] for x in todo]
-            tried = self.attempt(index, cuts, l)
+            halvings = cuts.sum(axis=0) - depth[number]
+            tried = self.attempt(index, cuts, l, np.where(halvings % 2, *CAUTION))
             if tried is None:
                 self.batch //= 2
                 continue
             todo = [x[..., :-self.batch] for x in todo]
             pieces += np.bincount(number, minlength=len(cells))
             excluded, axis = tried
-            lost = ~excluded & ((cuts.sum(axis=0) - depth[number] >= MAX_HALVINGS)
+            lost = ~excluded & ((halvings >= MAX_HALVINGS)
                                 | (pieces[number] >= MAX_PIECES)
                                 | (cuts[axis, np.arange(axis.size)] >= FAST_CUTS))
             fine = sorted(set(number[lost].tolist()))

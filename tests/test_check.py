@@ -1477,7 +1477,7 @@ def test_lockstep_orbits(np, generator):
     for _ in range(12 * TORTURE):
         prisms = random_prisms(np, generator)
         with np.errstate(all="ignore"):
-            assert prisms.follow()
+            assert all(prisms.follow())
         for lane in range(prisms.size):
             eta, abc, angles = inside(generator, prisms, lane)
             ends = [[site[0][k] for site in prisms.sites].count(True)
@@ -1522,7 +1522,7 @@ def test_lockstep_bound(np, generator, chosen):
     for _ in range(20 * TORTURE):
         prisms = random_prisms(np, generator)
         with np.errstate(all="ignore"):
-            assert prisms.follow()
+            assert all(prisms.follow())
             n, tails = prisms.witnesses()
             if chosen == "at random":
                 draw = np.random.default_rng(generator.getrandbits(64))
@@ -1621,7 +1621,7 @@ def test_nothing_that_minimizes_is_excluded(np, texts, generator):
             cells.append(tuple(zip(*slices)))
         index, cuts = [np.array([cell[part] for cell in cells]).T for part in (0, 1)]
         l = np.array([criterion.least_in_double(cell) for cell in cells])
-        proved, _ = fast.attempt(index, cuts, l)
+        proved, _ = fast.attempt(index, cuts, l, 1.0)
         for cell, good in zip(cells, proved):
             cases += 1
             excluded += bool(good)
@@ -1647,7 +1647,7 @@ def test_numbers_that_are_none_prove_nothing(np, generator):
             with np.errstate(all="ignore"):
                 prisms = check.Prisms(tuple(box), prisms.symbols, (0.1, 0.2),
                                       prisms.l[:prisms.size])
-                prisms.follow()
+                all(prisms.follow())
                 bound, _ = prisms.bound()
             assert not (bound < 0).any()
 
