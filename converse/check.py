@@ -1241,6 +1241,8 @@ class Lockstep:
         self.symbols = [self.axes.index(k) if k in self.axes else None for k in where]
         self.axes += [0, 1]                         # of the symbols
         self.present = [w for w in range(3) if claim.centre[w] or claim.half[w]]
+        if not self.present:
+            raise ValueError("no wave: orbits without end")
         half_turn = Fraction(1, 2)
         self.xstar = [float((Fraction(x, 2 * criterion.fixed.pi) + half_turn) % 1 - half_turn)
                       for x in criterion.xstar]
@@ -1267,8 +1269,8 @@ class Lockstep:
         return P, H, W, X - np.rint(X), sides
 
     def attempt(self, index, cuts, l, caution):
-        """Is (3) true of all orbits of these cells?  For each, and the axis to cut it along; None
-        if their orbits are too long for so many at a time."""
+        """Is (3) true of all orbits of these cells?  For each, and the axis to cut it along, -1 if
+        that seems vain; None if their orbits are too long for so many at a time."""
         with np.errstate(all="ignore"):
             prisms = Prisms(self.box(index, cuts), self.symbols, self.xstar, l, caution)
             excluded = l < 0
@@ -1279,7 +1281,9 @@ class Lockstep:
                 excluded |= bound < 0
                 if excluded.all():
                     break
-        return excluded, np.array(self.axes)[blame.argmax(axis=0)]
+        endless = len(prisms.sites) == FAST_SITES
+        return excluded, np.array(self.axes)[blame.argmax(axis=0)] if not endless else \
+            np.full(l.shape, -1)
 
     def settle(self, cells, least, exactly):
         """Decides on cells with these l: (number of the first that is not excluded, why not) or
@@ -1315,7 +1319,7 @@ class Lockstep:
             todo = [x[..., :-self.batch] for x in todo]
             pieces += np.bincount(number, minlength=len(cells))
             excluded, axis = tried
-            lost = ~excluded & ((halvings >= MAX_HALVINGS)
+            lost = ~excluded & ((axis < 0) | (halvings >= MAX_HALVINGS)
                                 | (pieces[number] >= MAX_PIECES)
                                 | (cuts[axis, np.arange(axis.size)] >= FAST_CUTS))
             fine = sorted(set(number[lost].tolist()))

@@ -176,7 +176,8 @@ def test_confirms(texts, run, name):
 
 def test_confirms_what_needs_orbits(deep, run):
     assert tree_of(deep).count("P") > 300
-    status, out, _ = run(deep)
+    assert run(deep)[0] == 0
+    status, out, _ = run(deep, "--exact")
     assert status == 0 and "\n0.1999 <= a <= 0.2001\n" in out
     pieces = int(re.search("in ([0-9]+) pieces", out).group(1))
     assert pieces == tree_of(deep).count("P")
@@ -257,7 +258,7 @@ def test_a_spot_check_cannot_be_foreseen(deep, run, monkeypatch):
     """Else a forger would know where nobody looks."""
     seen = []
     monkeypatch.setattr(check.Criterion, "excluded", lambda self, cell: seen.append(cell) or (0, 1))
-    assert [run(deep, "--sample", "20")[0] for _ in "12"] == [4, 4]
+    assert [run(deep, "--sample", "20", "--exact")[0] for _ in "12"] == [4, 4]
     assert len(set(seen[:20])) == 20 and set(seen[:20]) != set(seen[20:])
 
 
@@ -367,15 +368,15 @@ def test_shortened_and_lengthened(texts, deep, run, name):
 
 @pytest.mark.parametrize("name", ["segment", "beginning", "slanted"])
 def test_together_flipped_to_apart(moving, run, name):
-    """The box about a segment is much more than the segment."""
+    """The box about a segment is much more than the segment.  These are true, as the prover finds
+    when it is asked; with tori at a corner they are not."""
     text = with_field(moving[name], "together", "no")
     if "at once: yes" in text:
         assert "larger parameters" in run(sealed(text))[2] and run(sealed(text))[0] == 1
         text = with_field(text, "at once", "no")
-    if name == "beginning":                             # hardly more, and true
-        assert run(sealed(text))[0] == 0
-        for key, pair in (("a", "0.23 0.02"), ("b", "0.23 0.02"), ("c", "0.45 0.04")):
-            text = with_field(text, key, pair)
+    assert run(sealed(text))[0] == 0
+    for key in "abc":
+        text = with_field(text, key, "0.25 0.24")
     status, out, err = run(sealed(text))
     assert (status, out) == (5, "") and "not excluded" in err
 
@@ -696,7 +697,8 @@ def test_the_file_alone_needs_nothing_but_python(texts, tmp_path):
     path.write_text(texts["trig274"], encoding="utf-8")
     done = subprocess.run([sys.executable, "-I", "-S", copy, path, "--jobs", "2", "--state",
                            tmp_path / "state"], capture_output=True, text=True, cwd=tmp_path)
-    assert (done.returncode, done.stderr) == (0, "") and "(standing alone)" in done.stdout
+    assert done.returncode == 0 and "(standing alone)" in done.stdout
+    assert "numpy is not installed" in done.stderr and done.stderr.count("\n") == 1
     # Of the package it takes the version, and any failure to import it will do.
     for content, version in (("__version__ = '7.8'", "7.8"), ("raise ImportError", "(standing")):
         package = tmp_path / "converse"
@@ -866,13 +868,13 @@ def test_a_state(deep, run, tmp_path, monkeypatch):
         return excluded(self, cell)
 
     monkeypatch.setattr(check.Criterion, "excluded", stops)
-    status, out, err = run(deep, "--state", str(state))
+    status, out, err = run(deep, "--exact", "--state", str(state))
     assert (status, out) == (130, "") and "goes on from " + str(state) in err
     done = confirmed(state)
     assert 199 - check.CHUNK < done <= 199
     for jobs, left in (("1", total - done), ("2", 0), ("1", 0)):
         looked[:] = []
-        status, out, err = run(deep, "--state", str(state), "--jobs", jobs)
+        status, out, err = run(deep, "--exact", "--state", str(state), "--jobs", jobs)
         assert (status, err) == (0, "") and len(looked) == left and confirmed(state) == total
         earlier = done if left else total
         assert out.startswith("Verified, %d of %d leaves by an earlier run :" % (earlier, total))
@@ -943,7 +945,7 @@ def test_a_state_that_cannot_be_written_later(deep, run, tmp_path, monkeypatch):
         real(handle)
 
     monkeypatch.setattr(os, "fsync", full)
-    status, out, err = run(deep, "--state", str(link))
+    status, out, err = run(deep, "--state", str(link), "--exact")
     assert status == 0 and out.startswith("Verified :") and "No space left" in err
     assert link.is_symlink() and confirmed(path) == 2 * check.CHUNK
     assert set(os.listdir(tmp_path)) == {"state", "link", "some.proof"}
@@ -957,11 +959,11 @@ def test_a_worker_that_dies(deep, run, tmp_path, monkeypatch):
     excluded = check.Criterion.excluded
     monkeypatch.setattr(check.Criterion, "excluded", lambda self, cell: (
         os._exit(3) if cell == last else excluded(self, cell)))
-    status, out, err = run(deep, "--jobs", "2", "--state", str(tmp_path / "state"))
+    status, out, err = run(deep, "--jobs", "2", "--state", str(tmp_path / "state"), "--exact")
     assert (status, out) == (2, "") and "a worker process died; nothing was verified" in err
     assert err.count("\n") == 1 and 0 < confirmed(tmp_path / "state") <= left
     monkeypatch.undo()
-    status, out, err = run(deep, "--jobs", "2", "--state", str(tmp_path / "state"))
+    status, out, err = run(deep, "--jobs", "2", "--state", str(tmp_path / "state"), "--exact")
     assert status == 0 and "earlier run" in out
 
 
@@ -970,8 +972,11 @@ def test_a_failure_of_its_own_is_no_success(deep, run, monkeypatch):
         def fails(self, cell):
             raise error
         monkeypatch.setattr(check.Criterion, "excluded", fails)
-        status, out, err = run(deep)
-        assert (status, out) == (2, "") and "the checker failed" in err and err.count("\n") == 1
+        monkeypatch.setattr(check.Lockstep, "attempt", lambda *_: fails(*_[:2]))
+        for options in ((), ("--exact",)):
+            status, out, err = run(deep, *options)
+            assert (status, out) == (2, "") and "the checker failed" in err
+            assert err.count("\n") == 1
 
 
 def test_the_bar(deep, tmp_path, monkeypatch, capsys):
