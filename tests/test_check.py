@@ -20,6 +20,7 @@ import mpmath
 import pytest
 
 from converse import Problem, check, prove, read_input
+from truth import TORTURE
 
 # Of a process without sanitizers, which may import what lies about its file.
 PLAIN = {name: value for name, value in os.environ.items()
@@ -804,7 +805,7 @@ def long(moving, tmp_path_factory):
         tree = "2" + tree + tree
     path.write_text(sealed(with_tree(with_field(moving["segment"], "depth", 99), tree)),
                     encoding="utf-8")
-    return path, re.search("in [0-9]+ pieces", check.verify(path).text).group()
+    return path, re.search("in [0-9]+ pieces", check.verify(path, exact=True).text).group()
 
 
 def confirmed(state):
@@ -824,7 +825,7 @@ def test_killed_at_random_moments(long, tmp_path, generator, jobs):
     for n in range(40):
         process = subprocess.Popen(
             [sys.executable, "-I", "-c", code, os.path.dirname(check.__file__), path, "--jobs",
-             jobs, "--state", state], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+             jobs, "--state", state, "--exact"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
             start_new_session=True)
         process.stdout.readline()
         kind = kinds[n % 4]
@@ -1404,9 +1405,6 @@ def test_no_orbit_of_a_proved_leaf_minimizes(deep, generator):
 
 # ---- the fast path
 
-from truth import TORTURE                   # noqa: E402
-
-
 @pytest.fixture(scope="module")
 def np():
     assert check.sound()
@@ -1418,19 +1416,19 @@ def random_prisms(np, generator, count=8, scale=1.0):
     symbols = generator.choice(((0, 0, 0), (0, 1, 2), (0, None, 1), (None,) * 3))
     draw = np.random.default_rng(generator.getrandbits(64))
     P = draw.uniform(-scale, scale, (3, count)) * generator.choice((1, np.array([[1], [0], [0]])))
-    width = 2.0 ** draw.uniform(-40, -2, count)
+    width = 2.0 ** draw.uniform(generator.choice((-40, -7)), -2, count)
     H = abs(P) * draw.uniform(0, 1, (3, count)) * width
     H[[symbol is None for symbol in symbols]] = 0
-    W = abs(P) * generator.choice((2.0 ** -50, 2.0 ** -30, 2.0 ** -8)) + (P != 0) * 2.0 ** -200
+    W = abs(P) * generator.choice((0, 2.0 ** -50, 2.0 ** -30, 2.0 ** -8))
     x = draw.uniform(-0.5, 0.5, (2, count))
     sides = draw.uniform(0, 1, (2, count)) * width * generator.choice((1, np.array([[1], [0]])))
     xstar = [generator.choice((0.25, draw.uniform(-0.5, 0.5))) for _ in "01"]
     return check.Prisms((P, H, W, x, sides), symbols, xstar, draw.uniform(0, 0.9, count))
 
 
-def inside(generator, prisms, lane):
+def inside(generator, prisms, lane, eta=None):
     """A point of the prism of a lane ahead: its symbols, exact parameters, x[0] and x[1]."""
-    eta = [near(generator) for _ in range(prisms.angles + 2)]
+    eta = eta or [near(generator) for _ in range(prisms.angles + 2)]
     abc = []
     for w, symbol in enumerate(prisms.symbols):
         p, h, v = (Fraction(float(x[w, lane])) for x in (prisms.P, prisms.H, prisms.W))
@@ -1447,13 +1445,13 @@ def inside(generator, prisms, lane):
     return eta, abc, angles
 
 
-def true_orbit(abc, angles, count):
+def true_orbit(abc, angles, count, m=mp):
     """count sites ahead and count back, x[1] and x[0] the first of them."""
     lanes = []
     for before, x in (angles, angles[::-1]):
         lane = [x]
         while len(lane) < count:
-            force = v_prime(abc, x)
+            force = v_prime(abc, x, m)
             before, x = x, [2 * p - q - f for p, q, f in zip(x, before, force)]
             lane.append(x)
         lanes.append(lane)
@@ -1476,11 +1474,14 @@ def test_lockstep_sincos(np, generator):
     assert check.SINE == 2.0 ** -49
 
 
-def test_lockstep_orbits(np, generator):
-    """True orbits of a prism are where the models say, within their rests."""
+def test_lockstep_orbits(np, generator, monkeypatch):
+    """True orbits of a prism are where the models say, within their rests, rounded as they are."""
     cases = tight = 0
+    sincos, centres = check.lockstep_sincos, []
+    monkeypatch.setattr(check, "lockstep_sincos", lambda x: centres.append(x.copy()) or sincos(x))
     for _ in range(12 * TORTURE):
         prisms = random_prisms(np, generator)
+        centres.clear()
         with np.errstate(all="ignore"):
             assert all(prisms.follow())
         for lane in range(prisms.size):
@@ -1489,33 +1490,33 @@ def test_lockstep_orbits(np, generator):
                     for k in (lane, lane + prisms.size)]
             orbits = true_orbit(abc, angles, min(max(ends), 20))
             for orbit, k, end in zip(orbits, (lane, lane + prisms.size), ends):
-                for site, x in list(zip(prisms.sites[:end], orbit)):
-                    _, s, c, columns, size, rest, reach, _ = site
+                for site, centre, x in list(zip(prisms.sites[:end], centres, orbit)):
+                    _, _, _, columns, size, rest, reach, _ = site
+                    centre = [Fraction(float(turns[k])) for turns in centre]
                     for w, y in enumerate((*x, sum(x))):
                         model = sum(mp.mpf(float(a)) * real(e) for a, e in zip(columns[w, :, k],
                                                                                eta))
-                        # The angle at the centre, from its sine and cosine: D is small.
-                        centre = mp.atan2(mp.mpf(float(s[w, k])), mp.mpf(float(c[w, k])))
-                        off = (y - centre - model + mp.pi) % (2 * mp.pi) - mp.pi
+                        turns = real((*centre, sum(centre))[w])
+                        off = (y - 2 * mp.pi * turns - model + mp.pi) % (2 * mp.pi) - mp.pi
                         if w in prisms.present and reach[w, k] <= 1:
-                            assert abs(off) <= rest[w, k] + 2.0 ** -47
+                            assert abs(off) <= mp.mpf(float(rest[w, k]))
                             assert size[w, k] >= sum(map(abs, columns[w, :, k]))
                             cases += 1
                             tight += abs(off) > rest[w, k] / 20
     assert cases > 1000 * TORTURE and tight > 20
 
 
-def left_side(abc, lanes, n, tails, l, lane, size):
+def left_side(abc, lanes, n, tails, l, lane, size, m=mp):
     """The left side of (3) of a true orbit."""
-    total = mp.mpf(0)
+    total, number = 0, mp.mpf if m is mp else float
     for x, k in zip(lanes, (lane, lane + size)):
-        vectors = [[mp.mpf(float(v)) for v in vector[:, k]] for vector in n]
+        vectors = [[number(float(v)) for v in vector[:, k]] for vector in n]
         for y, (n0, n1), tail in zip(x, vectors, tails):
-            total += (2 - l * mp.mpf(float(tail[k]))) * (n0 * n0 + n1 * n1) - (
-                abc[0] * mp.sin(y[0]) * n0 * n0 + abc[1] * mp.sin(y[1]) * n1 * n1
-                + abc[2] * mp.sin(y[0] + y[1]) * (n0 + n1) ** 2)
+            total += (2 - l * number(float(tail[k]))) * (n0 * n0 + n1 * n1) - (
+                abc[0] * m.sin(y[0]) * n0 * n0 + abc[1] * m.sin(y[1]) * n1 * n1
+                + abc[2] * m.sin(y[0] + y[1]) * (n0 + n1) ** 2)
         total -= 2 * sum(a[0] * b[0] + a[1] * b[1] for a, b in zip(vectors, vectors[1:]))
-    a, b = [[mp.mpf(float(v)) for v in n[0][:, k]] for k in (lane, lane + size)]
+    a, b = [[number(float(v)) for v in n[0][:, k]] for k in (lane, lane + size)]
     return total - 2 * (a[0] * b[0] + a[1] * b[1])
 
 
@@ -1542,8 +1543,16 @@ def test_lockstep_bound(np, generator, chosen):
             count = sum(bool(site[0][both].any()) for site in prisms.sites)
             if count > 25 or not np.isfinite(bound[lane]) or not n[0].any():
                 continue
-            for _ in range(2):
-                _, abc, angles = inside(generator, prisms, lane)
+
+            def about(eta):
+                _, abc, angles = inside(generator, prisms, lane, eta)
+                abc, angles = [float(x) for x in abc], [[float(x) for x in y] for y in angles]
+                return left_side(abc, true_orbit(abc, angles, count, math), n, tails,
+                                 float(prisms.l[lane]), lane, prisms.size, math)
+
+            worst = max(itertools.product((-1, 1), repeat=prisms.angles + 2), key=about)
+            for eta in (None, [Fraction(e) for e in worst]):
+                _, abc, angles = inside(generator, prisms, lane, eta)
                 true = left_side(abc, true_orbit(abc, angles, count), n, tails,
                                  mp.mpf(float(prisms.l[lane])), lane, prisms.size)
                 assert true <= bound[lane]
@@ -1665,6 +1674,27 @@ def test_both_paths_agree(np, deep, moving, run):
                 status, out, _ = run(sealed(change(text)), *options)
                 results.append((status, out.partition("\nChecker")[0]))
             assert results[0] == results[1] == results[2]
+
+
+def test_the_fast_path_goes_on(np, deep, run, tmp_path, monkeypatch):
+    """Struck amid its work, it goes on from its state, and counts nothing twice."""
+    state, attempt, calls = tmp_path / "state", check.Lockstep.attempt, []
+
+    def stops(self, *arrays):
+        calls.append(arrays[0].shape[1])
+        if len(calls) == 12:
+            raise KeyboardInterrupt
+        return attempt(self, *arrays)
+
+    whole = re.search("checked : .*", run(deep)[1]).group()
+    monkeypatch.setattr(check.Lockstep, "attempt", stops)
+    assert run(deep, "--state", str(state))[0] == 130
+    done, total = confirmed(state), tree_of(deep).count("P")
+    assert 0 < done < total
+    status, out, err = run(deep, "--state", str(state))
+    assert (status, err) == (0, "") and whole in out and "Verified, %d of %d" % (done, total) in out
+    calls[:] = [0] * 12
+    assert run(deep, "--state", str(state))[0] == 0 and len(calls) == 12
 
 
 def test_without_numpy(deep, run, monkeypatch):
