@@ -31,9 +31,10 @@ The arithmetic.  Python integers, in units of 2^-bits: exact, unbounded, and eac
 
 The fast path.  Where there is numpy, a thousand prisms at a time are tried in doubles first, by a
 bound of the left side of 3 that is linear in the length of the orbits; its section has the proof.
-What it does not exclude is decided in integers, as all is with --exact.  This file shares no code with the
-prover: of the package it takes the version, for its report, and nothing else; and it needs nothing
-but Python, so a copy of this one file will do.
+What it does not exclude is decided in integers, as all is with --exact.
+
+This file shares no code with the prover: of the package it takes the version, for its report, and
+nothing else; and it needs nothing but Python, so a copy of this one file will do.
 
 What is said.  "Rejected" is a file that is wrong whatever the truth about the map: altered, without
 a whole and decided tree, with a leaf skipped whose mirror image is not proved.  A leaf that is not
@@ -835,9 +836,10 @@ class Criterion:
 
 
 # ---- the fast path: a thousand prisms in lockstep, in doubles
-# The same left side of (3), bounded by other means and far more cheaply; what is not bounded below
-# zero here is left to the exact path.  All that is done to one prism is done to all of them, as
-# arrays of numpy, whose sums, products, quotients and roots are rounded to nearest (sound() looks).
+# The same left side of (3), bounded by other means and far more cheaply: by the factored recursion
+# and the multipliers of docs/proof.md, written anew and with Q to second order.  What is not bounded
+# below zero here is left to the exact path.  All that is done to one prism is done to all of them,
+# as arrays of numpy, whose operations are rounded to nearest (sound() looks).
 #
 # A prism is the set of orbits with x[0] = x*, x[1] in a rectangle, and p'_w = P_w + H_w e + v,
 # |v| <= W_w, for the waves w = 0, 1, 2 with u = (1,0), (0,1), (1,1); e in [-1, 1] is a symbol of
@@ -1277,7 +1279,7 @@ class Lockstep:
         that seems vain; None if their orbits are too long for so many at a time."""
         with np.errstate(all="ignore"):
             prisms = Prisms(self.box(index, cuts), self.symbols, self.xstar, l, caution)
-            excluded = l < 0
+            excluded = np.zeros(l.shape, bool)
             for ready in prisms.follow():
                 if not ready:
                     return None
@@ -1285,9 +1287,8 @@ class Lockstep:
                 excluded |= bound < 0
                 if excluded.all():
                     break
-        endless = len(prisms.sites) == FAST_SITES
-        return excluded, np.array(self.axes)[blame.argmax(axis=0)] if not endless else \
-            np.full(l.shape, -1)
+        vain = prisms.joined(prisms.sites[-1][0]) & (len(prisms.sites) == FAST_SITES)
+        return excluded, np.where(vain, -1, np.array(self.axes)[blame.argmax(axis=0)])
 
     def settle(self, cells, least, exactly):
         """Decides on cells with these l: (number of the first that is not excluded, why not) or
