@@ -1594,7 +1594,7 @@ def test_lockstep_boxes_cover_their_cells(np, texts, generator):
 
 
 def test_lockstep_xstar(np, texts, generator):
-    for _ in range(50):
+    for _ in range(20):
         text = with_field(with_tree(texts["trig274"], "P"), "xstar", "%s %s" % tuple(
             check.decimal_text(exact_decimal(generator, size, 25)) for size in (1000, 3)))
         claim = claim_of(text)
@@ -1667,7 +1667,7 @@ def test_numbers_that_are_none_prove_nothing(np, generator):
 
 
 def test_both_paths_agree(np, deep, moving, run):
-    for text in (deep, moving["slanted"], moving["box"]):
+    for text in (deep, moving["slanted"]):
         for change in (lambda x: x, lambda x: with_field(x, "xstar", "1.2 1.2")):
             results = []
             for options in ((), ("--exact",), ("--jobs", "2")):
