@@ -27,9 +27,14 @@ by a first-order Taylor model in a, b, c and the two angles of x[1] (and in one 
 error made on the way), so the sum is bounded as a whole: effects that cancel, cancel.
 
 The arithmetic.  Python integers, in units of 2^-bits: exact, unbounded, and each rounding, a >> or a
-//, is to be seen where it happens.  Errors are counted in units.  This file shares no code with the
-prover: of the package it takes the version, for its report, and nothing else; and it needs nothing
-but Python, so a copy of this one file will do.
+//, is to be seen where it happens.  Errors are counted in units.
+
+The fast path.  Where there is numpy, a thousand prisms at a time are tried in doubles first, by a
+bound of the left side of 3 that is linear in the length of the orbits; its section has the proof.
+What it does not exclude is decided in integers, as all is with --exact.
+
+This file shares no code with the prover: of the package it takes the version, for its report, and
+nothing else; and it needs nothing but Python, so a copy of this one file will do.
 
 What is said.  "Rejected" is a file that is wrong whatever the truth about the map: altered, without
 a whole and decided tree, with a leaf skipped whose mirror image is not proved.  A leaf that is not
@@ -75,7 +80,7 @@ MAX_SIZE = 10 ** 300                    # of such a number
 MAX_BITS = 4096                         # of the arithmetic
 MAX_HALVINGS, MAX_PIECES = 24, 4096     # of a leaf, by the checker itself
 MAX_POINTS = 330                        # of an orbit
-CHUNK = 16                              # leaves per task
+CHUNKS, CHUNK, FAST_CHUNK = 8, 16, 1 << 14      # tasks of a process, about; most leaves of one
 NU_BITS = 20                            # of the test vectors
 STATE_SECONDS, BAR_SECONDS = 10, 0.2    # between two writes
 
@@ -660,6 +665,7 @@ class Criterion:
             # beta over the torus is 2I, so this would say that there are no parameters.)
             raise NotConfirmed("beta has no eigenvalue above 2: the criterion does not apply")
         self.l_of = {}                      # by the cell's slices of the parameters
+        self.fast = None                    # a Lockstep, where there is one
 
     def least_pivot(self, cell):
         """l of step 2 for the parameters of the cell, from below.
@@ -688,6 +694,10 @@ class Criterion:
                 raise NotConfirmed("the parameters are too large for this checker")
             self.l_of[key] = l
         return self.l_of[key]
+
+    def least_in_double(self, cell):
+        """l from below as a double: the quotient is rounded to nearest, the rest lowers it."""
+        return self.least_pivot(cell) / self.fixed.one * (1 - 2.0 ** -50)
 
     def piece(self, cell):
         """The cell as a box that covers it: centres and half-widths of a, b, c, v0 and v1.
@@ -825,6 +835,523 @@ class Criterion:
             <= 10 * self.fixed.one
 
 
+# ---- the fast path: a thousand prisms in lockstep, in doubles
+# The same left side of (3), bounded by other means and far more cheaply: by the factored recursion
+# and the multipliers of docs/proof.md, written anew and with Q to second order.  What is not bounded
+# below zero here is left to the exact path.  All that is done to one prism is done to all of them,
+# as arrays of numpy, whose operations are rounded to nearest (sound() looks).
+#
+# A prism is the set of orbits with x[0] = x*, x[1] in a rectangle, and p'_w = P_w + H_w e + v,
+# |v| <= W_w, for the waves w = 0, 1, 2 with u = (1,0), (0,1), (1,1); e in [-1, 1] is a symbol of
+# the parameter.  A lane is one half of its orbits, ahead x[1], x[2], ..., or back x[0], x[-1], ...;
+# the map is reversible, so both are followed by the same steps, from o = x[0], q = x[1] or from
+# o = x[1], q = x[0].  A site of a lane has X, in turns (so whole turns are taken off without any
+# error), and a true orbit is there, modulo 2 pi and in radians,
+#       2 pi X + D,    D = L e + r,    |r| <= rest,
+# for the symbols e in the cube.  Of a wave at a site: y = 2 pi u.X, z = u.D, and c = u.L; |z| is
+# at most reach = |c|_1 + rest.  s, c and p sin, p cos below are those at X and P.
+#
+# Orbits.  Let o, q, + be successive sites, M and d any matrices, and f[q] = r[+] - d[q] r[q].  As
+# r[+] = beta r[q] - r[o] + err, and r[q] = d[o] r[o] + f[o],
+#       f[q] = M f[o] + err + (beta - M - d[q]) r[q] - (I - M d[o]) r[o].
+# With M near 1/d[o] and d[q] = beta - M the brackets are roundings, so that r grows like the orbits
+# and not like products of norms.  err is (i) how far X[+] is from the map of X[o], X[q] at P; (ii)
+# how far L[+] is from beta L[q] - L[o] and H cos y in the parameters' columns; and (iii) what the
+# wave has besides -p sin y z + h e cos y: as |cos z - 1| <= z^2/2, |sin z - z| <= |z|^3/6, it is
+#       (|P| + H + W)(|cos y| reach^2/2 + |sin y| reach^3/6) + (H + W)|sin y| reach + W |cos y|.
+#
+# The bound.  For any multipliers mu[j] the left side of (3) is the same with
+#       sum of mu[j].(2x[j] - x[j-1] - x[j+1] - V'(x[j])),    which is zero on orbits,
+# added to it; mu is zero at a lane's last site.  With omega = (n.u)^2 and m = mu.u a wave has in
+# this sum  p'(A cos z + B sin z),  A = m cos y - omega sin y,  B = -omega cos y - m sin y,  and it
+# is, beside its value at X and P,
+#       P B z - P A (c.e)^2/2 + H e A + H e B (c.e)                                           (4)
+# and a remainder, as |z^2 - (c.e)^2| <= rest (reach + |c|_1), of at most
+#       |P| (|A| (rest (reach + |c|_1)/2 + reach^4/24) + |B| reach^3/6)
+#       + H (|A| reach^2/2 + |B| (rest + reach^3/6)) + W (|A| + |B| reach).
+# What is linear in D has at a site the factor G = 2 mu[j] - mu[j-1] - mu[j+1] + sum of P B u.  From
+# the last site inwards the next mu is the one that makes it vanish, but for its rounding; at x[1]
+# and x[0], where both lanes meet, G D is G times the sides of the rectangle and the rounding of x*.
+# So the sum is a number, a linear and a quadratic form in the symbols, and small things.  The forms
+# are added up with their signs over all sites.  Over the cube the squares add at most what their
+# positive coefficients do, and the rest, linear in each symbol, is largest at a corner.
+#
+# Roundings.  u = 2^-53.  Which numbers X, P, H, L, d, M, n and mu are does not matter, but what
+# bounds something must.  (S_i = |P_i| + |P_2|, for the coordinates i.)
+#   sine, cosine: SINE is 16 u, see lockstep_sincos.
+#   beta: products P s are off by 18 u |P|; the entries by u (2 + 20 S_i) < F_i / 2 and, beside the
+#       diagonal, by 18 u |P_2| < F_2 / 2, where F_i = 64 u (1 + S_i), F_2 = 64 u |P_2|.
+#   (i): in turns 3 u for the sums of |2X - X| <= 1.5 and 22 u |P| / 2 pi for each wave; in radians
+#       u (19 + 22 S_i) < F_i.  The rest of F_i, 42 u, is for whatever is lost below 2^-1022.
+#   (ii): F_i / 2 + 4 u (2 + S_i) < F_i of |L_i|, F_2 of the other, 4 u of |L[o]|, 32 u of H.
+#   beta - M - d: F + 2 u |M|.   I - M d: with inv = 1 / det, each rounded, at most 5 u |inv| (|d00
+#       d11| + d01^2) on the diagonal, as the determinant is off by 2.1 u of these products, the
+#       quotient by u, M d by u of each product; and 2 u |inv d01| (|d00| + |d11|) beside it.
+#   sums of positive terms: MORE = 1 + 2^-40 for a hundred roundings one after the other, and 64 u
+#       more for each site.
+#   omega is off by 3 u, A and B by 24 u size, size = |m| + omega: in the remainder 32 u size are
+#       added to |A| and |B|.  That c is a rounded sum for w = 2 goes into rest.
+#   G: 28 u of each |P| size, 3 u of 2 |mu| and the |mu| before; at x[1] and x[0] u more, u of the
+#       mu of the other lane, and u of the product: 48 u.
+#   (i) again: |mu| F.
+#   the number: mass is the sum of 2|n|^2 + |P| omega, and 2|n.n'| over neighbours is no more.  A
+#       term is off by 48 u of it, and over K sites of each lane 4K more are for the sums.
+#   the forms: A and B are off by 24 u, the products by 4 u; over K sites the sums by 2K u: mass is
+#       that of size (|P| |c|_1^2/2 + H (1 + |c|_1)).  At the corners 64 u of what is added there.
+# Masses are at least 1, as one n is a unit vector but for rounding, and below HUGE: so 64 u mass is
+# more than all underflows.  A NaN is not below zero, and proves nothing.
+
+np = None                               # numpy, once the fast path is wanted
+UNIT = 2.0 ** -53
+TWO_PI = 2 * math.pi                    # off by 0.35 u of itself
+SINES = [(-1) ** k / math.factorial(2 * k + 1) for k in range(8, 0, -1)]
+COSINES = [(-1) ** k / math.factorial(2 * k) for k in range(8, 1, -1)]
+SINE, GRAIN, MORE, HUGE = 16 * UNIT, 64 * UNIT, 1 + 2.0 ** -40, 2.0 ** 900
+XSTAR_REST = 2.0 ** -51                 # of x*, in radians; see Lockstep
+TINY = 2.0 ** -200
+FAST_SIZE = 2.0 ** 10                   # of parameters, x* and regions
+FAST_CUTS = 52                          # of an axis
+BATCH, SMALLEST_BATCH = 1024, 16
+FAST_SITES, ROOM = 4096, 1 << 19        # of a lane; of all lanes at a time
+FIRST_TRY = 96                          # sites, for lanes that are longer
+FARTHEST = 1.0                          # reach of a wave that is there
+CURVED, CAUTION = 0.3, (3.0, 0.3)       # of the choice of n: see witnesses, settle
+
+
+def sound():
+    """Imports numpy.  Does it round to nearest, below 2^-1022, too, and are its halves even?"""
+    global np
+    import numpy as np
+    draw = random.Random(1)
+    x, y = (np.array([draw.uniform(-1, 1) * 2.0 ** draw.randint(-500, 500) for _ in range(200)]
+                     + [2.0 ** -1022, 1 + 2.0 ** -30, 2.0 ** -530 / 3, 0.7, -1.1])
+            for _ in range(2))
+    one = np.ones_like(x)
+    with np.errstate(all="ignore"):
+        for found, exact in ((x + y, Fraction.__add__), (x - y, Fraction.__sub__),
+                             (x * y, Fraction.__mul__), (x / y, Fraction.__truediv__),
+                             (x - one, lambda a, b: a - 1)):
+            if found.tolist() != [float(exact(Fraction(a), Fraction(b)))
+                                  for a, b in zip(x.tolist(), y.tolist())]:
+                return False
+        return (np.array([2.0 ** -1022] * 9) / 2 * 2).tolist() == [2.0 ** -1022] * 9 \
+            and np.rint(np.array([0.5, 1.5, -2.5, 0.49, 7.0])).tolist() == [0, 2, -2, 0, 7]
+
+
+def lockstep_sincos(turns):
+    """Sines and cosines of the three waves at 2 pi turns, |turns| <= 1/2: each within SINE.
+
+    turns - n/4 is exact (Sterbenz) and at most 1/8; the angle is off by 1.4 u of itself.  Taylor's
+    polynomials are off by less than u/50.  sine: 0.8 u for the angle, 0.6 u for what is added to
+    it, at most 0.081, 0.8 u for the sum; cosine: 0.8 u, 0.4 u for the square's half, 0.1 u for the
+    rest, 0.4 u and u for the sums: 4 u each, and by the sum formulas 4 u 2 sqrt 2 + 3 u < 16 u.
+    """
+    n = np.rint(4 * turns)
+    angle = (turns - 0.25 * n) * TWO_PI
+    square = angle * angle
+    sine, cosine = SINES[0] * square, COSINES[0] * square
+    for a in SINES[1:]:
+        sine = (sine + a) * square
+    for a in COSINES[1:-1]:
+        cosine = (cosine + a) * square
+    sine = angle + angle * sine
+    cosine = 1 - (0.5 * square - square * square * (cosine + COSINES[-1]))
+    quadrant = n.astype(np.int64)
+    odd = (quadrant & 1) == 1
+    s0, s1 = np.where(odd, cosine, sine) * (1 - (quadrant & 2))
+    c0, c1 = np.where(odd, sine, cosine) * (1 - (quadrant + 1 & 2))
+    return np.stack((s0, s1, s0 * c1 + c0 * s1)), np.stack((c0, c1, c0 * c1 - s0 * s1))
+
+
+def matrices(w):
+    """The sum of w u u' over the three waves, as the entries 00, 01, 11."""
+    return np.stack((w[0] + w[2], w[2], w[1] + w[2]))
+
+
+def inverses(d):
+    inv = 1 / (d[0] * d[2] - d[1] * d[1])
+    return np.stack((d[2] * inv, -d[1] * inv, d[0] * inv))
+
+
+def applied(d, v):
+    return np.stack((d[0] * v[0] + d[1] * v[1], d[1] * v[0] + d[2] * v[1]))
+
+
+def are_definite(d):
+    return (d[0] > 0) & (d[0] * d[2] > d[1] * d[1])
+
+
+def least_of(d):
+    return (d[0] + d[2] - np.sqrt((d[0] - d[2]) ** 2 + 4 * d[1] * d[1])) / 2
+
+
+class Prisms:
+    """Prisms followed and bounded in lockstep; all arrays end with the axis of lanes, those ahead
+    before those back."""
+
+    def __init__(self, box, symbols, xstar, l, caution=1.0):
+        """The box: P, H and W of the waves, X[1] in turns and half the sides of the rectangle in
+        radians; where (symbols) each wave's parameter has its symbol, if it has any; l; and how
+        much the choice of n shies at sites that are not well known."""
+        P, H, W, x, sides = box
+        self.size, self.symbols = x.shape[1], symbols
+        self.P, self.H, self.W = self.both(P, P), self.both(H, H), self.both(W, W)
+        self.magnitude, self.l = np.abs(self.P), self.both(l, l)
+        self.caution = self.both(caution + 0 * l, caution + 0 * l)
+        self.present = [w for w in range(3) if (P[w] != 0).any() or W[w].any()]
+        self.F = GRAIN * (1 + self.magnitude[:2] + self.magnitude[2])
+        self.angles = 1 + max([k for k in symbols if k is not None] + [-1])     # their first symbol
+        start = np.repeat(np.array(xstar)[:, None], self.size, axis=1)
+        columns, none = np.zeros((2, self.angles + 2, self.size)), np.zeros_like(x)
+        for i in (0, 1):
+            columns[i, self.angles + i] = sides[i]
+        blank, rounding = np.zeros_like(columns), np.full_like(x, XSTAR_REST)
+        self.sides, self.rounding = self.both(sides, none), self.both(none, rounding)
+        self.before = self.both(start, x), self.both(blank, columns), self.both(rounding, none)
+        self.first = self.both(x, start), self.both(columns, blank), self.both(none, rounding)
+        self.sites = []
+
+    @staticmethod
+    def both(ahead, back):
+        return np.concatenate((ahead, back), axis=-1)
+
+    def other(self, lanes):
+        return np.roll(lanes, self.size, axis=-1)
+
+    def joined(self, lanes):
+        return lanes[..., :self.size] + lanes[..., self.size:]
+
+    def follow(self):
+        """Follows all lanes until each reaches too far, and yields True then and wherever an orbit
+        may be long enough; False if there is no room for more.
+
+        A lane that has come to its end stays as zeros, alive no more, and nothing is said of it.
+        """
+        P, H, W, F, magnitude = self.P, self.H, self.W, self.F, self.magnitude
+        most, loose, slope = magnitude + H + W, H + W, P / TWO_PI
+        F2, from_H = GRAIN * magnitude[2], 32 * UNIT * (H[:2] + H[2])
+        (X0, L0, r0), (X, L, r) = self.before, self.first
+        size0 = np.abs(L0).sum(axis=1)
+        alive, d, f, due = np.ones(X.shape[1], bool), None, None, FIRST_TRY
+        while True:
+            columns = np.concatenate((L, (L[0] + L[1])[None]))
+            size = np.abs(columns).sum(axis=1) * MORE
+            rest = np.concatenate((r, (r[0] + r[1] + 2 * UNIT * size[2])[None])) * MORE
+            reach = (size + rest) * MORE
+            if not self.sites:                      # how far each symbol moves a lane's last site
+                self.last = np.abs(columns[self.present]).sum(axis=0)
+            for w in self.present:
+                alive = alive & (reach[w] <= FARTHEST)
+            if self.sites and (not alive.any() or len(self.sites) == FAST_SITES):
+                yield True
+                return
+            if len(self.sites) * alive.size >= ROOM and self.size > SMALLEST_BATCH:
+                yield False
+                return
+            if len(self.sites) == due:
+                yield True
+                due += due // 2
+            for array in (L, r, columns, size, rest, reach):
+                np.copyto(array, 0, where=~alive)
+            np.copyto(self.last, np.abs(columns[self.present]).sum(axis=0), where=alive)
+            s, c = lockstep_sincos(X)
+            beta = -matrices(P * s)
+            beta[::2] += 2
+            self.sites.append((alive, s, c, columns, size, rest, reach, beta))
+
+            wave = slope * c
+            X, X0 = 2 * X - X0 + (wave[:2] + wave[2]), X
+            X -= np.rint(X)
+            new = np.stack((beta[0] * L[0] + beta[1] * L[1], beta[1] * L[0] + beta[2] * L[1])) - L0
+            wave = H * c
+            for w, k in enumerate(self.symbols):
+                if k is not None:
+                    for i in ((0,), (1,), (0, 1))[w]:
+                        new[i, k] += wave[w]
+            s, c, square = np.abs(s) + SINE, np.abs(c) + SINE, reach * reach
+            bent = most * (c * square / 2 + s * square * reach / 6) + loose * s * reach + W * c
+            err = bent[:2] + bent[2] + F * (1 + size[:2]) + F2 * size[1::-1] \
+                + 4 * UNIT * size0[:2] + from_H
+            if d is None:                           # d[q] = beta, f = err - r[o] + roundings
+                f, d = r0 + err + F * r + F2 * r[::-1], beta
+            else:
+                diagonal, square = d[0] * d[2], d[1] * d[1]
+                det = diagonal - square
+                inv = 1 / det
+                M = np.stack((d[2] * inv, -d[1] * inv, d[0] * inv))
+                m, inv = np.abs(M), np.abs(inv)
+                alive = alive & (np.abs(det) > 2.0 ** -60)
+                f = np.stack((m[0] * f[0] + m[1] * f[1], m[1] * f[0] + m[2] * f[1])) + err \
+                    + (F + 2 * UNIT * m[::2]) * r + (F2 + 2 * UNIT * m[1]) * r[::-1] \
+                    + 8 * UNIT * inv * ((np.abs(diagonal) + square) * r0 + np.abs(d[1])
+                                        * (np.abs(d[0]) + np.abs(d[2])) * r0[::-1])
+                d = beta - M
+            f = f * MORE
+            m = np.abs(d)
+            r, r0 = (np.stack((m[0] * r[0] + m[1] * r[1], m[1] * r[0] + m[2] * r[1])) + f) * MORE, r
+            L, L0, size0 = new, L, size
+
+    def witnesses(self):
+        """Vectors n for each site, and how many tails begin there: one where a lane ends, one where
+        n begins amid a lane.  Nothing rests on which vectors these are, if only n is zero beyond.
+
+        At each site the recursions from both ends of the orbit are compared, as in witness() above,
+        to beta and something for what the bound will add to a site.  A recursion that fails begins
+        anew behind that site.  Where both together have a negative eigenvalue and beta is least is
+        its eigenvector, and n follows outwards by the recursions.
+        """
+        sites, none = self.sites, np.zeros_like(self.l)
+        blocks, tail = [], np.stack((self.l, none, self.l))
+        for _, _, _, _, _, rest, reach, beta in sites:
+            more = (self.caution * (rest + reach * reach / 6) + CURVED * reach) * reach
+            blocks.append(beta + matrices((self.magnitude + self.H) * more))
+        outer, back, whole = [], [], []             # the recursion from the end
+        inverse, beyond, good = tail, none > 0, none == 0
+        for site, block in zip(sites[::-1], blocks[::-1]):
+            alive = site[0]
+            whole.append(good)
+            outer.append(block - np.where(beyond, inverse, tail))
+            good = good & (are_definite(outer[-1]) | ~alive)
+            inverse, beyond = inverses(outer[-1]), alive
+            back.append(inverse)
+        outer, back, whole = outer[::-1], back[::-1], whole[::-1]
+        begins, ahead = [], []                      # the recursion from the other lane
+        good, inverse = self.other(good & beyond), self.other(inverse)
+        best, place = np.full_like(none, math.inf), np.full(none.shape, -1)
+        form = np.zeros((3, none.size))
+        for k, (site, block) in enumerate(zip(sites, blocks)):
+            begins.append(~good)
+            inner = block - np.where(good, inverse, tail)
+            joint = outer[k] + inner - block
+            score = np.where(site[0] & whole[k] & (least_of(joint) < 0), least_of(block), math.inf)
+            better = score < best
+            best, place = np.where(better, score, best), np.where(better, k, place)
+            np.copyto(form, joint, where=better)
+            good, inverse = are_definite(inner), inverses(inner)
+            ahead.append(inverse)
+        first = self.both(best[:self.size] <= best[self.size:], best[self.size:] < best[:self.size])
+        place = np.where(first, place, -1)          # of the two lanes one
+        low = least_of(form)
+        p, q, r = form
+        v = np.where(p > r, np.stack((q, low - p)), np.stack((low - r, q)))
+        length = np.sqrt(v[0] * v[0] + v[1] * v[1])
+        v = np.where(length > 0, v / np.where(length > 0, length, 1), np.stack((p <= r, p > r)))
+        n, x = [], np.zeros_like(v)
+        for k in range(len(sites) - 1, -1, -1):
+            inward = (place > k) & ~begins[min(k + 1, len(sites) - 1)]
+            x = np.where(place == k, v, np.where(inward, applied(ahead[k], x), 0))
+            n.append(x)
+        n.reverse()
+        across = self.other((place >= 0) & ~begins[0]) & sites[0][0]
+        n[0] = np.where(across, applied(back[0], self.other(n[0])), n[0])
+        tails = []
+        for k, site in enumerate(sites):
+            if k:
+                outward = (place < k) & ((place >= 0) | across)
+                n[k] = np.where(outward, applied(back[k], n[k - 1]), n[k])
+            n[k] = np.where(site[0], n[k], 0)
+            ends = site[0] & ~sites[k + 1][0] if k + 1 < len(sites) else site[0]
+            tails.append(ends * 1.0 + (begins[k] & (place >= k)))
+        return n, tails
+
+    def bound(self):
+        """An upper bound of the left side of (3) for each prism; and what each symbol adds to it,
+        about, which says where to cut."""
+        K, l, F = len(self.sites), self.l, self.F
+        n, tails = self.witnesses()
+        P, H, W, magnitude = self.P, self.H, self.W, self.magnitude
+        known = self.angles + 2
+        value, mass, error = np.zeros_like(l), np.zeros_like(l), np.zeros_like(l)
+        linear, square = np.zeros((known, l.size)), np.zeros((known, known, l.size))
+        mu = mu1 = n1 = np.zeros((2, l.size))       # of this site, and of the one beyond
+        for k in range(K - 1, -1, -1):
+            _, s, c, columns, size, rest, reach, _ = self.sites[k]
+            n0 = n[k]
+            omega = np.stack((n0[0] * n0[0], n0[1] * n0[1], (n0[0] + n0[1]) ** 2))
+            long = omega[0] + omega[1]
+            wave = P * omega * s
+            value += 2 * long - (wave[0] + wave[1] + wave[2]) - l * tails[k] * long \
+                - 2 * (n0[0] * n1[0] + n0[1] * n1[1])
+            wave = magnitude * omega
+            mass += 2 * long + wave[0] + wave[1] + wave[2]
+            m = np.concatenate((mu, (mu[0] + mu[1])[None]))
+            A, B, both = m * c - omega * s, -omega * c - m * s, np.abs(m) + omega
+            scaled = (P * A / 2)[:, None] * columns
+            for w, symbol in enumerate(self.symbols):
+                square -= scaled[w][:, None] * columns[w]
+                if symbol is not None:
+                    linear[symbol] += H[w] * A[w]
+                    mixed = (H[w] * B[w] / 2) * columns[w]
+                    square[symbol] += mixed
+                    square[:, symbol] += mixed
+            wave = both * (magnitude * size * size / 2 + H * (1 + size))
+            mass += 2 * (wave[0] + wave[1] + wave[2])
+            a, b = np.abs(A) + 32 * UNIT * both, np.abs(B) + 32 * UNIT * both
+            second, third = reach * reach / 2, reach * reach * reach / 6
+            wave = magnitude * (a * (rest * (reach + size) / 2 + second * second / 6) + b * third) \
+                + H * (a * second + b * (rest + third)) + W * (a + b * reach)
+            error += wave[0] + wave[1] + wave[2]
+            wave, turn = magnitude * both, P * B
+            G = 2 * mu - mu1 + (turn[:2] + turn[2])
+            turn = wave[:2] + wave[2] + 2 * np.abs(mu) + np.abs(mu1)
+            if k:
+                small = np.abs(mu) * F + 48 * UNIT * turn * reach[:2]
+                mu, mu1, n1 = G, mu, n0
+            else:
+                across = self.other(mu)
+                G, turn = G - across, turn + np.abs(across)
+                small = np.abs(mu) * F + np.abs(G) * self.rounding \
+                    + 48 * UNIT * turn * (self.sides + self.rounding)
+                linear[self.angles:] += G * self.sides
+            error += small[0] + small[1]
+        value, mass, error, linear, square = map(self.joined, (value, mass, error, linear, square))
+        value -= 2 * (n[0][0, :self.size] * n[0][0, self.size:]
+                      + n[0][1, :self.size] * n[0][1, self.size:])
+        largest, highest = np.full_like(value, -math.inf), np.zeros_like(value)
+        for signs in itertools.product((1, -1), repeat=known - 1):
+            signs = (1, *signs)
+            mixed = sum([2 * signs[i] * signs[j] * square[i, j]
+                         for i in range(known) for j in range(i)])
+            straight = sum([sign * x for sign, x in zip(signs, linear)])
+            largest = np.maximum(largest, np.abs(straight) + mixed)
+        for i in range(known):
+            highest += np.maximum(square[i, i], 0)
+        added = np.abs(linear).sum(axis=0) + np.abs(square).sum(axis=(0, 1))
+        error = (error + UNIT * ((4 * K + 64) * mass + 64 * added)) * (MORE + 64 * UNIT * K)
+        bound = np.where(mass < HUGE, value + (largest + highest + error), math.inf)
+        share = self.joined(self.last) + TINY
+        share = share / share.sum(axis=0)
+        blame = np.where(value < 0, np.abs(linear) + np.abs(square).sum(axis=0) + error * share,
+                         share)
+        return bound, blame
+
+
+class Lockstep:
+    """The fast path of one claim."""
+
+    def __init__(self, claim, criterion):
+        """What all prisms share; ValueError if the claim has numbers that it is not made for.
+
+        x* in turns is off by 2^-54 of its rounding and by 2^-80 of the integers, less than
+        XSTAR_REST / 2 pi.
+        """
+        self.together = claim.together
+        self.centre = [float(x) for x in claim.centre[:3]] + [float(v / 2 % 1)
+                                                              for v in claim.centre[3:]]
+        self.half = [float(x) for x in claim.half[:3]] + [float(v / 2) for v in claim.half[3:]]
+        if max(map(abs, (*self.centre, *self.half, *claim.xstar))) > FAST_SIZE:
+            raise ValueError("too large for the fast path")
+        self.axes = [2] * any(claim.half[:3]) if claim.together else \
+            [2 + w for w in range(3) if claim.half[w]]
+        where = [2 if claim.together else 2 + w for w in range(3)]
+        self.symbols = [self.axes.index(k) if k in self.axes else None for k in where]
+        self.axes += [0, 1]                         # of the symbols
+        self.present = [w for w in range(3) if claim.centre[w] or claim.half[w]]
+        if not self.present:
+            raise ValueError("no wave: orbits without end")
+        half_turn = Fraction(1, 2)
+        self.xstar = [float((Fraction(x, 2 * criterion.fixed.pi) + half_turn) % 1 - half_turn)
+                      for x in criterion.xstar]
+        self.batch = BATCH
+
+    def box(self, index, cuts):
+        """Boxes that cover these cells, as Prisms takes them.
+
+        at and part are exact.  The doubles near centre c and half-width h are off by u of them, the
+        products and sums by u of theirs: all in all by less than 8 u (c + h).
+        """
+        part = np.ldexp(1.0, -cuts.astype(np.intc))
+        at = (2 * index + 1 - (1 << cuts)) * part
+        P, H, W = np.zeros((3, 3, at.shape[1]))
+        for w in self.present:
+            axis, c, h = 2 if self.together else 2 + w, self.centre[w], self.half[w]
+            P[w], H[w] = c + h * at[axis], h * part[axis]
+            W[w] = 8 * UNIT * (abs(c) + h) + TINY
+        X, sides = np.empty((2, 2, at.shape[1]))
+        for i in (0, 1):
+            c, h = self.centre[3 + i], self.half[3 + i]
+            X[i] = c + h * at[i]
+            sides[i] = TWO_PI * MORE * (h * part[i] + (8 * UNIT * (c + h) + TINY))
+        return P, H, W, X - np.rint(X), sides
+
+    def attempt(self, index, cuts, l, caution):
+        """Is (3) true of all orbits of these cells?  For each, and the axis to cut it along, -1 if
+        that seems vain; None if their orbits are too long for so many at a time."""
+        with np.errstate(all="ignore"):
+            prisms = Prisms(self.box(index, cuts), self.symbols, self.xstar, l, caution)
+            excluded = np.zeros(l.shape, bool)
+            for ready in prisms.follow():
+                if not ready:
+                    return None
+                bound, blame = prisms.bound()
+                excluded |= bound < 0
+                if excluded.all():
+                    break
+        vain = prisms.joined(prisms.sites[-1][0]) & (len(prisms.sites) == FAST_SITES)
+        return excluded, np.where(vain, -1, np.array(self.axes)[blame.argmax(axis=0)])
+
+    def settle(self, cells, least, exactly):
+        """Decides on cells with these l: (number of the first that is not excluded, why not) or
+        None, and how many pieces each took.
+
+        Those that fail are halved and tried again, up to the checker's limits and with n chosen
+        boldly and cautiously in turn; what fails then, exactly(number) -> (None or why not,
+        pieces) decides on.
+        """
+        depth = np.array([sum(cuts) for _, cuts in cells])
+        pieces, refused = np.zeros(len(cells), int), None
+        fine = [n for n, (_, cuts) in enumerate(cells) if max(cuts) > FAST_CUTS]
+        rest = [n for n, (_, cuts) in enumerate(cells) if max(cuts) <= FAST_CUTS][::-1]
+        index, cuts = [np.array([cells[n][part] for n in rest], np.int64).reshape(-1, 5).T
+                       for part in (0, 1)]
+        todo = [index, cuts, np.array([least[n] for n in rest]), np.array(rest, int)]
+        while fine or todo[3].size:
+            for n in fine:
+                if refused is None or n < refused[0]:
+                    why, tried = exactly(n)
+                    pieces[n] += tried
+                    refused = (n, why) if why else refused
+            keep = ~np.isin(todo[3], fine) & (todo[3] < (refused[0] if refused else len(cells)))
+            todo, fine = [x[..., keep] for x in todo], []
+            if not keep.any():
+                break
+            index, cuts, l, number = [x[..., -self.batch:] for x in todo]
+            halvings = cuts.sum(axis=0) - depth[number]
+            tried = self.attempt(index, cuts, l, np.where(halvings % 2, *CAUTION))
+            if tried is None:
+                self.batch //= 2
+                continue
+            todo = [x[..., :-self.batch] for x in todo]
+            pieces += np.bincount(number, minlength=len(cells))
+            excluded, axis = tried
+            lost = ~excluded & ((axis < 0) | (halvings >= MAX_HALVINGS)
+                                | (pieces[number] >= MAX_PIECES)
+                                | (cuts[axis, np.arange(axis.size)] >= FAST_CUTS))
+            fine = sorted(set(number[lost].tolist()))
+            index, cuts, l, number, axis = [x[..., ~excluded].repeat(2, axis=-1)
+                                            for x in (index, cuts, l, number, axis)]
+            at = np.arange(axis.size)
+            index[axis, at] = 2 * index[axis, at] + at % 2
+            cuts[axis, at] += 1
+            todo = [np.concatenate(both, axis=-1) for both in zip(todo, (index, cuts, l, number))]
+        return refused, pieces.tolist()
+
+
+def lockstep(claim, criterion):
+    """The fast path, or None: it is not made for the claim's numbers, or, as a line then says, it
+    has not the machine it needs."""
+    try:
+        if sound():
+            return Lockstep(claim, criterion)
+        why = "numpy does not round as it must"
+    except ImportError:
+        why = "numpy is not installed"
+    except ValueError:
+        return None
+    complain(why + ": all is checked in integers, hundreds of times slower")
+    return None
+
+
 # ---- what was confirmed already
 
 STATE = """converse-check state 1
@@ -923,14 +1450,20 @@ def cost(cell):
 def check_chunk(chunk):
     """Checks leaves in order: (how many are confirmed, their cost and pieces, what then fails)."""
     criterion, = _worker
-    spent = pieces = 0
-    for n, (ordinal, cell) in enumerate(chunk):
-        why, tried = criterion.excluded(cell)
-        if why:
-            return n, spent, pieces, (ordinal, cell, why)
-        spent += cost(cell)
-        pieces += tried
-    return len(chunk), spent, pieces, None
+    cells, refused, pieces = [cell for _, cell in chunk], None, []
+    if criterion.fast:
+        refused, pieces = criterion.fast.settle(
+            cells, [criterion.least_in_double(cell) for cell in cells],
+            lambda n: criterion.excluded(cells[n]))
+    else:
+        for n, cell in enumerate(cells):
+            why, tried = criterion.excluded(cell)
+            if why:
+                refused = n, why
+                break
+            pieces.append(tried)
+    n = refused[0] if refused else len(cells)
+    return n, sum(map(cost, cells[:n])), sum(pieces[:n]), refused and (*chunk[n], refused[1])
 
 
 @contextlib.contextmanager
@@ -954,6 +1487,8 @@ def begin_apart(criterion, stop):
     if hasattr(signal, "pthread_sigmask"):
         signal.pthread_sigmask(signal.SIG_UNBLOCK, SIGNALS)
     _worker[:] = [criterion]
+    if criterion.fast:
+        sound()
     threading.Thread(target=end_with_parent, args=(stop,), daemon=True).start()
 
 
@@ -1007,12 +1542,13 @@ class Result:
         return self.status == VERIFIED
 
 
-def verify(path, jobs=1, sample=None, state=None, bar=False):
+def verify(path, jobs=1, sample=None, state=None, bar=False, exact=False):
     """Verifies a proof file: returns a Result, or raises Rejected, NotConfirmed or Unusable.
 
     jobs: processes.  sample: so many leaves only, chosen by chance: a spot check.
     state: a file that remembers what was confirmed, so that an interrupted check can go on; it
-    is kept in the end.  bar: show the progress on stderr, if that is a terminal.
+    is kept in the end.  bar: show the progress on stderr, if that is a terminal.  exact: in
+    integers alone, as where there is no numpy.
     """
     if jobs < 1 or sample is not None and sample < 1:
         raise ValueError("jobs and sample are 1 or more")
@@ -1026,6 +1562,8 @@ def verify(path, jobs=1, sample=None, state=None, bar=False):
         if criterion.not_at_once():
             raise Rejected("larger parameters are not excluded at once: B <= 10/3 for some")
         raise NotConfirmed("that larger parameters are excluded at once (B > 10/3)")
+    if not exact:
+        criterion.fast = lockstep(claim, criterion)
     done = State(state, claim)
     earlier, proved = done.confirmed, claim.tree.count("P")
     chosen = range(earlier, proved)
@@ -1037,7 +1575,8 @@ def verify(path, jobs=1, sample=None, state=None, bar=False):
         return ((n, cell) for n, cell in enumerate(cells) if n in chosen)
 
     queue = work()
-    chunks = iter(lambda: list(itertools.islice(queue, CHUNK)), [])
+    size = min(FAST_CHUNK, -(-len(chosen) // (CHUNKS * jobs)) or 1) if criterion.fast else CHUNK
+    chunks = iter(lambda: list(itertools.islice(queue, size)), [])
     try:
         with Bar(work() if bar else (), len(chosen)) as progress, \
                 contextlib.closing(in_order(chunks, jobs, criterion)) as results:
@@ -1164,7 +1703,9 @@ def report(claim, criterion, done, earlier, sampled):
     bound = -(-criterion.B * 10 ** places // criterion.fixed.one)       # rounded up
     lines += [
         "", "Checker : converse-check " + __version__,
-        "Method : Loewner criterion, Taylor models in integers of %d bits" % criterion.fixed.bits,
+        "Method : Loewner criterion, %sTaylor models in integers of %d bits" % (
+            "multipliers in doubles, and where these fail " * bool(criterion.fast),
+            criterion.fixed.bits),
         "x* : %s %s" % tuple(map(decimal_text, claim.xstar)),
         "B : %s" % decimal_text(Fraction(bound, 10 ** places)),
         "Leaves : %d, of which %d proved and %d symmetric" % (
@@ -1234,6 +1775,8 @@ def parser():
                    help="only a spot check, of K leaves chosen by chance; not a verification")
     p.add_argument("--state", metavar="FILE", help=(
         "remember in FILE what was confirmed, and go on from there if it exists; it is believed"))
+    p.add_argument("--exact", action="store_true", help=(
+        "bound all leaves in integers, not first in doubles by numpy: hundreds of times slower"))
     p.add_argument("--quiet", action="store_true", help="no report of status 0, no bar")
     p.add_argument("--version", action="version", version="converse-check " + __version__)
     return p
@@ -1248,7 +1791,7 @@ def command(argv, options):
             stream.reconfigure(errors="backslashreplace")
         parser().parse_args(argv, options)
         result = verify(options.file, min(options.jobs, 61), options.sample, options.state,
-                        not options.quiet)
+                        not options.quiet, options.exact)
         try:
             if result.status != VERIFIED or not options.quiet:
                 print(result.text, flush=True)
