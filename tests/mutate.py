@@ -354,7 +354,7 @@ MUTATIONS = [
     ("orbits/relax.c", "j > 0 ? j - 1 : q - 1", "j > 0 ? j - 1 : 0"),
     ("orbits/relax.c", "(i == 1 ? 0.0 : 2.0) - of->eps", "2.0 - of->eps"),
     ("orbits/relax.c", "squares < HUGE_VAL ? largest : HUGE_VAL", "largest"),
-    ("orbits/relax.c", "fabs(difference) <= a->noise", "fabs(difference) <= 0.0"),
+    ("orbits/relax.c", "!(difference <= a->doubt)", "!(difference <= 0.0)"),
     ("orbits/relax.c", "return difference < 0.0;", "return difference > 0.0;"),
     ("orbits/relax.c", "return may_walk && along < 0.0 &&", "return may_walk && along > 0.0 &&"),
     ("orbits/relax.c", "return may_walk && along < 0.0 &&", "return 0 &&"),
@@ -395,6 +395,8 @@ MUTATIONS = [
 
 # Survivors that do not matter, by what stands there, with the reason.
 HARMLESS = {
+    "        if (isnan(bound))\n            return bound;\n":
+        "a second belt: larger keeps the NaN until the cells run out",
     "mpz_sub_ui(lower, lower, 1UL);":
         "without it pi is right unless fifteen digits of it coincide with nines or zeros",
     "        if (j == 2) ":
