@@ -158,6 +158,7 @@ def test_one_s_own_potentials():
     (lambda: orbits.Fourier({(1,): (1, 0), (1, 1): (1, 0)}), "all with one or all with two"),
     (lambda: orbits.Fourier({(1, 2): (float("nan"), 0)}), "finite"),
     (lambda: orbits.Fourier({(1, 10 ** 9): (1, 0)}), "1000"),
+    (lambda: orbits.Fourier({(1, 2): (1e308, 0)}), "too large"),
     (lambda: orbits.FromPython(object(), 2), "value"),
     (lambda: orbits.trig.evaluate([1, 2]), "shape"),
     (lambda: orbits.straight(orbits.trig, (1, 2), 0), "whole"),

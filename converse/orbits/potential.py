@@ -91,10 +91,7 @@ class Fourier(Potential):
         n, = widths
         self.scale_enclosure = scale_enclosure
         self.scale = float(sum(scale_enclosure(30)) / 2)
-        size = [(math.hypot(*k), math.hypot(c, s)) for k, (c, s) in self.terms.items()]
-        bound = [abs(self.scale) * (2 * math.pi) ** order * (1 + 1e-12)
-                 * math.fsum(k ** order * c for k, c in size) for order in (2, 3)]
-        super().__init__(lib.CV_FOURIER, name, n, start or (0.0,) * n, *bound)
+        super().__init__(lib.CV_FOURIER, name, n, start or (0.0,) * n, *self._bounds())
         self._arrays = [np.array([tuple(k) + (0,) * (2 - n) for k in self.terms], dtype=np.intc)] + [
             np.array([float(term[i]) * self.scale for term in self.terms.values()]) for i in (0, 1)]
         self.native.terms = len(self.terms)
@@ -107,6 +104,17 @@ class Fourier(Potential):
         if STUDIED.get(self.name) is self:
             return super().__reduce__()
         return Fourier, (self.terms, self.name, self.start)
+
+    def _bounds(self):
+        """Curvature and lipschitz: (2 pi)^m times the sum of |k|^m |amplitude|, m = 2 and 3, added up
+        exactly and a little more; as a double at least that, float() being off by 2^-53 of it."""
+        size = max(map(abs, self.scale_enclosure(20)))
+        sums = [sum(size * _root_up(sum(i * i for i in k)) ** m * _root_up(c * c + s * s)
+                    for k, (c, s) in self.terms.items()) for m in (2, 3)]
+        if max(sums) > 10 ** 300:
+            raise ValueError("the amplitudes of a Fourier sum are too large for doubles")
+        return [float(bound * x * (1 + Fraction(1, 2 ** 50)))
+                for bound, x in zip(sums, (Fraction("39.4785"), Fraction("248.0503")))]
 
     def _maximum(self):
         """The best of a grid of points, then Newton."""
@@ -195,6 +203,11 @@ def _root(x, digits):
     scale = 10 ** digits
     low = math.isqrt(x.numerator * scale ** 2 // x.denominator)
     return Fraction(low, scale), Fraction(low + 1, scale)
+
+
+def _root_up(x):
+    """Not below the square root, by at most 10^-9."""
+    return _root(Fraction(math.ceil(x * 10 ** 18), 10 ** 18), 9)[1] if x else Fraction(0)
 
 
 def _trig_scale(digits):

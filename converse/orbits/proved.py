@@ -28,9 +28,6 @@ SOFT = Fraction(NEAR_NULL)  # eigenvalues of the Hessian below it in size are no
 GUARD = 10                  # places by which what must be seen stands above rounding
 SHOWN = 20                  # places of an interval in a report, at most
 
-# Bounds of |V''| and of the Lipschitz constant of V'': docs/orbits-proof.md.
-BOUNDS = {lib.CV_POLY: (Fraction(114), Fraction(2662)), lib.CV_FF: (Fraction(60), Fraction(320))}
-
 
 class NotProved(ConverseError):
     """No theorem; the text says why.  Nothing is said against the orbit."""
@@ -138,13 +135,11 @@ class _Exact:
     def __init__(self, state):
         potential = state.potential
         self.q, self.n, kind = state.q, potential.n, potential.native.kind
-        if kind == lib.CV_FOURIER:
-            self.curvature, self.lipschitz = fourier_bounds(potential)
-        elif kind in BOUNDS:
-            self.curvature, self.lipschitz = BOUNDS[kind]
-        else:
+        if kind == lib.CV_PYTHON:
             raise ValueError("nothing can be proved of the potential %s: only Fourier sums, poly "
                              "and ff have exact values" % potential.name)
+        # Doubles that are at least what docs/orbits-proof.md says, taken as what they are.
+        self.curvature, self.lipschitz = map(Fraction, (potential.curvature, potential.lipschitz))
         self.potential = potential
         self.terms = potential.terms if kind == lib.CV_FOURIER else {}
         u = np.zeros((self.q, 2))
@@ -328,21 +323,6 @@ def _exponents(state, exact, kind):
 
 
 # ---- numbers
-
-def fourier_bounds(potential: Fourier) -> Bounds:
-    """Upper bounds of |V''| and of the Lipschitz constant of V'' of a Fourier sum: (2 pi)^m times
-    the sum of |k|^m |amplitude|, m = 2, 3."""
-    size = max(map(abs, potential.scale_enclosure(20)))
-    sums = [sum(size * _root_up(sum(i * i for i in k)) ** m * _root_up(c * c + s * s)
-                for k, (c, s) in potential.terms.items()) for m in (2, 3)]
-    return sums[0] * Fraction("39.4785"), sums[1] * Fraction("248.0503")
-
-
-def _root_up(x):
-    """Not below the square root, by at most 10^-9."""
-    x = Fraction(x) * 10 ** 18
-    return Fraction(math.isqrt(math.ceil(x)) + 1, 10 ** 9) if x else Fraction(0)
-
 
 def _amplitude(potential, c, places):
     """scale * c to within 10^-places, as a decimal string."""

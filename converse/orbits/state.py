@@ -3,7 +3,7 @@
 from dataclasses import dataclass, replace
 from functools import cached_property
 from math import asinh, isfinite, sinh, sqrt
-from typing import NamedTuple, Optional, Tuple
+from typing import NamedTuple, Tuple
 
 import numpy as np
 
@@ -203,7 +203,7 @@ class State:
         return self.below(NEAR_NULL) - self.below(-NEAR_NULL)
 
     @cached_property
-    def exponents(self) -> Optional[np.ndarray]:
+    def exponents(self) -> np.ndarray:
         """The n Lyapunov exponents (1/q) log |l| >= 0 of the orbit, larger first, array (n,); NaN
         where the pivots are not positive definite.  An exponent below about 1/200,000 or 1/(5 q),
         whichever is smaller, is that small, not more exactly known."""
@@ -248,8 +248,8 @@ class State:
 
     def relax(self, eps=None, tol=1e-13, max_steps=10000):
         """A state of least action near this one, at this or another eps, by damped Newton: the
-        gradient's coordinates are at most tol, or 100 tol where rounding hides
-        what would lower them.  ConverseError if that many steps do not reach it."""
+        gradient's coordinates are at most tol, or 100 tol where rounding hides what would lower
+        them.  ConverseError if that many steps do not reach it."""
         n, q = self.potential.n, self.q
         eps = self.eps if eps is None else float(eps)
         u, base = np.zeros((q, 2)), np.zeros((q, 2))
