@@ -120,7 +120,8 @@ char *cv_exact_point(const cv_exact *o, long j, int i);
 
 /* What cv_evaluate may be off by, in V, its gradient and its Hessian (Euclidean and spectral norm),
    at points with coordinates up to reach that are off by 2^-53 (2 reach + 2) themselves.
-   CV_EARGUMENT: nothing is known of a potential of Python, or so far out. */
+   CV_EARGUMENT: nothing is known of a potential of Python, or so far out.  CV_EMACHINE: nor of any,
+   with this arithmetic. */
 int cv_errors(const cv_potential *v, double reach, double errors[3]);
 
 /* Which states of least action of type (p, q), q points z_j + j p/q, may have z_j in the rectangle

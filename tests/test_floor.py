@@ -1,7 +1,9 @@
 """The floors: no orbit and no path has less action than what is proved of all of them."""
 
+import ctypes
 import itertools
 import os
+import platform
 import runpy
 import sys
 from fractions import Fraction
@@ -11,7 +13,7 @@ import numpy as np
 import pytest
 from test_orbits import truth
 
-from converse import orbits
+from converse import ConverseError, orbits
 from converse._native import ffi, lib
 from converse.orbits import floor as _                      # noqa: F401
 from converse.orbits.potential import address
@@ -453,3 +455,20 @@ def test_bad_calls_of_c():
         assert lib.cv_corridor(
             native, 1, 0.1, 70.0, address(one), 0.0, ffi.new("int[1][2]", [nodes]), address(low),
             address(high), least, address(path)) == code
+
+
+def test_the_arithmetic_is_looked_at():
+    """Rounded upwards, doubles bound nothing."""
+    libm, upward = ctypes.CDLL(None), {"x86_64": 0x800, "aarch64": 0x400000}.get(platform.machine())
+    if upward is None or not hasattr(libm, "fesetround"):
+        pytest.skip("no way to change the rounding here")
+    state = orbits.straight(orbits.trig, (5, 7), 9).relax(0.05)
+    before = libm.fegetround()
+    try:
+        libm.fesetround(upward)
+        with pytest.raises(ConverseError, match="floating-point"):
+            orbits.enclosed_action(state)
+    finally:
+        libm.fesetround(before)
+    low, high = orbits.enclosed_action(state)
+    assert low <= state.action <= high

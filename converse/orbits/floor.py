@@ -30,10 +30,11 @@ def _errors(potential, reach):
     """What V, its gradient and its Hessian may be off by in doubles: cv_errors.  ValueError, unless
     potential is one with which anything can be proved."""
     errors = ffi.new("double[3]")
-    if (potential.curvature is None or potential.lipschitz is None
-            or lib.cv_errors(potential.native, reach, errors) < 0):
+    code = lib.cv_errors(potential.native, reach, errors)
+    if potential.curvature is None or potential.lipschitz is None or code == lib.CV_EARGUMENT:
         raise ValueError("nothing can be proved of the potential %s: its rounding errors are not "
                          "known; take orbits.Fourier or one of the thesis's" % potential.name)
+    check(code)
     return tuple(errors)
 
 
