@@ -12,6 +12,7 @@ import os
 import platform
 import random
 import sys
+import time
 from fractions import Fraction
 
 import converse
@@ -31,8 +32,21 @@ BOXES = (("0.0278", "0.313"), ("0.0276", "0.311"), ("0.0274", "0.3085"), ("0.027
 SINGLES = ("0.0271", "0.02704", "0.0270")       # for the thesis's method, without width
 
 BOUNDS = ("0.0272", "0.0250", "0.0220", "0.0200", "0.0180", "0.0160", "0.0152", "0.0148", "0.0144",
-          "0.0142", "0.0141")
-LONG = 30                               # orbits from which the end of the curve is estimated
+          "0.0142", "0.0141", "0.0140")
+# Release 1.1.0, whose sharper method was of first order: seconds of one core, taken in turn with
+# those of release 1.2.0, which took 9.8 for 0.0141; longest orbit.
+FIRST = (("0.0272", 0.0017, 1), ("0.0250", 0.0020, 3), ("0.0220", 0.0028, 7),
+         ("0.0200", 0.0044, 8), ("0.0180", 0.0101, 11), ("0.0160", 0.0499, 20),
+         ("0.0152", 0.1517, 31), ("0.0148", 0.3999, 44), ("0.0144", 2.50, 72),
+         ("0.0142", 19.3, 113), ("0.0141", 137.5, 142))
+LONG = 70                               # orbits from which the end of the curve is estimated
+
+# The diagonal x_0 = x_1 is invariant.  The last invariant circle seen there that runs round has the
+# rotation number [0; 5, 1, 1, ...]; a convergent of it.  experiments/diagonal.py tries others.
+CIRCLE = (987,), 5545
+# Tori were seen up to there by Fourier series, and orbits that are not yet hyperbolic up to there,
+# near the toughest rotation vector that is known: experiments/toughest.py.
+SEEN = 0.0121, 0.01256
 DIGITS = (1, 2, 3, 4, 5, 7, 10, 15, 20, 35, 50, 75, 100, 150, 200)
 WALLS = {
     "thesis": ("0.0280", "0.0278", "0.0276", "0.0274", "0.0272", "0.0271", "0.02706", "0.02704",
@@ -52,7 +66,10 @@ SUCCESSOR = ("4.9578", "0.0982"), ("0.003", "0.006")
 POINTS = (2, 3, 4)                      # of the orbit, x* being number 0
 SAMPLES = 2000
 
-COLOURS = {"1989": "0.1", "thesis": "#1f5f94", "loewner": "#d98a2b"}
+HEIGHTS = {"bound": 6.6, "wall": 5.4}   # of charts with two parts, in inches
+COLOURS = {"1989": "0.1", "thesis": "#1f5f94", "first order": "0.55", "loewner": "#d98a2b"}
+CIRCLE_COLOUR = "#7a3b8f"
+ZOOM = 0.0165                           # up to there the chart of the bound is drawn larger
 FAILED = "#c03030"
 SMALL = {"textcoords": "offset points", "fontsize": 7, "color": "0.3"}
 STYLE = {
@@ -61,6 +78,31 @@ STYLE = {
     "axes.spines.top": False, "axes.spines.right": False, "axes.grid": True,
     "axes.axisbelow": True, "grid.color": "0.92", "grid.linewidth": 0.6,
 }
+
+
+# ---- the map on the diagonal
+
+def diagonal():
+    """The potential of the map on x_0 = x_1, for converse.orbits: half of trig's there, since both
+    coordinates move."""
+    from . import orbits
+
+    half = Fraction(-1, 2)
+    return orbits.Fourier({(1,): (0, half), (2,): (0, half)}, "diagonal",
+                          scale_enclosure=orbits.trig.scale_enclosure)
+
+
+def last_circle():
+    """Where the last invariant circle of the map on the diagonal breaks up: about where the orbits
+    of type CIRCLE turn hyperbolic.  An estimate from numerics.
+
+    The second variation along an orbit on the circle is positive within the diagonal, and where it
+    is across, too, as seen, no segment of the orbit contradicts anything.  One goes through every
+    x* of the diagonal: no proof from such an x* gets below."""
+    from . import orbits
+
+    below, above = orbits.onset(diagonal(), *CIRCLE, step=0.0005, width=1e-6, top=0.02)
+    return (below.eps + above.eps) / 2
 
 
 # ---- measuring: each function yields the rows of a table
@@ -77,11 +119,13 @@ def _problem(centre, half, together=False):
 
 
 def timed(problem, **options):
-    """A proof and its seconds: the least of a few runs, if they are short."""
-    proofs = []
-    while len(proofs) < 5 and sum(proof.seconds for proof in proofs) < 1:
-        proofs.append(converse.prove(problem, **options))
-    return proofs[-1], min(proof.seconds for proof in proofs)
+    """A proof and its seconds of one core: the least of a few runs, if they are short."""
+    seconds = []
+    while len(seconds) < 5 and sum(seconds) < 1:
+        began = time.process_time()
+        proof = converse.prove(problem, jobs=1, **options)
+        seconds.append(time.process_time() - began)
+    return proof, min(seconds)
 
 
 def _yes(truth):
@@ -99,6 +143,11 @@ def bound(quick):
         if not quick or float(epsilon) >= QUICK["bound"]:
             yield _bound_row("loewner", epsilon, on_line(epsilon, TOP, together=True),
                              method="loewner")
+    for epsilon, seconds, orbit in FIRST:
+        yield "first order", epsilon, seconds, orbit, "yes"
+    began = time.process_time()
+    circle = last_circle()
+    yield "last circle", "%.5f" % circle, time.process_time() - began, CIRCLE[1], "seen"
 
 
 def _bound_row(name, epsilon, problem, **options):
@@ -219,38 +268,56 @@ def estimated_end(rows):
     return end if 0 < end < min(points)[0] else None
 
 
+def _level(axes, value, words, left=False, **line):
+    """A horizontal line and its words: below at the right or, left, above at the left."""
+    axes.axhline(value, linewidth=0.9, **line)
+    axes.annotate(words, (0.015 if left else 0.985, value), (0, 3 if left else -2.5),
+                  xycoords=axes.get_yaxis_transform(), textcoords="offset points", fontsize=7.5,
+                  color="0.25", ha="left" if left else "right", va="bottom" if left else "top")
+
+
 def draw_bound(figure, rows):
-    axes = figure.subplots()
-    for name, marker, line, label in (("1989", "^", "none", "the thesis, Sun-4, 1989"),
-                                      ("thesis", "s", "none", "the thesis's method, 35 digits"),
-                                      ("loewner", "o", "-", "method loewner")):
+    upper, lower = figure.subplots(2, 1, sharex=True,
+                                   gridspec_kw={"hspace": 0.07, "height_ratios": (3, 2)})
+    for name, marker, line, label in (
+            ("1989", "^", "none", "the thesis, Sun-4, 1989"),
+            ("thesis", "s", "none", "the thesis's method, this program, 35 digits"),
+            ("first order", "v", "-", "method loewner, first order (release 1.1.0)"),
+            ("loewner", "o", "-", "method loewner, second order (this release)")):
         good = [row for row in rows if row[0] == name and row[4] == "yes"]
-        axes.plot([row[2] for row in good], [float(row[1]) for row in good], marker=marker,
-                  linestyle=line, color=COLOURS[name], label=label)
-    lines = []
+        for axes in (upper, lower):
+            axes.plot([row[2] for row in good], [float(row[1]) for row in good], marker=marker,
+                      linestyle=line, color=COLOURS[name], label=label)
+
     singles = _pick(rows, 0, "thesis, single value")
     good, bad = ([row[1] for row in singles if row[4] == word] for word in ("yes", "no"))
     if good:
         words = "the thesis's method: %s alone is proved" % good[-1]
-        lines.append((float(good[-1]), "--", COLOURS["thesis"],
-                      words + ", %s is not" % bad[0] if bad else words))
+        _level(upper, float(good[-1]), words + ", %s is not" % bad[0] if bad else words,
+               color=COLOURS["thesis"], linestyle="--")
     end = estimated_end(rows)
     if end is not None:
-        lines.append((end, ":", COLOURS["loewner"],
-                      "estimate: the orbits needed grow without end towards about %.4f" % end))
-    for value, style, colour, words in lines:
-        axes.axhline(value, color=colour, linewidth=0.9, linestyle=style)
-        axes.text(0.985, value - 0.0001, words, fontsize=7.5, color="0.25", ha="right", va="top",
-                  transform=axes.get_yaxis_transform())
-    lowest = min([float(row[1]) for row in rows] + [line[0] for line in lines])
-    axes.set(xscale="log", ylim=(lowest - 0.0012, 0.0286),
-             xlabel="time of the proof (seconds)", ylabel=r"proven upper bound of $\varepsilon_c$",
-             title="What is proved, and how long the proof takes")
-    axes.legend(loc="center right", bbox_to_anchor=(1, 0.55))
-    caption = ("thesis: one box 0.0002 wide for each point (the time for 0.0272 is not known);\n"
-               "loewner: everything above the point, in one proof")
+        _level(lower, end, "estimate: the orbits needed\ngrow without end towards about %.4f" % end,
+               left=True, color=COLOURS["loewner"], linestyle=":")
+    for _, epsilon, *_ in _pick(rows, 0, "last circle"):
+        _level(lower, float(epsilon), "seen: up to %s the diagonal $x_0 = x_1$ has an invariant "
+               "circle: no proof from an x* there gets past" % epsilon, color=CIRCLE_COLOUR,
+               linestyle="-.")
+    tori, not_hyperbolic = SEEN
+    for value, words in ((not_hyperbolic, "some orbits are not yet hyperbolic"),
+                         (tori, "tori, by Fourier series")):
+        lower.axhspan(0, value, color=COLOURS["thesis"], alpha=0.13, linewidth=0)
+        _level(lower, value, "seen: %s, up to %g" % (words, value), linestyle="none")
+    upper.set(xscale="log", ylim=(0.0134, 0.0286),
+              title="What is proved, and how long the proof takes")
+    lower.set(ylim=(tori - 0.0004, ZOOM), xlabel="time of the proof (seconds of one core)")
+    figure.supylabel(r"proven upper bound of $\varepsilon_c$", x=0.02, fontsize=10)
+    upper.legend(loc="center right", bbox_to_anchor=(1, 0.6))
+    caption = ("thesis: one box 0.0002 wide for each point (1989: the time for 0.0272 is not "
+               "known); loewner: everything above the point,\nin one proof.  Below: the same near "
+               "the end; what is seen is an estimate from numerics (docs/orbits.md), not proved")
     if end is not None:
-        caption += "; the estimate: where 1 / (longest orbit) falls to 0"
+        caption += ";\nthe dotted one: where 1 / (longest orbit) falls to 0"
     return caption
 
 
@@ -361,7 +428,7 @@ def chart(name, rows, kind):
     from matplotlib import style
     from matplotlib.figure import Figure
 
-    height = 5.4 if name == "wall" else 4.3
+    height = HEIGHTS.get(name, 4.3)
     with style.context(["default", STYLE]):
         figure = Figure(figsize=(7.2, height))
         caption = CHARTS[name][2](figure, rows) + "\n" + machine().replace("$", "")

@@ -5,19 +5,24 @@ import io
 import math
 import os
 import re
+import runpy
 import subprocess
 import sys
 import xml.etree.ElementTree as ET
 
+import numpy as np
 import pytest
 
-from converse import __version__, chart, cli, kernels, picture
+from conftest import ROOT
+from converse import __version__, chart, cli, kernels, orbits, picture
 
 ROWS = {
     "bound": [("1989", "0.0274", 2698, 4, "yes"), ("thesis", "0.0274", 0.05, 3, "yes"),
               ("thesis, single value", "0.0271", 0.1, 5, "yes"),
               ("thesis, single value", "0.0270", 0.1, 7, "no"),
-              ("loewner", "0.0250", 0.001, 3, "yes"), ("loewner", "0.0145", 3.0, 50, "no")],
+              ("loewner", "0.0250", 0.001, 3, "yes"), ("loewner", "0.0145", 3.0, 50, "no"),
+              ("first order", "0.0250", 0.002, 3, "yes"),
+              ("last circle", "0.01381", 0.4, 5545, "seen")],
     "digits": [(1, 0.04, 0.03, 0, "no"), (3, 0.05, 0.04, 243, "yes"), (200, 0.1, 0.09, 111, "yes")],
     "width": [("fixed form", "double", 2, 150.0, 1.02), ("column rotor", "35", 3, 5e4, 1.4),
               ("Taylor model", "double", 4, 160.0, 1.0)],
@@ -165,11 +170,51 @@ def test_estimate_of_the_end():
     rows = ROWS["bound"] + loewner(law)
     caption, words, lines = drawn("bound", rows)
     assert "estimate" in words and "0.0130" in words and "estimate" in caption
-    levels = [line.get_ydata()[0] for line in lines if len(set(line.get_ydata())) == 1
-              and list(line.get_xdata()) == [0, 1]]
-    assert sorted(levels) == pytest.approx([0.013, 0.0271], abs=2e-5)
-    caption, words, _ = drawn("bound", ROWS["bound"])
-    assert "estimate" not in words + caption and "0.0271 alone is proved, 0.0270 is not" in words
+    assert levels(lines) == pytest.approx([0.0121, 0.01256, 0.013, 0.01381, 0.0271], abs=2e-5)
+    caption, words, lines = drawn("bound", ROWS["bound"])
+    assert "estimate:" not in words and "dotted" not in caption and len(levels(lines)) == 4
+    assert "0.0271 alone is proved, 0.0270 is not" in words
+    assert "0.01381" in words and words.count("seen: ") == 3
+    caption, words, lines = drawn("bound", ROWS["bound"][:-1])
+    assert "circle" not in words and len(levels(lines)) == 3
+
+
+def levels(lines):
+    """Where horizontal lines are that run through the whole of a chart."""
+    return sorted(line.get_ydata()[0] for line in lines if len(set(line.get_ydata())) == 1
+                  and list(line.get_xdata()) == [0, 1])
+
+
+def test_the_end_is_estimated_from_what_is_seen_near_it():
+    """The last of the recorded times of first order are near the wall, and no proof is below."""
+    first = [("loewner", *row, "yes") for row in chart.FIRST]
+    assert chart.last_circle() - 0.0002 < chart.estimated_end(first) < 0.0141
+
+
+def test_the_last_circle_of_the_diagonal():
+    """The map on it is trig's, and of the noble rotation numbers none is seen to last longer; so
+    they do in the standard map, where the last one is known."""
+    diagonal = chart.diagonal()
+    t = np.random.default_rng(1).uniform(0, 1, (50, 1))
+    both = orbits.trig.evaluate(np.hstack([t, t]))[1]
+    assert np.abs(diagonal.evaluate(t)[1] - both).max() < 1e-13
+    circle = chart.last_circle()
+    assert 0.0138 < circle < 0.01382
+    experiment = runpy.run_path(str(ROOT / "experiments" / "diagonal.py"))
+    (p,), q = chart.CIRCLE
+    assert experiment["noble"]((5,), q) == chart.CIRCLE and p / q == pytest.approx(
+        1 / (4.5 + 5 ** 0.5 / 2), abs=1e-7)
+    (first, head), (second, _), *_ = experiment["nobles"](2, 5, 100)
+    assert head == (5,) and abs(first - circle) < 3e-5 and second < circle
+
+
+def test_the_diagonal_stops_the_sharper_method():
+    """Where it has a circle successors on it are left, and none well above; those off it go first."""
+    experiment = runpy.run_path(str(ROOT / "experiments" / "diagonal.py"))
+    assert experiment["on_diagonal"](0.0144, 0.858, 100) == 33
+    assert experiment["on_diagonal"](0.0137, 0.858, 100) is None
+    rows = list(experiment["off_diagonal"](0.0144, 0.858, 300, 60))
+    assert rows[-1][:2] == (33, 0) and rows[-2][2] < rows[-2][1] / 10 and rows[0][2] > rows[0][1] / 2
 
 
 def test_no_line_above_a_proof():

@@ -1,29 +1,40 @@
-"""Wall time, peak memory and prisms for every input and precision, and the price of an image.
+"""What docs/speed.md says of times, measured anew.
 
-    python tests/bench [REPEAT]
+    python tests/bench [--repeat N] [--older DIRECTORY] [--whole] [WHAT ...]
 
-Prints figures and judges nothing.  Machines differ and are shared: the time is the least of
-REPEAT runs (3), and ratios within one run say more than seconds.
+Prints figures and judges nothing.  Machines differ and are shared: a time is the least of N runs
+(3), and ratios within one run say more than seconds.  So --older has the sharper method timed in
+turn with that of another commit, built in place in DIRECTORY.  --whole has the checker verify all
+certificates whole, which takes hours, and not only those of a minute or less.
 """
 
+import argparse
+import json
 import math
 import os
 import platform
+import subprocess
 import sys
 import tempfile
 import time
+from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
 
 from converse import growth, kernels
+from converse.problem import decimal_text
 
 ROOT = Path(__file__).resolve().parent.parent.parent
 COMMAND = str(Path(sys.executable).parent / "converse")
 DIGITS = (10, 20, 35, 50, 100, 200)
+LOWS = ("0.0272", "0.0180", "0.0160", "0.0152", "0.0148", "0.0144", "0.0142", "0.0141", "0.0140")
+APART = ("standard-63-64.in", "trig160.in")     # inputs whose parameters do not move together
+LONG = 60                               # seconds, after which nothing is repeated
 
 
 def run(arguments):
-    """Seconds of wall time and peak memory in MB of one process; its output is dropped."""
+    """A process: seconds of wall time, peak memory in MB, seconds of the processor.  Its output is
+    dropped."""
     begin = time.perf_counter()
     pid = os.fork()
     if pid == 0:
@@ -32,11 +43,11 @@ def run(arguments):
         os.dup2(null, 2)
         os.execv(arguments[0], arguments)
     _, status, usage = os.wait4(pid, 0)
-    assert os.WIFEXITED(status) and os.WEXITSTATUS(status) in (0, 1), arguments
-    return time.perf_counter() - begin, usage.ru_maxrss / 1024
+    assert os.WIFEXITED(status) and os.WEXITSTATUS(status) in (0, 1, 4), arguments
+    return time.perf_counter() - begin, usage.ru_maxrss / 1024, usage.ru_utime + usage.ru_stime
 
 
-def proofs(repeat):
+def processes(repeat):
     import converse
     empty = min(run([COMMAND, "--version"])[0] for _ in range(repeat))
     print("whole processes; starting Python and importing alone takes %.3f s" % empty)
@@ -53,7 +64,7 @@ def proofs(repeat):
                 max(r[1] for r in runs), proof.counts.proved))
 
 
-def images():
+def images(repeat):
     """Nanoseconds for the image of a prism of the list, and of that image."""
     centre = [Fraction(x) for x in ("0.3085", "0.3085", "0.617", "0.82", "0.82", "2.5", "2.1")]
     widths = ("0.00125", "0.00125", "0.0025", "0", "0", "0.02", "0.02")
@@ -69,82 +80,140 @@ def images():
             values = [*prism[0], *(x for row in prism[1] for x in row)]
             repeat = 20000 if options else 2000
             figures.append(min(kernels.call("image_ns", values + [repeat], 1, digits, **options)[0]
-                               for _ in range(3)))
+                               for _ in range(repeat)))
         print("%-10s %12.0f %12.0f" % (name, *figures))
 
 
-def frontier(repeat, longest=60):
-    """The theorems of the sharper method, one core against all, and the checker."""
+# One thread of whichever converse is found there: seconds of the processor, the least of a few
+# runs, if they are short.
+TIMED = """
+import sys, time
+from dataclasses import replace
+import converse
+problem = replace(converse.read_input(sys.argv[1]), together=sys.argv[2] == "together")
+seconds = []
+while len(seconds) < 5 and sum(seconds) < 1:
+    began = time.process_time()
+    assert converse.prove(problem, method="loewner", jobs=1).no_tori
+    seconds.append(time.process_time() - began)
+print(min(seconds))
+"""
+
+
+def one_thread(commits, path, how, repeat):
+    """The seconds that each of some commits takes for a proof, run in turn."""
+    least, began = [math.inf] * len(commits), time.monotonic()
+    for _ in range(repeat):
+        for k, commit in enumerate(commits):
+            found = subprocess.run([sys.executable, "-c", TIMED, path, how], check=True, cwd=commit,
+                                   env={**os.environ, "PYTHONPATH": commit}, stdout=subprocess.PIPE)
+            least[k] = min(least[k], float(found.stdout))
+        if time.monotonic() - began > LONG:
+            break
+    return least
+
+
+def frontier(repeat, older=None, whole=False):
+    """The theorems of the sharper method: one thread, beside another commit's; all cores; the
+    checker."""
     import converse
     jobs = growth.count_workers()
-    print("method loewner, together, down to epsilon; %d cores; the checker on a sample" % jobs)
-    print("%-8s %9s %9s %6s %9s %7s %7s %12s" % ("epsilon", "1 core", "all", "ratio", "prisms",
-                                                 "points", "deepest", "checked/s"))
+    print("method loewner, together, down to epsilon; its seconds and the checker's on one core")
+    print("%-17s %9s %9s %6s | %9s %6s %9s %7s %7s | %9s %9s" % (
+        "", "1 thread", "older", "ratio", "%d cores" % jobs, "ratio", "prisms", "points", "deepest",
+        "checked/s", "whole"))
     with tempfile.TemporaryDirectory() as directory:
-        for low in ("0.0272", "0.0180", "0.0160", "0.0152", "0.0148", "0.0144", "0.0142", "0.0141"):
-            ends = [Fraction(e) * Fraction("11.21436") for e in (low, "0.0280")]
-            centre, half = sum(ends) / 2, (ends[1] - ends[0]) / 2
-            problem = converse.Problem.around((centre, centre, 2 * centre, Fraction(1), Fraction(1)),
-                                       (half, half, 2 * half, Fraction(1), Fraction(1)),
-                                       together=True)
-            seconds = {}
-            for n in (1, jobs):
-                for _ in range(repeat):
-                    if seconds.get(n, 0) < longest / repeat:
-                        proof = converse.prove(problem, method="loewner", jobs=n)
-                        assert proof.no_tori
-                        seconds[n] = min(seconds.get(n, math.inf), proof.seconds)
-            path = os.path.join(directory, low)
-            proof.save(path)
-            rate = [run([COMMAND + "-check", "--quiet", "--sample", str(k), path])[0]
-                    for k in (1, 401)]
-            print("%-8s %9.4f %9.4f %6.2f %9d %7d %7d %12.0f" % (
-                low, seconds[1], seconds[jobs], seconds[1] / seconds[jobs], proof.counts.proved,
-                proof.counts.max_NTsteps, proof.counts.most_cuts,
-                min(400, proof.counts.proved) / max(rate[1] - rate[0], 1e-3)), flush=True)
+        checked = 0
+        for name in LOWS + APART:
+            path, how = str(ROOT / "inputs" / name), "apart"
+            if name in LOWS:
+                path, how = os.path.join(directory, name + ".in"), "together"
+                low, high = (Fraction(e) * Fraction("11.21436") for e in (name, "0.0280"))
+                centre, half = (low + high) / 2, (high - low) / 2
+                Path(path).write_text("".join("%s %s\n" % tuple(map(decimal_text, row)) for row in (
+                    (centre, half), (centre, half), (2 * centre, 2 * half), (1, 1), (1, 1))))
+            alone, *others = one_thread([str(ROOT)] + [older] * bool(older), path, how, repeat)
+            problem = replace(converse.read_input(path), together=how == "together")
+            proof = min((converse.prove(problem, method="loewner")
+                         for _ in range(repeat if alone < LONG / repeat else 1)),
+                        key=lambda proof: proof.seconds)
+            assert proof.no_tori
+            file = os.path.join(directory, name + ".proof")
+            proof.save(file)
+            check = [COMMAND + "-check", "--quiet", file]
+            rate = [run(check + ["--sample", str(k)])[2] for k in (1, 401)]
+            if whole or checked < LONG / 10:
+                checked = run(check)[2]
+                words = "%.1f" % checked
+            else:
+                words = ""
+            print("%-17s %9.4f %9s %6s | %9.4f %6.2f %9d %7d %7d | %9.0f %9s" % (
+                name, alone, *("%.4f" % x for x in others), *("%.2f" % (x / alone) for x in others),
+                *[""] * (2 - 2 * len(others)), proof.seconds, alone / proof.seconds,
+                proof.counts.proved, proof.counts.max_NTsteps, proof.counts.most_cuts,
+                min(400, proof.counts.proved) / max(rate[1] - rate[0], 1e-3), words), flush=True)
 
 
-def steps():
+def steps(repeat):
     """Nanoseconds per orbit step of the sharper method, and of its six sines alone."""
     a = Fraction("0.166")
     prism = [a, a, 2 * a, Fraction("3.1"), Fraction("2.9"), *[Fraction(1, 10 ** 9)] * 5,
              Fraction("0.858"), Fraction("0.858")]
     step = [min(kernels.call("loewner_step", [*prism, together, 18, 20000], 3, 20)[2]
-                for _ in range(5)) for together in (1, 0)]
-    sines = min(kernels.call("double_sincos_ns", [3, 300000], 1, 20)[0] for _ in range(5))
+                for _ in range(repeat)) for together in (1, 0)]
+    sines = min(kernels.call("double_sincos_ns", [3, 300000], 1, 20)[0] for _ in range(repeat))
     print("nanoseconds per orbit step: %.0f with one parameter, %.0f with three; "
           "its six sines alone: %.0f" % (*step, sines))
 
 
-def newton(repeat):
+def orbits(repeat):
     """Milliseconds of a step of damped Newton, and seconds of whole families, of the orbits."""
     import numpy as np
-    from converse import orbits
+    from converse.orbits import follow, straight, trig
     from converse._native import ffi, lib
     from converse.orbits.potential import address
 
-    print("periodic orbits, trig: milliseconds per step of damped Newton; 16 eps from 0.0025 to 0.04")
+    print("periodic orbits, trig: milliseconds per step of damped Newton; "
+          "16 eps from 0.0025 to 0.04")
     for p, q in (((1432, 1897), 2513), ((377, 2330), 3770), ((57031, 75550), 100083)):
-        guess = orbits.straight(orbits.trig, p, q)
+        guess = straight(trig, p, q)
         seconds = []
         for _ in range(repeat):
             how, u = ffi.new("cv_relaxed *"), np.zeros((q, 2))
             begin = time.perf_counter()
-            lib.cv_relax(guess.potential.native, q, 0.0025, address(guess.base), address(u), 1e-13, 10,
-                         how)
+            lib.cv_relax(guess.potential.native, q, 0.0025, address(guess.base), address(u), 1e-13,
+                         10, how)
             seconds.append((time.perf_counter() - begin) / how.steps)
         begin = time.perf_counter()
         if q < 10000:
-            orbits.follow(orbits.trig, p, q, [0.0025 * k for k in range(1, 17)])
+            follow(trig, p, q, [0.0025 * k for k in range(1, 17)])
         family = time.perf_counter() - begin
         print("q = %6d: %7.3f per step%s" % (q, 1000 * min(seconds),
                                              ", family %.2f s" % family if q < 10000 else ""))
 
 
-if __name__ == "__main__":
+PARTS = {part.__name__: part for part in (processes, images, steps, orbits, frontier)}
+
+
+def main():
+    p = argparse.ArgumentParser(description="Measures the times that docs/speed.md speaks of.")
+    p.add_argument("--repeat", type=int, default=3, metavar="N",
+                   help="runs, of which the least counts")
+    p.add_argument("--older", metavar="DIRECTORY", help="another commit, built in place: frontier")
+    p.add_argument("--whole", action="store_true", help="check all certificates whole: frontier")
+    p.add_argument("what", nargs="*", metavar="WHAT",
+                   help="of %s (default: all)" % ", ".join(PARTS))
+    options = p.parse_args()
+    if not set(options.what) <= set(PARTS) or options.repeat < 1:
+        p.error("WHAT is any of %s, and N is 1 or more" % ", ".join(PARTS))
     print("%s, %s, Python %s" % (platform.machine(), platform.system(), platform.python_version()))
-    proofs(int(sys.argv[1]) if len(sys.argv) > 1 else 3)
-    images()
-    steps()
-    newton(3)
-    frontier(3)
+    for name in options.what or PARTS:
+        if name == "frontier":
+            older = options.older and os.path.abspath(options.older)
+            frontier(options.repeat, older, options.whole)
+        else:
+            PARTS[name](options.repeat)
+
+
+if __name__ == "__main__":
+    main()
