@@ -22,7 +22,7 @@ from test_bd_trig import boxes, true_range
 from test_bounds import beta_at, grid_maxima
 from test_images import exact_inverse, outside, random_prism
 from test_loewner import displacements, variations
-from truth import (CLOSE, cube_coordinates, cube_point, decimal, eigenvalues, exact, list_prism,
+from truth import (CLOSE, cube_of, cube_point, decimal, eigenvalues, exact, list_prism,
                    mp, point_of, rng_for, step, uniform)
 
 SEED = 1989
@@ -203,9 +203,10 @@ def images(rng, n, dp, make, want, **options):
         elif not options or all(prism[1][j][j] for j in range(3)):
             # fixed form: u' = v, so corners are corners again but in the columns of u
             columns = slice(3, 5 if make is list_prism else 7)
-            worst = max(outside(image, x) for x in found)
+            inside = cube_of(image)
+            worst = max(outside(inside, x) for x in found)
             yield exact(-worst if worst > CLOSE else 1 - max(
-                abs(e) for x in found for e in cube_coordinates(image, x)[columns]))
+                abs(e) for x in found for e in inside(x)[columns]))
 
 
 TORI = [(0, 0, 0), (1, 0, 0), (0, "-0.25", 0), ("0.2", "0.5", "0.6"), ("1e-9", 0, "1e-9"),

@@ -1,6 +1,7 @@
 """The truth the kernels are held against: the map, its second variation and random boxes, with
 mpmath at many more digits, sharing nothing with the C core."""
 
+import operator
 import os
 import random
 from fractions import Fraction
@@ -50,7 +51,7 @@ def cube_point(rng):
 def point_of(prism, eta):
     """centre + matrix eta, exactly."""
     centre, matrix = prism
-    return [c + sum(m * e for m, e in zip(row, eta)) for c, row in zip(centre, matrix)]
+    return [sum((m * e for m, e in zip(row, eta) if m), c) for c, row in zip(centre, matrix)]
 
 
 def step(x):
@@ -81,21 +82,24 @@ def inverse(m):
     return m[2] / det, -m[1] / det, m[0] / det
 
 
-def cube_coordinates(prism, x):
-    """eta with centre + matrix eta = x; p columns without width get 0."""
+def cube_of(prism):
+    """The function that finds eta with centre + matrix eta = x; p columns without width get 0."""
     centre, matrix = prism
-    with mpmath.workdps(DIGITS):
-        eta = [mpmath.mpf(0)] * 7
-        for j in range(3):
-            if matrix[j][j] != 0:
-                eta[j] = mp((x[j] - centre[j]) / matrix[j][j])
-            else:
-                assert x[j] == centre[j]
-        rest = [mp(x[j] - centre[j]) - sum(mp(matrix[j][k]) * eta[k] for k in range(3))
-                for j in range(3, 7)]
-        corner = mpmath.matrix([[mp(matrix[j][k]) for k in range(3, 7)] for j in range(3, 7)])
-        eta[3:] = list(mpmath.lu_solve(corner, mpmath.matrix(rest)))
-        return eta
+    with mpmath.workdps(DIGITS + 20):
+        entries = [[mp(x) for x in row] for row in matrix]
+        corner = (mpmath.matrix([row[3:] for row in entries[3:]]) ** -1).tolist()
+
+    def coordinates(x):
+        with mpmath.workdps(DIGITS):
+            eta = []
+            for j in range(3):
+                assert matrix[j][j] != 0 or x[j] == centre[j]
+                eta.append(mp((x[j] - centre[j]) / matrix[j][j]) if matrix[j][j] else mp(0))
+            rest = [mp(x[j] - centre[j]) - sum(entries[j][k] * eta[k] for k in range(3))
+                    for j in range(3, 7)]
+            return eta + [sum(map(operator.mul, row, rest)) for row in corner]
+
+    return coordinates
 
 
 def list_prism(rng, largest="0.5", parameters=(-1, 1)):
