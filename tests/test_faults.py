@@ -27,14 +27,15 @@ def sample(root):
 
 @pytest.fixture(scope="session")
 def slow_run(command, sample):
-    """Digits enough for a run of two seconds of a core, however busy the machine is, and its report."""
+    """Digits enough for a run of more than a second of a core, however busy the machine is, and its
+    report."""
     digits = 50
     while True:
         begin = os.times()
         status, out, err = command("-p", digits, sample)
         end = os.times()
         assert (status, err) == (0, "")
-        if end.children_user - begin.children_user > 2:
+        if end.children_user - begin.children_user > 1.2:
             return ["--jobs", "1", "-p", str(digits)], timeless(out)
         digits *= 2
 
@@ -42,6 +43,12 @@ def slow_run(command, sample):
 @pytest.fixture
 def slow(slow_run):
     return slow_run[0]
+
+
+@pytest.fixture
+def endless(slow_run):
+    """For runs that are not waited for."""
+    return slow_run[0][:-1] + [str(8 * int(slow_run[0][-1]))]
 
 
 @pytest.fixture
@@ -69,7 +76,7 @@ def test_kill_at_random_moments(start, command, sample, output, tmp_path, slow):
         with start(*arguments, sample) as process:
             if len(trees) == 1:
                 wait_for(backup)        # it is written at once
-            time.sleep(rng.uniform(0, 1.6))
+            time.sleep(rng.uniform(0, 1.2))
             process.kill()
         half = Proof.load(backup)       # whole, whenever the run was killed
         assert half.tree.startswith(trees[-1])
@@ -99,8 +106,8 @@ def test_interrupt(start, command, sample, output, tmp_path, slow, number):
     assert (status, timeless(out).split("Restored")[0]) == (0, output)
 
 
-def test_interrupt_without_backup(start, sample, slow):
-    with start(*slow, sample) as process:
+def test_interrupt_without_backup(start, sample, endless):
+    with start(*endless, sample) as process:
         process.stdout.readline()       # the header comes before the work
         time.sleep(0.3)
         process.send_signal(signal.SIGINT)
@@ -127,7 +134,7 @@ def test_full_standard_output(command, sample):
     assert err == "converse: the output cannot be written (No space left on device)\n"
 
 
-def test_full_disk_keeps_the_older_backup(start, command, sample, output, tmp_path, slow):
+def test_full_disk_keeps_the_older_backup(start, command, sample, tmp_path, slow):
     backup = tmp_path / "backup"
     with start(*slow, "-b", backup, sample) as process:
         wait_for(backup)
@@ -144,7 +151,7 @@ def test_full_disk_keeps_the_older_backup(start, command, sample, output, tmp_pa
     assert err.startswith("converse: %s: cannot be written" % backup) and err.count("\n") == 1
     assert "intact" in err
     assert backup.read_bytes() == before
-    assert command(*slow, "-r", backup, sample)[0] == 0
+    assert command("-r", backup, "--time-limit", "0.1")[0] == 1
 
 
 def test_full_disk_for_the_figure(command, root, tmp_path):
@@ -159,15 +166,15 @@ def test_full_disk_for_the_figure(command, root, tmp_path):
     assert list(tmp_path.iterdir()) == []
 
 
-def test_two_runs_with_one_backup(start, command, sample, tmp_path, slow):
+def test_two_runs_with_one_backup(start, command, sample, tmp_path, endless):
     backup = tmp_path / "backup"
-    with start(*slow, "-b", backup, sample) as process:
+    with start(*endless, "-b", backup, sample) as process:
         wait_for(backup)
         status, out, err = command("-r", backup)
         process.kill()
     assert status == 2 and out == ""
     assert "another run" in err and err.count("\n") == 1
-    assert command("-r", backup)[0] == 0        # the lock died with its holder
+    assert command("-r", backup, "--time-limit", "0.1")[0] == 1     # the lock died with its holder
 
 
 @pytest.mark.parametrize("redirection", ["<&-", ">&-", "2>&-"])
@@ -234,11 +241,11 @@ def test_long_arithmetic_obeys(start, sample, options):
 @pytest.mark.parametrize("first, second", [
     (signal.SIGTERM, signal.SIGHUP), (signal.SIGHUP, signal.SIGTERM), (signal.SIGINT, signal.SIGTERM),
     (signal.SIGINT, signal.SIGINT)])
-def test_two_signals_at_once(start, sample, tmp_path, slow, first, second):
+def test_two_signals_at_once(start, sample, tmp_path, endless, first, second):
     """As at the end of a session; the second must not strike while the first is obeyed."""
     for pause in (0.0, 0.005, 0.03):
         backup = tmp_path / ("%g.proof" % pause)
-        with start(*slow, "-b", backup, sample) as process:
+        with start(*endless, "-b", backup, sample) as process:
             wait_for(backup)
             time.sleep(0.3)
             process.send_signal(first)

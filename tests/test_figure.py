@@ -2,12 +2,14 @@
 
 import base64
 import io
+import itertools
 import random
 import re
 import shutil
 import subprocess
 import sys
 import xml.etree.ElementTree as ET
+from collections import Counter
 from dataclasses import replace
 from fractions import Fraction
 
@@ -80,7 +82,8 @@ def shown(request, tmp_path, monkeypatch):
 
 
 def share(rows, test):
-    return sum(test(pixel) for row in rows for pixel in row) / (len(rows) * len(rows[0]))
+    colours = Counter(itertools.chain(*rows))
+    return sum(n for pixel, n in colours.items() if test(pixel)) / (len(rows) * len(rows[0]))
 
 
 def is_dark(pixel):
