@@ -6,6 +6,9 @@ SANITIZED = .venv-sanitize
 SOURCES = $(wildcard csrc/* csrc/*/* converse/*.py converse/*/*.py) setup.py pyproject.toml MANIFEST.in
 SANITIZE = -fsanitize=address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer -g -O1
 
+# Two processes, for as many cores; who is done first takes of the other's tests.
+TWO = -n 2 --dist worksteal
+
 PIP_INSTALL = pip install --quiet --disable-pip-version-check
 
 # Installs $(2) into the virtual environment $(1).  One that was not finished, or not by these
@@ -26,11 +29,11 @@ prove: $(VENV)/installed
 	@echo 'The figure of the prisms is build/trig274.ps.'
 
 test: $(VENV)/with-test
-	$(VENV)/bin/pytest tests
+	$(VENV)/bin/pytest $(TWO) tests
 
 # A hundred times as many random cases; hours.
 torture: $(VENV)/with-test
-	CONVERSE_TORTURE=100 $(VENV)/bin/pytest tests
+	CONVERSE_TORTURE=100 $(VENV)/bin/pytest $(TWO) tests
 
 # Breaks the C core in one place after another and sees whether a test notices; half an hour.
 mutate: $(VENV)/with-test
@@ -47,7 +50,7 @@ memcheck: $(VENV)/installed
 # Safe path: the clone, where this starts, holds a core without sanitizers.
 sanitize: $(SANITIZED)/installed
 	PYTHONSAFEPATH=1 LD_PRELOAD="$$(gcc -print-file-name=libasan.so) $$(gcc -print-file-name=libstdc++.so.6)" ASAN_OPTIONS=detect_leaks=0 \
-	UBSAN_OPTIONS=halt_on_error=1:print_stacktrace=1 $(SANITIZED)/bin/pytest tests
+	UBSAN_OPTIONS=halt_on_error=1:print_stacktrace=1 $(SANITIZED)/bin/pytest $(TWO) tests
 
 bench: $(VENV)/installed
 	$(VENV)/bin/python tests/bench
