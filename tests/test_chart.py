@@ -208,13 +208,20 @@ def test_the_last_circle_of_the_diagonal():
     assert head == (5,) and abs(first - circle) < 3e-5 and second < circle
 
 
-def test_the_diagonal_stops_the_sharper_method():
+def test_the_diagonal_stops_the_sharper_method(monkeypatch, capsys):
     """Where it has a circle successors on it are left, and none well above; those off it go first."""
     experiment = runpy.run_path(str(ROOT / "experiments" / "diagonal.py"))
-    assert experiment["on_diagonal"](0.0144, 0.858, 100) == 33
-    assert experiment["on_diagonal"](0.0137, 0.858, 100) is None
     rows = list(experiment["off_diagonal"](0.0144, 0.858, 300, 60))
     assert rows[-1][:2] == (33, 0) and rows[-2][2] < rows[-2][1] / 10 and rows[0][2] > rows[0][1] / 2
+    experiment["main"].__globals__["KEPT"] = 8000
+    experiment["SIZES"]["quick"] = {"heads": (1, 6), "least": 100, "cells": 50, "most": 40,
+                                    "eps": (0.0144, 0.0137), "xstar": (0.858, 0.86)}
+    monkeypatch.setattr(sys, "argv", ["diagonal.py", "--quick"])
+    assert experiment["main"]() == 0
+    out = capsys.readouterr().out.splitlines()
+    assert re.fullmatch(r" +0\.0138. +\[0; 5, 1, 1, 1, \.\.\.\]", out[1])
+    assert [line.split() for line in out[-2:]] == [["eps", "0.01440", "33", "33"],
+                                                   ["eps", "0.01370", "-", "-"]]
 
 
 def test_no_line_above_a_proof():
