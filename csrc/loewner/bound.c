@@ -77,117 +77,120 @@ typedef struct {
     vec along[WAVES], slope[COLUMNS], square[PAIRS];
 } sums;
 
-/* (5), of one wave. */
-INLINE vec remainder_of(const batch *w, const point *q, int i)
+/* What the prisms make of site q alone, for each wave: (5) is |A| rest_A[pA > 0] + |B| rest_B, the
+   cubic part of (4) without its signs |A| cube_A + |B| cube_B, and `load` is for the mass, below. */
+static void weigh(const batch *w, point *q)
 {
-    const vec p = w->p[i], h = w->h[i], A = mag(q->A[i]), B = mag(q->B[i]);
-    const vec a = q->straight[i], b = q->off[i], r = felt(i, q->rest[0], q->rest[1]);
-    const vec rho = q->reach[i], half_square = 0.5 * rho * rho;
-    const vec fourth = half_square * half_square * (1.0 / 6.0);
-
-    return mag(p) * (A * (a * r + pick(TRUTH(p * q->A[i] > 0.0), fourth, 0.5 * b * b))
-                     + B * (b * (0.5 * a * (a + b) + b * b * (1.0 / 6.0)) + 0.2 * rho * fourth))
-           + h * (A * (b * (a + 0.5 * b) + fourth) + B * (r + rho * half_square * (1.0 / 3.0)))
-           + w->loose[i] * (A + B * rho);
-}
-
-/* What site j adds to the constant, the linear and the quadratic part, and to what is bounded by
-   absolute values; `cubes` is the cubic part if it is, too. */
-INLINE void add_site(const batch *w, sums *t, point *q, int j, mask turn, int columns)
-{
-    const uint64_t site = (uint64_t)j;
-    const mask inside = TRUTH(w->from < site) & TRUTH(site < w->until);
-    const vec n0 = q->n[0], n1 = q->n[1], mu0 = q->mu[0], mu1 = q->mu[1], *const next = q[1].n;
-    const mask linked = TRUTH(site < w->to);
-    const vec link0 = pick(linked, n0 * next[0], every(0.0));
-    const vec link1 = pick(linked, n1 * next[1], every(0.0));
-    const vec omega[WAVES] = { n0 * n0, n1 * n1, square(n0 + n1) };
-    const vec m[WAVES] = { mu0, mu1, mu0 + mu1 };
-    const vec weights = omega[0] + omega[1] + omega[2] + mag(mu0) + mag(mu1) + TINY;
-
-    t->centre += 2.0 * (omega[0] + omega[1]);
-    t->mass += 2.0 * (omega[0] + omega[1]);
-    t->centre -= 2.0 * (link0 + link1);
-    t->mass += 2.0 * (mag(link0) + mag(link1));
-    t->far = larger(t->far, q->far);
     for (int i = 0; i < WAVES; i++) {
-        const vec s = q->sine[i], co = q->cosine[i], p = w->p[i], h = w->h[i];
-        const vec A = m[i] * co - omega[i] * s, B = -omega[i] * co - m[i] * s;
-        const vec a = q->straight[i], bow = q->bowed[i];
+        const vec p = mag(w->p[i]), h = w->h[i], loose = w->loose[i], rho = q->reach[i];
+        const vec a = q->straight[i], b = q->off[i], r = felt(i, q->rest[0], q->rest[1]);
+        const vec half_square = 0.5 * rho * rho, bow = q->bowed[i];
+        const vec fourth = half_square * half_square * (1.0 / 6.0);
         const vec wide = felt(i, q->reach[0], q->reach[1]);
-        const vec weight = omega[i] + mag(m[i]) + TINY;
-        vec c[COLUMNS], f[COLUMNS];
+        const vec either = p * (a * r) + h * (b * (a + 0.5 * b) + fourth) + loose;
 
-        q->A[i] = pick(turn, A, q->A[i]);
-        q->B[i] = pick(turn, B, q->B[i]);
-        if (!w->root->present[i])
-            continue;
-        t->centre -= omega[i] * p * s;
-        t->mass += omega[i] * mag(p) + weight * (w->size[i] * wide * wide + h + w->loose[i])
-                                       * ((1.0 + wide) * square(1.0 + wide));
-        t->rest += remainder_of(w, q, i);
-        t->cubes += mag(p) * a * (mag(A) * bow + mag(B) * a * a * (1.0 / 6.0))
-                    + h * (mag(B) * bow + mag(A) * 0.5 * a * a);
-        t->along[i] += A;
-        for (int k = 0; k < columns; k++) {
-            c[k] = felt(i, q->column[0][k], q->column[1][k]);
-            f[k] = -0.5 * p * A * c[k];
-        }
-        f[symbol_of(w, i, columns)] += h * B;
-        for (int k = 0, kl = 0; k < columns; k++) {             /* (c.e) (f.e) */
-            t->square[kl++] += c[k] * f[k];
-            for (int l = k + 1; l < columns; l++)
-                t->square[kl++] += c[k] * f[l] + c[l] * f[k];
-        }
-    }
-    /* what (2) leaves, and what the centre's steps missed */
-    for (int i = 0; i < 2; i++) {
-        const vec before = q[-1].mu[i], after = q[1].mu[i];
-        const vec left = 4.0 * q->fuzz * weights + 0x1p-50 * (mag(before) + mag(after));
-        if (j == ORIGIN || j == ORIGIN + 1) {
-            const vec steep = q->gradient[i] + q->beta[i] * mu0 + q->beta[i + 1] * mu1
-                              - before - after;
-            t->mass += mag(steep) * q->reach[i];
-            if (j == ORIGIN)
-                t->rest += mag(steep) * q->reach[i];
-            else
-                t->slope[i] = steep * q->column[i][i];
-        }
-        t->rounding += left * q->reach[i];
-        t->rounding += pick(inside, mag(q->mu[i]) * q->missed[i], every(0.0));
+        q->rest_A[i][0] = either + p * (0.5 * b * b);
+        q->rest_A[i][1] = either + p * fourth;
+        q->rest_B[i] = p * (b * (0.5 * a * (a + b) + b * b * (1.0 / 6.0)) + 0.2 * rho * fourth)
+                       + h * (r + rho * half_square * (1.0 / 3.0)) + loose * rho;
+        q->cube_A[i] = p * (a * bow) + h * (0.5 * a * a);
+        q->cube_B[i] = p * (a * a * a * (1.0 / 6.0)) + h * bow;
+        q->load[i] = (w->size[i] * wide * wide + h + loose) * ((1.0 + wide) * square(1.0 + wide));
     }
 }
 
-INLINE void sum_up(batch *w, sums *t, mask turn, int columns)
+/* (5), of one wave. */
+INLINE vec remainder_of(const batch *w, const point *q, int i, vec A, vec B)
 {
+    return mag(A) * pick(TRUTH(w->p[i] * A > 0.0), q->rest_A[i][1], q->rest_A[i][0])
+           + mag(B) * q->rest_B[i];
+}
+
+/* Constant, linear and quadratic part, and what is bounded by absolute values; `cubes` is the cubic
+   part if it is, too.  Outside of a lane's own sites n and mu are zero, and all else is finite. */
+INLINE void sum_up(batch *w, sums *result, mask turn, int columns)
+{
+    sums t;
     vec tails = every(0.0);
 
+    memset(&t, 0, sizeof t);
     for (int j = begin_of(w, turn); j <= end_of(w, turn); j++) {
-        const mask now = turn & within(w, j);
-        if (!any(now ^ turn)) {
-            add_site(w, t, w->orbit + j, j, turn, columns);
-        } else {                        /* not the turn of all of them */
-            sums more = *t;
-            vec *const sum = (vec *)t, *const with = (vec *)&more;
-            add_site(w, &more, w->orbit + j, j, now, columns);
-            for (size_t k = 0; k < sizeof *t / sizeof *sum; k++)
-                sum[k] = pick(now, with[k], sum[k]);
+        const uint64_t site = (uint64_t)j;
+        const mask inside = TRUTH(w->from < site) & TRUTH(site < w->until), own = within(w, j);
+        point *const q = w->orbit + j;
+        const vec n0 = pick(own, q->n[0], every(0.0)), n1 = pick(own, q->n[1], every(0.0));
+        const vec mu0 = pick(own, q->mu[0], every(0.0)), mu1 = pick(own, q->mu[1], every(0.0));
+        const vec tiny = pick(own, every(TINY), every(0.0)), *const next = q[1].n;
+        const mask linked = TRUTH(site < w->to);
+        const vec link0 = pick(linked, n0 * next[0], every(0.0));
+        const vec link1 = pick(linked, n1 * next[1], every(0.0));
+        const vec omega[WAVES] = { n0 * n0, n1 * n1, square(n0 + n1) };
+        const vec m[WAVES] = { mu0, mu1, mu0 + mu1 };
+        const vec weights = omega[0] + omega[1] + omega[2] + mag(mu0) + mag(mu1) + tiny;
+
+        t.centre += 2.0 * (omega[0] + omega[1]);
+        t.mass += 2.0 * (omega[0] + omega[1]);
+        t.centre -= 2.0 * (link0 + link1);
+        t.mass += 2.0 * (mag(link0) + mag(link1));
+        t.far = larger(t.far, pick(own, q->far, every(0.0)));
+        for (int i = 0; i < WAVES; i++) {
+            const vec s = q->sine[i], co = q->cosine[i], p = w->p[i], h = w->h[i];
+            const vec A = m[i] * co - omega[i] * s, B = -omega[i] * co - m[i] * s;
+            vec c[COLUMNS], f[COLUMNS];
+
+            q->A[i] = pick(turn, A, q->A[i]);
+            q->B[i] = pick(turn, B, q->B[i]);
+            if (!w->root->present[i])
+                continue;
+            t.centre -= omega[i] * p * s;
+            t.mass += omega[i] * mag(p) + (omega[i] + mag(m[i]) + tiny) * q->load[i];
+            t.rest += remainder_of(w, q, i, A, B);
+            t.cubes += mag(A) * q->cube_A[i] + mag(B) * q->cube_B[i];
+            t.along[i] += A;
+            for (int k = 0; k < columns; k++) {
+                c[k] = felt(i, q->column[0][k], q->column[1][k]);
+                f[k] = -0.5 * p * A * c[k];
+            }
+            f[symbol_of(w, i, columns)] += h * B;
+            for (int k = 0, kl = 0; k < columns; k++) {         /* (c.e) (f.e) */
+                t.square[kl++] += c[k] * f[k];
+                for (int l = k + 1; l < columns; l++)
+                    t.square[kl++] += c[k] * f[l] + c[l] * f[k];
+            }
+        }
+        /* what (2) leaves, and what the centre's steps missed */
+        for (int i = 0; i < 2; i++) {
+            const vec before = pick(own, q[-1].mu[i], every(0.0));
+            const vec after = pick(own, q[1].mu[i], every(0.0));
+            const vec left = 4.0 * q->fuzz * weights + 0x1p-50 * (mag(before) + mag(after));
+            if (j == ORIGIN || j == ORIGIN + 1) {
+                const vec steep = q->gradient[i] + q->beta[i] * mu0 + q->beta[i + 1] * mu1
+                                  - before - after;
+                t.mass += mag(steep) * q->reach[i];
+                if (j == ORIGIN)
+                    t.rest += mag(steep) * q->reach[i];
+                else
+                    t.slope[i] = steep * q->column[i][i];
+            }
+            t.rounding += left * q->reach[i];
+            t.rounding += pick(inside, mag(q->mu[i]) * q->missed[i], every(0.0));
         }
     }
     for (int i = 0; i < WAVES; i++)
-        t->slope[symbol_of(w, i, columns)] += w->h[i] * t->along[i];
+        t.slope[symbol_of(w, i, columns)] += w->h[i] * t.along[i];
     for (int k = 0; k < LANES; k++)
         if (holds(&turn, k)) {
-            const point *const ends[2] = { w->orbit + number(&w->from, k),
-                                           w->orbit + number(&w->to, k) };
+            const point *const first = w->orbit + number(&w->from, k);
+            const point *const last = w->orbit + number(&w->to, k);
             double sum = 0.0;
             for (int i = 0; i < 2; i++)
-                sum += at(&ends[i]->n[0], k) * at(&ends[i]->n[0], k)
-                       + at(&ends[i]->n[1], k) * at(&ends[i]->n[1], k);
+                sum += at(&first->n[i], k) * at(&first->n[i], k)
+                       + at(&last->n[i], k) * at(&last->n[i], k);
             put_at(&tails, k, sum);
         }
-    t->centre -= w->l * tails;
-    t->mass += w->l * tails;
+    t.centre -= w->l * tails;
+    t.mass += w->l * tails;
+    *result = t;
 }
 
 /* The cubic part of (4): cubic[m] at pair(k, l) is a coefficient of e_m e_k e_l, one of those that
@@ -288,7 +291,6 @@ INLINE void bound_with(batch *w, mask turn, int signs, int columns)
 
     for (int k = 0; k < LANES; k++)
         put_at(&each, k, 0x1p-47 * (double)(number(&w->until, k) - number(&w->from, k) + 2));
-    memset(&t, 0, sizeof t);
     sum_up(w, &t, turn, columns);
     for (int k = 0; k < columns; k++)
         w->slope[k] = pick(turn, t.slope[k], w->slope[k]);
@@ -317,6 +319,10 @@ INLINE void bound_with(batch *w, mask turn, int signs, int columns)
    values unless their signs might make the bound negative, or are asked for. */
 static void bound_second_variation(batch *w, mask turn, int signs)
 {
+    while (w->weighed_last < w->known_last)
+        weigh(w, w->orbit + ++w->weighed_last);
+    while (w->weighed_first > w->known_first)
+        weigh(w, w->orbit + --w->weighed_first);
     set_multipliers(w, turn);
     switch (w->root->columns) {
     case 2: bound_with(w, turn, signs, 2); break;
@@ -353,7 +359,7 @@ static void bound_shares(batch *w, mask turn)
         const mask now = turn & within(w, j);
         for (int i = 0; i < WAVES; i++) {
             const mask some = now & TRUTH(q->reach[i] > 0.0);
-            const vec part = 4.0 * remainder_of(w, q, i) / q->reach[i];
+            const vec part = 4.0 * remainder_of(w, q, i, q->A[i], q->B[i]) / q->reach[i];
             for (int k = 0; k < columns && w->root->present[i]; k++) {
                 const vec more = part * mag(felt(i, q->column[0][k], q->column[1][k]));
                 w->share[k] += pick(some, more, every(0.0));

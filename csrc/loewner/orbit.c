@@ -28,7 +28,32 @@ INLINE void measure(point *q, int columns)
     }
 }
 
-/* The sines at q->x, and what follows from them; the reaches, of what was measured and the rest.
+/* The reaches, of what was measured and the rest. */
+static void extend(const batch *w, point *q)
+{
+    q->widest = every(0.0);
+    for (int i = 0; i < WAVES; i++) {
+        q->off[i] = (q->bowed[i] + felt(i, q->rest[0], q->rest[1])) * WIDEN;
+        q->reach[i] = (q->straight[i] + q->off[i]) * WIDEN;
+        if (w->root->present[i])
+            q->widest = larger(q->widest, q->reach[i]);
+    }
+}
+
+/* A point that a lane has no use for is zero there, so that all that follows is finite. */
+static void forget(point *q, int columns)
+{
+    vec *const parts[] = { q->x, q->turns, q->column[0], q->column[1], q->bow[0], q->bow[1],
+                           q->rest, q->straight, q->bowed, q->off, q->reach };
+    const int pairs = columns * (columns + 1) / 2;
+    const int sizes[] = { 2, 2, columns, columns, pairs, pairs, 2, WAVES, WAVES, WAVES, WAVES };
+
+    for (size_t j = 0; j < sizeof parts / sizeof *parts; j++)
+        for (int k = 0; k < sizes[j]; k++)
+            parts[j][k] = pick(q->reached, parts[j][k], every(0.0));
+}
+
+/* The sines at q->x, and what follows from them.
 
    Sines and cosines are off by SINE_ERROR = 4 u, those of a rounded sum by u far more, and products
    with p by u: p sin and p cos are off by (5 + far) u |p|.  An entry of beta, a sum of two and an
@@ -50,13 +75,6 @@ static void finish(const batch *w, point *q)
     half = 0.5 * (q->beta[0] - q->beta[2]);
     apart = root_of(half * half + q->beta[1] * q->beta[1]);
     q->least = 0.5 * (q->beta[0] + q->beta[2]) - apart;
-    q->widest = every(0.0);
-    for (int i = 0; i < WAVES; i++) {
-        q->off[i] = (q->bowed[i] + felt(i, q->rest[0], q->rest[1])) * WIDEN;
-        q->reach[i] = (q->straight[i] + q->off[i]) * WIDEN;
-        if (w->root->present[i])
-            q->widest = larger(q->widest, q->reach[i]);
-    }
 }
 
 /* How far a wave p' cos(y + z), p' = p + h e + w, may be from what L and T make of it,
@@ -116,12 +134,11 @@ INLINE void carry(const batch *w, point *next, const point *q, const point *o, i
 
 /* next = the point after q, seen from o before it; time may run either way.  The factor begins
    with d = beta, and f then holds r(o), which is zero or the rounding of x*.  Where the factor
-   cannot go on, next is not reached.
+   cannot go on, or next would be of no use, it is not reached.
 
    The coordinates are kept modulo 2 pi.  The step of the centre misses, with every rounding and
    turn, 2 u |q| + 1.4 u |o| + 3.4 u |before| + 4.7 u |x| and what its waves are off: `missed` has
-   8 u of each, and fuzz.  Turns are whole: adding SHIFT rounds to an integer what is below 2^51,
-   and what is not becomes NaN, with which nothing is proved.
+   8 u of each, and fuzz.  Turns are whole: adding SHIFT rounds to an integer what is below 2^51.
    The rest obeys r' = beta r - r(o) + e, where e is what the waves bend, what the step of the
    centre missed, and the roundings of columns and bow, 3 u of them and 11/16 fuzz of those of q.
    Writing r' = d r + f and, from the last step,
@@ -131,18 +148,19 @@ INLINE void carry(const batch *w, point *next, const point *q, const point *o, i
    8 (1 + condition). */
 static void step(const batch *w, point *next, point *q, const point *o, int is_first)
 {
-    static const double SHIFT = 0x1.8p52, ENDLESS = 0x1p40;
+    static const double SHIFT = 0x1.8p52, ENDLESS = 0x1p40, USELESS = 0x1p10;
     vec inverse[3] = { every(0.0), every(0.0), every(0.0) }, rounded = every(0.0);
     vec g[WAVES], bent[WAVES], rest_sum, reach;
 
+    next->reached = ~(mask){ 0 };
     for (int j = 0; j < WAVES; j++) {
         g[j] = w->p[j] * q->cosine[j];
         bent[j] = bend(w, q, j);
     }
     for (int i = 0; i < 2; i++) {
         const vec before = o->x[i] - q->turns[i] * TWO_PI;
-        const vec any_x = (2.0 * q->x[i] - before) + (g[i] + g[2]);
-        const vec x = pick(TRUTH(mag(any_x) <= ENDLESS), any_x, every(NAN));
+        const vec x = (2.0 * q->x[i] - before) + (g[i] + g[2]);
+        next->reached &= TRUTH(mag(x) <= ENDLESS);
         next->turns[i] = (x * (1.0 / TWO_PI) + SHIFT) - SHIFT;
         next->x[i] = x - next->turns[i] * TWO_PI;
         q->missed[i] = 0x1p-50 * (mag(q->x[i]) + mag(o->x[i]) + mag(before) + mag(x)) + q->fuzz;
@@ -153,11 +171,10 @@ static void step(const batch *w, point *next, point *q, const point *o, int is_f
     case 4: carry(w, next, q, o, 4); break;
     default: carry(w, next, q, o, 5);
     }
-    next->reached = ~(mask){ 0 };
     if (!is_first) {
         const vec *d = o->d, det = d[0] * d[2] - d[1] * d[1];
         const vec one = 1.0 / det, condition = (mag(d[0] * d[2]) + d[1] * d[1]) * one;
-        next->reached = TRUTH(d[0] > 0.0) & TRUTH(det > TINY) & TRUTH(condition < 0x1p20);
+        next->reached &= TRUTH(d[0] > 0.0) & TRUTH(det > TINY) & TRUTH(condition < 0x1p20);
         inverse[0] = d[2] * one;
         inverse[1] = -d[1] * one;
         inverse[2] = d[0] * one;
@@ -180,6 +197,10 @@ static void step(const batch *w, point *next, point *q, const point *o, int is_f
     for (int i = 0; i < 2; i++)
         next->rest[i] = (mag(q->d[i]) * q->rest[0] + mag(q->d[i + 1]) * q->rest[1]
                          + q->force[i]) * WIDEN;
+    extend(w, next);
+    next->reached &= TRUTH(next->widest <= USELESS);
+    if (any(~next->reached))
+        forget(next, w->root->columns);
     finish(w, next);
 }
 
@@ -197,10 +218,13 @@ static void begin(batch *w)
         origin[i].reached = ~(mask){ 0 };
     }
     measure(origin + 1, w->root->columns);
-    finish(w, origin);
-    finish(w, origin + 1);
-    w->known_first = ORIGIN;
+    for (int j = 0; j < 2; j++) {
+        extend(w, origin + j);
+        finish(w, origin + j);
+    }
+    w->known_first = w->weighed_first = ORIGIN;
     w->known_last = ORIGIN + 1;
+    w->weighed_last = ORIGIN - 1;
     for (int k = 0; k < LANES; k++) {
         w->first[k] = ORIGIN;
         w->last[k] = ORIGIN - 1;        /* none of them is in use yet */

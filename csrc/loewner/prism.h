@@ -51,8 +51,9 @@ typedef struct {
     vec fuzz;                           /* how far p sin, p cos and entries of beta may be off */
     vec n[2], mu[2], gradient[2];
     vec A[WAVES], B[WAVES];             /* what Q makes of cos z and sin z */
+    vec rest_A[WAVES][2], rest_B[WAVES], cube_A[WAVES], cube_B[WAVES], load[WAVES]; /* bound.c */
     vec left[3], right[3];              /* the blocks of the recursion from either end */
-    mask reached;                       /* could the factor go on to here? */
+    mask reached;                       /* can the orbit go on to here? */
 } point;
 
 typedef struct {
@@ -64,6 +65,7 @@ typedef struct {
     vec slope[COLUMNS], square[PAIRS], cubic[COLUMNS][PAIRS];           /* Q's part with signs */
     vec bound, rounding, share[COLUMNS];
     int known_first, known_last;        /* the points that were computed */
+    int weighed_first, weighed_last;    /* those that bound.c has seen */
     int first[LANES], last[LANES];      /* those of the orbits */
     mask from, to, until;               /* n is zero before from and after to; until: see witness */
     point orbit[2 * MAX_POINTS + 1];
