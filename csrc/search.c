@@ -190,17 +190,22 @@ static int new_note(cv_search *s, const cv_cell *cell)
     return id;
 }
 
-/* Adds what is not yet known of a prism and those it was cut into to the list, in preorder. */
-static void list_unknown(cv_search *s, int id, int list[], int *n, int most)
+/* Adds what is not yet known of a prism and those it was cut into to the list, in preorder.
+   Returns whether all is known. */
+static int list_unknown(cv_search *s, int id, int list[], int *n, int most)
 {
     note *const p = &s->notes[id];
 
+    if (p->settled)
+        return 1;
     if (!p->known)
         p->known = p->skipped = may_skip(s, &p->cell);
+    p->settled = p->known;
     if (!p->known)
         list[(*n)++] = id;
-    for (int k = 0; k < 2 && p->halves[k] >= 0 && *n < most; k++)
-        list_unknown(s, p->halves[k], list, n, most);
+    for (int k = 0; k < 2 && p->halves[k] >= 0; k++)
+        p->settled &= *n < most && list_unknown(s, p->halves[k], list, n, most);
+    return p->settled;
 }
 
 /* Tries the first prisms of those in line, as many as go at once. */
@@ -243,21 +248,21 @@ static void take_note(cv_search *s)
 
     if (s->noted[top] < 0 || !s->notes[s->noted[top]].known)
         look_ahead(s);
-    const int id = s->noted[top];
-    const note n = s->notes[id];
-    s->notes[id].halves[0] = s->free_note;
-    s->free_note = id;
-    if (n.skipped) {
+    note *const n = &s->notes[s->noted[top]];
+    if (n->skipped) {
         leaf(s, 'S');
-        return;
+    } else {
+        const int lower = n->halves[0], upper = n->halves[1];
+        s->counts.tries++;
+        s->stack[top].from = n->outcome.from;
+        conclude(s, &n->outcome.v, n->outcome.axis);
+        if (s->pending > top + 1) {
+            s->noted[top + 1] = lower;
+            s->noted[top] = upper;
+        }
     }
-    s->counts.tries++;
-    s->stack[top].from = n.outcome.from;
-    conclude(s, &n.outcome.v, n.outcome.axis);
-    if (s->pending > top + 1) {
-        s->noted[top + 1] = n.halves[0];
-        s->noted[top] = n.halves[1];
-    }
+    n->halves[0] = s->free_note;
+    s->free_note = (int)(n - s->notes);
 }
 
 /* One prism of the list: skip it, prove it, cut it or give it up.  Thesis: main. */

@@ -9,8 +9,8 @@
 typedef struct {
     cv_cell cell;
     loewner_outcome outcome;
-    int known;                          /* was it tried, or skipped? */
-    int skipped;
+    int known, skipped;                 /* was it tried, or need not be? */
+    int settled;                        /* is all that it was cut into known, too? */
     int halves[2];                      /* of notes, lower and upper; -1: none */
 } note;
 

@@ -110,11 +110,12 @@ INLINE vec remainder_of(const batch *w, const point *q, int i, vec A, vec B)
    part if it is, too.  Outside of a lane's own sites n and mu are zero, and all else is finite. */
 INLINE void sum_up(batch *w, sums *result, mask turn, int columns)
 {
-    sums t;
+    const int begin = begin_of(w, turn), end = end_of(w, turn);
     vec tails = every(0.0);
+    sums t;
 
     memset(&t, 0, sizeof t);
-    for (int j = begin_of(w, turn); j <= end_of(w, turn); j++) {
+    for (int j = begin; j <= end; j++) {
         const uint64_t site = (uint64_t)j;
         const mask inside = TRUTH(w->from < site) & TRUTH(site < w->until), own = within(w, j);
         point *const q = w->orbit + j;
@@ -197,9 +198,9 @@ INLINE void sum_up(batch *w, sums *result, mask turn, int columns)
    make it up.  The third wave's c is the sum of the others'. */
 INLINE void sum_cubic(batch *w, mask turn, int columns)
 {
-    const int pairs = columns * (columns + 1) / 2;
+    const int pairs = columns * (columns + 1) / 2, begin = begin_of(w, turn), end = end_of(w, turn);
 
-    for (int j = begin_of(w, turn); j <= end_of(w, turn); j++) {
+    for (int j = begin; j <= end; j++) {
         const point *q = w->orbit + j;
         const mask now = turn & within(w, j);
         vec form[WAVES][PAIRS];
@@ -337,7 +338,7 @@ static void bound_second_variation(batch *w, mask turn, int signs)
    reaches. */
 static void bound_shares(batch *w, mask turn)
 {
-    const int columns = w->root->columns;
+    const int columns = w->root->columns, begin = begin_of(w, turn), end = end_of(w, turn);
 
     for (int k = 0; k < columns; k++)
         w->share[k] = mag(w->slope[k]);
@@ -354,7 +355,7 @@ static void bound_shares(batch *w, mask turn)
                 w->share[m] += y;
             }
         }
-    for (int j = begin_of(w, turn); j <= end_of(w, turn); j++) {
+    for (int j = begin; j <= end; j++) {
         const point *q = w->orbit + j;
         const mask now = turn & within(w, j);
         for (int i = 0; i < WAVES; i++) {

@@ -10,7 +10,7 @@
 #include "numbers/sine.h"
 
 static const double TWO_PI = 0x1.921fb54442d18p+2;      /* less than 2^-51 below it */
-static const double FAR = 1e5;          /* turns in one step after which orbits end */
+static const double FAR = 1e5;          /* turns in one step before which orbits end */
 static const double WIDEN = 1.0 + 0x1p-43;
 
 /* How far the columns and the bow reach along each wave: sums of at most 15 positive terms. */
@@ -148,11 +148,10 @@ INLINE void carry(const batch *w, point *next, const point *q, const point *o, i
    8 (1 + condition). */
 static void step(const batch *w, point *next, point *q, const point *o, int is_first)
 {
-    static const double SHIFT = 0x1.8p52, ENDLESS = 0x1p40, USELESS = 0x1p10;
+    static const double SHIFT = 0x1.8p52, USELESS = 0x1p10;
     vec inverse[3] = { every(0.0), every(0.0), every(0.0) }, rounded = every(0.0);
     vec g[WAVES], bent[WAVES], rest_sum, reach;
 
-    next->reached = ~(mask){ 0 };
     for (int j = 0; j < WAVES; j++) {
         g[j] = w->p[j] * q->cosine[j];
         bent[j] = bend(w, q, j);
@@ -160,11 +159,12 @@ static void step(const batch *w, point *next, point *q, const point *o, int is_f
     for (int i = 0; i < 2; i++) {
         const vec before = o->x[i] - q->turns[i] * TWO_PI;
         const vec x = (2.0 * q->x[i] - before) + (g[i] + g[2]);
-        next->reached &= TRUTH(mag(x) <= ENDLESS);
         next->turns[i] = (x * (1.0 / TWO_PI) + SHIFT) - SHIFT;
         next->x[i] = x - next->turns[i] * TWO_PI;
         q->missed[i] = 0x1p-50 * (mag(q->x[i]) + mag(o->x[i]) + mag(before) + mag(x)) + q->fuzz;
     }
+    next->turned = mag(next->turns[0]) + mag(next->turns[1]);
+    next->reached = TRUTH(next->turned <= FAR);
     switch (w->root->columns) {         /* each count of its own: the compiler unrolls */
     case 2: carry(w, next, q, o, 2); break;
     case 3: carry(w, next, q, o, 3); break;
@@ -251,24 +251,30 @@ static int lengthen(batch *w, int k, int *why)
     static const double LONGEST_REACH = 0.5;
     const point *const q = w->orbit;
 
-    if (w->last[k] <= ORIGIN) {
-        w->last[k]++;
-        return 1;
+    if (w->last[k] > ORIGIN) {
+        const int ahead = w->reach_last[k] < w->reach_first[k];
+        const int next = ahead ? w->last[k] + 1 : w->first[k] - 1;
+        *why = CV_REASON_TOO_BIG;
+        if (!((ahead ? w->reach_last[k] : w->reach_first[k]) <= LONGEST_REACH))
+            return 0;
+        *why = CV_REASON_TOO_LONG;
+        if (w->last[k] - w->first[k] + 1 == MAX_POINTS)
+            return 0;
+        follow(w, next);
+        if (!holds(&q[next].reached, k)) {
+            if (at(&q[next].turned, k) <= FAR)
+                *why = CV_REASON_SINGULAR;
+            return 0;
+        }
+        if (!ahead) {
+            w->first[k] = next;
+            w->reach_first[k] = at(&q[next].widest, k);
+            return 1;
+        }
+    } else if (w->last[k] < ORIGIN) {
+        w->reach_first[k] = at(&q[ORIGIN].widest, k);
     }
-    const int ahead = at(&q[w->last[k]].widest, k) < at(&q[w->first[k]].widest, k);
-    const int end = ahead ? w->last[k] : w->first[k], next = ahead ? end + 1 : end - 1;
-    *why = CV_REASON_TOO_BIG;
-    if (!(at(&q[end].widest, k) <= LONGEST_REACH))
-        return 0;
-    *why = CV_REASON_TOO_LONG;
-    if (w->last[k] - w->first[k] + 1 == MAX_POINTS ||
-        fabs(at(&q[end].turns[0], k)) + fabs(at(&q[end].turns[1], k)) > FAR)
-        return 0;
-    *why = CV_REASON_SINGULAR;
-    follow(w, next);
-    if (!holds(&q[next].reached, k))
-        return 0;
-    w->last[k] += ahead;
-    w->first[k] -= !ahead;
+    w->last[k]++;
+    w->reach_last[k] = at(&q[w->last[k]].widest, k);
     return 1;
 }

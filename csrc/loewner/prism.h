@@ -36,6 +36,7 @@ enum { MAX_POINTS = 4000, ORIGIN = MAX_POINTS };
 /* One point of the orbits of the prisms' centres, and all that is known of its neighbours. */
 typedef struct {
     vec x[2], turns[2];                 /* x modulo 2 pi; turns taken off when it was reached */
+    vec turned;                         /* so many in all */
     vec missed[2];                      /* by the step from here: a bound of |E| at the centre */
     vec column[2][COLUMNS];             /* L: v0, v1, then the parameters that move */
     vec bow[2][PAIRS];                  /* T: the coefficients of e_k e_l, at pair(k, l) */
@@ -67,6 +68,7 @@ typedef struct {
     int known_first, known_last;        /* the points that were computed */
     int weighed_first, weighed_last;    /* those that bound.c has seen */
     int first[LANES], last[LANES];      /* those of the orbits */
+    double reach_first[LANES], reach_last[LANES];       /* how widely they are known */
     mask from, to, until;               /* n is zero before from and after to; until: see witness */
     point orbit[2 * MAX_POINTS + 1];
 } batch;
