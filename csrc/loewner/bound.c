@@ -81,6 +81,7 @@ typedef struct {
    cubic part of (4) without its signs |A| cube_A + |B| cube_B, and `load` is for the mass, below. */
 static void weigh(const batch *w, point *q)
 {
+    q->load = every(0.0);
     for (int i = 0; i < WAVES; i++) {
         const vec p = mag(w->p[i]), h = w->h[i], loose = w->loose[i], rho = q->reach[i];
         const vec a = q->straight[i], b = q->off[i], r = felt(i, q->rest[0], q->rest[1]);
@@ -95,8 +96,18 @@ static void weigh(const batch *w, point *q)
                        + h * (r + rho * half_square * (1.0 / 3.0)) + loose * rho;
         q->cube_A[i] = p * (a * bow) + h * (0.5 * a * a);
         q->cube_B[i] = p * (a * a * a * (1.0 / 6.0)) + h * bow;
-        q->load[i] = (w->size[i] * wide * wide + h + loose) * ((1.0 + wide) * square(1.0 + wide));
+        q->load += (w->size[i] * wide * wide + h + loose) * ((1.0 + wide) * square(1.0 + wide));
     }
+}
+
+/* What Q makes of cos z and sin z, in the lanes' own sites. */
+INLINE void turn_wave(const point *q, int i, mask own, vec *A, vec *B)
+{
+    const vec n = felt(i, q->n[0], q->n[1]), omega = pick(own, n * n, every(0.0));
+    const vec m = pick(own, felt(i, q->mu[0], q->mu[1]), every(0.0));
+
+    *A = m * q->cosine[i] - omega * q->sine[i];
+    *B = -omega * q->cosine[i] - m * q->sine[i];
 }
 
 /* (5), of one wave. */
@@ -133,18 +144,17 @@ INLINE void sum_up(batch *w, sums *result, mask turn, int columns)
         t.mass += 2.0 * (omega[0] + omega[1]);
         t.centre -= 2.0 * (link0 + link1);
         t.mass += 2.0 * (mag(link0) + mag(link1));
+        t.mass += weights * q->load;
         t.far = larger(t.far, pick(own, q->far, every(0.0)));
         for (int i = 0; i < WAVES; i++) {
             const vec s = q->sine[i], co = q->cosine[i], p = w->p[i], h = w->h[i];
             const vec A = m[i] * co - omega[i] * s, B = -omega[i] * co - m[i] * s;
             vec c[COLUMNS], f[COLUMNS];
 
-            q->A[i] = pick(turn, A, q->A[i]);
-            q->B[i] = pick(turn, B, q->B[i]);
             if (!w->root->present[i])
                 continue;
             t.centre -= omega[i] * p * s;
-            t.mass += omega[i] * mag(p) + (omega[i] + mag(m[i]) + tiny) * q->load[i];
+            t.mass += omega[i] * mag(p);
             t.rest += remainder_of(w, q, i, A, B);
             t.cubes += mag(A) * q->cube_A[i] + mag(B) * q->cube_B[i];
             t.along[i] += A;
@@ -205,7 +215,8 @@ INLINE void sum_cubic(batch *w, mask turn, int columns)
         const mask now = turn & within(w, j);
         vec form[WAVES][PAIRS];
         for (int i = 0; i < WAVES; i++) {
-            const vec A = pick(now, q->A[i], every(0.0)), B = pick(now, q->B[i], every(0.0));
+            vec A, B;
+            turn_wave(q, i, now, &A, &B);
             const vec pA = w->p[i] * A, third = w->p[i] * B * (1.0 / 3.0), h = w->h[i];
             vec *const moved = w->cubic[symbol_of(w, i, columns)];
             for (int k = 0, kl = 0; k < columns; k++) {
@@ -360,7 +371,9 @@ static void bound_shares(batch *w, mask turn)
         const mask now = turn & within(w, j);
         for (int i = 0; i < WAVES; i++) {
             const mask some = now & TRUTH(q->reach[i] > 0.0);
-            const vec part = 4.0 * remainder_of(w, q, i, q->A[i], q->B[i]) / q->reach[i];
+            vec A, B;
+            turn_wave(q, i, now, &A, &B);
+            const vec part = 4.0 * remainder_of(w, q, i, A, B) / q->reach[i];
             for (int k = 0; k < columns && w->root->present[i]; k++) {
                 const vec more = part * mag(felt(i, q->column[0][k], q->column[1][k]));
                 w->share[k] += pick(some, more, every(0.0));
