@@ -111,7 +111,7 @@ static void follow_and_attempt(batch *w, mask going, int n, const cv_cell *const
         if (points >= next || !growing) {
             if (any(turn))
                 attempt(w, turn, s, out, &going);
-            next = points + 1 + points / PATIENCE;
+            next = points + 2 + points / PATIENCE;
         }
     }
 }
