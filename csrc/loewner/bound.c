@@ -130,8 +130,7 @@ INLINE void sum_up(batch *w, sums *result, mask turn, int columns)
         const uint64_t site = (uint64_t)j;
         const mask inside = TRUTH(w->from < site) & TRUTH(site < w->until), own = within(w, j);
         point *const q = w->orbit + j;
-        const vec n0 = pick(own, q->n[0], every(0.0)), n1 = pick(own, q->n[1], every(0.0));
-        const vec mu0 = pick(own, q->mu[0], every(0.0)), mu1 = pick(own, q->mu[1], every(0.0));
+        const vec n0 = q->n[0], n1 = q->n[1], mu0 = q->mu[0], mu1 = q->mu[1];
         const vec tiny = pick(own, every(TINY), every(0.0)), *const next = q[1].n;
         const mask linked = TRUTH(site < w->to);
         const vec link0 = pick(linked, n0 * next[0], every(0.0));
@@ -171,8 +170,7 @@ INLINE void sum_up(batch *w, sums *result, mask turn, int columns)
         }
         /* what (2) leaves, and what the centre's steps missed */
         for (int i = 0; i < 2; i++) {
-            const vec before = pick(own, q[-1].mu[i], every(0.0));
-            const vec after = pick(own, q[1].mu[i], every(0.0));
+            const vec before = q[-1].mu[i], after = q[1].mu[i];
             const vec left = 4.0 * q->fuzz * weights + 0x1p-50 * (mag(before) + mag(after));
             if (j == ORIGIN || j == ORIGIN + 1) {
                 const vec steep = q->gradient[i] + q->beta[i] * mu0 + q->beta[i + 1] * mu1

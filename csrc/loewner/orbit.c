@@ -215,7 +215,7 @@ static void begin(batch *w)
         origin->rest[i] = every(w->root->xstar_err[i]);
         origin[1].x[i] = w->v[i];
         origin[1].column[i][i] = w->width[i];
-        origin[i].reached = ~(mask){ 0 };
+        origin[i].reached = ~none();
     }
     measure(origin + 1, w->root->columns);
     for (int j = 0; j < 2; j++) {

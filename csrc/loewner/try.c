@@ -96,7 +96,7 @@ static void follow_and_attempt(batch *w, mask going, int n, const cv_cell *const
                                progress s[], loewner_outcome *const out[])
 {
     for (int points = 1, next = 1; any(going); points++) {
-        mask turn = { 0 };
+        mask turn = none();
         int growing = 0;
 
         for (int k = 0; k < n; k++)
@@ -122,7 +122,7 @@ static void try_prisms(void *work, const loewner *root, int n, const cv_cell *co
     batch *const w = work;
     progress s[LANES] = { { 0 } };
     loewner_cell c;
-    mask going = { 0 }, blamed = { 0 };
+    mask going = none(), blamed = none();
 
     w->root = root;
     for (int k = n - 1; k >= 0; k--) {
@@ -178,7 +178,7 @@ static int bound_root(void *work, int signs, double *bound, double *l, double *r
 {
     enum { K = LANES - 1 };
     batch *const w = work;
-    const mask turn = witness(w, ~(mask){ 0 });
+    const mask turn = witness(w, ~none());
     const int from = number(&w->from, K), to = number(&w->to, K);
 
     *l = at(&w->l, K);

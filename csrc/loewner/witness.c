@@ -31,33 +31,42 @@ INLINE void divide(vec n[2], const vec m[2], const vec d[3])
     n[1] = (d[0] * m[1] - d[1] * m[0]) * inverse;
 }
 
-/* The blocks of the recursion from the left, 1, or from the right, -1, of the lanes whose turn it
-   is: from their sites `begin` to `end`, up to where it falls below l.  Returns which do, and where
-   in *fall, which otherwise remains. */
-static mask recursion(batch *w, int way, mask turn, mask begin, mask end, mask *fall)
+/* The recursion from the left, way 1, or from the right, -1, in the lanes whose turn it is: from
+   their sites `begin` to `end`, or to where it falls below l. */
+typedef struct {
+    int way, site, last;
+    mask begin, end, going, fell, fall; /* fall: where it fell, in the lanes that fell */
+    vec d[3];
+} recursion;
+
+INLINE recursion recursion_of(const batch *w, int way, mask turn, mask begin, mask end)
 {
-    point *const q = w->orbit;
-    vec d[3] = { 1.0 / w->l, every(0.0), 1.0 / w->l };
-    mask going = turn, fell = { 0 };
-    const int last = extreme(turn, end, way);
+    return (recursion){ way, extreme(turn, begin, -way), extreme(turn, end, way), begin, end, turn,
+                        none(), none(), { 1.0 / w->l, every(0.0), 1.0 / w->l } };
+}
 
-    for (int j = extreme(turn, begin, -way); any(going) && j != last + way; j += way) {
-        const uint64_t site = (uint64_t)j;
-        const mask now = going & (way > 0 ? TRUTH(begin <= site) : TRUTH(begin >= site));
-        vec *const blocks = way > 0 ? q[j].left : q[j].right, next[3];
-        mask falls;
+/* One site further.  0: there is none. */
+INLINE int advance(batch *w, recursion *r, int way)
+{
+    const uint64_t site = (uint64_t)r->site;
+    point *const q = w->orbit + r->site;
+    vec *const blocks = way > 0 ? q->left : q->right, next[3];
+    mask now, falls;
 
-        block(next, q[j].beta, d);
-        for (int k = 0; k < 3; k++) {
-            d[k] = pick(now, next[k], d[k]);
-            blocks[k] = pick(now, next[k], blocks[k]);
-        }
-        falls = now & ~above(d, w->l);
-        *fall = choose(falls, site - (mask){ 0 }, *fall);
-        fell |= falls;
-        going &= ~falls & ~TRUTH(end == site);
+    if (!any(r->going) || r->site == r->last + way)
+        return 0;
+    now = r->going & (way > 0 ? TRUTH(r->begin <= site) : TRUTH(r->begin >= site));
+    block(next, q->beta, r->d);
+    for (int k = 0; k < 3; k++) {
+        r->d[k] = pick(now, next[k], r->d[k]);
+        blocks[k] = pick(now, next[k], blocks[k]);
     }
-    return fell;
+    falls = now & ~above(r->d, w->l);
+    r->fall = choose(falls, site - none(), r->fall);
+    r->fell |= falls;
+    r->going &= ~falls & ~TRUTH(r->end == site);
+    r->site += way;
+    return 1;
 }
 
 /* Chooses from, to and n on the orbits so that (1) is negative at the centre, in the lanes whose
@@ -70,32 +79,41 @@ static mask recursion(batch *w, int way, mask turn, mask begin, mask end, mask *
 static mask witness(batch *w, mask turn)
 {
     point *const q = w->orbit;
-    mask first = { 0 }, last = { 0 }, fall = { 0 }, from = { 0 }, to, until, site, alone, never;
     vec form[3] = { every(0.0), every(0.0), every(0.0) }, n[2] = { every(0.0), every(0.0) };
     vec value = every(HUGE_VAL), top[2];
+    mask first = none(), last = none(), fall, from, to, until, site, alone;
+    recursion left, right;
 
     for (int k = 0; k < LANES; k++) {
         put_number(&first, k, w->first[k]);
         put_number(&last, k, w->last[k]);
     }
-    turn = recursion(w, 1, turn, first, last, &fall);
+    left = recursion_of(w, 1, turn, first, last);
+    right = recursion_of(w, -1, turn, last, first);
+    while (advance(w, &left, 1) | advance(w, &right, -1))       /* side by side: that is faster */
+        continue;
+    turn = left.fell;
     if (!any(turn))
         return turn;
+    fall = left.fall;
+    from = right.fall;
     to = last;
-    alone = turn & (~recursion(w, -1, turn, to, first, &from) | TRUTH(from > fall));
+    alone = turn & (~right.fell | TRUTH(from > fall));
     if (any(alone)) {                   /* two places apart: the left one alone */
         to = choose(alone, fall, to);
-        never = alone & ~recursion(w, -1, alone, to, first, &from);
-        from = choose(never, fall, from);       /* by a rounding only */
+        right = recursion_of(w, -1, alone, to, first);
+        while (advance(w, &right, -1))
+            continue;
+        from = choose(alone, choose(right.fell, right.fall, fall), from);   /* else by a rounding */
     }
-    until = choose(TRUTH(to > ORIGIN), to, ORIGIN + 1 - (mask){ 0 });
+    until = choose(TRUTH(to > ORIGIN), to, ORIGIN + 1 - none());
 
     site = from;
     for (int j = extreme(turn, from, -1); j <= extreme(turn, fall, 1); j++) {
         const uint64_t here = (uint64_t)j;
         const mask better = TRUTH(from <= here) & TRUTH(here <= fall) & TRUTH(q[j].least < value);
         value = pick(better, q[j].least, value);
-        site = choose(better, here - (mask){ 0 }, site);
+        site = choose(better, here - none(), site);
         for (int k = 0; k < 3; k++)
             form[k] = pick(better, q[j].left[k] + q[j].right[k] - q[j].beta[k], form[k]);
     }

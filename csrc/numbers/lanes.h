@@ -52,6 +52,7 @@ INLINE int any(mask m)
 }
 #endif
 
+INLINE mask none(void) { return (mask){ 0 }; }
 INLINE vec every(double x) { return x - (vec){ 0 }; }
 INLINE double at(const vec *x, int k) { return ((const double *)x)[k]; }
 INLINE void put_at(vec *x, int k, double value) { ((double *)x)[k] = value; }
