@@ -150,6 +150,14 @@ static void try_prisms(void *work, const loewner *root, int n, const cv_cell *co
 
 /* ---- for tests: all lanes do the same, and the last is looked at */
 
+/* What other prisms may have left there is not to matter: it is made as strange as can be. */
+static void soil(batch *w, int first, int last)
+{
+    for (int j = first; j <= last; j++)
+        for (size_t k = 0; k < sizeof *w->orbit / sizeof(vec); k++)
+            ((vec *)&w->orbit[j])[k] = every((k + (size_t)j) % 3 == 0 ? -0x1p300 : 1e3);
+}
+
 static int follow_root(void *work, const loewner *root, int s, int t)
 {
     static const cv_cell whole = { { 0, 0, 0, 0, 0 }, { 0, 0, 0, 0, 0 }, 0 };
@@ -161,6 +169,7 @@ static int follow_root(void *work, const loewner *root, int s, int t)
     loewner_prism(root, &whole, &c);
     for (int k = 0; k < LANES; k++)
         set_lane(w, k, &c);
+    soil(w, ORIGIN + s - 2, ORIGIN + t + 3);
     begin(w);
     follow(w, ORIGIN + s);
     follow(w, ORIGIN + t);
