@@ -286,11 +286,12 @@ INLINE vec summit(const batch *w, int columns, int with_cubic)
    are multiplied by anywhere, with omega + |m| in their place: with rho = a + b that is at most
    |p| (e^rho - 1 - rho) + h e^rho + loose (1 + rho) to the fifth order in rho, of which
    (size rho^2 + h + loose)(1 + rho)^3 is more; for the wave that both coordinates feel rho is the
-   sum of theirs, as its cubic form is shared out among them.  A and B are off by (9 + far) u of
-   omega + |m|, products of them by 12 u more.  At each of N sites at most 5 numbers are added to a
+   sum of theirs, as its cubic form is shared out among them.  (`load` is that of all waves, and the
+   weights are at least each omega + |m|.)  A and B are off by (9 + far) u of
+   omega + |m|, products of them by 12 u more.  At each of N sites at most 6 numbers are added to a
    sum, and each addition rounds by u of the partial sums; summit and the last sums make 45 of them.
-   So all is off by (5 N + 57) u and (9 + far) u of the mass, where `each` is 64 (N + 1) u and
-   2^-49 (1 + far) is 16 (1 + far) u.  Positive sums are off by (5 N + 30) u of themselves, which
+   So all is off by (6 N + 57) u and (9 + far) u of the mass, where `each` is 64 (N + 1) u and
+   2^-49 (1 + far) is 16 (1 + far) u.  Positive sums are off by (6 N + 30) u of themselves, which
    `each` covers, too.  (2) leaves at most 11 u (1 + sizes)(1 + far) of the weights and 2 u of the
    neighbours' mu; `left` has 64 and 8. */
 INLINE void bound_with(batch *w, mask turn, int signs, int columns)

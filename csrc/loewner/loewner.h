@@ -41,6 +41,9 @@ double loewner_largest(const loewner *w);
 typedef struct { double v[2], width[2], p[3], h[3], loose[3], l, corner[8]; } loewner_cell;
 int loewner_prism(const loewner *w, const cv_cell *cell, loewner_cell *c);
 
+/* For tests: leaves there, about the points s to t, what no prism would. */
+void loewner_soil(loewner *w, int s, int t);
+
 /* For tests: follows the root's prism from point s <= 0 to point t >= 0.  0: it cannot be done. */
 int loewner_follow(loewner *w, int s, int t);
 

@@ -183,6 +183,8 @@ void loewner_try(loewner *w, int n, const cv_cell *const cells[], loewner_outcom
     w->engine->try(w->work, w, n, cells, out);
 }
 
+void loewner_soil(loewner *w, int s, int t) { w->engine->soil(w->work, s, t); }
+
 int loewner_follow(loewner *w, int s, int t) { return w->engine->follow(w->work, w, s, t); }
 
 int loewner_bound(loewner *w, int signs, double *bound, double *l, double *rounding, int *first,

@@ -13,7 +13,9 @@ typedef struct {
     size_t size;                        /* of what it works in, which begins as zeros */
     void (*try)(void *work, const loewner *w, int n, const cv_cell *const cells[],
                 loewner_outcome *const out[]);
-    int (*follow)(void *work, const loewner *w, int s, int t);          /* for tests: loewner.h */
+    /* for tests: loewner.h */
+    void (*soil)(void *work, int s, int t);
+    int (*follow)(void *work, const loewner *w, int s, int t);
     int (*bound)(void *work, int signs, double *bound, double *l, double *rounding, int *first,
                  double n[][2], int most);
     void (*look)(const void *work, int n, loewner_point *p);

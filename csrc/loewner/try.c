@@ -151,9 +151,11 @@ static void try_prisms(void *work, const loewner *root, int n, const cv_cell *co
 /* ---- for tests: all lanes do the same, and the last is looked at */
 
 /* What other prisms may have left there is not to matter: it is made as strange as can be. */
-static void soil(batch *w, int first, int last)
+static void soil(void *work, int s, int t)
 {
-    for (int j = first; j <= last; j++)
+    batch *const w = work;
+
+    for (int j = ORIGIN + s - 2; j <= ORIGIN + t + 2; j++)
         for (size_t k = 0; k < sizeof *w->orbit / sizeof(vec); k++)
             ((vec *)&w->orbit[j])[k] = every((k + (size_t)j) % 3 == 0 ? -0x1p300 : 1e3);
 }
@@ -169,7 +171,6 @@ static int follow_root(void *work, const loewner *root, int s, int t)
     loewner_prism(root, &whole, &c);
     for (int k = 0; k < LANES; k++)
         set_lane(w, k, &c);
-    soil(w, ORIGIN + s - 2, ORIGIN + t + 3);
     begin(w);
     follow(w, ORIGIN + s);
     follow(w, ORIGIN + t);
@@ -236,4 +237,4 @@ static void look_root(const void *work, int n, loewner_point *p)
     copy(p->mu, q->mu, 2);
 }
 
-const engine ENGINE = { LANES, sizeof(batch), try_prisms, follow_root, bound_root, look_root };
+const engine ENGINE = { LANES, sizeof(batch), try_prisms, soil, follow_root, bound_root, look_root };
