@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 
 from conftest import ROOT
-from converse import __version__, chart, cli, kernels, orbits, picture
+from converse import __version__, chart, cli, orbits, picture
 
 ROWS = {
     "bound": [("1989", "0.0274", 2698, 4, "yes"), ("thesis", "0.0274", 0.05, 3, "yes"),
@@ -239,15 +239,8 @@ def test_no_line_above_a_proof():
 def test_width():
     """An enclosure is never narrower than the orbits of sampled points."""
     rows = list(chart.width(True))
-    assert {row[0] for row in rows} >= {"fixed form", "column rotor"}
+    assert {row[0] for row in rows} == {"fixed form", "column rotor", "Taylor model"}
     assert all(row[3] > 0 and 1 <= row[4] < 10 for row in rows)
-
-
-def test_a_core_without_taylor_models(monkeypatch):
-    def call(*_, **__):
-        raise ValueError
-    monkeypatch.setattr(kernels, "call", call)
-    assert list(chart.taylor_width(chart.true_extents())) == []
 
 
 def test_the_line():
