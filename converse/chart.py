@@ -218,7 +218,7 @@ def width(quick):
 
 
 def taylor_width(extents):
-    """The same for the sharper method's Taylor models, several prisms at once; its sines counted."""
+    """The same for the sharper method's Taylor models, several prisms at once, sines included."""
     (p, dp), (v, dv) = PARAMETERS, SUCCESSOR
     for n in POINTS:
         values = [*p, *v, *dp, *dv, *XSTAR, 0, n, 20000]
@@ -374,7 +374,7 @@ def draw_width(figure, rows):
     axes.legend(loc="lower right")
     return ("small: digits; geometric mean over both angles of $x_n$ on the orbits of $x^*$ and "
             "$x_1$ in a prism (half-widths %s, %s;\na, b, c as in trig274), beside its corners' "
-            "and %d random points' orbits; bounds of sines not counted" % (*SUCCESSOR[1], SAMPLES))
+            "and %d random points' orbits; bounds of sines counted for Taylor models only" % (*SUCCESSOR[1], SAMPLES))
 
 
 def draw_wall(figure, rows):

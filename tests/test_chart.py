@@ -209,10 +209,11 @@ def test_the_last_circle_of_the_diagonal():
 
 
 def test_the_diagonal_stops_the_sharper_method(monkeypatch, capsys):
-    """Where it has a circle successors on it are left, and none well above; those off it go first."""
+    """Where it has a circle some successors on it are left; above none, and those off it go first."""
     experiment = runpy.run_path(str(ROOT / "experiments" / "diagonal.py"))
     rows = list(experiment["off_diagonal"](0.0144, 0.858, 300, 60))
-    assert rows[-1][:2] == (33, 0) and rows[-2][2] < rows[-2][1] / 10 and rows[0][2] > rows[0][1] / 2
+    assert rows[-1][:2] == (33, 0)
+    assert rows[-2][2] < rows[-2][1] / 10 and rows[0][2] > rows[0][1] / 2
     experiment["main"].__globals__["KEPT"] = 8000
     experiment["SIZES"]["quick"] = {"heads": (1, 6), "least": 100, "cells": 50, "most": 40,
                                     "eps": (0.0144, 0.0137), "xstar": (0.858, 0.86)}

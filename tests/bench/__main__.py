@@ -155,8 +155,8 @@ def frontier(repeat, older=None, whole=False):
 
 
 def steps(repeat):
-    """Nanoseconds per orbit step and prism of the sharper method, for every width of vectors, and of
-    six sines in plain doubles."""
+    """Nanoseconds per orbit step and prism of the sharper method, for every width of vectors, and
+    of six sines in plain doubles."""
     a = Fraction("0.166")
     prism = [a, a, 2 * a, Fraction("3.1"), Fraction("2.9"), *[Fraction(1, 10 ** 9)] * 5,
              Fraction("0.858"), Fraction("0.858")]
