@@ -374,7 +374,8 @@ def draw_width(figure, rows):
     axes.legend(loc="lower right")
     return ("small: digits; geometric mean over both angles of $x_n$ on the orbits of $x^*$ and "
             "$x_1$ in a prism (half-widths %s, %s;\na, b, c as in trig274), beside its corners' "
-            "and %d random points' orbits; bounds of sines counted for Taylor models only" % (*SUCCESSOR[1], SAMPLES))
+            "and %d random points' orbits; of Taylor models alone\nwith the bounds of sines, per "
+            "prism of as many as the machine takes at once" % (*SUCCESSOR[1], SAMPLES))
 
 
 def draw_wall(figure, rows):

@@ -209,7 +209,7 @@ def test_the_last_circle_of_the_diagonal():
 
 
 def test_the_diagonal_stops_the_sharper_method(monkeypatch, capsys):
-    """Where it has a circle some successors on it are left; above none, and those off it go first."""
+    """With a circle some successors on it are left; above none is, and those off it go first."""
     experiment = runpy.run_path(str(ROOT / "experiments" / "diagonal.py"))
     rows = list(experiment["off_diagonal"](0.0144, 0.858, 300, 60))
     assert rows[-1][:2] == (33, 0)
