@@ -39,7 +39,7 @@ FIRST = (("0.0272", 0.0017, 1), ("0.0250", 0.0020, 3), ("0.0220", 0.0028, 7),
          ("0.0200", 0.0044, 8), ("0.0180", 0.0101, 11), ("0.0160", 0.0499, 20),
          ("0.0152", 0.1517, 31), ("0.0148", 0.3999, 44), ("0.0144", 2.50, 72),
          ("0.0142", 19.3, 113), ("0.0141", 137.5, 142))
-LONG = 70                               # orbits from which the end of the curve is estimated
+LONG = 100                              # orbits from which the end of the curve is estimated
 
 # The diagonal x_0 = x_1 is invariant.  The last invariant circle seen there that runs round has the
 # rotation number [0; 5, 1, 1, ...]; a convergent of it.  experiments/diagonal.py tries others.
