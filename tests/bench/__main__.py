@@ -78,8 +78,8 @@ def images(repeat):
         figures = []
         for prism in (first, kernels.image(first, digits, **options)):
             values = [*prism[0], *(x for row in prism[1] for x in row)]
-            repeat = 20000 if options else 2000
-            figures.append(min(kernels.call("image_ns", values + [repeat], 1, digits, **options)[0]
+            times = 20000 if options else 2000
+            figures.append(min(kernels.call("image_ns", values + [times], 1, digits, **options)[0]
                                for _ in range(repeat)))
         print("%-10s %12.0f %12.0f" % (name, *figures))
 
@@ -215,6 +215,8 @@ def main():
     options = p.parse_args()
     if not set(options.what) <= set(PARTS) or options.repeat < 1:
         p.error("WHAT is any of %s, and N is 1 or more" % ", ".join(PARTS))
+    if options.older and not list(Path(options.older).glob("converse/_native.*")):
+        p.error("%s: holds no converse that is built in place" % options.older)
     print("%s, %s, Python %s" % (platform.machine(), platform.system(), platform.python_version()))
     for name in options.what or PARTS:
         if name == "frontier":
