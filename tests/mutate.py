@@ -34,6 +34,7 @@ FLAGS = ["-std=c11", "-O1", "-fPIC", "-ffp-contract=off", "-I", "csrc",
 # file, what stands there (once), what to put in its place
 MUTATIONS = [
     ("numbers/apm.c", "mpz_fdiv_q(r, x, y)", "mpz_cdiv_q(r, x, y)"),
+    ("numbers/apm.c", "(mpz_sgn(y) < 0) ? APM_DOWN", "(mpz_sgn(y) > 0) ? APM_DOWN"),
     ("numbers/apm.c", "mpz_cdiv_q_ui(r, x, y)", "mpz_tdiv_q_ui(r, x, y)"),
     ("numbers/apm.c", "mpz_add_ui(r->mant, r->mant, 1UL);\n    r->exp = -dp;", "r->exp = -dp;"),
     ("numbers/apm.c", "if (dir == APM_UP && (!exact || mpz_sgn(rest) != 0))",
