@@ -7,13 +7,13 @@ import os
 import signal
 import sys
 import warnings
-from dataclasses import replace
 
 from . import files
 from .files import ConverseError, plain
 from .problem import InputError, read_input
 from .report import header, verdict
 from .settings import AS_PRINTED, LIMIT, METHODS, REGION, THEOREM, UNDECIDED, Settings
+from .values import replace
 from .version import __version__
 
 STATUS = {THEOREM: 0, UNDECIDED: 1, REGION: 3, AS_PRINTED: 4}
@@ -26,6 +26,17 @@ class Signalled(KeyboardInterrupt):
 
 
 class Parser(argparse.ArgumentParser):
+    """An argument that is added is tried on a formatter.  The usual one would each time find out
+    how wide the terminal is; that is for the help, and there is time enough then."""
+
+    def __init__(self, **options):
+        super().__init__(formatter_class=lambda prog: argparse.HelpFormatter(prog, width=80),
+                         **options)
+
+    def format_help(self):
+        self.formatter_class = argparse.HelpFormatter
+        return super().format_help()
+
     def error(self, message):
         raise ConverseError("%s; see %s --help" % (message, self.prog))
 
@@ -296,6 +307,9 @@ def ended(command, run, interrupted):
         message, status = "interrupted; " + interrupted(), ENDED_BY + number
     except (ConverseError, InputError, MemoryError) as error:
         message, status = str(error) or "there is not enough memory", BAD
+    except ImportError as error:        # of what is imported late: libraries are mapped then
+        message, status = "a part of Python cannot be loaded (%s); give it more memory, or install " \
+                          "it anew" % error, BAD
     except OSError as error:
         message, status = "the output cannot be written (%s)" % files.reason(error), BAD
         with contextlib.suppress(OSError):  # the interpreter must not try again when it ends
