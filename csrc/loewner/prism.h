@@ -50,7 +50,7 @@ typedef struct {
     vec least;                          /* eigenvalue of beta, about */
     vec far;                            /* how large a rounded angle is */
     vec fuzz;                           /* how far p sin, p cos and entries of beta may be off */
-    vec n[2], mu[2], gradient[2];
+    vec n[2], mu[2];
     vec rest_A[WAVES][2], rest_B[WAVES], cube_A[WAVES], cube_B[WAVES], load;    /* see weigh */
     vec left[3], right[3];              /* the blocks of the recursion from either end */
     mask reached;                       /* can the orbit go on to here? */
