@@ -67,7 +67,7 @@ typedef struct {
     int known_first, known_last;        /* the points that were computed */
     int weighed_first, weighed_last;    /* those that bound.c has seen */
     int first[LANES], last[LANES];      /* those of the orbits */
-    double reach_first[LANES], reach_last[LANES];       /* how widely they are known */
+    double reach[LANES][2];             /* how widely these are known: first, last */
     mask from, to, until;               /* n is zero before from and after to; until: see witness */
     point orbit[2 * MAX_POINTS + 1];
 } batch;
