@@ -248,7 +248,7 @@ static void follow(batch *w, int to)
    the orbit is too long; why says which. */
 static int lengthen(batch *w, int k, int *why)
 {
-    static const double LONGEST_REACH = 0.5;
+    static const double LONGEST_REACH = 0.6;
     const point *const q = w->orbit;
     const int inner = w->last[k] <= ORIGIN;     /* two points are the prism's own */
     const int ahead = inner || w->reach[k][1] < w->reach[k][0];
