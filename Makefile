@@ -18,7 +18,7 @@ define install
 	touch $@
 endef
 
-.PHONY: prove test torture mutate accuracy sanitize memcheck warnings bench charts man clean
+.PHONY: prove test torture mutate accuracy sanitize memcheck warnings arm bench charts man clean
 
 prove: $(VENV)/installed
 	@mkdir -p build
@@ -48,6 +48,21 @@ memcheck: $(VENV)/installed
 sanitize: $(SANITIZED)/installed
 	PYTHONSAFEPATH=1 LD_PRELOAD="$$(gcc -print-file-name=libasan.so) $$(gcc -print-file-name=libstdc++.so.6)" ASAN_OPTIONS=detect_leaks=0 \
 	UBSAN_OPTIONS=halt_on_error=1:print_stacktrace=1 $(SANITIZED)/bin/pytest tests
+
+# The same tree on another kind of machine, emulated: needs gcc-aarch64-linux-gnu, qemu-user and
+# libgmp-dev:arm64.
+TREE_FLAGS = -std=c11 -O2 -ffp-contract=off -fno-math-errno -Icsrc
+TREE_CORE = $(wildcard csrc/numbers/*.c) $(addprefix csrc/thesis/, start.c region.c rigorous.c double.c) \
+    $(addprefix csrc/loewner/, problem.c scalar.c baseline.c avx2.c avx512.c) \
+    csrc/torus.c csrc/setup.c csrc/search.c
+arm: tests/tree.c
+	@mkdir -p build
+	gcc $(TREE_FLAGS) tests/tree.c $(TREE_CORE) -lgmp -lm -o build/tree
+	aarch64-linux-gnu-gcc $(TREE_FLAGS) tests/tree.c $(TREE_CORE) -lgmp -lm -o build/tree-arm
+	for problem in "0.25 0.25 0.5 0.0625 0.0625 0.125 1" "0.27 0.27 0.54 0.03 0.03 0.06 0"; do \
+	    build/tree $$problem > build/tree.out && \
+	    qemu-aarch64 -L /usr/aarch64-linux-gnu build/tree-arm $$problem | cmp - build/tree.out || exit 1; \
+	done
 
 bench: $(VENV)/installed
 	$(VENV)/bin/python tests/bench

@@ -94,6 +94,7 @@ const cv_counts *cv_get_counts(const cv_search *s);
 const int *cv_steps(const cv_search *s);                   /* of each node: its orbit's length */
 const cv_history *cv_get_history(const cv_search *s);
 int cv_class(int from);                                    /* of a cell with this from */
+int cv_lanes(const cv_search *s);                          /* prisms that are tried at once */
 int cv_symmetric(const cv_search *s);                      /* are mirror images skipped? */
 /* Method Loewner: is B > 10/3 for all parameters (together: at the upper end)?  Then the theorem
    holds for every multiple s >= 1 of them, too. */

@@ -152,7 +152,8 @@ static int follow_to(loewner *w, double n)
                   s..t.  signs: those of cubic terms count
    loewner_sites: ..., s, t -> of each point of that orbit, at most 13, what loewner_orbit tells,
                   and missed, force, beta, d, fuzz and mu
-   loewner_step: ..., n, repeat -> the reaches of both coordinates of point n, ns per step */
+   loewner_step: ..., n, repeat -> the reaches of both coordinates of point n, ns per step and prism,
+                 prisms at once */
 static int loewner_kernel(const char *name, int nin, apm_t in[], int nout, apm_t out[])
 {
     enum { BOX = 13, POINT = 56, SITE = 69, SITES = 60, SHOWN = 13 };
@@ -160,7 +161,7 @@ static int loewner_kernel(const char *name, int nin, apm_t in[], int nout, apm_t
     static const struct { const char *name; int nin, nout; } shapes[N_SHAPES] = {
         { "loewner_cell", BOX + 10, 22 }, { "loewner_orbit", BOX + 1, POINT },
         { "loewner_bound", BOX + 3, 5 + 2 * SITES }, { "loewner_sites", BOX + 2, SITE * SHOWN },
-        { "loewner_step", BOX + 2, 3 }
+        { "loewner_step", BOX + 2, 4 }
     };
     double x[MAX_IN], y[MAX_OUT] = { 0 }, n[SITES][2] = { { 0.0, 0.0 } };
     const double *const more = x + BOX;
@@ -192,6 +193,8 @@ static int loewner_kernel(const char *name, int nin, apm_t in[], int nout, apm_t
     w = loewner_new(&b, x[12] != 0.0, which != ORBIT && which != STEP);
     if (w == NULL)
         return CV_ENOMEM;
+    if (which != STEP)
+        loewner_soil(w, -SITES, SITES);
     switch (which) {
     case CELL:
         for (int j = 0; j < 5; j++) {
@@ -214,7 +217,8 @@ static int loewner_kernel(const char *name, int nin, apm_t in[], int nout, apm_t
         y[0] = p.reach[0];
         y[1] = p.reach[1];
         y[2] = 1e9 * (double)(clock() - begin) / CLOCKS_PER_SEC / fmax(more[1], 1.0)
-               / fmax(fabs(more[0]), 1.0);
+               / fmax(fabs(more[0]), 1.0) / loewner_lanes(w);
+        y[3] = loewner_lanes(w);
         break;
     default:
         good = loewner_follow(w, (int)more[0], (int)more[1]);

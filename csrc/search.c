@@ -41,6 +41,20 @@ static void set_box(cv_search *s, const cv_cell *c)
     b->n_cuts = all_cuts(c);
 }
 
+static int room_on_stack(cv_search *s, int allocated)
+{
+    cv_cell *const stack = realloc(s->stack, (size_t)allocated * sizeof *stack);
+    if (stack == NULL)
+        return CV_ENOMEM;
+    s->stack = stack;
+    int *const noted = realloc(s->noted, (size_t)allocated * sizeof *noted);
+    if (noted == NULL)
+        return CV_ENOMEM;
+    s->noted = noted;
+    s->allocated = allocated;
+    return CV_OK;
+}
+
 /* Adds one node to the tree; room is made in advance so that a node is never half decided. */
 static int make_room(cv_search *s)
 {
@@ -56,13 +70,15 @@ static int make_room(cv_search *s)
         s->steps = steps;
         s->capacity = capacity;
     }
-    if (s->pending + 1 >= s->allocated) {
-        const int allocated = 2 * s->allocated + 64;
-        cv_cell *stack = realloc(s->stack, (size_t)allocated * sizeof *stack);
-        if (stack == NULL)
+    if (s->pending + 1 >= s->allocated && room_on_stack(s, 2 * s->allocated + 64) != CV_OK)
+        return CV_ENOMEM;
+    if (s->sharp != NULL && s->n_notes + s->pending + 2 * MOST_LANES > s->allocated_notes) {
+        const int allocated = 2 * s->allocated_notes + s->pending + 64;
+        note *const notes = realloc(s->notes, (size_t)allocated * sizeof *notes);
+        if (notes == NULL)
             return CV_ENOMEM;
-        s->stack = stack;
-        s->allocated = allocated;
+        s->notes = notes;
+        s->allocated_notes = allocated;
     }
     return CV_OK;
 }
@@ -100,16 +116,23 @@ static int may_cut(const cv_search *s, const cv_cell *c, int axis)
     return all_cuts(c) < s->depth && c->cuts[axis] < FINEST;
 }
 
+/* The cell becomes the upper of its halves across axis. */
+static void split(cv_cell *upper, int axis, cv_cell *lower)
+{
+    upper->cuts[axis]++;
+    upper->index[axis] *= 2;
+    *lower = *upper;
+    upper->index[axis]++;
+}
+
 /* Cuts the cell on top of the stack in half, the lower half to come first. */
 static void halve(cv_search *s, int axis)
 {
     cv_cell *upper = &s->stack[s->pending - 1], *lower = upper + 1;
 
     s->counts.cuts++;
-    upper->cuts[axis]++;
-    upper->index[axis] *= 2;
-    *lower = *upper;
-    upper->index[axis]++;
+    split(upper, axis, lower);
+    s->noted[s->pending - 1] = s->noted[s->pending] = -1;
     s->pending++;
 }
 
@@ -154,6 +177,94 @@ static void conclude(cv_search *s, const verdict *v, int axis)
     leaf(s, 'P');
 }
 
+/* ---- method Loewner: several prisms are tried at a time, some of them before their turn */
+
+static int new_note(cv_search *s, const cv_cell *cell)
+{
+    const int id = s->free_note >= 0 ? s->free_note : s->n_notes++;
+    note *const n = &s->notes[id];
+
+    if (id == s->free_note)
+        s->free_note = n->halves[0];
+    *n = (note){ .cell = *cell, .halves = { -1, -1 } };
+    return id;
+}
+
+/* Adds what is not yet known of a prism and those it was cut into to the list, in preorder.
+   Returns whether all is known. */
+static int list_unknown(cv_search *s, int id, int list[], int *n, int most)
+{
+    note *const p = &s->notes[id];
+
+    if (p->settled)
+        return 1;
+    if (!p->known)
+        p->known = p->skipped = may_skip(s, &p->cell);
+    p->settled = p->known;
+    if (!p->known)
+        list[(*n)++] = id;
+    for (int k = 0; k < 2 && p->halves[k] >= 0; k++)
+        p->settled &= *n < most && list_unknown(s, p->halves[k], list, n, most);
+    return p->settled;
+}
+
+/* Tries the first prisms of those in line, as many as go at once. */
+static void look_ahead(cv_search *s)
+{
+    const int lanes = loewner_lanes(s->sharp);
+    const cv_cell *cells[MOST_LANES];
+    loewner_outcome *out[MOST_LANES];
+    int list[MOST_LANES], n = 0;
+
+    for (int j = s->pending - 1; j >= 0 && n < lanes; j--) {
+        if (s->noted[j] < 0)
+            s->noted[j] = new_note(s, &s->stack[j]);
+        list_unknown(s, s->noted[j], list, &n, lanes);
+    }
+    for (int k = 0; k < n; k++) {
+        cells[k] = &s->notes[list[k]].cell;
+        out[k] = &s->notes[list[k]].outcome;
+    }
+    if (n > 0)
+        loewner_try(s->sharp, n, cells, out);
+    for (int k = 0; k < n; k++) {
+        note *const p = &s->notes[list[k]];
+        const int axis = p->outcome.axis;
+        p->known = 1;
+        if (!p->outcome.v.no_tori && axis >= 0 && may_cut(s, &p->cell, axis)) {
+            cv_cell upper = p->cell, lower;
+            upper.from = p->outcome.from;
+            split(&upper, axis, &lower);
+            p->halves[0] = new_note(s, &lower);
+            p->halves[1] = new_note(s, &upper);
+        }
+    }
+}
+
+/* What is on top of the list gets its turn. */
+static void take_note(cv_search *s)
+{
+    const int top = s->pending - 1;
+
+    if (s->noted[top] < 0 || !s->notes[s->noted[top]].known)
+        look_ahead(s);
+    note *const n = &s->notes[s->noted[top]];
+    if (n->skipped) {
+        leaf(s, 'S');
+    } else {
+        const int lower = n->halves[0], upper = n->halves[1];
+        s->counts.tries++;
+        s->stack[top].from = n->outcome.from;
+        conclude(s, &n->outcome.v, n->outcome.axis);
+        if (s->pending > top + 1) {
+            s->noted[top + 1] = lower;
+            s->noted[top] = upper;
+        }
+    }
+    n->halves[0] = s->free_note;
+    s->free_note = (int)(n - s->notes);
+}
+
 /* One prism of the list: skip it, prove it, cut it or give it up.  Thesis: main. */
 static void decide(cv_search *s)
 {
@@ -162,15 +273,12 @@ static void decide(cv_search *s)
     verdict v;
 
     s->last_steps = 0;
-    if (may_skip(s, c)) {
-        leaf(s, 'S');
+    if (s->sharp != NULL) {
+        take_note(s);
         return;
     }
-    if (s->sharp != NULL) {
-        int axis;
-        s->counts.tries++;
-        loewner_try(s->sharp, c, &v, &axis, &c->from);
-        conclude(s, &v, axis);
+    if (may_skip(s, c)) {
+        leaf(s, 'S');
         return;
     }
     set_box(s, c);
@@ -275,15 +383,14 @@ int cv_restart(cv_search *s, int n, const cv_cell *cells)
             if (cells[j].cuts[axis] < 0 || cells[j].cuts[axis] > FINEST ||
                 cells[j].index[axis] >> cells[j].cuts[axis] != 0)
                 return CV_EARGUMENT;
-    if (n + 1 > s->allocated) {
-        cv_cell *stack = realloc(s->stack, (size_t)(n + 1) * sizeof *stack);
-        if (stack == NULL)
-            return CV_ENOMEM;
-        s->stack = stack;
-        s->allocated = n + 1;
-    }
-    for (int j = 0; j < n; j++)
+    if (n + 1 > s->allocated && room_on_stack(s, n + 1) != CV_OK)
+        return CV_ENOMEM;
+    for (int j = 0; j < n; j++) {
         s->stack[j] = cells[n - 1 - j];
+        s->noted[j] = -1;
+    }
+    s->n_notes = 0;
+    s->free_note = -1;
     s->pending = n;
     s->length = 0;
     memset(&s->counts, 0, sizeof s->counts);
@@ -334,10 +441,12 @@ int cv_resume(cv_search *s, const char *tree, size_t length)
     if (status == CV_OK)
         status = take_up(s, tree, length, &untried, &n);
     while (status == CV_OK && n > 0) {              /* they come before those that are missing */
-        if (make_room(s) != CV_OK)
+        if (make_room(s) != CV_OK) {
             status = CV_ENOMEM;
-        else
+        } else {
+            s->noted[s->pending] = -1;
             s->stack[s->pending++] = untried[--n];
+        }
     }
     free(untried);
     if (status != CV_OK)
@@ -363,6 +472,7 @@ const char *cv_tree(const cv_search *s, size_t *length)
 const cv_counts *cv_get_counts(const cv_search *s) { return &s->counts; }
 const cv_history *cv_get_history(const cv_search *s) { return &s->history; }
 const int *cv_steps(const cv_search *s) { return s->steps; }
+int cv_lanes(const cv_search *s) { return s->sharp != NULL ? loewner_lanes(s->sharp) : 1; }
 int cv_symmetric(const cv_search *s) { return s->symmetric; }
 int cv_at_once(const cv_search *s) { return s->at_once; }
 void cv_free(char *text) { free(text); }

@@ -5,13 +5,25 @@
 #include "loewner/loewner.h"
 #include "thesis/unit.h"
 
+/* A prism that was looked at before its turn in preorder comes, method Loewner. */
+typedef struct {
+    cv_cell cell;
+    loewner_outcome outcome;
+    int known, skipped;                 /* was it tried, or need not be? */
+    int settled;                        /* is all that it was cut into known, too? */
+    int halves[2];                      /* of notes, lower and upper; -1: none */
+} note;
+
 struct cv_search {
     Runit *exact;                       /* method thesis */
     unit *quick;
     loewner *sharp;                     /* method Loewner */
     box root, prism;                    /* prism: the cell at hand, for the thesis's method */
     cv_cell *stack;
+    int *noted;                         /* of each cell on the stack: its note, or -1 */
     int pending, allocated;             /* cells on the stack; room for */
+    note *notes;                        /* those in use and those that are free, in a list */
+    int n_notes, allocated_notes, free_note;
     char *tree;
     int *steps;                         /* of the orbit of each leaf */
     size_t length, capacity;

@@ -52,6 +52,8 @@ void cv_search_free(cv_search *s)
         apm_clear(s->t[1]);
     }
     free(s->stack);
+    free(s->noted);
+    free(s->notes);
     free(s->tree);
     free(s->steps);
     free(s);

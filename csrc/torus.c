@@ -25,9 +25,6 @@ static const double MARGIN = 1e-12, NEAR = 5e-7, PI = 0x1.921fb54442d19p+1;     
 typedef struct { double low[WAVES], high[WAVES], size[WAVES]; int which; } problem;
 typedef struct { double v[2], r[2]; int depth; } cell;
 
-/* NaN if either is. */
-static inline double larger(double x, double y) { return x > y || isnan(x) ? x : y; }
-
 static problem problem_of(const double low[3], const double high[3], int which)
 {
     problem p = { .which = which };

@@ -6,6 +6,7 @@ core says; and the second variation along them must be below the bound.
 
 import itertools
 import math
+import platform
 import re
 from contextlib import nullcontext
 from dataclasses import replace
@@ -17,7 +18,7 @@ import pytest
 from truth import TORTURE, beta, mp, rng_for, uniform
 
 from converse import Problem, Settings, kernels, prove
-from converse.core import Search, Task, ffi
+from converse.core import Search, Task, ffi, lib
 from converse.growth import MANY
 from converse.tree import ROOT, cells, complete
 
@@ -728,6 +729,56 @@ def test_a_cell_is_what_it_says(proof):
         same += grow(task, (index, cuts, 0)).text == \
             grow(replace(task, problem=cell), (*ROOT, 0)).text
     assert same > 190                       # rounding may tell them apart
+
+
+WIDTHS = ("64", "128", "256", "512")    # of vectors, in bits
+
+
+@pytest.mark.parametrize("problem", [
+    line("0.0170", "0.0280"), line("0.0200", "0.0280", together=False),
+    line("0.0200", "0.0280", skew="0.75"),
+    Problem(a=("0.984375", "0.984375"), b=("0", "0"), c=("0", "0")),
+    line("0.0130", "0.0200", region=("0.125", "0.125"))])
+def test_every_width_grows_the_same_tree(problem, monkeypatch):
+    """Whatever vectors the machine has, and in whatever company a prism is tried."""
+    grown = {}
+    for width in WIDTHS:
+        monkeypatch.setenv("CONVERSE_VECTORS", width)
+        search = Search(Task(problem, Settings(method="loewner", depth=24, stubborn=True)))
+        assert search.prepare(ffi.NULL)
+        begun = search.begin("")
+        found = search.grow(begun.cells, 100, MANY, ffi.NULL, True)
+        grown[width] = (found.text, found.steps, found.counts, begun.constants)
+        assert lib.cv_lanes(search.handle) <= int(width) // 64
+        if platform.machine() in ("x86_64", "aarch64") and width in WIDTHS[:2]:
+            assert lib.cv_lanes(search.handle) == int(width) // 64
+    assert len(grown["64"][0]) > 100
+    assert all(grown[width] == grown["64"] for width in WIDTHS)
+
+
+def test_every_width_finds_the_same_bits(monkeypatch):
+    rng = rng_for("loewner widths")
+    for _ in range(max(60, CASES // 100)):
+        prism, (s, t) = prism_for_widths(rng), (-rng.randrange(0, 6), rng.randrange(1, 7))
+        found = []
+        for width in WIDTHS:
+            monkeypatch.setenv("CONVERSE_VECTORS", width)
+            try:
+                found.append((kernels.call("loewner_sites", [*prism, s, t], SITE * 13, 20),
+                              kernels.call("loewner_bound", [*prism, s, t, 1], BOUND, 20)))
+            except ArithmeticError as error:
+                found.append(str(error))
+        assert all(each == found[0] for each in found)
+
+
+def prism_for_widths(rng):
+    """As draw's, or one of the line's small ones, which have witnesses."""
+    if rng.random() < 0.5:
+        return draw(rng)
+    a = Fraction(rng.uniform(0.16, 0.3))
+    v = [Fraction(rng.uniform(-3, 3)) for _ in range(2)]
+    half = [Fraction(10.0 ** rng.uniform(-9, -3)) for _ in range(5)]
+    return [a, a, 2 * a, *v, *half, Fraction("0.858"), Fraction("0.858"), Fraction(1)]
 
 
 @pytest.mark.parametrize("low, high, together, expected", [

@@ -24,157 +24,214 @@
 
        |p| (|A| (a |r| + (pA > 0 ? rho^4/24 : b^2/2)) + |B| (b (3a^2 + 3ab + b^2)/6 + rho^5/120))
        + h (|A| (b (2a + b)/2 + rho^4/24) + |B| (|r| + rho^3/6)) + loose (|A| + |B| rho).     (5) */
-#include <string.h>
-
 #include "prism.h"
 
-/* The multipliers, by (2): zero outside, and from either end up to the sites 0 and 1. */
-static void set_multipliers(loewner *w)
-{
-    point *q = w->orbit;
+/* The sites that are summed over in the lanes whose turn it is. */
+static int begin_of(const batch *w, mask turn) { return extreme(turn, w->from, -1); }
+static int end_of(const batch *w, mask turn) { return extreme(turn, w->until, 1); }
 
-    for (int j = w->from - 1; j <= w->until + 1; j++)
-        q[j].mu[0] = q[j].mu[1] = 0.0;
-    for (int j = w->from; j <= w->until; j++) {
-        const double omega = square(q[j].n[0] + q[j].n[1]);
-        const double sum = omega * w->p[2] * q[j].cosine[2];
-        for (int i = 0; i < 2; i++)
-            q[j].gradient[i] = -(square(q[j].n[i]) * w->p[i] * q[j].cosine[i] + sum);
-    }
-    for (int j = w->until; j > ORIGIN + 1; j--)
-        for (int i = 0; i < 2; i++)
-            q[j - 1].mu[i] = q[j].gradient[i] + q[j].beta[i] * q[j].mu[0]
-                             + q[j].beta[i + 1] * q[j].mu[1] - q[j + 1].mu[i];
-    for (int j = w->from; j < ORIGIN; j++)
-        for (int i = 0; i < 2; i++)
-            q[j + 1].mu[i] = q[j].gradient[i] + q[j].beta[i] * q[j].mu[0]
-                             + q[j].beta[i + 1] * q[j].mu[1] - q[j - 1].mu[i];
+static mask within(const batch *w, int j)
+{
+    const uint64_t site = (uint64_t)j;
+
+    return TRUTH(w->from <= site) & TRUTH(site <= w->until);
 }
 
+/* The gradient of n.beta n at a site, and what it and the multiplier there make of a neighbour's. */
+INLINE vec steepness(const batch *w, const point *q, int i)
+{
+    return q->beta[i] * q->mu[0] + q->beta[i + 1] * q->mu[1]
+           - (square(q->n[i]) * w->p[i] * q->cosine[i]
+              + square(q->n[0] + q->n[1]) * w->p[2] * q->cosine[2]);
+}
 
-/* What a pass over the orbit sums, besides the coefficients. */
-typedef struct { double centre, mass, rest, cubes, rounding, far; } sums;
+/* The multipliers of the lanes whose turn it is, by (2): zero outside, and from either end up to
+   the sites 0 and 1. */
+static void set_multipliers(batch *w, mask turn)
+{
+    const int begin = begin_of(w, turn), end = end_of(w, turn), ends[] = { begin - 1, end };
+    point *const q = w->orbit;
+
+    for (int j = 0; j < 4; j++)
+        for (int i = 0; i < 2; i++)
+            q[ends[j / 2] + j % 2].mu[i] = pick(turn, every(0.0), q[ends[j / 2] + j % 2].mu[i]);
+    for (int j = end; j > ORIGIN + 1; j--) {
+        const mask now = within(w, j);
+        for (int i = 0; i < 2; i++) {
+            const vec mu = pick(now, steepness(w, q + j, i) - q[j + 1].mu[i], every(0.0));
+            q[j - 1].mu[i] = pick(turn, mu, q[j - 1].mu[i]);
+        }
+    }
+    for (int j = begin; j < ORIGIN; j++) {
+        const mask now = within(w, j);
+        for (int i = 0; i < 2; i++) {
+            const vec mu = pick(now, steepness(w, q + j, i) - q[j - 1].mu[i], every(0.0));
+            q[j + 1].mu[i] = pick(turn, mu, q[j + 1].mu[i]);
+        }
+    }
+}
+
+/* What a pass over the orbit sums. */
+typedef struct {
+    vec centre, mass, rest, cubes, rounding, far;
+    vec along[WAVES], slope[COLUMNS], square[PAIRS];
+} sums;
+
+/* What the prisms make of site q alone, for each wave: (5) is |A| rest_A[pA > 0] + |B| rest_B, the
+   cubic part of (4) without its signs |A| cube_A + |B| cube_B, and `load` is for the mass, below. */
+static void weigh(const batch *w, point *q)
+{
+    q->load = every(0.0);
+    for (int i = 0; i < WAVES; i++) {
+        const vec p = mag(w->p[i]), h = w->h[i], loose = w->loose[i], rho = q->reach[i];
+        const vec a = q->straight[i], b = q->off[i], r = felt(i, q->rest[0], q->rest[1]);
+        const vec half_square = 0.5 * rho * rho, bow = q->bowed[i];
+        const vec fourth = half_square * half_square * (1.0 / 6.0);
+        const vec wide = felt(i, q->reach[0], q->reach[1]);
+        const vec either = p * (a * r) + h * (b * (a + 0.5 * b) + fourth) + loose;
+
+        q->rest_A[i][0] = either + p * (0.5 * b * b);
+        q->rest_A[i][1] = either + p * fourth;
+        q->rest_B[i] = p * (b * (0.5 * a * (a + b) + b * b * (1.0 / 6.0)) + 0.2 * rho * fourth)
+                       + h * (r + rho * half_square * (1.0 / 3.0)) + loose * rho;
+        q->cube_A[i] = p * (a * bow) + h * (0.5 * a * a);
+        q->cube_B[i] = p * (a * a * a * (1.0 / 6.0)) + h * bow;
+        q->load += (w->size[i] * wide * wide + h + loose) * ((1.0 + wide) * square(1.0 + wide));
+    }
+}
+
+/* What Q makes of cos z and sin z, in the lanes' own sites. */
+INLINE void turn_wave(const point *q, int i, mask own, vec *A, vec *B)
+{
+    const vec n = felt(i, q->n[0], q->n[1]), omega = pick(own, n * n, every(0.0));
+    const vec m = pick(own, felt(i, q->mu[0], q->mu[1]), every(0.0));
+
+    *A = m * q->cosine[i] - omega * q->sine[i];
+    *B = -omega * q->cosine[i] - m * q->sine[i];
+}
 
 /* (5), of one wave. */
-INLINE double remainder_of(const loewner *w, const point *q, int i)
+INLINE vec remainder_of(const batch *w, const point *q, int i, vec A, vec B)
 {
-    const double p = w->p[i], h = w->h[i], A = fabs(q->A[i]), B = fabs(q->B[i]);
-    const double a = q->straight[i], b = q->off[i], r = felt(i, q->rest[0], q->rest[1]);
-    const double rho = q->reach[i], half_square = 0.5 * rho * rho;
-    const double fourth = half_square * half_square * (1.0 / 6.0);
-
-    return fabs(p) * (A * (a * r + (p * q->A[i] > 0.0 ? fourth : 0.5 * b * b))
-                      + B * (b * (0.5 * a * (a + b) + b * b * (1.0 / 6.0)) + 0.2 * rho * fourth))
-           + h * (A * (b * (a + 0.5 * b) + fourth) + B * (r + rho * half_square * (1.0 / 3.0)))
-           + w->loose[i] * (A + B * rho);
+    return mag(A) * pick(TRUTH(w->p[i] * A > 0.0), q->rest_A[i][1], q->rest_A[i][0])
+           + mag(B) * q->rest_B[i];
 }
 
 /* Constant, linear and quadratic part, and what is bounded by absolute values; `cubes` is the cubic
-   part if it is, too. */
-INLINE void sum_up(loewner *w, sums *t, int columns)
+   part if it is, too.  Outside of a lane's own sites n and mu are zero, and all else is finite. */
+INLINE void sum_up(batch *w, sums *result, mask turn, int columns)
 {
-    double along[WAVES] = { 0, 0, 0 }, tails;
+    const int begin = begin_of(w, turn), end = end_of(w, turn);
+    vec tails = every(0.0);
+    sums t;
 
-    for (int j = w->from; j <= w->until; j++) {
-        point *q = w->orbit + j;
-        const double n0 = q->n[0], n1 = q->n[1], mu0 = q->mu[0], mu1 = q->mu[1];
-        const double omega[WAVES] = { n0 * n0, n1 * n1, square(n0 + n1) };
-        const double m[WAVES] = { mu0, mu1, mu0 + mu1 };
-        const double weights = omega[0] + omega[1] + omega[2] + fabs(mu0) + fabs(mu1) + TINY;
+    memset(&t, 0, sizeof t);
+    for (int j = begin; j <= end; j++) {
+        const uint64_t site = (uint64_t)j;
+        const mask inside = TRUTH(w->from < site) & TRUTH(site < w->until), own = within(w, j);
+        point *const q = w->orbit + j;
+        const vec n0 = q->n[0], n1 = q->n[1], mu0 = q->mu[0], mu1 = q->mu[1];
+        const vec tiny = pick(own, every(TINY), every(0.0)), *const next = q[1].n;
+        const mask linked = TRUTH(site < w->to);
+        const vec link0 = pick(linked, n0 * next[0], every(0.0));
+        const vec link1 = pick(linked, n1 * next[1], every(0.0));
+        const vec omega[WAVES] = { n0 * n0, n1 * n1, square(n0 + n1) };
+        const vec m[WAVES] = { mu0, mu1, mu0 + mu1 };
+        const vec weights = omega[0] + omega[1] + omega[2] + mag(mu0) + mag(mu1) + tiny;
 
-        t->centre += 2.0 * (omega[0] + omega[1]);
-        t->mass += 2.0 * (omega[0] + omega[1]);
-        if (j < w->to) {
-            const double *next = q[1].n;
-            t->centre -= 2.0 * (n0 * next[0] + n1 * next[1]);
-            t->mass += 2.0 * (fabs(n0 * next[0]) + fabs(n1 * next[1]));
-        }
-        t->far = larger(t->far, q->far);
+        t.centre += 2.0 * (omega[0] + omega[1]);
+        t.mass += 2.0 * (omega[0] + omega[1]);
+        t.centre -= 2.0 * (link0 + link1);
+        t.mass += 2.0 * (mag(link0) + mag(link1));
+        t.mass += weights * q->load;
+        t.far = larger(t.far, pick(own, q->far, every(0.0)));
         for (int i = 0; i < WAVES; i++) {
-            const double s = q->sine[i], co = q->cosine[i], p = w->p[i], h = w->h[i];
-            const double A = m[i] * co - omega[i] * s, B = -omega[i] * co - m[i] * s;
-            const double a = q->straight[i], bow = q->bowed[i];
-            const double wide = felt(i, q->reach[0], q->reach[1]);
-            const double weight = omega[i] + fabs(m[i]) + TINY;
-            double c[COLUMNS], f[COLUMNS];
+            const vec s = q->sine[i], co = q->cosine[i], p = w->p[i], h = w->h[i];
+            const vec A = m[i] * co - omega[i] * s, B = -omega[i] * co - m[i] * s;
+            vec c[COLUMNS], f[COLUMNS];
 
-            q->A[i] = A;
-            q->B[i] = B;
-            if (size(w, i) == 0.0)
+            if (!w->root->present[i])
                 continue;
-            t->centre -= omega[i] * p * s;
-            t->mass += omega[i] * fabs(p) + weight * (size(w, i) * wide * wide + h + w->loose[i])
-                                            * ((1.0 + wide) * square(1.0 + wide));
-            t->rest += remainder_of(w, q, i);
-            t->cubes += fabs(p) * a * (fabs(A) * bow + fabs(B) * a * a * (1.0 / 6.0))
-                        + h * (fabs(B) * bow + fabs(A) * 0.5 * a * a);
-            along[i] += A;
+            t.centre -= omega[i] * p * s;
+            t.mass += omega[i] * mag(p);
+            t.rest += remainder_of(w, q, i, A, B);
+            t.cubes += mag(A) * q->cube_A[i] + mag(B) * q->cube_B[i];
+            t.along[i] += A;
             for (int k = 0; k < columns; k++) {
                 c[k] = felt(i, q->column[0][k], q->column[1][k]);
                 f[k] = -0.5 * p * A * c[k];
             }
-            f[w->symbol[i]] += h * B;
+            f[symbol_of(w, i, columns)] += h * B;
             for (int k = 0, kl = 0; k < columns; k++) {         /* (c.e) (f.e) */
-                w->square[kl++] += c[k] * f[k];
+                t.square[kl++] += c[k] * f[k];
                 for (int l = k + 1; l < columns; l++)
-                    w->square[kl++] += c[k] * f[l] + c[l] * f[k];
+                    t.square[kl++] += c[k] * f[l] + c[l] * f[k];
             }
         }
         /* what (2) leaves, and what the centre's steps missed */
         for (int i = 0; i < 2; i++) {
-            const double before = q[-1].mu[i], after = q[1].mu[i];
-            const double left = 4.0 * q->fuzz * weights + 0x1p-50 * (fabs(before) + fabs(after));
+            const vec before = q[-1].mu[i], after = q[1].mu[i];
+            const vec left = 4.0 * q->fuzz * weights + 0x1p-50 * (mag(before) + mag(after));
             if (j == ORIGIN || j == ORIGIN + 1) {
-                const double steep = q->gradient[i] + q->beta[i] * mu0 + q->beta[i + 1] * mu1
-                                     - before - after;
-                t->mass += fabs(steep) * q->reach[i];
+                const vec steep = steepness(w, q, i) - before - after;
+                t.mass += mag(steep) * q->reach[i];
                 if (j == ORIGIN)
-                    t->rest += fabs(steep) * q->reach[i];
+                    t.rest += mag(steep) * q->reach[i];
                 else
-                    w->slope[i] = steep * q->column[i][i];
+                    t.slope[i] = steep * q->column[i][i];
             }
-            t->rounding += left * q->reach[i];
-            if (j > w->from && j < w->until)
-                t->rounding += fabs(q->mu[i]) * q->missed[i];
+            t.rounding += left * q->reach[i];
+            t.rounding += pick(inside, mag(q->mu[i]) * q->missed[i], every(0.0));
         }
     }
     for (int i = 0; i < WAVES; i++)
-        w->slope[w->symbol[i]] += w->h[i] * along[i];
-    tails = w->l * (square(w->orbit[w->from].n[0]) + square(w->orbit[w->from].n[1])
-                    + square(w->orbit[w->to].n[0]) + square(w->orbit[w->to].n[1]));
-    t->centre -= tails;
-    t->mass += tails;
+        t.slope[symbol_of(w, i, columns)] += w->h[i] * t.along[i];
+    for (int k = 0; k < LANES; k++)
+        if (holds(&turn, k)) {
+            const point *const first = w->orbit + number(&w->from, k);
+            const point *const last = w->orbit + number(&w->to, k);
+            double sum = 0.0;
+            for (int i = 0; i < 2; i++)
+                sum += at(&first->n[i], k) * at(&first->n[i], k)
+                       + at(&last->n[i], k) * at(&last->n[i], k);
+            put_at(&tails, k, sum);
+        }
+    t.centre -= w->l * tails;
+    t.mass += w->l * tails;
+    *result = t;
 }
 
 /* The cubic part of (4): cubic[m] at pair(k, l) is a coefficient of e_m e_k e_l, one of those that
    make it up.  The third wave's c is the sum of the others'. */
-INLINE void sum_cubic(loewner *w, int columns)
+INLINE void sum_cubic(batch *w, mask turn, int columns)
 {
-    const int pairs = columns * (columns + 1) / 2;
+    const int pairs = columns * (columns + 1) / 2, begin = begin_of(w, turn), end = end_of(w, turn);
 
-    for (int j = w->from; j <= w->until; j++) {
+    for (int j = begin; j <= end; j++) {
         const point *q = w->orbit + j;
-        double form[WAVES][PAIRS];
+        const mask now = turn & within(w, j);
+        vec form[WAVES][PAIRS];
         for (int i = 0; i < WAVES; i++) {
-            const double A = q->A[i], B = q->B[i], h = w->h[i];
-            const double pA = w->p[i] * A, third = w->p[i] * B * (1.0 / 3.0);
-            double *const moved = w->cubic[w->symbol[i]];
+            vec A, B;
+            turn_wave(q, i, now, &A, &B);
+            const vec pA = w->p[i] * A, third = w->p[i] * B * (1.0 / 3.0), h = w->h[i];
+            vec *const moved = w->cubic[symbol_of(w, i, columns)];
             for (int k = 0, kl = 0; k < columns; k++) {
-                const double c = felt(i, q->column[0][k], q->column[1][k]);
+                const vec c = felt(i, q->column[0][k], q->column[1][k]);
                 for (int l = k; l < columns; l++, kl++) {
                     const double half = l == k ? 0.5 : 1.0;     /* of (c.e)^2/2 */
-                    const double cc = half * c * felt(i, q->column[0][l], q->column[1][l]);
-                    const double bow = felt(i, q->bow[0][kl], q->bow[1][kl]);
+                    const vec cc = half * c * felt(i, q->column[0][l], q->column[1][l]);
+                    const vec bow = felt(i, q->bow[0][kl], q->bow[1][kl]);
                     form[i][kl] = -pA * bow - third * cc;
-                    if (h > 0.0)
-                        moved[kl] += h * (B * bow - A * cc);
+                    moved[kl] += pick(now, h * (B * bow - A * cc), every(0.0));
                 }
             }
         }
         for (int m = 0; m < columns; m++)
             for (int kl = 0; kl < pairs; kl++)
-                w->cubic[m][kl] += q->column[0][m] * (form[0][kl] + form[2][kl])
-                                   + q->column[1][m] * (form[1][kl] + form[2][kl]);
+                w->cubic[m][kl] += pick(now, q->column[0][m] * (form[0][kl] + form[2][kl])
+                                             + q->column[1][m] * (form[1][kl] + form[2][kl]),
+                                        every(0.0));
     }
 }
 
@@ -183,32 +240,34 @@ INLINE void sum_cubic(loewner *w, int columns)
    coefficient's size; that of e_k^2 e_l likewise with e_l, and of that of
    e_k^3 = 3/4 e_k + (4 e_k^3 - 3 e_k)/4 three quarters, and a quarter.  What remains is linear in
    each symbol and largest at a corner, where it is even + odd or even - odd. */
-INLINE double summit(const loewner *w, int columns, int with_cubic)
+INLINE vec summit(const batch *w, int columns, int with_cubic)
 {
-    double slope[COLUMNS], triple[COLUMNS][COLUMNS][COLUMNS], sum = 0.0, top = -HUGE_VAL;
+    vec slope[COLUMNS], triple[COLUMNS][COLUMNS][COLUMNS], sum = every(0.0);
+    vec top = every(-HUGE_VAL);
 
     for (int k = 0; k < columns; k++) {
         slope[k] = w->slope[k];
-        sum += larger(0.0, w->square[pair(columns, k, k)]);
+        sum += larger(every(0.0), w->square[pair(columns, k, k)]);
     }
     for (int k = 0; k < columns && with_cubic; k++)
         for (int l = 0; l < columns; l++) {
-            const double *const linear = w->cubic[l], *const other = w->cubic[k];
-            const double x = linear[pair(columns, k, k)]
-                             + (l == k ? 0.0 : other[pair(columns, k, l)]);
+            const vec *const linear = w->cubic[l], *const other = w->cubic[k];
+            const vec more = l == k ? every(0.0) : other[pair(columns, k, l)];
+            const vec x = linear[pair(columns, k, k)] + more;
             slope[l] += (l == k ? 0.75 : 0.5) * x;
-            sum += (l == k ? 0.25 : 0.5) * fabs(x);
+            sum += (l == k ? 0.25 : 0.5) * mag(x);
             for (int m = l + 1; m < columns && k < l; m++)
                 triple[k][l][m] = w->cubic[k][pair(columns, l, m)]
                                   + w->cubic[l][pair(columns, k, m)]
                                   + w->cubic[m][pair(columns, k, l)];
         }
     for (int corner = 0; corner < 1 << (columns - 1); corner++) {
-        double odd = 0.0, even = 0.0, sign[COLUMNS];
+        vec odd = every(0.0), even = every(0.0);
+        double sign[COLUMNS];
         for (int k = 0; k < columns; k++)
             sign[k] = corner >> k & 1 ? -1.0 : 1.0;
         for (int k = 0; k < columns; k++) {
-            double mixed = 0.0, cubic = slope[k];
+            vec mixed = every(0.0), cubic = slope[k];
             for (int l = k + 1; l < columns; l++) {
                 mixed += sign[l] * w->square[pair(columns, k, l)];
                 for (int m = l + 1; m < columns && with_cubic; m++)
@@ -217,7 +276,7 @@ INLINE double summit(const loewner *w, int columns, int with_cubic)
             even += sign[k] * mixed;
             odd += sign[k] * cubic;
         }
-        top = larger(top, even + fabs(odd));
+        top = larger(top, even + mag(odd));
     }
     return sum + top;
 }
@@ -226,74 +285,97 @@ INLINE double summit(const loewner *w, int columns, int with_cubic)
    are multiplied by anywhere, with omega + |m| in their place: with rho = a + b that is at most
    |p| (e^rho - 1 - rho) + h e^rho + loose (1 + rho) to the fifth order in rho, of which
    (size rho^2 + h + loose)(1 + rho)^3 is more; for the wave that both coordinates feel rho is the
-   sum of theirs, as its cubic form is shared out among them.  A and B are off by (9 + far) u of
-   omega + |m|, products of them by 12 u more.  At each of N sites at most 5 numbers are added to a
+   sum of theirs, as its cubic form is shared out among them.  (`load` is that of all waves, and the
+   weights are at least each omega + |m|.)  A and B are off by (9 + far) u of
+   omega + |m|, products of them by 12 u more.  At each of N sites at most 6 numbers are added to a
    sum, and each addition rounds by u of the partial sums; summit and the last sums make 45 of them.
-   So all is off by (5 N + 57) u and (9 + far) u of the mass, where `each` is 64 (N + 1) u and
-   2^-49 (1 + far) is 16 (1 + far) u.  Positive sums are off by (5 N + 30) u of themselves, which
+   So all is off by (6 N + 57) u and (9 + far) u of the mass, where `each` is 64 (N + 1) u and
+   2^-49 (1 + far) is 16 (1 + far) u.  Positive sums are off by (6 N + 30) u of themselves, which
    `each` covers, too.  (2) leaves at most 11 u (1 + sizes)(1 + far) of the weights and 2 u of the
    neighbours' mu; `left` has 64 and 8. */
-INLINE void bound_with(loewner *w, int signs, int columns)
+INLINE void bound_with(batch *w, mask turn, int signs, int columns)
 {
-    const double each = 0x1p-47 * (double)(w->until - w->from + 2);
-    sums t = { 0, 0, 0, 0, 0, 0 };
-    double least, more;
+    vec each = every(0.0), least, more, bound, rounding;
+    mask refine;
+    sums t;
 
-    sum_up(w, &t, columns);
+    for (int k = 0; k < LANES; k++)
+        put_at(&each, k, 0x1p-47 * (double)(number(&w->until, k) - number(&w->from, k) + 2));
+    sum_up(w, &t, turn, columns);
+    for (int k = 0; k < columns; k++)
+        w->slope[k] = pick(turn, t.slope[k], w->slope[k]);
+    for (int kl = 0; kl < columns * (columns + 1) / 2; kl++) {
+        w->square[kl] = pick(turn, t.square[kl], w->square[kl]);
+        for (int m = 0; m < columns; m++)
+            w->cubic[m][kl] = pick(turn, every(0.0), w->cubic[m][kl]);
+    }
     t.rounding += t.mass * (each + 0x1p-49 * (1.0 + t.far));
-    w->rounding = t.rounding * (1.0 + each);
-    more = t.centre + (t.rest + w->rounding) * (1.0 + each);
+    rounding = t.rounding * (1.0 + each);
+    more = t.centre + (t.rest + rounding) * (1.0 + each);
     least = more + summit(w, columns, 0);
-    w->bound = least + t.cubes * (1.0 + each);
-    if (signs || (least < 0.0 && w->bound >= 0.0)) {
-        sum_cubic(w, columns);
-        w->bound = more + summit(w, columns, 1);
+    bound = least + t.cubes * (1.0 + each);
+    refine = turn & (signs ? turn : TRUTH(least < 0.0) & TRUTH(bound >= 0.0));
+    if (any(refine)) {
+        sum_cubic(w, refine, columns);
+        bound = pick(refine, more + summit(w, columns, 1), bound);
     }
-    if (!(t.mass >= 1.0))
-        w->bound = HUGE_VAL;
+    bound = pick(TRUTH(t.mass >= 1.0), bound, every(HUGE_VAL));
+    w->bound = pick(turn, bound, w->bound);
+    w->rounding = pick(turn, rounding, w->rounding);
 }
 
-void bound_second_variation(loewner *w, int signs)
+/* w->bound >= (1) over the whole prism, whatever n is, in the lanes whose turn it is, which need a
+   witness; w->rounding: how much of it roundings are.  The cubic terms are bounded by absolute
+   values unless their signs might make the bound negative, or are asked for. */
+static void bound_second_variation(batch *w, mask turn, int signs)
 {
-    set_multipliers(w);
-    memset(w->slope, 0, sizeof w->slope);
-    memset(w->square, 0, sizeof w->square);
-    memset(w->cubic, 0, sizeof w->cubic);
-    switch (w->columns) {
-    case 2: bound_with(w, signs, 2); break;
-    case 3: bound_with(w, signs, 3); break;
-    case 4: bound_with(w, signs, 4); break;
-    default: bound_with(w, signs, 5);
+    while (w->weighed_last < w->known_last)
+        weigh(w, w->orbit + ++w->weighed_last);
+    while (w->weighed_first > w->known_first)
+        weigh(w, w->orbit + --w->weighed_first);
+    set_multipliers(w, turn);
+    switch (w->root->columns) {
+    case 2: bound_with(w, turn, signs, 2); break;
+    case 3: bound_with(w, turn, signs, 3); break;
+    case 4: bound_with(w, turn, signs, 4); break;
+    default: bound_with(w, turn, signs, 5);
     }
 }
 
-/* By how much, to first order, the bound falls with the width of each column: each term times its
-   degree in it.  The remainder is of fourth order, and shared like the reaches. */
-void bound_shares(loewner *w)
+/* w->share[k] after that: by how much, to first order, the bound falls with the width of each
+   column: each term times its degree in it.  The remainder is of fourth order, and shared like the
+   reaches. */
+static void bound_shares(batch *w, mask turn)
 {
-    const int columns = w->columns;
+    const int columns = w->root->columns, begin = begin_of(w, turn), end = end_of(w, turn);
 
     for (int k = 0; k < columns; k++)
-        w->share[k] = fabs(w->slope[k]);
+        w->share[k] = mag(w->slope[k]);
     for (int k = 0; k < columns; k++)
         for (int l = k; l < columns; l++) {
-            const double x = w->square[pair(columns, k, l)];
-            w->share[k] += l == k ? larger(0.0, x) : fabs(x);
-            w->share[l] += l == k ? larger(0.0, x) : fabs(x);
+            const vec x = w->square[pair(columns, k, l)];
+            const vec part = l == k ? larger(every(0.0), x) : mag(x);
+            w->share[k] += part;
+            w->share[l] += part;
             for (int m = 0; m < columns; m++) {
-                const double y = fabs(w->cubic[m][pair(columns, k, l)]);
+                const vec y = mag(w->cubic[m][pair(columns, k, l)]);
                 w->share[k] += y;
                 w->share[l] += y;
                 w->share[m] += y;
             }
         }
-    for (int j = w->from; j <= w->until; j++) {
+    for (int j = begin; j <= end; j++) {
         const point *q = w->orbit + j;
-        for (int i = 0; i < WAVES; i++)
-            if (size(w, i) > 0.0 && q->reach[i] > 0.0) {
-                const double part = 4.0 * remainder_of(w, q, i) / q->reach[i];
-                for (int k = 0; k < columns; k++)
-                    w->share[k] += part * fabs(felt(i, q->column[0][k], q->column[1][k]));
+        const mask now = turn & within(w, j);
+        for (int i = 0; i < WAVES; i++) {
+            const mask some = now & TRUTH(q->reach[i] > 0.0);
+            vec A, B;
+            turn_wave(q, i, now, &A, &B);
+            const vec part = 4.0 * remainder_of(w, q, i, A, B) / q->reach[i];
+            for (int k = 0; k < columns && w->root->present[i]; k++) {
+                const vec more = part * mag(felt(i, q->column[0][k], q->column[1][k]));
+                w->share[k] += pick(some, more, every(0.0));
             }
+        }
     }
 }

@@ -1,4 +1,4 @@
-/* loewner.h - the sharper criterion: one prism, in doubles with proved rounding. */
+/* loewner.h - the sharper criterion: prisms, in doubles with proved rounding. */
 #ifndef CONVERSE_LOEWNER_H
 #define CONVERSE_LOEWNER_H
 
@@ -9,18 +9,25 @@
 
 typedef struct loewner loewner;
 
+enum { MOST_LANES = 8 };
+
 /* For a root with its angles in radians and x* chosen.  with_bounds: those over the torus, without
    which nothing can be proved.  NULL: no memory. */
 loewner *loewner_new(const box *root, int together, int with_bounds);
 void loewner_free(loewner *w);
 
-/* Is it impossible that a minimizing orbit leads from x* to the cell?  If that is not proved,
-   *axis is where to cut the cell, or -1 if it is too fine for doubles already, and *from what the
-   halves should know: fewer points of the orbit than that will hardly do.  (So what becomes of a
-   cell depends on itself and on cell->from, what its parent learnt: that decides at which lengths
-   the orbit is tried, not whether a try that succeeds is right.)  Reason CV_REASON_ARITHMETIC: it
-   is the doubles that failed. */
-void loewner_try(loewner *w, const cv_cell *cell, verdict *v, int *axis, int *from);
+/* What became of a cell: was it proved, and if not, the axis to cut it across, or -1 if it is too
+   fine for doubles already, and what the halves should know: fewer points of the orbit than `from`
+   will hardly do.  Reason CV_REASON_ARITHMETIC: it is the doubles that failed. */
+typedef struct { verdict v; int axis, from; } loewner_outcome;
+
+/* How many cells are best tried at once, and at most: MOST_LANES or fewer. */
+int loewner_lanes(const loewner *w);
+
+/* Is it impossible that a minimizing orbit leads from x* to these cells?  What becomes of a cell
+   depends on itself and on cell->from, what its parent learnt, and on no other cell.  (from decides
+   at which lengths the orbit is tried, not whether a try that succeeds is right.) */
+void loewner_try(loewner *w, int n, const cv_cell *const cells[], loewner_outcome *const out[]);
 
 /* Is the least eigenvalue of beta below 2/3 at x, for all parameters (together: for those at
    the upper end)?  Then no multiple s >= 1 of these parameters allows a torus. */
@@ -29,10 +36,13 @@ int loewner_at_once(const loewner *w, const double x[2]);
 /* The upper bound of the largest eigenvalue over the torus that belongs to the whole root. */
 double loewner_largest(const loewner *w);
 
-/* For tests: the prism of a cell as doubles have it, and B at the corners of the parameters.
-   0: it is too thin for them. */
+/* The prism of a cell as doubles have it, and for tests B at the corners of the parameters.
+   0: it is too thin for them, or its parameters are too large. */
 typedef struct { double v[2], width[2], p[3], h[3], loose[3], l, corner[8]; } loewner_cell;
-int loewner_prism(loewner *w, const cv_cell *cell, loewner_cell *c);
+int loewner_prism(const loewner *w, const cv_cell *cell, loewner_cell *c);
+
+/* For tests: leaves there, about the points s to t, what no prism would. */
+void loewner_soil(loewner *w, int s, int t);
 
 /* For tests: follows the root's prism from point s <= 0 to point t >= 0.  0: it cannot be done. */
 int loewner_follow(loewner *w, int s, int t);

@@ -1,4 +1,4 @@
-/* orbit.c - the orbits of a prism, enclosed.
+/* orbit.c - the orbits of the prisms, enclosed.
 
    Let x[j] be the orbit of the prism's centre, as doubles have it, and x[j] + D[j] any true one.
    D[j] = L[j] e + T[j][e, e] + r[j], e in the unit cube: the columns L as the linearized map
@@ -6,53 +6,75 @@
    r bounded by two first-order recursions that follow the factors of the linearized map,
    r[j+1] = d[j] r[j] + f[j], f[j] = f[j-1]/d[j-1] + e[j], d[j] = beta - 1/d[j-1], which grow as the
    orbits do and not as absolute values would.  The reach rho bounds |D[j]| along each wave. */
-#include <string.h>
-
 #include "prism.h"
 #include "numbers/sine.h"
 
 static const double TWO_PI = 0x1.921fb54442d18p+2;      /* less than 2^-51 below it */
-static const double FAR = 1e5;          /* turns in one step after which orbits end */
+static const double FAR = 1e5;          /* turns in one step before which orbits end */
 static const double WIDEN = 1.0 + 0x1p-43;
 
 /* How far the columns and the bow reach along each wave: sums of at most 15 positive terms. */
 INLINE void measure(point *q, int columns)
 {
     for (int i = 0; i < WAVES; i++) {
-        double sum = 0.0;
+        vec sum = every(0.0);
         for (int k = 0; k < columns; k++)
-            sum += fabs(felt(i, q->column[0][k], q->column[1][k]));
+            sum += mag(felt(i, q->column[0][k], q->column[1][k]));
         q->straight[i] = sum * WIDEN;
-        sum = 0.0;
+        sum = every(0.0);
         for (int kl = 0; kl < columns * (columns + 1) / 2; kl++)
-            sum += fabs(felt(i, q->bow[0][kl], q->bow[1][kl]));
+            sum += mag(felt(i, q->bow[0][kl], q->bow[1][kl]));
         q->bowed[i] = sum * WIDEN;
     }
 }
 
-/* The sines at q->x, and what follows from them; the reaches, of what was measured and the rest.
+/* The reaches, of what was measured and the rest. */
+static void extend(const batch *w, point *q)
+{
+    q->widest = every(0.0);
+    for (int i = 0; i < WAVES; i++) {
+        q->off[i] = (q->bowed[i] + felt(i, q->rest[0], q->rest[1])) * WIDEN;
+        q->reach[i] = (q->straight[i] + q->off[i]) * WIDEN;
+        if (w->root->present[i])
+            q->widest = larger(q->widest, q->reach[i]);
+    }
+}
+
+/* A point that a lane has no use for is zero there, so that all that follows is finite. */
+static void forget(point *q, int columns)
+{
+    vec *const parts[] = { q->x, q->turns, q->column[0], q->column[1], q->bow[0], q->bow[1],
+                           q->rest, q->straight, q->bowed, q->off, q->reach };
+    const int pairs = columns * (columns + 1) / 2;
+    const int sizes[] = { 2, 2, columns, columns, pairs, pairs, 2, WAVES, WAVES, WAVES, WAVES };
+
+    for (size_t j = 0; j < sizeof parts / sizeof *parts; j++)
+        for (int k = 0; k < sizes[j]; k++)
+            parts[j][k] = pick(q->reached, parts[j][k], every(0.0));
+}
+
+/* The sines at q->x, and what follows from them.
 
    Sines and cosines are off by SINE_ERROR = 4 u, those of a rounded sum by u far more, and products
    with p by u: p sin and p cos are off by (5 + far) u |p|.  An entry of beta, a sum of two and an
    integer, is rounded twice more, and off by u (4 + 7 |p0| + (6 + far) |p2|) at most; fuzz is
    16 u (1 + sizes)(1 + far). */
-static void finish(const loewner *w, point *q)
+static void finish(const batch *w, point *q)
 {
-    const double y[WAVES] = { q->x[0], q->x[1], q->x[0] + q->x[1] };
-    double c_sin;
+    const vec y[WAVES] = { q->x[0], q->x[1], q->x[0] + q->x[1] };
+    vec c_sin, half, apart;
 
-    q->far = size(w, 2) > 0.0 ? fabs(q->x[0]) + fabs(q->x[1]) : 0.0;
+    q->far = w->root->present[2] ? mag(q->x[0]) + mag(q->x[1]) : every(0.0);
     for (int i = 0; i < WAVES; i++)
         double_sincos(&q->sine[i], &q->cosine[i], y[i]);
     c_sin = w->p[2] * q->sine[2];
     q->beta[0] = 2.0 - w->p[0] * q->sine[0] - c_sin;
     q->beta[1] = -c_sin;
     q->beta[2] = 2.0 - w->p[1] * q->sine[1] - c_sin;
-    q->fuzz = 0x1p-49 * (1.0 + size(w, 0) + size(w, 1) + size(w, 2)) * (1.0 + q->far);
-    for (int i = 0; i < WAVES; i++) {
-        q->off[i] = (q->bowed[i] + felt(i, q->rest[0], q->rest[1])) * WIDEN;
-        q->reach[i] = (q->straight[i] + q->off[i]) * WIDEN;
-    }
+    q->fuzz = 0x1p-49 * (1.0 + w->size[0] + w->size[1] + w->size[2]) * (1.0 + q->far);
+    half = 0.5 * (q->beta[0] - q->beta[2]);
+    apart = root_of(half * half + q->beta[1] * q->beta[1]);
+    q->least = 0.5 * (q->beta[0] + q->beta[2]) - apart;
 }
 
 /* How far a wave p' cos(y + z), p' = p + h e + w, may be from what L and T make of it,
@@ -63,34 +85,34 @@ static void finish(const loewner *w, point *q)
    Sines are off by (4 + far) u, and the dozen roundings are relative: 2^-40 is a thousand times as
    much as either needs.  The last summand is for what T itself makes of the wave, which roundings
    put off by (13 + far) u (|p| a^2/2 + h a). */
-static double bend(const loewner *w, const point *q, int wave)
+static vec bend(const batch *w, const point *q, int wave)
 {
-    const double a = q->straight[wave], b = q->off[wave], rho = q->reach[wave];
-    const double off = 0x1p-40 * (1.0 + q->far);
-    const double c = fabs(q->cosine[wave]) + off, s = fabs(q->sine[wave]) + off;
-    const double half_square = 0.5 * rho * rho, cube = rho * half_square * (1.0 / 3.0);
+    const vec a = q->straight[wave], b = q->off[wave], rho = q->reach[wave];
+    const vec off = 0x1p-40 * (1.0 + q->far);
+    const vec c = mag(q->cosine[wave]) + off, s = mag(q->sine[wave]) + off;
+    const vec half_square = 0.5 * rho * rho, cube = rho * half_square * (1.0 / 3.0);
 
-    return fabs(w->p[wave]) * (c * (b * (a + 0.5 * b) + 0.25 * rho * cube) + s * cube)
+    return mag(w->p[wave]) * (c * (b * (a + 0.5 * b) + 0.25 * rho * cube) + s * cube)
            + w->h[wave] * (c * half_square + s * (b + cube)) + w->loose[wave]
-           + size(w, wave) * off * rho * (1.0 + rho);
+           + w->size[wave] * off * rho * (1.0 + rho);
 }
 
 /* The columns and the bow of next, the point after q, seen from o before it: the linearized map of
    both, and what the waves add to them,
        h e cos y  and  -p (c.e)^2/2 cos y - h e (c.e) sin y. */
-INLINE void carry(const loewner *w, point *next, const point *q, const point *o, int columns)
+INLINE void carry(const batch *w, point *next, const point *q, const point *o, int columns)
 {
     const int pairs = columns * (columns + 1) / 2;
-    double source[WAVES][PAIRS];
+    vec source[WAVES][PAIRS];
 
     for (int i = 0; i < WAVES; i++) {
-        const double half = 0.5 * w->p[i] * q->cosine[i];
-        double c[COLUMNS], f[COLUMNS];
+        const vec half = 0.5 * w->p[i] * q->cosine[i];
+        vec c[COLUMNS], f[COLUMNS];
         for (int k = 0; k < columns; k++) {
             c[k] = felt(i, q->column[0][k], q->column[1][k]);
             f[k] = -half * c[k];
         }
-        f[w->symbol[i]] -= w->h[i] * q->sine[i];
+        f[symbol_of(w, i, columns)] -= w->h[i] * q->sine[i];
         for (int k = 0, kl = 0; k < columns; k++) {             /* (c.e) (f.e) */
             source[i][kl++] = c[k] * f[k];
             for (int l = k + 1; l < columns; l++)
@@ -98,11 +120,11 @@ INLINE void carry(const loewner *w, point *next, const point *q, const point *o,
         }
     }
     for (int i = 0; i < 2; i++) {
-        const double b0 = q->beta[i], b1 = q->beta[i + 1];
+        const vec b0 = q->beta[i], b1 = q->beta[i + 1];
         for (int k = 0; k < columns; k++)
             next->column[i][k] = b0 * q->column[0][k] + b1 * q->column[1][k] - o->column[i][k];
-        next->column[i][w->symbol[i]] += w->h[i] * q->cosine[i];
-        next->column[i][w->symbol[2]] += w->h[2] * q->cosine[2];
+        next->column[i][symbol_of(w, i, columns)] += w->h[i] * q->cosine[i];
+        next->column[i][symbol_of(w, 2, columns)] += w->h[2] * q->cosine[2];
         for (int kl = 0; kl < pairs; kl++)
             next->bow[i][kl] = b0 * q->bow[0][kl] + b1 * q->bow[1][kl] - o->bow[i][kl]
                                + (source[i][kl] + source[2][kl]);
@@ -111,55 +133,58 @@ INLINE void carry(const loewner *w, point *next, const point *q, const point *o,
 }
 
 /* next = the point after q, seen from o before it; time may run either way.  The factor begins
-   with d = beta, and f then holds r(o), which is zero or the rounding of x*.  0: the factor cannot
-   go on.
+   with d = beta, and f then holds r(o), which is zero or the rounding of x*.  Where the factor
+   cannot go on, or next would be of no use, it is not reached.
 
    The coordinates are kept modulo 2 pi.  The step of the centre misses, with every rounding and
    turn, 2 u |q| + 1.4 u |o| + 3.4 u |before| + 4.7 u |x| and what its waves are off: `missed` has
-   8 u of each, and fuzz.
+   8 u of each, and fuzz.  Turns are whole: adding SHIFT rounds to an integer what is below 2^51.
    The rest obeys r' = beta r - r(o) + e, where e is what the waves bend, what the step of the
    centre missed, and the roundings of columns and bow, 3 u of them and 11/16 fuzz of those of q.
    Writing r' = d r + f and, from the last step,
    r(o) = (r - f(o))/d(o), gives f = f(o)/d(o) + e + (beta - 1/d(o) - d) r, where the last bracket
    is rounding: of beta, below fuzz with that of the difference; of the inverse, whose determinant
-   is off by 1 + condition units, 3 + condition units of its trace, where `rounded` has
+   is off by 1 + condition units, 4 + condition units of its trace, where `rounded` has
    8 (1 + condition). */
-static int step(const loewner *w, point *next, point *q, const point *o, int is_first)
+static void step(const batch *w, point *next, point *q, const point *o, int is_first)
 {
-    double g[WAVES], bent[WAVES], inverse[3] = { 0, 0, 0 }, rounded = 0.0, rest_sum, reach;
+    static const double SHIFT = 0x1.8p52, USELESS = 0x1p10;
+    vec inverse[3] = { every(0.0), every(0.0), every(0.0) }, rounded = every(0.0);
+    vec g[WAVES], bent[WAVES], rest_sum, reach;
 
     for (int j = 0; j < WAVES; j++) {
         g[j] = w->p[j] * q->cosine[j];
         bent[j] = bend(w, q, j);
     }
     for (int i = 0; i < 2; i++) {
-        const double before = o->x[i] - q->turns[i] * TWO_PI;
-        const double x = (2.0 * q->x[i] - before) + (g[i] + g[2]);
-        next->turns[i] = floor(x / TWO_PI + 0.5);
+        const vec before = o->x[i] - q->turns[i] * TWO_PI;
+        const vec x = (2.0 * q->x[i] - before) + (g[i] + g[2]);
+        next->turns[i] = (x * (1.0 / TWO_PI) + SHIFT) - SHIFT;
         next->x[i] = x - next->turns[i] * TWO_PI;
-        q->missed[i] = 0x1p-50 * (fabs(q->x[i]) + fabs(o->x[i]) + fabs(before) + fabs(x)) + q->fuzz;
+        q->missed[i] = 0x1p-50 * (mag(q->x[i]) + mag(o->x[i]) + mag(before) + mag(x)) + q->fuzz;
     }
-    switch (w->columns) {               /* each count of its own: the compiler unrolls */
+    next->turned = mag(next->turns[0]) + mag(next->turns[1]);
+    next->reached = TRUTH(next->turned <= FAR);
+    switch (w->root->columns) {         /* each count of its own: the compiler unrolls */
     case 2: carry(w, next, q, o, 2); break;
     case 3: carry(w, next, q, o, 3); break;
     case 4: carry(w, next, q, o, 4); break;
     default: carry(w, next, q, o, 5);
     }
     if (!is_first) {
-        const double *d = o->d, det = d[0] * d[2] - d[1] * d[1];
-        const double condition = (fabs(d[0] * d[2]) + d[1] * d[1]) / det;
-        if (!(d[0] > 0.0 && det > TINY && condition < 0x1p20))
-            return 0;
-        inverse[0] = d[2] / det;
-        inverse[1] = -d[1] / det;
-        inverse[2] = d[0] / det;
+        const vec *d = o->d, det = d[0] * d[2] - d[1] * d[1];
+        const vec one = 1.0 / det, condition = (mag(d[0] * d[2]) + d[1] * d[1]) * one;
+        next->reached &= TRUTH(d[0] > 0.0) & TRUTH(det > TINY) & TRUTH(condition < 0x1p20);
+        inverse[0] = d[2] * one;
+        inverse[1] = -d[1] * one;
+        inverse[2] = d[0] * one;
         rounded = 0x1p-50 * (inverse[0] + inverse[2]) * (1.0 + condition);
     }
     rest_sum = q->rest[0] + q->rest[1];
     reach = q->reach[0] + q->reach[1];
     for (int i = 0; i < 2; i++) {
-        const double i0 = fabs(inverse[i]) + rounded, i1 = fabs(inverse[i + 1]) + rounded;
-        double e = bent[i] + bent[2];
+        const vec i0 = mag(inverse[i]) + rounded, i1 = mag(inverse[i + 1]) + rounded;
+        vec e = bent[i] + bent[2];
 
         e += q->missed[i];
         e += 4.0 * q->fuzz * (reach + w->h[i] + w->h[2]);
@@ -170,71 +195,81 @@ static int step(const loewner *w, point *next, point *q, const point *o, int is_
     for (int j = 0; j < 3; j++)
         q->d[j] = q->beta[j] - inverse[j];
     for (int i = 0; i < 2; i++)
-        next->rest[i] = (fabs(q->d[i]) * q->rest[0] + fabs(q->d[i + 1]) * q->rest[1]
+        next->rest[i] = (mag(q->d[i]) * q->rest[0] + mag(q->d[i + 1]) * q->rest[1]
                          + q->force[i]) * WIDEN;
+    extend(w, next);
+    next->reached &= TRUTH(next->widest <= USELESS);
+    if (any(~next->reached))
+        forget(next, w->root->columns);
     finish(w, next);
-    return 1;
 }
 
-/* The largest reach of a wave. */
-static double far_reach(const loewner *w, const point *q)
-{
-    double reach = 0.0;
-
-    for (int j = 0; j < WAVES; j++)
-        if (size(w, j) > 0.0)
-            reach = larger(reach, q->reach[j]);
-    return reach;
-}
-
-void orbit_begin(loewner *w)
+/* The two points that the prisms give. */
+static void begin(batch *w)
 {
     point *const origin = w->orbit + ORIGIN;
 
     memset(origin, 0, 2 * sizeof *origin);
     for (int i = 0; i < 2; i++) {
-        origin->x[i] = w->xstar[i];
-        origin->rest[i] = w->xstar_err[i];
+        origin->x[i] = every(w->root->xstar[i]);
+        origin->rest[i] = every(w->root->xstar_err[i]);
         origin[1].x[i] = w->v[i];
         origin[1].column[i][i] = w->width[i];
+        origin[i].reached = ~none();
     }
-    measure(origin + 1, w->columns);
-    finish(w, origin);
-    finish(w, origin + 1);
-    w->first = ORIGIN;
-    w->last = ORIGIN - 1;               /* none of them is in use yet */
+    measure(origin + 1, w->root->columns);
+    for (int j = 0; j < 2; j++) {
+        extend(w, origin + j);
+        finish(w, origin + j);
+    }
+    w->known_first = w->weighed_first = ORIGIN;
+    w->known_last = ORIGIN + 1;
+    w->weighed_last = ORIGIN - 1;
+    for (int k = 0; k < LANES; k++) {
+        w->first[k] = ORIGIN;
+        w->last[k] = ORIGIN - 1;        /* none of them is in use yet */
+    }
 }
 
-int orbit_step(loewner *w, int ahead)
+/* The points from `to` on, or up to it, are known. */
+static void follow(batch *w, int to)
 {
-    point *const end = w->orbit + (ahead ? w->last : w->first);
-
-    if (ahead ? step(w, end + 1, end, end - 1, w->last == ORIGIN + 1)
-              : step(w, end - 1, end, end + 1, w->first == ORIGIN)) {
-        w->last += ahead;
-        w->first -= !ahead;
-        return 1;
-    }
-    return 0;
-}
-
-int orbit_lengthen(loewner *w, int *why)
-{
-    static const double LONGEST_REACH = 0.5;
     point *const q = w->orbit;
 
-    if (w->last <= ORIGIN) {
-        w->last++;
-        return 1;
-    }
-    const int ahead = far_reach(w, q + w->last) < far_reach(w, q + w->first);
-    const point *const end = q + (ahead ? w->last : w->first);
+    for (; w->known_last < to; w->known_last++)
+        step(w, q + w->known_last + 1, q + w->known_last, q + w->known_last - 1,
+             w->known_last == ORIGIN + 1);
+    for (; w->known_first > to; w->known_first--)
+        step(w, q + w->known_first - 1, q + w->known_first, q + w->known_first + 1,
+             w->known_first == ORIGIN);
+}
+
+/* One more point for lane k, at the end that is better known.  0: that end is known too badly, or
+   the orbit is too long; why says which. */
+static int lengthen(batch *w, int k, int *why)
+{
+    static const double LONGEST_REACH = 0.6;
+    const point *const q = w->orbit;
+    const int inner = w->last[k] <= ORIGIN;     /* two points are the prism's own */
+    const int ahead = inner || w->reach[k][1] < w->reach[k][0];
+    int *const end = ahead ? &w->last[k] : &w->first[k];        /* hard to foretell: no branches */
+    const int next = *end + 2 * ahead - 1;
+
     *why = CV_REASON_TOO_BIG;
-    if (!(far_reach(w, end) <= LONGEST_REACH))
+    if (!inner && !(w->reach[k][ahead] <= LONGEST_REACH))
         return 0;
     *why = CV_REASON_TOO_LONG;
-    if (w->last - w->first + 1 == MAX_POINTS || fabs(end->turns[0]) + fabs(end->turns[1]) > FAR)
+    if (w->last[k] - w->first[k] + 1 == MAX_POINTS)
         return 0;
-    *why = CV_REASON_SINGULAR;
-    return orbit_step(w, ahead);
+    follow(w, next);
+    if (!holds(&q[next].reached, k)) {
+        if (at(&q[next].turned, k) <= FAR)
+            *why = CV_REASON_SINGULAR;
+        return 0;
+    }
+    *end = next;
+    w->reach[k][ahead] = at(&q[next].widest, k);
+    if (next == ORIGIN)
+        w->reach[k][0] = w->reach[k][1];
+    return 1;
 }

@@ -4,113 +4,146 @@
    beta - 1/d[j] of the Loewner bounds leads to a d[j] that is not above l; past and future are used
    alike.  n is chosen for the orbit of the prism's centre and then kept.  Nothing rigorous rests on
    it. */
+#include "eigenvector.h"
 #include "prism.h"
 
-double least_eigenvector(const double d[3], double n[2])
+static mask above(const vec d[3], vec l)
 {
-    const double half = 0.5 * (d[0] - d[2]);
-    const double value = 0.5 * (d[0] + d[2]) - sqrt(half * half + d[1] * d[1]);
-    const double a = d[0] > d[2] ? d[1] : value - d[2], b = d[0] > d[2] ? value - d[0] : d[1];
-    const double length = sqrt(a * a + b * b);
-
-    n[0] = length > 0.0 ? a / length : 1.0;
-    n[1] = length > 0.0 ? b / length : 0.0;
-    return value;
-}
-
-static int above(const double d[3], double l)
-{
-    return d[0] > l && (d[0] - l) * (d[2] - l) > d[1] * d[1];
+    return TRUTH(d[0] > l) & TRUTH((d[0] - l) * (d[2] - l) > d[1] * d[1]);
 }
 
 /* d' = beta - 1/d */
-static void block(double next[3], const double beta[3], const double d[3])
+INLINE void block(vec next[3], const vec beta[3], const vec d[3])
 {
-    const double det = d[0] * d[2] - d[1] * d[1];
+    const vec inverse = 1.0 / (d[0] * d[2] - d[1] * d[1]);
 
-    next[0] = beta[0] - d[2] / det;
-    next[1] = beta[1] + d[1] / det;
-    next[2] = beta[2] - d[0] / det;
+    next[0] = beta[0] - d[2] * inverse;
+    next[1] = beta[1] + d[1] * inverse;
+    next[2] = beta[2] - d[0] * inverse;
 }
 
-/* n = n / d */
-static void divide(double n[2], const double m[2], const double d[3])
+/* m / d */
+INLINE void divide(vec n[2], const vec m[2], const vec d[3])
 {
-    const double det = d[0] * d[2] - d[1] * d[1];
+    const vec inverse = 1.0 / (d[0] * d[2] - d[1] * d[1]);
 
-    n[0] = (d[2] * m[0] - d[1] * m[1]) / det;
-    n[1] = (d[0] * m[1] - d[1] * m[0]) / det;
+    n[0] = (d[2] * m[0] - d[1] * m[1]) * inverse;
+    n[1] = (d[0] * m[1] - d[1] * m[0]) * inverse;
 }
 
-/* The last blocks before the recursion falls below l: from the left, up to index `to`.  Returns
-   where it falls, or to + 1.  from_right: the same from `to` downwards. */
-static int fall_left(loewner *w, int from, int to)
-{
-    const double start[3] = { 1.0 / w->l, 0.0, 1.0 / w->l }, *d = start;
-    point *q = w->orbit;
+/* The recursion from the left, way 1, or from the right, -1, in the lanes whose turn it is: from
+   their sites `begin` to `end`, or to where it falls below l. */
+typedef struct {
+    int way, site, last;
+    mask begin, end, going, fell, fall; /* fall: where it fell, in the lanes that fell */
+    vec d[3];
+} recursion;
 
-    for (int j = from; j <= to; j++) {
-        block(q[j].left, q[j].beta, d);
-        d = q[j].left;
-        if (!above(d, w->l))
-            return j;
+INLINE recursion recursion_of(const batch *w, int way, mask turn, mask begin, mask end)
+{
+    return (recursion){ way, extreme(turn, begin, -way), extreme(turn, end, way), begin, end, turn,
+                        none(), none(), { 1.0 / w->l, every(0.0), 1.0 / w->l } };
+}
+
+/* One site further.  0: there is none. */
+INLINE int advance(batch *w, recursion *r, int way)
+{
+    const uint64_t site = (uint64_t)r->site;
+    point *const q = w->orbit + r->site;
+    vec *const blocks = way > 0 ? q->left : q->right, next[3];
+    mask now, falls;
+
+    if (!any(r->going) || r->site == r->last + way)
+        return 0;
+    now = r->going & (way > 0 ? TRUTH(r->begin <= site) : TRUTH(r->begin >= site));
+    block(next, q->beta, r->d);
+    for (int k = 0; k < 3; k++) {
+        r->d[k] = pick(now, next[k], r->d[k]);
+        blocks[k] = pick(now, next[k], blocks[k]);
     }
-    return to + 1;
+    falls = now & ~above(r->d, w->l);
+    r->fall = choose(falls, site - none(), r->fall);
+    r->fell |= falls;
+    r->going &= ~falls & ~TRUTH(r->end == site);
+    r->site += way;
+    return 1;
 }
 
-static int fall_right(loewner *w, int from, int to)
-{
-    const double start[3] = { 1.0 / w->l, 0.0, 1.0 / w->l }, *d = start;
-    point *q = w->orbit;
+/* Chooses from, to and n on the orbits so that (1) is negative at the centre, in the lanes whose
+   turn it is; returns where that can be.
 
-    for (int j = to; j >= from; j--) {
-        block(q[j].right, q[j].beta, d);
-        d = q[j].right;
-        if (!above(d, w->l))
-            return j;
-    }
-    return from - 1;
-}
-
-/* Between the places where the recursions from both ends fall all blocks are above l.  There n is,
+   Between the places where the recursions from both ends fall all blocks are above l.  There n is,
    at the site of the least beta, the eigenvector of the quadratic form that is left there when all
    others are eliminated; outwards n = n / d.  The sites that are summed over, from..until, hold 0
    and 1, with n = 0 where need be. */
-int witness(loewner *w)
+static mask witness(batch *w, mask turn)
 {
-    point *q = w->orbit;
-    double value = HUGE_VAL, form[3], ignored[2];
-    int site, from, to = w->last;
-    const int fall = fall_left(w, w->first, w->last);
+    point *const q = w->orbit;
+    vec form[3] = { every(0.0), every(0.0), every(0.0) }, n[2] = { every(0.0), every(0.0) };
+    vec value = every(HUGE_VAL), top[2];
+    mask first = none(), last = none(), fall, from, to, until, site, alone;
+    recursion left, right;
 
-    if (fall > w->last)
-        return 0;
-    from = fall_right(w, w->first, to);
-    if (from < w->first || from > fall) {               /* two places apart: the left one alone */
-        to = fall;
-        from = fall_right(w, w->first, to);
-        if (from < w->first)
-            from = fall;                                /* by a rounding only */
+    for (int k = 0; k < LANES; k++) {
+        put_number(&first, k, w->first[k]);
+        put_number(&last, k, w->last[k]);
     }
+    left = recursion_of(w, 1, turn, first, last);
+    right = recursion_of(w, -1, turn, last, first);
+    while (advance(w, &left, 1) | advance(w, &right, -1))       /* side by side: that is faster */
+        continue;
+    turn = left.fell;
+    if (!any(turn))
+        return turn;
+    fall = left.fall;
+    from = right.fall;
+    to = last;
+    alone = turn & (~right.fell | TRUTH(from > fall));
+    if (any(alone)) {                   /* two places apart: the left one alone */
+        to = choose(alone, fall, to);
+        right = recursion_of(w, -1, alone, to, first);
+        while (advance(w, &right, -1))
+            continue;
+        from = choose(alone, choose(right.fell, right.fall, fall), from);   /* else by a rounding */
+    }
+    until = choose(TRUTH(to > ORIGIN), to, ORIGIN + 1 - none());
+
     site = from;
-    for (int j = from; j <= fall; j++) {
-        const double v = least_eigenvector(q[j].beta, ignored);
-        if (v < value) {
-            value = v;
-            site = j;
+    for (int j = extreme(turn, from, -1); j <= extreme(turn, fall, 1); j++) {
+        const uint64_t here = (uint64_t)j;
+        const mask better = TRUTH(from <= here) & TRUTH(here <= fall) & TRUTH(q[j].least < value);
+        value = pick(better, q[j].least, value);
+        site = choose(better, here - none(), site);
+        for (int k = 0; k < 3; k++)
+            form[k] = pick(better, q[j].left[k] + q[j].right[k] - q[j].beta[k], form[k]);
+    }
+    least_eigenvector(form, top);
+    w->from = choose(turn, first, w->from);
+    w->to = choose(turn, to, w->to);
+    w->until = choose(turn, until, w->until);
+    const int start = extreme(turn, w->from, -1), end = extreme(turn, w->until, 1);
+    for (int j = extreme(turn, site, 1); j >= start; j--) {
+        const uint64_t here = (uint64_t)j;
+        const mask in = TRUTH(here <= site) & TRUTH(here >= w->from);
+        vec next[2];
+        divide(next, n, q[j].left);
+        for (int i = 0; i < 2; i++) {
+            n[i] = pick(in, pick(TRUTH(here == site), top[i], next[i]), every(0.0));
+            q[j].n[i] = pick(turn, n[i], q[j].n[i]);
         }
     }
-    for (int k = 0; k < 3; k++)
-        form[k] = q[site].left[k] + q[site].right[k] - q[site].beta[k];
-    least_eigenvector(form, q[site].n);
-    w->from = w->first;
-    w->to = to;
-    w->until = to > ORIGIN ? to : ORIGIN + 1;
-    for (int j = to + 1; j <= w->until; j++)
-        q[j].n[0] = q[j].n[1] = 0.0;
-    for (int j = site - 1; j >= w->from; j--)
-        divide(q[j].n, q[j + 1].n, q[j].left);
-    for (int j = site + 1; j <= w->to; j++)
-        divide(q[j].n, q[j - 1].n, q[j].right);
-    return 1;
+    for (int i = 0; i < 2; i++)
+        n[i] = every(0.0);
+    for (int j = extreme(turn, site, -1); j <= end; j++) {
+        const uint64_t here = (uint64_t)j;
+        const mask in = turn & TRUTH(here > site);
+        vec next[2];
+        divide(next, n, q[j].right);
+        for (int i = 0; i < 2; i++) {
+            n[i] = pick(TRUTH(here == site), top[i],
+                        pick(in & TRUTH(here <= w->to), next[i], every(0.0)));
+            q[j].n[i] = pick(in, n[i], q[j].n[i]);
+        }
+    }
+    return turn;
 }

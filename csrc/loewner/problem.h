@@ -1,0 +1,55 @@
+/* problem.h - the problem that prisms belong to, and the engines that try them. */
+#ifndef CONVERSE_PROBLEM_H
+#define CONVERSE_PROBLEM_H
+
+#include "loewner.h"
+
+enum { WAVES = 3, COLUMNS = 5, PAIRS = 15 };
+
+/* Tries prisms LANES at a time.  Engines differ in that number and in the instructions they use,
+   and in no bit of what they find. */
+typedef struct {
+    int lanes;
+    size_t size;                        /* of what it works in, which begins as zeros */
+    void (*try)(void *work, const loewner *w, int n, const cv_cell *const cells[],
+                loewner_outcome *const out[]);
+    /* for tests: loewner.h */
+    void (*soil)(void *work, int s, int t);
+    int (*follow)(void *work, const loewner *w, int s, int t);
+    int (*bound)(void *work, int signs, double *bound, double *l, double *rounding, int *first,
+                 double n[][2], int most);
+    void (*look)(const void *work, int n, loewner_point *p);
+} engine;
+
+extern const engine engine_scalar, engine_baseline, engine_avx2, engine_avx512;
+
+#if defined(__GNUC__) && (defined(__SSE2__) || defined(__aarch64__))
+#define HAVE_VECTORS
+#endif
+#if defined(__GNUC__) && defined(__x86_64__)
+#define HAVE_X86
+#endif
+
+struct loewner {
+    double centre[COLUMNS], half[COLUMNS], slack[COLUMNS];      /* v0, v1, a, b, c */
+    double xstar[2], xstar_err[2], corner[8];                   /* bounds B at the corners */
+    int together, columns;              /* the symbols: v0, v1, and the parameters that move */
+    int axis[COLUMNS], symbol[WAVES];   /* of a column: the cell's; of a wave: the column */
+    int present[WAVES];                 /* is there such a wave at all? */
+    const engine *engine;
+    char *memory;
+    void *work;                         /* there, aligned */
+};
+
+/* The place of e_k e_l among the products of the symbols, row by row with k <= l. */
+static inline int pair(int columns, int k, int l)
+{
+    return k <= l ? k * (2 * columns - k - 1) / 2 + l : l * (2 * columns - l - 1) / 2 + k;
+}
+
+/* problem.c */
+
+/* Would cutting the cell across axis help? */
+int may_cut(const loewner *w, const cv_cell *cell, int axis);
+
+#endif

@@ -1,0 +1,32 @@
+/* tree.c - the core without Python: grows the tree of the sharper method, three parameters or one,
+   and prints it, so that machines can be compared (make arm).
+
+       tree a b c half-a half-b half-c together */
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "converse.h"
+
+int main(int argc, char **argv)
+{
+    const char *region[5] = { "0", "0", "0", "0", "0" }, *half[5] = { "0", "0", "0", "1", "1" };
+    cv_search *s;
+    size_t length;
+
+    if (argc != 8)
+        return 2;
+    for (int k = 0; k < 3; k++) {
+        region[k] = argv[1 + k];
+        half[k] = argv[4 + k];
+    }
+    if (cv_search_new(&s, region, half, NULL, CV_LOEWNER, atoi(argv[7]), 35, 120, 0, 0) != CV_OK ||
+        cv_prepare(s, NULL) != CV_OK)
+        return 1;
+    while (cv_step(s, 1L << 40, 1e9, NULL) == CV_RUNNING)
+        continue;
+    fprintf(stderr, "%d prisms at a time\n", cv_lanes(s));
+    const char *const tree = cv_tree(s, &length);
+    fwrite(tree, 1, length, stdout);
+    cv_search_free(s);
+    return 0;
+}
