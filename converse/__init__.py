@@ -7,10 +7,10 @@
 """
 
 import importlib
+from typing import TYPE_CHECKING
 
 from .version import __version__
 
-TYPE_CHECKING = False                   # the checker has no need of typing, which takes a while
 if TYPE_CHECKING:
     from . import kernels
     from .core import Counts

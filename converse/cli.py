@@ -7,13 +7,13 @@ import os
 import signal
 import sys
 import warnings
+from dataclasses import replace
 
 from . import files
 from .files import ConverseError, plain
 from .problem import InputError, read_input
 from .report import header, verdict
 from .settings import AS_PRINTED, LIMIT, METHODS, REGION, THEOREM, UNDECIDED, Settings
-from .values import replace
 from .version import __version__
 
 STATUS = {THEOREM: 0, UNDECIDED: 1, REGION: 3, AS_PRINTED: 4}
@@ -26,17 +26,6 @@ class Signalled(KeyboardInterrupt):
 
 
 class Parser(argparse.ArgumentParser):
-    """An argument that is added is tried on a formatter.  The usual one would each time find out
-    how wide the terminal is; that is for the help, and there is time enough then."""
-
-    def __init__(self, **options):
-        super().__init__(formatter_class=lambda prog: argparse.HelpFormatter(prog, width=80),
-                         **options)
-
-    def format_help(self):
-        self.formatter_class = argparse.HelpFormatter
-        return super().format_help()
-
     def error(self, message):
         raise ConverseError("%s; see %s --help" % (message, self.prog))
 

@@ -1,13 +1,13 @@
 """The C core in terms of Python."""
 
 import threading
+from dataclasses import asdict, dataclass, fields
 from decimal import Decimal
 from typing import Dict, List, Optional, Tuple
 
 from .files import ConverseError
 from .problem import Problem
 from .settings import Settings
-from .values import dataclass
 
 try:
     from ._native import ffi, lib
@@ -70,7 +70,7 @@ class Counts:
     def __add__(self, other):
         """The statistics of both searches together."""
         both = {}
-        for name, mine in vars(self).items():
+        for name, mine in asdict(self).items():
             theirs = getattr(other, name)
             if isinstance(mine, tuple):
                 both[name] = tuple(map(sum, zip(mine, theirs)))
@@ -101,7 +101,7 @@ class Begun:
     counts: Counts                      # of the nodes of the tree alone
 
 
-@dataclass(frozen=True)
+@dataclass
 class Grown:
     """What a worker grew: the text, the cells that are to follow it, the orbits' lengths."""
 
@@ -205,7 +205,7 @@ class Search:
         pending = ffi.new("cv_cell[]", lib.cv_pending(self.handle, ffi.NULL))
         lib.cv_pending(self.handle, pending)
         counts = lib.cv_get_counts(self.handle)
-        values = {name: getattr(counts, name) for name in vars(Counts())}
+        values = {item.name: getattr(counts, item.name) for item in fields(Counts)}
         return ([(tuple(cell.index), tuple(cell.cuts), getattr(cell, "from")) for cell in pending],
                 Counts(**{name: value if isinstance(value, int) else tuple(value)
                           for name, value in values.items()}))

@@ -4,16 +4,15 @@ What becomes of a prism depends on itself and on what its parent learnt, which g
 tree, its counts and the theorem are the same however the work is divided.
 """
 
+import concurrent.futures
 import contextlib
 import os
 import time
-from queue import Empty, SimpleQueue
+from dataclasses import replace
 
 from . import core, tree
 from .core import Counts
 from .files import ConverseError
-from .threads import Threads
-from .values import replace
 
 MANY = 2 ** 30                      # leaves
 ALONE_SECONDS = 0.03                # before anyone else is asked
@@ -71,8 +70,7 @@ class Growth:
         self.changes = 0                    # under way: see _change
         self.running = {}                   # future -> (part, attempts left)
         self.stop = core.stop_token()
-        self.ended = SimpleQueue()    # futures, to wake whoever waits
-        self.threads = Threads(jobs if executor is None else 1, self.ended.put)
+        self.threads = concurrent.futures.ThreadPoolExecutor(jobs if executor is None else 1)
 
     def __enter__(self):
         return self
@@ -230,7 +228,8 @@ class Growth:
         while True:
             while queue and len(self.running) < workers:
                 self._submit(queue.pop(), ATTEMPTS, executor, seconds)
-            done = self._done(1, end)
+            done, _ = concurrent.futures.wait(self.running, max(0.0, end - time.monotonic()),
+                                              concurrent.futures.FIRST_COMPLETED)
             stopped = False
             for future in done:
                 part, attempts = self.running.pop(future)
@@ -258,27 +257,11 @@ class Growth:
 
     def _start(self, executor, *call):
         try:
-            future = executor.submit(*call)
+            return executor.submit(*call)
         except RuntimeError as error:
             if executor is self.threads:
                 raise MemoryError("there is not enough memory for another thread") from None
             raise ConverseError("the workers are gone (%s)" % error) from None
-        if executor is not self.threads:
-            future.add_done_callback(self.ended.put)
-        return future
-
-    def wait(self, seconds):
-        """Waits until a future ends, perhaps one of before, but for so many seconds at most."""
-        with contextlib.suppress(Empty):
-            self.ended.get(timeout=max(0.0, seconds))
-
-    def _done(self, enough, end):
-        """The futures that have ended, as soon as there are enough of them or it is time."""
-        while True:
-            done = [future for future in self.running if future.done()]
-            if len(done) >= min(enough, len(self.running)) or time.monotonic() >= end:
-                return done
-            self.wait(end - time.monotonic())
 
     def _merge(self):
         """Gives the text of parts whose predecessors are finished to these."""
@@ -296,14 +279,14 @@ class Growth:
     def settle(self):
         """Waits a little for those who still work, and takes what they bring."""
         self.stop[0] = 1
-        done = self._done(len(self.running), time.monotonic() + 4 * TASK_SECONDS + 1)
+        done, late = concurrent.futures.wait(self.running, 4 * TASK_SECONDS + 1)
         for future in done:
             try:
                 grown = future.result()
             except Exception:               # the part is as it was
                 continue
             self._take(self.running[future][0], grown)
-        for future in self.running.keys() - set(done):
+        for future in late:
             future.cancel()
         self.running.clear()
         self._merge()

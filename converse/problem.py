@@ -2,11 +2,10 @@
 
 import os
 import re
+from dataclasses import dataclass
 from decimal import Decimal
 from fractions import Fraction
 from typing import IO, Sequence, Tuple, Union
-
-from .values import dataclass
 
 NAMES = ("a", "b", "c", "v0", "v1")
 LABELS = ("a", "b", "c", "theta[0]", "theta[1]")        # as the input's documentation calls them

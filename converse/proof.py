@@ -3,6 +3,7 @@
 import os
 import re
 import zlib
+from dataclasses import asdict, dataclass, field, fields
 from functools import cached_property
 from typing import TYPE_CHECKING, Dict, List, Optional, Tuple, Union
 
@@ -12,7 +13,6 @@ from .files import ConverseError
 from .problem import NAMES, NUMBER, Problem, decimal_text, parse_number
 from .settings import AS_PRINTED, REGION, THEOREM, UNDECIDED, Settings
 from .tree import Leaf
-from .values import dataclass, field
 from .version import __version__
 
 if TYPE_CHECKING:
@@ -169,7 +169,7 @@ class Proof:
                   "stubborn: " + _yes(self.settings.stubborn), "at once: " + _yes(self.at_once)]
         lines += [] if self.all_decided else ["seconds: %.2f" % self.seconds]
         lines += ["pending: " + " ".join(map(str, self.pending))]
-        for name, value in vars(self.counts).items():
+        for name, value in asdict(self.counts).items():
             values = value if isinstance(value, tuple) else (value,)
             lines.append("%s: %s" % (name, " ".join(map(str, values))))
         lines += ["%s: %s" % item for item in self.constants.items()]
@@ -211,9 +211,9 @@ class Proof:
         try:
             centre, half = zip(*(map(parse_number, values[name].split()) for name in NAMES))
             counts = {}
-            for name, default in vars(Counts()).items():
-                numbers = tuple(int(word) for word in values[name].split())
-                counts[name] = numbers if isinstance(default, tuple) else numbers[0]
+            for item in fields(Counts):
+                numbers = tuple(int(word) for word in values[item.name].split())
+                counts[item.name] = numbers if isinstance(item.default, tuple) else numbers[0]
             xstar = None
             if "xstar" in values:
                 x0, x1 = values["xstar"].split()

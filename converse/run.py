@@ -1,9 +1,11 @@
 """A proof is looked for."""
 
+import concurrent.futures
 import math
 import os
 import time
-from typing import TYPE_CHECKING, Callable, Optional, Union
+from dataclasses import replace
+from typing import Callable, Optional, Union
 
 from . import core, tree
 from .backup import Keeper
@@ -13,11 +15,7 @@ from .growth import OLD, Growth, count_workers
 from .problem import NAMES, Problem, decimal_text
 from .proof import Proof
 from .settings import Settings
-from .values import replace
 from .version import __version__
-
-if TYPE_CHECKING:
-    from concurrent.futures import Executor
 
 LOOK_SECONDS = 0.1                  # between two looks at the clock, at Ctrl-C, at the bar
 
@@ -27,7 +25,7 @@ Path = Union[str, "os.PathLike[str]"]
 def prove(problem: Optional[Problem] = None, *, method: Optional[str] = None,
           depth: Optional[int] = None, digits: Optional[int] = None,
           stubborn: Optional[bool] = None, as_printed: Optional[bool] = None,
-          jobs: Optional[int] = None, executor: "Optional[Executor]" = None,
+          jobs: Optional[int] = None, executor: Optional[concurrent.futures.Executor] = None,
           backup: Optional[Path] = None, resume: Union[Proof, Path, None] = None,
           time_limit: float = math.inf,
           progress: Optional[Callable[[float, Counts], None]] = None,
@@ -121,7 +119,7 @@ class _Run:
     def _wait(self, future):
         """Waits for a future as long as there is time, and says whether it is done."""
         while not future.done() and time.monotonic() < self.end:
-            self.growth.wait(min(LOOK_SECONDS, self.end - time.monotonic()))
+            concurrent.futures.wait([future], min(LOOK_SECONDS, max(0.0, self.end - time.monotonic())))
         return future.done()
 
     def _look(self):

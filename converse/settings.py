@@ -1,8 +1,7 @@
 """How a search goes about it, and what it can come to."""
 
+from dataclasses import dataclass
 from typing import Optional
-
-from .values import dataclass
 
 METHODS = {"thesis": 30, "loewner": 120}            # by name, how often they may cut a prism
 LIMIT = 100000                                      # of the depth and of the digits
