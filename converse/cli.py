@@ -296,6 +296,9 @@ def ended(command, run, interrupted):
         message, status = "interrupted; " + interrupted(), ENDED_BY + number
     except (ConverseError, InputError, MemoryError) as error:
         message, status = str(error) or "there is not enough memory", BAD
+    except ImportError as error:        # of what is imported late: libraries are mapped then
+        message, status = "a part of Python cannot be loaded (%s); give it more memory, or install " \
+                          "it anew" % error, BAD
     except OSError as error:
         message, status = "the output cannot be written (%s)" % files.reason(error), BAD
         with contextlib.suppress(OSError):  # the interpreter must not try again when it ends

@@ -16,7 +16,6 @@ INPUTS = HERE.parent / "inputs"
 CONVERSE = Path(sys.executable).parent / "converse"
 MODES = {"as_printed": ["-d30", "--as-printed"], "sound": ["-d30"]}
 LOEWNER = "for --method loewner"        # a comment of the inputs that it is for
-SLOW = {"trig141", "standard-972"}      # minutes: not compared
 
 SECONDS = re.compile(r"This investigation took [0-9.]+ seconds\.")
 
@@ -71,8 +70,6 @@ def main(update=False):
     bad = []
     for problem in sorted(INPUTS.glob("*.in")):
         for mode, flags in modes(problem).items():
-            if problem.stem in SLOW:
-                continue
             name = "%s/%s.out" % (mode, problem.stem)
             found = run(mode, flags, problem)
             golden = HERE / name

@@ -244,7 +244,7 @@ ROWS = [
      0, 1, "places", roots, {}, EXACT, 2000),
     ("pi to 1, 2, ... places", "Machin's formula; special.c", "0 < pi - r < 10^-dp",
      0, 1, "places", pi, {}, EXACT, 0),
-    ("sine, cosine", "reduction, Taylor series (reducedSin, trig-error); special.c",
+    ("sine, cosine", "reduction, halving, Taylor series (reducedSin, trig-error); special.c",
      "\\|s - sin x\\| <= 10^-dp and \\|c - cos x\\| <= 10^-dp",
      -1, 1, "places", sines, {}, ALL, 3000),
     ("sine, cosine of a double to 1.5e6", "reduction in three parts, Taylor series; sine.h",

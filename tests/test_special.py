@@ -71,6 +71,22 @@ def test_anywhere(x, dp):
     check(Fraction(x), dp)
 
 
+@pytest.mark.parametrize("dp", [1, 10, 35, 60])
+def test_one_after_another(dp):
+    """What is kept from one argument serves the next, however much longer: the unit's own first
+    sine is that of a few tenths with two places more than dp."""
+    for places in range(dp, dp + 5):
+        for digits in (0, 1, 5, 18, 19, 20, 21, 25, 40, 80, 200):
+            check(10**digits + Fraction(1, 10**places), dp)
+
+
+@pytest.mark.parametrize("dp", [1, 10, 35, 60, 250])
+def test_every_size(dp):
+    """However often an angle is halved, down to where nothing is left of it."""
+    for j in range(int(3.4 * dp) + 40):
+        check(Fraction(3 * 5**j // 4, 10**j) + Fraction(1, 10**(j + 2)), dp)
+
+
 def test_many_random_arguments():
     rng = random.Random(1989)
     for _ in range(2000):

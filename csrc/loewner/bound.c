@@ -37,37 +37,37 @@ static mask within(const batch *w, int j)
     return TRUTH(w->from <= site) & TRUTH(site <= w->until);
 }
 
+/* The gradient of n.beta n at a site, and what it and the multiplier there make of a neighbour's. */
+INLINE vec steepness(const batch *w, const point *q, int i)
+{
+    return q->beta[i] * q->mu[0] + q->beta[i + 1] * q->mu[1]
+           - (square(q->n[i]) * w->p[i] * q->cosine[i]
+              + square(q->n[0] + q->n[1]) * w->p[2] * q->cosine[2]);
+}
+
 /* The multipliers of the lanes whose turn it is, by (2): zero outside, and from either end up to
    the sites 0 and 1. */
 static void set_multipliers(batch *w, mask turn)
 {
+    const int begin = begin_of(w, turn), end = end_of(w, turn), ends[] = { begin - 1, end };
     point *const q = w->orbit;
-    const int begin = begin_of(w, turn), end = end_of(w, turn);
 
-    for (int j = begin - 1; j <= end + 1; j++)
+    for (int j = 0; j < 4; j++)
         for (int i = 0; i < 2; i++)
-            q[j].mu[i] = pick(turn, every(0.0), q[j].mu[i]);
-    for (int j = begin; j <= end; j++) {
-        const mask now = turn & within(w, j);
-        const vec omega = square(q[j].n[0] + q[j].n[1]);
-        const vec sum = omega * w->p[2] * q[j].cosine[2];
-        for (int i = 0; i < 2; i++)
-            q[j].gradient[i] = pick(now, -(square(q[j].n[i]) * w->p[i] * q[j].cosine[i] + sum),
-                                    q[j].gradient[i]);
-    }
+            q[ends[j / 2] + j % 2].mu[i] = pick(turn, every(0.0), q[ends[j / 2] + j % 2].mu[i]);
     for (int j = end; j > ORIGIN + 1; j--) {
-        const mask now = turn & within(w, j);
-        for (int i = 0; i < 2; i++)
-            q[j - 1].mu[i] = pick(now, q[j].gradient[i] + q[j].beta[i] * q[j].mu[0]
-                                       + q[j].beta[i + 1] * q[j].mu[1] - q[j + 1].mu[i],
-                                  q[j - 1].mu[i]);
+        const mask now = within(w, j);
+        for (int i = 0; i < 2; i++) {
+            const vec mu = pick(now, steepness(w, q + j, i) - q[j + 1].mu[i], every(0.0));
+            q[j - 1].mu[i] = pick(turn, mu, q[j - 1].mu[i]);
+        }
     }
     for (int j = begin; j < ORIGIN; j++) {
-        const mask now = turn & within(w, j);
-        for (int i = 0; i < 2; i++)
-            q[j + 1].mu[i] = pick(now, q[j].gradient[i] + q[j].beta[i] * q[j].mu[0]
-                                       + q[j].beta[i + 1] * q[j].mu[1] - q[j - 1].mu[i],
-                                  q[j + 1].mu[i]);
+        const mask now = within(w, j);
+        for (int i = 0; i < 2; i++) {
+            const vec mu = pick(now, steepness(w, q + j, i) - q[j - 1].mu[i], every(0.0));
+            q[j + 1].mu[i] = pick(turn, mu, q[j + 1].mu[i]);
+        }
     }
 }
 
@@ -173,8 +173,7 @@ INLINE void sum_up(batch *w, sums *result, mask turn, int columns)
             const vec before = q[-1].mu[i], after = q[1].mu[i];
             const vec left = 4.0 * q->fuzz * weights + 0x1p-50 * (mag(before) + mag(after));
             if (j == ORIGIN || j == ORIGIN + 1) {
-                const vec steep = q->gradient[i] + q->beta[i] * mu0 + q->beta[i + 1] * mu1
-                                  - before - after;
+                const vec steep = steepness(w, q, i) - before - after;
                 t.mass += mag(steep) * q->reach[i];
                 if (j == ORIGIN)
                     t.rest += mag(steep) * q->reach[i];

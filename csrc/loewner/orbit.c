@@ -248,33 +248,28 @@ static void follow(batch *w, int to)
    the orbit is too long; why says which. */
 static int lengthen(batch *w, int k, int *why)
 {
-    static const double LONGEST_REACH = 0.5;
+    static const double LONGEST_REACH = 0.6;
     const point *const q = w->orbit;
+    const int inner = w->last[k] <= ORIGIN;     /* two points are the prism's own */
+    const int ahead = inner || w->reach[k][1] < w->reach[k][0];
+    int *const end = ahead ? &w->last[k] : &w->first[k];        /* hard to foretell: no branches */
+    const int next = *end + 2 * ahead - 1;
 
-    if (w->last[k] > ORIGIN) {
-        const int ahead = w->reach_last[k] < w->reach_first[k];
-        const int next = ahead ? w->last[k] + 1 : w->first[k] - 1;
-        *why = CV_REASON_TOO_BIG;
-        if (!((ahead ? w->reach_last[k] : w->reach_first[k]) <= LONGEST_REACH))
-            return 0;
-        *why = CV_REASON_TOO_LONG;
-        if (w->last[k] - w->first[k] + 1 == MAX_POINTS)
-            return 0;
-        follow(w, next);
-        if (!holds(&q[next].reached, k)) {
-            if (at(&q[next].turned, k) <= FAR)
-                *why = CV_REASON_SINGULAR;
-            return 0;
-        }
-        if (!ahead) {
-            w->first[k] = next;
-            w->reach_first[k] = at(&q[next].widest, k);
-            return 1;
-        }
-    } else if (w->last[k] < ORIGIN) {
-        w->reach_first[k] = at(&q[ORIGIN].widest, k);
+    *why = CV_REASON_TOO_BIG;
+    if (!inner && !(w->reach[k][ahead] <= LONGEST_REACH))
+        return 0;
+    *why = CV_REASON_TOO_LONG;
+    if (w->last[k] - w->first[k] + 1 == MAX_POINTS)
+        return 0;
+    follow(w, next);
+    if (!holds(&q[next].reached, k)) {
+        if (at(&q[next].turned, k) <= FAR)
+            *why = CV_REASON_SINGULAR;
+        return 0;
     }
-    w->last[k]++;
-    w->reach_last[k] = at(&q[w->last[k]].widest, k);
+    *end = next;
+    w->reach[k][ahead] = at(&q[next].widest, k);
+    if (next == ORIGIN)
+        w->reach[k][0] = w->reach[k][1];
     return 1;
 }

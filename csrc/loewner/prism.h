@@ -50,7 +50,7 @@ typedef struct {
     vec least;                          /* eigenvalue of beta, about */
     vec far;                            /* how large a rounded angle is */
     vec fuzz;                           /* how far p sin, p cos and entries of beta may be off */
-    vec n[2], mu[2], gradient[2];
+    vec n[2], mu[2];
     vec rest_A[WAVES][2], rest_B[WAVES], cube_A[WAVES], cube_B[WAVES], load;    /* see weigh */
     vec left[3], right[3];              /* the blocks of the recursion from either end */
     mask reached;                       /* can the orbit go on to here? */
@@ -67,7 +67,7 @@ typedef struct {
     int known_first, known_last;        /* the points that were computed */
     int weighed_first, weighed_last;    /* those that bound.c has seen */
     int first[LANES], last[LANES];      /* those of the orbits */
-    double reach_first[LANES], reach_last[LANES];       /* how widely they are known */
+    double reach[LANES][2];             /* how widely these are known: first, last */
     mask from, to, until;               /* n is zero before from and after to; until: see witness */
     point orbit[2 * MAX_POINTS + 1];
 } batch;

@@ -40,14 +40,17 @@ static void shift_up(mpz_t r, const mpz_t x, long n)
     mpz_mul_ui(r, r, power10[n]);
 }
 
+/* Where the direction is towards zero, cutting off takes a quarter less: it needs no remainder. */
 static void divide(mpz_t r, const mpz_t x, const mpz_t y, apm_round_t dir)
 {
-    if (dir == APM_DOWN)
-        mpz_fdiv_q(r, x, y);
-    else if (dir == APM_UP)
-        mpz_cdiv_q(r, x, y);
-    else
+    const apm_round_t inward = (mpz_sgn(x) < 0) == (mpz_sgn(y) < 0) ? APM_DOWN : APM_UP;
+
+    if (dir == APM_TRUNC || dir == inward)
         mpz_tdiv_q(r, x, y);
+    else if (dir == APM_DOWN)
+        mpz_fdiv_q(r, x, y);
+    else
+        mpz_cdiv_q(r, x, y);
 }
 
 static void divide_word(mpz_t r, const mpz_t x, unsigned long y, apm_round_t dir)
@@ -61,10 +64,11 @@ static void divide_word(mpz_t r, const mpz_t x, unsigned long y, apm_round_t dir
 }
 
 /* r = x / 10^n rounded, n >= 0.  Rounding word by word in one direction is the same as
-   rounding once: floor(floor(x/p)/q) = floor(x/(pq)). */
+   rounding once: floor(floor(x/p)/q) = floor(x/(pq)).  More than four words cost more than one
+   division. */
 static void shift_down(mpz_t r, const mpz_t x, long n, apm_round_t dir)
 {
-    if (n > 8 * WORD_DIGITS) {
+    if (n > 4 * WORD_DIGITS) {
         mpz_t p;
         mpz_init(p);
         mpz_ui_pow_ui(p, 10UL, (unsigned long)n);

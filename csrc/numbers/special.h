@@ -5,11 +5,18 @@
 
 #include "apm.h"
 
+enum { TRIG_ROW = 32 };                 /* powers that are kept at most */
+
 typedef struct {
     long dp;
-    mpz_t half_pi;            /* floor(pi/2 2^half_pi_bits), or zero if not yet needed */
-    mp_bitcnt_t half_pi_bits;
-    mpz_t t, t2, term, sum[2];
+    mp_bitcnt_t w;                      /* an ulp is 2^-w */
+    mp_bitcnt_t halvings;               /* an angle is halved until it is below 2^-halvings */
+    unsigned long terms, row;           /* of the series for it */
+    mpz_t half_pi, turn;                /* pi/2, 2^-half_pi_bits; 10^turn_exp in quarter turns, */
+    mp_bitcnt_t half_pi_bits, turn_bits;        /* 2^-turn_bits; bits = 0: not yet needed */
+    long turn_exp;
+    mpz_t one, half;                    /* 10^dp, 2^(w-1) */
+    mpz_t t, v, term, power[TRIG_ROW + 1];
 } trig_t;
 
 void trig_init(trig_t *trig, long dp);

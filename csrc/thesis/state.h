@@ -72,7 +72,6 @@ typedef struct R(unit) state;
 static void set_precision(state *s, long precision)
 {
     s->precision = precision;
-    s->trig.dp = precision;
     num_set_si(s->n.ulp, 1, -precision);
 }
 

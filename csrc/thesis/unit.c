@@ -32,7 +32,7 @@ state *R(unit_new)(long dp, int as_printed)
 #endif
     s->dp = dp;
     s->as_printed = as_printed;
-    trig_init(&s->trig, dp);
+    trig_init(&s->trig, as_printed ? dp + SAFETY_DP : dp);
     for (int j = 0; j < (int)N_NUMBERS; j++)
         num_init(first_number(s)[j]);
     num_set_si(n->max_error, 1, -dp);
