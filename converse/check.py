@@ -80,7 +80,8 @@ MAX_SIZE = 10 ** 300                    # of such a number
 MAX_BITS = 4096                         # of the arithmetic
 MAX_HALVINGS, MAX_PIECES = 24, 4096     # of a leaf, by the checker itself
 MAX_POINTS = 330                        # of an orbit
-CHUNKS, CHUNK, FAST_CHUNK = 8, 16, 1 << 14      # tasks of a process, about; most leaves of one
+CHUNKS, CHUNK = 8, 16                   # tasks of a process, about; leaves of one, with --exact
+FAST_CHUNK = 1 << 8, 1 << 14            # least and most of the fast path
 NU_BITS = 20                            # of the test vectors
 STATE_SECONDS, BAR_SECONDS = 10, 0.2    # between two writes
 
@@ -863,10 +864,12 @@ class Criterion:
 # xi^2 lies between 0 and size^2, so the bow of the orbits, -p cos y xi^2/2, is half of its extent
 # about its mean: X[+] is 2X - X[o] + the sum of u P cos y (1 - size^2/4).  err is then (i) how far
 # X[+] is from this; (ii) how far L[+] is from beta L[q] - L[o] and H cos y in the parameters'
-# columns; and (iii) for each wave, bending(): with |cos z - 1 + z^2/2| <= z^4/24,
-# |z^2 - xi^2| = |w (z + xi)|, |cos z - 1| <= z^2/2, |sin z - z| <= |z|^3/6 and |cos| <= 1,
-#       |P| (|cos y| (size^2/4 + rest (reach + size)/2 + reach^4/24) + |sin y| reach^3/6)
-#       + H (|cos y| reach^2/2 + |sin y| (reach + reach^3/6)) + W.
+# columns; and (iii) for each wave, bending(),
+#       |P| (|cos y| (size^2/4 + rest (reach + size)/2) + |sin y| reach^3/6)
+#       + H (|cos y| reach^2/2 + |sin y| reach) + W:
+# cos z - 1 + size^2/4 is at most size^2/4 and at least size^2/4 - reach^2/2, where reach^2 is
+# size^2 + rest (reach + size); |sin z - z| is at most |z|^3/6; and cos(y + z) - cos y is
+# cos y (cos z - 1) - sin y sin z.
 #
 # The bound.  For any multipliers mu[j] the left side of (3) is the same with
 #       sum of mu[j].(2x[j] - x[j-1] - x[j+1] - V'(x[j])),    which is zero on orbits,
@@ -1025,20 +1028,21 @@ def least_of(d):
 def bending(P, H, W, s, c, size, rest, reach):
     """(iii) of a wave with |sin y| <= s and |cos y| <= c."""
     second = reach * reach / 2
-    third, fourth = second * reach / 3, second * second / 6
-    return np.abs(P) * (c * (size * size / 4 + rest * (reach + size) / 2 + fourth) + s * third) \
-        + H * (c * second + s * (reach + third)) + W
+    far = rest * (reach + size) / 2
+    return np.abs(P) * (c * (size * size / 4 + far) + s * second * reach / 3) \
+        + H * (c * second + s * reach) + W
 
 
 def remainder(P, H, W, A0, alpha, B0, beta, weight, size, rest, reach):
     """What (4) leaves of a wave, if alpha and beta bound these linear parts, weight |m| + omega."""
-    second, far = reach * reach / 2, rest * (reach + size) / 2
+    second = reach * reach / 2
     third, fourth = second * reach / 3, second * second / 6
-    a, b, far = np.abs(A0), np.abs(B0), far + fourth
-    return np.abs(P) * (alpha * far + beta * third
+    far = rest * (reach + size) / 2 + fourth
+    a, b = np.abs(A0), np.abs(B0)
+    return np.abs(P) * (a * np.where(P * A0 > 0, fourth, rest * rest / 2) + alpha * far
                         + b * (rest * (reach * (reach + size) + size * size) / 6
                                + second * third / 10)
-                        + a * np.where(P * A0 > 0, fourth, rest * rest / 2)) \
+                        + beta * third) \
         + H * (a * far + alpha * second + b * third + beta * (rest + third)) + W * weight
 
 
@@ -1064,16 +1068,17 @@ def summit(form):
         t = np.clip(linear[i] / (2 * down + TINY), -1, 1)
         linear[i] = linear[i] - 2 * down * t
         constant = constant + up + down * t * t + np.maximum(twist[i] - up, 0)
-    best = -math.inf
-    for signs in itertools.product((1, -1), repeat=len(symbols) - 1):
-        signs = (1, *signs)
-        odd, even = sum([sign * x for sign, x in zip(signs, linear)]), 0
-        for key, x in form.items():
-            if len(key) > 1 and len(set(key)) == len(key):
-                x = math.prod([signs[k] for k in key]) * x
-                odd, even = (odd, even + x) if len(key) == 2 else (odd + x, even)
-        best = np.maximum(best, np.abs(odd) + even)
-    return best + constant
+    corners = [(1, *signs) for signs in itertools.product((1, -1), repeat=len(symbols) - 1)]
+
+    def at_corners(keys, values):
+        signs = np.array([[math.prod([corner[k] for k in key]) for key in keys]
+                          for corner in corners], float)
+        return (signs[:, :, None] * np.stack(values)).sum(axis=1)
+
+    even, odd = [list(itertools.combinations(symbols, count)) for count in (2, 3)]
+    odd = at_corners([(i,) for i in symbols] + odd, linear + [form[key] for key in odd])
+    even = at_corners(even, [form[key] for key in even])
+    return (np.abs(odd) + even).max(axis=0) + constant
 
 
 class Prisms:
@@ -1259,9 +1264,9 @@ class Prisms:
             tails.append(ends * 1.0 + (begins[k] & (place >= k)))
         return n, tails
 
-    def bound(self):
-        """An upper bound of the left side of (3) for each prism; and what each symbol adds to it,
-        about, which says where to cut."""
+    def expand(self):
+        """The left side of (3): its value at X and P, a polynomial, as summit takes it, and what it
+        may be more than both; infinite where it cannot be said."""
         K, l, F, known = len(self.sites), self.l, self.F, self.known
         n, tails = self.witnesses()
         P, H, W, magnitude = self.P, self.H, self.W, self.magnitude
@@ -1346,14 +1351,19 @@ class Prisms:
             add((1 + (j < k)) * square[at], j, k)
         for k in (0, 1):
             add(ends[k, 0], self.angles + k)
-        sizes = {key: np.abs(x) for key, x in form.items()}
-        error = (error + UNIT * ((4 * K + 192) * mass + 64 * sum(sizes.values()))) \
-            * (MORE + 64 * UNIT * K)
-        bound = np.where(mass < HUGE, value + (summit(form) + error), math.inf)
+        added = sum([np.abs(x) for x in form.values()])
+        error = (error + UNIT * ((4 * K + 192) * mass + 64 * added)) * (MORE + 64 * UNIT * K)
+        return value, form, np.where(mass < HUGE, error, math.inf)
+
+    def bound(self):
+        """An upper bound of the left side of (3) for each prism; and what each symbol adds to it,
+        about, which says where to cut."""
+        value, form, error = self.expand()
         share = self.joined(self.last) + TINY
         share = share / share.sum(axis=0)
-        moved = np.stack([sum([x for key, x in sizes.items() if k in key]) for k in range(known)])
-        return bound, np.where(value < 0, moved + error * share, share)
+        moved = np.stack([sum([np.abs(x) for key, x in form.items() if k in key])
+                          for k in range(self.known)])
+        return value + (summit(form) + error), np.where(value < 0, moved + error * share, share)
 
 
 class Lockstep:
@@ -1705,7 +1715,10 @@ def verify(path, jobs=1, sample=None, state=None, bar=False, exact=False):
         return ((n, cell) for n, cell in enumerate(cells) if n in chosen)
 
     queue = work()
-    size = min(FAST_CHUNK, -(-len(chosen) // (CHUNKS * jobs)) or 1) if criterion.fast else CHUNK
+    size = CHUNK
+    if criterion.fast:
+        fewest, most = FAST_CHUNK
+        size = min(max(len(chosen) // (CHUNKS * jobs), fewest), most)
     chunks = iter(lambda: list(itertools.islice(queue, size)), [])
     try:
         with Bar(work() if bar else (), len(chosen)) as progress, \
