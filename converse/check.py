@@ -1153,7 +1153,7 @@ class Prisms:
                 return
             if len(self.sites) == due:
                 yield True
-                due += due // 2
+                due *= 2
             for array in (L, r, columns, size, rest, reach):
                 np.copyto(array, 0, where=~alive)
             np.copyto(self.last, np.abs(columns[self.present]).sum(axis=0), where=alive)

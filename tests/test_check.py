@@ -1559,8 +1559,8 @@ def extremes(generator):
     return P * generator.choice((-1, 1)), H, W, y, size, rest, at
 
 
-def worst_bending(functions, generator, count=500):
-    """The largest quotient of what a wave does to r in a step and its bound, by mpmath."""
+def worst_bending(functions, generator, count):
+    """The largest quotient, or one above 1, of what a wave does to r in a step and its bound, by mpmath."""
     worst = 0
     for _ in range(count):
         P, H, W, y, size, rest, (e, i, j, k, *_) = extremes(generator)
@@ -1571,11 +1571,13 @@ def worst_bending(functions, generator, count=500):
         bound = functions.bending(P, H, W, abs(math.sin(y)), abs(math.cos(y)), size, rest,
                                   size + rest)
         worst = max(worst, abs(true) / (bound * check.MORE + mp.mpf(10) ** -15))
+        if worst > 1:
+            break
     return worst
 
 
-def worst_remainder(functions, generator, count=500):
-    """The largest quotient of what a wave has besides G z and (4), and the bound of it."""
+def worst_remainder(functions, generator, count):
+    """The largest quotient, or one above 1, of what a wave has besides G z and (4), and the bound of it."""
     worst = 0
     for _ in range(count):
         P, H, W, y, size, rest, (e, i, j, k, l, m) = extremes(generator)
@@ -1592,11 +1594,13 @@ def worst_remainder(functions, generator, count=500):
             P, H, W, float(A0), m1 * abs(float(c)), float(B0), m1 * abs(float(s)),
             abs(m0) + m1 + omega, size, rest, size + rest)
         worst = max(worst, true / (bound * check.MORE + mp.mpf(10) ** -14))
+        if worst > 1:
+            break
     return worst
 
 
-def worst_summit(functions, generator, count=60):
-    """The largest quotient of a polynomial in a cube, on a grid, and its bound."""
+def worst_summit(functions, generator, count):
+    """The largest quotient, or one above 1, of a polynomial in a cube, on a grid, and its bound."""
     worst, np = 0, check.np
     for _ in range(count):
         known = generator.choice((2, 3))
@@ -1609,6 +1613,8 @@ def worst_summit(functions, generator, count=60):
         true = sum([x * math.prod([e[k] for k in key]) for key, x in form.items()])
         bound = functions.summit(form)[0]
         worst = max(worst, (true.max() + 1e-12) / (bound + 2e-12) if bound >= 0 else 2)
+        if worst > 1:
+            break
     return worst
 
 
