@@ -80,7 +80,8 @@ MAX_SIZE = 10 ** 300                    # of such a number
 MAX_BITS = 4096                         # of the arithmetic
 MAX_HALVINGS, MAX_PIECES = 24, 4096     # of a leaf, by the checker itself
 MAX_POINTS = 330                        # of an orbit
-CHUNKS, CHUNK, FAST_CHUNK = 8, 16, 1 << 14      # tasks of a process, about; most leaves of one
+CHUNKS, CHUNK = 8, 16                   # tasks of a process, about; leaves of one, with --exact
+FAST_CHUNK = 1 << 8, 1 << 14            # least and most of the fast path
 NU_BITS = 20                            # of the test vectors
 STATE_SECONDS, BAR_SECONDS = 10, 0.2    # between two writes
 
@@ -836,10 +837,10 @@ class Criterion:
 
 
 # ---- the fast path: a thousand prisms in lockstep, in doubles
-# The same left side of (3), bounded by other means and far more cheaply: by the factored recursion
-# and the multipliers of docs/proof.md, written anew and with Q to second order.  What is not bounded
-# below zero here is left to the exact path.  All that is done to one prism is done to all of them,
-# as arrays of numpy, whose operations are rounded to nearest (sound() looks).
+# The same left side of (3), bounded by other means, far more cheaply and more sharply: a polynomial
+# of third order in the symbols, and what it leaves.  What is not bounded below zero here is left to
+# the exact path.  All that is done to one prism is done to all of them, as arrays of numpy, whose
+# operations are rounded to nearest (sound() looks).
 #
 # A prism is the set of orbits with x[0] = x*, x[1] in a rectangle, and p'_w = P_w + H_w e + v,
 # |v| <= W_w, for the waves w = 0, 1, 2 with u = (1,0), (0,1), (1,1); e in [-1, 1] is a symbol of
@@ -848,56 +849,86 @@ class Criterion:
 # o = x[1], q = x[0].  A site of a lane has X, in turns (so whole turns are taken off without any
 # error), and a true orbit is there, modulo 2 pi and in radians,
 #       2 pi X + D,    D = L e + r,    |r| <= rest,
-# for the symbols e in the cube.  Of a wave at a site: y = 2 pi u.X, z = u.D, and c = u.L; |z| is
-# at most reach = |c|_1 + rest.  s, c and p sin, p cos below are those at X and P.
+# for the symbols e in the cube.  Of a wave at a site: y = 2 pi u.X, z = u.D, xi = u.L e and z = xi
+# + w; |xi| <= size, |w| <= rest, |z| <= reach = size + rest.  s, c and p sin, p cos below are those
+# at X and P.
 #
 # Orbits.  Let o, q, + be successive sites, M and d any matrices, and f[q] = r[+] - d[q] r[q].  As
 # r[+] = beta r[q] - r[o] + err, and r[q] = d[o] r[o] + f[o],
 #       f[q] = M f[o] + err + (beta - M - d[q]) r[q] - (I - M d[o]) r[o].
 # With M near 1/d[o] and d[q] = beta - M the brackets are roundings, so that r grows like the orbits
-# and not like products of norms.  err is (i) how far X[+] is from the map of X[o], X[q] at P; (ii)
-# how far L[+] is from beta L[q] - L[o] and H cos y in the parameters' columns; and (iii) what the
-# wave has besides -p sin y z + h e cos y: as |cos z - 1| <= z^2/2, |sin z - z| <= |z|^3/6, it is
-#       (|P| + H + W)(|cos y| reach^2/2 + |sin y| reach^3/6) + (H + W)|sin y| reach + W |cos y|.
+# and not like products of norms, in a frame in which beta is nearly diagonal: where c counts, near
+# x0 = x1 above all, this is the frame of x0 + x1 and x0 - x1, in which beta is
+#       ((b00 + b11)/2 + b01, (b00 - b11)/2; the same, (b00 + b11)/2 - b01),
+# symmetric, too.  A wave acts on x0 + x1 and x0 - x1 as 1, 1; or 1, -1; or 2, 0.
+# xi^2 lies between 0 and size^2, so the bow of the orbits, -p cos y xi^2/2, is half of its extent
+# about its mean: X[+] is 2X - X[o] + the sum of u P cos y (1 - size^2/4).  err is then (i) how far
+# X[+] is from this; (ii) how far L[+] is from beta L[q] - L[o] and H cos y in the parameters'
+# columns; and (iii) for each wave, bending(),
+#       |P| (|cos y| (size^2/4 + rest (reach + size)/2) + |sin y| reach^3/6)
+#       + H (|cos y| reach^2/2 + |sin y| reach) + W:
+# cos z - 1 + size^2/4 is at most size^2/4 and at least size^2/4 - reach^2/2, where reach^2 is
+# size^2 + rest (reach + size); |sin z - z| is at most |z|^3/6; and cos(y + z) - cos y is
+# cos y (cos z - 1) - sin y sin z.
 #
 # The bound.  For any multipliers mu[j] the left side of (3) is the same with
 #       sum of mu[j].(2x[j] - x[j-1] - x[j+1] - V'(x[j])),    which is zero on orbits,
-# added to it; mu is zero at a lane's last site.  With omega = (n.u)^2 and m = mu.u a wave has in
-# this sum  p'(A cos z + B sin z),  A = m cos y - omega sin y,  B = -omega cos y - m sin y,  and it
-# is, beside its value at X and P,
-#       P B z - P A (c.e)^2/2 + H e A + H e B (c.e)                                           (4)
-# and a remainder, as |z^2 - (c.e)^2| <= rest (reach + |c|_1), of at most
-#       |P| (|A| (rest (reach + |c|_1)/2 + reach^4/24) + |B| reach^3/6)
-#       + H (|A| reach^2/2 + |B| (rest + reach^3/6)) + W (|A| + |B| reach).
-# What is linear in D has at a site the factor G = 2 mu[j] - mu[j-1] - mu[j+1] + sum of P B u.  From
-# the last site inwards the next mu is the one that makes it vanish, but for its rounding; at x[1]
-# and x[0], where both lanes meet, G D is G times the sides of the rectangle and the rounding of x*.
-# So the sum is a number, a linear and a quadratic form in the symbols, and small things.  The forms
-# are added up with their signs over all sites.  Over the cube the squares add at most what their
-# positive coefficients do, and the rest, linear in each symbol, is largest at a corner.
+# added to it.  It is zero at each orbit: so mu may depend on the orbit, and here it is affine in
+# its symbols, mu = mu_0 + sum of mu_k e_k; zero at a lane's last site.  At X and P the bracket is
+# E = sum of u P cos y size^2/4, but for (i).  n is the same for all orbits of the prism.  With
+# omega = (n.u)^2 and m = u.mu, affine, too, a wave has in this sum  p'(A cos z + B sin z),
+#       A = A0 + alpha = m cos y - omega sin y,    B = B0 + beta' = -omega cos y - m sin y,
+# alpha and beta' being what is linear in e.  D is multiplied, in all, with
+#       G = 2 mu[j] - mu[j-1] - mu[j+1] + sum of u (P B0 + P beta' - P A0 xi + H e B0),
+# affine in e; what a wave has besides this, which is z times its part of the last sum, is
+#       P (A0 + alpha) + H e (A0 + alpha)                                                     (4)
+#       + P A0 xi^2/2 - P alpha xi^2/2 - P B0 xi^3/6 + H e (beta' xi - A0 xi^2/2)
+# and a remainder.  For A0 (cos z + xi z) is A0 (1 + xi^2/2 - w^2/2 + (cos z - 1 + z^2/2)), with the
+# last bracket between 0 and z^4/24; alpha cos z is alpha (1 - xi^2/2 - w (z + xi)/2) and at most
+# |alpha| z^4/24; B0 (sin z - z) is -B0 xi^3/6, as far as z^3 - xi^3 = w (z^2 + z xi + xi^2), and at
+# most |B0| |z|^5/120; beta' (sin z - z) is at most |beta'| |z|^3/6; and with H e stands A cos z +
+# B sin z - B0 z, where alike A0 (cos z - 1 + xi^2/2), alpha (cos z - 1), B0 (sin z - z) and beta'
+# (sin z - xi) are left.  So the remainder, remainder(), is at most
+#       |P| (|alpha| (far + reach^4/24) + |beta'| reach^3/6
+#            + |B0| (rest (reach^2 + reach size + size^2)/6 + reach^5/120))
+#       + max(0, P A0) reach^4/24 + max(0, -P A0) rest^2/2
+#       + H (|A0| (far + reach^4/24) + |alpha| reach^2/2 + |B0| reach^3/6
+#            + |beta'| (rest + reach^3/6)) + W (|m| + omega),      far = rest (reach + size)/2.
+# That is why mu is affine: all this is of fourth order, though r, of second order, is only bounded.
+# From a lane's last site inwards the next mu is the one that makes G vanish, but for its rounding;
+# at x[1] and x[0], where both lanes meet, G D is G times the sides of the rectangle, a polynomial,
+# and the rounding of x*.  So the sum is a polynomial of third order in the symbols, its
+# coefficients added up with their signs over all sites, and small things; summit() bounds it over
+# the cube.
 #
-# Roundings.  u = 2^-53.  Which numbers X, P, H, L, d, M, n and mu are does not matter, but what
-# bounds something must.  (S_i = |P_i| + |P_2|, for the coordinates i.)
-#   sine, cosine: SINE is 16 u, see lockstep_sincos.
+# Roundings.  u = 2^-53.  Which numbers X, P, H, L, d, M, n, mu, E and size are does not matter, but
+# what bounds something must.  (S_i = |P_i| + |P_2|, for the coordinates i.)
+#   sine, cosine: SINE is 16 u, see lockstep_sincos.  In (iii) 2 SINE with |cos y|, as E has the
+#       computed one.
 #   beta: products P s are off by 18 u |P|; the entries by u (2 + 20 S_i) < F_i / 2 and, beside the
-#       diagonal, by 18 u |P_2| < F_2 / 2, where F_i = 64 u (1 + S_i), F_2 = 64 u |P_2|.
-#   (i): in turns 3 u for the sums of |2X - X| <= 1.5 and 22 u |P| / 2 pi for each wave; in radians
-#       u (19 + 22 S_i) < F_i.  The rest of F_i, 42 u, is for whatever is lost below 2^-1022.
+#       diagonal, by 18 u |P_2| < F_2 / 2, where F_i = 64 u (1 + S_i), F_2 = 64 u |P_2|.  In the
+#       other frame by (F_0 + F_1)/4 + F_2/2 and 6 u (2 + S_0 + S_1): less than F_0 + F_1.
+#   (i): in turns 3 u for the sums of |2X - X| <= 1.5 and 25 u |P| / 2 pi for each wave; in radians
+#       u (19 + 25 S_i), and 4 u S_i / 4 for E: less than F_i.  The rest of F_i, 38 u, is for
+#       whatever is lost below 2^-1022.
 #   (ii): F_i / 2 + 4 u (2 + S_i) < F_i of |L_i|, F_2 of the other, 4 u of |L[o]|, 32 u of H.
 #   beta - M - d: F + 2 u |M|.   I - M d: with inv = 1 / det, each rounded, at most 5 u |inv| (|d00
 #       d11| + d01^2) on the diagonal, as the determinant is off by 2.1 u of these products, the
 #       quotient by u, M d by u of each product; and 2 u |inv d01| (|d00| + |d11|) beside it.
 #   sums of positive terms: MORE = 1 + 2^-40 for a hundred roundings one after the other, and 64 u
 #       more for each site.
-#   omega is off by 3 u, A and B by 24 u size, size = |m| + omega: in the remainder 32 u size are
-#       added to |A| and |B|.  That c is a rounded sum for w = 2 goes into rest.
-#   G: 28 u of each |P| size, 3 u of 2 |mu| and the |mu| before; at x[1] and x[0] u more, u of the
-#       mu of the other lane, and u of the product: 48 u.
+#   omega is off by 3 u, m by u, A and B by 24 u weight, weight = |m_0| + sum of |m_k| + omega.
+#       That u.L is a rounded sum for w = 2 goes into rest.
+#   G: 28 u of weight (|P| (1 + size) + H) for each wave, 3 u of 2 |mu| and the |mu| before; at x[1]
+#       and x[0] u more, u of the mu of the other lane, and of products and sums: 48 u.
 #   (i) again: |mu| F.
-#   the number: mass is the sum of 2|n|^2 + |P| omega, and 2|n.n'| over neighbours is no more.  A
-#       term is off by 48 u of it, and over K sites of each lane 4K more are for the sums.
-#   the forms: A and B are off by 24 u, the products by 4 u; over K sites the sums by 2K u: mass is
-#       that of size (|P| |c|_1^2/2 + H (1 + |c|_1)).  At the corners 64 u of what is added there.
+#   mass is the sum of 2|n|^2 + |P| omega, and 2|n.n'| over neighbours is no more; and of weight
+#       (|P| reach^2 + 3 H).  A term of a coefficient is off by 40 u of its size, and these sizes
+#       are in all at most mass, as reach <= 1: 2|n|^2 + |P| omega; with weight |P| size^2/4 (mu.E),
+#       size^2/2, size^3/6; with weight H 1, size^2/2, size.  In the remainder A and B have factors
+#       of less than 2.3 |P| reach^2 + 3 H in all: 56 u.  Sums over K sites of each lane have at
+#       most 4K terms one after the other: 4 K u; to join them by monomials, 16 u.
+#   in summit, of each coefficient: 64 u.
 # Masses are at least 1, as one n is a unit vector but for rounding, and below HUGE: so 64 u mass is
 # more than all underflows.  A NaN is not below zero, and proves nothing.
 
@@ -915,7 +946,7 @@ BATCH, SMALLEST_BATCH = 1024, 16
 FAST_SITES, ROOM = 4096, 1 << 19        # of a lane; of all lanes at a time
 FIRST_TRY = 96                          # sites, for lanes that are longer
 FARTHEST = 1.0                          # reach of a wave that is there
-CURVED, CAUTION = 0.3, (3.0, 0.3)       # of the choice of n: see witnesses, settle
+CAUTION = 0.2, 0.2, 1.0                 # of the choice of n: see witnesses, settle
 
 
 def sound():
@@ -977,6 +1008,15 @@ def applied(d, v):
     return np.stack((d[0] * v[0] + d[1] * v[1], d[1] * v[0] + d[2] * v[1]))
 
 
+def products(rows):
+    """The products of rows i <= j, in order."""
+    found, at = np.empty((len(rows) * (len(rows) + 1) // 2, rows.shape[1])), 0
+    for i, row in enumerate(rows):
+        np.multiply(row, rows[i:], out=found[at:at + len(rows) - i])
+        at += len(rows) - i
+    return found
+
+
 def are_definite(d):
     return (d[0] > 0) & (d[0] * d[2] > d[1] * d[1])
 
@@ -985,11 +1025,67 @@ def least_of(d):
     return (d[0] + d[2] - np.sqrt((d[0] - d[2]) ** 2 + 4 * d[1] * d[1])) / 2
 
 
+def bending(P, H, W, s, c, size, rest, reach):
+    """(iii) of a wave with |sin y| <= s and |cos y| <= c."""
+    second = reach * reach / 2
+    far = rest * (reach + size) / 2
+    return np.abs(P) * (c * (size * size / 4 + far) + s * second * reach / 3) \
+        + H * (c * second + s * reach) + W
+
+
+def remainder(P, H, W, A0, alpha, B0, beta, weight, size, rest, reach):
+    """What (4) leaves of a wave, if alpha and beta bound these linear parts, weight |m| + omega."""
+    second = reach * reach / 2
+    third, fourth = second * reach / 3, second * second / 6
+    far = rest * (reach + size) / 2 + fourth
+    a, b = np.abs(A0), np.abs(B0)
+    return np.abs(P) * (a * np.where(P * A0 > 0, fourth, rest * rest / 2) + alpha * far
+                        + b * (rest * (reach * (reach + size) + size * size) / 6
+                               + second * third / 10)
+                        + beta * third) \
+        + H * (a * far + alpha * second + b * third + beta * (rest + third)) + W * weight
+
+
+def summit(form):
+    """At most so large is, over the cube, the polynomial with these coefficients: of e[i], of
+    e[i] e[j] and of e[i] e[j] e[k] by (i,), (i, j) and (i, j, k), i <= j <= k; and no constant.
+
+    x e^2 with x < 0 is at most x (2 t e - t^2) for any t, here for the one where, of it and what
+    is linear in e, the largest value is.  x e^2 with x > 0 is x - x (1 - e^2), and e[i]^2 e[k],
+    k = i or not, is e[k] - (1 - e[i]^2) e[k]: with 1 - e[i]^2, which lies between 0 and 1, stands
+    at most the sum of these |coefficients|, less x.  The rest is linear in each symbol, and largest
+    at a corner; at opposite corners what is odd has opposite signs.
+    """
+    symbols = [key[0] for key in form if len(key) == 1]
+    linear, twist, constant = [form[i,] for i in symbols], [0] * len(symbols), 0
+    for key, x in form.items():
+        if len(key) == 3 and len(set(key)) < 3:
+            i, k = key[1], key[0] if key[1] == key[2] else key[2]       # e[i]^2 e[k]
+            linear[k] = linear[k] + x
+            twist[i] = twist[i] + np.abs(x)
+    for i in symbols:
+        up, down = np.maximum(form[i, i], 0), np.maximum(-form[i, i], 0)
+        t = np.clip(linear[i] / (2 * down + TINY), -1, 1)
+        linear[i] = linear[i] - 2 * down * t
+        constant = constant + up + down * t * t + np.maximum(twist[i] - up, 0)
+    corners = [(1, *signs) for signs in itertools.product((1, -1), repeat=len(symbols) - 1)]
+
+    def at_corners(keys, values):
+        signs = np.array([[math.prod([corner[k] for k in key]) for key in keys]
+                          for corner in corners], float)
+        return (signs[:, :, None] * np.stack(values)).sum(axis=1)
+
+    even, odd = [list(itertools.combinations(symbols, count)) for count in (2, 3)]
+    odd = at_corners([(i,) for i in symbols] + odd, linear + [form[key] for key in odd])
+    even = at_corners(even, [form[key] for key in even])
+    return (np.abs(odd) + even).max(axis=0) + constant
+
+
 class Prisms:
     """Prisms followed and bounded in lockstep; all arrays end with the axis of lanes, those ahead
     before those back."""
 
-    def __init__(self, box, symbols, xstar, l, caution=1.0):
+    def __init__(self, box, symbols, xstar, l, caution=CAUTION[0]):
         """The box: P, H and W of the waves, X[1] in turns and half the sides of the rectangle in
         radians; where (symbols) each wave's parameter has its symbol, if it has any; l; and how
         much the choice of n shies at sites that are not well known."""
@@ -999,14 +1095,18 @@ class Prisms:
         self.magnitude, self.l = np.abs(self.P), self.both(l, l)
         self.caution = self.both(caution + 0 * l, caution + 0 * l)
         self.present = [w for w in range(3) if (P[w] != 0).any() or W[w].any()]
+        mean = self.magnitude.mean(axis=1)
+        self.turned = bool(4 * mean[2] > mean[0] + mean[1])     # the frame of rests; any is right
         self.F = GRAIN * (1 + self.magnitude[:2] + self.magnitude[2])
         self.angles = 1 + max([k for k in symbols if k is not None] + [-1])     # their first symbol
+        self.known = self.angles + 2
         start = np.repeat(np.array(xstar)[:, None], self.size, axis=1)
-        columns, none = np.zeros((2, self.angles + 2, self.size)), np.zeros_like(x)
+        columns, none = np.zeros((2, self.known, self.size)), np.zeros_like(x)
         for i in (0, 1):
             columns[i, self.angles + i] = sides[i]
         blank, rounding = np.zeros_like(columns), np.full_like(x, XSTAR_REST)
         self.sides, self.rounding = self.both(sides, none), self.both(none, rounding)
+        rounding = rounding * (1 + self.turned)                 # of x0 + x1 and of x0 - x1
         self.before = self.both(start, x), self.both(blank, columns), self.both(rounding, none)
         self.first = self.both(x, start), self.both(columns, blank), self.both(none, rounding)
         self.sites = []
@@ -1027,16 +1127,19 @@ class Prisms:
 
         A lane that has come to its end stays as zeros, alive no more, and nothing is said of it.
         """
-        P, H, W, F, magnitude = self.P, self.H, self.W, self.F, self.magnitude
-        most, loose, slope = magnitude + H + W, H + W, P / TWO_PI
-        F2, from_H = GRAIN * magnitude[2], 32 * UNIT * (H[:2] + H[2])
+        P, H, W, F = self.P, self.H, self.W, self.F
+        slope, F2, from_H = P / TWO_PI, GRAIN * self.magnitude[2], 32 * UNIT * (H[:2] + H[2])
+        along, beside = (F[0] + F[1],) * 2 if self.turned else (F, F2)      # of the frame's beta
         (X0, L0, r0), (X, L, r) = self.before, self.first
         size0 = np.abs(L0).sum(axis=1)
         alive, d, f, due = np.ones(X.shape[1], bool), None, None, FIRST_TRY
         while True:
             columns = np.concatenate((L, (L[0] + L[1])[None]))
             size = np.abs(columns).sum(axis=1) * MORE
-            rest = np.concatenate((r, (r[0] + r[1] + 2 * UNIT * size[2])[None])) * MORE
+            total = r[0] + r[1]
+            rest = np.stack((total / 2, total / 2, r[0]) if self.turned else (r[0], r[1], total))
+            rest[2] += 2 * UNIT * size[2]
+            rest *= MORE
             reach = (size + rest) * MORE
             if not self.sites:                      # how far each symbol moves a lane's last site
                 self.last = np.abs(columns[self.present]).sum(axis=0)
@@ -1050,30 +1153,37 @@ class Prisms:
                 return
             if len(self.sites) == due:
                 yield True
-                due += due // 2
+                due *= 2
             for array in (L, r, columns, size, rest, reach):
                 np.copyto(array, 0, where=~alive)
             np.copyto(self.last, np.abs(columns[self.present]).sum(axis=0), where=alive)
             s, c = lockstep_sincos(X)
             beta = -matrices(P * s)
             beta[::2] += 2
-            self.sites.append((alive, s, c, columns, size, rest, reach, beta))
+            bow = size * size / 4
+            wave = P * c * bow
+            self.sites.append((alive, s, c, columns, size, rest, reach, beta, wave[:2] + wave[2]))
 
-            wave = slope * c
+            wave = slope * c * (1 - bow)
             X, X0 = 2 * X - X0 + (wave[:2] + wave[2]), X
             X -= np.rint(X)
-            new = np.stack((beta[0] * L[0] + beta[1] * L[1], beta[1] * L[0] + beta[2] * L[1])) - L0
+            new = applied(beta[:, None], L) - L0
             wave = H * c
             for w, k in enumerate(self.symbols):
                 if k is not None:
                     for i in ((0,), (1,), (0, 1))[w]:
                         new[i, k] += wave[w]
-            s, c, square = np.abs(s) + SINE, np.abs(c) + SINE, reach * reach
-            bent = most * (c * square / 2 + s * square * reach / 6) + loose * s * reach + W * c
-            err = bent[:2] + bent[2] + F * (1 + size[:2]) + F2 * size[1::-1] \
-                + 4 * UNIT * size0[:2] + from_H
+            bent = bending(P, H, W, np.abs(s) + SINE, np.abs(c) + 2 * SINE, size, rest, reach)
+            err = F * (1 + size[:2]) + F2 * size[1::-1] + 4 * UNIT * size0[:2] + from_H
+            if self.turned:
+                mean, half = (beta[0] + beta[2]) / 2, (beta[0] - beta[2]) / 2
+                both = bent[0] + bent[1]
+                err = np.stack((both + 2 * bent[2], both)) + (err[0] + err[1])
+                block = np.stack((mean + beta[1], half, mean - beta[1]))
+            else:
+                err, block = bent[:2] + bent[2] + err, beta
             if d is None:                           # d[q] = beta, f = err - r[o] + roundings
-                f, d = r0 + err + F * r + F2 * r[::-1], beta
+                f, d = r0 + err + along * r + beside * r[::-1], block
             else:
                 diagonal, square = d[0] * d[2], d[1] * d[1]
                 det = diagonal - square
@@ -1081,14 +1191,13 @@ class Prisms:
                 M = np.stack((d[2] * inv, -d[1] * inv, d[0] * inv))
                 m, inv = np.abs(M), np.abs(inv)
                 alive = alive & (np.abs(det) > 2.0 ** -60)
-                f = np.stack((m[0] * f[0] + m[1] * f[1], m[1] * f[0] + m[2] * f[1])) + err \
-                    + (F + 2 * UNIT * m[::2]) * r + (F2 + 2 * UNIT * m[1]) * r[::-1] \
+                f = applied(m, f) + err \
+                    + (along + 2 * UNIT * m[::2]) * r + (beside + 2 * UNIT * m[1]) * r[::-1] \
                     + 8 * UNIT * inv * ((np.abs(diagonal) + square) * r0 + np.abs(d[1])
                                         * (np.abs(d[0]) + np.abs(d[2])) * r0[::-1])
-                d = beta - M
+                d = block - M
             f = f * MORE
-            m = np.abs(d)
-            r, r0 = (np.stack((m[0] * r[0] + m[1] * r[1], m[1] * r[0] + m[2] * r[1])) + f) * MORE, r
+            r, r0 = (applied(np.abs(d), r) + f) * MORE, r
             L, L0, size0 = new, L, size
 
     def witnesses(self):
@@ -1097,13 +1206,13 @@ class Prisms:
 
         At each site the recursions from both ends of the orbit are compared, as in witness() above,
         to beta and something for what the bound will add to a site.  A recursion that fails begins
-        anew behind that site.  Where both together have a negative eigenvalue and beta is least is
-        its eigenvector, and n follows outwards by the recursions.
+        anew behind that site.  Where both together have a negative eigenvalue that is nearest to
+        zero, and n as a rule is largest, is its eigenvector; n follows outwards by the recursions.
         """
         sites, none = self.sites, np.zeros_like(self.l)
         blocks, tail = [], np.stack((self.l, none, self.l))
-        for _, _, _, _, _, rest, reach, beta in sites:
-            more = (self.caution * (rest + reach * reach / 6) + CURVED * reach) * reach
+        for *_, reach, beta, _ in sites:
+            more = self.caution * reach * reach
             blocks.append(beta + matrices((self.magnitude + self.H) * more))
         outer, back, whole = [], [], []             # the recursion from the end
         inverse, beyond, good = tail, none > 0, none == 0
@@ -1123,7 +1232,8 @@ class Prisms:
             begins.append(~good)
             inner = block - np.where(good, inverse, tail)
             joint = outer[k] + inner - block
-            score = np.where(site[0] & whole[k] & (least_of(joint) < 0), least_of(block), math.inf)
+            low = least_of(joint)
+            score = np.where(site[0] & whole[k] & (low < 0), -low, math.inf)
             better = score < best
             best, place = np.where(better, score, best), np.where(better, k, place)
             np.copyto(form, joint, where=better)
@@ -1154,76 +1264,106 @@ class Prisms:
             tails.append(ends * 1.0 + (begins[k] & (place >= k)))
         return n, tails
 
-    def bound(self):
-        """An upper bound of the left side of (3) for each prism; and what each symbol adds to it,
-        about, which says where to cut."""
-        K, l, F = len(self.sites), self.l, self.F
+    def expand(self):
+        """The left side of (3): its value at X and P, a polynomial, as summit takes it, and what it
+        may be more than both; infinite where it cannot be said."""
+        K, l, F, known = len(self.sites), self.l, self.F, self.known
         n, tails = self.witnesses()
         P, H, W, magnitude = self.P, self.H, self.W, self.magnitude
-        known = self.angles + 2
+        pairs = [(i, j) for i in range(known) for j in range(i, known)]
         value, mass, error = np.zeros_like(l), np.zeros_like(l), np.zeros_like(l)
-        linear, square = np.zeros((known, l.size)), np.zeros((known, known, l.size))
-        mu = mu1 = n1 = np.zeros((2, l.size))       # of this site, and of the one beyond
+        linear, square = np.zeros((known, l.size)), np.zeros((len(pairs), l.size))
+        cubic = np.zeros((known, *square.shape))    # of e[i] and of a pair
+        mixed = np.zeros((self.angles, known, l.size))      # of e[i] and a parameter's symbol
+        skew = np.zeros((self.angles, known, known, l.size))
+        mu = mu1 = np.zeros((2, 1 + known, l.size))     # of this site, and of the one beyond
+        n1 = np.zeros((2, l.size))
         for k in range(K - 1, -1, -1):
-            _, s, c, columns, size, rest, reach, _ = self.sites[k]
+            _, s, c, columns, size, rest, reach, _, E = self.sites[k]
             n0 = n[k]
             omega = np.stack((n0[0] * n0[0], n0[1] * n0[1], (n0[0] + n0[1]) ** 2))
             long = omega[0] + omega[1]
             wave = P * omega * s
             value += 2 * long - (wave[0] + wave[1] + wave[2]) - l * tails[k] * long \
-                - 2 * (n0[0] * n1[0] + n0[1] * n1[1])
-            wave = magnitude * omega
-            mass += 2 * long + wave[0] + wave[1] + wave[2]
+                - 2 * (n0[0] * n1[0] + n0[1] * n1[1]) + (mu[0, 0] * E[0] + mu[1, 0] * E[1])
+            linear += mu[0, 1:] * E[0] + mu[1, 1:] * E[1]
             m = np.concatenate((mu, (mu[0] + mu[1])[None]))
-            A, B, both = m * c - omega * s, -omega * c - m * s, np.abs(m) + omega
-            scaled = (P * A / 2)[:, None] * columns
-            for w, symbol in enumerate(self.symbols):
-                square -= scaled[w][:, None] * columns[w]
+            A, B = m * c[:, None], -m * s[:, None]
+            A[:, 0] -= omega * s
+            B[:, 0] -= omega * c
+            A0, B0, alpha, beta = A[:, 0], B[:, 0], A[:, 1:], B[:, 1:]
+            turn, PA = P[:, None] * B, P * A0
+            turn[:, 1:] -= PA[:, None] * columns
+            for w in self.present:
+                xi, symbol = columns[w], self.symbols[w]
+                first = (P[w] / -2) * alpha[w] - (P[w] * B0[w] / 6) * xi    # what stands with xi^2
                 if symbol is not None:
-                    linear[symbol] += H[w] * A[w]
-                    mixed = (H[w] * B[w] / 2) * columns[w]
-                    square[symbol] += mixed
-                    square[:, symbol] += mixed
-            wave = both * (magnitude * size * size / 2 + H * (1 + size))
-            mass += 2 * (wave[0] + wave[1] + wave[2])
-            a, b = np.abs(A) + 32 * UNIT * both, np.abs(B) + 32 * UNIT * both
-            second, third = reach * reach / 2, reach * reach * reach / 6
-            wave = magnitude * (a * (rest * (reach + size) / 2 + second * second / 6) + b * third) \
-                + H * (a * second + b * (rest + third)) + W * (a + b * reach)
+                    H_A = H[w] * A0[w]
+                    first[symbol] -= H_A / 2
+                    linear[symbol] += H_A
+                    mixed[symbol] += H[w] * alpha[w]
+                    skew[symbol] += (H[w] * beta[w])[:, None] * xi
+                    turn[w, 1 + symbol] += H[w] * B0[w]
+                xi = products(xi)
+                square += (PA[w] / 2) * xi
+                cubic += first[:, None] * xi
+            weight = np.abs(m).sum(axis=1) + omega
+            wave = remainder(P, H, W, A0, np.abs(alpha).sum(axis=1), B0, np.abs(beta).sum(axis=1),
+                             weight, size, rest, reach)
             error += wave[0] + wave[1] + wave[2]
-            wave, turn = magnitude * both, P * B
+            wave = magnitude * omega + weight * (magnitude * reach * reach + 3 * H)
+            mass += 2 * long + (wave[0] + wave[1] + wave[2])
+
             G = 2 * mu - mu1 + (turn[:2] + turn[2])
-            turn = wave[:2] + wave[2] + 2 * np.abs(mu) + np.abs(mu1)
+            wave, most = weight * (magnitude * (1 + size) + H), np.abs(mu).sum(axis=1)
+            turn = wave[:2] + wave[2] + 2 * most + np.abs(mu1).sum(axis=1)
             if k:
-                small = np.abs(mu) * F + 48 * UNIT * turn * reach[:2]
+                small = most * F + 48 * UNIT * turn * reach[:2]
                 mu, mu1, n1 = G, mu, n0
             else:
                 across = self.other(mu)
-                G, turn = G - across, turn + np.abs(across)
-                small = np.abs(mu) * F + np.abs(G) * self.rounding \
+                G, turn = G - across, turn + np.abs(across).sum(axis=1)
+                small = most * F + np.abs(G).sum(axis=1) * self.rounding \
                     + 48 * UNIT * turn * (self.sides + self.rounding)
-                linear[self.angles:] += G * self.sides
+                ends = G * self.sides[:, None]
             error += small[0] + small[1]
-        value, mass, error, linear, square = map(self.joined, (value, mass, error, linear, square))
+        value, mass, error, linear, square, cubic, mixed, skew, ends = map(
+            self.joined, (value, mass, error, linear, square, cubic, mixed, skew, ends))
         value -= 2 * (n[0][0, :self.size] * n[0][0, self.size:]
                       + n[0][1, :self.size] * n[0][1, self.size:])
-        largest, highest = np.full_like(value, -math.inf), np.zeros_like(value)
-        for signs in itertools.product((1, -1), repeat=known - 1):
-            signs = (1, *signs)
-            mixed = sum([2 * signs[i] * signs[j] * square[i, j]
-                         for i in range(known) for j in range(i)])
-            straight = sum([sign * x for sign, x in zip(signs, linear)])
-            largest = np.maximum(largest, np.abs(straight) + mixed)
+        form = {tuple(key): np.zeros_like(value) for count in (1, 2, 3)
+                for key in itertools.combinations_with_replacement(range(known), count)}
+
+        def add(x, *key):
+            form[tuple(sorted(key))] += x
+
         for i in range(known):
-            highest += np.maximum(square[i, i], 0)
-        added = np.abs(linear).sum(axis=0) + np.abs(square).sum(axis=(0, 1))
-        error = (error + UNIT * ((4 * K + 64) * mass + 64 * added)) * (MORE + 64 * UNIT * K)
-        bound = np.where(mass < HUGE, value + (largest + highest + error), math.inf)
+            add(linear[i], i)
+            for at, (j, k) in enumerate(pairs):
+                add((1 + (j < k)) * cubic[i, at], i, j, k)
+            for k in range(self.angles):
+                add(mixed[k, i], i, k)
+                for j in range(known):
+                    add(skew[k, i, j], i, j, k)
+            for k in (0, 1):
+                add(ends[k, 1 + i], i, self.angles + k)
+        for at, (j, k) in enumerate(pairs):
+            add((1 + (j < k)) * square[at], j, k)
+        for k in (0, 1):
+            add(ends[k, 0], self.angles + k)
+        added = sum([np.abs(x) for x in form.values()])
+        error = (error + UNIT * ((4 * K + 192) * mass + 64 * added)) * (MORE + 64 * UNIT * K)
+        return value, form, np.where(mass < HUGE, error, math.inf)
+
+    def bound(self):
+        """An upper bound of the left side of (3) for each prism; and what each symbol adds to it,
+        about, which says where to cut."""
+        value, form, error = self.expand()
         share = self.joined(self.last) + TINY
         share = share / share.sum(axis=0)
-        blame = np.where(value < 0, np.abs(linear) + np.abs(square).sum(axis=0) + error * share,
-                         share)
-        return bound, blame
+        moved = np.stack([sum([np.abs(x) for key, x in form.items() if k in key])
+                          for k in range(self.known)])
+        return value + (summit(form) + error), np.where(value < 0, moved + error * share, share)
 
 
 class Lockstep:
@@ -1317,7 +1457,7 @@ class Lockstep:
                 break
             index, cuts, l, number = [x[..., -self.batch:] for x in todo]
             halvings = cuts.sum(axis=0) - depth[number]
-            tried = self.attempt(index, cuts, l, np.where(halvings % 2, *CAUTION))
+            tried = self.attempt(index, cuts, l, np.array(CAUTION)[halvings % len(CAUTION)])
             if tried is None:
                 self.batch //= 2
                 continue
@@ -1575,7 +1715,10 @@ def verify(path, jobs=1, sample=None, state=None, bar=False, exact=False):
         return ((n, cell) for n, cell in enumerate(cells) if n in chosen)
 
     queue = work()
-    size = min(FAST_CHUNK, -(-len(chosen) // (CHUNKS * jobs)) or 1) if criterion.fast else CHUNK
+    size = CHUNK
+    if criterion.fast:
+        fewest, most = FAST_CHUNK
+        size = min(max(len(chosen) // (CHUNKS * jobs), fewest), most)
     chunks = iter(lambda: list(itertools.islice(queue, size)), [])
     try:
         with Bar(work() if bar else (), len(chosen)) as progress, \
