@@ -867,7 +867,7 @@ def test_killed_at_random_moments(long, tmp_path, generator, jobs):
         process.stdout.readline()
         kind = kinds[n % 4]
         with contextlib.suppress(subprocess.TimeoutExpired):
-            process.wait(n and 0.2 + 0.03 * n + 0.5 * generator.random())
+            process.wait(n and 0.2 + 0.06 * n + 0.5 * generator.random())
         if process.poll() is None:
             (os.killpg if n % 3 else os.kill)(process.pid, kind)
         out, err = process.communicate(timeout=60)
