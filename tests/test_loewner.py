@@ -755,6 +755,61 @@ def test_every_width_grows_the_same_tree(problem, monkeypatch):
     assert len(grown["64"][0]) > 100
     assert all(grown[width] == grown["64"] for width in WIDTHS)
 
+def random_cells(rng, together, n):
+    """Cells of all sizes, neighbours and random ones, with hints that need not be of use."""
+    found = []
+    for _ in range(n):
+        cuts = [rng.randrange(12), rng.randrange(12), *(rng.randrange(3) for _ in range(3))]
+        if together:
+            cuts[3:] = 0, 0
+        index = [rng.randrange(2 ** k) for k in cuts]
+        if found and rng.random() < 0.5:
+            index, cuts = map(list, rng.choice(found)[:2])
+            axis = rng.randrange(2)
+            index[axis] ^= cuts[axis] > 0
+        found.append((tuple(index), tuple(cuts), rng.choice([0, 0, 0, 3, 12, 60])))
+    return found
+
+
+@pytest.mark.parametrize("problem, star", [
+    (line("0.0170", "0.0280"), None), (line("0.0200", "0.0280", together=False), None),
+    (line("0.0160", "0.0180"), ("0.85", "0.87")), (line("0.0100", "0.0500", skew="0.75"), None),
+    (Problem(a=("0.98", "0.99"), b=("-0.25", "0.25"), c=("0", "0")), ("-1", "2")),
+    (Problem(a=("1.5", "8"), b=("0", "1"), c=("-0.5", "0.5")), ("0.5", "-2"))])
+def test_no_company_matters(problem, star, monkeypatch):
+    """What is tried alone, by a search that never tried anything else, fares as in any company, and
+    whatever was tried before."""
+    rng = rng_for("loewner company %s" % problem)
+    task = Task(problem, Settings("loewner", 17, stubborn=True), star)
+    monkeypatch.setenv("CONVERSE_VECTORS", "64")
+    found = [(cell, grow(task, cell, 40)) for cell in random_cells(rng, problem.together, 40)]
+    found = [(cell, grown) for cell, grown in found if not grown.cells]
+    assert len(found) > 10 and len({grown.text for _, grown in found}) > 5
+    for width in WIDTHS:
+        monkeypatch.setenv("CONVERSE_VECTORS", width)
+        search = Search(task)
+        assert search.prepare(ffi.NULL)
+        rng.shuffle(found)
+        cells, text, steps = [cell for cell, _ in found], "", []
+        while cells:                        # with something else now and then
+            grown = search.grow(cells, 10, rng.choice([1, 5, 40]), ffi.NULL, True)
+            text, steps, cells = text + grown.text, steps + grown.steps, grown.cells
+            search.grow(random_cells(rng, problem.together, 9), 10, 3, ffi.NULL, False)
+        assert text == "".join(grown.text for _, grown in found)
+        whole = search.grow([cell for cell, _ in found], 10, MANY, ffi.NULL, True)
+        assert whole.text == text and whole.steps == steps
+
+@pytest.mark.parametrize("a, half", [("1e12", "0"), ("1e7", "0"), ("1e7", "1e-5")])
+def test_an_orbit_ends_where_it_cannot_go_on(a, half):
+    """Too many turns in the next step, or images too wide, both ways: two points are all there is."""
+    problem = Problem.around((Fraction(a), 0, 0, Fraction("-0.4"), 0),
+                             (0, 0, 0, Fraction(half), Fraction(half)))
+    task = Task(problem, Settings("loewner", 0, stubborn=True), ("-1", "0"))
+    search = Search(task)
+    assert search.prepare(ffi.NULL)
+    grown = search.grow([(*ROOT, 0)], 10, MANY, ffi.NULL, True)
+    assert (grown.text, grown.steps) == ("U", [2]) and grown.counts.reasons == (0, 0, 1, 0, 0, 0)
+
 
 def test_every_width_finds_the_same_bits(monkeypatch):
     rng = rng_for("loewner widths")
