@@ -782,9 +782,9 @@ def test_no_company_matters(problem, star, monkeypatch):
     rng = rng_for("loewner company %s" % problem)
     task = Task(problem, Settings("loewner", 17, stubborn=True), star)
     monkeypatch.setenv("CONVERSE_VECTORS", "64")
-    found = [(cell, grow(task, cell, 40)) for cell in random_cells(rng, problem.together, 40)]
+    found = [(cell, grow(task, cell, 40)) for cell in random_cells(rng, problem.together, 250)]
     found = [(cell, grown) for cell, grown in found if not grown.cells]
-    assert len(found) > 10 and len({grown.text for _, grown in found}) > 5
+    assert len(found) > 50 and len({grown.text for _, grown in found}) > 9
     for width in WIDTHS:
         monkeypatch.setenv("CONVERSE_VECTORS", width)
         search = Search(task)
@@ -809,6 +809,22 @@ def test_an_orbit_ends_where_it_cannot_go_on(a, half):
     assert search.prepare(ffi.NULL)
     grown = search.grow([(*ROOT, 0)], 10, MANY, ffi.NULL, True)
     assert (grown.text, grown.steps) == ("U", [2]) and grown.counts.reasons == (0, 0, 1, 0, 0, 0)
+
+def test_a_search_that_was_busy_takes_up_a_tree():
+    """What it knew of other prisms is forgotten."""
+    task, texts = Task(line("0.0200", "0.0280"), Settings("loewner", 14, stubborn=True)), []
+    for busy in (0, 1, 7, 30):
+        search = Search(task)
+        assert search.prepare(ffi.NULL)
+        if busy:
+            search.grow([((5, 9, 1, 0, 0), (4, 4, 1, 0, 0), 0), (*ROOT, 0)], 10, busy, ffi.NULL,
+                        False)
+        search.begin("2?01?U?")
+        assert lib.cv_step(search.handle, MANY, 10, ffi.NULL) == lib.CV_OK
+        size = ffi.new("size_t *")
+        text = lib.cv_tree(search.handle, size)
+        texts.append(ffi.unpack(text, size[0]))
+    assert len(texts[0]) > 50 and texts == [texts[0]] * 4
 
 
 def test_every_width_finds_the_same_bits(monkeypatch):
