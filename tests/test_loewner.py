@@ -637,6 +637,18 @@ def test_margins(root):
         assert share <= 1 / float(proved[name]), name
 
 
+@pytest.mark.parametrize("abc, star, good", [
+    (("3", "3", "0"), ("1.57", "1.57"), False), (("3", "0", "0"), ("1.57", "0"), False),
+    (("1", "1", "0"), ("1.57", "1.57"), True), (("2.6", "0", "-1"), ("1.57", "0"), True),
+    (("2.6666666", "0", "-1"), ("1.5707963268", "0"), False)])
+def test_factors_are_positive_and_well_conditioned(abc, star, good):
+    """Beyond a block d[0] = beta that is not, no orbit is followed."""
+    prism = [*map(Fraction, (*abc, "0.3", "0.2", *"00000", *star)), 0]
+    kernels.call("loewner_orbit", [*prism, -1], POINT, 20)
+    with nullcontext() if good else pytest.raises(ArithmeticError):
+        kernels.call("loewner_orbit", [*prism, -2], POINT, 20)
+
+
 # ---- whole proofs
 
 def line(low, high, together=True, region=(1, 1), skew=1):
@@ -754,6 +766,79 @@ def test_every_width_grows_the_same_tree(problem, monkeypatch):
             assert lib.cv_lanes(search.handle) == int(width) // 64
     assert len(grown["64"][0]) > 100
     assert all(grown[width] == grown["64"] for width in WIDTHS)
+
+def random_cells(rng, together, n):
+    """Cells of all sizes, neighbours and random ones, with hints that need not be of use."""
+    found = []
+    for _ in range(n):
+        deep = rng.choice([8, 12, 22])
+        cuts = [rng.randrange(deep), rng.randrange(deep), *(rng.randrange(3) for _ in range(3))]
+        if together:
+            cuts[3:] = 0, 0
+        index = [rng.randrange(2 ** k) for k in cuts]
+        if found and rng.random() < 0.5:
+            index, cuts = map(list, rng.choice(found)[:2])
+            axis = rng.randrange(2)
+            index[axis] ^= cuts[axis] > 0
+        found.append((tuple(index), tuple(cuts), rng.choice([0, 0, 0, 3, 12, 60])))
+    return found
+
+
+@pytest.mark.parametrize("problem, star", [
+    (line("0.0170", "0.0280"), None), (line("0.0200", "0.0280", together=False), None),
+    (line("0.0160", "0.0180"), ("0.85", "0.87")), (line("0.0100", "0.0500", skew="0.75"), None),
+    (Problem(a=("1.3", "1.5"), b=("-0.25", "0.25"), c=("0", "0")), ("-1", "2")),
+    (Problem(a=("1.5", "8"), b=("0", "1"), c=("-0.5", "0.5")), ("0.5", "-2"))])
+def test_no_company_matters(problem, star, monkeypatch):
+    """What is tried alone, by a search that never tried anything else, fares as in any company, and
+    whatever was tried before."""
+    rng = rng_for("loewner company %s" % problem)
+    task = Task(problem, Settings("loewner", 26, stubborn=True), star)
+    monkeypatch.setenv("CONVERSE_VECTORS", "64")
+    found = [(cell, grow(task, cell, 40)) for cell in random_cells(rng, problem.together, 250)]
+    found = [(cell, grown) for cell, grown in found if not grown.cells]
+    assert len(found) > 50 and len({grown.text for _, grown in found}) > 9
+    for width in WIDTHS:
+        monkeypatch.setenv("CONVERSE_VECTORS", width)
+        search = Search(task)
+        assert search.prepare(ffi.NULL)
+        rng.shuffle(found)
+        cells, text, steps = [cell for cell, _ in found], "", []
+        while cells:                        # with something else now and then
+            grown = search.grow(cells, 10, rng.choice([1, 5, 40]), ffi.NULL, True)
+            text, steps, cells = text + grown.text, steps + grown.steps, grown.cells
+            search.grow(random_cells(rng, problem.together, 9), 10, 3, ffi.NULL, False)
+        assert text == "".join(grown.text for _, grown in found)
+        whole = search.grow([cell for cell, _ in found], 10, MANY, ffi.NULL, True)
+        assert whole.text == text and whole.steps == steps
+
+@pytest.mark.parametrize("a, half", [("1e12", "0"), ("1e7", "0"), ("1e7", "1e-5")])
+def test_an_orbit_ends_where_it_cannot_go_on(a, half):
+    """Too many turns in the next step, or images too wide, both ways: two points are all there is."""
+    for way in (1, -1):                     # of a alone, of b alone
+        problem = Problem.around((*(Fraction(a), 0)[::way], 0, *(Fraction("-0.4"), 0)[::way]),
+                                 (0, 0, 0, Fraction(half), Fraction(half)))
+        search = Search(Task(problem, Settings("loewner", 0, stubborn=True), ("-1", "0")[::way]))
+        assert search.prepare(ffi.NULL)
+        grown = search.grow([(*ROOT, 0)], 10, MANY, ffi.NULL, True)
+        assert (grown.text, grown.steps) == ("U", [2])
+        assert grown.counts.reasons == (0, 0, 1, 0, 0, 0)
+
+def test_a_search_that_was_busy_takes_up_a_tree():
+    """What it knew of other prisms is forgotten."""
+    task, texts = Task(line("0.0200", "0.0280"), Settings("loewner", 14, stubborn=True)), []
+    for busy in (0, 1, 7, 30):
+        search = Search(task)
+        assert search.prepare(ffi.NULL)
+        if busy:
+            search.grow([((5, 9, 1, 0, 0), (4, 4, 1, 0, 0), 0), (*ROOT, 0)], 10, busy, ffi.NULL,
+                        False)
+        search.begin("20")                  # there are three cells
+        assert lib.cv_step(search.handle, MANY, 10, ffi.NULL) == lib.CV_OK
+        size = ffi.new("size_t *")
+        text = lib.cv_tree(search.handle, size)
+        texts.append(ffi.unpack(text, size[0]))
+    assert len(texts[0]) > 50 and texts == [texts[0]] * 4
 
 
 def test_every_width_finds_the_same_bits(monkeypatch):
