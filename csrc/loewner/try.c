@@ -121,11 +121,11 @@ static void try_prisms(void *work, const loewner *root, int n, const cv_cell *co
 {
     batch *const w = work;
     progress s[LANES] = { { 0 } };
-    loewner_cell c;
+    loewner_cell c, filler = { 0 };
     mask going = none(), blamed = none();
 
     w->root = root;
-    for (int k = n - 1; k >= 0; k--) {
+    for (int k = 0; k < n; k++) {
         s[k].least = HUGE_VAL;
         memset(out[k], 0, sizeof *out[k]);
         out[k]->v.reason = CV_REASON_ARITHMETIC;
@@ -133,10 +133,12 @@ static void try_prisms(void *work, const loewner *root, int n, const cv_cell *co
         if (!loewner_prism(root, cells[k], &c))
             continue;
         put_truth(&going, k, 1);
-        for (int other = any(going) ? k : 0; other < LANES; other++)
-            if (other == k || !holds(&going, other))
-                set_lane(w, other, &c);
+        set_lane(w, k, &c);
+        filler = c;
     }
+    for (int k = 0; k < LANES; k++)
+        if (!holds(&going, k))
+            set_lane(w, k, &filler);
     begin(w);
     follow_and_attempt(w, going, n, cells, s, out);
     for (int k = 0; k < n; k++)
