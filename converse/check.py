@@ -1554,7 +1554,8 @@ class State:
                 os.fsync(file.fileno())
             os.replace(name, self.path)
         except BaseException:
-            os.unlink(name)
+            with contextlib.suppress(OSError):  # a signal after the replacement is not to be lost
+                os.unlink(name)
             raise
         self.saved = time.monotonic()
 

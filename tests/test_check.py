@@ -856,18 +856,31 @@ def test_killed_at_random_moments(long, tmp_path, generator, jobs):
     path, pieces = long
     state, seen, words = tmp_path / "state", [0], []
     kinds = [signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGKILL]
-    code = "import sys; sys.path.insert(0, sys.argv.pop(1)); import check; print(flush=True); " \
-        "check.STATE_SECONDS = 0.1; sys.exit(check.main())"
-    code = "import signal; signal.signal(2, signal.SIG_DFL); " + code   # as Python starts and ends
-    for n in range(40):
+    code = """
+import signal
+signal.signal(2, signal.SIG_DFL)                # as Python starts and ends
+import sys, time
+sys.path.insert(0, sys.argv.pop(1))
+import check
+at_once = check.check_chunk
+def check_chunk(chunk):                         # however fast the machine is
+    time.sleep(0.005)
+    return at_once(chunk)
+check_chunk.__module__, check.check_chunk, check.STATE_SECONDS = "check", check_chunk, 0.02
+print(flush=True)
+sys.exit(check.main())
+"""
+    for n in range(60):
         process = subprocess.Popen(
             [sys.executable, "-I", "-c", code, os.path.dirname(check.__file__), path, "--jobs",
              jobs, "--state", state, "--exact"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
             start_new_session=True)
         process.stdout.readline()
         kind = kinds[n % 4]
-        with contextlib.suppress(subprocess.TimeoutExpired):
-            process.wait(n and 0.2 + 0.06 * n + 0.5 * generator.random())
+        until = time.monotonic() + (30 if n % 2 else 0.3 * generator.random())
+        while process.poll() is None and time.monotonic() < until and not (
+                n % 2 and state.exists() and confirmed(state) > seen[-1] + 500):
+            time.sleep(0.005)                   # every other time it is to get on first
         if process.poll() is None:
             (os.killpg if n % 3 else os.kill)(process.pid, kind)
         out, err = process.communicate(timeout=60)
