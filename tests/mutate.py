@@ -248,6 +248,7 @@ MUTATIONS = [
     ("loewner/problem.c", "upper ? 1.0 : -1.0", "upper ? 1.0 : 1.0"),
     ("loewner/problem.c", "sum += w->half[2 + i] * fabs(s[i]) * omega[i];", ""),
     ("loewner/problem.c", "(w->together ? w->half[2 + i] : 0.0)", "0.0"),
+    ("loewner/orbit.c", "if (any(~next->reached))", "if (0)"),
     ("loewner/orbit.c", "static const double WIDEN = 1.0 + 0x1p-43;",
      "static const double WIDEN = 1.0;"),
     ("loewner/orbit.c", "q->fuzz = 0x1p-49 * (1.0", "q->fuzz = 0x1p-55 * (1.0"),

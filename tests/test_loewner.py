@@ -750,7 +750,7 @@ WIDTHS = ("64", "128", "256", "512")    # of vectors, in bits
     line("0.0170", "0.0280"), line("0.0200", "0.0280", together=False),
     line("0.0200", "0.0280", skew="0.75"),
     Problem(a=("0.984375", "0.984375"), b=("0", "0"), c=("0", "0")),
-    Problem(a=("0.974", "0.974"), b=("0", "0"), c=("0", "0")),         # orbits of very unlike lengths
+    Problem(a=("0.9745", "0.9755"), b=("0", "0"), c=("0", "0")),       # orbits of very unlike lengths
     line("0.0130", "0.0200", region=("0.125", "0.125"))])
 def test_every_width_grows_the_same_tree(problem, monkeypatch):
     """Whatever vectors the machine has, and in whatever company a prism is tried."""
