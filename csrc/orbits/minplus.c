@@ -23,11 +23,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "numbers/lanes.h"
 #include "numbers/machine.h"
 #include "orbits/potential.h"
-
-/* NaN if either is. */
-static inline double larger(double x, double y) { return x > y || isnan(x) ? x : y; }
 
 enum { MAX_NODES = 1025 };              /* along an axis of a corridor */
 
