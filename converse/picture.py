@@ -83,7 +83,7 @@ def draw(proof, axes):
         colours = {"P": SHADE, **{kind: [x / 255 for x in colour]
                                   for kind, colour in RASTER_COLOURS.items()}}
     for kind, number in count.items():
-        _patch(axes, [(left + width * x, bottom + height * y) for x, y in paths.get(kind, ())],
+        rectangles(axes, [(left + width * x, bottom + height * y) for x, y in paths.get(kind, ())],
                facecolor=colours[kind], edgecolor=EDGES[kind], linewidth=WIDTHS.get(kind, 0.3),
                zorder=1 + LAYERS.index(kind) / 10,
                label="%s (%d)" % (legend.NAMES[kind], number))
@@ -116,7 +116,7 @@ def _axis(problem, axes, k):
     return low, side
 
 
-def _patch(axes, corners, **style):
+def rectangles(axes, corners, **style):
     """One shape of many rectangles."""
     from matplotlib.patches import PathPatch
     from matplotlib.path import Path

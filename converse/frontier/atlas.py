@@ -1,0 +1,247 @@
+"""A map: what is proved of a region of parameter space, as a tree of cells, and its file."""
+
+import gzip
+import hashlib
+import itertools
+import json
+import math
+import os
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Dict, Iterator, List, Optional, Tuple, Union
+
+from .. import files
+from ..files import ConverseError
+from ..problem import decimal_text, exact
+from ..version import __version__
+from .region import RADIUS, REGIONS, Cell, direction, is_outside, root
+
+FORMAT = "converse map 1"
+PROVED, AT_ONCE, OPEN, OUTSIDE = "PAOX"
+GRID = {1: 32, 2: 12}               # intervals of a side, in the estimate of a plane, of the sphere
+
+Place = Tuple[Fraction, ...]
+
+
+class Node:
+    """A cell of the tree: cut across an axis into two halves, or a leaf of some kind.
+
+    proof: of a leaf P, the tree of its prisms and what it is a proof with, as plain data.
+    tried: of an open leaf, how many prisms were spent on it in vain, about."""
+
+    __slots__ = ("cell", "kind", "axis", "halves", "proof", "tried")
+
+    def __init__(self, cell: Cell):
+        self.cell, self.kind, self.axis, self.halves = cell, OPEN, None, ()
+        self.proof, self.tried = None, 0
+
+    def cut(self, axis):
+        self.kind, self.axis = "", axis
+        self.halves = tuple(map(Node, self.cell.halves(axis)))
+        return self.halves
+
+    def nodes(self) -> "Iterator[Node]":
+        """All below and itself, in preorder."""
+        todo = [self]
+        while todo:
+            node = todo.pop()
+            yield node
+            todo += node.halves[::-1]
+
+
+@dataclass(eq=False, repr=False)
+class Map:
+    """What is proved of a region of parameter space.
+
+    region: "b=0", "a=b", "c=0" or "sphere", the fundamental domain a >= b >= 0, c >= 0.
+    down_to: how near to the estimated frontier the search was to come, as a ratio.
+    roots: of the trees of its faces.
+    estimate: by face, the estimated frontier: at places (s,) or (s, t) the least radius at which
+    parameters without width are proved with a certain effort.  Not proved, and no part of what is.
+    seconds: that the search took.
+    """
+
+    region: str
+    down_to: Fraction
+    roots: List[Node]
+    estimate: List[Dict[Place, float]]
+    seconds: float = 0.0
+    version: str = __version__
+    sha256: str = ""
+
+    @classmethod
+    def new(cls, region: str, down_to: Fraction) -> "Map":
+        faces = REGIONS[region]
+        return cls(region, down_to, [Node(root(d, i)) for i, d in enumerate(faces)],
+                   [{} for _ in faces])
+
+    @property
+    def directions(self):
+        """Of each face: d_0, d_1 (and d_2)."""
+        return REGIONS[self.region]
+
+    def leaves(self) -> Iterator[Node]:
+        for tree in self.roots:
+            yield from (node for node in tree.nodes() if not node.halves)
+
+    def count(self, kind: str) -> int:
+        """How many leaves are of a kind."""
+        return sum(leaf.kind == kind for leaf in self.leaves())
+
+    # ---- the estimate
+
+    def places(self, face: int) -> Iterator[Place]:
+        """Where the frontier of a face is estimated, exactly."""
+        sides = len(self.directions[face]) - 1
+        grid = [Fraction(k, GRID[sides]) for k in range(GRID[sides] + 1)]
+        return itertools.product(grid, repeat=sides)
+
+    def estimated(self, face: int, place: Place) -> float:
+        """The estimated frontier in a direction, linear along each side between known places."""
+        grid = GRID[len(place)]
+        total = 0.0
+        ends = [(min(math.floor(x * grid), grid - 1), x * grid) for x in place]
+        for upper in itertools.product((0, 1), repeat=len(place)):
+            weight = math.prod(float(x - k if up else k + 1 - x)
+                               for up, (k, x) in zip(upper, ends))
+            if weight:
+                total += weight * self.estimate[face][
+                    tuple(Fraction(k + up, grid) for up, (k, _) in zip(upper, ends))]
+        return total
+
+    def span(self, cell: Cell) -> Tuple[float, float]:
+        """The least and the largest estimate over a cell's directions, times down_to."""
+        grid = GRID[len(cell.low) - 1]
+        ends = [[low, *(Fraction(k, grid) for k in range(math.floor(low * grid) + 1,
+                                                         math.ceil(high * grid))), high]
+                for low, high in zip(cell.low[1:], cell.high[1:])]
+        found = [self.estimated(cell.face, place) for place in itertools.product(*ends)]
+        return float(self.down_to) * min(found), float(self.down_to) * max(found)
+
+    def area(self, cell: Optional[Cell] = None) -> float:
+        """Of a cell, of (r, s, t), as far as it is to be proved, about; or of all that is."""
+        if cell is None:
+            return sum(max(0.0, RADIUS - float(self.down_to) * radius) / len(estimate)
+                       for estimate in self.estimate for radius in estimate.values())
+        target = float(self.down_to) * self.estimated(cell.face, cell.middle[1:])
+        return max(0.0, float(cell.high[0]) - max(float(cell.low[0]), target)) * math.prod(
+            float(high - low) for low, high in zip(cell.low[1:], cell.high[1:]))
+
+    # ---- what is proved
+
+    @property
+    def complete(self) -> bool:
+        """Is everything proved that was asked for?"""
+        return all(len(estimate) == sum(1 for _ in self.places(face))
+                   for face, estimate in enumerate(self.estimate)) and not any(
+            leaf.kind == OPEN and float(leaf.cell.low[0]) >= self.span(leaf.cell)[1]
+            for leaf in self.leaves())
+
+    def height(self, face: int) -> Fraction:
+        """The radius from which on all directions of a face are proved."""
+        return max(leaf.cell.high[0] for leaf in self.leaves()
+                   if leaf.kind == OPEN and leaf.cell.face == face)
+
+    def report(self) -> str:
+        """What is proved, in words."""
+        proofs = [leaf.proof["tree"] for leaf in self.leaves() if leaf.kind == PROVED]
+        lines = ["No invariant tori, for (a, b, c) = r d in the cells that are proved, and for their",
+                 "mirror images (docs/format.md).",
+                 "Region : " + self.region]
+        for face, directions in enumerate(self.directions):
+            words = " + ".join("%s(%s)" % (name, ", ".join(map(str, d)))
+                               for name, d in zip(("", "s ", "t "), directions))
+            height = self.height(face)
+            lines += ["d = %s, 0 <= %s <= 1 : %s" % (
+                words, ", ".join("st"[:len(directions) - 1]),
+                "all r > %s" % decimal_text(height) if height < RADIUS else "not for all r > 2")]
+        lines += ["Cells : %d proved, %d at once and for all larger multiples, %d open" % (
+                      len(proofs), self.count(AT_ONCE), self.count(OPEN)),
+                  "Prisms : %d proved" % sum(tree.count("P") for tree in proofs),
+                  "Asked for : down to %s times the estimated frontier%s" % (
+                      decimal_text(self.down_to), "" if self.complete else "; not all of it is proved"),
+                  "Time : %.0f seconds" % self.seconds]
+        lines += ["SHA-256 : " + self.sha256] if self.sha256 else []
+        return "\n".join(lines) + "\n"
+
+    def __repr__(self):
+        return "<Map of %s: %d cells proved, %d at once, %d open>" % (
+            self.region, *map(self.count, (PROVED, AT_ONCE, OPEN)))
+
+    def save(self, path: Union[str, "os.PathLike[str]"]) -> str:
+        """Writes the file, compressed when the name ends in .gz; returns the SHA-256 in it."""
+        faces = []
+        for directions, tree, estimate in zip(self.directions, self.roots, self.estimate):
+            nodes = list(tree.nodes())
+            faces.append({
+                "directions": [list(map(str, d)) for d in directions],
+                "radius": str(RADIUS),
+                "tree": "".join(node.kind or str(node.axis) for node in nodes),
+                "proofs": [node.proof for node in nodes if node.kind == PROVED],
+                "tried": [node.tried for node in nodes if node.kind == OPEN],
+                "estimate": [[*map(decimal_text, place), radius]
+                             for place, radius in sorted(estimate.items())]})
+        data = {"format": FORMAT, "program": "converse " + self.version, "region": self.region,
+                "down to": decimal_text(self.down_to), "seconds": round(self.seconds, 2),
+                "faces": faces}
+        digest = data["sha256"] = _digest(data)
+        text = (json.dumps(data, indent=1) + "\n").encode("ascii")
+        files.write(path, gzip.compress(text, 6, mtime=0) if os.fspath(path).endswith(".gz")
+                    else text)
+        return digest
+
+    @classmethod
+    def load(cls, path: Union[str, "os.PathLike[str]"]) -> "Map":
+        """Reads a map; ConverseError says in one line what is wrong with it.  What it says is
+        proved is believed: converse-check does not believe it."""
+        try:
+            with open(path, "rb") as file:
+                packed = file.read()
+            if packed[:2] == b"\x1f\x8b":
+                packed = gzip.decompress(packed)
+            data = json.loads(packed.decode("ascii"))
+        except OSError as error:
+            raise ConverseError("%s: cannot be read (%s); name a readable map"
+                                % (path, files.reason(error))) from None
+        except (EOFError, ValueError, RecursionError):
+            raise ConverseError("%s: is not a map, or truncated; use an intact copy or start anew"
+                                % path) from None
+        try:
+            digest = data.pop("sha256")
+            if data["format"] != FORMAT or digest != _digest(data):
+                raise ValueError("it was changed or damaged")
+            made = cls.new(data["region"], exact(data["down to"]))
+            made.seconds, made.sha256 = float(data["seconds"]), digest
+            made.version = data["program"].partition(" ")[2]
+            for tree, face, estimate in zip(made.roots, data["faces"], made.estimate):
+                _grow(tree, face)
+                estimate.update((tuple(map(exact, place)), float(radius))
+                                for *place, radius in face["estimate"])
+            return made
+        except (AttributeError, KeyError, IndexError, TypeError, ValueError) as error:
+            raise ConverseError("%s: makes no sense (%s); use an intact copy or start anew"
+                                % (path, error)) from None
+
+
+def _digest(data):
+    return hashlib.sha256(json.dumps(data, sort_keys=True, separators=(",", ":"))
+                          .encode("ascii")).hexdigest()
+
+
+def _grow(tree, face):
+    """Takes up a tree of cells."""
+    todo, proofs, tried = [tree], iter(face["proofs"]), iter(face["tried"])
+    for kind in face["tree"]:
+        node = todo.pop()
+        if kind in "012"[:len(node.cell.low)]:
+            todo += node.cut(int(kind))[::-1]
+            continue
+        if kind not in (PROVED, AT_ONCE, OPEN, OUTSIDE):
+            raise ValueError("'%s' is not a kind of cell" % kind)
+        node.kind = kind
+        if kind == PROVED:
+            node.proof = next(proofs)
+        elif kind == OPEN:
+            node.tried = next(tried)
+    if todo:
+        raise ValueError("the tree of cells ends too early")

@@ -1,0 +1,121 @@
+"""The command: converse-map [--plane b=0 | --sphere] MAP."""
+
+import argparse
+import contextlib
+import math
+import os
+import sys
+
+from .. import files
+from ..cli import Parser, _seconds, ended, say, whole, workers
+from ..files import ConverseError
+from ..problem import exact
+from ..version import __version__
+from .region import REGIONS
+
+COMMAND = "converse-map"
+DOWN_TO = "1.05"
+STATUS = ("Exit status: 0 all is proved that was asked for; 1 some of it is not; 2 bad usage, map or "
+          "file; 129, 130 or 143 ended by a signal, the map saved.")
+
+
+def _ratio(text):
+    try:
+        ratio = exact(text)
+    except ValueError:
+        ratio = 0
+    if not 1 < ratio <= 100:
+        raise argparse.ArgumentTypeError("'%.40s' is not a number above 1, as 1.05 is" % text)
+    return ratio
+
+
+def parser():
+    p = Parser(prog=COMMAND, allow_abbrev=False, epilog=STATUS, description=(
+        "Proves for as many (a, b, c) of a region as it can that the map has no invariant tori, and "
+        "keeps what is proved in MAP, a certificate for converse-check.  Without a region MAP is "
+        "described, and drawn with -g."))
+    p.add_argument("map", metavar="MAP", help="a file, new unless it is restored; compressed if its "
+                   "name ends in .gz")
+    which = p.add_mutually_exclusive_group()
+    which.add_argument("--plane", choices=[name for name in REGIONS if name != "sphere"],
+                       help="all directions of a plane, a, b, c >= 0")
+    which.add_argument("--sphere", action="store_const", dest="plane", const="sphere",
+                       help="all directions with a >= b >= 0, c >= 0, whose mirror images are all "
+                       "that there are")
+    p.add_argument("--down-to", type=_ratio, metavar="RATIO", help=(
+        "how near to the estimated frontier to come (%s times it)" % DOWN_TO))
+    p.add_argument("-r", "--restore", action="store_true", help="continue MAP, as it was asked for "
+                   "then, though perhaps with another --down-to")
+    p.add_argument("-g", "--graphics", metavar="FILE", help="draw the map: SVG, PNG or PDF by name")
+    p.add_argument("--jobs", type=whole(1), metavar="N",
+                   help="work on N cells at a time (default: one per core)")
+    p.add_argument("--dask", metavar="ADDRESS", help="let the Dask cluster at ADDRESS work")
+    p.add_argument("--mpi", action="store_true", help="let MPI processes work")
+    p.add_argument("--time-limit", type=_seconds, default=math.inf, metavar="SECONDS",
+                   help="stop after about so long; -r goes on")
+    p.add_argument("--version", action="version", version="%s %s" % (COMMAND, __version__))
+    return p
+
+
+class Progress:
+    """On a terminal, a bar of the area that is decided."""
+
+    def __init__(self):
+        self.bar = None
+        with contextlib.suppress(ImportError):      # the extra "progress"
+            if sys.stderr.isatty():
+                from tqdm import tqdm
+                self.bar = tqdm(total=1.0, leave=False, file=sys.stderr, bar_format=(
+                    "{percentage:5.1f}% |{bar}| {elapsed}{postfix}"))
+
+    def __call__(self, share, atlas):
+        if self.bar is not None:
+            self.bar.n = share
+            self.bar.set_postfix_str("%d cells" % sum(1 for _ in atlas.leaves()))
+
+    def close(self):
+        if self.bar is not None:
+            self.bar.close()
+
+
+def run(options):
+    from .atlas import Map
+    from .search import explore_region
+
+    graphics = options.graphics
+    if graphics is not None:
+        from . import figure
+
+        if files.same(graphics, options.map):
+            raise ConverseError("the picture would overwrite '%s'; name another file" % graphics)
+        figure.check(graphics)
+    if not options.plane and not options.restore:
+        if options.down_to is not None:
+            raise ConverseError("--down-to needs --plane, --sphere or -r")
+        atlas = Map.load(options.map)
+    else:
+        with contextlib.closing(Progress()) as progress, workers(options) as (executor, jobs):
+            atlas = explore_region(
+                options.plane, options.down_to, path=options.map, resume=options.restore,
+                jobs=jobs, executor=executor, time_limit=options.time_limit, progress=progress)
+        if not atlas.sha256:
+            raise ConverseError("what was found is not saved")
+    say(atlas.report())
+    if graphics is not None:
+        figure.draw(atlas, graphics)
+    return 0 if atlas.complete else 1
+
+
+def main(argv=None):
+    """Runs the command and returns its exit status."""
+    options = argparse.Namespace(map=None)
+
+    def interrupted():
+        return ("continue with -r " + options.map if options.map and os.path.exists(options.map)
+                else "nothing was found yet")
+
+    return ended(COMMAND, lambda: run(parser().parse_args(argv, options)), interrupted)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

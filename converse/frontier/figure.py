@@ -1,0 +1,139 @@
+"""A map as a picture: SVG, PNG or PDF, by matplotlib."""
+
+import math
+
+import numpy as np
+
+from .. import files, picture
+from ..figure import format_of
+from .atlas import AT_ONCE, OPEN, PROVED
+from .region import RADIUS, direction
+
+NAMES = "abc"
+STYLE = {**picture.SALT, "font.size": 9, "legend.frameon": False, "axes.spines.top": False,
+         "axes.spines.right": False}
+COLOURS = {PROVED: "#7fa8d1", AT_ONCE: "#cfdeed"}
+WORDS = {PROVED: "proved: no invariant Lagrangian graph", AT_ONCE: "B > 10/3, at once"}
+DARK, ORANGE, RED = "0.15", "#c8711c", "#a02020"
+LINE = 11.21436                         # of the thesis: a = b = c/2 = LINE epsilon
+MARKS = (0.0272, "o", "0.0272, the thesis, 1989"), (0.0140, "*", "0.0140, this program")
+GRID = 120                              # of the angles, and of the directions of a side
+MATHER = 4 / 3                          # B - 2, at once
+
+
+def largest(p):
+    """B - 2 of amplitudes (a, b, c), an array (..., 3): to a few digits, for a picture."""
+    y = np.linspace(0, 2 * math.pi, GRID, endpoint=False)
+    sines = np.sin(y)[:, None], np.sin(y)[None], np.sin(y[:, None] + y)
+    a, b, c = (np.asarray(p, float)[..., i, None, None] for i in range(3))
+    p0, p1, both = a * sines[0], b * sines[1], c * sines[2]
+    return ((p0 + p1) / 2 + both + np.hypot((p0 - p1) / 2, both)).max((-1, -2))
+
+
+def draw(atlas, path):
+    """Draws a map in a file; ConverseError: matplotlib is missing, or the file cannot be written."""
+    kind = format_of(path)
+    picture.check()
+    from matplotlib import style
+    from matplotlib.figure import Figure
+
+    with style.context(["default", STYLE]):
+        figure = Figure(figsize=(6.4, 5.6))
+        (_draw_sphere if len(atlas.directions[0]) == 3 else _draw_plane)(atlas, figure)
+        files.write(path, picture.encode(figure, kind, dpi=160, pad_inches=0.08))
+
+
+def _draw_plane(atlas, figure):
+    horizontal, vertical = {"b=0": (0, 2), "a=b": (0, 2), "c=0": (0, 1)}[atlas.region]
+    axes = figure.add_subplot()
+
+    def at(directions, r, place):
+        point = direction(directions, place)
+        return float(r * point[horizontal]), float(r * point[vertical])
+
+    corners = {PROVED: [], AT_ONCE: []}
+    for leaf in atlas.leaves():
+        if leaf.kind in corners:
+            (r0, s0), (r1, s1) = leaf.cell.low, leaf.cell.high
+            directions = atlas.directions[leaf.cell.face]
+            ends = [(r0, s0), (r1, s0), (r1, s1), (r0, s1), (r0, s0)]
+            corners[leaf.kind] += [at(directions, r, (s,)) for r, s in ends]
+    for kind, points in corners.items():
+        picture.rectangles(axes, points, facecolor=COLOURS[kind], edgecolor="white",
+                           linewidth=0.2, label=WORDS[kind])
+    unit = [direction(directions, (k / GRID,)) for directions in atlas.directions
+            for k in range(GRID + 1)]
+    mather = np.array(unit) * (MATHER / largest(unit))[:, None]
+    estimate = np.array([at(directions, radius, place)
+                         for directions, found in zip(atlas.directions, atlas.estimate)
+                         for place, radius in sorted(found.items())])
+    for line, label, dashes in (
+            (_around(mather[:, (horizontal, vertical)]), "B = 10/3", ":"),
+            (_around(estimate), "where orbits stop to contradict, estimated", "-")):
+        axes.plot(*line.T, dashes, color=DARK if dashes == ":" else RED, linewidth=1, label=label)
+    if atlas.region == "a=b":
+        ends = np.array([0, 0.03]) * LINE
+        axes.plot(ends, 2 * ends, "--", color="0.5", linewidth=0.6)
+        for epsilon, marker, words in MARKS:
+            axes.plot(LINE * epsilon, 2 * LINE * epsilon, marker, color=ORANGE, markersize=6,
+                      linestyle="none", label="$\\epsilon$ = " + words)
+    most = 1.08 * mather.max()
+    axes.set(xlim=(0, most), ylim=(0, 1.08 * mather[:, vertical].max()), aspect="equal",
+             xlabel={"a=b": "a = b"}.get(atlas.region, "a"), ylabel=NAMES[vertical])
+    axes.set_title({"b=0": "b = 0", "a=b": "a = b", "c=0": "c = 0"}[atlas.region])
+    axes.legend(loc="upper right", fontsize=8, bbox_to_anchor=(1, 1))
+
+
+def _around(points):
+    """In the order of the angle, so that faces follow each other."""
+    return points[np.argsort(np.arctan2(points[:, 1], points[:, 0]), kind="stable")]
+
+
+def heights(atlas, count=GRID):
+    """By face, at the middles of count x count squares of directions (or count intervals): the
+    radius from which on all is proved."""
+    made = []
+    for directions, tree in zip(atlas.directions, atlas.roots):
+        sides = len(directions) - 1
+        height = np.zeros((count,) * sides)
+        for leaf in tree.nodes():
+            if leaf.kind == OPEN and not leaf.halves:
+                where = tuple(slice(math.ceil(low * count - 0.5), math.ceil(high * count - 0.5))
+                              for low, high in zip(leaf.cell.low[1:], leaf.cell.high[1:]))
+                height[where] = np.maximum(height[where], float(leaf.cell.high[0]))
+        made.append(height)
+    return made
+
+
+def _draw_sphere(atlas, figure):
+    """Each direction of the fundamental domain at its place in a triangle, coloured by B - 2 where
+    its proof begins."""
+    from matplotlib.tri import Triangulation
+
+    places, values = [], []
+    middles = (np.arange(GRID) + 0.5) / GRID
+    for directions, height in zip(atlas.directions, heights(atlas)):
+        d0, d1, d2 = (np.array(d, float) for d in directions)
+        unit = d0 + middles[:, None, None] * d1 + middles[None, :, None] * d2
+        a, b, c = np.moveaxis(unit, -1, 0)
+        inside = (b <= a) & (height < RADIUS)
+        places.append(np.stack((b + c / 2, math.sqrt(0.75) * c), -1)[inside] / (a + c)[inside, None])
+        values.append(height[inside] * np.concatenate(
+            [largest(row) for row in unit])[inside.ravel()])
+    x, y = np.concatenate(places).T
+    values = np.concatenate(values)
+    axes = figure.add_subplot()
+    mesh = axes.tricontourf(Triangulation(x, y), values, levels=np.arange(0.6, 1.36, 0.025),
+                            cmap="viridis", extend="both")
+    figure.colorbar(mesh, ax=axes, shrink=0.7, label="B - 2 from which on there are no tori, proved")
+    axes.plot([0, 1, 0.5, 0], [0, 0, math.sqrt(0.75), 0], color=DARK, linewidth=0.8)
+    for place, words, align in (((0, 0), "a alone", "top"), ((1, 0), "a = b", "top"),
+                                ((0.5, math.sqrt(0.75)), "c alone", "bottom")):
+        axes.annotate(words, place, (0, -4 if align == "top" else 4), textcoords="offset points",
+                      ha="center", va=align)
+    line = np.array([1, 1, 2]) / 3
+    axes.plot(line[1] + line[2] / 2, math.sqrt(0.75) * line[2], "*", color=ORANGE, markersize=8)
+    axes.annotate("a = b = c/2", (line[1] + line[2] / 2, math.sqrt(0.75) * line[2]), (6, 3),
+                  textcoords="offset points", color=ORANGE)
+    axes.set_aspect("equal")
+    axes.set_axis_off()

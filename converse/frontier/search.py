@@ -1,0 +1,310 @@
+"""A map is drawn: cells are tried, cut, and tried again."""
+
+import concurrent.futures
+import heapq
+import itertools
+import math
+import time
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Callable, Optional
+
+from .. import core
+from ..backup import Keeper
+from ..files import ConverseError
+from ..growth import count_workers
+from ..problem import Number, Problem, exact
+from ..run import Path
+from ..settings import Settings
+from ..version import __version__
+from . import region
+from .atlas import AT_ONCE, OPEN, OUTSIDE, PROVED, Map
+from .region import REGIONS
+
+SETTINGS = Settings(method="loewner")
+FIRST, MORE, MOST = 1 << 15, 4, 1 << 21         # leaves that a cell may cost, and times as many
+LOOK = 1 << 9                       # leaves after which it is asked what it will cost
+PESSIMISM = 4                       # times the budget that is expected: given up
+POINT = 1 << 14                     # leaves, of a point of the estimated frontier
+NEAR = 0.004                        # to which that is found, a ratio
+COARSE = 0.25                       # width of a cell, at first, as a part of its radius
+GRAIN = 6                           # cells are not cut to less than this part of down_to - 1
+SHEAR = (1, 0, -1, 1)               # x_1 = (v0, v1 - v0): the wave c does not feel v0
+PLAIN = (1, 0, 0, 1)
+LOOK_SECONDS = 0.1
+
+
+# ---- what a worker does, on plain data
+
+@dataclass(frozen=True)
+class Outcome:
+    """What became of a cell: its kind, and if it is proved, with what; leaves: that it cost."""
+
+    kind: str
+    proof: Optional[dict] = None
+    leaves: int = 0
+
+
+def _problem(amplitude, parts, frame):
+    half = [sum(abs(p[i]) for p in parts) for i in range(3)]    # SHIM
+    return Problem(*((p - h, p + h) for p, h in zip(amplitude, half)))
+
+
+def _grow(problem, most, stop):
+    """(tree or None, leaves, Begun) of a problem that may cost so many leaves; None: stopped."""
+    begun = core.begin(core.Task(problem, SETTINGS), "", stop)
+    if begun is None:
+        return None
+    task, cells = core.Task(problem, SETTINGS, begun.xstar), begun.cells
+    pieces, leaves, history = [], 0, core.History()
+    chunk = min(most, LOOK)
+    while cells and not begun.at_once:
+        grown = core.grow(task, cells, math.inf, chunk, False, stop)
+        if grown is None or stop and stop[0]:
+            return None
+        pieces.append(grown.text)
+        leaves += grown.counts.proved + grown.counts.symmetric
+        history.add(grown.history)
+        cells, chunk = grown.cells, most // 8
+        if grown.counts.undecided or cells and (
+                leaves >= most or leaves + history.expected(cells) / 2 > PESSIMISM * most):
+            return None, leaves, begun
+    return "".join(pieces), leaves, begun
+
+
+def explore(directions, cell, most, stop=None):
+    """Tries to prove a cell."""
+    stop = stop or core.stop_token()
+    point = region.direction(directions, cell.middle[1:])
+    if cell.high[0] == region.RADIUS:           # nothing else will do
+        begun = core.begin(core.Task(_problem(*region.patch(directions, cell), PLAIN), SETTINGS), "",
+                           stop)
+        return begun and Outcome(AT_ONCE if begun.at_once else OPEN)
+    frame = PLAIN
+    if 0 and point[2] > 2 * max(point[:2]):           # the cheaper frame, for a point of the cell
+        cost = {}
+        for each in PLAIN, SHEAR:
+            found = _grow(_problem(tuple(cell.middle[0] * d for d in point), (), each), LOOK, stop)
+            if found is None:
+                return None
+            cost[each] = found[1] if found[0] is not None else math.inf
+        frame = min(cost, key=cost.get)
+    amplitude, parts = region.patch(directions, cell)
+    found = _grow(_problem(amplitude, parts, frame), most, stop)
+    if found is None:
+        return None
+    tree, leaves, begun = found
+    if begun.at_once:
+        return Outcome(AT_ONCE)
+    if tree is None:
+        return Outcome(OPEN, leaves=leaves)
+    return Outcome(PROVED, {"xstar": list(begun.xstar), "frame": list(frame), "alone": "no",
+                            "tree": tree}, leaves)
+
+
+def frontier(directions, place, stop=None):
+    """The least radius, about, at which a direction is proved with POINT leaves: an estimate of
+    where orbits stop contradicting."""
+    stop = stop or core.stop_token()
+    point = region.direction(directions, place)
+    frame = SHEAR if 0 and point[2] > 2 * max(point[:2]) else PLAIN
+
+    def proved(radius, most):
+        radius = Fraction(radius).limit_denominator(1 << 20)
+        radius = Fraction(round(radius * 10 ** 6), 10 ** 6)
+        found = _grow(_problem(tuple(radius * d for d in point), (), frame), most, stop)
+        return found and (found[0] is not None or found[2].at_once)
+
+    low, high = 0.0, float(region.RADIUS)
+    for most, shrink in (LOOK, 0.75), (POINT, 0.97):
+        low = high * shrink
+        while low > 0.01:
+            answer = proved(low, most)
+            if answer is None:
+                return None
+            if not answer:
+                break
+            high, low = low, low * shrink
+        while high / low > 1 + (NEAR if most == POINT else 0.03):
+            middle = math.sqrt(low * high)
+            answer = proved(middle, most)
+            if answer is None:
+                return None
+            low, high = (low, middle) if answer else (middle, high)
+    return high
+
+
+# ---- the search
+
+def explore_region(name: Optional[str] = None, down_to: Optional[Number] = None, *, path: Path,
+                   resume: bool = False, jobs: Optional[int] = None,
+                   executor: Optional[concurrent.futures.Executor] = None,
+                   time_limit: float = math.inf,
+                   progress: Optional[Callable[[float, Map], None]] = None) -> Map:
+    """Proves what can be proved of a region, and returns the Map, which is kept in a file.
+
+    name: "b=0", "a=b", "c=0" or "sphere".  down_to: how near to the estimated frontier to come, as
+    a ratio above 1 (1.05).
+    path: of the file, new, or with resume that of the map to continue.
+    jobs: cells at a time, by default one per core; executor: whose workers they are, by default
+    threads of this process.
+    time_limit: after about so many seconds the map is left as it is.
+    progress(share, map) is called a few times a second; share: of the area that is to be proved.
+
+    ConverseError, MemoryError: what was found is in the file.  ValueError: an argument is wrong.
+    """
+    if jobs is None:
+        jobs = count_workers(executor)
+    ratio = None if down_to is None else exact(down_to)
+    if ratio is not None and not 1 < ratio <= 100:
+        raise ValueError("down_to is a ratio above 1, not %s" % (down_to,))
+    if not resume and name not in REGIONS:
+        raise ValueError("the region is one of %s, not %r" % (", ".join(REGIONS), name))
+    with Keeper(path, resumed=path if resume else None) as keeper:
+        if resume:
+            atlas = Map.load(path)
+            if name not in (None, atlas.region):
+                raise ConverseError("%s: is of another region, %s; name another file, or this region"
+                                    % (path, atlas.region))
+            if atlas.version != __version__:
+                raise ConverseError("%s: is of another program, %s; start anew"
+                                    % (path, atlas.version))
+            atlas.down_to = ratio or atlas.down_to
+        else:
+            atlas = Map.new(name, ratio or Fraction(21, 20))
+        return _Search(atlas, keeper, jobs, executor, time_limit, progress).run()
+
+
+class _Search:
+    """One run, which adds to a map."""
+
+    def __init__(self, atlas, keeper, jobs, executor, time_limit, progress):
+        self.map, self.keeper, self.jobs, self.progress = atlas, keeper, jobs, progress
+        self.threads = None if executor else concurrent.futures.ThreadPoolExecutor(jobs)
+        self.executor = executor or self.threads
+        self.stop = core.stop_token()
+        self.began = time.monotonic() - atlas.seconds
+        self.end = time.monotonic() + time_limit
+        self.queue, self.order, self.running = [], itertools.count(), {}
+        self.won, self.share = 0.0, 0.0
+
+    def run(self):
+        try:
+            self._estimate()
+            if not self.late:
+                self._explore()
+        finally:
+            self.stop[0] = 1
+            if self.threads:
+                self.threads.shutdown()
+            self.map.seconds = time.monotonic() - self.began
+            self.map.sha256 = self.keeper.finish(self.map)
+        return self.map
+
+    @property
+    def late(self):
+        return time.monotonic() >= self.end
+
+    def _work(self, next_task, take):
+        """Hands out tasks (call, key, *arguments) and takes what comes back, until there are no
+        more or there is no time."""
+        task = next_task()
+        while (task or self.running) and not self.late:
+            while task and len(self.running) <= self.jobs:      # one is to be at hand
+                call, key, *arguments = task
+                stop = [self.stop] if self.threads else []      # it cannot leave the process
+                self.running[self.executor.submit(call, *arguments, *stop)] = key
+                task = next_task()
+            done, _ = concurrent.futures.wait(self.running, LOOK_SECONDS,
+                                              concurrent.futures.FIRST_COMPLETED)
+            for future in done:
+                take(self.running.pop(future), future.result())
+            self.map.seconds = time.monotonic() - self.began
+            self.keeper.keep(lambda: self.map)
+            if self.progress:
+                self.progress(self.share, self.map)
+            task = task or next_task()
+
+    def _estimate(self):
+        """Estimates the frontier where it is not yet known."""
+        def take(key, radius):
+            face, place = key
+            self.map.estimate[face][place] = radius
+
+        tasks = ((frontier, (face, place), directions, place)
+                 for face, directions in enumerate(self.map.directions)
+                 for place in self.map.places(face)
+                 if place not in self.map.estimate[face] and place == tuple(sorted(place))[::-1]
+                 or len(place) == 1)
+        self._work(lambda: next(tasks, None), take)
+
+    def _explore(self):
+        """Tries cells: by the area that they would win for the work, those that would win most
+        first."""
+        total = self.map.area()
+        for leaf in list(self.map.leaves()):
+            if leaf.kind == OPEN:
+                self._push(leaf)
+            else:
+                self.won += self.map.area(leaf.cell)
+
+        def next_task():
+            if not self.queue:
+                return None
+            node = heapq.heappop(self.queue)[-1]
+            most = MORE * node.tried or FIRST
+            return explore, (node, most), self.map.directions[node.cell.face], node.cell, most
+
+        def take(key, outcome):
+            self._take(*key, outcome)
+            self.share = min(1.0, self.won / total)
+
+        self._work(next_task, take)
+
+    def _widest(self, cell, axes):
+        """The axis along which a cell is widest in parameter space, and how wide; the directions d
+        are of size 1."""
+        return max((float((cell.high[k] - cell.low[k]) * (cell.high[0] if k else 1)), k)
+                   for k in axes)
+
+    def _push(self, node):
+        """Puts an open cell in the queue, or cuts it until its parts can be, or are of no use."""
+        cell, sides = node.cell, range(1, len(node.cell.low))
+        directions = self.map.directions[cell.face]
+        if region.is_outside(directions, cell):
+            node.kind = OUTSIDE
+            return
+        low, high = self.map.span(cell)
+        if float(cell.high[0]) <= low:
+            return
+        width, axis = self._widest(cell, sides)
+        if width < COARSE * cell.high[0]:       # else no x* is good for so many directions
+            if float(cell.low[0]) >= low:
+                area = self.map.area(cell)
+                heapq.heappush(self.queue, (-area / (node.tried or FIRST), next(self.order), node))
+                return
+            width, axis = self._widest(cell, range(len(cell.low)))
+        if width > self._grain(low):
+            for half in node.cut(axis):
+                self._push(half)
+
+    def _grain(self, low):
+        """The least width of cells that are cut."""
+        return (float(self.map.down_to) - 1) * low / GRAIN
+
+    def _take(self, node, most, outcome):
+        """What became of a cell."""
+        cell = node.cell
+        node.kind, node.proof = outcome.kind, outcome.proof
+        if outcome.kind != OPEN:
+            self.won += self.map.area(cell)
+            return
+        width, axis = self._widest(cell, range(len(cell.low)))
+        if cell.high[0] == region.RADIUS:       # it must reach to infinity
+            axis = 0
+        if width > self._grain(self.map.span(cell)[0]):
+            for half in node.cut(axis):
+                self._push(half)
+        elif most < MOST:
+            node.tried = most
+            self._push(node)
