@@ -12,8 +12,9 @@
    57 u max(|a|, |b|) + 428 u |c| and the trace by 57 u (|a| + |b|) + 428 u |c|.  The formula of the
    eigenvalue rounds by 50 u (|a| + |b|) + 257 u |c| + 2 u, that of the trace, four sums, by
    37 u (|a| + |b|) + 216 u |c| + 16 u.  A centre is rounded by 2 u at each of at most 100 cuts, so
-   rectangles may fail to meet by as much: 200 u (|a| + |b| + 2 |c|).  The ends of the ranges are off by
-   9 u: 9 u (|a| + |b| + 2 |c|).  Together less than 1200 u (1 + |a| + |b| + |c|); MARGIN is 9007 u. */
+   rectangles may fail to meet by as much: 200 u (|a| + |b| + 2 |c|).  TORUS_ENDS is 2048 u, and the
+   ranges of the thesis's method are off by 9 u: 9 u (|a| + |b| + 2 |c|).  Together less than
+   3300 u (1 + |a| + |b| + |c|); MARGIN is 9007 u. */
 #include <math.h>
 
 #include "numbers/sine.h"

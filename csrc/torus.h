@@ -5,9 +5,11 @@
 enum { TORUS_TRACE, TORUS_EIGENVALUE };
 enum { TORUS_PLACES = 12 };            /* decimals to which it makes sense to round them */
 
+/* What the ends of ranges may be off by, added up with the squares |k|^2 of their waves. */
+#define TORUS_ENDS 0x1p-42
+
 /* A bound from above of the largest trace, or eigenvalue, of beta over the torus and over all
-   parameters a, b, c of the ranges, whose ends may be off by 9 u of themselves; inf or NaN where
-   doubles end.  It is within 5e-7 + 10^-12 (2 + 2 (|a| + |b| + |c|)) of the truth, but on ridges:
+   parameters a, b, c of the ranges; inf or NaN where doubles end.  It is within 5e-7 + 10^-12 (2 + 2 (|a| + |b| + |c|)) of the truth, but on ridges:
    see torus.c. */
 double torus_largest(const double low[3], const double high[3], int which);
 

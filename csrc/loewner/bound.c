@@ -146,7 +146,7 @@ INLINE void sum_up(batch *w, sums *result, mask turn, int columns)
         t.mass += weights * q->load;
         t.far = larger(t.far, pick(own, q->far, every(0.0)));
         for (int i = 0; i < WAVES; i++) {
-            const vec s = q->sine[i], co = q->cosine[i], p = w->p[i], h = w->h[i];
+            const vec s = q->sine[i], co = q->cosine[i], p = w->p[i];
             const vec A = m[i] * co - omega[i] * s, B = -omega[i] * co - m[i] * s;
             vec c[COLUMNS], f[COLUMNS];
 
@@ -161,7 +161,7 @@ INLINE void sum_up(batch *w, sums *result, mask turn, int columns)
                 c[k] = felt(i, q->column[0][k], q->column[1][k]);
                 f[k] = -0.5 * p * A * c[k];
             }
-            f[symbol_of(w, i, columns)] += h * B;
+            add_moves(w, i, B, f, columns);
             for (int k = 0, kl = 0; k < columns; k++) {         /* (c.e) (f.e) */
                 t.square[kl++] += c[k] * f[k];
                 for (int l = k + 1; l < columns; l++)
@@ -177,15 +177,15 @@ INLINE void sum_up(batch *w, sums *result, mask turn, int columns)
                 t.mass += mag(steep) * q->reach[i];
                 if (j == ORIGIN)
                     t.rest += mag(steep) * q->reach[i];
-                else
-                    t.slope[i] = steep * q->column[i][i];
+                for (int k = 0; k < 2 && j > ORIGIN; k++)
+                    t.slope[k] += steep * q->column[i][k];
             }
             t.rounding += left * q->reach[i];
             t.rounding += pick(inside, mag(q->mu[i]) * q->missed[i], every(0.0));
         }
     }
     for (int i = 0; i < WAVES; i++)
-        t.slope[symbol_of(w, i, columns)] += w->h[i] * t.along[i];
+        add_moves(w, i, t.along[i], t.slope, columns);
     for (int k = 0; k < LANES; k++)
         if (holds(&turn, k)) {
             const point *const first = w->orbit + number(&w->from, k);
@@ -214,8 +214,7 @@ INLINE void sum_cubic(batch *w, mask turn, int columns)
         for (int i = 0; i < WAVES; i++) {
             vec A, B;
             turn_wave(q, i, now, &A, &B);
-            const vec pA = w->p[i] * A, third = w->p[i] * B * (1.0 / 3.0), h = w->h[i];
-            vec *const moved = w->cubic[symbol_of(w, i, columns)];
+            const vec pA = w->p[i] * A, third = w->p[i] * B * (1.0 / 3.0);
             for (int k = 0, kl = 0; k < columns; k++) {
                 const vec c = felt(i, q->column[0][k], q->column[1][k]);
                 for (int l = k; l < columns; l++, kl++) {
@@ -223,7 +222,10 @@ INLINE void sum_cubic(batch *w, mask turn, int columns)
                     const vec cc = half * c * felt(i, q->column[0][l], q->column[1][l]);
                     const vec bow = felt(i, q->bow[0][kl], q->bow[1][kl]);
                     form[i][kl] = -pA * bow - third * cc;
-                    moved[kl] += pick(now, h * (B * bow - A * cc), every(0.0));
+                    for (int m = 2; m < columns; m++)
+                        if (w->root->moves[i][m])
+                            w->cubic[m][kl] += pick(now, w->part[i][m] * (B * bow - A * cc),
+                                                    every(0.0));
                 }
             }
         }

@@ -112,7 +112,7 @@ INLINE void carry(const batch *w, point *next, const point *q, const point *o, i
             c[k] = felt(i, q->column[0][k], q->column[1][k]);
             f[k] = -half * c[k];
         }
-        f[symbol_of(w, i, columns)] -= w->h[i] * q->sine[i];
+        add_moves(w, i, -q->sine[i], f, columns);
         for (int k = 0, kl = 0; k < columns; k++) {             /* (c.e) (f.e) */
             source[i][kl++] = c[k] * f[k];
             for (int l = k + 1; l < columns; l++)
@@ -123,8 +123,8 @@ INLINE void carry(const batch *w, point *next, const point *q, const point *o, i
         const vec b0 = q->beta[i], b1 = q->beta[i + 1];
         for (int k = 0; k < columns; k++)
             next->column[i][k] = b0 * q->column[0][k] + b1 * q->column[1][k] - o->column[i][k];
-        next->column[i][symbol_of(w, i, columns)] += w->h[i] * q->cosine[i];
-        next->column[i][symbol_of(w, 2, columns)] += w->h[2] * q->cosine[2];
+        add_moves(w, i, q->cosine[i], next->column[i], columns);
+        add_moves(w, 2, q->cosine[2], next->column[i], columns);
         for (int kl = 0; kl < pairs; kl++)
             next->bow[i][kl] = b0 * q->bow[0][kl] + b1 * q->bow[1][kl] - o->bow[i][kl]
                                + (source[i][kl] + source[2][kl]);
@@ -213,8 +213,10 @@ static void begin(batch *w)
     for (int i = 0; i < 2; i++) {
         origin->x[i] = every(w->root->xstar[i]);
         origin->rest[i] = every(w->root->xstar_err[i]);
-        origin[1].x[i] = w->v[i];
-        origin[1].column[i][i] = w->width[i];
+        const double *const frame = w->root->frame[i];
+        origin[1].x[i] = frame[0] * w->v[0] + frame[1] * w->v[1];
+        for (int k = 0; k < 2; k++)
+            origin[1].column[i][k] = frame[k] * w->width[k];
         origin[i].reached = ~none();
     }
     measure(origin + 1, w->root->columns);

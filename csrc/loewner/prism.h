@@ -10,8 +10,8 @@
 
        Q = sum n[j].beta(x[j])n[j] - 2 sum n[j].n[j+1] - l (|n[s]|^2 + |n[t]|^2) < 0.           (1)
 
-   A prism is a set of orbits: x[0] = x*, x[1] in a rectangle, the parameters on a segment or in a
-   box.  orbit.c follows it, witness.c chooses n for the orbit of its centre, bound.c bounds (1) for
+   A prism is a set of orbits: x[0] = x*, x[1] in a rectangle, the amplitudes on an affine image of
+   the parameters' box.  orbit.c follows it, witness.c chooses n for the orbit of its centre, bound.c bounds (1) for
    that n over all of it, and try.c does one after the other until it is proved or hopeless.
 
    Lanes.  What is a vec here is a number of each of the prisms at hand, and all of them go through
@@ -58,7 +58,8 @@ typedef struct {
 
 typedef struct {
     const loewner *root;
-    vec p[WAVES], h[WAVES], loose[WAVES];       /* p +- h moves with its symbol, loose by itself */
+    vec p[WAVES], part[WAVES][COLUMNS];         /* part[k] moves with the column k of a parameter */
+    vec h[WAVES], loose[WAVES];                 /* h: the sum of |part|; loose by itself */
     vec size[WAVES];                            /* |p| + h + loose */
     vec v[2], width[2], l;
     /* what bound.c finds */
@@ -80,10 +81,12 @@ INLINE vec felt(int wave, vec x0, vec x1)
     return wave == 0 ? x0 : wave == 1 ? x1 : x0 + x1;
 }
 
-/* The column of a wave's symbol; what does not move has h = 0, and any will do. */
-INLINE int symbol_of(const batch *w, int wave, int columns)
+/* Adds, for each column, what the wave's amplitude moves with its symbol, times a factor. */
+INLINE void add_moves(const batch *w, int wave, vec factor, vec to[], int columns)
 {
-    return columns <= 3 ? columns - 1 : w->root->symbol[wave];
+    for (int k = 2; k < columns; k++)
+        if (w->root->moves[wave][k])
+            to[k] += w->part[wave][k] * factor;
 }
 
 #endif

@@ -21,7 +21,7 @@ enum { FINEST = 46 };                   /* cuts along one axis: then doubles run
    exact, their products and the sum of 8 are off by 10 u, of which 2^-46 is 128. */
 static double cell_largest(const loewner *w, const double low[3], const double high[3])
 {
-    const int axes = w->together ? 1 : 3;
+    const int axes = w->n_parameters;
     double largest = 0.0;
 
     for (int corner = 0; corner < 1 << axes; corner++) {
@@ -43,6 +43,7 @@ int loewner_prism(const loewner *w, const cv_cell *cell, loewner_cell *c)
 {
     double at_axis[COLUMNS], part[COLUMNS], low[3], high[3], B;
 
+    memset(c, 0, sizeof *c);
     for (int k = 0; k < COLUMNS; k++) {
         if (cell->cuts[k] > FINEST)
             return 0;
@@ -53,13 +54,17 @@ int loewner_prism(const loewner *w, const cv_cell *cell, loewner_cell *c)
         c->v[i] = w->centre[i] + w->half[i] * at_axis[i];
         c->width[i] = w->half[i] * part[i] + w->slack[i];
     }
+    for (int m = 0; m < w->n_parameters; m++) {
+        low[m] = 0.5 * (1.0 + at_axis[2 + m] - part[2 + m]);
+        high[m] = 0.5 * (1.0 + at_axis[2 + m] + part[2 + m]);
+    }
     for (int i = 0; i < WAVES; i++) {
-        const int axis = w->together ? 2 : 2 + i;
-        c->p[i] = w->centre[2 + i] + w->half[2 + i] * at_axis[axis];
-        c->h[i] = w->half[2 + i] * part[axis];
-        c->loose[i] = w->slack[2 + i];
-        low[i] = 0.5 * (1.0 + at_axis[axis] - part[axis]);
-        high[i] = 0.5 * (1.0 + at_axis[axis] + part[axis]);
+        c->p[i] = w->amplitude[i];
+        for (int m = 0; m < w->n_parameters; m++) {
+            c->p[i] += w->part[i][m] * at_axis[2 + m];
+            c->part[i][m] = w->part[i][m] * part[2 + m];
+        }
+        c->loose[i] = w->loose[i];
     }
     B = cell_largest(w, low, high);
     c->l = 2.0 / (B + sqrt((B - 2.0) * (B + 2.0))) * (1.0 - 0x1p-46);   /* off by 5 u before */
@@ -70,11 +75,10 @@ int loewner_prism(const loewner *w, const cv_cell *cell, loewner_cell *c)
 /* Not where its width is the slack of doubles, but for a fifth of it. */
 int may_cut(const loewner *w, const cv_cell *cell, int axis)
 {
-    const int last = w->together && axis == 2 ? COLUMNS - 1 : axis;
-    int wide = 0;
+    int wide = axis < 2 && ldexp(w->half[axis], 2 - cell->cuts[axis]) > w->slack[axis];
 
-    for (int k = axis; k <= last; k++)
-        wide = wide || ldexp(w->half[k], 2 - cell->cuts[axis]) > w->slack[k];
+    for (int i = 0; i < WAVES && axis >= 2; i++)
+        wide = wide || ldexp(fabs(w->part[i][axis - 2]), 2 - cell->cuts[axis]) > w->loose[i];
     return wide && cell->cuts[axis] < FINEST;
 }
 
@@ -124,41 +128,99 @@ static const engine *fastest_engine(void)
     return &engine_scalar;
 }
 
-loewner *loewner_new(const box *root, int together, int with_bounds)
+int is_identity(const int frame[4])
+{
+    return frame[0] == 1 && frame[1] == 0 && frame[2] == 0 && frame[3] == 1;
+}
+
+int thesis_waves(const patch *problem)
+{
+    int same = problem->n_waves == 3;
+
+    for (int i = 0; i < 3 && same; i++)
+        same = problem->k[i][0] == (i != 1) && problem->k[i][1] == (i != 0) &&
+               apm_sgn(problem->phase[i]) == 0;
+    return same;
+}
+
+/* The angles, and x*.  x_1 = frame v, and the columns frame width, are off by less than 4 u of the
+   sums of absolute values but for the identity, which is exact; v and width take in that, too. */
+static void set_angles(loewner *w, const patch *problem)
+{
+    double off[2] = { 0.0, 0.0 };
+
+    for (int i = 0; i < 2; i++) {
+        w->centre[i] = near(problem->angle[i]);
+        w->half[i] = near(problem->half[i]);
+        w->slack[i] = 0x1p-48 * (fabs(w->centre[i]) + w->half[i]);
+        w->xstar[i] = near(problem->xstar[i]);
+        w->xstar_err[i] = 0x1p-49 * fabs(w->xstar[i]);
+        for (int k = 0; k < 2; k++)
+            w->frame[i][k] = problem->frame[2 * i + k];
+    }
+    for (int i = 0; i < 2 && !is_identity(problem->frame); i++)
+        for (int k = 0; k < 2; k++)
+            off[i] += 0x1p-50 * fabs(w->frame[i][k]) * (fabs(w->centre[k]) + w->half[k]);
+    for (int i = 0; i < 2; i++)         /* |frame^-1| off */
+        w->slack[i] += fabs(w->frame[1 - i][1 - i]) * off[i] + fabs(w->frame[i][1 - i]) * off[1 - i];
+}
+
+/* The waves, and the columns of their parameters. */
+static void set_waves(loewner *w, const patch *problem)
+{
+    w->n_parameters = problem->n_parameters;
+    w->columns = 2;
+    w->axis[1] = 1;
+    for (int i = 0; i < WAVES; i++) {
+        double size;
+        w->amplitude[i] = near(problem->amplitude[i]);
+        size = fabs(w->amplitude[i]);
+        for (int m = 0; m < w->n_parameters; m++) {
+            w->part[i][m] = near(problem->part[i][m]);
+            size += fabs(w->part[i][m]);
+        }
+        w->loose[i] = 0x1p-48 * size;
+        w->present[i] = size != 0.0;
+        for (int k = 0; k < 2; k++)
+            w->feels[k] |= w->present[i] && i != 1 - k;
+    }
+    for (int m = 0; m < w->n_parameters; m++) {         /* what does not move needs no symbol */
+        int counts = 0;
+        for (int i = 0; i < WAVES; i++) {
+            w->moves[i][w->columns] = w->part[i][m] != 0.0;
+            counts |= w->moves[i][w->columns];
+        }
+        if (counts)
+            w->axis[w->columns++] = 2 + m;
+    }
+}
+
+/* B at the corners of the parameters' cube, or infinity.  An amplitude there is off by less than its
+   loose, and the largest eigenvalue by that times |k|^2, of which torus.c covers TORUS_ENDS. */
+static void set_corners(loewner *w, int with_bounds)
+{
+    for (int corner = 0; corner < 1 << w->n_parameters; corner++) {
+        double p[WAVES], off = 0.0;
+        for (int i = 0; i < WAVES; i++) {
+            p[i] = w->amplitude[i];
+            for (int m = 0; m < w->n_parameters; m++)
+                p[i] += (corner >> m & 1 ? 1.0 : -1.0) * w->part[i][m];
+            off += (i == 2 ? 2.0 : 1.0) * w->loose[i];
+        }
+        w->corner[corner] = with_bounds ? torus_largest(p, p, TORUS_EIGENVALUE)
+                                          + (off > TORUS_ENDS ? off : 0.0) : HUGE_VAL;
+    }
+}
+
+loewner *loewner_new(const patch *problem, int with_bounds)
 {
     loewner *w = calloc(1, sizeof *w);
 
     if (w == NULL)
         return NULL;
-    for (int k = 0; k < COLUMNS; k++) {
-        const int axis = k < 2 ? 3 + k : k - 2;
-        w->centre[k] = near(root->centre[axis]);
-        w->half[k] = near(root->half[axis]);
-        w->slack[k] = 0x1p-48 * (fabs(w->centre[k]) + w->half[k]);
-    }
-    for (int i = 0; i < 2; i++) {
-        w->xstar[i] = near(root->xstar[i]);
-        w->xstar_err[i] = 0x1p-49 * fabs(w->xstar[i]);
-    }
-    w->together = together;
-    w->columns = 2;
-    w->axis[1] = 1;
-    for (int i = 0; i < WAVES; i++) {
-        w->present[i] = w->centre[2 + i] != 0.0 || w->half[2 + i] != 0.0;
-        if (w->half[2 + i] > 0.0) {     /* what does not move needs no symbol */
-            if (!together || w->columns == 2)
-                w->axis[w->columns++] = together ? 2 : 2 + i;
-            w->symbol[i] = w->columns - 1;
-        }
-    }
-    for (int corner = 0; corner < (together ? 2 : 8); corner++) {
-        double p[3];
-        for (int k = 0; k < 3; k++) {
-            const int upper = corner >> (together ? 0 : k) & 1;
-            p[k] = w->centre[2 + k] + (upper ? 1.0 : -1.0) * w->half[2 + k];
-        }
-        w->corner[corner] = with_bounds ? torus_largest(p, p, TORUS_EIGENVALUE) : HUGE_VAL;
-    }
+    set_angles(w, problem);
+    set_waves(w, problem);
+    set_corners(w, with_bounds);
     w->engine = fastest_engine();
     w->memory = calloc(1, w->engine->size + ALIGNMENT);
     if (w->memory == NULL) {
@@ -203,17 +265,19 @@ double loewner_largest(const loewner *w)
 }
 
 /* With n the eigenvector at the centre, n.beta n = 2|n|^2 - sum p sin(y) (n.u)^2 is linear in the
-   parameters.  Its terms are off by 16 u for p and its half-width, (4 + |x0| + |x1|) u for the sine
-   and 6 u, and 7 numbers are added: 33 + |x0| + |x1| units of the sum of absolute values, the mass;
-   the margin is 256 (1 + |x0| + |x1|). */
-int loewner_at_once(const loewner *w, const double x[2])
+   parameters.  Its terms are off by 32 u for p and its parts, (4 + |x0| + |x1|) u for the sine and
+   6 u, and 13 numbers are added: 55 + |x0| + |x1| units of the sum of absolute values, the mass; the
+   margin is 256 (1 + |x0| + |x1|). */
+int loewner_at_once(const loewner *w, const double x[2], int at_end)
 {
     double n[2], d[3], s[WAVES], c, sum, mass, omega[WAVES], p[WAVES];
     const double y[WAVES] = { x[0], x[1], x[0] + x[1] };
 
     for (int i = 0; i < WAVES; i++) {
         double_sincos(&s[i], &c, y[i]);
-        p[i] = w->centre[2 + i] + (w->together ? w->half[2 + i] : 0.0);
+        p[i] = w->amplitude[i];
+        for (int m = 0; m < w->n_parameters && at_end; m++)
+            p[i] += w->part[i][m];
     }
     d[0] = 2.0 - p[0] * s[0] - p[2] * s[2];
     d[1] = -p[2] * s[2];
@@ -225,9 +289,15 @@ int loewner_at_once(const loewner *w, const double x[2])
     sum = mass = 4.0 / 3.0 * (omega[0] + omega[1]);     /* 2 |n|^2 less 2/3 |n|^2 */
     for (int i = 0; i < WAVES; i++) {
         sum -= p[i] * s[i] * omega[i];
-        if (!w->together)
-            sum += w->half[2 + i] * fabs(s[i]) * omega[i];
-        mass += (fabs(p[i]) + w->half[2 + i] + w->slack[2 + i]) * omega[i];
+        mass += (fabs(w->amplitude[i]) + w->loose[i]) * omega[i];
+        for (int m = 0; m < w->n_parameters; m++)
+            mass += fabs(w->part[i][m]) * omega[i];
+    }
+    for (int m = 0; m < w->n_parameters && !at_end; m++) {
+        double swing = 0.0;
+        for (int i = 0; i < WAVES; i++)
+            swing += w->part[i][m] * s[i] * omega[i];
+        sum += fabs(swing);
     }
     return mass >= 1.0 && sum + 0x1p-45 * (1.0 + fabs(x[0]) + fabs(x[1])) * mass < 0.0;
 }

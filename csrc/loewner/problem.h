@@ -31,11 +31,13 @@ extern const engine engine_scalar, engine_baseline, engine_avx2, engine_avx512;
 #endif
 
 struct loewner {
-    double centre[COLUMNS], half[COLUMNS], slack[COLUMNS];      /* v0, v1, a, b, c */
+    double centre[2], half[2], slack[2], frame[2][2];           /* of v0, v1 */
+    double amplitude[SLOTS], part[SLOTS][PARAMETERS], loose[SLOTS];
     double xstar[2], xstar_err[2], corner[8];                   /* bounds B at the corners */
-    int together, columns;              /* the symbols: v0, v1, and the parameters that move */
-    int axis[COLUMNS], symbol[WAVES];   /* of a column: the cell's; of a wave: the column */
-    int present[WAVES];                 /* is there such a wave at all? */
+    int n_parameters, columns;          /* the symbols: v0, v1, and the parameters that count */
+    int axis[COLUMNS];                  /* of a column: the cell's */
+    int moves[SLOTS][COLUMNS];          /* has the column's parameter a part of the wave? */
+    int present[SLOTS], feels[2];       /* is there such a wave at all; does one feel x0, x1? */
     const engine *engine;
     char *memory;
     void *work;                         /* there, aligned */

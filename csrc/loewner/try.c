@@ -9,9 +9,15 @@ static void set_lane(batch *w, int k, const loewner_cell *c)
 {
     for (int i = 0; i < WAVES; i++) {
         put_at(&w->p[i], k, c->p[i]);
-        put_at(&w->h[i], k, c->h[i]);
         put_at(&w->loose[i], k, c->loose[i]);
-        put_at(&w->size[i], k, fabs(c->p[i]) + c->h[i] + c->loose[i]);
+        double h = 0.0;
+        for (int column = 2; column < w->root->columns; column++) {
+            const double part = c->part[i][w->root->axis[column] - 2];
+            put_at(&w->part[i][column], k, part);
+            h += fabs(part);
+        }
+        put_at(&w->h[i], k, h);
+        put_at(&w->size[i], k, fabs(c->p[i]) + h + c->loose[i]);
     }
     for (int i = 0; i < 2; i++) {
         put_at(&w->v[i], k, c->v[i]);
@@ -72,7 +78,7 @@ static void blame(const batch *w, int k, const progress *s, const cv_cell *cell,
             share[c] = at(&w->share[c], k);
         else                            /* whoever is widest at the ends */
             for (int i = 0; i < 2; i++)
-                if (root->present[i] || root->present[2])
+                if (root->feels[i])
                     share[c] += fabs(at(&w->orbit[w->last[k]].column[i][c], k))
                                 + fabs(at(&w->orbit[w->first[k]].column[i][c], k));
         if (share[c] > share[worst])
