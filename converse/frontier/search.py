@@ -46,8 +46,7 @@ class Outcome:
 
 
 def _problem(amplitude, parts, frame):
-    half = [sum(abs(p[i]) for p in parts) for i in range(3)]    # SHIM
-    return Problem(*((p - h, p + h) for p, h in zip(amplitude, half)))
+    return Problem.patch(amplitude, parts, axes=frame)
 
 
 def _grow(problem, most, stop):
@@ -81,7 +80,7 @@ def explore(directions, cell, most, stop=None):
                            stop)
         return begun and Outcome(AT_ONCE if begun.at_once else OPEN)
     frame = PLAIN
-    if 0 and point[2] > 2 * max(point[:2]):           # the cheaper frame, for a point of the cell
+    if point[2] > 2 * max(point[:2]):           # the cheaper frame, for a point of the cell
         cost = {}
         for each in PLAIN, SHEAR:
             found = _grow(_problem(tuple(cell.middle[0] * d for d in point), (), each), LOOK, stop)
@@ -107,7 +106,7 @@ def frontier(directions, place, stop=None):
     where orbits stop contradicting."""
     stop = stop or core.stop_token()
     point = region.direction(directions, place)
-    frame = SHEAR if 0 and point[2] > 2 * max(point[:2]) else PLAIN
+    frame = SHEAR if point[2] > 2 * max(point[:2]) else PLAIN
 
     def proved(radius, most):
         radius = Fraction(radius).limit_denominator(1 << 20)
