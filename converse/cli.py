@@ -58,8 +58,8 @@ def parser():
         "Tries to prove that a family of symplectic maps has no invariant tori."), epilog=(
         "Exit status: 0 a theorem; 1 undecided; 2 bad usage, input or file; 3 decided for a part of "
         "the torus only; 4 as printed, not a proof; 129, 130 or 143 ended by a signal."))
-    p.add_argument("input", nargs="?", help="input file, by default, and as -, standard input; with -r "
-                   "it is not needed, and must agree if given")
+    p.add_argument("input", nargs="?", help="input file, the thesis's or JSON, by default, and as -, "
+                   "standard input; with -r it is not needed, and must agree if given")
     p.add_argument("-d", "--depth", type=whole(0), metavar="N",
                    help="give up on a prism that was cut N times (default %d; loewner: %d)"
                    % (METHODS["thesis"], METHODS["loewner"]))
@@ -84,6 +84,8 @@ def parser():
                    help="the thesis's criterion (default), or the sharper one, in doubles")
     p.add_argument("--together", action="store_true",
                    help="a, b and c move together, from all lower to all upper ends (loewner)")
+    p.add_argument("--xstar", nargs=2, metavar=("X0", "X1"),
+                   help="let x* be this point, angles in radians (default: the program chooses)")
     p.add_argument("--jobs", type=whole(1), metavar="N",
                    help="work on N parts at a time (default: one per core)")
     p.add_argument("--dask", metavar="ADDRESS", help="let the Dask cluster at ADDRESS work")
@@ -182,8 +184,12 @@ def _read_problem(options, restored):
             raise ConverseError("standard input is closed; name an input file")
         if source.isatty():
             _tell("reading the problem from standard input; end it with Ctrl-D")
-    return replace(read_input(source), together=(
-        options.together or (restored is not None and restored.problem.together)))
+    problem = read_input(source)
+    together = options.together or (restored is not None and restored.problem.together)
+    if together and problem.general is not None:
+        raise ConverseError("--together is for ranges of a, b and c; name a parameter in the input "
+                            "instead")
+    return replace(problem, together=together or problem.together)
 
 
 def _check_graphics(options):
@@ -205,7 +211,7 @@ def _check_graphics(options):
 
 def run(options):
     from .proof import Proof            # these need the C core, and say so where it is missing
-    from .run import prove
+    from .run import point, prove
 
     if options.graphics == "off":
         options.graphics = None
@@ -221,8 +227,18 @@ def run(options):
                             "--together" % options.restore)
     problem = _read_problem(options, restored)
     settings = Settings() if restored is None else restored.settings
-    if problem.together and (options.method or settings.method) != "loewner":
-        raise ConverseError("--together needs --method loewner")
+    if (options.method or settings.method) != "loewner":
+        if problem.together:
+            raise ConverseError("%s needs --method loewner" % (
+                "--together" if options.together else "an input whose amplitudes move together"))
+        if problem.general is not None:
+            raise ConverseError("the method of the thesis takes ranges of a, b and c alone; for this "
+                                "input give --method loewner")
+    if options.xstar is not None:
+        try:
+            point(options.xstar)
+        except ValueError as error:
+            raise ConverseError("%s; give --xstar two decimal numbers, in radians" % error) from None
 
     def on_leaf(leaf, points):
         say(_leaf_line(leaf, points) + "\n")
@@ -233,7 +249,7 @@ def run(options):
     progress = Progress(problem, options.as_printed or settings.as_printed,
                         sys.stderr.isatty() and not options.verbose, begun)
     asked = {name: getattr(options, name) for name in (
-        "method", "depth", "digits", "stubborn", "as_printed", "backup", "time_limit")}
+        "method", "depth", "digits", "stubborn", "as_printed", "xstar", "backup", "time_limit")}
     with contextlib.closing(progress), workers(options) as (executor, jobs):
         proof = prove(problem, resume=options.restore, jobs=jobs, executor=executor,
                       progress=progress, on_leaf=on_leaf if options.verbose else None, **asked)

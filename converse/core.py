@@ -4,7 +4,6 @@ import threading
 from dataclasses import asdict, dataclass, fields
 from decimal import Decimal
 from fractions import Fraction
-from types import SimpleNamespace
 from typing import Dict, List, Optional, Tuple
 
 from .files import ConverseError
@@ -158,16 +157,6 @@ class History:
                    for _, cuts, hint in cells)
 
 
-def waves_of(problem):
-    """A problem of the thesis's as native_problem takes it."""
-    parts = [tuple(half if wave == k or problem.together else Fraction(0)
-                   for wave, half in enumerate(problem.half[:3])) for k in range(3)]
-    return SimpleNamespace(
-        waves=((1, 0, Fraction(0)), (0, 1, Fraction(0)), (1, 1, Fraction(0))),
-        amplitude=problem.centre[:3], parts=tuple(parts[:1] if problem.together else parts),
-        v0=problem.v0, v1=problem.v1, frame=(1, 0, 0, 1), odd=True)
-
-
 def native_text(text, owners):
     """A string of the C core's, which lives as long as owners."""
     owners.append(ffi.new("char[]", text.encode("ascii")))
@@ -175,21 +164,23 @@ def native_text(text, owners):
 
 
 def native_problem(problem, owners):
-    """A problem as the C core takes it, which lives as long as owners."""
+    """A problem as the C core takes it, which lives as long as owners; the waves that the search
+    does not need are nothing in it."""
     def text(x):
         return native_text(decimal_text(x), owners)
 
     waves = ffi.new("cv_wave[]", [
-        {"k": wave[:2], "phase": native_text(_nearly(wave[2]), owners), "amplitude": text(p),
-         "part": [text(part[i]) for part in problem.parts]}
-        for i, (wave, p) in enumerate(zip(problem.waves, problem.amplitude))])
+        {"k": wave[:2], "phase": native_text(_nearly(wave[2]), owners),
+         "amplitude": text(p if i in problem.searched else 0),
+         "part": [text(part if i in problem.searched else 0) for part in parts]}
+        for i, (wave, p, *parts) in enumerate(zip(problem.waves, problem.amplitude, *problem.parts))])
     owners.append(waves)
     ends = problem.v0, problem.v1
     return ffi.new("cv_problem *", {
         "n_waves": len(problem.waves), "n_parameters": len(problem.parts), "waves": waves,
         "angle": [text((low + high) / 2) for low, high in ends],
         "half": [text((high - low) / 2) for low, high in ends],
-        "frame": problem.frame, "odd": bool(problem.odd)})
+        "frame": problem.frame, "odd": problem.odd is not None})
 
 
 def _nearly(phase):
@@ -205,7 +196,7 @@ class Search:
         owners, settings = [], task.settings
         handle = ffi.new("cv_search **")
         check(lib.cv_search_new(
-            handle, native_problem(waves_of(task.problem), owners),
+            handle, native_problem(task.problem, owners),
             [native_text(x, owners) for x in task.xstar] if task.xstar else ffi.NULL,
             METHODS[settings.method], settings.digits, settings.depth, settings.stubborn,
             settings.as_printed))

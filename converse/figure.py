@@ -175,7 +175,7 @@ def postscript(proof):
         lines += ["%g %g star" % tuple(SIDE * part for part in star)]
     lines += ["0 setgray 0.6 setlinewidth"]
     for axis in range(2):
-        for place in range(3) if proof.problem.half[3 + axis] else (1,):
+        for place in range(3) if proof.problem.half[axis - 2] else (1,):
             lines += _tick(proof.problem, axis, place)
     lines += ["(0) %d -28 axis" % (SIDE // 2 - 4), "(1) %d %d axis" % (4 - LEFT, SIDE // 2 + 16)]
     lines += _text("small", SIDE + 10, SMALL_LINE, ["   ".join(key)])
@@ -188,8 +188,8 @@ def postscript(proof):
 def _tick(problem, axis, place):
     """The tick at the lower end (place 0), in the middle (1) or at the upper end (2)."""
     at = place * SIDE // 2
-    half = problem.half[3 + axis]
-    value = problem.centre[3 + axis] + (place - 1) * half
+    half = problem.half[axis - 2]
+    value = problem.centre[axis - 2] + (place - 1) * half
     words = {0: "0", 1: "", -1: "-"}.get(value) if value in (0, 1, -1) \
         else legend.number(value, half / 100)
     text = "(%s) (%s)" % ("p" if value else "", words)

@@ -6,6 +6,7 @@ from decimal import Context, Decimal
 from fractions import Fraction
 
 from . import tree
+from .problem import IDENTITY, frame_text, wave_text
 
 NAMES = {"P": "proved", "S": "skipped by symmetry", "?": "untried", "U": "undecided"}
 STAR = "x*, whose successors these are"
@@ -23,10 +24,11 @@ CONCLUSIONS = {
 def head(proof):
     """The lines on what is proved: the parameters, exactly, and the conclusion."""
     problem = proof.problem
-    low, high = ([number(c + sign * h) for c, h in zip(problem.centre[:3], problem.half)]
+    low, high = ([number(c + sign * h) for c, h in zip(problem.centre[:-2], problem.half)]
                  for sign in (-1, 1))
+    names = "abc" if problem.general is None else ["p of " + wave_text(wave) for wave in problem.waves]
     ranges = ["%s < %s < %s" % (a, name, b) if a != b else "%s = %s" % (name, a)
-              for a, name, b in zip(low, "abc", high)]
+              for a, name, b in zip(low, names, high)]
     if problem.together:
         ranges = ["(a, b, c) moving together", "from (%s)" % ", ".join(low),
                   "to (%s)" % ", ".join(high)]
@@ -34,6 +36,11 @@ def head(proof):
     text = (" " if problem.together else ",  ").join(
         part.replace(" ", "\xa0") if len(part) < LINE else part for part in ranges)
     words = [CONCLUSIONS[proof.conclusion]]
+    if problem.general is not None and any(
+            sum(map(bool, part)) > 1 for part in problem.parts):
+        words[:0] = ["on a part of this box"]
+    if problem.dimension == 1:
+        words[-1] = words[-1].replace("invariant tori", "rotational invariant circles")
     if not problem.full_torus and proof.conclusion != "region":
         words.append("a part of the torus only")
     if proof.as_printed:
@@ -48,6 +55,8 @@ def foot(proof):
     if any(map(proof.tree.count, tree.CUTS[2:])) and not proof.all_decided:
         lines.append("where prisms of several parameters share a place, "
                      "what is not proved lies on top")
+    if proof.problem.frame != IDENTITY:
+        lines.append("the angles after x* are " + frame_text(proof.problem.frame, "v%d"))
     if proof.sha256:
         lines.append("proof file: SHA-256 " + proof.sha256)
     return lines
@@ -67,9 +76,12 @@ def star(proof):
     places = []
     if proof.xstar is None:
         return None
-    for axis, text in enumerate(proof.xstar):
-        centre, half = proof.problem.centre[3 + axis], proof.problem.half[3 + axis]
-        offset = (Fraction(text) / Fraction(math.pi) - centre + 1) % 2 - 1
+    x0, x1 = (Fraction(text) / Fraction(math.pi) for text in proof.xstar)
+    f = proof.problem.frame                 # of determinant 1 or -1, which its inverse has, too
+    sign = f[0] * f[3] - f[1] * f[2]
+    for axis, v in enumerate((sign * (f[3] * x0 - f[1] * x1), sign * (f[0] * x1 - f[2] * x0))):
+        centre, half = proof.problem.centre[axis - 2], proof.problem.half[axis - 2]
+        offset = (v - centre + 1) % 2 - 1
         if half == 0 or abs(offset) > half:
             return None
         places.append(float((offset / half + 1) / 2))

@@ -99,7 +99,7 @@ def draw(proof, axes):
 def _axis(problem, axes, k):
     """Makes an axis ready for the angle k; returns where it begins, and its length.  A single value
     is drawn as a strip; in a narrow range, which doubles may not resolve, the centre is at 0."""
-    centre, half = problem.centre[3 + k], problem.half[3 + k]
+    centre, half = problem.centre[k - 2], problem.half[k - 2]
     single = half < SINGLE
     strip = Fraction(1, 2) if single else half
     origin = centre if strip < abs(centre) / 10 ** 4 else 0

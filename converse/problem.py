@@ -1,16 +1,21 @@
-"""The problem: ranges of the parameters a, b, c and of the angles v0, v1 of a successor."""
+"""The problem: a potential, the patch of parameters it has, and the angles of a successor."""
 
 import os
 import re
 from dataclasses import dataclass
 from decimal import Decimal
 from fractions import Fraction
-from typing import IO, Sequence, Tuple, Union
+from functools import cached_property
+from math import gcd
+from typing import IO, Optional, Sequence, Tuple, Union
 
 NAMES = ("a", "b", "c", "v0", "v1")
 LABELS = ("a", "b", "c", "theta[0]", "theta[1]")        # as the input's documentation calls them
 MAX_EXPONENT = 300
 PLACES = 40                             # to which what is no finite decimal is enclosed
+THESIS = (1, 0), (0, 1), (1, 1)         # the waves of a, b and c
+MOST_WAVES, MOST_PARAMETERS, HIGHEST = 16, 3, 100       # the last: of the components of k
+IDENTITY = 1, 0, 0, 1
 NUMBER = re.compile(r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]{1,9})?")
 RATIO = re.compile(r"[+-]?[0-9]+/[0-9]*[1-9][0-9]*")
 
@@ -36,19 +41,33 @@ class Problem:
 
     together: a, b and c move together, along the segment from all lower to all upper ends.
 
+    Problem.patch takes other potentials, and any patch of parameters.  In every problem
+
+        V(y) = - sum of p[j] sin(k[j].y + phi[j]),   p = amplitude + sum of t[m] parts[m],
+
+    -1 <= t[m] <= 1, the wave j being (k0, k1, phi / pi): three ranges are three parameters t[m],
+    ranges taken together are one.
+
+    general: what patch() makes of its arguments; then a, b and c are None.
+    axes: the frame, x_1 = frame.(v0, v1), as (f00, f01, f10, f11); None: chosen to suit the waves.
+    alone: the coordinate that is looked at alone, 0 or 1, or "no"; None: chosen.
+
     TypeError, ValueError: a range is none; the text says which and why.
     """
 
-    a: Union[Range, Number]
-    b: Union[Range, Number]
-    c: Union[Range, Number]
+    a: Union[Range, Number, None] = None
+    b: Union[Range, Number, None] = None
+    c: Union[Range, Number, None] = None
     v0: Union[Range, Number] = (0, 2)
     v1: Union[Range, Number] = (0, 2)
     comments: Tuple[str, ...] = ()
     together: bool = False
+    general: Optional[tuple] = None
+    axes: Optional[Tuple[int, int, int, int]] = None
+    alone: Union[int, str, None] = None
 
     def __post_init__(self):
-        for name in NAMES:
+        for name in NAMES if self.general is None else NAMES[3:]:
             object.__setattr__(self, name, _range(name, getattr(self, name)))
         if not isinstance(self.together, bool):
             raise TypeError("together must be True or False, not %r" % (self.together,))
@@ -58,6 +77,11 @@ class Problem:
         object.__setattr__(self, "comments", tuple(
             line.encode("utf-8", "backslashreplace").decode("utf-8")
             for comment in comments for line in (comment.splitlines() or [""])))
+        if self.general is not None:
+            if self.together or (self.a, self.b, self.c) != (None,) * 3:
+                raise ValueError("a, b, c and together do not go with a patch")
+            self._normalize()
+        self._check_choices()
 
     @classmethod
     def around(cls, centre: Sequence[Number], half: Sequence[Number], comments=(),
@@ -72,31 +96,244 @@ class Problem:
                 raise ValueError("the half-width of %s is negative" % name)
         return cls(*((c - h, c + h) for c, h in pairs), comments=comments, together=together)
 
+    @classmethod
+    def patch(cls, amplitude: Sequence[Number], parts: Sequence[Sequence[Number]] = (),
+              waves: Sequence[tuple] = THESIS, v0: Union[Range, Number] = (0, 2),
+              v1: Union[Range, Number] = (0, 2), comments=(),
+              axes: Optional[Tuple[int, int, int, int]] = None,
+              alone: Union[int, str, None] = None) -> "Problem":
+        """A patch of the parameters of a potential:  amplitude + sum of t[m] parts[m],  each t[m]
+        in [-1, 1].
+
+            Problem.patch(["0.4", "0.35", 0], [["0.01", 0, 0], ["0.01", "0.02", 0]])
+
+        amplitude: of each wave, in the middle of the patch, a finite decimal.
+        parts: for each parameter, of which there are 3 at most, what it adds to each amplitude at
+        its upper end.
+        waves: at most 16 of (k0, k1) or (k0, k1, phase), k integer and up to 100, the phase exact
+        and in units of pi; by default those of a, b and c.  On the circle k1 is 0.
+
+        A patch that three ranges of a, b and c, or these together, can describe is that Problem.
+        """
+        return cls(None, None, None, v0, v1, comments, False, _general(waves, amplitude, parts),
+                   axes, alone)
+
+    def _normalize(self):
+        """What a, b and c can say is said by them: one problem, one Problem."""
+        waves, amplitude, parts = _general(*self.general)
+        object.__setattr__(self, "general", (waves, amplitude, parts))
+        if waves != tuple((*k, Fraction(0)) for k in THESIS):
+            return
+        if len(parts) == 1:
+            half = parts[0]
+        elif parts and len(parts) < 3 or any(part[j] for m, part in enumerate(parts)
+                                             for j in range(3) if j != m):
+            return
+        else:
+            half = tuple(part[m] for m, part in enumerate(parts)) or (Fraction(0),) * 3
+        if min(half) < 0:
+            return
+        for name, p, h in zip("abc", amplitude, half):
+            object.__setattr__(self, name, (p - h, p + h))
+        object.__setattr__(self, "together", len(parts) == 1)
+        object.__setattr__(self, "general", None)
+
+    def _check_choices(self):
+        """Sees that axes and alone make sense; None where they say what would be chosen anyhow."""
+        if self.axes is not None:
+            axes = tuple(self.axes)
+            if len(axes) != 4 or not all(type(f) is int for f in axes) or \
+                    abs(axes[0] * axes[3] - axes[1] * axes[2]) != 1:
+                raise ValueError("the axes are four integers with determinant 1 or -1, not %r"
+                                 % (self.axes,))
+            object.__setattr__(self, "axes", None if axes == self._best_frame() else axes)
+        if self.alone is not None:
+            if self.alone not in (0, 1, "no") or isinstance(self.alone, bool):
+                raise ValueError("alone is 0, 1 or 'no', not %r" % (self.alone,))
+            if self.alone != "no" and self._best_alone() is None:
+                raise ValueError("no coordinate stands alone: a wave feels both, or all feel one")
+            if self.alone == ("no" if self._best_alone() is None else self._best_alone()):
+                object.__setattr__(self, "alone", None)
+
     def __repr__(self):
-        ranges = ", ".join("%s=%s" % (name, range_text(*getattr(self, name))) for name in NAMES)
-        return "Problem(%s%s)" % (ranges, ", together" if self.together else "")
+        ranges = ["%s=%s" % (name, range_text(*getattr(self, name))) for name in NAMES
+                  if getattr(self, name) is not None]
+        if self.general is None:
+            return "Problem(%s%s)" % (", ".join(ranges), ", together" if self.together else "")
+        return "Problem.patch(%s, %s)" % (", ".join(
+            "%s of (%d, %d)" % (range_text(p - h, p + h), k0, k1)
+            for (k0, k1, _), p, h in zip(self.waves, self.amplitude, self.half)), ", ".join(ranges))
+
+    # ---- the one mechanism: what the core and a proof file are told
+
+    @cached_property
+    def waves(self) -> Tuple[Tuple[int, int, Fraction], ...]:
+        """(k0, k1, phase in units of pi) of each wave."""
+        return tuple((*k, Fraction(0)) for k in THESIS) if self.general is None else self.general[0]
+
+    @cached_property
+    def amplitude(self) -> Tuple[Fraction, ...]:
+        """Of each wave, in the middle of the patch."""
+        if self.general is not None:
+            return self.general[1]
+        return tuple(sum(getattr(self, name)) / 2 for name in "abc")
+
+    @cached_property
+    def parts(self) -> Tuple[Tuple[Fraction, ...], ...]:
+        """Of each parameter, what it adds to each amplitude at its upper end."""
+        if self.general is not None:
+            return self.general[2]
+        half = [(high - low) / 2 for low, high in (self.a, self.b, self.c)]
+        if self.together:
+            return tuple(half),
+        return tuple(tuple(h if j == m else Fraction(0) for j in range(3))
+                     for m, h in enumerate(half))
+
+    @cached_property
+    def frame(self) -> Tuple[int, int, int, int]:
+        """x_1 = (f[0] v0 + f[1] v1, f[2] v0 + f[3] v1)."""
+        return self._best_frame() if self.axes is None else self.axes
+
+    def _present(self):
+        """The waves that are anywhere in the patch: their (k0, k1), and their amplitudes' size."""
+        return [((k0, k1), abs(p)) for (k0, k1, _), p, *parts
+                in zip(self.waves, self.amplitude, *self.parts) if p or any(parts)]
+
+    def _best_frame(self):
+        """If all waves feel the same q.y alone, and q no coordinate, v0 moves along what none
+        feels, and so need not be cut.  Only a region that is the whole torus has no axes already."""
+        directions = {(k0 // gcd(k0, k1), k1 // gcd(k0, k1)) for (k0, k1), _ in self._present()}
+        q = max(directions, default=(0, 0))
+        if not directions <= {q, (-q[0], -q[1])} or 0 in q or not self.full_torus:
+            return IDENTITY
+        sign, (x, y) = (1 if q[1] > 0 else -1), _bezout(*q)
+        return sign * q[1], x, -sign * q[0], y  # of determinant sign q.(x, y)
+
+    @cached_property
+    def kept(self) -> Optional[int]:
+        """The coordinate that is looked at alone, without the waves that the other one feels.
+
+        If no wave feels both, the map is a product of two, and so are the second variations: that
+        of test vectors (n, 0) is the second variation of the first map by itself."""
+        if self.alone is None:
+            return self._best_alone()
+        return None if self.alone == "no" else self.alone
+
+    def _best_alone(self):
+        """The one that bends more, or None where neither can be left out."""
+        bends = [sum(p * k[i] ** 2 for k, p in self._present()) for i in range(2)]
+        felt = {tuple(map(bool, k)) for k, _ in self._present()}
+        return int(bends[1] > bends[0]) if felt == {(True, False), (False, True)} else None
+
+    @property
+    def searched(self) -> Tuple[int, ...]:
+        """Which of the waves the search needs."""
+        return tuple(j for j, k in enumerate(self.waves)
+                     if self.kept is None or k[1 - self.kept] == 0)
+
+    @cached_property
+    def odd(self) -> Optional[Tuple[Fraction, Fraction]]:
+        """A point s, in units of pi, about which V is odd: k.s + phase is an integer for every wave.
+        None: there is none.
+
+        Sums and differences of such conditions are such conditions, so Euclid's algorithm makes of
+        them one for s1 alone, one more that has s0, and those that s has no part in."""
+        rows = [[k0, k1, phase] for k0, k1, phase in self.waves]
+        s = [Fraction(0), Fraction(0)]
+        pivots = []
+        for i in range(2):
+            while sum(row[i] != 0 for row in rows) > 1:
+                least = min((row for row in rows if row[i]), key=lambda row: abs(row[i]))
+                for row in rows:
+                    if row is not least:
+                        times = row[i] // least[i]
+                        row[:] = [x - times * y for x, y in zip(row, least)]
+            pivots.append(next((row for row in rows if row[i]), None))
+            rows = [row for row in rows if not row[i]]
+        if any(row[2].denominator != 1 for row in rows):
+            return None
+        for i, row in reversed(list(enumerate(pivots))):
+            if row is not None:
+                s[i] = -(row[2] + sum(row[m] * s[m] for m in range(i + 1, 2))) / row[i] % 1
+        return s[0], s[1]
+
+    @property
+    def dimension(self) -> int:
+        """1 if the potential is given on the circle, else 2."""
+        return 2 if self.general is None or any(k1 for _, k1, _ in self.waves) else 1
+
+    # ---- ranges
 
     @property
     def centre(self) -> Tuple[Fraction, ...]:
-        """The middles of the five ranges."""
-        return tuple((low + high) / 2 for low, high in self._ranges())
+        """The middles of the amplitudes' ranges and of those of v0 and v1."""
+        return self.amplitude + tuple((low + high) / 2 for low, high in (self.v0, self.v1))
 
     @property
     def half(self) -> Tuple[Fraction, ...]:
-        """The half-widths of the five ranges."""
-        return tuple((high - low) / 2 for low, high in self._ranges())
-
-    def _ranges(self):
-        return [getattr(self, name) for name in NAMES]
-
-    def decimals(self):
-        """The centres and the half-widths, each as a list of exact decimal strings."""
-        return [decimal_text(x) for x in self.centre], [decimal_text(x) for x in self.half]
+        """The half-widths of the same ranges."""
+        widths = tuple(sum(map(abs, parts)) for parts in zip(*self.parts)) \
+            if self.parts else (Fraction(0),) * len(self.waves)
+        return widths + tuple((high - low) / 2 for low, high in (self.v0, self.v1))
 
     @property
     def full_torus(self) -> bool:
         """Does the region hold every possible successor?"""
         return all(high - low >= 2 for low, high in (self.v0, self.v1))
+
+
+def _bezout(a, b):
+    """(x, y) with a x + b y = 1, where there are such integers."""
+    if b == 0:
+        return a, 0
+    x, y = _bezout(b, a % b)
+    return y, x - a // b * y
+
+
+def _general(waves, amplitude, parts):
+    """The three as Problem keeps them: tuples of exact numbers.  TypeError, ValueError: they are
+    none, or do not go together."""
+    try:
+        waves, amplitude, parts = list(waves), list(amplitude), [list(part) for part in parts]
+        waves = [tuple(wave) for wave in waves]
+    except TypeError:
+        raise TypeError("waves, amplitudes and parts are sequences") from None
+    if not 1 <= len(waves) <= MOST_WAVES:
+        raise ValueError("there are %d waves; give 1 to %d" % (len(waves), MOST_WAVES))
+    if len(parts) > MOST_PARAMETERS:
+        raise ValueError("there are %d parameters; give %d at most" % (len(parts), MOST_PARAMETERS))
+    seen = {}
+    for j, wave in enumerate(waves):
+        if len(wave) not in (2, 3):
+            raise ValueError("wave %d: give (k0, k1) or (k0, k1, phase), not %d numbers"
+                             % (j + 1, len(wave)))
+        if not all(type(k) is int for k in wave[:2]):
+            raise TypeError("wave %d: k is two integers, not %r" % (j + 1, wave[:2]))
+        if wave[:2] == (0, 0) or max(map(abs, wave[:2])) > HIGHEST:
+            raise ValueError("wave %d: k = (%.20s, %.20s) is %s" % (
+                j + 1, *wave[:2], "no wave" if wave[:2] == (0, 0) else
+                "out of range (%d at most)" % HIGHEST))
+        phase = _exact_of("the phase of wave %d" % (j + 1), wave[2] if len(wave) == 3 else 0)
+        waves[j] = (*wave[:2], 1 - (1 - phase) % 2)
+        if waves[j] in seen:
+            raise ValueError("waves %d and %d are the same" % (seen[waves[j]], j + 1))
+        seen[waves[j]] = j + 1
+    for name, numbers in [("the amplitude", amplitude)] + [
+            ("part %d" % (m + 1), part) for m, part in enumerate(parts)]:
+        if len(numbers) != len(waves):
+            raise ValueError("%s has %d numbers for %d waves" % (name, len(numbers), len(waves)))
+        for j, number in enumerate(numbers):
+            numbers[j] = _exact_of("%s of wave %d" % (name, j + 1), number)
+            if not _is_decimal(numbers[j]):
+                raise ValueError("%s of wave %d: %s is no finite decimal" % (name, j + 1, number))
+    return tuple(waves), tuple(amplitude), tuple(map(tuple, parts))
+
+
+def _exact_of(name, number):
+    try:
+        return exact(number)
+    except (TypeError, ValueError) as error:
+        raise type(error)("%s: %s" % (name, error)) from None
 
 
 def _range(name, value):
@@ -185,6 +422,24 @@ def range_text(low, high):
     return "%.10g" % low if low == high else "%.10g..%.10g" % (low, high)
 
 
+def _sum_text(factors, names):
+    """A sum of named things with rational factors."""
+    text = " ".join(("- " if f < 0 else "+ ") + (name if abs(f) == 1 else "%s %s" % (abs(f), name))
+                    for f, name in zip(factors, names) if f)
+    return text[2:] if text.startswith("+") else "-" + text[2:]
+
+
+def wave_text(wave):
+    """A wave (k0, k1, phase) as a function of y."""
+    return "sin(%s)" % _sum_text(wave, ("y0", "y1", "pi"))
+
+
+def frame_text(frame, name):
+    """The angles that belong to v0 and v1, whose names are name % 0 and name % 1."""
+    names = name % 0, name % 1
+    return "(%s, %s)" % (_sum_text(frame[:2], names), _sum_text(frame[2:], names))
+
+
 def _read(source):
     """The text of a path or of an open file, text or binary, and its name for messages."""
     is_path = isinstance(source, (str, os.PathLike))
@@ -208,12 +463,17 @@ def _read(source):
 
 
 def read_input(source: Union[str, "os.PathLike[str]", IO]) -> Problem:
-    """Reads an input file (thesis, Appendix B) from a path or an open file.
+    """Reads an input file from a path or an open file.
 
-    Five lines of two numbers, centre and half-width, for a, b, c and the two angles, these in units
-    of pi; then comment lines.  Blank lines may stand anywhere.  InputError: it is none.
+    That of the thesis (Appendix B): five lines of two numbers, centre and half-width, for a, b, c and
+    the two angles, these in units of pi; then comment lines.  Blank lines may stand anywhere.  Or,
+    if it begins with a brace or is called .json, a potential of one's own (docs/format.md).
+    InputError: it is none.
     """
     text, name = _read(source)
+    if text.lstrip().startswith("{") or name.endswith(".json"):
+        from . import harmonics
+        return harmonics.read(text, name)
     lines = text.rstrip("\n").split("\n")
     centre, half = [], []
     used = 0

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Dict, List, Optional, Tuple, Union
 from . import files, tree
 from .core import CONSTANTS, Counts
 from .files import ConverseError
-from .problem import NAMES, NUMBER, Problem, decimal_text, parse_number
+from .problem import IDENTITY, NAMES, NUMBER, Problem, decimal_text, parse_number
 from .settings import AS_PRINTED, REGION, THEOREM, UNDECIDED, Settings
 from .tree import Leaf
 from .version import __version__
@@ -18,7 +18,7 @@ from .version import __version__
 if TYPE_CHECKING:
     from . import check
 
-FIRST_LINE = "converse proof 2"
+FIRST_LINE, BEFORE = "converse proof 3", "converse proof 2"     # written, and read as well
 PROGRAM = re.compile(r"converse ([0-9A-Za-z.+-]{1,40})")
 KINDS = {False: "sound", True: "as printed, not a proof"}       # by as_printed
 
@@ -39,7 +39,8 @@ class Proof:
     seconds: that the search took, as far as is known.
     version: of the program that did the work.
     pending: what is known of the untried prisms, in their order.
-    at_once: nor have any s times these parameters tori, s > 1 (together: s times the upper ends).
+    at_once: nor have any s times these amplitudes tori, s > 1 (if there is one parameter, as where
+    a, b and c move together: s times those at its upper end).
     restored: how many leaves of the tree come from a file.
     sha256: of the proof's file, uncompressed; "" if there is none.
     """
@@ -160,13 +161,13 @@ class Proof:
 
     def _text(self):
         lines = [FIRST_LINE, "kind: " + KINDS[self.as_printed],
-                 "program: converse " + self.version, "method: " + self.method,
-                 "together: " + _yes(self.problem.together)]
-        lines += ["%s: %s %s" % (name, decimal_text(centre), decimal_text(half))
-                  for name, centre, half in zip(NAMES, self.problem.centre, self.problem.half)]
+                 "program: converse " + self.version, "method: " + self.method]
+        lines += _problem_lines(self.problem)
         lines += ["xstar: " + " ".join(self.xstar)] if self.xstar else []
         lines += ["depth: %d" % self.depth, "digits: %d" % self.digits,
-                  "stubborn: " + _yes(self.settings.stubborn), "at once: " + _yes(self.at_once)]
+                  "stubborn: " + _yes(self.settings.stubborn), "at once: " + (
+                      "upper end" if self.at_once and len(self.problem.parts) == 1
+                      else _yes(self.at_once))]
         lines += [] if self.all_decided else ["seconds: %.2f" % self.seconds]
         lines += ["pending: " + " ".join(map(str, self.pending))]
         for name, value in asdict(self.counts).items():
@@ -190,7 +191,7 @@ class Proof:
             raise ConverseError("%s, line %d: %s; use an intact copy or start anew"
                                 % (path, number, wrong))
 
-        if lines[0] != FIRST_LINE:
+        if lines[0] not in (FIRST_LINE, BEFORE):
             fail(1, "this is not a proof file of this program")
         if lines[-2:] != ["end", ""]:
             fail(len(lines), "the file is truncated")
@@ -199,17 +200,20 @@ class Proof:
             fail(len(lines) - 2, "the file was changed or damaged (wrong checksum)")
 
         start = lines.index("tree:") if "tree:" in lines else fail(len(lines), "there is no tree")
-        values, comments = {}, []
+        values, comments, waves = {}, [], []
         for number, line in enumerate(lines[1:start], 2):
             key, colon, value = line.partition(": ")
             if not colon:
                 fail(number, "'%s' is not 'name: value'" % line)
             elif key == "comment":
                 comments.append(value)
+            elif key == "wave":
+                waves.append(value.split())
             else:
                 values[key] = value
         try:
-            centre, half = zip(*(map(parse_number, values[name].split()) for name in NAMES))
+            problem = _problem(values, waves, comments) if lines[0] == FIRST_LINE \
+                else _older_problem(values, comments)
             counts = {}
             for item in fields(Counts):
                 numbers = tuple(int(word) for word in values[item.name].split())
@@ -223,17 +227,54 @@ class Proof:
                                 values["stubborn"] == "yes",
                                 {kind: printed for printed, kind in KINDS.items()}[values["kind"]])
             proof = cls(
-                Problem.around(centre, half, comments, values["together"] == "yes"),
-                settings, nodes, Counts(**counts), xstar,
+                problem, settings, nodes, Counts(**counts), xstar,
                 {name: _number(values[name]) for name in CONSTANTS[settings.method]
                  if name in values},
                 float(values.get("seconds", 0)), PROGRAM.fullmatch(values["program"])[1],
-                tuple(map(int, values["pending"].split())), values["at once"] == "yes",
+                tuple(map(int, values["pending"].split())), values["at once"] != "no",
                 nodes.count("P") + nodes.count("S"), _sha256(text.encode("utf-8")))
             tree.complete(proof.tree)
         except (KeyError, IndexError, TypeError, ValueError) as error:
             fail(start + 1, "the header or the tree makes no sense (%s)" % error)
         return proof
+
+
+def _problem_lines(problem):
+    """The fields of the header that say which problem it is."""
+    lines = ["wave: %d %d %s" % wave + "".join(" " + decimal_text(x) for x in numbers)
+             for wave, *numbers in zip(problem.waves, problem.amplitude, *problem.parts)]
+    lines += ["frame: %d %d %d %d" % problem.frame,
+              "alone: %s" % ("no" if problem.kept is None else problem.kept),
+              "odd about: " + ("no" if problem.odd is None else "%s %s" % problem.odd)]
+    return lines + ["%s: %s %s" % (name, decimal_text(centre), decimal_text(half))
+                    for name, centre, half in zip(NAMES[3:], problem.centre[-2:], problem.half[-2:])]
+
+
+def _problem(values, waves, comments):
+    """The problem of such fields, given all the words of each wave."""
+    amplitude, *parts = zip(*(words[3:] for words in waves))
+    if len({len(words) for words in waves}) != 1:
+        raise ValueError("the waves do not agree in how many parameters there are")
+    alone = values["alone"]
+    if "odd about" not in values:
+        raise KeyError("odd about")
+    v0, v1 = (_ends(values, name) for name in NAMES[3:])
+    return Problem.patch(amplitude, parts, [(*map(int, words[:2]), words[2]) for words in waves],
+                         v0, v1, comments, tuple(map(int, values["frame"].split())),
+                         alone if alone == "no" else int(alone))
+
+
+def _older_problem(values, comments):
+    """The problem of a file of format 2, of before there were frames and other waves."""
+    return Problem(*(_ends(values, name) for name in NAMES), comments, values["together"] == "yes",
+                   axes=IDENTITY, alone="no")
+
+
+def _ends(values, name):
+    centre, half = map(parse_number, values[name].split())
+    if half < 0:
+        raise ValueError("the half-width of %s is negative" % name)
+    return centre - half, centre + half
 
 
 def _number(text):

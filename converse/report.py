@@ -4,13 +4,14 @@ import math
 
 from . import tree
 from .files import plain
-from .problem import exact_decimal
+from .problem import IDENTITY, exact_decimal, frame_text, wave_text
 from .settings import AS_PRINTED, LIMIT, REGION, THEOREM, UNDECIDED
 
 PLUSES = "+" * 48
-MAP = ("y' = y + J', J' = J - dV(y), V(y) = -a sin y0 - b sin y1 - c sin(y0 + y1)",
+MAP = ("y' = y + J', J' = J - dV(y), ", "V(y) = -a sin y0 - b sin y1 - c sin(y0 + y1)",
        "x* and v : the angles y at one time and at the next, modulo 2 pi",
        "Tori : invariant graphs J = P + S'(y) over all angles, P constant, S periodic and C1")
+WAVES = "V(y) = - the sum of"           # in general
 METHODS = {
     "thesis": "that of the thesis, its listing corrected",
     "loewner": "the Loewner criterion, by witness and multipliers",
@@ -29,11 +30,12 @@ def header(problem, as_printed=False):
     """What is known before the search: parameters, region, comments.  Comments are the input's and
     not the program's words: but for a run as printed they are quoted."""
     lines = ["Parameters :"]
-    lines += ["%s : %.14e \t %.14e" % row
-              for row in zip("abc", map(float, problem.centre), map(float, problem.half))]
+    lines += ["%s : %.14e \t %.14e" % row for row in zip(
+        "abc" if problem.general is None else ["p of " + wave_text(wave) for wave in problem.waves],
+        map(float, problem.centre), map(float, problem.half))]
     lines += ["", "Initial region :"]
-    lines += ["v[%d] : %.14e \t %.14e" % (i, problem.centre[3 + i] * math.pi,
-                                          problem.half[3 + i] * math.pi) for i in range(2)]
+    lines += ["v[%d] : %.14e \t %.14e" % (i, problem.centre[i - 2] * math.pi,
+                                          problem.half[i - 2] * math.pi) for i in range(2)]
     lines += ["", "Comments :", "",
               *(plain(comment) if as_printed else ("> " + plain(comment)).rstrip()
                 for comment in problem.comments),
@@ -54,28 +56,48 @@ def report(proof):
 
 
 FINDINGS = {
-    THEOREM: "I find no invariant tori for the range of parameters :",
-    REGION: "I find no invariant tori whose successor of x* lies in the region :",
-    UNDECIDED: "I could not decide whether there are invariant tori for the range of parameters :",
-    AS_PRINTED: "I find no invariant tori for the range of parameters :",
+    THEOREM: "I find no %s",
+    REGION: "I find no %s whose successor of x* lies in the region :",
+    UNDECIDED: "I could not decide whether there are %s",
+    AS_PRINTED: "I find no %s",
 }
+TORI = {1: "rotational invariant circles", 2: "invariant tori"}         # by dimension
 
 
 def _theorem(proof):
     problem, exactly = proof.problem, not proof.as_printed
-    lines = [FINDINGS[proof.conclusion]]
+    of = " for the range of parameters :" if problem.general is None else " for %s :" % WAVES
+    lines = [FINDINGS[proof.conclusion] % TORI[problem.dimension]]
     if proof.conclusion == REGION:
         lines += [_range("v[%d] / pi" % i, *ends) for i, ends in enumerate((problem.v0, problem.v1))]
-        lines += ["(only a part of the torus: other successors were not examined)",
-                  "for the range of parameters :"]
-    lines += [_range(name, *getattr(problem, name), exactly) for name in "abc"]
+        lines += ["(only a part of the torus: other successors were not examined)", of[1:]]
+    else:
+        lines[0] += of
+    if problem.general is not None:
+        lines += _potential(problem)
+    else:
+        lines += [_range(name, *getattr(problem, name), exactly) for name in "abc"]
     if problem.together:
         lines += ["which move together, from all lower to all upper ends."]
     if proof.conclusion == UNDECIDED:
         lines += [""] + _gaps(proof)
     elif proof.at_once:
         lines += ["Nor are there any for s times %s, s > 1." % (
-            "the upper ends" if problem.together else "such parameters")]
+            "the upper ends" if problem.together else "such parameters" if problem.general is None
+            else "such p" if len(problem.parts) != 1 else "those p of t[1] = 1")]
+    return lines
+
+
+def _potential(problem):
+    """The waves, exactly."""
+    lines = []
+    for wave, p, *parts in zip(problem.waves, problem.amplitude, *problem.parts):
+        moves = "".join(" %s %s t[%d]" % ("-" if part < 0 else "+", _bound(abs(part)), m)
+                        for m, part in enumerate(parts, 1) if part)
+        lines.append("p %s, p = %s%s" % (wave_text(wave), _bound(p), moves))
+    if problem.parts:
+        lines += ["for -1 < %s < 1" % ", ".join("t[%d]" % m
+                                                for m in range(1, len(problem.parts) + 1))]
     return lines
 
 
@@ -155,7 +177,9 @@ def _statistics(proof):
 
 def _method(proof):
     """What the word of the report rests on."""
-    lines = ["Map : " + MAP[0], *MAP[1:],
+    problem = proof.problem
+    lines = ["Map : " + MAP[0] + (MAP[1] if problem.general is None else WAVES + " such waves"),
+             *MAP[2:], *_choices(problem),
              "Program : converse " + proof.version,
              "Method : " + METHODS[proof.method],
              "Arithmetic : " + proof.arithmetic]
@@ -169,4 +193,15 @@ def _method(proof):
             proof.restored, proof.counts.proved + proof.counts.symmetric + proof.counts.undecided)]
     if proof.sha256:
         lines += ["Proof file : SHA-256 " + proof.sha256]
+    return lines
+
+
+def _choices(problem):
+    """How the search looks at the problem, where it is not just as it stands."""
+    lines = []
+    if problem.frame != IDENTITY:
+        lines += ["Frame : the angles at the next time are " + frame_text(problem.frame, "v[%d]")]
+    if problem.kept is not None:
+        lines += ["Alone : y%d, as no wave feels both angles; what only y%d feels was left out" % (
+            problem.kept, 1 - problem.kept)]
     return lines

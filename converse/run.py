@@ -5,14 +5,15 @@ import math
 import os
 import time
 from dataclasses import replace
-from typing import Callable, Optional, Union
+from decimal import Decimal
+from typing import Callable, Optional, Tuple, Union
 
 from . import core, tree
 from .backup import Keeper
 from .core import Counts, Task
 from .files import ConverseError
 from .growth import OLD, Growth, count_workers
-from .problem import NAMES, Problem, decimal_text
+from .problem import IDENTITY, NAMES, Number, Problem, decimal_text, exact
 from .proof import Proof
 from .settings import Settings
 from .version import __version__
@@ -25,6 +26,7 @@ Path = Union[str, "os.PathLike[str]"]
 def prove(problem: Optional[Problem] = None, *, method: Optional[str] = None,
           depth: Optional[int] = None, digits: Optional[int] = None,
           stubborn: Optional[bool] = None, as_printed: Optional[bool] = None,
+          xstar: Optional[Tuple[Number, Number]] = None,
           jobs: Optional[int] = None, executor: Optional[concurrent.futures.Executor] = None,
           backup: Optional[Path] = None, resume: Union[Proof, Path, None] = None,
           time_limit: float = math.inf,
@@ -33,6 +35,7 @@ def prove(problem: Optional[Problem] = None, *, method: Optional[str] = None,
     """Tries to prove that there are no invariant tori, and returns a Proof either way.
 
     method, depth, digits, stubborn, as_printed: see Settings.
+    xstar: the two angles of x*, in radians, exact numbers; by default the program chooses them.
 
     jobs: how many workers at a time, by default one per core; executor: a
     concurrent.futures.Executor whose workers they are, by default threads of this process.  The
@@ -61,6 +64,8 @@ def prove(problem: Optional[Problem] = None, *, method: Optional[str] = None,
     if isinstance(time_limit, bool) or not isinstance(time_limit, (int, float)) or \
             not time_limit >= 0:
         raise ValueError("time_limit is a number of seconds, not %r" % (time_limit,))
+    if xstar is not None:
+        xstar = point(xstar)
     if jobs is None:
         jobs = count_workers(executor)
     if isinstance(jobs, bool) or not isinstance(jobs, int) or jobs < 1:
@@ -70,11 +75,11 @@ def prove(problem: Optional[Problem] = None, *, method: Optional[str] = None,
     file = None if resume is None or isinstance(resume, Proof) else resume
     with Keeper(file if backup is None else backup, resumed=file) as keeper:
         if resume is None:
-            before = Proof(problem, Settings(**given))
+            before = Proof(problem, Settings(**given), xstar=xstar)
         else:
-            before = _continued(resume, file, problem, given)
-        if before.settings.method == "thesis" and before.problem.together:
-            raise ValueError("parameters that move together need the method loewner")
+            before = _continued(resume, file, problem, given, xstar)
+        if before.settings.method == "thesis":
+            before = replace(before, problem=_for_thesis(before.problem))
         run = _Run(before, keeper, jobs, executor, time_limit, progress, on_leaf)
         try:
             return run.run()
@@ -153,11 +158,50 @@ class _Run:
         return replace(proof, sha256=self.keeper.finish(proof))
 
 
+def _for_thesis(problem):
+    """The problem as the thesis's method takes it, which knows of no frames."""
+    if problem.together:
+        raise ValueError("parameters that move together need the method loewner")
+    if problem.general is not None:
+        raise ValueError("the method thesis takes three ranges of a, b and c; for any other patch or "
+                         "potential choose the method loewner")
+    return replace(problem, axes=IDENTITY, alone="no")
+
+
+def point(xstar):
+    """x* as a pair of decimal strings."""
+    if not isinstance(xstar, (tuple, list)) or len(xstar) != 2:
+        raise ValueError("xstar is two numbers, in radians, not %r" % (xstar,))
+    try:
+        return decimal_text(exact(xstar[0])), decimal_text(exact(xstar[1]))
+    except (TypeError, ValueError) as error:
+        raise type(error)("xstar: %s" % error) from None
+
+
 def _name(file):
     return "the proof to resume" if file is None else os.fspath(file)
 
 
-def _continued(resume, file, problem, given):
+def _as_before(problem, before, differs):
+    """The problem, which must be the one of before but for its comments, with the frame and the
+    coordinate that were chosen then, unless it names others."""
+    for key in NAMES:
+        theirs, ours = getattr(before, key), getattr(problem, key)
+        if None not in (theirs, ours) and theirs != ours:
+            differs(key, *(" .. ".join(map(decimal_text, ends)) for ends in (theirs, ours)))
+    if problem.together != before.together:
+        differs("together", before.together, problem.together)
+    if problem.general != before.general:
+        differs("potential", before, problem)
+    same = replace(problem, **{key: getattr(before, key) for key in ("axes", "alone")
+                               if getattr(problem, key) is None})
+    for key, what in ("frame", "frame"), ("kept", "coordinate that stands alone"):
+        if getattr(same, key) != getattr(before, key):
+            differs(what, getattr(before, key), getattr(same, key))
+    return same
+
+
+def _continued(resume, file, problem, given, xstar):
     """The proof to continue, with the settings it is to be continued with."""
     name = _name(file)
     proof = resume if file is None else Proof.load(file)
@@ -176,12 +220,11 @@ def _continued(resume, file, problem, given):
     if settings.depth < proof.settings.depth:
         differs("depth", proof.settings.depth, settings.depth)
     if problem is not None:
-        for key in NAMES:
-            theirs, ours = getattr(proof.problem, key), getattr(problem, key)
-            if theirs != ours:
-                differs(key, *(" .. ".join(map(decimal_text, ends)) for ends in (theirs, ours)))
-        if problem.together != proof.problem.together:
-            differs("together", proof.problem.together, problem.together)
+        problem = _as_before(problem, proof.problem, differs)
+    if xstar is not None:
+        if proof.xstar is not None and list(map(Decimal, proof.xstar)) != list(map(Decimal, xstar)):
+            differs("x*", " ".join(proof.xstar), " ".join(xstar))
+        proof = replace(proof, xstar=proof.xstar or xstar)
     if "U" in proof.tree and proof.settings.stubborn and not settings.stubborn and \
             settings.depth == proof.settings.depth:
         differs("stubborn", True, False)

@@ -1,7 +1,7 @@
 """The tree of a proof as text: one character per prism, in preorder.
 
-0 and 1 are cuts along v0 and v1, 2, 3 and 4 along a, b and c (2 along all of them where they move
-together); the lower half comes first.  The leaves are P (proved), S (skipped by symmetry),
+0 and 1 are cuts along v0 and v1, 2, 3 and 4 along the parameters (a, b and c, or where they move
+together 2 along all of them); the lower half comes first.  The leaves are P (proved), S (skipped by symmetry),
 U (undecided) and ? (untried); where a text ends too early, untried prisms are missing.
 """
 
@@ -75,7 +75,7 @@ def prisms(problem):
 
     def prism(cell):
         (i, j, *_), (k, l, *_) = cell
-        (c0, h0), (c1, h1) = side(3, i, k), side(4, j, l)
+        (c0, h0), (c1, h1) = side(-2, i, k), side(-1, j, l)
         return (c0, c1), (h0, h1)
 
     return prism

@@ -1,6 +1,7 @@
 """Reading the input: exact numbers, tolerant layout, one clear line for every mistake."""
 
 import io
+import itertools
 from dataclasses import replace
 from decimal import Decimal
 from fractions import Fraction
@@ -9,8 +10,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from converse import ConverseError, Problem, prove
-from converse.problem import InputError, decimal_text, exact_decimal, read_input
+from converse import ConverseError, Problem, core, prove
+from converse.problem import IDENTITY, THESIS, InputError, decimal_text, exact_decimal, read_input
 
 GOOD = "0.3085 0.00125\n0.3085 0.00125\n0.617 0.0025\n\n1.0 1.0\n1.0 1.0\n\n"
 
@@ -182,16 +183,19 @@ def test_four_ranges_or_unequal_ones():
 
 @pytest.mark.parametrize("text", ["1e309", "-1e309", "1e99999", "nan", "", "1e400000"])
 def test_the_core_refuses_what_no_problem_can_say(text, monkeypatch):
-    """Also when it is asked behind the back of Problem."""
-    problem = Problem(1, 1, 1)
-    decimals = problem.decimals()
-    for which in (0, 1):
-        for axis in range(5):
-            bad = [list(numbers) for numbers in decimals]
-            bad[which][axis] = text
-            monkeypatch.setattr(Problem, "decimals", lambda self, bad=bad: bad)
-            with pytest.raises(ConverseError, match="malformed or out of range|no sense"):
-                prove(problem)
+    """Also when it is asked behind the back of Problem, whichever number it is."""
+    given, told = core.native_text, []
+
+    def told_instead(number, owners):
+        told.append(number)
+        return given(text if len(told) - 1 == wrong else number, owners)
+
+    monkeypatch.setattr(core, "native_text", told_instead)
+    for wrong in range(19):             # of three waves the phase, the amplitude, three parts; v0, v1
+        told.clear()
+        with pytest.raises(ConverseError, match="malformed or out of range|no sense"):
+            prove(Problem(1, 1, 1))
+        assert len(told) > wrong
 
 
 def test_comments_are_lines(tmp_path):
@@ -206,3 +210,158 @@ def test_comments_are_lines(tmp_path):
 def test_other_bad_arguments(options):
     with pytest.raises(TypeError):
         Problem(1, 1, 1, **options)
+
+
+# ---- patches and other potentials
+
+def test_ranges_are_patches():
+    """What three ranges, or a segment, can say is the same Problem."""
+    for parts, together in (([["0.01", 0, 0], [0, "0.02", 0], [0, 0, 0]], False), ([], False),
+                            ([["0.01", "0.02", 0]], True)):
+        problem = Problem.patch(["0.4", "0.3", "0.2"], parts)
+        assert problem.general is None and problem.together is together
+        halves = [sum(map(Fraction, column)) for column in zip([0] * 3, *parts)]
+        assert problem == Problem.around(
+            (*map(Fraction, ("0.4", "0.3", "0.2")), 1, 1), (*halves, 1, 1), together=together)
+        again = Problem.patch(problem.amplitude, problem.parts, problem.waves)
+        assert again == problem and replace(problem) == problem
+
+
+@pytest.mark.parametrize("parts", [
+    [["0.01", "-0.02", 0]], [["-0.01", 0, 0], [0, 0, 0], [0, 0, 0]], [["0.01", 0, 0], [0, "0.02", 0]],
+    [["0.01", "0.01", 0], [0, "0.02", 0], [0, 0, "0.02"]], [[0, "0.01", 0], ["0.02", 0, 0], [0, 0, 1]]])
+def test_other_patches_are_not_ranges(parts):
+    problem = Problem.patch(["0.4", "0.3", "0.2"], parts)
+    assert (problem.a, problem.b, problem.c, problem.together) == (None,) * 3 + (False,)
+    assert problem.amplitude == tuple(map(Fraction, ("0.4", "0.3", "0.2")))
+    assert problem.parts == tuple(tuple(map(Fraction, part)) for part in parts)
+    assert problem.half[:3] == tuple(sum(abs(Fraction(x)) for x in column) for column in zip(*parts))
+    assert replace(problem) == problem and hash(replace(problem)) == hash(problem)
+    assert replace(problem, v0=(0, 1)).v0 == (0, 1) and problem != Problem("0.4", "0.3", "0.2")
+    assert repr(problem).startswith("Problem.patch(0.") and repr(problem).count(" of (") == 3
+
+
+def test_the_thesis_in_waves():
+    problem = Problem(("0.3", "0.4"), "0.2", ("0.5", "0.7"))
+    assert problem.waves == tuple((*k, 0) for k in THESIS) and problem.odd == (0, 0)
+    assert problem.amplitude == (Fraction("0.35"), Fraction("0.2"), Fraction("0.6"))
+    assert problem.parts == ((Fraction("0.05"), 0, 0), (0, 0, 0), (0, 0, Fraction("0.1")))
+    assert replace(problem, together=True).parts == ((Fraction("0.05"), 0, Fraction("0.1")),)
+    assert (problem.frame, problem.kept, problem.searched) == (IDENTITY, None, (0, 1, 2))
+
+
+WAVE = {"amplitude": [1], "waves": [(1, 0)]}
+
+
+@pytest.mark.parametrize("arguments, error, words", [
+    ({"amplitude": [1, 1]}, ValueError, "2 numbers for 3 waves"),
+    ({"amplitude": [1, 1, "1/3"]}, ValueError, "wave 3: 1/3 is no finite decimal"),
+    ({"amplitude": [0.1, 1, 1]}, TypeError, "wave 1: 0.1 is not an exact number"),
+    ({"amplitude": 5}, TypeError, "sequences"), ({"amplitude": [1] * 3, "parts": [5]}, TypeError, "seq"),
+    ({"amplitude": [1] * 3, "parts": [[1, 1]]}, ValueError, "part 1 has 2 numbers"),
+    ({"amplitude": [1] * 3, "parts": [[1, 1, "x"]]}, ValueError, "part 1 of wave 3: 'x' is not"),
+    ({"amplitude": [1] * 3, "parts": [[1, 1, 1]] * 4}, ValueError, "4 parameters; give 3"),
+    ({"amplitude": [1], "waves": [(0, 0)]}, ValueError, "wave 1: k = (0, 0) is no wave"),
+    ({"amplitude": [1], "waves": [(1.0, 0)]}, TypeError, "wave 1: k is two integers"),
+    ({"amplitude": [1], "waves": [(True, 0)]}, TypeError, "wave 1: k is two integers"),
+    ({"amplitude": [1], "waves": [(0, -101)]}, ValueError, "out of range"),
+    ({"amplitude": [1], "waves": [(1,)]}, ValueError, "not 1 numbers"),
+    ({"amplitude": [1], "waves": [(1, 0, "pi")]}, ValueError, "the phase of wave 1: 'pi' is not"),
+    ({"amplitude": [], "waves": []}, ValueError, "there are 0 waves; give 1 to 16"),
+    ({"amplitude": [1] * 17, "waves": [(k, 1) for k in range(17)]}, ValueError, "17 waves"),
+    ({"amplitude": [1, 1], "waves": [(1, 0, 2), (1, 0)]}, ValueError, "waves 1 and 2 are the same"),
+    ({**WAVE, "v0": (1, 0)}, ValueError, "v0: the lower end"),
+    ({**WAVE, "axes": (1, 1, 1, 1)}, ValueError, "determinant"),
+    ({**WAVE, "axes": (1, 0, 0)}, ValueError, "four integers"),
+    ({**WAVE, "axes": (1, 0, 0, True)}, ValueError, "four integers"),
+    ({**WAVE, "alone": 2}, ValueError, "alone is 0, 1 or 'no'"),
+    ({**WAVE, "alone": True}, ValueError, "alone is 0, 1 or 'no'"),
+    ({**WAVE, "alone": 0}, ValueError, "no coordinate stands alone"),
+    ({"amplitude": [1] * 3, "alone": 1}, ValueError, "no coordinate stands alone")])
+def test_bad_patches(arguments, error, words):
+    with pytest.raises(error) as caught:
+        Problem.patch(**arguments)
+    assert words in str(caught.value) and "\n" not in str(caught.value)
+
+
+def test_a_patch_has_no_ranges():
+    problem = Problem.patch([1], waves=[(1, 1)])
+    for wrong in {"a": 1}, {"together": True}:
+        with pytest.raises(ValueError, match="do not go with a patch"):
+            replace(problem, **wrong)
+
+
+@given(st.lists(st.tuples(st.integers(-4, 4), st.integers(-4, 4), st.fractions(-2, 2, max_denominator=4))
+                .filter(lambda wave: wave[:2] != (0, 0)), min_size=1, max_size=4,
+                unique_by=lambda wave: (*wave[:2], wave[2] % 2)))
+def test_odd_about_a_point(waves):
+    """A point that is named is one; if none is, none of those that two waves leave is one."""
+    problem = Problem.patch([1] * len(waves), waves=waves)
+
+    def odd(s):
+        return all((k0 * s[0] + k1 * s[1] + phase).denominator == 1 for k0, k1, phase in waves)
+
+    if problem.odd is not None:
+        assert odd(problem.odd) and all(0 <= x < 1 for x in problem.odd)
+        return
+    for (p0, p1, p), (q0, q1, q) in itertools.combinations(waves, 2):
+        size = p0 * q1 - p1 * q0
+        if size:
+            assert not any(odd(((q1 * (i - p) - p1 * (j - q)) / size, (p0 * (j - q) - q0 * (i - p)) / size))
+                           for i in range(abs(size)) for j in range(abs(size)))
+            return
+    k0, k1, phase = waves[0]                    # all are parallel: a line of points does as one does
+    assert not any(odd(((i - phase) / k0, Fraction(0)) if k0 else (Fraction(0), (i - phase) / k1))
+                   for i in range(abs(k0 or k1) * 12))
+
+
+@pytest.mark.parametrize("waves, shifts", [
+    ([(1, 0), (0, 1), (1, 1)], (0, 0)), ([(1, 0, "1/2"), (0, 1, "1/2")], ("1/2", "1/2")),
+    ([(1, 0, "1/2"), (0, 1, "1/2"), (1, 1, "1/2")], None), ([(2, 0, "1/3"), (4, 0, "2/3")], ("5/6", 0)),
+    ([(1, 0), (2, 0, "1/2")], None), ([(1, -1, "1/2"), (1, 1)], ("3/4", "1/4"))])
+def test_what_is_odd(waves, shifts):
+    odd = Problem.patch([1] * len(waves), waves=waves).odd
+    assert odd == (shifts and tuple(map(Fraction, shifts)))
+
+
+@pytest.mark.parametrize("waves, frame", [
+    ([(1, 1)], (1, 0, -1, 1)), ([(1, -1)], (1, 0, 1, -1)), ([(-1, 1)], None), ([(2, -4), (-3, 6)], None),
+    ([(5, 3), (-10, -6, "1/2")], None), ([(1, 0)], IDENTITY), ([(0, 3), (0, -1)], IDENTITY),
+    ([(1, 1), (1, -1)], IDENTITY), (THESIS, IDENTITY)])
+def test_frames(waves, frame):
+    """The first column moves nothing that a wave feels, where there is a use for that."""
+    f = Problem.patch([1] * len(waves), waves=waves).frame
+    assert abs(f[0] * f[3] - f[1] * f[2]) == 1
+    if frame is None:
+        assert all(k0 * f[0] + k1 * f[2] == 0 for k0, k1, *_ in waves)
+    else:
+        assert f == frame
+
+
+def test_frames_of_the_thesis():
+    assert Problem(0, 0, ("0.4", "0.5")).frame == (1, 0, -1, 1)     # the standard map in y0 + y1
+    assert Problem(0, 0, ("0.4", "0.5"), v0=(0, 1)).frame == IDENTITY      # x_1 as it was asked for
+    assert Problem(0, 0, 0).frame == Problem(1, 0, 0).frame == Problem("0.1", 0, 1).frame == IDENTITY
+    plain = replace(Problem(0, 0, "0.5"), axes=IDENTITY)
+    assert plain.frame == IDENTITY and plain != Problem(0, 0, "0.5")
+    assert replace(plain, axes=(1, 0, -1, 1)) == Problem(0, 0, "0.5")       # what is chosen anyhow
+
+
+@pytest.mark.parametrize("amplitude, waves, kept", [
+    ((1, "0.9", 0), THESIS, 0), (("0.9", 1, 0), THESIS, 1), ((1, 1, 0), THESIS, 0),
+    ((1, 1, "1e-9"), THESIS, None), ((1, 0, 0), THESIS, None), ((0, 0, 1), THESIS, None),
+    ((1, "0.3"), [(1, 0), (0, 2)], 1), ((1, "-2"), [(1, 0), (0, 1)], 1), ((1, 1), [(1, 0), (1, 1)], None)])
+def test_a_coordinate_alone(amplitude, waves, kept):
+    problem = Problem.patch(amplitude, waves=waves)
+    assert problem.kept == kept
+    assert [problem.waves[j][:2] for j in problem.searched] == [
+        k for k in waves if kept is None or k[1 - kept] == 0]
+    both = replace(problem, alone="no")
+    assert both.kept is None and len(both.searched) == len(waves)
+    assert (both == problem) == (kept is None) and replace(both, alone=kept) == problem
+
+
+def test_the_circle():
+    assert Problem.patch([1, "0.1"], waves=[(1, 0), (2, 0)]).dimension == 1
+    assert Problem.patch([1, "0.1"], waves=[(1, 0), (0, 1)]).dimension == 2
+    assert Problem(1, 0, 0).dimension == 2
