@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "loewner/start.h"
 #include "numbers/guard.h"
 #include "numbers/machine.h"
 #include "numbers/special.h"
@@ -13,6 +14,8 @@
 enum { MAX_DP = 100000, MAX_DEPTH = 100000 };
 enum { MOST = 300 };                    /* no number of a problem is beyond 10^MOST */
 enum { PI_SHORT = 5 };                  /* see region.c */
+
+static const int THESIS_WAVES[3][2] = { { 1, 0 }, { 0, 1 }, { 1, 1 } };
 
 static void box_init(box *b)
 {
@@ -77,6 +80,8 @@ static int read_problem(cv_search *s, const char *const region[5], const char *c
                         const char *const xstar[2])
 {
     double abc[3], start[2];
+    const double phase[3] = { 0.0, 0.0, 0.0 };
+    const waves v = { 3, THESIS_WAVES, phase, abc };
     char text[40];
     apm_t most;
     int status = CV_OK;
@@ -103,7 +108,7 @@ static int read_problem(cv_search *s, const char *const region[5], const char *c
     for (int j = 0; j < 3; j++)
         abc[j] = apm_get_d(s->root.centre[j]);
     if (s->method == CV_LOEWNER)
-        set_gap_start(start, abc, s->symmetric);
+        loewner_start(&v, s->symmetric, start);
     else
         set_LL_start(start, abc, s->symmetric);
     for (int j = 0; j < 2; j++) {
@@ -122,6 +127,8 @@ static int read_problem(cv_search *s, const char *const region[5], const char *c
 static int prepare_loewner(cv_search *s)
 {
     double abc[3], start[2];
+    const double phase[3] = { 0.0, 0.0, 0.0 };
+    const waves v = { 3, THESIS_WAVES, phase, abc };
 
     s->sharp = loewner_new(&s->root, s->together, 1);
     if (s->sharp == NULL)
@@ -131,7 +138,7 @@ static int prepare_loewner(cv_search *s)
     apm_round(s->constants[C_B], s->t[0], TORUS_PLACES, APM_UP);
     for (int j = 0; j < 3; j++)
         abc[j] = apm_get_d(s->root.centre[j]) + (s->together ? apm_get_d(s->root.half[j]) : 0.0);
-    set_LL_start(start, abc, s->symmetric);
+    loewner_lowest(&v, start);
     s->at_once = loewner_at_once(s->sharp, start);
     return CV_OK;
 }
