@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "loewner/start.h"
 #include "numbers/guard.h"
 #include "numbers/machine.h"
 #include "numbers/special.h"
@@ -232,47 +233,31 @@ static void amplitudes(const patch *p, int at_end, double to[MOST_WAVES])
     }
 }
 
-/* Where on a grid the least eigenvalue of beta is least. */
-static void find_lowest(const patch *problem, const double p[], double x[2])
-{
-    enum { GRID = 240 };
-    const double step = 2.0 * 3.14159265358979323846 / GRID;
-    double least = HUGE_VAL;
+/* A problem as start.c takes it, with the amplitudes of amplitudes. */
+typedef struct { double phase[MOST_WAVES], p[MOST_WAVES]; waves v; } simple;
 
-    for (int cell = 0; cell < GRID * GRID; cell++) {
-        const double at[2] = { step * (cell / GRID + 0.5), step * (cell % GRID + 0.5) };
-        double d[3] = { 2.0, 0.0, 2.0 };
-        for (int i = 0; i < problem->n_waves; i++) {
-            const double k0 = problem->k[i][0], k1 = problem->k[i][1];
-            const double s = p[i] * sin(k0 * at[0] + k1 * at[1]
-                                        + apm_get_d(problem->phase[i]));
-            d[0] -= s * k0 * k0;
-            d[1] -= s * k0 * k1;
-            d[2] -= s * k1 * k1;
-        }
-        const double value = d[0] + d[2] - sqrt((d[0] - d[2]) * (d[0] - d[2]) + 4.0 * d[1] * d[1]);
-        if (value < least) {
-            least = value;
-            x[0] = at[0];
-            x[1] = at[1];
-        }
-    }
+static const waves *simplify(const patch *p, int at_end, simple *to)
+{
+    for (int i = 0; i < p->n_waves; i++)
+        to->phase[i] = apm_get_d(p->phase[i]);
+    amplitudes(p, at_end, to->p);
+    to->v = (waves){ p->n_waves, p->k, to->phase, to->p };
+    return &to->v;
 }
 
 /* The starting point as it is given, or else of the program's choice. */
 static int set_start(cv_search *s, const char *const xstar[2])
 {
-    double p[MOST_WAVES], start[2];
+    double start[2];
+    simple problem;
     char text[40];
 
     s->symmetric = is_symmetric(&s->problem);
-    amplitudes(&s->problem, 0, p);
-    if (!thesis_waves(&s->problem))
-        find_lowest(&s->problem, p, start);
-    else if (s->method == CV_LOEWNER)
-        set_gap_start(start, p, s->symmetric);
+    simplify(&s->problem, 0, &problem);
+    if (s->method == CV_LOEWNER)
+        loewner_start(&problem.v, s->symmetric, start);
     else
-        set_LL_start(start, p, s->symmetric);
+        set_LL_start(start, problem.p, s->symmetric);
     for (int j = 0; j < 2; j++) {
         if (xstar == NULL) {
             snprintf(text, sizeof text, s->method == CV_LOEWNER ? "%.6f" : "%.17g", start[j]);
@@ -301,15 +286,12 @@ static int set_up(cv_search *s, const cv_problem *problem, const char *const xst
 static int find_at_once(const cv_search *s)
 {
     const int one = s->problem.n_parameters == 1;
-    double p[MOST_WAVES], x[2];
+    simple problem;
+    double x[2];
 
     if (!s->problem.odd)
         return 0;
-    amplitudes(&s->problem, one, p);
-    if (thesis_waves(&s->problem))
-        set_LL_start(x, p, s->symmetric);
-    else
-        find_lowest(&s->problem, p, x);
+    loewner_lowest(simplify(&s->problem, one, &problem), x);
     return loewner_at_once(s->sharp, x, 0) ? 1 : one && loewner_at_once(s->sharp, x, 1) ? 2 : 0;
 }
 
