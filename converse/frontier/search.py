@@ -88,8 +88,8 @@ def explore(directions, cell, most, stop=None):
                 return None
             cost[each] = found[1] if found[0] is not None else math.inf
         frame = min(cost, key=cost.get)
-    amplitude, parts = region.patch(directions, cell)
-    found = _grow(_problem(amplitude, parts, frame), most, stop)
+    problem = _problem(*region.patch(directions, cell), frame)
+    found = _grow(problem, most, stop)
     if found is None:
         return None
     tree, leaves, begun = found
@@ -97,7 +97,8 @@ def explore(directions, cell, most, stop=None):
         return Outcome(AT_ONCE)
     if tree is None:
         return Outcome(OPEN, leaves=leaves)
-    return Outcome(PROVED, {"xstar": list(begun.xstar), "frame": list(frame), "alone": "no",
+    return Outcome(PROVED, {"xstar": list(begun.xstar), "frame": list(problem.frame),
+                            "alone": "no" if problem.kept is None else str(problem.kept),
                             "tree": tree}, leaves)
 
 
