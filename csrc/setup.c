@@ -13,6 +13,7 @@
 enum { MAX_DP = 100000, MAX_DEPTH = 100000 };
 enum { MOST = 300 };                    /* no number of a problem is beyond 10^MOST */
 enum { MOST_K = 100 };                  /* of a wave, and of the frame */
+enum { PHASE_PLACES = 50 };             /* of pi, for phases */
 enum { PI_SHORT = 5 };                  /* see region.c */
 
 static void for_box(box *b, void (*what)(apm_t))
@@ -102,18 +103,20 @@ static int read_number(apm_t x, const char *text)
     return status;
 }
 
-/* x modulo 2: whole turns are taken off a phase. */
-static void reduce(apm_t x)
+/* A phase in units of pi becomes one in radians, without whole turns. */
+static void reduce(apm_t phase)
 {
-    apm_t turns;
+    apm_t t;
 
-    apm_init(turns);
-    apm_mul_si(turns, x, 5);
-    apm_scale(turns, turns, -1);
-    apm_floor(turns, turns);
-    apm_mul_si(turns, turns, -2);
-    apm_add(x, x, turns);
-    apm_clear(turns);
+    apm_init(t);
+    apm_mul_si(t, phase, 5);
+    apm_scale(t, t, -1);
+    apm_floor(t, t);
+    apm_mul_si(t, t, -2);
+    apm_add(phase, phase, t);
+    apm_pi(t, PHASE_PLACES);
+    apm_mul(phase, phase, t);
+    apm_clear(t);
 }
 
 static int read_wave(patch *p, int i, const cv_wave *wave)
@@ -229,6 +232,33 @@ static void amplitudes(const patch *p, int at_end, double to[MOST_WAVES])
     }
 }
 
+/* Where on a grid the least eigenvalue of beta is least. */
+static void find_lowest(const patch *problem, const double p[], double x[2])
+{
+    enum { GRID = 240 };
+    const double step = 2.0 * 3.14159265358979323846 / GRID;
+    double least = HUGE_VAL;
+
+    for (int cell = 0; cell < GRID * GRID; cell++) {
+        const double at[2] = { step * (cell / GRID + 0.5), step * (cell % GRID + 0.5) };
+        double d[3] = { 2.0, 0.0, 2.0 };
+        for (int i = 0; i < problem->n_waves; i++) {
+            const double k0 = problem->k[i][0], k1 = problem->k[i][1];
+            const double s = p[i] * sin(k0 * at[0] + k1 * at[1]
+                                        + apm_get_d(problem->phase[i]));
+            d[0] -= s * k0 * k0;
+            d[1] -= s * k0 * k1;
+            d[2] -= s * k1 * k1;
+        }
+        const double value = d[0] + d[2] - sqrt((d[0] - d[2]) * (d[0] - d[2]) + 4.0 * d[1] * d[1]);
+        if (value < least) {
+            least = value;
+            x[0] = at[0];
+            x[1] = at[1];
+        }
+    }
+}
+
 /* The starting point as it is given, or else of the program's choice. */
 static int set_start(cv_search *s, const char *const xstar[2])
 {
@@ -237,7 +267,9 @@ static int set_start(cv_search *s, const char *const xstar[2])
 
     s->symmetric = is_symmetric(&s->problem);
     amplitudes(&s->problem, 0, p);
-    if (s->method == CV_LOEWNER)
+    if (!thesis_waves(&s->problem))
+        find_lowest(&s->problem, p, start);
+    else if (s->method == CV_LOEWNER)
         set_gap_start(start, p, s->symmetric);
     else
         set_LL_start(start, p, s->symmetric);
@@ -260,8 +292,7 @@ static int set_up(cv_search *s, const cv_problem *problem, const char *const xst
 
     if (status != CV_OK)
         return status;
-    if (!thesis_waves(&s->problem) ||
-        (s->method == CV_THESIS && !(independent(&s->problem) && is_identity(problem->frame))))
+    if (s->method == CV_THESIS && !(independent(&s->problem) && is_identity(problem->frame)))
         return CV_EARGUMENT;
     return set_start(s, xstar);
 }
@@ -275,7 +306,10 @@ static int find_at_once(const cv_search *s)
     if (!s->problem.odd)
         return 0;
     amplitudes(&s->problem, one, p);
-    set_LL_start(x, p, s->symmetric);
+    if (thesis_waves(&s->problem))
+        set_LL_start(x, p, s->symmetric);
+    else
+        find_lowest(&s->problem, p, x);
     return loewner_at_once(s->sharp, x, 0) ? 1 : one && loewner_at_once(s->sharp, x, 1) ? 2 : 0;
 }
 

@@ -13,6 +13,10 @@ enum { TORUS_PLACES = 12 };            /* decimals to which it makes sense to ro
    see torus.c. */
 double torus_largest(const double low[3], const double high[3], int which);
 
+/* A bound from above of the largest eigenvalue of beta = 2I - sum p[i] sin(k[i].v + phase[i]) k k' over
+   the torus, for any n waves; phases may be off by 9 u of themselves. */
+double torus_waves(int n, const double k[][2], const double phase[], const double p[]);
+
 /* For tests: the same over the rectangle centre +- half alone, of beta at -v, but for roundings. */
 double torus_rectangle(const double low[3], const double high[3], const double centre[2],
                        const double half[2], int which);

@@ -11,7 +11,7 @@ typedef struct loewner loewner;
 
 enum { MOST_LANES = 8, MOST_WAVES = 16, SLOTS = MOST_WAVES + 2, PARAMETERS = 3 };
 
-/* cv_problem as numbers. */
+/* cv_problem as numbers; phases in radians, which may be off by 10^-39. */
 typedef struct {
     int n_waves, n_parameters, k[MOST_WAVES][2], frame[4], odd;
     apm_t phase[MOST_WAVES], amplitude[MOST_WAVES], part[MOST_WAVES][PARAMETERS];
@@ -23,7 +23,7 @@ int is_identity(const int frame[4]);
 /* Are these the thesis's waves, in its order and without phases? */
 int thesis_waves(const patch *problem);
 
-/* For a problem with its angles in radians and x* chosen.  with_bounds: those over the torus, without
+/* For a problem with its angles in radians, too, and x* chosen.  with_bounds: those over the torus, without
    which nothing can be proved.  NULL: no memory. */
 loewner *loewner_new(const patch *problem, int with_bounds);
 void loewner_free(loewner *w);
@@ -71,7 +71,7 @@ int loewner_bound(loewner *w, int signs, double *bound, double *l, double *round
    is not zero. */
 typedef struct {
     double x[2], column[2][5], bow[2][15], rest[2];     /* the columns: x0's five, then x1's */
-    double straight[3], bowed[3], off[3], reach[3];
+    double straight[SLOTS], bowed[SLOTS], off[SLOTS], reach[SLOTS];
     double missed[2], force[2], beta[3], d[3], fuzz, mu[2];
 } loewner_point;
 void loewner_look(const loewner *w, int n, loewner_point *p);

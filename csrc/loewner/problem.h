@@ -4,7 +4,7 @@
 
 #include "loewner.h"
 
-enum { WAVES = 3, COLUMNS = 5, PAIRS = 15 };
+enum { COLUMNS = 5, PAIRS = 15 };
 
 /* Tries prisms LANES at a time.  Engines differ in that number and in the instructions they use,
    and in no bit of what they find. */
@@ -21,7 +21,8 @@ typedef struct {
     void (*look)(const void *work, int n, loewner_point *p);
 } engine;
 
-extern const engine engine_scalar, engine_baseline, engine_avx2, engine_avx512;
+extern const engine engine_scalar, engine_baseline, engine_avx2, engine_avx512;     /* three.h */
+extern const engine general_scalar, general_baseline, general_avx2, general_avx512; /* general.h */
 
 #if defined(__GNUC__) && (defined(__SSE2__) || defined(__aarch64__))
 #define HAVE_VECTORS
@@ -32,6 +33,8 @@ extern const engine engine_scalar, engine_baseline, engine_avx2, engine_avx512;
 
 struct loewner {
     double centre[2], half[2], slack[2], frame[2][2];           /* of v0, v1 */
+    int waves;                          /* slots in use; general.h says what the first two are */
+    double k[SLOTS][2], phase[SLOTS], square_k[SLOTS], most_k;  /* (|k0| + |k1|)^2; the largest sum */
     double amplitude[SLOTS], part[SLOTS][PARAMETERS], loose[SLOTS];
     double xstar[2], xstar_err[2], corner[8];                   /* bounds B at the corners */
     int n_parameters, columns;          /* the symbols: v0, v1, and the parameters that count */

@@ -7,7 +7,7 @@ static const double HOPELESS = 2.0;     /* times the least bound yet: longer orb
 /* The prism of lane k. */
 static void set_lane(batch *w, int k, const loewner_cell *c)
 {
-    for (int i = 0; i < WAVES; i++) {
+    for (int i = 0; i < waves_of(w); i++) {
         put_at(&w->p[i], k, c->p[i]);
         put_at(&w->loose[i], k, c->loose[i]);
         double h = 0.0;
@@ -233,10 +233,10 @@ static void look_root(const void *work, int n, loewner_point *p)
                 copy(&p->bow[i][pair(COLUMNS, axis[k], axis[l])], &q->bow[i][kl++], 1);
         }
     copy(p->rest, q->rest, 2);
-    copy(p->straight, q->straight, WAVES);
-    copy(p->bowed, q->bowed, WAVES);
-    copy(p->off, q->off, WAVES);
-    copy(p->reach, q->reach, WAVES);
+    copy(p->straight, q->straight, waves_of(w));
+    copy(p->bowed, q->bowed, waves_of(w));
+    copy(p->off, q->off, waves_of(w));
+    copy(p->reach, q->reach, waves_of(w));
     copy(p->missed, q->missed, 2);
     copy(p->force, q->force, 2);
     copy(p->beta, q->beta, 3);
