@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from truth import TORTURE
 
-from converse import InputError, Problem, read_input
+from converse import InputError, Problem, prove, read_input
 
 A, B, C = ({"k": k, "amplitude": amplitude} for k, amplitude in (
     ([1, 0], ["0.30725", "0.30975"]), ([0, 1], ["0.30725", "0.30975"]), ([1, 1], ["0.6145", "0.6195"])))
@@ -178,6 +178,61 @@ def froeschle(K0, K1, coupling):
                       K1 * sin(x[1]) + coupling * sin(x[0] + x[1]))
 
 
-def crossed(K, plus, minus):
-    return lambda x: (K * sin(x[0]) + plus * sin(x[0] + x[1]) + minus * sin(x[0] - x[1]),
-                      K * sin(x[1]) + plus * sin(x[0] + x[1]) - minus * sin(x[0] - x[1]))
+@pytest.mark.parametrize("name, ends, force", [
+    ("standard", {-1: "0.98", 1: "1.34"}, standard),
+    ("two-harmonics", {-1: "0.7", 1: "1"}, lambda K: two_harmonics(K, 0.4)),
+    ("froeschle-0.1", {-1: "1.1", 1: "1.2"}, lambda K: froeschle(K, K, 0.1)),
+    ("froeschle-0.3", {-1: "0.8", 1: "1.2"}, lambda K: froeschle(K, K, 0.3)),
+    ("froeschle-0.5", {-1: "0.5", 1: "1.2"}, lambda K: froeschle(K, K, 0.5))])
+def test_the_usual_conventions(root, name, ends, force):
+    """The input's map, with y = 2 pi x, is the one of its comment: both go the same way."""
+    problem = read_input(root / "inputs" / (name + ".json"))
+    assert problem.full_torus and len(problem.parts) == 1
+    for t, K in ends.items():
+        ours, theirs = of_period_one(problem, [t]), force(float(K))
+        here = there = ([0.123, 0.371 * (problem.dimension - 1)], [0.3, 0.17 * (problem.dimension - 1)])
+        for _ in range(6):
+            here = ours(*here)
+            p = [u + f for u, f in zip(there[1], theirs(there[0]))]
+            there = [x + u for x, u in zip(there[0], p)], p
+            assert max(abs(u - v) for a, b in zip(here, there) for u, v in zip(a, b)) < 1e-12
+
+
+def test_the_crossed_input(root):
+    problem = read_input(root / "inputs" / "crossed.json")
+    assert problem.odd == (0, 0) and problem.waves[3][:2] == (1, -1)
+    assert problem.amplitude == tuple(3 * part for part in problem.parts[0])     # s from 1 to 2
+
+
+def test_what_is_odd_of_the_inputs(root):
+    """Only then larger parameters may be excluded at once."""
+    odd = {path.stem for path in (root / "inputs").glob("*.json") if read_input(path).odd is not None}
+    assert odd == {"standard", "crossed"}
+
+
+@pytest.mark.parametrize("name", ["standard", "two-harmonics", "froeschle-0.1", "froeschle-0.3", "froeschle-0.5",
+                                  "crossed"])
+def test_the_inputs_are_theorems(root, name, tmp_path):
+    """Proved, and verified by the checker."""
+    problem = read_input(root / "inputs" / (name + ".json"))
+    proof = prove(problem, method="loewner")
+    assert proof.no_tori and proof.at_once == (problem.odd is not None)
+    assert proof.verify()
+
+
+def test_one_map_in_both_inputs():
+    """The same theorem of the standard map, shifted, mirrored, in either angle, along y0 + y1."""
+    for amplitude, k, phase in (("1", (1, 0), 0), ("1", (1, 0), "-1/2"), ("-1", (1, 0), "1/3"),
+                                ("1", (0, 1), "cos"), ("1/2", (1, 1), 0), ("1/2", (1, -1), "1/7")):
+        proof = prove(read({"harmonics": [{"k": k, "amplitude": amplitude, "phase": phase}]}),
+                      method="loewner")
+        assert proof.no_tori and not proof.at_once
+    lower = prove(read({"harmonics": [{"k": [1], "amplitude": "0.95"}]}), method="loewner", depth=30)
+    assert lower.conclusion == "undecided"      # its golden circle lives to 0.9716
+
+
+def test_the_thesis_gives_one_proof_in_both_inputs(root):
+    thesis = read_input(root / "inputs" / "trig274.in")
+    ours = read({"harmonics": [A, B, C], "comments": list(thesis.comments)})
+    for method in "thesis", "loewner":
+        assert prove(ours, method=method).tree == prove(thesis, method=method).tree
