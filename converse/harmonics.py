@@ -90,9 +90,9 @@ def _interval(where, value):
         _fail(where, "%d numbers" % len(ends), "give [low, high] or one number")
     ends = [_exact(where, end) for end in ends]
     try:
-        return _range("this", (ends[0], ends[-1]))
+        return _range("", (ends[0], ends[-1]))
     except ValueError as error:
-        _fail(where, error, "give [low, high] or one number")
+        _fail(where, str(error)[2:], "give [low, high] or one number")
 
 
 def _problem(value):

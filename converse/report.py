@@ -201,6 +201,8 @@ def _choices(problem):
     lines = []
     if problem.frame != IDENTITY:
         lines += ["Frame : the angles at the next time are " + frame_text(problem.frame, "v[%d]")]
+    if problem.dimension == 1:
+        lines += ["Circles : those that go around are graphs (Birkhoff), and times {J1 = 0} such tori"]
     if problem.kept is not None:
         lines += ["Alone : y%d, as no wave feels both angles; what only y%d feels was left out" % (
             problem.kept, 1 - problem.kept)]

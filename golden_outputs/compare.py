@@ -1,5 +1,5 @@
-"""Runs converse on every input, in both modes or with the flags that the input's comment names,
-and compares with the golden outputs.
+"""Runs converse on every input, in both modes, or with the flags that the input's comment names, or
+(JSON) with the sharper method, and compares with the golden outputs.
 
 With --update our own golden outputs are written anew.  What the thesis reports (thesis/) is
 verbatim and is compared with the run --as-printed.  Exit status 1: something differs.
@@ -49,6 +49,8 @@ def as_thesis(thesis):
 
 def modes(problem):
     """The modes of an input, each with its flags."""
+    if problem.suffix == ".json":
+        return {"loewner": ["--method", "loewner"]}
     flags = [line.split()[1:] for line in problem.read_text("utf-8").splitlines()
              if line.startswith(LOEWNER)]
     return {"loewner": flags[0]} if flags else MODES
@@ -68,7 +70,7 @@ def differences(expected, found, name):
 
 def main(update=False):
     bad = []
-    for problem in sorted(INPUTS.glob("*.in")):
+    for problem in sorted([*INPUTS.glob("*.in"), *INPUTS.glob("*.json")]):
         for mode, flags in modes(problem).items():
             name = "%s/%s.out" % (mode, problem.stem)
             found = run(mode, flags, problem)

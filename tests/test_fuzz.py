@@ -17,6 +17,7 @@ from hypothesis import strategies as st
 import converse
 from converse import InputError, Problem, Proof, check
 from converse.files import ConverseError
+from converse.problem import decimal_text
 from test_check import definite, sealed, tree_of, true_bound, with_field, with_tree
 from truth import TORTURE
 
@@ -47,7 +48,7 @@ def test_any_text_as_input(text):
         one_line(error)
     else:
         assert isinstance(problem, Problem) and all(half >= 0 for half in problem.half)
-        problem.decimals()
+        assert all(map(decimal_text, (*problem.centre, *problem.half)))
 
 
 @MANY
@@ -125,7 +126,8 @@ def test_any_change_of_a_backup(proof_bytes, tmp_path_factory, edits, seal, zipp
 @example(b"\x1f\x8b")
 @example(b"converse proof 1\n")
 @example(b"converse proof 2\n")
-@example(b"converse proof 2\ntree:\nend\n")
+@example(b"converse proof 3\n")
+@example(b"converse proof 3\ntree:\nend\n")
 def test_any_bytes_as_backup(tmp_path_factory, data):
     path = tmp_path_factory.getbasetemp() / ("bytes-%d" % os.getpid())
     path.write_bytes(data)

@@ -14,6 +14,7 @@ from fractions import Fraction
 import pytest
 
 from converse import ConverseError, Problem, Proof, growth, prove
+from converse.problem import decimal_text
 from truth import TORTURE
 
 
@@ -221,7 +222,7 @@ def test_dask_loses_a_worker(proof, tmp_path):
 def test_mpi(proof, tmp_path):
     pytest.importorskip("mpi4py")
     (tmp_path / "a.in").write_text("\n".join(
-        "%s %s" % pair for pair in zip(*LONG.decimals())) + "\n")
+        "%s %s" % tuple(map(decimal_text, pair)) for pair in zip(LONG.centre, LONG.half)) + "\n")
     environment = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1",
                        OMPI_MCA_rmaps_base_oversubscribe="1")
     subprocess.run(["mpiexec", "-n", "3", sys.executable, "-m", "mpi4py.futures", "-m",

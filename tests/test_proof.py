@@ -1,17 +1,20 @@
 """Proofs: what prove returns, the proof file, and continuing from it."""
 
 import gzip
+import hashlib
 import os
 import signal
 import threading
 import time
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
+from decimal import Decimal
 from fractions import Fraction
 
 import pytest
 
 from converse import ConverseError, Counts, Problem, Proof, Settings, check, core, files, growth, prove, read_input
+from converse.problem import IDENTITY, decimal_text
 from converse.tree import leaves
 from converse.version import __version__
 
@@ -485,3 +488,154 @@ def test_apart_is_not_together(root):
         half = prove(replace(problem, together=together), method="loewner", depth=8, stubborn=True)
         with pytest.raises(ConverseError, match="its together is %s, this one's is" % together):
             prove(replace(problem, together=not together), resume=half, depth=120)
+
+
+# ---- format 3, and 2 before it
+
+def resealed(text):
+    head = text[:text.index("checksum: ")]
+    return head + "checksum: sha256 %s\nend\n" % hashlib.sha256(head.encode("utf-8")).hexdigest()
+
+
+def as_format_2(path, problem):
+    """Makes of a proof file of the thesis's kind what an earlier release would have written."""
+    lines = path.read_text("utf-8").replace("converse proof 3", "converse proof 2").split("\n")
+    lines = [line for line in lines if line.split(": ")[0] not in (
+        "wave", "frame", "alone", "odd about")]
+    numbers = zip("abc", map(decimal_text, problem.centre), map(decimal_text, problem.half))
+    lines[4:4] = ["together: " + ("yes" if problem.together else "no")] + ["%s: %s %s" % it for it in numbers]
+    path.write_text(resealed("\n".join(lines).replace("at once: upper end", "at once: yes")), "utf-8")
+
+
+@pytest.mark.parametrize("together", [False, True])
+def test_format_2_is_read_and_continued(root, tmp_path, together):
+    path = tmp_path / "old.proof"
+    problem = replace(read_input(root / "inputs" / "trig180.in"), together=together)
+    half = prove(problem, method="loewner", depth=8, stubborn=True, backup=path)
+    as_format_2(path, problem)
+    old = Proof.load(path)
+    assert old == replace(half, seconds=old.seconds) and old.at_once == together
+    whole = prove(resume=path, depth=120)
+    assert whole.no_tori and whole.tree == prove(problem, method="loewner", stubborn=True).tree
+    assert path.read_text().startswith("converse proof 3\n")
+    assert Proof.load(path) == timeless(whole)
+
+
+def test_format_2_knew_of_no_frames(tmp_path):
+    """What was grown in the angles themselves, with all waves, is continued so."""
+    for problem in Problem(0, 0, "0.6"), Problem("1.1", "0.1", 0):
+        path = tmp_path / ("%d.proof" % bool(problem.a[0]))
+        plain = replace(problem, axes=IDENTITY, alone="no")
+        half = prove(plain, method="loewner", depth=3, stubborn=True, backup=path)
+        as_format_2(path, plain)
+        assert Proof.load(path).problem == plain != problem
+        for asked in None, problem, plain:
+            again = prove(asked, resume=Proof.load(path), depth=9)
+            assert again.problem == plain and len(again.tree) > len(half.tree)
+
+
+PATCHES = {
+    "thesis": Problem(("0.4", "0.5"), "0.4", ("0.4", "0.5")),
+    "segment": Problem.patch(["0.4", "0.4", "0.4"], [["0.01", "-0.01", 0]]),
+    "frame": Problem(0, 0, ("0.4", "0.5")), "no frame": replace(Problem(0, 0, "0.5"), axes=IDENTITY),
+    "other frame": replace(Problem(0, 0, "0.5"), axes=(2, 1, -1, -1)),
+    "alone": Problem("0.5", ("0.3", "0.4"), 0), "both": replace(Problem("0.5", "0.3", 0), alone="no"),
+    "other alone": replace(Problem("0.5", "0.3", 0), alone=1), "part": Problem(1, 1, 1, v0=(0, "0.5")),
+    "waves": Problem.patch(["0.4", "-1e-30"], [["1e-9", 0], [0, "12.5"], ["7", "-7"]],
+                           [(1, 0, "1/3"), (-7, 100, "-1/2")], v1=("0.25", "4/3"), comments="c"),
+    "circle": Problem.patch(["0.4"] * 16, (), [(k, 0, "1/7") for k in range(1, 17)])}
+
+
+@pytest.mark.parametrize("name", PATCHES)
+def test_every_problem_has_a_file(made_up, tmp_path, name):
+    problem = PATCHES[name]
+    for at_once in False, True:
+        proof = replace(made_up("0PP", method="loewner"), problem=problem, at_once=at_once,
+                        constants={"B": "3.5"}, seconds=0)
+        proof.save(tmp_path / "a.proof")
+        assert Proof.load(tmp_path / "a.proof") == proof
+        text = (tmp_path / "a.proof").read_text()
+        assert ("\nat once: %s\n" % (
+            "no" if not at_once else "upper end" if len(problem.parts) == 1 else "yes")) in text
+        assert text.count("\nwave: ") == len(problem.waves)
+    assert proof.report() and repr(problem) and proof.figure(tmp_path / "a.ps") is None
+
+
+def test_what_a_file_says(made_up, tmp_path):
+    replace(made_up("0PP", method="loewner"), problem=PATCHES["waves"]).save(tmp_path / "a.proof")
+    lines = (tmp_path / "a.proof").read_text().split("\n")
+    assert "wave: 1 0 1/3 0.4 0.000000001 0 7" in lines or "wave: 1 0 1/3 0.4 1E-9 0 7" in lines
+    assert "wave: -7 100 -1/2 -1E-30 0 12.5 -7" in lines and "frame: 1 0 0 1" in lines
+    assert "alone: no" in lines and any(line.startswith("odd about: ") for line in lines)
+    replace(made_up("0PP"), problem=PATCHES["frame"]).save(tmp_path / "b.proof")
+    assert "frame: 1 0 -1 1" in (tmp_path / "b.proof").read_text().split("\n")
+    replace(made_up("0PP"), problem=PATCHES["alone"]).save(tmp_path / "c.proof")
+    assert "alone: 0" in (tmp_path / "c.proof").read_text().split("\n")
+
+
+@pytest.mark.parametrize("line, new", [
+    ("frame", "frame: 1 1 1 1"), ("frame", "frame: 1 0 0"), ("frame", "frame: one"), ("frame", ""),
+    ("alone", "alone: 0"), ("alone", "alone: maybe"), ("alone", ""), ("odd about", ""),
+    ("wave", "wave: 1 0 0 0.3"), ("wave", "wave: 0 0 0 0.3 0 0 0"), ("wave", "wave: 1 0"),
+    ("wave", "wave: 0 1 0 0.3 0 0 0"), ("wave", "wave: 1.5 0 0 0.3 0 0 0"), ("wave", "wave: 1 0 0 1/3 0 0 0"),
+    ("wave", "wave: 101 0 0 0.3 0 0 0"), ("wave", "wave: 1 0 x 0.3 0 0 0"), ("v0", "v0: 1 -1"),
+    ("v0", "v0: 1"), ("v0", "")])
+def test_a_header_that_makes_no_sense(made_up, tmp_path, line, new):
+    path = tmp_path / "a.proof"
+    made_up("0PP").save(path)
+    lines = path.read_text().split("\n")
+    at = next(n for n, text in enumerate(lines) if text.startswith(line + ": "))
+    lines[at:at + 1] = [new] if new else []
+    path.write_text(resealed("\n".join(lines)))
+    with pytest.raises(ConverseError, match="a.proof, line [0-9]+: .*makes no sense") as caught:
+        Proof.load(path)
+    assert "\n" not in str(caught.value)
+
+
+def test_another_patch_is_refused(tmp_path):
+    problem = Problem.patch(["0.45"] * 3, [["0.01", "0.01", 0], [0, 0, "0.01"]])
+    half = prove(problem, method="loewner", depth=2, stubborn=True)
+    for other in (Problem.patch(["0.45"] * 3, [["0.01", "0.01", 0], [0, 0, "0.02"]]),
+                  replace(problem, axes=(0, 1, 1, 0))):
+        with pytest.raises(ConverseError, match="its (potential|frame) is .*, this one's is "):
+            prove(other, resume=half)
+    with pytest.raises(ConverseError, match="its .* is .*, this one's is "):
+        prove(Problem("0.45", "0.45", "0.45"), resume=half)
+    assert prove(problem, resume=half, depth=60).no_tori
+
+
+def test_the_method_of_1989_takes_ranges_only():
+    for problem, words in ((Problem(1, 1, 1, together=True), "move together"),
+                           (Problem.patch([1], waves=[(1, 0)]), "method loewner")):
+        with pytest.raises(ValueError, match=words):
+            prove(problem)
+    for problem in Problem(0, 0, 2), Problem(2, 2, 0):      # in no frame, and with all waves
+        proof = prove(problem, time_limit=5)
+        assert proof.problem.frame == IDENTITY and proof.problem.kept is None
+        assert prove(problem, resume=proof).tree == proof.tree
+
+
+# ---- a point x* of one's own
+
+def test_a_point_of_ones_own(problem, tmp_path):
+    point = Problem("0.45", "0.45", "0.45")
+    for xstar in (("0.8", "0.95"), (Fraction(4, 5), Decimal("0.95"))):
+        proof = prove(point, method="loewner", xstar=xstar, backup=tmp_path / ("%s" % type(xstar[0])))
+        assert proof.no_tori and tuple(map(Fraction, proof.xstar)) == (Fraction("0.8"), Fraction("0.95"))
+    assert prove(point, method="loewner").xstar != proof.xstar
+    assert prove(problem, xstar=(0, 2), depth=2).xstar == ("0", "2")
+    half = prove(point, method="loewner", xstar=("0.8", "0.95"), depth=2)
+    assert prove(resume=half, xstar=("0.80", "95e-2"), depth=60).no_tori
+    with pytest.raises(ConverseError, match=r"its x\* is 0.8 0.95, this one's is 0.8 0.9;"):
+        prove(resume=half, xstar=("0.8", "0.9"), depth=60)
+    nothing = prove(point, method="loewner", xstar=("0.8", "0.95"), time_limit=0)
+    assert prove(resume=replace(nothing, xstar=None), xstar=("0.8", "0.9")).xstar == ("0.8", "0.9")
+
+
+@pytest.mark.parametrize("xstar, error", [
+    (5, ValueError), ("12", ValueError), ((1,), ValueError), ((1, 2, 3), ValueError),
+    ((1, 0.5), TypeError), ((1, None), TypeError), (("1", "x"), ValueError), (("1/3", 0), ValueError),
+    (("1e400", 0), ValueError), (("nan", 0), ValueError)])
+def test_a_point_that_is_none(problem, xstar, error):
+    with pytest.raises(error, match="xstar"):
+        prove(problem, xstar=xstar)

@@ -6,6 +6,7 @@ from dataclasses import replace
 import pytest
 
 from converse import Counts, Problem
+from converse.problem import IDENTITY
 from converse.report import header, verdict
 from converse.version import __version__
 
@@ -110,3 +111,58 @@ def test_a_loaded_proof_says_whence_it_is(made_up):
 def test_the_map_is_stated(made_up):
     for tree in "P", "U":
         assert "\nMap : y' = y + J', J' = J - dV(y), V(y) = -a sin y0" in made_up(tree).report()
+
+
+# ---- patches and other potentials
+
+def test_a_patch_is_named_exactly(made_up):
+    problem = Problem.patch(["0.4", "-1e-8", "2"], [["0.01", 0, "-1"], [0, "1.23456789", 0]],
+                            [(1, 0), (1, -1, "1/2"), (-2, 3, "-1/3")])
+    for tree, at_once in (("P", False), ("P", True), ("U", True)):
+        proof = replace(made_up(tree, method="loewner"), problem=problem, at_once=at_once)
+        text = verdict(proof)
+        assert text.startswith((
+            "I find no invariant tori" if tree == "P" else
+            "I could not decide whether there are invariant tori") + " for V(y) = - the sum of :\n"
+            "p sin(y0), p = 0.400000 + 0.010000 t[1]\n"
+            "p sin(y0 - y1 + 1/2 pi), p = -0.00000001 + 1.23456789 t[2]\n"
+            "p sin(-2 y0 + 3 y1 - 1/3 pi), p = 2.000000 - 1.000000 t[1]\n"
+            "for -1 < t[1], t[2] < 1\n")
+        assert ("Nor are there any for s times such p, s > 1." in text) == (tree == "P" and at_once)
+        assert "V(y) = - the sum of such waves\n" in text and "a sin y0" not in text
+    lines = header(problem).split("\n")
+    assert lines[1] == "p of sin(y0) : 4.00000000000000e-01 \t 1.00000000000000e-02"
+    assert lines[3] == "p of sin(-2 y0 + 3 y1 - 1/3 pi) : 2.00000000000000e+00 \t 1.00000000000000e+00"
+
+
+def test_one_parameter_has_an_upper_end(made_up):
+    proof = replace(made_up("P"), problem=Problem.patch([1], [["0.1"]], [(1, 1)]), at_once=True)
+    assert "Nor are there any for s times those p of t[1] = 1, s > 1.\n" in verdict(proof)
+    proof = replace(proof, problem=Problem.patch([1], [], [(1, 1)]))
+    assert "Nor are there any for s times such p, s > 1.\n" in verdict(proof)
+    assert "\np sin(y0 + y1), p = 1.000000\nNor" in verdict(proof)
+
+
+def test_circles(made_up):
+    problem = Problem.patch(["0.98", "0.1"], [["0.01", 0]], [(1, 0, "-1/2"), (2, 0)])
+    proof = replace(made_up("P"), problem=problem)
+    assert verdict(proof).startswith("I find no rotational invariant circles for V(y) = - the sum of :\n")
+    assert "\nCircles : " in verdict(proof) and "\nCircles : " not in made_up("P").report()
+    part = verdict(replace(proof, problem=replace(problem, v0=(0, 1))))
+    assert part.startswith("I find no rotational invariant circles whose successor of x* lies in the region :\n"
+                           "0.000000 < v[0] / pi < 1.000000\n")
+    assert "\nfor V(y) = - the sum of :\np sin(y0 - 1/2 pi), p = 0.980000 + 0.010000 t[1]\n" in part
+    assert verdict(replace(proof, tree="U")).startswith(
+        "I could not decide whether there are rotational invariant circles for V")
+
+
+@pytest.mark.parametrize("problem, words", [
+    (Problem(0, 0, 1), "Frame : the angles at the next time are (v[0], -v[0] + v[1])\n"),
+    (Problem.patch([1], [], [(3, -2)]), "Frame : the angles at the next time are (2 v[0] - v[1], 3 v[0] - 2 v[1])\n"),
+    (Problem(1, 1, 0), "Alone : y0, as no wave feels both angles; what only y1 feels was left out\n"),
+    (Problem(1, 2, 0), "Alone : y1, as no wave feels both angles; what only y0 feels was left out\n")])
+def test_what_was_chosen(made_up, problem, words):
+    text = verdict(replace(made_up("P"), problem=problem))
+    assert words in text and text.count("Frame : ") + text.count("Alone : ") == 1
+    plain = verdict(replace(made_up("P"), problem=replace(problem, axes=IDENTITY, alone="no")))
+    assert plain == text.replace(words, "")
