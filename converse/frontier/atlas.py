@@ -24,10 +24,11 @@ Place = Tuple[Fraction, ...]
 
 
 class Node:
-    """A cell of the tree: cut across an axis into two halves, or a leaf of some kind.
+    """A cell of the tree: a leaf of some kind unless it is cut, across an axis, into two halves.
+    Whatever interrupts the program, each is one or the other.
 
     proof: of a leaf P, the tree of its prisms and what it is a proof with, as plain data.
-    tried: of an open leaf, how many prisms were spent on it in vain, about."""
+    tried: of an open leaf, how many prisms may have been spent on it in vain."""
 
     __slots__ = ("cell", "kind", "axis", "halves", "proof", "tried")
 
@@ -36,9 +37,13 @@ class Node:
         self.proof, self.tried = None, 0
 
     def cut(self, axis):
-        self.kind, self.axis = "", axis
+        self.axis = axis
         self.halves = tuple(map(Node, self.cell.halves(axis)))
         return self.halves
+
+    def decide(self, kind, proof):
+        self.proof = proof
+        self.kind = kind
 
     def nodes(self) -> "Iterator[Node]":
         """All below and itself, in preorder."""
@@ -164,6 +169,11 @@ class Map:
         lines += ["SHA-256 : " + self.sha256] if self.sha256 else []
         return "\n".join(lines) + "\n"
 
+    def draw(self, path: Union[str, "os.PathLike[str]"]) -> None:
+        """Draws it: SVG, PNG or PDF, by the name of the file (matplotlib)."""
+        from . import figure
+        figure.draw(self, path)
+
     def __repr__(self):
         return "<Map of %s: %d cells proved, %d at once, %d open>" % (
             self.region, *map(self.count, (PROVED, AT_ONCE, OPEN)))
@@ -176,9 +186,11 @@ class Map:
             faces.append({
                 "directions": [list(map(str, d)) for d in directions],
                 "radius": str(RADIUS),
-                "tree": "".join(node.kind or str(node.axis) for node in nodes),
+                "tree": "".join(str(node.axis) if node.halves else node.kind
+                                for node in nodes),
                 "proofs": [node.proof for node in nodes if node.kind == PROVED],
-                "tried": [node.tried for node in nodes if node.kind == OPEN],
+                "tried": [node.tried for node in nodes
+                          if node.kind == OPEN and not node.halves],
                 "estimate": [[*map(decimal_text, place), radius]
                              for place, radius in sorted(estimate.items())]})
         data = {"format": FORMAT, "program": "converse " + self.version, "region": self.region,
@@ -238,10 +250,8 @@ def _grow(tree, face):
             continue
         if kind not in (PROVED, AT_ONCE, OPEN, OUTSIDE):
             raise ValueError("'%s' is not a kind of cell" % kind)
-        node.kind = kind
-        if kind == PROVED:
-            node.proof = next(proofs)
-        elif kind == OPEN:
+        node.decide(kind, next(proofs) if kind == PROVED else None)
+        if kind == OPEN:
             node.tried = next(tried)
     if todo:
         raise ValueError("the tree of cells ends too early")

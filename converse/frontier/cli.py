@@ -80,14 +80,14 @@ class Progress:
 
 def run(options):
     from .atlas import Map
-    from .search import explore_region
+    from .search import explore
 
     graphics = options.graphics
     if graphics is not None:
-        from . import figure
-
         if files.same(graphics, options.map):
             raise ConverseError("the picture would overwrite '%s'; name another file" % graphics)
+        from . import figure
+
         figure.check(graphics)
     if not options.plane and not options.restore:
         if options.down_to is not None:
@@ -95,14 +95,14 @@ def run(options):
         atlas = Map.load(options.map)
     else:
         with contextlib.closing(Progress()) as progress, workers(options) as (executor, jobs):
-            atlas = explore_region(
+            atlas = explore(
                 options.plane, options.down_to, path=options.map, resume=options.restore,
                 jobs=jobs, executor=executor, time_limit=options.time_limit, progress=progress)
         if not atlas.sha256:
             raise ConverseError("what was found is not saved")
     say(atlas.report())
     if graphics is not None:
-        figure.draw(atlas, graphics)
+        atlas.draw(graphics)
     return 0 if atlas.complete else 1
 
 

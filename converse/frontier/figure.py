@@ -30,10 +30,23 @@ def largest(p):
     return ((p0 + p1) / 2 + both + np.hypot((p0 - p1) / 2, both)).max((-1, -2))
 
 
-def draw(atlas, path):
-    """Draws a map in a file; ConverseError: matplotlib is missing, or the file cannot be written."""
+def check(path):
+    """The format of a picture; ConverseError: it cannot be drawn there."""
     kind = format_of(path)
+    if kind not in picture.FORMATS:
+        raise files.ConverseError("%s: a map is drawn as %s; name the picture so"
+                                  % (path, ", ".join("." + each for each in picture.FORMATS)))
+    files.check_writable(path)
     picture.check()
+    return kind
+
+
+def draw(atlas, path):
+    """Draws a map in a file; ConverseError: it cannot be drawn, or the map is not yet begun."""
+    kind = check(path)
+    if not all(atlas.estimate):
+        raise files.ConverseError("the map has nothing to draw yet: it was left while the frontier "
+                                  "was estimated; continue it with -r")
     from matplotlib import style
     from matplotlib.figure import Figure
 

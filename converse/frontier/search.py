@@ -12,7 +12,7 @@ from typing import Callable, Optional
 from .. import core
 from ..backup import Keeper
 from ..files import ConverseError
-from ..growth import count_workers
+from ..growth import ATTEMPTS, count_workers
 from ..problem import Number, Problem, exact
 from ..run import Path
 from ..settings import Settings
@@ -71,7 +71,7 @@ def _grow(problem, most, stop):
     return "".join(pieces), leaves, begun
 
 
-def explore(directions, cell, most, stop=None):
+def attempt(directions, cell, most, stop=None):
     """Tries to prove a cell."""
     stop = stop or core.stop_token()
     point = region.direction(directions, cell.middle[1:])
@@ -136,11 +136,10 @@ def frontier(directions, place, stop=None):
 
 # ---- the search
 
-def explore_region(name: Optional[str] = None, down_to: Optional[Number] = None, *, path: Path,
-                   resume: bool = False, jobs: Optional[int] = None,
-                   executor: Optional[concurrent.futures.Executor] = None,
-                   time_limit: float = math.inf,
-                   progress: Optional[Callable[[float, Map], None]] = None) -> Map:
+def explore(name: Optional[str] = None, down_to: Optional[Number] = None, *, path: Path,
+            resume: bool = False, jobs: Optional[int] = None,
+            executor: Optional[concurrent.futures.Executor] = None, time_limit: float = math.inf,
+            progress: Optional[Callable[[float, Map], None]] = None) -> Map:
     """Proves what can be proved of a region, and returns the Map, which is kept in a file.
 
     name: "b=0", "a=b", "c=0" or "sphere".  down_to: how near to the estimated frontier to come, as
@@ -185,7 +184,8 @@ class _Search:
         self.stop = core.stop_token()
         self.began = time.monotonic() - atlas.seconds
         self.end = time.monotonic() + time_limit
-        self.queue, self.order, self.running = [], itertools.count(), {}
+        self.queue, self.order = [], itertools.count()
+        self.running = {}                   # future -> (task, attempts left)
         self.won, self.share = 0.0, 0.0
 
     def run(self):
@@ -195,6 +195,8 @@ class _Search:
                 self._explore()
         finally:
             self.stop[0] = 1
+            for future in self.running:
+                future.cancel()
             if self.threads:
                 self.threads.shutdown()
             self.map.seconds = time.monotonic() - self.began
@@ -205,20 +207,37 @@ class _Search:
     def late(self):
         return time.monotonic() >= self.end
 
+    def _submit(self, task, attempts=ATTEMPTS):
+        call, _, *arguments = task
+        stop = [self.stop] if self.threads else []          # it cannot leave the process
+        try:
+            self.running[self.executor.submit(call, *arguments, *stop)] = task, attempts
+        except RuntimeError as error:
+            raise ConverseError("the workers are gone (%s)" % error) from None
+
     def _work(self, next_task, take):
         """Hands out tasks (call, key, *arguments) and takes what comes back, until there are no
         more or there is no time."""
         task = next_task()
         while (task or self.running) and not self.late:
             while task and len(self.running) <= self.jobs:      # one is to be at hand
-                call, key, *arguments = task
-                stop = [self.stop] if self.threads else []      # it cannot leave the process
-                self.running[self.executor.submit(call, *arguments, *stop)] = key
+                self._submit(task)
                 task = next_task()
             done, _ = concurrent.futures.wait(self.running, LOOK_SECONDS,
                                               concurrent.futures.FIRST_COMPLETED)
             for future in done:
-                take(self.running.pop(future), future.result())
+                finished, attempts = self.running.pop(future)
+                try:
+                    result = future.result()
+                except (ConverseError, MemoryError):
+                    raise
+                except Exception as error:                      # a worker died
+                    if attempts == 1:
+                        raise ConverseError("the workers keep failing (%s: %s)"
+                                            % (type(error).__name__, error)) from None
+                    self._submit(finished, attempts - 1)
+                else:
+                    take(finished[1], result)
             self.map.seconds = time.monotonic() - self.began
             self.keeper.keep(lambda: self.map)
             if self.progress:
@@ -253,7 +272,7 @@ class _Search:
                 return None
             node = heapq.heappop(self.queue)[-1]
             most = MORE * node.tried or FIRST
-            return explore, (node, most), self.map.directions[node.cell.face], node.cell, most
+            return attempt, (node, most), self.map.directions[node.cell.face], node.cell, most
 
         def take(key, outcome):
             self._take(*key, outcome)
@@ -295,7 +314,7 @@ class _Search:
     def _take(self, node, most, outcome):
         """What became of a cell."""
         cell = node.cell
-        node.kind, node.proof = outcome.kind, outcome.proof
+        node.decide(outcome.kind, outcome.proof)
         if outcome.kind != OPEN:
             self.won += self.map.area(cell)
             return
