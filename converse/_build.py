@@ -7,8 +7,10 @@ from cffi import FFI
 
 SOURCES = ["numbers/apm", "numbers/special", "numbers/guard", "numbers/machine",
            "thesis/start", "thesis/region", "thesis/rigorous", "thesis/double",
-           "loewner/problem", "loewner/start", "loewner/scalar", "loewner/baseline", "loewner/avx2",
-           "loewner/avx512", "torus", "setup", "search", "kernels",
+           "loewner/problem", "loewner/start",
+           *("loewner/" + kind + name for kind in ("", "general_")
+             for name in ("scalar", "baseline", "avx2", "avx512")),
+           "torus", "setup", "search", "kernels",
            "orbits/potential", "orbits/band", "orbits/relax", "orbits/measure", "orbits/enclose",
            "orbits/minplus"]
 SOURCES = ["csrc/%s.c" % name for name in SOURCES]

@@ -3,10 +3,12 @@
 import threading
 from dataclasses import asdict, dataclass, fields
 from decimal import Decimal
+from fractions import Fraction
+from types import SimpleNamespace
 from typing import Dict, List, Optional, Tuple
 
 from .files import ConverseError
-from .problem import Problem
+from .problem import Problem, decimal_text
 from .settings import Settings
 
 try:
@@ -156,20 +158,56 @@ class History:
                    for _, cuts, hint in cells)
 
 
+def waves_of(problem):
+    """A problem of the thesis's as native_problem takes it."""
+    parts = [tuple(half if wave == k or problem.together else Fraction(0)
+                   for wave, half in enumerate(problem.half[:3])) for k in range(3)]
+    return SimpleNamespace(
+        waves=((1, 0, Fraction(0)), (0, 1, Fraction(0)), (1, 1, Fraction(0))),
+        amplitude=problem.centre[:3], parts=tuple(parts[:1] if problem.together else parts),
+        v0=problem.v0, v1=problem.v1, frame=(1, 0, 0, 1), odd=True)
+
+
+def native_text(text, owners):
+    """A string of the C core's, which lives as long as owners."""
+    owners.append(ffi.new("char[]", text.encode("ascii")))
+    return owners[-1]
+
+
+def native_problem(problem, owners):
+    """A problem as the C core takes it, which lives as long as owners."""
+    def text(x):
+        return native_text(decimal_text(x), owners)
+
+    waves = ffi.new("cv_wave[]", [
+        {"k": wave[:2], "phase": native_text(_nearly(wave[2]), owners), "amplitude": text(p),
+         "part": [text(part[i]) for part in problem.parts]}
+        for i, (wave, p) in enumerate(zip(problem.waves, problem.amplitude))])
+    owners.append(waves)
+    ends = problem.v0, problem.v1
+    return ffi.new("cv_problem *", {
+        "n_waves": len(problem.waves), "n_parameters": len(problem.parts), "waves": waves,
+        "angle": [text((low + high) / 2) for low, high in ends],
+        "half": [text((high - low) / 2) for low, high in ends],
+        "frame": problem.frame, "odd": bool(problem.odd)})
+
+
+def _nearly(phase):
+    """A rational number as a decimal, to less than 10^-40."""
+    scale = 10 ** 41
+    return decimal_text(Fraction(phase.numerator * scale // phase.denominator, scale))
+
+
 class Search:
     """A search in the C core."""
 
     def __init__(self, task):
-        def strings(texts):
-            owners.extend(ffi.new("char[]", text.encode("ascii")) for text in texts)
-            return ffi.new("char *[]", owners[-len(texts):])
-
         owners, settings = [], task.settings
         handle = ffi.new("cv_search **")
         check(lib.cv_search_new(
-            handle, *map(strings, task.problem.decimals()),
-            strings(task.xstar) if task.xstar else ffi.NULL, METHODS[settings.method],
-            task.problem.together, settings.digits, settings.depth, settings.stubborn,
+            handle, native_problem(waves_of(task.problem), owners),
+            [native_text(x, owners) for x in task.xstar] if task.xstar else ffi.NULL,
+            METHODS[settings.method], settings.digits, settings.depth, settings.stubborn,
             settings.as_printed))
         self.handle = ffi.gc(handle[0], lib.cv_search_free)
         self.task = task

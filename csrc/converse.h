@@ -40,7 +40,7 @@ typedef struct {             /* the statistics of the report; names from the the
 enum { CV_THESIS, CV_LOEWNER };                       /* methods */
 
 /* A prism of the tree: along axis k it is slice index[k] of the 2^cuts[k] equal slices of the
-   root.  Axes: 0, 1 the angles v0, v1; 2, 3, 4 the parameters a, b, c or, together, 2 for all. */
+   root.  Axes: 0, 1 the angles v0, v1; 2, 3, 4 the parameters t_1, t_2, t_3. */
 typedef struct {
     unsigned long long index[5];
     int cuts[5];
@@ -56,16 +56,34 @@ typedef struct { int nodes[128][16], cut[128][16], became[16][16]; } cv_history;
 
 typedef struct cv_search cv_search;
 
-/* A new search.  region[0..4] and half[0..4]: centre and half-width of a, b, c, v0, v1 as in the
-   input file, that is, angles in units of pi; the search covers an enclosure of that region.
-   together: the parameters move together, from all lower to all upper ends (method Loewner).
+/* A wave of the potential V, -p sin(k.y + phase), whose amplitude p moves with the parameters, each
+   in [-1, 1]: p = amplitude + t_1 part[0] + t_2 part[1] + t_3 part[2]. */
+typedef struct {
+    int k[2];
+    const char *phase;       /* in units of pi; it may be off by 10^-40 */
+    const char *amplitude;
+    const char *part[3];
+} cv_wave;
+
+/* A patch of parameter space, and the region of x_1 = frame v = (frame[0] v0 + frame[1] v1,
+   frame[2] v0 + frame[3] v1), of determinant 1 or -1. */
+typedef struct {
+    int n_waves, n_parameters;          /* 1 to 16, and 0 to 3 */
+    const cv_wave *waves;
+    const char *angle[2], *half[2];     /* centre and half-width of v0, v1 in units of pi */
+    int frame[4];
+    int odd;                            /* is V odd about some point?  Else nothing is at once */
+} cv_problem;
+
+/* A new search; it covers an enclosure of the problem's region.  The thesis's waves are (1, 0),
+   (0, 1) and (1, 1) in this order, without phases; its method takes only these, as they are, each
+   with a parameter of its own, and no other frame.
    xstar: the two coordinates of the starting point, or NULL to have one chosen.
    On success *s must be freed with cv_search_free.  It begins with the root as its only prism.
 
    stop, below: NULL, or where another thread may write a 1 to have the call return soon. */
-int cv_search_new(cv_search **s, const char *const region[5], const char *const half[5],
-                  const char *const xstar[2], int method, int together, int dp, int depth,
-                  int stubborn, int as_printed);
+int cv_search_new(cv_search **s, const cv_problem *problem, const char *const xstar[2], int method,
+                  int dp, int depth, int stubborn, int as_printed);
 void cv_search_free(cv_search *s);
 
 /* Sets up what every step needs, the bounds over the torus first of all.  CV_RUNNING: it was
@@ -96,8 +114,8 @@ const cv_history *cv_get_history(const cv_search *s);
 int cv_class(int from);                                    /* of a cell with this from */
 int cv_lanes(const cv_search *s);                          /* prisms that are tried at once */
 int cv_symmetric(const cv_search *s);                      /* are mirror images skipped? */
-/* Method Loewner: is B > 10/3 for all parameters (together: at the upper end)?  Then the theorem
-   holds for every multiple s >= 1 of them, too. */
+/* Method Loewner, V odd: 1 if B > 10/3 for all parameters; 2 if there is one, and this is so at its
+   upper end t_1 = 1.  Then the theorem holds for every multiple s >= 1 of these amplitudes, too. */
 int cv_at_once(const cv_search *s);
 /* Numbers of the search as exact decimals; the caller frees.  which: 0, 1 the starting point;
    2 T, 3 Tr_-, 4 Tr_+, 5 B, 6 lambda_-min, 7 lambda_-max (thesis, section 3.3.4; 5 alone with the

@@ -141,6 +141,28 @@ static int follow_to(loewner *w, double n)
     return loewner_follow(w, n < 0.0 ? (int)n : 0, n > 0.0 ? (int)n : 0);
 }
 
+/* The patch of a loewner kernel's arguments, which it borrows to read, and so it does a zero. */
+static void set_patch(patch *b, apm_t in[], int together, const apm_t zero)
+{
+    memset(b, 0, sizeof *b);
+    b->n_waves = 3;
+    b->n_parameters = together ? 1 : 3;
+    b->frame[0] = b->frame[3] = 1;
+    for (int i = 0; i < 3; i++) {
+        b->k[i][0] = i != 1;
+        b->k[i][1] = i != 0;
+        *b->phase[i] = *zero;
+        *b->amplitude[i] = *in[i];
+        for (int m = 0; m < b->n_parameters; m++)
+            *b->part[i][m] = together || m == i ? *in[5 + i] : *zero;
+    }
+    for (int i = 0; i < 2; i++) {
+        *b->angle[i] = *in[3 + i];
+        *b->half[i] = *in[8 + i];
+        *b->xstar[i] = *in[10 + i];
+    }
+}
+
 /* The routines of loewner.h; all take doubles only, and begin with centres and half-widths of a, b,
    c, v0, v1, x* and together (0 or 1).
    loewner_cell: ..., index and cuts of five axes -> centres and widths of v0, v1; p, h and loose
@@ -171,7 +193,8 @@ static int loewner_kernel(const char *name, int nin, apm_t in[], int nout, apm_t
     loewner_point p;
     loewner *w;
     clock_t begin;
-    box b;
+    patch b;
+    apm_t zero;
 
     while (which < N_SHAPES && strcmp(name, shapes[which].name) != 0)
         which++;
@@ -184,13 +207,10 @@ static int loewner_kernel(const char *name, int nin, apm_t in[], int nout, apm_t
                                         : which == STEP && j > 0 ? 1e9 : SITES);
     if (!good)
         return CV_EARITHMETIC;
-    for (int j = 0; j < 5; j++) {                       /* borrowed, and only read */
-        *b.centre[j] = *in[j];
-        *b.half[j] = *in[5 + j];
-    }
-    *b.xstar[0] = *in[10];
-    *b.xstar[1] = *in[11];
-    w = loewner_new(&b, x[12] != 0.0, which != ORBIT && which != STEP);
+    apm_init(zero);
+    set_patch(&b, in, x[12] != 0.0, zero);
+    w = loewner_new(&b, which != ORBIT && which != STEP);
+    apm_clear(zero);
     if (w == NULL)
         return CV_ENOMEM;
     if (which != STEP)
@@ -202,7 +222,15 @@ static int loewner_kernel(const char *name, int nin, apm_t in[], int nout, apm_t
             cell.cuts[j] = (int)fmin(fabs(more[5 + j]), 100.0);
         }
         good = loewner_prism(w, &cell, &prism);
-        memcpy(y, &prism, sizeof prism);
+        memcpy(y, prism.v, sizeof prism.v);
+        memcpy(y + 2, prism.width, sizeof prism.width);
+        for (int j = 0; j < 3; j++) {
+            y[4 + j] = prism.p[j];
+            y[7 + j] = prism.part[j][x[12] != 0.0 ? 0 : j];
+            y[10 + j] = prism.loose[j];
+        }
+        y[13] = prism.l;
+        memcpy(y + 14, prism.corner, sizeof prism.corner);
         break;
     case ORBIT:
         good = follow_to(w, more[0]);

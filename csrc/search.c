@@ -402,7 +402,7 @@ int cv_restart(cv_search *s, int n, const cv_cell *cells)
 /* The nodes of a tree that was grown before are counted, and leave their untried prisms. */
 static int take_up(cv_search *s, const char *tree, size_t length, cv_cell **untried, int *n)
 {
-    const int axes = s->method == CV_THESIS ? 2 : s->together ? 3 : AXES;
+    const int axes = s->method == CV_THESIS ? 2 : 2 + s->problem.n_parameters;
     int allocated = 0;
 
     for (size_t j = 0; j < length; j++) {
@@ -483,9 +483,10 @@ char *cv_constant(const cv_search *s, int which)
     char *volatile text = NULL;
 
     if (setjmp(g.here) == 0 && which >= 0 && which < 12 && (which < 2 || s->prepared))
-        text = apm_get_str(which < 2 ? s->root.xstar[which] : which < 8 ? s->constants[which - 2]
-                           : which % 2 == 0 ? s->root.centre[3 + (which - 8) / 2]
-                                            : s->root.half[3 + (which - 8) / 2]);
+        text = apm_get_str(which < 2 ? s->problem.xstar[which]
+                           : which < 8 ? s->constants[which - 2]
+                           : which % 2 == 0 ? s->problem.angle[(which - 8) / 2]
+                                            : s->problem.half[(which - 8) / 2]);
     guard_arm(before);
     return text;
 }

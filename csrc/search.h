@@ -18,7 +18,8 @@ struct cv_search {
     Runit *exact;                       /* method thesis */
     unit *quick;
     loewner *sharp;                     /* method Loewner */
-    box root, prism;                    /* prism: the cell at hand, for the thesis's method */
+    patch problem;
+    box root, prism;                    /* method thesis: all, and the cell at hand */
     cv_cell *stack;
     int *noted;                         /* of each cell on the stack: its note, or -1 */
     int pending, allocated;             /* cells on the stack; room for */
@@ -30,7 +31,7 @@ struct cv_search {
     cv_counts counts, before;           /* before: as it was when the node at hand was begun */
     cv_history history;
     apm_t constants[N_CONSTANTS], t[2];
-    int method, dp, depth, stubborn, as_printed, together, symmetric, at_once;
+    int method, dp, depth, stubborn, as_printed, symmetric, at_once;
     int prepared, spoilt, last_steps, status;        /* spoilt: setting up was broken off */
 };
 

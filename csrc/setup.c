@@ -13,29 +13,44 @@
 
 enum { MAX_DP = 100000, MAX_DEPTH = 100000 };
 enum { MOST = 300 };                    /* no number of a problem is beyond 10^MOST */
+enum { MOST_K = 100 };                  /* of a wave, and of the frame */
+enum { PHASE_PLACES = 50 };             /* of pi, for phases */
 enum { PI_SHORT = 5 };                  /* see region.c */
 
-static const int THESIS_WAVES[3][2] = { { 1, 0 }, { 0, 1 }, { 1, 1 } };
-
-static void box_init(box *b)
+static void for_box(box *b, void (*what)(apm_t))
 {
     for (int j = 0; j < 5; j++) {
-        apm_init(b->centre[j]);
-        apm_init(b->half[j]);
+        what(b->centre[j]);
+        what(b->half[j]);
     }
-    apm_init(b->xstar[0]);
-    apm_init(b->xstar[1]);
-    b->n_cuts = 0;
+    what(b->xstar[0]);
+    what(b->xstar[1]);
 }
 
-static void box_clear(box *b)
+static void for_patch(patch *p, void (*what)(apm_t))
 {
-    for (int j = 0; j < 5; j++) {
-        apm_clear(b->centre[j]);
-        apm_clear(b->half[j]);
+    for (int i = 0; i < MOST_WAVES; i++) {
+        what(p->phase[i]);
+        what(p->amplitude[i]);
+        for (int m = 0; m < PARAMETERS; m++)
+            what(p->part[i][m]);
     }
-    apm_clear(b->xstar[0]);
-    apm_clear(b->xstar[1]);
+    for (int j = 0; j < 2; j++) {
+        what(p->angle[j]);
+        what(p->half[j]);
+        what(p->xstar[j]);
+    }
+}
+
+static void for_search(cv_search *s, void (*what)(apm_t))
+{
+    for_patch(&s->problem, what);
+    for_box(&s->root, what);
+    for_box(&s->prism, what);
+    for (int j = 0; j < N_CONSTANTS; j++)
+        what(s->constants[j]);
+    what(s->t[0]);
+    what(s->t[1]);
 }
 
 /* After CV_ENOMEM the numbers are abandoned, not freed: see guard.c. */
@@ -47,12 +62,7 @@ void cv_search_free(cv_search *s)
         Runit_free(s->exact);
         unit_free(s->quick);
         loewner_free(s->sharp);
-        box_clear(&s->root);
-        box_clear(&s->prism);
-        for (int j = 0; j < N_CONSTANTS; j++)
-            apm_clear(s->constants[j]);
-        apm_clear(s->t[0]);
-        apm_clear(s->t[1]);
+        for_search(s, apm_clear);
     }
     free(s->stack);
     free(s->noted);
@@ -75,85 +85,265 @@ static void with_a_point(char *text)
     *end = '\0';
 }
 
-/* The problem as it is given, and the starting point. */
-static int read_problem(cv_search *s, const char *const region[5], const char *const half[5],
-                        const char *const xstar[2])
+/* A number of the problem. */
+static int read_number(apm_t x, const char *text)
 {
-    double abc[3], start[2];
-    const double phase[3] = { 0.0, 0.0, 0.0 };
-    const waves v = { 3, THESIS_WAVES, phase, abc };
-    char text[40];
-    apm_t most;
+    apm_t size, most;
     int status = CV_OK;
 
+    apm_init(size);
     apm_init(most);
     apm_set_si(most, 1, MOST);
-    for (int j = 0; j < 5 && status == CV_OK; j++) {
-        if (apm_set_str(s->root.centre[j], region[j]) != APM_OK ||
-            apm_set_str(s->root.half[j], half[j]) != APM_OK)
-            status = CV_ENUMBER;
-        apm_abs(s->t[0], s->root.centre[j]);
-        if (apm_cmp(s->t[0], most) > 0 || apm_cmp(s->root.half[j], most) > 0)
-            status = CV_ENUMBER;
-        if (apm_sgn(s->root.half[j]) < 0)
+    if (apm_set_str(x, text) != APM_OK)
+        status = CV_ENUMBER;
+    apm_abs(size, x);
+    if (apm_cmp(size, most) > 0)
+        status = CV_ENUMBER;
+    apm_clear(size);
+    apm_clear(most);
+    return status;
+}
+
+/* A phase in units of pi becomes one in radians, without whole turns. */
+static void reduce(apm_t phase)
+{
+    apm_t t;
+
+    apm_init(t);
+    apm_mul_si(t, phase, 5);
+    apm_scale(t, t, -1);
+    apm_floor(t, t);
+    apm_mul_si(t, t, -2);
+    apm_add(phase, phase, t);
+    apm_pi(t, PHASE_PLACES);
+    apm_mul(phase, phase, t);
+    apm_clear(t);
+}
+
+static int read_wave(patch *p, int i, const cv_wave *wave)
+{
+    int status = read_number(p->phase[i], wave->phase);
+
+    for (int j = 0; j < 2; j++)
+        p->k[i][j] = wave->k[j];
+    if (abs(wave->k[0]) > MOST_K || abs(wave->k[1]) > MOST_K || (!wave->k[0] && !wave->k[1]))
+        status = CV_EARGUMENT;
+    if (status == CV_OK)
+        status = read_number(p->amplitude[i], wave->amplitude);
+    for (int m = 0; m < p->n_parameters && status == CV_OK; m++)
+        status = read_number(p->part[i][m], wave->part[m]);
+    if (status == CV_OK)
+        reduce(p->phase[i]);
+    return status;
+}
+
+static int read_problem(patch *p, const cv_problem *given)
+{
+    const int *const f = given->frame;
+    int status = CV_OK;
+
+    if (given->n_waves < 1 || given->n_waves > MOST_WAVES || given->n_parameters < 0 ||
+        given->n_parameters > PARAMETERS)
+        return CV_EARGUMENT;
+    for (int j = 0; j < 4; j++) {
+        if (f[j] < -MOST_K || f[j] > MOST_K)
+            return CV_EARGUMENT;
+        p->frame[j] = f[j];
+    }
+    if (abs(f[0] * f[3] - f[1] * f[2]) != 1)
+        return CV_EARGUMENT;
+    p->n_waves = given->n_waves;
+    p->n_parameters = given->n_parameters;
+    p->odd = given->odd;
+    for (int i = 0; i < p->n_waves && status == CV_OK; i++)
+        status = read_wave(p, i, &given->waves[i]);
+    for (int j = 0; j < 2 && status == CV_OK; j++) {
+        status = read_number(p->angle[j], given->angle[j]);
+        if (status == CV_OK)
+            status = read_number(p->half[j], given->half[j]);
+        if (status == CV_OK && apm_sgn(p->half[j]) < 0)
             status = CV_EARGUMENT;
     }
-    apm_clear(most);
-    if (status != CV_OK)
-        return status;
-    s->symmetric = apm_cmp(s->root.centre[0], s->root.centre[1]) == 0 &&
-                   apm_cmp(s->root.half[0], s->root.half[1]) == 0 &&
-                   apm_cmp(s->root.centre[3], s->root.centre[4]) == 0 &&
-                   apm_cmp(s->root.half[3], s->root.half[4]) == 0;
-    for (int j = 0; j < 3; j++)
-        abc[j] = apm_get_d(s->root.centre[j]);
-    if (s->method == CV_LOEWNER)
+    return status;
+}
+
+/* Has each of the thesis's waves a parameter of its own? */
+static int independent(const patch *p)
+{
+    int good = thesis_waves(p) && p->n_parameters == 3;
+
+    for (int i = 0; i < 3 && good; i++)
+        for (int m = 0; m < 3; m++)
+            good = good && (m == i ? apm_sgn(p->part[i][m]) >= 0 : apm_sgn(p->part[i][m]) == 0);
+    return good;
+}
+
+/* Does the exchange of the coordinates leave these amplitudes, one of each wave, alone?  All that
+   waves of one kind add up to is what counts. */
+static int exchangeable(const patch *p, const apm_struct *const amplitude[MOST_WAVES])
+{
+    int good = 1;
+    apm_t sum;
+
+    apm_init(sum);
+    for (int i = 0; i < p->n_waves; i++) {
+        apm_set_si(sum, 0, 0);
+        for (int j = 0; j < p->n_waves; j++) {
+            if (apm_cmp(p->phase[i], p->phase[j]) != 0)
+                continue;
+            if (p->k[i][0] == p->k[j][0] && p->k[i][1] == p->k[j][1])
+                apm_add(sum, sum, amplitude[j]);
+            if (p->k[i][0] == p->k[j][1] && p->k[i][1] == p->k[j][0])
+                apm_sub(sum, sum, amplitude[j]);
+        }
+        good = good && apm_sgn(sum) == 0;
+    }
+    apm_clear(sum);
+    return good;
+}
+
+/* Does it map the patch and the region of x_1 to themselves?  Where the parameters are those of the
+   waves the first two change places; else none does. */
+static int is_symmetric(const patch *p)
+{
+    const apm_struct *vector[MOST_WAVES];
+    int good = is_identity(p->frame) && apm_cmp(p->angle[0], p->angle[1]) == 0 &&
+               apm_cmp(p->half[0], p->half[1]) == 0;
+
+    for (int i = 0; i < p->n_waves; i++)
+        vector[i] = p->amplitude[i];
+    good = good && exchangeable(p, vector);
+    if (good && independent(p))
+        return apm_cmp(p->part[0][0], p->part[1][1]) == 0;
+    for (int m = 0; m < p->n_parameters && good; m++) {
+        for (int i = 0; i < p->n_waves; i++)
+            vector[i] = p->part[i][m];
+        good = exchangeable(p, vector);
+    }
+    return good;
+}
+
+/* The amplitudes in the middle, or at_end where the parameters are 1. */
+static void amplitudes(const patch *p, int at_end, double to[MOST_WAVES])
+{
+    for (int i = 0; i < p->n_waves; i++) {
+        to[i] = apm_get_d(p->amplitude[i]);
+        for (int m = 0; m < p->n_parameters && at_end; m++)
+            to[i] += apm_get_d(p->part[i][m]);
+    }
+}
+
+/* Room for the potential in doubles. */
+typedef struct { double phase[MOST_WAVES], p[MOST_WAVES]; } potential_room;
+
+/* The potential in the middle, or at_end where the parameters are 1. */
+static waves potential(const patch *problem, int at_end, potential_room *room)
+{
+    for (int i = 0; i < problem->n_waves; i++)
+        room->phase[i] = apm_get_d(problem->phase[i]);
+    amplitudes(problem, at_end, room->p);
+    return (waves){ problem->n_waves, problem->k, room->phase, room->p };
+}
+
+/* The starting point of the program's choice. */
+static int choose_start(const cv_search *s, apm_t xstar[2])
+{
+    const int sharp = s->method == CV_LOEWNER;
+    potential_room room;
+    const waves v = potential(&s->problem, 0, &room);
+    double start[2];
+    char text[40];
+
+    if (sharp)
         loewner_start(&v, s->symmetric, start);
     else
-        set_LL_start(start, abc, s->symmetric);
+        set_LL_start(start, room.p, s->symmetric);
     for (int j = 0; j < 2; j++) {
-        if (xstar == NULL) {
-            snprintf(text, sizeof text, s->method == CV_LOEWNER ? "%.6f" : "%.17g", start[j]);
-            with_a_point(text);
-        }
-        if (apm_set_str(s->root.xstar[j], xstar == NULL ? text : xstar[j]) != APM_OK)
+        snprintf(text, sizeof text, sharp ? "%.6f" : "%.17g", start[j]);
+        with_a_point(text);
+        if (apm_set_str(xstar[j], text) != APM_OK)
             return CV_ENUMBER;
     }
-    if (apm_cmp(s->root.xstar[0], s->root.xstar[1]) != 0)
-        s->symmetric = 0;
     return CV_OK;
+}
+
+static int set_start(cv_search *s, const char *const xstar[2])
+{
+    int status = CV_OK;
+
+    s->symmetric = is_symmetric(&s->problem);
+    if (xstar == NULL)
+        status = choose_start(s, s->problem.xstar);
+    for (int j = 0; j < 2 && xstar != NULL; j++)
+        if (apm_set_str(s->problem.xstar[j], xstar[j]) != APM_OK)
+            status = CV_ENUMBER;
+    if (status == CV_OK && apm_cmp(s->problem.xstar[0], s->problem.xstar[1]) != 0)
+        s->symmetric = 0;
+    return status;
+}
+
+static int set_up(cv_search *s, const cv_problem *problem, const char *const xstar[2])
+{
+    const int status = read_problem(&s->problem, problem);
+
+    if (status != CV_OK)
+        return status;
+    if (s->method == CV_THESIS && !(independent(&s->problem) && is_identity(problem->frame)))
+        return CV_EARGUMENT;
+    return set_start(s, xstar);
+}
+
+/* Does the theorem hold at once, and for which parameters?  See converse.h. */
+static int find_at_once(const cv_search *s)
+{
+    const int one = s->problem.n_parameters == 1;
+    potential_room room;
+    const waves v = potential(&s->problem, one, &room);
+    double x[2];
+
+    if (!s->problem.odd)
+        return 0;
+    loewner_lowest(&v, x);
+    return loewner_at_once(s->sharp, x, 0) ? 1 : one && loewner_at_once(s->sharp, x, 1) ? 2 : 0;
 }
 
 static int prepare_loewner(cv_search *s)
 {
-    double abc[3], start[2];
-    const double phase[3] = { 0.0, 0.0, 0.0 };
-    const waves v = { 3, THESIS_WAVES, phase, abc };
-
-    s->sharp = loewner_new(&s->root, s->together, 1);
+    s->sharp = loewner_new(&s->problem, 1);
     if (s->sharp == NULL)
         return CV_ENOMEM;
     if (apm_set_d(s->t[0], loewner_largest(s->sharp)) != APM_OK)
         return CV_EARITHMETIC;
     apm_round(s->constants[C_B], s->t[0], TORUS_PLACES, APM_UP);
-    for (int j = 0; j < 3; j++)
-        abc[j] = apm_get_d(s->root.centre[j]) + (s->together ? apm_get_d(s->root.half[j]) : 0.0);
-    loewner_lowest(&v, start);
-    s->at_once = loewner_at_once(s->sharp, start);
+    s->at_once = find_at_once(s);
     return CV_OK;
+}
+
+/* All of the problem as a prism: its parameters are those of the waves. */
+static void set_root(cv_search *s)
+{
+    for (int j = 0; j < 3; j++) {
+        apm_set(s->root.centre[j], s->problem.amplitude[j]);
+        apm_set(s->root.half[j], s->problem.part[j][j]);
+    }
+    for (int j = 0; j < 2; j++) {
+        apm_set(s->root.centre[3 + j], s->problem.angle[j]);
+        apm_set(s->root.half[3 + j], s->problem.half[j]);
+        apm_set(s->root.xstar[j], s->problem.xstar[j]);
+    }
 }
 
 static int prepare_thesis(cv_search *s)
 {
-    double abc[3], herman_start[2];
+    double abc[MOST_WAVES], herman_start[2];
     int status;
 
     s->exact = Runit_new(s->dp, s->as_printed);
     s->quick = unit_new(s->dp, s->as_printed);
     if (s->exact == NULL || s->quick == NULL)
         return CV_ENOMEM;
-    for (int j = 0; j < 3; j++)
-        abc[j] = apm_get_d(s->root.centre[j]);
+    set_root(s);
+    amplitudes(&s->problem, 0, abc);
     set_Herm_start(herman_start, abc, 1);
     for (int j = 0; j < 5; j++) {
         apm_set(s->prism.centre[j], s->root.centre[j]);
@@ -175,8 +365,8 @@ static int prepare(cv_search *s)
     const long pi_dp = s->as_printed ? s->dp : s->dp > PI_SHORT ? s->dp - PI_SHORT : 1;
 
     apm_pi(s->t[0], pi_dp);
-    for (int j = 3; j < 5; j++)
-        to_radians(s->root.centre[j], s->root.half[j], s->t[0], pi_dp);
+    for (int j = 0; j < 2; j++)
+        to_radians(s->problem.angle[j], s->problem.half[j], s->t[0], pi_dp);
     return s->method == CV_LOEWNER ? prepare_loewner(s) : prepare_thesis(s);
 }
 
@@ -213,9 +403,8 @@ int cv_prepare(cv_search *s, const volatile int *stop)
     return s->status;
 }
 
-int cv_search_new(cv_search **result, const char *const region[5], const char *const half[5],
-                  const char *const xstar[2], int method, int together, int dp, int depth,
-                  int stubborn, int as_printed)
+int cv_search_new(cv_search **result, const cv_problem *problem, const char *const xstar[2],
+                  int method, int dp, int depth, int stubborn, int as_printed)
 {
     cv_search *s;
     guard g = { .stop = NULL }, *before;
@@ -223,27 +412,20 @@ int cv_search_new(cv_search **result, const char *const region[5], const char *c
 
     *result = NULL;
     if (dp < 1 || dp > MAX_DP || depth < 0 || depth > MAX_DEPTH ||
-        (method != CV_THESIS && method != CV_LOEWNER) ||
-        (method == CV_THESIS ? together : as_printed))
+        (method != CV_THESIS && method != CV_LOEWNER) || (method == CV_LOEWNER && as_printed))
         return CV_EARGUMENT;
     s = calloc(1, sizeof *s);
     if (s == NULL)
         return CV_ENOMEM;
-    box_init(&s->root);
-    box_init(&s->prism);
-    for (int j = 0; j < N_CONSTANTS; j++)
-        apm_init(s->constants[j]);
-    apm_init(s->t[0]);
-    apm_init(s->t[1]);
+    for_search(s, apm_init);
     s->method = method;
     s->dp = dp;
     s->depth = depth;
     s->stubborn = stubborn;
     s->as_printed = as_printed;
-    s->together = together;
 
     before = guard_arm(&g);
-    status = setjmp(g.here) != 0 ? CV_ENOMEM : read_problem(s, region, half, xstar);
+    status = setjmp(g.here) != 0 ? CV_ENOMEM : set_up(s, problem, xstar);
     guard_arm(before);
     if (status == CV_OK)
         status = cv_resume(s, "", 0);   /* the whole root is to be tried */

@@ -12,8 +12,9 @@
    57 u max(|a|, |b|) + 428 u |c| and the trace by 57 u (|a| + |b|) + 428 u |c|.  The formula of the
    eigenvalue rounds by 50 u (|a| + |b|) + 257 u |c| + 2 u, that of the trace, four sums, by
    37 u (|a| + |b|) + 216 u |c| + 16 u.  A centre is rounded by 2 u at each of at most 100 cuts, so
-   rectangles may fail to meet by as much: 200 u (|a| + |b| + 2 |c|).  The ends of the ranges are off by
-   9 u: 9 u (|a| + |b| + 2 |c|).  Together less than 1200 u (1 + |a| + |b| + |c|); MARGIN is 9007 u. */
+   rectangles may fail to meet by as much: 200 u (|a| + |b| + 2 |c|).  TORUS_ENDS is 2048 u, and the
+   ranges of the thesis's method are off by 9 u: 9 u (|a| + |b| + 2 |c|).  Together less than
+   3300 u (1 + |a| + |b| + |c|); MARGIN is 9007 u. */
 #include <math.h>
 
 #include "numbers/sine.h"
@@ -153,4 +154,165 @@ double torus_rectangle(const double low[3], const double high[3], const double c
     double middle;
 
     return over(&p, centre, half, &middle);
+}
+
+/* ---- any waves
+
+   Again beta(-v) = 2I + W(v), W = sum of p sin(k.v - phase) k k'.  Where all waves feel one and the
+   same combination of the angles, and where none feels both, the torus is too large: its ridges need no
+   cells.  So waves say apart what they feel, of the cells' coordinates, and what they do.
+
+   Rounding.  Let K be the largest |k0| + |k1|, and P the sum of |p| times K^2.  On a cell as large as
+   the torus a wave is at most |p| (1 + t + t^2/2) <= 5 |p| (1 + K)^2, t = K pi.  Sines and cosines are
+   off by (4 + 10 K + 70) u, for k.v and a phase below 2 pi, W by 30 u more for 16 waves, the
+   eigenvalue by 10 u; that is less than 600 (1 + K)^3 u P.  Cells fail to meet by 200 u pi at most,
+   which is worth 630 K u P.  Together, with TORUS_ENDS, less than 3000 (1 + K)^3 u (1 + P); the margin
+   is 8192 (1 + K)^3 u (1 + P). */
+
+enum { MOST_WAVES = 16, MOST_CELLS = 100000 };
+
+typedef struct {
+    int n;
+    double feels[MOST_WAVES][2], does[MOST_WAVES][3], phase[MOST_WAVES], p[MOST_WAVES];
+    double side[2], reach[2];           /* of the first cell; how much a square moves the waves */
+    double all, no_more, margin;
+} potential;
+
+/* >= the largest eigenvalue of 2I + W(v + t), as a function of t convex, as above. */
+static double moved(const potential *q, const double s[], const double c[], const double t[2])
+{
+    double m[3] = { 0.0, 0.0, 0.0 };
+
+    for (int i = 0; i < q->n; i++) {
+        const double along = q->feels[i][0] * t[0] + q->feels[i][1] * t[1];
+        const double z = q->p[i] * (s[i] + c[i] * along) + 0.5 * along * along * fabs(q->p[i]);
+        for (int j = 0; j < 3; j++)
+            m[j] += z * q->does[i][j];
+    }
+    const double a = m[0] - m[2], b = 2.0 * m[1];
+    const double scale = larger(larger(fabs(a), fabs(b)), 0x1p-1000), e = a / scale, f = b / scale;
+    return 0.5 * ((m[0] + m[2]) + scale * sqrt(e * e + f * f)) + 2.0;
+}
+
+/* The same for every point of a cell. */
+static double over_cell(const potential *q, const cell *k, double *middle)
+{
+    static const double still[2] = { 0.0, 0.0 };
+    double s[MOST_WAVES], c[MOST_WAVES], most = -HUGE_VAL;
+
+    for (int i = 0; i < q->n; i++)
+        double_sincos(&s[i], &c[i],
+                      (q->feels[i][0] * k->v[0] + q->feels[i][1] * k->v[1]) - q->phase[i]);
+    *middle = moved(q, s, c, still);
+    for (int corner = 0; corner < 4; corner++) {
+        const double t[2] = { corner & 1 ? k->r[0] : -k->r[0], corner & 2 ? k->r[1] : -k->r[1] };
+        most = larger(moved(q, s, c, t), most);
+    }
+    return most;
+}
+
+/* As pass and torus_largest. */
+static double look_closely(const potential *q, double *best, double tolerance, long *cells)
+{
+    cell stack[DEPTH + 2] = { { { 0.0, 0.0 }, { q->side[0], q->side[1] }, 0 } };
+    double most = *best, middle;
+    int top = 0;
+
+    while (top >= 0) {
+        cell *const k = stack + top, *const other = stack + top + 1;
+        const double bound = over_cell(q, k, &middle);
+        if (isnan(bound))
+            return bound;
+        *best = larger(*best, middle);
+        if (bound <= *best + tolerance || k->depth == DEPTH || ++*cells > MOST_CELLS) {
+            most = larger(most, bound);
+            top--;
+        } else {
+            const int j = k->r[0] * k->r[0] * q->reach[0] < k->r[1] * k->r[1] * q->reach[1];
+            k->depth++;
+            k->r[j] *= 0.5;
+            *other = *k;
+            other->v[j] += k->r[j];
+            k->v[j] -= k->r[j];
+            top++;
+        }
+    }
+    return most;
+}
+
+static double largest_of(const potential *q)
+{
+    const double last = NEAR + q->margin;
+    double best = 0.0, most = HUGE_VAL;
+    long cells = 0;
+
+    for (double tolerance = 0.5 * q->all; ; tolerance *= 1e-3) {
+        const int done = tolerance <= 2.0 * last;
+        const double found = look_closely(q, &best, done ? last : tolerance, &cells);
+        most = isnan(found) || found < most ? found : most;
+        if (cells > MOST_CELLS)
+            most = q->no_more < most ? q->no_more : most;
+        if (done || cells > MOST_CELLS || isnan(most))
+            return most + q->margin;
+    }
+}
+
+/* The waves of which `which` says so.  direction: what they all feel is a multiple of it, which is not
+   zero at `main`; or NULL. */
+static potential potential_of(int n, const double k[][2], const double phase[], const double p[],
+                              const int which[], const double *direction, int main)
+{
+    potential q = { .side = { PI, direction == NULL ? PI : 0.0 }, .no_more = 2.0 };
+    double most_k = 0.0, all = 0.0;
+
+    for (int i = 0; i < n; i++) {
+        const double sum = fabs(k[i][0]) + fabs(k[i][1]);
+        if (!which[i])
+            continue;
+        q.feels[q.n][0] = direction == NULL ? k[i][0] : k[i][main] / direction[main];
+        q.feels[q.n][1] = direction == NULL ? k[i][1] : 0.0;
+        for (int j = 0; j < 3; j++)
+            q.does[q.n][j] = k[i][j / 2] * k[i][(j + 1) / 2];
+        q.phase[q.n] = phase[i];
+        q.p[q.n++] = p[i];
+        most_k = larger(most_k, sum);
+        all += fabs(p[i]);
+        q.no_more += fabs(p[i]) * (k[i][0] * k[i][0] + k[i][1] * k[i][1]);
+        for (int j = 0; j < 2; j++)
+            q.reach[j] += fabs(p[i]) * sum * sum * q.feels[q.n - 1][j] * q.feels[q.n - 1][j];
+    }
+    q.all = all * most_k * most_k;
+    q.margin = 0x1p-40 * (1.0 + most_k) * (1.0 + most_k) * (1.0 + most_k) * (1.0 + q.all);
+    return q;
+}
+
+double torus_waves(int n, const double k[][2], const double phase[], const double p[])
+{
+    int all[MOST_WAVES], feels[2][MOST_WAVES], parallel = 1, apart = 1;
+    double direction[2] = { 0.0, 0.0 }, largest = 2.0;
+
+    for (int i = 0; i < n; i++) {
+        all[i] = 1;
+        feels[0][i] = k[i][0] != 0.0;
+        feels[1][i] = k[i][1] != 0.0;
+        parallel = parallel && k[i][0] * k[0][1] == k[i][1] * k[0][0];
+        apart = apart && !(feels[0][i] && feels[1][i]);
+    }
+    if (parallel && n > 0) {
+        const double common = divisor(fabs(k[0][0]), fabs(k[0][1]));
+        direction[0] = k[0][0] / common;
+        direction[1] = k[0][1] / common;
+        const potential q = potential_of(n, k, phase, p, all, direction, direction[0] == 0.0);
+        return largest_of(&q);
+    }
+    for (int j = 0; j < 2 && apart; j++) {              /* the larger eigenvalue of the two */
+        direction[j] = 1.0;
+        direction[1 - j] = 0.0;
+        const potential q = potential_of(n, k, phase, p, feels[j], direction, j);
+        largest = larger(largest, largest_of(&q));
+    }
+    if (apart)
+        return largest;
+    const potential q = potential_of(n, k, phase, p, all, NULL, 0);
+    return largest_of(&q);
 }

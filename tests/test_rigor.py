@@ -147,21 +147,26 @@ void *realloc(void *p, size_t n) { return fails() ? NULL : __libc_realloc(p, n);
 
 STARVED = r"""
 import ctypes, sys
+from fractions import Fraction
 import converse
+from converse.core import native_problem, waves_of
 from converse._native import ffi, lib
 shim = ctypes.CDLL(None)
 shim.fail_after.argtypes = [ctypes.c_long]
 def strings(words):
     owners = [ffi.new("char[]", w.encode()) for w in words]
     return ffi.new("char *[]", owners), owners
-region, keep1 = strings(["0.311", "0.311", "0.622", "1", "1"])
-half, keep2 = strings(["0.00125", "0.00125", "0.0025", "1", "1"])
+keep = []
+problems = [native_problem(waves_of(converse.Problem.around(
+    tuple(map(Fraction, ("0.311", "0.311", "0.622", "1", "1"))),
+    tuple(map(Fraction, ("0.00125", "0.00125", "0.0025", "1", "1"))), (), together)), keep)
+    for together in (False, True)]
 handle = ffi.new("cv_search **")
 value, keep3 = strings(["0.3", "0.4"])
 out = ffi.new("char *[]", 8)
-assert lib.cv_search_new(handle, region, half, ffi.NULL, 0, 0, 0, 30, 0, 0) == lib.CV_EARGUMENT
-def new(dp=35, method=0, together=0, depth=30):
-    code = lib.cv_search_new(handle, region, half, ffi.NULL, method, together, dp, depth, 0, 0)
+assert lib.cv_search_new(handle, problems[0], ffi.NULL, 0, 0, 30, 0, 0) == lib.CV_EARGUMENT
+def new(dp=35, method=0, depth=30):
+    code = lib.cv_search_new(handle, problems[method], ffi.NULL, method, dp, depth, 0, 0)
     if code == 0:
         code = lib.cv_prepare(handle[0], ffi.NULL)
         if code:
@@ -203,7 +208,7 @@ for n in list(range(0, 2000, 41)) + list(range(2000, 200000, 4999)):
     lib.cv_search_free(handle[0])
 for n in range(0, 700):                      # the sharper method: making it, then a step
     shim.fail_after(n)
-    code = new(method=1, together=1, depth=60)
+    code = new(method=1, depth=60)
     if code == 0:
         code = step()
     failed = shim.has_failed()

@@ -9,17 +9,22 @@
 
 int main(int argc, char **argv)
 {
-    const char *region[5] = { "0", "0", "0", "0", "0" }, *half[5] = { "0", "0", "0", "1", "1" };
+    cv_wave waves[3] = { { .k = { 1, 0 } }, { .k = { 0, 1 } }, { .k = { 1, 1 } } };
+    const int together = argc == 8 && atoi(argv[7]);
+    const cv_problem problem = { 3, together ? 1 : 3, waves, { "0", "0" }, { "1", "1" },
+                                 { 1, 0, 0, 1 }, 1 };
     cv_search *s;
     size_t length;
 
     if (argc != 8)
         return 2;
     for (int k = 0; k < 3; k++) {
-        region[k] = argv[1 + k];
-        half[k] = argv[4 + k];
+        waves[k].phase = "0";
+        waves[k].amplitude = argv[1 + k];
+        for (int m = 0; m < problem.n_parameters; m++)
+            waves[k].part[m] = together || m == k ? argv[4 + k] : "0";
     }
-    if (cv_search_new(&s, region, half, NULL, CV_LOEWNER, atoi(argv[7]), 35, 120, 0, 0) != CV_OK ||
+    if (cv_search_new(&s, &problem, NULL, CV_LOEWNER, 35, 120, 0, 0) != CV_OK ||
         cv_prepare(s, NULL) != CV_OK)
         return 1;
     while (cv_step(s, 1L << 40, 1e9, NULL) == CV_RUNNING)

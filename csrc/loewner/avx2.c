@@ -6,7 +6,9 @@
 #pragma GCC target("avx2")
 #endif
 #define LANES 4
+#ifndef ENGINE
 #define ENGINE engine_avx2
+#endif
 #include "instance.h"
 #ifdef __clang__
 #pragma clang attribute pop

@@ -6,7 +6,9 @@
 #pragma GCC target("avx512f,avx512dq")
 #endif
 #define LANES 8
+#ifndef ENGINE
 #define ENGINE engine_avx512
+#endif
 #include "instance.h"
 #ifdef __clang__
 #pragma clang attribute pop

@@ -40,9 +40,7 @@ static mask within(const batch *w, int j)
 /* The gradient of n.beta n at a site, and what it and the multiplier there make of a neighbour's. */
 INLINE vec steepness(const batch *w, const point *q, int i)
 {
-    return q->beta[i] * q->mu[0] + q->beta[i + 1] * q->mu[1]
-           - (square(q->n[i]) * w->p[i] * q->cosine[i]
-              + square(q->n[0] + q->n[1]) * w->p[2] * q->cosine[2]);
+    return q->beta[i] * q->mu[0] + q->beta[i + 1] * q->mu[1] - gradient(w, q, i);
 }
 
 /* The multipliers of the lanes whose turn it is, by (2): zero outside, and from either end up to
@@ -82,12 +80,12 @@ typedef struct {
 static void weigh(const batch *w, point *q)
 {
     q->load = every(0.0);
-    for (int i = 0; i < WAVES; i++) {
+    for (int i = FIRST; i < waves_of(w); i++) {
         const vec p = mag(w->p[i]), h = w->h[i], loose = w->loose[i], rho = q->reach[i];
-        const vec a = q->straight[i], b = q->off[i], r = felt(i, q->rest[0], q->rest[1]);
+        const vec a = q->straight[i], b = q->off[i], r = rest_along(w, q, i);
         const vec half_square = 0.5 * rho * rho, bow = q->bowed[i];
         const vec fourth = half_square * half_square * (1.0 / 6.0);
-        const vec wide = felt(i, q->reach[0], q->reach[1]);
+        const vec wide = width_of(w, q, i);
         const vec either = p * (a * r) + h * (b * (a + 0.5 * b) + fourth) + loose;
 
         q->rest_A[i][0] = either + p * (0.5 * b * b);
@@ -101,10 +99,10 @@ static void weigh(const batch *w, point *q)
 }
 
 /* What Q makes of cos z and sin z, in the lanes' own sites. */
-INLINE void turn_wave(const point *q, int i, mask own, vec *A, vec *B)
+INLINE void turn_wave(const batch *w, const point *q, int i, mask own, vec *A, vec *B)
 {
-    const vec n = felt(i, q->n[0], q->n[1]), omega = pick(own, n * n, every(0.0));
-    const vec m = pick(own, felt(i, q->mu[0], q->mu[1]), every(0.0));
+    const vec n = felt(w, i, q->n[0], q->n[1]), omega = pick(own, n * n, every(0.0));
+    const vec m = pick(own, felt(w, i, q->mu[0], q->mu[1]), every(0.0));
 
     *A = m * q->cosine[i] - omega * q->sine[i];
     *B = -omega * q->cosine[i] - m * q->sine[i];
@@ -130,23 +128,26 @@ INLINE void sum_up(batch *w, sums *result, mask turn, int columns)
         const uint64_t site = (uint64_t)j;
         const mask inside = TRUTH(w->since < site) & TRUTH(site < w->until), own = within(w, j);
         point *const q = w->orbit + j;
-        const vec n0 = q->n[0], n1 = q->n[1], mu0 = q->mu[0], mu1 = q->mu[1];
+        const vec n0 = q->n[0], n1 = q->n[1];
         const vec tiny = pick(own, every(TINY), every(0.0)), *const next = q[1].n;
         const mask linked = TRUTH(site < w->to);
         const vec link0 = pick(linked, n0 * next[0], every(0.0));
         const vec link1 = pick(linked, n1 * next[1], every(0.0));
-        const vec omega[WAVES] = { n0 * n0, n1 * n1, square(n0 + n1) };
-        const vec m[WAVES] = { mu0, mu1, mu0 + mu1 };
-        const vec weights = omega[0] + omega[1] + omega[2] + mag(mu0) + mag(mu1) + tiny;
+        vec omega[WAVES], m[WAVES];
 
+        for (int i = 0; i < waves_of(w); i++) {
+            omega[i] = square(felt(w, i, n0, n1));
+            m[i] = felt(w, i, q->mu[0], q->mu[1]);
+        }
+        const vec weights = weights_of(w, omega, m) + tiny;
         t.centre += 2.0 * (omega[0] + omega[1]);
         t.mass += 2.0 * (omega[0] + omega[1]);
         t.centre -= 2.0 * (link0 + link1);
         t.mass += 2.0 * (mag(link0) + mag(link1));
         t.mass += weights * q->load;
         t.far = larger(t.far, pick(own, q->far, every(0.0)));
-        for (int i = 0; i < WAVES; i++) {
-            const vec s = q->sine[i], co = q->cosine[i], p = w->p[i], h = w->h[i];
+        for (int i = FIRST; i < waves_of(w); i++) {
+            const vec s = q->sine[i], co = q->cosine[i], p = w->p[i];
             const vec A = m[i] * co - omega[i] * s, B = -omega[i] * co - m[i] * s;
             vec c[COLUMNS], f[COLUMNS];
 
@@ -158,10 +159,10 @@ INLINE void sum_up(batch *w, sums *result, mask turn, int columns)
             t.cubes += mag(A) * q->cube_A[i] + mag(B) * q->cube_B[i];
             t.along[i] += A;
             for (int k = 0; k < columns; k++) {
-                c[k] = felt(i, q->column[0][k], q->column[1][k]);
+                c[k] = felt(w, i, q->column[0][k], q->column[1][k]);
                 f[k] = -0.5 * p * A * c[k];
             }
-            f[symbol_of(w, i, columns)] += h * B;
+            add_moves(w, i, B, f, columns);
             for (int k = 0, kl = 0; k < columns; k++) {         /* (c.e) (f.e) */
                 t.square[kl++] += c[k] * f[k];
                 for (int l = k + 1; l < columns; l++)
@@ -177,15 +178,15 @@ INLINE void sum_up(batch *w, sums *result, mask turn, int columns)
                 t.mass += mag(steep) * q->reach[i];
                 if (j == ORIGIN)
                     t.rest += mag(steep) * q->reach[i];
-                else
-                    t.slope[i] = steep * q->column[i][i];
+                for (int k = 0; k < 2 && j > ORIGIN; k++)
+                    t.slope[k] += steep * q->column[i][k];
             }
             t.rounding += left * q->reach[i];
             t.rounding += pick(inside, mag(q->mu[i]) * q->missed[i], every(0.0));
         }
     }
-    for (int i = 0; i < WAVES; i++)
-        t.slope[symbol_of(w, i, columns)] += w->h[i] * t.along[i];
+    for (int i = FIRST; i < waves_of(w); i++)
+        add_moves(w, i, t.along[i], t.slope, columns);
     for (int k = 0; k < LANES; k++)
         if (holds(&turn, k)) {
             const point *const first = w->orbit + number(&w->from, k);
@@ -202,36 +203,34 @@ INLINE void sum_up(batch *w, sums *result, mask turn, int columns)
 }
 
 /* The cubic part of (4): cubic[m] at pair(k, l) is a coefficient of e_m e_k e_l, one of those that
-   make it up.  The third wave's c is the sum of the others'. */
+   make it up. */
 INLINE void sum_cubic(batch *w, mask turn, int columns)
 {
-    const int pairs = columns * (columns + 1) / 2, begin = begin_of(w, turn), end = end_of(w, turn);
+    const int begin = begin_of(w, turn), end = end_of(w, turn);
 
     for (int j = begin; j <= end; j++) {
         const point *q = w->orbit + j;
         const mask now = turn & within(w, j);
         vec form[WAVES][PAIRS];
-        for (int i = 0; i < WAVES; i++) {
+        for (int i = FIRST; i < waves_of(w); i++) {
             vec A, B;
-            turn_wave(q, i, now, &A, &B);
-            const vec pA = w->p[i] * A, third = w->p[i] * B * (1.0 / 3.0), h = w->h[i];
-            vec *const moved = w->cubic[symbol_of(w, i, columns)];
+            turn_wave(w, q, i, now, &A, &B);
+            const vec pA = w->p[i] * A, third = w->p[i] * B * (1.0 / 3.0);
             for (int k = 0, kl = 0; k < columns; k++) {
-                const vec c = felt(i, q->column[0][k], q->column[1][k]);
+                const vec c = felt(w, i, q->column[0][k], q->column[1][k]);
                 for (int l = k; l < columns; l++, kl++) {
                     const double half = l == k ? 0.5 : 1.0;     /* of (c.e)^2/2 */
-                    const vec cc = half * c * felt(i, q->column[0][l], q->column[1][l]);
-                    const vec bow = felt(i, q->bow[0][kl], q->bow[1][kl]);
+                    const vec cc = half * c * felt(w, i, q->column[0][l], q->column[1][l]);
+                    const vec bow = felt(w, i, q->bow[0][kl], q->bow[1][kl]);
                     form[i][kl] = -pA * bow - third * cc;
-                    moved[kl] += pick(now, h * (B * bow - A * cc), every(0.0));
+                    for (int m = 2; m < columns; m++)
+                        if (w->root->moves[i][m])
+                            w->cubic[m][kl] += pick(now, w->part[i][m] * (B * bow - A * cc),
+                                                    every(0.0));
                 }
             }
         }
-        for (int m = 0; m < columns; m++)
-            for (int kl = 0; kl < pairs; kl++)
-                w->cubic[m][kl] += pick(now, q->column[0][m] * (form[0][kl] + form[2][kl])
-                                             + q->column[1][m] * (form[1][kl] + form[2][kl]),
-                                        every(0.0));
+        add_cubic(w, q, now, form, columns);
     }
 }
 
@@ -284,13 +283,13 @@ INLINE vec summit(const batch *w, int columns, int with_cubic)
 /* The mass is the sum of the absolute values of all that is summed with signs, and of what A and B
    are multiplied by anywhere, with omega + |m| in their place: with rho = a + b that is at most
    |p| (e^rho - 1 - rho) + h e^rho + loose (1 + rho) to the fifth order in rho, of which
-   (size rho^2 + h + loose)(1 + rho)^3 is more; for the wave that both coordinates feel rho is the
-   sum of theirs, as its cubic form is shared out among them.  (`load` is that of all waves, and the
-   weights are at least each omega + |m|.)  A and B are off by (9 + far) u of
-   omega + |m|, products of them by 12 u more.  At each of N sites at most 6 numbers are added to a
-   sum, and each addition rounds by u of the partial sums; summit and the last sums make 45 of them.
-   So all is off by (6 N + 57) u and (9 + far) u of the mass, where `each` is 64 (N + 1) u and
-   2^-49 (1 + far) is 16 (1 + far) u.  Positive sums are off by (6 N + 30) u of themselves, which
+   (size rho^2 + h + loose)(1 + rho)^3 is more, rho being width_of a wave.  (`load` is that of all
+   waves, and the weights are at least each omega + |m|.)  A and B are off by (9 + far) u of
+   omega + |m|, of general waves (12 + far) u of the weights, products of them by 12 u more.  At each
+   of N sites at most 6 numbers are added to a sum, or 22 for 16 waves, and each addition rounds by u
+   of the partial sums; summit and the last sums make 45 of them.  So all is off by (22 N + 57) u and
+   (12 + far) u of the mass, where `each` is 64 (N + 1) u and 2^-49 (1 + far) is 16 (1 + far) u, with
+   far >= 2 where waves are general.  Positive sums are off by (22 N + 30) u of themselves, which
    `each` covers, too.  (2) leaves at most 11 u (1 + sizes)(1 + far) of the weights and 2 u of the
    neighbours' mu; `left` has 64 and 8. */
 INLINE void bound_with(batch *w, mask turn, int signs, int columns)
@@ -367,13 +366,13 @@ static void bound_shares(batch *w, mask turn)
     for (int j = begin; j <= end; j++) {
         const point *q = w->orbit + j;
         const mask now = turn & within(w, j);
-        for (int i = 0; i < WAVES; i++) {
+        for (int i = FIRST; i < waves_of(w); i++) {
             const mask some = now & TRUTH(q->reach[i] > 0.0);
             vec A, B;
-            turn_wave(q, i, now, &A, &B);
+            turn_wave(w, q, i, now, &A, &B);
             const vec part = 4.0 * remainder_of(w, q, i, A, B) / q->reach[i];
             for (int k = 0; k < columns && w->root->present[i]; k++) {
-                const vec more = part * mag(felt(i, q->column[0][k], q->column[1][k]));
+                const vec more = part * mag(felt(w, i, q->column[0][k], q->column[1][k]));
                 w->share[k] += pick(some, more, every(0.0));
             }
         }

@@ -9,11 +9,23 @@
 
 typedef struct loewner loewner;
 
-enum { MOST_LANES = 8 };
+enum { MOST_LANES = 8, MOST_WAVES = 16, SLOTS = MOST_WAVES + 2, PARAMETERS = 3 };
 
-/* For a root with its angles in radians and x* chosen.  with_bounds: those over the torus, without
+/* cv_problem as numbers; phases in radians, which may be off by 10^-39. */
+typedef struct {
+    int n_waves, n_parameters, k[MOST_WAVES][2], frame[4], odd;
+    apm_t phase[MOST_WAVES], amplitude[MOST_WAVES], part[MOST_WAVES][PARAMETERS];
+    apm_t angle[2], half[2], xstar[2];
+} patch;
+
+int is_identity(const int frame[4]);
+
+/* Are these the thesis's waves, in its order and without phases? */
+int thesis_waves(const patch *problem);
+
+/* For a problem with its angles in radians, too, and x* chosen.  with_bounds: those over the torus, without
    which nothing can be proved.  NULL: no memory. */
-loewner *loewner_new(const box *root, int together, int with_bounds);
+loewner *loewner_new(const patch *problem, int with_bounds);
 void loewner_free(loewner *w);
 
 /* What became of a cell: was it proved, and if not, the axis to cut it across, or -1 if it is too
@@ -29,16 +41,18 @@ int loewner_lanes(const loewner *w);
    at which lengths the orbit is tried, not whether a try that succeeds is right.) */
 void loewner_try(loewner *w, int n, const cv_cell *const cells[], loewner_outcome *const out[]);
 
-/* Is the least eigenvalue of beta below 2/3 at x, for all parameters (together: for those at
-   the upper end)?  Then no multiple s >= 1 of these parameters allows a torus. */
-int loewner_at_once(const loewner *w, const double x[2]);
+/* Is the least eigenvalue of beta below 2/3 at x, for all parameters or, at_end, where they are all
+   1?  Then, if V is odd, no multiple s >= 1 of these amplitudes allows a torus. */
+int loewner_at_once(const loewner *w, const double x[2], int at_end);
 
 /* The upper bound of the largest eigenvalue over the torus that belongs to the whole root. */
 double loewner_largest(const loewner *w);
 
 /* The prism of a cell as doubles have it, and for tests B at the corners of the parameters.
    0: it is too thin for them, or its parameters are too large. */
-typedef struct { double v[2], width[2], p[3], h[3], loose[3], l, corner[8]; } loewner_cell;
+typedef struct {
+    double v[2], width[2], p[SLOTS], part[SLOTS][PARAMETERS], loose[SLOTS], l, corner[8];
+} loewner_cell;
 int loewner_prism(const loewner *w, const cv_cell *cell, loewner_cell *c);
 
 /* For tests: leaves there, about the points s to t, what no prism would. */
@@ -57,7 +71,7 @@ int loewner_bound(loewner *w, int signs, double *bound, double *l, double *round
    is not zero. */
 typedef struct {
     double x[2], column[2][5], bow[2][15], rest[2];     /* the columns: x0's five, then x1's */
-    double straight[3], bowed[3], off[3], reach[3];
+    double straight[SLOTS], bowed[SLOTS], off[SLOTS], reach[SLOTS];
     double missed[2], force[2], beta[3], d[3], fuzz, mu[2];
 } loewner_point;
 void loewner_look(const loewner *w, int n, loewner_point *p);

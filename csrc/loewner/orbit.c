@@ -7,33 +7,33 @@
    r[j+1] = d[j] r[j] + f[j], f[j] = f[j-1]/d[j-1] + e[j], d[j] = beta - 1/d[j-1], which grow as the
    orbits do and not as absolute values would.  The reach rho bounds |D[j]| along each wave. */
 #include "prism.h"
-#include "numbers/sine.h"
 
 static const double TWO_PI = 0x1.921fb54442d18p+2;      /* less than 2^-51 below it */
 static const double FAR = 1e5;          /* turns in one step before which orbits end */
 static const double WIDEN = 1.0 + 0x1p-43;
 
 /* How far the columns and the bow reach along each wave: sums of at most 15 positive terms. */
-INLINE void measure(point *q, int columns)
+INLINE void measure(const batch *w, point *q, int columns)
 {
-    for (int i = 0; i < WAVES; i++) {
+    for (int i = 0; i < waves_of(w); i++) {
         vec sum = every(0.0);
         for (int k = 0; k < columns; k++)
-            sum += mag(felt(i, q->column[0][k], q->column[1][k]));
+            sum += mag(felt(w, i, q->column[0][k], q->column[1][k]));
         q->straight[i] = sum * WIDEN;
         sum = every(0.0);
         for (int kl = 0; kl < columns * (columns + 1) / 2; kl++)
-            sum += mag(felt(i, q->bow[0][kl], q->bow[1][kl]));
+            sum += mag(felt(w, i, q->bow[0][kl], q->bow[1][kl]));
         q->bowed[i] = sum * WIDEN;
     }
+    measure_slips(w, q, columns);
 }
 
 /* The reaches, of what was measured and the rest. */
 static void extend(const batch *w, point *q)
 {
     q->widest = every(0.0);
-    for (int i = 0; i < WAVES; i++) {
-        q->off[i] = (q->bowed[i] + felt(i, q->rest[0], q->rest[1])) * WIDEN;
+    for (int i = 0; i < waves_of(w); i++) {
+        q->off[i] = (q->bowed[i] + rest_along(w, q, i)) * WIDEN;
         q->reach[i] = (q->straight[i] + q->off[i]) * WIDEN;
         if (w->root->present[i])
             q->widest = larger(q->widest, q->reach[i]);
@@ -41,37 +41,26 @@ static void extend(const batch *w, point *q)
 }
 
 /* A point that a lane has no use for is zero there, so that all that follows is finite. */
-static void forget(point *q, int columns)
+static void forget(const batch *w, point *q, int columns)
 {
     vec *const parts[] = { q->x, q->turns, q->column[0], q->column[1], q->bow[0], q->bow[1],
                            q->rest, q->straight, q->bowed, q->off, q->reach };
     const int pairs = columns * (columns + 1) / 2;
-    const int sizes[] = { 2, 2, columns, columns, pairs, pairs, 2, WAVES, WAVES, WAVES, WAVES };
+    const int waves = waves_of(w);
+    const int sizes[] = { 2, 2, columns, columns, pairs, pairs, 2, waves, waves, waves, waves };
 
     for (size_t j = 0; j < sizeof parts / sizeof *parts; j++)
         for (int k = 0; k < sizes[j]; k++)
             parts[j][k] = pick(q->reached, parts[j][k], every(0.0));
+    measure_slips(w, q, columns);
 }
 
-/* The sines at q->x, and what follows from them.
-
-   Sines and cosines are off by SINE_ERROR = 4 u, those of a rounded sum by u far more, and products
-   with p by u: p sin and p cos are off by (5 + far) u |p|.  An entry of beta, a sum of two and an
-   integer, is rounded twice more, and off by u (4 + 7 |p0| + (6 + far) |p2|) at most; fuzz is
-   16 u (1 + sizes)(1 + far). */
+/* The sines at q->x, and what follows from them. */
 static void finish(const batch *w, point *q)
 {
-    const vec y[WAVES] = { q->x[0], q->x[1], q->x[0] + q->x[1] };
-    vec c_sin, half, apart;
+    vec half, apart;
 
-    q->far = w->root->present[2] ? mag(q->x[0]) + mag(q->x[1]) : every(0.0);
-    for (int i = 0; i < WAVES; i++)
-        double_sincos(&q->sine[i], &q->cosine[i], y[i]);
-    c_sin = w->p[2] * q->sine[2];
-    q->beta[0] = 2.0 - w->p[0] * q->sine[0] - c_sin;
-    q->beta[1] = -c_sin;
-    q->beta[2] = 2.0 - w->p[1] * q->sine[1] - c_sin;
-    q->fuzz = 0x1p-49 * (1.0 + w->size[0] + w->size[1] + w->size[2]) * (1.0 + q->far);
+    see(w, q);
     half = 0.5 * (q->beta[0] - q->beta[2]);
     apart = root_of(half * half + q->beta[1] * q->beta[1]);
     q->least = 0.5 * (q->beta[0] + q->beta[2]) - apart;
@@ -84,7 +73,7 @@ static void finish(const batch *w, point *q)
        + h (|cos y| rho^2/2 + |sin y| (b + rho^3/6)) + loose.
    Sines are off by (4 + far) u, and the dozen roundings are relative: 2^-40 is a thousand times as
    much as either needs.  The last summand is for what T itself makes of the wave, which roundings
-   put off by (13 + far) u (|p| a^2/2 + h a). */
+   put off by (16 + far) u (|p| a^2/2 + h a). */
 static vec bend(const batch *w, const point *q, int wave)
 {
     const vec a = q->straight[wave], b = q->off[wave], rho = q->reach[wave];
@@ -97,39 +86,11 @@ static vec bend(const batch *w, const point *q, int wave)
            + w->size[wave] * off * rho * (1.0 + rho);
 }
 
-/* The columns and the bow of next, the point after q, seen from o before it: the linearized map of
-   both, and what the waves add to them,
-       h e cos y  and  -p (c.e)^2/2 cos y - h e (c.e) sin y. */
-INLINE void carry(const batch *w, point *next, const point *q, const point *o, int columns)
+/* Columns and bow of next, the point after q, seen from o before it. */
+INLINE void carry_on(const batch *w, point *next, const point *q, const point *o, int columns)
 {
-    const int pairs = columns * (columns + 1) / 2;
-    vec source[WAVES][PAIRS];
-
-    for (int i = 0; i < WAVES; i++) {
-        const vec half = 0.5 * w->p[i] * q->cosine[i];
-        vec c[COLUMNS], f[COLUMNS];
-        for (int k = 0; k < columns; k++) {
-            c[k] = felt(i, q->column[0][k], q->column[1][k]);
-            f[k] = -half * c[k];
-        }
-        f[symbol_of(w, i, columns)] -= w->h[i] * q->sine[i];
-        for (int k = 0, kl = 0; k < columns; k++) {             /* (c.e) (f.e) */
-            source[i][kl++] = c[k] * f[k];
-            for (int l = k + 1; l < columns; l++)
-                source[i][kl++] = c[k] * f[l] + c[l] * f[k];
-        }
-    }
-    for (int i = 0; i < 2; i++) {
-        const vec b0 = q->beta[i], b1 = q->beta[i + 1];
-        for (int k = 0; k < columns; k++)
-            next->column[i][k] = b0 * q->column[0][k] + b1 * q->column[1][k] - o->column[i][k];
-        next->column[i][symbol_of(w, i, columns)] += w->h[i] * q->cosine[i];
-        next->column[i][symbol_of(w, 2, columns)] += w->h[2] * q->cosine[2];
-        for (int kl = 0; kl < pairs; kl++)
-            next->bow[i][kl] = b0 * q->bow[0][kl] + b1 * q->bow[1][kl] - o->bow[i][kl]
-                               + (source[i][kl] + source[2][kl]);
-    }
-    measure(next, columns);
+    carry(w, next, q, o, columns);
+    measure(w, next, columns);
 }
 
 /* next = the point after q, seen from o before it; time may run either way.  The factor begins
@@ -140,7 +101,7 @@ INLINE void carry(const batch *w, point *next, const point *q, const point *o, i
    turn, 2 u |q| + 1.4 u |o| + 3.4 u |before| + 4.7 u |x| and what its waves are off: `missed` has
    8 u of each, and fuzz.  Turns are whole: adding SHIFT rounds to an integer what is below 2^51.
    The rest obeys r' = beta r - r(o) + e, where e is what the waves bend, what the step of the
-   centre missed, and the roundings of columns and bow, 3 u of them and 11/16 fuzz of those of q.
+   centre missed, and the roundings of columns and bow, 3 u of them and what is `carried`.
    Writing r' = d r + f and, from the last step,
    r(o) = (r - f(o))/d(o), gives f = f(o)/d(o) + e + (beta - 1/d(o) - d) r, where the last bracket
    is rounding: of beta, below fuzz with that of the difference; of the inverse, whose determinant
@@ -150,15 +111,15 @@ static void step(const batch *w, point *next, point *q, const point *o, int is_f
 {
     static const double SHIFT = 0x1.8p52, USELESS = 0x1p10;
     vec inverse[3] = { every(0.0), every(0.0), every(0.0) }, rounded = every(0.0);
-    vec g[WAVES], bent[WAVES], rest_sum, reach;
+    vec g[WAVES], bent[WAVES], rest_sum;
 
-    for (int j = 0; j < WAVES; j++) {
+    for (int j = FIRST; j < waves_of(w); j++) {
         g[j] = w->p[j] * q->cosine[j];
         bent[j] = bend(w, q, j);
     }
     for (int i = 0; i < 2; i++) {
         const vec before = o->x[i] - q->turns[i] * TWO_PI;
-        const vec x = (2.0 * q->x[i] - before) + (g[i] + g[2]);
+        const vec x = (2.0 * q->x[i] - before) + gathered(w, i, g);
         next->turns[i] = (x * (1.0 / TWO_PI) + SHIFT) - SHIFT;
         next->x[i] = x - next->turns[i] * TWO_PI;
         q->missed[i] = 0x1p-50 * (mag(q->x[i]) + mag(o->x[i]) + mag(before) + mag(x)) + q->fuzz;
@@ -166,10 +127,10 @@ static void step(const batch *w, point *next, point *q, const point *o, int is_f
     next->turned = mag(next->turns[0]) + mag(next->turns[1]);
     next->reached = TRUTH(next->turned <= FAR);
     switch (w->root->columns) {         /* each count of its own: the compiler unrolls */
-    case 2: carry(w, next, q, o, 2); break;
-    case 3: carry(w, next, q, o, 3); break;
-    case 4: carry(w, next, q, o, 4); break;
-    default: carry(w, next, q, o, 5);
+    case 2: carry_on(w, next, q, o, 2); break;
+    case 3: carry_on(w, next, q, o, 3); break;
+    case 4: carry_on(w, next, q, o, 4); break;
+    default: carry_on(w, next, q, o, 5);
     }
     if (!is_first) {
         const vec *d = o->d, det = d[0] * d[2] - d[1] * d[1];
@@ -181,13 +142,12 @@ static void step(const batch *w, point *next, point *q, const point *o, int is_f
         rounded = 0x1p-50 * (inverse[0] + inverse[2]) * (1.0 + condition);
     }
     rest_sum = q->rest[0] + q->rest[1];
-    reach = q->reach[0] + q->reach[1];
     for (int i = 0; i < 2; i++) {
         const vec i0 = mag(inverse[i]) + rounded, i1 = mag(inverse[i + 1]) + rounded;
-        vec e = bent[i] + bent[2];
+        vec e = gathered_sizes(w, i, bent);
 
         e += q->missed[i];
-        e += 4.0 * q->fuzz * (reach + w->h[i] + w->h[2]);
+        e += carried(w, q, i);
         e += 0x1p-50 * (next->straight[i] + next->bowed[i] + o->reach[i]);
         e += is_first ? o->rest[i] : i0 * o->force[0] + i1 * o->force[1];
         q->force[i] = (e + (2.0 * q->fuzz + rounded) * rest_sum) * WIDEN;
@@ -200,7 +160,7 @@ static void step(const batch *w, point *next, point *q, const point *o, int is_f
     extend(w, next);
     next->reached &= TRUTH(next->widest <= USELESS);
     if (any(~next->reached))
-        forget(next, w->root->columns);
+        forget(w, next, w->root->columns);
     finish(w, next);
 }
 
@@ -213,11 +173,13 @@ static void begin(batch *w)
     for (int i = 0; i < 2; i++) {
         origin->x[i] = every(w->root->xstar[i]);
         origin->rest[i] = every(w->root->xstar_err[i]);
-        origin[1].x[i] = w->v[i];
-        origin[1].column[i][i] = w->width[i];
+        const double *const frame = w->root->frame[i];
+        origin[1].x[i] = frame[0] * w->v[0] + frame[1] * w->v[1];
+        for (int k = 0; k < 2; k++)
+            origin[1].column[i][k] = frame[k] * w->width[k];
         origin[i].reached = ~none();
     }
-    measure(origin + 1, w->root->columns);
+    measure(w, origin + 1, w->root->columns);
     for (int j = 0; j < 2; j++) {
         extend(w, origin + j);
         finish(w, origin + j);

@@ -1,5 +1,6 @@
 /* prism.h - what the files of an engine share: the prisms at hand and the orbits that start in
-   them, one in each lane.
+   them, one in each lane.  The first two waves are what D0 and D1 are felt by; three.h and general.h
+   have the others.
 
    The criterion (docs/proof.md has all of this file's mathematics, step by step).  Orbits on an
    invariant Lagrangian graph minimize, so their second variation
@@ -10,8 +11,8 @@
 
        Q = sum n[j].beta(x[j])n[j] - 2 sum n[j].n[j+1] - l (|n[s]|^2 + |n[t]|^2) < 0.           (1)
 
-   A prism is a set of orbits: x[0] = x*, x[1] in a rectangle, the parameters on a segment or in a
-   box.  orbit.c follows it, witness.c chooses n for the orbit of its centre, bound.c bounds (1) for
+   A prism is a set of orbits: x[0] = x*, x[1] in a rectangle, the amplitudes on an affine image of
+   the parameters' box.  orbit.c follows it, witness.c chooses n for the orbit of its centre, bound.c bounds (1) for
    that n over all of it, and try.c does one after the other until it is proved or hopeless.
 
    Lanes.  What is a vec here is a number of each of the prisms at hand, and all of them go through
@@ -31,6 +32,11 @@
 #include "numbers/lanes.h"
 #include "problem.h"
 
+#ifdef GENERAL
+enum { WAVES = SLOTS };                 /* general.h */
+#else
+enum { WAVES = 3 };                     /* three.h */
+#endif
 enum { MAX_POINTS = 4000, ORIGIN = MAX_POINTS };
 
 /* One point of the orbits of the prisms' centres, and all that is known of its neighbours. */
@@ -43,12 +49,15 @@ typedef struct {
     vec rest[2], force[2];              /* r and f: bounds */
     vec d[3];                           /* the factor: d00, d01, d11 */
     vec sine[WAVES], cosine[WAVES];
-    vec straight[WAVES], bowed[WAVES];  /* of D0, D1, D0 + D1: |L e| and |T[e, e]| */
+    vec straight[WAVES], bowed[WAVES];  /* of D along a wave: |L e| and |T[e, e]| */
     vec off[WAVES], reach[WAVES];       /* |D - L e| and |D| */
+#ifdef GENERAL
+    vec slip[WAVES];                    /* what L e and T[e, e] lose along a wave */
+#endif
     vec widest;                         /* the largest reach of a wave */
     vec beta[3];                        /* beta00, beta01, beta11 */
     vec least;                          /* eigenvalue of beta, about */
-    vec far;                            /* how large a rounded angle is */
+    vec far;                            /* how far angles may be off, in units u */
     vec fuzz;                           /* how far p sin, p cos and entries of beta may be off */
     vec n[2], mu[2];
     vec rest_A[WAVES][2], rest_B[WAVES], cube_A[WAVES], cube_B[WAVES], load;    /* see weigh */
@@ -58,7 +67,8 @@ typedef struct {
 
 typedef struct {
     const loewner *root;
-    vec p[WAVES], h[WAVES], loose[WAVES];       /* p +- h moves with its symbol, loose by itself */
+    vec p[WAVES], part[WAVES][COLUMNS];         /* part[k] moves with the column k of a parameter */
+    vec h[WAVES], loose[WAVES];                 /* h: the sum of |part|; loose by itself */
     vec size[WAVES];                            /* |p| + h + loose */
     vec v[2], width[2], l;
     /* what bound.c finds */
@@ -74,16 +84,12 @@ typedef struct {
 
 static const double TINY = 0x1p-800;
 
-/* What a wave feels, of x0, x1 along the coordinates. */
-INLINE vec felt(int wave, vec x0, vec x1)
+/* Adds, for each column, what the wave's amplitude moves with its symbol, times a factor. */
+INLINE void add_moves(const batch *w, int wave, vec factor, vec to[], int columns)
 {
-    return wave == 0 ? x0 : wave == 1 ? x1 : x0 + x1;
-}
-
-/* The column of a wave's symbol; what does not move has h = 0, and any will do. */
-INLINE int symbol_of(const batch *w, int wave, int columns)
-{
-    return columns <= 3 ? columns - 1 : w->root->symbol[wave];
+    for (int k = 2; k < columns; k++)
+        if (w->root->moves[wave][k])
+            to[k] += w->part[wave][k] * factor;
 }
 
 #endif

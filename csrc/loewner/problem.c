@@ -21,7 +21,7 @@ enum { FINEST = 46 };                   /* cuts along one axis: then doubles run
    exact, their products and the sum of 8 are off by 10 u, of which 2^-46 is 128. */
 static double cell_largest(const loewner *w, const double low[3], const double high[3])
 {
-    const int axes = w->together ? 1 : 3;
+    const int axes = w->n_parameters;
     double largest = 0.0;
 
     for (int corner = 0; corner < 1 << axes; corner++) {
@@ -43,6 +43,7 @@ int loewner_prism(const loewner *w, const cv_cell *cell, loewner_cell *c)
 {
     double at_axis[COLUMNS], part[COLUMNS], low[3], high[3], B;
 
+    memset(c, 0, sizeof *c);
     for (int k = 0; k < COLUMNS; k++) {
         if (cell->cuts[k] > FINEST)
             return 0;
@@ -53,13 +54,17 @@ int loewner_prism(const loewner *w, const cv_cell *cell, loewner_cell *c)
         c->v[i] = w->centre[i] + w->half[i] * at_axis[i];
         c->width[i] = w->half[i] * part[i] + w->slack[i];
     }
-    for (int i = 0; i < WAVES; i++) {
-        const int axis = w->together ? 2 : 2 + i;
-        c->p[i] = w->centre[2 + i] + w->half[2 + i] * at_axis[axis];
-        c->h[i] = w->half[2 + i] * part[axis];
-        c->loose[i] = w->slack[2 + i];
-        low[i] = 0.5 * (1.0 + at_axis[axis] - part[axis]);
-        high[i] = 0.5 * (1.0 + at_axis[axis] + part[axis]);
+    for (int m = 0; m < w->n_parameters; m++) {
+        low[m] = 0.5 * (1.0 + at_axis[2 + m] - part[2 + m]);
+        high[m] = 0.5 * (1.0 + at_axis[2 + m] + part[2 + m]);
+    }
+    for (int i = 0; i < w->waves; i++) {
+        c->p[i] = w->amplitude[i];
+        for (int m = 0; m < w->n_parameters; m++) {
+            c->p[i] += w->part[i][m] * at_axis[2 + m];
+            c->part[i][m] = w->part[i][m] * part[2 + m];
+        }
+        c->loose[i] = w->loose[i];
     }
     B = cell_largest(w, low, high);
     c->l = 2.0 / (B + sqrt((B - 2.0) * (B + 2.0))) * (1.0 - 0x1p-46);   /* off by 5 u before */
@@ -70,11 +75,10 @@ int loewner_prism(const loewner *w, const cv_cell *cell, loewner_cell *c)
 /* Not where its width is the slack of doubles, but for a fifth of it. */
 int may_cut(const loewner *w, const cv_cell *cell, int axis)
 {
-    const int last = w->together && axis == 2 ? COLUMNS - 1 : axis;
-    int wide = 0;
+    int wide = axis < 2 && ldexp(w->half[axis], 2 - cell->cuts[axis]) > w->slack[axis];
 
-    for (int k = axis; k <= last; k++)
-        wide = wide || ldexp(w->half[k], 2 - cell->cuts[axis]) > w->slack[k];
+    for (int i = 0; i < w->waves && axis >= 2; i++)
+        wide = wide || ldexp(fabs(w->part[i][axis - 2]), 2 - cell->cuts[axis]) > w->loose[i];
     return wide && cell->cuts[axis] < FINEST;
 }
 
@@ -105,61 +109,200 @@ static double near(const apm_t x)
 
 /* The one with the most lanes that this machine can use; the environment variable CONVERSE_VECTORS
    may limit the bits of its vectors. */
-static const engine *fastest_engine(void)
+static const engine *fastest_engine(int general)
 {
     const char *const limit = getenv("CONVERSE_VECTORS");
     const long bits = limit == NULL ? LONG_MAX : strtol(limit, NULL, 10);
 
 #ifdef HAVE_X86
     if (bits >= 512 && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq"))
-        return &engine_avx512;
+        return general ? &general_avx512 : &engine_avx512;
     if (bits >= 256 && __builtin_cpu_supports("avx2"))
-        return &engine_avx2;
+        return general ? &general_avx2 : &engine_avx2;
 #endif
 #ifdef HAVE_VECTORS
     if (bits >= 128)
-        return &engine_baseline;
+        return general ? &general_baseline : &engine_baseline;
 #endif
     (void)bits;
-    return &engine_scalar;
+    return general ? &general_scalar : &engine_scalar;
 }
 
-loewner *loewner_new(const box *root, int together, int with_bounds)
+int is_identity(const int frame[4])
 {
+    return frame[0] == 1 && frame[1] == 0 && frame[2] == 0 && frame[3] == 1;
+}
+
+int thesis_waves(const patch *problem)
+{
+    int same = problem->n_waves == 3;
+
+    for (int i = 0; i < 3 && same; i++)
+        same = problem->k[i][0] == (i != 1) && problem->k[i][1] == (i != 0) &&
+               apm_sgn(problem->phase[i]) == 0;
+    return same;
+}
+
+/* The angles, and x*.  x_1 = frame v, and the columns frame width, are off by less than 4 u of the
+   sums of absolute values but for the identity, which is exact; v and width take in that, too. */
+static void set_angles(loewner *w, const patch *problem)
+{
+    double off[2] = { 0.0, 0.0 };
+
+    for (int i = 0; i < 2; i++) {
+        w->centre[i] = near(problem->angle[i]);
+        w->half[i] = near(problem->half[i]);
+        w->slack[i] = 0x1p-48 * (fabs(w->centre[i]) + w->half[i]);
+        w->xstar[i] = near(problem->xstar[i]);
+        w->xstar_err[i] = 0x1p-49 * fabs(w->xstar[i]);
+        for (int k = 0; k < 2; k++)
+            w->frame[i][k] = problem->frame[2 * i + k];
+    }
+    w->seen[0][0] = w->seen[1][1] = 1.0;
+    for (int i = 0; i < 2 && !is_identity(problem->frame); i++)
+        for (int k = 0; k < 2; k++)
+            off[i] += 0x1p-50 * fabs(w->frame[i][k]) * (fabs(w->centre[k]) + w->half[k]);
+    for (int i = 0; i < 2; i++)         /* |frame^-1| off */
+        w->slack[i] += fabs(w->frame[1 - i][1 - i]) * off[i] + fabs(w->frame[i][1 - i]) * off[1 - i];
+}
+
+/* One more wave; general.h's are those that there are. */
+static void add_wave(loewner *w, const patch *problem, int given, int general)
+{
+    const int i = w->waves, *const k = problem->k[given];
+    double size;
+
+    w->amplitude[i] = near(problem->amplitude[given]);
+    size = fabs(w->amplitude[i]);
+    for (int m = 0; m < w->n_parameters; m++) {
+        w->part[i][m] = near(problem->part[given][m]);
+        size += fabs(w->part[i][m]);
+    }
+    w->phase[i] = near(problem->phase[given]);
+    w->loose[i] = 0x1p-48 * size;
+    w->present[i] = size != 0.0;
+    for (int j = 0; j < 2; j++) {
+        w->k[i][j] = k[j];
+        w->feels[j] |= w->present[i] && k[j] != 0;
+    }
+    w->square_k[i] = square(fabs(w->k[i][0]) + fabs(w->k[i][1]));
+    w->most_k = larger(w->most_k, fabs(w->k[i][0]) + fabs(w->k[i][1]));
+    w->waves += w->present[i] || !general;
+}
+
+/* The waves, and the columns of their parameters. */
+static void set_waves(loewner *w, const patch *problem, int general)
+{
+    w->n_parameters = problem->n_parameters;
+    w->columns = 2;
+    w->axis[1] = 1;
+    w->most_k = 1.0;
+    if (general) {
+        w->k[0][0] = w->k[1][1] = 1.0;
+        w->waves = 2;
+    }
+    for (int i = 0; i < problem->n_waves; i++)
+        add_wave(w, problem, i, general);
+    for (int m = 0; m < w->n_parameters; m++) {         /* what does not move needs no symbol */
+        int counts = 0;
+        for (int i = 0; i < w->waves; i++) {
+            w->moves[i][w->columns] = w->part[i][m] != 0.0;
+            counts |= w->moves[i][w->columns];
+        }
+        if (counts)
+            w->axis[w->columns++] = 2 + m;
+    }
+}
+
+/* Where all waves are m q, q primitive, s = q.x moves by itself: s' = 2s - s(o) + |q|^2 sum m p cos y,
+   and vectors n = q nu make of Q |q|^2 times what it is for waves (m, 0) of amplitude |q|^2 p at s.
+   So these may be taken for them, if the frame tells s apart: then s_1 is v1 or -v1, and v0 is not
+   felt.  s* = q.x* and the products with |q|^2 are rounded by u or two more. */
+static void straighten(loewner *w)
+{
+    const double *const k = w->k[2], common = divisor(fabs(k[0]), fabs(k[1]));
+    const double q[2] = { k[0] / common, k[1] / common }, scale = q[0] * q[0] + q[1] * q[1];
+    const double s[2] = { q[0] * w->xstar[0], q[1] * w->xstar[1] };
+    int good = w->waves > 2 && q[0] * w->frame[0][0] + q[1] * w->frame[1][0] == 0.0;
+
+    for (int i = 2; i < w->waves; i++)
+        good = good && w->k[i][0] * q[1] == w->k[i][1] * q[0];
+    if (!good)
+        return;
+    w->xstar[0] = s[0] + s[1];
+    w->xstar_err[0] = 0x1p-49 * (fabs(s[0]) + fabs(s[1]));
+    w->xstar[1] = w->xstar_err[1] = 0.0;
+    w->frame[0][1] = q[0] * w->frame[0][1] + q[1] * w->frame[1][1];
+    w->frame[1][0] = 1.0;
+    w->frame[0][0] = w->frame[1][1] = 0.0;
+    w->most_k = 1.0;
+    for (int i = 2; i < w->waves; i++) {
+        w->amplitude[i] *= scale;
+        for (int m = 0; m < w->n_parameters; m++)
+            w->part[i][m] *= scale;
+        w->loose[i] *= scale;
+        w->k[i][0] = (w->k[i][0] * q[0] + w->k[i][1] * q[1]) / scale;
+        w->k[i][1] = 0.0;
+        w->square_k[i] = square(w->k[i][0]);
+        w->most_k = larger(w->most_k, fabs(w->k[i][0]));
+    }
+    w->feels[0] = 1;
+    w->feels[1] = 0;
+    for (int i = 0; i < 2; i++) {
+        w->seen[0][i] = q[i];
+        w->seen[1][i] = 0.0;
+    }
+}
+
+/* B at a corner of the parameters' cube, of what the engine knows the waves to be; or infinity. */
+typedef double bound_of(const loewner *w, const double p[]);
+
+static double torus_thesis(const loewner *w, const double p[])
+{
+    (void)w;
+    return torus_largest(p, p, TORUS_EIGENVALUE);
+}
+
+static double torus_general(const loewner *w, const double p[])
+{
+    return torus_waves(w->waves - 2, w->k + 2, w->phase + 2, p + 2);
+}
+
+static double torus_unknown(const loewner *w, const double p[])
+{
+    (void)w;
+    (void)p;
+    return HUGE_VAL;
+}
+
+/* B at the corners.  An amplitude there is off by less than its loose, and the largest eigenvalue by
+   that times |k|^2, of which torus.c covers TORUS_ENDS. */
+static void set_corners(loewner *w, bound_of *bound)
+{
+    for (int corner = 0; corner < 1 << w->n_parameters; corner++) {
+        double p[SLOTS], off = 0.0;
+        for (int i = 0; i < w->waves; i++) {
+            p[i] = w->amplitude[i];
+            for (int m = 0; m < w->n_parameters; m++)
+                p[i] += (corner >> m & 1 ? 1.0 : -1.0) * w->part[i][m];
+            off += w->square_k[i] * w->loose[i];
+        }
+        w->corner[corner] = bound(w, p) + (off > TORUS_ENDS ? off : 0.0);
+    }
+}
+
+loewner *loewner_new(const patch *problem, int with_bounds)
+{
+    const int general = !thesis_waves(problem) || !is_identity(problem->frame);
     loewner *w = calloc(1, sizeof *w);
 
     if (w == NULL)
         return NULL;
-    for (int k = 0; k < COLUMNS; k++) {
-        const int axis = k < 2 ? 3 + k : k - 2;
-        w->centre[k] = near(root->centre[axis]);
-        w->half[k] = near(root->half[axis]);
-        w->slack[k] = 0x1p-48 * (fabs(w->centre[k]) + w->half[k]);
-    }
-    for (int i = 0; i < 2; i++) {
-        w->xstar[i] = near(root->xstar[i]);
-        w->xstar_err[i] = 0x1p-49 * fabs(w->xstar[i]);
-    }
-    w->together = together;
-    w->columns = 2;
-    w->axis[1] = 1;
-    for (int i = 0; i < WAVES; i++) {
-        w->present[i] = w->centre[2 + i] != 0.0 || w->half[2 + i] != 0.0;
-        if (w->half[2 + i] > 0.0) {     /* what does not move needs no symbol */
-            if (!together || w->columns == 2)
-                w->axis[w->columns++] = together ? 2 : 2 + i;
-            w->symbol[i] = w->columns - 1;
-        }
-    }
-    for (int corner = 0; corner < (together ? 2 : 8); corner++) {
-        double p[3];
-        for (int k = 0; k < 3; k++) {
-            const int upper = corner >> (together ? 0 : k) & 1;
-            p[k] = w->centre[2 + k] + (upper ? 1.0 : -1.0) * w->half[2 + k];
-        }
-        w->corner[corner] = with_bounds ? torus_largest(p, p, TORUS_EIGENVALUE) : HUGE_VAL;
-    }
-    w->engine = fastest_engine();
+    set_angles(w, problem);
+    set_waves(w, problem, general);
+    straighten(w);
+    set_corners(w, with_bounds ? general ? torus_general : torus_thesis : torus_unknown);
+    w->engine = fastest_engine(general);
     w->memory = calloc(1, w->engine->size + ALIGNMENT);
     if (w->memory == NULL) {
         free(w);
@@ -202,32 +345,45 @@ double loewner_largest(const loewner *w)
     return cell_largest(w, low, high);
 }
 
-/* With n the eigenvector at the centre, n.beta n = 2|n|^2 - sum p sin(y) (n.u)^2 is linear in the
-   parameters.  Its terms are off by 16 u for p and its half-width, (4 + |x0| + |x1|) u for the sine
-   and 6 u, and 7 numbers are added: 33 + |x0| + |x1| units of the sum of absolute values, the mass;
-   the margin is 256 (1 + |x0| + |x1|). */
-int loewner_at_once(const loewner *w, const double x[2])
+/* With n the eigenvector at the centre, n.beta n = 2|n|^2 - sum p sin(y) (k.n)^2 is linear in the
+   parameters.  In units u, a wave's terms are off by 32 of |p| and its parts, by (4 + far) for the
+   sine, far as in general.h, and 8 for the product, where (k.n)^2 is off by 5 of (|k0| + |k1|)^2 |n|^2;
+   at most 21 numbers are added.  So all is off by 70 + far of the sum of absolute values with that in
+   the place of (k.n)^2, the mass; the margin is 256 (1 + far). */
+int loewner_at_once(const loewner *w, const double at[2], int at_end)
 {
-    double n[2], d[3], s[WAVES], c, sum, mass, omega[WAVES], p[WAVES];
-    const double y[WAVES] = { x[0], x[1], x[0] + x[1] };
+    const double x[2] = { w->seen[0][0] * at[0] + w->seen[0][1] * at[1],
+                          w->seen[1][0] * at[0] + w->seen[1][1] * at[1] };
+    double n[2], d[3] = { 2.0, 0.0, 2.0 }, p[SLOTS], pull[SLOTS], sum, mass, far = 0.0;
 
-    for (int i = 0; i < WAVES; i++) {
-        double_sincos(&s[i], &c, y[i]);
-        p[i] = w->centre[2 + i] + (w->together ? w->half[2 + i] : 0.0);
+    for (int i = 0; i < w->waves; i++) {
+        const double *const k = w->k[i], y0 = k[0] * x[0], y1 = k[1] * x[1];
+        double c;
+        double_sincos(&pull[i], &c, (y0 + y1) + w->phase[i]);
+        far = larger(far, 3.0 * (fabs(y0) + fabs(y1)) + 10.0 * fabs(w->phase[i]));
+        p[i] = w->amplitude[i];
+        for (int m = 0; m < w->n_parameters && at_end; m++)
+            p[i] += w->part[i][m];
+        d[0] -= p[i] * pull[i] * k[0] * k[0];
+        d[1] -= p[i] * pull[i] * k[0] * k[1];
+        d[2] -= p[i] * pull[i] * k[1] * k[1];
     }
-    d[0] = 2.0 - p[0] * s[0] - p[2] * s[2];
-    d[1] = -p[2] * s[2];
-    d[2] = 2.0 - p[1] * s[1] - p[2] * s[2];
     least_eigenvector(d, n);
-    omega[0] = square(n[0]);
-    omega[1] = square(n[1]);
-    omega[2] = square(n[0] + n[1]);
-    sum = mass = 4.0 / 3.0 * (omega[0] + omega[1]);     /* 2 |n|^2 less 2/3 |n|^2 */
-    for (int i = 0; i < WAVES; i++) {
-        sum -= p[i] * s[i] * omega[i];
-        if (!w->together)
-            sum += w->half[2 + i] * fabs(s[i]) * omega[i];
-        mass += (fabs(p[i]) + w->half[2 + i] + w->slack[2 + i]) * omega[i];
+    const double length = square(n[0]) + square(n[1]);
+    sum = mass = 4.0 / 3.0 * length;    /* 2 |n|^2 less 2/3 |n|^2 */
+    for (int i = 0; i < w->waves; i++) {
+        double size = fabs(w->amplitude[i]) + w->loose[i];
+        pull[i] *= square(w->k[i][0] * n[0] + w->k[i][1] * n[1]);
+        sum -= p[i] * pull[i];
+        for (int m = 0; m < w->n_parameters; m++)
+            size += fabs(w->part[i][m]);
+        mass += size * w->square_k[i] * length;
     }
-    return mass >= 1.0 && sum + 0x1p-45 * (1.0 + fabs(x[0]) + fabs(x[1])) * mass < 0.0;
+    for (int m = 0; m < w->n_parameters && !at_end; m++) {
+        double swing = 0.0;
+        for (int i = 0; i < w->waves; i++)
+            swing += w->part[i][m] * pull[i];
+        sum += fabs(swing);
+    }
+    return mass >= 1.0 && sum + 0x1p-45 * (1.0 + far) * mass < 0.0;
 }

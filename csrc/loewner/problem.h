@@ -4,7 +4,7 @@
 
 #include "loewner.h"
 
-enum { WAVES = 3, COLUMNS = 5, PAIRS = 15 };
+enum { COLUMNS = 5, PAIRS = 15 };
 
 /* Tries prisms LANES at a time.  Engines differ in that number and in the instructions they use,
    and in no bit of what they find. */
@@ -21,7 +21,8 @@ typedef struct {
     void (*look)(const void *work, int n, loewner_point *p);
 } engine;
 
-extern const engine engine_scalar, engine_baseline, engine_avx2, engine_avx512;
+extern const engine engine_scalar, engine_baseline, engine_avx2, engine_avx512;     /* three.h */
+extern const engine general_scalar, general_baseline, general_avx2, general_avx512; /* general.h */
 
 #if defined(__GNUC__) && (defined(__SSE2__) || defined(__aarch64__))
 #define HAVE_VECTORS
@@ -31,11 +32,16 @@ extern const engine engine_scalar, engine_baseline, engine_avx2, engine_avx512;
 #endif
 
 struct loewner {
-    double centre[COLUMNS], half[COLUMNS], slack[COLUMNS];      /* v0, v1, a, b, c */
+    double centre[2], half[2], slack[2], frame[2][2];           /* of v0, v1 */
+    double seen[2][2];                  /* the coordinates in which waves are given; see straighten */
+    int waves;                          /* slots in use; general.h says what the first two are */
+    double k[SLOTS][2], phase[SLOTS], square_k[SLOTS], most_k;  /* (|k0| + |k1|)^2; the largest sum */
+    double amplitude[SLOTS], part[SLOTS][PARAMETERS], loose[SLOTS];
     double xstar[2], xstar_err[2], corner[8];                   /* bounds B at the corners */
-    int together, columns;              /* the symbols: v0, v1, and the parameters that move */
-    int axis[COLUMNS], symbol[WAVES];   /* of a column: the cell's; of a wave: the column */
-    int present[WAVES];                 /* is there such a wave at all? */
+    int n_parameters, columns;          /* the symbols: v0, v1, and the parameters that count */
+    int axis[COLUMNS];                  /* of a column: the cell's */
+    int moves[SLOTS][COLUMNS];          /* has the column's parameter a part of the wave? */
+    int present[SLOTS], feels[2];       /* is there such a wave at all; does one feel x0, x1? */
     const engine *engine;
     char *memory;
     void *work;                         /* there, aligned */

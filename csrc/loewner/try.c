@@ -7,11 +7,17 @@ static const double HOPELESS = 2.0;     /* times the least bound yet: longer orb
 /* The prism of lane k. */
 static void set_lane(batch *w, int k, const loewner_cell *c)
 {
-    for (int i = 0; i < WAVES; i++) {
+    for (int i = 0; i < waves_of(w); i++) {
         put_at(&w->p[i], k, c->p[i]);
-        put_at(&w->h[i], k, c->h[i]);
         put_at(&w->loose[i], k, c->loose[i]);
-        put_at(&w->size[i], k, fabs(c->p[i]) + c->h[i] + c->loose[i]);
+        double h = 0.0;
+        for (int column = 2; column < w->root->columns; column++) {
+            const double part = c->part[i][w->root->axis[column] - 2];
+            put_at(&w->part[i][column], k, part);
+            h += fabs(part);
+        }
+        put_at(&w->h[i], k, h);
+        put_at(&w->size[i], k, fabs(c->p[i]) + h + c->loose[i]);
     }
     for (int i = 0; i < 2; i++) {
         put_at(&w->v[i], k, c->v[i]);
@@ -72,7 +78,7 @@ static void blame(const batch *w, int k, const progress *s, const cv_cell *cell,
             share[c] = at(&w->share[c], k);
         else                            /* whoever is widest at the ends */
             for (int i = 0; i < 2; i++)
-                if (root->present[i] || root->present[2])
+                if (root->feels[i])
                     share[c] += fabs(at(&w->orbit[w->last[k]].column[i][c], k))
                                 + fabs(at(&w->orbit[w->first[k]].column[i][c], k));
         if (share[c] > share[worst])
@@ -227,10 +233,10 @@ static void look_root(const void *work, int n, loewner_point *p)
                 copy(&p->bow[i][pair(COLUMNS, axis[k], axis[l])], &q->bow[i][kl++], 1);
         }
     copy(p->rest, q->rest, 2);
-    copy(p->straight, q->straight, WAVES);
-    copy(p->bowed, q->bowed, WAVES);
-    copy(p->off, q->off, WAVES);
-    copy(p->reach, q->reach, WAVES);
+    copy(p->straight, q->straight, waves_of(w));
+    copy(p->bowed, q->bowed, waves_of(w));
+    copy(p->off, q->off, waves_of(w));
+    copy(p->reach, q->reach, waves_of(w));
     copy(p->missed, q->missed, 2);
     copy(p->force, q->force, 2);
     copy(p->beta, q->beta, 3);
