@@ -233,42 +233,53 @@ static void amplitudes(const patch *p, int at_end, double to[MOST_WAVES])
     }
 }
 
-/* A problem as start.c takes it, with the amplitudes of amplitudes. */
-typedef struct { double phase[MOST_WAVES], p[MOST_WAVES]; waves v; } simple;
+/* Room for the potential in doubles. */
+typedef struct { double phase[MOST_WAVES], p[MOST_WAVES]; } potential_room;
 
-static const waves *simplify(const patch *p, int at_end, simple *to)
+/* The potential in the middle, or at_end where the parameters are 1. */
+static waves potential(const patch *problem, int at_end, potential_room *room)
 {
-    for (int i = 0; i < p->n_waves; i++)
-        to->phase[i] = apm_get_d(p->phase[i]);
-    amplitudes(p, at_end, to->p);
-    to->v = (waves){ p->n_waves, p->k, to->phase, to->p };
-    return &to->v;
+    for (int i = 0; i < problem->n_waves; i++)
+        room->phase[i] = apm_get_d(problem->phase[i]);
+    amplitudes(problem, at_end, room->p);
+    return (waves){ problem->n_waves, problem->k, room->phase, room->p };
 }
 
-/* The starting point as it is given, or else of the program's choice. */
-static int set_start(cv_search *s, const char *const xstar[2])
+/* The starting point of the program's choice. */
+static int choose_start(const cv_search *s, apm_t xstar[2])
 {
+    const int sharp = s->method == CV_LOEWNER;
+    potential_room room;
+    const waves v = potential(&s->problem, 0, &room);
     double start[2];
-    simple problem;
     char text[40];
 
-    s->symmetric = is_symmetric(&s->problem);
-    simplify(&s->problem, 0, &problem);
-    if (s->method == CV_LOEWNER)
-        loewner_start(&problem.v, s->symmetric, start);
+    if (sharp)
+        loewner_start(&v, s->symmetric, start);
     else
-        set_LL_start(start, problem.p, s->symmetric);
+        set_LL_start(start, room.p, s->symmetric);
     for (int j = 0; j < 2; j++) {
-        if (xstar == NULL) {
-            snprintf(text, sizeof text, s->method == CV_LOEWNER ? "%.6f" : "%.17g", start[j]);
-            with_a_point(text);
-        }
-        if (apm_set_str(s->problem.xstar[j], xstar == NULL ? text : xstar[j]) != APM_OK)
+        snprintf(text, sizeof text, sharp ? "%.6f" : "%.17g", start[j]);
+        with_a_point(text);
+        if (apm_set_str(xstar[j], text) != APM_OK)
             return CV_ENUMBER;
     }
-    if (apm_cmp(s->problem.xstar[0], s->problem.xstar[1]) != 0)
-        s->symmetric = 0;
     return CV_OK;
+}
+
+static int set_start(cv_search *s, const char *const xstar[2])
+{
+    int status = CV_OK;
+
+    s->symmetric = is_symmetric(&s->problem);
+    if (xstar == NULL)
+        status = choose_start(s, s->problem.xstar);
+    for (int j = 0; j < 2 && xstar != NULL; j++)
+        if (apm_set_str(s->problem.xstar[j], xstar[j]) != APM_OK)
+            status = CV_ENUMBER;
+    if (status == CV_OK && apm_cmp(s->problem.xstar[0], s->problem.xstar[1]) != 0)
+        s->symmetric = 0;
+    return status;
 }
 
 static int set_up(cv_search *s, const cv_problem *problem, const char *const xstar[2])
@@ -286,12 +297,13 @@ static int set_up(cv_search *s, const cv_problem *problem, const char *const xst
 static int find_at_once(const cv_search *s)
 {
     const int one = s->problem.n_parameters == 1;
-    simple problem;
+    potential_room room;
+    const waves v = potential(&s->problem, one, &room);
     double x[2];
 
     if (!s->problem.odd)
         return 0;
-    loewner_lowest(simplify(&s->problem, one, &problem), x);
+    loewner_lowest(&v, x);
     return loewner_at_once(s->sharp, x, 0) ? 1 : one && loewner_at_once(s->sharp, x, 1) ? 2 : 0;
 }
 

@@ -7,6 +7,8 @@
 #include "eigenvector.h"
 #include "prism.h"
 
+static const double PLAINLY = 0.75;      /* how far below l blocks fall, as long as the orbit goes on */
+
 static mask above(const vec d[3], vec l)
 {
     return TRUTH(d[0] > l) & TRUTH((d[0] - l) * (d[2] - l) > d[1] * d[1]);
@@ -68,7 +70,7 @@ INLINE int advance(batch *w, recursion *r, int way)
         r->d[k] = pick(now, next[k], r->d[k]);
         blocks[k] = pick(now, next[k], blocks[k]);
     }
-    falls = now & ~above(r->d, w->l);
+    falls = now & ~above(r->d, pick(TRUTH(r->end == site), w->l, PLAINLY * w->l));
     r->fall = choose(falls, site - none(), r->fall);
     r->fell |= falls;
     r->going &= ~falls & ~TRUTH(r->end == site);
