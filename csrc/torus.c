@@ -286,16 +286,6 @@ static potential potential_of(int n, const double k[][2], const double phase[], 
     return q;
 }
 
-static double divisor(double a, double b)
-{
-    while (b != 0.0) {
-        const double rest = fmod(a, b);
-        a = b;
-        b = rest;
-    }
-    return a;
-}
-
 double torus_waves(int n, const double k[][2], const double phase[], const double p[])
 {
     int all[MOST_WAVES], feels[2][MOST_WAVES], parallel = 1, apart = 1;

@@ -2,6 +2,19 @@
 #ifndef CONVERSE_TORUS_H
 #define CONVERSE_TORUS_H
 
+#include <math.h>
+
+/* The greatest common divisor of two small integers that are not negative. */
+static inline double divisor(double a, double b)
+{
+    while (b != 0.0) {
+        const double rest = a - b * floor(a / b);
+        a = b;
+        b = rest;
+    }
+    return a;
+}
+
 enum { TORUS_TRACE, TORUS_EIGENVALUE };
 enum { TORUS_PLACES = 12 };            /* decimals to which it makes sense to round them */
 

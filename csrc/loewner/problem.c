@@ -158,6 +158,7 @@ static void set_angles(loewner *w, const patch *problem)
         for (int k = 0; k < 2; k++)
             w->frame[i][k] = problem->frame[2 * i + k];
     }
+    w->seen[0][0] = w->seen[1][1] = 1.0;
     for (int i = 0; i < 2 && !is_identity(problem->frame); i++)
         for (int k = 0; k < 2; k++)
             off[i] += 0x1p-50 * fabs(w->frame[i][k]) * (fabs(w->centre[k]) + w->half[k]);
@@ -213,6 +214,46 @@ static void set_waves(loewner *w, const patch *problem, int general)
     }
 }
 
+/* Where all waves are m q, q primitive, s = q.x moves by itself: s' = 2s - s(o) + |q|^2 sum m p cos y,
+   and vectors n = q nu make of Q |q|^2 times what it is for waves (m, 0) of amplitude |q|^2 p at s.
+   So these may be taken for them, if the frame tells s apart: then s_1 is v1 or -v1, and v0 is not
+   felt.  s* = q.x* and the products with |q|^2 are rounded by u or two more. */
+static void straighten(loewner *w)
+{
+    const double *const k = w->k[2], common = divisor(fabs(k[0]), fabs(k[1]));
+    const double q[2] = { k[0] / common, k[1] / common }, scale = q[0] * q[0] + q[1] * q[1];
+    const double s[2] = { q[0] * w->xstar[0], q[1] * w->xstar[1] };
+    int good = w->waves > 2 && q[0] * w->frame[0][0] + q[1] * w->frame[1][0] == 0.0;
+
+    for (int i = 2; i < w->waves; i++)
+        good = good && w->k[i][0] * q[1] == w->k[i][1] * q[0];
+    if (!good)
+        return;
+    w->xstar[0] = s[0] + s[1];
+    w->xstar_err[0] = 0x1p-49 * (fabs(s[0]) + fabs(s[1]));
+    w->xstar[1] = w->xstar_err[1] = 0.0;
+    w->frame[0][1] = q[0] * w->frame[0][1] + q[1] * w->frame[1][1];
+    w->frame[1][0] = 1.0;
+    w->frame[0][0] = w->frame[1][1] = 0.0;
+    w->most_k = 1.0;
+    for (int i = 2; i < w->waves; i++) {
+        w->amplitude[i] *= scale;
+        for (int m = 0; m < w->n_parameters; m++)
+            w->part[i][m] *= scale;
+        w->loose[i] *= scale;
+        w->k[i][0] = (w->k[i][0] * q[0] + w->k[i][1] * q[1]) / scale;
+        w->k[i][1] = 0.0;
+        w->square_k[i] = square(w->k[i][0]);
+        w->most_k = larger(w->most_k, fabs(w->k[i][0]));
+    }
+    w->feels[0] = 1;
+    w->feels[1] = 0;
+    for (int i = 0; i < 2; i++) {
+        w->seen[0][i] = q[i];
+        w->seen[1][i] = 0.0;
+    }
+}
+
 /* B at a corner of the parameters' cube, of what the engine knows the waves to be; or infinity. */
 typedef double bound_of(const loewner *w, const double p[]);
 
@@ -259,6 +300,7 @@ loewner *loewner_new(const patch *problem, int with_bounds)
         return NULL;
     set_angles(w, problem);
     set_waves(w, problem, general);
+    straighten(w);
     set_corners(w, with_bounds ? general ? torus_general : torus_thesis : torus_unknown);
     w->engine = fastest_engine(general);
     w->memory = calloc(1, w->engine->size + ALIGNMENT);
@@ -308,8 +350,10 @@ double loewner_largest(const loewner *w)
    sine, far as in general.h, and 8 for the product, where (k.n)^2 is off by 5 of (|k0| + |k1|)^2 |n|^2;
    at most 21 numbers are added.  So all is off by 70 + far of the sum of absolute values with that in
    the place of (k.n)^2, the mass; the margin is 256 (1 + far). */
-int loewner_at_once(const loewner *w, const double x[2], int at_end)
+int loewner_at_once(const loewner *w, const double at[2], int at_end)
 {
+    const double x[2] = { w->seen[0][0] * at[0] + w->seen[0][1] * at[1],
+                          w->seen[1][0] * at[0] + w->seen[1][1] * at[1] };
     double n[2], d[3] = { 2.0, 0.0, 2.0 }, p[SLOTS], pull[SLOTS], sum, mass, far = 0.0;
 
     for (int i = 0; i < w->waves; i++) {

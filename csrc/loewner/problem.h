@@ -33,6 +33,7 @@ extern const engine general_scalar, general_baseline, general_avx2, general_avx5
 
 struct loewner {
     double centre[2], half[2], slack[2], frame[2][2];           /* of v0, v1 */
+    double seen[2][2];                  /* the coordinates in which waves are given; see straighten */
     int waves;                          /* slots in use; general.h says what the first two are */
     double k[SLOTS][2], phase[SLOTS], square_k[SLOTS], most_k;  /* (|k0| + |k1|)^2; the largest sum */
     double amplitude[SLOTS], part[SLOTS][PARAMETERS], loose[SLOTS];
