@@ -4,8 +4,8 @@ import json
 import re
 from fractions import Fraction
 
-from .problem import (HIGHEST, MOST_PARAMETERS, MOST_WAVES, InputError, Problem, _is_decimal, _range,
-                      decimal_text, exact)
+from .problem import (HIGHEST, MOST_PARAMETERS, MOST_WAVES, InputError, Problem, decimal_text, exact,
+                      interval, is_decimal)
 
 PHASES = {"sin": Fraction(0), "cos": Fraction(1, 2)}    # sin(k.y + pi / 2) = cos k.y
 CONSTANT = "constant"
@@ -90,7 +90,7 @@ def _interval(where, value):
         _fail(where, "%d numbers" % len(ends), "give [low, high] or one number")
     ends = [_exact(where, end) for end in ends]
     try:
-        return _range("", (ends[0], ends[-1]))
+        return interval("", (ends[0], ends[-1]))
     except ValueError as error:
         _fail(where, str(error)[2:], "give [low, high] or one number")
 
@@ -192,7 +192,7 @@ def _amplitude(where, value, names, parameters):
                   "the parameters are %s" % (", ".join(names) or "none; name them in 'parameters'"))
     numbers = {key: _exact("%s, %s" % (where, key), number) for key, number in value.items()}
     for key, number in numbers.items():
-        if not _is_decimal(number):
+        if not is_decimal(number):
             _fail("%s, %s" % (where, key), "%s is no finite decimal" % number, "give one")
     return numbers.pop(CONSTANT, Fraction(0)), {
         names.index(key): number for key, number in numbers.items()}

@@ -14,7 +14,7 @@ LABELS = ("a", "b", "c", "theta[0]", "theta[1]")        # as the input's documen
 MAX_EXPONENT = 300
 PLACES = 40                             # to which what is no finite decimal is enclosed
 THESIS = (1, 0), (0, 1), (1, 1)         # the waves of a, b and c
-MOST_WAVES, MOST_PARAMETERS, HIGHEST = 16, 3, 100       # the last: of the components of k
+MOST_WAVES, MOST_PARAMETERS, HIGHEST = 16, 3, 100       # the last: of what k and frames have
 IDENTITY = 1, 0, 0, 1
 NUMBER = re.compile(r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]{1,9})?")
 RATIO = re.compile(r"[+-]?[0-9]+/[0-9]*[1-9][0-9]*")
@@ -68,7 +68,7 @@ class Problem:
 
     def __post_init__(self):
         for name in NAMES if self.general is None else NAMES[3:]:
-            object.__setattr__(self, name, _range(name, getattr(self, name)))
+            object.__setattr__(self, name, interval(name, getattr(self, name)))
         if not isinstance(self.together, bool):
             raise TypeError("together must be True or False, not %r" % (self.together,))
         comments = [self.comments] if isinstance(self.comments, str) else list(self.comments)
@@ -142,10 +142,10 @@ class Problem:
         """Sees that axes and alone make sense; None where they say what would be chosen anyhow."""
         if self.axes is not None:
             axes = tuple(self.axes)
-            if len(axes) != 4 or not all(type(f) is int for f in axes) or \
+            if len(axes) != 4 or not all(type(f) is int and abs(f) <= HIGHEST for f in axes) or \
                     abs(axes[0] * axes[3] - axes[1] * axes[2]) != 1:
-                raise ValueError("the axes are four integers with determinant 1 or -1, not %r"
-                                 % (self.axes,))
+                raise ValueError("the axes are four integers up to %d with determinant 1 or -1, not %r"
+                                 % (HIGHEST, self.axes))
             object.__setattr__(self, "axes", None if axes == self._best_frame() else axes)
         if self.alone is not None:
             if self.alone not in (0, 1, "no") or isinstance(self.alone, bool):
@@ -324,7 +324,7 @@ def _general(waves, amplitude, parts):
             raise ValueError("%s has %d numbers for %d waves" % (name, len(numbers), len(waves)))
         for j, number in enumerate(numbers):
             numbers[j] = _exact_of("%s of wave %d" % (name, j + 1), number)
-            if not _is_decimal(numbers[j]):
+            if not is_decimal(numbers[j]):
                 raise ValueError("%s of wave %d: %s is no finite decimal" % (name, j + 1, number))
     return tuple(waves), tuple(amplitude), tuple(map(tuple, parts))
 
@@ -336,7 +336,7 @@ def _exact_of(name, number):
         raise type(error)("%s: %s" % (name, error)) from None
 
 
-def _range(name, value):
+def interval(name, value):
     """(low, high) as Fractions that are finite decimals."""
     ends = value if isinstance(value, (tuple, list)) else (value, value)
     if len(ends) != 2:
@@ -349,9 +349,9 @@ def _range(name, value):
     if low > high:
         raise ValueError("%s: the lower end, %s, is above the upper one, %s" % (name, *ends))
     scale = 10 ** PLACES
-    if not _is_decimal(low):
+    if not is_decimal(low):
         low = Fraction(low.numerator * scale // low.denominator, scale)
-    if not _is_decimal(high):
+    if not is_decimal(high):
         high = Fraction(-(-high.numerator * scale // high.denominator), scale)
     return low, high
 
@@ -398,7 +398,7 @@ def _odd_part(n):
     return n, max(twos, fives)
 
 
-def _is_decimal(x):
+def is_decimal(x):
     return _odd_part(x.denominator)[0] == 1
 
 

@@ -231,7 +231,7 @@ class Proof:
                 {name: _number(values[name]) for name in CONSTANTS[settings.method]
                  if name in values},
                 float(values.get("seconds", 0)), PROGRAM.fullmatch(values["program"])[1],
-                tuple(map(int, values["pending"].split())), values["at once"] != "no",
+                tuple(map(int, values["pending"].split())), _at_once(values, problem),
                 nodes.count("P") + nodes.count("S"), _sha256(text.encode("utf-8")))
             tree.complete(proof.tree)
         except (KeyError, IndexError, TypeError, ValueError) as error:
@@ -268,6 +268,16 @@ def _older_problem(values, comments):
     """The problem of a file of format 2, of before there were frames and other waves."""
     return Problem(*(_ends(values, name) for name in NAMES), comments, values["together"] == "yes",
                    axes=IDENTITY, alone="no")
+
+
+def _at_once(values, problem):
+    """Is such a claim made, and one that may be made of the problem?"""
+    word = values["at once"]
+    if word == "no":
+        return False
+    if problem.odd is None or (word != "yes" and (word, len(problem.parts)) != ("upper end", 1)):
+        raise ValueError("at once: %.40s" % word)
+    return True
 
 
 def _ends(values, name):

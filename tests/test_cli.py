@@ -354,3 +354,52 @@ def test_advice_that_can_be_taken(command, sample, arguments, advice):
     status, out, err = command(*arguments, stdin=stdin)
     assert status == 1 and err == ""
     assert re.search(r"To try : .*\.", out)[0].endswith(advice)
+
+
+def test_a_potential_of_ones_own(command, root, tmp_path):
+    """JSON by its name or its first brace; a circle is called one; its backup goes on alone."""
+    sample, path = root / "inputs" / "standard.json", tmp_path / "a.proof"
+    status, out, err = command("--method", "loewner", "-d9", "-s", "-b", path, stdin=sample.read_bytes())
+    assert (status, err) == (1, "") and "I could not decide whether there are rotational" in out
+    status, out, err = command("-r", path, "-d", "120", sample)
+    assert (status, err) == (0, "")
+    assert "I find no rotational invariant circles for V(y) = - the sum of :\np sin(y0 - 1/2 pi), " \
+        "p = 1.160000 + 0.180000 t[1]\nfor -1 < t[1] < 1\nNor are there any for s times" in out
+    status, out, err = command("-r", path, root / "inputs" / "two-harmonics.json")
+    assert (status, out) == (2, "") and one_line(err) and "its potential is " in err
+
+
+@pytest.mark.parametrize("arguments, words", [
+    ([], "--method loewner"), (["--method", "loewner", "--together"], "name a parameter")])
+def test_a_potential_needs_the_sharper_method(command, root, arguments, words):
+    status, out, err = command(*arguments, root / "inputs" / "crossed.json")
+    assert (status, out) == (2, "") and one_line(err) and words in err
+
+
+def test_an_input_that_moves_together(command, tmp_path):
+    (tmp_path / "a.json").write_text('{"parameters": {"e": ["0.4", "0.5"]}, "harmonics": [%s]}' % ", ".join(
+        '{"k": %s, "amplitude": {"e": 1}}' % k for k in ("[1, 0]", "[0, 1]", "[1, 1]")))
+    status, out, err = command(tmp_path / "a.json")
+    assert (status, out) == (2, "") and one_line(err) and "--method loewner" in err
+    status, out, err = command("--method", "loewner", tmp_path / "a.json")
+    assert (status, err) == (0, "") and "0.400000 < a < 0.500000\n" in out
+    assert "which move together" in out and "> e from 0.4 to 0.5 (t[1])" in out
+
+
+def test_json_mistakes_are_one_line(command, tmp_path):
+    (tmp_path / "a.json").write_text('{"harmonics": [{"k": [1, 0], "amplitude": "\\u001b]0;x\\n"}]}')
+    status, out, err = command("--method", "loewner", tmp_path / "a.json")
+    assert (status, out) == (2, "") and one_line(err) and "\x1b" not in err
+    assert "a.json, harmonic 1, amplitude: " in err
+
+
+def test_a_point_is_chosen(command, sample, tmp_path):
+    status, out, err = command("-d5", "--xstar", "0.8", "-0.95", "-b", tmp_path / "a", sample)
+    assert (status, err) == (1, "") and "\nx* : 0.8 -0.95\n" in out
+    status, out, err = command("-r", tmp_path / "a", "--xstar", "0.8", "0.95")
+    assert (status, out) == (2, "") and one_line(err) and "its x* is 0.8 -0.95" in err
+    for words in ("0.8", "x"), ("1/3", "0"), ("1e999", "0"):
+        status, out, err = command("--xstar", *words, sample)
+        assert (status, out) == (2, "") and one_line(err) and "--xstar" in err
+    status, out, err = command("--xstar", "0.8", "--jobs", "1", sample)
+    assert (status, out) == (2, "") and one_line(err)

@@ -273,6 +273,7 @@ WAVE = {"amplitude": [1], "waves": [(1, 0)]}
     ({**WAVE, "v0": (1, 0)}, ValueError, "v0: the lower end"),
     ({**WAVE, "axes": (1, 1, 1, 1)}, ValueError, "determinant"),
     ({**WAVE, "axes": (1, 0, 0)}, ValueError, "four integers"),
+    ({**WAVE, "axes": (1, 0, 101, 1)}, ValueError, "up to 100"),
     ({**WAVE, "axes": (1, 0, 0, True)}, ValueError, "four integers"),
     ({**WAVE, "alone": 2}, ValueError, "alone is 0, 1 or 'no'"),
     ({**WAVE, "alone": True}, ValueError, "alone is 0, 1 or 'no'"),

@@ -549,7 +549,7 @@ PATCHES = {
 @pytest.mark.parametrize("name", PATCHES)
 def test_every_problem_has_a_file(made_up, tmp_path, name):
     problem = PATCHES[name]
-    for at_once in False, True:
+    for at_once in (False, True) if problem.odd is not None else (False,):
         proof = replace(made_up("0PP", method="loewner"), problem=problem, at_once=at_once,
                         constants={"B": "3.5"}, seconds=0)
         proof.save(tmp_path / "a.proof")
@@ -579,7 +579,8 @@ def test_what_a_file_says(made_up, tmp_path):
     ("wave", "wave: 1 0 0 0.3"), ("wave", "wave: 0 0 0 0.3 0 0 0"), ("wave", "wave: 1 0"),
     ("wave", "wave: 0 1 0 0.3 0 0 0"), ("wave", "wave: 1.5 0 0 0.3 0 0 0"), ("wave", "wave: 1 0 0 1/3 0 0 0"),
     ("wave", "wave: 101 0 0 0.3 0 0 0"), ("wave", "wave: 1 0 x 0.3 0 0 0"), ("v0", "v0: 1 -1"),
-    ("v0", "v0: 1"), ("v0", "")])
+    ("v0", "v0: 1"), ("v0", ""), ("at once", "at once: perhaps"), ("at once", "at once: upper end"),
+    ("at once", "")])
 def test_a_header_that_makes_no_sense(made_up, tmp_path, line, new):
     path = tmp_path / "a.proof"
     made_up("0PP").save(path)
@@ -590,6 +591,14 @@ def test_a_header_that_makes_no_sense(made_up, tmp_path, line, new):
     with pytest.raises(ConverseError, match="a.proof, line [0-9]+: .*makes no sense") as caught:
         Proof.load(path)
     assert "\n" not in str(caught.value)
+
+
+def test_nothing_is_at_once_that_is_not_odd(made_up, tmp_path):
+    problem = Problem.patch([1, 1], waves=[(1, 0), (2, 0, "1/2")])
+    replace(made_up("P"), problem=problem, at_once=True).save(tmp_path / "a.proof")
+    with pytest.raises(ConverseError, match="at once: yes"):
+        Proof.load(tmp_path / "a.proof")
+    assert not prove(Problem.patch([4, 4], waves=problem.waves), method="loewner").at_once
 
 
 def test_another_patch_is_refused(tmp_path):
