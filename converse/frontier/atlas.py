@@ -18,7 +18,7 @@ from .region import RADIUS, REGIONS, Cell, direction, is_outside, root
 
 FORMAT = "converse map 1"
 PROVED, AT_ONCE, OPEN, OUTSIDE = "PAOX"
-GRID = {1: 32, 2: 16}               # intervals of a side, in the estimate of a plane, of the sphere
+GRID = {1: 32, 2: 8}               # intervals of a side, in the estimate of a plane, of the sphere
 
 Place = Tuple[Fraction, ...]
 

@@ -248,13 +248,15 @@ class _Search:
         """Estimates the frontier where it is not yet known."""
         def take(key, radius):
             face, place = key
-            self.map.estimate[face][place] = radius
+            known[face][place] = radius
+            if face in mirrored:
+                known[face][place[::-1]] = radius
 
+        known, faces = self.map.estimate, self.map.directions
+        mirrored = [face for face, d in enumerate(faces) if set(d[1:]) == {region.A, region.B}]
         tasks = ((frontier, (face, place), directions, place)
-                 for face, directions in enumerate(self.map.directions)
-                 for place in self.map.places(face)
-                 if place not in self.map.estimate[face] and place == tuple(sorted(place))[::-1]
-                 or len(place) == 1)
+                 for face, directions in enumerate(faces) for place in self.map.places(face)
+                 if place not in known[face] and not (face in mirrored and place[0] < place[1]))
         self._work(lambda: next(tasks, None), take)
 
     def _explore(self):
