@@ -85,6 +85,15 @@ static double over(const problem *p, const double v[2], const double r[2], doubl
     return larger(displaced(p, s, c, -r[0], -r[1]), most);
 }
 
+/* What is bounded: by `over`, over cells of a rectangle of these sides about 0. */
+typedef struct {
+    double (*over)(const void *of, const double v[2], const double r[2], double *middle);
+    const void *of;
+    double side[2], reach[2];           /* reach: how much the square of a side moves the waves */
+    double all, no_more, margin, last;  /* sizes added up; no value is above; roundings; tolerance */
+    double closer;                      /* of each pass's tolerance, that of the next */
+} surface;
+
 /* One pass over the torus: *best becomes the largest value seen at any centre, if larger than
    before; the result is >= every value on the torus, and at most *best + tolerance unless depth or
    patience ran out, when it is looser, and still a bound.  cells: how many were halved so far.
@@ -92,16 +101,15 @@ static double over(const problem *p, const double v[2], const double r[2], doubl
    A cell is done when its bound is at most *best + tolerance; otherwise it is halved along the side
    whose square moves the waves most, since it is at their maxima, where they are parabolas, that
    cells have to be small. */
-static double pass(const problem *p, double *best, double tolerance, long *cells)
+static double pass(const surface *p, double *best, double tolerance, long *cells)
 {
-    const double reach[2] = { p->size[0] + p->size[2], p->size[1] + p->size[2] };
-    cell stack[DEPTH + 2] = { { { 0.0, 0.0 }, { PI, PI }, 0 } };
+    cell stack[DEPTH + 2] = { { { 0.0, 0.0 }, { p->side[0], p->side[1] }, 0 } };
     double most = *best, middle;
     int top = 0;
 
     while (top >= 0) {
         cell *const k = stack + top, *const other = stack + top + 1;
-        const double bound = over(p, k->v, k->r, &middle);
+        const double bound = p->over(p->of, k->v, k->r, &middle);
         if (isnan(bound))
             return bound;
         *best = larger(*best, middle);
@@ -109,7 +117,7 @@ static double pass(const problem *p, double *best, double tolerance, long *cells
             most = larger(most, bound);
             top--;
         } else {
-            const int j = k->r[0] * k->r[0] * reach[0] < k->r[1] * k->r[1] * reach[1];
+            const int j = k->r[0] * k->r[0] * p->reach[0] < k->r[1] * k->r[1] * p->reach[1];
             k->depth++;
             k->r[j] *= 0.5;
             *other = *k;
@@ -121,30 +129,46 @@ static double pass(const problem *p, double *best, double tolerance, long *cells
     return most;
 }
 
-/* Each pass looks a thousand times more closely than the last, whose best value spares it all but
-   the neighbourhood of the maximum, down to NEAR and 10^-12 of the parameters.  The cells run out
-   where the maximum is a ridge: across the cells if |c| is much larger than |a| or |b|, along them if
-   c = 0 and |a| and |b| differ, since the larger of two waves does not depend on the other's angle.
-   Then the result is the best bound of the passes or, if that is less, what no sines exceed,
-   4 + |a| + |b| + 2|c| or 2 + max(|a|, |b|) + 2|c|; a ridge nearly reaches it. */
-double torus_largest(const double low[3], const double high[3], int which)
+/* Each pass looks more closely than the last, whose best value spares it all but the neighbourhood of
+   the maximum.  Cells run out where the maximum is a ridge, or there are many.  Then the result is the
+   best bound of the passes or, if that is less, what no sines exceed. */
+static double largest(const surface *p)
 {
-    const problem p = problem_of(low, high, which);
-    const double all = p.size[0] + p.size[1] + p.size[2], last = NEAR + MARGIN * all;
-    const double no_more = 2.0 * p.size[2] + (which == TORUS_TRACE
-        ? 4.0 + p.size[0] + p.size[1] : 2.0 + larger(p.size[0], p.size[1]));
     double best = 0.0, most = HUGE_VAL;                 /* 0: the mean is above */
     long cells = 0;
 
-    for (double tolerance = 0.5 * all; ; tolerance *= 1e-3) {
-        const int done = tolerance <= 2.0 * last;
-        const double found = pass(&p, &best, done ? last : tolerance, &cells);
+    for (double tolerance = 0.5 * p->all; ; tolerance *= p->closer) {
+        const int done = tolerance <= 2.0 * p->last;
+        const double found = pass(p, &best, done ? p->last : tolerance, &cells);
         most = isnan(found) || found < most ? found : most;
         if (cells > CELLS)
-            most = no_more < most ? no_more : most;
+            most = p->no_more < most ? p->no_more : most;
         if (done || cells > CELLS || isnan(most))
-            return most + MARGIN * (1.0 + all);
+            return most + p->margin;
     }
+}
+
+static double over_three(const void *of, const double v[2], const double r[2], double *middle)
+{
+    return over(of, v, r, middle);
+}
+
+/* A thousand times more closely in each pass, down to NEAR and 10^-12 of the parameters.  There are
+   ridges across the cells if |c| is much larger than |a| or |b|, along them if c = 0 and |a| and |b|
+   differ, since the larger of two waves does not depend on the other's angle; the bound
+   4 + |a| + |b| + 2|c| or 2 + max(|a|, |b|) + 2|c|, that they nearly reach, serves there. */
+double torus_largest(const double low[3], const double high[3], int which)
+{
+    const problem p = problem_of(low, high, which);
+    const double all = p.size[0] + p.size[1] + p.size[2];
+    const surface s = {
+        over_three, &p, { PI, PI }, { p.size[0] + p.size[2], p.size[1] + p.size[2] }, all,
+        2.0 * p.size[2] + (which == TORUS_TRACE
+            ? 4.0 + p.size[0] + p.size[1] : 2.0 + larger(p.size[0], p.size[1])),
+        MARGIN * (1.0 + all), NEAR + MARGIN * all, 1e-3
+    };
+
+    return largest(&s);
 }
 
 double torus_rectangle(const double low[3], const double high[3], const double centre[2],
@@ -169,13 +193,11 @@ double torus_rectangle(const double low[3], const double high[3], const double c
    which is worth 630 K u P.  Together, with TORUS_ENDS, less than 3000 (1 + K)^3 u (1 + P); the margin
    is 8192 (1 + K)^3 u (1 + P). */
 
-enum { MOST_WAVES = 16, MOST_CELLS = 100000 };
+enum { MOST_WAVES = 16 };
 
 typedef struct {
     int n;
     double feels[MOST_WAVES][2], does[MOST_WAVES][3], phase[MOST_WAVES], p[MOST_WAVES];
-    double side[2], reach[2];           /* of the first cell; how much a square moves the waves */
-    double all, no_more, margin;
 } potential;
 
 /* >= the largest eigenvalue of 2I + W(v + t), as a function of t convex, as above. */
@@ -194,75 +216,30 @@ static double moved(const potential *q, const double s[], const double c[], cons
     return 0.5 * ((m[0] + m[2]) + scale * sqrt(e * e + f * f)) + 2.0;
 }
 
-/* The same for every point of a cell. */
-static double over_cell(const potential *q, const cell *k, double *middle)
+static double over_any(const void *of, const double v[2], const double r[2], double *middle)
 {
     static const double still[2] = { 0.0, 0.0 };
-    double s[MOST_WAVES], c[MOST_WAVES], most = -HUGE_VAL;
+    const potential *const q = of;
+    double s[MOST_WAVES], c[MOST_WAVES], top = -HUGE_VAL;
 
     for (int i = 0; i < q->n; i++)
-        double_sincos(&s[i], &c[i],
-                      (q->feels[i][0] * k->v[0] + q->feels[i][1] * k->v[1]) - q->phase[i]);
+        double_sincos(&s[i], &c[i], (q->feels[i][0] * v[0] + q->feels[i][1] * v[1]) - q->phase[i]);
     *middle = moved(q, s, c, still);
     for (int corner = 0; corner < 4; corner++) {
-        const double t[2] = { corner & 1 ? k->r[0] : -k->r[0], corner & 2 ? k->r[1] : -k->r[1] };
-        most = larger(moved(q, s, c, t), most);
+        const double t[2] = { corner & 1 ? r[0] : -r[0], corner & 2 ? r[1] : -r[1] };
+        top = larger(moved(q, s, c, t), top);
     }
-    return most;
+    return top;
 }
 
-/* As pass and torus_largest. */
-static double look_closely(const potential *q, double *best, double tolerance, long *cells)
+/* The bound of those waves that `which` names.  direction: what they all feel is a multiple of it,
+   which is not zero at `main`; or NULL. */
+static double largest_of(int n, const double k[][2], const double phase[], const double p[],
+                         const int which[], const double *direction, int main)
 {
-    cell stack[DEPTH + 2] = { { { 0.0, 0.0 }, { q->side[0], q->side[1] }, 0 } };
-    double most = *best, middle;
-    int top = 0;
-
-    while (top >= 0) {
-        cell *const k = stack + top, *const other = stack + top + 1;
-        const double bound = over_cell(q, k, &middle);
-        if (isnan(bound))
-            return bound;
-        *best = larger(*best, middle);
-        if (bound <= *best + tolerance || k->depth == DEPTH || ++*cells > MOST_CELLS) {
-            most = larger(most, bound);
-            top--;
-        } else {
-            const int j = k->r[0] * k->r[0] * q->reach[0] < k->r[1] * k->r[1] * q->reach[1];
-            k->depth++;
-            k->r[j] *= 0.5;
-            *other = *k;
-            other->v[j] += k->r[j];
-            k->v[j] -= k->r[j];
-            top++;
-        }
-    }
-    return most;
-}
-
-static double largest_of(const potential *q)
-{
-    const double last = NEAR + q->margin;
-    double best = 0.0, most = HUGE_VAL;
-    long cells = 0;
-
-    for (double tolerance = 0.5 * q->all; ; tolerance *= 1e-3) {
-        const int done = tolerance <= 2.0 * last;
-        const double found = look_closely(q, &best, done ? last : tolerance, &cells);
-        most = isnan(found) || found < most ? found : most;
-        if (cells > MOST_CELLS)
-            most = q->no_more < most ? q->no_more : most;
-        if (done || cells > MOST_CELLS || isnan(most))
-            return most + q->margin;
-    }
-}
-
-/* The waves of which `which` says so.  direction: what they all feel is a multiple of it, which is not
-   zero at `main`; or NULL. */
-static potential potential_of(int n, const double k[][2], const double phase[], const double p[],
-                              const int which[], const double *direction, int main)
-{
-    potential q = { .side = { PI, direction == NULL ? PI : 0.0 }, .no_more = 2.0 };
+    potential q = { 0 };
+    surface s = { .over = over_any, .of = &q, .side = { PI, direction == NULL ? PI : 0.0 },
+                  .no_more = 2.0, .closer = 0.03 };
     double most_k = 0.0, all = 0.0;
 
     for (int i = 0; i < n; i++) {
@@ -273,23 +250,24 @@ static potential potential_of(int n, const double k[][2], const double phase[], 
         q.feels[q.n][1] = direction == NULL ? k[i][1] : 0.0;
         for (int j = 0; j < 3; j++)
             q.does[q.n][j] = k[i][j / 2] * k[i][(j + 1) / 2];
+        for (int j = 0; j < 2; j++)
+            s.reach[j] += fabs(p[i]) * sum * sum * q.feels[q.n][j] * q.feels[q.n][j];
         q.phase[q.n] = phase[i];
         q.p[q.n++] = p[i];
         most_k = larger(most_k, sum);
         all += fabs(p[i]);
-        q.no_more += fabs(p[i]) * (k[i][0] * k[i][0] + k[i][1] * k[i][1]);
-        for (int j = 0; j < 2; j++)
-            q.reach[j] += fabs(p[i]) * sum * sum * q.feels[q.n - 1][j] * q.feels[q.n - 1][j];
+        s.no_more += fabs(p[i]) * (k[i][0] * k[i][0] + k[i][1] * k[i][1]);
     }
-    q.all = all * most_k * most_k;
-    q.margin = 0x1p-40 * (1.0 + most_k) * (1.0 + most_k) * (1.0 + most_k) * (1.0 + q.all);
-    return q;
+    s.all = all * most_k * most_k;
+    s.margin = 0x1p-40 * (1.0 + most_k) * (1.0 + most_k) * (1.0 + most_k) * (1.0 + s.all);
+    s.last = NEAR + s.margin;
+    return largest(&s);
 }
 
 double torus_waves(int n, const double k[][2], const double phase[], const double p[])
 {
-    int all[MOST_WAVES], feels[2][MOST_WAVES], parallel = 1, apart = 1;
-    double direction[2] = { 0.0, 0.0 }, largest = 2.0;
+    int all[MOST_WAVES], feels[2][MOST_WAVES], parallel = n > 0, apart = 1;
+    double direction[2] = { 0.0, 0.0 }, top = 2.0;
 
     for (int i = 0; i < n; i++) {
         all[i] = 1;
@@ -298,21 +276,16 @@ double torus_waves(int n, const double k[][2], const double phase[], const doubl
         parallel = parallel && k[i][0] * k[0][1] == k[i][1] * k[0][0];
         apart = apart && !(feels[0][i] && feels[1][i]);
     }
-    if (parallel && n > 0) {
+    if (parallel) {
         const double common = divisor(fabs(k[0][0]), fabs(k[0][1]));
         direction[0] = k[0][0] / common;
         direction[1] = k[0][1] / common;
-        const potential q = potential_of(n, k, phase, p, all, direction, direction[0] == 0.0);
-        return largest_of(&q);
+        return largest_of(n, k, phase, p, all, direction, direction[0] == 0.0);
     }
     for (int j = 0; j < 2 && apart; j++) {              /* the larger eigenvalue of the two */
         direction[j] = 1.0;
         direction[1 - j] = 0.0;
-        const potential q = potential_of(n, k, phase, p, feels[j], direction, j);
-        largest = larger(largest, largest_of(&q));
+        top = larger(top, largest_of(n, k, phase, p, feels[j], direction, j));
     }
-    if (apart)
-        return largest;
-    const potential q = potential_of(n, k, phase, p, all, NULL, 0);
-    return largest_of(&q);
+    return apart ? top : largest_of(n, k, phase, p, all, NULL, 0);
 }

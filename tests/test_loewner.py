@@ -491,8 +491,8 @@ def bound_margins(prism, q, out, plain):
     bound, l, first, count, rounding = out[:5]
     first, last = int(first), int(first + count) - 1
     n = {first + k: (out[5 + 2 * k], out[6 + 2 * k]) for k in range(int(count))}
-    none, until, far = (mp(0), mp(0)), max(last, 1), 0
-    mu = {j: q[j].mu if first < j < until else none for j in range(first - 1, until + 2)}
+    none, since, until, far = (mp(0), mp(0)), min(first, 0), max(last, 1), 0
+    mu = {j: q[j].mu if since < j < until else none for j in range(since - 1, until + 2)}
     exact = -l * sum(x * x for x in (*n[first], *n[last]))
     mass, claimed, sums = -exact, 0, 0                  # sums: of exact, what they do not hold
     terms, cubes = {}, 0
@@ -502,7 +502,7 @@ def bound_margins(prism, q, out, plain):
             key = tuple(sorted(key))
             terms[key] = terms.get(key, 0) + x
 
-    for j in range(first, until + 1):
+    for j in range(since, until + 1):
         (n0, n1), m, after = n.get(j, none), [*mu[j], sum(mu[j])], n.get(j + 1, none)
         omega = [n0 ** 2, n1 ** 2, (n0 + n1) ** 2]
         exact += 2 * (omega[0] + omega[1]) - 2 * (n0 * after[0] + n1 * after[1])
@@ -551,13 +551,13 @@ def bound_margins(prism, q, out, plain):
             else:
                 sums += abs(slope) * q[j].reach[i]
                 yield "left", abs(slope), left
-            if first < j < until:
+            if since < j < until:
                 exact += abs(m[i]) * missed(p, q[j], q[j - 1], q[j + 1], i)
                 sums += abs(m[i]) * missed(p, q[j], q[j - 1], q[j + 1], i)
                 claimed += abs(m[i]) * q[j].missed[i]
     squares = exact + cube_top({key: x for key, x in terms.items() if len(key) < 3})
     exact += cube_top(terms)
-    mass *= 64 * UNIT * (until - first + 2) + 16 * UNIT * (1 + far)
+    mass *= 64 * UNIT * (until - since + 2) + 16 * UNIT * (1 + far)
     yield "sums", exact - sums - (bound - rounding), mass
     if plain != bound:
         yield "sums", squares + cubes - sums - (plain - rounding), mass

@@ -20,6 +20,7 @@ static const double BETWEEN = 0.28;     /* of the way from the least beta to the
 static const double NOTHING = 1e-6;     /* no better than that: it may be rounding */
 static const double PLAINLY = 0.001;    /* better: enough for giving up symmetry */
 static const double ENOUGH = 0.06, WEAKER = 0.97;       /* so much must be left; else V is weakened */
+static const double STRONG = 1.5, WEAK = 0.5;   /* B - 2: there is no torus; there is nothing to prove */
 
 /* What is minimized, its gradient g and Hessian h (00, 01, 11). */
 typedef double objective(const waves *v, const double x[2], double g[2], double h[3]);
@@ -282,8 +283,8 @@ static double score(void *context, const double x[2], double enough)
     return -least;
 }
 
-/* For the tails: l + 1/l = B, the largest eigenvalue of beta, on a grid. */
-static double rate(const pencil *o)
+/* The largest eigenvalue of beta, on a grid. */
+static double largest(const pencil *o)
 {
     double B = 2.0, force[2], beta[3];
 
@@ -293,7 +294,7 @@ static double rate(const pencil *o)
             look(o, x, force, beta);
             B = fmax(B, beta[0] + beta[2] - least_of(beta));
         }
-    return 2.0 / (B + sqrt((B - 2.0) * (B + 2.0)));
+    return B;
 }
 
 /* x = a place of the least score, which it returns: the best place of a grid or x, and from there. */
@@ -317,16 +318,19 @@ static double find_best(pencil *o, int on_diagonal, double x[2])
 void loewner_start(const waves *v, int on_diagonal, double x[2])
 {
     pencil o = { .v = v, .scale = 1.0 };
-    double least[2], value;
+    double least[2], value, above;
 
     find_least(least_eigenvalue, v, on_diagonal, x);
     find_least(potential, v, on_diagonal, least);
     for (int i = 0; i < 2; i++)
         x[i] += BETWEEN * (least[i] - x[i]);
+    above = largest(&o) - 2.0;
+    o.scale = above > STRONG ? STRONG / above : 1.0;
     for (;;) {
-        o.l = rate(&o);
+        const double B = 2.0 + o.scale * above;
+        o.l = 2.0 / (B + sqrt((B - 2.0) * (B + 2.0)));
         value = score(&o, x, HUGE_VAL);
-        if (value >= ENOUGH)
+        if (value >= ENOUGH || !(o.scale * above >= WEAK))
             break;
         o.scale *= WEAKER;
     }

@@ -81,7 +81,7 @@ INLINE int advance(batch *w, recursion *r, int way)
 /* Chooses from, to and n on the orbits so that (1) is negative at the centre, in the lanes whose
    turn it is; returns where that can be.
 
-   Between the places where the recursions from both ends fall all blocks are above l.  There n is,
+   Between the places where the recursions from both ends fall all blocks are positive.  There n is,
    at the site of the least beta, the eigenvector of the quadratic form that is left there when all
    others are eliminated; outwards n = n / d.  Where the recursions fall before they meet, either
    place will do by itself, and the plainer one is taken: the other may be next to nothing, however

@@ -1,0 +1,85 @@
+"""Where orbits start, method Loewner: the choice of x*, and that no proof depends on luck with it."""
+
+import math
+
+import pytest
+
+from converse import core
+from converse.problem import Problem
+from converse.settings import Settings
+
+
+def decide(parameters, xstar=None, most=20000):
+    """The first prism and what it is cut into, as far as `most` tries: x*, tries, all proved?"""
+    search = core.Search(core.Task(Problem(**dict(zip("abc", parameters))),
+                                   Settings(method="loewner"), xstar))
+    assert search.prepare(core.ffi.NULL)
+    begun = search.begin("")
+    cells, tries, undecided = begun.cells, 0, 0
+    while cells and tries < most and not undecided:
+        grown = search.grow(cells, 1.0, 500, core.ffi.NULL, False)
+        cells, undecided = grown.cells, grown.counts.undecided
+        tries += grown.counts.tries
+    return tuple(map(float, begun.xstar)), tries, not cells and not undecided
+
+
+def chosen(*parameters):
+    return decide(parameters, most=0)[0]
+
+
+@pytest.mark.parametrize("epsilon", [0.0139, 0.0141, 0.0152, 0.0180, 0.0210, 0.0278])
+def test_on_the_thesis_line_it_stays(epsilon):
+    a = "%.9f" % (4 * math.pi * epsilon)
+    assert chosen(a, a, "%.9f" % (8 * math.pi * epsilon)) == (0.858028, 0.858028)
+
+
+@pytest.mark.parametrize("a, b", [("0.972", "0"), ("0.98", "0.98"), ("0.99", "0.5"), ("1.4", "0")])
+def test_without_coupling_it_is_where_each_wave_bends_most(a, b):
+    assert chosen(a, b, "0") == (1.570796, 1.570796)
+
+
+def test_it_may_leave_the_diagonal_and_follows_the_wave_that_couples():
+    x0, x1 = chosen("0.8", "0.8", "0.08")
+    assert sorted((x0, x1)) == [pytest.approx(0.3, abs=0.2), pytest.approx(1.52, abs=0.1)]
+    x0, x1 = chosen("0", "0", "0.5")
+    assert math.sin(x0 + x1) == pytest.approx(1, abs=1e-6)
+    assert chosen("0.5", "0", "0.3") == (1.570796, 0)
+
+
+# A few per cent above the least radius at which the best of many x* succeeded.
+@pytest.mark.parametrize("parameters", [
+    ("0.81", "0.81", "0.081"), ("0.63", "0.63", "0.126"), ("0.53", "0.53", "0.159"),
+    ("0.456", "0.228", "0.228"), ("0.187", "0.0935", "0.374"), ("0.61", "0.122", "0.183"),
+    ("0.44", "0.352", "0.22"), ("0.53", "0.053", "0.265"), ("0.37", "0.037", "0.37"),
+    ("0.40", "0", "0.40"), ("0.213", "0.0426", "0.426")])
+def test_points_near_the_frontier_are_proved(parameters):
+    assert decide(parameters)[2]
+
+
+@pytest.mark.parametrize("parameters", [("0", "0", "0"), ("1e-9", "0", "0"), ("1e300", "1e300", "0"),
+                                        ("0.01", "0.01", "0.01"), ("5", "1", "3")])
+def test_there_is_always_a_choice(parameters):
+    assert all(map(math.isfinite, chosen(*parameters)))
+
+
+# Far beyond the frontier: with these x* they took 10^5 tries or were cut as often as can be, because
+# one of two contradictions of each orbit was next to nothing, or an end of it could not go on.
+CUT_FOR_EVER = [
+    ((("1.1528125", "1.158125"), "0", ("0.05046875", "0.053125")), ("1.570796", "0"), 1000),
+    ((("1.1528125", "1.158125"), "0", ("0.05046875", "0.053125")), ("1.5", "0.1"), 1000),
+    ((("1.0805855953896855", "1.0966733436560456"), ("0.9657828825428744", "0.9801614490910491"),
+      ("0.021836354249403802", "0.02186864783924623")), ("1.5933", "-0.2340"), 2000),
+    ((("0.6015395427020019", "0.6095855226225753"), ("0.288756079009757", "0.28913999809174634"),
+      ("0.6611360188515273", "0.6699791401342166")), ("1.3354", "1.0792"), 2000),
+    ((("1.1556965402127692", "1.15933100085478"), ("0.06216866387434051", "0.06236417329585014"),
+      "0.25383573470622683"), ("1.9936", "0.5480"), 4000),
+    ((("0.006774129899626973", "0.006828950644381873"),
+      ("0.004412148962980927", "0.004447854993970013"),
+      ("0.8080800271305957", "0.8146195457942839")), ("0.5697", "0.4299"), 5000),
+]
+
+
+@pytest.mark.parametrize("parameters, xstar, most", CUT_FOR_EVER)
+def test_nothing_is_cut_for_ever(parameters, xstar, most):
+    _, tries, proved = decide(parameters, xstar, most)
+    assert proved and tries <= most
