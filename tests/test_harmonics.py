@@ -226,7 +226,7 @@ def test_one_map_in_both_inputs():
                                 ("1", (0, 1), "cos"), ("1/2", (1, 1), 0), ("1/2", (1, -1), "1/7")):
         proof = prove(read({"harmonics": [{"k": k, "amplitude": amplitude, "phase": phase}]}),
                       method="loewner")
-        assert proof.no_tori and not proof.at_once
+        assert proof.no_tori and not proof.at_once and proof.counts.proved < 300
     lower = prove(read({"harmonics": [{"k": [1], "amplitude": "0.95"}]}), method="loewner", depth=30)
     assert lower.conclusion == "undecided"      # its golden circle lives to 0.9716
 
