@@ -12,6 +12,7 @@
 #include "torus.h"
 
 enum { MAX_DP = 100000, MAX_IN = 64, MAX_OUT = 900 };
+enum { WAVE = 7, MOST_SHOWN = 4 };      /* numbers of a wave; waves of a kernel's potential */
 
 /* The operations of apm.h and special.h, which stand below num_t.
    pi: -> pi          add, sub, mul: x, y -> r       cmp: x, y -> -1, 0 or 1
@@ -163,6 +164,53 @@ static void set_patch(patch *b, apm_t in[], int together, const apm_t zero)
     }
 }
 
+/* The same of any waves.  0: the arguments are no patch. */
+static int set_waves(patch *b, apm_t in[], int nin, int waves, int parameters)
+{
+    const int rest = 2 + WAVE * waves;
+
+    if (waves < 1 || waves > MOST_SHOWN || parameters < 0 || parameters > PARAMETERS ||
+        nin < rest + 10)
+        return 0;
+    memset(b, 0, sizeof *b);
+    b->n_waves = waves;
+    b->n_parameters = parameters;
+    for (int i = 0; i < waves; i++) {
+        apm_t *const wave = in + 2 + WAVE * i;
+        for (int j = 0; j < 2; j++)
+            b->k[i][j] = (int)apm_get_d(wave[j]);
+        *b->phase[i] = *wave[2];
+        *b->amplitude[i] = *wave[3];
+        for (int m = 0; m < PARAMETERS; m++)
+            *b->part[i][m] = *wave[4 + m];
+    }
+    for (int j = 0; j < 2; j++) {
+        *b->angle[j] = *in[rest + 2 * j];
+        *b->half[j] = *in[rest + 2 * j + 1];
+        *b->xstar[j] = *in[rest + 8 + j];
+    }
+    for (int j = 0; j < 4; j++)
+        b->frame[j] = (int)apm_get_d(in[rest + 4 + j]);
+    return 1;
+}
+
+/* What is known of a point, of so many slots: returns where it ends. */
+static double *show(double *y, const loewner_point *p, int slots)
+{
+    const struct { const double *from; int count; } parts[] = {
+        { p->x, 2 }, { p->column[0], 10 }, { p->bow[0], 30 }, { p->rest, 2 },
+        { p->straight, slots }, { p->bowed, slots }, { p->off, slots }, { p->reach, slots },
+        { p->missed, 2 }, { p->force, 2 }, { p->beta, 3 }, { p->d, 3 }, { &p->fuzz, 1 },
+        { p->mu, 2 }
+    };
+
+    for (size_t j = 0; j < sizeof parts / sizeof *parts; j++) {
+        memcpy(y, parts[j].from, (size_t)parts[j].count * sizeof *y);
+        y += parts[j].count;
+    }
+    return y;
+}
+
 /* The routines of loewner.h; all take doubles only, and begin with centres and half-widths of a, b,
    c, v0, v1, x* and together (0 or 1).
    loewner_cell: ..., index and cuts of five axes -> centres and widths of v0, v1; p, h and loose
@@ -175,19 +223,25 @@ static void set_patch(patch *b, apm_t in[], int together, const apm_t zero)
    loewner_sites: ..., s, t -> of each point of that orbit, at most 13, what loewner_orbit tells,
                   and missed, force, beta, d, fuzz and mu
    loewner_step: ..., n, repeat -> the reaches of both coordinates of point n, ns per step and prism,
-                 prisms at once */
+                 prisms at once
+   waves_bound, waves_sites: the same of at most 4 waves; they begin with the numbers of waves and of
+                 parameters, seven numbers of each wave, k0, k1, phase in radians, amplitude and three
+                 parts, centre and half-width of v0 and of v1, the frame and x*.  Of a point there are
+                 the reaches of the coordinates and of 4 waves; at most 11 points
+   waves_largest: as these -> B */
 static int loewner_kernel(const char *name, int nin, apm_t in[], int nout, apm_t out[])
 {
-    enum { BOX = 13, POINT = 56, SITE = 69, SITES = 60, SHOWN = 13 };
-    enum { CELL, ORBIT, BOUND, ALL, STEP, N_SHAPES };
-    static const struct { const char *name; int nin, nout; } shapes[N_SHAPES] = {
-        { "loewner_cell", BOX + 10, 22 }, { "loewner_orbit", BOX + 1, POINT },
-        { "loewner_bound", BOX + 3, 5 + 2 * SITES }, { "loewner_sites", BOX + 2, SITE * SHOWN },
-        { "loewner_step", BOX + 2, 4 }
+    enum { BOX = 13, POINT = 56, SITE = 69, SITES = 60, SHOWN = 13, ANY_SITE = 81, ANY_SHOWN = 11 };
+    enum { CELL, ORBIT, BOUND, ALL, STEP, ANY_BOUND, ANY_ALL, LARGEST, N_SHAPES };
+    static const struct { const char *name; int more, nout; } shapes[N_SHAPES] = {
+        { "loewner_cell", 10, 22 }, { "loewner_orbit", 1, POINT },
+        { "loewner_bound", 3, 5 + 2 * SITES }, { "loewner_sites", 2, SITE * SHOWN },
+        { "loewner_step", 2, 4 }, { "waves_bound", 3, 5 + 2 * SITES },
+        { "waves_sites", 2, ANY_SITE * ANY_SHOWN }, { "waves_largest", 0, 1 }
     };
     double x[MAX_IN], y[MAX_OUT] = { 0 }, n[SITES][2] = { { 0.0, 0.0 } };
-    const double *const more = x + BOX;
-    int which = 0, first = 0, good = 1;
+    const double *more;
+    int which = 0, first = 0, good = 1, any;
     cv_cell cell = { { 0, 0, 0, 0, 0 }, { 0, 0, 0, 0, 0 }, 0 };
     loewner_cell prism;
     loewner_point p;
@@ -198,22 +252,29 @@ static int loewner_kernel(const char *name, int nin, apm_t in[], int nout, apm_t
 
     while (which < N_SHAPES && strcmp(name, shapes[which].name) != 0)
         which++;
-    if (which == N_SHAPES || nin != shapes[which].nin || nout != shapes[which].nout)
+    any = which >= ANY_BOUND;
+    if (which == N_SHAPES || nout != shapes[which].nout)
         return CV_EARGUMENT;
     for (int j = 0; j < nin; j++)
         x[j] = apm_nearest_d(in[j]);
-    for (int j = 0; j < nin - BOX; j++)
+    if (any ? nin < 2 || !set_waves(&b, in, nin, (int)x[0], (int)x[1]) ||
+              nin != 12 + WAVE * b.n_waves + shapes[which].more
+            : nin != BOX + shapes[which].more)
+        return CV_EARGUMENT;
+    more = x + nin - shapes[which].more;
+    for (int j = 0; j < shapes[which].more; j++)
         good = good && fabs(more[j]) < (which == CELL ? 0x1p60
                                         : which == STEP && j > 0 ? 1e9 : SITES);
     if (!good)
         return CV_EARITHMETIC;
     apm_init(zero);
-    set_patch(&b, in, x[12] != 0.0, zero);
+    if (!any)
+        set_patch(&b, in, x[12] != 0.0, zero);
     w = loewner_new(&b, which != ORBIT && which != STEP);
     apm_clear(zero);
     if (w == NULL)
         return CV_ENOMEM;
-    if (which != STEP)
+    if (which != STEP && which != LARGEST)
         loewner_soil(w, -SITES, SITES);
     switch (which) {
     case CELL:
@@ -235,7 +296,7 @@ static int loewner_kernel(const char *name, int nin, apm_t in[], int nout, apm_t
     case ORBIT:
         good = follow_to(w, more[0]);
         loewner_look(w, (int)more[0], &p);
-        memcpy(y, &p, POINT * sizeof y[0]);
+        show(y, &p, 3);
         break;
     case STEP:
         begin = clock();
@@ -248,17 +309,23 @@ static int loewner_kernel(const char *name, int nin, apm_t in[], int nout, apm_t
                / fmax(fabs(more[0]), 1.0) / loewner_lanes(w);
         y[3] = loewner_lanes(w);
         break;
+    case LARGEST:
+        y[0] = loewner_largest(w);
+        break;
     default:
         good = loewner_follow(w, (int)more[0], (int)more[1]);
-        y[3] = good ? loewner_bound(w, which == ALL || more[2] != 0.0, &y[0], &y[1], &y[4], &first,
-                                     n, SITES) : 0;
+        y[3] = good ? loewner_bound(w, which == ALL || which == ANY_ALL || more[2] != 0.0, &y[0],
+                                    &y[1], &y[4], &first, n, SITES) : 0;
         y[2] = first;
         memcpy(y + 5, n, sizeof n);
-        for (int j = 0; j < SHOWN && which == ALL; j++) {
-            memset(&p, 0, sizeof p);
-            if (more[0] + j <= fmax(more[1], 1.0))
-                loewner_look(w, (int)more[0] + j, &p);
-            memcpy(y + SITE * j, &p, sizeof p);
+        if (which == ALL || which == ANY_ALL) {
+            double *end = y;
+            for (int j = 0; j < (any ? ANY_SHOWN : SHOWN); j++) {
+                memset(&p, 0, sizeof p);
+                if (more[0] + j <= fmax(more[1], 1.0))
+                    loewner_look(w, (int)more[0] + j, &p);
+                end = show(end, &p, any ? 2 + MOST_SHOWN : 3);
+            }
         }
     }
     loewner_free(w);

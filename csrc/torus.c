@@ -169,7 +169,7 @@ double torus_rectangle(const double low[3], const double high[3], const double c
    which is worth 630 K u P.  Together, with TORUS_ENDS, less than 3000 (1 + K)^3 u (1 + P); the margin
    is 8192 (1 + K)^3 u (1 + P). */
 
-enum { MOST_WAVES = 16, MOST_CELLS = 100000 };
+enum { MOST_WAVES = 16 };
 
 typedef struct {
     int n;
@@ -211,7 +211,8 @@ static double over_cell(const potential *q, const cell *k, double *middle)
     return most;
 }
 
-/* As pass and torus_largest. */
+/* As pass and torus_largest, but that passes look thirty times more closely: where maxima are many, as
+   there are of short waves, cells run out, and the last pass that is done is what there is. */
 static double look_closely(const potential *q, double *best, double tolerance, long *cells)
 {
     cell stack[DEPTH + 2] = { { { 0.0, 0.0 }, { q->side[0], q->side[1] }, 0 } };
@@ -224,7 +225,7 @@ static double look_closely(const potential *q, double *best, double tolerance, l
         if (isnan(bound))
             return bound;
         *best = larger(*best, middle);
-        if (bound <= *best + tolerance || k->depth == DEPTH || ++*cells > MOST_CELLS) {
+        if (bound <= *best + tolerance || k->depth == DEPTH || ++*cells > CELLS) {
             most = larger(most, bound);
             top--;
         } else {
@@ -246,13 +247,13 @@ static double largest_of(const potential *q)
     double best = 0.0, most = HUGE_VAL;
     long cells = 0;
 
-    for (double tolerance = 0.5 * q->all; ; tolerance *= 1e-3) {
+    for (double tolerance = 0.5 * q->all; ; tolerance *= 0.03) {
         const int done = tolerance <= 2.0 * last;
         const double found = look_closely(q, &best, done ? last : tolerance, &cells);
         most = isnan(found) || found < most ? found : most;
-        if (cells > MOST_CELLS)
+        if (cells > CELLS)
             most = q->no_more < most ? q->no_more : most;
-        if (done || cells > MOST_CELLS || isnan(most))
+        if (done || cells > CELLS || isnan(most))
             return most + q->margin;
     }
 }

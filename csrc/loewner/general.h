@@ -66,6 +66,7 @@ INLINE void measure_slips(const batch *w, point *q, int columns)
         for (int kl = 0; kl < columns * (columns + 1) / 2; kl++)
             size[i] += mag(q->bow[i][kl]);
     }
+    q->slip[0] = q->slip[1] = every(0.0);
     for (int j = FIRST; j < waves_of(w); j++)
         q->slip[j] = 0x1p-51 * (fabs(w->root->k[j][0]) * size[0] + fabs(w->root->k[j][1]) * size[1]);
 }
