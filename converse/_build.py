@@ -7,7 +7,7 @@ from cffi import FFI
 
 SOURCES = ["numbers/apm", "numbers/special", "numbers/guard", "numbers/machine",
            "thesis/start", "thesis/region", "thesis/rigorous", "thesis/double",
-           "loewner/problem",
+           "loewner/problem", "loewner/start",
            *("loewner/" + kind + name for kind in ("", "general_")
              for name in ("scalar", "baseline", "avx2", "avx512")),
            "torus", "setup", "search", "kernels",

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "loewner/start.h"
 #include "numbers/guard.h"
 #include "numbers/machine.h"
 #include "numbers/special.h"
@@ -232,58 +233,53 @@ static void amplitudes(const patch *p, int at_end, double to[MOST_WAVES])
     }
 }
 
-/* Where on a grid the least eigenvalue of beta is least. */
-static void find_lowest(const patch *problem, const double p[], double x[2])
-{
-    enum { GRID = 240 };
-    const double step = 2.0 * 3.14159265358979323846 / GRID;
-    double least = HUGE_VAL;
+/* Room for the potential in doubles. */
+typedef struct { double phase[MOST_WAVES], p[MOST_WAVES]; } potential_room;
 
-    for (int cell = 0; cell < GRID * GRID; cell++) {
-        const double at[2] = { step * (cell / GRID + 0.5), step * (cell % GRID + 0.5) };
-        double d[3] = { 2.0, 0.0, 2.0 };
-        for (int i = 0; i < problem->n_waves; i++) {
-            const double k0 = problem->k[i][0], k1 = problem->k[i][1];
-            const double s = p[i] * sin(k0 * at[0] + k1 * at[1]
-                                        + apm_get_d(problem->phase[i]));
-            d[0] -= s * k0 * k0;
-            d[1] -= s * k0 * k1;
-            d[2] -= s * k1 * k1;
-        }
-        const double value = d[0] + d[2] - sqrt((d[0] - d[2]) * (d[0] - d[2]) + 4.0 * d[1] * d[1]);
-        if (value < least) {
-            least = value;
-            x[0] = at[0];
-            x[1] = at[1];
-        }
-    }
+/* The potential in the middle, or at_end where the parameters are 1. */
+static waves potential(const patch *problem, int at_end, potential_room *room)
+{
+    for (int i = 0; i < problem->n_waves; i++)
+        room->phase[i] = apm_get_d(problem->phase[i]);
+    amplitudes(problem, at_end, room->p);
+    return (waves){ problem->n_waves, problem->k, room->phase, room->p };
 }
 
-/* The starting point as it is given, or else of the program's choice. */
-static int set_start(cv_search *s, const char *const xstar[2])
+/* The starting point of the program's choice. */
+static int choose_start(const cv_search *s, apm_t xstar[2])
 {
-    double p[MOST_WAVES], start[2];
+    const int sharp = s->method == CV_LOEWNER;
+    potential_room room;
+    const waves v = potential(&s->problem, 0, &room);
+    double start[2];
     char text[40];
 
-    s->symmetric = is_symmetric(&s->problem);
-    amplitudes(&s->problem, 0, p);
-    if (!thesis_waves(&s->problem))
-        find_lowest(&s->problem, p, start);
-    else if (s->method == CV_LOEWNER)
-        set_gap_start(start, p, s->symmetric);
+    if (sharp)
+        loewner_start(&v, s->symmetric, start);
     else
-        set_LL_start(start, p, s->symmetric);
+        set_LL_start(start, room.p, s->symmetric);
     for (int j = 0; j < 2; j++) {
-        if (xstar == NULL) {
-            snprintf(text, sizeof text, s->method == CV_LOEWNER ? "%.6f" : "%.17g", start[j]);
-            with_a_point(text);
-        }
-        if (apm_set_str(s->problem.xstar[j], xstar == NULL ? text : xstar[j]) != APM_OK)
+        snprintf(text, sizeof text, sharp ? "%.6f" : "%.17g", start[j]);
+        with_a_point(text);
+        if (apm_set_str(xstar[j], text) != APM_OK)
             return CV_ENUMBER;
     }
-    if (apm_cmp(s->problem.xstar[0], s->problem.xstar[1]) != 0)
-        s->symmetric = 0;
     return CV_OK;
+}
+
+static int set_start(cv_search *s, const char *const xstar[2])
+{
+    int status = CV_OK;
+
+    s->symmetric = is_symmetric(&s->problem);
+    if (xstar == NULL)
+        status = choose_start(s, s->problem.xstar);
+    for (int j = 0; j < 2 && xstar != NULL; j++)
+        if (apm_set_str(s->problem.xstar[j], xstar[j]) != APM_OK)
+            status = CV_ENUMBER;
+    if (status == CV_OK && apm_cmp(s->problem.xstar[0], s->problem.xstar[1]) != 0)
+        s->symmetric = 0;
+    return status;
 }
 
 static int set_up(cv_search *s, const cv_problem *problem, const char *const xstar[2])
@@ -301,15 +297,13 @@ static int set_up(cv_search *s, const cv_problem *problem, const char *const xst
 static int find_at_once(const cv_search *s)
 {
     const int one = s->problem.n_parameters == 1;
-    double p[MOST_WAVES], x[2];
+    potential_room room;
+    const waves v = potential(&s->problem, one, &room);
+    double x[2];
 
     if (!s->problem.odd)
         return 0;
-    amplitudes(&s->problem, one, p);
-    if (thesis_waves(&s->problem))
-        set_LL_start(x, p, s->symmetric);
-    else
-        find_lowest(&s->problem, p, x);
+    loewner_lowest(&v, x);
     return loewner_at_once(s->sharp, x, 0) ? 1 : one && loewner_at_once(s->sharp, x, 1) ? 2 : 0;
 }
 

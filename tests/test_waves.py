@@ -8,10 +8,10 @@ from types import SimpleNamespace
 
 import mpmath
 import pytest
-from truth import TORTURE, mp, rng_for, uniform
+from truth import TORTURE, mp, rng_for
 
-from converse import Settings, kernels
-from converse.core import Search, Task, ffi, lib, native_problem
+from converse import kernels
+from converse.core import ffi, lib, native_problem
 
 CASES = 1500 * TORTURE
 MOST = 4                                # waves of a kernel's potential
@@ -134,6 +134,15 @@ def modulo(x):
     return x - 2 * mpmath.pi * mpmath.nint(x / (2 * mpmath.pi))
 
 
+def symbols(first, v):
+    """Those of v0 and v1 for which the core's first point is v: its sides are a little longer."""
+    (a, b), (c, d) = (row[:2] for row in first.column)
+    x, y = (mp(end) - centre for end, centre in zip(v, first.x))
+    result = [(d * x - b * y) / (a * d - b * c), (a * y - c * x) / (a * d - b * c)]
+    assert all(abs(s) <= 1 for s in result)
+    return result
+
+
 def test_orbits_stay_within_reach():
     rng = rng_for("waves orbits")
     followed = tight = slanted = 0
@@ -144,9 +153,11 @@ def test_orbits_stay_within_reach():
         if not found or max(found[n].reach) > 3:
             continue
         q, (e, p, v) = found[n], inside(rng, patch)
-        away = [modulo(y - near) for y, near in zip(orbit(patch, p, v, min(n, 0), max(n, 1))[n], q.x)]
-        straight = [sum(c * mp(s) for c, s in zip(row, e)) for row in q.column]
-        bent = [sum(t * mp(e[k] * e[l]) for t, (k, l) in zip(row, PAIRS)) for row in q.bow]
+        e = symbols(found[1], v) + [*map(mp, e[2:])]
+        away = [modulo(y - near)
+                for y, near in zip(orbit(patch, p, v, min(n, 0), max(n, 1))[n], q.x)]
+        straight = [sum(c * s for c, s in zip(row, e)) for row in q.column]
+        bent = [sum(t * e[k] * e[l] for t, (k, l) in zip(row, PAIRS)) for row in q.bow]
         present = [w[:2] for w in patch.waves if any(w[3:])]
         for i, (k0, k1) in enumerate([(1, 0), (0, 1), *present]):
             D, L = k0 * away[0] + k1 * away[1], k0 * straight[0] + k1 * straight[1]
@@ -186,7 +197,7 @@ def test_the_bound_holds():
         seen += 1
         proved += bound < 0
         close += bound - max(totals) < 0.1 * abs(max(totals))
-    assert seen > CASES // 10 and proved > seen // 20 and close > seen // 10, (seen, proved, close)
+    assert seen > CASES // 20 and proved > seen // 20 and close > seen // 10, (seen, proved, close)
 
 
 def far_of(patch, x):
@@ -241,14 +252,15 @@ def margins(rng, cases):
                     slip = 4 * mp(UNIT) * sum(abs(w[j]) * sum(map(abs, (*q.column[j], *q.bow[j])))
                                               for j in range(2))
                     given[i] += abs(w[i]) * (16 * mp(UNIT) * (1 + far) * (
-                        abs(mp(w[3])) * (a + b) + sum(abs(mp(g)) for g in w[4:])) + abs(mp(w[3])) * slip)
+                        abs(mp(w[3])) * (a + b) + sum(abs(mp(g)) for g in w[4:]))
+                        + abs(mp(w[3])) * slip)
                 yield "columns", lost[i], given[i]
 
 
 def test_margins():
     """Roundings are below what is there for them, and some of them not by much."""
     worst = {}
-    for name, needed, there in margins(rng_for("waves margins"), CASES):
+    for name, needed, there in margins(rng_for("waves margins"), CASES // 10):
         assert needed <= there, name
         if there:
             worst[name] = max(worst.get(name, 0), needed / there)
@@ -271,7 +283,7 @@ def summit(waves):
     tops = []
     for top in sorted((value(x, y), x, y) for x in grid for y in grid)[-5:]:
         step = 0.1
-        while step > 1e-8:
+        for _ in range(100):
             better = max((value(top[1] + i, top[2] + j), top[1] + i, top[2] + j)
                          for i in (-step, 0, step) for j in (-step, 0, step))
             step *= 1 if better[0] > top[0] else 0.5
@@ -280,7 +292,7 @@ def summit(waves):
     return max(tops)
 
 
-@pytest.mark.parametrize("kinds", [KINDS, [(1, 0), (2, 0), (3, 0)], [(1, 1), (2, 2), (-3, -3)],
+@pytest.mark.parametrize("kinds", [KINDS[:6], [(1, 0), (2, 0), (3, 0)], [(1, 1), (2, 2), (-3, -3)],
                                    [(1, 0), (0, 1), (0, 3), (2, 0)], [(2, 1), (1, -1), (0, 1)]])
 def test_the_largest_eigenvalue(kinds):
     rng = rng_for("waves torus %s" % kinds)
@@ -297,7 +309,9 @@ def test_convexity_bounds_it_between_the_corners():
     rng = rng_for("waves corners")
     for _ in range(10 * TORTURE):
         patch = draw(rng)
-        patch.waves = [(*w[:4], *(g * 10 ** 6 for g in w[4:])) for w in patch.waves]
+        patch.waves = [(*w[:4], *(rng.choice([0, w[3] / 2, -w[3]]) if m < patch.parameters else 0
+                                   for m in range(3)))
+                       for w in patch.waves]
         B = kernels.call("waves_largest", arguments(patch), 1, 20)[0]
         _, p, _ = inside(rng, patch)
         assert summit([(*w[:2], float(w[2]), float(q)) for w, q in zip(patch.waves, p)]) <= B
@@ -354,7 +368,7 @@ def test_whole_turns_are_no_phases():
 def test_a_patch_that_is_a_box_is_the_box():
     """The order and the signs of parameters change the names of axes and the sides of cuts alone."""
     amplitude, start = ("0.4", "0.3", "0.5"), ("1.1", "0.6")
-    g = ("0.005", "0", "0"), ("0", "0.002", "0"), ("0", "0", "0.003")
+    g = ("0.05", "0", "0"), ("0", "0.02", "0"), ("0", "0", "0.03")
     _, tree = searched(patch_of(THESIS, amplitude, g), start)
     _, other = searched(patch_of(THESIS, amplitude, (g[2], g[0], g[1])), start)
     assert set("23") & set(tree) and abs(len(other) - len(tree)) <= 0.02 * len(tree)

@@ -27,14 +27,14 @@
 #include "prism.h"
 
 /* The sites that are summed over in the lanes whose turn it is. */
-static int begin_of(const batch *w, mask turn) { return extreme(turn, w->from, -1); }
+static int begin_of(const batch *w, mask turn) { return extreme(turn, w->since, -1); }
 static int end_of(const batch *w, mask turn) { return extreme(turn, w->until, 1); }
 
 static mask within(const batch *w, int j)
 {
     const uint64_t site = (uint64_t)j;
 
-    return TRUTH(w->from <= site) & TRUTH(site <= w->until);
+    return TRUTH(w->since <= site) & TRUTH(site <= w->until);
 }
 
 /* The gradient of n.beta n at a site, and what it and the multiplier there make of a neighbour's. */
@@ -126,7 +126,7 @@ INLINE void sum_up(batch *w, sums *result, mask turn, int columns)
     memset(&t, 0, sizeof t);
     for (int j = begin; j <= end; j++) {
         const uint64_t site = (uint64_t)j;
-        const mask inside = TRUTH(w->from < site) & TRUTH(site < w->until), own = within(w, j);
+        const mask inside = TRUTH(w->since < site) & TRUTH(site < w->until), own = within(w, j);
         point *const q = w->orbit + j;
         const vec n0 = q->n[0], n1 = q->n[1];
         const vec tiny = pick(own, every(TINY), every(0.0)), *const next = q[1].n;
@@ -299,7 +299,7 @@ INLINE void bound_with(batch *w, mask turn, int signs, int columns)
     sums t;
 
     for (int k = 0; k < LANES; k++)
-        put_at(&each, k, 0x1p-47 * (double)(number(&w->until, k) - number(&w->from, k) + 2));
+        put_at(&each, k, 0x1p-47 * (double)(number(&w->until, k) - number(&w->since, k) + 2));
     sum_up(w, &t, turn, columns);
     for (int k = 0; k < columns; k++)
         w->slope[k] = pick(turn, t.slope[k], w->slope[k]);

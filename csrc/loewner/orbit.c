@@ -206,32 +206,35 @@ static void follow(batch *w, int to)
              w->known_first == ORIGIN);
 }
 
-/* One more point for lane k, at the end that is better known.  0: that end is known too badly, or
-   the orbit is too long; why says which. */
+/* One more point for lane k, at the end that is better known, or if the orbit cannot go on there at
+   the other.  0: that is known too badly, or the orbit is too long; why says which. */
 static int lengthen(batch *w, int k, int *why)
 {
     static const double LONGEST_REACH = 0.6;
     const point *const q = w->orbit;
-    const int inner = w->last[k] <= ORIGIN;     /* two points are the prism's own */
-    const int ahead = inner || w->reach[k][1] < w->reach[k][0];
-    int *const end = ahead ? &w->last[k] : &w->first[k];        /* hard to foretell: no branches */
-    const int next = *end + 2 * ahead - 1;
 
     *why = CV_REASON_TOO_BIG;
-    if (!inner && !(w->reach[k][ahead] <= LONGEST_REACH))
-        return 0;
-    *why = CV_REASON_TOO_LONG;
-    if (w->last[k] - w->first[k] + 1 == MAX_POINTS)
-        return 0;
-    follow(w, next);
-    if (!holds(&q[next].reached, k)) {
-        if (at(&q[next].turned, k) <= FAR)
-            *why = CV_REASON_SINGULAR;
-        return 0;
+    for (;;) {
+        const int inner = w->last[k] <= ORIGIN;     /* two points are the prism's own */
+        const int ahead = inner || w->reach[k][1] < w->reach[k][0];
+        int *const end = ahead ? &w->last[k] : &w->first[k];    /* hard to foretell: no branches */
+        const int next = *end + 2 * ahead - 1;
+
+        if (!inner && !(w->reach[k][ahead] <= LONGEST_REACH))
+            return 0;
+        if (w->last[k] - w->first[k] + 1 == MAX_POINTS) {
+            *why = CV_REASON_TOO_LONG;
+            return 0;
+        }
+        follow(w, next);
+        if (holds(&q[next].reached, k)) {
+            *end = next;
+            w->reach[k][ahead] = at(&q[next].widest, k);
+            if (next == ORIGIN)
+                w->reach[k][0] = w->reach[k][1];
+            return 1;
+        }
+        *why = at(&q[next].turned, k) <= FAR ? CV_REASON_SINGULAR : CV_REASON_TOO_LONG;
+        w->reach[k][ahead] = HUGE_VAL;
     }
-    *end = next;
-    w->reach[k][ahead] = at(&q[next].widest, k);
-    if (next == ORIGIN)
-        w->reach[k][0] = w->reach[k][1];
-    return 1;
 }

@@ -78,7 +78,7 @@ typedef struct {
     int weighed_first, weighed_last;    /* those that bound.c has seen */
     int first[LANES], last[LANES];      /* those of the orbits */
     double reach[LANES][2];             /* how widely these are known: first, last */
-    mask from, to, until;               /* n is zero before from and after to; until: see witness */
+    mask from, to, since, until;        /* n is zero before from and after to; all: see witness */
     point orbit[2 * MAX_POINTS + 1];
 } batch;
 

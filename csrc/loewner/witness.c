@@ -7,9 +7,18 @@
 #include "eigenvector.h"
 #include "prism.h"
 
+static const double PLAINLY = 0.75;      /* how far below l blocks fall, as long as the orbit goes on */
+
 static mask above(const vec d[3], vec l)
 {
     return TRUTH(d[0] > l) & TRUTH((d[0] - l) * (d[2] - l) > d[1] * d[1]);
+}
+
+static vec least_of(const vec d[3])
+{
+    const vec half = 0.5 * (d[0] - d[2]);
+
+    return 0.5 * (d[0] + d[2]) - root_of(half * half + d[1] * d[1]);
 }
 
 /* d' = beta - 1/d */
@@ -61,7 +70,7 @@ INLINE int advance(batch *w, recursion *r, int way)
         r->d[k] = pick(now, next[k], r->d[k]);
         blocks[k] = pick(now, next[k], blocks[k]);
     }
-    falls = now & ~above(r->d, w->l);
+    falls = now & ~above(r->d, pick(TRUTH(r->end == site), w->l, PLAINLY * w->l));
     r->fall = choose(falls, site - none(), r->fall);
     r->fell |= falls;
     r->going &= ~falls & ~TRUTH(r->end == site);
@@ -74,14 +83,16 @@ INLINE int advance(batch *w, recursion *r, int way)
 
    Between the places where the recursions from both ends fall all blocks are above l.  There n is,
    at the site of the least beta, the eigenvector of the quadratic form that is left there when all
-   others are eliminated; outwards n = n / d.  The sites that are summed over, from..until, hold 0
-   and 1, with n = 0 where need be. */
+   others are eliminated; outwards n = n / d.  Where the recursions fall before they meet, either
+   place will do by itself, and the plainer one is taken: the other may be next to nothing, however
+   small the prism.  The sites that are summed over, since..until, hold 0 and 1, with n = 0 where
+   need be. */
 static mask witness(batch *w, mask turn)
 {
     point *const q = w->orbit;
     vec form[3] = { every(0.0), every(0.0), every(0.0) }, n[2] = { every(0.0), every(0.0) };
     vec value = every(HUGE_VAL), top[2];
-    mask first = none(), last = none(), fall, from, to, until, site, alone;
+    mask first = none(), last = none(), fall, from, to, since, until, site, alone, other;
     recursion left, right;
 
     for (int k = 0; k < LANES; k++) {
@@ -98,14 +109,24 @@ static mask witness(batch *w, mask turn)
     fall = left.fall;
     from = right.fall;
     to = last;
-    alone = turn & (~right.fell | TRUTH(from > fall));
-    if (any(alone)) {                   /* two places apart: the left one alone */
+    alone = turn & (~right.fell | TRUTH(from > fall));          /* two places apart */
+    other = alone & right.fell & TRUTH(least_of(right.d) < least_of(left.d));
+    alone &= ~other;
+    if (any(alone)) {                   /* the left one */
         to = choose(alone, fall, to);
         right = recursion_of(w, -1, alone, to, first);
         while (advance(w, &right, -1))
             continue;
         from = choose(alone, choose(right.fell, right.fall, fall), from);   /* else by a rounding */
     }
+    if (any(other)) {                   /* the right one */
+        first = choose(other, from, first);
+        left = recursion_of(w, 1, other, first, last);
+        while (advance(w, &left, 1))
+            continue;
+        fall = choose(other, choose(left.fell, left.fall, from), fall);
+    }
+    since = choose(TRUTH(first < ORIGIN - none()), first, ORIGIN - none());
     until = choose(TRUTH(to > ORIGIN), to, ORIGIN + 1 - none());
 
     site = from;
@@ -120,8 +141,9 @@ static mask witness(batch *w, mask turn)
     least_eigenvector(form, top);
     w->from = choose(turn, first, w->from);
     w->to = choose(turn, to, w->to);
+    w->since = choose(turn, since, w->since);
     w->until = choose(turn, until, w->until);
-    const int start = extreme(turn, w->from, -1), end = extreme(turn, w->until, 1);
+    const int start = extreme(turn, w->since, -1), end = extreme(turn, w->until, 1);
     for (int j = extreme(turn, site, 1); j >= start; j--) {
         const uint64_t here = (uint64_t)j;
         const mask in = TRUTH(here <= site) & TRUTH(here >= w->from);

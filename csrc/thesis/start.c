@@ -44,18 +44,6 @@ static double least_eigenvalue(const double abc[3], const double x[2], double g[
     return 4.0 - as - bs - cs - root;
 }
 
-static double potential(const double abc[3], const double x[2], double g[2], double h[3])
-{
-    const double a = abc[0], b = abc[1], c = abc[2], z = x[0] + x[1];
-
-    g[0] = -a * cos(x[0]) - c * cos(z);
-    g[1] = -b * cos(x[1]) - c * cos(z);
-    h[0] = a * sin(x[0]) + c * sin(z);
-    h[1] = c * sin(z);
-    h[2] = b * sin(x[1]) + c * sin(z);
-    return -a * sin(x[0]) - b * sin(x[1]) - c * sin(z);
-}
-
 /* Newton's method from x, jumps bounded; returns the value reached, or HUGE_VAL. */
 static double newton(objective *f, const double abc[3], double x[2])
 {
@@ -121,16 +109,4 @@ void set_Herm_start(double x[2], const double abc[3], int on_diagonal)
 void set_LL_start(double x[2], const double abc[3], int on_diagonal)
 {
     find_start(least_eigenvalue, x, abc, on_diagonal);
-}
-
-/* Between where beta is least and where the potential is, two sevenths of the way: roughly the middle
-   of the gap that minimizing orbits leave, from where they are contradicted soonest. */
-void set_gap_start(double x[2], const double abc[3], int on_diagonal)
-{
-    double least[2];
-
-    find_start(least_eigenvalue, x, abc, on_diagonal);
-    find_start(potential, least, abc, on_diagonal);
-    for (int j = 0; j < 2; j++)
-        x[j] += 0.28 * (least[j] - x[j]);
 }

@@ -49,6 +49,5 @@ void to_radians(apm_t centre, apm_t half, const apm_t pi, long dp);
    Nothing rigorous depends on the result. */
 void set_Herm_start(double x[2], const double abc[3], int on_diagonal);
 void set_LL_start(double x[2], const double abc[3], int on_diagonal);
-void set_gap_start(double x[2], const double abc[3], int on_diagonal);
 
 #endif
