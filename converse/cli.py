@@ -11,7 +11,7 @@ from dataclasses import replace
 
 from . import files
 from .files import ConverseError, plain
-from .problem import InputError, read_input
+from .problem import InputError, decimal_text, parse_number, read_input
 from .report import header, verdict
 from .settings import AS_PRINTED, LIMIT, METHODS, REGION, THEOREM, UNDECIDED, Settings
 from .version import __version__
@@ -53,6 +53,13 @@ def _seconds(text):
     return seconds
 
 
+def _decimal(text):
+    try:
+        return decimal_text(parse_number(text))
+    except ValueError as error:
+        raise argparse.ArgumentTypeError(str(error)) from None
+
+
 def parser():
     p = Parser(prog="converse", allow_abbrev=False, description=(
         "Tries to prove that a family of symplectic maps has no invariant tori."), epilog=(
@@ -84,7 +91,7 @@ def parser():
                    help="the thesis's criterion (default), or the sharper one, in doubles")
     p.add_argument("--together", action="store_true",
                    help="a, b and c move together, from all lower to all upper ends (loewner)")
-    p.add_argument("--xstar", nargs=2, metavar=("X0", "X1"),
+    p.add_argument("--xstar", nargs=2, type=_decimal, metavar=("X0", "X1"),
                    help="let x* be this point, angles in radians (default: the program chooses)")
     p.add_argument("--jobs", type=whole(1), metavar="N",
                    help="work on N parts at a time (default: one per core)")
@@ -211,7 +218,7 @@ def _check_graphics(options):
 
 def run(options):
     from .proof import Proof            # these need the C core, and say so where it is missing
-    from .run import point, prove
+    from .run import prove
 
     if options.graphics == "off":
         options.graphics = None
@@ -234,11 +241,6 @@ def run(options):
         if problem.general is not None:
             raise ConverseError("the method of the thesis takes ranges of a, b and c alone; for this "
                                 "input give --method loewner")
-    if options.xstar is not None:
-        try:
-            point(options.xstar)
-        except ValueError as error:
-            raise ConverseError("%s; give --xstar two decimal numbers, in radians" % error) from None
 
     def on_leaf(leaf, points):
         say(_leaf_line(leaf, points) + "\n")

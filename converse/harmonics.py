@@ -4,8 +4,8 @@ import json
 import re
 from fractions import Fraction
 
-from .problem import (HIGHEST, MOST_PARAMETERS, MOST_WAVES, InputError, Problem, decimal_text, exact,
-                      interval, is_decimal)
+from .problem import (HIGHEST, MOST_PARAMETERS, MOST_WAVES, InputError, Problem, decimal_text,
+                      exact, interval, is_decimal)
 
 PHASES = {"sin": Fraction(0), "cos": Fraction(1, 2)}    # sin(k.y + pi / 2) = cos k.y
 CONSTANT = "constant"
@@ -97,69 +97,76 @@ def _interval(where, value):
 
 def _problem(value):
     _keys("", value, ["harmonics"], ["parameters", "comments", "v0", "v1"])
-    harmonics, named = value["harmonics"], value.get("parameters", {})
+    harmonics, named = value["harmonics"], _named(value.get("parameters", {}))
     if not isinstance(harmonics, list) or not 1 <= len(harmonics) <= MOST_WAVES:
         _fail("harmonics", "%d of them" % len(harmonics) if isinstance(harmonics, list)
               else "this is " + _kind(harmonics), "give a list of 1 to %d" % MOST_WAVES)
-    if not isinstance(named, dict):
-        _fail("parameters", "this is " + _kind(named), "give an object of ranges by name")
-    parameters = []                         # (low, high), the named ones first
-    for name, ends in named.items():
-        where = "parameters, " + json.dumps(name[:40])
-        if not NAME.fullmatch(name) or name == CONSTANT:
-            _fail(where, "this is no name for a parameter",
-                  "a name is a letter and then letters and digits, and not " + CONSTANT)
-        parameters.append(_interval(where, ends))
-
-    waves, amplitude, parts, used, size = [], [], [], set(), None
+    parameters = list(named.values())       # (low, high); those without a name follow
+    waves, constants, slopes = [], [], []
     for j, harmonic in enumerate(harmonics, 1):
         where = "harmonic %d" % j
         _keys(where, harmonic, ["k", "amplitude"], ["phase"])
         k = _vector(where + ", k", harmonic["k"])
-        if size not in (None, len(k)):
-            _fail(where + ", k", "%d number%s, and %d before" % (
-                len(k), "s" * (len(k) > 1), size), "give all one (the circle) or all two (the torus)")
-        size = len(k)
-        phase = harmonic.get("phase", "sin")
-        phase = PHASES[phase] if isinstance(phase, str) and phase in PHASES else _exact(
-            where + ", phase", phase)
-        phase = 1 - (1 - phase) % 2
-        wave = (*k, *(0,) * (2 - len(k)), phase)
+        size = len(harmonics[0]["k"])
+        if len(k) != size:
+            _fail(where + ", k", "%d number%s, and %d before" % (len(k), "s" * (len(k) > 1), size),
+                  "give all one (the circle) or all two (the torus)")
+        wave = (*k, *(0,) * (2 - size), _phase(where + ", phase", harmonic.get("phase", "sin")))
         if wave in waves:
             _fail(where, "harmonic %d has the same k and phase" % (1 + waves.index(wave)),
                   "add their amplitudes up")
         waves.append(wave)
-        constant, slopes = _amplitude(where + ", amplitude", harmonic["amplitude"], list(named),
-                                      parameters)
-        used.update(slopes)
-        amplitude.append(constant)
-        parts.append(slopes)
+        constant, slope = _amplitude(where + ", amplitude", harmonic["amplitude"], list(named),
+                                     parameters)
+        constants.append(constant)
+        slopes.append(slope)
     for m, name in enumerate(named):
-        if m not in used:
+        if not any(m in slope for slope in slopes):
             _fail("parameters, " + json.dumps(name), "no amplitude has it", "leave it out")
     if len(parameters) > MOST_PARAMETERS:
         _fail("", "%d parameters and ranges of amplitudes" % len(parameters),
               "give %d at most" % MOST_PARAMETERS)
-    middles = [sum(ends) / 2 for ends in parameters]
-    halves = [(high - low) / 2 for low, high in parameters]
     if size == 1 and "v1" in value:
         _fail("v1", "on the circle there is no second angle", "leave it out")
-    comments = value.get("comments", [])
-    comments = [comments] if isinstance(comments, str) else comments
-    if not isinstance(comments, list) or not all(
-            isinstance(line, str) and not isinstance(line, _Number) for line in comments):
-        _fail("comments", "this is no text", "give a string or a list of strings")
-    comments = comments + ["%s from %s to %s (t[%d])" % (name, *map(decimal_text, ends), m)
-                           for m, (name, ends) in enumerate(zip(named, parameters), 1)]
+    amplitude = [constant + sum(slope[m] * sum(parameters[m]) / 2 for m in slope)
+                 for constant, slope in zip(constants, slopes)]
+    parts = [[slope.get(m, 0) * (high - low) / 2 for slope in slopes]
+             for m, (low, high) in enumerate(parameters)]
     try:
-        return Problem.patch(
-            [p + sum(slope * middles[m] for m, slope in slopes.items())
-             for p, slopes in zip(amplitude, parts)],
-            [[slopes.get(m, 0) * half for slopes in parts] for m, half in enumerate(halves)],
-            waves, *(_interval(key, value[key]) if key in value else (0, 2) for key in ("v0", "v1")),
-            comments)
+        return Problem.patch(amplitude, parts, waves, *(
+            _interval(key, value[key]) if key in value else (0, 2) for key in ("v0", "v1")),
+            _comments(value.get("comments", []), named))
     except ValueError as error:
         _fail("", error, "give moderate numbers")
+
+
+def _named(value):
+    """The ranges of the parameters by name."""
+    if not isinstance(value, dict):
+        _fail("parameters", "this is " + _kind(value), "give an object of ranges by name")
+    found = {}
+    for name, ends in value.items():
+        where = "parameters, " + json.dumps(name[:40])
+        if not NAME.fullmatch(name) or name == CONSTANT:
+            _fail(where, "this is no name for a parameter",
+                  "a name is a letter and then letters and digits, and not " + CONSTANT)
+        found[name] = _interval(where, ends)
+    return found
+
+
+def _comments(value, named):
+    """The comments as a list, and what the parameters are called, which no proof file says."""
+    lines = [value] if isinstance(value, str) else value
+    if not isinstance(lines, list) or any(_kind(line) != "a string" for line in lines):
+        _fail("comments", "this is no text", "give a string or a list of strings")
+    return lines + ["%s from %s to %s (t[%d])" % (name, *map(decimal_text, ends), m)
+                    for m, (name, ends) in enumerate(named.items(), 1)]
+
+
+def _phase(where, value):
+    """In units of pi, from -1 (not itself) to 1."""
+    phase = PHASES[value] if isinstance(value, str) and value in PHASES else _exact(where, value)
+    return 1 - (1 - phase) % 2
 
 
 def _vector(where, value):

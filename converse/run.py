@@ -65,7 +65,7 @@ def prove(problem: Optional[Problem] = None, *, method: Optional[str] = None,
             not time_limit >= 0:
         raise ValueError("time_limit is a number of seconds, not %r" % (time_limit,))
     if xstar is not None:
-        xstar = point(xstar)
+        xstar = _point(xstar)
     if jobs is None:
         jobs = count_workers(executor)
     if isinstance(jobs, bool) or not isinstance(jobs, int) or jobs < 1:
@@ -168,7 +168,7 @@ def _for_thesis(problem):
     return replace(problem, axes=IDENTITY, alone="no")
 
 
-def point(xstar):
+def _point(xstar):
     """x* as a pair of decimal strings."""
     if not isinstance(xstar, (tuple, list)) or len(xstar) != 2:
         raise ValueError("xstar is two numbers, in radians, not %r" % (xstar,))

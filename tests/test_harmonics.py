@@ -180,10 +180,10 @@ def froeschle(K0, K1, coupling):
 
 @pytest.mark.parametrize("name, ends, force", [
     ("standard", {-1: "0.98", 1: "1.34"}, standard),
-    ("two-harmonics", {-1: "0.7", 1: "1"}, lambda K: two_harmonics(K, 0.4)),
-    ("froeschle-0.1", {-1: "1.1", 1: "1.2"}, lambda K: froeschle(K, K, 0.1)),
-    ("froeschle-0.3", {-1: "0.8", 1: "1.2"}, lambda K: froeschle(K, K, 0.3)),
-    ("froeschle-0.5", {-1: "0.5", 1: "1.2"}, lambda K: froeschle(K, K, 0.5))])
+    ("two-harmonics", {-1: "0.64", 1: "0.7"}, lambda K: two_harmonics(K, 0.4)),
+    ("froeschle-0.1", {-1: "0.95", 1: "0.96"}, lambda K: froeschle(K, K, 0.1)),
+    ("froeschle-0.3", {-1: "0.7", 1: "0.8"}, lambda K: froeschle(K, K, 0.3)),
+    ("froeschle-0.5", {-1: "0.4", 1: "0.5"}, lambda K: froeschle(K, K, 0.5))])
 def test_the_usual_conventions(root, name, ends, force):
     """The input's map, with y = 2 pi x, is the one of its comment: both go the same way."""
     problem = read_input(root / "inputs" / (name + ".json"))
@@ -226,7 +226,7 @@ def test_one_map_in_both_inputs():
                                 ("1", (0, 1), "cos"), ("1/2", (1, 1), 0), ("1/2", (1, -1), "1/7")):
         proof = prove(read({"harmonics": [{"k": k, "amplitude": amplitude, "phase": phase}]}),
                       method="loewner")
-        assert proof.no_tori and not proof.at_once
+        assert proof.no_tori and not proof.at_once and proof.counts.proved < 300
     lower = prove(read({"harmonics": [{"k": [1], "amplitude": "0.95"}]}), method="loewner", depth=30)
     assert lower.conclusion == "undecided"      # its golden circle lives to 0.9716
 

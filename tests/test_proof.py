@@ -130,7 +130,9 @@ def test_file_says_what_it_is(tmp_path, made_up):
     sound, printed = [(tmp_path / name).read_text().split("\n") for name in ("sound", "printed")]
     assert sound[0] == printed[0] == "converse proof 3" and sound[-2:] == ["end", ""]
     assert "kind: sound" in sound and "kind: as printed, not a proof" in printed
-    assert {"wave: 1 0 0 0.3085 0.00125 0 0", "v0: 1 1", "frame: 1 0 0 1", "odd about: 0 0", "alone: no", "depth: 30", "program: converse %s" % __version__} <= set(sound)
+    assert {"wave: 1 0 0 0.3085 0.00125 0 0", "wave: 0 1 0 0.3085 0 0.00125 0",
+            "wave: 1 1 0 0.617 0 0 0.0025", "frame: 1 0 0 1", "odd about: 0 0", "alone: no",
+            "v0: 1 1", "depth: 30", "program: converse %s" % __version__} <= set(sound)
     assert all(len(line) < 82 for line in sound)
 
 
