@@ -36,7 +36,7 @@ static void extend(const batch *w, point *q)
         q->off[i] = (q->bowed[i] + rest_along(w, q, i)) * WIDEN;
         q->reach[i] = (q->straight[i] + q->off[i]) * WIDEN;
         if (w->root->present[i])
-            q->widest = larger(q->widest, q->reach[i]);
+            q->widest = larger(q->widest, w->weight[i] * q->reach[i]);
     }
 }
 

@@ -54,7 +54,7 @@ typedef struct {
 #ifdef GENERAL
     vec slip[WAVES];                    /* what L e and T[e, e] lose along a wave */
 #endif
-    vec widest;                         /* the largest reach of a wave */
+    vec widest;                         /* the largest reach of a wave, by their weights */
     vec beta[3];                        /* beta00, beta01, beta11 */
     vec least;                          /* eigenvalue of beta, about */
     vec far;                            /* how far angles may be off, in units u */
@@ -69,6 +69,7 @@ typedef struct {
     const loewner *root;
     vec p[WAVES], part[WAVES][COLUMNS];         /* part[k] moves with the column k of a parameter */
     vec h[WAVES], loose[WAVES];                 /* h: the sum of |part|; loose by itself */
+    vec weight[WAVES];                  /* of a wave's reach: see weigh_waves */
     vec size[WAVES];                            /* |p| + h + loose */
     vec v[2], width[2], l;
     /* what bound.c finds */

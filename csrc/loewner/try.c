@@ -2,7 +2,22 @@
 #include "prism.h"
 
 enum { PATIENCE = 8 };                  /* tries follow each other by an eighth of the orbit */
+static const double SMALL = 4.0;        /* waves of a fourth of the largest count as it does */
 static const double HOPELESS = 2.0;     /* times the least bound yet: longer orbits will not do */
+
+/* How much each wave's reach counts when it is asked how far an orbit is known: a wave that is small
+   beside the largest bends orbits little, however widely it reaches. */
+static void weigh_waves(batch *w, int k)
+{
+    double most = 0.0;
+
+    for (int i = 0; i < waves_of(w); i++)
+        most = fmax(most, at(&w->size[i], k));
+    for (int i = 0; i < waves_of(w); i++) {
+        const double part = SMALL * at(&w->size[i], k) / most;
+        put_at(&w->weight[i], k, part < 1.0 ? sqrt(sqrt(part)) : 1.0);
+    }
+}
 
 /* The prism of lane k. */
 static void set_lane(batch *w, int k, const loewner_cell *c)
@@ -24,6 +39,7 @@ static void set_lane(batch *w, int k, const loewner_cell *c)
         put_at(&w->width[i], k, c->width[i]);
     }
     put_at(&w->l, k, c->l);
+    weigh_waves(w, k);
 }
 
 /* What is known of a lane while its prism is tried. */
