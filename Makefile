@@ -56,7 +56,8 @@ sanitize: $(SANITIZED)/installed
 # libgmp-dev:arm64.
 TREE_FLAGS = -std=c11 -O2 -ffp-contract=off -fno-math-errno -Icsrc
 TREE_CORE = $(wildcard csrc/numbers/*.c) $(addprefix csrc/thesis/, start.c region.c rigorous.c double.c) \
-    $(addprefix csrc/loewner/, problem.c scalar.c baseline.c avx2.c avx512.c) \
+    $(addprefix csrc/loewner/, problem.c start.c \
+    $(foreach kind,scalar baseline avx2 avx512,$(kind).c general_$(kind).c)) \
     csrc/torus.c csrc/setup.c csrc/search.c
 arm: tests/tree.c
 	@mkdir -p build

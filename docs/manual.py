@@ -15,6 +15,7 @@ SUMMARIES = {
     "cli": "prove that a family of symplectic maps has no invariant tori",
     "check": "verify the theorem of a proof file, independently of its prover",
     "chart": "measure what is proved how fast, and draw it",
+    "frontier.cli": "map where in parameter space there are no invariant tori, with proofs",
     "orbits.cli": "find periodic orbits of least action, and where they turn hyperbolic",
 }
 
@@ -37,7 +38,7 @@ def with_files(parser):
         elif isinstance(action.choices, dict):          # subcommands
             for command in action.choices.values():
                 with_files(command)
-        elif action.metavar in ("FILE", "POTENTIAL") or not (
+        elif action.metavar in ("FILE", "POTENTIAL", "MAP") or not (
                 action.metavar or action.option_strings):
             action.complete = shtab.FILE
     return parser

@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 from converse import check, chart, cli
+from converse.frontier import cli as map_cli
 from converse.orbits import cli as orbits_cli
 from converse.version import __version__
 
@@ -16,7 +17,7 @@ ROOT = Path(__file__).resolve().parent.parent
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
 TEXTS = {page.name: page.read_text("utf-8") for page in PAGES}
 PARSERS = {"converse": cli.parser, "converse-check": check.parser, "converse-chart": chart.parser,
-           "converse-orbits": orbits_cli.parser}
+           "converse-map": map_cli.parser, "converse-orbits": orbits_cli.parser}
 
 
 @pytest.mark.parametrize("name", [name for name, text in TEXTS.items() if "```python" in text])

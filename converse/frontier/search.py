@@ -25,7 +25,7 @@ SETTINGS = Settings(method="loewner")
 FIRST, MORE, MOST = 1 << 15, 4, 1 << 21         # leaves that a cell may cost, and times as many
 LOOK = 1 << 9                       # leaves after which it is asked what it will cost
 PESSIMISM = 4                       # times the budget that is expected: given up
-POINT = 1 << 14                     # leaves, of a point of the estimated frontier
+POINT = {1: 1 << 14, 2: 1 << 12}    # leaves, of a point of the estimated frontier of a plane, the sphere
 TRIAL = 1 << 12                     # leaves, of a point that one way is compared with another by
 COARSE = 0.25                       # width of a cell, at first, as a part of its radius
 GRAIN = 6                           # cells are not cut to less than this part of down_to - 1
@@ -33,6 +33,7 @@ SHEAR = (1, 0, -1, 1)               # x_1 = (v0, v1 - v0): the wave c does not f
 PLAIN = (1, 0, 0, 1)
 RIGHT = ("1.570796", "1.570796")    # an x* where each of the waves a and b bends most
 LOOK_SECONDS = 0.1
+TOO_LONG = core.lib.CV_REASON_TOO_LONG      # why a try failed: hopeless
 
 
 # ---- what a worker does, on plain data
@@ -54,14 +55,14 @@ def _grow(problem, xstar, most, stop):
     pieces, leaves, history = [], 0, core.History()
     chunk = min(most, LOOK)
     while cells and not begun.at_once:
-        grown = core.grow(task, cells, math.inf, chunk, False, stop)
-        if grown is None or stop and stop[0]:
+        grown = core.grow(task, cells, LOOK_SECONDS, chunk, False, stop)
+        if grown is None or stop[0]:
             return None
         pieces.append(grown.text)
         leaves += grown.counts.proved + grown.counts.symmetric
         history.add(grown.history)
         cells, chunk = grown.cells, most // 8
-        if grown.counts.undecided or cells and (
+        if grown.counts.undecided or grown.counts.reasons[TOO_LONG] or cells and (
                 leaves >= most or leaves + history.expected(cells) / 2 > PESSIMISM * most):
             return None, leaves, begun
     return "".join(pieces), leaves, begun
@@ -126,7 +127,7 @@ def frontier(directions, place, stop=None):
         return found and (found[0] is not None or found[2].at_once)
 
     low, high = 0, region.RADIUS
-    for most, tolerance in (LOOK, Fraction(1, 32)), (POINT, Fraction(1, 256)):
+    for most, tolerance in (LOOK, Fraction(1, 32)), (POINT[len(place)], Fraction(1, 256)):
         step = 8 * tolerance
         while True:                             # down to where it fails
             low = high * (1 - step)

@@ -1,0 +1,339 @@
+"""Maps of the frontier: cells, the search, the file, the command, the picture."""
+
+import concurrent.futures
+import json
+import os
+import random
+import subprocess
+import sys
+from fractions import Fraction as F
+
+import pytest
+
+import converse
+from converse import check, frontier
+from converse.files import ConverseError
+from converse.frontier import atlas, cli, figure, region, search
+from converse.frontier.atlas import AT_ONCE, OPEN, OUTSIDE, PROVED, Map
+
+
+@pytest.fixture
+def coarse(monkeypatch):
+    """An estimate at few places and with little effort."""
+    monkeypatch.setattr(atlas, "GRID", {1: 4, 2: 1})
+    monkeypatch.setattr(search, "POINT", {1: 1 << 9, 2: 1 << 9})
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory):
+    """A map of the plane b = 0, not very near to the frontier, and its file."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(atlas, "GRID", {1: 4, 2: 2})
+        patch.setattr(search, "POINT", {1: 1 << 9, 2: 1 << 9})
+        path = tmp_path_factory.mktemp("map") / "map.json"
+        yield frontier.explore("b=0", "1.3", path=path), path
+
+
+def random_cell(rng, name):
+    directions = region.REGIONS[name]
+    face = rng.randrange(len(directions))
+    cell = region.root(directions[face], face)
+    for _ in range(rng.randrange(20)):
+        cell = rng.choice(cell.halves(rng.randrange(len(cell.low))))
+    return directions[face], cell
+
+
+# ---- cells
+
+@pytest.mark.parametrize("name", region.REGIONS)
+def test_a_patch_holds_its_cell(name):
+    rng = random.Random(name)
+    for _ in range(100):
+        directions, cell = random_cell(rng, name)
+        middle, parts = region.patch(directions, cell)
+        for _ in range(10):
+            r, *place = [low + (high - low) * F(rng.choice([0, 1, rng.random()]))
+                         for low, high in zip(cell.low, cell.high)]
+            rm, *pm = cell.middle
+            t = [(r - rm) / ((cell.high[0] - cell.low[0]) / 2)] + [
+                r * (x - m) / (cell.high[0] * (high - low) / 2)
+                for x, m, low, high in zip(place, pm, cell.low[1:], cell.high[1:])]
+            assert all(abs(x) <= 1 for x in t)
+            assert tuple(r * d for d in region.direction(directions, place)) == tuple(
+                p + sum(x * part[i] for x, part in zip(t, parts)) for i, p in enumerate(middle))
+
+
+@pytest.mark.parametrize("name", region.REGIONS)
+def test_halves_are_the_whole(name):
+    rng = random.Random(name)
+    for _ in range(100):
+        _, cell = random_cell(rng, name)
+        for axis in range(len(cell.low)):
+            lower, upper = cell.halves(axis)
+            assert lower.high[axis] == upper.low[axis] == cell.middle[axis]
+            assert lower.low == cell.low and upper.high == cell.high
+
+
+def test_faces_are_the_fundamental_domain():
+    """Each a >= b >= 0, c >= 0 is r d(s, t) on one of them, with b <= a."""
+    rng = random.Random(1)
+    for _ in range(1000):
+        a, b = sorted((F(rng.random()), F(rng.random())), reverse=True)
+        c = F(rng.random())
+        r = max(a, c)
+        face, place = (0, (b / r, c / r)) if a >= c else (1, (a / r, b / r))
+        assert all(0 <= x <= 1 for x in place)
+        assert tuple(r * d for d in region.direction(region.REGIONS["sphere"][face], place)) == (a, b, c)
+
+
+def test_what_is_outside_has_b_above_a():
+    faces = region.REGIONS["sphere"]
+    whole = region.root(faces[1], 1)
+    lower, upper = whole.halves(2)              # by b
+    assert region.is_outside(faces[1], upper.halves(1)[0])
+    assert not region.is_outside(faces[1], upper) and not region.is_outside(faces[1], lower)
+    assert not any(region.is_outside(faces[0], cell) for cell in region.root(faces[0], 0).halves(1))
+    assert not any(region.is_outside(d, region.root(d, 0)) for name in ("b=0", "a=b", "c=0")
+                   for d in region.REGIONS[name])
+
+
+# ---- the search
+
+def test_a_map(made):
+    found, path = made
+    kinds = [leaf.kind for leaf in found.leaves()]
+    assert found.complete and found and {PROVED, AT_ONCE, OPEN} == set(kinds)
+    for face in range(2):
+        assert found.height(face) < F(7, 5)
+        for place, radius in found.estimate[face].items():
+            assert 0.3 < radius < 1.2           # the standard map's is 0.9716
+    # Nothing is open that lies above what was asked for, everything below is.
+    for leaf in found.leaves():
+        low, high = found.span(leaf.cell)
+        if leaf.cell.high[0] <= low:
+            assert leaf.kind == OPEN
+        if leaf.kind == OPEN:
+            assert leaf.cell.low[0] < high
+        else:
+            assert leaf.cell.low[0] >= F(9, 10) * F(low)
+
+
+def test_the_checker_confirms_it(made):
+    found, path = made
+    result = check.verify(path)
+    assert result and result.status == check.VERIFIED
+    assert "%d" % found.count(PROVED) in result.text
+
+
+def test_a_cell_that_is_not_proved_is_not_believed(made, tmp_path):
+    """Below the frontier: the checker does not take anybody's word for it."""
+    found = Map.load(made[1])
+    proof = next(leaf.proof for leaf in found.leaves() if leaf.kind == PROVED)
+    lowest = next(leaf for leaf in found.leaves() if leaf.kind == OPEN and leaf.cell.low[0] == 0)
+    lowest.decide(PROVED, {**proof, "tree": "P"})
+    found.save(tmp_path / "map.json")
+    with pytest.raises(check.NotConfirmed):
+        check.verify(tmp_path / "map.json")
+
+
+def test_what_reaches_to_infinity_is_at_once(made):
+    for leaf in made[0].leaves():
+        if leaf.cell.high[0] == region.RADIUS:
+            assert leaf.kind == AT_ONCE
+
+
+def test_one_whole_run_or_several(coarse, tmp_path):
+    """However it is divided, it ends with all that was asked for."""
+    path = tmp_path / "map.json"
+    limit, runs = 0.0, 0
+    found = frontier.explore("c=0", "1.4", path=path, time_limit=limit)
+    while not found.complete:
+        limit, runs = 2 * limit + 0.05, runs + 1
+        found = frontier.explore(path=path, resume=True, time_limit=limit)
+    assert runs > 1 and Map.load(path).complete
+    deeper = frontier.explore("c=0", "1.3", path=path, resume=True)
+    assert deeper.complete and deeper.height(0) < found.height(0)
+    assert found.seconds < deeper.seconds
+
+
+def test_processes(coarse, tmp_path):
+    with concurrent.futures.ProcessPoolExecutor(2) as pool:
+        found = frontier.explore("c=0", "1.4", path=tmp_path / "map.json", executor=pool)
+    assert found.complete and found.sha256 == Map.load(tmp_path / "map.json").sha256
+
+
+class Unreliable(concurrent.futures.ThreadPoolExecutor):
+    """Whose workers die, now and then or always."""
+
+    def __init__(self, odds):
+        super().__init__(2)
+        self.odds, self.rng = odds, random.Random(1)
+
+    def submit(self, call, *arguments):
+        def dies(*_):
+            raise OSError("a worker died")
+        return super().submit(dies if self.rng.random() < self.odds else call, *arguments)
+
+
+def test_workers_that_die(coarse, tmp_path):
+    with Unreliable(0.1) as pool:
+        assert frontier.explore("c=0", "1.4", path=tmp_path / "map.json", executor=pool).complete
+    with Unreliable(1.0) as pool, pytest.raises(ConverseError, match="keep failing"):
+        frontier.explore("c=0", "1.4", path=tmp_path / "other.json", executor=pool)
+    assert not Map.load(tmp_path / "other.json").complete
+    pool.shutdown()
+    with pytest.raises(ConverseError, match="workers are gone"):
+        frontier.explore("c=0", "1.4", path=tmp_path / "third.json", executor=pool)
+
+
+@pytest.mark.parametrize("when", [3, 10, 30])
+def test_an_interruption_loses_nothing(coarse, tmp_path, when):
+    path, calls = tmp_path / "map.json", []
+
+    def progress(share, found):
+        assert 0 <= share <= 1
+        calls.append(share)
+        if len(calls) == when:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        frontier.explore("b=0", "1.2", path=path, progress=progress)
+    before = Map.load(path)
+    found = frontier.explore(path=path, resume=True)
+    assert found.complete and found.count(PROVED) >= before.count(PROVED)
+    kept = {leaf.cell for leaf in before.leaves() if leaf.kind == PROVED}
+    assert kept <= {leaf.cell for leaf in found.leaves() if leaf.kind == PROVED}
+
+
+@pytest.mark.parametrize("arguments, error", [
+    (("d=0", "1.1"), "the region is one of"), ((None, "1.1"), "the region is one of"),
+    (("b=0", "1"), "above 1"), (("b=0", "x"), "not a decimal number"), (("b=0", 101), "above 1")])
+def test_arguments_that_make_no_sense(tmp_path, arguments, error):
+    with pytest.raises(ValueError, match=error):
+        frontier.explore(*arguments, path=tmp_path / "map.json")
+    assert not os.listdir(tmp_path)
+
+
+def test_nothing_is_overwritten(made, tmp_path):
+    path = tmp_path / "map.json"
+    path.write_text("precious")
+    with pytest.raises(ConverseError, match="exists"):
+        frontier.explore("b=0", path=path)
+    with pytest.raises(ConverseError, match="is of another region, b=0"):
+        frontier.explore("c=0", path=made[1], resume=True)
+    other = Map.load(made[1])
+    other.version = "0.9"
+    other.save(tmp_path / "older.json")
+    with pytest.raises(ConverseError, match="is of another program, 0.9"):
+        frontier.explore(path=tmp_path / "older.json", resume=True)
+    assert path.read_text() == "precious"
+
+
+def test_the_sphere(coarse, tmp_path):
+    """As far as a few seconds go: what is no mirror image of others is left out, and it is drawn."""
+    found = frontier.explore("sphere", "1.9", path=tmp_path / "map.json", time_limit=10)
+    while not found.count(PROVED):
+        found = frontier.explore(path=tmp_path / "map.json", resume=True, time_limit=5)
+    for leaf in found.leaves():
+        assert (leaf.kind == OUTSIDE) == region.is_outside(found.directions[leaf.cell.face], leaf.cell)
+    estimate = found.estimate[1]
+    assert all(estimate[place] == estimate[place[::-1]] for place in estimate)
+    assert found.count(OUTSIDE)
+    found.draw(tmp_path / "map.svg")
+
+
+# ---- the file
+
+@pytest.mark.parametrize("name", ["map.json", "map.json.gz"])
+def test_it_is_what_it_was(made, tmp_path, name):
+    found = Map.load(made[1])
+    assert found.save(tmp_path / name) == found.sha256
+    again = Map.load(tmp_path / name)
+    assert repr(again) == repr(made[0]) and again.estimate == made[0].estimate
+    assert [(leaf.cell, leaf.kind, leaf.proof, leaf.tried) for leaf in again.leaves()] == [
+        (leaf.cell, leaf.kind, leaf.proof, leaf.tried) for leaf in made[0].leaves()]
+
+
+def test_a_damaged_file_is_refused_in_a_line(made, tmp_path):
+    text = made[1].read_text()
+    rng = random.Random(1)
+    path = tmp_path / "map.json"
+    damaged = [text[:rng.randrange(len(text))] for _ in range(20)]
+    for _ in range(100):
+        k = rng.randrange(len(text))
+        damaged.append(text[:k] + chr(rng.randrange(32, 127)) + text[k + 1:])
+    damaged += ["", "null", "[]", "{}", "3", '"x"', "[" * 100000, "\xff"]
+    whole = json.loads(text)
+    for key in whole:
+        damaged += [json.dumps({k: v for k, v in whole.items() if k != key})]
+    for content in damaged:
+        path.write_text(content)
+        try:
+            loaded = json.loads(content)
+        except (ValueError, RecursionError):
+            loaded = None
+        if loaded == whole:             # a blank
+            continue
+        with pytest.raises(ConverseError) as error:
+            Map.load(path)
+        assert "\n" not in str(error.value) and str(path) in str(error.value)
+    with pytest.raises(ConverseError, match="cannot be read"):
+        Map.load(tmp_path / "none.json")
+
+
+# ---- the command and the picture
+
+def run(*arguments, directory):
+    home = os.path.dirname(os.path.dirname(converse.__file__))
+    result = subprocess.run([sys.executable, "-m", "converse.frontier.cli", *map(str, arguments)],
+                            cwd=directory, capture_output=True, text=True, timeout=120,
+                            env={**os.environ, "PYTHONPATH": home})
+    return result.returncode, result.stdout, result.stderr
+
+
+def test_the_command(tmp_path):
+    status, out, err = run("--plane", "c=0", "--time-limit", 0, "map.json", directory=tmp_path)
+    assert (status, err) == (1, "") and "not all of it is proved" in out
+    status, out, err = run("--plane", "b=0", "-r", "map.json", directory=tmp_path)
+    assert status == 2 and "another region" in err and err.count("\n") == 1
+    status, out, err = run("-g", "map.svg", "map.json", directory=tmp_path)
+    assert status == 2 and "nothing to draw yet" in err and err.count("\n") == 1
+    assert sorted(os.listdir(tmp_path)) == ["map.json"]
+
+
+@pytest.mark.parametrize("arguments, words", [
+    ((), "required: MAP"), (("--plane", "d=0", "m.json"), "invalid choice"),
+    (("--plane", "b=0", "--sphere", "m.json"), "not allowed with"),
+    (("--plane", "b=0", "--down-to", "0.9", "m.json"), "not a number above 1"),
+    (("m.json",), "cannot be read"), (("--down-to", "1.1", "m.json"), "--down-to needs"),
+    (("-r", "m.json"), "cannot be read"), (("--plane", "b=0", "no/m.json"), "cannot be written"),
+    (("--plane", "b=0", "-g", "m.json", "m.json"), "would overwrite"),
+    (("--plane", "b=0", "-g", "m.ps", "m.json"), "is drawn as .svg"),
+    (("--plane", "b=0", "-g", "no/m.svg", "m.json"), "cannot be written")])
+def test_bad_usage_is_one_line(tmp_path, arguments, words):
+    status, out, err = run(*arguments, directory=tmp_path)
+    assert status == 2 and words in err and err.count("\n") == 1 and out == ""
+    assert not os.listdir(tmp_path)
+
+
+def test_the_report(made, capsys):
+    assert cli.main([str(made[1])]) == 0
+    out = capsys.readouterr().out
+    assert out == Map.load(made[1]).report()
+    assert "all r > " in out and "SHA-256 : " + made[0].sha256 in out
+
+
+@pytest.mark.parametrize("kind", ["svg", "png", "pdf"])
+def test_pictures(made, tmp_path, kind):
+    path = tmp_path / ("map." + kind)
+    made[0].draw(path)
+    first = path.read_bytes()
+    assert first.startswith({"svg": b"<?xml", "png": b"\x89PNG", "pdf": b"%PDF"}[kind])
+    made[0].draw(path)
+    assert path.read_bytes() == first
+
+
+def test_the_largest_eigenvalue_of_the_picture():
+    """B - 2 of the waves alone and together, to a few digits."""
+    assert figure.largest([(1, 0, 0), (1, 0.5, 0), (0, 0, 1), (1, 1, 2)]) == pytest.approx(
+        [1, 1, 2, 4.72], abs=0.01)
