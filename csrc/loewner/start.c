@@ -7,7 +7,8 @@
    x*: when all others are eliminated they leave a quadratic form at x*, and its least eigenvalue,
    for the orbit where that is largest, is to be as small as can be.  (If nothing is left, a weaker
    potential is asked: the place hardly depends on its size.)  Where waves are all parallel it is a
-   question of one angle, and asked more finely. */
+   question of one angle, and asked more finely.  Where V is symmetric about the diagonal the best
+   of it and the best elsewhere are judged by thirteen points. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -20,16 +21,16 @@
 #include "start.h"
 
 enum { STEPS = 200, GRID = 24, FINEST_GRID = 240 };
-enum { REACH = 4 };                     /* points on either side of x* */
+enum { NEAR = 4, REACH = 6 };           /* points on either side of x*; to judge by, at last */
 enum { PLACES = 16, OFFSETS = 24, HALVINGS = 6 };
-enum { FINER = 4 };                     /* so many times, where there is but one angle */
+enum { FINER = 4 };                     /* so many times, where waves feel but one angle */
 enum { ANGLES = FINER * OFFSETS, SIDES = 2 / LANES, GUESSES = 8 };
 static const double TOLERANCE = 1e-9, MAX_JUMP = 0.5, PI = 3.14159265358979323846;
 static const double BETWEEN = 0.28;     /* of the way from the least beta to the least potential */
 static const double NOTHING = 1e-6;     /* no better than that: it may be rounding */
 static const double PLAINLY = 0.001;    /* better: enough for giving up symmetry */
-static const double ENOUGH = 0.06, WEAKER = 0.97;       /* so much must be left; else V is weakened */
-static const double STRONG = 1.5, WEAK = 0.5;   /* B - 2: there is no torus; there is nothing to prove */
+static const double ENOUGH = 0.06, WEAKER = 0.97;       /* so much must be left, or V is weakened */
+static const double STRONG = 1.5, WEAK = 0.5;   /* B - 2: there is no torus; nothing to prove */
 
 /* What is minimized, its gradient g and Hessian h (00, 01, 11). */
 typedef double objective(const waves *v, const double x[2], double g[2], double h[3]);
@@ -122,7 +123,8 @@ typedef double function(void *context, const double x[2], double enough);
 typedef enum { DIAGONAL, FIRST_ANGLE, ANYWHERE } ways;
 
 /* From x, where f has this value, in ever smaller steps to smaller ones, which it returns. */
-static double descend(function *f, void *context, double x[2], double value, double step, ways where)
+static double descend(function *f, void *context, double x[2], double value, double step,
+                      ways where)
 {
     static const int way[8][2] = { { 1, 1 }, { -1, -1 }, { 1, 0 }, { -1, 0 },
                                    { 0, 1 }, { 0, -1 }, { 1, -1 }, { -1, 1 } };
@@ -167,7 +169,7 @@ typedef struct {
     double largest;                     /* eigenvalue of beta */
 } survey;
 
-/* On the grid, or for the places on its diagonal alone.  Its sines are those of the half-integers. */
+/* The places are on the diagonal if they shall be.  All sines are those of parts of a turn. */
 static survey survey_of(const waves *v, int on_diagonal)
 {
     double sine[2 * FINEST_GRID], least = HUGE_VAL, lowest = HUGE_VAL;
@@ -214,9 +216,9 @@ static survey survey_of(const waves *v, int on_diagonal)
 }
 
 /* x = a place where f is least: where Newton's method leads from (pi/2, pi/2), as in 1989, or
-   from the best point of a grid if that is better, or downhill from there. */
-static void find_least(objective *f, const waves *v, const double best[2], int grid, int on_diagonal,
-                       double x[2])
+   from the best point of so fine a grid if that is better, or downhill from there. */
+static void find_least(objective *f, const waves *v, const double best[2], int grid,
+                       int on_diagonal, double x[2])
 {
     double g[2], h[3];
     const double least = f(v, best, g, h);
@@ -228,7 +230,8 @@ static void find_least(objective *f, const waves *v, const double best[2], int g
         if (!(newton(f, v, x) <= least)) {          /* it is not isolated */
             x[0] = best[0];
             x[1] = best[1];
-            descend(depth_of, &(valley){ f, v }, x, least, PI / grid, on_diagonal ? DIAGONAL : ANYWHERE);
+            descend(depth_of, &(valley){ f, v }, x, least, PI / grid,
+                    on_diagonal ? DIAGONAL : ANYWHERE);
         }
     }
     if (on_diagonal)
@@ -248,9 +251,10 @@ void loewner_lowest(const waves *v, double x[2])
 typedef struct {
     const waves *v;
     int flat;                           /* no wave feels the second angle */
-    double above;                       /* 2: the largest eigenvalue of beta, of waves as they are */
+    int reach, step;                    /* points on either side; from one offset to the next */
+    double above;                       /* the largest eigenvalue of V as it is, less 2 */
     double scale, l, xstar[2], middle[2], beta[3];
-    double sine[ANGLES];                /* of a turn's parts */
+    double sine[ANGLES];                /* of the parts of a turn */
     double guess[GUESSES][2];           /* offsets that left most, the latest first */
 } pencil;
 
@@ -332,7 +336,7 @@ static double left_over(const pencil *o, const double offset[2], double floor)
             before[side][i] = every(o->xstar[i]);
             x[side][i] = o->middle[i] + sign_of(side) * offset[i];
         }
-    for (int points = 0; points < REACH; points++) {
+    for (int points = 0; points < o->reach; points++) {
         for (int side = 0; side < SIDES; side++) {
             look(o, x[side], force, beta[side][points]);
             for (int i = 0; i < 2; i++) {
@@ -356,8 +360,8 @@ static double less_left(void *context, const double offset[2], double enough)
 /* The waves at the middle: p sin and p cos. */
 typedef struct { double sine[MOST_WAVES], cosine[MOST_WAVES]; } swing;
 
-/* No more than this is left by the orbit whose offset is i, j parts of a turn: by its points next to
-   x*. */
+/* The orbit whose offset is i, j parts of a turn leaves no more than this: what its points next to
+   x* leave. */
 static double left_next(const pencil *o, const swing *middle, int i, int j)
 {
     const waves *const v = o->v;
@@ -381,12 +385,12 @@ static double left_next(const pencil *o, const swing *middle, int i, int j)
     return left_by(o, 1, beta);
 }
 
-/* The most that is left by the orbits whose offsets lie on the grid, and top = the offset, if it is
-   more than floor; or floor.  Of what is `enough` the first found will do.  (Time may run either way,
-   so half of the offsets are all.) */
+/* The most that orbits with offsets on the grid leave, and top = the offset, if it is more than
+   floor; or floor.  Of what is `enough` the first found will do.  (Time may run either way, so half
+   of the offsets are all.) */
 static double scan(const pencil *o, double top[2], double floor, double enough)
 {
-    const int step = o->flat ? 1 : FINER, end = o->flat ? 1 : ANGLES;
+    const int end = o->flat ? 1 : ANGLES;
     swing middle;
 
     for (int w = 0; w < o->v->n; w++) {
@@ -395,8 +399,8 @@ static double scan(const pencil *o, double top[2], double floor, double enough)
         middle.sine[w] = p * sin(y);
         middle.cosine[w] = p * cos(y);
     }
-    for (int i = 0; i <= ANGLES / 2; i += step)
-        for (int j = 0; j < end; j += step) {
+    for (int i = 0; i <= ANGLES / 2; i += o->step)
+        for (int j = 0; j < end; j += o->step) {
             const double offset[2] = { 2.0 * PI * i / ANGLES, 2.0 * PI * j / ANGLES };
             double left;
             if (left_next(o, &middle, i, j) <= floor)
@@ -447,19 +451,19 @@ static double score(void *context, const double x[2], double enough)
     if (!(left > enough)) {             /* it counts */
         memcpy(top, o->guess[0], sizeof top);
         left = scan(o, top, left_over(o, top, -HUGE_VAL), HUGE_VAL);
-        left = -descend(less_left, o, top, -left, PI / (o->flat ? ANGLES : OFFSETS),
+        left = -descend(less_left, o, top, -left, PI * o->step / ANGLES,
                         o->flat ? FIRST_ANGLE : ANYWHERE);
     }
     remember(o, GUESSES - 1, top);
     return left;
 }
 
-/* x = a place of the least score, which it returns: the best place of a grid or x, and from there. */
-static double find_best(pencil *o, ways where, double x[2])
+/* x = a place of the least score: the best place of a grid, or x if it is less than `least` nowhere
+   there, and from there. */
+static double find_best(pencil *o, ways where, double least, double x[2])
 {
     const int places = where == FIRST_ANGLE ? FINER * PLACES : PLACES;
     const double step = 2.0 * PI / places;
-    double least = score(o, x, HUGE_VAL);
 
     for (int i = 0; i < places; i++)
         for (int j = 0; j < (where == ANYWHERE ? places : 1); j++) {
@@ -484,11 +488,10 @@ static void weaken(pencil *o, int times)
 }
 
 /* From x to where the score is least, for waves so weak that enough is left at x, unless there is
-   nothing to prove of them. */
+   nothing to prove of them.  What lies off the diagonal is judged by longer orbits. */
 static void improve(pencil *o, int on_diagonal, double x[2])
 {
-    const ways freely = o->flat ? FIRST_ANGLE : ANYWHERE;
-    double value;
+    double value, y[2] = { x[0], x[1] }, off[2] = { x[0], x[1] };
     int low = 0, high = 0;
 
     while (fmin(o->above, STRONG) * pow(WEAKER, high) >= WEAK)
@@ -502,15 +505,18 @@ static void improve(pencil *o, int on_diagonal, double x[2])
     }
     weaken(o, high);
     value = score(o, x, HUGE_VAL);
-    for (int diagonal = on_diagonal; diagonal >= 0; diagonal--) {
-        double y[2] = { x[0], x[1] };
-        const double at_y = find_best(o, diagonal ? DIAGONAL : freely, y);
-        if (at_y < value - (on_diagonal ? PLAINLY : NOTHING)) {
-            value = at_y;
-            x[0] = y[0];
-            x[1] = y[1];
-        }
+    if (!on_diagonal) {
+        find_best(o, o->flat ? FIRST_ANGLE : ANYWHERE, value, x);
+        return;
     }
+    if (find_best(o, DIAGONAL, value, y) < value - PLAINLY)
+        memcpy(x, y, sizeof y);
+    find_best(o, ANYWHERE, HUGE_VAL, off);
+    o->reach = REACH;
+    o->step = FINER / 2;
+    value = score(o, x, HUGE_VAL) - PLAINLY;
+    if (score(o, off, value) < value)
+        memcpy(x, off, sizeof off);
 }
 
 /* Room for waves. */
@@ -557,7 +563,7 @@ void loewner_start(const waves *given, int on_diagonal, double x[2])
     room r;
     const waves v = present(given, &r);
     const survey s = survey_of(&v, on_diagonal);
-    pencil o = { .v = &v, .above = s.largest - 2.0 };
+    pencil o = { .v = &v, .reach = NEAR, .step = FINER, .above = s.largest - 2.0 };
     int q[2] = { 1, 0 };
     double least[2];
 
@@ -571,6 +577,7 @@ void loewner_start(const waves *given, int on_diagonal, double x[2])
     if (o.flat) {
         const double along = q[0] * x[0] + q[1] * x[1], size = q[0] * q[0] + q[1] * q[1];
         double y[2] = { along, 0.0 };
+        o.step = 1;
         improve(&o, 0, y);
         for (int i = 0; i < 2; i++)
             x[i] += (y[0] - along) * q[i] / size;
