@@ -45,11 +45,13 @@ confirmed".  docs/format.md has the format and the exit statuses.
 import argparse
 import collections
 import contextlib
+import functools
 import gzip
 import hashlib
 import heapq
 import io
 import itertools
+import json
 import math
 import os
 import random
@@ -79,7 +81,11 @@ MAX_CHARACTERS = 1000                   # of a number in the header
 MAX_SIZE = 10 ** 300                    # of such a number
 MAX_BITS = 4096                         # of the arithmetic
 MAX_HALVINGS, MAX_PIECES = 24, 4096     # of a leaf, by the checker itself
+LAG = 4                                 # halvings along one axis that another may be behind
 MAX_POINTS = 330                        # of an orbit
+MAX_WAVES, MAX_K = 16, 100              # of a potential; |k0| and |k1|
+MAX_ITEMS = 1 << 22                     # of a map
+MAX_CELLS = 1 << 15                     # of the torus, about, when B is bounded
 CHUNKS, CHUNK = 8, 16                   # tasks of a process, about; leaves of one, with --exact
 FAST_CHUNK = 1 << 8, 1 << 14            # least and most of the fast path
 NU_BITS = 20                            # of the test vectors
@@ -110,17 +116,23 @@ class Unusable(Failure):
 
 # ---- the proof file
 
-NAMES = ("a", "b", "c", "v0", "v1")
-AXES = "01234"                          # of cuts: v0, v1, then a, b, c or, together, 2 for all
+RANGES = ("a", "b", "c")                # of version 2
+ANGLES = ("v0", "v1")
+AXES = "01234"                          # of cuts: v0, v1, then the parameters
 COUNTS = ("depth", "cuts", "proved", "symmetric", "undecided", "most_cuts")
 IGNORED = ("program", "method", "digits", "stubborn", "quick_tries", "tries", "Rtries",
            "HermSuccess", "LLSuccess", "ll_used", "reasons", "max_steps", "max_NTsteps",
            "B", "pending")
 OPTIONAL = {"T", "Tr-", "Tr+", "lambda-min", "lambda-max", "seconds", "comment"}    # ignored, too
-FIELDS = {*NAMES, *COUNTS, *IGNORED, "kind", "xstar", "together", "at once"}
-KNOWN = FIELDS | OPTIONAL
-NUMBER = re.compile(r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]{1,3})?", re.ASCII)
-
+ALWAYS = {*ANGLES, *COUNTS, *IGNORED, "kind", "xstar", "at once"}
+FIELDS = {b"2": {*ALWAYS, *RANGES, "together"},
+          b"3": {*ALWAYS, "wave", "frame", "alone", "odd about"}}
+REPEATED = {"wave", "comment"}
+DECIMAL = r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]{1,3})?"
+NUMBER = re.compile(DECIMAL, re.ASCII)
+RATIO = re.compile("[+-]?[0-9]+/0*[1-9][0-9]*|" + DECIMAL, re.ASCII)
+THESIS = (1, 0), (0, 1), (1, 1)         # k of the three waves of the thesis
+IDENTITY = (1, 0, 0, 1)
 
 MAGIC = b"converse proof "               # and the version, alone on the first line
 
@@ -131,27 +143,61 @@ def reason(error):
 
 
 @dataclass(frozen=True)
-class Claim:
-    """What a proof file says: exact numbers, the angles v0 and v1 in units of pi."""
+class Wave:
+    """-p sin(k.y + pi phase), p = middle + sum of parts[m] t[m] for parameters -1 <= t[m] <= 1."""
 
-    centre: tuple
+    k: tuple
+    phase: Fraction
+    middle: Fraction
+    parts: tuple
+
+    def at(self, t):
+        return self.middle + sum([g * x for g, x in zip(self.parts, t)])
+
+
+def present(waves):
+    """Those whose amplitude is not always zero."""
+    return tuple(wave for wave in waves if wave.middle or any(wave.parts))
+
+
+@dataclass(frozen=True)
+class Claim:
+    """What a proof file says, or a proved cell of a map: exact numbers, v0 and v1 in units of pi."""
+
+    waves: tuple
+    centre: tuple                       # of v0 and v1
     half: tuple
+    frame: tuple                        # x[1] = (frame[0] v0 + frame[1] v1, the same with 2 and 3)
+    alone: object                       # the only coordinate that is looked at, or None
     xstar: tuple
     counts: dict
-    together: bool                      # the parameters move as one, from end to end
-    at_once: bool                       # the claim covers larger multiples of them, too
+    at_once: str                        # does the claim cover larger multiples: yes, no, upper end
     tree: str
     sha256: str                         # of the file, uncompressed
+    where: str = ""                     # of a cell of a map: which it is
+
+    @property
+    def parameters(self):
+        return len(self.waves[0].parts)
+
+    @property
+    def felt(self):
+        """The waves that count.  If none feels both coordinates the map is a product, and Q(n) for
+        n = (n[0], 0) is the second variation of the first factor: it is the one of the map that has
+        the first factor's waves alone, whose other coordinate moves freely and adds nothing
+        negative to it.  So what excludes an orbit of that map for any n excludes it of this one."""
+        return tuple(wave for wave in present(self.waves)
+                     if self.alone is None or wave.k[self.alone])
 
 
-def read(path):
-    """Reads a proof file; nothing in it is believed but what the claim is."""
+def load(path):
+    """The bytes of a proof file or of a map, uncompressed."""
     try:
         with open(path, "rb") as file:
             packed = file.peek(2)[:2] == b"\x1f\x8b"
             stream = gzip.GzipFile(fileobj=file) if packed else file
             data = bytearray(stream.read(len(MAGIC)))
-            if data != MAGIC:
+            if data != MAGIC and not data.startswith(b"{"):
                 raise Unusable("is not a proof file")
             while (more := stream.read(1 << 20)) and len(data) <= MAX_BYTES:
                 data += more
@@ -161,11 +207,19 @@ def read(path):
         raise Unusable("cannot be read (%s)" % reason(error)) from None
     if len(data) > MAX_BYTES:
         raise NotConfirmed("the file is larger than %d bytes, the checker's limit" % MAX_BYTES)
+    return data
+
+
+def read(path):
+    """Reads a proof file, or a map; nothing in it is believed but what the claim is."""
+    data = load(path)
+    if data.startswith(b"{"):
+        return read_map(data)
     first = data[len(MAGIC):len(MAGIC) + 9].partition(b"\n")[0]
     if first.endswith(b"\r"):
         raise Rejected("its lines end in CR LF: it was altered on its way; ask for the original")
-    if first != b"2":
-        raise Unusable("is a proof file of another version; this checker knows version 2")
+    if bytes(first) not in FIELDS:
+        raise Unusable("is a proof file of another version; this checker knows versions 2 and 3")
     marker = b"checksum: sha256 "
     end = data.rfind(b"\n" + marker) + 1
     end_line = data[end + len(marker):]
@@ -181,57 +235,136 @@ def read(path):
     return parse(bytes(whole[:start]), tree, hashlib.sha256(whole).hexdigest())
 
 
+def number(text, name, form=NUMBER):
+    """The exact number that the text is, within the checker's limits."""
+    if len(text) > MAX_CHARACTERS:
+        raise NotConfirmed("%s has more than %d characters, the checker's limit"
+                           % (name, MAX_CHARACTERS))
+    if not form.fullmatch(text):
+        raise Rejected("%s is not a decimal number%s" % (name, " or ratio" * (form is RATIO)))
+    value = Fraction(text)
+    if abs(value) > MAX_SIZE:
+        raise NotConfirmed("%s is out of range: the checker's limit is 1e300" % name)
+    return value
+
+
 def parse(head, tree, sha256):
     """The claim; the header must give each field once, and nothing of unknown meaning.
 
     Nothing of it is repeated in a message but the names of fields that are known.
     """
-    header, file = {}, io.BytesIO(head)
-    file.readline()                                     # which read has seen to
-    for number, line in enumerate(iter(lambda: file.readline(MAX_LINE), b""), 2):
+    header, file = {"wave": []}, io.BytesIO(head)
+    version = file.readline()[len(MAGIC):].rstrip()     # which read has seen to
+    fields = FIELDS[version]
+    for at, line in enumerate(iter(lambda: file.readline(MAX_LINE), b""), 2):
         if len(line) == MAX_LINE:
             raise NotConfirmed("line %d is longer than the checker's limit, %d bytes"
-                               % (number, MAX_LINE - 1))
+                               % (at, MAX_LINE - 1))
         name, colon, value = line.decode("utf-8", "replace").rstrip("\n").partition(": ")
-        if not colon or name not in KNOWN:
-            raise Rejected("line %d, in the header, is of unknown meaning" % number)
-        if name in header and name != "comment":
+        if not colon or name not in fields | OPTIONAL:
+            raise Rejected("line %d, in the header, is of unknown meaning" % at)
+        if name in header and name not in REPEATED:
             raise Rejected("the header gives %s twice" % name)
-        header[name] = value
+        if name == "wave":
+            header[name].append(value)
+        else:
+            header[name] = value
     if "xstar" not in header:
         raise Rejected("the search had not begun when it was left: there is no x* yet")
-    if FIELDS - header.keys():
-        raise Rejected("the header lacks %s" % ", ".join(sorted(FIELDS - header.keys())))
+    if fields - header.keys():
+        raise Rejected("the header lacks %s" % ", ".join(sorted(fields - header.keys())))
     if header["kind"] != "sound":
         raise Rejected("the file's kind is not 'sound': it is not meant as a proof")
-    pairs = []
-    for name in (*NAMES, "xstar"):
+
+    def pair(name, form=NUMBER):
         words = header[name].split(" ", 2)
-        if len(words) != 2 or not all(map(NUMBER.fullmatch, words)):
+        if len(words) != 2 or not all(map(form.fullmatch, words)):
             raise Rejected("the header's %s is not two decimal numbers" % name)
-        if max(map(len, words)) > MAX_CHARACTERS:
-            raise NotConfirmed("the header's %s has more than %d characters, the checker's limit"
-                               % (name, MAX_CHARACTERS))
-        pairs.append(tuple(map(Fraction, words)))
-        if max(map(abs, pairs[-1])) > MAX_SIZE:
-            raise NotConfirmed("the header's %s is out of range: the checker's limit is 1e300"
-                               % name)
-    *ranges, xstar = pairs
+        return tuple(number(word, "the header's " + name, form) for word in words)
+
+    def one_of(name, *values):
+        if header[name] not in values:
+            raise Rejected("the header's %s is neither %s" % (name, " nor ".join(values)))
+        return header[name]
+
+    ranges = [pair(name) for name in (RANGES if version == b"2" else ()) + ANGLES]
+    xstar = pair("xstar")
     if min(half for _, half in ranges) < 0:
         raise Rejected("a half-width is negative")
     for name in COUNTS:
         if not re.fullmatch("[0-9]{1,18}", header[name], re.ASCII):
             raise Rejected("the header's %s is not a count" % name)
-    for name in ("together", "at once"):
-        if header[name] not in ("yes", "no"):
-            raise Rejected("the header's %s is neither yes nor no" % name)
-    return Claim(*zip(*ranges), xstar, {name: int(header[name]) for name in COUNTS},
-                 header["together"] == "yes", header["at once"] == "yes", tree, sha256)
+    *ranges, v0, v1 = ranges
+    frame, alone, odd = IDENTITY, None, (Fraction(0), Fraction(0))
+    if version == b"2":
+        together = one_of("together", "yes", "no") == "yes"
+        at_once = one_of("at once", "yes", "no").replace("yes", "upper end" if together else "yes")
+        waves = tuple(
+            Wave(k, Fraction(0), middle, (half,) if together else
+                 tuple(half if k == other else Fraction(0) for other in THESIS))
+            for k, (middle, half) in zip(THESIS, ranges))
+    else:
+        at_once = one_of("at once", "yes", "no", "upper end")
+        waves = parse_waves(header["wave"])
+        frame = check_frame(header["frame"].split(" "), "the header's frame")
+        alone = {"no": None, "0": 0, "1": 1}[one_of("alone", "no", "0", "1")]
+        check_alone(waves, alone)
+        odd = None if header["odd about"] == "no" else pair("odd about", RATIO)
+    claim = Claim(waves, *zip(v0, v1), frame, alone, xstar,
+                  {name: int(header[name]) for name in COUNTS}, at_once, tree, sha256)
+    if odd and any((sum([k * s for k, s in zip(wave.k, odd)]) + wave.phase) % 1
+                   for wave in claim.felt):
+        raise Rejected("V is not odd about the point that the header names")
+    if at_once != "no" and not odd:
+        raise Rejected("larger parameters are excluded at once only where V is odd about a point")
+    if at_once == "upper end" and claim.parameters != 1:
+        raise Rejected("without exactly one parameter there is no upper end")
+    return claim
+
+
+def parse_waves(lines):
+    """The waves of a header."""
+    if not 0 < len(lines) <= MAX_WAVES:
+        raise Rejected("the header has %d waves, not 1 to %d" % (len(lines), MAX_WAVES))
+    waves = []
+    for at, line in enumerate(lines, 1):
+        words, name = line.split(" ", 9), "the header's wave %d" % at
+        if not 4 <= len(words) <= 7:
+            raise Rejected(name + " is not K0 K1 PHASE AMPLITUDE and at most three parts")
+        if not all(re.fullmatch("[+-]?[0-9]{1,3}", word, re.ASCII) for word in words[:2]):
+            raise Rejected(name + " has no integer k")
+        k = tuple(map(int, words[:2]))
+        if k == (0, 0) or max(map(abs, k)) > MAX_K:
+            raise Rejected("%s has a k that is zero or beyond %d" % (name, MAX_K))
+        phase = number(words[2], name, RATIO)
+        middle, *parts = [number(word, name) for word in words[3:]]
+        waves.append(Wave(k, phase, middle, tuple(parts)))
+        if len(parts) != len(waves[0].parts):
+            raise Rejected(name + " has not as many parts as the first")
+    return tuple(waves)
+
+
+def check_frame(words, name):
+    """The frame: four integers (as text) of a change of coordinates of the torus."""
+    if len(words) != 4 or not all(re.fullmatch("[+-]?[0-9]{1,3}", word, re.ASCII)
+                                  for word in words):
+        raise Rejected(name + " is not four integers")
+    a, b, c, d = frame = tuple(map(int, words))
+    if max(map(abs, frame)) > MAX_K:
+        raise Rejected("%s has an entry beyond %d" % (name, MAX_K))
+    if abs(a * d - b * c) != 1:
+        raise Rejected(name + " has not determinant 1 or -1")
+    return frame
+
+
+def check_alone(waves, alone):
+    if alone is not None and any(all(wave.k) for wave in present(waves)):
+        raise Rejected("no coordinate is alone: a wave feels both")
 
 
 # ---- the tree
 # A cell (index, cuts) is slice index[k] of the 2^cuts[k] equal slices of the region along each of
-# the five axes k.  Cutting a cell replaces it by its two halves, so the leaves of a complete tree
+# the axes k.  Cutting a cell replaces it by its two halves, so the leaves of a complete tree
 # tile the region exactly.
 
 ROOT = (0,) * 5, (0,) * 5
@@ -241,18 +374,18 @@ def changed(values, axis, value):
     return values[:axis] + (value,) + values[axis + 1:]
 
 
-def leaves(tree):
+def leaves(tree, axes=AXES, kinds="PSU"):
     """Yields (position, cell) for each leaf, in preorder; Rejected if it is not a whole tree."""
-    pending = [ROOT]
+    pending = [((0,) * len(axes),) * 2]
     for position, node in enumerate(tree):
         if not pending:
             raise Rejected("the tree ends before its text does, at node %d" % position)
         index, cuts = cell = pending.pop()
-        axis = AXES.find(node)
+        axis = axes.find(node)
         if axis >= 0:
             cuts = changed(cuts, axis, cuts[axis] + 1)
             pending += ((changed(index, axis, 2 * index[axis] + upper), cuts) for upper in (1, 0))
-        elif node in "PSU":
+        elif node in kinds:
             yield position, cell
         else:
             raise Rejected("%a is not a node of a finished tree, at node %d" % (node, position))
@@ -263,36 +396,69 @@ def leaves(tree):
         raise Rejected("the tree is incomplete: %d of its parts are missing" % len(pending))
 
 
-def check_tree(claim):
-    """Rejected, if the tree is not whole, decided, and what the header's counts say."""
-    total = most_cuts = 0
-    if claim.together and set("34") & set(claim.tree):
-        raise Rejected("parameters that move together are cut one at a time")
+def tree_counts(claim):
+    """What the tree has, counted; Rejected, if it is not whole and decided."""
+    total = most_cuts = deepest = 0
+    if set(AXES[2 + claim.parameters:]) & set(claim.tree):
+        raise Rejected("the tree cuts a parameter that there is not")
     for position, (_, cuts) in leaves(claim.tree):
         total += 1
         depth = sum(cuts)
         if claim.tree[position] == "U":
             raise Rejected("leaf %d is undecided: the file claims no theorem" % total)
-        if depth > claim.counts["depth"]:
-            raise Rejected("leaf %d was cut more often than the depth allows" % total)
+        deepest = max(deepest, depth)
         if claim.tree[position] == "P":
             most_cuts = max(most_cuts, depth)
-    found = {"cuts": total - 1, "proved": claim.tree.count("P"),
-             "symmetric": claim.tree.count("S"), "undecided": 0, "most_cuts": most_cuts}
+    return {"cuts": total - 1, "proved": claim.tree.count("P"),
+            "symmetric": claim.tree.count("S"), "undecided": 0, "most_cuts": most_cuts,
+            "depth": deepest}
+
+
+def check_tree(claim):
+    """Rejected, if the tree is not whole, decided, and what the header's counts say."""
+    found = tree_counts(claim)
+    if found.pop("depth") > claim.counts["depth"]:
+        raise Rejected("a leaf was cut more often than the depth allows")
     for name, value in found.items():
         if claim.counts[name] != value:
             raise Rejected("the header's %s is %d, the tree's %d"
                            % (name, claim.counts[name], value))
 
 
+def coefficients(waves, swap=False, order=None):
+    """V as the coefficients of sin(k.y + pi phase), k0 > 0 or k0 = 0 < k1, 0 <= phase < 1, in the
+    middle and of each parameter; the coordinates exchanged, the parameters in another order."""
+    found = {}
+    for wave in waves:
+        k, phase = wave.k[::-1] if swap else wave.k, wave.phase
+        if k < (0, 0):                          # sin(x) = sin(pi - x)
+            k, phase = (-k[0], -k[1]), 1 - phase
+        sign = (-1) ** (phase // 1)             # sin(x + pi) = -sin(x)
+        parts = [wave.parts[m] for m in order] if order else wave.parts
+        key = k, phase % 1
+        found[key] = [old + sign * new for old, new in
+                      zip(found.get(key, [0] * (1 + len(parts))), (wave.middle, *parts))]
+    return {key: value for key, value in found.items() if any(value)}
+
+
 class Mirror:
-    """The exchange of v0 and v1, a and b: may a leaf be skipped for the sake of its mirror image?"""
+    """The exchange of the two coordinates: may a leaf be skipped for the sake of its mirror image?
+
+    It maps the graphs of V to those of V with its coordinates exchanged.  Where this is V for
+    parameters in another order, t'[m] = t[order[m]], the orbits from x* to a cell are mapped to
+    those from the image of x* to the image of the cell, with its parameters in that order.
+    """
 
     def __init__(self, claim):
-        """The exchange maps orbits to orbits; the rest must be its own image."""
-        a, b, _, v0, v1 = zip(claim.centre, claim.half)
-        self.symmetric = a == b and v0 == v1 and claim.xstar[0] == claim.xstar[1]
-        self.tree, self.together = claim.tree, claim.together
+        (v0, v1), waves = zip(claim.centre, claim.half), claim.felt
+        self.orders = []                                    # of the parameters
+        if v0 == v1 and claim.xstar[0] == claim.xstar[1] and claim.frame == IDENTITY:
+            # V(sigma y; t) = V(y; t'):  the part of t[order[m]] is, exchanged, that of t'[m].
+            self.orders = [order for order in ((1, 0, 2), (0, 1, 2), (0, 2, 1), (2, 1, 0),
+                                               (1, 2, 0), (2, 0, 1), (1, 0), (0, 1), (0,), ())
+                           if len(order) == claim.parameters
+                           and coefficients(waves, True, order) == coefficients(waves)]
+        self.tree = claim.tree
         self.upper = array("i", [0]) * len(self.tree)       # where a node's upper half begins
         unfinished = []                                     # nodes whose lower half goes on
         for position, node in enumerate(self.tree):
@@ -303,13 +469,18 @@ class Mirror:
 
     def refusal(self, cell):
         """Why the symmetric leaf may not be skipped, or None if its mirror image is proved."""
-        if not self.symmetric:
+        if not self.orders:
             return "is skipped, but the problem is not symmetric"
-        image = [(index, cuts) for index, cuts in zip(*cell)]
-        image[0], image[1] = image[1], image[0]
-        if not self.together:
-            image[2], image[3] = image[3], image[2]
-        todo = [(0, tuple(image))]          # a node, and the image's cell within that node
+        slices = list(zip(*cell))
+        for order in self.orders:
+            image = [slices[1], slices[0], *(slices[2 + m] for m in order)]
+            if self.is_proved(tuple(image + slices[len(image):])):
+                return None
+        return "is skipped, but its mirror image is not proved"
+
+    def is_proved(self, image):
+        """Is every leaf P that overlaps these slices?"""
+        todo = [(0, image)]                 # a node, and the image's cell within that node
         while todo:
             position, image = todo.pop()
             node, lower = self.tree[position], position + 1
@@ -317,7 +488,7 @@ class Mirror:
                 continue
             axis = AXES.find(node)
             if axis < 0:
-                return "is skipped, but its mirror image is not proved"
+                return False
             halves = lower, self.upper[position]
             index, cuts = image[axis]
             if cuts == 0:                                   # the image has both halves
@@ -325,7 +496,7 @@ class Mirror:
             else:
                 rest = index & (1 << cuts - 1) - 1, cuts - 1
                 todo.append((halves[index >> cuts - 1], changed(image, axis, rest)))
-        return None
+        return True
 
 
 def check_mirror_images(claim):
@@ -346,7 +517,7 @@ def check_mirror_images(claim):
 GUARD = 64                              # more bits, in which constants are computed
 SLICES = 256                            # of the circle, in the table of sines and cosines
 SINE_ERROR = 16                         # units; see Fixed.sincos
-PARAMETER_ERROR = 32                    # units; see Criterion and its piece
+PARAMETER_ERROR = 40                    # units; see Criterion and its piece
 
 
 def arctan_inverse(n, one):
@@ -372,6 +543,7 @@ class Fixed:
         fine = bits + GUARD
         # Machin's formula, off by less than 16 units per term, far less than 2^GUARD in all.
         two_pi = 8 * (4 * arctan_inverse(5, 1 << fine) - arctan_inverse(239, 1 << fine))
+        self.two_pi = two_pi                                # in fine units
         self.pi = two_pi >> GUARD + 1                       # pi, off by less than 2 units
         self.step = two_pi // SLICES                        # of the table, in fine units
         self.steps_per_radian = (SLICES << 128) // (two_pi >> bits)         # units of 2^-64
@@ -384,6 +556,15 @@ class Fixed:
         for _ in range(SLICES):
             self.table.append((y >> GUARD, x >> GUARD))
             x, y = x * c - y * s >> fine, y * c + x * s >> fine
+
+    @staticmethod
+    @functools.lru_cache(maxsize=16)
+    def of(bits):
+        return Fixed(bits)
+
+    def angle(self, phase):
+        """pi phase, modulo 2 pi, off by less than 2 units."""
+        return math.floor(phase % 2 * self.two_pi / 2) >> GUARD
 
     @staticmethod
     def _divisors(bits):
@@ -409,11 +590,11 @@ class Fixed:
         return c, s * r >> bits
 
     def sincos(self, x):
-        """The sine and cosine of x (units), each within SINE_ERROR units.
+        """The sine and cosine of x (units), each within SINE_ERROR units, even if x is off by 2.
 
         x = n steps + r, r off by 2 units.  In the sum formulas a number of the table is off by
         2 units, one of r by 4 and by 2 more for r, and their factors are a sine and a cosine, of
-        sum at most 1.5: less than 1.5 (2 + 6) + 1 units.
+        sum at most 1.5: less than 1.5 (2 + 6) + 1 units, and 2 more for those of x.
         """
         bits = self.bits
         n = (x * self.steps_per_radian >> bits) + (1 << 63) >> 64
@@ -425,127 +606,196 @@ class Fixed:
 
 
 # ---- the largest eigenvalue of beta over the torus and the parameters
+# Here and below a wave is (k0, k1, phase), in units, and its amplitude is apart.
+
+def in_units(fixed, waves):
+    """The waves, with pi phase (modulo 2 pi) off by less than 2 units."""
+    return [(*wave.k, fixed.angle(wave.phase)) for wave in waves]
+
+
+def angle_of(wave, x):
+    k0, k1, phase = wave
+    return k0 * x[0] + k1 * x[1] + phase
+
+
+def stiffness(waves):
+    """The sum of |k|^2 (|k0| + |k1|): where each amplitude is off by one, and each slope of a wave
+    by |k0| + |k1|, an eigenvalue is off by no more."""
+    return sum([(k0 * k0 + k1 * k1) * (abs(k0) + abs(k1)) for k0, k1, _ in waves])
+
 
 def largest(p, q, r, one):
     """An upper bound of the largest eigenvalue of [p q; q r]: less than 2 units above it."""
     return (p + r + upper_sqrt((p - r) ** 2 + 4 * q * q) + 1) // 2
 
 
-def cell_bound(fixed, abc, y, w):
-    """An upper bound of the largest eigenvalue of beta over |x - y| <= w, and one at y.
+def forms(waves, weights):
+    """The sum of weight k k' over the waves: the entries 00, 01, 11."""
+    p = q = r = 0
+    for (k0, k1, _), m in zip(waves, weights):
+        p, q, r = p + k0 * k0 * m, q + k0 * k1 * m, r + k1 * k1 * m
+    return p, q, r
 
-    beta = 2I + sum of m u u', where m = -p sin(u.x), for (p, u) = (a, (1,0)), (b, (0,1)), (c, (1,1)).
-    Taylor: m <= m(y) - p cos(u.y) u.d + |p| (u.d)^2 / 2.  The part affine in d has a convex largest
-    eigenvalue, so its maximum lies at a corner of the cell; as |u.d| <= w, w, 2w the rest adds at
-    most w^2 max(|a|, |b|) / 2 + 4 |c| w^2, the largest eigenvalue of (1,1)(1,1)' being 2.
+
+def cell_bound(fixed, waves, amplitudes, sides, y, w):
+    """An upper bound of the largest eigenvalue of beta over y + sum of d side, |d| <= w, and one at
+    y.
+
+    beta = 2I + sum of m k k', where m = -p sin(k.x + phase).
+    Taylor: m <= m(y) - p cos(k.y + phase) k.D + |p| (k.D)^2 / 2.  The part affine in d has a convex
+    largest eigenvalue, so its maximum lies at a corner of the cell; as |k.D| <= w sum of |k.side|
+    the rest adds at most the largest eigenvalue of the sum of |p| (w sum of |k.side|)^2 k k' / 2.
     """
-    bits, size = fixed.bits, max(map(abs, abc))
-    waves = [fixed.sincos(angle) for angle in (*y, sum(y))]
-    m = [-p * s >> bits for p, (s, _) in zip(abc, waves)]
-    g = [-p * c * w >> 2 * bits for p, (_, c) in zip(abc, waves)]
+    bits, one = fixed.bits, fixed.one
+    along = [[k0 * u + k1 * v for u, v in sides] for k0, k1, _ in waves]
+    angles = [fixed.sincos(angle_of(wave, y)) for wave in waves]
+    m = [-p * s >> bits for p, (s, _) in zip(amplitudes, angles)]
+    g = [-p * c * w >> 2 * bits for p, (_, c) in zip(amplitudes, angles)]
 
-    def eigenvalue(d0, d1):
-        m0, m1, m2 = m[0] + g[0] * d0, m[1] + g[1] * d1, m[2] + g[2] * (d0 + d1)
-        return largest(2 * fixed.one + m0 + m2, m2, 2 * fixed.one + m1 + m2, fixed.one)
+    def eigenvalue(d):
+        at = [value + slope * sum([k * e for k, e in zip(ks, d)])
+              for value, slope, ks in zip(m, g, along)]
+        p, q, r = forms(waves, at)
+        return largest(2 * one + p, q, 2 * one + r, one)
 
     square = (w * w >> bits) + 1
-    bend = (square * (max(abs(abc[0]), abs(abc[1])) + 8 * abs(abc[2])) >> bits + 1) + 1
-    # Sines and floors: each m and g d is off by 2 + SINE_ERROR (1 + w) size units at most, and the
-    # eigenvalue by 4 times as much (1 for e0e0' and e1e1', 2 for (1,1)(1,1)', 1 to spare).
-    slack = 4 * (4 + ((2 * SINE_ERROR * size * (fixed.one + w)) >> 2 * bits) + 1)
-    corners = max(eigenvalue(d0, d1) for d0 in (-1, 1) for d1 in (-1, 1))
-    return corners + bend + slack, eigenvalue(0, 0) + slack
+    bend = largest(*forms(waves, [(abs(p) * square * sum(map(abs, ks)) ** 2 >> bits + 1) + 1
+                                  for p, ks in zip(amplitudes, along)]), one)
+    # Sines and floors: m is off by 1 + SINE_ERROR size units at most, and g d by 1 + SINE_ERROR
+    # size w for each unit of k.side; 1 to spare.  (A side is a unit vector, or for waves that are
+    # multiples of k0 is such that k.side is the multiple: |k.side| <= |k0| + |k1|.)
+    size = max(map(abs, amplitudes), default=0)
+    slack = 4 + stiffness(waves) * (4 + ((2 * SINE_ERROR * size * (one + w)) >> 2 * bits) + 1)
+    corners = max(map(eigenvalue, itertools.product((-1, 1), repeat=len(sides))))
+    return corners + bend + slack, eigenvalue((0,) * len(sides)) + slack
 
 
-def torus_bound(fixed, corners):
+def torus_bound(fixed, waves, corners, most=None):
     """An upper bound B of the largest eigenvalue of beta over the torus and the parameters between
-    these corners.
+    these corners, each a tuple of amplitudes.
 
     beta(x) is affine in the parameters and its largest eigenvalue convex: for each x the maximum
     is at one of the corners.  At each, branch and bound over cells that cover the torus,
-    until the worst cell is within 2^-20 (relative to the parameters) of a value taken.
+    until the worst cell is within 2^-20 (relative to the parameters) of a value taken, or there
+    have been so many cells (most) that the bound may be a little less sharp.
+
+    If all k are multiples of one, q, then beta depends on q.y alone, and its values are those on a
+    line: for side.q = 1 those at y = d side, |d| <= pi.
     """
     corners = sorted(set(corners))
-    tolerance = (fixed.one + max(sum(map(abs, abc)) for abc in corners)) >> 20
+    q = min([(k0, k1) for k0, k1, _ in waves] or [(1, 0)], key=lambda k: abs(k[0]) + abs(k[1]))
+    if all(k0 * q[1] == k1 * q[0] for k0, k1, _ in waves):
+        divisor = math.gcd(*q)
+        sides = [bezout(q[0] // divisor, q[1] // divisor)]
+    else:
+        sides = [(1, 0), (0, 1)]
+    tolerance = (fixed.one + max([sum(map(abs, p)) for p in corners])) >> 20
     heap, taken, order = [], 0, itertools.count()
 
-    def push(abc, y, w):
+    def push(p, y, w):
         nonlocal taken
-        bound, value = cell_bound(fixed, abc, y, w)
+        bound, value = cell_bound(fixed, waves, p, sides, y, w)
         taken = max(taken, value)
-        heapq.heappush(heap, (-bound, next(order), abc, y, w))
+        heapq.heappush(heap, (-bound, next(order), p, y, w))
 
-    for abc in corners:
-        push(abc, (0, 0), fixed.pi + 2)
-    while -heap[0][0] > taken + tolerance:
-        _, _, abc, (y0, y1), w = heapq.heappop(heap)
+    for p in corners:
+        push(p, (0, 0), fixed.pi + 2)
+    while -heap[0][0] > taken + tolerance and next(order) < (most or MAX_CELLS):
+        _, _, p, y, w = heapq.heappop(heap)
         w = w + 1 >> 1
-        for d0, d1 in itertools.product((-w, w), repeat=2):
-            push(abc, (y0 + d0, y1 + d1), w)
+        for d in itertools.product((-w, w), repeat=len(sides)):
+            push(p, tuple([c + sum([e * side[i] for e, side in zip(d, sides)])
+                           for i, c in enumerate(y)]), w)
     return -heap[0][0]
 
 
+def bezout(a, b):
+    """Integers (u, v), |u|, |v| <= 1 or below |a|, |b|, with a u + b v = 1, for coprime a, b."""
+    u, v, old, new = 1, 0, a, b
+    x, y = 0, 1
+    while new:
+        n = old // new
+        old, new, u, x, v, y = new, old - n * new, x, u - n * x, y, v - n * y
+    return (u * old, v * old)               # old is 1 or -1
+
+
 # ---- orbits: first-order Taylor models
-# A piece is a box of (a, b, c, v0, v1): centres and half-widths.  A number that depends on the
-# point of the piece is enclosed as centre + sum of column * symbol, each symbol in [-1, 1]: first
-# five symbols for the piece (parameters that move together all have the first), two for the rounding
-# of x*, then three for the errors of each step.
+# A piece is a set of amplitudes and of (v0, v1): of each wave the middle and the parts of its
+# amplitude, and centres and half-widths of the angles.  A number that depends on the point of the
+# piece is enclosed as centre + sum of column * symbol, each symbol in [-1, 1]: first the symbols of
+# the three parameters and the two angles, two for the rounding of x*, then some for the errors of
+# each step.
+
+PARAMETERS, SYMBOLS = 3, 7              # of these; of these and all the others of a piece
+
 
 class Point:
     """x[j] on all orbits of a piece: its centre x, its rows of columns, and models of p sin."""
 
-    __slots__ = ("x", "rows", "waves", "reach", "sines", "beta")
+    __slots__ = ("x", "rows", "angles", "reach", "sines", "beta")
 
-    def __init__(self, fixed, parameters, x, rows):
+    def __init__(self, fixed, waves, amplitudes, x, rows):
         self.x, self.rows = x, rows
         row0, row1 = rows
-        self.waves = [fixed.sincos(angle) for angle in (*x, sum(x))]
-        self.reach = (sum(map(abs, row0)), sum(map(abs, row1)),
-                      sum([abs(p + q) for p, q in zip(row0, row1)]))
-        self.sines = [model(fixed.bits, *parameter, s, c, rho) for parameter, (s, c), rho
-                      in zip(parameters, self.waves, self.reach)]
-        s0, s1, s2 = [value / fixed.one for value, _, _, _ in self.sines]
-        self.beta = 2 - s0 - s2, -s2, 2 - s1 - s2       # at the centre, in double precision
+        self.angles = [fixed.sincos(angle_of(wave, x)) for wave in waves]
+        self.reach = [sum([abs(k0 * p + k1 * q) for p, q in zip(row0, row1)])
+                      for k0, k1, _ in waves]
+        self.sines = [model(fixed.bits, *amplitude, s, c, rho) for amplitude, (s, c), rho
+                      in zip(amplitudes, self.angles, self.reach)]
+        p, q, r = forms(waves, [value / fixed.one for value, _, _, _ in self.sines])
+        self.beta = 2 - p, -q, 2 - r        # at the centre, in double precision
 
 
-def model(bits, p, h, f, g, rho):
-    """Encloses (p + h e) (f' cos d + g' sin d) for |e| <= 1, |d| <= rho <= 2 and all f', g' within
-    SINE_ERROR of f, g, as value + slope e + tilt d + error: these four numbers.
+def model(bits, p, parts, f, g, rho):
+    """Encloses (p + sum of part e) (f' cos d + g' sin d) for |e| <= 1, |d| <= rho <= 2 and all f', g'
+    within SINE_ERROR of f, g, as value + sum of slope e + tilt d + error: these four, the slopes as
+    a list.
 
     cos d is in [1 - rho^2/2, 1], and |sin d - d| <= rho^3/6, so f cos d + g sin d is within
-    bend = |f| rho^2/4 + |g| rho^3/6 + 2 SINE_ERROR of f (1 - rho^2/4) + g d.  Hence the error
-    (|p| + h) bend + h |g| rho; each of value, slope, tilt d and the error loses 1 or 2 units, and
-    p + h e is off by PARAMETER_ERROR, which the wave, at most 1, does not enlarge.
+    bend = |f| rho^2/4 + |g| rho^3/6 + 2 SINE_ERROR of f (1 - rho^2/4) + g d.  With h, the sum of
+    the |parts|, the error is (|p| + h) bend + h |g| rho; value, each slope, tilt d and the error
+    lose 1 or 2 units each, and the amplitude is off by PARAMETER_ERROR, which the wave, at most 1,
+    does not enlarge.
     """
-    square = (rho * rho >> bits) + 1
+    square, h = (rho * rho >> bits) + 1, sum(map(abs, parts))
     sag = f * square >> bits + 2
     bend = abs(sag) + (abs(g) * square * rho // 6 >> 2 * bits) + 2 * SINE_ERROR + 4
     error = ((abs(p) + h) * bend + ((h * abs(g) >> bits) + 1) * rho >> bits) \
-        + PARAMETER_ERROR + 7
-    return p * (f - sag) >> bits, h * (f - sag) >> bits, p * g >> bits, error
+        + PARAMETER_ERROR + 9
+    return p * (f - sag) >> bits, [part * (f - sag) >> bits for part in parts], p * g >> bits, error
 
 
-def step(fixed, parameters, symbols, point, before, known):
+def step(fixed, waves, amplitudes, point, before, known):
     """The point after next: 2 x - before - V'(x).  Time may run either way: the map is reversible.
 
-    -V'(x) is (g0 + g2, g1 + g2) with g = p cos(angle); each g has a new symbol for its error, after
-    the known ones.  The floor of each column costs a unit.
+    -V'(x) is the sum of k g with g = p cos(angle).  Each g has a symbol for its error, all those
+    that move x0 alone the same, and those that move x1 alone; these are new, after the known ones.
+    The floor of each column costs a unit.
     """
     bits = fixed.bits
-    (v0, s0, t0, e0), (v1, s1, t1, e1), (v2, s2, t2, e2) = [
-        model(bits, *parameter, c, -s, rho) for parameter, (s, c), rho
-        in zip(parameters, point.waves, point.reach)]
-    m0, m1 = (2 << bits) + t0 + t2, (2 << bits) + t1 + t2
+    models = [model(bits, *amplitude, c, -s, rho) for amplitude, (s, c), rho
+              in zip(amplitudes, point.angles, point.reach)]
+    p, q, r = forms(waves, [tilt for _, _, tilt, _ in models])
+    p, r = (2 << bits) + p, (2 << bits) + r
     row0, row1, old0, old1 = [row + [0] * (known - len(row)) for row in point.rows + before.rows]
-    new0 = [(m0 * p + t2 * q >> bits) - o for p, q, o in zip(row0, row1, old0)]
-    new1 = [(t2 * p + m1 * q >> bits) - o for p, q, o in zip(row0, row1, old1)]
-    a, b, c = symbols
-    new0[a] += s0
-    new0[c] += s2
-    new1[b] += s1
-    new1[c] += s2
-    x = (2 * point.x[0] - before.x[0] + v0 + v2, 2 * point.x[1] - before.x[1] + v1 + v2)
-    return Point(fixed, parameters, x, (new0 + [e0 + known, 0, e2], new1 + [0, e1 + known, e2]))
+    new0 = [(p * u + q * v >> bits) - o for u, v, o in zip(row0, row1, old0)]
+    new1 = [(q * u + r * v >> bits) - o for u, v, o in zip(row0, row1, old1)]
+    x0, x1 = 2 * point.x[0] - before.x[0], 2 * point.x[1] - before.x[1]
+    only0, only1, both0, both1 = known, known, [], []
+    for (k0, k1, _), (value, slopes, _, error) in zip(waves, models):
+        x0, x1 = x0 + k0 * value, x1 + k1 * value
+        for m, slope in enumerate(slopes):
+            new0[m] += k0 * slope
+            new1[m] += k1 * slope
+        if k1 == 0:
+            only0 += abs(k0) * error
+        elif k0 == 0:
+            only1 += abs(k1) * error
+        else:
+            both0.append(k0 * error)
+            both1.append(k1 * error)
+    return Point(fixed, waves, amplitudes, (x0, x1),
+                 (new0 + [only0, 0, *both0], new1 + [0, only1, *both1]))
 
 
 # ---- the criterion
@@ -606,7 +856,7 @@ def witness(betas, l):
     return [*[*outwards(left[:site][::-1])][::-1], n, *outwards(right[:end - 1 - site][::-1])]
 
 
-def second_variation(fixed, symbols, l, orbit, vectors):
+def second_variation(fixed, waves, l, orbit, vectors):
     """Bounds the left side of (3) over a piece: (upper bound, columns of the symbols).
 
     All products are exact; the unit of the result is 2^-(2 bits + 2 NU_BITS).
@@ -619,49 +869,102 @@ def second_variation(fixed, symbols, l, orbit, vectors):
     centre -= 2 * sum(m[0] * n[0] + m[1] * n[1] for m, n in zip(nu, nu[1:])) << bits
     error, columns = 0, [0] * max(len(point.rows[0]) for point in orbit)
     for point, (n0, n1) in zip(orbit, nu):
-        w0, w1, w2 = n0 * n0, n1 * n1, (n0 + n1) ** 2
-        (v0, s0, t0, e0), (v1, s1, t1, e1), (v2, s2, t2, e2) = point.sines
-        centre += (2 * (w0 + w1) << bits) - w0 * v0 - w1 * v1 - w2 * v2
-        error += w0 * e0 + w1 * e1 + w2 * e2
-        k0, k1 = w0 * t0 + w2 * t2, w1 * t1 + w2 * t2
+        centre += 2 * (n0 * n0 + n1 * n1) << bits
+        along0 = along1 = 0
+        for (k0, k1, _), (value, slopes, tilt, loss) in zip(waves, point.sines):
+            omega = (k0 * n0 + k1 * n1) ** 2
+            centre -= omega * value
+            error += omega * loss
+            along0, along1 = along0 + omega * k0 * tilt, along1 + omega * k1 * tilt
+            for m, slope in enumerate(slopes):
+                columns[m] -= omega * slope << bits
         row0, row1 = point.rows
-        columns[:len(row0)] = [k - k0 * p - k1 * q for k, p, q in zip(columns, row0, row1)]
-        for k, change in zip(symbols, (w0 * s0, w1 * s1, w2 * s2)):
-            columns[k] -= change << bits
+        columns[:len(row0)] = [k - along0 * p - along1 * q
+                               for k, p, q in zip(columns, row0, row1)]
     return (centre + error << bits) + sum(map(abs, columns)), columns
+
+
+def is_at_once(fixed, waves, t=None):
+    """Is B > 10/3 for all parameters of the waves, or at t; B of beta over the torus?
+
+    V is odd about a point, so the least eigenvalue of beta over the torus is 4 - B; where it is
+    attained, (3) with that point and its eigenvector alone is 4 - B - 2l < 0, that is B > 10/3; and
+    B - 2 grows in proportion with the amplitudes.  So it is enough that n.beta(x)n < 2/3 |n|^2 for
+    some x and n: found on a grid in double precision, and then bounded for all parameters.
+    """
+    one, known = fixed.one, in_units(fixed, waves)
+    amplitudes = [[math.floor(x * one) for x in (
+        (wave.middle, *wave.parts) if t is None else (wave.at(t),))] for wave in waves]
+    angles = [(*wave.k, math.pi * float(wave.phase % 2)) for wave in waves]
+    middle = [p / one for p, *_ in amplitudes]
+
+    def beta(x):
+        p, q, r = forms(angles, [m * math.sin(k0 * x[0] + k1 * x[1] + phase)
+                                 for m, (k0, k1, phase) in zip(middle, angles)])
+        return 2 - p, -q, 2 - r
+
+    def level(x):
+        return least(beta(x))[0]
+
+    count = min(16 * max([abs(k) for wave in waves for k in wave.k] + [1]), 128)
+    grid = [2 * math.pi * k / count for k in range(count)]
+    places = heapq.nsmallest(4, itertools.product(grid, repeat=2), key=level)
+    for width in (2 * math.pi / count * 2.0 ** -k for k in range(1, 18)):
+        places = [min(itertools.product(*((y - width, y, y + width) for y in x)), key=level)
+                  for x in places]
+    x = min(places, key=level)
+    n0, n1 = [round(u * 2 ** NU_BITS) for u in least(beta(x))[1]]
+    x = [math.floor(y * one) for y in x]
+    total = 4 * (n0 * n0 + n1 * n1) << 2 * fixed.bits       # three times 2 |n|^2 - 2/3 |n|^2
+    moved = [0] * max(map(len, amplitudes), default=0)      # by each parameter
+    for wave, (p, *parts) in zip(known, amplitudes):
+        omega, (sine, _) = 3 * (wave[0] * n0 + wave[1] * n1) ** 2, fixed.sincos(angle_of(wave, x))
+        total -= omega * p * sine
+        # The sine is off by SINE_ERROR, the middle and each part by a unit: 32 are enough.
+        total += omega * ((abs(p) + sum(map(abs, parts))) * SINE_ERROR + PARAMETER_ERROR * 2 * one)
+        for m, part in enumerate(parts):
+            moved[m] += omega * part * sine
+    return total + sum(map(abs, moved)) < 0
 
 
 class Criterion:
     """Everything that does not change from leaf to leaf."""
 
-    def __init__(self, claim):
-        narrow = max([h.denominator.bit_length() - h.numerator.bit_length()
-                      for h in claim.half if h] + [0])
+    def __init__(self, claim, bound=None):
+        """bound: of B, exact, if it is known."""
+        widths = [x for x in claim.half if x] + [abs(g) for wave in claim.felt
+                                                 for g in wave.parts if g]
+        narrow = max([h.denominator.bit_length() - h.numerator.bit_length() for h in widths] + [0])
         bits = max(96, 64 + narrow + claim.counts["most_cuts"])
         if bits > MAX_BITS:
             raise NotConfirmed("numbers of %d bits are needed; the checker's limit is %d"
                                % (bits, MAX_BITS))
-        self.fixed = fixed = Fixed(bits)
-        self.parameters = [[math.floor(x * fixed.one) for x in claim.centre[:3]],
-                           [math.floor(x * fixed.one) for x in claim.half[:3]]]
-        if max(map(abs, sum(self.parameters, []))) >> 2 * bits:     # l would have no digit left
-            raise NotConfirmed("the parameters are too large for this checker")
-        self.together = claim.together
-        self.symbols = (0, 0, 0) if claim.together else (0, 1, 2)
-        self.xstar = [math.floor(x * fixed.one) for x in claim.xstar]
+        self.claim, self.fixed = claim, Fixed.of(bits)
+        one, waves = self.fixed.one, claim.felt
+        self.waves = in_units(self.fixed, waves)
+        self.amplitudes = [(math.floor(wave.middle * one), [math.floor(g * one)
+                                                            for g in wave.parts]) for wave in waves]
+        if max([abs(x) for p, parts in self.amplitudes for x in (p, *parts)] + [0]) >> 2 * bits:
+            raise NotConfirmed("the parameters are too large for this checker")     # l has no digit
+        self.xstar = tuple([math.floor(x * one) for x in claim.xstar])
         # Orbits that differ by 2 pi in x[1] differ by 2 pi j in x[j]: nothing else changes.
-        self.region = [(math.floor(c % 2 * fixed.pi), math.floor(h * fixed.pi),
-                        4 * math.ceil(h) + 10) for c, h in zip(claim.centre[3:], claim.half[3:])]
-        # The ends of the parameters: a cell's B is no larger than what lies between B there.  The
-        # eigenvalue grows by at most max(|da|, |db|) + 2 |dc|; an end is off by less than 2 units,
-        # and so is a point along its symbol: B is off by less than PARAMETER_ERROR.
-        signs = [(s, s, s) for s in (-1, 1)] if claim.together else \
-            list(itertools.product((-1, 1), repeat=3))
-        corners = [tuple(c + s * h for c, h, s in zip(*self.parameters, sign)) for sign in signs]
-        apart = [[x] for x in corners] if set("234") & set(claim.tree) else [corners]
-        self.B_at = [torus_bound(fixed, ends) + PARAMETER_ERROR for ends in apart]
+        self.region = [(math.floor(c % 2 * self.fixed.pi), math.floor(h * self.fixed.pi),
+                        4 * math.ceil(h) + 10) for c, h in zip(claim.centre, claim.half)]
+        # The ends of the parameters: a cell's B is no larger than what lies between B there.  An
+        # end is off by less than a unit for each wave, and the eigenvalue by less than stiffness.
+        if bound is not None:
+            self.B_at = [math.ceil(bound * one)]
+        else:
+            corners = [tuple([math.floor(wave.at(t) * one) for wave in waves])
+                       for t in itertools.product((-1, 1), repeat=claim.parameters)]
+            apart = [[x] for x in corners] if set("234") & set(claim.tree) else [corners]
+            found = {}
+            for ends in map(tuple, apart):
+                if ends not in found:
+                    found[ends] = torus_bound(self.fixed, self.waves, ends) + stiffness(self.waves)
+            self.B_at = [found[tuple(ends)] for ends in apart]
         self.B = max(self.B_at)
-        if self.B <= 2 * fixed.one:
+        if self.B <= 2 * one:
             # The tails of step 2 must be square-summable, l < 1, which needs B > 2.  (The mean of
             # beta over the torus is 2I, so this would say that there are no parameters.)
             raise NotConfirmed("beta has no eigenvalue above 2: the criterion does not apply")
@@ -701,60 +1004,67 @@ class Criterion:
         return self.least_pivot(cell) / self.fixed.one * (1 - 2.0 ** -50)
 
     def piece(self, cell):
-        """The cell as a box that covers it: centres and half-widths of a, b, c, v0 and v1.
+        """The cell as a piece that covers it: of each wave the middle and the parts of its
+        amplitude, then centres and half-widths of v0 and v1.
 
         An angle: the centre c + h (2i + 1 - 2^k) / 2^k and the half-width h / 2^k, in units of pi:
         pi is off by 2 units and c mod 2 below 2, so with the floors 4 h + 10 units are enough.
-        A parameter is followed along its symbol to within 5 units (four floors, one of them of a
-        number that is doubled), and each halving of the piece may add one: PARAMETER_ERROR.
+        An amplitude is followed along its symbols to within 10 units (a floor of the middle, and
+        for each part one of itself and one of each of its shifts), and each halving of the piece
+        may add one: PARAMETER_ERROR.
         """
         index, cuts = cell
-        centre, half = [], []
-        for n, (c, h) in enumerate(zip(*self.parameters)):
-            axis = 2 if self.together else 2 + n
-            i, k = index[axis], cuts[axis]
-            centre.append(c + (h * (2 * i + 1 - (1 << k)) >> k))
-            half.append(h >> k)
-        for (c, h, e), i, k in zip(self.region, index, cuts):
-            centre.append(c + (h * (2 * i + 1 - (1 << k)) >> k))
-            half.append((h >> k) + e)
-        return centre, half
+        amplitudes = []
+        for p, parts in self.amplitudes:
+            for g, i, k in zip(parts, index[2:], cuts[2:]):
+                p += g * (2 * i + 1 - (1 << k)) >> k
+            amplitudes.append((p, [g >> k for g, k in zip(parts, cuts[2:])]))
+        sides = [(c + (h * (2 * i + 1 - (1 << k)) >> k), (h >> k) + e)
+                 for (c, h, e), i, k in zip(self.region, index, cuts)]
+        return amplitudes, sides
+
+    def ends(self, piece):
+        """x[0] and x[1] of a piece, as Points."""
+        amplitudes, ((c0, h0), (c1, h1)) = piece
+        f0, f1, f2, f3 = self.claim.frame
+        none = [0] * PARAMETERS
+        return (Point(self.fixed, self.waves, amplitudes, self.xstar,
+                      (none + [0, 0, 1, 0], none + [0, 0, 0, 1])),
+                Point(self.fixed, self.waves, amplitudes, (f0 * c0 + f1 * c1, f2 * c0 + f3 * c1),
+                      (none + [f0 * h0, f1 * h1, 0, 0], none + [f2 * h0, f3 * h1, 0, 0])))
 
     def attempt(self, l, piece):
         """Is (3) true of the whole piece?  None if so, or else why not, and where to halve it."""
         try:
-            return self._follow(l, *piece)
+            return self._follow(l, piece)
         except (OverflowError, ValueError, ZeroDivisionError):
             # An angle or a double too large, a singular pivot, a NaN: no bound was established,
             # and an attempt that establishes none excludes nothing.
-            return "the arithmetic failed", piece[1]
+            return "the arithmetic failed", [0] * PARAMETERS + [h for _, h in piece[1]]
 
-    def _follow(self, l, centre, half):
+    def _follow(self, l, piece):
         """Lengthens the orbit at the end that is better known until (3) is true or all is lost.
 
-        (3) is tried each time the orbit has grown by a twelfth, and in the end.  How far the angle
-        of a wave that is not there moves is of no interest.
+        (3) is tried each time the orbit has grown by a twelfth, and in the end.
         """
-        fixed, symbols, parameters = self.fixed, self.symbols, list(zip(centre[:3], half[:3]))
-        waves = [k for k, parameter in enumerate(parameters) if any(parameter)]
-        why, columns, known = None, half, 7
+        fixed, waves, amplitudes = self.fixed, self.waves, piece[0]
+        first, second = self.ends(piece)
+        why, columns = None, [0] * PARAMETERS + [h for _, h in piece[1]]
         orbit = collections.deque()
-        point = Point(fixed, parameters, self.xstar, ([0] * 5 + [1, 0], [0] * 5 + [0, 1]))
-        ahead, due = True, 1
+        point, ahead, due, known = first, True, 1, SYMBOLS
 
         def reach(point):
-            return max([point.reach[k] for k in waves] or [0])
+            return max(point.reach, default=0)
 
         while point:
             (orbit.append if ahead else orbit.appendleft)(point)
             if len(orbit) == 1:
-                point = Point(fixed, parameters, centre[3:], ([0, 0, 0, half[3], 0, 0, 0],
-                                                              [0, 0, 0, 0, half[4], 0, 0]))
+                point = second
             else:
                 ahead = reach(orbit[-1]) < reach(orbit[0])
                 ends = (orbit[-1], orbit[-2]) if ahead else (orbit[0], orbit[1])
-                point = step(fixed, parameters, symbols, *ends, known)
-                known += 3
+                point = step(fixed, waves, amplitudes, *ends, known)
+                known = len(point.rows[0])
             if reach(point) > fixed.one or len(orbit) == MAX_POINTS:
                 point = None
             if point and len(orbit) < due:
@@ -762,7 +1072,7 @@ class Criterion:
             due = len(orbit) + 1 + len(orbit) // 12
             vectors = witness([point.beta for point in orbit], l / fixed.one)
             if vectors:
-                bound, columns = second_variation(fixed, symbols, l, orbit, vectors)
+                bound, columns = second_variation(fixed, waves, l, orbit, vectors)
                 if bound < 0:
                     return None
                 why = "its second variation may be positive"
@@ -770,70 +1080,64 @@ class Criterion:
             len(orbit), "the most that are followed" if len(orbit) == MAX_POINTS else
             "beyond which it is too uncertain"), columns
 
-    def halves(self, centre, half, columns):
-        """The halves of a piece along the symbol that matters most: of an angle or a parameter, or
-        of all three parameters where they move together, since they have one symbol."""
-        worst = max(range(5), key=lambda k: abs(columns[k]))
-        axes = {0, 1, 2} if self.together and worst < 3 else {worst}
-        step = [h + 1 >> 1 if k in axes else 0 for k, h in enumerate(half)]
-        half = [s if k in axes else h for k, (h, s) in enumerate(zip(half, step))]
-        return [([c + sign * s for c, s in zip(centre, step)], half) for sign in (1, -1)]
+    @staticmethod
+    def halves(piece, worst):
+        """The halves of a piece along a symbol: of a parameter, which moves the amplitudes of many
+        waves, or of an angle."""
+        amplitudes, sides = piece
+
+        def half(centre, halves, at, sign):
+            step = [h + 1 >> 1 if k == at else 0 for k, h in enumerate(halves)]
+            return centre + sign * sum(step), [s if k == at else h for k, (h, s)
+                                               in enumerate(zip(halves, step))]
+
+        found = []
+        for sign in (1, -1):
+            angles = [half(c, [h], worst - PARAMETERS - i, sign) for i, (c, h) in enumerate(sides)]
+            found.append(([half(p, parts, worst, sign) for p, parts in amplitudes],
+                          [(c, h) for c, (h,) in angles]))
+        return found
 
     def excluded(self, cell):
         """Does no minimizing orbit go from x* to the cell?  (None or else why not, pieces tried)"""
-        l, todo, pieces = self.least_pivot(cell), [(*self.piece(cell), 0)], 0
+        l, todo, pieces = self.least_pivot(cell), [(self.piece(cell), (0,) * 5)], 0
         while todo:
-            centre, half, halvings = todo.pop()
+            piece, halved = todo.pop()
             pieces += 1
-            failed = self.attempt(l, (centre, half))
+            failed = self.attempt(l, piece)
             if not failed:
                 continue
-            if halvings == MAX_HALVINGS or pieces + len(todo) >= MAX_PIECES:
-                return "%s (piece %d, halved %d times)" % (failed[0], pieces, halvings), pieces
-            todo += [(*piece, halvings + 1) for piece in self.halves(centre, half, failed[1])]
+            if sum(halved) >= MAX_HALVINGS or pieces + len(todo) >= MAX_PIECES:
+                return "%s (piece %d, halved %d times)" % (failed[0], pieces, sum(halved)), pieces
+            # Along what matters most, but no symbol that matters is left behind for long.
+            blame = list(map(abs, failed[1][:PARAMETERS + 2]))
+            worst = max(range(len(blame)), key=blame.__getitem__)
+            last = min((k for k, x in enumerate(blame) if x or k == worst), key=halved.__getitem__)
+            if halved[worst] - halved[last] > LAG:
+                worst = last
+            now = changed(halved, worst, halved[worst] + 1)
+            todo += [(half, now) for half in self.halves(piece, worst)]
         return None, pieces
 
     def at_once(self):
-        """Is B > 10/3 for all parameters of the box, or where they move together, at the upper end?
-
-        V is odd, so the least eigenvalue of beta over the torus is 4 - B; where it is attained,
-        (3) with that point and its eigenvector alone is 4 - B - 2l < 0, that is B > 10/3; and B - 2
-        grows in proportion with the parameters.  So it is enough that n.beta(x)n < 2/3 |n|^2 for
-        some x and n: found on a grid in double precision, and then bounded for all parameters.
-        """
-        one = self.fixed.one
-        centre, half = self.parameters
-        if self.together:
-            centre, half = [c + h for c, h in zip(centre, half)], [0, 0, 0]
-        half = [h + PARAMETER_ERROR for h in half]
-        a, b, c = [x / one for x in centre]
-
-        def beta(x):
-            s0, s1, s2 = math.sin(x[0]), math.sin(x[1]), math.sin(sum(x))
-            return 2 - a * s0 - c * s2, -c * s2, 2 - b * s1 - c * s2
-
-        grid = [math.pi * k / 32 for k in range(64)]
-        x = min(itertools.product(grid, repeat=2), key=lambda x: least(beta(x))[0])
-        for width in (2.0 ** -k for k in range(4, 20)):
-            x = min(itertools.product(*((y - width, y, y + width) for y in x)),
-                    key=lambda x: least(beta(x))[0])
-        n0, n1 = [round(u * 2 ** NU_BITS) for u in least(beta(x))[1]]
-        x = [math.floor(y * one) for y in x]
-        total = 4 * (n0 * n0 + n1 * n1) * one               # three times 2 |n|^2 - 2/3 |n|^2
-        for p, h, y, w in zip(centre, half, (*x, sum(x)), (n0 * n0, n1 * n1, (n0 + n1) ** 2)):
-            sine, _ = self.fixed.sincos(y)
-            total -= 3 * w * ((p * sine - h * abs(sine) - (abs(p) + h) * SINE_ERROR) // one)
-        return total < 0
+        """Is B > 10/3 for all parameters, or where that is claimed, at the upper end?"""
+        return is_at_once(self.fixed, self.claim.felt,
+                          (1,) if self.claim.at_once == "upper end" else None)
 
     def not_at_once(self):
-        """Is B <= 10/3 for some parameters of the box, or where they move together, at their end?
-
-        Those nearest to 0 are tried.  They are known to within 2 units, as in __init__.
-        """
-        nearest = [c + h if self.together else max(c - h, min(c + h, 0))
-                   for c, h in zip(*self.parameters)]
-        return 3 * (torus_bound(self.fixed, [tuple(nearest)]) + PARAMETER_ERROR) \
-            <= 10 * self.fixed.one
+        """Is B <= 10/3 for some of these parameters?  Those nearest to 0 are tried, about."""
+        waves, t = self.claim.felt, [Fraction(0)] * self.claim.parameters
+        for m in list(range(len(t))) * 4:
+            square = sum([wave.parts[m] ** 2 for wave in waves])
+            slope = sum([wave.parts[m] * wave.at(t) for wave in waves])
+            if square:
+                t[m] = min(max(t[m] - slope / square, Fraction(-1)), Fraction(1))
+                t[m] = Fraction(math.floor(t[m] * 2 ** 60), 2 ** 60)
+        if self.claim.at_once == "upper end":
+            t = (1,)
+        nearest = tuple([math.floor(wave.at(t) * self.fixed.one) for wave in waves])
+        return 3 * (torus_bound(self.fixed, self.waves, [nearest])
+                    + stiffness(self.waves)) <= 10 * self.fixed.one
 
 
 # ---- the fast path: a thousand prisms in lockstep, in doubles
@@ -842,29 +1146,33 @@ class Criterion:
 # the exact path.  All that is done to one prism is done to all of them, as arrays of numpy, whose
 # operations are rounded to nearest (sound() looks).
 #
-# A prism is the set of orbits with x[0] = x*, x[1] in a rectangle, and p'_w = P_w + H_w e + v,
-# |v| <= W_w, for the waves w = 0, 1, 2 with u = (1,0), (0,1), (1,1); e in [-1, 1] is a symbol of
-# the parameter.  A lane is one half of its orbits, ahead x[1], x[2], ..., or back x[0], x[-1], ...;
-# the map is reversible, so both are followed by the same steps, from o = x[0], q = x[1] or from
-# o = x[1], q = x[0].  A site of a lane has X, in turns (so whole turns are taken off without any
-# error), and a true orbit is there, modulo 2 pi and in radians,
+# A prism is the set of orbits with x[0] = x*, x[1] in a parallelogram, and, for each wave, p' = P +
+# h.e + v, |v| <= W; e in [-1, 1]^m are the symbols of the parameters, and H is the sum of the |h|.
+# There are n waves; the first two are k = (1,0) and (0,1) with the phase 0, the coordinates
+# themselves, and are of amplitude 0 where V has them not.  A lane is one half of a prism's orbits,
+# ahead x[1], x[2], ..., or back x[0], x[-1], ...; the map is reversible, so both are followed by the
+# same steps, from o = x[0], q = x[1] or from o = x[1], q = x[0].  A site of a lane has X, in turns
+# (so whole turns are taken off without any error, and as k is of integers those of k.X, too), and a
+# true orbit is there, modulo 2 pi and in radians,
 #       2 pi X + D,    D = L e + r,    |r| <= rest,
-# for the symbols e in the cube.  Of a wave at a site: y = 2 pi u.X, z = u.D, xi = u.L e and z = xi
-# + w; |xi| <= size, |w| <= rest, |z| <= reach = size + rest.  s, c and p sin, p cos below are those
-# at X and P.
+# for the symbols e in the cube, now those of the parameters and of the sides of the parallelogram.
+# Of a wave at a site: y = 2 pi (k.X + phase/2), z = k.D, xi = k.L e and z = xi + w; |xi| <= size,
+# |w| <= rest, |z| <= reach = size + rest.  s, c and p sin, p cos below are those at X and P.
 #
 # Orbits.  Let o, q, + be successive sites, M and d any matrices, and f[q] = r[+] - d[q] r[q].  As
 # r[+] = beta r[q] - r[o] + err, and r[q] = d[o] r[o] + f[o],
 #       f[q] = M f[o] + err + (beta - M - d[q]) r[q] - (I - M d[o]) r[o].
 # With M near 1/d[o] and d[q] = beta - M the brackets are roundings, so that r grows like the orbits
-# and not like products of norms, in a frame in which beta is nearly diagonal: where c counts, near
-# x0 = x1 above all, this is the frame of x0 + x1 and x0 - x1, in which beta is
+# and not like products of norms, in a frame in which beta is nearly diagonal: where waves that feel
+# both coordinates count, near x0 = x1 above all, this is the frame of x0 + x1 and x0 - x1, in which
+# beta is
 #       ((b00 + b11)/2 + b01, (b00 - b11)/2; the same, (b00 + b11)/2 - b01),
-# symmetric, too.  A wave acts on x0 + x1 and x0 - x1 as 1, 1; or 1, -1; or 2, 0.
+# symmetric, too.  A wave acts on x0 + x1 and x0 - x1 as k0 + k1 and k0 - k1, and k.r is half of these
+# times what r is there.
 # xi^2 lies between 0 and size^2, so the bow of the orbits, -p cos y xi^2/2, is half of its extent
-# about its mean: X[+] is 2X - X[o] + the sum of u P cos y (1 - size^2/4).  err is then (i) how far
-# X[+] is from this; (ii) how far L[+] is from beta L[q] - L[o] and H cos y in the parameters'
-# columns; and (iii) for each wave, bending(),
+# about its mean: X[+] is 2X - X[o] + the sum of k P cos y (1 - size^2/4).  err is then (i) how far
+# X[+] is from this; (ii) how far L[+] is from beta L[q] - L[o] and h cos y in the parameters'
+# columns; and (iii) for each wave, |k| times bending(),
 #       |P| (|cos y| (size^2/4 + rest (reach + size)/2) + |sin y| reach^3/6)
 #       + H (|cos y| reach^2/2 + |sin y| reach) + W:
 # cos z - 1 + size^2/4 is at most size^2/4 and at least size^2/4 - reach^2/2, where reach^2 is
@@ -875,18 +1183,18 @@ class Criterion:
 #       sum of mu[j].(2x[j] - x[j-1] - x[j+1] - V'(x[j])),    which is zero on orbits,
 # added to it.  It is zero at each orbit: so mu may depend on the orbit, and here it is affine in
 # its symbols, mu = mu_0 + sum of mu_k e_k; zero at a lane's last site.  At X and P the bracket is
-# E = sum of u P cos y size^2/4, but for (i).  n is the same for all orbits of the prism.  With
-# omega = (n.u)^2 and m = u.mu, affine, too, a wave has in this sum  p'(A cos z + B sin z),
+# E = sum of k P cos y size^2/4, but for (i).  n is the same for all orbits of the prism.  With
+# omega = (n.k)^2 and m = k.mu, affine, too, a wave has in this sum  p'(A cos z + B sin z),
 #       A = A0 + alpha = m cos y - omega sin y,    B = B0 + beta' = -omega cos y - m sin y,
 # alpha and beta' being what is linear in e.  D is multiplied, in all, with
-#       G = 2 mu[j] - mu[j-1] - mu[j+1] + sum of u (P B0 + P beta' - P A0 xi + H e B0),
+#       G = 2 mu[j] - mu[j-1] - mu[j+1] + sum of k (P B0 + P beta' - P A0 xi + h.e B0),
 # affine in e; what a wave has besides this, which is z times its part of the last sum, is
-#       P (A0 + alpha) + H e (A0 + alpha)                                                     (4)
-#       + P A0 xi^2/2 - P alpha xi^2/2 - P B0 xi^3/6 + H e (beta' xi - A0 xi^2/2)
+#       P (A0 + alpha) + h.e (A0 + alpha)                                                     (4)
+#       + P A0 xi^2/2 - P alpha xi^2/2 - P B0 xi^3/6 + h.e (beta' xi - A0 xi^2/2)
 # and a remainder.  For A0 (cos z + xi z) is A0 (1 + xi^2/2 - w^2/2 + (cos z - 1 + z^2/2)), with the
 # last bracket between 0 and z^4/24; alpha cos z is alpha (1 - xi^2/2 - w (z + xi)/2) and at most
 # |alpha| z^4/24; B0 (sin z - z) is -B0 xi^3/6, as far as z^3 - xi^3 = w (z^2 + z xi + xi^2), and at
-# most |B0| |z|^5/120; beta' (sin z - z) is at most |beta'| |z|^3/6; and with H e stands A cos z +
+# most |B0| |z|^5/120; beta' (sin z - z) is at most |beta'| |z|^3/6; and with h.e stands A cos z +
 # B sin z - B0 z, where alike A0 (cos z - 1 + xi^2/2), alpha (cos z - 1), B0 (sin z - z) and beta'
 # (sin z - xi) are left.  So the remainder, remainder(), is at most
 #       |P| (|alpha| (far + reach^4/24) + |beta'| reach^3/6
@@ -896,38 +1204,48 @@ class Criterion:
 #            + |beta'| (rest + reach^3/6)) + W (|m| + omega),      far = rest (reach + size)/2.
 # That is why mu is affine: all this is of fourth order, though r, of second order, is only bounded.
 # From a lane's last site inwards the next mu is the one that makes G vanish, but for its rounding;
-# at x[1] and x[0], where both lanes meet, G D is G times the sides of the rectangle, a polynomial,
-# and the rounding of x*.  So the sum is a polynomial of third order in the symbols, its
-# coefficients added up with their signs over all sites, and small things; summit() bounds it over
-# the cube.
+# at x[1] and x[0], where both lanes meet, G D is G times the sides of the parallelogram, a
+# polynomial, and the rest of x[1] or x*.  So the sum is a polynomial of third order in the symbols,
+# its coefficients added up with their signs over all sites, and small things; summit() bounds it
+# over the cube.
 #
-# Roundings.  u = 2^-53.  Which numbers X, P, H, L, d, M, n, mu, E and size are does not matter, but
-# what bounds something must.  (S_i = |P_i| + |P_2|, for the coordinates i.)
-#   sine, cosine: SINE is 16 u, see lockstep_sincos.  In (iii) 2 SINE with |cos y|, as E has the
-#       computed one.
-#   beta: products P s are off by 18 u |P|; the entries by u (2 + 20 S_i) < F_i / 2 and, beside the
-#       diagonal, by 18 u |P_2| < F_2 / 2, where F_i = 64 u (1 + S_i), F_2 = 64 u |P_2|.  In the
-#       other frame by (F_0 + F_1)/4 + F_2/2 and 6 u (2 + S_0 + S_1): less than F_0 + F_1.
-#   (i): in turns 3 u for the sums of |2X - X| <= 1.5 and 25 u |P| / 2 pi for each wave; in radians
-#       u (19 + 25 S_i), and 4 u S_i / 4 for E: less than F_i.  The rest of F_i, 38 u, is for
-#       whatever is lost below 2^-1022.
-#   (ii): F_i / 2 + 4 u (2 + S_i) < F_i of |L_i|, F_2 of the other, 4 u of |L[o]|, 32 u of H.
+# Roundings.  u = 2^-53.  Which numbers X, P, h, L, d, M, n, mu, E and size are does not matter, but
+# what bounds something must.  K = |k0| + |k1| of a wave; grain = (64 + 16 n) u; S_ij is the sum of
+# |ki kj| K |P| over the waves, and S_i that of |ki| K |P|, at most S_ii.  Sums over the waves are of
+# at most n + 1 terms, each rounded as often.
+#   angle: k.X is off by K/2 u in its products (none for 0, 1, -1), by K/2 u in its sum, and with
+#       phase/2 by 1.5 u: in turns.  So by 2 pi (K + 1.5) u at most, and, with 4 u of lockstep_sincos,
+#   sine, cosine: SINE = 24 K u.  In (iii) 2 SINE with |cos y|, as E has the computed one.
+#   beta: products ki kj P s are off by (24 K + 3) u |ki kj P|, sums by (n + 1) u of 2 and of all
+#       products: (28 + n) u S_ij, and 2 (n + 1) u on the diagonal; less than F_ij / 2, where F_ij is
+#       grain S_ij, and F_ii, F_i for short, grain (1 + S_ii).  In the other frame by (F_0 + F_1)/4 +
+#       F_01/2 and 6 u (2 + S_00 + S_11): less than F_0 + F_1, as 2 S_01 <= S_00 + S_11.
+#   (i): in turns (n + 2) u for the sums, of |2X - X| <= 1.5 and |ki P| / 2 pi for each wave, and
+#       (24 K + 6) u |ki P| / 2 pi for each; in radians u (9.5 (n + 2) + (32 + n) S_i), and
+#       (32 + n) u S_i / 4 for E: less than F_i.  What is left of F_i, 40 u, is for whatever is lost
+#       below 2^-1022.
+#   (ii): F_i / 2 + (4 + n) u (2 + S_ii) < F_i of |L_i|, F_01 of the other, (4 + n) u of |L[o]|,
+#       and (28 + n) u K |ki| H, less than grain, for each wave.
 #   beta - M - d: F + 2 u |M|.   I - M d: with inv = 1 / det, each rounded, at most 5 u |inv| (|d00
 #       d11| + d01^2) on the diagonal, as the determinant is off by 2.1 u of these products, the
 #       quotient by u, M d by u of each product; and 2 u |inv d01| (|d00| + |d11|) beside it.
-#   sums of positive terms: MORE = 1 + 2^-40 for a hundred roundings one after the other, and 64 u
+#   sums of positive terms: MORE = 1 + 2^-40 for thousands of roundings one after the other, and 64 u
 #       more for each site.
-#   omega is off by 3 u, m by u, A and B by 24 u weight, weight = |m_0| + sum of |m_k| + omega.
-#       That u.L is a rounded sum for w = 2 goes into rest.
-#   G: 28 u of weight (|P| (1 + size) + H) for each wave, 3 u of 2 |mu| and the |mu| before; at x[1]
-#       and x[0] u more, u of the mu of the other lane, and of products and sums: 48 u.
+#   that k.L is a rounded sum of rounded products, but for the first two waves, goes into rest: 3 u of
+#       |k0| |L_0| + |k1| |L_1|.
+#   weight = K (|k0| |mu_0| + |k1| |mu_1| + |k|^2 |n|^2) of a wave, |mu_i| with all coefficients, is
+#       more than |m| + omega, and than the terms of these sums: so omega is off by 8 u weight, m by
+#       2 u, A and B by 24 u more: 36 u weight.
+#   G: 36 u, 4 u and n + 1 u of |ki| weight (|P| (1 + size) + H) for each wave, 3 u of 2 |mu| and the
+#       |mu| before; at x[1] and x[0] u more, u of the mu of the other lane, and of products and sums:
+#       grain, in all.
 #   (i) again: |mu| F.
-#   mass is the sum of 2|n|^2 + |P| omega, and 2|n.n'| over neighbours is no more; and of weight
-#       (|P| reach^2 + 3 H).  A term of a coefficient is off by 40 u of its size, and these sizes
-#       are in all at most mass, as reach <= 1: 2|n|^2 + |P| omega; with weight |P| size^2/4 (mu.E),
-#       size^2/2, size^3/6; with weight H 1, size^2/2, size.  In the remainder A and B have factors
-#       of less than 2.3 |P| reach^2 + 3 H in all: 56 u.  Sums over K sites of each lane have at
-#       most 4K terms one after the other: 4 K u; to join them by monomials, 16 u.
+#   mass is the sum of 2|n|^2, and 2|n.n'| over neighbours is no more; and of weight (|P| (1 +
+#       reach^2) + 3 H).  A term of a coefficient is off by 48 u of its size, and these sizes are in
+#       all at most mass, as reach <= 1 (or P = H = 0): 2|n|^2 + |P| omega; with weight |P| size^2/4
+#       (mu.E), size^2/2, size^3/6; with weight H 1, size^2/2, size.  In the remainder A and B have
+#       factors of less than 2.3 |P| reach^2 + 3 H in all: 83 u.  Sums over N sites of each lane have
+#       at most (n + 2) N terms one after the other; to join them by monomials, 16 u.
 #   in summit, of each coefficient: 64 u.
 # Masses are at least 1, as one n is a unit vector but for rounding, and below HUGE: so 64 u mass is
 # more than all underflows.  A NaN is not below zero, and proves nothing.
@@ -937,10 +1255,10 @@ UNIT = 2.0 ** -53
 TWO_PI = 2 * math.pi                    # off by 0.35 u of itself
 SINES = [(-1) ** k / math.factorial(2 * k + 1) for k in range(8, 0, -1)]
 COSINES = [(-1) ** k / math.factorial(2 * k) for k in range(8, 1, -1)]
-SINE, GRAIN, MORE, HUGE = 16 * UNIT, 64 * UNIT, 1 + 2.0 ** -40, 2.0 ** 900
+SINE, MORE, HUGE = 24 * UNIT, 1 + 2.0 ** -40, 2.0 ** 900
 XSTAR_REST = 2.0 ** -51                 # of x*, in radians; see Lockstep
 TINY = 2.0 ** -200
-FAST_SIZE = 2.0 ** 10                   # of parameters, x* and regions
+FAST_SIZE = 2.0 ** 10                   # of amplitudes, x*, regions and frames
 FAST_CUTS = 52                          # of an axis
 BATCH, SMALLEST_BATCH = 1024, 16
 FAST_SITES, ROOM = 4096, 1 << 19        # of a lane; of all lanes at a time
@@ -970,33 +1288,100 @@ def sound():
 
 
 def lockstep_sincos(turns):
-    """Sines and cosines of the three waves at 2 pi turns, |turns| <= 1/2: each within SINE.
+    """Sines and cosines of 2 pi turns, |turns| <= 1/2: each within 4 u.
 
     turns - n/4 is exact (Sterbenz) and at most 1/8; the angle is off by 1.4 u of itself.  Taylor's
     polynomials are off by less than u/50.  sine: 0.8 u for the angle, 0.6 u for what is added to
     it, at most 0.081, 0.8 u for the sum; cosine: 0.8 u, 0.4 u for the square's half, 0.1 u for the
-    rest, 0.4 u and u for the sums: 4 u each, and by the sum formulas 4 u 2 sqrt 2 + 3 u < 16 u.
+    rest, 0.4 u and u for the sums.
     """
     n = np.rint(4 * turns)
     angle = (turns - 0.25 * n) * TWO_PI
     square = angle * angle
     sine, cosine = SINES[0] * square, COSINES[0] * square
     for a in SINES[1:]:
-        sine = (sine + a) * square
+        sine += a
+        sine *= square
     for a in COSINES[1:-1]:
-        cosine = (cosine + a) * square
-    sine = angle + angle * sine
+        cosine += a
+        cosine *= square
+    sine *= angle
+    sine += angle
     cosine = 1 - (0.5 * square - square * square * (cosine + COSINES[-1]))
     quadrant = n.astype(np.int64)
     odd = (quadrant & 1) == 1
-    s0, s1 = np.where(odd, cosine, sine) * (1 - (quadrant & 2))
-    c0, c1 = np.where(odd, sine, cosine) * (1 - (quadrant + 1 & 2))
-    return np.stack((s0, s1, s0 * c1 + c0 * s1)), np.stack((c0, c1, c0 * c1 - s0 * s1))
+    return (np.where(odd, cosine, sine) * (1 - (quadrant & 2)),
+            np.where(odd, sine, cosine) * (1 - (quadrant + 1 & 2)))
 
 
-def matrices(w):
-    """The sum of w u u' over the three waves, as the entries 00, 01, 11."""
-    return np.stack((w[0] + w[2], w[2], w[1] + w[2]))
+def combined(table, waves):
+    """For each row of the table, pairs (w, factor), the sum of factor waves[w]."""
+    found = np.empty((len(table), *waves.shape[1:]))
+    for row, into in zip(table, found):
+        if not row:
+            into[...] = 0
+            continue
+        (w, factor), *more = row
+        np.multiply(waves[w], factor, out=into)
+        for w, factor in more:
+            into += waves[w] if factor == 1 else factor * waves[w]
+    return found
+
+
+class Shape:
+    """What the waves of the fast path are but for their amplitudes: their k and phases, the first
+    two those of the coordinates; and which of them are present anywhere, and have which symbols."""
+
+    def __init__(self, waves, moving=()):
+        """waves: (k, phase) of those that are present; moving: pairs of the number of such a wave
+        and of a symbol that moves its amplitude."""
+        self.known = [((1, 0), 0), ((0, 1), 0)]
+        self.known += [wave for wave in waves if wave not in self.known]
+        at = self.at = [self.known.index(wave) for wave in waves]   # their numbers here
+        self.present = sorted(at)
+        self.moving = [[m for w, m in moving if at[w] == here] for here in range(len(self.known))]
+        self.parameters = 1 + max([m for _, m in moving], default=-1)
+        k = np.array([k for k, _ in self.known], float)
+        self.K = abs(k).sum(axis=1)
+        self.square = (k * k).sum(axis=1)
+        self.grain = (64 + 16 * len(k)) * UNIT
+        self.phases = [float(phase / 2 % 1) for _, phase in self.known]
+        p, q = k.T
+        self.forces = self.table(p, q)              # V' from waves
+        self.strengths = self.table(abs(p), abs(q))
+        self.stiff = self.table(*(abs(x) * self.K for x in (p * p, p * q, q * q)))  # S_00, S_01, S_11
+        self.strong = self.table(abs(p) * self.K, abs(q) * self.K)
+        self.forms = self.table(p * p, p * q, q * q)
+        self.turned = self.table(abs(p + q), abs(p - q))
+        self.mixed = self.rows(k[2:])               # k.x of x
+        self.sizes = self.rows(abs(k)), self.rows(abs(np.stack((p + q, p - q), axis=1)) / 2)
+
+    def table(self, *rows):
+        """The rows, of a number for each wave, as combined() takes them."""
+        return [[(w, row[w]) for w in self.present if row[w]] for row in rows]
+
+    @staticmethod
+    def rows(columns):
+        return [[(i, x) for i, x in enumerate(row) if x] for row in columns]
+
+    def along(self, v):
+        """k.v for all waves."""
+        found = np.empty((len(self.known), *v.shape[1:]))
+        found[:2] = v
+        if self.mixed:
+            found[2:] = combined(self.mixed, v)
+        return found
+
+    def turns(self, X):
+        """The angles of the waves, in turns, at most 1/2."""
+        found = self.along(X)
+        for w, phase in enumerate(self.phases):
+            if w > 1:
+                found[w] -= np.rint(found[w])
+                if phase:
+                    found[w] += phase
+                    found[w] -= np.rint(found[w])
+        return found
 
 
 def inverses(d):
@@ -1085,30 +1470,36 @@ class Prisms:
     """Prisms followed and bounded in lockstep; all arrays end with the axis of lanes, those ahead
     before those back."""
 
-    def __init__(self, box, symbols, xstar, l, caution=CAUTION[0]):
-        """The box: P, H and W of the waves, X[1] in turns and half the sides of the rectangle in
-        radians; where (symbols) each wave's parameter has its symbol, if it has any; l; and how
-        much the choice of n shies at sites that are not well known."""
-        P, H, W, x, sides = box
-        self.size, self.symbols = x.shape[1], symbols
-        self.P, self.H, self.W = self.both(P, P), self.both(H, H), self.both(W, W)
+    def __init__(self, box, shape, xstar, l, caution=CAUTION[0]):
+        """The box: P, h (by wave and symbol) and W of the waves, X[1] in turns, the sides of the
+        parallelogram as columns and what x[1] may be off, in radians; the Shape; x* in turns; l;
+        and how much the choice of n shies at sites that are not well known."""
+        P, h, W, x, sides, off = box
+        self.size, self.shape = x.shape[1], shape
+        self.P, self.h, self.W = self.both(P, P), self.both(h, h), self.both(W, W)
+        self.H = np.abs(self.h).sum(axis=1) * MORE
         self.magnitude, self.l = np.abs(self.P), self.both(l, l)
         self.caution = self.both(caution + 0 * l, caution + 0 * l)
-        self.present = [w for w in range(3) if (P[w] != 0).any() or W[w].any()]
-        mean = self.magnitude.mean(axis=1)
-        self.turned = bool(4 * mean[2] > mean[0] + mean[1])     # the frame of rests; any is right
-        self.F = GRAIN * (1 + self.magnitude[:2] + self.magnitude[2])
-        self.angles = 1 + max([k for k in symbols if k is not None] + [-1])     # their first symbol
+        absent = (self.magnitude == 0) & (self.H == 0) & (self.W == 0)  # in these lanes
+        self.absent = {w: absent[w] for w in shape.present if absent[w].any()}
+        form = combined(shape.forms, self.magnitude.mean(axis=1)[:, None])[:, 0]
+        stiff = combined(shape.stiff, self.magnitude)
+        across = [abs(k0 * k1) * x for ((k0, k1), _), x in zip(shape.known,
+                                                               self.magnitude.mean(axis=1))]
+        self.turned = bool(6 * sum(across) > form[0] + form[2])     # of rests; either is right
+        self.F = shape.grain * (1 + stiff[::2])
+        self.F01 = shape.grain * stiff[1]
+        self.angles = shape.parameters                          # their first symbol
         self.known = self.angles + 2
-        start = np.repeat(np.array(xstar)[:, None], self.size, axis=1)
-        columns, none = np.zeros((2, self.known, self.size)), np.zeros_like(x)
-        for i in (0, 1):
-            columns[i, self.angles + i] = sides[i]
+        start, none = xstar + 0 * x, np.zeros_like(x)
+        columns = np.zeros((2, self.known, self.size))
+        columns[:, self.angles:] = sides
         blank, rounding = np.zeros_like(columns), np.full_like(x, XSTAR_REST)
-        self.sides, self.rounding = self.both(sides, none), self.both(none, rounding)
-        rounding = rounding * (1 + self.turned)                 # of x0 + x1 and of x0 - x1
-        self.before = self.both(start, x), self.both(blank, columns), self.both(rounding, none)
-        self.first = self.both(x, start), self.both(columns, blank), self.both(none, rounding)
+        self.sides, self.rounding = self.both(sides, 0 * sides), self.both(off, rounding)
+        if self.turned:                                         # of x0 + x1 and of x0 - x1
+            off, rounding = off[0] + off[1] + none, 2 * rounding
+        self.before = self.both(start, x), self.both(blank, columns), self.both(rounding, off)
+        self.first = self.both(x, start), self.both(columns, blank), self.both(off, rounding)
         self.sites = []
 
     @staticmethod
@@ -1121,30 +1512,40 @@ class Prisms:
     def joined(self, lanes):
         return lanes[..., :self.size] + lanes[..., self.size:]
 
+    def moved(self, columns):
+        """How far each symbol moves a site, the waves that a lane has taken together."""
+        total = 0
+        for w in self.shape.present:
+            x = np.abs(columns[w])
+            total = total + (np.where(self.absent[w], 0, x) if w in self.absent else x)
+        return total
+
     def follow(self):
         """Follows all lanes until each reaches too far, and yields True then and wherever an orbit
         may be long enough; False if there is no room for more.
 
         A lane that has come to its end stays as zeros, alive no more, and nothing is said of it.
         """
-        P, H, W, F = self.P, self.H, self.W, self.F
-        slope, F2, from_H = P / TWO_PI, GRAIN * self.magnitude[2], 32 * UNIT * (H[:2] + H[2])
-        along, beside = (F[0] + F[1],) * 2 if self.turned else (F, F2)      # of the frame's beta
+        P, h, H, W, F, F01, shape = self.P, self.h, self.H, self.W, self.F, self.F01, self.shape
+        slope, n = P / TWO_PI, len(P)
+        slack, from_H = SINE * shape.K[:, None], shape.grain * combined(shape.strong, H)
+        along, beside = (F[0] + F[1],) * 2 if self.turned else (F, F01)     # of the frame's beta
         (X0, L0, r0), (X, L, r) = self.before, self.first
         size0 = np.abs(L0).sum(axis=1)
         alive, d, f, due = np.ones(X.shape[1], bool), None, None, FIRST_TRY
         while True:
-            columns = np.concatenate((L, (L[0] + L[1])[None]))
+            columns = shape.along(L)
             size = np.abs(columns).sum(axis=1) * MORE
-            total = r[0] + r[1]
-            rest = np.stack((total / 2, total / 2, r[0]) if self.turned else (r[0], r[1], total))
-            rest[2] += 2 * UNIT * size[2]
+            rest = combined(shape.sizes[self.turned], r)
+            if shape.mixed:
+                rest[2:] += 3 * UNIT * combined(shape.sizes[0][2:], size[:2])
             rest *= MORE
             reach = (size + rest) * MORE
             if not self.sites:                      # how far each symbol moves a lane's last site
-                self.last = np.abs(columns[self.present]).sum(axis=0)
-            for w in self.present:
-                alive = alive & (reach[w] <= FARTHEST)
+                self.last = self.moved(columns)
+            for w in shape.present:
+                near = reach[w] <= FARTHEST
+                alive = alive & (near | self.absent[w] if w in self.absent else near)
             if self.sites and (not alive.any() or len(self.sites) == FAST_SITES):
                 yield True
                 return
@@ -1156,32 +1557,33 @@ class Prisms:
                 due *= 2
             for array in (L, r, columns, size, rest, reach):
                 np.copyto(array, 0, where=~alive)
-            np.copyto(self.last, np.abs(columns[self.present]).sum(axis=0), where=alive)
-            s, c = lockstep_sincos(X)
-            beta = -matrices(P * s)
+            np.copyto(self.last, self.moved(columns), where=alive)
+            s, c = lockstep_sincos(shape.turns(X))
+            beta = combined(shape.forms, P * -s)
             beta[::2] += 2
             bow = size * size / 4
             wave = P * c * bow
-            self.sites.append((alive, s, c, columns, size, rest, reach, beta, wave[:2] + wave[2]))
+            self.sites.append((alive, s, c, columns, size, rest, reach, beta,
+                               combined(shape.forces, wave)))
 
             wave = slope * c * (1 - bow)
-            X, X0 = 2 * X - X0 + (wave[:2] + wave[2]), X
+            X, X0 = 2 * X - X0 + combined(shape.forces, wave), X
             X -= np.rint(X)
             new = applied(beta[:, None], L) - L0
-            wave = H * c
-            for w, k in enumerate(self.symbols):
-                if k is not None:
-                    for i in ((0,), (1,), (0, 1))[w]:
-                        new[i, k] += wave[w]
-            bent = bending(P, H, W, np.abs(s) + SINE, np.abs(c) + 2 * SINE, size, rest, reach)
-            err = F * (1 + size[:2]) + F2 * size[1::-1] + 4 * UNIT * size0[:2] + from_H
+            for w, symbols in enumerate(shape.moving):
+                for m in symbols:
+                    wave = h[w, m] * c[w]
+                    for i, k in enumerate(shape.known[w][0]):
+                        if k:
+                            new[i, m] += wave if k == 1 else k * wave
+            bent = bending(P, H, W, np.abs(s) + slack, np.abs(c) + 2 * slack, size, rest, reach)
+            err = F * (1 + size[:2]) + F01 * size[1::-1] + (4 + n) * UNIT * size0[:2] + from_H
             if self.turned:
                 mean, half = (beta[0] + beta[2]) / 2, (beta[0] - beta[2]) / 2
-                both = bent[0] + bent[1]
-                err = np.stack((both + 2 * bent[2], both)) + (err[0] + err[1])
+                err = combined(shape.turned, bent) + (err[0] + err[1])
                 block = np.stack((mean + beta[1], half, mean - beta[1]))
             else:
-                err, block = bent[:2] + bent[2] + err, beta
+                err, block = combined(shape.strengths, bent) + err, beta
             if d is None:                           # d[q] = beta, f = err - r[o] + roundings
                 f, d = r0 + err + along * r + beside * r[::-1], block
             else:
@@ -1209,11 +1611,11 @@ class Prisms:
         anew behind that site.  Where both together have a negative eigenvalue that is nearest to
         zero, and n as a rule is largest, is its eigenvector; n follows outwards by the recursions.
         """
-        sites, none = self.sites, np.zeros_like(self.l)
+        sites, none, shape = self.sites, np.zeros_like(self.l), self.shape
         blocks, tail = [], np.stack((self.l, none, self.l))
         for *_, reach, beta, _ in sites:
             more = self.caution * reach * reach
-            blocks.append(beta + matrices((self.magnitude + self.H) * more))
+            blocks.append(beta + combined(shape.forms, (self.magnitude + self.H) * more))
         outer, back, whole = [], [], []             # the recursion from the end
         inverse, beyond, good = tail, none > 0, none == 0
         for site, block in zip(sites[::-1], blocks[::-1]):
@@ -1267,9 +1669,10 @@ class Prisms:
     def expand(self):
         """The left side of (3): its value at X and P, a polynomial, as summit takes it, and what it
         may be more than both; infinite where it cannot be said."""
-        K, l, F, known = len(self.sites), self.l, self.F, self.known
+        N, l, F, known, shape = len(self.sites), self.l, self.F, self.known, self.shape
         n, tails = self.witnesses()
-        P, H, W, magnitude = self.P, self.H, self.W, self.magnitude
+        P, h, H, W, magnitude, grain = self.P, self.h, self.H, self.W, self.magnitude, shape.grain
+        K, square_K = shape.K[:, None], (shape.K * shape.square)[:, None]
         pairs = [(i, j) for i in range(known) for j in range(i, known)]
         value, mass, error = np.zeros_like(l), np.zeros_like(l), np.zeros_like(l)
         linear, square = np.zeros((known, l.size)), np.zeros((len(pairs), l.size))
@@ -1278,54 +1681,53 @@ class Prisms:
         skew = np.zeros((self.angles, known, known, l.size))
         mu = mu1 = np.zeros((2, 1 + known, l.size))     # of this site, and of the one beyond
         n1 = np.zeros((2, l.size))
-        for k in range(K - 1, -1, -1):
+        for k in range(N - 1, -1, -1):
             _, s, c, columns, size, rest, reach, _, E = self.sites[k]
             n0 = n[k]
-            omega = np.stack((n0[0] * n0[0], n0[1] * n0[1], (n0[0] + n0[1]) ** 2))
+            omega = shape.along(n0) ** 2
             long = omega[0] + omega[1]
-            wave = P * omega * s
-            value += 2 * long - (wave[0] + wave[1] + wave[2]) - l * tails[k] * long \
+            value += 2 * long - (P * omega * s).sum(axis=0) - l * tails[k] * long \
                 - 2 * (n0[0] * n1[0] + n0[1] * n1[1]) + (mu[0, 0] * E[0] + mu[1, 0] * E[1])
             linear += mu[0, 1:] * E[0] + mu[1, 1:] * E[1]
-            m = np.concatenate((mu, (mu[0] + mu[1])[None]))
+            m = shape.along(mu)
             A, B = m * c[:, None], -m * s[:, None]
             A[:, 0] -= omega * s
             B[:, 0] -= omega * c
             A0, B0, alpha, beta = A[:, 0], B[:, 0], A[:, 1:], B[:, 1:]
             turn, PA = P[:, None] * B, P * A0
             turn[:, 1:] -= PA[:, None] * columns
-            for w in self.present:
-                xi, symbol = columns[w], self.symbols[w]
+            for w in shape.present:
+                xi = columns[w]
                 first = (P[w] / -2) * alpha[w] - (P[w] * B0[w] / 6) * xi    # what stands with xi^2
-                if symbol is not None:
-                    H_A = H[w] * A0[w]
-                    first[symbol] -= H_A / 2
-                    linear[symbol] += H_A
-                    mixed[symbol] += H[w] * alpha[w]
-                    skew[symbol] += (H[w] * beta[w])[:, None] * xi
-                    turn[w, 1 + symbol] += H[w] * B0[w]
+                for symbol in shape.moving[w]:
+                    part = h[w, symbol]
+                    part_A = part * A0[w]
+                    first[symbol] -= part_A / 2
+                    linear[symbol] += part_A
+                    mixed[symbol] += part * alpha[w]
+                    skew[symbol] += (part * beta[w])[:, None] * xi
+                    turn[w, 1 + symbol] += part * B0[w]
                 xi = products(xi)
                 square += (PA[w] / 2) * xi
                 cubic += first[:, None] * xi
-            weight = np.abs(m).sum(axis=1) + omega
-            wave = remainder(P, H, W, A0, np.abs(alpha).sum(axis=1), B0, np.abs(beta).sum(axis=1),
-                             weight, size, rest, reach)
-            error += wave[0] + wave[1] + wave[2]
-            wave = magnitude * omega + weight * (magnitude * reach * reach + 3 * H)
-            mass += 2 * long + (wave[0] + wave[1] + wave[2])
+            most = np.abs(mu).sum(axis=1)
+            weight = K * combined(shape.sizes[0], most) + square_K * long
+            error += remainder(P, H, W, A0, np.abs(alpha).sum(axis=1), B0,
+                               np.abs(beta).sum(axis=1), weight, size, rest, reach).sum(axis=0)
+            mass += 2 * long + (weight * (magnitude * (1 + reach * reach) + 3 * H)).sum(axis=0)
 
-            G = 2 * mu - mu1 + (turn[:2] + turn[2])
-            wave, most = weight * (magnitude * (1 + size) + H), np.abs(mu).sum(axis=1)
-            turn = wave[:2] + wave[2] + 2 * most + np.abs(mu1).sum(axis=1)
+            G = 2 * mu - mu1 + combined(shape.forces, turn)
+            turn = combined(shape.strengths, weight * (magnitude * (1 + size) + H)) \
+                + 2 * most + np.abs(mu1).sum(axis=1)
             if k:
-                small = most * F + 48 * UNIT * turn * reach[:2]
+                small = most * F + grain * turn * reach[:2]
                 mu, mu1, n1 = G, mu, n0
             else:
                 across = self.other(mu)
                 G, turn = G - across, turn + np.abs(across).sum(axis=1)
                 small = most * F + np.abs(G).sum(axis=1) * self.rounding \
-                    + 48 * UNIT * turn * (self.sides + self.rounding)
-                ends = G * self.sides[:, None]
+                    + grain * turn * (np.abs(self.sides).sum(axis=1) + self.rounding)
+                ends = np.stack([G[0] * x + G[1] * y for x, y in zip(*self.sides)])
             error += small[0] + small[1]
         value, mass, error, linear, square, cubic, mixed, skew, ends = map(
             self.joined, (value, mass, error, linear, square, cubic, mixed, skew, ends))
@@ -1352,8 +1754,9 @@ class Prisms:
         for k in (0, 1):
             add(ends[k, 0], self.angles + k)
         added = sum([np.abs(x) for x in form.values()])
-        error = (error + UNIT * ((4 * K + 192) * mass + 64 * added)) * (MORE + 64 * UNIT * K)
-        return value, form, np.where(mass < HUGE, error, math.inf)
+        mass = UNIT * (((len(P) + 2) * N + 256) * mass + 64 * added)
+        error = (error + mass) * (MORE + 64 * UNIT * N)
+        return value, form, np.where(mass < UNIT * HUGE, error, math.inf)
 
     def bound(self):
         """An upper bound of the left side of (3) for each prism; and what each symbol adds to it,
@@ -1367,58 +1770,89 @@ class Prisms:
 
 
 class Lockstep:
-    """The fast path of one claim."""
+    """The fast path of some claims; a prism is of one of them."""
 
-    def __init__(self, claim, criterion):
-        """What all prisms share; ValueError if the claim has numbers that it is not made for.
+    def __init__(self, claims):
+        """What all prisms share, and what those of each claim; ValueError if one has numbers that
+        it is not made for.
 
         x* in turns is off by 2^-54 of its rounding and by 2^-80 of the integers, less than
         XSTAR_REST / 2 pi.
         """
-        self.together = claim.together
-        self.centre = [float(x) for x in claim.centre[:3]] + [float(v / 2 % 1)
-                                                              for v in claim.centre[3:]]
-        self.half = [float(x) for x in claim.half[:3]] + [float(v / 2) for v in claim.half[3:]]
-        if max(map(abs, (*self.centre, *self.half, *claim.xstar))) > FAST_SIZE:
-            raise ValueError("too large for the fast path")
-        self.axes = [2] * any(claim.half[:3]) if claim.together else \
-            [2 + w for w in range(3) if claim.half[w]]
-        where = [2 if claim.together else 2 + w for w in range(3)]
-        self.symbols = [self.axes.index(k) if k in self.axes else None for k in where]
-        self.axes += [0, 1]                         # of the symbols
-        self.present = [w for w in range(3) if claim.centre[w] or claim.half[w]]
-        if not self.present:
+        waves = list(dict.fromkeys((wave.k, wave.phase % 2) for claim in claims
+                                   for wave in claim.felt))
+        if not all(claim.felt for claim in claims):
             raise ValueError("no wave: orbits without end")
-        half_turn = Fraction(1, 2)
-        self.xstar = [float((Fraction(x, 2 * criterion.fixed.pi) + half_turn) % 1 - half_turn)
-                      for x in criterion.xstar]
+        self.axes = sorted({2 + m for claim in claims for wave in claim.felt
+                            for m, part in enumerate(wave.parts) if part})
+        shape = (len(waves), len(claims))
+        self.middle, self.scale = np.zeros(shape), np.zeros(shape)
+        self.parts = np.zeros((len(self.axes), *shape))
+        for q, claim in enumerate(claims):
+            for wave in claim.felt:
+                w = waves.index((wave.k, wave.phase % 2))
+                parts = [wave.parts[axis - 2] if axis - 2 < len(wave.parts) else 0
+                         for axis in self.axes]
+                self.middle[w, q] += float(wave.middle)
+                self.parts[:, w, q] += [float(part) for part in parts]
+                self.scale[w, q] += 2 * float(abs(wave.middle) + sum(map(abs, parts)))
+        self.shape = Shape(waves, [(w, m) for m, w in zip(*self.parts.any(axis=2).nonzero())])
+        self.axes += [0, 1]                         # of the symbols
+        self.centre = np.array([[float(v / 2 % 1) for v in claim.centre] for claim in claims]).T
+        self.half = np.array([[float(v / 2) for v in claim.half] for claim in claims]).T
+        self.frame = np.array([claim.frame for claim in claims], float).T
+        fixed, half_turn = Fixed.of(128), Fraction(1, 2)
+        self.xstar = np.array([[float(
+            (Fraction(math.floor(x * fixed.one), 2 * fixed.pi) + half_turn) % 1 - half_turn)
+            for x in claim.xstar] for claim in claims]).T
+        sizes = self.scale, self.half, self.frame, [max(map(abs, c.xstar)) for c in claims], \
+            [max(map(abs, c.centre)) for c in claims]
+        if max([np.max(np.array(x, float), initial=0) for x in map(np.abs, sizes)]) > FAST_SIZE:
+            raise ValueError("too large for the fast path")
         self.batch = BATCH
 
-    def box(self, index, cuts):
-        """Boxes that cover these cells, as Prisms takes them.
+    def box(self, index, cuts, number):
+        """Boxes that cover these cells of the claims with these numbers, as Prisms takes them.
 
-        at and part are exact.  The doubles near centre c and half-width h are off by u of them, the
-        products and sums by u of theirs: all in all by less than 8 u (c + h).
+        at and part are exact.  The doubles near middles and parts are off by u of them, the
+        products and sums by u of theirs, of four at most: all in all by less than 8 u of their
+        sum, of which scale is the double.  Centres and half-widths of the angles alike; in a frame
+        other than the identity x[1] has the roundings of two products and a sum, in turns, and its
+        columns have those of their products.
         """
         part = np.ldexp(1.0, -cuts.astype(np.intc))
         at = (2 * index + 1 - (1 << cuts)) * part
-        P, H, W = np.zeros((3, 3, at.shape[1]))
-        for w in self.present:
-            axis, c, h = 2 if self.together else 2 + w, self.centre[w], self.half[w]
-            P[w], H[w] = c + h * at[axis], h * part[axis]
-            W[w] = 8 * UNIT * (abs(c) + h) + TINY
-        X, sides = np.empty((2, 2, at.shape[1]))
-        for i in (0, 1):
-            c, h = self.centre[3 + i], self.half[3 + i]
-            X[i] = c + h * at[i]
-            sides[i] = TWO_PI * MORE * (h * part[i] + (8 * UNIT * (c + h) + TINY))
-        return P, H, W, X - np.rint(X), sides
+        P = np.zeros((len(self.shape.known), number.size))
+        W, h = np.zeros_like(P), np.zeros((len(P), self.shape.parameters, number.size))
+        for w, middle in zip(self.shape.at, self.middle):
+            P[w] = middle[number]
+        for m, axis in enumerate(self.axes[:-2]):
+            for w, parts in zip(self.shape.at, self.parts[m]):
+                P[w] += parts[number] * at[axis]
+                h[w, m] = parts[number] * part[axis]
+        for w, scale in zip(self.shape.at, self.scale):
+            W[w] = np.where(scale[number] > 0, 8 * UNIT * scale[number] + TINY, 0)
+        V = self.centre[:, number] + self.half[:, number] * at[:2]
+        V -= np.rint(V)
+        sides = TWO_PI * MORE * (self.half[:, number] * part[:2] + (
+            8 * UNIT * (self.centre + self.half)[:, number] + TINY))
+        frame = self.frame[:, number]
+        columns = frame.reshape(2, 2, -1) * sides
+        X = np.stack((frame[0] * V[0] + frame[1] * V[1], frame[2] * V[0] + frame[3] * V[1]))
+        off = UNIT * (8 * np.abs(frame.reshape(2, 2, -1)).sum(axis=1)
+                      + 2 * np.abs(columns).sum(axis=1))
+        off[:, (frame.T == IDENTITY).all(axis=1)] = 0
+        return P, h, W, X - np.rint(X), columns, off
 
-    def attempt(self, index, cuts, l, caution):
+    def attempt(self, index, cuts, number, l, caution, halved=None):
         """Is (3) true of all orbits of these cells?  For each, and the axis to cut it along, -1 if
-        that seems vain; None if their orbits are too long for so many at a time."""
+        that seems vain; None if their orbits are too long for so many at a time.
+
+        It is the axis that matters most, but for one that matters and was halved far less often.
+        """
         with np.errstate(all="ignore"):
-            prisms = Prisms(self.box(index, cuts), self.symbols, self.xstar, l, caution)
+            prisms = Prisms(self.box(index, cuts, number), self.shape, self.xstar[:, number], l,
+                            caution)
             excluded = np.zeros(l.shape, bool)
             for ready in prisms.follow():
                 if not ready:
@@ -1428,36 +1862,44 @@ class Lockstep:
                 if excluded.all():
                     break
         vain = prisms.joined(prisms.sites[-1][0]) & (len(prisms.sites) == FAST_SITES)
-        return excluded, np.where(vain, -1, np.array(self.axes)[blame.argmax(axis=0)])
+        axis = blame.argmax(axis=0)
+        if halved is not None:
+            halved, at = halved[self.axes], np.arange(axis.size)
+            last = np.where(blame > blame[axis, at] * 2.0 ** -30, halved, MAX_CUTS).argmin(axis=0)
+            axis = np.where(halved[axis, at] - halved[last, at] > LAG, last, axis)
+        return excluded, np.where(vain, -1, np.array(self.axes)[axis])
 
     def settle(self, cells, least, exactly):
-        """Decides on cells with these l: (number of the first that is not excluded, why not) or
-        None, and how many pieces each took.
+        """Decides on cells, pairs of a claim's number and a cell, with these l: (number of the
+        first that is not excluded, why not) or None, and how many pieces each took.
 
         Those that fail are halved and tried again, up to the checker's limits and with n chosen
         boldly and cautiously in turn; what fails then, exactly(number) -> (None or why not,
         pieces) decides on.
         """
-        depth = np.array([sum(cuts) for _, cuts in cells])
+        begun = np.array([cuts for _, (_, cuts) in cells]).T
         pieces, refused = np.zeros(len(cells), int), None
-        fine = [n for n, (_, cuts) in enumerate(cells) if max(cuts) > FAST_CUTS]
-        rest = [n for n, (_, cuts) in enumerate(cells) if max(cuts) <= FAST_CUTS][::-1]
-        index, cuts = [np.array([cells[n][part] for n in rest], np.int64).reshape(-1, 5).T
+        fine = [n for n, (_, (_, cuts)) in enumerate(cells) if max(cuts) > FAST_CUTS]
+        rest = [n for n, (_, (_, cuts)) in enumerate(cells) if max(cuts) <= FAST_CUTS][::-1]
+        index, cuts = [np.array([cells[n][1][part] for n in rest], np.int64).reshape(-1, 5).T
                        for part in (0, 1)]
-        todo = [index, cuts, np.array([least[n] for n in rest]), np.array(rest, int)]
-        while fine or todo[3].size:
+        todo = [index, cuts, np.array([cells[n][0] for n in rest], int),
+                np.array([least[n] for n in rest]), np.array(rest, int)]
+        while fine or todo[-1].size:
             for n in fine:
                 if refused is None or n < refused[0]:
                     why, tried = exactly(n)
                     pieces[n] += tried
                     refused = (n, why) if why else refused
-            keep = ~np.isin(todo[3], fine) & (todo[3] < (refused[0] if refused else len(cells)))
+            keep = ~np.isin(todo[-1], fine) & (todo[-1] < (refused[0] if refused else len(cells)))
             todo, fine = [x[..., keep] for x in todo], []
             if not keep.any():
                 break
-            index, cuts, l, number = [x[..., -self.batch:] for x in todo]
-            halvings = cuts.sum(axis=0) - depth[number]
-            tried = self.attempt(index, cuts, l, np.array(CAUTION)[halvings % len(CAUTION)])
+            index, cuts, claim, l, number = [x[..., -self.batch:] for x in todo]
+            halved = cuts - begun[:, number]
+            halvings = halved.sum(axis=0)
+            tried = self.attempt(index, cuts, claim, l,
+                                 np.array(CAUTION)[halvings % len(CAUTION)], halved)
             if tried is None:
                 self.batch //= 2
                 continue
@@ -1468,25 +1910,27 @@ class Lockstep:
                                 | (pieces[number] >= MAX_PIECES)
                                 | (cuts[axis, np.arange(axis.size)] >= FAST_CUTS))
             fine = sorted(set(number[lost].tolist()))
-            index, cuts, l, number, axis = [x[..., ~excluded].repeat(2, axis=-1)
-                                            for x in (index, cuts, l, number, axis)]
+            index, cuts, claim, l, number, axis = [
+                x[..., ~excluded].repeat(2, axis=-1)
+                for x in (index, cuts, claim, l, number, axis)]
             at = np.arange(axis.size)
             index[axis, at] = 2 * index[axis, at] + at % 2
             cuts[axis, at] += 1
-            todo = [np.concatenate(both, axis=-1) for both in zip(todo, (index, cuts, l, number))]
+            todo = [np.concatenate(both, axis=-1)
+                    for both in zip(todo, (index, cuts, claim, l, number))]
         return refused, pieces.tolist()
 
 
-def lockstep(claim, criterion):
-    """The fast path, or None: it is not made for the claim's numbers, or, as a line then says, it
+def lockstep(claims):
+    """The fast path, or None: it is not made for the claims' numbers, or, as a line then says, it
     has not the machine it needs."""
     try:
         if sound():
-            return Lockstep(claim, criterion)
+            return Lockstep(claims)
         why = "numpy does not round as it must"
     except ImportError:
         why = "numpy is not installed"
-    except ValueError:
+    except (ValueError, OverflowError):
         return None
     complain(why + ": all is checked in integers, hundreds of times slower")
     return None
@@ -1510,9 +1954,9 @@ class State:
     guards against accidents, not against forgers.
     """
 
-    def __init__(self, path, claim):
+    def __init__(self, path, sha256, total):
         self.confirmed = self.pieces = 0
-        self.path, self.sha256, self.saved = path and os.path.realpath(path), claim.sha256, 0
+        self.path, self.sha256, self.saved = path and os.path.realpath(path), sha256, 0
         if path is None:
             return
         self.checker = hashlib.sha256(__loader__.get_data(__file__)).hexdigest()
@@ -1532,7 +1976,7 @@ class State:
         words = re.findall("(?m)^(?:certificate|checker): sha256 ([0-9a-f]{64})$", text)
         found = [int(n) for n in re.findall("(?m)^(?:confirmed|pieces): ([0-9]{1,18})$", text)]
         if len(words) != 2 or len(found) != 2 or text != self._sealed(*words, *found) \
-                or found[0] > claim.tree.count("P") and words[0] == claim.sha256:
+                or found[0] > total and words[0] == sha256:
             raise Unusable("the state %s is damaged; delete it to begin anew" % path)
         if words != [self.sha256, self.checker]:
             raise Unusable("the state %s belongs to another %s; name another file" % (
@@ -1577,7 +2021,7 @@ class State:
 
 # ---- the whole file
 
-_worker = []                            # in each process: its Criterion
+_worker = []                            # in each process: its Problems
 SIGNALS = [getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP")
            if hasattr(signal, name)]
 
@@ -1588,23 +2032,50 @@ def cost(cell):
     return 1 + sum(cell[1]) ** 2
 
 
+class Problems:
+    """The claims of a file, one or those of a map's cells, with a bound of B for each if there are
+    any; the fast path of all, if there is one."""
+
+    def __init__(self, claims, bounds=None):
+        self.claims, self.bounds, self.fast, self.known = claims, bounds, None, {}
+
+    def criterion(self, n):
+        if n not in self.known:
+            with named(self.claims[n].where) if self.claims[n].where else contextlib.nullcontext():
+                self.known[n] = Criterion(self.claims[n], self.bounds and self.bounds[n])
+        return self.known[n]
+
+    def least_in_double(self, leaf):
+        return self.criterion(leaf[0]).least_in_double(leaf[1])
+
+    def excluded(self, leaf):
+        return self.criterion(leaf[0]).excluded(leaf[1])
+
+    def leaves(self):
+        """The leaves P of all claims, as (number of the claim, cell), in their order."""
+        for n, claim in enumerate(self.claims):
+            for position, cell in leaves(claim.tree):
+                if claim.tree[position] == "P":
+                    yield n, cell
+
+
 def check_chunk(chunk):
     """Checks leaves in order: (how many are confirmed, their cost and pieces, what then fails)."""
-    criterion, = _worker
-    cells, refused, pieces = [cell for _, cell in chunk], None, []
-    if criterion.fast:
-        refused, pieces = criterion.fast.settle(
-            cells, [criterion.least_in_double(cell) for cell in cells],
-            lambda n: criterion.excluded(cells[n]))
+    problems, = _worker
+    cells, refused, pieces = [leaf for _, leaf in chunk], None, []
+    if problems.fast:
+        refused, pieces = problems.fast.settle(
+            cells, [problems.least_in_double(leaf) for leaf in cells],
+            lambda n: problems.excluded(cells[n]))
     else:
-        for n, cell in enumerate(cells):
-            why, tried = criterion.excluded(cell)
+        for n, leaf in enumerate(cells):
+            why, tried = problems.excluded(leaf)
             if why:
                 refused = n, why
                 break
             pieces.append(tried)
     n = refused[0] if refused else len(cells)
-    return n, sum(map(cost, cells[:n])), sum(pieces[:n]), refused and (*chunk[n], refused[1])
+    return n, sum([cost(cell) for _, cell in cells[:n]]), sum(pieces[:n]), refused and (*chunk[n], refused[1])
 
 
 @contextlib.contextmanager
@@ -1620,15 +2091,15 @@ def undisturbed():
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
-def begin_apart(criterion, stop):
+def begin_apart(problems, stop):
     """Starts a worker process.  Signals are for the parent to notice; a worker ends when its parent
     says so, or has died."""
     for number in SIGNALS:
         signal.signal(number, signal.SIG_IGN)
     if hasattr(signal, "pthread_sigmask"):
         signal.pthread_sigmask(signal.SIG_UNBLOCK, SIGNALS)
-    _worker[:] = [criterion]
-    if criterion.fast:
+    _worker[:] = [problems]
+    if problems.fast:
         sound()
     threading.Thread(target=end_with_parent, args=(stop,), daemon=True).start()
 
@@ -1639,17 +2110,17 @@ def end_with_parent(stop):
     os._exit(1)
 
 
-def in_order(chunks, jobs, criterion):
+def in_order(chunks, jobs, problems):
     """Yields the results of the chunks in their order, few of them being in memory at a time."""
     if jobs == 1:
-        _worker[:] = [criterion]
+        _worker[:] = [problems]
         yield from map(check_chunk, chunks)
         return
     import concurrent.futures.process       # where there are no processes, one job still works
     import multiprocessing
     stop, stopper = multiprocessing.Pipe(duplex=False)
     pool = concurrent.futures.ProcessPoolExecutor(jobs, initializer=begin_apart,
-                                                  initargs=(criterion, stop))
+                                                  initargs=(problems, stop))
     waiting, over = collections.deque(), False
     try:
         for chunk in chunks:
@@ -1673,7 +2144,7 @@ def in_order(chunks, jobs, criterion):
 @dataclass(frozen=True)
 class Result:
     """What came of a check in which nothing failed: true only if the whole claim is verified and
-    its region is the whole torus.  (All else ends in an exception.)"""
+    its region is the whole torus, or all that a map says is proved.  (All else ends in an exception.)"""
 
     status: int                         # VERIFIED, PART or SPOT_CHECK: the exit status, too
     verdict: str                        # "verified", "verified in part" or "spot check"
@@ -1684,7 +2155,7 @@ class Result:
 
 
 def verify(path, jobs=1, sample=None, state=None, bar=False, exact=False):
-    """Verifies a proof file: returns a Result, or raises Rejected, NotConfirmed or Unusable.
+    """Verifies a proof file or a map: returns a Result, or raises Rejected, NotConfirmed or Unusable.
 
     jobs: processes.  sample: so many leaves only, chosen by chance: a spot check.
     state: a file that remembers what was confirmed, so that an interrupted check can go on; it
@@ -1695,46 +2166,352 @@ def verify(path, jobs=1, sample=None, state=None, bar=False, exact=False):
         raise ValueError("jobs and sample are 1 or more")
     if sample is not None and state is not None:
         raise Unusable("a spot check keeps no state; give --sample or --state")
-    claim = read(path)
-    check_tree(claim)
-    check_mirror_images(claim)
-    criterion = Criterion(claim)
-    if claim.at_once and not criterion.at_once():
-        if criterion.not_at_once():
-            raise Rejected("larger parameters are not excluded at once: B <= 10/3 for some")
-        raise NotConfirmed("that larger parameters are excluded at once (B > 10/3)")
-    if not exact:
-        criterion.fast = lockstep(claim, criterion)
-    done = State(state, claim)
-    earlier, proved = done.confirmed, claim.tree.count("P")
-    chosen = range(earlier, proved)
+    file = read(path)
+    if isinstance(file, Map):
+        problems = Problems(file.claims, check_map(file))
+    else:
+        check_tree(file)
+        check_mirror_images(file)
+        problems = Problems((file,))
+        check_at_once(problems.criterion(0))
+    if not exact and problems.claims:
+        problems.fast = lockstep(problems.claims)
+    proved = [claim.counts["proved"] for claim in problems.claims]
+    done = State(state, file.sha256, sum(proved))
+    earlier = done.confirmed
+    chosen = range(earlier, sum(proved))
     if sample is not None:
-        chosen = set(random.SystemRandom().sample(chosen, min(sample, proved)))
+        chosen = set(random.SystemRandom().sample(chosen, min(sample, sum(proved))))
 
     def work():
-        cells = (cell for position, cell in leaves(claim.tree) if claim.tree[position] == "P")
-        return ((n, cell) for n, cell in enumerate(cells) if n in chosen)
+        return ((n, leaf) for n, leaf in enumerate(problems.leaves()) if n in chosen)
 
     queue = work()
     size = CHUNK
-    if criterion.fast:
+    if problems.fast:
         fewest, most = FAST_CHUNK
         size = min(max(len(chosen) // (CHUNKS * jobs), fewest), most)
     chunks = iter(lambda: list(itertools.islice(queue, size)), [])
     try:
         with Bar(work() if bar else (), len(chosen)) as progress, \
-                contextlib.closing(in_order(chunks, jobs, criterion)) as results:
+                contextlib.closing(in_order(chunks, jobs, problems)) as results:
             for n, spent, pieces, failure in results:
                 done.advance(n, pieces)
                 progress.advance(n, spent)
                 if failure:
-                    *leaf, why = failure
+                    n, (at, cell), why = failure
+                    claim = problems.claims[at]
                     raise NotConfirmed(
-                        "%s is not excluded: %s; the claim is false or its proof beyond the limits "
-                        "of this checker" % (leaf_text(claim, "P", *leaf), why))
+                        "%s%s is not excluded: %s; the claim is false or its proof beyond the "
+                        "limits of this checker" % (
+                            claim.where, leaf_text(claim, "P", n - sum(proved[:at]), cell), why))
     finally:
         done.save()
-    return report(claim, criterion, done, earlier, sample is not None)
+    return report(file, problems, done, earlier, sample is not None)
+
+
+def check_at_once(criterion):
+    """Rejected or NotConfirmed, if larger parameters are claimed to be excluded at once, and are
+    not."""
+    if criterion.claim.at_once != "no" and not criterion.at_once():
+        if criterion.not_at_once():
+            raise Rejected("larger parameters are not excluded at once: B <= 10/3 for some")
+        raise NotConfirmed("that larger parameters are excluded at once (B > 10/3)")
+
+
+# ---- maps
+# A map is of the thesis's potential.  The points of a face are (a, b, c) = r d(s, t), d(s, t) =
+# d0 + s d1 + t d2, 0 <= r <= radius, 0 <= s, t <= 1; without d2 there is no t.  About the middle of
+# a cell of (r, s, t)
+#       r d(s, t) = r d(sm, tm) + r (s - sm) d1 + r (t - tm) d2
+# is covered by a patch of three parameters, or two: with middle rm d(sm, tm) and the parts
+# (r1 - r0)/2 d(sm, tm), r1 (s1 - s0)/2 d1, r1 (t1 - t0)/2 d2.
+
+REGIONS = {"b=0": (((1, 0, 0), (0, 0, 1)), ((0, 0, 1), (1, 0, 0))),
+           "a=b": (((1, 1, 0), (0, 0, 1)), ((0, 0, 1), (1, 1, 0))),
+           "c=0": (((1, 0, 0), (0, 1, 0)),),
+           "sphere": (((1, 0, 0), (0, 1, 0), (0, 0, 1)), ((0, 0, 1), (1, 0, 0), (0, 1, 0)))}
+MAP_AXES, MAP_KINDS = "012", "PAOX"     # of the tree of a face: cuts of r, s, t; leaves
+GRID, MAP_CELLS = (16, 8), 2000         # of a face with s, or s and t; of the torus: for B
+
+
+@dataclass(frozen=True)
+class Face:
+    """A face of a map: d0, d1 and perhaps d2, and its cells, (kind, index, cuts)."""
+
+    directions: tuple
+    radius: Fraction
+    cells: tuple
+
+    def d(self, place):
+        """d(s, t) of exact numbers."""
+        d0, *others = self.directions
+        return [x + sum([p * d[i] for p, d in zip(place, others)]) for i, x in enumerate(d0)]
+
+    def box(self, index, cuts):
+        """The ends of r, and those of s and t."""
+        r, *sides = [(Fraction(i, 1 << k), Fraction(i + 1, 1 << k))
+                     for i, k in zip(index, cuts[:len(self.directions)])]
+        return [self.radius * x for x in r], sides
+
+    def waves(self, cell, least=False):
+        """The waves of the patch of a cell; or of the patch of its points of the least r."""
+        (r0, r1), sides = self.box(*cell)
+        if least:
+            r1 = r0
+        middle = self.d([(low + high) / 2 for low, high in sides])
+        parts = [[(r1 - r0) / 2 * x for x in middle]] + [
+            [r1 * (high - low) / 2 * x for x in d]
+            for (low, high), d in zip(sides, self.directions[1:])]
+        return tuple(Wave(k, Fraction(0), (r0 + r1) / 2 * x, tuple(column))
+                     for k, x, column in zip(THESIS, middle, zip(*parts)))
+
+    def is_outside(self, cell):
+        """Is b >= a all over the cell, and not only b = a?  b - a is r times what is affine in s
+        and t: so it is at the corners."""
+        _, sides = self.box(*cell)
+        excess = [b - a for a, b, _ in map(self.d, itertools.product(*sides))]
+        return min(excess) >= 0 and max(excess) > 0
+
+
+@dataclass(frozen=True)
+class Map:
+    """What a map says."""
+
+    region: str
+    faces: tuple
+    claims: tuple                       # of the proved cells, in their order
+    sha256: str                         # of the file, uncompressed
+
+    def count(self, kind):
+        return sum(cell[0] == kind for face in self.faces for cell in face.cells)
+
+
+@contextlib.contextmanager
+def named(name):
+    """What fails within is told by this name."""
+    try:
+        yield
+    except Failure as error:
+        raise type(error)("%s: %s" % (name, error)) from None
+
+
+def fields_of(value, name, *ignored, **kinds):
+    """The values of an object that must have just these fields, of these types, but for some that
+    may be there and are ignored."""
+    if type(value) is not dict or value.keys() - set(ignored) != {key.replace("_", " ")
+                                                                 for key in kinds}:
+        raise Rejected("%s is not an object with the fields %s, and no other"
+                       % (name, ", ".join(sorted(kinds)).replace("_", " ")))
+    values = [value[key.replace("_", " ")] for key in kinds]
+    for key, kind, found in zip(kinds, kinds.values(), values):
+        if type(found) is not kind:
+            raise Rejected("%s: its %s is not of the type it must be"
+                           % (name, key.replace("_", " ")))
+    return values
+
+
+def list_of(value, count, kind, name):
+    if type(value) is not list or len(value) != count or any(type(x) is not kind for x in value):
+        raise Rejected("%s is not a list of %d as they must be" % (name, count))
+    return value
+
+
+def read_map(data):
+    """The map; every patch of its own is whole, and nothing in it is of unknown meaning."""
+    if data.count(b",") + data.count(b"[") + data.count(b"{") > MAX_ITEMS:
+        raise NotConfirmed("the map has more than %d items, the checker's limit" % MAX_ITEMS)
+
+    def once(pairs):
+        if len(dict(pairs)) != len(pairs):
+            raise ValueError("a field appears twice")
+        return dict(pairs)
+
+    def integer(text):
+        if len(text) > 10:
+            raise ValueError("an integer is too long")
+        return int(text)
+
+    def finite(text):
+        if not math.isfinite(float(text)):
+            raise ValueError("a number is not finite")
+        return float(text)
+
+    try:
+        content = json.loads(data.decode("utf-8"), object_pairs_hook=once, parse_int=integer,
+                             parse_float=finite, parse_constant=finite)
+    except UnicodeDecodeError:
+        raise Rejected("the map is not UTF-8: it was altered or damaged") from None
+    except json.JSONDecodeError as error:
+        raise Rejected("the map is no whole JSON text, at character %d: it was truncated or altered"
+                       % error.pos) from None
+    except RecursionError:
+        raise Rejected("the map is nested too deeply") from None
+    except ValueError as error:
+        raise Rejected("the map is not as maps are: %s" % error) from None
+    if not isinstance(content, dict) or content.get("format") != "converse map 1":
+        raise Unusable("is not a map of the version that this checker knows, converse map 1")
+    _, _, region, down_to, faces, sha256 = fields_of(
+        content, "the map", "seconds", format=str, program=str, region=str, down_to=str, faces=list,
+        sha256=str)
+    del content["sha256"]
+    try:
+        text = json.dumps(content, sort_keys=True, separators=(",", ":"))
+    except RecursionError:
+        raise Rejected("the map is nested too deeply") from None
+    if hashlib.sha256(text.encode()).hexdigest() != sha256:
+        raise Rejected("wrong checksum: the map was changed or damaged")
+    del content, text
+    if region not in REGIONS:
+        raise Rejected("the map's region is none of %s" % ", ".join(sorted(REGIONS)))
+    number(down_to, "the map's 'down to'")
+    if len(faces) != len(REGIONS[region]):
+        raise Rejected("the region has %d faces, the map %d" % (len(REGIONS[region]), len(faces)))
+    whole, claims, file = [], [], hashlib.sha256(data).hexdigest()
+    for at, face in enumerate(faces, 1):
+        with named("face %d" % at):
+            whole.append(read_face(face, claims, at, file))
+    if sorted(face.directions for face in whole) != sorted(REGIONS[region]):
+        raise Rejected("the faces are not those of the region")
+    return Map(region, tuple(whole), tuple(claims), file)
+
+
+def read_face(face, claims, at, sha256):
+    """A face of a map; adds the claims of its proved cells."""
+    directions, radius, tree, proofs = fields_of(face, "it", "tried", "estimate", directions=list,
+                                                 radius=str, tree=str, proofs=list)
+    if len(directions) not in (2, 3):
+        raise Rejected("it has not two or three directions")
+    directions = tuple(tuple(number(x, "a direction") for x in list_of(d, 3, str, "a direction"))
+                       for d in directions)
+    radius = number(radius, "its radius")
+    if radius <= 0:
+        raise Rejected("its radius is not above 0")
+    axes, cells, proofs = MAP_AXES[:len(directions)], [], iter(proofs)
+    for position, cell in leaves(tree, axes, MAP_KINDS):
+        kind = tree[position]
+        cells.append((kind, *cell))
+        if kind == "P":
+            if (proof := next(proofs, None)) is None:
+                raise Rejected("it has fewer proofs than proved cells")
+            with named("cell %d" % len(cells)):
+                claims.append(read_cell(proof, Face(directions, radius, ()).waves(cell),
+                                        "face %d, cell %d: " % (at, len(cells)), sha256))
+    if next(proofs, None) is not None:
+        raise Rejected("it has more proofs than proved cells")
+    return Face(directions, radius, tuple(cells))
+
+
+def read_cell(proof, waves, name, sha256):
+    """The claim of a proved cell."""
+    xstar, frame, alone, tree = fields_of(proof, "its proof", xstar=list, frame=list, alone=str,
+                                          tree=str)
+    xstar = tuple(number(x, "x*") for x in list_of(xstar, 2, str, "x*"))
+    frame = check_frame([str(x) for x in list_of(frame, 4, int, "the frame")], "the frame")
+    if alone not in ("no", "0", "1"):
+        raise Rejected("alone is neither no nor 0 nor 1")
+    alone = None if alone == "no" else int(alone)
+    check_alone(waves, alone)
+    one = Fraction(1)
+    claim = Claim(waves, (one, one), (one, one), frame, alone, xstar, {}, "no", tree, sha256, name)
+    claim.counts.update(tree_counts(claim))
+    check_mirror_images(claim)
+    return claim
+
+
+def check_map(file):
+    """Rejected or NotConfirmed, if a cell is not outside or not at once; else for each proved cell
+    an upper bound of B.
+
+    B - 2 is convex and homogeneous of degree 1 in the amplitudes.  So it is r times its value at
+    d(s, t), which lies below what is linear along s and along t between points of a grid; and over
+    a cell this, or the convex function itself where the cell has more than one slice of the grid, is
+    largest at a corner.
+    """
+    fixed, bounds, claims = Fixed.of(96), [], iter(file.claims)
+    for at, face in enumerate(file.faces, 1):
+
+        @functools.lru_cache(maxsize=None)
+        def excess(place, face=face):
+            """B - 2 at a point of the grid, exact and from above."""
+            known = {(*k, 0): math.floor(x * fixed.one) for k, x in zip(THESIS, face.d(place)) if x}
+            bound = torus_bound(fixed, list(known), [tuple(known.values())], MAP_CELLS) \
+                + stiffness(known)
+            return Fraction(bound, fixed.one) - 2
+
+        grid = GRID[len(face.directions) - 2]
+
+        def between(place, grid=grid, excess=excess):
+            """The same, at any point of the face."""
+            nodes = [((), Fraction(1))]
+            for x in place:
+                low = Fraction(min(math.floor(x * grid), grid - 1), grid)
+                u = (x - low) * grid
+                nodes = [(node + (y,), weight * v) for node, weight in nodes
+                         for y, v in ((low, 1 - u), (low + Fraction(1, grid), u)) if v]
+            return sum([weight * excess(node) for node, weight in nodes])
+
+        for n, (kind, *cell) in enumerate(face.cells, 1):
+            name = "face %d, cell %d" % (at, n)
+            if kind == "X" and not face.is_outside(cell):
+                raise Rejected("%s is said to be outside of the region, and is not" % name)
+            if kind == "A" and not is_at_once(fixed, present(face.waves(cell, least=True))):
+                raise NotConfirmed("%s: that it and all larger multiples are excluded at once "
+                                   "(B > 10/3)" % name)
+            if kind == "P":
+                claim, ((_, r), sides) = next(claims), face.box(*cell)
+                if claim.alone is None:
+                    bounds.append(2 + r * max(map(between, itertools.product(*sides))))
+                else:       # one coordinate, whose waves add no more than their amplitudes
+                    bounds.append(2 + sum([wave.k[claim.alone] ** 2 * (
+                        abs(wave.middle) + sum(map(abs, wave.parts))) for wave in claim.felt]))
+    return bounds
+
+
+def sign_changes():
+    """How V's maps of the torus change the signs of a, b and c, generated by y0 -> y0 + pi,
+    y1 -> y1 + pi and y -> -y: sin(k.(y + pi s)) = (-1)^(k.s) sin(k.y), sin(-k.y) = -sin(k.y)."""
+    found = {(1, 1, 1)}
+    for signs in [tuple([(-1) ** k[i] for k in THESIS]) for i in (0, 1)] + [(-1, -1, -1)]:
+        found |= {tuple([p * q for p, q in zip(signs, other)]) for other in found}
+    return found
+
+
+def proved_from(cells, radius, axes):
+    """The least r from which on, up to the radius, every direction of these cells is proved (None
+    if not even at the radius), and whether every direction is proved from somewhere on for ever.
+
+    A cell at once is proved from its least r on.  Directions in which some cell is finer are
+    looked at in halves; where all cells are as wide as the directions, the unproved ones are
+    those not above the first that is at once.
+    """
+    worst, forever = Fraction(0), True
+    todo = [((0,) * axes, (0,) * axes, cells)]
+    while todo:
+        index, cuts, cells = todo.pop()
+        axis = next((m for m in range(axes)
+                     if any(cell[2][1 + m] > cuts[m] for cell in cells)), None)
+        if axis is None:
+            ends = [(kind, radius * i / (1 << k), radius * (i + 1) / (1 << k))
+                    for kind, (i, *_), (k, *_) in cells]
+            once = min([low for kind, low, _ in ends if kind == "A"], default=None)
+            worst = max([worst] + [high if once is None else min(high, once)
+                                   for kind, low, high in ends
+                                   if kind == "O" and (once is None or low < once)])
+            forever &= once is not None or any(kind == "X" and high == radius
+                                               for kind, _, high in ends)
+            continue
+        for upper in (0, 1):
+            i, k = changed(index, axis, 2 * index[axis] + upper), changed(cuts, axis,
+                                                                          cuts[axis] + 1)
+
+            def meets(cell):
+                ours, theirs = k[axis], cell[2][1 + axis]
+                return cell[1][1 + axis] >> max(theirs - ours, 0) == \
+                    i[axis] >> max(ours - theirs, 0)
+
+            todo.append((i, k, [cell for cell in cells if meets(cell)]))
+    return worst if worst < radius else None, forever
 
 
 # ---- what is said
@@ -1756,7 +2533,7 @@ class Bar:
         self.total, self.done, self.spent, self.began = total, 0, 0, time.monotonic()
         self.drawn, self.width = self.began + 5 * BAR_SECONDS, 0    # a short check has none
         self.on = bool(work) and sys.stderr is not None and sys.stderr.isatty()
-        self.cost = sum(cost(cell) for _, cell in work) if self.on else 0
+        self.cost = sum(cost(cell) for _, (_, cell) in work) if self.on else 0
 
     def __enter__(self):
         return self
@@ -1797,67 +2574,147 @@ def decimal_text(x):
     return "-" * (x < 0) + whole + ("." + rest if rest else "")
 
 
-def range_text(name, centre, half):
-    low, high = decimal_text(centre - half), decimal_text(centre + half)
-    return "%s = %s" % (name, low) if half == 0 else "%s <= %s <= %s" % (low, name, high)
+def range_text(name, low, high):
+    low, high = decimal_text(low), decimal_text(high)
+    return "%s = %s" % (name, low) if low == high else "%s <= %s <= %s" % (low, name, high)
 
 
 def leaf_text(claim, kind, ordinal, cell):
     """Names a leaf by its number among those of its kind, its depth and where it lies."""
-    sides = []
-    for axis, i, k in zip((3, 4, 0, 1, 2), *cell):
-        if claim.together and axis in (1, 2):
-            i, k = cell[0][2], cell[1][2]
-        low = claim.centre[axis] - claim.half[axis] + 2 * claim.half[axis] * i / (1 << k)
-        sides.append("[%.9g, %.9g]" % (low, low + 2 * claim.half[axis] / (1 << k)))
-    return "%s leaf %d of %d (v in %s pi, (a, b, c) in %s, %d cuts)" % (
+    index, cuts = cell
+
+    def sides(ends):
+        return " x ".join(["[%.9g, %.9g]" % (low, high) for low, high in ends])
+
+    t = [Fraction(2 * i + 1, 1 << k) - 1 for i, k in zip(index[2:], cuts[2:])]
+    angles = [(c - h + 2 * h * i / (1 << k), c - h + 2 * h * (i + 1) / (1 << k))
+              for c, h, i, k in zip(claim.centre, claim.half, index, cuts)]
+    spread = [sum([abs(g) / (1 << k) for g, k in zip(wave.parts, cuts[2:])])
+              for wave in claim.waves]
+    return "%s leaf %d of %d (v in %s pi, amplitudes in %s, %d cuts)" % (
         {"P": "proved", "S": "symmetric"}[kind], ordinal + 1, claim.tree.count(kind),
-        " x ".join(sides[:2]), " x ".join(sides[2:]), sum(cell[1]))
+        sides(angles), sides([(wave.at(t) - x, wave.at(t) + x)
+                              for wave, x in zip(claim.waves, spread)]), sum(cuts))
 
 
-def report(claim, criterion, done, earlier, sampled):
+MAP = "The map x[j+1] = 2 x[j] - x[j-1] - V'(x[j]) of two angles (modulo 2 pi),"
+TRIG = "V(y) = -a sin y0 - b sin y1 - c sin(y0 + y1)"
+GRAPH = ["has no invariant Lagrangian graph",
+         "(no invariant torus p = P + S'(x) over the angles, where p[j] = x[j] - x[j-1], P is",
+         "constant, S periodic and C1)"]
+
+
+def is_boxed(claim):
+    """Is it of the thesis's potential, with one parameter, or one for each of a, b, c or none?"""
+    return tuple(wave.k for wave in claim.waves) == THESIS \
+        and not any(wave.phase for wave in claim.waves) \
+        and (claim.parameters < 2 or claim.parameters == 3 and not any(
+            g for w, wave in enumerate(claim.waves) for m, g in enumerate(wave.parts) if m != w))
+
+
+def claimed(claim):
+    """What a proof file claims, in lines."""
+    boxed, torus = is_boxed(claim), min(claim.half) >= 1
+    lines = [MAP, (TRIG if boxed else "V(y) = - the sum of p sin(k.y + phase) over the waves below")
+             + ", " + GRAPH[0], *GRAPH[1:]]
+    if not torus:
+        lines += ["whose orbit through x[0] = x* goes on to x[1] = (v0, v1) in the region",
+                  *(range_text(name + " / pi", c - h, c + h)
+                    for name, c, h in zip(ANGLES, claim.centre, claim.half)),
+                  "(only successors in this region were examined, which is not the full torus)"]
+        if claim.frame != IDENTITY:
+            lines[-1:] = ["where x[1] = (%+d v0 %+d v1, %+d v0 %+d v1)" % claim.frame, lines[-1]]
+    lines[-1] += " for any parameters with"
+    if boxed:
+        spread = [sum(map(abs, wave.parts)) for wave in claim.waves]
+        lines += [range_text(name, wave.middle - x, wave.middle + x)
+                  for name, wave, x in zip(RANGES, claim.waves, spread)]
+        if claim.parameters == 1:
+            rising = all(g >= 0 for wave in claim.waves for g in wave.parts)
+            lines += ["moving together, on the segment from all lower to all upper ends"
+                      if rising else "moving together, (a, b, c) = (%s) + t (%s), -1 <= t <= 1" % (
+                          ", ".join([decimal_text(wave.middle) for wave in claim.waves]),
+                          ", ".join([decimal_text(wave.parts[0]) for wave in claim.waves]))]
+    else:
+        names = ["t%d" % (m + 1) for m in range(claim.parameters)]
+        lines += ["-1 <= %s <= 1" % ", ".join(names)] * bool(names)
+        for wave in claim.waves:
+            terms = ["%s %s %s" % ("-" if g < 0 else "+", decimal_text(abs(g)), name)
+                     for g, name in zip(wave.parts, names) if g]
+            lines += ["k = (%d, %d), phase = %s pi, p = %s" % (
+                *wave.k, wave.phase, " ".join([decimal_text(wave.middle), *terms]))]
+    if claim.at_once != "no":
+        upper = "the upper ends of these ranges" if boxed else "these amplitudes at t1 = 1"
+        lines += ["and for any multiple s >= 1 of %s (B > 10/3)" % (
+            upper if claim.at_once == "upper end" else "such parameters" if boxed
+            else "such amplitudes")]
+    return lines
+
+
+def mapped(file):
+    """What a map claims, in lines."""
+    signs = len(sign_changes())
+    lines = [MAP, TRIG + ", " + GRAPH[0], *GRAPH[1:]]
+    lines[-1] += " for any (a, b, c)"
+    lines += ["in the %d proved cells of the file, for any multiple s >= 1 of those in its %d cells"
+              % (file.count("P"), file.count("A")),
+              "at once (B > 10/3), and for the images of all these by the %d changes of the signs of"
+              % signs, "a, b, c and by the exchange of a and b.  %d cells are open." % file.count("O"),
+              "Region : " + file.region]
+    for face in file.faces:
+        cells = [cell for cell in face.cells if cell[0] != "X"]
+        names = "st"[:len(face.directions) - 1]
+        lines += ["Face (a, b, c) = r (%s), 0 <= %s <= 1, r <= %s :" % (" + ".join([
+            name + "(%s)" % ", ".join(map(decimal_text, d))
+            for name, d in zip(("", *[x + " " for x in names]), face.directions)]),
+            ", ".join(names), decimal_text(face.radius))]
+        least = min([face.box(*cell)[0][0] for kind, *cell in cells if kind in "PA"], default=None)
+        if least is None:
+            lines += ["  nothing is proved"]
+            continue
+        start, forever = proved_from(face.cells, face.radius, len(names))
+        lines += ["  every direction is proved from r = %s on, %s" % (
+            decimal_text(start), "for ever" if forever else "up to the face's radius")
+            if start is not None else "  not every direction is proved, even at the face's radius",
+            "  the least r that is proved in some direction is %s" % decimal_text(least)]
+    return lines
+
+
+def report(file, problems, done, earlier, sampled):
     """The theorem, exactly as far as it was verified; or the result of a spot check."""
-    proved, torus = claim.tree.count("P"), min(claim.half[3:]) >= 1
+    claims = problems.claims
+    proved, skipped = [sum([claim.counts[kind] for claim in claims])
+                       for kind in ("proved", "symmetric")]
+    whole = all(min(claim.half) >= 1 for claim in claims)
     if sampled:
         status, verdict = SPOT_CHECK, "spot check"
         lines = ["Spot check of %d of %d proved leaves, NOT a verification: none of them fails."
                  % (done.confirmed, proved), "What is claimed and NOT verified :"]
     else:
-        status, verdict = (VERIFIED, "verified") if torus else (PART, "verified in part")
-        lines = ["Verified" + ", for a part of the torus only" * (not torus)
+        status, verdict = (VERIFIED, "verified") if whole else (PART, "verified in part")
+        lines = ["Verified" + ", for a part of the torus only" * (not whole)
                  + ", %d of %d leaves by an earlier run" % (earlier, proved) * (earlier > 0) + " :"]
-    lines += ["The map x[j+1] = 2 x[j] - x[j-1] - V'(x[j]) of two angles (modulo 2 pi),",
-              "V(y) = -a sin y0 - b sin y1 - c sin(y0 + y1), has no invariant Lagrangian graph",
-              "(no invariant torus p = P + S'(x) over the angles, where p[j] = x[j] - x[j-1], P is",
-              "constant, S periodic and C1)"]
-    if not torus:
-        lines += ["whose orbit through x[0] = x* goes on to x[1] = (v0, v1) in the region",
-                  *(range_text(name + " / pi", claim.centre[k], claim.half[k])
-                    for k, name in ((3, "v0"), (4, "v1"))),
-                  "(only successors in this region were examined, which is not the full torus)"]
-    lines[-1] += " for any parameters with"
-    lines += [range_text(name, claim.centre[k], claim.half[k]) for k, name in enumerate("abc")]
-    if claim.together:
-        lines += ["moving together, on the segment from all lower to all upper ends"]
-    if claim.at_once:
-        lines += ["and for any multiple s >= 1 of " + ("the upper ends of these ranges (B > 10/3)"
-                                                      if claim.together else
-                                                      "such parameters (B > 10/3)")]
-    places = 9
-    bound = -(-criterion.B * 10 ** places // criterion.fixed.one)       # rounded up
+    is_map = isinstance(file, Map)
+    lines += mapped(file) if is_map else claimed(file)
     lines += [
         "", "Checker : converse-check " + __version__,
-        "Method : Loewner criterion, %sTaylor models in integers of %d bits" % (
-            "multipliers in doubles, and where these fail " * bool(criterion.fast),
-            criterion.fixed.bits),
-        "x* : %s %s" % tuple(map(decimal_text, claim.xstar)),
-        "B : %s" % decimal_text(Fraction(bound, 10 ** places)),
-        "Leaves : %d, of which %d proved and %d symmetric" % (
-            proved + claim.tree.count("S"), proved, claim.tree.count("S")),
+        "Method : Loewner criterion, %sTaylor models in integers%s" % (
+            "multipliers in doubles, and where these fail " * bool(problems.fast),
+            "" if is_map else " of %d bits" % problems.criterion(0).fixed.bits)]
+    if not is_map:
+        places = 9
+        criterion = problems.criterion(0)
+        bound = -(-criterion.B * 10 ** places // criterion.fixed.one)       # rounded up
+        lines += ["x* : %s %s" % tuple(map(decimal_text, file.xstar)),
+                  "B : %s" % decimal_text(Fraction(bound, 10 ** places))]
+        if file.alone is not None:
+            lines += ["Alone : x%d, a map of its own" % file.alone]
+    lines += ["Leaves : %d, of which %d proved and %d symmetric" % (
+        proved + skipped, proved, skipped),
         "Proved leaves checked : %d, in %d pieces" % (done.confirmed, done.pieces)]
     if earlier:
         lines += ["Of these, by an earlier run whose state was believed : %d" % earlier]
-    return Result(status, verdict, "\n".join(lines + ["SHA-256 : " + claim.sha256]))
+    return Result(status, verdict, "\n".join(lines + ["SHA-256 : " + file.sha256]))
 
 
 # ---- the command
@@ -1903,7 +2760,8 @@ def whole(text):
 def parser():
     p = Parser(prog="converse-check", allow_abbrev=False,
                formatter_class=argparse.RawDescriptionHelpFormatter, description=(
-        "Verifies the theorem of a proof file, independently of the program that wrote it."),
+        "Verifies the theorem of a proof file, or all those of a map, independently of the program that\n"
+        "wrote them."),
         epilog="""exit status:
   0    verified
   1    rejected: the file is wrong (altered, unfinished, with undecided or missing
@@ -1913,7 +2771,7 @@ def parser():
   4    a spot check in which nothing failed: NOT a verification
   5    not confirmed: the claim is false or its proof beyond the checker's limits
   130  interrupted (129, 143: by SIGHUP, SIGTERM)""")
-    p.add_argument("file", help="a finished proof file, perhaps compressed by gzip")
+    p.add_argument("file", help="a finished proof file or a map, perhaps compressed by gzip")
     p.add_argument("--jobs", type=whole, default=1, metavar="N", help="processes (default 1)")
     p.add_argument("--sample", type=whole, metavar="K",
                    help="only a spot check, of K leaves chosen by chance; not a verification")

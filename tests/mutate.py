@@ -329,6 +329,8 @@ MUTATIONS = [
     ("loewner/problem.c", "ldexp(w->half[axis], 2 - cell->cuts[axis]) > w->slack[axis]", "1"),
     ("loewner/problem.c", "cell->cuts[k] > FINEST", "0"),
     ("search.c", "axis < 0 || !may_cut(s", "!may_cut(s"),
+    ("loewner/try.c", "part < 1.0 ? sqrt(sqrt(part)) : 1.0", "1.0"),
+    ("loewner/try.c", "        worst = widest;", "        ;"),
     ("numbers/sine.h", "0x1.0b4611a6p-34) - n", "0x1.0b4611a7p-34) - n"),
     ("loewner/problem.c", "return largest * (1.0 + 0x1p-46);", "return largest - 1e-9;"),
     # lanes that are mixed up, what other prisms left behind, and notes of what was looked at ahead

@@ -2,6 +2,7 @@
 
 import math
 from decimal import Decimal
+from fractions import Fraction
 
 import pytest
 
@@ -10,10 +11,11 @@ from converse.problem import Problem
 from converse.settings import Settings
 
 
-def decide(problem, xstar=None, most=20000):
-    """The first prism and what it is cut into, as far as `most` tries: x*, tries, all proved?"""
-    if not isinstance(problem, Problem):
-        problem = Problem(**dict(zip("abc", problem)))
+def decide(parameters, xstar=None, most=20000):
+    """The first prism of a problem, or of three ranges, and what it is cut into, as far as `most`
+    tries: x*, tries, all proved?"""
+    problem = parameters if isinstance(parameters, Problem) else \
+        Problem(**dict(zip("abc", parameters)))
     search = core.Search(core.Task(problem, Settings(method="loewner"), xstar))
     assert search.prepare(core.ffi.NULL)
     begun = search.begin("")
@@ -79,6 +81,32 @@ CUT_FOR_EVER = [
       ("0.004412148962980927", "0.004447854993970013"),
       ("0.8080800271305957", "0.8146195457942839")), ("0.5697", "0.4299"), 5000),
 ]
+
+
+def polar(a, b, c, r, s):
+    """The patch of r ((a, b, 0) + s (0, 0, c)), r and s in these ranges."""
+    (r0, r1), (s0, s1) = (tuple(map(Fraction, ends)) for ends in (r, s))
+    r, s = (r0 + r1) / 2, (s0 + s1) / 2
+    return Problem.patch([r * a, r * b, r * s * c],
+                         [[(r1 - r0) / 2 * x for x in (a, b, s * c)], [0, 0, r1 * (s1 - s0) / 2 * c]])
+
+
+# A wave that is next to nothing ended orbits, since nobody knew the angle that feels it; or the angle
+# that made the ends too wide was never cut.
+CUT_FOR_EVER += [
+    (polar(1, 0, 1, ("1.1875", "1.1953125"), (0, "0.00390625")), xstar, 1000)
+    for xstar in (("1.570796", "0"), ("1.570796", "1.570796"), ("1.6", "0.5"), ("1.5", "3"))] + [
+    (polar(1, 0, 1, ("1.0625", "1.0703125"), (0, "0.0078125")), ("1.570796", "0"), 3000),
+    (polar(1, 1, 1, ("1.125", "1.1328125"), (0, "0.00390625")), ("1.570796", "1.570796"), 1000),
+    (polar(1, 1, 1, ("1.125", "1.1328125"), (0, "0.00390625")), ("0", "1.570796"), 1000),
+    (polar(1, 1, 1, ("1.125", "1.1328125"), (0, "0.00390625")), ("1.5", "0.1"), 2000)]
+
+
+@pytest.mark.parametrize("b", ["0", "0.001", "0.01", "0.1", "0.5", "0.9"])
+@pytest.mark.parametrize("c", ["1e-7", "0.001", "0.01", "0.03"])
+def test_a_small_coupling_costs_little(b, c):
+    """a alone takes 151 tries."""
+    assert decide(("1.03", b, c))[2]
 
 
 @pytest.mark.parametrize("parameters, xstar, most", CUT_FOR_EVER)

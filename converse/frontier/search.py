@@ -26,11 +26,12 @@ FIRST, MORE, MOST = 1 << 15, 4, 1 << 21         # leaves that a cell may cost, a
 LOOK = 1 << 9                       # leaves after which it is asked what it will cost
 PESSIMISM = 4                       # times the budget that is expected: given up
 POINT = 1 << 14                     # leaves, of a point of the estimated frontier
-NEAR = 0.004                        # to which that is found, a ratio
+TRIAL = 1 << 12                     # leaves, of a point that one way is compared with another by
 COARSE = 0.25                       # width of a cell, at first, as a part of its radius
 GRAIN = 6                           # cells are not cut to less than this part of down_to - 1
 SHEAR = (1, 0, -1, 1)               # x_1 = (v0, v1 - v0): the wave c does not feel v0
 PLAIN = (1, 0, 0, 1)
+RIGHT = ("1.570796", "1.570796")    # an x* where each of the waves a and b bends most
 LOOK_SECONDS = 0.1
 
 
@@ -38,20 +39,15 @@ LOOK_SECONDS = 0.1
 
 @dataclass(frozen=True)
 class Outcome:
-    """What became of a cell: its kind, and if it is proved, with what; leaves: that it cost."""
+    """What became of a cell: its kind, and if it is proved, with what."""
 
     kind: str
     proof: Optional[dict] = None
-    leaves: int = 0
 
 
-def _problem(amplitude, parts, frame):
-    return Problem.patch(amplitude, parts, axes=frame)
-
-
-def _grow(problem, most, stop):
+def _grow(problem, xstar, most, stop):
     """(tree or None, leaves, Begun) of a problem that may cost so many leaves; None: stopped."""
-    begun = core.begin(core.Task(problem, SETTINGS), "", stop)
+    begun = core.begin(core.Task(problem, SETTINGS, xstar), "", stop)
     if begun is None:
         return None
     task, cells = core.Task(problem, SETTINGS, begun.xstar), begun.cells
@@ -71,67 +67,80 @@ def _grow(problem, most, stop):
     return "".join(pieces), leaves, begun
 
 
+def _ways(directions, cell, stop):
+    """(frame, x*) that may be good for a cell, the cheapest for its middle first; None: stopped."""
+    ways = [(PLAIN, None)]
+    a, b, c = point = tuple(cell.middle[0] * d for d in region.direction(directions, cell.middle[1:]))
+    if c > 2 * max(a, b):
+        ways.append((SHEAR, None))
+    if 0 < 10 * c < min(a, b):                  # either coordinate may contradict
+        ways.append((PLAIN, RIGHT))
+    if len(ways) == 1:
+        return ways
+    cost = {}
+    for frame, xstar in ways:
+        found = _grow(Problem.patch(point, axes=frame), xstar, TRIAL, stop)
+        if found is None:
+            return None
+        cost[frame, found[2].xstar] = math.inf if found[0] is None else found[1]
+    return sorted(cost, key=cost.get)
+
+
 def attempt(directions, cell, most, stop=None):
-    """Tries to prove a cell."""
+    """Tries to prove a cell with so many leaves; None: stopped."""
     stop = stop or core.stop_token()
-    point = region.direction(directions, cell.middle[1:])
+    middle, parts = region.patch(directions, cell)
     if cell.high[0] == region.RADIUS:           # nothing else will do
-        begun = core.begin(core.Task(_problem(*region.patch(directions, cell), PLAIN), SETTINGS), "",
-                           stop)
+        begun = core.begin(core.Task(Problem.patch(middle, parts), SETTINGS), "", stop)
         return begun and Outcome(AT_ONCE if begun.at_once else OPEN)
-    frame = PLAIN
-    if point[2] > 2 * max(point[:2]):           # the cheaper frame, for a point of the cell
-        cost = {}
-        for each in PLAIN, SHEAR:
-            found = _grow(_problem(tuple(cell.middle[0] * d for d in point), (), each), LOOK, stop)
-            if found is None:
-                return None
-            cost[each] = found[1] if found[0] is not None else math.inf
-        frame = min(cost, key=cost.get)
-    problem = _problem(*region.patch(directions, cell), frame)
-    found = _grow(problem, most, stop)
+    ways = _ways(directions, cell, stop)
+    if ways is None:
+        return None
+    frame, xstar = ways[0]
+    problem = Problem.patch(middle, parts, axes=frame)
+    found = _grow(problem, xstar, most, stop)
     if found is None:
         return None
     tree, leaves, begun = found
     if begun.at_once:
         return Outcome(AT_ONCE)
     if tree is None:
-        return Outcome(OPEN, leaves=leaves)
+        return Outcome(OPEN)
     return Outcome(PROVED, {"xstar": list(begun.xstar), "frame": list(problem.frame),
                             "alone": "no" if problem.kept is None else str(problem.kept),
-                            "tree": tree}, leaves)
+                            "tree": tree})
 
 
 def frontier(directions, place, stop=None):
     """The least radius, about, at which a direction is proved with POINT leaves: an estimate of
-    where orbits stop contradicting."""
+    where orbits stop contradicting; None: stopped."""
     stop = stop or core.stop_token()
-    point = region.direction(directions, place)
-    frame = SHEAR if point[2] > 2 * max(point[:2]) else PLAIN
 
     def proved(radius, most):
-        radius = Fraction(radius).limit_denominator(1 << 20)
-        radius = Fraction(round(radius * 10 ** 6), 10 ** 6)
-        found = _grow(_problem(tuple(radius * d for d in point), (), frame), most, stop)
+        cell = region.Cell(0, (radius, *place), (radius, *place))
+        ways = _ways(directions, cell, stop)
+        if ways is None:
+            return None
+        frame, xstar = ways[0]
+        found = _grow(Problem.patch(region.patch(directions, cell)[0], axes=frame), xstar, most, stop)
         return found and (found[0] is not None or found[2].at_once)
 
-    low, high = 0.0, float(region.RADIUS)
-    for most, shrink in (LOOK, 0.75), (POINT, 0.97):
-        low = high * shrink
-        while low > 0.01:
+    low, high = 0, region.RADIUS
+    for most, tolerance in (LOOK, Fraction(1, 32)), (POINT, Fraction(1, 256)):
+        step = 8 * tolerance
+        while True:                             # down to where it fails
+            low = high * (1 - step)
             answer = proved(low, most)
-            if answer is None:
-                return None
-            if not answer:
+            if not answer or low < Fraction(1, 100):
                 break
-            high, low = low, low * shrink
-        while high / low > 1 + (NEAR if most == POINT else 0.03):
-            middle = math.sqrt(low * high)
+            high = low
+        while answer is not None and high - low > tolerance * high:
+            middle = (low + high) / 2
             answer = proved(middle, most)
-            if answer is None:
-                return None
             low, high = (low, middle) if answer else (middle, high)
-    return high
+        if answer is None:
+            return None
+    return float(high)
 
 
 # ---- the search

@@ -224,7 +224,7 @@ INLINE void sum_cubic(batch *w, mask turn, int columns)
                     const vec bow = felt(w, i, q->bow[0][kl], q->bow[1][kl]);
                     form[i][kl] = -pA * bow - third * cc;
                     for (int m = 2; m < columns; m++)
-                        if (w->root->moves[i][m])
+                        if (moves(w, i, m, columns))
                             w->cubic[m][kl] += pick(now, w->part[i][m] * (B * bow - A * cc),
                                                     every(0.0));
                 }

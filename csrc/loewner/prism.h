@@ -85,11 +85,18 @@ typedef struct {
 
 static const double TINY = 0x1p-800;
 
+/* Does the wave's amplitude move with a column's symbol?  Where there is one parameter alone the
+   question takes longer than to add nothing. */
+INLINE int moves(const batch *w, int wave, int column, int columns)
+{
+    return columns == 3 || w->root->moves[wave][column];
+}
+
 /* Adds, for each column, what the wave's amplitude moves with its symbol, times a factor. */
 INLINE void add_moves(const batch *w, int wave, vec factor, vec to[], int columns)
 {
     for (int k = 2; k < columns; k++)
-        if (w->root->moves[wave][k])
+        if (moves(w, wave, k, columns))
             to[k] += w->part[wave][k] * factor;
 }
 

@@ -1,6 +1,7 @@
 /* try.c - prisms from beginning to end. */
 #include "prism.h"
 
+enum { LAG = 4 };                       /* cuts that an axis may be behind */
 enum { PATIENCE = 8 };                  /* tries follow each other by an eighth of the orbit */
 static const double SMALL = 4.0;        /* waves of a fourth of the largest count as it does */
 static const double HOPELESS = 2.0;     /* times the least bound yet: longer orbits will not do */
@@ -80,26 +81,49 @@ static void attempt(batch *w, mask turn, progress s[], loewner_outcome *const ou
     }
 }
 
-/* Why the prism of lane k failed: blames a column, and tells what its halves should know. */
+/* The column that makes the ends of lane k's orbit widest. */
+static int widest_at_ends(const batch *w, int k)
+{
+    double width[COLUMNS];
+    int widest = 0;
+
+    for (int c = 0; c < w->root->columns; c++) {
+        width[c] = 0.0;
+        for (int i = 0; i < 2; i++)
+            if (w->root->feels[i])
+                width[c] += fabs(at(&w->orbit[w->last[k]].column[i][c], k))
+                            + fabs(at(&w->orbit[w->first[k]].column[i][c], k));
+        if (width[c] > width[widest])
+            widest = c;
+    }
+    return widest;
+}
+
+/* The column that has the largest share in the bound. */
+static int worst_of(const batch *w, int k)
+{
+    int worst = 0;
+
+    for (int c = 1; c < w->root->columns; c++)
+        if (at(&w->share[c], k) > at(&w->share[worst], k))
+            worst = c;
+    return worst;
+}
+
+/* Why the prism of lane k failed: blames a column, and tells what its halves should know.
+
+   Where the centre contradicts, that is the one that the bound owes most to.  But on some surface the
+   contradiction is nothing, and near it these columns would be cut for ever, while a longer orbit,
+   whose end another has made too wide, would contradict plainly: that one must not lag behind. */
 static void blame(const batch *w, int k, const progress *s, const cv_cell *cell,
                   loewner_outcome *out)
 {
     const loewner *const root = w->root;
-    double share[COLUMNS];
-    int worst = 0;
+    const int widest = widest_at_ends(w, k);
+    int worst = s->contradicted ? worst_of(w, k) : widest;
 
-    for (int c = 0; c < root->columns; c++) {
-        share[c] = 0.0;
-        if (s->contradicted)
-            share[c] = at(&w->share[c], k);
-        else                            /* whoever is widest at the ends */
-            for (int i = 0; i < 2; i++)
-                if (root->feels[i])
-                    share[c] += fabs(at(&w->orbit[w->last[k]].column[i][c], k))
-                                + fabs(at(&w->orbit[w->first[k]].column[i][c], k));
-        if (share[c] > share[worst])
-            worst = c;
-    }
+    if (s->ended && cell->cuts[root->axis[widest]] + LAG < cell->cuts[root->axis[worst]])
+        worst = widest;
     if (!s->contradicted)
         out->v.reason = s->why;
     if (may_cut(root, cell, root->axis[worst]))
