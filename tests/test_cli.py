@@ -364,7 +364,7 @@ def test_a_potential_of_ones_own(command, root, tmp_path):
     status, out, err = command("-r", path, "-d", "120", sample)
     assert (status, err) == (0, "")
     assert "I find no rotational invariant circles for V(y) = - the sum of :\np sin(y0 - 1/2 pi), " \
-        "p = 1.160000 + 0.180000 t[1]\nfor -1 < t[1] < 1\nNor are there any for s times" in out
+        "p = 1.158000 + 0.182000 t[1]\nfor -1 < t[1] < 1\nNor are there any for s times" in out
     status, out, err = command("-r", path, root / "inputs" / "two-harmonics.json")
     assert (status, out) == (2, "") and one_line(err) and "its potential is " in err
 

@@ -1,6 +1,7 @@
 """Where orbits start, method Loewner: the choice of x*, and that no proof depends on luck with it."""
 
 import math
+from decimal import Decimal
 from fractions import Fraction
 
 import pytest
@@ -112,3 +113,56 @@ def test_a_small_coupling_costs_little(b, c):
 def test_nothing_is_cut_for_ever(parameters, xstar, most):
     _, tries, proved = decide(parameters, xstar, most)
     assert proved and tries <= most
+
+
+# ---- other potentials
+
+def two_harmonics(K1, K2="0.2", along=(1, 0)):
+    """The standard map with a second harmonic; along y0, or y1, or y0 + y1."""
+    size, phase = along[0] ** 2 + along[1] ** 2, "-1/2"
+    return Problem.patch([Decimal(p) / size for p in (K1, K2)], [],
+                         [(m * along[0], m * along[1], phase) for m in (1, 2)])
+
+
+def froeschle(K, coupling):
+    return Problem.patch([K, K, coupling], [], [(1, 0, "-1/2"), (0, 1, "-1/2"), (1, 1, "-1/2")])
+
+
+def crossed(*amplitudes):
+    return Problem.patch(amplitudes, [], [(1, 0), (0, 1), (1, 1), (1, -1)])
+
+
+@pytest.mark.parametrize("along", [(0, 1), (1, 1), (2, -1)])
+def test_where_all_waves_are_parallel_it_is_one_question(along):
+    """x* along them is that of the circle, and so is the proof."""
+    (s, _), tries, proved = decide(two_harmonics("0.62"))
+    x, same, also = decide(two_harmonics("0.62", along=along))
+    assert proved and also and abs(same - tries) <= tries // 4
+    assert math.cos(along[0] * x[0] + along[1] * x[1]) == pytest.approx(math.cos(s), abs=0.02)
+
+
+# The best of 200 x* is in the gap that two harmonics leave to 0.59, and in none at 0.585.
+@pytest.mark.parametrize("problem", [
+    two_harmonics("0.59"), two_harmonics("0.605"), two_harmonics("0.64"),
+    Problem.patch(["1", "0.1"], [], [(1, 0), (2, 0)]),
+    Problem.patch(["0.8", "0.1"], [], [(1, 0), (2, 0)]),
+    froeschle("0.84", "0.1"), froeschle("0.65", "0.3"), froeschle("0.6", "0.3"),
+    froeschle("0.37", "0.5"), froeschle("0.28", "0.5"), crossed("0.3", "0.3", "0.225", "0.075")],
+    ids=repr)
+def test_points_near_the_frontier_of_other_potentials_are_proved(problem):
+    assert decide(problem)[2]
+
+
+def test_symmetry_is_given_up_only_for_longer_orbits():
+    """On the diagonal nine points leave least, and no proof is to be had."""
+    x0, x1 = decide(froeschle("0.65", "0.3"))[0]
+    assert abs(x0 - x1) > 1
+    assert not decide(froeschle("0.65", "0.3"), ("2.116893", "2.116893"))[2]
+    x0, x1 = decide(froeschle("0.7", "0.3"))[0]
+    assert x0 == x1
+
+
+def test_high_harmonics_and_many_waves_have_a_choice():
+    waves = [(k0, k1) for k0 in (0, 1, 97, 100) for k1 in (-100, -3, 1, 100)]
+    problem = Problem.patch([Decimal("0.0001")] * 16, [], waves)
+    assert all(map(math.isfinite, decide(problem, most=0)[0]))
