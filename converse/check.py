@@ -1264,7 +1264,7 @@ BATCH, SMALLEST_BATCH = 1024, 16
 FAST_SITES, ROOM = 4096, 1 << 19        # of a lane; of all lanes at a time
 FIRST_TRY = 96                          # sites, for lanes that are longer
 FARTHEST = 1.0                          # reach of a wave that is there
-CAUTION = 0.2, 0.2, 1.0                 # of the choice of n: see witnesses, settle
+CAUTION = (0, 0.2), (0.3, 0), (0, 1.0)  # of the choice of n: see witnesses, settle
 
 
 def sound():
@@ -1473,13 +1473,14 @@ class Prisms:
     def __init__(self, box, shape, xstar, l, caution=CAUTION[0]):
         """The box: P, h (by wave and symbol) and W of the waves, X[1] in turns, the sides of the
         parallelogram as columns and what x[1] may be off, in radians; the Shape; x* in turns; l;
-        and how much the choice of n shies at sites that are not well known."""
+        and how much the choice of n shies at sites that are not well known, by their reach and
+        by its square."""
         P, h, W, x, sides, off = box
         self.size, self.shape = x.shape[1], shape
         self.P, self.h, self.W = self.both(P, P), self.both(h, h), self.both(W, W)
         self.H = np.abs(self.h).sum(axis=1) * MORE
         self.magnitude, self.l = np.abs(self.P), self.both(l, l)
-        self.caution = self.both(caution + 0 * l, caution + 0 * l)
+        self.caution = [self.both(x + 0 * l, x + 0 * l) for x in caution]
         absent = (self.magnitude == 0) & (self.H == 0) & (self.W == 0)  # in these lanes
         self.absent = {w: absent[w] for w in shape.present if absent[w].any()}
         form = combined(shape.forms, self.magnitude.mean(axis=1)[:, None])[:, 0]
@@ -1614,7 +1615,7 @@ class Prisms:
         sites, none, shape = self.sites, np.zeros_like(self.l), self.shape
         blocks, tail = [], np.stack((self.l, none, self.l))
         for *_, reach, beta, _ in sites:
-            more = self.caution * reach * reach
+            more = (self.caution[0] + self.caution[1] * reach) * reach
             blocks.append(beta + combined(shape.forms, (self.magnitude + self.H) * more))
         outer, back, whole = [], [], []             # the recursion from the end
         inverse, beyond, good = tail, none > 0, none == 0
@@ -1874,7 +1875,8 @@ class Lockstep:
         first that is not excluded, why not) or None, and how many pieces each took.
 
         Those that fail are halved and tried again, up to the checker's limits and with n chosen
-        boldly and cautiously in turn; what fails then, exactly(number) -> (None or why not,
+        boldly and cautiously in turn (n spreads over few sites if their reach counts, over many if
+        its square does); what fails then, exactly(number) -> (None or why not,
         pieces) decides on.
         """
         begun = np.array([cuts for _, (_, cuts) in cells]).T
@@ -1899,7 +1901,7 @@ class Lockstep:
             halved = cuts - begun[:, number]
             halvings = halved.sum(axis=0)
             tried = self.attempt(index, cuts, claim, l,
-                                 np.array(CAUTION)[halvings % len(CAUTION)], halved)
+                                 np.array(CAUTION)[halvings % len(CAUTION)].T, halved)
             if tried is None:
                 self.batch //= 2
                 continue

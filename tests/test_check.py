@@ -1433,7 +1433,8 @@ def random_claim(generator, text, size=1, width=1, three=None):
               * generator.choice((0, 1, 1, 1))) for _ in "01"]
     if three if three is not None else generator.random() < 0.6:
         waves, parts = some_waves(generator), generator.randint(0, 3)
-        return general(text, [(k, phase, exact_decimal(generator, size) / (abs(k[0]) + abs(k[1])),
+        # Of a finite number of decimals, and the less the more the wave turns.
+        return general(text, [(k, phase, exact_decimal(generator, size) / 2 ** sum(map(abs, k)),
                                [exact_decimal(generator, width) / 2 * generator.choice((0, 1, 1))
                                 for _ in range(parts)]) for k, phase in waves],
                        *sides, generator.choice(FRAMES))
