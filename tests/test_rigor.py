@@ -149,7 +149,7 @@ STARVED = r"""
 import ctypes, sys
 from fractions import Fraction
 import converse
-from converse.core import native_problem, waves_of
+from converse.core import native_problem
 from converse._native import ffi, lib
 shim = ctypes.CDLL(None)
 shim.fail_after.argtypes = [ctypes.c_long]
@@ -157,9 +157,9 @@ def strings(words):
     owners = [ffi.new("char[]", w.encode()) for w in words]
     return ffi.new("char *[]", owners), owners
 keep = []
-problems = [native_problem(waves_of(converse.Problem.around(
+problems = [native_problem(converse.Problem.around(
     tuple(map(Fraction, ("0.311", "0.311", "0.622", "1", "1"))),
-    tuple(map(Fraction, ("0.00125", "0.00125", "0.0025", "1", "1"))), (), together)), keep)
+    tuple(map(Fraction, ("0.00125", "0.00125", "0.0025", "1", "1"))), (), together), keep)
     for together in (False, True)]
 handle = ffi.new("cv_search **")
 value, keep3 = strings(["0.3", "0.4"])

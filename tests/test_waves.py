@@ -323,7 +323,8 @@ def patch_of(waves, amplitude, parts=(), frame=(1, 0, 0, 1), odd=True, v0=(0, 2)
     return SimpleNamespace(
         waves=tuple((*w[:2], Fraction(w[2]) if len(w) > 2 else Fraction(0)) for w in waves),
         amplitude=tuple(map(Fraction, amplitude)), frame=frame, odd=odd,
-        parts=tuple(tuple(map(Fraction, g)) for g in parts), v0=v0, v1=v1)
+        parts=tuple(tuple(map(Fraction, g)) for g in parts), v0=v0, v1=v1,
+        searched=range(len(waves)))
 
 
 def searched(patch, xstar=None, leaves=20000):
