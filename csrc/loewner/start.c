@@ -28,7 +28,7 @@ enum { ANGLES = FINER * OFFSETS, SIDES = 2 / LANES, GUESSES = 8 };
 static const double TOLERANCE = 1e-9, MAX_JUMP = 0.5, PI = 3.14159265358979323846;
 static const double BETWEEN = 0.28;     /* of the way from the least beta to the least potential */
 static const double NOTHING = 1e-6;     /* no better than that: it may be rounding */
-static const double PLAINLY = 0.001;    /* better: enough for giving up symmetry */
+static const double PLAINLY = 0.001;    /* better: enough to leave where symmetry is */
 static const double ENOUGH = 0.06, WEAKER = 0.97;       /* so much must be left, or V is weakened */
 static const double STRONG = 1.5, WEAK = 0.5;   /* B - 2: there is no torus; nothing to prove */
 
@@ -512,6 +512,8 @@ static void improve(pencil *o, int on_diagonal, double x[2])
     if (find_best(o, DIAGONAL, value, y) < value - PLAINLY)
         memcpy(x, y, sizeof y);
     find_best(o, ANYWHERE, HUGE_VAL, off);
+    if (fmax(fabs(off[0] - x[0]), fabs(off[1] - x[1])) < 2.0 * PI / PLACES)
+        return;                         /* it is the same gap */
     o->reach = REACH;
     o->step = FINER / 2;
     value = score(o, x, HUGE_VAL) - PLAINLY;
