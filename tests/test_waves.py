@@ -322,7 +322,7 @@ def test_convexity_bounds_it_between_the_corners():
 def patch_of(waves, amplitude, parts=(), frame=(1, 0, 0, 1), odd=True, v0=(0, 2), v1=(0, 2)):
     return SimpleNamespace(
         waves=tuple((*w[:2], Fraction(w[2]) if len(w) > 2 else Fraction(0)) for w in waves),
-        amplitude=tuple(map(Fraction, amplitude)), frame=frame, odd=odd,
+        amplitude=tuple(map(Fraction, amplitude)), frame=frame, odd=odd or None,
         parts=tuple(tuple(map(Fraction, g)) for g in parts), v0=v0, v1=v1,
         searched=range(len(waves)))
 
