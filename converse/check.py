@@ -1785,7 +1785,7 @@ class Lockstep:
         if not all(claim.felt for claim in claims):
             raise ValueError("no wave: orbits without end")
         self.axes = sorted({2 + m for claim in claims for wave in claim.felt
-                            for m, part in enumerate(wave.parts) if part})
+                            for m, part in enumerate(wave.parts) if float(part)})   # or TINY
         shape = (len(waves), len(claims))
         self.middle, self.scale = np.zeros(shape), np.zeros(shape)
         self.parts = np.zeros((len(self.axes), *shape))

@@ -9,6 +9,7 @@ import itertools
 import json
 import math
 import multiprocessing
+import operator
 import os
 import random
 import re
@@ -1205,15 +1206,18 @@ def test_model(bits, generator):
                                                                          Fraction(2, wide)))
         p *= generator.choice((1, -1))
         angle = near(generator) * 4
+        parts = [int(near(generator) * h) for _ in range(generator.randint(0, 3))]
+        h = sum(map(abs, parts))
         s, c = FIXED[bits].sincos(int(angle * 2 ** bits))
         wave, f, g = generator.choice(((mp.sin, s, c), (mp.cos, c, -s)))
         if generator.random() < 0.5:        # as far from the truth as the contract allows
             f, g = ((k + generator.choice((-12, 12)) for k in (f, g)))
-        value, slope, tilt, error = check.model(bits, p, h, f, g, rho)
-        e, d, off = near(generator), near(generator) * rho, near(generator) * check.PARAMETER_ERROR
+        value, slopes, tilt, error = check.model(bits, p, parts, f, g, rho)
+        e = [real(near(generator)) for _ in parts]
+        d, off = near(generator) * rho, near(generator) * check.PARAMETER_ERROR
         y = real(Fraction(int(angle * 2 ** bits))) * unit + real(d) * unit
-        true = (p + real(h * e + off)) * wave(y)
-        linear = value + real(slope * e) + real(tilt * d) * unit
+        true = (p + sum(map(operator.mul, parts, e)) + real(off)) * wave(y)
+        linear = value + sum(map(operator.mul, slopes, e)) + real(tilt * d) * unit
         assert abs(true - linear) <= error
         assert error <= 40 * (abs(p) + h) * unit + 20 + check.PARAMETER_ERROR + (
             (abs(p) + h) * (rho * unit) ** 2 + h * rho * unit)
@@ -2008,11 +2012,12 @@ def test_nothing_that_minimizes_is_excluded(np, texts, generator):
             most = generator.randint(3, 11)
             slices = [(generator.randrange(1 << k), k) for k in (most, most)] + [
                 (generator.randrange(1 << k), k) for k in [generator.randint(0, 3)] * 3]
-            if claim.together:
+            if claim.parameters == 1:
                 slices[3:] = [(0, 0)] * 2
             cells.append(tuple(zip(*slices)))
         l = np.array([criterion.least_in_double(cell) for cell in cells])
-        proved, _ = fast.attempt(*cells_of(np, cells), np.zeros(len(cells), int), l, 0.2)
+        proved, _ = fast.attempt(*cells_of(np, cells), np.zeros(len(cells), int), l,
+                                  check.CAUTION[0])
         for cell, good in zip(cells, proved):
             cases += 1
             excluded += bool(good)
@@ -2337,7 +2342,8 @@ def found_tree(np, claim, most=20000):
         if tried > most:
             return None
         l = np.array([criterion.least_in_double(cell) for cell in batch])
-        excluded, axis = fast.attempt(*cells_of(np, batch), np.zeros(len(batch), int), l, 0.2)
+        excluded, axis = fast.attempt(*cells_of(np, batch), np.zeros(len(batch), int), l,
+                                      check.CAUTION[0])
         for cell, good, at in zip(batch, excluded.tolist(), axis.tolist()):
             nodes[cell] = "P" if good else check.AXES[at]
             if not good:
