@@ -433,7 +433,7 @@ def coefficients(waves, swap=False, order=None):
         k, phase = wave.k[::-1] if swap else wave.k, wave.phase
         if k < (0, 0):                          # sin(x) = sin(pi - x)
             k, phase = (-k[0], -k[1]), 1 - phase
-        sign = (-1) ** (phase // 1)             # sin(x + pi) = -sin(x)
+        sign = -1 if phase // 1 % 2 else 1      # sin(x + pi) = -sin(x)
         parts = [wave.parts[m] for m in order] if order else wave.parts
         key = k, phase % 1
         found[key] = [old + sign * new for old, new in

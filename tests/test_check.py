@@ -2630,7 +2630,7 @@ def path_of(content, *path):
     (("region",), 7, 1, "type"), (("down to",), "x", 1, "down to"), (("extra",), 1, 1, "no other"),
     (("faces", 0, "extra"), 1, 1, "no other"), (("faces", 0, "radius"), "0", 1, "not above 0"),
     (("faces", 0, "radius"), "nan", 1, "decimal"), (("faces", 0, "radius"), 4, 1, "type"),
-    (("faces", 0, "radius"), "1", 5, "at once"), (("faces", 0, "radius"), "1.9", 5, "not excluded"),
+    (("faces", 0, "radius"), "1", 5, "at once"), (("faces", 0, "radius"), "2.4", 5, "not excluded"),
     (("faces", 0, "directions", 1, 2), "2", 1, "not those of the region"),
     (("faces", 0, "directions", 1), ["0", "1"], 1, "a list of 3"),
     (("faces", 0, "directions"), [["1", "0", "0"]], 1, "two or three"),
