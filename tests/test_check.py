@@ -2741,6 +2741,22 @@ def test_proved_from(generator):
             assert found[0] is None or found[0] >= worst
 
 
+def test_products_of_strips_are_bounded(maps, run):
+    """Strips of s below strips of t: a short file with a million different directions."""
+    def comb(axis, depth):
+        return (axis + comb(axis, depth - 1) * 2) if depth else "O"
+
+    face = check.REGIONS["sphere"]
+    content = {**maps["b=0"], "region": "sphere", "faces": [
+        face_of(face[0], "2", "0" + comb("1", 10) + comb("2", 10)), face_of(face[1], "2", "O")]}
+    began = time.process_time()
+    status, out, err = run(map_text(content))
+    assert (status, out) == (5, "") and "face 1: its cells lie in too many ways" in err
+    assert time.process_time() < began + 30
+    content["faces"][0]["tree"] = "0" + comb("1", 4) + comb("2", 4)
+    assert run(map_text(content))[0] == 0
+
+
 def test_sign_changes():
     assert check.sign_changes() == set(itertools.product((-1, 1), repeat=3))
 
