@@ -433,7 +433,7 @@ def coefficients(waves, swap=False, order=None):
         k, phase = wave.k[::-1] if swap else wave.k, wave.phase
         if k < (0, 0):                          # sin(x) = sin(pi - x)
             k, phase = (-k[0], -k[1]), 1 - phase
-        sign = (-1) ** (phase // 1)             # sin(x + pi) = -sin(x)
+        sign = -1 if phase // 1 % 2 else 1      # sin(x + pi) = -sin(x)
         parts = [wave.parts[m] for m in order] if order else wave.parts
         key = k, phase % 1
         found[key] = [old + sign * new for old, new in
@@ -1785,7 +1785,7 @@ class Lockstep:
         if not all(claim.felt for claim in claims):
             raise ValueError("no wave: orbits without end")
         self.axes = sorted({2 + m for claim in claims for wave in claim.felt
-                            for m, part in enumerate(wave.parts) if part})
+                            for m, part in enumerate(wave.parts) if float(part)})   # or TINY
         shape = (len(waves), len(claims))
         self.middle, self.scale = np.zeros(shape), np.zeros(shape)
         self.parts = np.zeros((len(self.axes), *shape))
@@ -2245,6 +2245,11 @@ class Face:
     radius: Fraction
     cells: tuple
 
+    @functools.cached_property
+    def proved(self):
+        """What proved_from says of it."""
+        return proved_from(self.cells, self.radius, len(self.directions) - 1)
+
     def d(self, place):
         """d(s, t) of exact numbers."""
         d0, *others = self.directions
@@ -2432,6 +2437,8 @@ def check_map(file):
     """
     fixed, bounds, claims = Fixed.of(96), [], iter(file.claims)
     for at, face in enumerate(file.faces, 1):
+        with named("face %d" % at):
+            face.proved                 # which has a limit: not to be met after hours
 
         @functools.lru_cache(maxsize=None)
         def excess(place, face=face):
@@ -2485,12 +2492,16 @@ def proved_from(cells, radius, axes):
 
     A cell at once is proved from its least r on.  Directions in which some cell is finer are
     looked at in halves; where all cells are as wide as the directions, the unproved ones are
-    those not above the first that is at once.
+    those not above the first that is at once.  NotConfirmed, if that are too many halves: strips
+    of s below strips of t make all their products.
     """
-    worst, forever = Fraction(0), True
+    worst, forever, seen = Fraction(0), True, 0
     todo = [((0,) * axes, (0,) * axes, cells)]
     while todo:
         index, cuts, cells = todo.pop()
+        seen += len(cells)
+        if seen > MAX_ITEMS:
+            raise NotConfirmed("its cells lie in too many ways below each other for this checker")
         axis = next((m for m in range(axes)
                      if any(cell[2][1 + m] > cuts[m] for cell in cells)), None)
         if axis is None:
@@ -2674,7 +2685,7 @@ def mapped(file):
         if least is None:
             lines += ["  nothing is proved"]
             continue
-        start, forever = proved_from(face.cells, face.radius, len(names))
+        start, forever = face.proved
         lines += ["  every direction is proved from r = %s on, %s" % (
             decimal_text(start), "for ever" if forever else "up to the face's radius")
             if start is not None else "  not every direction is proved, even at the face's radius",
