@@ -1076,6 +1076,10 @@ class Criterion:
                 if bound < 0:
                     return None
                 why = "its second variation may be positive"
+        # What moves the ends matters, if little: when it is halved, the orbit may go on.
+        columns = [abs(x) + sum([abs(k0 * p.rows[0][m] + k1 * p.rows[1][m])
+                                 for p in (orbit[0], orbit[-1], second) for k0, k1, _ in waves])
+                   for m, x in enumerate(columns[:PARAMETERS + 2])]
         return why or "the orbit of its centre contradicts nothing over %d points, %s" % (
             len(orbit), "the most that are followed" if len(orbit) == MAX_POINTS else
             "beyond which it is too uncertain"), columns
@@ -1110,7 +1114,7 @@ class Criterion:
             if sum(halved) >= MAX_HALVINGS or pieces + len(todo) >= MAX_PIECES:
                 return "%s (piece %d, halved %d times)" % (failed[0], pieces, sum(halved)), pieces
             # Along what matters most, but no symbol that matters is left behind for long.
-            blame = list(map(abs, failed[1][:PARAMETERS + 2]))
+            blame = failed[1]
             worst = max(range(len(blame)), key=blame.__getitem__)
             last = min((k for k, x in enumerate(blame) if x or k == worst), key=halved.__getitem__)
             if halved[worst] - halved[last] > LAG:
@@ -1767,7 +1771,8 @@ class Prisms:
         share = share / share.sum(axis=0)
         moved = np.stack([sum([np.abs(x) for key, x in form.items() if k in key])
                           for k in range(self.known)])
-        return value + (summit(form) + error), np.where(value < 0, moved + error * share, share)
+        more = error + moved.sum(axis=0) / 64       # what moves the ends matters, if little
+        return value + (summit(form) + error), np.where(value < 0, moved + more * share, share)
 
 
 class Lockstep:
