@@ -1,8 +1,10 @@
 """converse-check: verifies the theorem of a proof file, independently of the program that wrote it.
 
-The map.  V(y) = -a sin y0 - b sin y1 - c sin(y0 + y1);  x[j+1] = 2 x[j] - x[j-1] - V'(x[j]);
-beta(x) = 2I - V''(x).  Its orbits are stationary for the sum of |x[j+1] - x[j]|^2 / 2 - V(x[j]),
-whose second variation is  Q(n) = sum of n[j].beta(x[j])n[j] - 2 n[j].n[j+1].
+The map.  V(y) = - sum over waves of p sin(k.y + phase), k of two integers, p affine in at most
+three parameters;  x[j+1] = 2 x[j] - x[j-1] - V'(x[j]);  beta(x) = 2I - V''(x).  (The thesis's V has
+the waves (1, 0), (0, 1) and (1, 1), without phase, with p = a, b and c.)
+Its orbits are stationary for the sum of |x[j+1] - x[j]|^2 / 2 - V(x[j]), whose second variation is
+Q(n) = sum of n[j].beta(x[j])n[j] - 2 n[j].n[j+1].
 
 The criterion (the Loewner criterion of converse KAM, by its witness).
 1. Orbits on an invariant graph p = P + S'(x), S of class C1, minimize (MacKay, Meiss and Stark,
@@ -22,12 +24,13 @@ Such an n exists for one orbit if and only if the recursion d[s] = beta - l, d[j
 leads to a d[j] that is not above l: eliminate n[s], n[s+1], ... in turn.  That recursion, from both
 ends and in double precision, is how n is found; but no bound rests on it, as any n will do.
 
-The left side of 3 is a sum of terms p sin(y) with known weights.  Over a prism each term is enclosed
-by a first-order Taylor model in a, b, c and the two angles of x[1] (and in one new symbol for every
-error made on the way), so the sum is bounded as a whole: effects that cancel, cancel.
+The left side of 3 is a sum of terms p sin(k.x + phase) with known weights.  Over a prism each term
+is enclosed by a first-order Taylor model in the parameters and the two angles of x[1] (and in one
+new symbol for every error made on the way), so the sum is bounded as a whole: effects that cancel,
+cancel.
 
-The arithmetic.  Python integers, in units of 2^-bits: exact, unbounded, and each rounding, a >> or a
-//, is to be seen where it happens.  Errors are counted in units.
+The arithmetic.  Python integers, in units of 2^-bits: exact, unbounded, and each rounding, a >> or
+a //, is to be seen where it happens.  Errors are counted in units.
 
 The fast path.  Where there is numpy, a thousand prisms at a time are tried in doubles first, by a
 bound of the left side of 3 that is linear in the length of the orbits; its section has the proof.
@@ -162,7 +165,7 @@ def present(waves):
 
 @dataclass(frozen=True)
 class Claim:
-    """What a proof file says, or a proved cell of a map: exact numbers, v0 and v1 in units of pi."""
+    """What a proof file says, or a proved cell of a map: exact; v0 and v1 in units of pi."""
 
     waves: tuple
     centre: tuple                       # of v0 and v1
@@ -747,9 +750,9 @@ class Point:
 
 
 def model(bits, p, parts, f, g, rho):
-    """Encloses (p + sum of part e) (f' cos d + g' sin d) for |e| <= 1, |d| <= rho <= 2 and all f', g'
-    within SINE_ERROR of f, g, as value + sum of slope e + tilt d + error: these four, the slopes as
-    a list.
+    """Encloses (p + sum of part e) (f' cos d + g' sin d) for |e| <= 1, |d| <= rho <= 2 and all f',
+    g' within SINE_ERROR of f, g, as value + sum of slope e + tilt d + error: these four, the slopes
+    as a list.
 
     cos d is in [1 - rho^2/2, 1], and |sin d - d| <= rho^3/6, so f cos d + g sin d is within
     bend = |f| rho^2/4 + |g| rho^3/6 + 2 SINE_ERROR of f (1 - rho^2/4) + g d.  With h, the sum of
@@ -1076,6 +1079,10 @@ class Criterion:
                 if bound < 0:
                     return None
                 why = "its second variation may be positive"
+        # What moves the ends matters, if little: when it is halved, the orbit may go on.
+        columns = [abs(x) + sum([abs(k0 * p.rows[0][m] + k1 * p.rows[1][m])
+                                 for p in (orbit[0], orbit[-1], second) for k0, k1, _ in waves])
+                   for m, x in enumerate(columns[:PARAMETERS + 2])]
         return why or "the orbit of its centre contradicts nothing over %d points, %s" % (
             len(orbit), "the most that are followed" if len(orbit) == MAX_POINTS else
             "beyond which it is too uncertain"), columns
@@ -1110,7 +1117,7 @@ class Criterion:
             if sum(halved) >= MAX_HALVINGS or pieces + len(todo) >= MAX_PIECES:
                 return "%s (piece %d, halved %d times)" % (failed[0], pieces, sum(halved)), pieces
             # Along what matters most, but no symbol that matters is left behind for long.
-            blame = list(map(abs, failed[1][:PARAMETERS + 2]))
+            blame = failed[1]
             worst = max(range(len(blame)), key=blame.__getitem__)
             last = min((k for k, x in enumerate(blame) if x or k == worst), key=halved.__getitem__)
             if halved[worst] - halved[last] > LAG:
@@ -1150,10 +1157,10 @@ class Criterion:
 # h.e + v, |v| <= W; e in [-1, 1]^m are the symbols of the parameters, and H is the sum of the |h|.
 # There are n waves; the first two are k = (1,0) and (0,1) with the phase 0, the coordinates
 # themselves, and are of amplitude 0 where V has them not.  A lane is one half of a prism's orbits,
-# ahead x[1], x[2], ..., or back x[0], x[-1], ...; the map is reversible, so both are followed by the
-# same steps, from o = x[0], q = x[1] or from o = x[1], q = x[0].  A site of a lane has X, in turns
-# (so whole turns are taken off without any error, and as k is of integers those of k.X, too), and a
-# true orbit is there, modulo 2 pi and in radians,
+# ahead x[1], x[2], ..., or back x[0], x[-1], ...; the map is reversible, so both are followed by
+# the same steps, from o = x[0], q = x[1] or from o = x[1], q = x[0].  A site of a lane has X, in
+# turns (so whole turns are taken off without any error, and as k is of integers those of k.X, too),
+# and a true orbit is there, modulo 2 pi and in radians,
 #       2 pi X + D,    D = L e + r,    |r| <= rest,
 # for the symbols e in the cube, now those of the parameters and of the sides of the parallelogram.
 # Of a wave at a site: y = 2 pi (k.X + phase/2), z = k.D, xi = k.L e and z = xi + w; |xi| <= size,
@@ -1167,8 +1174,8 @@ class Criterion:
 # both coordinates count, near x0 = x1 above all, this is the frame of x0 + x1 and x0 - x1, in which
 # beta is
 #       ((b00 + b11)/2 + b01, (b00 - b11)/2; the same, (b00 + b11)/2 - b01),
-# symmetric, too.  A wave acts on x0 + x1 and x0 - x1 as k0 + k1 and k0 - k1, and k.r is half of these
-# times what r is there.
+# symmetric, too.  A wave acts on x0 + x1 and x0 - x1 as k0 + k1 and k0 - k1, and k.r is half of
+# these times what r is there.
 # xi^2 lies between 0 and size^2, so the bow of the orbits, -p cos y xi^2/2, is half of its extent
 # about its mean: X[+] is 2X - X[o] + the sum of k P cos y (1 - size^2/4).  err is then (i) how far
 # X[+] is from this; (ii) how far L[+] is from beta L[q] - L[o] and h cos y in the parameters'
@@ -1211,15 +1218,16 @@ class Criterion:
 #
 # Roundings.  u = 2^-53.  Which numbers X, P, h, L, d, M, n, mu, E and size are does not matter, but
 # what bounds something must.  K = |k0| + |k1| of a wave; grain = (64 + 16 n) u; S_ij is the sum of
-# |ki kj| K |P| over the waves, and S_i that of |ki| K |P|, at most S_ii.  Sums over the waves are of
-# at most n + 1 terms, each rounded as often.
+# |ki kj| K |P| over the waves, and S_i that of |ki| K |P|, at most S_ii.  Sums over the waves are
+# of at most n + 1 terms, each rounded as often.
 #   angle: k.X is off by K/2 u in its products (none for 0, 1, -1), by K/2 u in its sum, and with
-#       phase/2 by 1.5 u: in turns.  So by 2 pi (K + 1.5) u at most, and, with 4 u of lockstep_sincos,
+#       phase/2 by 1.5 u: in turns.  So by 2 pi (K + 1.5) u at most, and, with 4 u of
+#       lockstep_sincos,
 #   sine, cosine: SINE = 24 K u.  In (iii) 2 SINE with |cos y|, as E has the computed one.
 #   beta: products ki kj P s are off by (24 K + 3) u |ki kj P|, sums by (n + 1) u of 2 and of all
-#       products: (28 + n) u S_ij, and 2 (n + 1) u on the diagonal; less than F_ij / 2, where F_ij is
-#       grain S_ij, and F_ii, F_i for short, grain (1 + S_ii).  In the other frame by (F_0 + F_1)/4 +
-#       F_01/2 and 6 u (2 + S_00 + S_11): less than F_0 + F_1, as 2 S_01 <= S_00 + S_11.
+#       products: (28 + n) u S_ij, and 2 (n + 1) u on the diagonal; less than F_ij / 2, where F_ij
+#       is grain S_ij, and F_ii, F_i for short, grain (1 + S_ii).  In the other frame by (F_0 +
+#       F_1)/4 + F_01/2 and 6 u (2 + S_00 + S_11): less than F_0 + F_1, as 2 S_01 <= S_00 + S_11.
 #   (i): in turns (n + 2) u for the sums, of |2X - X| <= 1.5 and |ki P| / 2 pi for each wave, and
 #       (24 K + 6) u |ki P| / 2 pi for each; in radians u (9.5 (n + 2) + (32 + n) S_i), and
 #       (32 + n) u S_i / 4 for E: less than F_i.  What is left of F_i, 40 u, is for whatever is lost
@@ -1229,23 +1237,23 @@ class Criterion:
 #   beta - M - d: F + 2 u |M|.   I - M d: with inv = 1 / det, each rounded, at most 5 u |inv| (|d00
 #       d11| + d01^2) on the diagonal, as the determinant is off by 2.1 u of these products, the
 #       quotient by u, M d by u of each product; and 2 u |inv d01| (|d00| + |d11|) beside it.
-#   sums of positive terms: MORE = 1 + 2^-40 for thousands of roundings one after the other, and 64 u
-#       more for each site.
-#   that k.L is a rounded sum of rounded products, but for the first two waves, goes into rest: 3 u of
-#       |k0| |L_0| + |k1| |L_1|.
+#   sums of positive terms: MORE = 1 + 2^-40 for thousands of roundings one after the other, and 64
+#       u more for each site.
+#   that k.L is a rounded sum of rounded products, but for the first two waves, goes into rest: 3 u
+#       of |k0| |L_0| + |k1| |L_1|.
 #   weight = K (|k0| |mu_0| + |k1| |mu_1| + |k|^2 |n|^2) of a wave, |mu_i| with all coefficients, is
 #       more than |m| + omega, and than the terms of these sums: so omega is off by 8 u weight, m by
 #       2 u, A and B by 24 u more: 36 u weight.
-#   G: 36 u, 4 u and n + 1 u of |ki| weight (|P| (1 + size) + H) for each wave, 3 u of 2 |mu| and the
-#       |mu| before; at x[1] and x[0] u more, u of the mu of the other lane, and of products and sums:
-#       grain, in all.
+#   G: 36 u, 4 u and n + 1 u of |ki| weight (|P| (1 + size) + H) for each wave, 3 u of 2 |mu| and
+#       the |mu| before; at x[1] and x[0] u more, u of the mu of the other lane, and of products and
+#       sums: grain, in all.
 #   (i) again: |mu| F.
 #   mass is the sum of 2|n|^2, and 2|n.n'| over neighbours is no more; and of weight (|P| (1 +
 #       reach^2) + 3 H).  A term of a coefficient is off by 48 u of its size, and these sizes are in
 #       all at most mass, as reach <= 1 (or P = H = 0): 2|n|^2 + |P| omega; with weight |P| size^2/4
 #       (mu.E), size^2/2, size^3/6; with weight H 1, size^2/2, size.  In the remainder A and B have
-#       factors of less than 2.3 |P| reach^2 + 3 H in all: 83 u.  Sums over N sites of each lane have
-#       at most (n + 2) N terms one after the other; to join them by monomials, 16 u.
+#       factors of less than 2.3 |P| reach^2 + 3 H in all: 83 u.  Sums over N sites of each lane
+#       have at most (n + 2) N terms one after the other; to join them by monomials, 16 u.
 #   in summit, of each coefficient: 64 u.
 # Masses are at least 1, as one n is a unit vector but for rounding, and below HUGE: so 64 u mass is
 # more than all underflows.  A NaN is not below zero, and proves nothing.
@@ -1349,7 +1357,8 @@ class Shape:
         p, q = k.T
         self.forces = self.table(p, q)              # V' from waves
         self.strengths = self.table(abs(p), abs(q))
-        self.stiff = self.table(*(abs(x) * self.K for x in (p * p, p * q, q * q)))  # S_00, S_01, S_11
+        self.stiff = self.table(                    # S_00, S_01, S_11
+            *(abs(x) * self.K for x in (p * p, p * q, q * q)))
         self.strong = self.table(abs(p) * self.K, abs(q) * self.K)
         self.forms = self.table(p * p, p * q, q * q)
         self.turned = self.table(abs(p + q), abs(p - q))
@@ -1767,7 +1776,8 @@ class Prisms:
         share = share / share.sum(axis=0)
         moved = np.stack([sum([np.abs(x) for key, x in form.items() if k in key])
                           for k in range(self.known)])
-        return value + (summit(form) + error), np.where(value < 0, moved + error * share, share)
+        more = error + moved.sum(axis=0) / 64       # what moves the ends matters, if little
+        return value + (summit(form) + error), np.where(value < 0, moved + more * share, share)
 
 
 class Lockstep:
@@ -2077,7 +2087,8 @@ def check_chunk(chunk):
                 break
             pieces.append(tried)
     n = refused[0] if refused else len(cells)
-    return n, sum([cost(cell) for _, cell in cells[:n]]), sum(pieces[:n]), refused and (*chunk[n], refused[1])
+    return n, sum([cost(cell) for _, cell in cells[:n]]), sum(pieces[:n]), \
+        refused and (*chunk[n], refused[1])
 
 
 @contextlib.contextmanager
@@ -2146,7 +2157,7 @@ def in_order(chunks, jobs, problems):
 @dataclass(frozen=True)
 class Result:
     """What came of a check in which nothing failed: true only if the whole claim is verified and
-    its region is the whole torus, or all that a map says is proved.  (All else ends in an exception.)"""
+    its region is the whole torus, or all that a map says is proved.  (All else is an exception.)"""
 
     status: int                         # VERIFIED, PART or SPOT_CHECK: the exit status, too
     verdict: str                        # "verified", "verified in part" or "spot check"
@@ -2157,7 +2168,7 @@ class Result:
 
 
 def verify(path, jobs=1, sample=None, state=None, bar=False, exact=False):
-    """Verifies a proof file or a map: returns a Result, or raises Rejected, NotConfirmed or Unusable.
+    """Verifies a proof file or a map: a Result; else Rejected, NotConfirmed or Unusable is raised.
 
     jobs: processes.  sample: so many leaves only, chosen by chance: a spot check.
     state: a file that remembers what was confirmed, so that an interrupted check can go on; it
@@ -2432,8 +2443,8 @@ def check_map(file):
 
     B - 2 is convex and homogeneous of degree 1 in the amplitudes.  So it is r times its value at
     d(s, t), which lies below what is linear along s and along t between points of a grid; and over
-    a cell this, or the convex function itself where the cell has more than one slice of the grid, is
-    largest at a corner.
+    a cell this, or the convex function itself where the cell has more than one slice of the grid,
+    is largest at a corner.
     """
     fixed, bounds, claims = Fixed.of(96), [], iter(file.claims)
     for at, face in enumerate(file.faces, 1):
@@ -2671,8 +2682,9 @@ def mapped(file):
     lines[-1] += " for any (a, b, c)"
     lines += ["in the %d proved cells of the file, for any multiple s >= 1 of those in its %d cells"
               % (file.count("P"), file.count("A")),
-              "at once (B > 10/3), and for the images of all these by the %d changes of the signs of"
-              % signs, "a, b, c and by the exchange of a and b.  %d cells are open." % file.count("O"),
+              "at once (B > 10/3), and for the images of all these by the %d changes of the signs "
+              "of" % signs,
+              "a, b, c and by the exchange of a and b.  %d cells are open." % file.count("O"),
               "Region : " + file.region]
     for face in file.faces:
         cells = [cell for cell in face.cells if cell[0] != "X"]
@@ -2773,8 +2785,8 @@ def whole(text):
 def parser():
     p = Parser(prog="converse-check", allow_abbrev=False,
                formatter_class=argparse.RawDescriptionHelpFormatter, description=(
-        "Verifies the theorem of a proof file, or all those of a map, independently of the program that\n"
-        "wrote them."),
+        "Verifies the theorem of a proof file, or all those of a map, independently of the\n"
+        "program that wrote them."),
         epilog="""exit status:
   0    verified
   1    rejected: the file is wrong (altered, unfinished, with undecided or missing

@@ -276,6 +276,19 @@ def test_halves_leaves_that_are_too_large(deep, texts, run):
     assert int(re.search("in ([0-9]+) pieces", out).group(1)) > tree.count("P")
 
 
+def test_halves_angles_that_only_a_longer_orbit_feels(texts, run):
+    """Of so wide a region no orbit is followed but for x*, which contradicts hardly, and only the
+    parameters move that."""
+    text = general(texts["trig274"], [
+        ((1, 0), 0, Fraction("1.25"), (Fraction("0.25"), 0)),
+        ((1, 1), 0, Fraction("0.234375"), (Fraction("0.046875"), Fraction("0.09375")))],
+        (Fraction("0.875"), Fraction("0.125")), (Fraction("0.75"), Fraction("0.25")), tree="P",
+        xstar=(Fraction("1.570796"), 0))
+    for options in ((), ("--exact",)):
+        status, out, err = run(text, *options)
+        assert status == 3 and 3 <= int(re.search("in ([0-9]+) pieces", out).group(1)) < 100, err
+
+
 def test_same_output_for_any_jobs(deep, run):
     one, two, three = (run(deep, "--jobs", str(n)) for n in (1, 2, 3))
     assert one == two == three
