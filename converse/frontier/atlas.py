@@ -64,6 +64,7 @@ class Map:
     estimate: by face, the estimated frontier: at places (s,) or (s, t) the least radius at which
     parameters without width are proved with a certain effort.  Not proved, and no part of what is.
     seconds: that the search took.
+    sha256: of the file, uncompressed; "" if there is none.
     """
 
     region: str
@@ -179,7 +180,8 @@ class Map:
             self.region, *map(self.count, (PROVED, AT_ONCE, OPEN)))
 
     def save(self, path: Union[str, "os.PathLike[str]"]) -> str:
-        """Writes the file, compressed when the name ends in .gz; returns the SHA-256 in it."""
+        """Writes the file, compressed when the name ends in .gz; returns the SHA-256 (that
+        of the uncompressed file)."""
         faces = []
         for directions, tree, estimate in zip(self.directions, self.roots, self.estimate):
             nodes = list(tree.nodes())
@@ -196,11 +198,11 @@ class Map:
         data = {"format": FORMAT, "program": "converse " + self.version, "region": self.region,
                 "down to": decimal_text(self.down_to), "seconds": round(self.seconds, 2),
                 "faces": faces}
-        digest = data["sha256"] = _digest(data)
+        data["sha256"] = _digest(data)
         text = (json.dumps(data, indent=1) + "\n").encode("ascii")
         files.write(path, gzip.compress(text, 6, mtime=0) if os.fspath(path).endswith(".gz")
                     else text)
-        return digest
+        return hashlib.sha256(text).hexdigest()
 
     @classmethod
     def load(cls, path: Union[str, "os.PathLike[str]"]) -> "Map":
@@ -223,7 +225,8 @@ class Map:
             if data["format"] != FORMAT or digest != _digest(data):
                 raise ValueError("it was changed or damaged")
             made = cls.new(data["region"], exact(data["down to"]))
-            made.seconds, made.sha256 = float(data["seconds"]), digest
+            made.seconds = float(data["seconds"])
+            made.sha256 = hashlib.sha256(packed).hexdigest()
             made.version = data["program"].partition(" ")[2]
             for tree, face, estimate in zip(made.roots, data["faces"], made.estimate):
                 _grow(tree, face)
