@@ -907,8 +907,8 @@ sys.exit(check.main())
     for n in range(60):
         process = subprocess.Popen(
             [sys.executable, "-I", "-c", code, os.path.dirname(check.__file__), path, "--jobs",
-             jobs, "--state", state, "--exact"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
-            start_new_session=True)
+             jobs, "--state", state, "--exact"],
+            stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, start_new_session=True)
         process.stdout.readline()
         kind = kinds[n % 4]
         until = time.monotonic() + (30 if n % 2 else 0.3 * generator.random())
@@ -1742,7 +1742,7 @@ def extremes(generator):
 
 
 def worst_bending(functions, generator, count):
-    """The largest quotient, or one above 1, of what a wave does to r in a step and its bound, by mpmath."""
+    """The largest quotient, or one above 1, of what a wave does to r in a step and its bound."""
     worst = 0
     for _ in range(count):
         P, H, W, y, size, rest, (e, i, j, k, *_) = extremes(generator)
@@ -1759,7 +1759,7 @@ def worst_bending(functions, generator, count):
 
 
 def worst_remainder(functions, generator, count):
-    """The largest quotient, or one above 1, of what a wave has besides G z and (4), and the bound of it."""
+    """The largest quotient, or one above 1, of what a wave has beside G z and (4) to its bound."""
     worst = 0
     for _ in range(count):
         P, H, W, y, size, rest, (e, i, j, k, l, m) = extremes(generator)
@@ -1826,7 +1826,8 @@ def test_lockstep_terms(np, generator, worst):
     (1, "beta * (rest + third)", "beta * rest"), (1, "beta * (rest + third)", "beta * third"),
     (1, " + W * weight", ""),
     (1, "H * (a * far", "H * H / 2 * (a * far"),
-    (2, "constant + up +", "constant +"), (2, "+ down * t * t", ""), (2, "- 2 * down * t", "- 3 * down * t"),
+    (2, "constant + up +", "constant +"), (2, "+ down * t * t", ""),
+    (2, "- 2 * down * t", "- 3 * down * t"),
     (2, "+ np.maximum(twist[i] - up, 0)", ""), (2, "twist[i] - up", "twist[i] - 2 * up"),
     (2, "linear[k] = linear[k] + x", "linear[k] = linear[k]"),
     (2, "np.abs(odd) + even", "odd + even"),
@@ -2379,7 +2380,8 @@ PROBLEMS = {                # waves, what else is said of them, and where minimi
                 {"odd": "-1/2 1/2"}, (0, "-1.5")),
     "in a frame": ([((1, 1), 0, "0.62", [])], {"frame": (1, 0, -1, 1), "odd": "0 0"},
                    (HALF_PI, 0)),
-    "a patch": ([((1, 0), 0, "0.6", ["0.01", "0.004", 0]), ((0, 1), 0, "0.6", ["0.01", "-0.004", 0]),
+    "a patch": ([((1, 0), 0, "0.6", ["0.01", "0.004", 0]),
+                 ((0, 1), 0, "0.6", ["0.01", "-0.004", 0]),
                  ((1, 1), 0, "0.6", ["0.01", 0, "0.02"])], {"odd": "0 0"}, ("0.858", "0.858")),
     "one alone": ([((1, 0), 0, "1.3", ["0.1"]), ((0, 1), 0, "0.01", ["0.01"])],
                   {"alone": "0", "odd": "0 0"}, (HALF_PI, 0))}
@@ -2444,10 +2446,14 @@ def test_no_orbit_of_a_leaf_of_version_3_minimizes(others, generator, name):
     ("the standard map", "at once", "upper end", 1, "B <= 10/3"),
     ("one alone", "at once", "upper end", 0, ""), ("one alone", "at once", "yes", 1, "B <= 10/3"),
     ("a patch", "wave", "1 0 0", 1, "K0 K1"), ("a patch", "wave", "1 0 0 1 0 0 0 0", 1, "K0 K1"),
-    ("a patch", "wave", "1 0 0 0.6 0.01", 1, "as many"), ("a patch", "wave", "0 0 0 1 0 0 0", 1, "zero"),
-    ("a patch", "wave", "1 101 0 1 0 0 0", 1, "beyond 100"), ("a patch", "wave", "1 .5 0 1 0 0 0", 1, "integer"),
-    ("a patch", "wave", "1 1 x 1 0 0 0", 1, "ratio"), ("a patch", "wave", "1 1 1/0 1 0 0 0", 1, "ratio"),
-    ("a patch", "wave", "1 1 0 1/2 0 0 0", 1, "decimal"), ("a patch", "wave", "1 1 0 nan 0 0 0", 1, "decimal"),
+    ("a patch", "wave", "1 0 0 0.6 0.01", 1, "as many"),
+    ("a patch", "wave", "0 0 0 1 0 0 0", 1, "zero"),
+    ("a patch", "wave", "1 101 0 1 0 0 0", 1, "beyond 100"),
+    ("a patch", "wave", "1 .5 0 1 0 0 0", 1, "integer"),
+    ("a patch", "wave", "1 1 x 1 0 0 0", 1, "ratio"),
+    ("a patch", "wave", "1 1 1/0 1 0 0 0", 1, "ratio"),
+    ("a patch", "wave", "1 1 0 1/2 0 0 0", 1, "decimal"),
+    ("a patch", "wave", "1 1 0 nan 0 0 0", 1, "decimal"),
     ("a patch", "wave", "1 1 0 1e301 0 0 0", 5, "out of range"),
     ("a patch", "wave", "1 1 0 %s 0 0 0" % ("1" * 1001), 5, "characters"),
     ("a patch", "wave", "1 1 1/2 0.6 0.01 0 0.02", 1, "not odd")])
@@ -2496,7 +2502,8 @@ def test_the_same_in_both_versions(moving, texts, run):
     ([((1, 0), 0, 1, ["0.1", 0]), ((0, 1), 0, 1, ["0.1", 0])], (0, 1)),
     ([((1, 0), 0, 1, ["0.1", 0]), ((0, 1), 0, 1, ["0.1", "0.1"])], None),
     ([((1, 0), 0, 1, ["0.1", 0]), ((0, 1), 0, 1, [0, "0.2"])], None),
-    ([((1, 0), 0, 1, []), ((0, 1), 0, 1, [])], ()), ([((1, 0), 0, 1, []), ((0, 1), 0, 2, [])], None),
+    ([((1, 0), 0, 1, []), ((0, 1), 0, 1, [])], ()),
+    ([((1, 0), 0, 1, []), ((0, 1), 0, 2, [])], None),
     ([((1, -1), "1/2", 1, [])], ()), ([((1, -1), 0, 1, [])], None), ([((1, -1), 1, 1, [])], None),
     ([((1, -1), 0, 1, []), ((-1, 1), 0, 1, [])], ()),
     ([((1, 0), "1/3", 1, ["0.1"]), ((0, 1), "7/3", 1, ["0.1"])], (0,)),
@@ -2647,10 +2654,13 @@ def path_of(content, *path):
     (("faces", 0, "directions", 1, 2), "2", 1, "not those of the region"),
     (("faces", 0, "directions", 1), ["0", "1"], 1, "a list of 3"),
     (("faces", 0, "directions"), [["1", "0", "0"]], 1, "two or three"),
-    (("faces", 0, "tree"), "0O0P", 1, "incomplete"), (("faces", 0, "tree"), "0O0PAA", 1, "ends before"),
-    (("faces", 0, "tree"), "0O0PP", 1, "fewer proofs"), (("faces", 0, "tree"), "0O0OA", 1, "more proofs"),
+    (("faces", 0, "tree"), "0O0P", 1, "incomplete"),
+    (("faces", 0, "tree"), "0O0PAA", 1, "ends before"),
+    (("faces", 0, "tree"), "0O0PP", 1, "fewer proofs"),
+    (("faces", 0, "tree"), "0O0OA", 1, "more proofs"),
     (("faces", 0, "tree"), "0A0PA", 5, "at once"), (("faces", 0, "tree"), "0X0PA", 1, "outside"),
-    (("faces", 0, "tree"), "2O0PA", 1, "not a node"), (("faces", 0, "tree"), "0O0PU", 1, "not a node"),
+    (("faces", 0, "tree"), "2O0PA", 1, "not a node"),
+    (("faces", 0, "tree"), "0O0PU", 1, "not a node"),
     (("faces", 0, "proofs", 0, "tree"), "0PU", 1, "undecided"),
     (("faces", 0, "proofs", 0, "tree"), "0P", 1, "incomplete"),
     (("faces", 0, "proofs", 0, "tree"), "4PP", 1, "a parameter that there is not"),
@@ -2685,7 +2695,8 @@ def test_maps_that_are_no_json(maps, run):
                      (text.replace('"down to": "1.05"', '"down to": 1e999'), "finite"),
                      (text.replace('"down to": "1.05"', '"down to": ' + "1" * 5000), "too long"),
                      (text.replace('"down to": "1.05"', '"down to": ' + "[" * 10 ** 5), "deep"),
-                     (text[:-1] + "}}", "no whole JSON"), (text.replace("by hand", "\x1b"), "JSON")):
+                     (text[:-1] + "}}", "no whole JSON"),
+                      (text.replace("by hand", "\x1b"), "JSON")):
         status, out, err = run(bad)
         assert (status, out) == (1, "") and why in err and err[:-1].isprintable(), why
     assert run(text.encode().replace(b"by hand", b"\xff"))[0] == 1
