@@ -151,8 +151,8 @@ class Map:
     def report(self) -> str:
         """What is proved, in words."""
         proofs = [leaf.proof["tree"] for leaf in self.leaves() if leaf.kind == PROVED]
-        lines = ["No invariant tori, for (a, b, c) = r d in the cells that are proved, and for their",
-                 "mirror images (docs/format.md).",
+        lines = ["No invariant tori, for (a, b, c) = r d in the cells that are proved, and for",
+                 "their mirror images (docs/format.md).",
                  "Region : " + self.region]
         for face, directions in enumerate(self.directions):
             words = " + ".join("%s(%s)" % (name, ", ".join(map(str, d)))
@@ -165,7 +165,8 @@ class Map:
                       len(proofs), self.count(AT_ONCE), self.count(OPEN)),
                   "Prisms : %d proved" % sum(tree.count("P") for tree in proofs),
                   "Asked for : down to %s times the estimated frontier%s" % (
-                      decimal_text(self.down_to), "" if self.complete else "; not all of it is proved"),
+                      decimal_text(self.down_to),
+                      "" if self.complete else "; not all of it is proved"),
                   "Time : %.0f seconds" % self.seconds]
         lines += ["SHA-256 : " + self.sha256] if self.sha256 else []
         return "\n".join(lines) + "\n"

@@ -15,8 +15,8 @@ from .region import REGIONS
 
 COMMAND = "converse-map"
 DOWN_TO = "1.05"
-STATUS = ("Exit status: 0 all is proved that was asked for; 1 some of it is not; 2 bad usage, map or "
-          "file; 129, 130 or 143 ended by a signal, the map saved.")
+STATUS = ("Exit status: 0 all is proved that was asked for; 1 some of it is not; 2 bad usage, map "
+          "or file; 129, 130 or 143 ended by a signal, the map saved.")
 
 
 def _ratio(text):
@@ -31,11 +31,11 @@ def _ratio(text):
 
 def parser():
     p = Parser(prog=COMMAND, allow_abbrev=False, epilog=STATUS, description=(
-        "Proves for as many (a, b, c) of a region as it can that the map has no invariant tori, and "
+        "Proves for as many (a, b, c) of a region as it can that there are no invariant tori, and "
         "keeps what is proved in MAP, a certificate for converse-check.  Without a region MAP is "
         "described, and drawn with -g."))
-    p.add_argument("map", metavar="MAP", help="a file, new unless it is restored; compressed if its "
-                   "name ends in .gz")
+    p.add_argument("map", metavar="MAP", help="a file, new unless it is restored; compressed if "
+                   "its name ends in .gz")
     which = p.add_mutually_exclusive_group()
     which.add_argument("--plane", choices=[name for name in REGIONS if name != "sphere"],
                        help="all directions of a plane, a, b, c >= 0")

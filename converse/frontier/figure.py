@@ -130,7 +130,8 @@ def _draw_sphere(atlas, figure):
         unit = d0 + middles[:, None, None] * d1 + middles[None, :, None] * d2
         a, b, c = np.moveaxis(unit, -1, 0)
         inside = (b <= a) & (height < RADIUS)
-        places.append(np.stack((b + c / 2, math.sqrt(0.75) * c), -1)[inside] / (a + c)[inside, None])
+        places.append(np.stack((b + c / 2, math.sqrt(0.75) * c), -1)[inside]
+                      / (a + c)[inside, None])
         values.append(height[inside] * np.concatenate(
             [largest(row) for row in unit])[inside.ravel()])
     x, y = np.concatenate(places).T
@@ -138,7 +139,8 @@ def _draw_sphere(atlas, figure):
     axes = figure.add_subplot()
     mesh = axes.tricontourf(Triangulation(x, y), values, levels=np.arange(0.6, 1.36, 0.025),
                             cmap="viridis", extend="both")
-    figure.colorbar(mesh, ax=axes, shrink=0.7, label="B - 2 from which on there are no tori, proved")
+    figure.colorbar(mesh, ax=axes, shrink=0.7,
+                    label="B - 2 from which on there are no tori, proved")
     axes.plot([0, 1, 0.5, 0], [0, 0, math.sqrt(0.75), 0], color=DARK, linewidth=0.8)
     for place, words, align in (((0, 0), "a alone", "top"), ((1, 0), "a = b", "top"),
                                 ((0.5, math.sqrt(0.75)), "c alone", "bottom")):

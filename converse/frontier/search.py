@@ -25,7 +25,7 @@ SETTINGS = Settings(method="loewner")
 FIRST, MORE, MOST = 1 << 15, 4, 1 << 21         # leaves that a cell may cost, and times as many
 LOOK = 1 << 9                       # leaves after which it is asked what it will cost
 PESSIMISM = 4                       # times the budget that is expected: given up
-POINT = {1: 1 << 14, 2: 1 << 12}    # leaves, of a point of the estimated frontier of a plane, the sphere
+POINT = {1: 1 << 14, 2: 1 << 12}    # leaves, of a point of the estimate of a plane, of the sphere
 TRIAL = 1 << 12                     # leaves, of a point that one way is compared with another by
 COARSE = 0.25                       # width of a cell, at first, as a part of its radius
 GRAIN = 6                           # cells are not cut to less than this part of down_to - 1
@@ -71,7 +71,8 @@ def _grow(problem, xstar, most, stop):
 def _ways(directions, cell, stop):
     """(frame, x*) that may be good for a cell, the cheapest for its middle first; None: stopped."""
     ways = [(PLAIN, None)]
-    a, b, c = point = tuple(cell.middle[0] * d for d in region.direction(directions, cell.middle[1:]))
+    r, *place = cell.middle
+    a, b, c = point = tuple(r * d for d in region.direction(directions, place))
     if c > 2 * max(a, b):
         ways.append((SHEAR, None))
     if 0 < 10 * c < min(a, b):                  # either coordinate may contradict
@@ -123,7 +124,8 @@ def frontier(directions, place, stop=None):
         if ways is None:
             return None
         frame, xstar = ways[0]
-        found = _grow(Problem.patch(region.patch(directions, cell)[0], axes=frame), xstar, most, stop)
+        point = region.patch(directions, cell)[0]
+        found = _grow(Problem.patch(point, axes=frame), xstar, most, stop)
         return found and (found[0] is not None or found[2].at_once)
 
     low, high = 0, region.RADIUS
@@ -173,7 +175,7 @@ def explore(name: Optional[str] = None, down_to: Optional[Number] = None, *, pat
         if resume:
             atlas = Map.load(path)
             if name not in (None, atlas.region):
-                raise ConverseError("%s: is of another region, %s; name another file, or this region"
+                raise ConverseError("%s: is of another region, %s; name another, or this region"
                                     % (path, atlas.region))
             if atlas.version != __version__:
                 raise ConverseError("%s: is of another program, %s; start anew"
