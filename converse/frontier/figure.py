@@ -139,6 +139,7 @@ def _draw_sphere(atlas, figure):
     axes = figure.add_subplot()
     mesh = axes.tricontourf(Triangulation(x, y), values, levels=np.arange(0.6, 1.36, 0.025),
                             cmap="viridis", extend="both")
+    mesh.set_rasterized(True)               # ten thousand triangles
     figure.colorbar(mesh, ax=axes, shrink=0.7,
                     label="B - 2 from which on there are no tori, proved")
     axes.plot([0, 1, 0.5, 0], [0, 0, math.sqrt(0.75), 0], color=DARK, linewidth=0.8)
