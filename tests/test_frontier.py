@@ -230,8 +230,9 @@ def test_nothing_is_overwritten(made, tmp_path):
 
 
 def test_the_sphere(coarse, tmp_path):
-    """As far as a few seconds go: what is no mirror image of others is left out, and it is drawn."""
-    found = frontier.explore("sphere", "1.4", path=tmp_path / "map.json", time_limit=10)
+    """Far from the frontier: what is the mirror image of others is left out, and it is drawn."""
+    found = frontier.explore("sphere", "1.9", path=tmp_path / "map.json")
+    assert found.complete and found.count(AT_ONCE)
     for leaf in found.leaves():
         assert (leaf.kind == OUTSIDE) == region.is_outside(found.directions[leaf.cell.face], leaf.cell)
     estimate = found.estimate[1]
