@@ -1,0 +1,199 @@
+(* From finitely many sites to orbits that are not minimizing: what is true of every map of Map.v,
+   by real analysis alone.  docs/proof.md has the same in words, sections 3, 4 and 7. *)
+
+From Coq Require Import Reals ZArith QArith Qreals List Permutation Lra Lia.
+From Converse Require Import Map.
+Import ListNotations.
+Open Scope R_scope.
+
+(* ---- sums, vectors and the second variation *)
+
+Lemma sum_ext {A} (f g : A -> R) l : (forall a, In a l -> f a = g a) -> sum f l = sum g l.
+Proof.
+  induction l as [|a l IH]; intros H; [reflexivity|].
+  cbn. rewrite (H a) by now left. f_equal. apply IH. intros b Hb. apply H. now right.
+Qed.
+
+Lemma sum_le {A} (f g : A -> R) l : (forall a, In a l -> f a <= g a) -> sum f l <= sum g l.
+Proof.
+  induction l as [|a l IH]; intros H; [apply Rle_refl|].
+  apply Rplus_le_compat; [apply H; now left | apply IH; intros b Hb; apply H; now right].
+Qed.
+
+Lemma sum_map {A B} (f : B -> R) (g : A -> B) l : sum f (map g l) = sum (fun a => f (g a)) l.
+Proof. induction l as [|a l IH]; [reflexivity | cbn; now f_equal]. Qed.
+
+Lemma sum_scale {A} (f : A -> R) c l : sum (fun a => c * f a) l = c * sum f l.
+Proof. induction l as [|a l IH]; cbn; [ring | fold (sum f l); setoid_rewrite IH; ring]. Qed.
+
+Lemma sum_plus {A} (f g : A -> R) l : sum (fun a => f a + g a) l = sum f l + sum g l.
+Proof. induction l as [|a l IH]; cbn; [ring | setoid_rewrite IH; unfold sum; ring]. Qed.
+
+Lemma sum_permutation {A} (f : A -> R) l l' : Permutation l l' -> sum f l = sum f l'.
+Proof. induction 1; cbn in *; unfold sum in *; lra. Qed.
+
+Lemma dot_scale a v : dot (scale a v) (scale a v) = a * a * dot v v.
+Proof. unfold dot, scale; cbn; ring. Qed.
+
+Lemma dot_zero_r v : dot v (0, 0) = 0.
+Proof. unfold dot; cbn; ring. Qed.
+
+Lemma dot_pos v : 0 <= dot v v.
+Proof. unfold dot; nra. Qed.
+
+Lemma vec_eq (u v : vec) : fst u = fst v -> snd u = snd v -> u = v.
+Proof. destruct u, v; cbn; congruence. Qed.
+
+Lemma beta_zero ws y : beta ws y (0, 0) = 0.
+Proof.
+  unfold beta. rewrite (sum_ext _ (fun w => 0 * amplitude w)), sum_scale.
+  - unfold dot; cbn; ring.
+  - intros w _. unfold along; cbn; ring.
+Qed.
+
+(* The second variation depends on n at its sites and the next, and on x through the betas. *)
+Lemma variation_ext ws ws' x x' n n' k : forall s,
+  (forall j v, (s <= j < s + Z.of_nat k)%Z -> beta ws (x j) v = beta ws' (x' j) v) ->
+  (forall j, (s <= j <= s + Z.of_nat k)%Z -> n j = n' j) ->
+  variation ws x n s k = variation ws' x' n' s k.
+Proof.
+  induction k as [|k IH]; intros s Hx Hn; [reflexivity|].
+  cbn [variation]. rewrite Hx, !Hn by lia. f_equal. apply IH; intros; [apply Hx | apply Hn]; lia.
+Qed.
+
+(* One site more at the end. *)
+Lemma variation_snoc ws x n k : forall s,
+  variation ws x n s (S k) =
+  variation ws x n s k
+  + (beta ws (x (s + Z.of_nat k)%Z) (n (s + Z.of_nat k)%Z)
+     - 2 * dot (n (s + Z.of_nat k)%Z) (n (s + Z.of_nat k + 1)%Z)).
+Proof.
+  induction k as [|k IH]; intros s; [cbn; rewrite Z.add_0_r; ring|].
+  change (variation ws x n s (S (S k))) with
+    (beta ws (x s) (n s) - 2 * dot (n s) (n (s + 1)%Z) + variation ws x n (s + 1) (S k)).
+  rewrite IH. cbn [variation]. replace (s + 1 + Z.of_nat k)%Z with (s + Z.of_nat (S k))%Z by lia.
+  ring.
+Qed.
+
+(* ---- tails *)
+
+Definition put (n : Z -> vec) (j : Z) (v : vec) : Z -> vec := fun i => if Z.eqb i j then v else n i.
+
+Lemma put_here n j v : put n j v j = v.
+Proof. unfold put. now rewrite Z.eqb_refl. Qed.
+
+Lemma put_else n j v i : i <> j -> put n j v i = n i.
+Proof. intros H. unfold put. now rewrite (proj2 (Z.eqb_neq i j) H). Qed.
+
+(* What is negative in (1) of docs/proof.md. *)
+Definition ended ws x l (n : Z -> vec) s k : R :=
+  variation ws x n s (S k)
+  - l * (dot (n s) (n s) + dot (n (s + Z.of_nat k)%Z) (n (s + Z.of_nat k)%Z)).
+
+Section Tails.
+Variables (ws : list wave) (x : Z -> vec) (B l : R).
+Hypothesis largest : forall y v, beta ws y v <= B * dot v v.
+Hypothesis l_range : 0 < l < 1.
+Hypothesis B_le : B <= l + / l.
+
+(* What one more vector adds: l times the last one, at the next place, does not raise [ended]. *)
+Lemma tail_step y v : beta ws y (scale l v) <= l * dot v v + l * dot (scale l v) (scale l v).
+Proof.
+  eapply Rle_trans; [apply largest|]. rewrite dot_scale.
+  apply Rle_trans with ((l + / l) * (l * l * dot v v)).
+  - apply Rmult_le_compat_r; [|assumption]. pose proof (dot_pos v). nra.
+  - apply Req_le. field. lra.
+Qed.
+
+Lemma extend_right n s k : zero_outside n s (S k) ->
+  let n' := put n (s + Z.of_nat (S k)) (scale l (n (s + Z.of_nat k)%Z)) in
+  zero_outside n' s (S (S k)) /\ ended ws x l n' s (S k) <= ended ws x l n s k.
+Proof.
+  intros Hn n'. set (t := (s + Z.of_nat k)%Z) in *.
+  assert (Hlast : n' (t + 1)%Z = scale l (n t)).
+  { unfold n'. replace (s + Z.of_nat (S k))%Z with (t + 1)%Z by (unfold t; lia). apply put_here. }
+  assert (Hother : forall j, j <> (t + 1)%Z -> n' j = n j).
+  { intros j Hj. apply put_else. unfold t in Hj. lia. }
+  split.
+  - intros j Hj. rewrite Hother by (unfold t; lia). apply Hn. lia.
+  - unfold ended. fold t. rewrite 3!variation_snoc. fold t.
+    replace (s + Z.of_nat (S k))%Z with (t + 1)%Z by (unfold t; lia).
+    rewrite (variation_ext ws ws x x n' n) by (intros; (apply Hother; unfold t; lia) || easy).
+    rewrite Hlast, (Hother t), (Hother s), (Hother (t + 1 + 1)%Z) by (unfold t; lia).
+    rewrite (Hn (t + 1)%Z), (Hn (t + 1 + 1)%Z), !dot_zero_r by (unfold t; lia).
+    pose proof (tail_step (x (t + 1)%Z) (n t)) as Hstep.
+    replace (dot (n t) (scale l (n t))) with (l * dot (n t) (n t))
+      by (unfold dot, scale; cbn; ring).
+    lra.
+Qed.
+
+Lemma extend_left n s k : zero_outside n s (S k) ->
+  let n' := put n (s - 1) (scale l (n s)) in
+  zero_outside n' (s - 1) (S (S k)) /\ ended ws x l n' (s - 1) (S k) <= ended ws x l n s k.
+Proof.
+  intros Hn n'.
+  assert (Hfirst : n' (s - 1)%Z = scale l (n s)) by apply put_here.
+  assert (Hother : forall j, j <> (s - 1)%Z -> n' j = n j) by (intros; now apply put_else).
+  split.
+  - intros j Hj. rewrite Hother by lia. apply Hn. lia.
+  - unfold ended. replace (s - 1 + Z.of_nat (S k))%Z with (s + Z.of_nat k)%Z by lia.
+    change (variation ws x n' (s - 1) (S (S k))) with
+      (beta ws (x (s - 1)%Z) (n' (s - 1)%Z) - 2 * dot (n' (s - 1)%Z) (n' (s - 1 + 1)%Z)
+       + variation ws x n' (s - 1 + 1) (S k)).
+    replace (s - 1 + 1)%Z with s by lia.
+    rewrite (variation_ext ws ws x x n' n) by (intros; (apply Hother; lia) || easy).
+    rewrite Hfirst, (Hother s), (Hother (s + Z.of_nat k)%Z) by lia.
+    pose proof (tail_step (x (s - 1)%Z) (n s)) as Hstep.
+    replace (dot (scale l (n s)) (n s)) with (l * dot (n s) (n s))
+      by (unfold dot, scale; cbn; ring).
+    lra.
+Qed.
+
+(* With tails of K vectors on both sides the ends are as small as one likes. *)
+Lemma extend K n s k : zero_outside n s (S k) ->
+  exists n' s' k', zero_outside n' s' (S k') /\ ended ws x l n' s' k' <= ended ws x l n s k /\
+  dot (n' s') (n' s') + dot (n' (s' + Z.of_nat k')%Z) (n' (s' + Z.of_nat k')%Z)
+  = (l * l) ^ K * (dot (n s) (n s) + dot (n (s + Z.of_nat k)%Z) (n (s + Z.of_nat k)%Z)).
+Proof.
+  intros Hn. induction K as [|K (n1 & s1 & k1 & H1 & Hle1 & Hends)].
+  - exists n, s, k. split; [exact Hn | split; [apply Rle_refl | cbn; ring]].
+  - destruct (extend_right n1 s1 k1 H1) as [H2 Hle2].
+    set (n2 := put n1 _ _) in *.
+    destruct (extend_left n2 s1 (S k1) H2) as [H3 Hle3].
+    set (n3 := put n2 _ _) in *.
+    exists n3, (s1 - 1)%Z, (S (S k1)). split; [exact H3 | split; [lra |]].
+    replace (s1 - 1 + Z.of_nat (S (S k1)))%Z with (s1 + Z.of_nat (S k1))%Z by lia.
+    unfold n3. rewrite put_here, put_else by lia.
+    unfold n2. rewrite put_here, put_else by lia.
+    rewrite !dot_scale, <- Rmult_plus_distr_l, Hends. cbn [pow]. ring.
+Qed.
+
+Lemma ended_refuted n s k : zero_outside n s (S k) -> ended ws x l n s k < 0 -> refuted ws x.
+Proof.
+  intros Hn Hneg.
+  set (e := dot (n s) (n s) + dot (n (s + Z.of_nat k)%Z) (n (s + Z.of_nat k)%Z)) in *.
+  assert (He : 0 <= e) by (apply Rplus_le_le_0_compat; apply dot_pos).
+  assert (Hgap : 0 < - ended ws x l n s k / (e + 1)) by (apply Rdiv_lt_0_compat; lra).
+  destruct (pow_lt_1_zero (l * l)) with (2 := Hgap) as [K HK]; [rewrite Rabs_pos_eq; nra|].
+  specialize (HK K (le_n K)).
+  destruct (extend K n s k Hn) as (n' & s' & k' & Hn' & Hle & Hends).
+  exists n', s', (S k'). split; [assumption|].
+  unfold ended at 1 in Hle. rewrite Hends in Hle. fold e in Hle.
+  assert (Hp : 0 <= (l * l) ^ K) by (apply pow_le; nra).
+  rewrite Rabs_pos_eq in HK by assumption.
+  apply (Rmult_lt_compat_r (e + 1)) in HK; [|lra].
+  unfold Rdiv in HK. rewrite Rmult_assoc, Rinv_l, Rmult_1_r in HK by lra.
+  assert (l * ((l * l) ^ K * e) <= (l * l) ^ K * e)
+    by (pose proof (Rmult_le_pos _ _ Hp He); nra).
+  nra.
+Qed.
+
+End Tails.
+
+(* A negative window, with l for the infinite tails on either side, refutes.  x is any sequence. *)
+Theorem window_refuted : forall ws x B l, (forall y v, beta ws y v <= B * dot v v) ->
+  0 < l < 1 -> B <= l + / l -> forall n s k, zero_outside n s (S k) ->
+  variation ws x n s (S k)
+  - l * (dot (n s) (n s) + dot (n (s + Z.of_nat k)%Z) (n (s + Z.of_nat k)%Z)) < 0 ->
+  refuted ws x.
+Proof. intros ws x B l HB Hl HBl n s k. exact (ended_refuted ws x B l HB Hl HBl n s k). Qed.
