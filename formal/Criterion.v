@@ -197,3 +197,138 @@ Theorem window_refuted : forall ws x B l, (forall y v, beta ws y v <= B * dot v 
   - l * (dot (n s) (n s) + dot (n (s + Z.of_nat k)%Z) (n (s + Z.of_nat k)%Z)) < 0 ->
   refuted ws x.
 Proof. intros ws x B l HB Hl HBl n s k. exact (ended_refuted ws x B l HB Hl HBl n s k). Qed.
+
+(* ---- what orbits and refutations depend on *)
+
+Lemma refuted_ext ws ws' x x' : (forall j v, beta ws (x j) v = beta ws' (x' j) v) ->
+  refuted ws x -> refuted ws' x'.
+Proof.
+  intros Hbeta (n & s & k & Hn & Hneg). exists n, s, k. split; [assumption|].
+  rewrite <- (variation_ext ws ws' x x' n n); auto.
+Qed.
+
+Lemma orbit_ext ws ws' x : (forall y, V' ws y = V' ws' y) -> orbit ws x -> orbit ws' x.
+Proof. intros HV Hx j. now rewrite <- HV. Qed.
+
+(* The order of the waves does not matter. *)
+Lemma V'_permutation ws ws' y : Permutation ws ws' -> V' ws y = V' ws' y.
+Proof. intros H. unfold V'. f_equal; f_equal; now apply sum_permutation. Qed.
+
+Lemma beta_permutation ws ws' y v : Permutation ws ws' -> beta ws y v = beta ws' y v.
+Proof. intros H. unfold beta. f_equal. now apply sum_permutation. Qed.
+
+Lemma orbit_permutation ws ws' x : Permutation ws ws' -> orbit ws x -> orbit ws' x.
+Proof. intros H. apply orbit_ext. intros y. now apply V'_permutation. Qed.
+
+Lemma refuted_permutation ws ws' x : Permutation ws ws' -> refuted ws x -> refuted ws' x.
+Proof. intros H. apply refuted_ext. intros j v. now apply beta_permutation. Qed.
+
+(* ---- everything is periodic *)
+
+Lemma sin_turns a (m : Z) : sin (a + 2 * PI * IZR m) = sin a.
+Proof.
+  assert (Hnat : forall b k, sin (b + 2 * PI * INR k) = sin b).
+  { intros b k. rewrite <- (sin_period b k). f_equal. ring. }
+  destruct (Z.le_gt_cases 0 m) as [Hm|Hm].
+  - rewrite <- (Z2Nat.id m Hm), <- INR_IZR_INZ. apply Hnat.
+  - rewrite <- (Hnat _ (Z.to_nat (- m))), INR_IZR_INZ, Z2Nat.id, opp_IZR by lia. f_equal. ring.
+Qed.
+
+Lemma cos_turns a (m : Z) : cos (a + 2 * PI * IZR m) = cos a.
+Proof.
+  rewrite !cos_sin. replace (PI / 2 + (a + 2 * PI * IZR m)) with (PI / 2 + a + 2 * PI * IZR m)
+    by ring. apply sin_turns.
+Qed.
+
+Definition turns (i j : Z) : vec := (2 * PI * IZR i, 2 * PI * IZR j).
+
+Lemma angle_turns w y i j :
+  angle w (minus y (turns i j)) = angle w y + 2 * PI * IZR (- (k0 w * i + k1 w * j)).
+Proof.
+  unfold angle, along, minus, turns; cbn [fst snd]. rewrite opp_IZR, plus_IZR, !mult_IZR. ring.
+Qed.
+
+Lemma V'_turns ws y i j : V' ws (minus y (turns i j)) = V' ws y.
+Proof.
+  unfold V'. f_equal; f_equal; apply sum_ext; intros w _; now rewrite angle_turns, cos_turns.
+Qed.
+
+Lemma beta_turns ws y i j v : beta ws (minus y (turns i j)) v = beta ws y v.
+Proof.
+  unfold beta. f_equal. apply sum_ext. intros w _. now rewrite angle_turns, sin_turns.
+Qed.
+
+(* The orbit with x1 less some turns, and x0 as it was. *)
+Definition shift (i j : Z) (x : Z -> vec) : Z -> vec := fun m => minus (x m) (turns (i * m) (j * m)).
+
+Lemma shifted ws x i j : orbit ws x ->
+  orbit ws (shift i j x) /\ shift i j x 0%Z = x 0%Z /\
+  (refuted ws (shift i j x) -> refuted ws x).
+Proof.
+  intros Hx. split; [|split].
+  - intros m. unfold shift. rewrite (Hx m), V'_turns.
+    apply vec_eq; unfold minus, scale, turns; cbn [fst snd];
+      rewrite !mult_IZR, plus_IZR, minus_IZR; ring.
+  - apply vec_eq; unfold shift, minus, turns; cbn [fst snd]; rewrite mult_IZR; ring.
+  - apply refuted_ext. intros m v. apply beta_turns.
+Qed.
+
+(* ---- the regions of x1 *)
+
+(* It is enough to look at the x1 of the region itself, not moved by turns. *)
+Lemma into_rectangle r patch xstar :
+  (forall t, in_cube t -> forall x, orbit (waves patch t) x -> x 0%Z = point xstar ->
+   (exists v0 v1,
+    Rabs (v0 - Q2R (centre0 r)) <= Q2R (half0 r) /\ Rabs (v1 - Q2R (centre1 r)) <= Q2R (half1 r) /\
+    x 1%Z = (PI * (IZR (m00 r) * v0 + IZR (m01 r) * v1),
+             PI * (IZR (m10 r) * v0 + IZR (m11 r) * v1))) ->
+   refuted (waves patch t) x) ->
+  no_minimizing_orbit_into r patch xstar.
+Proof.
+  intros H t Ht x Hx Hx0 (v0 & v1 & i & j & Hv0 & Hv1 & Hx1).
+  destruct (shifted _ _ i j Hx) as (Hx' & Hx0' & Hrefuted).
+  apply Hrefuted, (H t Ht); [assumption | now rewrite Hx0' |].
+  exists v0, v1. repeat split; try assumption.
+  unfold shift. rewrite Hx1, !Z.mul_1_r.
+  apply vec_eq; unfold minus, turns; cbn [fst snd]; ring.
+Qed.
+
+(* Some number that is u modulo 2 is within 1 of c. *)
+Lemma near u c : exists p : Z, Rabs (u - 2 * IZR p - c) <= 1.
+Proof.
+  exists (up ((u - c - 1) / 2)). destruct (archimed ((u - c - 1) / 2)). apply Rabs_le. lra.
+Qed.
+
+(* A square of side 2 pi, and what an integer matrix of determinant 1 or -1 makes of it, holds
+   every point modulo 2 pi. *)
+Lemma into_all r y :
+  (m00 r * m11 r - m01 r * m10 r = 1 \/ m00 r * m11 r - m01 r * m10 r = -1)%Z ->
+  (1 <= half0 r)%Q -> (1 <= half1 r)%Q -> into r y.
+Proof.
+  intros Hdet H0 H1. apply Qle_Rle in H0, H1.
+  replace (Q2R 1) with 1 in H0, H1 by (unfold Q2R; cbn; lra).
+  destruct r as [a b c d c0 h0 c1 h1]; cbn [m00 m01 m10 m11 half0 half1] in *.
+  set (D := (a * d - b * c)%Z) in *.
+  set (u0 := IZR D * (IZR d * fst y - IZR b * snd y) / PI).
+  set (u1 := IZR D * (IZR a * snd y - IZR c * fst y) / PI).
+  assert (HD : IZR D * (IZR a * IZR d - IZR b * IZR c) = 1).
+  { rewrite <- !mult_IZR, <- minus_IZR. fold D. rewrite <- mult_IZR. f_equal. lia. }
+  assert (Hy0 : PI * (IZR a * u0 + IZR b * u1) = fst y).
+  { rewrite <- (Rmult_1_l (fst y)), <- HD. unfold u0, u1. field. apply PI_neq0. }
+  assert (Hy1 : PI * (IZR c * u0 + IZR d * u1) = snd y).
+  { rewrite <- (Rmult_1_l (snd y)), <- HD. unfold u0, u1. field. apply PI_neq0. }
+  destruct (near u0 (Q2R c0)) as [p0 Hp0]. destruct (near u1 (Q2R c1)) as [p1 Hp1].
+  exists (u0 - 2 * IZR p0), (u1 - 2 * IZR p1), (a * p0 + b * p1)%Z, (c * p0 + d * p1)%Z.
+  cbn [m00 m01 m10 m11 half0 half1 centre0 centre1].
+  repeat split; [lra | lra |].
+  rewrite !plus_IZR, !mult_IZR. apply vec_eq; cbn [fst snd]; lra.
+Qed.
+
+Theorem whole_torus : forall r patch xstar,
+  (m00 r * m11 r - m01 r * m10 r = 1 \/ m00 r * m11 r - m01 r * m10 r = -1)%Z ->
+  (1 <= half0 r)%Q -> (1 <= half1 r)%Q ->
+  no_minimizing_orbit_into r patch xstar -> no_minimizing_orbit patch xstar.
+Proof.
+  intros r patch xstar Hdet H0 H1 H t Ht x Hx Hx0. apply (H t Ht); try assumption.
+  now apply into_all.
+Qed.
