@@ -332,3 +332,71 @@ Proof.
   intros r patch xstar Hdet H0 H1 H t Ht x Hx Hx0. apply (H t Ht); try assumption.
   now apply into_all.
 Qed.
+
+(* ---- the turned frame: the sum and the difference of the angles, halved *)
+
+Definition turned (ws : list wave) : list wave :=
+  map (fun w => Wave (k0 w + k1 w) (k0 w - k1 w) (phase w) (amplitude w / 2)) ws.
+
+Definition turn (y : vec) : vec := ((fst y + snd y) / 2, (fst y - snd y) / 2).
+
+Definition turn_back (v : vec) : vec := (fst v + snd v, fst v - snd v).
+
+Lemma turn_back_turn y : turn_back (turn y) = y.
+Proof. apply vec_eq; unfold turn, turn_back; cbn; field. Qed.
+
+Lemma V'_turned ws y : V' (turned ws) (turn y) = turn (V' ws y).
+Proof.
+  assert (Hangle : forall w : wave,
+    angle (Wave (k0 w + k1 w) (k0 w - k1 w) (phase w) (amplitude w / 2)) (turn y) = angle w y).
+  { intros w. unfold angle, along, turn; cbn. rewrite plus_IZR, minus_IZR. field. }
+  unfold V', turned, turn; cbn [fst snd]. rewrite !sum_map; cbn [k0 k1 amplitude]. f_equal.
+  - rewrite (sum_ext _ (fun w => / 2 * (IZR (k0 w) * (amplitude w * cos (angle w y))
+                                        + IZR (k1 w) * (amplitude w * cos (angle w y))))).
+    + rewrite sum_scale, sum_plus. field.
+    + intros w _. fold (turn y). rewrite Hangle, plus_IZR. field.
+  - rewrite (sum_ext _ (fun w => / 2 * (IZR (k0 w) * (amplitude w * cos (angle w y))
+                                        + - 1 * (IZR (k1 w) * (amplitude w * cos (angle w y)))))).
+    + rewrite sum_scale, sum_plus, sum_scale. field.
+    + intros w _. fold (turn y). rewrite Hangle, minus_IZR. field.
+Qed.
+
+Lemma beta_turned ws y v : 2 * beta (turned ws) y v = beta ws (turn_back y) (turn_back v).
+Proof.
+  unfold beta, turned. rewrite sum_map.
+  rewrite (sum_ext _ (fun w => / 2 * (amplitude w * sin (angle w (turn_back y))
+                                      * (along w (turn_back v) * along w (turn_back v))))).
+  - rewrite sum_scale. unfold dot, turn_back; cbn [fst snd]. field.
+  - intros w _. unfold angle, along, turn_back; cbn [k0 k1 phase amplitude fst snd].
+    rewrite plus_IZR, minus_IZR.
+    replace ((IZR (k0 w) + IZR (k1 w)) * fst y + (IZR (k0 w) - IZR (k1 w)) * snd y + phase w)
+      with (IZR (k0 w) * (fst y + snd y) + IZR (k1 w) * (fst y - snd y) + phase w) by ring.
+    field.
+Qed.
+
+Lemma dot_turn_back u v : dot (turn_back u) (turn_back v) = 2 * dot u v.
+Proof. unfold dot, turn_back; cbn; ring. Qed.
+
+Lemma orbit_turned ws x : orbit ws x -> orbit (turned ws) (fun j => turn (x j)).
+Proof.
+  intros Hx j. cbn beta. rewrite V'_turned, (Hx j).
+  apply vec_eq; unfold turn, minus, scale; cbn [fst snd]; field.
+Qed.
+
+Lemma refuted_turned ws x : refuted (turned ws) (fun j => turn (x j)) -> refuted ws x.
+Proof.
+  intros (nu & s & k & Hnu & Hneg). exists (fun j => turn_back (nu j)), s, k. split.
+  - intros j Hj. rewrite (Hnu j Hj). apply vec_eq; unfold turn_back; cbn; ring.
+  - enough (H : variation ws x (fun j => turn_back (nu j)) s k =
+                2 * variation (turned ws) (fun j => turn (x j)) nu s k) by lra.
+    clear Hnu Hneg. revert s. induction k as [|k IH]; intros s; cbn [variation]; [ring|].
+    rewrite IH, dot_turn_back, Rmult_plus_distr_l, Rmult_minus_distr_l, beta_turned, turn_back_turn.
+    reflexivity.
+Qed.
+
+Lemma largest_turned ws B : (forall y v, beta ws y v <= B * dot v v) ->
+  forall y v, beta (turned ws) y v <= B * dot v v.
+Proof.
+  intros HB y v. pose proof (HB (turn_back y) (turn_back v)) as H.
+  rewrite <- beta_turned, dot_turn_back in H. lra.
+Qed.
