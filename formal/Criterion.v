@@ -400,3 +400,51 @@ Proof.
   intros HB y v. pose proof (HB (turn_back y) (turn_back v)) as H.
   rewrite <- beta_turned, dot_turn_back in H. lra.
 Qed.
+
+(* ---- the mirror: the coordinates exchanged *)
+
+Definition swap (y : vec) : vec := (snd y, fst y).
+
+Definition exchange (w : wave) : wave := Wave (k1 w) (k0 w) (phase w) (amplitude w).
+
+Lemma along_exchange w y : along (exchange w) (swap y) = along w y.
+Proof. unfold along, exchange, swap; cbn. ring. Qed.
+
+Lemma angle_exchange w y : angle (exchange w) (swap y) = angle w y.
+Proof. unfold angle. now rewrite along_exchange. Qed.
+
+Lemma swap_swap y : swap (swap y) = y.
+Proof. now destruct y. Qed.
+
+Lemma V'_swap ws y : V' (map exchange ws) (swap y) = swap (V' ws y).
+Proof.
+  unfold V', swap at 3; cbn [fst snd]. rewrite !sum_map.
+  f_equal; f_equal; apply sum_ext; intros w _; now rewrite angle_exchange.
+Qed.
+
+Lemma beta_swap ws y v : beta (map exchange ws) (swap y) (swap v) = beta ws y v.
+Proof.
+  unfold beta. rewrite sum_map. f_equal.
+  - unfold dot, swap; cbn. ring.
+  - apply sum_ext. intros w _. now rewrite angle_exchange, along_exchange.
+Qed.
+
+Lemma orbit_swap ws x : orbit ws x -> orbit (map exchange ws) (fun j => swap (x j)).
+Proof. intros Hx j. cbn beta. now rewrite V'_swap, (Hx j). Qed.
+
+Lemma refuted_swap ws x : refuted (map exchange ws) (fun j => swap (x j)) -> refuted ws x.
+Proof.
+  intros (n & s & k & Hn & Hneg). exists (fun j => swap (n j)), s, k. split.
+  - intros j Hj. now rewrite (Hn j Hj).
+  - enough (H : variation ws x (fun j => swap (n j)) s k =
+                variation (map exchange ws) (fun j => swap (x j)) n s k) by lra.
+    clear Hn Hneg. revert s. induction k as [|k IH]; intros s; cbn [variation]; [reflexivity|].
+    rewrite IH, <- (beta_swap ws (x s)), swap_swap. unfold dot, swap; cbn. ring.
+Qed.
+
+Lemma largest_swap ws B : (forall y v, beta ws y v <= B * dot v v) ->
+  forall y v, beta (map exchange ws) y v <= B * dot v v.
+Proof.
+  intros HB y v. rewrite <- (swap_swap y), <- (swap_swap v), beta_swap.
+  eapply Rle_trans; [apply HB|]. unfold dot, swap; cbn. lra.
+Qed.
