@@ -448,3 +448,136 @@ Proof.
   intros HB y v. rewrite <- (swap_swap y), <- (swap_swap v), beta_swap.
   eapply Rle_trans; [apply HB|]. unfold dot, swap; cbn. lra.
 Qed.
+
+(* ---- product maps: each coordinate is alone *)
+
+(* The orbit whose second coordinate is free. *)
+Definition free1 (x : Z -> vec) : Z -> vec :=
+  fun j => (fst (x j), snd (x 0%Z) + IZR j * (snd (x 1%Z) - snd (x 0%Z))).
+Definition free0 (x : Z -> vec) : Z -> vec :=
+  fun j => (fst (x 0%Z) + IZR j * (fst (x 1%Z) - fst (x 0%Z)), snd (x j)).
+
+(* The waves that the one coordinate feels. *)
+Definition feels0 (w : wave) : bool := negb (Z.eqb (k0 w) 0).
+Definition feels1 (w : wave) : bool := negb (Z.eqb (k1 w) 0).
+
+Lemma sum_filter {A} (p : A -> bool) f g l :
+  (forall a, In a l -> p a = true -> g a = f a) -> (forall a, In a l -> p a = false -> g a = 0) ->
+  sum f (filter p l) = sum g l.
+Proof.
+  induction l as [|a l IH]; intros Hin Hout; [reflexivity|].
+  assert (IH' : sum f (filter p l) = sum g l)
+    by (apply IH; intros b Hb; [apply Hin | apply Hout]; now right).
+  cbn. destruct (p a) eqn:Hp.
+  - cbn. rewrite (Hin a (or_introl eq_refl) Hp). now f_equal.
+  - rewrite (Hout a (or_introl eq_refl) Hp), Rplus_0_l. exact IH'.
+Qed.
+
+(* A sequence of numbers that ends with 0 has a positive free second variation. *)
+Fixpoint free_variation (b : Z -> R) (s : Z) (k : nat) : R :=
+  match k with
+  | O => 0
+  | S k => 2 * (b s * b s) - 2 * (b s * b (s + 1)%Z) + free_variation b (s + 1) k
+  end.
+
+Lemma free_variation_pos b k : forall s, b (s + Z.of_nat k)%Z = 0 -> 0 <= free_variation b s k.
+Proof.
+  assert (H : forall s, b s * b s - b (s + Z.of_nat k)%Z * b (s + Z.of_nat k)%Z
+                        <= free_variation b s k).
+  { induction k as [|k IH]; intros s; cbn [free_variation].
+    - rewrite Z.add_0_r. lra.
+    - specialize (IH (s + 1)%Z).
+      replace (s + 1 + Z.of_nat k)%Z with (s + Z.of_nat (S k))%Z in IH by lia.
+      pose proof (Rle_0_sqr (b s - b (s + 1)%Z)) as Hsqr. unfold Rsqr in Hsqr. lra. }
+  intros s Hs. specialize (H s). rewrite Hs in H. nra.
+Qed.
+
+Section Alone.
+Variable ws : list wave.
+Hypothesis product : forall w, In w ws -> (k0 w * k1 w = 0)%Z.
+
+(* A wave is felt by the first coordinate alone, or not at all. *)
+Lemma felt_or_not w : In w ws ->
+  (feels0 w = true -> k1 w = 0%Z) /\ (feels0 w = false -> k0 w = 0%Z).
+Proof.
+  intros Hw. specialize (product w Hw). unfold feels0. destruct (Z.eqb_spec (k0 w) 0); split.
+  - discriminate.
+  - auto.
+  - intros _. nia.
+  - discriminate.
+Qed.
+
+Lemma V'_felt y y' : fst y' = fst y -> V' (filter feels0 ws) y' = (fst (V' ws y), 0).
+Proof.
+  intros Hy. unfold V'; cbn [fst]. f_equal.
+  - f_equal. apply sum_filter; intros w Hw Hp; destruct (felt_or_not w Hw) as [H1 H0].
+    + unfold angle, along. now rewrite (H1 Hp), Hy, !Rmult_0_l.
+    + rewrite (H0 Hp). ring.
+  - rewrite (sum_filter _ _ (fun _ => 0 * 0)), sum_scale; [ring | | intros; ring].
+    intros w Hw Hp. rewrite (proj1 (felt_or_not w Hw) Hp). ring.
+Qed.
+
+Lemma beta_felt y y' v : fst y' = fst y ->
+  beta (filter feels0 ws) y' v = beta ws y (fst v, 0) + 2 * (snd v * snd v).
+Proof.
+  intros Hy. unfold beta.
+  rewrite (sum_filter _ _ (fun w => amplitude w * sin (angle w y)
+                                    * (along w (fst v, 0) * along w (fst v, 0)))).
+  - unfold dot; cbn [fst snd]. ring.
+  - intros w Hw Hp. unfold angle, along; cbn [fst snd].
+    rewrite (proj1 (felt_or_not w Hw) Hp), Hy, !Rmult_0_l. ring.
+  - intros w Hw Hp. unfold along; cbn [fst snd].
+    rewrite (proj2 (felt_or_not w Hw) Hp). ring.
+Qed.
+
+Lemma variation_felt x x' n k : (forall j, fst (x' j) = fst (x j)) -> forall s,
+  variation (filter feels0 ws) x' n s k =
+  variation ws x (fun j => (fst (n j), 0)) s k + free_variation (fun j => snd (n j)) s k.
+Proof.
+  intros Hx. induction k as [|k IH]; intros s; cbn [variation free_variation]; [ring|].
+  rewrite IH, (beta_felt (x s)) by apply Hx. unfold dot; cbn [fst snd]. ring.
+Qed.
+
+Lemma refuted_felt x x' : (forall j, fst (x' j) = fst (x j)) ->
+  refuted (filter feels0 ws) x' -> refuted ws x.
+Proof.
+  intros Hx (n & s & k & Hn & Hneg). exists (fun j => (fst (n j), 0)), s, k. split.
+  - intros j Hj. now rewrite (Hn j Hj).
+  - rewrite (variation_felt x x') in Hneg by assumption.
+    assert (0 <= free_variation (fun j => snd (n j)) s k); [|lra].
+    apply free_variation_pos. rewrite Hn by lia. reflexivity.
+Qed.
+
+End Alone.
+
+Theorem alone0 : forall ws x, (forall w, In w ws -> (k0 w * k1 w = 0)%Z) -> orbit ws x ->
+  orbit (filter feels0 ws) (free1 x) /\ (refuted (filter feels0 ws) (free1 x) -> refuted ws x).
+Proof.
+  intros ws x Hws Hx. split; [|now apply refuted_felt].
+  intros j. rewrite (V'_felt ws Hws (x j)) by reflexivity.
+  apply vec_eq; unfold free1, minus, scale; cbn [fst snd].
+  - now rewrite (Hx j).
+  - rewrite plus_IZR, minus_IZR. ring.
+Qed.
+
+Lemma filter_exchange ws :
+  filter feels0 (map exchange ws) = map exchange (filter feels1 ws).
+Proof.
+  induction ws as [|w ws IH]; [reflexivity|]. cbn. rewrite IH.
+  change (feels0 (exchange w)) with (feels1 w). now destruct (feels1 w).
+Qed.
+
+Theorem alone1 : forall ws x, (forall w, In w ws -> (k0 w * k1 w = 0)%Z) -> orbit ws x ->
+  orbit (filter feels1 ws) (free0 x) /\ (refuted (filter feels1 ws) (free0 x) -> refuted ws x).
+Proof.
+  intros ws x Hws Hx.
+  assert (Hws' : forall w, In w (map exchange ws) -> (k0 w * k1 w = 0)%Z).
+  { intros w' Hw'. apply in_map_iff in Hw' as (w & <- & Hw). cbn. rewrite Z.mul_comm. auto. }
+  destruct (alone0 _ _ Hws' (orbit_swap ws x Hx)) as [Ho Hr].
+  rewrite filter_exchange in Ho, Hr. split.
+  - apply orbit_swap in Ho. rewrite map_map, (map_ext _ (fun w => w)), map_id in Ho.
+    + exact Ho.
+    + now intros [].
+  - intros H. apply refuted_swap, Hr, refuted_swap.
+    rewrite map_map, (map_ext _ (fun w => w)), map_id; [exact H | now intros []].
+Qed.
