@@ -259,7 +259,8 @@ Proof.
 Qed.
 
 (* The orbit with x1 less some turns, and x0 as it was. *)
-Definition shift (i j : Z) (x : Z -> vec) : Z -> vec := fun m => minus (x m) (turns (i * m) (j * m)).
+Definition shift (i j : Z) (x : Z -> vec) : Z -> vec :=
+  fun m => minus (x m) (turns (i * m) (j * m)).
 
 Lemma shifted ws x i j : orbit ws x ->
   orbit ws (shift i j x) /\ shift i j x 0%Z = x 0%Z /\
@@ -580,4 +581,153 @@ Proof.
     + now intros [].
   - intros H. apply refuted_swap, Hr, refuted_swap.
     rewrite map_map, (map_ext _ (fun w => w)), map_id; [exact H | now intros []].
+Qed.
+
+(* ---- at once: all larger amplitudes, too *)
+
+(* The amplitudes times s. *)
+Definition scaled (s : R) (ws : list wave) : list wave :=
+  map (fun w => Wave (k0 w) (k1 w) (phase w) (s * amplitude w)) ws.
+
+(* V is odd about z, but for a constant. *)
+Definition odd_about (z : vec) (ws : list wave) : Prop :=
+  forall w, In w ws -> exists m : Z, angle w z = IZR m * PI.
+
+Lemma beta_scaled s ws y v : beta (scaled s ws) y v = 2 * dot v v - s * (2 * dot v v - beta ws y v).
+Proof.
+  unfold beta, scaled. rewrite sum_map.
+  rewrite (sum_ext _ (fun w => s * (amplitude w * sin (angle w y) * (along w v * along w v)))).
+  - rewrite sum_scale. ring.
+  - intros w _. unfold angle, along; cbn [k0 k1 phase amplitude]. ring.
+Qed.
+
+Lemma beta_homogeneous ws y a v : beta ws y (scale a v) = a * a * beta ws y v.
+Proof.
+  unfold beta. rewrite dot_scale.
+  rewrite (sum_ext _ (fun w => a * a * (amplitude w * sin (angle w y) * (along w v * along w v)))).
+  - rewrite sum_scale. ring.
+  - intros w _. unfold along, scale; cbn [fst snd]. ring.
+Qed.
+
+(* At the mirrored place beta - 2I is the opposite. *)
+Lemma beta_mirrored z ws y v : odd_about z ws ->
+  beta ws (minus (scale 2 z) y) v = 4 * dot v v - beta ws y v.
+Proof.
+  intros Hodd. unfold beta.
+  rewrite (sum_ext _ (fun w => - 1 * (amplitude w * sin (angle w y) * (along w v * along w v)))).
+  - rewrite sum_scale. ring.
+  - intros w Hw. destruct (Hodd w Hw) as [m Hm].
+    replace (angle w (minus (scale 2 z) y)) with (- angle w y + 2 * PI * IZR m).
+    + rewrite sin_turns, sin_neg. ring.
+    + replace (2 * PI * IZR m) with (2 * angle w z) by (rewrite Hm; ring).
+      unfold angle, along, minus, scale; cbn [fst snd]. ring.
+Qed.
+
+(* 2 + sum of |p| |k|^2 bounds the eigenvalues. *)
+Definition weight (w : wave) : R :=
+  Rabs (amplitude w) * (IZR (k0 w) * IZR (k0 w) + IZR (k1 w) * IZR (k1 w)).
+
+Lemma wave_bounded w a v :
+  - 1 * (amplitude w * sin a * (along w v * along w v)) <= dot v v * weight w.
+Proof.
+  assert (Hsin : - (amplitude w * sin a) <= Rabs (amplitude w)).
+  { eapply Rle_trans; [apply Rle_abs|]. rewrite Rabs_Ropp, Rabs_mult.
+    rewrite <- (Rmult_1_r (Rabs (amplitude w))) at 2.
+    apply Rmult_le_compat_l; [apply Rabs_pos|]. apply Rabs_le. pose proof (SIN_bound a). lra. }
+  assert (Hcauchy : along w v * along w v
+                    <= dot v v * (IZR (k0 w) * IZR (k0 w) + IZR (k1 w) * IZR (k1 w))).
+  { unfold along, dot. pose proof (Rle_0_sqr (IZR (k0 w) * snd v - IZR (k1 w) * fst v)) as H.
+    unfold Rsqr in H. lra. }
+  apply (Rmult_le_compat_r (along w v * along w v)) in Hsin; [|nra].
+  apply (Rmult_le_compat_l (Rabs (amplitude w))) in Hcauchy; [|apply Rabs_pos].
+  unfold weight. lra.
+Qed.
+
+Lemma beta_bounded ws y v : beta ws y v <= (2 + sum weight ws) * dot v v.
+Proof.
+  pose proof (sum_le _ _ ws (fun w _ => wave_bounded w (angle w y) v)) as H.
+  rewrite !sum_scale in H. unfold beta. lra.
+Qed.
+
+(* Every vector but zero is a multiple of a unit vector. *)
+Lemma unit_vector v : 0 < dot v v -> exists a u, dot u u = 1 /\ v = scale a u.
+Proof.
+  intros Hv. set (a := sqrt (dot v v)).
+  assert (Ha : 0 < a) by now apply sqrt_lt_R0.
+  assert (Haa : a * a = dot v v) by (apply sqrt_sqrt; lra).
+  exists a, (scale (/ a) v). split.
+  - rewrite dot_scale, <- Haa. field. lra.
+  - apply vec_eq; unfold scale; cbn; field; lra.
+Qed.
+
+(* The least bound of beta's eigenvalues, and places as near to it as one likes. *)
+Lemma least_bound ws : exists B, (forall y v, beta ws y v <= B * dot v v) /\
+  forall eps, 0 < eps -> exists y u, dot u u = 1 /\ B - eps < beta ws y u.
+Proof.
+  set (values := fun b => exists y u, dot u u = 1 /\ b = beta ws y u).
+  destruct (completeness values) as [B [Hub Hleast]].
+  - eexists. intros b (y & u & Hu & ->). pose proof (beta_bounded ws y u) as H.
+    rewrite Hu, Rmult_1_r in H. exact H.
+  - exists (beta ws (0, 0) (1, 0)), (0, 0), (1, 0). split; [unfold dot; cbn; ring | reflexivity].
+  - exists B. split.
+    + intros y v. destruct (Rle_lt_or_eq_dec 0 (dot v v) (dot_pos v)) as [Hv|Hv].
+      * destruct (unit_vector v Hv) as (a & u & Hu & ->).
+        rewrite beta_homogeneous, dot_scale, Hu.
+        assert (beta ws y u <= B) by (apply Hub; now exists y, u).
+        nra.
+      * replace v with ((0, 0) : vec); [rewrite beta_zero, dot_zero_r; lra|].
+        unfold dot in Hv. apply vec_eq; cbn; nra.
+    + intros eps Heps. apply Classical_Prop.NNPP. intros Hnone.
+      enough (B <= B - eps) by lra. apply Hleast. intros b (y & u & Hu & ->).
+      apply Rnot_lt_le. intros H. apply Hnone. now exists y, u.
+Qed.
+
+(* For B above 10/3 the lesser root of l + 1/l = B is below 1/3. *)
+Lemma lesser_root B : 10 / 3 < B -> exists l, 0 < l < 1 / 3 /\ B = l + / l.
+Proof.
+  intros HB. set (r := sqrt (B * B - 4)).
+  assert (Hr : r * r = B * B - 4) by (apply sqrt_sqrt; nra).
+  assert (Hr0 : 0 <= r) by apply sqrt_pos.
+  exists ((B - r) / 2).
+  assert (r < B) by nra.
+  assert (B - 2 / 3 < r) by nra.
+  split; [lra|].
+  apply Rmult_eq_reg_r with ((B - r) / 2); [|lra].
+  rewrite Rmult_plus_distr_r, Rinv_l by lra. nra.
+Qed.
+
+(* One site is enough: the mirror image of a place where beta has nearly its largest eigenvalue.
+   This is Mather's 4/3 at both ends. *)
+Lemma at_once_here ws z : odd_about z ws -> forall y v, beta ws y v < 2 / 3 * dot v v ->
+  exists y', forall x, x 0%Z = y' -> refuted ws x.
+Proof.
+  intros Hodd y v Hyv.
+  destruct (least_bound ws) as (B & HB & Hnear).
+  assert (HB3 : 10 / 3 < B).
+  { pose proof (HB (minus (scale 2 z) y) v) as H. rewrite (beta_mirrored z) in H by assumption.
+    pose proof (dot_pos v). nra. }
+  destruct (lesser_root B HB3) as (l & Hl & HBl).
+  assert (Hroom : 0 < B - 4 + 2 * l).
+  { apply Rmult_lt_reg_l with l; [lra|]. rewrite HBl.
+    replace (l * (l + / l - 4 + 2 * l)) with ((1 - 3 * l) * (1 - l)) by (field; lra). nra. }
+  destruct (Hnear _ Hroom) as (y1 & u & Hu & Hy1).
+  exists (minus (scale 2 z) y1). intros x Hx.
+  set (n := put (fun _ => (0, 0)) 0 u).
+  apply (window_refuted ws x B l) with (n := n) (s := 0%Z) (k := 0%nat);
+    [assumption | lra | lra | |].
+  - intros j Hj. apply put_else. lia.
+  - cbn [variation]. rewrite Z.add_0_l, Z.add_0_r.
+    unfold n. rewrite put_here, put_else by lia. rewrite dot_zero_r, Hu, Hx.
+    rewrite (beta_mirrored z) by assumption. lra.
+Qed.
+
+(* If for some place and vector beta is below 2/3, then for all larger amplitudes some point lies
+   on no minimizing orbit. *)
+Theorem at_once : forall ws z, odd_about z ws ->
+  forall y v, beta ws y v < 2 / 3 * dot v v -> forall s, 1 <= s ->
+  exists y', forall x, x 0%Z = y' -> refuted (scaled s ws) x.
+Proof.
+  intros ws z Hodd y v Hyv s Hs. apply (at_once_here _ z) with (y := y) (v := v).
+  - intros w' Hw'. apply in_map_iff in Hw' as (w & <- & Hw). exact (Hodd w Hw).
+  - rewrite beta_scaled. pose proof (dot_pos v). nra.
 Qed.
