@@ -4,7 +4,7 @@
 From Coq Require Import Reals ZArith QArith List Lra Lia Bool.
 From Coquelicot Require Import Coquelicot.
 From Interval.Real Require Import Xreal.
-From Interval.Float Require Import Basic Sig.
+From Interval.Float Require Import Basic Sig Specific_stdz Specific_ops.
 From Interval.Interval Require Import Interval Float Float_full.
 From Converse Require Import Numbers.
 Import ListNotations.
@@ -120,6 +120,19 @@ Proof.
   - apply cos_series_pos. lra.
 Qed.
 
+(* ---- pi to eighteen digits; the library's own, in doubles, has fourteen *)
+
+Module Wide := SpecificFloat StdZRadix2.
+Module WideI := FloatIntervalFull Wide.
+
+Lemma pi_bounds : 3141592653589793238 / 1000000000000000000 <= PI <=
+                  3141592653589793239 / 1000000000000000000.
+Proof.
+  pose proof (WideI.pi_correct (Wide.PtoP 80)) as H.
+  set (i := WideI.pi _) in H. vm_compute in i. subst i. simpl in H.
+  unfold StdZRadix2.MtoP in H. change (Z.pow_pos 2 78) with 302231454903657293676544%Z in H. lra.
+Qed.
+
 (* ---- sine and cosine near a point, to second order *)
 
 Lemma cos_lipschitz a c : 0 < c -> Rabs (cos (a + c) - cos a) <= c.
@@ -183,7 +196,8 @@ Proof.
   { intros y k. rewrite <- (sin_period (2 * PI * y) k). f_equal. ring. }
   destruct (Z_le_gt_dec 0 n) as [H | H].
   - rewrite <- (Z2Nat.id n H), <- INR_IZR_INZ. apply P.
-  - rewrite <- (P (x + IZR n) (Z.to_nat (- n))), INR_IZR_INZ, Z2Nat.id, opp_IZR by lia. f_equal. ring.
+  - rewrite <- (P (x + IZR n) (Z.to_nat (- n))), INR_IZR_INZ, Z2Nat.id, opp_IZR by lia.
+    f_equal. ring.
 Qed.
 
 Lemma cos_turns x (n : Z) : cos (2 * PI * (x + IZR n)) = cos (2 * PI * x).
@@ -193,16 +207,16 @@ Proof.
   rewrite !Q, <- (sin_turns (x + / 4) n). f_equal. ring.
 Qed.
 
-Inductive quarter := None_ | One | Two | Three.
+Inductive quarter := Zero | One | Two | Three.
 
 Definition turns_of (q : quarter) : R :=
-  match q with None_ => 0 | One => / 4 | Two => / 2 | Three => - / 4 end.
+  match q with Zero => 0 | One => / 4 | Two => / 2 | Three => - / 4 end.
 
 (* From the sine and cosine of x to those of a number of quarters more. *)
 Definition rotate {A : Type} (opp : A -> A) (q : quarter) (sc : A * A) : A * A :=
   let (s, c) := sc in
   match q with
-  | None_ => (s, c) | One => (c, opp s) | Two => (opp s, opp c) | Three => (opp c, s)
+  | Zero => (s, c) | One => (c, opp s) | Two => (opp s, opp c) | Three => (opp c, s)
   end.
 
 Lemma rotate_turns x q (n : Z) :
@@ -263,7 +277,14 @@ Record constants_ok (K : constants) : Prop := ConstantsOk {
 Section Precision.
 Variable prec : F.precision.
 
-Definition inverse (n : nat) : I.type := div prec (integer prec 1) (integer prec (factorial n)).
+(* The better of two for each precision. *)
+Definition sharp_pi : I.type :=
+  I.meet (pi prec) (join (rational prec (3141592653589793238 # 1000000000000000000))
+                         (rational prec (3141592653589793239 # 1000000000000000000))).
+
+Definition inverse (n : nat) : I.type :=
+  if (factorial n =? 1)%Z then integer prec 1
+  else div prec (integer prec 1) (integer prec (factorial n)).
 Definition last_inverse (n : nat) : I.type :=
   join (sub prec (inverse n) (inverse (n + 2))) (inverse n).
 Definition power_of_2 (k : Z) : F.type * I.type :=
@@ -271,7 +292,7 @@ Definition power_of_2 (k : Z) : F.type * I.type :=
 Definition eighths (n : Z) : F.type := I.upper (rational prec (n # 8)).
 
 Definition make_constants : constants := Constants
-  (mul prec (integer prec 2) (pi prec))
+  (mul prec (integer prec 2) sharp_pi)
   (integer prec 1)
   (unit_ prec)
   (join (rational prec (-1 # 2)) (rational prec (1 # 2)))
@@ -281,8 +302,16 @@ Definition make_constants : constants := Constants
   (rational prec (1 # 4)) (rational prec (1 # 2))
   (eighths 1) (eighths 3) (eighths 4).
 
+Lemma sharp_pi_ok : cont sharp_pi PI.
+Proof.
+  apply I.meet_correct; [apply cont_pi |].
+  eapply cont_range; [apply cont_rational | apply cont_rational | exact pi_bounds].
+Qed.
+
 Lemma inverse_ok n : cont (inverse n) (/ IZR (factorial n)).
 Proof.
+  unfold inverse. destruct (Z.eqb_spec (factorial n) 1) as [-> |].
+  { rewrite Rinv_1. apply cont_integer. }
   replace (/ IZR (factorial n)) with (1 / IZR (factorial n)) by (unfold Rdiv; ring).
   apply cont_div; try apply cont_integer. intros E.
   pose proof (factorial_inv_pos n) as H. rewrite E, Rinv_0 in H. lra.
@@ -306,7 +335,7 @@ Lemma make_constants_ok : constants_ok make_constants.
 Proof.
   constructor; unfold make_constants; cbn [two_pi one from_minus_1_to_1 from_minus_half_to_half
     sine_coefficients sine_last cosine_coefficients cosine_last whole_turns one_quarter one_half].
-  - apply cont_mul; [apply cont_integer | apply cont_pi].
+  - apply cont_mul; [apply cont_integer | apply sharp_pi_ok].
   - apply cont_integer.
   - intros x. apply cont_range; apply cont_integer.
   - intros x. apply cont_range; apply cont_Q; unfold Q2R; simpl; field.
@@ -376,7 +405,7 @@ Definition reduce (t : I.type) : I.type * quarter :=
     | _, Xgt => (sub prec t (one_quarter K), One)
     | _, _ => (add prec t (one_quarter K), Three)
     end
-  | _ => (t, None_)
+  | _ => (t, Zero)
   end.
 
 Lemma reduce_ok t x : cont t x ->
