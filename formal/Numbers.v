@@ -93,6 +93,31 @@ Proof.
   destruct (I.sign_strict i); try discriminate. now destruct (S (Xreal x) C).
 Qed.
 
+(* Does it lie above zero, or at least touch it from there? *)
+Definition non_negative (i : I.type) : bool :=
+  match I.sign_large i with Xgt | Xeq => true | _ => false end.
+
+Lemma non_negative_correct i x : non_negative i = true -> cont i x -> 0 <= x.
+Proof.
+  unfold non_negative, cont. intros H C. pose proof (I.sign_large_correct i) as S.
+  destruct (I.sign_large i); try discriminate; specialize (S (Xreal x) C).
+  - injection S as ->. apply Rle_refl.
+  - apply S.
+Qed.
+
+(* What lies between two numbers of an interval lies in it, too. *)
+Lemma cont_between i x y z : cont i x -> cont i z -> x <= y <= z -> cont i y.
+Proof. intros Hx Hz H. exact (contains_connected (I.convert i) x z Hx Hz y H). Qed.
+
+(* The interval from one number to another. *)
+Lemma cont_range i j x y z : cont i x -> cont j z -> x <= y <= z -> cont (join i j) y.
+Proof.
+  intros Hx Hz. apply cont_between; apply cont_join; [left | right]; assumption.
+Qed.
+
+Lemma cont_subset i j x : I.subset i j = true -> cont i x -> cont j x.
+Proof. intros S H. exact (I.subset_correct i j (Xreal x) H S). Qed.
+
 (* Is the interval within [-1, 1]? *)
 Definition unit_ : I.type := join (integer (-1)) (integer 1).
 End Precision.
