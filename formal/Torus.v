@@ -10,7 +10,13 @@ From Converse Require Import Map Numbers Sine.
 Import ListNotations.
 Open Scope R_scope.
 
-(* ---- sums *)
+(* ---- rationals and sums *)
+
+Lemma Q2R_0_1 : Q2R 0 = 0 /\ Q2R 1 = 1.
+Proof. unfold Q2R. simpl. split; field. Qed.
+
+Lemma Q2R_inject_Z n : Q2R (inject_Z n) = IZR n.
+Proof. unfold Q2R. simpl. field. Qed.
 
 Lemma sum_le {A} (f g : A -> R) l : (forall x, In x l -> f x <= g x) -> sum f l <= sum g l.
 Proof.
@@ -87,7 +93,8 @@ Definition quadratic_form (w : wave) (c0 c1 c2 : R) (r : vec) : R :=
 Lemma quadratic_form_convex w c0 c1 c2 : 0 <= c2 -> convex (quadratic_form w c0 c1 c2).
 Proof.
   intros P u u' l Hl. unfold quadratic_form.
-  replace (along w (plus (scale l u) (scale (1 - l) u'))) with (l * along w u + (1 - l) * along w u')
+  replace (along w (plus (scale l u) (scale (1 - l) u')))
+    with (l * along w u + (1 - l) * along w u')
     by (unfold along, plus, scale; cbn [fst snd]; ring).
   set (d := along w u). set (d' := along w u').
   assert (0 <= c2 * (l * (1 - l) * ((d - d') * (d - d')))).
@@ -115,7 +122,8 @@ Qed.
 Lemma covers_crude z w : covers z (w, quadratic_form w (Rabs (amplitude w)) 0 0).
 Proof.
   split; [apply quadratic_form_convex; lra |]. intros r. unfold quadratic_form.
-  replace (Rabs (amplitude w) + along w r * (0 + along w r * 0)) with (Rabs (amplitude w) * 1) by ring.
+  replace (Rabs (amplitude w) + along w r * (0 + along w r * 0)) with (Rabs (amplitude w) * 1)
+    by ring.
   eapply Rle_trans; [apply Rle_abs |]. rewrite Rabs_Ropp, Rabs_mult.
   apply Rmult_le_compat_l; [apply Rabs_pos | apply Rabs_le, SIN_bound].
 Qed.
@@ -175,11 +183,15 @@ Qed.
 (* ---- the parameters: functions that are affine in each of m of them and depend on no other *)
 
 Record multiaffine (m : nat) (f : list R -> R) : Prop := Multiaffine {
-  affine : forall p x r, f (p ++ x :: r) = f (p ++ 0 :: r) + x * (f (p ++ 1 :: r) - f (p ++ 0 :: r));
+  affine : forall p x r,
+    f (p ++ x :: r) = f (p ++ 0 :: r) + x * (f (p ++ 1 :: r) - f (p ++ 0 :: r));
   no_more : forall t, f t = f (firstn m t);
   absent_is_zero : forall t, f t = f (t ++ [0]) }.
 
 Definition signs (l : list bool) : list R := map (fun b : bool => if b then 1 else -1) l.
+
+Lemma signs_repeat m : signs (repeat true m) = repeat 1 m.
+Proof. induction m; simpl; [| f_equal]; trivial. Qed.
 
 Fixpoint corners (m : nat) : list (list bool) :=
   match m with
@@ -271,6 +283,20 @@ Proof.
   - apply combined_multiaffine. lia.
 Qed.
 
+(* The sum of a wave's parts at a corner. *)
+Fixpoint at_corner (parts : list Q) (s : list bool) : Q :=
+  match parts, s with
+  | g :: parts, b :: s => (if b then g else - g) + at_corner parts s
+  | _, _ => 0
+  end.
+
+Lemma at_corner_combined g : forall s, Q2R (at_corner g s) = combined g (signs s).
+Proof.
+  unfold combined. induction g as [| a g IH]; intros s; [apply Q2R_0_1 |].
+  destruct s as [| b s]; [apply Q2R_0_1 |]. simpl. rewrite Q2R_plus, IH. simpl.
+  destruct b; rewrite ?Q2R_opp; ring.
+Qed.
+
 (* ---- what rational arithmetic decides *)
 
 (* Does 0 < l < 1 and B <= l + 1/l? *)
@@ -283,9 +309,6 @@ Proof.
   apply Qle_bool_iff in L. congruence.
 Qed.
 
-Lemma Q2R_0_1 : Q2R 0 = 0 /\ Q2R 1 = 1.
-Proof. unfold Q2R. simpl. split; field. Qed.
-
 Theorem tail_ok_correct B l : tail_ok B l = true ->
   0 < Q2R l < 1 /\ Q2R B <= Q2R l + / Q2R l.
 Proof.
@@ -295,6 +318,12 @@ Proof.
   split; [lra |]. apply Rmult_le_reg_r with (Q2R l); [lra |].
   rewrite Rmult_plus_distr_r, Rinv_l by lra. exact H.
 Qed.
+
+Definition along_Q (w : term) (u : Q * Q) : Q :=
+  (inject_Z (of_k0 w) * fst u + inject_Z (of_k1 w) * snd u)%Q.
+
+Lemma Q2R_along w u : Q2R (along_Q w u) = IZR (of_k0 w) * Q2R (fst u) + IZR (of_k1 w) * Q2R (snd u).
+Proof. unfold along_Q. now rewrite Q2R_plus, !Q2R_mult, !Q2R_inject_Z. Qed.
 
 (* Are all waves' angles multiples of pi at pi z? *)
 Definition integral (q : Q) : bool := Qeq_bool q (inject_Z (Qnum (Qred q))).
@@ -306,11 +335,7 @@ Proof.
 Qed.
 
 Definition odd_about (patch : list term) (z : Q * Q) : bool :=
-  forallb (fun w => integral (inject_Z (of_k0 w) * fst z + inject_Z (of_k1 w) * snd z + of_phase w))
-    patch.
-
-Lemma Q2R_inject_Z n : Q2R (inject_Z n) = IZR n.
-Proof. unfold Q2R. simpl. field. Qed.
+  forallb (fun w => integral (along_Q w z + of_phase w)) patch.
 
 Theorem odd_about_correct patch z : odd_about patch z = true ->
   forall t w, In w (waves patch t) -> exists m : Z, angle w (scale PI (point z)) = IZR m * PI.
@@ -318,7 +343,7 @@ Proof.
   unfold odd_about, waves. rewrite forallb_forall. intros H t w Hw.
   apply in_map_iff in Hw. destruct Hw as (u & <- & Hu).
   destruct (integral_correct _ (H u Hu)) as [m E]. exists m. rewrite <- E.
-  rewrite !Q2R_plus, !Q2R_mult, !Q2R_inject_Z.
+  rewrite Q2R_plus, Q2R_along.
   unfold angle, along, scale, point. cbn [k0 k1 phase fst snd]. ring.
 Qed.
 
@@ -428,7 +453,8 @@ Proof.
   assert (Hp := cont_abs _ _ A).
   set (crude := F.cmp _ _). set (near := (neg (wamp iw [*] s), _, half prec (I.abs (wamp iw)))).
   assert (C : exists a b c, covers z (w, quadratic_form w a b c) /\
-    let '(ia, ib, ic) := match crude with Xgt => (I.abs (wamp iw), I.zero, I.zero) | _ => near end in
+    let '(ia, ib, ic) :=
+      match crude with Xgt => (I.abs (wamp iw), I.zero, I.zero) | _ => near end in
     cont ia a /\ cont ib b /\ cont ic c).
   { assert (N : exists a b c, covers z (w, quadratic_form w a b c) /\
       let '(ia, ib, ic) := near in cont ia a /\ cont ib b /\ cont ic c).
@@ -496,7 +522,8 @@ Proof.
   apply non_negative_correct with (1 := Nc) in Hc' as Pc.
   assert (Pd := non_negative_correct _ _ Nd
     (cont_sub prec _ _ _ _ (cont_mul prec _ _ _ _ Ha' Hc') (cont_sqr prec _ _ Hb))).
-  rewrite above_matrix. unfold dot. pose proof (positive_matrix _ _ _ (fst v) (snd v) Pa Pc Pd). lra.
+  rewrite above_matrix. unfold dot.
+  pose proof (positive_matrix _ _ _ (fst v) (snd v) Pa Pc Pd). lra.
 Qed.
 
 (* In the whole cell, turns i0 and i1? *)
@@ -616,5 +643,113 @@ Proof.
   - now apply (cont_range _ _ 0 _ 1); try apply cont_integer.
 Qed.
 
+(* ---- at the corners of a patch *)
+
+Definition iwave_at (s : list bool) (w : term) : iwave :=
+  IWave (of_k0 w) (of_k1 w) (half prec (rational prec (of_phase w)))
+    (rational prec (middle w + at_corner (parts w) s)).
+
+Lemma iwaves_match patch s : Forall2 matches (map (iwave_at s) patch) (waves patch (signs s)).
+Proof.
+  unfold waves. induction patch as [| w patch IH]; constructor; [| exact IH].
+  split; cbn [wk0 wk1 wphase wamp iwave_at k0 k1 phase amplitude]; trivial.
+  - replace (Q2R (of_phase w) * PI / (2 * PI)) with (Q2R (of_phase w) / 2)
+      by (field; apply PI_neq0).
+    apply cont_half, cont_rational.
+  - rewrite <- at_corner_combined, <- Q2R_plus. apply cont_rational.
+Qed.
+
+(* 4/3 v.v - (2 v.v - v.beta v), at the place pi y. *)
+Definition excess (patch : list term) (y v : Q * Q) (s : list bool) : I.type :=
+  fold_right (fun w i => i [-] rational prec (middle w + at_corner (parts w) s) [*]
+      fst (sincos prec K (rational prec ((along_Q w y + of_phase w) / 2))) [*]
+      rational prec (along_Q w v * along_Q w v))
+    (rational prec ((4 # 3) * (fst v * fst v + snd v * snd v))) patch.
+
+Lemma excess_ok patch y v s : cont (excess patch y v s)
+  (beta (waves patch (signs s)) (scale PI (point y)) (point v) - 2 / 3 * dot (point v) (point v)).
+Proof.
+  unfold beta. set (k := fun w : wave => _).
+  replace (2 * dot (point v) (point v) - sum k (waves patch (signs s)) -
+      2 / 3 * dot (point v) (point v))
+    with (4 / 3 * dot (point v) (point v) - sum k (waves patch (signs s))) by field.
+  unfold waves, excess. induction patch as [| w patch IH]; simpl.
+  - rewrite Rminus_0_r. apply cont_Q. rewrite Q2R_mult, Q2R_plus, !Q2R_mult.
+    unfold dot, point, Q2R at 1. simpl. field.
+  - match goal with |- cont _ (?d - (?a + ?b)) =>
+      replace (d - (a + b)) with (d - b - a) by ring end.
+    apply cont_sub; [exact IH |]. unfold k. cbn [amplitude].
+    apply cont_mul; [apply cont_mul |].
+    + rewrite <- at_corner_combined, <- Q2R_plus. apply cont_rational.
+    + set (a := angle _ _).
+      assert (A : cont (rational prec ((along_Q w y + of_phase w) / 2)) (a / (2 * PI))).
+      { apply cont_Q. unfold Qdiv. rewrite Q2R_mult, Q2R_plus, Q2R_along.
+        unfold a, angle, along, scale, point. cbn [k0 k1 phase fst snd].
+        replace (Q2R (/ 2)) with (/ 2) by (unfold Q2R; simpl; field). field. apply PI_neq0. }
+      apply (sincos_correct prec K ok) in A. destruct A as [A _].
+      now replace (2 * PI * (a / (2 * PI))) with a in A by (field; apply PI_neq0).
+    + apply cont_Q. rewrite Q2R_mult, !Q2R_along.
+      unfold along, point. reflexivity.
+Qed.
+
 End Precision.
+
+(* ---- what is checked of a patch *)
+
+Section Patch.
+Variable prec : F.precision.
+Variable patch : list term.
+
+(* v.beta v <= B v.v everywhere, for all potentials? *)
+Definition patch_below (B : Q) : bool :=
+  let K := make_constants prec in
+  forallb (fun s => torus_below prec K (map (iwave_at prec s) patch) (rational prec B))
+    (corners (parameters patch)).
+
+Theorem patch_below_correct B : patch_below B = true ->
+  forall t, in_cube t -> forall y v, beta (waves patch t) y v <= Q2R B * dot v v.
+Proof.
+  unfold patch_below. rewrite forallb_forall. intros H t Ht y v.
+  destruct (largest_at_corner _ _ (beta_multiaffine patch _ y v (le_n _)) t Ht) as (s & Hs & L).
+  eapply Rle_trans; [exact L |].
+  apply (torus_below_correct prec _ (make_constants_ok prec) _ _ _ _ (H s Hs)).
+  - apply iwaves_match.
+  - apply cont_rational.
+Qed.
+
+(* v.beta(pi y)v < 2/3 v.v at a corner? *)
+Definition at_once_at (y v : Q * Q) (s : list bool) : bool :=
+  negative (excess prec (make_constants prec) patch y v s).
+
+Lemma at_once_at_correct y v s : at_once_at y v s = true ->
+  beta (waves patch (signs s)) (scale PI (point y)) (point v) < 2 / 3 * dot (point v) (point v).
+Proof.
+  intros H. pose proof (negative_correct _ _ H (excess_ok prec _ (make_constants_ok prec) _ _ _ _)).
+  lra.
+Qed.
+
+(* For all potentials? *)
+Definition at_once_ok (y v : Q * Q) : bool :=
+  forallb (at_once_at y v) (corners (parameters patch)).
+
+Theorem at_once_ok_correct y v : at_once_ok y v = true -> forall t, in_cube t ->
+  beta (waves patch t) (scale PI (point y)) (point v) < 2 / 3 * dot (point v) (point v).
+Proof.
+  unfold at_once_ok. rewrite forallb_forall. intros H t Ht.
+  destruct (largest_at_corner _ _ (beta_multiaffine patch _ (scale PI (point y)) (point v) (le_n _))
+              t Ht) as (s & Hs & L).
+  eapply Rle_lt_trans; [exact L |]. now apply at_once_at_correct, H.
+Qed.
+
+(* For the last one, all t = 1? *)
+Definition at_once_end_ok (y v : Q * Q) : bool := at_once_at y v (repeat true (parameters patch)).
+
+Theorem at_once_end_ok_correct y v : at_once_end_ok y v = true ->
+  beta (waves patch (repeat 1 (parameters patch))) (scale PI (point y)) (point v)
+    < 2 / 3 * dot (point v) (point v).
+Proof.
+  intros H. apply at_once_at_correct in H. now rewrite signs_repeat in H.
+Qed.
+
+End Patch.
 End Torus.
