@@ -619,7 +619,7 @@ Proof.
     destruct C as [C | C]; [now apply (IH i0 j) | now apply (IH i0 k)].
 Qed.
 
-(* So deep that a double is not halved in vain. *)
+(* Cells are halved so many times at most, both ways together. *)
 Definition depth : nat := 64.
 
 Definition torus_below (ws : list iwave) (B : I.type) : bool :=
