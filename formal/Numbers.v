@@ -46,6 +46,10 @@ Lemma cont_join i j x : cont i x \/ cont j x -> cont (join i j) x.
 Proof. exact (I.join_correct i j (Xreal x)). Qed.
 Lemma cont_integer n : cont (integer n) (IZR n).
 Proof. apply I.fromZ_correct. Qed.
+Lemma cont_abs i x : cont i x -> cont (I.abs i) (Rabs x).
+Proof. exact (I.abs_correct i (Xreal x)). Qed.
+Lemma cont_zero : cont I.zero 0.
+Proof. unfold cont. rewrite I.zero_correct. simpl. lra. Qed.
 Lemma cont_pi : cont pi PI.
 Proof. apply I.pi_correct. Qed.
 
