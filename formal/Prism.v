@@ -448,17 +448,46 @@ Proof.
     generalize (dot na nb). intros q. unfold dot, plus. cbn [fst snd]. lra.
 Qed.
 
+Lemma some_pair {A B} (x y : A) (a b : B) : Some (x, a) = Some (y, b) -> x = y.
+Proof. now injection 1. Qed.
+
 Lemma exact2_all l : Forall2 cont_vec (map exact2 l) (map real_of l).
 Proof. induction l as [| p l IH]; constructor; [apply cont_exact2 | exact IH]. Qed.
 
 Ltac in_rationals :=
   cbn [fst snd]; repeat first [exact pi_ok | apply cont_mul | apply cont_add | apply cont_rational].
 
-Theorem bound_ok p l B h c u i b : 0 < Q2R l < 1 -> B <= Q2R l + / Q2R l ->
-  (forall t, in_cube t -> forall y v, beta (waves (terms p) t) y v <= B * dot v v) ->
-  bound h (prepare p l) c = Some (i, b) -> negative i = true -> in_cell c u -> excluded p u.
+(* What the intervals hold. *)
+Record ready_ok (p : problem) (l : Q) (rd : ready) : Prop := {
+  ok_plain : plain rd = map prepare_wave (terms p);
+  ok_start : exists ov, cont_vec (rest_0 rd) ov /\
+    near (real_of (X0 rd)) (minus (point (start p)) (plus (0, 0) ov));
+  ok_base0 : cont (fst (base rd)) (PI * (Q2R (f00 p) * Q2R (mid0 p) + Q2R (f01 p) * Q2R (mid1 p)));
+  ok_base1 : cont (snd (base rd)) (PI * (Q2R (f10 p) * Q2R (mid0 p) + Q2R (f11 p) * Q2R (mid1 p)));
+  ok_side00 : cont (fst (fst (sides rd))) (PI * (Q2R (f00 p) * Q2R (wid0 p)));
+  ok_side01 : cont (snd (fst (sides rd))) (PI * (Q2R (f01 p) * Q2R (wid1 p)));
+  ok_side10 : cont (fst (snd (sides rd))) (PI * (Q2R (f10 p) * Q2R (wid0 p)));
+  ok_side11 : cont (snd (snd (sides rd))) (PI * (Q2R (f11 p) * Q2R (wid1 p)));
+  ok_tail : cont (tail rd) (Q2R l)
+}.
+
+Lemma prepare_ok p l : ready_ok p l (prepare p l).
 Proof.
-  intros Hl HBl HB E Neg HC.
+  unfold prepare. generalize (in_turns (rational (fst (start p)))).
+  generalize (in_turns (rational (snd (start p)))). intros ty tx.
+  constructor; cbn [plain rest_0 X0 base sides tail]; [reflexivity | | in_rationals ..].
+  exists (Q2R (fst (start p)) - 2 * PI * (number (fst tx) + IZR (snd tx)),
+          Q2R (snd (start p)) - 2 * PI * (number (fst ty) + IZR (snd ty))).
+  split; [split; apply beyond_turns_ok, cont_rational |].
+  exists (snd tx), (snd ty). unfold point, minus, plus, real_of. apply vec_eq; cbn [fst snd]; ring.
+Qed.
+
+Theorem bound_ok p l B h rd c u i b : 0 < Q2R l < 1 -> B <= Q2R l + / Q2R l ->
+  (forall t, in_cube t -> forall y v, beta (waves (terms p) t) y v <= B * dot v v) ->
+  ready_ok p l rd -> bound h rd c = Some (i, b) -> negative i = true -> in_cell c u ->
+  excluded p u.
+Proof.
+  intros Hl HBl HB R E Neg HC.
   destruct u as [| u0 [| u1 t]]; try exact Logic.I. intros Ht x Ox X0x X1x.
   unfold bound in E.
   destruct (cell_located _ _ HC) as (es' & L & C & N).
@@ -472,71 +501,47 @@ Proof.
   { apply (f_equal (@length _)) in EC. rewrite map_length in EC. simpl in EC, N. lia. }
   assert (Ne : length c = length (es ++ [e0; e1])) by (rewrite app_length; simpl in *; lia).
   destruct (waves_held ts t es [e0; e1] (terms p) L) as (ms & HW & Wms & Ems).
-  cbn [plain prepare base sides rest_0 X0 tail] in E. rewrite Nt, Ne in E.
+  rewrite Nt, Ne, (ok_plain _ _ _ R) in E.
   set (e := es ++ [e0; e1]) in *.
   set (ws := map (wave_in ts) _) in *.
   (* where x1 and x0 are *)
-  match type of E with context [placed _ ?ib ?iside i0 i1] =>
-    assert (PX := placed_ok es e0 e1 ib iside i0 i1
-      (PI * (Q2R (f00 p) * Q2R (mid0 p) + Q2R (f01 p) * Q2R (mid1 p)))
-      (PI * (Q2R (f00 p) * Q2R (wid0 p))) (PI * (Q2R (f01 p) * Q2R (wid1 p))) a0 r0 a1 r1 C'
-      ltac:(in_rationals)
-      ltac:(in_rationals)
-      ltac:(in_rationals) Ha0 Hr0 Ha1 Hr1);
-    destruct (placed _ ib iside i0 i1) as ((X, l0), rr0)
-  end.
+  assert (PX := placed_ok es e0 e1 _ _ i0 i1 _ _ _ a0 r0 a1 r1 C' (ok_base0 _ _ _ R)
+    (ok_side00 _ _ _ R) (ok_side01 _ _ _ R) Ha0 Hr0 Ha1 Hr1).
+  destruct (placed _ (fst (base rd)) (fst (sides rd)) i0 i1) as ((X, l0), rr0).
   destruct PX as (n0 & lv0 & rv0 & Hl0 & Hrr0 & EX).
-  match type of E with context [placed _ ?ib ?iside i0 i1] =>
-    assert (PY := placed_ok es e0 e1 ib iside i0 i1
-      (PI * (Q2R (f10 p) * Q2R (mid0 p) + Q2R (f11 p) * Q2R (mid1 p)))
-      (PI * (Q2R (f10 p) * Q2R (wid0 p))) (PI * (Q2R (f11 p) * Q2R (wid1 p))) a0 r0 a1 r1 C'
-      ltac:(in_rationals)
-      ltac:(in_rationals)
-      ltac:(in_rationals) Ha0 Hr0 Ha1 Hr1);
-    destruct (placed _ ib iside i0 i1) as ((Y, l1), rr1)
-  end.
+  assert (PY := placed_ok es e0 e1 _ _ i0 i1 _ _ _ a0 r0 a1 r1 C' (ok_base1 _ _ _ R)
+    (ok_side10 _ _ _ R) (ok_side11 _ _ _ R) Ha0 Hr0 Ha1 Hr1).
+  destruct (placed _ (snd (base rd)) (snd (sides rd)) i0 i1) as ((Y, l1), rr1).
   destruct PY as (n1 & lv1 & rv1 & Hl1 & Hrr1 & EY).
   rewrite <- E0, <- E1 in EX, EY. fold e in Hl0, Hl1.
-  set (tx := in_turns (rational (fst (start p)))) in *.
-  set (ty := in_turns (rational (snd (start p)))) in *.
-  assert (HO : cont_vec (beyond_turns (rational (fst (start p))) tx,
-      beyond_turns (rational (snd (start p))) ty)
-      (Q2R (fst (start p)) - 2 * PI * (number (fst tx) + IZR (snd tx)),
-       Q2R (snd (start p)) - 2 * PI * (number (fst ty) + IZR (snd ty))))
-    by (split; apply beyond_turns_ok, cont_rational).
-  clearbody tx ty.
-  set (ov := (Q2R (fst (start p)) - _, Q2R (snd (start p)) - _)) in *.
-  set (o := (beyond_turns _ tx, beyond_turns _ ty)) in *.
+  destruct (ok_start _ _ _ R) as (ov & HO & N0). rewrite <- X0x in N0.
   assert (N1 : near (real_of (X, Y)) (minus (x 1%Z) (plus (lv0, lv1) (rv0, rv1)))).
   { exists n0, n1. rewrite X1x. unfold second, minus, plus, real_of. cbn [fst snd].
     apply vec_eq; cbn [fst snd]; [clear EY | clear EX]; lra. }
-  assert (N0 : near (real_of (fst tx, fst ty)) (minus (x 0%Z) (plus (0, 0) ov))).
-  { exists (snd tx), (snd ty). rewrite X0x. unfold ov, point, minus, plus, real_of.
-    apply vec_eq; cbn [fst snd]; ring. }
   assert (None' : hold_vec e ([], []) (0, 0)) by (split; apply hold1_nil).
-  pose proof (start_good e (x 0%Z) (x 1%Z) (fst tx, fst ty) (X, Y) ([], []) (l0, l1) o (rr0, rr1)
+  pose proof (start_good e (x 0%Z) (x 1%Z) (X0 rd) (X, Y) ([], []) (l0, l1) (rest_0 rd) (rr0, rr1)
     (0, 0) (lv0, lv1) ov (rv0, rv1) None' (conj Hl0 Hl1) HO (conj Hrr0 Hrr1) N0 N1) as GA.
-  pose proof (start_good e (x 1%Z) (x 0%Z) (X, Y) (fst tx, fst ty) (l0, l1) ([], []) (rr0, rr1) o
+  pose proof (start_good e (x 1%Z) (x 0%Z) (X, Y) (X0 rd) (l0, l1) ([], []) (rr0, rr1) (rest_0 rd)
     (lv0, lv1) (0, 0) (rv0, rv1) ov (conj Hl0 Hl1) None' (conj Hrr0 Hrr1) HO N1 N0) as GB.
   apply (follow_ok prec K K_ok sincos sincos_ok (longest h) (limit h) e ws ms) in GA; auto.
   apply (follow_ok prec K K_ok sincos sincos_ok (longest h) (limit h) e ws ms) in GB; auto.
-  set (sa := follow _ _ _ _ _ ws (State (fst tx, fst ty) _ _ _ _ _ _ _ _)) in *.
+  set (sa := follow _ _ _ _ _ ws (State (X0 rd) _ _ _ _ _ _ _ _)) in *.
   set (sb := follow _ _ _ _ _ ws (State (X, Y) _ _ _ _ _ _ _ _)) in *.
   destruct (witness h _ sa sb) as [(na, nb) |]; [| easy].
   destruct na as [| na0 na]; [easy |]. destruct nb as [| nb0 nb]; [easy |].
   destruct (Nat.leb_spec (length (na0 :: na)) (length sa)) as [La |]; [| easy].
   destruct (Nat.leb_spec (length (nb0 :: nb)) (length sb)) as [Lb |]; [| easy].
   cbv beta iota delta [andb] in E.
-  assert (EJ := joint_ok e (l0, l1) (rr0, rr1) o _ _ (lv0, lv1) (rv0, rv1) ov _ _ _ _ C'
+  assert (EJ := joint_ok e (l0, l1) (rr0, rr1) (rest_0 rd) _ _ (lv0, lv1) (rv0, rv1) ov _ _ _ _ C'
     (conj Hl0 Hl1) (conj Hrr0 Hrr1) HO
-    (backward_ok prec K K_ok e ms (rational l) (Q2R l) (map exact2 (na0 :: na)) C'
-      (cont_rational prec l) sa (map real_of (na0 :: na)) _ _ _ _ GA (exact2_all _)
+    (backward_ok prec K K_ok e ms (tail rd) (Q2R l) (map exact2 (na0 :: na)) C'
+      (ok_tail _ _ _ R) sa (map real_of (na0 :: na)) _ _ _ _ GA (exact2_all _)
       ltac:(now rewrite map_length))
-    (backward_ok prec K K_ok e ms (rational l) (Q2R l) (map exact2 (nb0 :: nb)) C'
-      (cont_rational prec l) sb (map real_of (nb0 :: nb)) _ _ _ _ GB (exact2_all _)
+    (backward_ok prec K K_ok e ms (tail rd) (Q2R l) (map exact2 (nb0 :: nb)) C'
+      (ok_tail _ _ _ R) sb (map real_of (nb0 :: nb)) _ _ _ _ GB (exact2_all _)
       ltac:(now rewrite map_length))).
-  injection E as E _. eassert (Below : cont i _) by (rewrite <- E; exact EJ).
-  apply (negative_correct _ _ Neg) in Below. rewrite Ems in Below.
+  apply some_pair in E. rewrite E in EJ. apply (negative_correct _ _ Neg) in EJ.
+  rewrite Ems in EJ.
   apply (lanes_refuted (waves (terms p) t) x B (Q2R l) (map real_of (na0 :: na))
     (map real_of (nb0 :: nb))); auto; try discriminate.
 Qed.
