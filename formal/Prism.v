@@ -222,20 +222,55 @@ Definition witness (h : manner) (l : F.type) (ahead back : list site) : option (
 (* ---- the bound *)
 
 (* Both lanes together:  D(x1) = l e + r,  D(x0) = o. *)
-Definition joint (n : nat) (l : form1 * form1) (r o : I.type * I.type) (a b : sum_of) : I.type :=
+Definition joint (l : form1 * form1) (r o : I.type * I.type) (a b : sum_of) :
+    I.type * form1 * form2 * form3 :=
   let a0 := minus_affine prec (fst (on_D a)) (fst (mult b)) in
   let a1 := minus_affine prec (snd (on_D a)) (snd (mult b)) in
   let b0 := minus_affine prec (fst (on_D b)) (fst (mult a)) in
   let b1 := minus_affine prec (snd (on_D b)) (snd (mult a)) in
   let lost := add (add (mul (range_affine prec K a0) (fst r)) (mul (range_affine prec K a1) (snd r)))
                   (add (mul (range_affine prec K b0) (fst o)) (mul (range_affine prec K b1) (snd o))) in
-  summit prec (unit K) (upto1 K) n
-    (sub (add (add (value a) (value b)) lost)
-         (mul (itwo K) (inner prec (vector a) (vector b))))
-    (add1 (add1 (sum1 a) (sum1 b)) (add1 (scale1 (fst a0) (fst l)) (scale1 (fst a1) (snd l))))
-    (add2 prec (add2 prec (sum2 a) (sum2 b))
-               (add2 prec (product prec (snd a0) (fst l)) (product prec (snd a1) (snd l))))
-    (add3 prec (sum3 a) (sum3 b)).
+  (sub (add (add (value a) (value b)) lost)
+       (mul (itwo K) (inner prec (vector a) (vector b))),
+   add1 (add1 (sum1 a) (sum1 b)) (add1 (scale1 (fst a0) (fst l)) (scale1 (fst a1) (snd l))),
+   add2 prec (add2 prec (sum2 a) (sum2 b))
+             (add2 prec (product prec (snd a0) (fst l)) (product prec (snd a1) (snd l))),
+   add3 prec (sum3 a) (sum3 b)).
+
+Definition top (n : nat) (p : I.type * form1 * form2 * form3) : I.type :=
+  let '(v, p1, p2, p3) := p in summit prec (unit K) (upto1 K) n v p1 p2 p3.
+
+(* ---- which symbol a bound suffers from: on floats, nothing rests on it *)
+
+Definition size_of (i : I.type) : F.type := F.max (F.abs (I.upper i)) (F.abs (I.lower i)).
+Definition fsum (l : list F.type) : F.type := fold_right fadd F.zero l.
+
+Fixpoint felt2 (q : form2) : list F.type :=
+  match q with
+  | [] => []
+  | row :: q => let m := map size_of row in fsum m :: zip fadd (tl m) (felt2 q)
+  end.
+Fixpoint felt3 (before : list F.type) (t : form3) : list F.type :=
+  match t with
+  | [] => []
+  | q :: t => let m := felt2 q in zip fadd (zip fadd m (before ++ [fsum m])) (felt3 (F.zero :: before) t)
+  end.
+
+(* How far each symbol moves the last site of a lane. *)
+Definition stretch (sites : list site) : list F.type :=
+  match rev_append sites [] with
+  | [] => []
+  | s :: _ => fold_right (fun w a => zip fadd (map size_of (xi w)) a) [] (view s)
+  end.
+
+(* Of the axes of a cell, in their order: the angles are the last symbols. *)
+Definition blame (n : nat) (sa sb : list site) (i : I.type) (p1 : form1) (p2 : form2) (p3 : form3) :
+    list F.type :=
+  let ends := zip fadd (stretch sa) (stretch sb) in
+  let rest := fdiv (fsub (I.upper i) (center i)) (fsum ends) in
+  let all := zip fadd (zip fadd (map size_of p1) (zip fadd (felt2 p2) (felt3 [] p3)))
+                 (map (fmul rest) ends) in
+  skipn n all ++ firstn n all.
 
 Definition bound (h : manner) (rd : ready) (c : cell) : option (I.type * list F.type) :=
   match map span c with
@@ -249,17 +284,16 @@ Definition bound (h : manner) (rd : ready) (c : cell) : option (I.type * list F.
     let sb := follow prec K sincos (longest h) (limit h) ws
       (State (x, y) (X0 rd) (l0, l1) none (r0, r1) (rest_0 rd) (rest_0 rd) zero3 zero3) in
     match witness h (center (tail rd)) sa sb with
-    | None => None
-    | Some (na, nb) =>
-      match na, nb with
-      | _ :: _, _ :: _ =>
-        if (Nat.leb (length na) (length sa) && Nat.leb (length nb) (length sb))%bool then
-          Some (joint (length c) (l0, l1) (r0, r1) (rest_0 rd)
-                  (backward prec K (tail rd) sa (map exact2 na))
-                  (backward prec K (tail rd) sb (map exact2 nb)), [])
-        else None
-      | _, _ => None
-      end
+    | Some ((_ :: _) as na, (_ :: _) as nb) =>
+      if (Nat.leb (length na) (length sa) && Nat.leb (length nb) (length sb))%bool then
+        let p := joint (l0, l1) (r0, r1) (rest_0 rd)
+                   (backward prec K (tail rd) sa (map exact2 na))
+                   (backward prec K (tail rd) sb (map exact2 nb)) in
+        let i := top (length c) p in
+        let '(v, p1, p2, p3) := p in
+        Some (i, if negative i then [] else blame (length ts) sa sb v p1 p2 p3)
+      else None
+    | _ => Some (I.nai, blame (length ts) sa sb (unit K) [] [] [])
     end
   | _ => None
   end.
@@ -409,7 +443,7 @@ Definition sums e (t : sum_of) (n0 D Do : vec) (total : R) : Prop :=
 Lemma joint_ok e l r o a b lv rv ov na nb va vb : cube e -> hold_vec e l lv -> cont_vec r rv ->
   cont_vec o ov -> sums e a na (plus lv rv) (plus (0, 0) ov) va ->
   sums e b nb (plus (0, 0) ov) (plus lv rv) vb ->
-  cont (joint (length e) l r o a b) (va + vb - 2 * dot na nb).
+  cont (top (length e) (joint l r o a b)) (va + vb - 2 * dot na nb).
 Proof.
   intros C (Hl0 & Hl1) (Hr0 & Hr1) (Ho0 & Ho1)
     (v0 & v1 & v2 & v3 & H & mu & A0 & A1 & A2 & A3 & (AH0 & AH1) & (AM0 & AM1) & AV & EA)
@@ -425,7 +459,7 @@ Proof.
   destruct G0 as (c0 & x0 & Hc0 & Hx0 & E0), G1 as (c1 & x1 & Hc1 & Hx1 & E1).
   assert (K2 : cont (itwo K) 2) by apply K_ok.
   assert (HV := cont_mul prec _ _ _ _ K2 (cont_inner prec _ _ _ _ AV BV)).
-  unfold joint. cbv zeta.
+  unfold joint, top. cbv beta iota zeta.
   match goal with |- cont (summit _ _ _ _ ?c ?l1 ?l2 ?l3) _ =>
     assert (Z0 : cont c (v0 + w0 + ((fst H - fst mu') * fst rv + (snd H - snd mu') * snd rv
       + ((fst H' - fst mu) * fst ov + (snd H' - snd mu) * snd ov)) - 2 * dot na nb))
@@ -527,11 +561,14 @@ Proof.
   apply (follow_ok prec K K_ok sincos sincos_ok (longest h) (limit h) e ws ms) in GB; auto.
   set (sa := follow _ _ _ _ _ ws (State (X0 rd) _ _ _ _ _ _ _ _)) in *.
   set (sb := follow _ _ _ _ _ ws (State (X, Y) _ _ _ _ _ _ _ _)) in *.
-  destruct (witness h _ sa sb) as [(na, nb) |]; [| easy].
-  destruct na as [| na0 na]; [easy |]. destruct nb as [| nb0 nb]; [easy |].
+  destruct (witness h _ sa sb) as [([| na0 na], [| nb0 nb]) |];
+    try (apply some_pair in E; rewrite <- E in Neg; discriminate Neg).
+  cbv beta iota in E.
   destruct (Nat.leb_spec (length (na0 :: na)) (length sa)) as [La |]; [| easy].
   destruct (Nat.leb_spec (length (nb0 :: nb)) (length sb)) as [Lb |]; [| easy].
   cbv beta iota delta [andb] in E.
+  destruct (joint _ _ _ _ _) as (((v, p1), p2), p3) eqn:J in E. cbv zeta in E.
+  apply some_pair in E. rewrite <- J in E.
   assert (EJ := joint_ok e (l0, l1) (rr0, rr1) (rest_0 rd) _ _ (lv0, lv1) (rv0, rv1) ov _ _ _ _ C'
     (conj Hl0 Hl1) (conj Hrr0 Hrr1) HO
     (backward_ok prec K K_ok e ms (tail rd) (Q2R l) (map exact2 (na0 :: na)) C'
@@ -540,7 +577,7 @@ Proof.
     (backward_ok prec K K_ok e ms (tail rd) (Q2R l) (map exact2 (nb0 :: nb)) C'
       (ok_tail _ _ _ R) sb (map real_of (nb0 :: nb)) _ _ _ _ GB (exact2_all _)
       ltac:(now rewrite map_length))).
-  apply some_pair in E. rewrite E in EJ. apply (negative_correct _ _ Neg) in EJ.
+  rewrite E in EJ. apply (negative_correct _ _ Neg) in EJ.
   rewrite Ems in EJ.
   apply (lanes_refuted (waves (terms p) t) x B (Q2R l) (map real_of (na0 :: na))
     (map real_of (nb0 :: nb))); auto; try discriminate.
