@@ -585,10 +585,6 @@ Qed.
 
 (* ---- at once: all larger amplitudes, too *)
 
-(* The amplitudes times s. *)
-Definition scaled (s : R) (ws : list wave) : list wave :=
-  map (fun w => Wave (k0 w) (k1 w) (phase w) (s * amplitude w)) ws.
-
 (* V is odd about z, but for a constant. *)
 Definition odd_about (z : vec) (ws : list wave) : Prop :=
   forall w, In w ws -> exists m : Z, angle w z = IZR m * PI.

@@ -37,6 +37,10 @@ Definition V' (ws : list wave) (y : vec) : vec :=
 Definition beta (ws : list wave) (y v : vec) : R :=
   2 * dot v v - sum (fun w => amplitude w * sin (angle w y) * (along w v * along w v)) ws.
 
+(* The amplitudes times s. *)
+Definition scaled (s : R) (ws : list wave) : list wave :=
+  map (fun w => Wave (k0 w) (k1 w) (phase w) (s * amplitude w)) ws.
+
 (* The map (y, J) -> (y + J', J'), J' = J - V'(y), and its orbits, by their angles. *)
 Definition F (ws : list wave) (yJ : vec * vec) : vec * vec :=
   let J' := minus (snd yJ) (V' ws (fst yJ)) in (plus (fst yJ) J', J').
