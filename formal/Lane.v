@@ -31,7 +31,7 @@ Proof. induction l as [| a l IH]; simpl; [easy | now rewrite IH]. Qed.
 (* A wave of the true potential: its amplitude is the middle one and what the parameters add. *)
 Record moving := Moving { its : wave; mid_amp : R; more_amp : R }.
 
-Definition whole (a : moving) : Prop := amplitude (its a) = mid_amp a + more_amp a.
+Definition entire (a : moving) : Prop := amplitude (its a) = mid_amp a + more_amp a.
 
 Module Lane (F : FloatOps with Definition radix := Zaux.radix2
                           with Definition sensible_format := true).
@@ -157,7 +157,7 @@ Record seen := Seen {
 }.
 
 Definition sees (e : list R) (Y l r : vec) (s : seen) (a : moving) : Prop :=
-  whole a /\ held e (of s) a /\
+  entire a /\ held e (of s) a /\
   cont (sn s) (sin (angle (its a) Y)) /\ cont (cs s) (cos (angle (its a) Y)) /\
   cont (ps s) (mid_amp a * sin (angle (its a) Y)) /\
   cont (pc s) (mid_amp a * cos (angle (its a) Y)) /\
@@ -200,7 +200,7 @@ Proof.
   apply sin_whole.
 Qed.
 
-Lemma look_sees e X Xi Y L l r ri w a : cube e -> whole a -> held e w a -> cont_vec Xi X -> near X Y ->
+Lemma look_sees e X Xi Y L l r ri w a : cube e -> entire a -> held e w a -> cont_vec Xi X -> near X Y ->
   hold_vec e L l -> cont_vec ri r -> sees e Y l r (look Xi L ri w) a.
 Proof.
   intros C Ha Hw HX HY HL Hr. unfold look.
@@ -394,7 +394,7 @@ Qed.
 Definition slope_real (Y l : vec) (a : moving) : R :=
   - (mid_amp a * sin (angle (its a) Y) * along (its a) l) + more_amp a * cos (angle (its a) Y).
 
-Lemma force_expanded Y l r a : whole a ->
+Lemma force_expanded Y l r a : entire a ->
   amplitude (its a) * cos (angle (its a) (plus Y (plus l r))) =
   mid_amp a * cos (angle (its a) Y) + slope_real Y l a
   - mid_amp a * sin (angle (its a) Y) * along (its a) r + bent_real Y l r a.
@@ -510,7 +510,7 @@ Lemma vec_eq (u v : vec) : fst u = fst v -> snd u = snd v -> u = v.
 Proof. destruct u, v. simpl. now intros -> ->. Qed.
 
 (* The pull, split into what the columns carry, what the rest does by beta, and the bent part. *)
-Lemma pull_expanded k ws Y l r : Forall whole ws ->
+Lemma pull_expanded k ws Y l r : Forall entire ws ->
   pull k ws Y (plus Y (plus l r)) =
   sum (fun a => IZR (k (its a)) * slope_real Y l a) ws
   - fst r * sum (fun a => IZR (k (its a)) * (IZR (k0 (its a)) * (mid_amp a * sin (angle (its a) Y)))) ws
@@ -527,7 +527,7 @@ Lemma force_split k ws Y y :
   sum (fun a => IZR (k (its a)) * (mid_amp a * cos (angle (its a) Y))) ws + pull k ws Y y.
 Proof. unfold pull. rewrite sum_plus. apply sum_ext. intros. ring. Qed.
 
-Lemma view_sees e iws ws Xi X Y L l ri r : cube e -> Forall2 (held e) iws ws -> Forall whole ws ->
+Lemma view_sees e iws ws Xi X Y L l ri r : cube e -> Forall2 (held e) iws ws -> Forall entire ws ->
   cont_vec Xi X -> near X Y -> hold_vec e L l -> cont_vec ri r ->
   Forall2 (sees e Y l r) (map (look Xi L ri) iws) ws.
 Proof.
@@ -614,7 +614,7 @@ Qed.
 Notation sines k k' Y ws := (sum (fun a => IZR (k (its a)) * (IZR (k' (its a))
                               * (mid_amp a * sin (angle (its a) Y)))) ws).
 
-Theorem step_good e iws ws o y Do D st : cube e -> Forall2 (held e) iws ws -> Forall whole ws ->
+Theorem step_good e iws ws o y Do D st : cube e -> Forall2 (held e) iws ws -> Forall entire ws ->
   good e o y Do D st ->
   let '(s, st') := step (map (look (exact2 (here st)) (columns st) (rest st)) iws) st in
   exists Y l r E Dn, y = plus Y D /\ D = plus l r /\ Forall2 (sees e Y l r) (view s) ws /\
@@ -715,7 +715,7 @@ Fixpoint follow (fuel : nat) (limit : F.type) (iws : list pwave) (st : state) : 
   end.
 
 Theorem follow_ok fuel limit e iws ws o y Do D st : cube e -> Forall2 (held e) iws ws ->
-  Forall whole ws -> good e o y Do D st -> lane_ok e ws (follow fuel limit iws st) o y Do D.
+  Forall entire ws -> good e o y Do D st -> lane_ok e ws (follow fuel limit iws st) o y Do D.
 Proof.
   intros C HH W. revert o y Do D st. induction fuel as [| fuel IH]; intros o y Do D st G; simpl.
   { exact Logic.I. }

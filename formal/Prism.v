@@ -4,32 +4,9 @@ From Coq Require Import Reals ZArith QArith Qreals List Lra Lia.
 From Interval.Real Require Import Xreal.
 From Interval.Float Require Import Basic Sig.
 From Interval.Interval Require Import Interval.
-From Converse Require Import Map Trig Window Tree Lane Bound.
+From Converse Require Import Map Trig Window Tree Reduce Lane Bound.
 Import ListNotations.
 Open Scope R_scope.
-
-(* x0 is the start, x1 is pi times the matrix applied to v, v = middle + half-width times u, and u and
-   the parameters are from -1 to 1. *)
-Record problem := Problem {
-  terms : list term;
-  start : Q * Q;
-  f00 : Q; f01 : Q; f10 : Q; f11 : Q;
-  mid0 : Q; wid0 : Q; mid1 : Q; wid1 : Q
-}.
-
-(* x1, for the u of both angles. *)
-Definition second (p : problem) (u0 u1 : R) : vec :=
-  let v0 := Q2R (mid0 p) + Q2R (wid0 p) * u0 in
-  let v1 := Q2R (mid1 p) + Q2R (wid1 p) * u1 in
-  (PI * (Q2R (f00 p) * v0 + Q2R (f01 p) * v1), PI * (Q2R (f10 p) * v0 + Q2R (f11 p) * v1)).
-
-(* For the point u = (u0, u1, parameters) of the problem's cube. *)
-Definition excluded (p : problem) (u : list R) : Prop :=
-  match u with
-  | u0 :: u1 :: t => in_cube t -> forall x, orbit (waves (terms p) t) x -> x 0%Z = point (start p) ->
-                     x 1%Z = second p u0 u1 -> refuted (waves (terms p) t) x
-  | _ => True
-  end.
 
 Module Prism (F : FloatOps with Definition radix := Zaux.radix2
                            with Definition sensible_format := true).
@@ -359,7 +336,7 @@ Definition wave_of (w : term) (t : list R) : wave :=
   Wave (of_k0 w) (of_k1 w) (Q2R (of_phase w) * PI) (Q2R (middle w) + combined (parts w) t).
 
 Lemma waves_held ts t es more ws : located ts t es -> exists ms,
-  Forall2 (held (es ++ more)) (map (wave_in ts) (map prepare_wave ws)) ms /\ Forall whole ms /\
+  Forall2 (held (es ++ more)) (map (wave_in ts) (map prepare_wave ws)) ms /\ Forall entire ms /\
   map its ms = waves ws t.
 Proof.
   intros L. induction ws as [| w ws IH]; [exists []; repeat split; constructor |].
@@ -375,7 +352,7 @@ Proof.
     replace (Q2R (of_phase w) * PI / (2 * PI)) with (/ 2 * Q2R (of_phase w))
       by (field; apply PI_neq0).
     apply cont_mul; [apply K_ok | apply cont_rational].
-  - constructor; [| exact W]. unfold whole, wave_of. cbn [its amplitude mid_amp more_amp].
+  - constructor; [| exact W]. unfold entire, wave_of. cbn [its amplitude mid_amp more_amp].
     rewrite Eq. ring.
   - cbn [map its]. now rewrite E.
 Qed.

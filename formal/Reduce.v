@@ -3,7 +3,7 @@
    turned, mirror images need not be looked at twice.  At the end what follows for invariant graphs.
    All this is real analysis and exact arithmetic of rationals. *)
 
-From Coq Require Import Reals ZArith QArith Qreals List Permutation Bool Lra Lia.
+From Coq Require Import Reals ZArith QArith Qreals List Bool Lra Lia.
 From Converse Require Import Map Criterion Tree.
 From Converse Require Graph.
 Import ListNotations.
