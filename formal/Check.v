@@ -111,7 +111,7 @@ Fixpoint greatest (l : list F.type) (at_ : nat) (best : F.type * nat) : nat :=
 (* None if the cell is excluded, else the axis along which to cut it. *)
 Definition attempt (rd : ready) (c : cell) : option nat :=
   let cuts := fold_right (fun s n => snd s + n)%nat O c in
-  match Prism.bound prec exact sines (if Nat.even cuts then bold else cautious) rd c with
+  match prism_bound prec exact sines (if Nat.even cuts then bold else cautious) rd c with
   | Some (i, blames) => if negative i then None else Some (greatest blames 0 (F.zero, 0%nat))
   | None => Some (length c)
   end.
@@ -163,13 +163,13 @@ Proof.
   assert (Below := patch_below_correct prec _ _ Hp).
   revert Hu. refine (settle_covers (excluded (plain_problem c)) _ _ (fuel h) leaf Hleaf u).
   clear leaf u Hleaf. intros leaf Hleaf u Hu. unfold attempt in Hleaf.
-  destruct (Prism.bound _ _ _ _ _ leaf) as [(i, b) |] eqn:E in Hleaf; [| discriminate].
+  destruct (prism_bound _ _ _ _ _ leaf) as [(i, b) |] eqn:E in Hleaf; [| discriminate].
   destruct (negative i) eqn:Neg; [| discriminate].
   assert (Final : excluded (final_problem c) u).
-  { apply (bound_ok prec exact exact_ok sines sines_ok (final_problem c) (tail h) (Q2R (bound h)) _ _
-      leaf u i b Hl HB); auto using prepare_ok, exact_ok, sharp_pi_ok.
-    unfold final_problem. destruct (better_turned _); [| exact Below].
-    now apply turned_largest. }
+  { eapply (bound_ok prec exact exact_ok sines sines_ok);
+      [exact Hl | exact HB | | apply prepare_ok; auto using exact_ok, sharp_pi_ok
+       | exact E | exact Neg | exact Hu].
+    unfold final_problem. destruct (better_turned _); [now apply turned_largest | exact Below]. }
   unfold final_problem in Final. destruct (better_turned _); [| exact Final].
   now apply turned_excluded.
 Qed.
@@ -180,7 +180,8 @@ Proof.
   unfold check, header_ok. rewrite !andb_true_iff.
   intros (((((Ha & Ht) & Hp) & Hm) & _) & Hleaves).
   apply (into_of_problem _ _ _ (parameters (of_patch c))); [apply parameters_most |].
-  intros u Hu Cube. apply (felt_excluded _ (of_alone c) Ha).
+  intros u Hu Cube.
+  apply (felt_excluded (problem_of (of_region c) (of_patch c) (of_xstar c)) (of_alone c) Ha).
   apply (tree_covers (axes c) (excluded (plain_problem c)) t _ Hm); auto.
   - intros leaf Hleaf v Hv. rewrite forallb_forall in Hleaves.
     exact (leaf_excluded c h leaf v Ht Hp (Hleaves leaf Hleaf) Hv).

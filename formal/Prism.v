@@ -18,7 +18,7 @@ Record ready := Ready {
   X0 : plane; rest_0 : I.type * I.type;             (* of x0 *)
   base : I.type * I.type;                           (* x1 for u = 0, in radians *)
   sides : (I.type * I.type) * (I.type * I.type);    (* what u0 and u1 add to it *)
-  tail : I.type                                     (* l *)
+  end_ : I.type                                     (* l *)
 }.
 
 (* How a prism is tried; nothing rests on it. *)
@@ -182,9 +182,9 @@ Fixpoint spread (l : F.type) (good : bool) (v : plane) (scans : list (bool * sym
 (* Of the sites ahead and back. *)
 Definition witness (h : manner) (l : F.type) (ahead back : list site) : option (list plane * list plane) :=
   let blocks := rev_append (map (blocked h) back) (map (blocked h) ahead) in
-  let end_ := (l, F.zero, l) in
-  let lefts := scan l end_ blocks in
-  let rights := rev_append (scan l end_ (rev_append blocks [])) [] in
+  let ends := (l, F.zero, l) in
+  let lefts := scan l ends blocks in
+  let rights := rev_append (scan l ends (rev_append blocks [])) [] in
   match choose blocks lefts rights 0 None with
   | None => None
   | Some (_, at_, joint) =>
@@ -249,7 +249,7 @@ Definition blame (n : nat) (sa sb : list site) (i : I.type) (p1 : form1) (p2 : f
                  (map (fmul rest) ends) in
   skipn n all ++ firstn n all.
 
-Definition bound (h : manner) (rd : ready) (c : cell) : option (I.type * list F.type) :=
+Definition prism_bound (h : manner) (rd : ready) (c : cell) : option (I.type * list F.type) :=
   match map span c with
   | u0 :: u1 :: ts =>
     let ws := map (wave_in ts) (plain rd) in
@@ -260,12 +260,12 @@ Definition bound (h : manner) (rd : ready) (c : cell) : option (I.type * list F.
       (State (X0 rd) (x, y) none (l0, l1) (rest_0 rd) (r0, r1) (r0, r1) zero3 zero3) in
     let sb := follow prec K sincos (longest h) (limit h) ws
       (State (x, y) (X0 rd) (l0, l1) none (r0, r1) (rest_0 rd) (rest_0 rd) zero3 zero3) in
-    match witness h (center (tail rd)) sa sb with
+    match witness h (center (end_ rd)) sa sb with
     | Some ((_ :: _) as na, (_ :: _) as nb) =>
       if (Nat.leb (length na) (length sa) && Nat.leb (length nb) (length sb))%bool then
         let p := joint (l0, l1) (r0, r1) (rest_0 rd)
-                   (backward prec K (tail rd) sa (map exact2 na))
-                   (backward prec K (tail rd) sb (map exact2 nb)) in
+                   (backward prec K (end_ rd) sa (map exact2 na))
+                   (backward prec K (end_ rd) sb (map exact2 nb)) in
         let i := top (length c) p in
         let '(v, p1, p2, p3) := p in
         Some (i, if negative i then [] else blame (length ts) sa sb v p1 p2 p3)
@@ -479,14 +479,14 @@ Record ready_ok (p : problem) (l : Q) (rd : ready) : Prop := {
   ok_side01 : cont (snd (fst (sides rd))) (PI * (Q2R (f01 p) * Q2R (wid1 p)));
   ok_side10 : cont (fst (snd (sides rd))) (PI * (Q2R (f10 p) * Q2R (wid0 p)));
   ok_side11 : cont (snd (snd (sides rd))) (PI * (Q2R (f11 p) * Q2R (wid1 p)));
-  ok_tail : cont (tail rd) (Q2R l)
+  ok_tail : cont (end_ rd) (Q2R l)
 }.
 
 Lemma prepare_ok p l : ready_ok p l (prepare p l).
 Proof.
   unfold prepare. generalize (in_turns (rational (fst (start p)))).
   generalize (in_turns (rational (snd (start p)))). intros ty tx.
-  constructor; cbn [plain rest_0 X0 base sides tail]; [reflexivity | | in_rationals ..].
+  constructor; cbn [plain rest_0 X0 base sides end_]; [reflexivity | | in_rationals ..].
   exists (Q2R (fst (start p)) - 2 * PI * (number (fst tx) + IZR (snd tx)),
           Q2R (snd (start p)) - 2 * PI * (number (fst ty) + IZR (snd ty))).
   split; [split; apply beyond_turns_ok, cont_rational |].
@@ -495,12 +495,12 @@ Qed.
 
 Theorem bound_ok p l B h rd c u i b : 0 < Q2R l < 1 -> B <= Q2R l + / Q2R l ->
   (forall t, in_cube t -> forall y v, beta (waves (terms p) t) y v <= B * dot v v) ->
-  ready_ok p l rd -> bound h rd c = Some (i, b) -> negative i = true -> in_cell c u ->
+  ready_ok p l rd -> prism_bound h rd c = Some (i, b) -> negative i = true -> in_cell c u ->
   excluded p u.
 Proof.
   intros Hl HBl HB R E Neg HC.
   destruct u as [| u0 [| u1 t]]; try exact Logic.I. intros Ht x Ox X0x X1x.
-  unfold bound in E.
+  unfold prism_bound in E.
   destruct (cell_located _ _ HC) as (es' & L & C & N).
   destruct (map span c) as [| i0 [| i1 ts]] eqn:EC; try easy.
   destruct es' as [| e0 [| e1 es]]; try (simpl in L; tauto).
@@ -548,10 +548,10 @@ Proof.
   apply some_pair in E. rewrite <- J in E.
   assert (EJ := joint_ok e (l0, l1) (rr0, rr1) (rest_0 rd) _ _ (lv0, lv1) (rv0, rv1) ov _ _ _ _ C'
     (conj Hl0 Hl1) (conj Hrr0 Hrr1) HO
-    (backward_ok prec K K_ok e ms (tail rd) (Q2R l) (map exact2 (na0 :: na)) C'
+    (backward_ok prec K K_ok e ms (end_ rd) (Q2R l) (map exact2 (na0 :: na)) C'
       (ok_tail _ _ _ R) sa (map real_of (na0 :: na)) _ _ _ _ GA (exact2_all _)
       ltac:(now rewrite map_length))
-    (backward_ok prec K K_ok e ms (tail rd) (Q2R l) (map exact2 (nb0 :: nb)) C'
+    (backward_ok prec K K_ok e ms (end_ rd) (Q2R l) (map exact2 (nb0 :: nb)) C'
       (ok_tail _ _ _ R) sb (map real_of (nb0 :: nb)) _ _ _ _ GB (exact2_all _)
       ltac:(now rewrite map_length))).
   rewrite E in EJ. apply (negative_correct _ _ Neg) in EJ.
