@@ -1,12 +1,12 @@
 (* The left side of (1) of docs/proof.md, bounded over a prism.  At each site of a lane a
    multiplier mu of the equation of motion is added to it, affine in the symbols, such that what is
-   linear in D cancels; what is left is a polynomial of third order in the symbols and an interval. *)
+   form1 in D cancels; what is left is a polynomial of third order in the symbols and an interval. *)
 
 From Coq Require Import Reals ZArith List Lra Lia.
 From Interval.Real Require Import Xreal.
 From Interval.Float Require Import Basic Sig.
 From Interval.Interval Require Import Interval.
-From Converse Require Import Map Trig Lane.
+From Converse Require Import Map Trig Window Lane.
 Import ListNotations.
 Open Scope R_scope.
 
@@ -28,14 +28,14 @@ Notation scale2 := (scale2 prec).
 Notation product := (product prec).
 Notation product3 := (product3 prec).
 Notation square := (square prec).
-Variable K : constants.
-Hypothesis K_ok : constants_ok K.
+Variable K : limits.
+Hypothesis K_ok : limits_ok K.
 Notation range1 := (range1 prec (unit K)).
 Notation dir := (dir prec).
 Notation dir1 := (dir1 prec).
 
 (* What is affine in the symbols: a number and a linear form. *)
-Definition affine := (I.type * linear)%type.
+Definition affine := (I.type * form1)%type.
 Definition hold_affine e (a : affine) (v : R) : Prop :=
   exists x y, cont (fst a) x /\ hold1 e (snd a) y /\ v = x + y.
 
@@ -48,7 +48,7 @@ Qed.
 
 (* What a wave has in the sum, with m = m0 + m1 = k.mu and o = k.n:  see wave_expanded. *)
 Section Wave.
-Variables (s : seen) (n : I.type * I.type) (mu0 : I.type * I.type) (mu1 : linear * linear).
+Variables (s : seen) (n : I.type * I.type) (mu0 : I.type * I.type) (mu1 : form1 * form1).
 Let om := sqr (dir (of s) n).
 Let m0 := dir (of s) mu0.
 Let m1 := dir1 (of s) mu1.
@@ -61,16 +61,16 @@ Let beta' := scale1 (neg (sn s)) m1.
 Let PA := mul P A.
 Let PB := mul P B.
 
-Definition with_1 : linear := scale1 A h.
-Definition with_2 : quadratic :=
+Definition with_1 : form1 := scale1 A h.
+Definition with_2 : form2 :=
   add2 (scale2 (mul (ihalf K) PA) (square (xi s))) (product h alpha).
-Definition with_3 : cubic :=
+Definition with_3 : form3 :=
   let sq := square (xi s) in
   let first := negate1 (add1 (scale1 (mul (ihalf K) P) alpha)
     (add1 (scale1 (mul (isixth K) PB) (xi s)) (scale1 (mul (ihalf K) A) h))) in
   add3 (product3 first sq) (product3 h (product beta' (xi s))).
 (* what D is multiplied with *)
-Definition turn : affine :=
+Definition turning : affine :=
   (PB, add1 (scale1 P beta') (add1 (negate1 (scale1 PA (xi s))) (scale1 B h))).
 
 Definition left_over : I.type :=
@@ -101,7 +101,7 @@ Lemma wave_ok e Y l r s a n nu mi0 mi1 mu0 mu1 : cube e -> sees e Y l r s a ->
   cont_vec n nu -> cont_vec mi0 mu0 -> hold_vec e mi1 mu1 ->
   exists v1 v2 v3 c g, hold1 e (with_1 s n mi0) v1 /\ hold2 e (with_2 s n mi0 mi1) v2 /\
     hold3 e e (with_3 s n mi0 mi1) v3 /\ cont (left_over s n mi0 mi1) c /\
-    hold_affine e (turn s n mi0 mi1) g /\
+    hold_affine e (turning s n mi0 mi1) g /\
     wave_real Y (plus Y (plus l r)) nu (plus mu0 mu1) a =
       v1 + v2 + v3 + c + g * (along (its a) l + along (its a) r).
 Proof.
@@ -179,7 +179,7 @@ Qed.
 (* ---- a lane, from its last site inwards *)
 
 Record sum_of := SumOf {
-  value : I.type; sum1 : linear; sum2 : quadratic; sum3 : cubic;
+  value : I.type; sum1 : form1; sum2 : form2; sum3 : form3;
   on_D : affine * affine;                   (* D of the last site looked at is multiplied with this *)
   mult : affine * affine;                   (* its multiplier *)
   vector : I.type * I.type                  (* its n *)
@@ -222,9 +222,9 @@ Definition add_site (s : site) (n : I.type * I.type) (l : option I.type) (t : su
     (add2 (sum2 t) (total [] add2 (fun w => with_2 w n c l1) (view s)))
     (add3 (sum3 t) (total [] add3 (fun w => with_3 w n c l1) (view s)))
     (plus_affine (minus_affine (plus_affine mu0 mu0) (fst (mult t)))
-                 (gather_affine0 (fun w => turn w n c l1) (view s)),
+                 (gather_affine0 (fun w => turning w n c l1) (view s)),
      plus_affine (minus_affine (plus_affine mu1 mu1) (snd (mult t)))
-                 (gather_affine1 (fun w => turn w n c l1) (view s)))
+                 (gather_affine1 (fun w => turning w n c l1) (view s)))
     (mu0, mu1) n.
 
 Fixpoint backward (l : I.type) (sites : list site) (ns : list (I.type * I.type)) : sum_of :=
@@ -232,15 +232,6 @@ Fixpoint backward (l : I.type) (sites : list site) (ns : list (I.type * I.type))
   | s :: sites, n :: ns =>
     add_site s n (match ns with [] => Some l | _ => None end) (backward l sites ns)
   | _, _ => no_sum
-  end.
-
-(* The same of the true orbit. *)
-Fixpoint part (ws : list wave) (l : R) (ns : list vec) (o y : vec) : R :=
-  match ns with
-  | [] => 0
-  | n :: ns =>
-    Map.beta ws y n - 2 * dot n (hd (0, 0) ns)
-    - match ns with [] => l * dot n n | _ => 0 end + part ws l ns y (next ws o y)
   end.
 
 Definition hold_both e (a : affine * affine) (v : vec) : Prop :=
@@ -291,8 +282,8 @@ Lemma waves_ok e Y l r n nu mi0 mi1 mu0 mu1 ss ws : cube e -> Forall2 (sees e Y 
   hold2 e (total [] add2 (fun s => with_2 s n mi0 mi1) ss) v2 /\
   hold3 e e (total [] add3 (fun s => with_3 s n mi0 mi1) ss) v3 /\
   cont (total I.zero add (fun s => left_over s n mi0 mi1) ss) c /\
-  hold_affine e (gather_affine0 (fun s => turn s n mi0 mi1) ss) g0 /\
-  hold_affine e (gather_affine1 (fun s => turn s n mi0 mi1) ss) g1 /\
+  hold_affine e (gather_affine0 (fun s => turning s n mi0 mi1) ss) g0 /\
+  hold_affine e (gather_affine1 (fun s => turning s n mi0 mi1) ss) g1 /\
   sum (wave_real Y (plus Y (plus l r)) nu (plus mu0 mu1)) ws =
     v1 + v2 + v3 + c + g0 * (fst l + fst r) + g1 * (snd l + snd r).
 Proof.

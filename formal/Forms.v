@@ -1,40 +1,40 @@
 (* Polynomials of third order in the symbols e, each from -1 to 1, with intervals for coefficients.
 
-   All that is said of one is which number it holds at one point e: `hold1 e l v` for a linear form
-   l, `hold2` and `hold3` for quadratic and cubic ones.  So a proof about polynomials is a proof about
+   All that is said of one is which number it holds at one point e: `hold1 e l v` for a form1 form
+   l, `hold2` and `hold3` for form2 and form3 ones.  So a proof about polynomials is a proof about
    numbers.  A list that is shorter than e stands for zeros. *)
 
 From Coq Require Import Reals List Lra Lia.
 From Interval.Real Require Import Xreal.
 From Interval.Float Require Import Basic Sig.
 From Interval.Interval Require Import Interval.
-From Converse Require Import Numbers.
+From Converse Require Import Torus.
 Import ListNotations.
 Open Scope R_scope.
 
 Module Forms (F : FloatOps with Definition radix := Zaux.radix2
                            with Definition sensible_format := true).
-Include Numbers F.
+Include Torus F.
 
-Definition linear := list I.type.           (* of e[i] *)
-Definition quadratic := list linear.        (* of e[i] e[j], j >= i: row i begins at j = i *)
-Definition cubic := list quadratic.         (* of e[i] times a quadratic form *)
+Definition form1 := list I.type.           (* of e[i] *)
+Definition form2 := list form1.        (* of e[i] e[j], j >= i: row i begins at j = i *)
+Definition form3 := list form2.         (* of e[i] times a form2 form *)
 
-Fixpoint hold1 (e : list R) (l : linear) (v : R) : Prop :=
+Fixpoint hold1 (e : list R) (l : form1) (v : R) : Prop :=
   match l, e with
   | [], _ => v = 0
   | a :: l, x :: e => exists c r, cont a c /\ hold1 e l r /\ v = c * x + r
   | _, [] => False
   end.
 
-Fixpoint hold2 (e : list R) (q : quadratic) (v : R) : Prop :=
+Fixpoint hold2 (e : list R) (q : form2) (v : R) : Prop :=
   match q, e with
   | [], _ => v = 0
   | row :: q, x :: e => exists c r, hold1 (x :: e) row c /\ hold2 e q r /\ v = c * x + r
   | _, [] => False
   end.
 
-Fixpoint hold3 (all e : list R) (t : cubic) (v : R) : Prop :=
+Fixpoint hold3 (all e : list R) (t : form3) (v : R) : Prop :=
   match t, e with
   | [], _ => v = 0
   | q :: t, x :: e => exists c r, hold2 all q c /\ hold3 all e t r /\ v = c * x + r
@@ -58,28 +58,28 @@ Variable prec : F.precision.
 Notation add := (add prec).
 Notation mul := (mul prec).
 
-Definition add1 : linear -> linear -> linear := zip add.
-Definition add2 : quadratic -> quadratic -> quadratic := zip add1.
-Definition add3 : cubic -> cubic -> cubic := zip add2.
-Definition scale1 (c : I.type) : linear -> linear := map (mul c).
-Definition scale2 (c : I.type) : quadratic -> quadratic := map (scale1 c).
+Definition add1 : form1 -> form1 -> form1 := zip add.
+Definition add2 : form2 -> form2 -> form2 := zip add1.
+Definition add3 : form3 -> form3 -> form3 := zip add2.
+Definition scale1 (c : I.type) : form1 -> form1 := map (mul c).
+Definition scale2 (c : I.type) : form2 -> form2 := map (scale1 c).
 
 (* The product of two linear forms. *)
-Fixpoint product (a b : linear) : quadratic :=
+Fixpoint product (a b : form1) : form2 :=
   match a, b with
   | x :: a', y :: b' => (mul x y :: add1 (scale1 x b') (scale1 y a')) :: product a' b'
   | _, _ => []
   end.
 
 (* The square of one. *)
-Fixpoint square (a : linear) : quadratic :=
+Fixpoint square (a : form1) : form2 :=
   match a with
   | x :: a' => (sqr prec x :: scale1 (add x x) a') :: square a'
   | [] => []
   end.
 
 (* A linear form times a quadratic one. *)
-Definition product3 (a : linear) (q : quadratic) : cubic := map (fun x => scale2 x q) a.
+Definition product3 (a : form1) (q : form2) : form3 := map (fun x => scale2 x q) a.
 
 Lemma hold1_eq e l v w : hold1 e l v -> v = w -> hold1 e l w.
 Proof. now intros H <-. Qed.
@@ -191,10 +191,7 @@ Hypothesis unit_ok : forall x, -1 <= x <= 1 -> cont unit x.
 Variable proper : I.type.                       (* from 0 to 1 *)
 Hypothesis proper_ok : forall x, 0 <= x <= 1 -> cont proper x.
 
-Lemma cont_zero : cont I.zero 0.
-Proof. unfold cont. rewrite I.zero_correct. simpl. lra. Qed.
-
-Definition range1 (l : linear) : I.type := fold_right (fun a r => add (mul a unit) r) I.zero l.
+Definition range1 (l : form1) : I.type := fold_right (fun a r => add (mul a unit) r) I.zero l.
 
 Lemma cont_range1 e l v : cube e -> hold1 e l v -> cont (range1 l) v.
 Proof.
@@ -209,14 +206,14 @@ Qed.
 Lemma cont_convex i x y z : cont i x -> cont i z -> x <= y <= z -> cont i y.
 Proof. unfold cont. destruct (I.convert i) as [| [| l] [| u]]; simpl; intuition lra. Qed.
 
-Definition head1 (l : linear) : I.type := hd I.zero l.
-Definition head2 (q : quadratic) : linear := hd [] q.
-Definition negate1 : linear -> linear := map neg.
-Definition negate2 : quadratic -> quadratic := map negate1.
+Definition head1 (l : form1) : I.type := hd I.zero l.
+Definition head2 (q : form2) : form1 := hd [] q.
+Definition negate1 : form1 -> form1 := map neg.
+Definition negate2 : form2 -> form2 := map negate1.
 
 (* The quadratic form  sum of e[i] row i,  of rows that all begin with the first symbol;  n is at
    least their number. *)
-Fixpoint triangle (n : nat) (rows : list linear) : quadratic :=
+Fixpoint triangle (n : nat) (rows : list form1) : form2 :=
   match n, rows with
   | S n, row :: rows =>
     add1 row (I.zero :: map head1 rows) :: triangle n (map (@tl I.type) rows)
@@ -224,10 +221,10 @@ Fixpoint triangle (n : nat) (rows : list linear) : quadratic :=
   end.
 
 (* Let s be the first symbol of the polynomial  c + l + q + t.  It is  p + s r - (1 - s^2) u,  where
-   p and r are polynomials in the other symbols.  What is linear in s is largest at s = 1 or at
+   p and r are polynomials in the other symbols.  What is form1 in s is largest at s = 1 or at
    s = -1, where p + r and p - r are bounded by the same way; and u, in which the symbols are left, by
    its range. *)
-Fixpoint summit (n : nat) (c : I.type) (l : linear) (q : quadratic) (t : cubic) : I.type :=
+Fixpoint summit (n : nat) (c : I.type) (l : form1) (q : form2) (t : form3) : I.type :=
   match n with
   | O => c
   | S n =>
@@ -242,7 +239,7 @@ Fixpoint summit (n : nat) (c : I.type) (l : linear) (q : quadratic) (t : cubic) 
     let r0 := add (head1 l) cubed in
     let r1 := tl (head2 q) in
     let r2 := add2 (tl first) (triangle n (map (fun q => tl (head2 q)) (tl t))) in
-    let rest := map (@tl linear) (tl t) in
+    let rest := map (@tl form1) (tl t) in
     let u := add bend (add (mul cubed unit) (range1 twice)) in
     sub prec
       (join (summit n (add p0 r0) (add1 p1 r1) (add2 p2 r2) rest)
@@ -288,7 +285,7 @@ Proof.
 Qed.
 
 (* The sum of e[i] times the value of row i, a linear form in all. *)
-Fixpoint hold_rows (all e : list R) (rows : list linear) (v : R) : Prop :=
+Fixpoint hold_rows (all e : list R) (rows : list form1) (v : R) : Prop :=
   match rows, e with
   | [], _ => v = 0
   | row :: rows, x :: e => exists c r, hold1 all row c /\ hold_rows all e rows r /\ v = c * x + r
@@ -323,7 +320,7 @@ Qed.
 Lemma split3 s all e t v : hold3 (s :: all) e t v ->
   exists f g h, hold1 e (map (fun q => head1 (head2 q)) t) f /\
                 hold_rows all e (map (fun q => tl (head2 q)) t) g /\
-                hold3 all e (map (@tl linear) t) h /\ v = f * (s * s) + g * s + h.
+                hold3 all e (map (@tl form1) t) h /\ v = f * (s * s) + g * s + h.
 Proof.
   revert e v. induction t as [| q t IH]; intros e v H.
   - exists 0, 0, 0. destruct e; simpl in *; rewrite H; repeat split; ring.

@@ -9,7 +9,7 @@ From Coq Require Import Reals ZArith List Lra Lia.
 From Interval.Real Require Import Xreal.
 From Interval.Float Require Import Basic Sig.
 From Interval.Interval Require Import Interval.
-From Converse Require Import Map Trig Forms.
+From Converse Require Import Map Trig Window Forms.
 Import ListNotations.
 Open Scope R_scope.
 
@@ -39,36 +39,36 @@ Include Forms F.
 
 (* ---- waves and constants as intervals *)
 
-Record iwave := IWave {
+Record pwave := PWave {
   z0 : Z; z1 : Z;                           (* k *)
   i0 : I.type; i1 : I.type;                 (* the same *)
   turns : I.type;                           (* the phase *)
   amp : I.type;                             (* of the middle *)
-  move : linear                             (* what the parameters add *)
+  move : form1                             (* what the parameters add *)
 }.
 
-Definition held (e : list R) (i : iwave) (a : moving) : Prop :=
+Definition held (e : list R) (i : pwave) (a : moving) : Prop :=
   z0 i = k0 (its a) /\ z1 i = k1 (its a) /\
   cont (i0 i) (IZR (k0 (its a))) /\ cont (i1 i) (IZR (k1 (its a))) /\
   cont (turns i) (phase (its a) / (2 * PI)) /\
   cont (amp i) (mid_amp a) /\ hold1 e (move i) (more_amp a).
 
 (* Intervals that begin or end at these numbers. *)
-Record constants := Constants {
+Record limits := Limits {
   unit : I.type;                            (* -1 to 1 *)
   upto1 : I.type; upto2 : I.type; upto6 : I.type;   (* 0 to 1, to 1/2, to 1/6, *)
   upto24 : I.type; upto120 : I.type;        (* to 1/24, to 1/120 *)
-  ihalf : I.type; isixth : I.type; ione : I.type; itwo : I.type; two_pi : I.type;
+  ihalf : I.type; isixth : I.type; ione : I.type; itwo : I.type; itwo_pi : I.type;
   per_turn : F.type; fone : F.type; fhalf : F.type  (* about 1/(2 pi), 1, 1/2 *)
 }.
 
-Definition constants_ok (k : constants) : Prop :=
+Definition limits_ok (k : limits) : Prop :=
   (forall x, -1 <= x <= 1 -> cont (unit k) x) /\ (forall x, 0 <= x <= 1 -> cont (upto1 k) x) /\
   (forall x, 0 <= x <= / 2 -> cont (upto2 k) x) /\ (forall x, 0 <= x <= / 6 -> cont (upto6 k) x) /\
   (forall x, 0 <= x <= / 24 -> cont (upto24 k) x) /\
   (forall x, 0 <= x <= / 120 -> cont (upto120 k) x) /\
   cont (ihalf k) (/ 2) /\ cont (isixth k) (/ 6) /\ cont (ione k) 1 /\ cont (itwo k) 2 /\
-  cont (two_pi k) (2 * PI).
+  cont (itwo_pi k) (2 * PI).
 
 Section Precision.
 Variable prec : F.precision.
@@ -85,8 +85,8 @@ Notation product := (product prec).
 Notation product3 := (product3 prec).
 Notation square := (square prec).
 
-Variable K : constants.
-Hypothesis K_ok : constants_ok K.
+Variable K : limits.
+Hypothesis K_ok : limits_ok K.
 Notation range1 := (range1 prec (unit K)).
 
 (* Sine and cosine of an angle in turns. *)
@@ -103,7 +103,7 @@ Proof. apply cont_range1. apply K_ok. Qed.
 Definition times (k : Z) (ik x : I.type) : I.type :=
   match k with 0%Z => I.zero | 1%Z => x | (-1)%Z => neg x | _ => mul ik x end.
 
-Definition times1 (k : Z) (ik : I.type) (l : linear) : linear :=
+Definition times1 (k : Z) (ik : I.type) (l : form1) : form1 :=
   match k with 0%Z => [] | 1%Z => l | (-1)%Z => negate1 l | _ => scale1 ik l end.
 
 Lemma cont_times k ik x v : cont ik (IZR k) -> cont x v -> cont (times k ik x) (IZR k * v).
@@ -125,13 +125,13 @@ Proof.
 Qed.
 
 (* k.x *)
-Definition dir (w : iwave) (x : I.type * I.type) : I.type :=
+Definition dir (w : pwave) (x : I.type * I.type) : I.type :=
   add (times (z0 w) (i0 w) (fst x)) (times (z1 w) (i1 w) (snd x)).
-Definition dir1 (w : iwave) (x : linear * linear) : linear :=
+Definition dir1 (w : pwave) (x : form1 * form1) : form1 :=
   add1 (times1 (z0 w) (i0 w) (fst x)) (times1 (z1 w) (i1 w) (snd x)).
 
 Definition cont_vec (i : I.type * I.type) (v : vec) : Prop := cont (fst i) (fst v) /\ cont (snd i) (snd v).
-Definition hold_vec e (l : linear * linear) (v : vec) : Prop :=
+Definition hold_vec e (l : form1 * form1) (v : vec) : Prop :=
   hold1 e (fst l) (fst v) /\ hold1 e (snd l) (snd v).
 
 Lemma cont_dir e i a x v : held e i a -> cont_vec x v -> cont (dir i x) (along (its a) v).
@@ -148,10 +148,10 @@ Qed.
 
 (* What a wave is at a site: y = 2 pi X + D, D = L e + r. *)
 Record seen := Seen {
-  of : iwave;
+  of : pwave;
   sn : I.type; cs : I.type;                 (* sine and cosine at X *)
   ps : I.type; pc : I.type;                 (* the middle amplitude times these *)
-  xi : linear; size : I.type;               (* k.L e and its range *)
+  xi : form1; size : I.type;               (* k.L e and its range *)
   off : I.type;                             (* k.r *)
   z : I.type                                (* k.D *)
 }.
@@ -164,7 +164,7 @@ Definition sees (e : list R) (Y l r : vec) (s : seen) (a : moving) : Prop :=
   hold1 e (xi s) (along (its a) l) /\ cont (size s) (along (its a) l) /\
   cont (off s) (along (its a) r) /\ cont (z s) (along (its a) l + along (its a) r).
 
-Definition look (X : I.type * I.type) (L : linear * linear) (r : I.type * I.type) (w : iwave) : seen :=
+Definition look (X : I.type * I.type) (L : form1 * form1) (r : I.type * I.type) (w : pwave) : seen :=
   let '(s, c) := sincos (add (dir w X) (turns w)) in
   let xi := dir1 w L in
   let size := range1 xi in
@@ -219,7 +219,7 @@ Qed.
 (* The sum of k0 f, or k1 f, over the waves. *)
 Section Gather.
 Context {A : Type} (zero : A) (plus : A -> A -> A) (minus : A -> A) (by_ : I.type -> A -> A).
-Definition gather (k : iwave -> Z) (ik : iwave -> I.type) (f : seen -> A) : list seen -> A :=
+Definition gather (k : pwave -> Z) (ik : pwave -> I.type) (f : seen -> A) : list seen -> A :=
   fold_right (fun s rest => match k (of s) with
     | 0%Z => rest | 1%Z => plus (f s) rest | (-1)%Z => plus (minus (f s)) rest
     | _ => plus (by_ (ik (of s)) (f s)) rest end) zero.
@@ -307,7 +307,7 @@ Proof. split; apply cont_exactly. Qed.
 
 Record state := State {
   before : plane; here : plane;                     (* centres, in turns *)
-  columns0 : linear * linear; columns : linear * linear;
+  columns0 : form1 * form1; columns : form1 * form1;
   rest0 : I.type * I.type; rest : I.type * I.type;
   force : I.type * I.type;                          (* what rest is more than d rest0 *)
   d : symmetric; M : symmetric                      (* M is about the inverse of d *)
@@ -321,13 +321,13 @@ Record site := Site {
 }.
 
 Definition center (i : I.type) : F.type := I.midpoint i.
-Definition centers (l : linear) : linear := map (fun i => exactly (center i)) l.
+Definition centers (l : form1) : form1 := map (fun i => exactly (center i)) l.
 Definition fadd := F.add_UP prec.
 Definition fsub := F.sub_UP prec.
 Definition fmul := F.mul_UP prec.
 Definition fdiv := F.div_UP prec.
 
-Definition inverse (m : symmetric) : symmetric :=
+Definition inverted (m : symmetric) : symmetric :=
   let '(p, q, r) := m in
   let det := fsub (fmul p r) (fmul q q) in
   (fdiv r det, fdiv (F.neg q) det, fdiv p det).
@@ -402,7 +402,7 @@ Proof.
   intros Ha. rewrite angle_plus, along_plus, cos_plus, Ha. unfold slope_real, bent_real. ring.
 Qed.
 
-Definition slope (s : seen) : linear :=
+Definition slope (s : seen) : form1 :=
   add1 (negate1 (scale1 (ps s) (xi s))) (scale1 (cs s) (move (of s))).
 
 Lemma hold_slope e Y l r s a : sees e Y l r s a -> hold1 e (slope s) (slope_real Y l a).
@@ -414,15 +414,15 @@ Proof.
 Qed.
 
 (* One coordinate of the next site: its centre, E, its columns, and all that r obeys besides. *)
-Record axis := Axis { T : F.type; E : I.type; next_l : linear; source : I.type }.
+Record axis := Axis { T : F.type; E : I.type; next_l : form1; source : I.type }.
 
-Definition ahead (sum0 : (seen -> I.type) -> I.type) (sum1 : (seen -> linear) -> linear)
-    (X O : F.type) (L P : linear) : axis :=
+Definition ahead (sum0 : (seen -> I.type) -> I.type) (sum1 : (seen -> form1) -> form1)
+    (X O : F.type) (L P : form1) : axis :=
   let bends := sum0 bent in
-  let raw := add (mul (two_pi K) (sub (add (exactly X) (exactly X)) (exactly O))) (sum0 pc) in
+  let raw := add (mul (itwo_pi K) (sub (add (exactly X) (exactly X)) (exactly O))) (sum0 pc) in
   (* the centre is where the enclosure's middle is *)
   let '(t, n) := wrap 64 (fmul (center (add raw bends)) (per_turn K)) 0 in
-  let E := sub raw (mul (two_pi K) (add (exactly t) (integer prec n))) in
+  let E := sub raw (mul (itwo_pi K) (add (exactly t) (integer prec n))) in
   let col := add1 (add1 L L) (add1 (negate1 P) (sum1 slope)) in
   let l := centers col in
   Axis t E l (add (add E bends) (range1 (add1 col (negate1 l)))).
@@ -468,11 +468,9 @@ Definition step (ss : list seen) (st : state) : site * state :=
   let '(d', f, r) := rests beta (M st) (d st) (rest st) (rest0 st) (force st)
                            (source a, source b) in
   (Site ss (E a, E b) (add (range1 (next_l a)) (fst r), add (range1 (next_l b)) (snd r)) beta,
-   State (here st) (T a, T b) (columns st) (next_l a, next_l b) (rest st) r f d' (inverse d')).
+   State (here st) (T a, T b) (columns st) (next_l a, next_l b) (rest st) r f d' (inverted d')).
 
 (* ---- what the orbits y do *)
-
-Definition next (ws : list wave) (o y : vec) : vec := minus (minus (scale 2 y) o) (V' ws y).
 
 (* The force at y less that of the middle amplitudes at Y, and the same for all. *)
 Definition pull (k : wave -> Z) (ws : list moving) (Y y : vec) : R :=
@@ -552,8 +550,8 @@ Proof.
   assert (Hcol : hold1 e (add1 (add1 L L) (add1 (negate1 P) (sum1 slope))) (l + l + (- lo + s)))
     by auto using hold_add1, hold_negate1.
   destruct (hold_centers _ _ _ Hcol) as (l' & Hl').
-  assert (HE : cont (sub (add (mul (two_pi K) (sub (add (exactly X) (exactly X)) (exactly O)))
-      (sum0 pc)) (mul (two_pi K) (add (exactly t) (integer prec n))))
+  assert (HE : cont (sub (add (mul (itwo_pi K) (sub (add (exactly X) (exactly X)) (exactly O)))
+      (sum0 pc)) (mul (itwo_pi K) (add (exactly t) (integer prec n))))
     (2 * PI * (number X + number X - number O) + f - 2 * PI * (number t + IZR n))).
   { apply cont_sub; [apply cont_add; [| exact Hf] |]; (apply cont_mul; [apply K_ok |]);
       auto using cont_add, cont_sub, cont_exactly, cont_integer. }
@@ -706,7 +704,7 @@ Definition is_near (limit : F.type) (s : seen) : bool :=
   | _, _ => false
   end.
 
-Fixpoint follow (fuel : nat) (limit : F.type) (iws : list iwave) (st : state) : list site :=
+Fixpoint follow (fuel : nat) (limit : F.type) (iws : list pwave) (st : state) : list site :=
   match fuel with
   | O => []
   | S fuel =>

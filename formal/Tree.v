@@ -1,0 +1,657 @@
+(* The tree of a proof file (docs/format.md): the boxes that it cuts the claim's region into, the
+   ones that are skipped for the sake of their mirror image, and why all the region is excluded if
+   the boxes of its proved leaves are.  Everything here is in units of the region: each axis goes
+   from -1 to 1. *)
+
+From Coq Require Import Reals ZArith QArith Qreals List Permutation Ascii String Bool Lra Lia.
+From Converse Require Import Map Criterion.
+Import ListNotations.
+Open Scope R_scope.
+
+(* ---- trees and their text *)
+
+(* The axes are 0 and 1 for v0 and v1, then the parameters.  The lower half comes first.  A leaf
+   that is undecided has no tree. *)
+Inductive tree := Proved | Skipped | Cut (axis : nat) (lower upper : tree).
+
+(* From the last character to the first: a leaf is put on the stack, and a cut takes its two parts
+   from there. *)
+Definition read_node (node : ascii) (stack : list tree) : option (list tree) :=
+  let cut axis := match stack with
+                  | lower :: upper :: stack => Some (Cut axis lower upper :: stack)
+                  | _ => None
+                  end in
+  match node with
+  | "P"%char => Some (Proved :: stack)
+  | "S"%char => Some (Skipped :: stack)
+  | "0"%char => cut 0%nat
+  | "1"%char => cut 1%nat
+  | "2"%char => cut 2%nat
+  | "3"%char => cut 3%nat
+  | "4"%char => cut 4%nat
+  | _ => None
+  end.
+
+Fixpoint read_backwards (text : list ascii) (stack : list tree) : option tree :=
+  match text with
+  | [] => match stack with [t] => Some t | _ => None end
+  | node :: text => match read_node node stack with
+                    | Some stack => read_backwards text stack
+                    | None => None
+                    end
+  end.
+
+Fixpoint reversed (text : string) (done : list ascii) : list ascii :=
+  match text with
+  | EmptyString => done
+  | String node text => reversed text (node :: done)
+  end.
+
+(* Nothing rests on how a tree is read: it is only a proposal how to divide the work. *)
+Definition parse_list (text : list ascii) : option tree := read_backwards (rev_append text []) [].
+Definition parse (text : string) : option tree := read_backwards (reversed text []) [].
+
+(* Are there such axes? *)
+Fixpoint axes_ok (n : nat) (t : tree) : bool :=
+  match t with
+  | Cut axis lower upper => (axis <? n)%nat && axes_ok n lower && axes_ok n upper
+  | _ => true
+  end.
+
+(* ---- cells *)
+
+(* Slice i of the 2^c equal ones of [-1, 1], as (i, c). *)
+Definition slice : Type := Z * nat.
+Definition cell : Type := list slice.
+
+Definition power (c : nat) : R := IZR (2 ^ Z.of_nat c).
+
+Definition in_slice (s : slice) (u : R) : Prop :=
+  -1 + 2 * IZR (fst s) / power (snd s) <= u <= -1 + 2 * (IZR (fst s) + 1) / power (snd s).
+
+Definition in_cell (c : cell) (u : list R) : Prop := Forall2 in_slice c u.
+
+Definition root (n : nat) : cell := repeat (0%Z, 0%nat) n.
+
+(* Slices 2i and 2i + 1 of twice as many. *)
+Definition half (upper : bool) (s : slice) : slice :=
+  ((if upper then Z.succ_double (fst s) else Z.double (fst s)), S (snd s)).
+
+(* The list with its a-th element changed; as it was, if there is none. *)
+Fixpoint change {A} (f : A -> A) (a : nat) (l : list A) {struct l} : list A :=
+  match l, a with
+  | [], _ => []
+  | x :: l, O => f x :: l
+  | x :: l, S a => x :: change f a l
+  end.
+
+(* The lower or the upper half of a cell, cut along axis a. *)
+Definition half_cell (upper : bool) (a : nat) (c : cell) : cell := change (half upper) a c.
+
+Lemma power_pos c : 0 < power c.
+Proof. apply IZR_lt. apply Z.pow_pos_nonneg; lia. Qed.
+
+Lemma power_succ c : power (S c) = 2 * power c.
+Proof.
+  unfold power. rewrite Nat2Z.inj_succ, Z.pow_succ_r, mult_IZR by lia. reflexivity.
+Qed.
+
+Lemma in_cell_length c u : in_cell c u -> List.length c = List.length u.
+Proof. intros H. induction H; cbn; congruence. Qed.
+
+(* A slice has a middle, and all else of it is within 1 / 2^c. *)
+Lemma slice_symbol : forall i c u, in_slice (i, c) u -> exists s, -1 <= s <= 1 /\
+  u = (2 * IZR i + 1) / IZR (2 ^ Z.of_nat c) - 1 + s / IZR (2 ^ Z.of_nat c).
+Proof.
+  intros i c u H. unfold in_slice in H; cbn [fst snd] in H. fold (power c).
+  pose proof (power_pos c) as Hc.
+  exists ((u + 1) * power c - (2 * IZR i + 1)). split; [|field; lra].
+  destruct H as [Hl Hu].
+  apply (Rmult_le_compat_r (power c)) in Hl, Hu; try lra.
+  replace ((-1 + 2 * IZR i / power c) * power c) with (2 * IZR i - power c) in Hl
+    by (field; lra).
+  replace ((-1 + 2 * (IZR i + 1) / power c) * power c) with (2 * IZR i + 2 - power c) in Hu
+    by (field; lra).
+  lra.
+Qed.
+
+Lemma in_half upper s u : in_slice (half upper s) u <->
+  -1 + (2 * IZR (fst s) + (if upper then 1 else 0)) / power (snd s) <= u
+  <= -1 + (2 * IZR (fst s) + (if upper then 2 else 1)) / power (snd s).
+Proof.
+  unfold in_slice, half; cbn [fst snd]. rewrite power_succ. pose proof (power_pos (snd s)) as Hc.
+  destruct upper; rewrite ?Z.succ_double_spec, ?Z.double_spec, ?plus_IZR, ?mult_IZR.
+  - replace (2 * (2 * IZR (fst s) + 1) / (2 * power (snd s)))
+      with ((2 * IZR (fst s) + 1) / power (snd s)) by (field; lra).
+    replace (2 * (2 * IZR (fst s) + 1 + 1) / (2 * power (snd s)))
+      with ((2 * IZR (fst s) + 2) / power (snd s)) by (field; lra).
+    reflexivity.
+  - replace (2 * (2 * IZR (fst s)) / (2 * power (snd s)))
+      with ((2 * IZR (fst s) + 0) / power (snd s)) by (field; lra).
+    replace (2 * (2 * IZR (fst s) + 1) / (2 * power (snd s)))
+      with ((2 * IZR (fst s) + 1) / power (snd s)) by (field; lra).
+    reflexivity.
+Qed.
+
+Lemma slice_halves s u : in_slice s u <-> in_slice (half false s) u \/ in_slice (half true s) u.
+Proof.
+  rewrite !in_half. unfold in_slice. pose proof (power_pos (snd s)) as Hc.
+  assert (Hstep : 0 < / power (snd s)) by now apply Rinv_0_lt_compat.
+  unfold Rdiv. rewrite !Rmult_plus_distr_r, !Rmult_assoc.
+  destruct (Rle_dec u (-1 + (2 * (IZR (fst s) * / power (snd s)) + 1 * / power (snd s)))); lra.
+Qed.
+
+(* A point of a cell lies in one of its halves. *)
+Lemma cell_halves a c u : in_cell c u ->
+  in_cell (half_cell false a c) u \/ in_cell (half_cell true a c) u.
+Proof.
+  intros H. revert a. induction H as [|s x c u Hs Hc IH]; intros a; [left; constructor|].
+  destruct a as [|a]; cbn.
+  - apply slice_halves in Hs as [Hs|Hs]; [left | right]; now constructor.
+  - destruct (IH a) as [H|H]; [left | right]; now constructor.
+Qed.
+
+(* What lies in a half lies in the cell. *)
+Lemma half_cell_inside upper a c u : in_cell (half_cell upper a c) u -> in_cell c u.
+Proof.
+  revert a u. induction c as [|s c IH]; intros a u H; [exact H|].
+  destruct a as [|a]; cbn in H; inversion H; subst; constructor; eauto.
+  - apply slice_halves. destruct upper; auto.
+  - eapply IH; eassumption.
+Qed.
+
+(* Every point is in the root. *)
+Lemma in_root u : Forall (fun x => -1 <= x <= 1) u -> in_cell (root (List.length u)) u.
+Proof.
+  intros H. induction H as [|x u Hx Hu IH]; cbn; constructor; [|exact IH].
+  unfold in_slice, power; cbn. lra.
+Qed.
+
+(* ---- leaves *)
+
+(* The cells of the proved leaves in their order, before the rest. *)
+Fixpoint leaves_before (rest : list cell) (c : cell) (t : tree) : list cell :=
+  match t with
+  | Proved => c :: rest
+  | Skipped => rest
+  | Cut a lower upper =>
+      leaves_before (leaves_before rest (half_cell true a c) upper) (half_cell false a c) lower
+  end.
+
+Definition leaves (c : cell) (t : tree) : list cell := leaves_before [] c t.
+
+Lemma leaves_before_app t : forall rest c, leaves_before rest c t = leaves c t ++ rest.
+Proof.
+  induction t as [| |a lower IHl upper IHu]; intros rest c; [reflexivity | reflexivity |].
+  unfold leaves; cbn. rewrite !IHl, !IHu. now rewrite app_nil_r, app_assoc.
+Qed.
+
+(* A leaf below a cut is a leaf of its lower or of its upper half. *)
+Lemma in_leaves_cut a lower upper c l : In l (leaves c (Cut a lower upper)) <->
+  In l (leaves (half_cell false a c) lower) \/ In l (leaves (half_cell true a c) upper).
+Proof. unfold leaves at 1; cbn. rewrite !leaves_before_app, app_nil_r. apply in_app_iff. Qed.
+
+(* ---- mirror images *)
+
+(* A slice as the way to it: which halves are taken. *)
+Notation way := (list bool).
+
+(* The slice at the end of a way that begins at s; the cell, if there is a way along each axis. *)
+Definition follow (s : slice) (w : way) : slice := fold_left (fun s upper => half upper s) w s.
+Fixpoint within (c : cell) (ways : list way) : cell :=
+  match c, ways with
+  | s :: c, w :: ways => follow s w :: within c ways
+  | _, _ => []
+  end.
+
+(* Does the cell at the end of these ways, which begin at the tree's own cell, overlap only proved
+   leaves?  Where a way has come to its end the cell has both halves of what is cut. *)
+Fixpoint covered (ways : list way) (t : tree) : bool :=
+  match t with
+  | Proved => true
+  | Skipped => false
+  | Cut a lower upper =>
+      match nth a ways [] with
+      | [] => covered ways lower && covered ways upper
+      | false :: _ => covered (change (@tl bool) a ways) lower
+      | true :: _ => covered (change (@tl bool) a ways) upper
+      end
+  end.
+
+(* The m-th of the parameters in another order is the order[m]-th of before. *)
+Definition reordered {A} (missing : A) (order : list nat) (l : list A) : list A :=
+  map (fun m => nth m l missing) order.
+
+(* The mirror image of a point or a cell: v0 and v1 are exchanged, the parameters reordered. *)
+Definition image {A} (missing : A) (order : list nat) (l : list A) : list A :=
+  match l with
+  | v0 :: v1 :: t => v1 :: v0 :: reordered missing order t
+  | _ => l
+  end.
+
+(* Does the image of every skipped leaf overlap only proved leaves, for at least one of the orders?
+   The ways lead, backwards, from the leaf to the root of the whole tree. *)
+Fixpoint skips_ok (orders : list (list nat)) (whole : tree) (ways : list way) (t : tree) : bool :=
+  match t with
+  | Proved => true
+  | Skipped => existsb (fun order => covered (map (@rev bool) (image [] order ways)) whole) orders
+  | Cut a lower upper => skips_ok orders whole (change (cons false) a ways) lower
+                         && skips_ok orders whole (change (cons true) a ways) upper
+  end.
+
+Definition mirrored (n : nat) (orders : list (list nat)) (t : tree) : bool :=
+  forallb (fun order => (2 + List.length order =? n)%nat) orders
+  && skips_ok orders t (repeat [] n) t.
+
+Lemma change_length {A} (f : A -> A) l : forall a, List.length (change f a l) = List.length l.
+Proof. induction l as [|x l IH]; intros [|a]; cbn; auto. Qed.
+
+Lemma image_length {A} (missing : A) order l :
+  (2 + List.length order)%nat = List.length l ->
+  List.length (image missing order l) = List.length l.
+Proof.
+  destruct l as [|x [|y l]]; cbn; [easy | easy |].
+  unfold reordered. rewrite map_length. lia.
+Qed.
+
+(* A step of the way along one axis. *)
+Lemma within_step upper rest : forall c ways a, nth a ways [] = upper :: rest ->
+  within c ways = within (half_cell upper a c) (change (@tl bool) a ways).
+Proof.
+  induction c as [|s c IH]; intros ways a H; [reflexivity|].
+  destruct ways as [|w ways]; [destruct a; discriminate H|].
+  destruct a as [|a]; cbn in *; [now subst w|]. f_equal. now apply IH.
+Qed.
+
+(* Where a way has come to its end, halving its end is halving its beginning. *)
+Lemma within_both upper : forall c ways a, nth a ways [] = [] ->
+  half_cell upper a (within c ways) = within (half_cell upper a c) ways.
+Proof.
+  induction c as [|s c IH]; intros ways a H; [reflexivity|].
+  destruct ways as [|w ways]; [destruct a; reflexivity|].
+  destruct a as [|a]; cbn in *; [now subst w|]. f_equal. now apply IH.
+Qed.
+
+(* What lies at the end of a way lies in its beginning. *)
+Lemma follow_inside w : forall s u, in_slice (follow s w) u -> in_slice s u.
+Proof.
+  induction w as [|upper w IH]; intros s u H; [exact H|].
+  apply IH in H. apply slice_halves. destruct upper; auto.
+Qed.
+
+Lemma within_inside : forall c ways u, List.length ways = List.length c ->
+  in_cell (within c ways) u -> in_cell c u.
+Proof.
+  induction c as [|s c IH]; intros [|w ways] u Hlength H; try discriminate; [exact H|].
+  inversion H; subst. constructor; [eapply follow_inside; eassumption|].
+  apply IH with ways; [now injection Hlength | assumption].
+Qed.
+
+(* Each point of a covered cell lies in a proved leaf. *)
+Lemma covered_correct t : forall ways c u, List.length ways = List.length c ->
+  covered ways t = true -> in_cell (within c ways) u -> exists l, In l (leaves c t) /\ in_cell l u.
+Proof.
+  induction t as [| |a lower IHl upper IHu]; intros ways c u Hlength Hcovered Hu.
+  - exists c. split; [now left | now apply within_inside in Hu].
+  - discriminate.
+  - cbn in Hcovered.
+    assert (Hl : List.length ways = List.length (half_cell false a c)) by
+      (unfold half_cell; now rewrite change_length).
+    assert (Hr : List.length ways = List.length (half_cell true a c)) by
+      (unfold half_cell; now rewrite change_length).
+    setoid_rewrite in_leaves_cut.
+    destruct (nth a ways []) as [|[] rest] eqn:Hway.
+    + apply andb_prop in Hcovered as [Hlower Hupper].
+      destruct (cell_halves a _ u Hu) as [H|H]; rewrite within_both in H by assumption.
+      * destruct (IHl ways _ u Hl Hlower H) as (l & ? & ?). eauto.
+      * destruct (IHu ways _ u Hr Hupper H) as (l & ? & ?). eauto.
+    + rewrite (within_step true rest c ways a Hway) in Hu.
+      destruct (IHu (change (@tl bool) a ways) (half_cell true a c) u) as (l & ? & ?); eauto.
+      now rewrite change_length.
+    + rewrite (within_step false rest c ways a Hway) in Hu.
+      destruct (IHl (change (@tl bool) a ways) (half_cell false a c) u) as (l & ? & ?); eauto.
+      now rewrite change_length.
+Qed.
+
+(* The cell whose way back to the root this is. *)
+Definition cell_of (ways : list way) : cell := map (fun w => follow (0%Z, 0%nat) (rev w)) ways.
+
+Lemma cell_of_cut upper : forall ways a,
+  cell_of (change (cons upper) a ways) = half_cell upper a (cell_of ways).
+Proof.
+  induction ways as [|w ways IH]; intros [|a]; cbn; [reflexivity | reflexivity | | now rewrite IH].
+  f_equal. unfold follow. now rewrite fold_left_app.
+Qed.
+
+Lemma cell_of_root n : cell_of (repeat [] n) = root n.
+Proof. induction n as [|n IH]; cbn; [reflexivity | now f_equal]. Qed.
+
+Lemma within_root ways : within (root (List.length ways)) (map (@rev bool) ways) = cell_of ways.
+Proof. induction ways as [|w ways IH]; cbn; [reflexivity | now f_equal]. Qed.
+
+(* The image of a point lies in the image of its cell; parameters that are not there are 0. *)
+Lemma in_image order ways u : in_cell (cell_of ways) u ->
+  in_cell (cell_of (image [] order ways)) (image 0 order u).
+Proof.
+  destruct ways as [|w0 [|w1 ways]]; intros H; inversion H as [|? v0 ? t0 H0 Ht0]; subst;
+    [constructor | inversion Ht0; now subst |].
+  inversion Ht0 as [|? v1 ? t H1 Ht]; subst. constructor; [assumption|]. constructor; [assumption|].
+  induction order as [|m order IH]; cbn; constructor; [|exact IH].
+  clear - Ht. revert t Ht. revert m.
+  induction ways as [|w ways IH]; intros m t Ht; inversion Ht; subst.
+  - destruct m; unfold in_slice, power; cbn; lra.
+  - destruct m as [|m]; cbn; [assumption | now apply IH].
+Qed.
+
+Section Covers.
+Variables (n : nat) (excluded : list R -> Prop) (whole : tree) (orders : list (list nat)).
+Hypothesis lengths : forall order, In order orders -> (2 + List.length order)%nat = n.
+Hypothesis proved : forall c, In c (leaves (root n) whole) -> forall u, in_cell c u -> excluded u.
+Hypothesis symmetry : forall order, In order orders -> forall u, List.length u = n ->
+  excluded (image 0 order u) -> excluded u.
+
+(* A skipped leaf is excluded, as its image is. *)
+Lemma skipped_covers ways u : List.length ways = n -> skips_ok orders whole ways Skipped = true ->
+  in_cell (cell_of ways) u -> excluded u.
+Proof.
+  intros Hways Hskip Hu. apply existsb_exists in Hskip as (order & Horder & Hcovered).
+  pose proof (lengths order Horder) as Hn.
+  assert (Hlength : List.length u = n).
+  { apply in_cell_length in Hu. unfold cell_of in Hu. rewrite map_length in Hu. congruence. }
+  apply (symmetry order Horder u Hlength). apply (in_image order) in Hu.
+  rewrite <- within_root, image_length, Hways in Hu by congruence.
+  destruct (covered_correct whole (map (@rev bool) (image [] order ways)) (root n)
+              (image 0 order u)) as (l & Hl & Hul); [|assumption|assumption|eauto].
+  unfold root. rewrite map_length, repeat_length, image_length; congruence.
+Qed.
+
+(* So is all below a node. *)
+Lemma part_covers t : forall ways u, List.length ways = n -> skips_ok orders whole ways t = true ->
+  (forall c, In c (leaves (cell_of ways) t) -> In c (leaves (root n) whole)) ->
+  in_cell (cell_of ways) u -> excluded u.
+Proof.
+  induction t as [| |a lower IHl upper IHu]; intros ways u Hways Hskips Hin Hu.
+  - apply (proved (cell_of ways)); [|assumption]. apply Hin. now left.
+  - now apply skipped_covers with ways.
+  - cbn in Hskips. apply andb_prop in Hskips as [Hlower Hupper].
+    setoid_rewrite in_leaves_cut in Hin.
+    destruct (cell_halves a _ u Hu) as [H|H]; rewrite <- cell_of_cut in H.
+    + apply IHl with (change (cons false) a ways); auto; [now rewrite change_length|].
+      rewrite cell_of_cut. auto.
+    + apply IHu with (change (cons true) a ways); auto; [now rewrite change_length|].
+      rewrite cell_of_cut. auto.
+Qed.
+
+End Covers.
+
+(* If the proved leaves are excluded, and every skipped one is the mirror image of proved ones, then
+   the whole region is excluded.  (What is cut along an axis that is not there would be wrong in a
+   file, see axes_ok, but does no harm.) *)
+Theorem tree_covers : forall n (excluded : list R -> Prop) t orders,
+  mirrored n orders t = true ->
+  (forall c, In c (leaves (root n) t) -> forall u, in_cell c u -> excluded u) ->
+  (forall order, In order orders -> forall u, List.length u = n ->
+   excluded (image 0 order u) -> excluded u) ->
+  forall u, List.length u = n -> Forall (fun x => -1 <= x <= 1) u -> excluded u.
+Proof.
+  intros n excluded t orders Hmirrored Hproved Hsymmetry u Hn Hu.
+  apply andb_prop in Hmirrored as [Hlengths Hskips].
+  apply (part_covers n excluded t orders) with t (repeat [] n); auto.
+  - intros order Horder. rewrite forallb_forall in Hlengths.
+    now apply Nat.eqb_eq, Hlengths.
+  - apply repeat_length.
+  - now rewrite cell_of_root.
+  - rewrite cell_of_root, <- Hn. now apply in_root.
+Qed.
+
+(* ---- a search of one's own *)
+
+(* Is the cell excluded, by cuts that are chosen on the way?  attempt says that it is (None), or
+   which axis to cut. *)
+Fixpoint settle (attempt : cell -> option nat) (fuel : nat) (c : cell) : bool :=
+  match attempt c with
+  | None => true
+  | Some a => match fuel with
+              | O => false
+              | S fuel => (a <? List.length c)%nat && settle attempt fuel (half_cell false a c)
+                          && settle attempt fuel (half_cell true a c)
+              end
+  end.
+
+Theorem settle_covers : forall (excluded : list R -> Prop) attempt,
+  (forall c, attempt c = None -> forall u, in_cell c u -> excluded u) ->
+  forall fuel c, settle attempt fuel c = true -> forall u, in_cell c u -> excluded u.
+Proof.
+  intros excluded attempt Hattempt fuel. induction fuel as [|fuel IH]; intros c H u Hu.
+  - apply (Hattempt c); [|assumption]. cbn in H. now destruct (attempt c).
+  - cbn in H. destruct (attempt c) as [a|] eqn:Ha; [|now apply (Hattempt c)].
+    apply andb_prop in H as [H Hupper]. apply andb_prop in H as [_ Hlower].
+    destruct (cell_halves a c u Hu); eauto.
+Qed.
+
+(* ---- the symmetry of a patch *)
+
+(* Is this number an even integer? *)
+Definition even (q : Q) : bool := (Qnum q mod (2 * Zpos (Qden q)) =? 0)%Z.
+
+Fixpoint same_numbers (l l' : list Q) : bool :=
+  match l, l' with
+  | [], [] => true
+  | q :: l, q' :: l' => Qeq_bool q q' && same_numbers l l'
+  | _, _ => false
+  end.
+
+(* Two terms that are the same function: sin(x) = sin(x + 2 pi) = sin(pi - x). *)
+Definition same_phase (w w' : term) : bool :=
+  (of_k0 w' =? of_k0 w)%Z && (of_k1 w' =? of_k1 w)%Z && even (of_phase w' - of_phase w)
+  || (of_k0 w' =? - of_k0 w)%Z && (of_k1 w' =? - of_k1 w)%Z
+     && even (of_phase w' + of_phase w - 1).
+
+Definition same_term (w w' : term) : bool :=
+  same_phase w w' && Qeq_bool (middle w) (middle w') && same_numbers (parts w) (parts w').
+
+(* The rest of the list, less one term that is the same as w. *)
+Fixpoint without (w : term) (l : list term) : option (list term) :=
+  match l with
+  | [] => None
+  | w' :: l => if same_term w w' then Some l else option_map (cons w') (without w l)
+  end.
+
+(* Can the terms be matched one to one? *)
+Fixpoint matched (l l' : list term) : bool :=
+  match l with
+  | [] => match l' with [] => true | _ => false end
+  | w :: l => match without w l' with Some rest => matched l rest | None => false end
+  end.
+
+Definition exchanged (order : list nat) (w : term) : term :=
+  Term (of_k1 w) (of_k0 w) (of_phase w) (middle w) (reordered 0%Q order (parts w)).
+
+(* Are the patch's terms, exchanged, those of the patch with its parameters in this order? *)
+Definition symmetric (patch : list term) (order : list nat) : bool :=
+  forallb (fun m => existsb (Nat.eqb m) order) (seq 0 (List.length order))
+  && forallb (fun w => List.length (parts w) <=? List.length order)%nat patch
+  && matched (map (exchanged order) patch) patch.
+
+(* Waves that are the same function. *)
+Definition alike (w w' : wave) : Prop :=
+  amplitude w' = amplitude w /\ exists m : Z,
+  (k0 w' = k0 w /\ k1 w' = k1 w /\ phase w' = phase w + 2 * PI * IZR m) \/
+  (k0 w' = (- k0 w)%Z /\ k1 w' = (- k1 w)%Z /\ phase w' = PI - phase w + 2 * PI * IZR m).
+
+(* Their parts of V' and of beta are the same. *)
+Lemma alike_here w w' y v : alike w w' ->
+  IZR (k0 w') * (amplitude w' * cos (angle w' y))
+  = IZR (k0 w) * (amplitude w * cos (angle w y)) /\
+  IZR (k1 w') * (amplitude w' * cos (angle w' y))
+  = IZR (k1 w) * (amplitude w * cos (angle w y)) /\
+  amplitude w' * sin (angle w' y) * (along w' v * along w' v)
+  = amplitude w * sin (angle w y) * (along w v * along w v).
+Proof.
+  intros (Hp & m & [(H0 & H1 & Hphase)|(H0 & H1 & Hphase)]).
+  - assert (Hangle : angle w' y = angle w y + 2 * PI * IZR m).
+    { unfold angle, along. rewrite H0, H1, Hphase. ring. }
+    assert (Halong : along w' v = along w v) by (unfold along; now rewrite H0, H1).
+    rewrite Hangle, Halong, cos_turns, sin_turns, Hp, H0, H1. auto.
+  - assert (Hangle : angle w' y = PI - angle w y + 2 * PI * IZR m).
+    { unfold angle, along. rewrite H0, H1, Hphase, !opp_IZR. ring. }
+    assert (Halong : along w' v = - along w v).
+    { unfold along. rewrite H0, H1, !opp_IZR. ring. }
+    rewrite Hangle, Halong, cos_turns, sin_turns, Hp, H0, H1, !opp_IZR, sin_PI_x,
+      Rtrigo_facts.cos_pi_minus.
+    repeat split; ring.
+Qed.
+
+(* Sums over lists whose elements are alike, pair by pair. *)
+Lemma sum_pairs {A} (P : A -> A -> Prop) (f : A -> R) l l' :
+  (forall a a', P a a' -> f a' = f a) -> Forall2 P l l' -> sum f l' = sum f l.
+Proof.
+  intros Hf H. induction H as [|a a' l l' Ha Hl IH]; [reflexivity|].
+  cbn. rewrite (Hf a a' Ha). f_equal. exact IH.
+Qed.
+
+Lemma V'_alike ws ws' y : Forall2 alike ws ws' -> V' ws' y = V' ws y.
+Proof.
+  intros H. unfold V'. f_equal; f_equal; apply (sum_pairs alike); try assumption;
+    intros w w' Hw; now apply (alike_here w w' y y).
+Qed.
+
+Lemma beta_alike ws ws' y v : Forall2 alike ws ws' -> beta ws' y v = beta ws y v.
+Proof.
+  intros H. unfold beta. f_equal. apply (sum_pairs alike); try assumption.
+  intros w w' Hw. now apply (alike_here w w' y v).
+Qed.
+
+Lemma even_correct q : even q = true -> exists m : Z, Q2R q = 2 * IZR m.
+Proof.
+  intros H. apply Z.eqb_eq, Z.mod_divide in H as [m Hm]; [|lia]. exists m.
+  unfold Q2R. rewrite Hm, !mult_IZR. field. apply not_0_IZR. lia.
+Qed.
+
+Lemma same_numbers_correct l l' t : same_numbers l l' = true -> combined l' t = combined l t.
+Proof.
+  revert l' t. induction l as [|q l IH]; intros [|q' l'] [|x t]; try discriminate; auto.
+  cbn. intros H. apply andb_prop in H as [Hq Hl]. apply Qeq_bool_eq, Qeq_eqR in Hq.
+  specialize (IH l' t Hl). unfold combined, sum in IH. now rewrite Hq, IH.
+Qed.
+
+Definition wave_at (t : list R) (w : term) : wave :=
+  Wave (of_k0 w) (of_k1 w) (Q2R (of_phase w) * PI) (Q2R (middle w) + combined (parts w) t).
+
+Lemma same_term_correct t w w' : same_term w w' = true -> alike (wave_at t w) (wave_at t w').
+Proof.
+  unfold same_term, same_phase. intros H. apply andb_prop in H as [H Hparts].
+  apply andb_prop in H as [H Hmiddle]. apply Qeq_bool_eq, Qeq_eqR in Hmiddle.
+  split; cbn [wave_at amplitude k0 k1 phase].
+  - now rewrite Hmiddle, (same_numbers_correct _ _ t Hparts).
+  - apply orb_prop in H as [H|H]; apply andb_prop in H as [H Hphase];
+      apply andb_prop in H as [H0 H1]; apply Z.eqb_eq in H0, H1;
+      apply even_correct in Hphase as [m Hm]; exists m; [left | right];
+      repeat split; try assumption; rewrite ?Q2R_minus, ?Q2R_plus in Hm.
+    + replace (Q2R (of_phase w')) with (Q2R (of_phase w) + 2 * IZR m) by lra. ring.
+    + replace (Q2R 1) with 1 in Hm by (unfold Q2R; cbn; lra).
+      replace (Q2R (of_phase w')) with (1 - Q2R (of_phase w) + 2 * IZR m) by lra. ring.
+Qed.
+
+Lemma without_correct w l : forall rest, without w l = Some rest ->
+  exists w', same_term w w' = true /\ Permutation l (w' :: rest).
+Proof.
+  induction l as [|w' l IH]; intros rest H; [discriminate|]. cbn in H.
+  destruct (same_term w w') eqn:Hw.
+  - injection H as <-. now exists w'.
+  - destruct (without w l) as [rest'|]; [|discriminate]. injection H as <-.
+    destruct (IH rest' eq_refl) as (w'' & Hsame & Hl). exists w''. split; [assumption|].
+    rewrite Hl. apply perm_swap.
+Qed.
+
+Lemma matched_correct l : forall l', matched l l' = true ->
+  exists l'', Permutation l' l'' /\ Forall2 (fun w w' => same_term w w' = true) l l''.
+Proof.
+  induction l as [|w l IH]; intros l' H; cbn in H.
+  - destruct l'; [|discriminate]. exists []. split; constructor.
+  - destruct (without w l') as [rest|] eqn:Hrest; [|discriminate].
+    apply without_correct in Hrest as (w' & Hw & Hl'). apply IH in H as (l'' & Hrest & Hl).
+    exists (w' :: l''). split; [rewrite Hl'; now constructor | now constructor].
+Qed.
+
+(* What is combined is a sum over all numbers that are not beyond the parts. *)
+Lemma combined_sum m : forall parts t, (List.length parts <= m)%nat ->
+  combined parts t = sum (fun i => Q2R (nth i parts 0%Q) * nth i t 0) (seq 0 m).
+Proof.
+  assert (Hzero : forall l t, sum (fun i : nat => Q2R (nth i [] 0%Q) * nth i t 0) l = 0).
+  { intros l t. induction l as [|i l IH]; [reflexivity|]. cbn in *. unfold sum in IH. rewrite IH.
+    destruct i; unfold Q2R; cbn; ring. }
+  induction m as [|m IH]; intros [|q parts] t Hm; try (cbn in Hm; lia); [reflexivity | |].
+  - symmetry. apply Hzero.
+  - cbn [seq]. rewrite <- seq_shift. destruct t as [|x t].
+    + rewrite (sum_ext _ (fun _ => 0 * 0)), sum_scale by (intros [|i] _; cbn; ring).
+      unfold combined; cbn. ring.
+    + change (combined (q :: parts) (x :: t)) with (Q2R q * x + combined parts t).
+      rewrite (IH parts t) by (cbn in Hm; lia). cbn [sum fold_right]. f_equal.
+      symmetry. apply sum_map.
+Qed.
+
+Lemma combined_map {A} (f : A -> Q) (g : A -> R) l :
+  combined (map f l) (map g l) = sum (fun a => Q2R (f a) * g a) l.
+Proof. induction l as [|a l IH]; [reflexivity|]. cbn. f_equal. exact IH. Qed.
+
+(* Parts and parameters in the same order are combined to the same. *)
+Lemma combined_reordered order parts t : Permutation (seq 0 (List.length order)) order ->
+  (List.length parts <= List.length order)%nat ->
+  combined (reordered 0%Q order parts) (reordered 0 order t) = combined parts t.
+Proof.
+  intros Horder Hparts. unfold reordered. rewrite combined_map, (combined_sum _ parts t Hparts).
+  symmetry. now apply sum_permutation.
+Qed.
+
+(* A list that holds all of 0, 1, .., and no more of them, has them in some order. *)
+Lemma order_correct order :
+  forallb (fun m => existsb (Nat.eqb m) order) (seq 0 (List.length order)) = true ->
+  Permutation (seq 0 (List.length order)) order.
+Proof.
+  intros H. rewrite forallb_forall in H.
+  apply NoDup_Permutation_bis; [apply seq_NoDup | now rewrite seq_length |].
+  intros m Hm. apply H, existsb_exists in Hm as (m' & Hin & Hm). apply Nat.eqb_eq in Hm. now subst.
+Qed.
+
+(* The waves, exchanged, are one by one like those for the parameters in the other order. *)
+Theorem symmetric_correct : forall patch order, symmetric patch order = true -> forall t,
+  exists ws, Permutation (waves patch (reordered 0 order t)) ws /\
+             Forall2 alike (map exchange (waves patch t)) ws.
+Proof.
+  intros patch order H t. unfold symmetric in H. apply andb_prop in H as [H Hmatched].
+  apply andb_prop in H as [Horder Hparts]. apply order_correct in Horder.
+  rewrite forallb_forall in Hparts.
+  apply matched_correct in Hmatched as (l & Hl & Hsame).
+  exists (map (wave_at (reordered 0 order t)) l). split; [now apply Permutation_map|].
+  replace (map exchange (waves patch t))
+    with (map (wave_at (reordered 0 order t)) (map (exchanged order) patch)).
+  - clear - Hsame. induction Hsame; constructor; [now apply same_term_correct | assumption].
+  - unfold waves. rewrite !map_map. apply map_ext_in. intros w Hw.
+    unfold wave_at, exchange, exchanged.
+    cbn [of_k0 of_k1 of_phase middle parts k0 k1 phase amplitude].
+    rewrite combined_reordered; [reflexivity | assumption |]. now apply Nat.leb_le, Hparts.
+Qed.
+
+(* No minimizing orbit goes from x* to this point, for these parameters; u has first the place of x1
+   between its bounds, the same for both angles. *)
+Definition excluded (patch : list term) (xstar : vec) (c h : R) (u : list R) : Prop :=
+  forall x, orbit (waves patch (tl (tl u))) x -> x 0%Z = xstar ->
+  x 1%Z = (PI * (c + h * nth 0 u 0), PI * (c + h * nth 1 u 0)) ->
+  refuted (waves patch (tl (tl u))) x.
+
+Theorem mirror_excluded : forall patch xstar c h order u, symmetric patch order = true ->
+  fst xstar = snd xstar -> excluded patch xstar c h (image 0 order u) -> excluded patch xstar c h u.
+Proof.
+  intros patch xstar c h order u Hsymmetric Hxstar Himage x Hx Hx0 Hx1.
+  destruct u as [|v0 [|v1 t]]; [now apply Himage | now apply Himage |].
+  cbn [tl] in *. destruct (symmetric_correct _ _ Hsymmetric t) as (ws & Hws & Halike).
+  apply refuted_swap. apply orbit_swap in Hx. set (x' := fun j => swap (x j)) in *.
+  apply (refuted_ext (waves patch (reordered 0 order t)) _ x').
+  - intros j v. rewrite (beta_permutation _ ws _ v Hws). now apply beta_alike.
+  - apply Himage; cbn [image tl].
+    + apply (orbit_ext (map exchange (waves patch t))); [|assumption].
+      intros y. rewrite (V'_permutation _ ws y Hws). symmetry. now apply V'_alike.
+    + unfold x', swap. rewrite Hx0, Hxstar. rewrite <- Hxstar at 1. now destruct xstar.
+    + unfold x', swap. now rewrite Hx1.
+Qed.
