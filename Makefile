@@ -21,7 +21,8 @@ define install
 	touch $@
 endef
 
-.PHONY: prove test torture mutate accuracy sanitize memcheck warnings arm bench charts man clean
+.PHONY: prove test torture mutate accuracy sanitize memcheck warnings arm bench charts man clean \
+    formal formal-quick verified-check
 
 prove: $(VENV)/installed
 	@mkdir -p build
@@ -78,6 +79,21 @@ charts: $(VENV)/with-plot
 man: $(VENV)/with-man
 	$(VENV)/bin/python docs/manual.py
 
+# The theorems that Coq believes: each as it is stated, what it assumes, what it took; and two of them.
+formal: $(VENV)/installed
+	sh formal/packages
+	$(MAKE) -C formal -j2 theorems
+
+formal-quick: $(VENV)/installed
+	sh formal/packages
+	$(MAKE) -C formal -j2 quick
+
+# The checker that Coq has proved.
+verified-check:
+	sh formal/packages
+	$(MAKE) -C formal -j2 build/converse-verified
+	@echo 'The checker is formal/build/converse-verified.'
+
 # Every translation unit that converse/_build.py lists, with all warnings as errors.
 warnings: $(VENV)/installed
 	$(VENV)/bin/python -c 'exec(open("converse/_build.py").read()); print(*SOURCES, sep="\n")' \
@@ -105,4 +121,5 @@ $(SANITIZED)/installed: $(SOURCES)
 clean:
 	rm -rf build dist *.egg-info $(VENV) $(SANITIZED) .pytest_cache .hypothesis
 	rm -f converse/_native.*
+	rm -rf formal/build formal/*.vo formal/*.vo[ks] formal/*.glob formal/.*.aux formal/.*.cache
 	find . -name __pycache__ -prune -exec rm -rf {} +

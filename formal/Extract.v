@@ -1,0 +1,17 @@
+(* The checker as OCaml, for verified.ml.
+
+   Trusted beyond Coq: its extraction, the OCaml compiler, verified.ml, and that the processor's
+   doubles are those of IEEE 754 (which Coq's kernel believes, too, when it computes with floats).
+   Integers, rationals and lists stay Coq's own inductive types; only booleans, pairs, lists and options
+   become OCaml's, and PrimFloat's and Uint63's operations become those of Coq's own kernel. *)
+
+From Coq Require Import ZArith QArith Extraction.
+From Coq Require Import ExtrOcamlBasic ExtrOCamlFloats ExtrOCamlInt63.
+From Converse Require Import Tree Share Check Doubles.
+
+(* The functor's formats of numbers name real numbers, which no computation asks for. *)
+Extract Constant ClassicalDedekindReals.sig_forall_dec => "(fun _ -> assert false)".
+
+Set Warnings "-extraction-opaque-accessed".
+Extraction "checker.ml" header_ok leaf_ok every_leaf
+  Z.add Z.mul Z.opp Z.div_eucl Z.compare Qplus Qminus Qmult Qcompare Qred.

@@ -1,0 +1,735 @@
+(* converse-verified: the checker that Check.v proves, as a command.
+
+   Three parts of it are not proved, and all of them are here: what the file says is read, leaves
+   are shared out among processes, and what was verified is said.  Whether it is true is decided by
+   Coq's functions alone (Checker, extracted): header_ok and, of every leaf, leaf_ok.  They are given
+   the claim, and the theorem that is printed is that of the same claim.  The tree and the hints are
+   no part of it: with wrong ones nothing is verified that is false.
+
+   The format of the file, and the exit statuses: docs/format.md. *)
+
+open Checker
+open Stdlib                                     (* its lists and numbers, not Coq's *)
+
+let program = "converse-verified"
+let verified, rejected, unusable, part, spot_check, not_confirmed = 0, 1, 2, 3, 4, 5
+let interrupted = 128                           (* and the number of the signal *)
+
+let max_bytes = 1 lsl 28                        (* of a proof file, uncompressed *)
+let max_line = 1 lsl 24                         (* of the header *)
+let max_cuts = 1000                             (* of a leaf *)
+let max_characters = 1000                       (* of a number *)
+
+exception Failed of int * string                (* nothing was verified; why *)
+exception Interrupted of int
+
+let fail status word = Printf.ksprintf (fun text -> raise (Failed (status, word ^ text)))
+let reject form = fail rejected "rejected: " form
+let beyond form = fail not_confirmed "not confirmed: " form
+let refuse form = fail unusable "" form
+
+(* ---- exact numbers: Coq's own, to and from text and doubles *)
+
+let rec positive_of n =
+  if n = 1 then XH else if n land 1 = 0 then XO (positive_of (n / 2)) else XI (positive_of (n / 2))
+
+let z_of n = if n = 0 then Z0 else if n > 0 then Zpos (positive_of n) else Zneg (positive_of (-n))
+let ten = z_of 10
+let rec power_of_10 n = if n = 0 then z_of 1 else Z.mul ten (power_of_10 (n - 1))
+
+(* m / n *)
+let ratio m = function
+  | Zpos n -> { qnum = m; qden = n }
+  | _ -> invalid_arg "a denominator that is not positive"
+
+let whole n = ratio (z_of n) (z_of 1)
+let less x y = qcompare x y = Lt
+let absolute x = if less x (whole 0) then qminus (whole 0) x else x
+let vanishes x = qcompare x (whole 0) = Eq
+
+(* m 2^e with 1 <= m < 2 *)
+let rec scaled = function
+  | XH -> 1.0, 0
+  | XO p -> let m, e = scaled p in m, e + 1
+  | XI p -> let m, e = scaled p in m +. ldexp 1.0 (-e - 1), e + 1
+
+let float_of x =
+  let over p = let m, e = scaled p and n, f = scaled x.qden in ldexp (m /. n) (e - f) in
+  match x.qnum with Z0 -> 0.0 | Zpos p -> over p | Zneg p -> -. over p
+
+let is_digit c = '0' <= c && c <= '9'
+let is_sign c = c = '+' || c = '-'
+let all_digits word = word <> "" && String.for_all is_digit word
+
+let z_of_digits = String.fold_left (fun z c -> Z.add (Z.mul ten z) (z_of (Char.code c - 48))) Z0
+
+(* The sign of a word, and the rest of it. *)
+let signed word =
+  let rest = String.length word - 1 in
+  if rest >= 0 && is_sign word.[0] then word.[0] = '-', String.sub word 1 rest else false, word
+
+let cut_at c word =
+  Option.map (fun i -> String.sub word 0 i, String.sub word (i + 1) (String.length word - i - 1))
+    (String.index_opt word c)
+
+let with_sign (negative, z) = if negative then Z.opp z else z
+
+(* A decimal: a sign, digits with a point, an exponent of three digits at most.  None if it is none. *)
+let decimal word =
+  let negative, word = signed word in
+  let mantissa, (down, exponent) =
+    match cut_at 'e' (String.map (fun c -> if c = 'E' then 'e' else c) word) with
+    | Some (mantissa, exponent) -> mantissa, signed exponent
+    | None -> word, (false, "0") in
+  let before, after = Option.value (cut_at '.' mantissa) ~default:(mantissa, "") in
+  if not (all_digits (before ^ after) && all_digits exponent && String.length exponent <= 3) then None
+  else
+    let exponent = int_of_string ("0u" ^ exponent) * (if down then -1 else 1) in
+    let places = exponent - String.length after in
+    let digits = with_sign (negative, z_of_digits (before ^ after)) in
+    Some (if places >= 0 then ratio (Z.mul digits (power_of_10 places)) (z_of 1)
+          else ratio digits (power_of_10 (-places)))
+
+let decimal_or_ratio word =
+  let negative, unsigned = signed word in
+  match cut_at '/' unsigned with
+  | Some (m, n) when all_digits m && all_digits n && String.exists (fun c -> c <> '0') n ->
+    Some (ratio (with_sign (negative, z_of_digits m)) (z_of_digits n))
+  | _ -> decimal word
+
+let rec text_of_z z =
+  match z with
+  | Zneg p -> "-" ^ text_of_z (Zpos p)
+  | _ ->
+    let above, digit = Z.div_eucl z ten in
+    (if above = Z0 then "" else text_of_z above) ^
+    List.nth ["0"; "1"; "2"; "3"; "4"; "5"; "6"; "7"; "8"; "9"]
+      (match digit with Zpos p -> truncate (let m, e = scaled p in ldexp m e) | _ -> 0)
+
+let text_of_ratio x =
+  let x = qred x in
+  text_of_z x.qnum ^ (if x.qden = XH then "" else "/" ^ text_of_z (Zpos x.qden))
+
+(* A finite decimal, exactly. *)
+let text_of x =
+  let rec places n x = if (qred x).qden = XH then n, (qred x).qnum
+    else places (n + 1) (qmult x (whole 10)) in
+  let places, digits = places 0 (absolute x) in
+  let digits = text_of_z digits in
+  let digits = String.make (max 0 (places + 1 - String.length digits)) '0' ^ digits in
+  let point = String.length digits - places in
+  (if less x (whole 0) then "-" else "") ^ String.sub digits 0 point ^
+  (if places = 0 then "" else "." ^ String.sub digits point places)
+
+(* ---- SHA-256 *)
+
+let primes count =
+  let rec from n found =
+    if List.length found = count then List.rev found
+    else from (n + 1) (if List.exists (fun p -> n mod p = 0) found then found else n :: found) in
+  from 2 []
+
+(* The first 32 bits of the fraction of a root: the largest x with x^k <= p 2^(32 k), modulo 2^32,
+   compared in Coq's integers. *)
+let fraction_of_root k p =
+  let rec power x k = if k = 0 then z_of 1 else Z.mul x (power x (k - 1)) in
+  let bound = Z.mul (z_of p) (power (z_of (1 lsl 32)) k) in
+  let rec go x bit =
+    if bit = 0 then x land 0xffffffff
+    else go (if Z.compare (power (z_of (x + bit)) k) bound = Gt then x else x + bit) (bit / 2) in
+  go 0 (1 lsl 36)
+
+let sha256 data =
+  let mask x = x land 0xffffffff in
+  let rotate x n = mask (x lsr n lor x lsl (32 - n)) in
+  let rounds = Array.of_list (List.map (fraction_of_root 3) (primes 64)) in
+  let state = Array.of_list (List.map (fraction_of_root 2) (primes 8)) in
+  let length = String.length data in
+  let padded = Bytes.make ((length + 72) / 64 * 64) '\000' in
+  Bytes.blit_string data 0 padded 0 length;
+  Bytes.set padded length '\128';
+  Bytes.set_int64_be padded (Bytes.length padded - 8) (Int64.of_int (8 * length));
+  let w = Array.make 64 0 in
+  for block = 0 to Bytes.length padded / 64 - 1 do
+    for i = 0 to 15 do
+      w.(i) <- mask (Int32.to_int (Bytes.get_int32_be padded (64 * block + 4 * i)))
+    done;
+    for i = 16 to 63 do
+      let x = w.(i - 15) and y = w.(i - 2) in
+      w.(i) <- mask (w.(i - 16) + w.(i - 7) + (rotate x 7 lxor rotate x 18 lxor x lsr 3)
+                     + (rotate y 17 lxor rotate y 19 lxor y lsr 10))
+    done;
+    let s = Array.copy state in
+    for i = 0 to 63 do
+      let a = s.(0) and e = s.(4) in
+      let t = s.(7) + (rotate e 6 lxor rotate e 11 lxor rotate e 25)
+              + (e land s.(5) lxor (lnot e land s.(6))) + rounds.(i) + w.(i) in
+      let u = (rotate a 2 lxor rotate a 13 lxor rotate a 22)
+              + (a land s.(1) lxor (a land s.(2)) lxor (s.(1) land s.(2))) in
+      Array.blit s 0 s 1 7;
+      s.(4) <- mask (s.(4) + t);
+      s.(0) <- mask (t + u)
+    done;
+    Array.iteri (fun i x -> state.(i) <- mask (state.(i) + x)) s
+  done;
+  String.concat "" (List.map (Printf.sprintf "%08x") (Array.to_list state))
+
+(* ---- the file *)
+
+(* Its bytes, uncompressed. *)
+let load path =
+  let all channel =
+    let data = Buffer.create 65536 in
+    (try
+       while Buffer.length data <= max_bytes do Buffer.add_channel data channel 65536 done
+     with End_of_file -> ());                   (* what was there before it is added *)
+    if Buffer.length data > max_bytes then
+      beyond "the file is larger than %d bytes, the checker's limit" max_bytes;
+    Buffer.contents data in
+  try
+    let channel = Unix.in_channel_of_descr (Unix.openfile path [Unix.O_RDONLY] 0) in
+    let data = Fun.protect ~finally:(fun () -> close_in channel) (fun () -> all channel) in
+    if not (String.starts_with ~prefix:"\x1f\x8b" data) then data
+    else
+      let unpacked, output = Unix.pipe ~cloexec:true () in
+      let silence = Unix.openfile "/dev/null" [Unix.O_WRONLY] 0 in
+      let gzip = Unix.create_process "gzip" [| "gzip"; "-dc"; "--"; path |] Unix.stdin output
+          silence in
+      List.iter Unix.close [output; silence];
+      let unpacked = Unix.in_channel_of_descr unpacked in
+      let data = Fun.protect ~finally:(fun () -> close_in unpacked) (fun () -> all unpacked) in
+      if snd (Unix.waitpid [] gzip) = Unix.WEXITED 0 then data
+      else refuse "the compressed file is damaged or truncated"
+  with Sys_error why -> refuse "cannot be read (%s)" why
+     | Unix.Unix_error (error, _, _) -> refuse "cannot be read (%s)" (Unix.error_message error)
+
+type file = {
+  claim : claim;
+  tree : tree;
+  proved : int; symmetric : int;                (* leaves *)
+  sha256 : string
+}
+
+let counts = ["depth"; "cuts"; "proved"; "symmetric"; "undecided"; "most_cuts"]
+let ignored = ["program"; "method"; "digits"; "stubborn"; "quick_tries"; "tries"; "Rtries";
+               "HermSuccess"; "LLSuccess"; "ll_used"; "reasons"; "max_steps"; "max_NTsteps"; "B";
+               "pending"]
+let optional = ["T"; "Tr-"; "Tr+"; "lambda-min"; "lambda-max"; "seconds"; "comment"]
+let always = ["v0"; "v1"; "kind"; "xstar"; "at once"] @ counts @ ignored
+let fields_of = function
+  | 2 -> always @ ["a"; "b"; "c"; "together"]
+  | _ -> always @ ["wave"; "frame"; "alone"; "odd about"]
+
+(* The fields of the header, each once, and its waves. *)
+let fields version lines =
+  let found = Hashtbl.create 64 and waves = ref [] in
+  let known = fields_of version in
+  List.iteri (fun i line ->
+      let at = i + 2 in
+      if String.length line >= max_line then
+        beyond "line %d is longer than the checker's limit, %d bytes" at (max_line - 1);
+      let name, value = match cut_at ':' line with
+        | Some (name, value) when value <> "" && value.[0] = ' '
+                                  && List.mem name (known @ optional) ->
+          name, String.sub value 1 (String.length value - 1)
+        | _ -> reject "line %d, in the header, is of unknown meaning" at in
+      if name = "wave" then waves := value :: !waves
+      else if Hashtbl.mem found name && name <> "comment" then
+        reject "the header gives %s twice" name;
+      Hashtbl.replace found name value) lines;
+  if not (Hashtbl.mem found "xstar") then
+    reject "the search had not begun when it was left: there is no x* yet";
+  List.iter (fun name -> if not (Hashtbl.mem found name) then reject "the header lacks %s" name) known;
+  Hashtbl.find found, List.rev !waves
+
+let number form name word =
+  if String.length word > max_characters then
+    beyond "%s has more than %d characters, the checker's limit" name max_characters;
+  match form word with
+  | None -> reject "%s is not a number" name
+  | Some x when less (ratio (power_of_10 300) (z_of 1)) (absolute x) ->
+    beyond "%s is out of range: the checker's limit is 1e300" name
+  | Some x -> x
+
+(* An integer from -100 to 100. *)
+let small name word =
+  let negative, digits = signed word in
+  if not (all_digits digits && String.length digits <= 3) then reject "%s is not an integer" name;
+  let n = int_of_string ("0u" ^ digits) in
+  if n > 100 then reject "%s is beyond 100" name;
+  z_of (if negative then -n else n)
+
+let wave at line =
+  let name = Printf.sprintf "the header's wave %d" at in
+  match String.split_on_char ' ' line with
+  | k0 :: k1 :: phase :: amplitude :: parts when List.length parts <= 3 ->
+    let k0 = small (name ^ "'s k") k0 and k1 = small (name ^ "'s k") k1 in
+    if k0 = Z0 && k1 = Z0 then reject "%s has a k that is zero" name;
+    { of_k0 = k0; of_k1 = k1; of_phase = number decimal_or_ratio name phase;
+      middle = number decimal name amplitude; parts = List.map (number decimal name) parts }
+  | _ -> reject "%s is not K0 K1 PHASE AMPLITUDE and at most three parts" name
+
+(* The waves (1, 0), (0, 1), (1, 1) of version 2, of which each has its own range. *)
+let thesis ranges together =
+  let zero = whole 0 in
+  List.mapi (fun i (middle, half) ->
+      { of_k0 = z_of (if i = 1 then 0 else 1); of_k1 = z_of (if i = 0 then 0 else 1);
+        of_phase = zero; middle;
+        parts = if together then [half]
+          else List.init 3 (fun m -> if m = i then half else zero) }) ranges
+
+let claim_of version lines =
+  let field, lines = fields version lines in
+  if field "kind" <> "sound" then
+    reject "the file's kind is not 'sound': it is not meant as a proof";
+  let pair ?(form = decimal) name =
+    match String.split_on_char ' ' (field name) with
+    | [x; y] -> let name = "the header's " ^ name in number form name x, number form name y
+    | _ -> reject "the header's %s is not two numbers" name in
+  let range name =
+    let centre, half = pair name in
+    if less half (whole 0) then reject "a half-width is negative";
+    centre, half in
+  let one_of name values =
+    match List.assoc_opt (field name) values with
+    | Some value -> value
+    | None -> reject "the header's %s is neither %s" name
+                (String.concat " nor " (List.map fst values)) in
+  let count name =
+    if not (all_digits (field name) && String.length (field name) <= 18) then
+      reject "the header's %s is not a count" name;
+    int_of_string ("0u" ^ field name) in
+  let (centre0, half0), (centre1, half1) = range "v0", range "v1" in
+  let of_xstar = pair "xstar" in
+  let counted = List.map (fun name -> name, count name) counts in
+  let once = ["no", No; "yes", Whole_patch] in
+  let of_patch, (m00, m01, m10, m11), of_alone, of_once, odd =
+    if version = 2 then
+      let together = one_of "together" ["yes", true; "no", false] in
+      let of_once = match one_of "at once" once with
+        | Whole_patch when together -> Upper_end
+        | of_once -> of_once in
+      thesis (List.map range ["a"; "b"; "c"]) together, (z_of 1, Z0, Z0, z_of 1), Both, of_once,
+      Some (whole 0, whole 0)
+    else
+      let count = List.length lines in
+      if count > 16 || count = 0 then reject "the header has %d waves, not 1 to 16" count;
+      List.mapi (fun i line -> wave (i + 1) line) lines,
+      (match List.map (small "an entry of the header's frame")
+               (String.split_on_char ' ' (field "frame")) with
+       | [a; b; c; d] -> a, b, c, d
+       | _ -> reject "the header's frame is not four integers"),
+      one_of "alone" ["no", Both; "0", First; "1", Second],
+      one_of "at once" (("upper end", Upper_end) :: once),
+      if field "odd about" = "no" then None else Some (pair ~form:decimal_or_ratio "odd about") in
+  { of_patch; of_xstar; of_alone; of_once; odd;
+    of_region = { m00; m01; m10; m11; centre0; half0; centre1; half1 } }, counted
+
+(* The tree, if it is whole, decided, and what the header's counts say. *)
+let tree_of text parameters counted =
+  let position = ref 0 and proved = ref 0 and symmetric = ref 0 and most_cuts = ref 0
+  and deepest = ref 0 in
+  let axis = [| O; S O; S (S O); S (S (S O)); S (S (S (S O))) |] in
+  let rec node cuts =
+    if cuts > max_cuts then
+      beyond "node %d lies below %d cuts, the checker's limit" !position max_cuts;
+    if !position = String.length text then reject "the tree is incomplete";
+    let c = text.[!position] in
+    incr position;
+    match c with
+    | 'P' ->
+      incr proved; most_cuts := max cuts !most_cuts; deepest := max cuts !deepest; Proved
+    | 'S' -> incr symmetric; deepest := max cuts !deepest; Skipped
+    | 'U' -> reject "a leaf is undecided: the file claims no theorem"
+    | '0' .. '4' ->
+      let k = Char.code c - 48 in
+      if k >= 2 + parameters then reject "the tree cuts a parameter that there is not";
+      let lower = node (cuts + 1) in
+      let upper = node (cuts + 1) in
+      Cut (axis.(k), lower, upper)
+    | _ -> reject "node %d is not one of a finished tree" (!position - 1) in
+  let tree = node 0 in
+  if !position < String.length text then
+    reject "the tree ends before its text does, at node %d" !position;
+  if !deepest > List.assoc "depth" counted then
+    reject "a leaf was cut more often than the depth allows";
+  List.iter (fun (name, value) ->
+      if List.assoc name counted <> value then
+        reject "the header's %s is %d, the tree's %d" name (List.assoc name counted) value)
+    ["cuts", !proved + !symmetric - 1; "proved", !proved; "symmetric", !symmetric;
+     "undecided", 0; "most_cuts", !most_cuts];
+  tree, !proved, !symmetric
+
+(* Where a text begins in the data, from a position on; or before the end. *)
+let find text data start =
+  let n = String.length text in
+  let rec from i =
+    if i + n > String.length data then None
+    else if String.sub data i n = text then Some i else
+      Option.bind (String.index_from_opt data (i + 1) text.[0]) from in
+  Option.bind (String.index_from_opt data start text.[0]) from
+
+let magic = "converse proof "
+
+let read path =
+  let data = load path in
+  if String.starts_with ~prefix:"{" data then
+    refuse "is a map, or no proof file; converse-check verifies maps";
+  if not (String.starts_with ~prefix:magic data) then refuse "is not a proof file";
+  let start = String.length magic in
+  let version = match String.index_from_opt data start '\n' with
+    | Some stop when stop - start <= 9 -> String.sub data start (stop - start)
+    | _ -> "" in
+  if String.ends_with ~suffix:"\r" version then
+    reject "its lines end in CR LF: it was altered on its way; ask for the original";
+  let version = match version with
+    | "2" -> 2
+    | "3" -> 3
+    | _ -> refuse "is a proof file of another version; this checker knows versions 2 and 3" in
+  let seal = "checksum: sha256 " and length = String.length data in
+  let stop = length - (String.length seal + 64 + String.length "\nend\n") in
+  if stop < 1 || String.sub data (stop - 1) (1 + String.length seal) <> "\n" ^ seal
+     || not (String.ends_with ~suffix:"\nend\n" data) then
+    reject "the file does not end with its checksum; it is truncated or altered";
+  if String.sub data (stop + String.length seal) 64 <> sha256 (String.sub data 0 stop) then
+    reject "wrong checksum: the file was changed or damaged";
+  let marker = "\ntree:\n" in
+  let head, tree = match find marker data 0 with
+    | Some at when at + String.length marker <= stop ->
+      let from = at + String.length marker in
+      String.sub data 0 at, String.sub data from (stop - from)
+    | _ -> reject "there is no tree" in
+  let claim, counted = claim_of version (List.tl (String.split_on_char '\n' head)) in
+  let parameters = List.length (List.hd claim.of_patch).parts in
+  if List.exists (fun w -> List.length w.parts <> parameters) claim.of_patch then
+    reject "a wave of the header has not as many parts as the first";
+  let tree = String.concat "" (String.split_on_char '\n' tree) in
+  let tree, proved, symmetric = tree_of tree parameters counted in
+  { claim; tree; proved; symmetric; sha256 = sha256 data }
+
+(* ---- what the proof needs beside the claim, from doubles: wrong hints prove nothing *)
+
+let pi = 4.0 *. atan 1.0
+
+(* beta - 2I at y, of waves (k0, k1, phase, amplitude): its eigenvalues, least and largest, and a
+   vector of the least. *)
+let eigen waves (y0, y1) =
+  let a, b, d = List.fold_left (fun (a, b, d) (k0, k1, phase, p) ->
+      let s = -. p *. sin (k0 *. y0 +. k1 *. y1 +. phase) in
+      a +. s *. k0 *. k0, b +. s *. k0 *. k1, d +. s *. k1 *. k1) (0.0, 0.0, 0.0) waves in
+  let middle = (a +. d) /. 2.0 and radius = Float.hypot ((a -. d) /. 2.0) b in
+  let least = middle -. radius in
+  least, middle +. radius, if a < d then (least -. d, b) else (b, least -. a)
+
+(* Where the function is least on the torus, about. *)
+let minimum waves f =
+  let k = List.fold_left (fun k (k0, k1, _, _) -> max k (max (abs_float k0) (abs_float k1)))
+      1.0 waves in
+  let count = min 128 (16 * truncate k) in
+  let width = 2.0 *. pi /. float count in
+  let better x y = if f y < f x then y else x in
+  let around (y0, y1) width =
+    List.concat_map (fun u -> List.map (fun v -> y0 +. u *. width, y1 +. v *. width)
+                        [-1.0; 0.0; 1.0]) [-1.0; 0.0; 1.0] in
+  let grid = List.concat_map (fun i -> List.init count (fun j -> float i *. width, float j *. width))
+      (List.init count Fun.id) in
+  let rec refined x width =
+    if width < 1e-9 then x
+    else refined (List.fold_left better x (around x width)) (width /. 1.5) in
+  refined (List.fold_left better (0.0, 0.0) grid) width
+
+let felt claim w = match claim.of_alone with
+  | Both -> true
+  | First -> w.of_k0 <> Z0
+  | Second -> w.of_k1 <> Z0
+
+(* The waves at a corner, or at any t, of the patch. *)
+let at claim t =
+  let float_of_z z = float_of (ratio z (z_of 1)) in
+  List.map (fun w ->
+      float_of_z w.of_k0, float_of_z w.of_k1, pi *. float_of w.of_phase,
+      List.fold_left2 (fun p g t -> p +. t *. float_of g) (float_of w.middle) w.parts t)
+    (List.filter (felt claim) claim.of_patch)
+
+let rec corners n =
+  if n = 0 then [[]]
+  else List.concat_map (fun t -> [-1.0 :: t; 1.0 :: t]) (corners (n - 1))
+
+(* A double in units of 10^-9. *)
+let billionths x = ratio (z_of (truncate x)) (power_of_10 9)
+
+let hints_of claim =
+  let parameters = List.length (List.hd claim.of_patch).parts in
+  let largest waves =
+    let level y = let _, largest, _ = eigen waves y in -. largest in
+    2.0 -. level (minimum waves level) in
+  let b = List.fold_left (fun b t -> max b (largest (at claim t))) 2.0 (corners parameters) in
+  let b = ceil (1e9 *. (b *. (1.0 +. 1e-6))) in
+  let l = let b = b /. 1e9 in 2.0 /. (b +. sqrt (b *. b -. 4.0)) in
+  let waves = at claim (List.init parameters (fun _ -> if claim.of_once = Upper_end then 1.0 else 0.0)) in
+  let level y = let least, _, _ = eigen waves y in least in
+  let y = minimum waves level in
+  let _, _, n = eigen waves y in
+  let size = Float.hypot (fst n) (snd n) in
+  let both f (x, y) = billionths (1e9 *. f x), billionths (1e9 *. f y) in
+  { bound = billionths b; tail = billionths (floor (1e9 *. l) -. 1.0);
+    place = both (fun y -> y /. pi) y, both (fun n -> n /. size) n; fuel = S (S (S O)) }
+
+(* ---- the leaves, shared out *)
+
+(* The chosen leaves, of which process k of n takes every n-th.  It writes a dot for each one that
+   is excluded; the number of the first that is not ends its work.  all_leaves goes through the tree,
+   and is proved to ask of each leaf until one is refused. *)
+let work file hints chosen k n output =
+  let number = ref (-1) and turn = ref (-1) in
+  let excluded cell =
+    incr number;
+    if not (chosen !number) then true
+    else begin
+      incr turn;
+      if !turn mod n <> k then true
+      else begin
+        let good = leaf_ok file.claim hints cell in
+        output_string output (if good then "." else string_of_int !number ^ "\n");
+        flush output;
+        good
+      end
+    end in
+  ignore (every_leaf excluded file.tree)
+
+let signals = [Sys.sighup, 1; Sys.sigint, 2; Sys.sigterm, 15]
+
+(* How many of the chosen leaves are excluded, if all of them are; else which is not. *)
+let share file hints chosen jobs progress =
+  let start k =
+    let input, output = Unix.pipe ~cloexec:true () in
+    match Unix.fork () with
+    | 0 ->
+      List.iter (fun (signal, _) -> Sys.set_signal signal Sys.Signal_default)
+        ((Sys.sigpipe, 13) :: signals);
+      Unix.close input;
+      let status = try work file hints chosen k jobs (Unix.out_channel_of_descr output); 0
+        with _ -> 1 in
+      Unix._exit status
+    | pid -> Unix.close output; pid, input in
+  let processes = List.init jobs start in
+  let text = Bytes.create 65536 and refused = Buffer.create 16 and done_ = ref 0 in
+  let rec listen inputs =
+    if inputs <> [] && Buffer.length refused = 0 then begin
+      let ready, _, _ = Unix.select inputs [] [] (-1.0) in
+      let ended = List.filter (fun input ->
+          let count = Unix.read input text 0 (Bytes.length text) in
+          Bytes.iter (fun c -> if c = '.' then incr done_ else Buffer.add_char refused c)
+            (Bytes.sub text 0 count);
+          count = 0) ready in
+      progress !done_;
+      listen (List.filter (fun input -> not (List.mem input ended)) inputs)
+    end in
+  let finally () =
+    List.iter (fun (pid, _) -> Unix.kill pid Sys.sigkill) processes;
+    List.iter (fun (pid, _) -> ignore (Unix.waitpid [] pid)) processes in
+  Fun.protect ~finally (fun () -> listen (List.map snd processes));
+  !done_, List.hd (String.split_on_char '\n' (Buffer.contents refused))
+
+(* ---- what is said *)
+
+let covers_torus r = not (less r.half0 (whole 1) || less r.half1 (whole 1))
+
+let range_text name low high =
+  let low, high = text_of low, text_of high in
+  if low = high then name ^ " = " ^ low else Printf.sprintf "%s <= %s <= %s" low name high
+
+let integer_text = Printf.sprintf "%+d"
+let small_of z = truncate (float_of (ratio z (z_of 1)))
+
+(* Is it of the thesis's potential, with one parameter, or one for each of a, b, c or none? *)
+let is_boxed patch =
+  List.map (fun w -> small_of w.of_k0, small_of w.of_k1) patch = [1, 0; 0, 1; 1, 1]
+  && List.for_all (fun w -> vanishes w.of_phase) patch
+  && match List.length (List.hd patch).parts with
+  | 0 | 1 -> true
+  | 3 -> List.for_all Fun.id (List.concat (List.mapi (fun i w ->
+      List.mapi (fun m g -> i = m || vanishes g) w.parts) patch))
+  | _ -> false
+
+(* What the file claims, in lines, as converse-check says it. *)
+let claimed claim =
+  let { m00; m01; m10; m11; centre0; half0; centre1; half1 } = claim.of_region in
+  let patch = claim.of_patch in
+  let boxed = is_boxed patch and parameters = List.length (List.hd patch).parts in
+  let frame = List.map small_of [m00; m01; m10; m11] in
+  let on_range name centre half = range_text name (qminus centre half) (qplus centre half) in
+  let any = " for any parameters with" in
+  let graph =
+    ["has no invariant Lagrangian graph";
+     "(no invariant torus p = P + S'(x) over the angles, where p[j] = x[j] - x[j-1], P is"] in
+  let last_of_graph = "constant, S periodic and C1)" in
+  let potential = if boxed then "V(y) = -a sin y0 - b sin y1 - c sin(y0 + y1)"
+    else "V(y) = - the sum of p sin(k.y + phase) over the waves below" in
+  let where =
+    if covers_torus claim.of_region then [last_of_graph ^ any]
+    else
+      [last_of_graph;
+       "whose orbit through x[0] = x* goes on to x[1] = (v0, v1) in the region";
+       on_range "v0 / pi" centre0 half0; on_range "v1 / pi" centre1 half1]
+      @ (match frame with
+          | [1; 0; 0; 1] -> []
+          | _ -> let s = List.map integer_text frame in
+            [Printf.sprintf "where x[1] = (%s v0 %s v1, %s v0 %s v1)"
+               (List.nth s 0) (List.nth s 1) (List.nth s 2) (List.nth s 3)])
+      @ ["(only successors in this region were examined, which is not the full torus)" ^ any] in
+  let sum = List.fold_left (fun x g -> qplus x (absolute g)) (whole 0) in
+  let ranges =
+    if boxed then
+      List.map2 (fun name w -> on_range name w.middle (sum w.parts)) ["a"; "b"; "c"] patch
+      @ (if parameters <> 1 then []
+         else if List.for_all (fun w -> not (less (List.hd w.parts) (whole 0))) patch then
+           ["moving together, on the segment from all lower to all upper ends"]
+         else
+           let listed f = String.concat ", " (List.map (fun w -> text_of (f w)) patch) in
+           [Printf.sprintf "moving together, (a, b, c) = (%s) + t (%s), -1 <= t <= 1"
+              (listed (fun w -> w.middle)) (listed (fun w -> List.hd w.parts))])
+    else
+      let names = List.init parameters (fun m -> Printf.sprintf "t%d" (m + 1)) in
+      (if names = [] then [] else ["-1 <= " ^ String.concat ", " names ^ " <= 1"])
+      @ List.map (fun w ->
+          let parts = List.concat (List.map2 (fun name g ->
+              if vanishes g then []
+              else [(if less g (whole 0) then "- " else "+ ") ^ text_of (absolute g) ^ " " ^ name])
+              names w.parts) in
+          Printf.sprintf "k = (%d, %d), phase = %s pi, p = %s" (small_of w.of_k0)
+            (small_of w.of_k1) (text_of_ratio w.of_phase)
+            (String.concat " " (text_of w.middle :: parts))) patch in
+  let multiples what = ["and for any multiple s >= 1 of " ^ what ^ " (B > 10/3)"] in
+  let larger = match claim.of_once with
+    | No -> []
+    | Upper_end -> multiples
+                     (if boxed then "the upper ends of these ranges" else "these amplitudes at t1 = 1")
+    | Whole_patch -> multiples (if boxed then "such parameters" else "such amplitudes") in
+  ["The map x[j+1] = 2 x[j] - x[j-1] - V'(x[j]) of two angles (modulo 2 pi),";
+   potential ^ ", " ^ List.hd graph] @ List.tl graph @ where @ ranges @ larger
+
+(* The theorem, as far as it was verified; or the result of a spot check. *)
+let report file hints checked sampled =
+  let x, y = file.claim.of_xstar in
+  (if sampled then
+     [Printf.sprintf
+        "Spot check of %d of %d proved leaves, NOT a verification: none of them fails."
+        checked file.proved; "What is claimed and NOT verified :"]
+   else if covers_torus file.claim.of_region then ["Verified :"]
+   else ["Verified, for a part of the torus only :"])
+  @ claimed file.claim
+  @ [""; "Checker : " ^ program ^ " " ^ Version.number;
+     "Method : Loewner criterion, proved in Coq; intervals of doubles";
+     Printf.sprintf "x* : %s %s" (text_of x) (text_of y); "B : " ^ text_of hints.bound]
+  @ (match file.claim.of_alone with
+      | Both -> []
+      | First -> ["Alone : x0, a map of its own"]
+      | Second -> ["Alone : x1, a map of its own"])
+  @ [Printf.sprintf "Leaves : %d, of which %d proved and %d symmetric"
+       (file.proved + file.symmetric) file.proved file.symmetric;
+     Printf.sprintf "Proved leaves checked : %d" checked;
+     "SHA-256 : " ^ file.sha256]
+
+(* ---- the command *)
+
+let help = {|usage: converse-verified [--jobs N] [--sample K] FILE
+
+Verifies the theorem of a proof file by a checker that is proved in Coq (docs/trust.md).
+
+  --jobs N     processes (default: one for each core)
+  --sample K   only a spot check, of K leaves chosen by chance; not a verification
+  --help, --version
+
+exit status:
+  0    verified
+  1    rejected: the file is wrong (altered, unfinished, with undecided or missing parts)
+  2    bad usage, or a file that cannot be read
+  3    verified, but for successors in a part of the torus only
+  4    a spot check in which nothing failed: NOT a verification
+  5    not confirmed: the claim is false or its proof beyond the checker's limits
+  130  interrupted (129, 143: by SIGHUP, SIGTERM)
+|}
+
+let cores () =
+  let processes = Unix.open_process_in "getconf _NPROCESSORS_ONLN" in
+  let count = try int_of_string (input_line processes) with End_of_file | Failure _ -> 1 in
+  ignore (Unix.close_process_in processes);
+  max 1 count
+
+type options = { path : string option; jobs : int option; sample : int option }
+
+let rec parsed options = function
+  | [] -> options
+  | "--help" :: _ -> print_string help; exit 0
+  | "--version" :: _ -> print_endline (program ^ " " ^ Version.number); exit 0
+  | ("--jobs" | "--sample" as name) :: rest ->
+    let count = match rest with
+      | word :: _ when all_digits word && String.length word <= 9 -> int_of_string ("0u" ^ word)
+      | _ -> 0 in
+    if count = 0 then refuse "%s wants a whole number above 0; see %s --help" name program;
+    let options = if name = "--jobs" then { options with jobs = Some count }
+      else { options with sample = Some count } in
+    parsed options (List.tl rest)
+  | word :: _ when String.length word > 1 && word.[0] = '-' ->
+    refuse "there is no such option; see %s --help" program
+  | word :: rest when options.path = None -> parsed { options with path = Some word } rest
+  | _ -> refuse "one file at a time; see %s --help" program
+
+(* Which leaves of so many, and how many they are. *)
+let choice total = function
+  | Some count when count < total ->
+    Random.self_init ();
+    let found = Hashtbl.create count in
+    while Hashtbl.length found < count do
+      Hashtbl.replace found (Random.full_int total) ()
+    done;
+    Hashtbl.mem found, count
+  | _ -> (fun _ -> true), total
+
+let verify options path =
+  let file = read path in
+  let hints = hints_of file.claim in
+  if not (header_ok file.claim hints file.tree) then
+    beyond "the header, or a leaf that is skipped";
+  let chosen, total = choice file.proved options.sample in
+  let shown = ref 0 in
+  let progress count =
+    if Unix.isatty Unix.stderr && (100 * count / total > !shown || count = total) then begin
+      shown := 100 * count / total;
+      Printf.eprintf "\r%s\r%!" (if count = total then String.make 40 ' '
+                                else Printf.sprintf "%d of %d leaves" count total)
+    end in
+  let jobs = min total (Option.value options.jobs ~default:(cores ())) in
+  (match share file hints chosen jobs progress with
+   | count, "" when count = total -> ()
+   | _, "" -> refuse "a process ended before its share was done (out of memory?)"
+   | _, number ->
+     beyond "proved leaf %d of %d is not excluded; the claim is false or its proof beyond the \
+             limits of this checker" (1 + int_of_string number) file.proved);
+  print_endline (String.concat "\n" (report file hints total (options.sample <> None)));
+  if options.sample <> None then spot_check
+  else if covers_torus file.claim.of_region then verified else part
+
+(* Every failure is one line. *)
+let () =
+  let options = ref { path = None; jobs = None; sample = None } in
+  let complain text =
+    let name = Option.fold ~none:"" ~some:(fun path -> String.escaped path ^ ": ") !options.path in
+    prerr_endline (program ^ ": " ^ name ^ text) in
+  let status =
+    try
+      List.iter (fun (signal, number) ->
+          if Sys.signal signal (Sys.Signal_handle (fun _ -> raise (Interrupted number)))
+             = Sys.Signal_ignore then Sys.set_signal signal Sys.Signal_ignore) signals;
+      Sys.set_signal Sys.sigpipe Sys.Signal_ignore;
+      options := parsed !options (List.tl (Array.to_list Sys.argv));
+      match !options.path with
+      | Some path -> verify !options path
+      | None -> refuse "which file? see %s --help" program
+    with
+    | Failed (status, why) -> complain why; status
+    | Interrupted number -> complain "interrupted; nothing was verified"; interrupted + number
+    | Sys_error why -> complain ("the output cannot be written (" ^ why ^ ")"); unusable
+    | Stack_overflow | Out_of_memory -> complain "the checker failed: no more memory"; unusable in
+  Stdlib.exit status

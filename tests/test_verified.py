@@ -1,0 +1,282 @@
+"""The checker that Coq has proved, as a command: what is not proved of it is how it reads, divides the
+work and speaks.  All this is compared with converse-check.  (make verified-check builds it.)"""
+
+import gzip
+import hashlib
+import os
+import random
+import re
+import signal
+import subprocess
+import time
+from dataclasses import replace
+from fractions import Fraction
+
+import pytest
+
+from conftest import ROOT
+from converse import Problem, check, prove, read_input
+
+COMMAND = ROOT / "formal" / "build" / "converse-verified"
+pytestmark = pytest.mark.skipif(not COMMAND.exists(), reason="make verified-check was not run")
+
+VERIFIED, REJECTED, UNUSABLE, PART, SPOT_CHECK, NOT_CONFIRMED = range(6)
+
+
+def start(*arguments, **options):
+    return subprocess.Popen([COMMAND, *map(str, arguments)], text=True, stdin=subprocess.DEVNULL,
+                            stdout=subprocess.PIPE, stderr=subprocess.PIPE, **options)
+
+
+def run(*arguments, **options):
+    with start(*arguments, **options) as process:
+        out, err = process.communicate(timeout=600)
+    return process.returncode, out, err
+
+
+@pytest.fixture(scope="module")
+def texts(tmp_path_factory):
+    """Proof files with one parameter, with three, with none, of other potentials, and of a part."""
+    inputs = {name: (read_input(ROOT / "inputs" / name), together) for name, together in (
+        ("trig278.in", True), ("trig180.in", True), ("trig276.in", False),
+        ("standard.json", False), ("two-harmonics.json", False))}
+    inputs["point"] = Problem(a="0.31", b="0.31", c="0.62"), False
+    inputs["part"] = Problem.around(("0.3085", "0.3085", "0.617", "0.4", "1.3"),
+                                    ("0.00125", "0.00125", "0.0025", "0.2", "0.1")), False
+    found = {}
+    for name, (problem, together) in inputs.items():
+        path = tmp_path_factory.mktemp("proofs") / "proof"
+        if together:
+            problem = replace(problem, together=True)
+        prove(problem, method="loewner").save(path)
+        found[name] = path.read_text("utf-8")
+    return found
+
+
+def sealed(text):
+    """With the checksum that belongs to it."""
+    body = text[:text.rindex("checksum: ")]
+    return "%schecksum: sha256 %s\nend\n" % (body, hashlib.sha256(body.encode()).hexdigest())
+
+
+def with_field(text, name, value):
+    return sealed(re.sub("(?m)^%s: .*$" % re.escape(name), lambda _: name + ": " + value, text, 1))
+
+
+def with_tree(text, tree):
+    return sealed(text[:text.index("\ntree:\n") + 7] + tree + "\n" + text[text.rindex("checksum: "):])
+
+
+def tree_of(text):
+    return text[text.index("\ntree:\n") + 7:text.rindex("checksum: ")].replace("\n", "")
+
+
+def both(tmp_path, text):
+    """The verdicts of both checkers: exit statuses and what they say."""
+    path = tmp_path / "proof"
+    path.write_bytes(text if isinstance(text, bytes) else text.encode())
+    try:
+        result = check.verify(path)
+        reference = result.status, result.text
+    except check.Failure as error:
+        reference = error.status, error.word + str(error)
+    return reference, run(path)
+
+
+def agree(tmp_path, text):
+    """The same verdict; but what Coq decides is refused without telling what is false from what is
+    beyond it.  Returns the status."""
+    (status, said), (mine, out, err) = both(tmp_path, text)
+    if mine in (VERIFIED, PART):
+        assert status == mine and not err
+        assert out.partition("\nChecker")[0] == said.partition("\nChecker")[0]
+        assert out.splitlines()[-1] == said.splitlines()[-1]            # the SHA-256
+    else:
+        assert mine == status or (mine, status) == (NOT_CONFIRMED, REJECTED), (said, err)
+        assert not out and err.count("\n") == 1 and err.startswith("converse-verified: ")
+    return mine
+
+
+@pytest.mark.parametrize("name", ["trig278.in", "trig180.in", "trig276.in", "standard.json",
+                                  "two-harmonics.json", "point", "part"])
+def test_confirms(texts, tmp_path, name):
+    assert agree(tmp_path, texts[name]) == (PART if name == "part" else VERIFIED)
+
+
+def in_version_2(text):
+    fields = "a: 0.313 0.00125\nb: 0.313 0.00125\nc: 0.626 0.0025\ntogether: yes\nat once: yes\n"
+    lines = [line for line in text.splitlines(keepends=True)
+             if not re.match("wave|frame|alone|odd about|at once", line)]
+    return sealed("converse proof 2\n" + fields + "".join(lines[1:]))
+
+
+def test_version_2(texts, tmp_path):
+    assert agree(tmp_path, in_version_2(texts["trig278.in"])) == VERIFIED
+
+
+@pytest.mark.parametrize("field, value", [
+    ("kind", "as printed, not a proof"), ("frame", "1 0 0 2"), ("frame", "1 0 0"),
+    ("frame", "1 0 0 101"), ("alone", "0"), ("alone", "1"), ("alone", "maybe"),
+    ("odd about", "no"), ("odd about", "1/3 0"), ("odd about", "1/0 0"), ("odd about", "1 -2"),
+    ("v0", "1 -1"), ("v0", "1"), ("v0", "0.5 0.5"), ("xstar", "1 1 1"), ("xstar", "1.5 0.2"),
+    ("xstar", "0.858028 0.858029"), ("at once", "maybe"), ("at once", "no"), ("depth", "-1"),
+    ("cuts", "1"), ("proved", "2"), ("symmetric", "1"), ("undecided", "1"), ("most_cuts", "1"),
+    ("wave", "1 0 0 0.31 0.00125 0"), ("wave", "0 0 0 0.31 0.00125"), ("wave", "1 0 1/2 0.31 0.00125"),
+    ("wave", "101 0 0 0.31 0.00125"), ("wave", "1 0 0 0.31"), ("wave", "1 0 0 0.2 0.00125"),
+    ("wave", "1 0 0 1e999 0"), ("wave", "1 0 0 1e-4000 0"), ("wave", "1 0 0 0x1 0"),
+    ("wave", "1 0 0 31e-2 +.00125"), ("wave", "1 0 1 -0.31 -0.00125")])
+def test_header(texts, tmp_path, field, value):
+    agree(tmp_path, with_field(texts["trig278.in"], field, value))
+
+
+def test_claims_that_are_too_large(texts, tmp_path):
+    """Each field that makes the claim is looked at: at once below 10/3, ranges beyond the proof."""
+    text = texts["trig180.in"]
+    for old, new in (("0.25793028 0.0560718", "0.20793028 0.1060718"),
+                     ("at once: upper end", "at once: yes")):
+        assert agree(tmp_path, sealed(text.replace(old, new))) in (REJECTED, NOT_CONFIRMED)
+    low = texts["standard.json"]
+    assert agree(tmp_path, with_field(low, "at once", "yes")) in (REJECTED, NOT_CONFIRMED)
+
+
+@pytest.mark.parametrize("change", [
+    lambda text: text[:-1], lambda text: text + "\n", lambda text: text.replace("\n", "\r\n"),
+    lambda text: text.replace("0.31 ", "0.32 ", 1), lambda text: "", lambda text: "{}",
+    lambda text: text.replace("proof 3", "proof 4"), lambda text: text.replace("tree:", "tree"),
+    lambda text: sealed(text.replace("xstar", "comment")),
+    lambda text: sealed(text.replace("digits: ", "comment: ")),
+    lambda text: sealed(text.replace("kind: sound\n", "kind: sound\n" * 2)),
+    lambda text: sealed(text.replace("kind: sound\n", "kind: sound\nsurely: yes\n")),
+    lambda text: sealed(text.replace("kind: sound\n", "kind: sound\ncomment: \x1b[1mB: 7\n" * 9)),
+    lambda text: sealed(re.sub("wave: .*\n", "", text)),
+    lambda text: with_tree(text, tree_of(text) + "P"), lambda text: with_tree(text, "0P"),
+    lambda text: with_tree(text, ""), lambda text: with_tree(text, "U"),
+    lambda text: with_tree(text, "?"), lambda text: with_tree(text, "3PP"),
+    lambda text: with_tree(text, "S")])
+def test_damage(texts, tmp_path, change):
+    agree(tmp_path, change(texts["trig278.in"]))
+
+
+def test_no_leaf_may_be_skipped(texts, tmp_path):
+    """A proved leaf that is called symmetric, and one that a cut is taken away from."""
+    text, generator = texts["trig180.in"], random.Random(13)
+    tree = tree_of(text)
+    counts = {name: int(re.search("(?m)^%s: ([0-9]+)$" % name, text)[1])
+              for name in ("cuts", "proved", "symmetric")}
+    for _ in range(4):
+        at = generator.choice([m.start() for m in re.finditer("P", tree)])
+        forged = with_tree(text, tree[:at] + "S" + tree[at + 1:])
+        forged = with_field(forged, "proved", str(counts["proved"] - 1))
+        forged = with_field(forged, "symmetric", str(counts["symmetric"] + 1))
+        assert agree(tmp_path, forged) in (VERIFIED, REJECTED, NOT_CONFIRMED)
+    assert agree(tmp_path, with_field(with_field(with_field(with_field(
+        with_tree(text, "P"), "cuts", "0"), "proved", "1"), "symmetric", "0"),
+        "most_cuts", "0")) == NOT_CONFIRMED
+
+
+def test_bytes_at_random(texts, tmp_path):
+    generator = random.Random(7)
+    data = texts["trig278.in"].encode()
+    for _ in range(40):
+        at = generator.randrange(len(data))
+        changed = data[:at] + bytes([data[at] ^ 1 << generator.randrange(8)]) + data[at + 1:]
+        assert agree(tmp_path, changed) in (REJECTED, UNUSABLE)
+        body = changed[:changed.rfind(b"checksum: ")]
+        agree(tmp_path, body + b"checksum: sha256 %s\nend\n"
+              % hashlib.sha256(body).hexdigest().encode())
+
+
+def test_files_of_every_length(texts, tmp_path):
+    """SHA-256 fills up its last block, or adds one."""
+    for length in range(64):
+        path = tmp_path / "proof"
+        text = sealed(texts["trig278.in"].replace("\ntree:", "\ncomment: %s\ntree:" % ("x" * length)))
+        path.write_text(text)
+        status, out, _ = run(path)
+        assert status == VERIFIED
+        assert out.splitlines()[-1] == "SHA-256 : " + hashlib.sha256(text.encode()).hexdigest()
+
+
+def test_numbers(texts, tmp_path):
+    """What is printed is the exact number that was read."""
+    generator = random.Random(5)
+    for _ in range(20):
+        e = generator.randint(-6, 6)
+        tiny = Fraction(generator.randint(0, 10 ** 6), 10 ** 10)
+        digits = check.decimal_text((Fraction(31, 100) + tiny) / Fraction(10) ** e)
+        text = "1 0 0 %se%+d 0.00125" % (digits, e)
+        assert agree(tmp_path, with_field(texts["trig278.in"], "wave", text)) \
+            in (VERIFIED, NOT_CONFIRMED)
+
+
+def test_gzip(texts, tmp_path):
+    text = texts["trig278.in"]
+    packed = gzip.compress(text.encode())
+    assert agree(tmp_path, packed) == VERIFIED
+    assert agree(tmp_path, packed[:-9]) == UNUSABLE
+    assert agree(tmp_path, packed[:40]) == UNUSABLE
+
+
+def test_jobs_and_spot_checks(texts, tmp_path):
+    path = tmp_path / "proof"
+    path.write_text(texts["trig180.in"])
+    assert run("--jobs", 1, path) == run("--jobs", 3, path)
+    status, out, _ = run("--sample", 5, path)
+    assert status == SPOT_CHECK and out.startswith("Spot check of 5 of ") and "Verified" not in out
+    assert run("--sample", 10 ** 6, path)[0] == SPOT_CHECK
+
+
+def test_a_false_leaf_is_found_by_whichever_process(texts, tmp_path):
+    """The claim is widened a little: some leaves fail, and none of them is overlooked."""
+    text = texts["trig180.in"].replace("0.25793028 0.0560718", "0.25693028 0.0570718")
+    text = text.replace("0.51586056 0.1121436", "0.51386056 0.1141436")
+    path = tmp_path / "proof"
+    path.write_text(sealed(text))
+    for jobs in (1, 2, 5):
+        status, out, err = run("--jobs", jobs, path)
+        assert status == NOT_CONFIRMED and not out and " is not excluded; " in err
+
+
+def test_arguments(tmp_path):
+    for arguments in ((), ("--jobs",), ("--jobs", "0", "x"), ("--sample", "-1", "x"), ("-x", "x"),
+                      ("x", "y"), (tmp_path,), (tmp_path / "none",)):
+        status, out, err = run(*arguments)
+        assert status == UNUSABLE and not out and err.count("\n") == 1
+    assert run("--help")[0] == 0
+    assert run("--version")[1].startswith("converse-verified ")
+
+
+def children(process):
+    found = subprocess.run(["ps", "-o", "pid=", "--ppid", str(process.pid)], text=True,
+                           stdout=subprocess.PIPE)
+    return list(map(int, found.stdout.split()))
+
+
+@pytest.fixture
+def busy(texts, tmp_path):
+    """A check that takes a while, when its processes have begun."""
+    path = tmp_path / "proof"
+    path.write_text(texts["two-harmonics.json"])
+    with start("--jobs", 2, path) as process:
+        deadline = time.monotonic() + 60
+        while len(children(process)) < 2:
+            assert process.poll() is None and time.monotonic() < deadline
+        yield process
+        process.kill()
+
+
+def test_a_process_that_dies_is_missed(busy):
+    os.kill(children(busy)[0], signal.SIGKILL)
+    out, err = busy.communicate(timeout=600)
+    assert busy.returncode == UNUSABLE and not out and err.count("\n") == 1
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
+def test_interrupted(busy, number):
+    workers = children(busy)
+    busy.send_signal(number)
+    out, err = busy.communicate(timeout=60)
+    assert busy.returncode == 128 + number and not out and "interrupted" in err
+    for pid in workers:
+        with pytest.raises(ProcessLookupError):
+            os.kill(pid, 0)
