@@ -6,7 +6,7 @@ From Coq Require Import Reals ZArith QArith Qreals List Bool Lra Lia.
 From Interval.Real Require Import Xreal.
 From Interval.Float Require Import Basic Sig.
 From Interval.Interval Require Import Interval.
-From Converse Require Import Map Tree Torus Reduce Lane Prism.
+From Converse Require Import Map Tree Share Torus Reduce Lane Prism.
 From Converse Require Criterion.
 Import ListNotations.
 Open Scope R_scope.
@@ -142,6 +142,10 @@ Definition header_ok (c : claim) (h : hints) (t : tree) : bool :=
   && mirrored (axes c) (orders_of (plain_problem c) (parameters (of_patch c))) t && once_ok c h.
 
 Definition leaves_of (c : claim) (t : tree) : list cell := leaves (root (axes c)) t.
+
+(* The same leaves without a list of them: see Share.all_leaves_correct. *)
+Definition every_leaf (c : claim) (f : cell -> bool) (t : tree) : bool :=
+  all_leaves f (root (axes c)) t.
 
 Definition check (c : claim) (h : hints) (t : tree) : bool :=
   header_ok c h t && forallb (leaf_ok c h) (leaves_of c t).

@@ -458,6 +458,8 @@ let rec corners n =
 (* A double in units of 10^-9. *)
 let billionths x = ratio (z_of (truncate x)) (power_of_10 9)
 
+let rec natural n = if n = 0 then O else S (natural (n - 1))
+
 let hints_of claim =
   let parameters = List.length (List.hd claim.of_patch).parts in
   let largest waves =
@@ -473,7 +475,7 @@ let hints_of claim =
   let size = Float.hypot (fst n) (snd n) in
   let both f (x, y) = billionths (1e9 *. f x), billionths (1e9 *. f y) in
   { bound = billionths b; tail = billionths (floor (1e9 *. l) -. 1.0);
-    place = both (fun y -> y /. pi) y, both (fun n -> n /. size) n; fuel = S (S (S O)) }
+    place = both (fun y -> y /. pi) y, both (fun n -> n /. size) n; fuel = natural 16 }
 
 (* ---- the leaves, shared out *)
 
@@ -481,7 +483,7 @@ let hints_of claim =
    is excluded; the number of the first that is not ends its work.  all_leaves goes through the tree,
    and is proved to ask of each leaf until one is refused. *)
 let work file hints chosen k n output =
-  let number = ref (-1) and turn = ref (-1) in
+  let number = ref (-1) and turn = ref (-1) and decide = leaf_ok file.claim hints in
   let excluded cell =
     incr number;
     if not (chosen !number) then true
@@ -489,13 +491,13 @@ let work file hints chosen k n output =
       incr turn;
       if !turn mod n <> k then true
       else begin
-        let good = leaf_ok file.claim hints cell in
+        let good = decide cell in
         output_string output (if good then "." else string_of_int !number ^ "\n");
         flush output;
         good
       end
     end in
-  ignore (every_leaf excluded file.tree)
+  ignore (every_leaf file.claim excluded file.tree)
 
 let signals = [Sys.sighup, 1; Sys.sigint, 2; Sys.sigterm, 15]
 
