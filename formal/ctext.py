@@ -11,7 +11,7 @@ import re
 
 from pycparser import c_ast, c_parser
 
-TYPES = "typedef double vec; typedef unsigned long mask; typedef int batch; typedef int point;\n"
+TYPES = "typedef double vec; typedef unsigned long mask, uint64_t; typedef int batch, point, sums, loewner;\n"
 BINARY = {"+": operator.add, "-": operator.sub, "*": operator.mul, "/": operator.truediv,
           "<<": operator.lshift,
           "&": operator.and_, "|": operator.or_, "^": operator.xor,
@@ -63,7 +63,7 @@ def parsed(text, what):
 def function(text, name):
     """The function of that name: its parameters, and its statements."""
     text = _stripped(text)
-    found = [*re.finditer(r"^(?:INLINE|static) [^;{}#=]*\b%s\([^;{}]*\)\s*\{" % name, text, re.MULTILINE)]
+    found = [*re.finditer(r"^(?:INLINE|static|int|double|void) [^;{}#=]*\b%s\([^;{}]*\)\s*\{" % name, text, re.MULTILINE)]
     if len(found) != 1:
         raise CTextError("function %s stands %d times" % (name, len(found)))
     end = found[0].end()
@@ -89,6 +89,21 @@ class Place:
 class Function:
     def __init__(self, name, parameters, statements):
         self.name, self.parameters, self.statements = name, parameters, statements
+
+    def initial(self, variable):
+        """The expression that a variable is declared with, wherever that is."""
+        found = []
+
+        class Declarations(c_ast.NodeVisitor):
+            def visit_Decl(self, node):
+                found.extend([node.init] if node.name == variable else [])
+                self.generic_visit(node)
+
+        for node in self.statements:
+            Declarations().visit(node)
+        if len(found) != 1 or found[0] is None:
+            raise CTextError("%s declares %s %d times" % (self.name, variable, len(found)))
+        return found[0]
 
     def bound(self, names, noted=None):
         """As a Python function, which sees these names, too."""
@@ -186,6 +201,9 @@ def execute(node, names):
         return names[node.name]
     if isinstance(node, (c_ast.ArrayRef, c_ast.StructRef)):
         return _place(node, names).get()
+    if isinstance(node, c_ast.Assignment):
+        _statement(node, names, None)
+        return _place(node.lvalue, names).get()
     if isinstance(node, c_ast.InitList):
         return [execute(part, names) for part in node.exprs]
     if isinstance(node, c_ast.Cast):
@@ -207,7 +225,9 @@ def _binary(node, names):
     if node.op in ("&&", "||"):
         return x if bool(x) == (node.op == "||") else execute(node.right, names)
     y = execute(node.right, names)
-    if node.op not in BINARY or node.op == "/" and isinstance(x, int) and isinstance(y, int):
+    if node.op == "/" and isinstance(x, int) and isinstance(y, int) and x >= 0 < y:
+        return x // y
+    if node.op not in BINARY:
         raise CTextError("%s: %s is not known here" % (node.coord, node.op))
     try:
         return BINARY[node.op](x, y)
@@ -216,6 +236,8 @@ def _binary(node, names):
 
 
 def _unary(node, names):
+    if node.op == "sizeof":
+        return None                             # what uses it, memset, knows
     if node.op == "&":
         return _place(node.expr, names)
     if node.op in ("p++", "++"):
