@@ -43,10 +43,12 @@ mutate: $(VENV)/with-test
 accuracy: $(VENV)/with-test
 	$(VENV)/bin/python tests/accuracy.py > docs/accuracy.md
 
-# What sine.h promises, proved from its text by Gappa, whose proofs Coq checks; half a minute.
+# What sine.h promises, proved from its text by Gappa, whose proofs Coq checks, and other margins for
+# roundings, from theirs; a minute.
 gappa: $(VENV)/installed
 	sh .ci/packages $(PYTHON) gappa coq libcoq-gappa
 	$(VENV)/bin/python formal/gappa.py --coq
+	$(VENV)/bin/python formal/roundings.py
 
 # A proof, the kernels and a failing proof under valgrind's memcheck.
 memcheck: $(VENV)/installed

@@ -11,7 +11,9 @@ import re
 
 from pycparser import c_ast, c_parser
 
-TYPES = "typedef double vec; typedef unsigned long mask, uint64_t; typedef int batch, point, sums, loewner;\n"
+TYPES = """typedef double vec; typedef unsigned long mask, uint64_t;
+typedef int batch, point, sums, loewner, potential;
+"""
 BINARY = {"+": operator.add, "-": operator.sub, "*": operator.mul, "/": operator.truediv,
           "<<": operator.lshift,
           "&": operator.and_, "|": operator.or_, "^": operator.xor,
@@ -63,7 +65,8 @@ def parsed(text, what):
 def function(text, name):
     """The function of that name: its parameters, and its statements."""
     text = _stripped(text)
-    found = [*re.finditer(r"^(?:INLINE|static|int|double|void) [^;{}#=]*\b%s\([^;{}]*\)\s*\{" % name, text, re.MULTILINE)]
+    found = [*re.finditer(r"^(?:INLINE|static|int|double|void) [^;{}#=]*\b%s\([^;{}]*\)\s*\{"
+                          % name, text, re.MULTILINE)]
     if len(found) != 1:
         raise CTextError("function %s stands %d times" % (name, len(found)))
     end = found[0].end()

@@ -224,15 +224,15 @@ class Model:
         return q
 
     def felt(self, _, wave, x, y):
-        """k.x for columns and bows: a symbol of its own.  The third of three waves has the sum, which is
+        """k.x of columns and bows: a symbol of its own.  The third of three waves has the sum, which is
         rounded by u of itself; of any waves a slip is what roundings make of it."""
         text = self.function("felt")(self.w, wave, x, y)
         if self.three and wave < 2:
             return text
-        names = [*x.size.terms, *y.size.terms]
-        if len(names) != 2 or any(len(name) != 1 for name in names):
-            raise NotCovered("felt is used of what is neither a column nor a bow")
-        name = "%s%d_%s" % (names[0][0][0], wave, names[0][0].split("_")[1])
+        first = next(iter(x.size.terms))[0]
+        if "_" not in first:
+            return text                         # of rests
+        name = "%s%d_%s" % (first[0], wave, first.split("_")[1])
         along = symbol(name)
         if name[0] not in self.slipping:
             return Rounded(along)
@@ -355,7 +355,7 @@ def carried(model):
     alone = SimpleNamespace(p=[0.0] * model.slots, h=[0.0] * model.slots, loose=w.loose, size=w.size)
     q.off = [Rounded(0)] * model.slots
     bent = [bend(alone, q, i) if i >= model.first else 0.0 for i in range(model.slots)]
-    worst = {}
+    worst = {"columns": [], "bow": []}
     for i in range(2):
         made, values = [], {}
         for x in column.column[i] + bow.bow[i]:
@@ -363,15 +363,14 @@ def carried(model):
             for name in less:           # |less| <= |next| + what the waves add
                 values[name] = symbol(name.replace("less", "next")) + (x.size - symbol(name))
             made += [symbol(name.replace("less", "next")) for name in less]
-        there = model.names["gathered_sizes"](w, i, bent).least() + rounded(
-            model.names["carried"](w, q, i)).least()
+        there = rounded(model.names["carried"](w, q, i)).least()
         there = there + (total(map(Rounded, made)) + o.reach[i]).least() * (8 * UNIT)
-        lost = {"columns": column.column[i], "bow": bow.bow[i]}
-        lost = {name: second_order(substituted(sum((x.off for x in row), ZERO), values))
-                for name, row in lost.items()}
-        left("columns and bow", lost["columns"] + lost["bow"], there)
-        for name, x in lost.items():
-            worst.setdefault(name, []).append(left(name, x, there))
+        bow_too = there + model.names["gathered_sizes"](w, i, bent).least()
+        lost = [second_order(substituted(sum((x.off for x in row), ZERO), values))
+                for row in (column.column[i], bow.bow[i])]
+        left("columns and bow", lost[0] + lost[1], bow_too)
+        worst["columns"].append(left("columns", lost[0], there))
+        worst["bow"].append(left("bow", lost[1], bow_too))
     return {name: min(row) for name, row in worst.items()}
 
 
@@ -399,6 +398,56 @@ def multipliers(model):
         steep = function(text, "steepness").bound(names)(w, q, i)
         Rounded.known[_sum(steep, names["after"])] = symbol("before")
         worst.append(left("left", (steep - names["after"]).off, there))
+    return min(worst)
+
+
+class Kept(list):
+    """Keeps what is put into it, and has doubles with names instead."""
+
+    def __init__(self, name, count):
+        super().__init__(exact("%s%d" % (name, i)) for i in range(count))
+        self.made = {}
+
+    def __setitem__(self, i, value):
+        self.made[i] = value
+
+
+def widen(model):
+    """All that orbit.c multiplies by WIDEN is at least what it stands for."""
+    text, names = model.texts["loewner/orbit.c"], dict(model.names)
+    factor = Fraction(constant(text, "WIDEN"))
+    names.update(WIDEN=exact("WIDEN"), measure_slips=lambda *_: None,
+                 larger=lambda *_: exact("widest"), bend=function(text, "bend").bound(names))
+    names["rest_along"] = function(model.header, "rest_along").bound(names)
+    wave = {name: Kept(name, model.slots) for name in
+            ("straight", "bowed", "off", "reach", "slip", "p", "h", "loose", "size", "weight",
+             "cosine", "sine")}
+    pair = {name: Kept(name, 2) for name in ("rest", "force", "missed")}
+    q = SimpleNamespace(column=model.q.column, bow=model.q.bow, **wave, **pair, far=exact("far"),
+                        fuzz=exact("fuzz"), d=Kept("d", 3), widest=None)
+    w = SimpleNamespace(root=model.w.root, **wave)
+    o = SimpleNamespace(reach=Kept("before", model.slots), force=Kept("push", 2),
+                        rest=Kept("last", 2))
+    slips, model.slipping = model.slipping, "LT" if model.three else ""     # see carried
+    function(text, "measure").bound(names)(w, q, model.columns)
+    model.slipping = slips
+    function(text, "extend").bound(names)(w, q)
+    loops = [node for node in function(text, "step").statements if isinstance(node, c_ast.For)]
+    scope = {**names, "w": w, "q": q, "o": o, "is_first": 0, "inverse": Kept("inverse", 3),
+             "rounded": exact("rounded"), "rest_sum": exact("rest_sum")}
+    scope["bent"] = [names["bend"](w, q, i) for i in range(model.slots)]
+    scope["next"] = SimpleNamespace(rest=Kept("rest", 2), straight=q.straight, bowed=q.bowed)
+    run([loops[2], loops[4]], scope)
+    made = [kept.made for kept in (q.straight, q.bowed, q.off, q.reach, q.force, scope["next"].rest)]
+    if not all(made):
+        raise NotCovered("widen: orbit.c no longer makes one of those sums where it did")
+    worst = []
+    for x in (x for kept in made for x in kept.values() if x.size.terms):
+        if any(key.count("WIDEN") != 1 for key in x.size.terms):
+            raise NotCovered("widen: a sum is not multiplied by WIDEN, or twice")
+        whole = substituted(x.size, {"WIDEN": Polynomial.of(1)})
+        off = substituted(x.off, {"WIDEN": Polynomial.of(factor)})
+        worst.append(left("widen", off, whole * (factor - 1)))
     return min(worst)
 
 
@@ -446,11 +495,12 @@ def proved(read, columns=COLUMNS):
     many times what is needed there is, of three waves and of one, a few, as many as there may be."""
     model = Model(read, columns=columns)
     result = {"fuzz": fuzz(model), "missed": missed(model), **carried(model),
-              "sines in bent": bent(model), "left": multipliers(model)}
+              "sines in bent": bent(model), "left": multipliers(model), "widen": widen(model)}
     for waves in (1, 3, MOST_WAVES):
         model = Model(read, waves, columns if waves < MOST_WAVES else 2)
         found = {"fuzz": fuzz(model), "missed": missed(model), **carried(model),
-                 "sines in bent": bent(model), "slip": model.slip, "at once": at_once(model)}
+                 "sines in bent": bent(model), "slip": model.slip, "widen": widen(model),
+                 "at once": at_once(model)}
         for name, x in found.items():
             name = name if name == "at once" else "general " + name
             result[name] = min(x, result.get(name, x))

@@ -34,8 +34,11 @@ def header(root):
 
 
 @needs_gappa
-def test_the_promise_is_proved(tools, header, tmp_path):
+def test_the_promise_is_proved(tools, header, root, tmp_path):
     proof = tools[0].prove(header, tmp_path)
+    rows = re.findall(r"^\| `?sine`? \|.*\| ([0-9.]+) \|", (root / "docs" / "proof.md").read_text("utf-8"),
+                      re.MULTILINE)
+    assert len(rows) == 2 and float(rows[1]) <= proof.error / max(proof.sine, proof.cosine)
     assert proof.turns < 2 ** 20 and proof.far < 0.7854
     assert max(proof.sine, proof.cosine) <= proof.error == Fraction(1, 2 ** 51)
     assert 1 < max(proof.sine, proof.cosine) / Fraction(1, 2 ** 53)     # it is no less than u
