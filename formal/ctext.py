@@ -1,9 +1,9 @@
 """Runs the core's C text, function by function, with numbers of any kind.
 
-A function is read as it stands in its file, and executed statement by statement in the order in which
-C would: what `+`, `-`, `*` do is up to the numbers, which may be doubles, polynomials, bounds of
-roundings or the text of another language.  So what is proved with them is proved of these very lines.
-It knows what those functions use, and stops with one line where it meets anything else.
+A function is read as it stands in its file, and executed statement by statement in the order in
+which C would: what `+`, `-`, `*` do is up to the numbers, which may be doubles, polynomials, bounds
+of roundings or the text of another language.  So what is proved with them is proved of these very
+lines.  It knows what those functions use, and stops with one line where it meets anything else.
 """
 
 import operator

@@ -2,10 +2,10 @@
 
     python formal/gappa.py [--coq] [DIRECTORY]
 
-The C text of double_sincos is executed with names for numbers, which makes of it Gappa scripts: each
-+, -, * rounded to nearest, in the order of the text, each constant the double that it stands for.
-They are left in DIRECTORY, build/gappa by default.  Exit status 1, and one line, if anything of it
-cannot be proved.  --coq: Gappa writes its proofs down for Coq, which checks them.
+The C text of double_sincos is executed with names for numbers, which makes of it Gappa scripts:
+each +, -, * rounded to nearest, in the order of the text, each constant the double that it stands
+for.  They are left in DIRECTORY, build/gappa by default.  Exit status 1, and one line, if anything
+of it cannot be proved.  --coq: Gappa writes its proofs down for Coq, which checks them.
 
 The proof.  Let |x| <= SINE_LIMIT, u = 2^-53.
 
@@ -19,9 +19,9 @@ The proof.  Let |x| <= SINE_LIMIT, u = 2^-53.
    S(r) is from sin r, C(r) from cos r.
 6. Exact arithmetic: |sine - sin rho| is at most what 4 and 5 say, and |r - rho|; |cosine - cos rho|
    the same with |r - rho| max(|r|, |rho|), as |sin t| <= |t|.
-7. The last lines of the text, executed for each n modulo 4 with sine and cosine as they are: s is the
-   sine of n pi/2 + rho, c its cosine.  They look at the last two bits of shifted alone, and these are
-   those of n: shifted is between 2^52 and 2^53.
+7. The last lines of the text, executed for each n modulo 4 with sine and cosine as they are: s is
+   the sine of n pi/2 + rho, c its cosine.  They look at the last two bits of shifted alone, and
+   these are those of n: shifted is between 2^52 and 2^53.
 
 What is trusted: Gappa or, with --coq, Coq and the three identities that are Gappa's hints; that the
 machine computes as IEEE 754 says (csrc/numbers/machine.c looks); the reading of the C text, which
@@ -152,7 +152,7 @@ def lines(text, free, until, rounded=True):
 
 
 class Gappa:
-    """Runs scripts, and leaves them in a directory; with_coq: and has Coq check what Gappa proves."""
+    """Runs scripts, and leaves them in a directory; with_coq: and has Coq check the proofs."""
 
     def __init__(self, directory, with_coq):
         self.directory, self.with_coq = Path(directory), with_coq
@@ -163,8 +163,8 @@ class Gappa:
         """Proves a script; returns the intervals that it asks for."""
         file = name + ".g"
         (self.directory / file).write_text("@rnd = float<ieee_64, ne>;\n" + script, "utf-8")
-        proof, output = self._run("gappa", "-Eprecision=120", "-Bcoq" if self.with_coq else "-Bnull",
-                                  file)
+        backend = "-Bcoq" if self.with_coq else "-Bnull"
+        proof, output = self._run("gappa", "-Eprecision=120", backend, file)
         found = {key: (_number(low), _number(high)) for key, low, high in re.findall(
             r"^  (.*) in \[(\S+)(?: \{[^}]*\})?, (\S+?)(?: \{[^}]*\})?\]$", output, re.MULTILINE)}
         wanted = re.findall(r"(\S+(?: - \S+)?) in \?", script)
@@ -214,7 +214,7 @@ def arctangent(x, terms):
 
 
 def half_pi():
-    """An interval that holds pi/2 = 8 arctan 1/5 - 2 arctan 1/239 (Machin), less than 1e-60 wide."""
+    """An interval that holds pi/2 = 8 arctan 1/5 - 2 arctan 1/239 (Machin), below 1e-60 wide."""
     (a, b), (c, d) = arctangent(Fraction(1, 5), 45), arctangent(Fraction(1, 239), 15)
     return 8 * a - 2 * d, 8 * b - 2 * c
 
@@ -298,7 +298,7 @@ def prove(text, directory, with_coq=False):
     shift = (exact["shifted"] - exact["n"]).terms.get((), Fraction(0))
     if exact["n"].terms != {("x",): inverse} or shift % 4 or exact["shifted"].terms != {
             ("x",): inverse, (): shift}:
-        raise NotProved("shifted and n are not INV x + SHIFT, with SHIFT a multiple of 4, and INV x")
+        raise NotProved("shifted and n are not INV x + SHIFT, 4 dividing SHIFT, and INV x")
     turns, off = gappa.bounds("turns", """x = rnd(x_);
 %s%s{ |x| <= %s
   -> @FIX(shifted, 0) /\\ shifted in [0x1p52, 0x1.fffffffffffffp52]
@@ -316,7 +316,8 @@ def prove(text, directory, with_coq=False):
     delta = rounded_up(largest(end - K for end in half_pi()))
 
     # 3. r
-    if declared(text, {"x": Text("x", True), "n": 0.0}, "r", lambda _, value: value)["r"].text != "x":
+    at_zero = declared(text, {"x": Text("x", True), "n": 0.0}, "r", lambda _, value: value)
+    if at_zero["r"].text != "x":
         raise NotProved("r is not x where n = 0")
     far, off_r = off / inverse, Fraction(0)     # there rho = r = x, |INV x| <= off
     for name, low, high in (("before", -turns, -1), ("after", 1, turns)):
@@ -336,8 +337,8 @@ r - rho -> (r - Mr) + n * delta;
     # 4. the roundings of the polynomials
     sine_off, cosine_off = (largest(*gappa.bounds(name, """r = rnd(r_);
 %s%s{ |r| <= %s -> %s - M%s in ? }
-%s""" % (lines(text, ["r"], name), lines(text, ["r"], name, False), dyadic(size), name, name, hint)))
-        for name, hint in (("sine", ""), ("cosine", "$ r in 8;\n")))
+%s""" % (lines(text, ["r"], name), lines(text, ["r"], name, False), dyadic(size), name, name,
+         hint))) for name, hint in (("sine", ""), ("cosine", "$ r in 8;\n")))
 
     # 5. the polynomials
     polynomials = expanded(text, ["r"], "cosine")

@@ -2,15 +2,17 @@
 
     python formal/roundings.py
 
-The functions that see a point (see) and make the next one (carry, the step of the centre) are
-executed with pairs of polynomials for numbers: a bound of what a number is in exact arithmetic, and a
-bound of how far the double is off that.  Their symbols are the absolute values of what goes in, their
-coefficients exact and not negative.  A sum, a difference, a product of doubles is the exact one times
-1 + epsilon, |epsilon| <= u.  So the last polynomial bounds the error for all data at once, with its
-terms of higher order in u; and where each of its coefficients is at most that of the margin, executed
-from its text in the same way, the margin is proved.  What is printed is the least quotient of the two.
+The functions that see a point and make the next one are executed with pairs of polynomials for
+numbers: a bound of what a number is in exact arithmetic, and a bound of how far the double is off
+that.  Their symbols are the absolute values of what goes in, their coefficients exact and not
+negative.  A sum, a difference, a product of doubles is the exact one times 1 + epsilon,
+|epsilon| <= u.  So the last polynomial bounds the error for all data at once, with its terms of
+higher order in u; and where each of its coefficients is at most that of the margin, executed from
+its text in the same way, the margin is proved.  What is printed is the least quotient of the two.
 
-Left out, as docs/proof.md covers it by hand: what products lose that are below 2^-1022.
+This is about what doubles lose of what the text says, not about whether it says the right thing:
+signs, for one, are not looked at.  Left out, as docs/proof.md covers it by hand, is what products
+lose that are below 2^-1022.
 """
 
 import sys
@@ -129,14 +131,25 @@ def evened(polynomial):
 
 
 def second_order(polynomial):
-    """With 2^30 for D beside a slip.  A slip is itself of order u, and angles that are off by more than
-    2^30 u are of no use to anybody."""
+    """With 2^30 for D beside a slip.  A slip is itself of order u, and angles that are off by more
+    than 2^30 u are of no use to anybody."""
     result = ZERO
     for key, x in polynomial.terms.items():
         if "D" in key and any(name.startswith("slip") for name in key):
             key, x = tuple(name for name in key if name != "D"), x * 2 ** (30 * key.count("D"))
         result = result + Polynomial({key: x})
     return result
+
+
+def of_doubles(off, name, rest=ZERO):
+    """A bound by |x| of exact arithmetic, name, less rest, as one by the double that it is off: if
+    off = a + c name and name <= |double| + rest + off, it is at most (|double| + rest + a)/(1 - c).
+    """
+    alone = off.terms.get((name,), Fraction(0))
+    others = Polynomial((key, x) for key, x in off.terms.items() if key != (name,))
+    if any(name in key for key in others.terms):
+        raise NotCovered("%s is a factor of other errors" % name)
+    return substituted(off, {name: (symbol(name) + rest + others) * (1 / (1 - alone))})
 
 
 class NotCovered(Exception):
@@ -166,8 +179,8 @@ class Model:
         self.columns, self.pairs = columns, columns * (columns + 1) // 2
         self.three = waves is None
         self.texts = {name: read(name) for name in
-                      ("numbers/sine.h", "loewner/prism.h", "loewner/orbit.c", "loewner/bound.c", "loewner/problem.c",
-                       "loewner/three.h" if self.three else "loewner/general.h")}
+                      ("numbers/sine.h", "loewner/prism.h", "loewner/orbit.c", "loewner/bound.c",
+                       "loewner/problem.c", "loewner/three.h", "loewner/general.h")}
         self.header = self.texts["loewner/three.h" if self.three else "loewner/general.h"]
         self.first, self.slots = (0, 3) if self.three else (2, 2 + waves)
         present = range(self.first, self.slots)
@@ -192,15 +205,16 @@ class Model:
         for name in ("moves", "add_moves"):
             self.names[name] = function(self.texts["loewner/prism.h"], name).bound(self.names)
         self.sine_error = Fraction(defined(self.texts["numbers/sine.h"], "SINE_ERROR"))
-        self.slipping = "LT"            # where k.L, k.T are meant, and not what doubles make of them
+        self.slipping = "LT"            # of these k.L, k.T are meant, not what doubles make of them
         self.slip = Fraction(1)         # of its slip so many times what is off along a wave
         if not self.three:
             self.slip = self.measured_slips()
         self.q, self.o, self.angles = self.point("L", "T", "x"), self.point("O", "U", "o"), {}
         self.function("see")(self.w, self.q)
 
-    def function(self, name):
-        return function(self.header, name).bound(self.names)
+    def function(self, name, names=None):
+        """One of three.h or general.h."""
+        return function(self.header, name).bound(self.names if names is None else names)
 
     def phase(self, i):
         """near() puts it 8 u off, and it may be 10^-40 off before."""
@@ -211,7 +225,8 @@ class Model:
         q = SimpleNamespace(
             x=[exact("%s%d" % (x, i)) for i in range(2)],
             turns=[exact("turns%d" % i) for i in range(2)], missed=[None] * 2,
-            column=[[exact("%s%d_%d" % (column, i, k)) for k in range(self.columns)] for i in range(2)],
+            column=[[exact("%s%d_%d" % (column, i, k)) for k in range(self.columns)]
+                    for i in range(2)],
             bow=[[exact("%s%d_%d" % (bow, i, k)) for k in range(self.pairs)] for i in range(2)],
             sine=[None] * self.slots, cosine=[None] * self.slots, beta=[None] * 3)
         along = [[[exact("%s%d_%d" % (name, i, k)) for k in range(n)] for i in range(self.slots)]
@@ -224,8 +239,8 @@ class Model:
         return q
 
     def felt(self, _, wave, x, y):
-        """k.x of columns and bows: a symbol of its own.  The third of three waves has the sum, which is
-        rounded by u of itself; of any waves a slip is what roundings make of it."""
+        """k.x of columns and bows: a symbol of its own.  The third of three waves has the sum, rounded
+        by u of itself; of any waves a slip is what roundings make of it."""
         text = self.function("felt")(self.w, wave, x, y)
         if self.three and wave < 2:
             return text
@@ -251,8 +266,8 @@ class Model:
                    for j in range(self.first, self.slots))
 
     def double_sincos(self, sine, cosine, angle):
-        """Of three waves an angle is as far off as it is; of any waves D u at most, with far = D + N + 1:
-        see larger."""
+        """Of three waves an angle is as far off as it is; of any waves D u at most, with
+        far = D + N + 1: see larger."""
         off = angle.off
         if not self.three:
             wave = len(self.angles) + 2
@@ -264,7 +279,7 @@ class Model:
     def larger(self, _, value):
         """D is the larger; what it is compared with must be what the last angle is off."""
         wave = max(self.angles)
-        slack = Polynomial.of(Fraction(1, 10 ** 38))    # of the phase; far has more than one to spare
+        slack = Polynomial.of(Fraction(1, 10 ** 38))    # of the phase; far has one to spare
         left("far", self.angles[wave], value.least() * (UNIT * (1 + Fraction(1, 2 ** 30))) + slack)
         return exact("D")
 
@@ -302,9 +317,9 @@ class Turns(list):
 def missed(model):
     """The step of the centre misses what it should be by less than `missed`, modulo 2 pi.
 
-    Two sums are known to be less than their terms: before = o - turns 2 pi, and next = x - turns' 2 pi,
-    where |next| <= 1.01 |x|: turns' is next to x/(2 pi), or zero.  So |turns| 2 pi <= |o| + |before|,
-    |turns'| 2 pi <= 2.01 |x|."""
+    Two sums are known to be less than their terms: before = o - turns 2 pi, next = x - turns' 2 pi.
+    As turns' is next to x/(2 pi), or zero, |next| <= 1.01 |x|.  So |turns| 2 pi <= |o| + |before|
+    and |turns'| 2 pi <= 2.01 |x|."""
     text = model.texts["loewner/orbit.c"]
     low, high = (4 * end for end in half_pi())
     two_pi = Turn(high, high - Fraction(constant(text, "TWO_PI")))
@@ -345,29 +360,33 @@ def carried(model):
         for rows, before in ((q.column, o.column), (q.bow, o.bow)):
             for x, y in zip(rows[i], before[i]):
                 if not model.three:
-                    Rounded.known[_sum(2.0 * x, y)] = symbol("less %s" % next(iter(x.size.terms))[0])
+                    less = symbol("less %s" % next(iter(x.size.terms))[0])
+                    Rounded.known[_sum(2.0 * x, y)] = less
     column, bow = (SimpleNamespace(column=[[None] * model.columns for _ in range(2)],
                                    bow=[[None] * model.pairs for _ in range(2)]) for _ in range(2))
     model.names["carry"](w, column, q, o, model.columns)
     model.slipping = "LT" if model.three else "T"
     model.names["carry"](w, bow, q, o, model.columns)
     bend = function(model.texts["loewner/orbit.c"], "bend").bound(model.names)
-    alone = SimpleNamespace(p=[0.0] * model.slots, h=[0.0] * model.slots, loose=w.loose, size=w.size)
+    alone = SimpleNamespace(p=[0.0] * model.slots, h=[0.0] * model.slots, loose=w.loose,
+                            size=w.size)        # for bend's last term alone
     q.off = [Rounded(0)] * model.slots
     bent = [bend(alone, q, i) if i >= model.first else 0.0 for i in range(model.slots)]
     worst = {"columns": [], "bow": []}
     for i in range(2):
-        made, values = [], {}
-        for x in column.column[i] + bow.bow[i]:
-            less = [key[0] for key in x.size.terms if key[0].startswith("less ")]
-            for name in less:           # |less| <= |next| + what the waves add
-                values[name] = symbol(name.replace("less", "next")) + (x.size - symbol(name))
-            made += [symbol(name.replace("less", "next")) for name in less]
+        lost, made = [], []
+        for row in (column.column[i], bow.bow[i]):
+            lost.append(ZERO)
+            for x in row:
+                off = x.off
+                for key in [key for key in x.size.terms if key[0].startswith("less ")]:
+                    # what is less is at most what is made, and what the waves add
+                    off = of_doubles(off, *key, x.size - symbol(*key))
+                    made.append(exact(*key))
+                lost[-1] = lost[-1] + second_order(off)
         there = rounded(model.names["carried"](w, q, i)).least()
-        there = there + (total(map(Rounded, made)) + o.reach[i]).least() * (8 * UNIT)
+        there = there + (total(made) + o.reach[i]).least() * (8 * UNIT)
         bow_too = there + model.names["gathered_sizes"](w, i, bent).least()
-        lost = [second_order(substituted(sum((x.off for x in row), ZERO), values))
-                for row in (column.column[i], bow.bow[i])]
         left("columns and bow", lost[0] + lost[1], bow_too)
         worst["columns"].append(left("columns", lost[0], there))
         worst["bow"].append(left("bow", lost[1], bow_too))
@@ -382,22 +401,22 @@ def bent(model):
 
 
 def multipliers(model):
-    """What (2) of bound.c leaves is less than `left`.  mu[j-1] is known: what (2) makes of it."""
+    """What (2) of bound.c leaves is less than `left`.  Known is mu[j-1], which (2) makes."""
     text, q, w = model.texts["loewner/bound.c"], model.q, model.w
     q.n, q.mu = [[exact("%s%d" % (name, i)) for i in range(2)] for name in ("n", "mu")]
     Rounded.known[_sum(*q.n)] = symbol("n2")
     names = {**model.names, "square": lambda x: x * x, "w": w, "q": q, "tiny": 0.0,
              "before": exact("before"), "after": exact("after")}
-    names["omega"] = [symbol("n%d" % i) * symbol("n%d" % i) for i in range(3)]
-    names["omega"], names["m"] = [*map(Rounded, names["omega"])], q.mu
-    names["gradient"] = function(model.header, "gradient").bound(names)
-    names["weights"] = function(model.header, "weights_of").bound(names)(w, names["omega"], q.mu)
+    names["gradient"] = model.function("gradient", names)
+    omega = [x * x for x in (model.function("felt")(w, i, *q.n) for i in range(3))]
+    names["weights"] = model.function("weights_of")(w, omega, q.mu)
     there = execute(function(text, "sum_up").initial("left"), names).least()
     worst = []
     for i in range(2):
         steep = function(text, "steepness").bound(names)(w, q, i)
         Rounded.known[_sum(steep, names["after"])] = symbol("before")
-        worst.append(left("left", (steep - names["after"]).off, there))
+        off = of_doubles((steep - names["after"]).off, "before")
+        worst.append(left("left", off, there))
     return min(worst)
 
 
@@ -418,7 +437,7 @@ def widen(model):
     factor = Fraction(constant(text, "WIDEN"))
     names.update(WIDEN=exact("WIDEN"), measure_slips=lambda *_: None,
                  larger=lambda *_: exact("widest"), bend=function(text, "bend").bound(names))
-    names["rest_along"] = function(model.header, "rest_along").bound(names)
+    names["rest_along"] = model.function("rest_along")
     wave = {name: Kept(name, model.slots) for name in
             ("straight", "bowed", "off", "reach", "slip", "p", "h", "loose", "size", "weight",
              "cosine", "sine")}
@@ -438,7 +457,8 @@ def widen(model):
     scope["bent"] = [names["bend"](w, q, i) for i in range(model.slots)]
     scope["next"] = SimpleNamespace(rest=Kept("rest", 2), straight=q.straight, bowed=q.bowed)
     run([loops[2], loops[4]], scope)
-    made = [kept.made for kept in (q.straight, q.bowed, q.off, q.reach, q.force, scope["next"].rest)]
+    made = [kept.made for kept in
+            (q.straight, q.bowed, q.off, q.reach, q.force, scope["next"].rest)]
     if not all(made):
         raise NotCovered("widen: orbit.c no longer makes one of those sums where it did")
     worst = []
@@ -452,9 +472,9 @@ def widen(model):
 
 
 def at_once(model):
-    """The roundings of loewner_at_once are less than the margin it asks for, for all parameters and at
-    their end.  What is known: |k.n|^2 <= (|k0| + |k1|)^2 |n|^2, also of sizes; near() puts amplitudes
-    8 u off, and straighten rounds them by two more."""
+    """The roundings of loewner_at_once are less than the margin it asks for, for all parameters and
+    at their end.  near() puts amplitudes 8 u off, and straighten rounds them by two more; and
+    |k.n|^2 <= (|k0| + |k1|)^2 |n|^2, also of sizes."""
     text = model.texts["loewner/problem.c"]
 
     def off_by(x, units):
@@ -492,7 +512,7 @@ def at_once(model):
 
 def proved(read, columns=COLUMNS):
     """The margins of section 8 of docs/proof.md that the text of csrc proves, read(file) of it: how
-    many times what is needed there is, of three waves and of one, a few, as many as there may be."""
+    many times what is needed there is, of three waves and of one, a few, as many as may be."""
     model = Model(read, columns=columns)
     result = {"fuzz": fuzz(model), "missed": missed(model), **carried(model),
               "sines in bent": bent(model), "left": multipliers(model), "widen": widen(model)}

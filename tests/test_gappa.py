@@ -36,8 +36,8 @@ def header(root):
 @needs_gappa
 def test_the_promise_is_proved(tools, header, root, tmp_path):
     proof = tools[0].prove(header, tmp_path)
-    rows = re.findall(r"^\| `?sine`? \|.*\| ([0-9.]+) \|", (root / "docs" / "proof.md").read_text("utf-8"),
-                      re.MULTILINE)
+    rows = re.findall(r"^\| `?sine`? \|.*\| ([0-9.]+) \|",
+                      (root / "docs" / "proof.md").read_text("utf-8"), re.MULTILINE)
     assert len(rows) == 2 and float(rows[1]) <= proof.error / max(proof.sine, proof.cosine)
     assert proof.turns < 2 ** 20 and proof.far < 0.7854
     assert max(proof.sine, proof.cosine) <= proof.error == Fraction(1, 2 ** 51)
@@ -129,6 +129,6 @@ def test_exact_arithmetic(tools):
     for polynomial, first, function in ((r - r * r * r * Fraction(1, 7), 1, mpmath.sin),
                                         (1 - r * r * Fraction(1, 2), 0, mpmath.cos)):
         bound = gappa.distance_from_taylor(polynomial, first, radius)
-        worst = max(abs(sum(float(c) * x ** len(k) for k, c in polynomial.terms.items()) - function(x))
-                    for x in (0.75 * k / 100 for k in range(-100, 101)))
+        worst = max(abs(sum(float(c) * x ** len(key) for key, c in polynomial.terms.items())
+                        - function(x)) for x in (0.75 * k / 100 for k in range(-100, 101)))
         assert 0.6 * bound < worst <= bound

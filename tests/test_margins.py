@@ -1,5 +1,5 @@
-"""The margins for roundings: what formal/roundings.py proves of them from the C text, that it proves
-nothing of a text with less, and how much of those of general waves is ever needed.
+"""The margins for roundings: what formal/roundings.py proves of them from the C text, that it
+proves nothing of a text with less, and how much of those of general waves is ever needed.
 
 What is needed of the thesis's is in test_loewner.py.  With -s the table is printed.
 """
@@ -14,8 +14,8 @@ from types import SimpleNamespace
 
 import mpmath
 import pytest
-from test_waves import (FRAMES, KINDS, SITES, UNIT, arguments, beta, draw, far_of, inside,
-                        many_digits, margins, sites, size_of, straightened)
+from test_waves import (FRAMES, SITES, UNIT, angles, arguments, beta, draw, many_digits, margins,
+                        sites, straightened)
 from truth import TORTURE, mp, rng_for, uniform
 
 from converse import kernels
@@ -40,11 +40,12 @@ def read(root):
 
 @pytest.fixture(scope="module")
 def table(root):
-    """Of each row of docs/proof.md that a machine has proved: the factor that it is said to leave."""
+    """Of each row of docs/proof.md that a machine has proved: the factor that it is said to leave.
+    """
     text = (root / "docs" / "proof.md").read_text("utf-8")
     part = text[text.index("**What a machine has proved of this.**"):text.index("Why that much")]
-    return {name: float(left) for name, left in re.findall(r"^\| ([a-z0-9 *`]+?) \|.*\| ([0-9.]+) \|",
-                                                           part, re.MULTILINE)}
+    return {name: float(left) for name, left in
+            re.findall(r"^\| ([a-z0-9 *`]+?) \|.*\| ([0-9.]+) \|", part, re.MULTILINE)}
 
 
 # ---- proved
@@ -118,7 +119,8 @@ def test_bounds_of_roundings(tools):
                        for key, c in polynomial.terms.items())
 
         half, three = Fraction(1, 2), Fraction(3)
-        for formula in (lambda x, y, z: (x + y) * z - half * x, lambda x, y, z: x * y * z + three * y,
+        for formula in (lambda x, y, z: (x + y) * z - half * x,
+                        lambda x, y, z: x * y * z + three * y,
                         lambda x, y, z: (x - y) - (x * z - 1)):
             bound, exact = formula(*names), formula(*map(Fraction, (x, y, z)))
             assert abs(exact) <= value(bound.size)
@@ -205,8 +207,8 @@ def left_margins(rng, cases):
             if j in (0, 1):
                 continue
             b, (n0, n1) = beta(patch, [w[3] for w in patch.waves], q[j].x), n.get(j, none)
-            pull = [(w[0] * n0 + w[1] * n1) ** 2 * mp(w[3])
-                    * mpmath.cos(w[0] * q[j].x[0] + w[1] * q[j].x[1] + mp(w[2])) for w in patch.waves]
+            pull = [(w[0] * n0 + w[1] * n1) ** 2 * mp(w[3]) * mpmath.cos(y)
+                    for w, y in zip(patch.waves, angles(patch, q[j].x))]
             weights = K * K * (n0 ** 2 + n1 ** 2) + K * (abs(mu[j][0]) + abs(mu[j][1]))
             for i in range(2):
                 slope = b[i] * mu[j][0] + b[i + 1] * mu[j][1] - mu[j - 1][i] - mu[j + 1][i] \
@@ -283,7 +285,8 @@ def torus_margins(rng, cases, tools, read):
                 y, along = k0 * mp(v[0]) + k1 * mp(v[1]) - phase, k0 * t[0] + k1 * t[1]
                 z = p * (mpmath.sin(y) + mpmath.cos(y) * along) + along ** 2 * abs(p) / 2
                 m = [m[0] + z * k0 * k0, m[1] + z * k0 * k1, m[2] + z * k1 * k1]
-            true = max(true, (m[0] + m[2]) / 2 + 2 + mpmath.sqrt((m[0] - m[2]) ** 2 / 4 + m[1] ** 2))
+            root = mpmath.sqrt((m[0] - m[2]) ** 2 / 4 + m[1] ** 2)
+            true = max(true, (m[0] + m[2]) / 2 + 2 + root)
         K = max(abs(k0) + abs(k1) for k0, k1, *_ in waves)
         yield "torus", true - found, \
             mp(2) ** -40 * (1 + K) ** 3 * (1 + K * K * sum(abs(w[3]) for w in waves))
@@ -311,7 +314,7 @@ def worst_margins(tools, read):
 def test_margins_of_general_waves(tools, read, root):
     """Of no margin more is needed than docs/proof.md proves, and of each some is."""
     text = (root / "docs" / "proof.md").read_text("utf-8")
-    part = text[text.index("**General waves.**"):text.index("**What a machine has proved of this.**")]
+    part = text[text.index("**General waves.**"):text.index("**What a machine has proved")]
     left = dict(re.findall(r"^\| ([a-z]+|`s\*`) \|.*\| ([0-9.]+) \| [0-9]", part, re.MULTILINE))
     left.update({"missed": 1.7, "at once": 3.6})        # of the first table
     worst = worst_margins(tools, read)
