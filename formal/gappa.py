@@ -5,7 +5,8 @@
 The C text of double_sincos is executed with names for numbers, which makes of it Gappa scripts:
 each +, -, * rounded to nearest, in the order of the text, each constant the double that it stands
 for.  They are left in DIRECTORY, build/gappa by default.  Exit status 1, and one line, if anything
-of it cannot be proved.  --coq: Gappa writes its proofs down for Coq, which checks them.
+of it cannot be proved.  --coq: Gappa writes its proofs down for Coq, which checks them and makes
+of them, and of the text's operations, the theorem in sine/Sine.v.
 
 The proof.  Let |x| <= SINE_LIMIT, u = 2^-53.
 
@@ -23,9 +24,10 @@ The proof.  Let |x| <= SINE_LIMIT, u = 2^-53.
    the sine of n pi/2 + rho, c its cosine.  They look at the last two bits of shifted alone, and
    these are those of n: shifted is between 2^52 and 2^53.
 
-What is trusted: Gappa or, with --coq, Coq and the three identities that are Gappa's hints; that the
-machine computes as IEEE 754 says (csrc/numbers/machine.c looks); the reading of the C text, which
-tests compare bit by bit with what the compiler made of it; and the exact arithmetic of 2, 5, 6, 7.
+What is trusted: Gappa, which checks the hints that it is given, and the exact arithmetic; with
+--coq, where Sine.v has steps 2 to 6 and the quadrants as well, Coq in their place.  In either case:
+that the machine computes as IEEE 754 says (csrc/numbers/machine.c looks); the reading of the C
+text, which tests compare bit by bit with what the compiler made of it; and step 7.
 """
 
 import math
@@ -45,7 +47,8 @@ from polynomial import symbol                                   # noqa: E402
 ROOT = Path(__file__).resolve().parent.parent
 HEADER = ROOT / "csrc" / "numbers" / "sine.h"
 UNIT = Fraction(1, 2 ** 53)
-SECONDS = 60                            # that Gappa may take of a script
+THEOREM = ROOT / "formal" / "sine" / "Sine.v"
+SECONDS = 300                           # that a script or a proof may take
 
 
 class NotProved(Exception):
@@ -66,12 +69,15 @@ def dyadic(x):
 class Text:
     """An expression of Gappa's language; `rounded`: are operations those of doubles?"""
 
+    rounding, number = "rnd%s", staticmethod(dyadic)
+
     def __init__(self, text, rounded):
         self.text, self.rounded = text, rounded
 
     def _with(self, sign, left, right):
-        text = "(%s %s %s)" % (_text(left), sign, _text(right))
-        return Text("rnd" + text if self.rounded else text, self.rounded)
+        left, right = (x.text if isinstance(x, Text) else self.number(x) for x in (left, right))
+        text = "(%s %s %s)" % (left, sign, right)
+        return type(self)(self.rounding % text if self.rounded else text, self.rounded)
 
     def __add__(self, other):
         return self._with("+", self, other)
@@ -92,15 +98,24 @@ class Text:
         return self._with("*", other, self)
 
     def __neg__(self):
-        return Text("(-%s)" % self.text, self.rounded)
+        return type(self)("(-%s)" % self.text, self.rounded)
 
 
 def _is_zero(x):
     return not isinstance(x, Text) and x == 0
 
 
-def _text(x):
-    return x.text if isinstance(x, Text) else dyadic(x)
+class CoqText(Text):
+    """The same in Coq's, with the numbers of Gappa's library."""
+
+    rounding = "(rnd %s)"
+
+    @staticmethod
+    def number(x):
+        mantissa, _, exponent = dyadic(x).partition("b")
+        if exponent:
+            return "(Float2 (%s) (%s))" % (mantissa, exponent)
+        return "(Float1 (%s))" % mantissa
 
 
 class Unknown:
@@ -116,13 +131,20 @@ def declared(text, free, until, kind):
     """Executes double_sincos until it declares that variable, with these for the free variables
     whatever the text makes of them, and kind(name, value) for what is declared after the last."""
     values = {"x": Unknown(), **free}
+    statements = function(text, "double_sincos").statements
+    order = [getattr(node, "name", None) for node in statements]
+    begin = max((order.index(name) for name in free if name in order), default=-1)
 
     def noted(name, value):
-        values[name] = free[name] if name in free else kind(name, value)
-        return values[name]
+        if name in free:
+            value = free[name]
+        elif order.index(name) > begin:
+            value = kind(name, value)
+        values[name] = value
+        return value
 
     names = dict(values)
-    for node in function(text, "double_sincos").statements:
+    for node in statements:
         run([node], names, noted)
         if until in values:
             return values
@@ -151,6 +173,25 @@ def lines(text, free, until, rounded=True):
     return "".join(found)
 
 
+def definitions(text):
+    """The same as functions in Coq: name_ rounded, name_exact without roundings."""
+    found = ["Require Import Reals.", "From Gappa Require Import Gappa_library.",
+             "Definition rnd := Generic_fmt.round radix2 (FLT.FLT_exp (-1074) 53) rndNE."]
+    for free, until, kinds in ((["x"], "n", (True,)), (["x", "n"], "r", (True, False)),
+                               (["r"], "cosine", (True, False))):
+        for rounded in kinds:
+            def kind(name, value):
+                if not isinstance(value, Text):
+                    return value
+                name = name + ("_" if rounded else "_exact")
+                found.append("Definition %s (%s : R) : R := %s%%R."
+                             % (name, " ".join(free), value.text))
+                return CoqText("(%s %s)" % (name, " ".join(free)), rounded)
+
+            declared(text, {name: CoqText(name, rounded) for name in free}, until, kind)
+    return "\n".join(found) + "\n"
+
+
 class Gappa:
     """Runs scripts, and leaves them in a directory; with_coq: and has Coq check the proofs."""
 
@@ -172,8 +213,15 @@ class Gappa:
             raise NotProved("%s: Gappa finds no bounds" % file)
         if self.with_coq:
             (self.directory / (name + ".v")).write_text(proof, "utf-8")
-            self._run("coqc", "-q", name + ".v")
+            self._run("coqc", "-q", "-w", "-all", name + ".v")
         return [found[key] for key in wanted]
+
+    def conclude(self, text):
+        """Has Coq make the theorem of Sine.v of all that: the text's operations, Gappa's proofs."""
+        (self.directory / "header.v").write_text(definitions(text), "utf-8")
+        (self.directory / THEOREM.name).write_text(THEOREM.read_text("utf-8"), "utf-8")
+        for name in ("header.v", THEOREM.name):
+            self._run("coqc", "-q", "-w", "-all", name)
 
     def _run(self, *command):
         began = time.monotonic()
@@ -345,6 +393,9 @@ r - rho -> (r - Mr) + n * delta;
     from_sine = distance_from_taylor(polynomials["sine"], 1, size)
     from_cosine = distance_from_taylor(polynomials["cosine"], 0, size)
 
+    if with_coq:
+        gappa.conclude(text)
+
     # 6. and 7.
     quadrants = [[("sine", 1), ("cosine", 1)], [("cosine", 1), ("sine", -1)],
                  [("sine", -1), ("cosine", -1)], [("cosine", -1), ("sine", 1)]]
@@ -414,9 +465,12 @@ def main(arguments):
         print("  %-7s %-48s %s" % row)
     print("Proved: sine within %.4f u, cosine within %.4f u = %s; promised: %s, %.2f times as much."
           % (u["sine"], u["cosine"], power(best), power(proof.error), proof.error / best))
-    print("Gappa took %.1f s%s; its scripts are in %s." % (
-        proof.seconds["gappa"], ", Coq, which checked its proofs, %.1f s" % proof.seconds["coqc"]
-        if with_coq else "", os.path.relpath(directory)))
+    if with_coq:
+        print("Coq has checked all of that: theorem double_sincos of %s."
+              % THEOREM.relative_to(ROOT))
+    print("Gappa took %.1f s%s; its scripts are in %s."
+          % (proof.seconds["gappa"], ", Coq %.1f s" % proof.seconds["coqc"] if with_coq else "",
+             os.path.relpath(directory)))
     return 0
 
 

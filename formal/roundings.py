@@ -239,8 +239,8 @@ class Model:
         return q
 
     def felt(self, _, wave, x, y):
-        """k.x of columns and bows: a symbol of its own.  The third of three waves has the sum, rounded
-        by u of itself; of any waves a slip is what roundings make of it."""
+        """k.x of columns and bows: a symbol of its own.  The third of three waves has the
+        sum, off by u of itself; of any waves a slip is what roundings make of it."""
         text = self.function("felt")(self.w, wave, x, y)
         if self.three and wave < 2:
             return text

@@ -82,6 +82,18 @@ def test_no_other_text_is_proved(tools, header, tmp_path, old, new, said):
     assert re.search(said, str(caught.value)) and "\n" not in str(caught.value)
 
 
+def test_coq_has_the_same_numbers(tools, header, root):
+    """Sine.v puts the text's operations together by their constants."""
+    definitions = tools[0].definitions(header)
+    theorem = (root / "formal" / "sine" / "Sine.v").read_text("utf-8")
+    for number in re.findall(r"Float[12] \(?(-?\d{8,})\)?", theorem):
+        K = 4175892906503776358826876457663557747               # the sum of three
+        assert "(%s)" % number in definitions or int(number) == K
+    assert re.findall(r"^Definition (\w+)", definitions, re.MULTILINE) == [
+        "rnd", "shifted_", "n_", "r_", "r_exact", "z_", "p_", "q_", "sine_", "cosine_",
+        "z_exact", "p_exact", "q_exact", "sine_exact", "cosine_exact"]
+
+
 def executed(ctext, header, x):
     """What the text of double_sincos makes of a double, executed with Python's."""
     found = {}
