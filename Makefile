@@ -21,7 +21,7 @@ define install
 	touch $@
 endef
 
-.PHONY: prove test torture mutate accuracy sanitize memcheck warnings arm bench charts man clean \
+.PHONY: prove test torture mutate accuracy gappa sanitize memcheck warnings arm bench charts man clean \
     formal formal-quick verified-check
 
 prove: $(VENV)/installed
@@ -43,6 +43,13 @@ mutate: $(VENV)/with-test
 # The table of proven bounds and worst errors, measured anew.
 accuracy: $(VENV)/with-test
 	$(VENV)/bin/python tests/accuracy.py > docs/accuracy.md
+
+# What sine.h promises, proved from its text by Gappa, whose proofs Coq checks, and other margins for
+# roundings, from theirs; a minute.
+gappa: $(VENV)/installed
+	sh .ci/packages $(PYTHON) gappa coq libcoq-gappa
+	$(VENV)/bin/python formal/gappa.py --coq
+	$(VENV)/bin/python formal/roundings.py
 
 # A proof, the kernels and a failing proof under valgrind's memcheck.
 memcheck: $(VENV)/installed

@@ -1,0 +1,541 @@
+"""Bounds the roundings of csrc/loewner from its own text, whatever the numbers are.
+
+    python formal/roundings.py
+
+The functions that see a point and make the next one are executed with pairs of polynomials for
+numbers: a bound of what a number is in exact arithmetic, and a bound of how far the double is off
+that.  Their symbols are the absolute values of what goes in, their coefficients exact and not
+negative.  A sum, a difference, a product of doubles is the exact one times 1 + epsilon,
+|epsilon| <= u.  So the last polynomial bounds the error for all data at once, with its terms of
+higher order in u; and where each of its coefficients is at most that of the margin, executed from
+its text in the same way, the margin is proved.  What is printed is the least quotient of the two.
+
+This is about what doubles lose of what the text says, not about whether it says the right thing:
+signs, for one, are not looked at.  Left out, as docs/proof.md covers it by hand, is what products
+lose that are below 2^-1022.
+"""
+
+import sys
+from fractions import Fraction
+from pathlib import Path
+from types import SimpleNamespace
+
+from pycparser import c_ast
+
+sys.path.insert(0, str(Path(__file__).resolve().parent))
+from ctext import CTextError, constant, defined, execute, function, run  # noqa: E402
+from gappa import half_pi                                       # noqa: E402
+from polynomial import Polynomial, symbol                       # noqa: E402
+
+ROOT = Path(__file__).resolve().parent.parent
+UNIT = Fraction(1, 2 ** 53)
+COLUMNS, MOST_WAVES = 5, 16
+ZERO = Polynomial()
+
+
+class Rounded:
+    """size >= |x|, off >= |double - x| for a number x of exact arithmetic."""
+
+    known = {}                  # bounds of sums that are better than those of what is added
+
+    def __init__(self, size, off=ZERO):
+        self.size, self.off = Polynomial.of(size), Polynomial.of(off)
+
+    def _after(self, size, off):
+        """Of an operation whose operands are off so much, and which is rounded."""
+        return Rounded(size, off + (size + off) * UNIT)
+
+    def __add__(self, other):
+        other = rounded(other)
+        for x, y in ((self, other), (other, self)):
+            if not x.size.terms and not x.off.terms:
+                return y                        # nothing is added
+        size = self.known.get(_sum(self, other), self.size + other.size)
+        return self._after(size, self.off + other.off)
+
+    def __mul__(self, other):
+        other = rounded(other)
+        size = self.size * other.size
+        off = self.off * other.size + self.size * other.off + self.off * other.off
+        if other.is_power() or self.is_power():
+            return Rounded(size, off)
+        return self._after(size, off)
+
+    def __neg__(self):
+        return self
+
+    __sub__ = __radd__ = __rsub__ = __add__
+    __rmul__ = __mul__
+
+    def is_power(self):
+        """Is it a power of two, or zero?  Products with it are exact."""
+        if self.off.terms or set(self.size.terms) - {()}:
+            return False
+        x = self.size.terms.get((), Fraction(0))
+        return x == 0 or x.numerator & (x.numerator - 1) == 0 == x.denominator & (x.denominator - 1)
+
+    def least(self):
+        """The double is at least that, if the size is the number itself and no bound."""
+        return self.size - self.off
+
+
+def _sum(x, y):
+    """A sum's name in Rounded.known."""
+    return frozenset([*x.size.terms.items()]), frozenset([*y.size.terms.items()])
+
+
+def rounded(x):
+    return x if isinstance(x, Rounded) else Rounded(abs(Fraction(x)))
+
+
+def exact(name):
+    """A double that is given."""
+    return Rounded(symbol(name))
+
+
+def total(numbers):
+    return Rounded(sum((x.size for x in numbers), ZERO))
+
+
+def substituted(polynomial, values):
+    """With polynomials for symbols."""
+    result = ZERO
+    for key, x in polynomial.terms.items():
+        product = Polynomial.of(x)
+        for name in key:
+            product = product * values.get(name, symbol(name))
+        result = result + product
+    return result
+
+
+def squared(polynomial):
+    """With k^2 for integers |k| that stand alone in a term: it is not less."""
+    result = ZERO
+    for key, x in polynomial.terms.items():
+        alone = tuple(name for name in key if name[0] == "k" and key.count(name) == 1)
+        result = result + Polynomial({tuple(sorted(key + alone)): x})
+    return result
+
+
+def evened(polynomial):
+    """With (n0^2 + n1^2)/2 for n0 n1."""
+    result = ZERO
+    for key, x in polynomial.terms.items():
+        pair = [name for name in key if name in ("n0", "n1")]
+        others = tuple(name for name in key if name not in pair)
+        for name in pair:
+            result = result + Polynomial({tuple(sorted(others + (name, name))): x / 2})
+        if not pair:
+            result = result + Polynomial({key: x})
+    return result
+
+
+def second_order(polynomial):
+    """With 2^30 for D beside a slip.  A slip is itself of order u, and angles that are off by more
+    than 2^30 u are of no use to anybody."""
+    result = ZERO
+    for key, x in polynomial.terms.items():
+        if "D" in key and any(name.startswith("slip") for name in key):
+            key, x = tuple(name for name in key if name != "D"), x * 2 ** (30 * key.count("D"))
+        result = result + Polynomial({key: x})
+    return result
+
+
+def of_doubles(off, name, rest=ZERO):
+    """A bound by |x| of exact arithmetic, name, less rest, as one by the double that it is off: if
+    off = a + c name and name <= |double| + rest + off, it is at most (|double| + rest + a)/(1 - c).
+    """
+    alone = off.terms.get((name,), Fraction(0))
+    others = Polynomial((key, x) for key, x in off.terms.items() if key != (name,))
+    if any(name in key for key in others.terms):
+        raise NotCovered("%s is a factor of other errors" % name)
+    return substituted(off, {name: (symbol(name) + rest + others) * (1 / (1 - alone))})
+
+
+class NotCovered(Exception):
+    """One line that says what a margin does not cover."""
+
+
+def left(what, needed, there):
+    """The least quotient of the coefficients of what is there and what is needed."""
+    worst = None
+    for key, x in needed.terms.items():
+        y = there.terms.get(key, Fraction(0))
+        if y < x:
+            raise NotCovered("%s: of %s are needed %.3f u, there are %.3f u"
+                             % (what, " ".join(key) or "1", x / UNIT, y / UNIT))
+        worst = y / x if worst is None else min(worst, y / x)
+    return worst
+
+
+# ---- the two kinds of waves
+
+class Model:
+    """A point q of an orbit, the one before, and the waves: `three` the thesis's, or so many of
+    general.h; what each function of the text sees."""
+
+    def __init__(self, read, waves=None, columns=COLUMNS):
+        Rounded.known.clear()
+        self.columns, self.pairs = columns, columns * (columns + 1) // 2
+        self.three = waves is None
+        self.texts = {name: read(name) for name in
+                      ("numbers/sine.h", "loewner/prism.h", "loewner/orbit.c", "loewner/bound.c",
+                       "loewner/problem.c", "loewner/three.h", "loewner/general.h")}
+        self.header = self.texts["loewner/three.h" if self.three else "loewner/general.h"]
+        self.first, self.slots = (0, 3) if self.three else (2, 2 + waves)
+        present = range(self.first, self.slots)
+        self.part = [[exact("g%d_%d" % (i, k)) if k > 1 and i in present else 0.0
+                      for k in range(columns)] for i in range(self.slots)]
+        h = [total(map(rounded, row)) for row in self.part]
+        p = [exact("p%d" % i) if i in present else 0.0 for i in range(self.slots)]
+        k = [[exact("k%d_%d" % (i, j)) for j in range(2)] for i in range(self.slots)]
+        root = SimpleNamespace(
+            present=[i in present for i in range(self.slots)], waves=self.slots, k=k,
+            moves=[[True] * columns] * self.slots, phase=[self.phase(i) for i in range(self.slots)],
+            square_k=[Rounded((x.size + y.size) * (x.size + y.size)) for x, y in k])
+        self.w = SimpleNamespace(
+            root=root, p=p, h=h, part=self.part, loose=[0.0] * self.slots,
+            size=[Rounded(rounded(x).size + y.size) for x, y in zip(p, h)])
+        self.names = {
+            "WAVES": self.slots, "FIRST": self.first, "COLUMNS": columns, "PAIRS": self.pairs,
+            "mag": lambda x: x, "fabs": lambda x: x, "every": lambda x: x, "memset": clear,
+            "double_sincos": self.double_sincos, "larger": self.larger, "felt": self.felt}
+        for name in ("gathered", "gathered_sizes", "waves_of", "carried", "carry"):
+            self.names[name] = self.function(name)
+        for name in ("moves", "add_moves"):
+            self.names[name] = function(self.texts["loewner/prism.h"], name).bound(self.names)
+        self.sine_error = Fraction(defined(self.texts["numbers/sine.h"], "SINE_ERROR"))
+        self.slipping = "LT"            # of these k.L, k.T are meant, not what doubles make of them
+        self.slip = Fraction(1)         # of its slip so many times what is off along a wave
+        if not self.three:
+            self.slip = self.measured_slips()
+        self.q, self.o, self.angles = self.point("L", "T", "x"), self.point("O", "U", "o"), {}
+        self.function("see")(self.w, self.q)
+
+    def function(self, name, names=None):
+        """One of three.h or general.h."""
+        return function(self.header, name).bound(self.names if names is None else names)
+
+    def phase(self, i):
+        """near() puts it 8 u off, and it may be 10^-40 off before."""
+        return Rounded(symbol("f%d" % i), symbol("f%d" % i) * (8 * UNIT) + Fraction(1, 10 ** 39))
+
+    def point(self, column, bow, x):
+        """A point as doubles have it.  Its reach is at least what its columns and bow add up to."""
+        q = SimpleNamespace(
+            x=[exact("%s%d" % (x, i)) for i in range(2)],
+            turns=[exact("turns%d" % i) for i in range(2)], missed=[None] * 2,
+            column=[[exact("%s%d_%d" % (column, i, k)) for k in range(self.columns)]
+                    for i in range(2)],
+            bow=[[exact("%s%d_%d" % (bow, i, k)) for k in range(self.pairs)] for i in range(2)],
+            sine=[None] * self.slots, cosine=[None] * self.slots, beta=[None] * 3)
+        along = [[[exact("%s%d_%d" % (name, i, k)) for k in range(n)] for i in range(self.slots)]
+                 for name, n in ((column, self.columns), (bow, self.pairs))]
+        q.straight, q.bowed = [[*map(total, rows)] for rows in along]
+        q.reach = [Rounded(a.size + b.size) for a, b in zip(q.straight, q.bowed)]
+        q.slip = [Rounded(total(exact("slip_%s%d_%d" % (name, i, k)) for name, n in
+                                ((column, self.columns), (bow, self.pairs)) for k in range(n)).size
+                          * self.slip) for i in range(self.slots)]
+        return q
+
+    def felt(self, _, wave, x, y):
+        """k.x of columns and bows: a symbol of its own.  The third of three waves has the
+        sum, off by u of itself; of any waves a slip is what roundings make of it."""
+        text = self.function("felt")(self.w, wave, x, y)
+        if self.three and wave < 2:
+            return text
+        first = next(iter(x.size.terms))[0]
+        if "_" not in first:
+            return text                         # of rests
+        name = "%s%d_%s" % (first[0], wave, first.split("_")[1])
+        along = symbol(name)
+        if name[0] not in self.slipping:
+            return Rounded(along)
+        if self.three:
+            if left("felt", text.off, (x.size + y.size) * UNIT) != 1:
+                raise NotCovered("a sum of two is rounded once")
+            return Rounded(along, along * UNIT)
+        return Rounded(along + symbol("slip_" + name), symbol("slip_" + name))
+
+    def measured_slips(self):
+        """How many times what k.L and k.T lose measure_slips has."""
+        felt, q = self.function("felt"), self.point("L", "T", "x")
+        self.function("measure_slips")(self.w, q, self.columns)
+        return min(left("slip", sum((felt(self.w, j, x, y).off for rows in (q.column, q.bow)
+                                     for x, y in zip(*rows)), ZERO), q.slip[j].least())
+                   for j in range(self.first, self.slots))
+
+    def double_sincos(self, sine, cosine, angle):
+        """Of three waves an angle is as far off as it is; of any waves D u at most, with
+        far = D + N + 1: see larger."""
+        off = angle.off
+        if not self.three:
+            wave = len(self.angles) + 2
+            self.angles[wave] = off
+            off = symbol("D") * (UNIT * (1 + Fraction(1, 2 ** 30)))
+        for place in (sine, cosine):
+            place.put(Rounded(1, off + self.sine_error))
+
+    def larger(self, _, value):
+        """D is the larger; what it is compared with must be what the last angle is off."""
+        wave = max(self.angles)
+        slack = Polynomial.of(Fraction(1, 10 ** 38))    # of the phase; far has one to spare
+        left("far", self.angles[wave], value.least() * (UNIT * (1 + Fraction(1, 2 ** 30))) + slack)
+        return exact("D")
+
+
+def clear(rows, value, _):
+    for i, row in enumerate(rows):
+        if isinstance(row, list):
+            clear(row, value, None)
+        else:
+            rows[i] = float(value)
+
+
+# ---- the margins
+
+def fuzz(model):
+    """beta is off by less than fuzz: the least quotient of what is there and what is needed."""
+    return min(left("fuzz", x.off, model.q.fuzz.least()) for x in model.q.beta)
+
+
+class Turn(Rounded):
+    """2 pi, and the double below it.  What is divided by it says how many turns are taken off; any
+    integer will do."""
+
+    def __rtruediv__(self, _):
+        return Rounded(1)
+
+
+class Turns(list):
+    """The turns that a step takes off, whatever the text makes of them."""
+
+    def __setitem__(self, i, _):
+        super().__setitem__(i, exact("following%d" % i))
+
+
+def missed(model):
+    """The step of the centre misses what it should be by less than `missed`, modulo 2 pi.
+
+    Two sums are known to be less than their terms: before = o - turns 2 pi, next = x - turns' 2 pi.
+    As turns' is next to x/(2 pi), or zero, |next| <= 1.01 |x|.  So |turns| 2 pi <= |o| + |before|
+    and |turns'| 2 pi <= 2.01 |x|."""
+    text = model.texts["loewner/orbit.c"]
+    low, high = (4 * end for end in half_pi())
+    two_pi = Turn(high, high - Fraction(constant(text, "TWO_PI")))
+    q, o, following = model.q, model.o, SimpleNamespace(x=[None] * 2, turns=Turns([None] * 2))
+    for i in range(2):
+        Rounded.known[_sum(o.x[i], q.turns[i] * two_pi)] = symbol("before")
+        Rounded.known[_sum(exact("x"), exact("following%d" % i) * two_pi)] = symbol("next")
+
+    def noted(name, value):
+        """before and x are doubles with names; what they are off stays."""
+        return Rounded(symbol(name), value.off) if name in ("before", "x") else value
+
+    statements = function(text, "step").statements
+    loops = [node for node in statements if isinstance(node, c_ast.For)][:2]
+    begin = [node for node in statements[:statements.index(loops[0])] if node.name == "SHIFT"]
+    room = {"g": [0.0] * model.slots, "bent": [0.0] * model.slots, "TWO_PI": two_pi,
+            "bend": lambda *_: 0.0}
+    run(begin + loops, {**model.names, **room, "w": model.w, "q": q, "o": o, "next": following},
+        noted)
+    worst = []
+    for i in range(2):
+        x = symbol("x") * Fraction(201, 100)
+        values = {"turns%d" % i: (o.x[i].size + symbol("before")) * (1 / low),
+                  "following%d" % i: x * (1 / low), "next": symbol("x") * Fraction(101, 100)}
+        off = squared(substituted(following.x[i].off, values))
+        worst.append(left("missed", off, q.missed[i].least()))
+    return min(worst)
+
+
+def carried(model):
+    """What columns and bow of the next point lose is less than what the step adds to force for it.
+
+    bend counts from what doubles make of k.L, so a bow's squares have no slips; of three waves c is
+    rounded by u there, too.  Of general waves a sum is known: 2L - o, which is the next column less
+    what the waves add."""
+    w, q, o = model.w, model.q, model.o
+    for i in range(2):
+        for rows, before in ((q.column, o.column), (q.bow, o.bow)):
+            for x, y in zip(rows[i], before[i]):
+                if not model.three:
+                    less = symbol("less %s" % next(iter(x.size.terms))[0])
+                    Rounded.known[_sum(2.0 * x, y)] = less
+    column, bow = (SimpleNamespace(column=[[None] * model.columns for _ in range(2)],
+                                   bow=[[None] * model.pairs for _ in range(2)]) for _ in range(2))
+    model.names["carry"](w, column, q, o, model.columns)
+    model.slipping = "LT" if model.three else "T"
+    model.names["carry"](w, bow, q, o, model.columns)
+    bend = function(model.texts["loewner/orbit.c"], "bend").bound(model.names)
+    alone = SimpleNamespace(p=[0.0] * model.slots, h=[0.0] * model.slots, loose=w.loose,
+                            size=w.size)        # for bend's last term alone
+    q.off = [Rounded(0)] * model.slots
+    bent = [bend(alone, q, i) if i >= model.first else 0.0 for i in range(model.slots)]
+    worst = {"columns": [], "bow": []}
+    for i in range(2):
+        lost, made = [], []
+        for row in (column.column[i], bow.bow[i]):
+            lost.append(ZERO)
+            for x in row:
+                off = x.off
+                for key in [key for key in x.size.terms if key[0].startswith("less ")]:
+                    # what is less is at most what is made, and what the waves add
+                    off = of_doubles(off, *key, x.size - symbol(*key))
+                    made.append(exact(*key))
+                lost[-1] = lost[-1] + second_order(off)
+        there = rounded(model.names["carried"](w, q, i)).least()
+        there = there + (total(made) + o.reach[i]).least() * (8 * UNIT)
+        bow_too = there + model.names["gathered_sizes"](w, i, bent).least()
+        left("columns and bow", lost[0] + lost[1], bow_too)
+        worst["columns"].append(left("columns", lost[0], there))
+        worst["bow"].append(left("bow", lost[1], bow_too))
+    return {name: min(row) for name, row in worst.items()}
+
+
+def bent(model):
+    """bend counts sines and cosines as more than they may be."""
+    off = execute(function(model.texts["loewner/orbit.c"], "bend").initial("off"), {"q": model.q})
+    return min(left("sines in bent", x.off, off.least())
+               for x in (model.q.sine + model.q.cosine)[model.first:] if x is not None)
+
+
+def multipliers(model):
+    """What (2) of bound.c leaves is less than `left`.  Known is mu[j-1], which (2) makes."""
+    text, q, w = model.texts["loewner/bound.c"], model.q, model.w
+    q.n, q.mu = [[exact("%s%d" % (name, i)) for i in range(2)] for name in ("n", "mu")]
+    Rounded.known[_sum(*q.n)] = symbol("n2")
+    names = {**model.names, "square": lambda x: x * x, "w": w, "q": q, "tiny": 0.0,
+             "before": exact("before"), "after": exact("after")}
+    names["gradient"] = model.function("gradient", names)
+    omega = [x * x for x in (model.function("felt")(w, i, *q.n) for i in range(3))]
+    names["weights"] = model.function("weights_of")(w, omega, q.mu)
+    there = execute(function(text, "sum_up").initial("left"), names).least()
+    worst = []
+    for i in range(2):
+        steep = function(text, "steepness").bound(names)(w, q, i)
+        Rounded.known[_sum(steep, names["after"])] = symbol("before")
+        off = of_doubles((steep - names["after"]).off, "before")
+        worst.append(left("left", off, there))
+    return min(worst)
+
+
+class Kept(list):
+    """Keeps what is put into it, and has doubles with names instead."""
+
+    def __init__(self, name, count):
+        super().__init__(exact("%s%d" % (name, i)) for i in range(count))
+        self.made = {}
+
+    def __setitem__(self, i, value):
+        self.made[i] = value
+
+
+def widen(model):
+    """All that orbit.c multiplies by WIDEN is at least what it stands for."""
+    text, names = model.texts["loewner/orbit.c"], dict(model.names)
+    factor = Fraction(constant(text, "WIDEN"))
+    names.update(WIDEN=exact("WIDEN"), measure_slips=lambda *_: None,
+                 larger=lambda *_: exact("widest"), bend=function(text, "bend").bound(names))
+    names["rest_along"] = model.function("rest_along")
+    wave = {name: Kept(name, model.slots) for name in
+            ("straight", "bowed", "off", "reach", "slip", "p", "h", "loose", "size", "weight",
+             "cosine", "sine")}
+    pair = {name: Kept(name, 2) for name in ("rest", "force", "missed")}
+    q = SimpleNamespace(column=model.q.column, bow=model.q.bow, **wave, **pair, far=exact("far"),
+                        fuzz=exact("fuzz"), d=Kept("d", 3), widest=None)
+    w = SimpleNamespace(root=model.w.root, **wave)
+    o = SimpleNamespace(reach=Kept("before", model.slots), force=Kept("push", 2),
+                        rest=Kept("last", 2))
+    slips, model.slipping = model.slipping, "LT" if model.three else ""     # see carried
+    function(text, "measure").bound(names)(w, q, model.columns)
+    model.slipping = slips
+    function(text, "extend").bound(names)(w, q)
+    loops = [node for node in function(text, "step").statements if isinstance(node, c_ast.For)]
+    scope = {**names, "w": w, "q": q, "o": o, "is_first": 0, "inverse": Kept("inverse", 3),
+             "rounded": exact("rounded"), "rest_sum": exact("rest_sum")}
+    scope["bent"] = [names["bend"](w, q, i) for i in range(model.slots)]
+    scope["next"] = SimpleNamespace(rest=Kept("rest", 2), straight=q.straight, bowed=q.bowed)
+    run([loops[2], loops[4]], scope)
+    made = [kept.made for kept in
+            (q.straight, q.bowed, q.off, q.reach, q.force, scope["next"].rest)]
+    if not all(made):
+        raise NotCovered("widen: orbit.c no longer makes one of those sums where it did")
+    worst = []
+    for x in (x for kept in made for x in kept.values() if x.size.terms):
+        if any(key.count("WIDEN") != 1 for key in x.size.terms):
+            raise NotCovered("widen: a sum is not multiplied by WIDEN, or twice")
+        whole = substituted(x.size, {"WIDEN": Polynomial.of(1)})
+        off = substituted(x.off, {"WIDEN": Polynomial.of(factor)})
+        worst.append(left("widen", off, whole * (factor - 1)))
+    return min(worst)
+
+
+def at_once(model):
+    """The roundings of loewner_at_once are less than the margin it asks for, for all parameters and
+    at their end.  near() puts amplitudes 8 u off, and straighten rounds them by two more; and
+    |k.n|^2 <= (|k0| + |k1|)^2 |n|^2, also of sizes."""
+    text = model.texts["loewner/problem.c"]
+
+    def off_by(x, units):
+        return Rounded(x.size, x.size * (units * UNIT)) if isinstance(x, Rounded) else x
+
+    root, w = model.w.root, model.w
+    given = SimpleNamespace(
+        waves=model.slots, k=root.k, phase=root.phase, square_k=root.square_k, n_parameters=3,
+        seen=[[0.0] * 2] * 2, loose=w.loose, amplitude=[off_by(x, 10) for x in w.p],
+        part=[[off_by(exact("g%d_%d" % (i, m)), 10) if i >= model.first else 0.0 for m in range(3)]
+              for i in range(model.slots)])
+    worst = []
+    for at_end in (0, 1):
+        model.angles = {}
+
+        def noted(name, value):
+            return [exact("x%d" % i) for i in range(2)] if name == "x" else value
+
+        def eigenvector(_, n):
+            n[:] = exact("n0"), exact("n1")
+
+        names = {**model.names, "square": lambda x: x * x, "least_eigenvector": eigenvector,
+                 "SLOTS": model.slots, "w": given, "at": [0.0] * 2, "at_end": at_end}
+        *rest, last = function(text, "loewner_at_once").statements
+        run(rest, names, noted)
+        length = symbol("n0") * symbol("n0") + symbol("n1") * symbol("n1")
+        needed = names["sum"].off + length * (UNIT * 4 / 3)     # 4/3 is a double, too
+        try:
+            margin = last.expr.right.left.right                 # mass >= 1 && sum + margin < 0
+        except AttributeError:
+            raise CTextError("loewner_at_once ends with another comparison") from None
+        worst.append(left("at once", evened(needed), execute(margin, names).least()))
+    return min(worst)
+
+
+def proved(read, columns=COLUMNS):
+    """The margins of section 8 of docs/proof.md that the text of csrc proves, read(file) of it: how
+    many times what is needed there is, of three waves and of one, a few, as many as may be."""
+    model = Model(read, columns=columns)
+    result = {"fuzz": fuzz(model), "missed": missed(model), **carried(model),
+              "sines in bent": bent(model), "left": multipliers(model), "widen": widen(model)}
+    for waves in (1, 3, MOST_WAVES):
+        model = Model(read, waves, columns if waves < MOST_WAVES else 2)
+        found = {"fuzz": fuzz(model), "missed": missed(model), **carried(model),
+                 "sines in bent": bent(model), "slip": model.slip, "widen": widen(model),
+                 "at once": at_once(model)}
+        for name, x in found.items():
+            name = name if name == "at once" else "general " + name
+            result[name] = min(x, result.get(name, x))
+    return result
+
+
+def main():
+    try:
+        for name, x in proved(lambda file: (ROOT / "csrc" / file).read_text("utf-8")).items():
+            print("%-22s %.2f times what is needed" % (name, x))
+    except (NotCovered, CTextError) as error:
+        print("csrc/loewner: %s" % error, file=sys.stderr)
+        return 1
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
