@@ -198,8 +198,8 @@ Definition witness (h : manner) (l : F.type) (ahead back : list site) : option (
 
 (* ---- the bound *)
 
-(* Both lanes together:  D(x1) = l e + r,  D(x0) = o. *)
-Definition joint (l : form1 * form1) (r o : I.type * I.type) (a b : sum_of) :
+(* Both lanes together, less more:  D(x1) = l e + r,  D(x0) = o. *)
+Definition joint (l : form1 * form1) (r o : I.type * I.type) (a b : sum_of) (more : I.type) :
     I.type * form1 * form2 * form3 :=
   let a0 := minus_affine prec (fst (on_D a)) (fst (mult b)) in
   let a1 := minus_affine prec (snd (on_D a)) (snd (mult b)) in
@@ -207,8 +207,8 @@ Definition joint (l : form1 * form1) (r o : I.type * I.type) (a b : sum_of) :
   let b1 := minus_affine prec (snd (on_D b)) (snd (mult a)) in
   let lost := add (add (mul (range_affine prec K a0) (fst r)) (mul (range_affine prec K a1) (snd r)))
                   (add (mul (range_affine prec K b0) (fst o)) (mul (range_affine prec K b1) (snd o))) in
-  (sub (add (add (value a) (value b)) lost)
-       (mul (itwo K) (inner prec (vector a) (vector b))),
+  (sub (sub (add (add (value a) (value b)) lost)
+            (mul (itwo K) (inner prec (vector a) (vector b)))) more,
    add1 (add1 (sum1 a) (sum1 b)) (add1 (scale1 (fst a0) (fst l)) (scale1 (fst a1) (snd l))),
    add2 prec (add2 prec (sum2 a) (sum2 b))
              (add2 prec (product prec (snd a0) (fst l)) (product prec (snd a1) (snd l))),
@@ -261,16 +261,17 @@ Definition prism_bound (h : manner) (rd : ready) (c : cell) : option (I.type * l
     let sb := follow prec K sincos (longest h) (limit h) ws
       (State (x, y) (X0 rd) (l0, l1) none (r0, r1) (rest_0 rd) (rest_0 rd) zero3 zero3) in
     match witness h (center (end_ rd)) sa sb with
-    | Some ((_ :: _) as na, (_ :: _) as nb) =>
+    | Some (na, (n0 :: _) as nb) =>
       if (Nat.leb (length na) (length sa) && Nat.leb (length nb) (length sb))%bool then
         let p := joint (l0, l1) (r0, r1) (rest_0 rd)
                    (backward prec K (end_ rd) sa (map exact2 na))
-                   (backward prec K (end_ rd) sb (map exact2 nb)) in
+                   (backward prec K (end_ rd) sb (map exact2 nb))
+                   (match na with [] => mul (end_ rd) (square_sum prec (exact2 n0)) | _ => I.zero end) in
         let i := top (length c) p in
         let '(v, p1, p2, p3) := p in
         Some (i, if negative i then [] else blame (length ts) sa sb v p1 p2 p3)
       else None
-    | _ => Some (I.nai, blame (length ts) sa sb (unit K) [] [] [])
+    | _ => Some (I.nai, blame (length ts) sa sb (unit K) (add1 l0 l1) [] [])
     end
   | _ => None
   end.
@@ -420,11 +421,11 @@ Definition sums e (t : sum_of) (n0 D Do : vec) (total : R) : Prop :=
 Lemma joint_ok e l r o a b lv rv ov na nb va vb : cube e -> hold_vec e l lv -> cont_vec r rv ->
   cont_vec o ov -> sums e a na (plus lv rv) (plus (0, 0) ov) va ->
   sums e b nb (plus (0, 0) ov) (plus lv rv) vb ->
-  cont (top (length e) (joint l r o a b)) (va + vb - 2 * dot na nb).
+  forall m x, cont m x -> cont (top (length e) (joint l r o a b m)) (va + vb - 2 * dot na nb - x).
 Proof.
   intros C (Hl0 & Hl1) (Hr0 & Hr1) (Ho0 & Ho1)
     (v0 & v1 & v2 & v3 & H & mu & A0 & A1 & A2 & A3 & (AH0 & AH1) & (AM0 & AM1) & AV & EA)
-    (w0 & w1 & w2 & w3 & H' & mu' & B0 & B1 & B2 & B3 & (BH0 & BH1) & (BM0 & BM1) & BV & EB).
+    (w0 & w1 & w2 & w3 & H' & mu' & B0 & B1 & B2 & B3 & (BH0 & BH1) & (BM0 & BM1) & BV & EB) m x Hm.
   pose proof (hold_minus_affine prec e _ _ _ _ AH0 BM0) as G0.
   pose proof (hold_minus_affine prec e _ _ _ _ AH1 BM1) as G1.
   pose proof (hold_minus_affine prec e _ _ _ _ BH0 AM0) as G2.
@@ -439,8 +440,8 @@ Proof.
   unfold joint, top. cbv beta iota zeta.
   match goal with |- cont (summit _ _ _ _ ?c ?l1 ?l2 ?l3) _ =>
     assert (Z0 : cont c (v0 + w0 + ((fst H - fst mu') * fst rv + (snd H - snd mu') * snd rv
-      + ((fst H' - fst mu) * fst ov + (snd H' - snd mu) * snd ov)) - 2 * dot na nb))
-      by (apply cont_sub; [apply cont_add; [now apply cont_add |] | exact HV];
+      + ((fst H' - fst mu) * fst ov + (snd H' - snd mu) * snd ov)) - 2 * dot na nb - x))
+      by (apply cont_sub; [| exact Hm]; apply cont_sub; [apply cont_add; [now apply cont_add |] | exact HV];
           apply cont_add; apply cont_add; now apply cont_mul);
     assert (Z1 : hold1 e l1 (v1 + w1 + (c0 * fst lv + c1 * snd lv)))
       by (apply hold_add1; [now apply hold_add1 |]; apply hold_add1; now apply hold_scale1);
@@ -448,9 +449,9 @@ Proof.
       by (apply hold_add2; [now apply hold_add2 |]; apply hold_add2; now apply hold_product);
     assert (Z3 : hold3 e e l3 (v3 + w3)) by now apply hold_add3
   end.
-  replace (va + vb - 2 * dot na nb) with
+  replace (va + vb - 2 * dot na nb - x) with
     (v0 + w0 + ((fst H - fst mu') * fst rv + (snd H - snd mu') * snd rv
-      + ((fst H' - fst mu) * fst ov + (snd H' - snd mu) * snd ov)) - 2 * dot na nb
+      + ((fst H' - fst mu) * fst ov + (snd H' - snd mu) * snd ov)) - 2 * dot na nb - x
      + (v1 + w1 + (c0 * fst lv + c1 * snd lv)) + (v2 + w2 + (x0 * fst lv + x1 * snd lv)) + (v3 + w3)).
   - apply cont_summit; auto; apply K_ok.
   - rewrite EA, EB.
@@ -479,7 +480,7 @@ Record ready_ok (p : problem) (l : Q) (rd : ready) : Prop := {
   ok_side01 : cont (snd (fst (sides rd))) (PI * (Q2R (f01 p) * Q2R (wid1 p)));
   ok_side10 : cont (fst (snd (sides rd))) (PI * (Q2R (f10 p) * Q2R (wid0 p)));
   ok_side11 : cont (snd (snd (sides rd))) (PI * (Q2R (f11 p) * Q2R (wid1 p)));
-  ok_tail : cont (end_ rd) (Q2R l)
+  ok_end : cont (end_ rd) (Q2R l)
 }.
 
 Lemma prepare_ok p l : ready_ok p l (prepare p l).
@@ -538,26 +539,33 @@ Proof.
   apply (follow_ok prec K K_ok sincos sincos_ok (longest h) (limit h) e ws ms) in GB; auto.
   set (sa := follow _ _ _ _ _ ws (State (X0 rd) _ _ _ _ _ _ _ _)) in *.
   set (sb := follow _ _ _ _ _ ws (State (X, Y) _ _ _ _ _ _ _ _)) in *.
-  destruct (witness h _ sa sb) as [([| na0 na], [| nb0 nb]) |];
+  destruct (witness h _ sa sb) as [(na, [| nb0 nb]) |];
     try (apply some_pair in E; rewrite <- E in Neg; discriminate Neg).
   cbv beta iota in E.
-  destruct (Nat.leb_spec (length (na0 :: na)) (length sa)) as [La |]; [| easy].
+  destruct (Nat.leb_spec (length na) (length sa)) as [La |]; [| easy].
   destruct (Nat.leb_spec (length (nb0 :: nb)) (length sb)) as [Lb |]; [| easy].
   cbv beta iota delta [andb] in E.
-  destruct (joint _ _ _ _ _) as (((v, p1), p2), p3) eqn:J in E. cbv zeta in E.
+  destruct (joint _ _ _ _ _ _) as (((v, p1), p2), p3) eqn:J in E. cbv zeta in E.
   apply some_pair in E. rewrite <- J in E.
   assert (EJ := joint_ok e (l0, l1) (rr0, rr1) (rest_0 rd) _ _ (lv0, lv1) (rv0, rv1) ov _ _ _ _ C'
     (conj Hl0 Hl1) (conj Hrr0 Hrr1) HO
-    (backward_ok prec K K_ok e ms (end_ rd) (Q2R l) (map exact2 (na0 :: na)) C'
-      (ok_tail _ _ _ R) sa (map real_of (na0 :: na)) _ _ _ _ GA (exact2_all _)
+    (backward_ok prec K K_ok e ms (end_ rd) (Q2R l) (map exact2 na) C'
+      (ok_end _ _ _ R) sa (map real_of na) _ _ _ _ GA (exact2_all _)
       ltac:(now rewrite map_length))
     (backward_ok prec K K_ok e ms (end_ rd) (Q2R l) (map exact2 (nb0 :: nb)) C'
-      (ok_tail _ _ _ R) sb (map real_of (nb0 :: nb)) _ _ _ _ GB (exact2_all _)
+      (ok_end _ _ _ R) sb (map real_of (nb0 :: nb)) _ _ _ _ GB (exact2_all _)
       ltac:(now rewrite map_length))).
-  rewrite E in EJ. apply (negative_correct _ _ Neg) in EJ.
-  rewrite Ems in EJ.
-  apply (lanes_refuted (waves (terms p) t) x B (Q2R l) (map real_of (na0 :: na))
-    (map real_of (nb0 :: nb))); auto; try discriminate.
+  destruct na as [| na0 na].
+  - specialize (EJ _ _ (cont_mul prec _ _ _ _ (ok_end _ _ _ R)
+      (cont_square_sum prec _ _ (cont_exact2 nb0)))).
+    rewrite E in EJ. apply (negative_correct _ _ Neg) in EJ. rewrite Ems in EJ.
+    apply (back_refuted (waves (terms p) t) x B (Q2R l) (map real_of (nb0 :: nb))); auto;
+      try discriminate.
+    simpl part at 1 in EJ. simpl hd in EJ |- *. unfold dot at 1 in EJ. simpl in EJ |- *. lra.
+  - specialize (EJ _ _ cont_zero).
+    rewrite E in EJ. apply (negative_correct _ _ Neg) in EJ. rewrite Ems in EJ.
+    apply (lanes_refuted (waves (terms p) t) x B (Q2R l) (map real_of (na0 :: na))
+      (map real_of (nb0 :: nb))); auto; try discriminate. lra.
 Qed.
 End Precision.
 End Prism.

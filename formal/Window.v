@@ -89,6 +89,13 @@ End Window.
 Definition joined (ahead back : list vec) (j : Z) : vec :=
   if (1 <=? j)%Z then nth (Z.to_nat (j - 1)) ahead (0, 0) else nth (Z.to_nat (- j)) back (0, 0).
 
+Lemma last_nth (l : list vec) k : length l = S k -> last l (0, 0) = nth k l (0, 0).
+Proof.
+  revert k. induction l as [| v l IH]; intros k E; [easy |].
+  destruct l as [| w l]; [destruct k; [reflexivity | discriminate] |].
+  destruct k; [discriminate |]. apply IH. simpl in E |- *. lia.
+Qed.
+
 (* Criterion (1) of docs/proof.md, from the two lanes. *)
 Theorem lanes_refuted ws x B l ahead back : (forall y v, beta ws y v <= B * dot v v) ->
   0 < l < 1 -> B <= l + / l -> orbit ws x -> ahead <> [] -> back <> [] ->
@@ -106,10 +113,6 @@ Proof.
   set (a := length ahead) in *. set (b := length back) in *.
   assert (a <> 0%nat) by (unfold a; now destruct ahead).
   assert (b <> 0%nat) by (unfold b; destruct back; easy).
-  assert (Last : forall (l : list vec) k, length l = S k -> last l (0, 0) = nth k l (0, 0)).
-  { induction l0 as [| v l0 IH]; intros k E; [easy |]. destruct l0 as [| w l0];
-      [destruct k; [reflexivity | discriminate] |].
-    destruct k; [discriminate |]. apply IH. simpl in E |- *. lia. }
   assert (Split : forall s k m, variation ws x n s (k + m) =
     variation ws x n s k + variation ws x n (s + Z.of_nat k) m).
   { intros s k m. revert s. induction k as [| k IH]; intros s.
@@ -122,7 +125,7 @@ Proof.
     replace (1 - Z.of_nat b + Z.of_nat b)%Z with 1%Z by ring.
     replace (1 - Z.of_nat b + Z.of_nat (b + a - 1))%Z with (1 + Z.of_nat (a - 1))%Z by lia.
     replace (1 - Z.of_nat b)%Z with (0 - Z.of_nat (b - 1))%Z at 2 3 by lia.
-    rewrite A, Bk, <- (Last ahead (a - 1)%nat), <- (Last back (b - 1)%nat) by lia.
+    rewrite A, Bk, <- (last_nth ahead (a - 1)%nat), <- (last_nth back (b - 1)%nat) by lia.
     assert (N0 : n 0%Z = hd (0, 0) back).
     { pose proof (Bk O) as E. change (n 0%Z = nth 0 back (0, 0)) in E. rewrite E. now destruct back. }
     assert (N1 : n 1%Z = hd (0, 0) ahead).
@@ -131,4 +134,27 @@ Proof.
     rewrite PA, PB in Neg. destruct ahead, back; try easy.
     assert (Com : forall u v, dot u v = dot v u) by (intros; unfold dot; ring).
     simpl hd in Neg. rewrite (Com v0) in Neg. lra.
+Qed.
+
+(* The same if nothing is known of x1 and what follows: x0 ends in a tail, too. *)
+Theorem back_refuted ws x B l back : (forall y v, beta ws y v <= B * dot v v) ->
+  0 < l < 1 -> B <= l + / l -> orbit ws x -> back <> [] ->
+  part ws l back (x 1%Z) (x 0%Z) - l * dot (hd (0, 0) back) (hd (0, 0) back) < 0 -> refuted ws x.
+Proof.
+  intros HB Hl HBl HO Hb Neg. set (n := joined [] back).
+  assert (Bk : forall m, n (0 - Z.of_nat m)%Z = nth m back (0, 0)).
+  { intros m. unfold n, joined. destruct (Z.leb_spec 1 (0 - Z.of_nat m)); [lia |]. f_equal. lia. }
+  assert (PB := part_back ws x n HO l back 0 Bk). simpl (0 + 1)%Z in PB.
+  set (b := length back) in *. assert (b <> 0%nat) by (unfold b; now destruct back).
+  assert (N0 : n 0%Z = hd (0, 0) back).
+  { pose proof (Bk O) as E. change (n 0%Z = nth 0 back (0, 0)) in E. rewrite E. now destruct back. }
+  assert (N1 : n 1%Z = (0, 0)) by reflexivity.
+  rewrite N0, N1, dot_0 in PB.
+  apply (window_refuted ws x B l HB Hl HBl n (1 - Z.of_nat b)%Z (b - 1)).
+  - intros j Hj. unfold n, joined. destruct (Z.leb_spec 1 j); apply nth_overflow; simpl; lia.
+  - replace (S (b - 1)) with b by lia.
+    replace (1 - Z.of_nat b + Z.of_nat (b - 1))%Z with 0%Z by lia.
+    replace (1 - Z.of_nat b)%Z with (0 - Z.of_nat (b - 1))%Z at 2 3 by lia.
+    rewrite N0, Bk, <- (last_nth back (b - 1)%nat) by lia.
+    rewrite PB in Neg. destruct back; [easy |]. simpl hd in *. lra.
 Qed.

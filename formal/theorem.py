@@ -128,7 +128,7 @@ HEAD = """\
    %s. *)
 
 From Coq Require Import Reals ZArith QArith List String Bool.
-From Converse Require Import Map Tree Share Check %s.
+From Converse Require Import Map Tree Share Reduce Check %s.
 Import ListNotations.
 Open Scope Q_scope.
 
