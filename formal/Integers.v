@@ -1,9 +1,8 @@
-(* The checker with floating-point numbers that are made of integers: slow, but nothing is assumed but
-   the axioms of the real numbers. *)
+(* The checker with floating-point numbers that are made of Coq's own integers: slow, but nothing is
+   assumed but the axioms of the real numbers. *)
 
-From Bignums Require Import BigZ.
-From Interval.Float Require Import Specific_bigint Specific_ops.
+From Interval.Float Require Import Specific_stdz Specific_ops.
 From Converse Require Import Check.
 
-Module BigIntegers := SpecificFloat BigIntRadix2.
-Include Check BigIntegers.
+Module IntegerFloats := SpecificFloat StdZRadix2.
+Include Check IntegerFloats.
