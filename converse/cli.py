@@ -43,7 +43,7 @@ def whole(least):
     return convert
 
 
-def _seconds(text):
+def seconds(text):
     try:
         seconds = float(text)
     except ValueError:
@@ -99,7 +99,7 @@ def parser():
     p.add_argument("--mpi", action="store_true",
                    help="let MPI processes work: mpiexec -n N python -m mpi4py.futures "
                         "-m converse.cli --mpi ...")
-    p.add_argument("--time-limit", type=_seconds, default=math.inf, metavar="SECONDS",
+    p.add_argument("--time-limit", type=seconds, default=math.inf, metavar="SECONDS",
                    help="stop after about so long; what is left is undecided")
     p.add_argument("--version", action="version", version="converse " + __version__)
     return p

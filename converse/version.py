@@ -1,3 +1,3 @@
 """The program's version, in the one place where it stands."""
 
-__version__ = "1.4.0"
+__version__ = "1.5.0"

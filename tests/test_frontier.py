@@ -102,7 +102,7 @@ def test_what_is_outside_has_b_above_a():
 def test_a_map(made):
     found, path = made
     kinds = [leaf.kind for leaf in found.leaves()]
-    assert found.complete and found and {PROVED, AT_ONCE, OPEN} == set(kinds)
+    assert found.complete and {PROVED, AT_ONCE, OPEN} == set(kinds)
     for face in range(2):
         assert found.height(face) < F(7, 5)
         for place, radius in found.estimate[face].items():

@@ -7,7 +7,7 @@ import os
 import sys
 
 from .. import files
-from ..cli import Parser, _seconds, ended, say, whole, workers
+from ..cli import Parser, ended, say, seconds, whole, workers
 from ..files import ConverseError
 from ..problem import exact
 from ..version import __version__
@@ -51,7 +51,7 @@ def parser():
                    help="work on N cells at a time (default: one per core)")
     p.add_argument("--dask", metavar="ADDRESS", help="let the Dask cluster at ADDRESS work")
     p.add_argument("--mpi", action="store_true", help="let MPI processes work")
-    p.add_argument("--time-limit", type=_seconds, default=math.inf, metavar="SECONDS",
+    p.add_argument("--time-limit", type=seconds, default=math.inf, metavar="SECONDS",
                    help="stop after about so long; -r goes on")
     p.add_argument("--version", action="version", version="%s %s" % (COMMAND, __version__))
     return p

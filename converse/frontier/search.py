@@ -62,8 +62,9 @@ def _grow(problem, xstar, most, stop):
         leaves += grown.counts.proved + grown.counts.symmetric
         history.add(grown.history)
         cells, chunk = grown.cells, most // 8
-        if grown.counts.undecided or grown.counts.reasons[TOO_LONG] or cells and (
-                leaves >= most or leaves + history.expected(cells) / 2 > PESSIMISM * most):
+        if grown.counts.undecided or cells and (
+                grown.counts.reasons[TOO_LONG] or leaves >= most
+                or leaves + history.expected(cells) / 2 > PESSIMISM * most):
             return None, leaves, begun
     return "".join(pieces), leaves, begun
 
