@@ -11,8 +11,6 @@ From Converse Require Import Tree Share Check Doubles.
 
 (* The functor's formats of numbers name real numbers, which no computation asks for. *)
 Extract Constant ClassicalDedekindReals.sig_forall_dec => "(fun _ -> assert false)".
-Extract Constant ClassicalDedekindReals.sig_not_dec => "false".
-Extract Constant Rtrigo1.PI => "(Obj.magic 0)".
 
 Set Warnings "-extraction-opaque-accessed".
 Extraction "checker.ml" header_ok leaf_ok every_leaf

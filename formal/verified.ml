@@ -19,6 +19,7 @@ let max_bytes = 1 lsl 28                        (* of a proof file, uncompressed
 let max_line = 1 lsl 24                         (* of the header *)
 let max_cuts = 1000                             (* of a leaf *)
 let max_characters = 1000                       (* of a number *)
+let fuel = 16                                   (* how often a leaf may be halved *)
 
 exception Failed of int * string                (* nothing was verified; why *)
 exception Interrupted of int
@@ -317,7 +318,10 @@ let claim_of version lines =
       List.mapi (fun i line -> wave (i + 1) line) lines,
       (match List.map (small "an entry of the header's frame")
                (String.split_on_char ' ' (field "frame")) with
-       | [a; b; c; d] -> a, b, c, d
+       | [a; b; c; d] ->
+         (match Z.add (Z.mul a d) (Z.opp (Z.mul b c)) with
+          | Zpos XH | Zneg XH -> a, b, c, d
+          | _ -> reject "the header's frame has not determinant 1 or -1")
        | _ -> reject "the header's frame is not four integers"),
       one_of "alone" ["no", Both; "0", First; "1", Second],
       one_of "at once" (("upper end", Upper_end) :: once),
@@ -475,7 +479,7 @@ let hints_of claim =
   let size = Float.hypot (fst n) (snd n) in
   let both f (x, y) = billionths (1e9 *. f x), billionths (1e9 *. f y) in
   { bound = billionths b; tail = billionths (floor (1e9 *. l) -. 1.0);
-    place = both (fun y -> y /. pi) y, both (fun n -> n /. size) n; fuel = natural 16 }
+    place = both (fun y -> y /. pi) y, both (fun n -> n /. size) n; fuel = natural fuel }
 
 (* ---- the leaves, shared out *)
 

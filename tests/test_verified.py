@@ -22,6 +22,8 @@ pytestmark = pytest.mark.skipif(not COMMAND.exists(), reason="make verified-chec
 
 VERIFIED, REJECTED, UNUSABLE, PART, SPOT_CHECK, NOT_CONFIRMED = range(6)
 
+GENERAL = "standard.json", "two-harmonics.json", "froeschle-0.5.json", "crossed.json"
+
 
 def start(*arguments, **options):
     return subprocess.Popen([COMMAND, *map(str, arguments)], text=True, stdin=subprocess.DEVNULL,
@@ -39,7 +41,7 @@ def texts(tmp_path_factory):
     """Proof files with one parameter, with three, with none, of other potentials, and of a part."""
     inputs = {name: (read_input(ROOT / "inputs" / name), together) for name, together in (
         ("trig278.in", True), ("trig180.in", True), ("trig276.in", False),
-        ("standard.json", False), ("two-harmonics.json", False))}
+        ("standard-63-64.in", False), *((name, False) for name in GENERAL))}
     inputs["point"] = Problem(a="0.31", b="0.31", c="0.62"), False
     inputs["part"] = Problem.around(("0.3085", "0.3085", "0.617", "0.4", "1.3"),
                                     ("0.00125", "0.00125", "0.0025", "0.2", "0.1")), False
@@ -97,10 +99,19 @@ def agree(tmp_path, text):
     return mine
 
 
-@pytest.mark.parametrize("name", ["trig278.in", "trig180.in", "trig276.in", "standard.json",
-                                  "two-harmonics.json", "point", "part"])
+@pytest.mark.parametrize("name", ["trig278.in", "trig180.in", "trig276.in", "standard-63-64.in",
+                                  "point", "part"])
 def test_confirms(texts, tmp_path, name):
     assert agree(tmp_path, texts[name]) == (PART if name == "part" else VERIFIED)
+
+
+@pytest.mark.parametrize("name", GENERAL)
+def test_claims_of_other_potentials(texts, tmp_path, name):
+    path = tmp_path / "proof"
+    path.write_text(texts[name])
+    status, out, _ = run("--sample", 10, path)
+    said = check.verify(path, sample=10).text
+    assert status == SPOT_CHECK and out.partition("\nChecker")[0] == said.partition("\nChecker")[0]
 
 
 def in_version_2(text):
@@ -129,13 +140,18 @@ def test_header(texts, tmp_path, field, value):
     agree(tmp_path, with_field(texts["trig278.in"], field, value))
 
 
+def too_low(text):
+    """The proof of 0.0180 to 0.0280, said to be one from 0.0020 on."""
+    return sealed(text.replace("0.25793028 0.0560718", "0.16821544 0.14578664")
+                  .replace("0.51586056 0.1121436", "0.33643088 0.29157328"))
+
+
 def test_claims_that_are_too_large(texts, tmp_path):
     """Each field that makes the claim is looked at: at once below 10/3, ranges beyond the proof."""
     text = texts["trig180.in"]
-    for old, new in (("0.25793028 0.0560718", "0.20793028 0.1060718"),
-                     ("at once: upper end", "at once: yes")):
-        assert agree(tmp_path, sealed(text.replace(old, new))) in (REJECTED, NOT_CONFIRMED)
-    low = texts["standard.json"]
+    for forged in (too_low(text), with_field(text, "at once", "yes")):
+        assert agree(tmp_path, forged) in (REJECTED, NOT_CONFIRMED)
+    low = texts["standard-63-64.in"]
     assert agree(tmp_path, with_field(low, "at once", "yes")) in (REJECTED, NOT_CONFIRMED)
 
 
@@ -227,11 +243,9 @@ def test_jobs_and_spot_checks(texts, tmp_path):
 
 
 def test_a_false_leaf_is_found_by_whichever_process(texts, tmp_path):
-    """The claim is widened a little: some leaves fail, and none of them is overlooked."""
-    text = texts["trig180.in"].replace("0.25793028 0.0560718", "0.25693028 0.0570718")
-    text = text.replace("0.51586056 0.1121436", "0.51386056 0.1141436")
+    """Below what is true: some leaves fail, and none of them is overlooked."""
     path = tmp_path / "proof"
-    path.write_text(sealed(text))
+    path.write_text(too_low(texts["trig180.in"]))
     for jobs in (1, 2, 5):
         status, out, err = run("--jobs", jobs, path)
         assert status == NOT_CONFIRMED and not out and " is not excluded; " in err
