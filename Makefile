@@ -86,18 +86,20 @@ charts: $(VENV)/with-plot
 man: $(VENV)/with-man
 	$(VENV)/bin/python docs/manual.py
 
+FORMAL_PACKAGES = coq libcoq-interval ocaml ocaml-findlib libcoq-core-ocaml-dev
+
 # The theorems that Coq believes: each as it is stated, what it assumes, what it took; and two of them.
 formal: $(VENV)/installed
-	sh formal/packages
+	sh .ci/packages $(PYTHON) $(FORMAL_PACKAGES)
 	$(MAKE) -C formal -j2 theorems
 
 formal-quick: $(VENV)/installed
-	sh formal/packages
+	sh .ci/packages $(PYTHON) $(FORMAL_PACKAGES)
 	$(MAKE) -C formal -j2 quick
 
 # The checker that Coq has proved.
 verified-check:
-	sh formal/packages
+	sh .ci/packages $(PYTHON) $(FORMAL_PACKAGES)
 	$(MAKE) -C formal -j2 build/converse-verified
 	@echo 'The checker is formal/build/converse-verified.'
 

@@ -208,7 +208,7 @@ def main():
     parser.add_argument("file", help="a finished proof file")
     parser.add_argument("name", help="of the theorem")
     parser.add_argument("--integers", action="store_true",
-                        help="compute with big integers, not with the processor's numbers")
+                        help="compute with Coq's own integers, not with the processor's numbers")
     which = parser.add_mutually_exclusive_group()
     which.add_argument("--claim", action="store_true", help="only the definitions")
     which.add_argument("--part", type=int, nargs=2, metavar=("I", "K"),

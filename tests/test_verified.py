@@ -18,7 +18,9 @@ from conftest import ROOT
 from converse import Problem, check, prove, read_input
 
 COMMAND = ROOT / "formal" / "build" / "converse-verified"
-pytestmark = pytest.mark.skipif(not COMMAND.exists(), reason="make verified-check was not run")
+pytestmark = [
+    pytest.mark.skipif(not COMMAND.exists(), reason="make verified-check was not run"),
+    pytest.mark.skipif("asan" in os.environ.get("LD_PRELOAD", ""), reason="nothing of it is C")]
 
 VERIFIED, REJECTED, UNUSABLE, PART, SPOT_CHECK, NOT_CONFIRMED = range(6)
 
