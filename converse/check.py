@@ -917,7 +917,7 @@ def is_at_once(fixed, waves, t=None):
                   for x in places]
     x = min(places, key=level)
     n0, n1 = [round(u * 2 ** NU_BITS) for u in least(beta(x))[1]]
-    x = [math.floor(y * one) for y in x]
+    x = [math.floor(Fraction(y) * one) for y in x]
     total = 4 * (n0 * n0 + n1 * n1) << 2 * fixed.bits       # three times 2 |n|^2 - 2/3 |n|^2
     moved = [0] * max(map(len, amplitudes), default=0)      # by each parameter
     for wave, (p, *parts) in zip(known, amplitudes):
@@ -2668,7 +2668,9 @@ def claimed(claim):
             lines += ["k = (%d, %d), phase = %s pi, p = %s" % (
                 *wave.k, wave.phase, " ".join([decimal_text(wave.middle), *terms]))]
     if claim.at_once != "no":
-        upper = "the upper ends of these ranges" if boxed else "these amplitudes at t1 = 1"
+        upper = "these amplitudes at t1 = 1" if not boxed else (
+            "the upper ends of these ranges" if claim.parameters == 1 and rising
+            else "these parameters at t = 1")
         lines += ["and for any multiple s >= 1 of %s (B > 10/3)" % (
             upper if claim.at_once == "upper end" else "such parameters" if boxed
             else "such amplitudes")]

@@ -11,21 +11,23 @@ From Converse Require Criterion.
 Import ListNotations.
 Open Scope R_scope.
 
-(* What is claimed: if x1 may be anywhere, that there is no invariant graph, and perhaps none for
-   larger amplitudes; else that no minimizing orbit goes from x* to the region. *)
-Definition statement (c : claim) : Prop :=
-  if whole (of_region c) then
-    match of_once c with
-    | No => forall t, in_cube t -> no_invariant_graph (waves (of_patch c) t)
-    | Whole_patch =>
-      (forall t, in_cube t -> no_invariant_graph (waves (of_patch c) t)) /\
-      (forall t s, in_cube t -> 1 <= s -> no_invariant_graph (scaled s (waves (of_patch c) t)))
-    | Upper_end =>
-      (forall t, in_cube t -> no_invariant_graph (waves (of_patch c) t)) /\
-      (forall s, 1 <= s ->
-       no_invariant_graph (scaled s (waves (of_patch c) (repeat 1 (parameters (of_patch c))))))
-    end
+(* What is claimed: if x1 may be anywhere, that there is no invariant graph, else that no minimizing
+   orbit goes from x* to the region; and perhaps that there is no graph for larger amplitudes. *)
+Definition of_orbits (c : claim) : Prop :=
+  if whole (of_region c) then forall t, in_cube t -> no_invariant_graph (waves (of_patch c) t)
   else no_minimizing_orbit_into (of_region c) (of_patch c) (of_xstar c).
+
+Definition statement (c : claim) : Prop :=
+  match of_once c with
+  | No => of_orbits c
+  | Whole_patch =>
+    of_orbits c /\
+    (forall t s, in_cube t -> 1 <= s -> no_invariant_graph (scaled s (waves (of_patch c) t)))
+  | Upper_end =>
+    of_orbits c /\
+    (forall s, 1 <= s ->
+     no_invariant_graph (scaled s (waves (of_patch c) (repeat 1 (parameters (of_patch c))))))
+  end.
 
 (* A bound of beta's eigenvalues and l for the tails, l + 1/l >= bound; for larger amplitudes a place,
    in units of pi, and a vector; and how often a leaf may be halved. *)
@@ -195,12 +197,13 @@ Qed.
 Theorem check_sound c h t : check c h t = true -> statement c.
 Proof.
   intros H. assert (Orbits := check_orbits c h t H). unfold statement.
-  destruct (whole (of_region c)) eqn:W; [| exact Orbits].
-  assert (All := graphs _ _ _ W Orbits).
+  assert (Here : of_orbits c).
+  { unfold of_orbits. destruct (whole (of_region c)) eqn:W;
+      [exact (graphs _ _ _ W Orbits) | exact Orbits]. }
   unfold check, header_ok, once_ok in H. rewrite !andb_true_iff in H.
   destruct H as (((((Ha & _) & _) & _) & Ho) & _).
-  destruct (of_once c); [exact All | |]; (destruct (odd c) as [z |]; [| discriminate]);
-    (split; [exact All |]); rewrite !andb_true_iff in Ho.
+  destruct (of_once c); [exact Here | |]; (destruct (odd c) as [z |]; [| discriminate]);
+    (split; [exact Here |]); rewrite !andb_true_iff in Ho.
   - destruct Ho as (Hz & Hy). intros t' s Ht' Hs.
     apply (felt_graphs_at_once (of_alone c) (of_patch c) t' (scale PI (point z))
       (scale PI (point (fst (place h)))) (point (snd (place h))) Ha); auto.

@@ -7,11 +7,11 @@
 
 From Coq Require Import ZArith QArith Extraction.
 From Coq Require Import ExtrOcamlBasic ExtrOCamlFloats ExtrOCamlInt63.
-From Converse Require Import Tree Share Check Doubles.
+From Converse Require Import Tree Share Torus Reduce Check Doubles.
 
 (* The functor's formats of numbers name real numbers, which no computation asks for. *)
 Extract Constant ClassicalDedekindReals.sig_forall_dec => "(fun _ -> assert false)".
 
 Set Warnings "-extraction-opaque-accessed".
-Extraction "checker.ml" header_ok leaf_ok every_leaf
+Extraction "checker.ml" header_ok leaf_ok every_leaf whole felt odd_about
   Z.add Z.mul Z.opp Z.div_eucl Z.compare Qplus Qminus Qmult Qcompare Qred.

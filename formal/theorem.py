@@ -140,10 +140,9 @@ USING = "From Converse.build Require Import %s.\n\n"
 def statement(claim):
     """What is proved, spelled out in the words of Map.v: it is Check.statement of the claim."""
     patch = "let patch :=\n    %s in\n  " % patch_text(claim, 4)
-    if min(claim.half) < 1:
-        return patch + "no_minimizing_orbit_into %s patch %s" % (
-            region_text(claim), pair(claim.xstar))
     lines = ["forall t, in_cube t -> no_invariant_graph (waves patch t)"]
+    if min(claim.half) < 1:
+        lines = ["no_minimizing_orbit_into %s patch %s" % (region_text(claim), pair(claim.xstar))]
     if claim.at_once == "yes":
         lines += ["forall t s, in_cube t -> (1 <= s)%R -> no_invariant_graph (scaled s (waves patch t))"]
     elif claim.at_once == "upper end":

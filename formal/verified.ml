@@ -326,6 +326,15 @@ let claim_of version lines =
       one_of "alone" ["no", Both; "0", First; "1", Second],
       one_of "at once" (("upper end", Upper_end) :: once),
       if field "odd about" = "no" then None else Some (pair ~form:decimal_or_ratio "odd about") in
+  let determinant = Z.add (Z.mul m00 m11) (Z.opp (Z.mul m01 m10)) in
+  if determinant <> z_of 1 && determinant <> z_of (-1) then
+    reject "the header's frame has not determinant 1 or -1";
+  if of_once = Upper_end && List.length (List.hd of_patch).parts <> 1 then
+    reject "without exactly one parameter there is no upper end";
+  (match odd with
+   | Some point when not (odd_about (Checker.felt of_alone of_patch) point) ->
+     reject "V is not odd about the point that the header names"
+   | _ -> ());
   { of_patch; of_xstar; of_alone; of_once; odd;
     of_region = { m00; m01; m10; m11; centre0; half0; centre1; half1 } }, counted
 
@@ -539,7 +548,8 @@ let share file hints chosen jobs progress =
 
 (* ---- what is said *)
 
-let covers_torus r = not (less r.half0 (whole 1) || less r.half1 (whole 1))
+(* Coq's word for it, by which Check.statement tells what is proved. *)
+let covers_torus = Checker.whole
 
 let range_text name low high =
   let low, high = text_of low, text_of high in
@@ -584,12 +594,13 @@ let claimed claim =
             [Printf.sprintf "where x[1] = (%s v0 %s v1, %s v0 %s v1)"
                (List.nth s 0) (List.nth s 1) (List.nth s 2) (List.nth s 3)])
       @ ["(only successors in this region were examined, which is not the full torus)" ^ any] in
+  let rising = List.for_all (fun w -> not (List.exists (fun g -> less g (whole 0)) w.parts)) patch in
   let sum = List.fold_left (fun x g -> qplus x (absolute g)) (whole 0) in
   let ranges =
     if boxed then
       List.map2 (fun name w -> on_range name w.middle (sum w.parts)) ["a"; "b"; "c"] patch
       @ (if parameters <> 1 then []
-         else if List.for_all (fun w -> not (less (List.hd w.parts) (whole 0))) patch then
+         else if rising then
            ["moving together, on the segment from all lower to all upper ends"]
          else
            let listed f = String.concat ", " (List.map (fun w -> text_of (f w)) patch) in
@@ -610,7 +621,9 @@ let claimed claim =
   let larger = match claim.of_once with
     | No -> []
     | Upper_end -> multiples
-                     (if boxed then "the upper ends of these ranges" else "these amplitudes at t1 = 1")
+                     (if not boxed then "these amplitudes at t1 = 1"
+                      else if rising then "the upper ends of these ranges"
+                      else "these parameters at t = 1")
     | Whole_patch -> multiples (if boxed then "such parameters" else "such amplitudes") in
   ["The map x[j+1] = 2 x[j] - x[j-1] - V'(x[j]) of two angles (modulo 2 pi),";
    potential ^ ", " ^ List.hd graph] @ List.tl graph @ where @ ranges @ larger
@@ -737,5 +750,7 @@ let () =
     | Failed (status, why) -> complain why; status
     | Interrupted number -> complain "interrupted; nothing was verified"; interrupted + number
     | Sys_error why -> complain ("the output cannot be written (" ^ why ^ ")"); unusable
+    | Unix.Unix_error (error, _, _) ->
+      complain ("the checker failed: " ^ Unix.error_message error); unusable
     | Stack_overflow | Out_of_memory -> complain "the checker failed: no more memory"; unusable in
   Stdlib.exit status

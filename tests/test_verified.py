@@ -157,6 +157,27 @@ def test_claims_that_are_too_large(texts, tmp_path):
     assert agree(tmp_path, with_field(low, "at once", "yes")) in (REJECTED, NOT_CONFIRMED)
 
 
+@pytest.mark.parametrize("frame", ["0 0 0 0", "1 0 0 0", "1 0 0 2", "1 1 1 1"])
+def test_frames_that_do_not_cover_the_torus(texts, tmp_path, frame):
+    """The cells then cover x[1] on a line, at a point, or more than once."""
+    assert agree(tmp_path, with_field(texts["standard-63-64.in"], "frame", frame)) == REJECTED
+
+
+def test_no_tori_at_small_parameters(texts, tmp_path):
+    """The standard map at 0.1 has invariant circles; at x[1] = 0 alone one leaf is excluded."""
+    text = re.sub("wave: .*\n", "", texts["point"])
+    text = with_tree(text, "P").replace(
+        "frame: ", "wave: 1 0 0 0.1\nwave: 0 1 0 0\nwave: 1 1 0 0\nframe: ")
+    for field, value in (("frame", "0 0 0 0"), ("xstar", "0.1 1.5"), ("at once", "no")):
+        text = with_field(text, field, value)
+    assert agree(tmp_path, text) == REJECTED
+
+
+def test_an_upper_end_needs_one_parameter(texts, tmp_path):
+    for name in ("trig276.in", "point"):
+        assert agree(tmp_path, with_field(texts[name], "at once", "upper end")) == REJECTED
+
+
 @pytest.mark.parametrize("change", [
     lambda text: text[:-1], lambda text: text + "\n", lambda text: text.replace("\n", "\r\n"),
     lambda text: text.replace("0.31 ", "0.32 ", 1), lambda text: "", lambda text: "{}",
