@@ -1,6 +1,7 @@
 (* The left side of (1) of docs/proof.md, bounded over a prism.  At each site of a lane a
    multiplier mu of the equation of motion is added to it, affine in the symbols, such that what is
-   form1 in D cancels; what is left is a polynomial of third order in the symbols and an interval. *)
+   linear in D cancels; what is left is a polynomial of third order in the symbols and an
+   interval. *)
 
 From Coq Require Import Reals ZArith List Lra Lia.
 From Interval.Real Require Import Xreal.
@@ -43,7 +44,8 @@ Definition range_affine (a : affine) : I.type := add (fst a) (range1 (snd a)).
 
 Lemma cont_range_affine e a v : cube e -> hold_affine e a v -> cont (range_affine a) v.
 Proof.
-  intros C (x & y & Hx & Hy & ->). apply cont_add; [exact Hx |]. now apply (cont_range1' prec K K_ok e).
+  intros C (x & y & Hx & Hy & ->). apply cont_add; [exact Hx |].
+  now apply (cont_range1' prec K K_ok e).
 Qed.
 
 (* What a wave has in the sum, with m = m0 + m1 = k.mu and o = k.n:  see wave_expanded. *)
@@ -134,7 +136,8 @@ Proof.
   destruct K_ok as (_ & _ & Up2 & Up6 & Up24 & Up120 & _).
   assert (U2 := Up2 t2 T2). assert (U6 := Up6 t3 T3).
   assert (U24 := Up24 t4 T4). assert (U120 := Up120 t5 T5).
-  assert (Ra := cont_range1' prec K K_ok e _ _ C Hal). assert (Rb := cont_range1' prec K K_ok e _ _ C Hbe).
+  assert (Ra := cont_range1' prec K K_ok e _ _ C Hal).
+  assert (Rb := cont_range1' prec K K_ok e _ _ C Hbe).
   assert (Rh := cont_range1' prec K K_ok e _ _ C Hh).
   eexists _, _, _, _, _.
   split; [apply hold_scale1; [exact HA | exact Hh] |].
@@ -143,7 +146,8 @@ Proof.
       apply hold_product; [exact Hh | exact Hal]].
     apply cont_mul; [exact Khalf |]. apply cont_mul; [exact HP | exact HA]. }
   split.
-  { apply hold_add3; apply hold_product3; [| exact Hsq | exact Hh | apply hold_product; [exact Hbe | exact Hxi]].
+  { apply hold_add3; apply hold_product3; [| exact Hsq | exact Hh |
+      apply hold_product; [exact Hbe | exact Hxi]].
     apply hold_negate1, hold_add1; [| apply hold_add1]; apply hold_scale1;
       try exact Hal; try exact Hxi; try exact Hh; apply cont_mul; try exact Khalf; try exact Ksixth;
       try exact HP; try exact HA. apply cont_mul; [exact HP | exact HB]. }
@@ -200,7 +204,8 @@ Notation gather_affine0 := (gather nothing plus_affine negate_affine scale_affin
 Notation gather_affine1 := (gather nothing plus_affine negate_affine scale_affine z1 i1).
 
 Definition square_sum (v : I.type * I.type) : I.type := add (sqr (fst v)) (sqr (snd v)).
-Definition inner (u v : I.type * I.type) : I.type := add (mul (fst u) (fst v)) (mul (snd u) (snd v)).
+Definition inner (u v : I.type * I.type) : I.type :=
+  add (mul (fst u) (fst v)) (mul (snd u) (snd v)).
 
 (* Adds a site, with its n; l is there if it is the last. *)
 Definition add_site (s : site) (n : I.type * I.type) (l : option I.type) (t : sum_of) : sum_of :=

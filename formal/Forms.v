@@ -18,7 +18,7 @@ Include Torus F.
 
 Definition form1 := list I.type.           (* of e[i] *)
 Definition form2 := list form1.        (* of e[i] e[j], j >= i: row i begins at j = i *)
-Definition form3 := list form2.         (* of e[i] times a form2 form *)
+Definition form3 := list form2.         (* of e[i] times a quadratic form *)
 
 Fixpoint hold1 (e : list R) (l : form1) (v : R) : Prop :=
   match l, e with

@@ -130,7 +130,8 @@ Definition dir (w : pwave) (x : I.type * I.type) : I.type :=
 Definition dir1 (w : pwave) (x : form1 * form1) : form1 :=
   add1 (times1 (z0 w) (i0 w) (fst x)) (times1 (z1 w) (i1 w) (snd x)).
 
-Definition cont_vec (i : I.type * I.type) (v : vec) : Prop := cont (fst i) (fst v) /\ cont (snd i) (snd v).
+Definition cont_vec (i : I.type * I.type) (v : vec) : Prop :=
+  cont (fst i) (fst v) /\ cont (snd i) (snd v).
 Definition hold_vec e (l : form1 * form1) (v : vec) : Prop :=
   hold1 e (fst l) (fst v) /\ hold1 e (snd l) (snd v).
 
@@ -164,7 +165,8 @@ Definition sees (e : list R) (Y l r : vec) (s : seen) (a : moving) : Prop :=
   hold1 e (xi s) (along (its a) l) /\ cont (size s) (along (its a) l) /\
   cont (off s) (along (its a) r) /\ cont (z s) (along (its a) l + along (its a) r).
 
-Definition look (X : I.type * I.type) (L : form1 * form1) (r : I.type * I.type) (w : pwave) : seen :=
+Definition look (X : I.type * I.type) (L : form1 * form1) (r : I.type * I.type)
+    (w : pwave) : seen :=
   let '(s, c) := sincos (add (dir w X) (turns w)) in
   let xi := dir1 w L in
   let size := range1 xi in
@@ -200,7 +202,8 @@ Proof.
   apply sin_whole.
 Qed.
 
-Lemma look_sees e X Xi Y L l r ri w a : cube e -> entire a -> held e w a -> cont_vec Xi X -> near X Y ->
+Lemma look_sees e X Xi Y L l r ri w a : cube e -> entire a -> held e w a -> cont_vec Xi X ->
+  near X Y ->
   hold_vec e L l -> cont_vec ri r -> sees e Y l r (look Xi L ri w) a.
 Proof.
   intros C Ha Hw HX HY HL Hr. unfold look.
@@ -249,7 +252,8 @@ Proof.
   destruct (Hk s a H). apply gather_step; auto.
 Qed.
 
-Definition total (f : seen -> A) : list seen -> A := fold_right (fun s rest => plus (f s) rest) zero.
+Definition total (f : seen -> A) : list seen -> A :=
+  fold_right (fun s rest => plus (f s) rest) zero.
 
 End Gather.
 
@@ -284,14 +288,16 @@ Lemma gather_lin0_ok e Y l r f g ss ws : (forall s a, sees e Y l r s a -> hold1 
   hold1 e (gather_lin0 f ss) (sum (fun a => IZR (k0 (its a)) * g a) ws).
 Proof.
   intros Hf HH. apply (gather_ok _ _ _ _ (hold1 e) (hold1_nil e) (hold_add1 prec e)
-    (hold_negate1 e) (fun c a x y => hold_scale1 prec e c x a y) _ _ k0 (sees e Y l r)); auto. exact (k0_ok e Y l r).
+    (hold_negate1 e) (fun c a x y => hold_scale1 prec e c x a y) _ _ k0 (sees e Y l r)); auto.
+  exact (k0_ok e Y l r).
 Qed.
 Lemma gather_lin1_ok e Y l r f g ss ws : (forall s a, sees e Y l r s a -> hold1 e (f s) (g a)) ->
   Forall2 (sees e Y l r) ss ws ->
   hold1 e (gather_lin1 f ss) (sum (fun a => IZR (k1 (its a)) * g a) ws).
 Proof.
   intros Hf HH. apply (gather_ok _ _ _ _ (hold1 e) (hold1_nil e) (hold_add1 prec e)
-    (hold_negate1 e) (fun c a x y => hold_scale1 prec e c x a y) _ _ k1 (sees e Y l r)); auto. exact (k1_ok e Y l r).
+    (hold_negate1 e) (fun c a x y => hold_scale1 prec e c x a y) _ _ k1 (sees e Y l r)); auto.
+  exact (k1_ok e Y l r).
 Qed.
 
 (* ---- the next site *)
@@ -513,8 +519,10 @@ Proof. destruct u, v. simpl. now intros -> ->. Qed.
 Lemma pull_expanded k ws Y l r : Forall entire ws ->
   pull k ws Y (plus Y (plus l r)) =
   sum (fun a => IZR (k (its a)) * slope_real Y l a) ws
-  - fst r * sum (fun a => IZR (k (its a)) * (IZR (k0 (its a)) * (mid_amp a * sin (angle (its a) Y)))) ws
-  - snd r * sum (fun a => IZR (k (its a)) * (IZR (k1 (its a)) * (mid_amp a * sin (angle (its a) Y)))) ws
+  - fst r * sum (fun a => IZR (k (its a)) *
+                  (IZR (k0 (its a)) * (mid_amp a * sin (angle (its a) Y)))) ws
+  - snd r * sum (fun a => IZR (k (its a)) *
+                  (IZR (k1 (its a)) * (mid_amp a * sin (angle (its a) Y)))) ws
   + sum (fun a => IZR (k (its a)) * bent_real Y l r a) ws.
 Proof.
   intros Hw. unfold pull, Rminus. rewrite <- (Rmult_1_l (sum (fun a => _ * bent_real _ _ _ _) _)).

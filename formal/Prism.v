@@ -180,7 +180,8 @@ Fixpoint spread (l : F.type) (good : bool) (v : plane) (scans : list (bool * sym
   end.
 
 (* Of the sites ahead and back. *)
-Definition witness (h : manner) (l : F.type) (ahead back : list site) : option (list plane * list plane) :=
+Definition witness (h : manner) (l : F.type) (ahead back : list site) :
+    option (list plane * list plane) :=
   let blocks := rev_append (map (blocked h) back) (map (blocked h) ahead) in
   let ends := (l, F.zero, l) in
   let lefts := scan l ends blocks in
@@ -230,7 +231,9 @@ Fixpoint felt2 (q : form2) : list F.type :=
 Fixpoint felt3 (before : list F.type) (t : form3) : list F.type :=
   match t with
   | [] => []
-  | q :: t => let m := felt2 q in zip fadd (zip fadd m (before ++ [fsum m])) (felt3 (F.zero :: before) t)
+  | q :: t =>
+    let m := felt2 q in
+    zip fadd (zip fadd m (before ++ [fsum m])) (felt3 (F.zero :: before) t)
   end.
 
 (* How far each symbol moves the last site of a lane. *)
@@ -266,7 +269,10 @@ Definition prism_bound (h : manner) (rd : ready) (c : cell) : option (I.type * l
         let p := joint (l0, l1) (r0, r1) (rest_0 rd)
                    (backward prec K (end_ rd) sa (map exact2 na))
                    (backward prec K (end_ rd) sb (map exact2 nb))
-                   (match na with [] => mul (end_ rd) (square_sum prec (exact2 n0)) | _ => I.zero end) in
+                   (match na with
+                    | [] => mul (end_ rd) (square_sum prec (exact2 n0))
+                    | _ => I.zero
+                    end) in
         let i := top (length c) p in
         let '(v, p1, p2, p3) := p in
         Some (i, if negative i then [] else blame (length ts) sa sb v p1 p2 p3)
