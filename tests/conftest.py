@@ -1,5 +1,6 @@
 """What several tests share."""
 
+import os
 import signal
 import subprocess
 import sys
@@ -11,6 +12,10 @@ import pytest
 from converse import Counts, Problem, Proof, Settings
 
 ROOT = Path(__file__).resolve().parent.parent
+
+# Other programs need not run, and do not, with the sanitizers' library in them.
+not_sanitized = pytest.mark.skipif("asan" in os.environ.get("LD_PRELOAD", ""),
+                                   reason="it tests nothing that is C")
 COMMAND = str(Path(sys.executable).parent / "converse")
 
 # A shell without job control starts what it puts in the background with Ctrl-C ignored, and so

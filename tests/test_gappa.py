@@ -10,10 +10,12 @@ from fractions import Fraction
 
 import mpmath
 import pytest
+from conftest import not_sanitized
 from truth import TORTURE, rng_for
 
 from converse import kernels
 
+pytestmark = not_sanitized
 needs_gappa = pytest.mark.skipif(not shutil.which("gappa"),
                                  reason="needs Gappa (Debian's package gappa)")
 

@@ -14,13 +14,12 @@ from fractions import Fraction
 
 import pytest
 
-from conftest import ROOT
+from conftest import ROOT, not_sanitized
 from converse import Problem, check, prove, read_input
 
 COMMAND = ROOT / "formal" / "build" / "converse-verified"
-pytestmark = [
-    pytest.mark.skipif(not COMMAND.exists(), reason="make verified-check was not run"),
-    pytest.mark.skipif("asan" in os.environ.get("LD_PRELOAD", ""), reason="nothing of it is C")]
+pytestmark = [not_sanitized, pytest.mark.skipif(not COMMAND.exists(),
+                                                reason="make verified-check was not run")]
 
 VERIFIED, REJECTED, UNUSABLE, PART, SPOT_CHECK, NOT_CONFIRMED = range(6)
 
