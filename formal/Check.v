@@ -7,7 +7,6 @@ From Interval.Real Require Import Xreal.
 From Interval.Float Require Import Basic Sig.
 From Interval.Interval Require Import Interval.
 From Converse Require Import Map Tree Share Torus Reduce Lane Prism.
-From Converse Require Criterion.
 Import ListNotations.
 Open Scope R_scope.
 

@@ -119,10 +119,7 @@ Proof.
   intros Hx Hz. apply cont_between; apply cont_join; [left | right]; assumption.
 Qed.
 
-Lemma cont_subset i j x : I.subset i j = true -> cont i x -> cont j x.
-Proof. intros S H. exact (I.subset_correct i j (Xreal x) H S). Qed.
-
-(* Is the interval within [-1, 1]? *)
+(* From -1 to 1. *)
 Definition unit_ : I.type := join (integer (-1)) (integer 1).
 End Precision.
 

@@ -3,7 +3,7 @@
    the boxes of its proved leaves are.  Everything here is in units of the region: each axis goes
    from -1 to 1. *)
 
-From Coq Require Import Reals ZArith QArith Qreals List Permutation Ascii String Bool Lra Lia.
+From Coq Require Import Reals ZArith QArith Qreals List Permutation Ascii Bool Lra Lia.
 From Converse Require Import Map Criterion.
 Import ListNotations.
 Open Scope R_scope.
@@ -41,22 +41,8 @@ Fixpoint read_backwards (text : list ascii) (stack : list tree) : option tree :=
                     end
   end.
 
-Fixpoint reversed (text : string) (done : list ascii) : list ascii :=
-  match text with
-  | EmptyString => done
-  | String node text => reversed text (node :: done)
-  end.
-
 (* Nothing rests on how a tree is read: it is only a proposal how to divide the work. *)
 Definition parse_list (text : list ascii) : option tree := read_backwards (rev_append text []) [].
-Definition parse (text : string) : option tree := read_backwards (reversed text []) [].
-
-(* Are there such axes? *)
-Fixpoint axes_ok (n : nat) (t : tree) : bool :=
-  match t with
-  | Cut axis lower upper => (axis <? n)%nat && axes_ok n lower && axes_ok n upper
-  | _ => true
-  end.
 
 (* ---- cells *)
 
@@ -386,7 +372,7 @@ End Covers.
 
 (* If the proved leaves are excluded, and every skipped one is the mirror image of proved ones, then
    the whole region is excluded.  (What is cut along an axis that is not there would be wrong in a
-   file, see axes_ok, but does no harm.) *)
+   file, but does no harm.) *)
 Theorem tree_covers : forall n (excluded : list R -> Prop) t orders,
   mirrored n orders t = true ->
   (forall c, In c (leaves (root n) t) -> forall u, in_cell c u -> excluded u) ->

@@ -172,6 +172,18 @@ def test_no_tori_at_small_parameters(texts, tmp_path):
     assert agree(tmp_path, text) == REJECTED
 
 
+def test_an_odd_point_is_looked_at_in_any_case(texts, tmp_path):
+    text = with_field(texts["trig278.in"], "at once", "no")
+    assert agree(tmp_path, with_field(text, "odd about", "1/3 0")) == REJECTED
+
+
+def test_at_falling_parameters_no_upper_end_is_claimed(texts, tmp_path):
+    text = sealed(re.sub(r"(?m)^(wave: .*) ([0-9.]+)$", r"\1 -\2", texts["trig278.in"]))
+    assert agree(tmp_path, text) == VERIFIED
+    _, out, _ = run(tmp_path / "proof")
+    assert "any multiple s >= 1 of these parameters at t = 1 " in " ".join(out.split())
+
+
 def test_an_upper_end_needs_one_parameter(texts, tmp_path):
     for name in ("trig276.in", "point"):
         assert agree(tmp_path, with_field(texts[name], "at once", "upper end")) == REJECTED
