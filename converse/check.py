@@ -93,6 +93,7 @@ CHUNKS, CHUNK = 8, 16                   # tasks of a process, about; leaves of o
 FAST_CHUNK = 1 << 8, 1 << 14            # least and most of the fast path
 NU_BITS = 20                            # of the test vectors
 STATE_SECONDS, BAR_SECONDS = 10, 0.2    # between two writes
+LOOK_SECONDS = 0.1                      # a signal waits so long at most
 
 
 class Failure(Exception):
@@ -2034,6 +2035,7 @@ class State:
 # ---- the whole file
 
 _worker = []                            # in each process: its Problems
+_late = None                            # where signals wait, the number of the one that came
 SIGNALS = [getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP")
            if hasattr(signal, name)]
 
@@ -2093,15 +2095,20 @@ def check_chunk(chunk):
 
 @contextlib.contextmanager
 def undisturbed():
-    """Signals wait, also in a process that is begun meanwhile."""
-    if not hasattr(signal, "pthread_sigmask"):
-        yield
-        return
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, SIGNALS)
+    """The signal waits, also in a process that is begun meanwhile: an exception that struck inside
+    the locks of a pool would leave them broken, or locked for ever."""
+    global _late
+    _late, before = [], None
     try:
+        if hasattr(signal, "pthread_sigmask"):
+            before = signal.pthread_sigmask(signal.SIG_BLOCK, SIGNALS)
         yield
     finally:
-        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+        if before is not None:
+            signal.pthread_sigmask(signal.SIG_SETMASK, before)
+        late, _late = _late, None
+        if late:                            # another thread may have taken it in spite of the mask
+            raise KeyboardInterrupt(*late)
 
 
 def begin_apart(problems, stop):
@@ -2131,6 +2138,13 @@ def in_order(chunks, jobs, problems):
         return
     import concurrent.futures.process       # where there are no processes, one job still works
     import multiprocessing
+
+    def result(future):
+        while True:
+            with undisturbed():
+                if concurrent.futures.wait([future], LOOK_SECONDS).done:
+                    return future.result()
+
     stop, stopper = multiprocessing.Pipe(duplex=False)
     pool = concurrent.futures.ProcessPoolExecutor(jobs, initializer=begin_apart,
                                                   initargs=(problems, stop))
@@ -2140,16 +2154,17 @@ def in_order(chunks, jobs, problems):
             with undisturbed():
                 waiting.append(pool.submit(check_chunk, chunk))
             if len(waiting) > 4 * jobs:
-                yield waiting.popleft().result()
+                yield result(waiting.popleft())
         while waiting:
-            yield waiting.popleft().result()
+            yield result(waiting.popleft())
         over = True
     except concurrent.futures.process.BrokenProcessPool:
         raise Unusable("a worker process died; nothing was verified") from None
     finally:
         if not over:                        # what the workers still do is of no use to anybody
             stopper.send_bytes(b"stop")
-        pool.shutdown(cancel_futures=True)
+        with undisturbed():
+            pool.shutdown(cancel_futures=True)
         stop.close()
         stopper.close()
 
@@ -2747,10 +2762,13 @@ def report(file, problems, done, earlier, sampled):
 # ---- the command
 
 def interrupt(number, frame):
-    """The first signal ends the check; the end itself is quick and must not be interrupted."""
+    """The first signal ends the check, where it may; the end itself is quick and must not be
+    interrupted."""
     for heard in SIGNALS:
         signal.signal(heard, signal.SIG_IGN)
-    raise KeyboardInterrupt(number)
+    if _late is None:
+        raise KeyboardInterrupt(number)
+    _late.append(number)
 
 
 @contextlib.contextmanager

@@ -21,10 +21,6 @@ BAD, ENDED_BY = 2, 128                  # the second plus the number of the sign
 KIND_NAMES = {"P": "proved", "S": "symmetric", "U": "undecided"}
 
 
-class Signalled(KeyboardInterrupt):
-    """A signal that asks the program to end, as Ctrl-C does; its argument is the number."""
-
-
 class Parser(argparse.ArgumentParser):
     def error(self, message):
         raise ConverseError("%s; see %s --help" % (message, self.prog))
@@ -266,14 +262,16 @@ def run(options):
 
 
 @contextlib.contextmanager
-def _signals_end():
+def _signals_end(heard):
     """Meanwhile SIGTERM and SIGHUP end the program as Ctrl-C does, unless they were ignored.  Only
-    the first signal counts: another would strike while the backup is saved, or the process ends."""
+    the first signal counts, and is put into heard: another would strike while the backup is saved,
+    or the process ends."""
     def end(number, _):
+        heard.append(number)
         for other in before:            # a handler, since Python complains of one that is ignored
             before[other] = signal.SIG_IGN
             signal.signal(other, lambda *_: None)
-        raise Signalled(number)
+        raise KeyboardInterrupt
 
     before = {}
     try:
@@ -300,20 +298,23 @@ def _warnings_in_lines(command):
 def ended(command, run, interrupted):
     """The exit status of run(); every failure is one line on stderr, headed by the command's name.
     interrupted() says what Ctrl-C leaves behind."""
+    heard = []
     try:
         if None in (sys.stdout, sys.stderr):
             return BAD                      # a standard stream is closed: nowhere to say so
         for stream in (sys.stdout, sys.stderr):
             stream.reconfigure(errors="backslashreplace")
-        with _signals_end(), _warnings_in_lines(command):
+        with _signals_end(heard), _warnings_in_lines(command):
             return run()
     except SystemExit as end:               # of --help and --version
         return end.code
-    except KeyboardInterrupt as end:
-        number = end.args[0] if isinstance(end, Signalled) else signal.SIGINT
-        message, status = "interrupted; " + interrupted(), ENDED_BY + number
     except (ConverseError, InputError, MemoryError) as error:
         message, status = str(error) or "there is not enough memory", BAD
+    except (KeyboardInterrupt, RuntimeError) as error:
+        if isinstance(error, RuntimeError) and not heard:
+            raise                       # else the signal struck inside the locks of a library
+        message = "interrupted; " + interrupted()
+        status = ENDED_BY + (heard or [signal.SIGINT])[0]
     except ImportError as error:        # of what is imported late: libraries are mapped then
         message, status = "a part of Python cannot be loaded (%s); give it more memory, or install " \
                           "it anew" % error, BAD

@@ -24,7 +24,7 @@ import mpmath
 import pytest
 
 from converse import Problem, check, prove, read_input
-from truth import TORTURE
+from truth import STRIKE, TORTURE
 
 # Of a process without sanitizers, which may import what lies about its file.
 PLAIN = {name: value for name, value in os.environ.items()
@@ -881,6 +881,27 @@ def long(moving, tmp_path_factory):
 
 def confirmed(state):
     return int(re.search("(?m)^confirmed: (.*)$", state.read_text()).group(1))
+
+
+def test_struck_inside_the_locks_of_the_pool(long, tmp_path):
+    """A signal never fails the check with a RuntimeError of the library."""
+    code = STRIKE + """
+sys.path.insert(0, sys.argv.pop(1))
+import check
+in_order = check.in_order
+def struck(*args):
+    sys.setprofile(strike)
+    return in_order(*args)
+check.in_order = struck
+sys.exit(check.main())
+"""
+    path, _ = long
+    process = subprocess.run([sys.executable, "-I", "-c", code, os.path.dirname(check.__file__),
+                              path, "--jobs", "3", "--exact"],
+                             stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, timeout=60)
+    assert process.returncode == 143, process.stderr
+    assert process.stderr == "converse-check: %s: interrupted; nothing was verified\n" % path
+    assert not process.stdout
 
 
 @pytest.mark.parametrize("jobs", ["1", "3"])

@@ -18,7 +18,7 @@ from pathlib import Path
 import pytest
 
 from converse import Proof, files
-from truth import TORTURE
+from truth import STRIKE, TORTURE
 
 @pytest.fixture(scope="session")
 def sample(root):
@@ -104,6 +104,24 @@ def test_interrupt(start, command, sample, output, tmp_path, slow, number):
     assert half.tree and not half.no_tori
     status, out, err = command("-r", backup)
     assert (status, timeless(out).split("Restored")[0]) == (0, output)
+
+
+def test_struck_inside_the_locks_of_a_pool(sample, tmp_path, slow):
+    """A RuntimeError of the library is no traceback, and loses nothing."""
+    backup, code = tmp_path / "backup", STRIKE + """
+import converse.cli, converse.run
+looked = converse.run._Run._look
+def look(self):
+    looked(self)
+    sys.setprofile(strike)
+converse.run._Run._look = look
+sys.exit(converse.cli.main())
+"""
+    process = subprocess.run([sys.executable, "-c", code, *slow, "-b", backup, sample],
+                             stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, timeout=60)
+    assert process.returncode == 143, process.stderr
+    assert process.stderr == "converse: interrupted; continue with -r %s\n" % backup
+    assert not Proof.load(backup).no_tori
 
 
 def test_interrupt_without_backup(start, sample, endless):
