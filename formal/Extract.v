@@ -14,4 +14,5 @@ Extract Constant ClassicalDedekindReals.sig_forall_dec => "(fun _ -> assert fals
 
 Set Warnings "-extraction-opaque-accessed".
 Extraction "checker.ml" header_ok leaf_ok every_leaf whole felt odd_about
+  alone_ok mirrored axes orders_of plain_problem parameters
   Z.add Z.mul Z.opp Z.div_eucl Z.compare Qplus Qminus Qmult Qcompare Qred.
