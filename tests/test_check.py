@@ -688,7 +688,8 @@ def test_long_lines_and_deep_trees_are_bounded(texts, run):
         assert status == 5 and "limit" in err
     for tree, status in (("0" * 1000 + "P" * 1001, 0), ("0" * 1001 + "P" * 1002, 5),
                          ("234" * 50 + "P" * 151, 0), ("0" * 10 ** 5, 5), ("P" * 10 ** 5, 1)):
-        assert run(sealed(with_tree(text, tree)))[0] == status
+        for once in "no", "yes":
+            assert run(sealed(with_field(with_tree(text, tree), "at once", once)))[0] == status
 
 
 def test_what_is_no_file(tmp_path, capsys):
