@@ -99,9 +99,10 @@ Proof. apply sincos_correct, make_constants_ok. Qed.
 
 (* ---- a leaf *)
 
-(* n is chosen boldly and cautiously in turn. *)
-Definition bold : manner := Manner 400 one_float F.zero (center (rational prec (1 # 5))).
-Definition cautious : manner := Manner 400 one_float (center (rational prec (3 # 10))) F.zero.
+(* n is chosen boldly and cautiously in turn; orbits are as long as their cells are deep. *)
+Definition manner_of (cuts : nat) : manner :=
+  if Nat.even cuts then Manner (2 * cuts * cuts) one_float F.zero (center (rational prec (1 # 5)))
+  else Manner (2 * cuts * cuts) one_float (center (rational prec (3 # 10))) F.zero.
 
 Fixpoint greatest (l : list F.type) (at_ : nat) (best : F.type * nat) : nat :=
   match l with
@@ -112,7 +113,7 @@ Fixpoint greatest (l : list F.type) (at_ : nat) (best : F.type * nat) : nat :=
 (* None if the cell is excluded, else the axis along which to cut it. *)
 Definition attempt (rd : ready) (c : cell) : option nat :=
   let cuts := fold_right (fun s n => snd s + n)%nat O c in
-  match prism_bound prec exact sines (if Nat.even cuts then bold else cautious) rd c with
+  match prism_bound prec exact sines (manner_of cuts) rd c with
   | Some (i, blames) => if negative i then None else Some (greatest blames 0 (F.zero, 0%nat))
   | None => Some (length c)
   end.
