@@ -42,7 +42,7 @@ def texts(tmp_path_factory):
     """Proof files with one parameter, with three, with none, of other potentials, and of a part."""
     inputs = {name: (read_input(ROOT / "inputs" / name), together) for name, together in (
         ("trig278.in", True), ("trig180.in", True), ("trig276.in", False),
-        ("standard-63-64.in", False), *((name, False) for name in GENERAL))}
+        ("standard-63-64.in", False), ("standard-972.in", False), *((name, False) for name in GENERAL))}
     inputs["point"] = Problem(a="0.31", b="0.31", c="0.62"), False
     inputs["part"] = Problem.around(("0.3085", "0.3085", "0.617", "0.4", "1.3"),
                                     ("0.00125", "0.00125", "0.0025", "0.2", "0.1")), False
@@ -112,6 +112,13 @@ def test_claims_of_other_potentials(texts, tmp_path, name):
     status, out, _ = run("--sample", 10, path)
     said = check.verify(path, sample=10).text
     assert status == SPOT_CHECK and out.partition("\nChecker")[0] == said.partition("\nChecker")[0]
+
+
+def test_orbits_of_thousands_of_points(texts, tmp_path):
+    path = tmp_path / "proof"
+    path.write_text(texts["standard-972.in"])
+    status, out, err = run("--sample", 20, path)
+    assert status == SPOT_CHECK and "Spot check of 20 of 3465 proved leaves" in out and not err
 
 
 def in_version_2(text):
