@@ -711,20 +711,38 @@ let choice total = function
     Hashtbl.mem found, count
   | _ -> (fun _ -> true), total
 
-(* Tells what is false from what is beyond the checker, where Coq has refused the header. *)
+(* The t of least amplitudes, about. *)
+let nearest patch =
+  let t = Array.make (List.length (List.hd patch).parts) 0.0 in
+  let descend m =
+    let square, slope = List.fold_left (fun (square, slope) w ->
+        let parts = Array.of_list (List.map float_of w.parts) in
+        let p = ref (float_of w.middle) in
+        Array.iteri (fun i g -> p := !p +. g *. t.(i)) parts;
+        square +. parts.(m) *. parts.(m), slope +. parts.(m) *. !p) (0.0, 0.0) patch in
+    if square > 0.0 then t.(m) <- Float.max (-1.0) (Float.min 1.0 (t.(m) -. slope /. square)) in
+  for _ = 1 to 4 do Array.iteri (fun m _ -> descend m) t done;
+  Array.to_list t
+
+(* Tells what is false from what is beyond the checker, where Coq has refused the header.  (It sees
+   no mirror image of what is divided among waves of one k.) *)
 let blame { claim; tree; _ } =
   let patch = claim.of_patch in
   if not (alone_ok claim.of_alone patch) then reject "no coordinate is alone: a wave feels both";
-  if not (mirrored (axes claim) (orders_of (plain_problem claim) (parameters patch)) tree) then
-    reject "a skipped leaf has no mirror image that is proved";
-  let count = List.length (List.hd patch).parts in
-  let some = match claim.of_once with
-    | No -> []
-    | Upper_end -> [[1.0]]
-    | Whole_patch -> List.init count (fun _ -> 0.0) :: corners count in
-  if List.exists (fun t -> largest claim t <= 10.0 /. 3.0) some then
-    reject "larger parameters are not excluded at once: B <= 10/3 for some";
-  beyond "the bound B%s" (if some = [] then "" else ", or that larger parameters are excluded at once")
+  if not (mirrored (axes claim) (orders_of (plain_problem claim) (parameters patch)) tree) then begin
+    let kinds = List.map (fun w ->
+        let k0, k1 = small_of w.of_k0, small_of w.of_k1 in max (k0, k1) (-k0, -k1)) patch in
+    (if List.compare_lengths (List.sort_uniq compare kinds) kinds = 0 then reject else beyond)
+      "a skipped leaf has no mirror image that is proved"
+  end;
+  let larger = match claim.of_once with
+    | No -> ""
+    | Upper_end | Whole_patch as once ->
+      let t = if once = Upper_end then [1.0] else nearest (List.filter (felt claim) patch) in
+      if largest claim t <= 10.0 /. 3.0 then
+        reject "larger parameters are not excluded at once: B <= 10/3 for some";
+      ", or that larger parameters are excluded at once" in
+  beyond "the bound B%s" larger
 
 let verify options path =
   let file = read path in
@@ -749,6 +767,11 @@ let verify options path =
   if options.sample <> None then spot_check
   else if covers_torus file.claim.of_region then verified else part
 
+(* Only the first signal counts: another would strike while the processes are ended. *)
+let interrupt number =
+  List.iter (fun (signal, _) -> Sys.set_signal signal Sys.Signal_ignore) signals;
+  raise (Interrupted number)
+
 (* Every failure is one line. *)
 let () =
   let options = ref { path = None; jobs = None; sample = None } in
@@ -758,8 +781,8 @@ let () =
   let status =
     try
       List.iter (fun (signal, number) ->
-          if Sys.signal signal (Sys.Signal_handle (fun _ -> raise (Interrupted number)))
-             = Sys.Signal_ignore then Sys.set_signal signal Sys.Signal_ignore) signals;
+          if Sys.signal signal (Sys.Signal_handle (fun _ -> interrupt number)) = Sys.Signal_ignore
+          then Sys.set_signal signal Sys.Signal_ignore) signals;
       Sys.set_signal Sys.sigpipe Sys.Signal_ignore;
       options := parsed !options (List.tl (Array.to_list Sys.argv));
       match !options.path with
