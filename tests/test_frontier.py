@@ -231,8 +231,11 @@ def test_nothing_is_overwritten(made, tmp_path):
 
 def test_the_sphere(coarse, tmp_path):
     """Far from the frontier: what is the mirror image of others is left out, and it is drawn."""
-    found = frontier.explore("sphere", "1.9", path=tmp_path / "map.json")
+    shares = []
+    found = frontier.explore("sphere", "1.9", path=tmp_path / "map.json",
+                             progress=lambda share, _: shares.append(share))
     assert found.complete and found.count(AT_ONCE)
+    assert shares == sorted(shares) and shares[-1] > 0.97
     for leaf in found.leaves():
         assert (leaf.kind == OUTSIDE) == region.is_outside(found.directions[leaf.cell.face], leaf.cell)
     estimate = found.estimate[1]

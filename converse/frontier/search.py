@@ -307,6 +307,7 @@ class _Search:
         directions = self.map.directions[cell.face]
         if region.is_outside(directions, cell):
             node.kind = OUTSIDE
+            self.won += self.map.area(cell)     # nothing is left to be proved there
             return
         low, high = self.map.span(cell)
         if float(cell.high[0]) <= low:
