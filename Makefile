@@ -86,7 +86,7 @@ charts: $(VENV)/with-plot
 man: $(VENV)/with-man
 	$(VENV)/bin/python docs/manual.py
 
-FORMAL_PACKAGES = coq libcoq-interval ocaml ocaml-findlib libcoq-core-ocaml-dev
+FORMAL_PACKAGES = coq libcoq-interval ocaml ocaml-findlib libcoq-core-ocaml-dev libsha-ocaml-dev
 
 # The theorems that Coq believes: each as it is stated, what it assumes, what it took; and two of them.
 formal: $(VENV)/installed

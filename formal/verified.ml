@@ -122,59 +122,6 @@ let text_of x =
   (if less x (whole 0) then "-" else "") ^ String.sub digits 0 point ^
   (if places = 0 then "" else "." ^ String.sub digits point places)
 
-(* ---- SHA-256 *)
-
-let primes count =
-  let rec from n found =
-    if List.length found = count then List.rev found
-    else from (n + 1) (if List.exists (fun p -> n mod p = 0) found then found else n :: found) in
-  from 2 []
-
-(* The first 32 bits of the fraction of a root: the largest x with x^k <= p 2^(32 k), modulo 2^32,
-   compared in Coq's integers. *)
-let fraction_of_root k p =
-  let rec power x k = if k = 0 then z_of 1 else Z.mul x (power x (k - 1)) in
-  let bound = Z.mul (z_of p) (power (z_of (1 lsl 32)) k) in
-  let rec go x bit =
-    if bit = 0 then x land 0xffffffff
-    else go (if Z.compare (power (z_of (x + bit)) k) bound = Gt then x else x + bit) (bit / 2) in
-  go 0 (1 lsl 36)
-
-let sha256 data =
-  let mask x = x land 0xffffffff in
-  let rotate x n = mask (x lsr n lor x lsl (32 - n)) in
-  let rounds = Array.of_list (List.map (fraction_of_root 3) (primes 64)) in
-  let state = Array.of_list (List.map (fraction_of_root 2) (primes 8)) in
-  let length = String.length data in
-  let padded = Bytes.make ((length + 72) / 64 * 64) '\000' in
-  Bytes.blit_string data 0 padded 0 length;
-  Bytes.set padded length '\128';
-  Bytes.set_int64_be padded (Bytes.length padded - 8) (Int64.of_int (8 * length));
-  let w = Array.make 64 0 in
-  for block = 0 to Bytes.length padded / 64 - 1 do
-    for i = 0 to 15 do
-      w.(i) <- mask (Int32.to_int (Bytes.get_int32_be padded (64 * block + 4 * i)))
-    done;
-    for i = 16 to 63 do
-      let x = w.(i - 15) and y = w.(i - 2) in
-      w.(i) <- mask (w.(i - 16) + w.(i - 7) + (rotate x 7 lxor rotate x 18 lxor x lsr 3)
-                     + (rotate y 17 lxor rotate y 19 lxor y lsr 10))
-    done;
-    let s = Array.copy state in
-    for i = 0 to 63 do
-      let a = s.(0) and e = s.(4) in
-      let t = s.(7) + (rotate e 6 lxor rotate e 11 lxor rotate e 25)
-              + (e land s.(5) lxor (lnot e land s.(6))) + rounds.(i) + w.(i) in
-      let u = (rotate a 2 lxor rotate a 13 lxor rotate a 22)
-              + (a land s.(1) lxor (a land s.(2)) lxor (s.(1) land s.(2))) in
-      Array.blit s 0 s 1 7;
-      s.(4) <- mask (s.(4) + t);
-      s.(0) <- mask (t + u)
-    done;
-    Array.iteri (fun i x -> state.(i) <- mask (state.(i) + x)) s
-  done;
-  String.concat "" (List.map (Printf.sprintf "%08x") (Array.to_list state))
-
 (* ---- the file *)
 
 (* Its bytes, uncompressed. *)
@@ -383,6 +330,8 @@ let find text data start =
     else if String.sub data i n = text then Some i else
       Option.bind (String.index_from_opt data (i + 1) text.[0]) from in
   Option.bind (String.index_from_opt data start text.[0]) from
+
+let sha256 data = Sha256.(to_hex (string data))
 
 let magic = "converse proof "
 
