@@ -2104,9 +2104,11 @@ def undisturbed():
             before = signal.pthread_sigmask(signal.SIG_BLOCK, SIGNALS)
         yield
     finally:
-        if before is not None:
-            signal.pthread_sigmask(signal.SIG_SETMASK, before)
-        late, _late = _late, None
+        try:
+            if before is not None:          # the handler may be another one, and raise here
+                signal.pthread_sigmask(signal.SIG_SETMASK, before)
+        finally:
+            late, _late = _late, None
         if late:                            # another thread may have taken it in spite of the mask
             raise KeyboardInterrupt(*late)
 

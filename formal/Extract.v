@@ -12,7 +12,10 @@ From Converse Require Import Tree Share Torus Reduce Check Doubles.
 (* The functor's formats of numbers name real numbers, which no computation asks for. *)
 Extract Constant ClassicalDedekindReals.sig_forall_dec => "(fun _ -> assert false)".
 
+(* Is beta of these waves at most B everywhere?  Only what is said of a wrong file hangs on it. *)
+Definition below := patch_below prec.
+
 Set Warnings "-extraction-opaque-accessed".
 Extraction "checker.ml" header_ok leaf_ok every_leaf whole felt odd_about
-  alone_ok mirrored axes orders_of plain_problem parameters
+  alone_ok mirrored axes orders_of plain_problem parameters below
   Z.add Z.mul Z.opp Z.div_eucl Z.compare Qplus Qminus Qmult Qcompare Qred.

@@ -75,7 +75,7 @@ def eigenvalues(waves, y):
 
 def lowest(waves, f):
     """Where f is least on the torus, about."""
-    count = min(16 * max(abs(k) for wave in waves for k in wave[:2]), 128)
+    count = min(16 * max([abs(k) for wave in waves for k in wave[:2]] + [1]), 128)
     width = 2 * math.pi / count
     y = min(itertools.product([i * width for i in range(count)], repeat=2), key=f)
     while width > 1e-9:

@@ -273,9 +273,6 @@ let claim_of version lines =
       one_of "alone" ["no", Both; "0", First; "1", Second],
       one_of "at once" (("upper end", Upper_end) :: once),
       if field "odd about" = "no" then None else Some (pair ~form:decimal_or_ratio "odd about") in
-  let determinant = Z.add (Z.mul m00 m11) (Z.opp (Z.mul m01 m10)) in
-  if determinant <> z_of 1 && determinant <> z_of (-1) then
-    reject "the header's frame has not determinant 1 or -1";
   if of_once = Upper_end && List.length (List.hd of_patch).parts <> 1 then
     reject "without exactly one parameter there is no upper end";
   if of_once <> No && odd = None then
@@ -424,15 +421,12 @@ let billionths x = ratio (z_of (truncate x)) (power_of_10 9)
 
 let rec natural n = if n = 0 then O else S (natural (n - 1))
 
-(* B at t, about. *)
-let largest claim t =
-  let waves = at claim t in
-  let level y = let _, largest, _ = eigen waves y in -. largest in
-  2.0 -. level (minimum waves level)
-
 let hints_of claim =
   let parameters = List.length (List.hd claim.of_patch).parts in
-  let b = List.fold_left (fun b t -> max b (largest claim t)) 2.0 (corners parameters) in
+  let largest waves =
+    let level y = let _, largest, _ = eigen waves y in -. largest in
+    2.0 -. level (minimum waves level) in
+  let b = List.fold_left (fun b t -> max b (largest (at claim t))) 2.0 (corners parameters) in
   let b = ceil (1e9 *. (b *. (1.0 +. 1e-6))) in
   let l = let b = b /. 1e9 in 2.0 /. (b +. sqrt (b *. b -. 4.0)) in
   let waves = at claim (List.init parameters (fun _ -> if claim.of_once = Upper_end then 1.0 else 0.0)) in
@@ -447,8 +441,9 @@ let hints_of claim =
 (* ---- the leaves, shared out *)
 
 (* The chosen leaves, of which process k of n takes every n-th.  It writes a dot for each one that
-   is excluded; the number of the first that is not ends its work.  all_leaves goes through the tree,
-   and is proved to ask of each leaf until one is refused. *)
+   is excluded; the number of the first that is not ends its work.  every_leaf is proved to give what
+   asking of all leaves gives; that it asks of each leaf once, in their order, until one is refused, is to
+   be read in its five lines (all_leaves, Tree.v). *)
 let work file hints chosen k n output =
   let number = ref (-1) and turn = ref (-1) and decide = leaf_ok file.claim hints in
   let excluded cell =
@@ -467,21 +462,36 @@ let work file hints chosen k n output =
   ignore (every_leaf file.claim excluded file.tree)
 
 let signals = [Sys.sighup, 1; Sys.sigint, 2; Sys.sigterm, 15]
+let ignore_signals () =
+  List.iter (fun (signal, _) -> Sys.set_signal signal Sys.Signal_ignore) signals
+
+(* Only the first one counts. *)
+let interrupt number = ignore_signals (); raise (Interrupted number)
+
+(* Signals wait while f works: none strikes between a process and the list of them. *)
+let undisturbed f =
+  let before = Unix.sigprocmask Unix.SIG_BLOCK (List.map fst signals) in
+  match f () with
+  | result -> ignore (Unix.sigprocmask Unix.SIG_SETMASK before); result
+  | exception error -> ignore (Unix.sigprocmask Unix.SIG_SETMASK before); raise error
 
 (* How many of the chosen leaves are excluded, if all of them are; else which is not. *)
 let share file hints chosen jobs progress =
+  let processes = ref [] in
   let start k =
     let input, output = Unix.pipe ~cloexec:true () in
     match Unix.fork () with
     | 0 ->
-      List.iter (fun (signal, _) -> Sys.set_signal signal Sys.Signal_default)
-        ((Sys.sigpipe, 13) :: signals);
+      List.iter (fun (signal, _) ->             (* those that were ignored still are *)
+          if Sys.signal signal Sys.Signal_default = Sys.Signal_ignore then
+            Sys.set_signal signal Sys.Signal_ignore) signals;
+      Sys.set_signal Sys.sigpipe Sys.Signal_default;
+      ignore (Unix.sigprocmask Unix.SIG_UNBLOCK (List.map fst signals));
       Unix.close input;
       let status = try work file hints chosen k jobs (Unix.out_channel_of_descr output); 0
         with _ -> 1 in
       Unix._exit status
-    | pid -> Unix.close output; pid, input in
-  let processes = List.init jobs start in
+    | pid -> Unix.close output; processes := (pid, input) :: !processes in
   let text = Bytes.create 65536 and refused = Buffer.create 16 and done_ = ref 0 in
   let rec listen inputs =
     if inputs <> [] && Buffer.length refused = 0 then begin
@@ -494,10 +504,15 @@ let share file hints chosen jobs progress =
       progress !done_;
       listen (List.filter (fun input -> not (List.mem input ended)) inputs)
     end in
-  let finally () =
-    List.iter (fun (pid, _) -> Unix.kill pid Sys.sigkill) processes;
-    List.iter (fun (pid, _) -> ignore (Unix.waitpid [] pid)) processes in
-  Fun.protect ~finally (fun () -> listen (List.map snd processes));
+  let finish () = undisturbed (fun () ->
+      List.iter (fun (pid, _) -> Unix.kill pid Sys.sigkill) !processes;
+      List.iter (fun (pid, _) -> ignore (Unix.waitpid [] pid)) !processes) in
+  (match
+     for k = 0 to jobs - 1 do undisturbed (fun () -> start k) done;
+     listen (List.map snd !processes)
+   with
+   | () -> finish ()
+   | exception error -> finish (); raise error);
   !done_, List.hd (String.split_on_char '\n' (Buffer.contents refused))
 
 (* ---- what is said *)
@@ -660,35 +675,43 @@ let choice total = function
     Hashtbl.mem found, count
   | _ -> (fun _ -> true), total
 
-(* The t of least amplitudes, about. *)
-let nearest patch =
-  let t = Array.make (List.length (List.hd patch).parts) 0.0 in
+(* The t at which so many waves are least, about. *)
+let nearest waves count =
+  let t = Array.make count 0.0 in
   let descend m =
     let square, slope = List.fold_left (fun (square, slope) w ->
         let parts = Array.of_list (List.map float_of w.parts) in
         let p = ref (float_of w.middle) in
         Array.iteri (fun i g -> p := !p +. g *. t.(i)) parts;
-        square +. parts.(m) *. parts.(m), slope +. parts.(m) *. !p) (0.0, 0.0) patch in
+        square +. parts.(m) *. parts.(m), slope +. parts.(m) *. !p) (0.0, 0.0) waves in
     if square > 0.0 then t.(m) <- Float.max (-1.0) (Float.min 1.0 (t.(m) -. slope /. square)) in
   for _ = 1 to 4 do Array.iteri (fun m _ -> descend m) t done;
-  Array.to_list t
+  List.map (fun x -> billionths (1e9 *. x)) (Array.to_list t)
 
-(* Tells what is false from what is beyond the checker, where Coq has refused the header.  (It sees
-   no mirror image of what is divided among waves of one k.) *)
+(* Tells what is false from what is beyond the checker, where Coq has refused the header.  Coq compares
+   waves one by one: it does not see that two of one k have a sum, or that of opposite sign is half a
+   turn away. *)
 let blame { claim; tree; _ } =
   let patch = claim.of_patch in
   if not (alone_ok claim.of_alone patch) then reject "no coordinate is alone: a wave feels both";
   if not (mirrored (axes claim) (orders_of (plain_problem claim) (parameters patch)) tree) then begin
     let kinds = List.map (fun w ->
         let k0, k1 = small_of w.of_k0, small_of w.of_k1 in max (k0, k1) (-k0, -k1)) patch in
-    (if List.compare_lengths (List.sort_uniq compare kinds) kinds = 0 then reject else beyond)
-      "a skipped leaf has no mirror image that is proved"
+    let plain = List.compare_lengths (List.sort_uniq compare kinds) kinds = 0
+                && not (List.exists (fun w -> List.exists (fun g -> less g (whole 0))
+                                        (w.middle :: w.parts)) patch) in
+    (if plain then reject else beyond) "a skipped leaf has no mirror image that is proved"
   end;
   let larger = match claim.of_once with
     | No -> ""
     | Upper_end | Whole_patch as once ->
-      let t = if once = Upper_end then [1.0] else nearest (List.filter (felt claim) patch) in
-      if largest claim t <= 10.0 /. 3.0 then
+      let waves = List.filter (felt claim) patch in
+      let t = if once = Upper_end then [whole 1]
+        else nearest waves (List.length (List.hd patch).parts) in
+      let there = List.map (fun w ->
+          { w with middle = List.fold_left2 (fun p g t -> qplus p (qmult g t)) w.middle w.parts t;
+                   parts = [] }) waves in
+      if below there (ratio (z_of 10) (z_of 3)) then
         reject "larger parameters are not excluded at once: B <= 10/3 for some";
       ", or that larger parameters are excluded at once" in
   beyond "the bound B%s" larger
@@ -712,14 +735,10 @@ let verify options path =
    | _, number ->
      beyond "proved leaf %d of %d is not excluded; the claim is false or its proof beyond the \
              limits of this checker" (1 + int_of_string number) file.proved);
+  ignore_signals ();                            (* the last word is to be the only one *)
   print_endline (String.concat "\n" (report file hints total (options.sample <> None)));
   if options.sample <> None then spot_check
   else if covers_torus file.claim.of_region then verified else part
-
-(* Only the first signal counts: another would strike while the processes are ended. *)
-let interrupt number =
-  List.iter (fun (signal, _) -> Sys.set_signal signal Sys.Signal_ignore) signals;
-  raise (Interrupted number)
 
 (* Every failure is one line. *)
 let () =

@@ -905,6 +905,23 @@ sys.exit(check.main())
     assert not process.stdout
 
 
+def test_a_signal_that_waited():
+    """As a library the checker leaves signals as they were, whoever's handler raises."""
+    for handler in (signal.default_int_handler, check.interrupt):
+        before, waited = signal.signal(signal.SIGINT, handler), False
+        try:
+            with pytest.raises(KeyboardInterrupt):
+                with check.undisturbed():
+                    os.kill(os.getpid(), signal.SIGINT)
+                    time.sleep(0.01)            # not here
+                    waited = True
+        finally:
+            for number in check.SIGNALS:
+                signal.signal(number, signal.SIG_DFL)
+            signal.signal(signal.SIGINT, before)
+        assert waited and check._late is None and not signal.pthread_sigmask(signal.SIG_BLOCK, [])
+
+
 @pytest.mark.parametrize("jobs", ["1", "3"])
 def test_killed_at_random_moments(long, tmp_path, generator, jobs):
     """It ends with the status of its signal and one line, leaves no process and no other file, and

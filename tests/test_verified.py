@@ -230,6 +230,31 @@ def test_no_leaf_may_be_skipped(texts, tmp_path):
         "most_cuts", "0")) == NOT_CONFIRMED
 
 
+def with_waves(text, waves, tree, **fields):
+    """The text with other waves and another tree, whose counts belong to it."""
+    head, middle, rest = text.partition("wave: ")
+    text = head + "".join("wave: %s\n" % wave for wave in waves) + rest[rest.index("frame: "):]
+    cuts, most = tree.count("P") + tree.count("S") - 1, {"P": "0", "01PS12PPP": "3"}[tree]
+    for name, value in {**fields, "cuts": cuts, "proved": tree.count("P"),
+                        "symmetric": tree.count("S"), "most_cuts": most}.items():
+        text = with_field(text, name.replace("_", " ") if name in fields else name, str(value))
+    return with_tree(text, tree)
+
+
+def test_what_is_beyond_coq_is_not_called_wrong(texts, tmp_path):
+    """A mirror image that it does not see, a B that only an upper bound tells, and no wave at all."""
+    text = texts["trig278.in"]
+    for waves in (["1 0 0 0.32 0.005", "0 1 1 -0.32 -0.005", "1 1 0 0.64 0.01"],
+                  ["1 0 0 0.32 0.005", "0 1 0 0.2 0.005", "0 1 0 0.12 0", "1 1 0 0.64 0.01"]):
+        (status, _), (mine, out, err) = both(tmp_path, with_waves(text, waves, "01PS12PPP"))
+        assert (status, mine, out) == (VERIFIED, NOT_CONFIRMED, "") and "mirror image" in err
+    high = ["%d 0 %s %.12f" % (k, Fraction(1, 2) - Fraction(k, 128), 0.1 / k ** 2)
+            for k in range(69, 100, 2)]
+    assert agree(tmp_path, with_waves(text, high, "P", alone=0, at_once="yes",
+                                      odd_about="65/128 0")) == NOT_CONFIRMED
+    assert agree(tmp_path, with_waves(text, ["0 1 0 0.9"], "P", alone=0, at_once="yes")) == REJECTED
+
+
 def test_bytes_at_random(texts, tmp_path):
     generator = random.Random(7)
     data = texts["trig278.in"].encode()
@@ -323,6 +348,22 @@ def test_a_process_that_dies_is_missed(busy):
     os.kill(children(busy)[0], signal.SIGKILL)
     out, err = busy.communicate(timeout=600)
     assert busy.returncode == UNUSABLE and not out and err.count("\n") == 1
+
+
+def test_nohup(texts, tmp_path):
+    """What was ignored is so in all processes."""
+    path = tmp_path / "proof"
+    path.write_text(texts["two-harmonics.json"])
+    with start("--jobs", 2, path, preexec_fn=lambda: signal.signal(
+            signal.SIGHUP, signal.SIG_IGN)) as process:
+        while len(children(process)) < 2:
+            assert process.poll() is None
+        for pid in [*children(process), process.pid]:
+            os.kill(pid, signal.SIGHUP)
+        time.sleep(0.5)
+        assert process.poll() is None and len(children(process)) == 2
+        process.terminate()
+        assert process.wait(timeout=60) == 143
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
