@@ -16,6 +16,7 @@ import re
 import signal
 import subprocess
 import sys
+import threading
 import time
 import types
 from fractions import Fraction
@@ -912,7 +913,7 @@ def test_a_signal_that_waited():
         try:
             with pytest.raises(KeyboardInterrupt):
                 with check.undisturbed():
-                    os.kill(os.getpid(), signal.SIGINT)
+                    signal.pthread_kill(threading.get_ident(), signal.SIGINT)
                     time.sleep(0.01)            # not here
                     waited = True
         finally:
