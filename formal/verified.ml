@@ -278,7 +278,7 @@ let claim_of version lines =
   if of_once <> No && odd = None then
     reject "larger parameters are excluded at once only where V is odd about a point";
   (match odd with
-   | Some point when not (odd_about (Checker.felt of_alone of_patch) point) ->
+   | Some point when not (odd_about (felt of_alone of_patch) point) ->
      reject "V is not odd about the point that the header names"
    | _ -> ());
   { of_patch; of_xstar; of_alone; of_once; odd;
@@ -399,18 +399,13 @@ let minimum waves f =
     else refined (List.fold_left better x (around x width)) (width /. 1.5) in
   refined (List.fold_left better (0.0, 0.0) grid) width
 
-let felt claim w = match claim.of_alone with
-  | Both -> true
-  | First -> w.of_k0 <> Z0
-  | Second -> w.of_k1 <> Z0
-
 (* The waves at a corner, or at any t, of the patch. *)
 let at claim t =
   let float_of_z z = float_of (ratio z (z_of 1)) in
   List.map (fun w ->
       float_of_z w.of_k0, float_of_z w.of_k1, pi *. float_of w.of_phase,
       List.fold_left2 (fun p g t -> p +. t *. float_of g) (float_of w.middle) w.parts t)
-    (List.filter (felt claim) claim.of_patch)
+    (felt claim.of_alone claim.of_patch)
 
 let rec corners n =
   if n = 0 then [[]]
@@ -705,7 +700,7 @@ let blame { claim; tree; _ } =
   let larger = match claim.of_once with
     | No -> ""
     | Upper_end | Whole_patch as once ->
-      let waves = List.filter (felt claim) patch in
+      let waves = felt claim.of_alone patch in
       let t = if once = Upper_end then [whole 1]
         else nearest waves (List.length (List.hd patch).parts) in
       let there = List.map (fun w ->
