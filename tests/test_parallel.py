@@ -1,6 +1,7 @@
 """The same tree, counts and theorem however the work is divided, and whoever dies on the way."""
 
 import concurrent.futures
+import math
 import os
 import random
 import shutil
@@ -13,7 +14,7 @@ from fractions import Fraction
 
 import pytest
 
-from converse import ConverseError, Problem, Proof, growth, prove
+from converse import ConverseError, Problem, Proof, growth, prove, run
 from converse.problem import decimal_text
 from truth import TORTURE
 
@@ -275,23 +276,29 @@ def test_continuing_less_stubbornly_is_refused(tmp_path):
     assert prove(resume=path, stubborn=False, depth=120).no_tori
 
 
-def test_what_comes_late_is_kept(tmp_path):
+def test_what_comes_late_is_kept(tmp_path, monkeypatch):
     """At the time limit the workers are waited for a little, and what they bring is in the backup."""
     class Slow(concurrent.futures.ThreadPoolExecutor):
         def submit(self, work, *args):
             def slowly():
                 grown = work(*args)
-                brought.append(grown.text)
+                brought.append(grown.text)      # with this the time is up
                 time.sleep(0.4)
                 return grown
 
             return super().submit(slowly)
 
     path, brought = tmp_path / "a.proof", []
+    monkeypatch.setattr(growth, "TASK_SECONDS", 20)         # how long they are waited for
+    monkeypatch.setattr(growth.Growth, "alone_until", property(lambda self: 0.0, lambda *_: None),
+                        raising=False)
+    monkeypatch.setattr(run._Run, "end", property(lambda self: -math.inf if brought else math.inf,
+                                                  lambda *_: None), raising=False)
     with Slow(2) as executor:
-        result = prove(LONG, method="loewner", executor=executor, time_limit=0.3, backup=path)
+        result = prove(LONG, method="loewner", executor=executor, backup=path)
     tree = Proof.load(path).tree
-    assert tree == result.tree and brought and all(text in tree for text in brought)
+    assert tree == result.tree and "".join(brought) and all(text in tree for text in brought)
+    assert not result.no_tori and not result.undecided      # it was left as it was
 
 
 def test_what_lies_beyond_an_undecided_prism_is_not_its_own():
