@@ -210,19 +210,6 @@ Qed.
 Lemma orbit_ext ws ws' x : (forall y, V' ws y = V' ws' y) -> orbit ws x -> orbit ws' x.
 Proof. intros HV Hx j. now rewrite <- HV. Qed.
 
-(* The order of the waves does not matter. *)
-Lemma V'_permutation ws ws' y : Permutation ws ws' -> V' ws y = V' ws' y.
-Proof. intros H. unfold V'. f_equal; f_equal; now apply sum_permutation. Qed.
-
-Lemma beta_permutation ws ws' y v : Permutation ws ws' -> beta ws y v = beta ws' y v.
-Proof. intros H. unfold beta. f_equal. now apply sum_permutation. Qed.
-
-Lemma orbit_permutation ws ws' x : Permutation ws ws' -> orbit ws x -> orbit ws' x.
-Proof. intros H. apply orbit_ext. intros y. now apply V'_permutation. Qed.
-
-Lemma refuted_permutation ws ws' x : Permutation ws ws' -> refuted ws x -> refuted ws' x.
-Proof. intros H. apply refuted_ext. intros j v. now apply beta_permutation. Qed.
-
 (* ---- everything is periodic *)
 
 Lemma sin_turns a (m : Z) : sin (a + 2 * PI * IZR m) = sin a.

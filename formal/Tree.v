@@ -420,92 +420,102 @@ Qed.
 (* Is this number an even integer? *)
 Definition even (q : Q) : bool := (Qnum q mod (2 * Zpos (Qden q)) =? 0)%Z.
 
-Fixpoint same_numbers (l l' : list Q) : bool :=
+(* A term's function is another one's with this sign: sin(x) = sin(x + 2 pi) = - sin(x + pi) and
+   sin(x) = sin(pi - x).  None: with neither. *)
+Definition sign_of (phase : Q) : option Q :=
+  if even phase then Some 1%Q else if even (phase - 1) then Some (-1)%Q else None.
+
+Definition relation (w w' : term) : option Q :=
+  if (of_k0 w' =? of_k0 w)%Z && (of_k1 w' =? of_k1 w)%Z then sign_of (of_phase w' - of_phase w)
+  else if (of_k0 w' =? - of_k0 w)%Z && (of_k1 w' =? - of_k1 w)%Z
+  then sign_of (of_phase w' + of_phase w - 1)
+  else None.
+
+(* l + s l', as if the shorter one ended with zeros. *)
+Fixpoint added (s : Q) (l l' : list Q) : list Q :=
   match l, l' with
-  | [], [] => true
-  | q :: l, q' :: l' => Qeq_bool q q' && same_numbers l l'
-  | _, _ => false
+  | _, [] => l
+  | [], _ => map (Qmult s) l'
+  | q :: l, q' :: l' => (q + s * q')%Q :: added s l l'
   end.
 
-(* Two terms that are the same function: sin(x) = sin(x + 2 pi) = sin(pi - x). *)
-Definition same_phase (w w' : term) : bool :=
-  (of_k0 w' =? of_k0 w)%Z && (of_k1 w' =? of_k1 w)%Z && even (of_phase w' - of_phase w)
-  || (of_k0 w' =? - of_k0 w)%Z && (of_k1 w' =? - of_k1 w)%Z
-     && even (of_phase w' + of_phase w - 1).
-
-Definition same_term (w w' : term) : bool :=
-  same_phase w w' && Qeq_bool (middle w) (middle w') && same_numbers (parts w) (parts w').
-
-(* The rest of the list, less one term that is the same as w. *)
-Fixpoint without (w : term) (l : list term) : option (list term) :=
+(* One term for w and all of a list that w can stand for, and the others. *)
+Fixpoint collected (w : term) (l : list term) : term * list term :=
   match l with
-  | [] => None
-  | w' :: l => if same_term w w' then Some l else option_map (cons w') (without w l)
+  | [] => (w, [])
+  | w' :: l =>
+      let (total, rest) := collected w l in
+      match relation w w' with
+      | Some s => (Term (of_k0 w) (of_k1 w) (of_phase w) (middle total + s * middle w')
+                        (added s (parts total) (parts w')), rest)
+      | None => (total, w' :: rest)
+      end
   end.
 
-(* Can the terms be matched one to one? *)
-Fixpoint matched (l l' : list term) : bool :=
-  match l with
-  | [] => match l' with [] => true | _ => false end
-  | w :: l => match without w l' with Some rest => matched l rest | None => false end
+(* Is V zero for all parameters? *)
+Fixpoint vanish (fuel : nat) (l : list term) : bool :=
+  match fuel, l with
+  | _, [] => true
+  | O, _ => false
+  | S fuel, w :: l =>
+      let (total, rest) := collected w l in
+      forallb (Qeq_bool 0) (middle total :: parts total) && vanish fuel rest
   end.
+
+Definition opposite (w : term) : term :=
+  Term (of_k0 w) (of_k1 w) (of_phase w) (- middle w) (map Qopp (parts w)).
 
 Definition exchanged (order : list nat) (w : term) : term :=
   Term (of_k1 w) (of_k0 w) (of_phase w) (middle w) (reordered 0%Q order (parts w)).
 
-(* Are the patch's terms, exchanged, those of the patch with its parameters in this order? *)
+(* Is V, its coordinates exchanged, V with its parameters in this order? *)
 Definition symmetric (patch : list term) (order : list nat) : bool :=
   forallb (fun m => existsb (Nat.eqb m) order) (seq 0 (List.length order))
   && forallb (fun w => List.length (parts w) <=? List.length order)%nat patch
-  && matched (map (exchanged order) patch) patch.
+  && vanish (2 * List.length patch) (map (exchanged order) patch ++ map opposite patch).
 
-(* Waves that are the same function. *)
-Definition alike (w w' : wave) : Prop :=
-  amplitude w' = amplitude w /\ exists m : Z,
-  (k0 w' = k0 w /\ k1 w' = k1 w /\ phase w' = phase w + 2 * PI * IZR m) \/
-  (k0 w' = (- k0 w)%Z /\ k1 w' = (- k1 w)%Z /\ phase w' = PI - phase w + 2 * PI * IZR m).
+(* What V' and beta are sums of, for amplitude 1; s times as much for another wave. *)
+Definition alike (s : R) (w w' : wave) : Prop := forall y v,
+  IZR (k0 w') * cos (angle w' y) = s * (IZR (k0 w) * cos (angle w y)) /\
+  IZR (k1 w') * cos (angle w' y) = s * (IZR (k1 w) * cos (angle w y)) /\
+  sin (angle w' y) * (along w' v * along w' v) = s * (sin (angle w y) * (along w v * along w v)).
 
-(* Their parts of V' and of beta are the same. *)
-Lemma alike_here w w' y v : alike w w' ->
-  IZR (k0 w') * (amplitude w' * cos (angle w' y))
-  = IZR (k0 w) * (amplitude w * cos (angle w y)) /\
-  IZR (k1 w') * (amplitude w' * cos (angle w' y))
-  = IZR (k1 w) * (amplitude w * cos (angle w y)) /\
-  amplitude w' * sin (angle w' y) * (along w' v * along w' v)
-  = amplitude w * sin (angle w y) * (along w v * along w v).
+Lemma alike_turned w w' (m : Z) : k0 w' = k0 w -> k1 w' = k1 w ->
+  phase w' = phase w + 2 * PI * IZR m -> alike 1 w w'.
 Proof.
-  intros (Hp & m & [(H0 & H1 & Hphase)|(H0 & H1 & Hphase)]).
-  - assert (Hangle : angle w' y = angle w y + 2 * PI * IZR m).
-    { unfold angle, along. rewrite H0, H1, Hphase. ring. }
-    assert (Halong : along w' v = along w v) by (unfold along; now rewrite H0, H1).
-    rewrite Hangle, Halong, cos_turns, sin_turns, Hp, H0, H1. auto.
-  - assert (Hangle : angle w' y = PI - angle w y + 2 * PI * IZR m).
-    { unfold angle, along. rewrite H0, H1, Hphase, !opp_IZR. ring. }
-    assert (Halong : along w' v = - along w v).
-    { unfold along. rewrite H0, H1, !opp_IZR. ring. }
-    rewrite Hangle, Halong, cos_turns, sin_turns, Hp, H0, H1, !opp_IZR, sin_PI_x,
-      Rtrigo_facts.cos_pi_minus.
-    repeat split; ring.
+  intros H0 H1 Hphase y v.
+  assert (Hangle : angle w' y = angle w y + 2 * PI * IZR m).
+  { unfold angle, along. rewrite H0, H1, Hphase. ring. }
+  assert (Halong : along w' v = along w v) by (unfold along; now rewrite H0, H1).
+  rewrite Hangle, Halong, cos_turns, sin_turns, H0, H1. repeat split; ring.
 Qed.
 
-(* Sums over lists whose elements are alike, pair by pair. *)
-Lemma sum_pairs {A} (P : A -> A -> Prop) (f : A -> R) l l' :
-  (forall a a', P a a' -> f a' = f a) -> Forall2 P l l' -> sum f l' = sum f l.
+Lemma alike_half w w' : k0 w' = k0 w -> k1 w' = k1 w -> phase w' = phase w + PI ->
+  alike (-1) w w'.
 Proof.
-  intros Hf H. induction H as [|a a' l l' Ha Hl IH]; [reflexivity|].
-  cbn. rewrite (Hf a a' Ha). f_equal. exact IH.
+  intros H0 H1 Hphase y v.
+  assert (Hangle : angle w' y = angle w y + PI).
+  { unfold angle, along. rewrite H0, H1, Hphase. ring. }
+  assert (Halong : along w' v = along w v) by (unfold along; now rewrite H0, H1).
+  rewrite Hangle, Halong, neg_cos, neg_sin, H0, H1. repeat split; ring.
 Qed.
 
-Lemma V'_alike ws ws' y : Forall2 alike ws ws' -> V' ws' y = V' ws y.
+Lemma alike_reversed w w' : k0 w' = (- k0 w)%Z -> k1 w' = (- k1 w)%Z -> phase w' = PI - phase w ->
+  alike 1 w w'.
 Proof.
-  intros H. unfold V'. f_equal; f_equal; apply (sum_pairs alike); try assumption;
-    intros w w' Hw; now apply (alike_here w w' y y).
+  intros H0 H1 Hphase y v.
+  assert (Hangle : angle w' y = PI - angle w y).
+  { unfold angle, along. rewrite H0, H1, Hphase, !opp_IZR. ring. }
+  assert (Halong : along w' v = - along w v).
+  { unfold along. rewrite H0, H1, !opp_IZR. ring. }
+  rewrite Hangle, Halong, H0, H1, !opp_IZR, sin_PI_x, Rtrigo_facts.cos_pi_minus.
+  repeat split; ring.
 Qed.
 
-Lemma beta_alike ws ws' y v : Forall2 alike ws ws' -> beta ws' y v = beta ws y v.
+Lemma alike_trans s s' w w' w'' : alike s w w' -> alike s' w' w'' -> alike (s' * s) w w''.
 Proof.
-  intros H. unfold beta. f_equal. apply (sum_pairs alike); try assumption.
-  intros w w' Hw. now apply (alike_here w w' y v).
+  intros H H' y v. destruct (H y v) as (H0 & H1 & H2), (H' y v) as (-> & -> & ->).
+  rewrite H0, H1, H2. repeat split; ring.
 Qed.
 
 Lemma even_correct q : even q = true -> exists m : Z, Q2R q = 2 * IZR m.
@@ -514,51 +524,115 @@ Proof.
   unfold Q2R. rewrite Hm, !mult_IZR. field. apply not_0_IZR. lia.
 Qed.
 
-Lemma same_numbers_correct l l' t : same_numbers l l' = true -> combined l' t = combined l t.
+(* A phase that differs from another by a whole number: of turns, or of turns and a half. *)
+Lemma sign_of_correct q s w w' : sign_of q = Some s -> k0 w' = k0 w -> k1 w' = k1 w ->
+  phase w' = phase w + Q2R q * PI -> alike (Q2R s) w w'.
 Proof.
-  revert l' t. induction l as [|q l IH]; intros [|q' l'] [|x t]; try discriminate; auto.
-  cbn. intros H. apply andb_prop in H as [Hq Hl]. apply Qeq_bool_eq, Qeq_eqR in Hq.
-  specialize (IH l' t Hl). unfold combined, sum in IH. now rewrite Hq, IH.
+  unfold sign_of. intros H H0 H1 Hphase. destruct (even q) eqn:Hq.
+  - injection H as <-. apply even_correct in Hq as [m Hm].
+    replace (Q2R 1) with 1 by (unfold Q2R; cbn; lra).
+    apply (alike_turned _ _ m); try assumption. rewrite Hphase, Hm. ring.
+  - destruct (even (q - 1)) eqn:Hq1; [|discriminate]. injection H as <-.
+    apply even_correct in Hq1 as [m Hm]. rewrite Q2R_minus in Hm.
+    replace (Q2R 1) with 1 in Hm by (unfold Q2R; cbn; lra).
+    replace (Q2R (-1)) with (-1 * 1) by (unfold Q2R; cbn; lra).
+    apply (alike_trans _ _ _ (Wave (k0 w) (k1 w) (phase w + 2 * PI * IZR m) 0)).
+    + now apply (alike_turned _ _ m).
+    + apply alike_half; try assumption. cbn. rewrite Hphase.
+      replace (Q2R q) with (1 + 2 * IZR m) by lra. ring.
 Qed.
 
 Definition wave_at (t : list R) (w : term) : wave :=
   Wave (of_k0 w) (of_k1 w) (Q2R (of_phase w) * PI) (Q2R (middle w) + combined (parts w) t).
 
-Lemma same_term_correct t w w' : same_term w w' = true -> alike (wave_at t w) (wave_at t w').
+Lemma relation_correct t w w' s : relation w w' = Some s ->
+  alike (Q2R s) (wave_at t w) (wave_at t w').
 Proof.
-  unfold same_term, same_phase. intros H. apply andb_prop in H as [H Hparts].
-  apply andb_prop in H as [H Hmiddle]. apply Qeq_bool_eq, Qeq_eqR in Hmiddle.
-  split; cbn [wave_at amplitude k0 k1 phase].
-  - now rewrite Hmiddle, (same_numbers_correct _ _ t Hparts).
-  - apply orb_prop in H as [H|H]; apply andb_prop in H as [H Hphase];
-      apply andb_prop in H as [H0 H1]; apply Z.eqb_eq in H0, H1;
-      apply even_correct in Hphase as [m Hm]; exists m; [left | right];
-      repeat split; try assumption; rewrite ?Q2R_minus, ?Q2R_plus in Hm.
-    + replace (Q2R (of_phase w')) with (Q2R (of_phase w) + 2 * IZR m) by lra. ring.
-    + replace (Q2R 1) with 1 in Hm by (unfold Q2R; cbn; lra).
-      replace (Q2R (of_phase w')) with (1 - Q2R (of_phase w) + 2 * IZR m) by lra. ring.
+  unfold relation. intros H.
+  destruct ((of_k0 w' =? of_k0 w)%Z && (of_k1 w' =? of_k1 w)%Z) eqn:Hsame.
+  - apply andb_prop in Hsame as [H0 H1]. apply Z.eqb_eq in H0, H1.
+    apply (sign_of_correct _ _ _ _ H); try assumption. cbn [wave_at phase].
+    rewrite Q2R_minus. ring.
+  - destruct ((of_k0 w' =? - of_k0 w)%Z && (of_k1 w' =? - of_k1 w)%Z) eqn:Hopposite;
+      [|discriminate].
+    apply andb_prop in Hopposite as [H0 H1]. apply Z.eqb_eq in H0, H1.
+    replace (Q2R s) with (Q2R s * 1) by ring.
+    apply (alike_trans _ _ _ (Wave (of_k0 w') (of_k1 w') (PI - Q2R (of_phase w) * PI) 0)).
+    + now apply alike_reversed.
+    + apply (sign_of_correct _ _ _ _ H); try reflexivity. cbn [wave_at phase].
+      rewrite Q2R_minus, Q2R_plus. replace (Q2R 1) with 1 by (unfold Q2R; cbn; lra). ring.
 Qed.
 
-Lemma without_correct w l : forall rest, without w l = Some rest ->
-  exists w', same_term w w' = true /\ Permutation l (w' :: rest).
+Lemma combined_scaled s l t : combined (map (Qmult s) l) t = Q2R s * combined l t.
 Proof.
-  induction l as [|w' l IH]; intros rest H; [discriminate|]. cbn in H.
-  destruct (same_term w w') eqn:Hw.
-  - injection H as <-. now exists w'.
-  - destruct (without w l) as [rest'|]; [|discriminate]. injection H as <-.
-    destruct (IH rest' eq_refl) as (w'' & Hsame & Hl). exists w''. split; [assumption|].
-    rewrite Hl. apply perm_swap.
+  unfold combined. revert t. induction l as [|q l IH]; intros [|x t]; cbn; try ring.
+  unfold sum in IH. rewrite IH, Q2R_mult. ring.
 Qed.
 
-Lemma matched_correct l : forall l', matched l l' = true ->
-  exists l'', Permutation l' l'' /\ Forall2 (fun w w' => same_term w w' = true) l l''.
+Lemma combined_opposite l t : combined (map Qopp l) t = - combined l t.
 Proof.
-  induction l as [|w l IH]; intros l' H; cbn in H.
-  - destruct l'; [|discriminate]. exists []. split; constructor.
-  - destruct (without w l') as [rest|] eqn:Hrest; [|discriminate].
-    apply without_correct in Hrest as (w' & Hw & Hl'). apply IH in H as (l'' & Hrest & Hl).
-    exists (w' :: l''). split; [rewrite Hl'; now constructor | now constructor].
+  unfold combined. revert t. induction l as [|q l IH]; intros [|x t]; cbn; try ring.
+  unfold sum in IH. rewrite IH, Q2R_opp. ring.
 Qed.
+
+Lemma combined_added s l l' t : combined (added s l l') t = combined l t + Q2R s * combined l' t.
+Proof.
+  revert l' t. induction l as [|q l IH]; intros [|q' l'] t.
+  - cbn. ring.
+  - change (added s [] (q' :: l')) with (map (Qmult s) (q' :: l')). rewrite combined_scaled.
+    cbn. ring.
+  - cbn. ring.
+  - destruct t as [|x t]; [cbn; ring|]. specialize (IH l' t). unfold combined, sum in *. cbn.
+    rewrite IH, Q2R_plus, Q2R_mult. ring.
+Qed.
+
+Lemma combined_zero l t : forallb (Qeq_bool 0) l = true -> combined l t = 0.
+Proof.
+  unfold combined. revert t. induction l as [|q l IH]; intros [|x t] H; try reflexivity. cbn in *.
+  apply andb_prop in H as [Hq H]. apply Qeq_bool_eq, Qeq_eqR in Hq. unfold sum in IH.
+  rewrite (IH t H), <- Hq. unfold Q2R; cbn. ring.
+Qed.
+
+(* A sum of amplitudes times something is the same for terms that are collected, and zero if they
+   all vanish. *)
+Section Collected.
+Variables (t : list R) (g : wave -> R).
+Hypothesis g_alike : forall s w w', alike s w w' -> g w' = s * g w.
+
+Definition share (w : term) : R := amplitude (wave_at t w) * g (wave_at t w).
+
+Lemma collected_correct w l : forall total rest, collected w l = (total, rest) ->
+  g (wave_at t total) = g (wave_at t w) /\
+  share w + sum share l = share total + sum share rest.
+Proof.
+  induction l as [|w' l IH]; intros total rest H; cbn [collected] in H.
+  - injection H as <- <-. repeat split; auto.
+  - destruct (collected w l) as [total' rest'] eqn:Hl.
+    destruct (IH _ _ eq_refl) as (Hg & Hsum).
+    unfold sum in Hsum. destruct (relation w w') as [s|] eqn:Hs; injection H as <- <-.
+    + apply (relation_correct t), g_alike in Hs.
+      assert (Hsame : g (wave_at t (Term (of_k0 w) (of_k1 w) (of_phase w)
+                (middle total' + s * middle w') (added s (parts total') (parts w'))))
+              = g (wave_at t w)).
+      { rewrite (g_alike 1 (wave_at t w)); [ring|]. apply (alike_turned _ _ 0); try reflexivity.
+        cbn. ring. }
+      split; [assumption|].
+      unfold sum; cbn. unfold share in *. rewrite Hsame, Hs, Hg in *.
+      cbn [wave_at amplitude middle parts] in *. rewrite combined_added, Q2R_plus, Q2R_mult. nra.
+    + split; [assumption|]. unfold sum; cbn. lra.
+Qed.
+
+Lemma vanish_correct n : forall l, vanish n l = true -> sum share l = 0.
+Proof.
+  induction n as [|n IH]; intros [|w l] H; try reflexivity; try discriminate. cbn [vanish] in H.
+  destruct (collected w l) as [total rest] eqn:Hl. apply andb_prop in H as [Hzero H].
+  apply collected_correct in Hl as (_ & Hsum). cbn [forallb] in Hzero.
+  apply andb_prop in Hzero as [Hmiddle Hparts]. apply Qeq_bool_eq, Qeq_eqR in Hmiddle.
+  change (share w + sum share l = 0). rewrite Hsum, (IH _ H). unfold share at 1.
+  cbn [wave_at amplitude]. rewrite (combined_zero _ _ Hparts), <- Hmiddle. unfold Q2R; cbn. ring.
+Qed.
+
+End Collected.
 
 (* What is combined is a sum over all numbers that are not beyond the parts. *)
 Lemma combined_sum m : forall parts t, (List.length parts <= m)%nat ->
@@ -600,23 +674,55 @@ Proof.
   intros m Hm. apply H, existsb_exists in Hm as (m' & Hin & Hm). apply Nat.eqb_eq in Hm. now subst.
 Qed.
 
-(* The waves, exchanged, are one by one like those for the parameters in the other order. *)
-Theorem symmetric_correct : forall patch order, symmetric patch order = true -> forall t,
-  exists ws, Permutation (waves patch (reordered 0 order t)) ws /\
-             Forall2 alike (map exchange (waves patch t)) ws.
+Lemma sum_app {A} (f : A -> R) l l' : sum f (l ++ l') = sum f l + sum f l'.
 Proof.
-  intros patch order H t. unfold symmetric in H. apply andb_prop in H as [H Hmatched].
+  induction l as [|a l IH]; [change (sum f l' = 0 + sum f l'); ring|].
+  change (f a + sum f (l ++ l') = f a + sum f l + sum f l'). rewrite IH. ring.
+Qed.
+
+(* A sum over the waves, exchanged, is that for the parameters in the other order. *)
+Lemma symmetric_sums patch order t g : symmetric patch order = true ->
+  (forall s w w', alike s w w' -> g w' = s * g w) ->
+  sum (fun w => amplitude w * g w) (map exchange (waves patch t))
+  = sum (fun w => amplitude w * g w) (waves patch (reordered 0 order t)).
+Proof.
+  intros H Hg. unfold symmetric in H. apply andb_prop in H as [H Hvanish].
   apply andb_prop in H as [Horder Hparts]. apply order_correct in Horder.
   rewrite forallb_forall in Hparts.
-  apply matched_correct in Hmatched as (l & Hl & Hsame).
-  exists (map (wave_at (reordered 0 order t)) l). split; [now apply Permutation_map|].
-  replace (map exchange (waves patch t))
-    with (map (wave_at (reordered 0 order t)) (map (exchanged order) patch)).
-  - clear - Hsame. induction Hsame; constructor; [now apply same_term_correct | assumption].
-  - unfold waves. rewrite !map_map. apply map_ext_in. intros w Hw.
-    unfold wave_at, exchange, exchanged.
-    cbn [of_k0 of_k1 of_phase middle parts k0 k1 phase amplitude].
-    rewrite combined_reordered; [reflexivity | assumption |]. now apply Nat.leb_le, Hparts.
+  apply (vanish_correct (reordered 0 order t) g Hg) in Hvanish.
+  rewrite sum_app, !sum_map in Hvanish. unfold waves. rewrite !sum_map.
+  rewrite (sum_ext (fun w => share _ g (opposite w))
+             (fun w => -1 * (amplitude (wave_at (reordered 0 order t) w)
+                             * g (wave_at (reordered 0 order t) w)))) in Hvanish.
+  - rewrite sum_scale in Hvanish.
+    rewrite (sum_ext _ (fun w => share (reordered 0 order t) g (exchanged order w))).
+    + change (fun w => amplitude _ * g _) with
+        (fun w => let w := wave_at (reordered 0 order t) w in amplitude w * g w). lra.
+    + intros w Hw. unfold share, wave_at, exchange, exchanged.
+      cbn [of_k0 of_k1 of_phase middle parts k0 k1 phase amplitude].
+      rewrite combined_reordered; [reflexivity | assumption |]. now apply Nat.leb_le, Hparts.
+  - intros w _. unfold share. rewrite (Hg 1 (wave_at (reordered 0 order t) w)).
+    + cbn [wave_at amplitude opposite middle parts]. rewrite combined_opposite, Q2R_opp. ring.
+    + apply (alike_turned _ _ 0); try reflexivity. cbn. ring.
+Qed.
+
+Theorem symmetric_correct : forall patch order, symmetric patch order = true -> forall t y v,
+  V' (map exchange (waves patch t)) y = V' (waves patch (reordered 0 order t)) y /\
+  beta (map exchange (waves patch t)) y v = beta (waves patch (reordered 0 order t)) y v.
+Proof.
+  intros patch order H t y v.
+  assert (Hsums := fun g => symmetric_sums patch order t g H).
+  assert (H0 := Hsums (fun w => IZR (k0 w) * cos (angle w y))
+                 (fun s w w' Hw => proj1 (Hw y v))).
+  assert (H1 := Hsums (fun w => IZR (k1 w) * cos (angle w y))
+                 (fun s w w' Hw => proj1 (proj2 (Hw y v)))).
+  assert (H2 := Hsums (fun w => sin (angle w y) * (along w v * along w v))
+                 (fun s w w' Hw => proj2 (proj2 (Hw y v)))).
+  split.
+  - unfold V'. f_equal; f_equal; [etransitivity; [etransitivity; [|exact H0]|] |
+      etransitivity; [etransitivity; [|exact H1]|]]; apply sum_ext; intros w _; ring.
+  - unfold beta. f_equal. etransitivity; [etransitivity; [|exact H2]|];
+      apply sum_ext; intros w _; ring.
 Qed.
 
 (* No minimizing orbit goes from x* to this point, for these parameters; u has first the place of x1
@@ -631,13 +737,13 @@ Theorem mirror_excluded : forall patch xstar c h order u, symmetric patch order 
 Proof.
   intros patch xstar c h order u Hsymmetric Hxstar Himage x Hx Hx0 Hx1.
   destruct u as [|v0 [|v1 t]]; [now apply Himage | now apply Himage |].
-  cbn [tl] in *. destruct (symmetric_correct _ _ Hsymmetric t) as (ws & Hws & Halike).
+  cbn [tl] in *. pose proof (symmetric_correct _ _ Hsymmetric t) as Hsame.
   apply refuted_swap. apply orbit_swap in Hx. set (x' := fun j => swap (x j)) in *.
   apply (refuted_ext (waves patch (reordered 0 order t)) _ x').
-  - intros j v. rewrite (beta_permutation _ ws _ v Hws). now apply beta_alike.
+  - intros j v. symmetry. apply Hsame.
   - apply Himage; cbn [image tl].
     + apply (orbit_ext (map exchange (waves patch t))); [|assumption].
-      intros y. rewrite (V'_permutation _ ws y Hws). symmetry. now apply V'_alike.
+      intros y. now apply (Hsame y y).
     + unfold x', swap. rewrite Hx0, Hxstar. rewrite <- Hxstar at 1. now destruct xstar.
     + unfold x', swap. now rewrite Hx1.
 Qed.
