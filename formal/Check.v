@@ -110,17 +110,37 @@ Fixpoint greatest (l : list F.type) (at_ : nat) (best : F.type * nat) : nat :=
   | x :: l => greatest l (S at_) (if above x (fst best) then (x, at_) else best)
   end.
 
-(* None if the cell is excluded, else the axis along which to cut it. *)
-Definition attempt (rd : ready) (c : cell) : option nat :=
-  let cuts := fold_right (fun s n => snd s + n)%nat O c in
-  match prism_bound prec exact sines (manner_of cuts) rd c with
-  | Some (i, blames) => if negative i then None else Some (greatest blames 0 (F.zero, 0%nat))
+(* The axis that is cut least among those that are blamed at all, and how often it is. *)
+Fixpoint hindmost (blames : list F.type) (cuts : list nat) (at_ : nat) (best : nat * nat) :
+    nat * nat :=
+  match blames, cuts with
+  | x :: blames, cut :: cuts =>
+    hindmost blames cuts (S at_)
+      (if above x F.zero && (cut <? snd best)%nat then (at_, cut) else best)
+  | _, _ => best
+  end.
+
+(* The axis that matters most, but none that matters is left more than four halvings behind. *)
+Definition axis_of (blames : list F.type) (cuts : list nat) : nat :=
+  let worst := greatest blames 0 (F.zero, 0%nat) in
+  let cut := nth worst cuts 0%nat in
+  let (last, least) := hindmost blames cuts 0 (worst, cut) in
+  if (least + 4 <? cut)%nat then last else worst.
+
+Definition cuts_of (c : cell) : list nat := map snd c.
+
+(* None if the cell, of a leaf, is excluded, else the axis along which to halve it. *)
+Definition attempt (rd : ready) (leaf c : cell) : option nat :=
+  match prism_bound prec exact sines (manner_of (list_sum (cuts_of c))) rd c with
+  | Some (i, blames) =>
+    if negative i then None
+    else Some (axis_of blames (zip Nat.sub (cuts_of c) (cuts_of leaf)))
   | None => Some (length c)
   end.
 
 Definition leaf_ok (c : claim) (h : hints) : cell -> bool :=
   let rd := prepare prec exact (sharp_pi prec) (final_problem c) (tail h) in
-  fun leaf => settle (attempt rd) (fuel h) leaf.
+  fun leaf => settle (attempt rd leaf) (fuel h) leaf.
 
 (* ---- what is decided once *)
 
@@ -168,8 +188,8 @@ Proof.
   intros Ht Hp Hleaf Hu. destruct (tail_ok_correct _ _ Ht) as (Hl & HB).
   assert (Below := patch_below_correct prec _ _ Hp).
   revert Hu. refine (settle_covers (excluded (plain_problem c)) _ _ (fuel h) leaf Hleaf u).
-  clear leaf u Hleaf. intros leaf Hleaf u Hu. unfold attempt in Hleaf.
-  destruct (prism_bound _ _ _ _ _ leaf) as [(i, b) |] eqn:E in Hleaf; [| discriminate].
+  clear u Hleaf. intros piece Hleaf u Hu. unfold attempt in Hleaf.
+  destruct (prism_bound _ _ _ _ _ piece) as [(i, b) |] eqn:E in Hleaf; [| discriminate].
   destruct (negative i) eqn:Neg; [| discriminate].
   assert (Final : excluded (final_problem c) u).
   { eapply (bound_ok prec exact exact_ok sines sines_ok);

@@ -19,7 +19,7 @@ let max_bytes = 1 lsl 28                        (* of a proof file, uncompressed
 let max_line = 1 lsl 24                         (* of the header *)
 let max_cuts = 1000                             (* of a leaf *)
 let max_characters = 1000                       (* of a number *)
-let fuel = 16                                   (* how often a leaf may be halved *)
+let fuel = 24                                   (* how often a leaf may be halved *)
 
 exception Failed of int * string                (* nothing was verified; why *)
 exception Interrupted of int
