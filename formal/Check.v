@@ -29,8 +29,8 @@ Definition statement (c : claim) : Prop :=
   end.
 
 (* A bound of beta's eigenvalues and l for the tails, l + 1/l >= bound; for larger amplitudes a place,
-   in units of pi, and a vector; and how often a leaf may be halved. *)
-Record hints := Hints { bound : Q; tail : Q; place : (Q * Q) * (Q * Q); fuel : nat }.
+   in units of pi, and a vector. *)
+Record hints := Hints { bound : Q; tail : Q; place : (Q * Q) * (Q * Q) }.
 
 (* The problem of a claim; its waves that are felt; and perhaps in the frame of x0 + x1 and x0 - x1,
    which is better where waves that feel both coordinates count. *)
@@ -138,9 +138,13 @@ Definition attempt (rd : ready) (leaf c : cell) : option nat :=
   | None => Some (length c)
   end.
 
+(* How often a leaf may be halved, one piece of it and all. *)
+Definition most_deep : nat := 24.
+Definition most_cuts : nat := 2 ^ 14.
+
 Definition leaf_ok (c : claim) (h : hints) : cell -> bool :=
   let rd := prepare prec exact (sharp_pi prec) (final_problem c) (tail h) in
-  fun leaf => settle (attempt rd leaf) (fuel h) leaf.
+  fun leaf => settled (attempt rd leaf) most_deep most_cuts leaf.
 
 (* ---- what is decided once *)
 
@@ -181,14 +185,21 @@ Proof.
   apply (Nat.le_trans _ _ _ (IH H)). apply Nat.le_max_r.
 Qed.
 
+(* For a proof in which the limits are any. *)
+Lemma leaf_ok_settled c h leaf : leaf_ok c h leaf =
+  settled (attempt (prepare prec exact (sharp_pi prec) (final_problem c) (tail h)) leaf)
+          most_deep most_cuts leaf.
+Proof. reflexivity. Qed.
+
 Lemma leaf_excluded c h leaf u : tail_ok (bound h) (tail h) = true ->
   patch_below prec (terms (plain_problem c)) (bound h) = true -> leaf_ok c h leaf = true ->
   in_cell leaf u -> excluded (plain_problem c) u.
 Proof.
   intros Ht Hp Hleaf Hu. destruct (tail_ok_correct _ _ Ht) as (Hl & HB).
   assert (Below := patch_below_correct prec _ _ Hp).
-  revert Hu. refine (settle_covers (excluded (plain_problem c)) _ _ (fuel h) leaf Hleaf u).
-  clear u Hleaf. intros piece Hleaf u Hu. unfold attempt in Hleaf.
+  rewrite leaf_ok_settled in Hleaf. revert Hleaf u Hu. generalize most_deep most_cuts.
+  intros deep cuts Hleaf. refine (settled_covers (excluded (plain_problem c)) _ _ _ _ leaf Hleaf).
+  clear Hleaf. intros piece Hleaf u Hu. unfold attempt in Hleaf.
   destruct (prism_bound _ _ _ _ _ piece) as [(i, b) |] eqn:E in Hleaf; [| discriminate].
   destruct (negative i) eqn:Neg; [| discriminate].
   assert (Final : excluded (final_problem c) u).

@@ -393,26 +393,48 @@ Qed.
 (* ---- a search of one's own *)
 
 (* Is the cell excluded, by cuts that are chosen on the way?  attempt says that it is (None), or
-   which axis to cut. *)
-Fixpoint settle (attempt : cell -> option nat) (fuel : nat) (c : cell) : bool :=
+   which axis to cut.  No piece is cut more than depth times, and no more are made than cuts allows:
+   those that are left of them, or None if that was not enough. *)
+Fixpoint settle (attempt : cell -> option nat) (depth cuts : nat) (c : cell) : option nat :=
   match attempt c with
-  | None => true
-  | Some a => match fuel with
-              | O => false
-              | S fuel => (a <? List.length c)%nat && settle attempt fuel (half_cell false a c)
-                          && settle attempt fuel (half_cell true a c)
-              end
+  | None => Some cuts
+  | Some a =>
+    match depth, cuts with
+    | S depth, S cuts =>
+      if (a <? List.length c)%nat then
+        match settle attempt depth cuts (half_cell false a c) with
+        | Some cuts => settle attempt depth cuts (half_cell true a c)
+        | None => None
+        end
+      else None
+    | _, _ => None
+    end
   end.
 
 Theorem settle_covers : forall (excluded : list R -> Prop) attempt,
   (forall c, attempt c = None -> forall u, in_cell c u -> excluded u) ->
-  forall fuel c, settle attempt fuel c = true -> forall u, in_cell c u -> excluded u.
+  forall depth cuts c left, settle attempt depth cuts c = Some left ->
+  forall u, in_cell c u -> excluded u.
 Proof.
-  intros excluded attempt Hattempt fuel. induction fuel as [|fuel IH]; intros c H u Hu.
-  - apply (Hattempt c); [|assumption]. cbn in H. now destruct (attempt c).
-  - cbn in H. destruct (attempt c) as [a|] eqn:Ha; [|now apply (Hattempt c)].
-    apply andb_prop in H as [H Hupper]. apply andb_prop in H as [_ Hlower].
-    destruct (cell_halves a c u Hu); eauto.
+  intros excluded attempt Hattempt depth.
+  induction depth as [|depth IH]; intros cuts c left H u Hu; cbn [settle] in H;
+    (destruct (attempt c) as [a|] eqn:Ha; [|now apply (Hattempt c)]); [discriminate|].
+  destruct cuts as [|cuts]; [discriminate|].
+  destruct (a <? List.length c)%nat; [|discriminate].
+  destruct (settle attempt depth cuts (half_cell false a c)) as [rest|] eqn:Hlower; [|discriminate].
+  destruct (cell_halves a c u Hu); eauto.
+Qed.
+
+Definition settled attempt depth cuts (c : cell) : bool :=
+  match settle attempt depth cuts c with Some _ => true | None => false end.
+
+Corollary settled_covers : forall (excluded : list R -> Prop) attempt depth cuts,
+  (forall c, attempt c = None -> forall u, in_cell c u -> excluded u) ->
+  forall c, settled attempt depth cuts c = true -> forall u, in_cell c u -> excluded u.
+Proof.
+  intros excluded attempt depth cuts Hattempt c H. unfold settled in H.
+  destruct (settle attempt depth cuts c) as [left|] eqn:Hc; [|discriminate].
+  exact (settle_covers excluded attempt Hattempt depth cuts c left Hc).
 Qed.
 
 (* ---- the symmetry of a patch *)

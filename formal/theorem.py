@@ -24,7 +24,6 @@ from converse import check                                      # noqa: E402  (i
 
 WIDTH = 100                                                     # of a line
 DIGITS = 10 ** 9                                                # of a hint, decimal
-FUEL = 16                                                       # how often a leaf may be halved
 
 
 def number(x):
@@ -168,7 +167,7 @@ Definition %s_tree : tree := read_tree
 """ % (name, "Claim %s\n  %s %s %s %s %s." % (
             patch_text(claim, 8), region_text(claim), pair(claim.xstar), alone, once,
             "None" if odd is None else "(Some %s)" % pair(odd)),
-       name, "Hints %s %s (%s, %s) %d." % (number(B), number(l), pair(place), pair(vector), FUEL),
+       name, "Hints %s %s (%s, %s)." % (number(B), number(l), pair(place), pair(vector)),
        name, tree_text(claim.tree))
 
 

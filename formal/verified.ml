@@ -19,7 +19,6 @@ let max_bytes = 1 lsl 28                        (* of a proof file, uncompressed
 let max_line = 1 lsl 24                         (* of the header *)
 let max_cuts = 1000                             (* of a leaf *)
 let max_characters = 1000                       (* of a number *)
-let fuel = 24                                   (* how often a leaf may be halved *)
 
 exception Failed of int * string                (* nothing was verified; why *)
 exception Interrupted of int
@@ -414,8 +413,6 @@ let rec corners n =
 (* A double in units of 10^-9. *)
 let billionths x = ratio (z_of (truncate x)) (power_of_10 9)
 
-let rec natural n = if n = 0 then O else S (natural (n - 1))
-
 let hints_of claim =
   let parameters = List.length (List.hd claim.of_patch).parts in
   let largest waves =
@@ -431,7 +428,7 @@ let hints_of claim =
   let size = Float.hypot (fst n) (snd n) in
   let both f (x, y) = billionths (1e9 *. f x), billionths (1e9 *. f y) in
   { bound = billionths b; tail = billionths (floor (1e9 *. l) -. 1.0);
-    place = both (fun y -> y /. pi) y, both (fun n -> n /. size) n; fuel = natural fuel }
+    place = both (fun y -> y /. pi) y, both (fun n -> n /. size) n }
 
 (* ---- the leaves, shared out *)
 
