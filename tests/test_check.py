@@ -25,6 +25,7 @@ import mpmath
 import pytest
 
 from converse import Problem, check, prove, read_input
+from moments import PATIENCE
 from truth import STRIKE, TORTURE
 
 # Of a process without sanitizers, which may import what lies about its file.
@@ -900,7 +901,7 @@ sys.exit(check.main())
     path, _ = long
     process = subprocess.run([sys.executable, "-I", "-c", code, os.path.dirname(check.__file__),
                               path, "--jobs", "3", "--exact"],
-                             stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, timeout=60)
+                             stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, timeout=PATIENCE)
     assert process.returncode == 143, process.stderr
     assert process.stderr == "converse-check: %s: interrupted; nothing was verified\n" % path
     assert not process.stdout
@@ -957,7 +958,7 @@ sys.exit(check.main())
             time.sleep(0.005)                   # every other time it is to get on first
         if process.poll() is None:
             (os.killpg if n % 3 else os.kill)(process.pid, kind)
-        out, err = process.communicate(timeout=60)
+        out, err = process.communicate(timeout=PATIENCE)
         with contextlib.suppress(ProcessLookupError, PermissionError):
             for _ in range(100):                        # a worker that is left ends by itself
                 os.killpg(process.pid, 0)

@@ -15,6 +15,7 @@ import pytest
 
 from converse import ConverseError, orbits
 from converse.orbits import ff, poly, standard, trig
+from moments import PATIENCE
 
 hunt = sys.modules["converse.orbits.search"]
 
@@ -239,7 +240,7 @@ def test_the_experiment(root, tmp_path):
             "import minimizing as m;"
             "m.POTENTIALS, m.TYPES = m.POTENTIALS[:1], m.TYPES[:2]; m.QUICK_EPS = [0.01, 0.04];"
             "m.main()" % (str(tmp_path / "new"), os.path.dirname(name)))
-    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=300)
+    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=PATIENCE)
     assert run.returncode == 0 and not run.stderr
     with open(tmp_path / "new" / "minimizing.csv", newline="") as file:
         rows = list(csv.DictReader(file))
@@ -252,6 +253,6 @@ def test_the_experiment(root, tmp_path):
 def test_the_experiment_s_errors(root, tmp_path):
     (tmp_path / "file").write_text("")
     run = subprocess.run([sys.executable, str(root / "experiments" / "minimizing.py"),
-                          str(tmp_path / "file")], capture_output=True, text=True, timeout=60)
+                          str(tmp_path / "file")], capture_output=True, text=True, timeout=PATIENCE)
     assert run.returncode == 1 and run.stderr.count("\n") == 1
     assert run.stderr.startswith("minimizing.py: ")

@@ -14,6 +14,7 @@ from converse import orbits
 from converse.files import ConverseError
 from converse.orbits import cli, farey
 from converse.orbits.sweep import LOST, ONSET_COLUMNS
+from moments import PATIENCE
 
 SMALL = "65,86/114"
 COMMAND = [sys.executable, "-m", "converse.orbits.cli"]
@@ -288,7 +289,7 @@ def test_what_is_missing_is_said(tmp_path, module, arguments):
     result = subprocess.run(
         [sys.executable, "-c", "import runpy, sys\nsys.modules[%r] = None\n"
          "sys.argv[0] = 'x'\nrunpy.run_module('converse.orbits.cli', run_name='__main__')" % module,
-         *arguments], cwd=tmp_path, capture_output=True, text=True, timeout=60)
+         *arguments], cwd=tmp_path, capture_output=True, text=True, timeout=PATIENCE)
     assert (result.returncode, result.stdout) == (2, "") and one_line(result.stderr)
     assert module.split(".")[0] in result.stderr and "pip install" in result.stderr
     assert not list(tmp_path.iterdir())
@@ -304,12 +305,12 @@ def test_a_sweep_that_a_signal_ends_is_continued(tmp_path, number):
         while time.monotonic() < end and not (path.exists() and path.stat().st_size > 3000):
             time.sleep(0.005)
         process.send_signal(number)
-        out, err = process.communicate(timeout=60)
+        out, err = process.communicate(timeout=PATIENCE)
     assert (process.returncode, out) == (128 + number, "") and one_line(err)
     assert err == "converse-orbits: interrupted; the same command continues it\n"
     size = path.stat().st_size
     for file in path, other:
-        subprocess.run([*COMMAND, "sweep", "trig", file, *common], check=True, timeout=100,
+        subprocess.run([*COMMAND, "sweep", "trig", file, *common], check=True, timeout=PATIENCE,
                        stdout=subprocess.DEVNULL)
     assert path.read_bytes() == other.read_bytes() and 3000 < size < len(other.read_bytes())
     assert not list(tmp_path.glob("*.lock"))

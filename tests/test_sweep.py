@@ -18,6 +18,7 @@ from converse import files, orbits
 from converse.files import ConverseError
 from converse.orbits.solver import LEAST_STEP
 from converse.orbits.sweep import LOST, ONSET_COLUMNS
+from moments import PATIENCE
 
 MODULE = sys.modules[orbits.sweep.__module__]   # its name in the package is the function's
 VECTORS = [((5, 7), 9), ((3, 4), 5), ((12, 16), 21), ((1, 2), 4), ((2, 1), 8)]
@@ -273,7 +274,7 @@ try:
     orbits.sweep(orbits.trig, %r, %r, file=sys.argv[1])
 except RuntimeError as error:
     print(type(error).__name__, error)
-""" % (VECTORS, EPS), path], capture_output=True, text=True, timeout=60)
+""" % (VECTORS, EPS), path], capture_output=True, text=True, timeout=PATIENCE)
     assert result.stderr == "" and result.stdout.count("\n") == 1
     assert result.stdout.startswith("ConverseError %s: cannot be written" % path)
     assert whole.startswith(path.read_bytes()) and 300 < path.stat().st_size <= 1000
@@ -296,7 +297,7 @@ if __name__ == "__main__":
 def test_killed_and_continued(path, number):
     """At once, and then again: in the end the bytes are those of one run."""
     other = path.parent / "whole.csv"
-    subprocess.run([sys.executable, "-c", MANY, other], check=True, timeout=100)
+    subprocess.run([sys.executable, "-c", MANY, other], check=True, timeout=PATIENCE)
     sizes = []
     for share in (0.2, 0.6):
         with subprocess.Popen([sys.executable, "-c", MANY, path],
@@ -310,7 +311,7 @@ def test_killed_and_continued(path, number):
         sizes.append(path.stat().st_size)
         assert other.read_bytes().startswith(path.read_bytes())
     assert 0 < sizes[0] < sizes[1] < other.stat().st_size
-    subprocess.run([sys.executable, "-c", MANY, path], check=True, timeout=100)
+    subprocess.run([sys.executable, "-c", MANY, path], check=True, timeout=PATIENCE)
     assert path.read_bytes() == other.read_bytes()
 
 
