@@ -621,7 +621,7 @@ def test_the_method_of_1989_takes_ranges_only():
         with pytest.raises(ValueError, match=words):
             prove(problem)
     for problem in Problem(0, 0, 2), Problem(2, 2, 0):      # in no frame, and with all waves
-        proof = prove(problem, time_limit=5)
+        proof = prove(problem)
         assert proof.problem.frame == IDENTITY and proof.problem.kept is None
         assert prove(problem, resume=proof).tree == proof.tree
 
