@@ -48,6 +48,22 @@ sys.exit(cli.main())
 """
 
 
+# In front of a sweep: it goes no further when it has written so many families.
+SWEEP_HELD = """
+import sys, time
+from converse import orbits
+file, left = sys.modules["converse.orbits.sweep"]._File, int(sys.argv.pop(1))
+add = file.add
+def add_or_wait(self, text):
+    global left
+    add(self, text)
+    left -= 1                                   # the header, with what was there before, is the first
+    while left < 0:
+        time.sleep(1)
+file.add = add_or_wait
+"""
+
+
 def wait_until(there, process):
     """Until there() is true, which it must be before the process ends."""
     end = time.monotonic() + PATIENCE
