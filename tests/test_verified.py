@@ -16,6 +16,7 @@ import pytest
 
 from conftest import ROOT, not_sanitized
 from converse import Problem, check, prove, read_input
+from moments import PATIENCE, wait_until
 
 COMMAND = ROOT / "formal" / "build" / "converse-verified"
 pytestmark = [not_sanitized, pytest.mark.skipif(not COMMAND.exists(),
@@ -33,7 +34,7 @@ def start(*arguments, **options):
 
 def run(*arguments, **options):
     with start(*arguments, **options) as process:
-        out, err = process.communicate(timeout=600)
+        out, err = process.communicate(timeout=PATIENCE)
     return process.returncode, out, err
 
 
@@ -337,16 +338,14 @@ def busy(texts, tmp_path):
     path = tmp_path / "proof"
     path.write_text(texts["two-harmonics.json"])
     with start("--jobs", 2, path) as process:
-        deadline = time.monotonic() + 60
-        while len(children(process)) < 2:
-            assert process.poll() is None and time.monotonic() < deadline
+        wait_until(lambda: len(children(process)) == 2, process)
         yield process
         process.kill()
 
 
 def test_a_process_that_dies_is_missed(busy):
     os.kill(children(busy)[0], signal.SIGKILL)
-    out, err = busy.communicate(timeout=600)
+    out, err = busy.communicate(timeout=PATIENCE)
     assert busy.returncode == UNUSABLE and not out and err.count("\n") == 1
 
 
@@ -356,14 +355,13 @@ def test_nohup(texts, tmp_path):
     path.write_text(texts["two-harmonics.json"])
     with start("--jobs", 2, path, preexec_fn=lambda: signal.signal(
             signal.SIGHUP, signal.SIG_IGN)) as process:
-        while len(children(process)) < 2:
-            assert process.poll() is None
+        wait_until(lambda: len(children(process)) == 2, process)
         for pid in [*children(process), process.pid]:
             os.kill(pid, signal.SIGHUP)
         time.sleep(0.5)
         assert process.poll() is None and len(children(process)) == 2
         process.terminate()
-        assert process.wait(timeout=60) == 143
+        assert process.wait(timeout=PATIENCE) == 143
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
@@ -372,7 +370,7 @@ def test_interrupted(busy, number):
     for _ in range(5):                          # only the first counts
         busy.send_signal(number)
         time.sleep(0.001)
-    out, err = busy.communicate(timeout=60)
+    out, err = busy.communicate(timeout=PATIENCE)
     assert busy.returncode == 128 + number and not out
     assert err.endswith(": interrupted; nothing was verified\n") and err.count("\n") == 1
     for pid in workers:
