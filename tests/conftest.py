@@ -8,8 +8,10 @@ from fractions import Fraction
 from pathlib import Path
 
 import pytest
+from hypothesis import HealthCheck, settings
 
 from converse import Counts, Problem, Proof, Settings
+from moments import PATIENCE
 
 ROOT = Path(__file__).resolve().parent.parent
 
@@ -17,6 +19,10 @@ ROOT = Path(__file__).resolve().parent.parent
 not_sanitized = pytest.mark.skipif("asan" in os.environ.get("LD_PRELOAD", ""),
                                    reason="it tests nothing that is C")
 COMMAND = str(Path(sys.executable).parent / "converse")
+
+# What takes long takes long: a machine that is slow, or busy, is no failure.
+settings.register_profile("timeless", deadline=None, suppress_health_check=[HealthCheck.too_slow])
+settings.load_profile("timeless")
 
 # A shell without job control starts what it puts in the background with Ctrl-C ignored, and so
 # would be all that is started here.
@@ -44,7 +50,7 @@ def command(start):
     """Runs the command to its end: (exit status, stdout, stderr)."""
     def command(*arguments, stdin=b"", **options):
         with start(*arguments, stdin=subprocess.PIPE, **options) as process:
-            out, err = process.communicate(stdin, timeout=300)
+            out, err = process.communicate(stdin, timeout=PATIENCE)
         return (process.returncode, out.decode("utf-8") if out is not None else None,
                 err.decode("utf-8"))
     return command

@@ -25,6 +25,7 @@ import mpmath
 import pytest
 
 from converse import Problem, check, prove, read_input
+from moments import PATIENCE
 from truth import STRIKE, TORTURE
 
 # Of a process without sanitizers, which may import what lies about its file.
@@ -900,7 +901,7 @@ sys.exit(check.main())
     path, _ = long
     process = subprocess.run([sys.executable, "-I", "-c", code, os.path.dirname(check.__file__),
                               path, "--jobs", "3", "--exact"],
-                             stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, timeout=60)
+                             stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, timeout=PATIENCE)
     assert process.returncode == 143, process.stderr
     assert process.stderr == "converse-check: %s: interrupted; nothing was verified\n" % path
     assert not process.stdout
@@ -941,25 +942,33 @@ def check_chunk(chunk):                         # however fast the machine is
     time.sleep(0.005)
     return at_once(chunk)
 check_chunk.__module__, check.check_chunk, check.STATE_SECONDS = "check", check_chunk, 0.02
+advance, most = check.State.advance, float(sys.argv.pop(1))
+def advance_or_wait(self, *more):
+    advance(self, *more)
+    if self.confirmed > most:
+        self.save()
+        time.sleep(1e6)
+check.State.advance = advance_or_wait
 print(flush=True)
 sys.exit(check.main())
 """
     for n in range(60):
+        most = seen[-1] + 500 if n % 2 else math.inf    # every other time it is to get on first
         process = subprocess.Popen(
-            [sys.executable, "-I", "-c", code, os.path.dirname(check.__file__), path, "--jobs",
+            [sys.executable, "-I", "-c", code, os.path.dirname(check.__file__), str(most), path, "--jobs",
              jobs, "--state", state, "--exact"],
             stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, start_new_session=True)
         process.stdout.readline()
         kind = kinds[n % 4]
-        until = time.monotonic() + (30 if n % 2 else 0.3 * generator.random())
+        until = time.monotonic() + (PATIENCE if n % 2 else 0.3 * generator.random())
         while process.poll() is None and time.monotonic() < until and not (
-                n % 2 and state.exists() and confirmed(state) > seen[-1] + 500):
-            time.sleep(0.005)                   # every other time it is to get on first
+                state.exists() and confirmed(state) > most):
+            time.sleep(0.005)
         if process.poll() is None:
             (os.killpg if n % 3 else os.kill)(process.pid, kind)
-        out, err = process.communicate(timeout=60)
+        out, err = process.communicate(timeout=PATIENCE)
         with contextlib.suppress(ProcessLookupError, PermissionError):
-            for _ in range(100):                        # a worker that is left ends by itself
+            for _ in range(10 * PATIENCE):              # a worker that is left ends by itself
                 os.killpg(process.pid, 0)
                 time.sleep(0.1)
             raise AssertionError("a process is left")

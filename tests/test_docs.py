@@ -12,6 +12,7 @@ from converse import check, chart, cli
 from converse.frontier import cli as map_cli
 from converse.orbits import cli as orbits_cli
 from converse.version import __version__
+from moments import PATIENCE
 
 ROOT = Path(__file__).resolve().parent.parent
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
@@ -29,7 +30,7 @@ def test_python_examples_run(name, tmp_path):
         "def main():\n" + re.sub("^(?=.)", "    ", "\n".join(blocks), flags=re.MULTILINE)
         + "\nif __name__ == '__main__':\n    main()\n")     # for the example's processes
     result = subprocess.run([sys.executable, "example.py"], cwd=tmp_path, capture_output=True,
-                            text=True, timeout=300)
+                            text=True, timeout=PATIENCE)
     assert (result.returncode, result.stderr) == (0, "")
     assert ("Proved" if name == "orbits.md" else "no invariant tori") in result.stdout
 

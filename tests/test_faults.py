@@ -1,5 +1,6 @@
 """What goes wrong around a run: kill -9, Ctrl-C, closed pipes, full disks, terminals."""
 
+import contextlib
 import fcntl
 import os
 import pty
@@ -18,7 +19,19 @@ from pathlib import Path
 import pytest
 
 from converse import Proof, files
+from moments import BEGUN, HELD, PATIENCE, wait_until
 from truth import STRIKE, TORTURE
+
+# The backup is written
+ALWAYS = """
+from converse import backup, run
+run.LOOK_SECONDS = backup.SECONDS = backup.SHARE = 0
+"""
+RARELY = """
+from converse import backup
+backup.SECONDS = 1e9                            # but when it begins and when it ends
+"""
+
 
 @pytest.fixture(scope="session")
 def sample(root):
@@ -26,34 +39,50 @@ def sample(root):
 
 
 @pytest.fixture(scope="session")
-def slow_run(command, sample):
-    """Digits enough for a run of more than a second of a core, however busy the machine is, and its
-    report."""
-    digits = 50
-    while True:
-        begin = os.times()
-        status, out, err = command("-p", digits, sample)
-        end = os.times()
-        assert (status, err) == (0, "")
-        if end.children_user - begin.children_user > 1.2:
-            return ["--jobs", "1", "-p", str(digits)], timeless(out)
-        digits *= 2
+def output(command, sample):
+    """Of a run that nothing goes wrong with."""
+    status, out, err = command(sample)
+    assert (status, err) == (0, "")
+    return timeless(out)
 
 
 @pytest.fixture
-def slow(slow_run):
-    return slow_run[0]
+def held(tmp_path_factory):
+    """The command at work, with some prisms decided and no end of it until the sign is removed."""
+    @contextlib.contextmanager
+    def held(*arguments, before="", leaves=20):
+        sign = tmp_path_factory.mktemp("held") / "sign"
+        with _started(before + HELD, sign, leaves, "--jobs", 1, *arguments) as process:
+            wait_until(sign.exists, process)
+            yield process, sign
+    return held
 
 
 @pytest.fixture
-def endless(slow_run):
-    """For runs that are not waited for."""
-    return slow_run[0][:-1] + [str(8 * int(slow_run[0][-1]))]
+def begun(tmp_path_factory):
+    """The command in the middle of setting a search up; the sign tells if it was stopped there."""
+    @contextlib.contextmanager
+    def begun(*arguments):
+        sign = tmp_path_factory.mktemp("begun") / "sign"
+        with _started(BEGUN, sign, *arguments) as process:
+            wait_until(sign.exists, process)
+            yield process, sign
+    return begun
 
 
-@pytest.fixture
-def output(slow_run):
-    return slow_run[1]
+@contextlib.contextmanager
+def _started(code, *arguments):
+    with subprocess.Popen([sys.executable, "-c", code, *map(str, arguments)], stdin=subprocess.DEVNULL,
+                          stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
+        try:
+            yield process
+        finally:
+            process.kill()
+
+
+def ended(process):
+    """What it wrote on stderr until its end."""
+    return process.communicate(timeout=PATIENCE)[1].decode()
 
 
 def timeless(text):
@@ -61,42 +90,32 @@ def timeless(text):
     return re.sub(r"Proof file : .*\n", "", text)
 
 
-def wait_for(path, seconds=60):
-    end = time.monotonic() + seconds
-    while not path.exists() and time.monotonic() < end:
-        time.sleep(0.01)
-    assert path.exists()
-
-
-def test_kill_at_random_moments(start, command, sample, output, tmp_path, slow):
+def test_kill_at_random_moments(held, command, sample, output, tmp_path):
+    """While it writes its backup, which it always does."""
     rng = random.Random(20)
     backup = tmp_path / "backup"
-    trees, arguments = [""], slow + ["-b", backup]
+    trees, arguments = [""], ["-b", backup, sample]
     for _ in range(5 * TORTURE):
-        with start(*arguments, sample) as process:
-            if len(trees) == 1:
-                wait_for(backup)        # it is written at once
-            time.sleep(rng.uniform(0, 1.2))
+        with held(*arguments, before=ALWAYS, leaves=5) as (process, _):
+            wait_until(lambda: len(Proof.load(backup).tree) > len(trees[-1]), process)
+            time.sleep(rng.uniform(0, 0.2))
             process.kill()
         half = Proof.load(backup)       # whole, whenever the run was killed
-        assert half.tree.startswith(trees[-1])
+        assert half.tree.startswith(trees[-1]) and not half.no_tori
         trees.append(half.tree)
-        arguments = slow + ["-r", backup]
-    assert trees[-1]                    # some of the work was kept
-    status, out, err = command(*arguments, sample)
+        arguments = ["-r", backup, sample]
+    status, out, err = command(*arguments)
     assert (status, timeless(out).split("Restored")[0], err) == (0, output, "")
     whole = Proof.load(backup)
     assert whole.no_tori and whole.tree.startswith(trees[-1])
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
-def test_interrupt(start, command, sample, output, tmp_path, slow, number):
+def test_interrupt(held, command, sample, output, tmp_path, number):
     backup = tmp_path / "backup"
-    with start(*slow, "-b", backup, sample) as process:
-        wait_for(backup)
-        time.sleep(0.3)
+    with held("-b", backup, sample) as (process, _):
         process.send_signal(number)
-        out, err = process.communicate(timeout=60)
+        out, err = process.communicate(timeout=PATIENCE)
     assert process.returncode == 128 + number
     assert err.decode() == "converse: interrupted; continue with -r %s\n" % backup
     assert "Parameters :" in out.decode() and "I find" not in out.decode()
@@ -106,41 +125,39 @@ def test_interrupt(start, command, sample, output, tmp_path, slow, number):
     assert (status, timeless(out).split("Restored")[0]) == (0, output)
 
 
-def test_struck_inside_the_locks_of_a_pool(sample, tmp_path, slow):
+def test_struck_inside_the_locks_of_a_pool(sample, tmp_path):
     """A RuntimeError of the library is no traceback, and loses nothing."""
     backup, code = tmp_path / "backup", STRIKE + """
-import converse.cli, converse.run
+import converse.run
 looked = converse.run._Run._look
 def look(self):
     looked(self)
     sys.setprofile(strike)
 converse.run._Run._look = look
-sys.exit(converse.cli.main())
-"""
-    process = subprocess.run([sys.executable, "-c", code, *slow, "-b", backup, sample],
-                             stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, timeout=60)
+""" + HELD
+    process = subprocess.run([sys.executable, "-c", code, tmp_path / "sign", "0", "-b", backup, sample],
+                             stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, timeout=PATIENCE)
     assert process.returncode == 143, process.stderr
     assert process.stderr == "converse: interrupted; continue with -r %s\n" % backup
     assert not Proof.load(backup).no_tori
 
 
-def test_interrupt_without_backup(start, sample, endless):
-    with start(*endless, sample) as process:
-        process.stdout.readline()       # the header comes before the work
-        time.sleep(0.3)
+def test_interrupt_without_backup(held, sample):
+    with held(sample) as (process, _):
         process.send_signal(signal.SIGINT)
-        err = process.communicate(timeout=60)[1].decode()
+        err = ended(process)
     assert process.returncode == 130
     assert err.startswith("converse: interrupted") and err.count("\n") == 1
 
 
-def test_closed_pipe(start, sample, tmp_path):
+def test_closed_pipe(held, sample, tmp_path):
     backup = tmp_path / "backup"
-    with start("-p20", "-b", backup, sample) as process:
+    with held("-p20", "-b", backup, sample) as (process, sign):
         assert process.stdout.readline() == b"Parameters :\n"
         process.stdout.close()
+        sign.unlink()
         err = process.stderr.read().decode()
-        assert process.wait(timeout=60) == 2
+        assert process.wait(timeout=PATIENCE) == 2
     assert err == "converse: the output cannot be written (Broken pipe)\n"
     assert Proof.load(backup).no_tori
 
@@ -152,13 +169,11 @@ def test_full_standard_output(command, sample):
     assert err == "converse: the output cannot be written (No space left on device)\n"
 
 
-def test_full_disk_keeps_the_older_backup(start, command, sample, tmp_path, slow):
+def test_full_disk_keeps_the_older_backup(held, command, sample, tmp_path):
     backup = tmp_path / "backup"
-    with start(*slow, "-b", backup, sample) as process:
-        wait_for(backup)
-        time.sleep(0.3)
+    with held("-b", backup, sample) as (process, _):
         process.send_signal(signal.SIGINT)
-        process.communicate()
+        ended(process)
     before = backup.read_bytes()
 
     def small_files():
@@ -169,7 +184,7 @@ def test_full_disk_keeps_the_older_backup(start, command, sample, tmp_path, slow
     assert err.startswith("converse: %s: cannot be written" % backup) and err.count("\n") == 1
     assert "intact" in err
     assert backup.read_bytes() == before
-    assert command("-r", backup, "--time-limit", "0.1")[0] == 1
+    assert command("-r", backup, "--time-limit", "0")[0] == 1
 
 
 def test_full_disk_for_the_figure(command, root, tmp_path):
@@ -184,15 +199,14 @@ def test_full_disk_for_the_figure(command, root, tmp_path):
     assert list(tmp_path.iterdir()) == []
 
 
-def test_two_runs_with_one_backup(start, command, sample, tmp_path, endless):
+def test_two_runs_with_one_backup(held, command, sample, tmp_path):
     backup = tmp_path / "backup"
-    with start(*endless, "-b", backup, sample) as process:
-        wait_for(backup)
+    with held("-b", backup, sample) as (process, _):
         status, out, err = command("-r", backup)
         process.kill()
     assert status == 2 and out == ""
     assert "another run" in err and err.count("\n") == 1
-    assert command("-r", backup, "--time-limit", "0.1")[0] == 1     # the lock died with its holder
+    assert command("-r", backup, "--time-limit", "0")[0] == 1     # the lock died with its holder
 
 
 @pytest.mark.parametrize("redirection", ["<&-", ">&-", "2>&-"])
@@ -235,7 +249,7 @@ def test_reading_from_a_terminal_says_so(start):
         os.close(slave)
         said = process.stderr.readline().decode()
         os.write(master, b"0.32 0\n0.32 0\n0.64 0\n1 1\n1 1\n\x04")
-        out = process.communicate(timeout=60)[0].decode()
+        out = process.communicate(timeout=PATIENCE)[0].decode()
         os.close(master)
     assert said == "converse: reading the problem from standard input; end it with Ctrl-D\n"
     assert process.returncode == 0 and "I find no invariant tori" in out
@@ -243,50 +257,47 @@ def test_reading_from_a_terminal_says_so(start):
 
 @pytest.mark.parametrize("options", [["-p", "100000"], ["--method", "loewner", "-p", "100000"],
                                      ["-p", "100000", "--time-limit", "0.5"]])
-def test_long_arithmetic_obeys(start, sample, options):
-    """Ctrl-C and the time limit also count while the search is set up, and within a prism."""
-    began = time.monotonic()
-    with start(*options, sample) as process:
+def test_long_arithmetic_obeys(begun, sample, options):
+    """Ctrl-C and the time limit also count while the search is set up, in the middle of it."""
+    with begun(*options, sample) as (process, sign):
         if "--time-limit" not in options:
-            time.sleep(1.0)
             process.send_signal(signal.SIGINT)
-        out, err = process.communicate(timeout=60)
-    assert time.monotonic() - began < 20
-    assert process.returncode == (1 if "--time-limit" in options else 130 if err else 0)
-    assert process.returncode or "loewner" in options       # which may be done before
+        ended(process)
+    assert process.returncode == (1 if "--time-limit" in options else 130)
+    assert "loewner" in options or sign.read_text() == ""       # which does not need the digits
 
 
 @pytest.mark.parametrize("first, second", [
     (signal.SIGTERM, signal.SIGHUP), (signal.SIGHUP, signal.SIGTERM), (signal.SIGINT, signal.SIGTERM),
     (signal.SIGINT, signal.SIGINT)])
-def test_two_signals_at_once(start, sample, tmp_path, endless, first, second):
+def test_two_signals_at_once(held, sample, tmp_path, first, second):
     """As at the end of a session; the second must not strike while the first is obeyed."""
     for pause in (0.0, 0.005, 0.03):
         backup = tmp_path / ("%g.proof" % pause)
-        with start(*endless, "-b", backup, sample) as process:
-            wait_for(backup)
-            time.sleep(0.3)
+        with held("-b", backup, sample, before=RARELY) as (process, _):
             process.send_signal(first)
             time.sleep(pause)
             process.send_signal(second)
-            err = process.communicate(timeout=60)[1].decode()
+            err = ended(process)
         assert process.returncode in (128 + first, 128 + second)
         assert err == "converse: interrupted; continue with -r %s\n" % backup
-        assert not Proof.load(backup).no_tori
+        half = Proof.load(backup)
+        assert half.tree and not half.no_tori
 
 
-def test_a_lock_that_is_gone(start, root, tmp_path):
+def test_a_lock_that_is_gone(held, root, tmp_path):
     """Whatever became of the lock, or of the directory, what was found is said."""
     for gone in "lock", "directory":
         home = tmp_path / gone
         home.mkdir()
         backup = home / "a.proof"
-        with start("--method", "loewner", "-b", backup, root / "inputs" / "standard-972.in") as process:
-            wait_for(backup)
+        with held("--method", "loewner", "--together", "-b", backup, root / "inputs" / "trig180.in",
+                  before=RARELY) as (process, sign):
             os.unlink(str(backup) + ".lock")
             if gone == "directory":
-                shutil.rmtree(home)
-            out, err = (text.decode() for text in process.communicate(timeout=120))
+                shutil.rmtree(home)     # where nobody writes at this moment
+            sign.unlink()
+            out, err = (text.decode() for text in process.communicate(timeout=PATIENCE))
         assert "I find no invariant tori" in out
         if gone == "lock":
             assert (process.returncode, err) == (0, "") and Proof.load(backup).no_tori
@@ -315,11 +326,10 @@ def test_permissions_of_a_new_file(tmp_path, mask, mode):
     assert (tmp_path / "new").stat().st_mode & 0o777 == 0o640
 
 
-def test_interrupted_before_anything_was_found(start, sample, tmp_path):
+def test_interrupted_before_anything_was_found(begun, sample, tmp_path):
     backup = tmp_path / "a.proof"
-    with start("-p", "100000", "-b", backup, sample) as process:
-        time.sleep(1.5)
+    with begun("-p", "100000", "-b", backup, sample) as (process, _):
         process.send_signal(signal.SIGINT)
-        err = process.communicate(timeout=60)[1].decode()
+        err = ended(process)
     assert process.returncode == 130 and err == "converse: interrupted; nothing was found yet\n"
     assert not backup.exists()

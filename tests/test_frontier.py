@@ -15,6 +15,8 @@ from converse import check, frontier
 from converse.files import ConverseError
 from converse.frontier import atlas, cli, figure, region, search
 from converse.frontier.atlas import AT_ONCE, OPEN, OUTSIDE, PROVED, Map
+from converse.growth import ATTEMPTS
+from moments import PATIENCE
 
 
 @pytest.fixture
@@ -145,15 +147,19 @@ def test_what_reaches_to_infinity_is_at_once(made):
 def test_one_whole_run_or_several(coarse, tmp_path):
     """However it is divided, it ends with all that was asked for."""
     path = tmp_path / "map.json"
-    limit, runs = 0.0, 0
-    found = frontier.explore("c=0", "1.4", path=path, time_limit=limit)
+    looks, runs = [], 0
+    found = frontier.explore("c=0", "1.4", path=path, time_limit=0)
     while not found.complete:
-        limit, runs = 2 * limit + 0.05, runs + 1
-        found = frontier.explore(path=path, resume=True, time_limit=limit)
-    assert runs > 1 and Map.load(path).complete
+        with pytest.MonkeyPatch.context() as patch:     # it is late after a few looks at the workers
+            patch.setattr(search._Search, "late", property(lambda self: len(looks) > 20 * runs))
+            looks, runs = [], runs + 1
+            found = frontier.explore(path=path, resume=True, jobs=1,
+                                     progress=lambda *look: looks.append(look))
+    known = Map.load(path)
+    assert runs > 1 and known.complete
     deeper = frontier.explore("c=0", "1.3", path=path, resume=True)
     assert deeper.complete and deeper.height(0) < found.height(0)
-    assert found.seconds < deeper.seconds
+    assert known.seconds < deeper.seconds
 
 
 def test_processes(coarse, tmp_path):
@@ -163,22 +169,27 @@ def test_processes(coarse, tmp_path):
 
 
 class Unreliable(concurrent.futures.ThreadPoolExecutor):
-    """Whose workers die, now and then or always."""
+    """Whose workers die: at every so many tasks, but as often at one as is borne, or always."""
 
-    def __init__(self, odds):
+    def __init__(self, every):
         super().__init__(2)
-        self.odds, self.rng = odds, random.Random(1)
+        self.every, self.tasks, self.deaths = every, 0, []
 
     def submit(self, call, *arguments):
         def dies(*_):
             raise OSError("a worker died")
-        return super().submit(dies if self.rng.random() < self.odds else call, *arguments)
+        task, self.tasks = (call, *arguments), self.tasks + 1
+        if self.every > 1 and (self.tasks % self.every or self.deaths.count(task) == ATTEMPTS - 1):
+            return super().submit(*task)
+        self.deaths.append(task)
+        return super().submit(dies, *arguments)
 
 
 def test_workers_that_die(coarse, tmp_path):
-    with Unreliable(0.1) as pool:
+    with Unreliable(3) as pool:
         assert frontier.explore("c=0", "1.4", path=tmp_path / "map.json", executor=pool).complete
-    with Unreliable(1.0) as pool, pytest.raises(ConverseError, match="keep failing"):
+        assert len(pool.deaths) > 9
+    with Unreliable(1) as pool, pytest.raises(ConverseError, match="keep failing"):
         frontier.explore("c=0", "1.4", path=tmp_path / "other.json", executor=pool)
     assert not Map.load(tmp_path / "other.json").complete
     pool.shutdown()
@@ -197,7 +208,7 @@ def test_an_interruption_loses_nothing(coarse, tmp_path, when):
             raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        frontier.explore("b=0", "1.2", path=path, progress=progress)
+        frontier.explore("b=0", "1.2", path=path, jobs=1, progress=progress)
     before = Map.load(path)
     found = frontier.explore(path=path, resume=True)
     assert found.complete and found.count(PROVED) >= before.count(PROVED)
@@ -288,7 +299,7 @@ def test_a_damaged_file_is_refused_in_a_line(made, tmp_path):
 def run(*arguments, directory):
     home = os.path.dirname(os.path.dirname(converse.__file__))
     result = subprocess.run([sys.executable, "-m", "converse.frontier.cli", *map(str, arguments)],
-                            cwd=directory, capture_output=True, text=True, timeout=120,
+                            cwd=directory, capture_output=True, text=True, timeout=PATIENCE,
                             env={**os.environ, "PYTHONPATH": home})
     return result.returncode, result.stdout, result.stderr
 

@@ -5,7 +5,6 @@ import re
 import signal
 import subprocess
 import sys
-import time
 
 import numpy as np
 import pytest
@@ -14,6 +13,7 @@ from converse import orbits
 from converse.files import ConverseError
 from converse.orbits import cli, farey
 from converse.orbits.sweep import LOST, ONSET_COLUMNS
+from moments import PATIENCE, SWEEP_HELD, wait_until
 
 SMALL = "65,86/114"
 COMMAND = [sys.executable, "-m", "converse.orbits.cli"]
@@ -288,7 +288,7 @@ def test_what_is_missing_is_said(tmp_path, module, arguments):
     result = subprocess.run(
         [sys.executable, "-c", "import runpy, sys\nsys.modules[%r] = None\n"
          "sys.argv[0] = 'x'\nrunpy.run_module('converse.orbits.cli', run_name='__main__')" % module,
-         *arguments], cwd=tmp_path, capture_output=True, text=True, timeout=60)
+         *arguments], cwd=tmp_path, capture_output=True, text=True, timeout=PATIENCE)
     assert (result.returncode, result.stdout) == (2, "") and one_line(result.stderr)
     assert module.split(".")[0] in result.stderr and "pip install" in result.stderr
     assert not list(tmp_path.iterdir())
@@ -298,20 +298,23 @@ def test_what_is_missing_is_said(tmp_path, module, arguments):
 def test_a_sweep_that_a_signal_ends_is_continued(tmp_path, number):
     path, other = tmp_path / "table.csv", tmp_path / "whole.csv"
     common = "0.004:0.012:0.002", "--random", "40", "--sizes", "120:160", "--jobs", "2"
-    with subprocess.Popen([*COMMAND, "sweep", "trig", path, *common], stdout=subprocess.PIPE,
-                          stderr=subprocess.PIPE, text=True) as process:
-        end = time.monotonic() + 60
-        while time.monotonic() < end and not (path.exists() and path.stat().st_size > 3000):
-            time.sleep(0.005)
-        process.send_signal(number)
-        out, err = process.communicate(timeout=60)
+    code = SWEEP_HELD + "from converse.orbits import cli\nsys.exit(cli.main())"
+    with subprocess.Popen([sys.executable, "-c", code, "10", "sweep", "trig", path, *common],
+                          stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+        try:
+            wait_until(lambda: path.exists() and path.read_bytes().count(b"\n") > 50, process)
+            process.send_signal(number)
+            out, err = process.communicate(timeout=PATIENCE)
+        finally:
+            process.kill()
     assert (process.returncode, out) == (128 + number, "") and one_line(err)
     assert err == "converse-orbits: interrupted; the same command continues it\n"
-    size = path.stat().st_size
+    half = path.read_bytes()
     for file in path, other:
-        subprocess.run([*COMMAND, "sweep", "trig", file, *common], check=True, timeout=100,
+        subprocess.run([*COMMAND, "sweep", "trig", file, *common], check=True, timeout=PATIENCE,
                        stdout=subprocess.DEVNULL)
-    assert path.read_bytes() == other.read_bytes() and 3000 < size < len(other.read_bytes())
+    assert half.count(b"\n") == 51 and other.read_bytes().startswith(half)
+    assert path.read_bytes() == other.read_bytes() != half
     assert not list(tmp_path.glob("*.lock"))
 
 

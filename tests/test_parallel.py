@@ -16,6 +16,7 @@ import pytest
 
 from converse import ConverseError, Problem, Proof, growth, prove, run
 from converse.problem import decimal_text
+from moments import PATIENCE
 from truth import TORTURE
 
 
@@ -34,6 +35,22 @@ def early(monkeypatch):
     """Divides the work sooner and more finely than usual."""
     monkeypatch.setattr(growth, "TASK_SECONDS", 0.02)
     monkeypatch.setattr(growth, "ALONE_SECONDS", 0.01)
+
+
+@pytest.fixture
+def divided(monkeypatch):
+    """Divides the work from the beginning, however long the search took to set up."""
+    monkeypatch.setattr(growth.Growth, "alone_until", property(lambda self: 0.0, lambda *_: None),
+                        raising=False)
+
+
+@pytest.fixture
+def ends(monkeypatch):
+    """ends(when): the time is up when the test says so."""
+    def ends(when):
+        monkeypatch.setattr(run._Run, "end", property(
+            lambda self: -math.inf if when(self) else math.inf, lambda *_: None), raising=False)
+    return ends
 
 
 def timeless(proof):
@@ -77,7 +94,9 @@ def test_processes(proof):
 class Unreliable(concurrent.futures.ThreadPoolExecutor):
     """Every third task is lost with its worker, but none a second time."""
 
-    tasks, lost = 0, []
+    def __init__(self, workers):
+        super().__init__(workers)
+        self.tasks, self.lost = 0, []
 
     def submit(self, work, task, cells, *rest):
         self.tasks += 1
@@ -91,13 +110,13 @@ def die(*args):
     raise OSError("the worker died")
 
 
-def test_lost_tasks_are_given_out_again(proof):
+def test_lost_tasks_are_given_out_again(proof, divided):
     with Unreliable(2) as executor:
         assert timeless(prove(LONG, method="loewner", executor=executor)) == proof
         assert executor.lost
 
 
-def test_workers_that_always_die():
+def test_workers_that_always_die(divided):
     class Dead(concurrent.futures.ThreadPoolExecutor):
         def submit(self, work, *args):
             return super().submit(die)
@@ -106,20 +125,23 @@ def test_workers_that_always_die():
         prove(LONG, method="loewner", executor=executor)
 
 
-def test_an_executor_that_is_gone():
+def test_an_executor_that_is_gone(divided):
     executor = concurrent.futures.ThreadPoolExecutor(1)
     executor.shutdown()
     with pytest.raises(ConverseError, match="workers are gone"):
         prove(LONG, method="loewner", executor=executor)
 
 
-def test_time_limit_and_resume(proof, tmp_path):
-    path, runs = tmp_path / "a.proof", 1
-    result = prove(LONG, method="loewner", jobs=3, time_limit=0.02, backup=path)
+def test_time_limit_and_resume(proof, tmp_path, monkeypatch, ends):
+    """The time is up after some thousands of cuts, and again, and again."""
+    monkeypatch.setattr(growth, "MANY", 500)        # so many leaves are not far beyond
+    path, runs, cuts = tmp_path / "a.proof", 1, 0
+    ends(lambda self: self.growth.counts.cuts > cuts + 5000)
+    result = prove(LONG, method="loewner", jobs=3, backup=path)
     while not result.all_decided:
-        assert timeless(Proof.load(path)) == timeless(result)
-        result = prove(resume=path, jobs=3, time_limit=0.02 * 2**runs)
-        runs += 1
+        assert timeless(Proof.load(path)) == timeless(result) and result.counts.cuts > cuts
+        cuts, runs = result.counts.cuts, runs + 1
+        result = prove(resume=path, jobs=3)
     assert runs > 1 and timeless(result) == timeless(Proof.load(path)) == proof
 
 
@@ -173,38 +195,43 @@ def test_interrupted_anywhere(error, depth, tmp_path, monkeypatch):
 
 
 KILLED = """
-import sys
-from converse import prove
+import os, signal, sys
+from converse import backup, prove, run
 sys.path.insert(0, %r)
 from test_parallel import LONG
-path, resume = sys.argv[1:]
+path, resume, cuts, torn = sys.argv[1:]
+backup.SECONDS = backup.SHARE = 0               # it is written at every look
+looked = run._Run._look
+def kill(*_):
+    os.kill(os.getpid(), signal.SIGKILL)
+def look(self):
+    there = self.growth.counts.cuts > int(cuts)
+    if there and torn:
+        os.replace = kill                       # while it is written
+    looked(self)
+    if there:
+        kill()
+run._Run._look = look
 prove(LONG, method="loewner", jobs=2, **{"resume" if resume else "backup": path})
 """
 
 
-def test_a_killed_coordinator_goes_on_from_its_backup(proof, tmp_path, monkeypatch):
-    path = tmp_path / "a.proof.gz"
-    tests = os.path.dirname(os.path.abspath(__file__))
-    code = "import converse.backup as b; b.SECONDS = 0.05\n" + KILLED % tests
-    for n in range(40):
-        resume = str(path) if path.exists() else ""
-        process = subprocess.Popen([sys.executable, "-c", code, str(path), resume], cwd=tmp_path)
-        try:
-            process.wait(1.0 + 0.1 * n)
-        except subprocess.TimeoutExpired:
-            process.send_signal(signal.SIGKILL)
-            process.wait()
-            continue
-        assert process.returncode == 0
-        break
-    assert timeless(Proof.load(path)) == proof
+def test_a_killed_coordinator_goes_on_from_its_backup(proof, tmp_path):
+    path, code = tmp_path / "a.proof.gz", KILLED % os.path.dirname(os.path.abspath(__file__))
+    for cuts, torn in (5000, ""), (10000, "torn"), (15000, "torn"), (20000, ""), (30000, "torn"):
+        killed = subprocess.run([sys.executable, "-c", code, path, path if path.exists() else "",
+                                 str(cuts), torn], cwd=tmp_path, timeout=PATIENCE)
+        assert killed.returncode == -signal.SIGKILL
+        half = Proof.load(path)
+        assert not half.no_tori and (torn or half.counts.cuts > cuts)
+    assert timeless(prove(resume=path)) == timeless(Proof.load(path)) == proof
 
 
-def test_dask_loses_a_worker(proof, tmp_path):
+def test_dask_loses_a_worker(proof, tmp_path, divided):
     distributed = pytest.importorskip("distributed")
     with distributed.LocalCluster(n_workers=3, threads_per_worker=1, processes=True,
                                   dashboard_address=None, local_directory=str(tmp_path)) as cluster, \
-            distributed.Client(cluster) as client:
+            distributed.Client(cluster, timeout=PATIENCE) as client:
         pid = next(iter(client.run(os.getpid).values()))
         executor, submitted = client.get_executor(), []
 
@@ -228,39 +255,46 @@ def test_mpi(proof, tmp_path):
                        OMPI_MCA_rmaps_base_oversubscribe="1")
     subprocess.run(["mpiexec", "-n", "3", sys.executable, "-m", "mpi4py.futures", "-m",
                     "converse.cli", "--mpi", "--method", "loewner", "--together", "-b", "a.proof",
-                    "a.in"], cwd=tmp_path, env=environment, check=True, timeout=120,
+                    "a.in"], cwd=tmp_path, env=environment, check=True, timeout=PATIENCE,
                    stdout=subprocess.DEVNULL)
     assert timeless(Proof.load(tmp_path / "a.proof")) == replace(
         proof, problem=replace(LONG, comments=()))
 
 
-class Late(concurrent.futures.ThreadPoolExecutor):
-    """Brings what is leftmost of the tree last."""
+class Late(Inline):
+    """Brings what is leftmost of the tree last: when nothing else is there to be waited for."""
+
+    def __init__(self):
+        self.late = []
 
     def submit(self, work, task, cells, *rest):
-        if cells[0][0] == (0,) * 5:
-            return super().submit(lambda: (time.sleep(0.4), work(task, cells, *rest))[1])
-        return super().submit(work, task, cells, *rest)
+        if cells[0][0] != (0,) * 5:
+            return super().submit(work, task, cells, *rest)
+        future = concurrent.futures.Future()
+        self.late.append(lambda: future.set_result(work(task, cells, *rest)))
+        return future
+
+    def wait(self, futures, *rest, wait=concurrent.futures.wait):
+        if not any(future.done() for future in futures) and self.late:
+            self.late.pop()()
+        return wait(futures, *rest)
 
 
 @pytest.mark.parametrize("jobs", [2, 5])
-def test_an_undecided_prism_before_finished_ones(tmp_path, monkeypatch, jobs):
+def test_an_undecided_prism_before_finished_ones(tmp_path, monkeypatch, divided, jobs):
     """A search that is not stubborn ends at the first; what others did beyond it is of no account."""
-    monkeypatch.setattr(growth, "ALONE_SECONDS", 0.0)
     monkeypatch.setattr(growth, "MANY", 40)
-    monkeypatch.setattr(growth.Growth, "alone_until", property(lambda self: 0.0, lambda *_: None),
-                        raising=False)
+    executor = Late()
+    monkeypatch.setattr(concurrent.futures, "wait", executor.wait)
     problem, path = line("0.0170", "0.0280"), tmp_path / "a.proof"
     alone = prove(problem, method="loewner", depth=15, jobs=1)
     assert alone.undecided
-    with Late(jobs) as executor:
-        many = prove(problem, method="loewner", depth=15, executor=executor, jobs=jobs, backup=path)
+    many = prove(problem, method="loewner", depth=15, executor=executor, jobs=jobs, backup=path)
     assert many.counts.tries > alone.counts.tries       # it did go that way
     assert many.tree == alone.tree and "Undecided prisms : 1\n" in many.report()
     for kind in "cuts", "proved", "symmetric", "undecided":
         assert getattr(many.counts, kind) == getattr(alone.counts, kind)
-    with Late(jobs) as executor:            # and it can be continued, deeper
-        deeper = prove(resume=path, depth=120, executor=executor, jobs=jobs)
+    deeper = prove(resume=path, depth=120, executor=executor, jobs=jobs)    # and it can be continued
     assert deeper.no_tori and deeper.counts.undecided == 0
     assert deeper.counts.proved == deeper.tree.count("P") and deeper.verify()
 
@@ -276,7 +310,7 @@ def test_continuing_less_stubbornly_is_refused(tmp_path):
     assert prove(resume=path, stubborn=False, depth=120).no_tori
 
 
-def test_what_comes_late_is_kept(tmp_path, monkeypatch):
+def test_what_comes_late_is_kept(tmp_path, monkeypatch, divided, ends):
     """At the time limit the workers are waited for a little, and what they bring is in the backup."""
     class Slow(concurrent.futures.ThreadPoolExecutor):
         def submit(self, work, *args):
@@ -290,10 +324,7 @@ def test_what_comes_late_is_kept(tmp_path, monkeypatch):
 
     path, brought = tmp_path / "a.proof", []
     monkeypatch.setattr(growth, "TASK_SECONDS", 20)         # how long they are waited for
-    monkeypatch.setattr(growth.Growth, "alone_until", property(lambda self: 0.0, lambda *_: None),
-                        raising=False)
-    monkeypatch.setattr(run._Run, "end", property(lambda self: -math.inf if brought else math.inf,
-                                                  lambda *_: None), raising=False)
+    ends(lambda self: brought)
     with Slow(2) as executor:
         result = prove(LONG, method="loewner", executor=executor, backup=path)
     tree = Proof.load(path).tree
@@ -317,6 +348,7 @@ def test_many_gaps_cost_little(monkeypatch):
     """Thousands of prisms that were given up are tried again without a look at all of them for each."""
     shallow = prove(line("0.0130", "0.0280"), method="loewner", depth=16, stubborn=True)
     assert shallow.tree.count("U") > 2000
+    monkeypatch.setattr(run, "LOOK_SECONDS", PATIENCE)      # however slowly it goes on
     looks, merge = [], growth.Growth._merge
     monkeypatch.setattr(growth.Growth, "_merge", lambda self: (looks.append(self), merge(self)))
     assert prove(resume=shallow, depth=17, jobs=2).counts.cuts > shallow.counts.cuts

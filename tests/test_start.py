@@ -21,7 +21,7 @@ def decide(parameters, xstar=None, most=20000):
     begun = search.begin("")
     cells, tries, undecided = begun.cells, 0, 0
     while cells and tries < most and not undecided:
-        grown = search.grow(cells, 1.0, 500, core.ffi.NULL, False)
+        grown = search.grow(cells, math.inf, 500, core.ffi.NULL, False)
         cells, undecided = grown.cells, grown.counts.undecided
         tries += grown.counts.tries
     return tuple(map(float, begun.xstar)), tries, not cells and not undecided

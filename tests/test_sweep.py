@@ -9,7 +9,6 @@ import os
 import signal
 import subprocess
 import sys
-import time
 
 import numpy as np
 import pytest
@@ -18,6 +17,7 @@ from converse import files, orbits
 from converse.files import ConverseError
 from converse.orbits.solver import LEAST_STEP
 from converse.orbits.sweep import LOST, ONSET_COLUMNS
+from moments import PATIENCE, SWEEP_HELD, wait_until
 
 MODULE = sys.modules[orbits.sweep.__module__]   # its name in the package is the function's
 VECTORS = [((5, 7), 9), ((3, 4), 5), ((12, 16), 21), ((1, 2), 4), ((2, 1), 8)]
@@ -273,7 +273,7 @@ try:
     orbits.sweep(orbits.trig, %r, %r, file=sys.argv[1])
 except RuntimeError as error:
     print(type(error).__name__, error)
-""" % (VECTORS, EPS), path], capture_output=True, text=True, timeout=60)
+""" % (VECTORS, EPS), path], capture_output=True, text=True, timeout=PATIENCE)
     assert result.stderr == "" and result.stdout.count("\n") == 1
     assert result.stdout.startswith("ConverseError %s: cannot be written" % path)
     assert whole.startswith(path.read_bytes()) and 300 < path.stat().st_size <= 1000
@@ -296,21 +296,21 @@ if __name__ == "__main__":
 def test_killed_and_continued(path, number):
     """At once, and then again: in the end the bytes are those of one run."""
     other = path.parent / "whole.csv"
-    subprocess.run([sys.executable, "-c", MANY, other], check=True, timeout=100)
-    sizes = []
-    for share in (0.2, 0.6):
-        with subprocess.Popen([sys.executable, "-c", MANY, path],
+    subprocess.run([sys.executable, "-c", MANY, other], check=True, timeout=PATIENCE)
+    lines, found = other.read_bytes().splitlines(keepends=True), 0
+    for more in (8, 16):
+        found += more
+        there = b"".join(lines[:1 + 3 * found])
+        with subprocess.Popen([sys.executable, "-c", SWEEP_HELD + MANY, str(more), path],
                               stderr=subprocess.DEVNULL) as process:
-            end = time.monotonic() + 60
-            while time.monotonic() < end and process.poll() is None and not (
-                    path.exists() and path.stat().st_size > share * other.stat().st_size):
-                time.sleep(0.005)
-            process.send_signal(number)
-        assert process.returncode != 0, "it was too quick to be interrupted"
-        sizes.append(path.stat().st_size)
-        assert other.read_bytes().startswith(path.read_bytes())
-    assert 0 < sizes[0] < sizes[1] < other.stat().st_size
-    subprocess.run([sys.executable, "-c", MANY, path], check=True, timeout=100)
+            try:
+                wait_until(lambda: path.exists() and path.stat().st_size >= len(there), process)
+                process.send_signal(number)
+                assert process.wait(timeout=PATIENCE) != 0
+            finally:
+                process.kill()
+        assert path.read_bytes() == there
+    subprocess.run([sys.executable, "-c", MANY, path], check=True, timeout=PATIENCE)
     assert path.read_bytes() == other.read_bytes()
 
 
