@@ -259,9 +259,11 @@ class Growth:
         try:
             return executor.submit(*call)
         except RuntimeError as error:
-            if executor is self.threads:
+            if executor is not self.threads:
+                raise ConverseError("the workers are gone (%s)" % error) from None
+            if "new thread" in str(error):
                 raise MemoryError("there is not enough memory for another thread") from None
-            raise ConverseError("the workers are gone (%s)" % error) from None
+            raise                       # a signal struck inside the locks of the library
 
     def _merge(self):
         """Gives the text of parts whose predecessors are finished to these."""

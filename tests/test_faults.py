@@ -142,6 +142,23 @@ converse.run._Run._look = look
     assert not Proof.load(backup).no_tori
 
 
+def test_struck_while_a_thread_is_begun(sample):
+    """That is no lack of memory."""
+    code = STRIKE.replace("if not frame:", "if frame:") + """
+from converse import cli, growth
+start = growth.Growth._start
+def start_and_be_struck(*arguments):
+    sys.setprofile(strike)
+    return start(*arguments)
+growth.Growth._start = start_and_be_struck
+sys.exit(cli.main())
+"""
+    process = subprocess.run([sys.executable, "-c", code, "--jobs", "1", sample], stdout=subprocess.DEVNULL,
+                             stderr=subprocess.PIPE, text=True, timeout=PATIENCE)
+    assert process.returncode == 143, process.stderr
+    assert process.stderr.startswith("converse: interrupted") and process.stderr.count("\n") == 1
+
+
 def test_interrupt_without_backup(held, sample):
     with held(sample) as (process, _):
         process.send_signal(signal.SIGINT)
