@@ -34,7 +34,7 @@ SPREAD = 0.7548776662466927, 0.5698402909980532
 # Invariant tori were seen by Fourier series near this vector up to TORI.
 NEAR = 0.295401276 + 0.003327283, 0.295401276 - 0.003327283
 TORI = 0.0121
-PROVED = (("this program", 0.0141), ("the thesis, 1989", 0.0272))     # no tori from there on
+PROVED = (("this program", 0.0140), ("the thesis, 1989", 0.0272))     # no tori from there on
 TOP = 0.0335                            # of the picture
 CHAPTER = ((1432, 1897), 2513), ((377, 2330), 3770)
 K_C = 0.971635406                       # where the standard map's golden torus breaks up (Greene)
@@ -203,8 +203,8 @@ def draw_frontier(figure, table, last, chapter):
              title="The two sides of the frontier (trig; a = b = c/2 = 11.21436 $\\varepsilon$)")
     axes.yaxis.set_major_formatter("{x:g}")
     axes.text(bound + 0.0004, 80, "PROVED by %s: no tori,\nwhatever their rotation vector,\n"
-              "from %g on" % (program, bound), va="top", fontsize=8)
-    axes.text(old + 0.0003, 80, "%s:\nfrom %g on" % (thesis, old), va="top", fontsize=8)
+              "from %.4f on" % (program, bound), va="top", fontsize=8)
+    axes.text(old + 0.0003, 80, "%s:\nfrom %.4f on" % (thesis, old), va="top", fontsize=8)
     axes.text(0.0004, 0.07, "SEEN: of so many of\n%d vectors, q = %d\nto %d, the orbits are\n"
               "not yet hyperbolic" % (len(eps), table["q"].min(), table["q"].max()),
               va="bottom", fontsize=8)
