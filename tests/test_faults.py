@@ -90,12 +90,13 @@ def timeless(text):
     return re.sub(r"Proof file : .*\n", "", text)
 
 
-def test_kill_at_random_moments(held, command, sample, output, tmp_path):
+@pytest.mark.parametrize("seed", range(20, 20 + TORTURE))
+def test_kill_at_random_moments(held, command, sample, output, tmp_path, seed):
     """While it writes its backup, which it always does."""
-    rng = random.Random(20)
+    rng = random.Random(seed)
     backup = tmp_path / "backup"
     trees, arguments = [""], ["-b", backup, sample]
-    for _ in range(5 * TORTURE):
+    for _ in range(5):
         with held(*arguments, before=ALWAYS, leaves=5) as (process, _):
             wait_until(lambda: len(Proof.load(backup).tree) > len(trees[-1]), process)
             time.sleep(rng.uniform(0, 0.2))
