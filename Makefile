@@ -17,12 +17,13 @@ define install
 	sh .ci/packages $(PYTHON)
 	test -e $@ || $(PYTHON) -m venv --clear $(1)
 	rm -rf build/lib* build/temp* build/bdist*
+	@echo 'Compiling and installing; pip says nothing until it is done.'
 	$(1)/bin/$(PIP_INSTALL) $(2)
 	touch $@
 endef
 
-.PHONY: prove test torture mutate accuracy gappa sanitize memcheck warnings arm bench charts man clean \
-    formal formal-quick verified-check
+.PHONY: prove test torture mutate accuracy gappa sanitize memcheck warnings arm bench charts figures man \
+    clean formal formal-quick formal-check verified-check checker
 
 prove: $(VENV)/installed
 	@mkdir -p build
@@ -82,13 +83,21 @@ bench: $(VENV)/installed
 charts: $(VENV)/with-plot
 	$(VENV)/bin/converse-chart docs
 
+# The pictures of docs/ drawn anew, those of proofs, orbits and most experiments; five minutes.  Not:
+# chart-bound and chart-wall (make charts, on a quiet machine; minutes); orbit-finders, which measures
+# times, too (experiments/finders.py; a minute); frontier and toughest (experiments/toughest.py, which
+# calls the second map.svg; ten minutes); map-ab, map-b0, map-sphere (converse-map, as docs/map.md
+# says; minutes each).
+figures: $(VENV)/with-orbits $(VENV)/with-plot
+	$(VENV)/bin/python docs/figures.py
+
 # Manual pages and completions, from the commands' own parsers.
 man: $(VENV)/with-man
 	$(VENV)/bin/python docs/manual.py
 
 FORMAL_PACKAGES = coq libcoq-interval ocaml ocaml-findlib libcoq-core-ocaml-dev libsha-ocaml-dev
 
-# The theorems that Coq believes: each as it is stated, what it assumes, what it took; and two of them.
+# The theorems that Coq believes: each as it is stated, what it assumes, what it took; and three of them.
 formal: $(VENV)/installed
 	sh .ci/packages $(PYTHON) $(FORMAL_PACKAGES)
 	$(MAKE) -C formal -j2 theorems
@@ -97,11 +106,20 @@ formal-quick: $(VENV)/installed
 	sh .ci/packages $(PYTHON) $(FORMAL_PACKAGES)
 	$(MAKE) -C formal -j2 quick
 
+# The library and a theorem once more, by Coq's second checker; minutes.
+formal-check: $(VENV)/installed
+	sh .ci/packages $(PYTHON) $(FORMAL_PACKAGES)
+	$(MAKE) -C formal -j2 check
+
 # The checker that Coq has proved.
 verified-check:
 	sh .ci/packages $(PYTHON) $(FORMAL_PACKAGES)
 	$(MAKE) -C formal -j2 build/converse-verified
 	@echo 'The checker is formal/build/converse-verified.'
+
+# The checker's other forms, a zip file to run and one file to read and mail; Python is enough.
+checker:
+	$(PYTHON) converse/check/ship.py build
 
 # Every translation unit that converse/_build.py lists, with all warnings as errors.
 warnings: $(VENV)/installed

@@ -19,7 +19,9 @@ SOURCES = ["csrc/%s.c" % name for name in SOURCES]
 FLAGS = ["-std=c11", "-ffp-contract=off", "-fno-fast-math", "-fexcess-precision=standard",
          "-fno-math-errno"]             # sqrt without a look at errno is one instruction
 if "CFLAGS" not in os.environ:
-    FLAGS += ["-O2", "-fpeel-loops"]    # short loops with constant ends are unrolled
+    # Short loops with constant ends are unrolled; no tables for a debugger, which would be four
+    # fifths of the file and name the directory of the build.
+    FLAGS += ["-O2", "-fpeel-loops", "-g0"]
 
 ffi = FFI()
 HEADERS = ["converse.h", "orbits.h"]
@@ -28,7 +30,8 @@ for name in HEADERS:
         ffi.cdef(header.read())
 # What C calls, and converse/orbits/potential.py defines.
 ffi.cdef("""extern "Python+C" int cv_python_potential(
-    void *self, long m, const double *x, double *value, double *gradient, double *hessian);""")
+    void *self, long m, const double *x, double *value, double *gradient, double *hessian);
+extern "Python+C" int cv_python_interrupts(void);""")
 ffi.set_source("converse._native", "".join(map('#include "%s"\n'.__mod__, HEADERS)), sources=SOURCES,
                include_dirs=["csrc"], libraries=["gmp"], extra_compile_args=FLAGS,
                depends=sorted(glob.glob("csrc/**/*.[ch]", recursive=True)))

@@ -5,8 +5,7 @@ import time
 import warnings
 
 from . import files
-from .files import ConverseError
-from .proof import Proof
+from .files import ConverseError, NotSaved
 
 SECONDS = 1.0                       # between two writes
 SHARE = 20                          # of the time, at most one part in so many goes into them
@@ -20,7 +19,8 @@ class Keeper:
 
     def __init__(self, path, resumed=None):
         self.path, self.resumed = path, resumed
-        self.due, self.pause = 0.0, SECONDS
+        self.due, self.saved = 0.0, None    # when to write; the seconds of the search in the file
+        self.failure = ""                   # of the last write
         self.lock = contextlib.ExitStack()
 
     def __enter__(self):
@@ -39,31 +39,46 @@ class Keeper:
         self.lock.close()
 
     def keep(self, snapshot):
-        """Writes what snapshot() returns, if it is time; what goes wrong is tried again later."""
+        """Writes what snapshot() returns, if it is time; what goes wrong is said once, and tried
+        again later."""
         if self.path is None or time.monotonic() < self.due:
             return
         now = time.monotonic()
         try:
-            snapshot().save(self.path)
+            self._write(snapshot())
         except (ConverseError, MemoryError) as error:
             if self.due == 0.0:         # nothing is lost yet
                 self.path = None
                 raise
-            warnings.warn("%s; the run goes on and tries again" % _words(error), RuntimeWarning,
-                          stacklevel=2)
-        self.pause = max(SECONDS, SHARE * (time.monotonic() - now))
-        self.due = time.monotonic() + self.pause
+            if not self.failure:
+                warnings.warn("%s; the run goes on and tries again" % _words(error), RuntimeWarning,
+                              stacklevel=2)
+            self.failure = _words(error)
+        self.due = time.monotonic() + max(SECONDS, SHARE * (time.monotonic() - now))
 
-    def finish(self, proof: Proof) -> str:
-        """Writes the end of a run; returns the SHA-256 of the file, "" if there is none."""
+    def finish(self, proof):
+        """Writes the end of a run; returns the SHA-256 of the file, "" if there is none.
+        NotSaved: the warning that the end could not be written."""
         if self.path is None:
             return ""
         try:
-            return proof.save(self.path)
+            return self._write(proof)
         except (ConverseError, MemoryError) as error:
-            warnings.warn("%s; this run is not saved" % _words(error), RuntimeWarning,
-                          stacklevel=2)
+            self.failure = _words(error)
+            self.leave()
             return ""
+
+    def leave(self):
+        """Leaves the file as it is.  NotSaved: the warning that the last write was in vain."""
+        if self.failure:
+            warnings.warn("%s; what was found %sis not saved" % (
+                self.failure, "" if self.saved is None else
+                "after the first %.2f seconds of the search " % self.saved), NotSaved, stacklevel=3)
+
+    def _write(self, proof):
+        sha256 = proof.save(self.path)
+        self.failure, self.saved = "", proof.seconds
+        return sha256
 
 
 def _words(error):

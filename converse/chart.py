@@ -20,15 +20,16 @@ import converse
 from . import files, picture
 from .cli import Parser, ended
 from .files import ConverseError
-from .problem import Problem
+from .picture import BLUE, DARK, ORANGE, PURPLE, VERMILLION
+from .problem import LINE, Problem
 from .version import __version__
 
-SCALE = Fraction("11.21436")            # a = SCALE epsilon
 TOP = "0.0280"                          # above it there is nothing left to prove
 
 # The thesis, table of results: bound, seconds on a Sun-4 (it gives none for 0.0272), longest orbit.
 SUN = (("0.0278", 500, 3), ("0.0276", 759, 4), ("0.0274", 2698, 4))
-BOXES = (("0.0278", "0.313"), ("0.0276", "0.311"), ("0.0274", "0.3085"), ("0.0272", "0.306"))
+# Their boxes, of half-width 0.00125 in a: what each proves, and the centre.
+BOXES = (("0.0278", "0.313"), ("0.02763", "0.311"), ("0.0274", "0.3085"), ("0.0272", "0.306"))
 SINGLES = ("0.0271", "0.02704", "0.0270")       # for the thesis's method, without width
 
 BOUNDS = ("0.0272", "0.0250", "0.0220", "0.0200", "0.0180", "0.0160", "0.0152", "0.0148", "0.0144",
@@ -67,16 +68,13 @@ POINTS = (2, 3, 4)                      # of the orbit, x* being number 0
 SAMPLES = 2000
 
 HEIGHTS = {"bound": 6.6, "wall": 5.4}   # of charts with two parts, in inches
-COLOURS = {"1989": "0.1", "thesis": "#1f5f94", "first order": "0.55", "loewner": "#d98a2b"}
-CIRCLE_COLOUR = "#7a3b8f"
+COLOURS = {"1989": DARK, "thesis": BLUE, "first order": "0.55", "loewner": ORANGE}
 ZOOM = 0.0165                           # up to there the chart of the bound is drawn larger
-FAILED = "#c03030"
-SMALL = {"textcoords": "offset points", "fontsize": 7, "color": "0.3"}
+SMALL = {"textcoords": "offset points", "fontsize": 8, "color": "0.3"}
 STYLE = {
-    **picture.SALT, "lines.linewidth": 1, "lines.markersize": 5.5,
-    "legend.frameon": False, "legend.fontsize": 8, "xtick.labelsize": 8, "ytick.labelsize": 8,
-    "axes.spines.top": False, "axes.spines.right": False, "axes.grid": True,
-    "axes.axisbelow": True, "grid.color": "0.92", "grid.linewidth": 0.6,
+    **picture.STYLE, "lines.markersize": 5.5, "axes.spines.top": False,
+    "axes.spines.right": False, "axes.grid": True, "axes.axisbelow": True, "grid.color": "0.92",
+    "grid.linewidth": 0.6,
 }
 
 
@@ -109,7 +107,7 @@ def last_circle():
 
 def on_line(low, high=None, together=False):
     """The problem for epsilon from low to high, both given as decimals; by default low alone."""
-    low, high = (SCALE * Fraction(x) for x in (low, high or low))
+    low, high = (LINE * Fraction(x) for x in (low, high or low))
     return _problem((low + high) / 2, (high - low) / 2, together)
 
 
@@ -247,10 +245,6 @@ def _pick(rows, column, value):
     return [row for row in rows if row[column] == value]
 
 
-def _legend(axes, **options):
-    axes.legend(frameon=False, fontsize=8, **options)
-
-
 def estimated_end(rows):
     """Where proofs would need orbits without end: once orbits are long, the inverse of the longest
     falls about linearly with epsilon, and the line of least squares says where it is 0.  An
@@ -269,8 +263,8 @@ def _level(axes, value, words, left=False, **line):
     """A horizontal line and its words: below at the right or, left, above at the left."""
     axes.axhline(value, linewidth=0.9, **line)
     axes.annotate(words, (0.015 if left else 0.985, value), (0, 3 if left else -2.5),
-                  xycoords=axes.get_yaxis_transform(), textcoords="offset points", fontsize=7.5,
-                  color="0.25", ha="left" if left else "right", va="bottom" if left else "top")
+                  xycoords=axes.get_yaxis_transform(), textcoords="offset points", color="0.25",
+                  ha="left" if left else "right", va="bottom" if left else "top")
 
 
 def draw_bound(figure, rows):
@@ -280,7 +274,7 @@ def draw_bound(figure, rows):
             ("1989", "^", "none", "the thesis, Sun-4, 1989"),
             ("thesis", "s", "none", "the thesis's method, this program, 35 digits"),
             ("first order", "v", "-", "method loewner, first order (release 1.1.0)"),
-            ("loewner", "o", "-", "method loewner, second order (this release)")):
+            ("loewner", "o", "-", "method loewner, second order")):
         good = [row for row in rows if row[0] == name and row[4] == "yes"]
         for axes in (upper, lower):
             axes.plot([row[2] for row in good], [float(row[1]) for row in good], marker=marker,
@@ -298,7 +292,7 @@ def draw_bound(figure, rows):
                left=True, color=COLOURS["loewner"], linestyle=":")
     for _, epsilon, *_ in _pick(rows, 0, "last circle"):
         _level(lower, float(epsilon), "seen: up to %s the diagonal $x_0 = x_1$ has an invariant "
-               "circle: no proof from an x* there gets past" % epsilon, color=CIRCLE_COLOUR,
+               "circle: no proof from an x* there gets past" % epsilon, color=PURPLE,
                linestyle="-.")
     tori, not_hyperbolic = SEEN
     for value, words in ((not_hyperbolic, "some orbits are not yet hyperbolic"),
@@ -308,7 +302,7 @@ def draw_bound(figure, rows):
     upper.set(xscale="log", ylim=(0.0134, 0.0286),
               title="What is proved, and how long the proof takes")
     lower.set(ylim=(tori - 0.0004, ZOOM), xlabel="time of the proof (seconds of one core)")
-    figure.supylabel(r"proven upper bound of $\varepsilon_c$", x=0.02, fontsize=10)
+    figure.supylabel("proven upper bound of $ε_c$", x=0.02, fontsize=9)
     upper.legend(loc="center right", bbox_to_anchor=(1, 0.6))
     caption = ("thesis: one box 0.0002 wide for each point (1989: the time for 0.0272 is not "
                "known); loewner: everything above the point,\nin one proof.  Below: the same near "
@@ -330,13 +324,13 @@ def draw_digits(figure, rows):
               label="of which before the search (bounds over the torus)")
     if bad:
         axes.plot([row[0] for row in bad], [1000 * row[1] for row in bad], "o", markersize=7,
-                  markerfacecolor="none", color=FAILED, label="undecided: too few digits")
+                  markerfacecolor="none", color=VERMILLION, label="undecided: too few digits")
     changes = [row for row, last in zip(good, [None] + good) if not last or row[3] != last[3]]
     for k, row in enumerate(changes):       # the number of prisms, where it changes
         axes.annotate(str(row[3]), (row[0], 1000 * row[1]), (3, 13 if k % 2 else 6), **SMALL)
     axes.set(xscale="log", ylim=(0, 1150 * max(row[1] for row in rows)),
              xlabel="digits (decimal places)", ylabel="time (milliseconds)",
-             title=r"The price of digits: 0.0274 < $\varepsilon$ < 0.0276, the thesis's method")
+             title="The price of digits: 0.0274 < ε < 0.0276, the thesis's method")
     axes.xaxis.set_major_locator(ticker.FixedLocator(
         [row[0] for row in rows if row[0] not in (4, 15, 75, 150)]))
     axes.xaxis.set_minor_locator(ticker.NullLocator())
@@ -392,7 +386,7 @@ def draw_wall(figure, rows):
         axes.set_ylabel(what)
     upper.set(yscale="log", title="Where the methods fail")
     lower.set(ylim=(-2, None),
-              xlabel=r"$\varepsilon$, a single value (a = b = c/2 = 11.21436 $\varepsilon$)")
+              xlabel="ε, a single value (a = b = c/2)")
     upper.legend(loc="upper center", bbox_to_anchor=(0.55, 1))
     return "on all cores" + (
         "; open: given up, or not finished in %g seconds; the prisms proved until then"
@@ -409,29 +403,28 @@ CHARTS = {
 
 
 def machine():
-    """The program and the machine, in a line."""
+    """The machine, in a line."""
     model = ""
     with contextlib.suppress(OSError), open("/proc/cpuinfo", encoding="utf-8",
                                             errors="replace") as file:
         lines = [line.partition(":") for line in file if line.startswith("model name")]
         model = " ".join(lines[0][2].split()) + ", " if lines else ""
     count = os.cpu_count() or 1
-    return "converse %s; %s, %s%d core%s" % (__version__, platform.machine(), model, count,
-                                             "" if count == 1 else "s")
+    return "%s, %s%d core%s" % (platform.machine(), model, count, "" if count == 1 else "s")
 
 
-def chart(name, rows, kind):
-    """A chart of these rows, as the bytes of a file of that kind."""
+def chart(name, rows, kind, caption=True):
+    """A chart of these rows, as the bytes of a file of that kind; with a caption or without."""
     from matplotlib import style
     from matplotlib.figure import Figure
 
     height = HEIGHTS.get(name, 4.3)
     with style.context(["default", STYLE]):
         figure = Figure(figsize=(7.2, height))
-        caption = CHARTS[name][2](figure, rows) + "\n" + machine().replace("$", "")
+        words = CHARTS[name][2](figure, rows) + "\n" + machine().replace("$", "")
         figure.subplots_adjust(left=0.11, right=0.97, bottom=0.5 / height, top=1 - 0.4 / height)
-        figure.text(0.11, -0.04 / height, caption, fontsize=7, color="0.35", va="top",
-                    linespacing=1.4)
+        if caption:
+            figure.text(0.11, -0.04 / height, words, color="0.35", va="top", linespacing=1.4)
         return picture.encode(figure, kind, dpi=150, pad_inches=0.12)
 
 
@@ -455,6 +448,7 @@ def parser():
                    help="where to write chart-NAME.svg and chart-NAME.csv (default: here)")
     p.add_argument("--format", choices=picture.FORMATS, default=picture.FORMATS[0],
                    help="of the charts")
+    p.add_argument("--no-caption", action="store_true", help="leave out the captions")
     p.add_argument("--quick", action="store_true", help="leave out what takes long")
     p.add_argument("--version", action="version", version="converse-chart " + __version__)
     return p
@@ -480,7 +474,8 @@ def run(options):
             rows.append(row)
             print("%s: %s" % (name, ", ".join(map(" ".join, zip(header, _words(row))))),
                   flush=True)
-        for path, data in zip(paths[name], (chart(name, rows, options.format), table(name, rows))):
+        picture_of = chart(name, rows, options.format, caption=not options.no_caption)
+        for path, data in zip(paths[name], (picture_of, table(name, rows))):
             files.write(path, data)
     print("written: " + " ".join(itertools.chain(*paths.values())), flush=True)
     return 0

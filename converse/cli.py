@@ -2,28 +2,41 @@
 
 import argparse
 import contextlib
+import logging
 import math
 import os
 import signal
 import sys
+import time
 import warnings
 from dataclasses import replace
 
 from . import files
-from .files import ConverseError, plain
+from .files import ConverseError, NotSaved, plain
 from .problem import InputError, decimal_text, parse_number, read_input
 from .report import header, verdict
 from .settings import AS_PRINTED, LIMIT, METHODS, REGION, THEOREM, UNDECIDED, Settings
 from .version import __version__
+from .workers import WorkersGone
 
 STATUS = {THEOREM: 0, UNDECIDED: 1, REGION: 3, AS_PRINTED: 4}
 BAD, ENDED_BY = 2, 128                  # the second plus the number of the signal
+LINE_SECONDS = 0.25                     # between two lines of progress
 KIND_NAMES = {"P": "proved", "S": "symmetric", "U": "undecided"}
 
 
 class Parser(argparse.ArgumentParser):
     def error(self, message):
         raise ConverseError("%s; see %s --help" % (message, self.prog))
+
+
+class ListInputs(argparse.Action):
+    """Prints the paths of the inputs that come with the package, and ends."""
+
+    def __call__(self, parser, *_):
+        directory = os.path.join(os.path.dirname(os.path.abspath(__file__)), "inputs")
+        say("".join(os.path.join(directory, name) + "\n" for name in sorted(os.listdir(directory))))
+        parser.exit()
 
 
 def whole(least):
@@ -59,7 +72,8 @@ def _decimal(text):
 def parser():
     p = Parser(prog="converse", allow_abbrev=False, description=(
         "Tries to prove that a family of symplectic maps has no invariant tori."), epilog=(
-        "Exit status: 0 a theorem; 1 undecided; 2 bad usage, input or file; 3 decided for a part of "
+        "Exit status: 0 a theorem; 1 undecided; 2 bad usage, input or file, or what was found could "
+        "not be saved, or the workers are gone; 3 decided for a part of "
         "the torus only; 4 as printed, not a proof; 129, 130 or 143 ended by a signal."))
     p.add_argument("input", nargs="?", help="input file, the thesis's or JSON, by default, and as -, "
                    "standard input; with -r it is not needed, and must agree if given")
@@ -73,8 +87,8 @@ def parser():
                    help="continue the run whose backup is FILE, as it was asked for then, though "
                    "perhaps deeper (-d), and keep FILE up to date unless -b names another")
     p.add_argument("-g", "--graphics", metavar="FILE",
-                   help="draw the prisms in FILE, by its name as SVG, PNG or PDF, else as "
-                        "PostScript; 'off' draws none (default)")
+                   help="draw the prisms in FILE, by its name's ending as SVG, PNG, PDF or "
+                        "PostScript (.ps, .eps); 'off' draws none (default)")
     p.add_argument("-p", "--precision", dest="digits", type=whole(1), metavar="DP",
                    help="decimal places of the thesis's rigorous arithmetic (default 35)")
     p.add_argument("-s", "--stubborn", action="store_true", default=None,
@@ -97,6 +111,8 @@ def parser():
                         "-m converse.cli --mpi ...")
     p.add_argument("--time-limit", type=seconds, default=math.inf, metavar="SECONDS",
                    help="stop after about so long; what is left is undecided")
+    p.add_argument("--list-inputs", action=ListInputs, nargs=0,
+                   help="print where the inputs are that come with the program, and exit")
     p.add_argument("--version", action="version", version="converse " + __version__)
     return p
 
@@ -115,65 +131,121 @@ def say(text):
 
 def _tell(message, command="converse"):
     """A line on stderr, whatever the message."""
+    Line.clear()
     with contextlib.suppress(OSError):
         print("%s: %s" % (command, plain(" ".join(str(message).split()))), file=sys.stderr,
               flush=True)
 
 
+class Line:
+    """On a terminal, a line that is written over and over, a few times a second."""
+
+    length = 0                              # of what stands there now, whoever wrote it
+
+    def __init__(self):
+        self.shown, self.due = sys.stderr.isatty(), 0.0
+        self.began = time.monotonic()
+
+    def __call__(self, words):
+        """words() is the text, which is asked for if it is time."""
+        now = time.monotonic()
+        if self.shown and now >= self.due:
+            self.due = now + LINE_SECONDS
+            passed = int(now - self.began)
+            Line._write("%d:%02d:%02d %s" % (
+                passed // 3600, passed // 60 % 60, passed % 60, words()))
+
+    @staticmethod
+    def _write(text):
+        with contextlib.suppress(OSError):
+            text = text[:(os.get_terminal_size(sys.stderr.fileno()).columns or 80) - 1]
+            sys.stderr.write("\r" + text.ljust(Line.length) + ("" if text else "\r"))
+            sys.stderr.flush()
+            Line.length = len(text)
+
+    @staticmethod
+    def clear():
+        """Makes room for other lines."""
+        if Line.length:
+            Line._write("")
+
+
 class Progress:
-    """Prints the header when the search gets under way; then, on a terminal, keeps a bar that says
-    how much of the work is behind, and an estimate of the time left."""
+    """Prints the header when the search gets under way; then, on a terminal, what was done, how
+    fast, and how much of parameters and torus it is.  What is left cannot be foreseen: by how the
+    prisms so far fared, proofs were guessed to be a sixth as long as they were, or twice as long."""
 
-    def __init__(self, problem, as_printed, with_bar, begun):
-        self.problem, self.as_printed, self.with_bar = problem, as_printed, with_bar
-        self.started, self.bar, self.begun = False, None, begun
+    def __init__(self, problem, as_printed, with_line, begun):
+        self.problem, self.as_printed, self.begun = problem, as_printed, begun
+        self.started, self.before, self.line = False, 0, Line() if with_line else None
 
-    def __call__(self, done, counts):
+    def __call__(self, examined, counts):
         if not self.started:
             self.started = True
             self.begun()
             if self.as_printed:
                 _tell("--as-printed is a historical reconstruction, not a proof")
             say(header(self.problem, self.as_printed))
-            with contextlib.suppress(ImportError):      # the extra "progress"
-                if self.with_bar:
-                    from tqdm import tqdm
-                    self.bar = tqdm(total=1.0, leave=False, file=sys.stderr, bar_format=(
-                        "{percentage:5.1f}% |{bar}| {elapsed}, about {remaining} left{postfix}"))
-        if self.bar is not None:
-            prisms = counts.proved + counts.symmetric + counts.undecided
-            self.bar.n = done
-            self.bar.set_postfix_str("%d prisms, cut %d times" % (prisms, counts.most_cuts))
+            self.before = counts.proved         # from a backup
+        if self.line is not None:
+            self.line(lambda: self._words(examined, counts))
+
+    def _words(self, examined, counts):
+        rate = (counts.proved - self.before) / max(LINE_SECONDS, time.monotonic() - self.line.began)
+        return "%s prisms proved, %s/s; %.2f%% of parameters x torus done%s" % (
+            format(counts.proved, ","), format(round(rate), ","), math.floor(1e4 * examined) / 100,
+            ", %d undecided" % counts.undecided if counts.undecided else "")
 
     def close(self):
-        if self.bar is not None:
-            self.bar.close()
+        Line.clear()
 
 
 @contextlib.contextmanager
 def workers(options):
-    """The executor that the options ask for, or None, and how many tasks to give it."""
+    """The executor that the options ask for, or None."""
     if options.dask is None and not options.mpi:
-        yield None, options.jobs
+        yield None
     elif options.mpi:
-        try:
-            from mpi4py.futures import MPIPoolExecutor
-        except ImportError:
-            raise ConverseError("--mpi needs mpi4py; pip install mpi4py") from None
+        from mpi4py.futures import MPIPoolExecutor
         with MPIPoolExecutor() as executor:
-            yield executor, options.jobs
+            yield executor
     else:
         try:
             from distributed import Client
         except ImportError:
             raise ConverseError("--dask needs dask; pip install 'converse-kam[dask]'") from None
+        logging.disable()               # what matters is said here, in a line
         try:
             client = Client(options.dask, timeout=10)
         except (OSError, ValueError, TypeError) as error:
             raise ConverseError("there is no Dask scheduler at %s (%s); name another address"
                                 % (options.dask, error or type(error).__name__)) from None
-        with client:
-            yield client.get_executor(), options.jobs or 2 * max(1, sum(client.nthreads().values()))
+        try:
+            yield client.get_executor()
+        finally:
+            with contextlib.suppress(Exception):        # there may be nobody to say good-bye to
+                client.close()
+
+
+def check_mpi(options, module, command="converse"):
+    """Ends the program if this module's command runs in each of several MPI processes, which would
+    all do the same."""
+    if not options.mpi:
+        return
+    try:
+        import mpi4py.futures                           # noqa: F401
+        from mpi4py import MPI
+    except ImportError:
+        raise ConverseError("--mpi needs mpi4py; pip install mpi4py") from None
+    core = sys.modules.get("mpi4py.futures._core") or sys.modules.get("mpi4py.futures._lib")
+    world = MPI.COMM_WORLD
+    if world.Get_size() > 1 and getattr(core, "SharedPool", True) is None:
+        if world.Get_rank() == 0:
+            _tell("--mpi: each of the %d processes would do the whole work; to divide it say "
+                  "mpiexec -n %d python -m mpi4py.futures -m %s --mpi ..."
+                  % (world.Get_size(), world.Get_size(), module), command)
+        world.Barrier()                 # one that ends may take the others with it
+        sys.exit(BAD)
 
 
 def _read_problem(options, restored):
@@ -188,27 +260,24 @@ def _read_problem(options, restored):
         if source.isatty():
             _tell("reading the problem from standard input; end it with Ctrl-D")
     problem = read_input(source)
-    together = options.together or (restored is not None and restored.problem.together)
-    if together and problem.general is not None:
-        raise ConverseError("--together is for ranges of a, b and c; name a parameter in the input "
-                            "instead")
-    return replace(problem, together=together or problem.together)
+    if problem.general is not None:
+        if options.together:
+            raise ConverseError("--together is for ranges of a, b and c; name a parameter in the "
+                                "input instead")
+        return problem
+    return replace(problem, together=options.together or problem.together or (
+        restored is not None and restored.problem.together))
 
 
 def _check_graphics(options):
-    """Refuses a figure that cannot be written or would overwrite what the run reads or writes, or a
-    proof."""
+    """Refuses a figure that cannot be written or would overwrite something else."""
     from . import figure, picture       # these take a while
 
-    path, others = options.graphics, [options.input, options.backup, options.restore]
+    others = [options.input, options.backup, options.restore]
     with contextlib.suppress(AttributeError, OSError, ValueError):
         others.append(sys.stdin.fileno())
-    if not os.path.exists(path) or os.path.isfile(path):
-        if any(other is not None and files.same(path, other) for other in others) or \
-                files.is_proof(path):
-            raise ConverseError("the figure would overwrite '%s'; name another file" % path)
-    files.check_writable(path)
-    if figure.format_of(path) != "ps":
+    files.check_output(options.graphics, "figure", figure.FORMATS, others)
+    if figure.format_of(options.graphics) != "ps":
         picture.check()
 
 
@@ -216,6 +285,7 @@ def run(options):
     from .proof import Proof            # these need the C core, and say so where it is missing
     from .run import prove
 
+    check_mpi(options, "converse.cli")
     if options.graphics == "off":
         options.graphics = None
     if options.graphics is not None:
@@ -230,7 +300,7 @@ def run(options):
                             "--together" % options.restore)
     problem = _read_problem(options, restored)
     settings = Settings() if restored is None else restored.settings
-    if (options.method or settings.method) != "loewner":
+    if restored is None and (options.method or settings.method) != "loewner":
         if problem.together:
             raise ConverseError("%s needs --method loewner" % (
                 "--together" if options.together else "an input whose amplitudes move together"))
@@ -245,19 +315,17 @@ def run(options):
         options.kept = bool(options.backup or options.restore)
 
     progress = Progress(problem, options.as_printed or settings.as_printed,
-                        sys.stderr.isatty() and not options.verbose, begun)
+                        not options.verbose, begun)
     asked = {name: getattr(options, name) for name in (
         "method", "depth", "digits", "stubborn", "as_printed", "xstar", "backup", "time_limit")}
-    with contextlib.closing(progress), workers(options) as (executor, jobs):
-        proof = prove(problem, resume=options.restore, jobs=jobs, executor=executor,
+    with contextlib.closing(progress), workers(options) as executor:
+        proof = prove(problem, resume=options.restore, jobs=options.jobs, executor=executor,
                       progress=progress, on_leaf=on_leaf if options.verbose else None, **asked)
     if not progress.started:            # there was no time even to set the search up
         progress(0.0, proof.counts)
     say(verdict(proof))
     if options.graphics is not None:
         proof.figure(options.graphics)
-    if not proof.sha256 and (options.backup or options.restore):
-        raise ConverseError("what was found is not saved")
     return STATUS[proof.conclusion]
 
 
@@ -288,32 +356,44 @@ def _signals_end(heard):
 
 
 @contextlib.contextmanager
-def _warnings_in_lines(command):
+def _warnings_in_lines(command, unsaved):
+    """Meanwhile a warning is a line, but that the end of a run is not saved is kept in unsaved."""
+    def show(message, category, *_):
+        if issubclass(category, NotSaved):
+            unsaved.append(str(message))
+        else:
+            _tell(message, command)
+
     with warnings.catch_warnings():
         warnings.simplefilter("always", RuntimeWarning)
-        warnings.showwarning = lambda message, *_: _tell(message, command)
+        warnings.showwarning = show
         yield
 
 
 def ended(command, run, interrupted):
     """The exit status of run(); every failure is one line on stderr, headed by the command's name.
     interrupted() says what Ctrl-C leaves behind."""
-    heard = []
+    heard, unsaved = [], []
     try:
         if None in (sys.stdout, sys.stderr):
             return BAD                      # a standard stream is closed: nowhere to say so
         for stream in (sys.stdout, sys.stderr):
             stream.reconfigure(errors="backslashreplace")
-        with _signals_end(heard), _warnings_in_lines(command):
-            return run()
+        with _signals_end(heard), _warnings_in_lines(command, unsaved):
+            status = run()
+        if not unsaved:
+            return status
+        message = ""
     except SystemExit as end:               # of --help and --version
         return end.code
     except (ConverseError, InputError, MemoryError) as error:
         message, status = str(error) or "there is not enough memory", BAD
+        if isinstance(error, WorkersGone) and not unsaved:
+            message += "; " + interrupted()
     except (KeyboardInterrupt, RuntimeError) as error:
         if isinstance(error, RuntimeError) and not heard:
             raise                       # else the signal struck inside the locks of a library
-        message = "interrupted; " + interrupted()
+        message = "interrupted" if unsaved else "interrupted; " + interrupted()
         status = ENDED_BY + (heard or [signal.SIGINT])[0]
     except ImportError as error:        # of what is imported late: libraries are mapped then
         message, status = "a part of Python cannot be loaded (%s); give it more memory, or install " \
@@ -322,6 +402,8 @@ def ended(command, run, interrupted):
         message, status = "the output cannot be written (%s)" % files.reason(error), BAD
         with contextlib.suppress(OSError):  # the interpreter must not try again when it ends
             os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    if unsaved:
+        message, status = "; ".join(filter(None, [message, *unsaved])), BAD
     _tell(message, command)
     return status
 

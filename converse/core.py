@@ -1,5 +1,6 @@
 """The C core in terms of Python."""
 
+import os
 import threading
 from dataclasses import asdict, dataclass, fields
 from decimal import Decimal
@@ -13,9 +14,14 @@ from .settings import Settings
 try:
     from ._native import ffi, lib
 except ImportError as error:            # not built, or for another Python, or without cffi
+    _home = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
     raise ConverseError(
-        "the C core is missing (%s); in a clone run make and use .venv/bin/python, elsewhere "
-        "pip install . with a C compiler and GMP" % error) from None
+        "the sources in %s, which Python takes for the package, have no C core (%s); run make there and "
+        "use its .venv/bin/python, or, where the package is installed, start Python elsewhere"
+        % (_home, error)
+        if os.path.isfile(os.path.join(_home, "setup.py")) else
+        "the C core is missing (%s); pip install converse-kam anew, with a C compiler and GMP"
+        % error) from None
 
 METHODS = {"thesis": lib.CV_THESIS, "loewner": lib.CV_LOEWNER}
 CONSTANTS = {                       # by method, the numbers of the theorem that are recorded

@@ -18,6 +18,8 @@ WIDTH = LEFT + SIDE + RIGHT
 LINE, SMALL_LINE = 13, 10               # from one line of text to the next
 NODES = 60000                           # of the tree in a string, which may hold 65535 characters
 
+FORMATS = *picture.FORMATS, "ps", "eps"         # as the name of a file says
+
 MARKS = {"P": "dark", "S": "light", "?": "white", "U": "crossed"}
 
 PROLOG = """\
@@ -87,22 +89,23 @@ end
 """
 
 
-def figure(proof, target=None, ax=None, format=None):
+def figure(proof, target=None, ax=None, format=None, caption=True):
     """Draws a proof, finished or not.  The target is a path or a binary file; the format svg, png,
     pdf or ps, by default that of the file's name, else PostScript.  ax: Axes of matplotlib, which
     are drawn into and returned: only the prisms and x*, their labels ready for ax.legend().
-    With neither, returns a Figure of matplotlib."""
+    With neither, returns a Figure of matplotlib, which a notebook shows.  caption: whether the
+    lines above say what is proved and by what."""
     if target is None:
         if format is not None:
             raise ValueError("a format needs a target: a path or a binary file")
-        return picture.page(proof) if ax is None else picture.draw(proof, ax)
+        return picture.page(proof, caption) if ax is None else picture.draw(proof, ax)
     if ax is not None:
         raise ValueError("draw into ax or write to a target, not both")
     kind = format_of(target) if format is None else format
     if kind != "ps" and kind not in picture.FORMATS:
         raise ValueError("the format is one of %s, ps, not %r" % (", ".join(picture.FORMATS), kind))
-    data = postscript(proof).encode("ascii", "replace") if kind == "ps" \
-        else picture.picture(proof, kind)
+    data = postscript(proof, caption).encode("ascii", "replace") if kind == "ps" \
+        else picture.picture(proof, kind, caption)
     if hasattr(target, "write"):
         target.write(data)
     else:
@@ -135,7 +138,7 @@ def html(proof):
     return text
 
 
-def postscript(proof):
+def postscript(proof, caption=True):
     counts = legend.counts(proof)
     nodes = proof.tree + tree.UNTRIED * (counts.get("?", 0) - proof.tree.count(tree.UNTRIED))
     key = ["%s: %s (%d)" % (MARKS[kind], legend.NAMES[kind], count)
@@ -143,7 +146,7 @@ def postscript(proof):
     star = legend.star(proof)
     if star:
         key.append("circle: " + legend.STAR)
-    head, foot = legend.head(proof), legend.foot(proof)
+    head, foot = (legend.head(proof), legend.foot(proof)) if caption else ([], [])
     below = 40 + SMALL_LINE * len(foot)
     top = SIDE + 16 + SMALL_LINE + LINE * len(head)
 

@@ -9,19 +9,14 @@ class ConverseError(RuntimeError):
     """Something outside the mathematics went wrong; the text is one plain sentence."""
 
 
+class NotSaved(RuntimeWarning):
+    """What a run found last is not in its file; the text says since when, and why."""
+
+
 def plain(text):
     """The text without what a terminal would obey."""
     return "".join(c if c.isprintable() or c == "\t" else
                    c.encode("unicode_escape", "surrogatepass").decode("ascii") for c in text)
-
-
-def is_proof(path):
-    """Does the file look like a proof file, perhaps a compressed one?"""
-    try:
-        with open(path, "rb") as file:
-            return file.read(14).startswith((b"converse proof", b"\x1f\x8b"))
-    except OSError:
-        return False
 
 
 def check_new(path, resumed=None):
@@ -68,6 +63,40 @@ def check_writable(path, regular=False):
     except OSError as error:
         raise ConverseError("%s: its directory cannot be written (%s); choose another place"
                             % (path, reason(error))) from None
+
+
+PS = b"%!PS-Adobe", b"%%Creator: converse "
+MADE = {                                # by the ending of its name, how a file of this program
+    "svg": (b"<?xml", b"<dc:title>converse "),              # begins, and what it holds
+    "png": (b"\x89PNG", b"Software\0converse "), "pdf": (b"%PDF", b"/Creator (converse "),
+    "ps": PS, "eps": PS,
+    "csv": (b"potential,p,q,", b",undetermined\n")}         # none of a sweep: days of work, perhaps
+
+
+def check_output(path, what, endings, others=()):
+    """Finds out before the work starts whether a picture or a table may be written.  Its name must
+    have such an ending, it must be none of the other files of the run, and where it exists it is
+    what this program made, or empty."""
+    if any(other is not None and same(path, other) for other in others):
+        raise ConverseError("'%s': the %s would overwrite it; name another file" % (path, what))
+    ending = os.path.splitext(path)[1][1:].lower()
+    if ending not in endings:
+        raise ConverseError("'%s': the name of the %s ends in %s; give it such a name"
+                            % (path, what, " or ".join("." + each for each in endings)))
+    check_writable(path)
+    try:
+        with open(path, "rb") as file:
+            data = file.read() if os.path.isfile(path) else b""
+    except FileNotFoundError:
+        return
+    except OSError as error:
+        raise ConverseError("%s: cannot be read (%s); name another file"
+                            % (path, reason(error))) from None
+    head, mark = MADE[ending]
+    if data and not (data.startswith(head) and mark in data):
+        raise ConverseError("'%s': exists and is no %s of this program, or one to be kept (of a "
+                            "sweep, or of an older release); remove it or name another file"
+                            % (path, what))
 
 
 def write(path, data):

@@ -6,18 +6,17 @@ tree, its counts and the theorem are the same however the work is divided.
 
 import concurrent.futures
 import contextlib
-import os
 import time
 from dataclasses import replace
 
 from . import core, tree
 from .core import Counts
-from .files import ConverseError
+from .workers import ATTEMPTS, Crew, WorkersGone, count_workers
+from .workers import wait as wait_for_one
 
 MANY = 2 ** 30                      # leaves
 ALONE_SECONDS = 0.03                # before anyone else is asked
 TASK_SECONDS = 0.25                 # that a worker grows its part before it reports, in the long run
-ATTEMPTS = 4                        # at a part whose workers die
 OLD = -1                            # in place of the orbit's length: not of this run
 
 
@@ -45,17 +44,6 @@ def _kinds(text):
     return (sum(map(text.count, tree.CUTS)), *map(text.count, "PSU"))
 
 
-def count_workers(executor=None):
-    """How many tasks keep the cores of this machine, or an executor, busy."""
-    if executor is not None:
-        return 2 * (getattr(executor, "num_workers", None)
-                    or getattr(executor, "_max_workers", None) or 4)
-    try:
-        return len(os.sched_getaffinity(0))
-    except AttributeError:              # not everywhere
-        return os.cpu_count() or 1
-
-
 class Growth:
     """The tree while it grows: its parts in preorder, some of them being worked on.
 
@@ -63,14 +51,16 @@ class Growth:
     an eye on the clock and on Ctrl-C; and those here can be stopped in the middle of a prism."""
 
     def __init__(self, task, jobs, executor=None, want_steps=False):
-        """executor: of somebody else, for the work that is worth dividing; jobs: parts at a time."""
-        self.task, self.jobs, self.executor = task, jobs, executor
+        """executor: of somebody else, for the work that is worth dividing; jobs: parts at a time,
+        or None."""
+        self.task, self.executor, self.crew = task, executor, Crew(executor, jobs)
         self.want_steps, self.stubborn = want_steps, task.settings.stubborn
-        self.parts, self.statistics, self.history = [], Counts(), core.History()
+        self.parts, self.statistics = [], Counts()
         self.changes = 0                    # under way: see _change
         self.running = {}                   # future -> (part, attempts left)
         self.stop = core.stop_token()
-        self.threads = concurrent.futures.ThreadPoolExecutor(jobs if executor is None else 1)
+        self.threads = concurrent.futures.ThreadPoolExecutor(
+            jobs or count_workers() if executor is None else 1)
 
     def __enter__(self):
         return self
@@ -172,12 +162,11 @@ class Growth:
         return first.pieces[0][start:], first.steps[start:]
 
     @property
-    def done(self):
-        """The share of the work that is behind us, as far as can be seen."""
-        counts = self.counts
-        nodes = counts.cuts + counts.proved + counts.symmetric + counts.undecided
-        cells = [cell for part in self._relevant() for cell in part.cells]
-        return nodes / (nodes + self.history.expected(cells)) if nodes or cells else 0.0
+    def examined(self):
+        """The share of parameters and angles that lies in prisms which are proved, skipped or given
+        up; it never falls."""
+        return 1.0 - sum(0.5 ** sum(cuts) for part in self.parts for _, cuts, _ in part.cells) \
+            if self.parts else 0.0
 
     # ---- growing
 
@@ -189,7 +178,6 @@ class Growth:
             part.append([grown.text], grown.steps, _kinds(grown.text))
             part.cells = grown.cells
             self.statistics += grown.counts
-            self.history.add(grown.history)
 
     def _queue(self):
         """The parts that wait for a worker, in preorder."""
@@ -216,31 +204,26 @@ class Growth:
         when something came back and no part waits any more."""
         end = time.monotonic() + seconds
         alone = self.alone_until - time.monotonic()
-        if alone > 0 or (self.jobs == 1 and self.executor is None):
+        if alone > 0 or (self.executor is None and self.crew.size == 1):
             executor, workers = self.threads, 1
             seconds = min(seconds, alone) if alone > 0 else seconds
             queue = self._queue()
         else:
-            executor, workers = self.executor or self.threads, self.jobs
+            executor, workers = self.executor or self.threads, self._count_crew()
             seconds = min(TASK_SECONDS, 0.1 * (time.monotonic() - self.began))
             queue = self._divide(self._queue(), workers - len(self.running))
         queue.reverse()
         while True:
             while queue and len(self.running) < workers:
                 self._submit(queue.pop(), ATTEMPTS, executor, seconds)
-            done, _ = concurrent.futures.wait(self.running, max(0.0, end - time.monotonic()),
-                                              concurrent.futures.FIRST_COMPLETED)
+            done = wait_for_one(self.running, max(0.0, end - time.monotonic()))
             stopped = False
             for future in done:
                 part, attempts = self.running.pop(future)
                 try:
                     grown = future.result()
-                except (ConverseError, MemoryError):
-                    raise
                 except Exception as error:      # a worker died: its part is as it was
-                    if attempts == 1:
-                        raise ConverseError("the workers keep failing (%s: %s)"
-                                            % (type(error).__name__, error)) from None
+                    self.crew.failed(error, attempts)
                     self._submit(part, attempts - 1, executor, TASK_SECONDS)
                 else:
                     self._take(part, grown)
@@ -250,6 +233,13 @@ class Growth:
                 break
         self._merge()
 
+    def _count_crew(self):
+        try:
+            return self.crew.size
+        except WorkersGone:             # what they have not brought they will not bring
+            self.running = {future: of for future, of in self.running.items() if future.done()}
+            raise
+
     def _submit(self, part, attempts, executor, seconds):
         stop = [self.stop] if executor is self.threads else []      # it cannot leave the process
         self.running[self._start(executor, core.grow, self.task, part.cells, seconds, MANY,
@@ -258,9 +248,9 @@ class Growth:
     def _start(self, executor, *call):
         try:
             return executor.submit(*call)
-        except RuntimeError as error:
+        except Exception as error:
             if executor is not self.threads:
-                raise ConverseError("the workers are gone (%s)" % error) from None
+                raise self.crew.gone(error) from None
             if "new thread" in str(error):
                 raise MemoryError("there is not enough memory for another thread") from None
             raise                       # a signal struck inside the locks of the library
@@ -288,7 +278,7 @@ class Growth:
             except Exception:               # the part is as it was
                 continue
             self._take(self.running[future][0], grown)
-        for future in late:
+        for future in late if self.crew.alive else ():
             future.cancel()
         self.running.clear()
         self._merge()

@@ -2,7 +2,7 @@
 
 from decimal import Decimal
 from fractions import Fraction
-from typing import List, Sequence, Tuple
+from typing import Any, List, Sequence, Tuple
 
 from .core import MESSAGES, check, ffi, lib
 from .problem import Number, decimal_text, parse_number
@@ -28,7 +28,7 @@ TAKES = {
 }
 
 
-def _exact(x):
+def _exact(x: Number) -> str:
     """An int, a Fraction or a Decimal of finite decimals, or a string, for the C side."""
     if isinstance(x, str):
         return decimal_text(parse_number(x)) if "/" in x else x
@@ -63,98 +63,102 @@ def call(name: str, values: Sequence[Number], nout: int, dp: int, arithmetic: st
     return [Fraction(Decimal(text)) for text in texts]
 
 
-def pi(dp: int, **options) -> Fraction:
+def pi(dp: int, **options: Any) -> Fraction:
     """pi to dp decimal places."""
     return call("pi", [], 1, dp, **options)[0]
 
 
-def sin(x: Number, dp: int, **options) -> Fraction:
+def sin(x: Number, dp: int, **options: Any) -> Fraction:
     """The sine of x to dp decimal places."""
     return call("sincos", [x], 2, dp, **options)[0]
 
 
-def cos(x: Number, dp: int, **options) -> Fraction:
+def cos(x: Number, dp: int, **options: Any) -> Fraction:
     """The cosine of x to dp decimal places."""
     return call("sincos", [x], 2, dp, **options)[1]
 
 
-def sqrt(x: Number, dp: int, **options) -> Fraction:
+def sqrt(x: Number, dp: int, **options: Any) -> Fraction:
     """The square root of x to dp decimal places."""
     return call("sqrt", [x], 2, dp, **options)[0]
 
 
-def div(x: Number, y: Number, dp: int, **options) -> Interval:
+def div(x: Number, y: Number, dp: int, **options: Any) -> Interval:
     """An interval (lo, hi) that holds x / y."""
-    return tuple(call("div", [x, y], 3, dp, **options)[:2])
+    return _pair(call("div", [x, y], 3, dp, **options))
 
 
-def bound_sin(lo: Number, hi: Number, dp: int, **options) -> Interval:
+def bound_sin(lo: Number, hi: Number, dp: int, **options: Any) -> Interval:
     """An interval (lo, hi) that holds the sine of every number from lo to hi."""
-    return tuple(call("bound_sincos", [lo, hi], 4, dp, **options)[:2])
+    return _pair(call("bound_sincos", [lo, hi], 4, dp, **options))
 
 
-def bound_cos(lo: Number, hi: Number, dp: int, **options) -> Interval:
+def bound_cos(lo: Number, hi: Number, dp: int, **options: Any) -> Interval:
     """An interval (lo, hi) that holds the cosine of every number from lo to hi."""
-    return tuple(call("bound_sincos", [lo, hi], 4, dp, **options)[2:])
+    return _pair(call("bound_sincos", [lo, hi], 4, dp, **options)[2:])
 
 
 def bound_inverse(matrix: Sequence[Sequence[Number]], dp: int,
-                  **options) -> Tuple[Rows, Fraction]:
+                  **options: Any) -> Tuple[Rows, Fraction]:
     """An approximate inverse of a 4 x 4 matrix, a list of rows, and a bound of its error."""
     out = call("inverse", [x for row in matrix for x in row], 17, dp, **options)
     return _rows(out[:16], 4), out[16]
 
 
-def inverse(matrix: Sequence[Sequence[Number]], dp: int, **options) -> Rows:
+def inverse(matrix: Sequence[Sequence[Number]], dp: int, **options: Any) -> Rows:
     """The approximate inverse alone."""
     return bound_inverse(matrix, dp, **options)[0]
 
 
-def image(prism: Prism, dp: int, **options) -> Tuple[List[Fraction], Rows]:
+def image(prism: Prism, dp: int, **options: Any) -> Tuple[List[Fraction], Rows]:
     """A prism that holds the image of a prism (centre, matrix): 7 numbers, 7 rows of 7."""
     out = call("image", _flat(prism), 56, dp, **options)
     return out[:7], _rows(out[7:], 7)
 
 
-def btrace(prism: Prism, dp: int, **options) -> Interval:
+def btrace(prism: Prism, dp: int, **options: Any) -> Interval:
     """An interval (lo, hi) that holds the trace of beta at every point of a prism."""
-    return tuple(call("btrace", _flat(prism), 2, dp, **options))
+    return _pair(call("btrace", _flat(prism), 2, dp, **options))
 
 
-def Blams(prism: Prism, dp: int, **options) -> Tuple[Interval, Interval]:
+def Blams(prism: Prism, dp: int, **options: Any) -> Tuple[Interval, Interval]:
     """Intervals that hold the least and the largest eigenvalue of beta over a prism."""
     out = call("Blams", _flat(prism), 4, dp, **options)
-    return tuple(out[:2]), tuple(out[2:])
+    return _pair(out), _pair(out[2:])
 
 
-def torus(a: Range, b: Range, c: Range, dp: int, **options) -> Tuple[Fraction, Fraction]:
+def torus(a: Range, b: Range, c: Range, dp: int, **options: Any) -> Interval:
     """The bounds (T, B) over the whole torus for ranges (lo, hi) of the parameters."""
-    return tuple(call("torus", [*a, *b, *c], 2, dp, **options))
+    return _pair(call("torus", [*a, *b, *c], 2, dp, **options))
 
 
 def cell(a: Range, b: Range, c: Range, centre: Sequence[Number], half: Sequence[Number],
-         dp: int, **options) -> Tuple[Fraction, Fraction]:
+         dp: int, **options: Any) -> Interval:
     """Bounds of the trace and of the largest eigenvalue of 2I + W over a cell of the torus, a
-    rectangle centre +- half, for ranges (lo, hi) of the parameters (csrc/thesis/torus.c)."""
-    return tuple(call("cell", [*a, *b, *c, *centre, *half], 2, dp, **options))
+    rectangle centre +- half, for ranges (lo, hi) of the parameters (csrc/torus.c)."""
+    return _pair(call("cell", [*a, *b, *c, *centre, *half], 2, dp, **options))
 
 
-def region(centre: Number, half: Number, dp: int, **options) -> Tuple[Fraction, Fraction]:
+def region(centre: Number, half: Number, dp: int, **options: Any) -> Interval:
     """An interval (centre, half) in radians that holds one in units of pi."""
-    return tuple(call("region", [centre, half], 2, dp, **options))
+    return _pair(call("region", [centre, half], 2, dp, **options))
 
 
 def constants(centre: Sequence[Number], half: Sequence[Number], xstar: Sequence[Number],
-              dp: int, **options) -> Tuple[Fraction, ...]:
+              dp: int, **options: Any) -> Tuple[Fraction, ...]:
     """What a search begins with, for parameters centre +- half: T, Tr-, Tr+, B, lambda-min and
     lambda-max, and upper bounds of the trace and of the least eigenvalue of the block d_0."""
     return tuple(call("constants", [*centre, *half, *xstar], 8, dp, **options))
 
 
-def _flat(prism):
+def _pair(values: Sequence[Fraction]) -> Interval:
+    return values[0], values[1]
+
+
+def _flat(prism: Prism) -> List[Number]:
     centre, matrix = prism
     return list(centre) + [x for row in matrix for x in row]
 
 
-def _rows(values, n):
+def _rows(values: List[Fraction], n: int) -> Rows:
     return [values[i:i + n] for i in range(0, n * n, n)]

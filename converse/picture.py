@@ -8,19 +8,30 @@ import math
 from fractions import Fraction
 
 from . import files, legend, tree
+from .version import __version__
 
 FORMATS = "svg", "png", "pdf"
-COLOURS = {"P": "0.35", "S": "0.85", "?": "1.0", "U": "#ffd0d0"}
-EDGES = {"P": "0.1", "S": "0.6", "?": "0.6", "U": "red"}
+# Okabe and Ito's colours, told apart by the colour-blind, too; and greys.
+BLUE, SKY, ORANGE, VERMILLION = "#0072b2", "#56b4e9", "#e69f00", "#d55e00"
+GREEN, PURPLE, DARK, GREY = "#009e73", "#cc79a7", "0.1", "0.6"
+COLOURS = {"P": "0.35", "S": "0.85", "?": "1.0", "U": "#f4b183"}
+EDGES = {"P": "0.1", "S": "0.6", "?": "0.6", "U": VERMILLION}
 WIDTHS = {"U": 0.8}                     # of the edges, in points
 LAYERS = "SP?U"                         # from below: nothing hides what is not proved
 RASTER = 2000                           # with more prisms than this the depth of the cuts is drawn
 PIXELS = 1200
 SINGLE = Fraction(1, 10 ** 200)         # matplotlib takes ranges not much smaller for none
-DEPTHS, SHADE = "viridis_r", "#35b779"  # of the cuts; one for the legend
-RASTER_COLOURS = {"S": (217, 217, 217, 255), "?": (255, 255, 255, 255), "U": (204, 0, 0, 255)}
+DEPTHS, SHADE = ("#9ecae1", "#4292c6", "#08306b"), "#4292c6"    # of the cuts; one for the legend
+RASTER_COLOURS = {"S": (217, 217, 217, 255), "?": (255, 255, 255, 255), "U": (213, 94, 0, 255)}
 SALT = {"svg.hashsalt": "converse"}     # the same picture, the same file
-DATES = {"svg": {"Date": None}, "pdf": {"CreationDate": None}}
+STYLE = {                               # of all pictures but those of proofs
+    **SALT, "font.size": 8, "axes.titlesize": 9, "axes.labelsize": 9, "xtick.labelsize": 8,
+    "ytick.labelsize": 8, "legend.fontsize": 8, "legend.title_fontsize": 8,
+    "legend.framealpha": 0.85, "legend.edgecolor": "0.8", "lines.linewidth": 1,
+}
+PROGRAM = "converse " + __version__         # by which files.check_output knows its pictures
+METADATA = {"svg": {"Creator": PROGRAM, "Date": None}, "png": {"Software": PROGRAM},
+            "pdf": {"Creator": PROGRAM, "CreationDate": None}}
 
 
 def check():
@@ -32,35 +43,37 @@ def check():
                                   "or name the figure .ps") from None
 
 
-def picture(proof, kind):
+def picture(proof, kind, caption=True):
     """The figure as the bytes of a file; the user's settings do not matter to it."""
     check()
     from matplotlib import style
 
     with style.context(["default", SALT]):
-        return encode(page(proof), kind, dpi=300)
+        return encode(page(proof, caption), kind, dpi=300)
 
 
 def encode(figure, kind, **options):
     """A Figure as the bytes of a file of that kind, without a date."""
     data = io.BytesIO()
-    figure.savefig(data, format=kind, bbox_inches="tight", metadata=DATES.get(kind), **options)
+    figure.savefig(data, format=kind, bbox_inches="tight", metadata=METADATA.get(kind), **options)
     return data.getvalue()
 
 
-def page(proof):
-    """A Figure with all its words."""
+def page(proof, caption=True):
+    """A Figure that a notebook shows; with a caption, above it what is proved and by what."""
     check()
-    from matplotlib.figure import Figure
     from matplotlib.ticker import MaxNLocator
 
-    fig = Figure(figsize=(6.4, 7.0))
+    from .page import Page
+
+    fig = Page(figsize=(6.4, 7.0))
     axes = draw(proof, fig.add_subplot())
-    head, foot = ("\n".join(lines).replace("$", r"\$")
-                  for lines in (legend.head(proof), legend.foot(proof)))
-    axes.annotate(foot, (0.5, 1), (0, 5), "axes fraction", "offset points", fontsize=6.5,
-                  ha="center", va="bottom")
-    axes.set_title(head, fontsize=9, pad=10 + 8.5 * len(legend.foot(proof)))
+    if caption:
+        head, foot = ("\n".join(lines).replace("$", r"\$")
+                      for lines in (legend.head(proof), legend.foot(proof)))
+        axes.annotate(foot, (0.5, 1), (0, 5), "axes fraction", "offset points", fontsize=8,
+                      ha="center", va="bottom")
+        axes.set_title(head, fontsize=9, pad=10 + 10.5 * len(legend.foot(proof)))
     axes.legend(loc="upper center", bbox_to_anchor=(0.5, 0), borderaxespad=5, ncol=3, fontsize=8,
                 frameon=False)          # so far below the axes that their labels have room
     for image in axes.images[:1]:
@@ -148,6 +161,7 @@ def _raster(axes, text, extent):
     """Draws for each place how often the smallest prism there was cut; a place may lie in many
     where the parameters were cut."""
     import numpy
+    from matplotlib.colors import LinearSegmentedColormap
 
     depth = numpy.full((PIXELS, PIXELS), -1, numpy.int16)
     others = {kind: numpy.zeros((PIXELS, PIXELS), bool) for kind in RASTER_COLOURS}
@@ -166,5 +180,6 @@ def _raster(axes, text, extent):
     for kind in LAYERS:
         if kind in others:
             above[others[kind]] = RASTER_COLOURS[kind]
-    for image, options in ((numpy.ma.masked_less(depth, 0), {"cmap": DEPTHS}), (above, {})):
+    depths = LinearSegmentedColormap.from_list("depths", DEPTHS)
+    for image, options in ((numpy.ma.masked_less(depth, 0), {"cmap": depths}), (above, {})):
         axes.imshow(image, origin="lower", extent=extent, interpolation="nearest", **options)

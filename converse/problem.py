@@ -7,13 +7,17 @@ from decimal import Decimal
 from fractions import Fraction
 from functools import cached_property
 from math import gcd
-from typing import IO, Optional, Sequence, Tuple, Union
+from typing import IO, TYPE_CHECKING, List, NoReturn, Optional, Sequence, Tuple, Union
 
 NAMES = ("a", "b", "c", "v0", "v1")
 LABELS = ("a", "b", "c", "theta[0]", "theta[1]")        # as the input's documentation calls them
 MAX_EXPONENT = 300
 PLACES = 40                             # to which what is no finite decimal is enclosed
 THESIS = (1, 0), (0, 1), (1, 1)         # the waves of a, b and c
+# The thesis's line is a = b = c/2 = LINE epsilon: this decimal defines epsilon here.  The thesis's
+# own constant is 2 pi^2/M = 11.2143598191..., M = sqrt(207 + 33 sqrt 33)/(8 sqrt 2), which
+# converse.orbits has.
+LINE = Fraction("11.21436")
 MOST_WAVES, MOST_PARAMETERS, HIGHEST = 16, 3, 100       # the last: of what k and frames have
 IDENTITY = 1, 0, 0, 1
 NUMBER = re.compile(r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]{1,9})?")
@@ -21,6 +25,10 @@ RATIO = re.compile(r"[+-]?[0-9]+/[0-9]*[1-9][0-9]*")
 
 Number = Union[int, str, Decimal, Fraction]
 Range = Tuple[Number, Number]
+Ends = Tuple[Fraction, Fraction]        # what becomes of a Range
+Wave = Tuple[int, int, Fraction]
+Frame = Tuple[int, int, int, int]
+Numbers = Tuple[Fraction, ...]
 
 
 class InputError(ValueError):
@@ -55,18 +63,26 @@ class Problem:
     TypeError, ValueError: a range is none; the text says which and why.
     """
 
-    a: Union[Range, Number, None] = None
-    b: Union[Range, Number, None] = None
-    c: Union[Range, Number, None] = None
-    v0: Union[Range, Number] = (0, 2)
-    v1: Union[Range, Number] = (0, 2)
+    a: Optional[Ends] = None
+    b: Optional[Ends] = None
+    c: Optional[Ends] = None
+    v0: Ends = (Fraction(0), Fraction(2))
+    v1: Ends = (Fraction(0), Fraction(2))
     comments: Tuple[str, ...] = ()
     together: bool = False
-    general: Optional[tuple] = None
-    axes: Optional[Tuple[int, int, int, int]] = None
+    general: Optional[Tuple[Tuple[Wave, ...], Numbers, Tuple[Numbers, ...]]] = None
+    axes: Optional[Frame] = None
     alone: Union[int, str, None] = None
 
-    def __post_init__(self):
+    if TYPE_CHECKING:                   # what is given; above is what becomes of it
+        def __init__(self, a: Union[Range, Number, None] = None,
+                     b: Union[Range, Number, None] = None, c: Union[Range, Number, None] = None,
+                     v0: Union[Range, Number] = (0, 2), v1: Union[Range, Number] = (0, 2),
+                     comments: Union[str, Sequence[str]] = (), together: bool = False,
+                     general: Optional[tuple] = None, axes: Optional[Frame] = None,
+                     alone: Union[int, str, None] = None) -> None: ...
+
+    def __post_init__(self) -> None:
         for name in NAMES if self.general is None else NAMES[3:]:
             object.__setattr__(self, name, interval(name, getattr(self, name)))
         if not isinstance(self.together, bool):
@@ -84,8 +100,8 @@ class Problem:
         self._check_choices()
 
     @classmethod
-    def around(cls, centre: Sequence[Number], half: Sequence[Number], comments=(),
-               together: bool = False) -> "Problem":
+    def around(cls, centre: Sequence[Number], half: Sequence[Number],
+               comments: Union[str, Sequence[str]] = (), together: bool = False) -> "Problem":
         """From the centres and the half-widths of a, b, c, v0 and v1, as in an input file."""
         if not len(centre) == len(half) == len(NAMES):
             raise ValueError("there are %d centres and %d half-widths where five belong: of a, b, c, "
@@ -94,13 +110,14 @@ class Problem:
         for name, (_, h) in zip(NAMES, pairs):
             if h < 0:
                 raise ValueError("the half-width of %s is negative" % name)
-        return cls(*((c - h, c + h) for c, h in pairs), comments=comments, together=together)
+        a, b, c, v0, v1 = [(middle - h, middle + h) for middle, h in pairs]
+        return cls(a, b, c, v0, v1, comments, together)
 
     @classmethod
     def patch(cls, amplitude: Sequence[Number], parts: Sequence[Sequence[Number]] = (),
               waves: Sequence[tuple] = THESIS, v0: Union[Range, Number] = (0, 2),
-              v1: Union[Range, Number] = (0, 2), comments=(),
-              axes: Optional[Tuple[int, int, int, int]] = None,
+              v1: Union[Range, Number] = (0, 2), comments: Union[str, Sequence[str]] = (),
+              axes: Optional[Frame] = None,
               alone: Union[int, str, None] = None) -> "Problem":
         """A patch of the parameters of a potential:  amplitude + sum of t[m] parts[m],  each t[m]
         in [-1, 1].
@@ -167,30 +184,30 @@ class Problem:
     # ---- the one mechanism: what the core and a proof file are told
 
     @cached_property
-    def waves(self) -> Tuple[Tuple[int, int, Fraction], ...]:
+    def waves(self) -> Tuple[Wave, ...]:
         """(k0, k1, phase in units of pi) of each wave."""
         return tuple((*k, Fraction(0)) for k in THESIS) if self.general is None else self.general[0]
 
     @cached_property
-    def amplitude(self) -> Tuple[Fraction, ...]:
+    def amplitude(self) -> Numbers:
         """Of each wave, in the middle of the patch."""
         if self.general is not None:
             return self.general[1]
         return tuple(sum(getattr(self, name)) / 2 for name in "abc")
 
     @cached_property
-    def parts(self) -> Tuple[Tuple[Fraction, ...], ...]:
+    def parts(self) -> Tuple[Numbers, ...]:
         """Of each parameter, what it adds to each amplitude at its upper end."""
         if self.general is not None:
             return self.general[2]
-        half = [(high - low) / 2 for low, high in (self.a, self.b, self.c)]
+        half = [(high - low) / 2 for low, high in (getattr(self, name) for name in "abc")]
         if self.together:
             return tuple(half),
         return tuple(tuple(h if j == m else Fraction(0) for j in range(3))
                      for m, h in enumerate(half))
 
     @cached_property
-    def frame(self) -> Tuple[int, int, int, int]:
+    def frame(self) -> Frame:
         """x_1 = (f[0] v0 + f[1] v1, f[2] v0 + f[3] v1)."""
         return self._best_frame() if self.axes is None else self.axes
 
@@ -217,7 +234,7 @@ class Problem:
         of test vectors (n, 0) is the second variation of the first map by itself."""
         if self.alone is None:
             return self._best_alone()
-        return None if self.alone == "no" else self.alone
+        return self.alone if isinstance(self.alone, int) else None
 
     def _best_alone(self):
         """The one that bends more, or None where neither can be left out."""
@@ -232,15 +249,15 @@ class Problem:
                      if self.kept is None or k[1 - self.kept] == 0)
 
     @cached_property
-    def odd(self) -> Optional[Tuple[Fraction, Fraction]]:
+    def odd(self) -> Optional[Ends]:
         """A point s, in units of pi, about which V is odd: k.s + phase is an integer for every wave.
         None: there is none.
 
         Sums and differences of such conditions are such conditions, so Euclid's algorithm makes of
         them one for s1 alone, one more that has s0, and those that s has no part in."""
-        rows = [[k0, k1, phase] for k0, k1, phase in self.waves]
+        rows = [[Fraction(k0), Fraction(k1), phase] for k0, k1, phase in self.waves]
         s = [Fraction(0), Fraction(0)]
-        pivots = []
+        pivots: List[Optional[List[Fraction]]] = []
         for i in range(2):
             while sum(row[i] != 0 for row in rows) > 1:
                 least = min((row for row in rows if row[i]), key=lambda row: abs(row[i]))
@@ -252,9 +269,9 @@ class Problem:
             rows = [row for row in rows if not row[i]]
         if any(row[2].denominator != 1 for row in rows):
             return None
-        for i, row in reversed(list(enumerate(pivots))):
-            if row is not None:
-                s[i] = -(row[2] + sum(row[m] * s[m] for m in range(i + 1, 2))) / row[i] % 1
+        for i, pivot in reversed(list(enumerate(pivots))):
+            if pivot is not None:
+                s[i] = -(pivot[2] + sum(pivot[m] * s[m] for m in range(i + 1, 2))) / pivot[i] % 1
         return s[0], s[1]
 
     @property
@@ -265,14 +282,14 @@ class Problem:
     # ---- ranges
 
     @property
-    def centre(self) -> Tuple[Fraction, ...]:
+    def centre(self) -> Numbers:
         """The middles of the amplitudes' ranges and of those of v0 and v1."""
         return self.amplitude + tuple((low + high) / 2 for low, high in (self.v0, self.v1))
 
     @property
-    def half(self) -> Tuple[Fraction, ...]:
+    def half(self) -> Numbers:
         """The half-widths of the same ranges."""
-        widths = tuple(sum(map(abs, parts)) for parts in zip(*self.parts)) \
+        widths = tuple(sum(map(abs, parts), Fraction(0)) for parts in zip(*self.parts)) \
             if self.parts else (Fraction(0),) * len(self.waves)
         return widths + tuple((high - low) / 2 for low, high in (self.v0, self.v1))
 
@@ -475,10 +492,11 @@ def read_input(source: Union[str, "os.PathLike[str]", IO]) -> Problem:
         from . import harmonics
         return harmonics.read(text, name)
     lines = text.rstrip("\n").split("\n")
-    centre, half = [], []
+    centre: List[Fraction] = []
+    half: List[Fraction] = []
     used = 0
 
-    def fail(wrong, remedy):
+    def fail(wrong: object, remedy: str) -> NoReturn:
         raise InputError("%s, line %d: %s; %s" % (name, max(used, 1), wrong, remedy))
 
     for label in LABELS:

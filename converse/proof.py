@@ -5,7 +5,7 @@ import re
 import zlib
 from dataclasses import asdict, dataclass, field, fields
 from functools import cached_property
-from typing import TYPE_CHECKING, Dict, List, Optional, Tuple, Union
+from typing import TYPE_CHECKING, Any, Dict, List, Optional, Tuple, Union
 
 from . import files, tree
 from .core import CONSTANTS, Counts
@@ -120,10 +120,10 @@ class Proof:
         from .report import report
         return report(self)
 
-    def figure(self, target=None, *, ax=None, format: Optional[str] = None):
+    def figure(self, target=None, *, ax=None, format: Optional[str] = None, caption: bool = True):
         """Draws the prisms: see figure.figure."""
         from .figure import figure
-        return figure(self, target, ax, format)
+        return figure(self, target, ax, format, caption)
 
     def verify(self, jobs: int = 1) -> "check.Result":
         """Verifies the proof anew by the code of converse-check, which believes nothing of it and
@@ -214,7 +214,7 @@ class Proof:
         try:
             problem = _problem(values, waves, comments) if lines[0] == FIRST_LINE \
                 else _older_problem(values, comments)
-            counts = {}
+            counts: Dict[str, Any] = {}
             for item in fields(Counts):
                 numbers = tuple(int(word) for word in values[item.name].split())
                 counts[item.name] = numbers if isinstance(item.default, tuple) else numbers[0]
@@ -222,6 +222,9 @@ class Proof:
             if "xstar" in values:
                 x0, x1 = values["xstar"].split()
                 xstar = _number(x0), _number(x1)
+            program = PROGRAM.fullmatch(values["program"])
+            if program is None:
+                raise ValueError("of an unknown program")
             nodes = "".join(lines[start + 1:-3])
             settings = Settings(values["method"], int(values["depth"]), int(values["digits"]),
                                 values["stubborn"] == "yes",
@@ -230,7 +233,7 @@ class Proof:
                 problem, settings, nodes, Counts(**counts), xstar,
                 {name: _number(values[name]) for name in CONSTANTS[settings.method]
                  if name in values},
-                float(values.get("seconds", 0)), PROGRAM.fullmatch(values["program"])[1],
+                float(values.get("seconds", 0)), program[1],
                 tuple(map(int, values["pending"].split())), _at_once(values, problem),
                 nodes.count("P") + nodes.count("S"), _sha256(text.encode("utf-8")))
             tree.complete(proof.tree)

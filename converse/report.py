@@ -4,6 +4,7 @@ import math
 
 from . import tree
 from .files import plain
+from .legend import number
 from .problem import IDENTITY, exact_decimal, frame_text, wave_text
 from .settings import AS_PRINTED, LIMIT, REGION, THEOREM, UNDECIDED
 
@@ -11,6 +12,7 @@ PLUSES = "+" * 48
 MAP = ("y' = y + J', J' = J - dV(y), ", "V(y) = -a sin y0 - b sin y1 - c sin(y0 + y1)",
        "x* and v : the angles y at one time and at the next, modulo 2 pi",
        "Tori : invariant graphs J = P + S'(y) over all angles, P constant, S periodic and C1")
+POINT = 1e-10                           # half-width of an angle, in units of pi, that is tiny
 WAVES = "V(y) = - the sum of"           # in general
 METHODS = {
     "thesis": "that of the thesis, its listing corrected",
@@ -125,13 +127,21 @@ def _gaps(proof):
         lines += ["The search ended before the whole region was examined."]
     if proof.as_printed:
         return lines
-    lines += ["The first of them : %s." % ", ".join(
-        "%.9g < v[%d] / pi < %.9g" % (c - h, i, c + h)
-        for i, (c, h) in enumerate(zip(leaf.centre, leaf.half))) for leaf in undecided[:1]]
+    for leaf in undecided[:1]:
+        lines += ["The first of them : %s." % ", ".join(
+            "%s < v[%d] / pi < %s" % (number(c - h, h / 100), i, number(c + h, h / 100)) if h else
+            "v[%d] / pi = %s" % (i, number(c))
+            for i, (c, h) in enumerate(zip(leaf.centre, leaf.half)))]
+    stuck = any(leaf.depth < proof.depth and min(leaf.half) < POINT for leaf in undecided)
+    if stuck and proof.method == "loewner":
+        lines += ["One of them is as small as doubles can tell : "
+                  "the orbit from x* to it may minimize."]
     if proof.method == "thesis":
         advice = "the sharper criterion (--method loewner)"
     elif undecided:
-        advice = "a smaller range of parameters, or larger parameters"
+        advice = "another x* (--xstar X0 X1), or " if stuck else ""
+        advice += "a smaller range of parameters, or " if any(map(any, proof.problem.parts)) else ""
+        advice += "larger parameters"
     else:
         advice = "more time, from a backup (-b FILE, then -r FILE)"
     if any(leaf.depth == proof.depth for leaf in undecided) and proof.depth < LIMIT:

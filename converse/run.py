@@ -6,13 +6,13 @@ import os
 import time
 from dataclasses import replace
 from decimal import Decimal
-from typing import Callable, Optional, Tuple, Union
+from typing import Any, Callable, Dict, Optional, Tuple, Union
 
 from . import core, tree
 from .backup import Keeper
 from .core import Counts, Task
 from .files import ConverseError
-from .growth import OLD, Growth, count_workers
+from .growth import OLD, Growth
 from .problem import IDENTITY, NAMES, Number, Problem, decimal_text, exact
 from .proof import Proof
 from .settings import Settings
@@ -37,24 +37,26 @@ def prove(problem: Optional[Problem] = None, *, method: Optional[str] = None,
     method, depth, digits, stubborn, as_printed: see Settings.
     xstar: the two angles of x*, in radians, exact numbers; by default the program chooses them.
 
-    jobs: how many workers at a time, by default one per core; executor: a
-    concurrent.futures.Executor whose workers they are, by default threads of this process.  The
-    result does not depend on either.
+    jobs: how many tasks at a time, by default one per core, or as many as keep the executor's
+    workers busy; executor: a concurrent.futures.Executor whose workers they are, by default threads
+    of this process.  The result does not depend on either.
 
     backup: a new file that is kept up to date.
     resume: an unfinished proof, or its file, to continue; what is not said otherwise is as it was,
     but depth may be greater.  A file is kept up to date, too, unless backup names another.
 
     time_limit: after about so many seconds of this run the search is left as it is.
-    progress(done, counts) is called a few times a second; done, from 0 to 1, is an estimate of the
-    share of the work that is behind.
+    progress(examined, counts) is called a few times a second; examined, from 0 to 1: the share of
+    parameters and angles in prisms that are proved, skipped or given up.  It never falls.  The last
+    of it takes longest, and how long is not known.
     on_leaf(leaf, points) is called for every leaf that this run decides, in preorder; points: the
     length of its orbit.
 
     ConverseError, MemoryError: nothing is lost of the backup; ValueError, TypeError: an argument is
-    wrong.  RuntimeWarning: the backup cannot be written now, and will be tried again.
+    wrong.  RuntimeWarning: the backup cannot be written now, and will be tried again; NotSaved, one
+    of these: it could not be written in the end.
     """
-    given = {name: value for name, value in (
+    given: Dict[str, Any] = {name: value for name, value in (
         ("method", method), ("depth", depth), ("digits", digits), ("stubborn", stubborn),
         ("as_printed", as_printed)) if value is not None}
     if problem is None and resume is None:
@@ -64,20 +66,17 @@ def prove(problem: Optional[Problem] = None, *, method: Optional[str] = None,
     if isinstance(time_limit, bool) or not isinstance(time_limit, (int, float)) or \
             not time_limit >= 0:
         raise ValueError("time_limit is a number of seconds, not %r" % (time_limit,))
-    if xstar is not None:
-        xstar = _point(xstar)
-    if jobs is None:
-        jobs = count_workers(executor)
-    if isinstance(jobs, bool) or not isinstance(jobs, int) or jobs < 1:
+    star = None if xstar is None else _point(xstar)
+    if jobs is not None and (isinstance(jobs, bool) or not isinstance(jobs, int) or jobs < 1):
         raise ValueError("jobs must be a whole number, 1 or more, not %r" % (jobs,))
     if executor is not None and not hasattr(executor, "submit"):
         raise TypeError("the executor is a concurrent.futures.Executor, not %r" % (executor,))
     file = None if resume is None or isinstance(resume, Proof) else resume
     with Keeper(file if backup is None else backup, resumed=file) as keeper:
-        if resume is None:
-            before = Proof(problem, Settings(**given), xstar=xstar)
+        if problem is not None and resume is None:
+            before = Proof(problem, Settings(**given), xstar=star)
         else:
-            before = _continued(resume, file, problem, given, xstar)
+            before = _continued(resume, file, problem, given, star)
         if before.settings.method == "thesis":
             before = replace(before, problem=_for_thesis(before.problem))
         run = _Run(before, keeper, jobs, executor, time_limit, progress, on_leaf)
@@ -137,7 +136,7 @@ class _Run:
                     if points != OLD:
                         self.on_leaf(tree.Leaf(kind, *self.prism(cell), sum(cell[1])), points)
         if self.progress:
-            self.progress(self.growth.done, self.growth.counts)
+            self.progress(self.growth.examined, self.growth.counts)
         self.keeper.keep(self._snapshot)
 
     def _seconds(self):
@@ -152,7 +151,7 @@ class _Run:
         try:
             self.keeper.finish(self._snapshot())
         except AssertionError:          # an exception struck in the middle of a change
-            pass
+            self.keeper.leave()
 
     def _finished(self, proof):
         return replace(proof, sha256=self.keeper.finish(proof))
@@ -189,10 +188,10 @@ def _as_before(problem, before, differs):
         theirs, ours = getattr(before, key), getattr(problem, key)
         if None not in (theirs, ours) and theirs != ours:
             differs(key, *(" .. ".join(map(decimal_text, ends)) for ends in (theirs, ours)))
-    if problem.together != before.together:
-        differs("together", before.together, problem.together)
     if problem.general != before.general:
         differs("potential", before, problem)
+    if problem.together != before.together:
+        differs("together", before.together, problem.together)
     same = replace(problem, **{key: getattr(before, key) for key in ("axes", "alone")
                                if getattr(problem, key) is None})
     for key, what in ("frame", "frame"), ("kept", "coordinate that stands alone"):

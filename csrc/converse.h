@@ -11,7 +11,8 @@ enum {                       /* what the functions return */
     CV_EARGUMENT = -3,       /* an argument makes no sense (a negative half-width, dp < 1, ...) */
     CV_EARITHMETIC = -4,     /* division by zero, a root of a negative number, lost precision */
     CV_ESINGULAR = -5,       /* the matrix could not be inverted at any sensible precision */
-    CV_EMACHINE = -6         /* the floating-point unit or the build breaks the rules of rigor */
+    CV_EMACHINE = -6,        /* the floating-point unit or the build breaks the rules of rigor */
+    CV_ESTOPPED = -7         /* Python asked for an end, with Ctrl-C for example */
 };
 
 enum {                       /* why a try of a prism ended without a proof (index of reasons[]) */

@@ -336,62 +336,73 @@ static int loewner_kernel(const char *name, int nin, apm_t in[], int nout, apm_t
     return good ? CV_OK : CV_EARITHMETIC;
 }
 
+/* What cv_kernel was asked, and has. */
+typedef struct {
+    const char *name, *const *in;
+    char **out;
+    int as_double, as_printed, dp, nin, nout, status;
+    apm_t x[MAX_IN + MAX_OUT];
+    Runit *exact;
+    unit *quick;
+} question;
+
+static void answer(void *data)
+{
+    question *const q = data;
+    const char *const name = q->name;
+    const int nin = q->nin, nout = q->nout;
+    apm_t *const x = q->x;
+    int status = CV_OK;
+
+    q->status = CV_ENOMEM;
+    for (int j = 0; j < nin; j++)
+        if (apm_set_str(x[j], q->in[j]) != APM_OK)
+            status = CV_ENUMBER;
+    if (status == CV_OK)
+        status = apm_kernel(name, q->dp, nin, x, nout, x + MAX_IN);
+    if (status == CV_EARGUMENT)
+        status = sine_kernel(name, nin, x, nout, x + MAX_IN);
+    if (status == CV_EARGUMENT)
+        status = loewner_kernel(name, nin, x, nout, x + MAX_IN);
+    if (status == CV_EARGUMENT)
+        status = torus_kernel(name, nin, x, nout, x + MAX_IN);
+    if (status == CV_EARGUMENT && q->as_double) {
+        q->quick = unit_new(q->dp, q->as_printed);
+        status = q->quick == NULL ? CV_ENOMEM : kernel(q->quick, name, nin, x, nout, x + MAX_IN);
+    } else if (status == CV_EARGUMENT) {
+        q->exact = Runit_new(q->dp, q->as_printed);
+        status = q->exact == NULL ? CV_ENOMEM : Rkernel(q->exact, name, nin, x, nout, x + MAX_IN);
+    }
+    for (int j = 0; j < nout && status == CV_OK; j++) {
+        q->out[j] = apm_get_str(x[MAX_IN + j]);
+        if (q->out[j] == NULL)
+            status = CV_ENOMEM;
+    }
+    q->status = status;
+}
+
 int cv_kernel(const char *name, int as_double, int as_printed, int dp,
               int nin, const char *const in[], int nout, char *out[])
 {
-    apm_t x[MAX_IN + MAX_OUT];
-    Runit *volatile exact = NULL;
-    unit *volatile quick = NULL;
-    guard g = { .stop = NULL }, *before;
-    volatile int status = CV_OK;
+    question q = { .name = name, .in = in, .out = out, .as_double = as_double,
+                   .as_printed = as_printed, .dp = dp, .nin = nin, .nout = nout };
 
     if (nin < 0 || nin > MAX_IN || nout < 0 || nout > MAX_OUT || dp < 1 || dp > MAX_DP)
         return CV_EARGUMENT;
     for (int j = 0; j < nout; j++)
         out[j] = NULL;
     for (int j = 0; j < MAX_IN + MAX_OUT; j++)
-        apm_init(x[j]);
-    before = guard_arm(&g);
-    if (setjmp(g.here) != 0) {
-        status = CV_ENOMEM;
-    } else {
-        for (int j = 0; j < nin && status == CV_OK; j++)
-            if (apm_set_str(x[j], in[j]) != APM_OK)
-                status = CV_ENUMBER;
-        if (status == CV_OK) {
-            status = apm_kernel(name, dp, nin, x, nout, x + MAX_IN);
-            if (status == CV_EARGUMENT)
-                status = sine_kernel(name, nin, x, nout, x + MAX_IN);
-            if (status == CV_EARGUMENT)
-                status = loewner_kernel(name, nin, x, nout, x + MAX_IN);
-            if (status == CV_EARGUMENT)
-                status = torus_kernel(name, nin, x, nout, x + MAX_IN);
-            if (status == CV_EARGUMENT && as_double) {
-                quick = unit_new(dp, as_printed);
-                status = quick == NULL ? CV_ENOMEM
-                                       : kernel(quick, name, nin, x, nout, x + MAX_IN);
-            } else if (status == CV_EARGUMENT) {
-                exact = Runit_new(dp, as_printed);
-                status = exact == NULL ? CV_ENOMEM
-                                       : Rkernel(exact, name, nin, x, nout, x + MAX_IN);
-            }
-        }
-        for (int j = 0; j < nout && status == CV_OK; j++) {
-            out[j] = apm_get_str(x[MAX_IN + j]);
-            if (out[j] == NULL)
-                status = CV_ENOMEM;
-        }
-    }
-    guard_arm(before);
-    for (int j = 0; j < nout && status != CV_OK; j++) {
+        apm_init(q.x[j]);
+    guard_run(answer, &q, NULL);
+    for (int j = 0; j < nout && q.status != CV_OK; j++) {
         free(out[j]);
         out[j] = NULL;
     }
-    if (status != CV_ENOMEM) {          /* after that the numbers are abandoned: guard.c */
-        Runit_free(exact);
-        unit_free(quick);
+    if (q.status != CV_ENOMEM) {        /* after that the numbers are abandoned: guard.c */
+        Runit_free(q.exact);
+        unit_free(q.quick);
         for (int j = 0; j < MAX_IN + MAX_OUT; j++)
-            apm_clear(x[j]);
+            apm_clear(q.x[j]);
     }
-    return status;
+    return q.status;
 }

@@ -59,7 +59,8 @@ long cv_pivots(int n, long q, const double (*beta)[3], long max_rounds, double (
 /* The logarithms, over q, of the moduli of the eigenvalues of d_{q-1} ... d_0, larger first. */
 void cv_growth(long q, const double (*d)[3], double growth[2]);
 
-/* The count closest pairs of q points on the torus, closest first.  Returns how many there are. */
+/* The count closest pairs of q points on the torus, closest first.  Returns how many there are, or
+   CV_ESTOPPED. */
 long cv_pairs(int n, long q, const double (*x)[2], long count, long *i, long *j, double *distance);
 
 /* ---- proved orbits: a state in decimals; docs/orbits-proof.md.  Here, promises are kept. ---- */
@@ -74,7 +75,10 @@ enum {                      /* which bound */
     CV_GROWTH_LOW, CV_GROWTH_HIGH       /* around the modulus of an eigenvalue of D_{q-1} ... D_0 */
 };
 
-/* A state with potential of this kind and these terms (see cv_potential), of type (p, q), with
+/* Those of these functions that take long return CV_ESTOPPED when Python wants an end: then the
+   state can only be freed.
+
+   A state with potential of this kind and these terms (see cv_potential), of type (p, q), with
    displacements u.  number: eps, bounds of |V''| and of the Lipschitz constant of V'', and the
    origin's coordinates, as exact decimals.  On success *o must be freed. */
 int cv_exact_new(cv_exact **o, int kind, int n, int terms, const int *k, const long p[2], long q,

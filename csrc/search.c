@@ -343,30 +343,44 @@ static long decided_leaves(const cv_search *s)
     return s->counts.proved + s->counts.symmetric + s->counts.undecided;
 }
 
-int cv_step(cv_search *s, long max_leaves, double max_seconds, const volatile int *stop)
-{
-    const double end = now() + max_seconds;
-    const long enough = decided_leaves(s) + max_leaves;
-    guard g = { .stop = stop }, *const before = guard_arm(&g);
-    const int jumped = setjmp(g.here);
+/* How much of a search to do. */
+typedef struct {
+    cv_search *s;
+    long enough;
+    double end;
+    const volatile int *stop;
+} step;
 
-    if (jumped != 0)                    /* the node at hand is forgotten, the rest stands */
-        s->counts = s->before;
-    if (jumped == GUARD_MEMORY)
-        s->status = CV_ENOMEM;
-    else if (s->status == CV_RUNNING && (!s->prepared || !machine_is_sound()))
-        s->status = s->prepared ? CV_EMACHINE : CV_EARGUMENT;
-    while (jumped == 0 && s->status == CV_RUNNING && s->pending > 0 && decided_leaves(s) < enough) {
+static void take_step(void *data)
+{
+    const step *const how = data;
+    cv_search *const s = how->s;
+
+    while (s->status == CV_RUNNING && s->pending > 0 && decided_leaves(s) < how->enough) {
         if (make_room(s) != CV_OK) {
             s->status = CV_ENOMEM;
             break;
         }
         s->before = s->counts;
         decide_and_remember(s);
-        if (now() >= end || (stop != NULL && *stop))
+        if (now() >= how->end || (how->stop != NULL && *how->stop))
             break;
     }
-    guard_arm(before);
+}
+
+int cv_step(cv_search *s, long max_leaves, double max_seconds, const volatile int *stop)
+{
+    step how = { s, decided_leaves(s) + max_leaves, now() + max_seconds, stop };
+    int ended = GUARD_DONE;
+
+    if (s->status == CV_RUNNING && (!s->prepared || !machine_is_sound()))
+        s->status = s->prepared ? CV_EMACHINE : CV_EARGUMENT;
+    s->before = s->counts;
+    ended = guard_run(take_step, &how, stop);
+    if (ended != GUARD_DONE)            /* the node at hand is forgotten, the rest stands */
+        s->counts = s->before;
+    if (ended == GUARD_MEMORY)
+        s->status = CV_ENOMEM;
     if (s->status >= CV_OK && !machine_is_sound())
         s->status = CV_EMACHINE;        /* who knows since when: see converse.h */
     return s->status;
@@ -479,14 +493,10 @@ void cv_free(char *text) { free(text); }
 
 char *cv_constant(const cv_search *s, int which)
 {
-    guard g = { .stop = NULL }, *const before = guard_arm(&g);
-    char *volatile text = NULL;
-
-    if (setjmp(g.here) == 0 && which >= 0 && which < 12 && (which < 2 || s->prepared))
-        text = apm_get_str(which < 2 ? s->problem.xstar[which]
-                           : which < 8 ? s->constants[which - 2]
-                           : which % 2 == 0 ? s->problem.angle[(which - 8) / 2]
-                                            : s->problem.half[(which - 8) / 2]);
-    guard_arm(before);
-    return text;
+    if (which < 0 || which >= 12 || (which >= 2 && !s->prepared))
+        return NULL;
+    return apm_get_str(which < 2 ? s->problem.xstar[which]
+                       : which < 8 ? s->constants[which - 2]
+                       : which % 2 == 0 ? s->problem.angle[(which - 8) / 2]
+                                        : s->problem.half[(which - 8) / 2]);
 }

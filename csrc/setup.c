@@ -282,15 +282,25 @@ static int set_start(cv_search *s, const char *const xstar[2])
     return status;
 }
 
-static int set_up(cv_search *s, const cv_problem *problem, const char *const xstar[2])
-{
-    const int status = read_problem(&s->problem, problem);
+/* What cv_search_new was given. */
+typedef struct {
+    cv_search *s;
+    const cv_problem *problem;
+    const char *const *xstar;
+    int status;
+} given;
 
-    if (status != CV_OK)
-        return status;
-    if (s->method == CV_THESIS && !(independent(&s->problem) && is_identity(problem->frame)))
-        return CV_EARGUMENT;
-    return set_start(s, xstar);
+static void set_up(void *data)
+{
+    given *const g = data;
+    cv_search *const s = g->s;
+
+    g->status = read_problem(&s->problem, g->problem);
+    if (g->status == CV_OK && s->method == CV_THESIS &&
+        !(independent(&s->problem) && is_identity(g->problem->frame)))
+        g->status = CV_EARGUMENT;
+    if (g->status == CV_OK)
+        g->status = set_start(s, g->xstar);
 }
 
 /* Does the theorem hold at once, and for which parameters?  See converse.h. */
@@ -360,38 +370,31 @@ static int prepare_thesis(cv_search *s)
     return prepare_trial(s->quick, &s->root, herman_start, s->constants);
 }
 
-static int prepare(cv_search *s)
+static void prepare(void *data)
 {
+    cv_search *const s = data;
     const long pi_dp = s->as_printed ? s->dp : s->dp > PI_SHORT ? s->dp - PI_SHORT : 1;
 
     apm_pi(s->t[0], pi_dp);
     for (int j = 0; j < 2; j++)
         to_radians(s->problem.angle[j], s->problem.half[j], s->t[0], pi_dp);
-    return s->method == CV_LOEWNER ? prepare_loewner(s) : prepare_thesis(s);
+    s->status = s->method == CV_LOEWNER ? prepare_loewner(s) : prepare_thesis(s);
 }
 
 int cv_prepare(cv_search *s, const volatile int *stop)
 {
-    guard g = { .stop = stop }, *before;
-
     if (s->prepared || s->spoilt || s->status != CV_RUNNING)
         return s->prepared ? CV_OK : s->status < CV_OK ? s->status : CV_EARGUMENT;
     if (!machine_is_sound())
         return CV_EMACHINE;
     s->spoilt = 1;                      /* until it is done */
-    before = guard_arm(&g);
-    switch (setjmp(g.here)) {
-    case 0:
-        s->status = prepare(s);
-        break;
+    switch (guard_run(prepare, s, stop)) {
     case GUARD_STOP:
         s->status = CV_EARGUMENT;       /* half prepared, it is good for nothing */
-        guard_arm(before);
         return CV_RUNNING;
-    default:
+    case GUARD_MEMORY:
         s->status = CV_ENOMEM;
     }
-    guard_arm(before);
     if (s->status == CV_OK && !machine_is_sound())
         s->status = CV_EMACHINE;
     if (s->status == CV_OK) {
@@ -407,7 +410,7 @@ int cv_search_new(cv_search **result, const cv_problem *problem, const char *con
                   int method, int dp, int depth, int stubborn, int as_printed)
 {
     cv_search *s;
-    guard g = { .stop = NULL }, *before;
+    given g = { NULL, problem, xstar, CV_OK };
     int status;
 
     *result = NULL;
@@ -424,9 +427,8 @@ int cv_search_new(cv_search **result, const cv_problem *problem, const char *con
     s->stubborn = stubborn;
     s->as_printed = as_printed;
 
-    before = guard_arm(&g);
-    status = setjmp(g.here) != 0 ? CV_ENOMEM : set_up(s, problem, xstar);
-    guard_arm(before);
+    g.s = s;
+    status = guard_run(set_up, &g, NULL) == GUARD_MEMORY ? CV_ENOMEM : g.status;
     if (status == CV_OK)
         status = cv_resume(s, "", 0);   /* the whole root is to be tried */
     if (status == CV_OK) {

@@ -1,6 +1,12 @@
-"""Writes manual pages and shell completions to build/, from the commands' own parsers."""
+"""Writes manual pages and shell completions, from the commands' own parsers.
+
+    python docs/manual.py [DIRECTORY]
+
+DIRECTORY (build/share) is laid out as share/ of an installation.
+"""
 
 import re
+import sys
 from importlib import import_module
 from pathlib import Path
 
@@ -9,8 +15,9 @@ from argparse_manpage.manpage import Manpage
 
 from converse.version import __version__
 
-BUILD = Path(__file__).resolve().parent.parent / "build"
-SHELLS = ("bash", "zsh", "fish")
+SHARE = Path(*sys.argv[1:2] or [Path(__file__).resolve().parent.parent / "build" / "share"])
+SHELLS = {"bash": "bash-completion/completions/%s", "zsh": "zsh/site-functions/_%s",
+          "fish": "fish/vendor_completions.d/%s.fish"}
 SUMMARIES = {
     "cli": "prove that a family of symplectic maps has no invariant tori",
     "check": "verify the theorem of a proof file, independently of its prover",
@@ -52,6 +59,6 @@ def write(path, text):
 
 for module, summary in SUMMARIES.items():
     parser = with_files(import_module("converse." + module).parser())
-    write(BUILD / "man" / (parser.prog + ".1"), page(parser, summary))
-    for shell in SHELLS:
-        write(BUILD / "completion" / shell / parser.prog, shtab.complete(parser, shell))
+    write(SHARE / "man" / "man1" / (parser.prog + ".1"), page(parser, summary))
+    for shell, name in SHELLS.items():
+        write(SHARE / (name % parser.prog), shtab.complete(parser, shell))

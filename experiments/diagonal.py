@@ -20,6 +20,7 @@ import numpy as np
 
 from converse import chart, orbits
 from converse.cli import ended
+from converse.problem import LINE as THESIS_LINE
 
 SIZES = {"full": {"heads": (3, 7), "least": 1000, "cells": 1000, "most": 400,
                   "eps": (0.0144, 0.0142, 0.0141, 0.0140, 0.01395, 0.0139),
@@ -84,7 +85,7 @@ def resist(eps, xstar, v, side, parts, most):
     n = 8
     while v.shape[1] and n < most:
         n = n * 5 // 4
-        good = [positive(float(chart.SCALE) * eps, xstar, some, n)
+        good = [positive(float(THESIS_LINE) * eps, xstar, some, n)
                 for some in np.array_split(v, v.shape[1] // 50000 + 1, axis=1)]
         v = v[:, np.concatenate(good)]
         yield n, v

@@ -24,8 +24,8 @@ GUESS = 0.96                # of eps
 TOLERANCES = [10.0 ** -k for k in range(3, 14)]
 FLOW_SECONDS = 10.0
 REPEAT = 20
-STYLES = {"gradient flow": ("s", "#d98a2b"), "Newton": ("^", "0.45"),
-          "damped Newton": ("o", "#1f5f94")}
+STYLES = {"gradient flow": ("s", picture.ORANGE), "Newton": ("^", "0.45"),
+          "damped Newton": ("o", picture.BLUE)}
 
 
 def timed(function):
@@ -84,8 +84,8 @@ def draw(rows):
     from matplotlib import style
     from matplotlib.figure import Figure
 
-    with style.context(["default", picture.SALT]):
-        figure = Figure(figsize=(8, 3.3))
+    with style.context(["default", picture.STYLE]):
+        figure = Figure(figsize=(8, 4.2))
         for axes, eps in zip(figure.subplots(1, 2, sharey=True), EPS):
             for name, (marker, colour) in STYLES.items():
                 mine = [row for row in rows if row[:2] == (eps, name)]
@@ -94,16 +94,15 @@ def draw(rows):
                           label=name + ": distance")
                 axes.plot(seconds, shadow, marker + ":", color=colour, markersize=4, linewidth=0.9,
                           markerfacecolor="white", label="its shadow")
-            axes.set(xscale="log", yscale="log", ylim=(1e-17, 30), xlabel="time (seconds)")
-            axes.set_title(r"$\varepsilon = %g$" % eps, fontsize=9)
+            axes.set(xscale="log", yscale="log", ylim=(1e-17, 30), xlabel="time (seconds)",
+                     title="ε = %g" % eps)
             axes.grid(color="0.93", linewidth=0.6)
-            axes.tick_params(labelsize=8)
             if any(row[1] == "Newton" and row[5] > 1 for row in rows if row[0] == eps):
-                axes.text(0.45, 0.93, "Newton's method diverges", color="0.45", fontsize=7,
+                axes.text(0.45, 0.93, "Newton's method diverges", color="0.35",
                           transform=axes.transAxes)
-        figure.axes[0].set_ylabel("distance to the proved orbit; shadow", fontsize=8)
-        figure.axes[0].legend(fontsize=6.5, frameon=False, loc="lower right")
-        figure.subplots_adjust(wspace=0.06)
+        figure.axes[0].set_ylabel("distance to the proved orbit; shadow")
+        figure.legend(*figure.axes[0].get_legend_handles_labels(), loc="upper center", ncol=3)
+        figure.subplots_adjust(wspace=0.06, top=0.82)
         return picture.encode(figure, "svg")
 
 

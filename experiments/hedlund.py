@@ -105,28 +105,28 @@ def draw(types, long, begins, file):
     gain = np.array([gains(types, e, long) for e in eps])
     proved = [(e, types.short[e].low - types.long[e].high) for e in sorted(types.long)]
     none = [e for e in sorted(types.long) if types.long[e].copies % types.times == 0]
-    with style.context(["default", picture.SALT, {"font.size": 8}]):
-        figure = Figure(figsize=(9.2, 2.9))
+    with style.context(["default", picture.STYLE]):
+        figure = Figure(figsize=(9.2, 3.0))
         axes, *planes = figure.subplots(1, 3, gridspec_kw={"wspace": 0.3,
                                                            "width_ratios": (1.5, 1, 1)})
         axes.axhline(0, color="0.8", linewidth=0.8)
-        axes.plot(eps, 1e6 * gain, color="#1f5f94", linewidth=1.2, label="followed: seen")
+        axes.plot(eps, 1e6 * gain, color=picture.BLUE, label="followed: seen")
         axes.plot(*np.array([(e, 1e6 * g) for e, g in proved if g > 0]).reshape(-1, 2).T, "o",
-                  color="#d98a2b", markersize=4, label="proved")
+                  color=picture.VERMILLION, markersize=4, label="proved")
         axes.plot(*np.array([(e, 0) for e in none]).reshape(-1, 2).T, "s", color="0.35",
                   markersize=4, label="no gain: proved")
-        axes.set(xlabel=r"$\varepsilon$", ylabel=r"$10^6$ times the gain per point",
+        axes.set(xlabel="ε", ylabel=r"$10^6$ times the gain per point",
                  title="%s has less action than %s" % types.names()[::-1])
-        axes.legend(frameon=False, fontsize=7)
+        axes.legend()
         x = (np.arange(100) + 0.5) / 100
         grid = np.stack(np.meshgrid(x, x, indexing="ij"), -1).reshape(-1, 2)
         value = orbits.trig.evaluate(grid)[0].reshape(100, 100).T
         for axes, name, state, colour in zip(planes, types.names(), (types.least(TO).state, long),
-                                             ("0.25", "#d98a2b")):
+                                             ("0.25", picture.VERMILLION)):
             axes.contour(x, x, value, 9, colors="0.85", linewidths=0.6)
             axes.plot(*state.x.T, "o", color=colour, markersize=3)
             axes.set(xlim=(0, 1), ylim=(0, 1), aspect="equal", xlabel="$x_0$", ylabel="$x_1$",
-                     title=r"%s, $\varepsilon = %g$" % (name, TO))
+                     title="%s, ε = %g" % (name, TO))
         data = picture.encode(figure, file.rpartition(".")[2], dpi=150)
     with open(file, "wb") as out:
         out.write(data)

@@ -85,28 +85,25 @@ def draw(measured):
     from matplotlib import style
     from matplotlib.figure import Figure
 
-    with style.context(["default", picture.SALT]):
-        figure = Figure(figsize=(9.6, 3))
+    with style.context(["default", picture.STYLE]):
+        figure = Figure(figsize=(9.6, 3.2))
         all_of_them, crossing, there = figure.subplots(1, 3)
-        figure.subplots_adjust(wspace=0.36)
+        figure.subplots_adjust(wspace=0.4)
         draw_all(all_of_them, measured)
         draw_one(crossing, *measured[2])
         draw_there(there, *measured[2])
-        for axes in (all_of_them, crossing, there):
-            axes.tick_params(labelsize=7)
-            axes.xaxis.label.set_size(8)
-            axes.yaxis.label.set_size(8)
         return picture.encode(figure, "svg", dpi=150)
 
 
 def draw_all(axes, measured):
     for (state, _, _, distance, momentum), colour in zip(
-            measured, ("0.6", "#d98a2b", "#c03030", "#1f5f94", "#35a060")):
+            measured, (picture.GREY, picture.ORANGE, picture.DARK, picture.BLUE,
+                       picture.VERMILLION)):
         axes.plot(distance, momentum / distance, ".", markersize=1.5, color=colour, rasterized=True,
-                  label=r"$q=%d$, $\varepsilon=%g$" % (state.q, state.eps))
-    axes.set(xscale="log", yscale="log", ylim=(1e-3, 1e5), xlabel="|dx|", ylabel="L = |dp| / |dx|")
-    axes.legend(fontsize=5.5, markerscale=4, frameon=False, loc="upper left")
-    axes.set_title("the 800 closest pairs", fontsize=8)
+                  label="q = %d, ε = %g" % (state.q, state.eps))
+    axes.set(xscale="log", yscale="log", ylim=(1e-3, 1e6), xlabel=r"$|\Delta x|$",
+             ylabel=r"$L = |\Delta p|\,/\,|\Delta x|$", title="the 800 closest pairs")
+    axes.legend(markerscale=4, loc="upper left", labelspacing=0.2)
 
 
 def draw_one(axes, state, i, j, distance, momentum):
@@ -115,16 +112,16 @@ def draw_one(axes, state, i, j, distance, momentum):
     steep = np.argsort(-momentum / distance)[:200]
     axes.plot(distance, momentum, ".", markersize=1.5, color="0.75", rasterized=True)
     chosen = [d for d, _ in Counter(apart[steep].tolist()).most_common(5)]
-    for d, colour in zip(sorted(chosen), ("#1f5f94", "#d98a2b", "#35a060", "#c03030", "#8050a0")):
+    for d, colour in zip(sorted(chosen), (
+            picture.BLUE, picture.ORANGE, picture.GREEN, picture.VERMILLION, picture.PURPLE)):
         of = apart == d
         axes.plot(distance[of], momentum[of], ".", markersize=2.5, color=colour, label="%d" % d)
     at = np.argmax(momentum / distance)
     axes.annotate("L = %.0f" % (momentum[at] / distance[at]), (distance[at], momentum[at]), (3, 6),
-                  textcoords="offset points", fontsize=6.5)
-    axes.set(xscale="log", yscale="log", xlabel="|dx|", ylabel="|dp|")
-    axes.legend(title="|i - j|", fontsize=6, title_fontsize=6, frameon=False, loc="lower left",
-                markerscale=2)
-    axes.set_title(r"$q=%d$, $\varepsilon=%g$: levels of |dp|" % (state.q, state.eps), fontsize=8)
+                  textcoords="offset points")
+    axes.set(xscale="log", yscale="log", xlabel=r"$|\Delta x|$", ylabel=r"$|\Delta p|$",
+             title=r"q = %d, ε = %g: levels of $|\Delta p|$" % (state.q, state.eps))
+    axes.legend(title="|i − j|", loc="lower left", markerscale=2, labelspacing=0.2)
 
 
 def draw_there(axes, state, i, j, distance, momentum):
@@ -135,11 +132,10 @@ def draw_there(axes, state, i, j, distance, momentum):
     p = 1e3 * (state.momenta - state.momenta[i[at]])[near, 0]
     dots = axes.scatter(*off[near].T, c=p, s=4, cmap="coolwarm", linewidths=0)
     bar = axes.figure.colorbar(dots, ax=axes, shrink=0.85)
-    bar.set_label(r"$10^3\,p_0$ less the pair's", fontsize=6.5)
-    bar.ax.tick_params(labelsize=6)
+    bar.set_label(r"$10^3\,p_0$ less the pair's")
     axes.plot(0, 0, "o", markersize=9, markerfacecolor="none", color="0.2", markeredgewidth=0.7)
-    axes.set(xlabel="$x_0$ less the pair's", ylabel="$x_1$ less the pair's")
-    axes.set_title("the projection where L = %.0f" % (momentum[at] / distance[at]), fontsize=8)
+    axes.set(xlabel="$x_0$ less the pair's", ylabel="$x_1$ less the pair's",
+             title="the projection where L = %.0f" % (momentum[at] / distance[at]))
 
 
 def main(directory="build"):

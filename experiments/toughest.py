@@ -3,7 +3,7 @@
     python experiments/toughest.py [DIRECTORY] [--quick] [--jobs N]
 
 Writes into DIRECTORY (build/toughest), and continues there when it was interrupted:
-    sweep.csv     where a thousand vectors, well spread, turn hyperbolic, of q from 300 to 1200
+    sweep.csv     where a thousand vectors, well spread, turn hyperbolic, of q from 300 to 1201
     search-K.csv  the same of vectors near the toughest, ever nearer and with ever larger q
     near.csv, near-fixed.csv, golden.csv, golden-fixed.csv    approximants of one vector
     chapter.csv   the thesis's two vectors
@@ -24,6 +24,7 @@ import numpy as np
 
 from converse import files, orbits, picture
 from converse.cli import ended
+from converse.picture import BLUE, DARK, VERMILLION
 
 TRIG = {"step": 0.0005, "width": 1e-5, "top": 0.02}
 STANDARD = {"step": 0.02, "width": 1e-5, "top": 1.5}
@@ -122,9 +123,7 @@ def search(first, sizes, find):
 
 # ---- pictures
 
-STYLE = {**picture.SALT, "font.size": 8, "legend.frameon": False, "axes.spines.top": False,
-         "axes.spines.right": False, "lines.linewidth": 1}
-BLUE, ORANGE, DARK = "#1f5f94", "#d98a2b", "0.15"
+STYLE = {**picture.STYLE, "axes.spines.top": False, "axes.spines.right": False}
 
 
 def draw(path, size, fill, *arguments):
@@ -151,17 +150,17 @@ def draw_map(figure, table, best):
     table = table[np.isfinite(middle(table))]
     shown = axes.scatter(*(table["p"] / table["q"][:, None]).T, c=middle(table), s=12, vmin=0,
                          vmax=0.0125, cmap="viridis", linewidths=0)
-    mark = {"facecolor": "none", "edgecolor": "red", "linewidth": 0.8}
+    mark = {"facecolor": "none", "edgecolor": DARK, "linewidth": 1.2}
     axes.scatter(*(best["p"][:1] / best["q"][:1, None]).T, marker="*", s=80, **mark,
                  label="the toughest that the search met")
     axes.scatter(*NEAR, marker="D", s=30, **mark, label="tori seen by Fourier series, to %g" % TORI)
     axes.set(xlim=(0, 1), ylim=(0, 0.54), aspect="equal", xlabel="$w_0$", ylabel="$w_1$",
              title="Where the orbits of %d rotation vectors turn hyperbolic (trig)" % len(table))
     axes.legend(loc="upper right", bbox_to_anchor=(1.13, 1.02))
-    figure.colorbar(shown, ax=axes, shrink=0.55, label=r"$\varepsilon$")
+    figure.colorbar(shown, ax=axes, shrink=0.55, label="ε")
     axes.text(0, -0.2, "Seen, not proved; q from %d to %d.  All other vectors are mirror images of "
               "these.\nGrey: resonances, $k\\cdot w$ whole, $|k_0| + |k_1|$ up to 3."
-              % (table["q"].min(), table["q"].max()), transform=axes.transAxes, fontsize=7,
+              % (table["q"].min(), table["q"].max()), transform=axes.transAxes,
               va="top", color="0.35")
 
 
@@ -176,14 +175,14 @@ def draw_sequence(figure, near, near_fixed, gold, gold_fixed):
                   label="first exponent above 1/q")
         axes.plot(fixed["q"], middle(fixed), "o", color="0.65", markersize=3.5,
                   label="above %g, whatever q is" % FIXED)
-        axes.axhline(line, color=ORANGE, zorder=0)
-        axes.annotate(words, (1, line), (-2, -3), ha="right", va="top", color=ORANGE,
+        axes.axhline(line, color=VERMILLION, zorder=0)
+        axes.annotate(words, (1, line), (-2, -3), ha="right", va="top", color=VERMILLION,
                       xycoords=("axes fraction", "data"), textcoords="offset points")
         axes.set(xscale="log", xlabel="q", title=title, ylim=span)
         axes.xaxis.set_minor_formatter("")
         axes.grid(color="0.93")
     left.set_ylabel("k where the orbit turns hyperbolic")
-    right.set_ylabel(r"$\varepsilon$ where the orbit turns hyperbolic")
+    right.set_ylabel("ε where the orbit turns hyperbolic")
     left.legend(loc="upper right")
 
 
@@ -198,20 +197,20 @@ def draw_frontier(figure, table, last, chapter):
     (program, bound), (thesis, old) = PROVED
     for low, high, grey in ((bound, old, "0.86"), (old, TOP, "0.74")):
         axes.axvspan(low, high, color=grey, linewidth=0)
-    axes.set(yscale="log", xlim=(0, TOP), ylim=(0.05, 130), xlabel=r"$\varepsilon$",
+    axes.set(yscale="log", xlim=(0, TOP), ylim=(0.05, 130), xlabel="ε",
              ylabel="rotation vectors (%)",
-             title="The two sides of the frontier (trig; a = b = c/2 = 11.21436 $\\varepsilon$)")
+             title="The two sides of the frontier (trig: a = b = c/2)")
     axes.yaxis.set_major_formatter("{x:g}")
     axes.text(bound + 0.0004, 80, "PROVED by %s: no tori,\nwhatever their rotation vector,\n"
-              "from %.4f on" % (program, bound), va="top", fontsize=8)
-    axes.text(old + 0.0003, 80, "%s:\nfrom %.4f on" % (thesis, old), va="top", fontsize=8)
+              "from %.4f on" % (program, bound), va="top")
+    axes.text(old + 0.0003, 80, "%s:\nfrom %.4f on" % (thesis, old), va="top")
     axes.text(0.0004, 0.07, "SEEN: of so many of\n%d vectors, q = %d\nto %d, the orbits are\n"
               "not yet hyperbolic" % (len(eps), table["q"].min(), table["q"].max()),
-              va="bottom", fontsize=8)
+              va="bottom")
 
     def mark(x, y, marker, words):
-        axes.plot(x, np.full(np.shape(x), y), marker, color=ORANGE, markersize=6, zorder=3)
-        axes.annotate(words, (np.max(x), y), (bound + 0.0006, y), va="center", fontsize=7.5,
+        axes.plot(x, np.full(np.shape(x), y), marker, color=VERMILLION, markersize=6, zorder=3)
+        axes.annotate(words, (np.max(x), y), (bound + 0.0006, y), va="center",
                       arrowprops={"arrowstyle": "-", "color": "0.5", "linewidth": 0.6})
 
     mark(chapter, 8, "|", "seen: the thesis's two vectors")
@@ -219,7 +218,7 @@ def draw_frontier(figure, table, last, chapter):
     mark(TORI, 0.8, "D", "seen: tori, by Fourier series")
     axes.annotate("", (last, 0.2), (bound, 0.2), arrowprops={"arrowstyle": "<->", "color": "0.3"})
     axes.annotate("open", ((last + bound) / 2, 0.2), (0, 4), textcoords="offset points",
-                  ha="center", fontsize=7.5)
+                  ha="center")
 
 
 # ---- all together

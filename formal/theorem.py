@@ -1,12 +1,14 @@
-"""Writes a finished proof file as a theorem for Coq: python formal/theorem.py FILE NAME > NAME.v
+"""Writes a finished proof file as a theorem for Coq: python formal/theorem.py FILE NAME DIRECTORY
 
 The claim, exact, is that of the file's header as converse-check reads it.  The tree, and the hints
 (a bound B of the largest eigenvalue, l, and where the eigenvalue is small enough for larger
 parameters to be excluded at once), are only proposals: Coq's kernel finds that they serve, or that
 they do not, and then there is no theorem.
 
-A long proof is divided: NAME_claim.v (--claim) has the definitions, NAME_0.v, NAME_1.v, ... (--part)
-have every K-th leaf each, and can be compiled side by side, and NAME.v (--parts) puts them together.
+Into the directory go NAME_says.v, the proposition, which imports Map.v alone; NAME_claim.v, which
+has what the checker is to see; NAME_0.v, NAME_1.v, ..., each of which has it check every K-th leaf,
+and which can be compiled side by side; and NAME.v, "Theorem NAME : NAME_says".  This last imports
+nothing but Map.v and NAME_says.v: so whatever the others define, its words mean what they do there.
 """
 
 import argparse
@@ -85,7 +87,7 @@ def lowest(waves, f):
 
 def hints(claim):
     """B, l and the place and the vector of `at once`."""
-    waves, parameters = claim.felt, claim.parameters
+    waves, parameters = claim.examined, claim.parameters
     B = 2.0
     for corner in itertools.product((-1, 1), repeat=parameters):
         at = floats(waves, corner)
@@ -123,17 +125,20 @@ def region_text(claim):
                                " ".join(map(number, (c0, h0, c1, h1))))
 
 
-HEAD = """\
-(* Made by formal/theorem.py from the proof file whose SHA-256 is
-   %s. *)
+READING = """\
+From Coq Require Import Reals ZArith QArith List.
+From Converse Require Import Map.
+Import ListNotations.
+Open Scope Q_scope.
 
-From Coq Require Import Reals ZArith QArith List String Bool.
+"""
+CHECKING = """\
+From Coq Require Import ZArith QArith List String Bool.
 From Converse Require Import Map Tree Share Reduce Check %s.
 Import ListNotations.
 Open Scope Q_scope.
 
 """
-USING = "From Converse.build Require Import %s.\n\n"
 
 
 def statement(claim):
@@ -149,72 +154,89 @@ def statement(claim):
     return patch + " /\\\n  ".join(["(%s)" % line for line in lines] if lines[1:] else lines)
 
 
-def definitions(claim, odd, name):
-    """The claim, the hints and the tree."""
+def says(claim, name):
+    return READING + "Definition %s_says : Prop :=\n  %s.\n" % (name, statement(claim))
+
+
+COMPUTED = "Proof. vm_cast_no_check (eq_refl true). Qed.\n"
+
+
+def definitions(claim, odd, arithmetic):
+    """The claim, the hints and the tree; and what is checked once."""
     B, l, place, vector = hints(claim)
     alone = {None: "Both", 0: "First", 1: "Second"}[claim.alone]
     once = {"no": "No", "yes": "Whole_patch", "upper end": "Upper_end"}[claim.at_once]
-    return """\
-Definition %s_claim : claim :=
+    return CHECKING % arithmetic + """\
+Definition the_claim : claim :=
   %s
 
-Definition %s_hints : hints :=
+Definition the_hints : hints :=
   %s
 
-Definition %s_tree : tree := read_tree
+Definition the_tree : tree := read_tree
   ["%s"]%%string.
 
-""" % (name, "Claim %s\n  %s %s %s %s %s." % (
+Lemma header : header_ok the_claim the_hints the_tree = true.
+%s""" % ("Claim %s\n  %s %s %s %s %s." % (
             patch_text(claim, 8), region_text(claim), pair(claim.xstar), alone, once,
             "None" if odd is None else "(Some %s)" % pair(odd)),
-       name, "Hints %s %s (%s, %s)." % (number(B), number(l), pair(place), pair(vector)),
-       name, tree_text(claim.tree))
+         "Hints %s %s (%s, %s)." % (number(B), number(l), pair(place), pair(vector)),
+         tree_text(claim.tree), COMPUTED)
 
 
-COMPUTED = "Proof. vm_cast_no_check (eq_refl true). Qed.\n\n"
+def part(name, arithmetic, i, count):
+    return CHECKING % arithmetic + """\
+From Converse.build Require Import {0}_claim.
+
+Lemma leaves :
+  forallb (leaf_ok the_claim the_hints) (share {1} {2} (leaves_of the_claim the_tree)) = true.
+{3}""".format(name, i, count, COMPUTED)
 
 
-def part(name, i, count):
-    return ("Lemma {0}_{1} : forallb (leaf_ok {0}_claim {0}_hints)\n"
-            "  (share {1} {2} (leaves_of {0}_claim {0}_tree)) = true.\n" + COMPUTED).format(
-                name, i, count)
+def theorem(name, arithmetic, count):
+    parts = ["%s_%d" % (name, i) for i in range(count)]
+    return READING + """\
+From Converse.build Require Import {0}_says.
+(* Not imported: no name of theirs hides one of those above. *)
+From Converse Require Share {1}.
+From Converse.build Require {0}_claim {2}.
 
-
-def theorem(claim, name, count):
-    return """\
-Lemma {0}_header : header_ok {0}_claim {0}_hints {0}_tree = true.
-{2}Theorem {0} :
-  {1}.
+Theorem {0} : {0}_says.
 Proof.
-  refine (check_sound {0}_claim {0}_hints {0}_tree _).
-  apply andb_true_intro. split; [exact {0}_header |].
-  apply (shares_all _ _ {3}); [| repeat constructor].
+  refine ({1}.check_sound
+            {0}_claim.the_claim {0}_claim.the_hints {0}_claim.the_tree _).
+  apply andb_true_intro. split; [exact {0}_claim.header |].
+  apply (Share.shares_all _ _ {3}); [| repeat constructor].
   exact ({4}).
 Qed.
 
 Add Printing Constructor term region.
 Set Printing Width 100.
 Check {0}.
+Print {0}_says.
 Print Assumptions {0}.
-""".format(name, statement(claim), COMPUTED, count,
-           "".join("Forall_cons _ %s_%d (" % (name, i) for i in range(count))
-           + "Forall_nil _" + ")" * count)
+""".format(name, arithmetic, " ".join(parts), count,
+           "".join("Forall_cons _ %s.leaves (" % part for part in parts) + "Forall_nil _"
+           + ")" * count)
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
     parser.add_argument("file", help="a finished proof file")
     parser.add_argument("name", help="of the theorem")
-    parser.add_argument("--integers", action="store_true",
-                        help="compute with Coq's own integers, not with the processor's numbers")
-    which = parser.add_mutually_exclusive_group()
-    which.add_argument("--claim", action="store_true", help="only the definitions")
-    which.add_argument("--part", type=int, nargs=2, metavar=("I", "K"),
-                       help="only the lemma about every K-th leaf from the I-th on")
-    which.add_argument("--parts", type=int, metavar="K", help="only what K such lemmas prove")
+    parser.add_argument("directory", type=Path, help="where the files go")
+    parser.add_argument("--numbers", choices=["Doubles", "BigIntegers", "Integers"],
+                        default="Doubles",
+                        help="the processor's floating-point numbers, or such as are made of the "
+                             "library Bignums' or of Coq's own integers (default: %(default)s)")
+    parser.add_argument("--parts", type=int, default=1, metavar="K",
+                        help="divide the leaves among K files (default: %(default)s)")
     options = parser.parse_args()
-    if not re.fullmatch("[A-Za-z][A-Za-z0-9_]*", options.name):
+    name, numbers, count = options.name, options.numbers, options.parts
+    if not re.fullmatch("[A-Za-z][A-Za-z0-9_]*", name):
         sys.exit("theorem.py: the name is not letters, digits and _, a letter first")
+    if count < 1:
+        sys.exit("theorem.py: --parts: less than one")
     try:
         claim = check.read(options.file)
         if isinstance(claim, check.Map):
@@ -223,18 +245,13 @@ def main():
         odd = odd_about(options.file)
     except check.Failure as error:
         sys.exit("theorem.py: %s: %s%s" % (check.shown(options.file), error.word, error))
-    name, count = options.name, options.parts or 1
-    text = HEAD % (claim.sha256, "Integers" if options.integers else "Doubles")
-    parts = [name + "_%d" % i for i in range(count)]
-    if options.claim:
-        text += definitions(claim, odd, name)
-    elif options.part:
-        text += USING % (name + "_claim") + part(name, *options.part)
-    elif options.parts:
-        text += USING % " ".join([name + "_claim", *parts]) + theorem(claim, name, count)
-    else:
-        text += definitions(claim, odd, name) + part(name, 0, 1) + theorem(claim, name, 1)
-    sys.stdout.write(text.rstrip("\n") + "\n")
+    texts = {"_says": says(claim, name), "_claim": definitions(claim, odd, numbers),
+             **{"_%d" % i: part(name, numbers, i, count) for i in range(count)},
+             "": theorem(name, numbers, count)}
+    head = ("(* Made by formal/theorem.py from the proof file whose SHA-256 is\n   %s. *)\n\n"
+            % claim.sha256)
+    for end, text in texts.items():
+        (options.directory / (name + end + ".v")).write_text(head + text, "ascii")
 
 
 if __name__ == "__main__":

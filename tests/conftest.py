@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 from hypothesis import HealthCheck, settings
 
+import converse
 from converse import Counts, Problem, Proof, Settings
 from moments import PATIENCE
 
@@ -23,6 +24,11 @@ COMMAND = str(Path(sys.executable).parent / "converse")
 # What takes long takes long: a machine that is slow, or busy, is no failure.
 settings.register_profile("timeless", deadline=None, suppress_health_check=[HealthCheck.too_slow])
 settings.load_profile("timeless")
+
+# The children test the package that is tested here.  Where that is installed elsewhere, they must
+# not take the sources here, which have no core, for it (before Python 3.11 this is not heard).
+if not Path(converse.__file__).is_relative_to(ROOT):
+    os.environ["PYTHONSAFEPATH"] = "1"
 
 # A shell without job control starts what it puts in the background with Ctrl-C ignored, and so
 # would be all that is started here.

@@ -1,5 +1,6 @@
 """The checker: it confirms what is proved, rejects everything else, and its bounds are bounds."""
 
+import ast
 import contextlib
 import decimal
 import gzip
@@ -13,6 +14,7 @@ import operator
 import os
 import random
 import re
+import shutil
 import signal
 import subprocess
 import sys
@@ -24,9 +26,13 @@ from fractions import Fraction
 import mpmath
 import pytest
 
-from converse import Problem, check, prove, read_input
+from checker import check
+from converse import Problem, check as package, prove, read_input
+from converse.check import lockstep, ship
 from moments import PATIENCE
 from truth import STRIKE, TORTURE
+
+from converse.problem import LINE
 
 # Of a process without sanitizers, which may import what lies about its file.
 PLAIN = {name: value for name, value in os.environ.items()
@@ -58,7 +64,9 @@ def bounds_once():
 @pytest.fixture(autouse=True)
 def impatient(monkeypatch):
     """Fewer pieces than the checker would try in vain, with shorter orbits: of the fast path, and
-    still fewer of the exact one, which halves them as often as ever, but not all of them."""
+    still fewer of the exact one, which halves them as often as ever, but not all of them.  And no
+    line of progress that would depend on the clock."""
+    monkeypatch.setattr(check, "LINE_SECONDS", math.inf)
     if TORTURE == 1:
         excluded = check.Criterion.excluded
 
@@ -194,7 +202,7 @@ def deep(texts):
 def moving(tmp_path_factory):
     """Proof files of the method loewner, by name: parameters on a segment, that of the inputs or
     another, or in a box about a piece of it; with cuts of the parameters or without."""
-    inputs = [Fraction("11.21436") * k for k in (1, 1, 2)]          # times epsilon
+    inputs = [LINE * k for k in (1, 1, 2)]          # times epsilon
     slanted = (Fraction(12), Fraction("10.5"), Fraction(23))
     found = {}
     for name, direction, low, high, together in (
@@ -333,7 +341,7 @@ def test_a_spot_check_cannot_be_foreseen(deep, run, monkeypatch):
 def test_a_spot_check_that_misses_the_false_leaf_verifies_nothing(moving, run):
     """Of the segment from 0.0120 only the upper half is proved, and the lower is one leaf."""
     text, tree = moving["segment"], tree_of(moving["segment"])
-    scale = Fraction("11.21436")
+    scale = LINE
     text = with_parameters(text, *((k * scale / 50, k * scale * Fraction("0.008"))
                                    for k in (1, 1, 2)))
     text = sealed(with_tree(with_field(text, "depth", 99), "2P" + tree))
@@ -672,12 +680,12 @@ def test_nothing_of_the_file_is_echoed(texts, run, tmp_path, capsys):
 @pytest.mark.parametrize("start, filler, status", [
     (b"", b"\0", 2), (b"", b"\n", 2), (b"converse proof 2\n", b"\0", 5),
     (b"converse proof 2\n", b"comment: \n", 5), (b"converse proof 2\ntree:\n", b"0P", 5)])
-def test_a_bomb_is_bounded(tmp_path, start, filler, status):
+def test_a_bomb_is_bounded(one_file, tmp_path, start, filler, status):
     """A file of kilobytes that unpacks to gigabytes, in a process with a gigabyte."""
     path = tmp_path / "bomb.gz"
     part = gzip.compress(filler * (1 << 20), 9)
     path.write_bytes(gzip.compress(start) + part * (1 + (300 << 20) // (len(filler) << 20)))
-    done = alone(path, before="import resource; "
+    done = alone(one_file, path, before="import resource; "
                               "resource.setrlimit(resource.RLIMIT_AS, [1 << 30] * 2)")
     assert (done.returncode, done.stdout) == (status, "") and done.stderr.count("\n") == 1
     assert "limit" in done.stderr or "not a proof file" in done.stderr
@@ -703,13 +711,13 @@ def test_what_is_no_file(tmp_path, capsys):
     assert capsys.readouterr().err.count("\n") == 6
 
 
-def test_links_and_pipes(texts, tmp_path):
+def test_links_and_pipes(one_file, texts, tmp_path):
     path, link = tmp_path / "x", tmp_path / "link"
     path.write_text(texts["trig278"], encoding="utf-8")
     link.symlink_to(path)
-    assert alone(link).returncode == 0
+    assert alone(one_file, link).returncode == 0
     with open(path, "rb") as file:
-        assert alone("/dev/stdin", stdin=file).returncode == 0
+        assert alone(one_file, "/dev/stdin", stdin=file).returncode == 0
 
 
 def test_damaged_gzip(texts, run):
@@ -741,42 +749,151 @@ def test_arguments(tmp_path, capsys):
     assert check.main(["--version"]) == 0
 
 
-def test_as_a_command(texts, tmp_path, root):
+def test_as_a_command(texts, tmp_path):
     path = tmp_path / "x"
     path.write_text(texts["trig274"], encoding="utf-8")
-    for command in (["-m", "converse.check"], [str(root / "converse" / "check.py")]):
-        done = subprocess.run([sys.executable, *command, path, "--jobs", "2"], cwd=tmp_path,
-                              capture_output=True)
-        assert done.returncode == 0 and done.stdout.startswith(b"Verified") and not done.stderr
+    done = subprocess.run([sys.executable, "-m", "converse.check", path, "--jobs", "2"],
+                          cwd=tmp_path, capture_output=True)
+    assert done.returncode == 0 and done.stdout.startswith(b"Verified") and not done.stderr
+    done = subprocess.run([sys.executable, FOLDER, path], capture_output=True, text=True)
+    assert (done.returncode, done.stdout) == (1, "") and done.stderr.count("\n") == 1
 
 
-def alone(*arguments, before="", stdin=None):
+def alone(one_file, *arguments, before="", stdin=None):
     """Runs a process that has nothing but Python and the one file."""
     code = before + "; import runpy, sys; sys.argv = sys.argv[1:]; " \
         "runpy.run_path(sys.argv[0], run_name='__main__')"
-    return subprocess.run([sys.executable, "-I", "-S", "-c", code.lstrip("; "), check.__file__,
+    return subprocess.run([sys.executable, "-I", "-S", "-c", code.lstrip("; "), one_file,
                            *map(str, arguments)], capture_output=True, text=True, stdin=stdin,
                           env=PLAIN)
 
 
-def test_the_file_alone_needs_nothing_but_python(texts, tmp_path):
-    """No package about it, none installed; but two processes, a state and a version of its own."""
-    copy, path = tmp_path / "copied.py", tmp_path / "x"
-    copy.write_bytes(open(check.__file__, "rb").read())
+# ---- its other forms: a zip file, and one file
+
+FOLDER = os.path.dirname(package.__file__)
+FORMS = ("converse-check.pyz", "converse_check.py")
+
+
+@pytest.fixture(scope="module")
+def forms(tmp_path_factory):
+    """The folder that has them."""
+    folder = tmp_path_factory.mktemp("forms")
+    ship.main(str(folder))
+    return folder
+
+
+@pytest.fixture(scope="module")
+def one_file(forms):
+    return forms / "converse_check.py"
+
+
+@pytest.mark.skipif(sys.version_info < (3, 10), reason="it cannot name its own modules")
+def test_it_imports_nothing_of_the_program(root):
+    """Python's own modules, numpy, and its own: nothing else, however deep in a function."""
+    for file in sorted((root / "converse" / "check").rglob("*.py")):
+        for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
+            names = []
+            if isinstance(node, ast.Import):
+                names = [alias.name for alias in node.names]
+            elif isinstance(node, ast.ImportFrom):
+                assert node.level < 2, "%s, line %d" % (file, node.lineno)
+                names = [node.module] if node.level == 0 else []
+            elif isinstance(node, ast.Name):
+                assert node.id not in ("__import__", "exec", "eval"), file
+            for name in names:
+                assert name.split(".")[0] in {*sys.stdlib_module_names, "numpy"}, (file, name)
+            assert "import_module" not in str(getattr(node, "attr", "")), file
+
+
+@pytest.mark.parametrize("form", FORMS)
+def test_every_form_says_the_same(texts, deep, moving, others, maps, forms, run, tmp_path, form):
+    """Of the same files, good and bad, with numpy and without; word for word."""
+    bad = with_field(texts["trig274"], "c", "0.617 0.618")
+    tree = tree_of(texts["trig276"])
+    cases = [*texts.values(), deep, moving["segment"], moving["narrow box"], others["a patch"],
+             others["in a frame"], part_of(texts["trig274"]), map_text(maps["b=0"]), bad,
+             sealed(bad), sealed(with_tree(texts["trig276"], tree[:-1])), "junk"]
+    path, statuses = tmp_path / "some.proof", set()
+    for text in cases:
+        for isolated, options in (("-I",), ("--jobs", "2")), (("-I", "-S"), ("--exact",)):
+            status, out, err = run(text, *options)
+            done = subprocess.run([sys.executable, *isolated, forms / form, path, *options],
+                                  capture_output=True, text=True, env=PLAIN, cwd=tmp_path)
+            found = done.returncode, done.stdout, done.stderr.replace(str(path), "FILE")
+            # The tests allow the exact path less than it would try.
+            assert found == (status, out, err) or status == found[0] == 5 and "limits" in found[2]
+            statuses.add(status)
+    assert statuses == {0, 1, 2, 3, 5}
+
+
+@pytest.mark.parametrize("form", FORMS)
+def test_every_form_runs_alone(texts, forms, tmp_path, form):
+    """No package about it, none installed; but two processes, a state, and its version."""
+    copy, path = tmp_path / form, tmp_path / "x"
+    copy.write_bytes((forms / form).read_bytes())
     path.write_text(texts["trig274"], encoding="utf-8")
     done = subprocess.run([sys.executable, "-I", "-S", copy, path, "--jobs", "2", "--state",
                            tmp_path / "state"], capture_output=True, text=True, cwd=tmp_path)
-    assert done.returncode == 0 and "(standing alone)" in done.stdout
+    assert done.returncode == 0 and "converse-check %s\n" % check.__version__ in done.stdout
     assert "numpy is not installed" in done.stderr and done.stderr.count("\n") == 1
-    # Of the package it takes the version, and any failure to import it will do.
-    for content, version in (("__version__ = '7.8'", "7.8"), ("raise ImportError", "(standing")):
-        package = tmp_path / "converse"
-        package.mkdir(exist_ok=True)
-        (package / "__init__.py").write_text("")
-        (package / "version.py").write_text(content)
-        done = subprocess.run([sys.executable, copy, "--version"], capture_output=True, text=True,
-                              cwd=tmp_path, env=PLAIN)
-        assert done.stdout.startswith("converse-check " + version)
+
+
+def test_every_form_is_made_the_same_again(forms, tmp_path):
+    subprocess.run([sys.executable, "-I", "-S", ship.__file__, tmp_path], check=True,
+                   stdout=subprocess.DEVNULL)
+    for form in FORMS:
+        assert (forms / form).read_bytes() == (tmp_path / form).read_bytes()
+
+
+@pytest.mark.parametrize("form", ["package", *FORMS])
+def test_a_state_belongs_to_these_very_sources(deep, forms, tmp_path, form):
+    """Of each form; changed anywhere, it is another checker, which begins anew."""
+    path, state, home = tmp_path / "x", tmp_path / "state", tmp_path / "home"
+    path.write_text(deep, encoding="utf-8")
+    shutil.copytree(FOLDER, home / "checker", ignore=shutil.ignore_patterns("__pycache__"))
+    code = "import sys; sys.path.insert(0, sys.argv.pop(1)); from checker import main; " \
+        "sys.exit(main())"
+    command = [sys.executable, "-B", "-c", code, home]
+    if form != "package":
+        command = [sys.executable, home / form]
+
+    def made():
+        if form != "package":
+            subprocess.run([sys.executable, "-B", home / "checker" / "ship.py", home], check=True,
+                           stdout=subprocess.DEVNULL)
+
+    def checked():
+        return subprocess.run([*command, path, "--state", state], capture_output=True, text=True,
+                              env=PLAIN)
+
+    made()
+    assert checked().stdout.startswith("Verified :")
+    made()
+    assert "by an earlier run" in checked().stdout.partition("\n")[0]
+    for name in ("arith", "lockstep", "words"):
+        file = home / "checker" / (name + ".py")
+        original = file.read_text(encoding="utf-8")
+        file.write_text(original + "\n\nUNUSED_HERE = 1\n", encoding="utf-8")
+        made()
+        done = checked()
+        assert (done.returncode, done.stdout) == (2, "") and "another checker" in done.stderr
+        file.write_text(original, encoding="utf-8")
+    made()
+    assert "by an earlier run" in checked().stdout.partition("\n")[0]
+
+
+@pytest.mark.parametrize("text, why", [
+    ("from .limits import LAG as lag", "only 'from .module import name'"),
+    ("from .. import version", "only 'from .module import name'"),
+    ("from .command import main", "comes after it"), ("ROOT = 1", "names of their own: ROOT"),
+    ("print()", "only imports and defines")])
+def test_what_cannot_be_put_together_is_refused(monkeypatch, text, why):
+    """Rather than put together into something else."""
+    source = ship.source
+    monkeypatch.setattr(ship, "source", lambda name: (
+        source(name) + "\n" + text + "\n" if name == "claim" else source(name)))
+    with pytest.raises(SystemExit, match=re.escape(why)):
+        ship.one_file()
 
 
 def test_help_names_every_status(capsys):
@@ -788,12 +905,12 @@ def test_help_names_every_status(capsys):
 
 
 @pytest.mark.parametrize("stream", [">&-", "> /dev/full", "2>&-", ">&- 2>&-", "| true"])
-def test_streams_that_are_closed_or_full(texts, tmp_path, stream):
+def test_streams_that_are_closed_or_full(texts, one_file, tmp_path, stream):
     """No success without a report, and no traceback."""
     path = tmp_path / "x"
     path.write_text(texts["trig278"], encoding="utf-8")
     done = subprocess.run(["bash", "-c", "set -o pipefail; \"$@\" " + stream, "-", sys.executable,
-                           check.__file__, path], capture_output=True, text=True)
+                           one_file, path], capture_output=True, text=True)
     assert "Traceback" not in done.stderr and done.stderr.count("\n") <= 1
     assert done.returncode == 0 if stream in ("2>&-", "| true") and done.stdout else \
         done.returncode in (0, 2) if stream == "| true" else done.returncode == 2
@@ -890,16 +1007,16 @@ def test_struck_inside_the_locks_of_the_pool(long, tmp_path):
     """A signal never fails the check with a RuntimeError of the library."""
     code = STRIKE + """
 sys.path.insert(0, sys.argv.pop(1))
-import check
-in_order = check.in_order
+from check import main, run
+in_order = run.in_order
 def struck(*args):
     sys.setprofile(strike)
     return in_order(*args)
-check.in_order = struck
-sys.exit(check.main())
+run.in_order = struck
+sys.exit(main())
 """
     path, _ = long
-    process = subprocess.run([sys.executable, "-I", "-c", code, os.path.dirname(check.__file__),
+    process = subprocess.run([sys.executable, "-I", "-c", code, os.path.dirname(FOLDER),
                               path, "--jobs", "3", "--exact"],
                              stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, timeout=PATIENCE)
     assert process.returncode == 143, process.stderr
@@ -936,26 +1053,27 @@ import signal
 signal.signal(2, signal.SIG_DFL)                # as Python starts and ends
 import sys, time
 sys.path.insert(0, sys.argv.pop(1))
-import check
-at_once = check.check_chunk
+from check import main, progress, state, workers
+at_once = workers.check_chunk
 def check_chunk(chunk):                         # however fast the machine is
     time.sleep(0.005)
     return at_once(chunk)
-check_chunk.__module__, check.check_chunk, check.STATE_SECONDS = "check", check_chunk, 0.02
-advance, most = check.State.advance, float(sys.argv.pop(1))
+check_chunk.__module__, workers.check_chunk = "check.workers", check_chunk
+state.STATE_SECONDS, progress.LINE_SECONDS = 0.02, 1e9
+advance, most = state.State.advance, float(sys.argv.pop(1))
 def advance_or_wait(self, *more):
     advance(self, *more)
     if self.confirmed > most:
         self.save()
         time.sleep(1e6)
-check.State.advance = advance_or_wait
+state.State.advance = advance_or_wait
 print(flush=True)
-sys.exit(check.main())
+sys.exit(main())
 """
     for n in range(60):
         most = seen[-1] + 500 if n % 2 else math.inf    # every other time it is to get on first
         process = subprocess.Popen(
-            [sys.executable, "-I", "-c", code, os.path.dirname(check.__file__), str(most), path, "--jobs",
+            [sys.executable, "-I", "-c", code, os.path.dirname(FOLDER), str(most), path, "--jobs",
              jobs, "--state", state, "--exact"],
             stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, start_new_session=True)
         process.stdout.readline()
@@ -1088,6 +1206,27 @@ def test_a_state_that_cannot_be_written_later(deep, run, tmp_path, monkeypatch):
     assert set(os.listdir(tmp_path)) == {"state", "link", "some.proof"}
 
 
+def test_a_signal_while_the_state_is_made(deep, run, tmp_path, monkeypatch):
+    """Whichever call of the system it strikes in, nothing is left beside the state."""
+    path, calls = tmp_path / "proof", ("open", "fsync", "replace")
+    path.write_text(deep, encoding="utf-8")
+    for name in calls:
+        real = getattr(os, name)
+
+        def struck(*args, real=real, **more):
+            found = real(*args, **more)
+            if name != "open" or ".converse-check-" in str(args[0]):
+                raise KeyboardInterrupt
+            return found
+
+        with monkeypatch.context() as patch:
+            patch.setattr(os, name, struck)
+            status, out, err = run(deep, "--state", str(tmp_path / name))
+        assert (status, out) == (130, "") and "interrupted; nothing was verified" in err
+        assert set(os.listdir(tmp_path)) <= {"proof", "some.proof", *calls}, name
+        assert run(deep, "--state", str(tmp_path / name))[0] == 0
+
+
 @pytest.mark.skipif(multiprocessing.get_start_method() != "fork", reason="the worker is a copy")
 def test_a_worker_that_dies(deep, run, tmp_path, monkeypatch):
     """It is said, and what was confirmed before stands."""
@@ -1117,12 +1256,12 @@ def test_a_failure_of_its_own_is_no_success(deep, run, monkeypatch):
 
 
 def test_the_bar(deep, tmp_path, monkeypatch, capsys):
-    """On a terminal only; it says what is left and goes away."""
+    """On a terminal; it says what is left and goes away."""
     path = tmp_path / "x"
     path.write_text(deep, encoding="utf-8")
     monkeypatch.setattr(check, "BAR_SECONDS", 0)
     assert check.main([str(path)]) == 0
-    assert capsys.readouterr().err == ""
+    assert capsys.readouterr().err == ""                # a line is not due yet
     monkeypatch.setattr(sys.stderr, "isatty", lambda: True, raising=False)
     for options, shown in ((["--quiet"], False), ([], True)):
         assert check.main([str(path), *options]) == 0
@@ -1133,6 +1272,21 @@ def test_the_bar(deep, tmp_path, monkeypatch, capsys):
     assert err.endswith("\r" + " " * (len(err.split("\r")[-4])) + "\r")
     assert [check.duration(s) for s in (0.9, 119, 120, 7199, 7200, 200000)] == [
         "0 s", "119 s", "2 min", "119 min", "2 h", "2 days"]
+
+
+def test_lines_where_there_is_no_terminal(deep, run, monkeypatch, tmp_path, capsys):
+    """Now and then; not in quiet, and not from Python unless asked for."""
+    monkeypatch.setattr(check, "LINE_SECONDS", 0)
+    status, out, err = run(deep, "--exact")
+    assert status == 0 and out.startswith("Verified :")
+    steps = [int(n.replace(",", "")) for n in re.findall(
+        "(?m)^converse-check: ([0-9,]+) of [0-9,]+ leaves, [0-9]+%, about [0-9]+ [a-z]+ left$",
+        err)]
+    assert len(steps) == err.count("\n") > 5 and steps == sorted(steps)
+    assert steps[-1] == tree_of(deep).count("P")
+    assert run(deep, "--exact", "--quiet") == (0, "", "")
+    check.verify(tmp_path / "some.proof")
+    assert capsys.readouterr() == ("", "")
 
 
 # ---- from Python
@@ -1522,14 +1676,14 @@ def random_cell(generator, claim, most=40):
 
 
 def waves_of(claim):
-    return [(wave.k, wave.phase) for wave in claim.felt]
+    return [(wave.k, wave.phase) for wave in claim.examined]
 
 
 def random_point(generator, claim, cell):
     """Exact amplitudes and v0, v1 of a cell, often at its ends."""
     eta = [near(generator) for _ in range(5)]
     along = [Fraction(2 * i + 1 + e, 1 << k) - 1 for i, k, e in zip(*cell, eta)]
-    return ([wave.at(along[2:]) for wave in claim.felt],
+    return ([wave.at(along[2:]) for wave in claim.examined],
             [c + h * t for c, h, t in zip(claim.centre, claim.half, along)])
 
 
@@ -1549,7 +1703,7 @@ def test_pieces_cover_their_cells(texts, generator, monkeypatch):
             cell = random_cell(generator, claim)
             eta = [near(generator) for _ in range(5)]
             along = [Fraction(2 * i + 1 + e, 1 << k) - 1 for i, k, e in zip(*cell, eta)]
-            true = [wave.at(along[2:]) * criterion.fixed.one for wave in claim.felt]
+            true = [wave.at(along[2:]) * criterion.fixed.one for wave in claim.examined]
             angles = [real(c % 2 + h * t) * mp.pi / unit
                       for c, h, t in zip(claim.centre, claim.half, along)]
             eta = eta[2:]
@@ -1579,7 +1733,7 @@ def test_second_variation_of_cells(texts, generator):
     cases = kinds = 0
     for _ in range(60):
         claim = claim_of(random_text(generator, texts["trig274"], "P", 1, "0.5"))
-        if not claim.felt:
+        if not claim.examined:
             continue
         criterion, waves = check.Criterion(claim), waves_of(claim)
         fixed = criterion.fixed
@@ -1649,7 +1803,7 @@ def test_no_orbit_of_a_proved_leaf_minimizes(deep, generator):
 
 @pytest.fixture(scope="module")
 def np():
-    assert check.sound()
+    assert check.import_numpy_if_sound()
     return check.np
 
 
@@ -1885,7 +2039,7 @@ def test_no_term_may_be_missing(np, generator, worst, old, new):
     """Each of them decides somewhere: without it the bounds fail the test above."""
     source = inspect.getsource((check.bending, check.remainder, check.summit)[worst])
     assert source.count(old) == 1
-    names = {**vars(check)}
+    names = {**vars(lockstep)}
     exec(source.replace(old, new), names)
     assert WORST[worst](types.SimpleNamespace(**names), generator, 2000 if worst < 2 else 300) > 1
 
@@ -1998,7 +2152,7 @@ def test_lockstep_boxes_cover_their_cells(np, texts, generator):
     kinds = 0
     for _ in range(6 * min(TORTURE, 4)):
         claims = [claim_of(random_text(generator, texts["trig274"], "P", 1, 9)) for _ in range(4)]
-        claims = [claim for claim in claims if claim.felt]
+        claims = [claim for claim in claims if claim.examined]
         fast, numbers = check.Lockstep(claims), [generator.randrange(len(claims))
                                                  for _ in range(40)]
         cells = [random_cell(generator, claims[q], 52) for q in numbers]
@@ -2007,7 +2161,7 @@ def test_lockstep_boxes_cover_their_cells(np, texts, generator):
             claim, eta = claims[q], [near(generator) for _ in range(5)]
             along = [Fraction(2 * i + 1 + e, 1 << k) - 1 for i, k, e in zip(*cell, eta)]
             true = dict.fromkeys(range(len(P)), Fraction(0))
-            for wave in claim.felt:
+            for wave in claim.examined:
                 key = wave.k, wave.phase % 2
                 true[fast.shape.known.index(key)] += wave.at(along[2:])
             symbols = [eta[axis] for axis in fast.axes]
@@ -2016,7 +2170,7 @@ def test_lockstep_boxes_cover_their_cells(np, texts, generator):
                     Fraction(float(x)) * e for x, e in zip(h[w, :, n], symbols))
                 assert abs(amplitude - found) <= Fraction(float(W[w, n]))
                 assert (W[w, n] == 0) == all(
-                    fast.shape.known[w] != (wave.k, wave.phase % 2) for wave in claim.felt)
+                    fast.shape.known[w] != (wave.k, wave.phase % 2) for wave in claim.examined)
             turns = in_frame(claim.frame, [c + v * t for c, v, t in zip(
                 claim.centre, claim.half, along)])
             gap = [2 * mp.pi * real((x / 2 - Fraction(float(y)) + Fraction(1, 2)) % 1
@@ -2154,7 +2308,7 @@ def test_without_numpy(deep, run, monkeypatch):
             monkeypatch.setitem(sys.modules, "numpy", None)
         else:
             monkeypatch.undo()
-            monkeypatch.setattr(check, "sound", lambda: False)
+            monkeypatch.setattr(check, "import_numpy_if_sound", lambda: False)
         status, out, err = run(deep)
         assert status == 0 and why in err and err.count("\n") == 1
         assert "Method : Loewner criterion, Taylor models in integers" in out
@@ -2185,9 +2339,9 @@ def test_the_fast_path_looks_at_the_machine(np, monkeypatch):
 
     for other in (Flushing(), Truncating()):
         monkeypatch.setitem(sys.modules, "numpy", other)
-        assert not check.sound()
+        assert not check.import_numpy_if_sound()
     monkeypatch.undo()
-    assert check.sound()
+    assert check.import_numpy_if_sound()
 
 
 def test_long_orbits_are_followed_fewer_at_a_time(np, root, tmp_path, monkeypatch):
@@ -2320,7 +2474,7 @@ def test_least_pivot_to_the_last_unit(texts, generator, monkeypatch):
                 index, cuts = index[:2] + (0, 0, 0), cuts[:2] + (0, 0, 0)
             l = Fraction(criterion.least_pivot((index, cuts)), criterion.fixed.one)
             amplitudes, _ = random_point(generator, claim, (index, cuts))
-            found = dict(zip([wave.k for wave in claim.felt], amplitudes))
+            found = dict(zip([wave.k for wave in claim.examined], amplitudes))
             B = bound([found.get(k, 0) for k in check.THESIS])
             assert 0 < l < 1 and l * l - B * l + 1 >= 0         # l is at most the lesser root
 
@@ -2439,7 +2593,7 @@ PROBLEMS = {                # waves, what else is said of them, and where minimi
 @pytest.fixture(scope="module")
 def others(texts, tmp_path_factory):
     """Proof files of version 3, by name."""
-    assert check.sound()
+    assert check.import_numpy_if_sound()
     found = {}
     for name, (waves, more, xstar) in PROBLEMS.items():
         text = general(texts["trig274"], waves, tree="P", xstar=xstar, **more)
@@ -2752,6 +2906,22 @@ def test_maps_that_are_no_json(maps, run):
     assert run("{" + "," * check.MAX_ITEMS)[0] == 5
 
 
+@pytest.mark.parametrize("trees", [("O", "O"), ("0OO", "0O12OXO")])
+def test_nothing_is_verified_where_nothing_is_proved(maps, texts, run, trees):
+    """An empty theorem is none: of a map without a proved cell, of a proof without a proved leaf."""
+    content = maps["sphere"]
+    for face, tree in zip(content["faces"], trees):
+        face["tree"], face["proofs"] = tree, []
+    for options in ((), ("--exact",), ("--sample", "3")):
+        status, out, err = run(map_text(content), *options)
+        assert (status, out) == (1, "") and "no cell of the map is proved" in err
+    content["faces"][1]["tree"] = "0OA"
+    status, out, err = run(map_text(content))
+    assert (status, err) == (0, "") and "in the 0 proved cells of the file, for any" in out
+    for tree in ("S", "U", "0SS", "0SU", "1US", "01SSS", "2UU"):
+        assert run(sealed(with_tree(texts["trig278"], tree)))[0] == 1
+
+
 def test_cells_are_covered_by_their_patches(generator):
     """Exactly: each point of a cell is one of its patch; that of the least r is of that r."""
     for _ in range(300):
@@ -2821,7 +2991,7 @@ def test_products_of_strips_are_bounded(maps, run):
 
     face = check.REGIONS["sphere"]
     content = {**maps["b=0"], "region": "sphere", "faces": [
-        face_of(face[0], "2", "0" + comb("1", 10) + comb("2", 10)), face_of(face[1], "2", "O")]}
+        face_of(face[0], "2", "0" + comb("1", 10) + comb("2", 10)), face_of(face[1], "2", "0OA")]}
     began = time.process_time()
     status, out, err = run(map_text(content))
     assert (status, out) == (5, "") and "face 1: its cells lie in too many ways" in err

@@ -141,9 +141,11 @@ def test_restore_alone(command, sample, root, tmp_path):
     assert whole.no_tori and whole.problem == half.problem and whole.depth == 120
     assert check.verify(backup)
     for arguments in (["-d", "9"], ["--method", "thesis"], ["-p", "36"], ["--as-printed"],
-                      ["--together", sample], [sample]):
+                      ["--together", sample], [sample], [root / "inputs" / "standard.json"]):
         status, out, err = command("-r", backup, *arguments)
         assert (status, out) == (2, "") and one_line(err)
+        assert "of another run" in err and "--together" not in err
+    assert "its potential is " in err           # not its together, which the input cannot name
     assert command("-r", backup, root / "inputs" / "trig180.in")[0] == 0
     assert Proof.load(backup) == whole
 
@@ -218,7 +220,7 @@ def test_bad_usage(command, arguments, word):
     (bytes(range(256)), 1), (b"\0" * 100, 1),
 ])
 def test_bad_input(command, text, line, tmp_path):
-    status, out, err = command("-b", tmp_path / "b", "-g", tmp_path / "g", stdin=text)
+    status, out, err = command("-b", tmp_path / "b", "-g", tmp_path / "g.ps", stdin=text)
     assert status == 2 and out == ""
     assert one_line(err) and ": <stdin>, line %d: " % line in err and "; " in err
     assert list(tmp_path.iterdir()) == []
@@ -256,7 +258,8 @@ def test_zero_half_widths(command):
 def test_unwritable_places(command, flag, sample, tmp_path):
     plain = tmp_path / "plain"
     plain.write_text("")
-    for place in (tmp_path, tmp_path / "missing" / "file", plain / "file", "/proc/file", ""):
+    (tmp_path / "a.ps").mkdir()
+    for place in (tmp_path / "a.ps", tmp_path / "missing" / "a.ps", plain / "a.ps", "/proc/a.ps", ""):
         status, out, err = command(flag, place, sample)
         assert status == 2 and out == "" and one_line(err)
         assert str(place) in err
@@ -271,12 +274,12 @@ def test_backup_over_something_else(command, sample, tmp_path):
 
 
 def test_figure_over_something_else(command, sample, tmp_path):
-    path = tmp_path / "copy.in"
+    path = tmp_path / "copy.svg"
     path.write_bytes(sample.read_bytes())
-    (tmp_path / "link").symlink_to(path)
-    for arguments in ([path, "-g", path], [sample, "-b", tmp_path / "b", "-g", tmp_path / "b"],
-                      [path, "-g", "%s/./copy.in" % tmp_path], [path, "-g", tmp_path / "link"],
-                      [sample, "-b", tmp_path / "b", "-g", "%s/./b" % tmp_path]):
+    (tmp_path / "link.ps").symlink_to(path)
+    for arguments in ([path, "-g", path], [sample, "-b", tmp_path / "b.ps", "-g", tmp_path / "b.ps"],
+                      [path, "-g", "%s/./copy.svg" % tmp_path], [path, "-g", tmp_path / "link.ps"],
+                      [sample, "-b", tmp_path / "b.ps", "-g", "%s/./b.ps" % tmp_path]):
         status, out, err = command(*arguments)
         assert status == 2 and out == "" and one_line(err) and "overwrite" in err
     with open(path, "rb") as file, subprocess.Popen(
@@ -310,13 +313,33 @@ def test_main_returns_the_status(sample, capsys):
     assert "I could not decide" in out and one_line(err)
 
 
-def test_the_figure_destroys_no_proof(command, sample, tmp_path):
-    for name in "a.proof", "a.proof.gz":
-        assert command("-b", tmp_path / name, sample)[0] == 0
-        before = (tmp_path / name).read_bytes()
-        status, out, err = command("-g", tmp_path / name, sample)
-        assert (status, out) == (2, "") and one_line(err) and "overwrite" in err
-        assert (tmp_path / name).read_bytes() == before
+@pytest.mark.parametrize("name", ["a.proof", "a.proof.gz", "a.svg", "a.ps"])
+def test_the_figure_destroys_no_proof(command, sample, tmp_path, name):
+    assert command("-b", tmp_path / name, sample)[0] == 0
+    before = (tmp_path / name).read_bytes()
+    status, out, err = command("-g", tmp_path / name, sample)
+    assert (status, out) == (2, "") and one_line(err) and name in err
+    assert (tmp_path / name).read_bytes() == before
+
+
+@pytest.mark.parametrize("name", ["a", "a.json", "a.in", "a.svg.txt", "a.csv"])
+def test_a_figure_has_a_figure_s_name(command, sample, tmp_path, name):
+    status, out, err = command("-g", tmp_path / name, sample)
+    assert (status, out) == (2, "") and one_line(err) and ".svg or .png or .pdf or .ps or .eps" in err
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("name", ["a.ps", "a.EPS", "a.svg", "a.png", "a.pdf"])
+def test_a_figure_replaces_nothing_but_a_figure(command, sample, tmp_path, name):
+    path = tmp_path / name
+    for text in b"precious", b"%!PS-Adobe-3.0\n%%Creator: another\n", b"<?xml version='1.0'?><svg/>":
+        path.write_bytes(text)
+        status, out, err = command("-g", path, sample)
+        assert (status, out) == (2, "") and one_line(err) and "no figure of this program" in err
+        assert path.read_bytes() == text
+    path.write_bytes(b"")
+    for _ in range(2):                      # over nothing, and over itself
+        assert command("-g", path, sample)[::2] == (0, "") and path.stat().st_size > 1000
 
 
 def test_a_figure_of_nothing(command, sample, tmp_path):

@@ -45,14 +45,32 @@ def test_commands_are_understood():
             file = re.match("(proof|state|map) [0-9]$", arguments)      # its first line
             if command in PARSERS and "..." not in arguments and not file:
                 arguments = re.sub(r"\b[KN]\b", "3", arguments.partition("#")[0])
-                PARSERS[command]().parse_args(shlex.split(arguments))
+                try:
+                    PARSERS[command]().parse_args(shlex.split(arguments))
+                except SystemExit as end:       # of what only prints
+                    assert end.code == 0
                 shown += 1
     assert shown >= 4
+
+
+def test_an_installation_in_the_clone_stays_editable():
+    """A page that adds an extra to .venv must not put a copy in the place of the clone's files."""
+    shown = [line for text in TEXTS.values() for line in re.findall(r"\.venv/bin/pip install (.*)", text)]
+    assert shown and all(line.startswith("-e ") for line in shown)
 
 
 def test_experiments_exist():
     scripts = set(re.findall(r"`([a-z]+\.py)`", TEXTS["orbits.md"]))
     assert scripts == {path.name for path in (ROOT / "experiments").glob("*.py")}
+
+
+def test_experiments_draw_as_the_package_does():
+    """In its letters, of eight points or more, and its colours; with the Greek letter."""
+    for path in (ROOT / "experiments").glob("*.py"):
+        text = path.read_text("utf-8")
+        if "figsize" in text:
+            assert "picture.STYLE" in text and "fontsize" not in text and "frameon" not in text
+            assert not re.search("#[0-9a-f]{6}|varepsilon", text), path
 
 
 @pytest.mark.parametrize("name", TEXTS)
@@ -102,3 +120,4 @@ def test_one_version():
         == __version__
     assert re.search("^## (.*)$", (ROOT / "CHANGELOG.md").read_text(), re.MULTILINE)[1] \
         == __version__
+    assert check.__version__ == __version__             # it imports nothing, not even that

@@ -19,6 +19,7 @@ from pathlib import Path
 import pytest
 
 from converse import Proof, files
+from converse import backup as keeping
 from moments import BEGUN, HELD, PATIENCE, wait_until
 from truth import STRIKE, TORTURE
 
@@ -205,6 +206,49 @@ def test_full_disk_keeps_the_older_backup(held, command, sample, tmp_path):
     assert command("-r", backup, "--time-limit", "0")[0] == 1
 
 
+def test_full_disk_in_mid_run(held, sample, tmp_path):
+    """One warning, however often it is tried again; and at the end what the file is good for."""
+    backup = tmp_path / "backup"
+    with held("-b", backup, sample, before=ALWAYS) as (process, _):
+        wait_until(lambda: Proof.load(backup).tree, process)
+        resource.prlimit(process.pid, resource.RLIMIT_FSIZE, (100, 100))
+        warning = process.stderr.readline().decode()
+        before = backup.read_bytes()
+        process.send_signal(signal.SIGINT)
+        err = ended(process)
+    assert process.returncode == 2
+    assert warning.startswith("converse: %s: cannot be written" % backup) and "tries again" in warning
+    assert re.fullmatch(r"converse: interrupted; \S+: cannot be written .*; what was found after the first "
+                        r"[0-9.]+ seconds of the search is not saved\n", err)
+    assert backup.read_bytes() == before
+
+
+class Disk:
+    """Some of a proof, and whether there is room for it."""
+    seconds, full = 1.5, False
+
+    def save(self, path):
+        if self.full:
+            raise files.ConverseError("%s: no room" % path)
+        return "sha256"
+
+
+def test_a_warning_for_each_time_that_the_disk_is_full(tmp_path, monkeypatch):
+    monkeypatch.setattr(keeping, "SECONDS", 0)
+    monkeypatch.setattr(keeping, "SHARE", 0)
+    disk = Disk()
+    with keeping.Keeper(tmp_path / "a") as keeper, pytest.warns(RuntimeWarning) as said:
+        for full in 0, 1, 1, 1, 0, 0, 1, 1:
+            disk.full = full
+            keeper.keep(lambda: disk)
+        assert len(said) == 2 and not any(each.category is files.NotSaved for each in said)
+        assert keeper.finish(disk) == ""
+        disk.full = False
+        assert keeper.finish(disk) == "sha256"
+    assert len(said) == 3 and said[2].category is files.NotSaved
+    assert "after the first 1.50 seconds of the search is not saved" in str(said[2].message)
+
+
 def test_full_disk_for_the_figure(command, root, tmp_path):
     def small_files():
         resource.setrlimit(resource.RLIMIT_FSIZE, (100, 100))
@@ -238,7 +282,7 @@ def test_closed_streams(redirection):
     assert (b"standard input is closed" in result.stderr) == (redirection == "<&-")
 
 
-def test_bar_on_a_terminal_only(start, command, sample):
+def test_progress_on_a_terminal_only(start, command, sample):
     assert command("-p20", sample)[2] == ""
     master, slave = pty.openpty()
     fcntl.ioctl(slave, termios.TIOCSWINSZ, struct.pack("4H", 24, 80, 0, 0))
@@ -256,8 +300,8 @@ def test_bar_on_a_terminal_only(start, command, sample):
         out = process.stdout.read()
     os.close(master)
     assert process.returncode == 0 and b"I find no invariant tori" in out
-    assert b"%" in shown and b"prisms, cut" in shown
-    assert b"%|" not in out and b"prisms, cut" not in out
+    assert b"prisms proved" in shown and b"% of parameters x torus done" in shown
+    assert shown.endswith(b" \r") and b"prisms proved," not in out
 
 
 def test_reading_from_a_terminal_says_so(start):
@@ -320,7 +364,7 @@ def test_a_lock_that_is_gone(held, root, tmp_path):
         if gone == "lock":
             assert (process.returncode, err) == (0, "") and Proof.load(backup).no_tori
         else:
-            assert process.returncode == 2 and "what was found is not saved" in err
+            assert process.returncode == 2 and err.endswith("is not saved\n")
 
 
 def test_a_lock_of_another_run_is_left_alone(tmp_path):

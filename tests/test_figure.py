@@ -102,11 +102,12 @@ def is_proved(pixel):
 
 
 def is_red(pixel):
-    return pixel[0] > 190 and pixel[1] < 60
+    """The colour of what is undecided, vermillion; in PostScript it is red."""
+    return pixel[0] > 190 and pixel[1] < 110 and pixel[2] < 60
 
 
 def is_reddish(pixel):
-    return pixel[0] > 190 and pixel[1] < 225 and abs(pixel[1] - pixel[2]) < 20
+    return pixel[0] > 190 and pixel[0] - 40 > pixel[1] > pixel[2] + 20
 
 
 def area(proof, kind):
@@ -455,8 +456,60 @@ def test_into_axes(made_up):
     assert axes.get_xlim() == axes.get_ylim() == (0, 2)
 
 
+def test_without_a_caption(made_up, tmp_path):
+    """Only the prisms, their axes and the legend, in every format."""
+    pytest.importorskip("matplotlib")
+    proof = made_up("01PSU", sha256=SHA)
+    axes = proof.figure(caption=False).axes[0]
+    assert not axes.get_title() and not axes.texts and axes.get_xlabel() and axes.get_legend()
+    for name in "a.ps", "a.svg":
+        proof.figure(tmp_path / name)
+        said = (tmp_path / name).read_text()
+        proof.figure(tmp_path / name, caption=False)
+        unsaid = (tmp_path / name).read_text()
+        assert SHA in said and SHA not in unsaid
+        assert "undecided whether" in said and "undecided whether" not in unsaid
+
+
+@pytest.mark.parametrize("raster", [0, 10 ** 9])
+def test_fonts(made_up, monkeypatch, raster):
+    """Eight points or more."""
+    pytest.importorskip("matplotlib")
+    from matplotlib.text import Text
+
+    monkeypatch.setattr(picture, "RASTER", raster)
+    fig = made_up("2U01PS?", sha256=SHA).figure()
+    picture.encode(fig, "png")
+    assert min(text.get_size() for text in fig.findobj(Text) if text.get_text()) >= 8
+
+
+# What those see who lack the green or the red cones: of linear red, green and blue (Machado,
+# Oliveira and Fernandes 2009).
+BLIND = {"deuteranopia": ((0.367322, 0.860646, -0.227968), (0.280085, 0.672501, 0.047413),
+                          (-0.011820, 0.042940, 0.968881)),
+         "protanopia": ((0.152286, 1.052583, -0.204868), (0.114503, 0.786281, 0.099216),
+                        (-0.003882, -0.048116, 1.051998))}
+
+
+@pytest.mark.parametrize("kind", BLIND)
+def test_the_colour_blind_tell_what_is_undecided(kind):
+    """From all that may lie beside it: by its colour or by how light it is."""
+    pytest.importorskip("matplotlib")
+    from matplotlib.colors import to_rgb
+
+    def seen(colour):
+        linear = [x ** 2.2 for x in to_rgb(colour)]
+        return [max(0, sum(a * b for a, b in zip(row, linear))) ** (1 / 2.2) for row in BLIND[kind]]
+
+    for undecided, others in ((picture.COLOURS["U"], [picture.COLOURS[kind] for kind in "PS?"]),
+                              (picture.EDGES["U"], ["0.85", "1.0", *picture.DEPTHS])):
+        for other in others:
+            assert math.dist(seen(undecided), seen(other)) > 0.3
+
+
 def test_notebooks(made_up):
     pytest.importorskip("matplotlib")
+    assert made_up("P").figure()._repr_png_().startswith(b"\x89PNG")
     proof = made_up("01PSU", comments=("<script>&",), version="<b>")
     ET.fromstring(proof._repr_svg_().encode())
     text = proof._repr_html_()

@@ -1,6 +1,8 @@
 """Maps of the frontier: cells, the search, the file, the command, the picture."""
 
 import concurrent.futures
+import contextlib
+import io
 import json
 import os
 import random
@@ -9,6 +11,7 @@ import sys
 from fractions import Fraction as F
 
 import pytest
+from matplotlib.text import Text
 
 import converse
 from converse import check, frontier
@@ -109,15 +112,23 @@ def test_a_map(made):
         assert found.height(face) < F(7, 5)
         for place, radius in found.estimate[face].items():
             assert 0.3 < radius < 1.2           # the standard map's is 0.9716
-    # Nothing is open that lies above what was asked for, everything below is.
+    # Nothing is open of which a part lies above what was asked for, everything below is.
     for leaf in found.leaves():
-        low, high = found.span(leaf.cell)
-        if leaf.cell.high[0] <= low:
-            assert leaf.kind == OPEN
-        if leaf.kind == OPEN:
-            assert leaf.cell.low[0] < high
-        else:
+        low = found.target(leaf.cell)
+        assert (leaf.kind == OPEN) == (leaf.cell.high[0] <= low)
+        if leaf.kind != OPEN:
             assert leaf.cell.low[0] >= F(9, 10) * F(low)
+    assert 1 < found.reached <= 1.3
+
+
+def test_a_cell_with_a_part_above_the_ratio_is_missing(made):
+    """What straddles it counts as not yet proved."""
+    found = Map.load(made[1])
+    straddling = next(leaf for leaf in found.leaves() if leaf.kind == PROVED
+                      and leaf.cell.low[0] < found.target(leaf.cell))
+    straddling.decide(OPEN, None)
+    assert not found.complete and found.reached > 1.3
+    assert "not all of it is proved" in found.report()
 
 
 def test_the_checker_confirms_it(made):
@@ -159,7 +170,41 @@ def test_one_whole_run_or_several(coarse, tmp_path):
     assert runs > 1 and known.complete
     deeper = frontier.explore("c=0", "1.3", path=path, resume=True)
     assert deeper.complete and deeper.height(0) < found.height(0)
+    assert deeper.reached <= 1.3 < found.reached <= 1.4
     assert known.seconds < deeper.seconds
+
+
+def test_ways_are_compared_though_none_ends_in_time(monkeypatch):
+    """Where c prevails the axes that follow it are the better ones, and with a small a an x* aside
+    of the program's, whether or not a trial is long enough for a proof."""
+    monkeypatch.setattr(search, "TRIAL", 1 << 11)
+    cell = region.Cell(0, (F(99, 200), F(1, 32)), (F(99, 200), F(1, 32)))
+    ways = search._ways(region.REGIONS["b=0"][1], cell, search.core.stop_token())
+    assert [frame for frame, _ in ways] == [search.SHEAR, search.SHEAR, search.PLAIN]
+    assert ways[0][1] == ("1.270796", "0.3") and ways[1][1] == ("1.570796", "0")
+
+
+def test_progress_says_what_is_done(coarse, tmp_path, monkeypatch):
+    class Terminal(io.StringIO):
+        def isatty(self):
+            return True
+
+    def went_on(**options):
+        shares, written = [], []
+        monkeypatch.setattr(cli.Line, "_write", written.append)
+        with contextlib.closing(cli.Progress()) as progress:
+            frontier.explore("c=0", path=tmp_path / "map.json", jobs=1, progress=lambda *done: (
+                shares.append(done[0]), setattr(progress.line, "due", 0.0), progress(*done)),
+                **options)
+        return shares, "\n".join(written)
+
+    monkeypatch.setattr(sys, "stderr", Terminal())
+    shares, text = went_on(down_to="1.4")
+    assert "estimating the frontier: " in text and " of 5 directions" in text
+    assert "of the area down to 1.4 times the estimate" in text
+    assert shares[0] == 0 and shares == sorted(shares)
+    shares, text = went_on(down_to="1.2", resume=True)
+    assert shares[0] > 0.5 and "estimating" not in text     # it begins where it was left
 
 
 def test_processes(coarse, tmp_path):
@@ -321,7 +366,7 @@ def test_the_command(tmp_path):
     (("m.json",), "cannot be read"), (("--down-to", "1.1", "m.json"), "--down-to needs"),
     (("-r", "m.json"), "cannot be read"), (("--plane", "b=0", "no/m.json"), "cannot be written"),
     (("--plane", "b=0", "-g", "m.json", "m.json"), "would overwrite"),
-    (("--plane", "b=0", "-g", "m.ps", "m.json"), "is drawn as .svg"),
+    (("--plane", "b=0", "-g", "m.ps", "m.json"), ".svg or .png or .pdf"),
     (("--plane", "b=0", "-g", "no/m.svg", "m.json"), "cannot be written")])
 def test_bad_usage_is_one_line(tmp_path, arguments, words):
     status, out, err = run(*arguments, directory=tmp_path)
@@ -334,6 +379,51 @@ def test_the_report(made, capsys):
     out = capsys.readouterr().out
     assert out == Map.load(made[1]).report()
     assert "all r > " in out and "SHA-256 : " + made[0].sha256 in out
+
+
+def test_without_the_core_a_map_is_described_and_drawn(made, tmp_path):
+    code = ("import sys\nsys.modules['converse._native'] = None\n"
+            "from converse.frontier import cli\nsys.exit(cli.main())")
+
+    def run(*arguments):
+        result = subprocess.run([sys.executable, "-c", code, *map(str, arguments)], cwd=tmp_path,
+                                capture_output=True, text=True, timeout=PATIENCE)
+        return result.returncode, result.stdout, result.stderr
+
+    status, out, err = run("--plane", "b=0", "new.json")
+    assert (status, out) == (2, "") and err.startswith("converse-map: the ")
+    assert "C core" in err
+    assert err.count("\n") == 1 and not os.listdir(tmp_path)
+    status, out, err = run("-g", "map.svg", made[1])
+    assert (status, err) == (1, "")         # its estimate has fewer places than is usual
+    assert "Cells : %d proved" % made[0].count(PROVED) in out
+    assert os.listdir(tmp_path) == ["map.svg"]
+
+
+@pytest.mark.parametrize("name", ["a=b", "sphere"])
+def test_what_is_written_in_pictures_can_be_read(tmp_path, monkeypatch, name):
+    """No words are smaller than 8 points, none lie on the cells without a background."""
+    drawn = []
+    monkeypatch.setattr(figure.picture, "encode",
+                        lambda page, *_, **__: drawn.append(page) or b"")
+    found = Map.new(name, F(2))
+    for face, known in enumerate(found.estimate):
+        known.update(dict.fromkeys(found.places(face), 1.0))
+        for half in found.roots[face].cut(0):
+            half.kind = AT_ONCE if half.cell.low[0] else OPEN
+    found.draw(tmp_path / "map.svg")
+    words = [text for text in drawn[0].findobj(Text) if text.get_text()]
+    assert min(text.get_fontsize() for text in words) >= 8
+    texts = {text.get_text() for text in words}
+    if name == "a=b":
+        assert {"a = b", "c", "\u03b5 = 0.0272, the thesis, 1989"} <= texts
+        legend = drawn[0].axes[0].get_legend()
+        assert legend.get_frame_on() and legend.get_window_extent().y1 < \
+            drawn[0].axes[0].get_window_extent().y0     # it hides nothing
+    else:
+        assert "all directions with a \u2265 b \u2265 0, c \u2265 0" in texts
+        line = next(text for text in words if text.get_text() == "a = b = c/2")
+        assert line.get_bbox_patch() is not None
 
 
 @pytest.mark.parametrize("kind", ["svg", "png", "pdf"])

@@ -9,14 +9,14 @@ import os
 import random
 import re
 from fractions import Fraction
-from unittest import mock
 
 import pytest
 from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as st
 
 import converse
-from converse import InputError, Problem, Proof, check
+from checker import check
+from converse import InputError, Problem, Proof
 from converse.files import ConverseError
 from converse.problem import decimal_text
 from test_check import definite, sealed, tree_of, true_bound, with_field, with_tree
@@ -343,7 +343,8 @@ def test_any_other_claim_or_tree(certificates, tmp_path_factory, which, changes)
     path = tmp_path_factory.getbasetemp() / ("other-%d" % os.getpid())
     path.write_text(text, encoding="utf-8")
     try:
-        with mock.patch.object(check, "MAX_PIECES", min(check.MAX_PIECES, 300 * TORTURE)):
+        with pytest.MonkeyPatch.context() as patch:
+            patch.setattr(check, "MAX_PIECES", min(check.MAX_PIECES, 300 * TORTURE))
             result = check.verify(path)
     except check.Failure as error:
         one_line(error)

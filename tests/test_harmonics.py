@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 from truth import TORTURE
 
 from converse import InputError, Problem, prove, read_input
+from converse.problem import LINE
 
 A, B, C = ({"k": k, "amplitude": amplitude} for k, amplitude in (
     ([1, 0], ["0.30725", "0.30975"]), ([0, 1], ["0.30725", "0.30975"]), ([1, 1], ["0.6145", "0.6195"])))
@@ -31,7 +32,7 @@ def test_the_thesis_in_both_formats(root):
     thesis = read_input(root / "inputs" / "trig274.in")
     ours = read({"harmonics": [A, B, C], "comments": list(thesis.comments)})
     assert ours == thesis and not ours.together
-    low, high = (Fraction("11.21436") * Fraction(x) for x in ("0.0148", "0.0280"))
+    low, high = (LINE * Fraction(x) for x in ("0.0148", "0.0280"))
     line = read({"parameters": {"epsilon": ["0.0148", "0.0280"]}, "harmonics": [
         {"k": k, "amplitude": {"epsilon": factor}} for k, factor in (
             ([1, 0], "11.21436"), ([0, 1], "11.21436"), ([1, 1], "22.42872"))]})

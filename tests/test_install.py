@@ -1,6 +1,9 @@
 """The installation: whose core is under test, and what works without one."""
 
+import ast
 import json
+import os
+import re
 import shutil
 import subprocess
 import sys
@@ -9,6 +12,8 @@ from importlib import metadata
 from pathlib import Path
 
 import pytest
+
+from conftest import not_sanitized
 
 from converse import _native, prove, read_input
 
@@ -27,12 +32,20 @@ def test_the_core_is_this_environments_own(root):
         assert home.is_relative_to(Path(sys.prefix).resolve())
 
 
-def test_the_checker_needs_nothing_but_its_file(root, tmp_path):
-    """The file alone, with no other package within reach."""
-    shutil.copy(root / "converse" / "check.py", tmp_path)
-    result = subprocess.run([sys.executable, "-I", "-S", tmp_path / "check.py", "--help"],
-                            capture_output=True, text=True, cwd=tmp_path)
-    assert (result.returncode, result.stderr) == (0, "") and "converse-check" in result.stdout
+def test_make_checker_needs_nothing_but_python(root, tmp_path):
+    """From the sources of the checker alone; what it makes runs with no package within reach."""
+    (tmp_path / "converse").mkdir()
+    shutil.copy(root / "Makefile", tmp_path)
+    shutil.copytree(root / "converse" / "check", tmp_path / "converse" / "check",
+                    ignore=shutil.ignore_patterns("__pycache__"))
+    subprocess.run(["make", "checker", "PYTHON=%s -I -S" % sys.executable], cwd=tmp_path, check=True,
+                   stdout=subprocess.DEVNULL)
+    forms = sorted((tmp_path / "build").iterdir())
+    assert [form.name for form in forms] == ["converse-check.pyz", "converse_check.py"]
+    for form in forms:
+        result = subprocess.run([sys.executable, "-I", "-S", form, "--help"],
+                                capture_output=True, text=True, cwd=tmp_path / "build")
+        assert (result.returncode, result.stderr) == (0, "") and "converse-check" in result.stdout
 
 
 WITHOUT_CORE = """
@@ -61,3 +74,71 @@ def test_without_the_core_nothing_is_proved(root):
     status, out, err = without_core("converse.cli", root / "inputs" / "trig278.in")
     assert status == 2 and out == ""
     assert err.startswith("converse: ") and err.count("\n") == 1 and "core" in err
+
+
+@not_sanitized
+def test_the_core_says_nothing_of_where_it_was_built(root):
+    """No tables for a debugger, which are large, and name directories; so builds are the same."""
+    core = Path(_native.__file__).read_bytes()
+    for words in (b".debug_info", str(root).encode(), b"csrc/"):
+        assert words not in core
+
+
+@pytest.mark.parametrize("asked", ["converse.prove", "orbits.trig"])
+@pytest.mark.parametrize("sources", [True, False])
+def test_python_started_among_sources_without_core(root, tmp_path, sources, asked):
+    """An unpacked source distribution; or a package that lost its core."""
+    shutil.copytree(root / "converse", tmp_path / "converse",
+                    ignore=shutil.ignore_patterns("_native.*", "__pycache__"))
+    if sources:
+        (tmp_path / "setup.py").touch()
+    code = (                    # without the finder of an editable installation, which finds its core
+        "import sys\nsys.meta_path[:] = [each for each in sys.meta_path if 'editable' not in repr(each)]\n"
+        "import converse\nfrom converse import orbits\ntry: %s\nexcept converse.ConverseError as error: print(error)" % asked)
+    environment = {name: value for name, value in os.environ.items() if name != "PYTHONSAFEPATH"}
+    done = subprocess.run([sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True,
+                          env=environment)
+    assert (done.returncode, done.stderr, done.stdout.count("\n")) == (0, "", 1)
+    assert ("start Python elsewhere" in done.stdout and str(tmp_path) in done.stdout) == sources
+    assert ("pip install" in done.stdout) != sources
+
+
+def test_the_inputs_come_with_the_package(root, command, tmp_path):
+    """Each where it says, whether the package is installed or a clone; and it can be run."""
+    status, out, err = command("--list-inputs", cwd=tmp_path)
+    paths = {Path(line).name: Path(line) for line in out.splitlines()}
+    assert (status, err) == (0, "")
+    assert paths.keys() == {path.name for path in (root / "inputs").iterdir()}
+    for name, path in paths.items():
+        assert path.read_bytes() == (root / "inputs" / name).read_bytes()
+    status, out, _ = command(paths["trig278.in"], cwd=tmp_path)
+    assert status == 0 and "no invariant tori" in out
+
+
+def test_the_readme_of_an_index(root):
+    """There no picture is seen, and no link to a file leads anywhere."""
+    parsed = ast.parse((root / "setup.py").read_text("utf-8"))
+    parsed.body = [part for part in parsed.body if getattr(part, "name", "") == "on_an_index"]
+    names = {"re": re}
+    exec(compile(parsed, "setup.py", "exec"), names)
+    readme = (root / "README.md").read_text("utf-8")
+    text = names["on_an_index"](readme)
+    assert "](" in readme and "](" not in text and "*Figure docs/trig274.svg: " in text
+    assert {*re.findall(r"\]\(([^)#]+)", readme)} <= {
+        *re.findall(r"(?<= \()[^) ]+(?=\))|(?<=Figure )[^:]+", text)}
+
+
+@not_sanitized
+def test_manual_pages_and_completions(root, tmp_path):
+    """Of each command, where a shell and man look for them in share/."""
+    pytest.importorskip("shtab")
+    pytest.importorskip("argparse_manpage")
+    done = subprocess.run([sys.executable, root / "docs" / "manual.py", tmp_path], cwd=tmp_path,
+                          capture_output=True, text=True)
+    assert (done.returncode, done.stderr) == (0, "")
+    for entry in ("", "-check", "-chart", "-map", "-orbits"):
+        name = "converse" + entry
+        assert ".SH NAME" in (tmp_path / "man" / "man1" / (name + ".1")).read_text("utf-8")
+        for file in ("bash-completion/completions/" + name, "zsh/site-functions/_" + name,
+                     "fish/vendor_completions.d/%s.fish" % name):
+            assert name in (tmp_path / file).read_text("utf-8")

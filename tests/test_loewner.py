@@ -20,6 +20,7 @@ from truth import TORTURE, beta, mp, rng_for, uniform
 from converse import Problem, Settings, kernels, prove
 from converse.core import Search, Task, ffi, lib
 from converse.growth import MANY
+from converse.problem import LINE
 from converse.tree import ROOT, cells, complete
 
 CASES = 10000 * TORTURE
@@ -653,7 +654,7 @@ def test_factors_are_positive_and_well_conditioned(abc, star, good):
 
 def line(low, high, together=True, region=(1, 1), skew=1):
     """a = b = c/2 = 11.21436 epsilon; skew makes b differ."""
-    low, high = Fraction(low) * Fraction("11.21436"), Fraction(high) * Fraction("11.21436")
+    low, high = Fraction(low) * LINE, Fraction(high) * LINE
     c, h = (low + high) / 2, (high - low) / 2
     skew = Fraction(skew)
     return Problem.around((c, skew * c, 2 * c, Fraction(1), Fraction(1)),
@@ -688,7 +689,7 @@ def test_true_orbits_of_proved_prisms_cannot_minimize(proof):
         point += [pi * (c + e * h) for c, e, h in zip(centre[3:], v, half[3:])]
         length = proof.counts.max_NTsteps
         x = orbit(point, star, -length, length)
-        largest = 2 + 53 * mp(point[0]) / mpmath.mpf("11.21436")     # B, a little above it
+        largest = 2 + 53 * mp(point[0]) / mp(LINE)     # B, a little above it
         l = 2 / (largest + mpmath.sqrt(largest ** 2 - 4))
         assert any(falls([beta(*map(mp, point[:3]), *x[j]) for j in range(-s, length + 1)], l)
                    for s in range(length, -1, -1)), point

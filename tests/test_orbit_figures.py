@@ -18,6 +18,7 @@ from converse.orbits import farey
 pytest.importorskip("matplotlib")
 
 from matplotlib.figure import Figure  # noqa: E402
+from matplotlib.text import Text  # noqa: E402
 
 from converse.orbits import figures  # noqa: E402
 
@@ -62,10 +63,10 @@ def title(axes):
 
 
 def test_all_of_them_are_there():
-    """Every computed figure of the thesis's first two chapters and of Appendix A."""
+    """Every figure of the thesis's second chapter and of Appendix A, and the standard map's."""
     assert set(figures.FIGURES) == {
-        "std-demo", "billiards", "cantorus", "pert-maps", "Lyaps", "smooth", "deev", "hed_st",
-        "tree", "trimed", "tri", *("orb-" + name for name in (
+        "std-demo", "cyl-def", "twist", "billiards", "cantorus", "pert-maps", "Lyaps", "smooth",
+        "hed1", "hed2", "deev", "hed_st", "tree", "trimed", "tri", *("orb-" + name for name in (
             "spnf1", "spnf2", "aunf1", "aunf2", "sphd1", "sphd2", "auhd1", "auhd2", "spff1",
             "spff2"))}
     maps = {"n": "trig", "h": "poly", "f": "ff"}
@@ -75,7 +76,7 @@ def test_all_of_them_are_there():
         assert (q, p0) == {"sp": (2513, 1432), "au": (3770, 377)}[kind[:2]]
         assert first_known == (kind in ("spnf1", "spff1")) and (not first_known
                                                                or sizes[0] == 0.0075)
-        assert set(sizes) <= set(figures.STEPS) and list(sizes) == sorted(sizes)
+        assert set(sizes) <= set(figures.FINE) and list(sizes) == sorted(sizes)
     assert all(float("%.4f" % eps) == eps for eps in figures.STEPS)     # that is what is written
     assert set(figures.SMOOTH) <= set(figures.STEPS)
 
@@ -92,7 +93,7 @@ def test_projections(name, drawn, families):
         state = families.at(potential, vector, eps)
         assert np.array_equal(data(left), state.x) and np.array_equal(data(right), state.momenta)
         assert left.get_xlim() == left.get_ylim() == (0, 1)
-        for panel, label in (left, r"$\theta_%d$"), (right, "$p_%d$"):
+        for panel, label in (left, "$x_%d$"), (right, "$p_%d$"):
             assert [panel.get_xlabel(), panel.get_ylabel()] == [label % 0, label % 1]
             assert panel.get_aspect() == 1
         for axis, limits in enumerate((right.get_xlim(), right.get_ylim())):
@@ -100,18 +101,28 @@ def test_projections(name, drawn, families):
             assert limits[0] < momenta.min() <= momenta.max() < limits[1]
             assert data(right, 1)[0][axis] == pytest.approx(vector[0][axis] / vector[1])
         head = title(left)
-        assert head.startswith("(%s)  eps = %r, (%d, %d)/%d: %s" % (
+        assert head.startswith("(%s)  ε = %r, (%d, %d)/%d: %s" % (
             "abc"[number], eps, *vector[0], vector[1], state.label))
         for label, value in (("shadow", state.shadow), ("grad size", state.grad_size)):
             number = re.search(label + " (\\S+?)[,\n]", head)[1]
             assert float(number) == pytest.approx(value, rel=0.5)       # it has one digit
-        said = re.search("exponents (.*), (.*);", head)
+        said = re.search("exponents (.*), (.*)\n", head)
         assert [float(x) for x in said.groups()] == pytest.approx(state.exponents, abs=1e-4)
         assert ("arbitrary" in head) == (state.undetermined > 0)
         away = np.hypot(*(state.momenta - state.rotation).T).max()
         assert float(re.search(r"up to (\d\.\d{3})", head)[1]) == pytest.approx(away, abs=1e-3)
     assert figures.NAMES[potential.name] in words and "nothing is proved" in words
-    assert ("The first eps is the thesis's" in words) == first_known and "chosen here" in words
+    assert ("The first ε is the thesis's" in words) == first_known and "chosen here" in words
+
+
+def test_the_curves_that_the_text_names(monkeypatch):
+    """Three of type (1, 1), up to a sign, in orb-spnf1b; seven of type (0, 1) in orb-sphd2b."""
+    monkeypatch.undo()
+    for name, words in (("orb-spnf1", "3 curves of type (1, -1)"),
+                        ("orb-sphd2", "7 curves of type (0, 1)")):
+        potential, vector, sizes, _ = figures.ORBITS[name]
+        assert len(sizes) == 2 and name in figures.TEXT
+        assert figures.shape(orbits.follow(potential, *vector, sizes[1:])[0]).startswith(words)
 
 
 def test_points_that_doubles_cannot_tell_apart():
@@ -134,8 +145,7 @@ def test_shapes_in_words():
     potential = orbits.trig
     p, q, eps = (1432, 1897), 2513, 0.025
     state = orbits.follow(potential, p, q, [eps])[-1]
-    assert re.fullmatch(r"curves of type \(1, -1\) at links up to 0\.\d+: 3 clusters on "
-                        r"\$x_1\$ = const", figures.shape(state))
+    assert re.fullmatch(r"3 curves of type \(1, -1\) at links up to 0\.\d+", figures.shape(state))
     assert figures.shape(orbits.straight(potential, (500, 701), 5001)) == "curves not looked for"
 
 
@@ -222,7 +232,7 @@ def test_exponents(drawn, families):
             line = panel.get_lines()[k]
             assert line.get_label() == name
             assert np.array_equal(data(panel, k), np.stack([family.eps, family.exponents[:, k]], 1))
-        said = float(re.search(r"first > 0.003 from eps = (\S+) on", panel.get_title())[1])
+        said = float(re.search(r"first > 0.003 from ε = (\S+) on", panel.get_title())[1])
         first = family.exponents[:, 0]
         assert (first[family.eps < said] <= 0.003).all() and first[family.eps == said] > 0.003
     assert "Labels of the states: minimum (68)." in words and "chosen here" in words
@@ -274,6 +284,9 @@ def test_deviations(drawn, families):
         assert panel.get_title() == figures.vector_words(*vector)
         assert panel.get_lines()[-1].get_ydata()[0] == pytest.approx(math.sqrt(0.5))
     assert "%.3f at most" % largest in words and "chosen here" in words
+    dotted = max(max(line.get_ydata()) for panel in figure.axes for line in panel.get_lines()
+                 if line.get_linestyle() == ":")
+    assert ("that is not so" in words) == (dotted > 0.5 ** 0.5)
     arbitrary = sum(state.undetermined > 0 for potential in (orbits.trig, orbits.poly, orbits.ff)
                     for vector in (SPIRAL, TENTH)
                     for state in families(potential, vector, figures.FINE))
@@ -289,7 +302,7 @@ def test_sequence(drawn, families):
         assert figures.vector_words(mediants[q], q) in title(left) and state.label in title(left)
         assert np.array_equal(data(left), state.x) and np.array_equal(data(right), state.momenta)
     assert len(figure.axes) == 8 and len({panel.get_xlim() for panel in figure.axes[1::2]}) == 1
-    assert "eps = 0.02" in words and "chosen here" in words
+    assert "ε = 0.02" in words and "chosen here" in words
 
 
 def test_sequence_of_the_thesis(monkeypatch):
@@ -379,14 +392,100 @@ def test_states_picture():
     figures.phase_planes(figure, family)
     for panel, state in zip(figure.axes, family):
         assert np.array_equal(data(panel), np.column_stack([state.x, state.momenta]))
-        assert "3/8: minimum" in title(panel) and "eps = %r" % state.eps in title(panel)
+        assert "3/8: minimum" in title(panel) and "ε = %r" % state.eps in title(panel)
     saddle, _ = orbits.newton(orbits.straight(orbits.trig, (2, 3), 5, (0.1489578, 0.1489578)), 0.01)
-    assert "saddle" in figures.quality(saddle)
+    assert figures.kind(saddle) == "saddle"
     assert figures.exponents_words(saddle) == "exponents unknown, unknown"
     assert figures.states_picture([saddle]).startswith(b"<?xml")
     for number in 0, figures.ROWS + 1:
         with pytest.raises(ValueError, match="choose fewer eps"):
             figures.states_picture([saddle] * number)
+
+
+def fonts_and_labels(figure):
+    """Of a figure that was drawn: the sizes of its words; and whether each column of panels names
+    what is to the right, and each row what is upwards."""
+    sizes = {text.get_size() for text in figure.findobj(Text)
+             if text.get_visible() and text.get_text().strip()}
+    panels = [axes for axes in figure.axes if axes.axison and axes.get_xticks().size]
+    places = [axes.get_position() for axes in panels]
+
+    def named(label, side):
+        return all(any(label(other) and round(getattr(there, side) - getattr(here, side), 3) == 0
+                       for other, there in zip(panels, places)) for here in places)
+
+    return sizes, named(lambda axes: axes.get_xlabel(), "x0"), named(
+        lambda axes: axes.get_ylabel(), "y0")
+
+
+@pytest.fixture
+def seen(monkeypatch):
+    """The figures that are written from here on."""
+    seen, encode = [], figures.picture.encode
+    monkeypatch.setattr(figures.picture, "encode", lambda figure, kind, **options: (
+        seen.append(figure), encode(figure, kind, **options))[1])
+    return seen
+
+
+@pytest.mark.parametrize("name", figures.FIGURES)
+def test_readable(name, families, seen):
+    """No letters below eight points, and each axis has a name."""
+    with_words = figures.draw(name, "png", families)
+    sizes, right, upwards = fonts_and_labels(seen[0])
+    assert min(sizes) >= 8 and right and upwards
+    words = [text.get_text() for text in seen[0].texts if text.get_position()[1] == 0]
+    assert words and not re.search(r"\beps\b|theta", "".join(words))
+    without = figures.draw(name, "png", families, caption=False)
+    assert not seen[1].texts and without != with_words
+
+
+def test_a_state_draws_itself(monkeypatch, seen):
+    for potential, vector in (orbits.trig, SPIRAL), (orbits.standard, ((3,), 8)):
+        state = orbits.follow(potential, *vector, [0.01])[0]
+        assert state._repr_png_().startswith(START["png"])
+        sizes, right, upwards = fonts_and_labels(seen[-1])
+        assert min(sizes) >= 8 and right and upwards and not seen[-1].texts
+    monkeypatch.setitem(sys.modules, "matplotlib", None)
+    assert state._repr_png_() is None
+
+
+def test_twist():
+    """To the right the more, the larger p is; areas stay."""
+    p = np.linspace(-1, 2, 500)
+    for x in 0.0, 0.3, 0.77:
+        assert (np.diff(figures.twisted(x, p)[0]) > 0).all()
+        h = 1e-6
+        dx, dp = ((np.array(figures.twisted(x + h * a, p + h * b))
+                   - figures.twisted(x - h * a, p - h * b)) / (2 * h) for a, b in ((1, 0), (0, 1)))
+        assert dx[0] * dp[1] - dx[1] * dp[0] == pytest.approx(np.ones(len(p)), abs=1e-8)
+
+
+@pytest.mark.parametrize("block", [(1, 2, 1), (2, 4, 2), (3, 1, 2)])
+def test_hedlunds_geodesics(block):
+    """They close up, run in tunnels and leap half a unit, three times, whatever the type is."""
+    corners = np.array(figures.hedlund_geodesic(*block))
+    assert (corners[-1] - corners[0] == block).all()
+    legs = np.diff(corners, axis=0)
+    assert (np.count_nonzero(legs, axis=1) <= 1).all()
+    assert np.abs(legs[1::2]).sum(1) == pytest.approx([0.5] * 3)
+    for number, (line, fixed) in enumerate((((1, 2), (0, 0)), ((0, 2), (0, 0.5)),
+                                            ((0, 1), (0.5, 0.5)), ((1, 2), (0, 0)))):
+        for corner in corners[2 * number:2 * number + 2]:
+            assert tuple(corner[list(line)] % 1) == fixed
+        assert not legs[2 * number][list(line)].any()
+    assert figures.hedlund_length(corners) == pytest.approx(1.5 + (sum(block) - 1.5) / 100)
+
+
+def test_the_drawings_of_hedlunds_examples(drawn):
+    one, two = drawn("hed1")[0].axes
+    assert [panel.get_title() for panel in (one, two)] == ["type (1, 2)", "type (2, 4)"]
+    for panel, times in ((one, 1), (two, 2)):           # crossings of both sides of the square
+        lines = [data(panel, k) for k in range(len(panel.get_lines()))]
+        assert all((b - a)[1] == 2 * (b - a)[0] for a, b in lines)
+        assert sum(0 <= a[0] < 1 for a, _ in lines) == 2 * times
+        assert sum(a[0] < 1 <= b[0] for a, b in lines) == times
+    words = drawn("hed2")[1]
+    assert "1.565" in words and "3.05" in words
 
 
 def test_bad_orders(tmp_path, monkeypatch):
@@ -400,6 +499,9 @@ def test_bad_orders(tmp_path, monkeypatch):
     (tmp_path / "tri.svg").mkdir()
     with pytest.raises(ConverseError, match="tri.svg"):
         figures.figures(tmp_path, ["tree", "tri"])
+    (tmp_path / "trimed.svg").write_text("<svg>somebody else's</svg>")
+    with pytest.raises(ConverseError, match="trimed.svg.: exists and is no figure of this program"):
+        figures.figures(tmp_path, ["tree", "trimed"])
     assert not (tmp_path / "tree.svg").exists()         # before anything is drawn
     monkeypatch.setitem(sys.modules, "matplotlib", None)
     with pytest.raises(ConverseError, match="pip install matplotlib"):
@@ -426,15 +528,16 @@ def test_the_thesis(monkeypatch, tmp_path):
         words = fill(figure, families)
         said[name] = "\n".join([title(panel) for panel in figure.axes] + [words])
     assert "exponents 0.0000, 0.0000" in said["orb-spnf1"]          # at 0.0075
-    assert "curves of type (1, -1)" in said["orb-spnf1"] and ": 3 clusters" in said["orb-spnf1"]
+    assert "3 curves of type (1, -1)" in said["orb-spnf1"]
     assert said["orb-sphd1"].count("curves of type (0, 1)") == 2
-    assert ": 7 clusters on $x_1$" in said["orb-sphd2"]
-    assert "curves of type (1, -4)" in said["orb-auhd2"] and ": 4 clusters" in said["orb-auhd2"]
+    assert said["orb-sphd2"].count("7 curves of type (0, 1)") == 2
+    assert "1 curve of type (1, -4)" in said["orb-auhd2"]
     assert "curves of type (1, -1)" in said["orb-spff1"]            # already at 0.0075
     near, far = (float(re.search(r"up to (\d\.\d{3})", said[name])[1])
                  for name in ("orb-sphd1", "orb-spnf1"))
     assert near < far / 2                       # poly's momenta stay near; at 0.0025 and 0.0075
-    assert "first > 0.003 from eps = 0.01 on" in said["Lyaps"]
+    assert "first > 0.003 from ε = 0.01 on" in said["Lyaps"]
     assert float(re.search(r"perturbation, (\S+) at most", said["deev"])[1]) < 1 / math.sqrt(2)
+    assert "not so: polynomial, (1432, 1897)/2513, ε = 0.04: 0.82." in said["deev"]
     figures.figures(tmp_path)
     assert len(os.listdir(tmp_path)) == len(figures.FIGURES)

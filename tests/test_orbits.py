@@ -1,7 +1,10 @@
 """The core of the orbits: potentials, the band of the Hessian, states, continuation."""
 
+import copy
 import io
 import pickle
+import re
+from dataclasses import replace
 from fractions import Fraction
 
 import mpmath
@@ -10,6 +13,7 @@ import pytest
 
 from converse import orbits
 from converse._native import lib
+from converse.orbits import solver
 from converse.orbits.potential import address
 
 POTENTIALS = [orbits.trig, orbits.poly, orbits.ff, orbits.froeschle, orbits.standard]
@@ -153,13 +157,183 @@ def test_one_s_own_potentials():
         assert np.abs(a.u - b.u).max() < 1e-12 and a.label == b.label == "minimum"
 
 
+class Cosine:
+    def value(self, x):
+        return np.cos(2 * np.pi * x[:, 0])
+
+    def gradient(self, x):
+        return -2 * np.pi * np.sin(2 * np.pi * x)
+
+    def hessian(self, x):
+        return -4 * np.pi ** 2 * np.cos(2 * np.pi * x)[:, :, None]
+
+
+AT_REST = orbits.straight(orbits.trig, (5, 7), 9)
+
+
+def scaled(enclosure):
+    return orbits.Fourier({(1,): (-1, 0), (2,): (0, Fraction(1, 7))}, "mine",
+                          scale_enclosure=enclosure)
+
+
+def third(digits):
+    low = Fraction(10 ** digits // 3, 10 ** digits)
+    return low, low + Fraction(1, 10 ** digits)
+
+
+def ways(thing):
+    """What becomes of a thing that is copied or sent to another process."""
+    return copy.copy(thing), copy.deepcopy(thing), pickle.loads(pickle.dumps(thing))
+
+
+def test_a_potential_stays_what_it_is():
+    """Copied, and in another process, V is the same: start, bounds and scale with it."""
+    x = np.random.default_rng(4).uniform(size=(50, 1))
+    for mine in (scaled(third), orbits.Fourier({(1,): (-1, 0)}, "mine", (0.25,)), orbits.standard,
+                 orbits.FromPython(Cosine(), 1, "mine", (0.5,), 40.0, 250.0)):
+        state = orbits.straight(mine, (2,), 5).relax(0.1)
+        for again in ways(mine):
+            for name in ("name", "n", "start", "formula", "curvature", "lipschitz"):
+                assert getattr(again, name) == getattr(mine, name), name
+            assert all((a == b).all() for a, b in zip(again.evaluate(x), mine.evaluate(x)))
+        for again in ways(state):
+            assert again.action == state.action and again.label == state.label == "minimum"
+    unnamed = scaled(lambda digits: (Fraction(1, 3),) * 2)
+    assert copy.copy(unnamed).scale == copy.deepcopy(unnamed).scale == 1 / 3
+    with pytest.raises((pickle.PicklingError, AttributeError), match="lambda"):
+        pickle.dumps(unnamed)
+
+
+def test_a_potential_cannot_be_changed():
+    """Proofs believe its bounds."""
+    for mine in (scaled(third), orbits.trig, orbits.poly, orbits.FromPython(Cosine(), 1, "mine")):
+        for name in ("name", "n", "start", "formula", "curvature", "lipschitz", "native", "terms",
+                     "scale", "scale_enclosure", "source", "other"):
+            with pytest.raises(AttributeError, match="cannot be changed"):
+                setattr(mine, name, 1.0)
+        with pytest.raises(AttributeError, match="cannot be changed"):
+            del mine.curvature
+    with pytest.raises(TypeError):
+        orbits.trig.terms[1, 0] = (1, 0)
+
+
+def test_a_scale_is_the_same_whenever_it_is_asked_for():
+    """A scale_enclosure that says another one later would have a theorem of another V."""
+    scale = [Fraction(1, 3)]
+    mine = scaled(lambda digits: (scale[0], scale[0]))
+    state = orbits.straight(mine, (2,), 5).relax(0.1)
+    assert orbits.prove(state).report() == orbits.prove(state).report()
+    scale[0] += Fraction(1, 10 ** 14)
+    with pytest.raises(ValueError, match="contradicts"):
+        orbits.prove(state)
+
+
+def test_small_scales_are_as_exact_as_others():
+    """The double of a scale has all its digits, however small it is."""
+    def small(digits):
+        low = Fraction(10 ** digits // (3 * 10 ** 25), 10 ** digits)
+        return low, low + Fraction(1, 10 ** digits)
+
+    assert scaled(small).scale == pytest.approx(1e-25 / 3, rel=1e-15)
+
+
+def test_formulas_say_what_v_is():
+    """The words of a formula, read as Python, give V."""
+    def value(potential, at):
+        words = potential.formula.partition(", ")[0]
+        names = {"pi": mpmath.pi, "cos": mpmath.cos, "sin": mpmath.sin, "x": at[0],
+                 "s": getattr(potential, "scale", None), **{"x%d" % i: x for i, x in enumerate(at)}}
+        if potential is orbits.poly:
+            for letter, x in zip("ab", at):
+                names[letter] = 0.25 - (x % 1 - 0.5) ** 2
+        names["c"] = lambda x: 1 - 24 * abs(x - round(x)) ** 2 + 32 * abs(x - round(x)) ** 3
+        return eval(re.sub(r"([\da-z)]) (?=[\da-z(])", r"\1*", words).replace("^", "**"), names)
+
+    odd = orbits.Fourier({(0, 0): (Fraction(1, 3), 5), (3, -2): (0.25, -0.5), (-1, 0): (2, 0)})
+    rng = np.random.default_rng(5)
+    for potential in (orbits.trig, orbits.poly, orbits.ff, orbits.froeschle, orbits.standard, odd,
+                      scaled(third), scaled(lambda digits: (Fraction(2, 3),) * 2)):
+        for at in rng.uniform(size=(5, potential.n)):
+            assert float(value(potential, at)) == pytest.approx(
+                potential.evaluate([at])[0][0], abs=1e-14), potential.formula
+    assert orbits.trig.formula.endswith(", s = 8 sqrt 2/sqrt(207 + 33 sqrt 33)")
+    assert orbits.standard.formula == "s (-cos(2 pi x)), s = 1/(4 pi^2)"
+    assert scaled(third).formula.endswith(
+        "s from 0.33333333333333333333 to 0.33333333333333333334")
+
+
 @pytest.mark.parametrize("make, word", [
     (lambda: orbits.Fourier({}), "terms"),
     (lambda: orbits.Fourier({(1,): (1, 0), (1, 1): (1, 0)}), "all with one or all with two"),
     (lambda: orbits.Fourier({(1, 2): (float("nan"), 0)}), "finite"),
     (lambda: orbits.Fourier({(1, 10 ** 9): (1, 0)}), "1000"),
     (lambda: orbits.Fourier({(1, 2): (1e308, 0)}), "too large"),
+    (lambda: orbits.Fourier({(0.5,): (1, 0)}), "whole"),
+    (lambda: orbits.Fourier({"12": (1, 0)}), "whole"),
+    (lambda: orbits.Fourier({(1,): ("1/0", 0)}), "finite"),
+    (lambda: orbits.Fourier({(1,): (1, 0)}, start=0.5), "1 finite"),
+    (lambda: orbits.Fourier({(1,): (1, 0)}, start=()), "1 finite"),
+    (lambda: orbits.Fourier({(1,): (1, 0)}, start=(float("nan"),)), "1 finite"),
+    (lambda: orbits.Fourier({(1,): (1, 0)}, "two\nlines"), "printable"),
+    (lambda: orbits.Fourier({(1,): (1, 0)}, ""), "printable"),
+    (lambda: orbits.Fourier({(1,): (1, 0)}, 3), "printable"),
+    (lambda: orbits.Fourier({(1, 0): (1, 0)}, "trig"), "the name trig is taken"),
+    (lambda: orbits.FromPython(Cosine(), 1, "standard"), "the name standard is taken"),
+    (lambda: scaled(lambda digits: 3), "scale_enclosure"),
+    (lambda: scaled(lambda digits: (Fraction(1, 3), Fraction(1, 4))), "scale_enclosure"),
+    (lambda: scaled(lambda digits: (Fraction(333, 1000), Fraction(334, 1000))), "scale_enclosure"),
+    (lambda: scaled(lambda digits: (Fraction(0), Fraction(1, 10 ** digits))), "told from zero"),
+    (lambda: orbits.FromPython(Cosine(), 1, curvature=float("nan")), "curvature"),
+    (lambda: orbits.FromPython(Cosine(), 1, lipschitz=-1), "curvature"),
+    (lambda: orbits.FromPython(Cosine(), 3), "one or two"),
     (lambda: orbits.FromPython(object(), 2), "value"),
+    (lambda: orbits.FromPython(Cosine(), "a"), "one or two"),
+    (lambda: orbits.follow(orbits.trig, (5, 7), 9, [float("nan")]), "eps: finite"),
+    (lambda: orbits.follow(orbits.trig, (5, 7), 9, [0.01, float("inf")]), "eps: finite"),
+    (lambda: orbits.follow(orbits.trig, (5, 7), 9, 0.01), "eps: finite numbers, as a list"),
+    (lambda: orbits.follow(orbits.trig, (5, 7), 9, ["a"]), "eps: finite"),
+    (lambda: orbits.follow(orbits.trig, (5, 7), 9, [1e6]), "more than 10000 steps of 0.0025"),
+    (lambda: orbits.follow(orbits.trig, (5, 7), 9, [20.0, -20.0]), "eps -20.0 is more than"),
+    (lambda: orbits.search(orbits.trig, (5, 7), 9, 1e6), "more than 10000 steps"),
+    (lambda: orbits.follow("trig", (5, 7), 9, [0.01]), "potential is one of"),
+    (lambda: orbits.follow(orbits.trig, (5, 7), 9, [0.01], 3), "progress is a function"),
+    (lambda: orbits.follow(orbits.trig, 5, 9, [0.01]), "whole"),
+    (lambda: orbits.follow(orbits.trig, (5, 7), "9", [0.01]), "whole"),
+    (lambda: orbits.follow(orbits.trig, (5, 7), 10 ** 7 + 1, [0.01]), "from 1 to 10000000"),
+    (lambda: orbits.follow(orbits.trig, (float("inf"), 7), 9, [0.01]), "whole"),
+    (lambda: orbits.straight(orbits.standard, (1,), 3, 0.0), "origin"),
+    (lambda: orbits.straight(orbits.standard, (1,), 3, []), "origin"),
+    (lambda: orbits.straight(orbits.standard, (1,), 3, (1e17,)), "origin"),     # x_0 = x_1 = x_2
+    (lambda: orbits.State("trig", (1, 1), 2, 0.1, np.zeros((2, 2)), (0, 0)), "potential is one of"),
+    (lambda: orbits.State(orbits.trig, (1, 1), 2, 0.1, "a", (0, 0)), "rows"),
+    (lambda: orbits.State(orbits.trig, (1, 1), 2, 0.1, np.zeros((2, 2)) * 1j, (0, 0)), "rows"),
+    (lambda: orbits.State(orbits.trig, (1, 1), 2, 0.1, np.zeros((2, 2)), (0, 0), -3), "searches"),
+    (lambda: orbits.prove(3), "a state is expected"), (lambda: orbits.flow(3), "a state is expected"),
+    (lambda: orbits.newton(3), "a state is expected"),
+    (lambda: orbits.enclosed_action(3), "a state is expected"),
+    (lambda: orbits.gram_schmidt_exponents(3), "a state is expected"),
+    (lambda: orbits.gram_schmidt_exponents(AT_REST, rounds=0), "rounds"),
+    (lambda: orbits.gram_schmidt_exponents(AT_REST, seed=-1), "seed"),
+    (lambda: orbits.prelude("trig"), "potential is one of"),
+    (lambda: orbits.floor(orbits.standard, 0.5, 0.5), "rotation: a list"),
+    (lambda: orbits.floor("standard", 0.5, [0.5]), "potential is one of"),
+    (lambda: orbits.least_action("trig", (5, 7), 9, 0.05), "potential is one of"),
+    (lambda: orbits.onset("trig", (5, 7), 9), "potential is one of"),
+    (lambda: orbits.onset(orbits.trig, (5, 7), 0), "whole"),
+    (lambda: orbits.onset(orbits.trig, (5, 7), 9, step=1e-300), "at most"),
+    (lambda: orbits.onset(orbits.trig, (5, 7), 9, exponent="a"), "exponent: finite"),
+    (lambda: orbits.onset(orbits.trig, (5, 7), 9, step="a"), "step, width and top: finite"),
+    (lambda: orbits.parameters("a"), "eps: finite"),
+    (lambda: AT_REST.relax("a"), "eps and tol: finite"),
+    (lambda: AT_REST.relax(0.01, tol=float("nan")), "eps and tol: finite"),
+    (lambda: AT_REST.relax(0.01, max_steps=1.5), "max_steps"),
+    (lambda: AT_REST.repeat(0), "run through"), (lambda: AT_REST.repeat(1.5), "run through"),
+    (lambda: AT_REST.repeat(10 ** 9), "run through"), (lambda: AT_REST.pairs(-1), "count"),
+    (lambda: AT_REST.below("a"), "shift: finite"),
+    (lambda: orbits.flow(AT_REST, dt=float("nan")), "grad_size and dt: finite"),
+    (lambda: orbits.flow(AT_REST, max_steps="a"), "max_steps"),
+    (lambda: orbits.newton(AT_REST, max_steps=-1), "max_steps"),
+    (lambda: orbits.newton(AT_REST, tol="a"), "tol: finite"),
     (lambda: orbits.trig.evaluate([1, 2]), "shape"),
     (lambda: orbits.straight(orbits.trig, (1, 2), 0), "whole"),
     (lambda: orbits.straight(orbits.trig, (1, 2.5), 3), "whole"),
@@ -337,20 +511,75 @@ def test_labels():
     assert flat.label == "minimum" and flat.undetermined == 2
 
 
+@pytest.mark.parametrize("n, numbers", [(1, 50), (2, 1), (2, 2), (2, 3), (2, 50), (2, 3000)])
+def test_the_best_line(n, numbers):
+    """No line is nearer; that through any point, and that of the start, are no exceptions; what
+    counts is not the box, whose half diagonal may be twice that of the start's."""
+    potential, rng = orbits.trig if n == 2 else orbits.standard, np.random.default_rng(numbers)
+    for scale in 1e-9, 1.0, 30.0:
+        u = scale * rng.normal(size=(numbers, n))
+        deviation = orbits.State(potential, (0,) * n, numbers, 0.0, u, (0.0,) * n).deviation
+        def away(line):
+            return np.sqrt(((u - line) ** 2).sum(1)).max()
+
+        at = u[0]                                       # a step towards the farthest, ever smaller
+        for k in range(1, 20000):
+            at = at + (u[((u - at) ** 2).sum(1).argmax()] - at) / (k + 1)
+        assert deviation.from_best <= min(away(at), deviation.from_start, deviation.from_point)
+        assert deviation.from_best == pytest.approx(away(at), rel=5e-3)
+
+
+def test_the_best_line_of_known_points():
+    corners = [[0, 0], [1, 0], [0, 1], [1, 1], [0.5, 0.5], [1, 0]]
+    for u, radius in ((corners, 0.5 ** 0.5), ([[0, 0], [4, 0], [2, 1]], 2.0), ([[3, 4]] * 5, 0.0),
+                      ([[1, 0], [-0.6, 0.8], [-0.6, -0.8], [0.2, 0.3]], 1.0),
+                      ([[k / 9, k / 9] for k in range(10)], 0.5 ** 0.5)):
+        state = orbits.State(orbits.trig, (0, 0), len(u), 0.0, u, (0.0, 0.0))
+        assert state.deviation.from_best == pytest.approx(radius, abs=1e-12)
+    # An orbit of which half the extent, by both coordinates, is more than its displacements are.
+    state = orbits.follow(orbits.poly, (28, 37), 49, [0.02])[0]
+    low, high = state.u.min(0), state.u.max(0)
+    assert state.deviation.from_best < np.hypot(*(high - low)) / 2
+
+
+def test_continuation_knows_no_unit_of_eps():
+    """1000 V and eps/1000 are the same map: the same minima, found in as many steps; and where the
+    curvature is not known it is estimated."""
+    terms = {(1, 0): (0, -0.3), (0, 1): (0, -0.3), (1, 1): (0, -0.6)}
+    families = []
+    for factor in (Fraction(1, 1000), 1, 1000):
+        mine = orbits.Fourier({k: (factor * Fraction(c), factor * Fraction(s))
+                               for k, (c, s) in terms.items()}, "mine", (0.85, 0.85))
+        taken = []
+        relax = orbits.State.relax
+        with pytest.MonkeyPatch.context() as patch:
+            patch.setattr(orbits.State, "relax", lambda state, eps: (
+                taken.append(eps), relax(state, eps))[1])
+            families.append(orbits.follow(mine, (65, 86), 114, [0.02 / factor, 0.06 / factor]))
+        assert len(taken) == 24
+    for family in families:
+        for state, other in zip(family, families[1]):
+            assert np.abs(state.u - other.u).max() < 1e-9
+    assert [solver.step_of(getattr(orbits, name)) for name in ("trig", "poly", "ff", "standard")] \
+        == [0.0025, 0.0025, 0.0025, 0.25]
+    assert solver.step_of(orbits.FromPython(Cosine(), 1)) == 0.005
+    assert solver.step_of(orbits.Fourier({(0,): (1, 0)}, "flat")) > 1e200
+
+
 def test_states_are_values(tmp_path):
     state = orbits.straight(orbits.trig, (5, 7), 9).relax(0.03)
-    again = pickle.loads(pickle.dumps(state))
-    assert again.potential is orbits.trig and (again.u == state.u).all() and again.eps == 0.03
-    with pytest.raises(ValueError):
-        state.u[0, 0] = 1
-    double = state.repeat(2)
+    for again in (state, *ways(state)):
+        assert again.potential is orbits.trig and (again.u == state.u).all() and again.eps == 0.03
+        for name in ("u", "base", "momenta", "gradient", "blocks", "exponents"):
+            with pytest.raises(ValueError, match="read-only"):
+                getattr(again, name)[0] = 1
+    double = replace(state, searches=20).repeat(2)
+    assert double.label == "minimum"                    # no search was for that type
     assert (double.p, double.q) == ((10, 14), 18)
     assert double.action == pytest.approx(state.action, abs=1e-15)
     assert np.allclose(double.exponents, state.exponents, atol=1e-12)
-    lengths = [np.hypot(*(state.u - line).T).max()
-               for line in (state.u[0], 0, (state.u.min(0) + state.u.max(0)) / 2)]
-    assert state.deviation[:2] == pytest.approx(lengths[:2], abs=1e-15)
-    assert lengths[2] <= state.deviation.from_best <= min(lengths) * 2 ** 0.5
+    lengths = [np.hypot(*(state.u - line).T).max() for line in (state.u[0], 0)]
+    assert state.deviation[:2] == pytest.approx(lengths, abs=1e-15)
     family = orbits.follow(orbits.trig, (5, 7), 9, [0.01, 0.02])
     text = io.StringIO()
     family.write_csv(text)

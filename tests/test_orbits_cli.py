@@ -5,13 +5,15 @@ import re
 import signal
 import subprocess
 import sys
+from fractions import Fraction
 
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
 
 from converse import orbits
 from converse.files import ConverseError
-from converse.orbits import cli, farey
+from converse.orbits import cli, farey, figures
 from converse.orbits.sweep import LOST, ONSET_COLUMNS
 from moments import PATIENCE, SWEEP_HELD, wait_until
 
@@ -97,6 +99,15 @@ def test_what_is_not_found_ends_with_status_1(run, monkeypatch):
     assert out.count("State : minimum") == 1 and out.endswith("\nNot found : no orbit\n")
 
 
+@pytest.mark.parametrize("kind, eps", [("-12,16/21", "0.02"), ("(-12, -16)/21", "-0.02:0:0.01"),
+                                       ("12,16/21", "-.02")])
+def test_what_begins_with_a_minus_is_no_option(run, kind, eps):
+    status, out, err = run("find", "trig", kind, eps)
+    assert (status, err) == (0, "") and kind.strip("()").split(",")[0] in out
+    low = float(eps.split(":")[0])
+    assert "\neps : %r\n" % low in out
+
+
 def test_table_and_figure(run, tmp_path):
     table, picture = tmp_path / "table.csv", tmp_path / "figure.svg"
     assert run("find", "trig", SMALL, "0.01:0.02:0.01", "--csv", table, "-g", picture)[0] == 0
@@ -104,9 +115,36 @@ def test_table_and_figure(run, tmp_path):
     orbits.follow(orbits.trig, (65, 86), 114, [0.01, 0.02]).write_csv(text)
     assert table.read_text() == text.getvalue()
     assert "<svg" in picture.read_text()
+    with_words = picture.read_text()
+    assert run("find", "trig", SMALL, "0.01:0.02:0.01", "--no-caption", "-g", picture)[0] == 0
+    assert "Minimum: a local one" in with_words and "Minimum: a" not in picture.read_text()
     other = tmp_path / "figure.PNG"
     assert run("find", "standard", "1/3", "0.5", "--graphics=%s" % other)[0] == 0
     assert other.read_bytes().startswith(b"\x89PNG")
+
+
+def test_the_picture_of_what_is_proved(run, tmp_path, monkeypatch):
+    """The proved points are drawn, and called so; what is not proved, is not."""
+    shown, said = [], []
+    planes = figures.phase_planes
+    monkeypatch.setattr(figures, "phase_planes", lambda figure, states: (
+        shown.extend(states), planes(figure, states)))
+    monkeypatch.setattr(figures, "_page", lambda width, height, kind, fill, *rest: (
+        said.append(fill(Figure())), b"")[1])
+    status, out, _ = run("find", "standard", "1/3", "0.5", "0.9", "--prove", "-g", tmp_path / "x.svg")
+    assert status == 0 and out.count("Proved, with") == 2
+    proofs = [orbits.prove(s) for s in orbits.follow(orbits.standard, (1,), 3, [0.5, 0.9])]
+    for proof, state in zip(proofs, shown):
+        assert np.array_equal(state.x, proof.nearest.x) and state.label.startswith("proved within ")
+        near, away = re.findall(r"\d\S*e\S*\d", state.label)     # rounded up, as the report
+        assert Fraction(near) >= proof.radius and Fraction(away) >= proof.moved
+        assert "within %s of the points" % near in out and "within %s of those" % away in out
+    assert "nothing is proved" not in said[0] and "Proved: a true orbit" in said[0]
+    assert run("find", "standard", "1/3", "0", "0.5", "--prove", "-g", tmp_path / "x.svg")[0] == 1
+    assert [state.label.startswith("proved") for state in shown[2:]] == [False, True]
+    assert "nothing is proved" in said[1] and "Proved: a true orbit" in said[1]
+    run("find", "standard", "1/3", "0.5", "-g", tmp_path / "x.svg")
+    assert "nothing is proved" in said[2] and "Proved: a true orbit" not in said[2]
 
 
 def test_a_potential_in_a_file(run, tmp_path):
@@ -117,7 +155,7 @@ def test_a_potential_in_a_file(run, tmp_path):
     assert (mine.name, mine.n, mine.terms) == ("mine.v2", 2, orbits.trig.terms)
     status, out, err = run("find", path, SMALL, repr(0.02 * orbits.trig.scale))
     assert (status, err) == (0, "") and "Potential : mine.v2\n" in out
-    assert " k c s = 1 0 0 -1/2, 0 1 0 -1/2, 1 1 0 -1\n" in out
+    assert "\nV(x) : -1/2 sin(2 pi x0) - 1/2 sin(2 pi x1) - sin(2 pi (x0 + x1))\n" in out
     state = orbits.follow(orbits.trig, (65, 86), 114, [0.02])[0]
     action, = numbers(out, "Action per point less |p/q|^2/2")[0]
     assert action == pytest.approx(state.action, abs=1e-11)
@@ -194,13 +232,14 @@ def test_lost_types_end_with_status_1(run, tmp_path, monkeypatch):
 def test_figures(run, tmp_path, monkeypatch):
     seen = []
 
-    def figures(directory, kind, progress):
-        seen.append((directory, kind))
+    def figures(directory, kind, progress, caption):
+        seen.append((directory, kind, caption))
         progress("one.png")
 
     monkeypatch.setattr("converse.orbits.figures.figures", figures)
     assert run("figures", tmp_path, "--format", "png") == (0, "written: one.png\n", "")
-    assert seen == [(str(tmp_path), "png")]
+    assert run("figures", tmp_path, "--no-caption") == (0, "written: one.png\n", "")
+    assert seen == [(str(tmp_path), "png", True), (str(tmp_path), "svg", False)]
 
 
 def test_help_and_version(run):
@@ -222,16 +261,23 @@ def test_help_and_version(run):
         "1,2/0", "1,2,3/4", "1,2", "1.5,2/3", "a,b/c", "1,2/-3", "", "1" * 10 + ",2/3",
         "1,2/3\n4")],
     *[(["find", "trig", SMALL, bad], "is no number") for bad in (
-        "x", "nan", "inf", "1e400", "1e9999999999", "1/0", "1:2", "1:2:3:4", "")],
+        "x", "nan", "inf", "1e400", "1e9999999999", "1/0", "1:2", "1:2:3:4", "", "1_0")],
+    (["find", "trig", SMALL, "1e6"], "too far to be followed"),
+    (["find", "trig", SMALL, "1e6", "--search", "2"], "too far to be followed"),
+    (["sweep", "trig", "DIR/x.csv", "1e6", "--random", "1", "--sizes", "5:9"], "too far to be foll"),
+    (["find", "trig", "5,7/999999999", "0.01"], "from 1 to 10000000"),
     *[(["find", "trig", SMALL, bad], "range of no values") for bad in (
         "1:2:0", "2:1:0.1", "0:1:1e-9")],
     (["find", "none", SMALL, "0.01"], "no potential and no file"),
     (["find", "DIR", SMALL, "0.01"], "cannot be read"),
     (["find", "trig", SMALL, "0.01", "--search", "0"], "whole number"),
-    (["find", "trig", SMALL, "0.01", "--csv", "DIR"], "directory"),
-    (["find", "trig", SMALL, "0.01", "--csv", "DIR/no/x"], "cannot be written"),
-    (["find", "trig", SMALL, "0.01", "-g", "DIR/x.ps"], "SVG, PNG or PDF"),
-    (["find", "trig", SMALL, "0.01", "-g", "DIR/x.svg", "--csv", "DIR/x.svg"], "both"),
+    (["find", "trig", SMALL, "0.01", "--csv", "DIR"], "ends in .csv"),
+    (["find", "trig", SMALL, "0.01", "--csv", "DIR/a.json"], "ends in .csv"),
+    (["find", "trig", SMALL, "0.01", "--csv", "DIR/other.csv"], "no table of this program"),
+    (["find", "trig", SMALL, "0.01", "--csv", "DIR/sweep.csv"], "kept (of a sweep"),
+    (["find", "trig", SMALL, "0.01", "--csv", "DIR/no/x.csv"], "cannot be written"),
+    (["find", "trig", SMALL, "0.01", "-g", "DIR/x.ps"], ".svg or .png or .pdf"),
+    (["find", "trig", SMALL, "0.01", "-g", "DIR/other.svg"], "no figure of this program"),
     (["find", "trig", SMALL, "0:0.04:0.0001", "-g", "DIR/x.svg"], "states at most"),
     (["find", "DIR/terms", "1,2/3", "0.01", "--csv", "DIR/terms"], "overwrite"),
     (["sweep", "trig", "DIR/x.csv", "0.01"], "required"),
@@ -258,6 +304,9 @@ def test_help_and_version(run):
 def test_bad_usage(run, tmp_path, arguments, words):
     (tmp_path / "terms").write_text("1 0 0 1\n")
     (tmp_path / "one").write_text("1,2/3\n1/3\n")
+    (tmp_path / "other.csv").write_text("potential,mine\n")
+    orbits.sweep(orbits.standard, [((1,), 3)], [0.5], file=tmp_path / "sweep.csv")
+    (tmp_path / "other.svg").write_text("<?xml version='1.0'?><svg/>\n")
     (tmp_path / "two").write_text("1,2/3\n")
     (tmp_path / "empty").write_text("# nothing\n")
     before = {path: path.read_bytes() for path in tmp_path.iterdir()}
@@ -290,7 +339,8 @@ def test_what_is_missing_is_said(tmp_path, module, arguments):
          "sys.argv[0] = 'x'\nrunpy.run_module('converse.orbits.cli', run_name='__main__')" % module,
          *arguments], cwd=tmp_path, capture_output=True, text=True, timeout=PATIENCE)
     assert (result.returncode, result.stdout) == (2, "") and one_line(result.stderr)
-    assert module.split(".")[0] in result.stderr and "pip install" in result.stderr
+    assert module.split(".")[0] in result.stderr
+    assert "pip install" in result.stderr or "run make" in result.stderr
     assert not list(tmp_path.iterdir())
 
 

@@ -11,6 +11,7 @@ import pytest
 import converse
 from converse import orbits
 from converse._native import ffi, lib
+from converse.orbits import cli as orbits_cli
 from converse.orbits.potential import address
 from converse.problem import Problem
 from truth import TORTURE
@@ -266,6 +267,7 @@ def test_exponents_of_1989_are_wrong_by_log_q_over_q():
         found = orbits.gram_schmidt_exponents(state, rounds, seed)
         assert (0.7 * math.log(n) / n < found).all() and (found < 1.2 * math.log(n) / n).all()
     assert (0 <= state.exponents).all() and (state.exponents < 1e-5).all()
+    assert all(orbits_cli._exponent(state, x) == "below 1e-05" for x in state.exponents)
     free = orbits.State(orbits.trig, (1, 1), 3, 0.0, np.zeros((3, 2)), (0.0, 0.0))
     assert (free.exponents < 1e-5).all() and (orbits.gram_schmidt_exponents(free, 1000) < 3e-3).all()
 

@@ -1,9 +1,11 @@
 """The same tree, counts and theorem however the work is divided, and whoever dies on the way."""
 
 import concurrent.futures
+import contextlib
 import math
 import os
 import random
+import re
 import shutil
 import signal
 import subprocess
@@ -14,14 +16,14 @@ from fractions import Fraction
 
 import pytest
 
-from converse import ConverseError, Problem, Proof, growth, prove, run
-from converse.problem import decimal_text
+from converse import ConverseError, Problem, Proof, growth, prove, run, tree, workers
+from converse.problem import LINE, decimal_text
 from moments import PATIENCE
 from truth import TORTURE
 
 
 def line(low, high):
-    low, high = Fraction(low) * Fraction("11.21436"), Fraction(high) * Fraction("11.21436")
+    low, high = Fraction(low) * LINE, Fraction(high) * LINE
     c, h = (low + high) / 2, (high - low) / 2
     return Problem.around((c, c, 2 * c, Fraction(1), Fraction(1)), (h, h, 2 * h, Fraction(1), Fraction(1)),
                    together=True)
@@ -228,6 +230,117 @@ def test_a_killed_coordinator_goes_on_from_its_backup(proof, tmp_path):
     assert timeless(prove(resume=path)) == timeless(Proof.load(path)) == proof
 
 
+@pytest.fixture
+def cluster(tmp_path, monkeypatch):
+    """cluster(n): a Dask cluster of n workers here, and a client of it, asked at every turn."""
+    distributed = pytest.importorskip("distributed")
+    monkeypatch.setattr(workers, "ASK_SECONDS", 0)
+
+    @contextlib.contextmanager
+    def cluster(n):
+        with distributed.LocalCluster(
+                n_workers=n, threads_per_worker=1, processes=True, dashboard_address=None,
+                local_directory=str(tmp_path)) as made, \
+                distributed.Client(made, timeout=PATIENCE) as client:
+            yield made, client
+    return cluster
+
+
+def test_dask_workers_that_join_later(proof, divided, ends, cluster):
+    """They are given work: one worker has two tasks at a time."""
+    with cluster(1) as (made, client):
+        executor = client.get_executor()
+        submit, submitted = executor.submit, []
+
+        def submit_and_grow(*args):
+            if len(submitted) == 3:
+                made.scale(2)
+            submitted.append(args)
+            return submit(*args)
+
+        executor.submit = submit_and_grow
+        ends(lambda self: len(self.growth.running) > 2)
+        half = prove(line("0.0140", "0.0280"), method="loewner", executor=executor)
+        assert not half.all_decided and submitted
+
+
+def test_dask_without_workers(proof, divided, cluster):
+    """They are waited for, which is said; a cluster that adapts starts one, since there is a task."""
+    with cluster(0) as (made, client):
+        made.adapt(minimum=0, maximum=1)
+        with pytest.warns(RuntimeWarning, match="no workers; waiting"):
+            assert timeless(prove(LONG, method="loewner", executor=client.get_executor())) == proof
+
+
+def test_a_scheduler_that_does_not_answer_is_called_so():
+    """Its process may be stopped, or its machine: nobody knows what workers there are."""
+    class Silent:
+        status = "running"
+
+        def nthreads(self, callback_timeout):
+            raise TimeoutError
+
+    executor = Silent()
+    executor._client = executor
+    with pytest.warns(RuntimeWarning, match="the Dask scheduler does not answer; waiting"):
+        assert workers.Crew(executor, None).size == 0
+
+
+def test_dask_without_this_program(divided, cluster, monkeypatch):
+    """A worker that lacks it would die of the first task: it is not sent."""
+    monkeypatch.setattr(workers, "PROBE", workers.PROBE.replace("converse", "no_such_package"))
+    with cluster(1) as (_, client):
+        executor = client.get_executor()
+        monkeypatch.setattr(executor, "submit", None)
+        with pytest.raises(workers.WorkersGone, match="needs converse .* has none .*no_such_package"):
+            prove(LONG, method="loewner", executor=executor)
+
+
+def test_dask_loses_its_scheduler(divided, tmp_path, proof):
+    """What was found is saved, one line says so, and the command ends."""
+    distributed = pytest.importorskip("distributed")
+    code = """
+import os, signal, sys
+from converse import cli, growth, run
+growth.ALONE_SECONDS = growth.TASK_SECONDS = 0.01
+took, grow, scheduler = [], growth.Growth._take, int(sys.argv.pop(1))
+def take(self, part, grown):
+    grow(self, part, grown)
+    took.append(part)
+    if len(took) == 5:
+        os.kill(scheduler, signal.SIGKILL)
+growth.Growth._take = take
+sys.exit(cli.main())
+"""
+    with contextlib.ExitStack() as stack:
+        def start(*arguments):
+            process = subprocess.Popen([sys.executable, "-m", *arguments, "--no-dashboard"], text=True,
+                                       cwd=tmp_path, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
+            stack.callback(process.kill)
+            return process
+
+        scheduler = start("distributed.cli.dask_scheduler", "--host", "127.0.0.1", "--port", "0")
+        address = next(re.search(r"tcp://127.0.0.1:[0-9]+", said)[0] for said in scheduler.stderr
+                       if "Scheduler at" in said)
+        start("distributed.cli.dask_worker", address, "--nworkers", "1", "--nthreads", "1")
+        (tmp_path / "a.in").write_text(input_text(LONG))
+        result = subprocess.run(
+            [sys.executable, "-c", code, str(scheduler.pid), "--dask", address, "--method", "loewner",
+             "--together", "-b", "a.proof", "a.in"], cwd=tmp_path, capture_output=True, text=True,
+            timeout=PATIENCE)
+    assert distributed and result.returncode == 2
+    assert result.stderr.endswith("converse: the Dask scheduler is gone; continue with -r a.proof\n")
+    assert all(line.startswith("converse: ") for line in result.stderr.splitlines())
+    half = Proof.load(tmp_path / "a.proof")
+    assert half.tree and not half.no_tori
+    assert timeless(prove(resume=half, jobs=2)).tree == proof.tree
+
+
+def input_text(problem):
+    return "\n".join("%s %s" % tuple(map(decimal_text, pair))
+                     for pair in zip(problem.centre, problem.half)) + "\n"
+
+
 def test_dask_loses_a_worker(proof, tmp_path, divided):
     distributed = pytest.importorskip("distributed")
     with distributed.LocalCluster(n_workers=3, threads_per_worker=1, processes=True,
@@ -247,17 +360,32 @@ def test_dask_loses_a_worker(proof, tmp_path, divided):
         assert len(submitted) > 3
 
 
-@pytest.mark.skipif(not shutil.which("mpiexec"), reason="there is no MPI here")
+MPI = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1",
+           OMPI_MCA_rmaps_base_oversubscribe="1")
+with_mpi = pytest.mark.skipif(not shutil.which("mpiexec"), reason="there is no MPI here")
+
+
+@with_mpi
+@pytest.mark.parametrize("module, command", [("cli", "converse"), ("frontier.cli", "converse-map")])
+def test_mpi_processes_that_would_all_do_the_same(tmp_path, module, command):
+    pytest.importorskip("mpi4py")
+    arguments = ["--plane", "c=0", "m.json"] if module == "frontier.cli" else []
+    result = subprocess.run(["mpiexec", "-n", "2", sys.executable, "-m", "converse." + module, "--mpi",
+                             *arguments], cwd=tmp_path, env=MPI, timeout=PATIENCE, text=True,
+                            input="0.32 0\n0.32 0\n0.64 0\n1 1\n1 1\n", capture_output=True)
+    assert (result.returncode, result.stdout) == (2, "")
+    said = [line for line in result.stderr.splitlines() if line.startswith(command + ": ")]
+    assert len(said) == 1 and "mpiexec -n 2 python -m mpi4py.futures -m converse." + module in said[0]
+    assert not list(tmp_path.iterdir())
+
+
+@with_mpi
 def test_mpi(proof, tmp_path):
     pytest.importorskip("mpi4py")
-    (tmp_path / "a.in").write_text("\n".join(
-        "%s %s" % tuple(map(decimal_text, pair)) for pair in zip(LONG.centre, LONG.half)) + "\n")
-    environment = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1",
-                       OMPI_MCA_rmaps_base_oversubscribe="1")
-    subprocess.run(["mpiexec", "-n", "3", sys.executable, "-m", "mpi4py.futures", "-m",
-                    "converse.cli", "--mpi", "--method", "loewner", "--together", "-b", "a.proof",
-                    "a.in"], cwd=tmp_path, env=environment, check=True, timeout=PATIENCE,
-                   stdout=subprocess.DEVNULL)
+    (tmp_path / "a.in").write_text(input_text(LONG))
+    command = ["converse.cli", "--mpi", "--method", "loewner", "--together", "-b", "a.proof", "a.in"]
+    subprocess.run(["mpiexec", "-n", "3", sys.executable, "-m", "mpi4py.futures", "-m", *command],
+                   cwd=tmp_path, env=MPI, check=True, timeout=PATIENCE, stdout=subprocess.DEVNULL)
     assert timeless(Proof.load(tmp_path / "a.proof")) == replace(
         proof, problem=replace(LONG, comments=()))
 
@@ -331,6 +459,18 @@ def test_what_comes_late_is_kept(tmp_path, monkeypatch, divided, ends):
     tree = Proof.load(path).tree
     assert tree == result.tree and "".join(brought) and all(text in tree for text in brought)
     assert not result.no_tori and not result.undecided      # it was left as it was
+
+
+@pytest.mark.parametrize("stubborn", [False, True])
+def test_what_is_examined_never_falls(divided, ends, stubborn):
+    """It is the share of the volume that lies in leaves, whoever is at work."""
+    seen = []
+    ends(lambda self: self.growth.counts.cuts > 3000)
+    half = prove(line("0.0130", "0.0280"), method="loewner", jobs=3, depth=22, stubborn=stubborn,
+                 progress=lambda examined, _: seen.append(examined))
+    assert seen == sorted(seen) and seen[0] == 0 and 0 < seen[-1] < 1
+    volume = sum(0.5 ** sum(cuts) for kind, (_, cuts) in tree.cells(half.tree) if kind != tree.UNTRIED)
+    assert seen[-1] == pytest.approx(volume, rel=1e-12) or not stubborn and volume < seen[-1]
 
 
 def test_what_lies_beyond_an_undecided_prism_is_not_its_own():

@@ -5,6 +5,8 @@ the derivative of the map; potentials written anew; Hessians of copies by Bloch'
 """
 
 import math
+import re
+import signal
 from dataclasses import replace
 from fractions import Fraction
 
@@ -14,7 +16,7 @@ import pytest
 from truth import TORTURE, mp, rng_for
 
 from converse import ConverseError, orbits
-from converse.orbits import proved
+from converse.orbits import potential, proved
 from converse.orbits.proved import NotProved, lib, prove
 
 # ---- potentials, anew: one-variable jets (f, f', f'') of waves, or of factors
@@ -338,6 +340,32 @@ def test_saddles():
                 prove(state.repeat(copies))
 
 
+def minimax(p, q, k):
+    """The orbit between the minima of the standard map."""
+    begin = orbits.straight(orbits.standard, (p,), q, (0.5 + 0.5 / q,))
+    return orbits.newton(replace(begin, eps=k))[0]
+
+
+# The eigenvalues are too small for relax(), and not for the label.
+@pytest.mark.parametrize("p, q, k", [(-2, 5, 0.04460940551965372), (1, 5, 0.0345), (3, 7, 0.0766),
+                                     (-2, 3, 0.0035)])
+def test_a_saddle_is_proved_to_be_nothing_else(p, q, k):
+    """Asked to, prove() goes down to a minimum, says how far that is, and bounds what is there."""
+    state = minimax(p, q, k)
+    assert state.label == "saddle" and -1e-8 < state.least < -1e-12
+    with pytest.raises(NotProved, match="the state is a saddle"):
+        prove(state)
+    orbit = prove(state, descend=True)
+    apart = (orbit.nearest.x - state.x + 0.5) % 1 - 0.5
+    assert orbit.moved == pytest.approx(np.abs(apart).max(), abs=1e-12) and orbit.moved > 0.05
+    points = contains(orbit, exact_points(state, orbit.displacements), 70)
+    with mpmath.workdps(70):
+        beta = blocks(state, points)
+    assert orbit.nearest.label == "minimum"
+    assert 0.9 * orbit.nearest.least < orbit.least <= orbit.nearest.least + 1e-13
+    assert bottom(beta) > -1e-13
+
+
 def test_minimum_that_copies_lose():
     """Its own Hessian is positive definite, but not that of two copies."""
     state = orbits.State(orbits.poly, (6, 0), 7, 0.0829, [
@@ -347,8 +375,9 @@ def test_minimum_that_copies_lose():
         [0.039641605025191325, 0.17508214209550604]], (0.0, 0.0)).relax()
     beta = blocks(state, exact_points(state, [[Fraction(float(x)) for x in u] for u in state.u]))
     assert state.least > 0.05 and bottom(beta, 2) < -0.01
-    with pytest.raises(NotProved, match="run through several times"):
-        prove(state)
+    for descend in False, True:
+        with pytest.raises(NotProved, match="run through several times"):
+            prove(state, descend=descend)
     with pytest.raises(NotProved, match="saddle"):
         prove(state.repeat(2))
 
@@ -396,13 +425,75 @@ def test_flat_and_foreign():
     with pytest.raises(ValueError, match="nothing can be proved of the potential python"):
         prove(orbits.straight(mine, (1,), 3).relax(0.01))
     loose = orbits.Fourier({(1,): (1, 0)}, "loose", scale_enclosure=lambda digits: (
-        Fraction(9, 10), Fraction(11, 10)))
+        Fraction(1), Fraction(1) + Fraction(1, 10 ** min(digits, 30))))
     with pytest.raises(ValueError, match="scale_enclosure"):
         prove(orbits.straight(loose, (1,), 3).relax(0.01))
     for digits in (0, -1, 10**9):
         with pytest.raises(ValueError, match="digits is a number"):
             prove(state, digits)
     assert issubclass(NotProved, ConverseError)
+
+
+# ---- Ctrl-C
+
+@pytest.fixture
+def asked():
+    """What cv_python_interrupts does is put into asked[0]; how often it was asked, into asked[1]."""
+    does = [lambda: None, 0]
+
+    def interrupts():
+        does[1] += 1
+        does[0]()
+        return 0
+
+    define = proved.ffi.def_extern(name="cv_python_interrupts", error=1,
+                                   onerror=potential._interrupted)
+    define(interrupts)
+    yield does
+    define(potential.cv_python_interrupts)
+
+
+@pytest.mark.parametrize("name, p, pivots", [("standard", (317,), 4), ("trig", (290, 387), 8)])
+def test_ctrl_c_is_noticed_everywhere(asked, name, p, pivots):
+    """All functions ask once in 256 points in each of their loops over the points, and end wherever
+    they are told to; the state is good for nothing then but can be freed."""
+    state = orbits.follow(getattr(orbits, name), p, 512, [1.5 if len(p) == 1 else 0.03])[0]
+
+    def work(k, exact):
+        return (lambda: exact.evaluate(40), lambda: exact.bends(Fraction(0)),
+                lambda: exact.newton(Fraction(0)), lambda: exact.least(Fraction(1, 10 ** 7)),
+                lambda: exact.pivots(Fraction(1, 10 ** 7), Fraction(1, 10 ** 20)))[k]()
+
+    def strike():
+        if asked[1] == last:
+            signal.raise_signal(signal.SIGINT)
+
+    q = state.q
+    for k, points in enumerate((q, q, 3 * q - 2, 2 * q, pivots * q - 1)):
+        for last in [None, *range(1, points // 256 + 1)]:
+            exact = proved._Exact(state)
+            if k:
+                exact.evaluate(40)
+            asked[:] = strike, 0
+            if last is None:
+                assert work(k, exact) is not False
+                assert asked[1] >= points // 256
+                continue
+            with pytest.raises(KeyboardInterrupt):
+                work(k, exact)
+            assert asked[1] == last
+            with pytest.raises(KeyboardInterrupt):
+                exact.evaluate(40)
+            assert asked[1] == last
+            asked[0] = lambda: None
+
+
+def test_ctrl_c_among_pairs(asked):
+    """Many points above each other: all pairs have to be looked at."""
+    state = orbits.straight(orbits.trig, (0, 1), 4099)
+    asked[0] = lambda: signal.raise_signal(signal.SIGINT)
+    with pytest.raises(KeyboardInterrupt):
+        state.pairs(800)
 
 
 def test_report():
@@ -413,6 +504,10 @@ def test_report():
                  "from -0.0030426956587949647"):
         assert part in text
     assert max(map(len, text.splitlines())) <= 110 and "proved" in orbit.label
+    assert "\nV(x) = %s,\n" % orbits.trig.formula in text
+    given = orbit.state.moved(orbit.state.u + [3e-10, -2e-10])
+    assert re.search(r", which are within 3\.[01]e-10 of those given", prove(given).report())
+    assert ", which are within 0 of those given" in replace(orbit, moved=0.0).report()
     assert "(5, 7)/9" in repr(orbit)
 
 

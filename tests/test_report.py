@@ -2,10 +2,11 @@
 
 import re
 from dataclasses import replace
+from fractions import Fraction
 
 import pytest
 
-from converse import Counts, Problem
+from converse import Counts, Problem, prove
 from converse.problem import IDENTITY
 from converse.report import header, verdict
 from converse.version import __version__
@@ -89,6 +90,27 @@ def test_undecided(made_up, tree, stubborn, number, deepest, ended):
         assert bool(re.search(r"\nThe first of them : [0-9.]+ < v\[0\] / pi < [0-9.]+, ", text)) == (
             number > 0 and not as_printed)
         assert ("--method loewner" in text) == (not as_printed)
+
+
+def test_where_x_star_may_be_the_cause():
+    """For these two harmonics another x* proves it (docs/method.md); a lack of depth is another thing."""
+    waves = [(1, 0, "-1/2"), (2, 0, "-1/2")]
+    problem = Problem.patch(["0.6", "0.2"], waves=waves)
+    stuck = prove(problem, method="loewner", xstar=("1.856", "0"))
+    text = stuck.report()
+    low, high = re.search(r"\nThe first of them : (0\.[0-9]+) < v\[0\] / pi < (0\.[0-9]+), ", text).groups()
+    (c, _), (h, _) = stuck.undecided[0].centre, stuck.undecided[0].half
+    assert abs(Fraction(low) - c + h) <= h / 100 and abs(Fraction(high) - c - h) <= h / 100
+    assert "One of them is as small as doubles can tell : " in text
+    assert "\nTo try : another x* (--xstar X0 X1), or larger parameters." in text
+    wide = Problem.patch(["0.6", "0.2"], [["0.001", 0]], waves=waves)
+    assert ", or a smaller range of parameters, or larger parameters." in prove(
+        wide, method="loewner", xstar=("1.856", "0")).report()
+    assert prove(problem, method="loewner", xstar=("1.836", "0")).no_tori
+    assert "x* (" not in prove(problem, method="loewner", xstar=("1.856", "0"), depth=5).report()
+    point = prove(Problem.patch(["0.6", "0.2"], waves=waves, v0=c), method="loewner", depth=0,
+                  xstar=("1.856", "0"))
+    assert "\nThe first of them : v[0] / pi = 0.1" in point.report()
 
 
 def test_comments_are_not_the_programs_words(made_up):

@@ -15,6 +15,7 @@ import pytest
 
 import converse
 from converse import Problem, kernels
+from converse.problem import LINE
 from converse.tree import leaves
 from truth import (TORTURE, beta, decimal, eigenvalues, exact, inverse, mp, rng_for,
                    uniform)
@@ -30,7 +31,7 @@ def problem(a, b, c, v=FULL):
 
 def line(epsilon, width="0"):
     """The thesis's line of parameters a = b = c/2 near k = 52.9549 epsilon."""
-    a = Fraction("11.21436") * Fraction(epsilon)
+    a = LINE * Fraction(epsilon)
     a, h = decimal(a, 8), Fraction(width)
     return problem((a, h), (a, h), (2 * a, 2 * h))
 

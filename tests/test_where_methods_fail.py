@@ -6,6 +6,7 @@ import pytest
 
 import converse
 from converse import Problem, kernels
+from converse.problem import LINE
 from truth import cube_of, cube_point, decimal, point_of, rng_for, step, uniform
 
 REASONS = ("centre", "too big", "too long", "singular", "arithmetic", "disagree")
@@ -19,7 +20,7 @@ def problem(a, b, c, v=FULL):
 
 def line(epsilon):
     """One point of the thesis's line."""
-    a = decimal(Fraction("11.21436") * Fraction(epsilon), 8)
+    a = decimal(LINE * Fraction(epsilon), 8)
     return problem((a, 0), (a, 0), (2 * a, 0))
 
 

@@ -6,8 +6,20 @@
     atlas.draw("map.svg")
 """
 
+from typing import TYPE_CHECKING
+
 from .atlas import Map, Node
 from .region import REGIONS, Cell
-from .search import explore
+
+if TYPE_CHECKING:
+    from .search import explore
 
 __all__ = ["Cell", "Map", "Node", "REGIONS", "explore"]
+
+
+def __getattr__(name):
+    """Imports explore when it is asked for: without the C core a map can still be described."""
+    if name == "explore":
+        from .search import explore
+        return explore
+    raise AttributeError("module 'converse.frontier' has no attribute %r" % name)

@@ -8,7 +8,7 @@ import math
 import os
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Dict, Iterator, List, Optional, Tuple, Union
+from typing import Any, Dict, Iterator, List, Optional, Tuple, Union
 
 from .. import files
 from ..files import ConverseError
@@ -34,7 +34,8 @@ class Node:
 
     def __init__(self, cell: Cell):
         self.cell, self.kind, self.axis, self.halves = cell, OPEN, None, ()
-        self.proof, self.tried = None, 0
+        self.proof: Optional[Dict[str, Any]] = None
+        self.tried = 0
 
     def cut(self, axis):
         self.axis = axis
@@ -115,14 +116,15 @@ class Map:
                     tuple(Fraction(k + up, grid) for up, (k, _) in zip(upper, ends))]
         return total
 
-    def span(self, cell: Cell) -> Tuple[float, float]:
-        """The least and the largest estimate over a cell's directions, times down_to."""
+    def target(self, cell: Cell) -> float:
+        """The least radius from which on any direction of a cell is to be proved: down_to times the
+        least estimate."""
         grid = GRID[len(cell.low) - 1]
         ends = [[low, *(Fraction(k, grid) for k in range(math.floor(low * grid) + 1,
                                                          math.ceil(high * grid))), high]
                 for low, high in zip(cell.low[1:], cell.high[1:])]
-        found = [self.estimated(cell.face, place) for place in itertools.product(*ends)]
-        return float(self.down_to) * min(found), float(self.down_to) * max(found)
+        return float(self.down_to) * min(self.estimated(cell.face, place)
+                                         for place in itertools.product(*ends))
 
     def area(self, cell: Optional[Cell] = None) -> float:
         """Of a cell, of (r, s, t), as far as it is to be proved, about; or of all that is."""
@@ -135,13 +137,28 @@ class Map:
 
     # ---- what is proved
 
+    def wanted(self, cell: Cell) -> bool:
+        """Does any of a cell lie above down_to times the estimate?"""
+        return float(cell.high[0]) > self.target(cell)
+
+    @property
+    def estimated_all(self) -> bool:
+        """Is the frontier estimated at all places?"""
+        return all(len(estimate) == sum(1 for _ in self.places(face))
+                   for face, estimate in enumerate(self.estimate))
+
     @property
     def complete(self) -> bool:
         """Is everything proved that was asked for?"""
-        return all(len(estimate) == sum(1 for _ in self.places(face))
-                   for face, estimate in enumerate(self.estimate)) and not any(
-            leaf.kind == OPEN and float(leaf.cell.low[0]) >= self.span(leaf.cell)[1]
-            for leaf in self.leaves())
+        return self.estimated_all and not any(leaf.kind == OPEN and self.wanted(leaf.cell)
+                                              for leaf in self.leaves())
+
+    @property
+    def reached(self) -> float:
+        """How many times the estimate r must be for all to be proved from there on, about."""
+        return max(math.inf if leaf.cell.high[0] == RADIUS else
+                   float(leaf.cell.high[0] * self.down_to) / self.target(leaf.cell)
+                   for leaf in self.leaves() if leaf.kind == OPEN)
 
     def height(self, face: int) -> Fraction:
         """The radius from which on all directions of a face are proved."""
@@ -150,7 +167,7 @@ class Map:
 
     def report(self) -> str:
         """What is proved, in words."""
-        proofs = [leaf.proof["tree"] for leaf in self.leaves() if leaf.kind == PROVED]
+        proofs = [leaf.proof["tree"] for leaf in self.leaves() if leaf.proof is not None]
         lines = ["No invariant tori, for (a, b, c) = r d in the cells that are proved, and for",
                  "their mirror images (docs/format.md).",
                  "Region : " + self.region]
@@ -166,8 +183,11 @@ class Map:
                   "Prisms : %d proved" % sum(tree.count("P") for tree in proofs),
                   "Asked for : down to %s times the estimated frontier%s" % (
                       decimal_text(self.down_to),
-                      "" if self.complete else "; not all of it is proved"),
-                  "Time : %.0f seconds" % self.seconds]
+                      "" if self.complete else "; not all of it is proved")]
+        if self.estimated_all and self.reached < math.inf:
+            lines += ["Reached : all r > %.3f times the estimate" % (
+                math.ceil(1000 * self.reached + 1e-6) / 1000)]
+        lines += ["Time : %.0f seconds" % self.seconds]
         lines += ["SHA-256 : " + self.sha256] if self.sha256 else []
         return "\n".join(lines) + "\n"
 

@@ -6,11 +6,12 @@ import math
 import os
 import sys
 
-from .. import files
-from ..cli import Parser, ended, say, seconds, whole, workers
+from .. import files, picture
+from ..cli import Line, Parser, check_mpi, ended, say, seconds, whole, workers
 from ..files import ConverseError
-from ..problem import exact
+from ..problem import decimal_text, exact
 from ..version import __version__
+from .atlas import PROVED, Map
 from .region import REGIONS
 
 COMMAND = "converse-map"
@@ -58,34 +59,31 @@ def parser():
 
 
 class Progress:
-    """On a terminal, a bar of the area that is decided."""
+    """On a terminal, what is being done, and how much of it."""
 
     def __init__(self):
-        self.bar = None
-        with contextlib.suppress(ImportError):      # the extra "progress"
-            if sys.stderr.isatty():
-                from tqdm import tqdm
-                self.bar = tqdm(total=1.0, leave=False, file=sys.stderr, bar_format=(
-                    "{percentage:5.1f}% |{bar}| {elapsed}{postfix}"))
+        self.line = Line()
 
     def __call__(self, share, atlas):
-        if self.bar is not None:
-            self.bar.n = share
-            self.bar.set_postfix_str("%d cells" % sum(1 for _ in atlas.leaves()))
+        self.line(lambda: self._words(share, atlas))
+
+    def _words(self, share, atlas):
+        if atlas.estimated_all:
+            return "proving: %.1f%% of the area down to %s times the estimate, %d cells" % (
+                math.floor(1000 * share) / 10, decimal_text(atlas.down_to), atlas.count(PROVED))
+        return "estimating the frontier: %d of %d directions" % (
+            sum(map(len, atlas.estimate)),
+            sum(1 for face in range(len(atlas.estimate)) for _ in atlas.places(face)))
 
     def close(self):
-        if self.bar is not None:
-            self.bar.close()
+        Line.clear()
 
 
 def run(options):
-    from .atlas import Map
-    from .search import explore
-
+    check_mpi(options, "converse.frontier.cli", COMMAND)
     graphics = options.graphics
     if graphics is not None:
-        if files.same(graphics, options.map):
-            raise ConverseError("the picture would overwrite '%s'; name another file" % graphics)
+        files.check_output(graphics, "picture", picture.FORMATS, [options.map])
         from . import figure
 
         figure.check(graphics)
@@ -94,12 +92,13 @@ def run(options):
             raise ConverseError("--down-to needs --plane, --sphere or -r")
         atlas = Map.load(options.map)
     else:
-        with contextlib.closing(Progress()) as progress, workers(options) as (executor, jobs):
+        from .search import explore     # it needs the C core, and says so where it is missing
+
+        with contextlib.closing(Progress()) as progress, workers(options) as executor:
             atlas = explore(
                 options.plane, options.down_to, path=options.map, resume=options.restore,
-                jobs=jobs, executor=executor, time_limit=options.time_limit, progress=progress)
-        if not atlas.sha256:
-            raise ConverseError("what was found is not saved")
+                jobs=options.jobs, executor=executor, time_limit=options.time_limit,
+                progress=progress)
     say(atlas.report())
     if graphics is not None:
         atlas.draw(graphics)

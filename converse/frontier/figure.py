@@ -6,17 +6,19 @@ import numpy as np
 
 from .. import files, picture
 from ..figure import format_of
+from ..problem import LINE
 from .atlas import AT_ONCE, OPEN, PROVED
 from .region import RADIUS, direction
 
 NAMES = "abc"
-STYLE = {**picture.SALT, "font.size": 9, "legend.frameon": False, "axes.spines.top": False,
-         "axes.spines.right": False}
+STYLE = {**picture.STYLE, "axes.spines.top": False, "axes.spines.right": False}
 COLOURS = {PROVED: "#7fa8d1", AT_ONCE: "#cfdeed"}
-WORDS = {PROVED: "proved: no invariant Lagrangian graph", AT_ONCE: "B > 10/3, at once"}
-DARK, ORANGE, RED = "0.15", "#c8711c", "#a02020"
-LINE = 11.21436                         # of the thesis: a = b = c/2 = LINE epsilon
-MARKS = (0.0272, "o", "0.0272, the thesis, 1989"), (0.0140, "*", "0.0140, this program")
+WORDS = {PROVED: "proved cell by cell: no tori",
+         AT_ONCE: "proved at once, with all larger multiples"}
+MARK = {"markersize": 9, "markerfacecolor": "white", "markeredgecolor": "black",
+        "linestyle": "none"}
+MARKS = ((0.0272, "o", "0.0272, the thesis, 1989"),
+         (0.0140, "*", "0.0140, proved on the dashed line"))
 GRID = 120                              # of the angles, and of the directions of a side
 MATHER = 4 / 3                          # B - 2, at once
 
@@ -51,7 +53,7 @@ def draw(atlas, path):
     from matplotlib.figure import Figure
 
     with style.context(["default", STYLE]):
-        figure = Figure(figsize=(6.4, 5.6))
+        figure = Figure(figsize=(6.4, 5.0))
         (_draw_sphere if len(atlas.directions[0]) == 3 else _draw_plane)(atlas, figure)
         files.write(path, picture.encode(figure, kind, dpi=160, pad_inches=0.08))
 
@@ -80,21 +82,21 @@ def _draw_plane(atlas, figure):
     estimate = np.array([at(directions, radius, place)
                          for directions, found in zip(atlas.directions, atlas.estimate)
                          for place, radius in sorted(found.items())])
-    for line, label, dashes in (
-            (_around(mather[:, (horizontal, vertical)]), "B = 10/3", ":"),
-            (_around(estimate), "where orbits stop to contradict, estimated", "-")):
-        axes.plot(*line.T, dashes, color=DARK if dashes == ":" else RED, linewidth=1, label=label)
+    axes.plot(*_around(mather[:, (horizontal, vertical)]).T, ":", color=picture.DARK, linewidth=1.2,
+              label="B = 10/3")
+    axes.plot(*_around(estimate).T, color=picture.VERMILLION, linewidth=1.6,
+              label="estimate: single points are proved down to here")
     if atlas.region == "a=b":
-        ends = np.array([0, 0.03]) * LINE
-        axes.plot(ends, 2 * ends, "--", color="0.5", linewidth=0.6)
+        ends = np.array([0, 0.03]) * float(LINE)
+        axes.plot(ends, 2 * ends, "--", color=picture.DARK, linewidth=0.6)
         for epsilon, marker, words in MARKS:
-            axes.plot(LINE * epsilon, 2 * LINE * epsilon, marker, color=ORANGE, markersize=6,
-                      linestyle="none", label="$\\epsilon$ = " + words)
+            axes.plot(LINE * epsilon, 2 * LINE * epsilon, marker, label="\u03b5 = " + words,
+                      **MARK)
     most = 1.08 * mather.max()
     axes.set(xlim=(0, most), ylim=(0, 1.08 * mather[:, vertical].max()), aspect="equal",
              xlabel={"a=b": "a = b"}.get(atlas.region, "a"), ylabel=NAMES[vertical])
     axes.set_title({"b=0": "b = 0", "a=b": "a = b", "c=0": "c = 0"}[atlas.region])
-    axes.legend(loc="upper right", fontsize=8, bbox_to_anchor=(1, 1))
+    axes.legend(loc="upper center", bbox_to_anchor=(0.5, 0), borderaxespad=4.5, ncol=2)
 
 
 def _around(points):
@@ -141,15 +143,17 @@ def _draw_sphere(atlas, figure):
                             cmap="viridis", extend="both")
     mesh.set_rasterized(True)               # ten thousand triangles
     figure.colorbar(mesh, ax=axes, shrink=0.7,
-                    label="B - 2 from which on there are no tori, proved")
-    axes.plot([0, 1, 0.5, 0], [0, 0, math.sqrt(0.75), 0], color=DARK, linewidth=0.8)
+                    label="B \u2212 2 from which on there are no tori, proved")
+    axes.plot([0, 1, 0.5, 0], [0, 0, math.sqrt(0.75), 0], color=picture.DARK, linewidth=0.8)
     for place, words, align in (((0, 0), "a alone", "top"), ((1, 0), "a = b", "top"),
                                 ((0.5, math.sqrt(0.75)), "c alone", "bottom")):
         axes.annotate(words, place, (0, -4 if align == "top" else 4), textcoords="offset points",
                       ha="center", va=align)
     line = np.array([1, 1, 2]) / 3
-    axes.plot(line[1] + line[2] / 2, math.sqrt(0.75) * line[2], "*", color=ORANGE, markersize=8)
-    axes.annotate("a = b = c/2", (line[1] + line[2] / 2, math.sqrt(0.75) * line[2]), (6, 3),
-                  textcoords="offset points", color=ORANGE)
+    at_line = line[1] + line[2] / 2, math.sqrt(0.75) * line[2]
+    axes.plot(*at_line, "*", **MARK)
+    axes.annotate("a = b = c/2", at_line, (7, 4), textcoords="offset points", bbox={
+        "boxstyle": "round,pad=0.2", "facecolor": "white", "edgecolor": "none"})
+    axes.set_title("all directions with a \u2265 b \u2265 0, c \u2265 0")
     axes.set_aspect("equal")
     axes.set_axis_off()

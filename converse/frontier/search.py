@@ -12,11 +12,11 @@ from typing import Callable, Optional
 from .. import core
 from ..backup import Keeper
 from ..files import ConverseError
-from ..growth import ATTEMPTS, count_workers
-from ..problem import Number, Problem, exact
+from ..problem import Number, Problem, decimal_text, exact
 from ..run import Path
 from ..settings import Settings
 from ..version import __version__
+from ..workers import ATTEMPTS, Crew, count_workers, wait
 from . import region
 from .atlas import AT_ONCE, OPEN, OUTSIDE, PROVED, Map
 from .region import REGIONS
@@ -29,8 +29,10 @@ POINT = {1: 1 << 14, 2: 1 << 12}    # leaves, of a point of the estimate of a pl
 TRIAL = 1 << 12                     # leaves, of a point that one way is compared with another by
 COARSE = 0.25                       # width of a cell, at first, as a part of its radius
 GRAIN = 6                           # cells are not cut to less than this part of down_to - 1
+FINER = 8                           # but to so many times less where the most leaves do not do
 SHEAR = (1, 0, -1, 1)               # x_1 = (v0, v1 - v0): the wave c does not feel v0
 PLAIN = (1, 0, 0, 1)
+ASIDE = Fraction(3, 10)             # where c prevails, an x* so far along what it does not feel
 RIGHT = ("1.570796", "1.570796")    # an x* where each of the waves a and b bends most
 LOOK_SECONDS = 0.1
 TOO_LONG = core.lib.CV_REASON_TOO_LONG      # why a try failed: hopeless
@@ -47,7 +49,8 @@ class Outcome:
 
 
 def _grow(problem, xstar, most, stop):
-    """(tree or None, leaves, Begun) of a problem that may cost so many leaves; None: stopped."""
+    """(tree or None, leaves, Begun) of a problem that may cost so many leaves; None: stopped.
+    Without a tree, leaves are those that are expected, or infinite: it is hopeless."""
     begun = core.begin(core.Task(problem, SETTINGS, xstar), "", stop)
     if begun is None:
         return None
@@ -62,10 +65,11 @@ def _grow(problem, xstar, most, stop):
         leaves += grown.counts.proved + grown.counts.symmetric
         history.add(grown.history)
         cells, chunk = grown.cells, most // 8
-        if grown.counts.undecided or cells and (
-                grown.counts.reasons[TOO_LONG] or leaves >= most
-                or leaves + history.expected(cells) / 2 > PESSIMISM * most):
-            return None, leaves, begun
+        if grown.counts.undecided or cells and grown.counts.reasons[TOO_LONG]:
+            return None, math.inf, begun
+        expected = leaves + history.expected(cells) / 2
+        if cells and (leaves >= most or expected > PESSIMISM * most):
+            return None, expected, begun
     return "".join(pieces), leaves, begun
 
 
@@ -80,13 +84,17 @@ def _ways(directions, cell, stop):
         ways.append((PLAIN, RIGHT))
     if len(ways) == 1:
         return ways
-    cost = {}
+    costs = []
     for frame, xstar in ways:
         found = _grow(Problem.patch(point, axes=frame), xstar, TRIAL, stop)
         if found is None:
             return None
-        cost[frame, found[2].xstar] = math.inf if found[0] is None else found[1]
-    return sorted(cost, key=cost.get)
+        _, cost, begun = found
+        costs.append((cost, (frame, begun.xstar)))
+        if frame == SHEAR and xstar is None and c > 10 * max(a, b) > 0:
+            x0, x1 = map(Fraction, begun.xstar)
+            ways.append((SHEAR, (decimal_text(x0 - ASIDE), decimal_text(x1 + ASIDE))))
+    return [way for _, way in sorted(costs, key=lambda each: each[0])]
 
 
 def attempt(directions, cell, most, stop=None):
@@ -165,8 +173,6 @@ def explore(name: Optional[str] = None, down_to: Optional[Number] = None, *, pat
 
     ConverseError, MemoryError: what was found is in the file.  ValueError: an argument is wrong.
     """
-    if jobs is None:
-        jobs = count_workers(executor)
     ratio = None if down_to is None else exact(down_to)
     if ratio is not None and not 1 < ratio <= 100:
         raise ValueError("down_to is a ratio above 1, not %s" % (down_to,))
@@ -183,7 +189,7 @@ def explore(name: Optional[str] = None, down_to: Optional[Number] = None, *, pat
                                     % (path, atlas.version))
             atlas.down_to = ratio or atlas.down_to
         else:
-            atlas = Map.new(name, ratio or Fraction(21, 20))
+            atlas = Map.new(str(name), ratio or Fraction(21, 20))
         return _Search(atlas, keeper, jobs, executor, time_limit, progress).run()
 
 
@@ -191,8 +197,10 @@ class _Search:
     """One run, which adds to a map."""
 
     def __init__(self, atlas, keeper, jobs, executor, time_limit, progress):
-        self.map, self.keeper, self.jobs, self.progress = atlas, keeper, jobs, progress
-        self.threads = None if executor else concurrent.futures.ThreadPoolExecutor(jobs)
+        self.map, self.keeper, self.progress = atlas, keeper, progress
+        self.crew = Crew(executor, jobs)
+        self.threads = None if executor else concurrent.futures.ThreadPoolExecutor(
+            jobs or count_workers())
         self.executor = executor or self.threads
         self.stop = core.stop_token()
         self.began = time.monotonic() - atlas.seconds
@@ -208,7 +216,7 @@ class _Search:
                 self._explore()
         finally:
             self.stop[0] = 1
-            for future in self.running:
+            for future in self.running if self.crew.alive else ():
                 future.cancel()
             if self.threads:
                 self.threads.shutdown()
@@ -225,29 +233,24 @@ class _Search:
         stop = [self.stop] if self.threads else []          # it cannot leave the process
         try:
             self.running[self.executor.submit(call, *arguments, *stop)] = task, attempts
-        except RuntimeError as error:
-            raise ConverseError("the workers are gone (%s)" % error) from None
+        except Exception as error:
+            raise self.crew.gone(error) from None
 
     def _work(self, next_task, take):
         """Hands out tasks (call, key, *arguments) and takes what comes back, until there are no
         more or there is no time."""
         task = next_task()
         while (task or self.running) and not self.late:
-            while task and len(self.running) <= self.jobs:      # one is to be at hand
+            size = self.crew.size
+            while task and size and len(self.running) <= size:      # one is to be at hand
                 self._submit(task)
                 task = next_task()
-            done, _ = concurrent.futures.wait(self.running, LOOK_SECONDS,
-                                              concurrent.futures.FIRST_COMPLETED)
-            for future in done:
+            for future in wait(self.running, LOOK_SECONDS):
                 finished, attempts = self.running.pop(future)
                 try:
                     result = future.result()
-                except (ConverseError, MemoryError):
-                    raise
                 except Exception as error:                      # a worker died
-                    if attempts == 1:
-                        raise ConverseError("the workers keep failing (%s: %s)"
-                                            % (type(error).__name__, error)) from None
+                    self.crew.failed(error, attempts)
                     self._submit(finished, attempts - 1)
                 else:
                     take(finished[1], result)
@@ -275,12 +278,16 @@ class _Search:
     def _explore(self):
         """Tries cells: by the area that they would win for the work, those that would win most
         first."""
+        def count():
+            self.share = min(1.0, self.won / total) if total else 1.0
+
         total = self.map.area()
         for leaf in list(self.map.leaves()):
             if leaf.kind == OPEN:
                 self._push(leaf)
             else:
                 self.won += self.map.area(leaf.cell)
+        count()
 
         def next_task():
             if not self.queue:
@@ -291,7 +298,7 @@ class _Search:
 
         def take(key, outcome):
             self._take(*key, outcome)
-            self.share = min(1.0, self.won / total)
+            count()
 
         self._work(next_task, take)
 
@@ -309,19 +316,18 @@ class _Search:
             node.kind = OUTSIDE
             self.won += self.map.area(cell)     # nothing is left to be proved there
             return
-        low, high = self.map.span(cell)
-        if float(cell.high[0]) <= low:
+        if not self.map.wanted(cell):
             return
         width, axis = self._widest(cell, sides)
         if width < COARSE * cell.high[0]:       # else no x* is good for so many directions
-            if float(cell.low[0]) >= low:
+            low = self.map.target(cell)
+            width, axis = self._widest(cell, range(len(cell.low)))
+            if float(cell.low[0]) >= low or width <= self._grain(low):
                 area = self.map.area(cell)
                 heapq.heappush(self.queue, (-area / (node.tried or FIRST), next(self.order), node))
                 return
-            width, axis = self._widest(cell, range(len(cell.low)))
-        if width > self._grain(low):
-            for half in node.cut(axis):
-                self._push(half)
+        for half in node.cut(axis):
+            self._push(half)
 
     def _grain(self, low):
         """The least width of cells that are cut."""
@@ -335,9 +341,12 @@ class _Search:
             self.won += self.map.area(cell)
             return
         width, axis = self._widest(cell, range(len(cell.low)))
-        if cell.high[0] == region.RADIUS:       # it must reach to infinity
-            axis = 0
-        if width > self._grain(self.map.span(cell)[0]):
+        low = self.map.target(cell)
+        lower_half_counts = float(cell.middle[0]) > low
+        if cell.high[0] == region.RADIUS or not lower_half_counts:
+            axis = 0                            # it must reach to infinity; or one half is enough
+        grain = self._grain(low) / (FINER if most >= MOST else 1)
+        if width > grain or not lower_half_counts:
             for half in node.cut(axis):
                 self._push(half)
         elif most < MOST:

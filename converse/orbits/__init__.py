@@ -25,6 +25,7 @@ except ImportError as _error:           # said when something is asked for: the 
         from ..files import ConverseError
         if name.startswith("__"):
             raise AttributeError(name)
+        from .. import core  # noqa: F401, which says more if it is the core that is missing
         raise ConverseError(_MISSING)
 
 __all__ = ["Family", "Floor", "Fourier", "FromPython", "LeastAction", "NotProved", "Onset",

@@ -12,7 +12,7 @@ import sys
 from fractions import Fraction
 
 from .. import files, picture
-from ..cli import Parser, ended, say, whole
+from ..cli import Line, Parser, ended, say, whole
 from ..files import ConverseError, plain
 from ..figure import format_of
 from ..version import __version__
@@ -40,7 +40,7 @@ NO_MINIMUM = "saddle", "stationary", "not stationary"
 
 def _number(text):
     """A decimal or a fraction, exactly; ValueError if it is none."""
-    if not re.fullmatch(r"[^e]*(e[-+]?\d{1,3})?", text, re.ASCII | re.IGNORECASE):
+    if not re.fullmatch(r"[^e_]*(e[-+]?\d{1,3})?", text, re.ASCII | re.IGNORECASE):
         raise ValueError("an exponent beyond what a double knows")
     return Fraction(text)
 
@@ -198,6 +198,7 @@ def parser():
     find.add_argument("--csv", metavar="FILE", help="write a row for each state")
     find.add_argument("-g", "--graphics", metavar="FILE", help="draw the angles and the momenta of "
                       "the states: SVG, PNG or PDF by the name")
+    find.add_argument("--no-caption", action="store_true", help="leave out the figure's caption")
     find.add_argument("--seed", type=whole(0), default=0, metavar="N", help="of the search (0)")
     find.set_defaults(run=find_states)
 
@@ -226,11 +227,15 @@ def parser():
 
     figures = commands.add_parser(
         "figures", allow_abbrev=False, epilog=STATUS, help="draw the thesis's figures",
-        description="Computes and draws the figures of the thesis's chapter 2.")
+        description="Computes and draws the figures of the thesis's chapter 2 and Appendix A, and "
+        "the standard map's of chapter 1.")
     figures.add_argument("directory", metavar="DIR", help="where to write them")
     figures.add_argument("--format", choices=picture.FORMATS, default=picture.FORMATS[0],
                          help="of the figures")
+    figures.add_argument("--no-caption", action="store_true", help="leave out the captions")
     figures.set_defaults(run=draw_figures)
+    for each in p, find, sweep, figures:        # -12,16/21 is no option, nor is -0.02:0:0.01
+        each._negative_number_matcher = re.compile(r"-\.?\d")
     return p
 
 
@@ -243,13 +248,10 @@ def type_text(state):
 def header(state):
     """What is the same for all states of a report."""
     potential = state.potential
-    lines = ["Map : x' = x + p', p' = p - eps grad V(x), angles of period 1",
-             "Potential : " + potential.name]
-    if potential.name not in NAMES:     # a user's: a theorem must say of what
-        lines.append("V(x) : the sum of c cos 2 pi k.x + s sin 2 pi k.x, k c s = " + ", ".join(
-            " ".join(map(str, k + term)) for k, term in potential.terms.items()))
-    lines.append("Type : %s, rotation vector %s" % (type_text(state), _numbers(state.rotation)))
-    return "\n".join(lines) + "\n"
+    return ("Map : x' = x + p', p' = p - eps grad V(x), angles of period 1\n"
+            "Potential : %s\nV(x) : %s\n"
+            "Type : %s, rotation vector %s\n" % (
+                potential.name, potential.formula, type_text(state), _numbers(state.rotation)))
 
 
 def _numbers(values):
@@ -283,17 +285,10 @@ def report(state):
 # ---- what is done
 
 def _check_outputs(options, potential_file):
-    for path in (options.csv, options.graphics):
-        if path is not None:
-            if os.path.isfile(path) and (files.same(path, potential_file) or files.is_proof(path)):
-                raise ConverseError("the output would overwrite '%s'; name another file" % path)
-            files.check_writable(path)
+    if options.csv is not None:
+        files.check_output(options.csv, "table", ["csv"], [potential_file])
     if options.graphics is not None:
-        if options.csv is not None and files.same(options.csv, options.graphics):
-            raise ConverseError("'%s' cannot be both the table and the figure" % options.csv)
-        if format_of(options.graphics) == "ps":
-            raise ConverseError("'%s': the figure is SVG, PNG or PDF; let its name end so"
-                                % options.graphics)
+        files.check_output(options.graphics, "figure", picture.FORMATS, [potential_file])
         from .figures import ROWS, check
         check([], format_of(options.graphics))
         if sum(map(len, options.eps)) > ROWS:
@@ -308,20 +303,22 @@ def find_states(options):
 
     from .proved import prove
     from .search import search
-    from .solver import Family, follow, straight
+    from .solver import Family, follow, reached, straight
 
-    eps = [x for each in options.eps for x in each]
-    states, status = [], 0
+    eps = reached(potential, [x for each in options.eps for x in each])
+    states, drawn, status = [], [], 0   # drawn: what was proved, and of what was not, the state
 
     def found(state):
         nonlocal status
         states.append(state)
+        drawn.append(state)
         say("\n" + report(state))
         if state.label in NO_MINIMUM:
             status = 1
         if options.prove:
             try:
-                say(prove(state).report())
+                drawn[-1] = prove(state)
+                say(drawn[-1].report())
             except ConverseError as reason:
                 say("Not proved : %s\n" % plain(str(reason)))
                 status = 1
@@ -342,7 +339,8 @@ def find_states(options):
         files.write(options.csv, table.getvalue().encode("utf-8"))
     if options.graphics is not None and states:
         from .figures import states_picture
-        files.write(options.graphics, states_picture(states, format_of(options.graphics)))
+        files.write(options.graphics, states_picture(drawn, format_of(options.graphics),
+                                                     caption=not options.no_caption))
     return status
 
 
@@ -358,10 +356,12 @@ def sweep_types(options):
 
     eps = [x for each in options.eps for x in each]
     with contextlib.ExitStack() as stack:
-        bar = stack.enter_context(contextlib.closing(_Bar()))
+        line = Line()
+        stack.callback(line.clear)
         executor = stack.enter_context(concurrent.futures.ThreadPoolExecutor(
             options.jobs or count_workers()))
-        common = {"executor": executor, "file": options.csv, "progress": bar}
+        common = {"executor": executor, "file": options.csv,
+                  "progress": lambda *done: line(lambda: "%d of %d types" % done)}
         table = sweep(potential, vectors, eps, **common) if eps else \
             onsets(potential, vectors, **common)
     lost = int((table["label"] == LOST).sum())
@@ -370,28 +370,10 @@ def sweep_types(options):
     return 1 if lost else 0
 
 
-class _Bar:
-    """On a terminal, how far a sweep is (the extra "progress")."""
-
-    bar = None
-
-    def __call__(self, done, of):
-        with contextlib.suppress(ImportError):
-            if self.bar is None and sys.stderr.isatty():
-                from tqdm import tqdm
-                self.bar = tqdm(total=of, leave=False, file=sys.stderr, initial=done)
-        if self.bar is not None:
-            self.bar.update(done - self.bar.n)
-
-    def close(self):
-        if self.bar is not None:
-            self.bar.close()
-
-
 def draw_figures(options):
     from .figures import figures
 
-    figures(options.directory, kind=options.format,
+    figures(options.directory, kind=options.format, caption=not options.no_caption,
             progress=lambda path: say("written: %s\n" % plain(path)))
     return 0
 
@@ -400,7 +382,10 @@ def run(options):
     from converse import orbits
 
     orbits.State                        # or a line that says what is missing
-    return options.run(options)
+    try:
+        return options.run(options)
+    except ValueError as error:         # what only the library can know to be bad
+        raise ConverseError(str(error)) from error
 
 
 def main(argv=None):

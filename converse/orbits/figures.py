@@ -1,4 +1,6 @@
-"""Pictures of states, and the computed figures of the thesis's chapters 1 and 2 and Appendix A.
+"""Pictures of states, and the figures of the thesis's chapter 2 and Appendix A, and the standard
+map's of chapter 1.  (Not chapter 1's other two, of a star's motion and of a torus, which are drawn
+after other books.)
 
 The thesis's captions say what is shown, but seldom for which size of the perturbation: where a
 figure had to choose, it says so.  Needs matplotlib (the extra "plot"), of which nothing is changed.
@@ -15,9 +17,11 @@ from fractions import Fraction
 import numpy as np
 
 from .. import files, picture
+from ..picture import BLUE, DARK, GREY, VERMILLION
 from . import farey
 from .filaments import filaments
 from .potential import ff, poly, standard, trig
+from .proved import ProvedOrbit, distances
 from .solver import STEP, follow
 
 SPIRAL = (1432, 1897), 2513             # near farey.SPIRAL
@@ -37,29 +41,29 @@ LOST = 1e-13                            # distances below are rounding
 
 # name: potential, rotation vector, eps, and whether the thesis says the first of these.
 ORBITS = {
-    "orb-spnf1": (trig, SPIRAL, (0.0075, 0.0175, 0.025), True),
+    "orb-spnf1": (trig, SPIRAL, (0.0075, 0.025), True),     # (b): "three curves", says the text
     "orb-spnf2": (trig, SPIRAL, (0.03, 0.04), False),
     "orb-aunf1": (trig, TENTH, (0.005, 0.01), False),
     "orb-aunf2": (trig, TENTH, (0.015, 0.03), False),
-    "orb-sphd1": (poly, SPIRAL, (0.0025, 0.005), False),
-    "orb-sphd2": (poly, SPIRAL, (0.0075, 0.02), False),
+    "orb-sphd1": (poly, SPIRAL, (0.00125, 0.0025), False),
+    "orb-sphd2": (poly, SPIRAL, (0.005, 0.0075), False),    # (b): "seven curves"
     "orb-auhd1": (poly, TENTH, (0.0025, 0.0075), False),
     "orb-auhd2": (poly, TENTH, (0.02, 0.03), False),
     "orb-spff1": (ff, SPIRAL, (0.0075, 0.015), True),
     "orb-spff2": (ff, SPIRAL, (0.03, 0.04), False),
 }
+TEXT = {                                # what it says of (b): an eps was chosen where that is so
+    "orb-spnf1": "The text says that (b) has three curves, each once round in both directions.",
+    "orb-sphd2": "The text says that (b) has seven curves of type (0, 1).",
+}
 
 NAMES = {"trig": "trigonometric", "poly": "polynomial", "ff": "fast-Froeschlé"}
-DARK, BLUE, ORANGE, GREY = "0.1", "#1f5f94", "#d98a2b", "0.6"
-COLOURS = {"trig": DARK, "poly": BLUE, "ff": ORANGE}
-STYLE = {
-    **picture.SALT, "lines.linewidth": 1, "legend.frameon": False, "legend.fontsize": 8,
-    "axes.titlesize": 8, "axes.labelsize": 9, "axes.linewidth": 0.6, "xtick.labelsize": 7,
-    "ytick.labelsize": 7,
-}
+COLOURS = {"trig": DARK, "poly": BLUE, "ff": VERMILLION}
+STYLE = {**picture.STYLE, "axes.titlesize": 8, "axes.linewidth": 0.6}
 POINTS = {"linestyle": "none", "marker": "o", "markersize": 1.3, "markeredgewidth": 0,
           "rasterized": True}
-LETTERS = 20                            # of a caption, in an inch
+LETTERS = 17                            # of a caption, in an inch
+TUNNEL = 0.01                           # of the Euclidean length: Bangert's metric in a tunnel
 
 
 class Families:
@@ -75,22 +79,38 @@ class Families:
         return self.found[key]
 
     def at(self, potential, vector, eps):
-        """The state at one of the STEPS."""
-        return self(potential, vector)[STEPS.index(eps)]
+        """The state at one of the STEPS, or at another eps."""
+        steps = STEPS if eps in STEPS else (eps,)
+        return self(potential, vector, steps)[steps.index(eps)]
+
+
+class Drawn:
+    """A proved orbit, drawn as the state is that doubles make of it."""
+
+    undetermined = 0
+
+    def __init__(self, proof):
+        self.state = proof.nearest
+        self.label = "proved within %s, at most %s from the state found" % distances(proof)
+
+    def __getattr__(self, name):
+        return getattr(self.state, name)
 
 
 # ---- words
 
 LABELS = ("Minimum: a local one, as far as doubles show; nothing is proved, and there may be "
           "states of less action.")
-HOW = "Found by continuation from eps = 0 in steps of at most %g.  %s" % (STEP, LABELS)
+PROVED = ("Proved: a true orbit is so near to the points drawn, before these were rounded to "
+          "doubles, and a local minimum of the action; there may be states of less.")
+HOW = "Found by continuation from ε = 0 in steps of at most %g.  %s" % (STEP, LABELS)
 
 
 def chosen(first_known=False):
     """That the thesis does not say eps, but perhaps the first."""
     if first_known:
-        return "The first eps is the thesis's; it says no other, what follows was chosen here."
-    return "The thesis does not say the eps; these were chosen here."
+        return "The first ε is the thesis's; it says no other, what follows was chosen here."
+    return "The thesis does not say the ε; these were chosen here."
 
 
 def vector_words(p, q):
@@ -99,8 +119,13 @@ def vector_words(p, q):
 
 
 def quality(state):
-    """What is known of a state."""
-    words = "%s, shadow %.0e, grad size %.0e" % (state.label, state.shadow, state.grad_size)
+    """How good a state is."""
+    return "shadow %.0e, grad size %.0e" % (state.shadow, state.grad_size)
+
+
+def kind(state):
+    """What it is, as far as doubles show."""
+    words = state.label
     if state.undetermined:
         words += ", %d near-null direction%s (phase arbitrary)" % (
             state.undetermined, "s" * (state.undetermined > 1))
@@ -125,8 +150,8 @@ def shape(state):
     found = filaments(state.x)
     if found is None:
         return "no curves to be told apart"
-    return "curves of type (%d, %d) at links up to %.2g: %d cluster%s on $x_%d$ = const" % (
-        *found.type, found.gap, found.clusters, "s" * (found.clusters > 1), found.axis)
+    return "%d curve%s of type (%d, %d) at links up to %.2g" % (
+        found.count, "s" * (found.count > 1), *found.type, found.gap)
 
 
 def coinciding(state):
@@ -146,7 +171,7 @@ def coinciding(state):
 # ---- chapter 1 and section 2.1: the standard map, billiards, a cantorus
 
 def std_demo(figure, families):
-    axes = figure.subplots(3, 1, sharex=True)
+    axes = figure.subplots(1, 3, sharey=True, gridspec_kw={"wspace": 0.12})
     number = np.arange(20)[:, None]
     for panel, k in zip(axes, KICKS):
         x, p = (number + 0.5) / 20, number * float(farey.GOLDEN) % 1.0
@@ -157,11 +182,50 @@ def std_demo(figure, families):
             orbit.append((x, p % 1.0))
         xs, ps = np.array(orbit).transpose(1, 0, 2, 3)
         panel.plot(xs.ravel(), ps.ravel(), color=DARK, **POINTS)
-        panel.set(xlim=(0, 1), ylim=(0, 1), aspect="equal", ylabel="$p$")
-        panel.set_title("$k$ = %g" % k, pad=4)
-    axes[-1].set_xlabel("$x$")
+        panel.set(xlim=(0, 1), ylim=(0, 1), aspect="equal", xlabel="$x$")
+        panel.set_title("$k$ = %g" % k)
+    axes[0].set_ylabel("$p$")
     return ("The standard map: 200 iterates of 20 points, spread evenly.  The thesis does not say "
             "the three k (the last is more than 4/3) or the points; these were chosen here.")
+
+
+def cyl_def(figure, families):
+    axes = figure.subplots()
+    turn = np.linspace(0, 2 * np.pi, 201)
+    for height in 0.0, 1.0:
+        for line, part in (("-", turn >= np.pi), ("--" if height == 0 else "-", turn <= np.pi)):
+            axes.plot(np.cos(turn[part]), height + 0.22 * np.sin(turn[part]), line, color=DARK)
+    axes.plot([-1, -1, np.nan, 1, 1], [0, 1, np.nan, 0, 1], color=DARK)
+    arc = np.linspace(1.3, 1.7, 41) * np.pi
+    x, y = np.cos(arc), 0.6 + 0.22 * np.sin(arc)
+    axes.plot(x, y, color=BLUE)
+    arrow = {"arrowstyle": "->", "color": BLUE, "shrinkA": 0, "shrinkB": 0}
+    for head, foot in (((x[-1], y[-1]), (x[-3], y[-3])), ((1.15, 0.85), (1.15, 0.15))):
+        axes.annotate("", head, foot, arrowprops=arrow)
+    axes.annotate("$x$", (0, 0.38), (0, 3), textcoords="offset points", ha="center")
+    axes.annotate("$p$", (1.15, 0.5), (4, 0), textcoords="offset points", va="center")
+    axes.set(xlim=(-1.1, 1.3), ylim=(-0.3, 1.3), aspect="equal")
+    axes.set_axis_off()
+    return "A drawing: the cylinder, the angle x of period 1 round it, the momentum p along it."
+
+
+def twist(figure, families):
+    before, after = figure.subplots(1, 2, sharey=True, gridspec_kw={"wspace": 0.15})
+    p = np.linspace(0, 1, 200)
+    for x, colour in zip((1 / 6, 1 / 2, 5 / 6), (DARK, BLUE, VERMILLION)):
+        before.plot(np.full(len(p), x), p, color=colour)
+        after.plot(*twisted(x, p), color=colour)
+    before.set(xlim=(0, 1), xlabel="$x$", ylabel="$p$", title="vertical lines")
+    after.set(xlabel="$x'$", ylabel="$p'$", title="their images")
+    return ("A twist map carries vertical lines to monotone curves.  Here p' = p − (k/2π) sin 2πx, "
+            "x' = x + p' + (sin 2πp')/4π, not reduced to the circle, k = %g, chosen here."
+            % KICKS[0])
+
+
+def twisted(x, p):
+    """An area-preserving twist map whose twist is not the same everywhere."""
+    p = p - KICKS[0] / (2 * np.pi) * np.sin(2 * np.pi * x)
+    return x + p + np.sin(2 * np.pi * p) / (4 * np.pi), p
 
 
 def billiards(figure, families):
@@ -175,7 +239,7 @@ def billiards(figure, families):
     axes.plot(x[star], y[star], "o", markersize=4, color=BLUE)
     for j, k in enumerate(star):
         axes.annotate("$x_%d$" % j, (x[k], y[k]), (8 * x[k], 8 * y[k]), ha="center", va="center",
-                      textcoords="offset points", fontsize=8)
+                      textcoords="offset points")
     axes.set_aspect("equal")
     axes.margins(0.08)
     axes.set_axis_off()
@@ -219,8 +283,8 @@ def cantorus(figure, families):
     gaps = np.diff(at, append=at[0] + 1)
     widest = int(np.argmax(gaps))
     return ("A cantorus of the standard map, approached by a periodic orbit: k = %r, rotation "
-            "number %s = %.6f; %s; %s.  The widest gap is %.4f, about x = %.4f.  The range of y is "
-            "chosen here." % (k, vector_words(p, q), p[0] / q, quality(state),
+            "number %s = %.6f; %s; %s; %s.  The widest gap is %.4f, about x = %.4f.  The range of "
+            "y is chosen here." % (k, vector_words(p, q), p[0] / q, kind(state), quality(state),
                               exponents_words(state), gaps[widest],
                               round((at[widest] + gaps[widest] / 2) % 1.0, 4) % 1.0))
 
@@ -231,15 +295,16 @@ def pert_maps(figure, families):
     grid = np.linspace(0, 1, 401)
     x = np.stack(np.meshgrid(grid, grid), -1)
     levels = np.arange(-10, 11) / 10
-    axes = figure.subplots(3, 1, gridspec_kw={"hspace": 0.35})
+    axes = figure.subplots(1, 3, sharey=True, gridspec_kw={"wspace": 0.12})
     for letter, panel, potential in zip("abc", axes, (trig, poly, ff)):
         value = potential.evaluate(x.reshape(-1, 2))[0].reshape(x.shape[:2])
         panel.contour(grid, grid, -value, levels, colors=DARK, linewidths=0.6,
                       negative_linestyles="dashed")
-        panel.plot(*potential.start, "+", color=ORANGE, markersize=6)
-        panel.set(aspect="equal", xlabel="$x_0$", ylabel="$x_1$")
-        panel.set_title("(%s) %s: from %.3g to %.3g" % (letter, NAMES[potential.name],
-                                                        -value.max(), -value.min()))
+        panel.plot(*potential.start, "+", color=VERMILLION, markersize=7)
+        panel.set(aspect="equal", xlabel="$x_0$")
+        panel.set_title("(%s) %s\nfrom %.3g to %.3g" % (letter, NAMES[potential.name],
+                                                      -value.max(), -value.min()))
+    axes[0].set_ylabel("$x_1$")
     return ("Contours of -V, the interval 0.1, those of negative values dashed.  The cross: the "
             "maximum of V where states begin.")
 
@@ -249,9 +314,9 @@ def pert_maps(figure, families):
 def pair(left, right, state, middle, half):
     """The two projections of a state; of the momenta, a square about middle."""
     left.plot(*state.x.T, color=DARK, **POINTS)
-    left.set(xlim=(0, 1), ylim=(0, 1), aspect="equal", xlabel=r"$\theta_0$", ylabel=r"$\theta_1$")
+    left.set(xlim=(0, 1), ylim=(0, 1), aspect="equal", xlabel="$x_0$", ylabel="$x_1$")
     right.plot(*state.momenta.T, color=DARK, **POINTS)
-    right.plot(*state.rotation, "+", color=ORANGE, markersize=7)
+    right.plot(*state.rotation, "+", color=VERMILLION, markersize=7)
     right.set(xlim=(middle[0] - half, middle[0] + half), ylim=(middle[1] - half, middle[1] + half),
               aspect="equal", xlabel="$p_0$", ylabel="$p_1$")
     for axis in right.xaxis, right.yaxis:
@@ -268,18 +333,19 @@ def pairs_of_projections(figure, states):
     """A row for each state, with what is known of it; returns what is to be said of all of them."""
     lost = []
     rows = figure.subplots(len(states), 2, squeeze=False, gridspec_kw={"hspace": 0.42})
-    for number, ((left, right), state) in enumerate(zip(rows, states), ord("a")):
+    for number, ((left, right), state) in enumerate(zip(rows, states)):
+        letter = "abcdefghijklmnopqrstuvwxyz"[number % 26] * (1 + number // 26)
         pair(left, right, state, *square(state))
         away = np.sqrt(((state.momenta - state.rotation) ** 2).sum(1)).max()
-        left.set_title("(%c)  eps = %r, %s: %s\n%s; $|p_j - p/q|$ up to %.3f\n%s" % (
-            number, state.eps, vector_words(state.p, state.q), quality(state),
-            exponents_words(state), away, shape(state)), loc="left", fontsize=6.5)
+        left.set_title("(%s)  ε = %r, %s: %s\n%s, %s\n$|p_j - p/q|$ up to %.3f; %s" % (
+            letter, state.eps, vector_words(state.p, state.q), kind(state), quality(state),
+            exponents_words(state), away, shape(state)), loc="left")
         count = coinciding(state)
         if count:
-            lost.append("%d points of (%c)" % (count, number))
-    words = ("Left the angles, right the momenta, the cross at p/q.  Type (a, b) at links up to r: "
-             "points at most r apart, when linked, form curves that wind so round the torus; "
-             "clusters: the median over lines.")
+            lost.append("%d points of (%s)" % (count, letter))
+    words = ("Left the angles, right the momenta, the cross at p/q.  Curves of type (a, b) at "
+             "links up to r: points at most r apart, when linked, form curves that wind so round the "
+             "torus, as many as clusters are met on lines across, in the median.")
     if lost:
         words += "  Doubles cannot tell %s from another one (nearer than %g)." % (
             " and ".join(lost), LOST)
@@ -289,8 +355,9 @@ def pairs_of_projections(figure, states):
 def orbits_pairs(figure, families, name):
     potential, vector, sizes, first_known = ORBITS[name]
     words = pairs_of_projections(figure, [families.at(potential, vector, eps) for eps in sizes])
-    return "The %s perturbation, rotation vector %s.  %s  %s  %s" % (
-        NAMES[potential.name], vector_words(*vector), chosen(first_known), HOW, words)
+    said = [chosen(first_known), TEXT.get(name), HOW, words]
+    return "The %s perturbation, rotation vector %s.  %s" % (
+        NAMES[potential.name], vector_words(*vector), "  ".join(filter(None, said)))
 
 
 def phase_planes(figure, states):
@@ -299,9 +366,9 @@ def phase_planes(figure, states):
                                             gridspec_kw={"hspace": 0.42}).flat, states):
         panel.plot(state.x, state.momenta, color=DARK, **POINTS)
         panel.set(xlim=(0, 1), xlabel="$x$", ylabel="$p$")
-        panel.set_title("eps = %r, %s: %s\n%s" % (
-            state.eps, vector_words(state.p, state.q), quality(state), exponents_words(state)),
-            loc="left", fontsize=6.5)
+        panel.set_title("ε = %r, %s: %s\n%s, %s" % (
+            state.eps, vector_words(state.p, state.q), kind(state), quality(state),
+            exponents_words(state)), loc="left")
 
 
 def lyaps(figure, families):
@@ -315,14 +382,14 @@ def lyaps(figure, families):
                        linewidth=0.8, color=(DARK, BLUE)[k], label=name)
         leaves = family.eps[family.exponents[:, 0] > NOISE]
         panel.set_title("%s, %s%s" % (NAMES[potential.name], vector_words(*vector), (
-            "\nfirst > %g from eps = %g on" % (NOISE, leaves[0]) if len(leaves) else "")))
+            "\nfirst > %g from ε = %g on" % (NOISE, leaves[0]) if len(leaves) else "")))
         states += family
     rows[0, 0].legend(loc="upper left")
     for panel in rows[:, 0]:
         panel.set_ylabel("exponents")
     for panel in rows[1]:
-        panel.set_xlabel("eps")
-    return ("The two Lyapunov exponents >= 0 against eps; %g is about what 1989's method gave "
+        panel.set_xlabel("ε")
+    return ("The two Lyapunov exponents >= 0 against ε; %g is about what 1989's method gave "
             "where they are 0.  The thesis does not say the range; 0 to %g in steps of %g was "
             "chosen here.  %s  %s" % (NOISE, STEPS[-1], STEPS[1], labels(states), HOW))
 
@@ -332,7 +399,7 @@ def lyaps(figure, families):
 def smooth(figure, families):
     from matplotlib import ticker
 
-    rows = figure.subplots(3, 2, gridspec_kw={"hspace": 0.3, "wspace": 0.22})
+    rows = figure.subplots(3, 2, gridspec_kw={"hspace": 0.42, "wspace": 0.22})
     lost = 0
     for letter, panel, eps in zip("abcdef", rows.flat, SMOOTH):
         state = families.at(trig, SPIRAL, eps)
@@ -345,8 +412,8 @@ def smooth(figure, families):
             panel.xaxis.set_major_locator(ticker.MaxNLocator(4))
             panel.xaxis.set_major_formatter("{x:g}")
         panel.xaxis.set_minor_formatter(ticker.NullFormatter())
-        panel.set_title("(%s)  eps = %g: L up to %.2g\n%s, shadow %.0e" % (
-            letter, eps, ratio.max(), state.label, state.shadow), fontsize=7)
+        panel.set_title("(%s)  ε = %g: L up to %.2g\n%s, shadow %.0e" % (
+            letter, eps, ratio.max(), state.label, state.shadow))
         lost += np.count_nonzero(~apart)
         across, upward = np.array(panel.get_xlim()), panel.get_ylim()
         for power in range(-16, 2):         # lines of constant |dp|, of slope -1
@@ -364,6 +431,82 @@ def smooth(figure, families):
 
 # ---- section 2.5: Hedlund's examples
 
+def hed1(figure, families):
+    panels = figure.subplots(1, 2, sharey=True, gridspec_kw={"wspace": 0.15})
+    for panel, times in zip(panels, (1, 2)):
+        for copy in range(times):
+            for start in np.arange(-2, 2) / 2 + copy / 4:
+                panel.plot([start, start + 1 / 2], [0, 1], color=(BLUE, VERMILLION)[copy])
+        panel.set(xlim=(0, 1), ylim=(0, 1), aspect="equal", xlabel="$x_0$", xticks=(0, 1),
+                  yticks=(0, 1), title="type (%d, %d)" % (times, 2 * times))
+    panels[0].set_ylabel("$x_1$")
+    return ("A drawing: shortest closed geodesics of the flat two-dimensional torus.  One of type "
+            "(2, 4) is two copies of one of type (1, 2), here drawn apart.")
+
+
+def hedlund_geodesic(i, j, k):
+    """A short closed way of type (i, j, k) in Hedlund's and Bangert's metric, in the space of all
+    copies of the three-dimensional torus: its corners, from which in turn a tunnel and a leap to
+    another tunnel lead on.  The tunnels run along (t, 0, 0), (0, t, 1/2) and (1/2, 1/2, t)."""
+    return [(0, 0, 0), (i - 1, 0, 0), (i - 1, 0, 1 / 2), (i - 1, j - 1 / 2, 1 / 2),
+            (i - 1 / 2, j - 1 / 2, 1 / 2), (i - 1 / 2, j - 1 / 2, k), (i - 1 / 2, j, k), (i, j, k)]
+
+
+def hedlund_length(corners):
+    """Its length: in tunnels a hundredth of the Euclidean one."""
+    legs = [math.dist(*ends) for ends in zip(corners, corners[1:])]
+    return sum(leg * (TUNNEL, 1)[number % 2] for number, leg in enumerate(legs))
+
+
+def hed2(figure, families):
+    panels = figure.subplots(1, 2, sharey=True, width_ratios=(1, 2), gridspec_kw={"wspace": 0.1})
+    lengths = []
+    for panel, times in zip(panels, (1, 2)):
+        i, j, k = block = times, 2 * times, times
+        for a, b in itertools.combinations(itertools.product((0, i), (0, j), (0, k)), 2):
+            if sum(x != y for x, y in zip(a, b)) == 1:
+                panel.plot(*oblique(a, b), color="0.85", linewidth=0.6)
+        for ends in tunnels(*block):
+            panel.plot(*oblique(*ends), color=GREY, linewidth=0.8, linestyle=":")
+        corners = hedlund_geodesic(*block)
+        for number, ends in enumerate(zip(corners, corners[1:])):
+            panel.plot(*oblique(*ends), linewidth=2, color=(BLUE, VERMILLION)[number % 2],
+                       label=("in a tunnel", "a leap")[number] if number < 2 else None)
+        panel.plot(*oblique(corners[0], corners[-1]), "o", color=DARK, markersize=4,
+                   linestyle="none", label="the same point")
+        lengths.append(hedlund_length(corners))
+        panel.set_title("type (%d, %d, %d): length %.4g" % (*block, lengths[-1]))
+        panel.set(aspect="equal", ylim=(-0.1, 2.7))
+        panel.set_axis_off()
+    panels[0].legend(loc="upper left", bbox_to_anchor=(0, 1))
+    for axis, end in enumerate(np.eye(3) * 0.35):
+        foot, head = oblique((0, 0, 0), end).T + (2.0, 1.75)
+        panels[0].annotate("", head, foot, arrowprops={
+            "arrowstyle": "->", "shrinkA": 0, "shrinkB": 0})
+        panels[0].annotate("$x_%d$" % axis, head, (2, 2), textcoords="offset points")
+    return ("A drawing: closed ways on the three-dimensional torus, spread out, in a metric after "
+            "Bangert: %g of the Euclidean one in the tunnels (dotted), here the Euclidean one "
+            "elsewhere.  Either leaps three times from tunnel to tunnel: that of type (2, 4, 2), "
+            "of length %.4g, is shorter than two copies of the other, %.4g."
+            % (TUNNEL, lengths[1], 2 * lengths[0]))
+
+
+def tunnels(i, j, k):
+    """Those in the block [0, i] x [0, j] x [0, k], by their ends."""
+    for b, c in itertools.product(range(j + 1), range(k + 1)):
+        yield (0, b, c), (i, b, c)
+    for a, c in itertools.product(range(i + 1), range(k)):
+        yield (a, 0, c + 1 / 2), (a, j, c + 1 / 2)
+    for a, b in itertools.product(range(i + 1), range(j)):
+        if a < i:
+            yield (a + 1 / 2, b + 1 / 2, 0), (a + 1 / 2, b + 1 / 2, k)
+
+
+def oblique(*points):
+    """Points of space as they are drawn: x_1 to the right, x_2 upwards, x_0 to the back."""
+    return np.array([(b + 0.45 * a, c + 0.3 * a) for a, b, c in points]).T
+
+
 def deev(figure, families):
     rows = figure.subplots(2, 1, sharex=True, sharey=True)
     states = []
@@ -379,15 +522,21 @@ def deev(figure, families):
         panel.axhline(1 / math.sqrt(2), color=GREY, linewidth=0.8, linestyle="--")
         panel.set(title=vector_words(*vector), ylabel="largest displacement", xlim=(0, FINE[-1]))
     rows[0].legend(loc="upper left")
-    rows[1].set_xlabel("eps")
-    return ("The largest displacement of a point of the state from where it would be without "
-            "perturbation, %.3f at most (dotted: from the straight line through x_0, which depends "
-            "on which point is called x_0); dashed: 1/sqrt 2, half the diagonal of the unit "
-            "square.  In %d of %d states a phase is arbitrary, and with it a part of the "
-            "displacement.  The thesis does not say the vectors or the steps; these (%g) were "
-            "chosen here.  %s  %s"
-            % (max(state.deviation.from_start for state in states),
-               sum(state.undetermined > 0 for state in states), len(states), FINE[1],
+    rows[1].set_xlabel("ε")
+    farthest = max(states, key=lambda state: state.deviation.from_point)
+    words = ("The largest displacement of a point of the state from where it would be without "
+             "perturbation, %.3f at most.  Dotted: from the straight line through x₀, which "
+             "depends on which point is called x₀.  Dashed: 1/√2, half the diagonal of the unit square."
+             % max(state.deviation.from_start for state in states))
+    if farthest.deviation.from_point > 1 / math.sqrt(2):
+        words += ("  The thesis says that the distance from the straight line that connects x₀ to "
+                  "its image x_q is always smaller.  Of these states that is not so: %s, %s, "
+                  "ε = %g: %.2f." % (NAMES[farthest.potential.name],
+                                     vector_words(farthest.p, farthest.q), farthest.eps,
+                                     farthest.deviation.from_point))
+    return ("%s  In %d of %d states a phase is arbitrary, and with it a part of the displacement.  "
+            "The thesis does not say the vectors or the steps; these (%g) were chosen here.  %s  %s"
+            % (words, sum(state.undetermined > 0 for state in states), len(states), FINE[1],
                labels(states), HOW))
 
 
@@ -396,19 +545,19 @@ def hed_st(figure, families):
     w = Fraction(1, 10), farey.GOLDEN
     chain = [(m.p, m.q) for m in itertools.takewhile(lambda m: m.q <= SEQUENCE[-1],
                                                      farey.triangle(w)) if m.q in SEQUENCE]
-    cells = figure.subplots(len(chain) // 2, 4, gridspec_kw={"hspace": 0.5, "wspace": 0.42})
+    cells = figure.subplots(len(chain) // 2, 4, gridspec_kw={"hspace": 0.62, "wspace": 0.5})
     states = [families.at(potential, vector, eps) for vector in chain]
     middle, half = square(states[-1])
     for (left, right), state in zip(cells.reshape(-1, 2), states):
         pair(left, right, state, middle, 1.1 * half)
-        for panel in left, right:
-            panel.set(xlabel="", ylabel="")
-        left.set_title("%s: %s\nshadow %.0e, grad size %.0e" % (
-            vector_words(state.p, state.q), state.label, state.shadow, state.grad_size),
-            loc="left", fontsize=6)
+        for axis in left.xaxis, left.yaxis, right.xaxis, right.yaxis:
+            axis.get_major_locator().set_params(nbins=3)
+            axis.labelpad = 2
+        left.set_title("%s: %s\n%s" % (vector_words(state.p, state.q), state.label,
+                                       quality(state)), loc="left")
     return ("States whose rotation vectors approach %s, mediants of the Farey triangles about "
-            "(1/10, golden mean): pairs of angles and momenta, %s perturbation, eps = %g.  The "
-            "thesis does not say the map, eps, or the members; these were chosen here.  %s"
+            "(1/10, golden mean): pairs of angles and momenta, %s perturbation, ε = %g.  The "
+            "thesis does not say the map, ε, or the members; these were chosen here.  %s"
             % (vector_words(*TENTH), NAMES[potential.name], eps, HOW))
 
 
@@ -425,10 +574,10 @@ def tree(figure, families):
             new = (p, q) in mediants
             axes.plot([p / q] * 2, [-level - 0.07, -level + 0.07], color=DARK, linewidth=0.8)
             axes.annotate("(%d, %d)" % (p, q), (p / q, -level), (0, -13 if new else 7), ha="center",
-                          textcoords="offset points", fontsize=7, color=DARK if new else GREY,
+                          textcoords="offset points", color=DARK if new else "0.45",
                           weight="bold" if ((p,), q) == best[:2] else "normal")
         axes.plot(float(farey.GOLDEN), -level, "o", color=DARK, markersize=4)
-        axes.annotate("level %d" % level, (-0.06, -level), ha="right", va="center", fontsize=8)
+        axes.annotate("level %d" % level, (-0.06, -level), ha="right", va="center")
         ends = sorted(ends + mediants, key=lambda end: Fraction(*end))
     axes.set(xlim=(-0.2, 1.05), ylim=(-2.3, 0.3))
     axes.set_axis_off()
@@ -448,7 +597,7 @@ def trimed(figure, families):
         axes.annotate(name, (x, y), (10 * x, 8 if name == "B" else -12), ha="center", va="center",
                       textcoords="offset points", fontsize=9)
     for letter, x, where in (("r", -0.33, "(C, M, B)"), ("l", 0.33, "(B, M, A)")):
-        axes.annotate("%s\n%s" % (letter, where), (x, -0.72), ha="center", va="center", fontsize=8)
+        axes.annotate("%s\n%s" % (letter, where), (x, -0.72), ha="center", va="center")
     axes.set_aspect("equal")
     axes.margins(0.12, 0.2)
     axes.set_axis_off()
@@ -474,11 +623,12 @@ def tri(figure, families):
     for _ in range(60):                     # rrr...: (A, B, C) <- (C, A + C, B)
         a, b, c = place
         place = [c, (a + c) / 2, b]
-    ideal.plot(*place[0], "o", color=ORANGE, markersize=4)
-    true.plot(*map(float, farey.SPIRAL), "o", color=ORANGE, markersize=4)
-    for letter, panel in (("a", ideal), ("b", true)):
-        panel.set(aspect="equal", xlim=(0, 1), ylim=(0, 1), title="(%s)" % letter, xticks=(0, 1),
-                  yticks=(0, 1))
+    ideal.plot(*place[0], "o", color=VERMILLION, markersize=4)
+    true.plot(*map(float, farey.SPIRAL), "o", color=VERMILLION, markersize=4)
+    for letter, panel, ticks in (("a", ideal, ()), ("b", true, (0, 1))):
+        panel.set(aspect="equal", xlim=(0, 1), ylim=(0, 1), title="(%s)" % letter, xticks=ticks,
+                  yticks=ticks)
+    true.set(xlabel="$w_0$", ylabel="$w_1$")
     return ("Levels 0 to %d of the Farey triangles: (a) with all cuts in the middle, (b) where the "
             "rational vectors lie in the unit square.  The dot is the spiral mean, rrr..."
             % (LEVELS - 1))
@@ -487,14 +637,18 @@ def tri(figure, families):
 # ---- all of them
 
 FIGURES = {                             # the order of the thesis: width and height in inches
-    "std-demo": (3.6, 9.6, std_demo),
+    "std-demo": (7.2, 2.9, std_demo),
+    "cyl-def": (3.0, 2.2, cyl_def),
+    "twist": (6.0, 2.6, twist),
     "billiards": (3.6, 3.0, billiards),
     "cantorus": (6.0, 3.8, cantorus),
-    "pert-maps": (3.4, 9.6, pert_maps),
+    "pert-maps": (7.2, 3.1, pert_maps),
     "Lyaps": (6.4, 5.2, lyaps),
     **{name: (6.2, 3.25 * len(sizes), functools.partial(orbits_pairs, name=name))
        for name, (_, _, sizes, _) in ORBITS.items()},
-    "smooth": (6.4, 7.4, smooth),
+    "smooth": (6.4, 7.8, smooth),
+    "hed1": (4.8, 2.9, hed1),
+    "hed2": (6.4, 3.0, hed2),
     "deev": (6.0, 6.0, deev),
     "hed_st": (7.2, 8.0, hed_st),
     "tree": (6.0, 2.2, tree),
@@ -503,34 +657,38 @@ FIGURES = {                             # the order of the thesis: width and hei
 }
 
 
-def draw(name, kind="svg", families=None):
-    """One of the FIGURES as the bytes of a file of that kind: "svg", "png" or "pdf"."""
+def draw(name, kind="svg", families=None, caption=True):
+    """One of the FIGURES as the bytes of a file of that kind: "svg", "png" or "pdf"; with a caption
+    or without."""
     check([name], kind)
     width, height, fill = FIGURES[name]
     families = Families() if families is None else families
-    return _page(width, height, kind, lambda figure: fill(figure, families))
+    return _page(width, height, kind, lambda figure: fill(figure, families), caption)
 
 
-def states_picture(states, kind="svg"):
-    """States of a potential as the bytes of a file of that kind: their angles and momenta."""
+def states_picture(states, kind="svg", caption=True):
+    """States of a potential, or what prove() made of them, as the bytes of a file of that kind:
+    their angles and momenta; with a caption or without."""
     check([], kind)
-    states = list(states)
+    states = [Drawn(one) if isinstance(one, ProvedOrbit) else one for one in states]
     if not 0 < len(states) <= ROWS:
         raise ValueError("a picture shows 1 to %d states, not %d; choose fewer eps"
                          % (ROWS, len(states)))
 
     def fill(figure):
-        words = "The potential %s.  %s" % (states[0].potential.name, LABELS)
+        proved = {isinstance(state, Drawn) for state in states}
+        words = "  ".join(["The potential %s." % states[0].potential.name,
+                           *[LABELS] * (False in proved), *[PROVED] * (True in proved)])
         if states[0].potential.n == 2:
             return "%s  %s" % (words, pairs_of_projections(figure, states))
         phase_planes(figure, states)
         return words
 
-    return _page(6.2, 3.25 * len(states), kind, fill)
+    return _page(6.2, 3.25 * len(states), kind, fill, caption)
 
 
-def _page(width, height, kind, fill):
-    """A figure as the bytes of a file: fill(figure) draws it and returns what is said below."""
+def _page(width, height, kind, fill, caption):
+    """A figure as the bytes of a file: fill(figure) draws it and returns the caption."""
     from matplotlib import style
     from matplotlib.figure import Figure
 
@@ -539,8 +697,9 @@ def _page(width, height, kind, fill):
         words = fill(figure).replace("$", r"\$")
         figure.subplots_adjust(left=0.55 / width, right=1 - 0.1 / width, bottom=0.5 / height,
                                top=1 - 0.4 / height)
-        figure.text(0.1 / width, 0.0, "\n".join(textwrap.wrap(words, int(LETTERS * width))),
-                    fontsize=7, color="0.25", va="top", linespacing=1.35)
+        if caption:
+            figure.text(0.1 / width, 0.0, "\n".join(textwrap.wrap(words, int(LETTERS * width))),
+                        color="0.25", va="top", linespacing=1.35)
         return picture.encode(figure, kind, dpi=200, pad_inches=0.1)
 
 
@@ -557,9 +716,10 @@ def check(names, kind):
             raise ValueError("there is no figure %s; there are %s" % (name, ", ".join(FIGURES)))
 
 
-def figures(directory, only=None, kind="svg", progress=None):
+def figures(directory, only=None, kind="svg", progress=None, caption=True):
     """Draws the figures, or only those named, into NAME.svg (or "png", "pdf") in a directory, which
-    is made if need be; returns the paths.  progress(path) is called after each."""
+    is made if need be, with captions or without; returns the paths.  progress(path) is called after
+    each."""
     names = list(FIGURES) if only is None else list(only)
     check(names, kind)
     try:
@@ -569,10 +729,10 @@ def figures(directory, only=None, kind="svg", progress=None):
                                   % (directory, files.reason(error))) from None
     paths = [os.path.join(directory, "%s.%s" % (name, kind)) for name in names]
     for path in paths:
-        files.check_writable(path)
+        files.check_output(path, "figure", [kind])
     families = Families()
     for name, path in zip(names, paths):
-        files.write(path, draw(name, kind, families))
+        files.write(path, draw(name, kind, families, caption))
         if progress is not None:
             progress(path)
     return paths

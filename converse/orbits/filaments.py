@@ -38,7 +38,7 @@ class Filaments(NamedTuple):
 def filaments(x):
     """The Filaments that the points x (q, 2), of period 1, lie on, or None.  Takes time in q^2."""
     x = np.array(x, dtype=float) % 1.0
-    if x.ndim != 2 or x.shape[1] != 2 or not np.isfinite(x).all():
+    if x.ndim != 2 or x.shape[1] != 2 or not len(x) or not np.isfinite(x).all():
         raise ValueError("filaments are of points in the plane: give a finite array (q, 2)")
     edges, lift = _tree(x)
     early = max(len(edges) - PARTS, 0)

@@ -10,15 +10,15 @@ import heapq
 from dataclasses import dataclass
 from itertools import combinations
 from math import gcd, inf, sqrt, ulp
-from typing import Tuple
+from typing import Sequence, Tuple
 
 import numpy as np
 
 from .._native import ffi, lib
 from ..core import check
 from ..files import ConverseError
-from .potential import Potential, address
-from .state import FARTHEST, State
+from .potential import Potential, address, known, whole
+from .state import FARTHEST, State, expected
 
 U = 2.0 ** -53              # half the distance of the doubles next to 1
 LARGEST_EPS = 1e6
@@ -45,18 +45,8 @@ def _numbers(what, values, most):
     except (TypeError, ValueError, OverflowError):
         floats = [inf]
     if not all(abs(value) <= most for value in floats):
-        raise ValueError("%s: numbers of at most %g, not %r" % (what, most, values))
+        raise ValueError("%s: a list of numbers of at most %g, not %r" % (what, most, values))
     return floats
-
-
-def _whole(what, value, least, most):
-    """ValueError, unless it is a whole number in this range."""
-    try:
-        if int(value) == value and least <= value <= most:
-            return int(value)
-    except (TypeError, ValueError, OverflowError):
-        pass
-    raise ValueError("%s: a whole number from %d to %d, not %r" % (what, least, most, value))
 
 
 def _values(potential, x):
@@ -108,10 +98,12 @@ def _per_point(low, high, q):
     return low - ulp(low), high + ulp(high)
 
 
-def enclosed_action(state):
+def enclosed_action(state: State) -> Tuple[float, float]:
     """Two numbers, proved to be around state.action, whether it is an orbit or not."""
+    expected(state)
     _numbers("eps", [state.eps], LARGEST_EPS)
-    return _per_point(*_action(state), state.q)
+    low, high = _action(state)
+    return _per_point(low, high, state.q)
 
 
 # ---- the floor under all orbits of a rotation vector
@@ -205,7 +197,8 @@ def _highest(planes, radius):
     return best[:n], float(best[n])
 
 
-def floor(potential, eps, rotation, grid=256):
+def floor(potential: Potential, eps: float, rotation: Sequence[float],
+          grid: int = 256) -> Floor:
     """A Floor: how little action per point orbits of this rotation vector can have, by value
     iteration on grid^n nodes (Mather's beta from below).
 
@@ -215,12 +208,13 @@ def floor(potential, eps, rotation, grid=256):
     The action of a path x_0 ... x_m exceeds c.(x_m - x_0) by at least m times the least average on
     the grid, whatever c is; the c that gives the most is looked for by cutting planes, first on
     coarse grids: each closed path bounds what a c can give."""
+    known(potential)
     (eps,), n = _numbers("eps", [eps], LARGEST_EPS), potential.n
     w = np.array(_numbers("rotation", rotation, LARGEST_ROTATION))
     if len(w) != n:
         raise ValueError("the rotation vectors of %s have %d numbers, not %d"
                          % (potential.name, n, len(w)))
-    coarse = grid = _whole("grid", grid, 8, 2048)
+    coarse = grid = whole("grid", grid, 8, 2048)
     while coarse % 2 == 0 and coarse >= 48:
         coarse //= 2
     torus = _Torus(potential, eps, coarse)
@@ -451,7 +445,8 @@ class _Search:
         return [(low, lower), (upper, high)]
 
 
-def least_action(potential, p, q, eps, gap=1e-9, corridors=10000):
+def least_action(potential: Potential, p: Tuple[int, ...], q: int, eps: float, gap: float = 1e-9,
+                 corridors: int = 10000) -> LeastAction:
     """A LeastAction: bounds of the least action of all states of type (p, q), by branch and bound.
 
     gap       -- how far apart the bounds may stay
@@ -460,13 +455,15 @@ def least_action(potential, p, q, eps, gap=1e-9, corridors=10000):
     Above the eps where an orbit's tori break, q up to 30 takes seconds to minutes, and a gap of
     1e-12 is as cheap as a larger one.  Below, states slide along each other at no cost, and a small
     gap takes corridors without end."""
+    known(potential)
     _errors(potential, 1.0)
     eps, gap = _numbers("eps and gap", [eps, gap], LARGEST_EPS)
-    corridors = _whole("corridors", corridors, 1, 10 ** 9)
-    q = _whole("q", q, 1, LONGEST)
+    corridors = whole("corridors", corridors, 1, 10 ** 9)
+    q = whole("q", q, 1, LONGEST)
     state = State(potential, p, q, eps, np.zeros((q, potential.n)), (0.0,) * potential.n)
     if eps == 0:
         return LeastAction(0.0, 0.0, state, gcd(*state.p, state.q), 0)
     search = _Search(state)
     low, copies, count = search.run(gap * state.q, corridors)
-    return LeastAction(*_per_point(low, search.known, state.q), search.best, copies, count)
+    low, high = _per_point(low, search.known, state.q)
+    return LeastAction(low, high, search.best, copies, count)

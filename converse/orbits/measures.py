@@ -4,6 +4,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from .potential import Potential, known, whole
+from .state import State, expected
+
 LIMIT = 100.0               # a modest one: longer, the first vector is shortened
 
 
@@ -20,7 +23,7 @@ class Prelude(NamedTuple):
     graphs: float
 
 
-def prelude(potential):
+def prelude(potential: Potential) -> Prelude:
     """Where minimizing states and tori are impossible without following an orbit: a Prelude.
 
     A minimizing state has 2 - eps V'' > 0 wherever it goes.  On an invariant graph, which goes
@@ -28,6 +31,8 @@ def prelude(potential):
     (least eigenvalue of V''): there d_j = beta_j - 1/d_{j-1} > 0 and all beta_j <= B, so all d_j and
     all 1/d_j are at least l, and beta_j is the sum of two of them.  With V'' between -m and M that
     ends where 2 - eps M = 2 l, at eps = 4 m/(M (M + 2 m))."""
+    known(potential)
+
     def eigenvalues(x):
         return np.linalg.eigvalsh(potential.evaluate(x)[2])
 
@@ -51,14 +56,17 @@ def _highest(function, n):
     return centre
 
 
-def gram_schmidt_exponents(state, rounds=1, seed=0):
+def gram_schmidt_exponents(state: State, rounds: int = 1, seed: int = 0) -> np.ndarray:
     """The exponents of a state as they were found in 1989 (thesis, Appendix A), for comparison: 2n
     random vectors are carried along with DF and, whenever the first has grown, orthogonalized; the
     logarithms of their lengths are added.  Array (n,), larger first.
 
     Rounds times round the orbit; the error is about log(rounds q)/(rounds q), so that where all
     exponents are zero one round of q = 2513 gives 0.003."""
-    n, total = state.potential.n, 0.0
+    expected(state)
+    rounds, seed = whole("rounds", rounds, 1), whole("the seed", seed, 0)
+    n = state.potential.n
+    total = np.zeros(2 * n)
     vectors = np.linalg.qr(np.random.default_rng(seed).standard_normal((2 * n, 2 * n)))[0]
     for bend in np.concatenate([state.eps * state.potential.evaluate(state.x)[2]] * rounds):
         vectors[n:] -= bend @ vectors[:n]

@@ -4,15 +4,51 @@ The map is x' = x + p', p' = p - eps grad V(x).
 """
 
 import math
+import operator
+import threading
+from decimal import ROUND_CEILING, ROUND_FLOOR, Context, Decimal
 from fractions import Fraction
-from typing import Callable, Dict, Optional, Tuple
+from types import MappingProxyType
+from typing import Any, Callable, Dict, Optional, Sequence, Tuple
 
 import numpy as np
 
 from .._native import ffi, lib
-from ..files import ConverseError
+from ..core import check
 
 Bounds = Tuple[Fraction, Fraction]
+STUDIED = {}                # by name, the potentials at the end of this file
+
+
+def known(potential):
+    """The potential; ValueError, if it is none."""
+    if not isinstance(potential, Potential):
+        raise ValueError("the potential is one of converse.orbits, not %.200r" % (potential,))
+    return potential
+
+
+def told(progress):
+    """ValueError, unless it is None or can be called."""
+    if progress is not None and not callable(progress):
+        raise ValueError("progress is a function of two arguments, not %r" % (progress,))
+
+
+def finite(what, values):
+    """As a list of floats; ValueError, unless they are finite numbers."""
+    floats = _floats(values)
+    if floats is None:
+        raise ValueError("%s: finite numbers, as a list, not %.200r" % (what, values))
+    return list(floats)
+
+
+def whole(what, value, least, most=2 ** 31 - 1):
+    """As an int; ValueError, unless it is a whole number in this range."""
+    try:
+        if int(value) == value and least <= value <= most:
+            return int(value)
+    except (TypeError, ValueError, OverflowError):
+        pass
+    raise ValueError("%s: a whole number from %d to %d, not %.200r" % (what, least, most, value))
 
 
 def points(x, n):
@@ -29,25 +65,54 @@ def address(array, kind="double(*)[2]"):
 
 
 class Potential:
-    """A potential V(x), of period 1 in each of its n coordinates.
+    """A potential V(x), of period 1 in each of its n coordinates.  It cannot be changed.
 
     name       -- for reports
     n          -- dimensions, 1 or 2
     start      -- a maximum of V, where orbits begin
+    formula    -- V(x) in words, exactly, for reports
     curvature  -- an upper bound of the spectral norm of V'' anywhere; None: not known
     lipschitz  -- K with |V''(x) - V''(y)| <= K |x - y|, spectral and Euclidean norm; None: not known
     """
 
-    def __init__(self, kind, name, n, start, curvature=None, lipschitz=None):
+    name: str
+    n: int
+    start: Tuple[float, ...]
+    formula: str
+    curvature: Optional[float]
+    lipschitz: Optional[float]
+    scale: float                        # of a Fourier sum
+    native: Any
+
+    def __init__(self, kind, name, n, start, formula, curvature=None, lipschitz=None):
         if n not in (1, 2):
             raise ValueError("a potential has one or two coordinates, not %r" % (n,))
-        self.name, self.n, self.start = name, n, tuple(float(x) for x in start)
-        if len(self.start) != n or not all(map(math.isfinite, self.start)):
-            raise ValueError("the start of an orbit is %d numbers, not %r" % (n, start))
-        self.curvature, self.lipschitz = curvature, lipschitz
-        self.native = ffi.new("cv_potential *", {"kind": kind, "n": n})
+        if not isinstance(name, str) or not name or not name.isprintable():
+            raise ValueError("the name of a potential is printable text, not %r" % (name,))
+        if name in STUDIED:
+            raise ValueError("the name %s is taken by orbits.%s; choose another" % (name, name))
+        n = int(n)
+        start = (0.0,) * n if start is None else _floats(start)
+        if start is None or len(start) != n:
+            raise ValueError("the start of an orbit is %d finite numbers" % n)
+        for bound in curvature, lipschitz:
+            if bound is not None and (_floats([bound]) is None or not bound >= 0):
+                raise ValueError("curvature and lipschitz are finite numbers, 0 or more, or None, "
+                                 "not %r" % (bound,))
+        vars(self).update(name=name, n=n, start=start, formula=formula, curvature=curvature,
+                          lipschitz=lipschitz,
+                          native=ffi.new("cv_potential *", {"kind": kind, "n": n}))
 
-    def __repr__(self):
+    def __setattr__(self, name, value):
+        if not name.startswith("_"):
+            raise AttributeError("a potential cannot be changed (%s), since what was found and "
+                                 "proved rests on it: make another" % name)
+        super().__setattr__(name, value)
+
+    def __delattr__(self, name):
+        raise AttributeError("a potential cannot be changed (%s)" % name)
+
+    def __repr__(self) -> str:
         return "orbits.%s" % self.name if self.name in STUDIED else "<potential %s>" % self.name
 
     def __reduce__(self):
@@ -55,7 +120,7 @@ class Potential:
             return _studied, (self.name,)
         raise TypeError("the potential %s cannot be sent to another process" % self.name)
 
-    def evaluate(self, x):
+    def evaluate(self, x: np.ndarray) -> Tuple[np.ndarray, np.ndarray, np.ndarray]:
         """V, its gradient and its Hessian at x (m, n): arrays (m,), (m, n) and (m, n, n)."""
         x = points(x, self.n)
         value, gradient, bend = np.empty(len(x)), np.empty((len(x), 2)), np.empty((len(x), 3))
@@ -67,48 +132,83 @@ class Potential:
         return value, gradient[:, :self.n], hessian[:, :self.n, :self.n]
 
 
+def _one(digits):
+    return Fraction(1), Fraction(1)
+
+
 class Fourier(Potential):
     """A finite Fourier sum, V(x) = scale * sum of cosine cos(2 pi k.x) + sine sin(2 pi k.x).
 
     terms -- {k: (cosine, sine)}, k a tuple of n integers; floats are taken as what they are exactly
     start -- a maximum of V; by default one is looked for
-    scale_enclosure(digits) -- two Fractions around the scale, no further apart than 10^-digits
+    scale_enclosure(digits) -- two Fractions around the scale, no further apart than 10^-digits,
+             and around the same whenever it is asked.
+             To be sent to other processes it must be a function of a module, not a lambda
     """
 
     def __init__(self, terms: Dict[Tuple[int, ...], tuple], name: str = "fourier",
                  start: Optional[Tuple[float, ...]] = None,
-                 scale_enclosure: Callable[[int], Bounds] = lambda digits: (Fraction(1),) * 2):
+                 scale_enclosure: Callable[[int], Bounds] = _one):
         try:
-            self.terms = {tuple(map(int, k)): (Fraction(c), Fraction(s))
-                          for k, (c, s) in terms.items()}
-        except (AttributeError, TypeError, ValueError, OverflowError):
-            raise ValueError("terms are {(k0, k1): (cosine, sine)} with finite numbers, not %r"
-                             % (terms,)) from None
-        widths = {len(k) for k in self.terms}
-        if len(widths) != 1 or not widths <= {1, 2} or any(abs(i) > 1000 for k in self.terms for i in k):
+            terms = {tuple(map(operator.index, k)): (Fraction(c), Fraction(s))
+                     for k, (c, s) in terms.items()}
+        except (AttributeError, TypeError, ValueError, ZeroDivisionError, OverflowError):
+            raise ValueError("terms are {(k0, k1): (cosine, sine)}, k0 and k1 whole numbers, with "
+                             "finite numbers, not %r" % (terms,)) from None
+        widths = {len(k) for k in terms}
+        if len(widths) != 1 or not widths <= {1, 2} or any(abs(i) > 1000 for k in terms for i in k):
             raise ValueError("a Fourier sum has terms, all with one or all with two integers from "
-                             "-1000 to 1000; there are %r" % sorted(self.terms))
+                             "-1000 to 1000; there are %r" % sorted(terms))
         n, = widths
-        self.scale_enclosure = scale_enclosure
-        self.scale = float(sum(scale_enclosure(30)) / 2)
-        super().__init__(lib.CV_FOURIER, name, n, start or (0.0,) * n, *self._bounds())
-        self._arrays = [np.array([tuple(k) + (0,) * (2 - n) for k in self.terms], dtype=np.intc)] + [
-            np.array([float(term[i]) * self.scale for term in self.terms.values()]) for i in (0, 1)]
-        self.native.terms = len(self.terms)
+        vars(self).update(terms=MappingProxyType(terms), scale_enclosure=scale_enclosure)
+        self._said = -math.inf, math.inf        # what all that scale_enclosure said has in common
+        scale = self._scale()
+        vars(self).update(scale=float(sum(scale) / 2))
+        super().__init__(lib.CV_FOURIER, name, n, start, _formula(terms, scale_enclosure, scale),
+                         *self._bounds(max(map(abs, scale))))
+        self._arrays = [np.array([tuple(k) + (0,) * (2 - n) for k in terms], dtype=np.intc)] + [
+            np.array([float(term[i]) * self.scale for term in terms.values()]) for i in (0, 1)]
+        self.native.terms = len(terms)
         self.native.k, self.native.cosine, self.native.sine = (
             address(array, kind) for array, kind in zip(self._arrays, ("int *",) + 2 * ("double *",)))
         if start is None:
-            self.start = self._maximum()
+            vars(self).update(start=self._maximum())
 
     def __reduce__(self):
         if STUDIED.get(self.name) is self:
             return super().__reduce__()
-        return Fourier, (self.terms, self.name, self.start)
+        return Fourier, (dict(self.terms), self.name, self.start, self.scale_enclosure)
 
-    def _bounds(self):
+    def scale_within(self, digits):
+        """What scale_enclosure says, if it is what it shall be, and no other scale than before."""
+        try:
+            low, high = map(Fraction, self.scale_enclosure(digits))
+            valid = 0 <= high - low <= Fraction(1, 10 ** digits)
+        except (TypeError, ValueError, OverflowError):
+            valid = False
+        if not valid:
+            raise ValueError("scale_enclosure(%d) is not two Fractions around the scale, the lower "
+                             "one first, as close as they were asked for" % digits)
+        self._said = max(low, self._said[0]), min(high, self._said[1])
+        if self._said[0] > self._said[1]:
+            raise ValueError("scale_enclosure(%d) contradicts what it said before: a potential "
+                             "cannot be changed, make another" % digits)
+        return low, high
+
+    def _scale(self):
+        """The scale to 30 digits after the point, and 18 significant ones at least."""
+        digits = 30
+        while True:
+            low, high = self.scale_within(digits)
+            if (high - low) * 10 ** 18 <= abs(low):
+                return low, high
+            if digits > 300:
+                raise ValueError("the scale cannot be told from zero")
+            digits += 30
+
+    def _bounds(self, size):
         """Curvature and lipschitz: (2 pi)^m times the sum of |k|^m |amplitude|, m = 2 and 3, added up
         exactly and a little more; as a double at least that, float() being off by 2^-53 of it."""
-        size = max(map(abs, self.scale_enclosure(20)))
         sums = [sum(size * _root_up(sum(i * i for i in k)) ** m * _root_up(c * c + s * s)
                     for k, (c, s) in self.terms.items()) for m in (2, 3)]
         if max(sums) > 10 ** 300:
@@ -136,14 +236,17 @@ class FromPython(Potential):
     """A potential given by an object: value(x), gradient(x) and hessian(x) take an array (m, n) and
     return arrays (m,), (m, n) and (m, n, n)."""
 
-    def __init__(self, source, n, name="python", start=None, curvature=None, lipschitz=None):
+    def __init__(self, source: object, n: int, name: str = "python",
+                 start: Optional[Sequence[float]] = None, curvature: Optional[float] = None,
+                 lipschitz: Optional[float] = None) -> None:
         for method in ("value", "gradient", "hessian"):
             if not callable(getattr(source, method, None)):
                 raise ValueError("a potential needs value(x), gradient(x) and hessian(x); %r has no %s"
                                  % (source, method))
-        super().__init__(lib.CV_PYTHON, name, n, start or (0.0,) * n, curvature, lipschitz)
-        self.source = source
-        self.error = None
+        super().__init__(lib.CV_PYTHON, name, n, start, "what a Python object says", curvature,
+                         lipschitz)
+        vars(self).update(source=source)
+        self._error = None              # what source raised, until done() raises it again
         self._handle = ffi.new_handle(self)
         self.native.self = self._handle
 
@@ -181,21 +284,97 @@ def cv_python_potential(handle, m, x, value, gradient, hessian):
             if n == 2:
                 flat[:, 1], flat[:, 2] = bend[:, 0, 1], bend[:, 1, 1]
     except BaseException as error:          # Ctrl-C, too
-        potential.error = error
+        potential._error = error
         return lib.CV_EARGUMENT
     return lib.CV_OK
 
 
+_mine = threading.local()   # error: what stopped this thread's C; stop: an Event, set to end it
+
+
+def look_up():
+    """Ends the work of a thread that was told to, as Ctrl-C ends that of the main one."""
+    stop = getattr(_mine, "stop", None)
+    if stop is not None and stop.is_set():
+        raise KeyboardInterrupt
+
+
+class Stoppable:
+    """A task for the threads of an executor, all of which end soon after stop is set.  It can be
+    sent to other processes; there only signals end it."""
+
+    def __init__(self, task):
+        self.task, self.stop = task, threading.Event()
+
+    def __reduce__(self):
+        return Stoppable, (self.task,)
+
+    def __call__(self, *arguments):
+        _mine.stop = self.stop
+        try:
+            return self.task(*arguments)
+        finally:
+            _mine.stop = None
+
+
+def _interrupted(kind, error, trace):
+    _mine.error = error
+
+
+@ffi.def_extern(error=1, onerror=_interrupted)
+def cv_python_interrupts():
+    """Signals are looked for when Python begins to run, and Ctrl-C is raised then."""
+    look_up()
+    return 0
+
+
 def done(code, potential=None):
-    """A code of C, unless it is an error, which is raised; that of a potential from Python is its own."""
-    if code == lib.CV_ENOMEM:
-        raise MemoryError("there is not enough memory")
-    if code < 0:
-        if potential is not None and getattr(potential, "error", None) is not None:
-            error, potential.error = potential.error, None
-            raise error
-        raise ConverseError("the C core failed with code %d" % code)
-    return code
+    """A code of C, unless it is an error, which is raised; what Python raised there is its own."""
+    if code == lib.CV_ESTOPPED:
+        raise _mine.error
+    if code < 0 and getattr(potential, "_error", None) is not None:
+        error, potential._error = potential._error, None
+        raise error
+    return check(code)
+
+
+def _floats(values):
+    """As a tuple; None, unless they are finite numbers."""
+    try:
+        floats = tuple(float(x) for x in values)
+    except (TypeError, ValueError, OverflowError):
+        return None
+    return floats if all(map(math.isfinite, floats)) else None
+
+
+def _formula(terms, scale_enclosure, scale):
+    """V in words, exactly but for a scale that only scale_enclosure knows."""
+    parts = []
+    for k, (cosine, sine) in terms.items():
+        phase = _sum_text((i, "x" + str(axis) * (len(k) > 1)) for axis, i in enumerate(k))
+        phase = "(2 pi %s)" % (phase if phase[0] == "x" and " " not in phase else "(%s)" % phase)
+        parts += ((cosine, "cos" + phase), (sine, "sin" + phase)) if any(k) else ((cosine, ""),)
+    if scale[0] == scale[1]:
+        factor, where = str(scale[0]), ""
+    else:
+        factor, where = "s", next(
+            (words for function, words in SCALES if function is scale_enclosure),
+            "s from %s to %s" % tuple(
+                Context(prec=20, rounding=rounding).divide(Decimal(end.numerator),
+                                                           Decimal(end.denominator))
+                for end, rounding in zip(scale, (ROUND_FLOOR, ROUND_CEILING))))
+    text = _sum_text(parts)
+    return (text if factor == "1" else "%s (%s)" % (factor, text)) + (where and ", " + where)
+
+
+def _sum_text(parts):
+    """The sum of products of a number and what follows it."""
+    text = ""
+    for c, what in parts:
+        if c:
+            text += " - " if c < 0 else " + "
+            text += what if abs(c) == 1 and what else ("%s %s" % (abs(c), what)).strip()
+    return ("-" if text.startswith(" -") else "") + text[3:] or "0"
 
 
 def _root(x, digits):
@@ -238,6 +417,9 @@ def _standard_scale(digits):
     return 1 / (4 * high ** 2), 1 / (4 * low ** 2)
 
 
+SCALES = ((_trig_scale, "s = 8 sqrt 2/sqrt(207 + 33 sqrt 33)"),
+          (_standard_scale, "s = 1/(4 pi^2)"))
+
 _HALF = Fraction(1, 2)
 
 # Curvature and lipschitz.  ff: |c''| <= 48, |c'''| = 192.  V'' is diag(c''(x0), c''(x1))/4, of norm 12
@@ -255,24 +437,31 @@ _POLY_BOUNDS = (4096 * (3 / 8 / 16 + 0.022 * 0.1925),
                 4096 * (33 / 4 / 16 + 3 * 0.385 * (3 / 8 * 0.1925 + 0.022 * 2)))
 
 # The thesis's three, the real Froeschle map, and the standard map, whose eps is its parameter k.
+# Their names are theirs alone.
 # V = 1 at the start of trig, 1/4 at poly's, 27/49 at ff's, 9/16 at froeschle's.
 trig = Fourier({(1, 0): (0, -_HALF), (0, 1): (0, -_HALF), (1, 1): (0, -1)}, "trig",
                (0.8510422, 0.8510422), _trig_scale)
-poly = Potential(lib.CV_POLY, "poly", 2, ((2 - math.sqrt(2)) / 4, 0.5), *_POLY_BOUNDS)
-ff = Potential(lib.CV_FF, "ff", 2, (2 / 7, 2 / 7), *_FF_BOUNDS)
+poly = Potential(lib.CV_POLY, "poly", 2, ((2 - math.sqrt(2)) / 4, 0.5),
+                 "-4096 a^2 (a - 3/16) b^2, a = 1/4 - (x0 mod 1 - 1/2)^2, "
+                 "b = 1/4 - (x1 mod 1 - 1/2)^2", *_POLY_BOUNDS)
+ff = Potential(lib.CV_FF, "ff", 2, (2 / 7, 2 / 7),
+               "-(c(x0) + c(x1))/4 - c(x0 + x1)/2, c(x) = 1 - 24 y^2 + 32 y^3, y the distance from "
+               "x to the nearest integer", *_FF_BOUNDS)
 froeschle = Fourier({(1, 0): (-_HALF / 2, 0), (0, 1): (-_HALF / 2, 0), (1, 1): (-_HALF, 0)},
                     "froeschle", (0.29021531, 0.29021531))
 standard = Fourier({(1,): (-1, 0)}, "standard", (0.5,), _standard_scale)
 
-STUDIED = {potential.name: potential for potential in (trig, poly, ff, froeschle, standard)}
+STUDIED.update({potential.name: potential
+                for potential in (trig, poly, ff, froeschle, standard)})
 
 
 def _studied(name):
     return STUDIED[name]
 
 
-def parameters(eps):
+def parameters(eps: float) -> Tuple[float, float, float]:
     """The a, b, c of the rest of the package, where the angles have period 2 pi, whose map is that of
     trig and eps: with y = 2 pi x, a = b = c/2 = 2 pi^2 eps/M_trig."""
+    eps, = finite("eps", [eps])
     a = 2 * math.pi ** 2 * trig.scale * eps
     return a, a, 2 * a

@@ -15,10 +15,9 @@ from typing import Optional, Tuple
 import numpy as np
 
 from .._native import ffi, lib
-from ..core import check
 from ..files import ConverseError
-from .potential import Bounds, Fourier, address
-from .state import NEAR_NULL, STATIONARY, State
+from .potential import Bounds, Fourier, address, done
+from .state import NEAR_NULL, ROUNDING, STATIONARY, State, expected
 
 DIGITS = 20                 # the radius is at most 10^-DIGITS unless another number is asked for
 MOST = 1000                 # places, with which no orbit is tried any more
@@ -45,7 +44,8 @@ class ProvedOrbit:
                  however often the orbit is run through
     action    -- (low, high): its action per point less that of the straight orbit, |p/q|^2/2
     exponents -- ((low, high), ...): its n positive Lyapunov exponents, larger first
-    moved     -- how far the points are from those of the state, the largest coordinate
+    moved     -- how far the points are from those of the state: the largest coordinate, on the
+                 torus
     """
 
     state: State
@@ -60,8 +60,8 @@ class ProvedOrbit:
     label = "proved"
 
     def __repr__(self):
-        return "<ProvedOrbit %s, %s, eps %r, radius %.1e>" % (
-            self.state.potential.name, _type(self.state), self.state.eps, self.radius)
+        return "<ProvedOrbit %s, %s, eps %r, radius %s>" % (
+            self.state.potential.name, _type(self.state), self.state.eps, distances(self)[0])
 
     @cached_property
     def points(self) -> Tuple[Tuple[Fraction, ...], ...]:
@@ -71,30 +71,40 @@ class ProvedOrbit:
                            for o, p, x in zip(state.origin, state.p, u))
                      for j, u in enumerate(self.displacements))
 
+    @cached_property
+    def nearest(self) -> State:
+        """The points that were proved as doubles have them, to be drawn or measured."""
+        return self.state.moved(np.array(self.displacements, dtype=float))
+
     def report(self) -> str:
         """The theorem in words."""
-        state = self.state
+        state, (within, moved) = self.state, distances(self)
         lines = [
             "Proved, with %d decimal places: the map x' = x + p', p' = p - eps grad V(x) with the "
-            "potential %s" % (self.digits, state.potential.name),
+            "potential %s," % (self.digits, state.potential.name),
+            "V(x) = %s," % state.potential.formula,
             "and eps = %s has exactly one orbit of type %s within %s of the points computed"
-            % (_eps(state), _type(state), _round(self.radius, 2, up=True)),
-            "(Euclidean norm of all coordinates together). It is hyperbolic and, run through any",
-            "number of times, a nondegenerate local minimum of the action: second variation at least"
-            " %s." % _round(self.least, 3, up=False),
+            % (_eps(state), _type(state), within),
+            "(Euclidean norm of all coordinates together), which are within %s of those given (each "
+            "coordinate)." % moved,
+            "It is hyperbolic and, run through any number of times, a nondegenerate local minimum of "
+            "the action:", "second variation at least %s." % _round(self.least, 3, up=False),
             "Action per point less |p/q|^2/2: %s." % _interval(self.action)] + [
             "Exponent: %s." % _interval(exponent) for exponent in self.exponents]
         return "\n".join(lines) + "\n"
 
 
-def prove(state: State, digits: Optional[int] = None) -> ProvedOrbit:
+def prove(state: State, digits: Optional[int] = None, descend: bool = False) -> ProvedOrbit:
     """Proves that a true orbit lies beside a state of least action: a ProvedOrbit, whose radius is
     at most 10^-digits, by default 10^-20.
 
     The points are made as exact as that needs.  Where phases are undetermined in doubles they are
     determined here, and the points may move: see `moved`.
+    descend -- from a saddle whose least eigenvalue is above -1e-8, prove the minimum below it,
+               which is elsewhere; a steeper one is left by state.relax()
     NotProved, with a reason: among others, because the state is none of an orbit, or a saddle."""
     wanted = DIGITS if digits is None else digits
+    expected(state)
     if not isinstance(wanted, int) or not 1 <= wanted <= MOST - 2 * GUARD:
         raise ValueError("digits is a number from 1 to %d, not %r" % (MOST - 2 * GUARD, digits))
     if state.eps == 0:
@@ -108,6 +118,9 @@ def prove(state: State, digits: Optional[int] = None) -> ProvedOrbit:
     if state.least < -SOFT:
         raise NotProved("the state is a saddle: the least eigenvalue of its Hessian is about %.1e"
                         % state.least)
+    if not descend and state.label == "saddle":
+        raise NotProved("the state is a saddle: it, or it run through several times, is no minimum of "
+                        "the action")
     places, most = wanted + 2 * GUARD, min(MOST, wanted + 2 * GUARD + MORE)
     orbit, reason = None, None
     while True:
@@ -149,7 +162,7 @@ class _Exact:
         owners, array = _strings(numbers)
         waves = ffi.new("int[]", [i for k in self.terms for i in (k + (0,))[:2]])
         handle = ffi.new("cv_exact **")
-        check(lib.cv_exact_new(handle, kind, self.n, len(self.terms), waves,
+        done(lib.cv_exact_new(handle, kind, self.n, len(self.terms), waves,
                                [int(i) for i in state.p] + [0] * (2 - self.n), self.q, array,
                                address(u)))
         self.handle = ffi.gc(handle[0], lib.cv_exact_free)
@@ -163,16 +176,16 @@ class _Exact:
             self._owners, self._amplitudes = _strings(
                 [_amplitude(self.potential, c, places) for c in scale])
             self.places = places
-        check(lib.cv_exact_evaluate(self.handle, places, self._amplitudes))
+        done(lib.cv_exact_evaluate(self.handle, places, self._amplitudes))
         self.gradient = self.bound(lib.CV_GRADIENT)
         self.action = self.bound(lib.CV_ACTION_LOW), self.bound(lib.CV_ACTION_HIGH)
 
     def keep(self):
         """Remembers the points, and goes back to them."""
-        check(lib.cv_exact_keep(self.handle, 0))
+        done(lib.cv_exact_keep(self.handle, 0))
 
     def back(self):
-        check(lib.cv_exact_keep(self.handle, 1))
+        done(lib.cv_exact_keep(self.handle, 1))
 
     def newton(self, shift):
         """Makes a step of Newton's method.  False: Hessian + shift is not positive definite."""
@@ -206,15 +219,18 @@ class _Exact:
 
     @staticmethod
     def _succeeds(code):
-        return code != lib.CV_ESINGULAR and check(code) == lib.CV_OK
+        return code != lib.CV_ESINGULAR and done(code) == lib.CV_OK
 
 
 def _attempt(state, exact, places, wanted):
     ulp = Fraction(1, 10 ** places)
     floor = ulp * 10 ** (2 * GUARD)
     _refine(state, exact, places, floor)
-    least = _least(state, exact, floor)
+    displacements = exact.displacements()
+    steps = [abs(float(new - Fraction(old)))
+             for row, olds in zip(displacements, state.u.tolist()) for new, old in zip(row, olds)]
     bend = exact.eps * exact.lipschitz
+    least = _least(state, exact, floor, float(bend) * math.hypot(*steps))
     radius = exact.gradient / least * Fraction(9, 8) + ulp
     left = least - bend * radius
     if not exact.gradient < radius * left or left < least / 2:
@@ -229,10 +245,7 @@ def _attempt(state, exact, places, wanted):
     if kind is None:
         raise _TooFewPlaces("the pivots could not be enclosed")
     action = (exact.action[0] - exact.gradient * radius / state.q, exact.action[1])
-    displacements = exact.displacements()
-    moved = max(abs(float(new - Fraction(old)))
-                for row, olds in zip(displacements, state.u.tolist())
-                for new, old in zip(row, olds))
+    moved = max(abs(step - round(step)) for step in steps)
     return ProvedOrbit(state, places, radius, left, action, _exponents(state, exact, kind), moved,
                        displacements)
 
@@ -275,18 +288,25 @@ def _refine(state, exact, places, floor):
     raise _TooFewPlaces("Newton's method did not converge")
 
 
-def _least(state, exact, floor):
+def _least(state, exact, floor, change):
     """A number that no eigenvalue of any copy's Hessian is below, within a few per cent of the
-    largest."""
+    largest.  change: by how much the eigenvalues may be others than those of the state, whose
+    points are others."""
     guess = max(Fraction(state.least), Fraction(1, 10 ** 11)) * Fraction(49, 50)
+    more = Fraction(21, 20)
     if exact.least(guess):
-        return guess
+        if change + ROUNDING < state.least / 100 or not exact.least(guess * more):
+            return guess
+        low, high = guess * more, guess * 16
+        while exact.least(high):
+            low, high = high, high * 16
+        return _boundary(low, high, lambda m: not exact.least(m), more)[0]
     if not exact.least(floor):
         if exact.bends(-floor * 10 ** GUARD):
             raise NotProved("the orbit is no minimum of the action when it is run through several "
                             "times")
         raise _TooFewPlaces("the minimum is too flat")
-    return _boundary(floor, guess, lambda m: not exact.least(m), Fraction(21, 20))[0]
+    return _boundary(floor, guess, lambda m: not exact.least(m), more)[0]
 
 
 def _boundary(low, high, holds, ratio):
@@ -326,12 +346,8 @@ def _exponents(state, exact, kind):
 
 def _amplitude(potential, c, places):
     """scale * c to within 10^-places, as a decimal string."""
-    low, high = sorted(c * x for x in potential.scale_enclosure(
-        places + 2 + len(str(math.ceil(abs(c))))))
-    if high - low > Fraction(1, 10 ** (places + 1)):
-        raise ValueError("the scale of the potential %s is not enclosed as closely as its "
-                         "scale_enclosure was asked for" % potential.name)
-    return _decimal(low, places + 1)
+    digits = places + 2 + len(str(math.ceil(abs(c))))
+    return _decimal(min(c * x for x in potential.scale_within(digits)), places + 1)
 
 
 def log_bounds(x: Fraction) -> Bounds:
@@ -359,6 +375,12 @@ def log_bounds(x: Fraction) -> Bounds:
     return Fraction(middle - off, unit), Fraction(middle + off, unit)
 
 
+def distances(proof):
+    """radius and moved in words, rounded up."""
+    return (_round(proof.radius, 2, up=True),
+            _round(Fraction(proof.moved) * (1 + Fraction(1, 2 ** 50)), 2, up=True))
+
+
 def _eps(state):
     """eps as the exact decimal that it stands for."""
     return str(Decimal(repr(state.eps)))
@@ -381,7 +403,9 @@ def _decimal(x, places, up=False):
 
 
 def _round(x, digits, up):
-    """A number > 0 rounded to so many digits, downwards or upwards."""
+    """A number >= 0 rounded to so many digits, downwards or upwards."""
+    if not x:
+        return "0"
     order = 0
     while x >= Fraction(10) ** (order + 1):
         order += 1

@@ -11,11 +11,12 @@ damped Newton.  What makes this work for long orbits is that the action is a sum
 import math
 import time
 from dataclasses import replace
+from typing import Callable, Optional, Tuple
 
 import numpy as np
 
 from ..files import ConverseError
-from .potential import Potential
+from .potential import Potential, told
 from .solver import follow, straight
 from .state import State
 
@@ -32,7 +33,9 @@ AWAY = (0.1, 0.3, 0.6)      # how far pieces are moved: a normal deviate times o
 SLIP = 0.4                  # see _mend
 
 
-def search(potential, p, q, eps, searches=200, seconds=math.inf, seed=0, progress=None):
+def search(potential: Potential, p: Tuple[int, ...], q: int, eps: float, searches: int = 200,
+           seconds: float = math.inf, seed: int = 0,
+           progress: Optional[Callable[[int, State], object]] = None) -> State:
     """The state of type (p, q) of least action that many searches find; State.searches says how
     many, and its label "best of N searches" if it is a minimum.  It is not proved to be the least.
 
@@ -49,12 +52,9 @@ def search(potential, p, q, eps, searches=200, seconds=math.inf, seed=0, progres
 
     ConverseError, if none of the searches ends.
     """
-    if not isinstance(potential, Potential):
-        raise ValueError("the potential is one of converse.orbits, not %r" % (potential,))
     if isinstance(searches, bool) or not isinstance(searches, int) or searches < 1:
         raise ValueError("searches is a whole number, 1 or more, not %r" % (searches,))
-    if progress is not None and not callable(progress):
-        raise ValueError("progress is a function of two arguments, not %r" % (progress,))
+    told(progress)
     if isinstance(seconds, bool) or not isinstance(seconds, (int, float)) or not seconds > 0:
         raise ValueError("seconds is a number above 0, not %r" % (seconds,))
     try:

@@ -1,24 +1,47 @@
 """Finding states: continuation in eps, and the methods of 1989 (thesis, Appendix A)."""
 
 import csv
+import math
 from dataclasses import dataclass, replace
-from typing import Tuple
+from typing import Callable, Iterator, List, Optional, Sequence, TextIO, Tuple
 
 import numpy as np
 
 from .._native import lib
 from ..files import ConverseError
-from .potential import address, done
-from .state import FARTHEST, State
+from .potential import Potential, address, done, finite, known, told, trig, whole
+from .state import FARTHEST, State, expected, type_of
 
-STEP = 0.0025               # of eps, at most, from one state to the next guess
-LEAST_STEP = STEP / 64
+PER_CURVATURE = 0.2         # the step of eps from one state to the next guess, times the curvature
+HALVED = 64                 # times less, at least, where the solver fails
+MOST = 10000                # steps to one eps
 
 
-def straight(potential, p, q, origin=None):
+def straight(potential: Potential, p: Tuple[int, ...], q: int,
+             origin: Optional[Tuple[float, ...]] = None) -> State:
     """The state x_j = origin + j p/q, least at eps 0; by default it begins at a maximum of V."""
-    rows = q if isinstance(q, (int, np.integer)) and q > 0 else 0       # State tells what is wrong
-    return State(potential, p, q, 0.0, np.zeros((rows, potential.n)), origin or potential.start)
+    known(potential)
+    p, q = type_of(potential, p, q)
+    return State(potential, p, q, 0.0, np.zeros((q, potential.n)),
+                 potential.start if origin is None else origin)
+
+
+def step_of(potential):
+    """How far follow goes in eps at once: about PER_CURVATURE over the curvature, which is estimated
+    on a grid if it is not known, rounded to 1, 2.5 or 5 times a power of ten.  So the map of 1000 V
+    and eps/1000 has the same orbits as that of V and eps."""
+    bend = potential.curvature
+    if bend is None:
+        axis = (np.arange(32) + 0.5) / 32
+        grid = np.stack(np.meshgrid(*[axis] * potential.n), -1).reshape(-1, potential.n)
+        bend = float(np.abs(np.linalg.eigvalsh(potential.evaluate(grid)[2])).max())
+    bend = max(bend, 1e-300)
+    order = math.floor(math.log10(PER_CURVATURE / bend))
+    return min((float("%se%d" % (digits, order)) for digits in ("1", "2.5", "5", "10")),
+               key=lambda step: abs(math.log(step * bend / PER_CURVATURE)))
+
+
+STEP = step_of(trig)        # and that of poly and ff
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,22 +50,25 @@ class Family:
 
     states: Tuple[State, ...]
 
-    def __len__(self):
+    def __len__(self) -> int:
         return len(self.states)
 
-    def __getitem__(self, k):
+    def __getitem__(self, k: int) -> State:
         return self.states[k]
 
+    def __iter__(self) -> Iterator[State]:
+        return iter(self.states)
+
     @property
-    def eps(self):
+    def eps(self) -> np.ndarray:
         return np.array([state.eps for state in self.states])
 
     @property
-    def exponents(self):
+    def exponents(self) -> np.ndarray:
         """Array (len, n)."""
         return np.array([state.exponents for state in self.states])
 
-    def write_csv(self, file):
+    def write_csv(self, file: TextIO) -> None:
         """A row for each state, with its measures."""
         rows = csv.writer(file, lineterminator="\n")
         rows.writerow(COLUMNS)
@@ -61,14 +87,32 @@ def row(state):
             *map(repr, state.deviation), state.undetermined]
 
 
-def follow(potential, p, q, eps, progress=None):
+def reached(potential, eps):
+    """As a list of floats; ValueError, unless they are finite numbers that follow comes to."""
+    eps, step = finite("eps", eps), step_of(potential)
+    for a, b in zip([0.0] + eps, eps):
+        if not abs(b - a) <= MOST * step:
+            raise ValueError("eps %r is more than %d steps of %g away from %r: too far to be followed"
+                             % (b, MOST, step, a))
+    return eps
+
+
+def follow(potential: Potential, p: Tuple[int, ...], q: int, eps: Sequence[float],
+           progress: Optional[Callable[[int, State], object]] = None) -> Family:
     """A Family: the states that continuation from eps 0 reaches at each eps in turn.
 
-    Each state is the guess for the next, at most STEP further, and less where the solver fails.
-    A branch of minima is followed, which need not stay the least.  ConverseError, if it is lost."""
-    state, states = straight(potential, p, q), []
+    eps -- finite numbers, in the order wanted; each at most MOST steps from the one before
+    progress(done, state) -- is told each state
+
+    Each state is the guess for the next, at most step_of(potential) further, and less where the
+    solver fails.  A branch of minima is followed, which need not stay the least.  ConverseError, if
+    it is lost."""
+    state = straight(potential, p, q)
+    states: List[State] = []
+    eps, longest = reached(potential, eps), step_of(potential)
+    told(progress)
     for target in eps:
-        step = STEP
+        step = longest
         while state.eps != target or not states:
             gap = target - state.eps
             there = target if abs(gap) <= step * 1.000001 else state.eps + (step if gap > 0 else -step)
@@ -76,7 +120,7 @@ def follow(potential, p, q, eps, progress=None):
                 state = state.relax(there)
             except ConverseError:
                 step /= 2
-                if step < LEAST_STEP:
+                if step < longest / HALVED:
                     raise
                 continue
             if there == target:
@@ -87,11 +131,15 @@ def follow(potential, p, q, eps, progress=None):
     return Family(tuple(states))
 
 
-def flow(state, eps=None, grad_size=1e-6, max_steps=10000, dt=0.5):
+def flow(state: State, eps: Optional[float] = None, grad_size: float = 1e-6,
+         max_steps: int = 10000, dt: float = 0.5) -> Tuple[State, int]:
     """Gradient flow (thesis, Appendix A), for comparison: du/dtau = -dL/du until the gradient's root
     mean square is at most grad_size.  The kinetic part is taken implicitly, so that dt may be large.
     Returns the state, "not stationary" perhaps, and the number of steps."""
-    state = replace(state, eps=state.eps if eps is None else float(eps), searches=0)
+    expected(state)
+    finite("grad_size and dt", [grad_size, dt])
+    state = replace(state, eps=state.eps if eps is None else eps, searches=0)
+    max_steps = whole("max_steps", max_steps, 0)
     wave = 2 - 2 * np.cos(2 * np.pi * np.fft.rfftfreq(state.q))
     damping = 1 / (1 + dt * wave)[:, None]
     for steps in range(max_steps):
@@ -103,12 +151,15 @@ def flow(state, eps=None, grad_size=1e-6, max_steps=10000, dt=0.5):
     return state, max_steps
 
 
-def newton(state, eps=None, tol=1e-13, max_steps=50):
+def newton(state: State, eps: Optional[float] = None, tol: float = 1e-13,
+           max_steps: int = 50) -> Tuple[State, int]:
     """Newton's method without damping (thesis, Appendix A), for comparison: it finds whatever is
     stationary, or nothing.  Returns the last state, "not stationary" perhaps, and the number of
     steps."""
-    state = replace(state, eps=state.eps if eps is None else float(eps), searches=0)
-    n = state.potential.n
+    expected(state)
+    finite("tol", [tol])
+    state = replace(state, eps=state.eps if eps is None else eps, searches=0)
+    n, max_steps = state.potential.n, whole("max_steps", max_steps, 0)
     for steps in range(max_steps + 1):
         if steps == max_steps or np.abs(state.gradient).max() <= tol:
             break

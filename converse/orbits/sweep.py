@@ -12,15 +12,17 @@ import functools
 import io
 import math
 import os
+import zlib
 from collections import deque
-from typing import NamedTuple, Optional
+from typing import Any, Callable, NamedTuple, Optional, Sequence, Tuple, Union
 
 import numpy as np
 
 from .. import files
 from ..files import ConverseError
 from ..growth import count_workers
-from .solver import COLUMNS, follow, row, straight
+from .potential import Potential, Stoppable, finite, known, told
+from .solver import COLUMNS, MOST, follow, reached, row, straight
 from .state import ROUNDS, State
 
 LOST = "lost"                           # in place of a label: continuation has lost the branch
@@ -30,12 +32,16 @@ HALVINGS = 10
 AHEAD = 2                               # tasks for each that is worked on
 PER_CURVATURE = 0.03, 0.0006, 4.0       # onset's step, width and top times potential.curvature
 
+SEAL = "crc32"                          # the last column of a sweep's file: see _sealed
 ONSET_COLUMNS = ("potential", "p", "q", "label", "eps_below", "eps_above", "exponent_below",
                  "exponent_above")
 TABLELESS = ValueError, IndexError, csv.Error       # of a text that is no table
 
 
 # ---- where an orbit turns hyperbolic
+
+Type = Tuple[Tuple[int, ...], int]
+
 
 class Onset(NamedTuple):
     """The states on both sides of an onset; above is None where there is none up to the end."""
@@ -44,7 +50,9 @@ class Onset(NamedTuple):
     above: Optional[State]
 
 
-def onset(potential, p, q, exponent=None, step=None, width=None, top=None):
+def onset(potential: Potential, p: Tuple[int, ...], q: int, exponent: Optional[float] = None,
+          step: Optional[float] = None, width: Optional[float] = None,
+          top: Optional[float] = None) -> Onset:
     """Where the orbit of type (p, q) that continuation from eps 0 follows turns hyperbolic: a
     minimum whose first exponent exceeds the given one.  An Onset; its two eps are at most width
     apart.
@@ -61,16 +69,19 @@ def onset(potential, p, q, exponent=None, step=None, width=None, top=None):
 
     What is seen of one orbit is evidence, not proof, that a torus is near it, or that none is.
     ConverseError if continuation loses the branch."""
+    known(potential)
     given = (step, width, top)
     if None in given and not potential.curvature:
         raise ValueError("the potential %s has no known curvature: give step, width and top"
                          % potential.name)
-    step, width, top = (float("%.0e" % (x / potential.curvature)) if y is None else float(y)
-                        for x, y in zip(PER_CURVATURE, given))
-    if not (0 < width <= step and 0 < top < math.inf):
-        raise ValueError("step, width and top are positive, the width at most the step, not %r, "
-                         "%r, %r" % (step, width, top))
-    limit = 1 / q if exponent is None else float(exponent)
+    step, width, top = finite("step, width and top", [
+        float("%.0e" % (x / (potential.curvature or 1))) if y is None else y
+        for x, y in zip(PER_CURVATURE, given)])
+    if not (0 < width <= step and 0 < top <= MOST * step):
+        raise ValueError("step, width and top are positive, the width at most the step, and the top "
+                         "at most %d steps, not %r, %r, %r" % (MOST, step, width, top))
+    q = straight(potential, p, q).q
+    limit, = finite("exponent", [1 / q if exponent is None else exponent])
     if not limit >= 2 / max(ROUNDS, 5 * q):
         raise ValueError("an exponent of %r is too small to be seen" % limit)
     below, above, k = straight(potential, p, q), None, 0
@@ -82,6 +93,8 @@ def onset(potential, p, q, exponent=None, step=None, width=None, top=None):
             eps = min(k * step, top)
         else:
             eps = (below.eps + above.eps) / 2
+            if not below.eps < eps < above.eps:         # no double is between them
+                break
         state = _further(below, eps)
         if state.exponents[0] > limit:          # false where it is NaN, since it is no minimum
             above = state
@@ -103,37 +116,46 @@ def _further(state, eps, halvings=HALVINGS):
 
 # ---- sweeps
 
-def sweep(potential, vectors, eps, executor=None, file=None, progress=None):
+def sweep(potential: Potential, vectors: Sequence[Type], eps: Sequence[float],
+          executor: Optional[concurrent.futures.Executor] = None,
+          file: Union[str, "os.PathLike[str]", None] = None,
+          progress: Optional[Callable[[int, int], object]] = None) -> np.ndarray:
     """The families of many rotation vectors, (p, q) each, at each eps: a table as of read_csv.
 
     executor -- a concurrent.futures.Executor, of threads, processes or others; by default this
         thread does all
     file -- a CSV file that grows with every vector.  If it is there already it must be the
-        beginning of this very sweep, and is continued.
+        beginning of this very sweep, and is continued.  Its last column is a check sum.
     progress(done, of) -- is told how many vectors are finished
 
     Where continuation loses a branch the rest of its rows has the label "lost" and no numbers."""
-    eps = [float(x) for x in eps]
-    if not eps or not all(map(math.isfinite, eps)):
+    eps = finite("eps", eps)
+    if known(potential).curvature is not None:      # else the workers find out, whose it may be
+        reached(potential, eps)
+    if not eps:
         raise ValueError("eps is a list of finite numbers, one at least, not %r" % (eps,))
-    return _sweep(functools.partial(_family, potential, eps), COLUMNS, potential, vectors,
-                  [[repr(x)] for x in eps], executor, file, progress)
+    return _sweep(functools.partial(_family, potential, eps), repr(eps), COLUMNS, potential,
+                  vectors, [[repr(x)] for x in eps], executor, file, progress)
 
 
-def onsets(potential, vectors, executor=None, file=None, progress=None, **how):
+def onsets(potential: Potential, vectors: Sequence[Type],
+           executor: Optional[concurrent.futures.Executor] = None,
+           file: Union[str, "os.PathLike[str]", None] = None,
+           progress: Optional[Callable[[int, int], object]] = None, **how: Any) -> np.ndarray:
     """onset() of many rotation vectors; how is handed to it, all else is as in sweep().
 
     The columns eps_below and eps_above enclose each onset; eps_above is inf where there is none.
     The exponents are the first ones there, and the label is that of the state above."""
-    return _sweep(functools.partial(_onset, potential, how), ONSET_COLUMNS, potential, vectors,
-                  [[]], executor, file, progress)
+    return _sweep(functools.partial(_onset, potential, how), repr(sorted(how.items())),
+                  ONSET_COLUMNS, potential, vectors, [[]], executor, file, progress)
 
 
-def read_csv(file):
+def read_csv(file: Union[str, "os.PathLike[str]"]) -> np.ndarray:
     """The table in a CSV file of this module or of Family.write_csv: an array with the columns'
-    names as its fields, p an array of integers; a number that is missing is NaN."""
+    names, but for the check sums', as its fields, p an array of integers; a number that is missing
+    is NaN."""
     try:
-        with open(file, encoding="utf-8", newline="") as stream:
+        with open(os.fspath(file), encoding="utf-8", newline="") as stream:
             return _table(stream.read())
     except OSError as error:
         raise ConverseError("%s: cannot be read (%s)" % (file, files.reason(error))) from None
@@ -143,6 +165,8 @@ def read_csv(file):
 
 def _table(text):
     header, *rows = csv.reader(io.StringIO(text))
+    if header[-1:] == [SEAL] and all(len(row) == len(header) for row in rows):
+        header, *rows = (row[:-1] for row in (header, *rows))
     if tuple(header) not in (COLUMNS, ONSET_COLUMNS) or any(len(row) != len(header)
                                                             for row in rows):
         raise ValueError("no such columns")
@@ -161,6 +185,12 @@ def _text(rows):
     text = io.StringIO(newline="")
     csv.writer(text, lineterminator="\n").writerows(rows)
     return text.getvalue()
+
+
+def _sealed(seal, text):
+    """Rows, each with a check sum of what it says and of what the sweep is."""
+    return "".join("%s,%08x\n" % (line[:-1], zlib.crc32((seal + line).encode("utf-8")))
+                   for line in text.splitlines(keepends=True))
 
 
 def _type(potential, vector):
@@ -188,28 +218,34 @@ def _onset(potential, how, vector):
     return _text([[*_type(potential, vector), *found]])
 
 
-def _sweep(task, columns, potential, vectors, eps, executor, file, progress):
-    """Does all tasks.  eps: of each row of a vector, what follows its type there."""
-    if not potential.name.isprintable():
-        raise ValueError("in a table the name of a potential is printable, not %r" % potential.name)
+def _sweep(task, how, columns, potential, vectors, eps, executor, file, progress):
+    """Does all tasks.  how: the arguments that all rows depend on; eps: of each row of a vector,
+    what follows its type there."""
+    known(potential)
+    told(progress)
     if executor is not None and not hasattr(executor, "submit"):
         raise TypeError("the executor is a concurrent.futures.Executor, not %r" % (executor,))
-    vectors = [_vector(potential, vector) for vector in vectors]
-    texts = [_text([columns])]
+    try:
+        vectors = [_vector(potential, vector) for vector in vectors]
+    except TypeError:
+        raise ValueError("the rotation vectors are a list of pairs (p, q), not %r"
+                         % (vectors,)) from None
+    texts = [_text([(*columns, SEAL)])]
+    seal = "%s %r %s\n" % (potential.formula, potential.start, how)
     with contextlib.ExitStack() as stack:
         out = None
         if file is not None:
             files.check_writable(file, regular=True)
             stack.enter_context(files.lock(file))
-            texts += _finished(file, texts[0], potential, vectors, eps, task)
+            texts += _finished(file, texts[0], potential, vectors, eps, task, seal)
             out = stack.enter_context(contextlib.closing(_File(file, "".join(texts))))
         if progress is not None:
             progress(len(texts) - 1, len(vectors))
         results = _in_order(task, vectors[len(texts) - 1:], executor)
         for text in stack.enter_context(contextlib.closing(results)):
-            texts.append(text)
+            texts.append(_sealed(seal, text))
             if out is not None:
-                out.add(text)
+                out.add(texts[-1])
             if progress is not None:
                 progress(len(texts) - 1, len(vectors))
     return _table("".join(texts))
@@ -230,6 +266,7 @@ def _in_order(task, vectors, executor):
         yield from map(task, vectors)
         return
     waiting, running, room = iter(vectors), deque(), AHEAD * count_workers(executor)
+    task = Stoppable(task)
     try:
         while True:
             for vector in waiting:
@@ -242,6 +279,7 @@ def _in_order(task, vectors, executor):
     except concurrent.futures.BrokenExecutor:
         raise ConverseError("a worker has died; what was finished is kept, try again") from None
     finally:
+        task.stop.set()
         for future in running:
             future.cancel()
 
@@ -274,10 +312,10 @@ class _File:
                                 % (self.path, files.reason(error))) from None
 
 
-def _finished(path, header, potential, vectors, eps, task):
+def _finished(path, header, potential, vectors, eps, task, seal):
     """The texts of the vectors that a file has, whole ones only.  ConverseError if it is another
-    sweep's: its rows are not of these vectors and eps, or those of the first, computed anew, are
-    others."""
+    sweep's, or was changed: its rows are not of these vectors and eps, a check sum is wrong, or the
+    rows of the first vector, computed anew, are others."""
     try:
         with open(path, "rb") as stream:
             lines = stream.read().decode("utf-8", "replace").split("\n")
@@ -302,11 +340,11 @@ def _finished(path, header, potential, vectors, eps, task):
         key = _type(potential, vectors[k // len(eps)]) + eps[k % len(eps)]
         if not line.startswith(_text([key])[:-1] + ","):
             refuse("its line %d is of another potential, type or eps" % (k + 2))
+    for k, line in enumerate(rows):
+        if line != _sealed(seal, line.rpartition(",")[0] + "\n"):
+            refuse("its line %d was changed, or found with another potential or other options"
+                   % (k + 2))
     texts = ["".join(rows[k:k + len(eps)]) for k in range(0, len(rows) - len(eps) + 1, len(eps))]
-    try:
-        _table(header + "".join(texts))
-    except TABLELESS:
-        refuse("it is damaged")
-    if texts and texts[0] != task(vectors[0]):
+    if texts and texts[0] != _sealed(seal, task(vectors[0])):
         refuse("its first rows, computed anew, are others")
     return texts

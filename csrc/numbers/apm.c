@@ -231,15 +231,31 @@ double apm_nearest_d(const apm_t x)
     return result;
 }
 
+typedef struct {
+    char *text;
+    mpz_srcptr mant;
+} printed;
+
+static void print_digits(void *data)
+{
+    const printed *const p = data;
+
+    mpz_get_str(p->text, 10, p->mant);
+}
+
 char *apm_get_str(const apm_t x)
 {
     const size_t digits = mpz_sizeinbase(x->mant, 10);
     char *text = malloc(digits + 32);
+    printed p = { text, x->mant };
     size_t n;
 
     if (text == NULL)
         return NULL;
-    mpz_get_str(text, 10, x->mant);
+    if (guard_run(print_digits, &p, NULL) != GUARD_DONE) {
+        free(text);
+        return NULL;
+    }
     n = strlen(text);
     if (x->exp != 0 && mpz_sgn(x->mant) != 0) {
         long e = x->exp;

@@ -8,7 +8,13 @@
 #include "guard.h"
 
 #include <gmp.h>
+#include <setjmp.h>
 #include <stdlib.h>
+
+typedef struct {
+    jmp_buf start;
+    const volatile int *stop;
+} guard;
 
 /* Made with the thread and not at first use, which could itself run out of memory. */
 #ifdef __ELF__
@@ -22,7 +28,7 @@ static void *checked(void *p)
     if (p == NULL) {
         if (armed == NULL)
             abort();                        /* what GMP itself does */
-        longjmp(armed->here, GUARD_MEMORY);
+        longjmp(armed->start, GUARD_MEMORY);
     }
     return p;
 }
@@ -35,20 +41,36 @@ static void *reallocate(void *p, size_t old, size_t n)
     return checked(realloc(p, n));
 }
 
-guard *guard_arm(guard *g)
+/* C11 (7.13.1.1) allows setjmp only as the whole of a condition or compared with a constant, and keeps
+   only local variables that are volatile or have not changed since. */
+int guard_run(void (*work)(void *), void *data, const volatile int *stop)
 {
     guard *const before = armed;
+    guard mine = { .stop = stop };
     void *(*current)(size_t);
+    int ended;
 
     mp_get_memory_functions(&current, NULL, NULL);
     if (current != allocate)
         mp_set_memory_functions(allocate, reallocate, release);
-    armed = g;
-    return before;
+    armed = &mine;
+    switch (setjmp(mine.start)) {
+    case 0:
+        work(data);
+        ended = GUARD_DONE;
+        break;
+    case GUARD_STOP:
+        ended = GUARD_STOP;
+        break;
+    default:
+        ended = GUARD_MEMORY;
+    }
+    armed = before;
+    return ended;
 }
 
 void guard_poll(void)
 {
     if (armed != NULL && armed->stop != NULL && *armed->stop)
-        longjmp(armed->here, GUARD_STOP);
+        longjmp(armed->start, GUARD_STOP);
 }

@@ -3,20 +3,12 @@
 #ifndef CONVERSE_GUARD_H
 #define CONVERSE_GUARD_H
 
-#include <setjmp.h>
-#include <stddef.h>
+enum { GUARD_DONE, GUARD_MEMORY, GUARD_STOP };
 
-/* setjmp(g.here) returns one of these after a jump; 0 before it. */
-enum { GUARD_MEMORY = 1, GUARD_STOP = 2 };
-
-typedef struct {
-    jmp_buf here;
-    const volatile int *stop;           /* set by another thread; NULL: nobody asks */
-} guard;
-
-/* Makes this thread jump to g->here, set with setjmp, when GMP runs out of memory or a poll finds
-   *g->stop set; NULL: back to GMP's own behaviour.  Returns the guard that was armed before. */
-guard *guard_arm(guard *g);
+/* Calls work(data).  GUARD_DONE: it returned.  GUARD_MEMORY: GMP ran out of memory in it.
+   GUARD_STOP: a poll in it found *stop set, by work or by another thread; stop may be NULL.  In
+   the last two cases work was left where it was, and data holds what it had stored there by then. */
+int guard_run(void (*work)(void *data), void *data, const volatile int *stop);
 
 /* To be called now and then in every loop that may last, where all numbers are whole: after a
    stop they may be used again, but what local ones held is lost until the process ends. */

@@ -10,10 +10,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "converse.h"
-#include "orbits.h"
 #include "numbers/guard.h"
 #include "numbers/special.h"
+#include "orbits/potential.h"
 
 typedef struct { apm_t m[3]; } block;               /* symmetric: entries 00, 01, 11 */
 typedef struct { apm_t m[2][2]; } matrix;
@@ -32,11 +31,13 @@ typedef struct {
     apm_t v[2];                 /* about the direction that grows most; |v| is 1 but for 2 ulp */
 } site;
 
-enum { SCRATCH = 16, BOUNDS = CV_GROWTH_HIGH + 1, STUBBORN = 40 };
+enum { SCRATCH = 16, BOUNDS = CV_GROWTH_HIGH + 1, STUBBORN = 40,
+       ASK = 256 };                 /* points dealt with before Ctrl-C is looked for */
 
 struct cv_exact {
     int kind, n, terms, lost;
-    long q, p[2], dp;
+    volatile int stop;
+    long q, p[2], dp, asked;
     apm_t eps, curvature, lipschitz, origin[2];
     int *k;
     apm_t *amplitude;           /* the cosines', then the sines' */
@@ -116,18 +117,47 @@ void cv_exact_free(cv_exact *o)
     free(o);
 }
 
-/* Runs a piece of work that may run out of memory: then the state is lost. */
+/* In each loop over the points, where all numbers are whole. */
+static void ask(cv_exact *o)
+{
+    if (++o->asked % ASK == 0) {
+        o->stop = cv_python_interrupts();
+        guard_poll();
+    }
+}
+
+typedef struct {
+    int (*work)(cv_exact *, const void *);
+    cv_exact *o;
+    const void *how;
+    int status;
+} errand;
+
+static void run(void *data)
+{
+    errand *const e = data;
+
+    e->status = e->work(e->o, e->how);
+}
+
+/* Runs a piece of work that may run out of memory: then the state is lost.  When it is stopped, the
+   numbers are good for being freed. */
 static int guarded(cv_exact *o, int (*work)(cv_exact *, const void *), const void *how)
 {
-    guard g = { .stop = NULL }, *const before = guard_arm(&g);
-    int status = CV_ENOMEM;
+    errand e = { work, o, how, CV_ENOMEM };
 
-    if (!o->lost && setjmp(g.here) == 0)
-        status = work(o, how);
-    guard_arm(before);
-    if (status == CV_ENOMEM)
+    if (o->stop)
+        return CV_ESTOPPED;
+    if (!o->lost)
+        switch (guard_run(run, &e, &o->stop)) {
+        case GUARD_STOP:
+            return CV_ESTOPPED;
+        case GUARD_MEMORY:
+            e.status = CV_ENOMEM;
+        }
+    if (e.status == CV_ENOMEM)
         o->lost = 1;
-    return status;
+    return e.status;
 }
 
 typedef struct {
@@ -455,6 +485,7 @@ static int evaluate(cv_exact *o, const void *how)
         site *const here = &o->at[j];
         const site *const next = &o->at[(j + 1) % o->q];
         const site *const before = &o->at[(j + o->q - 1) % o->q];
+        ask(o);
         point(o, j, x);
         (o->kind == CV_FOURIER ? fourier : o->kind == CV_POLY ? poly : fast_froeschle)(o, x, local);
         for (int i = 0; i < 6; i++) {
@@ -612,6 +643,7 @@ static int eliminate(cv_exact *o, const apm_t shift, int keep)
         apm_set_si(o->F.m[i / 2][i % 2], i % 3 == 0 && i / 2 < o->n, 0);
     for (long j = 1; j <= o->q; j++) {
         site *const here = &o->at[j % o->q];
+        ask(o);
         set_block(&o->G, &here->beta);
         add_shift(o, &o->G, shift);
         if (keep)
@@ -715,6 +747,7 @@ static int newton(cv_exact *o, const void *how)
     /* At point 0, whose r holds its own and its last neighbour's part, add those of all others. */
     for (long j = 1; j < o->q; j++) {
         site *const here = &o->at[j];
+        ask(o);
         for (int i = 0; i < 2; i++)
             apm_set_si(along[i], 0, 0);
         add_image(o, along, &here->inverse, here->r);
@@ -733,6 +766,7 @@ static int newton(cv_exact *o, const void *how)
     for (long j = o->q - 1; j > 0; j--) {
         site *const here = &o->at[j];
         const site *const next = &o->at[(j + 1) % o->q];
+        ask(o);
         for (int i = 0; i < 2; i++) {
             apm_add(along[i], here->r[i], next->r[i]);
             for (int k = 0; k < 2; k++)
@@ -793,6 +827,7 @@ static int below(cv_exact *o, const apm_t shift)
 {
     set_block(&o->at[0].s, &o->G);
     for (long j = 1; j <= o->q; j++) {
+        ask(o);
         if (!pivot(o, j % o->q, shift, &o->at[j - 1].s))
             return 0;
         set_block(j < o->q ? &o->at[j].s : &o->last, &o->spare[0]);
@@ -851,6 +886,7 @@ static int above(cv_exact *o, const apm_t shift)
         return 0;
     for (long j = 0; j < o->q; j++) {
         site *const here = &o->at[j];
+        ask(o);
         determinant(o, scratch[2], &here->s, scratch[3]);
         grow(o, o->bound[CV_DET_LOW], scratch[2], APM_DOWN);
         determinant(o, scratch[2], before, scratch[3]);
@@ -946,6 +982,7 @@ static int directions(cv_exact *o)
     for (int i = 0; i < 4; i++)
         apm_set_si(o->F.m[i / 2][i % 2], i % 3 == 0, 0);
     for (long j = 0; j < o->q; j++) {
+        ask(o);
         for (int i = 0; i < 4; i++)                     /* from the left: (F^T s)^T */
             apm_set(o->old.m[i % 2][i / 2], o->F.m[i / 2][i % 2]);
         for (int i = 0; i < 2; i++)
@@ -976,6 +1013,7 @@ static int directions(cv_exact *o)
         apm_set(w[i], o->F.m[i][apm_cmp(t[0], t[1]) < 0]);
     found = normalize(o, o->at[0].v, w);
     for (long j = 0; found && j + 1 < o->q; j++) {
+        ask(o);
         for (int i = 0; i < 2; i++) {
             apm_mul(w[i], o->at[j].s.m[i], o->at[j].v[0]);
             add_product(w[i], o->at[j].s.m[i + 1], o->at[j].v[1], t[0]);
@@ -1012,6 +1050,7 @@ static int carry_cone(cv_exact *o, apm_t kappa)
     apm_set_si(o->bound[CV_GROWTH_LOW], 1, 0);
     apm_set_si(o->bound[CV_GROWTH_HIGH], 1, 0);
     for (long j = 0; j < o->q; j++) {
+        ask(o);
         in_frames(o, j, turn_at(o, j), a, b, c, d, off);
         apm_abs(b, b);
         apm_abs(c, c);
@@ -1081,6 +1120,7 @@ static int bound_growth(cv_exact *o)
         apm_set_si(r->m[i / 2][i % 2], 0, 0);
     }
     for (long j = 0; j < o->q; j++) {
+        ask(o);
         in_frames(o, j, turn_at(o, j), t[4], t[5], t[6], t[7], t[8]);
         for (int k = 0; k < 2; k++) {
             apm_abs(t[9], x->m[0][k]);
@@ -1168,22 +1208,10 @@ int cv_exact_pivots(cv_exact *o, const char *m, const char *away, int *kind)
 
 char *cv_exact_bound(const cv_exact *o, int which)
 {
-    guard g = { .stop = NULL }, *const before = guard_arm(&g);
-    char *volatile text = NULL;
-
-    if (!o->lost && setjmp(g.here) == 0 && which >= 0 && which < BOUNDS)
-        text = apm_get_str(o->bound[which]);
-    guard_arm(before);
-    return text;
+    return !o->lost && which >= 0 && which < BOUNDS ? apm_get_str(o->bound[which]) : NULL;
 }
 
 char *cv_exact_point(const cv_exact *o, long j, int i)
 {
-    guard g = { .stop = NULL }, *const before = guard_arm(&g);
-    char *volatile text = NULL;
-
-    if (!o->lost && setjmp(g.here) == 0 && j >= 0 && j < o->q && (i == 0 || i == 1))
-        text = apm_get_str(o->at[j].u[i]);
-    guard_arm(before);
-    return text;
+    return !o->lost && j >= 0 && j < o->q && (i == 0 || i == 1) ? apm_get_str(o->at[j].u[i]) : NULL;
 }

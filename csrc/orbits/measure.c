@@ -2,8 +2,9 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "converse.h"
-#include "orbits.h"
+#include "orbits/potential.h"
+
+enum { ASK = 1 << 22 };                 /* pairs looked at before Ctrl-C is looked for */
 
 typedef struct { double square; long i, j; } pair;
 typedef struct { double x[2]; long index; } site;
@@ -41,7 +42,7 @@ long cv_pairs(int n, long q, const double (*x)[2], long count, long *i, long *j,
 {
     site *const sites = malloc((size_t)q * sizeof *sites);
     pair *const heap = malloc((size_t)(count > 0 ? count : 1) * sizeof *heap);
-    long kept = 0;
+    long kept = 0, looked = 0;
 
     if (!sites || !heap) {
         free(sites);
@@ -54,6 +55,11 @@ long cv_pairs(int n, long q, const double (*x)[2], long count, long *i, long *j,
     for (long a = 0; a < q && count > 0; a++)
         for (long step = 1; step < q; step++) {
             const site *const left = &sites[a], *const right = &sites[(a + step) % q];
+            if (++looked % ASK == 0 && cv_python_interrupts()) {
+                free(sites);
+                free(heap);
+                return CV_ESTOPPED;
+            }
             const double across = right->x[0] - left->x[0] + (a + step >= q ? 1.0 : 0.0);
             const double up = fabs(right->x[1] - left->x[1]), up1 = fmin(up, 1.0 - up);
             const double square = across * across + up1 * up1;

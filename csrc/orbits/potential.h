@@ -1,4 +1,4 @@
-/* potential.h - what is asked of a potential that Python knows. */
+/* potential.h - what Python is asked: of a potential that it knows, and whether to go on. */
 #ifndef CONVERSE_POTENTIAL_H
 #define CONVERSE_POTENTIAL_H
 
@@ -8,5 +8,9 @@
 /* Defined where Python meets C: all that is not NULL is filled in, or an error returned. */
 int cv_python_potential(void *self, long m, const double *x, double *value, double *gradient,
                         double *hessian);
+
+/* Defined there, too: does Python want an end?  It looks for signals.  To be called now and then
+   in every loop that may last, but not so often that it counts. */
+int cv_python_interrupts(void);
 
 #endif

@@ -37,8 +37,8 @@ enum { C_T, C_TRACE_MIN, C_TRACE_MAX, C_B, C_LAM_MIN, C_LAM_MAX, N_CONSTANTS };
 DECLARE_UNIT(R)
 DECLARE_UNIT()
 
-/* quick_try: may the centre's orbit, in double precision, be a minimizing one?  (quick.c part
-   of the double instance only) */
+/* quick_try: may the centre's orbit, in double precision, be a minimizing one?  (follow.c,
+   in the double instance only) */
 void quick_try(unit *u, const box *b, verdict *v);
 
 /* region.c: centre +- half, in units of pi, becomes an interval in radians that encloses it.

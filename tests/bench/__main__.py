@@ -22,7 +22,7 @@ from fractions import Fraction
 from pathlib import Path
 
 from converse import growth, kernels
-from converse.problem import decimal_text
+from converse.problem import LINE, decimal_text
 
 ROOT = Path(__file__).resolve().parent.parent.parent
 COMMAND = str(Path(sys.executable).parent / "converse")
@@ -128,7 +128,7 @@ def frontier(repeat, older=None, whole=False):
             path, how = str(ROOT / "inputs" / name), "apart"
             if name in LOWS:
                 path, how = os.path.join(directory, name + ".in"), "together"
-                low, high = (Fraction(e) * Fraction("11.21436") for e in (name, "0.0280"))
+                low, high = (Fraction(e) * LINE for e in (name, "0.0280"))
                 centre, half = (low + high) / 2, (high - low) / 2
                 Path(path).write_text("".join("%s %s\n" % tuple(map(decimal_text, row)) for row in (
                     (centre, half), (centre, half), (2 * centre, 2 * half), (1, 1), (1, 1))))

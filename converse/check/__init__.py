@@ -1,0 +1,21 @@
+"""The checker: it verifies the theorem of a proof file, or all those of a map, independently of the
+program that wrote them.
+
+It shares no code with the prover and imports nothing of the rest of converse; but for numpy, which
+it takes for speed where there is one, it needs nothing but Python.  docs/checker.md has its proof,
+in steps that the modules cite, and a table of the modules.
+"""
+
+from .command import main, parser
+from .failures import Failure, NotConfirmed, Rejected, Unusable, shown
+from .limits import INTERRUPTED, NOT_CONFIRMED, PART, REJECTED, SPOT_CHECK, UNUSABLE, VERIFIED
+from .maps import Map
+from .proof_file import load
+from .run import read, verify
+from .tree import check_tree
+from .version import __version__
+from .words import Result, decimal_text
+
+__all__ = ["Failure", "INTERRUPTED", "Map", "NOT_CONFIRMED", "NotConfirmed", "PART", "REJECTED",
+           "Rejected", "Result", "SPOT_CHECK", "UNUSABLE", "Unusable", "VERIFIED", "__version__",
+           "check_tree", "decimal_text", "load", "main", "parser", "read", "shown", "verify"]

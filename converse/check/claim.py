@@ -1,0 +1,97 @@
+"""What a proof file claims: waves, amplitudes, a region of the torus, x*; all of it exact."""
+
+import re
+from dataclasses import dataclass
+from fractions import Fraction
+
+from .failures import NotConfirmed, Rejected
+from .limits import MAX_CHARACTERS, MAX_K, MAX_SIZE
+
+RANGES = ("a", "b", "c")                # of version 2
+ANGLES = ("v0", "v1")
+AXES = "01234"                          # of cuts: v0, v1, then the parameters
+DECIMAL = r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]{1,3})?"
+NUMBER = re.compile(DECIMAL, re.ASCII)
+RATIO = re.compile("[+-]?[0-9]+/0*[1-9][0-9]*|" + DECIMAL, re.ASCII)
+THESIS = (1, 0), (0, 1), (1, 1)         # k of the three waves of the thesis
+IDENTITY = (1, 0, 0, 1)
+
+
+@dataclass(frozen=True)
+class Wave:
+    """-p sin(k.y + pi phase), p = middle + sum of parts[m] t[m] for parameters -1 <= t[m] <= 1."""
+
+    k: tuple
+    phase: Fraction
+    middle: Fraction
+    parts: tuple
+
+    def at(self, t):
+        return self.middle + sum([g * x for g, x in zip(self.parts, t)])
+
+
+def present(waves):
+    """Those whose amplitude is not always zero."""
+    return tuple(wave for wave in waves if wave.middle or any(wave.parts))
+
+
+@dataclass(frozen=True)
+class Claim:
+    """What a proof file says, or a proved cell of a map: exact; v0 and v1 in units of pi."""
+
+    waves: tuple
+    centre: tuple                       # of v0 and v1
+    half: tuple
+    frame: tuple                        # x[1] = (frame[0] v0 + frame[1] v1, the same with 2 and 3)
+    alone: object                       # the only coordinate that is looked at, or None
+    xstar: tuple
+    counts: dict
+    at_once: str                        # does the claim cover larger multiples: yes, no, upper end
+    tree: str
+    sha256: str                         # of the file, uncompressed
+    where: str = ""                     # of a cell of a map: which it is
+
+    @property
+    def parameters(self):
+        return len(self.waves[0].parts)
+
+    @property
+    def examined(self):
+        """The waves that are examined: those that are present, or of these the ones of the factor
+        that is alone.  If no wave has both coordinates the map is a product, and Q(n) for
+        n = (n[0], 0) is the second variation of the first factor: it is the one of the map that has
+        the first factor's waves alone, whose other coordinate moves freely and adds nothing
+        negative to it.  So what excludes an orbit of that map for any n excludes it of this one."""
+        return tuple(wave for wave in present(self.waves)
+                     if self.alone is None or wave.k[self.alone])
+
+
+def number(text, name, form=NUMBER):
+    """The exact number that the text is, within the checker's limits."""
+    if len(text) > MAX_CHARACTERS:
+        raise NotConfirmed("%s has more than %d characters, the checker's limit"
+                           % (name, MAX_CHARACTERS))
+    if not form.fullmatch(text):
+        raise Rejected("%s is not a decimal number%s" % (name, " or ratio" * (form is RATIO)))
+    value = Fraction(text)
+    if abs(value) > MAX_SIZE:
+        raise NotConfirmed("%s is out of range: the checker's limit is 1e300" % name)
+    return value
+
+
+def check_frame(words, name):
+    """The frame: four integers (as text) of a change of coordinates of the torus."""
+    if len(words) != 4 or not all(re.fullmatch("[+-]?[0-9]{1,3}", word, re.ASCII)
+                                  for word in words):
+        raise Rejected(name + " is not four integers")
+    a, b, c, d = frame = tuple(map(int, words))
+    if max(map(abs, frame)) > MAX_K:
+        raise Rejected("%s has an entry beyond %d" % (name, MAX_K))
+    if abs(a * d - b * c) != 1:
+        raise Rejected(name + " has not determinant 1 or -1")
+    return frame
+
+
+def check_alone(waves, alone):
+    if alone is not None and any(all(wave.k) for wave in present(waves)):
+        raise Rejected("no coordinate is alone: a wave feels both")

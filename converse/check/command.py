@@ -1,0 +1,96 @@
+"""The command converse-check."""
+
+import argparse
+import contextlib
+import os
+import re
+import signal
+import sys
+
+from .failures import Failure, Unusable, complain, reason
+from .limits import INTERRUPTED, UNUSABLE, VERIFIED
+from .run import verify
+from .signals import interruptible
+from .version import __version__
+
+
+class Parser(argparse.ArgumentParser):
+    def error(self, message):
+        raise Unusable(message + "; see converse-check --help")
+
+
+def positive_int(text):
+    if not re.fullmatch("[0-9]{1,9}", text, re.ASCII) or int(text) == 0:
+        raise argparse.ArgumentTypeError("'%.40s' is not a whole number above 0" % text)
+    return int(text)
+
+
+def parser():
+    p = Parser(prog="converse-check", allow_abbrev=False,
+               formatter_class=argparse.RawDescriptionHelpFormatter, description=(
+        "Verifies the theorem of a proof file, or all those of a map, independently of the\n"
+        "program that wrote them."),
+        epilog="""exit status:
+  0    verified
+  1    rejected: the file is wrong (altered, unfinished, with undecided or missing
+       parts, wrong counts, a skipped part without its mirror image), or it is a
+       map of which nothing is proved
+  2    bad usage, or a file that cannot be read
+  3    verified, but for successors in a part of the torus only
+  4    a spot check in which nothing failed: NOT a verification
+  5    not confirmed: the claim is false or its proof beyond the checker's limits
+  130  interrupted (129, 143: by SIGHUP, SIGTERM)""")
+    p.add_argument("file", help="a finished proof file or a map, perhaps compressed by gzip")
+    p.add_argument("--jobs", type=positive_int, default=1, metavar="N",
+                   help="processes (default 1)")
+    p.add_argument("--sample", type=positive_int, metavar="K",
+                   help="only a spot check, of K leaves chosen by chance; not a verification")
+    p.add_argument("--state", metavar="FILE", help=(
+        "remember in FILE what was confirmed, and go on from there if it exists; it is believed"))
+    p.add_argument("--exact", action="store_true", help=(
+        "bound all leaves in integers, not first in doubles by numpy: hundreds of times slower"))
+    p.add_argument("--quiet", action="store_true", help="no report of status 0, no progress")
+    p.add_argument("--version", action="version", version="converse-check " + __version__)
+    return p
+
+
+def command(argv, options):
+    """Fills in the options and does what they say; returns the exit status."""
+    try:
+        if sys.stdout is None:
+            raise Unusable("the standard output is closed: nowhere to report to")
+        for stream in filter(None, (sys.stdout, sys.stderr)):
+            stream.reconfigure(errors="backslashreplace")
+        parser().parse_args(argv, options)
+        result = verify(options.file, min(options.jobs, 61), options.sample, options.state,
+                        not options.quiet, options.exact)
+        try:
+            if result.status != VERIFIED or not options.quiet:
+                print(result.text, flush=True)
+            return result.status
+        except OSError as error:
+            with contextlib.suppress(OSError):  # the interpreter must not try again when it ends
+                os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+            raise Unusable("the output cannot be written (%s)" % reason(error)) from None
+    except SystemExit as end:                   # of --help and --version
+        return end.code
+    except Failure as error:
+        status, message = error.status, error.word + str(error)
+    except Exception as error:                  # whatever went wrong must not look like success
+        status, message = UNUSABLE, "the checker failed (%s: %s)" % (type(error).__name__, error)
+    complain((options.file and options.file + ": ") + message)
+    return status
+
+
+def main(argv=None):
+    """Runs the command and returns its exit status; every failure is one line."""
+    options = argparse.Namespace(file="", state=None)
+    with interruptible(argv is None):
+        try:
+            return command(argv, options)
+        except KeyboardInterrupt as end:
+            message = "interrupted; nothing was verified"
+            if options.state is not None:
+                message += ", but the same command goes on from " + options.state
+            complain((options.file and options.file + ": ") + message)
+            return INTERRUPTED + (end.args[0] if end.args else signal.SIGINT)

@@ -1,0 +1,52 @@
+"""The ways in which a check fails, and how they are said in one line."""
+
+import contextlib
+import sys
+
+from .limits import NOT_CONFIRMED, REJECTED, UNUSABLE
+
+
+class Failure(Exception):
+    """Nothing was verified; the text says why."""
+
+
+class Rejected(Failure):
+    """The file is wrong, whatever the truth about the map may be."""
+
+    status, word = REJECTED, "rejected: "
+
+
+class NotConfirmed(Failure):
+    """The checker has reached a limit of its own: what the file claims may be true or false."""
+
+    status, word = NOT_CONFIRMED, "not confirmed: "
+
+
+class Unusable(Failure):
+    """The arguments or the file cannot be used at all."""
+
+    status, word = UNUSABLE, ""
+
+
+def reason(error):
+    """An OSError in words."""
+    return getattr(error, "strerror", None) or str(error)
+
+
+@contextlib.contextmanager
+def named(name):
+    """What fails within is told by this name."""
+    try:
+        yield
+    except Failure as error:
+        raise type(error)("%s: %s" % (name, error)) from None
+
+
+def shown(text):
+    """The text without anything that could steer a terminal, on one line."""
+    return "".join([x if x.isprintable() else x.encode("unicode_escape").decode() for x in text])
+
+
+def complain(text):
+    with contextlib.suppress(OSError, AttributeError):      # closed, or there is none
+        print("converse-check: " + shown(text), file=sys.stderr, flush=True)

@@ -1,0 +1,15 @@
+"""The exit statuses, and the limits within which the checker works."""
+
+VERIFIED, REJECTED, UNUSABLE, PART, SPOT_CHECK, NOT_CONFIRMED = range(6)    # exit statuses
+INTERRUPTED = 128                       # and the number of the signal
+MAX_BYTES = 1 << 28                     # of a proof file, uncompressed
+MAX_CUTS = 1000                         # of a leaf
+MAX_LINE = 1 << 24                      # of the header
+MAX_CHARACTERS = 1000                   # of a number in the header
+MAX_SIZE = 10 ** 300                    # of such a number
+MAX_BITS = 4096                         # of the arithmetic
+MAX_HALVINGS, MAX_PIECES = 24, 4096     # of a leaf, by the checker itself
+LAG = 4                                 # halvings along one axis that another may be behind
+MAX_WAVES, MAX_K = 16, 100              # of a potential; |k0| and |k1|
+MAX_ITEMS = 1 << 22                     # of a map
+MAX_CELLS = 1 << 15                     # of the torus, about, when B is bounded

@@ -1,0 +1,749 @@
+"""The fast path: a thousand prisms in lockstep, in doubles.
+
+The same left side of (C3) as in taylor.py, bounded by other means, far more cheaply and more
+sharply: by a polynomial of third order in the symbols, and what it leaves.  What is not bounded
+below zero here is left to the integers.  All that is done to one prism is done to all of them, as
+arrays of numpy, whose operations round to nearest (import_numpy_if_sound looks).  The proof is
+docs/checker.md, steps (C4) to (C20).
+"""
+
+import collections
+import itertools
+import math
+import random
+from fractions import Fraction
+
+from .arith import Fixed
+from .claim import IDENTITY
+from .failures import complain
+from .limits import LAG, MAX_CUTS, MAX_HALVINGS, MAX_PIECES
+
+np = None                               # numpy, once the fast path is wanted
+UNIT = 2.0 ** -53
+TWO_PI = 2 * math.pi                    # off by 0.35 u of itself
+SINES = [(-1) ** k / math.factorial(2 * k + 1) for k in range(8, 0, -1)]
+COSINES = [(-1) ** k / math.factorial(2 * k) for k in range(8, 1, -1)]
+SINE, MORE, HUGE = 24 * UNIT, 1 + 2.0 ** -40, 2.0 ** 900
+XSTAR_REST = 2.0 ** -51                 # of x*, in radians; see Lockstep
+TINY = 2.0 ** -200
+FAST_SIZE = 2.0 ** 10                   # of amplitudes, x*, regions and frames
+FAST_CUTS = 52                          # of an axis
+BATCH, SMALLEST_BATCH = 1024, 16
+FAST_SITES, ROOM = 4096, 1 << 19        # of a lane; of all lanes at a time
+FIRST_TRY = 96                          # sites, for lanes that are longer
+FARTHEST = 1.0                          # reach of a wave that is there
+CAUTION = (0, 0.2), (0.3, 0), (0, 1.0)  # of the choice of n: see witnesses, settle
+
+
+def import_numpy_if_sound():
+    """Imports numpy.  Does it round to nearest, below 2^-1022, too, and are its halves even?"""
+    global np
+    import numpy as np
+    draw = random.Random(1)
+    x, y = (np.array([draw.uniform(-1, 1) * 2.0 ** draw.randint(-500, 500) for _ in range(200)]
+                     + [2.0 ** -1022, 1 + 2.0 ** -30, 2.0 ** -530 / 3, 0.7, -1.1])
+            for _ in range(2))
+    one = np.ones_like(x)
+    with np.errstate(all="ignore"):
+        for found, exact in ((x + y, Fraction.__add__), (x - y, Fraction.__sub__),
+                             (x * y, Fraction.__mul__), (x / y, Fraction.__truediv__),
+                             (x - one, lambda a, b: a - 1)):
+            if found.tolist() != [float(exact(Fraction(a), Fraction(b)))
+                                  for a, b in zip(x.tolist(), y.tolist())]:
+                return False
+        return (np.array([2.0 ** -1022] * 9) / 2 * 2).tolist() == [2.0 ** -1022] * 9 \
+            and np.rint(np.array([0.5, 1.5, -2.5, 0.49, 7.0])).tolist() == [0, 2, -2, 0, 7]
+
+
+def lockstep_sincos(turns):
+    """Sines and cosines of 2 pi turns, |turns| <= 1/2: each within 4 u.
+
+    turns - n/4 is exact (Sterbenz) and at most 1/8; the angle is off by 1.4 u of itself.  Taylor's
+    polynomials are off by less than u/50.  sine: 0.8 u for the angle, 0.6 u for what is added to
+    it, at most 0.081, 0.8 u for the sum; cosine: 0.8 u, 0.4 u for the square's half, 0.1 u for the
+    rest, 0.4 u and u for the sums.
+    """
+    n = np.rint(4 * turns)
+    angle = (turns - 0.25 * n) * TWO_PI
+    square = angle * angle
+    sine, cosine = SINES[0] * square, COSINES[0] * square
+    for a in SINES[1:]:
+        sine += a
+        sine *= square
+    for a in COSINES[1:-1]:
+        cosine += a
+        cosine *= square
+    sine *= angle
+    sine += angle
+    cosine = 1 - (0.5 * square - square * square * (cosine + COSINES[-1]))
+    quadrant = n.astype(np.int64)
+    odd = (quadrant & 1) == 1
+    return (np.where(odd, cosine, sine) * (1 - (quadrant & 2)),
+            np.where(odd, sine, cosine) * (1 - (quadrant + 1 & 2)))
+
+
+def combined(table, waves):
+    """For each row of the table, pairs (w, factor), the sum of factor waves[w]."""
+    found = np.empty((len(table), *waves.shape[1:]))
+    for row, into in zip(table, found):
+        if not row:
+            into[...] = 0
+            continue
+        (w, factor), *more = row
+        np.multiply(waves[w], factor, out=into)
+        for w, factor in more:
+            into += waves[w] if factor == 1 else factor * waves[w]
+    return found
+
+
+class Shape:
+    """What the waves of the fast path are but for their amplitudes: their k and phases, the first
+    two those of the coordinates; and which of them are present anywhere, and have which symbols."""
+
+    def __init__(self, waves, moving=()):
+        """waves: (k, phase) of those that are present; moving: pairs of the number of such a wave
+        and of a symbol that moves its amplitude."""
+        self.known = [((1, 0), 0), ((0, 1), 0)]
+        self.known += [wave for wave in waves if wave not in self.known]
+        at = self.at = [self.known.index(wave) for wave in waves]   # their numbers here
+        self.present = sorted(at)
+        self.moving = [[m for w, m in moving if at[w] == here] for here in range(len(self.known))]
+        self.parameters = 1 + max([m for _, m in moving], default=-1)
+        k = np.array([k for k, _ in self.known], float)
+        self.K = abs(k).sum(axis=1)
+        self.square = (k * k).sum(axis=1)
+        self.grain = (64 + 16 * len(k)) * UNIT
+        self.phases = [float(phase / 2 % 1) for _, phase in self.known]
+        p, q = k.T
+        self.forces = self.table(p, q)              # V' from waves
+        self.strengths = self.table(abs(p), abs(q))
+        self.stiff = self.table(                    # S_00, S_01, S_11
+            *(abs(x) * self.K for x in (p * p, p * q, q * q)))
+        self.strong = self.table(abs(p) * self.K, abs(q) * self.K)
+        self.forms = self.table(p * p, p * q, q * q)
+        self.rotated = self.table(abs(p + q), abs(p - q))
+        self.mixed = self.rows(k[2:])               # k.x of x
+        self.sizes = self.rows(abs(k)), self.rows(abs(np.stack((p + q, p - q), axis=1)) / 2)
+
+    def table(self, *rows):
+        """The rows, of a number for each wave, as combined() takes them."""
+        return [[(w, row[w]) for w in self.present if row[w]] for row in rows]
+
+    @staticmethod
+    def rows(columns):
+        return [[(i, x) for i, x in enumerate(row) if x] for row in columns]
+
+    def along(self, v):
+        """k.v for all waves."""
+        found = np.empty((len(self.known), *v.shape[1:]))
+        found[:2] = v
+        if self.mixed:
+            found[2:] = combined(self.mixed, v)
+        return found
+
+    def turns(self, X):
+        """The angles of the waves, in turns, at most 1/2."""
+        found = self.along(X)
+        for w, phase in enumerate(self.phases):
+            if w > 1:
+                found[w] -= np.rint(found[w])
+                if phase:
+                    found[w] += phase
+                    found[w] -= np.rint(found[w])
+        return found
+
+
+def inverses(d):
+    inv = 1 / (d[0] * d[2] - d[1] * d[1])
+    return np.stack((d[2] * inv, -d[1] * inv, d[0] * inv))
+
+
+def applied(d, v):
+    return np.stack((d[0] * v[0] + d[1] * v[1], d[1] * v[0] + d[2] * v[1]))
+
+
+def products(rows):
+    """The products of rows i <= j, in order."""
+    found, at = np.empty((len(rows) * (len(rows) + 1) // 2, rows.shape[1])), 0
+    for i, row in enumerate(rows):
+        np.multiply(row, rows[i:], out=found[at:at + len(rows) - i])
+        at += len(rows) - i
+    return found
+
+
+def are_definite(d):
+    return (d[0] > 0) & (d[0] * d[2] > d[1] * d[1])
+
+
+def least_of(d):
+    return (d[0] + d[2] - np.sqrt((d[0] - d[2]) ** 2 + 4 * d[1] * d[1])) / 2
+
+
+def bending(P, H, W, s, c, size, rest, reach):
+    """Step (C6), (iii), of a wave with |sin y| <= s and |cos y| <= c."""
+    second = reach * reach / 2
+    far = rest * (reach + size) / 2
+    return np.abs(P) * (c * (size * size / 4 + far) + s * second * reach / 3) \
+        + H * (c * second + s * reach) + W
+
+
+def remainder(P, H, W, A0, alpha, B0, beta, weight, size, rest, reach):
+    """What the polynomial of step (C8) leaves of a wave, if alpha and beta bound these linear
+    parts, and weight |m| + omega."""
+    second = reach * reach / 2
+    third, fourth = second * reach / 3, second * second / 6
+    far = rest * (reach + size) / 2 + fourth
+    a, b = np.abs(A0), np.abs(B0)
+    return np.abs(P) * (a * np.where(P * A0 > 0, fourth, rest * rest / 2) + alpha * far
+                        + b * (rest * (reach * (reach + size) + size * size) / 6
+                               + second * third / 10)
+                        + beta * third) \
+        + H * (a * far + alpha * second + b * third + beta * (rest + third)) + W * weight
+
+
+def summit(form):
+    """At most so large is, over the cube, the polynomial with these coefficients: of e[i], of
+    e[i] e[j] and of e[i] e[j] e[k] by (i,), (i, j) and (i, j, k), i <= j <= k; and no constant.
+
+    x e^2 with x < 0 is at most x (2 t e - t^2) for any t, here for the one where, of it and what
+    is linear in e, the largest value is.  x e^2 with x > 0 is x - x (1 - e^2), and e[i]^2 e[k],
+    k = i or not, is e[k] - (1 - e[i]^2) e[k]: with 1 - e[i]^2, which lies between 0 and 1, stands
+    at most the sum of these |coefficients|, less x.  The rest is linear in each symbol, and largest
+    at a corner; at opposite corners what is odd has opposite signs.
+    """
+    symbols = [key[0] for key in form if len(key) == 1]
+    linear, twist, constant = [form[i,] for i in symbols], [0] * len(symbols), 0
+    for key, x in form.items():
+        if len(key) == 3 and len(set(key)) < 3:
+            i, k = key[1], key[0] if key[1] == key[2] else key[2]       # e[i]^2 e[k]
+            linear[k] = linear[k] + x
+            twist[i] = twist[i] + np.abs(x)
+    for i in symbols:
+        up, down = np.maximum(form[i, i], 0), np.maximum(-form[i, i], 0)
+        t = np.clip(linear[i] / (2 * down + TINY), -1, 1)
+        linear[i] = linear[i] - 2 * down * t
+        constant = constant + up + down * t * t + np.maximum(twist[i] - up, 0)
+    corners = [(1, *signs) for signs in itertools.product((1, -1), repeat=len(symbols) - 1)]
+
+    def at_corners(keys, values):
+        signs = np.array([[math.prod([corner[k] for k in key]) for key in keys]
+                          for corner in corners], float)
+        return (signs[:, :, None] * np.stack(values)).sum(axis=1)
+
+    even, odd = [list(itertools.combinations(symbols, count)) for count in (2, 3)]
+    odd = at_corners([(i,) for i in symbols] + odd, linear + [form[key] for key in odd])
+    even = at_corners(even, [form[key] for key in even])
+    return (np.abs(odd) + even).max(axis=0) + constant
+
+
+# A site of all lanes, in the words of docs/checker.md: which of them have it; s, c, k.L as columns
+# of the symbols, size, rest and reach of each wave; beta; and E of step (C7).
+Site = collections.namedtuple("Site", "alive s c columns size rest reach beta E")
+
+
+def next_rest(d, f, r, r0, err, along, beside):
+    """Steps (C5) and (C15): f of a site q, with M and the determinant of d, from d and f of the
+    site before it, the rests r of q and r0 of that site, the error err of the step from q, and
+    what of r (along) and of its other coordinate (beside) the roundings of beta add."""
+    diagonal, square = d[0] * d[2], d[1] * d[1]
+    det = diagonal - square
+    inv = 1 / det
+    M = np.stack((d[2] * inv, -d[1] * inv, d[0] * inv))
+    m, inv = np.abs(M), np.abs(inv)
+    f = applied(m, f) + err \
+        + (along + 2 * UNIT * m[::2]) * r + (beside + 2 * UNIT * m[1]) * r[::-1] \
+        + 8 * UNIT * inv * ((np.abs(diagonal) + square) * r0 + np.abs(d[1])
+                            * (np.abs(d[0]) + np.abs(d[2])) * r0[::-1])
+    return f, M, det
+
+
+class Sums:
+    """What the sites of each lane add up to: the value at X and P, the polynomial of step (C8) in
+    the symbols, and, not below zero, what these leave (error) and the mass of step (C19)."""
+
+    def __init__(self, known, angles, lanes):
+        """known: symbols, of which the first so many (angles) are those of the parameters."""
+        self.known, self.angles = known, angles
+        self.pairs = [(i, j) for i in range(known) for j in range(i, known)]
+        self.value, self.mass, self.error = np.zeros(lanes), np.zeros(lanes), np.zeros(lanes)
+        self.linear, self.square = np.zeros((known, lanes)), np.zeros((len(self.pairs), lanes))
+        self.cubic = np.zeros((known, len(self.pairs), lanes))      # of e[i] and of a pair
+        self.mixed = np.zeros((angles, known, lanes))   # of e[i] and a parameter's symbol
+        self.skew = np.zeros((angles, known, known, lanes))
+        self.ends = None                                # of the sides of the parallelogram
+
+    def add_waves(self, shape, P, h, columns, A, B):
+        """Adds the polynomial of step (C8) of all waves, but for P (A0 + alpha), of which with the
+        multipliers of (C7) only mu.E is left; returns for each wave its factor of D in G."""
+        A0, B0, alpha, beta = A[:, 0], B[:, 0], A[:, 1:], B[:, 1:]
+        slopes, PA = P[:, None] * B, P * A0
+        slopes[:, 1:] -= PA[:, None] * columns
+        for w in shape.present:
+            xi = columns[w]
+            first = (P[w] / -2) * alpha[w] - (P[w] * B0[w] / 6) * xi    # what stands with xi^2
+            for symbol in shape.moving[w]:
+                part = h[w, symbol]
+                part_A = part * A0[w]
+                first[symbol] -= part_A / 2
+                self.linear[symbol] += part_A
+                self.mixed[symbol] += part * alpha[w]
+                self.skew[symbol] += (part * beta[w])[:, None] * xi
+                slopes[w, 1 + symbol] += part * B0[w]
+            xi = products(xi)
+            self.square += (PA[w] / 2) * xi
+            self.cubic += first[:, None] * xi
+        return slopes
+
+    def join(self, joined):
+        """Puts the lanes of each prism together."""
+        for name in ("value", "mass", "error", "linear", "square", "cubic", "mixed", "skew",
+                     "ends"):
+            setattr(self, name, joined(getattr(self, name)))
+
+    def form(self):
+        """The polynomial, as summit takes it."""
+        form = {tuple(key): np.zeros_like(self.value) for count in (1, 2, 3)
+                for key in itertools.combinations_with_replacement(range(self.known), count)}
+
+        def add(x, *key):
+            form[tuple(sorted(key))] += x
+
+        for i in range(self.known):
+            add(self.linear[i], i)
+            for at, (j, k) in enumerate(self.pairs):
+                add((1 + (j < k)) * self.cubic[i, at], i, j, k)
+            for k in range(self.angles):
+                add(self.mixed[k, i], i, k)
+                for j in range(self.known):
+                    add(self.skew[k, i, j], i, j, k)
+            for k in (0, 1):
+                add(self.ends[k, 1 + i], i, self.angles + k)
+        for at, (j, k) in enumerate(self.pairs):
+            add((1 + (j < k)) * self.square[at], j, k)
+        for k in (0, 1):
+            add(self.ends[k, 0], self.angles + k)
+        return form
+
+
+class Prisms:
+    """Prisms followed and bounded in lockstep; all arrays end with the axis of lanes, those ahead
+    before those back."""
+
+    def __init__(self, box, shape, xstar, l, caution=CAUTION[0]):
+        """The box: P, h (by wave and symbol) and W of the waves, X[1] in turns, the sides of the
+        parallelogram as columns and what x[1] may be off, in radians; the Shape; x* in turns; l;
+        and how much the choice of n shies at sites that are not well known, by their reach and
+        by its square."""
+        P, h, W, x, sides, off = box
+        self.size, self.shape = x.shape[1], shape
+        self.P, self.h, self.W = self.both(P, P), self.both(h, h), self.both(W, W)
+        self.H = np.abs(self.h).sum(axis=1) * MORE
+        self.magnitude, self.l = np.abs(self.P), self.both(l, l)
+        self.caution = [self.both(x + 0 * l, x + 0 * l) for x in caution]
+        absent = (self.magnitude == 0) & (self.H == 0) & (self.W == 0)  # in these lanes
+        self.absent = {w: absent[w] for w in shape.present if absent[w].any()}
+        form = combined(shape.forms, self.magnitude.mean(axis=1)[:, None])[:, 0]
+        stiff = combined(shape.stiff, self.magnitude)
+        across = [abs(k0 * k1) * x for ((k0, k1), _), x in zip(shape.known,
+                                                               self.magnitude.mean(axis=1))]
+        self.rotated = bool(6 * sum(across) > form[0] + form[2])     # of rests; either is right
+        self.F = shape.grain * (1 + stiff[::2])
+        self.F01 = shape.grain * stiff[1]
+        self.angles = shape.parameters                          # their first symbol
+        self.known = self.angles + 2
+        start, none = xstar + 0 * x, np.zeros_like(x)
+        columns = np.zeros((2, self.known, self.size))
+        columns[:, self.angles:] = sides
+        blank, rounding = np.zeros_like(columns), np.full_like(x, XSTAR_REST)
+        self.sides, self.rounding = self.both(sides, 0 * sides), self.both(off, rounding)
+        if self.rotated:                                         # of x0 + x1 and of x0 - x1
+            off, rounding = off[0] + off[1] + none, 2 * rounding
+        self.before = self.both(start, x), self.both(blank, columns), self.both(rounding, off)
+        self.first = self.both(x, start), self.both(columns, blank), self.both(off, rounding)
+        self.sites = []
+
+    @staticmethod
+    def both(ahead, back):
+        return np.concatenate((ahead, back), axis=-1)
+
+    def other(self, lanes):
+        return np.roll(lanes, self.size, axis=-1)
+
+    def joined(self, lanes):
+        return lanes[..., :self.size] + lanes[..., self.size:]
+
+    def moved(self, columns):
+        """How far each symbol moves a site, the waves that a lane has taken together."""
+        total = 0
+        for w in self.shape.present:
+            x = np.abs(columns[w])
+            total = total + (np.where(self.absent[w], 0, x) if w in self.absent else x)
+        return total
+
+    def follow(self):
+        """Follows all lanes until each reaches too far, and yields True then and wherever an orbit
+        may be long enough; False if there is no room for more.
+
+        A lane that has come to its end stays as zeros, alive no more, and nothing is said of it.
+        """
+        P, h, H, W, F, F01, shape = self.P, self.h, self.H, self.W, self.F, self.F01, self.shape
+        slope, n = P / TWO_PI, len(P)
+        slack, from_H = SINE * shape.K[:, None], shape.grain * combined(shape.strong, H)
+        along, beside = (F[0] + F[1],) * 2 if self.rotated else (F, F01)     # of the frame's beta
+        (X0, L0, r0), (X, L, r) = self.before, self.first
+        size0 = np.abs(L0).sum(axis=1)
+        alive, d, f, due = np.ones(X.shape[1], bool), None, None, FIRST_TRY
+        while True:
+            columns = shape.along(L)
+            size = np.abs(columns).sum(axis=1) * MORE
+            rest = combined(shape.sizes[self.rotated], r)
+            if shape.mixed:
+                rest[2:] += 3 * UNIT * combined(shape.sizes[0][2:], size[:2])
+            rest *= MORE
+            reach = (size + rest) * MORE
+            if not self.sites:                      # how far each symbol moves a lane's last site
+                self.last = self.moved(columns)
+            for w in shape.present:
+                near = reach[w] <= FARTHEST
+                alive = alive & (near | self.absent[w] if w in self.absent else near)
+            if self.sites and (not alive.any() or len(self.sites) == FAST_SITES):
+                yield True
+                return
+            if len(self.sites) * alive.size >= ROOM and self.size > SMALLEST_BATCH:
+                yield False
+                return
+            if len(self.sites) == due:
+                yield True
+                due *= 2
+            for array in (L, r, columns, size, rest, reach):
+                np.copyto(array, 0, where=~alive)
+            np.copyto(self.last, self.moved(columns), where=alive)
+            s, c = lockstep_sincos(shape.turns(X))
+            beta = combined(shape.forms, P * -s)
+            beta[::2] += 2
+            mean_square = size * size / 4
+            wave = P * c * mean_square
+            self.sites.append(Site(alive, s, c, columns, size, rest, reach, beta,
+                                   combined(shape.forces, wave)))
+
+            wave = slope * c * (1 - mean_square)
+            X, X0 = 2 * X - X0 + combined(shape.forces, wave), X
+            X -= np.rint(X)
+            new = applied(beta[:, None], L) - L0
+            for w, symbols in enumerate(shape.moving):
+                for m in symbols:
+                    wave = h[w, m] * c[w]
+                    for i, k in enumerate(shape.known[w][0]):
+                        if k:
+                            new[i, m] += wave if k == 1 else k * wave
+            bent = bending(P, H, W, np.abs(s) + slack, np.abs(c) + 2 * slack, size, rest, reach)
+            err = F * (1 + size[:2]) + F01 * size[1::-1] + (4 + n) * UNIT * size0[:2] + from_H
+            if self.rotated:
+                mean, half = (beta[0] + beta[2]) / 2, (beta[0] - beta[2]) / 2
+                err = combined(shape.rotated, bent) + (err[0] + err[1])
+                block = np.stack((mean + beta[1], half, mean - beta[1]))
+            else:
+                err, block = combined(shape.strengths, bent) + err, beta
+            if d is None:                           # d[q] = beta, f = err - r[o] + roundings
+                f, d = r0 + err + along * r + beside * r[::-1], block
+            else:
+                f, M, det = next_rest(d, f, r, r0, err, along, beside)
+                alive, d = alive & (np.abs(det) > 2.0 ** -60), block - M
+            f = f * MORE
+            r, r0 = (applied(np.abs(d), r) + f) * MORE, r
+            L, L0, size0 = new, L, size
+
+    def witnesses(self):
+        """Vectors n for each site, and how many tails begin there: one where a lane ends, one where
+        n begins amid a lane.  Nothing rests on which vectors these are, if only n is zero beyond.
+
+        At each site the recursions from both ends of the orbit are compared, as by taylor.witness,
+        to beta and something for what the bound will add to a site.  A recursion that fails begins
+        anew behind that site.  Where both together have a negative eigenvalue that is nearest to
+        zero, and n as a rule is largest, is its eigenvector; n follows outwards by the recursions.
+        """
+        sites, none, shape = self.sites, np.zeros_like(self.l), self.shape
+        blocks, tail = [], np.stack((self.l, none, self.l))
+        for site in sites:
+            more = (self.caution[0] + self.caution[1] * site.reach) * site.reach
+            blocks.append(site.beta + combined(shape.forms, (self.magnitude + self.H) * more))
+        outer, back, whole = [], [], []             # the recursion from the end
+        inverse, beyond, good = tail, none > 0, none == 0
+        for site, block in zip(sites[::-1], blocks[::-1]):
+            whole.append(good)
+            outer.append(block - np.where(beyond, inverse, tail))
+            good = good & (are_definite(outer[-1]) | ~site.alive)
+            inverse, beyond = inverses(outer[-1]), site.alive
+            back.append(inverse)
+        outer, back, whole = outer[::-1], back[::-1], whole[::-1]
+        begins, ahead = [], []                      # the recursion from the other lane
+        good, inverse = self.other(good & beyond), self.other(inverse)
+        best, place = np.full_like(none, math.inf), np.full(none.shape, -1)
+        form = np.zeros((3, none.size))
+        for k, (site, block) in enumerate(zip(sites, blocks)):
+            begins.append(~good)
+            inner = block - np.where(good, inverse, tail)
+            joint = outer[k] + inner - block
+            low = least_of(joint)
+            score = np.where(site.alive & whole[k] & (low < 0), -low, math.inf)
+            better = score < best
+            best, place = np.where(better, score, best), np.where(better, k, place)
+            np.copyto(form, joint, where=better)
+            good, inverse = are_definite(inner), inverses(inner)
+            ahead.append(inverse)
+        first = self.both(best[:self.size] <= best[self.size:], best[self.size:] < best[:self.size])
+        place = np.where(first, place, -1)          # of the two lanes one
+        low = least_of(form)
+        p, q, r = form
+        v = np.where(p > r, np.stack((q, low - p)), np.stack((low - r, q)))
+        length = np.sqrt(v[0] * v[0] + v[1] * v[1])
+        v = np.where(length > 0, v / np.where(length > 0, length, 1), np.stack((p <= r, p > r)))
+        n, x = [], np.zeros_like(v)
+        for k in range(len(sites) - 1, -1, -1):
+            inward = (place > k) & ~begins[min(k + 1, len(sites) - 1)]
+            x = np.where(place == k, v, np.where(inward, applied(ahead[k], x), 0))
+            n.append(x)
+        n.reverse()
+        across = self.other((place >= 0) & ~begins[0]) & sites[0].alive
+        n[0] = np.where(across, applied(back[0], self.other(n[0])), n[0])
+        tails = []
+        for k, site in enumerate(sites):
+            if k:
+                outward = (place < k) & ((place >= 0) | across)
+                n[k] = np.where(outward, applied(back[k], n[k - 1]), n[k])
+            n[k] = np.where(site.alive, n[k], 0)
+            ends = site.alive & ~sites[k + 1].alive if k + 1 < len(sites) else site.alive
+            tails.append(ends * 1.0 + (begins[k] & (place >= k)))
+        return n, tails
+
+    def expand(self):
+        """The left side of (C3): its value at X and P, a polynomial, as summit takes it, and what
+        it may be more than both; infinite where it cannot be said."""
+        N, l, F, shape = len(self.sites), self.l, self.F, self.shape
+        n, tails = self.witnesses()
+        P, H, W, magnitude, grain = self.P, self.H, self.W, self.magnitude, shape.grain
+        K, square_K = shape.K[:, None], (shape.K * shape.square)[:, None]
+        sums = Sums(self.known, self.angles, l.size)
+        mu = mu1 = np.zeros((2, 1 + self.known, l.size))    # of this site, and of the one beyond
+        n1 = np.zeros((2, l.size))
+        for k in range(N - 1, -1, -1):
+            _, s, c, columns, size, rest, reach, _, E = self.sites[k]
+            n0 = n[k]
+            omega = shape.along(n0) ** 2
+            long = omega[0] + omega[1]
+            sums.value += 2 * long - (P * omega * s).sum(axis=0) - l * tails[k] * long \
+                - 2 * (n0[0] * n1[0] + n0[1] * n1[1]) + (mu[0, 0] * E[0] + mu[1, 0] * E[1])
+            sums.linear += mu[0, 1:] * E[0] + mu[1, 1:] * E[1]
+            m = shape.along(mu)
+            A, B = m * c[:, None], -m * s[:, None]
+            A[:, 0] -= omega * s
+            B[:, 0] -= omega * c
+            slopes = sums.add_waves(shape, P, self.h, columns, A, B)
+            most = np.abs(mu).sum(axis=1)
+            weight = K * combined(shape.sizes[0], most) + square_K * long
+            sums.error += remainder(
+                P, H, W, A[:, 0], np.abs(A[:, 1:]).sum(axis=1), B[:, 0],
+                np.abs(B[:, 1:]).sum(axis=1), weight, size, rest, reach).sum(axis=0)
+            sums.mass += 2 * long \
+                + (weight * (magnitude * (1 + reach * reach) + 3 * H)).sum(axis=0)
+
+            G = 2 * mu - mu1 + combined(shape.forces, slopes)
+            terms = combined(shape.strengths, weight * (magnitude * (1 + size) + H)) \
+                + 2 * most + np.abs(mu1).sum(axis=1)        # of G: step (C18)
+            if k:
+                small = most * F + grain * terms * reach[:2]
+                mu, mu1, n1 = G, mu, n0
+            else:
+                across = self.other(mu)
+                G, terms = G - across, terms + np.abs(across).sum(axis=1)
+                small = most * F + np.abs(G).sum(axis=1) * self.rounding \
+                    + grain * terms * (np.abs(self.sides).sum(axis=1) + self.rounding)
+                sums.ends = np.stack([G[0] * x + G[1] * y for x, y in zip(*self.sides)])
+            sums.error += small[0] + small[1]
+        sums.join(self.joined)
+        sums.value -= 2 * (n[0][0, :self.size] * n[0][0, self.size:]
+                           + n[0][1, :self.size] * n[0][1, self.size:])
+        form = sums.form()
+        added = sum([np.abs(x) for x in form.values()])
+        mass = UNIT * (((len(P) + 2) * N + 256) * sums.mass + 64 * added)
+        error = (sums.error + mass) * (MORE + 64 * UNIT * N)
+        return sums.value, form, np.where(mass < UNIT * HUGE, error, math.inf)
+
+    def bound(self):
+        """An upper bound of the left side of (C3) for each prism; and what each symbol adds to it,
+        about, which says where to cut."""
+        value, form, error = self.expand()
+        share = self.joined(self.last) + TINY
+        share = share / share.sum(axis=0)
+        moved = np.stack([sum([np.abs(x) for key, x in form.items() if k in key])
+                          for k in range(self.known)])
+        more = error + moved.sum(axis=0) / 64       # what moves the ends matters, if little
+        return value + (summit(form) + error), np.where(value < 0, moved + more * share, share)
+
+
+class Lockstep:
+    """The fast path of some claims; a prism is of one of them."""
+
+    def __init__(self, claims):
+        """What all prisms share, and what those of each claim; ValueError if one has numbers that
+        it is not made for.
+
+        x* in turns is off by 2^-54 of its rounding and by 2^-80 of the integers, less than
+        XSTAR_REST / 2 pi.
+        """
+        waves = list(dict.fromkeys((wave.k, wave.phase % 2) for claim in claims
+                                   for wave in claim.examined))
+        if not all(claim.examined for claim in claims):
+            raise ValueError("no wave: orbits without end")
+        self.axes = sorted({2 + m for claim in claims for wave in claim.examined
+                            for m, part in enumerate(wave.parts) if float(part)})   # or TINY
+        shape = (len(waves), len(claims))
+        self.middle, self.scale = np.zeros(shape), np.zeros(shape)
+        self.parts = np.zeros((len(self.axes), *shape))
+        for q, claim in enumerate(claims):
+            for wave in claim.examined:
+                w = waves.index((wave.k, wave.phase % 2))
+                parts = [wave.parts[axis - 2] if axis - 2 < len(wave.parts) else 0
+                         for axis in self.axes]
+                self.middle[w, q] += float(wave.middle)
+                self.parts[:, w, q] += [float(part) for part in parts]
+                self.scale[w, q] += 2 * float(abs(wave.middle) + sum(map(abs, parts)))
+        self.shape = Shape(waves, [(w, m) for m, w in zip(*self.parts.any(axis=2).nonzero())])
+        self.axes += [0, 1]                         # of the symbols
+        self.centre = np.array([[float(v / 2 % 1) for v in claim.centre] for claim in claims]).T
+        self.half = np.array([[float(v / 2) for v in claim.half] for claim in claims]).T
+        self.frame = np.array([claim.frame for claim in claims], float).T
+        fixed, half_turn = Fixed.of(128), Fraction(1, 2)
+        self.xstar = np.array([[float(
+            (Fraction(math.floor(x * fixed.one), 2 * fixed.pi) + half_turn) % 1 - half_turn)
+            for x in claim.xstar] for claim in claims]).T
+        sizes = self.scale, self.half, self.frame, [max(map(abs, c.xstar)) for c in claims], \
+            [max(map(abs, c.centre)) for c in claims]
+        if max([np.max(np.array(x, float), initial=0) for x in map(np.abs, sizes)]) > FAST_SIZE:
+            raise ValueError("too large for the fast path")
+        self.batch = BATCH
+
+    def box(self, index, cuts, number):
+        """Boxes that cover these cells of the claims with these numbers, as Prisms takes them.
+
+        at and part are exact.  The doubles near middles and parts are off by u of them, the
+        products and sums by u of theirs, of four at most: all in all by less than 8 u of their
+        sum, of which scale is the double.  Centres and half-widths of the angles alike; in a frame
+        other than the identity x[1] has the roundings of two products and a sum, in turns, and its
+        columns have those of their products.
+        """
+        part = np.ldexp(1.0, -cuts.astype(np.intc))
+        at = (2 * index + 1 - (1 << cuts)) * part
+        P = np.zeros((len(self.shape.known), number.size))
+        W, h = np.zeros_like(P), np.zeros((len(P), self.shape.parameters, number.size))
+        for w, middle in zip(self.shape.at, self.middle):
+            P[w] = middle[number]
+        for m, axis in enumerate(self.axes[:-2]):
+            for w, parts in zip(self.shape.at, self.parts[m]):
+                P[w] += parts[number] * at[axis]
+                h[w, m] = parts[number] * part[axis]
+        for w, scale in zip(self.shape.at, self.scale):
+            W[w] = np.where(scale[number] > 0, 8 * UNIT * scale[number] + TINY, 0)
+        V = self.centre[:, number] + self.half[:, number] * at[:2]
+        V -= np.rint(V)
+        sides = TWO_PI * MORE * (self.half[:, number] * part[:2] + (
+            8 * UNIT * (self.centre + self.half)[:, number] + TINY))
+        frame = self.frame[:, number]
+        columns = frame.reshape(2, 2, -1) * sides
+        X = np.stack((frame[0] * V[0] + frame[1] * V[1], frame[2] * V[0] + frame[3] * V[1]))
+        off = UNIT * (8 * np.abs(frame.reshape(2, 2, -1)).sum(axis=1)
+                      + 2 * np.abs(columns).sum(axis=1))
+        off[:, (frame.T == IDENTITY).all(axis=1)] = 0
+        return P, h, W, X - np.rint(X), columns, off
+
+    def attempt(self, index, cuts, number, l, caution, halved=None):
+        """Is (C3) true of all orbits of these cells?  For each, and the axis to cut it along, -1 if
+        that seems vain; None if their orbits are too long for so many at a time.
+
+        It is the axis that matters most, but for one that matters and was halved far less often.
+        """
+        with np.errstate(all="ignore"):
+            prisms = Prisms(self.box(index, cuts, number), self.shape, self.xstar[:, number], l,
+                            caution)
+            excluded = np.zeros(l.shape, bool)
+            for ready in prisms.follow():
+                if not ready:
+                    return None
+                bound, blame = prisms.bound()
+                excluded |= bound < 0
+                if excluded.all():
+                    break
+        vain = prisms.joined(prisms.sites[-1].alive) & (len(prisms.sites) == FAST_SITES)
+        axis = blame.argmax(axis=0)
+        if halved is not None:
+            halved, at = halved[self.axes], np.arange(axis.size)
+            last = np.where(blame > blame[axis, at] * 2.0 ** -30, halved, MAX_CUTS).argmin(axis=0)
+            axis = np.where(halved[axis, at] - halved[last, at] > LAG, last, axis)
+        return excluded, np.where(vain, -1, np.array(self.axes)[axis])
+
+    def settle(self, cells, least, exactly):
+        """Decides on cells, pairs of a claim's number and a cell, with these l: (number of the
+        first that is not excluded, why not) or None, and how many pieces each took.
+
+        Those that fail are halved and tried again, up to the checker's limits and with n chosen
+        boldly and cautiously in turn (n spreads over few sites if their reach counts, over many if
+        its square does); what fails then, exactly(number) -> (None or why not,
+        pieces) decides on.
+        """
+        begun = np.array([cuts for _, (_, cuts) in cells]).T
+        pieces, refused = np.zeros(len(cells), int), None
+        fine = [n for n, (_, (_, cuts)) in enumerate(cells) if max(cuts) > FAST_CUTS]
+        rest = [n for n, (_, (_, cuts)) in enumerate(cells) if max(cuts) <= FAST_CUTS][::-1]
+        index, cuts = [np.array([cells[n][1][part] for n in rest], np.int64).reshape(-1, 5).T
+                       for part in (0, 1)]
+        todo = [index, cuts, np.array([cells[n][0] for n in rest], int),
+                np.array([least[n] for n in rest]), np.array(rest, int)]
+        while fine or todo[-1].size:
+            for n in fine:
+                if refused is None or n < refused[0]:
+                    why, tried = exactly(n)
+                    pieces[n] += tried
+                    refused = (n, why) if why else refused
+            keep = ~np.isin(todo[-1], fine) & (todo[-1] < (refused[0] if refused else len(cells)))
+            todo, fine = [x[..., keep] for x in todo], []
+            if not keep.any():
+                break
+            index, cuts, claim, l, number = [x[..., -self.batch:] for x in todo]
+            halved = cuts - begun[:, number]
+            halvings = halved.sum(axis=0)
+            tried = self.attempt(index, cuts, claim, l,
+                                 np.array(CAUTION)[halvings % len(CAUTION)].T, halved)
+            if tried is None:
+                self.batch //= 2
+                continue
+            todo = [x[..., :-self.batch] for x in todo]
+            pieces += np.bincount(number, minlength=len(cells))
+            excluded, axis = tried
+            lost = ~excluded & ((axis < 0) | (halvings >= MAX_HALVINGS)
+                                | (pieces[number] >= MAX_PIECES)
+                                | (cuts[axis, np.arange(axis.size)] >= FAST_CUTS))
+            fine = sorted(set(number[lost].tolist()))
+            index, cuts, claim, l, number, axis = [
+                x[..., ~excluded].repeat(2, axis=-1)
+                for x in (index, cuts, claim, l, number, axis)]
+            at = np.arange(axis.size)
+            index[axis, at] = 2 * index[axis, at] + at % 2
+            cuts[axis, at] += 1
+            todo = [np.concatenate(both, axis=-1)
+                    for both in zip(todo, (index, cuts, claim, l, number))]
+        return refused, pieces.tolist()
+
+
+def make_lockstep(claims):
+    """The fast path, or None: it is not made for the claims' numbers, or, as a line then says, it
+    has not the machine it needs."""
+    try:
+        if import_numpy_if_sound():
+            return Lockstep(claims)
+        why = "numpy does not round as it must"
+    except ImportError:
+        why = "numpy is not installed"
+    except (ValueError, OverflowError):
+        return None
+    complain(why + ": all is checked in integers, hundreds of times slower")
+    return None

@@ -1,0 +1,320 @@
+"""Maps: many patches of the thesis's potential in one file.
+
+The points of a face are (a, b, c) = r d(s, t), d(s, t) = d0 + s d1 + t d2, 0 <= r <= radius,
+0 <= s, t <= 1; without d2 there is no t.  About the middle of a cell of (r, s, t)
+      r d(s, t) = r d(sm, tm) + r (s - sm) d1 + r (t - tm) d2
+is covered by a patch of three parameters, or two: with middle rm d(sm, tm) and the parts
+(r1 - r0)/2 d(sm, tm), r1 (s1 - s0)/2 d1, r1 (t1 - t0)/2 d2.
+"""
+
+import functools
+import hashlib
+import itertools
+import json
+import math
+from dataclasses import dataclass
+from fractions import Fraction
+
+from .arith import Fixed, stiffness
+from .claim import THESIS, Claim, Wave, check_alone, check_frame, number, present
+from .failures import NotConfirmed, Rejected, Unusable, named
+from .limits import MAX_ITEMS
+from .torus import is_at_once, torus_bound
+from .tree import changed, check_mirror_images, leaves, tree_counts
+
+REGIONS = {"b=0": (((1, 0, 0), (0, 0, 1)), ((0, 0, 1), (1, 0, 0))),
+           "a=b": (((1, 1, 0), (0, 0, 1)), ((0, 0, 1), (1, 1, 0))),
+           "c=0": (((1, 0, 0), (0, 1, 0)),),
+           "sphere": (((1, 0, 0), (0, 1, 0), (0, 0, 1)), ((0, 0, 1), (1, 0, 0), (0, 1, 0)))}
+MAP_AXES, MAP_KINDS = "012", "PAOX"     # of the tree of a face: cuts of r, s, t; leaves
+GRID, MAP_CELLS = (16, 8), 2000         # of a face with s, or s and t; of the torus: for B
+
+
+@dataclass(frozen=True)
+class Face:
+    """A face of a map: d0, d1 and perhaps d2, and its cells, (kind, index, cuts)."""
+
+    directions: tuple
+    radius: Fraction
+    cells: tuple
+
+    @functools.cached_property
+    def proved(self):
+        """What proved_from says of it."""
+        return proved_from(self.cells, self.radius, len(self.directions) - 1)
+
+    def d(self, place):
+        """d(s, t) of exact numbers."""
+        d0, *others = self.directions
+        return [x + sum([p * d[i] for p, d in zip(place, others)]) for i, x in enumerate(d0)]
+
+    def box(self, index, cuts):
+        """The ends of r, and those of s and t."""
+        r, *sides = [(Fraction(i, 1 << k), Fraction(i + 1, 1 << k))
+                     for i, k in zip(index, cuts[:len(self.directions)])]
+        return [self.radius * x for x in r], sides
+
+    def waves(self, cell, least=False):
+        """The waves of the patch of a cell; or of the patch of its points of the least r."""
+        (r0, r1), sides = self.box(*cell)
+        if least:
+            r1 = r0
+        middle = self.d([(low + high) / 2 for low, high in sides])
+        parts = [[(r1 - r0) / 2 * x for x in middle]] + [
+            [r1 * (high - low) / 2 * x for x in d]
+            for (low, high), d in zip(sides, self.directions[1:])]
+        return tuple(Wave(k, Fraction(0), (r0 + r1) / 2 * x, tuple(column))
+                     for k, x, column in zip(THESIS, middle, zip(*parts)))
+
+    def is_outside(self, cell):
+        """Is b >= a all over the cell, and not only b = a?  b - a is r times what is affine in s
+        and t: so it is at the corners."""
+        _, sides = self.box(*cell)
+        excess = [b - a for a, b, _ in map(self.d, itertools.product(*sides))]
+        return min(excess) >= 0 and max(excess) > 0
+
+
+@dataclass(frozen=True)
+class Map:
+    """What a map says."""
+
+    region: str
+    faces: tuple
+    claims: tuple                       # of the proved cells, in their order
+    sha256: str                         # of the file, uncompressed
+
+    def count(self, kind):
+        return sum(cell[0] == kind for face in self.faces for cell in face.cells)
+
+
+def fields_of(value, name, *ignored, **kinds):
+    """The values of an object that must have just these fields, of these types, but for some that
+    may be there and are ignored."""
+    if type(value) is not dict or value.keys() - set(ignored) != {key.replace("_", " ")
+                                                                 for key in kinds}:
+        raise Rejected("%s is not an object with the fields %s, and no other"
+                       % (name, ", ".join(sorted(kinds)).replace("_", " ")))
+    values = [value[key.replace("_", " ")] for key in kinds]
+    for key, kind, found in zip(kinds, kinds.values(), values):
+        if type(found) is not kind:
+            raise Rejected("%s: its %s is not of the type it must be"
+                           % (name, key.replace("_", " ")))
+    return values
+
+
+def list_of(value, count, kind, name):
+    if type(value) is not list or len(value) != count or any(type(x) is not kind for x in value):
+        raise Rejected("%s is not a list of %d as they must be" % (name, count))
+    return value
+
+
+def strict_json(data):
+    """The content of a JSON text; Rejected, if it is none, or leaves anything open."""
+    if data.count(b",") + data.count(b"[") + data.count(b"{") > MAX_ITEMS:
+        raise NotConfirmed("the map has more than %d items, the checker's limit" % MAX_ITEMS)
+
+    def once(pairs):
+        if len(dict(pairs)) != len(pairs):
+            raise ValueError("a field appears twice")
+        return dict(pairs)
+
+    def integer(text):
+        if len(text) > 10:
+            raise ValueError("an integer is too long")
+        return int(text)
+
+    def finite(text):
+        if not math.isfinite(float(text)):
+            raise ValueError("a number is not finite")
+        return float(text)
+
+    try:
+        content = json.loads(data.decode("utf-8"), object_pairs_hook=once, parse_int=integer,
+                             parse_float=finite, parse_constant=finite)
+    except UnicodeDecodeError:
+        raise Rejected("the map is not UTF-8: it was altered or damaged") from None
+    except json.JSONDecodeError as error:
+        raise Rejected("the map is no whole JSON text, at character %d: it was truncated or altered"
+                       % error.pos) from None
+    except RecursionError:
+        raise Rejected("the map is nested too deeply") from None
+    except ValueError as error:
+        raise Rejected("the map is not as maps are: %s" % error) from None
+    return content
+
+
+def read_map(data):
+    """The map; every patch of its own is whole, and nothing in it is of unknown meaning."""
+    content = strict_json(data)
+    if not isinstance(content, dict) or content.get("format") != "converse map 1":
+        raise Unusable("is not a map of the version that this checker knows, converse map 1")
+    _, _, region, down_to, faces, sha256 = fields_of(
+        content, "the map", "seconds", format=str, program=str, region=str, down_to=str, faces=list,
+        sha256=str)
+    del content["sha256"]
+    try:
+        text = json.dumps(content, sort_keys=True, separators=(",", ":"))
+    except RecursionError:
+        raise Rejected("the map is nested too deeply") from None
+    if hashlib.sha256(text.encode()).hexdigest() != sha256:
+        raise Rejected("wrong checksum: the map was changed or damaged")
+    del content, text
+    if region not in REGIONS:
+        raise Rejected("the map's region is none of %s" % ", ".join(sorted(REGIONS)))
+    number(down_to, "the map's 'down to'")
+    if len(faces) != len(REGIONS[region]):
+        raise Rejected("the region has %d faces, the map %d" % (len(REGIONS[region]), len(faces)))
+    whole, claims, file = [], [], hashlib.sha256(data).hexdigest()
+    for at, face in enumerate(faces, 1):
+        with named("face %d" % at):
+            whole.append(read_face(face, claims, at, file))
+    if sorted(face.directions for face in whole) != sorted(REGIONS[region]):
+        raise Rejected("the faces are not those of the region")
+    found = Map(region, tuple(whole), tuple(claims), file)
+    if not found.count("P") and not found.count("A"):
+        raise Rejected("no cell of the map is proved: it claims no theorem")
+    return found
+
+
+def read_face(face, claims, at, sha256):
+    """A face of a map; adds the claims of its proved cells."""
+    directions, radius, tree, proofs = fields_of(face, "it", "tried", "estimate", directions=list,
+                                                 radius=str, tree=str, proofs=list)
+    if len(directions) not in (2, 3):
+        raise Rejected("it has not two or three directions")
+    directions = tuple(tuple(number(x, "a direction") for x in list_of(d, 3, str, "a direction"))
+                       for d in directions)
+    radius = number(radius, "its radius")
+    if radius <= 0:
+        raise Rejected("its radius is not above 0")
+    axes, cells, proofs = MAP_AXES[:len(directions)], [], iter(proofs)
+    for position, cell in leaves(tree, axes, MAP_KINDS):
+        kind = tree[position]
+        cells.append((kind, *cell))
+        if kind == "P":
+            if (proof := next(proofs, None)) is None:
+                raise Rejected("it has fewer proofs than proved cells")
+            with named("cell %d" % len(cells)):
+                claims.append(read_cell(proof, Face(directions, radius, ()).waves(cell),
+                                        "face %d, cell %d: " % (at, len(cells)), sha256))
+    if next(proofs, None) is not None:
+        raise Rejected("it has more proofs than proved cells")
+    return Face(directions, radius, tuple(cells))
+
+
+def read_cell(proof, waves, name, sha256):
+    """The claim of a proved cell."""
+    xstar, frame, alone, tree = fields_of(proof, "its proof", xstar=list, frame=list, alone=str,
+                                          tree=str)
+    xstar = tuple(number(x, "x*") for x in list_of(xstar, 2, str, "x*"))
+    frame = check_frame([str(x) for x in list_of(frame, 4, int, "the frame")], "the frame")
+    if alone not in ("no", "0", "1"):
+        raise Rejected("alone is neither no nor 0 nor 1")
+    alone = None if alone == "no" else int(alone)
+    check_alone(waves, alone)
+    one = Fraction(1)
+    claim = Claim(waves, (one, one), (one, one), frame, alone, xstar, {}, "no", tree, sha256, name)
+    claim.counts.update(tree_counts(claim))
+    check_mirror_images(claim)
+    return claim
+
+
+def check_map(file):
+    """Rejected or NotConfirmed, if a cell is not outside or not at once; else for each proved cell
+    an upper bound of B.
+
+    B - 2 is convex and homogeneous of degree 1 in the amplitudes.  So it is r times its value at
+    d(s, t), which lies below what is linear along s and along t between points of a grid; and over
+    a cell this, or the convex function itself where the cell has more than one slice of the grid,
+    is largest at a corner.
+    """
+    fixed, bounds, claims = Fixed.of(96), [], iter(file.claims)
+    for at, face in enumerate(file.faces, 1):
+        with named("face %d" % at):
+            face.proved                 # which has a limit: not to be met after hours
+
+        @functools.lru_cache(maxsize=None)
+        def excess(place, face=face):
+            """B - 2 at a point of the grid, exact and from above."""
+            known = {(*k, 0): math.floor(x * fixed.one) for k, x in zip(THESIS, face.d(place)) if x}
+            bound = torus_bound(fixed, list(known), [tuple(known.values())], MAP_CELLS) \
+                + stiffness(known)
+            return Fraction(bound, fixed.one) - 2
+
+        grid = GRID[len(face.directions) - 2]
+
+        def between(place, grid=grid, excess=excess):
+            """The same, at any point of the face."""
+            nodes = [((), Fraction(1))]
+            for x in place:
+                low = Fraction(min(math.floor(x * grid), grid - 1), grid)
+                u = (x - low) * grid
+                nodes = [(node + (y,), weight * v) for node, weight in nodes
+                         for y, v in ((low, 1 - u), (low + Fraction(1, grid), u)) if v]
+            return sum([weight * excess(node) for node, weight in nodes])
+
+        for n, (kind, *cell) in enumerate(face.cells, 1):
+            name = "face %d, cell %d" % (at, n)
+            if kind == "X" and not face.is_outside(cell):
+                raise Rejected("%s is said to be outside of the region, and is not" % name)
+            if kind == "A" and not is_at_once(fixed, present(face.waves(cell, least=True))):
+                raise NotConfirmed("%s: that it and all larger multiples are excluded at once "
+                                   "(B > 10/3)" % name)
+            if kind == "P":
+                claim, ((_, r), sides) = next(claims), face.box(*cell)
+                if claim.alone is None:
+                    bounds.append(2 + r * max(map(between, itertools.product(*sides))))
+                else:       # one coordinate, whose waves add no more than their amplitudes
+                    bounds.append(2 + sum([wave.k[claim.alone] ** 2 * (
+                        abs(wave.middle) + sum(map(abs, wave.parts))) for wave in claim.examined]))
+    return bounds
+
+
+def sign_changes():
+    """How V's maps of the torus change the signs of a, b and c, generated by y0 -> y0 + pi,
+    y1 -> y1 + pi and y -> -y: sin(k.(y + pi s)) = (-1)^(k.s) sin(k.y), sin(-k.y) = -sin(k.y)."""
+    found = {(1, 1, 1)}
+    for signs in [tuple([(-1) ** k[i] for k in THESIS]) for i in (0, 1)] + [(-1, -1, -1)]:
+        found |= {tuple([p * q for p, q in zip(signs, other)]) for other in found}
+    return found
+
+
+def proved_from(cells, radius, axes):
+    """The least r from which on, up to the radius, every direction of these cells is proved (None
+    if not even at the radius), and whether every direction is proved from somewhere on for ever.
+
+    A cell at once is proved from its least r on.  Directions in which some cell is finer are
+    looked at in halves; where all cells are as wide as the directions, the unproved ones are
+    those not above the first that is at once.  NotConfirmed, if that are too many halves: strips
+    of s below strips of t make all their products.
+    """
+    worst, forever, seen = Fraction(0), True, 0
+    todo = [((0,) * axes, (0,) * axes, cells)]
+    while todo:
+        index, cuts, cells = todo.pop()
+        seen += len(cells)
+        if seen > MAX_ITEMS:
+            raise NotConfirmed("its cells lie in too many ways below each other for this checker")
+        axis = next((m for m in range(axes)
+                     if any(cell[2][1 + m] > cuts[m] for cell in cells)), None)
+        if axis is None:
+            ends = [(kind, radius * i / (1 << k), radius * (i + 1) / (1 << k))
+                    for kind, (i, *_), (k, *_) in cells]
+            once = min([low for kind, low, _ in ends if kind == "A"], default=None)
+            worst = max([worst] + [high if once is None else min(high, once)
+                                   for kind, low, high in ends
+                                   if kind == "O" and (once is None or low < once)])
+            forever &= once is not None or any(kind == "X" and high == radius
+                                               for kind, _, high in ends)
+            continue
+        for upper in (0, 1):
+            i, k = changed(index, axis, 2 * index[axis] + upper), changed(cuts, axis,
+                                                                          cuts[axis] + 1)
+
+            def meets(cell):
+                ours, theirs = k[axis], cell[2][1 + axis]
+                return cell[1][1 + axis] >> max(theirs - ours, 0) == \
+                    i[axis] >> max(ours - theirs, 0)
+
+            todo.append((i, k, [cell for cell in cells if meets(cell)]))
+    return worst if worst < radius else None, forever

@@ -1,0 +1,173 @@
+"""Reading a proof file: nothing in it is believed but what the claim is."""
+
+import gzip
+import hashlib
+import io
+import re
+import zlib
+from fractions import Fraction
+
+from .claim import (ANGLES, IDENTITY, NUMBER, RANGES, RATIO, THESIS, Claim, Wave, check_alone,
+                    check_frame, number)
+from .failures import NotConfirmed, Rejected, Unusable, reason
+from .limits import MAX_BYTES, MAX_K, MAX_LINE, MAX_WAVES
+
+COUNTS = ("depth", "cuts", "proved", "symmetric", "undecided", "most_cuts")
+IGNORED = ("program", "method", "digits", "stubborn", "quick_tries", "tries", "Rtries",
+           "HermSuccess", "LLSuccess", "ll_used", "reasons", "max_steps", "max_NTsteps",
+           "B", "pending")
+OPTIONAL = {"T", "Tr-", "Tr+", "lambda-min", "lambda-max", "seconds", "comment"}    # ignored, too
+ALWAYS = {*ANGLES, *COUNTS, *IGNORED, "kind", "xstar", "at once"}
+FIELDS = {b"2": {*ALWAYS, *RANGES, "together"},
+          b"3": {*ALWAYS, "wave", "frame", "alone", "odd about"}}
+REPEATED = {"wave", "comment"}
+MAGIC = b"converse proof "               # and the version, alone on the first line
+
+
+def load(path):
+    """The bytes of a proof file or of a map, uncompressed."""
+    try:
+        with open(path, "rb") as file:
+            packed = file.peek(2)[:2] == b"\x1f\x8b"
+            stream = gzip.GzipFile(fileobj=file) if packed else file
+            data = bytearray(stream.read(len(MAGIC)))
+            if data != MAGIC and not data.startswith(b"{"):
+                raise Unusable("is not a proof file")
+            while (more := stream.read(1 << 20)) and len(data) <= MAX_BYTES:
+                data += more
+    except (EOFError, zlib.error, gzip.BadGzipFile):
+        raise Unusable("the compressed file is damaged or truncated") from None
+    except (OSError, ValueError) as error:
+        raise Unusable("cannot be read (%s)" % reason(error)) from None
+    if len(data) > MAX_BYTES:
+        raise NotConfirmed("the file is larger than %d bytes, the checker's limit" % MAX_BYTES)
+    return data
+
+
+def read_proof(data):
+    """The claim of a proof file, if it is whole and has the checksum that it says."""
+    first = data[len(MAGIC):len(MAGIC) + 9].partition(b"\n")[0]
+    if first.endswith(b"\r"):
+        raise Rejected("its lines end in CR LF: it was altered on its way; ask for the original")
+    if bytes(first) not in FIELDS:
+        raise Unusable("is a proof file of another version; this checker knows versions 2 and 3")
+    marker = b"checksum: sha256 "
+    end = data.rfind(b"\n" + marker) + 1
+    end_line = data[end + len(marker):]
+    if not end or not re.fullmatch(b"[0-9a-f]{64}\nend\n", end_line):
+        raise Rejected("the file does not end with its checksum; it is truncated or altered")
+    view = memoryview(data)
+    if end_line[:64] != hashlib.sha256(view[:end]).hexdigest().encode():
+        raise Rejected("wrong checksum: the file was changed or damaged")
+    start = data.find(b"\ntree:\n", 0, end) + 1
+    if not start:
+        raise Rejected("there is no tree")
+    tree = data[start + len(b"tree:\n"):end].translate(None, b"\n").decode("latin-1")
+    return parse(bytes(view[:start]), tree, hashlib.sha256(view).hexdigest())
+
+
+def parse_header(head):
+    """The version and the fields, each of them given once, and none of unknown meaning.
+
+    Nothing of it is repeated in a message but the names of fields that are known.
+    """
+    header, file = {"wave": []}, io.BytesIO(head)
+    version = file.readline()[len(MAGIC):].rstrip()     # which read_proof has seen to
+    fields = FIELDS[version]
+    for at, line in enumerate(iter(lambda: file.readline(MAX_LINE), b""), 2):
+        if len(line) == MAX_LINE:
+            raise NotConfirmed("line %d is longer than the checker's limit, %d bytes"
+                               % (at, MAX_LINE - 1))
+        name, colon, value = line.decode("utf-8", "replace").rstrip("\n").partition(": ")
+        if not colon or name not in fields | OPTIONAL:
+            raise Rejected("line %d, in the header, is of unknown meaning" % at)
+        if name in header and name not in REPEATED:
+            raise Rejected("the header gives %s twice" % name)
+        if name == "wave":
+            header[name].append(value)
+        else:
+            header[name] = value
+    if "xstar" not in header:
+        raise Rejected("the search had not begun when it was left: there is no x* yet")
+    if fields - header.keys():
+        raise Rejected("the header lacks %s" % ", ".join(sorted(fields - header.keys())))
+    if header["kind"] != "sound":
+        raise Rejected("the file's kind is not 'sound': it is not meant as a proof")
+    return version, header
+
+
+def parse(head, tree, sha256):
+    """The claim of a header and a tree."""
+    version, header = parse_header(head)
+
+    def pair(name, form=NUMBER):
+        words = header[name].split(" ", 2)
+        if len(words) != 2 or not all(map(form.fullmatch, words)):
+            raise Rejected("the header's %s is not two decimal numbers" % name)
+        return tuple(number(word, "the header's " + name, form) for word in words)
+
+    def one_of(name, *values):
+        if header[name] not in values:
+            raise Rejected("the header's %s is neither %s" % (name, " nor ".join(values)))
+        return header[name]
+
+    ranges = [pair(name) for name in (RANGES if version == b"2" else ()) + ANGLES]
+    xstar = pair("xstar")
+    if min(half for _, half in ranges) < 0:
+        raise Rejected("a half-width is negative")
+    for name in COUNTS:
+        if not re.fullmatch("[0-9]{1,18}", header[name], re.ASCII):
+            raise Rejected("the header's %s is not a count" % name)
+    *ranges, v0, v1 = ranges
+    frame, alone, odd = IDENTITY, None, (Fraction(0), Fraction(0))
+    if version == b"2":
+        together = one_of("together", "yes", "no") == "yes"
+        at_once = one_of("at once", "yes", "no").replace("yes", "upper end" if together else "yes")
+        waves = tuple(
+            Wave(k, Fraction(0), middle, (half,) if together else
+                 tuple(half if k == other else Fraction(0) for other in THESIS))
+            for k, (middle, half) in zip(THESIS, ranges))
+    else:
+        at_once = one_of("at once", "yes", "no", "upper end")
+        waves = parse_waves(header["wave"])
+        frame = check_frame(header["frame"].split(" "), "the header's frame")
+        alone = {"no": None, "0": 0, "1": 1}[one_of("alone", "no", "0", "1")]
+        check_alone(waves, alone)
+        odd = None if header["odd about"] == "no" else pair("odd about", RATIO)
+    claim = Claim(waves, *zip(v0, v1), frame, alone, xstar,
+                  {name: int(header[name]) for name in COUNTS}, at_once, tree, sha256)
+    check_odd(claim, odd)
+    return claim
+
+
+def check_odd(claim, odd):
+    """Rejected, if V is not odd about that point (in units of pi), or would have to be."""
+    if odd and any((sum([k * s for k, s in zip(wave.k, odd)]) + wave.phase) % 1
+                   for wave in claim.examined):
+        raise Rejected("V is not odd about the point that the header names")
+    if claim.at_once != "no" and not odd:
+        raise Rejected("larger parameters are excluded at once only where V is odd about a point")
+    if claim.at_once == "upper end" and claim.parameters != 1:
+        raise Rejected("without exactly one parameter there is no upper end")
+
+
+def parse_waves(lines):
+    """The waves of a header."""
+    if not 0 < len(lines) <= MAX_WAVES:
+        raise Rejected("the header has %d waves, not 1 to %d" % (len(lines), MAX_WAVES))
+    waves = []
+    for at, line in enumerate(lines, 1):
+        words, name = line.split(" ", 9), "the header's wave %d" % at
+        if not 4 <= len(words) <= 7:
+            raise Rejected(name + " is not K0 K1 PHASE AMPLITUDE and at most three parts")
+        if not all(re.fullmatch("[+-]?[0-9]{1,3}", word, re.ASCII) for word in words[:2]):
+            raise Rejected(name + " has no integer k")
+        k = tuple(map(int, words[:2]))
+        if k == (0, 0) or max(map(abs, k)) > MAX_K:
+            raise Rejected("%s has a k that is zero or beyond %d" % (name, MAX_K))
+        phase = number(words[2], name, RATIO)
+        middle, *parts = [number(word, name) for word in words[3:]]
+        waves.append(Wave(k, phase, middle, tuple(parts)))
+        if len(parts) != len(waves[0].parts):
+            raise Rejected(name + " has not as many parts as the first")
+    return tuple(waves)

@@ -1,0 +1,81 @@
+"""Verifying a whole file."""
+
+import contextlib
+import itertools
+import random
+
+from .criterion import check_at_once
+from .failures import NotConfirmed, Unusable
+from .lockstep import make_lockstep
+from .maps import Map, check_map, read_map
+from .progress import Bar
+from .proof_file import load, read_proof
+from .state import State
+from .tree import check_mirror_images, check_tree, leaf_text
+from .words import report
+from .workers import Problems, in_order
+
+CHUNKS, CHUNK = 8, 16                   # tasks of a process, about; leaves of one, with --exact
+FAST_CHUNK = 1 << 8, 1 << 14            # least and most of the fast path
+
+
+def read(path):
+    """Reads a proof file, or a map; nothing in it is believed but what the claim is."""
+    data = load(path)
+    return read_map(data) if data.startswith(b"{") else read_proof(data)
+
+
+def verify(path, jobs=1, sample=None, state=None, bar=False, exact=False):
+    """Verifies a proof file or a map: a Result; else Rejected, NotConfirmed or Unusable is raised.
+
+    jobs: processes.  sample: so many leaves only, chosen by chance: a spot check.
+    state: a file that remembers what was confirmed, so that an interrupted check can go on; it
+    is kept in the end.  bar: show the progress on stderr.  exact: in integers alone, as where
+    there is no numpy.
+    """
+    if jobs < 1 or sample is not None and sample < 1:
+        raise ValueError("jobs and sample are 1 or more")
+    if sample is not None and state is not None:
+        raise Unusable("a spot check keeps no state; give --sample or --state")
+    file = read(path)
+    if isinstance(file, Map):
+        problems = Problems(file.claims, check_map(file))
+    else:
+        check_tree(file)
+        check_mirror_images(file)
+        problems = Problems((file,))
+        check_at_once(problems.criterion(0))
+    if not exact and problems.claims:
+        problems.fast = make_lockstep(problems.claims)
+    proved = [claim.counts["proved"] for claim in problems.claims]
+    done = State(state, file.sha256, sum(proved))
+    earlier = done.confirmed
+    chosen = range(earlier, sum(proved))
+    if sample is not None:
+        chosen = set(random.SystemRandom().sample(chosen, min(sample, sum(proved))))
+
+    def work():
+        return ((n, leaf) for n, leaf in enumerate(problems.leaves()) if n in chosen)
+
+    queue = work()
+    size = CHUNK
+    if problems.fast:
+        fewest, most = FAST_CHUNK
+        size = min(max(len(chosen) // (CHUNKS * jobs), fewest), most)
+    chunks = iter(lambda: list(itertools.islice(queue, size)), [])
+    try:
+        with Bar(work() if bar else (), len(chosen)) as progress, \
+                contextlib.closing(in_order(chunks, jobs, problems)) as results:
+            for n, spent, pieces, failure in results:
+                done.advance(n, pieces)
+                progress.advance(n, spent)
+                if failure:
+                    n, (at, cell), why = failure
+                    claim = problems.claims[at]
+                    raise NotConfirmed(
+                        "%s%s is not excluded: %s; the claim is false or its proof beyond the "
+                        "limits of this checker" % (
+                            claim.where, leaf_text(claim, "P", n - sum(proved[:at]), cell), why))
+    finally:
+        done.save()
+    return report(file, problems, done, earlier, sample is not None)

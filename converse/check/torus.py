@@ -1,0 +1,147 @@
+"""The bound B of the largest eigenvalue of beta over the torus and the parameters, step (C2), and
+whether B is so large that all larger multiples are excluded at once.
+"""
+
+import heapq
+import itertools
+import math
+from fractions import Fraction
+
+from .arith import PARAMETER_ERROR, SINE_ERROR, angle_of, forms, in_units, largest, stiffness
+from .limits import MAX_CELLS
+
+NU_BITS = 20                            # of the test vectors
+
+
+def cell_bound(fixed, waves, amplitudes, sides, y, w):
+    """An upper bound of the largest eigenvalue of beta over y + sum of d side, |d| <= w, and one at
+    y.
+
+    beta = 2I + sum of m k k', where m = -p sin(k.x + phase).
+    Taylor: m <= m(y) - p cos(k.y + phase) k.D + |p| (k.D)^2 / 2.  The part affine in d has a convex
+    largest eigenvalue, so its maximum lies at a corner of the cell; as |k.D| <= w sum of |k.side|
+    the rest adds at most the largest eigenvalue of the sum of |p| (w sum of |k.side|)^2 k k' / 2.
+    """
+    bits, one = fixed.bits, fixed.one
+    along = [[k0 * u + k1 * v for u, v in sides] for k0, k1, _ in waves]
+    angles = [fixed.sincos(angle_of(wave, y)) for wave in waves]
+    m = [-p * s >> bits for p, (s, _) in zip(amplitudes, angles)]
+    g = [-p * c * w >> 2 * bits for p, (_, c) in zip(amplitudes, angles)]
+
+    def eigenvalue(d):
+        at = [value + slope * sum([k * e for k, e in zip(ks, d)])
+              for value, slope, ks in zip(m, g, along)]
+        p, q, r = forms(waves, at)
+        return largest(2 * one + p, q, 2 * one + r, one)
+
+    square = (w * w >> bits) + 1
+    bend = largest(*forms(waves, [(abs(p) * square * sum(map(abs, ks)) ** 2 >> bits + 1) + 1
+                                  for p, ks in zip(amplitudes, along)]), one)
+    # Sines and floors: m is off by 1 + SINE_ERROR size units at most, and g d by 1 + SINE_ERROR
+    # size w for each unit of k.side; 1 to spare.  (A side is a unit vector, or for waves that are
+    # multiples of k0 is such that k.side is the multiple: |k.side| <= |k0| + |k1|.)
+    size = max(map(abs, amplitudes), default=0)
+    slack = 4 + stiffness(waves) * (4 + ((2 * SINE_ERROR * size * (one + w)) >> 2 * bits) + 1)
+    corners = max(map(eigenvalue, itertools.product((-1, 1), repeat=len(sides))))
+    return corners + bend + slack, eigenvalue((0,) * len(sides)) + slack
+
+
+def torus_bound(fixed, waves, corners, most=None):
+    """An upper bound B of the largest eigenvalue of beta over the torus and the parameters between
+    these corners, each a tuple of amplitudes.
+
+    beta(x) is affine in the parameters and its largest eigenvalue convex: for each x the maximum
+    is at one of the corners.  At each, branch and bound over cells that cover the torus,
+    until the worst cell is within 2^-20 (relative to the parameters) of a value taken, or there
+    have been so many cells (most) that the bound may be a little less sharp.
+
+    If all k are multiples of one, q, then beta depends on q.y alone, and its values are those on a
+    line: for side.q = 1 those at y = d side, |d| <= pi.
+    """
+    corners = sorted(set(corners))
+    q = min([(k0, k1) for k0, k1, _ in waves] or [(1, 0)], key=lambda k: abs(k[0]) + abs(k[1]))
+    if all(k0 * q[1] == k1 * q[0] for k0, k1, _ in waves):
+        divisor = math.gcd(*q)
+        sides = [bezout(q[0] // divisor, q[1] // divisor)]
+    else:
+        sides = [(1, 0), (0, 1)]
+    tolerance = (fixed.one + max([sum(map(abs, p)) for p in corners])) >> 20
+    heap, taken, order = [], 0, itertools.count()
+
+    def push(p, y, w):
+        nonlocal taken
+        bound, value = cell_bound(fixed, waves, p, sides, y, w)
+        taken = max(taken, value)
+        heapq.heappush(heap, (-bound, next(order), p, y, w))
+
+    for p in corners:
+        push(p, (0, 0), fixed.pi + 2)
+    while -heap[0][0] > taken + tolerance and next(order) < (most or MAX_CELLS):
+        _, _, p, y, w = heapq.heappop(heap)
+        w = w + 1 >> 1
+        for d in itertools.product((-w, w), repeat=len(sides)):
+            push(p, tuple([c + sum([e * side[i] for e, side in zip(d, sides)])
+                           for i, c in enumerate(y)]), w)
+    return -heap[0][0]
+
+
+def bezout(a, b):
+    """Integers (u, v), |u|, |v| <= 1 or below |a|, |b|, with a u + b v = 1, for coprime a, b."""
+    u, v, old, new = 1, 0, a, b
+    x, y = 0, 1
+    while new:
+        n = old // new
+        old, new, u, x, v, y = new, old - n * new, x, u - n * x, y, v - n * y
+    return (u * old, v * old)               # old is 1 or -1
+
+
+def least(d):
+    """The least eigenvalue of [p q; q r] and its eigenvector, in double precision."""
+    p, q, r = d
+    value = (p + r - math.hypot(p - r, 2 * q)) / 2
+    u, v = (q, value - p) if p > r else (value - r, q)
+    length = math.hypot(u, v)
+    return value, ((u / length, v / length) if length else (1.0, 0.0))
+
+
+def is_at_once(fixed, waves, t=None):
+    """Is B > 10/3 for all parameters of the waves, or at t; B of beta over the torus?
+
+    V is odd about a point, so the least eigenvalue of beta over the torus is 4 - B; where it is
+    attained, (C3) with that point and its eigenvector alone is 4 - B - 2l < 0, that is B > 10/3;
+    and B - 2 grows in proportion with the amplitudes.  So it is enough that n.beta(x)n < 2/3 |n|^2
+    for some x and n: found on a grid in double precision, and then bounded for all parameters.
+    """
+    one, known = fixed.one, in_units(fixed, waves)
+    amplitudes = [[math.floor(x * one) for x in (
+        (wave.middle, *wave.parts) if t is None else (wave.at(t),))] for wave in waves]
+    angles = [(*wave.k, math.pi * float(wave.phase % 2)) for wave in waves]
+    middle = [p / one for p, *_ in amplitudes]
+
+    def beta(x):
+        p, q, r = forms(angles, [m * math.sin(k0 * x[0] + k1 * x[1] + phase)
+                                 for m, (k0, k1, phase) in zip(middle, angles)])
+        return 2 - p, -q, 2 - r
+
+    def level(x):
+        return least(beta(x))[0]
+
+    count = min(16 * max([abs(k) for wave in waves for k in wave.k] + [1]), 128)
+    grid = [2 * math.pi * k / count for k in range(count)]
+    places = heapq.nsmallest(4, itertools.product(grid, repeat=2), key=level)
+    for width in (2 * math.pi / count * 2.0 ** -k for k in range(1, 18)):
+        places = [min(itertools.product(*((y - width, y, y + width) for y in x)), key=level)
+                  for x in places]
+    x = min(places, key=level)
+    n0, n1 = [round(u * 2 ** NU_BITS) for u in least(beta(x))[1]]
+    x = [math.floor(Fraction(y) * one) for y in x]
+    total = 4 * (n0 * n0 + n1 * n1) << 2 * fixed.bits       # three times 2 |n|^2 - 2/3 |n|^2
+    moved = [0] * max(map(len, amplitudes), default=0)      # by each parameter
+    for wave, (p, *parts) in zip(known, amplitudes):
+        omega, (sine, _) = 3 * (wave[0] * n0 + wave[1] * n1) ** 2, fixed.sincos(angle_of(wave, x))
+        total -= omega * p * sine
+        # The sine is off by SINE_ERROR, the middle and each part by a unit: 32 are enough.
+        total += omega * ((abs(p) + sum(map(abs, parts))) * SINE_ERROR + PARAMETER_ERROR * 2 * one)
+        for m, part in enumerate(parts):
+            moved[m] += omega * part * sine
+    return total + sum(map(abs, moved)) < 0

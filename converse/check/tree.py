@@ -1,0 +1,175 @@
+"""The tree of cuts, its counts, and the mirror images of the leaves that are skipped.
+
+A cell (index, cuts) is slice index[k] of the 2^cuts[k] equal slices of the region along each of
+the axes k.  Cutting a cell replaces it by its two halves, so the leaves of a complete tree tile the
+region exactly.
+"""
+
+from array import array
+from fractions import Fraction
+
+from .claim import AXES, IDENTITY
+from .failures import NotConfirmed, Rejected
+from .limits import MAX_CUTS
+
+ROOT = (0,) * 5, (0,) * 5
+
+
+def changed(values, axis, value):
+    return values[:axis] + (value,) + values[axis + 1:]
+
+
+def leaves(tree, axes=AXES, kinds="PSU"):
+    """Yields (position, cell) for each leaf, in preorder; Rejected if it is not a whole tree."""
+    pending = [((0,) * len(axes),) * 2]
+    for position, node in enumerate(tree):
+        if not pending:
+            raise Rejected("the tree ends before its text does, at node %d" % position)
+        index, cuts = cell = pending.pop()
+        axis = axes.find(node)
+        if axis >= 0:
+            cuts = changed(cuts, axis, cuts[axis] + 1)
+            pending += ((changed(index, axis, 2 * index[axis] + upper), cuts) for upper in (1, 0))
+        elif node in kinds:
+            yield position, cell
+        else:
+            raise Rejected("%a is not a node of a finished tree, at node %d" % (node, position))
+        if sum(cuts) > MAX_CUTS:
+            raise NotConfirmed("node %d lies below %d cuts, the checker's limit"
+                               % (position, MAX_CUTS))
+    if pending:
+        raise Rejected("the tree is incomplete: %d of its parts are missing" % len(pending))
+
+
+def tree_counts(claim):
+    """What the tree has, counted; Rejected, if it is not whole and decided."""
+    total = most_cuts = deepest = 0
+    if set(AXES[2 + claim.parameters:]) & set(claim.tree):
+        raise Rejected("the tree cuts a parameter that there is not")
+    for position, (_, cuts) in leaves(claim.tree):
+        total += 1
+        depth = sum(cuts)
+        if claim.tree[position] == "U":
+            raise Rejected("leaf %d is undecided: the file claims no theorem" % total)
+        deepest = max(deepest, depth)
+        if claim.tree[position] == "P":
+            most_cuts = max(most_cuts, depth)
+    return {"cuts": total - 1, "proved": claim.tree.count("P"),
+            "symmetric": claim.tree.count("S"), "undecided": 0, "most_cuts": most_cuts,
+            "depth": deepest}
+
+
+def check_tree(claim):
+    """Rejected, if the tree is not whole, decided, and what the header's counts say."""
+    found = tree_counts(claim)
+    if found.pop("depth") > claim.counts["depth"]:
+        raise Rejected("a leaf was cut more often than the depth allows")
+    for name, value in found.items():
+        if claim.counts[name] != value:
+            raise Rejected("the header's %s is %d, the tree's %d"
+                           % (name, claim.counts[name], value))
+
+
+def coefficients(waves, swap=False, order=None):
+    """V as the coefficients of sin(k.y + pi phase), k0 > 0 or k0 = 0 < k1, 0 <= phase < 1, in the
+    middle and of each parameter; the coordinates exchanged, the parameters in another order."""
+    found = {}
+    for wave in waves:
+        k, phase = wave.k[::-1] if swap else wave.k, wave.phase
+        if k < (0, 0):                          # sin(x) = sin(pi - x)
+            k, phase = (-k[0], -k[1]), 1 - phase
+        sign = -1 if phase // 1 % 2 else 1      # sin(x + pi) = -sin(x)
+        parts = [wave.parts[m] for m in order] if order else wave.parts
+        key = k, phase % 1
+        found[key] = [old + sign * new for old, new in
+                      zip(found.get(key, [0] * (1 + len(parts))), (wave.middle, *parts))]
+    return {key: value for key, value in found.items() if any(value)}
+
+
+class Mirror:
+    """The exchange of the two coordinates: may a leaf be skipped for the sake of its mirror image?
+
+    It maps the graphs of V to those of V with its coordinates exchanged.  Where this is V for
+    parameters in another order, t'[m] = t[order[m]], the orbits from x* to a cell are mapped to
+    those from the image of x* to the image of the cell, with its parameters in that order.
+    """
+
+    def __init__(self, claim):
+        (v0, v1), waves = zip(claim.centre, claim.half), claim.examined
+        self.orders = []                                    # of the parameters
+        if v0 == v1 and claim.xstar[0] == claim.xstar[1] and claim.frame == IDENTITY:
+            # V(sigma y; t) = V(y; t'):  the part of t[order[m]] is, exchanged, that of t'[m].
+            self.orders = [order for order in ((1, 0, 2), (0, 1, 2), (0, 2, 1), (2, 1, 0),
+                                               (1, 2, 0), (2, 0, 1), (1, 0), (0, 1), (0,), ())
+                           if len(order) == claim.parameters
+                           and coefficients(waves, True, order) == coefficients(waves)]
+        self.tree = claim.tree
+        self.upper = array("i", [0]) * len(self.tree)       # where a node's upper half begins
+        unfinished = []                                     # nodes whose lower half goes on
+        for position, node in enumerate(self.tree):
+            if node in AXES:
+                unfinished.append(position)
+            elif unfinished:
+                self.upper[unfinished.pop()] = position + 1
+
+    def refusal(self, cell):
+        """Why the symmetric leaf may not be skipped, or None if its mirror image is proved."""
+        if not self.orders:
+            return "is skipped, but the problem is not symmetric"
+        slices = list(zip(*cell))
+        for order in self.orders:
+            image = [slices[1], slices[0], *(slices[2 + m] for m in order)]
+            if self.is_proved(tuple(image + slices[len(image):])):
+                return None
+        return "is skipped, but its mirror image is not proved"
+
+    def is_proved(self, image):
+        """Is every leaf P that overlaps these slices?"""
+        todo = [(0, image)]                 # a node, and the image's cell within that node
+        while todo:
+            position, image = todo.pop()
+            node, lower = self.tree[position], position + 1
+            if node == "P":
+                continue
+            axis = AXES.find(node)
+            if axis < 0:
+                return False
+            halves = lower, self.upper[position]
+            index, cuts = image[axis]
+            if cuts == 0:                                   # the image has both halves
+                todo += [(half, image) for half in halves]
+            else:
+                rest = index & (1 << cuts - 1) - 1, cuts - 1
+                todo.append((halves[index >> cuts - 1], changed(image, axis, rest)))
+        return True
+
+
+def check_mirror_images(claim):
+    """Rejected, if a leaf is skipped by symmetry that may not be."""
+    if "S" not in claim.tree:
+        return
+    mirror, skipped = Mirror(claim), 0
+    for position, cell in leaves(claim.tree):
+        if claim.tree[position] == "S":
+            why = mirror.refusal(cell)
+            if why:
+                raise Rejected(leaf_text(claim, "S", skipped, cell) + " " + why)
+            skipped += 1
+
+
+def leaf_text(claim, kind, ordinal, cell):
+    """Names a leaf by its number among those of its kind, its depth and where it lies."""
+    index, cuts = cell
+
+    def sides(ends):
+        return " x ".join(["[%.9g, %.9g]" % (low, high) for low, high in ends])
+
+    t = [Fraction(2 * i + 1, 1 << k) - 1 for i, k in zip(index[2:], cuts[2:])]
+    angles = [(c - h + 2 * h * i / (1 << k), c - h + 2 * h * (i + 1) / (1 << k))
+              for c, h, i, k in zip(claim.centre, claim.half, index, cuts)]
+    spread = [sum([abs(g) / (1 << k) for g, k in zip(wave.parts, cuts[2:])])
+              for wave in claim.waves]
+    return "%s leaf %d of %d (v in %s pi, amplitudes in %s, %d cuts)" % (
+        {"P": "proved", "S": "symmetric"}[kind], ordinal + 1, claim.tree.count(kind),
+        sides(angles), sides([(wave.at(t) - x, wave.at(t) + x)
+                              for wave, x in zip(claim.waves, spread)]), sum(cuts))

@@ -1,0 +1,167 @@
+"""How theorems for Coq are written down: what they say is in Map.v's words, and nobody else's, and what
+they assume is looked at.  (make formal-quick builds what is used here.)"""
+
+import importlib
+import re
+import shutil
+import subprocess
+import sys
+from dataclasses import replace
+
+import pytest
+
+from conftest import ROOT, not_sanitized
+from converse import prove, read_input
+
+FORMAL = ROOT / "formal"
+needs_coq = pytest.mark.skipif(
+    not shutil.which("coqc") or not (FORMAL / "Plain.vo").exists(),
+    reason="make formal-quick was not run")
+pytestmark = not_sanitized
+
+
+@pytest.fixture(scope="module")
+def proof(tmp_path_factory):
+    """Finished proof files."""
+    def proof(name):
+        path = tmp_path_factory.mktemp("proofs") / "proof"
+        problem = replace(read_input(ROOT / "inputs" / (name + ".in")), together=True)
+        prove(problem, method="loewner").save(path)
+        return path
+    return proof
+
+
+@pytest.fixture
+def folder(tmp_path):
+    """A folder like formal/, with its library, for theorems of our own."""
+    for path in FORMAL.glob("*.vo"):
+        (tmp_path / path.name).symlink_to(path)
+    (tmp_path / "build").mkdir()
+    return tmp_path
+
+
+def write(proof, name, folder, *options):
+    """What theorem.py makes of a proof file; the paths of what it wrote."""
+    subprocess.run([sys.executable, FORMAL / "theorem.py", *options, proof, name, folder / "build"],
+                   check=True)
+    return {path.stem: path for path in (folder / "build").glob("*.v")}
+
+
+def compiled(folder, file):
+    """Does Coq accept it?  What it says of it."""
+    done = subprocess.run(["coqc", "-q", "-Q", ".", "Converse", file], cwd=folder, text=True,
+                          stdout=subprocess.PIPE, stderr=subprocess.STDOUT, stdin=subprocess.DEVNULL)
+    return done.returncode == 0, done.stdout
+
+
+def test_who_reads_map_and_says_has_read_enough(proof, tmp_path):
+    """The proposition imports Map.v alone; the theorem's file that and Map.v, and nothing else."""
+    (tmp_path / "build").mkdir()
+    files = write(proof("trig278"), "trig278", tmp_path, "--parts", "3")
+    assert sorted(files) == ["trig278", *("trig278_%s" % end for end in ("0", "1", "2", "claim", "says"))]
+    says, theorem = (files[name].read_text() for name in ("trig278_says", "trig278"))
+    imports = re.compile(r"From Converse(?:\.build)? Require Import (.*)\.")
+    assert says.count("Converse ") == 1 and imports.findall(says) == ["Map"]
+    assert imports.findall(theorem) == ["Map", "trig278_says"]
+    commands = re.findall(r"^(?!From|Open|Import|Proof|Qed|Check|Print|Set|Add| |\(\*)(.+)$",
+                          says + theorem, re.M)
+    assert commands == ["Definition trig278_says : Prop :=", "Theorem trig278 : trig278_says."]
+
+
+@needs_coq
+def test_words_that_mean_something_else(proof, folder):
+    """A file like the written ones that gives Map.v's words another meaning: what it proves is the
+    proposition to the letter, and not the proposition."""
+    files = write(proof("trig278"), "trig278", folder)
+    claim, says, theorem = (files["trig278" + end] for end in ("_claim", "_says", ""))
+    too_much, changed = re.subn(r"Term (\d \d 0) [0-9.]+ \[[0-9.]+\]", r"Term \1 0 [0.25]",
+                                says.read_text())
+    assert changed == 3
+    says.write_text(too_much)
+    claim.write_text(claim.read_text() +
+                     "\nDefinition waves (patch : list term) := Map.waves (of_patch the_claim).\n")
+    for name in ("trig278_says", "trig278_claim", "trig278_0"):
+        assert compiled(folder, "build/%s.v" % name) == (True, "")
+    accepted, said = compiled(folder, "build/trig278.v")
+    assert not accepted and re.search(r'"Check\.statement trig278_claim\.the_claim" while it is '
+                                      r'expected to have type\s+"trig278_says"', said), said
+    # The trick is one: with the proposition in a file that imports the others it is proved.
+    proposition = re.search(r"(?s):=(.*)\.", too_much)[1]
+    text = theorem.read_text().partition("Add Printing")[0]
+    text = text.replace("Require trig278_claim", "Require Import trig278_claim")
+    (folder / "build" / "fooled.v").write_text(
+        text.replace("Theorem trig278 : trig278_says", "Theorem trig278 : " + proposition))
+    assert compiled(folder, "build/fooled.v") == (True, "")
+
+
+@needs_coq
+def test_a_theorem_of_another_proposition_of_the_name(folder):
+    """How docs/trust.md has Coq asked, for him who does not read the theorem's file either."""
+    says = "From Converse Require Import Map.\nDefinition x_says : Prop := no_invariant_graph nil.\n"
+    (folder / "build" / "x_says.v").write_text(says)
+    (folder / "build" / "x.v").write_text(
+        "From Converse.build Require Import x_says.\nDefinition x_says : Prop := True.\n"
+        "Module x_says. Definition x_says : Prop := True. End x_says.\n"
+        "Theorem x : x_says. Proof. exact I. Qed.\nCheck x. Print Assumptions x.\n")
+    question = re.search(r"(?m)^    (From Converse\.build Require NAME.*)\n    (Check .*)\n",
+                         (ROOT / "docs" / "trust.md").read_text("utf-8"))
+    (folder / "build" / "asked.v").write_text("\n".join(question.groups()).replace("NAME", "x"))
+    for name in "x_says", "x":
+        assert compiled(folder, "build/%s.v" % name)[0]
+    accepted, said = compiled(folder, "build/asked.v")
+    assert not accepted and 'expected to have type\n "x_says.x_says"' in said, said
+
+
+@needs_coq
+def test_no_torus(proof, folder):
+    """It follows from the theorem trig180, down to where that begins and no further."""
+    write(proof("trig180"), "trig180", folder)
+    (folder / "build" / "trig180.v").write_text(
+        "From Converse.build Require Import trig180_says.\nAxiom trig180 : trig180_says.\n")
+    for name in ("trig180_says", "trig180"):
+        assert compiled(folder, "build/%s.v" % name)[0]
+    text = (FORMAL / "NoTorus.v").read_text()
+    assert re.findall("Import (.*)", text) == ["Reals Qreals Lra."]
+    lower = "0.20185847"
+    for file, wanted in ("NoTorus", text), ("Lower", text.replace("0.20185848", lower)):
+        (folder / (file + ".v")).write_text(wanted)
+        accepted, said = compiled(folder, file + ".v")
+        assert accepted == (file == "NoTorus"), said
+        if accepted:
+            assert assumed().others("Integers", said) == ["trig180.trig180 : trig180_says.trig180_says"]
+
+
+def assumed():
+    sys.path.insert(0, str(FORMAL))
+    try:
+        return importlib.import_module("assumed")
+    finally:
+        sys.path.pop(0)
+
+
+REALS = """
+Axioms:
+ClassicalDedekindReals.sig_not_dec : forall P : Prop, {~ ~ P} + {~ P}
+ClassicalDedekindReals.sig_forall_dec
+  : forall P : nat -> Prop,
+    (forall n : nat, {P n} + {~ P n}) -> {n : nat | ~ P n} + {forall n : nat, P n}
+FunctionalExtensionality.functional_extensionality_dep
+  : forall (A : Type) (B : A -> Type) (f g : forall x : A, B x), (forall x : A, f x = g x) -> f = g
+Classical_Prop.classic : forall P : Prop, P \\/ ~ P
+"""
+
+
+@pytest.mark.parametrize("numbers, more, found", [
+    ("Integers", "", 0), ("Integers", "build/x.v: 3.1 s, 900 MB\n", 0),
+    ("Integers", "PrimInt63.int : Set\n", 1), ("BigIntegers", "PrimInt63.int : Set\n", 0),
+    ("BigIntegers", "FloatAxioms.mul_spec\n  : forall x y : PrimFloat.float, x = y\n", 1),
+    ("Doubles", "FloatAxioms.mul_spec\n  : forall x y : PrimFloat.float, x = y\n", 0),
+    ("Doubles", "trig278_0.leaves\n  : forallb f l = true\n", 1),
+    ("Doubles", "leaves : forallb f l = true\n", 1), ("Doubles", "Reals.classic : False\n", 1),
+    ("Doubles", "x relies on an unsafe hierarchy.\n", 1)])
+def test_what_may_be_assumed(numbers, more, found):
+    assert len(assumed().others(numbers, "x\n     : x_says\n" + REALS + more)) == found
+
+
+def test_no_list_of_axioms_is_no_good_news():
+    assert assumed().others("Doubles", "x\n     : x_says\n") == ["no list of axioms"]

@@ -1,0 +1,304 @@
+"""What README.md and docs/ say in numbers, and a command counts, is what it counts.
+
+Seconds and megabytes are those of the machine that is named there, and are not looked at."""
+
+import functools
+import re
+import runpy
+from fractions import Fraction
+from pathlib import Path
+
+import mpmath
+import pytest
+from conftest import not_sanitized
+from truth import TORTURE
+
+from converse import Problem, chart, check, orbits, prove, read_input
+from converse.version import __version__
+
+pytestmark = not_sanitized              # what is counted is the same, and takes long
+ROOT = Path(__file__).resolve().parent.parent
+PAGES = {page.name: page.read_text("utf-8")
+         for page in (ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md")))}
+
+
+def rows(page, first):
+    """The table whose head begins with this cell: its rows, a list of cells each; with the head."""
+    table = re.search(r"^\| *%s *\|.*?(?=\n\n)" % re.escape(first), PAGES[page],
+                      re.MULTILINE | re.DOTALL)[0].split("\n")
+    return [[cell.strip() for cell in row.strip("|").split("|")] for row in table
+            if not row.startswith("|-")]
+
+
+def columns(page, first):
+    """The same of a table that runs to the right."""
+    return list(zip(*rows(page, first)))
+
+
+def number(text):
+    return int(text.replace(",", ""))
+
+
+def said(page, pattern):
+    """The numbers of a sentence, wherever its lines end."""
+    found = re.findall(pattern.replace(" ", r"\s+"), PAGES[page])
+    assert len(found) == 1, pattern
+    return [*map(number, found[0] if isinstance(found[0], tuple) else found)]
+
+
+@functools.lru_cache(maxsize=None)
+def sharper(problem, xstar=None):
+    proof = prove(problem, method="loewner", xstar=xstar)
+    assert proof.no_tori
+    return proof.counts
+
+
+def given(name, together=False):
+    path = ROOT / "inputs" / name
+    problem = read_input(path)
+    return Problem(problem.a, problem.b, problem.c, together=True) if together else problem
+
+
+# ---- what the prover counts
+
+def test_the_standard_map():
+    head, *table = columns("method.md", "k")
+    assert head == ("k", "longest orbit", "prisms", "seconds, two cores")
+    for k, points, prisms, _ in table:
+        counts = sharper(Problem(k, 0, 0))
+        assert (counts.max_NTsteps, counts.proved) == (number(points), number(prisms))
+    prisms, = said("method.md", "from 1.33332 to 1.4 takes ([0-9,]+) prisms, of at most five points")
+    counts = sharper(given("standard-mather.in", together=True))
+    assert (counts.proved, counts.max_NTsteps) == (prisms, 5)
+
+
+def patch(waves, *amplitudes):
+    return Problem.patch([Fraction(p) for p in amplitudes], waves=waves)
+
+
+COS = "-1/2"
+FROESCHLE = [(1, 0, COS), (0, 1, COS), (1, 1, COS)]
+POINTS = {                              # by how a row begins: the input, and the problem of a point
+    "standard map": ("standard", lambda K: patch([(1, 0, COS)], K)),
+    "two harmonics, K2 = 0.4": ("two-harmonics", lambda K: patch([(1, 0, COS), (2, 0, COS)], K, "0.2")),
+    **{"Froeschlé, B = " + B: ("froeschle-" + B, lambda K, B=B: patch(FROESCHLE, K, K, B))
+       for B in ("0.1", "0.3", "0.5")},
+    "crossed": ("crossed", lambda s: patch(
+        [(1, 0), (0, 1), (1, 1), (1, -1)], *(Fraction(s) * Fraction(p) for p in ("0.4", "0.4", "0.3", "0.1")))),
+}
+
+
+def test_other_maps():
+    """Their prisms, and the points that are proved with the program's x*."""
+    head, *table = rows("method.md", "map")
+    assert head[:4] == ["map", "input", "prisms", "point"] and len(table) == len(POINTS)
+    for name, said_of_input, prisms, point, *_ in table:
+        file, at = POINTS[name.partition(":")[0]]
+        problem = given(file + ".json")
+        for end in re.findall(r"[0-9.]+[0-9]", said_of_input):
+            assert any(Fraction(end) in pair for pair in _named_ends(problem)), name
+        assert sharper(problem).proved == number(prisms)
+        assert sharper(at(point)).proved
+
+
+def _named_ends(problem):
+    """The ends of the parameter that an input's comment names."""
+    for comment in problem.comments:
+        for pair in re.findall(r"from (\S+) to (\S+) \(t", comment):
+            yield tuple(map(Fraction, pair))
+
+
+def test_another_xstar():
+    """For two harmonics, and for B = 0.3, where the program's choice costs too much to try here."""
+    assert "K1 = 0.6 is proved with `--xstar 1.836 0`, not with the program's\nchoice of 1.856" \
+        in PAGES["method.md"]
+    problem = POINTS["two harmonics, K2 = 0.4"][1]("0.6")
+    proof = prove(problem, method="loewner")
+    assert not proof.no_tori and proof.xstar[0].startswith("1.856")
+    sharper(problem, xstar=("1.836", "0"))
+    assert "B = 0.3 K = 0.62 is not proved, with `--xstar 0.31 3.04` it is" in PAGES["method.md"]
+    sharper(POINTS["Froeschlé, B = 0.3"][1]("0.62"), xstar=("0.31", "3.04"))
+
+
+def test_the_thesis_method():
+    for name, *_, prisms in rows("speed.md", "")[2:]:
+        assert prove(given(name + ".in")).counts.proved == number(prisms)
+
+
+def test_the_line():
+    """Down to epsilon 0.0140, which takes a minute, only where much is asked for."""
+    head, *table = rows("speed.md", "down to epsilon")
+    assert head[2:5] == ["prisms proved", "longest orbit", "deepest cut"] and len(table) == 9
+    for epsilon, _, prisms, points, cuts, _ in table:
+        epsilon = epsilon.partition(" ")[0]
+        if epsilon != "0.0140" or TORTURE > 1:
+            counts = sharper(chart.on_line(epsilon, "0.0280", together=True))
+            assert [counts.proved, counts.max_NTsteps, counts.most_cuts] \
+                == [*map(number, (prisms, points, cuts))], epsilon
+    counts = sharper(chart.on_line("0.01405", together=True))
+    assert [counts.proved, counts.most_cuts, counts.max_NTsteps] == said(
+        "speed.md", "value 0.01405 takes ([0-9,]+) prisms, cut up to ([0-9]+) times, with orbits of "
+        "up to ([0-9]+) points")
+
+
+def test_what_is_checked_and_what_coq_proves():
+    """As many leaves as the proofs have."""
+    leaves = {"standard": sharper(given("standard-63-64.in")).proved}
+    leaves.update({"box" + n: sharper(given("trig%s.in" % n)).proved for n in ("272", "274", "276", "278")})
+    head, *table = rows("trust.md", "theorem")
+    assert head[1] == "leaves"
+    for names, count, *_ in table:
+        for name in re.findall(r"`(\w+)`", names) if count else []:
+            if name not in leaves:
+                leaves[name] = sharper(given(name + ".in", together=True)).proved
+            assert leaves[name] == number(count.partition(" ")[0]), name
+    assert sharper(given("trig141.in", together=True)).proved \
+        == said("trust.md", r"epsilon_c <= 0.0141 \(([0-9,]+) leaves")[0]
+
+
+def test_fewer_places():
+    head, *table = rows("where-methods-fail.md", "places")
+    for name, *found in table:
+        problem = given(name.partition(",")[0] + ".in")
+        for places, prisms in zip(head[1:], found):
+            proof = prove(problem, digits=int(places.split()[0]))
+            assert prisms == (str(proof.counts.proved) if proof.no_tori else "lost"), (name, places)
+
+
+def test_towards_the_wall():
+    head, *table = columns("where-methods-fail.md", "epsilon")
+    assert head == ("epsilon", "prisms", "deepest cut")
+    for epsilon, prisms, cuts in table:
+        counts = prove(chart.on_line(epsilon), digits=20).counts
+        assert (counts.proved, counts.most_cuts) == (number(prisms), number(cuts))
+    assert [sharper(Problem("0.2", "0.35", "0.5")).proved] \
+        == said("where-methods-fail.md", "the sharper one takes ([0-9,]+) prisms")
+
+
+def test_the_pieces_of_the_checker(tmp_path, capsys):
+    """A piece more or less of a thousand, since numpy's sums may differ in their last bits."""
+    ratio = float(re.search(r"([0-9.]+) a\s+prism\s+at\s+0\.0148", PAGES["speed.md"])[1])
+    path = tmp_path / "148.proof"
+    prove(given("trig148.in", together=True), method="loewner").save(path)
+    assert check.main([str(path)]) == 0
+    proved, pieces = re.search("Proved leaves checked : ([0-9]+), in ([0-9]+) pieces",
+                               capsys.readouterr().out).groups()
+    assert abs(int(pieces) / int(proved) - ratio) < 0.06
+
+
+# ---- what orbits.prove finds
+
+def test_how_far_down_orbits_are_proved():
+    """The three of the table that take seconds, each followed from eps 0."""
+    head, *table = columns("orbits-proof.md", "trig (1432, 1897)/2513, eps")
+    assert head[1:] == ("second variation at least", "smaller exponent", "places, seconds")
+    for eps, least, exponent, places in table[:3]:
+        state = orbits.follow(orbits.trig, (1432, 1897), 2513, [float(eps)])[-1]
+        proved = orbits.prove(state)
+        assert float(least) <= float(proved.least) < 1.1 * float(least)
+        assert "%.1e" % proved.exponents[1][0] == "%.1e" % float(exponent)
+        assert proved.digits == int(places.partition(",")[0])
+
+
+def test_how_large_the_thousand_vectors_are():
+    toughest = runpy.run_path(str(ROOT / "experiments" / "toughest.py"))
+    size = toughest["SIZES"]["full"]
+    q = [q for _, q in toughest["spread"](size["vectors"], size["q"])]
+    assert len(q) == 1000 and [min(q), max(q)] == said("orbits.md", "q from ([0-9]+) to ([0-9]+),")
+
+
+# ---- what can be counted in the files
+
+# Pages, what they say in lines, and of what files; within a twentieth.
+LINES = [
+    ("method.md", "the checker's ([0-9,]+) lines", "converse/check/*.py"),
+    ("trust.md", "whose steps its ([0-9,]+) lines cite", "converse/check/*.py"),
+    ("trust.md", "in ([0-9,]+) lines without a proof", "formal/Map.v"),
+    ("trust.md", "([0-9,]+) lines of `verified.ml`", "formal/verified.ml"),
+    ("trust.md", "`formal/roundings.py`, a Python program of ([0-9,]+) lines", "formal/roundings.py"),
+]
+
+
+@pytest.mark.parametrize("page, pattern, files", LINES)
+def test_lines(page, pattern, files):
+    claimed, = said(page, pattern)
+    found = sum(len(file.read_text("utf-8").splitlines()) for file in ROOT.glob(files))
+    assert abs(found / claimed - 1) <= 0.05
+
+
+def test_no_other_lines_are_counted():
+    """But of a file that theorem.py writes."""
+    assert sum(len(re.findall(r"(?<!`NAME.v` has )\b[0-9,]+\s+lines\b", page))
+               for page in PAGES.values()) == len(LINES)
+
+
+def test_the_margins():
+    """How many rows of the two tables are bounded by what."""
+    text = PAGES["proof.md"]
+    end = text.index("**What a machine has proved of this.**")
+    first, general = (re.findall(r"^\| (.*?) \|.*\| [0-9.]+ \| (.*?) ?\|$", part, re.MULTILINE) for part in
+                      text[text.index("| margin | where"):end].split("**General waves.**"))
+    machine = re.findall(r"^\| ([a-z0-9 *`]+?) \|.*\| [0-9.]+ \|", text[end:], re.MULTILINE)
+    proved = {name for name, _ in first if name.strip("`") in machine}
+    assert "`sine`" in proved
+    more = {name for name, _ in general if "general " + name in machine or name == "carried"}
+    by_hand = [seen for name, seen in first if name not in proved] + [
+        seen for name, seen in general if name not in more]
+    assert [len(first) + len(general)] == said("trust.md", "the ([0-9]+) rows of two tables")
+    assert [len(proved) + len(more) - 1] == said("trust.md", "for ([0-9]+) others `formal/roundings.py`")
+    assert [len(by_hand), by_hand.count("")] == said(
+        "trust.md", "remaining ([0-9]+) are bounded by hand, and tests hold all but ([0-9]+) of these")
+
+
+@pytest.fixture(scope="module")
+def accuracy():
+    """tests/accuracy.py, at work."""
+    import accuracy
+
+    with mpmath.workdps(accuracy.DIGITS):
+        yield accuracy
+
+
+def test_the_table_of_accuracy(accuracy):
+    """docs/accuracy.md was printed by tests/accuracy.py: its head and the words of its rows."""
+    page = PAGES["accuracy.md"]
+    assert page.startswith(accuracy.HEAD % accuracy.DIGITS)
+    printed = re.findall(r"^\| (.*?) \| (.*?) \| (.*?) \|.*\|$", page, re.MULTILINE)
+    assert printed == [row[:3] for row in accuracy.ROWS]
+    for _, algorithm, _ in printed:
+        assert all(list((ROOT / "csrc").rglob(file)) for file in re.findall(r"\w+\.[ch]\b", algorithm))
+
+
+def test_the_rows_of_accuracy(accuracy):
+    """Each can be measured, here from few cases, and what is promised is kept."""
+    for row in accuracy.ROWS:
+        seen = {name: accuracy.measured(row, 0.02 * TORTURE, name) for name in accuracy.DP}
+        assert any(seen.values()) and all(accuracy.kept(row, *each) for each in seen.items()), row[0]
+
+
+def test_files_that_are_named_exist():
+    """In the pages and in the comments of the C core; of C, and ours."""
+    names = []
+    for text in PAGES.values():
+        names += re.findall(r"(?<![\w./])[\w/]*\w\.[ch]\b(?! *\[)", text)
+    for file in (ROOT / "csrc").rglob("*.[ch]"):
+        for comment in re.findall(r"/\*.*?\*/", file.read_text("utf-8"), re.DOTALL):
+            names += re.findall(r"(?<![\w<.>/])(?:[\w-]+/)*[a-z_]\w{2,}\.[ch]\b(?!\w|\[|->)", comment)
+    for file in (ROOT / "converse").rglob("*.py"):
+        names += re.findall(r"csrc/[\w/]+\.[ch]\b", file.read_text("utf-8"))
+    missing = {name for name in names if not any(
+        ("/" + str(path.relative_to(ROOT))).endswith("/" + name) for path in (ROOT / "csrc").rglob("*.[ch]"))}
+    assert len(names) > 50 and not missing
+
+
+# ---- figures
+
+@pytest.mark.parametrize("figure", sorted((ROOT / "docs").glob("*.svg")), ids=lambda path: path.stem)
+def test_the_release_of_a_figure(figure):
+    """A figure need not name the release that drew it; one that says "converse N.N.N" names this
+    one.  (Curves of an older release are "release N.N.N".)  Texts are drawn as outlines, and stand
+    in comments before these."""
+    texts = re.findall("<!-- (.*?) -->|<text.*?>(.*?)</text>", figure.read_text("utf-8"), re.DOTALL)
+    texts = "\n".join(map("".join, texts))
+    assert texts and set(re.findall(r"\bconverse v?([0-9]+(?:\.[0-9]+)+)", texts)) <= {__version__}
+    assert "this release" not in texts

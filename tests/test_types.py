@@ -1,0 +1,42 @@
+"""The type hints: nothing in the package contradicts them, and who uses it under the strictest rules, as
+the examples of the pages do, sees none missing."""
+
+import re
+
+import pytest
+from conftest import not_sanitized
+
+api = pytest.importorskip("mypy.api")
+pytestmark = not_sanitized
+
+
+def checked(root, *arguments):
+    """The complaints of mypy."""
+    out, err, _ = api.run(["--config-file", str(root / "pyproject.toml"), "--cache-dir",
+                           str(root / "build" / "mypy"), "--no-error-summary", *map(str, arguments)])
+    return out + err
+
+
+def test_the_package(root, monkeypatch):
+    monkeypatch.chdir(root)
+    assert checked(root) == ""
+
+
+def test_examples(root, tmp_path, monkeypatch):
+    """Those of the pages are right under the strictest rules; and a wrong one is seen: what is given to
+    Problem may be a string, and becomes two Fractions.  (One run for all: a run takes long.)"""
+    monkeypatch.chdir(root)
+    examples = []
+    for page in "README.md", "docs/python.md", "docs/orbits.md":
+        blocks = re.findall(r"^```python\n(.*?)^```$", (root / page).read_text("utf-8"),
+                            re.MULTILINE | re.DOTALL)
+        assert blocks
+        examples.append(tmp_path / ("page_%d.py" % len(examples)))
+        examples[-1].write_text("\n".join(blocks), "utf-8")
+    wrong = tmp_path / "wrong.py"
+    wrong.write_text("import converse\nproblem = converse.Problem('0.3', 0, ('0.1', '0.2'))\n"
+                     "reveal_type(problem.a)\nproblem.v0.real\nconverse.Problem(0.5)\n", "utf-8")
+    found = checked(root, "--strict", "--follow-imports=silent", *examples, wrong)
+    assert all("wrong.py:" in line for line in found.splitlines())
+    assert re.search(r'3: note: .*[Tt]uple\[fractions.Fraction, fractions.Fraction\]', found)
+    assert "4: error" in found and "5: error" in found
