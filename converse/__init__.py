@@ -13,16 +13,16 @@ from .version import __version__
 
 if TYPE_CHECKING:
     from . import kernels
-    from .core import Counts
-    from .files import ConverseError
-    from .problem import InputError, Problem, read_input
-    from .proof import Proof
-    from .run import prove
-    from .settings import Settings
+    from .model.problem import InputError, Problem, read_input
+    from .prover.native import Counts
+    from .prover.proof import Proof
+    from .prover.run import prove
+    from .prover.settings import Settings
+    from .storage.files import ConverseError
 
-_HOMES = {"ConverseError": "files", "Counts": "core", "InputError": "problem",
-          "Problem": "problem", "Proof": "proof", "Settings": "settings", "prove": "run",
-          "read_input": "problem"}
+_HOMES = {"ConverseError": "storage.files", "Counts": "prover.native", "InputError": "model.problem",
+          "Problem": "model.problem", "Proof": "prover.proof", "Settings": "prover.settings",
+          "prove": "prover.run", "read_input": "model.problem"}
 
 __all__ = ["ConverseError", "Counts", "InputError", "Problem", "Proof", "Settings", "__version__",
            "kernels", "prove", "read_input"]

@@ -5,12 +5,12 @@ import os
 
 from cffi import FFI
 
-SOURCES = ["numbers/apm", "numbers/special", "numbers/guard", "numbers/machine",
+SOURCES = ["arith/apm", "arith/special", "arith/guard", "arith/machine",
            "thesis/start", "thesis/region", "thesis/rigorous", "thesis/double",
            "loewner/problem", "loewner/start",
            *("loewner/" + kind + name for kind in ("", "general_")
              for name in ("scalar", "baseline", "avx2", "avx512")),
-           "torus", "setup", "search", "kernels",
+           "model/torus", "search/setup", "search/tree", "kernels",
            "orbits/potential", "orbits/band", "orbits/relax", "orbits/measure", "orbits/enclose",
            "orbits/minplus"]
 SOURCES = ["csrc/%s.c" % name for name in SOURCES]

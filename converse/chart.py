@@ -17,11 +17,12 @@ from fractions import Fraction
 
 import converse
 
-from . import files, picture
-from .cli import Parser, ended
-from .files import ConverseError
-from .picture import BLUE, DARK, ORANGE, PURPLE, VERMILLION
-from .problem import LINE, Problem
+from .commands.prove import Parser, ended
+from .draw import plot
+from .draw.plot import BLUE, DARK, ORANGE, PURPLE, VERMILLION
+from .model.problem import LINE, Problem
+from .storage import files
+from .storage.files import ConverseError
 from .version import __version__
 
 TOP = "0.0280"                          # above it there is nothing left to prove
@@ -72,7 +73,7 @@ COLOURS = {"1989": DARK, "thesis": BLUE, "first order": "0.55", "loewner": ORANG
 ZOOM = 0.0165                           # up to there the chart of the bound is drawn larger
 SMALL = {"textcoords": "offset points", "fontsize": 8, "color": "0.3"}
 STYLE = {
-    **picture.STYLE, "lines.markersize": 5.5, "axes.spines.top": False,
+    **plot.STYLE, "lines.markersize": 5.5, "axes.spines.top": False,
     "axes.spines.right": False, "axes.grid": True, "axes.axisbelow": True, "grid.color": "0.92",
     "grid.linewidth": 0.6,
 }
@@ -425,7 +426,7 @@ def chart(name, rows, kind, caption=True):
         figure.subplots_adjust(left=0.11, right=0.97, bottom=0.5 / height, top=1 - 0.4 / height)
         if caption:
             figure.text(0.11, -0.04 / height, words, color="0.35", va="top", linespacing=1.4)
-        return picture.encode(figure, kind, dpi=150, pad_inches=0.12)
+        return plot.encode(figure, kind, dpi=150, pad_inches=0.12)
 
 
 def _words(row):
@@ -446,7 +447,7 @@ def parser():
         "Exit status: 0 all are written; 2 bad usage or directory; 130 interrupted."))
     p.add_argument("directory", nargs="?", default=os.curdir,
                    help="where to write chart-NAME.svg and chart-NAME.csv (default: here)")
-    p.add_argument("--format", choices=picture.FORMATS, default=picture.FORMATS[0],
+    p.add_argument("--format", choices=plot.FORMATS, default=plot.FORMATS[0],
                    help="of the charts")
     p.add_argument("--no-caption", action="store_true", help="leave out the captions")
     p.add_argument("--quick", action="store_true", help="leave out what takes long")
@@ -456,7 +457,7 @@ def parser():
 
 def run(options):
     try:
-        picture.check()
+        plot.check()
     except ConverseError:
         raise ConverseError("charts need matplotlib; pip install matplotlib") from None
     try:

@@ -4,8 +4,8 @@ from decimal import Decimal
 from fractions import Fraction
 from typing import Any, List, Sequence, Tuple
 
-from .core import MESSAGES, check, ffi, lib
-from .problem import Number, decimal_text, parse_number
+from .model.problem import Number, decimal_text, parse_number
+from .prover.native import MESSAGES, check, ffi, lib
 
 Interval = Tuple[Fraction, Fraction]
 Rows = List[List[Fraction]]
@@ -135,7 +135,7 @@ def torus(a: Range, b: Range, c: Range, dp: int, **options: Any) -> Interval:
 def cell(a: Range, b: Range, c: Range, centre: Sequence[Number], half: Sequence[Number],
          dp: int, **options: Any) -> Interval:
     """Bounds of the trace and of the largest eigenvalue of 2I + W over a cell of the torus, a
-    rectangle centre +- half, for ranges (lo, hi) of the parameters (csrc/torus.c)."""
+    rectangle centre +- half, for ranges (lo, hi) of the parameters (csrc/model/torus.c)."""
     return _pair(call("cell", [*a, *b, *c, *centre, *half], 2, dp, **options))
 
 

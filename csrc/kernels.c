@@ -5,11 +5,11 @@
 #include <time.h>
 
 #include "loewner/loewner.h"
-#include "numbers/guard.h"
-#include "numbers/special.h"
-#include "numbers/sine.h"
+#include "arith/guard.h"
+#include "arith/special.h"
+#include "arith/sine.h"
 #include "thesis/unit.h"
-#include "torus.h"
+#include "model/torus.h"
 
 enum { MAX_DP = 100000, MAX_IN = 64, MAX_OUT = 900 };
 enum { WAVE = 7, MOST_SHOWN = 4 };      /* numbers of a wave; waves of a kernel's potential */

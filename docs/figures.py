@@ -8,8 +8,9 @@ import sys
 from dataclasses import replace
 from pathlib import Path
 
-from converse import files, orbits, prove, read_input
+from converse import orbits, prove, read_input
 from converse.orbits.figures import SPIRAL, states_picture
+from converse.storage import files
 
 DOCS = Path(__file__).resolve().parent
 BUILD = DOCS.parent / "build"

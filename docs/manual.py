@@ -19,11 +19,11 @@ SHARE = Path(*sys.argv[1:2] or [Path(__file__).resolve().parent.parent / "build"
 SHELLS = {"bash": "bash-completion/completions/%s", "zsh": "zsh/site-functions/_%s",
           "fish": "fish/vendor_completions.d/%s.fish"}
 SUMMARIES = {
-    "cli": "prove that a family of symplectic maps has no invariant tori",
+    "commands.prove": "prove that a family of symplectic maps has no invariant tori",
     "check": "verify the theorem of a proof file, independently of its prover",
     "chart": "measure what is proved how fast, and draw it",
-    "frontier.cli": "map where in parameter space there are no invariant tori, with proofs",
-    "orbits.cli": "find periodic orbits of least action, and where they turn hyperbolic",
+    "commands.map": "map where in parameter space there are no invariant tori, with proofs",
+    "commands.orbits": "find periodic orbits of least action, and where they turn hyperbolic",
 }
 
 

@@ -19,8 +19,8 @@ import sys
 import numpy as np
 
 from converse import chart, orbits
-from converse.cli import ended
-from converse.problem import LINE as THESIS_LINE
+from converse.commands.prove import ended
+from converse.model.problem import LINE as THESIS_LINE
 
 SIZES = {"full": {"heads": (3, 7), "least": 1000, "cells": 1000, "most": 400,
                   "eps": (0.0144, 0.0142, 0.0141, 0.0140, 0.01395, 0.0139),

@@ -16,7 +16,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from converse import orbits, picture
+from converse import orbits
+from converse.draw import plot
 
 TYPE = (1432, 1897), 2513
 EPS = 0.0125, 0.02
@@ -24,8 +25,8 @@ GUESS = 0.96                # of eps
 TOLERANCES = [10.0 ** -k for k in range(3, 14)]
 FLOW_SECONDS = 10.0
 REPEAT = 20
-STYLES = {"gradient flow": ("s", picture.ORANGE), "Newton": ("^", "0.45"),
-          "damped Newton": ("o", picture.BLUE)}
+STYLES = {"gradient flow": ("s", plot.ORANGE), "Newton": ("^", "0.45"),
+          "damped Newton": ("o", plot.BLUE)}
 
 
 def timed(function):
@@ -84,7 +85,7 @@ def draw(rows):
     from matplotlib import style
     from matplotlib.figure import Figure
 
-    with style.context(["default", picture.STYLE]):
+    with style.context(["default", plot.STYLE]):
         figure = Figure(figsize=(8, 4.2))
         for axes, eps in zip(figure.subplots(1, 2, sharey=True), EPS):
             for name, (marker, colour) in STYLES.items():
@@ -103,7 +104,7 @@ def draw(rows):
         figure.axes[0].set_ylabel("distance to the proved orbit; shadow")
         figure.legend(*figure.axes[0].get_legend_handles_labels(), loc="upper center", ncol=3)
         figure.subplots_adjust(wspace=0.06, top=0.82)
-        return picture.encode(figure, "svg")
+        return plot.encode(figure, "svg")
 
 
 def main(directory="build"):

@@ -99,20 +99,20 @@ def draw(types, long, begins, file):
     from matplotlib import style
     from matplotlib.figure import Figure
 
-    from converse import picture
+    from converse.draw import plot
 
     eps = np.linspace(max(FROM, begins - 0.01), TO, 60)
     gain = np.array([gains(types, e, long) for e in eps])
     proved = [(e, types.short[e].low - types.long[e].high) for e in sorted(types.long)]
     none = [e for e in sorted(types.long) if types.long[e].copies % types.times == 0]
-    with style.context(["default", picture.STYLE]):
+    with style.context(["default", plot.STYLE]):
         figure = Figure(figsize=(9.2, 3.0))
         axes, *planes = figure.subplots(1, 3, gridspec_kw={"wspace": 0.3,
                                                            "width_ratios": (1.5, 1, 1)})
         axes.axhline(0, color="0.8", linewidth=0.8)
-        axes.plot(eps, 1e6 * gain, color=picture.BLUE, label="followed: seen")
+        axes.plot(eps, 1e6 * gain, color=plot.BLUE, label="followed: seen")
         axes.plot(*np.array([(e, 1e6 * g) for e, g in proved if g > 0]).reshape(-1, 2).T, "o",
-                  color=picture.VERMILLION, markersize=4, label="proved")
+                  color=plot.VERMILLION, markersize=4, label="proved")
         axes.plot(*np.array([(e, 0) for e in none]).reshape(-1, 2).T, "s", color="0.35",
                   markersize=4, label="no gain: proved")
         axes.set(xlabel="ε", ylabel=r"$10^6$ times the gain per point",
@@ -122,12 +122,12 @@ def draw(types, long, begins, file):
         grid = np.stack(np.meshgrid(x, x, indexing="ij"), -1).reshape(-1, 2)
         value = orbits.trig.evaluate(grid)[0].reshape(100, 100).T
         for axes, name, state, colour in zip(planes, types.names(), (types.least(TO).state, long),
-                                             ("0.25", picture.VERMILLION)):
+                                             ("0.25", plot.VERMILLION)):
             axes.contour(x, x, value, 9, colors="0.85", linewidths=0.6)
             axes.plot(*state.x.T, "o", color=colour, markersize=3)
             axes.set(xlim=(0, 1), ylim=(0, 1), aspect="equal", xlabel="$x_0$", ylabel="$x_1$",
                      title="%s, ε = %g" % (name, TO))
-        data = picture.encode(figure, file.rpartition(".")[2], dpi=150)
+        data = plot.encode(figure, file.rpartition(".")[2], dpi=150)
     with open(file, "wb") as out:
         out.write(data)
 

@@ -16,7 +16,8 @@ import itertools
 import os
 import sys
 
-from converse import ConverseError, orbits, picture
+from converse import ConverseError, orbits
+from converse.draw import plot
 
 TYPES = [((28, 37), 49), ((37, 49), 65), ((49, 65), 86), ((65, 86), 114), ((351, 465), 616),
          ((1432, 1897), 2513)]
@@ -64,7 +65,7 @@ def draw(table, file):
 
     names = list(dict.fromkeys(row[0] for row in table))
     lengths = sorted({row[2] for row in table})
-    with style.context(["default", picture.STYLE]):
+    with style.context(["default", plot.STYLE]):
         figure = Figure(figsize=(9.2, 3.1), layout="constrained")
         panels = figure.subplots(1, len(names), sharey=True, squeeze=False)[0]
         for axes, name in zip(panels, names):
@@ -76,14 +77,14 @@ def draw(table, file):
                           label="q = %d" % q)
             axes.plot(eps, [row[4] - row[8] for row in here], "--", color="0.3", linewidth=1,
                       label="at most, proved (q = %d)" % q)
-            axes.plot(eps, [row[4] - row[9] for row in here], "x", color=picture.VERMILLION,
+            axes.plot(eps, [row[4] - row[9] for row in here], "x", color=plot.VERMILLION,
                       markersize=5, label="estimated from grids (q = %d)" % q)
             axes.set(yscale="log", xlabel="ε", title=name,
                      xlim=(0, max(row[3] for row in table) * 1.05))
             axes.grid(color="0.92", linewidth=0.6)
         panels[0].set_ylabel("continuation's action per point\nabove the least that is found")
         figure.legend(*panels[0].get_legend_handles_labels(), loc="outside right center")
-        data = picture.encode(figure, "svg", dpi=150)
+        data = plot.encode(figure, "svg", dpi=150)
     with open(file, "wb") as out:
         out.write(data)
 

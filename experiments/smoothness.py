@@ -18,7 +18,8 @@ from fractions import Fraction
 
 import numpy as np
 
-from converse import orbits, picture
+from converse import orbits
+from converse.draw import plot
 
 SPIRAL, LONGER = ((1432, 1897), 2513), ((2513, 3329), 4410)
 # type, eps, digits of the proved orbit; None: the phases are not determined, doubles must do
@@ -85,20 +86,20 @@ def draw(measured):
     from matplotlib import style
     from matplotlib.figure import Figure
 
-    with style.context(["default", picture.STYLE]):
+    with style.context(["default", plot.STYLE]):
         figure = Figure(figsize=(9.6, 3.2))
         all_of_them, crossing, there = figure.subplots(1, 3)
         figure.subplots_adjust(wspace=0.4)
         draw_all(all_of_them, measured)
         draw_one(crossing, *measured[2])
         draw_there(there, *measured[2])
-        return picture.encode(figure, "svg", dpi=150)
+        return plot.encode(figure, "svg", dpi=150)
 
 
 def draw_all(axes, measured):
     for (state, _, _, distance, momentum), colour in zip(
-            measured, (picture.GREY, picture.ORANGE, picture.DARK, picture.BLUE,
-                       picture.VERMILLION)):
+            measured, (plot.GREY, plot.ORANGE, plot.DARK, plot.BLUE,
+                       plot.VERMILLION)):
         axes.plot(distance, momentum / distance, ".", markersize=1.5, color=colour, rasterized=True,
                   label="q = %d, ε = %g" % (state.q, state.eps))
     axes.set(xscale="log", yscale="log", ylim=(1e-3, 1e6), xlabel=r"$|\Delta x|$",
@@ -113,7 +114,7 @@ def draw_one(axes, state, i, j, distance, momentum):
     axes.plot(distance, momentum, ".", markersize=1.5, color="0.75", rasterized=True)
     chosen = [d for d, _ in Counter(apart[steep].tolist()).most_common(5)]
     for d, colour in zip(sorted(chosen), (
-            picture.BLUE, picture.ORANGE, picture.GREEN, picture.VERMILLION, picture.PURPLE)):
+            plot.BLUE, plot.ORANGE, plot.GREEN, plot.VERMILLION, plot.PURPLE)):
         of = apart == d
         axes.plot(distance[of], momentum[of], ".", markersize=2.5, color=colour, label="%d" % d)
     at = np.argmax(momentum / distance)

@@ -22,9 +22,11 @@ import sys
 
 import numpy as np
 
-from converse import files, orbits, picture
-from converse.cli import ended
-from converse.picture import BLUE, DARK, VERMILLION
+from converse import orbits
+from converse.commands.prove import ended
+from converse.draw import plot
+from converse.draw.plot import BLUE, DARK, VERMILLION
+from converse.storage import files
 
 TRIG = {"step": 0.0005, "width": 1e-5, "top": 0.02}
 STANDARD = {"step": 0.02, "width": 1e-5, "top": 1.5}
@@ -123,7 +125,7 @@ def search(first, sizes, find):
 
 # ---- pictures
 
-STYLE = {**picture.STYLE, "axes.spines.top": False, "axes.spines.right": False}
+STYLE = {**plot.STYLE, "axes.spines.top": False, "axes.spines.right": False}
 
 
 def draw(path, size, fill, *arguments):
@@ -133,7 +135,7 @@ def draw(path, size, fill, *arguments):
     with style.context(["default", STYLE]):
         figure = Figure(figsize=size)
         fill(figure, *arguments)
-        files.write(path, picture.encode(figure, "svg", pad_inches=0.08))
+        files.write(path, plot.encode(figure, "svg", pad_inches=0.08))
 
 
 def draw_map(figure, table, best):

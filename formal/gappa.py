@@ -1,4 +1,4 @@
-"""Proves what csrc/numbers/sine.h promises, from its own text, by Gappa and exact arithmetic.
+"""Proves what csrc/arith/sine.h promises, from its own text, by Gappa and exact arithmetic.
 
     python formal/gappa.py [--coq] [DIRECTORY]
 
@@ -26,7 +26,7 @@ The proof.  Let |x| <= SINE_LIMIT, u = 2^-53.
 
 What is trusted: Gappa, which checks the hints that it is given, and the exact arithmetic; with
 --coq, where Sine.v has steps 2 to 6 and the quadrants as well, Coq in their place.  In either case:
-that the machine computes as IEEE 754 says (csrc/numbers/machine.c looks); the reading of the C
+that the machine computes as IEEE 754 says (csrc/arith/machine.c looks); the reading of the C
 text, which tests compare bit by bit with what the compiler made of it; and step 7.
 """
 
@@ -41,11 +41,11 @@ from pathlib import Path
 from typing import NamedTuple
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
-from ctext import CTextError, Place, defined, function, run     # noqa: E402
-from polynomial import symbol                                   # noqa: E402
+from ctext import CTextError, Place, defined, function, run  # noqa: E402
+from polynomial import symbol  # noqa: E402
 
 ROOT = Path(__file__).resolve().parent.parent
-HEADER = ROOT / "csrc" / "numbers" / "sine.h"
+HEADER = ROOT / "csrc" / "arith" / "sine.h"
 UNIT = Fraction(1, 2 ** 53)
 THEOREM = ROOT / "formal" / "sine" / "Sine.v"
 SECONDS = 300                           # that a script or a proof may take

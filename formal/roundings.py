@@ -24,8 +24,8 @@ from pycparser import c_ast
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 from ctext import CTextError, constant, defined, execute, function, run  # noqa: E402
-from gappa import half_pi                                       # noqa: E402
-from polynomial import Polynomial, symbol                       # noqa: E402
+from gappa import half_pi  # noqa: E402
+from polynomial import Polynomial, symbol  # noqa: E402
 
 ROOT = Path(__file__).resolve().parent.parent
 UNIT = Fraction(1, 2 ** 53)
@@ -179,7 +179,7 @@ class Model:
         self.columns, self.pairs = columns, columns * (columns + 1) // 2
         self.three = waves is None
         self.texts = {name: read(name) for name in
-                      ("numbers/sine.h", "loewner/prism.h", "loewner/orbit.c", "loewner/bound.c",
+                      ("arith/sine.h", "loewner/prism.h", "loewner/orbit.c", "loewner/bound.c",
                        "loewner/problem.c", "loewner/three.h", "loewner/general.h")}
         self.header = self.texts["loewner/three.h" if self.three else "loewner/general.h"]
         self.first, self.slots = (0, 3) if self.three else (2, 2 + waves)
@@ -204,7 +204,7 @@ class Model:
             self.names[name] = self.function(name)
         for name in ("moves", "add_moves"):
             self.names[name] = function(self.texts["loewner/prism.h"], name).bound(self.names)
-        self.sine_error = Fraction(defined(self.texts["numbers/sine.h"], "SINE_ERROR"))
+        self.sine_error = Fraction(defined(self.texts["arith/sine.h"], "SINE_ERROR"))
         self.slipping = "LT"            # of these k.L, k.T are meant, not what doubles make of them
         self.slip = Fraction(1)         # of its slip so many times what is off along a wave
         if not self.three:

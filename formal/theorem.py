@@ -22,7 +22,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT))
 
-from converse import check                                      # noqa: E402  (it needs the path)
+from converse import check  # noqa: E402  (it needs the path)
 
 WIDTH = 100                                                     # of a line
 DIGITS = 10 ** 9                                                # of a hint, decimal

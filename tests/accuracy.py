@@ -15,15 +15,15 @@ from itertools import product
 from statistics import median
 
 import mpmath
-
-import converse
-from converse import kernels
 from test_bd_trig import boxes, true_range
 from test_bounds import beta_at, grid_maxima
 from test_images import exact_inverse, outside, random_prism
 from test_loewner import displacements, variations
-from truth import (CLOSE, cube_of, cube_point, decimal, eigenvalues, exact, list_prism,
-                   mp, point_of, rng_for, step, uniform)
+
+from converse import kernels
+
+from truth import (CLOSE, cube_of, cube_point, decimal, eigenvalues, exact, list_prism, mp,
+                   point_of, rng_for, step, uniform)
 
 SEED = 1989
 DIGITS = 120                                            # of mpmath
@@ -227,7 +227,7 @@ def witnesses(rng, n, dp, **options):
 TOLERANCE = "tolerances, 5e-7 + 1e-12 (2 + 2 (\\|a\\| + \\|b\\| + \\|c\\|))"
 CENTRE_ERR = "times 1 + \\|a\\| + \\|b\\| + \\|c\\| places"
 GAUSS, ROOTS = "Gauss-Jordan, full pivoting; gauss.c", "(Tr beta -+ sqrt(disc)) / 2; lambda.c"
-BRANCH, ROTOR = "branch and bound; torus.c", "column rotor (cr-rows); cr_fatten.c, cr_rows.c"
+BRANCH, ROTOR = "branch and bound; model/torus.c", "column rotor (cr-rows); cr_fatten.c, cr_rows.c"
 FIXED = "fixed form (A-blocks, ff-ests); ff_fatten.c, ff_rows.c"
 DIRECTED = ("APM_DOWN never more than the true value, APM_UP never less, APM_TRUNC never more in "
             "magnitude; each is within 10^-dp of the truth")

@@ -12,6 +12,7 @@ from hypothesis import HealthCheck, settings
 
 import converse
 from converse import Counts, Problem, Proof, Settings
+
 from moments import PATIENCE
 
 ROOT = Path(__file__).resolve().parent.parent

@@ -9,8 +9,9 @@ PATIENCE = 1800                     # seconds: what takes longer hangs
 HELD = """
 import sys, time
 from pathlib import Path
-from converse import cli, core
-sign, left, grow = Path(sys.argv.pop(1)), int(sys.argv.pop(1)), core.grow
+from converse.commands.prove import main
+from converse.prover import native
+sign, left, grow = Path(sys.argv.pop(1)), int(sys.argv.pop(1)), native.grow
 def grow_or_wait(task, cells, seconds, leaves, want_steps, stop):
     global left
     if left == 0:
@@ -24,8 +25,8 @@ def grow_or_wait(task, cells, seconds, leaves, want_steps, stop):
     if grown is not None:
         left -= sum(map(grown.text.count, "PSU"))
     return grown
-core.grow = grow_or_wait
-sys.exit(cli.main())
+native.grow = grow_or_wait
+sys.exit(main())
 """
 
 # The command, that makes a file when it begins to set up the search.  If it was not stopped in the
@@ -33,8 +34,9 @@ sys.exit(cli.main())
 BEGUN = """
 import sys, time
 from pathlib import Path
-from converse import cli, core
-sign, begin = Path(sys.argv.pop(1)), core.begin
+from converse.commands.prove import main
+from converse.prover import native
+sign, begin = Path(sys.argv.pop(1)), native.begin
 def begin_and_wait(task, tree, stop):
     sign.touch()
     begun = begin(task, tree, stop)
@@ -43,8 +45,8 @@ def begin_and_wait(task, tree, stop):
         while not stop[0]:
             time.sleep(0.005)
     return begun
-core.begin = begin_and_wait
-sys.exit(cli.main())
+native.begin = begin_and_wait
+sys.exit(main())
 """
 
 

@@ -1,4 +1,4 @@
-"""csrc/numbers/apm.c against Python's fractions: every operation, every rounding direction."""
+"""csrc/arith/apm.c against Python's fractions: every operation, every rounding direction."""
 
 import sys
 from decimal import Decimal

@@ -6,6 +6,7 @@ import mpmath
 import pytest
 
 from converse import kernels
+
 from truth import DIGITS, TORTURE, decimal, exact, mp, rng_for, uniform
 
 DP = 35

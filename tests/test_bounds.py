@@ -9,6 +9,7 @@ import mpmath
 import pytest
 
 from converse import kernels
+
 from truth import (DIGITS, TORTURE, beta, cube_point, decimal, eigenvalues, exact, inverse,
                    list_prism, mp, point_of, rng_for, uniform)
 

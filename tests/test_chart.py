@@ -12,10 +12,12 @@ import xml.etree.ElementTree as ET
 
 import numpy as np
 import pytest
-
 from conftest import ROOT
-from converse import __version__, chart, cli, orbits, picture
-from converse.problem import LINE
+
+from converse import __version__, chart, orbits
+from converse.commands import prove as cli
+from converse.draw import plot
+from converse.model.problem import LINE
 
 ROWS = {
     "bound": [("1989", "0.0274", 2698, 4, "yes"), ("thesis", "0.0274", 0.05, 3, "yes"),
@@ -48,7 +50,7 @@ def one_line(capsys):
     return out, err
 
 
-@pytest.mark.parametrize("kind", picture.FORMATS)
+@pytest.mark.parametrize("kind", plot.FORMATS)
 @pytest.mark.parametrize("name", sorted(chart.CHARTS))
 def test_charts(name, kind):
     pytest.importorskip("matplotlib")
@@ -137,8 +139,8 @@ def test_readable(name, monkeypatch):
     pytest.importorskip("matplotlib")
     from matplotlib.text import Text
 
-    figures, encode = [], picture.encode
-    monkeypatch.setattr(picture, "encode", lambda figure, kind, **options: (
+    figures, encode = [], plot.encode
+    monkeypatch.setattr(plot, "encode", lambda figure, kind, **options: (
         figures.append(figure), encode(figure, kind, **options))[1])
     assert chart.chart(name, ROWS[name], "png") != chart.chart(name, ROWS[name], "png", False)
     with_words, without = ([text for text in figure.findobj(Text) if text.get_text().strip()]

@@ -9,7 +9,7 @@ import mpmath
 import pytest
 
 from converse import chart, prove, read_input
-from converse.problem import LINE
+from converse.model.problem import LINE
 
 ROOT = Path(__file__).resolve().parent.parent
 INPUTS = sorted((ROOT / "inputs").glob("*.in"))

@@ -10,7 +10,7 @@ import pytest
 from conftest import COMMAND
 
 from converse import Proof, check
-from converse.cli import main
+from converse.commands.prove import main
 from converse.version import __version__
 
 GOOD = b"0.3085 0.00125\n0.3085 0.00125\n0.617 0.0025\n\n1.0 1.0\n1.0 1.0\n\n"

@@ -8,10 +8,12 @@ from pathlib import Path
 
 import pytest
 
-from converse import check, chart, cli
-from converse.frontier import cli as map_cli
-from converse.orbits import cli as orbits_cli
+from converse import chart, check
+from converse.commands import map as map_cli
+from converse.commands import orbits as orbits_cli
+from converse.commands import prove as cli
 from converse.version import __version__
+
 from moments import PATIENCE
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -69,7 +71,7 @@ def test_experiments_draw_as_the_package_does():
     for path in (ROOT / "experiments").glob("*.py"):
         text = path.read_text("utf-8")
         if "figsize" in text:
-            assert "picture.STYLE" in text and "fontsize" not in text and "frameon" not in text
+            assert "plot.STYLE" in text and "fontsize" not in text and "frameon" not in text
             assert not re.search("#[0-9a-f]{6}|varepsilon", text), path
 
 

@@ -18,18 +18,21 @@ from pathlib import Path
 
 import pytest
 
-from converse import Proof, files
-from converse import backup as keeping
+from converse import Proof
+from converse.storage import backup as keeping
+from converse.storage import files
+
 from moments import BEGUN, HELD, PATIENCE, wait_until
 from truth import STRIKE, TORTURE
 
 # The backup is written
 ALWAYS = """
-from converse import backup, run
+from converse.prover import run
+from converse.storage import backup
 run.LOOK_SECONDS = backup.SECONDS = backup.SHARE = 0
 """
 RARELY = """
-from converse import backup
+from converse.storage import backup
 backup.SECONDS = 1e9                            # but when it begins and when it ends
 """
 
@@ -130,12 +133,12 @@ def test_interrupt(held, command, sample, output, tmp_path, number):
 def test_struck_inside_the_locks_of_a_pool(sample, tmp_path):
     """A RuntimeError of the library is no traceback, and loses nothing."""
     backup, code = tmp_path / "backup", STRIKE + """
-import converse.run
-looked = converse.run._Run._look
+import converse.prover.run
+looked = converse.prover.run._Run._look
 def look(self):
     looked(self)
     sys.setprofile(strike)
-converse.run._Run._look = look
+converse.prover.run._Run._look = look
 """ + HELD
     process = subprocess.run([sys.executable, "-c", code, tmp_path / "sign", "0", "-b", backup, sample],
                              stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, timeout=PATIENCE)
@@ -144,16 +147,41 @@ converse.run._Run._look = look
     assert not Proof.load(backup).no_tori
 
 
+def test_struck_with_the_lock_of_a_future(held, sample, tmp_path):
+    """The lock is released; else the worker would wait for it, and the program for the worker."""
+    backup, code = tmp_path / "backup", """
+import os, signal, sys, threading
+def strike(frame, event, arg):
+    if event == "c_return" and type(frame.f_locals.get("self")).__name__ == "_AcquireFutures" and \\
+            frame.f_code.co_name == "__enter__":
+        sys.setprofile(None)
+        os.kill(os.getpid(), signal.SIGINT)
+import converse.prover.run
+looked = converse.prover.run._Run._look
+def look(self):
+    looked(self)
+    if self.growth.running:
+        sys.setprofile(strike)
+converse.prover.run._Run._look = look
+"""
+    with held("-b", backup, sample, before=code) as (process, _):
+        err = ended(process)
+    assert process.returncode == 130, err
+    assert err == "converse: interrupted; continue with -r %s\n" % backup
+    assert Proof.load(backup).tree
+
+
 def test_struck_while_a_thread_is_begun(sample):
     """That is no lack of memory."""
     code = STRIKE.replace("if not frame:", "if frame:") + """
-from converse import cli, growth
-start = growth.Growth._start
+from converse.commands.prove import main
+from converse.prover import tree_search
+start = tree_search.Growth._start
 def start_and_be_struck(*arguments):
     sys.setprofile(strike)
     return start(*arguments)
-growth.Growth._start = start_and_be_struck
-sys.exit(cli.main())
+tree_search.Growth._start = start_and_be_struck
+sys.exit(main())
 """
     process = subprocess.run([sys.executable, "-c", code, "--jobs", "1", sample], stdout=subprocess.DEVNULL,
                              stderr=subprocess.PIPE, text=True, timeout=PATIENCE)

@@ -16,9 +16,10 @@ from fractions import Fraction
 
 import pytest
 
-from converse import ConverseError, Problem, legend, picture, prove, read_input
-from converse.figure import LEFT, SIDE, WIDTH, format_of, postscript
-from converse.tree import leaves
+from converse import ConverseError, Problem, prove, read_input
+from converse.draw import captions, plot
+from converse.draw.figure import LEFT, SIDE, WIDTH, format_of, postscript
+from converse.prover.tree import leaves
 
 RESOLUTION = 144                        # two pixels a point
 SCALE = RESOLUTION // 72
@@ -78,7 +79,7 @@ def shown(request, tmp_path, monkeypatch):
         if not shutil.which("gs"):
             pytest.skip("ghostscript is not installed")
         return lambda proof: render(proof, tmp_path)
-    monkeypatch.setattr(picture, "RASTER", 0 if request.param == "raster" else 10 ** 9)
+    monkeypatch.setattr(plot, "RASTER", 0 if request.param == "raster" else 10 ** 9)
     return drawn
 
 
@@ -230,7 +231,7 @@ def test_place_of_the_starting_point(made_up):
             (("2.6", "4.5", "0.5", "2"), (pi, pi), (0.9, 0.625)),
             (("0", "0", "0.5", "0.5"), (pi, "0"), None),
             (("1", "1", "0", "1"), (pi, pi), None)):
-        found = legend.star(made_up("P", v=v, xstar=xstar))
+        found = captions.star(made_up("P", v=v, xstar=xstar))
         assert found == (place and pytest.approx(place, abs=1e-12))
 
 
@@ -338,9 +339,9 @@ def test_parameters_that_move_together(made_up):
                                   "123456789.0123456789", "1" * 400, "0.000001", LONG, "4/3"])
 def test_numbers(text):
     value = Fraction(text)
-    assert Fraction(legend.number(value)) == value
-    assert len(legend.number(value)) <= max(len(text), 6)
-    assert abs(Fraction(legend.number(value, abs(value) / 1000)) - value) <= abs(value) / 1000
+    assert Fraction(captions.number(value)) == value
+    assert len(captions.number(value)) <= max(len(text), 6)
+    assert abs(Fraction(captions.number(value, abs(value) / 1000)) - value) <= abs(value) / 1000
 
 
 def test_legend_overlaps_nothing(made_up, monkeypatch):
@@ -348,8 +349,8 @@ def test_legend_overlaps_nothing(made_up, monkeypatch):
     pytest.importorskip("matplotlib")
     from matplotlib.backends.backend_agg import FigureCanvasAgg
 
-    for limit in (picture.RASTER, 0):
-        monkeypatch.setattr(picture, "RASTER", limit)
+    for limit in (plot.RASTER, 0):
+        monkeypatch.setattr(plot, "RASTER", limit)
         for options in TITLES.values():
             figure = made_up("20PU01PS1U", **options).figure()
             canvas = FigureCanvasAgg(figure)
@@ -385,7 +386,7 @@ def test_strings_of_postscript(made_up, tmp_path):
     assert share(render(proof, tmp_path), is_dark) > 0.99
 
 
-@pytest.mark.parametrize("count, most", [(picture.RASTER, 300000), (30000, 200000)])
+@pytest.mark.parametrize("count, most", [(plot.RASTER, 300000), (30000, 200000)])
 def test_size_of_svg(made_up, count, most):
     pytest.importorskip("matplotlib")
     assert len(made_up(random_leaves(random.Random(4), count))._repr_svg_()) < most
@@ -452,7 +453,7 @@ def test_into_axes(made_up):
     assert axes.get_title() == "mine" and axes.get_legend() is None and not axes.texts
     assert len(figure.axes) == 2 and not figure.axes[0].patches
     assert [text.get_text() for text in axes.legend().get_texts()] == [
-        "proved (2)", "skipped by symmetry (1)", "untried (1)", "undecided (2)", legend.STAR]
+        "proved (2)", "skipped by symmetry (1)", "untried (1)", "undecided (2)", captions.STAR]
     assert axes.get_xlim() == axes.get_ylim() == (0, 2)
 
 
@@ -477,9 +478,9 @@ def test_fonts(made_up, monkeypatch, raster):
     pytest.importorskip("matplotlib")
     from matplotlib.text import Text
 
-    monkeypatch.setattr(picture, "RASTER", raster)
+    monkeypatch.setattr(plot, "RASTER", raster)
     fig = made_up("2U01PS?", sha256=SHA).figure()
-    picture.encode(fig, "png")
+    plot.encode(fig, "png")
     assert min(text.get_size() for text in fig.findobj(Text) if text.get_text()) >= 8
 
 
@@ -501,8 +502,8 @@ def test_the_colour_blind_tell_what_is_undecided(kind):
         linear = [x ** 2.2 for x in to_rgb(colour)]
         return [max(0, sum(a * b for a, b in zip(row, linear))) ** (1 / 2.2) for row in BLIND[kind]]
 
-    for undecided, others in ((picture.COLOURS["U"], [picture.COLOURS[kind] for kind in "PS?"]),
-                              (picture.EDGES["U"], ["0.85", "1.0", *picture.DEPTHS])):
+    for undecided, others in ((plot.COLOURS["U"], [plot.COLOURS[kind] for kind in "PS?"]),
+                              (plot.EDGES["U"], ["0.85", "1.0", *plot.DEPTHS])):
         for other in others:
             assert math.dist(seen(undecided), seen(other)) > 0.3
 
@@ -564,7 +565,7 @@ def test_the_star_stands_in_the_frame(made_up, frame):
     problem = replace(Problem(0, 0, ("0.4", "0.5")), axes=frame)
     for x in (0.25, -1.5), (3.0, 7.0):
         proof = replace(made_up("P"), problem=problem, xstar=tuple(map(str, x)))
-        v = [2 * math.pi * part for part in legend.star(proof)]         # of a region from 0 to 2 pi
+        v = [2 * math.pi * part for part in captions.star(proof)]         # of a region from 0 to 2 pi
         there = frame[0] * v[0] + frame[1] * v[1], frame[2] * v[0] + frame[3] * v[1]
         assert all(abs(math.remainder(a - b, 2 * math.pi)) < 1e-9 for a, b in zip(there, x))
 

@@ -4,10 +4,11 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from truth import TORTURE
 
 from converse import orbits
 from converse.orbits.filaments import Filaments, clusters, filaments
+
+from truth import TORTURE
 
 
 def curves(count, a, b, q, blur=0.002, seed=1):

@@ -6,7 +6,6 @@ import os
 import platform
 import runpy
 import sys
-from fractions import Fraction
 
 import mpmath
 import numpy as np
@@ -15,7 +14,7 @@ from test_orbits import truth
 
 from converse import ConverseError, orbits
 from converse._native import ffi, lib
-from converse.orbits import floor as _                      # noqa: F401
+from converse.orbits import floor as _  # noqa: F401
 from converse.orbits.potential import address
 
 floors = sys.modules["converse.orbits.floor"]

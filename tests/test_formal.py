@@ -9,8 +9,8 @@ import sys
 from dataclasses import replace
 
 import pytest
-
 from conftest import ROOT, not_sanitized
+
 from converse import prove, read_input
 
 FORMAL = ROOT / "formal"

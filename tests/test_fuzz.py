@@ -13,13 +13,14 @@ from fractions import Fraction
 import pytest
 from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as st
+from test_check import definite, sealed, tree_of, true_bound, with_field, with_tree
 
 import converse
-from checker import check
 from converse import InputError, Problem, Proof
-from converse.files import ConverseError
-from converse.problem import decimal_text
-from test_check import definite, sealed, tree_of, true_bound, with_field, with_tree
+from converse.model.problem import decimal_text
+from converse.storage.files import ConverseError
+
+from checker import check
 from truth import TORTURE
 
 MANY = settings(max_examples=500 * TORTURE, deadline=None,

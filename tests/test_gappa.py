@@ -11,9 +11,10 @@ from fractions import Fraction
 import mpmath
 import pytest
 from conftest import not_sanitized
-from truth import TORTURE, rng_for
 
 from converse import kernels
+
+from truth import TORTURE, rng_for
 
 pytestmark = not_sanitized
 needs_gappa = pytest.mark.skipif(not shutil.which("gappa"),
@@ -32,7 +33,7 @@ def tools(root):
 
 @pytest.fixture(scope="module")
 def header(root):
-    return (root / "csrc" / "numbers" / "sine.h").read_text("utf-8")
+    return (root / "csrc" / "arith" / "sine.h").read_text("utf-8")
 
 
 @needs_gappa

@@ -9,10 +9,11 @@ from fractions import Fraction
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from truth import TORTURE
 
 from converse import InputError, Problem, prove, read_input
-from converse.problem import LINE
+from converse.model.problem import LINE
+
+from truth import TORTURE
 
 A, B, C = ({"k": k, "amplitude": amplitude} for k, amplitude in (
     ([1, 0], ["0.30725", "0.30975"]), ([0, 1], ["0.30725", "0.30975"]), ([1, 1], ["0.6145", "0.6195"])))

@@ -7,8 +7,9 @@ import mpmath
 import pytest
 
 from converse import kernels
-from truth import (CLOSE, DIGITS, TORTURE, cube_of, cube_point, decimal, list_prism, mp,
-                   point_of, rng_for, step, uniform)
+
+from truth import (CLOSE, DIGITS, TORTURE, cube_of, cube_point, decimal, list_prism, mp, point_of,
+                   rng_for, step, uniform)
 
 DP = 35
 

@@ -12,7 +12,6 @@ from importlib import metadata
 from pathlib import Path
 
 import pytest
-
 from conftest import not_sanitized
 
 from converse import _native, prove, read_input
@@ -71,7 +70,7 @@ def test_without_the_core_proofs_can_be_checked(root, tmp_path):
 
 
 def test_without_the_core_nothing_is_proved(root):
-    status, out, err = without_core("converse.cli", root / "inputs" / "trig278.in")
+    status, out, err = without_core("converse.commands.prove", root / "inputs" / "trig278.in")
     assert status == 2 and out == ""
     assert err.startswith("converse: ") and err.count("\n") == 1 and "core" in err
 

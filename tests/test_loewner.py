@@ -15,13 +15,14 @@ from types import SimpleNamespace
 
 import mpmath
 import pytest
-from truth import TORTURE, beta, mp, rng_for, uniform
 
 from converse import Problem, Settings, kernels, prove
-from converse.core import Search, Task, ffi, lib
-from converse.growth import MANY
-from converse.problem import LINE
-from converse.tree import ROOT, cells, complete
+from converse.model.problem import LINE
+from converse.prover.native import Search, Task, ffi, lib
+from converse.prover.tree import ROOT, cells, complete
+from converse.prover.tree_search import MANY
+
+from truth import TORTURE, beta, mp, rng_for, uniform
 
 CASES = 10000 * TORTURE
 SITES = 60                              # of the core's longest vector

@@ -14,11 +14,13 @@ from types import SimpleNamespace
 
 import mpmath
 import pytest
-from test_waves import (FRAMES, SITES, UNIT, angles, arguments, beta, draw, many_digits, margins,
-                        sites, straightened)
-from truth import TORTURE, mp, rng_for, uniform
+from test_waves import many_digits  # noqa: F401
+from test_waves import (FRAMES, SITES, UNIT, angles, arguments, beta, draw, margins, sites,
+                        straightened)
 
 from converse import kernels
+
+from truth import TORTURE, mp, rng_for, uniform
 
 CASES = 150 * TORTURE
 
@@ -65,7 +67,7 @@ MUTATIONS = [                           # file, what stands there, what to put i
     (THREE, " + w->size[2]) * (1.0 + q->far);", " + w->size[2]);", "fuzz"),
     (THREE, "mag(q->x[0]) + mag(q->x[1]) : every(0.0)", "mag(q->x[0]) : every(0.0)", "fuzz"),
     (THREE, "(1.0 + w->size[0] +", "(1.0 +", "fuzz"),
-    ("numbers/sine.h", "SINE_ERROR 0x1p-51", "SINE_ERROR 0x1p-48", "fuzz"),
+    ("arith/sine.h", "SINE_ERROR 0x1p-51", "SINE_ERROR 0x1p-48", "fuzz"),
     ("loewner/orbit.c", "q->missed[i] = 0x1p-50", "q->missed[i] = 0x1p-52", "missed"),
     ("loewner/orbit.c", "mag(before) + mag(x)) + q->fuzz;", "mag(before) + mag(x));", "missed"),
     ("loewner/orbit.c", "mag(o->x[i]) + mag(before)", "mag(before)", "missed"),
@@ -219,7 +221,7 @@ def left_margins(rng, cases):
 
 def sines_of(tools, read):
     """double_sincos, executed from its text with Python's doubles."""
-    header = read("numbers/sine.h")
+    header = read("arith/sine.h")
     names = {"bits_of": lambda y: struct.unpack("<Q", struct.pack("<d", y))[0], "mag": abs,
              "vec_of": lambda m: struct.unpack("<d", struct.pack("<Q", m % 2 ** 64))[0],
              "TRUTH": lambda truth: -int(truth), "pick": lambda m, x, y: x if m else y,
@@ -267,8 +269,8 @@ def torus_margins(rng, cases, tools, read):
     """over_any of torus.c, executed from its text, and in exact arithmetic."""
     names = {"double_sincos": sines_of(tools, read), "HUGE_VAL": math.inf, "MOST_WAVES": 16,
              "larger": max, "fabs": abs, "sqrt": math.sqrt}
-    names["moved"] = tools[1].function(read("torus.c"), "moved").bound(names)
-    over = tools[1].function(read("torus.c"), "over_any").bound(names)
+    names["moved"] = tools[1].function(read("model/torus.c"), "moved").bound(names)
+    over = tools[1].function(read("model/torus.c"), "over_any").bound(names)
     for _ in range(cases):
         waves = [[*map(mp, w[:4])] for w in draw(rng).waves]
         q = SimpleNamespace(

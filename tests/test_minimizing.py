@@ -15,6 +15,7 @@ import pytest
 
 from converse import ConverseError, orbits
 from converse.orbits import ff, poly, standard, trig
+
 from moments import PATIENCE
 
 hunt = sys.modules["converse.orbits.search"]

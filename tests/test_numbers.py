@@ -11,10 +11,11 @@ from pathlib import Path
 import mpmath
 import pytest
 from conftest import not_sanitized
-from truth import TORTURE
 
 from converse import Problem, chart, check, orbits, prove, read_input
 from converse.version import __version__
+
+from truth import TORTURE
 
 pytestmark = not_sanitized              # what is counted is the same, and takes long
 ROOT = Path(__file__).resolve().parent.parent

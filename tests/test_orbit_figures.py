@@ -10,10 +10,11 @@ import xml.etree.ElementTree as ET
 
 import numpy as np
 import pytest
-from truth import TORTURE
 
 from converse import ConverseError, orbits
 from converse.orbits import farey
+
+from truth import TORTURE
 
 pytest.importorskip("matplotlib")
 
@@ -421,8 +422,8 @@ def fonts_and_labels(figure):
 @pytest.fixture
 def seen(monkeypatch):
     """The figures that are written from here on."""
-    seen, encode = [], figures.picture.encode
-    monkeypatch.setattr(figures.picture, "encode", lambda figure, kind, **options: (
+    seen, encode = [], figures.plot.encode
+    monkeypatch.setattr(figures.plot, "encode", lambda figure, kind, **options: (
         seen.append(figure), encode(figure, kind, **options))[1])
     return seen
 

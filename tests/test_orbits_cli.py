@@ -12,13 +12,15 @@ import pytest
 from matplotlib.figure import Figure
 
 from converse import orbits
-from converse.files import ConverseError
-from converse.orbits import cli, farey, figures
+from converse.commands import orbits as cli
+from converse.orbits import farey, figures
 from converse.orbits.sweep import LOST, ONSET_COLUMNS
+from converse.storage.files import ConverseError
+
 from moments import PATIENCE, SWEEP_HELD, wait_until
 
 SMALL = "65,86/114"
-COMMAND = [sys.executable, "-m", "converse.orbits.cli"]
+COMMAND = [sys.executable, "-m", "converse.commands.orbits"]
 
 
 @pytest.fixture
@@ -336,7 +338,7 @@ def test_a_bad_potential(run, tmp_path, text, words):
 def test_what_is_missing_is_said(tmp_path, module, arguments):
     result = subprocess.run(
         [sys.executable, "-c", "import runpy, sys\nsys.modules[%r] = None\n"
-         "sys.argv[0] = 'x'\nrunpy.run_module('converse.orbits.cli', run_name='__main__')" % module,
+         "sys.argv[0] = 'x'\nrunpy.run_module('converse.commands.orbits', run_name='__main__')" % module,
          *arguments], cwd=tmp_path, capture_output=True, text=True, timeout=PATIENCE)
     assert (result.returncode, result.stdout) == (2, "") and one_line(result.stderr)
     assert module.split(".")[0] in result.stderr
@@ -348,7 +350,7 @@ def test_what_is_missing_is_said(tmp_path, module, arguments):
 def test_a_sweep_that_a_signal_ends_is_continued(tmp_path, number):
     path, other = tmp_path / "table.csv", tmp_path / "whole.csv"
     common = "0.004:0.012:0.002", "--random", "40", "--sizes", "120:160", "--jobs", "2"
-    code = SWEEP_HELD + "from converse.orbits import cli\nsys.exit(cli.main())"
+    code = SWEEP_HELD + "from converse.commands.orbits import main\nsys.exit(main())"
     with subprocess.Popen([sys.executable, "-c", code, "10", "sweep", "trig", path, *common],
                           stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
         try:

@@ -11,9 +11,10 @@ import pytest
 import converse
 from converse import orbits
 from converse._native import ffi, lib
-from converse.orbits import cli as orbits_cli
+from converse.commands import orbits as orbits_cli
+from converse.model.problem import Problem
 from converse.orbits.potential import address
-from converse.problem import Problem
+
 from truth import TORTURE
 
 SPIRAL = ((1432, 1897), 2513)

@@ -16,8 +16,10 @@ from fractions import Fraction
 
 import pytest
 
-from converse import ConverseError, Problem, Proof, growth, prove, run, tree, workers
-from converse.problem import LINE, decimal_text
+from converse import ConverseError, Problem, Proof, prove
+from converse.model.problem import LINE, decimal_text
+from converse.prover import run, tree, tree_search, workers
+
 from moments import PATIENCE
 from truth import TORTURE
 
@@ -35,14 +37,14 @@ LONG = line("0.0144", "0.0149")             # a second or so
 @pytest.fixture(autouse=True)
 def early(monkeypatch):
     """Divides the work sooner and more finely than usual."""
-    monkeypatch.setattr(growth, "TASK_SECONDS", 0.02)
-    monkeypatch.setattr(growth, "ALONE_SECONDS", 0.01)
+    monkeypatch.setattr(tree_search, "TASK_SECONDS", 0.02)
+    monkeypatch.setattr(tree_search, "ALONE_SECONDS", 0.01)
 
 
 @pytest.fixture
 def divided(monkeypatch):
     """Divides the work from the beginning, however long the search took to set up."""
-    monkeypatch.setattr(growth.Growth, "alone_until", property(lambda self: 0.0, lambda *_: None),
+    monkeypatch.setattr(tree_search.Growth, "alone_until", property(lambda self: 0.0, lambda *_: None),
                         raising=False)
 
 
@@ -136,7 +138,7 @@ def test_an_executor_that_is_gone(divided):
 
 def test_time_limit_and_resume(proof, tmp_path, monkeypatch, ends):
     """The time is up after some thousands of cuts, and again, and again."""
-    monkeypatch.setattr(growth, "MANY", 500)        # so many leaves are not far beyond
+    monkeypatch.setattr(tree_search, "MANY", 500)        # so many leaves are not far beyond
     path, runs, cuts = tmp_path / "a.proof", 1, 0
     ends(lambda self: self.growth.counts.cuts > cuts + 5000)
     result = prove(LONG, method="loewner", jobs=3, backup=path)
@@ -160,16 +162,16 @@ class Inline(concurrent.futures.Executor):
                                           (KeyboardInterrupt, 15), (MemoryError, 15)])
 def test_interrupted_anywhere(error, depth, tmp_path, monkeypatch):
     """Whatever line of the bookkeeping an exception strikes, what was saved leads to the same tree."""
-    monkeypatch.setattr(growth, "TASK_SECONDS", 0.001)
-    monkeypatch.setattr(growth, "ALONE_SECONDS", 0.0)
-    monkeypatch.setattr("converse.backup.SECONDS", 0.005)
+    monkeypatch.setattr(tree_search, "TASK_SECONDS", 0.001)
+    monkeypatch.setattr(tree_search, "ALONE_SECONDS", 0.0)
+    monkeypatch.setattr("converse.storage.backup.SECONDS", 0.005)
     problem, path = line("0.0165", "0.0280"), tmp_path / "a.proof"
     whole = timeless(prove(problem, method="loewner", jobs=1, depth=depth))
     assert whole.no_tori == (depth == 120)
     rng, struck, lines = random.Random(1), [], [0, 0]
 
     def trace(frame, event, _):
-        if frame.f_code.co_filename != growth.__file__ or "self" not in frame.f_locals:
+        if frame.f_code.co_filename != tree_search.__file__ or "self" not in frame.f_locals:
             return None
         if event == "line":
             lines[0] += 1
@@ -198,12 +200,14 @@ def test_interrupted_anywhere(error, depth, tmp_path, monkeypatch):
 
 KILLED = """
 import os, signal, sys
-from converse import backup, growth, prove, run
+from converse import prove
+from converse.prover import run, tree_search
+from converse.storage import backup
 sys.path.insert(0, %r)
 from test_parallel import LONG
 path, resume, cuts, torn = sys.argv[1:]
 backup.SECONDS = backup.SHARE = 0               # it is written at every look
-growth.MANY = 500                               # leaves, and then it is looked
+tree_search.MANY = 500                               # leaves, and then it is looked
 looked = run._Run._look
 def kill(*_):
     os.kill(os.getpid(), signal.SIGKILL)
@@ -301,16 +305,17 @@ def test_dask_loses_its_scheduler(divided, tmp_path, proof):
     distributed = pytest.importorskip("distributed")
     code = """
 import os, signal, sys
-from converse import cli, growth, run
-growth.ALONE_SECONDS = growth.TASK_SECONDS = 0.01
-took, grow, scheduler = [], growth.Growth._take, int(sys.argv.pop(1))
+from converse.commands.prove import main
+from converse.prover import run, tree_search
+tree_search.ALONE_SECONDS = tree_search.TASK_SECONDS = 0.01
+took, grow, scheduler = [], tree_search.Growth._take, int(sys.argv.pop(1))
 def take(self, part, grown):
     grow(self, part, grown)
     took.append(part)
     if len(took) == 5:
         os.kill(scheduler, signal.SIGKILL)
-growth.Growth._take = take
-sys.exit(cli.main())
+tree_search.Growth._take = take
+sys.exit(main())
 """
     with contextlib.ExitStack() as stack:
         def start(*arguments):
@@ -366,10 +371,10 @@ with_mpi = pytest.mark.skipif(not shutil.which("mpiexec"), reason="there is no M
 
 
 @with_mpi
-@pytest.mark.parametrize("module, command", [("cli", "converse"), ("frontier.cli", "converse-map")])
+@pytest.mark.parametrize("module, command", [("commands.prove", "converse"), ("commands.map", "converse-map")])
 def test_mpi_processes_that_would_all_do_the_same(tmp_path, module, command):
     pytest.importorskip("mpi4py")
-    arguments = ["--plane", "c=0", "m.json"] if module == "frontier.cli" else []
+    arguments = ["--plane", "c=0", "m.json"] if module == "commands.map" else []
     result = subprocess.run(["mpiexec", "-n", "2", sys.executable, "-m", "converse." + module, "--mpi",
                              *arguments], cwd=tmp_path, env=MPI, timeout=PATIENCE, text=True,
                             input="0.32 0\n0.32 0\n0.64 0\n1 1\n1 1\n", capture_output=True)
@@ -383,7 +388,7 @@ def test_mpi_processes_that_would_all_do_the_same(tmp_path, module, command):
 def test_mpi(proof, tmp_path):
     pytest.importorskip("mpi4py")
     (tmp_path / "a.in").write_text(input_text(LONG))
-    command = ["converse.cli", "--mpi", "--method", "loewner", "--together", "-b", "a.proof", "a.in"]
+    command = ["converse.commands.prove", "--mpi", "--method", "loewner", "--together", "-b", "a.proof", "a.in"]
     subprocess.run(["mpiexec", "-n", "3", sys.executable, "-m", "mpi4py.futures", "-m", *command],
                    cwd=tmp_path, env=MPI, check=True, timeout=PATIENCE, stdout=subprocess.DEVNULL)
     assert timeless(Proof.load(tmp_path / "a.proof")) == replace(
@@ -412,7 +417,7 @@ class Late(Inline):
 @pytest.mark.parametrize("jobs", [2, 5])
 def test_an_undecided_prism_before_finished_ones(tmp_path, monkeypatch, divided, jobs):
     """A search that is not stubborn ends at the first; what others did beyond it is of no account."""
-    monkeypatch.setattr(growth, "MANY", 40)
+    monkeypatch.setattr(tree_search, "MANY", 40)
     executor = Late()
     monkeypatch.setattr(concurrent.futures, "wait", executor.wait)
     problem, path = line("0.0170", "0.0280"), tmp_path / "a.proof"
@@ -452,7 +457,7 @@ def test_what_comes_late_is_kept(tmp_path, monkeypatch, divided, ends):
             return super().submit(slowly)
 
     path, brought = tmp_path / "a.proof", []
-    monkeypatch.setattr(growth, "TASK_SECONDS", 20)         # how long they are waited for
+    monkeypatch.setattr(tree_search, "TASK_SECONDS", 20)         # how long they are waited for
     ends(lambda self: brought)
     with Slow(2) as executor:
         result = prove(LONG, method="loewner", executor=executor, backup=path)
@@ -475,11 +480,11 @@ def test_what_is_examined_never_falls(divided, ends, stubborn):
 
 def test_what_lies_beyond_an_undecided_prism_is_not_its_own():
     """Unless the search is stubborn: then the next part follows as always."""
-    from converse.core import Settings, Task
+    from converse.prover.native import Settings, Task
 
     for stubborn, text in (False, "0U"), (True, "0UP"):
-        grown = growth.Growth(Task(LONG, Settings("loewner", stubborn=stubborn)), 1)
-        grown.parts = [growth.Part([], "0U"), growth.Part([], "P")]
+        grown = tree_search.Growth(Task(LONG, Settings("loewner", stubborn=stubborn)), 1)
+        grown.parts = [tree_search.Part([], "0U"), tree_search.Part([], "P")]
         grown._merge()
         assert grown.finished and grown.text() == (text, [])
         assert (grown.counts.proved, grown.counts.undecided) == (int(stubborn), 1)
@@ -490,7 +495,7 @@ def test_many_gaps_cost_little(monkeypatch):
     shallow = prove(line("0.0130", "0.0280"), method="loewner", depth=16, stubborn=True)
     assert shallow.tree.count("U") > 2000
     monkeypatch.setattr(run, "LOOK_SECONDS", PATIENCE)      # however slowly it goes on
-    looks, merge = [], growth.Growth._merge
-    monkeypatch.setattr(growth.Growth, "_merge", lambda self: (looks.append(self), merge(self)))
+    looks, merge = [], tree_search.Growth._merge
+    monkeypatch.setattr(tree_search.Growth, "_merge", lambda self: (looks.append(self), merge(self)))
     assert prove(resume=shallow, depth=17, jobs=2).counts.cuts > shallow.counts.cuts
     assert len(looks) < 300

@@ -10,8 +10,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from converse import ConverseError, Problem, core, prove
-from converse.problem import IDENTITY, THESIS, InputError, decimal_text, exact_decimal, read_input
+from converse import ConverseError, Problem, prove
+from converse.model.problem import (IDENTITY, THESIS, InputError, decimal_text, exact_decimal,
+                                    read_input)
+from converse.prover import native
 
 GOOD = "0.3085 0.00125\n0.3085 0.00125\n0.617 0.0025\n\n1.0 1.0\n1.0 1.0\n\n"
 
@@ -184,13 +186,13 @@ def test_four_ranges_or_unequal_ones():
 @pytest.mark.parametrize("text", ["1e309", "-1e309", "1e99999", "nan", "", "1e400000"])
 def test_the_core_refuses_what_no_problem_can_say(text, monkeypatch):
     """Also when it is asked behind the back of Problem, whichever number it is."""
-    given, told = core.native_text, []
+    given, told = native.native_text, []
 
     def told_instead(number, owners):
         told.append(number)
         return given(text if len(told) - 1 == wrong else number, owners)
 
-    monkeypatch.setattr(core, "native_text", told_instead)
+    monkeypatch.setattr(native, "native_text", told_instead)
     for wrong in range(19):             # of three waves the phase, the amplitude, three parts; v0, v1
         told.clear()
         with pytest.raises(ConverseError, match="malformed or out of range|no sense"):

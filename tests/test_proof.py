@@ -13,11 +13,13 @@ from fractions import Fraction
 
 import pytest
 
-from converse import (ConverseError, Counts, Problem, Proof, Settings, check, core, files, growth, prove,
-                      read_input, run)
-from converse.problem import IDENTITY, decimal_text
-from converse.tree import leaves
+from converse import ConverseError, Counts, Problem, Proof, Settings, check, prove, read_input
+from converse.model.problem import IDENTITY, decimal_text
+from converse.prover import native, run, tree_search
+from converse.prover.tree import leaves
+from converse.storage import files
 from converse.version import __version__
+
 from moments import PATIENCE
 
 NUMBERS = dict(ll_used=(3, 2, 1), reasons=(1, 2, 3, 4, 5, 6), quick_tries=7)
@@ -198,7 +200,7 @@ def interrupted(monkeypatch):
                 raise KeyboardInterrupt
 
         with monkeypatch.context() as patch:
-            patch.setattr(growth, "MANY", 1)        # leaves at a time
+            patch.setattr(tree_search, "MANY", 1)        # leaves at a time
             with pytest.raises(KeyboardInterrupt):
                 prove(problem, backup=backup, on_leaf=on_leaf, jobs=1, **options)
     return interrupted
@@ -364,9 +366,9 @@ def test_deeper(tmp_path, problem, proof):
 
 def test_a_failing_backup_does_not_end_the_run(tmp_path, problem, proof, monkeypatch):
     path = tmp_path / "a.proof"
-    monkeypatch.setattr("converse.backup.SECONDS", 0.0)
-    monkeypatch.setattr("converse.backup.SHARE", 0)
-    monkeypatch.setattr(growth, "MANY", 1)
+    monkeypatch.setattr("converse.storage.backup.SECONDS", 0.0)
+    monkeypatch.setattr("converse.storage.backup.SHARE", 0)
+    monkeypatch.setattr(tree_search, "MANY", 1)
     writes, write = [], files.write
 
     def full(name, data):
@@ -394,7 +396,7 @@ def test_a_backup_that_cannot_be_begun_is_an_error(tmp_path, problem, monkeypatc
 @pytest.mark.parametrize("jobs", [1, 4])
 def test_leaves_in_order_by_many_workers(problem, proof, jobs, monkeypatch):
     """on_leaf hears of every leaf in preorder, with its orbit's length, whoever decided it."""
-    monkeypatch.setattr(growth, "ALONE_SECONDS", 0.0)
+    monkeypatch.setattr(tree_search, "ALONE_SECONDS", 0.0)
     expected = []
     prove(problem, jobs=1, on_leaf=lambda *leaf: expected.append(leaf))
     assert [leaf for leaf, _ in expected] == list(leaves(problem, proof.tree))
@@ -418,7 +420,7 @@ def test_a_long_set_up_obeys(problem, monkeypatch):
     """At a hundred thousand places pi alone takes seconds."""
     result = prove(problem, digits=100000, time_limit=0.2)
     assert result.tree == "" and result.constants == {}
-    begin, wait, begun, found = core.begin, run._Run._wait, threading.Event(), []
+    begin, wait, begun, found = native.begin, run._Run._wait, threading.Event(), []
 
     def tells(*arguments):
         begun.set()
@@ -429,7 +431,7 @@ def test_a_long_set_up_obeys(problem, monkeypatch):
         signal.raise_signal(signal.SIGINT)
         return wait(self, future)
 
-    monkeypatch.setattr(core, "begin", tells)
+    monkeypatch.setattr(native, "begin", tells)
     monkeypatch.setattr(run._Run, "_wait", strikes)
     with pytest.raises(KeyboardInterrupt):
         prove(problem, digits=100000)
@@ -438,7 +440,7 @@ def test_a_long_set_up_obeys(problem, monkeypatch):
 
 def test_a_long_prism_obeys(problem, proof, monkeypatch):
     """A rigorous try with thousands of digits is left in the middle, and nothing comes of it."""
-    grow, grown, up = core.grow, [], threading.Event()
+    grow, grown, up = native.grow, [], threading.Event()
 
     def tells(task, cells, seconds, leaves, want_steps, stop):
         if grown and proof.tree.startswith("".join(grown) + "P"):      # now comes such a try
@@ -449,8 +451,8 @@ def test_a_long_prism_obeys(problem, proof, monkeypatch):
         grown.append(found.text)
         return found
 
-    monkeypatch.setattr(core, "grow", tells)
-    monkeypatch.setattr(growth, "TASK_SECONDS", PATIENCE)   # it is waited for
+    monkeypatch.setattr(native, "grow", tells)
+    monkeypatch.setattr(tree_search, "TASK_SECONDS", PATIENCE)   # it is waited for
     monkeypatch.setattr(run._Run, "end", property(
         lambda self: -math.inf if up.is_set() else math.inf, lambda *_: None), raising=False)
     result = prove(problem, digits=20000, jobs=1)
@@ -459,18 +461,18 @@ def test_a_long_prism_obeys(problem, proof, monkeypatch):
 
 def test_the_work_left_is_estimated():
     """Exactly, where cells of a kind fare alike; unseen kinds are taken for their like one deeper."""
-    history = core.History()
+    history = native.History()
     history.nodes = {(0, 0): 1, (1, 0): 2, (2, 0): 4, (2, 3): 4}
     history.cut = {(0, 0): 1, (1, 0): 2, (2, 3): 2}
     history.became = {(0, 0): 2, (0, 3): 1, (3, 3): 2}
     cell = lambda cuts, hint: ((0,) * 5, (cuts, 0, 0, 0, 0), hint)
-    assert [core.lib.cv_class(n) for n in (0, 1, 2, 3, 4, 5, 6, 8, 12, 10 ** 9)] == [
+    assert [native.lib.cv_class(n) for n in (0, 1, 2, 3, 4, 5, 6, 8, 12, 10 ** 9)] == [
         0, 0, 1, 2, 3, 3, 4, 5, 6, 15]
     for cells, expected in (([], 0), ([cell(9, 0)], 1), ([cell(2, 0)], 1), ([cell(2, 4)], 2),
                             ([cell(1, 0)], 1 + 2 * (2 * 1 + 2) / 3), ([cell(1, 4)], 2),
                             ([cell(2, 4), cell(9, 4), cell(200, 9)], 4)):
         assert history.expected(cells) == pytest.approx(expected)
-    twice = core.History()
+    twice = native.History()
     twice.add(history)
     twice.add(history)
     assert twice.expected([cell(1, 0)]) == history.expected([cell(1, 0)])

@@ -13,11 +13,12 @@ from fractions import Fraction
 import mpmath
 import numpy as np
 import pytest
-from truth import TORTURE, mp, rng_for
 
 from converse import ConverseError, orbits
 from converse.orbits import potential, proved
 from converse.orbits.proved import NotProved, lib, prove
+
+from truth import TORTURE, mp, rng_for
 
 # ---- potentials, anew: one-variable jets (f, f', f'') of waves, or of factors
 

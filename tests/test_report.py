@@ -7,8 +7,8 @@ from fractions import Fraction
 import pytest
 
 from converse import Counts, Problem, prove
-from converse.problem import IDENTITY
-from converse.report import header, verdict
+from converse.model.problem import IDENTITY
+from converse.prover.report import header, verdict
 from converse.version import __version__
 
 COUNTS = Counts(quick_tries=322, tries=318, Rtries=156, cuts=166, proved=156, symmetric=11,

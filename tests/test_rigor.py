@@ -12,6 +12,7 @@ from pathlib import Path
 import pytest
 
 import converse
+
 from moments import PATIENCE
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -21,7 +22,7 @@ needs_gcc = pytest.mark.skipif(not shutil.which("gcc"), reason="needs gcc")
 @needs_gcc
 @pytest.mark.parametrize("flag", ["-ffast-math", "-Ofast"])
 def test_a_fast_math_build_is_refused(flag):
-    result = subprocess.run(["gcc", "-std=c11", flag, "-Icsrc", "-c", "csrc/numbers/machine.c", "-o", os.devnull],
+    result = subprocess.run(["gcc", "-std=c11", flag, "-Icsrc", "-c", "csrc/arith/machine.c", "-o", os.devnull],
                             cwd=ROOT, capture_output=True, text=True)
     assert result.returncode != 0
     assert "rules of rigor" in result.stderr
@@ -82,8 +83,8 @@ def test_a_spoilt_machine_is_refused(shim, root, spoil, mend):
 @pytest.mark.parametrize("method", ["thesis", "loewner"])
 def test_a_machine_spoilt_in_mid_run_is_noticed(shim, root, method):
     """Each step looks at the arithmetic; nothing that a bad one did is taken."""
-    from converse.core import Search, Settings, Task, ffi
-    from converse.tree import ROOT as WHOLE
+    from converse.prover.native import Search, Settings, Task, ffi
+    from converse.prover.tree import ROOT as WHOLE
 
     lib = ctypes.CDLL(str(shim))
     search = Search(Task(converse.read_input(root / "inputs" / "trig278.in"), Settings(method)))
@@ -151,7 +152,7 @@ STARVED = r"""
 import ctypes, sys
 from fractions import Fraction
 import converse
-from converse.core import native_problem
+from converse.prover.native import native_problem
 from converse._native import ffi, lib
 shim = ctypes.CDLL(None)
 shim.fail_after.argtypes = [ctypes.c_long]
@@ -247,7 +248,7 @@ def test_every_allocation_may_fail(tmp_path):
 
 HUNGRY = r"""
 import resource, sys, threading
-from converse.cli import main
+from converse.commands.prove import main
 threading.stack_size(1 << 20)           # of one thread, however many cores there are
 slack, backup, path = int(sys.argv[1]), sys.argv[2], sys.argv[3]
 pages = int(open("/proc/self/statm").read().split()[0])

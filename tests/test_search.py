@@ -15,10 +15,10 @@ import pytest
 
 import converse
 from converse import Problem, kernels
-from converse.problem import LINE
-from converse.tree import leaves
-from truth import (TORTURE, beta, decimal, eigenvalues, exact, inverse, mp, rng_for,
-                   uniform)
+from converse.model.problem import LINE
+from converse.prover.tree import leaves
+
+from truth import TORTURE, beta, decimal, eigenvalues, exact, inverse, mp, rng_for, uniform
 
 FULL = (("1", "1"), ("1", "1"))
 
@@ -230,9 +230,9 @@ def test_two_threads_do_not_meet(root):
 
 def test_no_symmetry_where_the_start_is_off_the_diagonal():
     """A starting point of one's own (from a backup) may lie anywhere; then nothing is skipped."""
-    from converse.core import Search, Settings, Task, stop_token
-    from converse.growth import MANY
-    from converse.tree import ROOT
+    from converse.prover.native import Search, Settings, Task, stop_token
+    from converse.prover.tree import ROOT
+    from converse.prover.tree_search import MANY
 
     for xstar, skips in ((("0.82", "0.82"), True), (("0.82", "0.83"), False)):
         search = Search(Task(line("0.0275"), Settings(digits=20), xstar))
@@ -244,7 +244,7 @@ def test_no_symmetry_where_the_start_is_off_the_diagonal():
 # ---- what may be asked of a search in C, in which order
 
 def core_search(xstar=None, depth=30, **settings):
-    from converse.core import Search, Settings, Task, ffi
+    from converse.prover.native import Search, Settings, Task, ffi
 
     search = Search(Task(line("0.0275"), Settings(depth=depth, **settings), xstar))
     assert search.prepare(ffi.NULL)
@@ -253,7 +253,7 @@ def core_search(xstar=None, depth=30, **settings):
 
 def test_a_tree_that_is_taken_up(root):
     """A whole tree leaves nothing to do, a wrong one nothing that can be stepped."""
-    from converse.core import WrongTree, ffi, lib
+    from converse.prover.native import WrongTree, ffi, lib
 
     search = core_search()
     handle, step = search.handle, lambda: lib.cv_step(search.handle, 100, 1.0, ffi.NULL)
@@ -274,7 +274,7 @@ def test_a_tree_that_is_taken_up(root):
 
 @pytest.mark.parametrize("xstar, good", [(("0.82", "0.82"), True), (("0.82", "0.83"), False)])
 def test_what_was_skipped_must_be_symmetric(xstar, good):
-    from converse.core import WrongTree
+    from converse.prover.native import WrongTree
 
     search = core_search(xstar)
     with contextlib.nullcontext() if good else pytest.raises(WrongTree):
@@ -283,7 +283,7 @@ def test_what_was_skipped_must_be_symmetric(xstar, good):
 
 def test_the_finest_index():
     """A cell whose index has no bit left is not cut, whatever the depth."""
-    from converse.core import ffi
+    from converse.prover.native import ffi
 
     search = core_search(depth=1000, digits=60, stubborn=True)
     for cuts, text in ((60, "0"), (61, "U")):
@@ -296,8 +296,8 @@ def test_the_finest_index():
 def test_stopped_in_the_middle_of_a_prism():
     """The prism at hand is forgotten, with its statistics; then the search goes on as if nothing
     had been."""
-    from converse.core import ffi, stop_token
-    from converse.tree import ROOT as WHOLE
+    from converse.prover.native import ffi, stop_token
+    from converse.prover.tree import ROOT as WHOLE
 
     for digits in 3000, 12000, 48000, 192000:       # where the stop is late a prism must take longer
         search, cells, text, counts, stops = core_search(digits=digits), [(*WHOLE, 0)], "", [], 0
@@ -321,7 +321,7 @@ def test_stopped_in_the_middle_of_a_prism():
 
 
 def test_a_search_whose_setting_up_was_stopped_is_good_for_nothing():
-    from converse.core import Search, Settings, Task, ffi, lib, stop_token
+    from converse.prover.native import Search, Settings, Task, ffi, lib, stop_token
 
     search = Search(Task(line("0.0275"), Settings(digits=20000)))
     token = stop_token()

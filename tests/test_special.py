@@ -1,4 +1,4 @@
-"""csrc/numbers/special.c against mpmath at many more digits: pi, sine, cosine, square root."""
+"""csrc/arith/special.c against mpmath at many more digits: pi, sine, cosine, square root."""
 
 import random
 import sys

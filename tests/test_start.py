@@ -6,9 +6,9 @@ from fractions import Fraction
 
 import pytest
 
-from converse import core
-from converse.problem import Problem
-from converse.settings import Settings
+from converse.model.problem import Problem
+from converse.prover import native
+from converse.prover.settings import Settings
 
 
 def decide(parameters, xstar=None, most=20000):
@@ -16,12 +16,12 @@ def decide(parameters, xstar=None, most=20000):
     tries: x*, tries, all proved?"""
     problem = parameters if isinstance(parameters, Problem) else \
         Problem(**dict(zip("abc", parameters)))
-    search = core.Search(core.Task(problem, Settings(method="loewner"), xstar))
-    assert search.prepare(core.ffi.NULL)
+    search = native.Search(native.Task(problem, Settings(method="loewner"), xstar))
+    assert search.prepare(native.ffi.NULL)
     begun = search.begin("")
     cells, tries, undecided = begun.cells, 0, 0
     while cells and tries < most and not undecided:
-        grown = search.grow(cells, math.inf, 500, core.ffi.NULL, False)
+        grown = search.grow(cells, math.inf, 500, native.ffi.NULL, False)
         cells, undecided = grown.cells, grown.counts.undecided
         tries += grown.counts.tries
     return tuple(map(float, begun.xstar)), tries, not cells and not undecided

@@ -15,10 +15,12 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from converse import files, orbits
-from converse.files import ConverseError
+from converse import orbits
 from converse.orbits import potential
 from converse.orbits.sweep import LOST, ONSET_COLUMNS
+from converse.storage import files
+from converse.storage.files import ConverseError
+
 from moments import PATIENCE, SWEEP_HELD, wait_until
 
 MODULE = sys.modules[orbits.sweep.__module__]   # its name in the package is the function's

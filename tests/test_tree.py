@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from converse import Problem
-from converse.tree import Leaf, TreeError, Walk, cells, complete, leaves
+from converse.prover.tree import Leaf, TreeError, Walk, cells, complete, leaves
 
 TREES = st.recursive(st.sampled_from("PSU"),
                      lambda sub: st.tuples(st.sampled_from("01234"), sub, sub).map("".join),

@@ -13,10 +13,11 @@ from dataclasses import replace
 from fractions import Fraction
 
 import pytest
-
 from conftest import ROOT, not_sanitized
+
 from converse import Problem, check, prove, read_input
-from converse.problem import decimal_text
+from converse.model.problem import decimal_text
+
 from moments import PATIENCE, wait_until
 
 COMMAND = ROOT / "formal" / "build" / "converse-verified"

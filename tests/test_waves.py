@@ -8,10 +8,11 @@ from types import SimpleNamespace
 
 import mpmath
 import pytest
-from truth import TORTURE, mp, rng_for
 
 from converse import kernels
-from converse.core import ffi, lib, native_problem
+from converse.prover.native import ffi, lib, native_problem
+
+from truth import TORTURE, mp, rng_for
 
 CASES = 1500 * TORTURE
 MOST = 4                                # waves of a kernel's potential

@@ -6,7 +6,8 @@ import pytest
 
 import converse
 from converse import Problem, kernels
-from converse.problem import LINE
+from converse.model.problem import LINE
+
 from truth import cube_of, cube_point, decimal, point_of, rng_for, step, uniform
 
 REASONS = ("centre", "too big", "too long", "singular", "arithmetic", "disagree")

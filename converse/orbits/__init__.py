@@ -22,10 +22,10 @@ except ImportError as _error:           # said when something is asked for: the 
                 "'converse-kam[orbits]'" % _error)
 
     def __getattr__(name):
-        from ..files import ConverseError
+        from ..storage.files import ConverseError
         if name.startswith("__"):
             raise AttributeError(name)
-        from .. import core  # noqa: F401, which says more if it is the core that is missing
+        from ..prover import native  # noqa: F401, which says more if it is the core that is missing
         raise ConverseError(_MISSING)
 
 __all__ = ["Family", "Floor", "Fourier", "FromPython", "LeastAction", "NotProved", "Onset",

@@ -9,7 +9,7 @@ from fractions import Fraction
 from math import isqrt
 from typing import NamedTuple
 
-from ..files import plain
+from ..storage.files import plain
 
 UNIT = 10 ** 60                         # what the constants below are rounded down to
 

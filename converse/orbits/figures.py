@@ -16,8 +16,9 @@ from fractions import Fraction
 
 import numpy as np
 
-from .. import files, picture
-from ..picture import BLUE, DARK, GREY, VERMILLION
+from ..draw import plot
+from ..draw.plot import BLUE, DARK, GREY, VERMILLION
+from ..storage import files
 from . import farey
 from .filaments import filaments
 from .potential import ff, poly, standard, trig
@@ -59,7 +60,7 @@ TEXT = {                                # what it says of (b): an eps was chosen
 
 NAMES = {"trig": "trigonometric", "poly": "polynomial", "ff": "fast-Froeschlé"}
 COLOURS = {"trig": DARK, "poly": BLUE, "ff": VERMILLION}
-STYLE = {**picture.STYLE, "axes.titlesize": 8, "axes.linewidth": 0.6}
+STYLE = {**plot.STYLE, "axes.titlesize": 8, "axes.linewidth": 0.6}
 POINTS = {"linestyle": "none", "marker": "o", "markersize": 1.3, "markeredgewidth": 0,
           "rasterized": True}
 LETTERS = 17                            # of a caption, in an inch
@@ -700,17 +701,17 @@ def _page(width, height, kind, fill, caption):
         if caption:
             figure.text(0.1 / width, 0.0, "\n".join(textwrap.wrap(words, int(LETTERS * width))),
                         color="0.25", va="top", linespacing=1.35)
-        return picture.encode(figure, kind, dpi=200, pad_inches=0.1)
+        return plot.encode(figure, kind, dpi=200, pad_inches=0.1)
 
 
 def check(names, kind):
     """Finds out before the work starts what is wrong with an order for figures."""
     try:
-        picture.check()
+        plot.check()
     except files.ConverseError:
         raise files.ConverseError("figures need matplotlib; pip install matplotlib") from None
-    if kind not in picture.FORMATS:
-        raise ValueError("figures are %s, not %s" % (", ".join(picture.FORMATS), kind))
+    if kind not in plot.FORMATS:
+        raise ValueError("figures are %s, not %s" % (", ".join(plot.FORMATS), kind))
     for name in names:
         if name not in FIGURES:
             raise ValueError("there is no figure %s; there are %s" % (name, ", ".join(FIGURES)))

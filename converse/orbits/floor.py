@@ -15,8 +15,8 @@ from typing import Sequence, Tuple
 import numpy as np
 
 from .._native import ffi, lib
-from ..core import check
-from ..files import ConverseError
+from ..prover.native import check
+from ..storage.files import ConverseError
 from .potential import Potential, address, known, whole
 from .state import FARTHEST, State, expected
 

@@ -14,7 +14,7 @@ from typing import Any, Callable, Dict, Optional, Sequence, Tuple
 import numpy as np
 
 from .._native import ffi, lib
-from ..core import check
+from ..prover.native import check
 
 Bounds = Tuple[Fraction, Fraction]
 STUDIED = {}                # by name, the potentials at the end of this file

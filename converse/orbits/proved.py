@@ -15,8 +15,8 @@ from typing import Optional, Tuple
 import numpy as np
 
 from .._native import ffi, lib
-from ..files import ConverseError
-from .potential import Bounds, Fourier, address, done
+from ..storage.files import ConverseError
+from .potential import Bounds, address, done
 from .state import NEAR_NULL, ROUNDING, STATIONARY, State, expected
 
 DIGITS = 20                 # the radius is at most 10^-DIGITS unless another number is asked for

@@ -15,7 +15,7 @@ from typing import Callable, Optional, Tuple
 
 import numpy as np
 
-from ..files import ConverseError
+from ..storage.files import ConverseError
 from .potential import Potential, told
 from .solver import follow, straight
 from .state import State

@@ -8,7 +8,7 @@ from typing import Callable, Iterator, List, Optional, Sequence, TextIO, Tuple
 import numpy as np
 
 from .._native import lib
-from ..files import ConverseError
+from ..storage.files import ConverseError
 from .potential import Potential, address, done, finite, known, told, trig, whole
 from .state import FARTHEST, State, expected, type_of
 

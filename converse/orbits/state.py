@@ -9,7 +9,7 @@ from typing import NamedTuple, Optional, Tuple
 import numpy as np
 
 from .._native import ffi, lib
-from ..files import ConverseError
+from ..storage.files import ConverseError
 from .potential import Potential, address, done, finite, known, look_up, whole
 
 STATIONARY = 1e-9           # of the gradient's largest coordinate: above it a state is no orbit

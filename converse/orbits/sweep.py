@@ -18,9 +18,10 @@ from typing import Any, Callable, NamedTuple, Optional, Sequence, Tuple, Union
 
 import numpy as np
 
-from .. import files
-from ..files import ConverseError
-from ..growth import count_workers
+from ..prover.signals import interruptible, postponed
+from ..prover.workers import count_workers, result, submit
+from ..storage import files
+from ..storage.files import ConverseError
 from .potential import Potential, Stoppable, finite, known, told
 from .solver import COLUMNS, MOST, follow, reached, row, straight
 from .state import ROUNDS, State
@@ -241,6 +242,7 @@ def _sweep(task, how, columns, potential, vectors, eps, executor, file, progress
             out = stack.enter_context(contextlib.closing(_File(file, "".join(texts))))
         if progress is not None:
             progress(len(texts) - 1, len(vectors))
+        stack.enter_context(interruptible())
         results = _in_order(task, vectors[len(texts) - 1:], executor)
         for text in stack.enter_context(contextlib.closing(results)):
             texts.append(_sealed(seal, text))
@@ -270,18 +272,19 @@ def _in_order(task, vectors, executor):
     try:
         while True:
             for vector in waiting:
-                running.append(executor.submit(task, vector))
+                running.append(submit(executor, task, vector))
                 if len(running) >= room:
                     break
             if not running:
                 return
-            yield running.popleft().result()
+            yield result(running.popleft())
     except concurrent.futures.BrokenExecutor:
         raise ConverseError("a worker has died; what was finished is kept, try again") from None
     finally:
         task.stop.set()
-        for future in running:
-            future.cancel()
+        with postponed():
+            for future in running:
+                future.cancel()
 
 
 class _File:

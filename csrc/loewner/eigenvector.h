@@ -2,7 +2,7 @@
 #ifndef CONVERSE_EIGENVECTOR_H
 #define CONVERSE_EIGENVECTOR_H
 
-#include "numbers/lanes.h"
+#include "arith/lanes.h"
 
 /* A unit eigenvector of a symmetric matrix, for its least eigenvalue. */
 INLINE void least_eigenvector(const vec d[3], vec n[2])

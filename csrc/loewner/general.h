@@ -12,7 +12,7 @@
 #ifndef CONVERSE_GENERAL_H
 #define CONVERSE_GENERAL_H
 
-#include "numbers/sine.h"
+#include "arith/sine.h"
 #include "prism.h"
 
 enum { FIRST = 2 };                     /* of the waves that there are */

@@ -29,7 +29,7 @@
 #ifndef CONVERSE_PRISM_H
 #define CONVERSE_PRISM_H
 
-#include "numbers/lanes.h"
+#include "arith/lanes.h"
 #include "problem.h"
 
 #ifdef GENERAL

@@ -6,9 +6,9 @@
 #include <string.h>
 
 #include "eigenvector.h"
-#include "numbers/sine.h"
+#include "arith/sine.h"
 #include "problem.h"
-#include "torus.h"
+#include "model/torus.h"
 
 enum { ALIGNMENT = 64 };
 enum { FINEST = 46 };                   /* cuts along one axis: then doubles run out */

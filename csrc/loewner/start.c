@@ -17,7 +17,7 @@
 #define LANES 2                         /* past and future, side by side */
 #endif
 #include "loewner.h"
-#include "numbers/sine.h"
+#include "arith/sine.h"
 #include "start.h"
 
 enum { STEPS = 200, GRID = 24, FINEST_GRID = 240 };

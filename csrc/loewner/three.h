@@ -5,7 +5,7 @@
 #ifndef CONVERSE_THREE_H
 #define CONVERSE_THREE_H
 
-#include "numbers/sine.h"
+#include "arith/sine.h"
 #include "prism.h"
 
 enum { FIRST = 0 };                     /* of the waves that there may be */

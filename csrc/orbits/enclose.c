@@ -10,8 +10,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "numbers/guard.h"
-#include "numbers/special.h"
+#include "arith/guard.h"
+#include "arith/special.h"
 #include "orbits/potential.h"
 
 typedef struct { apm_t m[3]; } block;               /* symmetric: entries 00, 01, 11 */

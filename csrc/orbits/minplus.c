@@ -23,8 +23,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "numbers/lanes.h"
-#include "numbers/machine.h"
+#include "arith/lanes.h"
+#include "arith/machine.h"
 #include "orbits/potential.h"
 
 enum { MAX_NODES = 1025 };              /* along an axis of a corridor */

@@ -1,7 +1,7 @@
 /* potential.c - the potentials of the thesis's chapter 2, and any finite Fourier sum. */
 #include <math.h>
 
-#include "numbers/sine.h"
+#include "arith/sine.h"
 #include "orbits/potential.h"
 
 #define TWO_PI 0x1.921fb54442d18p2

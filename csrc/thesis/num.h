@@ -11,7 +11,7 @@
 #ifndef CONVERSE_NUM_H
 #define CONVERSE_NUM_H
 
-#include "numbers/apm.h"
+#include "arith/apm.h"
 
 #ifdef NUM_DOUBLE
 

@@ -9,9 +9,9 @@
 
 #include "converse.h"
 #include "num.h"
-#include "numbers/sine.h"
-#include "numbers/special.h"
-#include "torus.h"
+#include "arith/sine.h"
+#include "arith/special.h"
+#include "model/torus.h"
 #include "unit.h"
 
 enum { N_PARMS = 3, DEG_FREE = 2, TWO_DF = 4, MAT_DIM = 7 };

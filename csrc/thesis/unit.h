@@ -2,7 +2,7 @@
 #ifndef CONVERSE_UNIT_H
 #define CONVERSE_UNIT_H
 
-#include "numbers/apm.h"
+#include "arith/apm.h"
 
 /* A prism of the list: {parameters} x {x*} x {possible successors}.  Order: a, b, c, v0, v1. */
 typedef struct {

@@ -9,7 +9,6 @@ certificates whole, which takes hours, and not only those of a minute or less.
 """
 
 import argparse
-import json
 import math
 import os
 import platform
@@ -21,8 +20,9 @@ from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
 
-from converse import growth, kernels
-from converse.problem import LINE, decimal_text
+from converse import kernels
+from converse.model.problem import LINE, decimal_text
+from converse.prover import tree_search
 
 ROOT = Path(__file__).resolve().parent.parent.parent
 COMMAND = str(Path(sys.executable).parent / "converse")
@@ -117,7 +117,7 @@ def frontier(repeat, older=None, whole=False):
     """The theorems of the sharper method: one thread, beside another commit's; all cores; the
     checker."""
     import converse
-    jobs = growth.count_workers()
+    jobs = tree_search.count_workers()
     print("method loewner, together, down to epsilon; its seconds and the checker's on one core")
     print("%-17s %9s %9s %6s | %9s %6s %9s %7s %7s | %9s %9s" % (
         "", "1 thread", "older", "ratio", "%d cores" % jobs, "ratio", "prisms", "points", "deepest",
@@ -178,8 +178,9 @@ def steps(repeat):
 def orbits(repeat):
     """Milliseconds of a step of damped Newton, and seconds of whole families, of the orbits."""
     import numpy as np
-    from converse.orbits import follow, straight, trig
+
     from converse._native import ffi, lib
+    from converse.orbits import follow, straight, trig
     from converse.orbits.potential import address
 
     print("periodic orbits, trig: milliseconds per step of damped Newton; "

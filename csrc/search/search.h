@@ -1,4 +1,4 @@
-/* search.h - a search, as its two files see it: search.c grows the tree, setup.c makes all ready. */
+/* search.h - a search, as its two files see it: tree.c grows it, setup.c makes all ready. */
 #ifndef CONVERSE_SEARCH_H
 #define CONVERSE_SEARCH_H
 

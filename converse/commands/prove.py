@@ -11,13 +11,14 @@ import time
 import warnings
 from dataclasses import replace
 
-from . import files
-from .files import ConverseError, NotSaved, plain
-from .problem import InputError, decimal_text, parse_number, read_input
-from .report import header, verdict
-from .settings import AS_PRINTED, LIMIT, METHODS, REGION, THEOREM, UNDECIDED, Settings
-from .version import __version__
-from .workers import WorkersGone
+from ..model.problem import InputError, decimal_text, parse_number, read_input
+from ..prover.report import header, verdict
+from ..prover.settings import AS_PRINTED, LIMIT, METHODS, REGION, THEOREM, UNDECIDED, Settings
+from ..prover.signals import ENDING, interruptible
+from ..prover.workers import WorkersGone
+from ..storage import files
+from ..storage.files import ConverseError, NotSaved, plain
+from ..version import __version__
 
 STATUS = {THEOREM: 0, UNDECIDED: 1, REGION: 3, AS_PRINTED: 4}
 BAD, ENDED_BY = 2, 128                  # the second plus the number of the signal
@@ -34,7 +35,8 @@ class ListInputs(argparse.Action):
     """Prints the paths of the inputs that come with the package, and ends."""
 
     def __call__(self, parser, *_):
-        directory = os.path.join(os.path.dirname(os.path.abspath(__file__)), "inputs")
+        package = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
+        directory = os.path.join(package, "inputs")
         say("".join(os.path.join(directory, name) + "\n" for name in sorted(os.listdir(directory))))
         parser.exit()
 
@@ -108,7 +110,7 @@ def parser():
     p.add_argument("--dask", metavar="ADDRESS", help="let the Dask cluster at ADDRESS work")
     p.add_argument("--mpi", action="store_true",
                    help="let MPI processes work: mpiexec -n N python -m mpi4py.futures "
-                        "-m converse.cli --mpi ...")
+                        "-m converse.commands.prove --mpi ...")
     p.add_argument("--time-limit", type=seconds, default=math.inf, metavar="SECONDS",
                    help="stop after about so long; what is left is undecided")
     p.add_argument("--list-inputs", action=ListInputs, nargs=0,
@@ -233,7 +235,7 @@ def check_mpi(options, module, command="converse"):
     if not options.mpi:
         return
     try:
-        import mpi4py.futures                           # noqa: F401
+        import mpi4py.futures  # noqa: F401
         from mpi4py import MPI
     except ImportError:
         raise ConverseError("--mpi needs mpi4py; pip install mpi4py") from None
@@ -271,21 +273,21 @@ def _read_problem(options, restored):
 
 def _check_graphics(options):
     """Refuses a figure that cannot be written or would overwrite something else."""
-    from . import figure, picture       # these take a while
+    from ..draw import figure, plot  # these take a while
 
     others = [options.input, options.backup, options.restore]
     with contextlib.suppress(AttributeError, OSError, ValueError):
         others.append(sys.stdin.fileno())
     files.check_output(options.graphics, "figure", figure.FORMATS, others)
     if figure.format_of(options.graphics) != "ps":
-        picture.check()
+        plot.check()
 
 
 def run(options):
-    from .proof import Proof            # these need the C core, and say so where it is missing
-    from .run import prove
+    from ..prover.proof import Proof  # these need the C core, and say so where it is missing
+    from ..prover.run import prove
 
-    check_mpi(options, "converse.cli")
+    check_mpi(options, "converse.commands.prove")
     if options.graphics == "off":
         options.graphics = None
     if options.graphics is not None:
@@ -330,32 +332,6 @@ def run(options):
 
 
 @contextlib.contextmanager
-def _signals_end(heard):
-    """Meanwhile SIGTERM and SIGHUP end the program as Ctrl-C does, unless they were ignored.  Only
-    the first signal counts, and is put into heard: another would strike while the backup is saved,
-    or the process ends."""
-    def end(number, _):
-        heard.append(number)
-        for other in before:            # a handler, since Python complains of one that is ignored
-            before[other] = signal.SIG_IGN
-            signal.signal(other, lambda *_: None)
-        raise KeyboardInterrupt
-
-    before = {}
-    try:
-        for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
-            if signal.getsignal(number) in (signal.SIG_DFL, signal.default_int_handler):
-                before[number] = signal.signal(number, end)
-    except ValueError:                  # not the main thread, which alone hears of signals
-        pass
-    try:
-        yield
-    finally:
-        for number, handler in before.items():
-            signal.signal(number, handler)
-
-
-@contextlib.contextmanager
 def _warnings_in_lines(command, unsaved):
     """Meanwhile a warning is a line, but that the end of a run is not saved is kept in unsaved."""
     def show(message, category, *_):
@@ -379,7 +355,7 @@ def ended(command, run, interrupted):
             return BAD                      # a standard stream is closed: nowhere to say so
         for stream in (sys.stdout, sys.stderr):
             stream.reconfigure(errors="backslashreplace")
-        with _signals_end(heard), _warnings_in_lines(command, unsaved):
+        with interruptible(ENDING, at_end=True) as heard, _warnings_in_lines(command, unsaved):
             status = run()
         if not unsaved:
             return status
@@ -390,9 +366,7 @@ def ended(command, run, interrupted):
         message, status = str(error) or "there is not enough memory", BAD
         if isinstance(error, WorkersGone) and not unsaved:
             message += "; " + interrupted()
-    except (KeyboardInterrupt, RuntimeError) as error:
-        if isinstance(error, RuntimeError) and not heard:
-            raise                       # else the signal struck inside the locks of a library
+    except KeyboardInterrupt:
         message = "interrupted" if unsaved else "interrupted; " + interrupted()
         status = ENDED_BY + (heard or [signal.SIGINT])[0]
     except ImportError as error:        # of what is imported late: libraries are mapped then

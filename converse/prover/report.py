@@ -2,10 +2,10 @@
 
 import math
 
+from ..draw.captions import number
+from ..model.problem import IDENTITY, exact_decimal, frame_text, wave_text
+from ..storage.files import plain
 from . import tree
-from .files import plain
-from .legend import number
-from .problem import IDENTITY, exact_decimal, frame_text, wave_text
 from .settings import AS_PRINTED, LIMIT, REGION, THEOREM, UNDECIDED
 
 PLUSES = "+" * 48

@@ -14,18 +14,22 @@ import pytest
 from matplotlib.text import Text
 
 import converse
-from converse import check, frontier
-from converse.files import ConverseError
-from converse.frontier import atlas, cli, figure, region, search
-from converse.frontier.atlas import AT_ONCE, OPEN, OUTSIDE, PROVED, Map
-from converse.growth import ATTEMPTS
+from converse import check, maps
+from converse.commands import map as cli
+from converse.draw import map_figure
+from converse.maps import region, search
+from converse.maps import map as map_module
+from converse.maps.map import AT_ONCE, OPEN, OUTSIDE, PROVED, Map
+from converse.prover.tree_search import ATTEMPTS
+from converse.storage.files import ConverseError
+
 from moments import PATIENCE
 
 
 @pytest.fixture
 def coarse(monkeypatch):
     """An estimate at few places and with little effort."""
-    monkeypatch.setattr(atlas, "GRID", {1: 4, 2: 1})
+    monkeypatch.setattr(map_module, "GRID", {1: 4, 2: 1})
     monkeypatch.setattr(search, "POINT", {1: 1 << 9, 2: 1 << 9})
 
 
@@ -33,10 +37,10 @@ def coarse(monkeypatch):
 def made(tmp_path_factory):
     """A map of the plane b = 0, not very near to the frontier, and its file."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(atlas, "GRID", {1: 4, 2: 2})
+        patch.setattr(map_module, "GRID", {1: 4, 2: 2})
         patch.setattr(search, "POINT", {1: 1 << 9, 2: 1 << 9})
         path = tmp_path_factory.mktemp("map") / "map.json"
-        yield frontier.explore("b=0", "1.3", path=path), path
+        yield maps.explore("b=0", "1.3", path=path), path
 
 
 def random_cell(rng, name):
@@ -158,17 +162,17 @@ def test_what_reaches_to_infinity_is_at_once(made):
 def test_one_whole_run_or_several(coarse, tmp_path):
     """However it is divided, it ends with all that was asked for."""
     path, runs, handed_out, submit = tmp_path / "map.json", 0, [], search._Search._submit
-    found = frontier.explore("c=0", "1.4", path=path, time_limit=0)
+    found = maps.explore("c=0", "1.4", path=path, time_limit=0)
     while not found.complete:
         with pytest.MonkeyPatch.context() as patch:     # it is late when some tasks are handed out
             patch.setattr(search._Search, "_submit", lambda self, *task: (handed_out.append(task),
                                                                           submit(self, *task)))
             patch.setattr(search._Search, "late", property(lambda self: len(handed_out) > 8 * runs))
             handed_out, runs = [], runs + 1
-            found = frontier.explore(path=path, resume=True, jobs=1)
+            found = maps.explore(path=path, resume=True, jobs=1)
     known = Map.load(path)
     assert runs > 1 and known.complete
-    deeper = frontier.explore("c=0", "1.3", path=path, resume=True)
+    deeper = maps.explore("c=0", "1.3", path=path, resume=True)
     assert deeper.complete and deeper.height(0) < found.height(0)
     assert deeper.reached <= 1.3 < found.reached <= 1.4
     assert known.seconds < deeper.seconds
@@ -179,7 +183,7 @@ def test_ways_are_compared_though_none_ends_in_time(monkeypatch):
     of the program's, whether or not a trial is long enough for a proof."""
     monkeypatch.setattr(search, "TRIAL", 1 << 11)
     cell = region.Cell(0, (F(99, 200), F(1, 32)), (F(99, 200), F(1, 32)))
-    ways = search._ways(region.REGIONS["b=0"][1], cell, search.core.stop_token())
+    ways = search._ways(region.REGIONS["b=0"][1], cell, search.native.stop_token())
     assert [frame for frame, _ in ways] == [search.SHEAR, search.SHEAR, search.PLAIN]
     assert ways[0][1] == ("1.270796", "0.3") and ways[1][1] == ("1.570796", "0")
 
@@ -193,7 +197,7 @@ def test_progress_says_what_is_done(coarse, tmp_path, monkeypatch):
         shares, written = [], []
         monkeypatch.setattr(cli.Line, "_write", written.append)
         with contextlib.closing(cli.Progress()) as progress:
-            frontier.explore("c=0", path=tmp_path / "map.json", jobs=1, progress=lambda *done: (
+            maps.explore("c=0", path=tmp_path / "map.json", jobs=1, progress=lambda *done: (
                 shares.append(done[0]), setattr(progress.line, "due", 0.0), progress(*done)),
                 **options)
         return shares, "\n".join(written)
@@ -209,7 +213,7 @@ def test_progress_says_what_is_done(coarse, tmp_path, monkeypatch):
 
 def test_processes(coarse, tmp_path):
     with concurrent.futures.ProcessPoolExecutor(2) as pool:
-        found = frontier.explore("c=0", "1.4", path=tmp_path / "map.json", executor=pool)
+        found = maps.explore("c=0", "1.4", path=tmp_path / "map.json", executor=pool)
     assert found.complete and found.sha256 == Map.load(tmp_path / "map.json").sha256
 
 
@@ -232,14 +236,14 @@ class Unreliable(concurrent.futures.ThreadPoolExecutor):
 
 def test_workers_that_die(coarse, tmp_path):
     with Unreliable(3) as pool:
-        assert frontier.explore("c=0", "1.4", path=tmp_path / "map.json", executor=pool).complete
+        assert maps.explore("c=0", "1.4", path=tmp_path / "map.json", executor=pool).complete
         assert pool.deaths                  # it did come to that
     with Unreliable(1) as pool, pytest.raises(ConverseError, match="keep failing"):
-        frontier.explore("c=0", "1.4", path=tmp_path / "other.json", executor=pool)
+        maps.explore("c=0", "1.4", path=tmp_path / "other.json", executor=pool)
     assert not Map.load(tmp_path / "other.json").complete
     pool.shutdown()
     with pytest.raises(ConverseError, match="workers are gone"):
-        frontier.explore("c=0", "1.4", path=tmp_path / "third.json", executor=pool)
+        maps.explore("c=0", "1.4", path=tmp_path / "third.json", executor=pool)
 
 
 @pytest.mark.parametrize("when", [3, 10, 30])
@@ -253,9 +257,9 @@ def test_an_interruption_loses_nothing(coarse, tmp_path, when):
             raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        frontier.explore("b=0", "1.2", path=path, jobs=1, progress=progress)
+        maps.explore("b=0", "1.2", path=path, jobs=1, progress=progress)
     before = Map.load(path)
-    found = frontier.explore(path=path, resume=True)
+    found = maps.explore(path=path, resume=True)
     assert found.complete and found.count(PROVED) >= before.count(PROVED)
     kept = {leaf.cell for leaf in before.leaves() if leaf.kind == PROVED}
     assert kept <= {leaf.cell for leaf in found.leaves() if leaf.kind == PROVED}
@@ -266,7 +270,7 @@ def test_an_interruption_loses_nothing(coarse, tmp_path, when):
     (("b=0", "1"), "above 1"), (("b=0", "x"), "not a decimal number"), (("b=0", 101), "above 1")])
 def test_arguments_that_make_no_sense(tmp_path, arguments, error):
     with pytest.raises(ValueError, match=error):
-        frontier.explore(*arguments, path=tmp_path / "map.json")
+        maps.explore(*arguments, path=tmp_path / "map.json")
     assert not os.listdir(tmp_path)
 
 
@@ -274,21 +278,21 @@ def test_nothing_is_overwritten(made, tmp_path):
     path = tmp_path / "map.json"
     path.write_text("precious")
     with pytest.raises(ConverseError, match="exists"):
-        frontier.explore("b=0", path=path)
+        maps.explore("b=0", path=path)
     with pytest.raises(ConverseError, match="is of another region, b=0"):
-        frontier.explore("c=0", path=made[1], resume=True)
+        maps.explore("c=0", path=made[1], resume=True)
     other = Map.load(made[1])
     other.version = "0.9"
     other.save(tmp_path / "older.json")
     with pytest.raises(ConverseError, match="is of another program, 0.9"):
-        frontier.explore(path=tmp_path / "older.json", resume=True)
+        maps.explore(path=tmp_path / "older.json", resume=True)
     assert path.read_text() == "precious"
 
 
 def test_the_sphere(coarse, tmp_path):
     """Far from the frontier: what is the mirror image of others is left out, and it is drawn."""
     shares = []
-    found = frontier.explore("sphere", "1.9", path=tmp_path / "map.json",
+    found = maps.explore("sphere", "1.9", path=tmp_path / "map.json",
                              progress=lambda share, _: shares.append(share))
     assert found.complete and found.count(AT_ONCE)
     assert shares == sorted(shares) and shares[-1] > 0.97
@@ -343,7 +347,7 @@ def test_a_damaged_file_is_refused_in_a_line(made, tmp_path):
 
 def run(*arguments, directory):
     home = os.path.dirname(os.path.dirname(converse.__file__))
-    result = subprocess.run([sys.executable, "-m", "converse.frontier.cli", *map(str, arguments)],
+    result = subprocess.run([sys.executable, "-m", "converse.commands.map", *map(str, arguments)],
                             cwd=directory, capture_output=True, text=True, timeout=PATIENCE,
                             env={**os.environ, "PYTHONPATH": home})
     return result.returncode, result.stdout, result.stderr
@@ -383,7 +387,7 @@ def test_the_report(made, capsys):
 
 def test_without_the_core_a_map_is_described_and_drawn(made, tmp_path):
     code = ("import sys\nsys.modules['converse._native'] = None\n"
-            "from converse.frontier import cli\nsys.exit(cli.main())")
+            "from converse.commands.map import main\nsys.exit(main())")
 
     def run(*arguments):
         result = subprocess.run([sys.executable, "-c", code, *map(str, arguments)], cwd=tmp_path,
@@ -404,7 +408,7 @@ def test_without_the_core_a_map_is_described_and_drawn(made, tmp_path):
 def test_what_is_written_in_pictures_can_be_read(tmp_path, monkeypatch, name):
     """No words are smaller than 8 points, none lie on the cells without a background."""
     drawn = []
-    monkeypatch.setattr(figure.picture, "encode",
+    monkeypatch.setattr(map_figure.plot, "encode",
                         lambda page, *_, **__: drawn.append(page) or b"")
     found = Map.new(name, F(2))
     for face, known in enumerate(found.estimate):
@@ -438,5 +442,5 @@ def test_pictures(made, tmp_path, kind):
 
 def test_the_largest_eigenvalue_of_the_picture():
     """B - 2 of the waves alone and together, to a few digits."""
-    assert figure.largest([(1, 0, 0), (1, 0.5, 0), (0, 0, 1), (1, 1, 2)]) == pytest.approx(
+    assert map_figure.largest([(1, 0, 0), (1, 0.5, 0), (0, 0, 1), (1, 1, 2)]) == pytest.approx(
         [1, 1, 2, 4.72], abs=0.01)

@@ -17,8 +17,8 @@
    3300 u (1 + |a| + |b| + |c|); MARGIN is 9007 u. */
 #include <math.h>
 
-#include "numbers/sine.h"
-#include "torus.h"
+#include "arith/sine.h"
+#include "model/torus.h"
 
 enum { CELLS = 20000, DEPTH = 100, WAVES = 3 };
 static const double MARGIN = 1e-12, NEAR = 5e-7, PI = 0x1.921fb54442d19p+1;     /* not less than pi */

@@ -6,13 +6,14 @@ import math
 import os
 import sys
 
-from .. import files, picture
-from ..cli import Line, Parser, check_mpi, ended, say, seconds, whole, workers
-from ..files import ConverseError
-from ..problem import decimal_text, exact
+from ..draw import plot
+from ..maps.map import PROVED, Map
+from ..maps.region import REGIONS
+from ..model.problem import decimal_text, exact
+from ..storage import files
+from ..storage.files import ConverseError
 from ..version import __version__
-from .atlas import PROVED, Map
-from .region import REGIONS
+from .prove import Line, Parser, check_mpi, ended, say, seconds, whole, workers
 
 COMMAND = "converse-map"
 DOWN_TO = "1.05"
@@ -80,19 +81,19 @@ class Progress:
 
 
 def run(options):
-    check_mpi(options, "converse.frontier.cli", COMMAND)
+    check_mpi(options, "converse.commands.map", COMMAND)
     graphics = options.graphics
     if graphics is not None:
-        files.check_output(graphics, "picture", picture.FORMATS, [options.map])
-        from . import figure
+        files.check_output(graphics, "picture", plot.FORMATS, [options.map])
+        from ..draw import map_figure
 
-        figure.check(graphics)
+        map_figure.check(graphics)
     if not options.plane and not options.restore:
         if options.down_to is not None:
             raise ConverseError("--down-to needs --plane, --sphere or -r")
         atlas = Map.load(options.map)
     else:
-        from .search import explore     # it needs the C core, and says so where it is missing
+        from ..maps.search import explore  # it needs the C core, and says so where it is missing
 
         with contextlib.closing(Progress()) as progress, workers(options) as executor:
             atlas = explore(

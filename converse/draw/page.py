@@ -2,11 +2,11 @@
 
 from matplotlib.figure import Figure
 
-from . import picture
+from . import plot
 
 
 class Page(Figure):
     """A Figure that no window and no notebook's backend knows of: it draws itself."""
 
     def _repr_png_(self):
-        return picture.encode(self, "png", dpi=100)
+        return plot.encode(self, "png", dpi=100)

@@ -8,17 +8,17 @@ from dataclasses import replace
 from decimal import Decimal
 from typing import Any, Callable, Dict, Optional, Tuple, Union
 
-from . import core, tree
-from .backup import Keeper
-from .core import Counts, Task
-from .files import ConverseError
-from .growth import OLD, Growth
-from .problem import IDENTITY, NAMES, Number, Problem, decimal_text, exact
+from ..model.problem import IDENTITY, NAMES, Number, Problem, decimal_text, exact
+from ..storage.backup import Keeper
+from ..storage.files import ConverseError
+from ..version import __version__
+from . import native, tree
+from .native import Counts, Task
 from .proof import Proof
 from .settings import Settings
-from .version import __version__
-
-LOOK_SECONDS = 0.1                  # between two looks at the clock, at Ctrl-C, at the bar
+from .signals import interruptible
+from .tree_search import OLD, Growth
+from .workers import LOOK_SECONDS, wait
 
 Path = Union[str, "os.PathLike[str]"]
 
@@ -72,7 +72,7 @@ def prove(problem: Optional[Problem] = None, *, method: Optional[str] = None,
     if executor is not None and not hasattr(executor, "submit"):
         raise TypeError("the executor is a concurrent.futures.Executor, not %r" % (executor,))
     file = None if resume is None or isinstance(resume, Proof) else resume
-    with Keeper(file if backup is None else backup, resumed=file) as keeper:
+    with interruptible(), Keeper(file if backup is None else backup, resumed=file) as keeper:
         if problem is not None and resume is None:
             before = Proof(problem, Settings(**given), xstar=star)
         else:
@@ -82,7 +82,7 @@ def prove(problem: Optional[Problem] = None, *, method: Optional[str] = None,
         run = _Run(before, keeper, jobs, executor, time_limit, progress, on_leaf)
         try:
             return run.run()
-        except core.WrongTree as error:
+        except native.WrongTree as error:
             raise ConverseError("%s: %s; use an intact copy or start anew"
                                 % (_name(file), error)) from None
 
@@ -122,9 +122,10 @@ class _Run:
 
     def _wait(self, future):
         """Waits for a future as long as there is time, and says whether it is done."""
-        while not future.done() and time.monotonic() < self.end:
-            concurrent.futures.wait([future], min(LOOK_SECONDS, max(0.0, self.end - time.monotonic())))
-        return future.done()
+        done = wait([future], 0)
+        while not done and time.monotonic() < self.end:
+            done = wait([future], min(LOOK_SECONDS, max(0.0, self.end - time.monotonic())))
+        return bool(done)
 
     def _look(self):
         """Tells whoever wants to know how far things are."""

@@ -4,14 +4,15 @@ import math
 
 import numpy as np
 
-from .. import files, picture
-from ..figure import format_of
-from ..problem import LINE
-from .atlas import AT_ONCE, OPEN, PROVED
-from .region import RADIUS, direction
+from ..maps.map import AT_ONCE, OPEN, PROVED
+from ..maps.region import RADIUS, direction
+from ..model.problem import LINE
+from ..storage import files
+from . import plot
+from .figure import format_of
 
 NAMES = "abc"
-STYLE = {**picture.STYLE, "axes.spines.top": False, "axes.spines.right": False}
+STYLE = {**plot.STYLE, "axes.spines.top": False, "axes.spines.right": False}
 COLOURS = {PROVED: "#7fa8d1", AT_ONCE: "#cfdeed"}
 WORDS = {PROVED: "proved cell by cell: no tori",
          AT_ONCE: "proved at once, with all larger multiples"}
@@ -35,11 +36,11 @@ def largest(p):
 def check(path):
     """The format of a picture; ConverseError: it cannot be drawn there."""
     kind = format_of(path)
-    if kind not in picture.FORMATS:
+    if kind not in plot.FORMATS:
         raise files.ConverseError("%s: a map is drawn as %s; name the picture so"
-                                  % (path, ", ".join("." + each for each in picture.FORMATS)))
+                                  % (path, ", ".join("." + each for each in plot.FORMATS)))
     files.check_writable(path)
-    picture.check()
+    plot.check()
     return kind
 
 
@@ -55,7 +56,7 @@ def draw(atlas, path):
     with style.context(["default", STYLE]):
         figure = Figure(figsize=(6.4, 5.0))
         (_draw_sphere if len(atlas.directions[0]) == 3 else _draw_plane)(atlas, figure)
-        files.write(path, picture.encode(figure, kind, dpi=160, pad_inches=0.08))
+        files.write(path, plot.encode(figure, kind, dpi=160, pad_inches=0.08))
 
 
 def _draw_plane(atlas, figure):
@@ -74,7 +75,7 @@ def _draw_plane(atlas, figure):
             ends = [(r0, s0), (r1, s0), (r1, s1), (r0, s1), (r0, s0)]
             corners[leaf.kind] += [at(directions, r, (s,)) for r, s in ends]
     for kind, points in corners.items():
-        picture.rectangles(axes, points, facecolor=COLOURS[kind], edgecolor="white",
+        plot.rectangles(axes, points, facecolor=COLOURS[kind], edgecolor="white",
                            linewidth=0.2, label=WORDS[kind])
     unit = [direction(directions, (k / GRID,)) for directions in atlas.directions
             for k in range(GRID + 1)]
@@ -82,13 +83,13 @@ def _draw_plane(atlas, figure):
     estimate = np.array([at(directions, radius, place)
                          for directions, found in zip(atlas.directions, atlas.estimate)
                          for place, radius in sorted(found.items())])
-    axes.plot(*_around(mather[:, (horizontal, vertical)]).T, ":", color=picture.DARK, linewidth=1.2,
+    axes.plot(*_around(mather[:, (horizontal, vertical)]).T, ":", color=plot.DARK, linewidth=1.2,
               label="B = 10/3")
-    axes.plot(*_around(estimate).T, color=picture.VERMILLION, linewidth=1.6,
+    axes.plot(*_around(estimate).T, color=plot.VERMILLION, linewidth=1.6,
               label="estimate: single points are proved down to here")
     if atlas.region == "a=b":
         ends = np.array([0, 0.03]) * float(LINE)
-        axes.plot(ends, 2 * ends, "--", color=picture.DARK, linewidth=0.6)
+        axes.plot(ends, 2 * ends, "--", color=plot.DARK, linewidth=0.6)
         for epsilon, marker, words in MARKS:
             axes.plot(LINE * epsilon, 2 * LINE * epsilon, marker, label="\u03b5 = " + words,
                       **MARK)
@@ -144,7 +145,7 @@ def _draw_sphere(atlas, figure):
     mesh.set_rasterized(True)               # ten thousand triangles
     figure.colorbar(mesh, ax=axes, shrink=0.7,
                     label="B \u2212 2 from which on there are no tori, proved")
-    axes.plot([0, 1, 0.5, 0], [0, 0, math.sqrt(0.75), 0], color=picture.DARK, linewidth=0.8)
+    axes.plot([0, 1, 0.5, 0], [0, 0, math.sqrt(0.75), 0], color=plot.DARK, linewidth=0.8)
     for place, words, align in (((0, 0), "a alone", "top"), ((1, 0), "a = b", "top"),
                                 ((0.5, math.sqrt(0.75)), "c alone", "bottom")):
         axes.annotate(words, place, (0, -4 if align == "top" else 4), textcoords="offset points",

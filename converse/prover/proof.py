@@ -7,16 +7,17 @@ from dataclasses import asdict, dataclass, field, fields
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Dict, List, Optional, Tuple, Union
 
-from . import files, tree
-from .core import CONSTANTS, Counts
-from .files import ConverseError
-from .problem import IDENTITY, NAMES, NUMBER, Problem, decimal_text, parse_number
+from ..model.problem import IDENTITY, NAMES, NUMBER, Problem, decimal_text, parse_number
+from ..storage import files
+from ..storage.files import ConverseError
+from ..version import __version__
+from . import tree
+from .native import CONSTANTS, Counts
 from .settings import AS_PRINTED, REGION, THEOREM, UNDECIDED, Settings
 from .tree import Leaf
-from .version import __version__
 
 if TYPE_CHECKING:
-    from . import check
+    from .. import check
 
 FIRST_LINE, BEFORE = "converse proof 3", "converse proof 2"     # written, and read as well
 PROGRAM = re.compile(r"converse ([0-9A-Za-z.+-]{1,40})")
@@ -122,7 +123,7 @@ class Proof:
 
     def figure(self, target=None, *, ax=None, format: Optional[str] = None, caption: bool = True):
         """Draws the prisms: see figure.figure."""
-        from .figure import figure
+        from ..draw.figure import figure
         return figure(self, target, ax, format, caption)
 
     def verify(self, jobs: int = 1) -> "check.Result":
@@ -134,18 +135,18 @@ class Proof:
         """
         import tempfile
 
-        from . import check
+        from .. import check
         with tempfile.TemporaryDirectory() as directory:
             path = os.path.join(directory, "proof")
             self.save(path)
             return check.verify(path, jobs)
 
     def _repr_svg_(self):
-        from .figure import svg
+        from ..draw.figure import svg
         return svg(self)
 
     def _repr_html_(self):
-        from .figure import html
+        from ..draw.figure import html
         return html(self)
 
     def save(self, path: Union[str, "os.PathLike[str]"]) -> str:
@@ -302,7 +303,7 @@ def _yes(truth):
 
 
 def _sha256(data):
-    import hashlib                      # for OpenSSL a tenth of a short run, as gzip is
+    import hashlib  # for OpenSSL a tenth of a short run, as gzip is
     return hashlib.sha256(data).hexdigest()
 
 

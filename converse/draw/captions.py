@@ -5,8 +5,8 @@ import textwrap
 from decimal import Context, Decimal
 from fractions import Fraction
 
-from . import tree
-from .problem import IDENTITY, frame_text, wave_text
+from ..model.problem import IDENTITY, frame_text, wave_text
+from ..prover import tree
 
 NAMES = {"P": "proved", "S": "skipped by symmetry", "?": "untried", "U": "undecided"}
 STAR = "x*, whose successors these are"

@@ -1,4 +1,4 @@
-/* search.c - the list of untested prisms and the main loop (thesis, Appendix C, main).
+/* tree.c - the list of untested prisms and the main loop (thesis, Appendix C, main).
 
    The list is a stack: a prism that fails is replaced by its two halves, the first of which is
    tried next.  So the tree of all prisms is met in preorder, and one character per node,
@@ -11,9 +11,9 @@
 #include <string.h>
 #include <time.h>
 
-#include "numbers/guard.h"
-#include "numbers/machine.h"
-#include "search.h"
+#include "arith/guard.h"
+#include "arith/machine.h"
+#include "search/search.h"
 
 enum { AXES = 5, V0 = 0, V1 = 1, FINEST = 61 };         /* of a cell; cuts that its index can hold */
 

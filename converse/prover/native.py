@@ -5,16 +5,17 @@ import threading
 from dataclasses import asdict, dataclass, fields
 from decimal import Decimal
 from fractions import Fraction
+from pathlib import Path
 from typing import Dict, List, Optional, Tuple
 
-from .files import ConverseError
-from .problem import Problem, decimal_text
+from ..model.problem import Problem, decimal_text
+from ..storage.files import ConverseError
 from .settings import Settings
 
 try:
-    from ._native import ffi, lib
+    from .._native import ffi, lib
 except ImportError as error:            # not built, or for another Python, or without cffi
-    _home = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
+    _home = str(Path(__file__).resolve().parents[2])
     raise ConverseError(
         "the sources in %s, which Python takes for the package, have no C core (%s); run make there and "
         "use its .venv/bin/python, or, where the package is installed, start Python elsewhere"

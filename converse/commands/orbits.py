@@ -11,11 +11,12 @@ import re
 import sys
 from fractions import Fraction
 
-from .. import files, picture
-from ..cli import Line, Parser, ended, say, whole
-from ..files import ConverseError, plain
-from ..figure import format_of
+from ..draw import plot
+from ..draw.figure import format_of
+from ..storage import files
+from ..storage.files import ConverseError, plain
 from ..version import __version__
+from .prove import Line, Parser, ended, say, whole
 
 COMMAND = "converse-orbits"
 NAMES = "trig", "poly", "ff", "froeschle", "standard"
@@ -151,7 +152,7 @@ def vectors_of(options, potential):
             except (argparse.ArgumentTypeError, ConverseError) as error:
                 raise ConverseError("%s: line %d: %s" % (options.vectors, number, error)) from None
     elif options.farey is not None:
-        from . import farey
+        from ..orbits import farey
 
         if len(options.farey) != potential.n:
             raise ConverseError("the potential %s has %d angle%s: give --farey as many numbers"
@@ -230,7 +231,7 @@ def parser():
         description="Computes and draws the figures of the thesis's chapter 2 and Appendix A, and "
         "the standard map's of chapter 1.")
     figures.add_argument("directory", metavar="DIR", help="where to write them")
-    figures.add_argument("--format", choices=picture.FORMATS, default=picture.FORMATS[0],
+    figures.add_argument("--format", choices=plot.FORMATS, default=plot.FORMATS[0],
                          help="of the figures")
     figures.add_argument("--no-caption", action="store_true", help="leave out the captions")
     figures.set_defaults(run=draw_figures)
@@ -260,7 +261,7 @@ def _numbers(values):
 
 def _exponent(state, x):
     """Of an exponent below what the pivots can tell, no digits."""
-    from .state import ROUNDS
+    from ..orbits.state import ROUNDS
 
     least = 2 / max(ROUNDS, 5 * state.q)
     return "unknown" if math.isnan(x) else "below %.0e" % least if abs(x) < least else "%.10g" % x
@@ -288,8 +289,8 @@ def _check_outputs(options, potential_file):
     if options.csv is not None:
         files.check_output(options.csv, "table", ["csv"], [potential_file])
     if options.graphics is not None:
-        files.check_output(options.graphics, "figure", picture.FORMATS, [potential_file])
-        from .figures import ROWS, check
+        files.check_output(options.graphics, "figure", plot.FORMATS, [potential_file])
+        from ..orbits.figures import ROWS, check
         check([], format_of(options.graphics))
         if sum(map(len, options.eps)) > ROWS:
             raise ConverseError("a figure shows %d states at most; choose fewer eps, or no figure"
@@ -301,9 +302,9 @@ def find_states(options):
     p, q = _check_type(potential, options.type)
     _check_outputs(options, options.potential)
 
-    from .proved import prove
-    from .search import search
-    from .solver import Family, follow, reached, straight
+    from ..orbits.proved import prove
+    from ..orbits.search import search
+    from ..orbits.solver import Family, follow, reached, straight
 
     eps = reached(potential, [x for each in options.eps for x in each])
     states, drawn, status = [], [], 0   # drawn: what was proved, and of what was not, the state
@@ -338,7 +339,7 @@ def find_states(options):
         Family(tuple(states)).write_csv(table)
         files.write(options.csv, table.getvalue().encode("utf-8"))
     if options.graphics is not None and states:
-        from .figures import states_picture
+        from ..orbits.figures import states_picture
         files.write(options.graphics, states_picture(drawn, format_of(options.graphics),
                                                      caption=not options.no_caption))
     return status
@@ -351,8 +352,8 @@ def sweep_types(options):
         if path is not None and os.path.exists(path) and files.same(path, options.csv):
             raise ConverseError("the table would overwrite '%s'; name another file" % path)
 
-    from ..growth import count_workers
-    from .sweep import LOST, onsets, sweep
+    from ..orbits.sweep import LOST, onsets, sweep
+    from ..prover.workers import count_workers
 
     eps = [x for each in options.eps for x in each]
     with contextlib.ExitStack() as stack:
@@ -371,7 +372,7 @@ def sweep_types(options):
 
 
 def draw_figures(options):
-    from .figures import figures
+    from ..orbits.figures import figures
 
     figures(options.directory, kind=options.format, caption=not options.no_caption,
             progress=lambda path: say("written: %s\n" % plain(path)))

@@ -6,12 +6,14 @@ import os
 import time
 import warnings
 
-from .files import ConverseError
-from .version import __version__
+from ..storage.files import ConverseError
+from ..version import __version__
+from .signals import postponed
 
+LOOK_SECONDS = 0.1                  # between two looks at the clock, at Ctrl-C, at the bar
 ATTEMPTS = 4                        # at a part whose workers die
 ASK_SECONDS = 1.0                   # between two questions to a cluster
-PROBE = "__import__('converse.core').__version__"       # evaluated by a worker that may not have it
+PROBE = "__import__('converse.prover.native').__version__"       # evaluated by a worker that may not have it
 
 
 class WorkersGone(ConverseError):
@@ -121,7 +123,22 @@ class Crew:
 
 
 def wait(futures, seconds):
-    """Those of the futures that are done, as soon as one is, or after so many seconds."""
+    """Those of the futures that are done, as soon as one is, or after so many seconds or
+    LOOK_SECONDS."""
     if not futures:
         time.sleep(seconds)
-    return concurrent.futures.wait(futures, seconds, concurrent.futures.FIRST_COMPLETED)[0]
+    with postponed():
+        return concurrent.futures.wait(futures, min(seconds, LOOK_SECONDS), concurrent.futures.FIRST_COMPLETED)[0]
+
+
+def submit(executor, *call):
+    """executor.submit(*call); a signal waits until it is done."""
+    with postponed():
+        return executor.submit(*call)
+
+
+def result(future):
+    """future.result(); a signal ends the waiting for it."""
+    while not wait([future], LOOK_SECONDS):
+        pass
+    return future.result()

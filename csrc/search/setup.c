@@ -5,11 +5,11 @@
 #include <string.h>
 
 #include "loewner/start.h"
-#include "numbers/guard.h"
-#include "numbers/machine.h"
-#include "numbers/special.h"
-#include "search.h"
-#include "torus.h"
+#include "arith/guard.h"
+#include "arith/machine.h"
+#include "arith/special.h"
+#include "search/search.h"
+#include "model/torus.h"
 
 enum { MAX_DP = 100000, MAX_DEPTH = 100000 };
 enum { MOST = 300 };                    /* no number of a problem is beyond 10^MOST */

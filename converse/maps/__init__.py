@@ -1,14 +1,14 @@
 """Maps of the frontier: for which (a, b, c) is it proved that there are no invariant tori?
 
-    from converse import frontier
-    atlas = frontier.explore("a=b", "1.05", path="map.json")
-    print(atlas.report())
-    atlas.draw("map.svg")
+    from converse import maps
+    found = maps.explore("a=b", "1.05", path="map.json")
+    print(found.report())
+    found.draw("map.svg")
 """
 
 from typing import TYPE_CHECKING
 
-from .atlas import Map, Node
+from .map import Map, Node
 from .region import REGIONS, Cell
 
 if TYPE_CHECKING:
@@ -22,4 +22,4 @@ def __getattr__(name):
     if name == "explore":
         from .search import explore
         return explore
-    raise AttributeError("module 'converse.frontier' has no attribute %r" % name)
+    raise AttributeError("module 'converse.maps' has no attribute %r" % name)

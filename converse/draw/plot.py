@@ -7,8 +7,10 @@ import io
 import math
 from fractions import Fraction
 
-from . import files, legend, tree
-from .version import __version__
+from ..prover import tree
+from ..storage import files
+from ..version import __version__
+from . import captions
 
 FORMATS = "svg", "png", "pdf"
 # Okabe and Ito's colours, told apart by the colour-blind, too; and greys.
@@ -37,7 +39,7 @@ METADATA = {"svg": {"Creator": PROGRAM, "Date": None}, "png": {"Software": PROGR
 def check():
     """ConverseError if matplotlib is missing."""
     try:
-        import matplotlib                           # noqa: F401
+        import matplotlib  # noqa: F401
     except ImportError:
         raise files.ConverseError("SVG, PNG and PDF need matplotlib; pip install matplotlib, "
                                   "or name the figure .ps") from None
@@ -70,10 +72,10 @@ def page(proof, caption=True):
     axes = draw(proof, fig.add_subplot())
     if caption:
         head, foot = ("\n".join(lines).replace("$", r"\$")
-                      for lines in (legend.head(proof), legend.foot(proof)))
+                      for lines in (captions.head(proof), captions.foot(proof)))
         axes.annotate(foot, (0.5, 1), (0, 5), "axes fraction", "offset points", fontsize=8,
                       ha="center", va="bottom")
-        axes.set_title(head, fontsize=9, pad=10 + 10.5 * len(legend.foot(proof)))
+        axes.set_title(head, fontsize=9, pad=10 + 10.5 * len(captions.foot(proof)))
     axes.legend(loc="upper center", bbox_to_anchor=(0.5, 0), borderaxespad=5, ncol=3, fontsize=8,
                 frameon=False)          # so far below the axes that their labels have room
     for image in axes.images[:1]:
@@ -87,7 +89,7 @@ def draw(proof, axes):
     the labels that a legend needs."""
     check()
     (left, width), (bottom, height) = (_axis(proof.problem, axes, k) for k in range(2))
-    count = legend.counts(proof)
+    count = captions.counts(proof)
     if sum(count.values()) <= RASTER:
         paths, colours = _paths(proof.tree), COLOURS
     else:
@@ -99,12 +101,12 @@ def draw(proof, axes):
         rectangles(axes, [(left + width * x, bottom + height * y) for x, y in paths.get(kind, ())],
                facecolor=colours[kind], edgecolor=EDGES[kind], linewidth=WIDTHS.get(kind, 0.3),
                zorder=1 + LAYERS.index(kind) / 10,
-               label="%s (%d)" % (legend.NAMES[kind], number))
-    star = legend.star(proof)
+               label="%s (%d)" % (captions.NAMES[kind], number))
+    star = captions.star(proof)
     if star:
         axes.plot(left + width * star[0], bottom + height * star[1], "o", linestyle="none",
                   markersize=5, markerfacecolor="white", markeredgecolor="black",
-                  label=legend.STAR)
+                  label=captions.STAR)
     axes.set_aspect("equal" if width == height else "auto")
     return axes
 
@@ -119,7 +121,7 @@ def _axis(problem, axes, k):
     low, side = float(centre - origin - strip), float(2 * strip)
     axis = (axes.xaxis, axes.yaxis)[k]
     axis.set_label_text(r"$v_%d / \pi$" % k + (
-        " %s %s" % ("-" if origin > 0 else "+", legend.number(abs(origin))) if origin else ""))
+        " %s %s" % ("-" if origin > 0 else "+", captions.number(abs(origin))) if origin else ""))
     (axes.set_xlim, axes.set_ylim)[k](low, low + side)
     axis.set_major_formatter("{x:.7g}")
     if origin:                          # long numbers
@@ -142,9 +144,9 @@ def rectangles(axes, corners, **style):
 def _spread(kind, index, cuts):
     """From where to where a prism is drawn along an axis, as parts of the region's side."""
     low, side = index / 2 ** cuts, 1 / 2 ** cuts
-    if kind not in "PS" and side < legend.LEAST:
-        low = min(max(low + (side - legend.LEAST) / 2, 0), 1 - legend.LEAST)
-        side = legend.LEAST
+    if kind not in "PS" and side < captions.LEAST:
+        low = min(max(low + (side - captions.LEAST) / 2, 0), 1 - captions.LEAST)
+        side = captions.LEAST
     return low, low + side
 
 

@@ -9,9 +9,10 @@ import contextlib
 import time
 from dataclasses import replace
 
-from . import core, tree
-from .core import Counts
-from .workers import ATTEMPTS, Crew, WorkersGone, count_workers
+from . import native, tree
+from .native import Counts
+from .signals import postponed
+from .workers import ATTEMPTS, Crew, WorkersGone, count_workers, submit
 from .workers import wait as wait_for_one
 
 MANY = 2 ** 30                      # leaves
@@ -58,7 +59,7 @@ class Growth:
         self.parts, self.statistics = [], Counts()
         self.changes = 0                    # under way: see _change
         self.running = {}                   # future -> (part, attempts left)
-        self.stop = core.stop_token()
+        self.stop = native.stop_token()
         self.threads = concurrent.futures.ThreadPoolExecutor(
             jobs or count_workers() if executor is None else 1)
 
@@ -73,23 +74,23 @@ class Growth:
 
     def begin(self, text, hints, counts, wait):
         """Sets up the search and takes up a tree with its statistics, if there is one; returns what
-        core.begin does, or None if wait(future) says that there is no time for it.
+        native.begin does, or None if wait(future) says that there is no time for it.
 
         hints: what is known of the untried prisms, in their order."""
         began = time.monotonic()
-        future = self._start(self.threads, core.begin, self.task, text, self.stop)
+        future = self._start(self.threads, native.begin, self.task, text, self.stop)
         if not wait(future):
             self.stop[0] = 1
         begun = future.result()
         if begun is None:
             return None
-        self.task = core.Task(self.task.problem, self.task.settings, begun.xstar)
+        self.task = native.Task(self.task.problem, self.task.settings, begun.xstar)
         # Every worker makes a search of its own: that must pay.
         self.began = time.monotonic()
         self.alone_until = self.began + max(ALONE_SECONDS, 10 * (self.began - began))
         for name in "cuts", "proved", "symmetric", "undecided":
             if getattr(begun.counts, name) != getattr(counts, name):
-                raise core.WrongTree()
+                raise native.WrongTree()
         hints = iter(hints)
         cells = [(index, cuts, next(hints, 0)) for index, cuts, _ in begun.cells]
         *pieces, last = text.split(tree.UNTRIED)
@@ -242,18 +243,18 @@ class Growth:
 
     def _submit(self, part, attempts, executor, seconds):
         stop = [self.stop] if executor is self.threads else []      # it cannot leave the process
-        self.running[self._start(executor, core.grow, self.task, part.cells, seconds, MANY,
+        self.running[self._start(executor, native.grow, self.task, part.cells, seconds, MANY,
                                  self.want_steps, *stop)] = part, attempts
 
     def _start(self, executor, *call):
         try:
-            return executor.submit(*call)
+            return submit(executor, *call)
         except Exception as error:
             if executor is not self.threads:
                 raise self.crew.gone(error) from None
             if "new thread" in str(error):
                 raise MemoryError("there is not enough memory for another thread") from None
-            raise                       # a signal struck inside the locks of the library
+            raise
 
     def _merge(self):
         """Gives the text of parts whose predecessors are finished to these."""
@@ -271,14 +272,16 @@ class Growth:
     def settle(self):
         """Waits a little for those who still work, and takes what they bring."""
         self.stop[0] = 1
-        done, late = concurrent.futures.wait(self.running, 4 * TASK_SECONDS + 1)
+        with postponed():
+            done, late = concurrent.futures.wait(self.running, 4 * TASK_SECONDS + 1)
         for future in done:
             try:
                 grown = future.result()
             except Exception:               # the part is as it was
                 continue
             self._take(self.running[future][0], grown)
-        for future in late if self.crew.alive else ():
-            future.cancel()
+        with postponed():
+            for future in late if self.crew.alive else ():
+                future.cancel()
         self.running.clear()
         self._merge()

@@ -9,8 +9,10 @@ import base64
 import html as markup
 import os
 
-from . import files, legend, picture, tree
-from .report import verdict
+from ..prover import tree
+from ..prover.report import verdict
+from ..storage import files
+from . import captions, plot
 
 SIDE = 400                              # of the square, in points
 LEFT, RIGHT = 44, 24                    # of it
@@ -18,7 +20,7 @@ WIDTH = LEFT + SIDE + RIGHT
 LINE, SMALL_LINE = 13, 10               # from one line of text to the next
 NODES = 60000                           # of the tree in a string, which may hold 65535 characters
 
-FORMATS = *picture.FORMATS, "ps", "eps"         # as the name of a file says
+FORMATS = *plot.FORMATS, "ps", "eps"         # as the name of a file says
 
 MARKS = {"P": "dark", "S": "light", "?": "white", "U": "crossed"}
 
@@ -98,14 +100,14 @@ def figure(proof, target=None, ax=None, format=None, caption=True):
     if target is None:
         if format is not None:
             raise ValueError("a format needs a target: a path or a binary file")
-        return picture.page(proof, caption) if ax is None else picture.draw(proof, ax)
+        return plot.page(proof, caption) if ax is None else plot.draw(proof, ax)
     if ax is not None:
         raise ValueError("draw into ax or write to a target, not both")
     kind = format_of(target) if format is None else format
-    if kind != "ps" and kind not in picture.FORMATS:
-        raise ValueError("the format is one of %s, ps, not %r" % (", ".join(picture.FORMATS), kind))
+    if kind != "ps" and kind not in plot.FORMATS:
+        raise ValueError("the format is one of %s, ps, not %r" % (", ".join(plot.FORMATS), kind))
     data = postscript(proof, caption).encode("ascii", "replace") if kind == "ps" \
-        else picture.picture(proof, kind, caption)
+        else plot.picture(proof, kind, caption)
     if hasattr(target, "write"):
         target.write(data)
     else:
@@ -117,13 +119,13 @@ def format_of(target):
     """The format that the name of a file asks for."""
     name = getattr(target, "name", "") if hasattr(target, "write") else os.fspath(target)
     ending = os.path.splitext(name)[1][1:].lower() if isinstance(name, str) else ""
-    return ending if ending in picture.FORMATS else "ps"
+    return ending if ending in plot.FORMATS else "ps"
 
 
 def svg(proof):
     """The figure as the text of an SVG file; None without matplotlib."""
     try:
-        return picture.picture(proof, "svg").decode("utf-8")
+        return plot.picture(proof, "svg").decode("utf-8")
     except files.ConverseError:
         return None
 
@@ -139,14 +141,14 @@ def html(proof):
 
 
 def postscript(proof, caption=True):
-    counts = legend.counts(proof)
+    counts = captions.counts(proof)
     nodes = proof.tree + tree.UNTRIED * (counts.get("?", 0) - proof.tree.count(tree.UNTRIED))
-    key = ["%s: %s (%d)" % (MARKS[kind], legend.NAMES[kind], count)
+    key = ["%s: %s (%d)" % (MARKS[kind], captions.NAMES[kind], count)
            for kind, count in counts.items()]
-    star = legend.star(proof)
+    star = captions.star(proof)
     if star:
-        key.append("circle: " + legend.STAR)
-    head, foot = (legend.head(proof), legend.foot(proof)) if caption else ([], [])
+        key.append("circle: " + captions.STAR)
+    head, foot = (captions.head(proof), captions.foot(proof)) if caption else ([], [])
     below = 40 + SMALL_LINE * len(foot)
     top = SIDE + 16 + SMALL_LINE + LINE * len(head)
 
@@ -161,7 +163,7 @@ def postscript(proof, caption=True):
         "%%EndComments",
         "%%BeginProlog",
         "/side %d def" % SIDE,
-        "/least %g def" % (SIDE * legend.LEAST),
+        "/least %g def" % (SIDE * captions.LEAST),
         PROLOG + "%%EndProlog",
         "%%Page: 1 1",
         "/tree [                 % line ends in it say nothing",
@@ -194,7 +196,7 @@ def _tick(problem, axis, place):
     half = problem.half[axis - 2]
     value = problem.centre[axis - 2] + (place - 1) * half
     words = {0: "0", 1: "", -1: "-"}.get(value) if value in (0, 1, -1) \
-        else legend.number(value, half / 100)
+        else captions.number(value, half / 100)
     text = "(%s) (%s)" % ("p" if value else "", words)
     if axis == 0:
         x, shift = at, -0.5

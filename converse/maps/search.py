@@ -9,16 +9,17 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Callable, Optional
 
-from .. import core
-from ..backup import Keeper
-from ..files import ConverseError
-from ..problem import Number, Problem, decimal_text, exact
-from ..run import Path
-from ..settings import Settings
+from ..model.problem import Number, Problem, decimal_text, exact
+from ..prover import native
+from ..prover.run import Path
+from ..prover.settings import Settings
+from ..prover.signals import interruptible, postponed
+from ..prover.workers import ATTEMPTS, LOOK_SECONDS, Crew, count_workers, submit, wait
+from ..storage.backup import Keeper
+from ..storage.files import ConverseError
 from ..version import __version__
-from ..workers import ATTEMPTS, Crew, count_workers, wait
 from . import region
-from .atlas import AT_ONCE, OPEN, OUTSIDE, PROVED, Map
+from .map import AT_ONCE, OPEN, OUTSIDE, PROVED, Map
 from .region import REGIONS
 
 SETTINGS = Settings(method="loewner")
@@ -34,8 +35,7 @@ SHEAR = (1, 0, -1, 1)               # x_1 = (v0, v1 - v0): the wave c does not f
 PLAIN = (1, 0, 0, 1)
 ASIDE = Fraction(3, 10)             # where c prevails, an x* so far along what it does not feel
 RIGHT = ("1.570796", "1.570796")    # an x* where each of the waves a and b bends most
-LOOK_SECONDS = 0.1
-TOO_LONG = core.lib.CV_REASON_TOO_LONG      # why a try failed: hopeless
+TOO_LONG = native.lib.CV_REASON_TOO_LONG      # why a try failed: hopeless
 
 
 # ---- what a worker does, on plain data
@@ -51,14 +51,14 @@ class Outcome:
 def _grow(problem, xstar, most, stop):
     """(tree or None, leaves, Begun) of a problem that may cost so many leaves; None: stopped.
     Without a tree, leaves are those that are expected, or infinite: it is hopeless."""
-    begun = core.begin(core.Task(problem, SETTINGS, xstar), "", stop)
+    begun = native.begin(native.Task(problem, SETTINGS, xstar), "", stop)
     if begun is None:
         return None
-    task, cells = core.Task(problem, SETTINGS, begun.xstar), begun.cells
-    pieces, leaves, history = [], 0, core.History()
+    task, cells = native.Task(problem, SETTINGS, begun.xstar), begun.cells
+    pieces, leaves, history = [], 0, native.History()
     chunk = min(most, LOOK)
     while cells and not begun.at_once:
-        grown = core.grow(task, cells, LOOK_SECONDS, chunk, False, stop)
+        grown = native.grow(task, cells, LOOK_SECONDS, chunk, False, stop)
         if grown is None or stop[0]:
             return None
         pieces.append(grown.text)
@@ -99,10 +99,10 @@ def _ways(directions, cell, stop):
 
 def attempt(directions, cell, most, stop=None):
     """Tries to prove a cell with so many leaves; None: stopped."""
-    stop = stop or core.stop_token()
+    stop = stop or native.stop_token()
     middle, parts = region.patch(directions, cell)
     if cell.high[0] == region.RADIUS:           # nothing else will do
-        begun = core.begin(core.Task(Problem.patch(middle, parts), SETTINGS), "", stop)
+        begun = native.begin(native.Task(Problem.patch(middle, parts), SETTINGS), "", stop)
         return begun and Outcome(AT_ONCE if begun.at_once else OPEN)
     ways = _ways(directions, cell, stop)
     if ways is None:
@@ -125,7 +125,7 @@ def attempt(directions, cell, most, stop=None):
 def frontier(directions, place, stop=None):
     """The least radius, about, at which a direction is proved with POINT leaves: an estimate of
     where orbits stop contradicting; None: stopped."""
-    stop = stop or core.stop_token()
+    stop = stop or native.stop_token()
 
     def proved(radius, most):
         cell = region.Cell(0, (radius, *place), (radius, *place))
@@ -178,7 +178,7 @@ def explore(name: Optional[str] = None, down_to: Optional[Number] = None, *, pat
         raise ValueError("down_to is a ratio above 1, not %s" % (down_to,))
     if not resume and name not in REGIONS:
         raise ValueError("the region is one of %s, not %r" % (", ".join(REGIONS), name))
-    with Keeper(path, resumed=path if resume else None) as keeper:
+    with interruptible(), Keeper(path, resumed=path if resume else None) as keeper:
         if resume:
             atlas = Map.load(path)
             if name not in (None, atlas.region):
@@ -202,7 +202,7 @@ class _Search:
         self.threads = None if executor else concurrent.futures.ThreadPoolExecutor(
             jobs or count_workers())
         self.executor = executor or self.threads
-        self.stop = core.stop_token()
+        self.stop = native.stop_token()
         self.began = time.monotonic() - atlas.seconds
         self.end = time.monotonic() + time_limit
         self.queue, self.order = [], itertools.count()
@@ -216,8 +216,9 @@ class _Search:
                 self._explore()
         finally:
             self.stop[0] = 1
-            for future in self.running if self.crew.alive else ():
-                future.cancel()
+            with postponed():
+                for future in self.running if self.crew.alive else ():
+                    future.cancel()
             if self.threads:
                 self.threads.shutdown()
             self.map.seconds = time.monotonic() - self.began
@@ -232,7 +233,7 @@ class _Search:
         call, _, *arguments = task
         stop = [self.stop] if self.threads else []          # it cannot leave the process
         try:
-            self.running[self.executor.submit(call, *arguments, *stop)] = task, attempts
+            self.running[submit(self.executor, call, *arguments, *stop)] = task, attempts
         except Exception as error:
             raise self.crew.gone(error) from None
 

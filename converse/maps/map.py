@@ -10,11 +10,11 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any, Dict, Iterator, List, Optional, Tuple, Union
 
-from .. import files
-from ..files import ConverseError
-from ..problem import decimal_text, exact
+from ..model.problem import decimal_text, exact
+from ..storage import files
+from ..storage.files import ConverseError
 from ..version import __version__
-from .region import RADIUS, REGIONS, Cell, direction, is_outside, root
+from .region import RADIUS, REGIONS, Cell, root
 
 FORMAT = "converse map 1"
 PROVED, AT_ONCE, OPEN, OUTSIDE = "PAOX"
@@ -193,8 +193,8 @@ class Map:
 
     def draw(self, path: Union[str, "os.PathLike[str]"]) -> None:
         """Draws it: SVG, PNG or PDF, by the name of the file (matplotlib)."""
-        from . import figure
-        figure.draw(self, path)
+        from ..draw import map_figure
+        map_figure.draw(self, path)
 
     def __repr__(self):
         return "<Map of %s: %d cells proved, %d at once, %d open>" % (
