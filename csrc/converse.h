@@ -57,6 +57,14 @@ typedef struct { int nodes[128][16], cut[128][16], became[16][16]; } cv_history;
 
 typedef struct cv_search cv_search;
 
+/* A request to stop.  It may be made by another thread, while a call that was given it is under
+   way and will then return soon.  Calls that may be given NULL cannot be stopped. */
+typedef struct cv_stop cv_stop;
+cv_stop *cv_stop_new(void);                                /* NULL: no memory */
+void cv_stop_free(cv_stop *stop);
+void cv_stop_set(cv_stop *stop);
+int cv_stop_get(const cv_stop *stop);
+
 /* A wave of the potential V, -p sin(k.y + phase), whose amplitude p moves with the parameters, each
    in [-1, 1]: p = amplitude + t_1 part[0] + t_2 part[1] + t_3 part[2]. */
 typedef struct {
@@ -80,16 +88,14 @@ typedef struct {
    (0, 1) and (1, 1) in this order, without phases; its method takes only these, as they are, each
    with a parameter of its own, and no other frame.
    xstar: the two coordinates of the starting point, or NULL to have one chosen.
-   On success *s must be freed with cv_search_free.  It begins with the root as its only prism.
-
-   stop, below: NULL, or where another thread may write a 1 to have the call return soon. */
+   On success *s must be freed with cv_search_free.  It begins with the root as its only prism. */
 int cv_search_new(cv_search **s, const cv_problem *problem, const char *const xstar[2], int method,
                   int dp, int depth, int stubborn, int as_printed);
 void cv_search_free(cv_search *s);
 
 /* Sets up what every step needs, the bounds over the torus first of all.  CV_RUNNING: it was
    stopped; then, and after an error, the search can only be freed. */
-int cv_prepare(cv_search *s, const volatile int *stop);
+int cv_prepare(cv_search *s, const cv_stop *stop);
 
 /* Forgets tree and counts; n prisms are to be decided now, the first of them first. */
 int cv_restart(cv_search *s, int n, const cv_cell *cells);
@@ -103,7 +109,7 @@ int cv_resume(cv_search *s, const char *tree, size_t length);
    undecided one ended a search that is not stubborn.  CV_ENOMEM: the tree so far is good.
    CV_EMACHINE: the arithmetic breaks the rules, before the step or after it: nothing that the search
    did since cv_restart may be used. */
-int cv_step(cv_search *s, long max_leaves, double max_seconds, const volatile int *stop);
+int cv_step(cv_search *s, long max_leaves, double max_seconds, const cv_stop *stop);
 
 /* The prisms yet to be decided, the next one first: how many, and, unless cells is NULL, which. */
 int cv_pending(const cv_search *s, cv_cell *cells);

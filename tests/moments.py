@@ -16,9 +16,9 @@ def grow_or_wait(task, cells, seconds, leaves, want_steps, stop):
     global left
     if left == 0:
         sign.touch()
-        while sign.exists() and not stop[0]:
+        while sign.exists() and not stop.is_set():
             time.sleep(0.005)
-        if stop[0]:
+        if stop.is_set():
             time.sleep(0.05)                    # what is to strike now has time for it
         left = leaves
     grown = grow(task, cells, seconds, min(left, leaves), want_steps, stop)
@@ -42,7 +42,7 @@ def begin_and_wait(task, tree, stop):
     begun = begin(task, tree, stop)
     if begun is not None:
         sign.write_text("whole")
-        while not stop[0]:
+        while not stop.is_set():
             time.sleep(0.005)
     return begun
 native.begin = begin_and_wait

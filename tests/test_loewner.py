@@ -720,8 +720,8 @@ def test_never_a_false_theorem(problem):
 
 def grow(task, cell, max_leaves=MANY):
     search = Search(task)
-    assert search.prepare(ffi.NULL)
-    return search.grow([cell], math.inf, max_leaves, ffi.NULL, False)
+    assert search.prepare(None)
+    return search.grow([cell], math.inf, max_leaves, None, False)
 
 
 def test_a_cell_is_what_it_says(proof):
@@ -760,9 +760,9 @@ def test_every_width_grows_the_same_tree(problem, monkeypatch):
     for width in WIDTHS:
         monkeypatch.setenv("CONVERSE_VECTORS", width)
         search = Search(Task(problem, Settings(method="loewner", depth=24, stubborn=True)))
-        assert search.prepare(ffi.NULL)
+        assert search.prepare(None)
         begun = search.begin("")
-        found = search.grow(begun.cells, math.inf, MANY, ffi.NULL, True)
+        found = search.grow(begun.cells, math.inf, MANY, None, True)
         grown[width] = (found.text, found.steps, found.counts, begun.constants)
         assert lib.cv_lanes(search.handle) <= int(width) // 64
         if platform.machine() in ("x86_64", "aarch64") and width in WIDTHS[:2]:
@@ -804,15 +804,15 @@ def test_no_company_matters(problem, star, monkeypatch):
     for width in WIDTHS:
         monkeypatch.setenv("CONVERSE_VECTORS", width)
         search = Search(task)
-        assert search.prepare(ffi.NULL)
+        assert search.prepare(None)
         rng.shuffle(found)
         cells, text, steps = [cell for cell, _ in found], "", []
         while cells:                        # with something else now and then
-            grown = search.grow(cells, math.inf, rng.choice([1, 5, 40]), ffi.NULL, True)
+            grown = search.grow(cells, math.inf, rng.choice([1, 5, 40]), None, True)
             text, steps, cells = text + grown.text, steps + grown.steps, grown.cells
-            search.grow(random_cells(rng, problem.together, 9), math.inf, 3, ffi.NULL, False)
+            search.grow(random_cells(rng, problem.together, 9), math.inf, 3, None, False)
         assert text == "".join(grown.text for _, grown in found)
-        whole = search.grow([cell for cell, _ in found], math.inf, MANY, ffi.NULL, True)
+        whole = search.grow([cell for cell, _ in found], math.inf, MANY, None, True)
         assert whole.text == text and whole.steps == steps
 
 @pytest.mark.parametrize("a, half", [("1e12", "0"), ("1e7", "0"), ("1e7", "1e-5")])
@@ -822,8 +822,8 @@ def test_an_orbit_ends_where_it_cannot_go_on(a, half):
         problem = Problem.around((*(Fraction(a), 0)[::way], 0, *(Fraction("-0.4"), 0)[::way]),
                                  (0, 0, 0, Fraction(half), Fraction(half)))
         search = Search(Task(problem, Settings("loewner", 0, stubborn=True), ("-1", "0")[::way]))
-        assert search.prepare(ffi.NULL)
-        grown = search.grow([(*ROOT, 0)], math.inf, MANY, ffi.NULL, True)
+        assert search.prepare(None)
+        grown = search.grow([(*ROOT, 0)], math.inf, MANY, None, True)
         assert (grown.text, grown.steps) == ("U", [2])
         assert grown.counts.reasons == (0, 0, 1, 0, 0, 0)
 
@@ -832,9 +832,9 @@ def test_a_search_that_was_busy_takes_up_a_tree():
     task, texts = Task(line("0.0200", "0.0280"), Settings("loewner", 14, stubborn=True)), []
     for busy in (0, 1, 7, 30):
         search = Search(task)
-        assert search.prepare(ffi.NULL)
+        assert search.prepare(None)
         if busy:
-            search.grow([((5, 9, 1, 0, 0), (4, 4, 1, 0, 0), 0), (*ROOT, 0)], math.inf, busy, ffi.NULL,
+            search.grow([((5, 9, 1, 0, 0), (4, 4, 1, 0, 0), 0), (*ROOT, 0)], math.inf, busy, None,
                         False)
         search.begin("20")                  # there are three cells
         assert lib.cv_step(search.handle, MANY, math.inf, ffi.NULL) == lib.CV_OK

@@ -183,7 +183,7 @@ def test_ways_are_compared_though_none_ends_in_time(monkeypatch):
     of the program's, whether or not a trial is long enough for a proof."""
     monkeypatch.setattr(search, "TRIAL", 1 << 11)
     cell = region.Cell(0, (F(99, 200), F(1, 32)), (F(99, 200), F(1, 32)))
-    ways = search._ways(region.REGIONS["b=0"][1], cell, search.native.stop_token())
+    ways = search._ways(region.REGIONS["b=0"][1], cell, search.native.Stop())
     assert [frame for frame, _ in ways] == [search.SHEAR, search.SHEAR, search.PLAIN]
     assert ways[0][1] == ("1.270796", "0.3") and ways[1][1] == ("1.570796", "0")
 

@@ -445,7 +445,7 @@ def test_a_long_prism_obeys(problem, proof, monkeypatch):
     def tells(task, cells, seconds, leaves, want_steps, stop):
         if grown and proof.tree.startswith("".join(grown) + "P"):      # now comes such a try
             up.set()
-            while not stop[0]:
+            while not stop.is_set():
                 time.sleep(0.005)
         found = grow(task, cells, PATIENCE, 1, want_steps, stop)
         grown.append(found.text)

@@ -83,13 +83,13 @@ def test_a_spoilt_machine_is_refused(shim, root, spoil, mend):
 @pytest.mark.parametrize("method", ["thesis", "loewner"])
 def test_a_machine_spoilt_in_mid_run_is_noticed(shim, root, method):
     """Each step looks at the arithmetic; nothing that a bad one did is taken."""
-    from converse.prover.native import Search, Settings, Task, ffi
+    from converse.prover.native import Search, Settings, Task
     from converse.prover.tree import ROOT as WHOLE
 
     lib = ctypes.CDLL(str(shim))
     search = Search(Task(converse.read_input(root / "inputs" / "trig278.in"), Settings(method)))
-    assert search.prepare(ffi.NULL)
-    grow = lambda: search.grow([(*WHOLE, 0)], math.inf, 2 ** 30, ffi.NULL, False).text
+    assert search.prepare(None)
+    grow = lambda: search.grow([(*WHOLE, 0)], math.inf, 2 ** 30, None, False).text
     good = grow()
     for which in (1, 2, 3):
         lib.direction(which)

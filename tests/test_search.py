@@ -230,24 +230,24 @@ def test_two_threads_do_not_meet(root):
 
 def test_no_symmetry_where_the_start_is_off_the_diagonal():
     """A starting point of one's own (from a backup) may lie anywhere; then nothing is skipped."""
-    from converse.prover.native import Search, Settings, Task, stop_token
+    from converse.prover.native import Search, Settings, Stop, Task
     from converse.prover.tree import ROOT
     from converse.prover.tree_search import MANY
 
     for xstar, skips in ((("0.82", "0.82"), True), (("0.82", "0.83"), False)):
         search = Search(Task(line("0.0275"), Settings(digits=20), xstar))
-        assert search.prepare(stop_token())
-        counts = search.grow([(*ROOT, 0)], math.inf, MANY, stop_token(), False).counts
+        assert search.prepare(Stop())
+        counts = search.grow([(*ROOT, 0)], math.inf, MANY, Stop(), False).counts
         assert counts.proved > 0 and (counts.symmetric > 0) == skips
 
 
 # ---- what may be asked of a search in C, in which order
 
 def core_search(xstar=None, depth=30, **settings):
-    from converse.prover.native import Search, Settings, Task, ffi
+    from converse.prover.native import Search, Settings, Task
 
     search = Search(Task(line("0.0275"), Settings(depth=depth, **settings), xstar))
-    assert search.prepare(ffi.NULL)
+    assert search.prepare(None)
     return search
 
 
@@ -283,12 +283,10 @@ def test_what_was_skipped_must_be_symmetric(xstar, good):
 
 def test_the_finest_index():
     """A cell whose index has no bit left is not cut, whatever the depth."""
-    from converse.prover.native import ffi
-
     search = core_search(depth=1000, digits=60, stubborn=True)
     for cuts, text in ((60, "0"), (61, "U")):
         cell = ((2 ** cuts // 3, 2 ** cuts // 5, 0, 0, 0), (cuts, cuts, 0, 0, 0), 0)
-        grown = search.grow([cell], math.inf, 1, ffi.NULL, False)
+        grown = search.grow([cell], math.inf, 1, None, False)
         assert grown.text.startswith(text) or grown.text == "P"
         assert all(max(cuts) <= 61 for _, cuts, _ in grown.cells)
 
@@ -296,16 +294,16 @@ def test_the_finest_index():
 def test_stopped_in_the_middle_of_a_prism():
     """The prism at hand is forgotten, with its statistics; then the search goes on as if nothing
     had been."""
-    from converse.prover.native import ffi, stop_token
+    from converse.prover.native import Stop
     from converse.prover.tree import ROOT as WHOLE
 
     for digits in 3000, 12000, 48000, 192000:       # where the stop is late a prism must take longer
         search, cells, text, counts, stops = core_search(digits=digits), [(*WHOLE, 0)], "", [], 0
-        whole = core_search(digits=digits).grow(cells, math.inf, 12, ffi.NULL, False)
+        whole = core_search(digits=digits).grow(cells, math.inf, 12, None, False)
         delay = 0.002
         while len(text) < len(whole.text):
-            token = stop_token()
-            timer = threading.Timer(delay, token.__setitem__, (0, 1))
+            token = Stop()
+            timer = threading.Timer(delay, token.set)
             timer.start()
             grown = search.grow(cells, math.inf, 12 - sum(map(text.count, "PSU")), token, False)
             timer.cancel()
@@ -321,11 +319,11 @@ def test_stopped_in_the_middle_of_a_prism():
 
 
 def test_a_search_whose_setting_up_was_stopped_is_good_for_nothing():
-    from converse.prover.native import Search, Settings, Task, ffi, lib, stop_token
+    from converse.prover.native import Search, Settings, Stop, Task, ffi, lib
 
     search = Search(Task(line("0.0275"), Settings(digits=20000)))
-    token = stop_token()
-    token[0] = 1
+    token = Stop()
+    token.set()
     assert not search.prepare(token)
     assert lib.cv_restart(search.handle, 0, ffi.NULL) == lib.CV_EARGUMENT
     assert lib.cv_prepare(search.handle, ffi.NULL) == lib.CV_EARGUMENT

@@ -17,11 +17,11 @@ def decide(parameters, xstar=None, most=20000):
     problem = parameters if isinstance(parameters, Problem) else \
         Problem(**dict(zip("abc", parameters)))
     search = native.Search(native.Task(problem, Settings(method="loewner"), xstar))
-    assert search.prepare(native.ffi.NULL)
+    assert search.prepare(None)
     begun = search.begin("")
     cells, tries, undecided = begun.cells, 0, 0
     while cells and tries < most and not undecided:
-        grown = search.grow(cells, math.inf, 500, native.ffi.NULL, False)
+        grown = search.grow(cells, math.inf, 500, None, False)
         cells, undecided = grown.cells, grown.counts.undecided
         tries += grown.counts.tries
     return tuple(map(float, begun.xstar)), tries, not cells and not undecided

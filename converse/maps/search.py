@@ -59,7 +59,7 @@ def _grow(problem, xstar, most, stop):
     chunk = min(most, LOOK)
     while cells and not begun.at_once:
         grown = native.grow(task, cells, LOOK_SECONDS, chunk, False, stop)
-        if grown is None or stop[0]:
+        if grown is None or stop.is_set():
             return None
         pieces.append(grown.text)
         leaves += grown.counts.proved + grown.counts.symmetric
@@ -99,7 +99,7 @@ def _ways(directions, cell, stop):
 
 def attempt(directions, cell, most, stop=None):
     """Tries to prove a cell with so many leaves; None: stopped."""
-    stop = stop or native.stop_token()
+    stop = stop or native.Stop()
     middle, parts = region.patch(directions, cell)
     if cell.high[0] == region.RADIUS:           # nothing else will do
         begun = native.begin(native.Task(Problem.patch(middle, parts), SETTINGS), "", stop)
@@ -125,7 +125,7 @@ def attempt(directions, cell, most, stop=None):
 def frontier(directions, place, stop=None):
     """The least radius, about, at which a direction is proved with POINT leaves: an estimate of
     where orbits stop contradicting; None: stopped."""
-    stop = stop or native.stop_token()
+    stop = stop or native.Stop()
 
     def proved(radius, most):
         cell = region.Cell(0, (radius, *place), (radius, *place))
@@ -202,7 +202,7 @@ class _Search:
         self.threads = None if executor else concurrent.futures.ThreadPoolExecutor(
             jobs or count_workers())
         self.executor = executor or self.threads
-        self.stop = native.stop_token()
+        self.stop = native.Stop()
         self.began = time.monotonic() - atlas.seconds
         self.end = time.monotonic() + time_limit
         self.queue, self.order = [], itertools.count()
@@ -215,7 +215,7 @@ class _Search:
             if not self.late:
                 self._explore()
         finally:
-            self.stop[0] = 1
+            self.stop.set()
             with postponed():
                 for future in self.running if self.crew.alive else ():
                     future.cancel()

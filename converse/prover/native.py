@@ -196,8 +196,13 @@ def _nearly(phase):
     return decimal_text(Fraction(phase.numerator * scale // phase.denominator, scale))
 
 
+def _handle(stop):
+    """What the C core takes for a Stop or None."""
+    return ffi.NULL if stop is None else stop.handle
+
+
 class Search:
-    """A search in the C core."""
+    """A search in the C core; stop: a Stop, or None."""
 
     def __init__(self, task):
         owners, settings = [], task.settings
@@ -212,7 +217,7 @@ class Search:
 
     def prepare(self, stop):
         """Sets the search up; False if it was stopped, and then it is good for nothing."""
-        return check(lib.cv_prepare(self.handle, stop)) == lib.CV_OK
+        return check(lib.cv_prepare(self.handle, _handle(stop))) == lib.CV_OK
 
     def begin(self, tree):
         """Takes up a tree; ConverseError if it does not belong to a search of this kind."""
@@ -230,7 +235,7 @@ class Search:
     def grow(self, cells, seconds, max_leaves, stop, want_steps):
         """Decides cells, and those they are cut into, for about so long or up to so many leaves."""
         check(lib.cv_restart(self.handle, len(cells), cells))
-        check(lib.cv_step(self.handle, max_leaves, seconds, stop))
+        check(lib.cv_step(self.handle, max_leaves, seconds, _handle(stop)))
         size = ffi.new("size_t *")
         text, size = lib.cv_tree(self.handle, size), size[0]
         return Grown(ffi.unpack(text, size).decode("ascii") if size else "",
@@ -268,9 +273,19 @@ def _search(task, stop):
     return _mine.search
 
 
-def stop_token():
-    """What another thread of this process sets, token[0] = 1, to have begin or grow return soon."""
-    return ffi.new("int *")
+class Stop:
+    """A request, which another thread of this process may make, that begin or grow return soon."""
+
+    def __init__(self):
+        self.handle = ffi.gc(lib.cv_stop_new(), lib.cv_stop_free)
+        if not self.handle:
+            raise MemoryError("there is not enough memory")
+
+    def set(self):
+        lib.cv_stop_set(self.handle)
+
+    def is_set(self):
+        return bool(lib.cv_stop_get(self.handle))
 
 
 def begin(task, tree, stop):
@@ -286,8 +301,8 @@ def begin(task, tree, stop):
 def grow(task, cells, seconds, max_leaves, want_steps, stop=None):
     """What a worker does: Grown, or None if it was stopped before it could begin."""
     try:
-        search = _search(task, stop or ffi.NULL)
-        return search and search.grow(cells, seconds, max_leaves, stop or ffi.NULL, want_steps)
+        search = _search(task, stop)
+        return search and search.grow(cells, seconds, max_leaves, stop, want_steps)
     except BaseException:
         _mine.task = _mine.search = None    # nobody knows in what state it is
         raise

@@ -59,7 +59,7 @@ class Growth:
         self.parts, self.statistics = [], Counts()
         self.changes = 0                    # under way: see _change
         self.running = {}                   # future -> (part, attempts left)
-        self.stop = native.stop_token()
+        self.stop = native.Stop()
         self.threads = concurrent.futures.ThreadPoolExecutor(
             jobs or count_workers() if executor is None else 1)
 
@@ -67,7 +67,7 @@ class Growth:
         return self
 
     def __exit__(self, *_):
-        self.stop[0] = 1
+        self.stop.set()
         self.threads.shutdown()
 
     # ---- the beginning
@@ -80,7 +80,7 @@ class Growth:
         began = time.monotonic()
         future = self._start(self.threads, native.begin, self.task, text, self.stop)
         if not wait(future):
-            self.stop[0] = 1
+            self.stop.set()
         begun = future.result()
         if begun is None:
             return None
@@ -271,7 +271,7 @@ class Growth:
 
     def settle(self):
         """Waits a little for those who still work, and takes what they bring."""
-        self.stop[0] = 1
+        self.stop.set()
         with postponed():
             done, late = concurrent.futures.wait(self.running, 4 * TASK_SECONDS + 1)
         for future in done:

@@ -36,7 +36,7 @@ enum { SCRATCH = 16, BOUNDS = CV_GROWTH_HIGH + 1, STUBBORN = 40,
 
 struct cv_exact {
     int kind, n, terms, lost;
-    volatile int stop;
+    cv_stop stop;
     long q, p[2], dp, asked;
     apm_t eps, curvature, lipschitz, origin[2];
     int *k;
@@ -121,7 +121,8 @@ void cv_exact_free(cv_exact *o)
 static void ask(cv_exact *o)
 {
     if (++o->asked % ASK == 0) {
-        o->stop = cv_python_interrupts();
+        if (cv_python_interrupts())
+            cv_stop_set(&o->stop);
         guard_poll();
     }
 }
@@ -146,7 +147,7 @@ static int guarded(cv_exact *o, int (*work)(cv_exact *, const void *), const voi
 {
     errand e = { work, o, how, CV_ENOMEM };
 
-    if (o->stop)
+    if (cv_stop_get(&o->stop))
         return CV_ESTOPPED;
     if (!o->lost)
         switch (guard_run(run, &e, &o->stop)) {

@@ -381,7 +381,7 @@ static void prepare(void *data)
     s->status = s->method == CV_LOEWNER ? prepare_loewner(s) : prepare_thesis(s);
 }
 
-int cv_prepare(cv_search *s, const volatile int *stop)
+int cv_prepare(cv_search *s, const cv_stop *stop)
 {
     if (s->prepared || s->spoilt || s->status != CV_RUNNING)
         return s->prepared ? CV_OK : s->status < CV_OK ? s->status : CV_EARGUMENT;

@@ -348,7 +348,7 @@ typedef struct {
     cv_search *s;
     long enough;
     double end;
-    const volatile int *stop;
+    const cv_stop *stop;
 } step;
 
 static void take_step(void *data)
@@ -363,12 +363,12 @@ static void take_step(void *data)
         }
         s->before = s->counts;
         decide_and_remember(s);
-        if (now() >= how->end || (how->stop != NULL && *how->stop))
+        if (now() >= how->end || cv_stop_get(how->stop))
             break;
     }
 }
 
-int cv_step(cv_search *s, long max_leaves, double max_seconds, const volatile int *stop)
+int cv_step(cv_search *s, long max_leaves, double max_seconds, const cv_stop *stop)
 {
     step how = { s, decided_leaves(s) + max_leaves, now() + max_seconds, stop };
     int ended = GUARD_DONE;
