@@ -17,7 +17,7 @@ from fractions import Fraction
 
 import converse
 
-from .commands.prove import Parser, ended
+from .commands.common import Parser, ended
 from .draw import plot
 from .draw.plot import BLUE, DARK, ORANGE, PURPLE, VERMILLION
 from .model.problem import LINE, Problem

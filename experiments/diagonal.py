@@ -19,7 +19,7 @@ import sys
 import numpy as np
 
 from converse import chart, orbits
-from converse.commands.prove import ended
+from converse.commands.common import ended
 from converse.model.problem import LINE as THESIS_LINE
 
 SIZES = {"full": {"heads": (3, 7), "least": 1000, "cells": 1000, "most": 400,

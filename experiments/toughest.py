@@ -23,7 +23,7 @@ import sys
 import numpy as np
 
 from converse import orbits
-from converse.commands.prove import ended
+from converse.commands.common import ended
 from converse.draw import plot
 from converse.draw.plot import BLUE, DARK, VERMILLION
 from converse.storage import files

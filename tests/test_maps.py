@@ -1,7 +1,6 @@
 """Maps of the frontier: cells, the search, the file, the command, the picture."""
 
 import concurrent.futures
-import contextlib
 import io
 import json
 import os
@@ -195,11 +194,11 @@ def test_progress_says_what_is_done(coarse, tmp_path, monkeypatch):
 
     def went_on(**options):
         shares, written = [], []
-        monkeypatch.setattr(cli.Line, "_write", written.append)
-        with contextlib.closing(cli.Progress()) as progress:
+        monkeypatch.setattr(cli.ProgressLine, "_write", written.append)
+        with cli.ProgressLine() as line:
             maps.explore("c=0", path=tmp_path / "map.json", jobs=1, progress=lambda *done: (
-                shares.append(done[0]), setattr(progress.line, "due", 0.0), progress(*done)),
-                **options)
+                shares.append(done[0]), setattr(line, "due", 0.0),
+                line(lambda: cli.progress_text(*done))), **options)
         return shares, "\n".join(written)
 
     monkeypatch.setattr(sys, "stderr", Terminal())

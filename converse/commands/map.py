@@ -1,7 +1,6 @@
 """The command: converse-map [--plane b=0 | --sphere] MAP."""
 
 import argparse
-import contextlib
 import math
 import os
 import sys
@@ -13,7 +12,8 @@ from ..model.problem import decimal_text, exact
 from ..storage import files
 from ..storage.files import ConverseError
 from ..version import __version__
-from .prove import Line, Parser, check_mpi, ended, say, seconds, whole, workers
+from .common import (Parser, ProgressLine, add_worker_options, check_mpi, ended, executor_of, say,
+                     seconds)
 
 COMMAND = "converse-map"
 DOWN_TO = "1.05"
@@ -49,35 +49,21 @@ def parser():
     p.add_argument("-r", "--restore", action="store_true", help="continue MAP, as it was asked for "
                    "then, though perhaps with another --down-to")
     p.add_argument("-g", "--graphics", metavar="FILE", help="draw the map: SVG, PNG or PDF by name")
-    p.add_argument("--jobs", type=whole(1), metavar="N",
-                   help="work on N cells at a time (default: one per core)")
-    p.add_argument("--dask", metavar="ADDRESS", help="let the Dask cluster at ADDRESS work")
-    p.add_argument("--mpi", action="store_true", help="let MPI processes work")
+    add_worker_options(p, "cells", "let MPI processes work")
     p.add_argument("--time-limit", type=seconds, default=math.inf, metavar="SECONDS",
                    help="stop after about so long; -r goes on")
     p.add_argument("--version", action="version", version="%s %s" % (COMMAND, __version__))
     return p
 
 
-class Progress:
-    """On a terminal, what is being done, and how much of it."""
-
-    def __init__(self):
-        self.line = Line()
-
-    def __call__(self, share, atlas):
-        self.line(lambda: self._words(share, atlas))
-
-    def _words(self, share, atlas):
-        if atlas.estimated_all:
-            return "proving: %.1f%% of the area down to %s times the estimate, %d cells" % (
-                math.floor(1000 * share) / 10, decimal_text(atlas.down_to), atlas.count(PROVED))
-        return "estimating the frontier: %d of %d directions" % (
-            sum(map(len, atlas.estimate)),
-            sum(1 for face in range(len(atlas.estimate)) for _ in atlas.places(face)))
-
-    def close(self):
-        Line.clear()
+def progress_text(share, found):
+    """What is being done on the map found, and how much of it."""
+    if found.estimated_all:
+        return "proving: %.1f%% of the area down to %s times the estimate, %d cells" % (
+            math.floor(1000 * share) / 10, decimal_text(found.down_to), found.count(PROVED))
+    return "estimating the frontier: %d of %d directions" % (
+        sum(map(len, found.estimate)),
+        sum(1 for face in range(len(found.estimate)) for _ in found.places(face)))
 
 
 def run(options):
@@ -91,19 +77,19 @@ def run(options):
     if not options.plane and not options.restore:
         if options.down_to is not None:
             raise ConverseError("--down-to needs --plane, --sphere or -r")
-        atlas = Map.load(options.map)
+        found = Map.load(options.map)
     else:
         from ..maps.search import explore  # it needs the C core, and says so where it is missing
 
-        with contextlib.closing(Progress()) as progress, workers(options) as executor:
-            atlas = explore(
+        with ProgressLine() as line, executor_of(options) as executor:
+            found = explore(
                 options.plane, options.down_to, path=options.map, resume=options.restore,
                 jobs=options.jobs, executor=executor, time_limit=options.time_limit,
-                progress=progress)
-    say(atlas.report())
+                progress=lambda *done: line(lambda: progress_text(*done)))
+    say(found.report())
     if graphics is not None:
-        atlas.draw(graphics)
-    return 0 if atlas.complete else 1
+        found.draw(graphics)
+    return 0 if found.complete else 1
 
 
 def main(argv=None):

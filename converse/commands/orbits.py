@@ -2,7 +2,6 @@
 
 import argparse
 import concurrent.futures
-import contextlib
 import io
 import math
 import os
@@ -16,7 +15,7 @@ from ..draw.figure import format_of
 from ..storage import files
 from ..storage.files import ConverseError, plain
 from ..version import __version__
-from .prove import Line, Parser, ended, say, whole
+from .common import Parser, ProgressLine, ended, say, whole_number
 
 COMMAND = "converse-orbits"
 NAMES = "trig", "poly", "ff", "froeschle", "standard"
@@ -192,7 +191,7 @@ def parser():
                       "p/q for one angle")
     find.add_argument("eps", metavar="EPS", type=_eps, nargs="+", help="a number, or "
                       "LOW:HIGH:STEP; states are followed from one to the next")
-    find.add_argument("--search", type=whole(1), metavar="N", help="look for less action than "
+    find.add_argument("--search", type=whole_number(1), metavar="N", help="look for less action than "
                       "continuation finds, N times")
     find.add_argument("--prove", action="store_true", help="prove that an orbit is beside each "
                       "state, that it is a minimum, its action and its exponents")
@@ -200,7 +199,7 @@ def parser():
     find.add_argument("-g", "--graphics", metavar="FILE", help="draw the angles and the momenta of "
                       "the states: SVG, PNG or PDF by the name")
     find.add_argument("--no-caption", action="store_true", help="leave out the figure's caption")
-    find.add_argument("--seed", type=whole(0), default=0, metavar="N", help="of the search (0)")
+    find.add_argument("--seed", type=whole_number(0), default=0, metavar="N", help="of the search (0)")
     find.set_defaults(run=find_states)
 
     sweep = commands.add_parser(
@@ -218,11 +217,11 @@ def parser():
                        "line")
     which.add_argument("--farey", metavar="W0,W1", type=_target, help="the mediants of the Farey "
                        "triangles (one angle: intervals) that contain these numbers, exactly")
-    which.add_argument("--random", type=whole(1), metavar="N", help="N random types")
+    which.add_argument("--random", type=whole_number(1), metavar="N", help="N random types")
     sweep.add_argument("--sizes", type=_sizes, default=SIZES, metavar="LOW:HIGH", help="of q, for "
                        "--farey and --random (%d:%d)" % SIZES)
-    sweep.add_argument("--seed", type=whole(0), default=0, metavar="N", help="of --random (0)")
-    sweep.add_argument("--jobs", type=whole(1), metavar="N", help="work on N types at a time "
+    sweep.add_argument("--seed", type=whole_number(0), default=0, metavar="N", help="of --random (0)")
+    sweep.add_argument("--jobs", type=whole_number(1), metavar="N", help="work on N types at a time "
                        "(default: one per core)")
     sweep.set_defaults(run=sweep_types)
 
@@ -356,11 +355,8 @@ def sweep_types(options):
     from ..prover.workers import count_workers
 
     eps = [x for each in options.eps for x in each]
-    with contextlib.ExitStack() as stack:
-        line = Line()
-        stack.callback(line.clear)
-        executor = stack.enter_context(concurrent.futures.ThreadPoolExecutor(
-            options.jobs or count_workers()))
+    with ProgressLine() as line, concurrent.futures.ThreadPoolExecutor(
+            options.jobs or count_workers()) as executor:
         common = {"executor": executor, "file": options.csv,
                   "progress": lambda *done: line(lambda: "%d of %d types" % done)}
         table = sweep(potential, vectors, eps, **common) if eps else \

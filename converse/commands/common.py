@@ -1,0 +1,223 @@
+"""What the commands share: types of arguments, output, workers, and how a command ends."""
+
+import argparse
+import contextlib
+import logging
+import math
+import os
+import signal
+import sys
+import time
+import warnings
+
+from ..model.problem import InputError
+from ..prover.settings import LIMIT
+from ..prover.signals import ENDING, interruptible
+from ..prover.workers import WorkersGone
+from ..storage import files
+from ..storage.files import ConverseError, NotSaved, plain
+
+BAD, ENDED_BY = 2, 128                  # exit statuses; the signal's number is added to the second
+REFRESH_SECONDS = 0.25                  # between two texts of a ProgressLine
+
+
+# ---- arguments
+
+class Parser(argparse.ArgumentParser):
+    """Bad usage is a ConverseError, so that it becomes one line like every other failure."""
+
+    def error(self, message):
+        raise ConverseError("%s; see %s --help" % (message, self.prog))
+
+
+def whole_number(least):
+    """The type of an argument that is a whole number from least to LIMIT."""
+    def convert(text):
+        try:
+            number = int(text)
+        except ValueError:
+            number = None
+        if number is None or not least <= number <= LIMIT:
+            raise argparse.ArgumentTypeError("'%s' is not a whole number from %d to %d"
+                                             % (text, least, LIMIT))
+        return number
+    return convert
+
+
+def seconds(text):
+    """The type of an argument that is a duration, perhaps infinite."""
+    try:
+        number = float(text)
+    except ValueError:
+        number = math.nan
+    if not number >= 0:
+        raise argparse.ArgumentTypeError("'%s' is not a number of seconds" % text)
+    return number
+
+
+def add_worker_options(p, what, mpi_help):
+    """The options --jobs, --dask, --mpi of a command that works on several `what` at a time."""
+    p.add_argument("--jobs", type=whole_number(1), metavar="N",
+                   help="work on N %s at a time (default: one per core)" % what)
+    p.add_argument("--dask", metavar="ADDRESS", help="let the Dask cluster at ADDRESS work")
+    p.add_argument("--mpi", action="store_true", help=mpi_help)
+
+
+# ---- output
+
+def say(text):
+    """Writes to standard output at once."""
+    sys.stdout.write(text)
+    sys.stdout.flush()
+
+
+def tell(message, command="converse"):
+    """Writes one line to stderr, headed by the command's name, whatever the message contains."""
+    ProgressLine.clear()
+    with contextlib.suppress(OSError):
+        print("%s: %s" % (command, plain(" ".join(str(message).split()))), file=sys.stderr,
+              flush=True)
+
+
+class ProgressLine:
+    """The progress of a command: on a terminal one line of stderr, rewritten a few times a second;
+    elsewhere nothing.  It is a context manager, which clears the line in the end."""
+
+    length = 0                          # of the line that is on the terminal now, whoever wrote it
+
+    def __init__(self, wanted=True):
+        self.shown, self.due = wanted and sys.stderr.isatty(), 0.0
+        self.began = time.monotonic()
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.clear()
+
+    def __call__(self, words):
+        """Shows the time that passed and the text words(), which is called only when it is due."""
+        now = time.monotonic()
+        if self.shown and now >= self.due:
+            self.due = now + REFRESH_SECONDS
+            passed = int(now - self.began)
+            self._write("%d:%02d:%02d %s" % (
+                passed // 3600, passed // 60 % 60, passed % 60, words()))
+
+    @staticmethod
+    def _write(text):
+        with contextlib.suppress(OSError):
+            text = text[:(os.get_terminal_size(sys.stderr.fileno()).columns or 80) - 1]
+            sys.stderr.write("\r" + text.ljust(ProgressLine.length) + ("" if text else "\r"))
+            sys.stderr.flush()
+            ProgressLine.length = len(text)
+
+    @staticmethod
+    def clear():
+        """Clears the terminal's line, so that other lines can follow."""
+        if ProgressLine.length:
+            ProgressLine._write("")
+
+
+# ---- workers
+
+@contextlib.contextmanager
+def executor_of(options):
+    """The executor that --dask or --mpi names, or None."""
+    if options.dask is None and not options.mpi:
+        yield None
+    elif options.mpi:
+        from mpi4py.futures import MPIPoolExecutor
+        with MPIPoolExecutor() as executor:
+            yield executor
+    else:
+        try:
+            from distributed import Client
+        except ImportError:
+            raise ConverseError("--dask needs dask; pip install 'converse-kam[dask]'") from None
+        logging.disable()               # Dask's; failures of its workers are told in one line
+        try:
+            client = Client(options.dask, timeout=10)
+        except (OSError, ValueError, TypeError) as error:
+            raise ConverseError("there is no Dask scheduler at %s (%s); name another address"
+                                % (options.dask, error or type(error).__name__)) from None
+        try:
+            yield client.get_executor()
+        finally:
+            with contextlib.suppress(Exception):        # the scheduler may be gone
+                client.close()
+
+
+def check_mpi(options, module, command="converse"):
+    """Ends the program if --mpi was given without mpi4py.futures' own launcher: then each of
+    several MPI processes runs this module's command, and all would do the same work."""
+    if not options.mpi:
+        return
+    try:
+        import mpi4py.futures  # noqa: F401
+        from mpi4py import MPI
+    except ImportError:
+        raise ConverseError("--mpi needs mpi4py; pip install mpi4py") from None
+    core = sys.modules.get("mpi4py.futures._core") or sys.modules.get("mpi4py.futures._lib")
+    world = MPI.COMM_WORLD
+    if world.Get_size() > 1 and getattr(core, "SharedPool", True) is None:
+        if world.Get_rank() == 0:
+            tell("--mpi: each of the %d processes would do the whole work; to divide it say "
+                 "mpiexec -n %d python -m mpi4py.futures -m %s --mpi ..."
+                 % (world.Get_size(), world.Get_size(), module), command)
+        world.Barrier()                 # a process that ends may take the others with it
+        sys.exit(BAD)
+
+
+# ---- the end of a command
+
+@contextlib.contextmanager
+def _warnings_in_lines(command, unsaved):
+    """Meanwhile a RuntimeWarning is told in one line, except NotSaved: its text is appended to the
+    list `unsaved`, to be part of the command's last line."""
+    def show(message, category, *_):
+        if issubclass(category, NotSaved):
+            unsaved.append(str(message))
+        else:
+            tell(message, command)
+
+    with warnings.catch_warnings():
+        warnings.simplefilter("always", RuntimeWarning)
+        warnings.showwarning = show
+        yield
+
+
+def ended(command, run, interrupted):
+    """The exit status of run(); every failure is one line on stderr, headed by the command's name.
+    interrupted() says what Ctrl-C leaves behind."""
+    heard, unsaved = [], []
+    try:
+        if None in (sys.stdout, sys.stderr):
+            return BAD                  # a standard stream is closed: nowhere to say so
+        for stream in (sys.stdout, sys.stderr):
+            stream.reconfigure(errors="backslashreplace")
+        with interruptible(ENDING, at_end=True) as heard, _warnings_in_lines(command, unsaved):
+            status = run()
+        if not unsaved:
+            return status
+        message = ""
+    except SystemExit as end:           # of --help and --version
+        return end.code
+    except (ConverseError, InputError, MemoryError) as error:
+        message, status = str(error) or "there is not enough memory", BAD
+        if isinstance(error, WorkersGone) and not unsaved:
+            message += "; " + interrupted()
+    except KeyboardInterrupt:
+        message = "interrupted" if unsaved else "interrupted; " + interrupted()
+        status = ENDED_BY + (heard or [signal.SIGINT])[0]
+    except ImportError as error:        # of a late import: memory may lack to map its library
+        message, status = "a part of Python cannot be loaded (%s); give it more memory, or install " \
+                          "it anew" % error, BAD
+    except OSError as error:
+        message, status = "the output cannot be written (%s)" % files.reason(error), BAD
+        with contextlib.suppress(OSError):      # the interpreter must not try to flush it again
+            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    if unsaved:
+        message, status = "; ".join(filter(None, [message, *unsaved])), BAD
+    tell(message, command)
+    return status
