@@ -54,10 +54,14 @@ gappa: $(VENV)/installed
 
 # A proof, the kernels and a failing proof under valgrind's memcheck.
 memcheck: $(VENV)/installed
+	$(VENV)/bin/python tests/kernels/build.py
 	PYTHONMALLOC=malloc valgrind -q --error-exitcode=9 --suppressions=tests/memcheck.supp $(VENV)/bin/python tests/memcheck.py
 
 # Safe path: the clone, where this starts, holds a core without sanitizers.
+sanitize: export CFLAGS = $(SANITIZE)
+sanitize: export LDFLAGS = -fsanitize=address,undefined
 sanitize: $(SANITIZED)/installed
+	$(SANITIZED)/bin/python tests/kernels/build.py
 	PYTHONSAFEPATH=1 LD_PRELOAD="$$(gcc -print-file-name=libasan.so) $$(gcc -print-file-name=libstdc++.so.6)" ASAN_OPTIONS=detect_leaks=0 \
 	UBSAN_OPTIONS=halt_on_error=1:print_stacktrace=1 $(SANITIZED)/bin/pytest $(TWO) tests
 
@@ -78,10 +82,10 @@ arm: tests/tree.c
 	done
 
 bench: $(VENV)/installed
-	$(VENV)/bin/python tests/bench
+	$(VENV)/bin/python experiments/bench
 
 charts: $(VENV)/with-plot
-	$(VENV)/bin/converse-chart docs
+	$(VENV)/bin/python experiments/chart.py docs
 
 # The pictures of docs/ drawn anew, those of proofs, orbits and most experiments; five minutes.  Not:
 # chart-bound and chart-wall (make charts, on a quiet machine; minutes); orbit-finders, which measures

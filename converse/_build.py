@@ -10,7 +10,7 @@ SOURCES = ["arith/apm", "arith/special", "arith/guard", "arith/machine",
            "loewner/problem", "loewner/start",
            *("loewner/" + kind + name for kind in ("", "general_")
              for name in ("scalar", "baseline", "avx2", "avx512")),
-           "model/torus", "search/setup", "search/tree", "kernels",
+           "model/torus", "search/setup", "search/tree",
            "orbits/potential", "orbits/band", "orbits/relax", "orbits/measure", "orbits/enclose",
            "orbits/minplus"]
 SOURCES = ["csrc/%s.c" % name for name in SOURCES]

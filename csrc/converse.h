@@ -119,8 +119,6 @@ const cv_counts *cv_get_counts(const cv_search *s);
 const int *cv_steps(const cv_search *s);                   /* of each node: its orbit's length */
 const cv_history *cv_get_history(const cv_search *s);
 int cv_class(int from);                                    /* of a cell with this from */
-int cv_lanes(const cv_search *s);                          /* prisms that are tried at once */
-int cv_symmetric(const cv_search *s);                      /* are mirror images skipped? */
 /* Method Loewner, V odd: 1 if B > 10/3 for all parameters; 2 if there is one, and this is so at its
    upper end t_1 = 1.  Then the theorem holds for every multiple s >= 1 of these amplitudes, too. */
 int cv_at_once(const cv_search *s);
@@ -129,10 +127,3 @@ int cv_at_once(const cv_search *s);
    method Loewner; from 2 on not before cv_prepare); 8 centre and 9 half-width of v0, 10 and 11 of v1, in radians.  NULL: no memory. */
 char *cv_constant(const cv_search *s, int which);
 void cv_free(char *text);
-
-/* ---- the rigorous routines one at a time, for tests and sceptics -------------------------
-   in: nin decimal strings.  out: nout strings, which the caller frees with cv_free.
-   The work is done in arbitrary precision with dp decimal places or, where as_double is set,
-   by the double-precision instance of the same source. */
-int cv_kernel(const char *name, int as_double, int as_printed, int dp,
-              int nin, const char *const in[], int nout, char *out[]);

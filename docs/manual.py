@@ -21,7 +21,6 @@ SHELLS = {"bash": "bash-completion/completions/%s", "zsh": "zsh/site-functions/_
 SUMMARIES = {
     "commands.prove": "prove that a family of symplectic maps has no invariant tori",
     "check": "verify the theorem of a proof file, independently of its prover",
-    "chart": "measure what is proved how fast, and draw it",
     "commands.map": "map where in parameter space there are no invariant tori, with proofs",
     "commands.orbits": "find periodic orbits of least action, and where they turn hyperbolic",
 }

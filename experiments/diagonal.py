@@ -18,7 +18,8 @@ import sys
 
 import numpy as np
 
-from converse import chart, orbits
+import chart
+from converse import orbits
 from converse.commands.common import ended
 from converse.model.problem import LINE as THESIS_LINE
 

@@ -20,8 +20,7 @@ from test_bounds import beta_at, grid_maxima
 from test_images import exact_inverse, outside, random_prism
 from test_loewner import displacements, variations
 
-from converse import kernels
-
+import kernels
 from truth import (CLOSE, cube_of, cube_point, decimal, eigenvalues, exact, list_prism, mp,
                    point_of, rng_for, step, uniform)
 

@@ -5,7 +5,8 @@ from fractions import Fraction
 from pathlib import Path
 
 import converse
-from converse import kernels
+
+import kernels
 
 INPUTS = Path(__file__).resolve().parent.parent / "inputs"
 

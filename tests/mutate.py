@@ -428,8 +428,6 @@ MUTATIONS = [
     ("search/tree.c", "p->settled &= *n < most && list_unknown", "p->settled &= list_unknown"),
     ("search/tree.c", "    *n = (note){ .cell = *cell, .halves = { -1, -1 } };",
      "    n->cell = *cell;\n    n->halves[0] = n->halves[1] = -1;"),
-    ("thesis/kernel.c", "    if (num_get_apm(r, x) != APM_OK)\n        s->failed = 1;\n",
-     "    num_get_apm(r, x);\n"),
     ("orbits/minplus.c", "((2.0 + fabs(eps) * curvature) * squares",
      "((0.0 + fabs(eps) * curvature) * squares"),
     ("orbits/minplus.c", "((2.0 + fabs(eps) * curvature) * squares",

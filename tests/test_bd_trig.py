@@ -5,8 +5,7 @@ from fractions import Fraction
 import mpmath
 import pytest
 
-from converse import kernels
-
+import kernels
 from truth import DIGITS, TORTURE, decimal, exact, mp, rng_for, uniform
 
 DP = 35

@@ -3,7 +3,8 @@
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from converse import kernels
+import kernels
+
 
 intervals = st.tuples(*[st.decimals(-100, 100, places=15)] * 2).map(sorted)
 

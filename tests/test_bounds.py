@@ -8,8 +8,7 @@ from itertools import product
 import mpmath
 import pytest
 
-from converse import kernels
-
+import kernels
 from truth import (DIGITS, TORTURE, beta, cube_point, decimal, eigenvalues, exact, inverse,
                    list_prism, mp, point_of, rng_for, uniform)
 

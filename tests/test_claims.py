@@ -8,8 +8,10 @@ from pathlib import Path
 import mpmath
 import pytest
 
-from converse import chart, prove, read_input
+from converse import prove, read_input
 from converse.model.problem import LINE
+
+import chart
 
 ROOT = Path(__file__).resolve().parent.parent
 INPUTS = sorted((ROOT / "inputs").glob("*.in"))

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from converse import chart, check
+from converse import check
 from converse.commands import map as map_cli
 from converse.commands import orbits as orbits_cli
 from converse.commands import prove as cli
@@ -19,8 +19,8 @@ from moments import PATIENCE
 ROOT = Path(__file__).resolve().parent.parent
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
 TEXTS = {page.name: page.read_text("utf-8") for page in PAGES}
-PARSERS = {"converse": cli.parser, "converse-check": check.parser, "converse-chart": chart.parser,
-           "converse-map": map_cli.parser, "converse-orbits": orbits_cli.parser}
+PARSERS = {"converse": cli.parser, "converse-check": check.parser, "converse-map": map_cli.parser,
+           "converse-orbits": orbits_cli.parser}
 
 
 @pytest.mark.parametrize("name", [name for name, text in TEXTS.items() if "```python" in text])

@@ -12,8 +12,7 @@ import mpmath
 import pytest
 from conftest import not_sanitized
 
-from converse import kernels
-
+import kernels
 from truth import TORTURE, rng_for
 
 pytestmark = not_sanitized

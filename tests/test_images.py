@@ -6,8 +6,7 @@ from fractions import Fraction
 import mpmath
 import pytest
 
-from converse import kernels
-
+import kernels
 from truth import (CLOSE, DIGITS, TORTURE, cube_of, cube_point, decimal, list_prism, mp, point_of,
                    rng_for, step, uniform)
 

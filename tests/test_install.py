@@ -135,7 +135,7 @@ def test_manual_pages_and_completions(root, tmp_path):
     done = subprocess.run([sys.executable, root / "docs" / "manual.py", tmp_path], cwd=tmp_path,
                           capture_output=True, text=True)
     assert (done.returncode, done.stderr) == (0, "")
-    for entry in ("", "-check", "-chart", "-map", "-orbits"):
+    for entry in ("", "-check", "-map", "-orbits"):
         name = "converse" + entry
         assert ".SH NAME" in (tmp_path / "man" / "man1" / (name + ".1")).read_text("utf-8")
         for file in ("bash-completion/completions/" + name, "zsh/site-functions/_" + name,

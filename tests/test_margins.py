@@ -18,8 +18,7 @@ from test_waves import many_digits  # noqa: F401
 from test_waves import (FRAMES, SITES, UNIT, angles, arguments, beta, draw, margins, sites,
                         straightened)
 
-from converse import kernels
-
+import kernels
 from truth import TORTURE, mp, rng_for, uniform
 
 CASES = 150 * TORTURE

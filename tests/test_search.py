@@ -14,10 +14,11 @@ import mpmath
 import pytest
 
 import converse
-from converse import Problem, kernels
+from converse import Problem
 from converse.model.problem import LINE
 from converse.prover.tree import leaves
 
+import kernels
 from truth import TORTURE, beta, decimal, eigenvalues, exact, inverse, mp, rng_for, uniform
 
 FULL = (("1", "1"), ("1", "1"))

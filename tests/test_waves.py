@@ -9,9 +9,9 @@ from types import SimpleNamespace
 import mpmath
 import pytest
 
-from converse import kernels
 from converse.prover.native import ffi, lib, native_problem
 
+import kernels
 from truth import TORTURE, mp, rng_for
 
 CASES = 1500 * TORTURE
@@ -411,13 +411,13 @@ def test_lanes(monkeypatch):
     for bits in (0, 128, 256, 512):
         monkeypatch.setenv("CONVERSE_VECTORS", str(bits))
         s, tree = searched(patch)
-        trees[lib.cv_lanes(s)] = tree
+        trees[kernels.lanes(s)] = tree
     assert len(trees) > 1 and len(set(trees.values())) == 1 and "U" not in tree
 
 
 def test_symmetry_needs_symmetric_amplitudes():
     def symmetric(*args, **options):
-        return lib.cv_symmetric(searched(patch_of(*args, **options), ("0.8", "0.8"))[0])
+        return kernels.symmetric(searched(patch_of(*args, **options), ("0.8", "0.8"))[0])
 
     a = ("0.4", "0.4", "0.6")
     assert symmetric(THESIS, a) and symmetric(THESIS, a, [("0.001", "0.001", "0")])

@@ -5,9 +5,10 @@ from fractions import Fraction
 import pytest
 
 import converse
-from converse import Problem, kernels
+from converse import Problem
 from converse.model.problem import LINE
 
+import kernels
 from truth import cube_of, cube_point, decimal, point_of, rng_for, step, uniform
 
 REASONS = ("centre", "too big", "too long", "singular", "arithmetic", "disagree")

@@ -48,32 +48,11 @@ int loewner_at_once(const loewner *w, const double x[2], int at_end);
 /* The upper bound of the largest eigenvalue over the torus that belongs to the whole root. */
 double loewner_largest(const loewner *w);
 
-/* The prism of a cell as doubles have it, and for tests B at the corners of the parameters.
-   0: it is too thin for them, or its parameters are too large. */
+/* The prism of a cell as doubles have it.  0: it is too thin for them, or its parameters are too
+   large. */
 typedef struct {
-    double v[2], width[2], p[SLOTS], part[SLOTS][PARAMETERS], loose[SLOTS], l, corner[8];
+    double v[2], width[2], p[SLOTS], part[SLOTS][PARAMETERS], loose[SLOTS], l;
 } loewner_cell;
 int loewner_prism(const loewner *w, const cv_cell *cell, loewner_cell *c);
-
-/* For tests: leaves there, about the points s to t, what no prism would. */
-void loewner_soil(loewner *w, int s, int t);
-
-/* For tests: follows the root's prism from point s <= 0 to point t >= 0.  0: it cannot be done. */
-int loewner_follow(loewner *w, int s, int t);
-
-/* For tests: the bound of the second variation that this orbit gives, with signs of cubic terms or
-   as it is, the l it was made with, how much of it roundings are, and the vectors n from the first
-   to the last site; their number, 0 without a witness. */
-int loewner_bound(loewner *w, int signs, double *bound, double *l, double *rounding, int *first,
-                  double n[][2], int most);
-
-/* For tests: what is known of point n of this orbit.  mu: after loewner_bound, and only where it
-   is not zero. */
-typedef struct {
-    double x[2], column[2][5], bow[2][15], rest[2];     /* the columns: x0's five, then x1's */
-    double straight[SLOTS], bowed[SLOTS], off[SLOTS], reach[SLOTS];
-    double missed[2], force[2], beta[3], d[3], fuzz, mu[2];
-} loewner_point;
-void loewner_look(const loewner *w, int n, loewner_point *p);
 
 #endif

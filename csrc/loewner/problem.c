@@ -68,7 +68,6 @@ int loewner_prism(const loewner *w, const cv_cell *cell, loewner_cell *c)
     }
     B = cell_largest(w, low, high);
     c->l = 2.0 / (B + sqrt((B - 2.0) * (B + 2.0))) * (1.0 - 0x1p-46);   /* off by 5 u before */
-    memcpy(c->corner, w->corner, sizeof c->corner);
     return c->l > 0.0;
 }
 
@@ -325,18 +324,6 @@ void loewner_try(loewner *w, int n, const cv_cell *const cells[], loewner_outcom
 {
     w->engine->try(w->work, w, n, cells, out);
 }
-
-void loewner_soil(loewner *w, int s, int t) { w->engine->soil(w->work, s, t); }
-
-int loewner_follow(loewner *w, int s, int t) { return w->engine->follow(w->work, w, s, t); }
-
-int loewner_bound(loewner *w, int signs, double *bound, double *l, double *rounding, int *first,
-                  double n[][2], int most)
-{
-    return w->engine->bound(w->work, signs, bound, l, rounding, first, n, most);
-}
-
-void loewner_look(const loewner *w, int n, loewner_point *p) { w->engine->look(w->work, n, p); }
 
 double loewner_largest(const loewner *w)
 {

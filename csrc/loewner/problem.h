@@ -13,12 +13,6 @@ typedef struct {
     size_t size;                        /* of what it works in, which begins as zeros */
     void (*try)(void *work, const loewner *w, int n, const cv_cell *const cells[],
                 loewner_outcome *const out[]);
-    /* for tests: loewner.h */
-    void (*soil)(void *work, int s, int t);
-    int (*follow)(void *work, const loewner *w, int s, int t);
-    int (*bound)(void *work, int signs, double *bound, double *l, double *rounding, int *first,
-                 double n[][2], int most);
-    void (*look)(const void *work, int n, loewner_point *p);
 } engine;
 
 extern const engine engine_scalar, engine_baseline, engine_avx2, engine_avx512;     /* three.h */

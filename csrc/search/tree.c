@@ -486,8 +486,6 @@ const char *cv_tree(const cv_search *s, size_t *length)
 const cv_counts *cv_get_counts(const cv_search *s) { return &s->counts; }
 const cv_history *cv_get_history(const cv_search *s) { return &s->history; }
 const int *cv_steps(const cv_search *s) { return s->steps; }
-int cv_lanes(const cv_search *s) { return s->sharp != NULL ? loewner_lanes(s->sharp) : 1; }
-int cv_symmetric(const cv_search *s) { return s->symmetric; }
 int cv_at_once(const cv_search *s) { return s->at_once; }
 void cv_free(char *text) { free(text); }
 

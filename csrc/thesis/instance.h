@@ -16,5 +16,4 @@
 #include "cr_rows.c"
 #include "prismatic.c"
 #include "follow.c"
-#include "kernel.c"
 #include "unit.c"

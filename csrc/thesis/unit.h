@@ -31,8 +31,7 @@ enum { C_T, C_TRACE_MIN, C_TRACE_MAX, C_B, C_LAM_MIN, C_LAM_MAX, N_CONSTANTS };
     int R##prepare_trial(R##unit *u, const box *root, const double herman_start[2],            \
                          apm_t constants[N_CONSTANTS]);                                  \
     int R##unit_constants(R##unit *u, apm_t constants[N_CONSTANTS]);    /* CV_OK or an error */\
-    void R##try_prism(R##unit *u, const box *b, verdict *v);                                   \
-    int R##kernel(R##unit *u, const char *name, int nin, apm_t in[], int nout, apm_t out[]);
+    void R##try_prism(R##unit *u, const box *b, verdict *v);
 
 DECLARE_UNIT(R)
 DECLARE_UNIT()

@@ -1,6 +1,6 @@
 """What docs/speed.md says of times, measured anew.
 
-    python tests/bench [--repeat N] [--older DIRECTORY] [--whole] [WHAT ...]
+    python experiments/bench [--repeat N] [--older DIRECTORY] [--whole] [WHAT ...]
 
 Prints figures and judges nothing.  Machines differ and are shared: a time is the least of N runs
 (3), and ratios within one run say more than seconds.  So --older has the sharper method timed in
@@ -20,11 +20,13 @@ from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
 
-from converse import kernels
 from converse.model.problem import LINE, decimal_text
 from converse.prover import tree_search
 
 ROOT = Path(__file__).resolve().parent.parent.parent
+sys.path.append(str(ROOT / "tests"))
+import kernels  # noqa: E402
+
 COMMAND = str(Path(sys.executable).parent / "converse")
 DIGITS = (10, 20, 35, 50, 100, 200)
 LOWS = ("0.0272", "0.0180", "0.0160", "0.0152", "0.0148", "0.0144", "0.0142", "0.0141", "0.0140")

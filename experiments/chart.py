@@ -1,4 +1,6 @@
-"""The command: converse-chart [DIRECTORY], four charts of what is measured on this machine.
+"""Four charts of what is measured on this machine: speed against accuracy.
+
+    python experiments/chart.py [DIRECTORY] [--quick]
 
 Needs matplotlib (the extra "plot").  All on the line a = b = c/2 = 11.21436 epsilon.
 """
@@ -14,16 +16,18 @@ import random
 import sys
 import time
 from fractions import Fraction
+from pathlib import Path
 
 import converse
+from converse.commands.common import Parser, ended
+from converse.draw import plot
+from converse.draw.plot import BLUE, DARK, ORANGE, PURPLE, VERMILLION
+from converse.model.problem import LINE, Problem
+from converse.storage import files
+from converse.storage.files import ConverseError
 
-from .commands.common import Parser, ended
-from .draw import plot
-from .draw.plot import BLUE, DARK, ORANGE, PURPLE, VERMILLION
-from .model.problem import LINE, Problem
-from .storage import files
-from .storage.files import ConverseError
-from .version import __version__
+sys.path.append(str(Path(__file__).resolve().parent.parent / "tests"))
+import kernels  # noqa: E402
 
 TOP = "0.0280"                          # above it there is nothing left to prove
 
@@ -84,7 +88,7 @@ STYLE = {
 def diagonal():
     """The potential of the map on x_0 = x_1, for converse.orbits: half of trig's there, since both
     coordinates move."""
-    from . import orbits
+    from converse import orbits
 
     half = Fraction(-1, 2)
     return orbits.Fourier({(1,): (0, half), (2,): (0, half)}, "diagonal",
@@ -98,7 +102,7 @@ def last_circle():
     The second variation along an orbit on the circle is positive within the diagonal, and where it
     is across, too, as seen, no segment of the orbit contradicts anything.  One goes through every
     x* of the diagonal: no proof from such an x* gets below."""
-    from . import orbits
+    from converse import orbits
 
     below, above = orbits.onset(diagonal(), *CIRCLE, step=0.0005, width=1e-6, top=0.02)
     return (below.eps + above.eps) / 2
@@ -205,9 +209,9 @@ def width(quick):
             values = [*prism[0], *itertools.chain(*prism[1])]
             repeat = (2000 if quick else 20000) if options else (200 if quick else 2000)
             try:
-                ns = min(float(converse.kernels.call("image_ns", values + [repeat], 1, places,
+                ns = min(float(kernels.call("image_ns", values + [repeat], 1, places,
                                                      **options)[0]) for _ in range(3))
-                prism = converse.kernels.image(prism, places, **options)
+                prism = kernels.image(prism, places, **options)
             except ArithmeticError:         # a matrix could not be inverted
                 break
             halves = [sum(map(abs, row)) for row in prism[1][5:]]
@@ -221,7 +225,7 @@ def taylor_width(extents):
     (p, dp), (v, dv) = PARAMETERS, SUCCESSOR
     for n in POINTS:
         values = [*p, *v, *dp, *dv, *XSTAR, 0, n, 20000]
-        *halves, ns, _ = min((converse.kernels.call("loewner_step", values, 4, 17,
+        *halves, ns, _ = min((kernels.call("loewner_step", values, 4, 17,
                                                     arithmetic="double") for _ in range(3)),
                              key=lambda result: result[2])
         yield "Taylor model", "double", n, float(ns), _ratio(halves, extents[n])
@@ -442,7 +446,7 @@ def table(name, rows):
 
 
 def parser():
-    p = Parser(prog="converse-chart", allow_abbrev=False, description=(
+    p = Parser(prog="chart.py", allow_abbrev=False, description=(
         "Measures on this machine and draws four charts: bound, digits, width, wall."), epilog=(
         "Exit status: 0 all are written; 2 bad usage or directory; 130 interrupted."))
     p.add_argument("directory", nargs="?", default=os.curdir,
@@ -451,7 +455,6 @@ def parser():
                    help="of the charts")
     p.add_argument("--no-caption", action="store_true", help="leave out the captions")
     p.add_argument("--quick", action="store_true", help="leave out what takes long")
-    p.add_argument("--version", action="version", version="converse-chart " + __version__)
     return p
 
 
@@ -484,7 +487,7 @@ def run(options):
 
 def main(argv=None):
     """Runs the command and returns its exit status."""
-    return ended("converse-chart", lambda: run(parser().parse_args(argv)),
+    return ended("chart.py", lambda: run(parser().parse_args(argv)),
                  lambda: "the charts that were finished are kept")
 
 

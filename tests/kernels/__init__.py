@@ -1,11 +1,27 @@
-"""The rigorous C routines one at a time, from exact numbers to exact numbers."""
+"""The rigorous C routines one at a time, from exact numbers to exact numbers: the console, which
+build.py builds."""
 
 from decimal import Decimal
 from fractions import Fraction
+from importlib.machinery import ExtensionFileLoader
+from importlib.util import module_from_spec, spec_from_file_location
 from typing import Any, List, Sequence, Tuple
 
-from .model.problem import Number, decimal_text, parse_number
-from .prover.native import MESSAGES, check, ffi, lib
+from converse.model.problem import Number, decimal_text, parse_number
+from converse.prover import native
+from converse.prover.native import MESSAGES, check
+
+from .build import NAME, path
+
+
+def _load():
+    file = str(path())
+    module = module_from_spec(spec_from_file_location(
+        NAME, file, loader=ExtensionFileLoader(NAME, file)))
+    return module.ffi, module.lib
+
+
+ffi, lib = _load()
 
 Interval = Tuple[Fraction, Fraction]
 Rows = List[List[Fraction]]
@@ -47,17 +63,17 @@ def call(name: str, values: Sequence[Number], nout: int, dp: int, arithmetic: st
         raise ValueError("the arithmetic is 'apm' or 'double', not %r" % (arithmetic,))
     owners = [ffi.new("char[]", _exact(x).encode("utf-8")) for x in values]
     out = ffi.new("char *[]", nout)
-    code = lib.cv_kernel(name.encode("utf-8"), arithmetic == "double", as_printed, dp,
+    code = lib.kernel(name.encode("utf-8"), arithmetic == "double", as_printed, dp,
                          len(owners), ffi.new("char *[]", owners), nout, out)
     texts = [ffi.string(text).decode("ascii") for text in out if text]
     for text in filter(None, out):
         lib.cv_free(text)
-    if code in (lib.CV_EARITHMETIC, lib.CV_ESINGULAR):
+    if code in (native.lib.CV_EARITHMETIC, native.lib.CV_ESINGULAR):
         raise ArithmeticError("%s: %s" % (name, MESSAGES[code]))
-    if code == lib.CV_EARGUMENT and name in TAKES:
+    if code == native.lib.CV_EARGUMENT and name in TAKES:
         raise ValueError("%s: too many or too few numbers, or some that make no sense; it takes %s"
                          % (name, TAKES[name]))
-    if code in (lib.CV_ENUMBER, lib.CV_EARGUMENT):
+    if code in (native.lib.CV_ENUMBER, native.lib.CV_EARGUMENT):
         raise ValueError("%s: %s" % (name, MESSAGES[code]))
     check(code)
     return [Fraction(Decimal(text)) for text in texts]
@@ -81,11 +97,6 @@ def cos(x: Number, dp: int, **options: Any) -> Fraction:
 def sqrt(x: Number, dp: int, **options: Any) -> Fraction:
     """The square root of x to dp decimal places."""
     return call("sqrt", [x], 2, dp, **options)[0]
-
-
-def div(x: Number, y: Number, dp: int, **options: Any) -> Interval:
-    """An interval (lo, hi) that holds x / y."""
-    return _pair(call("div", [x, y], 3, dp, **options))
 
 
 def bound_sin(lo: Number, hi: Number, dp: int, **options: Any) -> Interval:
@@ -162,3 +173,13 @@ def _flat(prism: Prism) -> List[Number]:
 
 def _rows(values: List[Fraction], n: int) -> Rows:
     return [values[i:i + n] for i in range(0, n * n, n)]
+
+
+def lanes(search: Any) -> int:
+    """How many prisms a search of the product's, its handle, tries at once."""
+    return lib.search_lanes(ffi.cast("void *", int(native.ffi.cast("intptr_t", search))))
+
+
+def symmetric(search: Any) -> bool:
+    """Does it skip mirror images?"""
+    return bool(lib.search_symmetric(ffi.cast("void *", int(native.ffi.cast("intptr_t", search)))))

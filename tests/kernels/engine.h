@@ -1,0 +1,96 @@
+/* engine.h - the hooks of one engine; included after it, in its translation unit, since all that it
+   has is static.  All lanes do the same, and the last is looked at. */
+#ifdef LANES
+#include "hooks.h"
+
+/* What other prisms may have left there is not to matter: it is made as strange as can be. */
+static void soil(void *work, int s, int t)
+{
+    batch *const w = work;
+
+    for (int j = ORIGIN + s - 2; j <= ORIGIN + t + 2; j++)
+        for (size_t k = 0; k < sizeof *w->orbit / sizeof(vec); k++)
+            ((vec *)&w->orbit[j])[k] = every((k + (size_t)j) % 3 == 0 ? -0x1p300 : 1e3);
+}
+
+static int follow_root(void *work, const loewner *root, int s, int t)
+{
+    static const cv_cell whole = { { 0, 0, 0, 0, 0 }, { 0, 0, 0, 0, 0 }, 0 };
+    batch *const w = work;
+    loewner_cell c;
+    int good = 1;
+
+    w->root = root;
+    loewner_prism(root, &whole, &c);
+    for (int k = 0; k < LANES; k++)
+        set_lane(w, k, &c);
+    begin(w);
+    follow(w, ORIGIN + s);
+    follow(w, ORIGIN + t);
+    for (int k = 0; k < LANES; k++) {
+        w->first[k] = ORIGIN + s;
+        w->last[k] = ORIGIN + (t > 1 ? t : 1);
+    }
+    for (int j = s; j <= t; j++)
+        good = good && holds(&w->orbit[ORIGIN + j].reached, LANES - 1);
+    return good;
+}
+
+static int bound_root(void *work, int signs, double *bound, double *l, double *rounding, int *first,
+                      double n[][2], int most)
+{
+    enum { K = LANES - 1 };
+    batch *const w = work;
+    const mask turn = witness(w, ~none());
+    const int from = number(&w->from, K), to = number(&w->to, K);
+
+    *l = at(&w->l, K);
+    if (!holds(&turn, K) || to - from >= most)
+        return 0;
+    bound_second_variation(w, turn, signs);
+    *bound = at(&w->bound, K);
+    *rounding = at(&w->rounding, K);
+    *first = from - ORIGIN;
+    for (int j = from; j <= to; j++)
+        for (int i = 0; i < 2; i++)
+            n[j - from][i] = at(&w->orbit[j].n[i], K);
+    return to - from + 1;
+}
+
+static void copy(double *to, const vec *from, int count)
+{
+    for (int k = 0; k < count; k++)
+        to[k] = at(from + k, LANES - 1);
+}
+
+static void look_root(const void *work, int n, known_point *p)
+{
+    const batch *const w = work;
+    const point *const q = w->orbit + ORIGIN + n;
+    const int columns = w->root->columns, *const axis = w->root->axis;
+
+    memset(p, 0, sizeof *p);
+    copy(p->x, q->x, 2);
+    for (int i = 0; i < 2; i++)
+        for (int k = 0, kl = 0; k < columns; k++) {
+            copy(&p->column[i][axis[k]], &q->column[i][k], 1);
+            for (int l = k; l < columns; l++)
+                copy(&p->bow[i][pair(COLUMNS, axis[k], axis[l])], &q->bow[i][kl++], 1);
+        }
+    copy(p->rest, q->rest, 2);
+    copy(p->straight, q->straight, waves_of(w));
+    copy(p->bowed, q->bowed, waves_of(w));
+    copy(p->off, q->off, waves_of(w));
+    copy(p->reach, q->reach, waves_of(w));
+    copy(p->missed, q->missed, 2);
+    copy(p->force, q->force, 2);
+    copy(p->beta, q->beta, 3);
+    copy(p->d, q->d, 3);
+    copy(&p->fuzz, &q->fuzz, 1);
+    copy(p->mu, q->mu, 2);
+}
+
+#define HOOKS_OF(engine) hooks_##engine
+#define HOOKS(engine) HOOKS_OF(engine)
+const hooks HOOKS(ENGINE) = { soil, follow_root, bound_root, look_root };
+#endif

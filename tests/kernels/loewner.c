@@ -1,0 +1,289 @@
+/* loewner.c - the routines of csrc/loewner.  All take doubles only.
+
+   Those of the thesis's waves begin with BOX numbers: centres and half-widths of a, b, c, v0, v1 (as
+   set_patch says), x* and together (0 or 1).  Those of any waves begin with the numbers of waves, at
+   most 4, and of parameters; seven numbers of each wave, k0, k1, phase in radians, amplitude and three
+   parts; centre and half-width of v0 and of v1, the frame and x*. */
+#include <math.h>
+#include <string.h>
+#include <time.h>
+
+#include "console.h"
+#include "hooks.h"
+
+enum { BOX = 13, WAVE = 7, MOST_SHOWN = 4 };            /* numbers of a wave; waves of a problem */
+enum { SITES = 60 };                                    /* no point of an orbit is further */
+enum { POINT = 56, SITE = 69, SHOWN = 13, ANY_SITE = 81, ANY_SHOWN = 11 };
+enum { MOST_MORE = 10, MOST_OUT = 900 };
+
+/* What a routine is asked: the numbers after those of the problem. */
+typedef struct {
+    loewner *w;
+    double more[MOST_MORE];
+    int together, any;                                  /* any: not the thesis's waves */
+} request;
+
+typedef int routine(const request *r, double y[]);      /* 0: it cannot be done */
+
+static const hooks *hooks_of(const loewner *w)
+{
+#define ROW(engine) { &engine, &hooks_##engine },
+    static const struct { const engine *engine; const hooks *hooks; } table[] = { ENGINES(ROW) };
+#undef ROW
+    size_t j = 0;
+
+    while (table[j].engine != w->engine)
+        j++;
+    return table[j].hooks;
+}
+
+static int follow(loewner *w, double s, double t)
+{
+    return hooks_of(w)->follow(w->work, w, (int)s, (int)t);
+}
+
+static void look(const loewner *w, double n, known_point *p)
+{
+    hooks_of(w)->look(w->work, (int)n, p);
+}
+
+/* The orbit of the root's prism from point n or 0 to point 0 or n. */
+static int follow_to(loewner *w, double n) { return follow(w, fmin(n, 0.0), fmax(n, 0.0)); }
+
+/* What is known of a point, of so many slots: returns where it ends. */
+static double *show(double *y, const known_point *p, int slots)
+{
+    const struct { const double *from; int count; } parts[] = {
+        { p->x, 2 }, { p->column[0], 10 }, { p->bow[0], 30 }, { p->rest, 2 },
+        { p->straight, slots }, { p->bowed, slots }, { p->off, slots }, { p->reach, slots },
+        { p->missed, 2 }, { p->force, 2 }, { p->beta, 3 }, { p->d, 3 }, { &p->fuzz, 1 },
+        { p->mu, 2 }
+    };
+
+    for (size_t j = 0; j < sizeof parts / sizeof *parts; j++) {
+        memcpy(y, parts[j].from, (size_t)parts[j].count * sizeof *y);
+        y += parts[j].count;
+    }
+    return y;
+}
+
+/* Index and cuts of five axes -> centres and widths of v0, v1; p, h and loose of a, b, c; l; B at the
+   corners of the parameters (together: at two), the lower end of a first. */
+static int k_cell(const request *r, double y[])
+{
+    cv_cell cell = { { 0, 0, 0, 0, 0 }, { 0, 0, 0, 0, 0 }, 0 };
+    loewner_cell prism;
+    int good;
+
+    for (int j = 0; j < 5; j++) {
+        cell.index[j] = (unsigned long long)fabs(r->more[j]);
+        cell.cuts[j] = (int)fmin(fabs(r->more[5 + j]), 100.0);
+    }
+    good = loewner_prism(r->w, &cell, &prism);
+    memcpy(y, prism.v, sizeof prism.v);
+    memcpy(y + 2, prism.width, sizeof prism.width);
+    for (int j = 0; j < 3; j++) {
+        y[4 + j] = prism.p[j];
+        y[7 + j] = prism.part[j][r->together ? 0 : j];
+        y[10 + j] = prism.loose[j];
+    }
+    y[13] = prism.l;
+    memcpy(y + 14, r->w->corner, sizeof r->w->corner);
+    return good;
+}
+
+/* n -> 2 coordinates, 2 rows of 5 columns, 2 bows of 15, 2 rests of point n, and for 3 waves the reach
+   of columns, bows, all but the columns, and all. */
+static int k_orbit(const request *r, double y[])
+{
+    known_point p;
+    const int good = follow_to(r->w, r->more[0]);
+
+    look(r->w, r->more[0], &p);
+    show(y, &p, 3);
+    return good;
+}
+
+/* n, repeat -> the reaches of both coordinates of point n, ns per step and prism, prisms at once. */
+static int k_step(const request *r, double y[])
+{
+    const double n = r->more[0], repeat = r->more[1];
+    const clock_t begin = clock();
+    known_point p;
+    int good = 1;
+
+    for (int j = 0; j < (int)repeat; j++)
+        good = follow_to(r->w, n);
+    look(r->w, n, &p);
+    memcpy(y, p.reach, 2 * sizeof *y);
+    y[2] = 1e9 * (double)(clock() - begin) / CLOCKS_PER_SEC / fmax(repeat, 1.0) / fmax(fabs(n), 1.0)
+           / loewner_lanes(r->w);
+    y[3] = loewner_lanes(r->w);
+    return good;
+}
+
+/* For the orbit of s..t: bound, l, index of the first site, number of sites (0: no witness), how much
+   of the bound roundings are, the vectors n. */
+static int bound_orbit(const request *r, int signs, double y[])
+{
+    double n[SITES][2] = { { 0.0, 0.0 } };
+    int first = 0;
+
+    if (!follow(r->w, r->more[0], r->more[1]))
+        return 0;
+    y[3] = hooks_of(r->w)->bound(r->w->work, signs, &y[0], &y[1], &y[4], &first, n, SITES);
+    y[2] = first;
+    memcpy(y + 5, n, sizeof n);
+    return 1;
+}
+
+/* s, t, signs -> the same.  signs: those of cubic terms count. */
+static int k_bound(const request *r, double y[]) { return bound_orbit(r, r->more[2] != 0.0, y); }
+
+/* s, t -> of each point of that orbit, at most 13 (11 for any waves, with the reaches along the
+   coordinates and 4 waves), what k_orbit tells, and missed, force, beta, d, fuzz and mu. */
+static int k_sites(const request *r, double y[])
+{
+    double unused[5 + 2 * SITES] = { 0 }, *end = y;
+    const int good = bound_orbit(r, 1, unused);
+
+    for (int j = 0; j < (r->any ? ANY_SHOWN : SHOWN); j++) {
+        known_point p;
+        memset(&p, 0, sizeof p);
+        if (r->more[0] + j <= fmax(r->more[1], 1.0))
+            look(r->w, r->more[0] + j, &p);
+        end = show(end, &p, r->any ? 2 + MOST_SHOWN : 3);
+    }
+    return good;
+}
+
+static int k_largest(const request *r, double y[])      /* B */
+{
+    y[0] = loewner_largest(r->w);
+    return 1;
+}
+
+/* any: of any waves; bounds: with those over the torus; first, others: what the absolute value of the
+   first of the further numbers, and of the others, must be below. */
+typedef struct {
+    const char *name;
+    int more, nout, any, bounds;
+    double first, others;
+    routine *run;
+} row;
+
+static const row kernels[] = {
+    { "loewner_cell", 10, 22, 0, 1, 0x1p60, 0x1p60, k_cell },
+    { "loewner_orbit", 1, POINT, 0, 0, SITES, SITES, k_orbit },
+    { "loewner_step", 2, 4, 0, 0, SITES, 1e9, k_step },
+    { "loewner_bound", 3, 5 + 2 * SITES, 0, 1, SITES, SITES, k_bound },
+    { "loewner_sites", 2, SITE * SHOWN, 0, 1, SITES, SITES, k_sites },
+    { "waves_bound", 3, 5 + 2 * SITES, 1, 1, SITES, SITES, k_bound },
+    { "waves_sites", 2, ANY_SITE * ANY_SHOWN, 1, 1, SITES, SITES, k_sites },
+    { "waves_largest", 0, 1, 1, 1, SITES, SITES, k_largest }
+};
+
+/* ---- the problem, whose numbers are borrowed to read */
+
+/* The thesis's waves. */
+static void set_patch(patch *b, apm_t in[], int together, const apm_t zero)
+{
+    memset(b, 0, sizeof *b);
+    b->n_waves = 3;
+    b->n_parameters = together ? 1 : 3;
+    b->frame[0] = b->frame[3] = 1;
+    for (int i = 0; i < 3; i++) {
+        b->k[i][0] = i != 1;
+        b->k[i][1] = i != 0;
+        *b->phase[i] = *zero;
+        *b->amplitude[i] = *in[i];
+        for (int m = 0; m < b->n_parameters; m++)
+            *b->part[i][m] = together || m == i ? *in[5 + i] : *zero;
+    }
+    for (int i = 0; i < 2; i++) {
+        *b->angle[i] = *in[3 + i];
+        *b->half[i] = *in[8 + i];
+        *b->xstar[i] = *in[10 + i];
+    }
+}
+
+/* Any waves, and as many further numbers.  0: the arguments are no patch. */
+static int set_any(patch *b, const question *q, int more)
+{
+    apm_t *const in = q->in;
+    const int waves = q->nin < 2 ? 0 : (int)apm_get_d(in[0]), rest = 2 + WAVE * waves;
+    const int parameters = q->nin < 2 ? 0 : (int)apm_get_d(in[1]);
+
+    if (waves < 1 || waves > MOST_SHOWN || parameters < 0 || parameters > PARAMETERS ||
+        q->nin != rest + 10 + more)
+        return 0;
+    memset(b, 0, sizeof *b);
+    b->n_waves = waves;
+    b->n_parameters = parameters;
+    for (int i = 0; i < waves; i++) {
+        apm_t *const wave = in + 2 + WAVE * i;
+        for (int j = 0; j < 2; j++)
+            b->k[i][j] = (int)apm_get_d(wave[j]);
+        *b->phase[i] = *wave[2];
+        *b->amplitude[i] = *wave[3];
+        for (int m = 0; m < PARAMETERS; m++)
+            *b->part[i][m] = *wave[4 + m];
+    }
+    for (int j = 0; j < 2; j++) {
+        *b->angle[j] = *in[rest + 2 * j];
+        *b->half[j] = *in[rest + 2 * j + 1];
+        *b->xstar[j] = *in[rest + 8 + j];
+    }
+    for (int j = 0; j < 4; j++)
+        b->frame[j] = (int)apm_get_d(in[rest + 4 + j]);
+    return 1;
+}
+
+/* ---- the answer */
+
+static int run(const row *kernel, request *r, const patch *problem, const question *q)
+{
+    double y[MOST_OUT] = { 0 };
+    int good;
+
+    r->w = loewner_new(problem, kernel->bounds);
+    if (r->w == NULL)
+        return CV_ENOMEM;
+    hooks_of(r->w)->soil(r->w->work, -SITES, SITES);
+    good = kernel->run(r, y);
+    loewner_free(r->w);
+    for (int j = 0; j < q->nout && good; j++)
+        good = apm_set_d(q->out[j], y[j]) == APM_OK;
+    return good ? CV_OK : CV_EARITHMETIC;
+}
+
+int loewner_answer(const question *q)
+{
+    const row *kernel = kernels, *const end = kernels + sizeof kernels / sizeof *kernels;
+    request r = { 0 };
+    patch problem;
+    apm_t zero;
+    int status;
+
+    while (kernel < end && strcmp(q->name, kernel->name) != 0)
+        kernel++;
+    if (kernel == end)
+        return NOT_MINE;
+    r.any = kernel->any;
+    if (q->nout != kernel->nout ||
+        (r.any ? !set_any(&problem, q, kernel->more) : q->nin != BOX + kernel->more))
+        return CV_EARGUMENT;
+    for (int j = 0; j < kernel->more; j++) {
+        r.more[j] = apm_nearest_d(q->in[q->nin - kernel->more + j]);
+        if (!(fabs(r.more[j]) < (j == 0 ? kernel->first : kernel->others)))
+            return CV_EARITHMETIC;
+    }
+    apm_init(zero);
+    if (!r.any) {
+        r.together = apm_sgn(q->in[BOX - 1]) != 0;
+        set_patch(&problem, q->in, r.together, zero);
+    }
+    status = run(kernel, &r, &problem, q);
+    apm_clear(zero);
+    return status;
+}
