@@ -335,15 +335,6 @@ def test_parameters_that_move_together(made_up):
         assert "<" not in text
 
 
-@pytest.mark.parametrize("text", ["0", "1", "-1", "0.30725", "-0.5", "100000", "1e300", "1e-300",
-                                  "123456789.0123456789", "1" * 400, "0.000001", LONG, "4/3"])
-def test_numbers(text):
-    value = Fraction(text)
-    assert Fraction(captions.number(value)) == value
-    assert len(captions.number(value)) <= max(len(text), 6)
-    assert abs(Fraction(captions.number(value, abs(value) / 1000)) - value) <= abs(value) / 1000
-
-
 def test_legend_overlaps_nothing(made_up, monkeypatch):
     """With four kinds and x*, small or large."""
     pytest.importorskip("matplotlib")

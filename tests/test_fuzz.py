@@ -17,7 +17,7 @@ from test_check import definite, sealed, tree_of, true_bound, with_field, with_t
 
 import converse
 from converse import InputError, Problem, Proof
-from converse.model.problem import decimal_text
+from converse.model.exact import decimal_text
 from converse.storage.files import ConverseError
 
 from checker import check

@@ -17,7 +17,8 @@ from fractions import Fraction
 import pytest
 
 from converse import ConverseError, Problem, Proof, prove
-from converse.model.problem import LINE, decimal_text
+from converse.model.exact import decimal_text
+from converse.model.problem import LINE
 from converse.prover import run, tree, tree_search, workers
 
 from moments import PATIENCE

@@ -11,8 +11,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from converse import ConverseError, Problem, prove
-from converse.model.problem import (IDENTITY, THESIS, InputError, decimal_text, exact_decimal,
-                                    read_input)
+from converse.model.exact import decimal_text
+from converse.model.problem import IDENTITY, THESIS, InputError, read_input
 from converse.prover import native
 
 GOOD = "0.3085 0.00125\n0.3085 0.00125\n0.617 0.0025\n\n1.0 1.0\n1.0 1.0\n\n"
@@ -113,21 +113,6 @@ def test_messages_name_the_file(tmp_path):
     for missing in tmp_path / "missing.in", tmp_path:
         with pytest.raises(InputError, match="cannot be read"):
             read_input(missing)
-
-
-@given(st.decimals(allow_nan=False, allow_infinity=False, min_value=-10**9, max_value=10**9))
-def test_decimal_text_is_exact(x):
-    assert Fraction(decimal_text(Fraction(x))) == Fraction(x)
-    assert exact_decimal(x) == x
-
-
-def test_decimal_text():
-    assert decimal_text(Fraction(617, 1000)) == "0.617"
-    assert decimal_text(Fraction(1, 2 ** 30)) == str(Decimal(5 ** 30).scaleb(-30))
-    long = Fraction(3, 5 ** 20000)          # longer than Python's limit on int <-> str
-    assert Fraction(Decimal(decimal_text(long))) == long
-    with pytest.raises(ValueError):
-        decimal_text(Fraction(1, 3))
 
 
 # ---- named ranges

@@ -14,7 +14,8 @@ from fractions import Fraction
 import pytest
 
 from converse import ConverseError, Counts, Problem, Proof, Settings, check, prove, read_input
-from converse.model.problem import IDENTITY, decimal_text
+from converse.model.exact import decimal_text
+from converse.model.problem import IDENTITY
 from converse.prover import native, run, tree_search
 from converse.prover.tree import leaves
 from converse.storage import files

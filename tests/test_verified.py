@@ -16,7 +16,7 @@ import pytest
 from conftest import ROOT, not_sanitized
 
 from converse import Problem, check, prove, read_input
-from converse.model.problem import decimal_text
+from converse.model.exact import decimal_text
 
 from moments import PATIENCE, wait_until
 

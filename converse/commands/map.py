@@ -8,7 +8,7 @@ import sys
 from ..draw import plot
 from ..maps.map import PROVED, Map
 from ..maps.region import REGIONS
-from ..model.problem import decimal_text, exact
+from ..model.exact import decimal_text, exact
 from ..storage import files
 from ..storage.files import ConverseError
 from ..version import __version__

@@ -8,10 +8,10 @@ import os
 import random
 import re
 import sys
-from fractions import Fraction
 
 from ..draw import plot
 from ..draw.figure import format_of
+from ..model.exact import exact
 from ..storage import files
 from ..storage.files import ConverseError, plain
 from ..version import __version__
@@ -38,20 +38,13 @@ NO_MINIMUM = "saddle", "stationary", "not stationary"
 
 # ---- what is read
 
-def _number(text):
-    """A decimal or a fraction, exactly; ValueError if it is none."""
-    if not re.fullmatch(r"[^e_]*(e[-+]?\d{1,3})?", text, re.ASCII | re.IGNORECASE):
-        raise ValueError("an exponent beyond what a double knows")
-    return Fraction(text)
-
-
 def _eps(text):
     """'0.01' or 'LOW:HIGH:STEP': a list of floats."""
     try:
-        ends = [_number(word) for word in text.split(":")]
+        ends = [exact(word.strip()) for word in text.split(":")]
         if len(ends) not in (1, 3) or not all(abs(x) < 10 ** 9 for x in ends):
             raise ValueError
-    except (ValueError, ZeroDivisionError):
+    except ValueError:
         raise argparse.ArgumentTypeError("'%s' is no number and no range LOW:HIGH:STEP"
                                          % text) from None
     if len(ends) == 1:
@@ -82,10 +75,10 @@ def _sizes(text):
 
 def _target(text):
     try:
-        target = [_number(word) for word in text.split(",")]
+        target = [exact(word.strip()) for word in text.split(",")]
         if len(target) > 2 or not all(0 < w < 1 for w in target):
             raise ValueError
-    except (ValueError, ZeroDivisionError):
+    except ValueError:
         raise argparse.ArgumentTypeError(
             "'%s' is not one or two decimals or fractions between 0 and 1: w0,w1" % text) from None
     return target
@@ -119,10 +112,10 @@ def read_potential(source):
         words = words.split()
         try:
             k = tuple(map(int, words[:-2]))
-            term = tuple(map(_number, words[-2:]))
+            term = tuple(map(exact, words[-2:]))
             if len(words) not in (3, 4) or k in terms or any(abs(x) > 10 ** 9 for x in term):
                 raise ValueError
-        except (ValueError, ZeroDivisionError):
+        except ValueError:
             raise ConverseError("%s: line %d is no new term 'k0 k1 cosine sine' (one angle: 'k "
                                 "cosine sine')" % (source, number)) from None
         terms[k] = term

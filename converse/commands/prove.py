@@ -8,7 +8,8 @@ import sys
 import time
 from dataclasses import replace
 
-from ..model.problem import decimal_text, parse_number, read_input
+from ..model.exact import decimal_text, exact
+from ..model.problem import read_input
 from ..prover.report import header, verdict
 from ..prover.settings import AS_PRINTED, METHODS, REGION, THEOREM, UNDECIDED, Settings
 from ..storage import files
@@ -33,7 +34,7 @@ class ListInputs(argparse.Action):
 
 def _decimal(text):
     try:
-        return decimal_text(parse_number(text))
+        return decimal_text(exact(text))
     except ValueError as error:
         raise argparse.ArgumentTypeError(str(error)) from None
 

@@ -2,9 +2,9 @@
 
 import math
 import textwrap
-from decimal import Context, Decimal
 from fractions import Fraction
 
+from ..model.exact import short_text
 from ..model.problem import IDENTITY, frame_text, wave_text
 from ..prover import tree
 
@@ -12,7 +12,6 @@ NAMES = {"P": "proved", "S": "skipped by symmetry", "?": "untried", "U": "undeci
 STAR = "x*, whose successors these are"
 LINE = 78                               # characters of a line of the head, at most
 LEAST = 1 / 128                         # what is not proved is drawn no smaller, as part of a side
-FEWEST, MOST = 6, 10000                 # digits of a number
 CONCLUSIONS = {
     "theorem": "no invariant tori",
     "region": "no invariant tori whose successor of x* lies in this part of the torus",
@@ -24,7 +23,7 @@ CONCLUSIONS = {
 def head(proof):
     """The lines on what is proved: the parameters, exactly, and the conclusion."""
     problem = proof.problem
-    low, high = ([number(c + sign * h) for c, h in zip(problem.centre[:-2], problem.half)]
+    low, high = ([short_text(c + sign * h) for c, h in zip(problem.centre[:-2], problem.half)]
                  for sign in (-1, 1))
     names = "abc" if problem.general is None else ["p of " + wave_text(wave) for wave in problem.waves]
     ranges = ["%s < %s < %s" % (a, name, b) if a != b else "%s = %s" % (name, a)
@@ -86,18 +85,3 @@ def star(proof):
             return None
         places.append(float((offset / half + 1) / 2))
     return tuple(places)
-
-
-def number(x, error=0):
-    """A rational number as a decimal, no more than the error away; where there is none of sensible
-    length, as a quotient."""
-    x = Fraction(x)
-    digits = FEWEST
-    while digits <= MOST:
-        context = Context(prec=digits)
-        value = context.divide(Decimal(x.numerator), Decimal(x.denominator))
-        if abs(Fraction(value) - x) <= error:
-            value = value.normalize(context)
-            return format(value, "f") if -7 < value.adjusted() < 16 else str(value).lower()
-        digits *= 2
-    return str(x)

@@ -9,6 +9,7 @@ import base64
 import html as markup
 import os
 
+from ..model.exact import short_text
 from ..prover import tree
 from ..prover.report import verdict
 from ..storage import files
@@ -196,7 +197,7 @@ def _tick(problem, axis, place):
     half = problem.half[axis - 2]
     value = problem.centre[axis - 2] + (place - 1) * half
     words = {0: "0", 1: "", -1: "-"}.get(value) if value in (0, 1, -1) \
-        else captions.number(value, half / 100)
+        else short_text(value, half / 100)
     text = "(%s) (%s)" % ("p" if value else "", words)
     if axis == 0:
         x, shift = at, -0.5

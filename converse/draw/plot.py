@@ -7,6 +7,7 @@ import io
 import math
 from fractions import Fraction
 
+from ..model.exact import short_text
 from ..prover import tree
 from ..storage import files
 from ..version import __version__
@@ -121,7 +122,7 @@ def _axis(problem, axes, k):
     low, side = float(centre - origin - strip), float(2 * strip)
     axis = (axes.xaxis, axes.yaxis)[k]
     axis.set_label_text(r"$v_%d / \pi$" % k + (
-        " %s %s" % ("-" if origin > 0 else "+", captions.number(abs(origin))) if origin else ""))
+        " %s %s" % ("-" if origin > 0 else "+", short_text(abs(origin))) if origin else ""))
     (axes.set_xlim, axes.set_ylim)[k](low, low + side)
     axis.set_major_formatter("{x:.7g}")
     if origin:                          # long numbers

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any, Dict, Iterator, List, Optional, Tuple, Union
 
-from ..model.problem import decimal_text, exact
+from ..model.exact import decimal_text, exact
 from ..storage import files
 from ..storage.files import ConverseError
 from ..version import __version__

@@ -9,7 +9,8 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Callable, Optional
 
-from ..model.problem import Number, Problem, decimal_text, exact
+from ..model.exact import Number, decimal_text, exact
+from ..model.problem import Problem
 from ..prover import native
 from ..prover.run import Path
 from ..prover.settings import Settings

@@ -4,8 +4,8 @@ import json
 import re
 from fractions import Fraction
 
-from .problem import (HIGHEST, MOST_PARAMETERS, MOST_WAVES, InputError, Problem, decimal_text,
-                      exact, interval, is_decimal)
+from .exact import decimal_text, exact, is_decimal
+from .problem import HIGHEST, MOST_PARAMETERS, MOST_WAVES, InputError, Problem, interval
 
 PHASES = {"sin": Fraction(0), "cos": Fraction(1, 2)}    # sin(k.y + pi / 2) = cos k.y
 CONSTANT = "constant"

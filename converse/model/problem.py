@@ -1,17 +1,16 @@
 """The problem: a potential, the patch of parameters it has, and the angles of a successor."""
 
 import os
-import re
 from dataclasses import dataclass
-from decimal import Decimal
 from fractions import Fraction
 from functools import cached_property
 from math import gcd
 from typing import IO, TYPE_CHECKING, List, NoReturn, Optional, Sequence, Tuple, Union
 
+from .exact import Ends, Number, exact, is_decimal, outward, range_text
+
 NAMES = ("a", "b", "c", "v0", "v1")
 LABELS = ("a", "b", "c", "theta[0]", "theta[1]")        # as the input's documentation calls them
-MAX_EXPONENT = 300
 PLACES = 40                             # to which what is no finite decimal is enclosed
 THESIS = (1, 0), (0, 1), (1, 1)         # the waves of a, b and c
 # The thesis's line is a = b = c/2 = LINE epsilon: this decimal defines epsilon here.  The thesis's
@@ -20,12 +19,8 @@ THESIS = (1, 0), (0, 1), (1, 1)         # the waves of a, b and c
 LINE = Fraction("11.21436")
 MOST_WAVES, MOST_PARAMETERS, HIGHEST = 16, 3, 100       # the last: of what k and frames have
 IDENTITY = 1, 0, 0, 1
-NUMBER = re.compile(r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]{1,9})?")
-RATIO = re.compile(r"[+-]?[0-9]+/[0-9]*[1-9][0-9]*")
 
-Number = Union[int, str, Decimal, Fraction]
-Range = Tuple[Number, Number]
-Ends = Tuple[Fraction, Fraction]        # what becomes of a Range
+Range = Tuple[Number, Number]           # what becomes of it: Ends
 Wave = Tuple[int, int, Fraction]
 Frame = Tuple[int, int, int, int]
 Numbers = Tuple[Fraction, ...]
@@ -365,78 +360,7 @@ def interval(name, value):
         raise type(error)("%s: %s" % (name, error)) from None
     if low > high:
         raise ValueError("%s: the lower end, %s, is above the upper one, %s" % (name, *ends))
-    scale = 10 ** PLACES
-    if not is_decimal(low):
-        low = Fraction(low.numerator * scale // low.denominator, scale)
-    if not is_decimal(high):
-        high = Fraction(-(-high.numerator * scale // high.denominator), scale)
-    return low, high
-
-
-def exact(x: Number) -> Fraction:
-    """The number x, exactly.  TypeError, ValueError: it is none, or out of range."""
-    if isinstance(x, str):
-        return parse_number(x)
-    if isinstance(x, bool) or not isinstance(x, (int, Fraction, Decimal)):
-        raise TypeError("%r is not an exact number: give an int, a Fraction, a Decimal or a string "
-                        "such as '0.3085' or '63/64'" % (x,))
-    if isinstance(x, Decimal):
-        return parse_number(str(x))
-    return _in_range(Fraction(x), x)
-
-
-def _in_range(value, given):
-    if value and not Fraction(1, 10 ** MAX_EXPONENT) <= abs(value) <= 10 ** MAX_EXPONENT:
-        raise ValueError("'%.40s' is out of range" % given)
-    return value
-
-
-def parse_number(text: str) -> Fraction:
-    """The exact value of a decimal string, such as 1.25e-3, or of a ratio, such as 63/64;
-    ValueError says what is wrong."""
-    if RATIO.fullmatch(text):
-        return _in_range(Fraction(text), text)
-    if not NUMBER.fullmatch(text):
-        raise ValueError("'%.40s' is not a decimal number" % text)
-    value = Decimal(text)
-    if abs(value.adjusted()) > MAX_EXPONENT:
-        raise ValueError("'%.40s' is out of range" % text)
-    return Fraction(value)
-
-
-def _odd_part(n):
-    """n without its factors 2 and 5, and how often the one that stands more often does."""
-    twos = (n & -n).bit_length() - 1
-    n >>= twos
-    fives = 0
-    while n % 5 == 0:
-        n //= 5
-        fives += 1
-    return n, max(twos, fives)
-
-
-def is_decimal(x):
-    return _odd_part(x.denominator)[0] == 1
-
-
-def exact_decimal(x):
-    """The rational number x, which must be a finite decimal, as a Decimal of the same value."""
-    x = Fraction(x)
-    rest, places = _odd_part(x.denominator)
-    if rest != 1:
-        raise ValueError("%s is not a finite decimal" % x)
-    digits = Decimal(x.numerator * (10 ** places // x.denominator)).as_tuple()
-    return Decimal((digits.sign, digits.digits, -places))
-
-
-def decimal_text(x):
-    """The same as a string, exactly."""
-    return str(exact_decimal(x))
-
-
-def range_text(low, high):
-    """A range for a short line."""
-    return "%.10g" % low if low == high else "%.10g..%.10g" % (low, high)
+    return outward(low, high, PLACES)
 
 
 def _sum_text(factors, names):
@@ -508,7 +432,7 @@ def read_input(source: Union[str, "os.PathLike[str]", IO]) -> Problem:
         words = lines[used].split()
         used += 1
         try:
-            values = [parse_number(word) for word in words]
+            values = list(map(exact, words))
         except ValueError as error:
             fail(error, want)
         if len(values) != 2:

@@ -9,6 +9,7 @@ from fractions import Fraction
 from math import isqrt
 from typing import NamedTuple
 
+from ..model.exact import exact
 from ..storage.files import plain
 
 UNIT = 10 ** 60                         # what the constants below are rounded down to
@@ -19,18 +20,6 @@ class Mediant(NamedTuple):
     p: tuple
     q: int
     address: str                        # the turns, l or r, that led to it
-
-
-def exact(w):
-    """A number as a Fraction: an integer, a Fraction, or text such as "0.618" or "1/10"."""
-    if isinstance(w, float):
-        raise ValueError("%r: a double is not exact; give a fraction or decimals as text, for "
-                         "example Fraction(1, 10), '1/10' or '0.1'" % w)
-    try:
-        return Fraction(w)
-    except (TypeError, ValueError, ZeroDivisionError):
-        raise ValueError("%s: is no number; give a fraction or decimals as text, for example "
-                         "'1/10' or '0.1'" % plain(repr(w))) from None
 
 
 def _largest(holds):

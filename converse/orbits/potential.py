@@ -14,6 +14,7 @@ from typing import Any, Callable, Dict, Optional, Sequence, Tuple
 import numpy as np
 
 from .._native import ffi, lib
+from ..model.exact import pi_bounds, root_bounds
 from ..prover.native import check
 
 Bounds = Tuple[Fraction, Fraction]
@@ -377,43 +378,20 @@ def _sum_text(parts):
     return ("-" if text.startswith(" -") else "") + text[3:] or "0"
 
 
-def _root(x, digits):
-    """Two Fractions around the square root of a Fraction, 10^-digits apart."""
-    scale = 10 ** digits
-    low = math.isqrt(x.numerator * scale ** 2 // x.denominator)
-    return Fraction(low, scale), Fraction(low + 1, scale)
-
-
 def _root_up(x):
     """Not below the square root, by at most 10^-9."""
-    return _root(Fraction(math.ceil(x * 10 ** 18), 10 ** 18), 9)[1] if x else Fraction(0)
+    return root_bounds(Fraction(math.ceil(x * 10 ** 18), 10 ** 18), 9)[1] if x else Fraction(0)
 
 
 def _trig_scale(digits):
     """1/M_trig, M_trig = sqrt(207 + 33 sqrt 33)/(8 sqrt 2): 1/M^2 = 128/(207 + 33 sqrt 33)."""
-    low, high = _root(Fraction(33), digits + 5)
-    return (_root(128 / (207 + 33 * high), digits + 5)[0],
-            _root(128 / (207 + 33 * low), digits + 5)[1])
-
-
-def _pi(digits):
-    """Two Fractions around pi, by Machin's formula: an alternating series of decreasing terms lies
-    between any two successive sums."""
-    def arctan(n):
-        total, k = Fraction(0), 0
-        while True:
-            term = Fraction(1, (2 * k + 1) * n ** (2 * k + 1))
-            if term < Fraction(1, 10 ** (digits + 5)):
-                return (total, total + term) if k % 2 == 0 else (total - term, total)
-            total += term if k % 2 == 0 else -term
-            k += 1
-
-    (low5, high5), (low239, high239) = arctan(5), arctan(239)
-    return 16 * low5 - 4 * high239, 16 * high5 - 4 * low239
+    low, high = root_bounds(Fraction(33), digits + 5)
+    return (root_bounds(128 / (207 + 33 * high), digits + 5)[0],
+            root_bounds(128 / (207 + 33 * low), digits + 5)[1])
 
 
 def _standard_scale(digits):
-    low, high = _pi(digits + 2)
+    low, high = pi_bounds(digits + 2)
     return 1 / (4 * high ** 2), 1 / (4 * low ** 2)
 
 

@@ -8,7 +8,8 @@ from fractions import Fraction
 from pathlib import Path
 from typing import Dict, List, Optional, Tuple
 
-from ..model.problem import Problem, decimal_text
+from ..model.exact import decimal_text
+from ..model.problem import Problem
 from ..storage.files import ConverseError
 from .settings import Settings
 

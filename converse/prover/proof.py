@@ -7,7 +7,8 @@ from dataclasses import asdict, dataclass, field, fields
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Dict, List, Optional, Tuple, Union
 
-from ..model.problem import IDENTITY, NAMES, NUMBER, Problem, decimal_text, parse_number
+from ..model.exact import DECIMAL, decimal_text, exact
+from ..model.problem import IDENTITY, NAMES, Problem
 from ..storage import files
 from ..storage.files import ConverseError
 from ..version import __version__
@@ -285,7 +286,7 @@ def _at_once(values, problem):
 
 
 def _ends(values, name):
-    centre, half = map(parse_number, values[name].split())
+    centre, half = map(exact, values[name].split())
     if half < 0:
         raise ValueError("the half-width of %s is negative" % name)
     return centre - half, centre + half
@@ -293,7 +294,7 @@ def _ends(values, name):
 
 def _number(text):
     """The text, which must be that of a decimal number."""
-    if not NUMBER.fullmatch(text):
+    if not DECIMAL.fullmatch(text):
         raise ValueError("'%.40s' is not a decimal number" % text)
     return text
 

@@ -2,8 +2,8 @@
 
 import math
 
-from ..draw.captions import number
-from ..model.problem import IDENTITY, exact_decimal, frame_text, wave_text
+from ..model.exact import decimal_text, short_text
+from ..model.problem import IDENTITY, frame_text, wave_text
 from ..storage.files import plain
 from . import tree
 from .settings import AS_PRINTED, LIMIT, REGION, THEOREM, UNDECIDED
@@ -12,6 +12,7 @@ PLUSES = "+" * 48
 MAP = ("y' = y + J', J' = J - dV(y), ", "V(y) = -a sin y0 - b sin y1 - c sin(y0 + y1)",
        "x* and v : the angles y at one time and at the next, modulo 2 pi",
        "Tori : invariant graphs J = P + S'(y) over all angles, P constant, S periodic and C1")
+PLACES = 6                              # of a bound, at least
 POINT = 1e-10                           # half-width of an angle, in units of pi, that is tiny
 WAVES = "V(y) = - the sum of"           # in general
 METHODS = {
@@ -94,9 +95,10 @@ def _potential(problem):
     """The waves, exactly."""
     lines = []
     for wave, p, *parts in zip(problem.waves, problem.amplitude, *problem.parts):
-        moves = "".join(" %s %s t[%d]" % ("-" if part < 0 else "+", _bound(abs(part)), m)
+        moves = "".join(" %s %s t[%d]" % ("-" if part < 0 else "+",
+                                          decimal_text(abs(part), PLACES), m)
                         for m, part in enumerate(parts, 1) if part)
-        lines.append("p %s, p = %s%s" % (wave_text(wave), _bound(p), moves))
+        lines.append("p %s, p = %s%s" % (wave_text(wave), decimal_text(p, PLACES), moves))
     if problem.parts:
         lines += ["for -1 < %s < 1" % ", ".join("t[%d]" % m
                                                 for m in range(1, len(problem.parts) + 1))]
@@ -105,15 +107,10 @@ def _potential(problem):
 
 def _range(name, low, high, exactly=True):
     """The bounds of a range, exactly, or to the six places of 1989."""
-    low, high = (_bound(x) if exactly else "%f" % x for x in (low, high))
+    low, high = (decimal_text(x, PLACES) if exactly else "%f" % x for x in (low, high))
     if exactly and low == high:
         return "%s = %s" % (name, low)
     return "%s < %s < %s" % (low, name, high)
-
-
-def _bound(x):
-    x = exact_decimal(x)
-    return "{:.{}f}".format(x, max(6, -x.as_tuple().exponent))
 
 
 def _gaps(proof):
@@ -129,8 +126,8 @@ def _gaps(proof):
         return lines
     for leaf in undecided[:1]:
         lines += ["The first of them : %s." % ", ".join(
-            "%s < v[%d] / pi < %s" % (number(c - h, h / 100), i, number(c + h, h / 100)) if h else
-            "v[%d] / pi = %s" % (i, number(c))
+            "%s < v[%d] / pi < %s" % (short_text(c - h, h / 100), i, short_text(c + h, h / 100))
+            if h else "v[%d] / pi = %s" % (i, short_text(c))
             for i, (c, h) in enumerate(zip(leaf.centre, leaf.half)))]
     stuck = any(leaf.depth < proof.depth and min(leaf.half) < POINT for leaf in undecided)
     if stuck and proof.method == "loewner":

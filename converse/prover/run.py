@@ -8,7 +8,8 @@ from dataclasses import replace
 from decimal import Decimal
 from typing import Any, Callable, Dict, Optional, Tuple, Union
 
-from ..model.problem import IDENTITY, NAMES, Number, Problem, decimal_text, exact
+from ..model.exact import Number, decimal_text, exact
+from ..model.problem import IDENTITY, NAMES, Problem
 from ..storage.backup import Keeper
 from ..storage.files import ConverseError
 from ..version import __version__

@@ -20,7 +20,8 @@ from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
 
-from converse.model.problem import LINE, decimal_text
+from converse.model.exact import decimal_text
+from converse.model.problem import LINE
 from converse.prover import tree_search
 
 ROOT = Path(__file__).resolve().parent.parent.parent

@@ -7,7 +7,7 @@ from importlib.machinery import ExtensionFileLoader
 from importlib.util import module_from_spec, spec_from_file_location
 from typing import Any, List, Sequence, Tuple
 
-from converse.model.problem import Number, decimal_text, parse_number
+from converse.model.exact import Number, decimal_text, exact
 from converse.prover import native
 from converse.prover.native import MESSAGES, check
 
@@ -47,7 +47,7 @@ TAKES = {
 def _exact(x: Number) -> str:
     """An int, a Fraction or a Decimal of finite decimals, or a string, for the C side."""
     if isinstance(x, str):
-        return decimal_text(parse_number(x)) if "/" in x else x
+        return decimal_text(exact(x)) if "/" in x else x
     if isinstance(x, bool) or not isinstance(x, (int, Fraction, Decimal)):
         raise TypeError("%r is not an exact number: give an int, a Fraction, a Decimal or a "
                         "decimal string" % (x,))

@@ -1,0 +1,188 @@
+"""Exact numbers: rationals that are read and written without error, and enclosures of those that
+are irrational.
+
+Every exact number of the package is a Fraction.  It is read by exact(), from whatever a user may
+give, and written by decimal_text() if it is a finite decimal, by short_text() otherwise, and by
+rounded_text() and interval_text(), rounded outwards, where it is a bound.
+"""
+
+import math
+import re
+from decimal import Context, Decimal
+from fractions import Fraction
+from typing import Tuple, Union
+
+MAX_EXPONENT = 300
+FEWEST, MOST = 6, 10000                 # digits of short_text
+DECIMAL = re.compile(r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]{1,9})?")
+RATIO = re.compile(r"[+-]?[0-9]+/[0-9]*[1-9][0-9]*")
+
+Number = Union[int, str, Decimal, Fraction]
+Ends = Tuple[Fraction, Fraction]        # the lower and the upper end of an interval
+
+
+# ---- reading
+
+def exact(x: Number) -> Fraction:
+    """The number x.  A string is a decimal, such as "1.25e-3", or a ratio, such as "63/64".
+
+    TypeError: x is not an exact number, above all if it is a float, which is seldom the number that
+    was meant.  ValueError: a string is not a number, or the number is out of range."""
+    if isinstance(x, (str, Decimal)):
+        return _parsed(str(x))
+    if isinstance(x, bool) or not isinstance(x, (int, Fraction)):
+        raise TypeError("%.200r is not an exact number: give an int, a Fraction, a Decimal or a "
+                        "string such as '0.3085' or '63/64'" % (x,))
+    return _in_range(Fraction(x), x)
+
+
+def _parsed(text):
+    if RATIO.fullmatch(text):
+        return _in_range(Fraction(text), text)
+    if not DECIMAL.fullmatch(text):
+        raise ValueError("%r is not a decimal number" % text[:40])
+    value = Decimal(text)
+    if abs(value.adjusted()) > MAX_EXPONENT:
+        raise ValueError("'%.40s' is out of range" % text)
+    return Fraction(value)
+
+
+def _in_range(value, given):
+    if value and not Fraction(1, 10 ** MAX_EXPONENT) <= abs(value) <= 10 ** MAX_EXPONENT:
+        raise ValueError("'%.40s' is out of range" % given)
+    return value
+
+
+# ---- writing
+
+def is_decimal(x: Fraction) -> bool:
+    """Is x a finite decimal?"""
+    return _odd_part(x.denominator)[0] == 1
+
+
+def decimal_text(x: Union[int, Decimal, Fraction], places: int = -1) -> str:
+    """The rational number x, which must be a finite decimal, exactly; with places >= 0 without an
+    exponent and with at least so many digits after the point."""
+    x = Fraction(x)
+    rest, needed = _odd_part(x.denominator)
+    if rest != 1:
+        raise ValueError("%s is not a finite decimal" % x)
+    digits = Decimal(x.numerator * (10 ** needed // x.denominator)).as_tuple()
+    value = Decimal((digits.sign, digits.digits, -needed))
+    return str(value) if places < 0 else "{:.{}f}".format(value, max(places, needed))
+
+
+def _odd_part(n):
+    """n without its factors 2 and 5, and the larger of their exponents."""
+    twos = (n & -n).bit_length() - 1
+    n >>= twos
+    fives = 0
+    while n % 5 == 0:
+        n //= 5
+        fives += 1
+    return n, max(twos, fives)
+
+
+def short_text(x: Fraction, error: Fraction = Fraction(0)) -> str:
+    """A decimal no more than the error away from x; a ratio if that takes too many digits."""
+    x = Fraction(x)
+    digits = FEWEST
+    while digits <= MOST:
+        context = Context(prec=digits)
+        value = context.divide(Decimal(x.numerator), Decimal(x.denominator))
+        if abs(Fraction(value) - x) <= error:
+            value = value.normalize(context)
+            return format(value, "f") if -7 < value.adjusted() < 16 else str(value).lower()
+        digits *= 2
+    return str(x)
+
+
+def range_text(low: Fraction, high: Fraction) -> str:
+    """A range, to ten digits, for a short line."""
+    return "%.10g" % low if low == high else "%.10g..%.10g" % (low, high)
+
+
+# ---- rounding in a direction
+
+def rounded(x: Fraction, places: int, up: bool) -> Fraction:
+    """x rounded down or up to so many digits after the point."""
+    scaled = x * 10 ** places
+    return Fraction(math.ceil(scaled) if up else math.floor(scaled), 10 ** places)
+
+
+def outward(low: Fraction, high: Fraction, places: int) -> Ends:
+    """The interval with both ends rounded outwards, but for those that are finite decimals."""
+    return (low if is_decimal(low) else rounded(low, places, up=False),
+            high if is_decimal(high) else rounded(high, places, up=True))
+
+
+def rounded_text(x: Fraction, digits: int, up: bool) -> str:
+    """x >= 0 rounded down or up to so many significant digits, such as 1.3e-21."""
+    if not x:
+        return "0"
+    order = math.floor(math.log10(x.numerator) - math.log10(x.denominator))
+    while x >= Fraction(10) ** (order + 1):
+        order += 1
+    while x < Fraction(10) ** order:
+        order -= 1
+    scaled = x / Fraction(10) ** (order - digits + 1)
+    text = str(math.ceil(scaled) if up else math.floor(scaled))     # 10^digits at most
+    return "%s.%se%d" % (text[0], text[1:digits], order + len(text) - digits)
+
+
+def interval_text(low: Fraction, high: Fraction, most: int) -> str:
+    """An interval, its ends rounded outwards: to a place or two after the first in which they
+    differ, and to at most so many."""
+    places = 2
+    while places < most and (high - low) * 10 ** places < 1:
+        places += 1
+    return "from %s to %s" % tuple(
+        decimal_text(rounded(x, places, up), places) for x, up in ((low, False), (high, True)))
+
+
+# ---- irrational numbers
+
+def pi_bounds(digits: int) -> Ends:
+    """pi to 10^-digits, by Machin's formula: an alternating series of decreasing terms lies
+    between any two successive sums."""
+    def arctan(n):
+        total, k = Fraction(0), 0
+        while True:
+            term = Fraction(1, (2 * k + 1) * n ** (2 * k + 1))
+            if term < Fraction(1, 10 ** (digits + 5)):
+                return (total, total + term) if k % 2 == 0 else (total - term, total)
+            total += term if k % 2 == 0 else -term
+            k += 1
+
+    (low5, high5), (low239, high239) = arctan(5), arctan(239)
+    return 16 * low5 - 4 * high239, 16 * high5 - 4 * low239
+
+
+def root_bounds(x: Fraction, digits: int) -> Ends:
+    """The square root of x >= 0, to 10^-digits."""
+    scale = 10 ** digits
+    low = math.isqrt(x.numerator * scale ** 2 // x.denominator)
+    return Fraction(low, scale), Fraction(low + 1, scale)
+
+
+def sine_bounds(turns: Fraction, digits: int) -> Ends:
+    """sin(pi turns), to 10^-digits; exactly, where it is 0, 1 or -1.
+
+    Taylor's series in integers, in units of 10^-(digits + 10), at an angle from 0 to pi/2 that is
+    off by less than 2.  Each term is off by less than 2, since the division adds less than 1 and
+    multiplies what the term before is off by with (pi/2)^2/6 < 0.42 at most.  The terms decrease
+    and alternate, so that those behind a term which is found to be 0 add up to less than 2, too."""
+    t = Fraction(turns) % 2
+    sign, t = (-1, t - 1) if t >= 1 else (1, t)
+    t = min(t, 1 - t)
+    if t in (0, Fraction(1, 2)):
+        return (sign * 2 * t,) * 2
+    unit = 10 ** (digits + 10)
+    angle = math.floor(pi_bounds(digits + 10)[0] * t * unit)
+    total, term, k = 0, angle, 1
+    while term:
+        total += term
+        term = -term * angle * angle // (unit * unit * (k + 1) * (k + 2))
+        k += 2
+    off = 2 * k + 4                             # there were (k - 1)/2 terms, and the last, 0
+    return Fraction(sign * total - off, unit), Fraction(sign * total + off, unit)

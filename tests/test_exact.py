@@ -1,0 +1,123 @@
+"""Exact numbers: what is read is what was written, and what is rounded is rounded outwards."""
+
+from decimal import Decimal
+from fractions import Fraction
+
+import mpmath
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from converse.model.exact import (decimal_text, exact, interval_text, outward, pi_bounds,
+                                  root_bounds, rounded, rounded_text, short_text, sine_bounds)
+
+LONG = "0." + "0123456789" * 12
+positive = st.fractions(min_value=Fraction(1, 10 ** 40), max_value=10 ** 40)
+
+
+# ---- reading and writing
+
+@pytest.mark.parametrize("x, value", [
+    ("0.3085", "0.3085"), ("-.5", "-1/2"), ("5.", 5), ("1.25e-3", "1/800"), ("63/64", "63/64"),
+    ("+4/6", "2/3"), (Decimal("1E+2"), 100), (7, 7), (Fraction(1, 3), "1/3")])
+def test_numbers_are_read(x, value):
+    assert exact(x) == Fraction(value)
+
+
+@pytest.mark.parametrize("x, error, words", [
+    (0.1, TypeError, "0.1 is not an exact"), (True, TypeError, "not an exact"),
+    (None, TypeError, "not an exact"), ("x", ValueError, "'x' is not a decimal"),
+    ("", ValueError, "not a decimal"), ("1/0", ValueError, "not a decimal"),
+    ("1_0", ValueError, "not a decimal"), (" 1", ValueError, "not a decimal"),
+    ("\x1b[1m", ValueError, r"'\\x1b\[1m' is not"), ("nan", ValueError, "not a decimal"),
+    (Decimal("inf"), ValueError, "not a decimal"), ("\u0661", ValueError, "not a decimal"),
+    ("1e301", ValueError, "out of range"), ("1e-999999999", ValueError, "out of range"),
+    (10 ** 301, ValueError, "out of range"), ("1/1" + "0" * 301, ValueError, "out of range")])
+def test_what_is_no_number(x, error, words):
+    with pytest.raises(error, match=words):
+        exact(x)
+
+
+@given(st.decimals(allow_nan=False, allow_infinity=False, min_value=-10**9, max_value=10**9),
+       st.integers(0, 30))
+def test_decimal_text_is_exact(x, places):
+    for text in decimal_text(Fraction(x)), decimal_text(x, places):
+        assert Fraction(text) == Fraction(x)
+    assert "E" not in text and len((text + ".").split(".")[1]) >= places
+
+
+def test_decimal_text():
+    assert decimal_text(Fraction(617, 1000)) == "0.617"
+    assert decimal_text(Fraction(1, 2 ** 30)) == str(Decimal(5 ** 30).scaleb(-30))
+    assert decimal_text(Fraction(617, 1000), 6) == "0.617000" and decimal_text(-3, 1) == "-3.0"
+    long = Fraction(3, 5 ** 20000)          # longer than Python's limit on int <-> str
+    assert Fraction(Decimal(decimal_text(long))) == long
+    with pytest.raises(ValueError, match="1/3 is not a finite decimal"):
+        decimal_text(Fraction(1, 3))
+
+
+@pytest.mark.parametrize("text", ["0", "1", "-1", "0.30725", "-0.5", "100000", "1e300", "1e-300",
+                                  "123456789.0123456789", "1" * 400, "0.000001", LONG, "4/3"])
+def test_short_text(text):
+    value = Fraction(text)
+    assert Fraction(short_text(value)) == value
+    assert len(short_text(value)) <= max(len(text), 6)
+    assert abs(Fraction(short_text(value, abs(value) / 1000)) - value) <= abs(value) / 1000
+
+
+# ---- rounding
+
+@given(st.fractions(), st.integers(0, 30))
+def test_rounded(x, places):
+    down, up = rounded(x, places, up=False), rounded(x, places, up=True)
+    assert down <= x <= up and up - down in (0, Fraction(1, 10 ** places))
+    assert (up == down) == ((x * 10 ** places).denominator == 1)
+
+
+def test_outward():
+    half, third = Fraction(1, 2), Fraction(1, 3)
+    assert outward(third, third, 2) == (Fraction("0.33"), Fraction("0.34"))
+    assert outward(-third, half, 0) == (-1, half)
+
+
+@given(positive, st.integers(2, 6))
+def test_rounded_text(x, digits):
+    down, up = rounded_text(x, digits, up=False), rounded_text(x, digits, up=True)
+    assert Fraction(down) <= x <= Fraction(up)
+    assert Fraction(up) - Fraction(down) <= x / 10 ** (digits - 1)
+    assert len(down.partition("e")[0]) == digits + 1
+    assert rounded_text(Fraction(999999), 2, up=True) == "1.0e6" and rounded_text(0, 2, True) == "0"
+
+
+@given(st.fractions(), positive)
+def test_interval_text(low, width):
+    ends = low, low + width
+    _, down, _, up = interval_text(*ends, 40).split()
+    assert Fraction(down) <= ends[0] and ends[1] <= Fraction(up)
+    places = len(down.partition(".")[2])
+    assert 2 <= places <= 40 and Fraction(up) - Fraction(down) <= width + Fraction(2, 10 ** places)
+
+
+# ---- irrational numbers
+
+def holds(ends, value, digits):
+    """Is the true value between the ends, and are these as close as they are to be?"""
+    low, high = ends
+    assert mpmath.mpf(low.numerator) / low.denominator <= value
+    assert value <= mpmath.mpf(high.numerator) / high.denominator
+    assert high - low <= Fraction(1, 10 ** digits)
+
+
+@pytest.mark.parametrize("digits", [0, 1, 15, 60, 500])
+def test_irrational_numbers(digits):
+    with mpmath.workdps(digits + 60):
+        holds(pi_bounds(digits), +mpmath.pi, digits)
+        for x in "0", "2", "33", "1e-30", "1/3":
+            value = mpmath.mpf(Fraction(x).numerator) / Fraction(x).denominator
+            holds(root_bounds(Fraction(x), digits), mpmath.sqrt(value), digits)
+        for turns in map(Fraction, ("1/3", "-1/7", "0.4999999", "0.5000001", "999/1000", "1/10000",
+                                    "7/4", "12345/67", "1.0000001")):
+            value = mpmath.sinpi(mpmath.mpf(turns.numerator) / turns.denominator)
+            holds(sine_bounds(turns, digits), value, digits)
+    for k in range(-8, 9):
+        assert sine_bounds(Fraction(k, 2), digits) == ((0, 1, 0, -1)[k % 4],) * 2
