@@ -11,8 +11,7 @@ SOURCES = ["arith/apm", "arith/special", "arith/guard", "arith/machine",
            *("loewner/" + kind + name for kind in ("", "general_")
              for name in ("scalar", "baseline", "avx2", "avx512")),
            "model/torus", "search/setup", "search/tree",
-           "orbits/potential", "orbits/band", "orbits/relax", "orbits/measure", "orbits/enclose",
-           "orbits/minplus"]
+           "orbits/potential", "orbits/band", "orbits/relax", "orbits/measure", "orbits/minplus"]
 SOURCES = ["csrc/%s.c" % name for name in SOURCES]
 
 # The flags are part of the proof: no fused, reordered or extended floating-point arithmetic.

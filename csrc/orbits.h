@@ -6,8 +6,8 @@
    base_j = origin + (j p mod q)/q: the kinetic part of its gradient needs u alone.
    Symmetric matrices are stored as three numbers, the entries 00, 01 and 11.
 
-   These are doubles without promises, but for potentials: see there.  What is proved with them
-   is proved elsewhere. */
+   These are doubles without promises, but for potentials and the least action: see there.  What is
+   proved with them is proved elsewhere. */
 
 enum { CV_FOURIER, CV_POLY, CV_FF, CV_PYTHON };         /* kinds of potentials */
 
@@ -62,63 +62,6 @@ void cv_growth(long q, const double (*d)[3], double growth[2]);
 /* The count closest pairs of q points on the torus, closest first.  Returns how many there are, or
    CV_ESTOPPED. */
 long cv_pairs(int n, long q, const double (*x)[2], long count, long *i, long *j, double *distance);
-
-/* ---- proved orbits: a state in decimals; docs/orbits-proof.md.  Here, promises are kept. ---- */
-
-typedef struct cv_exact cv_exact;
-
-enum {                      /* which bound */
-    CV_GRADIENT,            /* >= the Euclidean norm of the state's gradient */
-    CV_NOISE,               /* no promise: about the least that can be had of CV_GRADIENT */
-    CV_ACTION_LOW, CV_ACTION_HIGH,      /* around its action per point less the straight orbit's */
-    CV_DET_LOW, CV_DET_HIGH,            /* around the product of det D_j */
-    CV_GROWTH_LOW, CV_GROWTH_HIGH       /* around the modulus of an eigenvalue of D_{q-1} ... D_0 */
-};
-
-/* Those of these functions that take long return CV_ESTOPPED when Python wants an end: then the
-   state can only be freed.
-
-   A state with potential of this kind and these terms (see cv_potential), of type (p, q), with
-   displacements u.  number: eps, bounds of |V''| and of the Lipschitz constant of V'', and the
-   origin's coordinates, as exact decimals.  On success *o must be freed. */
-int cv_exact_new(cv_exact **o, int kind, int n, int terms, const int *k, const long p[2], long q,
-                 const char *const number[5], const double (*u)[2]);
-void cv_exact_free(cv_exact *o);
-
-/* Rounds the displacements to dp decimal places and computes gradient, Hessian and action with as
-   many.  amplitude: of all
-   cosines, then of all sines, each within 10^-dp of the truth.  CV_GRADIENT, CV_ACTION_LOW and
-   CV_ACTION_HIGH are bounds then. */
-int cv_exact_evaluate(cv_exact *o, long dp, const char *const amplitude[]);
-
-/* CV_OK: the Hessian of the state evaluated last, + shift, is positive definite.  CV_ESINGULAR: it is
-   not.  No promise. */
-int cv_exact_bends(cv_exact *o, const char *shift);
-/* A step of Newton's method with the Hessian + shift, from what was evaluated last; no promise.
-   CV_ESINGULAR: that is not positive definite; nothing is moved. */
-int cv_exact_newton(cv_exact *o, const char *shift);
-/* Remembers the displacements, or goes back to those remembered. */
-int cv_exact_keep(cv_exact *o, int back);
-
-/* CV_OK: the Hessian of the state evaluated last, and of every n-fold copy of it, is proved to have
-   no eigenvalue below m > 0.  CV_ESINGULAR: it is not. */
-int cv_exact_least(cv_exact *o, const char *m);
-
-enum {                      /* the eigenvalues of D_{q-1} ... D_0 with n = 2 */
-    CV_UNDECIDED,           /* CV_GROWTH_HIGH bounds the moduli of both */
-    CV_REAL,                /* CV_GROWTH_LOW and CV_GROWTH_HIGH enclose the modulus of one: proved */
-    CV_COMPLEX              /* proved: both have the same modulus */
-};
-
-/* Encloses the pivots D_j of every orbit whose blocks beta_j are within `away` of those of the
-   state evaluated last, away < m: CV_DET_LOW and CV_DET_HIGH, and, n = 2, the eigenvalues, as *kind
-   says.  CV_ESINGULAR: it could not be done. */
-int cv_exact_pivots(cv_exact *o, const char *m, const char *away, int *kind);
-
-/* A bound, and coordinate i of the displacement of point j, as exact decimals; the caller frees
-   with cv_free.  NULL: no memory. */
-char *cv_exact_bound(const cv_exact *o, int which);
-char *cv_exact_point(const cv_exact *o, long j, int i);
 
 /* ---- the least action over all orbits: minplus.c */
 

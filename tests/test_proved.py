@@ -7,16 +7,23 @@ the derivative of the map; potentials written anew; Hessians of copies by Bloch'
 import math
 import re
 import signal
+import subprocess
+import sys
+import threading
 from dataclasses import replace
 from fractions import Fraction
+from types import SimpleNamespace
 
 import mpmath
 import numpy as np
 import pytest
+from flint import arb, arb_mat, ctx, fmpq
 
 from converse import ConverseError, orbits
-from converse.orbits import potential, proved
-from converse.orbits.proved import NotProved, lib, prove
+from converse.orbits import enclosure, potential, proved
+from converse.orbits.enclosure import Enclosure
+from converse.orbits.exponents import growth
+from converse.orbits.proved import NotProved, prove
 
 from truth import TORTURE, mp, rng_for
 
@@ -437,64 +444,102 @@ def test_flat_and_foreign():
 
 # ---- Ctrl-C
 
-@pytest.fixture
-def asked():
-    """What cv_python_interrupts does is put into asked[0]; how often it was asked, into asked[1]."""
-    does = [lambda: None, 0]
-
-    def interrupts():
-        does[1] += 1
-        does[0]()
-        return 0
-
-    define = proved.ffi.def_extern(name="cv_python_interrupts", error=1,
-                                   onerror=potential._interrupted)
-    define(interrupts)
-    yield does
-    define(potential.cv_python_interrupts)
-
-
-@pytest.mark.parametrize("name, p, pivots", [("standard", (317,), 4), ("trig", (290, 387), 8)])
-def test_ctrl_c_is_noticed_everywhere(asked, name, p, pivots):
-    """All functions ask once in 256 points in each of their loops over the points, and end wherever
-    they are told to; the state is good for nothing then but can be freed."""
-    state = orbits.follow(getattr(orbits, name), p, 512, [1.5 if len(p) == 1 else 0.03])[0]
-
-    def work(k, exact):
-        return (lambda: exact.evaluate(40), lambda: exact.bends(Fraction(0)),
-                lambda: exact.newton(Fraction(0)), lambda: exact.least(Fraction(1, 10 ** 7)),
-                lambda: exact.pivots(Fraction(1, 10 ** 7), Fraction(1, 10 ** 20)))[k]()
+@pytest.mark.parametrize("name, p, q", [("standard", (317,), 512), ("trig", (5, 7), 9)])
+def test_ctrl_c_is_noticed_everywhere(name, p, q, monkeypatch):
+    """Wherever it is looked for, which is once in 256 points; and all is as if nothing had been."""
+    state = orbits.follow(getattr(orbits, name), p, q, [1.5 if len(p) == 1 else 0.03])[0]
+    asked, last = 0, None
 
     def strike():
-        if asked[1] == last:
+        nonlocal asked
+        asked += 1
+        if asked == last:
             signal.raise_signal(signal.SIGINT)
 
-    q = state.q
-    for k, points in enumerate((q, q, 3 * q - 2, 2 * q, pivots * q - 1)):
-        for last in [None, *range(1, points // 256 + 1)]:
-            exact = proved._Exact(state)
-            if k:
-                exact.evaluate(40)
-            asked[:] = strike, 0
-            if last is None:
-                assert work(k, exact) is not False
-                assert asked[1] >= points // 256
-                continue
-            with pytest.raises(KeyboardInterrupt):
-                work(k, exact)
-            assert asked[1] == last
-            with pytest.raises(KeyboardInterrupt):
-                exact.evaluate(40)
-            assert asked[1] == last
-            asked[0] = lambda: None
+    monkeypatch.setattr(enclosure, "look_up", strike)
+    monkeypatch.setattr(ctx, "prec", 77)
+    orbit = prove(state)
+    assert ctx.prec == 77 and asked >= 15 * max(1, q // 256)
+    for last in range(1, asked + 1):
+        asked = 0
+        with pytest.raises(KeyboardInterrupt):
+            prove(state)
+        assert (ctx.prec, asked) == (77, last)
+    last = None
+    assert prove(state).report() == orbit.report()
 
 
-def test_ctrl_c_among_pairs(asked):
+def test_a_thread_ends_when_it_is_told():
+    state = orbits.follow(orbits.standard, (317,), 512, [1.5])[0]
+    begun, task = threading.Event(), potential.Stoppable(lambda: begun.set() or prove(state, 900))
+    ended = []
+
+    def run():
+        try:
+            task()
+        except KeyboardInterrupt:
+            ended.append(True)
+
+    with enclosure.alone():                     # it waits for its turn
+        thread = threading.Thread(target=run)
+        thread.start()
+        begun.wait()
+        task.stop.set()
+    thread.join()
+    assert ended == [True] and prove(state).label == "proved"
+
+
+def test_proofs_side_by_side():
+    """The precision is one number for all threads: what is proved must not depend on the others."""
+    cases = [(found(*CASES[i]), digits) for i, digits in ((0, 20), (6, 60), (14, 5), (9, 120))]
+    alone = [prove(*case) for case in cases]
+    proofs = [None] * 12
+
+    def work(i):
+        proofs[i] = prove(*cases[i % 4])
+
+    interval = sys.getswitchinterval()
+    sys.setswitchinterval(1e-5)
+    try:
+        threads = [threading.Thread(target=work, args=(i,)) for i in range(len(proofs))]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+    finally:
+        sys.setswitchinterval(interval)
+    for i, orbit in enumerate(proofs):
+        true = alone[i % 4]
+        assert (orbit.radius, orbit.least, orbit.action, orbit.exponents, orbit.displacements) == (
+            true.radius, true.least, true.action, true.exponents, true.displacements)
+
+
+def test_without_python_flint():
+    """Orbits are found without it; a proof says what is missing, and the command in time."""
+    code = ("import sys; sys.modules['flint'] = None\n"
+            "from converse import ConverseError, orbits\n"
+            "state = orbits.follow(orbits.standard, (1,), 3, [0.5])[0]\n"
+            "try: orbits.prove(state)\n"
+            "except ConverseError as error: print(error)\n"
+            "from converse.orbits.cli import main\n"
+            "sys.exit(main(['find', 'standard', '1/3', '0.5', '--prove']))")
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
+    assert done.returncode == 2 and done.stdout.count("\n") == done.stderr.count("\n") == 1
+    for said in done.stdout, done.stderr:
+        assert "needs python-flint" in said and "pip install 'converse-kam[orbits]'" in said
+
+
+def test_ctrl_c_among_pairs():
     """Many points above each other: all pairs have to be looked at."""
     state = orbits.straight(orbits.trig, (0, 1), 4099)
-    asked[0] = lambda: signal.raise_signal(signal.SIGINT)
-    with pytest.raises(KeyboardInterrupt):
-        state.pairs(800)
+    define = potential.ffi.def_extern(name="cv_python_interrupts", error=1,
+                                      onerror=potential._interrupted)
+    define(lambda: signal.raise_signal(signal.SIGINT) or 0)
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            state.pairs(800)
+    finally:
+        define(potential.cv_python_interrupts)
 
 
 def test_report():
@@ -515,15 +560,62 @@ def test_report():
 # ---- numbers one at a time
 
 
-def test_logarithms():
-    rng = rng_for("logarithms")
-    with mpmath.workdps(120):
-        for _ in range(300 * TORTURE):
-            x = Fraction(*(rng.randrange(1, 10**rng.randrange(1, 40)) for _ in range(2)))
-            x *= Fraction(10) ** rng.choice([0, 0, rng.randrange(-2000, 2000)])
-            low, high = proved.log_bounds(x)
-            assert inside(mpmath.log(mp(x)), (low, high)) and high - low < Fraction(1, 10**50)
-        assert proved.log_bounds(Fraction(1))[0] <= 0 <= proved.log_bounds(Fraction(1))[1]
+def test_exact_numbers():
+    rng = rng_for("exact numbers")
+    for _ in range(500):
+        x = Fraction(rng.randrange(-10**30, 10**30)) * Fraction(2) ** rng.randrange(-200, 200)
+        ctx.prec = 200
+        try:
+            assert enclosure.lower(enclosure.ball(x)) == enclosure.upper(enclosure.ball(x)) == x
+            third = enclosure.ball(x / 3)
+            assert enclosure.lower(third) <= x / 3 <= enclosure.upper(third)
+            assert (enclosure.lower(third) < enclosure.upper(third)) == (x.numerator % 3 != 0)
+        finally:
+            ctx.prec = 53
+
+
+def test_matrices():
+    """inverse is one, of what is positive definite; norm bounds every matrix of a ball."""
+    rng = rng_for("matrices")
+    for _ in range(300):
+        a, b, c = (Fraction(rng.randrange(-99, 100), rng.randrange(1, 9)) for _ in range(3))
+        x = arb_mat(2, 2, [enclosure.ball(i) for i in (a, b, b, c)])
+        turned = enclosure.inverse(x)
+        assert (turned is None) == (a <= 0 or a * c <= b * b)
+        if turned is not None:
+            assert (x * turned).contains(arb_mat(2, 2, [1, 0, 0, 1]))
+            assert (turned[0, 1] - turned[1, 0]).contains(arb(0))
+        off = [Fraction(rng.randrange(5), 7) for _ in range(3)]
+        wide = arb_mat(2, 2, [arb(i, r) for i, r in zip(x.entries(), map(enclosure.ball, (
+            off[0], off[1], off[1], off[2])))])
+        signs = [rng.choice((-1, 1)) for _ in range(3)]
+        h = [float(i + s * r) for i, s, r in zip((a, b, c), signs, off)]
+        size = np.abs(np.linalg.eigvalsh([[h[0], h[1]], [h[1], h[2]]])).max()
+        assert size <= float(enclosure.norm(wide)) * (1 + 1e-12)
+
+
+def test_potentials():
+    """At points with junctions among them, in the balls, which are small."""
+    rng = rng_for("potentials")
+    for name, true in V.items():
+        ours = given(name)
+        state = orbits.straight(ours, (0,) * ours.n, 1)
+        for _ in range(40 * TORTURE):
+            base = [Fraction(rng.choice([rng.randrange(97), 0, 97, 48]), 97) for _ in range(ours.n)]
+            u = [rng.choice([rng.uniform(-1, 1), 0.0, 0.5, 0.25, -1e-30]) for _ in range(ours.n)]
+            with enclosure.alone():
+                ctx.prec = 200
+                local = Enclosure(state, Fraction(1)).law(ours, 60)
+                found = local([fmpq(x.numerator, x.denominator) for x in base],
+                              [arb(x) for x in u])
+                found = [(enclosure.lower(x), enclosure.upper(x)) for x in found]
+            with mpmath.workdps(70):
+                value, gradient, h = true([mp(x + Fraction(y)) for x, y in zip(base, u)])
+                for x, ends in zip([value, *gradient, *(h[i][j] for i in range(ours.n)
+                                                        for j in range(i, ours.n))], found):
+                    assert mp(ends[0]) - mpmath.mpf(10) ** -60 <= x
+                    assert x <= mp(ends[1]) + mpmath.mpf(10) ** -60
+                    assert ends[1] - ends[0] < Fraction(1, 10**50)
 
 
 def test_rounded_text():
@@ -547,7 +639,6 @@ def test_bounds_of_the_potentials():
 
     for name, potential in V.items():
         ours = given(name)
-        exact = proved._Exact(orbits.straight(ours, (0,) * ours.n, 1))
         seen = [0.0, 0.0]
         with mpmath.workdps(40):
             for _ in range(200 * TORTURE):
@@ -559,15 +650,27 @@ def test_bounds_of_the_potentials():
                 difference = [[b - a for a, b in zip(*rows)] for rows in zip(hx, hy)]
                 seen[0] = max(seen[0], norm(hx))
                 seen[1] = max(seen[1], norm(difference) / float(mpmath.sqrt(sum(b * b for b in d))))
-        assert seen[0] <= exact.curvature * (1 + Fraction(1, 10**9)) < 2 * Fraction(seen[0])
-        assert seen[1] <= exact.lipschitz * (1 + Fraction(1, 10**9)) < 3 * Fraction(seen[1])
+        assert seen[0] <= Fraction(ours.curvature) * (1 + Fraction(1, 10**9)) < 2 * Fraction(seen[0])
+        assert seen[1] <= Fraction(ours.lipschitz) * (1 + Fraction(1, 10**9)) < 3 * Fraction(seen[1])
 
 
-# ---- the kernels with so few places that roundings matter
+# ---- what is summed up, with so few places that roundings matter
+
+
+def enclosed(state):
+    return Enclosure(state, Fraction(repr(state.eps)))
+
+
+@pytest.fixture
+def few(monkeypatch):
+    """Balls hardly better than an ulp."""
+    monkeypatch.setattr(enclosure, "BITS", 7)
+    with enclosure.alone():
+        yield
 
 
 def rough(rng):
-    """A minimum, its displacements a little off, and so few places that every ulp counts."""
+    """A minimum, its displacements a little off, and so few places that every rounding counts."""
     case = rng.choice([case for case in CASES if case[2] > 1 and case[3] > 0.005]
                       + [COMPLEX, TURNED])
     if case not in FOUND:
@@ -577,22 +680,24 @@ def rough(rng):
     origin = [rng.random() for _ in state.origin]           # with more places than there are
     state = replace(state, origin=origin, u=state.u + shake * 10 ** rng.uniform(-9, -3)
                     + np.array(state.origin) - origin)
-    exact, places = proved._Exact(state), rng.randrange(10, 12)
+    exact, places = enclosed(state), rng.randrange(10, 12)
+    ours = state.potential
+    if isinstance(ours, orbits.Fourier):        # a scale as little known as it may be
+
+        def scale_within(digits):
+            low, high = ours.scale_within(digits + 10)
+            wide, t = Fraction(1, 10**digits) - (high - low), Fraction(rng.choice([0, 1]))
+            return low - t * wide, high + (1 - t) * wide
+
+        exact.potential = SimpleNamespace(n=ours.n, terms=ours.terms, scale_within=scale_within)
     exact.evaluate(places)
-    if exact.terms:                     # amplitudes as far off as they may be
-        scale = sum(state.potential.scale_enclosure(40)) / 2
-        words = ["%de-%d" % (math.floor(c * scale * 10**(places + 3)) + rng.choice([999, -999]),
-                             places + 3)
-                 for i in (0, 1) for c in (term[i] for term in exact.terms.values())]
-        exact._owners, exact._amplitudes = proved._strings(words)
-        exact.evaluate(places)
     return state, exact, places
 
 
 FOUND = {}
 
 
-def test_few_places_state():
+def test_few_places_state(few):
     rng = rng_for("few places: state")
     for _ in range(150 * TORTURE):
         state, exact, places = rough(rng)
@@ -612,7 +717,7 @@ def test_few_places_state():
             assert exact.action[1] - exact.action[0] < Fraction(10**6, 10**places)
 
 
-def test_few_places_least():
+def test_few_places_least(few):
     """The largest m that is proved is below the truth, and hardly below it."""
     rng = rng_for("few places: least")
     for _ in range(120 * TORTURE):
@@ -638,40 +743,33 @@ def pivots(beta):
     raise AssertionError("the pivots did not settle")
 
 
-def test_few_places_pivots():
+def test_few_places_pivots(few):
     """Whatever blocks within `away` of the state's: their pivots' products lie where they must.
     The intervals are wider than the blur of so few places, far above the rounding of floats."""
     rng = rng_for("few places: pivots")
     kinds = set()
     for case in range(100 * TORTURE):
-        state, exact, places = rough(rng) if case % 12 else (COMPLEX, proved._Exact(COMPLEX), 11)
+        state, exact, places = rough(rng)
         if case % 12 == 0:
-            exact.evaluate(places)
+            state, exact = COMPLEX, enclosed(COMPLEX)
+            exact.evaluate(11)
         away = Fraction(rng.choice([0, 1e-9, 1e-6, 1e-5]))
-        kind = exact.pivots(2 * away + Fraction(1, 10**9), away)
-        assert kind == lib.CV_COMPLEX if state is COMPLEX else kind is not None
-        kinds.add(kind)
+        logs = growth(exact, 2 * away + Fraction(1, 10**9), away)
+        kinds.add(len(logs) == 2 and logs[0] == logs[1])
+        assert state is not COMPLEX or logs[0] == logs[1]
         beta = blocks(state, exact_points(state, exact.displacements()))
         same, n = rng.choice([1, -1, 0]), beta.shape[1]
         for b in beta:
             s, c = math.sin(rng.uniform(0, 7)), math.cos(rng.uniform(0, 7))
             turn = np.array([[s, c], [c, -s]]) / math.hypot(s, c)
             b += float(away) * (same * np.eye(n) if same or n == 1 else turn)
-        product, det = np.eye(n), 1.0
+        product = np.eye(n)
         for d in pivots(beta):
             product = d @ product
-            det *= np.linalg.det(d)
-        assert exact.bound(lib.CV_DET_LOW) <= det <= exact.bound(lib.CV_DET_HIGH)
-        sizes = np.abs(np.linalg.eigvals(product))
-        if n == 2:
-            low, high = exact.bound(lib.CV_GROWTH_LOW), exact.bound(lib.CV_GROWTH_HIGH)
-            if kind == lib.CV_REAL:
-                assert any(low <= size <= high for size in sizes)
-            elif kind == lib.CV_COMPLEX:
-                assert np.trace(product) ** 2 < 4 * det
-            else:
-                assert max(sizes) <= high
-    assert kinds >= {lib.CV_REAL, lib.CV_COMPLEX}
+        sizes = sorted(np.log(np.abs(np.linalg.eigvals(product))), reverse=True)
+        for size, (low, high) in zip(sizes, logs):
+            assert low <= size <= high
+    assert kinds == {True, False}
 
 
 def test_negative_blocks():
@@ -679,37 +777,8 @@ def test_negative_blocks():
     for name, p, q, eps in (("ff", (0, 0), 1, 0.5), ("ff", (0, 0), 2, 0.5),
                             ("standard", (0,), 1, 9.0)):
         state = orbits.straight(given(name), p, q, (0.0,) * len(p))
-        exact = proved._Exact(replace(state, eps=eps))
-        exact.evaluate(30)
-        m = Fraction(1, 10**5)
-        assert not exact.bends(0) and not exact.least(m) and exact.pivots(m, m / 10) is None
-
-
-def test_core_refuses():
-    """Wrong arguments of the C core are errors, not crashes."""
-    ffi, u = proved.ffi, np.zeros((1, 2))
-    handle, owners = ffi.new("cv_exact **"), []
-
-    def new(kind=lib.CV_POLY, n=2, q=1, numbers=("1", "1", "1", "0", "0"), u=u):
-        owners[:], array = proved._strings(numbers)
-        return lib.cv_exact_new(handle, kind, n, 0, ffi.new("int[]", 0), [0, 0], q, array,
-                                proved.address(u))
-
-    assert new(kind=lib.CV_PYTHON) == new(n=3) == new(n=0) == lib.CV_EARGUMENT
-    assert new(q=0) == new(n=1) == lib.CV_EARGUMENT
-    assert new(q=2**31) == lib.CV_EARGUMENT
-    for bad in ("", "nan", "1e999999999", "x"):
-        for place in range(5):
-            assert new(numbers=["1"] * place + [bad] + ["1"] * (4 - place)) == lib.CV_ENUMBER
-    for bad in (math.nan, math.inf):
-        assert new(u=np.array([[0.0, bad]])) == lib.CV_ENUMBER
-    assert new() == lib.CV_OK
-    exact = ffi.gc(handle[0], lib.cv_exact_free)
-    assert lib.cv_exact_evaluate(exact, 9, ffi.NULL) == lib.CV_EARGUMENT
-    assert lib.cv_exact_evaluate(exact, 10**6, ffi.NULL) == lib.CV_EARGUMENT
-    assert lib.cv_exact_evaluate(exact, 20, ffi.new("char *[1]")) == lib.CV_OK
-    for call in (lib.cv_exact_newton, lib.cv_exact_least, lib.cv_exact_bends):
-        assert call(exact, b"nonsense") == lib.CV_ENUMBER
-    assert lib.cv_exact_pivots(exact, b"x", b"1", ffi.new("int *")) == lib.CV_ENUMBER
-    assert not lib.cv_exact_bound(exact, -1) and not lib.cv_exact_bound(exact, 99)
-    assert not lib.cv_exact_point(exact, 1, 0) and not lib.cv_exact_point(exact, 0, 2)
+        exact, m = enclosed(replace(state, eps=eps)), Fraction(1, 10**5)
+        with enclosure.alone():
+            exact.evaluate(30)
+            assert not exact.bends(Fraction(0)) and not exact.least(m)
+            assert growth(exact, m, m / 10) is None

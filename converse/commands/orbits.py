@@ -294,10 +294,12 @@ def find_states(options):
     p, q = _check_type(potential, options.type)
     _check_outputs(options, options.potential)
 
-    from ..orbits.proved import prove
+    from ..orbits.proved import balls, prove
     from ..orbits.search import search
     from ..orbits.solver import Family, follow, reached, straight
 
+    if options.prove:
+        balls()
     eps = reached(potential, [x for each in options.eps for x in each])
     states, drawn, status = [], [], 0   # drawn: what was proved, and of what was not, the state
 

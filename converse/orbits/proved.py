@@ -1,8 +1,8 @@
 """Proved orbits: that a true orbit lies beside a state, what it is, its action and its exponents.
 
-docs/orbits-proof.md has the theorems and their proofs; csrc/orbits/enclose.c bounds all that has as
-many terms as the orbit has points; here the few numbers that remain are put together, as exact
-rationals.
+docs/orbits-proof.md has the theorems and their proofs; enclosure.py and exponents.py bound in balls
+all that has as many terms as the orbit has points; here the few numbers that remain are put
+together, as exact rationals.
 """
 
 import math
@@ -14,9 +14,9 @@ from typing import Optional, Tuple
 
 import numpy as np
 
-from .._native import ffi, lib
+from .._native import lib
 from ..storage.files import ConverseError
-from .potential import Bounds, address, done
+from .potential import Bounds
 from .state import NEAR_NULL, ROUNDING, STATIONARY, State, expected
 
 DIGITS = 20                 # the radius is at most 10^-DIGITS unless another number is asked for
@@ -109,7 +109,11 @@ def prove(state: State, digits: Optional[int] = None, descend: bool = False) -> 
         raise ValueError("digits is a number from 1 to %d, not %r" % (MOST - 2 * GUARD, digits))
     if state.eps == 0:
         raise NotProved("without a perturbation, at eps 0, no orbit is isolated")
-    exact = _Exact(state)
+    alone, Enclosure, growth = balls()
+    potential = state.potential
+    if potential.native.kind == lib.CV_PYTHON:
+        raise ValueError("nothing can be proved of the potential %s: only Fourier sums, poly and ff "
+                         "have exact values" % potential.name)
     with np.errstate(all="ignore"):
         shadow = state.shadow
     if not shadow < STATIONARY:
@@ -123,116 +127,51 @@ def prove(state: State, digits: Optional[int] = None, descend: bool = False) -> 
                         "the action")
     places, most = wanted + 2 * GUARD, min(MOST, wanted + 2 * GUARD + MORE)
     orbit, reason = None, None
-    while True:
-        try:
-            orbit = _attempt(state, exact, places, wanted)
-            if all(high - low <= high / 10 ** GUARD for low, high in orbit.exponents):
-                return orbit
-        except _TooFewPlaces as error:
-            reason = error
-        if places == most:
-            break
-        places = min(most, max(places + 15, places * 3 // 2))
+    with alone():
+        exact = Enclosure(state, Fraction(_eps(state)))
+        while True:
+            try:
+                orbit = _attempt(state, exact, growth, places, wanted)
+                if all(high - low <= high / 10 ** GUARD for low, high in orbit.exponents):
+                    return orbit
+            except _TooFewPlaces as error:
+                reason = error
+            if places == most:
+                break
+            places = min(most, max(places + 15, places * 3 // 2))
     if orbit is None:
         raise NotProved("%s: %d decimal places do not tell" % (reason, places))
     return orbit
+
+
+def balls():
+    """What needs python-flint, and is imported when something is to be proved."""
+    try:
+        from .enclosure import Enclosure, alone
+        from .exponents import growth
+    except ImportError as error:
+        raise ConverseError("proving orbits needs python-flint (%s); pip install "
+                            "'converse-kam[orbits]'" % error) from None
+    return alone, Enclosure, growth
 
 
 class _TooFewPlaces(Exception):
     """What the proof stumbled over; more decimal places may help."""
 
 
-class _Exact:
-    """A state in decimals, in the C core."""
-
-    def __init__(self, state):
-        potential = state.potential
-        self.q, self.n, kind = state.q, potential.n, potential.native.kind
-        if kind == lib.CV_PYTHON:
-            raise ValueError("nothing can be proved of the potential %s: only Fourier sums, poly "
-                             "and ff have exact values" % potential.name)
-        # Doubles that are at least what docs/orbits-proof.md says, taken as what they are.
-        self.curvature, self.lipschitz = map(Fraction, (potential.curvature, potential.lipschitz))
-        self.potential = potential
-        self.terms = potential.terms if kind == lib.CV_FOURIER else {}
-        u = np.zeros((self.q, 2))
-        u[:, :self.n] = state.u
-        numbers = [_eps(state), _decimal(self.curvature, 6, up=True),
-                   _decimal(self.lipschitz, 6, up=True)] + [str(Decimal(x)) for x in state.origin]
-        owners, array = _strings(numbers)
-        waves = ffi.new("int[]", [i for k in self.terms for i in (k + (0,))[:2]])
-        handle = ffi.new("cv_exact **")
-        done(lib.cv_exact_new(handle, kind, self.n, len(self.terms), waves,
-                               [int(i) for i in state.p] + [0] * (2 - self.n), self.q, array,
-                               address(u)))
-        self.handle = ffi.gc(handle[0], lib.cv_exact_free)
-        self.eps = abs(Fraction(_eps(state)))
-        self.places = None
-
-    def evaluate(self, places):
-        """Gradient, Hessian and action of the points as they are, with so many decimal places."""
-        if places != self.places:
-            scale = [c for i in (0, 1) for c in (term[i] for term in self.terms.values())]
-            self._owners, self._amplitudes = _strings(
-                [_amplitude(self.potential, c, places) for c in scale])
-            self.places = places
-        done(lib.cv_exact_evaluate(self.handle, places, self._amplitudes))
-        self.gradient = self.bound(lib.CV_GRADIENT)
-        self.action = self.bound(lib.CV_ACTION_LOW), self.bound(lib.CV_ACTION_HIGH)
-
-    def keep(self):
-        """Remembers the points, and goes back to them."""
-        done(lib.cv_exact_keep(self.handle, 0))
-
-    def back(self):
-        done(lib.cv_exact_keep(self.handle, 1))
-
-    def newton(self, shift):
-        """Makes a step of Newton's method.  False: Hessian + shift is not positive definite."""
-        return self._succeeds(lib.cv_exact_newton(self.handle, self._text(shift)))
-
-    def bends(self, shift):
-        """Is the Hessian + shift positive definite?  No promise."""
-        return self._succeeds(lib.cv_exact_bends(self.handle, self._text(shift)))
-
-    def least(self, m):
-        """Is no eigenvalue of any copy's Hessian below m?"""
-        return self._succeeds(lib.cv_exact_least(self.handle, self._text(m)))
-
-    def pivots(self, m, away):
-        """Encloses the pivots; CV_UNDECIDED, CV_REAL or CV_COMPLEX.  None: it could not be done."""
-        kind = ffi.new("int *")
-        if self._succeeds(lib.cv_exact_pivots(self.handle, self._text(m), self._text(away, up=True),
-                                              kind)):
-            return kind[0]
-        return None
-
-    def bound(self, which):
-        return Fraction(Decimal(_text(lib.cv_exact_bound(self.handle, which))))
-
-    def displacements(self):
-        return tuple(tuple(Fraction(Decimal(_text(lib.cv_exact_point(self.handle, j, i))))
-                           for i in range(self.n)) for j in range(self.q))
-
-    def _text(self, x, up=False):
-        return _decimal(x, self.places, up).encode()
-
-    @staticmethod
-    def _succeeds(code):
-        return code != lib.CV_ESINGULAR and done(code) == lib.CV_OK
-
-
-def _attempt(state, exact, places, wanted):
+def _attempt(state, exact, growth, places, wanted):
     ulp = Fraction(1, 10 ** places)
     floor = ulp * 10 ** (2 * GUARD)
     _refine(state, exact, places, floor)
     displacements = exact.displacements()
     steps = [abs(float(new - Fraction(old)))
              for row, olds in zip(displacements, state.u.tolist()) for new, old in zip(row, olds)]
-    bend = exact.eps * exact.lipschitz
+    # A double that is at least what docs/orbits-proof.md says, taken as what it is.
+    bend = abs(exact.eps) * Fraction(state.potential.lipschitz)
     least = _least(state, exact, floor, float(bend) * math.hypot(*steps))
-    radius = exact.gradient / least * Fraction(9, 8) + ulp
-    left = least - bend * radius
+    shown = places + GUARD
+    radius = _places(exact.gradient / least * Fraction(9, 8) + ulp, shown, up=True)
+    left = _places(least - bend * radius, shown)
     if not exact.gradient < radius * left or left < least / 2:
         raise _TooFewPlaces("the gradient is too large for so flat a minimum")
     if radius > Fraction(1, 10 ** wanted):
@@ -241,12 +180,15 @@ def _attempt(state, exact, places, wanted):
     strict = max(4 * away, ulp * 10 ** GUARD)
     if strict > least / 2:
         raise _TooFewPlaces("the minimum is too flat")
-    kind = exact.pivots(strict, away)
-    if kind is None:
+    exponents = growth(exact, strict, away)
+    if exponents is None:
         raise _TooFewPlaces("the pivots could not be enclosed")
-    action = (exact.action[0] - exact.gradient * radius / state.q, exact.action[1])
+    exponents = tuple((_places(max(low, 0) / state.q, up=False), _places(high / state.q, up=True))
+                      for low, high in exponents)
+    action = (_places(exact.action[0] - exact.gradient * radius / state.q, shown),
+              _places(exact.action[1], shown, up=True))
     moved = max(abs(step - round(step)) for step in steps)
-    return ProvedOrbit(state, places, radius, left, action, _exponents(state, exact, kind), moved,
+    return ProvedOrbit(state, places, radius, left, action, exponents, moved,
                        displacements)
 
 
@@ -257,7 +199,7 @@ def _refine(state, exact, places, floor):
     with Hessian + shift.  A long way along a soft direction bends into the others: steps with a
     shift that stops the soft ones bring these back.  What raises the action is taken back."""
     exact.evaluate(places)
-    noise, shift = 4 * exact.bound(lib.CV_NOISE), Fraction(0)
+    noise, shift = 4 * exact.noise(), Fraction(0)
     for _ in range(STEPS):
         gradient, action = exact.gradient, exact.action
         if not exact.bends(shift or -floor):
@@ -266,7 +208,7 @@ def _refine(state, exact, places, floor):
             if not exact.bends(SOFT):
                 raise NotProved("the state is a saddle")
             shift = _boundary(max(shift, floor), SOFT, exact.bends, 16)[1]
-        exact.keep()
+        before = exact.u
         exact.newton(shift)
         exact.evaluate(places)
         still = None
@@ -276,7 +218,7 @@ def _refine(state, exact, places, floor):
             exact.newton(SOFT)
             exact.evaluate(places)
         if exact.action[0] > action[1]:
-            exact.back()
+            exact.u = before
             exact.evaluate(places)
             shift = max(16 * shift, floor, gradient / math.isqrt(state.q))  # no further than 1
         elif not shift and exact.gradient < noise:
@@ -318,62 +260,7 @@ def _boundary(low, high, holds, ratio):
     return low, high
 
 
-def _exponents(state, exact, kind):
-    """Enclosures of the exponents, from that of the product of the determinants, their sum, and
-    what is known of the two eigenvalues.  If one's modulus is, the other's is the determinant over
-    it; if they are complex, both are the determinant's root; if nothing is, the larger is at least
-    that."""
-    total = (log_bounds(exact.bound(lib.CV_DET_LOW))[0],
-             log_bounds(exact.bound(lib.CV_DET_HIGH))[1])
-    half = (total[0] / 2, total[1] / 2)
-    if state.potential.n == 1:
-        pair = (total,)
-    elif kind == lib.CV_COMPLEX:
-        pair = (half, half)
-    else:
-        high = log_bounds(exact.bound(lib.CV_GROWTH_HIGH))[1]
-        if kind == lib.CV_REAL:
-            one = (log_bounds(exact.bound(lib.CV_GROWTH_LOW))[0], high)
-            other = (total[0] - one[1], total[1] - one[0])
-            pair = (tuple(map(max, one, other)), tuple(map(min, one, other)))
-        else:
-            pair = ((half[0], high), (total[0] - high, half[1]))
-    return tuple((_places(max(low, 0) / state.q, up=False), _places(high / state.q, up=True))
-                 for low, high in pair)
-
-
 # ---- numbers
-
-def _amplitude(potential, c, places):
-    """scale * c to within 10^-places, as a decimal string."""
-    digits = places + 2 + len(str(math.ceil(abs(c))))
-    return _decimal(min(c * x for x in potential.scale_within(digits)), places + 1)
-
-
-def log_bounds(x: Fraction) -> Bounds:
-    """Two Fractions around the natural logarithm of x > 0.
-
-    x = y 2^k, 1/2 < y < 2, log y = 2 artanh z, z = (y - 1)/(y + 1), |z| < 1/3, and log 2 is
-    2 artanh(1/3).
-    The series is cut where a power is below one unit, 10^-60; all further terms together are below
-    two.  Each power is off by less than 2 units, each term by less than 3, and fewer than 70 are
-    added, so that twice their sum is off by less than 500 units."""
-    unit = 10 ** 60
-
-    def twice_artanh(z):
-        sign, power = (-1 if z < 0 else 1), abs(z.numerator) * unit // z.denominator
-        square, total, n = power * power // unit, 0, 1
-        while power:
-            total += power // n
-            power, n = power * square // unit, n + 2
-        return 2 * sign * total
-
-    k = x.numerator.bit_length() - x.denominator.bit_length()
-    y = x / Fraction(2) ** k
-    middle = twice_artanh((y - 1) / (y + 1)) + k * twice_artanh(Fraction(1, 3))
-    off = 500 * (1 + abs(k))
-    return Fraction(middle - off, unit), Fraction(middle + off, unit)
-
 
 def distances(proof):
     """radius and moved in words, rounded up."""
@@ -394,12 +281,6 @@ def _places(x, places=45, up=False):
     """x cut to so many places, downwards or upwards."""
     scaled = x * 10 ** places
     return Fraction(math.ceil(scaled) if up else math.floor(scaled), 10 ** places)
-
-
-def _decimal(x, places, up=False):
-    """The same as a decimal string."""
-    scaled = Fraction(x) * 10 ** places
-    return "%de-%d" % (math.ceil(scaled) if up else math.floor(scaled), places)
 
 
 def _round(x, digits, up):
@@ -427,17 +308,3 @@ def _interval(ends):
         digits = str(abs(scaled)).rjust(places + 1, "0")
         texts.append("-" * (scaled < 0) + digits[:-places] + "." + digits[-places:])
     return "from %s to %s" % tuple(texts)
-
-
-def _strings(texts):
-    """C strings, and the array of their addresses."""
-    owners = [ffi.new("char[]", text.encode("ascii")) for text in texts]
-    return owners, ffi.new("char *[]", owners)
-
-
-def _text(pointer):
-    if not pointer:
-        raise MemoryError("there is not enough memory")
-    text = ffi.string(pointer).decode("ascii")
-    lib.cv_free(pointer)
-    return text

@@ -1,0 +1,337 @@
+"""What is summed up along an orbit, in balls: the action, its gradient, its Hessian and their bounds.
+
+Numbers are python-flint's arb, a midpoint and a radius that holds every rounding, and n x n matrices
+of them.  docs/orbits-proof.md has the theorems.  The Hessian of the action is that of a chain: blocks
+beta_j = 2 - eps V''(x_j), and -1 between neighbours, cyclically.
+"""
+
+import os
+import threading
+from contextlib import contextmanager
+from fractions import Fraction
+
+from flint import arb, arb_mat, ctx, fmpq, fmpz
+
+from .._native import lib
+from .potential import look_up
+
+BITS = 64                   # of the balls' midpoints, beyond the decimal places asked for
+ASK = 256                   # points dealt with before Ctrl-C is looked for
+_turn = threading.Lock()    # held by the one proof that is under way
+
+
+def _fresh():
+    global _turn
+    _turn = threading.Lock()
+
+
+os.register_at_fork(after_in_child=_fresh)      # whoever held it is not there
+
+
+@contextmanager
+def alone():
+    """The precision of python-flint is one number for all threads: one proof at a time sets it, and
+    sets it back.  Balls are right at any precision; with a lower one they are only wider."""
+    with _turn:
+        before = ctx.prec
+        try:
+            yield
+        finally:
+            ctx.prec = before
+
+
+# ---- numbers
+
+def ball(x):
+    """A Fraction, enclosed."""
+    return arb(fmpq(x.numerator, x.denominator))
+
+
+def exact(x):
+    """A ball without a radius as a rational number of python-flint."""
+    mantissa, exponent = (int(i) for i in x.man_exp())
+    return fmpq(mantissa << max(exponent, 0), fmpz(1) << max(-exponent, 0))
+
+
+def lower(x):
+    """The lower end of a ball as a Fraction."""
+    return _fraction(x.lower())
+
+
+def upper(x):
+    return _fraction(x.upper())
+
+
+def _fraction(x):
+    x = exact(x)
+    return Fraction(int(x.p), int(x.q))
+
+
+# ---- small matrices; symmetric ones are so to the last bit
+
+def inverse(x):
+    """Of a symmetric matrix; None, unless it is certainly positive definite."""
+    if x.nrows() == 1:
+        a = x[0, 0]
+        return arb_mat(1, 1, [1 / a]) if a > 0 else None
+    a, b, c = x[0, 0], x[0, 1], x[1, 1]
+    det = a * c - b * b
+    if not (det > 0 and a > 0):
+        return None
+    b = -b / det
+    return arb_mat(2, 2, [c / det, b, b, a / det])
+
+
+def is_positive(x):
+    return inverse(x) is not None
+
+
+def unit(n, x=1):
+    """x times the unit matrix."""
+    return arb_mat(n, n, [arb(x) if i == j else arb(0) for i in range(n) for j in range(n)])
+
+
+def norm(x):
+    """Not below the norm of any matrix in a symmetric ball: the larger row sum."""
+    rows = [sum((abs(i) for i in row), arb(0)).upper() for row in x.tolist()]
+    return rows[0] if len(rows) == 1 or rows[0] >= rows[1] else rows[1]
+
+
+def square(v):
+    """|v|^2 of a column."""
+    return (v.transpose() * v)[0, 0]
+
+
+def points(start, stop, step=1):
+    """A range; a thread that shall end does so here."""
+    for i, j in enumerate(range(start, stop, step)):
+        if i % ASK == 0:
+            look_up()
+        yield j
+
+
+# ---- potentials.  Each returns a function of a point, base + u with base an exact rational number
+# ---- and u without radius, to a list: V, its gradient and its Hessian's entries 00, 01, 11, in balls
+
+def _fourier(potential, digits):
+    """All are linear in the cosines and sines of 2 pi k.x."""
+    low, high = (ball(end) for end in potential.scale_within(digits))
+    scale, turn, axes = low.union(high), 2 * arb.pi(), range(potential.n)
+    columns = []
+    for k, (cosine, sine) in potential.terms.items():
+        k = [turn * i for i in k]
+        for wave, slope in (cosine, sine), (sine, -cosine):
+            columns.append([ball(wave)] + [ball(slope) * i for i in k] + [
+                -ball(wave) * k[i] * k[j] for i in axes for j in axes[i:]])
+    law = arb_mat([[i * scale for i in row] for row in zip(*columns)])
+    doubled = [[2 * i for i in k] for k in potential.terms]
+
+    def local(base, u):
+        x = [arb(i) + j for i, j in zip(base, u)]
+        waves = []
+        for k in doubled:
+            phase = x[0] * k[0]
+            if len(x) == 2:
+                phase += x[1] * k[1]
+            sine, cosine = phase.sin_cos_pi()
+            waves += cosine, sine
+        return (law * arb_mat(len(waves), 1, waves)).entries()
+    return local
+
+
+def _modulo(base, u):
+    """The point in [0, 1)^n, exactly."""
+    x = [i + exact(j) for i, j in zip(base, u)]
+    return [i - i.floor() for i in x]
+
+
+def _poly(base, u):
+    """V = -4096 f(y0) g(y1), y = x - 1/2; with a = 1/4 - y^2, f = a^2 (a - 3/16), g = a^2:
+    f' = -6 y a (a - 1/8), f'' = -30 a^2 + 33 a/4 - 3/8, g' = -4 y a, g'' = 2 - 12 a."""
+    x = _modulo(base, u)
+    y0, y1 = (arb(i - fmpq(1, 2)) for i in x)
+    a, b = (arb(i * (1 - i)) for i in x)
+    f = a * a * (a - arb(3) / 16)
+    f1, f2 = -6 * y0 * a * (a - arb(1) / 8), (33 * a - 120 * a * a) / 4 - arb(3) / 8
+    g, g1, g2 = b * b, -4 * y1 * b, 2 - 12 * b
+    return [-4096 * i for i in (f * g, f1 * g, f * g1, f2 * g, f1 * g1, f * g2)]
+
+
+def _ff(base, u):
+    """V = -(c(x0) + c(x1))/4 - c(x0 + x1)/2, c = 1 - 24 y^2 + 32 y^3, y the distance to the nearest
+    integer, which is told exactly."""
+    def c(z):
+        z -= z.floor()
+        sign, y = (1, arb(z)) if z <= fmpq(1, 2) else (-1, arb(1 - z))
+        return 1 + y * y * (32 * y - 24), sign * y * (96 * y - 48), 192 * y - 48
+
+    x = _modulo(base, u)
+    (v0, d0, b0), (v1, d1, b1), (v, d, b) = c(x[0]), c(x[1]), c(x[0] + x[1])
+    return [i / -4 for i in (v0 + v1 + 2 * v, d0 + 2 * d, d1 + 2 * d, b0 + 2 * b, 2 * b, b1 + 2 * b)]
+
+
+LAWS = {lib.CV_FOURIER: _fourier, lib.CV_POLY: lambda potential, digits: _poly,
+        lib.CV_FF: lambda potential, digits: _ff}
+
+
+# ---- the state
+
+class Enclosure:
+    """A state, its points exact and all else in balls.
+
+    u        -- the displacements: columns without radius
+    gradient -- a Fraction, not below the Euclidean norm of the gradient of the action
+    action   -- two Fractions around the action per point less the straight orbit's
+    """
+
+    def __init__(self, state, eps):
+        self.law = LAWS[state.potential.native.kind]
+        self.potential, self.q, self.n = state.potential, state.q, state.potential.n
+        self.eps = eps
+        self.base = [[fmpq(*x.as_integer_ratio()) + fmpq(j * p % self.q, self.q)
+                      for x, p in zip(state.origin, state.p)] for j in points(0, self.q)]
+        self.u = [arb_mat(self.n, 1, [arb(x) for x in row]) for row in state.u.tolist()]
+
+    def evaluate(self, places):
+        """Gradient, Hessian and action of the points as they are, with so many decimal places."""
+        n, q, u = self.n, self.q, self.u
+        ctx.prec = places * 3322 // 1000 + BITS
+        self.places, self.ulp = places, ball(Fraction(1, 10 ** places))
+        local, eps = self.law(self.potential, places + BITS // 3), ball(self.eps)
+        two, radii, squares, action = unit(n, 2), unit(n, 0), arb(0), arb(0)
+        self.force, self.beta = [], []
+        for j in points(0, q):
+            here, after = u[j], u[j + 1 - q]
+            value, *rest = local(self.base[j], here.entries())
+            step = after - here
+            force = here - u[j - 1] - step - arb_mat(n, 1, rest[:n]) * eps
+            action += square(step) / 2 - eps * value
+            squares += square(force)
+            self.force.append(force)
+            bend = rest if n == 1 else [rest[2], rest[3], rest[3], rest[4]]
+            beta = two - arb_mat(n, n, bend[-n * n:]) * eps
+            self.beta.append(beta)
+            radii += beta - beta.mid()
+        self.margin = self.ulp + 2 * norm(radii)
+        self.gradient = upper(squares.upper().sqrt())
+        self.action = lower(action / q), upper(action / q)
+
+    def noise(self):
+        """About the least that can be asked of the gradient."""
+        radii = sum((square(force - force.mid()) for force in self.force), arb(0))
+        return upper(radii.upper().sqrt() + 4 * self.ulp * arb(2 * self.q).sqrt())
+
+    def displacements(self):
+        return tuple(tuple(_fraction(i) for i in u.entries()) for u in self.u)
+
+    # ---- eliminations, of midpoints: what they find serves as a guess, which is then checked
+
+    def _eliminate(self, shift, links=None):
+        """The chain of the points 1, 2, ..., q, the last of which is point 0 again, all but its ends
+        eliminated, with beta + shift for beta.  Returns what that adds to the block of its first
+        point, E; -F, which couples it to the last; and the block of that, G.  None: a pivot is not
+        positive definite.
+        links: a list for each point's inverse pivot, for what couples it to the first, and for its
+        side of the equation, -force, less what is eliminated; of the last that alone."""
+        zero, shift = unit(self.n, 0), unit(self.n, shift)
+        before, E, F, side = zero, zero, unit(self.n), self.force[0] * 0
+        for j in points(1, self.q + 1):
+            G = (self.beta[j % self.q] + shift - before).mid()
+            if links is not None:
+                side = (before * side - self.force[j % self.q]).mid()
+            before = inverse(G)
+            if before is None:
+                return None
+            if j == self.q:
+                break
+            before = before.mid()
+            if links is not None:
+                links.append((before, F, side))
+            through = F * before
+            E, F = (E - through * F.transpose()).mid(), through.mid()
+        if links is not None:
+            links.append(side)
+        return E, F, G
+
+    @staticmethod
+    def _last(E, F, G):
+        """The block of point 0, when all others were eliminated."""
+        return E + G - F - F.transpose()
+
+    def bends(self, shift):
+        """Is the Hessian + shift positive definite?  No promise."""
+        chain = self._eliminate(ball(shift))
+        return chain is not None and is_positive(self._last(*chain))
+
+    def newton(self, shift):
+        """Makes a step of Newton's method with Hessian + shift, if that is positive definite.  No
+        promise."""
+        links = []
+        chain = self._eliminate(ball(shift), links)
+        pivot = None if chain is None else inverse(self._last(*chain))
+        if pivot is None:
+            return
+        side = links.pop()
+        for before, F, r in links:
+            side += F * (before * r)
+        first = after = (pivot * side).mid()
+        moves = []
+        for j in points(len(links) - 1, -1, -1):
+            before, F, r = links[j]
+            after = (before * (r + after + F.transpose() * first)).mid()
+            moves.append(after)
+        self.u = [(u + move).mid() for u, move in zip(self.u, [first] + moves[::-1])]
+
+    def pivot_after_all(self, shift):
+        """The pivot of point 0 after ever so many rounds: the chain is joined to its like, and the
+        result to its like, until its ends do not feel each other.  None: there is none, some copies
+        of the orbit together are no minimum.  No promise."""
+        chain = self._eliminate(shift)
+        if chain is None:
+            return None
+        E, F, G = chain
+        for _ in range(4 * self.places):
+            between = inverse(E + G)
+            if between is None:
+                return None
+            E, G, F = ((E - F * between * F.transpose()).mid(), (G - F.transpose() * between * F).mid(),
+                       (F * between * F).mid())
+            if all(abs(i) < self.ulp for i in F.entries()):
+                return (G + G.transpose()).mid() / 2
+        return None
+
+    # ---- pivots, with promises
+
+    def tube(self, first, shift):
+        """Symmetric matrices s_j, without radius, and s_q, which follows at point 0:
+
+            |s_j + 1/s_{j-1} - beta_j - shift| <= margin        for j = 1, ..., q,
+
+        as a norm, with every beta_j within its ball.  None: an s_j, j < q, is not positive definite,
+        or the radii are too large."""
+        s, shift, radii = [first], unit(self.n, shift), unit(self.n, 0)
+        for j in points(1, self.q + 1):
+            turned = inverse(s[-1])
+            if turned is None:
+                return None
+            following = self.beta[j % self.q] + shift - turned
+            s.append(following.mid())
+            radii += following - s[-1]                      # all of them: more than any
+        return s if norm(radii) <= self.margin else None
+
+    def below(self, m):
+        """s with s_j + 1/s_{j-1} <= beta_j - m, s > 0, for all j cyclically; None: not found.  The
+        first is that of a little more, so that it comes to lie below what follows after one round."""
+        first = self.pivot_after_all(-m - 4 * self.margin)
+        s = None if first is None else self.tube(first, -m - self.margin)
+        return s[:-1] if s is not None and is_positive(s[-1] - first) else None
+
+    def above(self, away, strict):
+        """t with t_j + 1/t_{j-1} >= beta_j + away for all j cyclically; None: not found."""
+        first = self.pivot_after_all(away + strict + 4 * self.margin)
+        t = None if first is None else self.tube(first, away + self.margin)
+        return t[:-1] if t is not None and is_positive(first - t[-1]) else None
+
+    def least(self, m):
+        """Is it proved that no eigenvalue of any copy's Hessian is below m?"""
+        return self.below(ball(m)) is not None

@@ -1,0 +1,121 @@
+"""The Lyapunov exponents of a proved orbit, in balls: docs/orbits-proof.md, section 3.
+
+The pivots D_j of the true orbit lie between two sequences of matrices, s_j <= D_j <= t_j, and its
+exponents are (1/q) log |l|, l the eigenvalues of D_{q-1} ... D_0.
+"""
+
+from flint import arb, arb_mat
+
+from .enclosure import ball, is_positive, lower, points, unit, upper
+
+STUBBORN = 40               # cones that are tried
+
+
+def growth(chain, strict, away):
+    """Enclosures (low, high) of log |l|, larger first, of every orbit whose blocks beta_j are within
+    `away` of those of the chain, an Enclosure; strict > away.  None: the pivots could not be
+    enclosed."""
+    s, t = chain.below(ball(strict)), chain.above(ball(away), ball(strict))
+    if s is None or t is None or not is_positive(t[0] - s[0]):
+        return None
+    det = _det(s)
+    total = _ends(det.log())[0], _ends(_det(t).log())[1]
+    if chain.n == 1:
+        return (total,)
+    half = total[0] / 2, total[1] / 2
+    matrices = _in_frames(s, t, _directions(s, 4 * chain.places))
+    one = _of_cone(matrices)
+    if one is not None:
+        one = _ends(one.log())
+        other = total[0] - one[1], total[1] - one[0]
+        return tuple(map(max, one, other)), tuple(map(min, one, other))
+    # No cone closes.  If (trace)^2 < 4 det, the eigenvalues are complex, and their moduli equal;
+    # anyway the larger row sum bounds them.
+    product = unit(2)
+    for j in points(0, chain.q):
+        product = matrices[j] * product
+    trace = product[0, 0] + product[1, 1]
+    if trace * trace < 4 * det:
+        return half, half
+    high = max(_ends((abs(a) + abs(b)).log())[1] for a, b in product.tolist())
+    return (half[0], high), (total[0] - high, half[1])
+
+
+def _ends(x):
+    return lower(x), upper(x)
+
+
+def _det(matrices):
+    det = arb(1)
+    for j in points(0, len(matrices)):
+        det *= matrices[j].det()
+    return det
+
+
+def _directions(s, squarings):
+    """About the directions that grow most, without radius: at point 0 the larger column of a high
+    power of the product of all s, and from there on as s carries it."""
+    def scaled(x):
+        return (x * (1 / max(map(abs, x.entries())))).mid()
+
+    power = unit(2)
+    for j in points(0, len(s)):
+        power = scaled(s[j] * power)
+    for _ in range(squarings):
+        power = scaled(power * power)
+    v = max((arb_mat(2, 1, list(column)) for column in zip(*power.tolist())),
+            key=lambda v: float(abs(v[0, 0]) + abs(v[1, 0])))
+    directions = []
+    for j in points(0, len(s)):
+        directions.append(v)
+        v = scaled(s[j] * v)
+    return directions
+
+
+def _in_frames(s, t, directions):
+    """Balls around the matrices that D_j are in the frames (v_j, Jv_j), J the quarter turn: D_j is
+    within trace (t_j - s_j) of s_j.  The last frame is the first again, or its negative if the
+    direction turned round."""
+    def frame(v):
+        x, y = v.entries()
+        return arb_mat(2, 2, [x, -y, y, x])
+
+    frames = [frame(v) for v in directions]
+    frames.append(frames[0])
+    matrices = []
+    for j in points(0, len(s)):
+        wide = arb(0, (t[j] - s[j]).trace())
+        D = s[j] + arb_mat(2, 2, [wide] * 4)
+        after = frames[j + 1]
+        matrices.append(after.transpose() * D * frames[j] * (1 / after.det()))
+    if matrices[-1][0, 0] < 0:
+        matrices[-1] = -matrices[-1]
+    return matrices
+
+
+def _of_cone(matrices):
+    """The modulus of an eigenvalue of the matrices' product, enclosed.  None: no cone |y| <= kappa x
+    was found that the whole round takes into itself.  The first guess is twice what becomes of the
+    direction alone."""
+    def carried(kappa):
+        """Into which cone this one is taken, and between what x grows in it.  None: x may vanish.
+        (kappa has all digits: a radius has nine, and the cone may shrink by less.)"""
+        growth = arb(1)
+        for j in points(0, len(matrices)):
+            a, b, c, d = matrices[j].entries()
+            across = abs(b) * kappa
+            if not a > across:
+                return None
+            growth *= a + arb(0, across)
+            kappa = ((abs(c) + abs(d) * kappa) / (a - across)).upper()
+        return kappa, growth
+
+    after = carried(arb(0))
+    for n in range(STUBBORN):
+        if after is None:
+            return None
+        kappa = after[0] * (2 << min(n, 8))
+        after = carried(kappa)
+        if after is not None and after[0] <= kappa:
+            return after[1]
+    return None
