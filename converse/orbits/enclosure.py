@@ -1,7 +1,8 @@
-"""What is summed up along an orbit, in balls: the action, its gradient, its Hessian and their bounds.
+"""The action of a state, its gradient and its Hessian, and bounds of the Hessian's eigenvalues, in
+ball arithmetic: python-flint's arb, a midpoint and a radius that bounds every rounding, and matrices
+of them.
 
-Numbers are python-flint's arb, a midpoint and a radius that holds every rounding, and n x n matrices
-of them.  docs/orbits-proof.md has the theorems.  The Hessian of the action is that of a chain: blocks
+docs/orbits-proof.md has the theorems.  The Hessian of the action is that of a chain: n x n blocks
 beta_j = 2 - eps V''(x_j), and -1 between neighbours, cyclically.
 """
 
@@ -92,9 +93,8 @@ def unit(n, x=1):
 
 
 def norm(x):
-    """Not below the norm of any matrix in a symmetric ball: the larger row sum."""
-    rows = [sum((abs(i) for i in row), arb(0)).upper() for row in x.tolist()]
-    return rows[0] if len(rows) == 1 or rows[0] >= rows[1] else rows[1]
+    """Not below the norm of any matrix in a ball: the sum of all entries' sizes."""
+    return sum(map(abs, x.entries()), arb(0)).upper()
 
 
 def square(v):
@@ -110,8 +110,8 @@ def points(start, stop, step=1):
         yield j
 
 
-# ---- potentials.  Each returns a function of a point, base + u with base an exact rational number
-# ---- and u without radius, to a list: V, its gradient and its Hessian's entries 00, 01, 11, in balls
+# ---- potentials: functions of a point, base + u with base a rational number and u without radius,
+# ---- to a list of balls: V, its gradient, and the entries 00, 01, 11 of its Hessian
 
 def _fourier(potential, digits):
     """All are linear in the cosines and sines of 2 pi k.x."""
@@ -167,7 +167,8 @@ def _ff(base, u):
 
     x = _modulo(base, u)
     (v0, d0, b0), (v1, d1, b1), (v, d, b) = c(x[0]), c(x[1]), c(x[0] + x[1])
-    return [i / -4 for i in (v0 + v1 + 2 * v, d0 + 2 * d, d1 + 2 * d, b0 + 2 * b, 2 * b, b1 + 2 * b)]
+    return [i / -4 for i in (v0 + v1 + 2 * v, d0 + 2 * d, d1 + 2 * d,
+                             b0 + 2 * b, 2 * b, b1 + 2 * b)]
 
 
 LAWS = {lib.CV_FOURIER: _fourier, lib.CV_POLY: lambda potential, digits: _poly,
@@ -227,12 +228,12 @@ class Enclosure:
     # ---- eliminations, of midpoints: what they find serves as a guess, which is then checked
 
     def _eliminate(self, shift, links=None):
-        """The chain of the points 1, 2, ..., q, the last of which is point 0 again, all but its ends
-        eliminated, with beta + shift for beta.  Returns what that adds to the block of its first
-        point, E; -F, which couples it to the last; and the block of that, G.  None: a pivot is not
-        positive definite.
-        links: a list for each point's inverse pivot, for what couples it to the first, and for its
-        side of the equation, -force, less what is eliminated; of the last that alone."""
+        """The points 1, 2, ..., q - 1 of the chain from point 0 once round to point 0 again are
+        eliminated, with beta + shift for beta.  Returns E, which that adds to the block of the first
+        point, F, where -F couples it to the last, and G, the block of the last.  None: a pivot is
+        not positive definite.
+        links: a list that receives each point's inverse pivot, what couples it to the first point,
+        and its right-hand side, -force and what is eliminated; of the last point that alone."""
         zero, shift = unit(self.n, 0), unit(self.n, shift)
         before, E, F, side = zero, zero, unit(self.n), self.force[0] * 0
         for j in points(1, self.q + 1):
@@ -294,10 +295,10 @@ class Enclosure:
             between = inverse(E + G)
             if between is None:
                 return None
-            E, G, F = ((E - F * between * F.transpose()).mid(), (G - F.transpose() * between * F).mid(),
-                       (F * between * F).mid())
+            E, G, F = ((E - F * between * F.transpose()).mid(),
+                       (G - F.transpose() * between * F).mid(), (F * between * F).mid())
             if all(abs(i) < self.ulp for i in F.entries()):
-                return (G + G.transpose()).mid() / 2
+                return ((G + G.transpose()) / 2).mid()
         return None
 
     # ---- pivots, with promises
@@ -307,8 +308,8 @@ class Enclosure:
 
             |s_j + 1/s_{j-1} - beta_j - shift| <= margin        for j = 1, ..., q,
 
-        as a norm, with every beta_j within its ball.  None: an s_j, j < q, is not positive definite,
-        or the radii are too large."""
+        as a norm, for every beta_j in its ball.  None: an s_j, j < q, is not positive definite, or
+        the radii are too large."""
         s, shift, radii = [first], unit(self.n, shift), unit(self.n, 0)
         for j in points(1, self.q + 1):
             turned = inverse(s[-1])
@@ -320,8 +321,8 @@ class Enclosure:
         return s if norm(radii) <= self.margin else None
 
     def below(self, m):
-        """s with s_j + 1/s_{j-1} <= beta_j - m, s > 0, for all j cyclically; None: not found.  The
-        first is that of a little more, so that it comes to lie below what follows after one round."""
+        """s with s_j + 1/s_{j-1} <= beta_j - m, s > 0, for all j cyclically; None: not found.  It
+        begins with the pivot for a slightly larger m, so that s_0 <= s_q closes the circle."""
         first = self.pivot_after_all(-m - 4 * self.margin)
         s = None if first is None else self.tube(first, -m - self.margin)
         return s[:-1] if s is not None and is_positive(s[-1] - first) else None

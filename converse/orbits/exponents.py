@@ -12,8 +12,8 @@ STUBBORN = 40               # cones that are tried
 
 
 def growth(chain, strict, away):
-    """Enclosures (low, high) of log |l|, larger first, of every orbit whose blocks beta_j are within
-    `away` of those of the chain, an Enclosure; strict > away.  None: the pivots could not be
+    """Enclosures (low, high) of log |l|, larger first, for every orbit whose blocks beta_j are
+    within `away` of those of the chain, an Enclosure; strict > away.  None: the pivots could not be
     enclosed."""
     s, t = chain.below(ball(strict)), chain.above(ball(away), ball(strict))
     if s is None or t is None or not is_positive(t[0] - s[0]):
@@ -26,7 +26,7 @@ def growth(chain, strict, away):
     matrices = _in_frames(s, t, _directions(s, 4 * chain.places))
     one = _of_cone(matrices)
     if one is not None:
-        one = _ends(one.log())
+        one = _ends(one[0].log())[0], _ends(one[1].log())[1]
         other = total[0] - one[1], total[1] - one[0]
         return tuple(map(max, one, other)), tuple(map(min, one, other))
     # No cone closes.  If (trace)^2 < 4 det, the eigenvalues are complex, and their moduli equal;
@@ -94,21 +94,21 @@ def _in_frames(s, t, directions):
 
 
 def _of_cone(matrices):
-    """The modulus of an eigenvalue of the matrices' product, enclosed.  None: no cone |y| <= kappa x
-    was found that the whole round takes into itself.  The first guess is twice what becomes of the
-    direction alone."""
+    """Two numbers around the modulus of an eigenvalue of the matrices' product.  None: no cone
+    |y| <= kappa x was found that the whole round takes into itself.  The first guess is twice what
+    becomes of the direction alone."""
     def carried(kappa):
         """Into which cone this one is taken, and between what x grows in it.  None: x may vanish.
         (kappa has all digits: a radius has nine, and the cone may shrink by less.)"""
-        growth = arb(1)
+        low = high = arb(1)
         for j in points(0, len(matrices)):
             a, b, c, d = matrices[j].entries()
             across = abs(b) * kappa
             if not a > across:
                 return None
-            growth *= a + arb(0, across)
+            low, high = (low * (a - across)).lower(), (high * (a + across)).upper()
             kappa = ((abs(c) + abs(d) * kappa) / (a - across)).upper()
-        return kappa, growth
+        return kappa, low, high
 
     after = carried(arb(0))
     for n in range(STUBBORN):
@@ -117,5 +117,5 @@ def _of_cone(matrices):
         kappa = after[0] * (2 << min(n, 8))
         after = carried(kappa)
         if after is not None and after[0] <= kappa:
-            return after[1]
+            return after[1:]
     return None

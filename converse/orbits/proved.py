@@ -112,8 +112,8 @@ def prove(state: State, digits: Optional[int] = None, descend: bool = False) -> 
     alone, Enclosure, growth = balls()
     potential = state.potential
     if potential.native.kind == lib.CV_PYTHON:
-        raise ValueError("nothing can be proved of the potential %s: only Fourier sums, poly and ff "
-                         "have exact values" % potential.name)
+        raise ValueError("nothing can be proved of the potential %s: only Fourier sums, poly "
+                         "and ff have exact values" % potential.name)
     with np.errstate(all="ignore"):
         shadow = state.shadow
     if not shadow < STATIONARY:
