@@ -1,4 +1,5 @@
-"""Flips one place of the C core at a time, rebuilds, and sees whether a kernel test notices.
+"""Flips one place of the C core at a time, rebuilds, and sees whether a kernel test notices; and of
+what proves orbits in Python.
 
     python tests/mutate.py [NUMBER ...]
 
@@ -28,7 +29,8 @@ FIRST = {"arith/apm.c": "test_apm.py", "arith/special.c": "test_special.py",
          "thesis/lipschitz.c": "test_bounds.py", "thesis/region.c": "test_search.py",
          "thesis/follow.c": "test_search.py", "search/tree.c": "test_search.py", "search/setup.c": "test_search.py",
          "loewner/general.h": "test_waves.py", "loewner": "test_loewner.py", "orbits": "test_orbits.py",
-         "orbits/minplus.c": "test_floor.py"}
+         "orbits/minplus.c": "test_floor.py", "orbits/enclosure.py": "test_proved.py",
+         "orbits/exponents.py": "test_proved.py", "orbits/proved.py": "test_proved.py"}
 FLAGS = ["-std=c11", "-O1", "-fPIC", "-ffp-contract=off", "-I", "csrc",
          "-I", sysconfig.get_paths()["include"]]
 
@@ -458,6 +460,38 @@ MUTATIONS = [
      "v->kind == CV_PYTHON"),
     ("orbits/minplus.c", "    if (!(sum < 1e300))\n        return CV_EARITHMETIC;\n", ""),
     ("orbits/minplus.c", "here[0] < 1 || here[0] > MAX_NODES ||", "here[0] < 1 ||"),
+    ("orbits/enclosure.py", "low.union(high), 2 * arb.pi()", "low, 2 * arb.pi()"),
+    ("orbits/enclosure.py", "(cosine, sine), (sine, -cosine)", "(cosine, sine), (sine, cosine)"),
+    ("orbits/enclosure.py", "-ball(wave) * k[i] * k[j]", "ball(wave) * k[i] * k[j]"),
+    ("orbits/enclosure.py", "a - arb(3) / 16", "a - arb(2) / 16"),
+    ("orbits/enclosure.py", "33 * a - 120 * a * a", "33 * a - 121 * a * a"),
+    ("orbits/enclosure.py", "(-1, arb(1 - z))", "(1, arb(1 - z))"),
+    ("orbits/enclosure.py", "fmpq(j * p % self.q, self.q)", "fmpq((j + 1) * p % self.q, self.q)"),
+    ("orbits/enclosure.py", "if not (det > 0 and a > 0):", "if not det > 0:"),
+    ("orbits/enclosure.py", "    b = -b / det\n", "    b = b / det\n"),
+    ("orbits/enclosure.py", "return sum(map(abs, x.entries()), arb(0)).upper()", "return abs(x[0, 0]).mid()"),
+    ("orbits/enclosure.py", "upper(squares.upper().sqrt())", "upper(squares.mid().sqrt())"),
+    ("orbits/enclosure.py", "square(step) / 2 - eps * value", "square(step) / 2 + eps * value"),
+    ("orbits/enclosure.py", "lower(action / q), upper(action / q)",
+     "lower(action.mid() / q), upper(action.mid() / q)"),
+    ("orbits/enclosure.py", "self.tube(first, -m - self.margin)", "self.tube(first, -m)"),
+    ("orbits/enclosure.py", "self.tube(first, -m - self.margin)",
+     "self.tube(first, -self.margin)"),
+    ("orbits/enclosure.py", "s is not None and is_positive(s[-1] - first)", "s is not None"),
+    ("orbits/enclosure.py", "self.tube(first, away + self.margin)", "self.tube(first, self.margin)"),
+    ("orbits/enclosure.py", "self.tube(first, away + self.margin)", "self.tube(first, away)"),
+    ("orbits/enclosure.py", "t is not None and is_positive(first - t[-1])", "t is not None"),
+    ("orbits/enclosure.py", "s if norm(radii) <= self.margin else None", "s"),
+    ("orbits/exponents.py", "arb(0, (t[j] - s[j]).trace())", "arb(0)"),
+    ("orbits/exponents.py", "    if matrices[-1][0, 0] < 0:\n", "    if False:\n"),
+    ("orbits/exponents.py", "if after is not None and after[0] <= kappa:", "if after is not None:"),
+    ("orbits/exponents.py", "(low * (a - across)).lower(), (high * (a + across)).upper()",
+     "(low * a).lower(), (high * a).upper()"),
+    ("orbits/exponents.py", "if trace * trace < 4 * det:", "if False:"),
+    ("orbits/exponents.py", "if trace * trace < 4 * det:", "if True:"),
+    ("orbits/exponents.py", "_ends(_det(t).log())[1]", "_ends(_det(s).log())[1]"),
+    ("orbits/proved.py", "exact.action[0] - exact.gradient * radius / state.q", "exact.action[1]"),
+    ("orbits/proved.py", "bend * radius + ulp", "ulp"),
     ("orbits/potential.c", "slope = v->sine[t] * c - v->cosine[t] * s;",
      "slope = v->sine[t] * c + v->cosine[t] * s;"),
     ("orbits/potential.c", "h01 -= k0 * k1 * here;", "h01 += k0 * k1 * here;"),
@@ -546,8 +580,6 @@ HARMLESS = {
 
 def build(base, work, file):
     """Compiles the units that the changed file belongs to, and links; base has all other objects."""
-    shutil.copytree(ROOT / "converse", work / "converse",
-                    ignore=shutil.ignore_patterns("*.so", "__pycache__"))
     objects = []
     for source in sorted(base.glob("*.d")):
         words = source.read_text().replace("\\\n", " ").split()
@@ -577,13 +609,16 @@ def prepare(base):
 def try_mutation(base, number):
     """'caught by ...' or 'SURVIVED'."""
     file, old, new = MUTATIONS[number]
-    text = (ROOT / "csrc" / file).read_text()
+    room = "converse" if file.endswith(".py") else "csrc"
+    text = (ROOT / room / file).read_text()
     if text.count(old) != 1:
         return "STALE: stands %d times" % text.count(old)
     with tempfile.TemporaryDirectory() as directory:
         work = Path(directory)
         shutil.copytree(ROOT / "csrc", work / "csrc")
-        (work / "csrc" / file).write_text(text.replace(old, new))
+        shutil.copytree(ROOT / "converse", work / "converse",
+                        ignore=shutil.ignore_patterns("*.so", "__pycache__"))
+        (work / room / file).write_text(text.replace(old, new))
         build(base, work, file)
         environment = dict(os.environ, PYTHONPATH=str(work))
         first = FIRST.get(file, FIRST.get(file.split("/")[0], "test_images.py"))

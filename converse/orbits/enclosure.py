@@ -188,7 +188,7 @@ class Enclosure:
     def __init__(self, state, eps):
         self.law = LAWS[state.potential.native.kind]
         self.potential, self.q, self.n = state.potential, state.q, state.potential.n
-        self.eps = eps
+        self.eps, self.places = eps, None
         self.base = [[fmpq(*x.as_integer_ratio()) + fmpq(j * p % self.q, self.q)
                       for x, p in zip(state.origin, state.p)] for j in points(0, self.q)]
         self.u = [arb_mat(self.n, 1, [arb(x) for x in row]) for row in state.u.tolist()]
@@ -196,14 +196,16 @@ class Enclosure:
     def evaluate(self, places):
         """Gradient, Hessian and action of the points as they are, with so many decimal places."""
         n, q, u = self.n, self.q, self.u
-        ctx.prec = places * 3322 // 1000 + BITS
-        self.places, self.ulp = places, ball(Fraction(1, 10 ** places))
-        local, eps = self.law(self.potential, places + BITS // 3), ball(self.eps)
+        if places != self.places:
+            ctx.prec = places * 3322 // 1000 + BITS
+            self.places, self.ulp = places, ball(Fraction(1, 10 ** places))
+            self.local = self.law(self.potential, places + BITS // 3)
+        eps = ball(self.eps)
         two, radii, squares, action = unit(n, 2), unit(n, 0), arb(0), arb(0)
         self.force, self.beta = [], []
         for j in points(0, q):
             here, after = u[j], u[j + 1 - q]
-            value, *rest = local(self.base[j], here.entries())
+            value, *rest = self.local(self.base[j], here.entries())
             step = after - here
             force = here - u[j - 1] - step - arb_mat(n, 1, rest[:n]) * eps
             action += square(step) / 2 - eps * value

@@ -37,7 +37,7 @@ def growth(chain, strict, away):
     trace = product[0, 0] + product[1, 1]
     if trace * trace < 4 * det:
         return half, half
-    high = max(_ends((abs(a) + abs(b)).log())[1] for a, b in product.tolist())
+    high = max(upper((abs(a) + abs(b)).upper().log()) for a, b in product.tolist())
     return (half[0], high), (total[0] - high, half[1])
 
 
