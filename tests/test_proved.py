@@ -521,7 +521,7 @@ def test_without_python_flint():
             "state = orbits.follow(orbits.standard, (1,), 3, [0.5])[0]\n"
             "try: orbits.prove(state)\n"
             "except ConverseError as error: print(error)\n"
-            "from converse.orbits.cli import main\n"
+            "from converse.commands.orbits import main\n"
             "sys.exit(main(['find', 'standard', '1/3', '0.5', '--prove']))")
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
     assert done.returncode == 2 and done.stdout.count("\n") == done.stderr.count("\n") == 1
