@@ -7,6 +7,7 @@
 #endif
 #define LANES 4
 #ifndef ENGINE
+#define THESIS_WAVES
 #define ENGINE engine_avx2
 #endif
 #include "instance.h"

@@ -7,6 +7,7 @@
 #endif
 #define LANES 8
 #ifndef ENGINE
+#define THESIS_WAVES
 #define ENGINE engine_avx512
 #endif
 #include "instance.h"

@@ -2,6 +2,7 @@
 #if defined(__GNUC__) && (defined(__SSE2__) || defined(__aarch64__))
 #define LANES 2
 #ifndef ENGINE
+#define THESIS_WAVES
 #define ENGINE engine_baseline
 #endif
 #include "instance.h"

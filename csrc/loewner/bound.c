@@ -80,12 +80,11 @@ typedef struct {
 static void weigh(const batch *w, point *q)
 {
     q->load = every(0.0);
-    for (int i = FIRST; i < waves_of(w); i++) {
+    FOR_WAVES(i) {
         const vec p = mag(w->p[i]), h = w->h[i], loose = w->loose[i], rho = q->reach[i];
         const vec a = q->straight[i], b = q->off[i], r = rest_along(w, q, i);
         const vec half_square = 0.5 * rho * rho, bow = q->bowed[i];
         const vec fourth = half_square * half_square * (1.0 / 6.0);
-        const vec wide = width_of(w, q, i);
         const vec either = p * (a * r) + h * (b * (a + 0.5 * b) + fourth) + loose;
 
         q->rest_A[i][0] = either + p * (0.5 * b * b);
@@ -94,15 +93,15 @@ static void weigh(const batch *w, point *q)
                        + h * (r + rho * half_square * (1.0 / 3.0)) + loose * rho;
         q->cube_A[i] = p * (a * bow) + h * (0.5 * a * a);
         q->cube_B[i] = p * (a * a * a * (1.0 / 6.0)) + h * bow;
-        q->load += (w->size[i] * wide * wide + h + loose) * ((1.0 + wide) * square(1.0 + wide));
+        q->load += (w->size[i] * rho * rho + h + loose) * ((1.0 + rho) * square(1.0 + rho));
     }
 }
 
 /* What Q makes of cos z and sin z, in the lanes' own sites. */
 INLINE void turn_wave(const batch *w, const point *q, int i, mask own, vec *A, vec *B)
 {
-    const vec n = felt(w, i, q->n[0], q->n[1]), omega = pick(own, n * n, every(0.0));
-    const vec m = pick(own, felt(w, i, q->mu[0], q->mu[1]), every(0.0));
+    const vec n = dot_k(w, i, q->n[0], q->n[1]), omega = pick(own, n * n, every(0.0));
+    const vec m = pick(own, dot_k(w, i, q->mu[0], q->mu[1]), every(0.0));
 
     *A = m * q->cosine[i] - omega * q->sine[i];
     *B = -omega * q->cosine[i] - m * q->sine[i];
@@ -136,8 +135,8 @@ INLINE void sum_up(batch *w, sums *result, mask turn, int columns)
         vec omega[WAVES], m[WAVES];
 
         for (int i = 0; i < waves_of(w); i++) {
-            omega[i] = square(felt(w, i, n0, n1));
-            m[i] = felt(w, i, q->mu[0], q->mu[1]);
+            omega[i] = square(dot_k(w, i, n0, n1));
+            m[i] = dot_k(w, i, q->mu[0], q->mu[1]);
         }
         const vec weights = weights_of(w, omega, m) + tiny;
         t.centre += 2.0 * (omega[0] + omega[1]);
@@ -146,7 +145,7 @@ INLINE void sum_up(batch *w, sums *result, mask turn, int columns)
         t.mass += 2.0 * (mag(link0) + mag(link1));
         t.mass += weights * q->load;
         t.far = larger(t.far, pick(own, q->far, every(0.0)));
-        for (int i = FIRST; i < waves_of(w); i++) {
+        FOR_WAVES(i) {
             const vec s = q->sine[i], co = q->cosine[i], p = w->p[i];
             const vec A = m[i] * co - omega[i] * s, B = -omega[i] * co - m[i] * s;
             vec c[COLUMNS], f[COLUMNS];
@@ -159,7 +158,7 @@ INLINE void sum_up(batch *w, sums *result, mask turn, int columns)
             t.cubes += mag(A) * q->cube_A[i] + mag(B) * q->cube_B[i];
             t.along[i] += A;
             for (int k = 0; k < columns; k++) {
-                c[k] = felt(w, i, q->column[0][k], q->column[1][k]);
+                c[k] = dot_k(w, i, q->column[0][k], q->column[1][k]);
                 f[k] = -0.5 * p * A * c[k];
             }
             add_moves(w, i, B, f, columns);
@@ -185,7 +184,7 @@ INLINE void sum_up(batch *w, sums *result, mask turn, int columns)
             t.rounding += pick(inside, mag(q->mu[i]) * q->missed[i], every(0.0));
         }
     }
-    for (int i = FIRST; i < waves_of(w); i++)
+    FOR_WAVES(i)
         add_moves(w, i, t.along[i], t.slope, columns);
     for (int k = 0; k < LANES; k++)
         if (holds(&turn, k)) {
@@ -212,16 +211,16 @@ INLINE void sum_cubic(batch *w, mask turn, int columns)
         const point *q = w->orbit + j;
         const mask now = turn & within(w, j);
         vec form[WAVES][PAIRS];
-        for (int i = FIRST; i < waves_of(w); i++) {
+        FOR_WAVES(i) {
             vec A, B;
             turn_wave(w, q, i, now, &A, &B);
             const vec pA = w->p[i] * A, third = w->p[i] * B * (1.0 / 3.0);
             for (int k = 0, kl = 0; k < columns; k++) {
-                const vec c = felt(w, i, q->column[0][k], q->column[1][k]);
+                const vec c = dot_k(w, i, q->column[0][k], q->column[1][k]);
                 for (int l = k; l < columns; l++, kl++) {
                     const double half = l == k ? 0.5 : 1.0;     /* of (c.e)^2/2 */
-                    const vec cc = half * c * felt(w, i, q->column[0][l], q->column[1][l]);
-                    const vec bow = felt(w, i, q->bow[0][kl], q->bow[1][kl]);
+                    const vec cc = half * c * dot_k(w, i, q->column[0][l], q->column[1][l]);
+                    const vec bow = dot_k(w, i, q->bow[0][kl], q->bow[1][kl]);
                     form[i][kl] = -pA * bow - third * cc;
                     for (int m = 2; m < columns; m++)
                         if (moves(w, i, m, columns))
@@ -230,7 +229,17 @@ INLINE void sum_cubic(batch *w, mask turn, int columns)
                 }
             }
         }
-        add_cubic(w, q, now, form, columns);
+        for (int m = 0; m < columns; m++) {                     /* (c.e) form[e, e] */
+            vec c[WAVES];
+            FOR_WAVES(i)
+                c[i] = dot_k(w, i, q->column[0][m], q->column[1][m]);
+            for (int kl = 0; kl < columns * (columns + 1) / 2; kl++) {
+                vec sum = every(0.0);
+                FOR_WAVES(i)
+                    sum += c[i] * form[i][kl];
+                w->cubic[m][kl] += pick(now, sum, every(0.0));
+            }
+        }
     }
 }
 
@@ -366,13 +375,13 @@ static void bound_shares(batch *w, mask turn)
     for (int j = begin; j <= end; j++) {
         const point *q = w->orbit + j;
         const mask now = turn & within(w, j);
-        for (int i = FIRST; i < waves_of(w); i++) {
+        FOR_WAVES(i) {
             const mask some = now & TRUTH(q->reach[i] > 0.0);
             vec A, B;
             turn_wave(w, q, i, now, &A, &B);
             const vec part = 4.0 * remainder_of(w, q, i, A, B) / q->reach[i];
             for (int k = 0; k < columns && w->root->present[i]; k++) {
-                const vec more = part * mag(felt(w, i, q->column[0][k], q->column[1][k]));
+                const vec more = part * mag(dot_k(w, i, q->column[0][k], q->column[1][k]));
                 w->share[k] += pick(some, more, every(0.0));
             }
         }

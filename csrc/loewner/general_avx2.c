@@ -1,4 +1,3 @@
 /* general_avx2.c - the engine of avx2.c for any waves. */
-#define GENERAL
 #define ENGINE general_avx2
 #include "avx2.c"

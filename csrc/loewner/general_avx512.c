@@ -1,4 +1,3 @@
 /* general_avx512.c - the engine of avx512.c for any waves. */
-#define GENERAL
 #define ENGINE general_avx512
 #include "avx512.c"

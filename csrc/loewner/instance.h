@@ -1,11 +1,6 @@
-/* instance.h - an engine: LANES and ENGINE, its name, are defined before, and GENERAL if it is for any
-   waves. */
-#include "prism.h"
-#ifdef GENERAL
-#include "general.h"
-#else
-#include "three.h"
-#endif
+/* instance.h - an engine: LANES and ENGINE, its name, are defined before, and THESIS_WAVES if it is for
+   those of the thesis. */
+#include "waves.h"
 
 #include "orbit.c"
 #include "witness.c"

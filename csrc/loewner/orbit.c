@@ -18,14 +18,14 @@ INLINE void measure(const batch *w, point *q, int columns)
     for (int i = 0; i < waves_of(w); i++) {
         vec sum = every(0.0);
         for (int k = 0; k < columns; k++)
-            sum += mag(felt(w, i, q->column[0][k], q->column[1][k]));
+            sum += mag(dot_k(w, i, q->column[0][k], q->column[1][k]));
         q->straight[i] = sum * WIDEN;
         sum = every(0.0);
         for (int kl = 0; kl < columns * (columns + 1) / 2; kl++)
-            sum += mag(felt(w, i, q->bow[0][kl], q->bow[1][kl]));
+            sum += mag(dot_k(w, i, q->bow[0][kl], q->bow[1][kl]));
         q->bowed[i] = sum * WIDEN;
     }
-    measure_slips(w, q, columns);
+    measure_slips(w, q);
 }
 
 /* The reaches, of what was measured and the rest. */
@@ -52,7 +52,7 @@ static void forget(const batch *w, point *q, int columns)
     for (size_t j = 0; j < sizeof parts / sizeof *parts; j++)
         for (int k = 0; k < sizes[j]; k++)
             parts[j][k] = pick(q->reached, parts[j][k], every(0.0));
-    measure_slips(w, q, columns);
+    measure_slips(w, q);
 }
 
 /* The sines at q->x, and what follows from them. */
@@ -60,7 +60,7 @@ static void finish(const batch *w, point *q)
 {
     vec half, apart;
 
-    see(w, q);
+    evaluate(w, q);
     half = 0.5 * (q->beta[0] - q->beta[2]);
     apart = root_of(half * half + q->beta[1] * q->beta[1]);
     q->least = 0.5 * (q->beta[0] + q->beta[2]) - apart;
@@ -89,7 +89,7 @@ static vec bend(const batch *w, const point *q, int wave)
 /* Columns and bow of next, the point after q, seen from o before it. */
 INLINE void carry_on(const batch *w, point *next, const point *q, const point *o, int columns)
 {
-    carry(w, next, q, o, columns);
+    propagate(w, next, q, o, columns);
     measure(w, next, columns);
 }
 
@@ -113,13 +113,13 @@ static void step(const batch *w, point *next, point *q, const point *o, int is_f
     vec inverse[3] = { every(0.0), every(0.0), every(0.0) }, rounded = every(0.0);
     vec g[WAVES], bent[WAVES], rest_sum;
 
-    for (int j = FIRST; j < waves_of(w); j++) {
+    FOR_WAVES(j) {
         g[j] = w->p[j] * q->cosine[j];
-        bent[j] = bend(w, q, j);
+        bent[j] = bend(w, q, j) + propagate_err(w, q, j);
     }
     for (int i = 0; i < 2; i++) {
         const vec before = o->x[i] - q->turns[i] * TWO_PI;
-        const vec x = (2.0 * q->x[i] - before) + gathered(w, i, g);
+        const vec x = (2.0 * q->x[i] - before) + sum_k(w, i, g);
         next->turns[i] = (x * (1.0 / TWO_PI) + SHIFT) - SHIFT;
         next->x[i] = x - next->turns[i] * TWO_PI;
         q->missed[i] = 0x1p-50 * (mag(q->x[i]) + mag(o->x[i]) + mag(before) + mag(x)) + q->fuzz;
@@ -144,10 +144,9 @@ static void step(const batch *w, point *next, point *q, const point *o, int is_f
     rest_sum = q->rest[0] + q->rest[1];
     for (int i = 0; i < 2; i++) {
         const vec i0 = mag(inverse[i]) + rounded, i1 = mag(inverse[i + 1]) + rounded;
-        vec e = gathered_sizes(w, i, bent);
+        vec e = sum_abs_k(w, i, bent);
 
         e += q->missed[i];
-        e += carried(w, q, i);
         e += 0x1p-50 * (next->straight[i] + next->bowed[i] + o->reach[i]);
         e += is_first ? o->rest[i] : i0 * o->force[0] + i1 * o->force[1];
         q->force[i] = (e + (2.0 * q->fuzz + rounded) * rest_sum) * WIDEN;

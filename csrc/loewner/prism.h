@@ -32,11 +32,17 @@
 #include "arith/lanes.h"
 #include "problem.h"
 
-#ifdef GENERAL
-enum { WAVES = SLOTS };                 /* general.h */
+#ifdef THESIS_WAVES                     /* see waves.h */
+enum { KNOWN = 1, FIRST = 0, WAVES = 3 };
 #else
-enum { WAVES = 3 };                     /* three.h */
+enum { KNOWN = 0, FIRST = 2, WAVES = SLOTS };
 #endif
+#if defined(__GNUC__) && defined(THESIS_WAVES)
+#define UNROLL _Pragma("GCC unroll 3")
+#else
+#define UNROLL
+#endif
+#define FOR_WAVES(j) UNROLL for (int j = FIRST; j < waves_of(w); j++)
 enum { MAX_POINTS = 4000, ORIGIN = MAX_POINTS };
 
 /* One point of the orbits of the prisms' centres, and all that is known of its neighbours. */
@@ -51,9 +57,7 @@ typedef struct {
     vec sine[WAVES], cosine[WAVES];
     vec straight[WAVES], bowed[WAVES];  /* of D along a wave: |L e| and |T[e, e]| */
     vec off[WAVES], reach[WAVES];       /* |D - L e| and |D| */
-#ifdef GENERAL
-    vec slip[WAVES];                    /* what L e and T[e, e] lose along a wave */
-#endif
+    vec slip[WAVES];                    /* what L e and T[e, e] lose along a wave, from 2 on */
     vec widest;                         /* the largest reach of a wave, by their weights */
     vec beta[3];                        /* beta00, beta01, beta11 */
     vec least;                          /* eigenvalue of beta, about */

@@ -1,0 +1,208 @@
+/* waves.h - the waves of the potential, as an engine sees them.
+
+   An engine is made for any waves, which it reads from the problem, or, with THESIS_WAVES, for those
+   of the thesis, (1, 0), (0, 1) and (1, 1) without phases, which it knows when it is compiled.  The
+   code is the same, but where KNOWN the compiler unrolls the loops over the waves, and products with
+   0 and 1 are left out (the compiler may not do that by itself: 0 x is not 0 for each x).  So a
+   known engine does what the general one would do with these waves, without the operations that are
+   exact.
+
+   The slots 0 and 1 are the coordinates themselves, whether there are such waves or not: FIRST is
+   the first slot with an amplitude.
+
+   Along a wave, columns and bow are what doubles make of k.L and k.T.  What they lose there, which
+   counts where coordinates cancel, is the wave's slip, and belongs to the rest along it.  Where
+   bounds of coordinates are put together |k| stands for k.
+
+   `far` bounds the rounding of all angles, and sums over the waves, in units u: products k x lose
+   u |k x|, their sum u of itself, the phase, which `near` made a double, 8 u of itself, and the last
+   sum u of what it adds.  That is 3 u (|k0 x0| + |k1 x1|) + 9 u |phase| at most; far has one |phase|
+   more, for the 10^-40 that it may be off before, and the number of waves. */
+#ifndef CONVERSE_WAVES_H
+#define CONVERSE_WAVES_H
+
+#include "arith/sine.h"
+#include "prism.h"
+
+INLINE int waves_of(const batch *w) { return KNOWN ? WAVES : w->root->waves; }
+
+INLINE double k_of(const batch *w, int wave, int i)
+{
+    return KNOWN ? (double)(wave == 2 || wave == i) : w->root->k[wave][i];
+}
+
+/* k x, and sum += k x. */
+INLINE vec times(double k, vec x) { return KNOWN && k == 1.0 ? x : k * x; }
+
+INLINE void add_times(vec *sum, double k, vec x)
+{
+    if (!KNOWN || k != 0.0)
+        *sum += times(k, x);
+}
+
+/* k.x */
+INLINE vec dot_k(const batch *w, int wave, vec x0, vec x1)
+{
+    const double k0 = k_of(w, wave, 0), k1 = k_of(w, wave, 1);
+
+    if (KNOWN && k1 == 0.0)
+        return times(k0, x0);
+    if (KNOWN && k0 == 0.0)
+        return times(k1, x1);
+    return times(k0, x0) + times(k1, x1);
+}
+
+/* |k|.x */
+INLINE vec dot_abs_k(const batch *w, int wave, vec x0, vec x1)
+{
+    const double k0 = fabs(k_of(w, wave, 0)), k1 = fabs(k_of(w, wave, 1));
+
+    if (KNOWN && k1 == 0.0)
+        return times(k0, x0);
+    if (KNOWN && k0 == 0.0)
+        return times(k1, x1);
+    return times(k0, x0) + times(k1, x1);
+}
+
+/* Coordinate i of the sum of k f over the waves, and a bound of it from bounds of f. */
+INLINE vec sum_k(const batch *w, int i, const vec f[])
+{
+    vec sum = every(0.0);
+
+    FOR_WAVES(j)
+        add_times(&sum, k_of(w, j, i), f[j]);
+    return sum;
+}
+
+INLINE vec sum_abs_k(const batch *w, int i, const vec f[])
+{
+    vec sum = every(0.0);
+
+    FOR_WAVES(j)
+        add_times(&sum, fabs(k_of(w, j, i)), f[j]);
+    return sum;
+}
+
+/* How far D is along a wave from what columns and bow make of it. */
+INLINE vec rest_along(const batch *w, const point *q, int wave)
+{
+    const vec rest = dot_abs_k(w, wave, q->rest[0], q->rest[1]);
+
+    return wave < 2 ? rest : rest + q->slip[wave];
+}
+
+/* k.L and k.T lose u to each product and u to the sum: 2 u of the absolute values.  Of these, the
+   coordinates' straight and bowed are bounds. */
+INLINE void measure_slips(const batch *w, point *q)
+{
+    const vec size0 = q->straight[0] + q->bowed[0], size1 = q->straight[1] + q->bowed[1];
+
+    for (int j = 2; j < waves_of(w); j++)
+        q->slip[j] = 0x1p-51 * dot_abs_k(w, j, size0, size1);
+}
+
+/* Sines and cosines of the waves at q->x, beta, and their errors.
+
+   Let N be the number of waves, S the sum of (|k0| + |k1|)^2 times their sizes.  p sin and p cos are
+   off by (5 + far - N) u |p|; in beta such a product is multiplied by k k', rounded twice more, and N
+   are added, and taken from an integer: beta is off by u (3 + (9 + far) S) at most, where fuzz is
+   16 u (1 + S)(1 + far), far >= 1. */
+INLINE void evaluate(const batch *w, point *q)
+{
+    vec pull[3] = { every(0.0), every(0.0), every(0.0) }, farthest = every(0.0);
+    vec sizes = every(1.0);
+
+    FOR_WAVES(j) {
+        const double k0 = k_of(w, j, 0), k1 = k_of(w, j, 1), phase = KNOWN ? 0.0 : w->root->phase[j];
+        vec y = dot_k(w, j, q->x[0], q->x[1]);
+        vec angle = dot_abs_k(w, j, mag(q->x[0]), mag(q->x[1])) * 3.0;
+        if (!KNOWN) {
+            y += phase;
+            angle += 10.0 * fabs(phase);
+        }
+        double_sincos(&q->sine[j], &q->cosine[j], y);
+        farthest = larger(farthest, angle);
+        const vec s = w->p[j] * q->sine[j];
+        add_times(&pull[0], k0 * k0, s);
+        add_times(&pull[1], k0 * k1, s);
+        add_times(&pull[2], k1 * k1, s);
+        sizes += w->root->square_k[j] * w->size[j];
+    }
+    q->far = farthest + (double)(waves_of(w) - FIRST + 1);
+    for (int i = 0; i < 3; i++)
+        q->beta[i] = (i == 1 ? 0.0 : 2.0) - pull[i];
+    q->fuzz = 0x1p-49 * sizes * (1.0 + q->far);
+}
+
+/* The columns and the bow of next, the point after q, seen from o before it: 2L - L(o), the same of
+   T, and what the waves make of them and add,
+       -p (c.e) sin y + h e cos y  and  -p T sin y - p (c.e)^2/2 cos y - h e (c.e) sin y.
+   Where no wave feels a column it is carried as it should be. */
+INLINE void propagate(const batch *w, point *next, const point *q, const point *o, int columns)
+{
+    const int pairs = columns * (columns + 1) / 2;
+    vec straight[2][COLUMNS], bowed[2][PAIRS];
+
+    memset(straight, 0, sizeof straight);
+    memset(bowed, 0, sizeof bowed);
+    FOR_WAVES(j) {
+        const vec pull = -w->p[j] * q->sine[j], half = 0.5 * w->p[j] * q->cosine[j];
+        vec c[COLUMNS], f[COLUMNS], push[COLUMNS];
+        for (int k = 0; k < columns; k++) {
+            c[k] = dot_k(w, j, q->column[0][k], q->column[1][k]);
+            f[k] = -half * c[k];
+            push[k] = pull * c[k];
+        }
+        add_moves(w, j, -q->sine[j], f, columns);
+        add_moves(w, j, q->cosine[j], push, columns);
+        for (int k = 0, kl = 0; k < columns; k++) {
+            for (int i = 0; i < 2; i++)
+                add_times(&straight[i][k], k_of(w, j, i), push[k]);
+            for (int l = k; l < columns; l++, kl++) {           /* (c.e) (f.e) */
+                const vec cf = l == k ? c[k] * f[k] : c[k] * f[l] + c[l] * f[k];
+                const vec bow = cf + pull * dot_k(w, j, q->bow[0][kl], q->bow[1][kl]);
+                for (int i = 0; i < 2; i++)
+                    add_times(&bowed[i][kl], k_of(w, j, i), bow);
+            }
+        }
+    }
+    for (int i = 0; i < 2; i++) {
+        for (int k = 0; k < columns; k++)
+            next->column[i][k] = (2.0 * q->column[i][k] - o->column[i][k]) + straight[i][k];
+        for (int kl = 0; kl < pairs; kl++)
+            next->bow[i][kl] = (2.0 * q->bow[i][kl] - o->bow[i][kl]) + bowed[i][kl];
+    }
+}
+
+/* What that loses of a wave to roundings: p sin, its products with c and T, with k, and sums over the
+   waves (10 + far) u |p| of their sizes, h cos y (8 + far) u h; and p times the slip, as the map has
+   k.L where propagate has c. */
+INLINE vec propagate_err(const batch *w, const point *q, int wave)
+{
+    const vec p = mag(w->p[wave]), unit = 0x1p-49 * (1.0 + q->far);
+    const vec lost = unit * (p * (q->straight[wave] + q->bowed[wave]) + w->h[wave]);
+
+    return wave < 2 ? lost : lost + p * q->slip[wave];
+}
+
+/* Minus the gradient of n.beta n at a site. */
+INLINE vec gradient(const batch *w, const point *q, int i)
+{
+    vec sum = every(0.0);
+
+    FOR_WAVES(j)
+        add_times(&sum, k_of(w, j, i),
+                  square(dot_k(w, j, q->n[0], q->n[1])) * w->p[j] * q->cosine[j]);
+    return sum;
+}
+
+/* At least omega + |m| of each wave with their roundings, which are relative to |k|^2 |n|^2 and
+   |k| |mu|. */
+INLINE vec weights_of(const batch *w, const vec omega[], const vec m[])
+{
+    const double most = w->root->most_k;
+
+    return most * most * (omega[0] + omega[1]) + most * (mag(m[0]) + mag(m[1]));
+}
+
+#endif
