@@ -363,27 +363,6 @@ def star_margins(rng, cases):
         yield from (("star", abs(x - y), rest) for x, y, rest in zip(star, out, out[42:]))
 
 
-def torus_margins(rng, cases):
-    """The same of a rectangle of the torus: its bound (docs/proof.md, section 4) without roundings."""
-    for _ in range(cases):
-        abc = [sorted(Fraction(rng.uniform(-1, 1)) for _ in range(2)) for _ in range(3)]
-        centre = [Fraction(rng.uniform(-math.pi, math.pi)) for _ in range(2)]
-        half = [Fraction(math.pi) / 2 ** rng.randrange(0, 30) for _ in range(2)]
-        found = kernels.cell(*abc, centre, half, 20)
-        margin = (1 + sum(max(map(abs, x)) for x in abc)) / mp(10 ** 12)
-        best = [-mpmath.inf] * 2
-        for signs in itertools.product((-1, 1), repeat=2):
-            t = [s * mp(h) for s, h in zip(signs, half)]
-            waves = []
-            for p, v, d in zip(abc, (*map(mp, centre), mp(sum(centre))), (*t, sum(t))):
-                x = mpmath.sin(v) + d * mpmath.cos(v)
-                waves.append(max(mp(p[0]) * x, mp(p[1]) * x) + max(map(abs, map(mp, p))) * d * d / 2)
-            x, y, z = waves
-            root = mpmath.sqrt((x - y) ** 2 + 4 * z * z)
-            best = [max(best[0], x + y + 2 * z + 4), max(best[1], (x + y + 2 * z + root) / 2 + 2)]
-        yield from (("torus", true - mp(bound), margin) for true, bound in zip(best, found))
-
-
 # ---- the margins along orbits: docs/proof.md says what each must cover
 
 def sites(prism, s, t):
@@ -622,7 +601,7 @@ def worst_margins(cases):
     """The largest share of each margin that was needed."""
     worst = {}
     for measure, n in ((sine_margins, 25 * cases), (cell_margins, cases), (star_margins, cases),
-                       (torus_margins, cases // 5), (orbit_margins, 3 * cases)):
+                       (orbit_margins, 3 * cases)):
         for name, need, there in measure(rng_for(measure.__name__), n):
             if need > 0:
                 assert there > 0, name

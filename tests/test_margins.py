@@ -264,35 +264,6 @@ def at_once_margins(rng, cases, tools, read):
             mp(2) ** -45 * (1 + mp(names["far"])) * mp(names["mass"])
 
 
-def torus_margins(rng, cases, tools, read):
-    """over_any of torus.c, executed from its text, and in exact arithmetic."""
-    names = {"double_sincos": sines_of(tools, read), "HUGE_VAL": math.inf, "MOST_WAVES": 16,
-             "larger": max, "fabs": abs, "sqrt": math.sqrt}
-    names["moved"] = tools[1].function(read("model/torus.c"), "moved").bound(names)
-    over = tools[1].function(read("model/torus.c"), "over_any").bound(names)
-    for _ in range(cases):
-        waves = [[*map(mp, w[:4])] for w in draw(rng).waves]
-        q = SimpleNamespace(
-            n=len(waves), feels=[[float(w[0]), float(w[1])] for w in waves],
-            does=[[float(x) for x in (w[0] ** 2, w[0] * w[1], w[1] ** 2)] for w in waves],
-            phase=[float(w[2]) for w in waves], p=[float(w[3]) for w in waves])
-        v, r = ([rng.uniform(-1, 1) * math.pi * 2.0 ** -rng.randrange(k) for _ in range(2)]
-                for k in (1, 30))
-        middle = tools[1].Place(None, lambda _: None)
-        found, true = over(q, v, r, middle), -mpmath.inf
-        for t in ((i * mp(r[0]), j * mp(r[1])) for i in (-1, 1) for j in (-1, 1)):
-            m = [mp(0)] * 3
-            for k0, k1, phase, p in waves:
-                y, along = k0 * mp(v[0]) + k1 * mp(v[1]) - phase, k0 * t[0] + k1 * t[1]
-                z = p * (mpmath.sin(y) + mpmath.cos(y) * along) + along ** 2 * abs(p) / 2
-                m = [m[0] + z * k0 * k0, m[1] + z * k0 * k1, m[2] + z * k1 * k1]
-            root = mpmath.sqrt((m[0] - m[2]) ** 2 / 4 + m[1] ** 2)
-            true = max(true, (m[0] + m[2]) / 2 + 2 + root)
-        K = max(abs(k0) + abs(k1) for k0, k1, *_ in waves)
-        yield "torus", true - found, \
-            mp(2) ** -40 * (1 + K) ** 3 * (1 + K * K * sum(abs(w[3]) for w in waves))
-
-
 def general_margins(rng, cases):
     """Those of test_waves.py, by the names of docs/proof.md."""
     for name, need, there in margins(rng, cases):
@@ -303,8 +274,7 @@ def worst_margins(tools, read):
     """Of each margin of general waves the largest share that was needed."""
     worst = {}
     for measure, *more in ((frame_margins,), (star_margins,), (slip_margins,), (left_margins,),
-                           (general_margins,), (at_once_margins, tools, read),
-                           (torus_margins, tools, read)):
+                           (general_margins,), (at_once_margins, tools, read)):
         for name, need, there in measure(rng_for(measure.__name__), CASES, *more):
             if need > 0:
                 assert there > 0, name

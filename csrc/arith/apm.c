@@ -231,6 +231,27 @@ double apm_nearest_d(const apm_t x)
     return result;
 }
 
+double apm_bound_d(const apm_t x, apm_round_t dir)
+{
+    const double end = dir == APM_UP ? HUGE_VAL : -HUGE_VAL;
+    double d = apm_nearest_d(x);
+    apm_t found;
+
+    apm_init(found);
+    for (;;) {
+        if (apm_set_d(found, d) != APM_OK) {
+            d = end;
+            break;
+        }
+        const int c = apm_cmp(found, x);
+        if (dir == APM_UP ? c >= 0 : c <= 0)
+            break;
+        d = nextafter(d, end);
+    }
+    apm_clear(found);
+    return d;
+}
+
 typedef struct {
     char *text;
     mpz_srcptr mant;

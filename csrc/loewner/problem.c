@@ -253,40 +253,24 @@ static void straighten(loewner *w)
     }
 }
 
-/* B at a corner of the parameters' cube, of what the engine knows the waves to be; or infinity. */
-typedef double bound_of(const loewner *w, const double p[]);
-
-static double torus_thesis(const loewner *w, const double p[])
+/* B at the corners of the parameters' cube; infinity if it is not to be bounded.  An amplitude there
+   is off by less than its loose, and a phase by 2^-50 of itself and a little more: see near. */
+static void set_corners(loewner *w, int with_bounds)
 {
-    (void)w;
-    return torus_largest(p, p, TORUS_EIGENVALUE);
-}
+    torus_wave waves[SLOTS];
 
-static double torus_general(const loewner *w, const double p[])
-{
-    return torus_waves(w->waves - 2, w->k + 2, w->phase + 2, p + 2);
-}
-
-static double torus_unknown(const loewner *w, const double p[])
-{
-    (void)w;
-    (void)p;
-    return HUGE_VAL;
-}
-
-/* B at the corners.  An amplitude there is off by less than its loose, and the largest eigenvalue by
-   that times |k|^2, of which torus.c covers TORUS_ENDS. */
-static void set_corners(loewner *w, bound_of *bound)
-{
     for (int corner = 0; corner < 1 << w->n_parameters; corner++) {
-        double p[SLOTS], off = 0.0;
         for (int i = 0; i < w->waves; i++) {
-            p[i] = w->amplitude[i];
+            double p = w->amplitude[i];
             for (int m = 0; m < w->n_parameters; m++)
-                p[i] += (corner >> m & 1 ? 1.0 : -1.0) * w->part[i][m];
-            off += w->square_k[i] * w->loose[i];
+                p += (corner >> m & 1 ? 1.0 : -1.0) * w->part[i][m];
+            waves[i] = (torus_wave){ { w->k[i][0], w->k[i][1] },
+                                     interval_about(w->phase[i], 0x1p-49 * fabs(w->phase[i])),
+                                     w->loose[i] == 0.0 ? interval_of(p)
+                                                        : interval_about(p, w->loose[i]) };
         }
-        w->corner[corner] = bound(w, p) + (off > TORUS_ENDS ? off : 0.0);
+        w->corner[corner] = with_bounds ? torus_largest(w->waves, waves, TORUS_EIGENVALUE)
+                                        : HUGE_VAL;
     }
 }
 
@@ -300,7 +284,7 @@ loewner *loewner_new(const patch *problem, int with_bounds)
     set_angles(w, problem);
     set_waves(w, problem, general);
     straighten(w);
-    set_corners(w, with_bounds ? general ? torus_general : torus_thesis : torus_unknown);
+    set_corners(w, with_bounds);
     w->engine = fastest_engine(general);
     w->memory = calloc(1, w->engine->size + ALIGNMENT);
     if (w->memory == NULL) {

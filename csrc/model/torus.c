@@ -1,98 +1,94 @@
-/* torus.c - the largest trace and the largest eigenvalue of beta over the whole torus and all
-   parameters, by branch and bound, in doubles.  The thesis found them by Newton's method and added a
-   margin; that is a guess, and everything else rests on these two numbers.
+/* torus.c - the largest trace and the largest eigenvalue of beta over the whole torus and ranges of
+   amplitudes, by branch and bound, in intervals.  The thesis found them by Newton's method and added
+   a margin; that is a guess, and everything else rests on these two numbers.
 
-   beta(-v) = 2I + W(v), W = a sin v0 e0e0' + b sin v1 e1e1' + c sin(v0+v1) (1,1)(1,1)', and the torus
-   is its own mirror image, so W serves.
+   beta(-v) = 2I + W(v), W(v) = sum of p sin(k.v - phase) k k', and the torus is its own mirror image,
+   so W serves.  With y = k.v - phase and t a displacement along k, |sin''| <= 1 says
 
-   Rounding (u = 2^-53).  On a rectangle as large as the torus the bound of c sin(v0 + v1) is
-   |c| (1 + t + t^2/2) with t = 2 pi, 27 |c|; those of the others are 9.1 |a| and 9.1 |b|.  Sines and
-   cosines are off by 4 u, by 8 u where their angle is a rounded sum; with the roundings on the way
-   these bounds are off by 214 u |c|, 57 u |a| and 57 u |b|, the eigenvalue by
-   57 u max(|a|, |b|) + 428 u |c| and the trace by 57 u (|a| + |b|) + 428 u |c|.  The formula of the
-   eigenvalue rounds by 50 u (|a| + |b|) + 257 u |c| + 2 u, that of the trace, four sums, by
-   37 u (|a| + |b|) + 216 u |c| + 16 u.  A centre is rounded by 2 u at each of at most 100 cuts, so
-   rectangles may fail to meet by as much: 200 u (|a| + |b| + 2 |c|).  TORUS_ENDS is 2048 u, and the
-   ranges of the thesis's method are off by 9 u: 9 u (|a| + |b| + 2 |c|).  Together less than
-   3300 u (1 + |a| + |b| + |c|); MARGIN is 9007 u. */
-#include <math.h>
+       p sin(y + t) <= p (sin y + t cos y) + |p| t^2/2.
 
-#include "arith/sine.h"
+   The right side is convex in t; W grows with these coefficients in the Loewner order, and trace and
+   largest eigenvalue are convex and grow with W.  So over a rectangle about v what they say of W is
+   largest at a corner.  docs/proof.md, section 4. */
 #include "model/torus.h"
 
-enum { CELLS = 20000, DEPTH = 100, WAVES = 3 };
-static const double MARGIN = 1e-12, NEAR = 5e-7, PI = 0x1.921fb54442d19p+1;     /* not less than pi */
+enum { MOST_WAVES = 18, CELLS = 20000, DEPTH = 100 };
+static const double NEAR = 5e-7, CLOSER = 1e-3, PI = 0x1.921fb54442d19p+1;  /* not less than pi */
 
-typedef struct { double low[WAVES], high[WAVES], size[WAVES]; int which; } problem;
-typedef struct { double v[2], r[2]; int depth; } cell;
+/* A wave as cells see it: their coordinates are combinations of the angles of which it feels so
+   much; trace, and the difference of the diagonal and twice the corner, of k k'; size >= |p|. */
+typedef struct { double feels[2], trace, does[2], size; interval phase, p; } wave;
 
-static problem problem_of(const double low[3], const double high[3], int which)
-{
-    problem p = { .which = which };
-
-    for (int i = 0; i < WAVES; i++) {
-        p.low[i] = low[i];
-        p.high[i] = high[i];
-        p.size[i] = larger(fabs(low[i]), fabs(high[i]));
-    }
-    return p;
-}
-
-/* >= p sin(v + t) for every p of the range, s and c the sine and cosine of v:
-   sup p (s + c t) + |p| t^2/2, since |sin''| <= 1.  As a function of t this is convex. */
-static double wave(const problem *p, int i, double s, double c, double t)
-{
-    const double x = s + c * t;
-
-    return x * (x < 0.0 ? p->low[i] : p->high[i]) + 0.5 * t * t * p->size[i];
-}
-
-/* >= the trace or the largest eigenvalue of 2I + W(v + t), s and c the sines and cosines of the waves
-   at v.  As a function of t the bound is convex: so are the three coefficients, W grows with them in
-   the Loewner order, and trace and largest eigenvalue are convex and grow with W.  The root is
-   scaled, so that no square is too large. */
-static double displaced(const problem *p, const double s[WAVES], const double c[WAVES], double t0,
-                        double t1)
-{
-    const double x = wave(p, 0, s[0], c[0], t0), y = wave(p, 1, s[1], c[1], t1);
-    const double z = wave(p, 2, s[2], c[2], t0 + t1), trace = (x + y) + 2.0 * z;
-    const double a = x - y, b = 2.0 * z, scale = larger(larger(fabs(a), fabs(b)), 0x1p-1000);
-    const double e = a / scale, f = b / scale;
-
-    if (p->which == TORUS_TRACE)
-        return trace + 4.0;
-    return 0.5 * (trace + scale * sqrt(e * e + f * f)) + 2.0;
-}
-
-static void waves_at(const double v[2], double s[WAVES], double c[WAVES])
-{
-    double_sincos(&s[0], &c[0], v[0]);
-    double_sincos(&s[1], &c[1], v[1]);
-    double_sincos(&s[2], &c[2], v[0] + v[1]);
-}
-
-/* >= the same for every point of the rectangle: a convex function is largest at a corner.
-   *middle: the value at its centre. */
-static double over(const problem *p, const double v[2], const double r[2], double *middle)
-{
-    double s[WAVES], c[WAVES], most;
-
-    waves_at(v, s, c);
-    *middle = displaced(p, s, c, 0.0, 0.0);
-    most = displaced(p, s, c, r[0], r[1]);
-    most = larger(displaced(p, s, c, -r[0], r[1]), most);
-    most = larger(displaced(p, s, c, r[0], -r[1]), most);
-    return larger(displaced(p, s, c, -r[0], -r[1]), most);
-}
-
-/* What is bounded: by `over`, over cells of a rectangle of these sides about 0. */
+/* What is bounded, over rectangles about 0 of these sides.  reach: how much, about, the square of
+   a side moves the waves. */
 typedef struct {
-    double (*over)(const void *of, const double v[2], const double r[2], double *middle);
-    const void *of;
-    double side[2], reach[2];           /* reach: how much the square of a side moves the waves */
-    double all, no_more, margin, last;  /* sizes added up; no value is above; roundings; tolerance */
-    double closer;                      /* of each pass's tolerance, that of the next */
+    int n, which;
+    wave waves[MOST_WAVES];
+    double side[2], reach[2], all;      /* all: a size that W has, about */
 } surface;
+
+typedef struct { double low[2], high[2]; int depth; } cell;
+
+/* >= trace or largest eigenvalue of M = sum of z[i] k k': the latter is half of
+   trace + sqrt((M00 - M11)^2 + (2 M01)^2).  What is squared is scaled, so that none is too large. */
+static double summit(const surface *q, const double z[])
+{
+    double trace = 0.0, size[2];
+
+    for (int i = 0; i < q->n; i++)
+        trace = above(trace + above(q->waves[i].trace * z[i]));
+    if (q->which == TORUS_TRACE)
+        return trace;
+    for (int j = 0; j < 2; j++) {
+        interval sum = { 0.0, 0.0 };
+        for (int i = 0; i < q->n; i++)
+            if (q->waves[i].does[j] != 0.0)
+                sum = interval_add(sum, interval_scale(q->waves[i].does[j], interval_of(z[i])));
+        size[j] = interval_size(sum);
+    }
+    const double scale = larger(larger(size[0], size[1]), 0x1p-900);
+    const double x = above(size[0] / scale), y = above(size[1] / scale);
+    const double root = above(sqrt(above(above(x * x) + above(y * y))));
+    return above(0.5 * above(trace + above(scale * root)));
+}
+
+static interval along(const wave *w, const double x[2])
+{
+    return interval_add(interval_scale(w->feels[0], interval_of(x[0])),
+                        interval_scale(w->feels[1], interval_of(x[1])));
+}
+
+/* >= trace or largest eigenvalue of W over the rectangle.  *middle: the value at its centre, about.
+   On either diagonal the corners are at the displacements t and -t. */
+static double over(const surface *q, const double low[2], const double high[2], double *middle)
+{
+    interval s[MOST_WAVES], c[MOST_WAVES];
+    double v[2], r[2], z[2][MOST_WAVES], top = -HUGE_VAL;
+
+    for (int j = 0; j < 2; j++) {
+        v[j] = 0.5 * low[j] + 0.5 * high[j];
+        r[j] = larger(above(v[j] - low[j]), above(high[j] - v[j]));
+    }
+    for (int i = 0; i < q->n; i++) {
+        const wave *const w = &q->waves[i];
+        interval_sincos(&s[i], &c[i], interval_sub(along(w, v), w->phase));
+        z[0][i] = interval_mul(w->p, s[i]).high;
+    }
+    *middle = summit(q, z[0]);
+    for (int diagonal = 0; diagonal < 2; diagonal++) {
+        const double t[2] = { r[0], diagonal == 0 ? r[1] : -r[1] };
+        for (int i = 0; i < q->n; i++) {
+            const wave *const w = &q->waves[i];
+            const interval far = along(w, t), line = interval_mul(c[i], far);
+            const double size = interval_size(far);
+            const double bow = above(0.5 * above(w->size * above(size * size)));
+            z[0][i] = above(interval_mul(w->p, interval_add(s[i], line)).high + bow);
+            z[1][i] = above(interval_mul(w->p, interval_sub(s[i], line)).high + bow);
+        }
+        top = larger(larger(summit(q, z[0]), summit(q, z[1])), top);
+    }
+    return top;
+}
 
 /* One pass over the torus: *best becomes the largest value seen at any centre, if larger than
    before; the result is >= every value on the torus, and at most *best + tolerance unless depth or
@@ -100,192 +96,123 @@ typedef struct {
 
    A cell is done when its bound is at most *best + tolerance; otherwise it is halved along the side
    whose square moves the waves most, since it is at their maxima, where they are parabolas, that
-   cells have to be small. */
-static double pass(const surface *p, double *best, double tolerance, long *cells)
+   cells have to be small.  Both halves have the same end, so nothing is between them. */
+static double pass(const surface *q, double *best, double tolerance, long *cells)
 {
-    cell stack[DEPTH + 2] = { { { 0.0, 0.0 }, { p->side[0], p->side[1] }, 0 } };
+    cell stack[DEPTH + 2] = { { { -q->side[0], -q->side[1] }, { q->side[0], q->side[1] }, 0 } };
     double most = *best, middle;
     int top = 0;
 
     while (top >= 0) {
         cell *const k = stack + top, *const other = stack + top + 1;
-        const double bound = p->over(p->of, k->v, k->r, &middle);
-        if (isnan(bound))
-            return bound;
+        const double bound = over(q, k->low, k->high, &middle);
+        if (!(bound < HUGE_VAL))
+            return HUGE_VAL;
         *best = larger(*best, middle);
         if (bound <= *best + tolerance || k->depth == DEPTH || ++*cells > CELLS) {
             most = larger(most, bound);
             top--;
         } else {
-            const int j = k->r[0] * k->r[0] * p->reach[0] < k->r[1] * k->r[1] * p->reach[1];
+            const double x = k->high[0] - k->low[0], y = k->high[1] - k->low[1];
+            const int j = x * x * q->reach[0] < y * y * q->reach[1];
             k->depth++;
-            k->r[j] *= 0.5;
             *other = *k;
-            other->v[j] += k->r[j];
-            k->v[j] -= k->r[j];
+            k->high[j] = other->low[j] = 0.5 * k->low[j] + 0.5 * k->high[j];
             top++;
         }
     }
     return most;
 }
 
-/* Each pass looks more closely than the last, whose best value spares it all but the neighbourhood of
-   the maximum.  Cells run out where the maximum is a ridge, or there are many.  Then the result is the
-   best bound of the passes or, if that is less, what no sines exceed. */
-static double largest(const surface *p)
+/* >= trace or largest eigenvalue of W over the torus.  Each pass looks more closely than the last,
+   whose best value spares it all but the neighbourhood of the maximum.  Cells run out where the
+   maximum is a ridge, or there are many; then the result is the best bound so far.  Nothing is above
+   what W would be with all waves at their crests, which ridges nearly reach. */
+static double largest(const surface *q)
 {
-    double best = 0.0, most = HUGE_VAL;                 /* 0: the mean is above */
+    const double last = NEAR + 1e-12 * q->all;
+    double best = 0.0, most, crests[MOST_WAVES];        /* best: the mean is above */
     long cells = 0;
 
-    for (double tolerance = 0.5 * p->all; ; tolerance *= p->closer) {
-        const int done = tolerance <= 2.0 * p->last;
-        const double found = pass(p, &best, done ? p->last : tolerance, &cells);
-        most = isnan(found) || found < most ? found : most;
-        if (cells > CELLS)
-            most = p->no_more < most ? p->no_more : most;
-        if (done || cells > CELLS || isnan(most))
-            return most + p->margin;
-    }
-}
-
-static double over_three(const void *of, const double v[2], const double r[2], double *middle)
-{
-    return over(of, v, r, middle);
-}
-
-/* A thousand times more closely in each pass, down to NEAR and 10^-12 of the parameters.  There are
-   ridges across the cells if |c| is much larger than |a| or |b|, along them if c = 0 and |a| and |b|
-   differ, since the larger of two waves does not depend on the other's angle; the bound
-   4 + |a| + |b| + 2|c| or 2 + max(|a|, |b|) + 2|c|, that they nearly reach, serves there. */
-double torus_largest(const double low[3], const double high[3], int which)
-{
-    const problem p = problem_of(low, high, which);
-    const double all = p.size[0] + p.size[1] + p.size[2];
-    const surface s = {
-        over_three, &p, { PI, PI }, { p.size[0] + p.size[2], p.size[1] + p.size[2] }, all,
-        2.0 * p.size[2] + (which == TORUS_TRACE
-            ? 4.0 + p.size[0] + p.size[1] : 2.0 + larger(p.size[0], p.size[1])),
-        MARGIN * (1.0 + all), NEAR + MARGIN * all, 1e-3
-    };
-
-    return largest(&s);
-}
-
-double torus_rectangle(const double low[3], const double high[3], const double centre[2],
-                       const double half[2], int which)
-{
-    const problem p = problem_of(low, high, which);
-    double middle;
-
-    return over(&p, centre, half, &middle);
-}
-
-/* ---- any waves
-
-   Again beta(-v) = 2I + W(v), W = sum of p sin(k.v - phase) k k'.  Where all waves feel one and the
-   same combination of the angles, and where none feels both, the torus is too large: its ridges need no
-   cells.  So waves say apart what they feel, of the cells' coordinates, and what they do.
-
-   Rounding.  Let K be the largest |k0| + |k1|, and P the sum of |p| times K^2.  On a cell as large as
-   the torus a wave is at most |p| (1 + t + t^2/2) <= 5 |p| (1 + K)^2, t = K pi.  Sines and cosines are
-   off by (4 + 10 K + 70) u, for k.v and a phase below 2 pi, W by 30 u more for 16 waves, the
-   eigenvalue by 10 u; that is less than 600 (1 + K)^3 u P.  Cells fail to meet by 200 u pi at most,
-   which is worth 630 K u P.  Together, with TORUS_ENDS, less than 3000 (1 + K)^3 u (1 + P); the margin
-   is 8192 (1 + K)^3 u (1 + P). */
-
-enum { MOST_WAVES = 16 };
-
-typedef struct {
-    int n;
-    double feels[MOST_WAVES][2], does[MOST_WAVES][3], phase[MOST_WAVES], p[MOST_WAVES];
-} potential;
-
-/* >= the largest eigenvalue of 2I + W(v + t), as a function of t convex, as above. */
-static double moved(const potential *q, const double s[], const double c[], const double t[2])
-{
-    double m[3] = { 0.0, 0.0, 0.0 };
-
-    for (int i = 0; i < q->n; i++) {
-        const double along = q->feels[i][0] * t[0] + q->feels[i][1] * t[1];
-        const double z = q->p[i] * (s[i] + c[i] * along) + 0.5 * along * along * fabs(q->p[i]);
-        for (int j = 0; j < 3; j++)
-            m[j] += z * q->does[i][j];
-    }
-    const double a = m[0] - m[2], b = 2.0 * m[1];
-    const double scale = larger(larger(fabs(a), fabs(b)), 0x1p-1000), e = a / scale, f = b / scale;
-    return 0.5 * ((m[0] + m[2]) + scale * sqrt(e * e + f * f)) + 2.0;
-}
-
-static double over_any(const void *of, const double v[2], const double r[2], double *middle)
-{
-    static const double still[2] = { 0.0, 0.0 };
-    const potential *const q = of;
-    double s[MOST_WAVES], c[MOST_WAVES], top = -HUGE_VAL;
-
     for (int i = 0; i < q->n; i++)
-        double_sincos(&s[i], &c[i], (q->feels[i][0] * v[0] + q->feels[i][1] * v[1]) - q->phase[i]);
-    *middle = moved(q, s, c, still);
-    for (int corner = 0; corner < 4; corner++) {
-        const double t[2] = { corner & 1 ? r[0] : -r[0], corner & 2 ? r[1] : -r[1] };
-        top = larger(moved(q, s, c, t), top);
+        crests[i] = q->waves[i].size;
+    most = summit(q, crests);
+    for (double tolerance = 0.5 * q->all; ; tolerance *= CLOSER) {
+        const int done = !(tolerance > 2.0 * last);
+        const double found = pass(q, &best, done ? last : tolerance, &cells);
+        most = found < most ? found : most;
+        if (done || cells > CELLS || !(most < HUGE_VAL))
+            return most;
     }
-    return top;
 }
 
-/* The bound of those waves that `which` names.  direction: what they all feel is a multiple of it,
-   which is not zero at `main`; or NULL. */
-static double largest_of(int n, const double k[][2], const double phase[], const double p[],
-                         const int which[], const double *direction, int main)
+/* The surface of those waves that `chosen` names.  direction: what they all feel is a multiple of
+   it, which is not zero at `main`, so that one coordinate is enough; or NULL. */
+static surface surface_of(int n, const torus_wave waves[], const int chosen[], int which,
+                          const double *direction, int main)
 {
-    potential q = { 0 };
-    surface s = { .over = over_any, .of = &q, .side = { PI, direction == NULL ? PI : 0.0 },
-                  .no_more = 2.0, .closer = 0.03 };
-    double most_k = 0.0, all = 0.0;
+    surface q = { .which = which, .side = { PI, direction == NULL ? PI : 0.0 } };
 
     for (int i = 0; i < n; i++) {
-        const double sum = fabs(k[i][0]) + fabs(k[i][1]);
-        if (!which[i])
+        const double *const k = waves[i].k, sum = fabs(k[0]) + fabs(k[1]);
+        wave *const w = &q.waves[q.n];
+        if (!chosen[i])
             continue;
-        q.feels[q.n][0] = direction == NULL ? k[i][0] : k[i][main] / direction[main];
-        q.feels[q.n][1] = direction == NULL ? k[i][1] : 0.0;
-        for (int j = 0; j < 3; j++)
-            q.does[q.n][j] = k[i][j / 2] * k[i][(j + 1) / 2];
+        q.n++;
+        w->feels[0] = direction == NULL ? k[0] : k[main] / direction[main];
+        w->feels[1] = direction == NULL ? k[1] : 0.0;
+        w->trace = k[0] * k[0] + k[1] * k[1];
+        w->does[0] = k[0] * k[0] - k[1] * k[1];
+        w->does[1] = 2.0 * k[0] * k[1];
+        w->phase = waves[i].phase;
+        w->p = waves[i].p;
+        w->size = interval_size(w->p);
         for (int j = 0; j < 2; j++)
-            s.reach[j] += fabs(p[i]) * sum * sum * q.feels[q.n][j] * q.feels[q.n][j];
-        q.phase[q.n] = phase[i];
-        q.p[q.n++] = p[i];
-        most_k = larger(most_k, sum);
-        all += fabs(p[i]);
-        s.no_more += fabs(p[i]) * (k[i][0] * k[i][0] + k[i][1] * k[i][1]);
+            q.reach[j] += w->size * sum * sum * w->feels[j] * w->feels[j];
+        q.all += w->size;
     }
-    s.all = all * most_k * most_k;
-    s.margin = 0x1p-40 * (1.0 + most_k) * (1.0 + most_k) * (1.0 + most_k) * (1.0 + s.all);
-    s.last = NEAR + s.margin;
-    return largest(&s);
+    return q;
 }
 
-double torus_waves(int n, const double k[][2], const double phase[], const double p[])
+/* Where all waves feel one and the same combination of the angles, and where none feels both, the
+   torus is too large: its ridges need no cells. */
+double torus_largest(int n, const torus_wave waves[], int which)
 {
-    int all[MOST_WAVES], feels[2][MOST_WAVES], parallel = n > 0, apart = 1;
-    double direction[2] = { 0.0, 0.0 }, top = 2.0;
+    const double flat = which == TORUS_TRACE ? 4.0 : 2.0;
+    int there[MOST_WAVES], feels[2][MOST_WAVES], parallel = 1, apart = 1;
+    double direction[2] = { 0.0, 0.0 }, top[2];
+    const double *first = NULL;
+    surface q;
 
     for (int i = 0; i < n; i++) {
-        all[i] = 1;
-        feels[0][i] = k[i][0] != 0.0;
-        feels[1][i] = k[i][1] != 0.0;
-        parallel = parallel && k[i][0] * k[0][1] == k[i][1] * k[0][0];
+        const double *const k = waves[i].k;
+        there[i] = !(interval_size(waves[i].p) == 0.0);
+        for (int j = 0; j < 2; j++)
+            feels[j][i] = there[i] && k[j] != 0.0;
+        if (!there[i])
+            continue;
+        first = first == NULL ? k : first;
+        parallel = parallel && k[0] * first[1] == k[1] * first[0];
         apart = apart && !(feels[0][i] && feels[1][i]);
     }
+    if (first == NULL)
+        return flat;
     if (parallel) {
-        const double common = divisor(fabs(k[0][0]), fabs(k[0][1]));
-        direction[0] = k[0][0] / common;
-        direction[1] = k[0][1] / common;
-        return largest_of(n, k, phase, p, all, direction, direction[0] == 0.0);
+        const double common = divisor(fabs(first[0]), fabs(first[1]));
+        direction[0] = first[0] / common;
+        direction[1] = first[1] / common;
+        q = surface_of(n, waves, there, which, direction, direction[0] == 0.0);
+        return above(flat + largest(&q));
     }
-    for (int j = 0; j < 2 && apart; j++) {              /* the larger eigenvalue of the two */
+    if (!apart) {
+        q = surface_of(n, waves, there, which, NULL, 0);
+        return above(flat + largest(&q));
+    }
+    for (int j = 0; j < 2; j++) {       /* W is diagonal, and each entry has its own angle */
         direction[j] = 1.0;
         direction[1 - j] = 0.0;
-        top = larger(top, largest_of(n, k, phase, p, feels[j], direction, j));
+        q = surface_of(n, waves, feels[j], which, direction, j);
+        top[j] = largest(&q);
     }
-    return apart ? top : largest_of(n, k, phase, p, all, NULL, 0);
+    return above(flat + (which == TORUS_TRACE ? above(top[0] + top[1]) : larger(top[0], top[1])));
 }

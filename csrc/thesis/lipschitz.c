@@ -34,21 +34,20 @@ static void set_cone_as_printed(state *s, const num_t margin)
     uniform_cone(s, n->constants[C_TRACE_MIN], n->constants[C_TRACE_MAX], n->constants[C_T], 16);
 }
 
-/* r >= the largest trace or eigenvalue of beta over the torus and the parameters of the root, whose
-   ends apm_nearest_d rounds by u or two. */
+/* r >= the largest trace or eigenvalue of beta over the torus and the parameters of the root. */
 static void bound_over_torus(state *s, num_t r, const box *root, int which)
 {
-    double low[N_PARMS], high[N_PARMS];
+    torus_wave waves[N_PARMS] = { { .k = { 1, 0 } }, { .k = { 0, 1 } }, { .k = { 1, 1 } } };
     apm_t x;
 
     apm_init(x);
     for (int j = 0; j < N_PARMS; j++) {
         apm_sub(x, root->centre[j], root->half[j]);
-        low[j] = apm_nearest_d(x);
+        waves[j].p.low = apm_bound_d(x, APM_DOWN);
         apm_add(x, root->centre[j], root->half[j]);
-        high[j] = apm_nearest_d(x);
+        waves[j].p.high = apm_bound_d(x, APM_UP);
     }
-    if (apm_set_d(x, torus_largest(low, high, which)) != APM_OK)
+    if (apm_set_d(x, torus_largest(N_PARMS, waves, which)) != APM_OK)
         s->failed = 1;
     apm_round(x, x, TORUS_PLACES, APM_UP);
     num_set_apm(r, x);

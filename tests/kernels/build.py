@@ -34,7 +34,7 @@ int search_symmetric(const void *search);
 void cv_free(char *text);
 """
 # What includes sources of the core, by a regular expression of their names.
-INCLUDED = {r"thesis/(rigorous|double)": "thesis.h",
+INCLUDED = {r"model/torus": "rectangle.h", r"thesis/(rigorous|double)": "thesis.h",
             r"loewner/(general_)?(scalar|baseline|avx.*)": "engine.h"}
 
 

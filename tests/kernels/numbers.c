@@ -6,7 +6,7 @@
 #include "arith/special.h"
 #include "console.h"
 #include "converse.h"
-#include "model/torus.h"
+#include "torus.h"
 #include "thesis/unit.h"
 
 /* What a routine returns if an operation failed. */
@@ -151,12 +151,15 @@ static int sines_ns(long dp, apm_t in[], apm_t out[])   /* x, n -> nanoseconds o
                 : 1e9 * (double)(clock() - begin) / CLOCKS_PER_SEC / fmax(repeat, 1.0)));
 }
 
-/* The ranges lo <= hi of a, b, c with which `torus` and `cell` begin.  0: one is none. */
-static int parameter_ranges(apm_t in[], double low[3], double high[3])
+/* The thesis's waves with the ranges lo <= hi of a, b, c with which `torus` and `cell` begin.  0: one
+   is none. */
+static int parameter_ranges(apm_t in[], torus_wave waves[3])
 {
     for (int j = 0; j < 3; j++) {
-        low[j] = apm_nearest_d(in[2 * j]);
-        high[j] = apm_nearest_d(in[2 * j + 1]);
+        waves[j] = (torus_wave){
+            { j != 1, j != 0 }, { 0.0, 0.0 },
+            { apm_bound_d(in[2 * j], APM_DOWN), apm_bound_d(in[2 * j + 1], APM_UP) }
+        };
         if (apm_cmp(in[2 * j], in[2 * j + 1]) > 0)
             return 0;
     }
@@ -166,31 +169,35 @@ static int parameter_ranges(apm_t in[], double low[3], double high[3])
 /* The bounds over the torus of trace and largest eigenvalue, T and B. */
 static int torus(long dp, apm_t in[], apm_t out[])
 {
-    double low[3], high[3];
+    torus_wave waves[3];
     int status = APM_OK;
 
     (void)dp;
-    if (!parameter_ranges(in, low, high))
+    if (!parameter_ranges(in, waves))
         return CV_EARGUMENT;
     for (int which = 0; which < 2 && status == APM_OK; which++)
-        status = apm_set_d(out[which], torus_largest(low, high, which));
+        status = apm_set_d(out[which], torus_largest(3, waves, which));
     return outcome(status);
 }
 
-/* Ranges, centre and half-widths of a rectangle -> the same over it, of beta at its mirror image,
-   but for roundings. */
+/* Ranges, centre and half-widths of a rectangle -> the same over it, of beta at its mirror image. */
 static int cell(long dp, apm_t in[], apm_t out[])
 {
-    const double centre[2] = { apm_nearest_d(in[6]), apm_nearest_d(in[7]) };
-    const double half[2] = { apm_nearest_d(in[8]), apm_nearest_d(in[9]) };
-    double low[3], high[3];
+    torus_wave waves[3];
+    double low[2], high[2];
     int status = APM_OK;
 
     (void)dp;
-    if (!parameter_ranges(in, low, high) || apm_sgn(in[8]) < 0 || apm_sgn(in[9]) < 0)
+    for (int j = 0; j < 2; j++) {
+        const interval centre = { apm_bound_d(in[6 + j], APM_DOWN), apm_bound_d(in[6 + j], APM_UP) };
+        const double half = apm_bound_d(in[8 + j], APM_UP);
+        low[j] = below(centre.low - half);
+        high[j] = above(centre.high + half);
+    }
+    if (!parameter_ranges(in, waves) || apm_sgn(in[8]) < 0 || apm_sgn(in[9]) < 0)
         return CV_EARGUMENT;
     for (int which = 0; which < 2 && status == APM_OK; which++)
-        status = apm_set_d(out[which], torus_rectangle(low, high, centre, half, which));
+        status = apm_set_d(out[which], torus_rectangle(3, waves, which, low, high));
     return outcome(status);
 }
 
