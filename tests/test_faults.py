@@ -160,7 +160,7 @@ import converse.prover.run
 looked = converse.prover.run._Run._look
 def look(self):
     looked(self)
-    if self.growth.running:
+    if self.search.crew.running:
         sys.setprofile(strike)
 converse.prover.run._Run._look = look
 """
@@ -175,12 +175,12 @@ def test_struck_while_a_thread_is_begun(sample):
     """That is no lack of memory."""
     code = STRIKE.replace("if not frame:", "if frame:") + """
 from converse.commands.prove import main
-from converse.prover import tree_search
-start = tree_search.Growth._start
+from converse.prover import workers
+start = workers.Crew._submit
 def start_and_be_struck(*arguments):
     sys.setprofile(strike)
     return start(*arguments)
-tree_search.Growth._start = start_and_be_struck
+workers.Crew._submit = start_and_be_struck
 sys.exit(main())
 """
     process = subprocess.run([sys.executable, "-c", code, "--jobs", "1", sample], stdout=subprocess.DEVNULL,

@@ -19,7 +19,7 @@ from converse.draw import map_figure
 from converse.maps import region, search
 from converse.maps import map as map_module
 from converse.maps.map import AT_ONCE, OPEN, OUTSIDE, PROVED, Map
-from converse.prover.tree_search import ATTEMPTS
+from converse.prover.workers import ATTEMPTS, Crew
 from converse.storage.files import ConverseError
 
 from moments import PATIENCE
@@ -160,12 +160,12 @@ def test_what_reaches_to_infinity_is_at_once(made):
 
 def test_one_whole_run_or_several(coarse, tmp_path):
     """However it is divided, it ends with all that was asked for."""
-    path, runs, handed_out, submit = tmp_path / "map.json", 0, [], search._Search._submit
+    path, runs, handed_out, give = tmp_path / "map.json", 0, [], Crew.give
     found = maps.explore("c=0", "1.4", path=path, time_limit=0)
     while not found.complete:
         with pytest.MonkeyPatch.context() as patch:     # it is late when some tasks are handed out
-            patch.setattr(search._Search, "_submit", lambda self, *task: (handed_out.append(task),
-                                                                          submit(self, *task)))
+            patch.setattr(Crew, "give", lambda self, *task: (handed_out.append(task),
+                                                             give(self, *task)))
             patch.setattr(search._Search, "late", property(lambda self: len(handed_out) > 8 * runs))
             handed_out, runs = [], runs + 1
             found = maps.explore(path=path, resume=True, jobs=1)

@@ -45,7 +45,7 @@ def early(monkeypatch):
 @pytest.fixture
 def divided(monkeypatch):
     """Divides the work from the beginning, however long the search took to set up."""
-    monkeypatch.setattr(tree_search.Growth, "alone_until", property(lambda self: 0.0, lambda *_: None),
+    monkeypatch.setattr(tree_search.TreeSearch, "alone_until", property(lambda self: 0.0, lambda *_: None),
                         raising=False)
 
 
@@ -141,7 +141,7 @@ def test_time_limit_and_resume(proof, tmp_path, monkeypatch, ends):
     """The time is up after some thousands of cuts, and again, and again."""
     monkeypatch.setattr(tree_search, "MANY", 500)        # so many leaves are not far beyond
     path, runs, cuts = tmp_path / "a.proof", 1, 0
-    ends(lambda self: self.growth.counts.cuts > cuts + 5000)
+    ends(lambda self: self.search.counts.cuts > cuts + 5000)
     result = prove(LONG, method="loewner", jobs=3, backup=path)
     while not result.all_decided:
         assert timeless(Proof.load(path)) == timeless(result) and result.counts.cuts > cuts
@@ -213,7 +213,7 @@ looked = run._Run._look
 def kill(*_):
     os.kill(os.getpid(), signal.SIGKILL)
 def look(self):
-    there = self.growth.counts.cuts > int(cuts)
+    there = self.search.counts.cuts > int(cuts)
     if there and torn:
         os.replace = kill                       # while it is written
     looked(self)
@@ -264,7 +264,7 @@ def test_dask_workers_that_join_later(proof, divided, ends, cluster):
             return submit(*args)
 
         executor.submit = submit_and_grow
-        ends(lambda self: len(self.growth.running) > 2)
+        ends(lambda self: len(self.search.crew.running) > 2)
         half = prove(line("0.0140", "0.0280"), method="loewner", executor=executor)
         assert not half.all_decided and submitted
 
@@ -309,13 +309,13 @@ import os, signal, sys
 from converse.commands.prove import main
 from converse.prover import run, tree_search
 tree_search.ALONE_SECONDS = tree_search.TASK_SECONDS = 0.01
-took, grow, scheduler = [], tree_search.Growth._take, int(sys.argv.pop(1))
+took, grow, scheduler = [], tree_search.TreeSearch._take, int(sys.argv.pop(1))
 def take(self, part, grown):
     grow(self, part, grown)
     took.append(part)
     if len(took) == 5:
         os.kill(scheduler, signal.SIGKILL)
-tree_search.Growth._take = take
+tree_search.TreeSearch._take = take
 sys.exit(main())
 """
     with contextlib.ExitStack() as stack:
@@ -471,7 +471,7 @@ def test_what_comes_late_is_kept(tmp_path, monkeypatch, divided, ends):
 def test_what_is_examined_never_falls(divided, ends, stubborn):
     """It is the share of the volume that lies in leaves, whoever is at work."""
     seen = []
-    ends(lambda self: self.growth.counts.cuts > 3000)
+    ends(lambda self: self.search.counts.cuts > 3000)
     half = prove(line("0.0130", "0.0280"), method="loewner", jobs=3, depth=22, stubborn=stubborn,
                  progress=lambda examined, _: seen.append(examined))
     assert seen == sorted(seen) and seen[0] == 0 and 0 < seen[-1] < 1
@@ -484,7 +484,7 @@ def test_what_lies_beyond_an_undecided_prism_is_not_its_own():
     from converse.prover.native import Settings, Task
 
     for stubborn, text in (False, "0U"), (True, "0UP"):
-        grown = tree_search.Growth(Task(LONG, Settings("loewner", stubborn=stubborn)), 1)
+        grown = tree_search.TreeSearch(Task(LONG, Settings("loewner", stubborn=stubborn)), 1)
         grown.parts = [tree_search.Part([], "0U"), tree_search.Part([], "P")]
         grown._merge()
         assert grown.finished and grown.text() == (text, [])
@@ -496,7 +496,7 @@ def test_many_gaps_cost_little(monkeypatch):
     shallow = prove(line("0.0130", "0.0280"), method="loewner", depth=16, stubborn=True)
     assert shallow.tree.count("U") > 2000
     monkeypatch.setattr(run, "LOOK_SECONDS", PATIENCE)      # however slowly it goes on
-    looks, merge = [], tree_search.Growth._merge
-    monkeypatch.setattr(tree_search.Growth, "_merge", lambda self: (looks.append(self), merge(self)))
+    looks, merge = [], tree_search.TreeSearch._merge
+    monkeypatch.setattr(tree_search.TreeSearch, "_merge", lambda self: (looks.append(self), merge(self)))
     assert prove(resume=shallow, depth=17, jobs=2).counts.cuts > shallow.counts.cuts
     assert len(looks) < 300

@@ -1,4 +1,4 @@
-"""A map is drawn: cells are tried, cut, and tried again."""
+"""The search for a map: cells are tried, cut, and tried again."""
 
 import concurrent.futures
 import heapq
@@ -15,7 +15,7 @@ from ..prover import native
 from ..prover.run import Path
 from ..prover.settings import Settings
 from ..prover.signals import interruptible, postponed
-from ..prover.workers import ATTEMPTS, LOOK_SECONDS, Crew, count_workers, submit, wait
+from ..prover.workers import LOOK_SECONDS, Crew
 from ..storage.backup import Keeper
 from ..storage.files import ConverseError
 from ..version import __version__
@@ -199,63 +199,39 @@ class _Search:
 
     def __init__(self, atlas, keeper, jobs, executor, time_limit, progress):
         self.map, self.keeper, self.progress = atlas, keeper, progress
-        self.crew = Crew(executor, jobs)
-        self.threads = None if executor else concurrent.futures.ThreadPoolExecutor(
-            jobs or count_workers())
-        self.executor = executor or self.threads
-        self.stop = native.Stop()
+        self.crew = Crew(executor, jobs, native.Stop())
         self.began = time.monotonic() - atlas.seconds
         self.end = time.monotonic() + time_limit
         self.queue, self.order = [], itertools.count()
-        self.running = {}                   # future -> (task, attempts left)
         self.won, self.share = 0.0, 0.0
 
     def run(self):
         try:
-            self._estimate()
-            if not self.late:
-                self._explore()
+            with self.crew:
+                self._estimate()
+                if not self.late:
+                    self._explore()
         finally:
-            self.stop.set()
-            with postponed():
-                for future in self.running if self.crew.alive else ():
-                    future.cancel()
-            if self.threads:
-                self.threads.shutdown()
             self.map.seconds = time.monotonic() - self.began
-            self.map.sha256 = self.keeper.finish(self.map)
+            with postponed():           # a signal must not cost the last write
+                self.map.sha256 = self.keeper.finish(self.map)
         return self.map
 
     @property
     def late(self):
         return time.monotonic() >= self.end
 
-    def _submit(self, task, attempts=ATTEMPTS):
-        call, _, *arguments = task
-        stop = [self.stop] if self.threads else []          # it cannot leave the process
-        try:
-            self.running[submit(self.executor, call, *arguments, *stop)] = task, attempts
-        except Exception as error:
-            raise self.crew.gone(error) from None
-
     def _work(self, next_task, take):
-        """Hands out tasks (call, key, *arguments) and takes what comes back, until there are no
-        more or there is no time."""
-        task = next_task()
-        while (task or self.running) and not self.late:
+        """Hands out tasks (key, call, *arguments) and calls take(key, result) for what comes back,
+        until there are no more or there is no time."""
+        task, running = next_task(), self.crew.running
+        while (task or running) and not self.late:
             size = self.crew.size
-            while task and size and len(self.running) <= size:      # one is to be at hand
-                self._submit(task)
+            while task and size and len(running) <= size:       # one waits, to follow at once
+                self.crew.give(*task)
                 task = next_task()
-            for future in wait(self.running, LOOK_SECONDS):
-                finished, attempts = self.running.pop(future)
-                try:
-                    result = future.result()
-                except Exception as error:                      # a worker died
-                    self.crew.failed(error, attempts)
-                    self._submit(finished, attempts - 1)
-                else:
-                    take(finished[1], result)
+            for key, result in self.crew.take(LOOK_SECONDS):
+                take(key, result)
             self.map.seconds = time.monotonic() - self.began
             self.keeper.keep(lambda: self.map)
             if self.progress:
@@ -272,7 +248,7 @@ class _Search:
 
         known, faces = self.map.estimate, self.map.directions
         mirrored = [face for face, d in enumerate(faces) if set(d[1:]) == {region.A, region.B}]
-        tasks = ((frontier, (face, place), directions, place)
+        tasks = (((face, place), frontier, directions, place)
                  for face, directions in enumerate(faces) for place in self.map.places(face)
                  if place not in known[face] and not (face in mirrored and place[0] < place[1]))
         self._work(lambda: next(tasks, None), take)
@@ -296,7 +272,7 @@ class _Search:
                 return None
             node = heapq.heappop(self.queue)[-1]
             most = MORE * node.tried or FIRST
-            return attempt, (node, most), self.map.directions[node.cell.face], node.cell, most
+            return (node, most), attempt, self.map.directions[node.cell.face], node.cell, most
 
         def take(key, outcome):
             self._take(*key, outcome)

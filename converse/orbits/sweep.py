@@ -13,13 +13,12 @@ import io
 import math
 import os
 import zlib
-from collections import deque
 from typing import Any, Callable, NamedTuple, Optional, Sequence, Tuple, Union
 
 import numpy as np
 
-from ..prover.signals import interruptible, postponed
-from ..prover.workers import count_workers, result, submit
+from ..prover.signals import interruptible
+from ..prover.workers import LOOK_SECONDS, Crew, WorkersGone
 from ..storage import files
 from ..storage.files import ConverseError
 from .potential import Potential, Stoppable, finite, known, told
@@ -267,24 +266,31 @@ def _in_order(task, vectors, executor):
     if executor is None:
         yield from map(task, vectors)
         return
-    waiting, running, room = iter(vectors), deque(), AHEAD * count_workers(executor)
-    task = Stoppable(task)
+    task, given, results = Stoppable(functools.partial(_caught, task)), 0, {}
     try:
-        while True:
-            for vector in waiting:
-                running.append(submit(executor, task, vector))
-                if len(running) >= room:
-                    break
-            if not running:
-                return
-            yield result(running.popleft())
-    except concurrent.futures.BrokenExecutor:
-        raise ConverseError("a worker has died; what was finished is kept, try again") from None
-    finally:
-        task.stop.set()
-        with postponed():
-            for future in running:
-                future.cancel()
+        with Crew(executor, stop=task.stop) as crew:
+            for wanted in range(len(vectors)):
+                while wanted not in results:
+                    room = AHEAD * crew.size - len(crew.running) - len(results)
+                    for key in range(given, min(given + room, len(vectors))):
+                        crew.give(key, task, vectors[key])
+                        given = key + 1
+                    results.update(crew.take(LOOK_SECONDS))
+                result = results.pop(wanted)
+                if isinstance(result, Exception):
+                    raise result
+                yield result
+    except WorkersGone as error:
+        raise WorkersGone("%s; what was finished is kept, try again" % error) from None
+
+
+def _caught(task, vector):
+    """What the task returns or the exception that it raises: what fails here would fail again,
+    unlike a task whose worker dies."""
+    try:
+        return task(vector)
+    except Exception as error:
+        return error
 
 
 class _File:

@@ -17,9 +17,9 @@ from . import native, tree
 from .native import Counts, Task
 from .proof import Proof
 from .settings import Settings
-from .signals import interruptible
-from .tree_search import OLD, Growth
-from .workers import LOOK_SECONDS, wait
+from .signals import interruptible, postponed
+from .tree_search import OLD, TreeSearch
+from .workers import LOOK_SECONDS
 
 Path = Union[str, "os.PathLike[str]"]
 
@@ -96,67 +96,64 @@ class _Run:
         self.progress, self.on_leaf = progress, on_leaf
         self.began = time.monotonic()
         self.end = self.began + time_limit
-        self.growth = Growth(Task(before.problem, before.settings, before.xstar), jobs, executor,
-                             want_steps=on_leaf is not None)
+        self.search = TreeSearch(Task(before.problem, before.settings, before.xstar), jobs,
+                                 executor, want_steps=on_leaf is not None)
         self.walk, self.prism, self.seen = tree.Walk(), tree.prisms(before.problem), 0
 
     def run(self):
-        with self.growth as growth:
+        with self.search as search:
             before = self.before
-            begun = growth.begin(before.tree, before.pending, before.counts, self._wait)
+            begun = search.begin(before.tree, before.pending, before.counts, self._seconds_left)
             if begun is None:           # no time even to set it up
                 return self._finished(replace(before, seconds=self._seconds()))
             self.before = replace(before, xstar=begun.xstar, constants=begun.constants,
                                   at_once=begun.at_once)
             try:
                 self._look()
-                while not growth.finished and time.monotonic() < self.end:
-                    growth.work(min(LOOK_SECONDS, max(0.0, self.end - time.monotonic())))
+                while not search.finished and self._seconds_left() > 0:
+                    search.work(min(LOOK_SECONDS, max(0.0, self._seconds_left())))
                     self._look()
-            except BaseException:       # what stands is saved, if it is whole; else the last backup
-                growth.settle()
+                search.settle()
+                self._look()
+            except BaseException:       # what is known is saved, unless a change was half done
+                search.settle()
                 self._save_what_stands()
                 raise
-            growth.settle()
-            self._look()
             return self._finished(self._snapshot())
 
-    def _wait(self, future):
-        """Waits for a future as long as there is time, and says whether it is done."""
-        done = wait([future], 0)
-        while not done and time.monotonic() < self.end:
-            done = wait([future], min(LOOK_SECONDS, max(0.0, self.end - time.monotonic())))
-        return bool(done)
+    def _seconds_left(self):
+        return self.end - time.monotonic()
 
     def _look(self):
         """Tells whoever wants to know how far things are."""
         if self.on_leaf:
-            text, steps = self.growth.beginning(self.seen)
+            text, steps = self.search.beginning(self.seen)
             self.seen += len(text)
             for node, points in zip(text, steps):
                 for kind, cell in self.walk.feed(node):
                     if points != OLD:
                         self.on_leaf(tree.Leaf(kind, *self.prism(cell), sum(cell[1])), points)
         if self.progress:
-            self.progress(self.growth.examined, self.growth.counts)
+            self.progress(self.search.examined, self.search.counts)
         self.keeper.keep(self._snapshot)
 
     def _seconds(self):
         return self.before.seconds + time.monotonic() - self.began
 
     def _snapshot(self):
-        text, pending = self.growth.text()
-        return replace(self.before, tree=text, counts=self.growth.counts, pending=tuple(pending),
+        text, pending = self.search.text()
+        return replace(self.before, tree=text, counts=self.search.counts, pending=tuple(pending),
                        seconds=self._seconds(), version=__version__, sha256="")
 
     def _save_what_stands(self):
         try:
-            self.keeper.finish(self._snapshot())
+            self._finished(self._snapshot())
         except AssertionError:          # an exception struck in the middle of a change
             self.keeper.leave()
 
     def _finished(self, proof):
-        return replace(proof, sha256=self.keeper.finish(proof))
+        with postponed():               # a signal must not cost the last write
+            return replace(proof, sha256=self.keeper.finish(proof))
 
 
 def _for_thesis(problem):

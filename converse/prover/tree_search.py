@@ -1,24 +1,21 @@
-"""The tree while it grows: parts of it in threads here or in processes anywhere.
+"""The search for a tree, divided between threads of this process or workers anywhere.
 
-What becomes of a prism depends on itself and on what its parent learnt, which goes with it, so the
-tree, its counts and the theorem are the same however the work is divided.
+What becomes of a prism depends on itself and on the hint from its parent, which goes with it.  So
+the tree, its counts and the theorem are the same however the work is divided.
 """
 
-import concurrent.futures
 import contextlib
 import time
 from dataclasses import replace
 
 from . import native, tree
 from .native import Counts
-from .signals import postponed
-from .workers import ATTEMPTS, Crew, WorkersGone, count_workers, submit
-from .workers import wait as wait_for_one
+from .workers import LOOK_SECONDS, Crew
 
-MANY = 2 ** 30                      # leaves
-ALONE_SECONDS = 0.03                # before anyone else is asked
+MANY = 2 ** 30                      # leaves: more than a task can grow
+ALONE_SECONDS = 0.03                # of work in one thread before it is divided
 TASK_SECONDS = 0.25                 # that a worker grows its part before it reports, in the long run
-OLD = -1                            # in place of the orbit's length: not of this run
+OLD = -1                            # in place of the orbit's length: decided in an earlier run
 
 
 class Part:
@@ -45,43 +42,43 @@ def _kinds(text):
     return (sum(map(text.count, tree.CUTS)), *map(text.count, "PSU"))
 
 
-class Growth:
-    """The tree while it grows: its parts in preorder, some of them being worked on.
+class TreeSearch:
+    """A search under way: the parts of its tree in preorder, some of them being worked on.
 
-    The C core always works in other threads than this one, or elsewhere, so that this one can keep
-    an eye on the clock and on Ctrl-C; and those here can be stopped in the middle of a prism."""
+    The C core always works in other threads than this one, or elsewhere, so that this one can watch
+    the clock and Ctrl-C; the threads of this process can be stopped in the middle of a prism."""
 
     def __init__(self, task, jobs, executor=None, want_steps=False):
-        """executor: of somebody else, for the work that is worth dividing; jobs: parts at a time,
-        or None."""
-        self.task, self.executor, self.crew = task, executor, Crew(executor, jobs)
+        """executor: whose workers are used once the work is worth dividing, or None; jobs: parts at
+        a time, or None."""
+        self.task, self.executor = task, executor
+        self.crew = Crew(executor, jobs, native.Stop())
         self.want_steps, self.stubborn = want_steps, task.settings.stubborn
         self.parts, self.statistics = [], Counts()
         self.changes = 0                    # under way: see _change
-        self.running = {}                   # future -> (part, attempts left)
-        self.stop = native.Stop()
-        self.threads = concurrent.futures.ThreadPoolExecutor(
-            jobs or count_workers() if executor is None else 1)
 
     def __enter__(self):
         return self
 
     def __exit__(self, *_):
-        self.stop.set()
-        self.threads.shutdown()
+        self.crew.__exit__()
 
     # ---- the beginning
 
-    def begin(self, text, hints, counts, wait):
+    def begin(self, text, hints, counts, seconds_left):
         """Sets up the search and takes up a tree with its statistics, if there is one; returns what
-        native.begin does, or None if wait(future) says that there is no time for it.
+        native.begin does, or None if seconds_left() fell to 0 before.
 
-        hints: what is known of the untried prisms, in their order."""
+        hints: of the untried prisms, in their order."""
         began = time.monotonic()
-        future = self._start(self.threads, native.begin, self.task, text, self.stop)
-        if not wait(future):
-            self.stop.set()
-        begun = future.result()
+        self.crew.give(None, native.begin, self.task, text, here=True)
+        done = []
+        while not done:
+            seconds = seconds_left()
+            if seconds <= 0:
+                self.crew.stop.set()
+            done += self.crew.take(seconds if seconds > 0 else LOOK_SECONDS)
+        (_, begun), = done
         if begun is None:
             return None
         self.task = native.Task(self.task.problem, self.task.settings, begun.xstar)
@@ -182,7 +179,7 @@ class Growth:
 
     def _queue(self):
         """The parts that wait for a worker, in preorder."""
-        busy = {id(part) for part, _ in self.running.values()}
+        busy = {id(task.key) for task in self.crew.running.values()}
         return [part for part in self._relevant() if part.cells and id(part) not in busy
                 and (self.stubborn or not part.stopped)]
 
@@ -205,56 +202,30 @@ class Growth:
         when something came back and no part waits any more."""
         end = time.monotonic() + seconds
         alone = self.alone_until - time.monotonic()
-        if alone > 0 or (self.executor is None and self.crew.size == 1):
-            executor, workers = self.threads, 1
+        here = alone > 0 or (self.executor is None and self.crew.size == 1)
+        if here:
+            workers, queue = 1, self._queue()
             seconds = min(seconds, alone) if alone > 0 else seconds
-            queue = self._queue()
         else:
-            executor, workers = self.executor or self.threads, self._count_crew()
+            workers = self.crew.size
             seconds = min(TASK_SECONDS, 0.1 * (time.monotonic() - self.began))
-            queue = self._divide(self._queue(), workers - len(self.running))
+            queue = self._divide(self._queue(), workers - len(self.crew.running))
         queue.reverse()
+        running = self.crew.running
         while True:
-            while queue and len(self.running) < workers:
-                self._submit(queue.pop(), ATTEMPTS, executor, seconds)
-            done = wait_for_one(self.running, max(0.0, end - time.monotonic()))
-            stopped = False
-            for future in done:
-                part, attempts = self.running.pop(future)
-                try:
-                    grown = future.result()
-                except Exception as error:      # a worker died: its part is as it was
-                    self.crew.failed(error, attempts)
-                    self._submit(part, attempts - 1, executor, TASK_SECONDS)
-                else:
-                    self._take(part, grown)
-                    stopped = stopped or (part.stopped and not self.stubborn)
-            if not (queue or self.running) or (done and not queue) or stopped or \
+            while queue and len(running) < workers:
+                part = queue.pop()
+                self.crew.give(part, native.grow, self.task, part.cells, seconds, MANY,
+                               self.want_steps, here=here)
+            came = stopped = False
+            for part, grown in self.crew.take(max(0.0, end - time.monotonic())):
+                self._take(part, grown)
+                came = True
+                stopped = stopped or (part.stopped and not self.stubborn)
+            if not (queue or running) or (came and not queue) or stopped or \
                     time.monotonic() >= end:
                 break
         self._merge()
-
-    def _count_crew(self):
-        try:
-            return self.crew.size
-        except WorkersGone:             # what they have not brought they will not bring
-            self.running = {future: of for future, of in self.running.items() if future.done()}
-            raise
-
-    def _submit(self, part, attempts, executor, seconds):
-        stop = [self.stop] if executor is self.threads else []      # it cannot leave the process
-        self.running[self._start(executor, native.grow, self.task, part.cells, seconds, MANY,
-                                 self.want_steps, *stop)] = part, attempts
-
-    def _start(self, executor, *call):
-        try:
-            return submit(executor, *call)
-        except Exception as error:
-            if executor is not self.threads:
-                raise self.crew.gone(error) from None
-            if "new thread" in str(error):
-                raise MemoryError("there is not enough memory for another thread") from None
-            raise
 
     def _merge(self):
         """Gives the text of parts whose predecessors are finished to these."""
@@ -270,18 +241,7 @@ class Growth:
             self.parts = parts
 
     def settle(self):
-        """Waits a little for those who still work, and takes what they bring."""
-        self.stop.set()
-        with postponed():
-            done, late = concurrent.futures.wait(self.running, 4 * TASK_SECONDS + 1)
-        for future in done:
-            try:
-                grown = future.result()
-            except Exception:               # the part is as it was
-                continue
-            self._take(self.running[future][0], grown)
-        with postponed():
-            for future in late if self.crew.alive else ():
-                future.cancel()
-        self.running.clear()
+        """Waits a little for the workers, takes what they bring, and ends the work."""
+        for part, grown in self.crew.settle(4 * TASK_SECONDS + 1):
+            self._take(part, grown)
         self._merge()

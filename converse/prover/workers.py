@@ -1,23 +1,30 @@
-"""Who does the work: threads of this process, or the workers of somebody else's executor."""
+"""Tasks for threads of this process, or for the workers of somebody else's executor.
+
+concurrent.futures hands out calls, and this adds what a run of hours needs: a task whose worker
+dies is given to another, workers may join and leave (Dask), a signal strikes none of the locks, and
+one class serves proofs, maps and sweeps."""
 
 import concurrent.futures
 import contextlib
 import os
 import time
 import warnings
+from dataclasses import dataclass, replace
+from typing import Any, Callable
 
 from ..storage.files import ConverseError
 from ..version import __version__
 from .signals import postponed
 
 LOOK_SECONDS = 0.1                  # between two looks at the clock, at Ctrl-C, at the bar
-ATTEMPTS = 4                        # at a part whose workers die
-ASK_SECONDS = 1.0                   # between two questions to a cluster
-PROBE = "__import__('converse.prover.native').__version__"       # evaluated by a worker that may not have it
+ATTEMPTS = 4                        # at a task whose workers die
+ASK_SECONDS = 1.0                   # between two questions to a Dask scheduler
+# Evaluated by a Dask worker, on which the package may be missing.
+PROBE = "__import__('converse.prover.native').__version__"
 
 
 class WorkersGone(ConverseError):
-    """Nobody is left to do the work, or nobody can; what was found until then stands."""
+    """No worker is left to do the work, or none can; the results until then stand."""
 
 
 def count_workers(executor=None):
@@ -31,46 +38,140 @@ def count_workers(executor=None):
         return os.cpu_count() or 1
 
 
+@dataclass(frozen=True)
+class _Task:
+    key: Any                            # of who gave it, to recognise the result
+    call: Callable
+    arguments: tuple
+    here: bool                          # in a thread of this process
+    attempts: int = ATTEMPTS            # that are left, this one included
+
+
 class Crew:
-    """The workers of an executor, or of this process.
+    """The workers of an executor or, where that is None, threads of this process.
 
     executor: a concurrent.futures.Executor or None; jobs: tasks at a time, or None: as many as keep
-    the workers busy, who may come and go where the executor is a Dask cluster's."""
+    the workers busy, which with a Dask cluster may come and go.
+    stop: its method set() is called to end the tasks in threads of this process.  Tasks in the
+    crew's own threads have it as their last argument; it cannot be sent to other processes."""
 
-    def __init__(self, executor, jobs):
-        self.executor, self.jobs = executor, jobs
+    def __init__(self, executor=None, jobs=None, stop=None):
+        self.executor, self.jobs, self.stop = executor, jobs, stop
         self.client = getattr(executor, "_client", None)        # of Dask
-        self.due, self.threads, self.probes, self.waiting = 0.0, 0, {}, ""
+        self.due, self.cores, self.probes, self.waiting = 0.0, 0, {}, ""    # of _ask
+        self.running = {}                                       # future -> _Task
+        self.threads = concurrent.futures.ThreadPoolExecutor(   # they start with the first task
+            jobs or count_workers() if executor is None else 1)
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.cancel()
+        with postponed():
+            self.threads.shutdown()
+
+    # ---- tasks
+
+    def give(self, key, call, *arguments, here=False):
+        """Hands out a task: call(*arguments) is to be computed, here: by this process.
+        WorkersGone: nobody takes it; MemoryError: there is no memory for another thread."""
+        self._submit(_Task(key, call, arguments, here or self.executor is None))
+
+    def take(self, seconds):
+        """Yields (key, result) of tasks that are done, as soon as one is, after so many seconds or
+        LOOK_SECONDS at most.  A task whose worker died is handed out again.  WorkersGone: they die
+        again and again; an exception of this program, missing memory, and whatever a thread of this
+        process raised is passed on."""
+        if not self.running:
+            time.sleep(min(seconds, LOOK_SECONDS))
+        for future in self._wait(min(seconds, LOOK_SECONDS), concurrent.futures.FIRST_COMPLETED):
+            task = self.running.pop(future)
+            try:
+                with postponed():
+                    result = future.result()
+            except Exception as error:
+                self._failed(error, task)
+                self._submit(replace(task, attempts=task.attempts - 1))
+            else:
+                yield task.key, result
+
+    def settle(self, seconds):
+        """Ends the work: yields (key, result) of the tasks that are done within so many seconds, and
+        cancels the others."""
+        self._stop()
+        for future in self._wait(seconds if self.alive else 0, concurrent.futures.ALL_COMPLETED):
+            task = self.running.pop(future)
+            try:
+                with postponed():
+                    result = future.result()
+            except Exception:
+                continue
+            yield task.key, result
+        self.cancel()
+
+    def cancel(self):
+        """Gives up all tasks that are under way."""
+        self._stop()
+        with postponed():
+            for future in self.running if self.alive else ():
+                future.cancel()
+        self.running.clear()
+
+    def _stop(self):
+        if self.stop is not None:
+            self.stop.set()
+
+    def _submit(self, task):
+        executor, arguments = self.executor, task.arguments
+        if task.here:
+            executor = self.threads
+            if self.stop is not None:
+                arguments += self.stop,
+        try:
+            with postponed():
+                self.running[executor.submit(task.call, *arguments)] = task
+        except Exception as error:
+            if not task.here:
+                raise self._gone(error) from None
+            if "new thread" in str(error):
+                raise MemoryError("there is not enough memory for another thread") from None
+            raise
+
+    def _wait(self, seconds, until):
+        with postponed():
+            return concurrent.futures.wait(self.running, seconds, until)[0]
+
+    # ---- workers
 
     @property
     def alive(self):
-        """Is there somebody to take tasks, or to cancel them?"""
+        """Can tasks still be given or cancelled?"""
         return self.client is None or self.client.status in ("running", "connecting")
 
     @property
     def size(self):
-        """How many tasks to give them at a time; 0 while they are waited for, of which a
-        RuntimeWarning tells.  WorkersGone: they will not come."""
+        """How many tasks to have under way; 0 while there is no worker yet, of which a
+        RuntimeWarning tells.  WorkersGone: there will be none."""
         if self.client is None:
             return self.jobs or count_workers(self.executor)
         if time.monotonic() >= self.due:
             self._ask()
             self.due = time.monotonic() + ASK_SECONDS
-        return self.threads and (self.jobs or 2 * self.threads)
+        return self.cores and (self.jobs or 2 * self.cores)
 
-    def gone(self, error=None):
-        """The exception to raise where no task can be given to them."""
+    def _gone(self, error=None):
+        """The exception to raise where no task can be given to the workers."""
         return WorkersGone("the workers are gone (%s)" % error if self.alive
                            else "the Dask scheduler is gone")
 
-    def failed(self, error, attempts):
-        """What becomes of a task of which so many attempts were left: nothing if it may be tried
-        again; an exception of this program or memory that is missing is passed on; WorkersGone."""
-        if isinstance(error, (ConverseError, MemoryError)):
+    def _failed(self, error, task):
+        """Raises what a failure of a task means; returns if the task may be tried again."""
+        if task.here or isinstance(error, (ConverseError, MemoryError)):
             raise error
         if not self.alive:
-            raise self.gone()
-        if attempts > 1:
+            raise self._gone()
+        if task.attempts > 1:
             return
         words = " ".join(str(error).split()).partition(". ")[0]
         if "deserialization" in words:  # by a Dask scheduler
@@ -80,10 +181,10 @@ class Crew:
         raise WorkersGone("the workers keep failing (%s: %s)" % (type(error).__name__, words))
 
     def _ask(self):
-        """Asks a Dask cluster for its workers, and each new one whether this program is there: one
-        that lacks it dies of the first task that it is sent."""
+        """Asks a Dask cluster for its workers, and each new worker whether it has this program:
+        without it the first task would kill it."""
         if not self.alive:
-            raise self.gone()
+            raise self._gone()
         there, lack = {}, "the Dask scheduler does not answer"
         with contextlib.suppress(Exception):    # of many kinds, among them that time is up
             if self.client.status == "running":
@@ -95,11 +196,11 @@ class Crew:
                             eval, PROBE, pure=False, workers=address)
                 if there:
                     self.probes.pop(None, None)
-        self.threads = sum(threads for address, threads in there.items() if self._is_fit(address))
+        self.cores = sum(threads for address, threads in there.items() if self._is_fit(address))
         self._wait_for("" if there else lack)
 
     def _is_fit(self, address):
-        """Is this program at a worker, the same release?  False: it is not known; WorkersGone: no."""
+        """Has a worker this release of the program?  False: not known yet; WorkersGone: no."""
         probe = self.probes.get(address)
         if probe is None or probe is True or probe.status not in ("finished", "error"):
             return probe is True
@@ -110,8 +211,8 @@ class Crew:
         except Exception as error:
             release, why = "none", " (%s)" % error
         if release != __version__:
-            raise WorkersGone("the worker at %s needs converse %s and has %s%s; install converse-kam "
-                              "%s where the workers and the scheduler run"
+            raise WorkersGone("the worker at %s needs converse %s and has %s%s; install "
+                              "converse-kam %s where the workers and the scheduler run"
                               % (address, __version__, release, why, __version__))
         self.probes[address] = True
         return True
@@ -120,25 +221,3 @@ class Crew:
         if what and what != self.waiting:
             warnings.warn(what + "; waiting", RuntimeWarning, stacklevel=3)
         self.waiting = what
-
-
-def wait(futures, seconds):
-    """Those of the futures that are done, as soon as one is, or after so many seconds or
-    LOOK_SECONDS."""
-    if not futures:
-        time.sleep(seconds)
-    with postponed():
-        return concurrent.futures.wait(futures, min(seconds, LOOK_SECONDS), concurrent.futures.FIRST_COMPLETED)[0]
-
-
-def submit(executor, *call):
-    """executor.submit(*call); a signal waits until it is done."""
-    with postponed():
-        return executor.submit(*call)
-
-
-def result(future):
-    """future.result(); a signal ends the waiting for it."""
-    while not wait([future], LOOK_SECONDS):
-        pass
-    return future.result()
