@@ -150,6 +150,15 @@ def _check_graphics(options):
         plot.check()
 
 
+@contextlib.contextmanager
+def _said_in_a_line():
+    """Meanwhile a ValueError, of arguments that exclude each other, becomes a ConverseError."""
+    try:
+        yield
+    except ValueError as error:
+        raise ConverseError(str(error)) from None
+
+
 def run(options):
     from ..prover.proof import Proof  # these need the C core, and say so where it is missing
     from ..prover.run import prove
@@ -159,8 +168,10 @@ def run(options):
         options.graphics = None
     if options.graphics is not None:
         _check_graphics(options)
-    if options.method == "loewner" and options.as_printed:
-        raise ConverseError("--as-printed is the thesis's method; leave out --method loewner")
+    given = {name: value for name, value in vars(options).items() if value is not None and
+             name in ("method", "depth", "digits", "stubborn", "as_printed")}
+    with _said_in_a_line():
+        settings = Settings(**given)
     if options.backup is not None:
         files.check_new(options.backup, options.restore)
     restored = None if options.restore is None else Proof.load(options.restore)
@@ -168,24 +179,20 @@ def run(options):
         raise ConverseError("%s: is of another run: its parameters do not move together; leave out "
                             "--together" % options.restore)
     problem = _read_problem(options, restored)
-    settings = Settings() if restored is None else restored.settings
-    if restored is None and (options.method or settings.method) != "loewner":
-        if problem.together:
-            raise ConverseError("%s needs --method loewner" % (
-                "--together" if options.together else "an input whose amplitudes move together"))
-        if problem.general is not None:
-            raise ConverseError("the method of the thesis takes ranges of a, b and c alone; for this "
-                                "input give --method loewner")
+    if restored is None:
+        with _said_in_a_line():
+            settings.accept(problem)
+    else:
+        settings = restored.settings
 
     def on_leaf(leaf, points):
         say(_leaf_line(leaf, points) + "\n")
 
-    asked = {name: getattr(options, name) for name in (
-        "method", "depth", "digits", "stubborn", "as_printed", "xstar", "backup", "time_limit")}
     with ProgressLine(not options.verbose) as line, executor_of(options) as executor:
         progress = Progress(options, line, problem, options.as_printed or settings.as_printed)
-        proof = prove(problem, resume=options.restore, jobs=options.jobs, executor=executor,
-                      progress=progress, on_leaf=on_leaf if options.verbose else None, **asked)
+        proof = prove(problem, xstar=options.xstar, jobs=options.jobs, executor=executor,
+                      backup=options.backup, resume=options.restore, time_limit=options.time_limit,
+                      progress=progress, on_leaf=on_leaf if options.verbose else None, **given)
         if not options.begun:           # there was no time even to set the search up
             progress(0.0, proof.counts)
     say(verdict(proof))

@@ -1,21 +1,21 @@
-"""A proof is looked for."""
+"""prove(): one run of the search for a proof, from what is known before it to a Proof."""
 
 import concurrent.futures
 import math
 import os
 import time
-from dataclasses import replace
-from decimal import Decimal
+from dataclasses import dataclass, replace
 from typing import Any, Callable, Dict, Optional, Tuple, Union
 
 from ..model.exact import Number, decimal_text, exact
-from ..model.problem import IDENTITY, NAMES, Problem
+from ..model.problem import Problem
 from ..storage.backup import Keeper
 from ..storage.files import ConverseError
 from ..version import __version__
 from . import native, tree
 from .native import Counts, Task
 from .proof import Proof
+from .resume import continued
 from .settings import Settings
 from .signals import interruptible, postponed
 from .tree_search import OLD, TreeSearch
@@ -60,44 +60,74 @@ def prove(problem: Optional[Problem] = None, *, method: Optional[str] = None,
     given: Dict[str, Any] = {name: value for name, value in (
         ("method", method), ("depth", depth), ("digits", digits), ("stubborn", stubborn),
         ("as_printed", as_printed)) if value is not None}
+    _check_problem(problem, resume)
+    options = _Options(jobs, executor, time_limit, progress, on_leaf)
+    star = None if xstar is None else _point(xstar)
+    file = None if resume is None or isinstance(resume, Proof) else resume
+    name = "the proof to resume" if file is None else os.fspath(file)
+    if problem is not None and resume is None:
+        before = Proof(problem, Settings(**given), xstar=star)
+    with interruptible(), Keeper(file if backup is None else backup, resumed=file) as keeper:
+        if resume is not None:
+            proof = resume if isinstance(resume, Proof) else Proof.load(resume)
+            before = continued(proof, name, problem, given, star)
+        before = replace(before, problem=before.settings.accept(before.problem))
+        try:
+            return _Run(before, keeper, options).run()
+        except native.WrongTree as error:
+            raise ConverseError("%s: %s; use an intact copy or start anew"
+                                % (name, error)) from None
+
+
+def _check_problem(problem, resume):
     if problem is None and resume is None:
         raise TypeError("there must be a problem, or a proof to resume")
     if problem is not None and not isinstance(problem, Problem):
         raise TypeError("the problem is a Problem, not %r" % (problem,))
-    if isinstance(time_limit, bool) or not isinstance(time_limit, (int, float)) or \
-            not time_limit >= 0:
-        raise ValueError("time_limit is a number of seconds, not %r" % (time_limit,))
-    star = None if xstar is None else _point(xstar)
-    if jobs is not None and (isinstance(jobs, bool) or not isinstance(jobs, int) or jobs < 1):
-        raise ValueError("jobs must be a whole number, 1 or more, not %r" % (jobs,))
-    if executor is not None and not hasattr(executor, "submit"):
-        raise TypeError("the executor is a concurrent.futures.Executor, not %r" % (executor,))
-    file = None if resume is None or isinstance(resume, Proof) else resume
-    with interruptible(), Keeper(file if backup is None else backup, resumed=file) as keeper:
-        if problem is not None and resume is None:
-            before = Proof(problem, Settings(**given), xstar=star)
-        else:
-            before = _continued(resume, file, problem, given, star)
-        if before.settings.method == "thesis":
-            before = replace(before, problem=_for_thesis(before.problem))
-        run = _Run(before, keeper, jobs, executor, time_limit, progress, on_leaf)
-        try:
-            return run.run()
-        except native.WrongTree as error:
-            raise ConverseError("%s: %s; use an intact copy or start anew"
-                                % (_name(file), error)) from None
+
+
+def _point(xstar):
+    """x* as a pair of decimal strings."""
+    if not isinstance(xstar, (tuple, list)) or len(xstar) != 2:
+        raise ValueError("xstar is two numbers, in radians, not %r" % (xstar,))
+    try:
+        return decimal_text(exact(xstar[0])), decimal_text(exact(xstar[1]))
+    except (TypeError, ValueError) as error:
+        raise type(error)("xstar: %s" % error) from None
+
+
+@dataclass(frozen=True)
+class _Options:
+    """The arguments of prove() on which the tree does not depend; TypeError, ValueError: one of
+    them is wrong."""
+
+    jobs: Optional[int] = None
+    executor: Optional[concurrent.futures.Executor] = None
+    time_limit: float = math.inf
+    progress: Optional[Callable] = None
+    on_leaf: Optional[Callable] = None
+
+    def __post_init__(self):
+        if isinstance(self.time_limit, bool) or not isinstance(self.time_limit, (int, float)) or \
+                not self.time_limit >= 0:
+            raise ValueError("time_limit is a number of seconds, not %r" % (self.time_limit,))
+        if self.jobs is not None and (
+                isinstance(self.jobs, bool) or not isinstance(self.jobs, int) or self.jobs < 1):
+            raise ValueError("jobs must be a whole number, 1 or more, not %r" % (self.jobs,))
+        if self.executor is not None and not hasattr(self.executor, "submit"):
+            raise TypeError("the executor is a concurrent.futures.Executor, not %r"
+                            % (self.executor,))
 
 
 class _Run:
     """One run of a search, from what was known before it to a Proof."""
 
-    def __init__(self, before, keeper, jobs, executor, time_limit, progress, on_leaf):
-        self.before, self.keeper = before, keeper
-        self.progress, self.on_leaf = progress, on_leaf
+    def __init__(self, before, keeper, options):
+        self.before, self.keeper, self.options = before, keeper, options
         self.began = time.monotonic()
-        self.end = self.began + time_limit
-        self.search = TreeSearch(Task(before.problem, before.settings, before.xstar), jobs,
-                                 executor, want_steps=on_leaf is not None)
+        self.end = self.began + options.time_limit
+        self.search = TreeSearch(Task(before.problem, before.settings, before.xstar), options.jobs,
+                                 options.executor, want_steps=options.on_leaf is not None)
         self.walk, self.prism, self.seen = tree.Walk(), tree.prisms(before.problem), 0
 
     def run(self):
@@ -126,15 +156,15 @@ class _Run:
 
     def _look(self):
         """Tells whoever wants to know how far things are."""
-        if self.on_leaf:
+        if self.options.on_leaf:
             text, steps = self.search.beginning(self.seen)
             self.seen += len(text)
             for node, points in zip(text, steps):
                 for kind, cell in self.walk.feed(node):
                     if points != OLD:
-                        self.on_leaf(tree.Leaf(kind, *self.prism(cell), sum(cell[1])), points)
-        if self.progress:
-            self.progress(self.search.examined, self.search.counts)
+                        self.options.on_leaf(tree.Leaf(kind, *self.prism(cell), sum(cell[1])), points)
+        if self.options.progress:
+            self.options.progress(self.search.examined, self.search.counts)
         self.keeper.keep(self._snapshot)
 
     def _seconds(self):
@@ -154,85 +184,3 @@ class _Run:
     def _finished(self, proof):
         with postponed():               # a signal must not cost the last write
             return replace(proof, sha256=self.keeper.finish(proof))
-
-
-def _for_thesis(problem):
-    """The problem as the thesis's method takes it, which knows of no frames."""
-    if problem.together:
-        raise ValueError("parameters that move together need the method loewner")
-    if problem.general is not None:
-        raise ValueError("the method thesis takes three ranges of a, b and c; for any other patch or "
-                         "potential choose the method loewner")
-    return replace(problem, axes=IDENTITY, alone="no")
-
-
-def _point(xstar):
-    """x* as a pair of decimal strings."""
-    if not isinstance(xstar, (tuple, list)) or len(xstar) != 2:
-        raise ValueError("xstar is two numbers, in radians, not %r" % (xstar,))
-    try:
-        return decimal_text(exact(xstar[0])), decimal_text(exact(xstar[1]))
-    except (TypeError, ValueError) as error:
-        raise type(error)("xstar: %s" % error) from None
-
-
-def _name(file):
-    return "the proof to resume" if file is None else os.fspath(file)
-
-
-def _as_before(problem, before, differs):
-    """The problem, which must be the one of before but for its comments, with the frame and the
-    coordinate that were chosen then, unless it names others."""
-    for key in NAMES:
-        theirs, ours = getattr(before, key), getattr(problem, key)
-        if None not in (theirs, ours) and theirs != ours:
-            differs(key, *(" .. ".join(map(decimal_text, ends)) for ends in (theirs, ours)))
-    if problem.general != before.general:
-        differs("potential", before, problem)
-    if problem.together != before.together:
-        differs("together", before.together, problem.together)
-    same = replace(problem, **{key: getattr(before, key) for key in ("axes", "alone")
-                               if getattr(problem, key) is None})
-    for key, what in ("frame", "frame"), ("kept", "coordinate that stands alone"):
-        if getattr(same, key) != getattr(before, key):
-            differs(what, getattr(before, key), getattr(same, key))
-    return same
-
-
-def _continued(resume, file, problem, given, xstar):
-    """The proof to continue, with the settings it is to be continued with."""
-    name = _name(file)
-    proof = resume if file is None else Proof.load(file)
-    settings = replace(proof.settings, **{key: value for key, value in given.items()
-                                          if key in ("depth", "stubborn")})
-
-    def differs(what, theirs, ours):
-        raise ConverseError("%s: is of another run: its %s is %s, this one's is %s; "
-                            "name the backup of this run or start anew" % (name, what, theirs, ours))
-
-    if proof.version != __version__:
-        differs("program", proof.version, __version__)
-    for key in "method", "digits", "as_printed":
-        if key in given and given[key] != getattr(proof.settings, key):
-            differs(key.replace("_", " "), getattr(proof.settings, key), given[key])
-    if settings.depth < proof.settings.depth:
-        differs("depth", proof.settings.depth, settings.depth)
-    if problem is not None:
-        problem = _as_before(problem, proof.problem, differs)
-    if xstar is not None:
-        if proof.xstar is not None and list(map(Decimal, proof.xstar)) != list(map(Decimal, xstar)):
-            differs("x*", " ".join(proof.xstar), " ".join(xstar))
-        proof = replace(proof, xstar=proof.xstar or xstar)
-    if "U" in proof.tree and proof.settings.stubborn and not settings.stubborn and \
-            settings.depth == proof.settings.depth:
-        differs("stubborn", True, False)
-    text, pending = proof.tree, proof.pending
-    if settings.depth > proof.settings.depth:       # what was given up is tried again
-        known, hints = iter(pending), []
-        for leaf in tree.UNDECIDED_OR_UNTRIED.findall(text):
-            hints.append(next(known, 0) if leaf == tree.UNTRIED else 0)
-        pending = (*hints, *known)
-        text = text.replace("U", tree.UNTRIED)
-    return replace(proof, settings=settings, problem=problem or proof.problem, tree=text,
-                   pending=pending, counts=replace(proof.counts, undecided=text.count("U")),
-                   restored=sum(map(text.count, "PS")))

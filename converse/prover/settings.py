@@ -1,9 +1,11 @@
-"""How a search goes about it, and what it can come to."""
+"""The settings of a search, which problems they are for, and what a search can conclude."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Optional
 
-METHODS = {"thesis": 30, "loewner": 120}            # by name, how often they may cut a prism
+from ..model.problem import IDENTITY, Problem
+
+METHODS = {"thesis": 30, "loewner": 120}            # by name, the depth unless another is given
 LIMIT = 100000                                      # of the depth and of the digits
 
 THEOREM, REGION, UNDECIDED, AS_PRINTED = "theorem", "region", "undecided", "as printed"
@@ -11,7 +13,7 @@ THEOREM, REGION, UNDECIDED, AS_PRINTED = "theorem", "region", "undecided", "as p
 
 @dataclass(frozen=True)
 class Settings:
-    """All that the tree of a search depends on beside the problem.
+    """All that the tree of a search depends on beside the problem and x*.
 
     method: "thesis", the criterion of 1989 in exact decimals, or "loewner", the sharper one in
     doubles with proved rounding.
@@ -20,7 +22,7 @@ class Settings:
     stubborn: go on after a prism that cannot be decided.
     as_printed: follow the thesis's listing to the letter, which proves nothing.
 
-    ValueError: a value makes no sense, or two do not go together.
+    ValueError: a value makes no sense, or two exclude each other.
     """
 
     method: str = "thesis"
@@ -43,5 +45,18 @@ class Settings:
             if not isinstance(getattr(self, name), bool):
                 raise ValueError("%s must be True or False, not %r" % (name, getattr(self, name)))
         if self.method == "loewner" and self.as_printed:
-            raise ValueError("only the method thesis was ever printed: as_printed does not go "
-                             "with loewner")
+            raise ValueError("only the method thesis was ever printed: as_printed (--as-printed) "
+                             "does not go with loewner")
+
+    def accept(self, problem: Problem) -> Problem:
+        """The problem as this method takes it: the thesis's knows of no frames, and does not look
+        at one coordinate alone.  ValueError: the method cannot treat the problem."""
+        if self.method != "thesis":
+            return problem
+        if problem.together:
+            raise ValueError("parameters that move together (--together) need the method loewner "
+                             "(--method loewner)")
+        if problem.general is not None:
+            raise ValueError("the method thesis takes three ranges of a, b and c; any other patch "
+                             "or potential needs the method loewner (--method loewner)")
+        return replace(problem, axes=IDENTITY, alone="no")
