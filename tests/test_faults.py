@@ -397,7 +397,7 @@ def test_a_lock_that_is_gone(held, root, tmp_path):
 
 def test_a_lock_of_another_run_is_left_alone(tmp_path):
     path = str(tmp_path / "a")
-    with files.lock(path):
+    with files.Lock(path):
         os.unlink(path + ".lock")
         open(path + ".lock", "w").close()       # as if another run had come
     assert os.path.exists(path + ".lock")

@@ -421,19 +421,19 @@ def test_a_long_set_up_obeys(problem, monkeypatch):
     """At a hundred thousand places pi alone takes seconds."""
     result = prove(problem, digits=100000, time_limit=0.2)
     assert result.tree == "" and result.constants == {}
-    begin, wait, begun, found = native.begin, run._Run._wait, threading.Event(), []
+    begin, left, begun, found = native.begin, run._Run._seconds_left, threading.Event(), []
 
     def tells(*arguments):
         begun.set()
         found.append(begin(*arguments))
 
-    def strikes(self, future):
+    def strikes(self):
         begun.wait()
         signal.raise_signal(signal.SIGINT)
-        return wait(self, future)
+        return left(self)
 
     monkeypatch.setattr(native, "begin", tells)
-    monkeypatch.setattr(run._Run, "_wait", strikes)
+    monkeypatch.setattr(run._Run, "_seconds_left", strikes)
     with pytest.raises(KeyboardInterrupt):
         prove(problem, digits=100000)
     assert found == [None]              # it was left in the middle

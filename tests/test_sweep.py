@@ -300,7 +300,7 @@ def test_a_number_changed_in_any_row_is_seen(whole, path):
 
 
 def test_two_sweeps_do_not_write_one_file(path):
-    with files.lock(path), pytest.raises(ConverseError, match="another run"):
+    with files.Lock(path), pytest.raises(ConverseError, match="another run"):
         orbits.sweep(orbits.trig, VECTORS, EPS, file=path)
     assert not path.exists()
     for place in (path.parent, path.parent / "none" / "table.csv", "/dev/full"):

@@ -12,10 +12,10 @@ import warnings
 
 from ..model.problem import InputError
 from ..prover.settings import LIMIT
-from ..prover.signals import ENDING, interruptible
 from ..prover.workers import WorkersGone
 from ..storage import files
 from ..storage.files import ConverseError, NotSaved, plain
+from ..storage.signals import ENDING, interruptible
 
 BAD, ENDED_BY = 2, 128                  # exit statuses; the signal's number is added to the second
 REFRESH_SECONDS = 0.25                  # between two texts of a ProgressLine

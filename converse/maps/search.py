@@ -14,10 +14,10 @@ from ..model.problem import Problem
 from ..prover import native
 from ..prover.run import Path
 from ..prover.settings import Settings
-from ..prover.signals import interruptible, postponed
 from ..prover.workers import LOOK_SECONDS, Crew
 from ..storage.backup import Keeper
 from ..storage.files import ConverseError
+from ..storage.signals import interruptible, postponed
 from ..version import __version__
 from . import region
 from .map import AT_ONCE, OPEN, OUTSIDE, PROVED, Map

@@ -17,10 +17,10 @@ from typing import Any, Callable, NamedTuple, Optional, Sequence, Tuple, Union
 
 import numpy as np
 
-from ..prover.signals import interruptible
 from ..prover.workers import LOOK_SECONDS, Crew, WorkersGone
 from ..storage import files
 from ..storage.files import ConverseError
+from ..storage.signals import interruptible
 from .potential import Potential, Stoppable, finite, known, told
 from .solver import COLUMNS, MOST, follow, reached, row, straight
 from .state import ROUNDS, State
@@ -232,16 +232,15 @@ def _sweep(task, how, columns, potential, vectors, eps, executor, file, progress
                          % (vectors,)) from None
     texts = [_text([(*columns, SEAL)])]
     seal = "%s %r %s\n" % (potential.formula, potential.start, how)
-    with contextlib.ExitStack() as stack:
+    with interruptible(), contextlib.ExitStack() as stack:
         out = None
         if file is not None:
             files.check_writable(file, regular=True)
-            stack.enter_context(files.lock(file))
+            stack.enter_context(files.Lock(file))
             texts += _finished(file, texts[0], potential, vectors, eps, task, seal)
             out = stack.enter_context(contextlib.closing(_File(file, "".join(texts))))
         if progress is not None:
             progress(len(texts) - 1, len(vectors))
-        stack.enter_context(interruptible())
         results = _in_order(task, vectors[len(texts) - 1:], executor)
         for text in stack.enter_context(contextlib.closing(results)):
             texts.append(_sealed(seal, text))

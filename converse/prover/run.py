@@ -11,13 +11,13 @@ from ..model.exact import Number, decimal_text, exact
 from ..model.problem import Problem
 from ..storage.backup import Keeper
 from ..storage.files import ConverseError
+from ..storage.signals import interruptible, postponed
 from ..version import __version__
 from . import native, tree
 from .native import Counts, Task
 from .proof import Proof
 from .resume import continued
 from .settings import Settings
-from .signals import interruptible, postponed
 from .tree_search import OLD, TreeSearch
 from .workers import LOOK_SECONDS
 

@@ -13,8 +13,8 @@ from dataclasses import dataclass, replace
 from typing import Any, Callable
 
 from ..storage.files import ConverseError
+from ..storage.signals import postponed
 from ..version import __version__
-from .signals import postponed
 
 LOOK_SECONDS = 0.1                  # between two looks at the clock, at Ctrl-C, at the bar
 ATTEMPTS = 4                        # at a task whose workers die

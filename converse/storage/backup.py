@@ -1,6 +1,5 @@
 """The backup: a file that is kept up to date with a proof while it is found."""
 
-import contextlib
 import time
 import warnings
 
@@ -21,22 +20,22 @@ class Keeper:
         self.path, self.resumed = path, resumed
         self.due, self.saved = 0.0, None    # when to write; the seconds of the search in the file
         self.failure = ""                   # of the last write
-        self.lock = contextlib.ExitStack()
+        self.lock = None if path is None else files.Lock(path)
 
     def __enter__(self):
-        path = self.path
-        if path is not None:
-            files.check_writable(path, regular=True)
-            self.lock.enter_context(files.lock(path))
+        if self.lock is not None:
+            files.check_writable(self.path, regular=True)
+            self.lock.__enter__()
             try:
-                files.check_new(path, self.resumed)
-            except ConverseError:
-                self.lock.close()
+                files.check_new(self.path, self.resumed)
+            except BaseException:
+                self.lock.release()
                 raise
         return self
 
     def __exit__(self, *_):
-        self.lock.close()
+        if self.lock is not None:
+            self.lock.release()
 
     def keep(self, snapshot):
         """Writes what snapshot() returns, if it is time; what goes wrong is said once, and tried

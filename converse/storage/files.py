@@ -4,6 +4,8 @@ import contextlib
 import fcntl
 import os
 
+from .signals import postponed
+
 
 class ConverseError(RuntimeError):
     """Something outside the mathematics went wrong; the text is one plain sentence."""
@@ -127,33 +129,61 @@ def write(path, data):
                 os.unlink(name)
 
 
-@contextlib.contextmanager
-def lock(path):
-    """Keeps other runs away from a file that this one writes again and again."""
-    name = os.path.realpath(path) + ".lock"
-    while True:
+class Lock:
+    """A context in which no other run writes a file that this one writes again and again.
+
+    ConverseError: another run does, or the lock, a file beside it, cannot be made."""
+
+    def __init__(self, path):
+        self.path, self.name = path, os.path.realpath(path) + ".lock"
+        self.handle = None
+
+    def __enter__(self):
         try:
-            handle = os.open(name, os.O_RDWR | os.O_CREAT, 0o644)
+            with postponed():           # a signal in between would leave the lock to nobody
+                while self.handle is None:
+                    self.handle = self._take()
+        except BaseException:
+            self.release()
+            raise
+        return self
+
+    def __exit__(self, *_):
+        self.release()
+
+    def release(self):
+        """Removes the lock, if it is held."""
+        with postponed():
+            if self.handle is not None:
+                if self._is_there(self.handle):
+                    with contextlib.suppress(OSError):
+                        os.unlink(self.name)
+                os.close(self.handle)
+                self.handle = None
+
+    def _take(self):
+        """The descriptor of the locked file, or None where its holder has just removed it."""
+        try:
+            handle = os.open(self.name, os.O_RDWR | os.O_CREAT, 0o644)
         except OSError as error:
             raise ConverseError("%s: cannot be written (%s); choose another file"
-                                % (name, reason(error))) from None
+                                % (self.name, reason(error))) from None
         try:
             fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except OSError:
             os.close(handle)
-            raise ConverseError("%s: another run is writing this file; name another" % path) \
-                from None
+            raise ConverseError("%s: another run is writing this file; name another"
+                                % self.path) from None
         if os.fstat(handle).st_size:
             os.close(handle)
-            raise ConverseError("%s: exists and is no lock of this program; rename it" % name)
-        with contextlib.suppress(OSError):
-            if os.path.samestat(os.fstat(handle), os.stat(name)):
-                break
-        os.close(handle)                    # its holder has just removed it: try again
-    try:
-        yield
-    finally:
-        with contextlib.suppress(OSError):          # if it is still ours
-            if os.path.samestat(os.fstat(handle), os.stat(name)):
-                os.unlink(name)
+            raise ConverseError("%s: exists and is no lock of this program; rename it" % self.name)
+        if self._is_there(handle):
+            return handle
         os.close(handle)
+        return None
+
+    def _is_there(self, handle):
+        """Is it still this file that has the name?"""
+        with contextlib.suppress(OSError):
+            return os.path.samestat(os.fstat(handle), os.stat(self.name))
+        return False
