@@ -10,7 +10,6 @@ import math
 GUARD = 64                              # more bits, in which constants are computed
 SLICES = 256                            # of the circle, in the table of sines and cosines
 SINE_ERROR = 16                         # units; see Fixed.sincos
-PARAMETER_ERROR = 40                    # units; see Criterion and its piece
 
 
 def arctan_inverse(n, one):

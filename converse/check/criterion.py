@@ -1,14 +1,13 @@
 """The criterion (C3) on the leaves of one claim, in integers."""
 
-import collections
 import itertools
 import math
 from fractions import Fraction
 
-from .arith import Fixed, in_units, stiffness, upper_sqrt
+from .arith import SINE_ERROR, Fixed, in_units, stiffness, upper_sqrt
+from .exact import Prism, PrismWave, attempt
 from .failures import NotConfirmed, Rejected
-from .limits import LAG, MAX_BITS, MAX_HALVINGS, MAX_PIECES
-from .taylor import MAX_POINTS, PARAMETERS, SYMBOLS, Point, second_variation, step, witness
+from .limits import CAUTION, LAG, MAX_BITS, MAX_HALVINGS, MAX_PIECES
 from .torus import is_at_once, torus_bound
 from .tree import changed
 
@@ -28,14 +27,12 @@ class Criterion:
         self.claim, self.fixed = claim, Fixed.of(bits)
         one, waves = self.fixed.one, claim.examined
         self.waves = in_units(self.fixed, waves)
-        self.amplitudes = [(math.floor(wave.middle * one), [math.floor(g * one)
-                                                            for g in wave.parts]) for wave in waves]
-        if max([abs(x) for p, parts in self.amplitudes for x in (p, *parts)] + [0]) >> 2 * bits:
+        if max([abs(x) for wave in waves for x in (wave.middle, *wave.parts)] + [0]) >= one:
             raise NotConfirmed("the parameters are too large for this checker")     # l has no digit
         self.xstar = tuple([math.floor(x * one) for x in claim.xstar])
-        # Orbits that differ by 2 pi in x[1] differ by 2 pi j in x[j]: nothing else changes.
-        self.region = [(math.floor(c % 2 * self.fixed.pi), math.floor(h * self.fixed.pi),
-                        4 * math.ceil(h) + 10) for c, h in zip(claim.centre, claim.half)]
+        # The symbols: of the parameters that count, and of the angles.
+        self.axes = [2 + m for m in range(claim.parameters)
+                     if any([wave.parts[m] for wave in waves])] + [0, 1]
         # The ends of the parameters: a cell's B is no larger than what lies between B there.  An
         # end is off by less than a unit for each wave, and the eigenvalue by less than stiffness.
         if bound is not None:
@@ -89,124 +86,71 @@ class Criterion:
         """l from below as a double: the quotient is rounded to nearest, the rest lowers it."""
         return self.least_pivot(cell) / self.fixed.one * (1 - 2.0 ** -50)
 
-    def piece(self, cell):
-        """The cell as a piece that covers it: of each wave the middle and the parts of its
-        amplitude, then centres and half-widths of v0 and v1.
+    def prism(self, cell):
+        """The cell as a Prism that covers it.
 
-        An angle: the centre c + h (2i + 1 - 2^k) / 2^k and the half-width h / 2^k, in units of pi:
-        pi is off by 2 units and c mod 2 below 2, so with the floors 4 h + 10 units are enough.
-        An amplitude is followed along its symbols to within 10 units (a floor of the middle, and
-        for each part one of itself and one of each of its shifts), and each halving of the piece
-        may add one: PARAMETER_ERROR.
+        Its middle and half-widths are exact; amplitudes are rounded down by less than a unit, as
+        are their parts, and so are their products with sines and cosines, which are within
+        SINE_ERROR units.  x[1] is within 2 units, as angle() says, but for turns: orbits that
+        differ by 2 pi in x[1] differ by 2 pi j in x[j], and nothing else changes.  A column is off
+        by 2 units for pi as often as it has it, and by one more.
         """
         index, cuts = cell
-        amplitudes = []
-        for p, parts in self.amplitudes:
-            for g, i, k in zip(parts, index[2:], cuts[2:]):
-                p += g * (2 * i + 1 - (1 << k)) >> k
-            amplitudes.append((p, [g >> k for g, k in zip(parts, cuts[2:])]))
-        sides = [(c + (h * (2 * i + 1 - (1 << k)) >> k), (h >> k) + e)
-                 for (c, h, e), i, k in zip(self.region, index, cuts)]
-        return amplitudes, sides
+        fixed, one, symbols = self.fixed, self.fixed.one, len(self.axes)
+        at = [Fraction(2 * i + 1, 1 << k) - 1 for i, k in zip(index, cuts)]
+        waves = []
+        for (k0, k1, phase), wave in zip(self.waves, self.claim.examined):
+            amplitude = math.floor(wave.at(at[2:]) * one)
+            parts = [(i, math.floor(wave.parts[axis - 2] / (1 << cuts[axis]) * one))
+                     for i, axis in enumerate(self.axes[:-2]) if wave.parts[axis - 2]]
+            size = abs(amplitude) + sum([abs(part) for _, part in parts])
+            waves.append(PrismWave(k0, k1, phase, amplitude, parts,
+                                   (size * SINE_ERROR >> fixed.bits) + 3 + 2 * len(parts)))
+        v = [c + h * t for c, h, t in zip(self.claim.centre, self.claim.half, at)]
+        half = [h / (1 << k) for h, k in zip(self.claim.half, cuts)]
+        x, columns, error = [], [], []
+        for row in self.claim.frame[:2], self.claim.frame[2:]:
+            sides = [f * h for f, h in zip(row, half)]
+            x.append(fixed.angle(sum([f * y for f, y in zip(row, v)])))
+            columns.append([0] * (symbols - 2) + [math.floor(side * fixed.pi) for side in sides])
+            error.append(2 + sum([2 * math.ceil(abs(side)) + 1 for side in sides]))
+        return Prism(fixed, waves, self.xstar, (x, columns, error), symbols)
 
-    def ends(self, piece):
-        """x[0] and x[1] of a piece, as Points."""
-        amplitudes, ((c0, h0), (c1, h1)) = piece
-        f0, f1, f2, f3 = self.claim.frame
-        none = [0] * PARAMETERS
-        return (Point(self.fixed, self.waves, amplitudes, self.xstar,
-                      (none + [0, 0, 1, 0], none + [0, 0, 0, 1])),
-                Point(self.fixed, self.waves, amplitudes, (f0 * c0 + f1 * c1, f2 * c0 + f3 * c1),
-                      (none + [f0 * h0, f1 * h1, 0, 0], none + [f2 * h0, f3 * h1, 0, 0])))
-
-    def attempt(self, l, piece):
-        """Is (C3) true of the whole piece?  None if so, or else why not, and where to halve it."""
+    def attempt(self, l, cell, caution):
+        """Is (C3) true of the whole cell?  None if so, or else why not, and for each of its axes
+        how much it matters."""
         try:
-            return self._follow(l, piece)
+            return attempt(self.prism(cell), l, caution)
         except (OverflowError, ValueError, ZeroDivisionError):
-            # An angle or a double too large, a singular pivot, a NaN: no bound was established,
-            # and an attempt that establishes none excludes nothing.
-            return "the arithmetic failed", [0] * PARAMETERS + [h for _, h in piece[1]]
-
-    def _follow(self, l, piece):
-        """Lengthens the orbit at the end that is better known until (C3) is true or all is lost.
-
-        (C3) is tried each time the orbit has grown by a twelfth, and in the end.
-        """
-        fixed, waves, amplitudes = self.fixed, self.waves, piece[0]
-        first, second = self.ends(piece)
-        why, columns = None, [0] * PARAMETERS + [h for _, h in piece[1]]
-        orbit = collections.deque()
-        point, ahead, due, known = first, True, 1, SYMBOLS
-
-        def reach(point):
-            return max(point.reach, default=0)
-
-        while point:
-            (orbit.append if ahead else orbit.appendleft)(point)
-            if len(orbit) == 1:
-                point = second
-            else:
-                ahead = reach(orbit[-1]) < reach(orbit[0])
-                ends = (orbit[-1], orbit[-2]) if ahead else (orbit[0], orbit[1])
-                point = step(fixed, waves, amplitudes, *ends, known)
-                known = len(point.rows[0])
-            if reach(point) > fixed.one or len(orbit) == MAX_POINTS:
-                point = None
-            if point and len(orbit) < due:
-                continue
-            due = len(orbit) + 1 + len(orbit) // 12
-            vectors = witness([point.beta for point in orbit], l / fixed.one)
-            if vectors:
-                bound, columns = second_variation(fixed, waves, l, orbit, vectors)
-                if bound < 0:
-                    return None
-                why = "its second variation may be positive"
-        # What moves the ends matters, if little: when it is halved, the orbit may go on.
-        columns = [abs(x) + sum([abs(k0 * p.rows[0][m] + k1 * p.rows[1][m])
-                                 for p in (orbit[0], orbit[-1], second) for k0, k1, _ in waves])
-                   for m, x in enumerate(columns[:PARAMETERS + 2])]
-        return why or "the orbit of its centre contradicts nothing over %d points, %s" % (
-            len(orbit), "the most that are followed" if len(orbit) == MAX_POINTS else
-            "beyond which it is too uncertain"), columns
-
-    @staticmethod
-    def halves(piece, worst):
-        """The halves of a piece along a symbol: of a parameter, which moves the amplitudes of many
-        waves, or of an angle."""
-        amplitudes, sides = piece
-
-        def half(centre, halves, at, sign):
-            step = [h + 1 >> 1 if k == at else 0 for k, h in enumerate(halves)]
-            return centre + sign * sum(step), [s if k == at else h for k, (h, s)
-                                               in enumerate(zip(halves, step))]
-
-        found = []
-        for sign in (1, -1):
-            angles = [half(c, [h], worst - PARAMETERS - i, sign) for i, (c, h) in enumerate(sides)]
-            found.append(([half(p, parts, worst, sign) for p, parts in amplitudes],
-                          [(c, h) for c, (h,) in angles]))
-        return found
+            # A number too large, a singular matrix, a NaN: no bound was established, and an
+            # attempt that establishes none excludes nothing.
+            return "the arithmetic failed", [
+                float(self.claim.half[axis] / (1 << cell[1][axis]) > 0) if axis < 2 else 0.0
+                for axis in self.axes]
 
     def excluded(self, cell):
         """Does no minimizing orbit go from x* to the cell?  (None or else why not, pieces tried)"""
-        l, todo, pieces = self.least_pivot(cell), [(self.piece(cell), (0,) * 5)], 0
+        l, todo, pieces = self.least_pivot(cell), [cell], 0
         while todo:
-            piece, halved = todo.pop()
+            piece = todo.pop()
+            halved = [k - begun for k, begun in zip(piece[1], cell[1])]
             pieces += 1
-            failed = self.attempt(l, piece)
+            failed = self.attempt(l, piece, CAUTION[sum(halved) % len(CAUTION)])
             if not failed:
                 continue
+            why, blame = failed
             if sum(halved) >= MAX_HALVINGS or pieces + len(todo) >= MAX_PIECES:
-                return "%s (piece %d, halved %d times)" % (failed[0], pieces, sum(halved)), pieces
-            # Along what matters most, but no symbol that matters is left behind for long.
-            blame = failed[1]
-            worst = max(range(len(blame)), key=blame.__getitem__)
-            last = min((k for k, x in enumerate(blame) if x or k == worst), key=halved.__getitem__)
+                return "%s (piece %d, halved %d times)" % (why, pieces, sum(halved)), pieces
+            # Along what matters most, but no axis that matters is left behind for long.
+            most = max(blame)
+            worst = self.axes[blame.index(most)]
+            last = min([axis for axis, x in zip(self.axes, blame) if x > most * 2.0 ** -30 or
+                        axis == worst], key=halved.__getitem__)
             if halved[worst] - halved[last] > LAG:
                 worst = last
-            now = changed(halved, worst, halved[worst] + 1)
-            todo += [(half, now) for half in self.halves(piece, worst)]
+            index, cuts = piece
+            todo += [(changed(index, worst, 2 * index[worst] + upper),
+                      changed(cuts, worst, cuts[worst] + 1)) for upper in (0, 1)]
         return None, pieces
 
     def at_once(self):

@@ -1,10 +1,9 @@
 """The fast path: a thousand prisms in lockstep, in doubles.
 
-The same left side of (C3) as in taylor.py, bounded by other means, far more cheaply and more
-sharply: by a polynomial of third order in the symbols, and what it leaves.  What is not bounded
-below zero here is left to the integers.  All that is done to one prism is done to all of them, as
-arrays of numpy, whose operations round to nearest (import_numpy_if_sound looks).  The proof is
-docs/checker.md, steps (C4) to (C20).
+The same bound as in exact.py, steps (C4) to (C8) of docs/checker.md, where rounding errors are
+bounded by steps (C9) to (C20).  What is not bounded below zero here is left to the integers.  All
+that is done to one prism is done to all of them, as arrays of numpy, whose operations round to
+nearest (import_numpy_if_sound looks).
 """
 
 import collections
@@ -16,7 +15,7 @@ from fractions import Fraction
 from .arith import Fixed
 from .claim import IDENTITY
 from .failures import complain
-from .limits import LAG, MAX_CUTS, MAX_HALVINGS, MAX_PIECES
+from .limits import CAUTION, FIRST_TRY, LAG, MAX_CUTS, MAX_HALVINGS, MAX_PIECES, MAX_SITES
 
 np = None                               # numpy, once the fast path is wanted
 UNIT = 2.0 ** -53
@@ -29,10 +28,8 @@ TINY = 2.0 ** -200
 FAST_SIZE = 2.0 ** 10                   # of amplitudes, x*, regions and frames
 FAST_CUTS = 52                          # of an axis
 BATCH, SMALLEST_BATCH = 1024, 16
-FAST_SITES, ROOM = 4096, 1 << 19        # of a lane; of all lanes at a time
-FIRST_TRY = 96                          # sites, for lanes that are longer
+ROOM = 1 << 19                          # sites of all lanes at a time
 FARTHEST = 1.0                          # reach of a wave that is there
-CAUTION = (0, 0.2), (0.3, 0), (0, 1.0)  # of the choice of n: see witnesses, settle
 
 
 def import_numpy_if_sound():
@@ -238,7 +235,7 @@ def summit(form):
 
 # A site of all lanes, in the words of docs/checker.md: which of them have it; s, c, k.L as columns
 # of the symbols, size, rest and reach of each wave; beta; and E of step (C7).
-Site = collections.namedtuple("Site", "alive s c columns size rest reach beta E")
+Sites = collections.namedtuple("Sites", "alive s c columns size rest reach beta E")
 
 
 def next_rest(d, f, r, r0, err, along, beside):
@@ -406,7 +403,7 @@ class Prisms:
             for w in shape.present:
                 near = reach[w] <= FARTHEST
                 alive = alive & (near | self.absent[w] if w in self.absent else near)
-            if self.sites and (not alive.any() or len(self.sites) == FAST_SITES):
+            if self.sites and (not alive.any() or len(self.sites) == MAX_SITES):
                 yield True
                 return
             if len(self.sites) * alive.size >= ROOM and self.size > SMALLEST_BATCH:
@@ -423,7 +420,7 @@ class Prisms:
             beta[::2] += 2
             mean_square = size * size / 4
             wave = P * c * mean_square
-            self.sites.append(Site(alive, s, c, columns, size, rest, reach, beta,
+            self.sites.append(Sites(alive, s, c, columns, size, rest, reach, beta,
                                    combined(shape.forces, wave)))
 
             wave = slope * c * (1 - mean_square)
@@ -453,11 +450,11 @@ class Prisms:
             r, r0 = (applied(np.abs(d), r) + f) * MORE, r
             L, L0, size0 = new, L, size
 
-    def witnesses(self):
+    def test_vectors(self):
         """Vectors n for each site, and how many tails begin there: one where a lane ends, one where
         n begins amid a lane.  Nothing rests on which vectors these are, if only n is zero beyond.
 
-        At each site the recursions from both ends of the orbit are compared, as by taylor.witness,
+        At each site the recursions from both ends of the orbit are compared, as by test_vectors,
         to beta and something for what the bound will add to a site.  A recursion that fails begins
         anew behind that site.  Where both together have a negative eigenvalue that is nearest to
         zero, and n as a rule is largest, is its eigenvector; n follows outwards by the recursions.
@@ -520,7 +517,7 @@ class Prisms:
         """The left side of (C3): its value at X and P, a polynomial, as summit takes it, and what
         it may be more than both; infinite where it cannot be said."""
         N, l, F, shape = len(self.sites), self.l, self.F, self.shape
-        n, tails = self.witnesses()
+        n, tails = self.test_vectors()
         P, H, W, magnitude, grain = self.P, self.H, self.W, self.magnitude, shape.grain
         K, square_K = shape.K[:, None], (shape.K * shape.square)[:, None]
         sums = Sums(self.known, self.angles, l.size)
@@ -673,7 +670,7 @@ class Lockstep:
                 excluded |= bound < 0
                 if excluded.all():
                     break
-        vain = prisms.joined(prisms.sites[-1].alive) & (len(prisms.sites) == FAST_SITES)
+        vain = prisms.joined(prisms.sites[-1].alive) & (len(prisms.sites) == MAX_SITES)
         axis = blame.argmax(axis=0)
         if halved is not None:
             halved, at = halved[self.axes], np.arange(axis.size)

@@ -14,7 +14,7 @@ import zipfile
 
 FOLDER = os.path.dirname(os.path.abspath(__file__))
 # In the order in which they are read; each needs only those before it.
-ORDER = ("version", "limits", "failures", "claim", "tree", "proof_file", "arith", "torus", "taylor",
+ORDER = ("version", "limits", "failures", "claim", "tree", "proof_file", "arith", "torus", "exact",
          "criterion", "lockstep", "maps", "words", "state", "progress", "signals", "workers", "run",
          "command")
 MAIN = '''import sys

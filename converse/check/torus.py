@@ -7,10 +7,10 @@ import itertools
 import math
 from fractions import Fraction
 
-from .arith import PARAMETER_ERROR, SINE_ERROR, angle_of, forms, in_units, largest, stiffness
+from .arith import SINE_ERROR, angle_of, forms, in_units, largest, stiffness
 from .limits import MAX_CELLS
 
-NU_BITS = 20                            # of the test vectors
+EIGENVECTOR_BITS = 20                   # of an eigenvector
 
 
 def cell_bound(fixed, waves, amplitudes, sides, y, w):
@@ -133,15 +133,16 @@ def is_at_once(fixed, waves, t=None):
         places = [min(itertools.product(*((y - width, y, y + width) for y in x)), key=level)
                   for x in places]
     x = min(places, key=level)
-    n0, n1 = [round(u * 2 ** NU_BITS) for u in least(beta(x))[1]]
+    n0, n1 = [round(u * 2 ** EIGENVECTOR_BITS) for u in least(beta(x))[1]]
     x = [math.floor(Fraction(y) * one) for y in x]
     total = 4 * (n0 * n0 + n1 * n1) << 2 * fixed.bits       # three times 2 |n|^2 - 2/3 |n|^2
     moved = [0] * max(map(len, amplitudes), default=0)      # by each parameter
     for wave, (p, *parts) in zip(known, amplitudes):
         omega, (sine, _) = 3 * (wave[0] * n0 + wave[1] * n1) ** 2, fixed.sincos(angle_of(wave, x))
         total -= omega * p * sine
-        # The sine is off by SINE_ERROR, the middle and each part by a unit: 32 are enough.
-        total += omega * ((abs(p) + sum(map(abs, parts))) * SINE_ERROR + PARAMETER_ERROR * 2 * one)
+        # The sine is off by SINE_ERROR, the middle and each part by less than a unit.
+        total += omega * ((abs(p) + sum(map(abs, parts))) * SINE_ERROR
+                          + 2 * (1 + len(parts)) * one)
         for m, part in enumerate(parts):
             moved[m] += omega * part * sine
     return total + sum(map(abs, moved)) < 0

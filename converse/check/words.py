@@ -141,8 +141,8 @@ def report(file, problems, done, earlier, sampled):
     lines += mapped(file) if is_map else claimed(file)
     lines += [
         "", "Checker : converse-check " + __version__,
-        "Method : Loewner criterion, %sTaylor models in integers%s" % (
-            "multipliers in doubles, and where these fail " * bool(problems.fast),
+        "Method : Loewner criterion, multipliers, %sin integers%s" % (
+            "in doubles and where these fail " * bool(problems.fast),
             "" if is_map else " of %d bits" % problems.criterion(0).fixed.bits)]
     if not is_map:
         places = 9

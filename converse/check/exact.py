@@ -1,0 +1,464 @@
+"""The left side of (C3) over a prism, bounded in integers: steps (C4) to (C8) of docs/checker.md.
+
+Centres, columns, matrices, multipliers and vectors are chosen; the floating-point numbers that
+choose some of them are rounded to integers first, and whatever these integers are, the bound
+holds.  Sums and products of them are exact.  Only sines, amplitudes and quotients are rounded:
+that is counted in units, for each wave once, in its `error`.  Sizes of what is not known exactly
+are rounded upwards.
+"""
+
+import collections
+import itertools
+import math
+
+from .limits import FIRST_TRY, MAX_SITES
+from .torus import least
+
+VECTOR_BITS = 28                        # of the vectors; the multipliers have twice as many
+UNIT_BITS = 56                          # of the second variation
+TRY_BITS = 10                           # of the points t where cube_bound draws its lines
+
+# A wave of a prism: k and the phase; amplitude and parts, as pairs (symbol, part); what p' cos y
+# and p' sin y are off by at most, computed as these numbers times cosines and sines.
+PrismWave = collections.namedtuple("PrismWave", "k0 k1 phase amplitude parts error")
+
+# A wave at a site: p cos y and p sin y, and of its parts, as (symbol, h cos y, h sin y); its
+# columns xi = k.L; bounds of |xi| and |w|.
+SiteWave = collections.namedtuple("SiteWave", "cosine sine parts columns size rest error")
+
+# A site of a lane: its waves; E of step (C7); as doubles beta, and the reach of each wave.
+Site = collections.namedtuple("Site", "waves E beta reach")
+
+
+class Prism:
+    """A prism: its waves, x[0] and x[1] as (centre, columns, error), each for two coordinates, and
+    the number of its symbols, the last two of them those of the parallelogram."""
+
+    def __init__(self, fixed, waves, xstar, x1, symbols):
+        self.fixed, self.waves, self.symbols = fixed, waves, symbols
+        across, total = 0, 0
+        for wave in waves:
+            size = abs(wave.amplitude)
+            across += 6 * abs(wave.k0 * wave.k1) * size
+            total += (wave.k0 ** 2 + wave.k1 ** 2) * size
+        self.rotated = across > total       # the frame of the errors; either is right
+        blank = [0] * symbols
+        start = xstar, (blank, blank), (1, 1)
+        self.lanes = Lane(self, start, x1), Lane(self, x1, start)
+        self.sizes = [(wave.k0, wave.k1, (abs(wave.amplitude) + sum([abs(x) for _, x in wave.parts]))
+                       / fixed.one) for wave in waves]
+
+    def cautious(self, site, caution):
+        """beta at a site, and something for what the bound will add there."""
+        p, q, r = site.beta
+        for (k0, k1, size), reach in zip(self.sizes, site.reach):
+            more = size * (caution[0] + caution[1] * reach) * reach
+            p, q, r = p + k0 * k0 * more, q + k0 * k1 * more, r + k1 * k1 * more
+        return p, q, r
+
+    def strengths(self, wave):
+        """How strongly a wave moves the two coordinates of the frame of the errors."""
+        if self.rotated:
+            return abs(wave.k0 + wave.k1), abs(wave.k0 - wave.k1)
+        return abs(wave.k0), abs(wave.k1)
+
+
+class Lane:
+    """Half of the orbits of a prism: x[1], x[2], ... or x[0], x[-1], ..., followed site by site."""
+
+    def __init__(self, prism, before, first):
+        self.prism, self.sites, self.ended = prism, [], False
+        (self.x0, self.L0, self.r0), (self.x, self.L, self.r) = before, first
+        self.first_columns, self.first_rest = self.L, self.r
+        if prism.rotated:                   # of x0 + x1 and x0 - x1
+            self.r0, self.r = (sum(self.r0),) * 2, (sum(self.r),) * 2
+        self.strengths = [prism.strengths(wave) for wave in prism.waves]
+        self.d = self.f = None              # of step (C5); d in half units
+
+    def follow(self, most):
+        """Follows the lane up to so many sites, or until a wave reaches too far."""
+        while not self.ended and len(self.sites) < most:
+            self.ended = not self.advance()
+
+    def advance(self):
+        """Adds this site to the lane and goes on to the next one; False if a wave reaches beyond
+        1, or the matrices are singular."""
+        prism, (u, v), (L0, L1), (r0, r1) = self.prism, self.x, self.L, self.r
+        fixed, rotated = prism.fixed, prism.rotated
+        bits, one, sincos = fixed.bits, fixed.one, fixed.sincos
+        waves, reaches, p, q, r = [], [], 0, 0, 0           # the last three for V''
+        E0 = E1 = push0 = push1 = error0 = error1 = 0
+        new0 = [2 * a - b for a, b in zip(L0, self.L0[0])]
+        new1 = [2 * a - b for a, b in zip(L1, self.L0[1])]
+        for wave, (strong0, strong1) in zip(prism.waves, self.strengths):
+            k0, k1, phase, amplitude, parts, error = wave
+            if k1 == 0:
+                xi = L0 if k0 == 1 else [k0 * a for a in L0]
+            elif k0 == 0:
+                xi = L1 if k1 == 1 else [k1 * a for a in L1]
+            else:
+                xi = [k0 * a + k1 * b for a, b in zip(L0, L1)]
+            size = sum(map(abs, xi))
+            rest = (strong0 * r0 + strong1 * r1 + rotated) >> rotated
+            reach = size + rest
+            if reach > one:
+                return False
+            s, c = sincos(k0 * u + k1 * v + phase)
+            sine, cosine = amplitude * s >> bits, amplitude * c >> bits
+            mean = cosine * (size * size >> bits) >> bits + 2
+            E0, E1 = E0 + k0 * mean, E1 + k1 * mean
+            push0, push1 = push0 + k0 * cosine, push1 + k1 * cosine
+            p, q, r = p + k0 * k0 * sine, q + k0 * k1 * sine, r + k1 * k1 * sine
+            # What the model lacks of p' cos(y + z): (iii) of step (C6), for the matrix without
+            # rounding; each column is rounded down by less than a unit.
+            square = (reach * reach >> bits) + 1
+            cube = (square * reach >> bits) + 1
+            fall = (abs(cosine) * square >> bits + 1) + 1
+            bent = max(abs(mean), fall - abs(mean)) + (abs(sine) * cube // 6 >> bits) \
+                + 2 * error + len(xi) + 2
+            if sine:
+                for i, a in enumerate(xi):
+                    a = sine * a >> bits
+                    if k0:
+                        new0[i] -= k0 * a
+                    if k1:
+                        new1[i] -= k1 * a
+            moved = []
+            for i, part in parts:
+                sine_part, cosine_part = part * s >> bits, part * c >> bits
+                moved.append((i, cosine_part, sine_part))
+                new0[i] += k0 * cosine_part
+                new1[i] += k1 * cosine_part
+                bent += (abs(cosine_part) * square >> bits + 1) + (abs(sine_part) * reach >> bits) \
+                    + 2
+            error0, error1 = error0 + strong0 * bent, error1 + strong1 * bent
+            waves.append(SiteWave(cosine, sine, moved, xi, size, rest, error))
+            reaches.append(reach / one)
+        self.sites.append(Site(waves, (E0, E1), (2 - p / one, -q / one, 2 - r / one), reaches))
+        x = 2 * u - self.x0[0] + push0 - E0, 2 * v - self.x0[1] + push1 - E1
+        if not self.bound_errors(4 * one - 2 * p, -2 * q, 4 * one - 2 * r, error0, error1):
+            return False
+        self.x0, self.x, self.L0, self.L = self.x, x, self.L, (new0, new1)
+        return True
+
+    def moved(self, symbol):
+        """How far a symbol moves the lane's last site, the waves taken together."""
+        if self.sites:
+            return sum([abs(wave.columns[symbol]) for wave in self.sites[-1].waves])
+        x, y = [columns[symbol] for columns in self.first_columns]
+        return sum([abs(wave.k0 * x + wave.k1 * y) for wave in self.prism.waves])
+
+    def bound_errors(self, p, q, r, error0, error1):
+        """The errors of the next site, step (C5): from beta = [p q; q r] in half units, and the
+        error of the step.  d[q] = beta - M is exact; False if there is no M."""
+        bits, (r0, r1), (old0, old1) = self.prism.fixed.bits + 1, self.r, self.r0
+        if self.prism.rotated:
+            p, q, r = (p + r >> 1) + q, p - r >> 1, (p + r >> 1) - q
+        if self.d is None:
+            f0, f1 = old0 + error0, old1 + error1
+        else:
+            (a, b, c), (f0, f1), one = self.d, self.f, 1 << 2 * bits
+            det = a * c - b * b
+            if abs(det) << 60 < one:
+                return False
+            m, n, o = [x * one // det for x in (c, -b, a)]          # M, near the inverse of d
+            p, q, r = p - m, q - n, r - o
+            f0, f1 = abs(m) * f0 + abs(n) * f1, abs(n) * f0 + abs(o) * f1
+            f0 += abs(one - m * a - n * b) * old0 + abs(m * b + n * c) * old1 >> bits
+            f1 += abs(n * a + o * b) * old0 + abs(one - n * b - o * c) * old1 >> bits
+            f0, f1 = (f0 >> bits) + 2 + error0, (f1 >> bits) + 2 + error1
+        self.d, self.f = (p, q, r), (f0, f1)
+        self.r0, self.r = self.r, ((abs(p) * r0 + abs(q) * r1 >> bits) + 1 + f0,
+                                   (abs(q) * r0 + abs(r) * r1 >> bits) + 1 + f1)
+        return True
+
+
+def inverse(d):
+    p, q, r = d
+    det = p * r - q * q
+    return r / det, -q / det, p / det
+
+
+def matrix_times(d, n):
+    return d[0] * n[0] + d[1] * n[1], d[1] * n[0] + d[2] * n[1]
+
+
+def is_definite(d):
+    return d[0] > 0 and d[0] * d[2] > d[1] * d[1]
+
+
+def test_vectors(ahead, back, l):
+    """Vectors n for the sites of both lanes, which have these matrices; in double precision, as
+    nothing rests on it.
+
+    At each site the recursions of step (C3) from both ends of the orbit are compared; the one from
+    the other lane begins anew behind a site where it fails.  Where both together have a negative
+    eigenvalue that is nearest to zero, and n as a rule is largest, is its eigenvector; n follows
+    outwards by the recursions.
+    """
+    tail, outer, last = (l, 0.0, l), [], []
+    for blocks in (ahead, back):
+        found, good, inv = [], bool(blocks), tail
+        for block in reversed(blocks):
+            d = [x - y for x, y in zip(block, inv)]
+            found.append((d, good))
+            good, inv = good and is_definite(d), inverse(d)
+        outer.append(found[::-1])
+        last.append((good, inv))
+    best, chosen = math.inf, None
+    for lane, blocks in enumerate((ahead, back)):
+        good, inv = last[1 - lane]
+        begins, inner = [], []
+        for k, (block, (beyond, whole)) in enumerate(zip(blocks, outer[lane])):
+            begins.append(not good)
+            d = [x - y for x, y in zip(block, inv if good else tail)]
+            inner.append(d)
+            joint = [x + y - z for x, y, z in zip(d, beyond, block)]
+            low, vector = least(joint)
+            if whole and 0 < -low < best:
+                best, chosen = -low, (lane, k, vector, begins, inner)
+            good, inv = is_definite(d), inverse(d)
+    n = [[(0.0, 0.0)] * len(blocks) for blocks in (ahead, back)]
+    if chosen:
+        lane, place, vector, begins, inner = chosen
+        here, there = n[lane], n[1 - lane]
+        here[place] = vector
+        for k in range(place, 0, -1):
+            if begins[k]:
+                break
+            here[k - 1] = matrix_times(inverse(inner[k - 1]), here[k])
+        else:
+            if not begins[0]:
+                there[0] = matrix_times(inverse(outer[1 - lane][0][0]), here[0])
+                for k in range(1, len(there)):
+                    there[k] = matrix_times(inverse(outer[1 - lane][k][0]), there[k - 1])
+        for k in range(place + 1, len(here)):
+            here[k] = matrix_times(inverse(outer[lane][k][0]), here[k - 1])
+    return n
+
+
+class SecondVariation:
+    """The left side of (C3): value, polynomial and error of step (C8), summed over the sites.
+
+    All that is taken from a site is rounded to units of 2^-UNIT_BITS, in which omega and the
+    multipliers are, too.  A product of so many numbers is of that degree here.
+    """
+
+    def __init__(self, prism, l):
+        self.prism, self.symbols = prism, range(prism.symbols)
+        self.down = prism.fixed.bits - UNIT_BITS
+        self.l = l >> self.down             # a lesser l makes (C3) larger
+        self.value, self.error = 0, 0       # of degree 2; the error 120 times
+        self.pairs = list(itertools.combinations_with_replacement(self.symbols, 2))
+        self.linear = [0] * prism.symbols                       # of degree 2
+        self.product = collections.defaultdict(int)             # of degree 2, two or three symbols
+        self.square = [0] * len(self.pairs)                     # of degree 3, twice
+        self.cubic = [[0] * len(self.pairs) for _ in self.symbols]      # of degree 4, six times
+
+    def add_lane(self, sites, vectors):
+        """Adds the sites of a lane; returns the multipliers of the first, and G of step (C7) there
+        but for the multipliers of the other lane."""
+        mu0, mu1, beyond0, beyond1 = [[0] * (1 + len(self.symbols))] * 4
+        v0 = v1 = 0
+        for site, (n0, n1) in zip(reversed(sites), reversed(vectors)):
+            self.value += 2 * (n0 * n0 + n1 * n1 - n0 * v0 - n1 * v1) << UNIT_BITS
+            v0, v1 = n0, n1
+            E0, E1 = site.E[0] >> self.down, site.E[1] >> self.down
+            self.value += mu0[0] * E0 + mu1[0] * E1
+            for i in self.symbols:
+                self.linear[i] += mu0[1 + i] * E0 + mu1[1 + i] * E1
+            self.error += 120 * (sum(map(abs, mu0)) + sum(map(abs, mu1)))   # as E is rounded
+            G0 = [2 * a - b for a, b in zip(mu0, beyond0)]
+            G1 = [2 * a - b for a, b in zip(mu1, beyond1)]
+            for (k0, k1, *_), wave in zip(self.prism.waves, site.waves):
+                slopes = self.add_wave(wave, (k0 * n0 + k1 * n1) ** 2,
+                                       [k0 * a + k1 * b for a, b in zip(mu0, mu1)])
+                if k0:
+                    G0 = [a + k0 * b for a, b in zip(G0, slopes)]
+                if k1:
+                    G1 = [a + k1 * b for a, b in zip(G1, slopes)]
+            mu0, mu1, beyond0, beyond1 = G0, G1, mu0, mu1
+        return (beyond0, beyond1), (mu0, mu1)
+
+    def add_wave(self, wave, omega, m):
+        """Adds what a wave has in step (C8), and returns its factor of D in G, which is affine."""
+        down, U = self.down, UNIT_BITS
+        m0, *m = m
+        xi = [x >> down for x in wave.columns]
+        c, s = wave.cosine >> down, wave.sine >> down
+        A, B = m0 * c - omega * s >> U, -(omega * c + m0 * s) >> U
+        alpha, beta = [x * c >> U for x in m], [-x * s >> U for x in m]
+        most_m, linear_alpha, linear_beta = sum(map(abs, m)), sum(map(abs, alpha)), \
+            sum(map(abs, beta))
+        first = [-3 * x << U for x in alpha]
+        slopes = [x - (A * y >> U) for x, y in zip(beta, xi)]
+        parts_A = parts_alpha = parts_B = parts_beta = 0
+        for i, part_c, part_s in wave.parts:
+            part_c, part_s = part_c >> down, part_s >> down
+            part_A = m0 * part_c - omega * part_s >> U
+            part_B = -(omega * part_c + m0 * part_s) >> U
+            self.linear[i] += part_A << U
+            first[i] -= 3 * part_A << U
+            slopes[i] += part_B
+            parts_A, parts_B = parts_A + abs(part_A), parts_B + abs(part_B)
+            for j, x in enumerate(m):
+                part_alpha, part_beta = x * part_c >> U, -x * part_s >> U
+                self.product[(i, j) if i <= j else (j, i)] += part_alpha << U
+                parts_alpha, parts_beta = parts_alpha + abs(part_alpha), \
+                    parts_beta + abs(part_beta)
+                for k, y in enumerate(xi):
+                    self.product[tuple(sorted((i, j, k)))] += part_beta * y
+        products = [xi[j] * xi[k] for j, k in self.pairs]
+        self.square = [x + A * y for x, y in zip(self.square, products)]
+        for row, x, y in zip(self.cubic, first, xi):
+            x -= B * y
+            if x:
+                row[:] = [a + x * b for a, b in zip(row, products)]
+        self.value -= omega * s
+        # The remainder.  Each number rounded down is off by less than a unit: rest has those of
+        # the columns; p' cos y and p' sin y, in all, those of c, s and the parts; A and B those of
+        # their coefficients, which stand with at most 1 each; and slopes, with |z|.
+        size, count = sum(map(abs, xi)), 1 + len(xi)
+        rest = (wave.rest >> down) + count
+        reach = size + rest
+        unsure = 2 * ((wave.error >> down) + 2 + len(wave.parts))
+        second, far = (reach * reach >> U) + 1, (rest * (reach + size) >> U) + 1
+        third, fourth = (second * reach >> U) + 1, (second * second >> U) + 1
+        between = (rest * (reach * (reach + size) + size * size) >> 2 * U) + 1
+        self.error += (
+            (linear_alpha + parts_A) * (60 * far + 5 * fourth)
+            + (linear_beta + parts_B) * 20 * third
+            + abs(B) * (20 * between + (third * second >> U) + 1)
+            + (A * 5 * fourth if A > 0 else -A * 60 * ((rest * rest >> U) + 1))
+            + parts_alpha * 60 * second + parts_beta * (120 * rest + 20 * third)
+            + 120 * (unsure * (abs(m0) + most_m + omega)
+                     + (2 * count * (2 + len(wave.parts)) << U)))
+        return [B, *slopes]
+
+    def add_ends(self, n, ahead, back):
+        """Adds what x[1] and x[0] have, where the lanes meet: n of each lane, and of each what
+        add_lane has returned."""
+        (n0, *_), (n1, *_) = [vectors or [(0, 0)] for vectors in n]
+        self.value -= 2 * (n0[0] * n1[0] + n0[1] * n1[1]) << UNIT_BITS
+        orbit = [*reversed(n[1]), *n[0]]
+        used = [u * u + v * v for u, v in orbit if u or v]
+        self.value -= self.l * (used[0] + used[-1])
+        lanes = self.prism.lanes
+        for (_, G), (mu, _), lane in ((ahead, back, lanes[0]), (back, ahead, lanes[1])):
+            for g, other, columns, rest in zip(G, mu, lane.first_columns, lane.first_rest):
+                g = [a - b for a, b in zip(g, other)]
+                columns = [x >> self.down for x in columns]
+                self.error += 120 * sum(map(abs, g)) * ((rest >> self.down) + 1 + len(columns))
+                for i, x in enumerate(columns):
+                    if x:
+                        self.linear[i] += g[0] * x
+                        for j, y in enumerate(g[1:]):
+                            self.product[(i, j) if i <= j else (j, i)] += x * y
+
+    def form(self):
+        """The polynomial by its monomials (i,), (i, j) and (i, j, k), i <= j <= k: of degree 4,
+        six times."""
+        form = {key: 0 for count in (1, 2, 3)
+                for key in itertools.combinations_with_replacement(self.symbols, count)}
+        for i, x in enumerate(self.linear):
+            form[i,] += 6 * x << 2 * UNIT_BITS
+        for key, x in self.product.items():
+            form[key] += 6 * x << 2 * UNIT_BITS
+        for at, (j, k) in enumerate(self.pairs):
+            form[j, k] += 3 * (1 + (j < k)) * self.square[at] << UNIT_BITS
+            for i, row in enumerate(self.cubic):
+                form[tuple(sorted((i, j, k)))] += (1 + (j < k)) * row[at]
+        return form
+
+    def bound(self):
+        """An upper bound of the left side of (C3), what each symbol adds to it, about, and what is
+        not known of it: of degree 4, six times."""
+        form = self.form()
+        value, error = 6 * self.value << 2 * UNIT_BITS, (self.error << 2 * UNIT_BITS) // 20 + 1
+        moved = [sum([abs(x) for key, x in form.items() if k in key]) for k in self.symbols]
+        return value + cube_bound(form) + error, value, moved, error
+
+
+def cube_bound(form):
+    """At most so large is, over the cube, the polynomial with these integer coefficients: of e[i],
+    of e[i] e[j] and of e[i] e[j] e[k] by (i,), (i, j) and (i, j, k), i <= j <= k; and no constant.
+
+    x e^2 with x < 0 is at most x (2 t e - t^2) for any t, here for about the one where, of it and
+    what is linear in e, the largest value is.  x e^2 with x > 0 is x - x (1 - e^2), and e[i]^2
+    e[k], k = i or not, is e[k] - (1 - e[i]^2) e[k]: with 1 - e[i]^2, which lies between 0 and 1,
+    stands at most the sum of these |coefficients|, less x.  The rest is linear in each symbol, and
+    largest at a corner; at opposite corners what is odd has opposite signs.
+    """
+    symbols = [key[0] for key in form if len(key) == 1]
+    form = {key: x << 2 * TRY_BITS for key, x in form.items()}
+    linear, twist, constant = [form[i,] for i in symbols], [0] * len(symbols), 0
+    for key, x in form.items():
+        if len(key) == 3 and len(set(key)) < 3:
+            i, k = key[1], key[0] if key[1] == key[2] else key[2]       # e[i]^2 e[k]
+            linear[k] += x
+            twist[i] += abs(x)
+    for i in symbols:
+        up, down = max(form[i, i], 0), max(-form[i, i], 0)
+        if down:
+            t = min(max((linear[i] << TRY_BITS) // (2 * down), -1 << TRY_BITS), 1 << TRY_BITS)
+            linear[i] -= 2 * down * t >> TRY_BITS       # exact
+            constant += down * t * t >> 2 * TRY_BITS    # exact
+        constant += up + max(twist[i] - up, 0)
+    odd = [((i,), linear[i]) for i in symbols]
+    odd += [(key, form[key]) for key in itertools.combinations(symbols, 3)]
+    even = [(key, form[key]) for key in itertools.combinations(symbols, 2)]
+    highest = []
+    for signs in itertools.product((1, -1), repeat=len(symbols) - 1):
+        signs = 1, *signs
+        at_odd, at_even = [sum([x * math.prod([signs[i] for i in key]) for key, x in part])
+                           for part in (odd, even)]
+        highest.append(abs(at_odd) + at_even)
+    return -(-max(highest) - constant >> 2 * TRY_BITS)
+
+
+def attempt(prism, l, caution):
+    """Is (C3) true of all orbits of the prism?  None if so, or else why not, and how much each
+    symbol matters.
+
+    The lanes are followed until a wave reaches too far, and (C3) is tried then and wherever they
+    may be long enough.
+    """
+    one, most, why, moved = prism.fixed.one, FIRST_TRY, None, None
+    value = error = 0
+    while True:
+        for lane in prism.lanes:
+            lane.follow(min(most, MAX_SITES))
+        sites = [lane.sites for lane in prism.lanes]
+        vectors = test_vectors(*[[prism.cautious(site, caution) for site in lane]
+                                 for lane in sites], l / one)
+        n = [trimmed([(round(u * 2 ** VECTOR_BITS), round(v * 2 ** VECTOR_BITS)) for u, v in lane])
+             for lane in vectors]
+        if any(n):
+            sums = SecondVariation(prism, l)
+            sums.add_ends(n, *[sums.add_lane(lane[:len(used)], used)
+                               for lane, used in zip(sites, n)])
+            bound, value, moved, error = sums.bound()
+            if bound < 0:
+                return None
+            why = "its second variation may be positive"
+        if all(lane.ended or len(lane.sites) >= MAX_SITES for lane in prism.lanes):
+            break
+        most *= 2
+    length = sum(map(len, sites))
+    why = why or "the orbit of its centre contradicts nothing over %d points, %s" % (
+        length, "the most that are followed" if max(map(len, sites)) >= MAX_SITES else
+        "beyond which it is too uncertain")
+    # What moves the ends matters, if little: when it is halved, the orbit may go on.
+    ends = [sum([lane.moved(i) for lane in prism.lanes]) / one for i in range(prism.symbols)]
+    share = [x / (sum(ends) or 1) for x in ends]
+    if moved is None or value >= 0:
+        return why, share
+    scale = error + sum(moved) // 64
+    return why, [x / scale + y for x, y in zip(moved, share)]
+
+
+def trimmed(vectors):
+    """The vectors without the zeros at the end."""
+    while vectors and not any(vectors[-1]):
+        vectors.pop()
+    return vectors
