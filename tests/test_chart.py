@@ -15,7 +15,7 @@ import pytest
 from conftest import ROOT
 
 from converse import orbits
-from converse.commands import prove as cli
+from converse.commands import common
 from converse.draw import plot
 from converse.model.problem import LINE
 
@@ -84,28 +84,28 @@ def test_files(quick, tmp_path, capsys):
 
 def test_bad_places(quick, tmp_path, capsys):
     (tmp_path / "file").write_text("")
-    assert chart.main([str(tmp_path / "file")]) == cli.BAD
+    assert chart.main([str(tmp_path / "file")]) == common.BAD
     assert "file" in one_line(capsys)[1]
     (tmp_path / "chart-wall.csv").mkdir()
-    assert chart.main([str(tmp_path)]) == cli.BAD
+    assert chart.main([str(tmp_path)]) == common.BAD
     out, err = one_line(capsys)
     assert out == "" and "chart-wall.csv" in err        # before anything is measured
     if os.geteuid():
         (tmp_path / "closed").mkdir(mode=0o500)
-        assert chart.main([str(tmp_path / "closed")]) == cli.BAD
+        assert chart.main([str(tmp_path / "closed")]) == common.BAD
         one_line(capsys)
 
 
 def test_bad_usage(capsys):
-    assert chart.main(["--format", "gif"]) == cli.BAD
+    assert chart.main(["--format", "gif"]) == common.BAD
     assert "--help" in one_line(capsys)[1]
-    assert chart.main(["a", "b"]) == cli.BAD
+    assert chart.main(["a", "b"]) == common.BAD
     one_line(capsys)
 
 
 def test_no_matplotlib(tmp_path, monkeypatch, capsys):
     monkeypatch.setitem(sys.modules, "matplotlib", None)
-    assert chart.main([str(tmp_path / "place")]) == cli.BAD
+    assert chart.main([str(tmp_path / "place")]) == common.BAD
     assert "pip install matplotlib" in one_line(capsys)[1] and not os.listdir(tmp_path)
 
 

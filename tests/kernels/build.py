@@ -75,10 +75,9 @@ def _attributes(csrc, name, text):
 
 def compile_unit(name, text, directory, csrc, flags):
     """Compiles a unit; next to the object, NAME.d says of which files it is made."""
-    source, target = directory / (name + ".c"), directory / (name + ".o")
-    source.write_text(text, "utf-8")
-    _run([*_compiler(), *flags, "-I", csrc, "-I", HOME, "-MMD", "-c", source, "-o", target])
-    return target
+    (directory / (name + ".c")).write_text(text, "utf-8")
+    _run([*_compiler(), *flags, "-I", csrc, "-I", HOME, "-MMD", "-c", name + ".c"], cwd=directory)
+    return directory / (name + ".o")
 
 
 def _compiler():
@@ -98,8 +97,8 @@ def link(objects, target):
     _run([*words, *objects, *shlex.split(os.environ.get("LDFLAGS", "")), "-lgmp", "-lm", "-o", target])
 
 
-def _run(command):
-    done = subprocess.run(list(map(str, command)), stderr=subprocess.PIPE, text=True)
+def _run(command, **options):
+    done = subprocess.run(list(map(str, command)), stderr=subprocess.PIPE, text=True, **options)
     if done.returncode:
         sys.exit("%s\n%s" % (" ".join(map(str, command)), done.stderr))
 
