@@ -4,8 +4,8 @@ lets tests call its routines one at a time.
     python tests/kernels/build.py       prints the path of the module
 
 Most of those routines are static.  So the translation units that have them are not compiled as they
-are: a unit here includes the source and then a file of the console.  The module lies in build/, under
-a name that tells sources, flags and compiler, and is built when it is missing there.
+are: a unit here includes the source and then a file of the console.  The module lies in build/, in a
+folder whose name tells sources, flags and compiler, and is built when it is missing there.
 """
 
 import contextlib
@@ -122,32 +122,36 @@ def stand_ins():
 
 
 def path():
-    """Where the console is; it is built if need be, by one process at a time."""
+    """Where the console is, among the objects that it is made of.  It is built if need be, by one
+    process at a time; CONVERSE_CONSOLE names another."""
+    if "CONVERSE_CONSOLE" in os.environ:
+        return Path(os.environ["CONVERSE_CONSOLE"])
     made = product()
     key = hashlib.sha256(repr((made["FLAGS"], list(map(str, _compiler())), os.environ.get("LDFLAGS"),
                                sys.version, str(ROOT))).encode())
     for file in sorted([*ROOT.glob("csrc/**/*.[ch]"), *HOME.glob("*.[ch]"), HOME / "build.py"]):
         key.update(file.read_bytes())
     home = ROOT / "build" / "kernels"
-    target = home / ("%s-%s.so" % (NAME, key.hexdigest()[:16]))
+    target = home / key.hexdigest()[:16]
     home.mkdir(parents=True, exist_ok=True)
     with open(home / "lock", "w") as lock:
         fcntl.flock(lock, fcntl.LOCK_EX)
         if not target.exists():
-            _build(made, target)
-    return target
+            with tempfile.TemporaryDirectory(dir=home) as directory:
+                _build(made, Path(directory) / "made")
+                os.replace(Path(directory) / "made", target)
+    return target / (NAME + ".so")
 
 
-def _build(made, target):
-    with tempfile.TemporaryDirectory() as directory, ThreadPoolExecutor(os.cpu_count()) as pool:
-        directory = Path(directory)
-        wrapper(directory / "module.c")
-        texts = {**units(made["SOURCES"], ROOT / "csrc"), "stand-ins": stand_ins(),
-                 "module": (directory / "module.c").read_text("utf-8")}
+def _build(made, directory):
+    directory.mkdir()
+    wrapper(directory / "module.c")
+    texts = {**units(made["SOURCES"], ROOT / "csrc"), "stand-ins": stand_ins(),
+             "module": (directory / "module.c").read_text("utf-8")}
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
         objects = list(pool.map(lambda item: compile_unit(*item, directory, ROOT / "csrc",
                                                           made["FLAGS"]), texts.items()))
-        link(objects, directory / target.name)
-        os.replace(directory / target.name, target)
+    link(objects, directory / (NAME + ".so"))
 
 
 if __name__ == "__main__":

@@ -1,0 +1,240 @@
+"""Makes small mistakes in the code that proofs rest on, one at a time, and sees whether a test notices.
+
+    python tests/mutate [--sample N] [--seed SEED] [--list] [WHERE ...]
+
+WHERE is a file (loewner/bound.c), a function of it (loewner/bound.c:weigh) or one mutant
+("loewner/bound.c:weigh term 2"); without it, all files.  --sample tries N of the mutants there: each of
+a function, an operator and a place that the seed chooses.  All of them take days.  Prints what became of
+each; exit status 1 if one survived that accepted.py has no reason for.
+"""
+
+import argparse
+import os
+import random
+import shutil
+import subprocess
+import sys
+import tempfile
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from pathlib import Path
+
+HOME = Path(__file__).resolve().parent
+sys.path[:0] = [str(HOME), str(HOME.parent / "kernels")]
+import build  # noqa: E402
+from accepted import ACCEPTED  # noqa: E402
+from operators import OPERATORS, mutants  # noqa: E402
+
+ROOT = HOME.parent.parent
+PATIENCE = 900                          # seconds, for the tests of one file
+
+# What is mutated, by folders of csrc and by files of converse/orbits.  Not what guesses where to start
+# (thesis/start.c, loewner/start.c): nothing that is proved rests on it.
+ORBITS = ("enclosure.py", "exponents.py")
+GUESSES = ("thesis/start.c", "loewner/start.c")
+
+# The tests that may notice, by what a file's name begins with; the likely one first.
+NUMBERS = ["test_apm.py", "test_special.py", "test_bounding.py", "test_bd_trig.py", "test_bounds.py",
+           "test_images.py", "test_search.py"]
+SHARP = ["test_loewner.py", "test_waves.py", "test_search.py"]
+FINDERS = ["test_orbits.py", "test_orbits_fail.py", "test_floor.py", "test_proved.py"]
+TESTS = {
+    "arith/apm": NUMBERS, "arith/special": ["test_special.py", *NUMBERS],
+    "arith/sine": ["test_loewner.py", "test_gappa.py", "test_waves.py"], "arith/lanes": SHARP,
+    "arith/guard": ["test_rigor.py", "test_search.py", "test_orbits.py"],
+    "arith/machine": ["test_rigor.py"],
+    "thesis/bounding": ["test_bounding.py", *NUMBERS], "thesis/bd_trig": ["test_bd_trig.py", *NUMBERS],
+    "thesis/trace": ["test_bounds.py", *NUMBERS], "thesis/lambda": ["test_bounds.py", *NUMBERS],
+    "thesis/lipschitz": ["test_bounds.py", *NUMBERS], "thesis/region": ["test_search.py", *NUMBERS],
+    "thesis/follow": ["test_search.py", *NUMBERS], "thesis": ["test_images.py", *NUMBERS],
+    "model": ["test_bounds.py", *SHARP], "search": ["test_search.py", *SHARP, "test_rigor.py"],
+    "loewner/general": ["test_waves.py", "test_margins.py", *SHARP],
+    "loewner": [*SHARP, "test_margins.py"],
+    "orbits/minplus": ["test_floor.py"], "orbits/enclosure": ["test_proved.py"],
+    "orbits/exponents": ["test_proved.py"], "orbits": FINDERS,
+}
+
+
+def sources():
+    """{name: path} of what is mutated."""
+    found = {path.relative_to(ROOT / "csrc").as_posix(): path
+             for path in sorted(ROOT.glob("csrc/**/*.[ch]"))}
+    found.update(("orbits/" + name, ROOT / "converse" / "orbits" / name) for name in ORBITS)
+    return {name: path for name, path in found.items() if name not in GUESSES}
+
+
+def tests_of(name):
+    longest = max((prefix for prefix in TESTS if name.startswith(prefix)), key=len, default="thesis")
+    return list(dict.fromkeys(TESTS[longest]))
+
+
+@dataclass
+class Place:
+    """A mutant of a file."""
+
+    name: str
+    path: Path
+    mutant: object
+
+    @property
+    def key(self):
+        return "%s:%s" % (self.name, self.mutant.key)
+
+
+def places(where=()):
+    """The mutants there."""
+    found = [Place(name, path, mutant) for name, path in sources().items()
+             for mutant in mutants(name, path.read_text("utf-8"))]
+    if not where:
+        return found
+    chosen = [place for place in found
+              if {place.name, "%s:%s" % (place.name, place.mutant.function), place.key} & set(where)]
+    if not chosen:
+        sys.exit("there is nothing to mutate in %s" % ", ".join(where))
+    return chosen
+
+
+def sample(found, count, seed):
+    """So many of them, or all: a function, one of its operators, one of its places."""
+    rng, tree, chosen = random.Random(seed), {}, []
+    for place in found:
+        by_operator = tree.setdefault((place.name, place.mutant.function), {})
+        by_operator.setdefault(place.mutant.operator, []).append(place)
+    while tree and len(chosen) < count:
+        function = rng.choice(sorted(tree))
+        operator = rng.choice(sorted(tree[function]))
+        left = tree[function][operator]
+        chosen.append(left.pop(rng.randrange(len(left))))
+        if not left:
+            del tree[function][operator]
+        if not tree[function]:
+            del tree[function]
+    return chosen
+
+
+class Same(Exception):
+    """The mutant is no other program."""
+
+
+class Base:
+    """The unchanged core: its objects, which the console's build has left, and the product's module."""
+
+    def __init__(self, directory):
+        self.objects = build.path().parent
+        self.made = build.product()
+        native = directory / "native"
+        native.mkdir()
+        with build.contextlib.redirect_stdout(sys.stderr):
+            self.made["ffi"].emit_c_code(str(native / "native.c"))
+        self.native = build.compile_unit("native", (native / "native.c").read_text("utf-8"), native,
+                                         ROOT / "csrc", self.made["FLAGS"])
+        self.texts = build.units(self.made["SOURCES"], ROOT / "csrc")
+
+    def core(self, place, work):
+        """Builds package and console with a mutant of the C core in work.  False: it does not compile."""
+        csrc = work / "csrc"
+        shutil.copytree(ROOT / "csrc", csrc)
+        (csrc / place.name).write_text(place.mutant.text, "utf-8")
+        objects, changed = {path.stem: path for path in self.objects.glob("*.o")}, []
+        for name, text in self.texts.items():
+            words = (self.objects / (name + ".d")).read_text("utf-8").replace("\\\n", " ").split()
+            if any(word.endswith("csrc/" + place.name) for word in words):
+                changed.append(name)
+        (work / "units").mkdir()
+        for name in changed:
+            text = self.texts[name]
+            try:
+                objects[name] = build.compile_unit(name, text, work / "units", csrc, self.made["FLAGS"])
+            except SystemExit:
+                return False
+        if all(objects[name].read_bytes() == (self.objects / (name + ".o")).read_bytes()
+               for name in changed):
+            raise Same
+        mine = [path for name, path in objects.items()
+                if name not in ("module", "stand-ins") and not name.startswith("console-")]
+        build.link([*mine, self.native], work / "converse" / "_native.abi3.so")
+        build.link(objects.values(), work / "console.so")
+        return True
+
+    def tried(self, place):
+        """What becomes of a mutant: 'caught by ...', 'survived', 'no C' or 'the same program'."""
+        with tempfile.TemporaryDirectory() as directory:
+            work = Path(directory)
+            shutil.copytree(ROOT / "converse", work / "converse",
+                            ignore=shutil.ignore_patterns("__pycache__", "_native.c"))
+            environment = {**os.environ, "PYTHONPATH": str(work), "PYTHONDONTWRITEBYTECODE": "1"}
+            if place.name.endswith(".py"):
+                path = work / place.path.relative_to(ROOT)
+                path.write_text(place.mutant.text, "utf-8")
+                environment["CONVERSE_CONSOLE"] = str(build.path())
+            else:
+                for path in (work / "converse").glob("_native*.so"):
+                    path.unlink()
+                try:
+                    if not self.core(place, work):
+                        return "no C"
+                except Same:
+                    return "the same program"
+                environment["CONVERSE_CONSOLE"] = str(work / "console.so")
+            for test in tests_of(place.name):
+                why = failure(ROOT / "tests" / test, work, environment)
+                if why:
+                    return "caught by %s, %s" % (test, why)
+        return "survived"
+
+
+def failure(test, work, environment):
+    """Why a file of tests fails, or None."""
+    command = [sys.executable, "-m", "pytest", "-x", "-q", "-p", "no:cacheprovider", "--no-header",
+               "--rootdir", str(ROOT), "-c", str(ROOT / "pyproject.toml"), str(test)]
+    try:
+        done = subprocess.run(command, cwd=work, env=environment, text=True, capture_output=True,
+                              timeout=PATIENCE)
+    except subprocess.TimeoutExpired:
+        return "which has no end"
+    if done.returncode in (0, 5):       # 5: all were skipped
+        return None
+    failed = [line for line in done.stdout.splitlines() if line.startswith(("FAILED", "ERROR"))]
+    return failed[0].split("::")[-1].split(" - ")[0] if failed else "a crash"
+
+
+def reason(place):
+    """Why a survivor is accepted, or None."""
+    function = "%s:%s" % (place.name, place.mutant.function)
+    for key in (place.key, "%s %s" % (function, place.mutant.operator), function):
+        if key in ACCEPTED:
+            return ACCEPTED[key]
+    return None
+
+
+def main(arguments=None):
+    parser = argparse.ArgumentParser(prog="python tests/mutate", description="Mutation tests.", epilog=(
+        "Operators: " + "; ".join("%s: %s" % item for item in OPERATORS.items()) + "."))
+    parser.add_argument("where", nargs="*", metavar="WHERE", help="FILE, FILE:FUNCTION or a mutant")
+    parser.add_argument("--sample", type=int, metavar="N", help="try N of them")
+    parser.add_argument("--seed", default="0", help="of the sample")
+    parser.add_argument("--list", action="store_true", help="print the mutants and try none")
+    options = parser.parse_args(arguments)
+    found = places(options.where)
+    if options.sample is not None:
+        found = sample(found, options.sample, options.seed)
+    if options.list:
+        for place in found:
+            print("%s, line %d: %s" % (place.key, place.mutant.line, place.mutant.change))
+        return 0
+    counts = {}
+    with tempfile.TemporaryDirectory() as directory, ThreadPoolExecutor(os.cpu_count()) as pool:
+        base = Base(Path(directory))
+        for place, fate in zip(found, pool.map(base.tried, found)):
+            if fate == "survived" and reason(place):
+                fate = "accepted: " + reason(place)
+            kind = fate.partition(" by")[0].partition(":")[0]
+            counts[kind] = counts.get(kind, 0) + 1
+            print("%s, line %d: %s\n    %s" % (place.key, place.mutant.line, place.mutant.change,
+                                             fate.replace("survived", "SURVIVED")), flush=True)
+    print(", ".join("%d %s" % (n, kind) for kind, n in sorted(counts.items())))
+    return 1 if "survived" in counts else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
