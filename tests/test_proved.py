@@ -20,7 +20,7 @@ import pytest
 from flint import arb, arb_mat, ctx, fmpq
 
 from converse import ConverseError, orbits
-from converse.orbits import enclosure, potential, proved
+from converse.orbits import enclosure, potential
 from converse.orbits.enclosure import Enclosure
 from converse.orbits.exponents import growth
 from converse.orbits.proved import NotProved, prove
@@ -616,18 +616,6 @@ def test_potentials():
                     assert mp(ends[0]) - mpmath.mpf(10) ** -60 <= x
                     assert x <= mp(ends[1]) + mpmath.mpf(10) ** -60
                     assert ends[1] - ends[0] < Fraction(1, 10**50)
-
-
-def test_rounded_text():
-    rng = rng_for("rounded text")
-    for _ in range(500):
-        x = Fraction(rng.randrange(1, 10**9)) * Fraction(10) ** rng.randrange(-60, 20)
-        up, down = proved._round(x, 3, up=True), proved._round(x, 3, up=False)
-        assert Fraction(down) <= x <= Fraction(up) <= x * Fraction(102, 100)
-        ends = (-x, -x + x / 10**rng.randrange(1, 9))
-        low, high = proved._interval(ends).split()[1::2]
-        assert Fraction(low) <= ends[0] and ends[1] <= Fraction(high)
-    assert proved._round(Fraction(999999), 2, up=True) == "1.0e6"
 
 
 def test_bounds_of_the_potentials():

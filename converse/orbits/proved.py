@@ -15,6 +15,7 @@ from typing import Optional, Tuple
 import numpy as np
 
 from .._native import lib
+from ..model.exact import interval_text, rounded, rounded_text
 from ..storage.files import ConverseError
 from .potential import Bounds
 from .state import NEAR_NULL, ROUNDING, STATIONARY, State, expected
@@ -26,6 +27,7 @@ STEPS = 60                  # of Newton's method, at most
 SOFT = Fraction(NEAR_NULL)  # eigenvalues of the Hessian below it in size are none in doubles
 GUARD = 10                  # places by which what must be seen stands above rounding
 SHOWN = 20                  # places of an interval in a report, at most
+KEPT = 45                   # places of an exponent
 
 
 class NotProved(ConverseError):
@@ -88,9 +90,9 @@ class ProvedOrbit:
             "(Euclidean norm of all coordinates together), which are within %s of those given (each "
             "coordinate)." % moved,
             "It is hyperbolic and, run through any number of times, a nondegenerate local minimum of "
-            "the action:", "second variation at least %s." % _round(self.least, 3, up=False),
-            "Action per point less |p/q|^2/2: %s." % _interval(self.action)] + [
-            "Exponent: %s." % _interval(exponent) for exponent in self.exponents]
+            "the action:", "second variation at least %s." % rounded_text(self.least, 3, up=False),
+            "Action per point less |p/q|^2/2: %s." % interval_text(*self.action, SHOWN)] + [
+            "Exponent: %s." % interval_text(*ends, SHOWN) for ends in self.exponents]
         return "\n".join(lines) + "\n"
 
 
@@ -170,8 +172,8 @@ def _attempt(state, exact, growth, places, wanted):
     bend = abs(exact.eps) * Fraction(state.potential.lipschitz)
     least = _least(state, exact, floor, float(bend) * math.hypot(*steps))
     shown = places + GUARD
-    radius = _places(exact.gradient / least * Fraction(9, 8) + ulp, shown, up=True)
-    left = _places(least - bend * radius, shown)
+    radius = rounded(exact.gradient / least * Fraction(9, 8) + ulp, shown, up=True)
+    left = rounded(least - bend * radius, shown, up=False)
     if not exact.gradient < radius * left or left < least / 2:
         raise _TooFewPlaces("the gradient is too large for so flat a minimum")
     if radius > Fraction(1, 10 ** wanted):
@@ -183,10 +185,10 @@ def _attempt(state, exact, growth, places, wanted):
     exponents = growth(exact, strict, away)
     if exponents is None:
         raise _TooFewPlaces("the pivots could not be enclosed")
-    exponents = tuple((_places(max(low, 0) / state.q, up=False), _places(high / state.q, up=True))
-                      for low, high in exponents)
-    action = (_places(exact.action[0] - exact.gradient * radius / state.q, shown),
-              _places(exact.action[1], shown, up=True))
+    exponents = tuple((rounded(max(low, 0) / state.q, KEPT, up=False),
+                       rounded(high / state.q, KEPT, up=True)) for low, high in exponents)
+    action = (rounded(exact.action[0] - exact.gradient * radius / state.q, shown, up=False),
+              rounded(exact.action[1], shown, up=True))
     moved = max(abs(step - round(step)) for step in steps)
     return ProvedOrbit(state, places, radius, left, action, exponents, moved,
                        displacements)
@@ -264,8 +266,8 @@ def _boundary(low, high, holds, ratio):
 
 def distances(proof):
     """radius and moved in words, rounded up."""
-    return (_round(proof.radius, 2, up=True),
-            _round(Fraction(proof.moved) * (1 + Fraction(1, 2 ** 50)), 2, up=True))
+    return (rounded_text(proof.radius, 2, up=True),
+            rounded_text(Fraction(proof.moved) * (1 + Fraction(1, 2 ** 50)), 2, up=True))
 
 
 def _eps(state):
@@ -275,36 +277,3 @@ def _eps(state):
 
 def _type(state):
     return "(%s)/%d" % (", ".join(map(str, state.p)), state.q)
-
-
-def _places(x, places=45, up=False):
-    """x cut to so many places, downwards or upwards."""
-    scaled = x * 10 ** places
-    return Fraction(math.ceil(scaled) if up else math.floor(scaled), 10 ** places)
-
-
-def _round(x, digits, up):
-    """A number >= 0 rounded to so many digits, downwards or upwards."""
-    if not x:
-        return "0"
-    order = 0
-    while x >= Fraction(10) ** (order + 1):
-        order += 1
-    while x < Fraction(10) ** order:
-        order -= 1
-    scaled = x / Fraction(10) ** (order - digits + 1)
-    text = str(math.ceil(scaled) if up else math.floor(scaled))     # 10^digits at most
-    return "%s.%se%d" % (text[0], text[1:digits], order + len(text) - digits)
-
-
-def _interval(ends):
-    """Both ends rounded outwards, to a place or two after the first in which they differ."""
-    places = 2
-    while places < SHOWN and (ends[1] - ends[0]) * 10 ** places < 1:
-        places += 1
-    texts = []
-    for x, up in zip(ends, (False, True)):
-        scaled = int(_places(x, places, up) * 10 ** places)
-        digits = str(abs(scaled)).rjust(places + 1, "0")
-        texts.append("-" * (scaled < 0) + digits[:-places] + "." + digits[-places:])
-    return "from %s to %s" % tuple(texts)
