@@ -760,6 +760,58 @@ def test_few_places_pivots(few):
     assert kinds == {True, False}
 
 
+def rational(x):
+    """A matrix of balls without radius as Fractions."""
+    return [[enclosure.lower(i) for i in row] for row in x.tolist()]
+
+
+def is_semidefinite(x):
+    if len(x) == 1:
+        return x[0][0] >= 0
+    (a, b), (c, d) = x
+    return a >= 0 and d >= 0 and b == c and a * d >= b * b
+
+
+def turned(x):
+    """The inverse, exactly."""
+    if len(x) == 1:
+        return [[1 / x[0][0]]]
+    (a, b), (c, d) = x
+    det = a * d - b * c
+    return [[d / det, -b / det], [-c / det, a / det]]
+
+
+def test_few_places_certificates(few):
+    """What below and above say holds exactly, for all matrices in the balls, however bad the guess
+    where to begin, and however little room was left for roundings."""
+    rng, given = rng_for("few places: certificates"), [0, 0]
+    for _ in range(150 * TORTURE):
+        _, exact, _ = rough(rng)
+        away = Fraction(rng.choice([0, 1e-9, 1e-6]))
+        m = 2 * away + Fraction(1, 10**9)
+        exact.margin /= rng.choice([1, 1, 1, 10**3, 10**6])
+        guess, off = exact.pivot_after_all, rng.choice([0, 0, 1, -1]) * 10 ** rng.uniform(-12, -3)
+        exact.pivot_after_all = lambda shift: guess(shift) + enclosure.unit(exact.n, off)
+        n, signs = exact.n, [1, -1]
+        for which, tube in enumerate((exact.below(enclosure.ball(m)),
+                                      exact.above(enclosure.ball(away), enclosure.ball(m)))):
+            if tube is None:
+                continue
+            given[which] += 1
+            tube = [rational(x) for x in tube]
+            for j, x in enumerate(tube):
+                beta, before = exact.beta[j], turned(tube[j - 1])
+                centre, radius = rational(beta.mid()), [
+                    [enclosure.upper(i.rad()) for i in row] for row in beta.tolist()]
+                for d, e, f in ((d, e, f) for d in signs for e in signs for f in signs):
+                    sign = [[d, e], [e, f]]
+                    rest = [[(centre[i][k] + sign[i][k] * radius[i][k] - x[i][k] - before[i][k]
+                              + (-m, away)[which] * (i == k)) * (1, -1)[which]
+                             for k in range(n)] for i in range(n)]
+                    assert is_semidefinite(x) and is_semidefinite(rest)
+    assert min(given) > 50
+
+
 def test_negative_blocks():
     """beta < 0 throughout, where pivots below zero repeat as well as others do above."""
     for name, p, q, eps in (("ff", (0, 0), 1, 0.5), ("ff", (0, 0), 2, 0.5),
