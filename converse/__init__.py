@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING
 from .version import __version__
 
 if TYPE_CHECKING:
-    from .model.problem import InputError, Problem, read_input
+    from .model.inputs import read_input
+    from .model.problem import InputError, Problem
     from .prover.native import Counts
     from .prover.proof import Proof
     from .prover.run import prove
@@ -21,7 +22,7 @@ if TYPE_CHECKING:
 
 _HOMES = {"ConverseError": "storage.files", "Counts": "prover.native", "InputError": "model.problem",
           "Problem": "model.problem", "Proof": "prover.proof", "Settings": "prover.settings",
-          "prove": "prover.run", "read_input": "model.problem"}
+          "prove": "prover.run", "read_input": "model.inputs"}
 
 __all__ = ["ConverseError", "Counts", "InputError", "Problem", "Proof", "Settings", "__version__",
            "prove", "read_input"]

@@ -2,6 +2,7 @@
 
 import copy
 import io
+import json
 import pickle
 import re
 from dataclasses import replace
@@ -13,6 +14,8 @@ import pytest
 
 from converse import orbits
 from converse._native import lib
+from converse.model.inputs import read_potential
+from converse.model.potential import FourierSum
 from converse.orbits import solver
 from converse.orbits.potential import address
 
@@ -134,6 +137,58 @@ def test_the_other_half_of_the_package_has_the_same_map():
     assert np.allclose(-0.0276 * orbits.trig.evaluate(x)[1], force / (2 * np.pi), atol=1e-14)
 
 
+@pytest.mark.parametrize("file, at", [
+    ("froeschle-0.3.json", {"K": "0.6"}), ("crossed.json", {"s": "5/7"}),
+    ("two-harmonics.json", {"K1": 1}), ("trig278.in", {"a": "0.3", "b": "-0.1", "c": "1/3"}), (None, {})])
+def test_an_input_s_potential_has_the_input_s_map(root, tmp_path, file, at):
+    """Both maps from the same points: y' = y + J', J' = J - grad V(y) as docs/format.md has V, and
+    with y = 2 pi x, J = 2 pi p and eps = 1 that of the orbits."""
+    path = root / "inputs" / (file or "")
+    if file is None:                    # the page's example, and phases without rational sines
+        path = tmp_path / "mine.json"
+        path.write_text(json.dumps({"harmonics": [
+            {"k": [1, 0], "amplitude": "1/3", "phase": "cos"}, {"k": [1, 0], "amplitude": "0.2"},
+            {"k": [1, -1], "amplitude": "0.3", "phase": "1/3"},
+            {"k": [1, -1], "amplitude": "-0.1", "phase": "-3/7"}]}))
+    source = read_potential(path, at)
+    mine = orbits.Fourier.of(source, "mine")
+    for again in (mine, *ways(mine)):
+        rng = np.random.default_rng(6)
+        x, p = rng.uniform(size=(20, mine.n)), rng.uniform(-1, 1, (20, mine.n))
+        y, J = 2 * np.pi * x, 2 * np.pi * p
+        for _ in range(5):
+            for (*k, phase), size in zip(source.waves, source.amplitude):
+                k = np.array(k[:mine.n])
+                J = J + float(size) * k * np.cos(y @ k + np.pi * float(phase))[:, None]
+            y = y + J
+            p = p - again.evaluate(x)[1]
+            x = x + p
+        assert np.abs(y - 2 * np.pi * x).max() < 1e-12 and again.formula == mine.formula
+
+
+@pytest.mark.parametrize("digits", [0, 40, 200])
+def test_coefficients_hold_the_true_ones(digits):
+    source = FourierSum(((1, 0, Fraction(1, 2)), (1, 0, Fraction(1)), (1, 0, Fraction(-2, 3)),
+                         (3, -2, Fraction(1, 10 ** 9))),
+                        (Fraction(1, 3), Fraction(10 ** 20), Fraction(-2, 7), Fraction(5)), 2)
+    mine = orbits.Fourier.of(source)
+    found = mine.coefficients(digits)
+    assert [k for k, *_ in found] == [(1, 0), (1, 0), (3, -2)]
+    with mpmath.workdps(digits + 60):
+        scale = 1 / (4 * mpmath.pi ** 2)
+        true = [(-scale / 3, scale * 10 ** 20)] + [
+            tuple(-p * scale * f(mpmath.mpf(phase.numerator) / phase.denominator)
+                  for f in (mpmath.sinpi, mpmath.cospi))
+            for p, phase in ((-mpmath.mpf(2) / 7, Fraction(-2, 3)), (5, Fraction(1, 10 ** 9)))]
+        for (_, *both), values in zip(found, true):
+            for (low, high), value in zip(both, values):
+                assert mpmath.mpf(low.numerator) / low.denominator <= value
+                assert value <= mpmath.mpf(high.numerator) / high.denominator
+                assert high - low <= Fraction(1, 10 ** digits)
+    for k in range(2):                  # what the doubles are made of
+        assert mine._arrays[1 + k] == pytest.approx([float(values[k]) for values in true], rel=4e-16)
+
+
 def test_one_s_own_potentials():
     """A Fourier sum, and an object, are as good as what is built in."""
     mine = orbits.Fourier({k: (c * Fraction(orbits.trig.scale), s * Fraction(orbits.trig.scale))
@@ -249,9 +304,12 @@ def test_formulas_say_what_v_is():
         names["c"] = lambda x: 1 - 24 * abs(x - round(x)) ** 2 + 32 * abs(x - round(x)) ** 3
         return eval(re.sub(r"([\da-z)]) (?=[\da-z(])", r"\1*", words).replace("^", "**"), names)
 
+    shifted = orbits.Fourier.of(FourierSum(
+        ((1, 0, Fraction(1, 3)), (2, -1, Fraction(-1, 7)), (0, 1, Fraction(1))),
+        (Fraction(2, 5), Fraction(-1), Fraction(1, 3)), 2), scale_enclosure=third)
     odd = orbits.Fourier({(0, 0): (Fraction(1, 3), 5), (3, -2): (0.25, -0.5), (-1, 0): (2, 0)})
     rng = np.random.default_rng(5)
-    for potential in (orbits.trig, orbits.poly, orbits.ff, orbits.froeschle, orbits.standard, odd,
+    for potential in (orbits.trig, orbits.poly, orbits.ff, orbits.froeschle, orbits.standard, odd, shifted,
                       scaled(third), scaled(lambda digits: (Fraction(2, 3),) * 2)):
         for at in rng.uniform(size=(5, potential.n)):
             assert float(value(potential, at)) == pytest.approx(

@@ -149,22 +149,44 @@ def test_the_picture_of_what_is_proved(run, tmp_path, monkeypatch):
     assert "nothing is proved" in said[2] and "Proved: a true orbit" not in said[2]
 
 
-def test_a_potential_in_a_file(run, tmp_path):
-    """Trig's terms; the file's eps are the named one's times its scale."""
-    path = tmp_path / "mine.v2.txt"
-    path.write_text("# half of each angle's\n1 0  0 -1/2\n\n0 1 0 -0.5   # and\n1 1 0 -1\n")
+def test_a_potential_in_a_file(run, root, tmp_path):
+    """The standard map of an input, half a turn aside; eps and K multiply each other."""
+    path = root / "inputs" / "standard.json"
+    mine = cli.read_potential(str(path), [("K", Fraction("0.9"))])
+    assert (mine.name, mine.n, mine.terms) == ("standard K=0.9", 1, {(1,): (Fraction(9, 10), 0)})
+    status, out, err = run("find", path, "34/55", "1", "1.2", "--at", "K=0.9")
+    assert (status, err) == (0, "") and "Potential : standard K=0.9\n" in out
+    assert "\nV(x) : s (9/10 cos(2 pi x)), s = 1/(4 pi^2)\n" in out
+    states = orbits.follow(orbits.standard, (34,), 55, [0.9, 1.08])
+    for (action,), state in zip(numbers(out, "Action per point less |p/q|^2/2"), states):
+        assert action == pytest.approx(state.action, abs=1e-11)
+    named = tmp_path / "trig.json"                  # another potential, another name
+    named.write_text('{"harmonics": [{"k": [1], "amplitude": 1}]}')
+    assert "Potential : trig.json\nV(x) : " in run("find", named, "1/3", "0.1")[1]
+    status, out, err = run("find", root / "inputs" / "trig278.in", "5,7/9", "1", "--at", "a=0.1",
+                           "--at", "b=1/7", "--at", "c=-0.2")
+    assert (status, err) == (0, "") and (
+        "V(x) : s (-1/10 sin(2 pi x0) - 1/7 sin(2 pi x1) + 1/5 sin(2 pi (x0 + x1)))" in out)
+    table = tmp_path / "table.csv"
+    assert run("sweep", path, table, "0.5", "--at", "K=1", "--random", "2", "--sizes", "5:9")[0] == 0
+    assert set(orbits.read_csv(table)["potential"]) == {"standard K=1"}
+
+
+@pytest.mark.parametrize("terms, now", [
+    ("# two angles\n1 0  0 -1/2\n\n0 1 0 -0.5", '[{"k": [1, 0], "amplitude": "-1/2", "phase": "1"}]'),
+    ("2 0.25 -1", '[{"k": [2], "amplitude": "0.25", "phase": "-1/2"}, '
+                  '{"k": [2], "amplitude": "-1", "phase": "1"}]')])
+def test_the_lines_of_release_1_6_are_refused(run, tmp_path, terms, now):
+    """In one line, which says what the first of them is today: with that eps, the same V."""
+    path = tmp_path / "mine"
+    path.write_text(terms + "\n")
+    status, out, err = run("find", path, "1/3", "0.1")
+    assert (status, out) == (2, "") and one_line(err) and now in err and "4 pi^2" in err
+    *k, cosine, sine = next(line for line in terms.split("\n") if line[0] != "#").split()
+    path.write_text('{"harmonics": %s}' % now)
     mine = cli.read_potential(str(path))
-    assert (mine.name, mine.n, mine.terms) == ("mine.v2", 2, orbits.trig.terms)
-    status, out, err = run("find", path, SMALL, repr(0.02 * orbits.trig.scale))
-    assert (status, err) == (0, "") and "Potential : mine.v2\n" in out
-    assert "\nV(x) : -1/2 sin(2 pi x0) - 1/2 sin(2 pi x1) - sin(2 pi (x0 + x1))\n" in out
-    state = orbits.follow(orbits.trig, (65, 86), 114, [0.02])[0]
-    action, = numbers(out, "Action per point less |p/q|^2/2")[0]
-    assert action == pytest.approx(state.action, abs=1e-11)
-    path.write_text("1 -1 0")
-    assert cli.read_potential(str(path)).n == 1
-    path = path.rename(tmp_path / "trig")               # another potential, another name
-    assert "Potential : trig.txt\nV(x) : " in run("find", path, "1/3", "0.1")[1]
+    assert mine.terms == {tuple(map(int, k)): (Fraction(cosine), Fraction(sine))}
+    assert mine.scale == pytest.approx(1 / (4 * np.pi ** 2), rel=1e-15)
 
 
 def test_proof_and_search(run):
@@ -281,7 +303,10 @@ def test_help_and_version(run):
     (["find", "trig", SMALL, "0.01", "-g", "DIR/x.ps"], ".svg or .png or .pdf"),
     (["find", "trig", SMALL, "0.01", "-g", "DIR/other.svg"], "no figure of this program"),
     (["find", "trig", SMALL, "0:0.04:0.0001", "-g", "DIR/x.svg"], "states at most"),
-    (["find", "DIR/terms", "1,2/3", "0.01", "--csv", "DIR/terms"], "overwrite"),
+    (["find", "DIR/terms.json", "1,2/3", "0.01", "--csv", "DIR/terms.json"], "overwrite"),
+    (["find", "trig", SMALL, "0.01", "--at", "K=1"], "trig has no parameters"),
+    (["find", "DIR/terms.json", SMALL, "0.01", "--at", "K=1"], "there is no parameter K"),
+    (["find", "DIR/terms.json", SMALL, "0.01", "--at", "K"], "write NAME=NUMBER"),
     (["sweep", "trig", "DIR/x.csv", "0.01"], "required"),
     (["sweep", "trig", "DIR/x.csv", "--random", "1", "--farey", "0.1,0.2"], "not allowed"),
     (["sweep", "trig", "DIR/x.csv", "--random", "1", "--sizes", "3"], "LOW:HIGH"),
@@ -305,6 +330,7 @@ def test_help_and_version(run):
 ])
 def test_bad_usage(run, tmp_path, arguments, words):
     (tmp_path / "terms").write_text("1 0 0 1\n")
+    (tmp_path / "terms.json").write_text('{"harmonics": [{"k": [1, 0], "amplitude": 1}]}')
     (tmp_path / "one").write_text("1,2/3\n1/3\n")
     (tmp_path / "other.csv").write_text("potential,mine\n")
     orbits.sweep(orbits.standard, [((1,), 3)], [0.5], file=tmp_path / "sweep.csv")
@@ -318,11 +344,12 @@ def test_bad_usage(run, tmp_path, arguments, words):
 
 
 @pytest.mark.parametrize("text, words", [
-    (b"", "has terms"), (b"1 0 0\n1 0 0 1\n", "has terms"), (b"1 0 x 1\n", "line 1"),
-    (b"1 0 0 1\n1 0 2 2\n", "line 2"), (b"1 0 0 1 1\n", "line 1"), (b"1.5 0 0 1\n", "line 1"),
-    (b"1 0 nan 1\n", "line 1"), (b"1 0 1/0 1\n", "line 1"), (b"1 0 1e10 1\n", "line 1"),
-    (b"1 0 1e-9999999999 1\n", "line 1"),
-    (b"2000 0 1 1\n", "-1000 to 1000"), (b"\xff\xfe\n", "not a text file")])
+    (b"", "line 1: the input is empty"), (b"1 0 x 1\n", "line 1: 'x' is not a decimal"),
+    (b"{", "no JSON"), (b"\xff\xfe\n", "not a text file"),
+    (b'{"harmonics": [{"k": [1, 0]}]}', "harmonic 1: amplitude is missing"),
+    (b'{"harmonics": [{"k": [1, 0], "amplitude": [1, 2]}]}', "harmonic 1, amplitude: this is a range"),
+    (b'{"parameters": {"K": [1, 2]}, "harmonics": [{"k": [1, 0], "amplitude": {"K": 1}}]}',
+     "K goes from 1 to 2; choose a value, for instance --at K=1.5")])
 def test_a_bad_potential(run, tmp_path, text, words):
     path = tmp_path / "mine"
     path.write_bytes(text)

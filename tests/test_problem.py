@@ -12,7 +12,8 @@ from hypothesis import strategies as st
 
 from converse import ConverseError, Problem, prove
 from converse.model.exact import decimal_text
-from converse.model.problem import IDENTITY, THESIS, InputError, read_input
+from converse.model.inputs import read_input
+from converse.model.problem import IDENTITY, THESIS, InputError
 from converse.prover import native
 
 GOOD = "0.3085 0.00125\n0.3085 0.00125\n0.617 0.0025\n\n1.0 1.0\n1.0 1.0\n\n"

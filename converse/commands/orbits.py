@@ -3,6 +3,7 @@
 import argparse
 import concurrent.futures
 import io
+import json
 import math
 import os
 import random
@@ -12,6 +13,7 @@ import sys
 from ..draw import plot
 from ..draw.figure import format_of
 from ..model.exact import exact
+from ..model.problem import InputError
 from ..storage import files
 from ..storage.files import ConverseError, plain
 from ..version import __version__
@@ -24,8 +26,9 @@ SIZES = 300, 1200                       # q of a sweep, unless others are asked 
 STATUS = ("Exit status: 0 all was found that was asked for; 1 a state was not found, is no "
           "minimum, or is not proved though --prove was given; 2 bad usage, input or file; 129, "
           "130 or 143 ended by a signal.")
-POTENTIAL = ("trig, poly, ff, froeschle, standard, or a file whose lines 'k0 k1 cosine sine' (with "
-             "one angle: 'k cosine sine') are the terms of V")
+POTENTIAL = ("trig, poly, ff, froeschle, standard, or an input file: JSON of the harmonics of V "
+             "(docs/format.md)")
+AT = "the value of a parameter of the file's; any number of times"
 MEANINGS = {                            # of labels
     "minimum": "seen in doubles, not proved: no state near it has less action, others may",
     "best": "seen in doubles, not proved: a minimum, and the least action met",
@@ -98,31 +101,47 @@ def _lines(path):
         raise ConverseError("%s: is not a text file" % path) from None
 
 
-def read_potential(source):
-    """One of those with a name, or a Fourier sum from a file."""
+def _value(text):
+    """'K=0.6': ('K', 0.6), exactly."""
+    name, _, number = text.partition("=")
+    try:
+        return name.strip(), exact(number.strip())
+    except ValueError:
+        raise argparse.ArgumentTypeError("'%s' is no value of a parameter: write NAME=NUMBER"
+                                         % text) from None
+
+
+def read_potential(source, at=()):
+    """One of those with a name, or that of an input file, with its parameters at these values."""
     from converse import orbits
 
     if source in NAMES:
+        if at:
+            raise ConverseError("%s has no parameters; leave out --at" % source)
         return getattr(orbits, source)
     if not os.path.exists(source):
-        raise ConverseError("'%s' is no potential and no file; there are %s, or a file of lines "
-                            "'k0 k1 cosine sine'" % (source, ", ".join(NAMES)))
-    name, terms = plain(os.path.splitext(os.path.basename(source))[0]), {}
-    for number, words in _lines(source):
-        words = words.split()
-        try:
-            k = tuple(map(int, words[:-2]))
-            term = tuple(map(exact, words[-2:]))
-            if len(words) not in (3, 4) or k in terms or any(abs(x) > 10 ** 9 for x in term):
-                raise ValueError
-        except ValueError:
-            raise ConverseError("%s: line %d is no new term 'k0 k1 cosine sine' (one angle: 'k "
-                                "cosine sine')" % (source, number)) from None
-        terms[k] = term
+        raise ConverseError("'%s' is no potential and no file; there are %s, or a JSON file of "
+                            "harmonics (docs/format.md)" % (source, ", ".join(NAMES)))
     try:
-        return orbits.Fourier(terms, name + ".txt" if name in NAMES else name)
-    except ValueError as error:
-        raise ConverseError("%s: %s" % (source, error)) from None
+        return orbits.read_potential(source, dict(at))
+    except InputError as error:
+        raise ConverseError(_old_term(source) or str(error)) from None
+
+
+def _old_term(path):
+    """What to say of a file with lines 'k0 k1 cosine sine', as they were up to release 1.6; None if
+    it is not such a file."""
+    for _, line in _lines(path):
+        *k, cosine, sine = line.split() if len(line.split()) in (3, 4) else ("", "", "")
+        try:
+            list(map(int, k)), exact(cosine), exact(sine)
+        except ValueError:
+            return None
+        harmonics = [{"k": list(map(int, k)), "amplitude": number, "phase": phase}
+                     for number, phase in ((cosine, "-1/2"), (sine, "1")) if number.strip("0.")]
+        return "%s: lines 'k0 k1 cosine sine' are not read any more; the first one is now %s, and " \
+               "eps 4 pi^2 times as large (docs/orbits.md)" % (
+                   path, json.dumps({"harmonics": harmonics}))
 
 
 def _check_type(potential, vector):
@@ -184,6 +203,8 @@ def parser():
                       "p/q for one angle")
     find.add_argument("eps", metavar="EPS", type=_eps, nargs="+", help="a number, or "
                       "LOW:HIGH:STEP; states are followed from one to the next")
+    find.add_argument("--at", type=_value, metavar="NAME=VALUE", action="append", default=[],
+                      help=AT)
     find.add_argument("--search", type=whole_number(1), metavar="N", help="look for less action than "
                       "continuation finds, N times")
     find.add_argument("--prove", action="store_true", help="prove that an orbit is beside each "
@@ -205,6 +226,8 @@ def parser():
                        "same sweep")
     sweep.add_argument("eps", metavar="EPS", type=_eps, nargs="*", help="a number, or "
                        "LOW:HIGH:STEP")
+    sweep.add_argument("--at", type=_value, metavar="NAME=VALUE", action="append", default=[],
+                       help=AT)
     which = sweep.add_mutually_exclusive_group(required=True)
     which.add_argument("--vectors", metavar="FILE", help="types from a file, a p0,p1/q in each "
                        "line")
@@ -290,7 +313,7 @@ def _check_outputs(options, potential_file):
 
 
 def find_states(options):
-    potential = read_potential(options.potential)
+    potential = read_potential(options.potential, options.at)
     p, q = _check_type(potential, options.type)
     _check_outputs(options, options.potential)
 
@@ -340,7 +363,7 @@ def find_states(options):
 
 
 def sweep_types(options):
-    potential = read_potential(options.potential)
+    potential = read_potential(options.potential, options.at)
     vectors = vectors_of(options, potential)
     for path in (options.potential, options.vectors):
         if path is not None and os.path.exists(path) and files.same(path, options.csv):

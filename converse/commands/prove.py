@@ -9,7 +9,7 @@ import time
 from dataclasses import replace
 
 from ..model.exact import decimal_text, exact
-from ..model.problem import read_input
+from ..model.inputs import read_input
 from ..prover.report import header, verdict
 from ..prover.settings import AS_PRINTED, METHODS, REGION, THEOREM, UNDECIDED, Settings
 from ..storage import files

@@ -241,6 +241,10 @@ class Map:
         except (EOFError, ValueError, RecursionError):
             raise ConverseError("%s: is not a map, or truncated; use an intact copy or start anew"
                                 % path) from None
+        if isinstance(data, dict) and "harmonics" in data:
+            raise ConverseError("%s: is an input, and no map; maps are of the thesis's three waves "
+                                "(a, b, c) alone: prove a patch of another potential with converse "
+                                "--method loewner" % path)
         try:
             digest = data.pop("sha256")
             if data["format"] != FORMAT or digest != _digest(data):

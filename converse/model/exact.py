@@ -10,6 +10,7 @@ import math
 import re
 from decimal import Context, Decimal
 from fractions import Fraction
+from functools import lru_cache
 from typing import Tuple, Union
 
 MAX_EXPONENT = 300
@@ -142,20 +143,24 @@ def interval_text(low: Fraction, high: Fraction, most: int) -> str:
 
 # ---- irrational numbers
 
+@lru_cache(maxsize=16)
 def pi_bounds(digits: int) -> Ends:
-    """pi to 10^-digits, by Machin's formula: an alternating series of decreasing terms lies
-    between any two successive sums."""
-    def arctan(n):
-        total, k = Fraction(0), 0
-        while True:
-            term = Fraction(1, (2 * k + 1) * n ** (2 * k + 1))
-            if term < Fraction(1, 10 ** (digits + 5)):
-                return (total, total + term) if k % 2 == 0 else (total - term, total)
-            total += term if k % 2 == 0 else -term
-            k += 1
+    """pi to 10^-digits, by Machin's formula, 16 arctan 1/5 - 4 arctan 1/239, in integers.
 
-    (low5, high5), (low239, high239) = arctan(5), arctan(239)
-    return 16 * low5 - 4 * high239, 16 * high5 - 4 * low239
+    Each term of a series is cut by less than one unit of 10^-(digits + 10); the terms decrease and
+    alternate, so that those behind the last that is not 0 add up to less than one unit."""
+    unit = 10 ** (digits + 10)
+
+    def arctan(n):
+        total, power, k, off = 0, unit // n, 1, 1
+        while power:
+            total += power // k if k % 4 == 1 else -(power // k)
+            power, k, off = power // (n * n), k + 2, off + 1
+        return total, off
+
+    (five, off5), (more, off239) = arctan(5), arctan(239)
+    middle, off = 16 * five - 4 * more, 16 * off5 + 4 * off239
+    return Fraction(middle - off, unit), Fraction(middle + off, unit)
 
 
 def root_bounds(x: Fraction, digits: int) -> Ends:

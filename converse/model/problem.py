@@ -1,16 +1,15 @@
 """The problem: a potential, the patch of parameters it has, and the angles of a successor."""
 
-import os
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
 from math import gcd
-from typing import IO, TYPE_CHECKING, List, NoReturn, Optional, Sequence, Tuple, Union
+from typing import TYPE_CHECKING, List, Optional, Sequence, Tuple, Union
 
 from .exact import Ends, Number, exact, is_decimal, outward, range_text
+from .potential import Wave, sum_text
 
 NAMES = ("a", "b", "c", "v0", "v1")
-LABELS = ("a", "b", "c", "theta[0]", "theta[1]")        # as the input's documentation calls them
 PLACES = 40                             # to which what is no finite decimal is enclosed
 THESIS = (1, 0), (0, 1), (1, 1)         # the waves of a, b and c
 # The thesis's line is a = b = c/2 = LINE epsilon: this decimal defines epsilon here.  The thesis's
@@ -21,7 +20,6 @@ MOST_WAVES, MOST_PARAMETERS, HIGHEST = 16, 3, 100       # the last: of what k an
 IDENTITY = 1, 0, 0, 1
 
 Range = Tuple[Number, Number]           # what becomes of it: Ends
-Wave = Tuple[int, int, Fraction]
 Frame = Tuple[int, int, int, int]
 Numbers = Tuple[Fraction, ...]
 
@@ -363,92 +361,12 @@ def interval(name, value):
     return outward(low, high, PLACES)
 
 
-def _sum_text(factors, names):
-    """A sum of named things with rational factors."""
-    text = " ".join(("- " if f < 0 else "+ ") + (name if abs(f) == 1 else "%s %s" % (abs(f), name))
-                    for f, name in zip(factors, names) if f)
-    return text[2:] if text.startswith("+") else "-" + text[2:]
-
-
 def wave_text(wave):
     """A wave (k0, k1, phase) as a function of y."""
-    return "sin(%s)" % _sum_text(wave, ("y0", "y1", "pi"))
+    return "sin(%s)" % sum_text(zip(wave, ("y0", "y1", "pi")))
 
 
 def frame_text(frame, name):
     """The angles that belong to v0 and v1, whose names are name % 0 and name % 1."""
     names = name % 0, name % 1
-    return "(%s, %s)" % (_sum_text(frame[:2], names), _sum_text(frame[2:], names))
-
-
-def _read(source):
-    """The text of a path or of an open file, text or binary, and its name for messages."""
-    is_path = isinstance(source, (str, os.PathLike))
-    name = os.fspath(source) if is_path else getattr(source, "name", None)
-    name = name if isinstance(name, str) else "<stdin>"
-    try:
-        if is_path:
-            with open(source, "rb") as file:
-                data = file.read()
-        else:
-            data = getattr(source, "buffer", source).read()
-    except OSError as error:
-        raise InputError("%s: cannot be read (%s); name a readable file"
-                         % (name, error.strerror or error)) from None
-    if isinstance(data, bytes):
-        try:
-            data = data.decode("utf-8-sig")
-        except UnicodeDecodeError:
-            data = data.decode("latin-1")
-    return data.replace("\r\n", "\n").replace("\r", "\n"), name
-
-
-def read_input(source: Union[str, "os.PathLike[str]", IO]) -> Problem:
-    """Reads an input file from a path or an open file.
-
-    That of the thesis (Appendix B): five lines of two numbers, centre and half-width, for a, b, c and
-    the two angles, these in units of pi; then comment lines.  Blank lines may stand anywhere.  Or,
-    if it begins with a brace or is called .json, a potential of one's own (docs/format.md).
-    InputError: it is none.
-    """
-    text, name = _read(source)
-    if text.lstrip().startswith("{") or name.endswith(".json"):
-        from . import harmonics
-        return harmonics.read(text, name)
-    lines = text.rstrip("\n").split("\n")
-    centre: List[Fraction] = []
-    half: List[Fraction] = []
-    used = 0
-
-    def fail(wrong: object, remedy: str) -> NoReturn:
-        raise InputError("%s, line %d: %s; %s" % (name, max(used, 1), wrong, remedy))
-
-    for label in LABELS:
-        want = "give the centre and the half-width of %s" % label
-        while used < len(lines) and not lines[used].strip():
-            used += 1
-        if used == len(lines):
-            fail("the input is empty" if not centre else "the input ends too early", want)
-        words = lines[used].split()
-        used += 1
-        try:
-            values = list(map(exact, words))
-        except ValueError as error:
-            fail(error, want)
-        if len(values) != 2:
-            fail("%d number%s where two belong"
-                 % (len(values), "" if len(values) == 1 else "s"), want)
-        if values[1] < 0:
-            fail("the half-width %s is negative" % words[1], want + ", which is 0 or more")
-        centre.append(values[0])
-        half.append(values[1])
-
-    comments = [line.rstrip() for line in lines[used:]]
-    while comments and not comments[0]:
-        comments.pop(0)
-    while comments and not comments[-1]:
-        comments.pop()
-    try:
-        return Problem.around(centre, half, comments)
-    except ValueError as error:
-        raise InputError("%s: %s" % (name, error)) from None
+    return "(%s, %s)" % (sum_text(zip(frame[:2], names)), sum_text(zip(frame[2:], names)))

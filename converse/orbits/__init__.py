@@ -11,7 +11,7 @@ try:
     from .floor import Floor, LeastAction, enclosed_action, floor, least_action
     from .measures import Prelude, gram_schmidt_exponents, prelude
     from .potential import (Fourier, FromPython, Potential, ff, froeschle, parameters, poly,
-                            standard, trig)
+                            read_potential, standard, trig)
     from .proved import NotProved, ProvedOrbit, prove
     from .search import search
     from .solver import Family, flow, follow, newton, straight
@@ -31,5 +31,5 @@ except ImportError as _error:           # said when something is asked for: the 
 __all__ = ["Family", "Floor", "Fourier", "FromPython", "LeastAction", "NotProved", "Onset",
            "Potential", "Prelude", "ProvedOrbit", "State", "enclosed_action", "ff", "floor", "flow",
            "follow", "froeschle", "gram_schmidt_exponents", "least_action", "newton", "onset",
-           "onsets", "parameters", "poly", "prelude", "prove", "read_csv", "search", "standard",
-           "straight", "sweep", "trig"]
+           "onsets", "parameters", "poly", "prelude", "prove", "read_csv", "read_potential",
+           "search", "standard", "straight", "sweep", "trig"]

@@ -115,16 +115,16 @@ def points(start, stop, step=1):
 
 def _fourier(potential, digits):
     """All are linear in the cosines and sines of 2 pi k.x."""
-    low, high = (ball(end) for end in potential.scale_within(digits))
-    scale, turn, axes = low.union(high), 2 * arb.pi(), range(potential.n)
+    turn, axes, terms = 2 * arb.pi(), range(potential.n), potential.coefficients(digits)
     columns = []
-    for k, (cosine, sine) in potential.terms.items():
-        k = [turn * i for i in k]
+    for k, *both in terms:
+        k = [turn * i for i in k[:potential.n]]
+        cosine, sine = (ball(low).union(ball(high)) for low, high in both)
         for wave, slope in (cosine, sine), (sine, -cosine):
-            columns.append([ball(wave)] + [ball(slope) * i for i in k] + [
-                -ball(wave) * k[i] * k[j] for i in axes for j in axes[i:]])
-    law = arb_mat([[i * scale for i in row] for row in zip(*columns)])
-    doubled = [[2 * i for i in k] for k in potential.terms]
+            columns.append([wave] + [slope * i for i in k] + [
+                -wave * k[i] * k[j] for i in axes for j in axes[i:]])
+    law = arb_mat([list(row) for row in zip(*columns)])
+    doubled = [[2 * i for i in k] for k, *_ in terms]
 
     def local(base, u):
         x = [arb(i) + j for i, j in zip(base, u)]

@@ -5,19 +5,22 @@ The map is x' = x + p', p' = p - eps grad V(x).
 
 import math
 import operator
+import os
 import threading
 from decimal import ROUND_CEILING, ROUND_FLOOR, Context, Decimal
 from fractions import Fraction
 from types import MappingProxyType
-from typing import Any, Callable, Dict, Optional, Sequence, Tuple
+from typing import Any, Callable, Dict, Mapping, Optional, Sequence, Tuple, Union
 
 import numpy as np
 
 from .._native import ffi, lib
-from ..model.exact import pi_bounds, root_bounds
+from ..model import inputs
+from ..model.exact import Ends, Number, exact, root_bounds, short_text
+from ..model.potential import FourierSum, from_terms, per_period, product
 from ..prover.native import check
+from ..storage.files import plain
 
-Bounds = Tuple[Fraction, Fraction]
 STUDIED = {}                # by name, the potentials at the end of this file
 
 
@@ -145,11 +148,15 @@ class Fourier(Potential):
     scale_enclosure(digits) -- two Fractions around the scale, no further apart than 10^-digits,
              and around the same whenever it is asked.
              To be sent to other processes it must be a function of a module, not a lambda
+
+    Fourier.of takes the potential of an input file.
     """
+
+    sum: FourierSum
 
     def __init__(self, terms: Dict[Tuple[int, ...], tuple], name: str = "fourier",
                  start: Optional[Tuple[float, ...]] = None,
-                 scale_enclosure: Callable[[int], Bounds] = _one):
+                 scale_enclosure: Callable[[int], Ends] = _one):
         try:
             terms = {tuple(map(operator.index, k)): (Fraction(c), Fraction(s))
                      for k, (c, s) in terms.items()}
@@ -160,15 +167,29 @@ class Fourier(Potential):
         if len(widths) != 1 or not widths <= {1, 2} or any(abs(i) > 1000 for k in terms for i in k):
             raise ValueError("a Fourier sum has terms, all with one or all with two integers from "
                              "-1000 to 1000; there are %r" % sorted(terms))
-        n, = widths
-        vars(self).update(terms=MappingProxyType(terms), scale_enclosure=scale_enclosure)
+        self._set_up(from_terms(terms), name, start, scale_enclosure)
+
+    @classmethod
+    def of(cls, source: FourierSum, name: str = "fourier",
+           start: Optional[Tuple[float, ...]] = None,
+           scale_enclosure: Callable[[int], Ends] = per_period) -> "Fourier":
+        """From waves, amplitudes and phases, in the units of input files, where angles have period
+        2 pi: with eps 1 the map is that of proofs (converse/model/potential.py)."""
+        made = cls.__new__(cls)
+        made._set_up(source, name, start, scale_enclosure)
+        return made
+
+    def _set_up(self, source, name, start, scale_enclosure):
+        vars(self).update(sum=source, scale_enclosure=scale_enclosure)
         self._said = -math.inf, math.inf        # what all that scale_enclosure said has in common
         scale = self._scale()
         vars(self).update(scale=float(sum(scale) / 2))
-        super().__init__(lib.CV_FOURIER, name, n, start, _formula(terms, scale_enclosure, scale),
-                         *self._bounds(max(map(abs, scale))))
-        self._arrays = [np.array([tuple(k) + (0,) * (2 - n) for k in terms], dtype=np.intc)] + [
-            np.array([float(term[i]) * self.scale for term in terms.values()]) for i in (0, 1)]
+        terms = _significant(source)
+        super().__init__(lib.CV_FOURIER, name, source.dimension, start,
+                         _formula(source, scale_enclosure, scale),
+                         *_bounds(terms, max(map(abs, scale))))
+        self._arrays = [np.array([k for k, *_ in terms], dtype=np.intc)] + [
+            np.array([float(sum(term[i]) / 2) * self.scale for term in terms]) for i in (1, 2)]
         self.native.terms = len(terms)
         self.native.k, self.native.cosine, self.native.sine = (
             address(array, kind) for array, kind in zip(self._arrays, ("int *",) + 2 * ("double *",)))
@@ -178,7 +199,20 @@ class Fourier(Potential):
     def __reduce__(self):
         if STUDIED.get(self.name) is self:
             return super().__reduce__()
-        return Fourier, (dict(self.terms), self.name, self.start, self.scale_enclosure)
+        return Fourier.of, (self.sum, self.name, self.start, self.scale_enclosure)
+
+    @property
+    def terms(self) -> Mapping[Tuple[int, ...], Tuple[Fraction, Fraction]]:
+        """{k: (cosine, sine)}, but for waves whose phase makes these irrational."""
+        return MappingProxyType({k[:self.n]: (c[0], d[0]) for k, c, d in self.sum.terms(0)
+                                 if c[0] == c[1]})
+
+    def coefficients(self, digits):
+        """[((k0, k1), ends of the cosine's factor, ends of the sine's)], scale and all, each to
+        10^-digits."""
+        more = digits + 2 + len(str(math.ceil(max(map(abs, (*self.sum.amplitude, self.scale))))))
+        scale = self.scale_within(more)
+        return [(k, product(c, scale), product(d, scale)) for k, c, d in self.sum.terms(more)]
 
     def scale_within(self, digits):
         """What scale_enclosure says, if it is what it shall be, and no other scale than before."""
@@ -207,16 +241,6 @@ class Fourier(Potential):
                 raise ValueError("the scale cannot be told from zero")
             digits += 30
 
-    def _bounds(self, size):
-        """Curvature and lipschitz: (2 pi)^m times the sum of |k|^m |amplitude|, m = 2 and 3, added up
-        exactly and a little more; as a double at least that, float() being off by 2^-53 of it."""
-        sums = [sum(size * _root_up(sum(i * i for i in k)) ** m * _root_up(c * c + s * s)
-                    for k, (c, s) in self.terms.items()) for m in (2, 3)]
-        if max(sums) > 10 ** 300:
-            raise ValueError("the amplitudes of a Fourier sum are too large for doubles")
-        return [float(bound * x * (1 + Fraction(1, 2 ** 50)))
-                for bound, x in zip(sums, (Fraction("39.4785"), Fraction("248.0503")))]
-
     def _maximum(self):
         """The best of a grid of points, then Newton."""
         axis = (np.arange(64) + 0.5) / 64
@@ -231,6 +255,14 @@ class Fourier(Potential):
                 break
             best = better
         return tuple(map(float, best[0]))
+
+
+def read_potential(path: Union[str, "os.PathLike[str]"], at: Mapping[str, Number] = {}) -> Fourier:
+    """The potential of an input file (docs/format.md), for these values of its parameters: with eps
+    1 the map is that of the file.  InputError: it has none, or a parameter that has no value."""
+    name = plain(os.path.splitext(os.path.basename(os.fspath(path)))[0])
+    name += "".join(" %s=%s" % (key, short_text(exact(value))) for key, value in at.items())
+    return Fourier.of(inputs.read_potential(path, at), name + ".json" * (name in STUDIED))
 
 
 class FromPython(Potential):
@@ -348,13 +380,33 @@ def _floats(values):
     return floats if all(map(math.isfinite, floats)) else None
 
 
-def _formula(terms, scale_enclosure, scale):
+def _significant(source):
+    """The terms of a FourierSum to 18 significant digits at least."""
+    digits = 30
+    while True:
+        terms = list(source.terms(digits))
+        if all((high - low) * 10 ** 18 <= min(abs(low), abs(high))
+               for _, *both in terms for low, high in both):
+            return terms
+        if digits > 1000:
+            raise ValueError("an amplitude cannot be told from zero")
+        digits *= 2
+
+
+def _bounds(terms, size):
+    """Curvature and lipschitz: (2 pi)^m times the sum of |k|^m |amplitude|, m = 2 and 3, added up
+    exactly and a little more; as a double at least that, float() being off by 2^-53 of it."""
+    sums = [sum(size * _root_up(k0 * k0 + k1 * k1) ** m
+                * _root_up(sum(max(map(abs, ends)) ** 2 for ends in both))
+                for (k0, k1), *both in terms) for m in (2, 3)]
+    if max(sums) > 10 ** 300:
+        raise ValueError("the amplitudes of a Fourier sum are too large for doubles")
+    return [float(bound * x * (1 + Fraction(1, 2 ** 50)))
+            for bound, x in zip(sums, (Fraction("39.4785"), Fraction("248.0503")))]
+
+
+def _formula(source, scale_enclosure, scale):
     """V in words, exactly but for a scale that only scale_enclosure knows."""
-    parts = []
-    for k, (cosine, sine) in terms.items():
-        phase = _sum_text((i, "x" + str(axis) * (len(k) > 1)) for axis, i in enumerate(k))
-        phase = "(2 pi %s)" % (phase if phase[0] == "x" and " " not in phase else "(%s)" % phase)
-        parts += ((cosine, "cos" + phase), (sine, "sin" + phase)) if any(k) else ((cosine, ""),)
     if scale[0] == scale[1]:
         factor, where = str(scale[0]), ""
     else:
@@ -364,18 +416,8 @@ def _formula(terms, scale_enclosure, scale):
                 Context(prec=20, rounding=rounding).divide(Decimal(end.numerator),
                                                            Decimal(end.denominator))
                 for end, rounding in zip(scale, (ROUND_FLOOR, ROUND_CEILING))))
-    text = _sum_text(parts)
+    text = source.text()
     return (text if factor == "1" else "%s (%s)" % (factor, text)) + (where and ", " + where)
-
-
-def _sum_text(parts):
-    """The sum of products of a number and what follows it."""
-    text = ""
-    for c, what in parts:
-        if c:
-            text += " - " if c < 0 else " + "
-            text += what if abs(c) == 1 and what else ("%s %s" % (abs(c), what)).strip()
-    return ("-" if text.startswith(" -") else "") + text[3:] or "0"
 
 
 def _root_up(x):
@@ -390,13 +432,8 @@ def _trig_scale(digits):
             root_bounds(128 / (207 + 33 * low), digits + 5)[1])
 
 
-def _standard_scale(digits):
-    low, high = pi_bounds(digits + 2)
-    return 1 / (4 * high ** 2), 1 / (4 * low ** 2)
-
-
 SCALES = ((_trig_scale, "s = 8 sqrt 2/sqrt(207 + 33 sqrt 33)"),
-          (_standard_scale, "s = 1/(4 pi^2)"))
+          (per_period, "s = 1/(4 pi^2)"))
 
 _HALF = Fraction(1, 2)
 
@@ -427,7 +464,7 @@ ff = Potential(lib.CV_FF, "ff", 2, (2 / 7, 2 / 7),
                "x to the nearest integer", *_FF_BOUNDS)
 froeschle = Fourier({(1, 0): (-_HALF / 2, 0), (0, 1): (-_HALF / 2, 0), (1, 1): (-_HALF, 0)},
                     "froeschle", (0.29021531, 0.29021531))
-standard = Fourier({(1,): (-1, 0)}, "standard", (0.5,), _standard_scale)
+standard = Fourier({(1,): (-1, 0)}, "standard", (0.5,), per_period)
 
 STUDIED.update({potential.name: potential
                 for potential in (trig, poly, ff, froeschle, standard)})

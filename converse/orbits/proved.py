@@ -15,9 +15,8 @@ from typing import Optional, Tuple
 import numpy as np
 
 from .._native import lib
-from ..model.exact import interval_text, rounded, rounded_text
+from ..model.exact import Ends, interval_text, rounded, rounded_text
 from ..storage.files import ConverseError
-from .potential import Bounds
 from .state import NEAR_NULL, ROUNDING, STATIONARY, State, expected
 
 DIGITS = 20                 # the radius is at most 10^-DIGITS unless another number is asked for
@@ -54,8 +53,8 @@ class ProvedOrbit:
     digits: int
     radius: Fraction
     least: Fraction
-    action: Bounds
-    exponents: Tuple[Bounds, ...]
+    action: Ends
+    exponents: Tuple[Ends, ...]
     moved: float
     displacements: Tuple[Tuple[Fraction, ...], ...]
 

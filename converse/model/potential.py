@@ -1,0 +1,107 @@
+"""A potential as a finite Fourier sum,
+
+    V(y) = - sum of p[j] sin(k[j].y + pi phase[j]),
+
+and the two conventions in which its map is written:
+
+    proofs, maps of the frontier, input files    orbits
+    y, J of period 2 pi                          x = y/(2 pi), p = J/(2 pi) of period 1
+    y' = y + J', J' = J - grad V(y)              x' = x + p', p' = p - eps grad U(x)
+
+With eps = 1 they are the same map if U(x) = V(2 pi x)/(4 pi^2), that is, if U is the sum of
+
+    s (c cos(2 pi k.x) + d sin(2 pi k.x)),   s = 1/(4 pi^2), c = -p sin(pi phase), d = -p cos(pi phase).
+
+This module is the only place where one is converted to the other.
+"""
+
+import math
+from fractions import Fraction
+from typing import Dict, Iterator, NamedTuple, Tuple
+
+from .exact import Ends, pi_bounds, sine_bounds
+
+Wave = Tuple[int, int, Fraction]        # k0, k1 and the phase in units of pi
+Term = Tuple[Tuple[int, int], Ends, Ends]
+QUARTER = Fraction(1, 2)                # of a turn: sin(t + pi/2) = cos t
+
+
+class FourierSum(NamedTuple):
+    """waves -- (k0, k1, phase in units of pi)
+    amplitude -- p of each wave
+    dimension -- of the angles, 1 (all k1 are 0) or 2"""
+
+    waves: Tuple[Wave, ...]
+    amplitude: Tuple[Fraction, ...]
+    dimension: int
+
+    def terms(self, digits: int) -> Iterator[Term]:
+        """V as a sum of c cos k.y + d sin k.y: ((k0, k1), (ends of c), (ends of d)), to 10^-digits.
+
+        Waves whose c and d are rational are exact, and one term for each k; each other wave is a
+        term of its own."""
+        rational: Dict[Tuple[int, int], Tuple[Fraction, Fraction]] = {}
+        for (k0, k1, phase), p in zip(self.waves, self.amplitude):
+            if (2 * phase).denominator == 1:
+                c, d = rational.get((k0, k1), (Fraction(0), Fraction(0)))
+                rational[k0, k1] = (c - p * sine_bounds(phase, 0)[0],
+                                    d - p * sine_bounds(phase + QUARTER, 0)[0])
+        for k, (c, d) in rational.items():
+            yield k, (c, c), (d, d)
+        more = digits + len(str(math.ceil(max(map(abs, self.amplitude)))))
+        for (k0, k1, phase), p in zip(self.waves, self.amplitude):
+            if (2 * phase).denominator != 1:
+                yield ((k0, k1), product((-p, -p), sine_bounds(phase, more)),
+                       product((-p, -p), sine_bounds(phase + QUARTER, more)))
+
+    def text(self) -> str:
+        """V(2 pi x) in words, exactly."""
+        parts = []
+        for (*k, phase), p in zip(self.waves, self.amplitude):
+            names = ("x0", "x1") if self.dimension == 2 else ("x",)
+            angle = sum_text(zip(k, names))
+            if not any(k):                      # a constant, of phase 1/2
+                parts.append((-p, ""))
+                continue
+            angle = "2 pi %s" % (angle if angle in names else "(%s)" % angle)
+            if (2 * phase).denominator == 1:
+                function = "cos" if phase % 1 else "sin"
+                sign = -sine_bounds(phase if phase % 1 else phase + QUARTER, 0)[0]
+                parts.append((sign * p, "%s(%s)" % (function, angle)))
+            else:
+                parts.append((-p, "sin(%s %s %s pi)" % (angle, "-" if phase < 0 else "+",
+                                                        abs(phase))))
+        return sum_text(parts)
+
+
+def from_terms(terms) -> FourierSum:
+    """The FourierSum of {k: (c, d)}, k a tuple of one or two integers."""
+    waves, amplitude = [], []
+    for k, (c, d) in terms.items():
+        for p, phase in ((-c, QUARTER), (-d, Fraction(0)))[:2 if any(k) else 1]:
+            if p or phase and not d:            # one, even if both are zero
+                waves.append((*k, *(0,) * (2 - len(k)), phase))
+                amplitude.append(p)
+    return FourierSum(tuple(waves), tuple(amplitude), max(map(len, terms)))
+
+
+def per_period(digits: int) -> Ends:
+    """The factor 1/(4 pi^2) from V to U."""
+    low, high = pi_bounds(digits + 2)
+    return 1 / (4 * high ** 2), 1 / (4 * low ** 2)
+
+
+def product(x: Ends, y: Ends) -> Ends:
+    """An interval times another."""
+    products = [a * b for a in x for b in y]
+    return min(products), max(products)
+
+
+def sum_text(parts) -> str:
+    """The sum of products of a rational number and what follows it, in words."""
+    text = ""
+    for c, what in parts:
+        if c:
+            text += " - " if c < 0 else " + "
+            text += what if abs(c) == 1 and what else ("%s %s" % (abs(c), what)).strip()
+    return ("-" if text.startswith(" -") else "") + text[3:] or "0"
