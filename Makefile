@@ -68,10 +68,10 @@ sanitize: $(SANITIZED)/installed
 # The same tree on another kind of machine, emulated: needs gcc-aarch64-linux-gnu, qemu-user and
 # libgmp-dev:arm64.
 TREE_FLAGS = -std=c11 -O2 -ffp-contract=off -fno-math-errno -Icsrc
-TREE_CORE = $(wildcard csrc/arith/*.c) $(addprefix csrc/thesis/, start.c region.c rigorous.c double.c) \
-    $(addprefix csrc/loewner/, problem.c start.c \
+TREE_CORE = $(wildcard csrc/arith/*.c) $(addprefix csrc/thesis/, start.c rigorous.c double.c method.c) \
+    $(addprefix csrc/loewner/, problem.c start.c method.c \
     $(foreach kind,scalar baseline avx2 avx512,$(kind).c general_$(kind).c)) \
-    csrc/model/torus.c $(wildcard csrc/search/*.c)
+    $(wildcard csrc/model/*.c) $(wildcard csrc/search/*.c)
 arm: tests/tree.c
 	@mkdir -p build
 	gcc $(TREE_FLAGS) tests/tree.c $(TREE_CORE) -lgmp -lm -o build/tree

@@ -6,11 +6,12 @@ import os
 from cffi import FFI
 
 SOURCES = ["arith/apm", "arith/special", "arith/guard", "arith/machine",
-           "thesis/start", "thesis/region", "thesis/rigorous", "thesis/double",
-           "loewner/problem", "loewner/start",
+           "thesis/start", "thesis/rigorous", "thesis/double", "thesis/method",
+           "loewner/problem", "loewner/start", "loewner/method",
            *("loewner/" + kind + name for kind in ("", "general_")
              for name in ("scalar", "baseline", "avx2", "avx512")),
-           "model/torus", "search/setup", "search/tree",
+           "model/patch", "model/region", "model/torus",
+           "search/setup", "search/tree", "search/lookahead",
            "orbits/potential", "orbits/band", "orbits/relax", "orbits/measure", "orbits/minplus"]
 SOURCES = ["csrc/%s.c" % name for name in SOURCES]
 

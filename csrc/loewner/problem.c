@@ -127,21 +127,6 @@ static const engine *fastest_engine(int general)
     return general ? &general_scalar : &engine_scalar;
 }
 
-int is_identity(const int frame[4])
-{
-    return frame[0] == 1 && frame[1] == 0 && frame[2] == 0 && frame[3] == 1;
-}
-
-int thesis_waves(const patch *problem)
-{
-    int same = problem->n_waves == 3;
-
-    for (int i = 0; i < 3 && same; i++)
-        same = problem->k[i][0] == (i != 1) && problem->k[i][1] == (i != 0) &&
-               apm_sgn(problem->phase[i]) == 0;
-    return same;
-}
-
 /* The angles, and x*.  x_1 = frame v, and the columns frame width, are off by less than 4 u of the
    sums of absolute values but for the identity, which is exact; v and width take in that, too. */
 static void set_angles(loewner *w, const patch *problem)
@@ -257,19 +242,21 @@ static void straighten(loewner *w)
    is off by less than its loose, and a phase by 2^-50 of itself and a little more: see near. */
 static void set_corners(loewner *w, int with_bounds)
 {
-    torus_wave waves[SLOTS];
+    torus_wave waves[MOST_WAVES];
 
     for (int corner = 0; corner < 1 << w->n_parameters; corner++) {
+        int n = 0;
         for (int i = 0; i < w->waves; i++) {
+            if (!w->present[i])
+                continue;
             double p = w->amplitude[i];
             for (int m = 0; m < w->n_parameters; m++)
                 p += (corner >> m & 1 ? 1.0 : -1.0) * w->part[i][m];
-            waves[i] = (torus_wave){ { w->k[i][0], w->k[i][1] },
-                                     interval_about(w->phase[i], 0x1p-49 * fabs(w->phase[i])),
-                                     w->loose[i] == 0.0 ? interval_of(p)
-                                                        : interval_about(p, w->loose[i]) };
+            waves[n++] = (torus_wave){ { w->k[i][0], w->k[i][1] },
+                                       interval_about(w->phase[i], 0x1p-49 * fabs(w->phase[i])),
+                                       interval_about(p, w->loose[i]) };
         }
-        w->corner[corner] = with_bounds ? torus_largest(w->waves, waves, TORUS_EIGENVALUE)
+        w->corner[corner] = with_bounds ? torus_largest(n, waves, TORUS_EIGENVALUE)
                                         : HUGE_VAL;
     }
 }
@@ -304,7 +291,7 @@ void loewner_free(loewner *w)
 
 int loewner_lanes(const loewner *w) { return w->engine->lanes; }
 
-void loewner_try(loewner *w, int n, const cv_cell *const cells[], loewner_outcome *const out[])
+void loewner_try(loewner *w, int n, const cv_cell *const cells[], outcome *const out[])
 {
     w->engine->try(w->work, w, n, cells, out);
 }

@@ -12,7 +12,7 @@ typedef struct {
     int lanes;
     size_t size;                        /* of what it works in, which begins as zeros */
     void (*try)(void *work, const loewner *w, int n, const cv_cell *const cells[],
-                loewner_outcome *const out[]);
+                outcome *const out[]);
 } engine;
 
 extern const engine engine_scalar, engine_baseline, engine_avx2, engine_avx512;     /* three.h */

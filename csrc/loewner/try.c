@@ -54,7 +54,7 @@ typedef struct {
 static int points_of(const batch *w, int k) { return w->last[k] - w->first[k] + 1; }
 
 /* Tries to prove the prisms whose turn it is with the orbits as far as they are followed. */
-static void attempt(batch *w, mask turn, progress s[], loewner_outcome *const out[], mask *going)
+static void attempt(batch *w, mask turn, progress s[], outcome *const out[], mask *going)
 {
     const mask contradict = witness(w, turn);
 
@@ -116,7 +116,7 @@ static int worst_of(const batch *w, int k)
    contradiction is nothing, and near it these columns would be cut for ever, while a longer orbit,
    whose end another has made too wide, would contradict plainly: that one must not lag behind. */
 static void blame(const batch *w, int k, const progress *s, const cv_cell *cell,
-                  loewner_outcome *out)
+                  outcome *out)
 {
     const loewner *const root = w->root;
     const int widest = widest_at_ends(w, k);
@@ -139,7 +139,7 @@ static void blame(const batch *w, int k, const progress *s, const cv_cell *cell,
 /* All orbits grow by a point at a time, and are tried at the lengths of one sequence, so that the
    lanes keep step; one that has ended waits for the next of them. */
 static void follow_and_attempt(batch *w, mask going, int n, const cv_cell *const cells[],
-                               progress s[], loewner_outcome *const out[])
+                               progress s[], outcome *const out[])
 {
     for (int points = 1, next = 1; any(going); points++) {
         mask turn = none();
@@ -163,7 +163,7 @@ static void follow_and_attempt(batch *w, mask going, int n, const cv_cell *const
 }
 
 static void try_prisms(void *work, const loewner *root, int n, const cv_cell *const cells[],
-                       loewner_outcome *const out[])
+                       outcome *const out[])
 {
     batch *const w = work;
     progress s[LANES] = { { 0 } };

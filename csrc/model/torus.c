@@ -10,9 +10,10 @@
    The right side is convex in t; W grows with these coefficients in the Loewner order, and trace and
    largest eigenvalue are convex and grow with W.  So over a rectangle about v what they say of W is
    largest at a corner.  docs/proof.md, section 4. */
+#include "model/patch.h"
 #include "model/torus.h"
 
-enum { MOST_WAVES = 18, CELLS = 20000, DEPTH = 100 };
+enum { CELLS = 20000, DEPTH = 100 };
 static const double NEAR = 5e-7, CLOSER = 1e-3, PI = 0x1.921fb54442d19p+1;  /* not less than pi */
 
 /* A wave as cells see it: their coordinates are combinations of the angles of which it feels so

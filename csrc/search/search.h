@@ -1,25 +1,28 @@
-/* search.h - a search, as its two files see it: tree.c grows it, setup.c makes all ready. */
+/* search.h - a search, as its files see it: setup.c makes all ready, tree.c grows the tree, and
+   lookahead.c tries prisms, some of them before their turn. */
 #ifndef CONVERSE_SEARCH_H
 #define CONVERSE_SEARCH_H
 
-#include "loewner/loewner.h"
-#include "thesis/unit.h"
+#include <stddef.h>
 
-/* A prism that was looked at before its turn in preorder comes, method Loewner. */
+#include "search/method.h"
+
+enum { INDEX_BITS = 61 };               /* cuts along one axis that a cell's index can hold */
+
+/* A prism that was looked at, perhaps before its turn in preorder comes. */
 typedef struct {
     cv_cell cell;
-    loewner_outcome outcome;
+    outcome outcome;
     int known, skipped;                 /* was it tried, or need not be? */
     int settled;                        /* is all that it was cut into known, too? */
     int halves[2];                      /* of notes, lower and upper; -1: none */
 } note;
 
 struct cv_search {
-    Runit *exact;                       /* method thesis */
-    unit *quick;
-    loewner *sharp;                     /* method Loewner */
+    const method *method;
+    void *work;                         /* the method's */
+    precision precision;
     patch problem;
-    box root, prism;                    /* method thesis: all, and the cell at hand */
     cv_cell *stack;
     int *noted;                         /* of each cell on the stack: its note, or -1 */
     int pending, allocated;             /* cells on the stack; room for */
@@ -30,9 +33,35 @@ struct cv_search {
     size_t length, capacity;
     cv_counts counts, before;           /* before: as it was when the node at hand was begun */
     cv_history history;
-    apm_t constants[N_CONSTANTS], t[2];
-    int method, dp, depth, stubborn, as_printed, symmetric, at_once;
+    apm_t constants[N_CONSTANTS];
+    int depth, stubborn, symmetric, at_once;
     int prepared, spoilt, last_steps, status;        /* spoilt: setting up was broken off */
 };
+
+static inline int all_cuts(const cv_cell *c)
+{
+    return c->cuts[0] + c->cuts[1] + c->cuts[2] + c->cuts[3] + c->cuts[4];
+}
+
+/* The cell becomes the upper of its halves across axis. */
+static inline void split_cell(cv_cell *upper, int axis, cv_cell *lower)
+{
+    upper->cuts[axis]++;
+    upper->index[axis] *= 2;
+    *lower = *upper;
+    upper->index[axis]++;
+}
+
+/* tree.c: may the cell be cut again across axis; may it be skipped, since its mirror image will do?
+ */
+int may_halve(const cv_search *s, const cv_cell *c, int axis);
+int may_skip(const cv_search *s, const cv_cell *c);
+
+/* lookahead.c: room for the notes of a step, or CV_ENOMEM; what is known of the cell on top of the
+   stack, which is tried if need be; and when it had its turn the note is no longer needed. */
+int make_room_for_notes(cv_search *s);
+const note *note_on_top(cv_search *s);
+void forget_note(cv_search *s, const note *n);
+void forget_all_notes(cv_search *s);
 
 #endif

@@ -15,31 +15,7 @@
 #include "arith/machine.h"
 #include "search/search.h"
 
-enum { AXES = 5, V0 = 0, V1 = 1, FINEST = 61 };         /* of a cell; cuts that its index can hold */
-
 static const cv_cell whole = { { 0, 0, 0, 0, 0 }, { 0, 0, 0, 0, 0 }, 0 };
-
-static int all_cuts(const cv_cell *c)
-{
-    return c->cuts[0] + c->cuts[1] + c->cuts[2] + c->cuts[3] + c->cuts[4];
-}
-
-/* s->prism = the cell of a search that cuts v0 and v1 only, exactly. */
-static void set_box(cv_search *s, const cv_cell *c)
-{
-    box *b = &s->prism;
-
-    for (int axis = V0; axis <= V1; axis++) {
-        apm_t *centre = &b->centre[3 + axis], *half = &b->half[3 + axis];
-        apm_set(*half, s->root.half[3 + axis]);
-        for (int k = 0; k < c->cuts[axis]; k++)
-            apm_mul_si(*half, *half, 5);
-        apm_scale(*half, *half, -c->cuts[axis]);
-        apm_mul_si(*centre, *half, 2 * (long)c->index[axis] + 1 - (1L << c->cuts[axis]));
-        apm_add(*centre, *centre, s->root.centre[3 + axis]);
-    }
-    b->n_cuts = all_cuts(c);
-}
 
 static int room_on_stack(cv_search *s, int allocated)
 {
@@ -72,15 +48,7 @@ static int make_room(cv_search *s)
     }
     if (s->pending + 1 >= s->allocated && room_on_stack(s, 2 * s->allocated + 64) != CV_OK)
         return CV_ENOMEM;
-    if (s->sharp != NULL && s->n_notes + s->pending + 2 * MOST_LANES > s->allocated_notes) {
-        const int allocated = 2 * s->allocated_notes + s->pending + 64;
-        note *const notes = realloc(s->notes, (size_t)allocated * sizeof *notes);
-        if (notes == NULL)
-            return CV_ENOMEM;
-        s->notes = notes;
-        s->allocated_notes = allocated;
-    }
-    return CV_OK;
+    return make_room_for_notes(s);
 }
 
 /* Counts a leaf of so many cuts. */
@@ -102,27 +70,13 @@ static void leaf(cv_search *s, char kind)
     s->tree[s->length] = kind;
     s->steps[s->length++] = s->last_steps;
     count_leaf(s, kind, all_cuts(&s->stack[--s->pending]));
-    if (kind == 'U') {
-        if (!s->stubborn)
-            s->status = CV_OK;          /* one prism too hard, and all is lost */
-    }
-    if (s->pending == 0)
-        s->status = CV_OK;
+    if (s->pending == 0 || (kind == 'U' && !s->stubborn))
+        s->status = CV_OK;              /* the search has ended: nothing is left, or no theorem */
 }
 
-/* May the cell be cut again across axis? */
-static int may_cut(const cv_search *s, const cv_cell *c, int axis)
+int may_halve(const cv_search *s, const cv_cell *c, int axis)
 {
-    return all_cuts(c) < s->depth && c->cuts[axis] < FINEST;
-}
-
-/* The cell becomes the upper of its halves across axis. */
-static void split(cv_cell *upper, int axis, cv_cell *lower)
-{
-    upper->cuts[axis]++;
-    upper->index[axis] *= 2;
-    *lower = *upper;
-    upper->index[axis]++;
+    return all_cuts(c) < s->depth && c->cuts[axis] < INDEX_BITS;
 }
 
 /* Cuts the cell on top of the stack in half, the lower half to come first. */
@@ -131,7 +85,7 @@ static void halve(cv_search *s, int axis)
     cv_cell *upper = &s->stack[s->pending - 1], *lower = upper + 1;
 
     s->counts.cuts++;
-    split(upper, axis, lower);
+    split_cell(upper, axis, lower);
     s->noted[s->pending - 1] = s->noted[s->pending] = -1;
     s->pending++;
 }
@@ -140,7 +94,7 @@ static void halve(cv_search *s, int axis)
    not help.  Thesis: refinePrism. */
 static void cut(cv_search *s, int axis)
 {
-    if (axis < 0 || !may_cut(s, &s->stack[s->pending - 1], axis)) {
+    if (axis < 0 || !may_halve(s, &s->stack[s->pending - 1], axis)) {
         leaf(s, 'U');
         return;
     }
@@ -153,7 +107,7 @@ static void cut(cv_search *s, int axis)
    all the data of the problem are symmetric so is the set of minimizing states: of two mirror
    images one will do, and the prisms wholly on the side v1 >= v0 are skipped.  Their mirror
    images are covered by the prisms that are not.  Thesis: consultTree, section 3.4.4. */
-static int may_skip(const cv_search *s, const cv_cell *c)
+int may_skip(const cv_search *s, const cv_cell *c)
 {
     const int k = c->cuts[V0], l = c->cuts[V1];
 
@@ -163,148 +117,51 @@ static int may_skip(const cv_search *s, const cv_cell *c)
                  : c->index[V1] >= (c->index[V0] + 1) << (l - k);
 }
 
-/* What the try of a prism came to: proved, or to be cut across axis. */
-static void conclude(cv_search *s, const verdict *v, int axis)
+/* Adds a try to the statistics; ends or cuts the prism on top of the stack, the tried one. */
+static void conclude(cv_search *s, const outcome *out)
 {
+    const verdict *const v = &out->v;
+    cv_counts *const counts = &s->counts;
+
+    counts->quick_tries += out->quick_tries;
+    counts->tries += out->tries;
+    counts->Rtries += out->Rtries;
+    for (int j = 0; j < 3; j++)
+        counts->ll_used[j] += out->ll_used[j];
+    if (out->steps > counts->max_steps)
+        counts->max_steps = out->steps;
+    s->stack[s->pending - 1].from = out->from;
     s->last_steps = v->nsteps;
     if (!v->no_tori) {
-        s->counts.reasons[v->reason]++;
-        cut(s, axis);
+        counts->reasons[v->reason]++;
+        cut(s, out->axis);
         return;
     }
-    if (v->nsteps > s->counts.max_NTsteps)
-        s->counts.max_NTsteps = v->nsteps;
+    if (out->Rtries && v->by_trace)
+        counts->HermSuccess++;
+    else if (out->Rtries)
+        counts->LLSuccess++;
+    if (v->nsteps > counts->max_NTsteps)
+        counts->max_NTsteps = v->nsteps;
     leaf(s, 'P');
-}
-
-/* ---- method Loewner: several prisms are tried at a time, some of them before their turn */
-
-static int new_note(cv_search *s, const cv_cell *cell)
-{
-    const int id = s->free_note >= 0 ? s->free_note : s->n_notes++;
-    note *const n = &s->notes[id];
-
-    if (id == s->free_note)
-        s->free_note = n->halves[0];
-    *n = (note){ .cell = *cell, .halves = { -1, -1 } };
-    return id;
-}
-
-/* Adds what is not yet known of a prism and those it was cut into to the list, in preorder.
-   Returns whether all is known. */
-static int list_unknown(cv_search *s, int id, int list[], int *n, int most)
-{
-    note *const p = &s->notes[id];
-
-    if (p->settled)
-        return 1;
-    if (!p->known)
-        p->known = p->skipped = may_skip(s, &p->cell);
-    p->settled = p->known;
-    if (!p->known)
-        list[(*n)++] = id;
-    for (int k = 0; k < 2 && p->halves[k] >= 0; k++)
-        p->settled &= *n < most && list_unknown(s, p->halves[k], list, n, most);
-    return p->settled;
-}
-
-/* Tries the first prisms of those in line, as many as go at once. */
-static void look_ahead(cv_search *s)
-{
-    const int lanes = loewner_lanes(s->sharp);
-    const cv_cell *cells[MOST_LANES];
-    loewner_outcome *out[MOST_LANES];
-    int list[MOST_LANES], n = 0;
-
-    for (int j = s->pending - 1; j >= 0 && n < lanes; j--) {
-        if (s->noted[j] < 0)
-            s->noted[j] = new_note(s, &s->stack[j]);
-        list_unknown(s, s->noted[j], list, &n, lanes);
-    }
-    for (int k = 0; k < n; k++) {
-        cells[k] = &s->notes[list[k]].cell;
-        out[k] = &s->notes[list[k]].outcome;
-    }
-    if (n > 0)
-        loewner_try(s->sharp, n, cells, out);
-    for (int k = 0; k < n; k++) {
-        note *const p = &s->notes[list[k]];
-        const int axis = p->outcome.axis;
-        p->known = 1;
-        if (!p->outcome.v.no_tori && axis >= 0 && may_cut(s, &p->cell, axis)) {
-            cv_cell upper = p->cell, lower;
-            upper.from = p->outcome.from;
-            split(&upper, axis, &lower);
-            p->halves[0] = new_note(s, &lower);
-            p->halves[1] = new_note(s, &upper);
-        }
-    }
-}
-
-/* What is on top of the list gets its turn. */
-static void take_note(cv_search *s)
-{
-    const int top = s->pending - 1;
-
-    if (s->noted[top] < 0 || !s->notes[s->noted[top]].known)
-        look_ahead(s);
-    note *const n = &s->notes[s->noted[top]];
-    if (n->skipped) {
-        leaf(s, 'S');
-    } else {
-        const int lower = n->halves[0], upper = n->halves[1];
-        s->counts.tries++;
-        s->stack[top].from = n->outcome.from;
-        conclude(s, &n->outcome.v, n->outcome.axis);
-        if (s->pending > top + 1) {
-            s->noted[top + 1] = lower;
-            s->noted[top] = upper;
-        }
-    }
-    n->halves[0] = s->free_note;
-    s->free_note = (int)(n - s->notes);
 }
 
 /* One prism of the list: skip it, prove it, cut it or give it up.  Thesis: main. */
 static void decide(cv_search *s)
 {
-    cv_cell *c = &s->stack[s->pending - 1];
-    const box *b = &s->prism;
-    verdict v;
+    const int top = s->pending - 1;
+    const note *const n = note_on_top(s);
 
     s->last_steps = 0;
-    if (s->sharp != NULL) {
-        take_note(s);
-        return;
-    }
-    if (may_skip(s, c)) {
+    if (n->skipped)
         leaf(s, 'S');
-        return;
+    else
+        conclude(s, &n->outcome);
+    if (s->pending > top + 1) {
+        s->noted[top + 1] = n->halves[0];
+        s->noted[top] = n->halves[1];
     }
-    set_box(s, c);
-    s->counts.quick_tries++;
-    quick_try(s->quick, b, &v);
-    if (v.no_tori) {
-        s->counts.tries++;
-        try_prism(s->quick, b, &v);
-        for (int j = 0; j < 3; j++)
-            s->counts.ll_used[j] += v.ll_used[j];
-        if (v.nsteps > s->counts.max_steps)
-            s->counts.max_steps = v.nsteps;
-    }
-    if (v.no_tori) {
-        s->counts.Rtries++;
-        Rtry_prism(s->exact, b, &v);
-        if (!v.no_tori && v.reason != CV_REASON_ARITHMETIC && v.reason != CV_REASON_SINGULAR)
-            v.reason = CV_REASON_DISAGREE;
-    }
-    if (v.no_tori) {
-        if (v.by_trace)
-            s->counts.HermSuccess++;
-        else
-            s->counts.LLSuccess++;
-    }
-    conclude(s, &v, apm_cmp(b->half[4], b->half[3]) > 0 ? V1 : V0);     /* the wider; ties to v0 */
+    forget_note(s, n);
 }
 
 /* The class of a cell: logarithmic, two to an octave. */
@@ -394,7 +251,7 @@ int cv_restart(cv_search *s, int n, const cv_cell *cells)
         return CV_EARGUMENT;
     for (int j = 0; j < n; j++)
         for (int axis = 0; axis < AXES; axis++)
-            if (cells[j].cuts[axis] < 0 || cells[j].cuts[axis] > FINEST ||
+            if (cells[j].cuts[axis] < 0 || cells[j].cuts[axis] > INDEX_BITS ||
                 cells[j].index[axis] >> cells[j].cuts[axis] != 0)
                 return CV_EARGUMENT;
     if (n + 1 > s->allocated && room_on_stack(s, n + 1) != CV_OK)
@@ -403,8 +260,7 @@ int cv_restart(cv_search *s, int n, const cv_cell *cells)
         s->stack[j] = cells[n - 1 - j];
         s->noted[j] = -1;
     }
-    s->n_notes = 0;
-    s->free_note = -1;
+    forget_all_notes(s);
     s->pending = n;
     s->length = 0;
     memset(&s->counts, 0, sizeof s->counts);
@@ -416,7 +272,7 @@ int cv_restart(cv_search *s, int n, const cv_cell *cells)
 /* The nodes of a tree that was grown before are counted, and leave their untried prisms. */
 static int take_up(cv_search *s, const char *tree, size_t length, cv_cell **untried, int *n)
 {
-    const int axes = s->method == CV_THESIS ? 2 : 2 + s->problem.n_parameters;
+    const int axes = s->method->axes(&s->problem);
     int allocated = 0;
 
     for (size_t j = 0; j < length; j++) {
@@ -424,7 +280,7 @@ static int take_up(cv_search *s, const char *tree, size_t length, cv_cell **untr
         if (s->pending == 0 || make_room(s) != CV_OK)
             return s->pending == 0 ? CV_EARGUMENT : CV_ENOMEM;
         cv_cell *const c = &s->stack[s->pending - 1];
-        if (axis >= 0 && axis < axes && may_cut(s, c, axis)) {
+        if (axis >= 0 && axis < axes && may_halve(s, c, axis)) {
             halve(s, axis);
             continue;
         }

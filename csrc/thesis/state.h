@@ -6,7 +6,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "converse.h"
 #include "num.h"
 #include "arith/sine.h"
 #include "arith/special.h"

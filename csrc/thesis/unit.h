@@ -2,7 +2,7 @@
 #ifndef CONVERSE_UNIT_H
 #define CONVERSE_UNIT_H
 
-#include "arith/apm.h"
+#include "search/method.h"
 
 /* A prism of the list: {parameters} x {x*} x {possible successors}.  Order: a, b, c, v0, v1. */
 typedef struct {
@@ -10,17 +10,6 @@ typedef struct {
     apm_t xstar[2];
     int n_cuts;
 } box;
-
-typedef struct {
-    int no_tori;              /* proved (by this arithmetic) */
-    int reason;               /* CV_REASON_... if not */
-    int nsteps;               /* length of the orbit followed */
-    int by_trace;             /* proved by the trace, not by the least eigenvalue */
-    int ll_used[3];           /* how often the least eigenvalue's best bound was CV_BY_... */
-} verdict;
-
-/* The constants of the theorem: T, Tr_-, Tr_+, B, lambda_-min, lambda_-max. */
-enum { C_T, C_TRACE_MIN, C_TRACE_MAX, C_B, C_LAM_MIN, C_LAM_MAX, N_CONSTANTS };
 
 #define DECLARE_UNIT(R)                                                                        \
     typedef struct R##unit R##unit;                                                            \
@@ -39,10 +28,6 @@ DECLARE_UNIT()
 /* quick_try: may the centre's orbit, in double precision, be a minimizing one?  (follow.c,
    in the double instance only) */
 void quick_try(unit *u, const box *b, verdict *v);
-
-/* region.c: centre +- half, in units of pi, becomes an interval in radians that encloses it.
-   pi: cut off after dp places, to which the results are rounded. */
-void to_radians(apm_t centre, apm_t half, const apm_t pi, long dp);
 
 /* start.c: where the trace, and where the least eigenvalue of beta attains its minimum, roughly.
    Nothing rigorous depends on the result. */

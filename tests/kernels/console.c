@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "search/search.h"
+#include "thesis/unit.h"
 
 enum { MAX_DP = 100000, MAX_IN = 64, MAX_OUT = 900 };
 
@@ -64,7 +65,7 @@ int search_lanes(const void *search)
 {
     const cv_search *const s = search;
 
-    return s->sharp != NULL ? loewner_lanes(s->sharp) : 1;
+    return s->method->lanes(s->work);
 }
 
 int search_symmetric(const void *search) { return ((const cv_search *)search)->symmetric; }

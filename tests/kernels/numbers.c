@@ -5,7 +5,6 @@
 #include "arith/sine.h"
 #include "arith/special.h"
 #include "console.h"
-#include "converse.h"
 #include "torus.h"
 #include "thesis/unit.h"
 

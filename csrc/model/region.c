@@ -1,5 +1,5 @@
 /* region.c - the region of successors in radians. */
-#include "unit.h"
+#include "model/patch.h"
 
 /* An enclosure of the region meant, with pi cut off.  The search takes a pi that is cut off well
    before the errors of sines begin.  So the centres of prisms lie a little below the multiples of

@@ -1,0 +1,75 @@
+/* method.c - the sharper method as a search sees it. */
+#include "loewner.h"
+#include "model/torus.h"
+#include "start.h"
+
+/* The potential in doubles. */
+typedef struct { double phase[MOST_WAVES], p[MOST_WAVES]; } numbers;
+
+/* In the middle, or at_end where the parameters are 1. */
+static waves potential_of(const patch *p, int at_end, numbers *room)
+{
+    for (int i = 0; i < p->n_waves; i++)
+        room->phase[i] = apm_get_d(p->phase[i]);
+    patch_amplitudes(p, at_end, room->p);
+    return (waves){ p->n_waves, p->k, room->phase, room->p };
+}
+
+static int accepts(const patch *p, const precision *how)
+{
+    (void)p;
+    return how->as_printed ? CV_EARGUMENT : CV_OK;
+}
+
+static void choose_start(const patch *p, int symmetric, double x[2])
+{
+    numbers room;
+    const waves v = potential_of(p, 0, &room);
+
+    loewner_start(&v, symmetric, x);
+}
+
+/* Does the theorem hold at once, and for which parameters?  See converse.h. */
+static int find_at_once(const loewner *w, const patch *p)
+{
+    const int one = p->n_parameters == 1;
+    numbers room;
+    const waves v = potential_of(p, one, &room);
+    double x[2];
+
+    if (!p->odd)
+        return 0;
+    loewner_lowest(&v, x);
+    return loewner_at_once(w, x, 0) ? 1 : one && loewner_at_once(w, x, 1) ? 2 : 0;
+}
+
+static int prepare(void **work, const patch *p, const precision *how, apm_t constants[N_CONSTANTS],
+                   int *at_once)
+{
+    loewner *const w = *work = loewner_new(p, 1);
+
+    (void)how;
+    if (w == NULL)
+        return CV_ENOMEM;
+    if (apm_set_d(constants[C_B], loewner_largest(w)) != APM_OK)
+        return CV_EARITHMETIC;
+    apm_round(constants[C_B], constants[C_B], TORUS_PLACES, APM_UP);
+    *at_once = find_at_once(w, p);
+    return CV_OK;
+}
+
+static void free_loewner(void *work) { loewner_free(work); }
+static int axes(const patch *p) { return 2 + p->n_parameters; }
+static int lanes(const void *work) { return loewner_lanes(work); }
+
+static void try_cells(void *work, int n, const cv_cell *const cells[], outcome *const out[])
+{
+    loewner_try(work, n, cells, out);
+    for (int k = 0; k < n; k++)
+        out[k]->tries = 1;
+}
+
+const method method_loewner = {
+    .accepts = accepts, .choose_start = choose_start, .start_format = "%.6f",
+    .prepare = prepare, .free = free_loewner, .axes = axes, .lanes = lanes, .try = try_cells
+};

@@ -1,0 +1,191 @@
+/* patch.c - a problem is read, and what it is. */
+#include <stdlib.h>
+
+#include "arith/special.h"
+#include "model/patch.h"
+
+enum { MOST = 300 };                    /* no number of a problem is beyond 10^MOST */
+enum { MOST_K = 100 };                  /* of a wave, and of the frame */
+enum { PHASE_PLACES = 50 };             /* of pi, for phases */
+
+static void for_each(patch *p, void (*what)(apm_t))
+{
+    for (int i = 0; i < MOST_WAVES; i++) {
+        what(p->phase[i]);
+        what(p->amplitude[i]);
+        for (int m = 0; m < PARAMETERS; m++)
+            what(p->part[i][m]);
+    }
+    for (int j = 0; j < 2; j++) {
+        what(p->angle[j]);
+        what(p->half[j]);
+        what(p->xstar[j]);
+    }
+}
+
+void patch_init(patch *p) { for_each(p, apm_init); }
+void patch_clear(patch *p) { for_each(p, apm_clear); }
+
+/* ---- reading */
+
+/* A number of the problem. */
+static int read_number(apm_t x, const char *text)
+{
+    apm_t size, most;
+    int status = CV_OK;
+
+    apm_init(size);
+    apm_init(most);
+    apm_set_si(most, 1, MOST);
+    if (apm_set_str(x, text) != APM_OK)
+        status = CV_ENUMBER;
+    apm_abs(size, x);
+    if (apm_cmp(size, most) > 0)
+        status = CV_ENUMBER;
+    apm_clear(size);
+    apm_clear(most);
+    return status;
+}
+
+/* A phase in units of pi becomes one in radians, without whole turns. */
+static void reduce(apm_t phase)
+{
+    apm_t t;
+
+    apm_init(t);
+    apm_mul_si(t, phase, 5);
+    apm_scale(t, t, -1);
+    apm_floor(t, t);
+    apm_mul_si(t, t, -2);
+    apm_add(phase, phase, t);
+    apm_pi(t, PHASE_PLACES);
+    apm_mul(phase, phase, t);
+    apm_clear(t);
+}
+
+static int read_wave(patch *p, int i, const cv_wave *wave)
+{
+    int status = read_number(p->phase[i], wave->phase);
+
+    for (int j = 0; j < 2; j++)
+        p->k[i][j] = wave->k[j];
+    if (abs(wave->k[0]) > MOST_K || abs(wave->k[1]) > MOST_K || (!wave->k[0] && !wave->k[1]))
+        status = CV_EARGUMENT;
+    if (status == CV_OK)
+        status = read_number(p->amplitude[i], wave->amplitude);
+    for (int m = 0; m < p->n_parameters && status == CV_OK; m++)
+        status = read_number(p->part[i][m], wave->part[m]);
+    if (status == CV_OK)
+        reduce(p->phase[i]);
+    return status;
+}
+
+int patch_read(patch *p, const cv_problem *given)
+{
+    const int *const f = given->frame;
+    int status = CV_OK;
+
+    if (given->n_waves < 1 || given->n_waves > MOST_WAVES || given->n_parameters < 0 ||
+        given->n_parameters > PARAMETERS)
+        return CV_EARGUMENT;
+    for (int j = 0; j < 4; j++) {
+        if (f[j] < -MOST_K || f[j] > MOST_K)
+            return CV_EARGUMENT;
+        p->frame[j] = f[j];
+    }
+    if (abs(f[0] * f[3] - f[1] * f[2]) != 1)
+        return CV_EARGUMENT;
+    p->n_waves = given->n_waves;
+    p->n_parameters = given->n_parameters;
+    p->odd = given->odd;
+    for (int i = 0; i < p->n_waves && status == CV_OK; i++)
+        status = read_wave(p, i, &given->waves[i]);
+    for (int j = 0; j < 2 && status == CV_OK; j++) {
+        status = read_number(p->angle[j], given->angle[j]);
+        if (status == CV_OK)
+            status = read_number(p->half[j], given->half[j]);
+        if (status == CV_OK && apm_sgn(p->half[j]) < 0)
+            status = CV_EARGUMENT;
+    }
+    return status;
+}
+
+/* ---- what it is */
+
+int is_identity(const int frame[4])
+{
+    return frame[0] == 1 && frame[1] == 0 && frame[2] == 0 && frame[3] == 1;
+}
+
+int thesis_waves(const patch *p)
+{
+    int same = p->n_waves == 3;
+
+    for (int i = 0; i < 3 && same; i++)
+        same = p->k[i][0] == (i != 1) && p->k[i][1] == (i != 0) &&
+               apm_sgn(p->phase[i]) == 0;
+    return same;
+}
+
+int thesis_parameters(const patch *p)
+{
+    int good = thesis_waves(p) && p->n_parameters == 3;
+
+    for (int i = 0; i < 3 && good; i++)
+        for (int m = 0; m < 3; m++)
+            good = good && (m == i ? apm_sgn(p->part[i][m]) >= 0 : apm_sgn(p->part[i][m]) == 0);
+    return good;
+}
+
+/* Does the exchange of the coordinates leave these amplitudes, one of each wave, alone?  All that
+   waves of one kind add up to is what counts. */
+static int exchangeable(const patch *p, const apm_struct *const amplitude[MOST_WAVES])
+{
+    int good = 1;
+    apm_t sum;
+
+    apm_init(sum);
+    for (int i = 0; i < p->n_waves; i++) {
+        apm_set_si(sum, 0, 0);
+        for (int j = 0; j < p->n_waves; j++) {
+            if (apm_cmp(p->phase[i], p->phase[j]) != 0)
+                continue;
+            if (p->k[i][0] == p->k[j][0] && p->k[i][1] == p->k[j][1])
+                apm_add(sum, sum, amplitude[j]);
+            if (p->k[i][0] == p->k[j][1] && p->k[i][1] == p->k[j][0])
+                apm_sub(sum, sum, amplitude[j]);
+        }
+        good = good && apm_sgn(sum) == 0;
+    }
+    apm_clear(sum);
+    return good;
+}
+
+/* Where the parameters are those of the waves the first two change places; else none does. */
+int patch_symmetric(const patch *p)
+{
+    const apm_struct *vector[MOST_WAVES];
+    int good = is_identity(p->frame) && apm_cmp(p->angle[0], p->angle[1]) == 0 &&
+               apm_cmp(p->half[0], p->half[1]) == 0;
+
+    for (int i = 0; i < p->n_waves; i++)
+        vector[i] = p->amplitude[i];
+    good = good && exchangeable(p, vector);
+    if (good && thesis_parameters(p))
+        return apm_cmp(p->part[0][0], p->part[1][1]) == 0;
+    for (int m = 0; m < p->n_parameters && good; m++) {
+        for (int i = 0; i < p->n_waves; i++)
+            vector[i] = p->part[i][m];
+        good = exchangeable(p, vector);
+    }
+    return good;
+}
+
+void patch_amplitudes(const patch *p, int at_end, double to[MOST_WAVES])
+{
+    for (int i = 0; i < p->n_waves; i++) {
+        to[i] = apm_get_d(p->amplitude[i]);
+        for (int m = 0; m < p->n_parameters && at_end; m++)
+            to[i] += apm_get_d(p->part[i][m]);
+    }
+}

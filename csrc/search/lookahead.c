@@ -1,0 +1,109 @@
+/* lookahead.c - prisms are tried several at a time, some of them before their turn.
+
+   A method may be quickest with several prisms at a time (method.h: lanes).  So the first of those
+   pending are tried together, and what became of them is noted.  Where one was cut its halves are
+   noted, too, and may be tried with those that follow.  Its turn comes in preorder all the same, and
+   only then does it count: since nothing depends on other prisms, the tree is as it would be with
+   one at a time. */
+#include <stdlib.h>
+
+#include "search/search.h"
+
+int make_room_for_notes(cv_search *s)
+{
+    if (s->n_notes + s->pending + 2 * MOST_LANES > s->allocated_notes) {
+        const int allocated = 2 * s->allocated_notes + s->pending + 64;
+        note *const notes = realloc(s->notes, (size_t)allocated * sizeof *notes);
+        if (notes == NULL)
+            return CV_ENOMEM;
+        s->notes = notes;
+        s->allocated_notes = allocated;
+    }
+    return CV_OK;
+}
+
+static int new_note(cv_search *s, const cv_cell *cell)
+{
+    const int id = s->free_note >= 0 ? s->free_note : s->n_notes++;
+    note *const n = &s->notes[id];
+
+    if (id == s->free_note)
+        s->free_note = n->halves[0];
+    *n = (note){ .cell = *cell, .halves = { -1, -1 } };
+    return id;
+}
+
+/* Adds what is not yet known of a prism and those it was cut into to the list, in preorder.
+   Returns whether all is known. */
+static int list_unknown(cv_search *s, int id, int list[], int *n, int most)
+{
+    note *const p = &s->notes[id];
+
+    if (p->settled)
+        return 1;
+    if (!p->known)
+        p->known = p->skipped = may_skip(s, &p->cell);
+    p->settled = p->known;
+    if (!p->known)
+        list[(*n)++] = id;
+    for (int k = 0; k < 2 && p->halves[k] >= 0; k++)
+        p->settled &= *n < most && list_unknown(s, p->halves[k], list, n, most);
+    return p->settled;
+}
+
+/* Tries the first prisms of those in line, as many as the method takes at once.  Where a try is
+   broken off its note is as if it had not begun. */
+static void look_ahead(cv_search *s)
+{
+    const int lanes = s->method->lanes(s->work);
+    const cv_cell *cells[MOST_LANES];
+    outcome *out[MOST_LANES];
+    int list[MOST_LANES], n = 0;
+
+    for (int j = s->pending - 1; j >= 0 && n < lanes; j--) {
+        if (s->noted[j] < 0)
+            s->noted[j] = new_note(s, &s->stack[j]);
+        list_unknown(s, s->noted[j], list, &n, lanes);
+    }
+    for (int k = 0; k < n; k++) {
+        cells[k] = &s->notes[list[k]].cell;
+        out[k] = &s->notes[list[k]].outcome;
+    }
+    if (n > 0)
+        s->method->try(s->work, n, cells, out);
+    for (int k = 0; k < n; k++) {
+        note *const p = &s->notes[list[k]];
+        const int axis = p->outcome.axis;
+        p->known = 1;
+        if (!p->outcome.v.no_tori && axis >= 0 && may_halve(s, &p->cell, axis)) {
+            cv_cell upper = p->cell, lower;
+            upper.from = p->outcome.from;
+            split_cell(&upper, axis, &lower);
+            p->halves[0] = new_note(s, &lower);
+            p->halves[1] = new_note(s, &upper);
+        }
+    }
+}
+
+const note *note_on_top(cv_search *s)
+{
+    const int top = s->pending - 1;
+
+    if (s->noted[top] < 0 || !s->notes[s->noted[top]].known)
+        look_ahead(s);
+    return &s->notes[s->noted[top]];
+}
+
+void forget_note(cv_search *s, const note *n)
+{
+    const int id = (int)(n - s->notes);
+
+    s->notes[id].halves[0] = s->free_note;
+    s->free_note = id;
+}
+
+void forget_all_notes(cv_search *s)
+{
+    s->n_notes = 0;
+    s->free_note = -1;
+}

@@ -1,0 +1,61 @@
+/* method.h - what a search asks of a method of proof.  A search knows no more of it than its table:
+   csrc/thesis/method.c and csrc/loewner/method.c. */
+#ifndef CONVERSE_METHOD_H
+#define CONVERSE_METHOD_H
+
+#include "model/patch.h"
+
+enum { AXES = 5, V0 = 0, V1 = 1 };      /* of a cell: converse.h */
+enum { MOST_LANES = 8 };
+
+/* The constants of the theorem: T, Tr_-, Tr_+, B, lambda_-min, lambda_-max. */
+enum { C_T, C_TRACE_MIN, C_TRACE_MAX, C_B, C_LAM_MIN, C_LAM_MAX, N_CONSTANTS };
+
+/* What became of one try of a prism. */
+typedef struct {
+    int no_tori;                        /* proved (by this arithmetic) */
+    int reason;                         /* CV_REASON_... if not */
+    int nsteps;                         /* length of the orbit followed */
+    int by_trace;                       /* proved by the trace, not by the least eigenvalue */
+    int ll_used[3];                     /* how often its best bound was CV_BY_... */
+} verdict;
+
+/* What became of a cell. */
+typedef struct {
+    verdict v;                          /* of the last try */
+    int axis;           /* to cut the cell across if it is not proved; -1: that would not help */
+    int from;                           /* what its halves are to know: cv_cell */
+    int quick_tries, tries, Rtries;     /* made of it, each 0 or 1, for cv_counts */
+    int steps, ll_used[3];              /* of the thesis's try in doubles */
+} outcome;
+
+typedef struct { int digits, as_printed; } precision;
+
+typedef struct {
+    /* Can problems of this kind be proved, in this way?  CV_OK or CV_EARGUMENT. */
+    int (*accepts)(const patch *p, const precision *how);
+
+    /* A starting point from which the proof is short, and how it is printed, before it is read
+       again.  On the diagonal, if it may be, where V is symmetric about it. */
+    void (*choose_start)(const patch *p, int symmetric, double x[2]);
+    const char *start_format;
+
+    /* Sets up what all tries need, for a problem with angles in radians and x*.  *work: where they
+       work, set as soon as there is something to be freed.  Sets those constants that the method
+       has, and at_once (cv_at_once).  CV_OK or an error. */
+    int (*prepare)(void **work, const patch *p, const precision *how,
+                   apm_t constants[N_CONSTANTS], int *at_once);
+    void (*free)(void *work);           /* or NULL */
+
+    int (*axes)(const patch *p);        /* of a cell, that may be cut */
+    int (*lanes)(const void *work);     /* cells that are best tried at once, at most MOST_LANES */
+
+    /* Is it impossible that a minimizing orbit leads from x* to these cells?  What becomes of a
+       cell depends on itself and on cell->from, and on no other cell.  Where a stop is asked for
+       in the middle nothing is known of them. */
+    void (*try)(void *work, int n, const cv_cell *const cells[], outcome *const out[]);
+} method;
+
+extern const method method_thesis, method_loewner;
+
+#endif
