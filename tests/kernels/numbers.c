@@ -9,7 +9,7 @@
 #include "thesis/unit.h"
 
 /* What a routine returns if an operation failed. */
-static int outcome(int status) { return status == APM_OK ? CV_OK : CV_EARITHMETIC; }
+static int code_of(int status) { return status == APM_OK ? CV_OK : CV_EARITHMETIC; }
 
 typedef int routine(long dp, apm_t in[], apm_t out[]);
 
@@ -56,7 +56,7 @@ static int divide(long dp, apm_t in[], apm_t out[])     /* rounded down, up, tow
 
     for (int j = 0; j < 3 && status == APM_OK; j++)
         status = apm_div(out[j], in[0], in[1], dp, directions[j]);
-    return outcome(status);
+    return code_of(status);
 }
 
 static int root(long dp, apm_t in[], apm_t out[])       /* rounded down, up */
@@ -65,7 +65,7 @@ static int root(long dp, apm_t in[], apm_t out[])       /* rounded down, up */
 
     for (int j = 0; j < 2 && status == APM_OK; j++)
         status = apm_sqrt(out[j], in[0], dp, directions[j]);
-    return outcome(status);
+    return code_of(status);
 }
 
 static int rounded(long dp, apm_t in[], apm_t out[])    /* down, up, towards zero */
@@ -103,7 +103,7 @@ static int order(long dp, apm_t in[], apm_t out[])
 static int as_double(long dp, apm_t in[], apm_t out[])  /* what apm_get_d makes of x, exactly */
 {
     (void)dp;
-    return outcome(apm_set_d(out[0], apm_get_d(in[0])));
+    return code_of(apm_set_d(out[0], apm_get_d(in[0])));
 }
 
 /* Centre and half-width in units of pi -> the same in radians, with dp places of pi. */
@@ -145,7 +145,7 @@ static int sines_ns(long dp, apm_t in[], apm_t out[])   /* x, n -> nanoseconds o
     for (double j = 0.0; j < repeat && j < 1e9; j++)
         for (int k = 0; k < 3; k++)
             double_sincos(&t[k], &cosine[k], t[k] + cosine[k]);
-    return outcome(apm_set_d(
+    return code_of(apm_set_d(
         out[0], t[0] + t[1] + t[2] > 4.0 ? 0.0          /* never: but t is used */
                 : 1e9 * (double)(clock() - begin) / CLOCKS_PER_SEC / fmax(repeat, 1.0)));
 }
@@ -176,7 +176,7 @@ static int torus(long dp, apm_t in[], apm_t out[])
         return CV_EARGUMENT;
     for (int which = 0; which < 2 && status == APM_OK; which++)
         status = apm_set_d(out[which], torus_largest(3, waves, which));
-    return outcome(status);
+    return code_of(status);
 }
 
 /* Ranges, centre and half-widths of a rectangle -> the same over it, of beta at its mirror image. */
@@ -197,7 +197,7 @@ static int cell(long dp, apm_t in[], apm_t out[])
         return CV_EARGUMENT;
     for (int which = 0; which < 2 && status == APM_OK; which++)
         status = apm_set_d(out[which], torus_rectangle(3, waves, which, low, high));
-    return outcome(status);
+    return code_of(status);
 }
 
 static const struct { shape shape; routine *run; } kernels[] = {
