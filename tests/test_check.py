@@ -32,7 +32,7 @@ from converse.check import lockstep, ship
 from moments import PATIENCE
 from truth import STRIKE, TORTURE
 
-from converse.problem import LINE
+from converse.model.problem import LINE
 
 # Of a process without sanitizers, which may import what lies about its file.
 PLAIN = {name: value for name, value in os.environ.items()
@@ -73,7 +73,7 @@ def impatient(monkeypatch):
         def few(self, cell):
             with pytest.MonkeyPatch.context() as patch:
                 patch.setattr(check, "MAX_PIECES", min(check.MAX_PIECES, 28))
-                patch.setattr(check, "MAX_SITES", min(check.MAX_SITES, 60))
+                patch.setattr(check, "MAX_SITES", min(check.MAX_SITES, 30))
                 return excluded(self, cell)
 
         monkeypatch.setattr(check, "MAX_PIECES", 128)
