@@ -53,16 +53,15 @@ sys.exit(main())
 # In front of a sweep: it goes no further when it has written so many families.
 SWEEP_HELD = """
 import sys, time
-from converse import orbits
-file, left = sys.modules["converse.orbits.sweep"]._File, int(sys.argv.pop(1))
-add = file.add
-def add_or_wait(self, text):
+from converse.storage.files import AppendedFile
+append, left = AppendedFile.append, int(sys.argv.pop(1))
+def append_or_wait(self, text):
     global left
-    add(self, text)
+    append(self, text)
     left -= 1                                   # the header, with what was there before, is the first
     while left < 0:
         time.sleep(1)
-file.add = add_or_wait
+AppendedFile.append = append_or_wait
 """
 
 

@@ -160,7 +160,7 @@ import converse.prover.run
 looked = converse.prover.run._Run._look
 def look(self):
     looked(self)
-    if self.search.crew.running:
+    if self.search.pool.running:
         sys.setprofile(strike)
 converse.prover.run._Run._look = look
 """
@@ -176,11 +176,11 @@ def test_struck_while_a_thread_is_begun(sample):
     code = STRIKE.replace("if not frame:", "if frame:") + """
 from converse.commands.prove import main
 from converse.prover import workers
-start = workers.Crew._submit
+start = workers.WorkerPool._submit
 def start_and_be_struck(*arguments):
     sys.setprofile(strike)
     return start(*arguments)
-workers.Crew._submit = start_and_be_struck
+workers.WorkerPool._submit = start_and_be_struck
 sys.exit(main())
 """
     process = subprocess.run([sys.executable, "-c", code, "--jobs", "1", sample], stdout=subprocess.DEVNULL,
@@ -265,10 +265,10 @@ def test_a_warning_for_each_time_that_the_disk_is_full(tmp_path, monkeypatch):
     monkeypatch.setattr(keeping, "SECONDS", 0)
     monkeypatch.setattr(keeping, "SHARE", 0)
     disk = Disk()
-    with keeping.Keeper(tmp_path / "a") as keeper, pytest.warns(RuntimeWarning) as said:
+    with keeping.Backup(tmp_path / "a") as keeper, pytest.warns(RuntimeWarning) as said:
         for full in 0, 1, 1, 1, 0, 0, 1, 1:
             disk.full = full
-            keeper.keep(lambda: disk)
+            keeper.update(lambda: disk)
         assert len(said) == 2 and not any(each.category is files.NotSaved for each in said)
         assert keeper.finish(disk) == ""
         disk.full = False

@@ -18,7 +18,7 @@ import pytest
 
 from converse import ConverseError, Problem, prove, read_input
 from converse.draw import captions, plot
-from converse.draw.figure import LEFT, SIDE, WIDTH, format_of, postscript
+from converse.draw.figure import LEFT_MARGIN, SIDE, PAGE_WIDTH, format_of, postscript
 from converse.prover.tree import leaves
 
 RESOLUTION = 144                        # two pixels a point
@@ -43,7 +43,7 @@ def render(proof, directory):
     data = data[header.end():]
     rows = []
     for y in range((page_height - below - SIDE) * SCALE, (page_height - below) * SCALE):
-        row = data[3 * (y * width + LEFT * SCALE):3 * (y * width + (LEFT + SIDE) * SCALE)]
+        row = data[3 * (y * width + LEFT_MARGIN * SCALE):3 * (y * width + (LEFT_MARGIN + SIDE) * SCALE)]
         rows.append([row[x:x + 3] for x in range(0, len(row), 3)])
     return rows
 
@@ -258,7 +258,7 @@ def test_bounding_box(made_up, tmp_path, name, together, tree):
                            check=True, stderr=subprocess.PIPE).stderr.decode()
     ink = list(map(int, re.search("BoundingBox: (.*)", found).group(1).split()))
     width, height, _ = page_of(path.read_text())
-    assert width == WIDTH and min(ink) >= 1 and ink[2] < width and ink[3] < height
+    assert width == PAGE_WIDTH and min(ink) >= 1 and ink[2] < width and ink[3] < height
     assert max(ink[0], ink[1], height - ink[3]) <= 8 and width - ink[2] <= 25
 
 

@@ -19,7 +19,7 @@ from converse.draw import map_figure
 from converse.maps import region, search
 from converse.maps import map as map_module
 from converse.maps.map import AT_ONCE, OPEN, OUTSIDE, PROVED, Map
-from converse.prover.workers import ATTEMPTS, Crew
+from converse.prover.workers import ATTEMPTS, WorkerPool
 from converse.storage.files import ConverseError
 
 from moments import PATIENCE
@@ -28,16 +28,16 @@ from moments import PATIENCE
 @pytest.fixture
 def coarse(monkeypatch):
     """An estimate at few places and with little effort."""
-    monkeypatch.setattr(map_module, "GRID", {1: 4, 2: 1})
-    monkeypatch.setattr(search, "POINT", {1: 1 << 9, 2: 1 << 9})
+    monkeypatch.setattr(map_module, "ESTIMATE_GRID", {1: 4, 2: 1})
+    monkeypatch.setattr(search, "POINT_BUDGET", {1: 1 << 9, 2: 1 << 9})
 
 
 @pytest.fixture(scope="module")
 def made(tmp_path_factory):
     """A map of the plane b = 0, not very near to the frontier, and its file."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(map_module, "GRID", {1: 4, 2: 2})
-        patch.setattr(search, "POINT", {1: 1 << 9, 2: 1 << 9})
+        patch.setattr(map_module, "ESTIMATE_GRID", {1: 4, 2: 2})
+        patch.setattr(search, "POINT_BUDGET", {1: 1 << 9, 2: 1 << 9})
         path = tmp_path_factory.mktemp("map") / "map.json"
         yield maps.explore("b=0", "1.3", path=path), path
 
@@ -160,11 +160,11 @@ def test_what_reaches_to_infinity_is_at_once(made):
 
 def test_one_whole_run_or_several(coarse, tmp_path):
     """However it is divided, it ends with all that was asked for."""
-    path, runs, handed_out, give = tmp_path / "map.json", 0, [], Crew.give
+    path, runs, handed_out, give = tmp_path / "map.json", 0, [], WorkerPool.give
     found = maps.explore("c=0", "1.4", path=path, time_limit=0)
     while not found.complete:
         with pytest.MonkeyPatch.context() as patch:     # it is late when some tasks are handed out
-            patch.setattr(Crew, "give", lambda self, *task: (handed_out.append(task),
+            patch.setattr(WorkerPool, "give", lambda self, *task: (handed_out.append(task),
                                                              give(self, *task)))
             patch.setattr(search._Search, "late", property(lambda self: len(handed_out) > 8 * runs))
             handed_out, runs = [], runs + 1
@@ -180,10 +180,10 @@ def test_one_whole_run_or_several(coarse, tmp_path):
 def test_ways_are_compared_though_none_ends_in_time(monkeypatch):
     """Where c prevails the axes that follow it are the better ones, and with a small a an x* aside
     of the program's, whether or not a trial is long enough for a proof."""
-    monkeypatch.setattr(search, "TRIAL", 1 << 11)
+    monkeypatch.setattr(search, "TRIAL_BUDGET", 1 << 11)
     cell = region.Cell(0, (F(99, 200), F(1, 32)), (F(99, 200), F(1, 32)))
     ways = search._ways(region.REGIONS["b=0"][1], cell, search.native.Stop())
-    assert [frame for frame, _ in ways] == [search.SHEAR, search.SHEAR, search.PLAIN]
+    assert [frame for frame, _ in ways] == [search.SHEARED, search.SHEARED, search.IDENTITY]
     assert ways[0][1] == ("1.270796", "0.3") and ways[1][1] == ("1.570796", "0")
 
 

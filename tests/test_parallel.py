@@ -264,7 +264,7 @@ def test_dask_workers_that_join_later(proof, divided, ends, cluster):
             return submit(*args)
 
         executor.submit = submit_and_grow
-        ends(lambda self: len(self.search.crew.running) > 2)
+        ends(lambda self: len(self.search.pool.running) > 2)
         half = prove(line("0.0140", "0.0280"), method="loewner", executor=executor)
         assert not half.all_decided and submitted
 
@@ -288,7 +288,7 @@ def test_a_scheduler_that_does_not_answer_is_called_so():
     executor = Silent()
     executor._client = executor
     with pytest.warns(RuntimeWarning, match="the Dask scheduler does not answer; waiting"):
-        assert workers.Crew(executor, None).size == 0
+        assert workers.WorkerPool(executor, None).size == 0
 
 
 def test_dask_without_this_program(divided, cluster, monkeypatch):

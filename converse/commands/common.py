@@ -211,8 +211,8 @@ def ended(command, run, interrupted):
         message = "interrupted" if unsaved else "interrupted; " + interrupted()
         status = ENDED_BY + (heard or [signal.SIGINT])[0]
     except ImportError as error:        # of a late import: memory may lack to map its library
-        message, status = "a part of Python cannot be loaded (%s); give it more memory, or install " \
-                          "it anew" % error, BAD
+        message, status = "a part of Python cannot be loaded (%s); give it more memory, or " \
+                          "install it anew" % error, BAD
     except OSError as error:
         message, status = "the output cannot be written (%s)" % files.reason(error), BAD
         with contextlib.suppress(OSError):      # the interpreter must not try to flush it again

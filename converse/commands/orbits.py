@@ -20,8 +20,8 @@ from ..version import __version__
 from .common import Parser, ProgressLine, ended, say, whole_number
 
 COMMAND = "converse-orbits"
-NAMES = "trig", "poly", "ff", "froeschle", "standard"
-MANY = 10000                            # values of eps, at most
+POTENTIALS = "trig", "poly", "ff", "froeschle", "standard"
+MOST_EPS = 10000                        # values of eps
 SIZES = 300, 1200                       # q of a sweep, unless others are asked for
 STATUS = ("Exit status: 0 all was found that was asked for; 1 a state was not found, is no "
           "minimum, or is not proved though --prove was given; 2 bad usage, input or file; 129, "
@@ -53,9 +53,9 @@ def _eps(text):
     if len(ends) == 1:
         return [float(ends[0])]
     low, high, step = ends
-    if not step or not 0 <= (high - low) / step < MANY:
+    if not step or not 0 <= (high - low) / step < MOST_EPS:
         raise argparse.ArgumentTypeError("'%s' is a range of no values, or of more than %d"
-                                         % (text, MANY))
+                                         % (text, MOST_EPS))
     return [float(low + k * step) for k in range(int((high - low) / step) + 1)]
 
 
@@ -115,13 +115,13 @@ def read_potential(source, at=()):
     """One of those with a name, or that of an input file, with its parameters at these values."""
     from converse import orbits
 
-    if source in NAMES:
+    if source in POTENTIALS:
         if at:
             raise ConverseError("%s has no parameters; leave out --at" % source)
         return getattr(orbits, source)
     if not os.path.exists(source):
         raise ConverseError("'%s' is no potential and no file; there are %s, or a JSON file of "
-                            "harmonics (docs/format.md)" % (source, ", ".join(NAMES)))
+                            "harmonics (docs/format.md)" % (source, ", ".join(POTENTIALS)))
     try:
         return orbits.read_potential(source, dict(at))
     except InputError as error:
@@ -195,6 +195,13 @@ def parser():
     p.add_argument("--version", action="version", version="%s %s" % (COMMAND, __version__))
     commands = p.add_subparsers(metavar="COMMAND", required=True)
 
+    made = [p, _find_parser(commands), _sweep_parser(commands), _figures_parser(commands)]
+    for each in made:                           # -12,16/21 is no option, nor is -0.02:0:0.01
+        each._negative_number_matcher = re.compile(r"-\.?\d")
+    return p
+
+
+def _find_parser(commands):
     find = commands.add_parser(
         "find", allow_abbrev=False, epilog=STATUS, help="find the states of one type",
         description="Finds the states of one type, and says what is known of them.")
@@ -205,17 +212,21 @@ def parser():
                       "LOW:HIGH:STEP; states are followed from one to the next")
     find.add_argument("--at", type=_value, metavar="NAME=VALUE", action="append", default=[],
                       help=AT)
-    find.add_argument("--search", type=whole_number(1), metavar="N", help="look for less action than "
-                      "continuation finds, N times")
+    find.add_argument("--search", type=whole_number(1), metavar="N", help="look for less action "
+                      "than continuation finds, N times")
     find.add_argument("--prove", action="store_true", help="prove that an orbit is beside each "
                       "state, that it is a minimum, its action and its exponents")
     find.add_argument("--csv", metavar="FILE", help="write a row for each state")
     find.add_argument("-g", "--graphics", metavar="FILE", help="draw the angles and the momenta of "
                       "the states: SVG, PNG or PDF by the name")
     find.add_argument("--no-caption", action="store_true", help="leave out the figure's caption")
-    find.add_argument("--seed", type=whole_number(0), default=0, metavar="N", help="of the search (0)")
+    find.add_argument("--seed", type=whole_number(0), default=0, metavar="N",
+                      help="of the search (0)")
     find.set_defaults(run=find_states)
+    return find
 
+
+def _sweep_parser(commands):
     sweep = commands.add_parser(
         "sweep", allow_abbrev=False, epilog=STATUS, help="tabulate the states of many types",
         description="Writes a table of the states of many types at each eps or, without eps, of "
@@ -236,11 +247,15 @@ def parser():
     which.add_argument("--random", type=whole_number(1), metavar="N", help="N random types")
     sweep.add_argument("--sizes", type=_sizes, default=SIZES, metavar="LOW:HIGH", help="of q, for "
                        "--farey and --random (%d:%d)" % SIZES)
-    sweep.add_argument("--seed", type=whole_number(0), default=0, metavar="N", help="of --random (0)")
-    sweep.add_argument("--jobs", type=whole_number(1), metavar="N", help="work on N types at a time "
-                       "(default: one per core)")
+    sweep.add_argument("--seed", type=whole_number(0), default=0, metavar="N",
+                       help="of --random (0)")
+    sweep.add_argument("--jobs", type=whole_number(1), metavar="N",
+                       help="work on N types at a time (default: one per core)")
     sweep.set_defaults(run=sweep_types)
+    return sweep
 
+
+def _figures_parser(commands):
     figures = commands.add_parser(
         "figures", allow_abbrev=False, epilog=STATUS, help="draw the thesis's figures",
         description="Computes and draws the figures of the thesis's chapter 2 and Appendix A, and "
@@ -250,9 +265,7 @@ def parser():
                          help="of the figures")
     figures.add_argument("--no-caption", action="store_true", help="leave out the captions")
     figures.set_defaults(run=draw_figures)
-    for each in p, find, sweep, figures:        # -12,16/21 is no option, nor is -0.02:0:0.01
-        each._negative_number_matcher = re.compile(r"-\.?\d")
-    return p
+    return figures
 
 
 # ---- what is said

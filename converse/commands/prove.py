@@ -19,7 +19,7 @@ from .common import (REFRESH_SECONDS, Parser, ProgressLine, add_worker_options, 
                      executor_of, say, seconds, tell, whole_number)
 
 STATUS = {THEOREM: 0, UNDECIDED: 1, REGION: 3, AS_PRINTED: 4}
-KIND_NAMES = {"P": "proved", "S": "symmetric", "U": "undecided"}
+LEAF_WORDS = {"P": "proved", "S": "symmetric", "U": "undecided"}
 
 
 class ListInputs(argparse.Action):
@@ -42,11 +42,11 @@ def _decimal(text):
 def parser():
     p = Parser(prog="converse", allow_abbrev=False, description=(
         "Tries to prove that a family of symplectic maps has no invariant tori."), epilog=(
-        "Exit status: 0 a theorem; 1 undecided; 2 bad usage, input or file, or what was found could "
-        "not be saved, or the workers are gone; 3 decided for a part of "
-        "the torus only; 4 as printed, not a proof; 129, 130 or 143 ended by a signal."))
-    p.add_argument("input", nargs="?", help="input file, the thesis's or JSON, by default, and as -, "
-                   "standard input; with -r it is not needed, and must agree if given")
+        "Exit status: 0 a theorem; 1 undecided; 2 bad usage, input or file, or what was found "
+        "could not be saved, or the workers are gone; 3 decided for a part of the torus only; "
+        "4 as printed, not a proof; 129, 130 or 143 ended by a signal."))
+    p.add_argument("input", nargs="?", help="input file, the thesis's or JSON, by default, and as "
+                   "-, standard input; with -r it is not needed, and must agree if given")
     p.add_argument("-d", "--depth", type=whole_number(0), metavar="N",
                    help="give up on a prism that was cut N times (default %d; loewner: %d)"
                    % (METHODS["thesis"], METHODS["loewner"]))
@@ -87,7 +87,7 @@ def _leaf_line(leaf, points):
     """A line of -t: kind, centre and half-widths in radians, cuts, steps."""
     numbers = ["%.10g" % (x * math.pi) for x in leaf.centre + leaf.half]
     return "%-9s (%s, %s) +- (%s, %s), %d cuts, %d steps" % (
-        KIND_NAMES[leaf.kind], *numbers, leaf.depth, points)
+        LEAF_WORDS[leaf.kind], *numbers, leaf.depth, points)
 
 
 class Progress:
@@ -145,7 +145,7 @@ def _check_graphics(options):
     others = [options.input, options.backup, options.restore]
     with contextlib.suppress(AttributeError, OSError, ValueError):
         others.append(sys.stdin.fileno())
-    files.check_output(options.graphics, "figure", figure.FORMATS, others)
+    files.check_output(options.graphics, "figure", figure.ALL_FORMATS, others)
     if figure.format_of(options.graphics) != "ps":
         plot.check()
 

@@ -8,9 +8,9 @@ from ..model.exact import short_text
 from ..model.problem import IDENTITY, frame_text, wave_text
 from ..prover import tree
 
-NAMES = {"P": "proved", "S": "skipped by symmetry", "?": "untried", "U": "undecided"}
+KIND_NAMES = {"P": "proved", "S": "skipped by symmetry", "?": "untried", "U": "undecided"}
 STAR = "x*, whose successors these are"
-LINE = 78                               # characters of a line of the head, at most
+LINE_LENGTH = 78                        # characters of a line of the head, at most
 LEAST = 1 / 128                         # what is not proved is drawn no smaller, as part of a side
 CONCLUSIONS = {
     "theorem": "no invariant tori",
@@ -25,7 +25,8 @@ def head(proof):
     problem = proof.problem
     low, high = ([short_text(c + sign * h) for c, h in zip(problem.centre[:-2], problem.half)]
                  for sign in (-1, 1))
-    names = "abc" if problem.general is None else ["p of " + wave_text(wave) for wave in problem.waves]
+    names = "abc" if problem.general is None else [
+        "p of " + wave_text(wave) for wave in problem.waves]
     ranges = ["%s < %s < %s" % (a, name, b) if a != b else "%s = %s" % (name, a)
               for a, name, b in zip(low, names, high)]
     if problem.together:
@@ -33,7 +34,7 @@ def head(proof):
                   "to (%s)" % ", ".join(high)]
     # A range is divided between two lines only where it is too long for one.
     text = (" " if problem.together else ",  ").join(
-        part.replace(" ", "\xa0") if len(part) < LINE else part for part in ranges)
+        part.replace(" ", "\xa0") if len(part) < LINE_LENGTH else part for part in ranges)
     words = [CONCLUSIONS[proof.conclusion]]
     if problem.general is not None and any(
             sum(map(bool, part)) > 1 for part in problem.parts):
@@ -45,7 +46,7 @@ def head(proof):
     if proof.as_printed:
         words.append("as printed in the thesis, a historical reconstruction: not a proof")
     return [line.replace("\xa0", " ")
-            for line in textwrap.wrap(text, LINE) + textwrap.wrap("; ".join(words), LINE)]
+            for part in (text, "; ".join(words)) for line in textwrap.wrap(part, LINE_LENGTH)]
 
 
 def foot(proof):
@@ -63,7 +64,7 @@ def foot(proof):
 
 def counts(proof):
     """How many prisms there are of each kind, those kinds that there are."""
-    found = {kind: proof.tree.count(kind) for kind in NAMES}
+    found = {kind: proof.tree.count(kind) for kind in KIND_NAMES}
     cuts = sum(map(proof.tree.count, tree.CUTS))
     found["?"] += 1 + cuts - sum(found.values())        # those that are missing at the end
     return {kind: count for kind, count in found.items() if count}

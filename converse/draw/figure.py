@@ -16,12 +16,12 @@ from ..storage import files
 from . import captions, plot
 
 SIDE = 400                              # of the square, in points
-LEFT, RIGHT = 44, 24                    # of it
-WIDTH = LEFT + SIDE + RIGHT
-LINE, SMALL_LINE = 13, 10               # from one line of text to the next
-NODES = 60000                           # of the tree in a string, which may hold 65535 characters
+LEFT_MARGIN, RIGHT_MARGIN = 44, 24      # beside it
+PAGE_WIDTH = LEFT_MARGIN + SIDE + RIGHT_MARGIN
+LEADING, SMALL_LEADING = 13, 10         # from one line of text to the next
+STRING_LENGTH = 60000                   # nodes of the tree in a string; PostScript allows 65535
 
-FORMATS = *plot.FORMATS, "ps", "eps"         # as the name of a file says
+ALL_FORMATS = *plot.FORMATS, "ps", "eps"         # as the name of a file says
 
 MARKS = {"P": "dark", "S": "light", "?": "white", "U": "crossed"}
 
@@ -144,18 +144,18 @@ def html(proof):
 def postscript(proof, caption=True):
     counts = captions.counts(proof)
     nodes = proof.tree + tree.UNTRIED * (counts.get("?", 0) - proof.tree.count(tree.UNTRIED))
-    key = ["%s: %s (%d)" % (MARKS[kind], captions.NAMES[kind], count)
+    key = ["%s: %s (%d)" % (MARKS[kind], captions.KIND_NAMES[kind], count)
            for kind, count in counts.items()]
     star = captions.star(proof)
     if star:
         key.append("circle: " + captions.STAR)
     head, foot = (captions.head(proof), captions.foot(proof)) if caption else ([], [])
-    below = 40 + SMALL_LINE * len(foot)
-    top = SIDE + 16 + SMALL_LINE + LINE * len(head)
+    below = 40 + SMALL_LEADING * len(foot)
+    top = SIDE + 16 + SMALL_LEADING + LEADING * len(head)
 
     lines = [
         "%!PS-Adobe-3.0 EPSF-3.0",
-        "%%%%BoundingBox: 0 0 %d %d" % (WIDTH, below + top),
+        "%%%%BoundingBox: 0 0 %d %d" % (PAGE_WIDTH, below + top),
         "%%Title: Prisms of a converse KAM proof",
         "%%Creator: converse " + _escape(proof.version),
         "%%LanguageLevel: 2",
@@ -169,10 +169,10 @@ def postscript(proof, caption=True):
         "%%Page: 1 1",
         "/tree [                 % line ends in it say nothing",
     ]
-    for start in range(0, len(nodes), NODES):
-        part = nodes[start:start + NODES]
+    for start in range(0, len(nodes), STRING_LENGTH):
+        part = nodes[start:start + STRING_LENGTH]
         lines += ["("] + [part[i:i + 78] for i in range(0, len(part), 78)] + [")"]
-    lines += ["] def", "gsave %d %d translate" % (LEFT, below)]
+    lines += ["] def", "gsave %d %d translate" % (LEFT_MARGIN, below)]
     lines += ["(%s) { %s } each" % (kind, paint) for kind, paint in (
         ("S", "0.65 0.85 box"), ("P", "0.35 setgray rectfill"), ("P", "0 outline"),
         ("?", "seen 0.65 1 box"), ("U", "seen cross")) if kind in counts]
@@ -183,10 +183,11 @@ def postscript(proof, caption=True):
     for axis in range(2):
         for place in range(3) if proof.problem.half[axis - 2] else (1,):
             lines += _tick(proof.problem, axis, place)
-    lines += ["(0) %d -28 axis" % (SIDE // 2 - 4), "(1) %d %d axis" % (4 - LEFT, SIDE // 2 + 16)]
-    lines += _text("small", SIDE + 10, SMALL_LINE, ["   ".join(key)])
-    lines += _text("text", SIDE + 10 + SMALL_LINE + 4, LINE, head)
-    lines += _text("small", 4 - below, SMALL_LINE, foot)
+    lines += ["(0) %d -28 axis" % (SIDE // 2 - 4),
+              "(1) %d %d axis" % (4 - LEFT_MARGIN, SIDE // 2 + 16)]
+    lines += _text("small", SIDE + 10, SMALL_LEADING, ["   ".join(key)])
+    lines += _text("text", SIDE + 10 + SMALL_LEADING + 4, LEADING, head)
+    lines += _text("small", 4 - below, SMALL_LEADING, foot)
     lines += ["grestore", "showpage", "%%Trailer", "%%EOF"]
     return "\n".join(lines) + "\n"
 
@@ -202,17 +203,18 @@ def _tick(problem, axis, place):
     if axis == 0:
         x, shift = at, -0.5
         if len(words) > 7:              # from one end of the page to the other
-            x, shift = ((4 - LEFT, 0), (at, -0.5), (SIDE + RIGHT - 4, -1))[place]
+            x, shift = ((4 - LEFT_MARGIN, 0), (at, -0.5), (SIDE + RIGHT_MARGIN - 4, -1))[place]
         return ["%d 0 moveto 0 -5 rlineto stroke" % at,
-                "%s %d -16 %d %g angle" % (text, x, WIDTH // 3 - 8, shift)]
+                "%s %d -16 %d %g angle" % (text, x, PAGE_WIDTH // 3 - 8, shift)]
     return ["0 %d moveto -5 0 rlineto stroke" % at,
-            "%s -8 %d %d -1 angle" % (text, at - 3, LEFT - 12)]
+            "%s -8 %d %d -1 angle" % (text, at - 3, LEFT_MARGIN - 12)]
 
 
 def _text(font, y, step, words):
     """Lines of text in the middle of the page, the lowest at y."""
     return [font + " setfont"] + [
-        "(%s) %g %g %d line" % (_escape(line), WIDTH / 2 - LEFT, y - step * k, WIDTH - 10)
+        "(%s) %g %g %d line" % (_escape(line), PAGE_WIDTH / 2 - LEFT_MARGIN, y - step * k,
+                                PAGE_WIDTH - 10)
         for k, line in enumerate(words, 1 - len(words))]
 
 

@@ -11,22 +11,22 @@ from ..storage import files
 from . import plot
 from .figure import format_of
 
-NAMES = "abc"
+PARAMETERS = "abc"
 STYLE = {**plot.STYLE, "axes.spines.top": False, "axes.spines.right": False}
 COLOURS = {PROVED: "#7fa8d1", AT_ONCE: "#cfdeed"}
 WORDS = {PROVED: "proved cell by cell: no tori",
          AT_ONCE: "proved at once, with all larger multiples"}
-MARK = {"markersize": 9, "markerfacecolor": "white", "markeredgecolor": "black",
+MARKER = {"markersize": 9, "markerfacecolor": "white", "markeredgecolor": "black",
         "linestyle": "none"}
-MARKS = ((0.0272, "o", "0.0272, the thesis, 1989"),
+MARKED_POINTS = ((0.0272, "o", "0.0272, the thesis, 1989"),
          (0.0140, "*", "0.0140, proved on the dashed line"))
-GRID = 120                              # of the angles, and of the directions of a side
-MATHER = 4 / 3                          # B - 2, at once
+SAMPLES = 120                           # of the angles, and of the directions of a side
+AT_ONCE_LEVEL = 4 / 3                   # of B - 2, above which Mather's criterion proves
 
 
 def largest(p):
     """B - 2 of amplitudes (a, b, c), an array (..., 3): to a few digits, for a picture."""
-    y = np.linspace(0, 2 * math.pi, GRID, endpoint=False)
+    y = np.linspace(0, 2 * math.pi, SAMPLES, endpoint=False)
     sines = np.sin(y)[:, None], np.sin(y)[None], np.sin(y[:, None] + y)
     a, b, c = (np.asarray(p, float)[..., i, None, None] for i in range(3))
     p0, p1, both = a * sines[0], b * sines[1], c * sines[2]
@@ -44,10 +44,10 @@ def check(path):
     return kind
 
 
-def draw(atlas, path):
+def draw(region_map, path):
     """Draws a map in a file; ConverseError: it cannot be drawn, or the map is not yet begun."""
     kind = check(path)
-    if not all(atlas.estimate):
+    if not all(region_map.estimate):
         raise files.ConverseError("the map has nothing to draw yet: it was left while the frontier "
                                   "was estimated; continue it with -r")
     from matplotlib import style
@@ -55,12 +55,12 @@ def draw(atlas, path):
 
     with style.context(["default", STYLE]):
         figure = Figure(figsize=(6.4, 5.0))
-        (_draw_sphere if len(atlas.directions[0]) == 3 else _draw_plane)(atlas, figure)
+        (_draw_sphere if len(region_map.directions[0]) == 3 else _draw_plane)(region_map, figure)
         files.write(path, plot.encode(figure, kind, dpi=160, pad_inches=0.08))
 
 
-def _draw_plane(atlas, figure):
-    horizontal, vertical = {"b=0": (0, 2), "a=b": (0, 2), "c=0": (0, 1)}[atlas.region]
+def _draw_plane(region_map, figure):
+    horizontal, vertical = {"b=0": (0, 2), "a=b": (0, 2), "c=0": (0, 1)}[region_map.region]
     axes = figure.add_subplot()
 
     def at(directions, r, place):
@@ -68,35 +68,35 @@ def _draw_plane(atlas, figure):
         return float(r * point[horizontal]), float(r * point[vertical])
 
     corners = {PROVED: [], AT_ONCE: []}
-    for leaf in atlas.leaves():
+    for leaf in region_map.leaves():
         if leaf.kind in corners:
             (r0, s0), (r1, s1) = leaf.cell.low, leaf.cell.high
-            directions = atlas.directions[leaf.cell.face]
+            directions = region_map.directions[leaf.cell.face]
             ends = [(r0, s0), (r1, s0), (r1, s1), (r0, s1), (r0, s0)]
             corners[leaf.kind] += [at(directions, r, (s,)) for r, s in ends]
     for kind, points in corners.items():
         plot.rectangles(axes, points, facecolor=COLOURS[kind], edgecolor="white",
                            linewidth=0.2, label=WORDS[kind])
-    unit = [direction(directions, (k / GRID,)) for directions in atlas.directions
-            for k in range(GRID + 1)]
-    mather = np.array(unit) * (MATHER / largest(unit))[:, None]
+    unit = [direction(directions, (k / SAMPLES,)) for directions in region_map.directions
+            for k in range(SAMPLES + 1)]
+    mather = np.array(unit) * (AT_ONCE_LEVEL / largest(unit))[:, None]
     estimate = np.array([at(directions, radius, place)
-                         for directions, found in zip(atlas.directions, atlas.estimate)
+                         for directions, found in zip(region_map.directions, region_map.estimate)
                          for place, radius in sorted(found.items())])
     axes.plot(*_around(mather[:, (horizontal, vertical)]).T, ":", color=plot.DARK, linewidth=1.2,
               label="B = 10/3")
     axes.plot(*_around(estimate).T, color=plot.VERMILLION, linewidth=1.6,
               label="estimate: single points are proved down to here")
-    if atlas.region == "a=b":
+    if region_map.region == "a=b":
         ends = np.array([0, 0.03]) * float(LINE)
         axes.plot(ends, 2 * ends, "--", color=plot.DARK, linewidth=0.6)
-        for epsilon, marker, words in MARKS:
+        for epsilon, marker, words in MARKED_POINTS:
             axes.plot(LINE * epsilon, 2 * LINE * epsilon, marker, label="\u03b5 = " + words,
-                      **MARK)
+                      **MARKER)
     most = 1.08 * mather.max()
     axes.set(xlim=(0, most), ylim=(0, 1.08 * mather[:, vertical].max()), aspect="equal",
-             xlabel={"a=b": "a = b"}.get(atlas.region, "a"), ylabel=NAMES[vertical])
-    axes.set_title({"b=0": "b = 0", "a=b": "a = b", "c=0": "c = 0"}[atlas.region])
+             xlabel={"a=b": "a = b"}.get(region_map.region, "a"), ylabel=PARAMETERS[vertical])
+    axes.set_title({"b=0": "b = 0", "a=b": "a = b", "c=0": "c = 0"}[region_map.region])
     axes.legend(loc="upper center", bbox_to_anchor=(0.5, 0), borderaxespad=4.5, ncol=2)
 
 
@@ -105,11 +105,11 @@ def _around(points):
     return points[np.argsort(np.arctan2(points[:, 1], points[:, 0]), kind="stable")]
 
 
-def heights(atlas, count=GRID):
+def heights(region_map, count=SAMPLES):
     """By face, at the middles of count x count squares of directions (or count intervals): the
     radius from which on all is proved."""
     made = []
-    for directions, tree in zip(atlas.directions, atlas.roots):
+    for directions, tree in zip(region_map.directions, region_map.roots):
         sides = len(directions) - 1
         height = np.zeros((count,) * sides)
         for leaf in tree.nodes():
@@ -121,14 +121,14 @@ def heights(atlas, count=GRID):
     return made
 
 
-def _draw_sphere(atlas, figure):
+def _draw_sphere(region_map, figure):
     """Each direction of the fundamental domain at its place in a triangle, coloured by B - 2 where
     its proof begins."""
     from matplotlib.tri import Triangulation
 
     places, values = [], []
-    middles = (np.arange(GRID) + 0.5) / GRID
-    for directions, height in zip(atlas.directions, heights(atlas)):
+    middles = (np.arange(SAMPLES) + 0.5) / SAMPLES
+    for directions, height in zip(region_map.directions, heights(region_map)):
         d0, d1, d2 = (np.array(d, float) for d in directions)
         unit = d0 + middles[:, None, None] * d1 + middles[None, :, None] * d2
         a, b, c = np.moveaxis(unit, -1, 0)
@@ -152,7 +152,7 @@ def _draw_sphere(atlas, figure):
                       ha="center", va=align)
     line = np.array([1, 1, 2]) / 3
     at_line = line[1] + line[2] / 2, math.sqrt(0.75) * line[2]
-    axes.plot(*at_line, "*", **MARK)
+    axes.plot(*at_line, "*", **MARKER)
     axes.annotate("a = b = c/2", at_line, (7, 4), textcoords="offset points", bbox={
         "boxstyle": "round,pad=0.2", "facecolor": "white", "edgecolor": "none"})
     axes.set_title("all directions with a \u2265 b \u2265 0, c \u2265 0")

@@ -102,7 +102,7 @@ def draw(proof, axes):
         rectangles(axes, [(left + width * x, bottom + height * y) for x, y in paths.get(kind, ())],
                facecolor=colours[kind], edgecolor=EDGES[kind], linewidth=WIDTHS.get(kind, 0.3),
                zorder=1 + LAYERS.index(kind) / 10,
-               label="%s (%d)" % (captions.NAMES[kind], number))
+               label="%s (%d)" % (captions.KIND_NAMES[kind], number))
     star = captions.star(proof)
     if star:
         axes.plot(left + width * star[0], bottom + height * star[1], "o", linestyle="none",

@@ -18,7 +18,7 @@ from .region import RADIUS, REGIONS, Cell, root
 
 FORMAT = "converse map 1"
 PROVED, AT_ONCE, OPEN, OUTSIDE = "PAOX"
-GRID = {1: 32, 2: 8}               # intervals of a side, in the estimate of a plane, of the sphere
+ESTIMATE_GRID = {1: 32, 2: 8}       # intervals of a side, by sides: of a plane, of the sphere
 
 Place = Tuple[Fraction, ...]
 
@@ -100,12 +100,12 @@ class Map:
     def places(self, face: int) -> Iterator[Place]:
         """Where the frontier of a face is estimated, exactly."""
         sides = len(self.directions[face]) - 1
-        grid = [Fraction(k, GRID[sides]) for k in range(GRID[sides] + 1)]
+        grid = [Fraction(k, ESTIMATE_GRID[sides]) for k in range(ESTIMATE_GRID[sides] + 1)]
         return itertools.product(grid, repeat=sides)
 
     def estimated(self, face: int, place: Place) -> float:
         """The estimated frontier in a direction, linear along each side between known places."""
-        grid = GRID[len(place)]
+        grid = ESTIMATE_GRID[len(place)]
         total = 0.0
         ends = [(min(math.floor(x * grid), grid - 1), x * grid) for x in place]
         for upper in itertools.product((0, 1), repeat=len(place)):
@@ -119,7 +119,7 @@ class Map:
     def target(self, cell: Cell) -> float:
         """The least radius from which on any direction of a cell is to be proved: down_to times the
         least estimate."""
-        grid = GRID[len(cell.low) - 1]
+        grid = ESTIMATE_GRID[len(cell.low) - 1]
         ends = [[low, *(Fraction(k, grid) for k in range(math.floor(low * grid) + 1,
                                                          math.ceil(high * grid))), high]
                 for low, high in zip(cell.low[1:], cell.high[1:])]
@@ -254,7 +254,7 @@ class Map:
             made.sha256 = hashlib.sha256(packed).hexdigest()
             made.version = data["program"].partition(" ")[2]
             for tree, face, estimate in zip(made.roots, data["faces"], made.estimate):
-                _grow(tree, face)
+                _read_tree(tree, face)
                 estimate.update((tuple(map(exact, place)), float(radius))
                                 for *place, radius in face["estimate"])
             return made
@@ -268,7 +268,7 @@ def _digest(data):
                           .encode("ascii")).hexdigest()
 
 
-def _grow(tree, face):
+def _read_tree(tree, face):
     """Takes up a tree of cells."""
     todo, proofs, tried = [tree], iter(face["proofs"]), iter(face["tried"])
     for kind in face["tree"]:

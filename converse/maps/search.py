@@ -10,12 +10,12 @@ from fractions import Fraction
 from typing import Callable, Optional
 
 from ..model.exact import Number, decimal_text, exact
-from ..model.problem import Problem
+from ..model.problem import IDENTITY, Problem
 from ..prover import native
 from ..prover.run import Path
 from ..prover.settings import Settings
-from ..prover.workers import LOOK_SECONDS, Crew
-from ..storage.backup import Keeper
+from ..prover.workers import LOOK_SECONDS, WorkerPool
+from ..storage.backup import Backup
 from ..storage.files import ConverseError
 from ..storage.signals import interruptible, postponed
 from ..version import __version__
@@ -24,40 +24,44 @@ from .map import AT_ONCE, OPEN, OUTSIDE, PROVED, Map
 from .region import REGIONS
 
 SETTINGS = Settings(method="loewner")
-FIRST, MORE, MOST = 1 << 15, 4, 1 << 21         # leaves that a cell may cost, and times as many
-LOOK = 1 << 9                       # leaves after which it is asked what it will cost
-PESSIMISM = 4                       # times the budget that is expected: given up
-POINT = {1: 1 << 14, 2: 1 << 12}    # leaves, of a point of the estimate of a plane, of the sphere
-TRIAL = 1 << 12                     # leaves, of a point that one way is compared with another by
-COARSE = 0.25                       # width of a cell, at first, as a part of its radius
-GRAIN = 6                           # cells are not cut to less than this part of down_to - 1
-FINER = 8                           # but to so many times less where the most leaves do not do
-SHEAR = (1, 0, -1, 1)               # x_1 = (v0, v1 - v0): the wave c does not feel v0
-PLAIN = (1, 0, 0, 1)
-ASIDE = Fraction(3, 10)             # where c prevails, an x* so far along what it does not feel
-RIGHT = ("1.570796", "1.570796")    # an x* where each of the waves a and b bends most
-TOO_LONG = native.lib.CV_REASON_TOO_LONG      # why a try failed: hopeless
+
+# The budget of a cell is the number of leaves that its proof may have.
+FIRST_BUDGET, LARGEST_BUDGET = 1 << 15, 1 << 21
+BUDGET_FACTOR = 4                   # from one try at a cell to the next
+FIRST_CHUNK = 1 << 9                # leaves after which the cost is estimated for the first time
+PESSIMISM = 4                       # a try ends when it is expected to cost so many budgets
+TRIAL_BUDGET = 1 << 12              # where one frame and x* are compared with others
+POINT_BUDGET = {1: 1 << 14, 2: 1 << 12}     # of the estimate, by sides: of a plane, of the sphere
+
+WIDEST = 0.25                       # width of the first cells as a part of their radius
+GRAIN = 6                           # least width of a cell that is cut, as a part of down_to - 1
+FINER = 8                           # less by this factor where the largest budget was not enough
+
+SHEARED = (1, 0, -1, 1)             # a frame, x_1 = (v0, v1 - v0), in which the wave c lacks v0
+ASIDE = Fraction(3, 10)             # shift of x* along the direction that the wave c lacks
+RIGHT_ANGLES = ("1.570796", "1.570796")     # x* where the waves a and b have their maxima
+TOO_LONG = native.lib.CV_REASON_TOO_LONG    # of a failed try: more cuts will not help
 
 
 # ---- what a worker does, on plain data
 
 @dataclass(frozen=True)
 class Outcome:
-    """What became of a cell: its kind, and if it is proved, with what."""
+    """What a try at a cell found: its kind and, of a proved one, the proof as plain data."""
 
     kind: str
     proof: Optional[dict] = None
 
 
-def _grow(problem, xstar, most, stop):
-    """(tree or None, leaves, Begun) of a problem that may cost so many leaves; None: stopped.
-    Without a tree, leaves are those that are expected, or infinite: it is hopeless."""
+def _prove_within(problem, xstar, budget, stop):
+    """(tree, leaves, Begun) of a proof with at most so many leaves, or None if stopped.  Where
+    there is no such proof the tree is None, and leaves is the number expected, perhaps infinite."""
     begun = native.begin(native.Task(problem, SETTINGS, xstar), "", stop)
     if begun is None:
         return None
     task, cells = native.Task(problem, SETTINGS, begun.xstar), begun.cells
     pieces, leaves, history = [], 0, native.History()
-    chunk = min(most, LOOK)
+    chunk = min(budget, FIRST_CHUNK)
     while cells and not begun.at_once:
         grown = native.grow(task, cells, LOOK_SECONDS, chunk, False, stop)
         if grown is None or stop.is_set():
@@ -65,44 +69,45 @@ def _grow(problem, xstar, most, stop):
         pieces.append(grown.text)
         leaves += grown.counts.proved + grown.counts.symmetric
         history.add(grown.history)
-        cells, chunk = grown.cells, most // 8
+        cells, chunk = grown.cells, budget // 8
         if grown.counts.undecided or cells and grown.counts.reasons[TOO_LONG]:
             return None, math.inf, begun
         expected = leaves + history.expected(cells) / 2
-        if cells and (leaves >= most or expected > PESSIMISM * most):
+        if cells and (leaves >= budget or expected > PESSIMISM * budget):
             return None, expected, begun
     return "".join(pieces), leaves, begun
 
 
 def _ways(directions, cell, stop):
-    """(frame, x*) that may be good for a cell, the cheapest for its middle first; None: stopped."""
-    ways = [(PLAIN, None)]
+    """The promising pairs (frame, x*) for a cell, sorted by the cost of a proof for its middle;
+    None if stopped.  x* None: the program chooses."""
+    ways = [(IDENTITY, None)]
     r, *place = cell.middle
     a, b, c = point = tuple(r * d for d in region.direction(directions, place))
     if c > 2 * max(a, b):
-        ways.append((SHEAR, None))
-    if 0 < 10 * c < min(a, b):                  # either coordinate may contradict
-        ways.append((PLAIN, RIGHT))
+        ways.append((SHEARED, None))
+    if 0 < 10 * c < min(a, b):                  # nearly two separate standard maps
+        ways.append((IDENTITY, RIGHT_ANGLES))
     if len(ways) == 1:
         return ways
     costs = []
     for frame, xstar in ways:
-        found = _grow(Problem.patch(point, axes=frame), xstar, TRIAL, stop)
+        found = _prove_within(Problem.patch(point, axes=frame), xstar, TRIAL_BUDGET, stop)
         if found is None:
             return None
         _, cost, begun = found
         costs.append((cost, (frame, begun.xstar)))
-        if frame == SHEAR and xstar is None and c > 10 * max(a, b) > 0:
+        if frame == SHEARED and xstar is None and c > 10 * max(a, b) > 0:
             x0, x1 = map(Fraction, begun.xstar)
-            ways.append((SHEAR, (decimal_text(x0 - ASIDE), decimal_text(x1 + ASIDE))))
+            ways.append((SHEARED, (decimal_text(x0 - ASIDE), decimal_text(x1 + ASIDE))))
     return [way for _, way in sorted(costs, key=lambda each: each[0])]
 
 
-def attempt(directions, cell, most, stop=None):
-    """Tries to prove a cell with so many leaves; None: stopped."""
+def attempt(directions, cell, budget, stop=None):
+    """The Outcome of a try to prove a cell with at most so many leaves; None if stopped."""
     stop = stop or native.Stop()
     middle, parts = region.patch(directions, cell)
-    if cell.high[0] == region.RADIUS:           # nothing else will do
+    if cell.high[0] == region.RADIUS:           # it must hold for all larger radii, too
         begun = native.begin(native.Task(Problem.patch(middle, parts), SETTINGS), "", stop)
         return begun and Outcome(AT_ONCE if begun.at_once else OPEN)
     ways = _ways(directions, cell, stop)
@@ -110,7 +115,7 @@ def attempt(directions, cell, most, stop=None):
         return None
     frame, xstar = ways[0]
     problem = Problem.patch(middle, parts, axes=frame)
-    found = _grow(problem, xstar, most, stop)
+    found = _prove_within(problem, xstar, budget, stop)
     if found is None:
         return None
     tree, leaves, begun = found
@@ -123,33 +128,34 @@ def attempt(directions, cell, most, stop=None):
                             "tree": tree})
 
 
-def frontier(directions, place, stop=None):
-    """The least radius, about, at which a direction is proved with POINT leaves: an estimate of
-    where orbits stop contradicting; None: stopped."""
+def estimate_frontier(directions, place, stop=None):
+    """About the least radius at which a direction is proved with POINT_BUDGET leaves, by
+    bisection: an estimate of where the method ends.  None if stopped."""
     stop = stop or native.Stop()
 
-    def proved(radius, most):
+    def proved(radius, budget):
         cell = region.Cell(0, (radius, *place), (radius, *place))
         ways = _ways(directions, cell, stop)
         if ways is None:
             return None
         frame, xstar = ways[0]
         point = region.patch(directions, cell)[0]
-        found = _grow(Problem.patch(point, axes=frame), xstar, most, stop)
+        found = _prove_within(Problem.patch(point, axes=frame), xstar, budget, stop)
         return found and (found[0] is not None or found[2].at_once)
 
     low, high = 0, region.RADIUS
-    for most, tolerance in (LOOK, Fraction(1, 32)), (POINT[len(place)], Fraction(1, 256)):
+    for budget, tolerance in ((FIRST_CHUNK, Fraction(1, 32)),
+                              (POINT_BUDGET[len(place)], Fraction(1, 256))):
         step = 8 * tolerance
         while True:                             # down to where it fails
             low = high * (1 - step)
-            answer = proved(low, most)
+            answer = proved(low, budget)
             if not answer or low < Fraction(1, 100):
                 break
             high = low
         while answer is not None and high - low > tolerance * high:
             middle = (low + high) / 2
-            answer = proved(middle, most)
+            answer = proved(middle, budget)
             low, high = (low, middle) if answer else (middle, high)
         if answer is None:
             return None
@@ -179,42 +185,42 @@ def explore(name: Optional[str] = None, down_to: Optional[Number] = None, *, pat
         raise ValueError("down_to is a ratio above 1, not %s" % (down_to,))
     if not resume and name not in REGIONS:
         raise ValueError("the region is one of %s, not %r" % (", ".join(REGIONS), name))
-    with interruptible(), Keeper(path, resumed=path if resume else None) as keeper:
+    with interruptible(), Backup(path, resumed=path if resume else None) as backup:
         if resume:
-            atlas = Map.load(path)
-            if name not in (None, atlas.region):
+            region_map = Map.load(path)
+            if name not in (None, region_map.region):
                 raise ConverseError("%s: is of another region, %s; name another, or this region"
-                                    % (path, atlas.region))
-            if atlas.version != __version__:
+                                    % (path, region_map.region))
+            if region_map.version != __version__:
                 raise ConverseError("%s: is of another program, %s; start anew"
-                                    % (path, atlas.version))
-            atlas.down_to = ratio or atlas.down_to
+                                    % (path, region_map.version))
+            region_map.down_to = ratio or region_map.down_to
         else:
-            atlas = Map.new(str(name), ratio or Fraction(21, 20))
-        return _Search(atlas, keeper, jobs, executor, time_limit, progress).run()
+            region_map = Map.new(str(name), ratio or Fraction(21, 20))
+        return _Search(region_map, backup, jobs, executor, time_limit, progress).run()
 
 
 class _Search:
     """One run, which adds to a map."""
 
-    def __init__(self, atlas, keeper, jobs, executor, time_limit, progress):
-        self.map, self.keeper, self.progress = atlas, keeper, progress
-        self.crew = Crew(executor, jobs, native.Stop())
-        self.began = time.monotonic() - atlas.seconds
+    def __init__(self, region_map, backup, jobs, executor, time_limit, progress):
+        self.map, self.backup, self.progress = region_map, backup, progress
+        self.pool = WorkerPool(executor, jobs, native.Stop())
+        self.began = time.monotonic() - region_map.seconds
         self.end = time.monotonic() + time_limit
         self.queue, self.order = [], itertools.count()
-        self.won, self.share = 0.0, 0.0
+        self.decided, self.share = 0.0, 0.0    # area, and as a share of all
 
     def run(self):
         try:
-            with self.crew:
+            with self.pool:
                 self._estimate()
                 if not self.late:
                     self._explore()
         finally:
             self.map.seconds = time.monotonic() - self.began
             with postponed():           # a signal must not cost the last write
-                self.map.sha256 = self.keeper.finish(self.map)
+                self.map.sha256 = self.backup.finish(self.map)
         return self.map
 
     @property
@@ -224,16 +230,16 @@ class _Search:
     def _work(self, next_task, take):
         """Hands out tasks (key, call, *arguments) and calls take(key, result) for what comes back,
         until there are no more or there is no time."""
-        task, running = next_task(), self.crew.running
+        task, running = next_task(), self.pool.running
         while (task or running) and not self.late:
-            size = self.crew.size
+            size = self.pool.size
             while task and size and len(running) <= size:       # one waits, to follow at once
-                self.crew.give(*task)
+                self.pool.give(*task)
                 task = next_task()
-            for key, result in self.crew.take(LOOK_SECONDS):
+            for key, result in self.pool.take(LOOK_SECONDS):
                 take(key, result)
             self.map.seconds = time.monotonic() - self.began
-            self.keeper.keep(lambda: self.map)
+            self.backup.update(lambda: self.map)
             if self.progress:
                 self.progress(self.share, self.map)
             task = task or next_task()
@@ -248,31 +254,30 @@ class _Search:
 
         known, faces = self.map.estimate, self.map.directions
         mirrored = [face for face, d in enumerate(faces) if set(d[1:]) == {region.A, region.B}]
-        tasks = (((face, place), frontier, directions, place)
+        tasks = (((face, place), estimate_frontier, directions, place)
                  for face, directions in enumerate(faces) for place in self.map.places(face)
                  if place not in known[face] and not (face in mirrored and place[0] < place[1]))
         self._work(lambda: next(tasks, None), take)
 
     def _explore(self):
-        """Tries cells: by the area that they would win for the work, those that would win most
-        first."""
+        """Tries cells; first those that would add most area for the work."""
         def count():
-            self.share = min(1.0, self.won / total) if total else 1.0
+            self.share = min(1.0, self.decided / total) if total else 1.0
 
         total = self.map.area()
         for leaf in list(self.map.leaves()):
             if leaf.kind == OPEN:
                 self._push(leaf)
             else:
-                self.won += self.map.area(leaf.cell)
+                self.decided += self.map.area(leaf.cell)
         count()
 
         def next_task():
             if not self.queue:
                 return None
             node = heapq.heappop(self.queue)[-1]
-            most = MORE * node.tried or FIRST
-            return (node, most), attempt, self.map.directions[node.cell.face], node.cell, most
+            budget = BUDGET_FACTOR * node.tried or FIRST_BUDGET
+            return (node, budget), attempt, self.map.directions[node.cell.face], node.cell, budget
 
         def take(key, outcome):
             self._take(*key, outcome)
@@ -287,22 +292,23 @@ class _Search:
                    for k in axes)
 
     def _push(self, node):
-        """Puts an open cell in the queue, or cuts it until its parts can be, or are of no use."""
+        """Puts an open cell in the queue, cut where it is too large; drops what is not wanted."""
         cell, sides = node.cell, range(1, len(node.cell.low))
         directions = self.map.directions[cell.face]
         if region.is_outside(directions, cell):
             node.kind = OUTSIDE
-            self.won += self.map.area(cell)     # nothing is left to be proved there
+            self.decided += self.map.area(cell)     # nothing is left to be proved there
             return
         if not self.map.wanted(cell):
             return
         width, axis = self._widest(cell, sides)
-        if width < COARSE * cell.high[0]:       # else no x* is good for so many directions
+        if width < WIDEST * cell.high[0]:       # one x* does not serve more directions
             low = self.map.target(cell)
             width, axis = self._widest(cell, range(len(cell.low)))
             if float(cell.low[0]) >= low or width <= self._grain(low):
                 area = self.map.area(cell)
-                heapq.heappush(self.queue, (-area / (node.tried or FIRST), next(self.order), node))
+                heapq.heappush(self.queue, (-area / (node.tried or FIRST_BUDGET),
+                                            next(self.order), node))
                 return
         for half in node.cut(axis):
             self._push(half)
@@ -311,22 +317,22 @@ class _Search:
         """The least width of cells that are cut."""
         return (float(self.map.down_to) - 1) * low / GRAIN
 
-    def _take(self, node, most, outcome):
-        """What became of a cell."""
+    def _take(self, node, budget, outcome):
+        """Enters the outcome of a try at a cell, and sees to what of it is still open."""
         cell = node.cell
         node.decide(outcome.kind, outcome.proof)
         if outcome.kind != OPEN:
-            self.won += self.map.area(cell)
+            self.decided += self.map.area(cell)
             return
         width, axis = self._widest(cell, range(len(cell.low)))
         low = self.map.target(cell)
         lower_half_counts = float(cell.middle[0]) > low
         if cell.high[0] == region.RADIUS or not lower_half_counts:
-            axis = 0                            # it must reach to infinity; or one half is enough
-        grain = self._grain(low) / (FINER if most >= MOST else 1)
+            axis = 0            # only an outer half reaches to infinity; or the lower is not wanted
+        grain = self._grain(low) / (FINER if budget >= LARGEST_BUDGET else 1)
         if width > grain or not lower_half_counts:
             for half in node.cut(axis):
                 self._push(half)
-        elif most < MOST:
-            node.tried = most
+        elif budget < LARGEST_BUDGET:
+            node.tried = budget
             self._push(node)

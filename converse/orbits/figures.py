@@ -345,8 +345,8 @@ def pairs_of_projections(figure, states):
         if count:
             lost.append("%d points of (%s)" % (count, letter))
     words = ("Left the angles, right the momenta, the cross at p/q.  Curves of type (a, b) at "
-             "links up to r: points at most r apart, when linked, form curves that wind so round the "
-             "torus, as many as clusters are met on lines across, in the median.")
+             "links up to r: points at most r apart, when linked, form curves that wind so round "
+             "the torus, as many as clusters are met on lines across, in the median.")
     if lost:
         words += "  Doubles cannot tell %s from another one (nearer than %g)." % (
             " and ".join(lost), LOST)
@@ -527,8 +527,8 @@ def deev(figure, families):
     farthest = max(states, key=lambda state: state.deviation.from_point)
     words = ("The largest displacement of a point of the state from where it would be without "
              "perturbation, %.3f at most.  Dotted: from the straight line through x₀, which "
-             "depends on which point is called x₀.  Dashed: 1/√2, half the diagonal of the unit square."
-             % max(state.deviation.from_start for state in states))
+             "depends on which point is called x₀.  Dashed: 1/√2, half the diagonal of the unit "
+             "square." % max(state.deviation.from_start for state in states))
     if farthest.deviation.from_point > 1 / math.sqrt(2):
         words += ("  The thesis says that the distance from the straight line that connects x₀ to "
                   "its image x_q is always smaller.  Of these states that is not so: %s, %s, "

@@ -26,11 +26,11 @@ class Prelude(NamedTuple):
 def prelude(potential: Potential) -> Prelude:
     """Where minimizing states and tori are impossible without following an orbit: a Prelude.
 
-    A minimizing state has 2 - eps V'' > 0 wherever it goes.  On an invariant graph, which goes
-    everywhere, 2 - eps V'' >= 2 l even, where l is the smaller root of l + 1/l = B and B = 2 - eps
-    (least eigenvalue of V''): there d_j = beta_j - 1/d_{j-1} > 0 and all beta_j <= B, so all d_j and
-    all 1/d_j are at least l, and beta_j is the sum of two of them.  With V'' between -m and M that
-    ends where 2 - eps M = 2 l, at eps = 4 m/(M (M + 2 m))."""
+    A minimizing state has 2 - eps V'' > 0 at its points.  An invariant graph passes through all x,
+    and there even 2 - eps V'' >= 2 l holds, where l is the smaller root of l + 1/l = B and B = 2 -
+    eps (least eigenvalue of V''): since d_j = beta_j - 1/d_{j-1} > 0 and all beta_j <= B, all d_j
+    and all 1/d_j are at least l, and beta_j is the sum of two of them.  With V'' between -m and M
+    that ends where 2 - eps M = 2 l, at eps = 4 m/(M (M + 2 m))."""
     known(potential)
 
     def eigenvalues(x):
@@ -45,8 +45,8 @@ def prelude(potential: Potential) -> Prelude:
 
 
 def _highest(function, n):
-    """Where a function on the torus is largest, as an array (1, n): the best point of a grid, then of
-    ever finer ones around it.  No derivatives: what is looked for may be a kink."""
+    """Where a function on the torus is largest, as an array (1, n): the best point of a grid, then
+    of ever finer grids around it.  No derivatives are used, since the maximum may be a kink."""
     centre, width, size = np.full((1, n), 0.5), 0.5, 120
     while width > 1e-12:
         axis = width * np.arange(-size, size + 1) / size

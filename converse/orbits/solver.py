@@ -27,9 +27,9 @@ def straight(potential: Potential, p: Tuple[int, ...], q: int,
 
 
 def step_of(potential):
-    """How far follow goes in eps at once: about PER_CURVATURE over the curvature, which is estimated
-    on a grid if it is not known, rounded to 1, 2.5 or 5 times a power of ten.  So the map of 1000 V
-    and eps/1000 has the same orbits as that of V and eps."""
+    """The step of eps in follow: about PER_CURVATURE over the curvature, which is estimated on a
+    grid if it is not known, rounded to 1, 2.5 or 5 times a power of ten.  The map of 1000 V and
+    eps/1000 thus has the same orbits as that of V and eps."""
     bend = potential.curvature
     if bend is None:
         axis = (np.arange(32) + 0.5) / 32
@@ -82,8 +82,8 @@ COLUMNS = ("potential", "p", "q", "eps", "label", "action", "shadow", "grad_size
 def row(state):
     """The measures of a state, as COLUMNS says."""
     exponents = [repr(float(x)) for x in state.exponents] + [""] * (2 - state.potential.n)
-    return [state.potential.name, " ".join(map(str, state.p)), state.q, repr(state.eps), state.label,
-            repr(state.action), repr(state.shadow), repr(state.grad_size), *exponents,
+    return [state.potential.name, " ".join(map(str, state.p)), state.q, repr(state.eps),
+            state.label, repr(state.action), repr(state.shadow), repr(state.grad_size), *exponents,
             *map(repr, state.deviation), state.undetermined]
 
 
@@ -92,8 +92,8 @@ def reached(potential, eps):
     eps, step = finite("eps", eps), step_of(potential)
     for a, b in zip([0.0] + eps, eps):
         if not abs(b - a) <= MOST * step:
-            raise ValueError("eps %r is more than %d steps of %g away from %r: too far to be followed"
-                             % (b, MOST, step, a))
+            raise ValueError("eps %r is more than %d steps of %g away from %r: too far to be "
+                             "followed" % (b, MOST, step, a))
     return eps
 
 
@@ -115,7 +115,9 @@ def follow(potential: Potential, p: Tuple[int, ...], q: int, eps: Sequence[float
         step = longest
         while state.eps != target or not states:
             gap = target - state.eps
-            there = target if abs(gap) <= step * 1.000001 else state.eps + (step if gap > 0 else -step)
+            there = target
+            if abs(gap) > step * 1.000001:
+                there = state.eps + (step if gap > 0 else -step)
             try:
                 state = state.relax(there)
             except ConverseError:
@@ -133,9 +135,9 @@ def follow(potential: Potential, p: Tuple[int, ...], q: int, eps: Sequence[float
 
 def flow(state: State, eps: Optional[float] = None, grad_size: float = 1e-6,
          max_steps: int = 10000, dt: float = 0.5) -> Tuple[State, int]:
-    """Gradient flow (thesis, Appendix A), for comparison: du/dtau = -dL/du until the gradient's root
-    mean square is at most grad_size.  The kinetic part is taken implicitly, so that dt may be large.
-    Returns the state, "not stationary" perhaps, and the number of steps."""
+    """Gradient flow (thesis, Appendix A), for comparison: du/dtau = -dL/du until the gradient's
+    root mean square is at most grad_size.  The kinetic part is taken implicitly, so that dt may be
+    large.  Returns the state, "not stationary" perhaps, and the number of steps."""
     expected(state)
     finite("grad_size and dt", [grad_size, dt])
     state = replace(state, eps=state.eps if eps is None else eps, searches=0)

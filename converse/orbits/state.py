@@ -84,8 +84,8 @@ def type_of(potential, p, q):
     except (TypeError, ValueError, OverflowError):
         valid = False
     if not valid or len(numbers) != n or max(map(abs, numbers)) >= 2 ** 31:
-        raise ValueError("a type is %d whole number%s p below 2^31 in size, as a tuple, and a whole "
-                         "number q from 1 to %d, not %.200r and %.200r"
+        raise ValueError("a type is %d whole number%s p below 2^31 in size, as a tuple, and a "
+                         "whole number q from 1 to %d, not %.200r and %.200r"
                          % (n, "s" * (n > 1), LONGEST, p, q))
     return numbers, int(q)
 
@@ -188,14 +188,14 @@ class State:
 
     @property
     def shadow(self) -> float:
-        """The largest distance between (x_{j+1}, p_{j+1}) and the image of (x_j, p_j).  The x agree;
-        what remains is the largest |dL/dx_j|."""
+        """The largest distance between (x_{j+1}, p_{j+1}) and the image of (x_j, p_j).  Since the x
+        agree, it is the largest |dL/dx_j|."""
         return sqrt(float((self.gradient ** 2).sum(1).max()))
 
     @cached_property
     def blocks(self) -> np.ndarray:
-        """beta_j = 2 - eps V''(x_j), entries 00, 01 and 11: array (q, 3).  Where n is one, the second
-        coordinate is idle."""
+        """beta_j = 2 - eps V''(x_j), entries 00, 01 and 11: array (q, 3).  With one angle the
+        second coordinate is idle."""
         bend = self._local[2]
         blocks = np.tile([2.0, 0.0, 2.0], (self.q, 1))
         blocks[:, 0] -= self.eps * bend[:, 0, 0]
@@ -225,8 +225,8 @@ class State:
 
     @cached_property
     def _pivots(self) -> Tuple[np.ndarray, int]:
-        """d_j = beta_j - 1/d_{j-1}, array (q, 3), and how many rounds it took to repeat; 0: they did
-        not; -r: not all are positive definite, in round r."""
+        """The pivots d_j = beta_j - 1/d_{j-1}, array (q, 3), and the rounds until they repeated; 0:
+        they did not; -r: not all are positive definite, in round r."""
         pivots = np.zeros((self.q, 3))
         rounds = lib.cv_pivots(self.potential.n, self.q, address(self.blocks, "double(*)[3]"),
                                max(5, ROUNDS // self.q), address(pivots, "double(*)[3]"))
@@ -234,10 +234,10 @@ class State:
 
     @property
     def label(self) -> str:
-        """What is known of it, in doubles: "not stationary"; "saddle", if it or an n-fold copy of it
-        has an action that can be lowered to second order; "minimum", if neither has, but for
-        directions so flat that nobody knows (undetermined); "stationary", if rounding hides which;
-        "best of N searches", of a minimum found so."""
+        """What is known of it, in doubles: "not stationary"; "saddle", if the action of it or of an
+        n-fold copy of it can be lowered to second order; "minimum", if not, except along directions
+        too flat to tell (undetermined); "stationary", if rounding hides which; "best of N
+        searches", of a minimum found so."""
         if not self.shadow < STATIONARY:
             return "not stationary"
         rounds = self._pivots[1]
@@ -332,8 +332,8 @@ class State:
                 break
         if code != lib.CV_OK:
             raise ConverseError(
-                "no orbit of type (%s)/%d found at eps %r: the gradient is still %.1e after %d steps"
-                % (", ".join(map(str, self.p)), q, eps, how.largest, how.steps))
+                "no orbit of type (%s)/%d found at eps %r: the gradient is still %.1e after %d "
+                "steps" % (", ".join(map(str, self.p)), q, eps, how.largest, how.steps))
         return replace(self, eps=eps, u=u[:, :n], searches=0)
 
 

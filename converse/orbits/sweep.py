@@ -17,7 +17,7 @@ from typing import Any, Callable, NamedTuple, Optional, Sequence, Tuple, Union
 
 import numpy as np
 
-from ..prover.workers import LOOK_SECONDS, Crew, WorkersGone
+from ..prover.workers import LOOK_SECONDS, WorkerPool, WorkersGone
 from ..storage import files
 from ..storage.files import ConverseError
 from ..storage.signals import interruptible
@@ -78,8 +78,8 @@ def onset(potential: Potential, p: Tuple[int, ...], q: int, exponent: Optional[f
         float("%.0e" % (x / (potential.curvature or 1))) if y is None else y
         for x, y in zip(PER_CURVATURE, given)])
     if not (0 < width <= step and 0 < top <= MOST * step):
-        raise ValueError("step, width and top are positive, the width at most the step, and the top "
-                         "at most %d steps, not %r, %r, %r" % (MOST, step, width, top))
+        raise ValueError("step, width and top are positive, the width at most the step, and the "
+                         "top at most %d steps, not %r, %r, %r" % (MOST, step, width, top))
     q = straight(potential, p, q).q
     limit, = finite("exponent", [1 / q if exponent is None else exponent])
     if not limit >= 2 / max(ROUNDS, 5 * q):
@@ -238,14 +238,14 @@ def _sweep(task, how, columns, potential, vectors, eps, executor, file, progress
             files.check_writable(file, regular=True)
             stack.enter_context(files.Lock(file))
             texts += _finished(file, texts[0], potential, vectors, eps, task, seal)
-            out = stack.enter_context(contextlib.closing(_File(file, "".join(texts))))
+            out = stack.enter_context(contextlib.closing(files.AppendedFile(file, "".join(texts))))
         if progress is not None:
             progress(len(texts) - 1, len(vectors))
         results = _in_order(task, vectors[len(texts) - 1:], executor)
         for text in stack.enter_context(contextlib.closing(results)):
             texts.append(_sealed(seal, text))
             if out is not None:
-                out.add(texts[-1])
+                out.append(texts[-1])
             if progress is not None:
                 progress(len(texts) - 1, len(vectors))
     return _table("".join(texts))
@@ -267,14 +267,14 @@ def _in_order(task, vectors, executor):
         return
     task, given, results = Stoppable(functools.partial(_caught, task)), 0, {}
     try:
-        with Crew(executor, stop=task.stop) as crew:
+        with WorkerPool(executor, stop=task.stop) as pool:
             for wanted in range(len(vectors)):
                 while wanted not in results:
-                    room = AHEAD * crew.size - len(crew.running) - len(results)
+                    room = AHEAD * pool.size - len(pool.running) - len(results)
                     for key in range(given, min(given + room, len(vectors))):
-                        crew.give(key, task, vectors[key])
+                        pool.give(key, task, vectors[key])
                         given = key + 1
-                    results.update(crew.take(LOOK_SECONDS))
+                    results.update(pool.take(LOOK_SECONDS))
                 result = results.pop(wanted)
                 if isinstance(result, Exception):
                     raise result
@@ -290,34 +290,6 @@ def _caught(task, vector):
         return task(vector)
     except Exception as error:
         return error
-
-
-class _File:
-    """The file of a sweep, which begins with a text and grows."""
-
-    def __init__(self, path, text):
-        self.path = path
-        with self._told():
-            self.stream = open(path, "r+b" if os.path.exists(path) else "wb", buffering=0)
-            self.stream.truncate(len(text.encode("utf-8")))     # without a line that was torn
-        self.add(text)
-
-    def add(self, text):
-        data = text.encode("utf-8")
-        with self._told():
-            while data:                 # a disk that is almost full takes a part
-                data = data[self.stream.write(data):]
-
-    def close(self):
-        self.stream.close()
-
-    @contextlib.contextmanager
-    def _told(self):
-        try:
-            yield
-        except OSError as error:
-            raise ConverseError("%s: cannot be written (%s); what it has can be continued"
-                                % (self.path, files.reason(error))) from None
 
 
 def _finished(path, header, potential, vectors, eps, task, seal):

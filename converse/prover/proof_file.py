@@ -16,8 +16,8 @@ from .settings import Settings
 
 FIRST_LINE, BEFORE = "converse proof 3", "converse proof 2"     # written, and read as well
 PROGRAM = re.compile(r"converse ([0-9A-Za-z.+-]{1,40})")
-KINDS = {False: "sound", True: "as printed, not a proof"}       # by as_printed
-WIDTH = 78                              # of the tree's lines
+CLAIMS = {False: "sound", True: "as printed, not a proof"}       # by as_printed
+LINE_WIDTH = 78                              # of the tree's lines
 
 
 def save(proof, path):
@@ -71,7 +71,7 @@ def _text(proof):
     problem, at_once = proof.problem, _yes(proof.at_once)
     if proof.at_once and len(problem.parts) == 1:
         at_once = "upper end"
-    lines = [FIRST_LINE, "kind: " + KINDS[proof.as_printed],
+    lines = [FIRST_LINE, "kind: " + CLAIMS[proof.as_printed],
              "program: converse " + proof.version, "method: " + proof.method]
     lines += _problem_lines(problem)
     lines += ["xstar: " + " ".join(proof.xstar)] if proof.xstar else []
@@ -85,7 +85,7 @@ def _text(proof):
     lines += ["%s: %s" % item for item in proof.constants.items()]
     lines += ["comment: " + comment for comment in problem.comments]
     lines += ["tree:"]
-    lines += [proof.tree[i:i + WIDTH] for i in range(0, len(proof.tree), WIDTH)]
+    lines += [proof.tree[i:i + LINE_WIDTH] for i in range(0, len(proof.tree), LINE_WIDTH)]
     text = "\n".join(lines) + "\n"
     return text + "checksum: sha256 %s\nend\n" % _sha256(text.encode("utf-8"))
 
@@ -105,7 +105,7 @@ def _proof(values, problem, nodes, sha256):
         raise ValueError("of an unknown program")
     settings = Settings(values["method"], int(values["depth"]), int(values["digits"]),
                         values["stubborn"] == "yes",
-                        {kind: printed for printed, kind in KINDS.items()}[values["kind"]])
+                        {kind: printed for printed, kind in CLAIMS.items()}[values["kind"]])
     constants = {name: _number(values[name]) for name in CONSTANTS[settings.method]
                  if name in values}
     tree.complete(nodes)                # TreeError, a ValueError: it is not a tree
@@ -122,8 +122,9 @@ def _problem_lines(problem):
     lines += ["frame: %d %d %d %d" % problem.frame,
               "alone: %s" % ("no" if problem.kept is None else problem.kept),
               "odd about: " + ("no" if problem.odd is None else "%s %s" % problem.odd)]
+    ends = zip(NAMES[3:], problem.centre[-2:], problem.half[-2:])
     return lines + ["%s: %s %s" % (name, decimal_text(centre), decimal_text(half))
-                    for name, centre, half in zip(NAMES[3:], problem.centre[-2:], problem.half[-2:])]
+                    for name, centre, half in ends]
 
 
 def _problem(values, waves, comments):

@@ -12,10 +12,10 @@ PLUSES = "+" * 48
 MAP = ("y' = y + J', J' = J - dV(y), ", "V(y) = -a sin y0 - b sin y1 - c sin(y0 + y1)",
        "x* and v : the angles y at one time and at the next, modulo 2 pi",
        "Tori : invariant graphs J = P + S'(y) over all angles, P constant, S periodic and C1")
-PLACES = 6                              # of a bound, at least
-POINT = 1e-10                           # half-width of an angle, in units of pi, that is tiny
+LEAST_PLACES = 6                        # of a bound
+TINY = 1e-10                            # half-width of an angle, in units of pi
 WAVES = "V(y) = - the sum of"           # in general
-METHODS = {
+METHOD_NAMES = {
     "thesis": "that of the thesis, its listing corrected",
     "loewner": "the Loewner criterion, by witness and multipliers",
 }
@@ -72,7 +72,7 @@ def _theorem(proof):
     of = " for the range of parameters :" if problem.general is None else " for %s :" % WAVES
     lines = [FINDINGS[proof.conclusion] % TORI[problem.dimension]]
     if proof.conclusion == REGION:
-        lines += [_range("v[%d] / pi" % i, *ends) for i, ends in enumerate((problem.v0, problem.v1))]
+        lines += [_range("v[0] / pi", *problem.v0), _range("v[1] / pi", *problem.v1)]
         lines += ["(only a part of the torus: other successors were not examined)", of[1:]]
     else:
         lines[0] += of
@@ -96,9 +96,9 @@ def _potential(problem):
     lines = []
     for wave, p, *parts in zip(problem.waves, problem.amplitude, *problem.parts):
         moves = "".join(" %s %s t[%d]" % ("-" if part < 0 else "+",
-                                          decimal_text(abs(part), PLACES), m)
+                                          decimal_text(abs(part), LEAST_PLACES), m)
                         for m, part in enumerate(parts, 1) if part)
-        lines.append("p %s, p = %s%s" % (wave_text(wave), decimal_text(p, PLACES), moves))
+        lines.append("p %s, p = %s%s" % (wave_text(wave), decimal_text(p, LEAST_PLACES), moves))
     if problem.parts:
         lines += ["for -1 < %s < 1" % ", ".join("t[%d]" % m
                                                 for m in range(1, len(problem.parts) + 1))]
@@ -107,7 +107,7 @@ def _potential(problem):
 
 def _range(name, low, high, exactly=True):
     """The bounds of a range, exactly, or to the six places of 1989."""
-    low, high = (decimal_text(x, PLACES) if exactly else "%f" % x for x in (low, high))
+    low, high = (decimal_text(x, LEAST_PLACES) if exactly else "%f" % x for x in (low, high))
     if exactly and low == high:
         return "%s = %s" % (name, low)
     return "%s < %s < %s" % (low, name, high)
@@ -129,7 +129,7 @@ def _gaps(proof):
             "%s < v[%d] / pi < %s" % (short_text(c - h, h / 100), i, short_text(c + h, h / 100))
             if h else "v[%d] / pi = %s" % (i, short_text(c))
             for i, (c, h) in enumerate(zip(leaf.centre, leaf.half)))]
-    stuck = any(leaf.depth < proof.depth and min(leaf.half) < POINT for leaf in undecided)
+    stuck = any(leaf.depth < proof.depth and min(leaf.half) < TINY for leaf in undecided)
     if stuck and proof.method == "loewner":
         lines += ["One of them is as small as doubles can tell : "
                   "the orbit from x* to it may minimize."]
@@ -183,12 +183,12 @@ def _statistics(proof):
 
 
 def _method(proof):
-    """What the word of the report rests on."""
+    """The map, the method and the counts that the conclusion rests on."""
     problem = proof.problem
     lines = ["Map : " + MAP[0] + (MAP[1] if problem.general is None else WAVES + " such waves"),
              *MAP[2:], *_choices(problem),
              "Program : converse " + proof.version,
-             "Method : " + METHODS[proof.method],
+             "Method : " + METHOD_NAMES[proof.method],
              "Arithmetic : " + proof.arithmetic]
     lines += ["x* : %s %s" % proof.xstar] if proof.xstar else []
     lines += ["%s : %s" % (name, proof.constants[name]) for name in ("T", "B")
@@ -209,7 +209,8 @@ def _choices(problem):
     if problem.frame != IDENTITY:
         lines += ["Frame : the angles at the next time are " + frame_text(problem.frame, "v[%d]")]
     if problem.dimension == 1:
-        lines += ["Circles : those that go around are graphs (Birkhoff), and times {J1 = 0} such tori"]
+        lines += ["Circles : those that go around are graphs (Birkhoff), and times {J1 = 0} such "
+                  "tori"]
     if problem.kept is not None:
         lines += ["Alone : y%d, as no wave feels both angles; what only y%d feels was left out" % (
             problem.kept, 1 - problem.kept)]

@@ -9,7 +9,7 @@ from typing import Any, Callable, Dict, Optional, Tuple, Union
 
 from ..model.exact import Number, decimal_text, exact
 from ..model.problem import Problem
-from ..storage.backup import Keeper
+from ..storage.backup import Backup
 from ..storage.files import ConverseError
 from ..storage.signals import interruptible, postponed
 from ..version import __version__
@@ -67,13 +67,13 @@ def prove(problem: Optional[Problem] = None, *, method: Optional[str] = None,
     name = "the proof to resume" if file is None else os.fspath(file)
     if problem is not None and resume is None:
         before = Proof(problem, Settings(**given), xstar=star)
-    with interruptible(), Keeper(file if backup is None else backup, resumed=file) as keeper:
+    with interruptible(), Backup(file if backup is None else backup, resumed=file) as backup_file:
         if resume is not None:
             proof = resume if isinstance(resume, Proof) else Proof.load(resume)
             before = continued(proof, name, problem, given, star)
         before = replace(before, problem=before.settings.accept(before.problem))
         try:
-            return _Run(before, keeper, options).run()
+            return _Run(before, backup_file, options).run()
         except native.WrongTree as error:
             raise ConverseError("%s: %s; use an intact copy or start anew"
                                 % (name, error)) from None
@@ -122,8 +122,8 @@ class _Options:
 class _Run:
     """One run of a search, from what was known before it to a Proof."""
 
-    def __init__(self, before, keeper, options):
-        self.before, self.keeper, self.options = before, keeper, options
+    def __init__(self, before, backup, options):
+        self.before, self.backup, self.options = before, backup, options
         self.began = time.monotonic()
         self.end = self.began + options.time_limit
         self.search = TreeSearch(Task(before.problem, before.settings, before.xstar), options.jobs,
@@ -162,10 +162,11 @@ class _Run:
             for node, points in zip(text, steps):
                 for kind, cell in self.walk.feed(node):
                     if points != OLD:
-                        self.options.on_leaf(tree.Leaf(kind, *self.prism(cell), sum(cell[1])), points)
+                        leaf = tree.Leaf(kind, *self.prism(cell), sum(cell[1]))
+                        self.options.on_leaf(leaf, points)
         if self.options.progress:
             self.options.progress(self.search.examined, self.search.counts)
-        self.keeper.keep(self._snapshot)
+        self.backup.update(self._snapshot)
 
     def _seconds(self):
         return self.before.seconds + time.monotonic() - self.began
@@ -179,8 +180,8 @@ class _Run:
         try:
             self._finished(self._snapshot())
         except AssertionError:          # an exception struck in the middle of a change
-            self.keeper.leave()
+            self.backup.leave()
 
     def _finished(self, proof):
         with postponed():               # a signal must not cost the last write
-            return replace(proof, sha256=self.keeper.finish(proof))
+            return replace(proof, sha256=self.backup.finish(proof))

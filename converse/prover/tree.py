@@ -1,8 +1,8 @@
 """The tree of a proof as text: one character per prism, in preorder.
 
-0 and 1 are cuts along v0 and v1, 2, 3 and 4 along the parameters (a, b and c, or where they move
-together 2 along all of them); the lower half comes first.  The leaves are P (proved), S (skipped by symmetry),
-U (undecided) and ? (untried); where a text ends too early, untried prisms are missing.
+0 and 1 are cuts along v0 and v1; 2, 3 and 4 along the parameters (a, b and c, or where they move
+together 2 along all of them); the lower half comes first.  The leaves are P (proved), S (skipped by
+symmetry), U (undecided) and ? (untried); where a text ends too early, untried prisms are missing.
 """
 
 import re
@@ -93,7 +93,7 @@ _OPENS = bytes(1 if chr(n) in CUTS else 255 if chr(n) in KINDS else 0 for n in r
 
 
 def complete(text):
-    """Is this a whole tree, all of it tried?  TreeError where it is not the beginning of one."""
+    """Is this a complete tree, all of it tried?  TreeError: it is not the beginning of a tree."""
     wrong = text.translate(dict.fromkeys(map(ord, CUTS + KINDS)))
     if wrong:
         raise TreeError("%r is not a node of a tree" % wrong[0])

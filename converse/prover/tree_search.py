@@ -10,11 +10,11 @@ from dataclasses import replace
 
 from . import native, tree
 from .native import Counts
-from .workers import LOOK_SECONDS, Crew
+from .workers import LOOK_SECONDS, WorkerPool
 
 MANY = 2 ** 30                      # leaves: more than a task can grow
 ALONE_SECONDS = 0.03                # of work in one thread before it is divided
-TASK_SECONDS = 0.25                 # that a worker grows its part before it reports, in the long run
+TASK_SECONDS = 0.25                 # of a task, when the search has gone on for ten times as long
 OLD = -1                            # in place of the orbit's length: decided in an earlier run
 
 
@@ -52,7 +52,7 @@ class TreeSearch:
         """executor: whose workers are used once the work is worth dividing, or None; jobs: parts at
         a time, or None."""
         self.task, self.executor = task, executor
-        self.crew = Crew(executor, jobs, native.Stop())
+        self.pool = WorkerPool(executor, jobs, native.Stop())
         self.want_steps, self.stubborn = want_steps, task.settings.stubborn
         self.parts, self.statistics = [], Counts()
         self.changes = 0                    # under way: see _change
@@ -61,7 +61,7 @@ class TreeSearch:
         return self
 
     def __exit__(self, *_):
-        self.crew.__exit__()
+        self.pool.__exit__()
 
     # ---- the beginning
 
@@ -71,13 +71,13 @@ class TreeSearch:
 
         hints: of the untried prisms, in their order."""
         began = time.monotonic()
-        self.crew.give(None, native.begin, self.task, text, here=True)
+        self.pool.give(None, native.begin, self.task, text, here=True)
         done = []
         while not done:
             seconds = seconds_left()
             if seconds <= 0:
-                self.crew.stop.set()
-            done += self.crew.take(seconds if seconds > 0 else LOOK_SECONDS)
+                self.pool.stop.set()
+            done += self.pool.take(seconds if seconds > 0 else LOOK_SECONDS)
         (_, begun), = done
         if begun is None:
             return None
@@ -108,10 +108,10 @@ class TreeSearch:
 
     @property
     def counts(self):
-        """The statistics; the nodes are those of the tree as it is, while tries, too, count that
-        came to nothing since an undecided prism before them ended the search."""
-        cuts, proved, symmetric, undecided = map(sum, zip(*(part.kinds for part in self._relevant()),
-                                                          (0,) * 4))
+        """The statistics.  The nodes counted are those of the tree as it is, but the tries include
+        those of parts that were dropped, since an undecided prism before them ended the search."""
+        cuts, proved, symmetric, undecided = map(
+            sum, zip(*(part.kinds for part in self._relevant()), (0,) * 4))
         return replace(self.statistics, cuts=cuts, proved=proved, symmetric=symmetric,
                        undecided=undecided)
 
@@ -123,7 +123,7 @@ class TreeSearch:
 
     def text(self):
         """The tree so far, and the hints of the untried prisms in it.  AssertionError: an exception
-        struck in the middle of a change, and no tree is to be had any more."""
+        struck in the middle of a change, so that the tree is lost."""
         if self.changes:
             raise AssertionError("the tree is not whole")
         pieces, hints = [], []
@@ -147,7 +147,8 @@ class TreeSearch:
 
     @contextlib.contextmanager
     def _change(self):
-        """Around every change of the parts: what an exception leaves half done must not be saved."""
+        """Around every change of the parts: one that an exception leaves half done must not be
+        saved."""
         self.changes += 1
         yield
         self.changes -= 1
@@ -179,12 +180,12 @@ class TreeSearch:
 
     def _queue(self):
         """The parts that wait for a worker, in preorder."""
-        busy = {id(task.key) for task in self.crew.running.values()}
+        busy = {id(task.key) for task in self.pool.running.values()}
         return [part for part in self._relevant() if part.cells and id(part) not in busy
                 and (self.stubborn or not part.stopped)]
 
     def _divide(self, queue, wanted):
-        """Makes as many parts of those in the queue as are wanted, if it can."""
+        """Divides the parts in the queue until there are as many as wanted, if possible."""
         while 0 < len(queue) < wanted:
             part = max(queue, key=lambda part: len(part.cells))
             if len(part.cells) == 1:
@@ -202,23 +203,23 @@ class TreeSearch:
         when something came back and no part waits any more."""
         end = time.monotonic() + seconds
         alone = self.alone_until - time.monotonic()
-        here = alone > 0 or (self.executor is None and self.crew.size == 1)
+        here = alone > 0 or (self.executor is None and self.pool.size == 1)
         if here:
             workers, queue = 1, self._queue()
             seconds = min(seconds, alone) if alone > 0 else seconds
         else:
-            workers = self.crew.size
+            workers = self.pool.size
             seconds = min(TASK_SECONDS, 0.1 * (time.monotonic() - self.began))
-            queue = self._divide(self._queue(), workers - len(self.crew.running))
+            queue = self._divide(self._queue(), workers - len(self.pool.running))
         queue.reverse()
-        running = self.crew.running
+        running = self.pool.running
         while True:
             while queue and len(running) < workers:
                 part = queue.pop()
-                self.crew.give(part, native.grow, self.task, part.cells, seconds, MANY,
+                self.pool.give(part, native.grow, self.task, part.cells, seconds, MANY,
                                self.want_steps, here=here)
             came = stopped = False
-            for part, grown in self.crew.take(max(0.0, end - time.monotonic())):
+            for part, grown in self.pool.take(max(0.0, end - time.monotonic())):
                 self._take(part, grown)
                 came = True
                 stopped = stopped or (part.stopped and not self.stubborn)
@@ -228,7 +229,7 @@ class TreeSearch:
         self._merge()
 
     def _merge(self):
-        """Gives the text of parts whose predecessors are finished to these."""
+        """Joins the text of parts to the part before them where that is finished."""
         parts = []
         with self._change():
             for part in self.parts:
@@ -242,6 +243,6 @@ class TreeSearch:
 
     def settle(self):
         """Waits a little for the workers, takes what they bring, and ends the work."""
-        for part, grown in self.crew.settle(4 * TASK_SECONDS + 1):
+        for part, grown in self.pool.settle(4 * TASK_SECONDS + 1):
             self._take(part, grown)
         self._merge()

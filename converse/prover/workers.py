@@ -47,13 +47,13 @@ class _Task:
     attempts: int = ATTEMPTS            # that are left, this one included
 
 
-class Crew:
+class WorkerPool:
     """The workers of an executor or, where that is None, threads of this process.
 
     executor: a concurrent.futures.Executor or None; jobs: tasks at a time, or None: as many as keep
     the workers busy, which with a Dask cluster may come and go.
     stop: its method set() is called to end the tasks in threads of this process.  Tasks in the
-    crew's own threads have it as their last argument; it cannot be sent to other processes."""
+    pool's own threads have it as their last argument; it cannot be sent to other processes."""
 
     def __init__(self, executor=None, jobs=None, stop=None):
         self.executor, self.jobs, self.stop = executor, jobs, stop
@@ -97,8 +97,8 @@ class Crew:
                 yield task.key, result
 
     def settle(self, seconds):
-        """Ends the work: yields (key, result) of the tasks that are done within so many seconds, and
-        cancels the others."""
+        """Ends the work: yields (key, result) of the tasks that are done within so many seconds,
+        and cancels the others."""
         self._stop()
         for future in self._wait(seconds if self.alive else 0, concurrent.futures.ALL_COMPLETED):
             task = self.running.pop(future)
@@ -175,8 +175,9 @@ class Crew:
             return
         words = " ".join(str(error).split()).partition(". ")[0]
         if "deserialization" in words:  # by a Dask scheduler
-            raise WorkersGone("the Dask scheduler cannot read the tasks: converse is missing there, "
-                              "or its packages are others; install converse-kam %s as here (%s)"
+            raise WorkersGone("the Dask scheduler cannot read the tasks: converse is missing "
+                              "there, or its packages are others; install converse-kam %s as here "
+                              "(%s)"
                               % (__version__, words))
         raise WorkersGone("the workers keep failing (%s: %s)" % (type(error).__name__, words))
 

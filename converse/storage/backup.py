@@ -10,7 +10,7 @@ SECONDS = 1.0                       # between two writes
 SHARE = 20                          # of the time, at most one part in so many goes into them
 
 
-class Keeper:
+class Backup:
     """Keeps path up to date; with None it keeps nothing.
 
     The file must be new, or empty, or that of the run which is continued: nothing is overwritten.
@@ -37,7 +37,7 @@ class Keeper:
         if self.lock is not None:
             self.lock.release()
 
-    def keep(self, snapshot):
+    def update(self, snapshot):
         """Writes what snapshot() returns, if it is time; what goes wrong is said once, and tried
         again later."""
         if self.path is None or time.monotonic() < self.due:

@@ -21,7 +21,8 @@ _due = False                            # the first of them is yet to be raised
 
 
 def _interrupt(number, frame):
-    """The handler.  Only the first signal counts: another would strike while the backup is saved."""
+    """The handler.  Only the first signal counts: a second one would strike while the backup is
+    saved."""
     global _due
     _heard.append(number)
     if len(_heard) == 1:
