@@ -112,7 +112,7 @@ def test_never_worse_than_continuation():
 
 def test_turns_alone_help_a_long_orbit(monkeypatch):
     """The better pieces of continuation's orbit, begun at each of its points, mend the others."""
-    monkeypatch.setattr(hunt._Hunt, "shorter", lambda *_: None)
+    monkeypatch.setattr(hunt._TypeSearch, "shorter", lambda *_: None)
     followed = follow(trig, (200, 265), 351, 0.04)
     best = orbits.search(trig, (200, 265), 351, 0.04, searches=60)
     assert followed.action - best.action > 1e-4
@@ -194,9 +194,9 @@ def action_of(state, u):
     return state.moved(u).action
 
 
-def test_mend_is_the_least_path(monkeypatch):
+def test_a_recombined_path_is_the_least(monkeypatch):
     """Without slip: no choice of points of two states, among those that begin like it, has less."""
-    monkeypatch.setattr(hunt, "SLIP", 0.0)
+    monkeypatch.setattr(hunt, "RELIEF", 0.0)
     rng = np.random.default_rng(3)
     for _ in range(20):
         state = orbits.State(trig, (4, 5), 7, 0.05, rng.normal(size=(7, 2)) / 4, (0.85, 0.85))
@@ -204,7 +204,7 @@ def test_mend_is_the_least_path(monkeypatch):
         near = np.argmin(((u - state.u) ** 2).sum(1))
         least = min(action_of(state, np.where(np.array(choice)[:, None], u, state.u))
                     for choice in itertools.product((False, True), repeat=7) if not choice[near])
-        mended = hunt._mend(state, u)
+        mended = hunt._recombined(state, u)
         found = action_of(state, state.u if mended is None else mended)
         assert found == pytest.approx(least, abs=1e-15)
 

@@ -1,11 +1,11 @@
 """The curves that an orbit contracts to, and how often they wind round the torus: thesis, section
 2.3, "shapes".
 
-Points at most r apart are linked.  A closed chain of links winds round the torus some whole number
-of times in each direction.  Those who hang together are a cluster if all their chains wind (0, 0),
-a curve of type (a, b) if all wind by multiples of (a, b), and a surface otherwise.  The type is the
-one for which this holds over the widest range of r, which begins below WIDEST.  Curves that touch
-count as one in this way; how many there are is therefore counted on lines across.
+Points at most r apart are linked.  A closed chain of links has winding numbers round the torus, one
+in each direction.  A component of the graph of links is a cluster if all its chains wind (0, 0), a
+curve of type (a, b) if all wind by multiples of (a, b), and a surface otherwise.  The type is the
+one for which this holds over the widest range of r that begins below WIDEST.  Curves that touch are
+one component; how many curves there are is therefore counted on lines across them.
 """
 
 from math import gcd
@@ -13,15 +13,15 @@ from typing import NamedTuple, Tuple
 
 import numpy as np
 
-PARTS = 60                              # more of them are not looked at
-WIDEST = 0.1                            # points with wider gaps between are no curve
-APART = 0.05                            # points on a line with a wider gap between are two clusters
+MOST_PARTS = 60                         # components; a division into more is not examined
+WIDEST = 0.1                            # gap between neighbours on a curve
+APART = 0.05                            # a wider gap on a line separates two clusters
 HALF_WIDTH = 0.02                       # of a line
 LINES = 100
 
 
 class Filaments(NamedTuple):
-    """What the points of an orbit hang together as."""
+    """The curves that the points of an orbit lie on."""
 
     type: Tuple[int, int]               # as (1, -1): the first that is not 0 is positive
     gap: float                          # with r from gap up to distance they form curves
@@ -40,22 +40,23 @@ def filaments(x):
     x = np.array(x, dtype=float) % 1.0
     if x.ndim != 2 or x.shape[1] != 2 or not len(x) or not np.isfinite(x).all():
         raise ValueError("filaments are of points in the plane: give a finite array (q, 2)")
-    edges, lift = _tree(x)
-    early = max(len(edges) - PARTS, 0)
+    edges, lift = _spanning_tree(x)
+    first_edges = max(len(edges) - MOST_PARTS, 0)
     label = np.arange(len(x))
-    for _, i, j in edges[:early]:
+    for _, i, j in edges[:first_edges]:
         label[label == label[j]] = label[i]
     label = np.unique(label, return_inverse=True)[1]
     loops = _loops(x, lift, label)
     part = np.arange(label.max(initial=0) + 1)          # of each label
-    ways, begin = [], 0.0
-    for length, i, j in edges[early:] + [(0.5, 0, 0)]:  # farther off, the way round is as short
-        ways += [way for way in _one_way(part, loops, begin, length) if way[0] <= WIDEST]
+    ranges, begin = [], 0.0
+    for length, i, j in edges[first_edges:] + [(0.5, 0, 0)]:    # at 0.5 the torus is covered
+        ranges += [found for found in _range_of_r(part, loops, begin, length)
+                   if found[0] <= WIDEST]
         part[part == part[label[j]]] = part[label[i]]
         begin = length
-    if not ways:
+    if not ranges:
         return None
-    gap, distance, kind = max(ways, key=lambda way: way[1] / way[0])
+    gap, distance, kind = max(ranges, key=lambda found: found[1] / found[0])
     axis = int(abs(kind[1]) >= abs(kind[0]))
     return Filaments(kind, gap, distance, axis, clusters(x, axis, kind[1 - axis] / kind[axis]))
 
@@ -82,12 +83,12 @@ def _way(x, y):
     return step, np.hypot(step[:, 0], step[:, 1])
 
 
-def _turns(x, step, y):
+def _windings(x, step, y):
     """The whole numbers by which x + step lies in another cell of the plane than y."""
     return np.rint(x + step - y).astype(int)
 
 
-def _tree(x):
+def _spanning_tree(x):
     """The shortest tree that links all points (Prim): its edges (length, i, j), shortest first, and
     the cell of the plane, for each point, to which the tree leads from point 0."""
     lift, link = np.zeros(x.shape, int), np.zeros(len(x), int)
@@ -101,7 +102,7 @@ def _tree(x):
         j = int(np.argmin(far))
         edges.append((float(far[j]), int(link[j]), j))
         step, _ = _way(x[link[j]], x[j:j + 1])
-        lift[j] = lift[link[j]] + _turns(x[link[j]], step[0], x[j])
+        lift[j] = lift[link[j]] + _windings(x[link[j]], step[0], x[j])
         i = j
     return sorted(edges), lift
 
@@ -115,9 +116,9 @@ def _loops(x, lift, label):
     least = np.full(shape, np.inf).ravel()
     for i in range(len(x) - 1):
         step, length = _way(x[i], x[i + 1:])
-        turns = _turns(x[i], step, x[i + 1:]) + lift[i] - lift[i + 1:]
-        round_ = turns.any(axis=1)
-        a, b = turns[round_].T + reach
+        windings = _windings(x[i], step, x[i + 1:]) + lift[i] - lift[i + 1:]
+        round_ = windings.any(axis=1)
+        a, b = windings[round_].T + reach
         kind = ((label[i] * shape[1] + label[i + 1:][round_]) * side + a) * side + b
         np.minimum.at(least, kind, length[round_])
     there, = np.nonzero(least < np.inf)
@@ -126,7 +127,7 @@ def _loops(x, lift, label):
                       (b - reach).tolist()))
 
 
-def _one_way(part, loops, begin, end):
+def _range_of_r(part, loops, begin, end):
     """For a division into parts that holds for r from begin to end: the least and the largest r for
     which all parts are curves of one type, and the type; a list of one, or an empty one."""
     first = {}                                          # of each part: its shortest loop

@@ -1,4 +1,4 @@
-"""Measures that the thesis takes otherwise, and its prelude: where no tori can be."""
+"""The thesis's prelude, where no tori can be, and the exponents as it computed them."""
 
 from typing import NamedTuple
 
@@ -7,7 +7,7 @@ import numpy as np
 from .potential import Potential, known, whole
 from .state import State, expected
 
-LIMIT = 100.0               # a modest one: longer, the first vector is shortened
+LONG_VECTOR = 100.0         # of this length the first vector is made a unit vector again
 
 
 class Prelude(NamedTuple):
@@ -71,7 +71,7 @@ def gram_schmidt_exponents(state: State, rounds: int = 1, seed: int = 0) -> np.n
     for bend in np.concatenate([state.eps * state.potential.evaluate(state.x)[2]] * rounds):
         vectors[n:] -= bend @ vectors[:n]
         vectors[:n] += vectors[n:]
-        if np.abs(vectors[:, 0]).max() > LIMIT:
+        if np.abs(vectors[:, 0]).max() > LONG_VECTOR:
             vectors, lengths = np.linalg.qr(vectors)
             total += np.log(np.abs(np.diag(lengths)))
     total += np.log(np.abs(np.diag(np.linalg.qr(vectors)[1])))

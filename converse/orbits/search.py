@@ -1,11 +1,12 @@
-"""The least action of a type, looked for everywhere: is continuation's orbit the minimizing one?
+"""A search for the state of least action of a type: is continuation's orbit the minimizing one?
 
-Continuation (solver.follow) keeps to one branch of minima.  Here many guesses fall to minima by
-damped Newton.  What makes this work for long orbits is that the action is a sum along the orbit:
-- the better pieces of two states of a type make a third (_mend), and each state, begun at any other
-  of its points, is another state of its type that passes close by;
-- the least states of two shorter types, run through one after the other, nearly are one of the sum
-  of the types (_joint), and those of the two were found so in their turn.
+Continuation (solver.follow) keeps to one branch of minima.  Here damped Newton descends from many
+guesses, as in basin hopping (Wales and Doye 1997).  That alone fails for long orbits, whose minima
+are too many; but the action is a sum along the orbit, and so
+- the better pieces of two states of a type make a third, by dynamic programming (_recombined); the
+  second may be the first begun at another of its points, which passes close by;
+- the least states of two shorter types, one after the other, are nearly a state of the sum of the
+  types (_joint).  Those of the two are searched for in the same way.
 """
 
 import math
@@ -20,17 +21,17 @@ from .potential import Potential, told
 from .solver import follow, straight
 from .state import State
 
-MOST_STEPS = 1000           # of Newton's method in one search; few take more than a hundred
+MOST_NEWTON_STEPS = 1000    # in one search; few take more than a hundred
 TURNS = 50                  # of the best state, tried before anything at random
 JOINTS = 12                 # of two shorter states, tried before anything at random
-SHORT = 10000               # points times searches spent on a shorter type, but 2 JOINTS at least
-MOST = 100                  # searches spent on a shorter type
-SHARE = 0.6                 # of the seconds left, at most, likewise
+SHORT_WORK = 10000          # points times searches spent on a shorter type, but 2 JOINTS at least
+SHORT_SEARCHES = 100        # spent on a shorter type, at most
+SHORT_SHARE = 0.6           # of the seconds left that a shorter type may take
 SAMPLE = 1000               # points of a state that are compared with another's for a joint
 SPACING = 60                # points between pieces moved at once
 PIECE = 10                  # points of a piece, on the average
-AWAY = (0.1, 0.3, 0.6)      # how far pieces are moved: a normal deviate times one of these
-SLIP = 0.4                  # see _mend
+MOVES = (0.1, 0.3, 0.6)     # how far pieces are moved: a normal deviate times one of these
+RELIEF = 0.4                # see _recombined
 
 
 def search(potential: Potential, p: Tuple[int, ...], q: int, eps: float, searches: int = 200,
@@ -44,13 +45,13 @@ def search(potential: Potential, p: Tuple[int, ...], q: int, eps: float, searche
     of shorter types, whose own searches are not counted; turns of the best state so far; pieces of
     it moved; and straight orbits elsewhere, some relaxed at a larger eps first.
 
-    searches, seconds -- how many at most, and about how long; without seconds the result depends on
-                         the seed only
+    searches, seconds -- how many at most, and for about how long; without seconds the result
+                         depends on the seed only
     seed              -- of numpy's random numbers; searches with several, in any executor, are
                          independent of each other
     progress          -- called after each search with their number and the best state so far
 
-    ConverseError, if none of the searches ends.
+    ConverseError: no search ends at a state.
     """
     if isinstance(searches, bool) or not isinstance(searches, int) or searches < 1:
         raise ValueError("searches is a whole number, 1 or more, not %r" % (searches,))
@@ -62,15 +63,15 @@ def search(potential: Potential, p: Tuple[int, ...], q: int, eps: float, searche
     except (TypeError, ValueError):
         raise ValueError("the seed is a whole number, 0 or more, not %r" % (seed,)) from None
     guess = replace(straight(potential, p, q), eps=eps)
-    hunt = _Hunt(guess, searches, time.monotonic() + seconds, rng, {}, progress)
-    hunt.run()
-    if hunt.best is None:
+    of_type = _TypeSearch(guess, searches, time.monotonic() + seconds, rng, {}, progress)
+    of_type.run()
+    if of_type.best is None:
         raise ConverseError("no orbit of type (%s)/%d found at eps %r: none of %d searches ended"
-                            % (", ".join(map(str, guess.p)), guess.q, eps, hunt.begun))
-    return replace(hunt.best, searches=hunt.ended)
+                            % (", ".join(map(str, guess.p)), guess.q, eps, of_type.begun))
+    return replace(of_type.best, searches=of_type.ended)
 
 
-class _Hunt:
+class _TypeSearch:
     """The search for one type: that of a guess, the straight orbit at its eps."""
 
     def __init__(self, guess, searches, end, rng, known, progress=None):
@@ -80,14 +81,14 @@ class _Hunt:
         self.turns, self.shifts = _turns(guess.p, guess.q, 0.0)
 
     @property
-    def on(self):
+    def has_time(self):
         return self.begun < self.searches and time.monotonic() < self.end
 
     def run(self):
         guess = self.guess
         try:
             self.begun += 1
-            self.take(follow(guess.potential, guess.p, guess.q, [guess.eps])[0])
+            self.record(follow(guess.potential, guess.p, guess.q, [guess.eps])[0])
         except ConverseError:
             pass
         joints = self.joints()
@@ -95,28 +96,28 @@ class _Hunt:
             self.joint(joints)
         for r in self.turns[1:1 + TURNS]:
             self.turn(r)
-        while self.on:
+        while self.has_time:
             move = self.rng.integers(4) if self.best is not None else 3
             if move == 0:
                 self.joint(joints)
             elif move == 1 and guess.q > 1:
-                self.turn(self.turns[self.nearly_first(1, guess.q)])
+                self.turn(self.turns[self.random_index(1, guess.q)])
             elif move == 2:
-                self.pieces()
+                self.move_pieces()
             else:
-                self.elsewhere()
+                self.start_anywhere()
 
-    def fall(self, guess):
-        """One search; the state where it ends, or None."""
-        if not self.on:
+    def descend(self, guess):
+        """One search, from a guess: the state where it ends, or None."""
+        if not self.has_time:
             return None
         self.begun += 1
         try:
-            return self.take(guess.relax(max_steps=MOST_STEPS))
+            return self.record(guess.relax(max_steps=MOST_NEWTON_STEPS))
         except ConverseError:
             return None
 
-    def take(self, state):
+    def record(self, state):
         self.ended += 1
         if self.best is None or state.action < self.best.action:
             self.best = state
@@ -124,58 +125,59 @@ class _Hunt:
             self.progress(self.ended, self.best)
         return state
 
-    def nearly_first(self, first, end):
-        """A random index, small more often than not."""
+    def random_index(self, first, end):
+        """A random index from first up to end, more often small than large."""
         return first + int((end - first) * self.rng.random() ** 3)
 
     # ---- guesses
 
-    def mend(self, other, r=0, shift=0.0):
+    def recombine(self, other, r=0, shift=0.0):
         """The better pieces of the best state and another's, turned by r."""
         if self.best is not None:
-            u = _mend(self.best, np.roll(other.u, -r, 0) + shift)
+            u = _recombined(self.best, np.roll(other.u, -r, 0) + shift)
             if u is not None:
-                self.fall(self.best.moved(u))
+                self.descend(self.best.moved(u))
 
     def turn(self, r):
-        if self.on and self.best is not None:
-            self.mend(self.best, r, self.shifts[r])
+        if self.has_time and self.best is not None:
+            self.recombine(self.best, r, self.shifts[r])
 
-    def pieces(self):
-        """Basin hopping, in many places at once: each piece may be kept or not."""
+    def move_pieces(self):
+        """Basin hopping in many places at once; then each piece is kept where it is better."""
         best, q = self.best, self.guess.q
         u = best.u.copy()
         for start in self.rng.integers(q, size=max(1, q // SPACING)):
             piece = (start + np.arange(min(q, self.rng.geometric(1 / PIECE)))) % q
-            u[piece] += self.rng.normal(size=u.shape[1]) * self.rng.choice(AWAY)
-        other = self.fall(best.moved(u))
+            u[piece] += self.rng.normal(size=u.shape[1]) * self.rng.choice(MOVES)
+        other = self.descend(best.moved(u))
         if other is not None:
-            self.mend(best if other is self.best else other)
+            self.recombine(best if other is self.best else other)
 
-    def elsewhere(self):
-        """A straight orbit that begins anywhere, shaken perhaps, at a larger eps first perhaps."""
+    def start_anywhere(self):
+        """A search from a straight orbit with a random origin; some are perturbed at random, and
+        some relaxed at a larger eps first."""
         guess, rng = self.guess, self.rng
         n, q = guess.u.shape[1], guess.q
         guess = replace(guess, origin=rng.random(n),
-                        u=rng.normal(size=(q, n)) * rng.choice((0.0, 0.0) + AWAY))
+                        u=rng.normal(size=(q, n)) * rng.choice((0.0, 0.0) + MOVES))
         try:
             if rng.random() < 0.3:
-                there = guess.relax(guess.eps * rng.uniform(1.1, 2.0), max_steps=MOST_STEPS)
+                there = guess.relax(guess.eps * rng.uniform(1.1, 2.0), max_steps=MOST_NEWTON_STEPS)
                 guess = replace(there, eps=guess.eps)
         except ConverseError:
             pass
         before = self.best
-        other = self.fall(guess)
+        other = self.descend(guess)
         if other is not None and before is not None:
             other = before if other is self.best else other
             turns, shifts = _turns(guess.p, q, np.subtract(other.origin, self.best.origin))
-            r = turns[self.nearly_first(0, q)]
-            self.mend(other, r, shifts[r])
+            r = turns[self.random_index(0, q)]
+            self.recombine(other, r, shifts[r])
 
     def joint(self, joints):
-        if self.on:
+        if self.has_time:
             for guess in joints:
-                self.fall(guess)
+                self.descend(guess)
                 break
 
     def joints(self):
@@ -197,16 +199,17 @@ class _Hunt:
             yield from _joints(p, q, *parts, self.rng)
 
     def shorter(self, p, q):
-        """The best state of a shorter type that a shorter search finds; None: there is none."""
+        """The best state of a shorter type, by a shorter search; None if none is found."""
         key, now = (tuple(p), q), time.monotonic()
         if key not in self.known:
             if now > self.end:
                 return None
             guess = replace(self.guess, p=p, q=q, u=np.zeros((q, len(p))))
-            hunt = _Hunt(guess, min(self.searches, MOST, max(2 * JOINTS, SHORT // q)),
-                         now + SHARE * (self.end - now), self.rng, self.known)
-            hunt.run()
-            self.known[key] = hunt.best
+            searches = min(self.searches, SHORT_SEARCHES, max(2 * JOINTS, SHORT_WORK // q))
+            inner = _TypeSearch(guess, searches, now + SHORT_SHARE * (self.end - now), self.rng,
+                                self.known)
+            inner.run()
+            self.known[key] = inner.best
         return self.known[key]
 
 
@@ -217,26 +220,27 @@ def _residues(p, q):
 
 
 def _turns(p, q, away):
-    """How the turns of a state, begun at x_r instead of x_0, lie beside another state of its type:
-    an array of the r, nearest first, and one of the displacements between the two straight orbits
-    for each r.  away: that of the starts."""
+    """How a state begun at x_r instead of x_0, a turn of it, lies beside another of its type: an
+    array of the r, nearest first, and for each r the displacement between the two straight orbits,
+    an array (q, n).  away: the displacement of their origins."""
     shifts = _residues(p, q) / q + away
     shifts -= np.round(shifts)
     return np.argsort((shifts ** 2).sum(1), kind="stable"), shifts
 
 
-def _mend(state, u):
-    """The displacements of the least path that passes, step by step, from a point of the state to
-    its next or to that of the state displaced by u instead, and back; None, if it never leaves.
+def _recombined(state, u):
+    """The displacements, an array (q, n), of the path of least action whose point j is that of the
+    state or that of the state displaced by u instead, for each j; None if it is the state itself.
+    Found by dynamic programming along the orbit (Viterbi 1967).
 
-    A step across is charged less, by SLIP times half the square of the gap that it bridges: that
-    much of it, about, will go when the path relaxes."""
+    A step from one to the other costs less by RELIEF times half the square of the gap between them:
+    about so much of its action is lost when the path relaxes."""
     v, eps = state.u, state.eps
     heights = (-eps * state._local[0], -eps * state.potential.evaluate(state.base + u)[0])
     gap = ((u - v) ** 2).sum(1)
-    near = int(np.argmin(gap))                          # there, on the state itself, it starts
-    slip = SLIP / 2 * np.minimum(gap, np.roll(gap, -1))
-    steps = [((np.roll(b, -1, 0) - a) ** 2).sum(1) / 2 + np.roll(h, -1) - slip * (a is not b)
+    near = int(np.argmin(gap))                          # where the path starts, on the state
+    relief = RELIEF / 2 * np.minimum(gap, np.roll(gap, -1))
+    steps = [((np.roll(b, -1, 0) - a) ** 2).sum(1) / 2 + np.roll(h, -1) - relief * (a is not b)
              for a in (v, u) for b, h in zip((v, u), heights)]
     here, there, came = 0.0, math.inf, []
     for stay, leave, back, go_on in zip(*(np.roll(step, -near).tolist() for step in steps)):
@@ -250,8 +254,9 @@ def _mend(state, u):
 
 
 def _joints(p, q, first, second, rng):
-    """Guesses of type (p, q), first's points and then second's, cut where points of both are near
-    each other: nearest first, but only one of a run of near pairs, which make the same orbit."""
+    """Guesses of type (p, q): the points of first, then those of second, cut where points of both
+    are near each other.  The nearest pair comes first; of pairs that follow each other along both
+    orbits, which give the same guess, only one is used."""
     some = [rng.permutation(state.q)[:SAMPLE] for state in (first, second)]
     apart = first.x[some[0]][:, None] - second.x[some[1]]
     apart -= np.round(apart)

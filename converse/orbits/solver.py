@@ -14,7 +14,7 @@ from .state import FARTHEST, State, expected, type_of
 
 PER_CURVATURE = 0.2         # the step of eps from one state to the next guess, times the curvature
 HALVED = 64                 # times less, at least, where the solver fails
-MOST = 10000                # steps to one eps
+MOST_EPS_STEPS = 10000      # from one eps to the next
 
 
 def straight(potential: Potential, p: Tuple[int, ...], q: int,
@@ -91,9 +91,9 @@ def reached(potential, eps):
     """As a list of floats; ValueError, unless they are finite numbers that follow comes to."""
     eps, step = finite("eps", eps), step_of(potential)
     for a, b in zip([0.0] + eps, eps):
-        if not abs(b - a) <= MOST * step:
+        if not abs(b - a) <= MOST_EPS_STEPS * step:
             raise ValueError("eps %r is more than %d steps of %g away from %r: too far to be "
-                             "followed" % (b, MOST, step, a))
+                             "followed" % (b, MOST_EPS_STEPS, step, a))
     return eps
 
 
@@ -101,7 +101,7 @@ def follow(potential: Potential, p: Tuple[int, ...], q: int, eps: Sequence[float
            progress: Optional[Callable[[int, State], object]] = None) -> Family:
     """A Family: the states that continuation from eps 0 reaches at each eps in turn.
 
-    eps -- finite numbers, in the order wanted; each at most MOST steps from the one before
+    eps -- finite numbers, in the order wanted; from each to the next at most MOST_EPS_STEPS steps
     progress(done, state) -- is told each state
 
     Each state is the guess for the next, at most step_of(potential) further, and less where the

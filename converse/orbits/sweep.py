@@ -1,8 +1,8 @@
-"""Many rotation vectors: their families, and where their orbits turn hyperbolic.
+"""Sweeps over many rotation vectors: their families, and where their orbits turn hyperbolic.
 
-A sweep's rows are those of its vectors, one after the other in the order given, whoever computes
-them: the same sweep always gives the same bytes.  Its file is at any time the beginning of the
-whole, and a sweep that was interrupted continues behind it.
+The rows of a sweep are those of its vectors in the order given, whatever worker computes them: the
+same sweep always gives the same bytes.  Its file is at any time the beginning of the table, and an
+interrupted sweep continues after what it holds.
 """
 
 import concurrent.futures
@@ -22,20 +22,20 @@ from ..storage import files
 from ..storage.files import ConverseError
 from ..storage.signals import interruptible
 from .potential import Potential, Stoppable, finite, known, told
-from .solver import COLUMNS, MOST, follow, reached, row, straight
+from .solver import COLUMNS, MOST_EPS_STEPS, follow, reached, row, straight
 from .state import ROUNDS, State
 
 LOST = "lost"                           # in place of a label: continuation has lost the branch
 TOLERANCE = 1e-12                       # of gradients: before break-up, rounding hides what is less
-MOST_STEPS = 3000                       # of the solver before a smaller step of eps is tried
+FEW_STEPS = 3000                        # of the solver before a smaller step of eps is tried
 HALVINGS = 10
 AHEAD = 2                               # tasks for each that is worked on
-PER_CURVATURE = 0.03, 0.0006, 4.0       # onset's step, width and top times potential.curvature
+ONSET_PER_CURVATURE = 0.03, 0.0006, 4.0     # step, width and top of onset() times curvature
 
 SEAL = "crc32"                          # the last column of a sweep's file: see _sealed
 ONSET_COLUMNS = ("potential", "p", "q", "label", "eps_below", "eps_above", "exponent_below",
                  "exponent_above")
-TABLELESS = ValueError, IndexError, csv.Error       # of a text that is no table
+TABLELESS = ValueError, IndexError, csv.Error       # raised by _table for a text that is no table
 
 
 # ---- where an orbit turns hyperbolic
@@ -65,7 +65,7 @@ def onset(potential: Potential, p: Tuple[int, ...], q: int, exponent: Optional[f
         the same for all q is early for small and late for large ones.
     step, width -- of eps: with what steps the first such minimum is looked for, and to what the
         onset is then cut down.  top -- the eps where the search ends.  By default what
-        PER_CURVATURE says over potential.curvature, to one digit.
+        ONSET_PER_CURVATURE says over potential.curvature, to one digit.
 
     What is seen of one orbit is evidence, not proof, that a torus is near it, or that none is.
     ConverseError if continuation loses the branch."""
@@ -76,10 +76,11 @@ def onset(potential: Potential, p: Tuple[int, ...], q: int, exponent: Optional[f
                          % potential.name)
     step, width, top = finite("step, width and top", [
         float("%.0e" % (x / (potential.curvature or 1))) if y is None else y
-        for x, y in zip(PER_CURVATURE, given)])
-    if not (0 < width <= step and 0 < top <= MOST * step):
+        for x, y in zip(ONSET_PER_CURVATURE, given)])
+    if not (0 < width <= step and 0 < top <= MOST_EPS_STEPS * step):
         raise ValueError("step, width and top are positive, the width at most the step, and the "
-                         "top at most %d steps, not %r, %r, %r" % (MOST, step, width, top))
+                         "top at most %d steps, not %r, %r, %r"
+                         % (MOST_EPS_STEPS, step, width, top))
     q = straight(potential, p, q).q
     limit, = finite("exponent", [1 / q if exponent is None else exponent])
     if not limit >= 2 / max(ROUNDS, 5 * q):
@@ -106,7 +107,7 @@ def onset(potential: Potential, p: Tuple[int, ...], q: int, exponent: Optional[f
 def _further(state, eps, halvings=HALVINGS):
     """The state at a larger eps, in smaller steps if the solver fails."""
     try:
-        return state.relax(eps, tol=TOLERANCE, max_steps=MOST_STEPS)
+        return state.relax(eps, tol=TOLERANCE, max_steps=FEW_STEPS)
     except ConverseError:
         if not halvings:
             raise
