@@ -162,15 +162,12 @@ let ignored = ["program"; "method"; "digits"; "stubborn"; "quick_tries"; "tries"
                "HermSuccess"; "LLSuccess"; "ll_used"; "reasons"; "max_steps"; "max_NTsteps"; "B";
                "pending"]
 let optional = ["T"; "Tr-"; "Tr+"; "lambda-min"; "lambda-max"; "seconds"; "comment"]
-let always = ["v0"; "v1"; "kind"; "xstar"; "at once"] @ counts @ ignored
-let fields_of = function
-  | 2 -> always @ ["a"; "b"; "c"; "together"]
-  | _ -> always @ ["wave"; "frame"; "alone"; "odd about"]
+let known = ["v0"; "v1"; "kind"; "xstar"; "at once"; "wave"; "frame"; "alone"; "odd about"]
+            @ counts @ ignored
 
 (* The fields of the header, each once, and its waves. *)
-let fields version lines =
+let fields lines =
   let found = Hashtbl.create 64 and waves = ref [] in
-  let known = fields_of version in
   List.iteri (fun i line ->
       let at = i + 2 in
       if String.length line >= max_line then
@@ -216,17 +213,8 @@ let wave at line =
       middle = number decimal name amplitude; parts = List.map (number decimal name) parts }
   | _ -> reject "%s is not K0 K1 PHASE AMPLITUDE and at most three parts" name
 
-(* The waves (1, 0), (0, 1), (1, 1) of version 2, of which each has its own range. *)
-let thesis ranges together =
-  let zero = whole 0 in
-  List.mapi (fun i (middle, half) ->
-      { of_k0 = z_of (if i = 1 then 0 else 1); of_k1 = z_of (if i = 0 then 0 else 1);
-        of_phase = zero; middle;
-        parts = if together then [half]
-          else List.init 3 (fun m -> if m = i then half else zero) }) ranges
-
-let claim_of version lines =
-  let field, lines = fields version lines in
+let claim_of lines =
+  let field, lines = fields lines in
   if field "kind" <> "sound" then
     reject "the file's kind is not 'sound': it is not meant as a proof";
   let pair ?(form = decimal) name =
@@ -249,29 +237,22 @@ let claim_of version lines =
   let (centre0, half0), (centre1, half1) = range "v0", range "v1" in
   let of_xstar = pair "xstar" in
   let counted = List.map (fun name -> name, count name) counts in
-  let once = ["no", No; "yes", Whole_patch] in
-  let of_patch, (m00, m01, m10, m11), of_alone, of_once, odd =
-    if version = 2 then
-      let together = one_of "together" ["yes", true; "no", false] in
-      let of_once = match one_of "at once" once with
-        | Whole_patch when together -> Upper_end
-        | of_once -> of_once in
-      thesis (List.map range ["a"; "b"; "c"]) together, (z_of 1, Z0, Z0, z_of 1), Both, of_once,
-      Some (whole 0, whole 0)
-    else
-      let count = List.length lines in
-      if count > 16 || count = 0 then reject "the header has %d waves, not 1 to 16" count;
-      List.mapi (fun i line -> wave (i + 1) line) lines,
-      (match List.map (small "an entry of the header's frame")
-               (String.split_on_char ' ' (field "frame")) with
-       | [a; b; c; d] ->
-         (match Z.add (Z.mul a d) (Z.opp (Z.mul b c)) with
-          | Zpos XH | Zneg XH -> a, b, c, d
-          | _ -> reject "the header's frame has not determinant 1 or -1")
-       | _ -> reject "the header's frame is not four integers"),
-      one_of "alone" ["no", Both; "0", First; "1", Second],
-      one_of "at once" (("upper end", Upper_end) :: once),
-      if field "odd about" = "no" then None else Some (pair ~form:decimal_or_ratio "odd about") in
+  let count_of_waves = List.length lines in
+  if count_of_waves > 16 || count_of_waves = 0 then
+    reject "the header has %d waves, not 1 to 16" count_of_waves;
+  let of_patch = List.mapi (fun i line -> wave (i + 1) line) lines in
+  let m00, m01, m10, m11 =
+    match List.map (small "an entry of the header's frame")
+            (String.split_on_char ' ' (field "frame")) with
+    | [a; b; c; d] ->
+      (match Z.add (Z.mul a d) (Z.opp (Z.mul b c)) with
+       | Zpos XH | Zneg XH -> a, b, c, d
+       | _ -> reject "the header's frame has not determinant 1 or -1")
+    | _ -> reject "the header's frame is not four integers" in
+  let of_alone = one_of "alone" ["no", Both; "0", First; "1", Second] in
+  let of_once = one_of "at once" ["no", No; "yes", Whole_patch; "upper end", Upper_end] in
+  let odd =
+    if field "odd about" = "no" then None else Some (pair ~form:decimal_or_ratio "odd about") in
   if of_once = Upper_end && List.length (List.hd of_patch).parts <> 1 then
     reject "without exactly one parameter there is no upper end";
   if of_once <> No && odd = None then
@@ -342,10 +323,10 @@ let read path =
     | _ -> "" in
   if String.ends_with ~suffix:"\r" version then
     reject "its lines end in CR LF: it was altered on its way; ask for the original";
-  let version = match version with
-    | "2" -> 2
-    | "3" -> 3
-    | _ -> refuse "is a proof file of another version; this checker knows versions 2 and 3" in
+  if version = "2" then
+    refuse "is a proof file of version 2, which converse-check up to release 1.6.0 verifies";
+  if version <> "3" then
+    refuse "is a proof file of another version; this checker knows version 3";
   let seal = "checksum: sha256 " and length = String.length data in
   let stop = length - (String.length seal + 64 + String.length "\nend\n") in
   if stop < 1 || String.sub data (stop - 1) (1 + String.length seal) <> "\n" ^ seal
@@ -359,7 +340,7 @@ let read path =
       let from = at + String.length marker in
       String.sub data 0 at, String.sub data from (stop - from)
     | _ -> reject "there is no tree" in
-  let claim, counted = claim_of version (List.tl (String.split_on_char '\n' head)) in
+  let claim, counted = claim_of (List.tl (String.split_on_char '\n' head)) in
   let parameters = List.length (List.hd claim.of_patch).parts in
   if List.exists (fun w -> List.length w.parts <> parameters) claim.of_patch then
     reject "a wave of the header has not as many parts as the first";

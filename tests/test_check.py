@@ -29,10 +29,10 @@ import pytest
 from checker import check
 from converse import Problem, check as package, prove, read_input
 from converse.check import lockstep, ship
+from converse.model.problem import LINE
 from moments import PATIENCE
 from truth import STRIKE, TORTURE
 
-from converse.model.problem import LINE
 
 # Of a process without sanitizers, which may import what lies about its file.
 PLAIN = {name: value for name, value in os.environ.items()
@@ -88,22 +88,8 @@ def texts(root, tmp_path_factory):
     for name in INPUTS:
         path = tmp_path_factory.mktemp("proofs") / name
         prove(read_input(root / "inputs" / (name + ".in"))).save(path)
-        found[name] = in_version_2(path.read_text(encoding="utf-8"), False)
+        found[name] = path.read_text(encoding="utf-8")
     return found
-
-
-def in_version_2(text, together):
-    """A proof of the thesis's potential as version 2 has it: most tests alter such files."""
-    claim = claim_of(text)
-    assert [wave.k for wave in claim.waves] == list(check.THESIS)
-    head, middle, rest = text.partition("\ntree:\n")
-    lines = [line for line in head.split("\n")[1:] if line.partition(":")[0] not in (
-        "wave", "frame", "alone", "odd about", "at once")]
-    lines += ["%s: %s %s" % (name, check.decimal_text(wave.middle), check.decimal_text(
-        sum(map(abs, wave.parts)))) for name, wave in zip("abc", claim.waves)]
-    lines += ["together: " + ("yes" if together else "no"),
-              "at once: " + ("no" if claim.at_once == "no" else "yes")]
-    return sealed("\n".join(["converse proof 2", *lines]) + middle + rest)
 
 
 @pytest.fixture
@@ -125,9 +111,48 @@ def sealed(text):
 
 
 def with_field(text, name, value):
-    text, n = re.subn("(?m)^%s: .*$" % re.escape(name), "%s: %s" % (name, value), text)
-    assert n == 1
-    return text
+    """The text with another value of a field; or, of a proof of the thesis's waves, with another
+    centre and half-width of a, b or c, or parameters that move `together` or not."""
+    if name in ("a", "b", "c"):
+        return with_wave(text, "abc".index(name), value)
+    if name == "together":
+        return with_parts(text, value == "yes")
+    if name == "at once" and value == "yes" and is_together(text):
+        value = "upper end"
+    return with_line(text, name, value)
+
+
+def with_line(text, name, value, number=0):
+    """The text with another value of the field, or of the one of that number if it is repeated."""
+    lines = text.split("\n")
+    places = [i for i, line in enumerate(lines) if line.startswith(name + ": ")]
+    lines[places[number]] = "%s: %s" % (name, value)
+    return "\n".join(lines)
+
+
+def wave_words(text):
+    return [line.split(" ") for line in re.findall("(?m)^wave: (.*)$", text)]
+
+
+def is_together(text):
+    """Is there one parameter, with which all waves move?"""
+    return {len(words) for words in wave_words(text)} == {5}
+
+
+def with_wave(text, i, value):
+    centre, _, half = value.partition(" ")
+    words = wave_words(text)[i]
+    parts = [half] if is_together(text) else ["0"] * i + [half] + ["0"] * (2 - i)
+    return with_line(text, "wave", " ".join([*words[:3], centre, *parts]), i)
+
+
+def with_parts(text, together):
+    halves = [next((part for part in words[4:] if part != "0"), "0") for words in wave_words(text)]
+    once = re.search("(?m)^at once: (.*)$", text).group(1)
+    for i, (words, half) in enumerate(zip(wave_words(text), halves)):
+        parts = [half] if together else ["0"] * i + [half] + ["0"] * (2 - i)
+        text = with_line(text, "wave", " ".join([*words[:4], *parts]), i)
+    return text if once == "no" else with_line(text, "at once", "upper end" if together else "yes")
 
 
 def tree_of(text):
@@ -219,7 +244,7 @@ def moving(tmp_path_factory):
                           together)
         path = tmp_path_factory.mktemp("proofs") / "moving"
         prove(problem, method="loewner").save(path)
-        found[name] = in_version_2(path.read_text(encoding="utf-8"), together)
+        found[name] = path.read_text(encoding="utf-8")
     return found
 
 
@@ -254,7 +279,7 @@ def test_confirms_ranges_of_parameters(moving, run, name, cuts, at_once):
     status, out, err = run(text)
     assert (status, err) == (0, "") and out.startswith("Verified :")
     assert cuts is None or set(tree_of(text)) & set("234") == set(cuts)
-    assert ("moving together" in out) == ("together: yes" in text) == ("box" not in name)
+    assert ("moving together" in out) == is_together(text) == ("box" not in name)
     assert ("any multiple s >= 1 of the upper ends" in out) == ("at once: yes" in text) == at_once
     assert ("symmetric" in out and "0 symmetric" in out) == ("slanted" in name)
     if name == "segment":
@@ -487,7 +512,7 @@ def test_flipped_cuts(moving, run, generator, name, into):
             status, out, err = run(sealed(other))
             if into in "?x":
                 assert status == 1 and "not a node of a finished tree" in err
-            elif into in "34" and "together: yes" in text:
+            elif into in "34" and is_together(text):
                 assert status == 1 and "a parameter that there is not" in err
             else:
                 assert status == 0 or (5 if "not excluded" in err else 1) == status \
@@ -598,9 +623,9 @@ def test_header_lines(texts, run):
     for other, why in ((text.replace("depth:", "deepth:"), "unknown meaning"),
                        (text.replace("depth: 30\n", ""), "lacks depth"),
                        (text.replace("depth: 30\n", "depth: 30\ndepth: 30\n"), "twice"),
-                       (text.replace("together: no", "together: perhaps"), "neither yes nor no"),
+                       (text.replace("alone: no", "alone: perhaps"), "neither no nor 0"),
                        (text.replace("at once: no", "at once: No"), "neither yes nor no"),
-                       (text.replace("together: no\n", ""), "lacks together"),
+                       (text.replace("alone: no\n", ""), "lacks alone"),
                        (text.replace("at once: no\n", "at once: no\nat once: yes\n"), "twice"),
                        (text.replace("\ntree:\n", "\ntrees:\n"), "no tree")):
         status, _, err = run(sealed(other))
@@ -610,7 +635,7 @@ def test_header_lines(texts, run):
 
 
 @pytest.mark.parametrize("data", [b"", b"\x00\xff\xfe junk" * 99, b"\x1f\x8b", b"\x1f\x8b\x08junk",
-                                  b"tree", b"\xef\xbb\xbfconverse proof 2\n",
+                                  b"tree", b"\xef\xbb\xbfconverse proof 3\n",
                                   bytes(range(256)) * 10])
 def test_unreadable(run, data):
     status, out, err = run(data)
@@ -619,23 +644,25 @@ def test_unreadable(run, data):
 
 def test_other_versions_and_line_ends(texts, run):
     for version in ("1", "4", "2.0", "", "22" * 999):
-        status, _, err = run(texts["trig278"].replace("proof 2", "proof " + version))
+        status, _, err = run(texts["trig278"].replace("proof 3", "proof " + version))
         assert status == 2 and "another version" in err
+    status, _, err = run(texts["trig278"].replace("proof 3", "proof 2"))
+    assert status == 2 and "up to release 1.6.0" in err and err.count("\n") == 1
     status, _, err = run(texts["trig278"].replace("\n", "\r\n"))
     assert status == 1 and "CR LF" in err
     assert run(texts["trig278"].replace("\n", "\r"))[0] == 2
-    assert run("converse proof 2\n")[0] == run(b"converse proof 2\n\xff")[0] == 1
+    assert run("converse proof 3\n")[0] == run(b"converse proof 3\n\xff")[0] == 1
 
 
 @pytest.mark.parametrize("name, value, status, why", [
     ("a", "1" * 1001 + " 0", 5, "characters"), ("a", "1e301 0", 5, "out of range"),
     ("a", "0.3085 1e-999", 1, "symmetric"),
     ("c", "0.617 0." + "0" * 990 + "1e-999", 5, "bits"), ("c", "1e300 0", 5, "too large"),
-    ("c", "1e1000 0", 1, "two decimal numbers"), ("c", "0.617  0", 1, "two decimal numbers"),
-    ("c", "\u0660.617 0", 1, "two decimal numbers"), ("c", "0,617 0", 1, "two decimal numbers"),
-    ("c", " " * 9999, 1, "two decimal numbers"), ("depth", "\u0663\u0660", 1, "depth"),
+    ("c", "1e1000 0", 1, "wave 3"), ("c", "0.617  0", 1, "wave 3"),
+    ("c", "\u0660.617 0", 1, "wave 3"), ("c", "0,617 0", 1, "wave 3"),
+    ("c", " " * 9999, 1, "wave 3"), ("depth", "\u0663\u0660", 1, "depth"),
     ("depth", "9" * 19, 1, "depth"), ("most_cuts", "9" * 18, 1, "most_cuts"),
-    ("c", "0.617\0 0", 1, "two decimal numbers")])
+    ("c", "0.617\0 0", 1, "wave 3")])
 def test_numbers(texts, run, name, value, status, why):
     """Whatever they are: an answer soon, and in one line."""
     text = texts["trig274"]
@@ -662,7 +689,7 @@ def test_nothing_of_the_file_is_echoed(texts, run, tmp_path, capsys):
                     text.replace("\ntree:\n", "\n%s: 1\ntree:\n" % evil),
                     text.replace("\ntree:\n", "\n%s\ntree:\n" % evil),
                     text.replace("\ntree:\n", "\ntree:\n%s" % evil),
-                    *(with_field(text, name, evil) for name in sorted(check.FIELDS[b"2"]))):
+                    *(with_field(text, name, evil) for name in sorted(check.FIELDS))):
         status, out, err = run(sealed(changed))
         for output in (out, err):
             assert output.replace("\n", "").isprintable() and "Verified :" not in output[10:]
@@ -678,8 +705,8 @@ def test_nothing_of_the_file_is_echoed(texts, run, tmp_path, capsys):
 
 
 @pytest.mark.parametrize("start, filler, status", [
-    (b"", b"\0", 2), (b"", b"\n", 2), (b"converse proof 2\n", b"\0", 5),
-    (b"converse proof 2\n", b"comment: \n", 5), (b"converse proof 2\ntree:\n", b"0P", 5)])
+    (b"", b"\0", 2), (b"", b"\n", 2), (b"converse proof 3\n", b"\0", 5),
+    (b"converse proof 3\n", b"comment: \n", 5), (b"converse proof 3\ntree:\n", b"0P", 5)])
 def test_a_bomb_is_bounded(one_file, tmp_path, start, filler, status):
     """A file of kilobytes that unpacks to gigabytes, in a process with a gigabyte."""
     path = tmp_path / "bomb.gz"
@@ -972,7 +999,7 @@ def test_the_format_names_what_the_checker_knows(root, texts, monkeypatch):
     header = page[page.index("## The header"):page.index("## The tree")]
     names = set(re.findall("`([^`\n]+)`", header)) - {"sound", "yes", "no", "0", "1", "upper end",
                                                       "as printed, not a proof"}
-    assert names == check.FIELDS[b"3"] | check.OPTIONAL
+    assert names == check.FIELDS | check.OPTIONAL
     maps = page[page.index("## Maps"):page.index("## Going on")]
     assert all("`%s`" % name in maps for name in (*check.REGIONS, *check.MAP_KINDS))
     assert "2^22" in page and check.MAX_ITEMS == 1 << 22
@@ -1488,7 +1515,7 @@ def general(text, waves, v0=(1, 1), v1=(1, 1), frame=(1, 0, 0, 1), alone="no", o
     """A file of version 3, of the rest of the text; waves: (k, phase, amplitude, parts)."""
     head, middle, rest = text.partition("\ntree:\n")
     lines = [line for line in head.split("\n")[1:] if line.partition(":")[0] not in (
-        *check.RANGES, "together", "v0", "v1", "at once", "wave", "frame", "alone", "odd about")]
+        "v0", "v1", "at once", "wave", "frame", "alone", "odd about")]
     lines += ["wave: %d %d %s %s" % (*k, phase, " ".join(map(as_text, (p, *parts))))
               for k, phase, p, parts in waves]
     lines += ["v0: %s %s" % tuple(map(as_text, v0)), "v1: %s %s" % tuple(map(as_text, v1)),
@@ -1501,8 +1528,8 @@ def general(text, waves, v0=(1, 1), v1=(1, 1), frame=(1, 0, 0, 1), alone="no", o
 
 
 def random_claim(generator, text, size=1, width=1, three=None):
-    """Any parameters, one in four of them without width, and any region of angles: of version 2,
-    or of 3 with waves of any kind and a frame."""
+    """Any parameters, one in four of them without width, and any region of angles: of the thesis's
+    waves, or of any and a frame."""
     sides = [(exact_decimal(generator, 9), abs(exact_decimal(generator, width))
               * generator.choice((0, 1, 1, 1))) for _ in "01"]
     if three if three is not None else generator.random() < 0.6:
@@ -2609,18 +2636,6 @@ def test_waves_moved_and_added(others, run):
     assert run(sealed(text.replace("wave: ", "a: ")))[0] == 1
     halves = "wave: 1 0 1/2 0.4 0.01\nwave: -1 0 1/2 0.8 0\n"         # the same wave in two
     assert run(sealed(text.replace(waves[0] + "\n", halves)))[0] == 0
-
-
-def test_the_same_in_both_versions(moving, texts, run):
-    """A file of version 2 says the same in version 3."""
-    for name, text in [*moving.items(), *texts.items()]:
-        claim = claim_of(text)
-        other = general(text, [(wave.k, 0, wave.middle, wave.parts) for wave in claim.waves],
-                        odd="0 0", at_once=claim.at_once)
-        results = [run(x)[:2] for x in (text, other)]
-        assert results[0][0] == results[1][0] == 0
-        assert [x[1].partition("SHA-256")[0] for x in results][::-1] == [
-            x[1].partition("SHA-256")[0] for x in results]
 
 
 @pytest.mark.parametrize("waves, order", [

@@ -14,7 +14,6 @@ from fractions import Fraction
 import pytest
 
 from converse import ConverseError, Counts, Problem, Proof, Settings, check, prove, read_input
-from converse.model.exact import decimal_text
 from converse.model.problem import IDENTITY
 from converse.prover import native, run, tree_search
 from converse.prover.tree import leaves
@@ -521,44 +520,29 @@ def test_apart_is_not_together(root):
             prove(replace(problem, together=not together), resume=half, depth=120)
 
 
-# ---- format 3, and 2 before it
+# ---- the format
 
 def resealed(text):
     head = text[:text.index("checksum: ")]
     return head + "checksum: sha256 %s\nend\n" % hashlib.sha256(head.encode("utf-8")).hexdigest()
 
 
-def as_format_2(path, problem):
-    """Makes of a proof file of the thesis's kind what an earlier release would have written."""
-    lines = path.read_text("utf-8").replace("converse proof 3", "converse proof 2").split("\n")
-    lines = [line for line in lines if line.split(": ")[0] not in (
-        "wave", "frame", "alone", "odd about")]
-    numbers = zip("abc", map(decimal_text, problem.centre), map(decimal_text, problem.half))
-    lines[4:4] = ["together: " + ("yes" if problem.together else "no")] + ["%s: %s %s" % it for it in numbers]
-    path.write_text(resealed("\n".join(lines).replace("at once: upper end", "at once: yes")), "utf-8")
-
-
-@pytest.mark.parametrize("together", [False, True])
-def test_format_2_is_read_and_continued(root, tmp_path, together):
+def test_format_2_is_refused(made_up, tmp_path):
+    """In a line that names the releases which read it."""
     path = tmp_path / "old.proof"
-    problem = replace(read_input(root / "inputs" / "trig180.in"), together=together)
-    half = prove(problem, method="loewner", depth=8, stubborn=True, backup=path)
-    as_format_2(path, problem)
-    old = Proof.load(path)
-    assert old == replace(half, seconds=old.seconds) and old.at_once == together
-    whole = prove(resume=path, depth=120)
-    assert whole.no_tori and whole.tree == prove(problem, method="loewner", stubborn=True).tree
-    assert path.read_text().startswith("converse proof 3\n")
-    assert Proof.load(path) == timeless(whole)
+    made_up("P").save(path)
+    path.write_text(resealed(path.read_text("utf-8").replace("proof 3", "proof 2")), "utf-8")
+    with pytest.raises(ConverseError, match="of format 2, which releases up to 1.6.0 read") as caught:
+        Proof.load(path)
+    assert "\n" not in str(caught.value)
 
 
-def test_format_2_knew_of_no_frames(tmp_path):
-    """What was grown in the angles themselves, with all waves, is continued so."""
+def test_a_search_without_a_frame_is_continued_so(tmp_path):
+    """What was grown in the angles themselves, with all waves, whatever is asked for anew."""
     for problem in Problem(0, 0, "0.6"), Problem("1.1", "0.1", 0):
         path = tmp_path / ("%d.proof" % bool(problem.a[0]))
         plain = replace(problem, axes=IDENTITY, alone="no")
         half = prove(plain, method="loewner", depth=3, stubborn=True, backup=path)
-        as_format_2(path, plain)
         assert Proof.load(path).problem == plain != problem
         for asked in None, problem, plain:
             again = prove(asked, resume=Proof.load(path), depth=9)

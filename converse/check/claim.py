@@ -7,7 +7,7 @@ from fractions import Fraction
 from .failures import NotConfirmed, Rejected
 from .limits import MAX_CHARACTERS, MAX_K, MAX_SIZE
 
-RANGES = ("a", "b", "c")                # of version 2
+RANGES = ("a", "b", "c")                # of the thesis
 ANGLES = ("v0", "v1")
 AXES = "01234"                          # of cuts: v0, v1, then the parameters
 DECIMAL = r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]{1,3})?"

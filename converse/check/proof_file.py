@@ -5,10 +5,8 @@ import hashlib
 import io
 import re
 import zlib
-from fractions import Fraction
 
-from .claim import (ANGLES, IDENTITY, NUMBER, RANGES, RATIO, THESIS, Claim, Wave, check_alone,
-                    check_frame, number)
+from .claim import ANGLES, NUMBER, RATIO, Claim, Wave, check_alone, check_frame, number
 from .failures import NotConfirmed, Rejected, Unusable, reason
 from .limits import MAX_BYTES, MAX_K, MAX_LINE, MAX_WAVES
 
@@ -17,9 +15,7 @@ IGNORED = ("program", "method", "digits", "stubborn", "quick_tries", "tries", "R
            "HermSuccess", "LLSuccess", "ll_used", "reasons", "max_steps", "max_NTsteps",
            "B", "pending")
 OPTIONAL = {"T", "Tr-", "Tr+", "lambda-min", "lambda-max", "seconds", "comment"}    # ignored, too
-ALWAYS = {*ANGLES, *COUNTS, *IGNORED, "kind", "xstar", "at once"}
-FIELDS = {b"2": {*ALWAYS, *RANGES, "together"},
-          b"3": {*ALWAYS, "wave", "frame", "alone", "odd about"}}
+FIELDS = {*ANGLES, *COUNTS, *IGNORED, "kind", "xstar", "at once", "wave", "frame", "alone", "odd about"}
 REPEATED = {"wave", "comment"}
 MAGIC = b"converse proof "               # and the version, alone on the first line
 
@@ -49,8 +45,10 @@ def read_proof(data):
     first = data[len(MAGIC):len(MAGIC) + 9].partition(b"\n")[0]
     if first.endswith(b"\r"):
         raise Rejected("its lines end in CR LF: it was altered on its way; ask for the original")
-    if bytes(first) not in FIELDS:
-        raise Unusable("is a proof file of another version; this checker knows versions 2 and 3")
+    if first == b"2":
+        raise Unusable("is a proof file of version 2, which converse-check up to release 1.6.0 verifies")
+    if first != b"3":
+        raise Unusable("is a proof file of another version; this checker knows version 3")
     marker = b"checksum: sha256 "
     end = data.rfind(b"\n" + marker) + 1
     end_line = data[end + len(marker):]
@@ -67,19 +65,18 @@ def read_proof(data):
 
 
 def parse_header(head):
-    """The version and the fields, each of them given once, and none of unknown meaning.
+    """The fields, each of them given once, and none of unknown meaning.
 
     Nothing of it is repeated in a message but the names of fields that are known.
     """
     header, file = {"wave": []}, io.BytesIO(head)
-    version = file.readline()[len(MAGIC):].rstrip()     # which read_proof has seen to
-    fields = FIELDS[version]
+    file.readline()                     # the version, which read_proof has seen to
     for at, line in enumerate(iter(lambda: file.readline(MAX_LINE), b""), 2):
         if len(line) == MAX_LINE:
             raise NotConfirmed("line %d is longer than the checker's limit, %d bytes"
                                % (at, MAX_LINE - 1))
         name, colon, value = line.decode("utf-8", "replace").rstrip("\n").partition(": ")
-        if not colon or name not in fields | OPTIONAL:
+        if not colon or name not in FIELDS | OPTIONAL:
             raise Rejected("line %d, in the header, is of unknown meaning" % at)
         if name in header and name not in REPEATED:
             raise Rejected("the header gives %s twice" % name)
@@ -89,16 +86,16 @@ def parse_header(head):
             header[name] = value
     if "xstar" not in header:
         raise Rejected("the search had not begun when it was left: there is no x* yet")
-    if fields - header.keys():
-        raise Rejected("the header lacks %s" % ", ".join(sorted(fields - header.keys())))
+    if FIELDS - header.keys():
+        raise Rejected("the header lacks %s" % ", ".join(sorted(FIELDS - header.keys())))
     if header["kind"] != "sound":
         raise Rejected("the file's kind is not 'sound': it is not meant as a proof")
-    return version, header
+    return header
 
 
 def parse(head, tree, sha256):
     """The claim of a header and a tree."""
-    version, header = parse_header(head)
+    header = parse_header(head)
 
     def pair(name, form=NUMBER):
         words = header[name].split(" ", 2)
@@ -111,30 +108,20 @@ def parse(head, tree, sha256):
             raise Rejected("the header's %s is neither %s" % (name, " nor ".join(values)))
         return header[name]
 
-    ranges = [pair(name) for name in (RANGES if version == b"2" else ()) + ANGLES]
+    ranges = [pair(name) for name in ANGLES]
     xstar = pair("xstar")
     if min(half for _, half in ranges) < 0:
         raise Rejected("a half-width is negative")
     for name in COUNTS:
         if not re.fullmatch("[0-9]{1,18}", header[name], re.ASCII):
             raise Rejected("the header's %s is not a count" % name)
-    *ranges, v0, v1 = ranges
-    frame, alone, odd = IDENTITY, None, (Fraction(0), Fraction(0))
-    if version == b"2":
-        together = one_of("together", "yes", "no") == "yes"
-        at_once = one_of("at once", "yes", "no").replace("yes", "upper end" if together else "yes")
-        waves = tuple(
-            Wave(k, Fraction(0), middle, (half,) if together else
-                 tuple(half if k == other else Fraction(0) for other in THESIS))
-            for k, (middle, half) in zip(THESIS, ranges))
-    else:
-        at_once = one_of("at once", "yes", "no", "upper end")
-        waves = parse_waves(header["wave"])
-        frame = check_frame(header["frame"].split(" "), "the header's frame")
-        alone = {"no": None, "0": 0, "1": 1}[one_of("alone", "no", "0", "1")]
-        check_alone(waves, alone)
-        odd = None if header["odd about"] == "no" else pair("odd about", RATIO)
-    claim = Claim(waves, *zip(v0, v1), frame, alone, xstar,
+    at_once = one_of("at once", "yes", "no", "upper end")
+    waves = parse_waves(header["wave"])
+    frame = check_frame(header["frame"].split(" "), "the header's frame")
+    alone = {"no": None, "0": 0, "1": 1}[one_of("alone", "no", "0", "1")]
+    check_alone(waves, alone)
+    odd = None if header["odd about"] == "no" else pair("odd about", RATIO)
+    claim = Claim(waves, *zip(*ranges), frame, alone, xstar,
                   {name: int(header[name]) for name in COUNTS}, at_once, tree, sha256)
     check_odd(claim, odd)
     return claim

@@ -6,7 +6,7 @@ import zlib
 from dataclasses import asdict, fields
 
 from ..model.exact import DECIMAL, decimal_text, exact
-from ..model.problem import IDENTITY, NAMES, Problem
+from ..model.problem import NAMES, Problem
 from ..storage import files
 from ..storage.files import ConverseError
 from . import tree
@@ -14,7 +14,7 @@ from .native import CONSTANTS, Counts
 from .proof import Proof
 from .settings import Settings
 
-FIRST_LINE, BEFORE = "converse proof 3", "converse proof 2"     # written, and read as well
+FIRST_LINE, BEFORE = "converse proof 3", "converse proof 2"
 PROGRAM = re.compile(r"converse ([0-9A-Za-z.+-]{1,40})")
 CLAIMS = {False: "sound", True: "as printed, not a proof"}       # by as_printed
 LINE_WIDTH = 78                              # of the tree's lines
@@ -39,7 +39,10 @@ def load(path):
         raise ConverseError("%s, line %d: %s; use an intact copy or start anew"
                             % (path, number, wrong))
 
-    if lines[0] not in (FIRST_LINE, BEFORE):
+    if lines[0] == BEFORE:
+        raise ConverseError("%s: is a proof file of format 2, which releases up to 1.6.0 read; continue "
+                            "it with one of those, which writes format 3" % path)
+    if lines[0] != FIRST_LINE:
         fail(1, "this is not a proof file of this program")
     if lines[-2:] != ["end", ""]:
         fail(len(lines), "the file is truncated")
@@ -60,8 +63,7 @@ def load(path):
         else:
             values[key] = value
     try:
-        problem = _problem(values, waves, comments) if lines[0] == FIRST_LINE \
-            else _older_problem(values, comments)
+        problem = _problem(values, waves, comments)
         return _proof(values, problem, "".join(lines[start + 1:-3]), _sha256(text.encode("utf-8")))
     except (KeyError, IndexError, TypeError, ValueError) as error:
         fail(start + 1, "the header or the tree makes no sense (%s)" % error)
@@ -139,12 +141,6 @@ def _problem(values, waves, comments):
     return Problem.patch(amplitude, parts, [(*map(int, words[:2]), words[2]) for words in waves],
                          v0, v1, comments, tuple(map(int, values["frame"].split())),
                          alone if alone == "no" else int(alone))
-
-
-def _older_problem(values, comments):
-    """The problem of a file of format 2, of before there were frames and other waves."""
-    return Problem(*(_ends(values, name) for name in NAMES), comments, values["together"] == "yes",
-                   axes=IDENTITY, alone="no")
 
 
 def _at_once(values, problem):
