@@ -37,9 +37,9 @@ test: $(VENV)/with-test
 torture: $(VENV)/with-test
 	CONVERSE_TORTURE=100 $(VENV)/bin/pytest $(TWO) tests
 
-# Breaks the C core in one place after another and sees whether a test notices; half an hour.
+# Makes small mistakes in the core, a sample of them, and sees whether a test notices; half an hour.
 mutate: $(VENV)/with-test
-	$(VENV)/bin/python tests/mutate.py
+	$(VENV)/bin/python tests/mutate --sample 40 --seed $(or $(SEED),$(shell date +%F))
 
 # The table of proven bounds and worst errors, measured anew.
 accuracy: $(VENV)/with-test

@@ -588,13 +588,13 @@ def test_counts(texts, run, name):
 @pytest.mark.parametrize("name, value, why", [
     ("a", "0.3085 0.3", "symmetric"), ("b", "0.3086 0.00125", "symmetric"),
     ("c", "0.617 0.617", "not excluded"), ("c", "0 0.0025", "not excluded"),
-    ("c", "0.617 -0.0025", "negative"), ("a", "0.3085", "two decimal"), ("a", "nan 0", "two"),
+    ("v1", "1 -0.5", "negative"), ("a", "0.3085", "wave 1"), ("a", "nan 0", "wave 1"),
     ("v0", "1 0.5", "symmetric"), ("v1", "0.5 1", "symmetric"), ("v0", "1.1 1", "symmetric"),
     ("xstar", "0.8 0.82773291385109182", "symmetric"), ("xstar", "0 0", "not excluded"),
     ("xstar", "-0.8 -0.8", "not excluded"), ("xstar", "1e300 1e300", "arithmetic"),
     ("c", "1e999 0", "out of range"), ("v0", "1 1e301", "out of range"),
     ("kind", "as printed, not a proof", "not meant as a proof"), ("depth", "11", "depth"),
-    ("kind", "Sound", "not meant"), ("a", "0.3085 0.00125 0", "two decimal")])
+    ("kind", "Sound", "not meant"), ("a", "0.3085 0.00125 0", "wave 1"), ("v0", "1", "two decimal")])
 def test_header(texts, run, name, value, why):
     text = with_field(texts["trig274"], name, value)
     status, out, err = run(text)
