@@ -152,11 +152,11 @@ class Base:
                 objects[name] = build.compile_unit(name, text, work / "units", csrc, self.made["FLAGS"])
             except SystemExit:
                 return False
-        if place.mutant and all(objects[name].read_bytes() == (self.objects / (name + ".o")).read_bytes()
-               for name in changed):
+        if place.mutant and all(
+                objects[name].read_bytes() == (self.objects / (name + ".o")).read_bytes()
+                for name in changed):
             raise Same
-        mine = [path for name, path in objects.items()
-                if name not in ("module", "stand-ins") and not name.startswith("console-")]
+        mine = [path for name, path in objects.items() if name not in ("module", "stand-ins")]
         build.link([*mine, self.native], work / "converse" / "_native.abi3.so")
         build.link(objects.values(), work / "console.so")
         return True

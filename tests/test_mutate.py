@@ -1,0 +1,93 @@
+"""The tool of make mutate: what it makes is another program, places keep their names, and a mistake that
+matters is caught."""
+
+import random
+import runpy
+import subprocess
+
+import pytest
+from conftest import ROOT, not_sanitized
+
+from mutate.operators import OPERATORS, mutants
+
+TOOL = runpy.run_path(str(ROOT / "tests" / "mutate" / "__main__.py"))
+SMALL = """
+enum { SOME = 3 };                      /* no function: + - < are safe here */
+#define TWICE(x) ((x) + (x))
+static int R(width)(const int *x, int n)
+{
+    int sum = 0;
+    for (int j = 0; j < n && x[j]; j++)
+        sum += APM_UP;                  /* a + b */
+    note("a + b", sum);
+    return sum - 2 * n;
+}
+"""
+
+
+def test_places_of_c():
+    found = {(m.operator, m.number): m for m in mutants("small.c", SMALL)}
+    assert {m.function for m in found.values()} == {"width"}
+    assert {key: m.change for key, m in found.items()} == {
+        ("constant", 1): "0 -> 1", ("constant", 2): "0 -> 1", ("constant", 3): "2 -> (2 * 2)",
+        ("compare", 1): "< -> <=", ("logic", 1): "&& -> ||", ("index", 1): " -> + 1",
+        ("sign", 1): "+= -> -=", ("sign", 2): "- -> +", ("term", 1): "- 2 * n -> nothing",
+        ("direction", 1): "APM_UP -> APM_DOWN", ("drop", 1): "sum += APM_UP; -> ;",
+        ("drop", 2): 'note("a + b", sum); -> ;'}
+    assert "    return sum ;\n" in found["term", 1].text and "x[j + 1]" in found["index", 1].text
+    assert {operator for operator, _ in found} == set(OPERATORS)
+
+
+def test_formatting_and_names_of_variables_do_not_matter():
+    other = SMALL.replace("\n    ", " ").replace("sum", "total").replace(" - 2", "\n- 2")
+    assert [m.key for m in mutants("small.c", other)] == [m.key for m in mutants("small.c", SMALL)]
+
+
+def test_places_of_python():
+    text = "def width(x, n):\n    if x < n and min(x, 1) == n:\n        x += 0.5\n    return x - n\n"
+    found = [(m.operator, m.text) for m in mutants("small.py", text)]
+    assert sorted(operator for operator, _ in found) == [
+        "compare", "compare", "constant", "constant", "direction", "logic", "sign", "sign"]
+    assert all(other != text and compile(other, "small.py", "exec") for _, other in found)
+    assert len({other for _, other in found}) == len(found)
+
+
+def test_every_mutant_of_the_core_differs_and_most_compile(tmp_path):
+    rng, compiled = random.Random(1), []
+    for name, path in TOOL["sources"]().items():
+        text = path.read_text("utf-8")
+        found = mutants(name, text)
+        assert len({m.key for m in found}) == len(found)
+        assert all(m.text != text for m in found)
+        if name in ("arith/apm.c", "arith/special.c", "model/torus.c", "search/tree.c", "loewner/problem.c"):
+            for mutant in rng.sample(found, 6):
+                (tmp_path / "mutant.c").write_text(mutant.text, "utf-8")
+                compiled.append(subprocess.run(
+                    ["gcc", "-std=c11", "-fsyntax-only", "-w", "-I", ROOT / "csrc", "-I",
+                     path.parent, "mutant.c"], cwd=tmp_path, capture_output=True).returncode == 0)
+    assert len(compiled) == 30 and compiled.count(True) >= 27
+
+
+def test_what_is_accepted_exists():
+    found = TOOL["places"]()
+    keys = {key for place in found for key in (
+        place.key, "%s:%s" % (place.name, place.mutant.function),
+        "%s:%s %s" % (place.name, place.mutant.function, place.mutant.operator))}
+    assert set(TOOL["ACCEPTED"]) <= keys
+
+
+def test_samples():
+    found = TOOL["places"](["thesis/lambda.c", "thesis/trace.c:bound_btrace"])
+    keys = [[place.key for place in TOOL["sample"](found, 20, seed)] for seed in "112"]
+    assert keys[0] == keys[1] != keys[2] and len(set(keys[0])) == 20
+    assert sorted(place.key for place in TOOL["sample"](found, 10 ** 6, "1")) == sorted(
+        place.key for place in found)
+
+
+@not_sanitized
+def test_a_fatal_mistake_is_caught(tmp_path):
+    """And the unchanged core survives, so that it is the mistake that is noticed."""
+    base = TOOL["Base"](tmp_path)
+    assert base.tried(TOOL["UNCHANGED"]) == "survived"
+    fatal, = TOOL["places"](["arith/apm.c:apm_cmp drop 1"])
+    assert base.tried(fatal).startswith("caught by test_apm.py, test_")
