@@ -1,4 +1,5 @@
-# make (that is, make prove), make test: each alone does everything it needs, from a fresh clone.
+# make (that is, make prove), make check, make test: each alone does everything it needs, from a
+# fresh clone.
 
 PYTHON = python3
 VENV = .venv
@@ -22,16 +23,34 @@ define install
 	touch $@
 endef
 
-.PHONY: prove test torture mutate accuracy gappa sanitize memcheck warnings arm bench charts figures man \
-    clean formal formal-quick formal-check verified-check checker
+.PHONY: prove check test lint format torture mutate accuracy gappa sanitize memcheck warnings \
+    arm bench charts figures man clean formal formal-quick formal-check verified-check checker
 
 prove: $(VENV)/installed
 	@mkdir -p build
 	$(VENV)/bin/converse -d30 -g build/trig274.ps inputs/trig274.in
 	@echo 'The figure of the prisms is build/trig274.ps.'
 
+# The tests but the slow ones; half a minute.
+check: $(VENV)/with-test
+	$(VENV)/bin/pytest $(TWO) -q -m 'not slow' tests
+
 test: $(VENV)/with-test
 	$(VENV)/bin/pytest $(TWO) tests
+
+PYTHON_CODE = converse docs experiments formal golden_outputs setup.py tests
+C_CODE = $(wildcard csrc/*.[ch] csrc/*/*.[ch])
+
+# What pyproject.toml says of style, imports and types.
+lint: $(VENV)/with-test
+	$(VENV)/bin/ruff check --quiet $(PYTHON_CODE)
+	$(VENV)/bin/isort --quiet --check $(PYTHON_CODE)
+	$(VENV)/bin/mypy
+
+# C as .clang-format says.
+format:
+	sh .ci/packages $(PYTHON) clang-format
+	clang-format -i $(C_CODE)
 
 # A hundred times as many random cases; hours.
 torture: $(VENV)/with-test

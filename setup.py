@@ -59,7 +59,8 @@ class Install(install):
         share = os.path.join(self.get_finalized_command("build").build_base, "share")
         paths = [os.path.abspath(self.build_lib), os.getcwd(), os.environ.get("PYTHONPATH", "")]
         made = subprocess.run([sys.executable, os.path.join("docs", "manual.py"), share],
-                              env={**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, paths))},
+                              env={**os.environ,
+                                   "PYTHONPATH": os.pathsep.join(filter(None, paths))},
                               capture_output=True, text=True)
         if made.returncode == 0:
             self.distribution.data_files = [

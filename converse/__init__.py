@@ -1,7 +1,8 @@
 """Computer-assisted proofs that a four-dimensional symplectic map has no invariant tori.
 
     import converse
-    problem = converse.Problem(a=("0.3072", "0.3097"), b=("0.3072", "0.3097"), c=("0.6145", "0.6195"))
+    problem = converse.Problem(a=("0.3072", "0.3097"), b=("0.3072", "0.3097"),
+                               c=("0.6145", "0.6195"))
     proof = converse.prove(problem)
     print(proof.report())
 """
@@ -20,7 +21,8 @@ if TYPE_CHECKING:
     from .prover.settings import Settings
     from .storage.files import ConverseError
 
-_HOMES = {"ConverseError": "storage.files", "Counts": "prover.native", "InputError": "model.problem",
+_HOMES = {"ConverseError": "storage.files", "Counts": "prover.native",
+          "InputError": "model.problem",
           "Problem": "model.problem", "Proof": "prover.proof", "Settings": "prover.settings",
           "prove": "prover.run", "read_input": "model.inputs"}
 
@@ -33,8 +35,8 @@ def __getattr__(name):
     if name in _HOMES:
         return getattr(importlib.import_module("." + _HOMES[name], __name__), name)
     if name == "kernels":
-        raise AttributeError("converse.kernels is no longer part of the package; the sources have it, "
-                             "as tests/kernels")
+        raise AttributeError("converse.kernels is no longer part of the package; the sources have "
+                             "it, as tests/kernels")
     raise AttributeError("module 'converse' has no attribute %r" % name)
 
 

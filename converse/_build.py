@@ -1,4 +1,5 @@
-"""The cffi builder: csrc/converse.h and csrc/orbits.h are headers and the list of what Python sees."""
+"""The cffi builder: csrc/converse.h and csrc/orbits.h are headers and the list of what Python
+sees."""
 
 import glob
 import os
@@ -32,6 +33,7 @@ for name in HEADERS:
 ffi.cdef("""extern "Python+C" int cv_python_potential(
     void *self, long m, const double *x, double *value, double *gradient, double *hessian);
 extern "Python+C" int cv_python_interrupts(void);""")
-ffi.set_source("converse._native", "".join(map('#include "%s"\n'.__mod__, HEADERS)), sources=SOURCES,
+ffi.set_source("converse._native", "".join(map('#include "%s"\n'.__mod__, HEADERS)),
+               sources=SOURCES,
                include_dirs=["csrc"], libraries=["gmp"], extra_compile_args=FLAGS,
                depends=sorted(glob.glob("csrc/**/*.[ch]", recursive=True)))

@@ -16,9 +16,9 @@ import argparse
 import itertools
 import sys
 
+import chart
 import numpy as np
 
-import chart
 from converse import orbits
 from converse.commands.common import ended
 from converse.model.problem import LINE as THESIS_LINE

@@ -3,9 +3,9 @@
     python experiments/finders.py [DIRECTORY]
 
 trig, (1432, 1897)/2513, from the minimum at 0.96 eps: gradient flow, Newton's method as it is, and
-damped.  Each is told to stop at ever smaller gradients; the time, the shadow there, and the distance
-to the proved orbit that damped Newton leads to from there.  Writes orbit-finders.svg and .csv into
-DIRECTORY (build).  A minute.
+damped.  Each is told to stop at ever smaller gradients; the time, the shadow there, and the
+distance to the proved orbit that damped Newton leads to from there.  Writes orbit-finders.svg and
+.csv into DIRECTORY (build).  A minute.
 """
 
 import csv
@@ -112,7 +112,8 @@ def main(directory="build"):
     rows = [row for eps in EPS for row in measure(eps)]
     with open(os.path.join(directory, "orbit-finders.svg"), "wb") as file:
         file.write(draw(rows))
-    with open(os.path.join(directory, "orbit-finders.csv"), "w", encoding="ascii", newline="") as file:
+    with open(os.path.join(directory, "orbit-finders.csv"), "w", encoding="ascii",
+              newline="") as file:
         table = csv.writer(file, lineterminator="\n")
         table.writerow(("eps", "method", "tolerance", "seconds", "shadow", "distance", "label"))
         table.writerows(rows)

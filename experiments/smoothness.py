@@ -4,9 +4,9 @@
 
 For the 800 closest pairs of points of an orbit, L = |dp|/|dx|.  Where orbits have contracted into
 filaments the thesis saw the largest L at the smallest |dx|, with slope -1 and in "two populations",
-and suspected noise.  Writes smoothness.svg and smoothness.csv into DIRECTORY (build).  All pairs but
-those at eps 0.0075 are of proved orbits, whose points are known to 10^-20 or better: no noise is
-left.  A few seconds.
+and suspected noise.  Writes smoothness.svg and smoothness.csv into DIRECTORY (build).  All pairs
+but those at eps 0.0075 are of proved orbits, whose points are known to 10^-20 or better: no noise
+is left.  A few seconds.
 """
 
 import csv
@@ -32,8 +32,8 @@ STEEP = 40                  # pairs of largest L, whose distances along the orbi
 
 
 def exact_pairs(proved):
-    """The closest pairs of a proved orbit: i, j, |dx|, |dp|.  Since x_{j+1} = x_j + p_{j+1}, momenta are
-    differences of displacements."""
+    """The closest pairs of a proved orbit: i, j, |dx|, |dp|.  Since x_{j+1} = x_j + p_{j+1},
+    momenta are differences of displacements."""
     state, u = proved.state, proved.displacements
     found = []
     for i, j in zip(*map(np.ndarray.tolist, state.pairs(CANDIDATES)[:2])):
@@ -61,7 +61,8 @@ def measure(kind, eps, digits):
     else:
         proved = orbits.prove(state, digits)
         pairs, doubles = exact_pairs(proved), state.pairs(COUNT)
-        print("(%d, %d)/%d, eps %g: proved, radius %.0e, %.0e from the doubles, whose largest L is %.4g"
+        print("(%d, %d)/%d, eps %g: proved, radius %.0e, %.0e from the doubles, whose largest L is "
+              "%.4g"
               % (*state.p, state.q, eps, proved.radius, proved.moved,
                  max(doubles.momentum / doubles.distance)))
     i, j, distance, momentum = pairs
@@ -74,7 +75,8 @@ def measure(kind, eps, digits):
     print("    steepest %d:" % STEEP)
     for d, n in Counter(apart[steep].tolist()).most_common(6):
         there = momentum[steep][apart[steep] == d]
-        print("        |i - j| = %d: %d pairs, |dp| %.1e to %.1e" % (d, n, there.min(), there.max()),
+        print("        |i - j| = %d: %d pairs, |dp| %.1e to %.1e" %
+              (d, n, there.min(), there.max()),
               flush=True)
     return state, i, j, distance, momentum
 
@@ -148,7 +150,8 @@ def main(directory="build"):
         rows = csv.writer(file, lineterminator="\n")
         rows.writerow(("q", "eps", "i", "j", "dx", "dp"))
         for state, *pairs in measured:
-            rows.writerows((state.q, state.eps, *pair) for pair in zip(*(a.tolist() for a in pairs)))
+            rows.writerows((state.q, state.eps, *pair)
+                           for pair in zip(*(a.tolist() for a in pairs)))
 
 
 if __name__ == "__main__":

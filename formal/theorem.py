@@ -49,7 +49,8 @@ def term(wave):
 
 
 def odd_about(path):
-    """The point of which the header says that V is odd about it, or None: not kept by the checker."""
+    """The point of which the header says that V is odd about it, or None: not kept by the
+    checker."""
     found = re.search(rb"^odd about: (.*)\n", check.load(path), re.M)
     if found is None:                                           # version 2: the thesis's potential
         return Fraction(0), Fraction(0)
@@ -148,7 +149,8 @@ def statement(claim):
     if min(claim.half) < 1:
         lines = ["no_minimizing_orbit_into %s patch %s" % (region_text(claim), pair(claim.xstar))]
     if claim.at_once == "yes":
-        lines += ["forall t s, in_cube t -> (1 <= s)%R -> no_invariant_graph (scaled s (waves patch t))"]
+        lines += ["forall t s, in_cube t -> (1 <= s)%R -> no_invariant_graph (scaled s (waves "
+                  "patch t))"]
     elif claim.at_once == "upper end":
         lines += ["forall s, (1 <= s)%R -> no_invariant_graph (scaled s (waves patch [1%R]))"]
     return patch + " /\\\n  ".join(["(%s)" % line for line in lines] if lines[1:] else lines)

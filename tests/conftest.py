@@ -75,9 +75,8 @@ def made_up():
         settings = Settings(**{name: options.pop(name) for name in
                                ("method", "depth", "digits", "stubborn", "as_printed")
                                if name in options})
-        facts = dict(xstar=("1.5", "1.5"), seconds=12.5,
-                     constants={name: "1.25" for name in
-                                ("T", "Tr-", "Tr+", "B", "lambda-min", "lambda-max")})
-        facts.update(options)
+        names = "T", "Tr-", "Tr+", "B", "lambda-min", "lambda-max"
+        facts = {"xstar": ("1.5", "1.5"), "seconds": 12.5,
+                 "constants": dict.fromkeys(names, "1.25"), **options}
         return Proof(problem=problem, settings=settings, tree=tree, counts=counts, **facts)
     return made_up

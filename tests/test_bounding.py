@@ -5,7 +5,6 @@ from hypothesis import strategies as st
 
 import kernels
 
-
 intervals = st.tuples(*[st.decimals(-100, 100, places=15)] * 2).map(sorted)
 
 

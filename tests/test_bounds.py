@@ -267,7 +267,8 @@ def test_no_cone(M, k):
 
 
 def test_next_block():
-    """For blocks d within bounds, and any point of the prism, d' = beta - 1/d is within the next."""
+    """For blocks d within bounds, and any point of the prism, d' = beta - 1/d is within the
+    next."""
     rng = rng_for("blocks")
     for _ in range(2500 * TORTURE):
         prism = list_prism(rng, rng.choice(("0.5", "0.01")), (-1, 1))

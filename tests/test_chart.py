@@ -10,6 +10,7 @@ import subprocess
 import sys
 import xml.etree.ElementTree as ET
 
+import chart
 import numpy as np
 import pytest
 from conftest import ROOT
@@ -18,8 +19,6 @@ from converse import orbits
 from converse.commands import common
 from converse.draw import plot
 from converse.model.problem import LINE
-
-import chart
 
 ROWS = {
     "bound": [("1989", "0.0274", 2698, 4, "yes"), ("thesis", "0.0274", 0.05, 3, "yes"),
@@ -122,7 +121,8 @@ def test_interrupted(quick, tmp_path, monkeypatch, capsys):
 
 
 def test_help(tmp_path):
-    done = subprocess.run([sys.executable, ROOT / "experiments" / "chart.py", "--help"], cwd=tmp_path,
+    done = subprocess.run([sys.executable, ROOT / "experiments" / "chart.py", "--help"],
+                          cwd=tmp_path,
                           stdout=subprocess.PIPE, stderr=subprocess.PIPE)
     assert done.returncode == 0 and done.stderr == b""
     assert "directory" in done.stdout.decode().lower()

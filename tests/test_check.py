@@ -10,7 +10,6 @@ import itertools
 import json
 import math
 import multiprocessing
-import operator
 import os
 import random
 import re
@@ -26,8 +25,9 @@ from fractions import Fraction
 import mpmath
 import pytest
 
-from checker import check
-from converse import Problem, check as package, prove, read_input
+from converse import Problem
+from converse import check as package
+from converse import prove, read_input
 from converse.check import lockstep, ship
 from converse.model.problem import LINE
 from moments import PATIENCE
@@ -617,9 +617,9 @@ def test_header_lines(texts, run):
     text = texts["trig278"]
     head, tree, rest = text.partition("\ntree:\n")
     first, *lines = head.split("\n")
-    for lines in (lines[::-1], sorted(lines), [x for x in lines if not x.startswith("seconds:")],
+    for other in (lines[::-1], sorted(lines), [x for x in lines if not x.startswith("seconds:")],
                   lines + ["comment: "] * 3, lines + ["seconds: 1"] * ("seconds:" not in head)):
-        assert run(sealed("\n".join([first, *lines]) + tree + rest))[0] == 0
+        assert run(sealed("\n".join([first, *other]) + tree + rest))[0] == 0
     for other, why in ((text.replace("depth:", "deepth:"), "unknown meaning"),
                        (text.replace("depth: 30\n", ""), "lacks depth"),
                        (text.replace("depth: 30\n", "depth: 30\ndepth: 30\n"), "twice"),
@@ -1045,7 +1045,8 @@ sys.exit(main())
     path, _ = long
     process = subprocess.run([sys.executable, "-I", "-c", code, os.path.dirname(FOLDER),
                               path, "--jobs", "3", "--exact"],
-                             stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, timeout=PATIENCE)
+                             stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+                             timeout=PATIENCE)
     assert process.returncode == 143, process.stderr
     assert process.stderr == "converse-check: %s: interrupted; nothing was verified\n" % path
     assert not process.stdout
@@ -1056,11 +1057,10 @@ def test_a_signal_that_waited():
     for handler in (signal.default_int_handler, check.interrupt):
         before, waited = signal.signal(signal.SIGINT, handler), False
         try:
-            with pytest.raises(KeyboardInterrupt):
-                with check.undisturbed():
-                    signal.pthread_kill(threading.get_ident(), signal.SIGINT)
-                    time.sleep(0.01)            # not here
-                    waited = True
+            with pytest.raises(KeyboardInterrupt), check.undisturbed():
+                signal.pthread_kill(threading.get_ident(), signal.SIGINT)
+                time.sleep(0.01)                # not here
+                waited = True
         finally:
             for number in check.SIGNALS:
                 signal.signal(number, signal.SIG_DFL)
@@ -2409,7 +2409,7 @@ def test_least_pivot_to_the_last_unit(texts, generator, monkeypatch):
         return 2 + max(abs(abc[0]), abs(abc[1])) + 2 * abs(abc[2])
 
     def in_units_of(fixed, waves, corners):
-        found = {k: 0 for k in check.THESIS}
+        found = dict.fromkeys(check.THESIS, 0)
         return max(2 * fixed.one + bound([{**found, **dict(zip(
             [k[:2] for k in waves], corner))}[k] for k in check.THESIS]) - 2 for corner in corners)
 
@@ -2846,7 +2846,8 @@ def test_maps_that_are_no_json(maps, run):
 
 @pytest.mark.parametrize("trees", [("O", "O"), ("0OO", "0O12OXO")])
 def test_nothing_is_verified_where_nothing_is_proved(maps, texts, run, trees):
-    """An empty theorem is none: of a map without a proved cell, of a proof without a proved leaf."""
+    """An empty theorem is none: of a map without a proved cell, of a proof without a proved
+    leaf."""
     content = maps["sphere"]
     for face, tree in zip(content["faces"], trees):
         face["tree"], face["proofs"] = tree, []

@@ -5,13 +5,12 @@ import re
 from fractions import Fraction
 from pathlib import Path
 
+import chart
 import mpmath
 import pytest
 
 from converse import prove, read_input
 from converse.model.problem import LINE
-
-import chart
 
 ROOT = Path(__file__).resolve().parent.parent
 INPUTS = sorted((ROOT / "inputs").glob("*.in"))
@@ -56,7 +55,8 @@ def test_the_k_of_an_input(path):
 
 def test_the_bounds_of_the_readme():
     """epsilon_c <= ...: the input begins there, or below."""
-    rows = re.findall(r"^\| epsilon_c <= (0\.[0-9]+)(?: \(1989: 0\.[0-9]+\))? \(`(\w+\.in)`\)", README,
+    rows = re.findall(r"^\| epsilon_c <= (0\.[0-9]+)(?: \(1989: 0\.[0-9]+\))? \(`(\w+\.in)`\)",
+                      README,
                       re.MULTILINE)
     assert len(rows) == README.count("| epsilon_c <=") == 4
     for epsilon, name in rows:

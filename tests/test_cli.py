@@ -168,7 +168,8 @@ def test_a_part_of_the_torus(command):
 
 def test_python_m(sample):
     for module, status in ("converse", 1), ("converse.check", 2):
-        result = subprocess.run([sys.executable, "-m", module, *(["-d0", sample] if status == 1 else [])],
+        result = subprocess.run([sys.executable, "-m", module,
+                                 *(["-d0", sample] if status == 1 else [])],
                                 stdin=subprocess.DEVNULL, capture_output=True, check=False)
         assert result.returncode == status and b"Traceback" not in result.stderr
 
@@ -184,7 +185,8 @@ def test_marked_backup_is_no_proof(command, sample, tmp_path):
 
 def test_the_sharper_method(command, root, tmp_path):
     sample, path = root / "inputs" / "trig180.in", tmp_path / "a.proof"
-    status, out, err = command("--method", "loewner", "--together", "-b", path, "--jobs", "2", sample)
+    status, out, err = command("--method", "loewner", "--together", "-b", path, "--jobs", "2",
+                               sample)
     assert status == 0 and err == ""
     assert "which move together" in out and "s times the upper ends" in out
     assert "SHA-256 " + hashlib.sha256(path.read_bytes()).hexdigest() in out
@@ -259,7 +261,8 @@ def test_unwritable_places(command, flag, sample, tmp_path):
     plain = tmp_path / "plain"
     plain.write_text("")
     (tmp_path / "a.ps").mkdir()
-    for place in (tmp_path / "a.ps", tmp_path / "missing" / "a.ps", plain / "a.ps", "/proc/a.ps", ""):
+    for place in (tmp_path / "a.ps", tmp_path / "missing" / "a.ps", plain / "a.ps", "/proc/a.ps",
+                  ""):
         status, out, err = command(flag, place, sample)
         assert status == 2 and out == "" and one_line(err)
         assert str(place) in err
@@ -277,7 +280,8 @@ def test_figure_over_something_else(command, sample, tmp_path):
     path = tmp_path / "copy.svg"
     path.write_bytes(sample.read_bytes())
     (tmp_path / "link.ps").symlink_to(path)
-    for arguments in ([path, "-g", path], [sample, "-b", tmp_path / "b.ps", "-g", tmp_path / "b.ps"],
+    for arguments in ([path, "-g", path],
+                      [sample, "-b", tmp_path / "b.ps", "-g", tmp_path / "b.ps"],
                       [path, "-g", "%s/./copy.svg" % tmp_path], [path, "-g", tmp_path / "link.ps"],
                       [sample, "-b", tmp_path / "b.ps", "-g", "%s/./b.ps" % tmp_path]):
         status, out, err = command(*arguments)
@@ -325,14 +329,16 @@ def test_the_figure_destroys_no_proof(command, sample, tmp_path, name):
 @pytest.mark.parametrize("name", ["a", "a.json", "a.in", "a.svg.txt", "a.csv"])
 def test_a_figure_has_a_figure_s_name(command, sample, tmp_path, name):
     status, out, err = command("-g", tmp_path / name, sample)
-    assert (status, out) == (2, "") and one_line(err) and ".svg or .png or .pdf or .ps or .eps" in err
+    assert (status, out) == (2, "")
+    assert one_line(err) and ".svg or .png or .pdf or .ps or .eps" in err
     assert list(tmp_path.iterdir()) == []
 
 
 @pytest.mark.parametrize("name", ["a.ps", "a.EPS", "a.svg", "a.png", "a.pdf"])
 def test_a_figure_replaces_nothing_but_a_figure(command, sample, tmp_path, name):
     path = tmp_path / name
-    for text in b"precious", b"%!PS-Adobe-3.0\n%%Creator: another\n", b"<?xml version='1.0'?><svg/>":
+    for text in (b"precious", b"%!PS-Adobe-3.0\n%%Creator: another\n",
+                 b"<?xml version='1.0'?><svg/>"):
         path.write_bytes(text)
         status, out, err = command("-g", path, sample)
         assert (status, out) == (2, "") and one_line(err) and "no figure of this program" in err
@@ -382,12 +388,14 @@ def test_advice_that_can_be_taken(command, sample, arguments, advice):
 def test_a_potential_of_ones_own(command, root, tmp_path):
     """JSON by its name or its first brace; a circle is called one; its backup goes on alone."""
     sample, path = root / "inputs" / "standard.json", tmp_path / "a.proof"
-    status, out, err = command("--method", "loewner", "-d9", "-s", "-b", path, stdin=sample.read_bytes())
+    status, out, err = command("--method", "loewner", "-d9", "-s", "-b", path,
+                               stdin=sample.read_bytes())
     assert (status, err) == (1, "") and "I could not decide whether there are rotational" in out
     status, out, err = command("-r", path, "-d", "120", sample)
     assert (status, err) == (0, "")
-    assert "I find no rotational invariant circles for V(y) = - the sum of :\np sin(y0 - 1/2 pi), " \
-        "p = 1.158000 + 0.182000 t[1]\nfor -1 < t[1] < 1\nNor are there any for s times" in out
+    assert "I find no rotational invariant circles for V(y) = - the sum of :\n" \
+        "p sin(y0 - 1/2 pi), p = 1.158000 + 0.182000 t[1]\nfor -1 < t[1] < 1\n" \
+        "Nor are there any for s times" in out
     status, out, err = command("-r", path, root / "inputs" / "two-harmonics.json")
     assert (status, out) == (2, "") and one_line(err) and "its potential is " in err
 
@@ -400,7 +408,8 @@ def test_a_potential_needs_the_sharper_method(command, root, arguments, words):
 
 
 def test_an_input_that_moves_together(command, tmp_path):
-    (tmp_path / "a.json").write_text('{"parameters": {"e": ["0.4", "0.5"]}, "harmonics": [%s]}' % ", ".join(
+    (tmp_path / "a.json").write_text('{"parameters": {"e": ["0.4", "0.5"]}, "harmonics": [%s]}' %
+                                     ", ".join(
         '{"k": %s, "amplitude": {"e": 1}}' % k for k in ("[1, 0]", "[0, 1]", "[1, 1]")))
     status, out, err = command(tmp_path / "a.json")
     assert (status, out) == (2, "") and one_line(err) and "--method loewner" in err
@@ -410,7 +419,8 @@ def test_an_input_that_moves_together(command, tmp_path):
 
 
 def test_json_mistakes_are_one_line(command, tmp_path):
-    (tmp_path / "a.json").write_text('{"harmonics": [{"k": [1, 0], "amplitude": "\\u001b]0;x\\n"}]}')
+    (tmp_path / "a.json").write_text('{"harmonics": [{"k": [1, 0], "amplitude": '
+                                     '"\\u001b]0;x\\n"}]}')
     status, out, err = command("--method", "loewner", tmp_path / "a.json")
     assert (status, out) == (2, "") and one_line(err) and "\x1b" not in err
     assert "a.json, harmonic 1, amplitude: " in err

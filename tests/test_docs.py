@@ -57,7 +57,8 @@ def test_commands_are_understood():
 
 def test_an_installation_in_the_clone_stays_editable():
     """A page that adds an extra to .venv must not put a copy in the place of the clone's files."""
-    shown = [line for text in TEXTS.values() for line in re.findall(r"\.venv/bin/pip install (.*)", text)]
+    shown = [line for text in TEXTS.values()
+             for line in re.findall(r"\.venv/bin/pip install (.*)", text)]
     assert shown and all(line.startswith("-e ") for line in shown)
 
 

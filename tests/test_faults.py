@@ -76,7 +76,8 @@ def begun(tmp_path_factory):
 
 @contextlib.contextmanager
 def _started(code, *arguments):
-    with subprocess.Popen([sys.executable, "-c", code, *map(str, arguments)], stdin=subprocess.DEVNULL,
+    with subprocess.Popen([sys.executable, "-c", code, *map(str, arguments)],
+                          stdin=subprocess.DEVNULL,
                           stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
         try:
             yield process
@@ -140,8 +141,10 @@ def look(self):
     sys.setprofile(strike)
 converse.prover.run._Run._look = look
 """ + HELD
-    process = subprocess.run([sys.executable, "-c", code, tmp_path / "sign", "0", "-b", backup, sample],
-                             stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, timeout=PATIENCE)
+    process = subprocess.run([sys.executable, "-c", code, tmp_path / "sign", "0", "-b", backup,
+                              sample],
+                             stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+                             timeout=PATIENCE)
     assert process.returncode == 143, process.stderr
     assert process.stderr == "converse: interrupted; continue with -r %s\n" % backup
     assert not Proof.load(backup).no_tori
@@ -183,7 +186,8 @@ def start_and_be_struck(*arguments):
 workers.WorkerPool._submit = start_and_be_struck
 sys.exit(main())
 """
-    process = subprocess.run([sys.executable, "-c", code, "--jobs", "1", sample], stdout=subprocess.DEVNULL,
+    process = subprocess.run([sys.executable, "-c", code, "--jobs", "1", sample],
+                             stdout=subprocess.DEVNULL,
                              stderr=subprocess.PIPE, text=True, timeout=PATIENCE)
     assert process.returncode == 143, process.stderr
     assert process.stderr.startswith("converse: interrupted") and process.stderr.count("\n") == 1
@@ -245,8 +249,10 @@ def test_full_disk_in_mid_run(held, sample, tmp_path):
         process.send_signal(signal.SIGINT)
         err = ended(process)
     assert process.returncode == 2
-    assert warning.startswith("converse: %s: cannot be written" % backup) and "tries again" in warning
-    assert re.fullmatch(r"converse: interrupted; \S+: cannot be written .*; what was found after the first "
+    assert warning.startswith("converse: %s: cannot be written" %
+                              backup) and "tries again" in warning
+    assert re.fullmatch(r"converse: interrupted; \S+: cannot be written .*; what was found after "
+                        r"the first "
                         r"[0-9.]+ seconds of the search is not saved\n", err)
     assert backup.read_bytes() == before
 
@@ -358,7 +364,8 @@ def test_long_arithmetic_obeys(begun, sample, options):
 
 
 @pytest.mark.parametrize("first, second", [
-    (signal.SIGTERM, signal.SIGHUP), (signal.SIGHUP, signal.SIGTERM), (signal.SIGINT, signal.SIGTERM),
+    (signal.SIGTERM, signal.SIGHUP), (signal.SIGHUP, signal.SIGTERM),
+    (signal.SIGINT, signal.SIGTERM),
     (signal.SIGINT, signal.SIGINT)])
 def test_two_signals_at_once(held, sample, tmp_path, first, second):
     """As at the end of a session; the second must not strike while the first is obeyed."""

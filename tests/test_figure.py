@@ -556,18 +556,22 @@ def test_the_star_stands_in_the_frame(made_up, frame):
     problem = replace(Problem(0, 0, ("0.4", "0.5")), axes=frame)
     for x in (0.25, -1.5), (3.0, 7.0):
         proof = replace(made_up("P"), problem=problem, xstar=tuple(map(str, x)))
-        v = [2 * math.pi * part for part in captions.star(proof)]         # of a region from 0 to 2 pi
+        v = [2 * math.pi * part
+             for part in captions.star(proof)]         # of a region from 0 to 2 pi
         there = frame[0] * v[0] + frame[1] * v[1], frame[2] * v[0] + frame[3] * v[1]
         assert all(abs(math.remainder(a - b, 2 * math.pi)) < 1e-9 for a, b in zip(there, x))
 
 
 def test_what_is_said_of_other_problems(made_up):
     for problem, said in (
-            (Problem(0, 0, ("0.4", "0.5")), ["0.4 < c < 0.5", "the angles after x* are (v0, -v0 + v1)"]),
+            (Problem(0, 0, ("0.4", "0.5")),
+             ["0.4 < c < 0.5", "the angles after x* are (v0, -v0 + v1)"]),
             (Problem.patch(["0.4", 1], [["0.1", 0]], [(1, 0, "-1/2"), (2, -1)]), [
-                "0.3 < p of sin(y0 - 1/2 pi) < 0.5", "p of sin(2 y0 - y1) = 1", "no invariant tori"]),
+                "0.3 < p of sin(y0 - 1/2 pi) < 0.5", "p of sin(2 y0 - y1) = 1",
+                "no invariant tori"]),
             (Problem.patch(["0.4", 1], [["0.1", "0.1"]], [(1, 0), (2, 0)]), [
-                "0.3 < p of sin(y0) < 0.5", "on a part of this box", "no rotational invariant circles"])):
+                "0.3 < p of sin(y0) < 0.5", "on a part of this box",
+                "no rotational invariant circles"])):
         for text in words(replace(made_up("P"), problem=problem)):
             text = " ".join(text.split())
             assert all(word in text for word in said), (said, text)

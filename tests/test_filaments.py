@@ -85,8 +85,8 @@ def test_bad_points():
     ("poly", (377, 2330), 3770, 0.015, 1, (1, -4), (4, 1))] * (TORTURE > 1))
 def test_the_thesis(potential, p, q, eps, count, kind, resonance):
     """Continuation as in the figures.  Three curves of type (1, 1), seven of (0, 1), one of (4, 1):
-    the thesis names the last by its resonance, and leaves out signs.  The curves cross the resonance
-    k: its k.p/q is nearly whole."""
+    the thesis names the last by its resonance, and leaves out signs.  The curves cross the
+    resonance k: its k.p/q is nearly whole."""
     steps = [0.0025 * k for k in range(1, round(eps / 0.0025) + 1)]
     state = orbits.follow(getattr(orbits, potential), p, q, steps)[-1]
     found = filaments(state.x)

@@ -1,5 +1,5 @@
-"""How theorems for Coq are written down: what they say is in Map.v's words, and nobody else's, and what
-they assume is looked at.  (make formal-quick builds what is used here.)"""
+"""How theorems for Coq are written down: what they say is in Map.v's words, and nobody else's, and
+what they assume is looked at.  (make formal-quick builds what is used here.)"""
 
 import importlib
 import re
@@ -50,7 +50,8 @@ def write(proof, name, folder, *options):
 def compiled(folder, file):
     """Does Coq accept it?  What it says of it."""
     done = subprocess.run(["coqc", "-q", "-Q", ".", "Converse", file], cwd=folder, text=True,
-                          stdout=subprocess.PIPE, stderr=subprocess.STDOUT, stdin=subprocess.DEVNULL)
+                          stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+                          stdin=subprocess.DEVNULL)
     return done.returncode == 0, done.stdout
 
 
@@ -58,7 +59,8 @@ def test_who_reads_map_and_says_has_read_enough(proof, tmp_path):
     """The proposition imports Map.v alone; the theorem's file that and Map.v, and nothing else."""
     (tmp_path / "build").mkdir()
     files = write(proof("trig278"), "trig278", tmp_path, "--parts", "3")
-    assert sorted(files) == ["trig278", *("trig278_%s" % end for end in ("0", "1", "2", "claim", "says"))]
+    assert sorted(files) == ["trig278",
+                             *("trig278_%s" % end for end in ("0", "1", "2", "claim", "says"))]
     says, theorem = (files[name].read_text() for name in ("trig278_says", "trig278"))
     imports = re.compile(r"From Converse(?:\.build)? Require Import (.*)\.")
     assert says.count("Converse ") == 1 and imports.findall(says) == ["Map"]
@@ -97,7 +99,8 @@ def test_words_that_mean_something_else(proof, folder):
 @needs_coq
 def test_a_theorem_of_another_proposition_of_the_name(folder):
     """How docs/trust.md has Coq asked, for him who does not read the theorem's file either."""
-    says = "From Converse Require Import Map.\nDefinition x_says : Prop := no_invariant_graph nil.\n"
+    says = "From Converse Require Import Map.\n" \
+        "Definition x_says : Prop := no_invariant_graph nil.\n"
     (folder / "build" / "x_says.v").write_text(says)
     (folder / "build" / "x.v").write_text(
         "From Converse.build Require Import x_says.\nDefinition x_says : Prop := True.\n"
@@ -128,7 +131,8 @@ def test_no_torus(proof, folder):
         accepted, said = compiled(folder, file + ".v")
         assert accepted == (file == "NoTorus"), said
         if accepted:
-            assert assumed().others("Integers", said) == ["trig180.trig180 : trig180_says.trig180_says"]
+            others = assumed().others("Integers", said)
+            assert others == ["trig180.trig180 : trig180_says.trig180_says"]
 
 
 def assumed():

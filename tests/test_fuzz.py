@@ -112,7 +112,7 @@ def test_any_change_of_a_backup(proof_bytes, tmp_path_factory, edits, seal, zipp
     path = tmp_path_factory.getbasetemp() / ("fuzzed-%d" % os.getpid())
     path.write_bytes(gzip.compress(data, 1) if zipped else data)
     try:
-        proof = Proof.load(path)
+        Proof.load(path)
     except ConverseError as error:
         one_line(error)
         return
@@ -245,7 +245,8 @@ changes = st.lists(st.one_of(
     st.tuples(st.just("field"), st.just("frame"),
               st.sampled_from(["1 0 0 1", "1 0 -1 1", "0 1 1 0", "2 1 1 1", "1 1 1 1"])),
     st.tuples(st.just("field"), st.just("alone"), st.sampled_from(["no", "0", "1"])),
-    st.tuples(st.just("field"), st.just("odd about"), st.sampled_from(["no", "0 0", "1/2 0", "1 1"])),
+    st.tuples(st.just("field"), st.just("odd about"),
+              st.sampled_from(["no", "0 0", "1/2 0", "1 1"])),
     st.tuples(st.just("node"), st.integers(0, 10**6), st.sampled_from("01234PPPSU?")),
     st.tuples(st.just("prune"), st.integers(0, 10**6), st.sampled_from("PPS")),
     st.tuples(st.just("graft"), st.integers(0, 10**6),
@@ -313,7 +314,8 @@ def refuted(claim, cases):
         p = [float(wave.at(list(map(Fraction, eta)))) for wave in claim.waves]
         v = [c + h * Fraction(e) for c, h, e in zip(claim.centre, claim.half, eta[3:])]
         x0 = list(map(float, claim.xstar))
-        x1 = [math.pi * float((claim.frame[i] * v[0] + claim.frame[i + 1] * v[1]) % 2) for i in (0, 2)]
+        x1 = [math.pi * float((claim.frame[i] * v[0] + claim.frame[i + 1] * v[1]) % 2)
+              for i in (0, 2)]
         if definite(p, x0, x1, 14, math, potential):
             return p
     if claim.at_once != "no" and potential == [(k, 0) for k in check.THESIS]:

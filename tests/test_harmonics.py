@@ -16,7 +16,8 @@ from converse.model.problem import LINE
 from truth import TORTURE
 
 A, B, C = ({"k": k, "amplitude": amplitude} for k, amplitude in (
-    ([1, 0], ["0.30725", "0.30975"]), ([0, 1], ["0.30725", "0.30975"]), ([1, 1], ["0.6145", "0.6195"])))
+    ([1, 0], ["0.30725", "0.30975"]), ([0, 1], ["0.30725", "0.30975"]),
+    ([1, 1], ["0.6145", "0.6195"])))
 
 
 def read(value):
@@ -43,7 +44,8 @@ def test_the_thesis_in_both_formats(root):
 
 def test_parameters():
     """The amplitudes are what the file says they are, at the ends of all parameters."""
-    problem = read({"parameters": {"e": [1, "1.5"], "f": ["-0.5", "0.25"]}, "v1": ["0", "0.5"], "harmonics": [
+    problem = read({"parameters": {"e": [1, "1.5"], "f": ["-0.5", "0.25"]}, "v1": ["0", "0.5"],
+                    "harmonics": [
         {"k": [1, 0], "amplitude": {"e": "2", "constant": "-0.1"}, "phase": "cos"},
         {"k": [-3, 2], "amplitude": {"f": "0.5", "e": "-1e-1"}, "phase": "-1/3"},
         {"k": [0, 1], "amplitude": ["7", 8]}, {"k": [1, 1], "amplitude": 5e-1, "phase": 2.5}]})
@@ -59,7 +61,8 @@ def test_parameters():
 
 
 def test_numbers_are_exact():
-    problem = read('{"harmonics": [{"k": [1], "amplitude": 0.1000000000000000000000000000000000001}]}')
+    problem = read('{"harmonics": [{"k": [1], "amplitude": '
+                   '0.1000000000000000000000000000000000001}]}')
     assert problem.amplitude == (Fraction("0.1000000000000000000000000000000000001"),)
     low, high = (problem.amplitude[0] + sign * problem.half[0] for problem in [read(one(
         amplitude="4/3"))] for sign in (-1, 1))
@@ -78,21 +81,26 @@ def test_files(tmp_path):
 @pytest.mark.parametrize("value, words", [
     ("{", "line 1: this is no JSON"), ('{\n"harmonics": [}', "line 2: this is no JSON"),
     ('{"a":' + "[" * 10 ** 5, "too many brackets"), ({"harmonic": []}, 'no field "harmonic"'),
-    ({}, "harmonics is missing"), ({"harmonics": []}, "harmonics: 0 of them; give a list of 1 to 16"),
-    ({"harmonics": {}}, "harmonics: this is an object"), ({"harmonics": [5]}, "harmonic 1: this is a number"),
+    ({}, "harmonics is missing"),
+    ({"harmonics": []}, "harmonics: 0 of them; give a list of 1 to 16"),
+    ({"harmonics": {}}, "harmonics: this is an object"),
+    ({"harmonics": [5]}, "harmonic 1: this is a number"),
     ({"harmonics": [{"k": [k], "amplitude": 1} for k in range(1, 18)]}, "17 of them"),
     ({"harmonics": [{"k": [1]}]}, "harmonic 1: amplitude is missing"),
     (one(Phase=0), 'harmonic 1: there is no field "Phase"'),
     ('{"harmonics": [], "harmonics": []}', '"harmonics" stands twice'),
-    (one(amplitude=float("nan")), "NaN is no number"), (one(amplitude=True), "amplitude: this is true"),
+    (one(amplitude=float("nan")), "NaN is no number"),
+    (one(amplitude=True), "amplitude: this is true"),
     (one(amplitude=None), "amplitude: this is null"), (one(amplitude="x"), "amplitude: 'x' is not"),
     (one(amplitude="1/0"), "'1/0' is not"), (one(amplitude=[1]), "amplitude: 1 numbers"),
-    (one(amplitude=[1, 2, 3]), "amplitude: 3 numbers"), (one(amplitude=[2, 1]), "the lower end, 2, is above"),
+    (one(amplitude=[1, 2, 3]), "amplitude: 3 numbers"),
+    (one(amplitude=[2, 1]), "the lower end, 2, is above"),
     ('{"harmonics": [{"k": [1], "amplitude": 1e999999999}]}', "out of range"),
     ('{"harmonics": [{"k": [1], "amplitude": %s}]}' % ("9" * 5000), "out of range"),
     (one(amplitude={"e": 1}), 'no parameter "e"; the parameters are none'),
     ({"parameters": {"e": 1}, **one()}, 'parameters, "e": no amplitude has it'),
-    ({"parameters": {"e": 1}, **one(amplitude={"e": "1/3"})}, "amplitude, e: 1/3 is no finite decimal"),
+    ({"parameters": {"e": 1}, **one(amplitude={"e": "1/3"})},
+     "amplitude, e: 1/3 is no finite decimal"),
     ({"parameters": {"e": "1e200"}, **one(amplitude={"e": "1e200"})}, "out of range"),
     ({"parameters": {"constant": 1}, **one()}, "no name for a parameter"),
     ({"parameters": {"a b": 1}, **one()}, "no name for a parameter"),
@@ -104,12 +112,14 @@ def test_files(tmp_path):
     (one(phase="tan"), "phase: 'tan' is not"), (one(phase=["sin"]), "phase: this is a list"),
     (one(k=1), "k: this is a number"), (one(k=[]), "k: this is a list of 0"),
     (one(k=[1, 2, 3]), "a list of 3"), (one(k=["1", 0]), "k: this has a string in it"),
-    (one(k=[1.5, 0]), "k: (1.5, 0) is out of range"), (one(k=[101, 0]), "k: (101, 0) is out of range"),
+    (one(k=[1.5, 0]), "k: (1.5, 0) is out of range"),
+    (one(k=[101, 0]), "k: (101, 0) is out of range"),
     (one(k=[0, 0]), "k: this is zero"), (one(k=[True, 0]), "k: this has true in it"),
     ({"harmonics": [A, {"k": [1], "amplitude": 1}]}, "harmonic 2, k: 1 number, and 2 before"),
     ({"harmonics": [A, {**A, "phase": 2}]}, "harmonic 2: harmonic 1 has the same k and phase"),
     ({"v1": 1, "harmonics": [{"k": [1], "amplitude": 1}]}, "v1: on the circle"),
-    ({"v0": [1, 0], **one()}, "v0: the lower end, 1, is above"), ({"comments": [1], **one()}, "comments"),
+    ({"v0": [1, 0], **one()}, "v0: the lower end, 1, is above"),
+    ({"comments": [1], **one()}, "comments"),
     ({"comments": {}, **one()}, "comments: this is no text")])
 def test_mistakes(value, words):
     with pytest.raises(InputError) as caught:
@@ -193,7 +203,8 @@ def test_the_usual_conventions(root, name, ends, force):
     assert problem.full_torus and len(problem.parts) == 1
     for t, K in ends.items():
         ours, theirs = of_period_one(problem, [t]), force(float(K))
-        here = there = ([0.123, 0.371 * (problem.dimension - 1)], [0.3, 0.17 * (problem.dimension - 1)])
+        here = there = ([0.123, 0.371 * (problem.dimension - 1)],
+                        [0.3, 0.17 * (problem.dimension - 1)])
         for _ in range(6):
             here = ours(*here)
             p = [u + f for u, f in zip(there[1], theirs(there[0]))]
@@ -210,11 +221,14 @@ def test_the_crossed_input(root):
 
 def test_what_is_odd_of_the_inputs(root):
     """Only then larger parameters may be excluded at once."""
-    odd = {path.stem for path in (root / "inputs").glob("*.json") if read_input(path).odd is not None}
+    odd = {path.stem for path in (root / "inputs").glob("*.json")
+           if read_input(path).odd is not None}
     assert odd == {"standard", "crossed"}
 
 
-@pytest.mark.parametrize("name", ["standard", "two-harmonics", "froeschle-0.1", "froeschle-0.3", "froeschle-0.5",
+@pytest.mark.parametrize("name",
+                         ["standard", "two-harmonics", "froeschle-0.1", "froeschle-0.3",
+                          "froeschle-0.5",
                                   "crossed"])
 def test_the_inputs_are_theorems(root, name, tmp_path):
     """Proved; and of a sixteenth of the successors verified by the checker, which takes longer."""
@@ -232,7 +246,8 @@ def test_one_map_in_both_inputs():
         proof = prove(read({"harmonics": [{"k": k, "amplitude": amplitude, "phase": phase}]}),
                       method="loewner")
         assert proof.no_tori and not proof.at_once and proof.counts.proved < 300
-    lower = prove(read({"harmonics": [{"k": [1], "amplitude": "0.95"}]}), method="loewner", depth=30)
+    lower = prove(read({"harmonics": [{"k": [1], "amplitude": "0.95"}]}), method="loewner",
+                  depth=30)
     assert lower.conclusion == "undecided"      # its golden circle lives to 0.9716
 
 

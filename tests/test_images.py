@@ -57,7 +57,8 @@ def test_inverse(as_printed):
 
 @pytest.mark.parametrize("dp", [4, 8, 20])
 def test_gauss_jordan_knows_its_error(dp):
-    """A single try with no digits to spare: what it says of its error holds, and is no idle talk."""
+    """A single try with no digits to spare: what it says of its error holds, and is no idle
+    talk."""
     rng, ratios = rng_for("gauss%d" % dp), []
     for _ in range(1500 * TORTURE):
         scale = 10 ** rng.randrange(-1, 3)

@@ -37,7 +37,8 @@ def test_make_checker_needs_nothing_but_python(root, tmp_path):
     shutil.copy(root / "Makefile", tmp_path)
     shutil.copytree(root / "converse" / "check", tmp_path / "converse" / "check",
                     ignore=shutil.ignore_patterns("__pycache__"))
-    subprocess.run(["make", "checker", "PYTHON=%s -I -S" % sys.executable], cwd=tmp_path, check=True,
+    subprocess.run(["make", "checker", "PYTHON=%s -I -S" % sys.executable], cwd=tmp_path,
+                   check=True,
                    stdout=subprocess.DEVNULL)
     forms = sorted((tmp_path / "build").iterdir())
     assert [form.name for form in forms] == ["converse-check.pyz", "converse_check.py"]
@@ -91,11 +92,15 @@ def test_python_started_among_sources_without_core(root, tmp_path, sources, aske
                     ignore=shutil.ignore_patterns("_native.*", "__pycache__"))
     if sources:
         (tmp_path / "setup.py").touch()
-    code = (                    # without the finder of an editable installation, which finds its core
-        "import sys\nsys.meta_path[:] = [each for each in sys.meta_path if 'editable' not in repr(each)]\n"
-        "import converse\nfrom converse import orbits\ntry: %s\nexcept converse.ConverseError as error: print(error)" % asked)
+    code = (            # without the finder of an editable installation, which finds its core
+        "import sys\n"
+        "sys.meta_path[:] = [each for each in sys.meta_path if 'editable' not in "
+        "repr(each)]\n"
+        "import converse\nfrom converse import orbits\ntry: %s\nexcept converse.ConverseError as "
+        "error: print(error)" % asked)
     environment = {name: value for name, value in os.environ.items() if name != "PYTHONSAFEPATH"}
-    done = subprocess.run([sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True,
+    done = subprocess.run([sys.executable, "-c", code], cwd=tmp_path, capture_output=True,
+                          text=True,
                           env=environment)
     assert (done.returncode, done.stderr, done.stdout.count("\n")) == (0, "", 1)
     assert ("start Python elsewhere" in done.stdout and str(tmp_path) in done.stdout) == sources

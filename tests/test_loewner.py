@@ -687,7 +687,8 @@ def falls(betas, l):
 
 
 @pytest.mark.parametrize("problem", [
-    Problem.around((Fraction(0),) * 3 + (Fraction(1),) * 2, (Fraction(0),) * 3 + (Fraction(1),) * 2),
+    Problem.around((Fraction(0),) * 3 + (Fraction(1),) * 2,
+                   (Fraction(0),) * 3 + (Fraction(1),) * 2),
     line("0.0001", "0.0001"), line("0.001", "0.001"), line("0.01", "0.01"), line("0", "0.0280"),
     line("0.0120", "0.0280"), line("-0.001", "0.001"), line("0.01", "0.01", skew="0.5"),
     line("0.005", "0.0280", together=False)])
@@ -732,7 +733,7 @@ WIDTHS = ("64", "128", "256", "512")    # of vectors, in bits
     line("0.0170", "0.0280"), line("0.0200", "0.0280", together=False),
     line("0.0200", "0.0280", skew="0.75"),
     Problem(a=("0.984375", "0.984375"), b=("0", "0"), c=("0", "0")),
-    Problem(a=("0.9745", "0.9755"), b=("0", "0"), c=("0", "0")),       # orbits of very unlike lengths
+    Problem(a=("0.9745", "0.9755"), b=0, c=0),                  # orbits of very unlike lengths
     line("0.0130", "0.0200", region=("0.125", "0.125"))])
 def test_every_width_grows_the_same_tree(problem, monkeypatch):
     """Whatever vectors the machine has, and in whatever company a prism is tried."""
@@ -797,7 +798,8 @@ def test_no_company_matters(problem, star, monkeypatch):
 
 @pytest.mark.parametrize("a, half", [("1e12", "0"), ("1e7", "0"), ("1e7", "1e-5")])
 def test_an_orbit_ends_where_it_cannot_go_on(a, half):
-    """Too many turns in the next step, or images too wide, both ways: two points are all there is."""
+    """Too many turns in the next step, or images too wide, both ways: two points are all there
+    is."""
     for way in (1, -1):                     # of a alone, of b alone
         problem = Problem.around((*(Fraction(a), 0)[::way], 0, *(Fraction("-0.4"), 0)[::way]),
                                  (0, 0, 0, Fraction(half), Fraction(half)))

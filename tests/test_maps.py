@@ -16,8 +16,8 @@ import converse
 from converse import check, maps
 from converse.commands import map as cli
 from converse.draw import map_figure
-from converse.maps import region, search
 from converse.maps import map as map_module
+from converse.maps import region, search
 from converse.maps.map import AT_ONCE, OPEN, OUTSIDE, PROVED, Map
 from converse.prover.workers import ATTEMPTS, WorkerPool
 from converse.storage.files import ConverseError
@@ -91,7 +91,8 @@ def test_faces_are_the_fundamental_domain():
         r = max(a, c)
         face, place = (0, (b / r, c / r)) if a >= c else (1, (a / r, b / r))
         assert all(0 <= x <= 1 for x in place)
-        assert tuple(r * d for d in region.direction(region.REGIONS["sphere"][face], place)) == (a, b, c)
+        assert tuple(r * d for d in region.direction(region.REGIONS["sphere"][face],
+                                                     place)) == (a, b, c)
 
 
 def test_what_is_outside_has_b_above_a():
@@ -113,7 +114,7 @@ def test_a_map(made):
     assert found.complete and {PROVED, AT_ONCE, OPEN} == set(kinds)
     for face in range(2):
         assert found.height(face) < F(7, 5)
-        for place, radius in found.estimate[face].items():
+        for radius in found.estimate[face].values():
             assert 0.3 < radius < 1.2           # the standard map's is 0.9716
     # Nothing is open of which a part lies above what was asked for, everything below is.
     for leaf in found.leaves():
@@ -296,7 +297,8 @@ def test_the_sphere(coarse, tmp_path):
     assert found.complete and found.count(AT_ONCE)
     assert shares == sorted(shares) and shares[-1] > 0.97
     for leaf in found.leaves():
-        assert (leaf.kind == OUTSIDE) == region.is_outside(found.directions[leaf.cell.face], leaf.cell)
+        assert (leaf.kind == OUTSIDE) == region.is_outside(found.directions[leaf.cell.face],
+                                                           leaf.cell)
     estimate = found.estimate[1]
     assert all(estimate[place] == estimate[place[::-1]] for place in estimate)
     assert found.count(OUTSIDE)

@@ -243,7 +243,8 @@ def test_the_experiment(root, tmp_path):
             "import minimizing as m;"
             "m.POTENTIALS, m.TYPES = m.POTENTIALS[:1], m.TYPES[:2]; m.QUICK_EPS = [0.01, 0.04];"
             "m.main()" % (str(tmp_path / "new"), os.path.dirname(name)))
-    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=PATIENCE)
+    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True,
+                         timeout=PATIENCE)
     assert run.returncode == 0 and not run.stderr
     with open(tmp_path / "new" / "minimizing.csv", newline="") as file:
         rows = list(csv.DictReader(file))

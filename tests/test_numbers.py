@@ -68,7 +68,8 @@ def test_the_standard_map():
     for k, points, prisms, _ in table:
         counts = sharper(Problem(k, 0, 0))
         assert (counts.max_NTsteps, counts.proved) == (number(points), number(prisms))
-    prisms, = said("method.md", "from 1.33332 to 1.4 takes ([0-9,]+) prisms, of at most five points")
+    prisms, = said("method.md",
+                   "from 1.33332 to 1.4 takes ([0-9,]+) prisms, of at most five points")
     counts = sharper(given("standard-mather.in", together=True))
     assert (counts.proved, counts.max_NTsteps) == (prisms, 5)
 
@@ -81,11 +82,13 @@ COS = "-1/2"
 FROESCHLE = [(1, 0, COS), (0, 1, COS), (1, 1, COS)]
 POINTS = {                              # by how a row begins: the input, and the problem of a point
     "standard map": ("standard", lambda K: patch([(1, 0, COS)], K)),
-    "two harmonics, K2 = 0.4": ("two-harmonics", lambda K: patch([(1, 0, COS), (2, 0, COS)], K, "0.2")),
+    "two harmonics, K2 = 0.4": ("two-harmonics",
+                                lambda K: patch([(1, 0, COS), (2, 0, COS)], K, "0.2")),
     **{"Froeschlé, B = " + B: ("froeschle-" + B, lambda K, B=B: patch(FROESCHLE, K, K, B))
        for B in ("0.1", "0.3", "0.5")},
     "crossed": ("crossed", lambda s: patch(
-        [(1, 0), (0, 1), (1, 1), (1, -1)], *(Fraction(s) * Fraction(p) for p in ("0.4", "0.4", "0.3", "0.1")))),
+        [(1, 0), (0, 1), (1, 1), (1, -1)],
+        *(Fraction(s) * Fraction(p) for p in ("0.4", "0.4", "0.3", "0.1")))),
 }
 
 
@@ -138,14 +141,16 @@ def test_the_line():
                 == [*map(number, (prisms, points, cuts))], epsilon
     counts = sharper(chart.on_line("0.01405", together=True))
     assert [counts.proved, counts.most_cuts, counts.max_NTsteps] == said(
-        "speed.md", "value 0.01405 takes ([0-9,]+) prisms, cut up to ([0-9]+) times, with orbits of "
+        "speed.md", "value 0.01405 takes ([0-9,]+) prisms, cut up to ([0-9]+) times, with orbits "
+                    "of "
         "up to ([0-9]+) points")
 
 
 def test_what_is_checked_and_what_coq_proves():
     """As many leaves as the proofs have."""
     leaves = {"standard": sharper(given("standard-63-64.in")).proved}
-    leaves.update({"box" + n: sharper(given("trig%s.in" % n)).proved for n in ("272", "274", "276", "278")})
+    leaves.update({"box" + n: sharper(given("trig%s.in" % n)).proved
+                   for n in ("272", "274", "276", "278")})
     head, *table = rows("trust.md", "theorem")
     assert head[1] == "leaves"
     for names, count, *_ in table:
@@ -216,7 +221,8 @@ LINES = [
     ("trust.md", "whose steps its ([0-9,]+) lines cite", "converse/check/*.py"),
     ("trust.md", "in ([0-9,]+) lines without a proof", "formal/Map.v"),
     ("trust.md", "([0-9,]+) lines of `verified.ml`", "formal/verified.ml"),
-    ("trust.md", "`formal/roundings.py`, a Python program of ([0-9,]+) lines", "formal/roundings.py"),
+    ("trust.md", "`formal/roundings.py`, a Python program of ([0-9,]+) lines",
+     "formal/roundings.py"),
 ]
 
 
@@ -237,7 +243,8 @@ def test_the_margins():
     """How many rows of the two tables are bounded by what."""
     text = PAGES["proof.md"]
     end = text.index("**What a machine has proved of this.**")
-    first, general = (re.findall(r"^\| (.*?) \|.*\| [0-9.]+ \| (.*?) ?\|$", part, re.MULTILINE) for part in
+    first, general = (re.findall(r"^\| (.*?) \|.*\| [0-9.]+ \| (.*?) ?\|$", part, re.MULTILINE)
+                      for part in
                       text[text.index("| margin | where"):end].split("**General waves.**"))
     machine = re.findall(r"^\| ([a-z0-9 *`]+?) \|.*\| [0-9.]+ \|", text[end:], re.MULTILINE)
     proved = {name for name, _ in first if name.strip("`") in machine}
@@ -246,9 +253,11 @@ def test_the_margins():
     by_hand = [seen for name, seen in first if name not in proved] + [
         seen for name, seen in general if name not in more]
     assert [len(first) + len(general)] == said("trust.md", "the ([0-9]+) rows of two tables")
-    assert [len(proved) + len(more) - 1] == said("trust.md", "for ([0-9]+) others `formal/roundings.py`")
+    assert [len(proved) + len(more) - 1] == said("trust.md",
+                                                 "for ([0-9]+) others `formal/roundings.py`")
     assert [len(by_hand), by_hand.count("")] == said(
-        "trust.md", "remaining ([0-9]+) are bounded by hand, and tests hold all but ([0-9]+) of these")
+        "trust.md", "remaining ([0-9]+) are bounded by hand, and tests hold all but ([0-9]+) of "
+                    "these")
 
 
 @pytest.fixture(scope="module")
@@ -267,14 +276,16 @@ def test_the_table_of_accuracy(accuracy):
     printed = re.findall(r"^\| (.*?) \| (.*?) \| (.*?) \|.*\|$", page, re.MULTILINE)
     assert printed == [row[:3] for row in accuracy.ROWS]
     for _, algorithm, _ in printed:
-        assert all(list((ROOT / "csrc").rglob(file)) for file in re.findall(r"\w+\.[ch]\b", algorithm))
+        assert all(list((ROOT / "csrc").rglob(file))
+                   for file in re.findall(r"\w+\.[ch]\b", algorithm))
 
 
 def test_the_rows_of_accuracy(accuracy):
     """Each can be measured, here from few cases, and what is promised is kept."""
     for row in accuracy.ROWS:
         seen = {name: accuracy.measured(row, 0.02 * TORTURE, name) for name in accuracy.DP}
-        assert any(seen.values()) and all(accuracy.kept(row, *each) for each in seen.items()), row[0]
+        assert any(seen.values()) and all(accuracy.kept(row, *each)
+                                          for each in seen.items()), row[0]
 
 
 def test_files_that_are_named_exist():
@@ -284,17 +295,20 @@ def test_files_that_are_named_exist():
         names += re.findall(r"(?<![\w./])[\w/]*\w\.[ch]\b(?! *\[)", text)
     for file in (ROOT / "csrc").rglob("*.[ch]"):
         for comment in re.findall(r"/\*.*?\*/", file.read_text("utf-8"), re.DOTALL):
-            names += re.findall(r"(?<![\w<.>/])(?:[\w-]+/)*[a-z_]\w{2,}\.[ch]\b(?!\w|\[|->)", comment)
+            names += re.findall(r"(?<![\w<.>/])(?:[\w-]+/)*[a-z_]\w{2,}\.[ch]\b(?!\w|\[|->)",
+                                comment)
     for file in (ROOT / "converse").rglob("*.py"):
         names += re.findall(r"csrc/[\w/]+\.[ch]\b", file.read_text("utf-8"))
     missing = {name for name in names if not any(
-        ("/" + str(path.relative_to(ROOT))).endswith("/" + name) for path in (ROOT / "csrc").rglob("*.[ch]"))}
+        ("/" + str(path.relative_to(ROOT))).endswith("/" + name)
+        for path in (ROOT / "csrc").rglob("*.[ch]"))}
     assert len(names) > 50 and not missing
 
 
 # ---- figures
 
-@pytest.mark.parametrize("figure", sorted((ROOT / "docs").glob("*.svg")), ids=lambda path: path.stem)
+@pytest.mark.parametrize("figure", sorted((ROOT / "docs").glob("*.svg")),
+                         ids=lambda path: path.stem)
 def test_the_release_of_a_figure(figure):
     """A figure need not name the release that drew it; one that says "converse N.N.N" names this
     one.  (Curves of an older release are "release N.N.N".)  Texts are drawn as outlines, and stand

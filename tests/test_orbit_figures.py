@@ -72,7 +72,7 @@ def test_all_of_them_are_there():
             "spff2"))}
     maps = {"n": "trig", "h": "poly", "f": "ff"}
     for name, (potential, vector, sizes, first_known) in REAL.items():
-        ((p0, p1), q), kind = vector, name[4:]
+        ((p0, _), q), kind = vector, name[4:]
         assert maps[kind[2]] == potential.name                  # spnf: spiral mean, not ...
         assert (q, p0) == {"sp": (2513, 1432), "au": (3770, 377)}[kind[:2]]
         assert first_known == (kind in ("spnf1", "spff1")) and (not first_known

@@ -75,8 +75,10 @@ def test_potentials_are_the_thesis_s(potential):
             for i, e in enumerate(basis):
                 assert abs(gradient[k, i] - (moved(*e) - moved(*-e)) / (2 * h)) < 2e-14
                 for j, f in enumerate(basis):
-                    second = (moved(*(e + f)) - moved(*(e - f)) - moved(*(f - e)) + moved(*(-e - f)))
-                    # at a junction of cubics the difference is off by h times their third derivative
+                    second = (moved(*(e + f)) - moved(*(e - f)) - moved(*(f - e))
+                              + moved(*(-e - f)))
+                    # at a junction of cubics the difference is off by h times their third
+                    # derivative
                     assert abs(hessian[k, i, j] - second / (4 * h * h)) < 3e-9
 
 
@@ -105,7 +107,8 @@ def test_the_constants():
 
 @pytest.mark.parametrize("potential", POTENTIALS, ids=by)
 def test_bounds_of_the_second_derivative(potential):
-    """Curvature and lipschitz hold, and not by more than a factor of two, at random and on a grid."""
+    """Curvature and lipschitz hold, and not by more than a factor of two, at random and on a
+    grid."""
     rng = np.random.default_rng(2)
     n = potential.n
     grid = np.stack(np.meshgrid(*[np.arange(128) / 128] * n), -1).reshape(-1, n)
@@ -366,7 +369,8 @@ def test_formulas_say_what_v_is():
     (lambda: orbits.State(orbits.trig, (1, 1), 2, 0.1, "a", (0, 0)), "rows"),
     (lambda: orbits.State(orbits.trig, (1, 1), 2, 0.1, np.zeros((2, 2)) * 1j, (0, 0)), "rows"),
     (lambda: orbits.State(orbits.trig, (1, 1), 2, 0.1, np.zeros((2, 2)), (0, 0), -3), "searches"),
-    (lambda: orbits.prove(3), "a state is expected"), (lambda: orbits.flow(3), "a state is expected"),
+    (lambda: orbits.prove(3), "a state is expected"),
+    (lambda: orbits.flow(3), "a state is expected"),
     (lambda: orbits.newton(3), "a state is expected"),
     (lambda: orbits.enclosed_action(3), "a state is expected"),
     (lambda: orbits.gram_schmidt_exponents(3), "a state is expected"),
@@ -422,7 +426,8 @@ def dense(state):
 
 @pytest.mark.parametrize("potential, p, q, eps", [
     (orbits.trig, (5, 7), 9, 0.03), (orbits.trig, (1, 1), 2, 0.05), (orbits.ff, (1, 0), 1, 0.1),
-    (orbits.poly, (0, 1), 3, 0.03), (orbits.standard, (3,), 8, 0.9), (orbits.standard, (1,), 2, 2.0),
+    (orbits.poly, (0, 1), 3, 0.03), (orbits.standard, (3,), 8, 0.9),
+    (orbits.standard, (1,), 2, 2.0),
     (orbits.standard, (0,), 1, 1.0), (orbits.froeschle, (13, 8), 40, 0.2)], ids=str)
 def test_the_band_against_a_dense_matrix(potential, p, q, eps):
     rng = np.random.default_rng(q)
@@ -434,7 +439,8 @@ def test_the_band_against_a_dense_matrix(potential, p, q, eps):
         mu = rng.uniform(-1, 1)
         b, u = np.zeros((q, 2)), np.zeros((q, 2))
         b[:, :n] = rng.normal(size=(q, n))
-        negative = lib.cv_solve(n, q, address(state.blocks, "double(*)[3]"), mu, address(b), address(u))
+        negative = lib.cv_solve(n, q, address(state.blocks, "double(*)[3]"), mu, address(b),
+                                address(u))
         true = np.linalg.solve(matrix + mu * np.eye(n * q), b[:, :n].ravel()).reshape(q, n)
         away = 1 / np.abs(eigenvalues + mu).min()
         assert negative == (eigenvalues < -mu).sum()
@@ -464,7 +470,8 @@ def test_action_gradient_and_blocks_belong_together():
                            dense(state) @ direction.ravel(), atol=1e-6)
         # the map takes a point to the next but for the gradient
         following = state.momenta - 0.3 * potential.evaluate(state.x)[1]
-        assert np.allclose((state.x + following - np.roll(state.x, -1, 0) + 0.5) % 1, 0.5, atol=1e-13)
+        assert np.allclose((state.x + following - np.roll(state.x, -1, 0) + 0.5) % 1, 0.5,
+                           atol=1e-13)
         assert state.shadow == pytest.approx(np.linalg.norm(
             np.roll(state.momenta, -1, 0) - following, axis=1).max(), abs=1e-13)
         assert state.grad_size <= state.shadow <= np.sqrt(q) * state.grad_size * (1 + 1e-12)
@@ -535,8 +542,8 @@ def test_first_exponents_leave_zero_where_the_text_says():
 
 def test_the_standard_map():
     """377/987 at Greene's k_c: the minimizing orbit's residue is -0.2555; and at k = 1.001635 the
-    cantorus has its widest gap at x = 0 (thesis, sections 1.2, 2.1), as wide as a longer orbit says,
-    and its points lie on the circle in the order of a rotation's."""
+    cantorus has its widest gap at x = 0 (thesis, sections 1.2, 2.1), as wide as a longer orbit
+    says, and its points lie on the circle in the order of a rotation's."""
     critical, beyond = orbits.follow(orbits.standard, (377,), 987, [0.971635406, 1.001635])
     growth = 987 * critical.exponents[0]
     assert (2 - 2 * np.cosh(growth)) / 4 == pytest.approx(-0.2555, abs=2e-4)

@@ -133,7 +133,8 @@ def test_the_picture_of_what_is_proved(run, tmp_path, monkeypatch):
         shown.extend(states), planes(figure, states)))
     monkeypatch.setattr(figures, "_page", lambda width, height, kind, fill, *rest: (
         said.append(fill(Figure())), b"")[1])
-    status, out, _ = run("find", "standard", "1/3", "0.5", "0.9", "--prove", "-g", tmp_path / "x.svg")
+    status, out, _ = run("find", "standard", "1/3", "0.5", "0.9", "--prove", "-g",
+                         tmp_path / "x.svg")
     assert status == 0 and out.count("Proved, with") == 2
     proofs = [orbits.prove(s) for s in orbits.follow(orbits.standard, (1,), 3, [0.5, 0.9])]
     for proof, state in zip(proofs, shown):
@@ -288,7 +289,8 @@ def test_help_and_version(run):
         "x", "nan", "inf", "1e400", "1e9999999999", "1/0", "1:2", "1:2:3:4", "", "1_0")],
     (["find", "trig", SMALL, "1e6"], "too far to be followed"),
     (["find", "trig", SMALL, "1e6", "--search", "2"], "too far to be followed"),
-    (["sweep", "trig", "DIR/x.csv", "1e6", "--random", "1", "--sizes", "5:9"], "too far to be foll"),
+    (["sweep", "trig", "DIR/x.csv", "1e6", "--random", "1", "--sizes", "5:9"],
+     "too far to be foll"),
     (["find", "trig", "5,7/999999999", "0.01"], "from 1 to 10000000"),
     *[(["find", "trig", SMALL, bad], "range of no values") for bad in (
         "1:2:0", "2:1:0.1", "0:1:1e-9")],
@@ -365,7 +367,8 @@ def test_a_bad_potential(run, tmp_path, text, words):
 def test_what_is_missing_is_said(tmp_path, module, arguments):
     result = subprocess.run(
         [sys.executable, "-c", "import runpy, sys\nsys.modules[%r] = None\n"
-         "sys.argv[0] = 'x'\nrunpy.run_module('converse.commands.orbits', run_name='__main__')" % module,
+         "sys.argv[0] = 'x'\nrunpy.run_module('converse.commands.orbits', run_name='__main__')" %
+         module,
          *arguments], cwd=tmp_path, capture_output=True, text=True, timeout=PATIENCE)
     assert (result.returncode, result.stdout) == (2, "") and one_line(result.stderr)
     assert module.split(".")[0] in result.stderr

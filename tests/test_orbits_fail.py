@@ -1,4 +1,5 @@
-"""Where the methods of the orbits fail (thesis, section 2.2 and Appendix A), and that they say so."""
+"""Where the methods of the orbits fail (thesis, section 2.2 and Appendix A), and that they say
+so."""
 
 import math
 import signal
@@ -36,7 +37,8 @@ def test_gradient_flow_stops_far_from_the_orbit(eps, far):
     orbit = flowed.relax()
     assert orbit.label == "minimum" and moved(flowed, orbit) > far > 10 * flowed.shadow
     assert flowed.action == pytest.approx(orbit.action, abs=1e-7)       # which shows nothing
-    unfinished, steps = orbits.flow(orbits.straight(orbits.trig, (151, 200), 265), eps, max_steps=20)
+    unfinished, steps = orbits.flow(orbits.straight(orbits.trig, (151, 200), 265), eps,
+                                    max_steps=20)
     assert steps == 20 and unfinished.grad_size > 1e-6
 
 
@@ -62,8 +64,8 @@ def test_newton_without_damping_finds_saddles_or_nothing():
 
 
 def test_newton_at_the_start_of_poly():
-    """There two eigenvalues of the Hessian are 0, and many are negative once eps is not: the first steps
-    lead anywhere.  Points whose digits are gone are no state."""
+    """There two eigenvalues of the Hessian are 0, and many are negative once eps is not: the first
+    steps lead anywhere.  Points whose digits are gone are no state."""
     straight = orbits.straight(orbits.poly, (377, 2330), 3770)
     assert straight.undetermined == 2
     begun = orbits.State(orbits.poly, straight.p, straight.q, 0.0025, straight.u, straight.origin)
@@ -105,14 +107,14 @@ def test_phases_along_soft_directions_are_not_determined():
     state = orbits.follow(orbits.trig, *SPIRAL, [0.005])[0]
     other = orbits.straight(orbits.trig, *SPIRAL, (0.3, 0.1)).relax(0.0025).relax(0.005)
     apart = (state.x[:, None, :] - other.x[None, :200, :] + 0.5) % 1 - 0.5
-    assert np.sqrt((apart ** 2).sum(2)).min(0).max() > 1e-4            # no point lies on one of these
+    assert np.sqrt((apart ** 2).sum(2)).min(0).max() > 1e-4        # no point lies on one of these
     assert other.label == "minimum" and other.action == pytest.approx(state.action, abs=1e-15)
     assert orbits.follow(orbits.trig, *SPIRAL, [0.0125])[0].undetermined == 0
 
 
 def test_a_direction_so_flat_that_nothing_is_known():
-    """A saddle as flat as this is one if the gradient is zero; if not, the orbit may lie anywhere along
-    it, and what is said is that this direction is not determined."""
+    """A saddle as flat as this is one if the gradient is zero; if not, the orbit may lie anywhere
+    along it, and what is said is that this direction is not determined."""
     sure = orbits.State(orbits.standard, (0,), 1, 1e-9, [[0.0]], (0.0,))
     assert sure.label == "saddle" and sure.undetermined == 1
     flat = orbits.State(orbits.standard, (0,), 1, 1e-9, [[0.0]], (2e-3,))
@@ -138,8 +140,8 @@ def test_a_minimum_whose_copies_are_none():
 
 
 def test_soft_directions_that_turn():
-    """Why: three blocks soft along directions 60 degrees apart.  Once round, what came along the soft
-    direction returns with its sign changed, as period 3 forbids and period 6 allows."""
+    """Why: three blocks soft along directions 60 degrees apart.  Once round, what came along the
+    soft direction returns with its sign changed, as period 3 forbids and period 6 allows."""
     class Blocks:
         """V with gradient zero and the Hessian that makes beta_j at (j/3, j/3)."""
         def value(self, x):
@@ -163,8 +165,8 @@ def test_soft_directions_that_turn():
 
 
 def test_continuation_loses_the_minimum():
-    """Above eps 0.02 other phases lead lower than continuation from the maximum of V; both are minima,
-    and neither is called more.  At 0.01 all agree."""
+    """Above eps 0.02 other phases lead lower than continuation from the maximum of V; both are
+    minima, and neither is called more.  At 0.01 all agree."""
     rng = np.random.default_rng(6)
     gained = {}
     for eps in (0.01, 0.04):
@@ -198,7 +200,8 @@ def test_no_step_is_longer_than_a_tenth():
     wild, _ = orbits.newton(state, max_steps=1)
     assert abs(wild.u[0, 0] - 0.251) > 10
     how, u = ffi.new("cv_relaxed *"), np.array([[0.251, 0.0]])
-    assert lib.cv_relax(orbits.standard.native, 1, 0.5, address(np.zeros((1, 2))), address(u), 1e-13,
+    assert lib.cv_relax(orbits.standard.native, 1, 0.5, address(np.zeros((1, 2))), address(u),
+                        1e-13,
                         1, how) == lib.CV_RUNNING
     assert how.steps == 1 and u[0, 0] == pytest.approx(0.351, abs=1e-12)
     assert state.relax().x[0, 0] == pytest.approx(0.5, abs=1e-12)
@@ -206,7 +209,8 @@ def test_no_step_is_longer_than_a_tenth():
 
 def test_no_state_is_said():
     state = orbits.straight(orbits.trig, (5, 7), 9)
-    with pytest.raises(converse.ConverseError, match=r"type \(5, 7\)/9 found at eps 0.03: .* 1 steps"):
+    with pytest.raises(converse.ConverseError,
+                       match=r"type \(5, 7\)/9 found at eps 0.03: .* 1 steps"):
         state.relax(0.03, max_steps=1)
     with pytest.raises(converse.ConverseError, match="0 steps"):
         state.relax(0.03, max_steps=0)
@@ -232,8 +236,10 @@ def carried(state, digits):
 
 
 @pytest.mark.parametrize("potential, p, q, eps", [
-    (orbits.standard, (0,), 1, 0.5), (orbits.standard, (1,), 2, 0.7), (orbits.standard, (3,), 8, 1.2),
-    (orbits.standard, (34,), 89, 1.5), (orbits.trig, (1, 1), 1, 0.02), (orbits.trig, (1, 1), 2, 0.03),
+    (orbits.standard, (0,), 1, 0.5), (orbits.standard, (1,), 2, 0.7),
+    (orbits.standard, (3,), 8, 1.2),
+    (orbits.standard, (34,), 89, 1.5), (orbits.trig, (1, 1), 1, 0.02),
+    (orbits.trig, (1, 1), 2, 0.03),
     (orbits.trig, (1, 2), 3, 0.03), (orbits.trig, (5, 7), 9, 0.05), (orbits.ff, (12, 16), 21, 0.02),
     (orbits.poly, (7, 9), 12, 0.03), (orbits.froeschle, (3, 4), 5, 0.04)], ids=str)
 def test_exponents_against_many_digits(potential, p, q, eps):
@@ -270,17 +276,20 @@ def test_exponents_of_1989_are_wrong_by_log_q_over_q():
     assert (0 <= state.exponents).all() and (state.exponents < 1e-5).all()
     assert all(orbits_cli._exponent(state, x) == "below 1e-05" for x in state.exponents)
     free = orbits.State(orbits.trig, (1, 1), 3, 0.0, np.zeros((3, 2)), (0.0, 0.0))
-    assert (free.exponents < 1e-5).all() and (orbits.gram_schmidt_exponents(free, 1000) < 3e-3).all()
+    assert (free.exponents < 1e-5).all()
+    assert (orbits.gram_schmidt_exponents(free, 1000) < 3e-3).all()
 
 
 # ---- the prelude, and the standard map
 
 @pytest.mark.parametrize("potential, numbers", [
     (orbits.trig, (0.0385586, 0.0377680, 0.025179)), (orbits.poly, (1 / 24, 1 / 48, 0.010545)),
-    (orbits.ff, (1 / 30, 1 / 30, 0.020962)), (orbits.froeschle, (2 / 49.3480, 2 / 49.3480, 0.025487)),
+    (orbits.ff, (1 / 30, 1 / 30, 0.020962)),
+    (orbits.froeschle, (2 / 49.3480, 2 / 49.3480, 0.025487)),
     (orbits.standard, (2, 2, 4 / 3))], ids=str)
 def test_prelude(potential, numbers):
-    """The thesis's two eps_c; above the second and the third no state and no torus goes everywhere."""
+    """The thesis's two eps_c; above the second and the third no state and no torus goes
+    everywhere."""
     found = orbits.prelude(potential)
     assert found[:2] == pytest.approx(numbers[:2], abs=1e-7)
     assert found.graphs == pytest.approx(numbers[2], abs=6e-7)
@@ -288,8 +297,8 @@ def test_prelude(potential, numbers):
 
 
 def test_prelude_is_the_other_method_s_first_step():
-    """Without a single cut the Loewner criterion proves what the prelude says, and bounds 2 - eps V''
-    by the same number."""
+    """Without a single cut the Loewner criterion proves what the prelude says, and bounds 2 - eps
+    V'' by the same number."""
     bound = orbits.prelude(orbits.trig).graphs
     for eps, proved in ((1.004 * bound, True), (0.9996 * bound, False)):
         a, b, c = (repr(x) for x in orbits.parameters(eps))
@@ -301,8 +310,8 @@ def test_prelude_is_the_other_method_s_first_step():
 
 
 def test_greene_s_residues():
-    """377/987 at k_c: R = (2 - trace DF^q)/4 is -0.2555 for the minimizing orbit and +0.2501 for the
-    minimax one, a saddle, which Newton finds half-way between the points of the other."""
+    """377/987 at k_c: R = (2 - trace DF^q)/4 is -0.2555 for the minimizing orbit and +0.2501 for
+    the minimax one, a saddle, which Newton finds half-way between the points of the other."""
     least = orbits.follow(orbits.standard, (377,), 987, [0.971635406])[0]
     order = np.argsort(least.x[:, 0])
     after = np.roll(order, -1)
@@ -372,7 +381,8 @@ class Source:
 
     def ask(self, k, x):
         answer = orbits.ff.evaluate(x)[k]
-        return answer if ("value", "gradient", "hessian")[k] != self.method else self.instead(answer)
+        asked = ("value", "gradient", "hessian")[k]
+        return answer if asked != self.method else self.instead(answer)
 
     def value(self, x):
         return self.ask(0, x)
@@ -392,8 +402,10 @@ def raising(error):
 
 @pytest.mark.parametrize("method", ["value", "gradient", "hessian"])
 @pytest.mark.parametrize("instead, error, word", [
-    (raising(KeyError("mine")), KeyError, "mine"), (raising(KeyboardInterrupt()), KeyboardInterrupt, "^$"),
-    (lambda answer: answer[:1], ValueError, "not an array"), (lambda answer: 0.0, ValueError, "finite"),
+    (raising(KeyError("mine")), KeyError, "mine"),
+    (raising(KeyboardInterrupt()), KeyboardInterrupt, "^$"),
+    (lambda answer: answer[:1], ValueError, "not an array"),
+    (lambda answer: 0.0, ValueError, "finite"),
     (lambda answer: answer[0], ValueError, "potential mine"), (lambda answer: "x", ValueError, "x"),
     (lambda answer: answer * np.nan, ValueError, "finite numbers"),
     (lambda answer: answer / 0.0, ValueError, "finite numbers"),
@@ -429,7 +441,8 @@ def test_ctrl_c_ends_a_long_search(monkeypatch):
 
     monkeypatch.setattr(orbits.state, "lib", Core())
     rng = np.random.default_rng(7)
-    state = orbits.State(orbits.trig, (0, 0), 30000, 0.04, rng.uniform(-0.5, 0.5, (30000, 2)), (0, 0))
+    state = orbits.State(orbits.trig, (0, 0), 30000, 0.04, rng.uniform(-0.5, 0.5, (30000, 2)),
+                         (0, 0))
     with pytest.raises(KeyboardInterrupt):
         state.relax(tol=0.0)                    # never there
     assert len(asked) == 3 and max(asked) * state.q <= orbits.state.POINTS
@@ -458,8 +471,8 @@ def test_short_orbits():
 
 
 def test_the_action_of_a_long_orbit_keeps_its_digits():
-    """The search compares actions; sums of a hundred thousand terms, one after the other, would lose
-    what tells a step down from one up."""
+    """The search compares actions; sums of a hundred thousand terms, one after the other, would
+    lose what tells a step down from one up."""
     rng = np.random.default_rng(9)
     q = 100083
     state = orbits.State(orbits.trig, (57031, 75550), q, 0.025, rng.uniform(-0.1, 0.1, (q, 2)),

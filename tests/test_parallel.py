@@ -28,7 +28,8 @@ from truth import TORTURE
 def line(low, high):
     low, high = Fraction(low) * LINE, Fraction(high) * LINE
     c, h = (low + high) / 2, (high - low) / 2
-    return Problem.around((c, c, 2 * c, Fraction(1), Fraction(1)), (h, h, 2 * h, Fraction(1), Fraction(1)),
+    return Problem.around((c, c, 2 * c, Fraction(1), Fraction(1)),
+                          (h, h, 2 * h, Fraction(1), Fraction(1)),
                    together=True)
 
 
@@ -45,7 +46,8 @@ def early(monkeypatch):
 @pytest.fixture
 def divided(monkeypatch):
     """Divides the work from the beginning, however long the search took to set up."""
-    monkeypatch.setattr(tree_search.TreeSearch, "alone_until", property(lambda self: 0.0, lambda *_: None),
+    monkeypatch.setattr(tree_search.TreeSearch, "alone_until",
+                        property(lambda self: 0.0, lambda *_: None),
                         raising=False)
 
 
@@ -84,7 +86,8 @@ def test_the_method_of_the_thesis_too():
 @pytest.mark.parametrize("stubborn", [False, True])
 def test_undecided_prisms(stubborn):
     problem = line("0.0100", "0.0280")
-    alone, many = (timeless(prove(problem, depth=13, stubborn=stubborn, method="loewner", jobs=jobs))
+    alone, many = (timeless(prove(problem, depth=13, stubborn=stubborn, method="loewner",
+                                  jobs=jobs))
                    for jobs in (1, 3))
     assert alone.undecided and alone.tree == many.tree
     if stubborn:                            # else some worked on what became of no use
@@ -162,7 +165,8 @@ class Inline(concurrent.futures.Executor):
 @pytest.mark.parametrize("error, depth", [(KeyboardInterrupt, 120), (MemoryError, 120),
                                           (KeyboardInterrupt, 15), (MemoryError, 15)])
 def test_interrupted_anywhere(error, depth, tmp_path, monkeypatch):
-    """Whatever line of the bookkeeping an exception strikes, what was saved leads to the same tree."""
+    """Whatever line of the bookkeeping an exception strikes, what was saved leads to the same
+    tree."""
     monkeypatch.setattr(tree_search, "TASK_SECONDS", 0.001)
     monkeypatch.setattr(tree_search, "ALONE_SECONDS", 0.0)
     monkeypatch.setattr("converse.storage.backup.SECONDS", 0.005)
@@ -270,7 +274,8 @@ def test_dask_workers_that_join_later(proof, divided, ends, cluster):
 
 
 def test_dask_without_workers(proof, divided, cluster):
-    """They are waited for, which is said; a cluster that adapts starts one, since there is a task."""
+    """They are waited for, which is said; a cluster that adapts starts one, since there is a
+    task."""
     with cluster(0) as (made, client):
         made.adapt(minimum=0, maximum=1)
         with pytest.warns(RuntimeWarning, match="no workers; waiting"):
@@ -297,7 +302,8 @@ def test_dask_without_this_program(divided, cluster, monkeypatch):
     with cluster(1) as (_, client):
         executor = client.get_executor()
         monkeypatch.setattr(executor, "submit", None)
-        with pytest.raises(workers.WorkersGone, match="needs converse .* has none .*no_such_package"):
+        with pytest.raises(workers.WorkersGone,
+                           match="needs converse .* has none .*no_such_package"):
             prove(LONG, method="loewner", executor=executor)
 
 
@@ -320,8 +326,10 @@ sys.exit(main())
 """
     with contextlib.ExitStack() as stack:
         def start(*arguments):
-            process = subprocess.Popen([sys.executable, "-m", *arguments, "--no-dashboard"], text=True,
-                                       cwd=tmp_path, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
+            process = subprocess.Popen([sys.executable, "-m", *arguments, "--no-dashboard"],
+                                       text=True,
+                                       cwd=tmp_path, stdout=subprocess.DEVNULL,
+                                       stderr=subprocess.PIPE)
             stack.callback(process.kill)
             return process
 
@@ -331,11 +339,13 @@ sys.exit(main())
         start("distributed.cli.dask_worker", address, "--nworkers", "1", "--nthreads", "1")
         (tmp_path / "a.in").write_text(input_text(LONG))
         result = subprocess.run(
-            [sys.executable, "-c", code, str(scheduler.pid), "--dask", address, "--method", "loewner",
+            [sys.executable, "-c", code, str(scheduler.pid), "--dask", address, "--method",
+             "loewner",
              "--together", "-b", "a.proof", "a.in"], cwd=tmp_path, capture_output=True, text=True,
             timeout=PATIENCE)
     assert distributed and result.returncode == 2
-    assert result.stderr.endswith("converse: the Dask scheduler is gone; continue with -r a.proof\n")
+    assert result.stderr.endswith("converse: the Dask scheduler is gone; continue with -r "
+                                  "a.proof\n")
     assert all(line.startswith("converse: ") for line in result.stderr.splitlines())
     half = Proof.load(tmp_path / "a.proof")
     assert half.tree and not half.no_tori
@@ -350,7 +360,8 @@ def input_text(problem):
 def test_dask_loses_a_worker(proof, tmp_path, divided):
     distributed = pytest.importorskip("distributed")
     with distributed.LocalCluster(n_workers=3, threads_per_worker=1, processes=True,
-                                  dashboard_address=None, local_directory=str(tmp_path)) as cluster, \
+                                  dashboard_address=None,
+                                  local_directory=str(tmp_path)) as cluster, \
             distributed.Client(cluster, timeout=PATIENCE) as client:
         pid = next(iter(client.run(os.getpid).values()))
         executor, submitted = client.get_executor(), []
@@ -372,16 +383,19 @@ with_mpi = pytest.mark.skipif(not shutil.which("mpiexec"), reason="there is no M
 
 
 @with_mpi
-@pytest.mark.parametrize("module, command", [("commands.prove", "converse"), ("commands.map", "converse-map")])
+@pytest.mark.parametrize("module, command",
+                         [("commands.prove", "converse"), ("commands.map", "converse-map")])
 def test_mpi_processes_that_would_all_do_the_same(tmp_path, module, command):
     pytest.importorskip("mpi4py")
     arguments = ["--plane", "c=0", "m.json"] if module == "commands.map" else []
-    result = subprocess.run(["mpiexec", "-n", "2", sys.executable, "-m", "converse." + module, "--mpi",
+    result = subprocess.run(["mpiexec", "-n", "2", sys.executable, "-m", "converse." + module,
+                             "--mpi",
                              *arguments], cwd=tmp_path, env=MPI, timeout=PATIENCE, text=True,
                             input="0.32 0\n0.32 0\n0.64 0\n1 1\n1 1\n", capture_output=True)
     assert (result.returncode, result.stdout) == (2, "")
     said = [line for line in result.stderr.splitlines() if line.startswith(command + ": ")]
-    assert len(said) == 1 and "mpiexec -n 2 python -m mpi4py.futures -m converse." + module in said[0]
+    assert len(said) == 1
+    assert "mpiexec -n 2 python -m mpi4py.futures -m converse." + module in said[0]
     assert not list(tmp_path.iterdir())
 
 
@@ -389,7 +403,8 @@ def test_mpi_processes_that_would_all_do_the_same(tmp_path, module, command):
 def test_mpi(proof, tmp_path):
     pytest.importorskip("mpi4py")
     (tmp_path / "a.in").write_text(input_text(LONG))
-    command = ["converse.commands.prove", "--mpi", "--method", "loewner", "--together", "-b", "a.proof", "a.in"]
+    command = ["converse.commands.prove", "--mpi", "--method", "loewner", "--together", "-b",
+               "a.proof", "a.in"]
     subprocess.run(["mpiexec", "-n", "3", sys.executable, "-m", "mpi4py.futures", "-m", *command],
                    cwd=tmp_path, env=MPI, check=True, timeout=PATIENCE, stdout=subprocess.DEVNULL)
     assert timeless(Proof.load(tmp_path / "a.proof")) == replace(
@@ -417,7 +432,8 @@ class Late(Inline):
 
 @pytest.mark.parametrize("jobs", [2, 5])
 def test_an_undecided_prism_before_finished_ones(tmp_path, monkeypatch, divided, jobs):
-    """A search that is not stubborn ends at the first; what others did beyond it is of no account."""
+    """A search that is not stubborn ends at the first; what others did beyond it is of no
+    account."""
     monkeypatch.setattr(tree_search, "MANY", 40)
     executor = Late()
     monkeypatch.setattr(concurrent.futures, "wait", executor.wait)
@@ -429,7 +445,8 @@ def test_an_undecided_prism_before_finished_ones(tmp_path, monkeypatch, divided,
     assert many.tree == alone.tree and "Undecided prisms : 1\n" in many.report()
     for kind in "cuts", "proved", "symmetric", "undecided":
         assert getattr(many.counts, kind) == getattr(alone.counts, kind)
-    deeper = prove(resume=path, depth=120, executor=executor, jobs=jobs)    # and it can be continued
+    deeper = prove(resume=path, depth=120, executor=executor,
+                   jobs=jobs)    # and it can be continued
     assert deeper.no_tori and deeper.counts.undecided == 0
     assert deeper.counts.proved == deeper.tree.count("P") and deeper.verify()
 
@@ -446,7 +463,8 @@ def test_continuing_less_stubbornly_is_refused(tmp_path):
 
 
 def test_what_comes_late_is_kept(tmp_path, monkeypatch, divided, ends):
-    """At the time limit the workers are waited for a little, and what they bring is in the backup."""
+    """At the time limit the workers are waited for a little, and what they bring is in the
+    backup."""
     class Slow(concurrent.futures.ThreadPoolExecutor):
         def submit(self, work, *args):
             def slowly():
@@ -475,7 +493,8 @@ def test_what_is_examined_never_falls(divided, ends, stubborn):
     half = prove(line("0.0130", "0.0280"), method="loewner", jobs=3, depth=22, stubborn=stubborn,
                  progress=lambda examined, _: seen.append(examined))
     assert seen == sorted(seen) and seen[0] == 0 and 0 < seen[-1] < 1
-    volume = sum(0.5 ** sum(cuts) for kind, (_, cuts) in tree.cells(half.tree) if kind != tree.UNTRIED)
+    volume = sum(0.5 ** sum(cuts) for kind, (_, cuts) in tree.cells(half.tree)
+                 if kind != tree.UNTRIED)
     assert seen[-1] == pytest.approx(volume, rel=1e-12) or not stubborn and volume < seen[-1]
 
 
@@ -492,11 +511,13 @@ def test_what_lies_beyond_an_undecided_prism_is_not_its_own():
 
 
 def test_many_gaps_cost_little(monkeypatch):
-    """Thousands of prisms that were given up are tried again without a look at all of them for each."""
+    """Thousands of prisms that were given up are tried again without a look at all of them for
+    each."""
     shallow = prove(line("0.0130", "0.0280"), method="loewner", depth=16, stubborn=True)
     assert shallow.tree.count("U") > 2000
     monkeypatch.setattr(run, "LOOK_SECONDS", PATIENCE)      # however slowly it goes on
     looks, merge = [], tree_search.TreeSearch._merge
-    monkeypatch.setattr(tree_search.TreeSearch, "_merge", lambda self: (looks.append(self), merge(self)))
+    monkeypatch.setattr(tree_search.TreeSearch, "_merge",
+                        lambda self: (looks.append(self), merge(self)))
     assert prove(resume=shallow, depth=17, jobs=2).counts.cuts > shallow.counts.cuts
     assert len(looks) < 300

@@ -179,7 +179,7 @@ def test_the_core_refuses_what_no_problem_can_say(text, monkeypatch):
         return given(text if len(told) - 1 == wrong else number, owners)
 
     monkeypatch.setattr(native, "native_text", told_instead)
-    for wrong in range(19):             # of three waves the phase, the amplitude, three parts; v0, v1
+    for wrong in range(19):         # of three waves the phase, the amplitude, three parts; v0, v1
         told.clear()
         with pytest.raises(ConverseError, match="malformed or out of range|no sense"):
             prove(Problem(1, 1, 1))
@@ -216,14 +216,17 @@ def test_ranges_are_patches():
 
 
 @pytest.mark.parametrize("parts", [
-    [["0.01", "-0.02", 0]], [["-0.01", 0, 0], [0, 0, 0], [0, 0, 0]], [["0.01", 0, 0], [0, "0.02", 0]],
-    [["0.01", "0.01", 0], [0, "0.02", 0], [0, 0, "0.02"]], [[0, "0.01", 0], ["0.02", 0, 0], [0, 0, 1]]])
+    [["0.01", "-0.02", 0]], [["-0.01", 0, 0], [0, 0, 0], [0, 0, 0]],
+    [["0.01", 0, 0], [0, "0.02", 0]],
+    [["0.01", "0.01", 0], [0, "0.02", 0], [0, 0, "0.02"]],
+    [[0, "0.01", 0], ["0.02", 0, 0], [0, 0, 1]]])
 def test_other_patches_are_not_ranges(parts):
     problem = Problem.patch(["0.4", "0.3", "0.2"], parts)
     assert (problem.a, problem.b, problem.c, problem.together) == (None,) * 3 + (False,)
     assert problem.amplitude == tuple(map(Fraction, ("0.4", "0.3", "0.2")))
     assert problem.parts == tuple(tuple(map(Fraction, part)) for part in parts)
-    assert problem.half[:3] == tuple(sum(abs(Fraction(x)) for x in column) for column in zip(*parts))
+    assert problem.half[:3] == tuple(sum(abs(Fraction(x)) for x in column)
+                                     for column in zip(*parts))
     assert replace(problem) == problem and hash(replace(problem)) == hash(problem)
     assert replace(problem, v0=(0, 1)).v0 == (0, 1) and problem != Problem("0.4", "0.3", "0.2")
     assert repr(problem).startswith("Problem.patch(0.") and repr(problem).count(" of (") == 3
@@ -245,7 +248,8 @@ WAVE = {"amplitude": [1], "waves": [(1, 0)]}
     ({"amplitude": [1, 1]}, ValueError, "2 numbers for 3 waves"),
     ({"amplitude": [1, 1, "1/3"]}, ValueError, "wave 3: 1/3 is no finite decimal"),
     ({"amplitude": [0.1, 1, 1]}, TypeError, "wave 1: 0.1 is not an exact number"),
-    ({"amplitude": 5}, TypeError, "sequences"), ({"amplitude": [1] * 3, "parts": [5]}, TypeError, "seq"),
+    ({"amplitude": 5}, TypeError, "sequences"),
+    ({"amplitude": [1] * 3, "parts": [5]}, TypeError, "seq"),
     ({"amplitude": [1] * 3, "parts": [[1, 1]]}, ValueError, "part 1 has 2 numbers"),
     ({"amplitude": [1] * 3, "parts": [[1, 1, "x"]]}, ValueError, "part 1 of wave 3: 'x' is not"),
     ({"amplitude": [1] * 3, "parts": [[1, 1, 1]] * 4}, ValueError, "4 parameters; give 3"),
@@ -280,7 +284,8 @@ def test_a_patch_has_no_ranges():
             replace(problem, **wrong)
 
 
-@given(st.lists(st.tuples(st.integers(-4, 4), st.integers(-4, 4), st.fractions(-2, 2, max_denominator=4))
+@given(st.lists(st.tuples(st.integers(-4, 4), st.integers(-4, 4),
+                          st.fractions(-2, 2, max_denominator=4))
                 .filter(lambda wave: wave[:2] != (0, 0)), min_size=1, max_size=4,
                 unique_by=lambda wave: (*wave[:2], wave[2] % 2)))
 def test_odd_about_a_point(waves):
@@ -296,17 +301,19 @@ def test_odd_about_a_point(waves):
     for (p0, p1, p), (q0, q1, q) in itertools.combinations(waves, 2):
         size = p0 * q1 - p1 * q0
         if size:
-            assert not any(odd(((q1 * (i - p) - p1 * (j - q)) / size, (p0 * (j - q) - q0 * (i - p)) / size))
+            assert not any(odd(((q1 * (i - p) - p1 * (j - q)) / size,
+                                (p0 * (j - q) - q0 * (i - p)) / size))
                            for i in range(abs(size)) for j in range(abs(size)))
             return
-    k0, k1, phase = waves[0]                    # all are parallel: a line of points does as one does
+    k0, k1, phase = waves[0]                # all are parallel: a line of points does as one does
     assert not any(odd(((i - phase) / k0, Fraction(0)) if k0 else (Fraction(0), (i - phase) / k1))
                    for i in range(abs(k0 or k1) * 12))
 
 
 @pytest.mark.parametrize("waves, shifts", [
     ([(1, 0), (0, 1), (1, 1)], (0, 0)), ([(1, 0, "1/2"), (0, 1, "1/2")], ("1/2", "1/2")),
-    ([(1, 0, "1/2"), (0, 1, "1/2"), (1, 1, "1/2")], None), ([(2, 0, "1/3"), (4, 0, "2/3")], ("5/6", 0)),
+    ([(1, 0, "1/2"), (0, 1, "1/2"), (1, 1, "1/2")], None),
+    ([(2, 0, "1/3"), (4, 0, "2/3")], ("5/6", 0)),
     ([(1, 0), (2, 0, "1/2")], None), ([(1, -1, "1/2"), (1, 1)], ("3/4", "1/4"))])
 def test_what_is_odd(waves, shifts):
     odd = Problem.patch([1] * len(waves), waves=waves).odd
@@ -314,7 +321,8 @@ def test_what_is_odd(waves, shifts):
 
 
 @pytest.mark.parametrize("waves, frame", [
-    ([(1, 1)], (1, 0, -1, 1)), ([(1, -1)], (1, 0, 1, -1)), ([(-1, 1)], None), ([(2, -4), (-3, 6)], None),
+    ([(1, 1)], (1, 0, -1, 1)), ([(1, -1)], (1, 0, 1, -1)), ([(-1, 1)], None),
+    ([(2, -4), (-3, 6)], None),
     ([(5, 3), (-10, -6, "1/2")], None), ([(1, 0)], IDENTITY), ([(0, 3), (0, -1)], IDENTITY),
     ([(1, 1), (1, -1)], IDENTITY), (THESIS, IDENTITY)])
 def test_frames(waves, frame):
@@ -330,7 +338,8 @@ def test_frames(waves, frame):
 def test_frames_of_the_thesis():
     assert Problem(0, 0, ("0.4", "0.5")).frame == (1, 0, -1, 1)     # the standard map in y0 + y1
     assert Problem(0, 0, ("0.4", "0.5"), v0=(0, 1)).frame == IDENTITY      # x_1 as it was asked for
-    assert Problem(0, 0, 0).frame == Problem(1, 0, 0).frame == Problem("0.1", 0, 1).frame == IDENTITY
+    for problem in Problem(0, 0, 0), Problem(1, 0, 0), Problem("0.1", 0, 1):
+        assert problem.frame == IDENTITY
     plain = replace(Problem(0, 0, "0.5"), axes=IDENTITY)
     assert plain.frame == IDENTITY and plain != Problem(0, 0, "0.5")
     assert replace(plain, axes=(1, 0, -1, 1)) == Problem(0, 0, "0.5")       # what is chosen anyhow
@@ -339,7 +348,8 @@ def test_frames_of_the_thesis():
 @pytest.mark.parametrize("amplitude, waves, kept", [
     ((1, "0.9", 0), THESIS, 0), (("0.9", 1, 0), THESIS, 1), ((1, 1, 0), THESIS, 0),
     ((1, 1, "1e-9"), THESIS, None), ((1, 0, 0), THESIS, None), ((0, 0, 1), THESIS, None),
-    ((1, "0.3"), [(1, 0), (0, 2)], 1), ((1, "-2"), [(1, 0), (0, 1)], 1), ((1, 1), [(1, 0), (1, 1)], None)])
+    ((1, "0.3"), [(1, 0), (0, 2)], 1), ((1, "-2"), [(1, 0), (0, 1)], 1),
+    ((1, 1), [(1, 0), (1, 1)], None)])
 def test_a_coordinate_alone(amplitude, waves, kept):
     problem = Problem.patch(amplitude, waves=waves)
     assert problem.kept == kept

@@ -22,7 +22,7 @@ from converse.version import __version__
 
 from moments import PATIENCE
 
-NUMBERS = dict(ll_used=(3, 2, 1), reasons=(1, 2, 3, 4, 5, 6), quick_tries=7)
+NUMBERS = {"ll_used": (3, 2, 1), "reasons": (1, 2, 3, 4, 5, 6), "quick_tries": 7}
 
 
 @pytest.fixture(scope="session")
@@ -310,7 +310,8 @@ def test_zero_half_widths(tmp_path):
     point = Problem.around((Fraction("0.32"), Fraction("0.32"), Fraction("0.64"), Fraction(1),
                      Fraction(1)), (Fraction(0),) * 3 + (Fraction(1),) * 2)
     assert prove(point).no_tori
-    spot = Problem.around(point.centre[:3] + (Fraction("0.75"), Fraction("0.5")), (Fraction(0),) * 5)
+    spot = Problem.around(point.centre[:3] + (Fraction("0.75"), Fraction("0.5")),
+                          (Fraction(0),) * 5)
     result = prove(spot, depth=2)
     assert set(result.tree) <= set("01PSU")
     result.figure(tmp_path / "spot.ps")
@@ -460,12 +461,16 @@ def test_a_long_prism_obeys(problem, proof, monkeypatch):
 
 
 def test_the_work_left_is_estimated():
-    """Exactly, where cells of a kind fare alike; unseen kinds are taken for their like one deeper."""
+    """Exactly, where cells of a kind fare alike; unseen kinds are taken for their like one
+    deeper."""
     history = native.History()
     history.nodes = {(0, 0): 1, (1, 0): 2, (2, 0): 4, (2, 3): 4}
     history.cut = {(0, 0): 1, (1, 0): 2, (2, 3): 2}
     history.became = {(0, 0): 2, (0, 3): 1, (3, 3): 2}
-    cell = lambda cuts, hint: ((0,) * 5, (cuts, 0, 0, 0, 0), hint)
+
+    def cell(cuts, hint):
+        return (0,) * 5, (cuts, 0, 0, 0, 0), hint
+
     assert [native.lib.cv_class(n) for n in (0, 1, 2, 3, 4, 5, 6, 8, 12, 10 ** 9)] == [
         0, 0, 1, 2, 3, 3, 4, 5, 6, 15]
     for cells, expected in (([], 0), ([cell(9, 0)], 1), ([cell(2, 0)], 1), ([cell(2, 4)], 2),
@@ -491,7 +496,8 @@ def test_verify(proof, problem, made_up):
 
 @pytest.mark.parametrize("options, error", [
     ({"time_limit": float("nan")}, ValueError), ({"time_limit": -1}, ValueError),
-    ({"time_limit": "5"}, ValueError), ({"time_limit": None}, ValueError), ({"jobs": 0}, ValueError),
+    ({"time_limit": "5"}, ValueError), ({"time_limit": None}, ValueError),
+    ({"jobs": 0}, ValueError),
     ({"jobs": "2"}, ValueError), ({"jobs": 2.5}, ValueError), ({"executor": 5}, TypeError),
     ({"as_printed": "no"}, ValueError), ({"stubborn": 1}, ValueError), ({"method": 3}, ValueError),
     ({"digits": "35"}, ValueError), ({"depth": 3.0}, ValueError)])
@@ -512,7 +518,8 @@ def test_a_proof_of_nothing_can_be_shown(problem):
 
 
 def test_apart_is_not_together(root):
-    """The tree of a segment must not become a theorem about the box around it, nor the other way."""
+    """The tree of a segment must not become a theorem about the box around it, nor the other
+    way."""
     problem = read_input(root / "inputs" / "trig180.in")
     for together in True, False:
         half = prove(replace(problem, together=together), method="loewner", depth=8, stubborn=True)
@@ -552,10 +559,13 @@ def test_a_search_without_a_frame_is_continued_so(tmp_path):
 PATCHES = {
     "thesis": Problem(("0.4", "0.5"), "0.4", ("0.4", "0.5")),
     "segment": Problem.patch(["0.4", "0.4", "0.4"], [["0.01", "-0.01", 0]]),
-    "frame": Problem(0, 0, ("0.4", "0.5")), "no frame": replace(Problem(0, 0, "0.5"), axes=IDENTITY),
+    "frame": Problem(0, 0, ("0.4", "0.5")),
+    "no frame": replace(Problem(0, 0, "0.5"), axes=IDENTITY),
     "other frame": replace(Problem(0, 0, "0.5"), axes=(2, 1, -1, -1)),
-    "alone": Problem("0.5", ("0.3", "0.4"), 0), "both": replace(Problem("0.5", "0.3", 0), alone="no"),
-    "other alone": replace(Problem("0.5", "0.3", 0), alone=1), "part": Problem(1, 1, 1, v0=(0, "0.5")),
+    "alone": Problem("0.5", ("0.3", "0.4"), 0),
+    "both": replace(Problem("0.5", "0.3", 0), alone="no"),
+    "other alone": replace(Problem("0.5", "0.3", 0), alone=1),
+    "part": Problem(1, 1, 1, v0=(0, "0.5")),
     "waves": Problem.patch(["0.4", "-1e-30"], [["1e-9", 0], [0, "12.5"], ["7", "-7"]],
                            [(1, 0, "1/3"), (-7, 100, "-1/2")], v1=("0.25", "4/3"), comments="c"),
     "circle": Problem.patch(["0.4"] * 16, (), [(k, 0, "1/7") for k in range(1, 17)])}
@@ -592,7 +602,8 @@ def test_what_a_file_says(made_up, tmp_path):
     ("frame", "frame: 1 1 1 1"), ("frame", "frame: 1 0 0"), ("frame", "frame: one"), ("frame", ""),
     ("alone", "alone: 0"), ("alone", "alone: maybe"), ("alone", ""), ("odd about", ""),
     ("wave", "wave: 1 0 0 0.3"), ("wave", "wave: 0 0 0 0.3 0 0 0"), ("wave", "wave: 1 0"),
-    ("wave", "wave: 0 1 0 0.3 0 0 0"), ("wave", "wave: 1.5 0 0 0.3 0 0 0"), ("wave", "wave: 1 0 0 1/3 0 0 0"),
+    ("wave", "wave: 0 1 0 0.3 0 0 0"), ("wave", "wave: 1.5 0 0 0.3 0 0 0"),
+    ("wave", "wave: 1 0 0 1/3 0 0 0"),
     ("wave", "wave: 101 0 0 0.3 0 0 0"), ("wave", "wave: 1 0 x 0.3 0 0 0"), ("v0", "v0: 1 -1"),
     ("v0", "v0: 1"), ("v0", ""), ("at once", "at once: perhaps"), ("at once", "at once: upper end"),
     ("at once", "")])
@@ -644,8 +655,10 @@ def test_the_method_of_1989_takes_ranges_only():
 def test_a_point_of_ones_own(problem, tmp_path):
     point = Problem("0.45", "0.45", "0.45")
     for xstar in (("0.8", "0.95"), (Fraction(4, 5), Decimal("0.95"))):
-        proof = prove(point, method="loewner", xstar=xstar, backup=tmp_path / ("%s" % type(xstar[0])))
-        assert proof.no_tori and tuple(map(Fraction, proof.xstar)) == (Fraction("0.8"), Fraction("0.95"))
+        proof = prove(point, method="loewner", xstar=xstar,
+                      backup=tmp_path / ("%s" % type(xstar[0])))
+        assert proof.no_tori
+        assert tuple(map(Fraction, proof.xstar)) == (Fraction("0.8"), Fraction("0.95"))
     assert prove(point, method="loewner").xstar != proof.xstar
     assert prove(problem, xstar=(0, 2), depth=2).xstar == ("0", "2")
     half = prove(point, method="loewner", xstar=("0.8", "0.95"), depth=2)
@@ -658,7 +671,8 @@ def test_a_point_of_ones_own(problem, tmp_path):
 
 @pytest.mark.parametrize("xstar, error", [
     (5, ValueError), ("12", ValueError), ((1,), ValueError), ((1, 2, 3), ValueError),
-    ((1, 0.5), TypeError), ((1, None), TypeError), (("1", "x"), ValueError), (("1/3", 0), ValueError),
+    ((1, 0.5), TypeError), ((1, None), TypeError), (("1", "x"), ValueError),
+    (("1/3", 0), ValueError),
     (("1e400", 0), ValueError), (("nan", 0), ValueError)])
 def test_a_point_that_is_none(problem, xstar, error):
     with pytest.raises(error, match="xstar"):

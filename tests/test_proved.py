@@ -638,8 +638,10 @@ def test_bounds_of_the_potentials():
                 difference = [[b - a for a, b in zip(*rows)] for rows in zip(hx, hy)]
                 seen[0] = max(seen[0], norm(hx))
                 seen[1] = max(seen[1], norm(difference) / float(mpmath.sqrt(sum(b * b for b in d))))
-        assert seen[0] <= Fraction(ours.curvature) * (1 + Fraction(1, 10**9)) < 2 * Fraction(seen[0])
-        assert seen[1] <= Fraction(ours.lipschitz) * (1 + Fraction(1, 10**9)) < 3 * Fraction(seen[1])
+        assert seen[0] <= Fraction(ours.curvature) * (1
+                                                      + Fraction(1, 10**9)) < 2 * Fraction(seen[0])
+        assert seen[1] <= Fraction(ours.lipschitz) * (1
+                                                      + Fraction(1, 10**9)) < 3 * Fraction(seen[1])
 
 
 # ---- what is summed up, with so few places that roundings matter

@@ -22,7 +22,8 @@ needs_gcc = pytest.mark.skipif(not shutil.which("gcc"), reason="needs gcc")
 @needs_gcc
 @pytest.mark.parametrize("flag", ["-ffast-math", "-Ofast"])
 def test_a_fast_math_build_is_refused(flag):
-    result = subprocess.run(["gcc", "-std=c11", flag, "-Icsrc", "-c", "csrc/arith/machine.c", "-o", os.devnull],
+    result = subprocess.run(["gcc", "-std=c11", flag, "-Icsrc", "-c", "csrc/arith/machine.c", "-o",
+                             os.devnull],
                             cwd=ROOT, capture_output=True, text=True)
     assert result.returncode != 0
     assert "rules of rigor" in result.stderr
@@ -89,7 +90,10 @@ def test_a_machine_spoilt_in_mid_run_is_noticed(shim, root, method):
     lib = ctypes.CDLL(str(shim))
     search = Search(Task(converse.read_input(root / "inputs" / "trig278.in"), Settings(method)))
     assert search.prepare(None)
-    grow = lambda: search.grow([(*WHOLE, 0)], math.inf, 2 ** 30, None, False).text
+
+    def grow():
+        return search.grow([(*WHOLE, 0)], math.inf, 2 ** 30, None, False).text
+
     good = grow()
     for which in (1, 2, 3):
         lib.direction(which)
@@ -113,7 +117,8 @@ else:
 
 
 @needs_gcc
-@pytest.mark.skipif("fma" not in Path("/proc/cpuinfo").read_text() if os.path.exists("/proc/cpuinfo")
+@pytest.mark.skipif("fma" not in Path("/proc/cpuinfo").read_text()
+                    if os.path.exists("/proc/cpuinfo")
                     else True, reason="needs a processor with fused operations")
 @pytest.mark.skipif("libasan" in os.environ.get("LD_PRELOAD", ""), reason="another build")
 def test_a_core_that_fuses_is_refused(tmp_path):
@@ -141,7 +146,13 @@ static _Thread_local long left = -1;        /* allocations until all fail; -1: n
 static _Thread_local int failed;
 void fail_after(long n) { left = n; failed = 0; }
 int has_failed(void) { left = -1; return failed; }
-static int fails(void) { if (left < 0) return 0; if (left > 0) { left--; return 0; } failed = 1; return 1; }
+static int fails(void)
+{
+    if (left < 0) return 0;
+    if (left > 0) { left--; return 0; }
+    failed = 1;
+    return 1;
+}
 extern void *__libc_malloc(size_t), *__libc_calloc(size_t, size_t), *__libc_realloc(void *, size_t);
 void *malloc(size_t n) { return fails() ? NULL : __libc_malloc(n); }
 void *calloc(size_t n, size_t m) { return fails() ? NULL : __libc_calloc(n, m); }

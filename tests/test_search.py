@@ -27,7 +27,8 @@ FULL = (("1", "1"), ("1", "1"))
 def problem(a, b, c, v=FULL):
     """(centre, half) pairs of decimal strings."""
     pairs = [a, b, c, *v]
-    return Problem.around(tuple(Fraction(x) for x, _ in pairs), tuple(Fraction(x) for _, x in pairs), ())
+    return Problem.around(tuple(Fraction(x) for x, _ in pairs),
+                          tuple(Fraction(x) for _, x in pairs), ())
 
 
 def line(epsilon, width="0"):
@@ -258,7 +259,8 @@ def test_a_tree_that_is_taken_up(root):
 
     search = core_search()
     handle, step = search.handle, lambda: lib.cv_step(search.handle, 100, 1.0, ffi.NULL)
-    for text, status, pending in (("P", lib.CV_OK, 0), ("0PU", lib.CV_OK, 0), ("0SP", lib.CV_OK, -1),
+    for text, status, pending in (("P", lib.CV_OK, 0), ("0PU", lib.CV_OK, 0),
+                                  ("0SP", lib.CV_OK, -1),
                                   ("0P", lib.CV_OK, 1), ("0??", lib.CV_OK, 2), ("PP", -3, -1),
                                   ("2PP", -3, -1), ("x", -3, -1), ("0P\0", -3, -1)):
         found = lib.cv_resume(handle, text.encode(), len(text))
@@ -298,7 +300,7 @@ def test_stopped_in_the_middle_of_a_prism():
     from converse.prover.native import Stop
     from converse.prover.tree import ROOT as WHOLE
 
-    for digits in 3000, 12000, 48000, 192000:       # where the stop is late a prism must take longer
+    for digits in 3000, 12000, 48000, 192000:       # where the stop is late a prism takes longer
         search, cells, text, counts, stops = core_search(digits=digits), [(*WHOLE, 0)], "", [], 0
         whole = core_search(digits=digits).grow(cells, math.inf, 12, None, False)
         delay = 0.002
@@ -334,7 +336,8 @@ def test_a_locale_with_a_comma(tmp_path):
     """As a graphical toolkit may set it; the test makes one, since few machines have it."""
     if not shutil.which("localedef"):
         pytest.skip("needs localedef")
-    made = subprocess.run(["localedef", "-i", "de_DE", "-f", "UTF-8", str(tmp_path / "de_DE.UTF-8")],
+    made = subprocess.run(["localedef", "-i", "de_DE", "-f", "UTF-8",
+                           str(tmp_path / "de_DE.UTF-8")],
                           capture_output=True, check=False)
     code = ("import locale; locale.setlocale(locale.LC_ALL, 'de_DE.UTF-8'); import converse; "
             "assert locale.localeconv()['decimal_point'] == ','; "

@@ -12,7 +12,6 @@ from hypothesis import strategies as st
 
 import kernels
 
-
 if hasattr(sys, "set_int_max_str_digits"):
     sys.set_int_max_str_digits(0)
 

@@ -1,4 +1,5 @@
-"""Where orbits start, method Loewner: the choice of x*, and that no proof depends on luck with it."""
+"""Where orbits start, method Loewner: the choice of x*, and that no proof depends on luck with
+it."""
 
 import math
 from decimal import Decimal
@@ -60,14 +61,16 @@ def test_points_near_the_frontier_are_proved(parameters):
     assert decide(parameters)[2]
 
 
-@pytest.mark.parametrize("parameters", [("0", "0", "0"), ("1e-9", "0", "0"), ("1e300", "1e300", "0"),
+@pytest.mark.parametrize("parameters",
+                         [("0", "0", "0"), ("1e-9", "0", "0"), ("1e300", "1e300", "0"),
                                         ("0.01", "0.01", "0.01"), ("5", "1", "3")])
 def test_there_is_always_a_choice(parameters):
     assert all(map(math.isfinite, chosen(*parameters)))
 
 
-# Far beyond the frontier: with these x* they took 10^5 tries or were cut as often as can be, because
-# one of two contradictions of each orbit was next to nothing, or an end of it could not go on.
+# Far beyond the frontier: with these x* they took 10^5 tries or were cut as often as can be,
+# because one of two contradictions of each orbit was next to nothing, or an end of it could not go
+# on.
 CUT_FOR_EVER = [
     ((("1.1528125", "1.158125"), "0", ("0.05046875", "0.053125")), ("1.570796", "0"), 1000),
     ((("1.1528125", "1.158125"), "0", ("0.05046875", "0.053125")), ("1.5", "0.1"), 1000),
@@ -88,11 +91,12 @@ def polar(a, b, c, r, s):
     (r0, r1), (s0, s1) = (tuple(map(Fraction, ends)) for ends in (r, s))
     r, s = (r0 + r1) / 2, (s0 + s1) / 2
     return Problem.patch([r * a, r * b, r * s * c],
-                         [[(r1 - r0) / 2 * x for x in (a, b, s * c)], [0, 0, r1 * (s1 - s0) / 2 * c]])
+                         [[(r1 - r0) / 2 * x for x in (a, b, s * c)],
+                          [0, 0, r1 * (s1 - s0) / 2 * c]])
 
 
-# A wave that is next to nothing ended orbits, since nobody knew the angle that feels it; or the angle
-# that made the ends too wide was never cut.
+# A wave that is next to nothing ended orbits, since nobody knew the angle that feels it; or the
+# angle that made the ends too wide was never cut.
 CUT_FOR_EVER += [
     (polar(1, 0, 1, ("1.1875", "1.1953125"), (0, "0.00390625")), xstar, 1000)
     for xstar in (("1.570796", "0"), ("1.570796", "1.570796"), ("1.6", "0.5"), ("1.5", "3"))] + [

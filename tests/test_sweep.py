@@ -238,7 +238,8 @@ def test_the_file_of_another_potential_of_this_name_is_refused(path):
     orbits.sweep(orbits.Fourier(waves[0], "mine"), [((1,), 3)], EPS, file=path)
     data = path.read_bytes()
     for other in orbits.Fourier(waves[1], "mine"), orbits.Fourier(waves[0], "mine", (0.4,)):
-        with pytest.raises(ConverseError, match="its line 2 was changed, or found with another pot"):
+        with pytest.raises(ConverseError,
+                           match="its line 2 was changed, or found with another pot"):
             orbits.sweep(other, [((1,), 3)], EPS, file=path)
     assert path.read_bytes() == data
 

@@ -1,5 +1,5 @@
-"""The type hints: nothing in the package contradicts them, and who uses it under the strictest rules, as
-the examples of the pages do, sees none missing."""
+"""The type hints: nothing in the package contradicts them, and who uses it under the strictest
+rules, as the examples of the pages do, sees none missing."""
 
 import re
 
@@ -13,7 +13,8 @@ pytestmark = not_sanitized
 def checked(root, *arguments):
     """The complaints of mypy."""
     out, err, _ = api.run(["--config-file", str(root / "pyproject.toml"), "--cache-dir",
-                           str(root / "build" / "mypy"), "--no-error-summary", *map(str, arguments)])
+                           str(root / "build" / "mypy"), "--no-error-summary",
+                           *map(str, arguments)])
     return out + err
 
 
@@ -23,8 +24,9 @@ def test_the_package(root, monkeypatch):
 
 
 def test_examples(root, tmp_path, monkeypatch):
-    """Those of the pages are right under the strictest rules; and a wrong one is seen: what is given to
-    Problem may be a string, and becomes two Fractions.  (One run for all: a run takes long.)"""
+    """Those of the pages are right under the strictest rules; and a wrong one is seen: what is
+    given to Problem may be a string, and becomes two Fractions.  (One run for all: a run takes
+    long.)"""
     monkeypatch.chdir(root)
     examples = []
     for page in "README.md", "docs/python.md", "docs/orbits.md":

@@ -1,5 +1,5 @@
-"""The checker that Coq has proved, as a command: what is not proved of it is how it reads, divides the
-work and speaks.  All this is compared with converse-check.  (make verified-check builds it.)"""
+"""The checker that Coq has proved, as a command: what is not proved of it is how it reads, divides
+the work and speaks.  All this is compared with converse-check.  (make verified-check builds it.)"""
 
 import gzip
 import hashlib
@@ -45,7 +45,8 @@ def texts(tmp_path_factory):
     """Proof files with one parameter, with three, with none, of other potentials, and of a part."""
     inputs = {name: (read_input(ROOT / "inputs" / name), together) for name, together in (
         ("trig278.in", True), ("trig180.in", True), ("trig276.in", False),
-        ("standard-63-64.in", False), ("standard-972.in", False), *((name, False) for name in GENERAL))}
+        ("standard-63-64.in", False), ("standard-972.in", False),
+        *((name, False) for name in GENERAL))}
     inputs["point"] = Problem(a="0.31", b="0.31", c="0.62"), False
     inputs["part"] = Problem.around(("0.3085", "0.3085", "0.617", "0.4", "1.3"),
                                     ("0.00125", "0.00125", "0.0025", "0.2", "0.1")), False
@@ -66,11 +67,13 @@ def sealed(text):
 
 
 def with_field(text, name, value):
-    return sealed(re.sub("(?m)^%s: .*$" % re.escape(name), lambda _: name + ": " + value, text, 1))
+    return sealed(re.sub("(?m)^%s: .*$" % re.escape(name), lambda _: name + ": " + value, text,
+                         count=1))
 
 
 def with_tree(text, tree):
-    return sealed(text[:text.index("\ntree:\n") + 7] + tree + "\n" + text[text.rindex("checksum: "):])
+    return sealed(text[:text.index("\ntree:\n") + 7] + tree + "\n"
+                  + text[text.rindex("checksum: "):])
 
 
 def tree_of(text):
@@ -109,12 +112,13 @@ def test_confirms(texts, tmp_path, name):
 
 
 def test_nothing_can_be_fused():
-    """OCaml makes one operation of a product and a sum where the processor has one, as on ARM64.  In
-    what was extracted a product goes straight into next_up or next_down, which are C."""
+    """OCaml makes one operation of a product and a sum where the processor has one, as on ARM64.
+    In what was extracted a product goes straight into next_up or next_down, which are C."""
     text = re.sub(r"\(\*.*?\*\)", "", (COMMAND.parent / "checker.ml").read_text(), flags=re.S)
     product, = re.findall(r"let (\w+) = Float64\.mul\n", text)
     assert [line.strip() for line in text.split("\n") if re.search(r"\b%s\b" % product, line)] == [
-        "let %s = Float64.mul" % product, "next_up (%s x y)" % product, "next_down (%s x y)" % product]
+        "let %s = Float64.mul" % product, "next_up (%s x y)" % product,
+        "next_down (%s x y)" % product]
     for name in "next_up", "next_down":
         assert re.findall(r"let %s\b.*" % name, text) == ["let %s = Float64.%s" % (name, name)]
     assert text.count("Float64.mul") == 1 and "*." not in text and "fma" not in text
@@ -148,7 +152,8 @@ def test_version_2(texts, tmp_path):
     ("v0", "1 -1"), ("v0", "1"), ("v0", "0.5 0.5"), ("xstar", "1 1 1"), ("xstar", "1.5 0.2"),
     ("xstar", "0.858028 0.858029"), ("at once", "maybe"), ("at once", "no"), ("depth", "-1"),
     ("cuts", "1"), ("proved", "2"), ("symmetric", "1"), ("undecided", "1"), ("most_cuts", "1"),
-    ("wave", "1 0 0 0.31 0.00125 0"), ("wave", "0 0 0 0.31 0.00125"), ("wave", "1 0 1/2 0.31 0.00125"),
+    ("wave", "1 0 0 0.31 0.00125 0"), ("wave", "0 0 0 0.31 0.00125"),
+    ("wave", "1 0 1/2 0.31 0.00125"),
     ("wave", "101 0 0 0.31 0.00125"), ("wave", "1 0 0 0.31"), ("wave", "1 0 0 0.2 0.00125"),
     ("wave", "1 0 0 1e999 0"), ("wave", "1 0 0 1e-4000 0"), ("wave", "1 0 0 0x1 0"),
     ("wave", "1 0 0 31e-2 +.00125"), ("wave", "1 0 1 -0.31 -0.00125")])
@@ -254,7 +259,8 @@ def with_waves(text, waves, tree, **fields):
     "0 1 0 0.32 0.005, 2 1 0.3 0.0001 0, -1 -2 0.7 0.0001 0",
     "0 1 0 0.32 0.005, 2 1 0.3 0.0001 0, 1 2 1.3 -0.0001 0"])
 def test_a_mirror_image_is_the_same_sum(texts, tmp_path, waves):
-    """However the waves are written; and not the same if a sign, a phase or a part of one is changed."""
+    """However the waves are written; and not the same if a sign, a phase or a part of one is
+    changed."""
     text, waves = texts["trig278.in"], waves.split(", ")
 
     def verdict(*waves):
@@ -267,7 +273,8 @@ def test_a_mirror_image_is_the_same_sum(texts, tmp_path, waves):
         for sign, *changes in (-1, 0, 0, 0), (1, 1, 0, 0), (1, "1/3", 0, 0), (1, 0, "1/64", 0), (
                 1, 0, 0, "1/64"):
             phase, middle, part = map(Fraction.__add__, numbers, map(Fraction, changes))
-            changed = "%d %d %s %s %s" % (sign * k0, sign * k1, phase, *map(decimal_text, (middle, part)))
+            changed = "%d %d %s %s %s" % (sign * k0, sign * k1, phase,
+                                          *map(decimal_text, (middle, part)))
             assert verdict(*waves[:at], changed, *waves[at + 1:]) == REJECTED, changed
 
 
@@ -308,7 +315,8 @@ def test_files_of_every_length(texts, tmp_path):
     """SHA-256 fills up its last block, or adds one."""
     for length in range(64):
         path = tmp_path / "proof"
-        text = sealed(texts["trig278.in"].replace("\ntree:", "\ncomment: %s\ntree:" % ("x" * length)))
+        text = sealed(texts["trig278.in"].replace("\ntree:",
+                                                  "\ncomment: %s\ntree:" % ("x" * length)))
         path.write_text(text)
         status, out, _ = run(path)
         assert status == VERIFIED

@@ -25,14 +25,16 @@ THESIS = ((1, 0), (0, 1), (1, 1))
 
 
 def draw(rng, kinds=KINDS):
-    """A random patch: k, phase in radians, amplitude and parts of each wave; v0, v1, frame and x*."""
+    """A random patch: k, phase in radians, amplitude and parts of each wave; v0, v1, frame and
+    x*."""
     size = 10.0 ** rng.uniform(-2, 0)
     parameters = rng.randrange(4)
 
     def part():
         return rng.choice([0.0, rng.choice([-1, 1]) * 10.0 ** rng.uniform(-14, -1) * size])
 
-    waves = [(*rng.choice(kinds), rng.choice([0.0, rng.uniform(0, 2 * math.pi), 1.5707963267948966]),
+    waves = [(*rng.choice(kinds),
+              rng.choice([0.0, rng.uniform(0, 2 * math.pi), 1.5707963267948966]),
               size * rng.uniform(-1, 1), *(part() if m < parameters else 0.0 for m in range(3)))
              for _ in range(rng.randrange(1, MOST + 1))]
     centre = [rng.choice([rng.uniform(-7, 7), 1e-9]) for _ in range(2)]
@@ -241,7 +243,9 @@ def margins(rng, cases):
                 next_L = [2 * q.column[i][m] - o.column[i][m] for i in range(2)]
                 for w, f, z in zip(patch.waves, p, y):
                     c = w[0] * q.column[0][m] + w[1] * q.column[1][m]
-                    push = -mp(f) * mpmath.sin(z) * c + (mp(w[2 + m]) if m > 1 else 0) * mpmath.cos(z)
+                    push = -mp(f) * mpmath.sin(z) * c
+                    if m > 1:
+                        push += mp(w[2 + m]) * mpmath.cos(z)
                     next_L = [x + w[i] * push for i, x in enumerate(next_L)]
                 for i in range(2):
                     lost[i] += abs(next_L[i] - following.column[i][m])
@@ -347,7 +351,8 @@ LINE = ("0.19", "0.19", "0.38")
 
 
 def test_the_general_instance_proves_what_the_special_one_proves():
-    """The waves in another order, or with whole turns as phases, or a frame, are the same problem."""
+    """The waves in another order, or with whole turns as phases, or a frame, are the same
+    problem."""
     parts = [("0.0001", "0.0001", "0.0002")]
     start = ("0.858", "0.858")
     _, tree = searched(patch_of(THESIS, LINE, parts), start)
@@ -368,7 +373,8 @@ def test_whole_turns_are_no_phases():
 
 
 def test_a_patch_that_is_a_box_is_the_box():
-    """The order and the signs of parameters change the names of axes and the sides of cuts alone."""
+    """The order and the signs of parameters change the names of axes and the sides of cuts
+    alone."""
     amplitude, start = ("0.4", "0.3", "0.5"), ("1.1", "0.6")
     g = ("0.05", "0", "0"), ("0", "0.02", "0"), ("0", "0", "0.03")
     _, tree = searched(patch_of(THESIS, amplitude, g), start)

@@ -17,7 +17,8 @@ FULL = (("1", "1"), ("1", "1"))
 
 def problem(a, b, c, v=FULL):
     pairs = [a, b, c, *v]
-    return Problem.around(tuple(Fraction(x) for x, _ in pairs), tuple(Fraction(x) for _, x in pairs), ())
+    return Problem.around(tuple(Fraction(x) for x, _ in pairs),
+                          tuple(Fraction(x) for _, x in pairs), ())
 
 
 def line(epsilon):

@@ -32,7 +32,7 @@ class Criterion:
         self.xstar = tuple([math.floor(x * one) for x in claim.xstar])
         # The symbols: of the parameters that count, and of the angles.
         self.axes = [2 + m for m in range(claim.parameters)
-                     if any([wave.parts[m] for wave in waves])] + [0, 1]
+                     if any(wave.parts[m] for wave in waves)] + [0, 1]
         # The ends of the parameters: a cell's B is no larger than what lies between B there.  An
         # end is off by less than a unit for each wave, and the eigenvalue by less than stiffness.
         if bound is not None:

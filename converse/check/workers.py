@@ -88,7 +88,7 @@ def in_order(chunks, jobs, problems):
         _worker[:] = [problems]
         yield from map(check_chunk, chunks)
         return
-    import concurrent.futures.process       # where there are no processes, one job still works
+    import concurrent.futures.process  # where there are no processes, one job still works
     import multiprocessing
 
     def result(future):

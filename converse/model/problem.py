@@ -97,8 +97,8 @@ class Problem:
                comments: Union[str, Sequence[str]] = (), together: bool = False) -> "Problem":
         """From the centres and the half-widths of a, b, c, v0 and v1, as in an input file."""
         if not len(centre) == len(half) == len(NAMES):
-            raise ValueError("there are %d centres and %d half-widths where five belong: of a, b, c, "
-                             "v0 and v1" % (len(centre), len(half)))
+            raise ValueError("there are %d centres and %d half-widths where five belong: of a, b, "
+                             "c, v0 and v1" % (len(centre), len(half)))
         pairs = [(exact(c), exact(h)) for c, h in zip(centre, half)]
         for name, (_, h) in zip(NAMES, pairs):
             if h < 0:
@@ -154,7 +154,8 @@ class Problem:
             axes = tuple(self.axes)
             if len(axes) != 4 or not all(type(f) is int and abs(f) <= HIGHEST for f in axes) or \
                     abs(axes[0] * axes[3] - axes[1] * axes[2]) != 1:
-                raise ValueError("the axes are four integers up to %d with determinant 1 or -1, not %r"
+                raise ValueError("the axes are four integers up to %d with determinant 1 or -1, "
+                                 "not %r"
                                  % (HIGHEST, self.axes))
             object.__setattr__(self, "axes", None if axes == self._best_frame() else axes)
         if self.alone is not None:
@@ -211,7 +212,8 @@ class Problem:
 
     def _best_frame(self):
         """If all waves feel the same q.y alone, and q no coordinate, v0 moves along what none
-        feels, and so need not be cut.  Only a region that is the whole torus has no axes already."""
+        feels, and so need not be cut.  Only a region that is the whole torus has no axes
+        already."""
         directions = {(k0 // gcd(k0, k1), k1 // gcd(k0, k1)) for (k0, k1), _ in self._present()}
         q = max(directions, default=(0, 0))
         if not directions <= {q, (-q[0], -q[1])} or 0 in q or not self.full_torus:
@@ -243,7 +245,8 @@ class Problem:
 
     @cached_property
     def odd(self) -> Optional[Ends]:
-        """A point s, in units of pi, about which V is odd: k.s + phase is an integer for every wave.
+        """A point s, in units of pi, about which V is odd: k.s + phase is an integer for every
+        wave.
         None: there is none.
 
         Sums and differences of such conditions are such conditions, so Euclid's algorithm makes of

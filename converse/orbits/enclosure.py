@@ -1,6 +1,6 @@
 """The action of a state, its gradient and its Hessian, and bounds of the Hessian's eigenvalues, in
-ball arithmetic: python-flint's arb, a midpoint and a radius that bounds every rounding, and matrices
-of them.
+ball arithmetic: python-flint's arb, a midpoint and a radius that bounds every rounding, and
+matrices of them.
 
 docs/orbits-proof.md has the theorems.  The Hessian of the action is that of a chain: n x n blocks
 beta_j = 2 - eps V''(x_j), and -1 between neighbours, cyclically.
@@ -231,9 +231,9 @@ class Enclosure:
 
     def _eliminate(self, shift, links=None):
         """The points 1, 2, ..., q - 1 of the chain from point 0 once round to point 0 again are
-        eliminated, with beta + shift for beta.  Returns E, which that adds to the block of the first
-        point, F, where -F couples it to the last, and G, the block of the last.  None: a pivot is
-        not positive definite.
+        eliminated, with beta + shift for beta.  Returns E, which that adds to the block of the
+        first point, F, where -F couples it to the last, and G, the block of the last.  None: a
+        pivot is not positive definite.
         links: a list that receives each point's inverse pivot, what couples it to the first point,
         and its right-hand side, -force and what is eliminated; of the last point that alone."""
         zero, shift = unit(self.n, 0), unit(self.n, shift)

@@ -56,7 +56,8 @@ def whole(what, value, least, most=2 ** 31 - 1):
 
 
 def points(x, n):
-    """x as a C-contiguous array (m, 2) of floats, its idle coordinate zero; ValueError if it is none."""
+    """x as a C-contiguous array (m, 2) of floats, its idle coordinate zero; ValueError if it is
+    none."""
     array = np.ascontiguousarray(x, dtype=float)
     if array.ndim != 2 or array.shape[1] != n:
         raise ValueError("points are an array of shape (m, %d), not %r" % (n, array.shape))
@@ -76,7 +77,7 @@ class Potential:
     start      -- a maximum of V, where orbits begin
     formula    -- V(x) in words, exactly, for reports
     curvature  -- an upper bound of the spectral norm of V'' anywhere; None: not known
-    lipschitz  -- K with |V''(x) - V''(y)| <= K |x - y|, spectral and Euclidean norm; None: not known
+    lipschitz  -- K with |V''(x) - V''(y)| <= K |x - y|, in these norms; None: not known
     """
 
     name: str
@@ -192,7 +193,8 @@ class Fourier(Potential):
             np.array([float(sum(term[i]) / 2) * self.scale for term in terms]) for i in (1, 2)]
         self.native.terms = len(terms)
         self.native.k, self.native.cosine, self.native.sine = (
-            address(array, kind) for array, kind in zip(self._arrays, ("int *",) + 2 * ("double *",)))
+            address(array, kind)
+            for array, kind in zip(self._arrays, ("int *",) + 2 * ("double *",)))
         if start is None:
             vars(self).update(start=self._maximum())
 
@@ -274,7 +276,8 @@ class FromPython(Potential):
                  lipschitz: Optional[float] = None) -> None:
         for method in ("value", "gradient", "hessian"):
             if not callable(getattr(source, method, None)):
-                raise ValueError("a potential needs value(x), gradient(x) and hessian(x); %r has no %s"
+                raise ValueError("a potential needs value(x), gradient(x) and hessian(x); %r has "
+                                 "no %s"
                                  % (source, method))
         super().__init__(lib.CV_PYTHON, name, n, start, "what a Python object says", curvature,
                          lipschitz)
@@ -437,14 +440,14 @@ SCALES = ((_trig_scale, "s = 8 sqrt 2/sqrt(207 + 33 sqrt 33)"),
 
 _HALF = Fraction(1, 2)
 
-# Curvature and lipschitz.  ff: |c''| <= 48, |c'''| = 192.  V'' is diag(c''(x0), c''(x1))/4, of norm 12
-# at most, and c''(x0 + x1)/2 times [[1, 1], [1, 1]], whose norm is 2; x0 + x1 moves by sqrt 2 |dx| at
-# most: 12 + 48, and 48 + 96 2 sqrt 2 < 320.
+# Curvature and lipschitz.  ff: |c''| <= 48, |c'''| = 192.  V'' is diag(c''(x0), c''(x1))/4, of norm
+# 12 at most, and c''(x0 + x1)/2 times [[1, 1], [1, 1]], whose norm is 2; x0 + x1 moves by sqrt 2
+# |dx| at most: 12 + 48, and 48 + 96 2 sqrt 2 < 320.
 _FF_BOUNDS = (60.0, 320.0)
 
 # poly: V = -4096 f(y0) g(y1), y = x mod 1 - 1/2.  With a = 1/4 - y^2, from 0 to 1/4,
-# f = a^2 (a - 3/16), f'' = -30 a^2 + 33 a/4 - 3/8, f''' = 2 y (60 a - 33/4); g = a^2, g'' = 2 - 12 a,
-# g''' = 24 y.  Derivatives 0 to 3 are at most 1/256, 0.022, 3/8, 33/4 and 1/16, 0.1925, 2, 12.
+# f = a^2 (a - 3/16), f'' = -30 a^2 + 33 a/4 - 3/8, f''' = 2 y (60 a - 33/4); g = a^2, g'' = 2 - 12
+# a, g''' = 24 y.  Derivatives 0 to 3 are at most 1/256, 0.022, 3/8, 33/4 and 1/16, 0.1925, 2, 12.
 # The norm of V'' is at most its larger diagonal entry and |V_01|; of the third derivative along a
 # unit vector v the terms with v0^3 and v1^3 make at most the larger one, and v0^2 v1 and v0 v1^2,
 # three times each, are at most 0.385.
@@ -475,8 +478,8 @@ def _studied(name):
 
 
 def parameters(eps: float) -> Tuple[float, float, float]:
-    """The a, b, c of the rest of the package, where the angles have period 2 pi, whose map is that of
-    trig and eps: with y = 2 pi x, a = b = c/2 = 2 pi^2 eps/M_trig."""
+    """The a, b, c of the rest of the package, where the angles have period 2 pi, whose map is that
+    of trig and eps: with y = 2 pi x, a = b = c/2 = 2 pi^2 eps/M_trig."""
     eps, = finite("eps", [eps])
     a = 2 * math.pi ** 2 * trig.scale * eps
     return a, a, 2 * a

@@ -124,8 +124,8 @@ def prove(state: State, digits: Optional[int] = None, descend: bool = False) -> 
         raise NotProved("the state is a saddle: the least eigenvalue of its Hessian is about %.1e"
                         % state.least)
     if not descend and state.label == "saddle":
-        raise NotProved("the state is a saddle: it, or it run through several times, is no minimum of "
-                        "the action")
+        raise NotProved("the state is a saddle: it, or it run through several times, is no minimum "
+                        "of the action")
     places, most = wanted + 2 * GUARD, min(MOST, wanted + 2 * GUARD + MORE)
     orbit, reason = None, None
     with alone():

@@ -18,8 +18,9 @@ try:
 except ImportError as error:            # not built, or for another Python, or without cffi
     _home = str(Path(__file__).resolve().parents[2])
     raise ConverseError(
-        "the sources in %s, which Python takes for the package, have no C core (%s); run make there and "
-        "use its .venv/bin/python, or, where the package is installed, start Python elsewhere"
+        "the sources in %s, which Python takes for the package, have no C core (%s); run make "
+        "there and use its .venv/bin/python, or, where the package is installed, start Python "
+        "elsewhere"
         % (_home, error)
         if os.path.isfile(os.path.join(_home, "setup.py")) else
         "the C core is missing (%s); pip install converse-kam anew, with a C compiler and GMP"
@@ -181,7 +182,8 @@ def native_problem(problem, owners):
         {"k": wave[:2], "phase": native_text(_nearly(wave[2]), owners),
          "amplitude": text(p if i in problem.searched else 0),
          "part": [text(part if i in problem.searched else 0) for part in parts]}
-        for i, (wave, p, *parts) in enumerate(zip(problem.waves, problem.amplitude, *problem.parts))])
+        for i, (wave, p, *parts) in enumerate(zip(problem.waves, problem.amplitude,
+                                                  *problem.parts))])
     owners.append(waves)
     ends = problem.v0, problem.v1
     return ffi.new("cv_problem *", {

@@ -4,8 +4,8 @@ lets tests call its routines one at a time.
     python tests/kernels/build.py       prints the path of the module
 
 Most of those routines are static.  So the translation units that have them are not compiled as they
-are: a unit here includes the source and then a file of the console.  The module lies in build/, in a
-folder whose name tells sources, flags and compiler, and is built when it is missing there.
+are: a unit here includes the source and then a file of the console.  The module lies in build/, in
+a folder whose name tells sources, flags and compiler, and is built when it is missing there.
 """
 
 import contextlib
@@ -66,10 +66,12 @@ def units(sources, csrc):
 def _attributes(csrc, name, text):
     """The text with the attributes that clang gives to the functions of an engine."""
     instructions = csrc / (name.replace("general_", "") + ".c")
-    push = re.search("^#pragma clang attribute push.*$", instructions.read_text("utf-8"), re.MULTILINE)
+    push = re.search("^#pragma clang attribute push.*$", instructions.read_text("utf-8"),
+                     re.MULTILINE)
     if push is None:
         return text + "\n"
-    return ("#ifdef __clang__\n%s\n#endif\n%s\n#ifdef __clang__\n#pragma clang attribute pop\n#endif\n"
+    return ("#ifdef __clang__\n%s\n#endif\n%s\n"
+            "#ifdef __clang__\n#pragma clang attribute pop\n#endif\n"
             % (push.group(), text))
 
 
@@ -94,7 +96,8 @@ def link(objects, target):
     words = sysconfig.get_config_var("LDSHARED").split()
     if os.environ.get("CC"):
         words[:1] = shlex.split(os.environ["CC"])
-    _run([*words, *objects, *shlex.split(os.environ.get("LDFLAGS", "")), "-lgmp", "-lm", "-o", target])
+    _run([*words, *objects, *shlex.split(os.environ.get("LDFLAGS", "")), "-lgmp", "-lm", "-o",
+          target])
 
 
 def _run(command, **options):
@@ -116,7 +119,8 @@ def wrapper(path):
 
 def stand_ins():
     """For those functions of Python that the core calls, and nothing here does."""
-    return ("int cv_python_potential(void *s, long m, const double *x, double *v, double *g, double *h)\n"
+    return ("int cv_python_potential(void *s, long m, const double *x, double *v, double *g, "
+            "double *h)\n"
             "{ (void)s; (void)m; (void)x; (void)v; (void)g; (void)h; return 0; }\n"
             "int cv_python_interrupts(void) { return 0; }\n")
 
@@ -127,7 +131,8 @@ def path():
     if "CONVERSE_CONSOLE" in os.environ:
         return Path(os.environ["CONVERSE_CONSOLE"])
     made = product()
-    key = hashlib.sha256(repr((made["FLAGS"], list(map(str, _compiler())), os.environ.get("LDFLAGS"),
+    key = hashlib.sha256(repr((made["FLAGS"], list(map(str, _compiler())),
+                               os.environ.get("LDFLAGS"),
                                sys.version, str(ROOT))).encode())
     for file in sorted([*ROOT.glob("csrc/**/*.[ch]"), *HOME.glob("*.[ch]"), HOME / "build.py"]):
         key.update(file.read_bytes())

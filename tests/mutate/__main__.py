@@ -1,11 +1,12 @@
-"""Makes small mistakes in the code that proofs rest on, one at a time, and sees whether a test notices.
+"""Makes small mistakes in the code that proofs rest on, one at a time, and sees whether a test
+notices.
 
     python tests/mutate [--sample N] [--seed SEED] [--list] [WHERE ...]
 
 WHERE is a file (loewner/bound.c), a function of it (loewner/bound.c:weigh) or one mutant
-("loewner/bound.c:weigh term 2"); without it, all files.  --sample tries N of the mutants there: each of
-a function, an operator and a place that the seed chooses.  All of them take days.  Prints what became of
-each; exit status 1 if one survived that accepted.py has no reason for.
+("loewner/bound.c:weigh term 2"); without it, all files.  --sample tries N of the mutants there:
+each of a function, an operator and a place that the seed chooses.  All of them take days.  Prints
+what became of each; exit status 1 if one survived that accepted.py has no reason for.
 """
 
 import argparse
@@ -21,20 +22,22 @@ from pathlib import Path
 
 HOME = Path(__file__).resolve().parent
 sys.path[:0] = [str(HOME), str(HOME.parent / "kernels")]
-import build  # noqa: E402
 from accepted import ACCEPTED  # noqa: E402
 from operators import OPERATORS, mutants  # noqa: E402
+
+import build  # noqa: E402
 
 ROOT = HOME.parent.parent
 PATIENCE = 900                          # seconds, for the tests of one file
 
-# What is mutated, by folders of csrc and by files of converse/orbits.  Not what guesses where to start
-# (thesis/start.c, loewner/start.c): nothing that is proved rests on it.
+# What is mutated, by folders of csrc and by files of converse/orbits.  Not what guesses where to
+# start (thesis/start.c, loewner/start.c): nothing that is proved rests on it.
 ORBITS = ("enclosure.py", "exponents.py")
 GUESSES = ("thesis/start.c", "loewner/start.c")
 
 # The tests that may notice, by what a file's name begins with; the likely one first.
-NUMBERS = ["test_apm.py", "test_special.py", "test_bounding.py", "test_bd_trig.py", "test_bounds.py",
+NUMBERS = ["test_apm.py", "test_special.py", "test_bounding.py", "test_bd_trig.py",
+           "test_bounds.py",
            "test_images.py", "test_search.py"]
 SHARP = ["test_loewner.py", "test_waves.py", "test_search.py"]
 FINDERS = ["test_orbits.py", "test_orbits_fail.py", "test_floor.py", "test_proved.py"]
@@ -43,7 +46,8 @@ TESTS = {
     "arith/sine": ["test_loewner.py", "test_gappa.py", "test_waves.py"], "arith/lanes": SHARP,
     "arith/guard": ["test_rigor.py", "test_search.py", "test_orbits.py"],
     "arith/machine": ["test_rigor.py"],
-    "thesis/bounding": ["test_bounding.py", *NUMBERS], "thesis/bd_trig": ["test_bd_trig.py", *NUMBERS],
+    "thesis/bounding": ["test_bounding.py", *NUMBERS],
+    "thesis/bd_trig": ["test_bd_trig.py", *NUMBERS],
     "thesis/trace": ["test_bounds.py", *NUMBERS], "thesis/lambda": ["test_bounds.py", *NUMBERS],
     "thesis/lipschitz": ["test_bounds.py", *NUMBERS], "thesis/region": ["test_search.py", *NUMBERS],
     "thesis/follow": ["test_search.py", *NUMBERS], "thesis": ["test_images.py", *NUMBERS],
@@ -64,7 +68,8 @@ def sources():
 
 
 def tests_of(name):
-    longest = max((prefix for prefix in TESTS if name.startswith(prefix)), key=len, default="thesis")
+    longest = max((prefix for prefix in TESTS if name.startswith(prefix)), key=len,
+                  default="thesis")
     return list(dict.fromkeys(TESTS[longest]))
 
 
@@ -88,7 +93,8 @@ def places(where=()):
     if not where:
         return found
     chosen = [place for place in found
-              if {place.name, "%s:%s" % (place.name, place.mutant.function), place.key} & set(where)]
+              if {place.name, "%s:%s" % (place.name, place.mutant.function),
+                  place.key} & set(where)]
     if not chosen:
         sys.exit("there is nothing to mutate in %s" % ", ".join(where))
     return chosen
@@ -121,7 +127,8 @@ class Same(Exception):
 
 
 class Base:
-    """The unchanged core: its objects, which the console's build has left, and the product's module."""
+    """The unchanged core: its objects, which the console's build has left, and the product's
+    module."""
 
     def __init__(self, directory):
         self.objects = build.path().parent
@@ -135,7 +142,8 @@ class Base:
         self.texts = build.units(self.made["SOURCES"], ROOT / "csrc")
 
     def core(self, place, work):
-        """Builds package and console with a mutant of the C core in work.  False: it does not compile."""
+        """Builds package and console with a mutant of the C core in work.  False: it does not
+        compile."""
         csrc = work / "csrc"
         shutil.copytree(ROOT / "csrc", csrc)
         if place.mutant:
@@ -149,7 +157,8 @@ class Base:
         for name in changed:
             text = self.texts[name]
             try:
-                objects[name] = build.compile_unit(name, text, work / "units", csrc, self.made["FLAGS"])
+                objects[name] = build.compile_unit(name, text, work / "units", csrc,
+                                                   self.made["FLAGS"])
             except SystemExit:
                 return False
         if place.mutant and all(
@@ -213,7 +222,8 @@ def reason(place):
 
 
 def main(arguments=None):
-    parser = argparse.ArgumentParser(prog="python tests/mutate", description="Mutation tests.", epilog=(
+    parser = argparse.ArgumentParser(prog="python tests/mutate", description="Mutation tests.",
+                                     epilog=(
         "Operators: " + "; ".join("%s: %s" % item for item in OPERATORS.items()) + "."))
     parser.add_argument("where", nargs="*", metavar="WHERE", help="FILE, FILE:FUNCTION or a mutant")
     parser.add_argument("--sample", type=int, metavar="N", help="try N of them")

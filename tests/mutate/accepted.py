@@ -1,8 +1,8 @@
-"""The survivors that do not matter, each with its reason: by file and function, or these and an operator,
-or one place of it."""
+"""The survivors that do not matter, each with its reason: by file and function, or these and an
+operator, or one place of it."""
 
-GAMMA = ("the map is affine in the parameters: on a path that changes them first, at the centre's v, gamma "
-         "is gamma_c, and the bound of beta - beta_c alone serves for the rest")
+GAMMA = ("the map is affine in the parameters: on a path that changes them first, at the centre's "
+         "v, gamma is gamma_c, and the bound of beta - beta_c alone serves for the rest")
 BOTH_ROWS = "the sum over both rows is more than the larger row, which would do"
 UNIT = "a second belt: one of the vectors n is a unit vector"
 
@@ -15,8 +15,8 @@ ACCEPTED = {
     "loewner/orbit.c:step drop 22":
         "such a point only ends an orbit a step later, and its reach is a bound all the same",
     "loewner/orbit.c:step compare 5":
-        "a determinant below 2^-800 would need two entries of beta that are differences from 2 and yet as "
-        "small as 2^-400",
+        "a determinant below 2^-800 would need two entries of beta that are differences from 2 and "
+        "yet as small as 2^-400",
     "loewner/problem.c:loewner_at_once compare 7": UNIT,
     "orbits/relax.c:look compare 10":
         "a second belt: what a potential from Python answers is finite, and so is what ours do",
@@ -25,8 +25,8 @@ ACCEPTED = {
     "thesis/cr_rows.c:cr_rows drop 15":
         "twelve ulps times the error of the inverse, beside the prism times the same",
     "thesis/follow.c:contradiction drop 4":
-        "a second belt: each divisor was just found to be above a positive bound, and comparisons with NaN "
-        "are false",
+        "a second belt: each divisor was just found to be above a positive bound, and comparisons "
+        "with NaN are false",
     "thesis/row_sums.c:bound_gamma drop 9": BOTH_ROWS,
     "thesis/row_sums.c:bound_gamma constant 17": BOTH_ROWS,
 }

@@ -1,9 +1,9 @@
 """Mutation operators: all places of a source where a small mistake can be made, by function.
 
 A place is told by (function, operator, number), which no reformatting and no renaming of variables
-changes.  C is looked at token by token, as its macros allow no other way: functions by their braces,
-terms and statements by what ends them.  Not every place of C makes a program that compiles; who asks
-finds out.  Python is changed in its syntax tree.
+changes.  C is looked at token by token, as its macros allow no other way: functions by their
+braces, terms and statements by what ends them.  Not every place of C makes a program that compiles;
+who asks finds out.  Python is changed in its syntax tree.
 """
 
 import ast
@@ -66,8 +66,10 @@ DIRECTIONS = [("APM_UP", "APM_DOWN"), ("mpz_fdiv_q", "mpz_cdiv_q"), ("fmin", "fm
               ("mpz_fdiv_q_ui", "mpz_cdiv_q_ui")]
 OTHER = {**dict(DIRECTIONS), **{b: a for a, b in DIRECTIONS}}
 ENDS_TERM = {";", ",", "?", ":", "+", "-", "<", ">", "<=", ">=", "==", "!=", "&&", "||", "=", "|"}
-KEYWORDS = {"return", "case", "goto", "break", "continue", "if", "else", "for", "while", "do", "switch",
-            "default", "sizeof", "const", "static", "enum", "typedef", "struct", "int", "long", "double",
+KEYWORDS = {"return", "case", "goto", "break", "continue", "if", "else", "for", "while", "do",
+            "switch",
+            "default", "sizeof", "const", "static", "enum", "typedef", "struct", "int", "long",
+            "double",
             "size_t", "unsigned", "char", "void", "volatile"}
 
 
@@ -133,7 +135,8 @@ def changes(tokens, other, i):
     """(operator, start, end, what to put there) of each place that begins at a token."""
     token, before, after = tokens[i], tokens[i - 1], tokens[i + 1]
     here = token.start, token.end
-    operand = before.kind in ("name", "number") and before.text not in KEYWORDS or before.text in (")", "]")
+    operand = before.kind in ("name",
+                              "number") and before.text not in KEYWORDS or before.text in (")", "]")
     if token.text in SIGNS and (operand or len(token.text) == 2):
         yield ("sign", *here, SIGNS[token.text])
         if len(token.text) == 1:
@@ -151,7 +154,8 @@ def changes(tokens, other, i):
         yield ("direction", *here, OTHER[token.text])
     elif token.kind == "number":
         zero = not re.search("[1-9a-fA-F]", re.sub("^0[xX]|[eEpP].*$", "", token.text))
-        yield ("constant", *here, "1" + ".0" * ("." in token.text) if zero else "(2 * %s)" % token.text)
+        yield ("constant", *here,
+               "1" + ".0" * ("." in token.text) if zero else "(2 * %s)" % token.text)
     if token.text == "[" and after.text != "]":
         yield "index", tokens[other[i]].start, tokens[other[i]].start, " + 1"
     if before.text in (";", "{", "}", ")", "else") and token.kind == "name" \
@@ -164,8 +168,8 @@ def changes(tokens, other, i):
 
 
 def begins_statement(tokens, other, i):
-    """Not the rest of a cast, a declaration (two names in a row, or a star after the first) or what an
-    initializer holds."""
+    """Not the rest of a cast, a declaration (two names in a row, or a star after the first) or what
+    an initializer holds."""
     if tokens[i - 1].text == ")":
         opener = other[i - 1] - 1
         if tokens[opener].text not in ("if", "for", "while", "switch"):
