@@ -2,11 +2,13 @@
 
 from matplotlib.figure import Figure
 
-from . import plot
-
 
 class Page(Figure):
-    """A Figure that no window and no notebook's backend knows of: it draws itself."""
+    """A Figure that no window and no notebook's backend knows of: it draws itself, by `encode`."""
+
+    def __init__(self, encode, **options):
+        super().__init__(**options)
+        self.encode = encode
 
     def _repr_png_(self):
-        return plot.encode(self, "png", dpi=100)
+        return self.encode(self, "png", dpi=100)

@@ -69,7 +69,7 @@ def page(proof, caption=True):
 
     from .page import Page
 
-    fig = Page(figsize=(6.4, 7.0))
+    fig = Page(encode, figsize=(6.4, 7.0))
     axes = draw(proof, fig.add_subplot())
     if caption:
         head, foot = ("\n".join(lines).replace("$", r"\$")
