@@ -31,9 +31,10 @@ settings.load_profile("timeless")
 if not Path(converse.__file__).is_relative_to(ROOT):
     os.environ["PYTHONSAFEPATH"] = "1"
 
-# A shell without job control starts what it puts in the background with Ctrl-C ignored, and so
-# would be all that is started here.
+# A shell without job control starts what it puts in the background with Ctrl-C ignored, nohup with
+# SIGHUP ignored, and so would be all that is started here.
 signal.signal(signal.SIGINT, signal.default_int_handler)
+signal.signal(signal.SIGHUP, signal.SIG_DFL)
 
 
 @pytest.fixture(scope="session")

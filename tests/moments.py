@@ -2,7 +2,7 @@
 
 import time
 
-PATIENCE = 1800                     # seconds: what takes longer hangs
+PATIENCE = 600                      # seconds: what takes longer hangs
 
 # The command, that decides so many prisms, makes a file and waits until that is gone, or it is to
 # stop.  Its worker waits, as if it were long at work; there is to be but one.
