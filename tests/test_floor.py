@@ -5,7 +5,6 @@ import itertools
 import os
 import platform
 import runpy
-import sys
 
 import mpmath
 import numpy as np
@@ -14,10 +13,9 @@ from test_orbits import truth
 
 from converse import ConverseError, orbits
 from converse._native import ffi, lib
-from converse.orbits import floor as _  # noqa: F401
+from converse.orbits import branch_and_bound, mather
 from converse.orbits.potential import address
 
-floors = sys.modules["converse.orbits.floor"]
 TORTURE = int(os.environ.get("CONVERSE_TORTURE", "1"))
 POTENTIALS = [orbits.trig, orbits.poly, orbits.ff, orbits.froeschle, orbits.standard]
 SPIRAL = (0.5698402909980532, 0.7548776662466927)
@@ -239,7 +237,7 @@ def test_least_eigenvalue():
         a = rng.normal(size=(size, size))
         for matrix in (a @ a.T, a + a.T, np.eye(size)):
             true = min(mpmath.eigsy(mpmath.matrix(matrix.tolist()), eigvals_only=True))
-            bound = floors._least_eigenvalue(matrix)
+            bound = branch_and_bound._least_eigenvalue(matrix)
             assert bound <= true
             assert bound >= true - 0.01 * abs(true) - 1e-10 * abs(matrix).max()
 
@@ -322,7 +320,7 @@ def test_copies():
 def test_copies_are_not_taken_for_others():
     """A state that is nearly a copy is none."""
     once = orbits.least_action(orbits.standard, (1,), 2, 2.0, gap=0)
-    search = floors._Search(once.state.repeat(2))
+    search = branch_and_bound._Search(once.state.repeat(2))
     for off, copies in ((0.0, 2), (1e-3, 1)):
         state = once.state.repeat(2).moved(once.state.repeat(2).u + [[off], [0], [0], [0]])
         low, high = state.u - 2e-4, state.u + 2e-4
@@ -386,7 +384,7 @@ def test_floor_holds_for_any_path():
     """Also for paths on the grid itself, whatever the rotation, and at eps 0."""
     found = orbits.floor(orbits.standard, 0.0, (0.3,), 50)
     assert -1.2 / (8 * 50 ** 2) < found.low <= 0 <= found.estimate + 1e-12
-    torus = floors._Torus(orbits.trig, 0.3, 16)
+    torus = mather._Torus(orbits.trig, 0.3, 16)
     c, rotation = (0.4, -0.2), np.array([0.3, 0.1])
     bound = torus.settle(c, 1e-12, 50)
     change = torus.apply(c) - torus.u

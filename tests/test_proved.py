@@ -672,14 +672,15 @@ def rough(rng):
                     + np.array(state.origin) - origin)
     exact, places = enclosed(state), rng.randrange(10, 12)
     ours = state.potential
-    if isinstance(ours, orbits.Fourier):        # a scale as little known as it may be
+    if isinstance(ours, orbits.Fourier):        # coefficients as little known as they may be
 
-        def scale_within(digits):
-            low, high = ours.scale_within(digits + 10)
-            wide, t = Fraction(1, 10**digits) - (high - low), Fraction(rng.choice([0, 1]))
-            return low - t * wide, high + (1 - t) * wide
+        def widened(low, high, digits):
+            wide, t = Fraction(1, 10**digits) - (high - low), rng.choice([0, 1])
+            return (low - t * wide, high + (1 - t) * wide) if low or high else (low, high)
 
-        exact.potential = SimpleNamespace(n=ours.n, terms=ours.terms, scale_within=scale_within)
+        exact.potential = SimpleNamespace(n=ours.n, coefficients=lambda digits: [
+            (k, *(widened(*ends, digits) for ends in both))
+            for k, *both in ours.coefficients(digits + 10)])
     exact.evaluate(places)
     return state, exact, places
 

@@ -5,7 +5,7 @@ import json
 import os
 import re
 from fractions import Fraction
-from typing import IO, Dict, List, Mapping, NamedTuple, NoReturn, Sequence, Union
+from typing import IO, Dict, Mapping, NamedTuple, NoReturn, Sequence, Union
 
 from .exact import Ends, Number, decimal_text, exact, is_decimal, short_text
 from .potential import FourierSum, Wave

@@ -4,11 +4,13 @@
     family = orbits.follow(orbits.trig, (1432, 1897), 2513, [0.0025, 0.005, 0.0075, 0.01])
     print(family[-1].label, family[-1].exponents)
 
-The torus has period 1 here, 2 pi in the rest of the package; potential.parameters converts.
+The torus has period 1 here, 2 pi in the rest of the package: converse/model/potential.py converts.
 """
 
 try:
-    from .floor import Floor, LeastAction, enclosed_action, floor, least_action
+    from .action import enclosed_action
+    from .branch_and_bound import LeastAction, least_action
+    from .mather import Floor, floor
     from .measures import Prelude, gram_schmidt_exponents, prelude
     from .potential import (Fourier, FromPython, Potential, ff, froeschle, parameters, poly,
                             read_potential, standard, trig)
