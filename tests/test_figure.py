@@ -18,7 +18,7 @@ import pytest
 
 from converse import ConverseError, Problem, prove, read_input
 from converse.draw import captions, plot
-from converse.draw.figure import LEFT_MARGIN, SIDE, PAGE_WIDTH, format_of, postscript
+from converse.draw.figure import LEFT_MARGIN, PAGE_WIDTH, SIDE, format_of, postscript
 from converse.prover.tree import leaves
 
 RESOLUTION = 144                        # two pixels a point

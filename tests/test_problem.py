@@ -207,7 +207,7 @@ def test_ranges_are_patches():
     for parts, together in (([["0.01", 0, 0], [0, "0.02", 0], [0, 0, 0]], False), ([], False),
                             ([["0.01", "0.02", 0]], True)):
         problem = Problem.patch(["0.4", "0.3", "0.2"], parts)
-        assert problem.general is None and problem.together is together
+        assert problem.by_ranges and problem.together is together
         halves = [sum(map(Fraction, column)) for column in zip([0] * 3, *parts)]
         assert problem == Problem.around(
             (*map(Fraction, ("0.4", "0.3", "0.2")), 1, 1), (*halves, 1, 1), together=together)
@@ -238,7 +238,7 @@ def test_the_thesis_in_waves():
     assert problem.amplitude == (Fraction("0.35"), Fraction("0.2"), Fraction("0.6"))
     assert problem.parts == ((Fraction("0.05"), 0, 0), (0, 0, 0), (0, 0, Fraction("0.1")))
     assert replace(problem, together=True).parts == ((Fraction("0.05"), 0, Fraction("0.1")),)
-    assert (problem.frame, problem.kept, problem.searched) == (IDENTITY, None, (0, 1, 2))
+    assert (problem.frame, problem.factor, problem.searched) == (IDENTITY, None, (0, 1, 2))
 
 
 WAVE = {"amplitude": [1], "waves": [(1, 0)]}
@@ -352,11 +352,11 @@ def test_frames_of_the_thesis():
     ((1, 1), [(1, 0), (1, 1)], None)])
 def test_a_coordinate_alone(amplitude, waves, kept):
     problem = Problem.patch(amplitude, waves=waves)
-    assert problem.kept == kept
+    assert problem.factor == kept
     assert [problem.waves[j][:2] for j in problem.searched] == [
         k for k in waves if kept is None or k[1 - kept] == 0]
     both = replace(problem, alone="no")
-    assert both.kept is None and len(both.searched) == len(waves)
+    assert both.factor is None and len(both.searched) == len(waves)
     assert (both == problem) == (kept is None) and replace(both, alone=kept) == problem
 
 

@@ -646,7 +646,7 @@ def test_the_method_of_1989_takes_ranges_only():
             prove(problem)
     for problem in Problem(0, 0, 2), Problem(2, 2, 0):      # in no frame, and with all waves
         proof = prove(problem)
-        assert proof.problem.frame == IDENTITY and proof.problem.kept is None
+        assert proof.problem.frame == IDENTITY and proof.problem.factor is None
         assert prove(problem, resume=proof).tree == proof.tree
 
 

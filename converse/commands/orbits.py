@@ -139,9 +139,9 @@ def _old_term(path):
             return None
         harmonics = [{"k": list(map(int, k)), "amplitude": number, "phase": phase}
                      for number, phase in ((cosine, "-1/2"), (sine, "1")) if number.strip("0.")]
-        return "%s: lines 'k0 k1 cosine sine' are not read any more; the first one is now %s, and " \
-               "eps 4 pi^2 times as large (docs/orbits.md)" % (
-                   path, json.dumps({"harmonics": harmonics}))
+        return ("%s: lines 'k0 k1 cosine sine' are not read any more; the first one is now %s, and "
+                "eps 4 pi^2 times as large (docs/orbits.md)" % (
+                    path, json.dumps({"harmonics": harmonics})))
 
 
 def _check_type(potential, vector):

@@ -129,7 +129,7 @@ def _read_problem(options, restored):
         if source.isatty():
             tell("reading the problem from standard input; end it with Ctrl-D")
     problem = read_input(source)
-    if problem.general is not None:
+    if not problem.by_ranges:
         if options.together:
             raise ConverseError("--together is for ranges of a, b and c; name a parameter in the "
                                 "input instead")

@@ -25,7 +25,7 @@ def head(proof):
     problem = proof.problem
     low, high = ([short_text(c + sign * h) for c, h in zip(problem.centre[:-2], problem.half)]
                  for sign in (-1, 1))
-    names = "abc" if problem.general is None else [
+    names = "abc" if problem.by_ranges else [
         "p of " + wave_text(wave) for wave in problem.waves]
     ranges = ["%s < %s < %s" % (a, name, b) if a != b else "%s = %s" % (name, a)
               for a, name, b in zip(low, names, high)]
@@ -36,7 +36,7 @@ def head(proof):
     text = (" " if problem.together else ",  ").join(
         part.replace(" ", "\xa0") if len(part) < LINE_LENGTH else part for part in ranges)
     words = [CONCLUSIONS[proof.conclusion]]
-    if problem.general is not None and any(
+    if not problem.by_ranges and any(
             sum(map(bool, part)) > 1 for part in problem.parts):
         words[:0] = ["on a part of this box"]
     if problem.dimension == 1:

@@ -124,7 +124,7 @@ def attempt(directions, cell, budget, stop=None):
     if tree is None:
         return Outcome(OPEN)
     return Outcome(PROVED, {"xstar": list(begun.xstar), "frame": list(problem.frame),
-                            "alone": "no" if problem.kept is None else str(problem.kept),
+                            "alone": "no" if problem.factor is None else str(problem.factor),
                             "tree": tree})
 
 

@@ -22,9 +22,9 @@ Source = Union[str, "os.PathLike[str]", IO]
 def read_input(source: Source) -> Problem:
     """Reads an input file from a path or an open file.
 
-    That of the thesis (Appendix B): five lines of two numbers, centre and half-width, for a, b, c and
-    the two angles, these in units of pi; then comment lines.  Blank lines may stand anywhere.  Or,
-    if it begins with a brace or is called .json, a potential of one's own (docs/format.md).
+    That of the thesis (Appendix B): five lines of two numbers, centre and half-width, for a, b, c
+    and the two angles, these in units of pi; then comment lines.  Blank lines may stand anywhere.
+    Or, if it begins with a brace or is called .json, a potential of one's own (docs/format.md).
     InputError: it is neither.
     """
     text, name = _read(source)

@@ -10,7 +10,8 @@ and the two conventions in which its map is written:
 
 With eps = 1 they are the same map if U(x) = V(2 pi x)/(4 pi^2), that is, if U is the sum of
 
-    s (c cos(2 pi k.x) + d sin(2 pi k.x)),   s = 1/(4 pi^2), c = -p sin(pi phase), d = -p cos(pi phase).
+    s (c cos(2 pi k.x) + d sin(2 pi k.x)),
+    s = 1/(4 pi^2), c = -p sin(pi phase), d = -p cos(pi phase).
 
 This module is the only place where one is converted to the other.
 """

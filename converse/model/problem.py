@@ -49,11 +49,11 @@ class Problem:
     -1 <= t[m] <= 1, the wave j being (k0, k1, phi / pi): three ranges are three parameters t[m],
     ranges taken together are one.
 
-    general: what patch() makes of its arguments; then a, b and c are None.
+    by_ranges: whether ranges of a, b and c describe the patch; if not, these are None.
     axes: the frame, x_1 = frame.(v0, v1), as (f00, f01, f10, f11); None: chosen to suit the waves.
-    alone: the coordinate that is looked at alone, 0 or 1, or "no"; None: chosen.
+    alone: the coordinate that is examined alone, 0 or 1, or "no"; None: chosen.  `factor` has it.
 
-    TypeError, ValueError: a range is none; the text says which and why.
+    TypeError, ValueError: an argument is not what it must be; the text says which, and why.
     """
 
     a: Optional[Ends] = None
@@ -63,7 +63,7 @@ class Problem:
     v1: Ends = (Fraction(0), Fraction(2))
     comments: Tuple[str, ...] = ()
     together: bool = False
-    general: Optional[Tuple[Tuple[Wave, ...], Numbers, Tuple[Numbers, ...]]] = None
+    _patch: Optional[Tuple[Tuple[Wave, ...], Numbers, Tuple[Numbers, ...]]] = None
     axes: Optional[Frame] = None
     alone: Union[int, str, None] = None
 
@@ -72,11 +72,11 @@ class Problem:
                      b: Union[Range, Number, None] = None, c: Union[Range, Number, None] = None,
                      v0: Union[Range, Number] = (0, 2), v1: Union[Range, Number] = (0, 2),
                      comments: Union[str, Sequence[str]] = (), together: bool = False,
-                     general: Optional[tuple] = None, axes: Optional[Frame] = None,
+                     _patch: Optional[tuple] = None, axes: Optional[Frame] = None,
                      alone: Union[int, str, None] = None) -> None: ...
 
     def __post_init__(self) -> None:
-        for name in NAMES if self.general is None else NAMES[3:]:
+        for name in NAMES if self.by_ranges else NAMES[3:]:
             object.__setattr__(self, name, interval(name, getattr(self, name)))
         if not isinstance(self.together, bool):
             raise TypeError("together must be True or False, not %r" % (self.together,))
@@ -86,7 +86,7 @@ class Problem:
         object.__setattr__(self, "comments", tuple(
             line.encode("utf-8", "backslashreplace").decode("utf-8")
             for comment in comments for line in (comment.splitlines() or [""])))
-        if self.general is not None:
+        if not self.by_ranges:
             if self.together or (self.a, self.b, self.c) != (None,) * 3:
                 raise ValueError("a, b, c and together do not go with a patch")
             self._normalize()
@@ -125,13 +125,13 @@ class Problem:
 
         A patch that three ranges of a, b and c, or these together, can describe is that Problem.
         """
-        return cls(None, None, None, v0, v1, comments, False, _general(waves, amplitude, parts),
+        return cls(None, None, None, v0, v1, comments, False, _checked(waves, amplitude, parts),
                    axes, alone)
 
     def _normalize(self):
         """What a, b and c can say is said by them: one problem, one Problem."""
-        waves, amplitude, parts = _general(*self.general)
-        object.__setattr__(self, "general", (waves, amplitude, parts))
+        waves, amplitude, parts = _checked(*self._patch)
+        object.__setattr__(self, "_patch", (waves, amplitude, parts))
         if waves != tuple((*k, Fraction(0)) for k in THESIS):
             return
         if len(parts) == 1:
@@ -146,7 +146,7 @@ class Problem:
         for name, p, h in zip("abc", amplitude, half):
             object.__setattr__(self, name, (p - h, p + h))
         object.__setattr__(self, "together", len(parts) == 1)
-        object.__setattr__(self, "general", None)
+        object.__setattr__(self, "_patch", None)
 
     def _check_choices(self):
         """Sees that axes and alone make sense; None where they say what would be chosen anyhow."""
@@ -169,7 +169,7 @@ class Problem:
     def __repr__(self):
         ranges = ["%s=%s" % (name, range_text(*getattr(self, name))) for name in NAMES
                   if getattr(self, name) is not None]
-        if self.general is None:
+        if self.by_ranges:
             return "Problem(%s%s)" % (", ".join(ranges), ", together" if self.together else "")
         return "Problem.patch(%s, %s)" % (", ".join(
             "%s of (%d, %d)" % (range_text(p - h, p + h), k0, k1)
@@ -180,25 +180,31 @@ class Problem:
     @cached_property
     def waves(self) -> Tuple[Wave, ...]:
         """(k0, k1, phase in units of pi) of each wave."""
-        return tuple((*k, Fraction(0)) for k in THESIS) if self.general is None else self.general[0]
+        return (tuple((*k, Fraction(0)) for k in THESIS) if self._patch is None
+                else self._patch[0])
 
     @cached_property
     def amplitude(self) -> Numbers:
         """Of each wave, in the middle of the patch."""
-        if self.general is not None:
-            return self.general[1]
+        if self._patch is not None:
+            return self._patch[1]
         return tuple(sum(getattr(self, name)) / 2 for name in "abc")
 
     @cached_property
     def parts(self) -> Tuple[Numbers, ...]:
         """Of each parameter, what it adds to each amplitude at its upper end."""
-        if self.general is not None:
-            return self.general[2]
+        if self._patch is not None:
+            return self._patch[2]
         half = [(high - low) / 2 for low, high in (getattr(self, name) for name in "abc")]
         if self.together:
             return tuple(half),
         return tuple(tuple(h if j == m else Fraction(0) for j in range(3))
                      for m, h in enumerate(half))
+
+    @property
+    def by_ranges(self) -> bool:
+        """Is the patch described by ranges of a, b and c, perhaps taken together?"""
+        return self._patch is None
 
     @cached_property
     def frame(self) -> Frame:
@@ -222,11 +228,12 @@ class Problem:
         return sign * q[1], x, -sign * q[0], y  # of determinant sign q.(x, y)
 
     @cached_property
-    def kept(self) -> Optional[int]:
-        """The coordinate that is looked at alone, without the waves that the other one feels.
+    def factor(self) -> Optional[int]:
+        """The coordinate that is examined alone, without the waves that depend on the other one;
+        None: neither.
 
-        If no wave feels both, the map is a product of two, and so are the second variations: that
-        of test vectors (n, 0) is the second variation of the first map by itself."""
+        If no wave depends on both, the map is a product of two, and so are the second variations:
+        that of test vectors (n, 0) is the second variation of the first map by itself."""
         if self.alone is None:
             return self._best_alone()
         return self.alone if isinstance(self.alone, int) else None
@@ -241,7 +248,7 @@ class Problem:
     def searched(self) -> Tuple[int, ...]:
         """Which of the waves the search needs."""
         return tuple(j for j, k in enumerate(self.waves)
-                     if self.kept is None or k[1 - self.kept] == 0)
+                     if self.factor is None or k[1 - self.factor] == 0)
 
     @cached_property
     def odd(self) -> Optional[Ends]:
@@ -273,7 +280,7 @@ class Problem:
     @property
     def dimension(self) -> int:
         """1 if the potential is given on the circle, else 2."""
-        return 2 if self.general is None or any(k1 for _, k1, _ in self.waves) else 1
+        return 2 if self.by_ranges or any(k1 for _, k1, _ in self.waves) else 1
 
     # ---- ranges
 
@@ -303,7 +310,7 @@ def _bezout(a, b):
     return y, x - a // b * y
 
 
-def _general(waves, amplitude, parts):
+def _checked(waves, amplitude, parts):
     """The three as Problem keeps them: tuples of exact numbers.  TypeError, ValueError: they are
     none, or do not go together."""
     try:

@@ -57,9 +57,10 @@ def action_on_grid(potential, eps, grid):
     return W, off, rise
 
 
-def largest_coordinate(state):
-    """How large its points' coordinates are before whole turns are taken off."""
-    return 1 + float(np.abs(state.origin).max()) + float(np.abs(state.u).max())
+def errors_near(state):
+    """The rounding_errors at the points of a state, before whole turns are taken off."""
+    reach = 1 + float(np.abs(state.origin).max()) + float(np.abs(state.u).max())
+    return rounding_errors(state.potential, reach)
 
 
 def action_bounds(state):
@@ -68,7 +69,7 @@ def action_bounds(state):
     x[:, :state.potential.n] = state.base + state.u
     parts = np.append(step.ravel() ** 2 / 2, -state.eps * values_at(state.potential, x))
     off = (2 * (len(parts) + 8) * U * float(np.abs(parts).sum())
-           + state.q * abs(state.eps) * rounding_errors(state.potential, largest_coordinate(state))[0])
+           + state.q * abs(state.eps) * errors_near(state)[0])
     return float(parts.sum()) - off, float(parts.sum()) + off
 
 
@@ -76,7 +77,7 @@ def gradient_bounds(state):
     """Of the action, and what each of its coordinates may be off by."""
     off = 8 * U * (4 * float(np.abs(state.u).max()) + float(np.abs(state.gradient).max()))
     return (state.gradient,
-            off + 1.001 * abs(state.eps) * rounding_errors(state.potential, largest_coordinate(state))[1])
+            off + 1.001 * abs(state.eps) * errors_near(state)[1])
 
 
 def per_point(low, high, q):

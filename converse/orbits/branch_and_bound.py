@@ -15,8 +15,8 @@ import numpy as np
 from .._native import ffi, lib
 from ..prover.native import check
 from ..storage.files import ConverseError
-from .action import (LARGEST_EPS, U, action_bounds, action_on_grid, floats_within, gradient_bounds,
-                     largest_coordinate, per_point, rounding_errors)
+from .action import (LARGEST_EPS, U, action_bounds, action_on_grid, errors_near, floats_within,
+                     gradient_bounds, per_point, rounding_errors)
 from .potential import Potential, address, known, whole
 from .state import FARTHEST, State
 
@@ -143,7 +143,7 @@ class _Search:
             matrix[j, :, j] += 2 * np.eye(n) - self.eps * block
             matrix[j, :, (j + 1) % q] -= np.eye(n)
             matrix[(j + 1) % q, :, j] -= np.eye(n)
-        off = (1.001 * abs(self.eps) * rounding_errors(self.potential, largest_coordinate(state))[2]
+        off = (1.001 * abs(self.eps) * errors_near(state)[2]
                + 32 * U * float(np.abs(matrix).max()))
         return _least_eigenvalue(matrix.reshape(size, size)) - change - off
 

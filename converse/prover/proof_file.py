@@ -122,7 +122,7 @@ def _problem_lines(problem):
     lines = ["wave: %d %d %s" % wave + "".join(" " + decimal_text(x) for x in numbers)
              for wave, *numbers in zip(problem.waves, problem.amplitude, *problem.parts)]
     lines += ["frame: %d %d %d %d" % problem.frame,
-              "alone: %s" % ("no" if problem.kept is None else problem.kept),
+              "alone: %s" % ("no" if problem.factor is None else problem.factor),
               "odd about: " + ("no" if problem.odd is None else "%s %s" % problem.odd)]
     ends = zip(NAMES[3:], problem.centre[-2:], problem.half[-2:])
     return lines + ["%s: %s %s" % (name, decimal_text(centre), decimal_text(half))

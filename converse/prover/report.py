@@ -34,7 +34,7 @@ def header(problem, as_printed=False):
     not the program's words: but for a run as printed they are quoted."""
     lines = ["Parameters :"]
     lines += ["%s : %.14e \t %.14e" % row for row in zip(
-        "abc" if problem.general is None else ["p of " + wave_text(wave) for wave in problem.waves],
+        "abc" if problem.by_ranges else ["p of " + wave_text(wave) for wave in problem.waves],
         map(float, problem.centre), map(float, problem.half))]
     lines += ["", "Initial region :"]
     lines += ["v[%d] : %.14e \t %.14e" % (i, problem.centre[i - 2] * math.pi,
@@ -69,14 +69,14 @@ TORI = {1: "rotational invariant circles", 2: "invariant tori"}         # by dim
 
 def _theorem(proof):
     problem, exactly = proof.problem, not proof.as_printed
-    of = " for the range of parameters :" if problem.general is None else " for %s :" % WAVES
+    of = " for the range of parameters :" if problem.by_ranges else " for %s :" % WAVES
     lines = [FINDINGS[proof.conclusion] % TORI[problem.dimension]]
     if proof.conclusion == REGION:
         lines += [_range("v[0] / pi", *problem.v0), _range("v[1] / pi", *problem.v1)]
         lines += ["(only a part of the torus: other successors were not examined)", of[1:]]
     else:
         lines[0] += of
-    if problem.general is not None:
+    if not problem.by_ranges:
         lines += _potential(problem)
     else:
         lines += [_range(name, *getattr(problem, name), exactly) for name in "abc"]
@@ -86,7 +86,7 @@ def _theorem(proof):
         lines += [""] + _gaps(proof)
     elif proof.at_once:
         lines += ["Nor are there any for s times %s, s > 1." % (
-            "the upper ends" if problem.together else "such parameters" if problem.general is None
+            "the upper ends" if problem.together else "such parameters" if problem.by_ranges
             else "such p" if len(problem.parts) != 1 else "those p of t[1] = 1")]
     return lines
 
@@ -185,7 +185,7 @@ def _statistics(proof):
 def _method(proof):
     """The map, the method and the counts that the conclusion rests on."""
     problem = proof.problem
-    lines = ["Map : " + MAP[0] + (MAP[1] if problem.general is None else WAVES + " such waves"),
+    lines = ["Map : " + MAP[0] + (MAP[1] if problem.by_ranges else WAVES + " such waves"),
              *MAP[2:], *_choices(problem),
              "Program : converse " + proof.version,
              "Method : " + METHOD_NAMES[proof.method],
@@ -211,7 +211,7 @@ def _choices(problem):
     if problem.dimension == 1:
         lines += ["Circles : those that go around are graphs (Birkhoff), and times {J1 = 0} such "
                   "tori"]
-    if problem.kept is not None:
+    if problem.factor is not None:
         lines += ["Alone : y%d, as no wave feels both angles; what only y%d feels was left out" % (
-            problem.kept, 1 - problem.kept)]
+            problem.factor, 1 - problem.factor)]
     return lines

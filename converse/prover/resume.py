@@ -17,13 +17,15 @@ def _as_before(problem, before, differs):
         theirs, ours = getattr(before, key), getattr(problem, key)
         if None not in (theirs, ours) and theirs != ours:
             differs(key, *(" .. ".join(map(decimal_text, ends)) for ends in (theirs, ours)))
-    if problem.general != before.general:
+    if problem.by_ranges != before.by_ranges or not problem.by_ranges and (
+            problem.waves, problem.amplitude, problem.parts) != (
+            before.waves, before.amplitude, before.parts):
         differs("potential", before, problem)
     if problem.together != before.together:
         differs("together", before.together, problem.together)
     same = replace(problem, **{key: getattr(before, key) for key in ("axes", "alone")
                                if getattr(problem, key) is None})
-    for key, what in ("frame", "frame"), ("kept", "coordinate that stands alone"):
+    for key, what in ("frame", "frame"), ("factor", "coordinate that stands alone"):
         if getattr(same, key) != getattr(before, key):
             differs(what, getattr(before, key), getattr(same, key))
     return same

@@ -56,7 +56,7 @@ class Settings:
         if problem.together:
             raise ValueError("parameters that move together (--together) need the method loewner "
                              "(--method loewner)")
-        if problem.general is not None:
+        if not problem.by_ranges:
             raise ValueError("the method thesis takes three ranges of a, b and c; any other patch "
                              "or potential needs the method loewner (--method loewner)")
         return replace(problem, axes=IDENTITY, alone="no")
