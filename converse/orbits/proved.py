@@ -86,10 +86,10 @@ class ProvedOrbit:
             "V(x) = %s," % state.potential.formula,
             "and eps = %s has exactly one orbit of type %s within %s of the points computed"
             % (_eps(state), _type(state), within),
-            "(Euclidean norm of all coordinates together), which are within %s of those given (each "
-            "coordinate)." % moved,
-            "It is hyperbolic and, run through any number of times, a nondegenerate local minimum of "
-            "the action:", "second variation at least %s." % rounded_text(self.least, 3, up=False),
+            "(Euclidean norm of all coordinates together), which are within %s of those given "
+            "(each coordinate)." % moved,
+            "It is hyperbolic and, run through any number of times, a nondegenerate local minimum "
+            "of the action:", "second variation at least %s." % rounded_text(self.least, 3, up=False),
             "Action per point less |p/q|^2/2: %s." % interval_text(*self.action, SHOWN)] + [
             "Exponent: %s." % interval_text(*ends, SHOWN) for ends in self.exponents]
         return "\n".join(lines) + "\n"
@@ -225,7 +225,7 @@ def _refine(state, exact, places, floor):
         elif not shift and exact.gradient < noise:
             return
         else:
-            shift *= min(Fraction(1, 64), (exact.gradient / gradient) ** 2)
+            shift *= min(Fraction(1, 64), (exact.gradient / (gradient or noise)) ** 2)
             if shift < floor:
                 shift = Fraction(0)
     raise _TooFewPlaces("Newton's method did not converge")
