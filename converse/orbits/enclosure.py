@@ -285,6 +285,10 @@ class Enclosure:
             moves.append(after)
         self.u = [(u + move).mid() for u, move in zip(self.u, [first] + moves[::-1])]
 
+    def nudge(self):
+        """Moves point 0 by 10^-10, in no particular direction."""
+        self.u[0] = (self.u[0] + arb_mat(self.n, 1, [arb(i) / 2 ** 34 for i in (2, 1)][:self.n])).mid()
+
     def pivot_after_all(self, shift):
         """The pivot of point 0 after ever so many rounds: the chain is joined to its like, and the
         result to its like, until its ends do not feel each other.  None: there is none, some copies

@@ -198,7 +198,8 @@ def _refine(state, exact, places, floor):
 
     Where the Hessian is not positive, but for less than what doubles see of it, the step is made
     with Hessian + shift.  A long way along a soft direction bends into the others: steps with a
-    shift that stops the soft ones bring these back.  What raises the action is taken back."""
+    shift that stops the soft ones bring these back.  What raises the action is taken back.  A
+    saddle where the gradient vanishes is left by a nudge."""
     exact.evaluate(places)
     noise, shift = 4 * exact.noise(), Fraction(0)
     for _ in range(STEPS):
@@ -209,6 +210,10 @@ def _refine(state, exact, places, floor):
             if not exact.bends(SOFT):
                 raise NotProved("the state is a saddle")
             shift = _boundary(max(shift, floor), SOFT, exact.bends, 16)[1]
+            if gradient < noise:
+                exact.nudge()
+                exact.evaluate(places)
+                gradient, action = exact.gradient, exact.action
         before = exact.u
         exact.newton(shift)
         exact.evaluate(places)
@@ -225,7 +230,7 @@ def _refine(state, exact, places, floor):
         elif not shift and exact.gradient < noise:
             return
         else:
-            shift *= min(Fraction(1, 64), (exact.gradient / (gradient or noise)) ** 2)
+            shift *= min(Fraction(1, 64), (exact.gradient / gradient) ** 2)
             if shift < floor:
                 shift = Fraction(0)
     raise _TooFewPlaces("Newton's method did not converge")
