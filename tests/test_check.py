@@ -1,6 +1,7 @@
 """The checker: it confirms what is proved, rejects everything else, and its bounds are bounds."""
 
 import ast
+import builtins
 import contextlib
 import decimal
 import gzip
@@ -865,10 +866,45 @@ def test_every_form_runs_alone(texts, forms, tmp_path, form):
     assert "numpy is not installed" in done.stderr and done.stderr.count("\n") == 1
 
 
+def test_the_referee_says_the_same(texts, deep, others, forms, run, tmp_path):
+    """Of proof files, good and bad, what the exact path says; and of a map that it reads none."""
+    tree, path, statuses = tree_of(texts["trig276"]), tmp_path / "some.proof", set()
+    for text in (deep, part_of(texts["trig274"]), others["a patch"], others["in a frame"],
+                 sealed(with_field(texts["trig274"], "c", "0.617 0.618")),
+                 sealed(with_tree(texts["trig276"], tree[:-1])), "junk"):
+        status, out, err = run(text, "--exact")
+        done = subprocess.run([sys.executable, "-I", "-S", forms / "referee.py", path],
+                              capture_output=True, text=True, env=PLAIN, cwd=tmp_path)
+        found = done.returncode, done.stdout, done.stderr.replace(str(path), "FILE")
+        assert found == (status, out, err) or status == found[0] == 5 and "limits" in found[2]
+        statuses.add(status)
+    assert statuses == {0, 1, 2, 3, 5}
+    for arguments in ((), (path, path), ("--help",)):
+        done = subprocess.run([sys.executable, forms / "referee.py", *arguments],
+                              capture_output=True, text=True)
+        assert done.returncode == 2 and "usage: python referee.py FILE" in done.stderr
+
+
+def test_the_referee_has_all_that_it_needs(forms):
+    """What it leaves out of the modules is mentioned nowhere in the rest; and it is short."""
+    text = (forms / "referee.py").read_text(encoding="utf-8")
+    nodes = list(ast.walk(ast.parse(text)))
+    known = {node.name for node in nodes if isinstance(node, (ast.FunctionDef, ast.ClassDef))}
+    known |= {node.id for node in nodes
+              if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store)}
+    known |= {node.arg for node in nodes if isinstance(node, ast.arg)} | set(dir(builtins))
+    known |= {alias.name.split(".")[0] for node in nodes
+              if isinstance(node, (ast.Import, ast.ImportFrom)) for alias in node.names}
+    known |= {node.name for node in nodes if isinstance(node, ast.ExceptHandler)}
+    assert {node.id for node in nodes if isinstance(node, ast.Name)} <= known
+    assert not {"numpy", "multiprocessing", "json"} & known
+    assert text.count("\n") <= 1550
+
+
 def test_every_form_is_made_the_same_again(forms, tmp_path):
     subprocess.run([sys.executable, "-I", "-S", ship.__file__, tmp_path], check=True,
                    stdout=subprocess.DEVNULL)
-    for form in FORMS:
+    for form in (*FORMS, "referee.py"):
         assert (forms / form).read_bytes() == (tmp_path / form).read_bytes()
 
 

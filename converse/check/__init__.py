@@ -11,10 +11,10 @@ from .failures import Failure, NotConfirmed, Rejected, Unusable, shown
 from .limits import INTERRUPTED, NOT_CONFIRMED, PART, REJECTED, SPOT_CHECK, UNUSABLE, VERIFIED
 from .maps import Map
 from .proof_file import load
-from .run import read, verify
+from .run import Result, read, verify
 from .tree import check_tree
 from .version import __version__
-from .words import Result, decimal_text
+from .words import decimal_text
 
 __all__ = ["Failure", "INTERRUPTED", "Map", "NOT_CONFIRMED", "NotConfirmed", "PART", "REJECTED",
            "Rejected", "Result", "SPOT_CHECK", "UNUSABLE", "Unusable", "VERIFIED", "__version__",

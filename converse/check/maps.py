@@ -21,6 +21,7 @@ from .failures import NotConfirmed, Rejected, Unusable, named
 from .limits import MAX_ITEMS
 from .torus import is_at_once, torus_bound
 from .tree import changed, check_mirror_images, leaves, tree_counts
+from .words import GRAPH, SYSTEM, TRIG, decimal_text
 
 REGIONS = {"b=0": (((1, 0, 0), (0, 0, 1)), ((0, 0, 1), (1, 0, 0))),
            "a=b": (((1, 1, 0), (0, 0, 1)), ((0, 0, 1), (1, 1, 0))),
@@ -318,3 +319,33 @@ def proved_from(cells, radius, axes):
 
             todo.append((i, k, [cell for cell in cells if meets(cell)]))
     return worst if worst < radius else None, forever
+
+
+def mapped(file):
+    """What a map claims, in lines."""
+    signs = len(sign_changes())
+    lines = [SYSTEM, TRIG + ", " + GRAPH[0], *GRAPH[1:]]
+    lines[-1] += " for any (a, b, c)"
+    lines += ["in the %d proved cells of the file, for any multiple s >= 1 of those in its %d cells"
+              % (file.count("P"), file.count("A")),
+              "at once (B > 10/3), and for the images of all these by the %d changes of the signs "
+              "of" % signs,
+              "a, b, c and by the exchange of a and b.  %d cells are open." % file.count("O"),
+              "Region : " + file.region]
+    for face in file.faces:
+        cells = [cell for cell in face.cells if cell[0] != "X"]
+        names = "st"[:len(face.directions) - 1]
+        lines += ["Face (a, b, c) = r (%s), 0 <= %s <= 1, r <= %s :" % (" + ".join([
+            name + "(%s)" % ", ".join(map(decimal_text, d))
+            for name, d in zip(("", *[x + " " for x in names]), face.directions)]),
+            ", ".join(names), decimal_text(face.radius))]
+        least = min([face.box(*cell)[0][0] for kind, *cell in cells if kind in "PA"], default=None)
+        if least is None:
+            lines += ["  nothing is proved"]
+            continue
+        start, forever = face.proved
+        lines += ["  every direction is proved from r = %s on, %s" % (
+            decimal_text(start), "for ever" if forever else "up to the face's radius")
+            if start is not None else "  not every direction is proved, even at the face's radius",
+            "  the least r that is proved in some direction is %s" % decimal_text(least)]
+    return lines

@@ -3,20 +3,35 @@
 import contextlib
 import itertools
 import random
+from dataclasses import dataclass
 
 from .criterion import check_at_once
 from .failures import NotConfirmed, Unusable
+from .limits import VERIFIED
 from .lockstep import make_lockstep
-from .maps import Map, check_map, read_map
+from .maps import Map, check_map, mapped, read_map
 from .progress import Bar
 from .proof_file import load, read_proof
 from .state import State
-from .tree import check_mirror_images, check_tree, leaf_text
-from .words import report
+from .tree import check_mirror_images, check_tree
+from .words import claimed, not_excluded, report
 from .workers import Problems, in_order
 
 CHUNKS, CHUNK = 8, 16                   # tasks of a process, about; leaves of one, with --exact
 FAST_CHUNK = 1 << 8, 1 << 14            # least and most of the fast path
+
+
+@dataclass(frozen=True)
+class Result:
+    """What came of a check in which nothing failed: true only if the whole claim is verified and
+    its region is the whole torus, or all that a map says is proved.  (All else is an exception.)"""
+
+    status: int                         # VERIFIED, PART or SPOT_CHECK: the exit status, too
+    verdict: str                        # "verified", "verified in part" or "spot check"
+    text: str                           # the report
+
+    def __bool__(self):
+        return self.status == VERIFIED
 
 
 def read(path):
@@ -72,10 +87,12 @@ def verify(path, jobs=1, sample=None, state=None, bar=False, exact=False):
                 if failure:
                     n, (at, cell), why = failure
                     claim = problems.claims[at]
-                    raise NotConfirmed(
-                        "%s%s is not excluded: %s; the claim is false or its proof beyond the "
-                        "limits of this checker" % (
-                            claim.where, leaf_text(claim, "P", n - sum(proved[:at]), cell), why))
+                    raise NotConfirmed(not_excluded(claim, n - sum(proved[:at]), cell, why))
     finally:
         done.save()
-    return report(file, problems, done, earlier, sample is not None)
+    is_map = isinstance(file, Map)
+    status, verdict, lines = report(
+        problems.claims, mapped(file) if is_map else claimed(file),
+        None if is_map else problems.criterion(0), done.confirmed, done.pieces, earlier,
+        sample is not None, bool(problems.fast))
+    return Result(status, verdict, "\n".join([*lines, "SHA-256 : " + file.sha256]))
