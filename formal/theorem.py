@@ -51,10 +51,7 @@ def term(wave):
 def odd_about(path):
     """The point of which the header says that V is odd about it, or None: not kept by the
     checker."""
-    found = re.search(rb"^odd about: (.*)\n", check.load(path), re.M)
-    if found is None:                                           # version 2: the thesis's potential
-        return Fraction(0), Fraction(0)
-    text = found[1].decode("ascii")
+    text = re.search(rb"^odd about: (.*)\n", check.load(path), re.M)[1].decode("ascii")
     return None if text == "no" else tuple(map(Fraction, text.split(" ")))
 
 

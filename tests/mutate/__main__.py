@@ -44,6 +44,7 @@ FINDERS = ["test_orbits.py", "test_orbits_fail.py", "test_floor.py", "test_prove
 TESTS = {
     "arith/apm": NUMBERS, "arith/special": ["test_special.py", *NUMBERS],
     "arith/sine": ["test_loewner.py", "test_gappa.py", "test_waves.py"], "arith/lanes": SHARP,
+    "arith/interval": ["test_interval.py", "test_bounds.py"],
     "arith/guard": ["test_rigor.py", "test_search.py", "test_orbits.py"],
     "arith/machine": ["test_rigor.py"],
     "thesis/bounding": ["test_bounding.py", *NUMBERS],
@@ -52,7 +53,7 @@ TESTS = {
     "thesis/lipschitz": ["test_bounds.py", *NUMBERS], "thesis/region": ["test_search.py", *NUMBERS],
     "thesis/follow": ["test_search.py", *NUMBERS], "thesis": ["test_images.py", *NUMBERS],
     "model": ["test_bounds.py", *SHARP], "search": ["test_search.py", *SHARP, "test_rigor.py"],
-    "loewner/general": ["test_waves.py", "test_margins.py", *SHARP],
+    "loewner/waves": ["test_waves.py", "test_margins.py", *SHARP],
     "loewner": [*SHARP, "test_margins.py"],
     "orbits/minplus": ["test_floor.py"], "orbits/enclosure": ["test_proved.py"],
     "orbits/exponents": ["test_proved.py"], "orbits": FINDERS,
