@@ -196,7 +196,8 @@ def ended(command, run, interrupted):
             return BAD                  # a standard stream is closed: nowhere to say so
         for stream in (sys.stdout, sys.stderr):
             stream.reconfigure(errors="backslashreplace")
-        with interruptible(ENDING, at_end=True) as heard, _warnings_in_lines(command, unsaved):
+        with interruptible(ENDING, at_end=True) as signals, _warnings_in_lines(command, unsaved):
+            heard = signals.heard
             status = run()
         if not unsaved:
             return status

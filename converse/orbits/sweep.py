@@ -233,23 +233,27 @@ def _sweep(task, how, columns, potential, vectors, eps, executor, file, progress
                          % (vectors,)) from None
     texts = [_text([(*columns, SEAL)])]
     seal = "%s %r %s\n" % (potential.formula, potential.start, how)
-    with interruptible(), contextlib.ExitStack() as stack:
-        out = None
-        if file is not None:
-            files.check_writable(file, regular=True)
-            stack.enter_context(files.Lock(file))
+    with interruptible():
+        if file is None:
+            return _table("".join(_grown(task, vectors, executor, seal, texts, [], progress)))
+        files.check_writable(file, regular=True)
+        with files.Lock(file):
             texts += _finished(file, texts[0], potential, vectors, eps, task, seal)
-            out = stack.enter_context(contextlib.closing(files.AppendedFile(file, "".join(texts))))
-        if progress is not None:
-            progress(len(texts) - 1, len(vectors))
-        results = _in_order(task, vectors[len(texts) - 1:], executor)
-        for text in stack.enter_context(contextlib.closing(results)):
+            with contextlib.closing(files.AppendedFile(file, "".join(texts))) as out:
+                return _table("".join(_grown(task, vectors, executor, seal, texts, out, progress)))
+
+
+def _grown(task, vectors, executor, seal, texts, out, progress):
+    """The texts of the header and of all vectors, given the first of them; the others are appended
+    to out as well."""
+    tell = progress or (lambda *_: None)
+    tell(len(texts) - 1, len(vectors))
+    with contextlib.closing(_in_order(task, vectors[len(texts) - 1:], executor)) as results:
+        for text in results:
             texts.append(_sealed(seal, text))
-            if out is not None:
-                out.append(texts[-1])
-            if progress is not None:
-                progress(len(texts) - 1, len(vectors))
-    return _table("".join(texts))
+            out.append(texts[-1])
+            tell(len(texts) - 1, len(vectors))
+    return texts
 
 
 def _vector(potential, vector):

@@ -40,8 +40,8 @@ def load(path):
                             % (path, number, wrong))
 
     if lines[0] == BEFORE:
-        raise ConverseError("%s: is a proof file of format 2, which releases up to 1.6.0 read; continue "
-                            "it with one of those, which writes format 3" % path)
+        raise ConverseError("%s: is a proof file of format 2, which releases up to 1.6.0 read; "
+                            "continue it with one of those, which writes format 3" % path)
     if lines[0] != FIRST_LINE:
         fail(1, "this is not a proof file of this program")
     if lines[-2:] != ["end", ""]:

@@ -8,6 +8,7 @@ import contextlib
 import time
 from dataclasses import replace
 
+from ..storage.signals import Resource
 from . import native, tree
 from .native import Counts
 from .workers import LOOK_SECONDS, WorkerPool
@@ -42,7 +43,7 @@ def _kinds(text):
     return (sum(map(text.count, tree.CUTS)), *map(text.count, "PSU"))
 
 
-class TreeSearch:
+class TreeSearch(Resource):
     """A search under way: the parts of its tree in preorder, some of them being worked on.
 
     The C core always works in other threads than this one, or elsewhere, so that this one can watch
@@ -57,11 +58,11 @@ class TreeSearch:
         self.parts, self.statistics = [], Counts()
         self.changes = 0                    # under way: see _change
 
-    def __enter__(self):
-        return self
+    def acquire(self):
+        self.pool.acquire()
 
-    def __exit__(self, *_):
-        self.pool.__exit__()
+    def release(self):
+        self.pool.release()
 
     # ---- the beginning
 

@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 from typing import Any, Callable
 
 from ..storage.files import ConverseError
-from ..storage.signals import postponed
+from ..storage.signals import Resource, postponed
 from ..version import __version__
 
 LOOK_SECONDS = 0.1                  # between two looks at the clock, at Ctrl-C, at the bar
@@ -47,7 +47,7 @@ class _Task:
     attempts: int = ATTEMPTS            # that are left, this one included
 
 
-class WorkerPool:
+class WorkerPool(Resource):
     """The workers of an executor or, where that is None, threads of this process.
 
     executor: a concurrent.futures.Executor or None; jobs: tasks at a time, or None: as many as keep
@@ -60,16 +60,15 @@ class WorkerPool:
         self.client = getattr(executor, "_client", None)        # of Dask
         self.due, self.cores, self.probes, self.waiting = 0.0, 0, {}, ""    # of _ask
         self.running = {}                                       # future -> _Task
-        self.threads = concurrent.futures.ThreadPoolExecutor(   # they start with the first task
+        self.threads = concurrent.futures.ThreadPoolExecutor(
             jobs or count_workers() if executor is None else 1)
 
-    def __enter__(self):
-        return self
+    def acquire(self):
+        """The threads begin with the first task."""
 
-    def __exit__(self, *_):
+    def release(self):
         self.cancel()
-        with postponed():
-            self.threads.shutdown()
+        self.threads.shutdown()
 
     # ---- tasks
 

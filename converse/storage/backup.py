@@ -5,12 +5,13 @@ import warnings
 
 from . import files
 from .files import ConverseError, NotSaved
+from .signals import Resource
 
 SECONDS = 1.0                       # between two writes
 SHARE = 20                          # of the time, at most one part in so many goes into them
 
 
-class Backup:
+class Backup(Resource):
     """Keeps path up to date; with None it keeps nothing.
 
     The file must be new, or empty, or that of the run which is continued: nothing is overwritten.
@@ -22,18 +23,13 @@ class Backup:
         self.failure = ""                   # of the last write
         self.lock = None if path is None else files.Lock(path)
 
-    def __enter__(self):
+    def acquire(self):
         if self.lock is not None:
             files.check_writable(self.path, regular=True)
-            self.lock.__enter__()
-            try:
-                files.check_new(self.path, self.resumed)
-            except BaseException:
-                self.lock.release()
-                raise
-        return self
+            self.lock.acquire()
+            files.check_new(self.path, self.resumed)
 
-    def __exit__(self, *_):
+    def release(self):
         if self.lock is not None:
             self.lock.release()
 

@@ -4,7 +4,7 @@ import contextlib
 import fcntl
 import os
 
-from .signals import postponed
+from .signals import Resource
 
 
 class ConverseError(RuntimeError):
@@ -159,7 +159,7 @@ class AppendedFile:
                                 % (self.path, reason(error))) from None
 
 
-class Lock:
+class Lock(Resource):
     """A context in which no other run writes a file that this one writes again and again.
 
     ConverseError: another run does, or the lock, a file beside it, cannot be made."""
@@ -168,28 +168,17 @@ class Lock:
         self.path, self.name = path, os.path.realpath(path) + ".lock"
         self.handle = None
 
-    def __enter__(self):
-        try:
-            with postponed():           # a signal in between would leave the lock to nobody
-                while self.handle is None:
-                    self.handle = self._take()
-        except BaseException:
-            self.release()
-            raise
-        return self
-
-    def __exit__(self, *_):
-        self.release()
+    def acquire(self):
+        while self.handle is None:
+            self.handle = self._take()
 
     def release(self):
-        """Removes the lock, if it is held."""
-        with postponed():
-            if self.handle is not None:
-                if self._is_there(self.handle):
-                    with contextlib.suppress(OSError):
-                        os.unlink(self.name)
-                os.close(self.handle)
-                self.handle = None
+        if self.handle is not None:
+            if self._is_there(self.handle):
+                with contextlib.suppress(OSError):
+                    os.unlink(self.name)
+            os.close(self.handle)
+            self.handle = None
 
     def _take(self):
         """The descriptor of the locked file, or None where its holder has just removed it."""

@@ -29,7 +29,7 @@ def _interrupt(number, frame):
         _due = True
         while frame is not None and frame.f_code.co_filename != _interrupt.__code__.co_filename:
             frame = frame.f_back
-        if frame is None:               # else __enter__ or __exit__ below sees to it
+        if frame is None:               # else a Resource's __enter__ or __exit__ raises it
             _raise_if_due()
 
 
@@ -44,56 +44,73 @@ def _in_main_thread():
     return threading.current_thread() is threading.main_thread()
 
 
-class interruptible:
-    """A context in which these signals raise KeyboardInterrupt, unless they are ignored or have a
-    handler other than Python's own; only the first of all counts.  As a variable it is the list of
-    those that came.  Inside another interruptible() it changes nothing, nor in another thread than
-    the main one, which alone receives signals.
+class Resource:
+    """A context whose acquire() and release() are whole: a signal of interruptible() that comes
+    meanwhile is raised at their end.  They should be short, and release() must also do after an
+    acquire() that failed."""
 
+    def acquire(self):
+        raise NotImplementedError
+
+    def release(self):
+        raise NotImplementedError
+
+    def __enter__(self):
+        try:
+            self.acquire()
+            _raise_if_due()
+        except BaseException:
+            self.release()
+            raise
+        return self
+
+    def __exit__(self, *_):
+        self.release()
+        _raise_if_due()
+
+
+class interruptible(Resource):
+    """A context in which these signals raise KeyboardInterrupt, unless they are ignored or have a
+    handler other than Python's own; only the first of all counts.  Inside another interruptible()
+    it changes nothing, nor in another thread than the main one, which alone receives signals.
+
+    heard: the numbers of the signals that came.
     at_end: the process ends after this: once a signal came, the others are ignored for good."""
 
     def __init__(self, numbers=(signal.SIGINT,), at_end=False):
-        self.numbers, self.at_end, self.before = numbers, at_end, {}
+        self.numbers, self.at_end, self.before, self.heard = numbers, at_end, {}, _heard
 
-    def __enter__(self):
+    def acquire(self):
         global _due
-        try:
-            for number in self.numbers if _in_main_thread() else ():
-                handler = signal.getsignal(number)
-                if handler in (signal.SIG_DFL, signal.default_int_handler):
-                    if not self.before:
-                        _heard.clear()
-                        _due = False
-                    self.before[number] = handler
-                    signal.signal(number, _interrupt)
-            _raise_if_due()
-        except BaseException:
-            self._restore()
-            raise
-        return _heard
+        for number in self.numbers if _in_main_thread() else ():
+            handler = signal.getsignal(number)
+            if handler in (signal.SIG_DFL, signal.default_int_handler):
+                if not self.before:
+                    _heard.clear()
+                    _due = False
+                self.before[number] = handler
+                signal.signal(number, _interrupt)
 
-    def __exit__(self, *_):
-        self._restore()
-        if self.before:
-            _raise_if_due()
-
-    def _restore(self):
-        for number, handler in self.before.items():
+    def release(self):
+        # In reverse, so that SIGINT comes last: with Python's own handler back it may strike here.
+        for number, handler in reversed(self.before.items()):
             signal.signal(number, signal.SIG_IGN if self.at_end and _heard else handler)
 
 
-class postponed:
+class postponed(Resource):
     """A context, which should be short, at whose end a signal of interruptible() is raised that
     came meanwhile."""
 
-    def __enter__(self):
-        global _depth
-        self.counted = _in_main_thread()
-        if self.counted:
-            _depth += 1
+    counted = False
 
-    def __exit__(self, *_):
+    def acquire(self):
+        global _depth
+        if _in_main_thread():
+            _depth += 1
+            self.counted = True
+
+    def release(self):
         global _depth
         if self.counted:
             _depth -= 1
-            _raise_if_due()
+            self.counted = False
