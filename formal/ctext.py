@@ -26,7 +26,10 @@ class CTextError(Exception):
 
 
 def _stripped(text):
-    return re.sub(r"/\*.*?\*/", " ", text, flags=re.DOTALL)
+    """Without comments, and with the loop that csrc/loewner has a macro for."""
+    text = re.sub(r"/\*.*?\*/", " ", text, flags=re.DOTALL)
+    return re.sub(r"\bFOR_WAVES\((\w+), (\w+)\)",
+                  r"for (int \2 = FIRST; \2 < waves_of(\1); \2++)", text)
 
 
 def defined(text, name):

@@ -168,21 +168,20 @@ def left(what, needed, there):
     return worst
 
 
-# ---- the two kinds of waves
+# ---- the waves
 
 class Model:
-    """A point q of an orbit, the one before, and the waves: `three` the thesis's, or so many of
-    general.h; what each function of the text sees."""
+    """A point q of an orbit, the one before, and the waves: so many, or those of the thesis, which
+    an engine of csrc/loewner knows (KNOWN of waves.h); what each function of the text sees."""
 
     def __init__(self, read, waves=None, columns=COLUMNS):
         Rounded.known.clear()
         self.columns, self.pairs = columns, columns * (columns + 1) // 2
-        self.three = waves is None
+        known = waves is None
         self.texts = {name: read(name) for name in
                       ("arith/sine.h", "loewner/prism.h", "loewner/orbit.c", "loewner/bound.c",
-                       "loewner/problem.c", "loewner/three.h", "loewner/general.h")}
-        self.header = self.texts["loewner/three.h" if self.three else "loewner/general.h"]
-        self.first, self.slots = (0, 3) if self.three else (2, 2 + waves)
+                       "loewner/problem.c", "loewner/waves.h")}
+        self.first, self.slots = (0, 3) if known else (2, 2 + waves)
         present = range(self.first, self.slots)
         self.part = [[exact("g%d_%d" % (i, k)) if k > 1 and i in present else 0.0
                       for k in range(columns)] for i in range(self.slots)]
@@ -192,29 +191,33 @@ class Model:
         root = SimpleNamespace(
             present=[i in present for i in range(self.slots)], waves=self.slots, k=k,
             moves=[[True] * columns] * self.slots, phase=[self.phase(i) for i in range(self.slots)],
-            square_k=[Rounded((x.size + y.size) * (x.size + y.size)) for x, y in k])
+            square_k=[1.0, 1.0, 4.0] if known else
+            [Rounded((x.size + y.size) * (x.size + y.size)) for x, y in k],
+            most_k=2.0)
         self.w = SimpleNamespace(
             root=root, p=p, h=h, part=self.part, loose=[0.0] * self.slots,
             size=[Rounded(rounded(x).size + y.size) for x, y in zip(p, h)])
         self.names = {
-            "WAVES": self.slots, "FIRST": self.first, "COLUMNS": columns, "PAIRS": self.pairs,
-            "mag": lambda x: x, "fabs": lambda x: x, "every": lambda x: x, "memset": clear,
-            "double_sincos": self.double_sincos, "larger": self.larger, "felt": self.felt}
-        for name in ("gathered", "gathered_sizes", "waves_of", "carried", "carry"):
+            "KNOWN": int(known), "WAVES": self.slots, "FIRST": self.first, "COLUMNS": columns,
+            "PAIRS": self.pairs, "mag": lambda x: x, "fabs": lambda x: x, "every": lambda x: x,
+            "memset": clear, "double_sincos": self.double_sincos, "larger": self.larger,
+            "dot_k": self.dot_k}
+        for name in ("waves_of", "k_of", "times", "add_times", "dot_abs_k", "sum_k", "sum_abs_k",
+                     "propagate", "propagate_err"):
             self.names[name] = self.function(name)
         for name in ("moves", "add_moves"):
             self.names[name] = function(self.texts["loewner/prism.h"], name).bound(self.names)
         self.sine_error = Fraction(defined(self.texts["arith/sine.h"], "SINE_ERROR"))
         self.slipping = "LT"            # of these k.L, k.T are meant, not what doubles make of them
         self.slip = Fraction(1)         # of its slip so many times what is off along a wave
-        if not self.three:
-            self.slip = self.measured_slips()
+        self.slip = self.measured_slips()
         self.q, self.o, self.angles = self.point("L", "T", "x"), self.point("O", "U", "o"), {}
-        self.function("see")(self.w, self.q)
+        self.function("evaluate")(self.w, self.q)
 
     def function(self, name, names=None):
-        """One of three.h or general.h."""
-        return function(self.header, name).bound(self.names if names is None else names)
+        """One of waves.h."""
+        return function(self.texts["loewner/waves.h"], name).bound(
+            self.names if names is None else names)
 
     def phase(self, i):
         """near() puts it 8 u off, and it may be 10^-40 off before."""
@@ -238,43 +241,33 @@ class Model:
                           * self.slip) for i in range(self.slots)]
         return q
 
-    def felt(self, _, wave, x, y):
-        """k.x of columns and bows: a symbol of its own.  The third of three waves has the
-        sum, off by u of itself; of any waves a slip is what roundings make of it."""
-        text = self.function("felt")(self.w, wave, x, y)
-        if self.three and wave < 2:
-            return text
+    def dot_k(self, _, wave, x, y):
+        """k.x of columns and bows: a symbol of its own, off by the slip that roundings make of it.
+        A coordinate itself, and what is no column and no bow, is what the text makes of it."""
+        text = self.function("dot_k")(self.w, wave, x, y)
         first = next(iter(x.size.terms))[0]
-        if "_" not in first:
-            return text                         # of rests
+        if (wave < 2 and self.names["KNOWN"]) or "_" not in first:
+            return text
         name = "%s%d_%s" % (first[0], wave, first.split("_")[1])
         along = symbol(name)
         if name[0] not in self.slipping:
             return Rounded(along)
-        if self.three:
-            if left("felt", text.off, (x.size + y.size) * UNIT) != 1:
-                raise NotCovered("a sum of two is rounded once")
-            return Rounded(along, along * UNIT)
         return Rounded(along + symbol("slip_" + name), symbol("slip_" + name))
 
     def measured_slips(self):
         """How many times what k.L and k.T lose measure_slips has."""
-        felt, q = self.function("felt"), self.point("L", "T", "x")
-        self.function("measure_slips")(self.w, q, self.columns)
-        return min(left("slip", sum((felt(self.w, j, x, y).off for rows in (q.column, q.bow)
+        dot_k, q = self.function("dot_k"), self.point("L", "T", "x")
+        self.function("measure_slips")(self.w, q)
+        return min(left("slip", sum((dot_k(self.w, j, x, y).off for rows in (q.column, q.bow)
                                      for x, y in zip(*rows)), ZERO), q.slip[j].least())
-                   for j in range(self.first, self.slots))
+                   for j in range(2, self.slots))
 
     def double_sincos(self, sine, cosine, angle):
-        """Of three waves an angle is as far off as it is; of any waves D u at most, with
-        far = D + N + 1: see larger."""
-        off = angle.off
-        if not self.three:
-            wave = len(self.angles) + 2
-            self.angles[wave] = off
-            off = symbol("D") * (UNIT * (1 + Fraction(1, 2 ** 30)))
+        """An angle is D u off at most, with far = D + N + 1: see larger."""
+        self.angles[len(self.angles)] = angle.off
+        off = symbol("D") * (UNIT * (1 + Fraction(1, 2 ** 30))) + self.sine_error
         for place in (sine, cosine):
-            place.put(Rounded(1, off + self.sine_error))
+            place.put(Rounded(1, off))
 
     def larger(self, _, value):
         """D is the larger; what it is compared with must be what the last angle is off."""
@@ -336,7 +329,7 @@ def missed(model):
     loops = [node for node in statements if isinstance(node, c_ast.For)][:2]
     begin = [node for node in statements[:statements.index(loops[0])] if node.name == "SHIFT"]
     room = {"g": [0.0] * model.slots, "bent": [0.0] * model.slots, "TWO_PI": two_pi,
-            "bend": lambda *_: 0.0}
+            "bend": lambda *_: 0.0, "propagate_err": lambda *_: 0.0}
     run(begin + loops, {**model.names, **room, "w": model.w, "q": q, "o": o, "next": following},
         noted)
     worst = []
@@ -352,26 +345,26 @@ def missed(model):
 def carried(model):
     """What columns and bow of the next point lose is less than what the step adds to force for it.
 
-    bend counts from what doubles make of k.L, so a bow's squares have no slips; of three waves c is
-    rounded by u there, too.  Of general waves a sum is known: 2L - o, which is the next column less
-    what the waves add."""
+    bend counts from what doubles make of k.L, so a bow's squares have no slips.  A sum is known:
+    2L - o, which is the next column less what the waves add."""
     w, q, o = model.w, model.q, model.o
     for i in range(2):
         for rows, before in ((q.column, o.column), (q.bow, o.bow)):
             for x, y in zip(rows[i], before[i]):
-                if not model.three:
-                    less = symbol("less %s" % next(iter(x.size.terms))[0])
-                    Rounded.known[_sum(2.0 * x, y)] = less
+                less = symbol("less %s" % next(iter(x.size.terms))[0])
+                Rounded.known[_sum(2.0 * x, y)] = less
     column, bow = (SimpleNamespace(column=[[None] * model.columns for _ in range(2)],
                                    bow=[[None] * model.pairs for _ in range(2)]) for _ in range(2))
-    model.names["carry"](w, column, q, o, model.columns)
-    model.slipping = "LT" if model.three else "T"
-    model.names["carry"](w, bow, q, o, model.columns)
+    model.names["propagate"](w, column, q, o, model.columns)
+    model.slipping = "T"
+    model.names["propagate"](w, bow, q, o, model.columns)
     bend = function(model.texts["loewner/orbit.c"], "bend").bound(model.names)
     alone = SimpleNamespace(p=[0.0] * model.slots, h=[0.0] * model.slots, loose=w.loose,
                             size=w.size)        # for bend's last term alone
     q.off = [Rounded(0)] * model.slots
     bent = [bend(alone, q, i) if i >= model.first else 0.0 for i in range(model.slots)]
+    err = [model.names["propagate_err"](w, q, i) if i >= model.first else 0.0
+           for i in range(model.slots)]
     worst = {"columns": [], "bow": []}
     for i in range(2):
         lost, made = [], []
@@ -384,9 +377,9 @@ def carried(model):
                     off = of_doubles(off, *key, x.size - symbol(*key))
                     made.append(exact(*key))
                 lost[-1] = lost[-1] + second_order(off)
-        there = rounded(model.names["carried"](w, q, i)).least()
+        there = model.names["sum_abs_k"](w, i, err).least()
         there = there + (total(made) + o.reach[i]).least() * (8 * UNIT)
-        bow_too = there + model.names["gathered_sizes"](w, i, bent).least()
+        bow_too = there + model.names["sum_abs_k"](w, i, bent).least()
         left("columns and bow", lost[0] + lost[1], bow_too)
         worst["columns"].append(left("columns", lost[0], there))
         worst["bow"].append(left("bow", lost[1], bow_too))
@@ -404,11 +397,10 @@ def multipliers(model):
     """What (2) of bound.c leaves is less than `left`.  Known is mu[j-1], which (2) makes."""
     text, q, w = model.texts["loewner/bound.c"], model.q, model.w
     q.n, q.mu = [[exact("%s%d" % (name, i)) for i in range(2)] for name in ("n", "mu")]
-    Rounded.known[_sum(*q.n)] = symbol("n2")
     names = {**model.names, "square": lambda x: x * x, "w": w, "q": q, "tiny": 0.0,
              "before": exact("before"), "after": exact("after")}
     names["gradient"] = model.function("gradient", names)
-    omega = [x * x for x in (model.function("felt")(w, i, *q.n) for i in range(3))]
+    omega = [x * x for x in (model.dot_k(w, i, *q.n) for i in range(2))]
     names["weights"] = model.function("weights_of")(w, omega, q.mu)
     there = execute(function(text, "sum_up").initial("left"), names).least()
     worst = []
@@ -416,7 +408,7 @@ def multipliers(model):
         steep = function(text, "steepness").bound(names)(w, q, i)
         Rounded.known[_sum(steep, names["after"])] = symbol("before")
         off = of_doubles((steep - names["after"]).off, "before")
-        worst.append(left("left", off, there))
+        worst.append(left("left", evened(off), there))
     return min(worst)
 
 
@@ -447,16 +439,16 @@ def widen(model):
     w = SimpleNamespace(root=model.w.root, **wave)
     o = SimpleNamespace(reach=Kept("before", model.slots), force=Kept("push", 2),
                         rest=Kept("last", 2))
-    slips, model.slipping = model.slipping, "LT" if model.three else ""     # see carried
+    slips, model.slipping = model.slipping, ""      # see carried
     function(text, "measure").bound(names)(w, q, model.columns)
     model.slipping = slips
     function(text, "extend").bound(names)(w, q)
     loops = [node for node in function(text, "step").statements if isinstance(node, c_ast.For)]
     scope = {**names, "w": w, "q": q, "o": o, "is_first": 0, "inverse": Kept("inverse", 3),
              "rounded": exact("rounded"), "rest_sum": exact("rest_sum")}
-    scope["bent"] = [names["bend"](w, q, i) for i in range(model.slots)]
+    scope["g"], scope["bent"] = [0.0] * model.slots, [0.0] * model.slots
     scope["next"] = SimpleNamespace(rest=Kept("rest", 2), straight=q.straight, bowed=q.bowed)
-    run([loops[2], loops[4]], scope)
+    run([loops[0], loops[2], loops[4]], scope)
     made = [kept.made for kept in
             (q.straight, q.bowed, q.off, q.reach, q.force, scope["next"].rest)]
     if not all(made):
@@ -512,17 +504,14 @@ def at_once(model):
 
 def proved(read, columns=COLUMNS):
     """The margins of section 8 of docs/proof.md that the text of csrc proves, read(file) of it: how
-    many times what is needed there is, of three waves and of one, a few, as many as may be."""
-    model = Model(read, columns=columns)
-    result = {"fuzz": fuzz(model), "missed": missed(model), **carried(model),
-              "sines in bent": bent(model), "left": multipliers(model), "widen": widen(model)}
-    for waves in (1, 3, MOST_WAVES):
-        model = Model(read, waves, columns if waves < MOST_WAVES else 2)
+    many times what is needed there is, of the thesis's waves and of one, a few, as many as may be."""
+    result = {}
+    for waves in (None, 1, 3, MOST_WAVES):
+        model = Model(read, waves, columns if waves != MOST_WAVES else 2)
         found = {"fuzz": fuzz(model), "missed": missed(model), **carried(model),
-                 "sines in bent": bent(model), "slip": model.slip, "widen": widen(model),
-                 "at once": at_once(model)}
+                 "sines in bent": bent(model), "slip": model.slip, "widen": widen(model)}
+        found.update({"left": multipliers(model)} if waves is None else {"at once": at_once(model)})
         for name, x in found.items():
-            name = name if name == "at once" else "general " + name
             result[name] = min(x, result.get(name, x))
     return result
 

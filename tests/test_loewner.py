@@ -365,6 +365,11 @@ def star_margins(rng, cases):
 
 # ---- the margins along orbits: docs/proof.md says what each must cover
 
+def far_of(x):
+    """`far` of csrc/loewner/waves.h."""
+    return 3 * (abs(x[0]) + abs(x[1])) + 4
+
+
 def sites(prism, s, t):
     """What the core knows of the points s..t of an orbit; their true sines, cosines and beta."""
     a, b, c = map(mp, prism[:3])
@@ -376,9 +381,11 @@ def sites(prism, s, t):
         sin, cos = [*map(mpmath.sin, angles)], [*map(mpmath.cos, angles)]
         rows = y[2:7], y[7:12]
         bows = y[12:27], y[27:42]
+        slip = [(0, 0), (0, 0), (4 * UNIT * (y[44] + y[45]), 4 * UNIT * (y[47] + y[48]))]
         result[j] = SimpleNamespace(
-            x=y[:2], column=[*rows, [p + q for p, q in zip(*rows)]],
-            bow=[*bows, [p + q for p, q in zip(*bows)]], rest=[*y[42:44], y[42] + y[43]],
+            x=y[:2], column=[*rows, [p + q for p, q in zip(*rows)]], far=far_of(y),
+            bow=[*bows, [p + q for p, q in zip(*bows)]],
+            rest=[*y[42:44], y[42] + y[43] + sum(slip[2])], slip=slip,
             straight=y[44:47], bowed=y[47:50], off=y[50:53], reach=y[53:56], missed=y[56:58],
             force=y[58:60], rounded=y[60:63], d=y[63:66], fuzz=y[66], mu=y[67:69], sin=sin, cos=cos,
             beta=[2 - a * sin[0] - c * sin[2], -c * sin[2], 2 - b * sin[1] - c * sin[2]])
@@ -410,7 +417,7 @@ def step_margins(prism, q, o, following, is_first):
         rounded = 8 * UNIT * (inverse[0] + inverse[2]) * (1 + condition)
         bracket = [x - y - z for x, y, z in zip(q.beta, inverse, q.d)]
         yield "rounded", max(map(abs, bracket)), 2 * q.fuzz + rounded
-    off = 2 ** 13 * UNIT * (1 + (abs(q.x[0]) + abs(q.x[1])) * (size[2] > 0))
+    off, unit = 2 ** 13 * UNIT * (1 + q.far), 16 * UNIT * (1 + q.far)
     bent, source = [], []
     for k in range(3):
         rho, a, b = q.reach[k], q.straight[k], q.off[k]
@@ -430,17 +437,19 @@ def step_margins(prism, q, o, following, is_first):
         moved = [h[i] * q.cos[i] * (k == parameter[i]) + h[2] * q.cos[2] * (k == parameter[2])
                  for k in range(5)]
         true = carried(q.column, o.column, moved)
-        columns = 4 * q.fuzz * (q.straight[0] + q.straight[1] + h[i] + h[2]) \
-            + 8 * UNIT * (following.straight[i] + o.straight[i])
+        columns = sum(unit * (abs(p[k]) * q.straight[k] + h[k]) + abs(p[k]) * q.slip[k][0]
+                      for k in (i, 2)) + 8 * UNIT * (following.straight[i] + o.straight[i])
         yield "columns", sum(abs(x - y) for x, y in zip(true, following.column[i])), columns
         true = carried(q.bow, o.bow, [x + y for x, y in zip(source[i], source[2])])
         yield "bow", sum(abs(x - y) for x, y in zip(true, following.bow[i])), \
-            4 * q.fuzz * (q.bowed[0] + q.bowed[1]) + 8 * UNIT * (following.bowed[i] + o.bowed[i]) \
+            sum(abs(p[k]) * (unit * q.bowed[k] + q.slip[k][1]) for k in (i, 2)) \
+            + 8 * UNIT * (following.bowed[i] + o.bowed[i]) \
             + sum(size[k] * off * q.reach[k] * (1 + q.reach[k]) for k in (i, 2))
         yield "missed", missed(p, q, o, following, i), q.missed[i]
         force = q.missed[i] + bent[i] + bent[2] + (2 * q.fuzz + rounded) * (q.rest[0] + q.rest[1])
-        force += 4 * q.fuzz * (q.reach[0] + q.reach[1] + h[i] + h[2]) \
-            + 8 * UNIT * (following.straight[i] + following.bowed[i] + o.reach[i])
+        force += 8 * UNIT * (following.straight[i] + following.bowed[i] + o.reach[i])
+        force += sum(unit * (abs(p[k]) * (q.straight[k] + q.bowed[k]) + h[k])
+                     + abs(p[k]) * sum(q.slip[k]) for k in (i, 2))
         force += o.rest[i] if is_first else \
             abs(inverse[i]) * o.force[0] + abs(inverse[i + 1]) * o.force[1]
         yield "force", force, q.force[i]
@@ -489,7 +498,8 @@ def bound_margins(prism, q, out, plain):
         omega = [n0 ** 2, n1 ** 2, (n0 + n1) ** 2]
         exact += 2 * (omega[0] + omega[1]) - 2 * (n0 * after[0] + n1 * after[1])
         mass += 2 * (omega[0] + omega[1] + abs(n0 * after[0]) + abs(n1 * after[1]))
-        far = max(far, (abs(q[j].x[0]) + abs(q[j].x[1])) * (size[2] > 0))
+        far = max(far, q[j].far)
+        weights = 4 * (omega[0] + omega[1]) + 2 * (abs(m[0]) + abs(m[1]))
         for k in range(3):
             A = m[k] * q[j].cos[k] - omega[k] * q[j].sin[k]
             B = -omega[k] * q[j].cos[k] - m[k] * q[j].sin[k]
@@ -500,9 +510,8 @@ def bound_margins(prism, q, out, plain):
             exact += h[k] * (abs(A) * (b * (2 * a + b) / 2 + rho ** 4 / 24)
                              + abs(B) * (r + rho ** 3 / 6)) + loose[k] * (abs(A) + abs(B) * rho)
             exact -= omega[k] * p[k] * q[j].sin[k]
-            wide = [*q[j].reach[:2], q[j].reach[0] + q[j].reach[1]][k]
-            mass += omega[k] * abs(p[k]) + (omega[k] + abs(m[k])) * (
-                size[k] * wide ** 2 + h[k] + loose[k]) * (1 + wide) ** 3
+            mass += omega[k] * abs(p[k]) + weights * (
+                size[k] * rho ** 2 + h[k] + loose[k]) * (1 + rho) ** 3
             if not size[k]:
                 continue
             bow = q[j].bowed[k]
@@ -520,7 +529,7 @@ def bound_margins(prism, q, out, plain):
         for i in range(2):
             slope = -omega[i] * p[i] * q[j].cos[i] - omega[2] * p[2] * q[j].cos[2]
             slope += q[j].beta[i] * m[0] + q[j].beta[i + 1] * m[1] - mu[j - 1][i] - mu[j + 1][i]
-            left = 4 * q[j].fuzz * (sum(omega) + abs(m[0]) + abs(m[1])) \
+            left = 4 * q[j].fuzz * weights \
                 + 8 * UNIT * (abs(mu[j - 1][i]) + abs(mu[j + 1][i]))
             claimed += left * q[j].reach[i]
             if j == 1:

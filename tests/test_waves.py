@@ -204,7 +204,7 @@ def test_the_bound_holds():
 
 
 def far_of(patch, x):
-    """`far` of general.h."""
+    """`far` of csrc/loewner/waves.h."""
     worst = max((3 * (abs(k0 * x[0]) + abs(k1 * x[1])) + 10 * abs(mp(phase))
                  for k0, k1, phase, *p in patch.waves if any(p)), default=0)
     return worst + 1 + sum(any(w[3:]) for w in patch.waves)

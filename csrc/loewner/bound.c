@@ -80,7 +80,7 @@ typedef struct {
 static void weigh(const batch *w, point *q)
 {
     q->load = every(0.0);
-    FOR_WAVES(i) {
+    FOR_WAVES(w, i) {
         const vec p = mag(w->p[i]), h = w->h[i], loose = w->loose[i], rho = q->reach[i];
         const vec a = q->straight[i], b = q->off[i], r = rest_along(w, q, i);
         const vec half_square = 0.5 * rho * rho, bow = q->bowed[i];
@@ -145,7 +145,7 @@ INLINE void sum_up(batch *w, sums *result, mask turn, int columns)
         t.mass += 2.0 * (mag(link0) + mag(link1));
         t.mass += weights * q->load;
         t.far = larger(t.far, pick(own, q->far, every(0.0)));
-        FOR_WAVES(i) {
+        FOR_WAVES(w, i) {
             const vec s = q->sine[i], co = q->cosine[i], p = w->p[i];
             const vec A = m[i] * co - omega[i] * s, B = -omega[i] * co - m[i] * s;
             vec c[COLUMNS], f[COLUMNS];
@@ -184,7 +184,7 @@ INLINE void sum_up(batch *w, sums *result, mask turn, int columns)
             t.rounding += pick(inside, mag(q->mu[i]) * q->missed[i], every(0.0));
         }
     }
-    FOR_WAVES(i)
+    FOR_WAVES(w, i)
         add_moves(w, i, t.along[i], t.slope, columns);
     for (int k = 0; k < LANES; k++)
         if (holds(&turn, k)) {
@@ -211,7 +211,7 @@ INLINE void sum_cubic(batch *w, mask turn, int columns)
         const point *q = w->orbit + j;
         const mask now = turn & within(w, j);
         vec form[WAVES][PAIRS];
-        FOR_WAVES(i) {
+        FOR_WAVES(w, i) {
             vec A, B;
             turn_wave(w, q, i, now, &A, &B);
             const vec pA = w->p[i] * A, third = w->p[i] * B * (1.0 / 3.0);
@@ -231,11 +231,11 @@ INLINE void sum_cubic(batch *w, mask turn, int columns)
         }
         for (int m = 0; m < columns; m++) {                     /* (c.e) form[e, e] */
             vec c[WAVES];
-            FOR_WAVES(i)
+            FOR_WAVES(w, i)
                 c[i] = dot_k(w, i, q->column[0][m], q->column[1][m]);
             for (int kl = 0; kl < columns * (columns + 1) / 2; kl++) {
                 vec sum = every(0.0);
-                FOR_WAVES(i)
+                FOR_WAVES(w, i)
                     sum += c[i] * form[i][kl];
                 w->cubic[m][kl] += pick(now, sum, every(0.0));
             }
@@ -292,7 +292,7 @@ INLINE vec summit(const batch *w, int columns, int with_cubic)
 /* The mass is the sum of the absolute values of all that is summed with signs, and of what A and B
    are multiplied by anywhere, with omega + |m| in their place: with rho = a + b that is at most
    |p| (e^rho - 1 - rho) + h e^rho + loose (1 + rho) to the fifth order in rho, of which
-   (size rho^2 + h + loose)(1 + rho)^3 is more, rho being width_of a wave.  (`load` is that of all
+   (size rho^2 + h + loose)(1 + rho)^3 is more.  (`load` is that of all
    waves, and the weights are at least each omega + |m|.)  A and B are off by (9 + far) u of
    omega + |m|, of general waves (12 + far) u of the weights, products of them by 12 u more.  At each
    of N sites at most 6 numbers are added to a sum, or 22 for 16 waves, and each addition rounds by u
@@ -375,7 +375,7 @@ static void bound_shares(batch *w, mask turn)
     for (int j = begin; j <= end; j++) {
         const point *q = w->orbit + j;
         const mask now = turn & within(w, j);
-        FOR_WAVES(i) {
+        FOR_WAVES(w, i) {
             const mask some = now & TRUTH(q->reach[i] > 0.0);
             vec A, B;
             turn_wave(w, q, i, now, &A, &B);

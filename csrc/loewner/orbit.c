@@ -113,7 +113,7 @@ static void step(const batch *w, point *next, point *q, const point *o, int is_f
     vec inverse[3] = { every(0.0), every(0.0), every(0.0) }, rounded = every(0.0);
     vec g[WAVES], bent[WAVES], rest_sum;
 
-    FOR_WAVES(j) {
+    FOR_WAVES(w, j) {
         g[j] = w->p[j] * q->cosine[j];
         bent[j] = bend(w, q, j) + propagate_err(w, q, j);
     }

@@ -1,6 +1,5 @@
 /* prism.h - what the files of an engine share: the prisms at hand and the orbits that start in
-   them, one in each lane.  The first two waves are what D0 and D1 are felt by; three.h and general.h
-   have the others.
+   them, one in each lane.  The slots 0 and 1 of waves are the coordinates themselves: see waves.h.
 
    The criterion (docs/proof.md has all of this file's mathematics, step by step).  Orbits on an
    invariant Lagrangian graph minimize, so their second variation
@@ -42,7 +41,7 @@ enum { KNOWN = 0, FIRST = 2, WAVES = SLOTS };
 #else
 #define UNROLL
 #endif
-#define FOR_WAVES(j) UNROLL for (int j = FIRST; j < waves_of(w); j++)
+#define FOR_WAVES(w, j) UNROLL for (int j = FIRST; j < waves_of(w); j++)
 enum { MAX_POINTS = 4000, ORIGIN = MAX_POINTS };
 
 /* One point of the orbits of the prisms' centres, and all that is known of its neighbours. */

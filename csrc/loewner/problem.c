@@ -150,7 +150,7 @@ static void set_angles(loewner *w, const patch *problem)
         w->slack[i] += fabs(w->frame[1 - i][1 - i]) * off[i] + fabs(w->frame[i][1 - i]) * off[1 - i];
 }
 
-/* One more wave; general.h's are those that there are. */
+/* One more wave; engines for any waves take those that there are. */
 static void add_wave(loewner *w, const patch *problem, int given, int general)
 {
     const int i = w->waves, *const k = problem->k[given];
@@ -305,7 +305,7 @@ double loewner_largest(const loewner *w)
 
 /* With n the eigenvector at the centre, n.beta n = 2|n|^2 - sum p sin(y) (k.n)^2 is linear in the
    parameters.  In units u, a wave's terms are off by 32 of |p| and its parts, by (4 + far) for the
-   sine, far as in general.h, and 8 for the product, where (k.n)^2 is off by 5 of (|k0| + |k1|)^2 |n|^2;
+   sine, far as in waves.h, and 8 for the product, where (k.n)^2 is off by 5 of (|k0| + |k1|)^2 |n|^2;
    at most 21 numbers are added.  So all is off by 70 + far of the sum of absolute values with that in
    the place of (k.n)^2, the mass; the margin is 256 (1 + far). */
 int loewner_at_once(const loewner *w, const double at[2], int at_end)

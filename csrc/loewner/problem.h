@@ -15,8 +15,8 @@ typedef struct {
                 outcome *const out[]);
 } engine;
 
-extern const engine engine_scalar, engine_baseline, engine_avx2, engine_avx512;     /* three.h */
-extern const engine general_scalar, general_baseline, general_avx2, general_avx512; /* general.h */
+extern const engine engine_scalar, engine_baseline, engine_avx2, engine_avx512;     /* the thesis's waves */
+extern const engine general_scalar, general_baseline, general_avx2, general_avx512; /* any */
 
 #if defined(__GNUC__) && (defined(__SSE2__) || defined(__aarch64__))
 #define HAVE_VECTORS
@@ -28,7 +28,7 @@ extern const engine general_scalar, general_baseline, general_avx2, general_avx5
 struct loewner {
     double centre[2], half[2], slack[2], frame[2][2];           /* of v0, v1 */
     double seen[2][2];                  /* the coordinates in which waves are given; see straighten */
-    int waves;                          /* slots in use; general.h says what the first two are */
+    int waves;                          /* slots in use; waves.h says what the first two are */
     double k[SLOTS][2], phase[SLOTS], square_k[SLOTS], most_k;  /* (|k0| + |k1|)^2; the largest sum */
     double amplitude[SLOTS], part[SLOTS][PARAMETERS], loose[SLOTS];
     double xstar[2], xstar_err[2], corner[8];                   /* bounds B at the corners */

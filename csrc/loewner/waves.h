@@ -69,7 +69,7 @@ INLINE vec sum_k(const batch *w, int i, const vec f[])
 {
     vec sum = every(0.0);
 
-    FOR_WAVES(j)
+    FOR_WAVES(w, j)
         add_times(&sum, k_of(w, j, i), f[j]);
     return sum;
 }
@@ -78,7 +78,7 @@ INLINE vec sum_abs_k(const batch *w, int i, const vec f[])
 {
     vec sum = every(0.0);
 
-    FOR_WAVES(j)
+    FOR_WAVES(w, j)
         add_times(&sum, fabs(k_of(w, j, i)), f[j]);
     return sum;
 }
@@ -112,7 +112,7 @@ INLINE void evaluate(const batch *w, point *q)
     vec pull[3] = { every(0.0), every(0.0), every(0.0) }, farthest = every(0.0);
     vec sizes = every(1.0);
 
-    FOR_WAVES(j) {
+    FOR_WAVES(w, j) {
         const double k0 = k_of(w, j, 0), k1 = k_of(w, j, 1), phase = KNOWN ? 0.0 : w->root->phase[j];
         vec y = dot_k(w, j, q->x[0], q->x[1]);
         vec angle = dot_abs_k(w, j, mag(q->x[0]), mag(q->x[1])) * 3.0;
@@ -145,7 +145,7 @@ INLINE void propagate(const batch *w, point *next, const point *q, const point *
 
     memset(straight, 0, sizeof straight);
     memset(bowed, 0, sizeof bowed);
-    FOR_WAVES(j) {
+    FOR_WAVES(w, j) {
         const vec pull = -w->p[j] * q->sine[j], half = 0.5 * w->p[j] * q->cosine[j];
         vec c[COLUMNS], f[COLUMNS], push[COLUMNS];
         for (int k = 0; k < columns; k++) {
@@ -190,7 +190,7 @@ INLINE vec gradient(const batch *w, const point *q, int i)
 {
     vec sum = every(0.0);
 
-    FOR_WAVES(j)
+    FOR_WAVES(w, j)
         add_times(&sum, k_of(w, j, i),
                   square(dot_k(w, j, q->n[0], q->n[1])) * w->p[j] * q->cosine[j]);
     return sum;
