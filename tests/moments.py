@@ -58,7 +58,7 @@ append, left = AppendedFile.append, int(sys.argv.pop(1))
 def append_or_wait(self, text):
     global left
     append(self, text)
-    left -= 1                                   # the header, with what was there before, is the first
+    left -= 1                       # the header, with what was there before, is the first
     while left < 0:
         time.sleep(1)
 AppendedFile.append = append_or_wait

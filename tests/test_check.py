@@ -31,9 +31,10 @@ from converse import check as package
 from converse import prove, read_input
 from converse.check import lockstep, ship
 from converse.model.problem import LINE
+
+from checker import check
 from moments import PATIENCE
 from truth import STRIKE, TORTURE
-
 
 # Of a process without sanitizers, which may import what lies about its file.
 PLAIN = {name: value for name, value in os.environ.items()
@@ -595,7 +596,8 @@ def test_counts(texts, run, name):
     ("xstar", "-0.8 -0.8", "not excluded"), ("xstar", "1e300 1e300", "arithmetic"),
     ("c", "1e999 0", "out of range"), ("v0", "1 1e301", "out of range"),
     ("kind", "as printed, not a proof", "not meant as a proof"), ("depth", "11", "depth"),
-    ("kind", "Sound", "not meant"), ("a", "0.3085 0.00125 0", "wave 1"), ("v0", "1", "two decimal")])
+    ("kind", "Sound", "not meant"), ("a", "0.3085 0.00125 0", "wave 1"),
+    ("v0", "1", "two decimal")])
 def test_header(texts, run, name, value, why):
     text = with_field(texts["trig274"], name, value)
     status, out, err = run(text)

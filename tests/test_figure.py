@@ -43,7 +43,8 @@ def render(proof, directory):
     data = data[header.end():]
     rows = []
     for y in range((page_height - below - SIDE) * SCALE, (page_height - below) * SCALE):
-        row = data[3 * (y * width + LEFT_MARGIN * SCALE):3 * (y * width + (LEFT_MARGIN + SIDE) * SCALE)]
+        row = data[3 * (y * width
+                        + LEFT_MARGIN * SCALE):3 * (y * width + (LEFT_MARGIN + SIDE) * SCALE)]
         rows.append([row[x:x + 3] for x in range(0, len(row), 3)])
     return rows
 

@@ -19,7 +19,6 @@ UPWARDS = {("prover.proof", "draw.figure"): "Proof.figure",
            ("prover.proof", "check"): "Proof.verify",
            ("maps.map", "draw.map_figure"): "Map.draw",
            ("orbits.state", "orbits.figures"): "State._repr_png_",
-           ("model.problem", "model.harmonics"): "read_input",
            ("prover.proof", "prover.proof_file"): "Proof.load, Proof.save"}
 
 PACKAGE = ROOT / "converse"

@@ -1,13 +1,11 @@
-"""The tool of make mutate: what it makes is another program, places keep their names, and a mistake that
-matters is caught."""
+"""The tool of make mutate: what it makes is another program, places keep their names, and a mistake
+that matters is caught."""
 
 import random
 import runpy
 import subprocess
 
-import pytest
 from conftest import ROOT, not_sanitized
-
 from mutate.operators import OPERATORS, mutants
 
 TOOL = runpy.run_path(str(ROOT / "tests" / "mutate" / "__main__.py"))
@@ -44,7 +42,8 @@ def test_formatting_and_names_of_variables_do_not_matter():
 
 
 def test_places_of_python():
-    text = "def width(x, n):\n    if x < n and min(x, 1) == n:\n        x += 0.5\n    return x - n\n"
+    text = ("def width(x, n):\n    if x < n and min(x, 1) == n:\n        x += 0.5\n"
+            "    return x - n\n")
     found = [(m.operator, m.text) for m in mutants("small.py", text)]
     assert sorted(operator for operator, _ in found) == [
         "compare", "compare", "constant", "constant", "direction", "logic", "sign", "sign"]
@@ -59,7 +58,8 @@ def test_every_mutant_of_the_core_differs_and_most_compile(tmp_path):
         found = mutants(name, text)
         assert len({m.key for m in found}) == len(found)
         assert all(m.text != text for m in found)
-        if name in ("arith/apm.c", "arith/special.c", "model/torus.c", "search/tree.c", "loewner/problem.c"):
+        if name in ("arith/apm.c", "arith/special.c", "model/torus.c", "search/tree.c",
+                    "loewner/problem.c"):
             for mutant in rng.sample(found, 6):
                 (tmp_path / "mutant.c").write_text(mutant.text, "utf-8")
                 compiled.append(subprocess.run(

@@ -142,7 +142,8 @@ def test_the_other_half_of_the_package_has_the_same_map():
 
 @pytest.mark.parametrize("file, at", [
     ("froeschle-0.3.json", {"K": "0.6"}), ("crossed.json", {"s": "5/7"}),
-    ("two-harmonics.json", {"K1": 1}), ("trig278.in", {"a": "0.3", "b": "-0.1", "c": "1/3"}), (None, {})])
+    ("two-harmonics.json", {"K1": 1}), ("trig278.in", {"a": "0.3", "b": "-0.1", "c": "1/3"}),
+    (None, {})])
 def test_an_input_s_potential_has_the_input_s_map(root, tmp_path, file, at):
     """Both maps from the same points: y' = y + J', J' = J - grad V(y) as docs/format.md has V, and
     with y = 2 pi x, J = 2 pi p and eps = 1 that of the orbits."""
@@ -189,7 +190,8 @@ def test_coefficients_hold_the_true_ones(digits):
                 assert value <= mpmath.mpf(high.numerator) / high.denominator
                 assert high - low <= Fraction(1, 10 ** digits)
     for k in range(2):                  # what the doubles are made of
-        assert mine._arrays[1 + k] == pytest.approx([float(values[k]) for values in true], rel=4e-16)
+        assert mine._arrays[1 + k] == pytest.approx([float(values[k]) for values in true],
+                                                    rel=4e-16)
 
 
 def test_one_s_own_potentials():
@@ -312,7 +314,8 @@ def test_formulas_say_what_v_is():
         (Fraction(2, 5), Fraction(-1), Fraction(1, 3)), 2), scale_enclosure=third)
     odd = orbits.Fourier({(0, 0): (Fraction(1, 3), 5), (3, -2): (0.25, -0.5), (-1, 0): (2, 0)})
     rng = np.random.default_rng(5)
-    for potential in (orbits.trig, orbits.poly, orbits.ff, orbits.froeschle, orbits.standard, odd, shifted,
+    for potential in (orbits.trig, orbits.poly, orbits.ff, orbits.froeschle, orbits.standard, odd,
+                      shifted,
                       scaled(third), scaled(lambda digits: (Fraction(2, 3),) * 2)):
         for at in rng.uniform(size=(5, potential.n)):
             assert float(value(potential, at)) == pytest.approx(

@@ -169,12 +169,14 @@ def test_a_potential_in_a_file(run, root, tmp_path):
     assert (status, err) == (0, "") and (
         "V(x) : s (-1/10 sin(2 pi x0) - 1/7 sin(2 pi x1) + 1/5 sin(2 pi (x0 + x1)))" in out)
     table = tmp_path / "table.csv"
-    assert run("sweep", path, table, "0.5", "--at", "K=1", "--random", "2", "--sizes", "5:9")[0] == 0
+    assert run("sweep", path, table, "0.5", "--at", "K=1", "--random", "2", "--sizes",
+               "5:9")[0] == 0
     assert set(orbits.read_csv(table)["potential"]) == {"standard K=1"}
 
 
 @pytest.mark.parametrize("terms, now", [
-    ("# two angles\n1 0  0 -1/2\n\n0 1 0 -0.5", '[{"k": [1, 0], "amplitude": "-1/2", "phase": "1"}]'),
+    ("# two angles\n1 0  0 -1/2\n\n0 1 0 -0.5",
+     '[{"k": [1, 0], "amplitude": "-1/2", "phase": "1"}]'),
     ("2 0.25 -1", '[{"k": [2], "amplitude": "0.25", "phase": "-1/2"}, '
                   '{"k": [2], "amplitude": "-1", "phase": "1"}]')])
 def test_the_lines_of_release_1_6_are_refused(run, tmp_path, terms, now):
@@ -349,7 +351,8 @@ def test_bad_usage(run, tmp_path, arguments, words):
     (b"", "line 1: the input is empty"), (b"1 0 x 1\n", "line 1: 'x' is not a decimal"),
     (b"{", "no JSON"), (b"\xff\xfe\n", "not a text file"),
     (b'{"harmonics": [{"k": [1, 0]}]}', "harmonic 1: amplitude is missing"),
-    (b'{"harmonics": [{"k": [1, 0], "amplitude": [1, 2]}]}', "harmonic 1, amplitude: this is a range"),
+    (b'{"harmonics": [{"k": [1, 0], "amplitude": [1, 2]}]}',
+     "harmonic 1, amplitude: this is a range"),
     (b'{"parameters": {"K": [1, 2]}, "harmonics": [{"k": [1, 0], "amplitude": {"K": 1}}]}',
      "K goes from 1 to 2; choose a value, for instance --at K=1.5")])
 def test_a_bad_potential(run, tmp_path, text, words):

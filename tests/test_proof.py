@@ -539,7 +539,8 @@ def test_format_2_is_refused(made_up, tmp_path):
     path = tmp_path / "old.proof"
     made_up("P").save(path)
     path.write_text(resealed(path.read_text("utf-8").replace("proof 3", "proof 2")), "utf-8")
-    with pytest.raises(ConverseError, match="of format 2, which releases up to 1.6.0 read") as caught:
+    with pytest.raises(ConverseError,
+                       match="of format 2, which releases up to 1.6.0 read") as caught:
         Proof.load(path)
     assert "\n" not in str(caught.value)
 

@@ -45,7 +45,8 @@ class Prism:
         blank = [0] * symbols
         start = xstar, (blank, blank), (1, 1)
         self.lanes = Lane(self, start, x1), Lane(self, x1, start)
-        self.sizes = [(wave.k0, wave.k1, sum(map(abs, [wave.amplitude, *[x for _, x in wave.parts]]))
+        self.sizes = [(wave.k0, wave.k1,
+                       sum(map(abs, [wave.amplitude, *[x for _, x in wave.parts]]))
                        / fixed.one) for wave in waves]
 
     def cautious(self, site, caution):

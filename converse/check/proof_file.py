@@ -15,7 +15,8 @@ IGNORED = ("program", "method", "digits", "stubborn", "quick_tries", "tries", "R
            "HermSuccess", "LLSuccess", "ll_used", "reasons", "max_steps", "max_NTsteps",
            "B", "pending")
 OPTIONAL = {"T", "Tr-", "Tr+", "lambda-min", "lambda-max", "seconds", "comment"}    # ignored, too
-FIELDS = {*ANGLES, *COUNTS, *IGNORED, "kind", "xstar", "at once", "wave", "frame", "alone", "odd about"}
+FIELDS = {*ANGLES, *COUNTS, *IGNORED, "kind", "xstar", "at once", "wave", "frame", "alone",
+          "odd about"}
 REPEATED = {"wave", "comment"}
 MAGIC = b"converse proof "               # and the version, alone on the first line
 
@@ -46,7 +47,8 @@ def read_proof(data):
     if first.endswith(b"\r"):
         raise Rejected("its lines end in CR LF: it was altered on its way; ask for the original")
     if first == b"2":
-        raise Unusable("is a proof file of version 2, which converse-check up to release 1.6.0 verifies")
+        raise Unusable("is a proof file of version 2, which converse-check up to release 1.6.0 "
+                       "verifies")
     if first != b"3":
         raise Unusable("is a proof file of another version; this checker knows version 3")
     marker = b"checksum: sha256 "

@@ -163,7 +163,8 @@ def changes(tokens, other, i):
         j = i
         while tokens[j].text not in (";", *CLOSE):
             j = other[j] + 1 if tokens[j].text in OPEN else j + 1
-        if tokens[j].text == ";" and any(t.text in ("=", "(", "+=", "-=", "*=", "|=", "&=", "++", "--") for t in tokens[i + 1:j]):
+        if tokens[j].text == ";" and any(t.text in ("=", "(", "+=", "-=", "*=", "|=", "&=", "++",
+                                                    "--") for t in tokens[i + 1:j]):
             yield "drop", token.start, tokens[j].end, ";"
 
 
