@@ -63,7 +63,7 @@ mutate: $(VENV)/with-test
 
 # The table of proven bounds and worst errors, measured anew.
 accuracy: $(VENV)/with-test
-	$(VENV)/bin/python tests/accuracy.py > docs/accuracy.md
+	PYTHONPATH=tests/loewner:tests/thesis $(VENV)/bin/python tests/accuracy.py > docs/accuracy.md
 
 # What sine.h promises, proved from its text by Gappa, whose proofs Coq checks, and other margins for
 # roundings, from theirs; a minute.

@@ -192,7 +192,7 @@ class Base:
                     return "the same program"
                 environment["CONVERSE_CONSOLE"] = str(work / "console.so")
             for test in tests_of(place.name) if place.mutant else ["test_bounding.py"]:
-                why = failure(ROOT / "tests" / test, work, environment)
+                why = failure(next((ROOT / "tests").rglob(test)), work, environment)
                 if why:
                     return "caught by %s, %s" % (test, why)
         return "survived"

@@ -12,7 +12,7 @@ import pytest
 from converse import prove, read_input
 from converse.model.problem import LINE
 
-ROOT = Path(__file__).resolve().parent.parent
+ROOT = Path(__file__).resolve().parent.parent.parent
 INPUTS = sorted((ROOT / "inputs").glob("*.in"))
 README = (ROOT / "README.md").read_text("utf-8")
 LEAST_MULTIPLE = {"a": 1, "b": 1, "c": 2}              # of LINE epsilon

@@ -15,6 +15,7 @@ from dataclasses import replace
 from fractions import Fraction
 
 import pytest
+from conftest import ROOT
 
 from converse import ConverseError, Problem, Proof, prove
 from converse.model.exact import decimal_text
@@ -208,7 +209,7 @@ import os, signal, sys
 from converse import prove
 from converse.prover import run, tree_search
 from converse.storage import backup
-sys.path.insert(0, %r)
+sys.path[:0] = %r
 from test_parallel import LONG
 path, resume, cuts, torn = sys.argv[1:]
 backup.SECONDS = backup.SHARE = 0               # it is written at every look
@@ -229,7 +230,7 @@ prove(LONG, method="loewner", jobs=2, **{"resume" if resume else "backup": path}
 
 
 def test_a_killed_coordinator_goes_on_from_its_backup(proof, tmp_path):
-    path, code = tmp_path / "a.proof.gz", KILLED % os.path.dirname(os.path.abspath(__file__))
+    path, code = tmp_path / "a.proof.gz", KILLED % [os.path.dirname(__file__), str(ROOT / "tests")]
     for cuts, torn in (5000, ""), (10000, "torn"), (15000, "torn"), (20000, ""), (30000, "torn"):
         killed = subprocess.run([sys.executable, "-c", code, path, path if path.exists() else "",
                                  str(cuts), torn], cwd=tmp_path, timeout=PATIENCE)

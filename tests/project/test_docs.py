@@ -16,7 +16,7 @@ from converse.version import __version__
 
 from moments import PATIENCE
 
-ROOT = Path(__file__).resolve().parent.parent
+ROOT = Path(__file__).resolve().parent.parent.parent
 PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").glob("*.md"))]
 TEXTS = {page.name: page.read_text("utf-8") for page in PAGES}
 PARSERS = {"converse": cli.parser, "converse-check": check.parser, "converse-map": map_cli.parser,
