@@ -8,11 +8,12 @@ import runpy
 from fractions import Fraction
 from pathlib import Path
 
+import chart
 import mpmath
 import pytest
 from conftest import not_sanitized
 
-from converse import Problem, chart, check, orbits, prove, read_input
+from converse import Problem, check, orbits, prove, read_input
 from converse.version import __version__
 
 from truth import TORTURE
