@@ -45,9 +45,10 @@ class Prism:
         blank = [0] * symbols
         start = xstar, (blank, blank), (1, 1)
         self.lanes = Lane(self, start, x1), Lane(self, x1, start)
-        self.sizes = [(wave.k0, wave.k1,
-                       sum(map(abs, [wave.amplitude, *[x for _, x in wave.parts]]))
-                       / fixed.one) for wave in waves]
+        self.sizes = []                     # of the waves, with k
+        for k0, k1, _, amplitude, parts, _ in waves:
+            self.sizes.append((k0, k1, (abs(amplitude) + sum([abs(x) for _, x in parts]))
+                               / fixed.one))
 
     def cautious(self, site, caution):
         """beta at a site, and something for what the bound will add there."""

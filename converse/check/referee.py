@@ -1,8 +1,8 @@
 """The exact part of the checker: it verifies the theorem of one proof file in integers, leaf after
 leaf, in one process; of maps it reads none.
 
-It needs nothing but Python, and imports nothing of the program that wrote the file.  docs/checker.md
-has its proof, in steps that the modules cite.
+It needs nothing but Python, and imports nothing of the program that wrote the file.  Its proof is
+docs/checker.md, whose steps are cited.
 """
 
 import sys

@@ -41,8 +41,8 @@ def is_boxed(claim):
 def claimed(claim):
     """What a proof file claims, in lines."""
     boxed, torus = is_boxed(claim), min(claim.half) >= 1
-    lines = [SYSTEM, (TRIG if boxed else "V(y) = - the sum of p sin(k.y + phase) over the waves below")
-             + ", " + GRAPH[0], *GRAPH[1:]]
+    potential = TRIG if boxed else "V(y) = - the sum of p sin(k.y + phase) over the waves below"
+    lines = [SYSTEM, potential + ", " + GRAPH[0], *GRAPH[1:]]
     if not torus:
         lines += ["whose orbit through x[0] = x* goes on to x[1] = (v0, v1) in the region",
                   *(range_text(name + " / pi", c - h, c + h)
