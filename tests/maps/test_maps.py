@@ -379,6 +379,13 @@ def test_bad_usage_is_one_line(tmp_path, arguments, words):
     assert not os.listdir(tmp_path)
 
 
+def test_an_input_is_no_map(root, capsys):
+    """Of a potential of one's own there is none, and the line says what there is instead."""
+    assert cli.main([str(root / "inputs" / "crossed.json")]) == 2
+    err = capsys.readouterr().err
+    assert "is an input, and no map" in err and "--method loewner" in err and err.count("\n") == 1
+
+
 def test_the_report(made, capsys):
     assert cli.main([str(made[1])]) == 0
     out = capsys.readouterr().out
