@@ -34,8 +34,8 @@ def _ratio(text):
 def parser():
     p = Parser(prog=COMMAND, allow_abbrev=False, epilog=STATUS, description=(
         "Proves for as many (a, b, c) of a region as it can that there are no invariant tori, and "
-        "keeps what is proved in MAP, a certificate for converse-check.  Without a region MAP is "
-        "described, and drawn with -g."))
+        "keeps what is proved in MAP, a file that converse-check verifies.  Without a region MAP "
+        "is described, and drawn with -g."))
     p.add_argument("map", metavar="MAP", help="a file, new unless it is restored; compressed if "
                    "its name ends in .gz")
     which = p.add_mutually_exclusive_group()

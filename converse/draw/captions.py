@@ -1,4 +1,4 @@
-"""What a figure of a proof says in words, whatever draws it."""
+"""The words in a figure of a proof: the same in PostScript and by matplotlib."""
 
 import math
 import textwrap
@@ -11,7 +11,7 @@ from ..prover import tree
 KIND_NAMES = {"P": "proved", "S": "skipped by symmetry", "?": "untried", "U": "undecided"}
 STAR = "x*, whose successors these are"
 LINE_LENGTH = 78                        # characters of a line of the head, at most
-LEAST = 1 / 128                         # what is not proved is drawn no smaller, as part of a side
+LEAST = 1 / 128                         # of a side: what is not proved is drawn no smaller
 CONCLUSIONS = {
     "theorem": "no invariant tori",
     "region": "no invariant tori whose successor of x* lies in this part of the torus",
@@ -21,7 +21,7 @@ CONCLUSIONS = {
 
 
 def head(proof):
-    """The lines on what is proved: the parameters, exactly, and the conclusion."""
+    """The lines that say what is proved: the parameters, exactly, and the conclusion."""
     problem = proof.problem
     low, high = ([short_text(c + sign * h) for c, h in zip(problem.centre[:-2], problem.half)]
                  for sign in (-1, 1))
@@ -50,7 +50,7 @@ def head(proof):
 
 
 def foot(proof):
-    """The lines on where it comes from."""
+    """The lines that say by what it was proved, and from which file it was drawn."""
     lines = ["converse %s, method %s, %s" % (proof.version, proof.method, proof.arithmetic)]
     if any(map(proof.tree.count, tree.CUTS[2:])) and not proof.all_decided:
         lines.append("where prisms of several parameters share a place, "
@@ -63,7 +63,7 @@ def foot(proof):
 
 
 def counts(proof):
-    """How many prisms there are of each kind, those kinds that there are."""
+    """The number of prisms of each kind that occurs."""
     found = {kind: proof.tree.count(kind) for kind in KIND_NAMES}
     cuts = sum(map(proof.tree.count, tree.CUTS))
     found["?"] += 1 + cuts - sum(found.values())        # those that are missing at the end
@@ -71,8 +71,8 @@ def counts(proof):
 
 
 def star(proof):
-    """The place of x*, moved by multiples of 2 pi, as parts of the region's sides; None, if the
-    region does not show it or the search did not come so far as to choose it."""
+    """The place of x*, modulo 2 pi, in units of the region's sides; None if it is not in the region
+    or not yet chosen."""
     places = []
     if proof.xstar is None:
         return None

@@ -1,8 +1,8 @@
-"""The figure of a system of prisms, as in the thesis: in PostScript, or as matplotlib draws it.
+"""The figure of the prisms of a proof, as in the thesis: in PostScript, or by matplotlib.
 
-The PostScript program carries the tree itself, a byte for each node, and draws it by walking it,
-once for each kind of prism: where parameters were cut prisms share their place, and what is not
-proved must lie on top.
+The PostScript program contains the tree, a byte for each node, and walks it once for each kind of
+prism: where parameters were cut several prisms share a place, and what is not proved must lie on
+top.
 """
 
 import base64
@@ -108,7 +108,7 @@ def figure(proof, target=None, ax=None, format=None, caption=True):
     if kind != "ps" and kind not in plot.FORMATS:
         raise ValueError("the format is one of %s, ps, not %r" % (", ".join(plot.FORMATS), kind))
     data = postscript(proof, caption).encode("ascii", "replace") if kind == "ps" \
-        else plot.picture(proof, kind, caption)
+        else plot.figure_bytes(proof, kind, caption)
     if hasattr(target, "write"):
         target.write(data)
     else:
@@ -126,7 +126,7 @@ def format_of(target):
 def svg(proof):
     """The figure as the text of an SVG file; None without matplotlib."""
     try:
-        return plot.picture(proof, "svg").decode("utf-8")
+        return plot.figure_bytes(proof, "svg").decode("utf-8")
     except files.ConverseError:
         return None
 

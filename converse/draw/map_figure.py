@@ -1,4 +1,4 @@
-"""A map as a picture: SVG, PNG or PDF, by matplotlib."""
+"""The figure of a map: SVG, PNG or PDF, by matplotlib."""
 
 import math
 
@@ -25,7 +25,7 @@ AT_ONCE_LEVEL = 4 / 3                   # of B - 2, above which Mather's criteri
 
 
 def largest(p):
-    """B - 2 of amplitudes (a, b, c), an array (..., 3): to a few digits, for a picture."""
+    """B - 2 of amplitudes (a, b, c), an array (..., 3): to a few digits, on a grid of angles."""
     y = np.linspace(0, 2 * math.pi, SAMPLES, endpoint=False)
     sines = np.sin(y)[:, None], np.sin(y)[None], np.sin(y[:, None] + y)
     a, b, c = (np.asarray(p, float)[..., i, None, None] for i in range(3))
@@ -34,7 +34,7 @@ def largest(p):
 
 
 def check(path):
-    """The format of a picture; ConverseError: it cannot be drawn there."""
+    """The format that a figure's name asks for; ConverseError: it cannot be drawn there."""
     kind = format_of(path)
     if kind not in plot.FORMATS:
         raise files.ConverseError("%s: a map is drawn as %s; name the picture so"
@@ -45,7 +45,7 @@ def check(path):
 
 
 def draw(region_map, path):
-    """Draws a map in a file; ConverseError: it cannot be drawn, or the map is not yet begun."""
+    """Draws a map in a file; ConverseError: it cannot be drawn, or has no estimate yet."""
     kind = check(path)
     if not all(region_map.estimate):
         raise files.ConverseError("the map has nothing to draw yet: it was left while the frontier "

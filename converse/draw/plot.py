@@ -1,6 +1,6 @@
-"""The figure as matplotlib draws it (the extra "plot"): SVG, PNG, PDF, or into the user's axes.
+"""The figure of a proof by matplotlib (the extra "plot"): SVG, PNG, PDF, or in the user's axes.
 
-Nothing of matplotlib's is changed: neither its backend nor its settings.
+Neither the backend nor the settings of matplotlib are changed.
 """
 
 import io
@@ -20,13 +20,13 @@ GREEN, PURPLE, DARK, GREY = "#009e73", "#cc79a7", "0.1", "0.6"
 COLOURS = {"P": "0.35", "S": "0.85", "?": "1.0", "U": "#f4b183"}
 EDGES = {"P": "0.1", "S": "0.6", "?": "0.6", "U": VERMILLION}
 WIDTHS = {"U": 0.8}                     # of the edges, in points
-LAYERS = "SP?U"                         # from below: nothing hides what is not proved
+LAYERS = "SP?U"                         # from the bottom: what is not proved is never hidden
 RASTER = 2000                           # with more prisms than this the depth of the cuts is drawn
 PIXELS = 1200
-SINGLE = Fraction(1, 10 ** 200)         # matplotlib takes ranges not much smaller for none
+SINGLE = Fraction(1, 10 ** 200)         # half-widths below are drawn as 0: matplotlib fails on them
 DEPTHS, SHADE = ("#9ecae1", "#4292c6", "#08306b"), "#4292c6"    # of the cuts; one for the legend
 RASTER_COLOURS = {"S": (217, 217, 217, 255), "?": (255, 255, 255, 255), "U": (213, 94, 0, 255)}
-SALT = {"svg.hashsalt": "converse"}     # the same picture, the same file
+SALT = {"svg.hashsalt": "converse"}     # so that the same picture gives the same file
 STYLE = {                               # of all pictures but those of proofs
     **SALT, "font.size": 8, "axes.titlesize": 9, "axes.labelsize": 9, "xtick.labelsize": 8,
     "ytick.labelsize": 8, "legend.fontsize": 8, "legend.title_fontsize": 8,
@@ -46,7 +46,7 @@ def check():
                                   "or name the figure .ps") from None
 
 
-def picture(proof, kind, caption=True):
+def figure_bytes(proof, kind, caption=True):
     """The figure as the bytes of a file; the user's settings do not matter to it."""
     check()
     from matplotlib import style
@@ -161,8 +161,8 @@ def _paths(text):
 
 
 def _raster(axes, text, extent):
-    """Draws for each place how often the smallest prism there was cut; a place may lie in many
-    where the parameters were cut."""
+    """Draws the number of cuts of the smallest prism at each place; where parameters were cut a
+    place lies in several prisms."""
     import numpy
     from matplotlib.colors import LinearSegmentedColormap
 

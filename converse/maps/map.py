@@ -24,11 +24,13 @@ Place = Tuple[Fraction, ...]
 
 
 class Node:
-    """A cell of the tree: a leaf of some kind unless it is cut, across an axis, into two halves.
-    Whatever interrupts the program, each is one or the other.
+    """A cell of the tree: a leaf of some kind, or cut across an axis into two halves.  It is one or
+    the other whenever an exception strikes.
 
-    proof: of a leaf P, the tree of its prisms and what it is a proof with, as plain data.
-    tried: of an open leaf, how many prisms may have been spent on it in vain."""
+    kind: PROVED; AT_ONCE, proved with all larger multiples by Mather's criterion; OPEN; OUTSIDE, a
+    mirror image of other cells.
+    proof: of a proved leaf, the tree of its prisms with x*, frame and coordinate, as plain data.
+    tried: of an open leaf, the largest number of leaves with which a proof was tried in vain."""
 
     __slots__ = ("cell", "kind", "axis", "halves", "proof", "tried")
 
@@ -57,13 +59,13 @@ class Node:
 
 @dataclass(eq=False, repr=False)
 class Map:
-    """What is proved of a region of parameter space.
+    """What is proved of a region of parameter space, and the estimate that led the search.
 
     region: "b=0", "a=b", "c=0" or "sphere", the fundamental domain a >= b >= 0, c >= 0.
     down_to: how near to the estimated frontier the search was to come, as a ratio.
     roots: of the trees of its faces.
-    estimate: by face, the estimated frontier: at places (s,) or (s, t) the least radius at which
-    parameters without width are proved with a certain effort.  Not proved, and no part of what is.
+    estimate: by face, the estimated frontier: for places (s,) or (s, t) the least radius at which
+    single parameters were proved with a certain effort.  It is no part of what is proved.
     seconds: that the search took.
     sha256: of the file, uncompressed; "" if there is none.
     """
@@ -127,7 +129,8 @@ class Map:
                                          for place in itertools.product(*ends))
 
     def area(self, cell: Optional[Cell] = None) -> float:
-        """Of a cell, of (r, s, t), as far as it is to be proved, about; or of all that is."""
+        """About the area, in (r, s, t), of the part of a cell that is to be proved; without a cell,
+        of all that is to be proved."""
         if cell is None:
             return sum(max(0.0, RADIUS - float(self.down_to) * radius) / len(estimate)
                        for estimate in self.estimate for radius in estimate.values())
@@ -138,7 +141,7 @@ class Map:
     # ---- what is proved
 
     def wanted(self, cell: Cell) -> bool:
-        """Does any of a cell lie above down_to times the estimate?"""
+        """Does a part of the cell lie above down_to times the estimate?"""
         return float(cell.high[0]) > self.target(cell)
 
     @property
@@ -155,7 +158,7 @@ class Map:
 
     @property
     def reached(self) -> float:
-        """How many times the estimate r must be for all to be proved from there on, about."""
+        """About the least ratio of r to the estimate from which on all is proved."""
         return max(math.inf if leaf.cell.high[0] == RADIUS else
                    float(leaf.cell.high[0] * self.down_to) / self.target(leaf.cell)
                    for leaf in self.leaves() if leaf.kind == OPEN)

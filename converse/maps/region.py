@@ -10,8 +10,7 @@ from fractions import Fraction
 from typing import Tuple
 
 AXES = "rst"
-RADIUS = 2                              # from there on B > 10/3, whatever the direction
-HALF = Fraction(1, 2)
+RADIUS = 2          # from it on Mather's criterion holds in all directions: B > 10/3
 
 A, B, C = (1, 0, 0), (0, 1, 0), (0, 0, 1)
 REGIONS = {                             # by name, the directions of the faces
@@ -70,7 +69,7 @@ def patch(directions, cell):
 
 
 def is_outside(directions, cell):
-    """Is b >= a all over the cell, which is no plane's?  Then others are its mirror images."""
+    """Is b >= a in all of a cell of the sphere?  Then it is the mirror image of other cells."""
     if len(directions) < 3:
         return False
     corners = [direction(directions, place) for place in

@@ -20,16 +20,17 @@ OLD = -1                            # in place of the orbit's length: decided in
 
 
 class Part:
-    """A part of the tree: its text so far, in pieces, and the cells that are to follow it."""
+    """A part of the tree: its text so far, in pieces, and the cells that are to follow it, each
+    (index, cuts, hint) as in native.Begun."""
 
     def __init__(self, cells, text=""):
         self.cells, self.pieces = list(cells), [text]
-        self.steps = [OLD] * len(text)      # of each node of the text, if they are wanted
+        self.steps = [OLD] * len(text)      # orbit lengths, by node of the text, if wanted
         self.kinds = _kinds(text)
 
     @property
     def stopped(self):
-        """Is there an undecided prism?  A search that is not stubborn ends here."""
+        """Is there an undecided prism?  Unless it is stubborn the search ends here."""
         return self.kinds[3] > 0
 
     def append(self, pieces, steps, kinds):
@@ -39,7 +40,7 @@ class Part:
 
 
 def _kinds(text):
-    """How many nodes are cuts, proved, symmetric, undecided."""
+    """The numbers of nodes that are cuts, proved, symmetric, undecided."""
     return (sum(map(text.count, tree.CUTS)), *map(text.count, "PSU"))
 
 
@@ -83,7 +84,8 @@ class TreeSearch(Resource):
         if begun is None:
             return None
         self.task = native.Task(self.task.problem, self.task.settings, begun.xstar)
-        # Every worker makes a search of its own: that must pay.
+        # Each worker sets up a search of its own, which takes as long as this one: a search that
+        # is over sooner is not divided.
         self.began = time.monotonic()
         self.alone_until = self.began + max(ALONE_SECONDS, 10 * (self.began - began))
         for name in "cuts", "proved", "symmetric", "undecided":
@@ -101,7 +103,7 @@ class TreeSearch(Resource):
     # ---- what there is
 
     def _relevant(self):
-        """The parts, up to the one that ends a search that is not stubborn."""
+        """The parts; unless the search is stubborn, up to the first with an undecided prism."""
         for part in self.parts:
             yield part
             if part.stopped and not self.stubborn:
@@ -118,7 +120,7 @@ class TreeSearch(Resource):
 
     @property
     def finished(self):
-        """Is everything decided that is to be decided?"""
+        """Is every prism decided, or one undecided in a search that is not stubborn?"""
         return not any(part.cells for part in self._relevant()
                        if self.stubborn or not part.stopped)
 
@@ -138,7 +140,7 @@ class TreeSearch(Resource):
         return text.rstrip(tree.UNTRIED), hints
 
     def _check(self, text):
-        """AssertionError if the text lacks a prism or has one too many: it must never be saved."""
+        """AssertionError if the text lacks a prism or has one too many, so that it is not saved."""
         kinds = cuts, proved, symmetric, undecided = _kinds(text)
         missing = cuts + 1 - proved - symmetric - undecided - text.count(tree.UNTRIED)
         counts = self.counts
@@ -155,8 +157,8 @@ class TreeSearch(Resource):
         self.changes -= 1
 
     def beginning(self, start):
-        """The tree up to its first gap, from node number start on: the text and the lengths of the
-        orbits, OLD for what this run took up.  Needs want_steps."""
+        """The tree from node number `start` to its first gap: the text, and the length of each
+        node's orbit, OLD for nodes of an earlier run.  Needs want_steps."""
         first = self.parts[0]
         first.pieces = ["".join(first.pieces)]
         return first.pieces[0][start:], first.steps[start:]
@@ -191,7 +193,7 @@ class TreeSearch(Resource):
             part = max(queue, key=lambda part: len(part.cells))
             if len(part.cells) == 1:
                 break
-            rest = Part(part.cells[-1:])        # the last is the largest
+            rest = Part(part.cells[-1:])        # the last cell is the largest: it was cut least
             at, place = self.parts.index(part), queue.index(part)
             with self._change():
                 part.cells = part.cells[:-1]

@@ -1,4 +1,4 @@
-"""The backup: a file that is kept up to date with a proof while it is found."""
+"""The backup: a file that is kept up to date with a proof, or a map, while it is searched for."""
 
 import time
 import warnings
@@ -7,15 +7,16 @@ from . import files
 from .files import ConverseError, NotSaved
 from .signals import Resource
 
-SECONDS = 1.0                       # between two writes
-SHARE = 20                          # of the time, at most one part in so many goes into them
+SECONDS = 1.0                       # between two writes, at least
+SHARE = 20                          # times as long as the last write took, at least
 
 
 class Backup(Resource):
-    """Keeps path up to date; with None it keeps nothing.
+    """Keeps the file path up to date; None: there is no file.
 
-    The file must be new, or empty, or that of the run which is continued: nothing is overwritten.
-    ConverseError: it is not, or cannot be written, or another run writes it."""
+    The file must be new, or empty, or `resumed`, that of the run which is continued: nothing else
+    is overwritten.  ConverseError: it is another file, or cannot be written, or another run writes
+    it."""
 
     def __init__(self, path, resumed=None):
         self.path, self.resumed = path, resumed
@@ -34,15 +35,15 @@ class Backup(Resource):
             self.lock.release()
 
     def update(self, snapshot):
-        """Writes what snapshot() returns, if it is time; what goes wrong is said once, and tried
-        again later."""
+        """Writes what snapshot() returns, if a write is due.  If that fails a warning is given,
+        once, and the next write is tried when it is due; the first failure of all is raised."""
         if self.path is None or time.monotonic() < self.due:
             return
         now = time.monotonic()
         try:
             self._write(snapshot())
         except (ConverseError, MemoryError) as error:
-            if self.due == 0.0:         # nothing is lost yet
+            if self.due == 0.0:         # the first write: no work is lost yet
                 self.path = None
                 raise
             if not self.failure:
@@ -52,8 +53,8 @@ class Backup(Resource):
         self.due = time.monotonic() + max(SECONDS, SHARE * (time.monotonic() - now))
 
     def finish(self, proof):
-        """Writes the end of a run; returns the SHA-256 of the file, "" if there is none.
-        NotSaved: the warning that the end could not be written."""
+        """Writes the result of a run; returns the SHA-256 of the file, "" if there is none.
+        NotSaved: a warning that it could not be written."""
         if self.path is None:
             return ""
         try:
@@ -64,7 +65,7 @@ class Backup(Resource):
             return ""
 
     def leave(self):
-        """Leaves the file as it is.  NotSaved: the warning that the last write was in vain."""
+        """Leaves the file as it is.  NotSaved: a warning that the last write failed."""
         if self.failure:
             warnings.warn("%s; what was found %sis not saved" % (
                 self.failure, "" if self.saved is None else

@@ -1,4 +1,4 @@
-"""Files that are either whole or as they were before."""
+"""Writing files so that each is complete or as it was before, and locking them."""
 
 import contextlib
 import fcntl
@@ -16,13 +16,13 @@ class NotSaved(RuntimeWarning):
 
 
 def plain(text):
-    """The text without what a terminal would obey."""
+    """The text with control characters, which a terminal would obey, written as escapes."""
     return "".join(c if c.isprintable() or c == "\t" else
                    c.encode("unicode_escape", "surrogatepass").decode("ascii") for c in text)
 
 
 def check_new(path, resumed=None):
-    """Refuses to begin a backup over a file, but for an empty one or that which is continued."""
+    """ConverseError if a backup would overwrite a file, unless it is empty or the one continued."""
     if os.path.exists(path) and os.path.getsize(path) and not (
             resumed is not None and same(path, resumed)):
         raise ConverseError("%s: exists; to continue it, name it with -r (resume=), or else name "
@@ -35,7 +35,7 @@ def reason(error):
 
 
 def same(path, other):
-    """Do both lead to one file, whether it exists or not?  other may be a file descriptor."""
+    """Are both paths of one file, whether it exists or not?  other may be a file descriptor."""
     try:
         return os.path.samefile(path, other)
     except OSError:
@@ -43,12 +43,12 @@ def same(path, other):
 
 
 def _beside(path):
-    """A name for a file in the same directory that nobody else uses."""
+    """A name in the same directory that no other file has."""
     return os.path.join(os.path.dirname(path), ".converse-" + os.urandom(8).hex())
 
 
 def check_writable(path, regular=False):
-    """Finds out before the work starts whether a file may be written."""
+    """ConverseError if a file cannot be written: found out before the work starts."""
     if os.path.isdir(path or os.curdir):
         raise ConverseError("'%s': is a directory; name a file" % path)
     if os.path.exists(path) and not os.path.isfile(path):
@@ -76,9 +76,9 @@ MADE = {                                # by the ending of its name, how a file 
 
 
 def check_output(path, what, endings, others=()):
-    """Finds out before the work starts whether a picture or a table may be written.  Its name must
-    have such an ending, it must be none of the other files of the run, and where it exists it is
-    what this program made, or empty."""
+    """ConverseError, before the work starts, if a figure or a table (`what`) may not be written:
+    its name must have one of the endings, it must not be one of the other files of the run, and if
+    it exists it must be empty or made by this program."""
     if any(other is not None and same(path, other) for other in others):
         raise ConverseError("'%s': the %s would overwrite it; name another file" % (path, what))
     ending = os.path.splitext(path)[1][1:].lower()
@@ -102,7 +102,8 @@ def check_output(path, what, endings, others=()):
 
 
 def write(path, data):
-    """Writes bytes to a file at once: a failure leaves the older file as it was."""
+    """Writes bytes to a file, all or none: to a new file beside it, which then takes its name.
+    ConverseError: it cannot be written; the older file is as it was."""
     name = None
     try:
         if os.path.exists(path) and not os.path.isfile(path):       # a device or a pipe
