@@ -287,7 +287,8 @@ class Enclosure:
 
     def nudge(self):
         """Moves point 0 by 10^-10, in no particular direction."""
-        self.u[0] = (self.u[0] + arb_mat(self.n, 1, [arb(i) / 2 ** 34 for i in (2, 1)][:self.n])).mid()
+        step = arb_mat(self.n, 1, [arb(i) / 2 ** 34 for i in (2, 1)][:self.n])
+        self.u[0] = (self.u[0] + step).mid()
 
     def pivot_after_all(self, shift):
         """The pivot of point 0 after ever so many rounds: the chain is joined to its like, and the

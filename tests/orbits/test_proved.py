@@ -374,7 +374,8 @@ def test_a_saddle_is_proved_to_be_nothing_else(p, q, k):
     assert bottom(beta) > -1e-13
 
 
-@pytest.mark.parametrize("name, p, origin", [("standard", (0,), (0.0,)), ("ff", (0, 0), (0.0, 0.0))])
+@pytest.mark.parametrize("name, p, origin",
+                         [("standard", (0,), (0.0,)), ("ff", (0, 0), (0.0, 0.0))])
 def test_a_saddle_whose_gradient_is_exactly_zero(name, p, origin):
     """No step of Newton's method leads away from it."""
     state = replace(orbits.straight(getattr(orbits, name), p, 1, origin), eps=1e-10)
