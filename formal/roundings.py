@@ -504,7 +504,8 @@ def at_once(model):
 
 def proved(read, columns=COLUMNS):
     """The margins of section 8 of docs/proof.md that the text of csrc proves, read(file) of it: how
-    many times what is needed there is, of the thesis's waves and of one, a few, as many as may be."""
+    many times what is needed there is, of the thesis's waves and of one, a few, as many as may
+    be."""
     result = {}
     for waves in (None, 1, 3, MOST_WAVES):
         model = Model(read, waves, columns if waves != MOST_WAVES else 2)

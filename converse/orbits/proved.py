@@ -89,7 +89,8 @@ class ProvedOrbit:
             "(Euclidean norm of all coordinates together), which are within %s of those given "
             "(each coordinate)." % moved,
             "It is hyperbolic and, run through any number of times, a nondegenerate local minimum "
-            "of the action:", "second variation at least %s." % rounded_text(self.least, 3, up=False),
+            "of the action:",
+            "second variation at least %s." % rounded_text(self.least, 3, up=False),
             "Action per point less |p/q|^2/2: %s." % interval_text(*self.action, SHOWN)] + [
             "Exponent: %s." % interval_text(*ends, SHOWN) for ends in self.exponents]
         return "\n".join(lines) + "\n"

@@ -282,7 +282,8 @@ def test_confirms_ranges_of_parameters(moving, run, name, cuts, at_once):
     assert (status, err) == (0, "") and out.startswith("Verified :")
     assert cuts is None or set(tree_of(text)) & set("234") == set(cuts)
     assert ("moving together" in out) == is_together(text) == ("box" not in name)
-    assert ("any multiple s >= 1 of the upper ends" in out) == ("at once: no" not in text) == at_once
+    told = "any multiple s >= 1 of the upper ends" in out
+    assert told == ("at once: no" not in text) == at_once
     assert ("symmetric" in out and "0 symmetric" in out) == ("slanted" in name)
     if name == "segment":
         assert "\n0.2242872 <= a <= 0.31400208\n" in out and "region" not in out

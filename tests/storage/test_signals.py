@@ -43,7 +43,8 @@ class Strikes:
 
 @pytest.fixture(autouse=True)
 def handlers():
-    """They are afterwards what they were before, and nothing is left that would postpone signals."""
+    """They are afterwards what they were before, and nothing is left that would postpone
+    signals."""
     before = list(map(signal.getsignal, ENDING))
     yield
     assert list(map(signal.getsignal, ENDING)) == before
