@@ -23,7 +23,7 @@ define install
 	touch $@
 endef
 
-.PHONY: prove check test lint format torture mutate accuracy gappa sanitize memcheck warnings \
+.PHONY: prove check test lint format format-check torture mutate accuracy gappa sanitize memcheck warnings \
     arm bench charts figures man clean formal formal-quick formal-check verified-check checker
 
 prove: $(VENV)/installed
@@ -51,6 +51,10 @@ lint: $(VENV)/with-test
 format:
 	sh .ci/packages $(PYTHON) clang-format
 	clang-format -i $(C_CODE)
+
+format-check:
+	sh .ci/packages $(PYTHON) clang-format
+	clang-format --dry-run -Werror $(C_CODE)
 
 # A hundred times as many random cases; hours.
 torture: $(VENV)/with-test

@@ -116,6 +116,7 @@ else:
 """
 
 
+@pytest.mark.slow
 @needs_gcc
 @pytest.mark.skipif("fma" not in Path("/proc/cpuinfo").read_text()
                     if os.path.exists("/proc/cpuinfo")
