@@ -36,4 +36,4 @@ extern "Python+C" int cv_python_interrupts(void);""")
 ffi.set_source("converse._native", "".join(map('#include "%s"\n'.__mod__, HEADERS)),
                sources=SOURCES,
                include_dirs=["csrc"], libraries=["gmp"], extra_compile_args=FLAGS,
-               depends=sorted(glob.glob("csrc/**/*.[ch]", recursive=True)))
+               depends=sorted(glob.glob("csrc/**/*.*", recursive=True)))

@@ -27,7 +27,7 @@ enum {                       /* why a try of a prism ended without a proof (inde
 
 enum { CV_BY_MAXBLAM, CV_BY_MINBLAM, CV_BY_TRACE };   /* index of ll_used[] */
 
-typedef struct {             /* the statistics of the report; names from the thesis, follow.c */
+typedef struct {             /* the statistics of the report; names from the thesis, follow.inc */
     long quick_tries, tries, Rtries;
     long cuts, proved, symmetric, undecided;          /* nodes of the tree by kind */
     long HermSuccess, LLSuccess;                      /* proved by the trace, by the eigenvalue */
@@ -49,9 +49,9 @@ typedef struct {
 } cv_cell;
 
 /* What became of cells so far, to guess from it what will become of others.  Cells are of one kind
-   if they were cut as often and their parents learnt about as much: nodes[level][class] of them were
-   tried and cut[level][class] cut again; became[class][class]: the classes of these and of their
-   halves.  The last level takes in all that is deeper. */
+   if they were cut as often and their parents learnt about as much: nodes[level][class] of them
+   were tried and cut[level][class] cut again; became[class][class]: the classes of these and of
+   their halves.  The last level takes in all that is deeper. */
 enum { CV_LEVELS = 128, CV_CLASSES = 16 };
 typedef struct { int nodes[128][16], cut[128][16], became[16][16]; } cv_history;
 
@@ -101,14 +101,15 @@ int cv_prepare(cv_search *s, const cv_stop *stop);
 int cv_restart(cv_search *s, int n, const cv_cell *cells);
 
 /* Takes up a tree that a search of this kind grew before: its nodes are counted, and the prisms
-   that it leaves untried, '?' or missing at its end, are pending.  CV_EARGUMENT: it is no such tree. */
+   that it leaves untried, '?' or missing at its end, are pending.  CV_EARGUMENT: it is no such
+   tree. */
 int cv_resume(cv_search *s, const char *tree, size_t length);
 
 /* Decides at most max_leaves further prisms, or works for about max_seconds; stopped, it forgets
    the prism at hand.  CV_RUNNING: there is more to do.  CV_OK: all prisms are decided, or an
    undecided one ended a search that is not stubborn.  CV_ENOMEM: the tree so far is good.
-   CV_EMACHINE: the arithmetic breaks the rules, before the step or after it: nothing that the search
-   did since cv_restart may be used. */
+   CV_EMACHINE: the arithmetic breaks the rules, before the step or after it: nothing that the
+   search did since cv_restart may be used. */
 int cv_step(cv_search *s, long max_leaves, double max_seconds, const cv_stop *stop);
 
 /* The prisms yet to be decided, the next one first: how many, and, unless cells is NULL, which. */
@@ -124,6 +125,7 @@ int cv_class(int from);                                    /* of a cell with thi
 int cv_at_once(const cv_search *s);
 /* Numbers of the search as exact decimals; the caller frees.  which: 0, 1 the starting point;
    2 T, 3 Tr_-, 4 Tr_+, 5 B, 6 lambda_-min, 7 lambda_-max (thesis, section 3.3.4; 5 alone with the
-   method Loewner; from 2 on not before cv_prepare); 8 centre and 9 half-width of v0, 10 and 11 of v1, in radians.  NULL: no memory. */
+   method Loewner); 8 centre and 9 half-width of v0, 10 and 11 of v1, in radians.  Not before
+   cv_prepare but for 0 and 1.  NULL: no memory. */
 char *cv_constant(const cv_search *s, int which);
 void cv_free(char *text);

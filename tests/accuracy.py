@@ -26,7 +26,7 @@ from truth import (CLOSE, cube_of, cube_point, decimal, eigenvalues, exact, list
 
 SEED = 1989
 DIGITS = 120                                            # of mpmath
-DP = {"10 places": 10, "35 places": 35, "double": 15}   # unit.c: what a double is good for
+DP = {"10 places": 10, "35 places": 35, "double": 15}   # unit.inc: what a double is good for
 NO_WIDTHS = [[Fraction(0)] * 7 for _ in range(7)]
 
 # A measurement gets random numbers, the number of random cases, the places and the options of
@@ -225,9 +225,9 @@ def witnesses(rng, n, dp, **options):
 
 TOLERANCE = "tolerances, 5e-7 + 1e-12 (2 + 2 (\\|a\\| + \\|b\\| + \\|c\\|))"
 CENTRE_ERR = "times 1 + \\|a\\| + \\|b\\| + \\|c\\| places"
-GAUSS, ROOTS = "Gauss-Jordan, full pivoting; gauss.c", "(Tr beta -+ sqrt(disc)) / 2; lambda.c"
-BRANCH, ROTOR = "branch and bound; model/torus.c", "column rotor (cr-rows); cr_fatten.c, cr_rows.c"
-FIXED = "fixed form (A-blocks, ff-ests); ff_fatten.c, ff_rows.c"
+GAUSS, ROOTS = "Gauss-Jordan, full pivoting; gauss.inc", "(Tr beta -+ sqrt(disc)) / 2; lambda.inc"
+BRANCH, ROTOR = "branch and bound; model/torus.c", "column rotor (cr-rows); cr_fatten.inc, cr_rows.inc"
+FIXED = "fixed form (A-blocks, ff-ests); ff_fatten.inc, ff_rows.inc"
 DIRECTED = ("APM_DOWN never more than the true value, APM_UP never less, APM_TRUNC never more in "
             "magnitude; each is within 10^-dp of the truth")
 HOLDS, HALF, WIDTHS = "pz_prime contains G(pz)", "half-widths", "sampled widths"
@@ -249,10 +249,10 @@ ROWS = [
     ("sine, cosine of a double to 1.5e6", "reduction in three parts, Taylor series; sine.h",
      "\\|s - sin x\\| <= SINE_ERROR and \\|c - cos x\\| <= SINE_ERROR, 0x1p-51",
      -1, 1, "times 2^-51", sines, {"of_doubles": True}, DOUBLE, 6000),
-    ("sine, cosine over an interval, to 100", "values at the ends, extrema by turns; bd_trig.c",
+    ("sine, cosine over an interval, to 100", "values at the ends, extrema by turns; bd_trig.inc",
      "every value of the wave on the interval lies in r",
      0, None, "places", intervals, {}, ALL, 8000),
-    ("sine, cosine over an interval, 100 to 10^25", "turns are known to dp places; bd_trig.c",
+    ("sine, cosine over an interval, 100 to 10^25", "turns are known to dp places; bd_trig.inc",
      "the same", 0, None, "places", intervals, {"far": True}, EXACT, 8000),
     ("inverse of a 4 x 4 matrix: inverse_err", GAUSS,
      "each entry off by at most inverse_err, which is at most 2 ulp",
@@ -262,9 +262,9 @@ ROWS = [
     ("one try, no digits to spare: err / error", GAUSS,
      "err = a bound of the error of every entry",
      1, None, "", inverses, {"name": "gauss_jordan", "want": "ratio"}, EXACT, 2000),
-    ("trace of beta at a point", "sum of waves; trace.c", "r encloses Tr beta",
+    ("trace of beta at a point", "sum of waves; trace.inc", "r encloses Tr beta",
      0, None, "places", suites, {"wanted": [0]}, ALL, 1000),
-    ("trace of beta over a prism", "sum of waves; trace.c", "r encloses Tr beta over the prism",
+    ("trace of beta over a prism", "sum of waves; trace.inc", "r encloses Tr beta over the prism",
      0, None, WIDTHS, suites, {"wanted": [0], "kind": "prism"}, ALL, 300),
     ("eigenvalues of beta at a point, 0.1 apart", ROOTS, LEAST,
      0, None, "places", suites, {"wanted": [1, 2], "kind": "apart"}, ALL, 1000),
@@ -281,7 +281,7 @@ ROWS = [
     ("T, B over the torus, c = 100 alone", BRANCH,
      "a ridge, on which it may be looser, and still a bound",
      0, None, TOLERANCE, torus, {"cases": FLAT}, ALL, 0),
-    ("image of a point: its centre", "equation code-map; map.c",
+    ("image of a point: its centre", "equation code-map; map.inc",
      "each coordinate of v' is off by at most centre_err",
      -1, 1, CENTRE_ERR, point_images, {"want": "error"}, ALL, 500),
     ("image of a point: widths less error", FIXED, HOLDS,

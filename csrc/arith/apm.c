@@ -117,7 +117,8 @@ int apm_set_str(apm_t r, const char *text)
 
     /* Look first, so that a number is either read whole or not at all. */
     s += *s == '+' || *s == '-';
-    for (const char *const start = s; isdigit((unsigned char)*s) || (*s == '.' && !seen_point); s++) {
+    for (const char *const start = s;
+         isdigit((unsigned char)*s) || (*s == '.' && !seen_point); s++) {
         seen_point |= *s == '.';
         places += seen_point && *s != '.';
         digits = s - start + 1 - seen_point;

@@ -33,9 +33,9 @@ int  apm_set_str(apm_t r, const char *text);            /* [+-]digits[.digits][e
 int  apm_set_d(apm_t r, double x);      /* exactly; APM_ERANGE if x is not finite */
 double apm_get_d(const apm_t x);                        /* within an ulp or two; 0 if too small */
 double apm_nearest_d(const apm_t x);    /* and of a double itself that double */
-double apm_bound_d(const apm_t x, apm_round_t dir);     /* APM_DOWN: a double <= x; APM_UP: >= x; the
-                                           next to it, or infinite where doubles end */
-char *apm_get_str(const apm_t x);                       /* exact; the caller frees; NULL: no memory */
+double apm_bound_d(const apm_t x, apm_round_t dir);     /* APM_DOWN: <= x; APM_UP: >= x; close to
+                                           it, and infinite where doubles end */
+char *apm_get_str(const apm_t x);       /* exact; the caller frees; NULL: no memory */
 
 void apm_swap(apm_t x, apm_t y);
 void apm_neg(apm_t r, const apm_t x);

@@ -17,8 +17,8 @@ int cv_stop_get(const cv_stop *stop);   /* was it asked for?  Not if stop is NUL
 enum { GUARD_DONE, GUARD_MEMORY, GUARD_STOP };
 
 /* Calls work(data).  GUARD_DONE: it returned.  GUARD_MEMORY: GMP ran out of memory in it.
-   GUARD_STOP: a poll in it found stop set, by work or by another thread; stop may be NULL.  In
-   the last two cases work was left where it was, and data holds what it had stored there by then. */
+   GUARD_STOP: a poll in it found stop set, by work or by another thread; stop may be NULL.  In the
+   last two cases work was left where it was, and data holds what it had stored there by then. */
 int guard_run(void (*work)(void *data), void *data, const cv_stop *stop);
 
 /* To be called now and then in every loop that may last, where all numbers are whole: after a

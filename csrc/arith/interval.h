@@ -1,14 +1,14 @@
 /* interval.h - intervals of doubles whose ends move outwards after every operation.
 
-   Contract.  An interval stands for all real numbers x with low <= x <= high; an end may be infinite.
-   Each operation's result holds the operation's value for all members of its operands.  An end that
-   is not known, since it would be NaN or overflows, is infinite: at worst the result is the whole
-   line.
+   Contract.  An interval stands for all real numbers x with low <= x <= high; an end may be
+   infinite.  Each operation's result holds the operation's value for all members of its operands.
+   An end that is not known, since it would be NaN or overflows, is infinite: at worst the result is
+   the whole line.
 
    No rounding mode is changed.  A double x that was rounded to nearest from z has
-   |x - z| <= 2^-53 |x| + 2^-1075, gradual underflow included.  `below` moves it down by about
-   2^-51 |x| + 2^-951, and its own roundings cost less than 2^-52 |x| + 2^-1000; `above` likewise.
-   (Arb's double_interval.h does the same.) */
+   |x - z| <= 2^-53 |x| + 2^-1075, gradual underflow included.  just_below moves it down by about
+   2^-51 |x| + 2^-951, and its own roundings cost less than 2^-52 |x| + 2^-1000; likewise
+   just_above.  (So does Arb with its intervals of doubles.) */
 #ifndef CONVERSE_INTERVAL_H
 #define CONVERSE_INTERVAL_H
 
@@ -24,14 +24,14 @@ typedef struct { double low, high; } interval;
 
 /* <= and >= what was rounded to x, by any operation that rounds correctly; -inf and inf where x is
    NaN or overflowed. */
-INLINE double below(double x)
+INLINE double just_below(double x)
 {
     const double y = x - (fabs(x) + 0x1p-900) * 0x1p-51;
 
     return y == y ? y : -HUGE_VAL;
 }
 
-INLINE double above(double x) { return -below(-x); }
+INLINE double just_above(double x) { return -just_below(-x); }
 
 /* x itself; the whole line unless it is finite. */
 INLINE interval interval_of(double x)
@@ -41,7 +41,7 @@ INLINE interval interval_of(double x)
 
 INLINE interval interval_about(double x, double radius)
 {
-    return (interval){ below(x - radius), above(x + radius) };
+    return (interval){ just_below(x - radius), just_above(x + radius) };
 }
 
 /* >= |x| for all x of the interval. */
@@ -49,12 +49,12 @@ INLINE double interval_size(interval x) { return larger(fabs(x.low), fabs(x.high
 
 INLINE interval interval_add(interval x, interval y)
 {
-    return (interval){ below(x.low + y.low), above(x.high + y.high) };
+    return (interval){ just_below(x.low + y.low), just_above(x.high + y.high) };
 }
 
 INLINE interval interval_sub(interval x, interval y)
 {
-    return (interval){ below(x.low - y.high), above(x.high - y.low) };
+    return (interval){ just_below(x.low - y.high), just_above(x.high - y.low) };
 }
 
 INLINE interval interval_mul(interval x, interval y)
@@ -65,8 +65,8 @@ INLINE interval interval_mul(interval x, interval y)
 
     if (isnan((a + b) + (c + d)))       /* 0 times infinity, or both infinities */
         return interval_of(NAN);
-    return (interval){ below(least_ab < least_cd ? least_ab : least_cd),
-                       above(most_ab > most_cd ? most_ab : most_cd) };
+    return (interval){ just_below(least_ab < least_cd ? least_ab : least_cd),
+                       just_above(most_ab > most_cd ? most_ab : most_cd) };
 }
 
 /* n x, n a double that is exact. */
@@ -74,7 +74,8 @@ INLINE interval interval_scale(double n, interval x)
 {
     const double low = n * x.low, high = n * x.high;
 
-    return n < 0.0 ? (interval){ below(high), above(low) } : (interval){ below(low), above(high) };
+    return n < 0.0 ? (interval){ just_below(high), just_above(low) }
+                   : (interval){ just_below(low), just_above(high) };
 }
 
 /* What of x lies within [-1, 1]. */
@@ -87,8 +88,8 @@ INLINE interval interval_clip(interval x)
 INLINE void interval_sincos(interval *s, interval *c, interval x)
 {
     const double middle = 0.5 * x.low + 0.5 * x.high;
-    const double off = larger(above(middle - x.low), above(x.high - middle));
-    const double radius = above(off + SINE_ERROR);
+    const double off = larger(just_above(middle - x.low), just_above(x.high - middle));
+    const double radius = just_above(off + SINE_ERROR);
     double sine, cosine;
 
     double_sincos(&sine, &cosine, middle);

@@ -66,8 +66,9 @@ INLINE vec square(vec x) { return x * x; }
 /* NaN if either is. */
 INLINE vec larger(vec x, vec y) { return pick(TRUTH(x > y) | TRUTH(x != x), x, y); }
 
-/* Lane by lane: numbers below 2^31 in a mask, and the largest or, way < 0, the least of them where
-   turn; 0 if that is nowhere. */
+/* A mask may also hold an integer below 2^31 in each lane: number and put_number read and write
+   that of lane k.  extreme is the largest of them or, if way is negative, the least, over those
+   lanes for which the mask `turn` holds; 0 if it holds for none. */
 INLINE int number(const mask *m, int k) { return (int)((const uint64_t *)m)[k]; }
 INLINE void put_number(mask *m, int k, int value) { ((uint64_t *)m)[k] = (uint64_t)value; }
 INLINE void put_truth(mask *m, int k, int value) { ((uint64_t *)m)[k] = value ? UINT64_MAX : 0; }

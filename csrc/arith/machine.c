@@ -14,7 +14,7 @@
 int machine_is_sound(void)
 {
     volatile double tiny = DBL_MIN, one = 1.0, third, more = 1.0 + 0x1p-30;
-    const double x = more, fused = x * x - (1.0 + 0x1p-29);        /* 2^-60 where it is contracted */
+    const double x = more, fused = x * x - (1.0 + 0x1p-29);   /* 2^-60 where it is contracted */
 
     tiny *= 0.5;
     third = one / 3.0;

@@ -217,14 +217,14 @@ static void to_decimal(apm_t r, const mpz_t x, int negative, const trig_t *trig)
     r->exp = -trig->dp;
 }
 
-void apm_sincos(apm_t s, apm_t c, const apm_t x, trig_t *trig)
+/* trig->t = x less the nearest quarter turn, in radians, without its sign (negative), in ulps: off
+   by less than 4, and below 0.8.  Returns the number of quarter turns, modulo 4. */
+static int reduced(trig_t *trig, const apm_t x, int *negative)
 {
     const mp_bitcnt_t w = trig->w;
     const long order = apm_order(x);
     const mp_bitcnt_t big = order > 0 ? (mp_bitcnt_t)order * 3322 / 1000 + 2 : 0;
     int quadrant;
-    mp_bitcnt_t j, r, b;
-    int negative;
 
     if (trig->half_pi_bits < w + big + 2) {
         trig->half_pi_bits = 0;                         /* not whole, if a poll ends this */
@@ -240,16 +240,24 @@ void apm_sincos(apm_t s, apm_t c, const apm_t x, trig_t *trig)
     mpz_mul(trig->t, x->mant, trig->turn);
     mpz_fdiv_q_2exp(trig->t, trig->t, trig->turn_bits - w);
 
-    /* t = x less the nearest quarter turn, in radians, without its sign: off by less than
-       1.6 pi/2 + 1 ulps and what half_pi is off, together less than 4, and below 0.8. */
+    /* In radians: off by less than 1.6 pi/2 + 1 ulps and what half_pi is off, less than 4. */
     mpz_add(trig->t, trig->t, trig->half);
     quadrant = mpz_tstbit(trig->t, w) + 2 * mpz_tstbit(trig->t, w + 1);
     mpz_fdiv_r_2exp(trig->t, trig->t, w);
     mpz_sub(trig->t, trig->t, trig->half);
-    negative = mpz_sgn(trig->t) < 0;
+    *negative = mpz_sgn(trig->t) < 0;
     mpz_abs(trig->t, trig->t);
     mpz_mul(trig->t, trig->t, trig->half_pi);
     mpz_tdiv_q_2exp(trig->t, trig->t, trig->half_pi_bits);
+    return quadrant;
+}
+
+void apm_sincos(apm_t s, apm_t c, const apm_t x, trig_t *trig)
+{
+    const mp_bitcnt_t w = trig->w;
+    int negative;
+    const int quadrant = reduced(trig, x, &negative);
+    mp_bitcnt_t j, r, b;
 
     /* v = 1 - cos t, from t / 2^r.  If v = 1 - cos y then 1 - cos 2y = 4v - 2v^2: in units of 2^-b
        before and of 2^-(b-2) after, v becomes v - v^2/2^(b+1).  In these units an error does not

@@ -15,13 +15,13 @@ static waves potential_of(const patch *p, int at_end, numbers *room)
     return (waves){ p->n_waves, p->k, room->phase, room->p };
 }
 
-static int accepts(const patch *p, const precision *how)
+static int loewner_accepts(const patch *p, const precision *how)
 {
     (void)p;
     return how->as_printed ? CV_EARGUMENT : CV_OK;
 }
 
-static void choose_start(const patch *p, int symmetric, double x[2])
+static void loewner_choose_start(const patch *p, int symmetric, double x[2])
 {
     numbers room;
     const waves v = potential_of(p, 0, &room);
@@ -43,8 +43,8 @@ static int find_at_once(const loewner *w, const patch *p)
     return loewner_at_once(w, x, 0) ? 1 : one && loewner_at_once(w, x, 1) ? 2 : 0;
 }
 
-static int prepare(void **work, const patch *p, const precision *how, apm_t constants[N_CONSTANTS],
-                   int *at_once)
+static int loewner_prepare(void **work, const patch *p, const precision *how,
+                           apm_t constants[N_CONSTANTS], int *at_once)
 {
     loewner *const w = *work = loewner_new(p, 1);
 
@@ -59,8 +59,8 @@ static int prepare(void **work, const patch *p, const precision *how, apm_t cons
 }
 
 static void free_loewner(void *work) { loewner_free(work); }
-static int axes(const patch *p) { return 2 + p->n_parameters; }
-static int lanes(const void *work) { return loewner_lanes(work); }
+static int loewner_axes(const patch *p) { return 2 + p->n_parameters; }
+static int lanes_of(const void *work) { return loewner_lanes(work); }
 
 static void try_cells(void *work, int n, const cv_cell *const cells[], outcome *const out[])
 {
@@ -70,6 +70,7 @@ static void try_cells(void *work, int n, const cv_cell *const cells[], outcome *
 }
 
 const method method_loewner = {
-    .accepts = accepts, .choose_start = choose_start, .start_format = "%.6f",
-    .prepare = prepare, .free = free_loewner, .axes = axes, .lanes = lanes, .try = try_cells
+    .accepts = loewner_accepts, .choose_start = loewner_choose_start, .start_format = "%.6f",
+    .prepare = loewner_prepare, .free = free_loewner, .axes = loewner_axes,
+    .lanes = lanes_of, .try = try_cells
 };

@@ -1,15 +1,15 @@
 /* torus.c - the largest trace and the largest eigenvalue of beta over the whole torus and ranges of
-   amplitudes, by branch and bound, in intervals.  The thesis found them by Newton's method and added
-   a margin; that is a guess, and everything else rests on these two numbers.
+   amplitudes, by branch and bound, in intervals.  The thesis found them by Newton's method and
+   added a margin; that is a guess, and everything else rests on these two numbers.
 
-   beta(-v) = 2I + W(v), W(v) = sum of p sin(k.v - phase) k k', and the torus is its own mirror image,
-   so W serves.  With y = k.v - phase and t a displacement along k, |sin''| <= 1 says
+   beta(-v) = 2I + W(v), W(v) = sum of p sin(k.v - phase) k k', and the torus is its own mirror
+   image, so W serves.  With y = k.v - phase and t a displacement along k, |sin''| <= 1 says
 
        p sin(y + t) <= p (sin y + t cos y) + |p| t^2/2.
 
-   The right side is convex in t; W grows with these coefficients in the Loewner order, and trace and
-   largest eigenvalue are convex and grow with W.  So over a rectangle about v what they say of W is
-   largest at a corner.  docs/proof.md, section 4. */
+   The right side is convex in t; W grows with these coefficients in the Loewner order, and trace
+   and largest eigenvalue are convex and grow with W.  So over a rectangle about v what they say of
+   W is largest at a corner.  docs/proof.md, section 4. */
 #include "model/patch.h"
 #include "model/torus.h"
 
@@ -31,13 +31,13 @@ typedef struct {
 typedef struct { double low[2], high[2]; int depth; } cell;
 
 /* >= trace or largest eigenvalue of M = sum of z[i] k k': the latter is half of
-   trace + sqrt((M00 - M11)^2 + (2 M01)^2).  What is squared is scaled, so that none is too large. */
-static double summit(const surface *q, const double z[])
+   trace + sqrt((M00 - M11)^2 + (2 M01)^2).  What is squared is scaled, lest it overflow. */
+static double trace_or_eigenvalue(const surface *q, const double z[])
 {
     double trace = 0.0, size[2];
 
     for (int i = 0; i < q->n; i++)
-        trace = above(trace + above(q->waves[i].trace * z[i]));
+        trace = just_above(trace + just_above(q->waves[i].trace * z[i]));
     if (q->which == TORUS_TRACE)
         return trace;
     for (int j = 0; j < 2; j++) {
@@ -48,9 +48,9 @@ static double summit(const surface *q, const double z[])
         size[j] = interval_size(sum);
     }
     const double scale = larger(larger(size[0], size[1]), 0x1p-900);
-    const double x = above(size[0] / scale), y = above(size[1] / scale);
-    const double root = above(sqrt(above(above(x * x) + above(y * y))));
-    return above(0.5 * above(trace + above(scale * root)));
+    const double x = just_above(size[0] / scale), y = just_above(size[1] / scale);
+    const double root = just_above(sqrt(just_above(just_above(x * x) + just_above(y * y))));
+    return just_above(0.5 * just_above(trace + just_above(scale * root)));
 }
 
 static interval along(const wave *w, const double x[2])
@@ -68,25 +68,25 @@ static double over(const surface *q, const double low[2], const double high[2], 
 
     for (int j = 0; j < 2; j++) {
         v[j] = 0.5 * low[j] + 0.5 * high[j];
-        r[j] = larger(above(v[j] - low[j]), above(high[j] - v[j]));
+        r[j] = larger(just_above(v[j] - low[j]), just_above(high[j] - v[j]));
     }
     for (int i = 0; i < q->n; i++) {
         const wave *const w = &q->waves[i];
         interval_sincos(&s[i], &c[i], interval_sub(along(w, v), w->phase));
         z[0][i] = interval_mul(w->p, s[i]).high;
     }
-    *middle = summit(q, z[0]);
+    *middle = trace_or_eigenvalue(q, z[0]);
     for (int diagonal = 0; diagonal < 2; diagonal++) {
         const double t[2] = { r[0], diagonal == 0 ? r[1] : -r[1] };
         for (int i = 0; i < q->n; i++) {
             const wave *const w = &q->waves[i];
             const interval far = along(w, t), line = interval_mul(c[i], far);
             const double size = interval_size(far);
-            const double bow = above(0.5 * above(w->size * above(size * size)));
-            z[0][i] = above(interval_mul(w->p, interval_add(s[i], line)).high + bow);
-            z[1][i] = above(interval_mul(w->p, interval_sub(s[i], line)).high + bow);
+            const double bow = just_above(0.5 * just_above(w->size * just_above(size * size)));
+            z[0][i] = just_above(interval_mul(w->p, interval_add(s[i], line)).high + bow);
+            z[1][i] = just_above(interval_mul(w->p, interval_sub(s[i], line)).high + bow);
         }
-        top = larger(larger(summit(q, z[0]), summit(q, z[1])), top);
+        top = larger(larger(trace_or_eigenvalue(q, z[0]), trace_or_eigenvalue(q, z[1])), top);
     }
     return top;
 }
@@ -127,8 +127,8 @@ static double pass(const surface *q, double *best, double tolerance, long *cells
 
 /* >= trace or largest eigenvalue of W over the torus.  Each pass looks more closely than the last,
    whose best value spares it all but the neighbourhood of the maximum.  Cells run out where the
-   maximum is a ridge, or there are many; then the result is the best bound so far.  Nothing is above
-   what W would be with all waves at their crests, which ridges nearly reach. */
+   maximum is a ridge, or there are many; then the result is the best bound so far.  Nothing is
+   above what W would be with all waves at their crests, which ridges nearly reach. */
 static double largest(const surface *q)
 {
     const double last = NEAR + 1e-12 * q->all;
@@ -137,7 +137,7 @@ static double largest(const surface *q)
 
     for (int i = 0; i < q->n; i++)
         crests[i] = q->waves[i].size;
-    most = summit(q, crests);
+    most = trace_or_eigenvalue(q, crests);
     for (double tolerance = 0.5 * q->all; ; tolerance *= CLOSER) {
         const int done = !(tolerance > 2.0 * last);
         const double found = pass(q, &best, done ? last : tolerance, &cells);
@@ -203,11 +203,11 @@ double torus_largest(int n, const torus_wave waves[], int which)
         direction[0] = first[0] / common;
         direction[1] = first[1] / common;
         q = surface_of(n, waves, there, which, direction, direction[0] == 0.0);
-        return above(flat + largest(&q));
+        return just_above(flat + largest(&q));
     }
     if (!apart) {
         q = surface_of(n, waves, there, which, NULL, 0);
-        return above(flat + largest(&q));
+        return just_above(flat + largest(&q));
     }
     for (int j = 0; j < 2; j++) {       /* W is diagonal, and each entry has its own angle */
         direction[j] = 1.0;
@@ -215,5 +215,6 @@ double torus_largest(int n, const torus_wave waves[], int which)
         q = surface_of(n, waves, feels[j], which, direction, j);
         top[j] = largest(&q);
     }
-    return above(flat + (which == TORUS_TRACE ? above(top[0] + top[1]) : larger(top[0], top[1])));
+    return just_above(flat + (which == TORUS_TRACE ? just_above(top[0] + top[1])
+                                                   : larger(top[0], top[1])));
 }

@@ -2,9 +2,9 @@
 
    A method may be quickest with several prisms at a time (method.h: lanes).  So the first of those
    pending are tried together, and what became of them is noted.  Where one was cut its halves are
-   noted, too, and may be tried with those that follow.  Its turn comes in preorder all the same, and
-   only then does it count: since nothing depends on other prisms, the tree is as it would be with
-   one at a time. */
+   noted, too, and may be tried with those that follow.  Its turn comes in preorder all the same,
+   and only then does it count: since nothing depends on other prisms, the tree is as it would be
+   with one at a time. */
 #include <stdlib.h>
 
 #include "search/search.h"

@@ -44,7 +44,7 @@ static void with_a_point(char *text)
 }
 
 /* The starting point of the method's choice. */
-static int choose_start(const cv_search *s, apm_t xstar[2])
+static int choose_xstar(const cv_search *s, apm_t xstar[2])
 {
     double start[2];
     char text[40];
@@ -65,7 +65,7 @@ static int set_start(cv_search *s, const char *const xstar[2])
 
     s->symmetric = patch_symmetric(&s->problem);
     if (xstar == NULL)
-        status = choose_start(s, s->problem.xstar);
+        status = choose_xstar(s, s->problem.xstar);
     for (int j = 0; j < 2 && xstar != NULL; j++)
         if (apm_set_str(s->problem.xstar[j], xstar[j]) != APM_OK)
             status = CV_ENUMBER;
@@ -82,7 +82,7 @@ typedef struct {
     int status;
 } given;
 
-static void set_up(void *data)
+static void set_up_problem(void *data)
 {
     given *const g = data;
     cv_search *const s = g->s;
@@ -94,7 +94,7 @@ static void set_up(void *data)
         g->status = set_start(s, g->xstar);
 }
 
-static void prepare(void *data)
+static void set_up_method(void *data)
 {
     cv_search *const s = data;
     const long dp = s->precision.digits;
@@ -117,7 +117,7 @@ int cv_prepare(cv_search *s, const cv_stop *stop)
     if (!machine_is_sound())
         return CV_EMACHINE;
     s->spoilt = 1;                      /* until it is done */
-    switch (guard_run(prepare, s, stop)) {
+    switch (guard_run(set_up_method, s, stop)) {
     case GUARD_STOP:
         s->status = CV_EARGUMENT;       /* half prepared, it is good for nothing */
         return CV_RUNNING;
@@ -157,7 +157,7 @@ int cv_search_new(cv_search **result, const cv_problem *problem, const char *con
     s->depth = depth;
     s->stubborn = stubborn;
     g.s = s;
-    status = guard_run(set_up, &g, NULL) == GUARD_MEMORY ? CV_ENOMEM : g.status;
+    status = guard_run(set_up_problem, &g, NULL) == GUARD_MEMORY ? CV_ENOMEM : g.status;
     if (status == CV_OK)
         status = cv_resume(s, "", 0);   /* the whole root is to be tried */
     if (status == CV_OK) {

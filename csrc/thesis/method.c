@@ -11,13 +11,13 @@ typedef struct {
     box root, prism;                    /* all of the problem, and the cell at hand */
 } bench;
 
-static int accepts(const patch *p, const precision *how)
+static int thesis_accepts(const patch *p, const precision *how)
 {
     (void)how;
     return thesis_parameters(p) && is_identity(p->frame) ? CV_OK : CV_EARGUMENT;
 }
 
-static void choose_start(const patch *p, int symmetric, double x[2])
+static void thesis_choose_start(const patch *p, int symmetric, double x[2])
 {
     double abc[MOST_WAVES];
 
@@ -62,8 +62,8 @@ static void set_root(box *root, const patch *p)
     }
 }
 
-static int prepare(void **work, const patch *p, const precision *how, apm_t constants[N_CONSTANTS],
-                   int *at_once)
+static int thesis_prepare(void **work, const patch *p, const precision *how,
+                          apm_t constants[N_CONSTANTS], int *at_once)
 {
     bench *const w = *work = calloc(1, sizeof *w);
     double abc[MOST_WAVES], herman_start[2];
@@ -88,13 +88,13 @@ static int prepare(void **work, const patch *p, const precision *how, apm_t cons
     return status != CV_OK ? status : prepare_trial(w->quick, &w->root, herman_start, constants);
 }
 
-static int axes(const patch *p)
+static int thesis_axes(const patch *p)
 {
     (void)p;
     return 2;                           /* v0 and v1 only */
 }
 
-static int lanes(const void *work)
+static int thesis_lanes(const void *work)
 {
     (void)work;
     return 1;
@@ -142,13 +142,14 @@ static void try_cell(bench *w, const cv_cell *c, outcome *out)
     }
 }
 
-static void try_cells(void *work, int n, const cv_cell *const cells[], outcome *const out[])
+static void thesis_try(void *work, int n, const cv_cell *const cells[], outcome *const out[])
 {
     for (int k = 0; k < n; k++)
         try_cell(work, cells[k], out[k]);
 }
 
 const method method_thesis = {
-    .accepts = accepts, .choose_start = choose_start, .start_format = "%.17g",
-    .prepare = prepare, .free = free_bench, .axes = axes, .lanes = lanes, .try = try_cells
+    .accepts = thesis_accepts, .choose_start = thesis_choose_start, .start_format = "%.17g",
+    .prepare = thesis_prepare, .free = free_bench, .axes = thesis_axes,
+    .lanes = thesis_lanes, .try = thesis_try
 };

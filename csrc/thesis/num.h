@@ -23,7 +23,12 @@ typedef double num_t[1];
 static inline void num_init(num_t x) { x[0] = 0.0; }
 static inline void num_clear(num_t x) { (void)x; }
 static inline void num_set(num_t r, const num_t x) { r[0] = x[0]; }
-static inline void num_set_si(num_t r, long n, long exp) { r[0] = (double)n * pow(10.0, (double)exp); }
+static inline void num_set_si(num_t r, long n, long exp)
+{
+    r[0] = (double)n * pow(10.0, (double)exp);
+}
+
+
 static inline void num_set_apm(num_t r, const apm_t x) { r[0] = apm_get_d(x); }
 static inline int num_set_d(num_t r, double x)
 {

@@ -41,7 +41,7 @@ typedef struct {
     bdd a, b, c, sin[3], cos[3], a_sin, b_sin, c_sin;   /* over a prism: global_bounds */
     bdd b_trace, minBlam, maxBlam;
 
-    num_t sin_c[3], cos_c[3];           /* of v0, v1, v0 + v1 at a centre: set_waves */
+    num_t sin_c[3], cos_c[3];           /* of v0, v1, v0 + v1 at a centre: set_sines */
     jacobian deriv;
     num_t centre_err;                   /* bound of the error of each coordinate of v' */
     num_t beta_star, beta_dif, gamma_dif;

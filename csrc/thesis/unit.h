@@ -25,7 +25,7 @@ typedef struct {
 DECLARE_UNIT(R)
 DECLARE_UNIT()
 
-/* quick_try: may the centre's orbit, in double precision, be a minimizing one?  (follow.c,
+/* quick_try: may the centre's orbit, in double precision, be a minimizing one?  (follow.inc,
    in the double instance only) */
 void quick_try(unit *u, const box *b, verdict *v);
 

@@ -24,9 +24,9 @@ void operate(const interval *x, const interval *y, double t, interval *out)
     out[4] = interval_about(x->low, fabs(t));
     out[5] = interval_of(t);
     interval_sincos(out + 6, out + 7, *x);
-    out[8] = (interval){ below(t), above(t) };
-    out[9] = (interval){ below(t / x->low), above(t / x->low) };
-    out[10] = (interval){ below(sqrt(t)), above(sqrt(t)) };
+    out[8] = (interval){ just_below(t), just_above(t) };
+    out[9] = (interval){ just_below(t / x->low), just_above(t / x->low) };
+    out[10] = (interval){ just_below(sqrt(t)), just_above(sqrt(t)) };
     out[11] = (interval){ -interval_size(*x), interval_size(*x) };
 }
 """

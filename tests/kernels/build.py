@@ -134,7 +134,7 @@ def path():
     key = hashlib.sha256(repr((made["FLAGS"], list(map(str, _compiler())),
                                os.environ.get("LDFLAGS"),
                                sys.version, str(ROOT))).encode())
-    for file in sorted([*ROOT.glob("csrc/**/*.[ch]"), *HOME.glob("*.[ch]"), HOME / "build.py"]):
+    for file in sorted([*ROOT.glob("csrc/**/*.*"), *HOME.glob("*.[ch]"), HOME / "build.py"]):
         key.update(file.read_bytes())
     home = ROOT / "build" / "kernels"
     target = home / key.hexdigest()[:16]

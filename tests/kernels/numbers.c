@@ -190,8 +190,8 @@ static int cell(long dp, apm_t in[], apm_t out[])
     for (int j = 0; j < 2; j++) {
         const interval centre = { apm_bound_d(in[6 + j], APM_DOWN), apm_bound_d(in[6 + j], APM_UP) };
         const double half = apm_bound_d(in[8 + j], APM_UP);
-        low[j] = below(centre.low - half);
-        high[j] = above(centre.high + half);
+        low[j] = just_below(centre.low - half);
+        high[j] = just_above(centre.high + half);
     }
     if (!parameter_ranges(in, waves) || apm_sgn(in[8]) < 0 || apm_sgn(in[9]) < 0)
         return CV_EARGUMENT;

@@ -50,7 +50,7 @@ TESTS = {
     "thesis/bounding": ["test_bounding.py", *NUMBERS],
     "thesis/bd_trig": ["test_bd_trig.py", *NUMBERS],
     "thesis/trace": ["test_bounds.py", *NUMBERS], "thesis/lambda": ["test_bounds.py", *NUMBERS],
-    "thesis/lipschitz": ["test_bounds.py", *NUMBERS], "thesis/region": ["test_search.py", *NUMBERS],
+    "thesis/lipschitz": ["test_bounds.py", *NUMBERS], "model/region": ["test_search.py", *NUMBERS],
     "thesis/follow": ["test_search.py", *NUMBERS], "thesis": ["test_images.py", *NUMBERS],
     "model": ["test_bounds.py", *SHARP], "search": ["test_search.py", *SHARP, "test_rigor.py"],
     "loewner/waves": ["test_waves.py", "test_margins.py", *SHARP],
@@ -63,7 +63,7 @@ TESTS = {
 def sources():
     """{name: path} of what is mutated."""
     found = {path.relative_to(ROOT / "csrc").as_posix(): path
-             for path in sorted(ROOT.glob("csrc/**/*.[ch]"))}
+             for path in sorted([*ROOT.glob("csrc/**/*.[ch]"), *ROOT.glob("csrc/**/*.inc")])}
     found.update(("orbits/" + name, ROOT / "converse" / "orbits" / name) for name in ORBITS)
     return {name: path for name, path in found.items() if name not in GUESSES}
 

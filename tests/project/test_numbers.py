@@ -278,7 +278,7 @@ def test_the_table_of_accuracy(accuracy):
     assert printed == [row[:3] for row in accuracy.ROWS]
     for _, algorithm, _ in printed:
         assert all(list((ROOT / "csrc").rglob(file))
-                   for file in re.findall(r"\w+\.[ch]\b", algorithm))
+                   for file in re.findall(r"\w+\.(?:[ch]|inc)\b", algorithm))
 
 
 def test_the_rows_of_accuracy(accuracy):
@@ -293,16 +293,16 @@ def test_files_that_are_named_exist():
     """In the pages and in the comments of the C core; of C, and ours."""
     names = []
     for text in PAGES.values():
-        names += re.findall(r"(?<![\w./])[\w/]*\w\.[ch]\b(?! *\[)", text)
-    for file in (ROOT / "csrc").rglob("*.[ch]"):
+        names += re.findall(r"(?<![\w./])[\w/]*\w\.(?:[ch]|inc)\b(?! *\[)", text)
+    for file in (ROOT / "csrc").rglob("*.*"):
         for comment in re.findall(r"/\*.*?\*/", file.read_text("utf-8"), re.DOTALL):
-            names += re.findall(r"(?<![\w<.>/])(?:[\w-]+/)*[a-z_]\w{2,}\.[ch]\b(?!\w|\[|->)",
+            names += re.findall(r"(?<![\w<.>/])(?:[\w-]+/)*[a-z_]\w{2,}\.(?:[ch]|inc)\b(?!\w|\[|->)",
                                 comment)
     for file in (ROOT / "converse").rglob("*.py"):
-        names += re.findall(r"csrc/[\w/]+\.[ch]\b", file.read_text("utf-8"))
+        names += re.findall(r"csrc/[\w/]+\.(?:[ch]|inc)\b", file.read_text("utf-8"))
     missing = {name for name in names if not any(
         ("/" + str(path.relative_to(ROOT))).endswith("/" + name)
-        for path in (ROOT / "csrc").rglob("*.[ch]"))}
+        for path in (ROOT / "csrc").rglob("*.*"))}
     assert len(names) > 50 and not missing
 
 
