@@ -188,14 +188,14 @@ class Model:
         h = [total(map(rounded, row)) for row in self.part]
         p = [exact("p%d" % i) if i in present else 0.0 for i in range(self.slots)]
         k = [[exact("k%d_%d" % (i, j)) for j in range(2)] for i in range(self.slots)]
-        root = SimpleNamespace(
+        problem = SimpleNamespace(
             present=[i in present for i in range(self.slots)], waves=self.slots, k=k,
             moves=[[True] * columns] * self.slots, phase=[self.phase(i) for i in range(self.slots)],
             square_k=[1.0, 1.0, 4.0] if known else
             [Rounded((x.size + y.size) * (x.size + y.size)) for x, y in k],
             most_k=2.0)
         self.w = SimpleNamespace(
-            root=root, p=p, h=h, part=self.part, loose=[0.0] * self.slots,
+            problem=problem, p=p, h=h, part=self.part, err_amp=[0.0] * self.slots,
             size=[Rounded(rounded(x).size + y.size) for x, y in zip(p, h)])
         self.names = {
             "KNOWN": int(known), "WAVES": self.slots, "FIRST": self.first, "COLUMNS": columns,
@@ -223,27 +223,27 @@ class Model:
         """near() puts it 8 u off, and it may be 10^-40 off before."""
         return Rounded(symbol("f%d" % i), symbol("f%d" % i) * (8 * UNIT) + Fraction(1, 10 ** 39))
 
-    def point(self, column, bow, x):
-        """A point as doubles have it.  Its reach is at least what its columns and bow add up to."""
+    def point(self, lin, quad, x):
+        """A point as doubles have it.  Its rad is at least what lin and quad add up to."""
         q = SimpleNamespace(
             x=[exact("%s%d" % (x, i)) for i in range(2)],
-            turns=[exact("turns%d" % i) for i in range(2)], missed=[None] * 2,
-            column=[[exact("%s%d_%d" % (column, i, k)) for k in range(self.columns)]
+            windings=[exact("windings%d" % i) for i in range(2)], residual=[None] * 2,
+            lin=[[exact("%s%d_%d" % (lin, i, k)) for k in range(self.columns)]
                     for i in range(2)],
-            bow=[[exact("%s%d_%d" % (bow, i, k)) for k in range(self.pairs)] for i in range(2)],
+            quad=[[exact("%s%d_%d" % (quad, i, k)) for k in range(self.pairs)] for i in range(2)],
             sine=[None] * self.slots, cosine=[None] * self.slots, beta=[None] * 3)
         along = [[[exact("%s%d_%d" % (name, i, k)) for k in range(n)] for i in range(self.slots)]
-                 for name, n in ((column, self.columns), (bow, self.pairs))]
-        q.straight, q.bowed = [[*map(total, rows)] for rows in along]
-        q.reach = [Rounded(a.size + b.size) for a, b in zip(q.straight, q.bowed)]
-        q.slip = [Rounded(total(exact("slip_%s%d_%d" % (name, i, k)) for name, n in
-                                ((column, self.columns), (bow, self.pairs)) for k in range(n)).size
+                 for name, n in ((lin, self.columns), (quad, self.pairs))]
+        q.lin_bound, q.quad_bound = [[*map(total, rows)] for rows in along]
+        q.rad = [Rounded(a.size + b.size) for a, b in zip(q.lin_bound, q.quad_bound)]
+        q.err_dot = [Rounded(total(exact("slip_%s%d_%d" % (name, i, k)) for name, n in
+                                ((lin, self.columns), (quad, self.pairs)) for k in range(n)).size
                           * self.slip) for i in range(self.slots)]
         return q
 
     def dot_k(self, _, wave, x, y):
-        """k.x of columns and bows: a symbol of its own, off by the slip that roundings make of it.
-        A coordinate itself, and what is no column and no bow, is what the text makes of it."""
+        """k.x of L and T: a symbol of its own, off by the slip that roundings make of it.
+        A coordinate itself, and what is neither L nor T, is what the text makes of it."""
         text = self.function("dot_k")(self.w, wave, x, y)
         first = next(iter(x.size.terms))[0]
         if (wave < 2 and self.names["KNOWN"]) or "_" not in first:
@@ -255,11 +255,11 @@ class Model:
         return Rounded(along + symbol("slip_" + name), symbol("slip_" + name))
 
     def measured_slips(self):
-        """How many times what k.L and k.T lose measure_slips has."""
+        """How many times what k.L and k.T lose bound_err_dot has."""
         dot_k, q = self.function("dot_k"), self.point("L", "T", "x")
-        self.function("measure_slips")(self.w, q)
-        return min(left("slip", sum((dot_k(self.w, j, x, y).off for rows in (q.column, q.bow)
-                                     for x, y in zip(*rows)), ZERO), q.slip[j].least())
+        self.function("bound_err_dot")(self.w, q)
+        return min(left("err_dot", sum((dot_k(self.w, j, x, y).off for rows in (q.lin, q.quad)
+                                     for x, y in zip(*rows)), ZERO), q.err_dot[j].least())
                    for j in range(2, self.slots))
 
     def double_sincos(self, sine, cosine, angle):
@@ -272,8 +272,9 @@ class Model:
     def larger(self, _, value):
         """D is the larger; what it is compared with must be what the last angle is off."""
         wave = max(self.angles)
-        slack = Polynomial.of(Fraction(1, 10 ** 38))    # of the phase; far has one to spare
-        left("far", self.angles[wave], value.least() * (UNIT * (1 + Fraction(1, 2 ** 30))) + slack)
+        slack = Polynomial.of(Fraction(1, 10 ** 38))    # of the phase; err_angle has one to spare
+        left("err_angle", self.angles[wave],
+             value.least() * (UNIT * (1 + Fraction(1, 2 ** 30))) + slack)
         return exact("D")
 
 
@@ -287,9 +288,9 @@ def clear(rows, value, _):
 
 # ---- the margins
 
-def fuzz(model):
-    """beta is off by less than fuzz: the least quotient of what is there and what is needed."""
-    return min(left("fuzz", x.off, model.q.fuzz.least()) for x in model.q.beta)
+def err_beta(model):
+    """beta is off by less than err_beta: the least quotient of what is there and what is needed."""
+    return min(left("err_beta", x.off, model.q.err_beta.least()) for x in model.q.beta)
 
 
 class Turn(Rounded):
@@ -307,7 +308,7 @@ class Turns(list):
         super().__setitem__(i, exact("following%d" % i))
 
 
-def missed(model):
+def residual(model):
     """The step of the centre misses what it should be by less than `missed`, modulo 2 pi.
 
     Two sums are known to be less than their terms: before = o - turns 2 pi, next = x - turns' 2 pi.
@@ -316,9 +317,9 @@ def missed(model):
     text = model.texts["loewner/orbit.c"]
     low, high = (4 * end for end in half_pi())
     two_pi = Turn(high, high - Fraction(constant(text, "TWO_PI")))
-    q, o, following = model.q, model.o, SimpleNamespace(x=[None] * 2, turns=Turns([None] * 2))
+    q, o, following = model.q, model.o, SimpleNamespace(x=[None] * 2, windings=Turns([None] * 2))
     for i in range(2):
-        Rounded.known[_sum(o.x[i], q.turns[i] * two_pi)] = symbol("before")
+        Rounded.known[_sum(o.x[i], q.windings[i] * two_pi)] = symbol("before")
         Rounded.known[_sum(exact("x"), exact("following%d" % i) * two_pi)] = symbol("next")
 
     def noted(name, value):
@@ -328,47 +329,47 @@ def missed(model):
     statements = function(text, "step").statements
     loops = [node for node in statements if isinstance(node, c_ast.For)][:2]
     begin = [node for node in statements[:statements.index(loops[0])] if node.name == "SHIFT"]
-    room = {"g": [0.0] * model.slots, "bent": [0.0] * model.slots, "TWO_PI": two_pi,
-            "bend": lambda *_: 0.0, "propagate_err": lambda *_: 0.0}
+    room = {"g": [0.0] * model.slots, "wave_err": [0.0] * model.slots, "TWO_PI": two_pi,
+            "wave_remainder": lambda *_: 0.0, "propagate_err": lambda *_: 0.0}
     run(begin + loops, {**model.names, **room, "w": model.w, "q": q, "o": o, "next": following},
         noted)
     worst = []
     for i in range(2):
         x = symbol("x") * Fraction(201, 100)
-        values = {"turns%d" % i: (o.x[i].size + symbol("before")) * (1 / low),
+        values = {"windings%d" % i: (o.x[i].size + symbol("before")) * (1 / low),
                   "following%d" % i: x * (1 / low), "next": symbol("x") * Fraction(101, 100)}
         off = squared(substituted(following.x[i].off, values))
-        worst.append(left("missed", off, q.missed[i].least()))
+        worst.append(left("residual", off, q.residual[i].least()))
     return min(worst)
 
 
-def carried(model):
-    """What columns and bow of the next point lose is less than what the step adds to force for it.
+def propagated(model):
+    """What lin and quad of the next point lose is less than what the step adds to force for it.
 
-    bend counts from what doubles make of k.L, so a bow's squares have no slips.  A sum is known:
-    2L - o, which is the next column less what the waves add."""
+    wave_remainder counts from what doubles make of k.L, so the squares in T have no slips.  A
+    sum is known: 2L - o, which is the next column less what the waves add."""
     w, q, o = model.w, model.q, model.o
     for i in range(2):
-        for rows, before in ((q.column, o.column), (q.bow, o.bow)):
+        for rows, before in ((q.lin, o.lin), (q.quad, o.quad)):
             for x, y in zip(rows[i], before[i]):
                 less = symbol("less %s" % next(iter(x.size.terms))[0])
                 Rounded.known[_sum(2.0 * x, y)] = less
-    column, bow = (SimpleNamespace(column=[[None] * model.columns for _ in range(2)],
-                                   bow=[[None] * model.pairs for _ in range(2)]) for _ in range(2))
-    model.names["propagate"](w, column, q, o, model.columns)
+    lin, quad = (SimpleNamespace(lin=[[None] * model.columns for _ in range(2)],
+                                   quad=[[None] * model.pairs for _ in range(2)]) for _ in range(2))
+    model.names["propagate"](w, lin, q, o, model.columns)
     model.slipping = "T"
-    model.names["propagate"](w, bow, q, o, model.columns)
-    bend = function(model.texts["loewner/orbit.c"], "bend").bound(model.names)
-    alone = SimpleNamespace(p=[0.0] * model.slots, h=[0.0] * model.slots, loose=w.loose,
-                            size=w.size)        # for bend's last term alone
-    q.off = [Rounded(0)] * model.slots
-    bent = [bend(alone, q, i) if i >= model.first else 0.0 for i in range(model.slots)]
+    model.names["propagate"](w, quad, q, o, model.columns)
+    wave_remainder = function(model.texts["loewner/orbit.c"], "wave_remainder").bound(model.names)
+    alone = SimpleNamespace(p=[0.0] * model.slots, h=[0.0] * model.slots, err_amp=w.err_amp,
+                            size=w.size)        # for wave_remainder's last term alone
+    q.nonlin_bound = [Rounded(0)] * model.slots
+    bent = [wave_remainder(alone, q, i) if i >= model.first else 0.0 for i in range(model.slots)]
     err = [model.names["propagate_err"](w, q, i) if i >= model.first else 0.0
            for i in range(model.slots)]
-    worst = {"columns": [], "bow": []}
+    worst = {"lin": [], "quad": []}
     for i in range(2):
         lost, made = [], []
-        for row in (column.column[i], bow.bow[i]):
+        for row in (lin.lin[i], quad.quad[i]):
             lost.append(ZERO)
             for x in row:
                 off = x.off
@@ -378,18 +379,19 @@ def carried(model):
                     made.append(exact(*key))
                 lost[-1] = lost[-1] + second_order(off)
         there = model.names["sum_abs_k"](w, i, err).least()
-        there = there + (total(made) + o.reach[i]).least() * (8 * UNIT)
-        bow_too = there + model.names["sum_abs_k"](w, i, bent).least()
-        left("columns and bow", lost[0] + lost[1], bow_too)
-        worst["columns"].append(left("columns", lost[0], there))
-        worst["bow"].append(left("bow", lost[1], bow_too))
+        there = there + (total(made) + o.rad[i]).least() * (8 * UNIT)
+        both = there + model.names["sum_abs_k"](w, i, bent).least()
+        left("lin and quad", lost[0] + lost[1], both)
+        worst["lin"].append(left("lin", lost[0], there))
+        worst["quad"].append(left("quad", lost[1], both))
     return {name: min(row) for name, row in worst.items()}
 
 
-def bent(model):
-    """bend counts sines and cosines as more than they may be."""
-    off = execute(function(model.texts["loewner/orbit.c"], "bend").initial("off"), {"q": model.q})
-    return min(left("sines in bent", x.off, off.least())
+def sines(model):
+    """wave_remainder counts sines and cosines as more than they may be."""
+    text = function(model.texts["loewner/orbit.c"], "wave_remainder")
+    off = execute(text.initial("off"), {"q": model.q})
+    return min(left("sines in wave_remainder", x.off, off.least())
                for x in (model.q.sine + model.q.cosine)[model.first:] if x is not None)
 
 
@@ -427,30 +429,34 @@ def widen(model):
     """All that orbit.c multiplies by WIDEN is at least what it stands for."""
     text, names = model.texts["loewner/orbit.c"], dict(model.names)
     factor = Fraction(constant(text, "WIDEN"))
-    names.update(WIDEN=exact("WIDEN"), measure_slips=lambda *_: None,
-                 larger=lambda *_: exact("widest"), bend=function(text, "bend").bound(names))
-    names["rest_along"] = model.function("rest_along")
+    names.update(WIDEN=exact("WIDEN"), bound_err_dot=lambda *_: None,
+                 larger=lambda *_: exact("rad_max"),
+                 wave_remainder=function(text, "wave_remainder").bound(names))
+    names["rem_along"] = model.function("rem_along")
     wave = {name: Kept(name, model.slots) for name in
-            ("straight", "bowed", "off", "reach", "slip", "p", "h", "loose", "size", "weight",
+            ("lin_bound", "quad_bound", "nonlin_bound", "rad", "err_dot", "p", "h", "err_amp",
+             "size", "weight",
              "cosine", "sine")}
-    pair = {name: Kept(name, 2) for name in ("rest", "force", "missed")}
-    q = SimpleNamespace(column=model.q.column, bow=model.q.bow, **wave, **pair, far=exact("far"),
-                        fuzz=exact("fuzz"), d=Kept("d", 3), widest=None)
-    w = SimpleNamespace(root=model.w.root, **wave)
-    o = SimpleNamespace(reach=Kept("before", model.slots), force=Kept("push", 2),
-                        rest=Kept("last", 2))
-    slips, model.slipping = model.slipping, ""      # see carried
+    pair = {name: Kept(name, 2) for name in ("rem", "force", "residual")}
+    q = SimpleNamespace(lin=model.q.lin, quad=model.q.quad, **wave, **pair,
+                        err_angle=exact("err_angle"), err_beta=exact("err_beta"), d=Kept("d", 3),
+                        rad_max=None)
+    w = SimpleNamespace(problem=model.w.problem, **wave)
+    o = SimpleNamespace(rad=Kept("before", model.slots), force=Kept("push", 2),
+                        rem=Kept("last", 2))
+    slips, model.slipping = model.slipping, ""      # see propagated
     function(text, "measure").bound(names)(w, q, model.columns)
     model.slipping = slips
-    function(text, "extend").bound(names)(w, q)
+    function(text, "bound_displacement").bound(names)(w, q)
     loops = [node for node in function(text, "step").statements if isinstance(node, c_ast.For)]
     scope = {**names, "w": w, "q": q, "o": o, "is_first": 0, "inverse": Kept("inverse", 3),
-             "rounded": exact("rounded"), "rest_sum": exact("rest_sum")}
-    scope["g"], scope["bent"] = [0.0] * model.slots, [0.0] * model.slots
-    scope["next"] = SimpleNamespace(rest=Kept("rest", 2), straight=q.straight, bowed=q.bowed)
+             "rounded": exact("rounded"), "rem_sum": exact("rem_sum")}
+    scope["g"], scope["wave_err"] = [0.0] * model.slots, [0.0] * model.slots
+    scope["next"] = SimpleNamespace(rem=Kept("rem", 2), lin_bound=q.lin_bound,
+                                    quad_bound=q.quad_bound)
     run([loops[0], loops[2], loops[4]], scope)
     made = [kept.made for kept in
-            (q.straight, q.bowed, q.off, q.reach, q.force, scope["next"].rest)]
+            (q.lin_bound, q.quad_bound, q.nonlin_bound, q.rad, q.force, scope["next"].rem)]
     if not all(made):
         raise NotCovered("widen: orbit.c no longer makes one of those sums where it did")
     worst = []
@@ -472,10 +478,11 @@ def at_once(model):
     def off_by(x, units):
         return Rounded(x.size, x.size * (units * UNIT)) if isinstance(x, Rounded) else x
 
-    root, w = model.w.root, model.w
+    problem, w = model.w.problem, model.w
     given = SimpleNamespace(
-        waves=model.slots, k=root.k, phase=root.phase, square_k=root.square_k, n_parameters=3,
-        seen=[[0.0] * 2] * 2, loose=w.loose, amplitude=[off_by(x, 10) for x in w.p],
+        waves=model.slots, k=problem.k, phase=problem.phase, square_k=problem.square_k,
+        n_parameters=3,
+        seen=[[0.0] * 2] * 2, err_amp=w.err_amp, amplitude=[off_by(x, 10) for x in w.p],
         part=[[off_by(exact("g%d_%d" % (i, m)), 10) if i >= model.first else 0.0 for m in range(3)]
               for i in range(model.slots)])
     worst = []
@@ -504,13 +511,14 @@ def at_once(model):
 
 def proved(read, columns=COLUMNS):
     """The margins of section 8 of docs/proof.md that the text of csrc proves, read(file) of it: how
-    many times what is needed there is, of the thesis's waves and of one, a few, as many as may
-    be."""
+    many times what is needed there is, of the thesis's waves and of one, of three, and of as many
+    as may be."""
     result = {}
     for waves in (None, 1, 3, MOST_WAVES):
         model = Model(read, waves, columns if waves != MOST_WAVES else 2)
-        found = {"fuzz": fuzz(model), "missed": missed(model), **carried(model),
-                 "sines in bent": bent(model), "slip": model.slip, "widen": widen(model)}
+        found = {"err_beta": err_beta(model), "residual": residual(model), **propagated(model),
+                 "sines in wave_remainder": sines(model), "err_dot": model.slip,
+                 "widen": widen(model)}
         found.update({"left": multipliers(model)} if waves is None else {"at once": at_once(model)})
         for name, x in found.items():
             result[name] = min(x, result.get(name, x))

@@ -66,18 +66,17 @@ INLINE vec square(vec x) { return x * x; }
 /* NaN if either is. */
 INLINE vec larger(vec x, vec y) { return pick(TRUTH(x > y) | TRUTH(x != x), x, y); }
 
-/* A mask may also hold an integer below 2^31 in each lane: number and put_number read and write
-   that of lane k.  extreme is the largest of them or, if way is negative, the least, over those
-   lanes for which the mask `turn` holds; 0 if it holds for none. */
+/* A mask may hold an integer below 2^31 in each lane.  extreme: the largest of these (way > 0) or
+   the least (way < 0) over the lanes that are active; 0 if no lane is. */
 INLINE int number(const mask *m, int k) { return (int)((const uint64_t *)m)[k]; }
 INLINE void put_number(mask *m, int k, int value) { ((uint64_t *)m)[k] = (uint64_t)value; }
 INLINE void put_truth(mask *m, int k, int value) { ((uint64_t *)m)[k] = value ? UINT64_MAX : 0; }
-INLINE int extreme(mask turn, mask m, int way)
+INLINE int extreme(mask active, mask m, int way)
 {
     int found = 0, best = 0;
 
     for (int k = 0; k < LANES; k++)
-        if (holds(&turn, k) && (!found || way * (number(&m, k) - best) > 0)) {
+        if (holds(&active, k) && (!found || way * (number(&m, k) - best) > 0)) {
             best = number(&m, k);
             found = 1;
         }

@@ -23,12 +23,12 @@
    rho >= |z| the rest is at most
 
        |p| (|A| (a |r| + (pA > 0 ? rho^4/24 : b^2/2)) + |B| (b (3a^2 + 3ab + b^2)/6 + rho^5/120))
-       + h (|A| (b (2a + b)/2 + rho^4/24) + |B| (|r| + rho^3/6)) + loose (|A| + |B| rho).     (5) */
+       + h (|A| (b (2a + b)/2 + rho^4/24) + |B| (|r| + rho^3/6)) + err_amp (|A| + |B| rho).     (5) */
 #include "prism.h"
 
-/* The sites that are summed over in the lanes whose turn it is. */
-static int begin_of(const batch *w, mask turn) { return extreme(turn, w->since, -1); }
-static int end_of(const batch *w, mask turn) { return extreme(turn, w->until, 1); }
+/* The sites that are summed over in the lanes that are active. */
+static int begin_of(const batch *w, mask active) { return extreme(active, w->since, -1); }
+static int end_of(const batch *w, mask active) { return extreme(active, w->until, 1); }
 
 static mask within(const batch *w, int j)
 {
@@ -37,68 +37,70 @@ static mask within(const batch *w, int j)
     return TRUTH(w->since <= site) & TRUTH(site <= w->until);
 }
 
-/* The gradient of n.beta n at a site, and what it and the multiplier there make of a neighbour's. */
+/* The gradient of n.beta n at a site, and what it and the multiplier there make of a neighbour's.
+   */
 INLINE vec steepness(const batch *w, const point *q, int i)
 {
     return q->beta[i] * q->mu[0] + q->beta[i + 1] * q->mu[1] - gradient(w, q, i);
 }
 
-/* The multipliers of the lanes whose turn it is, by (2): zero outside, and from either end up to
+/* The multipliers of the lanes that are active, by (2): zero outside, and from either end up to
    the sites 0 and 1. */
-static void set_multipliers(batch *w, mask turn)
+static void set_multipliers(batch *w, mask active)
 {
-    const int begin = begin_of(w, turn), end = end_of(w, turn), ends[] = { begin - 1, end };
+    const int begin = begin_of(w, active), end = end_of(w, active), ends[] = { begin - 1, end };
     point *const q = w->orbit;
 
     for (int j = 0; j < 4; j++)
         for (int i = 0; i < 2; i++)
-            q[ends[j / 2] + j % 2].mu[i] = pick(turn, every(0.0), q[ends[j / 2] + j % 2].mu[i]);
+            q[ends[j / 2] + j % 2].mu[i] = pick(active, every(0.0), q[ends[j / 2] + j % 2].mu[i]);
     for (int j = end; j > ORIGIN + 1; j--) {
         const mask now = within(w, j);
         for (int i = 0; i < 2; i++) {
             const vec mu = pick(now, steepness(w, q + j, i) - q[j + 1].mu[i], every(0.0));
-            q[j - 1].mu[i] = pick(turn, mu, q[j - 1].mu[i]);
+            q[j - 1].mu[i] = pick(active, mu, q[j - 1].mu[i]);
         }
     }
     for (int j = begin; j < ORIGIN; j++) {
         const mask now = within(w, j);
         for (int i = 0; i < 2; i++) {
             const vec mu = pick(now, steepness(w, q + j, i) - q[j - 1].mu[i], every(0.0));
-            q[j + 1].mu[i] = pick(turn, mu, q[j + 1].mu[i]);
+            q[j + 1].mu[i] = pick(active, mu, q[j + 1].mu[i]);
         }
     }
 }
 
 /* What a pass over the orbit sums. */
 typedef struct {
-    vec centre, mass, rest, cubes, rounding, far;
+    vec centre, mass, rest, cubes, rounding, err_angle;
     vec along[WAVES], slope[COLUMNS], square[PAIRS];
 } sums;
 
 /* What the prisms make of site q alone, for each wave: (5) is |A| rest_A[pA > 0] + |B| rest_B, the
-   cubic part of (4) without its signs |A| cube_A + |B| cube_B, and `load` is for the mass, below. */
+   cubic part of (4) without its signs |A| cube_A + |B| cube_B, and `load` is for the mass, below.
+   */
 static void weigh(const batch *w, point *q)
 {
     q->load = every(0.0);
     FOR_WAVES(w, i) {
-        const vec p = mag(w->p[i]), h = w->h[i], loose = w->loose[i], rho = q->reach[i];
-        const vec a = q->straight[i], b = q->off[i], r = rest_along(w, q, i);
-        const vec half_square = 0.5 * rho * rho, bow = q->bowed[i];
+        const vec p = mag(w->p[i]), h = w->h[i], err_amp = w->err_amp[i], rho = q->rad[i];
+        const vec a = q->lin_bound[i], b = q->nonlin_bound[i], r = rem_along(w, q, i);
+        const vec half_square = 0.5 * rho * rho, quad = q->quad_bound[i];
         const vec fourth = half_square * half_square * (1.0 / 6.0);
-        const vec either = p * (a * r) + h * (b * (a + 0.5 * b) + fourth) + loose;
+        const vec either = p * (a * r) + h * (b * (a + 0.5 * b) + fourth) + err_amp;
 
         q->rest_A[i][0] = either + p * (0.5 * b * b);
         q->rest_A[i][1] = either + p * fourth;
         q->rest_B[i] = p * (b * (0.5 * a * (a + b) + b * b * (1.0 / 6.0)) + 0.2 * rho * fourth)
-                       + h * (r + rho * half_square * (1.0 / 3.0)) + loose * rho;
-        q->cube_A[i] = p * (a * bow) + h * (0.5 * a * a);
-        q->cube_B[i] = p * (a * a * a * (1.0 / 6.0)) + h * bow;
-        q->load += (w->size[i] * rho * rho + h + loose) * ((1.0 + rho) * square(1.0 + rho));
+                       + h * (r + rho * half_square * (1.0 / 3.0)) + err_amp * rho;
+        q->cube_A[i] = p * (a * quad) + h * (0.5 * a * a);
+        q->cube_B[i] = p * (a * a * a * (1.0 / 6.0)) + h * quad;
+        q->load += (w->size[i] * rho * rho + h + err_amp) * ((1.0 + rho) * square(1.0 + rho));
     }
 }
 
 /* What Q makes of cos z and sin z, in the lanes' own sites. */
-INLINE void turn_wave(const batch *w, const point *q, int i, mask own, vec *A, vec *B)
+INLINE void trig_coefficients(const batch *w, const point *q, int i, mask own, vec *A, vec *B)
 {
     const vec n = dot_k(w, i, q->n[0], q->n[1]), omega = pick(own, n * n, every(0.0));
     const vec m = pick(own, dot_k(w, i, q->mu[0], q->mu[1]), every(0.0));
@@ -115,10 +117,11 @@ INLINE vec remainder_of(const batch *w, const point *q, int i, vec A, vec B)
 }
 
 /* Constant, linear and quadratic part, and what is bounded by absolute values; `cubes` is the cubic
-   part if it is, too.  Outside of a lane's own sites n and mu are zero, and all else is finite. */
-INLINE void sum_up(batch *w, sums *result, mask turn, int columns)
+   part if it is, too.  Outside of a lane's own sites n and mu are zero, and all else is finite.
+   (One pass over the orbit makes all sums, and is long for that.) */
+INLINE void sum_up(batch *w, sums *result, mask active, int columns)
 {
-    const int begin = begin_of(w, turn), end = end_of(w, turn);
+    const int begin = begin_of(w, active), end = end_of(w, active);
     vec tails = every(0.0);
     sums t;
 
@@ -144,13 +147,13 @@ INLINE void sum_up(batch *w, sums *result, mask turn, int columns)
         t.centre -= 2.0 * (link0 + link1);
         t.mass += 2.0 * (mag(link0) + mag(link1));
         t.mass += weights * q->load;
-        t.far = larger(t.far, pick(own, q->far, every(0.0)));
+        t.err_angle = larger(t.err_angle, pick(own, q->err_angle, every(0.0)));
         FOR_WAVES(w, i) {
             const vec s = q->sine[i], co = q->cosine[i], p = w->p[i];
             const vec A = m[i] * co - omega[i] * s, B = -omega[i] * co - m[i] * s;
             vec c[COLUMNS], f[COLUMNS];
 
-            if (!w->root->present[i])
+            if (!w->problem->present[i])
                 continue;
             t.centre -= omega[i] * p * s;
             t.mass += omega[i] * mag(p);
@@ -158,7 +161,7 @@ INLINE void sum_up(batch *w, sums *result, mask turn, int columns)
             t.cubes += mag(A) * q->cube_A[i] + mag(B) * q->cube_B[i];
             t.along[i] += A;
             for (int k = 0; k < columns; k++) {
-                c[k] = dot_k(w, i, q->column[0][k], q->column[1][k]);
+                c[k] = dot_k(w, i, q->lin[0][k], q->lin[1][k]);
                 f[k] = -0.5 * p * A * c[k];
             }
             add_moves(w, i, B, f, columns);
@@ -171,23 +174,23 @@ INLINE void sum_up(batch *w, sums *result, mask turn, int columns)
         /* what (2) leaves, and what the centre's steps missed */
         for (int i = 0; i < 2; i++) {
             const vec before = q[-1].mu[i], after = q[1].mu[i];
-            const vec left = 4.0 * q->fuzz * weights + 0x1p-50 * (mag(before) + mag(after));
+            const vec left = 4.0 * q->err_beta * weights + 0x1p-50 * (mag(before) + mag(after));
             if (j == ORIGIN || j == ORIGIN + 1) {
                 const vec steep = steepness(w, q, i) - before - after;
-                t.mass += mag(steep) * q->reach[i];
+                t.mass += mag(steep) * q->rad[i];
                 if (j == ORIGIN)
-                    t.rest += mag(steep) * q->reach[i];
+                    t.rest += mag(steep) * q->rad[i];
                 for (int k = 0; k < 2 && j > ORIGIN; k++)
-                    t.slope[k] += steep * q->column[i][k];
+                    t.slope[k] += steep * q->lin[i][k];
             }
-            t.rounding += left * q->reach[i];
-            t.rounding += pick(inside, mag(q->mu[i]) * q->missed[i], every(0.0));
+            t.rounding += left * q->rad[i];
+            t.rounding += pick(inside, mag(q->mu[i]) * q->residual[i], every(0.0));
         }
     }
     FOR_WAVES(w, i)
         add_moves(w, i, t.along[i], t.slope, columns);
     for (int k = 0; k < LANES; k++)
-        if (holds(&turn, k)) {
+        if (holds(&active, k)) {
             const point *const first = w->orbit + number(&w->from, k);
             const point *const last = w->orbit + number(&w->to, k);
             double sum = 0.0;
@@ -203,28 +206,28 @@ INLINE void sum_up(batch *w, sums *result, mask turn, int columns)
 
 /* The cubic part of (4): cubic[m] at pair(k, l) is a coefficient of e_m e_k e_l, one of those that
    make it up. */
-INLINE void sum_cubic(batch *w, mask turn, int columns)
+INLINE void sum_cubic(batch *w, mask active, int columns)
 {
-    const int begin = begin_of(w, turn), end = end_of(w, turn);
+    const int begin = begin_of(w, active), end = end_of(w, active);
 
     for (int j = begin; j <= end; j++) {
         const point *q = w->orbit + j;
-        const mask now = turn & within(w, j);
+        const mask now = active & within(w, j);
         vec form[WAVES][PAIRS];
         FOR_WAVES(w, i) {
             vec A, B;
-            turn_wave(w, q, i, now, &A, &B);
+            trig_coefficients(w, q, i, now, &A, &B);
             const vec pA = w->p[i] * A, third = w->p[i] * B * (1.0 / 3.0);
             for (int k = 0, kl = 0; k < columns; k++) {
-                const vec c = dot_k(w, i, q->column[0][k], q->column[1][k]);
+                const vec c = dot_k(w, i, q->lin[0][k], q->lin[1][k]);
                 for (int l = k; l < columns; l++, kl++) {
                     const double half = l == k ? 0.5 : 1.0;     /* of (c.e)^2/2 */
-                    const vec cc = half * c * dot_k(w, i, q->column[0][l], q->column[1][l]);
-                    const vec bow = dot_k(w, i, q->bow[0][kl], q->bow[1][kl]);
-                    form[i][kl] = -pA * bow - third * cc;
+                    const vec cc = half * c * dot_k(w, i, q->lin[0][l], q->lin[1][l]);
+                    const vec quad = dot_k(w, i, q->quad[0][kl], q->quad[1][kl]);
+                    form[i][kl] = -pA * quad - third * cc;
                     for (int m = 2; m < columns; m++)
                         if (moves(w, i, m, columns))
-                            w->cubic[m][kl] += pick(now, w->part[i][m] * (B * bow - A * cc),
+                            w->cubic[m][kl] += pick(now, w->part[i][m] * (B * quad - A * cc),
                                                     every(0.0));
                 }
             }
@@ -232,7 +235,7 @@ INLINE void sum_cubic(batch *w, mask turn, int columns)
         for (int m = 0; m < columns; m++) {                     /* (c.e) form[e, e] */
             vec c[WAVES];
             FOR_WAVES(w, i)
-                c[i] = dot_k(w, i, q->column[0][m], q->column[1][m]);
+                c[i] = dot_k(w, i, q->lin[0][m], q->lin[1][m]);
             for (int kl = 0; kl < columns * (columns + 1) / 2; kl++) {
                 vec sum = every(0.0);
                 FOR_WAVES(w, i)
@@ -289,19 +292,20 @@ INLINE vec summit(const batch *w, int columns, int with_cubic)
     return sum + top;
 }
 
-/* The mass is the sum of the absolute values of all that is summed with signs, and of what A and B
-   are multiplied by anywhere, with omega + |m| in their place: with rho = a + b that is at most
-   |p| (e^rho - 1 - rho) + h e^rho + loose (1 + rho) to the fifth order in rho, of which
-   (size rho^2 + h + loose)(1 + rho)^3 is more.  (`load` is that of all
-   waves, and the weights are at least each omega + |m|.)  A and B are off by (9 + far) u of
-   omega + |m|, of general waves (12 + far) u of the weights, products of them by 12 u more.  At each
-   of N sites at most 6 numbers are added to a sum, or 22 for 16 waves, and each addition rounds by u
-   of the partial sums; summit and the last sums make 45 of them.  So all is off by (22 N + 57) u and
-   (12 + far) u of the mass, where `each` is 64 (N + 1) u and 2^-49 (1 + far) is 16 (1 + far) u, with
-   far >= 2 where waves are general.  Positive sums are off by (22 N + 30) u of themselves, which
-   `each` covers, too.  (2) leaves at most 11 u (1 + sizes)(1 + far) of the weights and 2 u of the
-   neighbours' mu; `left` has 64 and 8. */
-INLINE void bound_with(batch *w, mask turn, int signs, int columns)
+/* The bound of (1), of its sums.
+
+   The mass is the sum of the absolute values of all that is summed with signs, and of what A and B
+   are multiplied by anywhere, with omega + |m| in their place: with rho = a + b that is at most |p|
+   (e^rho - 1 - rho) + h e^rho + err_amp (1 + rho) to the fifth order in rho, of which (size rho^2 +
+   h + err_amp)(1 + rho)^3 is more.  (`load` is that of all waves, and the weights are at least each
+   omega + |m|.)  A and B are off by (12 + err_angle) u of the weights, products of them by 12 u
+   more.  At each of N sites at most 22 numbers, of 16 waves, are added to a sum, and each addition
+   rounds by u of the partial sums; summit and the last sums make 45 of them.  So all is off by (22
+   N + 57) u and (12 + err_angle) u of the mass, where `each` is 64 (N + 1) u and 2^-49 (1 +
+   err_angle) is 16 (1 + err_angle) u, with err_angle >= 2.  Positive sums are off by (22 N + 30) u
+   of themselves, which `each` covers, too.  (2) leaves at most (13 + err_angle) u (1 + S) of the
+   weights and 2 u of the neighbours' mu; `left` has 64 (1 + S)(1 + err_angle) and 8. */
+INLINE void bound_with(batch *w, mask active, int signs, int columns)
 {
     vec each = every(0.0), least, more, bound, rounding;
     mask refine;
@@ -309,53 +313,53 @@ INLINE void bound_with(batch *w, mask turn, int signs, int columns)
 
     for (int k = 0; k < LANES; k++)
         put_at(&each, k, 0x1p-47 * (double)(number(&w->until, k) - number(&w->since, k) + 2));
-    sum_up(w, &t, turn, columns);
+    sum_up(w, &t, active, columns);
     for (int k = 0; k < columns; k++)
-        w->slope[k] = pick(turn, t.slope[k], w->slope[k]);
+        w->slope[k] = pick(active, t.slope[k], w->slope[k]);
     for (int kl = 0; kl < columns * (columns + 1) / 2; kl++) {
-        w->square[kl] = pick(turn, t.square[kl], w->square[kl]);
+        w->square[kl] = pick(active, t.square[kl], w->square[kl]);
         for (int m = 0; m < columns; m++)
-            w->cubic[m][kl] = pick(turn, every(0.0), w->cubic[m][kl]);
+            w->cubic[m][kl] = pick(active, every(0.0), w->cubic[m][kl]);
     }
-    t.rounding += t.mass * (each + 0x1p-49 * (1.0 + t.far));
+    t.rounding += t.mass * (each + 0x1p-49 * (1.0 + t.err_angle));
     rounding = t.rounding * (1.0 + each);
     more = t.centre + (t.rest + rounding) * (1.0 + each);
     least = more + summit(w, columns, 0);
     bound = least + t.cubes * (1.0 + each);
-    refine = turn & (signs ? turn : TRUTH(least < 0.0) & TRUTH(bound >= 0.0));
+    refine = active & (signs ? active : TRUTH(least < 0.0) & TRUTH(bound >= 0.0));
     if (any(refine)) {
         sum_cubic(w, refine, columns);
         bound = pick(refine, more + summit(w, columns, 1), bound);
     }
     bound = pick(TRUTH(t.mass >= 1.0), bound, every(HUGE_VAL));
-    w->bound = pick(turn, bound, w->bound);
-    w->rounding = pick(turn, rounding, w->rounding);
+    w->bound = pick(active, bound, w->bound);
+    w->rounding = pick(active, rounding, w->rounding);
 }
 
-/* w->bound >= (1) over the whole prism, whatever n is, in the lanes whose turn it is, which need a
+/* w->bound >= (1) over the whole prism, whatever n is, in the lanes that are active, which need a
    witness; w->rounding: how much of it roundings are.  The cubic terms are bounded by absolute
    values unless their signs might make the bound negative, or are asked for. */
-static void bound_second_variation(batch *w, mask turn, int signs)
+static void bound_second_variation(batch *w, mask active, int signs)
 {
     while (w->weighed_last < w->known_last)
         weigh(w, w->orbit + ++w->weighed_last);
     while (w->weighed_first > w->known_first)
         weigh(w, w->orbit + --w->weighed_first);
-    set_multipliers(w, turn);
-    switch (w->root->columns) {
-    case 2: bound_with(w, turn, signs, 2); break;
-    case 3: bound_with(w, turn, signs, 3); break;
-    case 4: bound_with(w, turn, signs, 4); break;
-    default: bound_with(w, turn, signs, 5);
+    set_multipliers(w, active);
+    switch (w->problem->columns) {
+    case 2: bound_with(w, active, signs, 2); break;
+    case 3: bound_with(w, active, signs, 3); break;
+    case 4: bound_with(w, active, signs, 4); break;
+    default: bound_with(w, active, signs, 5);
     }
 }
 
 /* w->share[k] after that: by how much, to first order, the bound falls with the width of each
    column: each term times its degree in it.  The remainder is of fourth order, and shared like the
-   reaches. */
-static void bound_shares(batch *w, mask turn)
+   rads. */
+static void bound_shares(batch *w, mask active)
 {
-    const int columns = w->root->columns, begin = begin_of(w, turn), end = end_of(w, turn);
+    const int columns = w->problem->columns, begin = begin_of(w, active), end = end_of(w, active);
 
     for (int k = 0; k < columns; k++)
         w->share[k] = mag(w->slope[k]);
@@ -374,14 +378,14 @@ static void bound_shares(batch *w, mask turn)
         }
     for (int j = begin; j <= end; j++) {
         const point *q = w->orbit + j;
-        const mask now = turn & within(w, j);
+        const mask now = active & within(w, j);
         FOR_WAVES(w, i) {
-            const mask some = now & TRUTH(q->reach[i] > 0.0);
+            const mask some = now & TRUTH(q->rad[i] > 0.0);
             vec A, B;
-            turn_wave(w, q, i, now, &A, &B);
-            const vec part = 4.0 * remainder_of(w, q, i, A, B) / q->reach[i];
-            for (int k = 0; k < columns && w->root->present[i]; k++) {
-                const vec more = part * mag(dot_k(w, i, q->column[0][k], q->column[1][k]));
+            trig_coefficients(w, q, i, now, &A, &B);
+            const vec part = 4.0 * remainder_of(w, q, i, A, B) / q->rad[i];
+            for (int k = 0; k < columns && w->problem->present[i]; k++) {
+                const vec more = part * mag(dot_k(w, i, q->lin[0][k], q->lin[1][k]));
                 w->share[k] += pick(some, more, every(0.0));
             }
         }

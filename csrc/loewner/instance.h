@@ -1,5 +1,5 @@
-/* instance.h - an engine: LANES and ENGINE, its name, are defined before, and THESIS_WAVES if it is for
-   those of the thesis. */
+/* instance.h - an engine: LANES and ENGINE, its name, are defined before, and THESIS_WAVES if it is
+   for the waves of the thesis alone. */
 #include "waves.h"
 
 #include "orbit.c"

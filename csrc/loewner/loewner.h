@@ -34,7 +34,7 @@ double loewner_largest(const loewner *w);
 /* The prism of a cell as doubles have it.  0: it is too thin for them, or its parameters are too
    large. */
 typedef struct {
-    double v[2], width[2], p[SLOTS], part[SLOTS][PARAMETERS], loose[SLOTS], l;
+    double v[2], width[2], p[SLOTS], part[SLOTS][PARAMETERS], err_amp[SLOTS], l;
 } loewner_cell;
 int loewner_prism(const loewner *w, const cv_cell *cell, loewner_cell *c);
 

@@ -1,50 +1,57 @@
-/* orbit.c - the orbits of the prisms, enclosed.
+/* orbit.c - the orbits of the prisms, enclosed by Taylor models of second order.
 
    Let x[j] be the orbit of the prism's centre, as doubles have it, and x[j] + D[j] any true one.
-   D[j] = L[j] e + T[j][e, e] + r[j], e in the unit cube: the columns L as the linearized map
-   carries them, the bow T as it carries a quadratic form that each wave bends further, and the rest
-   r bounded by two first-order recursions that follow the factors of the linearized map,
-   r[j+1] = d[j] r[j] + f[j], f[j] = f[j-1]/d[j-1] + e[j], d[j] = beta - 1/d[j-1], which grow as the
-   orbits do and not as absolute values would.  The reach rho bounds |D[j]| along each wave. */
+   D[j] = L[j] e + T[j][e, e] + r[j], e in the unit cube: a Taylor model (Berz and Makino, Reliable
+   Computing 4, 1998) with linear coefficients L (lin), quadratic ones T (quad) and a remainder r,
+   of which rem is a bound.  L and T are carried by the linearized map, and T gains a quadratic form
+   from each wave.
+
+   A bound of r by absolute values alone would grow much faster than the orbits diverge (the
+   wrapping effect; Lohner's remedy is to carry remainders in a moving frame).  Here the linearized
+   map is factored instead, and r is bounded by two recursions of first order that follow its
+   factors, r[j+1] = d[j] r[j] + f[j], f[j] = f[j-1]/d[j-1] + e[j], d[j] = beta - 1/d[j-1]:
+   docs/proof.md, section 5, (R) and (F).
+
+   Along each wave rad = rho bounds |D[j]|. */
 #include "prism.h"
 
 static const double TWO_PI = 0x1.921fb54442d18p+2;      /* less than 2^-51 below it */
-static const double FAR = 1e5;          /* turns in one step before which orbits end */
+static const double FAR = 1e5;          /* periods in one step before which orbits end */
 static const double WIDEN = 1.0 + 0x1p-43;
 
-/* How far the columns and the bow reach along each wave: sums of at most 15 positive terms. */
+/* Bounds of |L e| and |T[e, e]| along each wave: sums of at most 15 positive terms. */
 INLINE void measure(const batch *w, point *q, int columns)
 {
     for (int i = 0; i < waves_of(w); i++) {
         vec sum = every(0.0);
         for (int k = 0; k < columns; k++)
-            sum += mag(dot_k(w, i, q->column[0][k], q->column[1][k]));
-        q->straight[i] = sum * WIDEN;
+            sum += mag(dot_k(w, i, q->lin[0][k], q->lin[1][k]));
+        q->lin_bound[i] = sum * WIDEN;
         sum = every(0.0);
         for (int kl = 0; kl < columns * (columns + 1) / 2; kl++)
-            sum += mag(dot_k(w, i, q->bow[0][kl], q->bow[1][kl]));
-        q->bowed[i] = sum * WIDEN;
+            sum += mag(dot_k(w, i, q->quad[0][kl], q->quad[1][kl]));
+        q->quad_bound[i] = sum * WIDEN;
     }
-    measure_slips(w, q);
+    bound_err_dot(w, q);
 }
 
-/* The reaches, of what was measured and the rest. */
-static void extend(const batch *w, point *q)
+/* Bounds of D, of what was measured and the remainder. */
+static void bound_displacement(const batch *w, point *q)
 {
-    q->widest = every(0.0);
+    q->rad_max = every(0.0);
     for (int i = 0; i < waves_of(w); i++) {
-        q->off[i] = (q->bowed[i] + rest_along(w, q, i)) * WIDEN;
-        q->reach[i] = (q->straight[i] + q->off[i]) * WIDEN;
-        if (w->root->present[i])
-            q->widest = larger(q->widest, w->weight[i] * q->reach[i]);
+        q->nonlin_bound[i] = (q->quad_bound[i] + rem_along(w, q, i)) * WIDEN;
+        q->rad[i] = (q->lin_bound[i] + q->nonlin_bound[i]) * WIDEN;
+        if (w->problem->present[i])
+            q->rad_max = larger(q->rad_max, w->weight[i] * q->rad[i]);
     }
 }
 
 /* A point that a lane has no use for is zero there, so that all that follows is finite. */
 static void forget(const batch *w, point *q, int columns)
 {
-    vec *const parts[] = { q->x, q->turns, q->column[0], q->column[1], q->bow[0], q->bow[1],
-                           q->rest, q->straight, q->bowed, q->off, q->reach };
+    vec *const parts[] = { q->x, q->windings, q->lin[0], q->lin[1], q->quad[0], q->quad[1],
+                           q->rem, q->lin_bound, q->quad_bound, q->nonlin_bound, q->rad };
     const int pairs = columns * (columns + 1) / 2;
     const int waves = waves_of(w);
     const int sizes[] = { 2, 2, columns, columns, pairs, pairs, 2, waves, waves, waves, waves };
@@ -52,7 +59,7 @@ static void forget(const batch *w, point *q, int columns)
     for (size_t j = 0; j < sizeof parts / sizeof *parts; j++)
         for (int k = 0; k < sizes[j]; k++)
             parts[j][k] = pick(q->reached, parts[j][k], every(0.0));
-    measure_slips(w, q);
+    bound_err_dot(w, q);
 }
 
 /* The sines at q->x, and what follows from them. */
@@ -68,69 +75,72 @@ static void finish(const batch *w, point *q)
 
 /* How far a wave p' cos(y + z), p' = p + h e + w, may be from what L and T make of it,
    p cos y - p (z sin y + (c.e)^2/2 cos y) + h e (cos y - (c.e) sin y), where z = c.e and what is
-   off it, |c.e| <= a, |z - c.e| <= b, |z| <= rho, |w| <= loose:
+   off it, |c.e| <= a, |z - c.e| <= b, |z| <= rho, |w| <= err_amp:
        |p| (|cos y| (b (2a + b)/2 + rho^4/24) + |sin y| rho^3/6)
-       + h (|cos y| rho^2/2 + |sin y| (b + rho^3/6)) + loose.
-   Sines are off by (4 + far) u, and the dozen roundings are relative: 2^-40 is a thousand times as
-   much as either needs.  The last summand is for what T itself makes of the wave, which roundings
-   put off by (16 + far) u (|p| a^2/2 + h a). */
-static vec bend(const batch *w, const point *q, int wave)
+       + h (|cos y| rho^2/2 + |sin y| (b + rho^3/6)) + err_amp.
+   Sines are off by (4 + err_angle) u, and the dozen roundings are relative: 2^-40 is a thousand
+   times as much as either needs.  The last summand is for what T itself makes of the wave, which
+   roundings put off by (16 + err_angle) u (|p| a^2/2 + h a). */
+static vec wave_remainder(const batch *w, const point *q, int wave)
 {
-    const vec a = q->straight[wave], b = q->off[wave], rho = q->reach[wave];
-    const vec off = 0x1p-40 * (1.0 + q->far);
+    const vec a = q->lin_bound[wave], b = q->nonlin_bound[wave], rho = q->rad[wave];
+    const vec off = 0x1p-40 * (1.0 + q->err_angle);
     const vec c = mag(q->cosine[wave]) + off, s = mag(q->sine[wave]) + off;
     const vec half_square = 0.5 * rho * rho, cube = rho * half_square * (1.0 / 3.0);
 
     return mag(w->p[wave]) * (c * (b * (a + 0.5 * b) + 0.25 * rho * cube) + s * cube)
-           + w->h[wave] * (c * half_square + s * (b + cube)) + w->loose[wave]
+           + w->h[wave] * (c * half_square + s * (b + cube)) + w->err_amp[wave]
            + w->size[wave] * off * rho * (1.0 + rho);
 }
 
-/* Columns and bow of next, the point after q, seen from o before it. */
-INLINE void carry_on(const batch *w, point *next, const point *q, const point *o, int columns)
+/* lin and quad of next, the point after q, seen from o before it, and their bounds. */
+INLINE void propagate_and_measure(const batch *w, point *next, const point *q, const point *o,
+                                  int columns)
 {
     propagate(w, next, q, o, columns);
     measure(w, next, columns);
 }
 
-/* next = the point after q, seen from o before it; time may run either way.  The factor begins
-   with d = beta, and f then holds r(o), which is zero or the rounding of x*.  Where the factor
-   cannot go on, or next would be of no use, it is not reached.
+/* next = the point after q, seen from o before it; time may run either way.  The factor begins with
+   d = beta, and f then holds r(o), which is zero or the rounding of x*.  Where the factor cannot go
+   on, or next would be of no use, it is not reached.
 
-   The coordinates are kept modulo 2 pi.  The step of the centre misses, with every rounding and
-   turn, 2 u |q| + 1.4 u |o| + 3.4 u |before| + 4.7 u |x| and what its waves are off: `missed` has
-   8 u of each, and fuzz.  Turns are whole: adding SHIFT rounds to an integer what is below 2^51.
-   The rest obeys r' = beta r - r(o) + e, where e is what the waves bend, what the step of the
-   centre missed, and the roundings of columns and bow, 3 u of them and what is `carried`.
-   Writing r' = d r + f and, from the last step,
-   r(o) = (r - f(o))/d(o), gives f = f(o)/d(o) + e + (beta - 1/d(o) - d) r, where the last bracket
-   is rounding: of beta, below fuzz with that of the difference; of the inverse, whose determinant
-   is off by 1 + condition units, 4 + condition units of its trace, where `rounded` has
-   8 (1 + condition). */
+   The coordinates are kept modulo 2 pi: windings times that are taken off, integers, since adding
+   SHIFT rounds to an integer what is below 2^51.  The step of the centre is off, with every
+   rounding, by 2 u |q| + 1.4 u |o| + 3.4 u |before| + 4.7 u |x| and what its waves are off:
+   residual has 8 u of each, and err_beta.  The remainder obeys r' = beta r - r(o) + e, where e is
+   what wave_remainder bounds, the residual, and the roundings of lin and quad, 2 u of them and
+   propagate_err.  Writing r' = d r + f and, from the last step, r(o) = (r - f(o))/d(o), gives f =
+   f(o)/d(o) + e + (beta - 1/d(o) - d) r, where the last bracket is rounding: of beta, below
+   err_beta with that of the difference; of the inverse, whose determinant is off by 1 + condition
+   units, 4 + condition units of its trace, where `rounded` has 8 (1 + condition).
+
+   All of a step is one function, however long, as formal/roundings.py reads its loops in turn. */
 static void step(const batch *w, point *next, point *q, const point *o, int is_first)
 {
     static const double SHIFT = 0x1.8p52, USELESS = 0x1p10;
     vec inverse[3] = { every(0.0), every(0.0), every(0.0) }, rounded = every(0.0);
-    vec g[WAVES], bent[WAVES], rest_sum;
+    vec g[WAVES], wave_err[WAVES], rem_sum;
 
     FOR_WAVES(w, j) {
         g[j] = w->p[j] * q->cosine[j];
-        bent[j] = bend(w, q, j) + propagate_err(w, q, j);
+        wave_err[j] = wave_remainder(w, q, j) + propagate_err(w, q, j);
     }
     for (int i = 0; i < 2; i++) {
-        const vec before = o->x[i] - q->turns[i] * TWO_PI;
+        const vec before = o->x[i] - q->windings[i] * TWO_PI;
         const vec x = (2.0 * q->x[i] - before) + sum_k(w, i, g);
-        next->turns[i] = (x * (1.0 / TWO_PI) + SHIFT) - SHIFT;
-        next->x[i] = x - next->turns[i] * TWO_PI;
-        q->missed[i] = 0x1p-50 * (mag(q->x[i]) + mag(o->x[i]) + mag(before) + mag(x)) + q->fuzz;
+        next->windings[i] = (x * (1.0 / TWO_PI) + SHIFT) - SHIFT;
+        next->x[i] = x - next->windings[i] * TWO_PI;
+        q->residual[i] = 0x1p-50 * (mag(q->x[i]) + mag(o->x[i]) + mag(before) + mag(x))
+                         + q->err_beta;
     }
-    next->turned = mag(next->turns[0]) + mag(next->turns[1]);
-    next->reached = TRUTH(next->turned <= FAR);
-    switch (w->root->columns) {         /* each count of its own: the compiler unrolls */
-    case 2: carry_on(w, next, q, o, 2); break;
-    case 3: carry_on(w, next, q, o, 3); break;
-    case 4: carry_on(w, next, q, o, 4); break;
-    default: carry_on(w, next, q, o, 5);
+    next->winding_sum = mag(next->windings[0]) + mag(next->windings[1]);
+    next->reached = TRUTH(next->winding_sum <= FAR);
+    switch (w->problem->columns) {      /* each count of its own: the compiler unrolls */
+    case 2: propagate_and_measure(w, next, q, o, 2); break;
+    case 3: propagate_and_measure(w, next, q, o, 3); break;
+    case 4: propagate_and_measure(w, next, q, o, 4); break;
+    default: propagate_and_measure(w, next, q, o, 5);
     }
     if (!is_first) {
         const vec *d = o->d, det = d[0] * d[2] - d[1] * d[1];
@@ -141,25 +151,25 @@ static void step(const batch *w, point *next, point *q, const point *o, int is_f
         inverse[2] = d[0] * one;
         rounded = 0x1p-50 * (inverse[0] + inverse[2]) * (1.0 + condition);
     }
-    rest_sum = q->rest[0] + q->rest[1];
+    rem_sum = q->rem[0] + q->rem[1];
     for (int i = 0; i < 2; i++) {
         const vec i0 = mag(inverse[i]) + rounded, i1 = mag(inverse[i + 1]) + rounded;
-        vec e = sum_abs_k(w, i, bent);
+        vec e = sum_abs_k(w, i, wave_err);
 
-        e += q->missed[i];
-        e += 0x1p-50 * (next->straight[i] + next->bowed[i] + o->reach[i]);
-        e += is_first ? o->rest[i] : i0 * o->force[0] + i1 * o->force[1];
-        q->force[i] = (e + (2.0 * q->fuzz + rounded) * rest_sum) * WIDEN;
+        e += q->residual[i];
+        e += 0x1p-50 * (next->lin_bound[i] + next->quad_bound[i] + o->rad[i]);
+        e += is_first ? o->rem[i] : i0 * o->force[0] + i1 * o->force[1];
+        q->force[i] = (e + (2.0 * q->err_beta + rounded) * rem_sum) * WIDEN;
     }
     for (int j = 0; j < 3; j++)
         q->d[j] = q->beta[j] - inverse[j];
     for (int i = 0; i < 2; i++)
-        next->rest[i] = (mag(q->d[i]) * q->rest[0] + mag(q->d[i + 1]) * q->rest[1]
+        next->rem[i] = (mag(q->d[i]) * q->rem[0] + mag(q->d[i + 1]) * q->rem[1]
                          + q->force[i]) * WIDEN;
-    extend(w, next);
-    next->reached &= TRUTH(next->widest <= USELESS);
+    bound_displacement(w, next);
+    next->reached &= TRUTH(next->rad_max <= USELESS);
     if (any(~next->reached))
-        forget(w, next, w->root->columns);
+        forget(w, next, w->problem->columns);
     finish(w, next);
 }
 
@@ -170,17 +180,17 @@ static void begin(batch *w)
 
     memset(origin, 0, 2 * sizeof *origin);
     for (int i = 0; i < 2; i++) {
-        origin->x[i] = every(w->root->xstar[i]);
-        origin->rest[i] = every(w->root->xstar_err[i]);
-        const double *const frame = w->root->frame[i];
+        origin->x[i] = every(w->problem->xstar[i]);
+        origin->rem[i] = every(w->problem->xstar_err[i]);
+        const double *const frame = w->problem->frame[i];
         origin[1].x[i] = frame[0] * w->v[0] + frame[1] * w->v[1];
         for (int k = 0; k < 2; k++)
-            origin[1].column[i][k] = frame[k] * w->width[k];
+            origin[1].lin[i][k] = frame[k] * w->width[k];
         origin[i].reached = ~none();
     }
-    measure(w, origin + 1, w->root->columns);
+    measure(w, origin + 1, w->problem->columns);
     for (int j = 0; j < 2; j++) {
-        extend(w, origin + j);
+        bound_displacement(w, origin + j);
         finish(w, origin + j);
     }
     w->known_first = w->weighed_first = ORIGIN;
@@ -215,11 +225,11 @@ static int lengthen(batch *w, int k, int *why)
     *why = CV_REASON_TOO_BIG;
     for (;;) {
         const int inner = w->last[k] <= ORIGIN;     /* two points are the prism's own */
-        const int ahead = inner || w->reach[k][1] < w->reach[k][0];
+        const int ahead = inner || w->end_rad[k][1] < w->end_rad[k][0];
         int *const end = ahead ? &w->last[k] : &w->first[k];    /* hard to foretell: no branches */
         const int next = *end + 2 * ahead - 1;
 
-        if (!inner && !(w->reach[k][ahead] <= LONGEST_REACH))
+        if (!inner && !(w->end_rad[k][ahead] <= LONGEST_REACH))
             return 0;
         if (w->last[k] - w->first[k] + 1 == MAX_POINTS) {
             *why = CV_REASON_TOO_LONG;
@@ -228,12 +238,12 @@ static int lengthen(batch *w, int k, int *why)
         follow(w, next);
         if (holds(&q[next].reached, k)) {
             *end = next;
-            w->reach[k][ahead] = at(&q[next].widest, k);
+            w->end_rad[k][ahead] = at(&q[next].rad_max, k);
             if (next == ORIGIN)
-                w->reach[k][0] = w->reach[k][1];
+                w->end_rad[k][0] = w->end_rad[k][1];
             return 1;
         }
-        *why = at(&q[next].turned, k) <= FAR ? CV_REASON_SINGULAR : CV_REASON_TOO_LONG;
-        w->reach[k][ahead] = HUGE_VAL;
+        *why = at(&q[next].winding_sum, k) <= FAR ? CV_REASON_SINGULAR : CV_REASON_TOO_LONG;
+        w->end_rad[k][ahead] = HUGE_VAL;
     }
 }

@@ -11,12 +11,13 @@
        Q = sum n[j].beta(x[j])n[j] - 2 sum n[j].n[j+1] - l (|n[s]|^2 + |n[t]|^2) < 0.           (1)
 
    A prism is a set of orbits: x[0] = x*, x[1] in a rectangle, the amplitudes on an affine image of
-   the parameters' box.  orbit.c follows it, witness.c chooses n for the orbit of its centre, bound.c bounds (1) for
-   that n over all of it, and try.c does one after the other until it is proved or hopeless.
+   the parameters' box.  orbit.c follows it, witness.c chooses n for the orbit of its centre,
+   bound.c bounds (1) for that n over all of it, and try.c does one after the other until it is
+   proved or hopeless.
 
    Lanes.  What is a vec here is a number of each of the prisms at hand, and all of them go through
-   the same operations; where their orbits differ in length, masks say whose turn it is.  No lane
-   looks at another: what becomes of a prism does not depend on its company.
+   the same operations; where their orbits differ in length, masks say which lanes are active.  No
+   lane looks at another: what becomes of a prism does not depend on its company.
 
    Rounding.  All numbers are doubles rounded to nearest (unit u = 2^-53).  n, mu, x, L and d are
    what they are: any values make a valid proof.  Only the bounds are to be trusted: sums of
@@ -36,6 +37,8 @@ enum { KNOWN = 1, FIRST = 0, WAVES = 3 };
 #else
 enum { KNOWN = 0, FIRST = 2, WAVES = SLOTS };
 #endif
+/* Known waves are worth nothing unless their loops are unrolled, which GCC does not do by itself.
+   */
 #if defined(__GNUC__) && defined(THESIS_WAVES)
 #define UNROLL _Pragma("GCC unroll 3")
 #else
@@ -46,22 +49,22 @@ enum { MAX_POINTS = 4000, ORIGIN = MAX_POINTS };
 
 /* One point of the orbits of the prisms' centres, and all that is known of its neighbours. */
 typedef struct {
-    vec x[2], turns[2];                 /* x modulo 2 pi; turns taken off when it was reached */
-    vec turned;                         /* so many in all */
-    vec missed[2];                      /* by the step from here: a bound of |E| at the centre */
-    vec column[2][COLUMNS];             /* L: v0, v1, then the parameters that move */
-    vec bow[2][PAIRS];                  /* T: the coefficients of e_k e_l, at pair(k, l) */
-    vec rest[2], force[2];              /* r and f: bounds */
+    vec x[2], windings[2];              /* x modulo 2 pi; how often that was taken off */
+    vec winding_sum;                    /* |windings| of both */
+    vec residual[2];                    /* of the step from here: a bound of |E| at the centre */
+    vec lin[2][COLUMNS];                /* L: columns of v0, v1, then the parameters that move */
+    vec quad[2][PAIRS];                 /* T: the coefficients of e_k e_l, at pair(k, l) */
+    vec rem[2], force[2];               /* bounds of r and f */
     vec d[3];                           /* the factor: d00, d01, d11 */
     vec sine[WAVES], cosine[WAVES];
-    vec straight[WAVES], bowed[WAVES];  /* of D along a wave: |L e| and |T[e, e]| */
-    vec off[WAVES], reach[WAVES];       /* |D - L e| and |D| */
-    vec slip[WAVES];                    /* what L e and T[e, e] lose along a wave, from 2 on */
-    vec widest;                         /* the largest reach of a wave, by their weights */
+    vec lin_bound[WAVES], quad_bound[WAVES];    /* of D along a wave: |L e| and |T[e, e]| */
+    vec nonlin_bound[WAVES], rad[WAVES];        /* |D - L e| and |D| */
+    vec err_dot[WAVES];                 /* what L e and T[e, e] lose along a wave, from 2 on */
+    vec rad_max;                        /* the largest rad of a wave, by their weights */
     vec beta[3];                        /* beta00, beta01, beta11 */
     vec least;                          /* eigenvalue of beta, about */
-    vec far;                            /* how far angles may be off, in units u */
-    vec fuzz;                           /* how far p sin, p cos and entries of beta may be off */
+    vec err_angle;                      /* how far angles may be off, in units u */
+    vec err_beta;                       /* how far p sin, p cos and entries of beta may be off */
     vec n[2], mu[2];
     vec rest_A[WAVES][2], rest_B[WAVES], cube_A[WAVES], cube_B[WAVES], load;    /* see weigh */
     vec left[3], right[3];              /* the blocks of the recursion from either end */
@@ -69,11 +72,11 @@ typedef struct {
 } point;
 
 typedef struct {
-    const loewner *root;
+    const loewner *problem;
     vec p[WAVES], part[WAVES][COLUMNS];         /* part[k] moves with the column k of a parameter */
-    vec h[WAVES], loose[WAVES];                 /* h: the sum of |part|; loose by itself */
-    vec weight[WAVES];                  /* of a wave's reach: see weigh_waves */
-    vec size[WAVES];                            /* |p| + h + loose */
+    vec h[WAVES], err_amp[WAVES];               /* h: the sum of |part|; err_amp: rounding */
+    vec weight[WAVES];                  /* of the rad along a wave: see weigh_waves */
+    vec size[WAVES];                            /* |p| + h + err_amp */
     vec v[2], width[2], l;
     /* what bound.c finds */
     vec slope[COLUMNS], square[PAIRS], cubic[COLUMNS][PAIRS];           /* Q's part with signs */
@@ -81,7 +84,7 @@ typedef struct {
     int known_first, known_last;        /* the points that were computed */
     int weighed_first, weighed_last;    /* those that bound.c has seen */
     int first[LANES], last[LANES];      /* those of the orbits */
-    double reach[LANES][2];             /* how widely these are known: first, last */
+    double end_rad[LANES][2];           /* how widely these are known: first, last */
     mask from, to, since, until;        /* n is zero before from and after to; all: see witness */
     point orbit[2 * MAX_POINTS + 1];
 } batch;
@@ -92,7 +95,7 @@ static const double TINY = 0x1p-800;
    question takes longer than to add nothing. */
 INLINE int moves(const batch *w, int wave, int column, int columns)
 {
-    return columns == 3 || w->root->moves[wave][column];
+    return columns == 3 || w->problem->moves[wave][column];
 }
 
 /* Adds, for each column, what the wave's amplitude moves with its symbol, times a factor. */

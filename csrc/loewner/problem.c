@@ -11,7 +11,7 @@
 #include "model/torus.h"
 
 enum { ALIGNMENT = 64 };
-enum { FINEST = 46 };                   /* cuts along one axis: then doubles run out */
+enum { MAX_CUTS = 46 };                 /* cuts along one axis: then doubles run out */
 
 /* ---- one prism */
 
@@ -45,14 +45,14 @@ int loewner_prism(const loewner *w, const cv_cell *cell, loewner_cell *c)
 
     memset(c, 0, sizeof *c);
     for (int k = 0; k < COLUMNS; k++) {
-        if (cell->cuts[k] > FINEST)
+        if (cell->cuts[k] > MAX_CUTS)
             return 0;
         part[k] = ldexp(1.0, -cell->cuts[k]);
         at_axis[k] = (2.0 * (double)cell->index[k] + 1.0) * part[k] - 1.0;      /* exact */
     }
     for (int i = 0; i < 2; i++) {
         c->v[i] = w->centre[i] + w->half[i] * at_axis[i];
-        c->width[i] = w->half[i] * part[i] + w->slack[i];
+        c->width[i] = w->half[i] * part[i] + w->err_v[i];
     }
     for (int m = 0; m < w->n_parameters; m++) {
         low[m] = 0.5 * (1.0 + at_axis[2 + m] - part[2 + m]);
@@ -64,21 +64,21 @@ int loewner_prism(const loewner *w, const cv_cell *cell, loewner_cell *c)
             c->p[i] += w->part[i][m] * at_axis[2 + m];
             c->part[i][m] = w->part[i][m] * part[2 + m];
         }
-        c->loose[i] = w->loose[i];
+        c->err_amp[i] = w->err_amp[i];
     }
     B = cell_largest(w, low, high);
     c->l = 2.0 / (B + sqrt((B - 2.0) * (B + 2.0))) * (1.0 - 0x1p-46);   /* off by 5 u before */
     return c->l > 0.0;
 }
 
-/* Not where its width is the slack of doubles, but for a fifth of it. */
-int may_cut(const loewner *w, const cv_cell *cell, int axis)
+/* Not where no more than a fifth of its width is other than the rounding of doubles. */
+int cut_helps(const loewner *w, const cv_cell *cell, int axis)
 {
-    int wide = axis < 2 && ldexp(w->half[axis], 2 - cell->cuts[axis]) > w->slack[axis];
+    int wide = axis < 2 && ldexp(w->half[axis], 2 - cell->cuts[axis]) > w->err_v[axis];
 
     for (int i = 0; i < w->waves && axis >= 2; i++)
-        wide = wide || ldexp(fabs(w->part[i][axis - 2]), 2 - cell->cuts[axis]) > w->loose[i];
-    return wide && cell->cuts[axis] < FINEST;
+        wide = wide || ldexp(fabs(w->part[i][axis - 2]), 2 - cell->cuts[axis]) > w->err_amp[i];
+    return wide && cell->cuts[axis] < MAX_CUTS;
 }
 
 /* ---- the problem */
@@ -136,7 +136,7 @@ static void set_angles(loewner *w, const patch *problem)
     for (int i = 0; i < 2; i++) {
         w->centre[i] = near(problem->angle[i]);
         w->half[i] = near(problem->half[i]);
-        w->slack[i] = 0x1p-48 * (fabs(w->centre[i]) + w->half[i]);
+        w->err_v[i] = 0x1p-48 * (fabs(w->centre[i]) + w->half[i]);
         w->xstar[i] = near(problem->xstar[i]);
         w->xstar_err[i] = 0x1p-49 * fabs(w->xstar[i]);
         for (int k = 0; k < 2; k++)
@@ -147,7 +147,8 @@ static void set_angles(loewner *w, const patch *problem)
         for (int k = 0; k < 2; k++)
             off[i] += 0x1p-50 * fabs(w->frame[i][k]) * (fabs(w->centre[k]) + w->half[k]);
     for (int i = 0; i < 2; i++)         /* |frame^-1| off */
-        w->slack[i] += fabs(w->frame[1 - i][1 - i]) * off[i] + fabs(w->frame[i][1 - i]) * off[1 - i];
+        w->err_v[i] += fabs(w->frame[1 - i][1 - i]) * off[i]
+                       + fabs(w->frame[i][1 - i]) * off[1 - i];
 }
 
 /* One more wave; engines for any waves take those that there are. */
@@ -163,7 +164,7 @@ static void add_wave(loewner *w, const patch *problem, int given, int general)
         size += fabs(w->part[i][m]);
     }
     w->phase[i] = near(problem->phase[given]);
-    w->loose[i] = 0x1p-48 * size;
+    w->err_amp[i] = 0x1p-48 * size;
     w->present[i] = size != 0.0;
     for (int j = 0; j < 2; j++) {
         w->k[i][j] = k[j];
@@ -175,7 +176,7 @@ static void add_wave(loewner *w, const patch *problem, int given, int general)
 }
 
 /* The waves, and the columns of their parameters. */
-static void set_waves(loewner *w, const patch *problem, int general)
+static void set_wave_slots(loewner *w, const patch *problem, int general)
 {
     w->n_parameters = problem->n_parameters;
     w->columns = 2;
@@ -198,10 +199,10 @@ static void set_waves(loewner *w, const patch *problem, int general)
     }
 }
 
-/* Where all waves are m q, q primitive, s = q.x moves by itself: s' = 2s - s(o) + |q|^2 sum m p cos y,
-   and vectors n = q nu make of Q |q|^2 times what it is for waves (m, 0) of amplitude |q|^2 p at s.
-   So these may be taken for them, if the frame tells s apart: then s_1 is v1 or -v1, and v0 is not
-   felt.  s* = q.x* and the products with |q|^2 are rounded by u or two more. */
+/* Where all waves are m q, q primitive, s = q.x moves by itself: s' = 2s - s(o) + |q|^2 sum m p cos
+   y, and vectors n = q nu make of Q |q|^2 times what it is for waves (m, 0) of amplitude |q|^2 p at
+   s.  So these may be taken for them, if the frame tells s apart: then s_1 is v1 or -v1, and v0 is
+   not felt.  s* = q.x* and the products with |q|^2 are rounded by u or two more. */
 static void straighten(loewner *w)
 {
     const double *const k = w->k[2], common = divisor(fabs(k[0]), fabs(k[1]));
@@ -224,7 +225,7 @@ static void straighten(loewner *w)
         w->amplitude[i] *= scale;
         for (int m = 0; m < w->n_parameters; m++)
             w->part[i][m] *= scale;
-        w->loose[i] *= scale;
+        w->err_amp[i] *= scale;
         w->k[i][0] = (w->k[i][0] * q[0] + w->k[i][1] * q[1]) / scale;
         w->k[i][1] = 0.0;
         w->square_k[i] = square(w->k[i][0]);
@@ -238,8 +239,9 @@ static void straighten(loewner *w)
     }
 }
 
-/* B at the corners of the parameters' cube; infinity if it is not to be bounded.  An amplitude there
-   is off by less than its loose, and a phase by 2^-50 of itself and a little more: see near. */
+/* B at the corners of the parameters' cube; infinity if it is not to be bounded.  An amplitude
+   there is off by less than its err_amp, and a phase by 2^-50 of itself and a little more: see
+   near. */
 static void set_corners(loewner *w, int with_bounds)
 {
     torus_wave waves[MOST_WAVES];
@@ -254,7 +256,7 @@ static void set_corners(loewner *w, int with_bounds)
                 p += (corner >> m & 1 ? 1.0 : -1.0) * w->part[i][m];
             waves[n++] = (torus_wave){ { w->k[i][0], w->k[i][1] },
                                        interval_about(w->phase[i], 0x1p-49 * fabs(w->phase[i])),
-                                       interval_about(p, w->loose[i]) };
+                                       interval_about(p, w->err_amp[i]) };
         }
         w->corner[corner] = with_bounds ? torus_largest(n, waves, TORUS_EIGENVALUE)
                                         : HUGE_VAL;
@@ -269,7 +271,7 @@ loewner *loewner_new(const patch *problem, int with_bounds)
     if (w == NULL)
         return NULL;
     set_angles(w, problem);
-    set_waves(w, problem, general);
+    set_wave_slots(w, problem, general);
     straighten(w);
     set_corners(w, with_bounds);
     w->engine = fastest_engine(general);
@@ -304,21 +306,22 @@ double loewner_largest(const loewner *w)
 }
 
 /* With n the eigenvector at the centre, n.beta n = 2|n|^2 - sum p sin(y) (k.n)^2 is linear in the
-   parameters.  In units u, a wave's terms are off by 32 of |p| and its parts, by (4 + far) for the
-   sine, far as in waves.h, and 8 for the product, where (k.n)^2 is off by 5 of (|k0| + |k1|)^2 |n|^2;
-   at most 21 numbers are added.  So all is off by 70 + far of the sum of absolute values with that in
-   the place of (k.n)^2, the mass; the margin is 256 (1 + far). */
+   parameters.  In units u, a wave's terms are off by 32 of |p| and its parts, by (4 + err_angle)
+   for the sine, err_angle as in waves.h, and 8 for the product, where (k.n)^2 is off by 5 of (|k0|
+   + |k1|)^2 |n|^2; at most 21 numbers are added.  So all is off by 70 + err_angle of the sum of
+   absolute values with that in the place of (k.n)^2, the mass; the margin is 256 (1 + err_angle).
+   */
 int loewner_at_once(const loewner *w, const double at[2], int at_end)
 {
     const double x[2] = { w->seen[0][0] * at[0] + w->seen[0][1] * at[1],
                           w->seen[1][0] * at[0] + w->seen[1][1] * at[1] };
-    double n[2], d[3] = { 2.0, 0.0, 2.0 }, p[SLOTS], pull[SLOTS], sum, mass, far = 0.0;
+    double n[2], d[3] = { 2.0, 0.0, 2.0 }, p[SLOTS], pull[SLOTS], sum, mass, err_angle = 0.0;
 
     for (int i = 0; i < w->waves; i++) {
         const double *const k = w->k[i], y0 = k[0] * x[0], y1 = k[1] * x[1];
         double c;
         double_sincos(&pull[i], &c, (y0 + y1) + w->phase[i]);
-        far = larger(far, 3.0 * (fabs(y0) + fabs(y1)) + 10.0 * fabs(w->phase[i]));
+        err_angle = larger(err_angle, 3.0 * (fabs(y0) + fabs(y1)) + 10.0 * fabs(w->phase[i]));
         p[i] = w->amplitude[i];
         for (int m = 0; m < w->n_parameters && at_end; m++)
             p[i] += w->part[i][m];
@@ -330,7 +333,7 @@ int loewner_at_once(const loewner *w, const double at[2], int at_end)
     const double length = square(n[0]) + square(n[1]);
     sum = mass = 4.0 / 3.0 * length;    /* 2 |n|^2 less 2/3 |n|^2 */
     for (int i = 0; i < w->waves; i++) {
-        double size = fabs(w->amplitude[i]) + w->loose[i];
+        double size = fabs(w->amplitude[i]) + w->err_amp[i];
         pull[i] *= square(w->k[i][0] * n[0] + w->k[i][1] * n[1]);
         sum -= p[i] * pull[i];
         for (int m = 0; m < w->n_parameters; m++)
@@ -343,5 +346,5 @@ int loewner_at_once(const loewner *w, const double at[2], int at_end)
             swing += w->part[i][m] * pull[i];
         sum += fabs(swing);
     }
-    return mass >= 1.0 && sum + 0x1p-45 * (1.0 + far) * mass < 0.0;
+    return mass >= 1.0 && sum + 0x1p-45 * (1.0 + err_angle) * mass < 0.0;
 }

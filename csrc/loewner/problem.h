@@ -15,8 +15,9 @@ typedef struct {
                 outcome *const out[]);
 } engine;
 
-extern const engine engine_scalar, engine_baseline, engine_avx2, engine_avx512;     /* the thesis's waves */
-extern const engine general_scalar, general_baseline, general_avx2, general_avx512; /* any */
+/* For the waves of the thesis, and for any. */
+extern const engine engine_scalar, engine_baseline, engine_avx2, engine_avx512;
+extern const engine general_scalar, general_baseline, general_avx2, general_avx512;
 
 #if defined(__GNUC__) && (defined(__SSE2__) || defined(__aarch64__))
 #define HAVE_VECTORS
@@ -26,11 +27,11 @@ extern const engine general_scalar, general_baseline, general_avx2, general_avx5
 #endif
 
 struct loewner {
-    double centre[2], half[2], slack[2], frame[2][2];           /* of v0, v1 */
-    double seen[2][2];                  /* the coordinates in which waves are given; see straighten */
+    double centre[2], half[2], err_v[2], frame[2][2];           /* of v0, v1 */
+    double seen[2][2];                  /* coordinates that waves are given in: see straighten */
     int waves;                          /* slots in use; waves.h says what the first two are */
-    double k[SLOTS][2], phase[SLOTS], square_k[SLOTS], most_k;  /* (|k0| + |k1|)^2; the largest sum */
-    double amplitude[SLOTS], part[SLOTS][PARAMETERS], loose[SLOTS];
+    double k[SLOTS][2], phase[SLOTS], square_k[SLOTS], most_k; /* (|k0| + |k1|)^2, largest sum */
+    double amplitude[SLOTS], part[SLOTS][PARAMETERS], err_amp[SLOTS];
     double xstar[2], xstar_err[2], corner[8];                   /* bounds B at the corners */
     int n_parameters, columns;          /* the symbols: v0, v1, and the parameters that count */
     int axis[COLUMNS];                  /* of a column: the cell's */
@@ -50,6 +51,6 @@ static inline int pair(int columns, int k, int l)
 /* problem.c */
 
 /* Would cutting the cell across axis help? */
-int may_cut(const loewner *w, const cv_cell *cell, int axis);
+int cut_helps(const loewner *w, const cv_cell *cell, int axis);
 
 #endif

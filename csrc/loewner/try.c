@@ -6,8 +6,8 @@ enum { PATIENCE = 8 };                  /* tries follow each other by an eighth 
 static const double SMALL = 4.0;        /* waves of a fourth of the largest count as it does */
 static const double HOPELESS = 2.0;     /* times the least bound yet: longer orbits will not do */
 
-/* How much each wave's reach counts when it is asked how far an orbit is known: a wave that is small
-   beside the largest bends orbits little, however widely it reaches. */
+/* How much the rad along each wave counts when it is asked how far an orbit is known: a wave that
+   is small beside the largest bends orbits little, however large the rad. */
 static void weigh_waves(batch *w, int k)
 {
     double most = 0.0;
@@ -25,15 +25,15 @@ static void set_lane(batch *w, int k, const loewner_cell *c)
 {
     for (int i = 0; i < waves_of(w); i++) {
         put_at(&w->p[i], k, c->p[i]);
-        put_at(&w->loose[i], k, c->loose[i]);
+        put_at(&w->err_amp[i], k, c->err_amp[i]);
         double h = 0.0;
-        for (int column = 2; column < w->root->columns; column++) {
-            const double part = c->part[i][w->root->axis[column] - 2];
+        for (int column = 2; column < w->problem->columns; column++) {
+            const double part = c->part[i][w->problem->axis[column] - 2];
             put_at(&w->part[i][column], k, part);
             h += fabs(part);
         }
         put_at(&w->h[i], k, h);
-        put_at(&w->size[i], k, fabs(c->p[i]) + h + c->loose[i]);
+        put_at(&w->size[i], k, fabs(c->p[i]) + h + c->err_amp[i]);
     }
     for (int i = 0; i < 2; i++) {
         put_at(&w->v[i], k, c->v[i]);
@@ -53,15 +53,15 @@ typedef struct {
 
 static int points_of(const batch *w, int k) { return w->last[k] - w->first[k] + 1; }
 
-/* Tries to prove the prisms whose turn it is with the orbits as far as they are followed. */
-static void attempt(batch *w, mask turn, progress s[], outcome *const out[], mask *going)
+/* Tries to prove the prisms that are active with the orbits as far as they are followed. */
+static void attempt(batch *w, mask active, progress s[], outcome *const out[], mask *going)
 {
-    const mask contradict = witness(w, turn);
+    const mask contradict = witness(w, active);
 
     if (any(contradict))
         bound_second_variation(w, contradict, 0);
     for (int k = 0; k < LANES; k++) {
-        if (!holds(&turn, k))
+        if (!holds(&active, k))
             continue;
         s[k].tried = points_of(w, k);
         if (holds(&contradict, k)) {
@@ -87,12 +87,12 @@ static int widest_at_ends(const batch *w, int k)
     double width[COLUMNS];
     int widest = 0;
 
-    for (int c = 0; c < w->root->columns; c++) {
+    for (int c = 0; c < w->problem->columns; c++) {
         width[c] = 0.0;
         for (int i = 0; i < 2; i++)
-            if (w->root->feels[i])
-                width[c] += fabs(at(&w->orbit[w->last[k]].column[i][c], k))
-                            + fabs(at(&w->orbit[w->first[k]].column[i][c], k));
+            if (w->problem->feels[i])
+                width[c] += fabs(at(&w->orbit[w->last[k]].lin[i][c], k))
+                            + fabs(at(&w->orbit[w->first[k]].lin[i][c], k));
         if (width[c] > width[widest])
             widest = c;
     }
@@ -104,7 +104,7 @@ static int worst_of(const batch *w, int k)
 {
     int worst = 0;
 
-    for (int c = 1; c < w->root->columns; c++)
+    for (int c = 1; c < w->problem->columns; c++)
         if (at(&w->share[c], k) > at(&w->share[worst], k))
             worst = c;
     return worst;
@@ -112,22 +112,24 @@ static int worst_of(const batch *w, int k)
 
 /* Why the prism of lane k failed: blames a column, and tells what its halves should know.
 
-   Where the centre contradicts, that is the one that the bound owes most to.  But on some surface the
-   contradiction is nothing, and near it these columns would be cut for ever, while a longer orbit,
-   whose end another has made too wide, would contradict plainly: that one must not lag behind. */
+   Where (1) is negative at the centre, that is the column with the largest share in the bound.  But
+   (1) is zero on some surface of the prism's points, and near it the bound stays positive however
+   often this column is cut, while a longer orbit would make (1) plainly negative.  That orbit was
+   not followed as another column made its end too wide; so if the cuts of that one lag behind by
+   more than LAG, it is cut instead. */
 static void blame(const batch *w, int k, const progress *s, const cv_cell *cell,
                   outcome *out)
 {
-    const loewner *const root = w->root;
+    const loewner *const problem = w->problem;
     const int widest = widest_at_ends(w, k);
     int worst = s->contradicted ? worst_of(w, k) : widest;
 
-    if (s->ended && cell->cuts[root->axis[widest]] + LAG < cell->cuts[root->axis[worst]])
+    if (s->ended && cell->cuts[problem->axis[widest]] + LAG < cell->cuts[problem->axis[worst]])
         worst = widest;
     if (!s->contradicted)
         out->v.reason = s->why;
-    if (may_cut(root, cell, root->axis[worst]))
-        out->axis = root->axis[worst];
+    if (cut_helps(problem, cell, problem->axis[worst]))
+        out->axis = problem->axis[worst];
     else if (out->v.reason == CV_REASON_TOO_BIG)
         out->v.reason = CV_REASON_ARITHMETIC;
     out->v.nsteps = points_of(w, k);
@@ -142,27 +144,27 @@ static void follow_and_attempt(batch *w, mask going, int n, const cv_cell *const
                                progress s[], outcome *const out[])
 {
     for (int points = 1, next = 1; any(going); points++) {
-        mask turn = none();
+        mask active = none();
         int growing = 0;
 
         for (int k = 0; k < n; k++)
             if (holds(&going, k)) {
                 s[k].ended = s[k].ended || !lengthen(w, k, &s[k].why);
                 growing |= !s[k].ended;
-                put_truth(&turn, k, points_of(w, k) > s[k].tried &&
+                put_truth(&active, k, points_of(w, k) > s[k].tried &&
                                     (s[k].ended || points >= cells[k]->from));
                 if (s[k].ended && points_of(w, k) == s[k].tried)
                     put_truth(&going, k, 0);
             }
         if (points >= next || !growing) {
-            if (any(turn))
-                attempt(w, turn, s, out, &going);
+            if (any(active))
+                attempt(w, active, s, out, &going);
             next = points + 2 + points / PATIENCE;
         }
     }
 }
 
-static void try_prisms(void *work, const loewner *root, int n, const cv_cell *const cells[],
+static void try_prisms(void *work, const loewner *problem, int n, const cv_cell *const cells[],
                        outcome *const out[])
 {
     batch *const w = work;
@@ -170,13 +172,13 @@ static void try_prisms(void *work, const loewner *root, int n, const cv_cell *co
     loewner_cell c, filler = { 0 };
     mask going = none(), blamed = none();
 
-    w->root = root;
+    w->problem = problem;
     for (int k = 0; k < n; k++) {
         s[k].least = HUGE_VAL;
         memset(out[k], 0, sizeof *out[k]);
         out[k]->v.reason = CV_REASON_ARITHMETIC;
         out[k]->axis = -1;
-        if (!loewner_prism(root, cells[k], &c))
+        if (!loewner_prism(problem, cells[k], &c))
             continue;
         put_truth(&going, k, 1);
         set_lane(w, k, &c);

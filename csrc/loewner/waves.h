@@ -1,34 +1,35 @@
 /* waves.h - the waves of the potential, as an engine sees them.
 
-   An engine is made for any waves, which it reads from the problem, or, with THESIS_WAVES, for those
-   of the thesis, (1, 0), (0, 1) and (1, 1) without phases, which it knows when it is compiled.  The
-   code is the same, but where KNOWN the compiler unrolls the loops over the waves, and products with
-   0 and 1 are left out (the compiler may not do that by itself: 0 x is not 0 for each x).  So a
-   known engine does what the general one would do with these waves, without the operations that are
-   exact.
+   An engine is compiled for any waves, which it reads from the problem, or, with THESIS_WAVES, for
+   those of the thesis, (1, 0), (0, 1) and (1, 1) without phases, which are then KNOWN.  The code is
+   the same.  But where the waves are known the compiler unrolls the loops over them, and products
+   with 0 and 1 are left out, which the compiler may not do by itself, as 0 x is not 0 for each x.
+   What is left out is exact, so the bounds of rounding errors hold for both.  (Two sources, of
+   which one was written for the thesis's waves, were not faster by more than a few per cent; an
+   engine for any waves alone is slower by a third.)
 
    The slots 0 and 1 are the coordinates themselves, whether there are such waves or not: FIRST is
    the first slot with an amplitude.
 
-   Along a wave, columns and bow are what doubles make of k.L and k.T.  What they lose there, which
-   counts where coordinates cancel, is the wave's slip, and belongs to the rest along it.  Where
-   bounds of coordinates are put together |k| stands for k.
+   Along a wave, lin and quad are what doubles make of k.L and k.T.  What they lose there, which
+   counts where coordinates cancel, is the wave's err_dot, and belongs to the remainder along it.
+   Where bounds of coordinates are put together |k| stands for k.
 
-   `far` bounds the rounding of all angles, and sums over the waves, in units u: products k x lose
-   u |k x|, their sum u of itself, the phase, which `near` made a double, 8 u of itself, and the last
-   sum u of what it adds.  That is 3 u (|k0 x0| + |k1 x1|) + 9 u |phase| at most; far has one |phase|
-   more, for the 10^-40 that it may be off before, and the number of waves. */
+   err_angle bounds the rounding of all angles, and sums over the waves, in units u: products k x
+   lose u |k x|, their sum u of itself, the phase, which `near` made a double, 8 u of itself, and
+   the last sum u of what it adds.  That is 3 u (|k0 x0| + |k1 x1|) + 9 u |phase| at most; err_angle
+   has one |phase| more, for the 10^-40 that it may be off before, and the number of waves. */
 #ifndef CONVERSE_WAVES_H
 #define CONVERSE_WAVES_H
 
 #include "arith/sine.h"
 #include "prism.h"
 
-INLINE int waves_of(const batch *w) { return KNOWN ? WAVES : w->root->waves; }
+INLINE int waves_of(const batch *w) { return KNOWN ? WAVES : w->problem->waves; }
 
 INLINE double k_of(const batch *w, int wave, int i)
 {
-    return KNOWN ? (double)(wave == 2 || wave == i) : w->root->k[wave][i];
+    return KNOWN ? (double)(wave == 2 || wave == i) : w->problem->k[wave][i];
 }
 
 /* k x, and sum += k x. */
@@ -83,37 +84,39 @@ INLINE vec sum_abs_k(const batch *w, int i, const vec f[])
     return sum;
 }
 
-/* How far D is along a wave from what columns and bow make of it. */
-INLINE vec rest_along(const batch *w, const point *q, int wave)
+/* A bound of the remainder of D along a wave. */
+INLINE vec rem_along(const batch *w, const point *q, int wave)
 {
-    const vec rest = dot_abs_k(w, wave, q->rest[0], q->rest[1]);
+    const vec rem = dot_abs_k(w, wave, q->rem[0], q->rem[1]);
 
-    return wave < 2 ? rest : rest + q->slip[wave];
+    return wave < 2 ? rem : rem + q->err_dot[wave];
 }
 
 /* k.L and k.T lose u to each product and u to the sum: 2 u of the absolute values.  Of these, the
-   coordinates' straight and bowed are bounds. */
-INLINE void measure_slips(const batch *w, point *q)
+   coordinates' lin_bound and quad_bound are bounds. */
+INLINE void bound_err_dot(const batch *w, point *q)
 {
-    const vec size0 = q->straight[0] + q->bowed[0], size1 = q->straight[1] + q->bowed[1];
+    const vec size0 = q->lin_bound[0] + q->quad_bound[0];
+    const vec size1 = q->lin_bound[1] + q->quad_bound[1];
 
     for (int j = 2; j < waves_of(w); j++)
-        q->slip[j] = 0x1p-51 * dot_abs_k(w, j, size0, size1);
+        q->err_dot[j] = 0x1p-51 * dot_abs_k(w, j, size0, size1);
 }
 
 /* Sines and cosines of the waves at q->x, beta, and their errors.
 
-   Let N be the number of waves, S the sum of (|k0| + |k1|)^2 times their sizes.  p sin and p cos are
-   off by (5 + far - N) u |p|; in beta such a product is multiplied by k k', rounded twice more, and N
-   are added, and taken from an integer: beta is off by u (3 + (9 + far) S) at most, where fuzz is
-   16 u (1 + S)(1 + far), far >= 1. */
+   Let N be the number of waves, S the sum of (|k0| + |k1|)^2 times their sizes.  p sin and p cos
+   are off by (5 + err_angle - N) u |p|; in beta such a product is multiplied by k k', rounded twice
+   more, and N are added, and taken from an integer: beta is off by u (3 + (9 + err_angle) S) at
+   most, where err_beta is 16 u (1 + S)(1 + err_angle), err_angle >= 1. */
 INLINE void evaluate(const batch *w, point *q)
 {
     vec pull[3] = { every(0.0), every(0.0), every(0.0) }, farthest = every(0.0);
     vec sizes = every(1.0);
 
     FOR_WAVES(w, j) {
-        const double k0 = k_of(w, j, 0), k1 = k_of(w, j, 1), phase = KNOWN ? 0.0 : w->root->phase[j];
+        const double k0 = k_of(w, j, 0), k1 = k_of(w, j, 1);
+        const double phase = KNOWN ? 0.0 : w->problem->phase[j];
         vec y = dot_k(w, j, q->x[0], q->x[1]);
         vec angle = dot_abs_k(w, j, mag(q->x[0]), mag(q->x[1])) * 3.0;
         if (!KNOWN) {
@@ -126,30 +129,31 @@ INLINE void evaluate(const batch *w, point *q)
         add_times(&pull[0], k0 * k0, s);
         add_times(&pull[1], k0 * k1, s);
         add_times(&pull[2], k1 * k1, s);
-        sizes += w->root->square_k[j] * w->size[j];
+        sizes += w->problem->square_k[j] * w->size[j];
     }
-    q->far = farthest + (double)(waves_of(w) - FIRST + 1);
+    q->err_angle = farthest + (double)(waves_of(w) - FIRST + 1);
     for (int i = 0; i < 3; i++)
         q->beta[i] = (i == 1 ? 0.0 : 2.0) - pull[i];
-    q->fuzz = 0x1p-49 * sizes * (1.0 + q->far);
+    q->err_beta = 0x1p-49 * sizes * (1.0 + q->err_angle);
 }
 
-/* The columns and the bow of next, the point after q, seen from o before it: 2L - L(o), the same of
-   T, and what the waves make of them and add,
+/* lin and quad of next, the point after q, seen from o before it: 2L - L(o), the same of T, and
+   what the waves make of them and add,
        -p (c.e) sin y + h e cos y  and  -p T sin y - p (c.e)^2/2 cos y - h e (c.e) sin y.
-   Where no wave feels a column it is carried as it should be. */
+   Where k.L = 0 for all waves, next->lin = 2L - L(o) but for one rounding, which a product with
+   beta would not give. */
 INLINE void propagate(const batch *w, point *next, const point *q, const point *o, int columns)
 {
     const int pairs = columns * (columns + 1) / 2;
-    vec straight[2][COLUMNS], bowed[2][PAIRS];
+    vec lin[2][COLUMNS], quads[2][PAIRS];
 
-    memset(straight, 0, sizeof straight);
-    memset(bowed, 0, sizeof bowed);
+    memset(lin, 0, sizeof lin);
+    memset(quads, 0, sizeof quads);
     FOR_WAVES(w, j) {
         const vec pull = -w->p[j] * q->sine[j], half = 0.5 * w->p[j] * q->cosine[j];
         vec c[COLUMNS], f[COLUMNS], push[COLUMNS];
         for (int k = 0; k < columns; k++) {
-            c[k] = dot_k(w, j, q->column[0][k], q->column[1][k]);
+            c[k] = dot_k(w, j, q->lin[0][k], q->lin[1][k]);
             f[k] = -half * c[k];
             push[k] = pull * c[k];
         }
@@ -157,32 +161,32 @@ INLINE void propagate(const batch *w, point *next, const point *q, const point *
         add_moves(w, j, q->cosine[j], push, columns);
         for (int k = 0, kl = 0; k < columns; k++) {
             for (int i = 0; i < 2; i++)
-                add_times(&straight[i][k], k_of(w, j, i), push[k]);
+                add_times(&lin[i][k], k_of(w, j, i), push[k]);
             for (int l = k; l < columns; l++, kl++) {           /* (c.e) (f.e) */
                 const vec cf = l == k ? c[k] * f[k] : c[k] * f[l] + c[l] * f[k];
-                const vec bow = cf + pull * dot_k(w, j, q->bow[0][kl], q->bow[1][kl]);
+                const vec quad = cf + pull * dot_k(w, j, q->quad[0][kl], q->quad[1][kl]);
                 for (int i = 0; i < 2; i++)
-                    add_times(&bowed[i][kl], k_of(w, j, i), bow);
+                    add_times(&quads[i][kl], k_of(w, j, i), quad);
             }
         }
     }
     for (int i = 0; i < 2; i++) {
         for (int k = 0; k < columns; k++)
-            next->column[i][k] = (2.0 * q->column[i][k] - o->column[i][k]) + straight[i][k];
+            next->lin[i][k] = (2.0 * q->lin[i][k] - o->lin[i][k]) + lin[i][k];
         for (int kl = 0; kl < pairs; kl++)
-            next->bow[i][kl] = (2.0 * q->bow[i][kl] - o->bow[i][kl]) + bowed[i][kl];
+            next->quad[i][kl] = (2.0 * q->quad[i][kl] - o->quad[i][kl]) + quads[i][kl];
     }
 }
 
-/* What that loses of a wave to roundings: p sin, its products with c and T, with k, and sums over the
-   waves (10 + far) u |p| of their sizes, h cos y (8 + far) u h; and p times the slip, as the map has
-   k.L where propagate has c. */
+/* What that loses of a wave to roundings: p sin, its products with c and T, with k, and sums over
+   the waves (10 + err_angle) u |p| of their sizes, h cos y (8 + err_angle) u h; and p times
+   err_dot, as the map has k.L where propagate has c. */
 INLINE vec propagate_err(const batch *w, const point *q, int wave)
 {
-    const vec p = mag(w->p[wave]), unit = 0x1p-49 * (1.0 + q->far);
-    const vec lost = unit * (p * (q->straight[wave] + q->bowed[wave]) + w->h[wave]);
+    const vec p = mag(w->p[wave]), unit = 0x1p-49 * (1.0 + q->err_angle);
+    const vec lost = unit * (p * (q->lin_bound[wave] + q->quad_bound[wave]) + w->h[wave]);
 
-    return wave < 2 ? lost : lost + p * q->slip[wave];
+    return wave < 2 ? lost : lost + p * q->err_dot[wave];
 }
 
 /* Minus the gradient of n.beta n at a site. */
@@ -200,7 +204,7 @@ INLINE vec gradient(const batch *w, const point *q, int i)
    |k| |mu|. */
 INLINE vec weights_of(const batch *w, const vec omega[], const vec m[])
 {
-    const double most = w->root->most_k;
+    const double most = w->problem->most_k;
 
     return most * most * (omega[0] + omega[1]) + most * (mag(m[0]) + mag(m[1]));
 }

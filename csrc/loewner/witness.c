@@ -7,7 +7,7 @@
 #include "eigenvector.h"
 #include "prism.h"
 
-static const double PLAINLY = 0.75;      /* how far below l blocks fall, as long as the orbit goes on */
+static const double PLAINLY = 0.75;      /* of l: where blocks must fall, as long as the orbit goes on */
 
 static mask above(const vec d[3], vec l)
 {
@@ -40,7 +40,7 @@ INLINE void divide(vec n[2], const vec m[2], const vec d[3])
     n[1] = (d[0] * m[1] - d[1] * m[0]) * inverse;
 }
 
-/* The recursion from the left, way 1, or from the right, -1, in the lanes whose turn it is: from
+/* The recursion from the left, way 1, or from the right, -1, in the lanes that are active: from
    their sites `begin` to `end`, or to where it falls below l. */
 typedef struct {
     int way, site, last;
@@ -48,10 +48,10 @@ typedef struct {
     vec d[3];
 } recursion;
 
-INLINE recursion recursion_of(const batch *w, int way, mask turn, mask begin, mask end)
+INLINE recursion recursion_of(const batch *w, int way, mask active, mask begin, mask end)
 {
-    return (recursion){ way, extreme(turn, begin, -way), extreme(turn, end, way), begin, end, turn,
-                        none(), none(), { 1.0 / w->l, every(0.0), 1.0 / w->l } };
+    return (recursion){ way, extreme(active, begin, -way), extreme(active, end, way), begin, end,
+                        active, none(), none(), { 1.0 / w->l, every(0.0), 1.0 / w->l } };
 }
 
 /* One site further.  0: there is none. */
@@ -78,8 +78,8 @@ INLINE int advance(batch *w, recursion *r, int way)
     return 1;
 }
 
-/* Chooses from, to and n on the orbits so that (1) is negative at the centre, in the lanes whose
-   turn it is; returns where that can be.
+/* Chooses from, to and n on the orbits so that (1) is negative at the centre, in the lanes that are
+   active; returns where that can be.  (Long, as all its parts work on the same dozen of masks.)
 
    Between the places where the recursions from both ends fall all blocks are positive.  There n is,
    at the site of the least beta, the eigenvector of the quadratic form that is left there when all
@@ -87,7 +87,7 @@ INLINE int advance(batch *w, recursion *r, int way)
    place will do by itself, and the plainer one is taken: the other may be next to nothing, however
    small the prism.  The sites that are summed over, since..until, hold 0 and 1, with n = 0 where
    need be. */
-static mask witness(batch *w, mask turn)
+static mask witness(batch *w, mask active)
 {
     point *const q = w->orbit;
     vec form[3] = { every(0.0), every(0.0), every(0.0) }, n[2] = { every(0.0), every(0.0) };
@@ -99,17 +99,17 @@ static mask witness(batch *w, mask turn)
         put_number(&first, k, w->first[k]);
         put_number(&last, k, w->last[k]);
     }
-    left = recursion_of(w, 1, turn, first, last);
-    right = recursion_of(w, -1, turn, last, first);
+    left = recursion_of(w, 1, active, first, last);
+    right = recursion_of(w, -1, active, last, first);
     while (advance(w, &left, 1) | advance(w, &right, -1))       /* side by side: that is faster */
         continue;
-    turn = left.fell;
-    if (!any(turn))
-        return turn;
+    active = left.fell;
+    if (!any(active))
+        return active;
     fall = left.fall;
     from = right.fall;
     to = last;
-    alone = turn & (~right.fell | TRUTH(from > fall));          /* two places apart */
+    alone = active & (~right.fell | TRUTH(from > fall));          /* two places apart */
     other = alone & right.fell & TRUTH(least_of(right.d) < least_of(left.d));
     alone &= ~other;
     if (any(alone)) {                   /* the left one */
@@ -130,7 +130,7 @@ static mask witness(batch *w, mask turn)
     until = choose(TRUTH(to > ORIGIN), to, ORIGIN + 1 - none());
 
     site = from;
-    for (int j = extreme(turn, from, -1); j <= extreme(turn, fall, 1); j++) {
+    for (int j = extreme(active, from, -1); j <= extreme(active, fall, 1); j++) {
         const uint64_t here = (uint64_t)j;
         const mask better = TRUTH(from <= here) & TRUTH(here <= fall) & TRUTH(q[j].least < value);
         value = pick(better, q[j].least, value);
@@ -139,26 +139,26 @@ static mask witness(batch *w, mask turn)
             form[k] = pick(better, q[j].left[k] + q[j].right[k] - q[j].beta[k], form[k]);
     }
     least_eigenvector(form, top);
-    w->from = choose(turn, first, w->from);
-    w->to = choose(turn, to, w->to);
-    w->since = choose(turn, since, w->since);
-    w->until = choose(turn, until, w->until);
-    const int start = extreme(turn, w->since, -1), end = extreme(turn, w->until, 1);
-    for (int j = extreme(turn, site, 1); j >= start; j--) {
+    w->from = choose(active, first, w->from);
+    w->to = choose(active, to, w->to);
+    w->since = choose(active, since, w->since);
+    w->until = choose(active, until, w->until);
+    const int start = extreme(active, w->since, -1), end = extreme(active, w->until, 1);
+    for (int j = extreme(active, site, 1); j >= start; j--) {
         const uint64_t here = (uint64_t)j;
         const mask in = TRUTH(here <= site) & TRUTH(here >= w->from);
         vec next[2];
         divide(next, n, q[j].left);
         for (int i = 0; i < 2; i++) {
             n[i] = pick(in, pick(TRUTH(here == site), top[i], next[i]), every(0.0));
-            q[j].n[i] = pick(turn, n[i], q[j].n[i]);
+            q[j].n[i] = pick(active, n[i], q[j].n[i]);
         }
     }
     for (int i = 0; i < 2; i++)
         n[i] = every(0.0);
-    for (int j = extreme(turn, site, -1); j <= end; j++) {
+    for (int j = extreme(active, site, -1); j <= end; j++) {
         const uint64_t here = (uint64_t)j;
-        const mask in = turn & TRUTH(here > site);
+        const mask in = active & TRUTH(here > site);
         vec next[2];
         divide(next, n, q[j].right);
         for (int i = 0; i < 2; i++) {
@@ -167,5 +167,5 @@ static mask witness(batch *w, mask turn)
             q[j].n[i] = pick(in, n[i], q[j].n[i]);
         }
     }
-    return turn;
+    return active;
 }

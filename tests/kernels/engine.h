@@ -4,7 +4,7 @@
 #include "hooks.h"
 
 /* What other prisms may have left there is not to matter: it is made as strange as can be. */
-static void soil(void *work, int s, int t)
+static void poison(void *work, int s, int t)
 {
     batch *const w = work;
 
@@ -13,15 +13,15 @@ static void soil(void *work, int s, int t)
             ((vec *)&w->orbit[j])[k] = every((k + (size_t)j) % 3 == 0 ? -0x1p300 : 1e3);
 }
 
-static int follow_root(void *work, const loewner *root, int s, int t)
+static int follow_root(void *work, const loewner *problem, int s, int t)
 {
     static const cv_cell whole = { { 0, 0, 0, 0, 0 }, { 0, 0, 0, 0, 0 }, 0 };
     batch *const w = work;
     loewner_cell c;
     int good = 1;
 
-    w->root = root;
-    loewner_prism(root, &whole, &c);
+    w->problem = problem;
+    loewner_prism(problem, &whole, &c);
     for (int k = 0; k < LANES; k++)
         set_lane(w, k, &c);
     begin(w);
@@ -41,13 +41,13 @@ static int bound_root(void *work, int signs, double *bound, double *l, double *r
 {
     enum { K = LANES - 1 };
     batch *const w = work;
-    const mask turn = witness(w, ~none());
+    const mask active = witness(w, ~none());
     const int from = number(&w->from, K), to = number(&w->to, K);
 
     *l = at(&w->l, K);
-    if (!holds(&turn, K) || to - from >= most)
+    if (!holds(&active, K) || to - from >= most)
         return 0;
-    bound_second_variation(w, turn, signs);
+    bound_second_variation(w, active, signs);
     *bound = at(&w->bound, K);
     *rounding = at(&w->rounding, K);
     *first = from - ORIGIN;
@@ -67,30 +67,30 @@ static void look_root(const void *work, int n, known_point *p)
 {
     const batch *const w = work;
     const point *const q = w->orbit + ORIGIN + n;
-    const int columns = w->root->columns, *const axis = w->root->axis;
+    const int columns = w->problem->columns, *const axis = w->problem->axis;
 
     memset(p, 0, sizeof *p);
     copy(p->x, q->x, 2);
     for (int i = 0; i < 2; i++)
         for (int k = 0, kl = 0; k < columns; k++) {
-            copy(&p->column[i][axis[k]], &q->column[i][k], 1);
+            copy(&p->lin[i][axis[k]], &q->lin[i][k], 1);
             for (int l = k; l < columns; l++)
-                copy(&p->bow[i][pair(COLUMNS, axis[k], axis[l])], &q->bow[i][kl++], 1);
+                copy(&p->quad[i][pair(COLUMNS, axis[k], axis[l])], &q->quad[i][kl++], 1);
         }
-    copy(p->rest, q->rest, 2);
-    copy(p->straight, q->straight, waves_of(w));
-    copy(p->bowed, q->bowed, waves_of(w));
-    copy(p->off, q->off, waves_of(w));
-    copy(p->reach, q->reach, waves_of(w));
-    copy(p->missed, q->missed, 2);
+    copy(p->rem, q->rem, 2);
+    copy(p->lin_bound, q->lin_bound, waves_of(w));
+    copy(p->quad_bound, q->quad_bound, waves_of(w));
+    copy(p->nonlin_bound, q->nonlin_bound, waves_of(w));
+    copy(p->rad, q->rad, waves_of(w));
+    copy(p->residual, q->residual, 2);
     copy(p->force, q->force, 2);
     copy(p->beta, q->beta, 3);
     copy(p->d, q->d, 3);
-    copy(&p->fuzz, &q->fuzz, 1);
+    copy(&p->err_beta, &q->err_beta, 1);
     copy(p->mu, q->mu, 2);
 }
 
 #define HOOKS_OF(engine) hooks_##engine
 #define HOOKS(engine) HOOKS_OF(engine)
-const hooks HOOKS(ENGINE) = { soil, follow_root, bound_root, look_root };
+const hooks HOOKS(ENGINE) = { poison, follow_root, bound_root, look_root };
 #endif

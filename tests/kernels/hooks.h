@@ -6,17 +6,17 @@
 
 /* What is known of a point.  The columns: x0's five, then x1's. */
 typedef struct {
-    double x[2], column[2][COLUMNS], bow[2][PAIRS], rest[2];
-    double straight[SLOTS], bowed[SLOTS], off[SLOTS], reach[SLOTS];
-    double missed[2], force[2], beta[3], d[3], fuzz, mu[2];
+    double x[2], lin[2][COLUMNS], quad[2][PAIRS], rem[2];
+    double lin_bound[SLOTS], quad_bound[SLOTS], nonlin_bound[SLOTS], rad[SLOTS];
+    double residual[2], force[2], beta[3], d[3], err_beta, mu[2];
 } known_point;
 
 typedef struct {
     /* Leaves there, about the points s to t, what no prism would. */
-    void (*soil)(void *work, int s, int t);
+    void (*poison)(void *work, int s, int t);
 
     /* Follows the root's prism from point s <= 0 to point t >= 0.  0: it cannot be done. */
-    int (*follow)(void *work, const loewner *root, int s, int t);
+    int (*follow)(void *work, const loewner *problem, int s, int t);
 
     /* The bound of the second variation that this orbit gives, with signs of cubic terms or as it
        is, the l it was made with, how much of it roundings are, and the vectors n from the first to

@@ -54,9 +54,10 @@ static int follow_to(loewner *w, double n) { return follow(w, fmin(n, 0.0), fmax
 static double *show(double *y, const known_point *p, int slots)
 {
     const struct { const double *from; int count; } parts[] = {
-        { p->x, 2 }, { p->column[0], 10 }, { p->bow[0], 30 }, { p->rest, 2 },
-        { p->straight, slots }, { p->bowed, slots }, { p->off, slots }, { p->reach, slots },
-        { p->missed, 2 }, { p->force, 2 }, { p->beta, 3 }, { p->d, 3 }, { &p->fuzz, 1 },
+        { p->x, 2 }, { p->lin[0], 10 }, { p->quad[0], 30 }, { p->rem, 2 },
+        { p->lin_bound, slots }, { p->quad_bound, slots }, { p->nonlin_bound, slots },
+        { p->rad, slots },
+        { p->residual, 2 }, { p->force, 2 }, { p->beta, 3 }, { p->d, 3 }, { &p->err_beta, 1 },
         { p->mu, 2 }
     };
 
@@ -67,7 +68,7 @@ static double *show(double *y, const known_point *p, int slots)
     return y;
 }
 
-/* Index and cuts of five axes -> centres and widths of v0, v1; p, h and loose of a, b, c; l; B at the
+/* Index and cuts of five axes -> centres and widths of v0, v1; p, h and err_amp of a, b, c; l; B at the
    corners of the parameters (together: at two), the lower end of a first. */
 static int k_cell(const request *r, double y[])
 {
@@ -85,7 +86,7 @@ static int k_cell(const request *r, double y[])
     for (int j = 0; j < 3; j++) {
         y[4 + j] = prism.p[j];
         y[7 + j] = prism.part[j][r->together ? 0 : j];
-        y[10 + j] = prism.loose[j];
+        y[10 + j] = prism.err_amp[j];
     }
     y[13] = prism.l;
     memcpy(y + 14, r->w->corner, sizeof r->w->corner);
@@ -115,7 +116,7 @@ static int k_step(const request *r, double y[])
     for (int j = 0; j < (int)repeat; j++)
         good = follow_to(r->w, n);
     look(r->w, n, &p);
-    memcpy(y, p.reach, 2 * sizeof *y);
+    memcpy(y, p.rad, 2 * sizeof *y);
     y[2] = 1e9 * (double)(clock() - begin) / CLOCKS_PER_SEC / fmax(repeat, 1.0) / fmax(fabs(n), 1.0)
            / loewner_lanes(r->w);
     y[3] = loewner_lanes(r->w);
@@ -141,7 +142,7 @@ static int bound_orbit(const request *r, int signs, double y[])
 static int k_bound(const request *r, double y[]) { return bound_orbit(r, r->more[2] != 0.0, y); }
 
 /* s, t -> of each point of that orbit, at most 13 (11 for any waves, with the reaches along the
-   coordinates and 4 waves), what k_orbit tells, and missed, force, beta, d, fuzz and mu. */
+   coordinates and 4 waves), what k_orbit tells, and missed, force, beta, d, err_beta and mu. */
 static int k_sites(const request *r, double y[])
 {
     double unused[5 + 2 * SITES] = { 0 }, *end = y;
@@ -249,7 +250,7 @@ static int run(const row *kernel, request *r, const patch *problem, const questi
     r->w = loewner_new(problem, kernel->bounds);
     if (r->w == NULL)
         return CV_ENOMEM;
-    hooks_of(r->w)->soil(r->w->work, -SITES, SITES);
+    hooks_of(r->w)->poison(r->w->work, -SITES, SITES);
     good = kernel->run(r, y);
     loewner_free(r->w);
     for (int j = 0; j < q->nout && good; j++)

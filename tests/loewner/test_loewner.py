@@ -330,15 +330,15 @@ def cell_margins(rng, cases):
     for _ in range(cases):
         centre, half, together, index, cuts = random_cell(rng)
         out = kernels.call("loewner_cell", [*centre, *half, 0, 0, together, *index, *cuts], 22, 20)
-        found, loose, l, corners = [*out[4:7], *out[:2]], out[10:13], out[13], out[14:]
-        wide = [*map(Fraction.__add__, out[7:10], loose), *out[2:4]]
-        slack = [*loose, *((abs(Fraction(float(c))) + Fraction(float(h))) / 2 ** 48
+        found, err_amp, l, corners = [*out[4:7], *out[:2]], out[10:13], out[13], out[14:]
+        wide = [*map(Fraction.__add__, out[7:10], err_amp), *out[2:4]]
+        slack = [*err_amp, *((abs(Fraction(float(c))) + Fraction(float(h))) / 2 ** 48
                            for c, h in zip(centre[3:], half[3:]))]
         part = [Fraction(1, 2 ** k) for k in cuts]
         at = [(2 * i + 1) * e - 1 for i, e in zip(index, part)]
         axes = (2, 2, 2, 0, 1) if together else (2, 3, 4, 0, 1)         # of a, b, c, v0, v1
         for c, h, k, x, w, e in zip(centre, half, axes, found, wide, slack):
-            yield "slack", abs(c + h * at[k] - x) + h * part[k] - (w - e), e
+            yield "err_v", abs(c + h * at[k] - x) + h * part[k] - (w - e), e
         ends = [((1 + at[k] - part[k]) / 2, (1 + at[k] + part[k]) / 2)
                 for k in axes[:1 if together else 3]]
         B = max(between(corners[:2 ** len(ends)], shares) for shares in itertools.product(*ends))
@@ -366,7 +366,7 @@ def star_margins(rng, cases):
 # ---- the margins along orbits: docs/proof.md says what each must cover
 
 def far_of(x):
-    """`far` of csrc/loewner/waves.h."""
+    """`err_angle` of csrc/loewner/waves.h."""
     return 3 * (abs(x[0]) + abs(x[1])) + 4
 
 
@@ -383,24 +383,25 @@ def sites(prism, s, t):
         bows = y[12:27], y[27:42]
         slip = [(0, 0), (0, 0), (4 * UNIT * (y[44] + y[45]), 4 * UNIT * (y[47] + y[48]))]
         result[j] = SimpleNamespace(
-            x=y[:2], column=[*rows, [p + q for p, q in zip(*rows)]], far=far_of(y),
-            bow=[*bows, [p + q for p, q in zip(*bows)]],
-            rest=[*y[42:44], y[42] + y[43] + sum(slip[2])], slip=slip,
-            straight=y[44:47], bowed=y[47:50], off=y[50:53], reach=y[53:56], missed=y[56:58],
-            force=y[58:60], rounded=y[60:63], d=y[63:66], fuzz=y[66], mu=y[67:69], sin=sin, cos=cos,
+            x=y[:2], lin=[*rows, [p + q for p, q in zip(*rows)]], err_angle=far_of(y),
+            quad=[*bows, [p + q for p, q in zip(*bows)]],
+            rem=[*y[42:44], y[42] + y[43] + sum(slip[2])], err_dot=slip,
+            lin_bound=y[44:47], quad_bound=y[47:50], nonlin_bound=y[50:53], rad=y[53:56],
+            residual=y[56:58], force=y[58:60], rounded=y[60:63], d=y[63:66], err_beta=y[66], mu=y[67:69],
+            sin=sin, cos=cos,
             beta=[2 - a * sin[0] - c * sin[2], -c * sin[2], 2 - b * sin[1] - c * sin[2]])
     return result
 
 
 def prism_of(prism):
-    """p, h and loose of the root's prism, their sum, and of which column each parameter is."""
+    """p, h and err_amp of the root's prism, their sum, and of which column each parameter is."""
     p, h = [*map(mp, prism[:3])], [*map(mp, prism[5:8])]
-    loose = [(abs(x) + y) / 2 ** 48 for x, y in zip(p, h)]
-    size = [abs(x) + y + z for x, y, z in zip(p, h, loose)]
-    return p, h, loose, size, (2, 2, 2) if prism[12] else (2, 3, 4)
+    err_amp = [(abs(x) + y) / 2 ** 48 for x, y in zip(p, h)]
+    size = [abs(x) + y + z for x, y, z in zip(p, h, err_amp)]
+    return p, h, err_amp, size, (2, 2, 2) if prism[12] else (2, 3, 4)
 
 
-def missed(p, q, o, following, i):
+def residual(p, q, o, following, i):
     """E of bound.c at the site q, coordinate i."""
     E = 2 * q.x[i] - o.x[i] - following.x[i] + p[i] * q.cos[i] + p[2] * q.cos[2]
     return abs(E - 2 * mpmath.pi * mpmath.nint(E / (2 * mpmath.pi)))
@@ -408,7 +409,7 @@ def missed(p, q, o, following, i):
 
 def step_margins(prism, q, o, following, is_first):
     """Of the step from q, which has o before it; and of force, which is to hold the others."""
-    p, h, loose, size, parameter = prism_of(prism)
+    p, h, err_amp, size, parameter = prism_of(prism)
     inverse, rounded = [0, 0, 0], 0
     if not is_first:
         det = o.d[0] * o.d[2] - o.d[1] ** 2
@@ -416,16 +417,16 @@ def step_margins(prism, q, o, following, is_first):
         condition = (o.d[0] * o.d[2] + o.d[1] ** 2) / det
         rounded = 8 * UNIT * (inverse[0] + inverse[2]) * (1 + condition)
         bracket = [x - y - z for x, y, z in zip(q.beta, inverse, q.d)]
-        yield "rounded", max(map(abs, bracket)), 2 * q.fuzz + rounded
-    off, unit = 2 ** 13 * UNIT * (1 + q.far), 16 * UNIT * (1 + q.far)
+        yield "rounded", max(map(abs, bracket)), 2 * q.err_beta + rounded
+    off, unit = 2 ** 13 * UNIT * (1 + q.err_angle), 16 * UNIT * (1 + q.err_angle)
     bent, source = [], []
     for k in range(3):
-        rho, a, b = q.reach[k], q.straight[k], q.off[k]
+        rho, a, b = q.rad[k], q.lin_bound[k], q.nonlin_bound[k]
         c, s = abs(q.cos[k]) + off * 3 / 4, abs(q.sin[k]) + off * 3 / 4
         bent.append(abs(p[k]) * (c * (b * (2 * a + b) / 2 + rho ** 4 / 24) + s * rho ** 3 / 6)
-                    + h[k] * (c * rho ** 2 / 2 + s * (b + rho ** 3 / 6)) + loose[k]
+                    + h[k] * (c * rho ** 2 / 2 + s * (b + rho ** 3 / 6)) + err_amp[k]
                     + size[k] * off * rho * (1 + rho))
-        row = q.column[k]
+        row = q.lin[k]
         source.append([-p[k] * q.cos[k] * row[m] * row[n] / (2 if m == n else 1)
                        - h[k] * q.sin[k] * ((n == parameter[k]) * row[m]
                                             + (m == parameter[k]) * row[n] * (m != n))
@@ -436,25 +437,26 @@ def step_margins(prism, q, o, following, is_first):
                     for x, y, z, w in zip(rows[0], rows[1], before[i], added)]
         moved = [h[i] * q.cos[i] * (k == parameter[i]) + h[2] * q.cos[2] * (k == parameter[2])
                  for k in range(5)]
-        true = carried(q.column, o.column, moved)
-        columns = sum(unit * (abs(p[k]) * q.straight[k] + h[k]) + abs(p[k]) * q.slip[k][0]
-                      for k in (i, 2)) + 8 * UNIT * (following.straight[i] + o.straight[i])
-        yield "columns", sum(abs(x - y) for x, y in zip(true, following.column[i])), columns
-        true = carried(q.bow, o.bow, [x + y for x, y in zip(source[i], source[2])])
-        yield "bow", sum(abs(x - y) for x, y in zip(true, following.bow[i])), \
-            sum(abs(p[k]) * (unit * q.bowed[k] + q.slip[k][1]) for k in (i, 2)) \
-            + 8 * UNIT * (following.bowed[i] + o.bowed[i]) \
-            + sum(size[k] * off * q.reach[k] * (1 + q.reach[k]) for k in (i, 2))
-        yield "missed", missed(p, q, o, following, i), q.missed[i]
-        force = q.missed[i] + bent[i] + bent[2] + (2 * q.fuzz + rounded) * (q.rest[0] + q.rest[1])
-        force += 8 * UNIT * (following.straight[i] + following.bowed[i] + o.reach[i])
-        force += sum(unit * (abs(p[k]) * (q.straight[k] + q.bowed[k]) + h[k])
-                     + abs(p[k]) * sum(q.slip[k]) for k in (i, 2))
-        force += o.rest[i] if is_first else \
+        true = carried(q.lin, o.lin, moved)
+        columns = sum(unit * (abs(p[k]) * q.lin_bound[k] + h[k]) + abs(p[k]) * q.err_dot[k][0]
+                      for k in (i, 2)) + 8 * UNIT * (following.lin_bound[i] + o.lin_bound[i])
+        yield "lin", sum(abs(x - y) for x, y in zip(true, following.lin[i])), columns
+        true = carried(q.quad, o.quad, [x + y for x, y in zip(source[i], source[2])])
+        yield "quad", sum(abs(x - y) for x, y in zip(true, following.quad[i])), \
+            sum(abs(p[k]) * (unit * q.quad_bound[k] + q.err_dot[k][1]) for k in (i, 2)) \
+            + 8 * UNIT * (following.quad_bound[i] + o.quad_bound[i]) \
+            + sum(size[k] * off * q.rad[k] * (1 + q.rad[k]) for k in (i, 2))
+        yield "residual", residual(p, q, o, following, i), q.residual[i]
+        force = q.residual[i] + bent[i] + bent[2]
+        force += (2 * q.err_beta + rounded) * (q.rem[0] + q.rem[1])
+        force += 8 * UNIT * (following.lin_bound[i] + following.quad_bound[i] + o.rad[i])
+        force += sum(unit * (abs(p[k]) * (q.lin_bound[k] + q.quad_bound[k]) + h[k])
+                     + abs(p[k]) * sum(q.err_dot[k]) for k in (i, 2))
+        force += o.rem[i] if is_first else \
             abs(inverse[i]) * o.force[0] + abs(inverse[i + 1]) * o.force[1]
         yield "force", force, q.force[i]
-        total = abs(q.d[i]) * q.rest[0] + abs(q.d[i + 1]) * q.rest[1] + q.force[i]
-        yield "widen", total - following.rest[i] / WIDEN, total * (WIDEN - 1)
+        total = abs(q.d[i]) * q.rem[0] + abs(q.d[i + 1]) * q.rem[1] + q.force[i]
+        yield "widen", total - following.rem[i] / WIDEN, total * (WIDEN - 1)
 
 
 def cube_top(terms):
@@ -478,7 +480,7 @@ def cube_top(terms):
 def bound_margins(prism, q, out, plain):
     """Of the bound of the second variation, and of its part `rounding`, which is to hold them; and
     of the bound without the signs of cubic terms."""
-    p, h, loose, size, parameter = prism_of(prism)
+    p, h, err_amp, size, parameter = prism_of(prism)
     bound, l, first, count, rounding = out[:5]
     first, last = int(first), int(first + count) - 1
     n = {first + k: (out[5 + 2 * k], out[6 + 2 * k]) for k in range(int(count))}
@@ -498,29 +500,29 @@ def bound_margins(prism, q, out, plain):
         omega = [n0 ** 2, n1 ** 2, (n0 + n1) ** 2]
         exact += 2 * (omega[0] + omega[1]) - 2 * (n0 * after[0] + n1 * after[1])
         mass += 2 * (omega[0] + omega[1] + abs(n0 * after[0]) + abs(n1 * after[1]))
-        far = max(far, q[j].far)
+        far = max(far, q[j].err_angle)
         weights = 4 * (omega[0] + omega[1]) + 2 * (abs(m[0]) + abs(m[1]))
         for k in range(3):
             A = m[k] * q[j].cos[k] - omega[k] * q[j].sin[k]
             B = -omega[k] * q[j].cos[k] - m[k] * q[j].sin[k]
-            pA, pB, e, c = p[k] * A, p[k] * B, parameter[k], q[j].column[k]
-            a, b, r, rho = q[j].straight[k], q[j].off[k], q[j].rest[k], q[j].reach[k]
+            pA, pB, e, c = p[k] * A, p[k] * B, parameter[k], q[j].lin[k]
+            a, b, r, rho = q[j].lin_bound[k], q[j].nonlin_bound[k], q[j].rem[k], q[j].rad[k]
             exact += abs(pA) * a * r + (pA * rho ** 4 / 24 if pA > 0 else -pA * b ** 2 / 2)
             exact += abs(pB) * (b * (3 * a * (a + b) + b * b) / 6 + rho ** 5 / 120)
             exact += h[k] * (abs(A) * (b * (2 * a + b) / 2 + rho ** 4 / 24)
-                             + abs(B) * (r + rho ** 3 / 6)) + loose[k] * (abs(A) + abs(B) * rho)
+                             + abs(B) * (r + rho ** 3 / 6)) + err_amp[k] * (abs(A) + abs(B) * rho)
             exact -= omega[k] * p[k] * q[j].sin[k]
             mass += omega[k] * abs(p[k]) + weights * (
-                size[k] * rho ** 2 + h[k] + loose[k]) * (1 + rho) ** 3
+                size[k] * rho ** 2 + h[k] + err_amp[k]) * (1 + rho) ** 3
             if not size[k]:
                 continue
-            bow = q[j].bowed[k]
+            bow = q[j].quad_bound[k]
             cubes += abs(pA) * a * bow + abs(pB) * a ** 3 / 6 \
                 + h[k] * (abs(B) * bow + abs(A) * a ** 2 / 2)
             add(h[k] * A, e)
             for i in range(5):
                 add(h[k] * B * c[i], e, i)
-            for (i, f), T in zip(PAIRS, q[j].bow[k]):
+            for (i, f), T in zip(PAIRS, q[j].quad[k]):
                 square = c[i] * c[f] / (2 if i == f else 1)             # of (c.e)^2/2
                 add(-pA * square, i, f)
                 add(h[k] * (B * T - A * square), e, i, f)
@@ -529,23 +531,23 @@ def bound_margins(prism, q, out, plain):
         for i in range(2):
             slope = -omega[i] * p[i] * q[j].cos[i] - omega[2] * p[2] * q[j].cos[2]
             slope += q[j].beta[i] * m[0] + q[j].beta[i + 1] * m[1] - mu[j - 1][i] - mu[j + 1][i]
-            left = 4 * q[j].fuzz * weights \
+            left = 4 * q[j].err_beta * weights \
                 + 8 * UNIT * (abs(mu[j - 1][i]) + abs(mu[j + 1][i]))
-            claimed += left * q[j].reach[i]
+            claimed += left * q[j].rad[i]
             if j == 1:
-                add(slope * q[j].column[i][i], i)
+                add(slope * q[j].lin[i][i], i)
             else:
-                exact += abs(slope) * q[j].reach[i]
+                exact += abs(slope) * q[j].rad[i]
             if j in (0, 1):
-                sums += left * q[j].reach[i]
-                mass += abs(slope) * q[j].reach[i]
+                sums += left * q[j].rad[i]
+                mass += abs(slope) * q[j].rad[i]
             else:
-                sums += abs(slope) * q[j].reach[i]
+                sums += abs(slope) * q[j].rad[i]
                 yield "left", abs(slope), left
             if since < j < until:
-                exact += abs(m[i]) * missed(p, q[j], q[j - 1], q[j + 1], i)
-                sums += abs(m[i]) * missed(p, q[j], q[j - 1], q[j + 1], i)
-                claimed += abs(m[i]) * q[j].missed[i]
+                exact += abs(m[i]) * residual(p, q[j], q[j - 1], q[j + 1], i)
+                sums += abs(m[i]) * residual(p, q[j], q[j - 1], q[j + 1], i)
+                claimed += abs(m[i]) * q[j].residual[i]
     squares = exact + cube_top({key: x for key, x in terms.items() if len(key) < 3})
     exact += cube_top(terms)
     mass *= 64 * UNIT * (until - since + 2) + 16 * UNIT * (1 + far)
@@ -586,12 +588,13 @@ def orbit_margins(rng, cases):
         except ArithmeticError:
             continue
         for j in q:
-            yield "fuzz", max(abs(x - y) for x, y in zip(q[j].beta, q[j].rounded)), q[j].fuzz
+            off = max(abs(x - y) for x, y in zip(q[j].beta, q[j].rounded))
+            yield "err_beta", off, q[j].err_beta
             for k in range(3):
-                for parts, reach in ((q[j].column[k], q[j].straight[k]),
-                                     (q[j].bow[k], q[j].bowed[k]),
-                                     ([q[j].bowed[k], q[j].rest[k]], q[j].off[k]),
-                                     ([q[j].straight[k], q[j].off[k]], q[j].reach[k])):
+                for parts, reach in ((q[j].lin[k], q[j].lin_bound[k]),
+                                     (q[j].quad[k], q[j].quad_bound[k]),
+                                     ([q[j].quad_bound[k], q[j].rem[k]], q[j].nonlin_bound[k]),
+                                     ([q[j].lin_bound[k], q[j].nonlin_bound[k]], q[j].rad[k])):
                     total = sum(map(abs, parts))
                     yield "widen", total - reach / WIDEN, total * (WIDEN - 1)
             ahead = 1 if j >= 1 else -1
@@ -620,7 +623,7 @@ def worst_margins(cases):
 
 def test_margins(root):
     """Of no margin more is needed than docs/proof.md proves, and of each some is."""
-    proved = dict(re.findall(r"^\| `([a-z ]+)` \|.*\| ([0-9.]+) \| [^|]* \|$",
+    proved = dict(re.findall(r"^\| `([a-z_ ]+)` \|.*\| ([0-9.]+) \| [^|]* \|$",
                              (root / "docs" / "proof.md").read_text("utf-8"), re.MULTILINE))
     worst = worst_margins(CASES // 200)
     assert worst.keys() == proved.keys()

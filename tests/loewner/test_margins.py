@@ -46,7 +46,7 @@ def table(root):
     text = (root / "docs" / "proof.md").read_text("utf-8")
     part = text[text.index("**What a machine has proved of this.**"):text.index("Why that much")]
     return {name: float(left) for name, left in
-            re.findall(r"^\| ([a-z0-9 *`]+?) \|.*\| ([0-9.]+) \|", part, re.MULTILINE)}
+            re.findall(r"^\| ([a-z0-9_ *`]+?) \|.*\| ([0-9.]+) \|", part, re.MULTILINE)}
 
 
 # ---- proved
@@ -62,34 +62,34 @@ def test_the_text_proves_its_margins(tools, read, table):
 
 WAVES = "loewner/waves.h"
 MUTATIONS = [                           # file, what stands there, what to put in its place, margin
-    (WAVES, "q->fuzz = 0x1p-49 *", "q->fuzz = 0x1p-54 *", "fuzz"),
-    (WAVES, "sizes * (1.0 + q->far)", "sizes", "fuzz"),
-    (WAVES, "(double)(waves_of(w) - FIRST + 1)", "0.0", "general fuzz"),
+    (WAVES, "q->err_beta = 0x1p-49 *", "q->err_beta = 0x1p-54 *", "err_beta"),
+    (WAVES, "sizes * (1.0 + q->err_angle)", "sizes", "err_beta"),
+    (WAVES, "(double)(waves_of(w) - FIRST + 1)", "0.0", "general err_beta"),
     (WAVES, "mag(q->x[1])) * 3.0;", "mag(q->x[1])) * 0.5;", "evaluate"),
     (WAVES, "mag(q->x[0]), mag(q->x[1])", "mag(q->x[0]), mag(q->x[0])", "evaluate"),
     (WAVES, "mag(q->x[1])) * 3.0;", "mag(q->x[1])) * 2.0;", "general evaluate"),
     (WAVES, "10.0 * fabs(phase)", "8.0 * fabs(phase)", "general evaluate"),
-    ("arith/sine.h", "SINE_ERROR 0x1p-51", "SINE_ERROR 0x1p-46", "fuzz"),
-    ("loewner/orbit.c", "q->missed[i] = 0x1p-50", "q->missed[i] = 0x1p-52", "missed"),
-    ("loewner/orbit.c", "mag(before) + mag(x)) + q->fuzz;", "mag(before) + mag(x));", "missed"),
-    ("loewner/orbit.c", "mag(o->x[i]) + mag(before)", "mag(before)", "missed"),
-    ("loewner/orbit.c", "0x1.921fb54442d18p+2", "0x1.921fb54442dp+2", "missed"),
-    (WAVES, "0x1p-51 * dot_abs_k", "0x1p-53 * dot_abs_k", "slip"),
-    (WAVES, "0x1p-51 * dot_abs_k", "0x1p-53 * dot_abs_k", "general slip"),
-    (WAVES, "unit = 0x1p-49 *", "unit = 0x1p-53 *", "carried"),
-    (WAVES, "unit = 0x1p-49 *", "unit = 0x1p-53 *", "general carried"),
-    (WAVES, "lost : lost + p * q->slip[wave];", "lost : lost;", "carried"),
-    (WAVES, "+ w->h[wave]);", ");", "carried"),
-    ("loewner/orbit.c", "const vec off = 0x1p-40", "const vec off = 0x1p-53", "bent"),
+    ("arith/sine.h", "SINE_ERROR 0x1p-51", "SINE_ERROR 0x1p-46", "err_beta"),
+    ("loewner/orbit.c", "q->residual[i] = 0x1p-50", "q->residual[i] = 0x1p-52", "residual"),
+    ("loewner/orbit.c", "                         + q->err_beta;\n", ";\n", "residual"),
+    ("loewner/orbit.c", "mag(o->x[i]) + mag(before)", "mag(before)", "residual"),
+    ("loewner/orbit.c", "0x1.921fb54442d18p+2", "0x1.921fb54442dp+2", "residual"),
+    (WAVES, "0x1p-51 * dot_abs_k", "0x1p-53 * dot_abs_k", "err_dot"),
+    (WAVES, "0x1p-51 * dot_abs_k", "0x1p-53 * dot_abs_k", "general err_dot"),
+    (WAVES, "unit = 0x1p-49 *", "unit = 0x1p-53 *", "propagated"),
+    (WAVES, "unit = 0x1p-49 *", "unit = 0x1p-53 *", "general propagated"),
+    (WAVES, "lost : lost + p * q->err_dot[wave];", "lost : lost;", "propagated"),
+    (WAVES, "+ w->h[wave]);", ");", "propagated"),
+    ("loewner/orbit.c", "const vec off = 0x1p-40", "const vec off = 0x1p-53", "sines"),
     ("loewner/orbit.c", "WIDEN = 1.0 + 0x1p-43", "WIDEN = 1.0 + 0x1p-49", "widen"),
     ("loewner/orbit.c", "+ q->force[i]) * WIDEN;", "+ q->force[i]);", "widen"),
-    ("loewner/orbit.c", "(q->straight[i] + q->off[i]) * WIDEN", "(q->straight[i] + q->off[i])",
-     "widen"),
-    ("loewner/bound.c", "left = 4.0 * q->fuzz", "left = 0x1p-5 * q->fuzz", "multipliers"),
+    ("loewner/orbit.c", "(q->lin_bound[i] + q->nonlin_bound[i]) * WIDEN",
+     "(q->lin_bound[i] + q->nonlin_bound[i])", "widen"),
+    ("loewner/bound.c", "left = 4.0 * q->err_beta", "left = 0x1p-5 * q->err_beta", "multipliers"),
     ("loewner/bound.c", "0x1p-50 * (mag(before) + mag(after))", "0x1p-50 * mag(after)",
      "multipliers"),
     ("loewner/problem.c", "sum + 0x1p-45 *", "sum + 0x1p-48 *", "general at_once"),
-    ("loewner/problem.c", "(1.0 + far) * mass < 0.0", "mass < 0.0", "general at_once"),
+    ("loewner/problem.c", "(1.0 + err_angle) * mass < 0.0", "mass < 0.0", "general at_once"),
     ("loewner/problem.c", "mass += size * w->square_k[i] * length;", "mass += size;",
      "general at_once"),
 ]
@@ -150,7 +150,7 @@ def frame_margins(rng, cases):
         q = not straightened(patch) and sites(patch, 0, 1)
         if not q:
             continue
-        (a, b), (c, d) = (row[:2] for row in q[1].column)
+        (a, b), (c, d) = (row[:2] for row in q[1].lin)
         f, det = patch.frame, a * d - b * c
         x = [mp(f[2 * i] * patch.centre[0] + f[2 * i + 1] * patch.centre[1]) - q[1].x[i]
              for i in range(2)]
@@ -171,17 +171,17 @@ def star_margins(rng, cases):
         if straightened(patch):
             q = sites(patch, 0, 1)
             along = 2 * mp(patch.xstar[0]) + mp(patch.xstar[1])         # or minus that
-            yield "`s*`", min(abs(along - q[0].x[0]), abs(along + q[0].x[0])), q[0].rest[0]
+            yield "`s*`", min(abs(along - q[0].x[0]), abs(along + q[0].x[0])), q[0].rem[0]
 
 
-def slip_margins(rng, cases):
+def err_dot_margins(rng, cases):
     """k.L as doubles make it."""
     for _ in range(10 * cases):
         k = [float(rng.randrange(-100, 101)) for _ in range(2)]
         L = [rng.uniform(-1, 1) for _ in range(2)]
         made = Fraction(k[0] * L[0] + k[1] * L[1])
         size = sum(abs(Fraction(i) * Fraction(x)) for i, x in zip(k, L))
-        yield "slip", abs(made - sum(Fraction(i) * Fraction(x) for i, x in zip(k, L))), \
+        yield "err_dot", abs(made - sum(Fraction(i) * Fraction(x) for i, x in zip(k, L))), \
             4 * UNIT * size
 
 
@@ -215,7 +215,7 @@ def left_margins(rng, cases):
             for i in range(2):
                 slope = b[i] * mu[j][0] + b[i + 1] * mu[j][1] - mu[j - 1][i] - mu[j + 1][i] \
                     - sum(w[i] * x for w, x in zip(patch.waves, pull))
-                yield "left", abs(slope), 4 * q[j].fuzz * weights + 8 * mp(UNIT) * (
+                yield "left", abs(slope), 4 * q[j].err_beta * weights + 8 * mp(UNIT) * (
                     abs(mu[j - 1][i]) + abs(mu[j + 1][i]))
 
 
@@ -245,7 +245,7 @@ def at_once_margins(rng, cases, tools, read):
             waves=len(waves), n_parameters=3, seen=[[1.0, 0.0], [0.0, 1.0]],
             k=[x.k for x in waves], phase=[x.phase for x in waves], amplitude=[x.p for x in waves],
             part=[x.parts for x in waves], square_k=[sum(map(abs, x.k)) ** 2 for x in waves],
-            loose=[2.0 ** -48 * (abs(x.p) + sum(map(abs, x.parts))) for x in waves])
+            err_amp=[2.0 ** -48 * (abs(x.p) + sum(map(abs, x.parts))) for x in waves])
         x = [rng.uniform(-4, 4) for _ in range(2)]
 
         def eigenvector(_, found, n=n):
@@ -262,20 +262,14 @@ def at_once_margins(rng, cases, tools, read):
             swings if at_end else map(abs, swings))
         true -= sum(mp(v[3]) * y for v, y in zip(patch.waves, pull))
         yield "at once", abs(mp(names["sum"]) - true), \
-            mp(2) ** -45 * (1 + mp(names["far"])) * mp(names["mass"])
-
-
-def general_margins(rng, cases):
-    """Those of test_waves.py, by the names of docs/proof.md."""
-    for name, need, there in margins(rng, cases):
-        yield {"columns": "carried"}.get(name, name), need, there
+            mp(2) ** -45 * (1 + mp(names["err_angle"])) * mp(names["mass"])
 
 
 def worst_margins(tools, read):
     """Of each margin of general waves the largest share that was needed."""
     worst = {}
-    for measure, *more in ((frame_margins,), (star_margins,), (slip_margins,), (left_margins,),
-                           (general_margins,), (at_once_margins, tools, read)):
+    for measure, *more in ((frame_margins,), (star_margins,), (err_dot_margins,), (left_margins,),
+                           (margins,), (at_once_margins, tools, read)):
         for name, need, there in measure(rng_for(measure.__name__), CASES, *more):
             if need > 0:
                 assert there > 0, name
@@ -287,8 +281,8 @@ def test_margins_of_general_waves(tools, read, root):
     """Of no margin more is needed than docs/proof.md proves, and of each some is."""
     text = (root / "docs" / "proof.md").read_text("utf-8")
     part = text[text.index("**General waves.**"):text.index("**What a machine has proved")]
-    left = dict(re.findall(r"^\| ([a-z]+|`s\*`) \|.*\| ([0-9.]+) \| [0-9]", part, re.MULTILINE))
-    left.update({"missed": 1.7, "at once": 3.6})        # of the first table
+    left = dict(re.findall(r"^\| ([a-z_]+|`s\*`) \|.*\| ([0-9.]+) \| [0-9]", part, re.MULTILINE))
+    left.update({"residual": 1.7, "at once": 3.6})        # of the first table
     worst = worst_margins(tools, read)
     for name, share in worst.items():
         print("%-10s left, seen: %.3g" % (name, 1 / share))

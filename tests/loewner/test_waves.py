@@ -121,9 +121,10 @@ def sites(patch, s, t):
         straight, bowed, off, reach = (y[44 + count * i:44 + count * (i + 1)] for i in range(4))
         rest = y[44 + 4 * count:]
         result[j] = SimpleNamespace(
-            x=y[:2], column=(y[2:7], y[7:12]), bow=(y[12:27], y[27:42]), rest=y[42:44],
-            straight=straight, bowed=bowed, off=off, reach=reach, missed=rest[:2], force=rest[2:4],
-            beta=rest[4:7], d=rest[7:10], fuzz=rest[10], mu=rest[11:])
+            x=y[:2], lin=(y[2:7], y[7:12]), quad=(y[12:27], y[27:42]), rem=y[42:44],
+            lin_bound=straight, quad_bound=bowed, nonlin_bound=off, rad=reach,
+            residual=rest[:2], force=rest[2:4],
+            beta=rest[4:7], d=rest[7:10], err_beta=rest[10], mu=rest[11:])
     return result
 
 
@@ -139,7 +140,7 @@ def modulo(x):
 
 def symbols(first, v):
     """Those of v0 and v1 for which the core's first point is v: its sides are a little longer."""
-    (a, b), (c, d) = (row[:2] for row in first.column)
+    (a, b), (c, d) = (row[:2] for row in first.lin)
     x, y = (mp(end) - centre for end, centre in zip(v, first.x))
     result = [(d * x - b * y) / (a * d - b * c), (a * y - c * x) / (a * d - b * c)]
     assert all(abs(s) <= 1 for s in result)
@@ -153,22 +154,22 @@ def test_orbits_stay_within_reach():
         patch = draw(rng)
         n = rng.choice([-1, 1]) * rng.randrange(1, 7)
         found = not straightened(patch) and sites(patch, min(n, 0), max(n, 1))
-        if not found or max(found[n].reach) > 3:
+        if not found or max(found[n].rad) > 3:
             continue
         q, (e, p, v) = found[n], inside(rng, patch)
         e = symbols(found[1], v) + [*map(mp, e[2:])]
         away = [modulo(y - near)
                 for y, near in zip(orbit(patch, p, v, min(n, 0), max(n, 1))[n], q.x)]
-        straight = [sum(c * s for c, s in zip(row, e)) for row in q.column]
-        bent = [sum(t * e[k] * e[l] for t, (k, l) in zip(row, PAIRS)) for row in q.bow]
+        straight = [sum(c * s for c, s in zip(row, e)) for row in q.lin]
+        bent = [sum(t * e[k] * e[l] for t, (k, l) in zip(row, PAIRS)) for row in q.quad]
         present = [w[:2] for w in patch.waves if any(w[3:])]
         for i, (k0, k1) in enumerate([(1, 0), (0, 1), *present]):
             D, L = k0 * away[0] + k1 * away[1], k0 * straight[0] + k1 * straight[1]
-            assert abs(D) <= q.reach[i] + 1e-35 and abs(D - L) <= q.off[i] + 1e-35, (patch, i)
+            assert abs(D) <= q.rad[i] + 1e-35 and abs(D - L) <= q.nonlin_bound[i] + 1e-35, i
             if i < 2:
                 followed += 1
-                assert abs(D - L - bent[i]) <= q.rest[i] + 1e-35, patch
-                tight += q.rest[i] <= 1e-10 or abs(D - L - bent[i]) > 0.01 * q.rest[i]
+                assert abs(D - L - bent[i]) <= q.rem[i] + 1e-35, patch
+                tight += q.rem[i] <= 1e-10 or abs(D - L - bent[i]) > 0.01 * q.rem[i]
         slanted += sum(any(w[4:]) for w in patch.waves) > 1 and patch.frame != FRAMES[0]
     assert followed > CASES // 2 and tight > 0.2 * followed and slanted > CASES // 20
 
@@ -204,7 +205,7 @@ def test_the_bound_holds():
 
 
 def far_of(patch, x):
-    """`far` of csrc/loewner/waves.h."""
+    """`err_angle` of csrc/loewner/waves.h."""
     worst = max((3 * (abs(k0 * x[0]) + abs(k1 * x[1])) + 10 * abs(mp(phase))
                  for k0, k1, phase, *p in patch.waves if any(p)), default=0)
     return worst + 1 + sum(any(w[3:]) for w in patch.waves)
@@ -225,41 +226,41 @@ def margins(rng, cases):
         p = [w[3] for w in patch.waves]
         for q, o, following in ((found[1], found[0], found[2]), (found[2], found[1], found[3]),
                                 (found[0], found[1], found[-1]), (found[-1], found[0], found[-2])):
-            if max(map(abs, q.x)) > 100 or following.rest == [0, 0]:
+            if max(map(abs, q.x)) > 100 or following.rem == [0, 0]:
                 continue
             far = far_of(patch, q.x)
             S = sum((abs(w[0]) + abs(w[1])) ** 2 * size_of(w) for w in waves)
             fuzz = 16 * mp(UNIT) * (1 + S) * (1 + far)
-            assert abs(q.fuzz - fuzz) < 1e-10 * fuzz
-            yield from (("fuzz", abs(x - y), fuzz) for x, y in zip(beta(patch, p, q.x), q.beta))
+            assert abs(q.err_beta - fuzz) < 1e-10 * fuzz
+            yield from (("err_beta", abs(x - y), fuzz) for x, y in zip(beta(patch, p, q.x), q.beta))
             y = angles(patch, q.x)
             for i in range(2):
                 force = sum(w[i] * mp(f) * mpmath.cos(z) for w, f, z in zip(patch.waves, p, y))
                 E = modulo(2 * q.x[i] - o.x[i] - following.x[i] + force)
-                yield "missed", abs(E), q.missed[i]
+                yield "residual", abs(E), q.residual[i]
             # columns and bow, against the margin of docs/proof.md
             lost, given = [mp(0), mp(0)], [mp(0), mp(0)]
             for m in range(5):
-                next_L = [2 * q.column[i][m] - o.column[i][m] for i in range(2)]
+                next_L = [2 * q.lin[i][m] - o.lin[i][m] for i in range(2)]
                 for w, f, z in zip(patch.waves, p, y):
-                    c = w[0] * q.column[0][m] + w[1] * q.column[1][m]
+                    c = w[0] * q.lin[0][m] + w[1] * q.lin[1][m]
                     push = -mp(f) * mpmath.sin(z) * c
                     if m > 1:
                         push += mp(w[2 + m]) * mpmath.cos(z)
                     next_L = [x + w[i] * push for i, x in enumerate(next_L)]
                 for i in range(2):
-                    lost[i] += abs(next_L[i] - following.column[i][m])
+                    lost[i] += abs(next_L[i] - following.lin[i][m])
             for i in range(2):
-                given[i] = 8 * mp(UNIT) * (sum(map(abs, following.column[i])) + o.reach[i])
+                given[i] = 8 * mp(UNIT) * (sum(map(abs, following.lin[i])) + o.rad[i])
                 for w in waves:
-                    a = sum(abs(w[0] * c0 + w[1] * c1) for c0, c1 in zip(*q.column))
-                    b = sum(abs(w[0] * c0 + w[1] * c1) for c0, c1 in zip(*q.bow))
-                    slip = 4 * mp(UNIT) * sum(abs(w[j]) * sum(map(abs, (*q.column[j], *q.bow[j])))
+                    a = sum(abs(w[0] * c0 + w[1] * c1) for c0, c1 in zip(*q.lin))
+                    b = sum(abs(w[0] * c0 + w[1] * c1) for c0, c1 in zip(*q.quad))
+                    slip = 4 * mp(UNIT) * sum(abs(w[j]) * sum(map(abs, (*q.lin[j], *q.quad[j])))
                                               for j in range(2))
                     given[i] += abs(w[i]) * (16 * mp(UNIT) * (1 + far) * (
                         abs(mp(w[3])) * (a + b) + sum(abs(mp(g)) for g in w[4:]))
                         + abs(mp(w[3])) * slip)
-                yield "columns", lost[i], given[i]
+                yield "lin", lost[i], given[i]
 
 
 def test_margins():
@@ -269,7 +270,7 @@ def test_margins():
         assert needed <= there, name
         if there:
             worst[name] = max(worst.get(name, 0), needed / there)
-    assert set(worst) == {"fuzz", "missed", "columns"}
+    assert set(worst) == {"err_beta", "residual", "lin"}
     assert all(x > mp(1) / 300 for x in worst.values()), worst
 
 
