@@ -86,8 +86,19 @@ def test_samples():
 
 @not_sanitized
 def test_a_fatal_mistake_is_caught(tmp_path):
-    """And the unchanged core survives, so that it is the mistake that is noticed."""
+    """And nothing fails with the unchanged core, so that it is the mistake that is noticed; a test
+    that fails anyhow says nothing."""
     base = TOOL["Base"](tmp_path)
-    assert base.tried(TOOL["UNCHANGED"]) == "survived"
+    bounding, = (ROOT / "tests").rglob("test_bounding.py")
+    assert TOOL["failure"](bounding, base.unchanged) is None
     fatal, = TOOL["places"](["arith/apm.c:apm_cmp drop 1"])
     assert base.tried(fatal).startswith("caught by test_apm.py, test_")
+    base.passed = dict.fromkeys(base.passed, False)
+    assert base.tried(fatal).startswith("no verdict: test_apm.py fails without it, too")
+
+
+def test_the_tests_that_are_named_exist():
+    names = {path.name for path in (ROOT / "tests").rglob("test_*.py")}
+    assert {name for tests in TOOL["TESTS"].values() for name in tests} <= names
+    assert all(any(name.startswith(prefix) for prefix in TOOL["TESTS"]) for name in TOOL["sources"]()
+               if TOOL["mutants"](name, TOOL["sources"]()[name].read_text("utf-8")))
