@@ -35,16 +35,18 @@ class Node:
     __slots__ = ("cell", "kind", "axis", "halves", "proof", "tried")
 
     def __init__(self, cell: Cell):
-        self.cell, self.kind, self.axis, self.halves = cell, OPEN, None, ()
+        self.cell, self.kind = cell, OPEN
+        self.axis: Optional[int] = None
+        self.halves: Tuple[Node, ...] = ()
         self.proof: Optional[Dict[str, Any]] = None
         self.tried = 0
 
-    def cut(self, axis):
+    def cut(self, axis: int) -> "Tuple[Node, ...]":
         self.axis = axis
         self.halves = tuple(map(Node, self.cell.halves(axis)))
         return self.halves
 
-    def decide(self, kind, proof):
+    def decide(self, kind: str, proof: Optional[Dict[str, Any]]) -> None:
         self.proof = proof
         self.kind = kind
 
@@ -85,7 +87,7 @@ class Map:
                    [{} for _ in faces])
 
     @property
-    def directions(self):
+    def directions(self) -> Tuple[Tuple[Tuple[int, ...], ...], ...]:
         """Of each face: d_0, d_1 (and d_2)."""
         return REGIONS[self.region]
 

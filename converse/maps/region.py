@@ -30,10 +30,10 @@ class Cell:
     high: Tuple[Fraction, ...]
 
     @property
-    def middle(self):
+    def middle(self) -> Tuple[Fraction, ...]:
         return tuple((low + high) / 2 for low, high in zip(self.low, self.high))
 
-    def halves(self, axis):
+    def halves(self, axis: int) -> "Tuple[Cell, Cell]":
         """The lower and the upper half across an axis."""
         middle = self.middle[axis]
         return (Cell(self.face, self.low, self.high[:axis] + (middle,) + self.high[axis + 1:]),

@@ -10,7 +10,7 @@ import threading
 from decimal import ROUND_CEILING, ROUND_FLOOR, Context, Decimal
 from fractions import Fraction
 from types import MappingProxyType
-from typing import Any, Callable, Dict, Mapping, Optional, Sequence, Tuple, Union
+from typing import Any, Callable, Dict, List, Mapping, Optional, Sequence, Tuple, Union
 
 import numpy as np
 
@@ -89,7 +89,8 @@ class Potential:
     scale: float                        # of a Fourier sum
     native: Any
 
-    def __init__(self, kind, name, n, start, formula, curvature=None, lipschitz=None):
+    def __init__(self, kind: int, name: str, n: int, start: Optional[Sequence[float]], formula: str,
+                 curvature: Optional[float] = None, lipschitz: Optional[float] = None):
         if n not in (1, 2):
             raise ValueError("a potential has one or two coordinates, not %r" % (n,))
         if not isinstance(name, str) or not name or not name.isprintable():
@@ -154,6 +155,7 @@ class Fourier(Potential):
     """
 
     sum: FourierSum
+    scale_enclosure: Callable[[int], Ends]
 
     def __init__(self, terms: Dict[Tuple[int, ...], tuple], name: str = "fourier",
                  start: Optional[Tuple[float, ...]] = None,
@@ -209,14 +211,15 @@ class Fourier(Potential):
         return MappingProxyType({k[:self.n]: (c[0], d[0]) for k, c, d in self.sum.terms(0)
                                  if c[0] == c[1]})
 
-    def coefficients(self, digits):
+    def coefficients(self, digits: int) -> List[Tuple[Tuple[int, ...], Ends, Ends]]:
         """[((k0, k1), ends of the cosine's factor, ends of the sine's)], scale and all, each to
         10^-digits."""
-        more = digits + 2 + len(str(math.ceil(max(map(abs, (*self.sum.amplitude, self.scale))))))
+        sizes: List[Any] = [*self.sum.amplitude, self.scale]
+        more = digits + 2 + len(str(math.ceil(max(map(abs, sizes)))))
         scale = self.scale_within(more)
         return [(k, product(c, scale), product(d, scale)) for k, c, d in self.sum.terms(more)]
 
-    def scale_within(self, digits):
+    def scale_within(self, digits: int) -> Ends:
         """What scale_enclosure says, if it is what it shall be, and no other scale than before."""
         try:
             low, high = map(Fraction, self.scale_enclosure(digits))

@@ -6,7 +6,7 @@ and is imported when it is called for, since matplotlib, or the checker, takes a
 import os
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING, Dict, List, Optional, Tuple, Union
+from typing import TYPE_CHECKING, Any, Dict, List, Optional, Tuple, Union
 
 from ..model.problem import Problem
 from ..version import __version__
@@ -118,7 +118,8 @@ class Proof:
         from .report import report
         return report(self)
 
-    def figure(self, target=None, *, ax=None, format: Optional[str] = None, caption: bool = True):
+    def figure(self, target: Any = None, *, ax: Any = None, format: Optional[str] = None,
+               caption: bool = True) -> Any:
         """Draws the prisms: see figure.figure."""
         from ..draw.figure import figure
         return figure(self, target, ax, format, caption)

@@ -1,10 +1,14 @@
 """The type hints: nothing in the package contradicts them, and who uses it under the strictest
 rules, as the examples of the pages do, sees none missing."""
 
+import inspect
 import re
 
 import pytest
 from conftest import not_sanitized
+
+import converse
+from converse import maps, orbits
 
 api = pytest.importorskip("mypy.api")
 pytestmark = not_sanitized
@@ -16,6 +20,30 @@ def checked(root, *arguments):
                            str(root / "build" / "mypy"), "--no-error-summary",
                            *map(str, arguments)])
     return out + err
+
+
+def functions(module):
+    """The functions and methods of a module's public names."""
+    for name in module.__all__:
+        thing = getattr(module, name)
+        for own, value in (vars(thing) if inspect.isclass(thing) else {name: thing}).items():
+            value = getattr(value, "fget", getattr(value, "__func__", value))
+            if inspect.isfunction(value) and (own[0] != "_" or own == "__init__"):
+                yield value
+
+
+@pytest.mark.parametrize("module", [converse, maps, orbits], ids=lambda module: module.__name__)
+def test_public_names_are_annotated(module):
+    """Every argument and every result."""
+    found = [f for f in functions(module) if f.__module__.startswith("converse.")]
+    assert len(found) > 5
+    for function in found:
+        signature = inspect.signature(function)
+        kinds = [each.annotation for name, each in signature.parameters.items()
+                 if name not in ("self", "cls")]
+        if function.__name__ != "__init__":
+            kinds.append(signature.return_annotation)
+        assert signature.empty not in kinds, function.__qualname__
 
 
 def test_the_package(root, monkeypatch):
