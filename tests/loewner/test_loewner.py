@@ -387,8 +387,8 @@ def sites(prism, s, t):
             quad=[*bows, [p + q for p, q in zip(*bows)]],
             rem=[*y[42:44], y[42] + y[43] + sum(slip[2])], err_dot=slip,
             lin_bound=y[44:47], quad_bound=y[47:50], nonlin_bound=y[50:53], rad=y[53:56],
-            residual=y[56:58], force=y[58:60], rounded=y[60:63], d=y[63:66], err_beta=y[66], mu=y[67:69],
-            sin=sin, cos=cos,
+            residual=y[56:58], force=y[58:60], rounded=y[60:63], d=y[63:66], err_beta=y[66],
+            mu=y[67:69], sin=sin, cos=cos,
             beta=[2 - a * sin[0] - c * sin[2], -c * sin[2], 2 - b * sin[1] - c * sin[2]])
     return result
 

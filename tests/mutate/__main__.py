@@ -6,8 +6,8 @@ notices.
 WHERE is a file (loewner/bound.c), a function of it (loewner/bound.c:weigh) or one mutant
 ("loewner/bound.c:weigh term 2"); without it, all files.  --sample tries N of the mutants there:
 each of a function, an operator and a place that the seed chooses.  All of them take days.  Prints
-what became of each; exit status 1 if one survived that accepted.py has no reason for, or if a test failed that fails
-without it, too.
+what became of each; exit status 1 if one survived that accepted.py has no reason for, or if a test
+failed that fails without it, too.
 """
 
 import argparse
@@ -206,7 +206,7 @@ class Base:
         return "survived"
 
     def passes(self, file, why):
-        """Does the test that failed, or all of a file that crashed, pass with the unchanged core?"""
+        """Does the test that failed, or all of a file that crashed, pass without a mutant?"""
         test = file if why in (CRASH, ENDLESS) else "%s::%s" % (file, why)
         with self.lock:
             if test not in self.passed:

@@ -296,8 +296,8 @@ def test_files_that_are_named_exist():
         names += re.findall(r"(?<![\w./])[\w/]*\w\.(?:[ch]|inc)\b(?! *\[)", text)
     for file in (ROOT / "csrc").rglob("*.*"):
         for comment in re.findall(r"/\*.*?\*/", file.read_text("utf-8"), re.DOTALL):
-            names += re.findall(r"(?<![\w<.>/])(?:[\w-]+/)*[a-z_]\w{2,}\.(?:[ch]|inc)\b(?!\w|\[|->)",
-                                comment)
+            names += re.findall(
+                r"(?<![\w<.>/])(?:[\w-]+/)*[a-z_]\w{2,}\.(?:[ch]|inc)\b(?!\w|\[|->)", comment)
     for file in (ROOT / "converse").rglob("*.py"):
         names += re.findall(r"csrc/[\w/]+\.(?:[ch]|inc)\b", file.read_text("utf-8"))
     missing = {name for name in names if not any(
