@@ -13,7 +13,8 @@ enum { CV_FOURIER, CV_POLY, CV_FF, CV_PYTHON };         /* kinds of potentials *
 
 typedef struct {
     int kind, n;
-    /* CV_FOURIER: V(x) = sum over t of cosine[t] cos(2 pi k.x) + sine[t] sin(2 pi k.x), k = k[2t], k[2t+1] */
+    /* CV_FOURIER: V(x) = sum over t of cosine[t] cos(2 pi k.x) + sine[t] sin(2 pi k.x), where k is
+       k[2t], k[2t+1] */
     int terms;
     const int *k;
     const double *cosine, *sine;
@@ -31,7 +32,8 @@ int cv_action(const cv_potential *v, long q, double eps, const double (*base)[2]
               const double (*u)[2], double *action, double (*gradient)[2]);
 
 /* u = (Hessian of the action + mu)^-1 b.  blocks: beta_j = 2 - eps V''(x_j).  Returns how many
-   eigenvalues of Hessian + mu are negative (then u is no descent), or an error.  b, u: NULL to count only. */
+   eigenvalues of Hessian + mu are negative (then u is no descent), or an error.  b, u: NULL to
+   count only. */
 long cv_solve(int n, long q, const double (*beta)[3], double mu, const double (*b)[2],
               double (*u)[2]);
 
@@ -43,17 +45,17 @@ typedef struct {
 } cv_relaxed;
 
 /* Damped Newton: lowers the action until the largest coordinate of its gradient is at most tol, or
-   100 tol where rounding hides what would lower it, and leaves saddles along their most negative direction.  CV_RUNNING: not there after max_steps
-   steps in all, or, if there were fewer, no step helps; u is the best state met.  All zero in *how
-   begins; what an earlier call left there goes on where it ended, so that long runs can be broken
-   into calls, and interrupted between them. */
+   100 tol where rounding hides what would lower it, and leaves saddles along their most negative
+   direction.  CV_RUNNING: not there after max_steps steps in all, or, if there were fewer, no step
+   helps; u is the best state met.  All zero in *how begins; what an earlier call left there goes on
+   where it ended, so that long runs can be broken into calls, and interrupted between them. */
 int cv_relax(const cv_potential *v, long q, double eps, const double (*base)[2], double (*u)[2],
              double tol, long max_steps, cv_relaxed *how);
 
 /* The pivots d_j = beta_j - 1/d_{j-1} from d_0 = beta_0, run round the orbit until they repeat to
-   relative 1e-13 or for max_rounds.  Returns the rounds it took, 0 if they did not settle; -r if one
-   in round r was not positive definite: then the orbit run through r + 1 times is no minimum, since
-   the pivots up to there are those of its Hessian with the other points held fixed. */
+   relative 1e-13 or for max_rounds.  Returns the rounds it took, 0 if they did not settle; -r if
+   one in round r was not positive definite: then the orbit run through r + 1 times is no minimum,
+   since the pivots up to there are those of its Hessian with the other points held fixed. */
 long cv_pivots(int n, long q, const double (*beta)[3], long max_rounds, double (*d)[3]);
 
 /* The logarithms, over q, of the moduli of the eigenvalues of d_{q-1} ... d_0, larger first. */

@@ -23,7 +23,8 @@
    rho >= |z| the rest is at most
 
        |p| (|A| (a |r| + (pA > 0 ? rho^4/24 : b^2/2)) + |B| (b (3a^2 + 3ab + b^2)/6 + rho^5/120))
-       + h (|A| (b (2a + b)/2 + rho^4/24) + |B| (|r| + rho^3/6)) + err_amp (|A| + |B| rho).     (5) */
+       + h (|A| (b (2a + b)/2 + rho^4/24) + |B| (|r| + rho^3/6))
+       + err_amp (|A| + |B| rho).                                                         (5) */
 #include "prism.h"
 
 /* The sites that are summed over in the lanes that are active. */

@@ -7,7 +7,7 @@
 #include "eigenvector.h"
 #include "prism.h"
 
-static const double PLAINLY = 0.75;      /* of l: where blocks must fall, as long as the orbit goes on */
+static const double PLAINLY = 0.75; /* of l: blocks must fall below it while the orbit goes on */
 
 static mask above(const vec d[3], vec l)
 {

@@ -21,8 +21,8 @@ static int by_distance(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/* No pair of the heap is narrower than the two below it, heap[2k + 1] and heap[2k + 2]; what was put
-   at k sinks to its place. */
+/* No pair of the heap is narrower than the two below it, heap[2k + 1] and heap[2k + 2]; what was
+   put at k sinks to its place. */
 static void sink(pair *heap, long count, long k)
 {
     for (long child; (child = 2 * k + 1) < count; k = child) {
@@ -50,7 +50,8 @@ long cv_pairs(int n, long q, const double (*x)[2], long count, long *i, long *j,
         return CV_ENOMEM;
     }
     for (long k = 0; k < q; k++)
-        sites[k] = (site){ { x[k][0] - floor(x[k][0]), n == 2 ? x[k][1] - floor(x[k][1]) : 0.0 }, k };
+        sites[k] = (site){ { x[k][0] - floor(x[k][0]),
+                             n == 2 ? x[k][1] - floor(x[k][1]) : 0.0 }, k };
     qsort(sites, (size_t)q, sizeof *sites, by_x0);
     for (long a = 0; a < q && count > 0; a++)
         for (long step = 1; step < q; step++) {

@@ -26,7 +26,7 @@ typedef struct {
     point *u, *gradient;
     block *beta;
     double action, largest, mean_square;
-    double noise, doubt;            /* of the rounding of actions; and where V, not its slope, cancels */
+    double noise, doubt;    /* of the rounding of actions; and where V, not its slope, cancels */
 } place;
 
 /* Action, gradient and, unless it is NULL, the Hessian's blocks at at->u. */
@@ -56,7 +56,7 @@ static int look(const action_of *of, place *at)
             slopes += fabs(of->eps * at->gradient[j][i]);
             at->gradient[j][i] = g;
         }
-        total = sum + term;             /* and what its rounding loses, which adds up over long orbits */
+        total = sum + term;     /* and what its rounding loses, which adds up over long orbits */
         lost += (sum - (total - (total - sum))) + (term - (total - sum));
         sum = total;
         size += fabs(of->eps * of->value[j]);
@@ -75,7 +75,8 @@ int cv_action(const cv_potential *v, long q, double eps, const double (*base)[2]
               const double (*u)[2], double *action, double (*gradient)[2])
 {
     const size_t size = (size_t)q;
-    action_of of = { v, q, eps, base, malloc(size * sizeof *of.x), malloc(size * sizeof *of.value) };
+    action_of of = { v, q, eps, base,
+                     malloc(size * sizeof *of.x), malloc(size * sizeof *of.value) };
     place at = { malloc(size * sizeof *at.u), gradient, NULL, 0.0, 0.0, 0.0, 0.0, 0.0 };
     int status = CV_ENOMEM;
 
@@ -107,8 +108,8 @@ static double widest(long q, const point *v)
     return most;
 }
 
-/* The eigenvector of the least eigenvalue, which is below -FLAT: inverse iteration with a shift that
-   the counts of negative eigenvalues bring within a twentieth of it. */
+/* The eigenvector of the least eigenvalue, which is below -FLAT: inverse iteration with a shift
+   that the counts of negative eigenvalues bring within a twentieth of it. */
 static long downhill(int n, long q, const block *beta, point *v)
 {
     double low = FLAT, high = 1.0, most;
@@ -149,9 +150,9 @@ static void swap(place *a, place *b)
     *b = c;
 }
 
-/* Does b lie lower than a?  Along soft directions the action changes by less than rounding; then b is
-   as good if its gradient is smaller, or, while the state may walk, if the mean of both gradients
-   points from a to b and that of b is not much larger. */
+/* Does b lie lower than a?  Along soft directions the action changes by less than rounding; then b
+   is as good if its gradient is smaller, or, while the state may walk, if the mean of both
+   gradients points from a to b and that of b is not much larger. */
 static int lower(long q, const place *b, const place *a, int may_walk)
 {
     const double difference = b->action - a->action;

@@ -1,9 +1,9 @@
 /* loewner.c - the routines of csrc/loewner.  All take doubles only.
 
-   Those of the thesis's waves begin with BOX numbers: centres and half-widths of a, b, c, v0, v1 (as
-   set_patch says), x* and together (0 or 1).  Those of any waves begin with the numbers of waves, at
-   most 4, and of parameters; seven numbers of each wave, k0, k1, phase in radians, amplitude and three
-   parts; centre and half-width of v0 and of v1, the frame and x*. */
+   Those of the thesis's waves begin with BOX numbers: centres and half-widths of a, b, c, v0, v1
+   (as set_patch says), x* and together (0 or 1).  Those of any waves begin with the numbers of
+   waves, at most 4, and of parameters; seven numbers of each wave, k0, k1, phase in radians,
+   amplitude and three parts; centre and half-width of v0 and of v1, the frame and x*. */
 #include <math.h>
 #include <string.h>
 #include <time.h>
@@ -68,8 +68,8 @@ static double *show(double *y, const known_point *p, int slots)
     return y;
 }
 
-/* Index and cuts of five axes -> centres and widths of v0, v1; p, h and err_amp of a, b, c; l; B at the
-   corners of the parameters (together: at two), the lower end of a first. */
+/* Index and cuts of five axes -> centres and widths of v0, v1; p, h and err_amp of a, b, c; l; B
+   at the corners of the parameters (together: at two), the lower end of a first. */
 static int k_cell(const request *r, double y[])
 {
     cv_cell cell = { { 0, 0, 0, 0, 0 }, { 0, 0, 0, 0, 0 }, 0 };
@@ -93,8 +93,8 @@ static int k_cell(const request *r, double y[])
     return good;
 }
 
-/* n -> 2 coordinates, 2 rows of 5 columns, 2 bows of 15, 2 rests of point n, and for 3 waves the reach
-   of columns, bows, all but the columns, and all. */
+/* n -> 2 coordinates, 2 rows of 5 columns, 2 bows of 15, 2 rests of point n, and for 3 waves the
+   reach of columns, bows, all but the columns, and all. */
 static int k_orbit(const request *r, double y[])
 {
     known_point p;
@@ -105,7 +105,8 @@ static int k_orbit(const request *r, double y[])
     return good;
 }
 
-/* n, repeat -> the reaches of both coordinates of point n, ns per step and prism, prisms at once. */
+/* n, repeat -> the reaches of both coordinates of point n, ns per step and prism, prisms at
+   once. */
 static int k_step(const request *r, double y[])
 {
     const double n = r->more[0], repeat = r->more[1];
@@ -123,8 +124,8 @@ static int k_step(const request *r, double y[])
     return good;
 }
 
-/* For the orbit of s..t: bound, l, index of the first site, number of sites (0: no witness), how much
-   of the bound roundings are, the vectors n. */
+/* For the orbit of s..t: bound, l, index of the first site, number of sites (0: no witness), how
+   much of the bound roundings are, the vectors n. */
 static int bound_orbit(const request *r, int signs, double y[])
 {
     double n[SITES][2] = { { 0.0, 0.0 } };
@@ -164,8 +165,8 @@ static int k_largest(const request *r, double y[])      /* B */
     return 1;
 }
 
-/* any: of any waves; bounds: with those over the torus; first, others: what the absolute value of the
-   first of the further numbers, and of the others, must be below. */
+/* any: of any waves; bounds: with those over the torus; first, others: what the absolute value of
+   the first of the further numbers, and of the others, must be below. */
 typedef struct {
     const char *name;
     int more, nout, any, bounds;

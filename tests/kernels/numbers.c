@@ -150,8 +150,8 @@ static int sines_ns(long dp, apm_t in[], apm_t out[])   /* x, n -> nanoseconds o
                 : 1e9 * (double)(clock() - begin) / CLOCKS_PER_SEC / fmax(repeat, 1.0)));
 }
 
-/* The thesis's waves with the ranges lo <= hi of a, b, c with which `torus` and `cell` begin.  0: one
-   is none. */
+/* The thesis's waves with the ranges lo <= hi of a, b, c with which `torus` and `cell` begin.  0:
+   one is no range. */
 static int parameter_ranges(apm_t in[], torus_wave waves[3])
 {
     for (int j = 0; j < 3; j++) {
@@ -179,7 +179,8 @@ static int torus(long dp, apm_t in[], apm_t out[])
     return code_of(status);
 }
 
-/* Ranges, centre and half-widths of a rectangle -> the same over it, of beta at its mirror image. */
+/* Ranges, centre and half-widths of a rectangle -> the same over it, of beta at its mirror
+   image. */
 static int cell(long dp, apm_t in[], apm_t out[])
 {
     torus_wave waves[3];
@@ -188,7 +189,8 @@ static int cell(long dp, apm_t in[], apm_t out[])
 
     (void)dp;
     for (int j = 0; j < 2; j++) {
-        const interval centre = { apm_bound_d(in[6 + j], APM_DOWN), apm_bound_d(in[6 + j], APM_UP) };
+        const interval centre = { apm_bound_d(in[6 + j], APM_DOWN),
+                                  apm_bound_d(in[6 + j], APM_UP) };
         const double half = apm_bound_d(in[8 + j], APM_UP);
         low[j] = just_below(centre.low - half);
         high[j] = just_above(centre.high + half);

@@ -1,5 +1,5 @@
-/* thesis.h - the routines of an instance of the thesis's algorithms (csrc/thesis); included after it,
-   in its translation unit, since most of them are static. */
+/* thesis.h - the routines of an instance of the thesis's algorithms (csrc/thesis); included after
+   it, in its translation unit, since most of them are static. */
 #include <time.h>
 
 #include "console.h"
@@ -56,7 +56,8 @@ static void put_square(state *s, apm_t out[], num_t matrix[TWO_DF][TWO_DF])
         put(s, out[j], matrix[j / TWO_DF][j % TWO_DF]);
 }
 
-/* ---- the routines: CV_OK or an error; those that take a prism find it in work[0], and its bounds */
+/* ---- the routines: CV_OK or an error; those that take a prism find it in work[0], and its
+   bounds */
 
 typedef int routine(state *s, apm_t in[], apm_t out[]);
 
@@ -71,7 +72,7 @@ static int k_sincos(state *s, apm_t in[], apm_t out[])          /* x -> sin, cos
     return CV_OK;
 }
 
-static int k_bound_sincos(state *s, apm_t in[], apm_t out[])    /* lo, hi -> sin lo, hi, cos lo, hi */
+static int k_bound_sincos(state *s, apm_t in[], apm_t out[])  /* lo, hi -> sin lo, hi, cos lo, hi */
 {
     numbers *const n = &s->n;
 
@@ -136,7 +137,7 @@ static int k_btrace(state *s, apm_t in[], apm_t out[])          /* prism -> lo, 
     return CV_OK;
 }
 
-static int k_Blams(state *s, apm_t in[], apm_t out[])           /* prism -> least lo, hi, largest lo, hi */
+static int k_Blams(state *s, apm_t in[], apm_t out[])   /* prism -> least lo, hi, largest lo, hi */
 {
     numbers *const n = &s->n;
 
@@ -147,7 +148,8 @@ static int k_Blams(state *s, apm_t in[], apm_t out[])           /* prism -> leas
     return CV_OK;
 }
 
-/* Prism, Tr d, lam d, lam_-min -> the first two of the next block.  The block d is positive definite. */
+/* Prism, Tr d, lam d, lam_-min -> the first two of the next block.  The block d is positive
+   definite. */
 static int k_least_lambda(state *s, apm_t in[], apm_t out[])
 {
     numbers *const n = &s->n;
@@ -200,8 +202,8 @@ static int k_square(state *s, apm_t in[], apm_t out[])          /* lo, hi -> lo,
     return CV_OK;
 }
 
-/* Centres and half-widths of a, b, c, x* -> what a search begins with: the constants of the theorem,
-   Tr d and lam d of d_0. */
+/* Centres and half-widths of a, b, c, x* -> what a search begins with: the constants of the
+   theorem, Tr d and lam d of d_0. */
 static int k_constants(state *s, apm_t in[], apm_t out[])
 {
     double abc[N_PARMS], herman_start[2];
