@@ -4,7 +4,7 @@ import contextlib
 import fcntl
 import os
 
-from .signals import Resource
+from .signals import Resource, postponed
 
 
 class ConverseError(RuntimeError):
@@ -103,7 +103,15 @@ def check_output(path, what, endings, others=()):
 
 def write(path, data):
     """Writes bytes to a file, all or none: to a new file beside it, which then takes its name.
-    ConverseError: it cannot be written; the older file is as it was."""
+    ConverseError: it cannot be written; the older file is as it was.
+
+    A signal waits meanwhile: if KeyboardInterrupt struck inside file.write on a full disk, the
+    OSError of the close() that follows would take its place, and nobody would stop."""
+    with postponed():
+        _write(path, data)
+
+
+def _write(path, data):
     name = None
     try:
         if os.path.exists(path) and not os.path.isfile(path):       # a device or a pipe

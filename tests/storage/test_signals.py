@@ -1,5 +1,7 @@
 """A signal at any moment at which Python looks for one, as its profiling lets a test choose."""
 
+import errno
+import io
 import os
 import random
 import signal
@@ -113,3 +115,23 @@ def test_a_proof_is_left_as_it_is_whenever_a_signal_comes(root, tmp_path, monkey
         if path.exists():
             half = Proof.load(path)
             assert prove(resume=half, jobs=1).tree == whole
+
+
+def test_ctrl_c_while_a_full_disk_is_written(tmp_path, monkeypatch):
+    """The failure to close the file does not take the interrupt's place."""
+    class Full(io.BytesIO):
+        def write(self, data):
+            signal.raise_signal(signal.SIGINT)
+            return len(data)
+
+        def close(self):
+            raise OSError(errno.ENOSPC, "no space is left")
+
+    def opened(handle, _):
+        os.close(handle)
+        return Full()
+
+    monkeypatch.setattr(files, "open", opened, raising=False)
+    with pytest.raises(KeyboardInterrupt), interruptible():
+        files.write(tmp_path / "file", b"text")
+    assert list(tmp_path.iterdir()) == []
