@@ -1,0 +1,385 @@
+"""The exact path of the checker, function by function and in so few bits that roundings count: its
+bounds are bounds, and not without any one of their terms."""
+
+import inspect
+import itertools
+import math
+import random
+import types
+
+import pytest
+
+from converse.check import exact
+
+E = [*itertools.product((-1, 1), repeat=2), (0.6, -0.3)]   # where symbols are tried
+
+
+def with_change(old="", new=""):
+    """The names of the module, with a change to its text."""
+    source = inspect.getsource(exact)
+    assert not old or source.count(old) == 1
+    names = {"__name__": exact.__name__, "__package__": exact.__package__}
+    exec(source.replace(old, new) if old else source, names)
+    return names
+
+
+def whole(draw, size, kinds=(-1, -1, 0, 1)):
+    """An integer up to this size, often one of its ends or 0."""
+    return draw.choice((*[kind * size for kind in kinds], draw.randint(-size, size)))
+
+
+def quotient(true, bound):
+    """true / bound, if not below it by no more than what the test's own doubles are off."""
+    return max(true - 1e-3, 0) / bound if bound else (2 if true > 1e-3 else 0)
+
+
+def worst_step(names, draw, count):
+    """Lane.advance: how far orbits are from centres and columns, by the bound; sines and cosines
+    are whatever is drawn, amplitudes anything within their errors."""
+    worst = 0
+    for _ in range(count):
+        bits, known = draw.choice((6, 8, 30)), draw.choice((2, 2, 12))
+        one, angles, waves, unsure = 1 << bits, {}, [], []
+        for k0, k1 in draw.sample(((1, 0), (0, 1), (1, 1), (1, -1), (2, 1)),
+                                  draw.choice((1, 1, 2))):
+            P, h = whole(draw, draw.choice((one, one // 4, 64 * one))), draw.choice((one, one // 4))
+            parts = [(i, whole(draw, h)) for i in range(draw.choice((0, 0, 1, known - 1)))]
+            exactly = not any(p % one for p in (P, *[part for _, part in parts]))
+            rounded = 0 if exactly else 1 + len(parts)          # products with sines
+            unsure.append(draw.choice((0, 0, 5, one // 64)))
+            waves.append(names["PrismWave"](k0, k1, 0, P, parts, rounded + unsure[-1]))
+        size = one // draw.choice((3, 5, 9, 99)) * 2 // known
+        columns = [[whole(draw, size) for _ in range(known)] for _ in "01"]
+        error = [draw.choice((0, 1, size // 4)) for _ in "01"]
+        if draw.random() < 0.3:
+            columns, error = [[0] * known] * 2, [size, size // 2]
+
+        def sincos(x):
+            return angles.setdefault(x, (whole(draw, one), whole(draw, one)))
+
+        fixed = types.SimpleNamespace(bits=bits, one=one, sincos=sincos)
+        centre = [draw.randint(-one, one) for _ in "0123"]
+        prism = names["Prism"](fixed, waves, centre[:2], (centre[2:], columns, error), known)
+        lane, steps = prism.lanes[0], []
+        while len(steps) < 4:
+            before, r = (lane.x0, lane.x), lane.r
+            if not lane.advance():
+                break
+            steps.append((*before, lane.x, lane.L, lane.r))
+            for (k0, k1, *_), wave in zip(waves, lane.sites[-1].waves):
+                most = (abs(k0 + k1) * r[0] + abs(k0 - k1) * r[1]) / 2 if prism.rotated \
+                    else abs(k0) * r[0] + abs(k1) * r[1]
+                worst = max(worst, quotient(most, wave.rest))
+        for _ in range(16 if steps else 0):
+            old = [draw.choice((-1, 1)) for _ in "01"]
+            e = draw.choice(([1] * known, [-1] * known,
+                             [draw.choice((-1, 1)) for _ in range(known)]))
+            new = [sum(a * x for a, x in zip(row, e)) + draw.choice((-1, 1)) * rest
+                   for row, rest in zip(columns, error)]
+            for X0, X, X1, L, r in steps:
+                after = [2 * (a + u) - b - v - w for a, b, u, v, w in zip(new, old, X, X0, X1)]
+                for (k0, k1, _, P, parts, _), off in zip(waves, unsure):
+                    s, c = angles[k0 * X[0] + k1 * X[1]]
+                    p = P + sum(part * e[i] for i, part in parts)
+                    z = (k0 * new[0] + k1 * new[1]) / one
+                    force = (p * c * math.cos(z) - p * s * math.sin(z)) / one \
+                        + draw.choice((-1, 1)) * off * (abs(math.cos(z)) + abs(math.sin(z)))
+                    after = [after[0] + k0 * force, after[1] + k1 * force]
+                old, new = new, after
+                gap = [x - sum(a * y for a, y in zip(row, e)) for x, row in zip(new, L)]
+                if prism.rotated:
+                    gap = [gap[0] + gap[1], gap[0] - gap[1]]
+                worst = max(worst, *[quotient(abs(x), rest) for x, rest in zip(gap, r)])
+        if worst > 1:
+            break
+    return worst
+
+
+def worst_errors(names, draw, count):
+    """Lane.bound_errors, from any matrices: step (C5)."""
+    worst = 0
+    for _ in range(count):
+        bits = draw.choice((4, 6, 30))
+        unit = 2 << bits                                    # of matrices
+        fixed = types.SimpleNamespace(bits=bits)
+        lane = names["Lane"](types.SimpleNamespace(fixed=fixed, rotated=False, waves=[]),
+                             *[((0, 0), ((), ()), (0, 0))] * 2)
+        before = [draw.choice((1, 1, 1 / 9, 40)) * draw.uniform(-2, 2) for _ in "012"]
+        lane.d = before = [round(x * unit) for x in before]
+        beta = [whole(draw, 3 * unit) for _ in "012"]
+        most, error = 1 << draw.choice((2, 5)), [draw.randint(0, 9) for _ in "01"]
+        lane.r0, lane.f = [[draw.choice((0, draw.randint(0, most))) for _ in "01"] for _ in "01"]
+        r0, f = lane.r0, lane.f
+        lane.r = [math.ceil((abs(x) * r0[0] + abs(y) * r0[1]) / unit) + z
+                  for x, y, z in zip(before[:2], before[1:], f)]
+        known = lane.r
+        if draw.random() < 0.2:                             # the first of the lane: f is -x[0]
+            lane.d, before, f[:] = None, [0, 0, 0], known
+        if not lane.bound_errors(*beta, *error):
+            continue
+        if lane.r0 != known:
+            return math.inf
+        for signs in itertools.product((-1, 1), repeat=6):
+            x0, step, g = [[sign * x for sign, x in zip(signs[i:], pair)]
+                           for i, pair in ((0, r0), (2, error), (4, f))]
+            x = [y / unit + z for y, z in zip(exact.matrix_times(before, x0), g)]
+            new = [y / unit - u + z for y, u, z in zip(exact.matrix_times(beta, x), x0, step)]
+            left = [y - z / unit for y, z in zip(new, exact.matrix_times(lane.d, x))]
+            worst = max(worst, *[quotient(abs(y), most)
+                                 for y, most in zip(new + left, [*lane.r, *lane.f])])
+        if worst > 1:
+            break
+    return worst
+
+
+def some_sums(names, draw, down=0):
+    """A sum with nothing in it, of few bits, and the bits of what is added to it."""
+    names["UNIT_BITS"] = U = draw.choice((6, 8, 24))
+    fixed, l = types.SimpleNamespace(bits=U + down), draw.randint(1, 1 << U + down)
+    prism = types.SimpleNamespace(fixed=fixed, symbols=2, waves=[], lanes=[])
+    return names["SecondVariation"](prism, l), U, l / (1 << down)
+
+
+def at(form, e):
+    return sum(x * math.prod([e[k] for k in key]) for key, x in form.items())
+
+
+def worst_wave(names, draw, count):
+    """add_wave: what a wave adds to the left side of (C3), by the polynomial and its error."""
+    worst = 0
+    for _ in range(count):
+        down = draw.choice((0, 4))
+        sums, U, _ = some_sums(names, draw, down)
+        one, unit, large = 1 << U + down, 1 << U, draw.choice((1, 64)) << U
+        alone = draw.choice(("all", "P", "h"))
+        most = draw.choice((1, 1, 1 << 10)) * one
+        cosine, sine = [whole(draw, most) * (alone != "h") for _ in "01"]
+        parts = [(0, whole(draw, most), whole(draw, most))] if alone != "P" else []
+        limit = one // draw.choice((4, 8, 64))
+        columns = [whole(draw, limit, (1, 0, -1)) for _ in "01"]
+        rest, error = draw.choice((0, 1, limit)), draw.choice((0, (1 << down) - 1, one // 16))
+        omega = draw.choice((0, abs(whole(draw, large))))
+        m = [whole(draw, large), *[draw.choice((0, whole(draw, large // 2))) for _ in "01"]]
+        if draw.random() < 0.3:
+            m[1:] = [0, 0]
+        elif draw.random() < 0.3:
+            m[0] = omega = 0
+        wave = names["SiteWave"](cosine, sine, parts, columns, None, rest, error)
+        slopes = sums.add_wave(wave, omega, m)
+        form, bound = sums.form(), sums.error / 120
+        for e in E:
+            mu = m[0] + m[1] * e[0] + m[2] * e[1]
+            for w in (rest, -rest):
+                z = (columns[0] * e[0] + columns[1] * e[1] + w) / one
+                c, s = math.cos(z), math.sin(z)
+                of_cosine, of_sine = mu * c - omega * s, -mu * s - omega * c
+                true = (cosine + sum(x * e[i] for i, x, _ in parts)) * of_cosine \
+                    + (sine + sum(x * e[i] for i, _, x in parts)) * of_sine - cosine * mu
+                true += error * (abs(of_cosine) + abs(of_sine))
+                true = true * (unit / one) - sums.value - at(form, e) / (6 << 2 * U) \
+                    - (slopes[0] + slopes[1] * e[0] + slopes[2] * e[1]) * z * unit
+                worst = max(worst, quotient(true, bound))
+        if worst > 1:
+            break
+    return worst
+
+
+def worst_lane(names, draw, count):
+    """add_lane: the multipliers, and what E adds, by its error; and vectors one after the other."""
+    worst = 0
+    for _ in range(count):
+        sums, U, _ = some_sums(names, draw, 4)
+        sums.prism.waves = waves = [(1, 0), (2, -1)]
+        slopes = {}
+        sums.add_wave = lambda wave, *known: slopes.setdefault(wave, (known, [
+            whole(draw, 1 << U) for _ in "012"]))[1]
+        sites = [names["Site"]([2 * j, 2 * j + 1], [whole(draw, 16 << U) for _ in "01"], 0, 0)
+                 for j in range(3)]
+        n = [[whole(draw, 1 << U // 2) for _ in "01"] for _ in sites]
+        mu, G = sums.add_lane(sites, n)
+        values = [[[0] * 3] * 2, [[0] * 3] * 2]             # beyond the last site, and there
+        vectors = 0
+        for j in (2, 1, 0):
+            u, v = values[-1], values[-2]
+            for k, site_wave in zip(waves, sites[j].waves):
+                if slopes[site_wave][0] != (sum(a * b for a, b in zip(k, n[j])) ** 2, [
+                        sum(a * b for a, b in zip(k, x)) for x in zip(*u)]):
+                    return math.inf
+            values.append([[2 * a - b + sum(k[i] * slopes[w][1][t]
+                                            for k, w in zip(waves, sites[j].waves))
+                            for t, (a, b) in enumerate(zip(u[i], v[i]))] for i in (0, 1)])
+            vectors += 2 * sum(x * x for x in n[j]) - (
+                2 * sum(x * y for x, y in zip(n[j], n[j + 1])) if j < 2 else 0)
+        if [*map(list, mu), *map(list, G)] != [*values[-2], *values[-1]]:
+            return math.inf
+        for e in E:
+            true = (vectors << U) - sums.value - sum(x * y for x, y in zip(sums.linear, e)) + sum(
+                (x[0] + x[1] * e[0] + x[2] * e[1]) * y / 16
+                for j, site in enumerate(sites) for x, y in zip(values[3 - j], site.E))
+            worst = max(worst, quotient(true, sums.error / 120))
+        if worst > 1:
+            break
+    return worst
+
+
+def worst_ends(names, draw, count):
+    """add_ends: where the lanes meet, and the tails; and bound."""
+    worst = 0
+    for _ in range(count):
+        sums, U, l = some_sums(names, draw, 4)
+        one, n, lanes = 16 << U, [], []
+        for _ in "01":
+            n.append([[whole(draw, 1 << U // 2, (1, -1)) for _ in "01"]
+                      for _ in range(draw.randint(0, 3))])
+            lanes.append(types.SimpleNamespace(
+                first_columns=[[whole(draw, one // 4) for _ in "01"] for _ in "01"],
+                first_rest=[draw.choice((0, 1, one // 4)) for _ in "01"]))
+        if not any(any(x) for lane in n for x in lane):
+            continue
+        size = draw.choice((0, 1, 1)) << U
+        mu, G = [[[[whole(draw, size) for _ in "012"] for _ in "01"] for _ in "01"] for _ in "01"]
+        sums.prism.lanes = lanes
+        sums.add_ends(n, (mu[0], G[0]), (mu[1], G[1]))
+        orbit = [x for x in [*n[1][::-1], *n[0]] if any(x)]
+        known = -(l * sum(x * x for x in (*orbit[0], *orbit[-1])))
+        if n[0] and n[1]:
+            known -= 2 * sum(x * y for x, y in zip(n[0][0], n[1][0])) << U
+        form = sums.form()
+        for e in E:
+            true = known - sums.value - at(form, e) / (6 << 2 * U)
+            for lane in (0, 1):
+                for i in (0, 1):
+                    g = [a - b for a, b in zip(G[lane][i], mu[1 - lane][i])]
+                    g = g[0] + g[1] * e[0] + g[2] * e[1]
+                    D = sum(a * x for a, x in zip(lanes[lane].first_columns[i], e))
+                    true += (g * D + abs(g) * lanes[lane].first_rest[i]) * (1 << U) / one
+            worst = max(worst, quotient(true, sums.error / 120))
+        if worst > 1:
+            break
+        sums.error = draw.choice((1, 7, sums.error))
+        bound, value, _, error = sums.bound()
+        if 20 * error < sums.error << 2 * U or value != 6 * sums.value << 2 * U \
+                or bound < value + error + max(at(form, e) for e in E):
+            return math.inf
+    return worst
+
+
+def worst_cube(names, draw, count):
+    """cube_bound: a polynomial in a cube, on a grid, by its bound."""
+    worst = 0
+    for _ in range(count):
+        known, size = draw.choice((2, 2, 2, 3)), draw.choice((5, 1 << 30))
+        keys = [key for n in (1, 2, 3)
+                for key in itertools.combinations_with_replacement(range(known), n)]
+        some = draw.choice((draw.sample(keys, draw.choice((1, 2, 3, len(keys)))),
+                            [(0,), (0, 0), draw.choice(keys)], [(1,), (0, 0), (0, 0, 1)]))
+        form = {key: (key in some) * draw.randint(-size, size) for key in keys}
+        grid = itertools.product([x / 4 for x in range(-4, 5)], repeat=known)
+        true = max(at(form, e) for e in grid)
+        bound = names["cube_bound"](form)
+        worst = max(worst, (true + 1e-9) / (bound + 2e-9) if bound >= 0 else 2)
+        if worst > 1:
+            break
+    return worst
+
+
+WORST = {"step": (worst_step, 900, 0.9), "errors": (worst_errors, 300, 0.8),
+         "wave": (worst_wave, 1500, 0.9), "lane": (worst_lane, 200, 0.4),
+         "ends": (worst_ends, 300, 0.8), "cube": (worst_cube, 400, 0.99)}
+
+
+@pytest.mark.parametrize("name", WORST)
+def test_bounds_of_the_exact_path(name):
+    """What they bound comes near to them, and not beyond."""
+    worst, count, near = WORST[name]
+    assert near < worst(with_change(), random.Random(name), count) <= 1
+
+
+@pytest.mark.parametrize("name, old, new", [
+    ("step", "strong1 * r1 + rotated)", "strong1 * r1)"),
+    ("step", "strong0 * r0 + strong1 * r1 + rotated", "strong0 * r0 + rotated"),
+    ("step", "reach = size + rest\n            if", "reach = size\n            if"),
+    ("step", "E0, E1 = E0 + k0 * mean", "E0, E1 = E0 - k0 * mean"),
+    ("step", "push0 + k0 * cosine", "push0 - k0 * cosine"), ("step", "push0 - E0", "push0 + E0"),
+    ("step", "square = (reach * reach >> bits) + 1", "square = reach * reach >> bits"),
+    ("step", "square = (reach * reach >> bits) + 1", "square = (size * size >> bits) + 1"),
+    ("step", "cube // 6", "cube // 9"), ("step", "square >> bits + 1) + 1\n", "0) + 1\n"),
+    ("step", "max(abs(mean), fall - abs(mean))", "abs(mean)"),
+    ("step", " + (abs(sine) * cube // 6 >> bits)", ""),
+    ("step", "+ 2 * error + len", "+ error + len"),
+    ("step", "error + len(xi) + 2", "error + 2"),
+    ("step", "new0[i] -= k0 * a", "new0[i] += k0 * a"),
+    ("step", "new1[i] += k1 * cosine_part", "new1[i] -= k1 * cosine_part"),
+    ("step", "(abs(cosine_part) * square >> bits + 1) + (", "("),
+    ("step", "+ 1) + (abs(sine_part) * reach >> bits)", "+ 1)"),
+    ("step", "error0 + strong0 * bent", "error0 + bent"), ("step", "- self.x0[1]", "+ self.x0[1]"),
+    ("step", "4 * one - 2 * p, -2", "4 * one + 2 * p, -2"), ("step", "(p + r >> 1) - q", "p + q"),
+    ("step", "abs(wave.k0 + wave.k1), abs(wave.k0 - wave.k1)", "abs(wave.k0), abs(wave.k1)"),
+    ("step", "(sum(self.r0),) * 2, (sum(self.r),) * 2", "self.r0, self.r"),
+    ("step", "old0 + error0, old1 + error1", "error0, error1"),
+    ("step", "(blank, blank), (1, 1)", "(blank, blank), (0, 0)"),
+    ("errors", "p, q, r = p - m, q - n, r - o", "p, q, r = p + m, q + n, r + o"),
+    ("errors", "abs(m) * f0 + abs(n) * f1, ", "abs(m) * f0, "),
+    ("errors", "abs(one - m * a - n * b) * old0 + abs(m * b", "abs(m * b"),
+    ("errors", "+ abs(m * b + n * c) * old1 >>", ">>"),
+    ("errors", "abs(n * a + o * b) * old0 + abs(one - n", "abs(one - n"),
+    ("errors", "+ abs(one - n * b - o * c) * old1 >>", ">>"),
+    ("errors", "(f0 >> bits) + 2 + error0, ", "(f0 >> bits) + 2, "),
+    ("errors", "(f0 >> bits) + 2", "(f0 >> bits)"),
+    ("errors", "q) * r1 >> bits) + 1", "q) * r1 >> bits)"),
+    ("errors", "abs(p) * r0 + abs(q) * r1 >> bits", "abs(p) * r0 >> bits"),
+    ("errors", "self.r0, self.r = self.r, (", "self.r0, self.r = self.r0, ("),
+    ("wave", "A, B = m0 * c - omega * s", "A, B = m0 * c + omega * s"),
+    ("wave", "[-x * s >> U for x in m]", "[x * s >> U for x in m]"),
+    ("wave", "first = [-3 * x", "first = [3 * x"), ("wave", "x - (A * y >> U)", "x + (A * y >> U)"),
+    ("wave", "part_A = m0 * part_c - omega", "part_A = m0 * part_c + omega"),
+    ("wave", "part_B = -(omega * part_c + m0", "part_B = -(omega * part_c - m0"),
+    ("wave", "first[i] -= 3 * part_A", "first[i] += 3 * part_A"),
+    ("wave", "slopes[i] += part_B", "slopes[i] -= part_B"),
+    ("wave", "part_c >> U, -x * part_s >> U", "part_c >> U, x * part_s >> U"),
+    ("wave", "x + A * y for", "x - A * y for"), ("wave", "x -= B * y", "x += B * y"),
+    ("wave", "self.value -= omega * s", "self.value += omega * s"),
+    ("wave", "rest = (wave.rest >> down) + count", "rest = count"),
+    ("wave", "rest = (wave.rest >> down) + count", "rest = wave.rest >> down"),
+    ("wave", "reach = size + rest\n        unsure", "reach = size\n        unsure"),
+    ("wave", "unsure = 2 * ((wave.error >> down) + 2", "unsure = 2 * (2"),
+    ("wave", "second, far = (reach * reach >> U) + 1", "second, far = (reach * reach >> U)"),
+    ("wave", "(rest * (reach + size) >> U) + 1", "(rest * (reach + size) >> U)"),
+    ("wave", "(linear_alpha + parts_A)", "parts_A"), ("wave", "(linear_beta + parts_B)", "parts_B"),
+    ("wave", "(linear_alpha + parts_A)", "linear_alpha"),
+    ("wave", "(linear_beta + parts_B)", "linear_beta"),
+    ("wave", "60 * far + 5 * fourth", "60 * far"), ("wave", "60 * far + 5 * fourth", "5 * fourth"),
+    ("wave", "20 * between + (", "("), ("wave", "+ (third * second >> U) + 1)", ")"),
+    ("wave", "A * 5 * fourth if A > 0", "0 if A > 0"), ("wave", "if A > 0", "if A < 0"),
+    ("wave", "-A * 60 * ((rest * rest >> U) + 1)", "0"),
+    ("wave", "+ parts_alpha * 60 * second ", ""),
+    ("wave", "(120 * rest + 20 * third)", "120 * rest"),
+    ("wave", "(120 * rest + 20 * third)", "20 * third"),
+    ("wave", "abs(m0) + most_m + omega", "abs(m0) + most_m"),
+    ("wave", "abs(m0) + most_m + omega", "abs(m0) + omega"),
+    ("wave", "abs(m0) + most_m + omega", "most_m + omega"),
+    ("wave", "(2 * count * (2 + len(wave.parts)) << U)", "0"),
+    ("wave", "3 * (1 + (j < k)) * self.square", "3 * self.square"),
+    ("wave", "(1 + (j < k)) * row[at]", "row[at]"), ("wave", "form[key] += 6", "form[key] += 3"),
+    ("lane", "n0 * v0 - n1 * v1", "n0 * v0 + n1 * v1"),
+    ("lane", "mu0[0] * E0 + mu1[0] * E1", "mu0[0] * E0 - mu1[0] * E1"),
+    ("lane", "(sum(map(abs, mu0)) + sum(map(abs, mu1)))", "sum(map(abs, mu1))"),
+    ("lane", "G0 = [2 * a - b", "G0 = [2 * a + b"), ("lane", "[a + k1 * b", "[a - k1 * b"),
+    ("ends", "self.value -= 2 * (n0[0]", "self.value += 2 * (n0[0]"),
+    ("ends", "used[0] + used[-1]", "used[0] + used[0]"), ("ends", "reversed(n[1])", "n[1]"),
+    ("ends", "self.l = l >> self.down", "self.l = -(-l >> self.down)"),
+    ("ends", "[a - b for a, b in zip(g, other)]", "[a + b for a, b in zip(g, other)]"),
+    ("ends", "(rest >> self.down) + 1 + len(columns)", "(rest >> self.down)"),
+    ("ends", "(rest >> self.down) + 1 + len(columns)", "1 + len(columns)"),
+    ("ends", "sum(map(abs, g)) * ((rest", "abs(g[0]) * ((rest"), ("ends", "// 20 + 1", "// 20"),
+    ("ends", "return value + cube_bound(form) + error", "return value + cube_bound(form)"),
+    ("cube", "linear[k] += x", "pass"), ("cube", "twist[i] += abs(x)", "twist[i] += x"),
+    ("cube", "linear[i] -= 2 * down * t", "linear[i] -= 3 * down * t"),
+    ("cube", "constant += down * t * t", "0 * t"), ("cube", "constant += up +", "constant +="),
+    ("cube", "+ max(twist[i] - up, 0)", ""), ("cube", "twist[i] - up", "twist[i] - 2 * up"),
+    ("cube", "abs(at_odd) + at_even", "at_odd + at_even"),
+    ("cube", "return -(-max(highest) - constant >>", "return (max(highest) + constant >>")])
+def test_no_term_of_the_exact_path_may_be_missing(name, old, new):
+    """Each of them decides somewhere, and so does each sign: without it the test above fails."""
+    worst, count, _ = WORST[name]
+    assert worst(with_change(old, new), random.Random(name), count) > 1
