@@ -383,3 +383,31 @@ def test_no_term_of_the_exact_path_may_be_missing(name, old, new):
     """Each of them decides somewhere, and so does each sign: without it the test above fails."""
     worst, count, _ = WORST[name]
     assert worst(with_change(old, new), random.Random(name), count) > 1
+
+
+@pytest.mark.parametrize("bound", (-1, 0, 1))
+def test_an_attempt_adds_the_sites_of_its_vectors(bound):
+    """From x[1] and x[0] outwards, as far as the vectors go; and only a bound below 0 excludes."""
+    names, added = with_change(), []
+    names["test_vectors"] = lambda *_: [[(0.0, 0.0), (0.5, 1.0), (0.0, 0.0)],
+                                        [(2.0, 0.0), (0.0, 0.0), (0.0, 0.0)]]
+
+    class Sums(names["SecondVariation"]):
+        def add_lane(self, sites, vectors):
+            added.append((sites, vectors))
+
+        def add_ends(self, *given):
+            added.append(given)
+
+        def bound(self):
+            return bound, -5, [1, 1], 1
+
+    names["SecondVariation"] = Sums
+    lanes = [types.SimpleNamespace(sites=sites, ended=True, follow=lambda most: None,
+                                   moved=lambda symbol: 1) for sites in ("abc", "xyz")]
+    prism = types.SimpleNamespace(fixed=types.SimpleNamespace(bits=64, one=1 << 64), lanes=lanes,
+                                  symbols=2, cautious=lambda site, caution: site)
+    assert (names["attempt"](prism, 1, (0, 0)) is None) == (bound < 0)
+    one = 1 << exact.VECTOR_BITS
+    ahead, back = [(0, 0), (one // 2, one)], [(2 * one, 0)]
+    assert added == [("ab", ahead), ("x", back), ([ahead, back], None, None)]
