@@ -1645,7 +1645,10 @@ def test_prisms_cover_their_cells(texts, generator, monkeypatch):
             eta, amplitudes, angles = true_point(generator, criterion, cell)
             for wave, true in zip(prism.waves, amplitudes):
                 found = wave.amplitude + sum(part * eta[i] for i, part in wave.parts)
-                assert abs(true * one - found) < 1 + len(wave.parts) <= wave.error - 2
+                size = abs(wave.amplitude) + sum(abs(part) for _, part in wave.parts)
+                assert abs(true * one - found) < 1 + len(wave.parts)
+                assert wave.error - 2 * (1 + len(wave.parts)) >= Fraction(
+                    size * check.SINE_ERROR, one)
             for lane, true in zip(prism.lanes, angles[::-1]):
                 for x, y, columns, rest in zip(lane.x, true, lane.first_columns, lane.first_rest):
                     gap = (y * one - x + turn / 2) % turn - turn / 2
