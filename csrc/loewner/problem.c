@@ -240,8 +240,8 @@ static void straighten(loewner *w)
 }
 
 /* B at the corners of the parameters' cube; infinity if it is not to be bounded.  An amplitude
-   there is off by less than its err_amp, and a phase by 2^-50 of itself and a little more: see
-   near. */
+   there is off by less than its err_amp, and a phase by 2^-50 of itself (near) and what it was off
+   before, less than 10^-39 (converse.h). */
 static void set_corners(loewner *w, int with_bounds)
 {
     torus_wave waves[MOST_WAVES];
@@ -255,7 +255,8 @@ static void set_corners(loewner *w, int with_bounds)
             for (int m = 0; m < w->n_parameters; m++)
                 p += (corner >> m & 1 ? 1.0 : -1.0) * w->part[i][m];
             waves[n++] = (torus_wave){ { w->k[i][0], w->k[i][1] },
-                                       interval_about(w->phase[i], 0x1p-49 * fabs(w->phase[i])),
+                                       interval_about(w->phase[i],
+                                                      0x1p-49 * fabs(w->phase[i]) + 0x1p-129),
                                        interval_about(p, w->err_amp[i]) };
         }
         w->corner[corner] = with_bounds ? torus_largest(n, waves, TORUS_EIGENVALUE)
