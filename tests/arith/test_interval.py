@@ -139,3 +139,17 @@ def test_what_is_beyond_the_sines_is_anything(every):
     assert every((2e6, 2e6), (0.0, 0.0), 0.0)["sin"] == (-1.0, 1.0)
     low, high = every((1.0, 2.0), (0.0, 0.0), 0.0)["sin"]
     assert low <= math.sin(1.0) and high == 1.0
+
+
+def test_the_sines_of_neighbours_and_of_points(every):
+    """Where the middle of an interval is one of its ends, and what the sine is proved to be off."""
+    rng = rng_for("neighbours")
+    for _ in range(100 * TORTURE):
+        low = rng.choice((-1, 1)) * rng.uniform(1e4, 1e6)
+        x = low, math.nextafter(low, INF)
+        out = every(x, x, 0.0)
+        with mpmath.workdps(40):
+            for p in map(mpmath.mpf, x):
+                assert holds(out["sin"], mpmath.sin(p)) and holds(out["cos"], mpmath.cos(p))
+        for low, high in (every((low, low), x, 0.0)[name] for name in ("sin", "cos")):
+            assert high - low >= 2 ** -50 or low == -1 or high == 1
