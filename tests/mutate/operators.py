@@ -46,7 +46,7 @@ def numbered(places):
 
 def mutants(name, text):
     """All mutants of a source of this name."""
-    return list(numbered(c_places(text) if name.endswith((".c", ".h")) else python_places(text)))
+    return list(numbered(c_places(text) if name.endswith((".c", ".h", ".inc")) else python_places(text)))
 
 
 # ---- C

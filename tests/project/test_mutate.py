@@ -77,7 +77,7 @@ def test_what_is_accepted_exists():
 
 
 def test_samples():
-    found = TOOL["places"](["thesis/lambda.c", "thesis/trace.c:bound_btrace"])
+    found = TOOL["places"](["thesis/lambda.inc", "thesis/trace.inc:bound_btrace"])
     keys = [[place.key for place in TOOL["sample"](found, 20, seed)] for seed in "112"]
     assert keys[0] == keys[1] != keys[2] and len(set(keys[0])) == 20
     assert sorted(place.key for place in TOOL["sample"](found, 10 ** 6, "1")) == sorted(
