@@ -46,7 +46,8 @@ def numbered(places):
 
 def mutants(name, text):
     """All mutants of a source of this name."""
-    return list(numbered(c_places(text) if name.endswith((".c", ".h", ".inc")) else python_places(text)))
+    of_c = name.endswith((".c", ".h", ".inc"))
+    return list(numbered(c_places(text) if of_c else python_places(text)))
 
 
 # ---- C
