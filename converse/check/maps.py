@@ -28,7 +28,7 @@ REGIONS = {"b=0": (((1, 0, 0), (0, 0, 1)), ((0, 0, 1), (1, 0, 0))),
            "c=0": (((1, 0, 0), (0, 1, 0)),),
            "sphere": (((1, 0, 0), (0, 1, 0), (0, 0, 1)), ((0, 0, 1), (1, 0, 0), (0, 1, 0)))}
 MAP_AXES, MAP_KINDS = "012", "PAOX"     # of the tree of a face: cuts of r, s, t; leaves
-GRID, MAP_CELLS = (16, 8), 2000         # of a face with s, or s and t; of the torus: for B
+GRID, MAP_CELLS = (16, 8), 2000         # slices of s, or of s and t; cells of the torus for B
 
 
 @dataclass(frozen=True)
@@ -110,7 +110,7 @@ def list_of(value, count, kind, name):
 
 
 def strict_json(data):
-    """The content of a JSON text; Rejected, if it is none, or leaves anything open."""
+    """The content of a JSON text; Rejected, if it is not JSON, or readers may differ on it."""
     if data.count(b",") + data.count(b"[") + data.count(b"{") > MAX_ITEMS:
         raise NotConfirmed("the map has more than %d items, the checker's limit" % MAX_ITEMS)
 
@@ -286,8 +286,8 @@ def proved_from(cells, radius, axes):
 
     A cell at once is proved from its least r on.  Directions in which some cell is finer are
     looked at in halves; where all cells are as wide as the directions, the unproved ones are
-    those not above the first that is at once.  NotConfirmed, if that are too many halves: strips
-    of s below strips of t make all their products.
+    those not above the first that is at once.  NotConfirmed, if there are too many halves: narrow
+    strips of s below narrow strips of t have to be looked at in all pairs.
     """
     worst, forever, seen = Fraction(0), True, 0
     todo = [((0,) * axes, (0,) * axes, cells)]

@@ -36,11 +36,11 @@ def own_digest():
 
 
 class State:
-    """How many of a certificate's proved leaves are confirmed, in their order; and if a path is
-    given, a small file that knows it, so that a check that was interrupted can go on.
+    """How many of the proved leaves of a proof file or map are confirmed, in their order; and if a
+    path is given, a small file that says so, with which an interrupted check can go on.
 
-    The file belongs to one certificate and to this very checker.  It is believed: its checksum
-    guards against accidents, not against forgers.
+    The file belongs to one proof file or map and to this very checker.  It is believed: its
+    checksum guards against accidents, not against forgers.
     """
 
     def __init__(self, path, sha256, total):

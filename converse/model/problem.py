@@ -16,7 +16,7 @@ THESIS = (1, 0), (0, 1), (1, 1)         # the waves of a, b and c
 # own constant is 2 pi^2/M = 11.2143598191..., M = sqrt(207 + 33 sqrt 33)/(8 sqrt 2), which
 # converse.orbits has.
 LINE = Fraction("11.21436")
-MOST_WAVES, MOST_PARAMETERS, HIGHEST = 16, 3, 100       # the last: of what k and frames have
+MOST_WAVES, MOST_PARAMETERS, HIGHEST = 16, 3, 100       # the last: of k and of a frame
 IDENTITY = 1, 0, 0, 1
 
 Range = Tuple[Number, Number]           # what becomes of it: Ends
@@ -254,7 +254,7 @@ class Problem:
     def odd(self) -> Optional[Ends]:
         """A point s, in units of pi, about which V is odd: k.s + phase is an integer for every
         wave.
-        None: there is none.
+        None: there is no such point.
 
         Sums and differences of such conditions are such conditions, so Euclid's algorithm makes of
         them one for s1 alone, one more that has s0, and those that s has no part in."""
@@ -312,7 +312,7 @@ def _bezout(a, b):
 
 def _checked(waves, amplitude, parts):
     """The three as Problem keeps them: tuples of exact numbers.  TypeError, ValueError: they are
-    none, or do not go together."""
+    something else, or do not go together."""
     try:
         waves, amplitude, parts = list(waves), list(amplitude), [list(part) for part in parts]
         waves = [tuple(wave) for wave in waves]

@@ -25,7 +25,7 @@ STUDIED = {}                # by name, the potentials at the end of this file
 
 
 def known(potential):
-    """The potential; ValueError, if it is none."""
+    """What it is given; ValueError, unless that is a Potential."""
     if not isinstance(potential, Potential):
         raise ValueError("the potential is one of converse.orbits, not %.200r" % (potential,))
     return potential
@@ -56,8 +56,8 @@ def whole(what, value, least, most=2 ** 31 - 1):
 
 
 def points(x, n):
-    """x as a C-contiguous array (m, 2) of floats, its idle coordinate zero; ValueError if it is
-    none."""
+    """x as a C-contiguous array (m, 2) of floats, its idle coordinate zero; ValueError if it
+    has another shape."""
     array = np.ascontiguousarray(x, dtype=float)
     if array.ndim != 2 or array.shape[1] != n:
         raise ValueError("points are an array of shape (m, %d), not %r" % (n, array.shape))

@@ -23,7 +23,7 @@ DIGITS = 20                 # the radius is at most 10^-DIGITS unless another nu
 MOST = 1000                 # places, with which no orbit is tried any more
 MORE = 100                  # places that are added in vain, at most
 STEPS = 60                  # of Newton's method, at most
-SOFT = Fraction(NEAR_NULL)  # eigenvalues of the Hessian below it in size are none in doubles
+SOFT = Fraction(NEAR_NULL)  # in doubles, eigenvalues of the Hessian below it in size count as 0
 GUARD = 10                  # places by which what must be seen stands above rounding
 SHOWN = 20                  # places of an interval in a report, at most
 KEPT = 45                   # places of an exponent
@@ -104,7 +104,7 @@ def prove(state: State, digits: Optional[int] = None, descend: bool = False) -> 
     determined here, and the points may move: see `moved`.
     descend -- from a saddle whose least eigenvalue is above -1e-8, prove the minimum below it,
                which is elsewhere; a steeper one is left by state.relax()
-    NotProved, with a reason: among others, because the state is none of an orbit, or a saddle."""
+    NotProved, with a reason: among others, because the state is not stationary, or a saddle."""
     wanted = DIGITS if digits is None else digits
     expected(state)
     if not isinstance(wanted, int) or not 1 <= wanted <= MOST - 2 * GUARD:

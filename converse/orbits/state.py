@@ -76,7 +76,7 @@ class Pairs(NamedTuple):
 
 
 def type_of(potential, p, q):
-    """A type (p, q) as integers; ValueError, if it is none."""
+    """The type (p, q) as integers; ValueError, if these are no type."""
     n = potential.n
     try:
         numbers = tuple(int(i) for i in p)

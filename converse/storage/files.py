@@ -72,7 +72,7 @@ MADE = {                                # by the ending of its name, how a file 
     "svg": (b"<?xml", b"<dc:title>converse "),              # begins, and what it holds
     "png": (b"\x89PNG", b"Software\0converse "), "pdf": (b"%PDF", b"/Creator (converse "),
     "ps": PS, "eps": PS,
-    "csv": (b"potential,p,q,", b",undetermined\n")}         # none of a sweep: days of work, perhaps
+    "csv": (b"potential,p,q,", b",undetermined\n")}         # not a sweep's: it may be days of work
 
 
 def check_output(path, what, endings, others=()):

@@ -71,7 +71,7 @@ int loewner_prism(const loewner *w, const cv_cell *cell, loewner_cell *c)
     return c->l > 0.0;
 }
 
-/* Not where no more than a fifth of its width is other than the rounding of doubles. */
+/* Not where the rounding of doubles makes four fifths of its width or more. */
 int cut_helps(const loewner *w, const cv_cell *cell, int axis)
 {
     int wide = axis < 2 && ldexp(w->half[axis], 2 - cell->cuts[axis]) > w->err_v[axis];

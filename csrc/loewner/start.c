@@ -113,10 +113,10 @@ static double newton(objective *f, const waves *v, double x[2])
     return HUGE_VAL;
 }
 
-/* Less than `enough`, or at least that and no more need be known of it. */
+/* The value at x if it is less than `enough`; otherwise any number that is not less. */
 typedef double function(void *context, const double x[2], double enough);
 
-/* Less than `enough`, or at least that and no more need be known of it. */
+/* The value at x if it is less than `enough`; otherwise any number that is not less. */
 typedef double function(void *context, const double x[2], double enough);
 
 /* Where x may go: along the diagonal, along its first angle, anywhere. */
@@ -324,8 +324,8 @@ INLINE vec sign_of(int side)
     return sign;
 }
 
-/* The eigenvalue that the orbit with this offset leaves, -HUGE_VAL if it is contradicted before; or
-   no more than floor, if it is no more. */
+/* The eigenvalue that the orbit with this offset leaves, -HUGE_VAL if it is contradicted before; if
+   it does not exceed floor, any number that does not. */
 static double left_over(const pencil *o, const double offset[2], double floor)
 {
     vec x[SIDES][2], before[SIDES][2], force[2], beta[SIDES][REACH][3];

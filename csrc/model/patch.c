@@ -1,4 +1,4 @@
-/* patch.c - a problem is read, and what it is. */
+/* patch.c - a problem is read, and asked of what kind it is. */
 #include <stdlib.h>
 
 #include "arith/special.h"
@@ -161,7 +161,7 @@ static int exchangeable(const patch *p, const apm_struct *const amplitude[MOST_W
     return good;
 }
 
-/* Where the parameters are those of the waves the first two change places; else none does. */
+/* If each wave has a parameter of its own, the first two of these change places; else none does. */
 int patch_symmetric(const patch *p)
 {
     const apm_struct *vector[MOST_WAVES];

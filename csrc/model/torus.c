@@ -175,8 +175,8 @@ static surface surface_of(int n, const torus_wave waves[], const int chosen[], i
     return q;
 }
 
-/* Where all waves feel one and the same combination of the angles, and where none feels both, the
-   torus is too large: its ridges need no cells. */
+/* Where all waves feel one and the same combination of the angles, or none feels both, cells in one
+   dimension are enough; those of the whole torus would crowd along ridges. */
 double torus_largest(int n, const torus_wave waves[], int which)
 {
     const double flat = which == TORUS_TRACE ? 4.0 : 2.0;
