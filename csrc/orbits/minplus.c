@@ -53,7 +53,8 @@ int cv_errors(const cv_potential *v, double reach, double errors[3])
         for (int order = 0; order < 3; order++, part *= 6.3 * k)
             errors[order] += part;
     }
-    return v->kind == CV_PYTHON || !(reach < 1000.0) ? CV_EARGUMENT
+    const int known = v->kind == CV_FOURIER || v->kind == CV_POLY || v->kind == CV_FF;
+    return !known || !(reach < 1000.0) ? CV_EARGUMENT
            : machine_is_sound() ? CV_OK : CV_EMACHINE;
 }
 
