@@ -239,7 +239,7 @@ class Map:
                 packed = file.read()
             if packed[:2] == b"\x1f\x8b":
                 packed = gzip.decompress(packed)
-            data = json.loads(packed.decode("ascii"))
+            data = json.loads(packed.decode("utf-8"))
         except OSError as error:
             raise ConverseError("%s: cannot be read (%s); name a readable map"
                                 % (path, files.reason(error))) from None

@@ -379,9 +379,10 @@ def test_bad_usage_is_one_line(tmp_path, arguments, words):
     assert not os.listdir(tmp_path)
 
 
-def test_an_input_is_no_map(root, capsys):
+@pytest.mark.parametrize("name", ["crossed.json", "froeschle-0.3.json"])    # the latter not ASCII
+def test_an_input_is_no_map(root, capsys, name):
     """Of a potential of one's own there is none, and the line says what there is instead."""
-    assert cli.main([str(root / "inputs" / "crossed.json")]) == 2
+    assert cli.main([str(root / "inputs" / name)]) == 2
     err = capsys.readouterr().err
     assert "is an input, and no map" in err and "--method loewner" in err and err.count("\n") == 1
 
