@@ -11,7 +11,7 @@ SOURCES = ["arith/apm", "arith/special", "arith/guard", "arith/machine",
            "loewner/problem", "loewner/start", "loewner/method",
            *("loewner/" + kind + name for kind in ("", "general_")
              for name in ("scalar", "baseline", "avx2", "avx512")),
-           "model/patch", "model/region", "model/torus",
+           "model/patch", "model/region", "model/stationary", "model/torus",
            "search/setup", "search/tree", "search/lookahead",
            "orbits/potential", "orbits/band", "orbits/relax", "orbits/measure", "orbits/minplus"]
 SOURCES = ["csrc/%s.c" % name for name in SOURCES]

@@ -20,101 +20,19 @@
 #include "arith/sine.h"
 #include "start.h"
 
-enum { STEPS = 200, GRID = 24, FINEST_GRID = 240 };
+enum { COARSEST_GRID = 24, FINEST_GRID = 240 };
 enum { NEAR = 4, REACH = 6 };           /* points on either side of x*; to judge by, at last */
 enum { PLACES = 16, OFFSETS = 24, HALVINGS = 6 };
 enum { FINER = 4 };                     /* so many times, where waves feel but one angle */
 enum { ANGLES = FINER * OFFSETS, SIDES = 2 / LANES, GUESSES = 8 };
-static const double TOLERANCE = 1e-9, MAX_JUMP = 0.5, PI = 3.14159265358979323846;
+static const double PI = 3.14159265358979323846;
 static const double BETWEEN = 0.28;     /* of the way from the least beta to the least potential */
 static const double NOTHING = 1e-6;     /* no better than that: it may be rounding */
 static const double PLAINLY = 0.001;    /* better: enough to leave where symmetry is */
 static const double ENOUGH = 0.06, WEAKER = 0.97;       /* so much must be left, or V is weakened */
 static const double STRONG = 1.5, WEAK = 0.5;   /* B - 2: there is no torus; nothing to prove */
 
-/* What is minimized, its gradient g and Hessian h (00, 01, 11). */
-typedef double objective(const waves *v, const double x[2], double g[2], double h[3]);
-
-static double potential(const waves *v, const double x[2], double g[2], double h[3])
-{
-    double value = 0.0;
-
-    g[0] = g[1] = h[0] = h[1] = h[2] = 0.0;
-    for (int j = 0; j < v->n; j++) {
-        const double k0 = v->k[j][0], k1 = v->k[j][1], y = k0 * x[0] + k1 * x[1] + v->phase[j];
-        const double s = v->p[j] * sin(y), c = v->p[j] * cos(y);
-        value -= s;
-        g[0] -= c * k0;
-        g[1] -= c * k1;
-        h[0] += s * k0 * k0;
-        h[1] += s * k0 * k1;
-        h[2] += s * k1 * k1;
-    }
-    return value;
-}
-
-/* Of beta = 2 - V'', that is mean - root(apart^2 + mixed^2). */
-static double least_eigenvalue(const waves *v, const double x[2], double g[2], double h[3])
-{
-    enum { MEAN, APART, MIXED };
-    double value[3] = { 2.0, 0.0, 0.0 }, first[3][2] = { { 0.0 } }, second[3][3] = { { 0.0 } };
-    double root, along[2];
-
-    for (int j = 0; j < v->n; j++) {
-        const double k0 = v->k[j][0], k1 = v->k[j][1], y = k0 * x[0] + k1 * x[1] + v->phase[j];
-        const double s = v->p[j] * sin(y), c = v->p[j] * cos(y);
-        const double part[3] = { 0.5 * (k0 * k0 + k1 * k1), 0.5 * (k0 * k0 - k1 * k1), k0 * k1 };
-        for (int i = 0; i < 3; i++) {
-            value[i] -= s * part[i];
-            first[i][0] -= c * part[i] * k0;
-            first[i][1] -= c * part[i] * k1;
-            second[i][0] += s * part[i] * k0 * k0;
-            second[i][1] += s * part[i] * k0 * k1;
-            second[i][2] += s * part[i] * k1 * k1;
-        }
-    }
-    root = sqrt(value[APART] * value[APART] + value[MIXED] * value[MIXED]);
-    for (int m = 0; m < 2; m++) {
-        along[m] = (value[APART] * first[APART][m] + value[MIXED] * first[MIXED][m]) / root;
-        g[m] = first[MEAN][m] - along[m];
-    }
-    for (int m = 0, mn = 0; m < 2; m++)
-        for (int n = m; n < 2; n++, mn++)
-            h[mn] = second[MEAN][mn] + (along[m] * along[n]
-                    - first[APART][m] * first[APART][n] - value[APART] * second[APART][mn]
-                    - first[MIXED][m] * first[MIXED][n] - value[MIXED] * second[MIXED][mn]) / root;
-    return value[MEAN] - root;
-}
-
-/* Newton's method from x, jumps bounded; returns the value reached, or HUGE_VAL. */
-static double newton(objective *f, const waves *v, double x[2])
-{
-    double g[2], h[3], size = 0.0;
-
-    for (int j = 0; j < v->n; j++)
-        size += fabs(v->p[j]);
-    for (int step = 0; step < STEPS; step++) {
-        const double value = f(v, x, g, h), det = h[0] * h[2] - h[1] * h[1];
-        double dx, dy, jump;
-        if (fabs(g[0]) + fabs(g[1]) <= TOLERANCE * size)
-            return value;
-        dx = (g[0] * h[2] - g[1] * h[1]) / det;
-        dy = (g[1] * h[0] - g[0] * h[1]) / det;
-        jump = fabs(dx) + fabs(dy);
-        if (!isfinite(jump))
-            return HUGE_VAL;
-        if (jump > MAX_JUMP) {
-            dx *= MAX_JUMP / jump;
-            dy *= MAX_JUMP / jump;
-        }
-        x[0] -= dx;
-        x[1] -= dy;
-    }
-    return HUGE_VAL;
-}
-
-/* The value at x if it is less than `enough`; otherwise any number that is not less. */
-typedef double function(void *context, const double x[2], double enough);
+/* ---- descents without derivatives */
 
 /* The value at x if it is less than `enough`; otherwise any number that is not less. */
 typedef double function(void *context, const double x[2], double enough);
@@ -143,6 +61,8 @@ static double descend(function *f, void *context, double x[2], double value, dou
         }
     return value;
 }
+
+/* ---- between the least beta and the least potential */
 
 typedef struct { objective *f; const waves *v; } valley;
 
@@ -173,12 +93,13 @@ typedef struct {
 static survey survey_of(const waves *v, int on_diagonal)
 {
     double sine[2 * FINEST_GRID], least = HUGE_VAL, lowest = HUGE_VAL;
-    survey s = { GRID, { PI / 2, PI / 2 }, { PI / 2, PI / 2 }, 2.0 };
+    survey s = { COARSEST_GRID, { PI / 2, PI / 2 }, { PI / 2, PI / 2 }, 2.0 };
     double sin_phase[MOST_WAVES], cos_phase[MOST_WAVES];
 
     for (int j = 0; j < v->n; j++) {
-        while (s.grid < FINEST_GRID && s.grid < GRID * (abs(v->k[j][0]) + abs(v->k[j][1])) / 2)
-            s.grid += GRID;
+        const int size = abs(v->k[j][0]) + abs(v->k[j][1]);
+        while (s.grid < FINEST_GRID && s.grid < COARSEST_GRID * size / 2)
+            s.grid += COARSEST_GRID;
         sin_phase[j] = v->p[j] * sin(v->phase[j]);
         cos_phase[j] = v->p[j] * cos(v->phase[j]);
     }
@@ -242,7 +163,7 @@ void loewner_lowest(const waves *v, double x[2])
 {
     const survey s = survey_of(v, 0);
 
-    find_least(least_eigenvalue, v, s.least, s.grid, 0, x);
+    find_least(least_eigenvalue_of_beta, v, s.least, s.grid, 0, x);
 }
 
 /* ---- what nine points of an orbit leave */
@@ -256,10 +177,10 @@ typedef struct {
     double scale, l, xstar[2], middle[2], beta[3];
     double sine[ANGLES];                /* of the parts of a turn */
     double guess[GUESSES][2];           /* offsets that left most, the latest first */
-} pencil;
+} orbits;
 
 /* What the waves, so much weaker, make of a point on either side. */
-INLINE void look(const pencil *o, const vec x[2], vec force[2], vec beta[3])
+INLINE void look(const orbits *o, const vec x[2], vec force[2], vec beta[3])
 {
     const waves *const v = o->v;
 
@@ -291,7 +212,7 @@ INLINE void take(vec form[3], const vec d[3])
 
 /* The eigenvalue that so many points on either side leave, given their beta; -HUGE_VAL if they
    contradict before.  More points leave less. */
-INLINE double left_by(const pencil *o, int points, vec beta[SIDES][REACH][3])
+INLINE double left_by(const orbits *o, int points, vec beta[SIDES][REACH][3])
 {
     double form[3] = { o->beta[0], o->beta[1], o->beta[2] };
 
@@ -326,7 +247,7 @@ INLINE vec sign_of(int side)
 
 /* The eigenvalue that the orbit with this offset leaves, -HUGE_VAL if it is contradicted before; if
    it does not exceed floor, any number that does not. */
-static double left_over(const pencil *o, const double offset[2], double floor)
+static double left_over(const orbits *o, const double offset[2], double floor)
 {
     vec x[SIDES][2], before[SIDES][2], force[2], beta[SIDES][REACH][3];
     double left = 0.0;
@@ -358,11 +279,11 @@ static double less_left(void *context, const double offset[2], double enough)
 }
 
 /* The waves at the middle: p sin and p cos. */
-typedef struct { double sine[MOST_WAVES], cosine[MOST_WAVES]; } swing;
+typedef struct { double sine[MOST_WAVES], cosine[MOST_WAVES]; } waves_at;
 
 /* The orbit whose offset is i, j parts of a turn leaves no more than this: what its points next to
    x* leave. */
-static double left_next(const pencil *o, const swing *middle, int i, int j)
+static double left_next(const orbits *o, const waves_at *middle, int i, int j)
 {
     const waves *const v = o->v;
     vec beta[SIDES][REACH][3];
@@ -388,10 +309,10 @@ static double left_next(const pencil *o, const swing *middle, int i, int j)
 /* The most that orbits with offsets on the grid leave, and top = the offset, if it is more than
    floor; or floor.  Of what is `enough` the first found will do.  (Time may run either way, so half
    of the offsets are all.) */
-static double scan(const pencil *o, double top[2], double floor, double enough)
+static double scan(const orbits *o, double top[2], double floor, double enough)
 {
     const int end = o->flat ? 1 : ANGLES;
-    swing middle;
+    waves_at middle;
 
     for (int w = 0; w < o->v->n; w++) {
         const double p = o->scale * o->v->p[w], k0 = o->v->k[w][0], k1 = o->v->k[w][1];
@@ -417,7 +338,7 @@ static double scan(const pencil *o, double top[2], double floor, double enough)
 }
 
 /* The guess with this number, or top, becomes the first. */
-static void remember(pencil *o, int old, const double top[2])
+static void remember(orbits *o, int old, const double top[2])
 {
     const double guess[2] = { top[0], top[1] };
 
@@ -428,7 +349,7 @@ static void remember(pencil *o, int old, const double top[2])
 /* The largest eigenvalue that orbits through x leave. */
 static double score(void *context, const double x[2], double enough)
 {
-    pencil *const o = context;
+    orbits *const o = context;
     const vec here[2] = { every(x[0]), every(x[1]) };
     vec force[2], beta[3];
     double top[2], left;
@@ -458,9 +379,11 @@ static double score(void *context, const double x[2], double enough)
     return left;
 }
 
+/* ---- the place where nine points leave least */
+
 /* x = a place of the least score: the best place of a grid, or x if it is less than `least` nowhere
    there, and from there. */
-static double find_best(pencil *o, ways where, double least, double x[2])
+static double find_best(orbits *o, ways where, double least, double x[2])
 {
     const int places = where == FIRST_ANGLE ? FINER * PLACES : PLACES;
     const double step = 2.0 * PI / places;
@@ -479,7 +402,7 @@ static double find_best(pencil *o, ways where, double least, double x[2])
 }
 
 /* So many times. */
-static void weaken(pencil *o, int times)
+static void weaken(orbits *o, int times)
 {
     const double strength = fmin(o->above, STRONG) * pow(WEAKER, times), B = 2.0 + strength;
 
@@ -489,7 +412,7 @@ static void weaken(pencil *o, int times)
 
 /* From x to where the score is least, for waves so weak that enough is left at x, unless there is
    nothing to prove of them.  What lies off the diagonal is judged by longer orbits. */
-static void improve(pencil *o, int on_diagonal, double x[2])
+static void improve(orbits *o, int on_diagonal, double x[2])
 {
     double value, y[2] = { x[0], x[1] }, off[2] = { x[0], x[1] };
     int low = 0, high = 0;
@@ -521,6 +444,8 @@ static void improve(pencil *o, int on_diagonal, double x[2])
         memcpy(x, off, sizeof off);
 }
 
+/* ---- waves that are all parallel */
+
 /* Room for waves. */
 typedef struct { int k[MOST_WAVES][2]; double phase[MOST_WAVES], p[MOST_WAVES]; } room;
 
@@ -538,13 +463,13 @@ static waves present(const waves *v, room *r)
     return some;
 }
 
-static int divisor(int a, int b) { return b == 0 ? abs(a) : divisor(b, a % b); }
+static int common_divisor(int a, int b) { return b == 0 ? abs(a) : common_divisor(b, a % b); }
 
 /* If k = m q for all waves, q primitive, they become waves (m, 0) of |q|^2 the amplitude, which is
    what second variations of x along q see of them; the first angle is q.x then. */
 static int flatten(room *r, int n, int q[2])
 {
-    const int common = n > 0 ? divisor(r->k[0][0], r->k[0][1]) : 0;
+    const int common = n > 0 ? common_divisor(r->k[0][0], r->k[0][1]) : 0;
 
     for (int i = 0; i < 2 && common > 0; i++)
         q[i] = r->k[0][i] / common;
@@ -560,17 +485,19 @@ static int flatten(room *r, int n, int q[2])
     return n > 0;
 }
 
+/* ---- the answer */
+
 void loewner_start(const waves *given, int on_diagonal, double x[2])
 {
     room r;
     const waves v = present(given, &r);
     const survey s = survey_of(&v, on_diagonal);
-    pencil o = { .v = &v, .reach = NEAR, .step = FINER, .above = s.largest - 2.0 };
+    orbits o = { .v = &v, .reach = NEAR, .step = FINER, .above = s.largest - 2.0 };
     int q[2] = { 1, 0 };
     double least[2];
 
-    find_least(least_eigenvalue, &v, s.least, s.grid, on_diagonal, x);
-    find_least(potential, &v, s.potential, s.grid, on_diagonal, least);
+    find_least(least_eigenvalue_of_beta, &v, s.least, s.grid, on_diagonal, x);
+    find_least(value_of_potential, &v, s.potential, s.grid, on_diagonal, least);
     for (int i = 0; i < 2; i++)
         x[i] += BETWEEN * (least[i] - x[i]);
     for (int m = 0; m < ANGLES; m++)

@@ -3,12 +3,7 @@
 #ifndef CONVERSE_START_H
 #define CONVERSE_START_H
 
-/* V(y) = -sum of p[j] sin(k[j].y + phase[j]), phases in radians. */
-typedef struct {
-    int n;
-    const int (*k)[2];
-    const double *phase, *p;
-} waves;
+#include "model/stationary.h"
 
 /* x = a point from which the proof is short.  On the diagonal if V is symmetric about it, so that
    mirror images can be skipped, unless another point is plainly better. */

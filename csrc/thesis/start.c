@@ -3,17 +3,17 @@
    precision, and no bound depends on it. */
 #include <math.h>
 
+#include "model/stationary.h"
 #include "unit.h"
 
-enum { NEWTON_STEPS = 200, GRID = 24 };
-static const double NEWT_TOL = 1e-9, MAX_JUMP = 0.5, PI = 3.14159265358979323846;
+enum { GRID = 24 };
+static const double PI = 3.14159265358979323846;
 
-/* What is minimized, its gradient g and Hessian h (xx, xy, yy). */
-typedef double objective(const double abc[3], const double x[2], double g[2], double h[3]);
+/* ---- what is minimized, of the thesis's three waves, whose amplitudes v->p are a, b and c */
 
-static double trace(const double abc[3], const double x[2], double g[2], double h[3])
+static double trace(const waves *v, const double x[2], double g[2], double h[3])
 {
-    const double a = abc[0], b = abc[1], c2 = 2.0 * abc[2], z = x[0] + x[1];
+    const double a = v->p[0], b = v->p[1], c2 = 2.0 * v->p[2], z = x[0] + x[1];
 
     g[0] = -a * cos(x[0]) - c2 * cos(z);
     g[1] = -b * cos(x[1]) - c2 * cos(z);
@@ -25,11 +25,11 @@ static double trace(const double abc[3], const double x[2], double g[2], double 
 
 /* Twice the least eigenvalue of beta, that is, its trace less the root of
    D = (a sin x - b sin y)^2 + (2c sin(x + y))^2. */
-static double least_eigenvalue(const double abc[3], const double x[2], double g[2], double h[3])
+static double twice_least_eigenvalue(const waves *v, const double x[2], double g[2], double h[3])
 {
-    const double as = abc[0] * sin(x[0]), ac = abc[0] * cos(x[0]);
-    const double bs = abc[1] * sin(x[1]), bc = abc[1] * cos(x[1]);
-    const double cs = 2.0 * abc[2] * sin(x[0] + x[1]), cc = 2.0 * abc[2] * cos(x[0] + x[1]);
+    const double as = v->p[0] * sin(x[0]), ac = v->p[0] * cos(x[0]);
+    const double bs = v->p[1] * sin(x[1]), bc = v->p[1] * cos(x[1]);
+    const double cs = 2.0 * v->p[2] * sin(x[0] + x[1]), cc = 2.0 * v->p[2] * cos(x[0] + x[1]);
     const double dif = as - bs, D = dif * dif + cs * cs, root = sqrt(D);
     const double Dx = dif * ac + cs * cc, Dy = -dif * bc + cs * cc;     /* half the gradient */
     const double Dxx = ac * ac - dif * as + cc * cc - cs * cs;          /* half the Hessian */
@@ -44,45 +44,22 @@ static double least_eigenvalue(const double abc[3], const double x[2], double g[
     return 4.0 - as - bs - cs - root;
 }
 
-/* Newton's method from x, jumps bounded; returns the value reached, or HUGE_VAL. */
-static double newton(objective *f, const double abc[3], double x[2])
-{
-    const double tolerance = NEWT_TOL * (fabs(abc[0]) + fabs(abc[1]) + fabs(abc[2]));
-    double g[2], h[3];
-
-    for (int step = 0; step < NEWTON_STEPS; step++) {
-        const double value = f(abc, x, g, h), det = h[0] * h[2] - h[1] * h[1];
-        double dx, dy, jump;
-        if (fabs(g[0]) + fabs(g[1]) <= tolerance)
-            return value;
-        dx = (g[0] * h[2] - g[1] * h[1]) / det;
-        dy = (g[1] * h[0] - g[0] * h[1]) / det;
-        jump = fabs(dx) + fabs(dy);
-        if (!isfinite(jump))
-            return HUGE_VAL;
-        if (jump > MAX_JUMP) {
-            dx *= MAX_JUMP / jump;
-            dy *= MAX_JUMP / jump;
-        }
-        x[0] -= dx;
-        x[1] -= dy;
-    }
-    return HUGE_VAL;
-}
-
 /* x = a place where f is least: where Newton's method leads from (pi/2, pi/2), as in 1989, or
    from the best point of a grid if that is better, or that point itself.  On the diagonal if
    asked for, so that symmetry can be used. */
 static void find_start(objective *f, double x[2], const double abc[3], int on_diagonal)
 {
+    static const int k[3][2] = { { 1, 0 }, { 0, 1 }, { 1, 1 } };
+    static const double phase[3] = { 0.0, 0.0, 0.0 };
+    const waves v = { 3, k, phase, abc };
     double best[2] = { PI / 2, PI / 2 }, g[2], h[3], least = HUGE_VAL, value;
 
     x[0] = x[1] = PI / 2;
-    value = newton(f, abc, x);
+    value = newton(f, &v, x);
     for (int i = 0; i < GRID; i++)
         for (int j = on_diagonal ? i : 0; j < (on_diagonal ? i + 1 : GRID); j++) {
             const double y[2] = { 2 * PI * (i + 0.5) / GRID, 2 * PI * (j + 0.5) / GRID };
-            const double at_y = f(abc, y, g, h);
+            const double at_y = f(&v, y, g, h);
             if (at_y < least) {
                 least = at_y;
                 best[0] = y[0];
@@ -92,7 +69,7 @@ static void find_start(objective *f, double x[2], const double abc[3], int on_di
     if (!(value <= least)) {
         x[0] = best[0];
         x[1] = best[1];
-        if (!(newton(f, abc, x) <= least)) {
+        if (!(newton(f, &v, x) <= least)) {
             x[0] = best[0];
             x[1] = best[1];
         }
@@ -108,5 +85,5 @@ void set_Herm_start(double x[2], const double abc[3], int on_diagonal)
 
 void set_LL_start(double x[2], const double abc[3], int on_diagonal)
 {
-    find_start(least_eigenvalue, x, abc, on_diagonal);
+    find_start(twice_least_eigenvalue, x, abc, on_diagonal);
 }
