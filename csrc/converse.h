@@ -45,7 +45,7 @@ enum { CV_THESIS, CV_LOEWNER };                       /* methods */
 typedef struct {
     unsigned long long index[5];
     int cuts[5];
-    int from;                /* learnt from the prism it was cut from; 0 for the root */
+    int hint;                /* learnt from the prism it was cut from; 0 for the root */
 } cv_cell;
 
 /* What became of cells so far, to guess from it what will become of others.  Cells are of one kind
@@ -119,7 +119,7 @@ const char *cv_tree(const cv_search *s, size_t *length);   /* nodes so far, in p
 const cv_counts *cv_get_counts(const cv_search *s);
 const int *cv_steps(const cv_search *s);                   /* of each node: its orbit's length */
 const cv_history *cv_get_history(const cv_search *s);
-int cv_class(int from);                                    /* of a cell with this from */
+int cv_class(int hint);                                    /* of a cell with this hint */
 /* Method Loewner, V odd: 1 if B > 10/3 for all parameters; 2 if there is one, and this is so at its
    upper end t_1 = 1.  Then the theorem holds for every multiple s >= 1 of these amplitudes, too. */
 int cv_at_once(const cv_search *s);

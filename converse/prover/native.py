@@ -250,7 +250,7 @@ class Search:
         lib.cv_pending(self.handle, pending)
         counts = lib.cv_get_counts(self.handle)
         values = {item.name: getattr(counts, item.name) for item in fields(Counts)}
-        return ([(tuple(cell.index), tuple(cell.cuts), getattr(cell, "from")) for cell in pending],
+        return ([(tuple(cell.index), tuple(cell.cuts), cell.hint) for cell in pending],
                 Counts(**{name: value if isinstance(value, int) else tuple(value)
                           for name, value in values.items()}))
 

@@ -18,8 +18,8 @@ void loewner_free(loewner *w);
 /* How many cells are best tried at once, and at most: MOST_LANES or fewer. */
 int loewner_lanes(const loewner *w);
 
-/* method.h: try.  For an axis of -1 the cell is too fine for doubles already.  outcome.from: fewer
-   points of the orbit than that will hardly do.  cell->from decides at which lengths the orbit is
+/* method.h: try.  For an axis of -1 the cell is too fine for doubles already.  outcome.hint: fewer
+   points of the orbit than that will hardly do.  cell->hint decides at which lengths the orbit is
    tried, not whether a try that succeeds is right.  Reason CV_REASON_ARITHMETIC: it is the doubles
    that failed. */
 void loewner_try(loewner *w, int n, const cv_cell *const cells[], outcome *const out[]);

@@ -133,9 +133,9 @@ static void blame(const batch *w, int k, const progress *s, const cv_cell *cell,
     else if (out->v.reason == CV_REASON_TOO_BIG)
         out->v.reason = CV_REASON_ARITHMETIC;
     out->v.nsteps = points_of(w, k);
-    out->from = (s->contradicted ? s->contradicted : points_of(w, k)) - 2;
-    if (out->from < 2)
-        out->from = 0;
+    out->hint = (s->contradicted ? s->contradicted : points_of(w, k)) - 2;
+    if (out->hint < 2)
+        out->hint = 0;
 }
 
 /* All orbits grow by a point at a time, and are tried at the lengths of one sequence, so that the
@@ -152,7 +152,7 @@ static void follow_and_attempt(batch *w, mask going, int n, const cv_cell *const
                 s[k].ended = s[k].ended || !lengthen(w, k, &s[k].why);
                 growing |= !s[k].ended;
                 put_truth(&active, k, points_of(w, k) > s[k].tried &&
-                                    (s[k].ended || points >= cells[k]->from));
+                                    (s[k].ended || points >= cells[k]->hint));
                 if (s[k].ended && points_of(w, k) == s[k].tried)
                     put_truth(&going, k, 0);
             }

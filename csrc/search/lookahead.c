@@ -77,7 +77,7 @@ static void look_ahead(cv_search *s)
         p->known = 1;
         if (!p->outcome.v.no_tori && axis >= 0 && may_halve(s, &p->cell, axis)) {
             cv_cell upper = p->cell, lower;
-            upper.from = p->outcome.from;
+            upper.hint = p->outcome.hint;
             split_cell(&upper, axis, &lower);
             p->halves[0] = new_note(s, &lower);
             p->halves[1] = new_note(s, &upper);

@@ -24,7 +24,7 @@ typedef struct {
 typedef struct {
     verdict v;                          /* of the last try */
     int axis;           /* to cut the cell across if it is not proved; -1: that would not help */
-    int from;                           /* what its halves are to know: cv_cell */
+    int hint;                           /* what its halves are to know: cv_cell */
     int quick_tries, tries, Rtries;     /* made of it, each 0 or 1, for cv_counts */
     int steps, ll_used[3];              /* of the thesis's try in doubles */
 } outcome;
@@ -51,7 +51,7 @@ typedef struct {
     int (*lanes)(const void *work);     /* cells that are best tried at once, at most MOST_LANES */
 
     /* Is it impossible that a minimizing orbit leads from x* to these cells?  What becomes of a
-       cell depends on itself and on cell->from, and on no other cell.  Where a stop is asked for
+       cell depends on itself and on cell->hint, and on no other cell.  Where a stop is asked for
        in the middle nothing is known of them. */
     void (*try)(void *work, int n, const cv_cell *const cells[], outcome *const out[]);
 } method;

@@ -3,7 +3,7 @@
    The list is a stack: a prism that fails is replaced by its two halves, the first of which is
    tried next.  So the tree of all prisms is met in preorder, and one character per node,
    written as it is decided, is the whole of the proof.  What becomes of a prism depends on
-   itself and on what its parent learnt (cv_cell's from), so parts of the tree can be grown
+   itself and on what its parent learnt (cv_cell's hint), so parts of the tree can be grown
    apart. */
 #define _POSIX_C_SOURCE 200809L
 
@@ -130,7 +130,7 @@ static void conclude(cv_search *s, const outcome *out)
         counts->ll_used[j] += out->ll_used[j];
     if (out->steps > counts->max_steps)
         counts->max_steps = out->steps;
-    s->stack[s->pending - 1].from = out->from;
+    s->stack[s->pending - 1].hint = out->hint;
     s->last_steps = v->nsteps;
     if (!v->no_tori) {
         counts->reasons[v->reason]++;
@@ -165,11 +165,11 @@ static void decide(cv_search *s)
 }
 
 /* The class of a cell: logarithmic, two to an octave. */
-int cv_class(int from)
+int cv_class(int hint)
 {
     int class = 0;
 
-    for (int bound = 2; class < CV_CLASSES - 1 && from >= bound; class++)
+    for (int bound = 2; class < CV_CLASSES - 1 && hint >= bound; class++)
         bound = class % 2 == 0 ? bound / 2 * 3 : bound / 3 * 4;
     return class;
 }
@@ -178,13 +178,13 @@ static void decide_and_remember(cv_search *s)
 {
     const cv_cell *c = &s->stack[s->pending - 1];
     const int cuts = all_cuts(c), level = cuts < CV_LEVELS ? cuts : CV_LEVELS - 1;
-    const int class = cv_class(c->from), pending = s->pending;
+    const int class = cv_class(c->hint), pending = s->pending;
 
     decide(s);
     s->history.nodes[level][class]++;
     if (s->pending > pending) {
         s->history.cut[level][class]++;
-        s->history.became[class][cv_class(s->stack[pending].from)]++;
+        s->history.became[class][cv_class(s->stack[pending].hint)]++;
     }
 }
 

@@ -123,7 +123,7 @@ static void try_cell(bench *w, const cv_cell *c, outcome *out)
     const box *const b = &w->prism;
     verdict *const v = &out->v;
 
-    *out = (outcome){ .from = c->from, .quick_tries = 1 };
+    *out = (outcome){ .hint = c->hint, .quick_tries = 1 };
     set_prism(w, c);
     out->axis = apm_cmp(b->half[4], b->half[3]) > 0 ? V1 : V0;          /* the wider; ties to v0 */
     quick_try(w->quick, b, v);
