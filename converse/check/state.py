@@ -11,6 +11,7 @@ import sys
 import time
 
 from .failures import Unusable, complain, reason
+from .signals import undisturbed
 
 STATE_SECONDS = 10                      # between two writes of the state
 STATE = """converse-check state 1
@@ -80,8 +81,13 @@ class State:
     def _write(self):
         """The file is whole at any time, the older one or the newer.
 
-        The new file's name is known before the file exists, so that a signal at any moment leaves
-        no such file behind."""
+        A signal waits meanwhile: if KeyboardInterrupt struck inside file.write on a full disk, the
+        OSError of the close() that follows would take its place, and the check would go on."""
+        with undisturbed():
+            self._write_beside()
+        self.saved = time.monotonic()
+
+    def _write_beside(self):
         name = os.path.join(os.path.dirname(self.path), ".converse-check-" + os.urandom(8).hex())
         try:
             handle = os.open(name, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600)
@@ -94,7 +100,6 @@ class State:
             with contextlib.suppress(OSError):  # it may be in its place already
                 os.unlink(name)
             raise
-        self.saved = time.monotonic()
 
     def advance(self, leaves, pieces):
         self.confirmed, self.pieces = self.confirmed + leaves, self.pieces + pieces

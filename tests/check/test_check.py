@@ -4,9 +4,11 @@ import ast
 import builtins
 import contextlib
 import decimal
+import errno
 import gzip
 import hashlib
 import inspect
+import io
 import itertools
 import json
 import math
@@ -30,6 +32,7 @@ from converse import Problem
 from converse import check as package
 from converse import prove, read_input
 from converse.check import lockstep, ship
+from converse.check import state as state_module
 from converse.model.problem import LINE
 
 from checker import check
@@ -1212,6 +1215,27 @@ def test_a_state_of_a_certificate_that_fails(moving, run, tmp_path):
     text = sealed(with_tree(text, "2" + tree + tree))
     first, again = (run(text, "--state", str(tmp_path / "state")) for _ in "12")
     assert first == again and first[0] == 5 and "not excluded" in first[2]
+
+
+def test_ctrl_c_while_the_state_is_written_on_a_full_disk(tmp_path, monkeypatch):
+    """The failure to close the file does not take the interrupt's place."""
+    class Full(io.StringIO):
+        def write(self, text):
+            signal.raise_signal(signal.SIGINT)
+            return len(text)
+
+        def close(self):
+            raise OSError(errno.ENOSPC, "no space is left")
+
+    def opened(handle, _):
+        os.close(handle)
+        return Full()
+
+    state = check.State(tmp_path / "state", "0" * 64, 1)
+    monkeypatch.setattr(state_module, "open", opened, raising=False)
+    with pytest.raises(KeyboardInterrupt), check.interruptible(False):
+        state.save()
+    assert [path.name for path in tmp_path.iterdir()] == ["state"]
 
 
 def test_states_that_are_refused(deep, texts, run, tmp_path):
