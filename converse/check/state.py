@@ -14,8 +14,8 @@ from .failures import Unusable, complain, reason
 from .signals import undisturbed
 
 STATE_SECONDS = 10                      # between two writes of the state
-STATE = """converse-check state 1
-certificate: sha256 %s
+STATE = """converse-check state 2
+file: sha256 %s
 checker: sha256 %s
 confirmed: %d
 pieces: %d
@@ -63,14 +63,14 @@ class State:
                            % (path, reason(error))) from None
         if not text.startswith(STATE.partition("\n")[0]):
             raise Unusable("%s is not a state of this checker; name another file" % path)
-        words = re.findall("(?m)^(?:certificate|checker): sha256 ([0-9a-f]{64})$", text)
+        words = re.findall("(?m)^(?:file|checker): sha256 ([0-9a-f]{64})$", text)
         found = [int(n) for n in re.findall("(?m)^(?:confirmed|pieces): ([0-9]{1,18})$", text)]
         if len(words) != 2 or len(found) != 2 or text != self._sealed(*words, *found) \
                 or found[0] > total and words[0] == sha256:
             raise Unusable("the state %s is damaged; delete it to begin anew" % path)
         if words != [self.sha256, self.checker]:
             raise Unusable("the state %s belongs to another %s; name another file" % (
-                path, "checker" if words[0] == self.sha256 else "certificate"))
+                path, "checker" if words[0] == self.sha256 else "file"))
         self.confirmed, self.pieces = found
 
     @staticmethod

@@ -5,7 +5,7 @@
 Prints figures and judges nothing.  Machines differ and are shared: a time is the least of N runs
 (3), and ratios within one run say more than seconds.  So --older has the sharper method timed in
 turn with that of another commit, built in place in DIRECTORY.  --whole has the checker verify all
-certificates whole, which takes hours, and not only those of a minute or less.
+proof files whole, which takes hours, and not only those of a minute or less.
 """
 
 import argparse
@@ -213,7 +213,7 @@ def main():
     p.add_argument("--repeat", type=int, default=3, metavar="N",
                    help="runs, of which the least counts")
     p.add_argument("--older", metavar="DIRECTORY", help="another commit, built in place: frontier")
-    p.add_argument("--whole", action="store_true", help="check all certificates whole: frontier")
+    p.add_argument("--whole", action="store_true", help="check all proof files whole: frontier")
     p.add_argument("what", nargs="*", metavar="WHAT",
                    help="of %s (default: all)" % ", ".join(PARTS))
     options = p.parse_args()

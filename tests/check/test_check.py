@@ -1058,7 +1058,7 @@ def test_the_format_names_what_the_checker_knows(root, texts, monkeypatch):
 
 @pytest.fixture(scope="module")
 def long(moving, tmp_path_factory):
-    """A certificate that takes some seconds, and the pieces that it takes."""
+    """A proof file whose check takes some seconds, and the pieces that it takes."""
     path = tmp_path_factory.mktemp("long") / "proof"
     tree, depth = tree_of(moving["segment"]), 1
     for _ in range(depth):
@@ -1207,7 +1207,7 @@ def test_a_state(deep, run, tmp_path, monkeypatch):
     assert status == 2 and "keeps no state" in err
 
 
-def test_a_state_of_a_certificate_that_fails(moving, run, tmp_path):
+def test_a_state_of_a_proof_file_that_fails(moving, run, tmp_path):
     """It fails again, and at once."""
     text = moving["segment"]
     tree = tree_of(text)
@@ -1239,7 +1239,7 @@ def test_ctrl_c_while_the_state_is_written_on_a_full_disk(tmp_path, monkeypatch)
 
 
 def test_states_that_are_refused(deep, texts, run, tmp_path):
-    """Of another certificate or checker, damaged, or something else: and they stay as they are."""
+    """Of another proof file or checker, damaged, or something else: and they stay as they are."""
     path = tmp_path / "state"
     assert run(deep, "--state", str(path))[0] == 0
     good = path.read_text()
@@ -1251,7 +1251,7 @@ def test_states_that_are_refused(deep, texts, run, tmp_path):
     assert seal(good) == good
     more = re.sub("confirmed: .*", "confirmed: 999999", good)
     other = re.sub("checker: sha256 .{8}", "checker: sha256 01234567", good)
-    cases = [(good, texts["trig278"], "another certificate"),
+    cases = [(good, texts["trig278"], "another file"),
              (seal(other), deep, "another checker"), (other, deep, "damaged"),
              (more, deep, "damaged"), (seal(more), deep, "damaged"),
              (seal(re.sub("confirmed: .*", "confirmed: -1", good)), deep, "damaged"),
@@ -1260,7 +1260,7 @@ def test_states_that_are_refused(deep, texts, run, tmp_path):
              (good + "x" * 9999, deep, "damaged"),
              ("", deep, "not a state"), ("\0" * 300, deep, "not a state"),
              (deep, deep, "not a state"), ("precious\n", deep, "not a state"),
-             (good.replace("state 1", "state 2"), deep, "not a state")]
+             (good.replace("state 2", "state 1"), deep, "not a state")]
     cases += [(good[:n], deep, "state") for n in range(0, len(good), 23)]
     cases += [(good.replace("\n", "\r\n"), deep, "damaged")]
     for content, text, why in cases:

@@ -140,13 +140,13 @@ def test_any_bytes_as_backup(tmp_path_factory, data):
 
 @MANY
 @given(edits=edits, seal=st.booleans(), zipped=st.booleans())
-def test_any_change_of_a_certificate(proof_bytes, tmp_path_factory, edits, seal, zipped):
+def test_any_change_of_a_proof_file(proof_bytes, tmp_path_factory, edits, seal, zipped):
     """The checker verifies a changed file only if the change leaves a theorem that is true: an
     intact tree of the same problem.  Everything else is rejected, or unusable, in one line."""
     data = edited(proof_bytes, edits)
     if seal:
         data = resealed(data)
-    path = tmp_path_factory.getbasetemp() / ("certificate-%d" % os.getpid())
+    path = tmp_path_factory.getbasetemp() / ("proof-file-%d" % os.getpid())
     path.write_bytes(gzip.compress(data, 1) if zipped else data)
     try:
         check.verify(path)
@@ -162,7 +162,7 @@ def test_any_change_of_a_certificate(proof_bytes, tmp_path_factory, edits, seal,
 @example(b"converse proof 3\n", b"checksum: sha256 ", True)
 @example(b"converse proof 3\n", b"\ntree:\n\n", True)
 @example(b"converse proof 3\n", b"tree:\nP\n", True)
-def test_any_bytes_as_certificate(tmp_path_factory, start, data, seal):
+def test_any_bytes_as_a_proof_file(tmp_path_factory, start, data, seal):
     path = tmp_path_factory.getbasetemp() / ("any-%d" % os.getpid())
     data = start + data + b"\nchecksum: sha256 \n" * seal
     path.write_bytes(resealed(data))
@@ -208,7 +208,7 @@ def test_any_change_of_a_state(kept, tmp_path_factory, edits, seal):
 # ---- changes that make sense: another claim or tree, with the counts and the checksum it needs
 
 @pytest.fixture(scope="module")
-def certificates(root, tmp_path_factory):
+def proof_files(root, tmp_path_factory):
     """Whole proofs: of both methods, with parameters together and apart, cut and not."""
     path = tmp_path_factory.mktemp("fuzz") / "whole.proof"
     found = []
@@ -338,11 +338,11 @@ def refuted(claim, cases):
 @example(2, [("field", "frame", "1 0 -1 1")])
 @example(2, [("k", 2, "1 -1")])
 @example(2, [("phase", 2, "1")])
-def test_any_other_claim_or_tree(certificates, tmp_path_factory, which, changes):
-    """A changed certificate that counts right and has its checksum is verified only if no
+def test_any_other_claim_or_tree(proof_files, tmp_path_factory, which, changes):
+    """A changed proof file that counts right and has its checksum is verified only if no
     counterexample to what it says can be found.  (What is false costs the checker all the pieces
     that it may make of a leaf; what is true, some.)"""
-    text = changed(certificates[which], changes)
+    text = changed(proof_files[which], changes)
     path = tmp_path_factory.getbasetemp() / ("other-%d" % os.getpid())
     path.write_text(text, encoding="utf-8")
     try:
