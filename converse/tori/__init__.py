@@ -5,6 +5,7 @@
 """
 
 try:
+    from .choice import choose_alpha, near
     from .divisors import Divisors, Norm, lattice_basis
     from .rotation import Rotation, read_rotation
 except ImportError as _error:           # said when something is asked for: the command needs a line
@@ -17,4 +18,5 @@ except ImportError as _error:           # said when something is asked for: the 
             raise AttributeError(name)
         raise ConverseError(_MISSING)
 
-__all__ = ["Divisors", "Norm", "Rotation", "lattice_basis", "read_rotation"]
+__all__ = ["Divisors", "Norm", "Rotation", "choose_alpha", "lattice_basis", "near",
+           "read_rotation"]

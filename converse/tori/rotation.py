@@ -207,7 +207,7 @@ def _nearest(polynomial, place):
 # ---- reading and writing polynomials
 
 TOKEN = re.compile(r"\s*(?:([0-9]+(?:\.[0-9]+)?|\.[0-9]+)|([-+*/^()t]))")
-HIGHEST = 40                            # exponent
+HIGHEST, DEEPEST = 40, 40               # exponent; parentheses
 
 
 def _parsed(text, field):
@@ -221,6 +221,8 @@ def _parsed(text, field):
                              "parentheses" % (text, text[at:at + 10].strip()))
         tokens.append(match.group(1) or match.group(2))
         at = match.end()
+    if tokens.count("(") > DEEPEST:
+        raise ValueError("a polynomial in t has at most %d parentheses" % DEEPEST)
     try:
         value, rest = _sum(tokens, field)
         if rest:

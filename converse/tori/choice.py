@@ -1,0 +1,247 @@
+"""Choices that are judged by small divisors: a rotation vector near a given one, and the weights of
+a norm.
+
+Near a vector of rationals there are vectors of a field: those that lie in one Farey triangle (of
+determinant 1 or -1) with its corners p_i/q_i weighed by a basis c_i of the integers of the field,
+(sum of c_i p_i)/(sum of c_i q_i).  Far out they all have the divisors of the field; a large
+triangle, small norms and conjugates that nearly coincide make them better.  On a line these are
+the noble numbers, whose continued fractions end in 1, 1, 1, ...
+"""
+
+from fractions import Fraction
+from itertools import permutations, product
+from math import ceil, floor
+from typing import Iterator, List, Optional, Sequence, Tuple
+
+import numpy as np
+
+from ..model.exact import Number, exact, short_text
+from .divisors import Divisors, Norm, Vector
+from .field import Element, Field, real_roots
+from .rotation import Rotation
+
+TOLERANCE, LEAST = Fraction(1, 1000), Fraction(1, 10 ** 6)
+FIELDS = (-1, -2, 1, 1), (-1, -1, 0, 1)         # of 2 cos(2 pi/7), and of the spiral mean
+GOLDEN = -1, 1, 1
+HIGHEST = 3                             # coefficient of the integers of a field that are tried
+STEEPEST = 60.0                         # ratio of weights in a triangle
+SEEN, COMPARED = 1000, 6                # candidates, judged in doubles and exactly
+LARGEST = 20                            # denominator of a triangle, times the tolerance^(2/3)
+NEAREST, REACH = 40, 500                # |k| up to which divisors are judged so
+FINER = 20                              # the width that is lost, as a part of the analytic width
+RATIOS = tuple(Fraction(r) for r in ("1", "3/2", "2", "5/2", "3", "4", "5", "6", "8", "10"))
+
+Candidate = Tuple[Field, Tuple[Element, ...]]
+Triangle = Tuple[Tuple[int, int, int], ...]     # corners (q, p0, p1)
+
+
+def near(w0: Number, w1: Optional[Number] = None, norm: Optional[Norm] = None,
+         tolerance: Number = TOLERANCE) -> Rotation:
+    """The rotation vector with the best small divisors that was found near w0, or near (w0, w1).
+
+    norm -- in which c(delta) of its Divisors is to be small; by default |k_0| + |k_1|
+    tolerance -- how far each component may be away; the result's name tells it
+
+    ValueError: none was found so near."""
+    target = tuple(exact(w) for w in (w0, w1) if w is not None)
+    within, n = exact(tolerance), len(target)
+    if not LEAST <= within <= 1:
+        raise ValueError("the tolerance, %s, is not from %s to 1" % (tolerance, short_text(LEAST)))
+    if norm is None:
+        norm = Norm(tuple(tuple(int(i == j) for j in range(n)) for i in range(n)),
+                    (Fraction(1),) * n)
+    if norm.dimension != n:
+        raise ValueError("the norm is of %d angles; give as many numbers" % norm.dimension)
+    # A Farey interval of this size has denominators of about within^(-1/2), a triangle of about
+    # within^(-2/3), and the divisors that set this vector apart are those of such k.
+    delta = Fraction(float(within) ** (0.5 if n == 1 else 2 / 3)).limit_denominator(10 ** 6)
+    name = "best found within %s of %s" % (short_text(within), " ".join(map(short_text, target)))
+    found = _nobles(target[0], within, float(delta)) if n == 1 \
+        else _cubics(target, within, norm, float(delta))
+    best, least = None, None
+    basis = tuple(tuple(int(i == j) for j in range(n)) for i in range(n))
+    for field, vector in found:
+        rotation = Rotation(name, field.polynomial, field.root, vector)
+        if any(low < w - within or high > w + within
+               for (low, high), w in zip(rotation.turns(30), target)):
+            continue
+        c = Divisors(rotation, norm, basis, min(10 / delta, Fraction(REACH))).c(delta)
+        if least is None or c < least:
+            best, least = rotation, c
+    if best is None:
+        raise ValueError("no rotation vector was found within %s of %s; give a larger tolerance"
+                         % (short_text(within), " ".join(map(short_text, target))))
+    return best
+
+
+def choose_alpha(rotation: Rotation, frame: Sequence[Vector], basis: Sequence[Vector],
+                 rates: Sequence[float]) -> Tuple[Fraction, ...]:
+    """The weights alpha of the norm in which a theorem is cheapest: c(delta) is least for a delta
+    that is a fixed part of the width rho = min rates[i]/alpha[i] to which the torus is analytic.
+
+    rates -- at which its coefficients fall in each direction of the frame, all positive"""
+    if not all(rate > 0 for rate in rates) or len(rates) != len(frame):
+        raise ValueError("give %d positive rates, not %s" % (len(frame), list(rates)))
+    if len(frame) == 1:
+        return Fraction(1),
+    best, least = None, None
+    for ratio in (*RATIOS, *(1 / r for r in RATIOS[1:])):
+        alpha = (Fraction(1), ratio) if ratio >= 1 else (1 / ratio, Fraction(1))
+        delta = min(Fraction(rate) / a for rate, a in zip(rates, alpha)) / FINER
+        delta = delta.limit_denominator(10 ** 9) or Fraction(1, 10 ** 9)
+        c = Divisors(rotation, Norm(tuple(frame), alpha), basis, 200 * max(alpha)).c(delta)
+        if least is None or c < least:
+            best, least = alpha, c
+    assert best is not None
+    return best
+
+
+# ---- one angle
+
+def _nobles(w: Fraction, within: Fraction, delta: float) -> List[Candidate]:
+    """The most promising noble numbers of the Farey intervals that meet the range but do not lie
+    within smaller ones that do."""
+    field = Field(GOLDEN, real_roots(GOLDEN)[-1])
+    g, one = (Fraction(0), Fraction(1)), (Fraction(1), Fraction(0))
+    low, high, t = w - within, w + within, float(field.bounds(g, 20)[0])
+    intervals = [((1, p), (1, p + 1)) for p in range(floor(low), ceil(high))]
+    found, omega = [], []
+    while intervals:
+        (q, p), (r, s) = intervals.pop()
+        for weights, (x, y) in (((one, g), (1, t)), ((g, one), (t, 1))):
+            value = (x * p + y * s) / (x * q + y * r)
+            if abs(value - w) <= within:
+                found.append((weights, (p, s), (q, r)))
+                omega.append(value)
+        if not low <= Fraction(p, q) < Fraction(s, r) <= high:
+            middle = q + r, p + s
+            intervals += [ends for ends in (((q, p), middle), (middle, (r, s)))
+                          if Fraction(ends[0][1], ends[0][0]) < high
+                          and low < Fraction(ends[1][1], ends[1][0])]
+    score = _near_part(np.array(omega)[:, None], np.arange(1, SEEN + 1)[:, None],
+                       np.arange(1.0, SEEN + 1), delta)
+    return [(field, (_quotient(field, *found[j]),)) for j in np.argsort(score)[:COMPARED]]
+
+
+def _quotient(field, weights, above, below):
+    """(sum of weights times above)/(sum of weights times below), integers."""
+    total = [field.element([sum(n * w[j] for n, w in zip(numbers, weights))
+                            for j in range(field.degree)]) for numbers in (above, below)]
+    return field.product(total[0], field.inverse(total[1]))
+
+
+# ---- two angles
+
+def _cubics(target, within, norm, delta) -> List[Candidate]:
+    """The most promising vectors of both fields, as far as doubles can tell."""
+    found = []
+    for polynomial in FIELDS:
+        field = Field(polynomial, real_roots(polynomial)[-1])
+        bases, roots = _bases(field), np.roots(polynomial[::-1])
+        roots = roots[np.argsort(abs(roots - _value(field)))]           # t first
+        values = bases @ np.vander(roots, 3, increasing=True).T         # (bases, weights, roots)
+        for triangle in _triangles(target, within):
+            corners = np.array(triangle, float)
+            at = values[..., 0].real @ corners                          # (bases, 3)
+            close = np.flatnonzero((abs(at[:, 1:] / at[:, :1] - np.array(target, float))
+                                    <= float(within)).all(1))
+            if len(close):
+                score = _scores(values[close], corners, norm, delta)
+                best = np.argsort(score, kind="stable")[:4 * COMPARED]
+                found += [(score[j], field, bases[close[j]], triangle) for j in best]
+    chosen: List[Candidate] = []
+    for _, field, weights, triangle in sorted(found, key=lambda each: each[0]):
+        q, p0, p1 = zip(*triangle)
+        elements = [tuple(map(Fraction, w.tolist())) for w in weights]
+        candidate = field, tuple(_quotient(field, elements, p, q) for p in (p0, p1))
+        if candidate not in chosen:
+            chosen.append(candidate)
+        if len(chosen) == COMPARED:
+            break
+    return chosen
+
+
+def _value(field) -> float:
+    """t."""
+    return float(field.bounds((Fraction(0), Fraction(1), Fraction(0)), 20)[0])
+
+
+def _bases(field) -> np.ndarray:
+    """Triples of positive integers of the field with determinant 1 or -1, of comparable size and in
+    all orders: shape (number, 3, 3), coefficients of 1, t, t^2 last."""
+    t = _value(field)
+    elements = np.array(list(product(range(-HIGHEST, HIGHEST + 1), repeat=3)))
+    value = elements @ np.array([1, t, t * t])
+    elements, value = elements[value > 1e-9], value[value > 1e-9]
+    i, j = np.triu_indices(len(elements), 1)
+    crosses = np.cross(elements[i], elements[j])
+    pair, k = np.nonzero(abs(crosses @ elements.T) == 1)
+    later = k > j[pair]
+    pair, k = pair[later], k[later]
+    triples = np.stack([i[pair], j[pair], k], 1)
+    sizes = value[triples]
+    triples = triples[sizes.max(1) < STEEPEST * sizes.min(1)]
+    return np.concatenate([elements[triples[:, order]] for order in permutations(range(3))])
+
+
+def _triangles(target, within) -> Iterator[Triangle]:
+    """The Farey triangles that hold the target, each half of the one before (Kim and Ostlund),
+    until they lie within the tolerance or have large denominators."""
+    base = tuple(floor(w) for w in target)
+    point = (Fraction(1), *target)
+    a, b, c = ((1, base[0] + x, base[1] + y) for x, y in
+               (((1, 0), (1, 1), (0, 1)) if sum(target) - sum(base) >= 1
+                else ((1, 0), (0, 0), (0, 1))))
+    while max(a[0], b[0], c[0]) ** 3 * within ** 2 < LARGEST ** 3:
+        yield a, b, c
+        if all(abs(Fraction(p, q) - w) <= within
+               for q, *ps in (a, b, c) for p, w in zip(ps, target)):
+            return
+        middle = a[0] + c[0], a[1] + c[1], a[2] + c[2]
+        if _determinant(b, middle, point) * _determinant(b, middle, c) >= 0:
+            a, b, c = c, middle, b
+        else:
+            a, b, c = b, middle, a
+
+
+def _determinant(a, b, c):
+    return (a[0] * (b[1] * c[2] - b[2] * c[1]) - a[1] * (b[0] * c[2] - b[2] * c[0])
+            + a[2] * (b[0] * c[1] - b[1] * c[0]))
+
+
+def _scores(values, corners, norm, delta) -> np.ndarray:
+    """About c(delta) of each vector, in doubles; values: (number, weights, conjugates)."""
+    total = np.einsum("nwr,wc->nrc", values, corners)
+    conjugates = total[..., 1:] / total[..., :1]                        # (number, conjugate, 2)
+    omega = conjugates[:, 0].real
+    denominator = abs(total[..., 0].prod(1))                            # the norm of sum c_i q_i
+    v, w = (np.array([float(x) for x in k]) for k in norm.vertices)
+
+    def form(m):
+        return (((conjugates[:, 1:] - conjugates[:, :1]) @ m).prod(1)).real
+
+    a, c = form(v), form(w)
+    b, largest = form(v + w) - a - c, np.maximum(abs(a), abs(c))
+    for side in (b, -b):                # the largest value along an edge of the ball, as Divisors
+        bend = a - side + c
+        bend[bend == 0] = 1e-300
+        at = (2 * a - side) / (2 * bend)
+        largest = np.where((at > 0) & (at < 1), np.maximum(
+            largest, abs((4 * a * c - b * b) / (4 * bend))), largest)
+    score = (2 / (np.e * delta)) ** 2 * denominator * largest / (2 * np.pi)
+    reach = [floor(NEAREST * max(abs(k[i]) for k in norm.vertices)) for i in range(2)]
+    k = np.array([(i, j) for i in range(reach[0] + 1) for j in range(-reach[1], reach[1] + 1)
+                  if i > 0 or j > 0])
+    size = np.array(norm.alpha, float) @ abs(np.array(norm.frame) @ k.T)
+    best = np.argsort(score)[:SEEN]
+    found = np.full(len(score), np.inf)
+    found[best] = np.maximum(score[best], _near_part(omega[best], k, size, delta))
+    return found
+
+
+def _near_part(omega, k, size, delta) -> np.ndarray:
+    """What k of these sizes contribute to c(delta), in doubles; one row for each omega and k."""
+    n, x = k.shape[1], delta * size
+    height = np.where(x <= n, np.exp(-x), (n / (np.e * np.maximum(x, 1e-9))) ** n)
+    divisor = 2 * abs(np.sin(np.pi * (omega @ k.T)))
+    return (height / np.maximum(divisor, 1e-300)).max(1)

@@ -1,0 +1,144 @@
+"""Rotation vectors: what is read, how exactly, and what is refused."""
+
+from fractions import Fraction
+from math import cos, pi, sqrt
+
+import pytest
+from conftest import not_sanitized
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from converse.tori import Rotation, near, read_rotation
+from converse.tori.field import Field, is_irreducible, real_roots, value_at
+from converse.tori.rotation import NAMES
+
+pytestmark = not_sanitized
+
+
+def test_names_are_the_numbers_of_the_literature():
+    assert read_rotation("golden").floats == pytest.approx([(sqrt(5) - 1) / 2])
+    assert read_rotation("silver").floats == pytest.approx([sqrt(2) - 1])
+    assert read_rotation("spiral").floats == pytest.approx([0.3247179572447, 0.7548776662467])
+    for name, half_sum, half_difference in (("t49", .304302077, .009573022),
+                                            ("V1", .295417861571, .003516212919),
+                                            ("V2", .295373025796, .003231653689)):
+        x0, x1 = read_rotation(name).floats
+        assert (x0 + x1) / 2 == pytest.approx(half_sum, abs=1e-9)
+        assert (x0 - x1) / 2 == pytest.approx(half_difference, abs=1e-9)
+    t = 2 * cos(2 * pi / 7)
+    assert read_rotation("seven").floats == pytest.approx([t - 1, t * t - 1])
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_what_is_written_is_read(name):
+    rotation = read_rotation(name)
+    again = read_rotation(rotation.text())
+    assert (again.polynomial, again.vector) == (rotation.polynomial, rotation.vector)
+    assert again.floats == rotation.floats and str(rotation) == name and str(again) == again.text()
+
+
+def test_the_root_is_the_largest_or_the_one_that_is_named():
+    assert read_rotation("t^2-2: t").floats == pytest.approx([sqrt(2)])
+    assert read_rotation("t^2-2 near -0.1: t").floats == pytest.approx([-sqrt(2)])
+    for place, index in (("1.2", 1), ("-1/2", 2), ("-2", 3)):
+        rotation = read_rotation("t^3+t^2-2t-1 near %s: t, t^2" % place)
+        assert rotation.floats[0] == pytest.approx(2 * cos(2 * pi * index / 7))
+        assert read_rotation(rotation.text()).floats == rotation.floats
+
+
+@pytest.mark.parametrize("text,same", [
+    ("t^2+t-1: 1/t", "1+t"), ("t^2+t-1: (2t+1)^3/5", "1+2t"), ("-t^2-t+1: -(-t)", "t"),
+    ("2t^2+2t-2: t", "t"), ("t^2 + t - 1 : 3 * t / 2 - 0.5", "(-1+3t)/2"),
+    ("t t+t-1: 2(t)t", "2-2t"),
+])
+def test_elements_are_simplified(text, same):
+    assert read_rotation(text).text() == "t^2+t-1: " + same
+
+
+@pytest.mark.parametrize("text,words", [
+    ("0.618", "no rotation vector"), ("", "no rotation vector"), ("t^2-2", "no rotation vector"),
+    ("t^2-1: t", "reducible"), ("t^3-8: t, t^2", "reducible"), ("t^2: t", "reducible"),
+    ("4t^2-4t+1: t", "reducible"), ("6t^3-7t^2+1: t,t^2", "reducible"),
+    ("t^2+1: t", "no real root"), ("t^2+1 near 1: t", "no real root"),
+    ("t^2-2 near 0: t", "equally near"), ("t^2-2 near z: t", "'z'"),
+    ("t^2-2: 3/2", "rational"), ("t^2-2: t^2", "rational"),
+    ("t^3-t-1: t,2t+1", "linearly dependent"), ("t^3-t-1: t, 1/2", "rational"),
+    ("t^3-t-1: t", "two components"), ("t^2-2: t, t", "one component"),
+    ("t^4+2: t", "degree 4"), ("t-1: t", "degree 1"), ("5: t", "degree 0"),
+    ("t^2-t/2: t", "integer coefficients"),
+    ("t^2-2: (t", "ends too early"), ("t^2-2: t)", "left over"), ("t^2-2: t**2", "'*'"),
+    ("t^2-2: x", "'x'"), ("t^2-2: 1/(t^2-2)", "divides by 0"), ("t^2-2:", "ends too early"),
+    ("t^2-2: t^999", "exponent"), ("t^2-2: t^t", "exponent"), ("t^40 t^40: t", "degree"),
+    ("t^2-2: " + "t+" * 1000 + "t", "characters"), ("1/t: t", "numbers only"),
+    ("t^2-2: " + "(" * 900 + "t" + ")" * 900, "parentheses"), ("t^2-2: 1e5t", "'e5t'"),
+])
+def test_what_is_no_irrational_vector_is_refused_in_one_line(text, words):
+    with pytest.raises(ValueError, match=".") as error:
+        read_rotation(text)
+    assert words in str(error.value) and "\n" not in str(error.value)
+
+
+def test_the_number_of_angles_must_fit():
+    with pytest.raises(ValueError, match="golden has one component, but the map has two angles"):
+        read_rotation("golden", 2)
+    with pytest.raises(ValueError, match="spiral has two components, but the map has one angle"):
+        read_rotation("spiral", 1)
+
+
+@pytest.mark.parametrize("root", [(0, 1), (-2, 2), (2, 1)])
+def test_a_root_must_be_isolated(root):
+    with pytest.raises(ValueError, match="has not one real root"):
+        Rotation("", (-2, 0, 1), root, ((0, 1),))
+
+
+@given(st.lists(st.integers(-9, 9), min_size=3, max_size=4).filter(lambda p: p[-1]))
+@settings(max_examples=100, deadline=None)
+def test_irreducible_polynomials_have_no_rational_root(polynomial):
+    rational = any(not value_at(polynomial, Fraction(p, q))
+                   for p in range(-9, 10) for q in range(1, 10))
+    assert is_irreducible(tuple(polynomial)) is not rational
+
+
+@given(st.lists(st.integers(-50, 50), min_size=3, max_size=4).filter(
+    lambda p: p[-1] and is_irreducible(tuple(p))), st.lists(st.fractions(max_denominator=99),
+                                                          min_size=2, max_size=2))
+@settings(max_examples=100, deadline=None)
+def test_bounds_hold_the_value_and_the_field_is_a_field(polynomial, numbers):
+    polynomial = tuple(polynomial)
+    for root in real_roots(polynomial):
+        field = Field(polynomial, root)
+        t = field.element([0, 1])
+        low, high = field.bounds(t, 50)
+        assert 0 < high - low <= Fraction(1, 10 ** 50) and root[0] < high and low < root[1]
+        assert value_at(polynomial, low) * value_at(polynomial, high) < 0
+        a = field.element(numbers)
+        assert field.bounds(field.element([0, 0, 0, 1]), 30)[0] <= high ** 3
+        if any(a):
+            assert field.product(a, field.inverse(a)) == field.element([1])
+            assert field.norm(a) * field.norm(field.inverse(a)) == 1
+            ends = field.bounds(a, 20)
+            assert field.sign(a) == (1 if ends[0] > 0 else -1)
+
+
+@pytest.mark.parametrize("number,tolerance", [("0.618", "1/1000"), ("0.4", "1/100"),
+                                              ("2.29", "1e-5"), ("-0.3", "1e-6")])
+def test_a_noble_number_is_near(number, tolerance):
+    rotation = near(number, tolerance=tolerance)
+    assert rotation.polynomial == (-1, 1, 1)
+    assert abs(rotation.floats[0] - float(number)) <= Fraction(tolerance) * (1 + 1e-9)
+    x, ones = rotation.turns(300)[0][0], 0      # the continued fraction ends in 1, 1, 1, ...
+    for _ in range(200):
+        quotient = x // 1
+        ones = ones + 1 if quotient == 1 else 0
+        x = 1 / (x - quotient)
+    assert ones > 80
+    assert number != "0.618" or rotation.text() == "t^2+t-1: t"
+
+
+@pytest.mark.parametrize("arguments,words", [
+    (("0.3", None, None, "1e-9"), "tolerance"), (("x",), "'x'"),
+])
+def test_a_place_that_makes_no_sense_is_refused(arguments, words):
+    with pytest.raises(ValueError, match=".") as error:
+        near(*arguments)
+    assert words in str(error.value)
