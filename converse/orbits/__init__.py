@@ -11,12 +11,12 @@ try:
     from .action import enclosed_action
     from .branch_and_bound import LeastAction, least_action
     from .mather import Floor, floor
-    from .measures import Prelude, gram_schmidt_exponents, prelude
+    from .measures import Prelude, prelude
     from .potential import (Fourier, FromPython, Potential, ff, froeschle, parameters, poly,
                             read_potential, standard, trig)
     from .proved import NotProved, ProvedOrbit, prove
     from .search import search
-    from .solver import Family, flow, follow, newton, straight
+    from .solver import Family, follow, straight
     from .state import State
     from .sweep import Onset, onset, onsets, read_csv, sweep
 except ImportError as _error:           # said when something is asked for: the command needs a line
@@ -31,7 +31,7 @@ except ImportError as _error:           # said when something is asked for: the 
         raise ConverseError(_MISSING)
 
 __all__ = ["Family", "Floor", "Fourier", "FromPython", "LeastAction", "NotProved", "Onset",
-           "Potential", "Prelude", "ProvedOrbit", "State", "enclosed_action", "ff", "floor", "flow",
-           "follow", "froeschle", "gram_schmidt_exponents", "least_action", "newton", "onset",
-           "onsets", "parameters", "poly", "prelude", "prove", "read_csv", "read_potential",
-           "search", "standard", "straight", "sweep", "trig"]
+           "Potential", "Prelude", "ProvedOrbit", "State", "enclosed_action", "ff", "floor",
+           "follow", "froeschle", "least_action", "onset", "onsets", "parameters", "poly",
+           "prelude", "prove", "read_csv", "read_potential", "search", "standard", "straight",
+           "sweep", "trig"]

@@ -1,13 +1,10 @@
-"""The thesis's prelude, where no tori can be, and the exponents as it computed them."""
+"""The thesis's prelude: where no tori can be."""
 
 from typing import NamedTuple
 
 import numpy as np
 
-from .potential import Potential, known, whole
-from .state import State, expected
-
-LONG_VECTOR = 100.0         # of this length the first vector is made a unit vector again
+from .potential import Potential, known
 
 
 class Prelude(NamedTuple):
@@ -54,25 +51,3 @@ def _highest(function, n):
         centre = grid[np.argmax(function(grid))][None]
         width, size = 2 * width / size, 5
     return centre
-
-
-def gram_schmidt_exponents(state: State, rounds: int = 1, seed: int = 0) -> np.ndarray:
-    """The exponents of a state as they were found in 1989 (thesis, Appendix A), for comparison: 2n
-    random vectors are carried along with DF and, whenever the first has grown, orthogonalized; the
-    logarithms of their lengths are added.  Array (n,), larger first.
-
-    Rounds times round the orbit; the error is about log(rounds q)/(rounds q), so that where all
-    exponents are zero one round of q = 2513 gives 0.003."""
-    expected(state)
-    rounds, seed = whole("rounds", rounds, 1), whole("the seed", seed, 0)
-    n = state.potential.n
-    total = np.zeros(2 * n)
-    vectors = np.linalg.qr(np.random.default_rng(seed).standard_normal((2 * n, 2 * n)))[0]
-    for bend in np.concatenate([state.eps * state.potential.evaluate(state.x)[2]] * rounds):
-        vectors[n:] -= bend @ vectors[:n]
-        vectors[:n] += vectors[n:]
-        if np.abs(vectors[:, 0]).max() > LONG_VECTOR:
-            vectors, lengths = np.linalg.qr(vectors)
-            total += np.log(np.abs(np.diag(lengths)))
-    total += np.log(np.abs(np.diag(np.linalg.qr(vectors)[1])))
-    return np.sort(total / (rounds * state.q))[::-1][:n]

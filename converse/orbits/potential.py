@@ -22,6 +22,9 @@ from ..prover.native import check
 from ..storage.files import plain
 
 STUDIED = {}                # by name, the potentials at the end of this file
+COMPARED = 7                # points where a potential from Python is compared with differences
+DIFFERENCE = 1e-5           # over this distance to either side
+AGREE = 1e-3                # of the largest entry there
 
 
 def known(potential):
@@ -272,26 +275,50 @@ def read_potential(path: Union[str, "os.PathLike[str]"], at: Mapping[str, Number
 
 class FromPython(Potential):
     """A potential given by an object: value(x), gradient(x) and hessian(x) take an array (m, n) and
-    return arrays (m,), (m, n) and (m, n, n)."""
+    return arrays (m,), (m, n) and (m, n, n).
+
+    ValueError, with the place and both numbers, if gradient or hessian disagree with differences of
+    value or gradient at one of a few points."""
 
     def __init__(self, source: object, n: int, name: str = "python",
-                 start: Optional[Sequence[float]] = None, curvature: Optional[float] = None,
-                 lipschitz: Optional[float] = None) -> None:
+                 start: Optional[Sequence[float]] = None,
+                 curvature: Optional[float] = None) -> None:
         for method in ("value", "gradient", "hessian"):
             if not callable(getattr(source, method, None)):
                 raise ValueError("a potential needs value(x), gradient(x) and hessian(x); %r has "
                                  "no %s"
                                  % (source, method))
-        super().__init__(lib.CV_PYTHON, name, n, start, "what a Python object says", curvature,
-                         lipschitz)
+        super().__init__(lib.CV_PYTHON, name, n, start, "what a Python object says", curvature)
         vars(self).update(source=source)
         self._error = None              # what source raised, until done() raises it again
         self._handle = ffi.new_handle(self)
         self.native.self = self._handle
+        self._compare()
+
+    def _compare(self):
+        """Compares gradient and Hessian with central differences.  What these are off by is some
+        DIFFERENCE^2 of the third derivative, and the rounding of V over DIFFERENCE."""
+        x = np.random.default_rng(0).random((COMPARED, self.n))
+        value, gradient, hessian = self.evaluate(x)
+        for axis in range(self.n):
+            step = DIFFERENCE * np.eye(self.n)[axis]
+            above, below = self.evaluate(x + step), self.evaluate(x - step)
+            for what, of, said, k in (("gradient", "value", gradient[:, axis, None], 0),
+                                      ("hessian", "gradient", hessian[:, :, axis], 1)):
+                seen = (above[k] - below[k]).reshape(said.shape) / (2 * DIFFERENCE)
+                size = np.abs(said).max() + np.abs(seen).max() + 1e-6 * np.abs(value).max()
+                off = np.abs(said - seen)
+                if off.max() > AGREE * size:
+                    point, i = np.unravel_index(np.argmax(off), off.shape)
+                    entry = axis if k == 0 else (int(i), axis)
+                    raise ValueError(
+                        "%s(x) of the potential %s is not the derivative of %s(x): at x = %s its "
+                        "entry %s is %.9g, and differences give %.9g; they are %.1e apart"
+                        % (what, self.name, of, tuple(map(float, x[point].round(6))), entry,
+                           said[point, i], seen[point, i], off[point, i]))
 
     def __reduce__(self):
-        return FromPython, (self.source, self.n, self.name, self.start, self.curvature,
-                            self.lipschitz)
+        return FromPython, (self.source, self.n, self.name, self.start, self.curvature)
 
 
 @ffi.def_extern(error=lib.CV_EARGUMENT)

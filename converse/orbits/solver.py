@@ -9,8 +9,8 @@ import numpy as np
 
 from .._native import lib
 from ..storage.files import ConverseError
-from .potential import Potential, address, done, finite, known, told, trig, whole
-from .state import FARTHEST, State, expected, type_of
+from .potential import Potential, address, done, finite, known, told, trig
+from .state import FARTHEST, State, type_of
 
 PER_CURVATURE = 0.2         # the step of eps from one state to the next guess, times the curvature
 HALVED = 64                 # times less, at least, where the solver fails
@@ -133,35 +133,13 @@ def follow(potential: Potential, p: Tuple[int, ...], q: int, eps: Sequence[float
     return Family(tuple(states))
 
 
-def flow(state: State, eps: Optional[float] = None, grad_size: float = 1e-6,
-         max_steps: int = 10000, dt: float = 0.5) -> Tuple[State, int]:
-    """Gradient flow (thesis, Appendix A), for comparison: du/dtau = -dL/du until the gradient's
-    root mean square is at most grad_size.  The kinetic part is taken implicitly, so that dt may be
-    large.  Returns the state, "not stationary" perhaps, and the number of steps."""
-    expected(state)
-    finite("grad_size and dt", [grad_size, dt])
-    state = replace(state, eps=state.eps if eps is None else eps, searches=0)
-    max_steps = whole("max_steps", max_steps, 0)
-    wave = 2 - 2 * np.cos(2 * np.pi * np.fft.rfftfreq(state.q))
-    damping = 1 / (1 + dt * wave)[:, None]
-    for steps in range(max_steps):
-        if state.grad_size <= grad_size:
-            return state, steps
-        force = state.u + dt * state.eps * state._local[1]
-        u = np.fft.irfft(np.fft.rfft(force, axis=0) * damping, n=state.q, axis=0)
-        state = state.moved(u)
-    return state, max_steps
-
-
 def newton(state: State, eps: Optional[float] = None, tol: float = 1e-13,
            max_steps: int = 50) -> Tuple[State, int]:
-    """Newton's method without damping (thesis, Appendix A), for comparison: it finds whatever is
-    stationary, or nothing.  Returns the last state, "not stationary" perhaps, and the number of
-    steps."""
-    expected(state)
-    finite("tol", [tol])
+    """Newton's method without damping (thesis, Appendix A): it finds whatever is stationary, a
+    minimum or a saddle, or nothing.  Returns the last state, "not stationary" perhaps, and the
+    number of steps."""
     state = replace(state, eps=state.eps if eps is None else eps, searches=0)
-    n, max_steps = state.potential.n, whole("max_steps", max_steps, 0)
+    n = state.potential.n
     for steps in range(max_steps + 1):
         if steps == max_steps or np.abs(state.gradient).max() <= tol:
             break

@@ -14,6 +14,7 @@ from matplotlib.figure import Figure
 from converse import orbits
 from converse.commands import orbits as cli
 from converse.orbits import farey, figures
+from converse.orbits.solver import newton
 from converse.orbits.sweep import LOST, ONSET_COLUMNS
 from converse.storage.files import ConverseError
 
@@ -77,7 +78,7 @@ def test_what_is_undetermined_is_said(run):
 
 
 def test_what_is_no_minimum_ends_with_status_1(run, monkeypatch):
-    minimax = orbits.newton(orbits.straight(orbits.standard, (1,), 3, origin=(0.0,)), 0.5)[0]
+    minimax = newton(orbits.straight(orbits.standard, (1,), 3, origin=(0.0,)), 0.5)[0]
     assert minimax.label == "saddle"
     monkeypatch.setattr("converse.orbits.solver.follow",
                         lambda *_, progress: progress(1, minimax))

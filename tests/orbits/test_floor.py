@@ -409,7 +409,7 @@ class Flat:
         return np.zeros((len(x), 2, 2))
 
 
-FLAT = orbits.FromPython(Flat(), 2, curvature=1.0, lipschitz=1.0)
+FLAT = orbits.FromPython(Flat(), 2, curvature=1.0)
 
 
 @pytest.mark.parametrize("call", [

@@ -13,6 +13,7 @@ import pytest
 
 from converse import ConverseError, orbits
 from converse.orbits import farey
+from converse.orbits.solver import newton
 
 from truth import TORTURE
 
@@ -394,7 +395,7 @@ def test_states_picture():
     for panel, state in zip(figure.axes, family):
         assert np.array_equal(data(panel), np.column_stack([state.x, state.momenta]))
         assert "3/8: minimum" in title(panel) and "ε = %r" % state.eps in title(panel)
-    saddle, _ = orbits.newton(orbits.straight(orbits.trig, (2, 3), 5, (0.1489578, 0.1489578)), 0.01)
+    saddle, _ = newton(orbits.straight(orbits.trig, (2, 3), 5, (0.1489578, 0.1489578)), 0.01)
     assert figures.kind(saddle) == "saddle"
     assert figures.exponents_words(saddle) == "exponents unknown, unknown"
     assert figures.states_picture([saddle]).startswith(b"<?xml")

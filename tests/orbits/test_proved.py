@@ -24,6 +24,7 @@ from converse.orbits import enclosure, potential
 from converse.orbits.enclosure import Enclosure
 from converse.orbits.exponents import growth
 from converse.orbits.proved import NotProved, prove
+from converse.orbits.solver import newton
 
 from truth import TORTURE, mp, rng_for
 
@@ -341,7 +342,7 @@ def test_saddles():
     for name, p, q in (("trig", (0, 0), 1), ("trig", (1, 1), 2), ("poly", (0, 1), 1),
                        ("ff", (1, 0), 2), ("standard", (1,), 3), ("standard", (1,), 1)):
         potential = getattr(orbits, name)
-        state, _ = orbits.newton(orbits.straight(potential, p, q, lowest[name]), 0.03)
+        state, _ = newton(orbits.straight(potential, p, q, lowest[name]), 0.03)
         assert state.least < -1e-6
         for copies in (1, 2):
             with pytest.raises(NotProved, match="saddle"):
@@ -351,7 +352,7 @@ def test_saddles():
 def minimax(p, q, k):
     """The orbit between the minima of the standard map."""
     begin = orbits.straight(orbits.standard, (p,), q, (0.5 + 0.5 / q,))
-    return orbits.newton(replace(begin, eps=k))[0]
+    return newton(replace(begin, eps=k))[0]
 
 
 # The eigenvalues are too small for relax(), and not for the label.
@@ -442,7 +443,7 @@ def test_flat_and_foreign():
         value = staticmethod(lambda x: np.cos(2 * np.pi * x[:, 0]))
         gradient = staticmethod(lambda x: -2 * np.pi * np.sin(2 * np.pi * x))
         hessian = staticmethod(lambda x: -4 * np.pi**2 * np.cos(2 * np.pi * x)[:, :, None])
-    mine = orbits.FromPython(Cosine, 1, start=(0.0,), curvature=40.0, lipschitz=250.0)
+    mine = orbits.FromPython(Cosine, 1, start=(0.0,), curvature=40.0)
     with pytest.raises(ValueError, match="nothing can be proved of the potential python"):
         prove(orbits.straight(mine, (1,), 3).relax(0.01))
     loose = orbits.Fourier({(1,): (1, 0)}, "loose", scale_enclosure=lambda digits: (

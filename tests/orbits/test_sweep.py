@@ -5,6 +5,7 @@ import concurrent.futures
 import importlib.util
 import io
 import math
+import multiprocessing
 import os
 import signal
 import subprocess
@@ -247,8 +248,14 @@ def test_the_file_of_another_potential_of_this_name_is_refused(path):
 def test_another_potential_from_python_is_seen_by_its_first_rows(path):
     """Nothing can be said of it in words."""
     class Stronger(Cosine):
+        def value(self, x):
+            return 1.001 * super().value(x)
+
         def gradient(self, x):
             return 1.001 * super().gradient(x)
+
+        def hessian(self, x):
+            return 1.001 * super().hessian(x)
 
     orbits.sweep(orbits.FromPython(Cosine(), 1, "mine", (0.5,)), [((1,), 3)], EPS, file=path)
     with pytest.raises(ConverseError, match="computed anew"):
@@ -429,12 +436,18 @@ def test_the_solver_fails_and_smaller_steps_help(monkeypatch):
 
 class Deadly(Cosine):
     def gradient(self, x):
-        os._exit(1)
+        if multiprocessing.parent_process() is not None:
+            os._exit(1)
+        return super().gradient(x)
 
 
 class Broken(Cosine):
+    broken = False
+
     def gradient(self, x):
-        raise LookupError("mine")
+        if self.broken:
+            raise LookupError("mine")
+        return super().gradient(x)
 
 
 def test_a_worker_dies(path):
@@ -446,8 +459,11 @@ def test_a_worker_dies(path):
 
 
 def test_what_a_users_potential_raises_comes_through():
+    source = Broken()
+    potential = orbits.FromPython(source, 1, "broken", (0.5,))
+    source.broken = True
     with pytest.raises(LookupError, match="mine"):
-        orbits.sweep(orbits.FromPython(Broken(), 1, "broken", (0.5,)), [((1,), 3)], EPS)
+        orbits.sweep(potential, [((1,), 3)], EPS)
 
 
 @pytest.mark.parametrize("arguments, words", [
