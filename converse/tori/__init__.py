@@ -5,8 +5,8 @@
 """
 
 try:
-    from .choice import choose_alpha, near
     from .divisors import Divisors, Norm, lattice_basis
+    from .near import near
     from .rotation import Rotation, read_rotation
 except ImportError as _error:           # said when something is asked for: the command needs a line
     _MISSING = ("converse.tori needs numpy and python-flint (%s); pip install 'converse-kam[tori]'"
@@ -18,5 +18,4 @@ except ImportError as _error:           # said when something is asked for: the 
             raise AttributeError(name)
         raise ConverseError(_MISSING)
 
-__all__ = ["Divisors", "Norm", "Rotation", "choose_alpha", "lattice_basis", "near",
-           "read_rotation"]
+__all__ = ["Divisors", "Norm", "Rotation", "lattice_basis", "near", "read_rotation"]

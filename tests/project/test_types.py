@@ -8,7 +8,7 @@ import pytest
 from conftest import not_sanitized
 
 import converse
-from converse import maps, orbits
+from converse import maps, orbits, tori
 
 api = pytest.importorskip("mypy.api")
 pytestmark = not_sanitized
@@ -32,7 +32,7 @@ def functions(module):
                 yield value
 
 
-@pytest.mark.parametrize("module", [converse, maps, orbits], ids=lambda module: module.__name__)
+@pytest.mark.parametrize("module", [converse, maps, orbits, tori], ids=lambda module: module.__name__)
 def test_public_names_are_annotated(module):
     """Every argument and every result."""
     found = [f for f in functions(module) if f.__module__.startswith("converse.")]

@@ -10,7 +10,7 @@ from flint import arb
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from converse.tori import Divisors, Norm, Rotation, choose_alpha, lattice_basis, near, read_rotation
+from converse.tori import Divisors, Norm, Rotation, lattice_basis, near, read_rotation
 from converse.tori.field import is_irreducible, real_roots
 
 pytestmark = not_sanitized
@@ -201,9 +201,3 @@ def test_a_vector_near_the_last_torus():
                 for rotation in (found, read_rotation("T49")))
     assert new < old                    # T49 is within the tolerance
 
-
-def test_alpha_follows_the_decay():
-    rotation = read_rotation("T49")
-    assert choose_alpha(rotation, LINE, SQUARE, (.144, .73)) == (1, 6)
-    assert choose_alpha(rotation, LINE, SQUARE, (.144, .15)) == (1, 1)
-    assert choose_alpha(read_rotation("golden"), ((1,),), ((1,),), (.1,)) == (1,)

@@ -1,5 +1,4 @@
-"""Choices that are judged by small divisors: a rotation vector near a given one, and the weights of
-a norm.
+"""Rotation vectors with good small divisors near a given place.
 
 Near a vector of rationals there are vectors of a field: those that lie in one Farey triangle (of
 determinant 1 or -1) with its corners p_i/q_i weighed by a basis c_i of the integers of the field,
@@ -11,12 +10,12 @@ the noble numbers, whose continued fractions end in 1, 1, 1, ...
 from fractions import Fraction
 from itertools import permutations, product
 from math import ceil, floor
-from typing import Iterator, List, Optional, Sequence, Tuple
+from typing import Iterator, List, Optional, Tuple
 
 import numpy as np
 
 from ..model.exact import Number, exact, short_text
-from .divisors import Divisors, Norm, Vector
+from .divisors import Divisors, Norm
 from .field import Element, Field, real_roots
 from .rotation import Rotation
 
@@ -28,8 +27,6 @@ STEEPEST = 60.0                         # ratio of weights in a triangle
 SEEN, COMPARED = 1000, 6                # candidates, judged in doubles and exactly
 LARGEST = 20                            # denominator of a triangle, times the tolerance^(2/3)
 NEAREST, REACH = 40, 500                # |k| up to which divisors are judged so
-FINER = 20                              # the width that is lost, as a part of the analytic width
-RATIOS = tuple(Fraction(r) for r in ("1", "3/2", "2", "5/2", "3", "4", "5", "6", "8", "10"))
 
 Candidate = Tuple[Field, Tuple[Element, ...]]
 Triangle = Tuple[Tuple[int, int, int], ...]     # corners (q, p0, p1)
@@ -71,28 +68,6 @@ def near(w0: Number, w1: Optional[Number] = None, norm: Optional[Norm] = None,
     if best is None:
         raise ValueError("no rotation vector was found within %s of %s; give a larger tolerance"
                          % (short_text(within), " ".join(map(short_text, target))))
-    return best
-
-
-def choose_alpha(rotation: Rotation, frame: Sequence[Vector], basis: Sequence[Vector],
-                 rates: Sequence[float]) -> Tuple[Fraction, ...]:
-    """The weights alpha of the norm in which a theorem is cheapest: c(delta) is least for a delta
-    that is a fixed part of the width rho = min rates[i]/alpha[i] to which the torus is analytic.
-
-    rates -- at which its coefficients fall in each direction of the frame, all positive"""
-    if not all(rate > 0 for rate in rates) or len(rates) != len(frame):
-        raise ValueError("give %d positive rates, not %s" % (len(frame), list(rates)))
-    if len(frame) == 1:
-        return Fraction(1),
-    best, least = None, None
-    for ratio in (*RATIOS, *(1 / r for r in RATIOS[1:])):
-        alpha = (Fraction(1), ratio) if ratio >= 1 else (1 / ratio, Fraction(1))
-        delta = min(Fraction(rate) / a for rate, a in zip(rates, alpha)) / FINER
-        delta = delta.limit_denominator(10 ** 9) or Fraction(1, 10 ** 9)
-        c = Divisors(rotation, Norm(tuple(frame), alpha), basis, 200 * max(alpha)).c(delta)
-        if least is None or c < least:
-            best, least = alpha, c
-    assert best is not None
     return best
 
 
