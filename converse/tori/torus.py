@@ -1,0 +1,177 @@
+"""A torus x(theta) = theta + u(theta) of a map as a finite Fourier sum,
+
+    u(theta) = sum over k of u_k e^{i k.theta},   u_{-k} = conj u_k,   u_0 = 0,
+
+which invariant tori are proved to lie near.  It is on its own no claim that there is one.
+
+The map has the potential V(y) = - sum of p[j] sin(k[j].y + pi phase[j]) of converse/model, and angles
+and actions of period 2 pi.  With w = 2 pi omega for a rotation vector omega in turns, an invariant
+torus solves
+
+    x(theta + w) - 2 x(theta) + x(theta - w) + grad V(x(theta)) = 0,   J = x(theta) - x(theta - w).
+
+For a range of parameters the amplitudes are p + s part with s in [-1, 1].  A torus covers a piece
+(low, high) of these s by polynomials in sigma = (2 s - low - high)/(high - low).
+"""
+
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cached_property
+from typing import TYPE_CHECKING, Dict, Optional, Tuple
+
+import numpy as np
+
+from ..model.exact import Ends
+from ..model.potential import FourierSum
+from ..model.problem import Problem
+
+if TYPE_CHECKING:
+    from .rotation import Rotation
+
+Part = Optional[Tuple[Fraction, ...]]
+NO_RANGE = Fraction(0), Fraction(0)
+ENTRIES = 10 ** 6           # of the matrix of modes and angles that is evaluated at a time
+
+
+def family(problem: Problem) -> Tuple[FourierSum, Part]:
+    """The potential in the middle of a problem's patch, of the waves that are anywhere in it, and
+    what the parameter s adds to each amplitude at s = 1; None if there is no parameter.
+
+    Its dimension is 1 if all these waves have k1 = 0, else 2.
+    ValueError: there is more than one parameter, or no wave."""
+    parts = [part for part in problem.parts if any(part)]
+    if len(parts) > 1:
+        raise ValueError("the problem has %d parameters where one is possible; make the other "
+                         "ranges single numbers, or let them change together" % len(parts))
+    part = parts[0] if parts else (Fraction(0),) * len(problem.waves)
+    present = [j for j, p in enumerate(problem.amplitude) if p or part[j]]
+    if not present:
+        raise ValueError("no wave of the potential is present; give an amplitude that is not 0")
+    waves = tuple(problem.waves[j] for j in present)
+    potential = FourierSum(waves, tuple(problem.amplitude[j] for j in present),
+                           2 if any(k1 for _, k1, _ in waves) else 1)
+    return potential, tuple(part[j] for j in present) if parts else None
+
+
+@dataclass(frozen=True, eq=False)
+class Torus:
+    """potential -- of dimension n; its amplitudes are those at s = 0
+    part -- what s adds to them at s = 1, or None
+    rotation -- omega
+    bits, modes -- {k: (c_0, ..., c_degree)} with k an n-tuple, the lexicographically positive one
+        of k and -k, and c_j = (re_0, im_0, ..., re_{n-1}, im_{n-1}) integers: the coefficient of
+        sigma^j in the components of u_k, times 2^bits
+    piece -- (low, high), the s that are covered; (0, 0) if there is no parameter
+    """
+
+    potential: FourierSum
+    part: Part
+    rotation: "Rotation"
+    bits: int
+    modes: Dict[Tuple[int, ...], Tuple[Tuple[int, ...], ...]]
+    piece: Ends = NO_RANGE
+
+    def __repr__(self) -> str:
+        where = "" if self.part is None else ", s from %s to %s" % self.piece
+        return "<Torus of %s, %d modes%s>" % (self.rotation.name, len(self.modes), where)
+
+    @property
+    def dimension(self) -> int:
+        """n, of the angles theta."""
+        return self.potential.dimension
+
+    @cached_property
+    def degree(self) -> int:
+        """Of the coefficients as polynomials in sigma."""
+        return max(map(len, self.modes.values()), default=1) - 1
+
+    def sigma(self, s: float = 0) -> float:
+        """The variable of the piece, in [-1, 1], for a parameter s; ValueError: s is outside."""
+        low, high = map(float, self.piece)
+        if not low <= s <= high:
+            raise ValueError("s = %r is outside of the piece from %r to %r" % (s, low, high))
+        return (2 * s - low - high) / (high - low) if high > low else 0.0
+
+    @cached_property
+    def vectors(self) -> np.ndarray:
+        """The k of the modes, shape (modes, n)."""
+        return np.array(list(self.modes), dtype=np.int64).reshape(-1, self.dimension)
+
+    @cached_property
+    def _series(self) -> np.ndarray:
+        """Complex doubles of shape (degree + 1, modes, n)."""
+        found = np.zeros((self.degree + 1, len(self.modes), self.dimension), complex)
+        unit = 1 << self.bits
+        for row, series in enumerate(self.modes.values()):
+            for j, numbers in enumerate(series):
+                found[j, row] = [complex(re / unit, im / unit)
+                                 for re, im in zip(numbers[::2], numbers[1::2])]
+        return found
+
+    def coefficients(self, s: float = 0) -> np.ndarray:
+        """The u_k at a parameter s, in doubles, in the order of `vectors`: shape (modes, n)."""
+        sigma = self.sigma(s)
+        total = np.zeros((len(self.modes), self.dimension), complex)
+        for each in self._series[::-1]:
+            total = total * sigma + each
+        return total
+
+    def _sum(self, theta, coefficients):
+        """2 Re sum of c_k e^{i k.theta} over the modes."""
+        flat = theta.reshape(-1, self.dimension)
+        found = np.zeros(flat.shape)
+        step = max(1, ENTRIES // max(len(flat), 1))
+        for at in range(0, len(coefficients), step):
+            angle = flat @ self.vectors[at:at + step].T
+            found += 2 * (np.cos(angle) @ coefficients.real[at:at + step]
+                          - np.sin(angle) @ coefficients.imag[at:at + step])
+        return found.reshape(theta.shape)
+
+    def x(self, theta: np.ndarray, s: float = 0) -> np.ndarray:
+        """The points of angles theta, an array of shape (..., n) in radians, in doubles.  They
+        are not taken modulo 2 pi."""
+        theta = self._angles(theta)
+        return theta + self._sum(theta, self.coefficients(s))
+
+    def J(self, theta: np.ndarray, s: float = 0) -> np.ndarray:
+        """The actions J = x(theta) - x(theta - w) there: w + u(theta) - u(theta - w)."""
+        theta = self._angles(theta)
+        turns = self.vectors @ np.array(self.rotation.floats, dtype=float)
+        back = -np.expm1(-2j * np.pi * (turns - np.round(turns)))[:, None]
+        return 2 * np.pi * np.array(self.rotation.floats, dtype=float) \
+            + self._sum(theta, self.coefficients(s) * back)
+
+    def _angles(self, theta):
+        theta = np.asarray(theta, dtype=float)
+        if theta.ndim == 0 or theta.shape[-1] != self.dimension:
+            raise ValueError("theta has shape %s; its last axis must have length %d"
+                             % (theta.shape, self.dimension))
+        return theta
+
+    def decay(self, direction: Optional[np.ndarray] = None) -> float:
+        """The rate r at which the coefficients of u at s = 0 fall, |u_k| < C e^{-r d(k)} about.
+
+        direction -- d(k) of each of `vectors`, for instance a norm; by default sum of |k_i|.
+        It is the slope, over the outer half of the modes, of the upper concave envelope of
+        log|u_k| over d(k); infinity if there are fewer than two modes.  No bound: an estimate."""
+        far = np.abs(self.vectors).sum(1) if direction is None else np.asarray(direction)
+        return decay(far, np.abs(self._series[0]).max(1, initial=0))
+
+
+def decay(far: np.ndarray, size: np.ndarray) -> float:
+    """The rate r at which sizes fall with distances, about C e^{-r far}; see Torus.decay."""
+    keep = size > 0
+    if keep.sum() < 2:
+        return np.inf
+    order = np.argsort(far[keep], kind="stable")
+    far, height = far[keep][order].astype(float), np.log(size[keep][order].astype(float))
+    height = np.maximum.accumulate(height[::-1])[::-1]      # the largest from there on
+    hull = []                                               # corners of the envelope
+    for point in zip(far, height):
+        while len(hull) > 1 and (hull[-1][1] - hull[-2][1]) * (point[0] - hull[-2][0]) <= \
+                (point[1] - hull[-2][1]) * (hull[-1][0] - hull[-2][0]):
+            hull.pop()
+        hull.append(point)
+    outer = hull[-1][0] / 2
+    (x0, y0), (x1, y1) = max((p for p in hull if p[0] <= outer), default=hull[0]), hull[-1]
+    return (y0 - y1) / (x1 - x0) if x1 > x0 else np.inf
