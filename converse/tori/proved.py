@@ -1,0 +1,363 @@
+"""Proofs that there are invariant tori: find one in floating-point numbers, bound its residual and
+constants in ball arithmetic, and check the theorem's inequality (docs/existence.md)."""
+
+import math
+import os
+import time
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Callable, Optional, Sequence, Tuple, Union
+
+import numpy as np
+
+from ..model.exact import rounded_text
+from ..model.problem import Problem
+from ..storage.files import ConverseError
+from .constants import Constants, Inverse
+from .divisors import Divisors, Norm, lattice_basis
+from .residual import Grid, Phases, Sizes, residual, wave_vectors
+from .rotation import Rotation
+from .theorem import Bounds, Theorem, Verdict
+from .torus import Torus
+
+AIM = 1000.0                # what grid and roundings are to leave of the admissible residual
+CLOSE = 1 / 200             # |I - L M| that is close enough
+BYTES = 250                 # of memory for each point of a grid: a ball in two arrays
+WIDTHS = [1.2 ** -j for j in range(26)]         # of the rate of decay: the rho that are tried
+ALPHAS = 1, 2, 3, 4, 6, 8                       # ratios of the norm's weights
+MOST_BITS = 4000
+Progress = Optional[Callable[[str], None]]
+
+
+class NotProved(ConverseError):
+    """The inequality of the theorem does not hold for this torus; the text says what to mend.
+
+    residual, needed -- the norm of E(u) that was reached, and the largest for which the theorem
+    would hold; infinity and 0 if they are not known"""
+
+    def __init__(self, text: str, residual: float = math.inf, needed: float = 0.0) -> None:
+        super().__init__(text)
+        self.residual, self.needed = residual, needed
+
+
+@dataclass(frozen=True)
+class Piece:
+    """A proof for one torus: of one potential, or of a piece of a range.
+
+    residual -- ||E(u)||_rho <= residual; `needed` would have done
+    verdict -- of the theorem, with what was chosen in it
+    rho, wider, radius -- widths: of the norms, and of the strip (and the disc of sigma) by which
+    what
+        the grid does not see is bounded
+    grid, inverse_grid -- on which the residual and the inverse of I + Du were computed
+    bits -- of the balls
+    seconds, memory -- that the proof took; bytes, estimated
+    """
+
+    torus: Torus
+    norm: Norm
+    constants: Constants
+    residual: float
+    verdict: Verdict
+    rho: Fraction
+    wider: Fraction
+    radius: Fraction
+    grid: Grid
+    inverse_grid: Grid
+    bits: int
+    seconds: float
+    memory: int
+
+    @property
+    def needed(self) -> float:
+        """The largest residual with which the theorem holds, about."""
+        return self.verdict.needed
+
+    @property
+    def bounds(self) -> Bounds:
+        """The left sides of (16) to (18)."""
+        assert self.verdict.bounds is not None
+        return self.verdict.bounds
+
+    @property
+    def distance(self) -> float:
+        """The true torus's u is no further away than this from the computed one, for real angles
+        and in the sum of the Fourier coefficients' lengths."""
+        return self.bounds.distance
+
+    @property
+    def slope(self) -> float:
+        """The same for the first derivatives."""
+        return self.bounds.slope
+
+    @property
+    def margin(self) -> float:
+        """needed / residual."""
+        return self.needed / self.residual
+
+
+@dataclass(frozen=True)
+class ProvedTorus:
+    """A theorem: for every s of the range (for the potential, if there is no range) the map has a
+    real analytic invariant graph, conjugate to the rotation, as near to the pieces' tori as they
+    say."""
+
+    pieces: Tuple[Piece, ...]
+
+    @property
+    def torus(self) -> Torus:
+        """The first piece's; the only one if there is no range."""
+        return self.pieces[0].torus
+
+    @property
+    def rotation(self) -> Rotation:
+        return self.torus.rotation
+
+    @property
+    def worst(self) -> Piece:
+        """The piece with the least margin."""
+        return min(self.pieces, key=lambda piece: piece.margin)
+
+    @property
+    def residual(self) -> float:
+        return self.worst.residual
+
+    @property
+    def needed(self) -> float:
+        return self.worst.needed
+
+    @property
+    def distance(self) -> float:
+        """Of the farthest piece."""
+        return max(piece.distance for piece in self.pieces)
+
+    @property
+    def seconds(self) -> float:
+        """Of processor time, of all pieces."""
+        return sum(piece.seconds for piece in self.pieces)
+
+    @property
+    def memory(self) -> int:
+        return max(piece.memory for piece in self.pieces)
+
+    def save(self, path: Union[str, "os.PathLike[str]"]) -> str:
+        """Writes the certificate (docs/format.md), compressed if the name ends in .gz, and returns
+        its SHA-256.  ConverseError: it cannot be written."""
+        from .certificate import write
+        return write(self, path)
+
+
+def prove(source: Union[Problem, Torus, Sequence[Torus]], rotation: Optional[Rotation] = None, *,
+          norm: Optional[Norm] = None, shape: Optional[Tuple[int, int]] = None,
+          layers: Optional[int] = None, bits: Optional[int] = None,
+          rho: Optional[Fraction] = None, memory: Optional[int] = None,
+          progress: Progress = None) -> ProvedTorus:
+    """Proves that there is an invariant torus near the given one, or near one that is found first.
+
+    source -- a Torus, or tori that cover a range, or a Problem, to which a rotation vector belongs
+    norm, shape, layers, bits, rho -- of the proof (docs/existence.md); chosen, if they are not
+    given memory -- bytes that the proof may take; by default three quarters of what is free
+    progress -- is told in words what is going on
+
+    NotProved: the inequality does not hold.  ValueError: the arguments do not go together, or a
+    mode of a torus is not in the lattice that its waves generate.  What `find` raises."""
+    if isinstance(source, Problem):
+        if rotation is None:
+            raise ValueError("a problem needs a rotation vector")
+        from .find import find
+        source = find(source, rotation)
+    tori = [source] if isinstance(source, Torus) else list(source)
+    check_cover(tori)
+    return ProvedTorus(tuple(
+        _Attempt(torus, norm, shape, layers, bits, rho, memory, progress).run() for torus in tori))
+
+
+def check_cover(tori: Sequence[Torus]) -> None:
+    """ValueError: these are not tori of one map and rotation vector that cover a range, one after
+    the other, or one torus if there is no range."""
+    if not tori:
+        raise ValueError("there is no torus")
+    first = tori[0]
+    for torus in tori:
+        if (torus.potential, torus.part, torus.rotation) != (
+                first.potential, first.part, first.rotation):
+            raise ValueError("the tori are of different potentials or rotation vectors")
+    ends = [torus.piece for torus in tori]
+    wanted = (Fraction(0), Fraction(0)) if first.part is None else (Fraction(-1), Fraction(1))
+    if first.part is None and len(tori) > 1 or (ends[0][0], ends[-1][1]) != wanted or any(
+            a[1] != b[0] for a, b in zip(ends, ends[1:])) or any(
+            a >= b for a, b in ends if first.part is not None):
+        raise ValueError("the pieces do not tile the range, one after the other")
+
+
+class _Attempt:
+    """The proof of one torus."""
+
+    def __init__(self, torus, norm, shape, layers, bits, rho, memory, progress):
+        self.torus, self.shape, self.bits, self.rho = torus, shape, bits, rho
+        self.memory = _free_memory() * 3 // 4 if memory is None else memory
+        self.tell = progress or (lambda text: None)
+        self.start = time.process_time()
+        self.waves = wave_vectors(torus)
+        for k in torus.modes:
+            if not any(k):
+                raise ValueError("the torus has a mode 0, which is not to be given")
+        self.norm = _norm(torus) if norm is None else norm
+        self.far = np.array([float(self.norm.of(k)) for k in torus.modes])
+        self.layers = layers or (1 if torus.part is None else
+                                 4 << (max(torus.degree, 1) - 1).bit_length())
+        self.phases = Phases(torus, self.norm)
+        self.tell("bounding small divisors")
+        self.theorem = Theorem(self.phases, Divisors(
+            torus.rotation, self.norm, lattice_basis(self.waves)))
+
+    def run(self) -> Piece:
+        rate = self.torus.decay(self.far)
+        rate = min(rate, 5.0) if rate > 0 else 1.0
+        widths = [Fraction(rate * x).limit_denominator(10 ** 6) for x in WIDTHS] \
+            if self.rho is None else [self.rho]
+        widths = [rho for rho in widths if rho > 0]
+        inverse, grid, rho, at = self._plan(widths)
+        bits = self.bits or self._bits(grid, rho, at[rho])
+        self.tell("computing the residual on %s points" % " x ".join(
+            map(str, grid.shape if grid.layers == 1 else (*grid.shape, grid.layers))))
+        error = residual(self.torus, grid, bits)
+
+        tries = []
+        for width in at:
+            tail, wider, radius = self.phases.best_tail(grid, width)
+            e0 = error.norm_at(width, tail)
+            tries.append((at[width] / e0, width, e0, tail, wider, radius))
+        _, rho, e0, tail, wider, radius = max(tries)
+        constants = inverse.at(rho)
+        verdict = self.theorem.verdict(constants, e0)
+        if verdict.bounds is None:
+            raise NotProved(self._remedy(e0, tail, verdict.needed, error.sizes, rho),
+                            e0, verdict.needed)
+        return Piece(self.torus, self.norm, constants, e0, verdict, rho, wider, radius, grid,
+                     inverse.grid, bits, time.process_time() - self.start, BYTES * grid.points)
+
+    def _plan(self, widths):
+        """(Inverse, the grid of the residual, about the best width, {width: needed residual})."""
+        points = 64 * self.layers
+        best = None
+        while True:
+            self.tell("inverting I + Du on %d points" % points)
+            shape = best_shape(self.norm, self.waves, points // self.layers)
+            self._check_cost(points)
+            inverse = Inverse(self.torus, self.norm, shape, self.layers)
+            constants = {rho: inverse.at(rho) for rho in widths}
+            at = {rho: self.theorem.verdict(c, math.inf, careful=False).needed
+                  for rho, c in constants.items() if c is not None}
+            at = {rho: needed for rho, needed in at.items() if needed > 0}
+            best = self._grid(at)
+            if best is not None:
+                grid, rho = best
+                if constants[rho].eta < CLOSE or 4 * points > 4 * grid.points:
+                    return inverse, grid, rho, at
+            elif 4 * inverse.cut > 3 * self.far.max(initial=1) + 40:
+                raise NotProved("no inverse of I + Du was found, or the torus is too wild; find it "
+                                "with more modes, or for smaller amplitudes")
+            points *= 2
+
+    def _grid(self, at):
+        """The smallest grid that sees enough, and the best width with it; None if there is no
+        width.
+
+        Of the residual only what the grid does not see is known before it is computed."""
+        if not at:
+            return None
+        if self.shape is not None:
+            grid = Grid(self.norm, self.waves, self.shape, self.layers)
+            return grid, max(at, key=lambda rho: self._ratio(grid, rho, at[rho]))
+        points, found = 16, None
+        while True:
+            shape = best_shape(self.norm, self.waves, points)
+            grid = Grid(self.norm, self.waves, shape, self.layers)
+            points *= 2
+            if not all(float(grid.reach) > x for x in self.far):
+                self._check_cost(grid.points)
+                continue
+            rho = max(at, key=lambda rho: self._ratio(grid, rho, at[rho]))
+            ratio = self._ratio(grid, rho, at[rho])
+            if ratio > AIM:
+                return grid, rho
+            if found is not None and (found[0] >= ratio or grid.points * BYTES > self.memory):
+                return found[1:]
+            self._check_cost(grid.points)
+            found = ratio, grid, rho
+
+    def _ratio(self, grid, rho, needed):
+        tail = self.phases.best_tail(grid, rho)[0]
+        return needed / tail if tail > 0 else math.inf
+
+    def _bits(self, grid, rho, needed):
+        """So many that the radii make up about needed/AIM."""
+        _, m = grid.inside
+        mass = Sizes(self.norm, m, np.ones((len(m), 1))).norm_at(rho) * grid.layers
+        bits = math.log2(mass * AIM * 64 / needed)
+        if not bits < MOST_BITS:
+            raise NotProved("the residual would have to be computed with too many digits", needed=0)
+        return max(64, math.ceil(bits))
+
+    def _check_cost(self, points):
+        if points * BYTES > self.memory:
+            raise NotProved("a grid of %d points takes %.1f GB of memory, and %.1f GB may be used; "
+                            "give a torus with fewer modes, or more memory"
+                            % (points, points * BYTES / 1e9, self.memory / 1e9))
+
+    def _remedy(self, e0, tail, needed, sizes, rho):
+        text = "the residual is %s at rho = %.4g, and the theorem needs %s: " % (
+            _number(e0), float(rho), _number(needed))
+        if not math.isfinite(e0) or tail > e0 / 2:
+            return text + "what the grid does not see is too much; take a larger grid"
+        return text + "the torus is not accurate enough; find it with more modes and digits"
+
+
+def _number(x):
+    return rounded_text(Fraction(x), 2, up=True) if math.isfinite(x) else "unbounded"
+
+
+def best_shape(norm: Norm, waves: Sequence[Tuple[int, ...]], points: int) -> Tuple[int, int]:
+    """Of the grids with so many points, a power of two, the one that reaches furthest."""
+    if len(Grid(norm, tuple(waves), (1, 1)).basis) == 1:
+        return 1, points
+    shapes = [(1 << j, points >> j) for j in range(points.bit_length())]
+    return max(shapes, key=lambda shape: Grid(norm, tuple(waves), shape).reach)
+
+
+def _norm(torus):
+    """A norm in which the coefficients decay fast and divisors are large: of some ratios of weights
+    the one with the least c(delta), delta being a fixed part of the rate of decay."""
+    if torus.dimension == 1:
+        return Norm(((1,),), (Fraction(1),))
+    from .newton import default_frame
+    frame = default_frame(torus.potential)
+    basis = lattice_basis(wave_vectors(torus))
+    best = None
+    for a, b in [(1, r) for r in ALPHAS] + [(r, 1) for r in ALPHAS[1:]]:
+        norm = Norm(frame, (Fraction(a), Fraction(b)))
+        rate = torus.decay(np.array([float(norm.of(k)) for k in torus.modes]))
+        rate = min(rate, 5.0) if rate > 0 else 1.0
+        delta = Fraction(rate / 20).limit_denominator(10 ** 6)
+        try:
+            cost = float(Divisors(torus.rotation, norm, basis, 40).c(delta))
+        except ValueError:
+            continue
+        if best is None or cost < best[0]:
+            best = cost, norm
+    if best is None:
+        raise NotProved("the small divisors of the rotation vector cannot be bounded")
+    return best[1]
+
+
+def _free_memory():
+    """Bytes; 4 GB if the system does not say."""
+    try:
+        with open("/proc/meminfo") as file:
+            for line in file:
+                if line.startswith("MemAvailable:"):
+                    return int(line.split()[1]) * 1024
+    except (OSError, ValueError, IndexError):
+        pass
+    return 4 << 30

@@ -1,0 +1,87 @@
+"""Certificates: written, read, and refused where they are damaged."""
+
+import gzip
+import hashlib
+from fractions import Fraction as Q
+
+import pytest
+
+from converse.model.problem import Problem
+from converse.storage.files import ConverseError
+from converse.tori import certificate
+from converse.tori.find import find
+from converse.tori.proved import prove
+from converse.tori.rotation import read_rotation
+
+
+@pytest.fixture(scope="module", params=["circle", "surface"])
+def proof(request):
+    if request.param == "circle":
+        problem = Problem.patch(["0.3", "-0.04"], (), [(1, 0), (2, 0, Q(1, 3))])
+        return prove(find(problem, read_rotation("golden", 1)))
+    return prove(find(Problem.patch(["0.01", "0.01", "0.02"]), read_rotation("T49", 2)))
+
+
+@pytest.mark.parametrize("name", ["torus.txt", "torus.gz"])
+def test_what_was_written_is_read(proof, name, tmp_path):
+    checksum = proof.save(tmp_path / name)
+    found = certificate.read(tmp_path / name)
+    assert found.sha256 == checksum
+    torus, = found.tori
+    for field in ("potential", "part", "rotation", "bits", "modes", "piece"):
+        assert getattr(torus, field) == getattr(proof.torus, field)
+    assert (found.norm, found.rho) == (proof.worst.norm, proof.worst.rho)
+    assert float(found.hints["residual"]) == pytest.approx(proof.residual)
+
+
+def test_a_torus_that_was_read_is_proved(proof, tmp_path):
+    proof.save(tmp_path / "torus")
+    again = prove(certificate.read(tmp_path / "torus").tori)
+    assert again.residual == proof.residual
+
+
+def sealed(lines):
+    text = "\n".join(lines) + "\n"
+    return text + "checksum: sha256 %s\nend\n" % hashlib.sha256(text.encode()).hexdigest()
+
+
+def refused(path, data):
+    path.write_bytes(data if isinstance(data, bytes) else data.encode())
+    with pytest.raises(ConverseError) as error:
+        certificate.read(path)
+    assert str(error.value).startswith(str(path)) and "\n" not in str(error.value)
+    return str(error.value)
+
+
+def test_damaged_files_are_refused(proof, tmp_path):
+    proof.save(tmp_path / "good")
+    path, data = tmp_path / "bad", (tmp_path / "good").read_bytes()
+    for at in range(0, len(data), len(data) // 60):
+        refused(path, data[:at] + bytes([data[at] ^ 1]) + data[at + 1:])
+        refused(path, data[:at])
+    refused(path, b"")
+    refused(path, b"\xff\xfe")
+    refused(path, gzip.compress(data)[:-10])
+    refused(path, b"converse proof 3\n" + data)
+    assert "cannot be read" in str(pytest.raises(
+        ConverseError, certificate.read, tmp_path / "none").value)
+
+
+def test_senseless_files_are_refused(proof, tmp_path):
+    """With a checksum that is right."""
+    proof.save(tmp_path / "good")
+    lines = (tmp_path / "good").read_text().split("\n")[:-3]
+    path = tmp_path / "bad"
+    start = lines.index("tori:") + 2
+    for at in range(1, start):
+        refused(path, sealed(lines[:at] + lines[at + 1:])) if not lines[at].startswith(
+            ("program", "hint", "wave")) else None
+        refused(path, sealed(lines[:at] + ["x" + lines[at][:3]] + lines[at + 1:]))
+        if ": " in lines[at] and not lines[at].startswith(("hint", "program")):
+            refused(path, sealed(lines[:at] + [lines[at] + " 1"] + lines[at + 1:]))
+    mode = lines[start]
+    for wrong in (mode + " 1", "-" + mode, "", lines[start + 1],
+                  mode.replace(" ", "  ", 1), mode + "g"):
+        refused(path, sealed(lines[:start] + [wrong] + lines[start + 1:]))
+    refused(path, sealed(lines + [mode]))
+    refused(path, sealed(lines[:-1]))
