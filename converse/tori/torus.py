@@ -4,9 +4,9 @@
 
 which invariant tori are proved to lie near.  It is on its own no claim that there is one.
 
-The map has the potential V(y) = - sum of p[j] sin(k[j].y + pi phase[j]) of converse/model, and angles
-and actions of period 2 pi.  With w = 2 pi omega for a rotation vector omega in turns, an invariant
-torus solves
+The map has the potential V(y) = - sum of p[j] sin(k[j].y + pi phase[j]) of converse/model, and
+angles and actions of period 2 pi.  With w = 2 pi omega for a rotation vector omega in turns, an
+invariant torus solves
 
     x(theta + w) - 2 x(theta) + x(theta - w) + grad V(x(theta)) = 0,   J = x(theta) - x(theta - w).
 
@@ -17,7 +17,7 @@ For a range of parameters the amplitudes are p + s part with s in [-1, 1].  A to
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
-from typing import TYPE_CHECKING, Dict, Optional, Tuple
+from typing import TYPE_CHECKING, Dict, List, Optional, Tuple
 
 import numpy as np
 
@@ -166,7 +166,7 @@ def decay(far: np.ndarray, size: np.ndarray) -> float:
     order = np.argsort(far[keep], kind="stable")
     far, height = far[keep][order].astype(float), np.log(size[keep][order].astype(float))
     height = np.maximum.accumulate(height[::-1])[::-1]      # the largest from there on
-    hull = []                                               # corners of the envelope
+    hull: List[Tuple[float, float]] = []                    # corners of the envelope
     for point in zip(far, height):
         while len(hull) > 1 and (hull[-1][1] - hull[-2][1]) * (point[0] - hull[-2][0]) <= \
                 (point[1] - hull[-2][1]) * (hull[-1][0] - hull[-2][0]):

@@ -1,0 +1,173 @@
+"""Tori that are found, without proof: they are invariant to many digits, whatever the potential."""
+
+from fractions import Fraction
+
+import mpmath
+import numpy as np
+import pytest
+from conftest import not_sanitized
+
+from converse.model.problem import LINE, Problem
+from converse.tori.find import NotFound, find
+from converse.tori.newton import Mesh, default_frame, triangular
+from converse.tori.rotation import read_rotation
+from converse.tori.torus import family
+
+pytestmark = not_sanitized
+GOLDEN = read_rotation("golden")
+DIGITS = 50
+
+POTENTIALS = {
+    "standard map": (Problem("0.5", 0, 0), "golden"),
+    "a wave with a phase": (Problem.patch(["0.15"], (), [(2, 0, Fraction(1, 7))]), "silver"),
+    "two waves": (Problem.patch(["0.3", "-0.04"], (), [(1, 0), (2, 0, Fraction(1, 6))]), "golden"),
+    "the thesis's line": (Problem("0.02243", "0.02243", "0.04486"), "T49"),
+    "phases": (Problem.patch(["0.05", "0.04", "-0.02"], (), [
+        (1, 0), (0, 1, Fraction(1, 8)), (1, -1, Fraction(1, 3))]), "spiral"),
+    "a sublattice": (Problem.patch(["0.01", "0.003"], (), [(2, 0), (1, 3, Fraction(1, 5))]), "T49"),
+    "a single direction": (Problem.patch(["0.05"], (), [(1, 1, Fraction(1, 5))]), "T49")}
+
+
+def line(epsilon):
+    a = LINE * Fraction(epsilon)
+    return Problem(a, a, 2 * a)
+
+
+def exact_torus(torus):
+    """x(theta) and the map in mpmath, written anew."""
+    n = torus.dimension
+    unit = mpmath.mpf(2) ** -torus.bits
+    low, high = zip(*torus.rotation.turns(DIGITS + 5))
+    omega = [(mpmath.mpf(a.numerator) / a.denominator + mpmath.mpf(b.numerator) / b.denominator) / 2
+             for a, b in zip(low, high)]
+    amplitude = [mpmath.mpf(p.numerator) / p.denominator for p in torus.potential.amplitude]
+
+    def x(turns):
+        total = [2 * mpmath.pi * t for t in turns]
+        for k, (c,) in torus.modes.items():
+            e = mpmath.expjpi(2 * sum(a * t for a, t in zip(k, turns)))
+            for i in range(n):
+                total[i] += 2 * unit * (c[2 * i] * e.real - c[2 * i + 1] * e.imag)
+        return total
+
+    def step(y, J):
+        for wave, p in zip(torus.potential.waves, amplitude):
+            phase = mpmath.pi * wave[2].numerator / wave[2].denominator
+            cosine = mpmath.cos(sum(k * v for k, v in zip(wave, y)) + phase)
+            J = [j + p * k * cosine for j, k in zip(J, wave)]
+        return [a + j for a, j in zip(y, J)], J
+
+    return omega, x, step
+
+
+@pytest.mark.parametrize("name", POTENTIALS)
+def test_orbits_that_start_on_the_torus_stay_on_it(name):
+    problem, rotation = POTENTIALS[name]
+    rotation = read_rotation(rotation)
+    torus = find(problem, rotation)
+    assert (torus.potential, torus.part) == family(problem)
+    with mpmath.workdps(DIGITS):
+        omega, x, step = exact_torus(torus)
+        theta = [mpmath.mpf(1) / 3, mpmath.mpf(1) / 7][:torus.dimension]
+
+        def at(m):
+            return x([t + m * w for t, w in zip(theta, omega)])
+
+        y = at(0)
+        J = [a - b for a, b in zip(y, at(-1))]
+        for m in range(1, 11):
+            y, J = step(y, J)
+            assert max(abs(a - b) for a, b in zip(y, at(m))) < 1e-7, m
+        turns = np.array([float(t) for t in theta])             # and in doubles
+        assert torus.x(2 * np.pi * turns) == pytest.approx([float(a) for a in at(0)], abs=1e-13)
+        assert torus.J(2 * np.pi * turns) == pytest.approx(
+            [float(a - b) for a, b in zip(at(0), at(-1))], abs=1e-13)
+
+
+def test_the_orbit_has_the_rotation_number_asked_for():
+    """By the mean of x_{m+1} - x_m with a weight that is flat at both ends (Das, Saiki, Sander and
+    Yorke)."""
+    torus = find(Problem("0.9", 0, 0), GOLDEN)
+    x, J = torus.x([1.0])[0], torus.J([1.0])[0]
+    count = 3000
+    t = np.arange(1, count) / count
+    weight = np.exp(-1 / (t * (1 - t)))
+    steps = []
+    for _ in t:
+        J += 0.9 * np.cos(x)
+        x += J
+        steps.append(J)
+    assert (weight @ steps) / weight.sum() / (2 * np.pi) == pytest.approx(
+        (5 ** 0.5 - 1) / 2, abs=1e-9)
+
+
+@pytest.mark.parametrize("problem, rotation", [(Problem("0.98", 0, 0), "golden"),
+                                               (Problem("3", 0, 0), "golden")])
+def test_beyond_the_frontier_nothing_is_found(problem, rotation):
+    with pytest.raises(NotFound) as caught:
+        find(problem, read_rotation(rotation), points=1 << 15)
+    reached = float(caught.value.torus.potential.amplitude[0])
+    assert 0.8 < reached < 0.9717 and "no torus of golden" in str(caught.value)
+    assert reached == pytest.approx(caught.value.reached * float(problem.amplitude[0]))
+
+
+def test_a_torus_is_continued_from_another_one():
+    first = find(Problem("0.6", 0, 0), GOLDEN)
+    direct, continued = (find(Problem("0.8", 0, 0), GOLDEN, start=start) for start in (None, first))
+    theta = np.linspace(0, 6, 9)[:, None]
+    assert continued.x(theta) == pytest.approx(direct.x(theta), abs=1e-10)
+    with pytest.raises(ValueError, match="another rotation"):
+        find(Problem("0.8", 0, 0), read_rotation("silver"), start=first)
+    with pytest.raises(ValueError, match="waves"):
+        find(Problem.patch(["0.3"], (), [(2, 0)]), GOLDEN, start=first)
+
+
+def test_what_does_not_go_together_is_refused():
+    with pytest.raises(ValueError, match="2 components.*1 angle"):
+        find(Problem("0.5", 0, 0), read_rotation("T49"))
+    with pytest.raises(ValueError, match="no wave"):
+        find(Problem(0, 0, 0), GOLDEN)
+    with pytest.raises(ValueError, match="2 parameters"):
+        find(Problem(("0.1", "0.2"), ("0.1", "0.2"), 0), read_rotation("T49"))
+
+
+@pytest.mark.parametrize("waves, frame", [
+    ([(1, 0), (0, 1), (1, 1)], ((1, 1), (1, -1))), ([(2, 0), (1, 3)], ((1, 0), (0, 1))),
+    ([(2, 1), (1, 3)], ((1, 1), (1, -1))), ([(3, 0), (0, 2), (1, 1)], ((2, 1), (1, -1)))])
+def test_a_mesh_tells_its_modes_apart(waves, frame):
+    """Coefficients of random modes in its box are found again in its values, summed by hand."""
+    potential, _ = family(Problem.patch(["0.1"] * len(waves), (), waves))
+    mesh = Mesh(potential, read_rotation("T49"), frame, (16, 8))
+    inside = mesh.k[:, mesh.inside].T
+    assert len({tuple(k) for k in inside}) == len(inside)
+    assert (abs(mesh.m[:, mesh.inside]).T < mesh.half).all()
+    random = np.random.default_rng(1)
+    k = inside[random.choice(len(inside), 9, replace=False)]
+    c = random.normal(size=(2, 9)) + 1j * random.normal(size=(2, 9))
+    c[:, (k == 0).all(1)] = 0
+    twice = [j for j in range(9) if any((k[j] == -k[i]).all() for i in range(j))]
+    c[:, twice] = 0
+    values = mesh.values(mesh.spread(k.T, c))
+    for place in [(0, 0), (3, 1), (15, 7), (8, 4)]:
+        # the phases a.p/N of the modes, in terms of the basis
+        angle = [2 * np.pi * sum(a * p / size for a, p, size in zip(
+            np.linalg.solve(np.array(mesh.basis).T.astype(float), each), place, mesh.sizes))
+            for each in k]
+        assert values[(slice(None), *place)] == pytest.approx(
+            2 * (c * np.exp(1j * np.array(angle))).real.sum(1))
+    larger = Mesh(potential, read_rotation("T49"), frame, (32, 16))
+    moved = mesh.moved(mesh.spread(k.T, c), larger)
+    assert (larger.moved(moved, mesh) == mesh.spread(k.T, c)).all()
+
+
+def test_the_basis_of_a_group_is_triangular_in_the_frame():
+    assert triangular([(1, 0), (0, 1), (1, 1)], ((1, 1), (1, -1)))[1] in ((1, -1), (-1, 1))
+    assert triangular([(4,), (6,)], ((1,),)) == [(2,)]
+    assert triangular([(2, 2), (3, 3)], ((1, 0), (0, 1))) == [(1, 1)]
+    assert default_frame(family(line("0.002"))[0]) == ((1, 1), (1, -1))
+
+
+@pytest.mark.slow
+def test_the_line_of_the_thesis_up_to_0_006():
+    torus = find(line("0.006"), read_rotation("T49"))
+    assert len(torus.modes) < 4000 and torus.decay() > 0.1
