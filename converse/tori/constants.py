@@ -41,6 +41,12 @@ class Constants:
     p0: float
     eta: float
 
+    def near(self, other: "Constants") -> bool:
+        """Are they the other's, to two per cent?"""
+        return all(abs(x - y) < 0.02 * y for x, y in (
+            (self.l0, other.l0), (self.m0, other.m0), (self.a0, other.a0), (self.b0, other.b0),
+            (1 + self.p0, 1 + other.p0)))
+
 
 class Inverse:
     """An approximate inverse M of L with finitely many modes, and what is needed of the products by

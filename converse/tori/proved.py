@@ -203,7 +203,7 @@ class _Attempt:
             if not any(k):
                 raise ValueError("the torus has a mode 0, which is not to be given")
         self.norm = _norm(torus) if norm is None else norm
-        self.far = np.array([float(self.norm.of(k)) for k in torus.modes])
+        self.far = _distances(torus, self.norm)
         self.layers = layers or (1 if torus.part is None else
                                  4 << (max(torus.degree, 1) - 1).bit_length())
         self.phases = Phases(torus, self.norm)
@@ -239,17 +239,19 @@ class _Attempt:
 
     def _plan(self, widths):
         """(Inverse, the grid of the residual, about the best width, {width: needed residual})."""
-        points = 64 * self.layers
-        best = None
+        points, known = 64 * self.layers, {}
         while True:
             self.tell("inverting I + Du on %d points" % points)
             shape = best_shape(self.norm, self.waves, points // self.layers)
             self._check_cost(points)
             inverse = Inverse(self.torus, self.norm, shape, self.layers)
             constants = {rho: inverse.at(rho) for rho in widths}
-            at = {rho: self.theorem.verdict(c, math.inf, careful=False).needed
-                  for rho, c in constants.items() if c is not None}
-            at = {rho: needed for rho, needed in at.items() if needed > 0}
+            at = {}
+            for rho, c in constants.items():
+                if c is not None and not (rho in known and c.near(known[rho][0])):
+                    known[rho] = c, self.theorem.verdict(c, math.inf, careful=False).needed
+                if c is not None and known[rho][1] > 0:
+                    at[rho] = known[rho][1]
             best = self._grid(at)
             if best is not None:
                 grid, rho = best
@@ -337,7 +339,7 @@ def _norm(torus):
     best = None
     for a, b in [(1, r) for r in ALPHAS] + [(r, 1) for r in ALPHAS[1:]]:
         norm = Norm(frame, (Fraction(a), Fraction(b)))
-        rate = torus.decay(np.array([float(norm.of(k)) for k in torus.modes]))
+        rate = torus.decay(_distances(torus, norm))
         rate = min(rate, 5.0) if rate > 0 else 1.0
         delta = Fraction(rate / 20).limit_denominator(10 ** 6)
         try:
@@ -349,6 +351,12 @@ def _norm(torus):
     if best is None:
         raise NotProved("the small divisors of the rotation vector cannot be bounded")
     return best[1]
+
+
+def _distances(torus, norm):
+    """The |k| of the modes, in doubles."""
+    m = abs(torus.vectors @ np.array(norm.frame).T)
+    return m @ np.array([float(a) for a in norm.alpha])
 
 
 def _free_memory():

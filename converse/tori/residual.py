@@ -30,8 +30,7 @@ from .torus import Torus
 SLACK = 1 + 2.0 ** -30      # above what MOST roundings of sums, products and roots amount to
 MOST = 1 << 21              # summands
 TINY = 2.0 ** -1000         # above what underflows lose
-TRIALS = 10                 # of widths of the wider strip
-ROUND = 1 << 30             # their denominator
+ROUND = 1 << 30             # denominator of the widths that are tried
 Columns = Dict[Tuple[int, int], Dict[int, acb]]      # (q1, j): {q0: coefficient}
 Layers = List[List[acb]]                             # of each sigma, the values along chi_1
 
@@ -532,6 +531,7 @@ class Phases:
         m = np.array([grid.numbers(k) for k in torus.modes], dtype=np.int64)
         m = m.reshape(-1, torus.dimension)
         unit = 1 << torus.bits
+        self._forces: Dict[Tuple[Fraction, Fraction], float] = {}
         self.sizes: Dict[Tuple[int, ...], Sizes] = {}
         for k in set(self.wave_vectors):
             size = np.zeros((len(torus.modes), torus.degree + 1))
@@ -546,7 +546,7 @@ class Phases:
         """g >= ||e^{ik.(theta + u)}||_rho: e^{rho |k|} e^{||k.u||}, for a wave's k."""
         return (ball(rho * self.norm.of(k)) + arb(self.sizes[k].norm_at(rho, radius))).exp()
 
-    def force(self, rho: Fraction, radius: Fraction = Fraction(1)) -> float:
+    def force(self, rho: Fraction, radius: Fraction) -> float:
         """F >= ||grad V(theta + u)||_rho: the sum of |p_j| |k_j|_2 g_j."""
         total = arb(0)
         for k, (c, d) in zip(self.wave_vectors, self.amplitudes):
@@ -569,36 +569,41 @@ class Phases:
         e^{wider|k|}, and e^{rho|k|} radius^j, are no more than F."""
         if not wider > rho:
             return math.inf
-        total = 2 * arb(self.force(wider)) * ball((rho - wider) * grid.reach).exp()
+        total = 2 * arb(self._force(wider, Fraction(1))) * ball((rho - wider) * grid.reach).exp()
         if self.varies:
-            total += 2 * arb(self.force(rho, radius)) / ball(radius) ** grid.layers
+            total += 2 * arb(self._force(rho, radius)) / ball(radius) ** grid.layers
         return above(total)
 
     def best_tail(self, grid: Grid, rho: Fraction) -> Tuple[float, Fraction, Fraction]:
         """(tail, wider, radius), about the least tail.  Each of its terms is a logarithmically
-        convex function of the width or of log radius."""
-        wider = _least(lambda x: self.tail(grid, rho, x), rho, 1 / grid.reach)
+        convex function of the width or of log radius, and so falls and then rises."""
+        wider = _lowest(
+            lambda x: math.log(self._force(x, Fraction(1))) - float((x - rho) * grid.reach),
+            [x for x in LADDER if x > rho])
         radius = Fraction(1)
         if self.varies:
-            radius = _least(lambda x: self.tail(grid, rho, wider, x), radius, Fraction(1, 16))
+            radius = 1 + _lowest(
+                lambda x: math.log(self._force(rho, 1 + x)) - grid.layers * math.log1p(x), LADDER)
         return self.tail(grid, rho, wider, radius), wider, radius
 
+    def _force(self, rho, radius):
+        """The force, remembered."""
+        if (rho, radius) not in self._forces:
+            self._forces[rho, radius] = self.force(rho, radius)
+        return self._forces[rho, radius]
 
-def _least(f: Callable[[Fraction], float], start: Fraction, step: Fraction) -> Fraction:
-    """About the x > start where f, which decreases and then increases, is least."""
-    x = [start, start + step]
-    y = [math.inf, f(x[1])]
-    while len(x) < 60:
-        x.append(start + step * 2 ** (len(x) - 1))
-        y.append(f(x[-1]))
-        if not y[-1] < y[-2]:
-            break
-    best, value = x[-2], y[-2]
-    low, high = x[max(len(x) - 3, 0)], x[-1]
-    for _ in range(TRIALS):
-        a, b = low + (high - low) * 3 / 8, low + (high - low) * 5 / 8
-        fa, fb = f(a), f(b)
-        value, best = min((value, best), (fa, a), (fb, b))
-        low, high = (a, high) if fb < fa else (low, b)
-    return Fraction(round(best * ROUND), ROUND)
 
+LADDER = [Fraction(round(1.03 ** j * ROUND), ROUND) for j in range(-440, 100)]  # 2e-6 ... 18
+
+
+def _lowest(f: Callable[[Fraction], float], places: Sequence[Fraction]) -> Fraction:
+    """The place where f, which falls and then rises, is least."""
+    low, high = 0, len(places) - 1
+    while low < high:
+        middle = (low + high) // 2
+        here = f(places[middle])
+        if here < math.inf and f(places[middle + 1]) < here:
+            low = middle + 1
+        else:
+            high = middle
+    return places[low]
