@@ -10,6 +10,8 @@ import mpmath
 
 # make torture multiplies the number of random cases
 TORTURE = int(os.environ.get("CONVERSE_TORTURE", "1"))
+# make sanitize: each case takes ten times as long, and is to execute code rather than find numbers
+SANITIZED = "asan" in os.environ.get("LD_PRELOAD", "")
 # sys.setprofile(strike): SIGTERM where Python waits for a result and has just given up the lock of
 # the condition; an exception there has it released twice, which is a RuntimeError
 STRIKE = """

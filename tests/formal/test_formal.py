@@ -9,7 +9,7 @@ import sys
 from dataclasses import replace
 
 import pytest
-from conftest import ROOT, not_sanitized
+from conftest import ROOT
 
 from converse import prove, read_input
 
@@ -17,8 +17,6 @@ FORMAL = ROOT / "formal"
 needs_coq = pytest.mark.skipif(
     not shutil.which("coqc") or not (FORMAL / "Plain.vo").exists(),
     reason="make formal-quick was not run")
-pytestmark = not_sanitized
-
 
 @pytest.fixture(scope="module")
 def proof(tmp_path_factory):

@@ -12,7 +12,6 @@ from importlib import metadata
 from pathlib import Path
 
 import pytest
-from conftest import not_sanitized
 
 from converse import _native, prove, read_input
 
@@ -81,7 +80,6 @@ def test_without_the_core_nothing_is_proved(root):
     assert err.startswith("converse: ") and err.count("\n") == 1 and "core" in err
 
 
-@not_sanitized
 def test_the_core_says_nothing_of_where_it_was_built(root):
     """No tables for a debugger, which are large, and name directories; so builds are the same."""
     core = Path(_native.__file__).read_bytes()
@@ -137,7 +135,6 @@ def test_the_readme_of_an_index(root):
         *re.findall(r"(?<= \()[^) ]+(?=\))|(?<=Figure )[^:]+", text)}
 
 
-@not_sanitized
 def test_manual_pages_and_completions(root, tmp_path):
     """Of each command, where a shell and man look for them in share/."""
     pytest.importorskip("shtab")

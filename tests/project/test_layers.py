@@ -4,9 +4,7 @@ import ast
 from graphlib import TopologicalSorter
 
 import pytest
-from conftest import ROOT, not_sanitized
-
-pytestmark = not_sanitized
+from conftest import ROOT
 
 # From the ground up; a room imports only what is on lower floors.  (_native is compiled; the
 # package itself, "", loads what it is asked for.)

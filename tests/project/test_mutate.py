@@ -5,7 +5,7 @@ import random
 import runpy
 import subprocess
 
-from conftest import ROOT, not_sanitized
+from conftest import ROOT
 from mutate.operators import OPERATORS, mutants
 
 TOOL = runpy.run_path(str(ROOT / "tests" / "mutate" / "__main__.py"))
@@ -84,7 +84,6 @@ def test_samples():
         place.key for place in found)
 
 
-@not_sanitized
 def test_a_fatal_mistake_is_caught(tmp_path):
     """And nothing fails with the unchanged core, so that it is the mistake that is noticed; a test
     that fails anyhow says nothing."""

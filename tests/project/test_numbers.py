@@ -11,14 +11,12 @@ from pathlib import Path
 import chart
 import mpmath
 import pytest
-from conftest import not_sanitized
 
 from converse import Problem, check, orbits, prove, read_input
 from converse.version import __version__
 
 from truth import TORTURE
 
-pytestmark = not_sanitized              # what is counted is the same, and takes long
 ROOT = Path(__file__).resolve().parent.parent.parent
 PAGES = {page.name: page.read_text("utf-8")
          for page in (ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md")))}

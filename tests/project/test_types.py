@@ -5,13 +5,11 @@ import inspect
 import re
 
 import pytest
-from conftest import not_sanitized
 
 import converse
 from converse import maps, orbits, tori
 
 api = pytest.importorskip("mypy.api")
-pytestmark = not_sanitized
 
 
 def checked(root, *arguments):
