@@ -14,16 +14,16 @@ import converse
 from converse import Counts, Problem, Proof, Settings
 
 from moments import PATIENCE
+from truth import TORTURE
 
 ROOT = Path(__file__).resolve().parent.parent
 
-# Other programs need not run, and do not, with the sanitizers' library in them.
-not_sanitized = pytest.mark.skipif("asan" in os.environ.get("LD_PRELOAD", ""),
-                                   reason="it tests nothing that is C")
 COMMAND = str(Path(sys.executable).parent / "converse")
 
-# What takes long takes long: a machine that is slow, or busy, is no failure.
-settings.register_profile("timeless", deadline=None, suppress_health_check=[HealthCheck.too_slow])
+# What takes long takes long: a machine that is slow, or busy, is no failure.  And the same cases
+# at every run, so that none fails, or takes longer, by chance; `make torture` draws others.
+settings.register_profile("timeless", deadline=None, derandomize=TORTURE == 1,
+                          suppress_health_check=[HealthCheck.too_slow])
 settings.load_profile("timeless")
 
 # The children test the package that is tested here.  Where that is installed elsewhere, they must

@@ -347,7 +347,7 @@ def test_any_other_claim_or_tree(proof_files, tmp_path_factory, which, changes):
     path.write_text(text, encoding="utf-8")
     try:
         with pytest.MonkeyPatch.context() as patch:
-            patch.setattr(check, "MAX_PIECES", min(check.MAX_PIECES, 300 * TORTURE))
+            patch.setattr(check, "MAX_PIECES", min(check.MAX_PIECES, 100 * TORTURE))
             result = check.verify(path)
     except check.Failure as error:
         one_line(error)

@@ -246,7 +246,7 @@ def test_workers_that_die(coarse, tmp_path):
         maps.explore("c=0", "1.4", path=tmp_path / "third.json", executor=pool)
 
 
-@pytest.mark.parametrize("when", [3, 10, 30])
+@pytest.mark.parametrize("when", [3, 10])
 def test_an_interruption_loses_nothing(coarse, tmp_path, when):
     path, calls = tmp_path / "map.json", []
 
@@ -257,7 +257,7 @@ def test_an_interruption_loses_nothing(coarse, tmp_path, when):
             raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        maps.explore("b=0", "1.2", path=path, jobs=1, progress=progress)
+        maps.explore("b=0", "1.3", path=path, jobs=1, progress=progress)
     before = Map.load(path)
     found = maps.explore(path=path, resume=True)
     assert found.complete and found.count(PROVED) >= before.count(PROVED)
