@@ -29,7 +29,7 @@ def referee(path):
             if why:
                 raise NotConfirmed(not_excluded(claim, confirmed, cell, why))
             confirmed, pieces = confirmed + 1, pieces + tried
-    status, _, lines = report([claim], claimed(claim), criterion, confirmed, pieces)
+    status, lines = report([claim], claimed(claim), criterion, confirmed, pieces)
     return status, "\n".join([*lines, "SHA-256 : " + claim.sha256])
 
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from .criterion import check_at_once
 from .failures import NotConfirmed, Unusable
-from .limits import VERIFIED
+from .limits import PART, SPOT_CHECK, VERIFIED
 from .lockstep import make_lockstep
 from .maps import Map, check_map, mapped, read_map
 from .progress import Bar
@@ -19,6 +19,7 @@ from .workers import Problems, in_order
 
 CHUNKS, CHUNK = 8, 16                   # tasks of a process, about; leaves of one, with --exact
 FAST_CHUNK = 1 << 8, 1 << 14            # least and most of the fast path
+VERDICTS = {VERIFIED: "verified", PART: "verified in part", SPOT_CHECK: "spot check"}
 
 
 @dataclass(frozen=True)
@@ -91,8 +92,15 @@ def verify(path, jobs=1, sample=None, state=None, bar=False, exact=False):
     finally:
         done.save()
     is_map = isinstance(file, Map)
-    status, verdict, lines = report(
-        problems.claims, mapped(file) if is_map else claimed(file),
-        None if is_map else problems.criterion(0), done.confirmed, done.pieces, earlier,
-        sample is not None, bool(problems.fast))
-    return Result(status, verdict, "\n".join([*lines, "SHA-256 : " + file.sha256]))
+    status, lines = report(problems.claims, mapped(file) if is_map else claimed(file),
+                           None if is_map else problems.criterion(0), done.confirmed, done.pieces,
+                           bool(problems.fast))
+    if sample is not None:
+        status = SPOT_CHECK
+        lines[:1] = ["Spot check of %d of %d proved leaves, NOT a verification: none of them fails."
+                     % (done.confirmed, sum(proved)), "What is claimed and NOT verified :"]
+    elif earlier:
+        lines[0] = lines[0].replace(" :", ", %d of %d leaves by an earlier run :"
+                                    % (earlier, sum(proved)))
+        lines += ["Of these, by an earlier run whose state was believed : %d" % earlier]
+    return Result(status, VERDICTS[status], "\n".join([*lines, "SHA-256 : " + file.sha256]))

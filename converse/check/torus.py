@@ -38,8 +38,7 @@ def cell_bound(fixed, waves, amplitudes, sides, y, w):
     bend = largest(*forms(waves, [(abs(p) * square * sum(map(abs, ks)) ** 2 >> bits + 1) + 1
                                   for p, ks in zip(amplitudes, along)]), one)
     # Sines and floors: m is off by 1 + SINE_ERROR size units at most, and g d by 1 + SINE_ERROR
-    # size w for each unit of k.side; 1 to spare.  (A side is a unit vector, or for waves that are
-    # multiples of k0 is such that k.side is the multiple: |k.side| <= |k0| + |k1|.)
+    # size w for each unit of k.side, where |k.side| <= |k0| + |k1|; 1 to spare.
     size = max(map(abs, amplitudes), default=0)
     slack = 4 + stiffness(waves) * (4 + ((2 * SINE_ERROR * size * (one + w)) >> 2 * bits) + 1)
     corners = max(map(eigenvalue, itertools.product((-1, 1), repeat=len(sides))))
@@ -55,16 +54,15 @@ def torus_bound(fixed, waves, corners, most=None):
     until the worst cell is within 2^-20 (relative to the parameters) of a value taken, or there
     have been so many cells (most) that the bound may be a little less sharp.
 
-    If all k are multiples of one, q, then beta depends on q.y alone, and its values are those on a
-    line: for side.q = 1 those at y = d side, |d| <= pi.
+    If all k are multiples of q, a primitive vector, then beta depends on q.y alone, and has all its
+    values on a piece of an axis, |y| <= pi/|q0| or pi/|q1|.
     """
     corners = sorted(set(corners))
-    q = min([(k0, k1) for k0, k1, _ in waves] or [(1, 0)], key=lambda k: abs(k[0]) + abs(k[1]))
-    if all(k0 * q[1] == k1 * q[0] for k0, k1, _ in waves):
-        divisor = math.gcd(*q)
-        sides = [bezout(q[0] // divisor, q[1] // divisor)]
-    else:
-        sides = [(1, 0), (0, 1)]
+    sides, width = [(1, 0), (0, 1)], fixed.pi
+    q0, q1 = waves[0][:2] if waves else (1, 0)
+    if all(k0 * q1 == k1 * q0 for k0, k1, _ in waves):
+        axis = 0 if q0 else 1
+        sides, width = [sides[axis]], fixed.pi * math.gcd(q0, q1) // abs((q0, q1)[axis])
     tolerance = (fixed.one + max([sum(map(abs, p)) for p in corners])) >> 20
     heap, taken, order = [], 0, itertools.count()
 
@@ -75,7 +73,7 @@ def torus_bound(fixed, waves, corners, most=None):
         heapq.heappush(heap, (-bound, next(order), p, y, w))
 
     for p in corners:
-        push(p, (0, 0), fixed.pi + 2)
+        push(p, (0, 0), width + 3)          # pi is off by less than 2 units, width by 3
     while -heap[0][0] > taken + tolerance and next(order) < (most or MAX_CELLS):
         _, _, p, y, w = heapq.heappop(heap)
         w = w + 1 >> 1
@@ -83,16 +81,6 @@ def torus_bound(fixed, waves, corners, most=None):
             push(p, tuple([c + sum([e * side[i] for e, side in zip(d, sides)])
                            for i, c in enumerate(y)]), w)
     return -heap[0][0]
-
-
-def bezout(a, b):
-    """Integers (u, v), |u|, |v| <= 1 or below |a|, |b|, with a u + b v = 1, for coprime a, b."""
-    u, v, old, new = 1, 0, a, b
-    x, y = 0, 1
-    while new:
-        n = old // new
-        old, new, u, x, v, y = new, old - n * new, x, u - n * x, y, v - n * y
-    return (u * old, v * old)               # old is 1 or -1
 
 
 def least(d):

@@ -5,6 +5,7 @@ the axes k.  Cutting a cell replaces it by its two halves, so the leaves of a co
 region exactly.
 """
 
+import itertools
 from array import array
 from fractions import Fraction
 
@@ -99,10 +100,8 @@ class Mirror:
         self.orders = []                                    # of the parameters
         if v0 == v1 and claim.xstar[0] == claim.xstar[1] and claim.frame == IDENTITY:
             # V(sigma y; t) = V(y; t'):  the part of t[order[m]] is, exchanged, that of t'[m].
-            self.orders = [order for order in ((1, 0, 2), (0, 1, 2), (0, 2, 1), (2, 1, 0),
-                                               (1, 2, 0), (2, 0, 1), (1, 0), (0, 1), (0,), ())
-                           if len(order) == claim.parameters
-                           and coefficients(waves, True, order) == coefficients(waves)]
+            self.orders = [order for order in itertools.permutations(range(claim.parameters))
+                           if coefficients(waves, True, order) == coefficients(waves)]
         self.tree = claim.tree
         self.upper = array("i", [0]) * len(self.tree)       # where a node's upper half begins
         unfinished = []                                     # nodes whose lower half goes on
@@ -116,10 +115,10 @@ class Mirror:
         """Why the symmetric leaf may not be skipped, or None if its mirror image is proved."""
         if not self.orders:
             return "is skipped, but the problem is not symmetric"
-        slices = list(zip(*cell))
+        slices = tuple(zip(*cell))
         for order in self.orders:
-            image = [slices[1], slices[0], *(slices[2 + m] for m in order)]
-            if self.is_proved(tuple(image + slices[len(image):])):
+            image = slices[1], slices[0], *[slices[2 + m] for m in order]
+            if self.is_proved(image + slices[len(image):]):
                 return None
         return "is skipped, but its mirror image is not proved"
 

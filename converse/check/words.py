@@ -3,7 +3,7 @@
 from fractions import Fraction
 
 from .claim import ANGLES, IDENTITY, RANGES, THESIS
-from .limits import PART, SPOT_CHECK, VERIFIED
+from .limits import PART, VERIFIED
 from .tree import leaf_text
 from .version import __version__
 
@@ -85,27 +85,19 @@ def not_excluded(claim, ordinal, cell, why):
         "checker" % (claim.where, leaf_text(claim, "P", ordinal, cell), why)
 
 
-def report(claims, theorem, criterion, confirmed, pieces, earlier=0, sampled=False, fast=False):
-    """The theorem, exactly as far as it was verified; or the result of a spot check.
+def report(claims, theorem, criterion, confirmed, pieces, fast=False):
+    """The exit status and the lines of a report: the theorem, exactly as far as it was verified.
 
     theorem: what is claimed, in lines; criterion: of a proof file, not of a map.
     """
     proved, skipped = [sum([claim.counts[kind] for claim in claims])
                        for kind in ("proved", "symmetric")]
     whole = all(min(claim.half) >= 1 for claim in claims)
-    if sampled:
-        status, verdict = SPOT_CHECK, "spot check"
-        lines = ["Spot check of %d of %d proved leaves, NOT a verification: none of them fails."
-                 % (confirmed, proved), "What is claimed and NOT verified :"]
-    else:
-        status, verdict = (VERIFIED, "verified") if whole else (PART, "verified in part")
-        lines = ["Verified" + ", for a part of the torus only" * (not whole)
-                 + ", %d of %d leaves by an earlier run" % (earlier, proved) * (earlier > 0) + " :"]
-    lines += theorem
-    lines += ["", "Checker : converse-check " + __version__,
-              "Method : Loewner criterion, multipliers, %sin integers%s" % (
-                  "in doubles and where these fail " * fast,
-                  " of %d bits" % criterion.fixed.bits if criterion else "")]
+    lines = ["Verified" + ", for a part of the torus only" * (not whole) + " :", *theorem, "",
+             "Checker : converse-check " + __version__,
+             "Method : Loewner criterion, multipliers, %sin integers%s" % (
+                 "in doubles and where these fail " * fast,
+                 " of %d bits" % criterion.fixed.bits if criterion else "")]
     if criterion:
         places, claim = 9, criterion.claim
         bound = -(-criterion.B * 10 ** places // criterion.fixed.one)       # rounded up
@@ -116,6 +108,4 @@ def report(claims, theorem, criterion, confirmed, pieces, earlier=0, sampled=Fal
     lines += ["Leaves : %d, of which %d proved and %d symmetric" % (
         proved + skipped, proved, skipped),
         "Proved leaves checked : %d, in %d pieces" % (confirmed, pieces)]
-    if earlier:
-        lines += ["Of these, by an earlier run whose state was believed : %d" % earlier]
-    return status, verdict, lines
+    return VERIFIED if whole else PART, lines
