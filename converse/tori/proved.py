@@ -24,7 +24,7 @@ AIM = 1000.0                # what grid and roundings are to leave of the admiss
 CLOSE = 1 / 200             # |I - L M| that is close enough
 BYTES = 250                 # of memory for each point of a grid: a ball in two arrays
 WIDTHS = [1.2 ** -j for j in range(26)]         # of the rate of decay: the rho that are tried
-ALPHAS = 1, 2, 3, 4, 6, 8                       # ratios of the norm's weights
+ALPHAS = tuple(Fraction(a, 2) for a in (2, 3, 4, 5, 6, 8, 10, 12, 16))      # ratios of weights
 MOST_BITS = 4000
 Progress = Optional[Callable[[str], None]]
 
@@ -329,8 +329,9 @@ def best_shape(norm: Norm, waves: Sequence[Tuple[int, ...]], points: int) -> Tup
 
 
 def _norm(torus):
-    """A norm in which the coefficients decay fast and divisors are large: of some ratios of weights
-    the one with the least c(delta), delta being a fixed part of the rate of decay."""
+    """A norm in which the modes are few and divisors are large.  The width that suits a torus whose
+    modes end at K is (4 tau + 1)/K about, and the loss of the first step a quarter of it: of some
+    ratios of weights the one with the least c(2/K) is taken."""
     if torus.dimension == 1:
         return Norm(((1,),), (Fraction(1),))
     from .newton import default_frame
@@ -339,11 +340,9 @@ def _norm(torus):
     best = None
     for a, b in [(1, r) for r in ALPHAS] + [(r, 1) for r in ALPHAS[1:]]:
         norm = Norm(frame, (Fraction(a), Fraction(b)))
-        rate = torus.decay(_distances(torus, norm))
-        rate = min(rate, 5.0) if rate > 0 else 1.0
-        delta = Fraction(rate / 20).limit_denominator(10 ** 6)
+        delta = Fraction(2 / _distances(torus, norm).max(initial=1)).limit_denominator(10 ** 6)
         try:
-            cost = float(Divisors(torus.rotation, norm, basis, 40).c(delta))
+            cost = float(Divisors(torus.rotation, norm, basis, 100).c(delta))
         except ValueError:
             continue
         if best is None or cost < best[0]:
