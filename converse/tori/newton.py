@@ -99,7 +99,7 @@ class Mesh:
             a[1] -= self.sizes[1] * np.rint((a[1] + lean * a[0] / steps[1])
                                             / self.sizes[1]).astype(np.int64)
         self.k = np.tensordot(np.array(self.basis).T, a, 1)
-        self.m = np.tensordot(np.array(frame), self.k, 1) if len(self.basis) == 2 else a
+        self.m = self.numbers(self.k)
         self.half = [step * size / 2 for step, size in zip(steps, self.sizes)]
         self.inside = np.all([abs(m) < half for m, half in zip(self.m, self.half)], 0)
         self.waves = [self._coordinates(np.array(vector)) for vector in self.vectors]
@@ -118,6 +118,12 @@ class Mesh:
         return cls(potential, rotation, frame, [
             1 << max(3, ceil(log2(max(2 * reach / step, 1)))) for reach, step in zip(box, steps)],
             real)
+
+    def numbers(self, k: np.ndarray) -> np.ndarray:
+        """m of integers k (n, ...)."""
+        if len(self.basis) == 2:
+            return np.tensordot(np.array(self.frame), k, 1)
+        return np.array(self._coordinates(k))
 
     def _coordinates(self, k):
         """The integers a with k = sum of a_i b_i, for an array k of shape (n, ...)."""

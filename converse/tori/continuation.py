@@ -1,0 +1,228 @@
+"""Continuation of a torus in the amplitudes of the potential, by Newton's method in floating-point
+numbers, from a map where it is known: without potential, every torus is there.
+
+The number of modes follows the decay of the coefficients, in two directions at different rates.
+Small divisors magnify the rounding errors of high modes, so an error below the noise of its own
+computation counts as zero.
+"""
+
+from math import inf, isfinite, log
+from typing import List, NamedTuple, Optional, Sequence, Union
+
+import numpy as np
+
+from ..model.potential import FourierSum
+from .newton import Frame, Mesh, Real
+from .rotation import Rotation
+from .torus import Torus, decay
+
+ROOM = 0.4                  # of a mesh's box of modes is used: products fit, too
+FLAT = 5.0                  # a decay rate; what falls faster has one or two modes
+POINTS = 1 << 21            # of a mesh, at most
+FIRST_STEP, SMALL_STEP, LEAST_STEP = 0.25, 0.01, 1e-5   # of the way to the amplitudes asked for
+SPARE = 1.25                # of the log of the smallest coefficient: amplitudes ahead need more
+ASPECTS = 1.0, 0.25, 0.4, 0.6, 1.6, 2.5, 4.0, 6.0   # of rates of decay in two directions
+ITERATIONS = 9              # of Newton's method
+STALLED = 1e-12             # of the error: below, more modes are needed, or there is noise alone
+HISTORY = 4                 # tori from which the next one is extrapolated
+TOO_LARGE = "too large"
+
+
+class NotFound(Exception):
+    """No torus was found; the text says why, and what was reached.
+
+    reached -- the part of the way from the start to the amplitudes asked for, in [0, 1]
+    amplitude -- there, of each wave"""
+
+    def __init__(self, text: str, reached: float, amplitude: Sequence[float]) -> None:
+        super().__init__(text)
+        self.reached, self.amplitude = reached, tuple(amplitude)
+
+
+class Found(NamedTuple):
+    """part -- of the way
+    amplitude -- of each wave there
+    mesh, u -- the torus, as coefficients on a mesh, of the modes `keep`
+    seen -- the modes whose coefficients are above the noise
+    rates -- at which they decay in each mode number
+    reach -- log of the largest coefficient over the noise: e^-reach is about the least that is seen
+    """
+
+    part: float
+    amplitude: np.ndarray
+    mesh: Mesh
+    u: np.ndarray
+    keep: np.ndarray
+    seen: np.ndarray
+    rates: np.ndarray
+    reach: float
+
+
+class Way:
+    """From amplitudes for which a torus is known to those asked for, one for each wave."""
+
+    def __init__(self, potential: FourierSum, rotation: Rotation, frame: Frame, points: int,
+                 first: np.ndarray, last: np.ndarray) -> None:
+        self.potential, self.rotation, self.frame = potential, rotation, frame
+        self.points, self.first, self.last = points, first, last
+
+    def amplitude(self, part: float) -> np.ndarray:
+        return self.first + Real(part) * (self.last - self.first)
+
+    def mesh(self, box) -> Mesh:
+        return Mesh.holding(self.potential, self.rotation, self.frame, np.array(box) / ROOM / 2)
+
+    def follow(self, start: Optional[Found] = None) -> Found:
+        """The torus at the end of the way; `start` is that at its beginning, by default that of the
+        map without potential."""
+        known = [self._straight() if start is None else start._replace(part=0.0)]
+        step = FIRST_STEP if start is None else 1.0
+        while known[-1].part < 1:
+            last = known[-1]
+            if not self._hopeful(known):
+                break
+            part = 1.0 if last.part + 1.25 * step >= 1 else last.part + step
+            found = self._solved(part, last, _extrapolated(known, part))
+            if isinstance(found, Found):
+                known = [*known[1 - HISTORY:], found]
+                step *= 1.6
+                continue
+            step = (part - last.part) / 2.5
+            if found == TOO_LARGE and step < SMALL_STEP or step < LEAST_STEP:
+                break
+        else:
+            return known[-1]
+        raise NotFound(*self._story(known))
+
+    def _straight(self):
+        rank = len(Mesh.holding(self.potential, self.rotation, self.frame, (1, 1)).sizes)
+        mesh = self.mesh((8,) * rank)
+        u = np.zeros((self.potential.dimension, *mesh.k.shape[1:]), np.clongdouble)
+        return Found(0.0, self.first, mesh, u, mesh.inside, mesh.inside, np.full(rank, FLAT), 1.0)
+
+    def taken_up(self, torus: Torus) -> Found:
+        """A torus of the map at the beginning of the way."""
+        k, size = torus.vectors.T, abs(torus.coefficients()).max(1)
+        m = self.mesh((1, 1)).numbers(k)
+        seen = size > float(np.finfo(Real).eps) / 100
+        mesh = self.mesh(abs(m[:, seen]).max(1, initial=1) + 1)
+        u = mesh.spread(k, torus.coefficients().T.astype(np.clongdouble))
+        return self._measured(0.0, mesh, u)
+
+    def _solved(self, part: float, last: Found, u: np.ndarray) -> Union[Found, str, None]:
+        """The torus there, from coefficients about its own on the last mesh; a mesh is taken whose
+        modes reach down to the noise.  None: Newton's method failed; TOO_LARGE: the mesh would be.
+        """
+        mesh, keep = last.mesh, last.keep
+        amplitude = self.amplitude(part)
+        for _ in range(6):
+            solved = newton(mesh, u, amplitude, keep)
+            if solved is None:
+                return None
+            found = self._measured(part, mesh, solved)
+            box = found.reach / found.rates
+            larger = self.mesh(np.maximum(box, mesh.half))
+            if larger.points > mesh.points and larger.points > self.points:
+                return TOO_LARGE
+            fits = all(b <= 2 * ROOM * half for b, half in zip(box, mesh.half))
+            if fits:
+                if (found.keep & ~keep).sum() <= 0.02 * keep.sum():
+                    return found
+                u, keep = found.u, found.keep
+                continue
+            larger = self.mesh(np.maximum(box, 2 * ROOM * np.array(mesh.half)))
+            u, mesh = mesh.moved(found.u, larger), larger
+            keep = ellipse(mesh, found.rates, found.reach)
+        return None
+
+    def _measured(self, part, mesh, u):
+        """The rates of decay, of coefficients above the noise, and the modes to keep.
+
+        The noise of u is that of E over the smallest divisor so far: by L, in v = L z, the noise of
+        one mode reaches the others."""
+        turn = mesh.turn.astype(float)
+        far = sum(abs(m) / half for m, half in zip(mesh.m, mesh.half)).ravel()
+        order = np.argsort(far, kind="stable")
+        least = np.minimum.accumulate(np.where(far > 0, turn.ravel(), 4)[order])
+        noise = np.empty(turn.size)
+        noise[order] = mesh.noise(self.amplitude(part)) / least
+        size = abs(u).max(0).astype(float).ravel()
+        seen = np.where((size > noise) & mesh.inside.ravel(), size, 0)
+        rates, reach = np.full(len(mesh.sizes), FLAT), 1.0
+        if seen.any():
+            rates = max((_rates(mesh, seen, q) for q in ASPECTS[:None if len(mesh.m) == 2 else 1]),
+                        key=np.prod)
+            reach = SPARE * max(log(seen.max() / noise[far <= ROOM].max()), 0) + 6
+        return Found(part, self.amplitude(part), mesh, u, ellipse(mesh, rates, reach),
+                     (seen > 0).reshape(turn.shape), rates, reach)
+
+    def _hopeful(self, known):
+        """Do the rates of decay, if they go on as they do, stay above 0 for half of what is left?
+        """
+        if len(known) < HISTORY or known[-1].mesh.points < self.points >> 4:
+            return True
+        return self._breakdown(known) > (known[-1].part + 1) / 2
+
+    def _breakdown(self, known):
+        """The part of the way at which a line through the last two rates of decay is 0."""
+        (x0, y0), (x1, y1) = [(f.part, f.rates.min()) for f in known[-2:]]
+        return x1 + y1 * (x1 - x0) / (y0 - y1) if y1 < y0 else inf
+
+    def _story(self, known):
+        last = known[-1]
+        at = ", ".join("%.6g" % float(p) for p in self.amplitude(last.part))
+        end = self._breakdown(known) if len(known) > 1 else inf
+        guess = ", ".join("%.6g" % float(p) for p in self.amplitude(end)) if isfinite(end) else ""
+        text = "no torus of %s was found for the amplitudes asked for: the last one is at %s" % (
+            self.rotation, at)
+        text += ", with %d points" % last.mesh.points
+        if guess and end < 2:
+            text += "; its coefficients decay at a rate that would be 0 near %s" % guess
+        return text, last.part, [float(p) for p in self.amplitude(last.part)]
+
+
+def _rates(mesh, seen, q):
+    """The rates at which coefficients decay with |m_0| and |m_1|, the second q times the first."""
+    aspect = np.array([1.0, q])[:len(mesh.m)]
+    rate = decay(sum(a * abs(m) for a, m in zip(aspect, mesh.m)).ravel(), seen)
+    return aspect * min(FLAT / aspect.max(), max(rate, 1e-9))
+
+
+def ellipse(mesh, rates, reach):
+    """Where coefficients of these rates are above e^-reach."""
+    return mesh.inside & (sum(rate * abs(m) for rate, m in zip(rates, mesh.m)) <= reach)
+
+
+def _extrapolated(known: List[Found], part: float) -> np.ndarray:
+    """The polynomial through the known coefficients, at another part of the way, on the last mesh.
+    """
+    mesh = known[-1].mesh
+    total = np.zeros_like(known[-1].u)
+    for i, found in enumerate(known):
+        weight = Real(1)
+        for j, other in enumerate(known):
+            if i != j:
+                weight *= Real(part - other.part) / Real(found.part - other.part)
+        total += weight * (found.u if found.mesh is mesh else found.mesh.moved(found.u, mesh))
+    return total
+
+
+def newton(mesh: Mesh, u: np.ndarray, amplitude: np.ndarray,
+           keep: np.ndarray) -> Optional[np.ndarray]:
+    """The coefficients that solve the equation, as exactly as the noise permits, of the modes
+    `keep`; None: the method does not converge from u."""
+    noise = mesh.noise(amplitude)
+    before = inf
+    for _ in range(ITERATIONS):
+        error = mesh.error(u, amplitude)
+        error[abs(error) < noise] = 0
+        size = float(np.sqrt((abs(error[:, keep]) ** 2).sum()))
+        if size == 0:
+            return u
+        if not size < before / 2:
+            return u if size < STALLED else None
+        before = size
+        u = (u + mesh.correction(u, error)) * keep
+        if not abs(u).max() < 100:
+            return None
+    return None
