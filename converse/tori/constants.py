@@ -164,13 +164,13 @@ def _jacobian(torus: Torus, grid: Grid, cut: Fraction, degree: int) -> List[Colu
     for k, series in torus.modes.items():
         if not grid.within(k, cut):
             continue
-        q0, q1 = grid.index(k)
+        places = grid.place(k), grid.place([-x for x in k])
         factor = acb(-k[1] if n == 2 else 0, k[0])          # i (k_0 + i k_1)
         for j, numbers in enumerate(series[:degree + 1]):
             for row, re, im in zip(rows, numbers[::2], numbers[1::2]):
-                for sign in 1, -1:
+                for (q0, q1), sign in zip(places, (1, -1)):
                     c = acb(arb((re, exponent)), arb((sign * im, exponent)))
-                    row.setdefault((sign * q1, j), {})[sign * q0] = sign * factor * c
+                    row.setdefault((q1, j), {})[q0] = sign * factor * c
     return rows
 
 
@@ -183,7 +183,7 @@ def _proposal(rows: List[Columns], torus: Torus, grid: Grid, cut: Fraction, degr
         table = np.zeros(size, complex)
         for (q1, j), column in row.items():
             for q0, c in column.items():
-                table[q0 % size[0], q1 % size[1], j] += complex(c)
+                table[q0, q1, j] = complex(c)
         table = np.fft.fftn(table)
         other = table[:, :, -np.arange(size[2])].conj()
         parts.append([(table + other) / 2, (table - other) / 2j])
@@ -194,6 +194,7 @@ def _proposal(rows: List[Columns], torus: Torus, grid: Grid, cut: Fraction, degr
         det = l00 * l11 - l01 * l10
         inverse = [(l11 - 1j * l01) / det, (1j * l00 - l10) / det]
     q, m = grid.ball(cut)
+    q = q % np.array(grid.shape)
     omega = rotation_balls(torus, BITS)
     shift = []
     for k in frame_modes(grid, m).tolist():
@@ -201,7 +202,7 @@ def _proposal(rows: List[Columns], torus: Torus, grid: Grid, cut: Fraction, degr
         shift.append(acb(cosine, sine))
     found, back = [], []
     for table in inverse:
-        numbers: Any = np.fft.ifftn(table)[q[:, 0] % size[0], q[:, 1] % size[1], :degree + 1]
+        numbers: Any = np.fft.ifftn(table)[q[:, 0], q[:, 1], :degree + 1]
         straight: Columns = {}
         turned: Columns = {}
         for (q0, q1), series, factor in zip(q.tolist(), numbers.tolist(), shift):
@@ -215,7 +216,7 @@ def _proposal(rows: List[Columns], torus: Torus, grid: Grid, cut: Fraction, degr
 
 def _series(row: Columns, grid: Grid) -> Tuple[np.ndarray, np.ndarray]:
     """Coefficients that are doubles, as `gather` gives them."""
-    q, _ = grid.inside
+    q = grid.inside[0] % np.array(grid.shape)
     places = {each: at for at, each in enumerate(map(tuple, q.tolist()))}
     middle = np.zeros((len(q), grid.layers), complex)
     for (q1, j), column in row.items():

@@ -31,7 +31,7 @@ SLACK = 1 + 2.0 ** -30      # above what MOST roundings of sums, products and ro
 MOST = 1 << 21              # summands
 TINY = 2.0 ** -1000         # above what underflows lose
 ROUND = 1 << 30             # denominator of the widths that are tried
-Columns = Dict[Tuple[int, int], Dict[int, acb]]      # (q1, j): {q0: coefficient}
+Columns = Dict[Tuple[int, int], Dict[int, acb]]      # (q1, j): {q0: coefficient}, modulo the grid
 Layers = List[List[acb]]                             # of each sigma, the values along chi_1
 
 
@@ -111,6 +111,12 @@ class Grid:
             raise ValueError("the mode %s is not in the lattice that the waves generate"
                              % (tuple(k),))
         return (0, q[0]) if len(q) == 1 else (q[0], q[1])
+
+    def place(self, k: Sequence[int]) -> Tuple[int, int]:
+        """q modulo the grid.  Those of two k inside are never the same, but one of their components
+        may be."""
+        q0, q1 = self.index(k)
+        return q0 % self.shape[0], q1 % self.shape[1]
 
     @cached_property
     def _units(self) -> Tuple[Tuple[int, ...], int]:
@@ -258,15 +264,15 @@ def values(columns: Columns, grid: Grid) -> Iterator[Layers]:
     for key, column in columns.items():
         line = [ZERO] * m0
         for q0, c in column.items():
-            line[q0 % m0] = c
+            line[q0] = c
         rows[key] = acb.dft(line) if m0 > 1 else line
     for j0 in range(m0):
         found = [[ZERO] * m1 for _ in range(layers)]
         for (q1, j), line in rows.items():
-            found[j][q1 % m1] = line[j0]
+            found[j][q1] = line[j0]
             line[j0] = ZERO                         # it is not needed again
         if layers > 1:
-            for q1 in {q1 % m1 for q1, _ in rows}:
+            for q1 in {q1 for q1, _ in rows}:
                 for layer, value in zip(found, acb.dft([layer[q1] for layer in found])):
                     layer[q1] = value
         yield [acb.dft(layer) for layer in found]
@@ -274,13 +280,13 @@ def values(columns: Columns, grid: Grid) -> Iterator[Layers]:
 
 def coefficients(lines: Iterator[Layers], grid: Grid, kept: Sequence[int]
                  ) -> Iterator[Tuple[int, int, List[acb]]]:
-    """The inverse of `values`: for each q1 of `kept` and each j (q1, j, list over q0 modulo M0)."""
-    (m0, m1), layers = grid.shape, grid.layers
+    """The inverse of `values`: for each q1 of `kept` and each j (q1, j, list over q0)."""
+    m0, layers = grid.shape[0], grid.layers
     rows: Dict[Tuple[int, int], List[acb]] = {(q1, j): [] for q1 in kept for j in range(layers)}
     for line in lines:
         line = [acb.dft(layer, inverse=True) for layer in line]
         for q1 in kept:
-            column = [layer[q1 % m1] for layer in line]
+            column = [layer[q1] for layer in line]
             for j, value in enumerate(acb.dft(column, inverse=True) if layers > 1 else column):
                 rows[q1, j].append(value)
     for q1, j in list(rows):
@@ -292,7 +298,7 @@ def gather(lines: Iterator[Layers], grid: Grid, change: Callable[[int, int, list
            ) -> Tuple[np.ndarray, np.ndarray]:
     """The coefficients of `grid.inside` as complex doubles and what each is off by at most, shape
     (count, layers).  change(q1, j, line) may change a line of `coefficients` before."""
-    q, _ = grid.inside
+    q = grid.inside[0] % np.array(grid.shape)
     order = np.argsort(q[:, 1], kind="stable")
     found, begin = np.unique(q[order, 1], return_index=True)
     rows = dict(zip(found.tolist(), np.split(order, begin[1:])))
@@ -300,7 +306,7 @@ def gather(lines: Iterator[Layers], grid: Grid, change: Callable[[int, int, list
     off = np.zeros((len(q), grid.layers))
     for q1, j, line in coefficients(lines, grid, list(rows)):
         change(q1, j, line)
-        chosen = [line[q0] for q0 in (q[rows[q1], 0] % grid.shape[0]).tolist()]
+        chosen = [line[q0] for q0 in q[rows[q1], 0].tolist()]
         near = [complex(c) for c in chosen]
         middle[rows[q1], j] = near
         off[rows[q1], j] = [above((c - x).abs_upper()) for c, x in zip(chosen, near)]
@@ -392,7 +398,7 @@ def torus_columns(torus: Torus, grid: Grid) -> Columns:
     columns: Columns = {}
     exponent = -torus.bits
     for k, series in torus.modes.items():
-        q0, q1 = grid.index(k)
+        places = grid.place(k), grid.place([-x for x in k])
         if not grid.within(k, grid.reach):
             raise ValueError("the grid of %d x %d points is too small for the mode %s"
                              % (*grid.shape, k))
@@ -401,8 +407,8 @@ def torus_columns(torus: Torus, grid: Grid) -> Columns:
                              % (grid.layers, len(series) - 1))
         for j, (a0, b0, *second) in enumerate(series):
             a1, b1 = second or (0, 0)
-            for sign, re, im in ((1, a0 - b1, b0 + a1), (-1, a0 + b1, a1 - b0)):
-                columns.setdefault((sign * q1, j), {})[sign * q0] = acb(
+            for (q0, q1), re, im in zip(places, (a0 - b1, a0 + b1), (b0 + a1, a1 - b0)):
+                columns.setdefault((q1, j), {})[q0] = acb(
                     arb((re, exponent)), arb((im, exponent)))
     return columns
 
@@ -493,13 +499,12 @@ def residual(torus: Torus, grid: Grid, bits: int) -> Residual:
         sines = {}
         for k in torus.modes:
             sine = turns(k, omega).sin_pi()
-            q0, q1 = grid.index(k)
-            sines[q0, q1] = sines[-q0, -q1] = -4 * sine * sine
+            for each in k, [-x for x in k]:
+                sines[grid.place(each)] = -4 * sine * sine
 
         def add_linear(q1, j, line):
             for q0, c in columns.get((q1, j), {}).items():
-                at = q0 % grid.shape[0]
-                line[at] = line[at] + sines[q0, q1] * c
+                line[q0] = line[q0] + sines[q0, q1] * c
 
         middle, off = gather(_forces(torus, grid), grid, add_linear)
     # h_k of E_0 + i E_1 has |E_k|^2 = (|h_k|^2 + |h_-k|^2)/2
