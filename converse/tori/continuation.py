@@ -7,7 +7,7 @@ computation counts as zero.
 """
 
 from math import inf, isfinite, log
-from typing import List, NamedTuple, Optional, Sequence, Union
+from typing import List, NamedTuple, Optional, Sequence, Tuple, Union
 
 import numpy as np
 
@@ -23,7 +23,8 @@ FIRST_STEP, SMALL_STEP, LEAST_STEP = 0.25, 0.01, 1e-5   # of the way to the ampl
 SPARE = 1.25                # of the log of the smallest coefficient: amplitudes ahead need more
 ASPECTS = 1.0, 0.25, 0.4, 0.6, 1.6, 2.5, 4.0, 6.0   # of rates of decay in two directions
 ITERATIONS = 9              # of Newton's method
-STALLED = 1e-12             # of the error: below, more modes are needed, or there is noise alone
+USEFUL, STALLED = 1e-7, 1e-12   # errors where the method stops: more modes are needed, or not
+ENLARGED = 8                # numbers of modes that are tried
 HISTORY = 4                 # tori from which the next one is extrapolated
 TOO_LARGE = "too large"
 
@@ -113,26 +114,26 @@ class Way:
         """The torus there, from coefficients about its own on the last mesh; a mesh is taken whose
         modes reach down to the noise.  None: Newton's method failed; TOO_LARGE: the mesh would be.
         """
-        mesh, keep = last.mesh, last.keep
+        mesh, keep, more = last.mesh, last.keep, 1.0
         amplitude = self.amplitude(part)
-        for _ in range(6):
+        for _ in range(ENLARGED):
             solved = newton(mesh, u, amplitude, keep)
             if solved is None:
                 return None
-            found = self._measured(part, mesh, solved)
-            box = found.reach / found.rates
-            larger = self.mesh(np.maximum(box, mesh.half))
-            if larger.points > mesh.points and larger.points > self.points:
-                return TOO_LARGE
-            fits = all(b <= 2 * ROOM * half for b, half in zip(box, mesh.half))
-            if fits:
-                if (found.keep & ~keep).sum() <= 0.02 * keep.sum():
+            found = self._measured(part, mesh, solved[0])
+            u, more = found.u, more * (1.3 if solved[1] > STALLED else 1)
+            box = more * found.reach / found.rates
+            if all(b <= 2 * ROOM * half for b, half in zip(box, mesh.half)):
+                wanted = ellipse(mesh, found.rates, more * found.reach)
+                if solved[1] <= STALLED and (wanted & ~keep).sum() <= 0.02 * keep.sum():
                     return found
-                u, keep = found.u, found.keep
+                keep = wanted
                 continue
             larger = self.mesh(np.maximum(box, 2 * ROOM * np.array(mesh.half)))
-            u, mesh = mesh.moved(found.u, larger), larger
-            keep = ellipse(mesh, found.rates, found.reach)
+            if larger.points > self.points:
+                return TOO_LARGE
+            u, mesh = mesh.moved(u, larger), larger
+            keep = ellipse(mesh, found.rates, more * found.reach)
         return None
 
     def _measured(self, part, mesh, u):
@@ -148,7 +149,7 @@ class Way:
         noise[order] = mesh.noise(self.amplitude(part)) / least
         size = abs(u).max(0).astype(float).ravel()
         seen = np.where((size > noise) & mesh.inside.ravel(), size, 0)
-        rates, reach = np.full(len(mesh.sizes), FLAT), 1.0
+        rates, reach = np.full(len(mesh.sizes), FLAT), 8 * FLAT
         if seen.any():
             rates = max((_rates(mesh, seen, q) for q in ASPECTS[:None if len(mesh.m) == 2 else 1]),
                         key=np.prod)
@@ -208,19 +209,17 @@ def _extrapolated(known: List[Found], part: float) -> np.ndarray:
 
 
 def newton(mesh: Mesh, u: np.ndarray, amplitude: np.ndarray,
-           keep: np.ndarray) -> Optional[np.ndarray]:
-    """The coefficients that solve the equation, as exactly as the noise permits, of the modes
-    `keep`; None: the method does not converge from u."""
+           keep: np.ndarray) -> Optional[Tuple[np.ndarray, float]]:
+    """The coefficients of the modes `keep` that solve the equation, as exactly as the noise and the
+    other modes permit, and what is left of the error; None: the method does not converge from u."""
     noise = mesh.noise(amplitude)
     before = inf
     for _ in range(ITERATIONS):
         error = mesh.error(u, amplitude)
         error[abs(error) < noise] = 0
         size = float(np.sqrt((abs(error[:, keep]) ** 2).sum()))
-        if size == 0:
-            return u
-        if not size < before / 2:
-            return u if size < STALLED else None
+        if not size < before / 2 or size == 0:
+            return (u, size) if size < USEFUL else None
         before = size
         u = (u + mesh.correction(u, error)) * keep
         if not abs(u).max() < 100:

@@ -127,7 +127,7 @@ class _Pieces:
 
     def _torus(self, piece: Ends, ends: List[Found]) -> Optional[Torus]:
         """The torus of a piece, from those at its ends and in its middle; None: it is too long."""
-        worst = min(ends, key=lambda found: float(found.rates.min()))
+        worst = min(reversed(ends), key=lambda found: float(found.rates.min()))
         aim = plan(worst, self.margin)
         series = self._series(piece, ends, worst)
         if series is None:
@@ -163,10 +163,10 @@ class _Pieces:
         for l in range(LAYERS // 2 + 1):
             sigma = np.exp(2j * np.pi * l / LAYERS)
             guess = middle + (high - low) / 2 * sigma + ((high + low) / 2 - middle) * sigma ** 2
-            u = newton(mesh, guess, ends[1].amplitude + sigma * half, keep)
-            if u is None:
+            solved = newton(mesh, guess, ends[1].amplitude + sigma * half, keep)
+            if solved is None:
                 return None
-            circle.append(u)
+            circle.append(solved[0])
         return source, source.series(iter(circle), LAYERS)
 
     def _complex(self, found, mesh):

@@ -202,7 +202,7 @@ def refined(digits: Digits, plan: Plan, potential: FourierSum, part: Part, rotat
         spot = (slice(None), *(x[ok] for x in place))
         error = np.zeros((layers, len(mesh.k), *mesh.k.shape[1:]), complex)
         for j in range(layers):
-            error[(j, *spot)] = result.values[ok, :, j].T
+            error[j][spot] = result.values[ok, :, j].T
         if part is None:
             u = mesh.spread(digits.k, digits.doubles()[0])
             digits.add(digits.picked(mesh.correction(u, error[0]))[None])

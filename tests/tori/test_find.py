@@ -8,6 +8,7 @@ import pytest
 from conftest import not_sanitized
 
 from converse.model.problem import LINE, Problem
+from converse.tori.continuation import Way
 from converse.tori.find import NotFound, find
 from converse.tori.newton import Mesh, default_frame, triangular
 from converse.tori.rotation import read_rotation
@@ -60,6 +61,7 @@ def exact_torus(torus):
     return omega, x, step
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", POTENTIALS)
 def test_orbits_that_start_on_the_torus_stay_on_it(name):
     problem, rotation = POTENTIALS[name]
@@ -165,6 +167,59 @@ def test_the_basis_of_a_group_is_triangular_in_the_frame():
     assert triangular([(4,), (6,)], ((1,),)) == [(2,)]
     assert triangular([(2, 2), (3, 3)], ((1, 0), (0, 1))) == [(1, 1)]
     assert default_frame(family(line("0.002"))[0]) == ((1, 1), (1, -1))
+
+
+@pytest.mark.parametrize("name", ["two waves", pytest.param("phases", marks=pytest.mark.slow)])
+def test_refinement_mends_a_torus(name, monkeypatch):
+    """A continuation that ends 1e-6 off, in a few modes, makes no difference."""
+    problem, rotation = POTENTIALS[name]
+    right = find(problem, read_rotation(rotation))
+    follow = Way.follow
+
+    def sloppy(self, start=None):
+        found = follow(self, start)
+        u = found.u.copy()
+        near = abs(found.mesh.k).sum(0) == 2
+        u[0, near] *= 1 + 1e-6
+        return found._replace(u=u)
+
+    monkeypatch.setattr(Way, "follow", sloppy)
+    mended = find(problem, read_rotation(rotation))
+    theta = np.random.default_rng(2).uniform(0, 6, (5, right.dimension))
+    assert mended.x(theta) == pytest.approx(right.x(theta), abs=1e-10)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("problem, rotation, count", [
+    (Problem(("0", "0.5"), 0, 0), "golden", 1), (Problem(("0.3", "0.8"), 0, 0), "golden", 2),
+    (Problem.patch(["0.02", "0.01"], [["0.005", "-0.005"]], [(1, 0), (0, 1, Fraction(1, 3))]),
+     "T49", 1)])
+def test_pieces_of_a_range(problem, rotation, count):
+    """They tile it, and at each s they are the torus of these amplitudes."""
+    rotation = read_rotation(rotation)
+    pieces = find(problem, rotation)
+    assert len(pieces) == count
+    ends = [torus.piece for torus in pieces]
+    assert [ends[0][0], *(high for _, high in ends)] == [*(low for low, _ in ends), 1]
+    potential, part = family(problem)
+    assert {(torus.potential, torus.part, torus.rotation) for torus in pieces} == {
+        (potential, part, rotation)}
+    theta = np.random.default_rng(3).uniform(0, 6, (5, potential.dimension))
+    for torus in (pieces[0], pieces[-1]):
+        low, high = torus.piece
+        for s in (low, (low + 3 * high) / 4, high):
+            amplitude = [p + s * q for p, q in zip(potential.amplitude, part)]
+            if any(amplitude):
+                alone = find(Problem.patch(amplitude, (), potential.waves), rotation)
+                assert torus.x(theta, float(s)) == pytest.approx(alone.x(theta), abs=1e-7)
+                assert torus.J(theta, float(s)) == pytest.approx(alone.J(theta), abs=1e-7)
+    with pytest.raises(ValueError, match="outside"):
+        pieces[0].x(theta, 1.5)
+
+
+def test_a_range_that_goes_too_far():
+    with pytest.raises(NotFound, match="no torus of golden"):
+        find(Problem(("0.5", "1.2"), 0, 0), GOLDEN, points=1 << 11)
 
 
 @pytest.mark.slow
