@@ -15,3 +15,7 @@ MAX_SITES, FIRST_TRY = 4096, 96         # of half an orbit; where its length is 
 MAX_WAVES, MAX_K = 16, 100              # of a potential; |k0| and |k1|
 MAX_ITEMS = 1 << 22                     # of a map
 MAX_CELLS = 1 << 15                     # of the torus, about, when B is bounded
+MAX_DIVISORS = 1 << 21                 # of a rotation, computed one by one
+MAX_MODES, MAX_MODE = 1 << 20, 1 << 20  # of a torus; |k0| and |k1|
+MAX_ALPHA, MAX_LENGTH = 1000, 1 << 22    # of the weights of modes; of a mode with these
+MAX_TERMS, MAX_DIGITS = 1 << 24, 1 << 28     # of a series; of all its coefficients

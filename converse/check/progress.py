@@ -40,6 +40,13 @@ class Bar:
                 self.done, self.total, self.spent / self.cost,
                 duration((now - self.began) * (self.cost / self.spent - 1))))
 
+    def tell(self, text):
+        """Shows what is being done."""
+        now = time.monotonic()
+        if self.on and now > self.drawn + self.pause:
+            self.drawn = now
+            self.draw(text)
+
     def draw(self, text):
         if not self.terminal:
             complain(text)

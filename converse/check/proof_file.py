@@ -19,16 +19,17 @@ FIELDS = {*ANGLES, *COUNTS, *IGNORED, "kind", "xstar", "at once", "wave", "frame
           "odd about"}
 REPEATED = {"wave", "comment"}
 MAGIC = b"converse proof "               # and the version, alone on the first line
+TORUS_MAGIC = b"converse torus "        # of a certificate of existence, as long
 
 
 def load(path):
-    """The bytes of a proof file or of a map, uncompressed."""
+    """The bytes of a proof file, a map or a certificate of existence, uncompressed."""
     try:
         with open(path, "rb") as file:
             packed = file.peek(2)[:2] == b"\x1f\x8b"
             stream = gzip.GzipFile(fileobj=file) if packed else file
             data = bytearray(stream.read(len(MAGIC)))
-            if data != MAGIC and not data.startswith(b"{"):
+            if data not in (MAGIC, TORUS_MAGIC) and not data.startswith(b"{"):
                 raise Unusable("is not a proof file")
             while (more := stream.read(1 << 20)) and len(data) <= MAX_BYTES:
                 data += more
@@ -140,8 +141,8 @@ def check_odd(claim, odd):
         raise Rejected("without exactly one parameter there is no upper end")
 
 
-def parse_waves(lines):
-    """The waves of a header."""
+def parse_waves(lines, form=NUMBER):
+    """The waves of a header; their amplitudes have this form."""
     if not 0 < len(lines) <= MAX_WAVES:
         raise Rejected("the header has %d waves, not 1 to %d" % (len(lines), MAX_WAVES))
     waves = []
@@ -155,7 +156,7 @@ def parse_waves(lines):
         if k == (0, 0) or max(map(abs, k)) > MAX_K:
             raise Rejected("%s has a k that is zero or beyond %d" % (name, MAX_K))
         phase = number(words[2], name, RATIO)
-        middle, *parts = [number(word, name) for word in words[3:]]
+        middle, *parts = [number(word, name, form) for word in words[3:]]
         waves.append(Wave(k, phase, middle, tuple(parts)))
         if len(parts) != len(waves[0].parts):
             raise Rejected(name + " has not as many parts as the first")

@@ -11,8 +11,10 @@ from .limits import PART, SPOT_CHECK, VERIFIED
 from .lockstep import make_lockstep
 from .maps import Map, check_map, mapped, read_map
 from .progress import Bar
-from .proof_file import load, read_proof
+from .proof_file import TORUS_MAGIC, load, read_proof
 from .state import State
+from .tori import verify_torus
+from .torus_file import TorusClaim, read_torus
 from .tree import check_mirror_images, check_tree
 from .words import claimed, not_excluded, report
 from .workers import Problems, in_order
@@ -36,17 +38,22 @@ class Result:
 
 
 def read(path):
-    """Reads a proof file, or a map; nothing in it is believed but what the claim is."""
+    """Reads a proof file, a map or a certificate of existence; nothing in it is believed but what
+    the claim is."""
     data = load(path)
+    if data.startswith(TORUS_MAGIC):
+        return read_torus(data)
     return read_map(data) if data.startswith(b"{") else read_proof(data)
 
 
 def verify(path, jobs=1, sample=None, state=None, bar=False, exact=False):
-    """Verifies a proof file or a map: a Result; else Rejected, NotConfirmed or Unusable is raised.
+    """Verifies a proof file, a map or a certificate of existence: a Result; else Rejected,
+    NotConfirmed or Unusable is raised.
 
     jobs: processes.  sample: so many leaves only, chosen by chance: a spot check.
     state: a file that remembers what was confirmed, so that an interrupted check can go on; it
-    is kept in the end.  bar: show the progress on stderr.  exact: in integers alone, as where
+    is kept in the end.  (A certificate of existence is verified whole, by one process.)  bar: show
+    the progress on stderr.  exact: in integers alone, as where
     there is no numpy.
     """
     if jobs < 1 or sample is not None and sample < 1:
@@ -54,6 +61,13 @@ def verify(path, jobs=1, sample=None, state=None, bar=False, exact=False):
     if sample is not None and state is not None:
         raise Unusable("a spot check keeps no state; give --sample or --state")
     file = read(path)
+    if isinstance(file, TorusClaim):
+        if sample is not None or state is not None:
+            raise Unusable("a certificate of existence is verified as a whole: no --sample, no "
+                           "--state")
+        with Bar((file,) if bar else (), 1) as progress:
+            lines = verify_torus(file, progress.tell)
+        return Result(VERIFIED, "verified", "\n".join([*lines, "SHA-256 : " + file.sha256]))
     if isinstance(file, Map):
         problems = Problems(file.claims, check_map(file))
     else:

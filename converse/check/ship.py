@@ -19,7 +19,8 @@ FOLDER = os.path.dirname(os.path.abspath(__file__))
 # In the order in which they are read; each needs only those before it.
 SHARED = ("version", "limits", "failures", "claim", "tree", "proof_file", "arith", "torus", "exact",
           "criterion", "words")
-ORDER = (*SHARED, "lockstep", "maps", "signals", "state", "progress", "workers", "run", "command")
+ORDER = (*SHARED, "lockstep", "maps", "signals", "state", "progress", "workers",
+         "torus_file", "field", "series", "tori", "run", "command")
 REFEREE = (*SHARED, "referee")
 MAIN = '''import sys
 

@@ -1,0 +1,762 @@
+"""Verifying a certificate of existence: steps (T1) to (T9) of docs/checker.md.
+
+Doubles choose what may be chosen at will: approximate inverses, which a product of series then
+judges, and how many modes and bits are used.  No bound rests on them.
+"""
+
+import cmath
+import itertools
+import math
+from dataclasses import dataclass
+from fractions import Fraction
+
+from .arith import GUARD, Fixed
+from .failures import NotConfirmed, Rejected, named
+from .field import (E_LOW, Divisors, Field, Norm, combination, identity, rounded_down, rounded_up,
+                    upper_root)
+from .limits import MAX_BITS, MAX_LENGTH
+from .series import FINE, Box, Ring, greatest, powers_of
+from .version import __version__
+from .words import decimal_text
+
+SHARES_OF_LOSS = [Fraction(x, 20) for x in (1, 2, 4, 8, 16)]        # s of the theorem
+CHANGES = [Fraction(x, 1000) for x in (1, 2, 5, 10, 20, 40, 70, 100, 150)]     # t l0 m0 a0
+ROUGH_BITS = 64                         # of the series for the constants
+TRIES, WIDTHS = 6, 3                    # of numbers of modes, for each width of the strip
+POWERS = "", "t", "t^2", "t^3"
+FAR = "the torus is too far from the straight one"
+
+
+# ---- the lattice of modes
+
+def lattice(vectors, n):
+    """A basis of the group that they generate, or of all integer vectors if its rank is below n."""
+    rows, found = [list(v) for v in vectors], []
+    for column in range(n):
+        while True:
+            rows = [row for row in rows if any(row)]
+            some = sorted([row for row in rows if row[column]], key=lambda row: abs(row[column]))
+            if len(some) < 2:
+                break
+            for row in some[1:]:
+                factor = row[column] // some[0][column]
+                row[:] = [x - factor * y for x, y in zip(row, some[0])]
+        if not some:
+            return [tuple(map(int, row)) for row in identity(n)]
+        found.append(tuple(some[0]))
+        rows = [row for row in rows if row is not some[0]]
+    return found
+
+
+# ---- the theorem (T8)
+
+@dataclass(frozen=True)
+class Constants:
+    """Bounds of the norms of L, L^-1, A^-1 and <A^-1>^-1, and of the coefficients of A^-1."""
+
+    l: Fraction
+    m: Fraction
+    a: Fraction
+    b: Fraction
+    p: Fraction
+
+    def after(self, t):
+        """The same for a torus whose L differs by at most t; None, if there are none."""
+        change = (2 * self.l + t) * t
+        if self.m * t >= 1 or self.a * change >= 1:
+            return None
+        a = self.a / (1 - self.a * change)
+        da = self.a * a * change
+        if self.b * da >= 1:
+            return None
+        return Constants(*map(rounded_up, (self.l + t, self.m / (1 - self.m * t), a,
+                                           self.b / (1 - self.b * da), self.p + da)))
+
+
+def exponential_above(x):
+    """A rational not below e^x, x >= 0."""
+    if x > 1:
+        return rounded_up(exponential_above(x / 2) ** 2)
+    return rounded_up(sum([x ** j / math.factorial(j) for j in range(13)])
+                      + 2 * x ** 13 / math.factorial(13))
+
+
+def logarithm_below(x):
+    """A rational not above log x, x > 1: 2 artanh((x - 1)/(x + 1))."""
+    y = (x - 1) / (x + 1)
+    return rounded_down(2 * sum([y ** j / j for j in range(1, 12, 2)]))
+
+
+def allowed(constants, waves, rho, kappa, divisors):
+    """(e, v): if ||E|| <= e there is a torus, at most v ||E|| from the approximate one, in the norm
+    of a hundredth of the strip.  waves: (|p|, |k|, bound of ||e^(i k.x)||)."""
+    n, best = divisors.power, (Fraction(0), Fraction(0))
+    scale = constants.l * constants.m * constants.a
+    for share in SHARES_OF_LOSS:
+        delta = rounded_down((rho - rho / 100) / (4 + 2 * share))
+        loss = divisors.loss(delta)
+
+        def derivative(width):
+            return rounded_up(kappa / (E_LOW * width))
+
+        for change in CHANGES:
+            t = rounded_down(change / scale)
+            if (c := constants.after(t)) is None:
+                continue
+            step = rounded_up(c.a * (1 + c.b * c.p) * loss ** 2)
+            third = sum([p * k ** 3 * g * exponential_above(k * t) for p, k, g in waves])
+            growth = step * c.l * ((2 * c.m * c.l * derivative(delta) if n > 1 else 0)
+                                   + derivative(2 * delta) + third * step * c.l ** 3 / 2)
+            v = step * c.l ** 2
+            e = min(1 / (2 ** (4 * n) * growth),
+                    t * (1 - Fraction(2, 4 ** n)) / (v * derivative(share * delta)),
+                    t * (1 - Fraction(1, 4 ** n)) / v)
+            if e > best[0]:
+                best = rounded_down(e), rounded_up(v / (1 - Fraction(1, 4 ** n)))
+    return best
+
+
+# ---- discrete Fourier transforms in doubles
+
+def transform(values, sign):
+    """The sum of values[j] e^(sign 2 pi i j k / N) for all k, N a power of two."""
+    size = len(values)
+    if size == 1:
+        return values
+    even, odd = transform(values[::2], sign), transform(values[1::2], sign)
+    turn = sign * 2j * cmath.pi / size
+    odd = [cmath.exp(turn * at) * x for at, x in enumerate(odd)]
+    return [x + y for x, y in zip(even, odd)] + [x - y for x, y in zip(even, odd)]
+
+
+def transform_all(values, shape, sign):
+    """Along each axis of an array of that shape, the last axis being the fastest."""
+    step = 1
+    for size in reversed(shape):
+        if size > 1:
+            for start in range(len(values)):
+                if start // step % size == 0:
+                    line = slice(start, start + size * step, step)
+                    values[line] = transform(values[line], sign)
+        step *= size
+    return values
+
+
+def power_of_two(x):
+    return 1 << max(x - 1, 0).bit_length()
+
+
+def inverse_in_doubles(rows):
+    if len(rows) == 1:
+        return [1 / rows[0]]
+    a, b, c, d = rows
+    det = a * d - b * c
+    return [d / det, -b / det, -c / det, a / det]
+
+
+def in_double(x, bits):
+    """About x 2^-bits."""
+    spare = max(x.bit_length() - 64, 0)
+    return math.ldexp(x >> spare, spare - bits)
+
+
+# ---- one piece
+
+class Torus:
+    """The approximate torus of one piece, shifted by quarter turns such that its coefficients are
+    imaginary, if that is possible, and what is needed to verify it."""
+
+    def __init__(self, setting, piece, is_odd):
+        claim, norm = setting.claim, setting.norm
+        self.norm, self.divisors, self.field = norm, setting.divisors, setting.field
+        self.n, self.degree, self.bits = claim.dimension, piece.degree, piece.bits
+        self.rotation = [combination(b, claim.rotation) for b in norm.basis]
+        self.steps = {}
+        middle, half = (piece.high + piece.low) / 2, (piece.high - piece.low) / 2
+        turned = {}                     # of each shift the coefficients
+        for shift in itertools.product((0, 1), repeat=self.n):
+            modes = {}
+            for k, series in piece.modes.items():
+                turns = sum([x * y for x, y in zip(k, shift)]) % 4
+                modes[k] = [[turn(x, turns) for x in vector] for vector in series]
+            turned[shift] = modes
+        real = {shift: sum([abs(re) for series in modes.values() for vector in series
+                            for re, _ in vector]) for shift, modes in turned.items()}
+        shift = min(real, key=real.get)
+        self.is_exactly_odd = not real[shift]
+        self.is_odd = is_odd
+        self.modes = turned[shift]
+        self.dropped = Fraction(0)      # of |u| for real angles
+        if is_odd:
+            self.dropped = Fraction(2 * real[shift], 1 << self.bits)
+            self.modes = {k: [[(0, im) for _, im in vector] for vector in series]
+                          for k, series in self.modes.items()}
+        self.could_be_odd = real[shift] << 16 <= sum([
+            abs(im) for series in self.modes.values() for vector in series for _, im in vector])
+        self.waves = []                 # (k, phase, p at the middle, p's part)
+        for wave in claim.waves:
+            part = wave.parts[0] if wave.parts else Fraction(0)
+            self.waves.append((wave.k[:self.n],
+                               wave.phase + Fraction(sum(
+                                   [x * y for x, y in zip(wave.k, shift)]), 2),
+                               wave.middle + part * middle, part * half))
+        self.varies = any(part for *_, part in self.waves)
+        # |k|, |u_k| summed over the powers of s, 2 for k and -k; and |k| as a vector.
+        self.sizes = []
+        for k, series in self.modes.items():
+            size = sum([math.isqrt(sum([x * x + y * y for x, y in vector])) + 1
+                        for vector in series if any(map(any, vector))])
+            self.sizes.append((norm(k), size, upper_root(sum([x * x for x in k]))))
+        self.farthest = max([length for length, _, _ in self.sizes], default=1)
+
+    def rate(self):
+        """About how fast the coefficients decay: |u_k| ~ e^(-rate |k|)."""
+        largest_at = {}
+        for length, size, _ in self.sizes:
+            if size > 1:
+                largest_at[length] = max(largest_at.get(length, 0), size)
+        points = [(length, math.log(size)) for length, size in largest_at.items()]
+        top = max([y for _, y in points], default=0)
+        # the least slope of all lines from the top that lie above the points beyond e^-7
+        slopes = [(top - y) / length for length, y in points if y < top - 7]
+        return min([4.0, *slopes])
+
+    def outside(self, powers, limit):
+        """The sum of |u_k| sigma^|k| over |k| > limit, in units of 2^-(bits + FINE)."""
+        return 2 * sum([size * powers[length] for length, size, _ in self.sizes
+                        if length > limit])
+
+    def derivative_outside(self, powers, limit):
+        """The sum of |u_k| |k|_2 sigma^|k| over |k| > limit."""
+        return rounded_up(Fraction(2, 1 << self.bits + FINE) * sum(
+            [size * powers[length] * width for length, size, width in self.sizes
+             if length > limit]))
+
+    def extent(self, powers, spared):
+        """(near, far): modes |k| > near add up to no more than what may be spared, and about as
+        little is lost of products and exponentials, if these have modes |k| <= far."""
+        by_length = [0] * (self.farthest + 2)
+        for length, size, _ in self.sizes:
+            by_length[length] += 2 * size * powers[length]
+        near, total = self.farthest, 0
+        while near > 1 and total + by_length[near] < spared:
+            total += by_length[near]
+            near -= 1
+        inner, last = sum(by_length[near * 2 // 3:]), total + by_length[near] + 1
+        slope = math.log(max(inner // last, 1)) / max(near / 3, 1)
+        return near, near + math.ceil(min(4 / max(slope, 1e-6), near / 2) + near / 8) + 1
+
+    def turn_by(self, bits):
+        """A function: of the coordinates of k (cos, sin) of k.w, off by less than
+        2^-(bits + 24)."""
+        fine = bits + 32
+        if bits not in self.steps:
+            self.steps[bits] = [self.field.in_units(element, fine + 64)
+                                for element in self.rotation]
+        steps, fixed = self.steps[bits], Fixed.of(fine)
+        whole = 1 << fine + 64
+
+        def of(m):
+            part = sum([x * y for x, y in zip(m, steps)]) % whole
+            sin, cos = fixed.sincos(part * fixed.two_pi >> fine + 64 + GUARD)
+            return cos, sin
+        return of
+
+    def series(self, ring, limit):
+        """The torus as a series of the ring, cut at |k| = limit, its coefficients rounded down;
+        the radius counts neither."""
+        step, box = self.degree + 1, ring.box
+        entries = [[[0] * box.count, [0] * box.count] for _ in range(self.n)]
+        for k, series in self.modes.items():
+            if self.norm(k) > limit:
+                continue
+            m = tuple(map(int, self.norm.coordinates(k)))
+            for at, sign in ((box.find(m), 1), (box.find(tuple([-x for x in m])), -1)):
+                for j, vector in enumerate(series):
+                    for entry, (re, im) in zip(entries, vector):
+                        entry[0][at * step + j] = shifted(re, ring.bits - self.bits)
+                        entry[1][at * step + j] = sign * shifted(im, ring.bits - self.bits)
+        return ring.series(self.n, 1, [
+            (None if self.is_odd else re, im) for re, im in entries])
+
+
+def turn(z, quarters):
+    """z i^quarters."""
+    re, im = z
+    return ((re, im), (-im, re), (-re, -im), (im, -re))[quarters]
+
+
+def shifted(x, bits):
+    """x 2^bits, rounded towards 0, so that opposite numbers stay opposite."""
+    if bits >= 0:
+        return x << bits
+    return x >> -bits if x >= 0 else -(-x >> -bits)
+
+
+def times_i(entry):
+    re, im = entry
+    return (None if im is None else [-x for x in im]) or [0] * len(re), re
+
+
+# ---- the constants (T6)
+
+def find_constants(torus, sigma, powers):
+    """Constants of the whole torus, or why there are none."""
+    l0 = rounded_up(1 + torus.derivative_outside(powers, 0))
+    if l0 > 1000:
+        return FAR
+    near, found = 1, None
+    while torus.derivative_outside(powers, near) > Fraction(1, 1000):
+        near = near * 9 // 8 + 1
+    near = near * 5 // 4 + 2
+    for _ in range(TRIES):
+        ring = Ring(Box(torus.norm, near * 3 // 2, torus.degree), sigma, ROUGH_BITS)
+        found = constants_with(torus, ring, near, torus.derivative_outside(powers, near))
+        if found and found[1] < Fraction(1, 50):
+            break
+        near = near * 4 // 3 + 1
+    if not found:
+        return "no approximate inverse is near enough"
+    m, _, a, b, p = found
+    return Constants(l0, *map(rounded_up, (m, a, b, p)))
+
+
+def constants_with(torus, ring, near, beyond):
+    """(m, eta, a, b, p) by an approximate inverse of L with modes |k| <= near; None, if it is
+    no inverse at all."""
+    n, box, step = torus.n, ring.box, torus.degree + 1
+    unit, u = 1 << ring.bits + FINE, torus.series(ring, near)
+    vectors = [combination(m, torus.norm.basis) for m in box.modes()]
+    # L = 1 + i u k^T, but for roundings of u, and modes beyond.
+    entries = []
+    for i, j in itertools.product(range(n), repeat=2):
+        factors = [k[j] for k in vectors for _ in range(step)]
+        re, im = u.entries[i]
+        entries.append(([-x * k for x, k in zip(im, factors)],
+                        None if re is None else [x * k for x, k in zip(re, factors)]))
+    rough = ring.rounding(u) * max([sum(map(abs, k)) for k in vectors]) + 1
+    straight = ring.more(ring.series(n, n, entries), 1)
+    left = ring.series(n, n, straight.entries, rough + math.ceil(beyond * unit))
+    inverse = approximate_inverse(torus, ring, straight, near)
+    if inverse is None:
+        return None
+    product = ring.multiply(left, inverse)
+    eta = Fraction(ring.norm(ring.more(product, -1)), unit)
+    if eta > Fraction(1, 8):
+        return None
+    size = Fraction(ring.norm(inverse), unit)
+    m = size / (1 - eta)
+    error = size * eta / (1 - eta) * (m + size)
+    back = ring.multiply(inverse, delayed(torus, ring, inverse).transposed)
+    error += Fraction(back.radius, unit)
+    sizes = ring.sizes(back)
+    origin = box.centre * step
+    a = Fraction(ring.norm(back), unit) + error
+    p = Fraction(max([sum(sizes[at:at + step]) for at in range(0, len(sizes), step)
+                      if at != origin], default=0), ring.one) + error
+    b = inverse_of_mean(torus, ring, back, error)
+    return b and (m, eta, a, b, p)
+
+
+def delayed(torus, ring, f):
+    """f(. - w)."""
+    by, step, shift = torus.turn_by(ring.bits), torus.degree + 1, ring.bits + 32
+    turns = [by(m) for m in ring.box.modes() for _ in range(step)]
+    entries = []
+    for re, im in f.entries:
+        if max(greatest(re), greatest(im or [0])) >> ring.bits + 16:
+            raise NotConfirmed(FAR)
+        im = im or [0] * len(re)
+        entries.append(([x * c + y * s >> shift for x, y, (c, s) in zip(re, im, turns)],
+                        [y * c - x * s >> shift for x, y, (c, s) in zip(re, im, turns)]))
+    found = ring.series(f.rows, f.columns, entries)
+    return ring.series(f.rows, f.columns, entries, f.radius + 2 * ring.rounding(found))
+
+
+def approximate_inverse(torus, ring, f, near):
+    """A polynomial with modes |k| <= near, near the inverse: chosen with doubles on a grid."""
+    box, step = ring.box, torus.degree + 1
+    reach = [math.floor(w * near) for w in torus.norm.widths()] + [0]
+    shape = [power_of_two(3 * reach[1] + 1), power_of_two(3 * reach[0] + 1),
+             power_of_two(2 * step) if step > 1 else 1]
+    size = math.prod(shape)
+    places = []                         # of the modes |k| <= near
+    for at, (m, length) in enumerate(zip(box.modes(), box.lengths)):
+        if length <= near:
+            a, b = (*m, 0)[:2]
+            place = (b % shape[0] * shape[1] + a % shape[1]) * shape[2]
+            places += [(at * step + j, place + j) for j in range(step)]
+    grids = []
+    for re, im in f.entries:
+        values = [0j] * size
+        for at, place in places:
+            values[place] = complex(in_double(re[at], ring.bits),
+                                    in_double(im[at], ring.bits) if im else 0.0)
+        grids.append(transform_all(values, shape, 1))
+    try:
+        grids = list(map(list, zip(*map(inverse_in_doubles, zip(*grids)))))
+        entries = []
+        for values in grids:
+            values = transform_all(values, shape, -1)
+            re, im = [0] * box.count, [0] * box.count
+            for at, place in places:
+                re[at] = round(math.ldexp(values[place].real, ring.bits)) // size
+                im[at] = round(math.ldexp(values[place].imag, ring.bits)) // size
+            entries.append((re, None if torus.is_odd else im))
+    except (ZeroDivisionError, OverflowError, ValueError):      # it is not invertible, as it seems
+        return None
+    return ring.series(f.rows, f.columns, entries)
+
+
+def inverse_of_mean(torus, ring, f, error):
+    """A bound of |<g>^-1| for all g within that error of f; None, if it is not invertible."""
+    n, step, unit = torus.n, torus.degree + 1, 1 << ring.bits + FINE
+    small = Ring(Box(torus.norm, 0, torus.degree), Fraction(2), ring.bits)
+    origin = ring.box.centre * step
+    mean = small.series(n, n, [tuple([x and x[origin:origin + step] for x in entry])
+                               for entry in f.entries])
+    size = power_of_two(2 * step) if step > 1 else 1
+    grids = [transform_all([complex(*[in_double(x[j], ring.bits) if j < step else 0.0
+                                      for x in entry]) for j in range(size)], [size], 1)
+             for entry in [(re, im or [0] * step) for re, im in mean.entries]]
+    try:
+        grids = list(map(list, zip(*map(inverse_in_doubles, zip(*grids)))))
+        entries = []
+        for values in grids:
+            values = transform_all(values, [size], -1)[:step]
+            entries.append(([round(math.ldexp(x.real, ring.bits)) // size for x in values],
+                            [round(math.ldexp(x.imag, ring.bits)) // size for x in values]))
+    except (ZeroDivisionError, OverflowError, ValueError):
+        return None
+    guess = small.series(n, n, entries)
+    bound = Fraction(small.norm(guess), unit)
+    defect = small.norm(small.more(small.multiply(mean, guess), -1))
+    rest = 1 - Fraction(defect, unit) - bound * error
+    return bound / rest if rest > 0 else None
+
+
+# ---- the residual (T7)
+
+class Residual:
+    """A bound of ||E(u)|| for the torus cut at |k| = near and rounded, and of ||e^(i k.x)|| for
+    the waves.
+
+    polynomial: the norm of the computed part of E; radius: of what it may be off by;
+    difference: the norm of what was cut and rounded off u.
+    """
+
+    def __init__(self, torus, ring, near):
+        self.torus, self.ring = torus, ring
+        self.u = torus.series(ring, near)
+        self.known = {}
+        zero = [0] * ring.box.count
+        # x + iy times i, for each component.
+        self.angles = [ring.series(1, 1, [([-x for x in im], re)]) for re, im in self.u.entries]
+        n, unit = torus.n, 1 << ring.bits + FINE
+        reach = max([torus.norm(k) for k, *_ in torus.waves], default=0)
+        degree = torus.degree + torus.varies
+        self.wide = Ring(Box(torus.norm, ring.box.limit + reach, degree), ring.sigma, ring.bits)
+        count = self.wide.box.count
+        totals = [([0] * count, [0] * count) for _ in range(n)]
+        radius, self.bounds = Fraction(0), []
+        for k, phase, middle, part in torus.waves:
+            g = self.power(k)
+            weight = Fraction(self.wide.powers[torus.norm(k)], 1 << FINE)
+            length = upper_root(sum([x * x for x in k]))
+            p, size = abs(middle) + abs(part), Fraction(ring.norm(g), unit)
+            self.bounds.append((p, length, rounded_up(weight * size)))
+            error = (24 * p + 4) / ring.one             # of the amplitudes
+            radius += length * weight * (p * Fraction(g.radius, unit) + error * size)
+            self.add_wave(totals, k, g, self.amplitudes(phase, middle, part))
+        entries = self.linear_part(zero)
+        found = []
+        for (re, im), (x, y) in zip(totals, entries):
+            # A cosine is half the sum of what is at k and of the conjugate of what is at -k.
+            shift, back = ring.bits + 1, (reversed_(re, degree), reversed_(im, degree))
+            found.append(([z - (p + q >> shift) for z, p, q in zip(x, re, back[0])],
+                          [z - (p - q >> shift) for z, p, q in zip(y, im, back[1])]))
+        error = self.wide.series(n, 1, found)
+        self.polynomial = Fraction(self.wide.norm(error), unit)
+        self.radius = radius + Fraction(3 * self.wide.rounding(error), unit)
+
+    def amplitudes(self, phase, middle, part):
+        """p e^(i pi phase) for the powers 0 and 1 of s, in units."""
+        fixed = Fixed.of(self.ring.bits)
+        sin, cos = fixed.sincos(fixed.angle(phase))
+        quarter = phase * 2 % 4
+        if quarter.denominator == 1:
+            cos, sin = [x * fixed.one for x in ((1, 0), (0, 1), (-1, 0), (0, -1))[int(quarter)]]
+        return [(math.floor(p * cos), math.floor(p * sin)) for p in (middle, part)]
+
+    def power(self, k):
+        """e^(i k.u)."""
+        if k < tuple([-x for x in k]):
+            return self.conjugate(self.power(tuple([-x for x in k])))
+        if k not in self.known:
+            if sum(map(abs, k)) == 1:
+                found = self.ring.exponential(self.angles[k.index(1)])
+            elif not any(x % 2 for x in k):
+                half = self.power(tuple([x // 2 for x in k]))
+                found = self.ring.multiply(half, half)
+            else:
+                at = max(range(len(k)), key=lambda i: abs(k[i]))
+                unit = tuple([(k[at] > 0) - (k[at] < 0) if i == at else 0 for i in range(len(k))])
+                found = self.ring.multiply(
+                    self.power(tuple([x - y for x, y in zip(k, unit)])), self.power(unit))
+            self.known[k] = found
+        return self.known[k]
+
+    def conjugate(self, f):
+        degree = self.torus.degree
+        (re, im), = f.entries
+        return self.ring.series(1, 1, [(reversed_(re, degree), im and [
+            -x for x in reversed_(im, degree)])], f.radius)
+
+    def add_wave(self, totals, k, g, amplitudes):
+        """Adds -k p e^(i (k.theta + pi phase)) g to the totals."""
+        torus, box, wide = self.torus, self.ring.box, self.wide.box
+        a, b = (*map(int, torus.norm.coordinates(k)), 0)[:2]
+        step, far = torus.degree + 1, wide.degree + 1
+        (re, im), = g.entries
+        for row, (start, first, count) in box.rows.items():
+            to = wide.find((first + a, row + b)[:torus.n])
+            for j, power in itertools.product(range(step), range(far - step + 1)):
+                c, s = amplitudes[power]
+                x = re[start * step + j:(start + count) * step:step]
+                y = im[start * step + j:(start + count) * step:step] if im else [0] * count
+                place = slice(to * far + j + power, (to + count) * far, far)
+                for (res, ims), factor in zip(totals, k):
+                    if factor:
+                        p, q = factor * c, factor * s
+                        res[place] = [z + p * v - q * w for z, v, w in zip(res[place], x, y)]
+                        ims[place] = [z + q * v + p * w for z, v, w in zip(ims[place], x, y)]
+
+    def linear_part(self, zero):
+        """u(. + w) - 2 u + u(. - w), each part off by less than 2 units."""
+        torus, box, wide, bits = self.torus, self.ring.box, self.wide.box, self.ring.bits
+        by, step, far = torus.turn_by(bits), torus.degree + 1, wide.degree + 1
+        parts = [re or zero for re, _ in self.u.entries] + [im for _, im in self.u.entries]
+        if max(map(greatest, parts)) >> bits + 16:
+            raise NotConfirmed(FAR)
+        found = [([0] * wide.count, [0] * wide.count) for _ in range(torus.n)]
+        for at, m in enumerate(box.modes()):
+            mine = slice(at * step, at * step + step)
+            if not any(any(part[mine]) for part in parts):
+                continue
+            factor = 2 * (by(m)[0] - (1 << bits + 32))
+            to = wide.find(m) * far
+            for (re, im), (x, y) in zip(found, self.u.entries):
+                for j in range(step):
+                    re[to + j] = (x or zero)[at * step + j] * factor >> bits + 32
+                    im[to + j] = y[at * step + j] * factor >> bits + 32
+        return found
+
+
+def reversed_(values, degree):
+    """Those at -k, for all k."""
+    if not degree:
+        return values[::-1]
+    step = degree + 1
+    return [x for at in range(len(values) - step, -1, -step) for x in values[at:at + step]]
+
+
+# ---- a piece, and a whole file (T9)
+
+@dataclass(frozen=True)
+class Verified:
+    """What was found of a piece."""
+
+    residual: Fraction
+    needed: Fraction
+    distance: Fraction                  # of the torus from that of the file, at real angles
+    rho: Fraction                       # of the strip
+    modes: int
+    bits: int
+
+
+class Setting:
+    """What all pieces of a claim have in common: field, norm and small divisors.
+
+    Raises Rejected, if a mode is outside of the group that the waves' k generate, and what Field
+    and Divisors raise.
+    """
+
+    def __init__(self, claim):
+        self.claim, n = claim, claim.dimension
+        basis = lattice([wave.k[:n] for wave in claim.waves], n)
+        self.scale = math.lcm(*[x.denominator for x in claim.alpha])
+        self.norm = Norm(claim.frame, [int(x * self.scale) for x in claim.alpha], basis)
+        for piece in claim.pieces:
+            if any(x.denominator > 1 for k in piece.modes for x in self.norm.coordinates(k)):
+                raise Rejected("there is a mode outside of the group that the waves' k generate")
+            if max(map(self.norm, piece.modes), default=0) > MAX_LENGTH:
+                raise NotConfirmed("a mode is longer than %d, the checker's limit" % MAX_LENGTH)
+        self.field = Field(claim.polynomial, *claim.root)
+        self.divisors = Divisors(self.field, claim.rotation, self.norm)
+
+
+def verify_piece(setting, piece, tell):
+    """Verified; or NotConfirmed is raised."""
+    why = ""
+    for is_odd in (True, False):
+        torus = Torus(setting, piece, is_odd)
+        if is_odd and not torus.could_be_odd:
+            continue
+        for rho in widths(torus, setting.claim.rho / setting.scale):
+            found = verify_width(torus, rho, tell)
+            if isinstance(found, Verified):
+                return found
+            why = found
+        if torus.is_exactly_odd:
+            break
+    raise NotConfirmed(why)
+
+
+def widths(torus, hint):
+    """Widths of the strip to try."""
+    rate = torus.rate()
+    own = min((4 * torus.n + 1) / torus.farthest, rate / 3)
+    found = []
+    if 0 < hint < min(rate, 200 / torus.farthest):
+        found.append(float(hint))
+    return (found + [own, own / 1.5, own * 1.3])[:WIDTHS]
+
+
+def verify_width(torus, width, tell):
+    """Verified, or why not."""
+    sigma = 1 + Fraction(max(round(math.expm1(width) * 2 ** 24), 1), 2 ** 24)
+    rho, norm, unit = logarithm_below(sigma), torus.norm, 1 << torus.bits + FINE
+    tell("the constants")
+    powers = powers_of(sigma, torus.farthest)
+    whole = find_constants(torus, sigma, powers)
+    if isinstance(whole, str):
+        return whole
+    waves = []
+    for k, _, middle, part in torus.waves:
+        length = upper_root(sum([x * x for x in k]))
+        exponent = rounded_up(length * Fraction(torus.outside(powers, 0), unit))
+        if exponent > 100:
+            return FAR
+        waves.append((abs(middle) + abs(part), length,
+                      rounded_up(sigma ** norm(k)) * exponential_above(exponent)))
+    needed, _ = allowed(whole, waves, rho, norm.kappa, torus.divisors)
+    if needed < Fraction(1, 1 << MAX_BITS // 8):
+        return "the constants are too large"
+    # What is cut off u changes E by at most so many times its norm.
+    factor = 4 + sum([p * k * k * g for p, k, g in waves])
+    near, far = torus.extent(powers, needed / 64 / factor * unit)
+    spare = 14
+    for _ in range(TRIES):
+        box = Box(norm, far, torus.degree)
+        bits = spare + math.ceil(math.log2(
+            (box.degree + 1) * sum([math.exp(width * x) for x in box.lengths]) / float(needed)))
+        ring = Ring(box, sigma, bits)
+        tell("the residual, with %d modes of %d bits" % (box.groups, bits))
+        found = Residual(torus, ring, min(near, far))
+        residual = found.polynomial + found.radius
+        # The constants are those of the whole torus; its L differs by no more than this.
+        beyond = torus.derivative_outside(powers, min(near, far)) \
+            + Fraction(ring.rounding(found.u), 1 << bits + FINE) * rounded_up(norm.kappa * far)
+        constants = whole.after(rounded_up(beyond))
+        if constants is None:
+            return "too much of the torus was cut off"
+        needed, v = allowed(constants, found.bounds, rho, norm.kappa, torus.divisors)
+        if residual <= needed:
+            rounding = Fraction(4 * torus.n * len(torus.modes) * (torus.degree + 1), 1 << bits)
+            cut = Fraction(torus.outside(powers, min(near, far)), unit)
+            distance = rounded_up(v * residual + cut + rounding + torus.dropped)
+            return Verified(residual, needed, distance, rho, box.groups, bits)
+        if found.polynomial > needed:
+            break
+        far, spare = far * 9 // 8 + 1, spare + 6
+    return "the error of the torus is %s, where less than %s is needed" % (
+        scientific(residual), scientific(needed))
+
+
+def verify_torus(claim, tell=lambda text: None):
+    """The report, in lines; else a Failure is raised.  tell is told what is being done."""
+    setting, found = Setting(claim), []
+    for at, piece in enumerate(claim.pieces, 1):
+        if len(claim.pieces) == 1:
+            found.append(verify_piece(setting, piece, tell))
+            continue
+        name = "piece %d of %d" % (at, len(claim.pieces))
+        with named(name):
+            found.append(verify_piece(setting, piece, lambda text, name=name: tell(
+                "%s: %s" % (name, text))))
+    return existence_report(claim, setting, found)
+
+
+# ---- the report
+
+def scientific(x, up=True):
+    """Two digits of x > 0, rounded up or down."""
+    exponent = math.floor(math.log10(float(x))) if x > Fraction(1, 10 ** 300) else -300
+    digits = x / Fraction(10) ** (exponent - 1)
+    digits = math.ceil(digits) if up else math.floor(digits)
+    if digits >= 100:
+        digits, exponent = -(-digits // 10) if up else digits // 10, exponent + 1
+    return "%d.%de%d" % (digits // 10, digits % 10, exponent)
+
+
+def exact_text(x):
+    """A rational number, as a decimal if it is a finite one."""
+    rest = x.denominator
+    for p in (2, 5):
+        while rest % p == 0:
+            rest //= p
+    return decimal_text(x) if rest == 1 else str(x)
+
+
+def sum_text(coefficients, names):
+    """Of coefficients times names, without those that are zero."""
+    text = ""
+    for x, name in zip(coefficients, names):
+        if x:
+            text += (" - " if x < 0 else " + ") if text else "-" * (x < 0)
+            text += name if abs(x) == 1 and name else " ".join(
+                filter(None, (exact_text(abs(x)), name)))
+    return text or "0"
+
+
+def existence_report(claim, setting, found):
+    """The theorem and what it rests on."""
+    n, worst = claim.dimension, max(found, key=lambda x: x.residual / x.needed)
+    places = 12
+    omega = ", ".join(["%s = %s..." % (
+        sum_text(element, POWERS),
+        decimal_text(Fraction(math.floor(setting.field.interval(element)[0] * 10 ** places),
+                              10 ** places))) for element in claim.rotation])
+    lines = ["Verified :",
+             "The map x[j+1] = 2 x[j] - x[j-1] - V'(x[j]) of %s (modulo 2 pi),"
+             % ("two angles" if n == 2 else "an angle"),
+             "V(y) = - the sum of p sin(k.y + phase) over the waves below, has an invariant "
+             + ("Lagrangian graph" if n == 2 else "circle"),
+             "(p = P + S'(x) over the angles, where p[j] = x[j] - x[j-1], P is constant, S periodic "
+             "and",
+             "real analytic), on which it is conjugate to the rotation by 2 pi omega,",
+             "omega = (%s)" % omega if n == 2 else "omega = " + omega,
+             "where t is the root of %s between %s and %s" % (
+                 sum_text(map(Fraction, claim.polynomial), POWERS), *map(exact_text, claim.root))]
+    ranged = claim.pieces[0].low != claim.pieces[-1].high
+    lines[-1] += ", for all -1 <= s <= 1 and" if ranged else ", for"
+    for wave in claim.waves:
+        p = exact_text(wave.middle)
+        if ranged:
+            p += " %s %s s" % ("-" if wave.parts[0] < 0 else "+", exact_text(abs(wave.parts[0])))
+        lines.append("k = %s, phase = %s pi, p = %s" % (
+            "(%d, %d)" % wave.k if n == 2 else wave.k[0], exact_text(wave.phase), p))
+    return lines + [
+        "It is within %s of the file's: x = theta + u(theta)."
+        % scientific(max(piece.distance for piece in found)), "",
+        "Checker : converse-check " + __version__,
+        "Method : KAM theorem a posteriori, Fourier series in integers of %d bits"
+        % max(piece.bits for piece in found),
+        "Pieces : %d" % len(found), "Modes : %d" % max(piece.modes for piece in found),
+        "Strip : %s" % scientific(min(piece.rho for piece in found), False),
+        "Small divisors : at least %s |k|^-%d, |k| = %s" % (
+            scientific(setting.divisors.least, False), n, " + ".join(
+                "%s|%s|" % ("%d " % a if a > 1 else "", sum_text(map(Fraction, row), ("k0", "k1")))
+                for a, row in zip(setting.norm.alpha, claim.frame))),
+        "Residual : %s, of at most %s" % (scientific(worst.residual),
+                                          scientific(worst.needed, False))]

@@ -1,0 +1,201 @@
+"""Reading a certificate of existence: what it claims, exact; docs/format.md describes it."""
+
+import hashlib
+import re
+from dataclasses import dataclass
+from fractions import Fraction
+
+from .claim import RATIO, number, present
+from .failures import NotConfirmed, Rejected, Unusable
+from .limits import MAX_ALPHA, MAX_BITS, MAX_K, MAX_LINE, MAX_MODE, MAX_MODES, MAX_PIECES
+from .proof_file import TORUS_MAGIC, parse_waves
+
+TORUS_FIELDS = ("program", "dimension", "wave", "polynomial", "root", "rotation", "frame", "alpha",
+                "rho", "pieces")
+INTEGER = re.compile("0|-?[1-9][0-9]*", re.ASCII)
+COUNT = re.compile("0|[1-9][0-9]{0,8}", re.ASCII)
+HEXADECIMAL = re.compile("0|-?[1-9a-f][0-9a-f]*", re.ASCII)
+NAMES = re.compile("comment|hint-[a-z0-9-]{1,40}", re.ASCII)
+
+
+@dataclass(frozen=True)
+class Piece:
+    """low <= s <= high; modes: of each k the coefficients u_kj in units of 2^-bits, a tuple over j
+    = 0 .. degree of tuples over the components of (re, im)."""
+
+    low: Fraction
+    high: Fraction
+    bits: int
+    degree: int
+    modes: dict
+
+
+@dataclass(frozen=True)
+class TorusClaim:
+    """What a certificate of existence says, and its hints: exact."""
+
+    dimension: int
+    waves: tuple                        # those that are present, of at most one part
+    polynomial: tuple
+    root: tuple                         # low, high
+    rotation: tuple                     # of each component its coordinates in 1, t, t^2
+    frame: tuple                        # rows
+    alpha: tuple
+    rho: Fraction
+    pieces: tuple
+    sha256: str                         # of the file, uncompressed
+
+    @property
+    def has_parameter(self):
+        return any(map(any, [wave.parts for wave in self.waves]))
+
+
+def read_torus(data):
+    """The claim of a certificate, if it is whole and has the checksum that it says."""
+    first = data[len(TORUS_MAGIC):len(TORUS_MAGIC) + 9].partition(b"\n")[0]
+    if first.endswith(b"\r"):
+        raise Rejected("its lines end in CR LF: it was altered on its way; ask for the original")
+    if first != b"1":
+        raise Unusable("is a certificate of another version; this checker knows version 1")
+    marker = b"checksum: sha256 "
+    end = data.rfind(b"\n" + marker) + 1
+    end_line = data[end + len(marker):]
+    if not end or not re.fullmatch(b"[0-9a-f]{64}\nend\n", end_line):
+        raise Rejected("the file does not end with its checksum; it is truncated or altered")
+    view = memoryview(data)
+    if end_line[:64] != hashlib.sha256(view[:end]).hexdigest().encode():
+        raise Rejected("wrong checksum: the file was changed or damaged")
+    start = data.find(b"\ntori:\n", 0, end) + 1
+    if not start:
+        raise Rejected("there are no tori")
+    header = torus_header(bytes(view[:start]))
+    body = bytes(view[start + len(b"tori:\n"):end]).decode("utf-8", "replace").split("\n")
+    body.pop()                          # what is after the last line end: nothing
+    return parse_torus(header, body, data.count(b"\n", 0, start) + 2,
+                       hashlib.sha256(view).hexdigest())
+
+
+def torus_header(head):
+    """The fields, each of them given once but waves and components of the rotation."""
+    header = {"wave": [], "rotation": []}
+    for at, line in enumerate(head.decode("utf-8", "replace").split("\n")[1:-1], 2):
+        if len(line) > MAX_LINE:
+            raise NotConfirmed("line %d is longer than the checker's limit" % at)
+        name, colon, value = line.partition(": ")
+        if not colon or name not in TORUS_FIELDS and not NAMES.fullmatch(name):
+            raise Rejected("line %d, in the header, is of unknown meaning" % at)
+        if name in ("wave", "rotation"):
+            header[name].append(value)
+        elif name in header and name != "comment":
+            raise Rejected("the header gives %s twice" % name)
+        else:
+            header[name] = value
+    missing = [name for name in TORUS_FIELDS if name not in header and name != "rho"]
+    if missing:
+        raise Rejected("the header lacks %s" % ", ".join(missing))
+    return header
+
+
+def rationals(text, count, name):
+    """So many numbers, separated by single spaces."""
+    words = text.split(" ", count)
+    if len(words) != count:
+        raise Rejected("%s is not %d numbers" % (name, count))
+    return tuple([number(word, name, RATIO) for word in words])
+
+
+def integers(text, count, name, most):
+    words = text.split(" ", count)
+    if len(words) != count or not all(map(INTEGER.fullmatch, words)):
+        raise Rejected("%s is not %d integers" % (name, count))
+    if max(map(len, words)) > len(str(most)) + 1 or max(abs(int(x)) for x in words) > most:
+        raise NotConfirmed("%s is beyond the checker's limit, %d" % (name, most))
+    return tuple(map(int, words))
+
+
+def parse_torus(header, body, line, sha256):
+    """The claim of a header and of the lines after it, the first of which has this number."""
+    if header["dimension"] not in ("1", "2"):
+        raise Rejected("the header's dimension is neither 1 nor 2")
+    n = int(header["dimension"])
+    waves = parse_waves(header["wave"], RATIO)
+    if len(waves[0].parts) > 1:
+        raise Rejected("the waves have more than one part")
+    parameter = bool(waves[0].parts)
+    waves = present(waves)
+    if n == 1 and any(wave.k[1] for wave in waves):
+        raise Rejected("the dimension is 1, but a wave feels the second angle")
+    if n == 2 and not any(wave.k[1] for wave in waves):
+        raise Rejected("the dimension is 2, but no wave feels the second angle")
+    polynomial = integers(header["polynomial"], n + 2, "the header's polynomial", 10 ** 60)
+    if not polynomial[-1]:
+        raise Rejected("the header's polynomial has not the degree %d" % (n + 1))
+    if len(header["rotation"]) != n:
+        raise Rejected("the header has not %d lines of the rotation" % n)
+    rotation = tuple([rationals(text, n + 1, "the header's rotation")
+                      for text in header["rotation"]])
+    numbers = integers(header["frame"], n * n, "the header's frame", MAX_K)
+    frame = tuple([numbers[at:at + n] for at in range(0, n * n, n)])
+    if numbers[0] * numbers[-1] == (numbers[1] * numbers[2] if n == 2 else 0):
+        raise Rejected("the header's frame has the determinant 0")
+    alpha = rationals(header["alpha"], n, "the header's alpha")
+    if min(alpha) <= 0:
+        raise Rejected("the header's alpha is not positive")
+    if max(x.denominator for x in alpha) > MAX_ALPHA or max(alpha) > MAX_ALPHA:
+        raise NotConfirmed("the header's alpha is beyond the checker's limit, %d" % MAX_ALPHA)
+    rho = number(header["rho"], "the header's rho", RATIO) if "rho" in header else Fraction(0)
+    if not COUNT.fullmatch(header["pieces"]) or header["pieces"] == "0":
+        raise Rejected("the header's pieces are not a count")
+    if int(header["pieces"]) > MAX_PIECES:
+        raise NotConfirmed("there are more than %d pieces, the checker's limit" % MAX_PIECES)
+    lines, pieces = iter(enumerate(body, line)), []
+    for _ in range(int(header["pieces"])):
+        pieces.append(read_piece(lines, n, parameter, pieces[-1].high if pieces else None))
+    for at, _ in lines:
+        raise Rejected("line %d is more than the header's number of pieces" % at)
+    if parameter and pieces[-1].high != 1 or not parameter and len(pieces) > 1:
+        raise Rejected("the pieces do not tile the range of the parameter")
+    return TorusClaim(n, waves, polynomial, rationals(header["root"], 2, "the header's root"),
+                      rotation, frame, alpha, rho, tuple(pieces), sha256)
+
+
+def read_piece(lines, n, parameter, before):
+    """The next piece, which begins where the one before ends."""
+    at, line = next(lines, (0, ""))
+    words = line.split(" ", 6)
+    if len(words) != 6 or words[0] != "piece" or not all(map(COUNT.fullmatch, words[3:])):
+        raise Rejected("line %d is not piece LOW HIGH BITS DEGREE MODES" % at if at else
+                       "there are fewer pieces than the header says")
+    low, high = [number(word, "line %d" % at, RATIO) for word in words[1:3]]
+    bits, degree, count = map(int, words[3:])
+    if bits > MAX_BITS or degree > MAX_K or count > MAX_MODES:
+        raise NotConfirmed("line %d is beyond the checker's limits: %d bits, degree %d, %d modes"
+                           % (at, MAX_BITS, MAX_K, MAX_MODES))
+    if parameter and (low != (-1 if before is None else before) or not low < high <= 1) \
+            or not parameter and (low or high or degree):
+        raise Rejected("line %d: the pieces do not tile the range of the parameter" % at)
+    modes = {}
+    for _ in range(count):
+        at, line = next(lines, (0, ""))
+        words = line.split(" ", 3 * n + 2)
+        if len(words) != 3 * n + 1 or not all(map(INTEGER.fullmatch, words[:n])) \
+                or not COUNT.fullmatch(words[n]) \
+                or not all(map(HEXADECIMAL.fullmatch, words[n + 1:])):
+            raise Rejected("line %d is not a mode" % at if at else
+                           "there are fewer modes than the piece says")
+        if max(map(len, words[:n])) > 9 or max(abs(int(x)) for x in words[:n]) > MAX_MODE \
+                or max(map(len, words)) > MAX_BITS // 2:
+            raise NotConfirmed("line %d is beyond the checker's limits" % at)
+        k, j = tuple(map(int, words[:n])), int(words[n])
+        if k <= (0,) * n:
+            raise Rejected("line %d: k is not positive (the first component that is not zero)" % at)
+        if j > degree:
+            raise Rejected("line %d: the power of s is beyond the degree" % at)
+        values = [int(word, 16) for word in words[n + 1:]]
+        entry = modes.setdefault(k, {})
+        if j in entry:
+            raise Rejected("line %d: the mode was there before" % at)
+        entry[j] = tuple(zip(values[::2], values[1::2]))
+    zero = ((0, 0),) * n
+    return Piece(low, high, bits, degree, {
+        k: tuple([entry.get(j, zero) for j in range(degree + 1)]) for k, entry in modes.items()})

@@ -1,0 +1,371 @@
+"""Certificates of existence: the checker verifies what is true, refuses what is not as the format
+says, and never confirms what is false."""
+
+import gzip
+import hashlib
+import math
+import random
+import re
+import subprocess
+import sys
+from fractions import Fraction
+
+import mpmath
+import pytest
+
+from converse.check import field, series, ship
+from checker import check
+
+mp = mpmath.mp.clone()
+mp.dps = 40
+
+# The golden circle of the standard map at k = 0.5, V(y) = -0.5 sin y: u_1, u_2, ... times 2^40.
+GOLDEN = [
+    "-12771844e3 0", "0 29cb34dcc", "1058b2550 0", "0 -15894620", "-22f16c3f 0", "0 3fa1dab",
+    "e114ee 0", "0 -31c2fce", "-391931 0", "0 1c0563", "89837 0", "0 -21b0e", "-1045dd 0",
+    "0 15c36", "537f 0", "0 -598a", "-84f 0", "0 989", "1fb 0", "0 -136", "-c4d 0", "0 e0",
+    "4d 0", "0 -23", "-5 0", "0 f", "2 0", "0 0", "-1 0"]
+HEADER = """converse torus 1
+program: by hand
+dimension: 1
+wave: 1 0 0 0.5
+polynomial: -1 1 1
+root: 0 1
+rotation: 0 1
+frame: 1
+alpha: 1
+rho: 0.3
+pieces: 1
+tori:
+piece 0 0 40 0 %d
+"""
+
+
+def sealed(text):
+    """The text with the right checksum and end."""
+    return text + "checksum: sha256 %s\nend\n" % hashlib.sha256(text.encode()).hexdigest()
+
+
+def modes_text(values):
+    return "".join("%d 0 %s\n" % (k, value) for k, value in enumerate(values, 1))
+
+
+BODY = HEADER % len(GOLDEN) + modes_text(GOLDEN)
+
+
+def changed(old, new, count=1):
+    """The certificate with a change, and the checksum right."""
+    assert old in BODY
+    return sealed(BODY.replace(old, new, count))
+
+
+@pytest.fixture
+def run(tmp_path, capsys):
+    """Checks a text or bytes: (status, stdout, stderr)."""
+    def run(data, *options):
+        path = tmp_path / "some.torus"
+        path.write_bytes(data if isinstance(data, bytes) else data.encode("utf-8"))
+        status = check.main([*options, str(path)])
+        out, err = capsys.readouterr()
+        return status, out, err.replace(str(path), "FILE")
+    return run
+
+
+# ---- what is verified
+
+def test_the_golden_circle_is_verified(run):
+    status, out, err = run(sealed(BODY))
+    assert (status, err) == (0, "")
+    assert out.startswith("Verified :\n") and "k = 1, phase = 0 pi, p = 0.5\n" in out
+    assert "omega = t = 0.618033988749..." in out
+    assert run(gzip.compress(sealed(BODY).encode()))[:2] == (0, out)
+
+
+def test_quiet_says_nothing(run):
+    assert run(sealed(BODY), "--quiet") == (0, "", "")
+
+
+@pytest.mark.parametrize("hints", [
+    ("rho: 0.3\n", ""), ("rho: 0.3", "rho: 5"), ("rho: 0.3", "rho: -1"), ("rho: 0.3", "rho: 1e-9"),
+    ("alpha: 1", "alpha: 7/3"), ("frame: 1", "frame: -3"), ("root: 0 1", "root: 0.6 5/8"),
+    ("program: by hand", "program:  \x1b[2J"), ("pieces: 1", "pieces: 1\ncomment: a\ncomment: b"),
+    ("pieces: 1", "hint-grid: 1 2 3\npieces: 1"), ("wave: 1 0 0 0.5", "wave: 1 0 2 1/2"),
+    ("wave: 1 0 0 0.5", "wave: -1 0 1 0.5"), ("wave: 1 0 0 0.5", "wave: 1 0 1 -0.5"),
+    ("wave: 1 0 0 0.5", "wave: 1 0 0 0.25\nwave: 1 0 0 0.25"), ("polynomial: -1 1 1", "polynomial: 7 -7 -7"),
+    ("rotation: 0 1", "rotation: 1 1"), ("rotation: 0 1", "rotation: 0 -1"), ("root: 0 1", "root: -2 -1"),
+    ("wave: 1 0 0 0.5", "wave: 1 0 0 0.5\nwave: 0 1 0 0"),
+    ("rotation: 0 1", "rotation: 1 -1")])
+def test_hints_and_other_words_change_nothing(run, hints):
+    """Hints may be bad; and the same claim may be said in other words."""
+    status, out, err = run(changed(*hints))
+    assert (status, err) == (0, ""), err
+    assert "\x1b" not in out
+
+
+def test_it_is_near_the_torus_of_the_file(run):
+    """The distance that is reported is not less than that of a longer series."""
+    _, out, _ = run(sealed(BODY))
+    distance = float(re.search("within ([0-9.e-]+) of", out).group(1))
+    coarse = sealed(HEADER % 14 + modes_text(GOLDEN[:14]))
+    status, text, err = run(coarse)
+    assert status == 0, err
+    lost = 2 * sum(math.hypot(*[int(x, 16) for x in value.split()]) for value in GOLDEN[14:]) / 2 ** 40
+    assert float(re.search("within ([0-9.e-]+) of", text).group(1)) >= lost / 2
+    assert distance < 1e-3
+
+
+@pytest.mark.parametrize("options", [("--sample", "3"), ("--state", "x")])
+def test_it_is_verified_whole(run, options):
+    status, out, err = run(sealed(BODY), *options)
+    assert (status, out) == (2, "") and "as a whole" in err
+
+
+# ---- what is refused
+
+def without_checksum(text):
+    return text[:text.rindex("checksum: ")]
+
+
+FIRST = "1 0 " + GOLDEN[0]
+SECOND = "2 0 " + GOLDEN[1]
+BAD_BYTES = {
+    "cut off": sealed(BODY)[:-40], "no end": sealed(BODY)[:-4], "more after the end": sealed(BODY) + "\n",
+    "a number changed": sealed(BODY).replace("0.5", "0.4"), "nothing": "converse torus 1\n",
+    "CR LF": sealed(BODY).replace("\n", "\r\n"),
+    "two ends": sealed(BODY) + sealed(BODY), "no tori": sealed(BODY.replace("tori:\n", "")),
+}
+BAD_TEXT = [
+    ("dimension: 1", "dimension: 3"), ("dimension: 1", "dimension: 01"), ("dimension: 1\n", ""),
+    ("dimension: 1", "dimension: 2"), ("dimension: 1", "dimension: 1\ndimension: 1"),
+    ("dimension: 1", "Dimension: 1"), ("program: by hand", "author: me"),
+    ("program: by hand", "hint-: 1"), ("dimension: 1", "dimension:1"),
+    ("wave: 1 0 0 0.5\n", ""), ("wave: 1 0 0 0.5", "wave: 0 0 0 0.5"),
+    ("wave: 1 0 0 0.5", "wave: 1 0 0"), ("wave: 1 0 0 0.5", "wave: 1 0 0 0.5 0 0"),
+    ("wave: 1 0 0 0.5", "wave: 1 1 0 0.5"), ("wave: 1 0 0 0.5", "wave: 1 0 0 nan"),
+    ("wave: 1 0 0 0.5", "wave: 1 0 0 0x1"), ("wave: 1 0 0 0.5", "wave: 1 0 0 \u0660.5"),
+    ("wave: 1 0 0 0.5", "wave: 1 0 0 1/0"), ("wave: 1 0 0 0.5", "wave: 1 0  0.5"),
+    ("wave: 1 0 0 0.5", "wave: 2 0 0 0.5"), ("wave: 1 0 0 0.5", "wave: 1 0 0 0.5\nwave: 2 0 0 1 1"),
+    ("polynomial: -1 1 1", "polynomial: -1 0 1"), ("polynomial: -1 1 1", "polynomial: 1 2 1"),
+    ("polynomial: -1 1 1", "polynomial: -1 1 0"), ("polynomial: -1 1 1", "polynomial: -1 1"),
+    ("polynomial: -1 1 1", "polynomial: 1 0 1"), ("polynomial: -1 1 1", "polynomial: -1 1 1 1"),
+    ("polynomial: -1 1 1", "polynomial: -1 1.0 1"), ("polynomial: -1 1 1", "polynomial: -1 +1 1"),
+    ("root: 0 1", "root: 1 0"), ("root: 0 1", "root: -2 1"), ("root: 0 1", "root: 1 2"),
+    ("root: 0 1", "root: 0"), ("root: 0 1", "root: 1/2 1/2"), ("root: 0 1", "root: inf 1"),
+    ("rotation: 0 1", "rotation: 1/2 0"), ("rotation: 0 1", "rotation: 0 1\nrotation: 1 1"),
+    ("rotation: 0 1\n", ""), ("rotation: 0 1", "rotation: 0 1 0"), ("rotation: 0 1", "rotation: 0"),
+    ("frame: 1", "frame: 0"), ("frame: 1", "frame: 1 0 0 1"), ("frame: 1", "frame: 0.5"),
+    ("alpha: 1", "alpha: 0"), ("alpha: 1", "alpha: -1"), ("alpha: 1", "alpha: 1 1"),
+    ("rho: 0.3", "rho: much"), ("pieces: 1", "pieces: 0"), ("pieces: 1", "pieces: 2"),
+    ("pieces: 1", "pieces: one"), ("piece 0 0", "piece -1 1"), ("piece 0 0", "piece 0 1"),
+    ("piece 0 0 40", "piece 0 0 -40"), ("piece 0 0 40", "piece 0 0 \uff14\uff10"), ("piece 0 0 40", "peace 0 0 40"),
+    ("piece 0 0 40 0", "piece 0 0 40 1"), ("piece 0 0 40", "piece 0 0 040"),
+    (" 40 0 %d\n" % len(GOLDEN), " 40 0 %d\n" % (len(GOLDEN) - 1)),
+    (" 40 0 %d\n" % len(GOLDEN), " 40 0 %d\n" % (len(GOLDEN) + 1)),
+    (FIRST, FIRST + "\n" + FIRST), (FIRST, "-" + FIRST), (FIRST, "0 0 0 0"), (FIRST, "0" + FIRST),
+    (FIRST, FIRST.upper()), (FIRST, FIRST + " 0 0"), (FIRST, "1 1 " + GOLDEN[0]),
+    (FIRST, "1 0 0x" + GOLDEN[0]), (FIRST, "1 0 +" + GOLDEN[0]), (FIRST, "1 0 -0 " + GOLDEN[0].split()[1]),
+    (FIRST, FIRST.replace(" ", "  ")), (FIRST, FIRST + " "), (FIRST, ""), (FIRST, "1 0 1_0 0"),
+    (SECOND, "1 0 " + GOLDEN[1]), (FIRST, "\u0661 0 " + GOLDEN[0]), (FIRST, "1/1 0 " + GOLDEN[0]),
+]
+# True or false, it is more than the checker undertakes.
+TOO_MUCH = [
+    ("piece 0 0 40", "piece 0 0 99999999"), (" 40 0 %d\n" % len(GOLDEN), " 40 0 99999999\n"),
+    ("pieces: 1", "pieces: 99999"), (FIRST, "99999999 0 1 0"), (FIRST, "1 0 %s 0" % ("f" * 3000)),
+    (FIRST, "1 0 %s 0" % ("f" * 400)), ("polynomial: -1 1 1", "polynomial: -1 1 1" + "0" * 80),
+    ("rho: 0.3", "rho: " + "1" * 1001), ("alpha: 1", "alpha: 1e9"), ("frame: 1", "frame: 1000"),
+    ("wave: 1 0 0 0.5", "wave: 1 0 0 1e301"), ("rotation: 0 1", "rotation: 0 1e300"),
+    ("rotation: 0 1", "rotation: 0 1/%d" % 10 ** 300),
+]
+# Each would be a false claim, or one that this torus is no proof of.
+FALSE = {
+    "a coefficient": (FIRST, "1 0 " + " ".join("%x" % (int(x, 16) + (1 << 31)) for x in GOLDEN[0].split())),
+    "the amplitude": ("wave: 1 0 0 0.5", "wave: 1 0 0 0.5005"),
+    "its sign": ("wave: 1 0 0 0.5", "wave: 1 0 0 -0.5"),
+    "a phase": ("wave: 1 0 0 0.5", "wave: 1 0 1e-3 0.5"),
+    "one more wave": ("wave: 1 0 0 0.5", "wave: 1 0 0 0.5\nwave: 2 0 0 1e-3"),
+    "a wave twice as fast": ("wave: 1 0 0 0.5", "wave: 1 0 0 0\nwave: 2 0 0 0.5\nwave: 1 0 0 1e-9"),
+    "another rotation": ("rotation: 0 1", "rotation: 1/1000 1"),
+    "twice the rotation": ("rotation: 0 1", "rotation: 0 2"),
+    "another field": ("polynomial: -1 1 1", "polynomial: -2 2 1"),
+    "fewer bits": ("piece 0 0 40", "piece 0 0 41"),
+    "no modes at all": (modes_text(GOLDEN), ""),
+    "a torus that is none": ("wave: 1 0 0 0.5", "wave: 1 0 0 5"),
+}
+
+
+@pytest.mark.parametrize("name", BAD_BYTES)
+def test_bytes_that_are_not_whole_are_rejected(run, name):
+    status, out, err = run(BAD_BYTES[name])
+    assert (status, out) == (1, "") and err.startswith("converse-check: FILE: rejected: "), err
+    assert err.count("\n") == 1
+
+
+@pytest.mark.parametrize("change", BAD_TEXT)
+def test_what_is_not_as_in_the_format_is_rejected(run, change):
+    status, out, err = run(changed(*change))
+    assert (status, out) == (1, "") and err.startswith("converse-check: FILE: rejected: "), err
+    assert err.count("\n") == 1 and "Error" not in err
+
+
+@pytest.mark.parametrize("change", TOO_MUCH)
+def test_what_is_too_much_is_not_confirmed(run, change):
+    status, out, err = run(changed(*change))
+    assert (status, out) == (5, "") and "not confirmed: " in err and err.count("\n") == 1, err
+    assert "Error" not in err
+
+
+@pytest.mark.parametrize("name", FALSE)
+def test_what_is_false_is_not_confirmed(run, name):
+    old, new = FALSE[name]
+    text = changed(old, new) if new else sealed(HEADER % 0)
+    status, out, err = run(text)
+    assert (status, out) == (5, "") and "not confirmed: the error of the torus" in err or \
+        "not confirmed: no approximate inverse" in err, err
+
+
+def test_other_versions_and_files_are_said_to_be_so(run):
+    for text, why in ((sealed(BODY.replace("torus 1", "torus 2")), "another version"),
+                      ("converse tori 1\n", "is not a proof file")):
+        status, out, err = run(text)
+        assert (status, out) == (2, "") and why in err
+
+
+def test_a_random_change_of_a_byte_is_noticed(run):
+    """With a right checksum: the claim stays the same, or is refused, and nothing else fails."""
+    rng = random.Random(7)
+    for _ in range(60):
+        at = rng.randrange(len("converse torus 1\n"), len(BODY))
+        text = BODY[:at] + rng.choice("0123456789abcdef -./\n") + BODY[at + 1:]
+        status, out, err = run(sealed(text))
+        assert status in (0, 1, 5) and "Error" not in err, (text, err)
+        if status == 0:                 # a hint, a low bit, or a word without meaning
+            assert "p = 0.5\n" in out and "0.618033988749..." in out
+
+
+# ---- the field and the divisors
+
+T49 = (-1, -2, 1, 1)
+X0 = tuple(Fraction(x, 13) for x in (-23, 8, 11))
+X1 = tuple(Fraction(x, 13) for x in (25, -7, -8))
+
+
+def test_irreducible_polynomials():
+    for polynomial in ((-1, 1, 1), (-1, -2, 1, 1), (-1, -1, 0, 1), (1, 0, 1), (-2, 0, 0, 1)):
+        assert field.is_irreducible(polynomial)
+    for polynomial in ((-1, 0, 1), (0, 0, 1), (-6, 11, -6, 1), (1, 0, 0, 1), (0, 1, 1, 1)):
+        assert not field.is_irreducible(polynomial)
+
+
+def test_roots_are_counted():
+    assert field.roots_between((-6, 11, -6, 1), Fraction(1, 2), Fraction(7, 2)) == 3
+    assert field.roots_between((-6, 11, -6, 1), Fraction(3, 2), Fraction(5, 2)) == 1
+    assert field.roots_between((-1, -1, 0, 1), Fraction(-9), Fraction(9)) == 1
+    assert field.roots_between((-2, 0, 1), Fraction(-9), Fraction(0)) == 1
+
+
+def divisors_of(polynomial, root, omega, frame, alpha, basis):
+    norm = field.Norm(frame, alpha, basis)
+    return field.Divisors(field.Field(polynomial, *map(Fraction, root)), omega, norm)
+
+
+VECTORS = {
+    "golden": ((-1, 1, 1), (0, 1), [(0, 1)], [[1]], [1], [(1,)], 0.44721, 1.86406),
+    "silver": ((-1, 2, 1), (0, 1), [(0, 1)], [[1]], [1], [(1,)], 0.35355, 1.92781),
+    "T49": (T49, (1, 2), [X0, X1], [[1, 1], [1, -1]], [1, 3], [(1, 0), (0, 1)], 0.67334, 4.23071),
+    "spiral": ((-1, -1, 0, 1), (1, 2), [(-1, 1, 0), (-1, 0, 1)], [[1, 0], [0, 1]], [1, 1],
+               [(1, 0), (0, 1)], 0.23449, 1.39238),
+}
+
+
+@pytest.mark.parametrize("name", VECTORS)
+def test_small_divisors_are_bounded(name):
+    """By nearly the best constants; and each divisor, computed to forty digits, obeys."""
+    polynomial, root, omega, frame, alpha, basis, gamma, least = VECTORS[name]
+    omega = [tuple(map(Fraction, x)) for x in omega]
+    found = divisors_of(polynomial, root, omega, frame, alpha, basis)
+    n = len(omega)
+    assert 0.98 * gamma < found.tail / (2 * math.pi) <= gamma * 1.00001
+    assert 0.95 * least < found.least <= least * 1.00001
+    t = mp.findroot(lambda x: mp.polyval(polynomial[::-1], x), (mp.mpf(root[0]) + root[1]) / 2)
+    w = [sum(mp.mpf(c.numerator) / c.denominator * t ** j for j, c in enumerate(x)) for x in omega]
+    for delta in (Fraction(1), Fraction(1, 10), Fraction(1, 50)):
+        worst = 0
+        for k in [(a, b)[:n] for a in range(40) for b in (range(-40, 41) if n == 2 else [0])]:
+            if any(k):
+                divisor = abs(1 - mp.expjpi(2 * sum(x * y for x, y in zip(k, w))))
+                assert divisor * found.norm(k) ** n >= found.least
+                for d in (delta, delta / 3):
+                    worst = max(worst, (d / delta) ** n * mp.exp(-d * found.norm(k)) / divisor)
+        assert worst <= found.loss(delta)
+
+
+# ---- series
+
+def value(f, ring, place, theta, s):
+    """Of an entry of a series, by its modes."""
+    re, im = f.entries[place]
+    step, total = ring.box.degree + 1, mp.mpc(0)
+    for group, m in enumerate(ring.box.modes()):
+        k = field.combination(m, ring.box.norm.basis)
+        wave = mp.expj(sum(x * y for x, y in zip(k, theta)))
+        for j in range(step):
+            at = group * step + j
+            total += mp.mpc(re[at], im[at] if im else 0) * wave * s ** j
+    return total / ring.one
+
+
+def random_entry(rng, ring, is_real, scale):
+    step, found = ring.box.degree + 1, []
+    for _ in range(1 if is_real else 2):
+        found.append([int(rng.uniform(-1, 1) * scale * ring.one * 0.3 ** (length + at))
+                      for length in ring.box.lengths for at in range(step)])
+    return tuple(found) if not is_real else (found[0], None)
+
+
+@pytest.mark.parametrize("n, degree", [(1, 0), (2, 0), (1, 4), (2, 3)])
+def test_products_and_exponentials_are_within_their_radius(n, degree):
+    """At points of the strip, where the norm bounds functions."""
+    rng = random.Random(n + 10 * degree)
+    norm = field.Norm([[1, 1], [1, -1]], (1, 3), [(1, 0), (0, 1)]) if n == 2 \
+        else field.Norm([[1]], (1,), [(1,)])
+    ring = series.Ring(series.Box(norm, 12, degree), Fraction(9, 8), 70)
+    unit = mp.mpf(2) ** (ring.bits + series.FINE)
+    for is_real in (True, False):
+        f, g = [ring.series(n, n, [random_entry(rng, ring, is_real, 1.0) for _ in range(n * n)])
+                for _ in range(2)]
+        product = ring.multiply(f, g)
+        h = ring.series(1, 1, [random_entry(rng, ring, is_real, 0.3)])
+        power = ring.exponential(h)
+        for _ in range(3):
+            theta, s = [mp.mpf(rng.uniform(0, 6)) for _ in range(n)], mp.mpf(rng.uniform(-1, 1))
+            exact = sum(value(f, ring, i, theta, s) * value(g, ring, i * n, theta, s)
+                        for i in range(n))
+            assert abs(value(product, ring, 0, theta, s) - exact) <= product.radius / unit
+            assert abs(value(power, ring, 0, theta, s) - mp.exp(value(h, ring, 0, theta, s))) \
+                <= power.radius / unit
+        assert product.radius / unit < 0.3 and power.radius / unit < 0.1
+
+
+def test_norms_of_matrices_are_spectral():
+    norm = field.Norm([[1]], (1,), [(1,)])
+    ring = series.Ring(series.Box(norm, 0, 0), Fraction(2), 60)
+    rng = random.Random(3)
+    for _ in range(20):
+        numbers = [complex(rng.uniform(-1, 1), rng.uniform(-1, 1)) for _ in range(4)]
+        f = ring.series(2, 2, [([int(z.real * ring.one)], [int(z.imag * ring.one)])
+                               for z in numbers])
+        exact = mp.svd_c(mp.matrix([numbers[:2], numbers[2:]]), compute_uv=False)[0]
+        found = mp.mpf(ring.norm(f)) / 2 ** (ring.bits + series.FINE)
+        assert exact - 1e-12 < found < exact * (1 + 1e-7)
+
+
+# ---- other forms of the checker
+
+def test_the_forms_that_are_shipped_verify_it_too(tmp_path, run):
+    _, out, _ = run(sealed(BODY))
+    ship.main(str(tmp_path))
+    (tmp_path / "x").write_text(sealed(BODY))
+    for form in ("converse_check.py", "converse-check.pyz"):
+        done = subprocess.run([sys.executable, "-I", "-S", tmp_path / form, tmp_path / "x"],
+                              capture_output=True, text=True)
+        assert (done.returncode, done.stdout, done.stderr) == (0, out, "")
