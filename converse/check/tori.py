@@ -732,8 +732,8 @@ def existence_report(claim, setting, found):
              % ("two angles" if n == 2 else "an angle"),
              "V(y) = - the sum of p sin(k.y + phase) over the waves below, has an invariant "
              + ("Lagrangian graph" if n == 2 else "circle"),
-             "(p = P + S'(x) over the angles, where p[j] = x[j] - x[j-1], P is constant, S periodic "
-             "and",
+             "(p = P + S'(x) over the angles, where p[j] = x[j] - x[j-1], P is constant, S is "
+             "periodic and",
              "real analytic), on which it is conjugate to the rotation by 2 pi omega,",
              "omega = (%s)" % omega if n == 2 else "omega = " + omega,
              "where t is the root of %s between %s and %s" % (
