@@ -189,54 +189,40 @@ def is_definite(d):
     return d[0] > 0 and d[0] * d[2] > d[1] * d[1]
 
 
+def recursion(blocks, tail):
+    """The recursion of step (C3) from the first of these matrices on: d of each, and where what it
+    rests on begins, as it begins anew behind a place where d is not positive."""
+    found, begin, inv = [], 0, tail
+    for k, block in enumerate(blocks):
+        d = [x - y for x, y in zip(block, inv)]
+        found.append((d, begin))
+        begin, inv = (begin, inverse(d)) if is_definite(d) else (k + 1, tail)
+    return found
+
+
 def test_vectors(ahead, back, l):
     """Vectors n for the sites of both lanes, which have these matrices; in double precision, as
     nothing rests on it.
 
-    At each site the recursions of step (C3) from both ends of the orbit are compared; the one from
-    the other lane begins anew behind a site where it fails.  Where both together have a negative
-    eigenvalue that is nearest to zero, and n as a rule is largest, is its eigenvector; n follows
-    outwards by the recursions.
+    At each site the recursions from both ends of the orbit are compared, the one from the lane's
+    own end only where it has not failed.  Where both together have a negative eigenvalue that is
+    nearest to zero, and n as a rule is largest, is its eigenvector; n follows outwards by the
+    recursions.
     """
-    tail, outer, last = (l, 0.0, l), [], []
-    for blocks in (ahead, back):
-        found, good, inv = [], bool(blocks), tail
-        for block in reversed(blocks):
-            d = [x - y for x, y in zip(block, inv)]
-            found.append((d, good))
-            good, inv = good and is_definite(d), inverse(d)
-        outer.append(found[::-1])
-        last.append((good, inv))
-    best, chosen = math.inf, None
-    for lane, blocks in enumerate((ahead, back)):
-        good, inv = last[1 - lane]
-        begins, inner = [], []
-        for k, (block, (beyond, whole)) in enumerate(zip(blocks, outer[lane])):
-            begins.append(not good)
-            d = [x - y for x, y in zip(block, inv if good else tail)]
-            inner.append(d)
-            joint = [x + y - z for x, y, z in zip(d, beyond, block)]
-            low, vector = least(joint)
-            if whole and 0 < -low < best:
-                best, chosen = -low, (lane, k, vector, begins, inner)
-            good, inv = is_definite(d), inverse(d)
-    n = [[(0.0, 0.0)] * len(blocks) for blocks in (ahead, back)]
-    if chosen:
-        lane, place, vector, begins, inner = chosen
-        here, there = n[lane], n[1 - lane]
-        here[place] = vector
-        for k in range(place, 0, -1):
-            if begins[k]:
-                break
-            here[k - 1] = matrix_times(inverse(inner[k - 1]), here[k])
-        else:
-            if not begins[0]:
-                there[0] = matrix_times(inverse(outer[1 - lane][0][0]), here[0])
-                for k in range(1, len(there)):
-                    there[k] = matrix_times(inverse(outer[1 - lane][k][0]), there[k - 1])
-        for k in range(place + 1, len(here)):
-            here[k] = matrix_times(inverse(outer[lane][k][0]), here[k - 1])
-    return n
+    tail, blocks = (l, 0.0, l), [*reversed(back), *ahead]
+    left, right = recursion(blocks, tail), recursion(blocks[::-1], tail)[::-1]
+    best, place, n = math.inf, None, [(0.0, 0.0)] * len(blocks)
+    for k, (block, (d, begin), (beyond, end)) in enumerate(zip(blocks, left, right)):
+        low, vector = least([x + y - z for x, y, z in zip(d, beyond, block)])
+        if 0 < -low < best and not (begin if k < len(back) else end):
+            best, place, chosen = -low, k, vector
+    if place is not None:
+        n[place] = chosen
+        for k in range(place, left[place][1], -1):
+            n[k - 1] = matrix_times(inverse(left[k - 1][0]), n[k])
+        for k in range(place + 1, len(n) - right[place][1]):
+            n[k] = matrix_times(inverse(right[k][0]), n[k - 1])
+    return [n[len(back):], n[:len(back)][::-1]]
 
 
 class SecondVariation:
