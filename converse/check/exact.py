@@ -237,11 +237,10 @@ class SecondVariation:
         self.down = prism.fixed.bits - UNIT_BITS
         self.l = l >> self.down             # a lesser l makes (C3) larger
         self.value, self.error = 0, 0       # of degree 2; the error 120 times
+        self.product = collections.defaultdict(int)             # of degree 2, by its symbols
+        # Of degree 4, six times: of each pair of symbols, alone and with each symbol.
         self.pairs = list(itertools.combinations_with_replacement(self.symbols, 2))
-        self.linear = [0] * prism.symbols                       # of degree 2
-        self.product = collections.defaultdict(int)             # of degree 2, two or three symbols
-        self.square = [0] * len(self.pairs)                     # of degree 3, twice
-        self.cubic = [[0] * len(self.pairs) for _ in self.symbols]      # of degree 4, six times
+        self.cubic = [[0] * len(self.pairs) for _ in range(1 + prism.symbols)]
 
     def add_lane(self, sites, vectors):
         """Adds the sites of a lane; returns the multipliers of the first, and G of step (C7) there
@@ -254,7 +253,7 @@ class SecondVariation:
             E0, E1 = site.E[0] >> self.down, site.E[1] >> self.down
             self.value += mu0[0] * E0 + mu1[0] * E1
             for i in self.symbols:
-                self.linear[i] += mu0[1 + i] * E0 + mu1[1 + i] * E1
+                self.product[i,] += mu0[1 + i] * E0 + mu1[1 + i] * E1
             self.error += 120 * (sum(map(abs, mu0)) + sum(map(abs, mu1)))   # as E is rounded
             G0 = [2 * a - b for a, b in zip(mu0, beyond0)]
             G1 = [2 * a - b for a, b in zip(mu1, beyond1)]
@@ -278,15 +277,15 @@ class SecondVariation:
         alpha, beta = [x * c >> U for x in m], [-x * s >> U for x in m]
         most_m, linear_alpha, linear_beta = sum(map(abs, m)), sum(map(abs, alpha)), \
             sum(map(abs, beta))
-        first = [-3 * x << U for x in alpha]
+        first = [3 * A << U, *[-3 * x << U for x in alpha]]         # what stands with xi^2
         slopes = [x - (A * y >> U) for x, y in zip(beta, xi)]
         parts_A = parts_alpha = parts_B = parts_beta = 0
         for i, part_c, part_s in wave.parts:
             part_c, part_s = part_c >> down, part_s >> down
             part_A = m0 * part_c - omega * part_s >> U
             part_B = -(omega * part_c + m0 * part_s) >> U
-            self.linear[i] += part_A << U
-            first[i] -= 3 * part_A << U
+            self.product[i,] += part_A << U
+            first[1 + i] -= 3 * part_A << U
             slopes[i] += part_B
             parts_A, parts_B = parts_A + abs(part_A), parts_B + abs(part_B)
             for j, x in enumerate(m):
@@ -297,8 +296,7 @@ class SecondVariation:
                 for k, y in enumerate(xi):
                     self.product[tuple(sorted((i, j, k)))] += part_beta * y
         products = [xi[j] * xi[k] for j, k in self.pairs]
-        self.square = [x + A * y for x, y in zip(self.square, products)]
-        for row, x, y in zip(self.cubic, first, xi):
+        for row, x, y in zip(self.cubic, first, [0, *xi]):
             x -= B * y
             if x:
                 row[:] = [a + x * b for a, b in zip(row, products)]
@@ -339,7 +337,7 @@ class SecondVariation:
                 self.error += 120 * sum(map(abs, g)) * ((rest >> self.down) + 1 + len(columns))
                 for i, x in enumerate(columns):
                     if x:
-                        self.linear[i] += g[0] * x
+                        self.product[i,] += g[0] * x
                         for j, y in enumerate(g[1:]):
                             self.product[(i, j) if i <= j else (j, i)] += x * y
 
@@ -348,14 +346,11 @@ class SecondVariation:
         six times."""
         form = {key: 0 for count in (1, 2, 3)
                 for key in itertools.combinations_with_replacement(self.symbols, count)}
-        for i, x in enumerate(self.linear):
-            form[i,] += 6 * x << 2 * UNIT_BITS
         for key, x in self.product.items():
             form[key] += 6 * x << 2 * UNIT_BITS
-        for at, (j, k) in enumerate(self.pairs):
-            form[j, k] += 3 * (1 + (j < k)) * self.square[at] << UNIT_BITS
-            for i, row in enumerate(self.cubic):
-                form[tuple(sorted((i, j, k)))] += (1 + (j < k)) * row[at]
+        for i, row in zip([(), *[(i,) for i in self.symbols]], self.cubic):
+            for (j, k), x in zip(self.pairs, row):
+                form[tuple(sorted((*i, j, k)))] += (1 + (j < k)) * x
         return form
 
     def bound(self):

@@ -140,7 +140,7 @@ def one_file(order=ORDER, main="main"):
         summary = "\n".join(("# " + line).rstrip() for line in module.summary.splitlines())
         parts.append("# ---- %s\n%s\n\n%s\n" % (module.name, summary, module.without(unused)))
     parts.append('if __name__ == "__main__":\n    sys.exit(%s())\n' % main)
-    return "\n\n".join(parts)
+    return ("\n" if order == REFEREE else "\n\n").join(parts)
 
 
 def zip_app(path):

@@ -213,7 +213,7 @@ def worst_lane(names, draw, count):
         if [*map(list, mu), *map(list, G)] != [*values[-2], *values[-1]]:
             return math.inf
         for e in E:
-            true = (vectors << U) - sums.value - sum(x * y for x, y in zip(sums.linear, e)) + sum(
+            true = (vectors << U) - sums.value - at(sums.product, e) + sum(
                 (x[0] + x[1] * e[0] + x[2] * e[1]) * y / 16
                 for j, site in enumerate(sites) for x, y in zip(values[3 - j], site.E))
             worst = max(worst, quotient(true, sums.error / 120))
@@ -331,13 +331,13 @@ def test_bounds_of_the_exact_path(name):
     ("errors", "self.r0, self.r = self.r, (", "self.r0, self.r = self.r0, ("),
     ("wave", "A, B = m0 * c - omega * s", "A, B = m0 * c + omega * s"),
     ("wave", "[-x * s >> U for x in m]", "[x * s >> U for x in m]"),
-    ("wave", "first = [-3 * x", "first = [3 * x"), ("wave", "x - (A * y >> U)", "x + (A * y >> U)"),
+    ("wave", "*[-3 * x << U", "*[3 * x << U"), ("wave", "x - (A * y >> U)", "x + (A * y >> U)"),
     ("wave", "part_A = m0 * part_c - omega", "part_A = m0 * part_c + omega"),
     ("wave", "part_B = -(omega * part_c + m0", "part_B = -(omega * part_c - m0"),
-    ("wave", "first[i] -= 3 * part_A", "first[i] += 3 * part_A"),
+    ("wave", "first[1 + i] -= 3 * part_A", "first[1 + i] += 3 * part_A"),
     ("wave", "slopes[i] += part_B", "slopes[i] -= part_B"),
     ("wave", "part_c >> U, -x * part_s >> U", "part_c >> U, x * part_s >> U"),
-    ("wave", "x + A * y for", "x - A * y for"), ("wave", "x -= B * y", "x += B * y"),
+    ("wave", "first = [3 * A", "first = [-3 * A"), ("wave", "x -= B * y", "x += B * y"),
     ("wave", "self.value -= omega * s", "self.value += omega * s"),
     ("wave", "rest = (wave.rest >> down) + count", "rest = count"),
     ("wave", "rest = (wave.rest >> down) + count", "rest = wave.rest >> down"),
@@ -359,8 +359,7 @@ def test_bounds_of_the_exact_path(name):
     ("wave", "abs(m0) + most_m + omega", "abs(m0) + omega"),
     ("wave", "abs(m0) + most_m + omega", "most_m + omega"),
     ("wave", "(2 * count * (2 + len(wave.parts)) << U)", "0"),
-    ("wave", "3 * (1 + (j < k)) * self.square", "3 * self.square"),
-    ("wave", "(1 + (j < k)) * row[at]", "row[at]"), ("wave", "form[key] += 6", "form[key] += 3"),
+    ("wave", "(1 + (j < k)) * x", "x"), ("wave", "form[key] += 6", "form[key] += 3"),
     ("lane", "n0 * v0 - n1 * v1", "n0 * v0 + n1 * v1"),
     ("lane", "mu0[0] * E0 + mu1[0] * E1", "mu0[0] * E0 - mu1[0] * E1"),
     ("lane", "(sum(map(abs, mu0)) + sum(map(abs, mu1)))", "sum(map(abs, mu1))"),
