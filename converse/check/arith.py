@@ -49,11 +49,6 @@ class Fixed:
             self.table.append((y >> GUARD, x >> GUARD))
             x, y = x * c - y * s >> fine, y * c + x * s >> fine
 
-    @staticmethod
-    @functools.lru_cache(maxsize=16)
-    def of(bits):
-        return Fixed(bits)
-
     def angle(self, phase):
         """pi phase, modulo 2 pi, off by less than 2 units."""
         return math.floor(phase % 2 * self.two_pi / 2) >> GUARD
@@ -95,6 +90,9 @@ class Fixed:
         c, s = self._small(x - (n * self.step >> GUARD), bits, self.divisors)
         sin, cos = self.table[n % SLICES]
         return sin * c + cos * s >> bits, cos * c - sin * s >> bits
+
+
+fixed_of = functools.lru_cache(maxsize=16)(Fixed)       # by bits
 
 
 def in_units(fixed, waves):

@@ -4,7 +4,7 @@ import itertools
 import math
 from fractions import Fraction
 
-from .arith import SINE_ERROR, Fixed, in_units, stiffness, upper_sqrt
+from .arith import SINE_ERROR, fixed_of, in_units, stiffness, upper_sqrt
 from .exact import Prism, PrismWave, attempt
 from .failures import NotConfirmed, Rejected
 from .limits import CAUTION, LAG, MAX_BITS, MAX_HALVINGS, MAX_PIECES
@@ -24,7 +24,7 @@ class Criterion:
         if bits > MAX_BITS:
             raise NotConfirmed("numbers of %d bits are needed; the checker's limit is %d"
                                % (bits, MAX_BITS))
-        self.claim, self.fixed = claim, Fixed.of(bits)
+        self.claim, self.fixed = claim, fixed_of(bits)
         one, waves = self.fixed.one, claim.examined
         self.waves = in_units(self.fixed, waves)
         if max([abs(x) for wave in waves for x in (wave.middle, *wave.parts)] + [0]) >= one:

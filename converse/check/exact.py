@@ -36,19 +36,14 @@ class Prism:
 
     def __init__(self, fixed, waves, xstar, x1, symbols):
         self.fixed, self.waves, self.symbols = fixed, waves, symbols
-        across, total = 0, 0
-        for wave in waves:
-            size = abs(wave.amplitude)
-            across += 6 * abs(wave.k0 * wave.k1) * size
-            total += (wave.k0 ** 2 + wave.k1 ** 2) * size
+        across = sum([6 * abs(wave.k0 * wave.k1 * wave.amplitude) for wave in waves])
+        total = sum([(wave.k0 ** 2 + wave.k1 ** 2) * abs(wave.amplitude) for wave in waves])
         self.rotated = across > total       # the frame of the errors; either is right
         blank = [0] * symbols
         start = xstar, (blank, blank), (1, 1)
         self.lanes = Lane(self, start, x1), Lane(self, x1, start)
-        self.sizes = []                     # of the waves, with k
-        for k0, k1, _, amplitude, parts, _ in waves:
-            self.sizes.append((k0, k1, (abs(amplitude) + sum([abs(x) for _, x in parts]))
-                               / fixed.one))
+        self.sizes = [(k0, k1, (abs(amplitude) + sum([abs(x) for _, x in parts])) / fixed.one)
+                      for k0, k1, _, amplitude, parts, _ in waves]
 
     def cautious(self, site, caution):
         """beta at a site, and something for what the bound will add there."""
@@ -94,12 +89,7 @@ class Lane:
         new1 = [2 * a - b for a, b in zip(L1, self.L0[1])]
         for wave, (strong0, strong1) in zip(prism.waves, self.strengths):
             k0, k1, phase, amplitude, parts, error = wave
-            if k1 == 0:
-                xi = L0 if k0 == 1 else [k0 * a for a in L0]
-            elif k0 == 0:
-                xi = L1 if k1 == 1 else [k1 * a for a in L1]
-            else:
-                xi = [k0 * a + k1 * b for a, b in zip(L0, L1)]
+            xi = [k0 * a + k1 * b for a, b in zip(L0, L1)]
             size = sum(map(abs, xi))
             rest = (strong0 * r0 + strong1 * r1 + rotated) >> rotated
             reach = size + rest
@@ -118,13 +108,11 @@ class Lane:
             fall = (abs(cosine) * square >> bits + 1) + 1
             bent = max(abs(mean), fall - abs(mean)) + (abs(sine) * cube // 6 >> bits) \
                 + 2 * error + len(xi) + 2
-            if sine:
-                for i, a in enumerate(xi):
-                    a = sine * a >> bits
-                    if k0:
-                        new0[i] -= k0 * a
-                    if k1:
-                        new1[i] -= k1 * a
+            turned = [sine * a >> bits for a in xi]
+            if k0:
+                new0 = [a - k0 * b for a, b in zip(new0, turned)]
+            if k1:
+                new1 = [a - k1 * b for a, b in zip(new1, turned)]
             moved = []
             for i, part in parts:
                 sine_part, cosine_part = part * s >> bits, part * c >> bits
@@ -275,8 +263,7 @@ class SecondVariation:
         c, s = wave.cosine >> down, wave.sine >> down
         A, B = m0 * c - omega * s >> U, -(omega * c + m0 * s) >> U
         alpha, beta = [x * c >> U for x in m], [-x * s >> U for x in m]
-        most_m, linear_alpha, linear_beta = sum(map(abs, m)), sum(map(abs, alpha)), \
-            sum(map(abs, beta))
+        most_m, linear_alpha, linear_beta = [sum(map(abs, x)) for x in (m, alpha, beta)]
         first = [3 * A << U, *[-3 * x << U for x in alpha]]         # what stands with xi^2
         slopes = [x - (A * y >> U) for x, y in zip(beta, xi)]
         parts_A = parts_alpha = parts_B = parts_beta = 0

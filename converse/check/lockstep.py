@@ -12,7 +12,7 @@ import math
 import random
 from fractions import Fraction
 
-from .arith import Fixed
+from .arith import fixed_of
 from .claim import IDENTITY
 from .failures import complain
 from .limits import CAUTION, FIRST_TRY, LAG, MAX_CUTS, MAX_HALVINGS, MAX_PIECES, MAX_SITES
@@ -610,7 +610,7 @@ class Lockstep:
         self.centre = np.array([[float(v / 2 % 1) for v in claim.centre] for claim in claims]).T
         self.half = np.array([[float(v / 2) for v in claim.half] for claim in claims]).T
         self.frame = np.array([claim.frame for claim in claims], float).T
-        fixed, half_turn = Fixed.of(128), Fraction(1, 2)
+        fixed, half_turn = fixed_of(128), Fraction(1, 2)
         self.xstar = np.array([[float(
             (Fraction(math.floor(x * fixed.one), 2 * fixed.pi) + half_turn) % 1 - half_turn)
             for x in claim.xstar] for claim in claims]).T

@@ -15,7 +15,7 @@ import math
 from dataclasses import dataclass
 from fractions import Fraction
 
-from .arith import Fixed, stiffness
+from .arith import fixed_of, stiffness
 from .claim import THESIS, Claim, Wave, check_alone, check_frame, number, present
 from .failures import NotConfirmed, Rejected, Unusable, named
 from .limits import MAX_ITEMS
@@ -229,7 +229,7 @@ def check_map(file):
     a cell this, or the convex function itself where the cell has more than one slice of the grid,
     is largest at a corner.
     """
-    fixed, bounds, claims = Fixed.of(96), [], iter(file.claims)
+    fixed, bounds, claims = fixed_of(96), [], iter(file.claims)
     for at, face in enumerate(file.faces, 1):
         with named("face %d" % at):
             face.proved                 # which has a limit: not to be met after hours

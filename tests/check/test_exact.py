@@ -308,7 +308,7 @@ def test_bounds_of_the_exact_path(name):
     ("step", " + (abs(sine) * cube // 6 >> bits)", ""),
     ("step", "+ 2 * error + len", "+ error + len"),
     ("step", "error + len(xi) + 2", "error + 2"),
-    ("step", "new0[i] -= k0 * a", "new0[i] += k0 * a"),
+    ("step", "[a - k0 * b for", "[a + k0 * b for"),
     ("step", "new1[i] += k1 * cosine_part", "new1[i] -= k1 * cosine_part"),
     ("step", "(abs(cosine_part) * square >> bits + 1) + (", "("),
     ("step", "+ 1) + (abs(sine_part) * reach >> bits)", "+ 1)"),
