@@ -1,7 +1,5 @@
 """A map: what is proved of a region of parameter space, as a tree of cells, and its file."""
 
-import gzip
-import hashlib
 import itertools
 import json
 import math
@@ -225,27 +223,19 @@ class Map:
                 "down to": decimal_text(self.down_to), "seconds": round(self.seconds, 2),
                 "faces": faces}
         data["sha256"] = _digest(data)
-        text = (json.dumps(data, indent=1) + "\n").encode("ascii")
-        files.write(path, gzip.compress(text, 6, mtime=0) if os.fspath(path).endswith(".gz")
-                    else text)
-        return hashlib.sha256(text).hexdigest()
+        return files.write_text(path, json.dumps(data, indent=1) + "\n")
 
     @classmethod
     def load(cls, path: Union[str, "os.PathLike[str]"]) -> "Map":
         """Reads a map; ConverseError says in one line what is wrong with it.  What it says is
         proved is believed: converse-check does not believe it."""
+        damaged = ": is not a map, or truncated"
+        text = files.read_text(path, "map", damaged)
         try:
-            with open(path, "rb") as file:
-                packed = file.read()
-            if packed[:2] == b"\x1f\x8b":
-                packed = gzip.decompress(packed)
-            data = json.loads(packed.decode("utf-8"))
-        except OSError as error:
-            raise ConverseError("%s: cannot be read (%s); name a readable map"
-                                % (path, files.reason(error))) from None
-        except (EOFError, ValueError, RecursionError):
-            raise ConverseError("%s: is not a map, or truncated; use an intact copy or start anew"
-                                % path) from None
+            data = json.loads(text)
+        except (ValueError, RecursionError):
+            raise ConverseError("%s%s; use an intact copy or start anew"
+                                % (path, damaged)) from None
         if isinstance(data, dict) and "harmonics" in data:
             raise ConverseError("%s: is an input, and no map; maps are of the thesis's three waves "
                                 "(a, b, c) alone: prove a patch of another potential with converse "
@@ -256,7 +246,7 @@ class Map:
                 raise ValueError("it was changed or damaged")
             made = cls.new(data["region"], exact(data["down to"]))
             made.seconds = float(data["seconds"])
-            made.sha256 = hashlib.sha256(packed).hexdigest()
+            made.sha256 = files.sha256(text)
             made.version = data["program"].partition(" ")[2]
             for tree, face, estimate in zip(made.roots, data["faces"], made.estimate):
                 _read_tree(tree, face)
@@ -269,8 +259,7 @@ class Map:
 
 
 def _digest(data):
-    return hashlib.sha256(json.dumps(data, sort_keys=True, separators=(",", ":"))
-                          .encode("ascii")).hexdigest()
+    return files.sha256(json.dumps(data, sort_keys=True, separators=(",", ":")))
 
 
 def _read_tree(tree, face):

@@ -1,8 +1,6 @@
 """The proof file, format 3 (docs/format.md), of a proof that is finished or not."""
 
-import os
 import re
-import zlib
 from dataclasses import asdict, fields
 
 from ..model.exact import DECIMAL, decimal_text, exact
@@ -22,17 +20,13 @@ LINE_WIDTH = 78                              # of the tree's lines
 
 def save(proof, path):
     """Proof.save()."""
-    text = data = _text(proof).encode("utf-8")
-    if os.fspath(path).endswith(".gz"):
-        import gzip
-        data = gzip.compress(text, 6, mtime=0)
-    files.write(path, data)
-    return _sha256(text)
+    return files.write_text(path, _text(proof))
 
 
 def load(path):
     """Proof.load()."""
-    text = _read(path)
+    text = files.read_text(path, "proof file",
+                           ", line 1: the file is truncated or not a proof file of this program")
     lines = text.split("\n")
 
     def fail(number, wrong):
@@ -47,7 +41,7 @@ def load(path):
     if lines[-2:] != ["end", ""]:
         fail(len(lines), "the file is truncated")
     body = text[:text.rfind("\n", 0, len(text) - len("\nend\n")) + 1]
-    if lines[-3] != "checksum: sha256 " + _sha256(body.encode("utf-8")):
+    if lines[-3] != "checksum: sha256 " + files.sha256(body):
         fail(len(lines) - 2, "the file was changed or damaged (wrong checksum)")
 
     start = lines.index("tree:") if "tree:" in lines else fail(len(lines), "there is no tree")
@@ -64,7 +58,7 @@ def load(path):
             values[key] = value
     try:
         problem = _problem(values, waves, comments)
-        return _proof(values, problem, "".join(lines[start + 1:-3]), _sha256(text.encode("utf-8")))
+        return _proof(values, problem, "".join(lines[start + 1:-3]), files.sha256(text))
     except (KeyError, IndexError, TypeError, ValueError) as error:
         fail(start + 1, "the header or the tree makes no sense (%s)" % error)
 
@@ -89,7 +83,7 @@ def _text(proof):
     lines += ["tree:"]
     lines += [proof.tree[i:i + LINE_WIDTH] for i in range(0, len(proof.tree), LINE_WIDTH)]
     text = "\n".join(lines) + "\n"
-    return text + "checksum: sha256 %s\nend\n" % _sha256(text.encode("utf-8"))
+    return text + "checksum: sha256 %s\nend\n" % files.sha256(text)
 
 
 def _proof(values, problem, nodes, sha256):
@@ -169,24 +163,3 @@ def _number(text):
 
 def _yes(truth):
     return "yes" if truth else "no"
-
-
-def _sha256(data):
-    import hashlib  # for OpenSSL a tenth of a short run, as gzip is
-    return hashlib.sha256(data).hexdigest()
-
-
-def _read(path):
-    try:
-        with open(path, "rb") as file:
-            data = file.read()
-        if data[:2] == b"\x1f\x8b":
-            import gzip
-            data = gzip.decompress(data)
-        return data.decode("utf-8")
-    except OSError as error:
-        raise ConverseError("%s: cannot be read (%s); name a readable proof file"
-                            % (path, files.reason(error))) from None
-    except (EOFError, zlib.error, UnicodeDecodeError):
-        raise ConverseError("%s, line 1: the file is truncated or not a proof file of this "
-                            "program; use an intact copy or start anew" % path) from None

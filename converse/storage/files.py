@@ -3,6 +3,7 @@
 import contextlib
 import fcntl
 import os
+import zlib
 
 from .signals import Resource, postponed
 
@@ -136,6 +137,39 @@ def _write(path, data):
         if name:
             with contextlib.suppress(OSError):
                 os.unlink(name)
+
+
+def sha256(text):
+    """The SHA-256 of a text, in hexadecimal."""
+    import hashlib  # for OpenSSL a tenth of a short run, as gzip is
+    return hashlib.sha256(text.encode("utf-8")).hexdigest()
+
+
+def write_text(path, text):
+    """write() of a text, compressed by gzip if the path ends in .gz; returns the text's SHA-256."""
+    data = text.encode("utf-8")
+    if os.fspath(path).endswith(".gz"):
+        import gzip
+        data = gzip.compress(data, 6, mtime=0)
+    write(path, data)
+    return sha256(text)
+
+
+def read_text(path, what, damaged):
+    """The text of a file, compressed or not.  ConverseError: it cannot be read, and another `what`
+    should be named; or it is truncated, or no text, which the words `damaged` say."""
+    try:
+        with open(path, "rb") as file:
+            data = file.read()
+        if data[:2] == b"\x1f\x8b":
+            import gzip
+            data = gzip.decompress(data)
+        return data.decode("utf-8")
+    except OSError as error:
+        raise ConverseError("%s: cannot be read (%s); name a readable %s"
+                            % (path, reason(error), what)) from None
+    except (EOFError, zlib.error, UnicodeDecodeError):
+        raise ConverseError("%s%s; use an intact copy or start anew" % (path, damaged)) from None
 
 
 class AppendedFile:
