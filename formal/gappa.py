@@ -44,6 +44,8 @@ sys.path.insert(0, str(Path(__file__).resolve().parent))
 from ctext import CTextError, Place, defined, function, run  # noqa: E402
 from polynomial import symbol  # noqa: E402
 
+from converse.model.exact import pi_bounds  # noqa: E402
+
 ROOT = Path(__file__).resolve().parent.parent
 HEADER = ROOT / "csrc" / "arith" / "sine.h"
 UNIT = Fraction(1, 2 ** 53)
@@ -252,19 +254,10 @@ def largest(interval):
 
 # ---- what exact arithmetic proves
 
-def arctangent(x, terms):
-    """An interval that holds the arctangent of 0 < x < 1: the partial sums of an alternating
-    series whose terms fall."""
-    sums = [Fraction(0)]
-    for k in range(terms):
-        sums.append(sums[-1] + (-1) ** k * x ** (2 * k + 1) / (2 * k + 1))
-    return sorted(sums[-2:])
-
-
 def half_pi():
-    """An interval that holds pi/2 = 8 arctan 1/5 - 2 arctan 1/239 (Machin), below 1e-60 wide."""
-    (a, b), (c, d) = arctangent(Fraction(1, 5), 45), arctangent(Fraction(1, 239), 15)
-    return 8 * a - 2 * d, 8 * b - 2 * c
+    """An interval that holds pi/2, below 1e-60 wide."""
+    low, high = pi_bounds(60)
+    return low / 2, high / 2
 
 
 def distance_from_taylor(found, first, radius):
