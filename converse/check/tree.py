@@ -48,13 +48,11 @@ def tree_counts(claim):
     if set(AXES[2 + claim.parameters:]) & set(claim.tree):
         raise Rejected("the tree cuts a parameter that there is not")
     for position, (_, cuts) in leaves(claim.tree):
-        total += 1
-        depth = sum(cuts)
-        if claim.tree[position] == "U":
+        total, depth, kind = total + 1, sum(cuts), claim.tree[position]
+        if kind == "U":
             raise Rejected("leaf %d is undecided: the file claims no theorem" % total)
         deepest = max(deepest, depth)
-        if claim.tree[position] == "P":
-            most_cuts = max(most_cuts, depth)
+        most_cuts = max(most_cuts, depth if kind == "P" else 0)
     return {"cuts": total - 1, "proved": claim.tree.count("P"),
             "symmetric": claim.tree.count("S"), "undecided": 0, "most_cuts": most_cuts,
             "depth": deepest}
