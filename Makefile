@@ -23,7 +23,7 @@ define install
 	touch $@
 endef
 
-.PHONY: prove check test lint format format-check torture mutate accuracy gappa sanitize memcheck warnings \
+.PHONY: prove check test lint format torture mutate accuracy gappa sanitize memcheck warnings \
     arm bench charts figures man clean formal formal-quick formal-check verified-check checker
 
 prove: $(VENV)/installed
@@ -41,21 +41,16 @@ test: $(VENV)/with-test
 PYTHON_CODE = converse docs experiments formal golden_outputs setup.py tests
 C_CODE = $(wildcard csrc/*.h csrc/*/*.[ch] csrc/*/*.inc tests/kernels/*.[ch])
 
-# What pyproject.toml says of style, imports and types.
+# What pyproject.toml says of style, imports and types, and .clang-format of C.
 lint: $(VENV)/with-test
 	$(VENV)/bin/ruff check --quiet $(PYTHON_CODE)
 	$(VENV)/bin/isort --quiet --check $(PYTHON_CODE)
 	$(VENV)/bin/mypy
+	$(VENV)/bin/clang-format --dry-run -Werror $(C_CODE)
 	! grep -nE '.{101}' $(C_CODE)
 
-# C as .clang-format says, but for comments that stand in columns: it moves these.
-format:
-	sh .ci/packages $(PYTHON) clang-format
-	clang-format -i $(C_CODE)
-
-format-check:
-	sh .ci/packages $(PYTHON) clang-format
-	clang-format --dry-run -Werror $(C_CODE)
+format: $(VENV)/with-test
+	$(VENV)/bin/clang-format -i $(C_CODE)
 
 # A hundred times as many random cases; hours.
 torture: $(VENV)/with-test

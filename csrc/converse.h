@@ -3,7 +3,8 @@
    Nothing here prints, reads a file or ends the process, and nothing is global: two searches
    may run in two threads.  Numbers cross the border as decimal strings, exactly. */
 
-enum {                       /* what the functions return */
+/* What the functions return. */
+enum {
     CV_OK = 0,
     CV_RUNNING = 1,          /* the search wants to be stepped again */
     CV_ENOMEM = -1,
@@ -15,7 +16,8 @@ enum {                       /* what the functions return */
     CV_ESTOPPED = -7         /* Python asked for an end, with Ctrl-C for example */
 };
 
-enum {                       /* why a try of a prism ended without a proof (index of reasons[]) */
+/* Why a try of a prism ended without a proof (index of reasons[]). */
+enum {
     CV_REASON_CENTRE,        /* not even the orbit of the centre contradicts minimality */
     CV_REASON_TOO_BIG,       /* an image prism outgrew MAX_SUM */
     CV_REASON_TOO_LONG,      /* the orbit reached `furthest` steps */
@@ -27,7 +29,8 @@ enum {                       /* why a try of a prism ended without a proof (inde
 
 enum { CV_BY_MAXBLAM, CV_BY_MINBLAM, CV_BY_TRACE };   /* index of ll_used[] */
 
-typedef struct {             /* the statistics of the report; names from the thesis, follow.inc */
+/* The statistics of the report; names from the thesis, follow.inc. */
+typedef struct {
     long quick_tries, tries, Rtries;
     long cuts, proved, symmetric, undecided;          /* nodes of the tree by kind */
     long HermSuccess, LLSuccess;                      /* proved by the trace, by the eigenvalue */

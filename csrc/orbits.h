@@ -23,8 +23,8 @@ typedef struct {
 
 /* V, its gradient and Hessian at m points.  value, gradient or hessian may be NULL.
    CV_EARGUMENT: Python failed to say. */
-int cv_evaluate(const cv_potential *v, long m, const double (*x)[2],
-                double *value, double (*gradient)[2], double (*hessian)[3]);
+int cv_evaluate(const cv_potential *v, long m, const double (*x)[2], double *value,
+                double (*gradient)[2], double (*hessian)[3]);
 
 /* The action minus that of the straight orbit, sum |u_{j+1} - u_j|^2/2 - eps V(x_j), and its
    gradient. */

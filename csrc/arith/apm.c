@@ -10,12 +10,14 @@
 
 #define WORD_DIGITS 19                    /* 10^19 is the largest power of ten in 64 bits */
 
+/* clang-format off */
 static const unsigned long power10[WORD_DIGITS + 1] = {
     1UL, 10UL, 100UL, 1000UL, 10000UL, 100000UL, 1000000UL, 10000000UL, 100000000UL,
     1000000000UL, 10000000000UL, 100000000000UL, 1000000000000UL, 10000000000000UL,
     100000000000000UL, 1000000000000000UL, 10000000000000000UL, 100000000000000000UL,
     1000000000000000000UL, 10000000000000000000UL
 };
+/* clang-format on */
 _Static_assert(sizeof(unsigned long) == 8, "apm assumes 64-bit words");
 
 /* r = x * 10^n, n >= 0.  Word by word for the short shifts that fill a proof, in one product
@@ -117,8 +119,8 @@ int apm_set_str(apm_t r, const char *text)
 
     /* Look first, so that a number is either read whole or not at all. */
     s += *s == '+' || *s == '-';
-    for (const char *const start = s;
-         isdigit((unsigned char)*s) || (*s == '.' && !seen_point); s++) {
+    for (const char *const start = s; isdigit((unsigned char)*s) || (*s == '.' && !seen_point);
+         s++) {
         seen_point |= *s == '.';
         places += seen_point && *s != '.';
         digits = s - start + 1 - seen_point;

@@ -15,7 +15,10 @@
 #include <gmp.h>
 #include <stddef.h>
 
-typedef struct { mpz_t mant; long exp; } apm_struct;    /* mant * 10^exp */
+typedef struct {
+    mpz_t mant;
+    long exp;
+} apm_struct;    /* mant * 10^exp */
 typedef apm_struct apm_t[1];
 
 enum { APM_OK = 0, APM_EDIVZERO, APM_ENEGATIVE, APM_ESYNTAX, APM_ERANGE };
@@ -29,8 +32,8 @@ void apm_init(apm_t x);
 void apm_clear(apm_t x);
 void apm_set(apm_t r, const apm_t x);
 void apm_set_si(apm_t r, long n, long exp);             /* n * 10^exp */
-int  apm_set_str(apm_t r, const char *text);            /* [+-]digits[.digits][e[+-]digits] */
-int  apm_set_d(apm_t r, double x);      /* exactly; APM_ERANGE if x is not finite */
+int apm_set_str(apm_t r, const char *text);            /* [+-]digits[.digits][e[+-]digits] */
+int apm_set_d(apm_t r, double x);      /* exactly; APM_ERANGE if x is not finite */
 double apm_get_d(const apm_t x);                        /* within an ulp or two; 0 if too small */
 double apm_nearest_d(const apm_t x);    /* and of a double itself that double */
 double apm_bound_d(const apm_t x, apm_round_t dir);     /* APM_DOWN: <= x; APM_UP: >= x; close to
@@ -45,11 +48,11 @@ void apm_sub(apm_t r, const apm_t x, const apm_t y);
 void apm_mul(apm_t r, const apm_t x, const apm_t y);
 void apm_mul_si(apm_t r, const apm_t x, long n);
 void apm_scale(apm_t r, const apm_t x, long places);    /* x * 10^places */
-int  apm_cmp(const apm_t x, const apm_t y);             /* -1, 0, 1 */
-int  apm_sgn(const apm_t x);                            /* -1, 0, 1 */
+int apm_cmp(const apm_t x, const apm_t y);             /* -1, 0, 1 */
+int apm_sgn(const apm_t x);                            /* -1, 0, 1 */
 
-int  apm_div(apm_t r, const apm_t x, const apm_t y, long dp, apm_round_t dir);
-int  apm_sqrt(apm_t r, const apm_t x, long dp, apm_round_t dir);
+int apm_div(apm_t r, const apm_t x, const apm_t y, long dp, apm_round_t dir);
+int apm_sqrt(apm_t r, const apm_t x, long dp, apm_round_t dir);
 void apm_round(apm_t r, const apm_t x, long dp, apm_round_t dir);   /* to dp places */
 void apm_floor(apm_t r, const apm_t x);
 

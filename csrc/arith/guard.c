@@ -34,7 +34,11 @@ static void *checked(void *p)
 }
 
 static void *allocate(size_t n) { return checked(malloc(n)); }
-static void release(void *p, size_t n) { (void)n; free(p); }
+static void release(void *p, size_t n)
+{
+    (void)n;
+    free(p);
+}
 static void *reallocate(void *p, size_t old, size_t n)
 {
     (void)old;
@@ -68,11 +72,8 @@ int guard_run(void (*work)(void *), void *data, const cv_stop *stop)
         work(data);
         ended = GUARD_DONE;
         break;
-    case GUARD_STOP:
-        ended = GUARD_STOP;
-        break;
-    default:
-        ended = GUARD_MEMORY;
+    case GUARD_STOP: ended = GUARD_STOP; break;
+    default: ended = GUARD_MEMORY;
     }
     armed = before;
     return ended;

@@ -26,8 +26,18 @@ typedef double vec;
 typedef uint64_t mask;                  /* of each lane all bits, or none */
 
 #define TRUTH(condition) (-(mask)(condition))
-INLINE mask bits_of(vec x) { mask m; memcpy(&m, &x, sizeof m); return m; }
-INLINE vec vec_of(mask m) { vec x; memcpy(&x, &m, sizeof x); return x; }
+INLINE mask bits_of(vec x)
+{
+    mask m;
+    memcpy(&m, &x, sizeof m);
+    return m;
+}
+INLINE vec vec_of(mask m)
+{
+    vec x;
+    memcpy(&x, &m, sizeof x);
+    return x;
+}
 INLINE vec root_of(vec x) { return sqrt(x); }
 INLINE int any(mask m) { return m != 0; }
 #else

@@ -28,12 +28,14 @@ INLINE void double_sincos(vec *s, vec *c, vec x)
     const vec shifted = x * 0x1.45f306dc9c883p-1 + SHIFT, n = shifted - SHIFT;
     const vec r = ((x - n * 0x1.921fb544p0) - n * 0x1.0b4611a6p-34) - n * 0x1.3198a2e037073p-69;
     const vec z = r * r;
+    /* clang-format off */
     const vec p = -1.0 / 6 + z * (1.0 / 120 + z * (-1.0 / 5040 + z * (1.0 / 362880
         + z * (-1.0 / 39916800 + z * (1.0 / 6227020800.0 + z * (-1.0 / 1307674368000.0
         + z * (1.0 / 355687428096000.0)))))));
     const vec q = 1.0 / 24 + z * (-1.0 / 720 + z * (1.0 / 40320 + z * (-1.0 / 3628800
         + z * (1.0 / 479001600 + z * (-1.0 / 87178291200.0 + z * (1.0 / 20922789888000.0
         + z * (-1.0 / 6402373705728000.0)))))));
+    /* clang-format on */
     const vec sine = r + r * (z * p), cosine = 1.0 - (0.5 * z - z * (z * q));
     const mask bits = bits_of(shifted);                 /* its last two: the quadrant */
     const mask odd = TRUTH((bits & 1) == 1), bad = ~TRUTH(mag(x) <= SINE_LIMIT);

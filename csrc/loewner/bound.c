@@ -92,8 +92,8 @@ static void weigh(const batch *w, point *q)
 
         q->rest_A[i][0] = either + p * (0.5 * b * b);
         q->rest_A[i][1] = either + p * fourth;
-        q->rest_B[i] = p * (b * (0.5 * a * (a + b) + b * b * (1.0 / 6.0)) + 0.2 * rho * fourth)
-                       + h * (r + rho * half_square * (1.0 / 3.0)) + err_amp * rho;
+        q->rest_B[i] = p * (b * (0.5 * a * (a + b) + b * b * (1.0 / 6.0)) + 0.2 * rho * fourth) +
+                       h * (r + rho * half_square * (1.0 / 3.0)) + err_amp * rho;
         q->cube_A[i] = p * (a * quad) + h * (0.5 * a * a);
         q->cube_B[i] = p * (a * a * a * (1.0 / 6.0)) + h * quad;
         q->load += (w->size[i] * rho * rho + h + err_amp) * ((1.0 + rho) * square(1.0 + rho));
@@ -113,8 +113,8 @@ INLINE void trig_coefficients(const batch *w, const point *q, int i, mask own, v
 /* (5), of one wave. */
 INLINE vec remainder_of(const batch *w, const point *q, int i, vec A, vec B)
 {
-    return mag(A) * pick(TRUTH(w->p[i] * A > 0.0), q->rest_A[i][1], q->rest_A[i][0])
-           + mag(B) * q->rest_B[i];
+    return mag(A) * pick(TRUTH(w->p[i] * A > 0.0), q->rest_A[i][1], q->rest_A[i][0]) +
+           mag(B) * q->rest_B[i];
 }
 
 /* Constant, linear and quadratic part, and what is bounded by absolute values; `cubes` is the cubic
@@ -196,8 +196,8 @@ INLINE void sum_up(batch *w, sums *result, mask active, int columns)
             const point *const last = w->orbit + number(&w->to, k);
             double sum = 0.0;
             for (int i = 0; i < 2; i++)
-                sum += at(&first->n[i], k) * at(&first->n[i], k)
-                       + at(&last->n[i], k) * at(&last->n[i], k);
+                sum += at(&first->n[i], k) * at(&first->n[i], k) +
+                       at(&last->n[i], k) * at(&last->n[i], k);
             put_at(&tails, k, sum);
         }
     t.centre -= w->l * tails;
@@ -228,8 +228,8 @@ INLINE void sum_cubic(batch *w, mask active, int columns)
                     form[i][kl] = -pA * quad - third * cc;
                     for (int m = 2; m < columns; m++)
                         if (moves(w, i, m, columns))
-                            w->cubic[m][kl] += pick(now, w->part[i][m] * (B * quad - A * cc),
-                                                    every(0.0));
+                            w->cubic[m][kl] +=
+                                pick(now, w->part[i][m] * (B * quad - A * cc), every(0.0));
                 }
             }
         }
@@ -269,9 +269,9 @@ INLINE vec summit(const batch *w, int columns, int with_cubic)
             slope[l] += (l == k ? 0.75 : 0.5) * x;
             sum += (l == k ? 0.25 : 0.5) * mag(x);
             for (int m = l + 1; m < columns && k < l; m++)
-                triple[k][l][m] = w->cubic[k][pair(columns, l, m)]
-                                  + w->cubic[l][pair(columns, k, m)]
-                                  + w->cubic[m][pair(columns, k, l)];
+                triple[k][l][m] = w->cubic[k][pair(columns, l, m)] +
+                                  w->cubic[l][pair(columns, k, m)] +
+                                  w->cubic[m][pair(columns, k, l)];
         }
     for (int corner = 0; corner < 1 << (columns - 1); corner++) {
         vec odd = every(0.0), even = every(0.0);

@@ -70,7 +70,12 @@ static void try_cells(void *work, int n, const cv_cell *const cells[], outcome *
 }
 
 const method method_loewner = {
-    .accepts = loewner_accepts, .choose_start = loewner_choose_start, .start_format = "%.6f",
-    .prepare = loewner_prepare, .free = free_loewner, .axes = loewner_axes,
-    .lanes = lanes_of, .try = try_cells
+    .accepts = loewner_accepts,
+    .choose_start = loewner_choose_start,
+    .start_format = "%.6f",
+    .prepare = loewner_prepare,
+    .free = free_loewner,
+    .axes = loewner_axes,
+    .lanes = lanes_of,
+    .try = try_cells,
 };

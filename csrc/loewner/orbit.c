@@ -50,8 +50,10 @@ static void bound_displacement(const batch *w, point *q)
 /* A point that a lane has no use for is zero there, so that all that follows is finite. */
 static void forget(const batch *w, point *q, int columns)
 {
+    /* clang-format off */
     vec *const parts[] = { q->x, q->windings, q->lin[0], q->lin[1], q->quad[0], q->quad[1],
                            q->rem, q->lin_bound, q->quad_bound, q->nonlin_bound, q->rad };
+    /* clang-format on */
     const int pairs = columns * (columns + 1) / 2;
     const int waves = waves_of(w);
     const int sizes[] = { 2, 2, columns, columns, pairs, pairs, 2, waves, waves, waves, waves };
@@ -88,9 +90,9 @@ static vec wave_remainder(const batch *w, const point *q, int wave)
     const vec c = mag(q->cosine[wave]) + off, s = mag(q->sine[wave]) + off;
     const vec half_square = 0.5 * rho * rho, cube = rho * half_square * (1.0 / 3.0);
 
-    return mag(w->p[wave]) * (c * (b * (a + 0.5 * b) + 0.25 * rho * cube) + s * cube)
-           + w->h[wave] * (c * half_square + s * (b + cube)) + w->err_amp[wave]
-           + w->size[wave] * off * rho * (1.0 + rho);
+    return mag(w->p[wave]) * (c * (b * (a + 0.5 * b) + 0.25 * rho * cube) + s * cube) +
+           w->h[wave] * (c * half_square + s * (b + cube)) + w->err_amp[wave] +
+           w->size[wave] * off * rho * (1.0 + rho);
 }
 
 /* lin and quad of next, the point after q, seen from o before it, and their bounds. */
@@ -131,8 +133,8 @@ static void step(const batch *w, point *next, point *q, const point *o, int is_f
         const vec x = (2.0 * q->x[i] - before) + sum_k(w, i, g);
         next->windings[i] = (x * (1.0 / TWO_PI) + SHIFT) - SHIFT;
         next->x[i] = x - next->windings[i] * TWO_PI;
-        q->residual[i] = 0x1p-50 * (mag(q->x[i]) + mag(o->x[i]) + mag(before) + mag(x))
-                         + q->err_beta;
+        q->residual[i] =
+            0x1p-50 * (mag(q->x[i]) + mag(o->x[i]) + mag(before) + mag(x)) + q->err_beta;
     }
     next->winding_sum = mag(next->windings[0]) + mag(next->windings[1]);
     next->reached = TRUTH(next->winding_sum <= FAR);
@@ -164,8 +166,8 @@ static void step(const batch *w, point *next, point *q, const point *o, int is_f
     for (int j = 0; j < 3; j++)
         q->d[j] = q->beta[j] - inverse[j];
     for (int i = 0; i < 2; i++)
-        next->rem[i] = (mag(q->d[i]) * q->rem[0] + mag(q->d[i + 1]) * q->rem[1]
-                         + q->force[i]) * WIDEN;
+        next->rem[i] =
+            (mag(q->d[i]) * q->rem[0] + mag(q->d[i + 1]) * q->rem[1] + q->force[i]) * WIDEN;
     bound_displacement(w, next);
     next->reached &= TRUTH(next->rad_max <= USELESS);
     if (any(~next->reached))
@@ -226,7 +228,7 @@ static int lengthen(batch *w, int k, int *why)
     for (;;) {
         const int inner = w->last[k] <= ORIGIN;     /* two points are the prism's own */
         const int ahead = inner || w->end_rad[k][1] < w->end_rad[k][0];
-        int *const end = ahead ? &w->last[k] : &w->first[k];    /* hard to foretell: no branches */
+        int *const end = ahead ? &w->last[k] : &w->first[k]; /* hard to foretell: no branches */
         const int next = *end + 2 * ahead - 1;
 
         if (!inner && !(w->end_rad[k][ahead] <= LONGEST_REACH))

@@ -73,7 +73,7 @@ typedef struct {
 
 typedef struct {
     const loewner *problem;
-    vec p[WAVES], part[WAVES][COLUMNS];         /* part[k] moves with the column k of a parameter */
+    vec p[WAVES], part[WAVES][COLUMNS];     /* part[k] moves with the column k of a parameter */
     vec h[WAVES], err_amp[WAVES];               /* h: the sum of |part|; err_amp: rounding */
     vec weight[WAVES];                  /* of the rad along a wave: see weigh_waves */
     vec size[WAVES];                            /* |p| + h + err_amp */

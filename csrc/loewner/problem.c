@@ -147,8 +147,8 @@ static void set_angles(loewner *w, const patch *problem)
         for (int k = 0; k < 2; k++)
             off[i] += 0x1p-50 * fabs(w->frame[i][k]) * (fabs(w->centre[k]) + w->half[k]);
     for (int i = 0; i < 2; i++)         /* |frame^-1| off */
-        w->err_v[i] += fabs(w->frame[1 - i][1 - i]) * off[i]
-                       + fabs(w->frame[i][1 - i]) * off[1 - i];
+        w->err_v[i] +=
+            fabs(w->frame[1 - i][1 - i]) * off[i] + fabs(w->frame[i][1 - i]) * off[1 - i];
 }
 
 /* One more wave; engines for any waves take those that there are. */
@@ -254,13 +254,12 @@ static void set_corners(loewner *w, int with_bounds)
             double p = w->amplitude[i];
             for (int m = 0; m < w->n_parameters; m++)
                 p += (corner >> m & 1 ? 1.0 : -1.0) * w->part[i][m];
-            waves[n++] = (torus_wave){ { w->k[i][0], w->k[i][1] },
-                                       interval_about(w->phase[i],
-                                                      0x1p-49 * fabs(w->phase[i]) + 0x1p-129),
-                                       interval_about(p, w->err_amp[i]) };
+            waves[n++] =
+                (torus_wave){ { w->k[i][0], w->k[i][1] },
+                              interval_about(w->phase[i], 0x1p-49 * fabs(w->phase[i]) + 0x1p-129),
+                              interval_about(p, w->err_amp[i]) };
         }
-        w->corner[corner] = with_bounds ? torus_largest(n, waves, TORUS_EIGENVALUE)
-                                        : HUGE_VAL;
+        w->corner[corner] = with_bounds ? torus_largest(n, waves, TORUS_EIGENVALUE) : HUGE_VAL;
     }
 }
 

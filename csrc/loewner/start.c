@@ -26,10 +26,10 @@ enum { PLACES = 16, OFFSETS = 24, HALVINGS = 6 };
 enum { FINER = 4 };                     /* so many times, where waves feel but one angle */
 enum { ANGLES = FINER * OFFSETS, SIDES = 2 / LANES, GUESSES = 8 };
 static const double PI = 3.14159265358979323846;
-static const double BETWEEN = 0.28;     /* of the way from the least beta to the least potential */
+static const double BETWEEN = 0.28; /* of the way from the least beta to the least potential */
 static const double NOTHING = 1e-6;     /* no better than that: it may be rounding */
 static const double PLAINLY = 0.001;    /* better: enough to leave where symmetry is */
-static const double ENOUGH = 0.06, WEAKER = 0.97;       /* so much must be left, or V is weakened */
+static const double ENOUGH = 0.06, WEAKER = 0.97;   /* so much must be left, or V is weakened */
 static const double STRONG = 1.5, WEAK = 0.5;   /* B - 2: there is no torus; nothing to prove */
 
 /* ---- descents without derivatives */
@@ -44,8 +44,8 @@ typedef enum { DIAGONAL, FIRST_ANGLE, ANYWHERE } ways;
 static double descend(function *f, void *context, double x[2], double value, double step,
                       ways where)
 {
-    static const int way[8][2] = { { 1, 1 }, { -1, -1 }, { 1, 0 }, { -1, 0 },
-                                   { 0, 1 }, { 0, -1 }, { 1, -1 }, { -1, 1 } };
+    static const int way[8][2] = { { 1, 1 }, { -1, -1 }, { 1, 0 },  { -1, 0 },
+                                   { 0, 1 }, { 0, -1 },  { 1, -1 }, { -1, 1 } };
     const int begin = where == FIRST_ANGLE ? 2 : 0, end = where == ANYWHERE ? 8 : begin + 2;
 
     for (int halving = 0; halving < HALVINGS; step *= 0.5, halving++)
@@ -64,7 +64,10 @@ static double descend(function *f, void *context, double x[2], double value, dou
 
 /* ---- between the least beta and the least potential */
 
-typedef struct { objective *f; const waves *v; } valley;
+typedef struct {
+    objective *f;
+    const waves *v;
+} valley;
 
 static double depth_of(void *context, const double x[2], double enough)
 {
@@ -222,8 +225,8 @@ INLINE double left_by(const orbits *o, int points, vec beta[SIDES][REACH][3])
         for (int j = points - 1; j >= 0; j--) {
             vec next[3] = { beta[side][j][0], beta[side][j][1], beta[side][j][2] };
             take(next, d);
-            if (any(~(TRUTH(next[0] > o->l)
-                      & TRUTH((next[0] - o->l) * (next[2] - o->l) > next[1] * next[1]))))
+            if (any(~(TRUTH(next[0] > o->l) &
+                      TRUTH((next[0] - o->l) * (next[2] - o->l) > next[1] * next[1]))))
                 return -HUGE_VAL;
             memcpy(d, next, sizeof d);
         }
@@ -296,8 +299,8 @@ static double left_next(const orbits *o, const waves_at *middle, int i, int j)
         const int k0 = v->k[w][0], k1 = v->k[w][1], m = (k0 * i + k1 * j) % ANGLES;
         const int at_sine = m < 0 ? m + ANGLES : m, at_cosine = (at_sine + ANGLES / 4) % ANGLES;
         for (int side = 0; side < SIDES; side++) {
-            const vec s = middle->sine[w] * o->sine[at_cosine]
-                          + sign_of(side) * (middle->cosine[w] * o->sine[at_sine]);
+            const vec s = middle->sine[w] * o->sine[at_cosine] +
+                          sign_of(side) * (middle->cosine[w] * o->sine[at_sine]);
             beta[side][0][0] -= s * (double)(k0 * k0);
             beta[side][0][1] -= s * (double)(k0 * k1);
             beta[side][0][2] -= s * (double)(k1 * k1);
@@ -447,7 +450,10 @@ static void improve(orbits *o, int on_diagonal, double x[2])
 /* ---- waves that are all parallel */
 
 /* Room for waves. */
-typedef struct { int k[MOST_WAVES][2]; double phase[MOST_WAVES], p[MOST_WAVES]; } room;
+typedef struct {
+    int k[MOST_WAVES][2];
+    double phase[MOST_WAVES], p[MOST_WAVES];
+} room;
 
 /* Those that there are, in room. */
 static waves present(const waves *v, room *r)

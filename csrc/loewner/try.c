@@ -91,8 +91,8 @@ static int widest_at_ends(const batch *w, int k)
         width[c] = 0.0;
         for (int i = 0; i < 2; i++)
             if (w->problem->feels[i])
-                width[c] += fabs(at(&w->orbit[w->last[k]].lin[i][c], k))
-                            + fabs(at(&w->orbit[w->first[k]].lin[i][c], k));
+                width[c] += fabs(at(&w->orbit[w->last[k]].lin[i][c], k)) +
+                            fabs(at(&w->orbit[w->first[k]].lin[i][c], k));
         if (width[c] > width[widest])
             widest = c;
     }
@@ -117,8 +117,7 @@ static int worst_of(const batch *w, int k)
    often this column is cut, while a longer orbit would make (1) plainly negative.  That orbit was
    not followed as another column made its end too wide; so if the cuts of that one lag behind by
    more than LAG, it is cut instead. */
-static void blame(const batch *w, int k, const progress *s, const cv_cell *cell,
-                  outcome *out)
+static void blame(const batch *w, int k, const progress *s, const cv_cell *cell, outcome *out)
 {
     const loewner *const problem = w->problem;
     const int widest = widest_at_ends(w, k);
@@ -151,8 +150,8 @@ static void follow_and_attempt(batch *w, mask going, int n, const cv_cell *const
             if (holds(&going, k)) {
                 s[k].ended = s[k].ended || !lengthen(w, k, &s[k].why);
                 growing |= !s[k].ended;
-                put_truth(&active, k, points_of(w, k) > s[k].tried &&
-                                    (s[k].ended || points >= cells[k]->hint));
+                put_truth(&active, k,
+                          points_of(w, k) > s[k].tried && (s[k].ended || points >= cells[k]->hint));
                 if (s[k].ended && points_of(w, k) == s[k].tried)
                     put_truth(&going, k, 0);
             }

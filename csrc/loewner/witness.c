@@ -50,8 +50,15 @@ typedef struct {
 
 INLINE recursion recursion_of(const batch *w, int way, mask active, mask begin, mask end)
 {
-    return (recursion){ way, extreme(active, begin, -way), extreme(active, end, way), begin, end,
-                        active, none(), none(), { 1.0 / w->l, every(0.0), 1.0 / w->l } };
+    return (recursion){ way,
+                        extreme(active, begin, -way),
+                        extreme(active, end, way),
+                        begin,
+                        end,
+                        active,
+                        none(),
+                        none(),
+                        { 1.0 / w->l, every(0.0), 1.0 / w->l } };
 }
 
 /* One site further.  0: there is none. */
@@ -117,7 +124,7 @@ static mask witness(batch *w, mask active)
         right = recursion_of(w, -1, alone, to, first);
         while (advance(w, &right, -1))
             continue;
-        from = choose(alone, choose(right.fell, right.fall, fall), from);   /* else by a rounding */
+        from = choose(alone, choose(right.fell, right.fall, fall), from); /* else by a rounding */
     }
     if (any(other)) {                   /* the right one */
         first = choose(other, from, first);

@@ -122,8 +122,7 @@ int thesis_waves(const patch *p)
     int same = p->n_waves == 3;
 
     for (int i = 0; i < 3 && same; i++)
-        same = p->k[i][0] == (i != 1) && p->k[i][1] == (i != 0) &&
-               apm_sgn(p->phase[i]) == 0;
+        same = p->k[i][0] == (i != 1) && p->k[i][1] == (i != 0) && apm_sgn(p->phase[i]) == 0;
     return same;
 }
 

@@ -1,5 +1,5 @@
-/* patch.h - a patch of problems, as numbers: the potential, the range of its parameters, the region
-   of x_1, and the starting point x*. */
+/* patch.h - a patch of problems, as numbers: the potential, the range of its parameters, the
+   region of x_1, and the starting point x*. */
 #ifndef CONVERSE_PATCH_H
 #define CONVERSE_PATCH_H
 

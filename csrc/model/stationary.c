@@ -50,10 +50,13 @@ double least_eigenvalue_of_beta(const waves *v, const double x[2], double g[2], 
         g[m] = first[MEAN][m] - along[m];
     }
     for (int m = 0, mn = 0; m < 2; m++)
-        for (int n = m; n < 2; n++, mn++)
-            h[mn] = second[MEAN][mn] + (along[m] * along[n]
-                    - first[APART][m] * first[APART][n] - value[APART] * second[APART][mn]
-                    - first[MIXED][m] * first[MIXED][n] - value[MIXED] * second[MIXED][mn]) / root;
+        for (int n = m; n < 2; n++, mn++) {
+            const double bend = along[m] * along[n] - first[APART][m] * first[APART][n] -
+                                value[APART] * second[APART][mn] -
+                                first[MIXED][m] * first[MIXED][n] -
+                                value[MIXED] * second[MIXED][mn];
+            h[mn] = second[MEAN][mn] + bend / root;
+        }
     return value[MEAN] - root;
 }
 

@@ -1,5 +1,5 @@
-/* torus.c - the largest trace and the largest eigenvalue of beta over the whole torus and ranges of
-   amplitudes, by branch and bound, in intervals.  The thesis found them by Newton's method and
+/* torus.c - the largest trace and the largest eigenvalue of beta over the whole torus and ranges
+   of amplitudes, by branch and bound, in intervals.  The thesis found them by Newton's method and
    added a margin; that is a guess, and everything else rests on these two numbers.
 
    beta(-v) = 2I + W(v), W(v) = sum of p sin(k.v - phase) k k', and the torus is its own mirror
@@ -14,11 +14,14 @@
 #include "model/torus.h"
 
 enum { CELLS = 20000, DEPTH = 100 };
-static const double NEAR = 5e-7, CLOSER = 1e-3, PI = 0x1.921fb54442d19p+1;  /* not less than pi */
+static const double NEAR = 5e-7, CLOSER = 1e-3, PI = 0x1.921fb54442d19p+1; /* not less than pi */
 
 /* A wave as cells see it: their coordinates are combinations of the angles of which it feels so
    much; trace, and the difference of the diagonal and twice the corner, of k k'; size >= |p|. */
-typedef struct { double feels[2], trace, does[2], size; interval phase, p; } wave;
+typedef struct {
+    double feels[2], trace, does[2], size;
+    interval phase, p;
+} wave;
 
 /* What is bounded, over rectangles about 0 of these sides.  reach: how much, about, the square of
    a side moves the waves. */
@@ -28,7 +31,10 @@ typedef struct {
     double side[2], reach[2], all;      /* all: a size that W has, about */
 } surface;
 
-typedef struct { double low[2], high[2]; int depth; } cell;
+typedef struct {
+    double low[2], high[2];
+    int depth;
+} cell;
 
 /* >= trace or largest eigenvalue of M = sum of z[i] k k': the latter is half of
    trace + sqrt((M00 - M11)^2 + (2 M01)^2).  What is squared is scaled, lest it overflow. */
@@ -59,8 +65,8 @@ static interval along(const wave *w, const double x[2])
                         interval_scale(w->feels[1], interval_of(x[1])));
 }
 
-/* >= trace or largest eigenvalue of W over the rectangle.  *middle: the value at its centre, about.
-   On either diagonal the corners are at the displacements t and -t. */
+/* >= trace or largest eigenvalue of W over the rectangle.  *middle: the value at its centre,
+   about.  On either diagonal the corners are at the displacements t and -t. */
 static double over(const surface *q, const double low[2], const double high[2], double *middle)
 {
     interval s[MOST_WAVES], c[MOST_WAVES];
@@ -138,7 +144,7 @@ static double largest(const surface *q)
     for (int i = 0; i < q->n; i++)
         crests[i] = q->waves[i].size;
     most = trace_or_eigenvalue(q, crests);
-    for (double tolerance = 0.5 * q->all; ; tolerance *= CLOSER) {
+    for (double tolerance = 0.5 * q->all;; tolerance *= CLOSER) {
         const int done = !(tolerance > 2.0 * last);
         const double found = pass(q, &best, done ? last : tolerance, &cells);
         most = found < most ? found : most;
@@ -175,8 +181,8 @@ static surface surface_of(int n, const torus_wave waves[], const int chosen[], i
     return q;
 }
 
-/* Where all waves feel one and the same combination of the angles, or none feels both, cells in one
-   dimension are enough; those of the whole torus would crowd along ridges. */
+/* Where all waves feel one and the same combination of the angles, or none feels both, cells in
+   one dimension are enough; those of the whole torus would crowd along ridges. */
 double torus_largest(int n, const torus_wave waves[], int which)
 {
     const double flat = which == TORUS_TRACE ? 4.0 : 2.0;
@@ -215,6 +221,6 @@ double torus_largest(int n, const torus_wave waves[], int which)
         q = surface_of(n, waves, feels[j], which, direction, j);
         top[j] = largest(&q);
     }
-    return just_above(flat + (which == TORUS_TRACE ? just_above(top[0] + top[1])
-                                                   : larger(top[0], top[1])));
+    return just_above(
+        flat + (which == TORUS_TRACE ? just_above(top[0] + top[1]) : larger(top[0], top[1])));
 }

@@ -20,7 +20,10 @@ enum { TORUS_PLACES = 12 };             /* decimals to which it makes sense to r
 
 /* A wave of beta = 2I - sum of p sin(k.v + phase) k k': k are small integers, phase and p any
    numbers of their intervals. */
-typedef struct { double k[2]; interval phase, p; } torus_wave;
+typedef struct {
+    double k[2];
+    interval phase, p;
+} torus_wave;
 
 /* A bound from above of the largest trace, or eigenvalue, of beta over the torus and all amplitudes
    and phases of at most MOST_WAVES waves; infinite where doubles end.  It is within

@@ -15,10 +15,7 @@ static inline void times(double r[2], sym m, const double v[2])
     r[1] = m.b * v0 + m.c * v1;
 }
 
-static inline double dot(const double v[2], const double w[2])
-{
-    return v[0] * w[0] + v[1] * w[1];
-}
+static inline double dot(const double v[2], const double w[2]) { return v[0] * w[0] + v[1] * w[1]; }
 
 /* Block elimination of the first q - 1 points, one after the other, leaves d_j of point j; w_j, its
    coupling to the last point, goes along: w_{j+1} = d_j^-1 w_j.  Both neighbours of the last point
@@ -66,7 +63,7 @@ long cv_solve(int n, long q, const double (*beta)[3], double mu, const double (*
     }
     negative += sym_negative(last);
     if (b && u) {
-        for (long j = 0; j < q - 1; j++) {              /* right-hand sides; u_j = d_j^-1 of them */
+        for (long j = 0; j < q - 1; j++) {          /* right-hand sides; u_j = d_j^-1 of them */
             double r[2] = { b[j][0], b[j][1] };
             for (int i = 0; j > 0 && i < 2; i++)
                 r[i] += u[j - 1][i];
@@ -106,8 +103,9 @@ long cv_pivots(int n, long q, const double (*beta)[3], long max_rounds, double (
             here = sym_sub(sym_of(beta[j]), sym_inverse(here));
             if (sym_negative(here) != 0)
                 return -round;
-            moved = fmax(moved, (fabs(here.a - d[j][0]) + fabs(here.b - d[j][1])
-                                 + fabs(here.c - d[j][2])) / (here.a + here.c));
+            moved = fmax(
+                moved, (fabs(here.a - d[j][0]) + fabs(here.b - d[j][1]) + fabs(here.c - d[j][2])) /
+                           (here.a + here.c));
             d[j][0] = here.a;
             d[j][1] = here.b;
             d[j][2] = here.c;

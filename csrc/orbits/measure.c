@@ -6,8 +6,14 @@
 
 enum { ASK = 1 << 22 };                 /* pairs looked at before Ctrl-C is looked for */
 
-typedef struct { double square; long i, j; } pair;
-typedef struct { double x[2]; long index; } site;
+typedef struct {
+    double square;
+    long i, j;
+} pair;
+typedef struct {
+    double x[2];
+    long index;
+} site;
 
 static int by_x0(const void *a, const void *b)
 {
@@ -50,8 +56,8 @@ long cv_pairs(int n, long q, const double (*x)[2], long count, long *i, long *j,
         return CV_ENOMEM;
     }
     for (long k = 0; k < q; k++)
-        sites[k] = (site){ { x[k][0] - floor(x[k][0]),
-                             n == 2 ? x[k][1] - floor(x[k][1]) : 0.0 }, k };
+        sites[k] =
+            (site){ { x[k][0] - floor(x[k][0]), n == 2 ? x[k][1] - floor(x[k][1]) : 0.0 }, k };
     qsort(sites, (size_t)q, sizeof *sites, by_x0);
     for (long a = 0; a < q && count > 0; a++)
         for (long step = 1; step < q; step++) {
@@ -64,14 +70,14 @@ long cv_pairs(int n, long q, const double (*x)[2], long count, long *i, long *j,
             const double across = right->x[0] - left->x[0] + (a + step >= q ? 1.0 : 0.0);
             const double up = fabs(right->x[1] - left->x[1]), up1 = fmin(up, 1.0 - up);
             const double square = across * across + up1 * up1;
-            if (across > 0.5 || (across == 0.5 && left->index > right->index)
-                || (kept == count && across * across >= heap[0].square))
+            if (across > 0.5 || (across == 0.5 && left->index > right->index) ||
+                (kept == count && across * across >= heap[0].square))
                 break;
             if (kept == count && square >= heap[0].square)
                 continue;
             if (kept < count) {
                 heap[kept++] = (pair){ square, left->index, right->index };
-                for (long k = kept == count ? count / 2 : 0; k-- > 0; )
+                for (long k = kept == count ? count / 2 : 0; k-- > 0;)
                     sink(heap, count, k);
             } else {
                 heap[0] = (pair){ square, left->index, right->index };

@@ -45,22 +45,27 @@ int cv_errors(const cv_potential *v, double reach, double errors[3])
 
     for (int order = 0; order < 3; order++)
         errors[order] = v->kind == CV_POLY ? of_poly[order] * (reach + 1.0)
-                      : v->kind == CV_FF ? of_ff[order] * (reach + 2.0) : 0.0;
+                      : v->kind == CV_FF   ? of_ff[order] * (reach + 2.0)
+                                           : 0.0;
     for (int t = 0; v->kind == CV_FOURIER && t < v->terms; t++) {
         const double k = abs(v->k[2 * t]) + abs(v->k[2 * t + 1]);
-        double part = 0x1p-48 * (k * (reach + 1.0) + 1.0 + v->terms)
-                    * (fabs(v->cosine[t]) + fabs(v->sine[t]));
+        double part = 0x1p-48 * (k * (reach + 1.0) + 1.0 + v->terms) *
+                      (fabs(v->cosine[t]) + fabs(v->sine[t]));
         for (int order = 0; order < 3; order++, part *= 6.3 * k)
             errors[order] += part;
     }
     const int known = v->kind == CV_FOURIER || v->kind == CV_POLY || v->kind == CV_FF;
-    return !known || !(reach < 1000.0) ? CV_EARGUMENT
-           : machine_is_sound() ? CV_OK : CV_EMACHINE;
+    return !known || !(reach < 1000.0) ? CV_EARGUMENT : machine_is_sound() ? CV_OK : CV_EMACHINE;
 }
 
 /* ---- one axis */
 
-typedef struct { const double *x, *f, *y; double *out; int *from; long stride; } line;
+typedef struct {
+    const double *x, *f, *y;
+    double *out;
+    int *from;
+    long stride;
+} line;
 
 /* out[k] = min over i of f[i] + (y[k] - x[i])^2/2 for first <= k < end, where the least is among
    left <= i <= right; x and y increase.  from[k], unless it is NULL: the i.
@@ -127,15 +132,13 @@ typedef struct {
 static void step(const corridor *c, const rectangle *from, const double *in, const rectangle *to,
                  double *out)
 {
-    along_axis(from->nodes[0], from->nodes[1], from->at[1], in, to->nodes[1], to->at[1],
-               c->spare);
-    along_axis(to->nodes[1], from->nodes[0], from->at[0], c->spare, to->nodes[0], to->at[0],
-               out);
+    along_axis(from->nodes[0], from->nodes[1], from->at[1], in, to->nodes[1], to->at[1], c->spare);
+    along_axis(to->nodes[1], from->nodes[0], from->at[0], c->spare, to->nodes[0], to->at[0], out);
 }
 
 /* The least and the largest of an array's values at the corners of a cell. */
-static void corners(const rectangle *r, const double *values, int i, int k,
-                    double *least, double *most)
+static void corners(const rectangle *r, const double *values, int i, int k, double *least,
+                    double *most)
 {
     *least = HUGE_VAL;
     *most = -HUGE_VAL;
@@ -188,8 +191,8 @@ static int look(rectangle *r, const cv_potential *v, double eps, double curvatur
         const int last = r->nodes[axis] - 1;
         double pitch = 0.0;
         for (int i = 0; i <= last; i++)
-            r->at[axis][i] = i == last ? high[axis]
-                           : low[axis] + (high[axis] - low[axis]) / last * i;
+            r->at[axis][i] =
+                i == last ? high[axis] : low[axis] + (high[axis] - low[axis]) / last * i;
         for (int i = 0; i < last; i++)
             pitch = fmax(pitch, r->at[axis][i + 1] - r->at[axis][i]);
         squares += pitch * pitch;
@@ -206,8 +209,9 @@ static int look(rectangle *r, const cv_potential *v, double eps, double curvatur
         r->W[i] *= -eps;
         largest = larger(largest, fabs(r->W[i]));
     }
-    r->bend = ((2.0 + fabs(eps) * curvature) * squares * 0.125
-               + fabs(eps) * errors[0] + 0x1p-52 * largest) * (1.0 + 0x1p-40);
+    r->bend = ((2.0 + fabs(eps) * curvature) * squares * 0.125 + fabs(eps) * errors[0] +
+               0x1p-52 * largest) *
+              (1.0 + 0x1p-40);
     return status;
 }
 
@@ -435,7 +439,7 @@ int cv_lax_oleinik(int n, int grid, const double c[2], const double *W, const do
 {
     const size_t side = (size_t)grid, size = n == 2 ? side * side : side;
     double *const sum = malloc(size * sizeof *sum), *const half = malloc(size * sizeof *half),
-           *const spare = malloc((5 * side + 6) * sizeof *spare);
+                  *const spare = malloc((5 * side + 6) * sizeof *spare);
     int *const first = malloc(size * sizeof *first), *const second = malloc(size * sizeof *second);
     int status = CV_ENOMEM;
 

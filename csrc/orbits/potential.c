@@ -77,8 +77,8 @@ static void fast_froeschle(const double x[2], double *value, double gradient[2],
     hessian[2] = -0.25 * c1.second - 0.5 * c2.second;
 }
 
-int cv_evaluate(const cv_potential *v, long m, const double (*x)[2],
-                double *value, double (*gradient)[2], double (*hessian)[3])
+int cv_evaluate(const cv_potential *v, long m, const double (*x)[2], double *value,
+                double (*gradient)[2], double (*hessian)[3])
 {
     if (v->kind == CV_PYTHON)
         return cv_python_potential(v->self, m, x[0], value, gradient ? gradient[0] : NULL,

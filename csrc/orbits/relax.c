@@ -44,7 +44,7 @@ static int look(const action_of *of, place *at)
         return status;
     for (long j = 0; j < q; j++) {
         const double *const before = at->u[j > 0 ? j - 1 : q - 1], *const here = at->u[j],
-                     *const after = at->u[j < q - 1 ? j + 1 : 0];
+                            *const after = at->u[j < q - 1 ? j + 1 : 0];
         double term = -of->eps * of->value[j], total;
         for (int i = 0; i < 2; i++) {
             const double step = after[i] - here[i];
@@ -75,8 +75,9 @@ int cv_action(const cv_potential *v, long q, double eps, const double (*base)[2]
               const double (*u)[2], double *action, double (*gradient)[2])
 {
     const size_t size = (size_t)q;
-    action_of of = { v, q, eps, base,
-                     malloc(size * sizeof *of.x), malloc(size * sizeof *of.value) };
+    action_of of = {
+        v, q, eps, base, malloc(size * sizeof *of.x), malloc(size * sizeof *of.value)
+    };
     place at = { malloc(size * sizeof *at.u), gradient, NULL, 0.0, 0.0, 0.0, 0.0, 0.0 };
     int status = CV_ENOMEM;
 
@@ -221,7 +222,8 @@ static int descend(const action_of *of, place *at, place *other, point *along, d
             return CV_RUNNING;
         how->steps++;
         while ((negative = cv_solve(of->v->n, q, (const block *)at->beta, mu,
-                                    (const point *)at->gradient, along)) > 0 && mu < HOPELESS)
+                                    (const point *)at->gradient, along)) > 0 &&
+               mu < HOPELESS)
             mu = fmax(4.0 * mu, fmax(0.01 * slope, 1e-15));
         if (negative < 0)
             return (int)negative;
@@ -241,15 +243,22 @@ int cv_relax(const cv_potential *v, long q, double eps, const double (*base)[2],
              double tol, long max_steps, cv_relaxed *how)
 {
     const size_t size = (size_t)q;
-    const action_of of = { v, q, eps, base, malloc(size * sizeof *of.x),
-                           malloc(size * sizeof *of.value) };
+    const action_of of = {
+        v, q, eps, base, malloc(size * sizeof *of.x), malloc(size * sizeof *of.value)
+    };
     place places[2], *const at = &places[0], *const other = &places[1];
     point *const along = malloc(size * sizeof *along);
     int status = CV_ENOMEM, complete = of.x && of.value && along;
 
     for (int k = 0; k < 2; k++) {
-        places[k] = (place){ malloc(size * sizeof *at->u), malloc(size * sizeof *at->gradient),
-                             malloc(size * sizeof *at->beta), 0.0, 0.0, 0.0, 0.0, 0.0 };
+        places[k] = (place){ malloc(size * sizeof *at->u),
+                             malloc(size * sizeof *at->gradient),
+                             malloc(size * sizeof *at->beta),
+                             0.0,
+                             0.0,
+                             0.0,
+                             0.0,
+                             0.0 };
         complete = complete && places[k].u && places[k].gradient && places[k].beta;
     }
     if (complete) {

@@ -1,5 +1,5 @@
-/* method.h - what a search asks of a method of proof.  A search knows no more of it than its table:
-   csrc/thesis/method.c and csrc/loewner/method.c. */
+/* method.h - what a search asks of a method of proof.  A search knows no more of it than its
+   table: csrc/thesis/method.c and csrc/loewner/method.c. */
 #ifndef CONVERSE_METHOD_H
 #define CONVERSE_METHOD_H
 
@@ -43,12 +43,12 @@ typedef struct {
     /* Sets up what all tries need, for a problem with angles in radians and x*.  *work: where they
        work, set as soon as there is something to be freed.  Sets those constants that the method
        has, and at_once (cv_at_once).  CV_OK or an error. */
-    int (*prepare)(void **work, const patch *p, const precision *how,
-                   apm_t constants[N_CONSTANTS], int *at_once);
+    int (*prepare)(void **work, const patch *p, const precision *how, apm_t constants[N_CONSTANTS],
+                   int *at_once);
     void (*free)(void *work);           /* or NULL */
 
     int (*axes)(const patch *p);        /* of a cell, that may be cut */
-    int (*lanes)(const void *work);     /* cells that are best tried at once, at most MOST_LANES */
+    int (*lanes)(const void *work); /* cells that are best tried at once, at most MOST_LANES */
 
     /* Is it impossible that a minimizing orbit leads from x* to these cells?  What becomes of a
        cell depends on itself and on cell->hint, and on no other cell.  Where a stop is asked for

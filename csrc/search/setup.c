@@ -106,8 +106,7 @@ static void set_up_method(void *data)
     for (int j = 0; j < 2; j++)
         to_radians(s->problem.angle[j], s->problem.half[j], pi, pi_dp);
     apm_clear(pi);
-    s->status = s->method->prepare(&s->work, &s->problem, &s->precision, s->constants,
-                                   &s->at_once);
+    s->status = s->method->prepare(&s->work, &s->problem, &s->precision, s->constants, &s->at_once);
 }
 
 int cv_prepare(cv_search *s, const cv_stop *stop)
@@ -121,8 +120,7 @@ int cv_prepare(cv_search *s, const cv_stop *stop)
     case GUARD_STOP:
         s->status = CV_EARGUMENT;       /* half prepared, it is good for nothing */
         return CV_RUNNING;
-    case GUARD_MEMORY:
-        s->status = CV_ENOMEM;
+    case GUARD_MEMORY: s->status = CV_ENOMEM;
     }
     if (s->status == CV_OK && !machine_is_sound())
         s->status = CV_EMACHINE;

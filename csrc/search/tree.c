@@ -349,8 +349,8 @@ char *cv_constant(const cv_search *s, int which)
 {
     if (which < 0 || which >= 12 || (which >= 2 && !s->prepared))
         return NULL;
-    return apm_get_str(which < 2 ? s->problem.xstar[which]
-                       : which < 8 ? s->constants[which - 2]
+    return apm_get_str(which < 2        ? s->problem.xstar[which]
+                       : which < 8      ? s->constants[which - 2]
                        : which % 2 == 0 ? s->problem.angle[(which - 8) / 2]
                                         : s->problem.half[(which - 8) / 2]);
 }

@@ -1,5 +1,5 @@
-/* method.c - the thesis's method as a search sees it: a prism is tried in doubles on its centre, in
-   doubles, and with exact decimals, which alone prove (Appendix C, main). */
+/* method.c - the thesis's method as a search sees it: a prism is tried in doubles on its centre,
+   in doubles, and with exact decimals, which alone prove (Appendix C, main). */
 #include <stdlib.h>
 
 #include "search/method.h"
@@ -125,7 +125,7 @@ static void try_cell(bench *w, const cv_cell *c, outcome *out)
 
     *out = (outcome){ .hint = c->hint, .quick_tries = 1 };
     set_prism(w, c);
-    out->axis = apm_cmp(b->half[4], b->half[3]) > 0 ? V1 : V0;          /* the wider; ties to v0 */
+    out->axis = apm_cmp(b->half[4], b->half[3]) > 0 ? V1 : V0;      /* the wider; ties to v0 */
     quick_try(w->quick, b, v);
     if (v->no_tori) {
         out->tries = 1;
@@ -149,7 +149,12 @@ static void thesis_try(void *work, int n, const cv_cell *const cells[], outcome 
 }
 
 const method method_thesis = {
-    .accepts = thesis_accepts, .choose_start = thesis_choose_start, .start_format = "%.17g",
-    .prepare = thesis_prepare, .free = free_bench, .axes = thesis_axes,
-    .lanes = thesis_lanes, .try = thesis_try
+    .accepts = thesis_accepts,
+    .choose_start = thesis_choose_start,
+    .start_format = "%.17g",
+    .prepare = thesis_prepare,
+    .free = free_bench,
+    .axes = thesis_axes,
+    .lanes = thesis_lanes,
+    .try = thesis_try,
 };

@@ -28,7 +28,6 @@ static inline void num_set_si(num_t r, long n, long exp)
     r[0] = (double)n * pow(10.0, (double)exp);
 }
 
-
 static inline void num_set_apm(num_t r, const apm_t x) { r[0] = apm_get_d(x); }
 static inline int num_set_d(num_t r, double x)
 {
@@ -45,7 +44,12 @@ static inline void num_sub(num_t r, const num_t x, const num_t y) { r[0] = x[0] 
 static inline void num_mul(num_t r, const num_t x, const num_t y) { r[0] = x[0] * y[0]; }
 static inline void num_mul_si(num_t r, const num_t x, long n) { r[0] = x[0] * (double)n; }
 static inline void num_half(num_t r, const num_t x) { r[0] = 0.5 * x[0]; }
-static inline void num_swap(num_t x, num_t y) { const double t = x[0]; x[0] = y[0]; y[0] = t; }
+static inline void num_swap(num_t x, num_t y)
+{
+    const double t = x[0];
+    x[0] = y[0];
+    y[0] = t;
+}
 static inline int num_sgn(const num_t x) { return (x[0] > 0.0) - (x[0] < 0.0); }
 static inline int num_cmp(const num_t x, const num_t y) { return (x[0] > y[0]) - (x[0] < y[0]); }
 static inline int num_is_finite(const num_t x) { return isfinite(x[0]); }

@@ -22,7 +22,10 @@ enum { START_SZ = 6 };                  /* as printed: the start is off by 10^-S
 
 typedef struct { num_t lb, ub; } bdd;                   /* a number between two bounds */
 typedef struct { num_t p[N_PARMS], u[DEG_FREE], v[DEG_FREE]; } xtnd_pt;
-typedef struct { xtnd_pt centre; num_t matrix[MAT_DIM][MAT_DIM]; } prism;
+typedef struct {
+    xtnd_pt centre;
+    num_t matrix[MAT_DIM][MAT_DIM];
+} prism;
 
 /* beta = 2I - V'' and gamma = the derivative of v' with respect to the parameters. */
 typedef struct { num_t beta[DEG_FREE][DEG_FREE], gamma[DEG_FREE][N_PARMS]; } jacobian;
@@ -93,8 +96,16 @@ static void num_addabs(state *s, num_t r, const num_t x)
     num_add(r, r, s->n.mul);
 }
 
-static void num_min(num_t r, const num_t x) { if (num_cmp(x, r) < 0) num_set(r, x); }
-static void num_max(num_t r, const num_t x) { if (num_cmp(x, r) > 0) num_set(r, x); }
+static void num_min(num_t r, const num_t x)
+{
+    if (num_cmp(x, r) < 0)
+        num_set(r, x);
+}
+static void num_max(num_t r, const num_t x)
+{
+    if (num_cmp(x, r) > 0)
+        num_set(r, x);
+}
 
 #ifdef NUM_DOUBLE
 

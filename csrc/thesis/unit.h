@@ -11,15 +11,15 @@ typedef struct {
     int n_cuts;
 } box;
 
-#define DECLARE_UNIT(R)                                                                        \
-    typedef struct R##unit R##unit;                                                            \
-    R##unit *R##unit_new(long dp, int as_printed);              /* NULL: no memory */          \
-    void R##unit_free(R##unit *u);                                                             \
+#define DECLARE_UNIT(R)                                                                            \
+    typedef struct R##unit R##unit;                                                                \
+    R##unit *R##unit_new(long dp, int as_printed);              /* NULL: no memory */              \
+    void R##unit_free(R##unit *u);                                                                 \
     /* Sets the constants, to those given or, where NULL, by itself, and the first block of    \
-       the second variation.  herman_start is used as printed only.  CV_OK or an error. */     \
-    int R##prepare_trial(R##unit *u, const box *root, const double herman_start[2],            \
-                         apm_t constants[N_CONSTANTS]);                                  \
-    int R##unit_constants(R##unit *u, apm_t constants[N_CONSTANTS]);    /* CV_OK or an error */\
+       the second variation.  herman_start is used as printed only.  CV_OK or an error. */   \
+    int R##prepare_trial(R##unit *u, const box *root, const double herman_start[2],                \
+                         apm_t constants[N_CONSTANTS]);                                            \
+    int R##unit_constants(R##unit *u, apm_t constants[N_CONSTANTS]);    /* CV_OK or an error */    \
     void R##try_prism(R##unit *u, const box *b, verdict *v);
 
 DECLARE_UNIT(R)

@@ -19,7 +19,8 @@ static int thesis_in(const question *q, int as_double)
     Runit *exact = as_double ? NULL : Runit_new(q->dp, q->as_printed);
     unit *quick = as_double ? unit_new(q->dp, q->as_printed) : NULL;
     const int status = exact != NULL ? Rthesis_answer(exact, q)
-                       : quick != NULL ? thesis_answer(quick, q) : CV_ENOMEM;
+                     : quick != NULL ? thesis_answer(quick, q)
+                                     : CV_ENOMEM;
 
     Runit_free(exact);
     unit_free(quick);
@@ -37,8 +38,8 @@ static int answer(const question *q, int as_double)
     return status == NOT_MINE ? CV_EARGUMENT : status;
 }
 
-int kernel(const char *name, int as_double, int as_printed, int dp,
-           int nin, const char *const in[], int nout, char *out[])
+int kernel(const char *name, int as_double, int as_printed, int dp, int nin, const char *const in[],
+           int nout, char *out[])
 {
     apm_t x[MAX_IN + MAX_OUT];
     const question q = { name, dp, as_printed, nin, nout, x, x + MAX_IN };

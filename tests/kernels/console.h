@@ -14,7 +14,10 @@ typedef struct {
 } question;
 
 /* The name of a routine, how many numbers it takes and how many it gives. */
-typedef struct { const char *name; int nin, nout; } shape;
+typedef struct {
+    const char *name;
+    int nin, nout;
+} shape;
 
 /* Does the question ask for the first shape of table[0], table[1], ..., of so many bytes each? */
 int asks_for(const question *q, const shape *shape);

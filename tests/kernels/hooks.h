@@ -29,8 +29,10 @@ typedef struct {
 } hooks;
 
 #ifdef HAVE_X86
+/* clang-format off */
 #define ENGINES(X) X(engine_scalar) X(engine_baseline) X(engine_avx2) X(engine_avx512) \
     X(general_scalar) X(general_baseline) X(general_avx2) X(general_avx512)
+/* clang-format on */
 #elif defined(HAVE_VECTORS)
 #define ENGINES(X) X(engine_scalar) X(engine_baseline) X(general_scalar) X(general_baseline)
 #else

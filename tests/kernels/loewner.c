@@ -11,7 +11,7 @@
 #include "console.h"
 #include "hooks.h"
 
-enum { BOX = 13, WAVE = 7, MOST_SHOWN = 4 };            /* numbers of a wave; waves of a problem */
+enum { BOX = 13, WAVE = 7, MOST_SHOWN = 4 };        /* numbers of a wave; waves of a problem */
 enum { SITES = 60 };                                    /* no point of an orbit is further */
 enum { POINT = 56, SITE = 69, SHOWN = 13, ANY_SITE = 81, ANY_SHOWN = 11 };
 enum { MOST_MORE = 10, MOST_OUT = 900 };
@@ -28,7 +28,10 @@ typedef int routine(const request *r, double y[]);      /* 0: it cannot be done 
 static const hooks *hooks_of(const loewner *w)
 {
 #define ROW(engine) { &engine, &hooks_##engine },
-    static const struct { const engine *engine; const hooks *hooks; } table[] = { ENGINES(ROW) };
+    static const struct {
+        const engine *engine;
+        const hooks *hooks;
+    } table[] = { ENGINES(ROW) };
 #undef ROW
     size_t j = 0;
 
@@ -53,12 +56,24 @@ static int follow_to(loewner *w, double n) { return follow(w, fmin(n, 0.0), fmax
 /* What is known of a point, of so many slots: returns where it ends. */
 static double *show(double *y, const known_point *p, int slots)
 {
-    const struct { const double *from; int count; } parts[] = {
-        { p->x, 2 }, { p->lin[0], 10 }, { p->quad[0], 30 }, { p->rem, 2 },
-        { p->lin_bound, slots }, { p->quad_bound, slots }, { p->nonlin_bound, slots },
+    const struct {
+        const double *from;
+        int count;
+    } parts[] = {
+        { p->x, 2 },
+        { p->lin[0], 10 },
+        { p->quad[0], 30 },
+        { p->rem, 2 },
+        { p->lin_bound, slots },
+        { p->quad_bound, slots },
+        { p->nonlin_bound, slots },
         { p->rad, slots },
-        { p->residual, 2 }, { p->force, 2 }, { p->beta, 3 }, { p->d, 3 }, { &p->err_beta, 1 },
-        { p->mu, 2 }
+        { p->residual, 2 },
+        { p->force, 2 },
+        { p->beta, 3 },
+        { p->d, 3 },
+        { &p->err_beta, 1 },
+        { p->mu, 2 },
     };
 
     for (size_t j = 0; j < sizeof parts / sizeof *parts; j++) {
@@ -118,8 +133,8 @@ static int k_step(const request *r, double y[])
         good = follow_to(r->w, n);
     look(r->w, n, &p);
     memcpy(y, p.rad, 2 * sizeof *y);
-    y[2] = 1e9 * (double)(clock() - begin) / CLOCKS_PER_SEC / fmax(repeat, 1.0) / fmax(fabs(n), 1.0)
-           / loewner_lanes(r->w);
+    y[2] = 1e9 * (double)(clock() - begin) / CLOCKS_PER_SEC / fmax(repeat, 1.0) /
+           fmax(fabs(n), 1.0) / loewner_lanes(r->w);
     y[3] = loewner_lanes(r->w);
     return good;
 }
@@ -183,7 +198,7 @@ static const row kernels[] = {
     { "loewner_sites", 2, SITE * SHOWN, 0, 0, SITES, SITES, k_sites },
     { "waves_bound", 3, 5 + 2 * SITES, 1, 0, SITES, SITES, k_bound },
     { "waves_sites", 2, ANY_SITE * ANY_SHOWN, 1, 0, SITES, SITES, k_sites },
-    { "waves_largest", 0, 1, 1, 1, SITES, SITES, k_largest }
+    { "waves_largest", 0, 1, 1, 1, SITES, SITES, k_largest },
 };
 
 /* ---- the problem, whose numbers are borrowed to read */

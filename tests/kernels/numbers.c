@@ -135,7 +135,7 @@ static int sine_and_cosine(long dp, apm_t in[], apm_t out[])
     return CV_OK;
 }
 
-static int sines_ns(long dp, apm_t in[], apm_t out[])   /* x, n -> nanoseconds of three, n times */
+static int sines_ns(long dp, apm_t in[], apm_t out[]) /* x, n -> nanoseconds of three, n times */
 {
     double t[3] = { apm_nearest_d(in[0]), 1.0, 2.0 }, cosine[3] = { 0.0, 0.0, 0.0 };
     const double repeat = apm_nearest_d(in[1]);
@@ -145,9 +145,10 @@ static int sines_ns(long dp, apm_t in[], apm_t out[])   /* x, n -> nanoseconds o
     for (double j = 0.0; j < repeat && j < 1e9; j++)
         for (int k = 0; k < 3; k++)
             double_sincos(&t[k], &cosine[k], t[k] + cosine[k]);
-    return code_of(apm_set_d(
-        out[0], t[0] + t[1] + t[2] > 4.0 ? 0.0          /* never: but t is used */
-                : 1e9 * (double)(clock() - begin) / CLOCKS_PER_SEC / fmax(repeat, 1.0)));
+    return code_of(apm_set_d(out[0], t[0] + t[1] + t[2] > 4.0
+                                         ? 0.0          /* never: but t is used */
+                                         : 1e9 * (double)(clock() - begin) / CLOCKS_PER_SEC /
+                                               fmax(repeat, 1.0)));
 }
 
 /* The thesis's waves with the ranges lo <= hi of a, b, c with which `torus` and `cell` begin.  0:
@@ -155,10 +156,10 @@ static int sines_ns(long dp, apm_t in[], apm_t out[])   /* x, n -> nanoseconds o
 static int parameter_ranges(apm_t in[], torus_wave waves[3])
 {
     for (int j = 0; j < 3; j++) {
-        waves[j] = (torus_wave){
-            { j != 1, j != 0 }, { 0.0, 0.0 },
-            { apm_bound_d(in[2 * j], APM_DOWN), apm_bound_d(in[2 * j + 1], APM_UP) }
-        };
+        waves[j] = (torus_wave){ { j != 1, j != 0 },
+                                 { 0.0, 0.0 },
+                                 { apm_bound_d(in[2 * j], APM_DOWN),
+                                   apm_bound_d(in[2 * j + 1], APM_UP) } };
         if (apm_cmp(in[2 * j], in[2 * j + 1]) > 0)
             return 0;
     }
@@ -202,15 +203,27 @@ static int cell(long dp, apm_t in[], apm_t out[])
     return code_of(status);
 }
 
-static const struct { shape shape; routine *run; } kernels[] = {
-    { { "pi", 0, 1 }, pi }, { { "add", 2, 1 }, add }, { { "sub", 2, 1 }, sub },
-    { { "mul", 2, 1 }, mul }, { { "cmp", 2, 1 }, cmp }, { { "div", 2, 3 }, divide },
-    { { "sqrt", 1, 2 }, root }, { { "round", 1, 3 }, rounded },
-    { { "floor", 1, 1 }, integer_below }, { { "scale", 2, 1 }, scale },
-    { { "order", 1, 1 }, order }, { { "double", 1, 1 }, as_double },
-    { { "region", 2, 2 }, region }, { { "double_sincos", 1, 2 }, sine_and_cosine },
-    { { "double_sincos_ns", 2, 1 }, sines_ns }, { { "torus", 6, 2 }, torus },
-    { { "cell", 10, 2 }, cell }
+static const struct {
+    shape shape;
+    routine *run;
+} kernels[] = {
+    { { "pi", 0, 1 }, pi },
+    { { "add", 2, 1 }, add },
+    { { "sub", 2, 1 }, sub },
+    { { "mul", 2, 1 }, mul },
+    { { "cmp", 2, 1 }, cmp },
+    { { "div", 2, 3 }, divide },
+    { { "sqrt", 1, 2 }, root },
+    { { "round", 1, 3 }, rounded },
+    { { "floor", 1, 1 }, integer_below },
+    { { "scale", 2, 1 }, scale },
+    { { "order", 1, 1 }, order },
+    { { "double", 1, 1 }, as_double },
+    { { "region", 2, 2 }, region },
+    { { "double_sincos", 1, 2 }, sine_and_cosine },
+    { { "double_sincos_ns", 2, 1 }, sines_ns },
+    { { "torus", 6, 2 }, torus },
+    { { "cell", 10, 2 }, cell },
 };
 
 int numbers_answer(const question *q)

@@ -11,8 +11,8 @@ enum { PRISM_SIZE = MAT_DIM + MAT_DIM * MAT_DIM };
 static void get_prism(prism *pz, apm_t in[])
 {
     num_t *const x[MAT_DIM] = { &pz->centre.p[0], &pz->centre.p[1], &pz->centre.p[2],
-                                &pz->centre.u[0], &pz->centre.u[1],
-                                &pz->centre.v[0], &pz->centre.v[1] };
+                                &pz->centre.u[0], &pz->centre.u[1], &pz->centre.v[0],
+                                &pz->centre.v[1] };
     for (int j = 0; j < MAT_DIM; j++) {
         num_set_apm(*x[j], in[j]);
         for (int k = 0; k < MAT_DIM; k++)
@@ -41,8 +41,8 @@ static void put_bdd(state *s, apm_t r[2], const bdd *x)
 static void put_prism(state *s, apm_t out[], prism *pz)
 {
     num_t *const x[MAT_DIM] = { &pz->centre.p[0], &pz->centre.p[1], &pz->centre.p[2],
-                                &pz->centre.u[0], &pz->centre.u[1],
-                                &pz->centre.v[0], &pz->centre.v[1] };
+                                &pz->centre.u[0], &pz->centre.u[1], &pz->centre.v[0],
+                                &pz->centre.v[1] };
     for (int j = 0; j < MAT_DIM; j++) {
         put(s, out[j], *x[j]);
         for (int k = 0; k < MAT_DIM; k++)
@@ -72,7 +72,7 @@ static int k_sincos(state *s, apm_t in[], apm_t out[])          /* x -> sin, cos
     return CV_OK;
 }
 
-static int k_bound_sincos(state *s, apm_t in[], apm_t out[])  /* lo, hi -> sin lo, hi, cos lo, hi */
+static int k_bound_sincos(state *s, apm_t in[], apm_t out[]) /* lo, hi -> of sin, of cos */
 {
     numbers *const n = &s->n;
 
@@ -83,7 +83,7 @@ static int k_bound_sincos(state *s, apm_t in[], apm_t out[])  /* lo, hi -> sin l
     return CV_OK;
 }
 
-static int k_inverse(state *s, apm_t in[], apm_t out[])         /* 4 x 4 matrix -> inverse, error */
+static int k_inverse(state *s, apm_t in[], apm_t out[])     /* 4 x 4 matrix -> inverse, error */
 {
     prism *const pz = &s->n.work[0];
 
@@ -117,7 +117,7 @@ static int k_image(state *s, apm_t in[], apm_t out[])           /* prism -> pris
     return CV_OK;
 }
 
-static int k_image_ns(state *s, apm_t in[], apm_t out[])        /* prism, n -> ns per image, of n */
+static int k_image_ns(state *s, apm_t in[], apm_t out[])    /* prism, n -> ns per image, of n */
 {
     const double repeat = apm_get_d(in[PRISM_SIZE]);
     const clock_t begin = clock();
@@ -137,7 +137,7 @@ static int k_btrace(state *s, apm_t in[], apm_t out[])          /* prism -> lo, 
     return CV_OK;
 }
 
-static int k_Blams(state *s, apm_t in[], apm_t out[])   /* prism -> least lo, hi, largest lo, hi */
+static int k_Blams(state *s, apm_t in[], apm_t out[]) /* prism -> least lo, hi, largest lo, hi */
 {
     numbers *const n = &s->n;
 
@@ -231,7 +231,11 @@ static int k_constants(state *s, apm_t in[], apm_t out[])
 /* ---- the table */
 
 /* intervals: as many pairs lo, hi come first; prism: a prism does. */
-static const struct { shape shape; int intervals, prism; routine *run; } kernels[] = {
+static const struct {
+    shape shape;
+    int intervals, prism;
+    routine *run;
+} kernels[] = {
     { { "sincos", 1, 2 }, 0, 0, k_sincos },
     { { "bound_sincos", 2, 4 }, 1, 0, k_bound_sincos },
     { { "inverse", 16, 17 }, 0, 0, k_inverse },
@@ -244,7 +248,7 @@ static const struct { shape shape; int intervals, prism; routine *run; } kernels
     { { "cone", 2, 2 }, 0, 0, k_cone },
     { { "product", 4, 2 }, 2, 0, k_product },
     { { "square", 2, 2 }, 1, 0, k_square },
-    { { "constants", 8, 8 }, 0, 0, k_constants }
+    { { "constants", 8, 8 }, 0, 0, k_constants },
 };
 
 static int are_intervals(apm_t in[], int count)
@@ -288,5 +292,7 @@ int R(thesis_answer)(state *s, const question *q)
     }
     status = kernels[which].run(s, q->in, q->out);
     return status == CV_EARGUMENT ? status
-           : s->inverse_failed ? CV_ESINGULAR : s->failed ? CV_EARITHMETIC : status;
+         : s->inverse_failed      ? CV_ESINGULAR
+         : s->failed              ? CV_EARITHMETIC
+                                  : status;
 }
