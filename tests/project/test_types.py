@@ -30,7 +30,8 @@ def functions(module):
                 yield value
 
 
-@pytest.mark.parametrize("module", [converse, maps, orbits, tori], ids=lambda module: module.__name__)
+@pytest.mark.parametrize("module", [converse, maps, orbits, tori],
+                         ids=lambda module: module.__name__)
 def test_public_names_are_annotated(module):
     """Every argument and every result."""
     found = [f for f in functions(module) if f.__module__.startswith("converse.")]

@@ -5,15 +5,12 @@ from math import gcd, isqrt, pi
 
 import numpy as np
 import pytest
-from conftest import not_sanitized
 from flint import arb
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from converse.tori import Divisors, Norm, Rotation, lattice_basis, near, read_rotation
 from converse.tori.field import is_irreducible, real_roots
-
-pytestmark = not_sanitized
 
 LINE = ((1, 1), (1, -1))
 SQUARE = ((1, 0), (0, 1))

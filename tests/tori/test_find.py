@@ -5,7 +5,6 @@ from fractions import Fraction
 import mpmath
 import numpy as np
 import pytest
-from conftest import not_sanitized
 
 from converse.model.problem import LINE, Problem
 from converse.tori.continuation import Way
@@ -14,7 +13,6 @@ from converse.tori.newton import Mesh, default_frame, triangular
 from converse.tori.rotation import read_rotation
 from converse.tori.torus import family
 
-pytestmark = not_sanitized
 GOLDEN = read_rotation("golden")
 DIGITS = 50
 

@@ -4,15 +4,12 @@ from fractions import Fraction
 from math import cos, pi, sqrt
 
 import pytest
-from conftest import not_sanitized
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from converse.tori import Rotation, near, read_rotation
 from converse.tori.field import Field, is_irreducible, real_roots, value_at
 from converse.tori.rotation import NAMES
-
-pytestmark = not_sanitized
 
 
 def test_names_are_the_numbers_of_the_literature():
