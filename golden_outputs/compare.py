@@ -16,6 +16,7 @@ INPUTS = HERE.parent / "inputs"
 CONVERSE = Path(sys.executable).parent / "converse"
 MODES = {"as_printed": ["-d30", "--as-printed"], "sound": ["-d30"]}
 LOEWNER = "for --method loewner"        # a comment of the inputs that it is for
+TORI = "for converse-tori"              # and of those with tori, which are not run here
 
 SECONDS = re.compile(r"This investigation took [0-9.]+ seconds\.")
 
@@ -51,6 +52,8 @@ def modes(problem):
     """The modes of an input, each with its flags."""
     if problem.suffix == ".json":
         return {"loewner": ["--method", "loewner"]}
+    if TORI in problem.read_text("utf-8"):
+        return {}
     flags = [line.split()[1:] for line in problem.read_text("utf-8").splitlines()
              if line.startswith(LOEWNER)]
     return {"loewner": flags[0]} if flags else MODES

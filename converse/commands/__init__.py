@@ -1,1 +1,2 @@
-"""The commands converse, converse-map and converse-orbits; converse-check is converse.check."""
+"""The commands converse, converse-map, converse-orbits and converse-tori; converse-check is
+converse.check."""

@@ -1,13 +1,18 @@
 """Invariant tori that are graphs: found in doubles, proved in ball arithmetic.
 
-    from converse import tori
-    rotation = tori.read_rotation("golden", 1)
+    from converse import Problem, tori
+    torus = tori.find(Problem.patch(["0.9"], waves=[(1, 0)]), tori.read_rotation("golden"))
+    proof = tori.prove(torus)
 """
 
 try:
+    from .certificate import Certificate, read
     from .divisors import Divisors, Norm, lattice_basis
+    from .find import NotFound, find
     from .near import near
+    from .proved import NotProved, ProvedTorus, prove
     from .rotation import Rotation, read_rotation
+    from .torus import Torus
 except ImportError as _error:           # said when something is asked for: the command needs a line
     _MISSING = ("converse.tori needs numpy and python-flint (%s); pip install 'converse-kam[tori]'"
                 % _error)
@@ -18,4 +23,5 @@ except ImportError as _error:           # said when something is asked for: the 
             raise AttributeError(name)
         raise ConverseError(_MISSING)
 
-__all__ = ["Divisors", "Norm", "Rotation", "lattice_basis", "near", "read_rotation"]
+__all__ = ["Certificate", "Divisors", "Norm", "NotFound", "NotProved", "ProvedTorus", "Rotation",
+           "Torus", "find", "lattice_basis", "near", "prove", "read", "read_rotation"]

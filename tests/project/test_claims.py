@@ -32,8 +32,10 @@ def test_the_epsilon_of_an_input(path):
     claims = [line for line in problem.comments if "eps" in line]
     assert bool(claims) == path.stem.startswith("trig")
     for line in claims:
-        low, high = re.match(r"(0\.[0-9]+) < epsilon < (0\.[0-9]+)(?:,|$)", line).groups()
-        assert holds(problem, low, high)
+        one = re.match(r"epsilon = (0\.[0-9]+):", line)
+        low, high = one.groups() * 2 if one else re.match(
+            r"(0\.[0-9]+) < epsilon < (0\.[0-9]+)(?:,|$)", line).groups()
+        assert holds(problem, low, high) and not (one and any(problem.half[:3]))
 
 
 def test_a_slip_would_be_seen():

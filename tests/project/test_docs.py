@@ -12,6 +12,7 @@ from converse import check
 from converse.commands import map as map_cli
 from converse.commands import orbits as orbits_cli
 from converse.commands import prove as cli
+from converse.commands import tori as tori_cli
 from converse.version import __version__
 
 from moments import PATIENCE
@@ -20,7 +21,7 @@ ROOT = Path(__file__).resolve().parent.parent.parent
 PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").glob("*.md"))]
 TEXTS = {page.name: page.read_text("utf-8") for page in PAGES}
 PARSERS = {"converse": cli.parser, "converse-check": check.parser, "converse-map": map_cli.parser,
-           "converse-orbits": orbits_cli.parser}
+           "converse-orbits": orbits_cli.parser, "converse-tori": tori_cli.parser}
 
 
 @pytest.mark.parametrize("name", [name for name, text in TEXTS.items() if "```python" in text])
@@ -34,7 +35,7 @@ def test_python_examples_run(name, tmp_path):
     result = subprocess.run([sys.executable, "example.py"], cwd=tmp_path, capture_output=True,
                             text=True, timeout=PATIENCE)
     assert (result.returncode, result.stderr) == (0, "")
-    assert ("Proved" if name == "orbits.md" else "no invariant tori") in result.stdout
+    assert ("Proved" if name in ("orbits.md", "tori.md") else "no invariant tori") in result.stdout
 
 
 def test_commands_are_understood():

@@ -17,7 +17,8 @@ UPWARDS = {("prover.proof", "draw.figure"): "Proof.figure",
            ("prover.proof", "check"): "Proof.verify",
            ("maps.map", "draw.map_figure"): "Map.draw",
            ("orbits.state", "orbits.figures"): "State._repr_png_",
-           ("prover.proof", "prover.proof_file"): "Proof.load, Proof.save"}
+           ("prover.proof", "prover.proof_file"): "Proof.load, Proof.save",
+           ("tori.proved", "tori.certificate"): "ProvedTorus.save"}
 
 PACKAGE = ROOT / "converse"
 

@@ -1,0 +1,243 @@
+"""The command: converse-tori prove."""
+
+import argparse
+import os
+import re
+import sys
+import time
+from dataclasses import replace
+
+from ..model.exact import exact
+from ..model.inputs import read_input
+from ..storage import files
+from ..storage.files import ConverseError, plain
+from ..version import __version__
+from .common import Parser, ProgressLine, ended, say, tell, whole_number
+
+COMMAND = "converse-tori"
+STATUS = ("Exit status: 0 a theorem; 1 not found or not proved; 2 bad usage, input or file, or the "
+          "certificate could not be saved; 129, 130 or 143 ended by a signal.")
+GIGABYTE = 10 ** 9
+
+
+# ---- what is read
+
+def _number(text):
+    try:
+        return exact(text)
+    except ValueError as error:
+        raise argparse.ArgumentTypeError(str(error)) from None
+
+
+def _positive(text):
+    number = _number(text)
+    if not number > 0:
+        raise argparse.ArgumentTypeError("'%s' is not above 0" % text)
+    return number
+
+
+def _grid(text):
+    """'1024': (1, 1024); '2048x512': (2048, 512)."""
+    match = re.fullmatch(r"(?:(\d{1,9})x)?(\d{1,9})", text, re.ASCII)
+    sizes = [int(size or 1) for size in match.groups()] if match else []
+    if not match or any(size < 1 or size & (size - 1) for size in sizes):
+        raise argparse.ArgumentTypeError("'%s' is no grid: write powers of two, N for one angle or "
+                                         "NxM for two" % text)
+    return tuple(sizes)
+
+
+def parser():
+    p = Parser(prog=COMMAND, allow_abbrev=False, description=(
+        "Proves that a symplectic map has an invariant torus that is a graph, of a given rotation "
+        "vector."), epilog=STATUS)
+    p.add_argument("--version", action="version", version="%s %s" % (COMMAND, __version__))
+    commands = p.add_subparsers(metavar="COMMAND", required=True)
+    for each in (p, _prove_parser(commands)):
+        each._negative_number_matcher = re.compile(r"-\.?\d")   # -0.3 is no option
+    return p
+
+
+def _prove_parser(commands):
+    p = commands.add_parser("prove", allow_abbrev=False, epilog=STATUS, help=(
+        "find a torus in floating-point numbers, and prove that there is one near it"),
+        description="Finds an invariant torus in floating-point numbers, and proves that there is "
+        "one near it.")
+    p.set_defaults(run=prove_torus)
+    p.add_argument("input", nargs="?", metavar="FILE", help="input file, the thesis's or JSON, by "
+                   "default, and as -, standard input; one parameter may have a range")
+    which = p.add_mutually_exclusive_group()
+    which.add_argument("--rotation", metavar="ROTATION", help=(
+        "the rotation vector in turns: golden, silver, spiral, seven, T49, V1, V2, or a polynomial "
+        "and elements of the field of its largest real root t, such as 't^2+t-1: t' "
+        "(docs/tori.md)"))
+    which.add_argument("--near", nargs="+", type=_number, metavar="W",
+                       help="take the rotation vector with the best small divisors that is found "
+                            "near W, for two angles near W W")
+    p.add_argument("--tolerance", type=_positive, metavar="T",
+                   help="how far the vector of --near may be away (default 0.001)")
+    p.add_argument("--together", action="store_true",
+                   help="a, b and c move together, from all lower to all upper ends")
+    p.add_argument("-b", "--backup", metavar="FILE",
+                   help="write the certificate to FILE, a new one; compressed, if it ends in .gz")
+    p.add_argument("-g", "--graphics", metavar="FILE",
+                   help="draw the torus in FILE, by its name's ending as SVG, PNG, PDF or "
+                        "PostScript (.ps, .eps)")
+    p.add_argument("-r", "--restore", metavar="FILE",
+                   help="start from the torus of the certificate FILE, of other amplitudes, not "
+                        "from the map without potential; it has the rotation vector, too")
+    p.add_argument("-p", "--precision", type=whole_number(24), metavar="BITS",
+                   help="bits of the balls in which the residual is computed (default: chosen)")
+    p.add_argument("--grid", type=_grid, metavar="N[xM]", help="on which the residual is computed, "
+                   "powers of two (default: chosen)")
+    p.add_argument("--weights", nargs="+", type=_positive, metavar="ALPHA",
+                   help="weights of the norm of k, one for each direction of the frame (default: "
+                        "chosen)")
+    p.add_argument("--rho", type=_positive, metavar="RHO",
+                   help="the width of the strip in which the residual is bounded (default: chosen)")
+    p.add_argument("--margin", type=_positive, metavar="X", help="find a torus whose residual is X "
+                   "times smaller than the theorem needs, about (default 100)")
+    p.add_argument("--points", type=whole_number(16), metavar="N",
+                   help="of the grid on which the torus is looked for, at most")
+    p.add_argument("--memory", type=_positive, metavar="GB", help="what the proof may take, in GB "
+                   "(default: three quarters of what is free)")
+    return p
+
+
+# ---- the command
+
+def _read_problem(options):
+    source = options.input
+    if source in (None, "-"):
+        source = sys.stdin
+        if source is None:
+            raise ConverseError("standard input is closed; name an input file")
+        if source.isatty():
+            tell("reading the problem from standard input; end it with Ctrl-D", COMMAND)
+    problem = read_input(source)
+    if options.together:
+        if not problem.by_ranges:
+            raise ConverseError("--together is for ranges of a, b and c; name a parameter in the "
+                                "input instead")
+        return replace(problem, together=True)
+    if problem.by_ranges and sum(map(any, problem.parts)) > 1:
+        raise ConverseError("a, b and c have ranges of their own; let them move together "
+                            "(--together), or make all but one single numbers")
+    return problem
+
+
+def _check_outputs(options):
+    """Before the work starts: files that cannot be written, or would overwrite something."""
+    if options.backup is not None:
+        if options.restore is not None and files.same(options.backup, options.restore):
+            raise ConverseError("'%s': the certificate would overwrite it; name another file"
+                                % options.backup)
+        if os.path.exists(options.backup) and os.path.getsize(options.backup):
+            raise ConverseError("%s: exists; name another file or remove it" % options.backup)
+        files.check_writable(options.backup)
+    if options.graphics is not None:
+        from ..draw import figure, plot
+
+        files.check_output(options.graphics, "figure", figure.ALL_FORMATS,
+                           [options.input, options.backup, options.restore])
+        if figure.format_of(options.graphics) != "ps":
+            plot.check()
+
+
+def _norm(options, potential):
+    """That of --weights, or None."""
+    from ..tori import Norm
+    from ..tori.newton import default_frame
+
+    if options.weights is None:
+        return None
+    if len(options.weights) != potential.dimension:
+        raise ConverseError("--weights has %d numbers, and the map %d angle%s: give as many"
+                            % (len(options.weights), potential.dimension,
+                               "s" * (potential.dimension - 1)))
+    return Norm(default_frame(potential), tuple(options.weights))
+
+
+def _rotation(options, potential, start, norm):
+    from .. import tori
+
+    if options.tolerance is not None and options.near is None:
+        raise ConverseError("--tolerance goes with --near; leave it out, or give --near")
+    if options.rotation is not None:
+        return tori.read_rotation(options.rotation, potential.dimension)
+    if options.near is None:
+        if start is None:
+            raise ConverseError("which torus? Give --rotation, such as golden or T49, or --near W")
+        return start.rotation
+    if len(options.near) != potential.dimension:
+        raise ConverseError("--near has %d numbers, and the map %d angle%s: give as many"
+                            % (len(options.near), potential.dimension,
+                               "s" * (potential.dimension - 1)))
+    more = {} if options.tolerance is None else {"tolerance": options.tolerance}
+    return tori.near(*options.near, norm=norm, **more)
+
+
+def prove_torus(options):
+    from .. import tori
+    from ..tori import report
+    from ..tori.torus import family
+
+    _check_outputs(options)
+    start = None if options.restore is None else _start(options.restore)
+    problem = _read_problem(options)
+    potential, _ = family(problem)
+    norm = _norm(options, potential)
+    rotation = _rotation(options, potential, start, norm)
+    of_find = {name: value for name, value in (
+        ("start", start), ("margin", options.margin and float(options.margin)),
+        ("points", options.points)) if value is not None}
+    of_proof = {name: value for name, value in (
+        ("norm", norm), ("shape", options.grid), ("bits", options.precision), ("rho", options.rho),
+        ("memory", options.memory and int(options.memory * GIGABYTE))) if value is not None}
+    say(report.header(problem, rotation))
+    began = time.process_time()
+    with ProgressLine() as line:
+        def progress(words):
+            line(lambda: words)
+        try:
+            progress("looking for a torus")
+            proof = tori.prove(tori.find(problem, rotation, **of_find),
+                               progress=progress, **of_proof)
+        except (tori.NotFound, tori.NotProved) as reason:
+            line.clear()
+            say(report.undecided(problem, rotation, reason))
+            return 1
+    checksum = "" if options.backup is None else proof.save(options.backup)
+    say(report.verdict(problem, proof, time.process_time() - began, options.backup, checksum))
+    if options.graphics is not None:
+        from ..draw import torus_figure
+        torus_figure.draw(proof, options.graphics)
+    return 0
+
+
+def _start(path):
+    from ..tori import certificate
+
+    found = certificate.read(path)
+    if len(found.tori) > 1:
+        raise ConverseError("%s: is of a range; to start from, name the certificate of one torus"
+                            % plain(path))
+    return found.tori[0]
+
+
+def run(options):
+    from converse import tori
+
+    tori.Rotation                       # or a line that says what is missing
+    try:
+        return options.run(options)
+    except ValueError as error:         # what only the library can know to be bad
+        raise ConverseError(str(error)) from error
+
+
+def main(argv=None):
+    """Runs the command and returns its exit status."""
+    return ended(COMMAND, lambda: run(parser().parse_args(argv)), lambda: "nothing is proved")
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,149 @@
+"""What the command converse-tori prints, in the manner of the report of 1989.  Bounds are rounded
+to the safe side."""
+
+import math
+from fractions import Fraction
+from typing import List, Optional, Sequence, Union
+
+from ..model.exact import decimal_text, rounded, rounded_text, short_text
+from ..model.problem import Problem, wave_text
+from ..storage.files import plain
+from ..version import __version__
+from .divisors import Divisors, Norm, lattice_basis
+from .find import NotFound
+from .proved import NotProved, Piece, ProvedTorus
+from .residual import wave_vectors
+from .rotation import Rotation, element_text, polynomial_text
+from .torus import family
+
+PLUSES = "+" * 48
+PLACES = 6                              # of amplitudes, at least
+DIGITS = 20                             # of omega
+TORUS = {1: "a rotational invariant circle", 2: "an invariant torus"}       # by dimension
+VECTOR = {1: "rotation number", 2: "rotation vector"}
+
+
+def header(problem: Problem, rotation: Rotation) -> str:
+    """What is known before the search: the map, the rotation vector, comments of the input."""
+    n = rotation.dimension
+    lines = ["Map : y' = y + J', J' = J - dV(y), V(y) = - the sum of :", *_waves(problem),
+             "", "%s : %s" % (VECTOR[n].capitalize(), plain(str(rotation))),
+             "t : the root of %s near %s" % (polynomial_text(rotation.polynomial), _rounded(
+                 rotation, (Fraction(0), Fraction(1), Fraction(0))[:n + 1]))]
+    lines += ["%s : %s = %s..." % (name, element_text(element), _rounded(rotation, element))
+              for name, element in zip(_names("omega", n), rotation.vector)]
+    lines += ["", "Comments :", "", *(("> " + plain(comment)).rstrip()
+                                      for comment in problem.comments), "", PLUSES]
+    return "\n".join(lines) + "\n"
+
+
+def _names(name, n):
+    return [name] if n == 1 else ["%s[%d]" % (name, i) for i in range(n)]
+
+
+def _rounded(rotation, element):
+    """The value, cut after so many digits."""
+    low, _ = rotation.field.bounds(element, DIGITS + 2)
+    return ("-" if low < 0 else "") + decimal_text(
+        Fraction(math.floor(abs(low) * 10 ** DIGITS), 10 ** DIGITS), DIGITS)[:DIGITS]
+
+
+def _waves(problem: Problem) -> List[str]:
+    """Those that are present, exactly."""
+    potential, part = family(problem)
+    lines = []
+    for j, (wave, p) in enumerate(zip(potential.waves, potential.amplitude)):
+        moves = "" if part is None or not part[j] else " %s %s s" % (
+            "-" if part[j] < 0 else "+", decimal_text(abs(part[j]), PLACES))
+        lines.append("p %s, p = %s%s" % (wave_text(wave), decimal_text(p, PLACES), moves))
+    return lines + ([] if part is None else ["for -1 <= s <= 1"])
+
+
+def verdict(problem: Problem, proof: ProvedTorus, seconds: float,
+            certificate: Optional[str] = None, checksum: str = "") -> str:
+    """The theorem, and how near it was.
+
+    seconds -- that finding and proving took
+    certificate, checksum -- the file's name and SHA-256, if there is one"""
+    n, rotation, worst = proof.rotation.dimension, proof.rotation, proof.worst
+    lines = ["I find %s of this %s for V(y) = - the sum of :" % (TORUS[n], VECTOR[n]),
+             *_waves(problem), "",
+             "It is a real analytic graph J = P + S'(y) over all angles, P constant, S periodic.",
+             "The map takes its point y(theta) = theta + u(theta) to y(theta + w), w = 2 pi omega.",
+             ""]
+    lines += ["|u - u0| at most : %s, u0 the computed u" % _up(proof.distance),
+              "|Du - Du0| at most : %s" % _up(max(piece.slope for piece in proof.pieces)),
+              "Residual : %s at most; the theorem needs %s, about" % (_up(worst.residual),
+                                                                      _down(worst.needed)),
+              ""]
+    if len(proof.pieces) > 1:
+        lines += [_piece_line(piece) for piece in proof.pieces] + [""]
+    lines += _divisors(rotation, worst.norm, wave_vectors(proof.torus))
+    constants = worst.constants
+    lines += ["Width rho of the strip : %.6g" % worst.rho,
+              "Constants : " + ", ".join("%s %s" % (name, _up(float(getattr(constants, name)), 4))
+                                         for name in ("l0", "m0", "a0", "b0", "p0")),
+              "Torus : %d modes of %d bits%s" % (
+                  len(worst.torus.modes), worst.torus.bits,
+                  "" if worst.torus.part is None else ", polynomials in s of degree %d"
+                  % worst.torus.degree),
+              "Grid : %s" % " x ".join(map(str, worst.grid.shape if n == 2
+                                           else worst.grid.shape[-1:])), "",
+              "This investigation took %.2f seconds." % seconds, ""]
+    if certificate is not None:
+        lines += ["Certificate : %s" % plain(certificate), "SHA-256 : %s" % checksum]
+    lines += ["Program : converse " + __version__,
+              "Method : an a-posteriori KAM theorem (docs/existence.md)",
+              "Arithmetic : balls of %d bits" % worst.bits]
+    return "\n".join(lines) + "\n"
+
+
+def _piece_line(piece: Piece) -> str:
+    low, high = piece.torus.piece
+    return "For %s <= s <= %s : %d modes of degree %d, residual %s, needed %s" % (
+        short_text(low), short_text(high), len(piece.torus.modes), piece.torus.degree,
+        _up(piece.residual), _down(piece.needed))
+
+
+def _divisors(rotation: Rotation, norm: Norm, waves: Sequence[Sequence[int]]) -> List[str]:
+    n = rotation.dimension
+    divisors = Divisors(rotation, norm, lattice_basis(waves))
+    terms = []
+    for row, a in zip(norm.frame, norm.alpha):
+        angle = " ".join("%s %s" % ("-" if x < 0 else "+", name if abs(x) == 1 else
+                                    "%d %s" % (abs(x), name))
+                         for x, name in zip(row, _names("k", n)) if x)
+        terms.append("%s|%s|" % ("" if a == 1 else "%s " % a,
+                                 angle[2:] if angle[0] == "+" else "-" + angle[2:]))
+    power = "|k|" if n == 1 else "|k|^2"
+    return ["Small divisors : |1 - exp(i k.w)| >= %s/%s for k != 0, and %s/%s for |k| >= %s" % (
+                _down(float(divisors.gamma), 6), power, _down(float(divisors.gamma_tail), 6), power,
+                divisors.reach),
+            "k : the integer combinations of the waves', |k| = %s" % " + ".join(terms)]
+
+
+def undecided(problem: Problem, rotation: Rotation, reason: Union[NotFound, NotProved]) -> str:
+    """That there is no theorem, and why."""
+    n = rotation.dimension
+    lines = ["I could not decide whether there is %s of this %s for V(y) = - the sum of :"
+             % (TORUS[n], VECTOR[n]), *_waves(problem), "",
+             "%s : %s" % ("Not found" if isinstance(reason, NotFound) else "Not proved",
+                          plain(" ".join(str(reason).split())))]
+    return "\n".join(lines) + "\n"
+
+
+def _up(x: float, digits: int = 3) -> str:
+    """x >= 0, rounded up."""
+    return _text(Fraction(x), digits, True) if math.isfinite(x) else "unbounded"
+
+
+def _down(x: float, digits: int = 3) -> str:
+    """x >= 0, rounded down."""
+    return _text(Fraction(x), digits, False)
+
+
+def _text(x, digits, up):
+    if not Fraction(1, 1000) <= x < 10000:
+        return rounded_text(x, digits, up)
+    places = max(0, digits - 1 - math.floor(math.log10(x)))
+    return decimal_text(rounded(x, places, up), places)

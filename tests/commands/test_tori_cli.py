@@ -1,0 +1,180 @@
+"""The command converse-tori: what it says is what the API finds, and every failure is a line."""
+
+import re
+import subprocess
+import sys
+from fractions import Fraction
+
+import pytest
+from conftest import ROOT
+
+from converse import Problem, read_input, tori
+from converse.commands import tori as cli
+from converse.tori import report
+
+K09 = str(ROOT / "inputs" / "standard-k090.in")
+TRIG = str(ROOT / "inputs" / "trig004.in")
+RANGE = str(ROOT / "inputs" / "trig278.in")
+JSON = '{"parameters": {"K": [0.3, 0.4], "L": [0, 1]}, "harmonics": [' \
+       '{"k": [1], "amplitude": {"K": 1}}, {"k": [2], "amplitude": {"L": 1}}]}'
+
+
+@pytest.fixture
+def run(capfd):
+    """Runs the command in this process: (exit status, stdout, stderr)."""
+    def run(*arguments):
+        status = cli.main([str(argument) for argument in arguments])
+        return (status, *capfd.readouterr())
+    return run
+
+
+def one_line(err):
+    return err.startswith("converse-tori: ") and err.endswith("\n") and err.count("\n") == 1
+
+
+def value(out, pattern):
+    """The number that a line of the report has there."""
+    return float(re.search(pattern.replace("#", r"([0-9.]+(?:e-?[0-9]+)?)"), out)[1])
+
+
+def test_a_theorem(run, tmp_path):
+    file = tmp_path / "golden.torus"
+    status, out, err = run("prove", K09, "--rotation", "golden", "-b", file)
+    assert (status, err) == (0, "")
+    proof = tori.prove(tori.find(read_input(K09), tori.read_rotation("golden")))
+    assert "I find a rotational invariant circle of this rotation number" in out
+    assert "Rotation number : golden" in out and "p sin(y0), p = 0.900000\n" in out
+    # The bounds are those of the proof, rounded to the safe side.
+    for pattern, number in (("Residual : # at most", proof.residual),
+                            (r"\|u - u0\| at most : #", proof.distance)):
+        assert number <= value(out, pattern) <= number * 1.02
+    assert proof.needed * .98 <= value(out, "the theorem needs #,") <= proof.needed
+    assert 1.864 < value(out, ">= #/.k. for k != 0") < 1.8640649
+    assert 2.809 < value(out, r"and #/\|k\| for") < 2.809926
+    certificate = tori.read(file)
+    assert "SHA-256 : " + certificate.sha256 in out and "Certificate : %s" % file in out
+    assert certificate.tori[0].rotation.vector == ((0, 1),)
+    assert certificate.tori[0].potential.amplitude == (Fraction("0.9"),)
+
+
+def test_a_theorem_with_choices(run, tmp_path):
+    problem = tmp_path / "small.in"
+    problem.write_text("0.01 0\n0.01 0\n0.02 0\n1 1\n1 1\n")
+    status, out, err = run("prove", problem, "--rotation", "T49", "--weights", 1, "9/2",
+                           "--memory", 1, "--margin", 30, "-p", 200,
+                           "--grid", "32x128", "--rho", "1/10")
+    assert (status, err) == (0, "")
+    assert "I find an invariant torus of this rotation vector" in out
+    assert "|k| = |k[0] + k[1]| + 9/2 |k[0] - k[1]|\n" in out and "balls of 200 bits" in out
+    assert "Grid : 32 x 128\n" in out and "rho of the strip : 0.1\n" in out
+
+
+def test_a_theorem_near_a_place(run, tmp_path):
+    problem = tmp_path / "half.json"
+    problem.write_text('{"harmonics": [{"k": [1], "amplitude": 0.5, "phase": "-1/3"}]}')
+    status, out, err = run("prove", problem, "--near", "-0.38", "--tolerance", "0.005")
+    assert (status, err) == (0, "")
+    assert "Rotation number : best found within 0.005 of -0.38\n" in out
+    assert "omega : -1+t = -0.38196601125010515" in out         # golden - 1
+
+
+def test_a_start_from_a_certificate(run, tmp_path):
+    file = tmp_path / "golden.torus.gz"
+    problem = tmp_path / "standard.in"
+    for k, more in (("0.5", ["--rotation", "golden", "-b", file]), ("0.55", ["-r", file])):
+        problem.write_text(k + " 0\n0 0\n0 0\n1 1\n1 1\n")
+        status, out, err = run("prove", problem, *more)
+        assert (status, err) == (0, "") and "Rotation number : golden" in out
+        assert "p sin(y0), p = %s" % k in out
+
+
+@pytest.mark.parametrize("arguments,words", [
+    (["--rotation", "golden", "-p", "24"], "the theorem needs"),
+    (["--rotation", "golden", "--memory", "1e-6"], "memory"),
+    (["--rotation", "golden", "--rho", "10"], "inverse"),
+])
+def test_what_cannot_be_proved_is_said(run, tmp_path, arguments, words):
+    file = tmp_path / "golden.torus"
+    status, out, err = run("prove", K09, "-b", file, *arguments)
+    assert (status, err) == (1, "") and not file.exists()
+    assert "I could not decide whether there is a rotational invariant circle" in out
+    assert words in out.rpartition("Not proved : ")[2] and "I find" not in out
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("numbers,rotation", [
+    ((".98", "0", "0"), "golden"), (("0.158122476", "0.158122476", "0.316244952"), "T49")])
+def test_beyond_the_last_torus_there_is_no_theorem(run, tmp_path, numbers, rotation):
+    problem = tmp_path / "beyond.in"
+    problem.write_text("".join("%s 0\n" % x for x in numbers) + "1 1\n1 1\n")
+    status, out, err = run("prove", problem, "--rotation", rotation)
+    assert (status, err) == (1, "") and "I find" not in out
+    assert "Not found : no torus" in out
+
+
+@pytest.mark.parametrize("arguments,words", [
+    ([], "COMMAND"), (["prove", "nowhere.in", "--rotation", "golden"], "nowhere.in"),
+    (["prove", K09], "which torus?"), (["prove", TRIG, "--rotation", "golden"], "two angles"),
+    (["prove", K09, "--rotation", "T49"], "one angle"),
+    (["prove", K09, "--rotation", "t^2-1: t"], "reducible"),
+    (["prove", K09, "--rotation", "0.618"], "no rotation vector"),
+    (["prove", K09, "--rotation", "golden", "--near", "0.6"], "not allowed with"),
+    (["prove", K09, "--near", "0.6", "0.4"], "--near has 2 numbers, and the map 1 angle:"),
+    (["prove", TRIG, "--near", "0.6"], "--near has 1 numbers, and the map 2 angles:"),
+    (["prove", K09, "--near", "x"], "'x'"),
+    (["prove", K09, "--rotation", "golden", "--tolerance", "0.1"], "--tolerance goes with --near"),
+    (["prove", K09, "--near", "0.6", "--tolerance", "1e-12"], "tolerance"),
+    (["prove", RANGE, "--rotation", "T49"], "--together"),
+    (["prove", "two.json", "--rotation", "golden"], "2 parameters"),
+    (["prove", "two.json", "--rotation", "golden", "--together"], "--together"),
+    (["prove", "zero.in", "--rotation", "golden"], "no wave"),
+    (["prove", K09, "--rotation", "golden", "--grid", "768"], "powers of two"),
+    (["prove", K09, "--rotation", "golden", "-p", "2"], "whole number from 24"),
+    (["prove", K09, "--rotation", "golden", "--rho", "-1"], "above 0"),
+    (["prove", K09, "--rotation", "golden", "--weights", "1", "2"], "--weights has 2 numbers"),
+    (["prove", K09, "--rotation", "golden", "-b", "zero.in"], "zero.in: exists"),
+    (["prove", K09, "--rotation", "golden", "-b", "no/where"], "no/where"),
+    (["prove", K09, "--rotation", "golden", "-g", "a.txt"], "the name of the figure ends in"),
+    (["prove", K09, "--rotation", "golden", "-b", "a.svg", "-g", "a.svg"], "would overwrite"),
+    (["prove", K09, "--rotation", "golden", "-r", "zero.in"], "zero.in"),
+])
+def test_bad_usage_is_a_line(run, tmp_path, monkeypatch, arguments, words):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "two.json").write_text(JSON)
+    (tmp_path / "zero.in").write_text("0 0\n0 0\n0 0\n1 1\n1 1\n")
+    status, out, err = run(*arguments)
+    assert (status, out) == (2, "") and one_line(err) and words in err
+
+
+def test_an_interrupt_leaves_nothing(run, tmp_path, monkeypatch):
+    def strike(*_, **__):
+        raise KeyboardInterrupt
+    monkeypatch.setattr(tori, "prove", strike)
+    file = tmp_path / "golden.torus"
+    status, out, err = run("prove", K09, "--rotation", "golden", "-b", file)
+    assert status == 130 and one_line(err) and "interrupted" in err
+    assert "I find" not in out and not file.exists()
+
+
+def test_without_python_flint(tmp_path):
+    code = ("import sys; sys.modules['flint'] = None\n"
+            "from converse.commands.tori import main\n"
+            "sys.exit(main(['prove', %r, '--rotation', 'golden']))" % K09)
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
+    assert (done.returncode, done.stdout) == (2, "") and one_line(done.stderr)
+    assert "pip install 'converse-kam[tori]'" in done.stderr
+
+
+def test_bounds_are_rounded_to_the_safe_side():
+    for x in (1.2345e-9, .00123456, .999999, 1.0, 1864.0648, 9999.99, 123456.0):
+        for digits in (2, 3, 6):
+            assert Fraction(report._up(x, digits)) >= Fraction(x) >= Fraction(
+                report._down(x, digits))
+            assert float(report._up(x, digits)) <= x * (1 + 10 ** (1 - digits))
+    assert report._up(float("inf")) == "unbounded" and report._down(0.0) == "0"
+
+
+def test_a_range_is_told_exactly():
+    problem = Problem.patch(["0.25"], [["0.05"]], waves=[(1, 0)])
+    out = report.header(problem, tori.read_rotation("golden"))
+    assert "p sin(y0), p = 0.250000 + 0.050000 s\nfor -1 <= s <= 1\n" in out
