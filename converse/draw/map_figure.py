@@ -44,8 +44,9 @@ def check(path):
     return kind
 
 
-def draw(region_map, path):
-    """Draws a map in a file; ConverseError: it cannot be drawn, or has no estimate yet."""
+def draw(region_map, path, tori=()):
+    """Draws a map in a file, and in that of a plane the points (a, b, c) at which tori are proved;
+    ConverseError: it cannot be drawn, or has no estimate yet."""
     kind = check(path)
     if not all(region_map.estimate):
         raise files.ConverseError("the map has nothing to draw yet: it was left while the frontier "
@@ -55,11 +56,14 @@ def draw(region_map, path):
 
     with style.context(["default", STYLE]):
         figure = Figure(figsize=(6.4, 5.0))
-        (_draw_sphere if len(region_map.directions[0]) == 3 else _draw_plane)(region_map, figure)
+        if len(region_map.directions[0]) == 3:
+            _draw_sphere(region_map, figure)
+        else:
+            _draw_plane(region_map, figure, tori)
         files.write(path, plot.encode(figure, kind, dpi=160, pad_inches=0.08))
 
 
-def _draw_plane(region_map, figure):
+def _draw_plane(region_map, figure, tori):
     horizontal, vertical = {"b=0": (0, 2), "a=b": (0, 2), "c=0": (0, 1)}[region_map.region]
     axes = figure.add_subplot()
 
@@ -87,6 +91,10 @@ def _draw_plane(region_map, figure):
               label="B = 10/3")
     axes.plot(*_around(estimate).T, color=plot.VERMILLION, linewidth=1.6,
               label="estimate: single points are proved down to here")
+    if tori:
+        places = np.array(sorted((float(p[horizontal]), float(p[vertical])) for p in tori))
+        axes.plot(*places.T, "o", color=plot.GREEN, markersize=3.5,
+                  label="a torus is proved to be there")
     if region_map.region == "a=b":
         ends = np.array([0, 0.03]) * float(LINE)
         axes.plot(ends, 2 * ends, "--", color=plot.DARK, linewidth=0.6)

@@ -6,7 +6,7 @@ import math
 import os
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Any, Dict, Iterator, List, Optional, Tuple, Union
+from typing import Any, Dict, Iterable, Iterator, List, Optional, Tuple, Union
 
 from ..model.exact import decimal_text, exact
 from ..storage import files
@@ -194,10 +194,12 @@ class Map:
         lines += ["SHA-256 : " + self.sha256] if self.sha256 else []
         return "\n".join(lines) + "\n"
 
-    def draw(self, path: Union[str, "os.PathLike[str]"]) -> None:
-        """Draws it: SVG, PNG or PDF, by the name of the file (matplotlib)."""
+    def draw(self, path: Union[str, "os.PathLike[str]"],
+             tori: Iterable[Tuple[Fraction, Fraction, Fraction]] = ()) -> None:
+        """Draws it: SVG, PNG or PDF, by the name of the file (matplotlib).  tori: the (a, b, c) of
+        proved tori, for the map of a plane (maps.tori.proved_points)."""
         from ..draw import map_figure
-        map_figure.draw(self, path)
+        map_figure.draw(self, path, list(tori))
 
     def __repr__(self):
         return "<Map of %s: %d cells proved, %d at once, %d open>" % (

@@ -8,8 +8,8 @@ from conftest import ROOT
 
 # From the ground up; a room imports only what is on lower floors.  (_native is compiled; the
 # package itself, "", loads what it is asked for.)
-FLOORS = [["version", "_native", "storage", "model"], ["prover"], ["maps"], ["draw"],
-          ["orbits", "tori"], ["commands"], ["", "__main__"]]
+FLOORS = [["version", "_native", "storage", "model"], ["prover", "tori"], ["maps"],
+          ["draw"], ["orbits"], ["commands"], ["", "__main__"]]
 BESIDE = ["check", "_build"]            # import nothing of the others
 
 # Methods of a value that need more than the value does: each imports it when it is called.

@@ -1,0 +1,134 @@
+"""Tori that are proved along the rays of a map of a plane: the frontier from its other side.
+
+On each ray, that is, in each direction in which the map's frontier was estimated, tori of a few
+rotation vectors are looked for below it; the one that is proved with the largest amplitudes is kept
+as a certificate (docs/format.md), in a file of its own.  Below the largest amplitude nothing is said
+of others: a torus is proved for the amplitudes of its certificate alone.
+"""
+
+import math
+import os
+from fractions import Fraction
+from typing import Callable, Dict, Iterator, List, Optional, Sequence, Tuple, Union
+
+from ..model.problem import THESIS, Problem
+from ..storage.files import ConverseError
+from . import region
+from .map import Map, Place
+
+VECTORS = "spiral", "seven", "T49", "V1"
+PARTS = 0.985, 0.95, 0.9, 0.8, 0.65     # of the radius to which tori are found: proofs are tried
+POINTS = 1 << 14                        # of a grid on which a torus is looked for
+UNIT = Fraction(1, 10 ** 5)             # of a radius
+ENDING = ".torus"
+
+Path = Union[str, "os.PathLike[str]"]
+Point = Tuple[Fraction, Fraction, Fraction]
+Progress = Optional[Callable[[int, int], None]]
+
+
+def rays(found: Map) -> Iterator[Tuple[int, Place]]:
+    """The (face, place) of the directions in which the frontier was estimated; one of those that two
+    faces share.  ConverseError: it is the map of the sphere."""
+    if len(found.directions[0]) > 2:
+        raise ConverseError("tori are proved along the rays of a plane; name a plane's map")
+    known = set()
+    for face, estimate in enumerate(found.estimate):
+        for place in sorted(estimate):
+            direction = region.direction(found.directions[face], place)
+            if direction not in known:
+                known.add(direction)
+                yield face, place
+
+
+def prove_tori(found: Map, directory: Path, *, vectors: Sequence[str] = VECTORS,
+               points: int = POINTS, progress: Progress = None) -> None:
+    """Proves a torus on each ray of a plane's map that has no certificate in the directory, which is
+    made if need be, and writes its certificate there, named by the face and the place of the ray.
+
+    vectors -- names of rotation vectors (converse.tori) that are tried
+    points -- of the grid on which a torus is looked for, at most: effort
+    progress(rays done, all rays) is called as rays are done
+
+    A ray on which nothing is proved stays without a certificate.  ConverseError: a certificate
+    cannot be written, or it is a map of the sphere."""
+    todo = list(rays(found))
+    try:
+        os.makedirs(directory, exist_ok=True)
+    except OSError as error:
+        raise ConverseError("%s: cannot be made (%s); name another directory"
+                            % (os.fspath(directory), error.strerror)) from None
+    for done, (face, place) in enumerate(todo):
+        path = os.path.join(directory, "%d-%s%s" % (face, float(place[0]), ENDING))
+        if progress:
+            progress(done, len(todo))
+        if not os.path.exists(path):
+            best = _best(region.direction(found.directions[face], place),
+                         found.estimated(face, place), vectors, points)
+            if best:
+                best.save(path)
+
+
+def _best(direction, frontier, vectors, points):
+    """The proof of the torus with the largest radius, or None."""
+    from ..tori import read_rotation
+
+    best, reached = None, 0.0
+    for name in vectors:
+        proof, radius = _proved(direction, read_rotation(name, 2), frontier, reached, points)
+        if proof:
+            best, reached = proof, radius
+    return best
+
+
+def _proved(direction, rotation, frontier, least, points):
+    """A proof of a torus of this rotation vector at a radius above the least, and the radius; or
+    (None, least)."""
+    from ..tori import NotFound, NotProved, find, prove
+
+    top = frontier
+    try:
+        torus = find(_problem(direction, top), rotation, points=points)
+    except NotFound as failure:
+        top, torus = top * failure.reached, None
+    for part in (1.0, *PARTS) if torus else PARTS:
+        if top * part <= least:
+            break
+        try:
+            if torus is None:
+                torus = find(_problem(direction, top * part), rotation, points=points)
+            return prove(torus), top * part
+        except (NotFound, NotProved):
+            torus = None
+    return None, least
+
+
+def _problem(direction, radius):
+    exact = math.floor(radius / UNIT) * UNIT
+    return Problem.patch([exact * d for d in direction])
+
+
+def proved_points(directory: Path) -> List[Tuple[Point, str]]:
+    """The (a, b, c) of the certificates in a directory, and the rotation vectors' names.
+
+    They are read, not checked: converse-check does that.  ConverseError: the directory or a
+    certificate cannot be read, or is of other waves, or of a range."""
+    from ..tori.certificate import read
+
+    try:
+        names = sorted(name for name in os.listdir(directory) if name.endswith(ENDING))
+    except OSError as error:
+        raise ConverseError("%s: cannot be read (%s); name the directory of --tori"
+                            % (os.fspath(directory), error.strerror)) from None
+    points = []
+    for name in names:
+        path = os.path.join(directory, name)
+        certificate = read(path)
+        torus = certificate.tori[0]
+        amplitude: Dict[tuple, Fraction] = dict(zip(torus.potential.waves,
+                                                    torus.potential.amplitude))
+        if torus.part is not None or not set(amplitude) <= {(*k, Fraction(0)) for k in THESIS}:
+            raise ConverseError("%s: is no torus at one (a, b, c); remove it" % path)
+        a, b, c = (amplitude.get((*k, Fraction(0)), Fraction(0)) for k in THESIS)
+        points.append(((a, b, c), torus.rotation.name))
+    return points
