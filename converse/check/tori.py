@@ -10,7 +10,7 @@ import math
 from dataclasses import dataclass
 from fractions import Fraction
 
-from .arith import GUARD, Fixed
+from .arith import GUARD, fixed_of
 from .failures import NotConfirmed, Rejected, named
 from .field import (E_LOW, Divisors, Field, Norm, combination, identity, rounded_down, rounded_up,
                     upper_root)
@@ -253,7 +253,7 @@ class Torus:
         if bits not in self.steps:
             self.steps[bits] = [self.field.in_units(element, fine + 64)
                                 for element in self.rotation]
-        steps, fixed = self.steps[bits], Fixed.of(fine)
+        steps, fixed = self.steps[bits], fixed_of(fine)
         whole = 1 << fine + 64
 
         def of(m):
@@ -481,7 +481,7 @@ class Residual:
 
     def amplitudes(self, phase, middle, part):
         """p e^(i pi phase) for the powers 0 and 1 of s, in units."""
-        fixed = Fixed.of(self.ring.bits)
+        fixed = fixed_of(self.ring.bits)
         sin, cos = fixed.sincos(fixed.angle(phase))
         quarter = phase * 2 % 4
         if quarter.denominator == 1:
