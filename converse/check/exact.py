@@ -89,7 +89,8 @@ class Lane:
         new1 = [2 * a - b for a, b in zip(L1, self.L0[1])]
         for wave, (strong0, strong1) in zip(prism.waves, self.strengths):
             k0, k1, phase, amplitude, parts, error = wave
-            xi = [k0 * a + k1 * b for a, b in zip(L0, L1)]
+            xi = L0 if (k0, k1) == (1, 0) else L1 if (k0, k1) == (0, 1) else [
+                k0 * a + k1 * b for a, b in zip(L0, L1)]
             size = sum(map(abs, xi))
             rest = (strong0 * r0 + strong1 * r1 + rotated) >> rotated
             reach = size + rest
@@ -277,11 +278,11 @@ class SecondVariation:
             parts_A, parts_B = parts_A + abs(part_A), parts_B + abs(part_B)
             for j, x in enumerate(m):
                 part_alpha, part_beta = x * part_c >> U, -x * part_s >> U
-                self.product[(i, j) if i <= j else (j, i)] += part_alpha << U
+                self.product[i, j] += part_alpha << U
                 parts_alpha, parts_beta = parts_alpha + abs(part_alpha), \
                     parts_beta + abs(part_beta)
                 for k, y in enumerate(xi):
-                    self.product[tuple(sorted((i, j, k)))] += part_beta * y
+                    self.product[i, j, k] += part_beta * y
         products = [xi[j] * xi[k] for j, k in self.pairs]
         for row, x, y in zip(self.cubic, first, [0, *xi]):
             x -= B * y
@@ -326,7 +327,7 @@ class SecondVariation:
                     if x:
                         self.product[i,] += g[0] * x
                         for j, y in enumerate(g[1:]):
-                            self.product[(i, j) if i <= j else (j, i)] += x * y
+                            self.product[i, j] += x * y
 
     def form(self):
         """The polynomial by its monomials (i,), (i, j) and (i, j, k), i <= j <= k: of degree 4,
@@ -334,7 +335,7 @@ class SecondVariation:
         form = {key: 0 for count in (1, 2, 3)
                 for key in itertools.combinations_with_replacement(self.symbols, count)}
         for key, x in self.product.items():
-            form[key] += 6 * x << 2 * UNIT_BITS
+            form[tuple(sorted(key))] += 6 * x << 2 * UNIT_BITS
         for i, row in zip([(), *[(i,) for i in self.symbols]], self.cubic):
             for (j, k), x in zip(self.pairs, row):
                 form[tuple(sorted((*i, j, k)))] += (1 + (j < k)) * x

@@ -359,7 +359,7 @@ def test_bounds_of_the_exact_path(name):
     ("wave", "abs(m0) + most_m + omega", "abs(m0) + omega"),
     ("wave", "abs(m0) + most_m + omega", "most_m + omega"),
     ("wave", "(2 * count * (2 + len(wave.parts)) << U)", "0"),
-    ("wave", "(1 + (j < k)) * x", "x"), ("wave", "form[key] += 6", "form[key] += 3"),
+    ("wave", "(1 + (j < k)) * x", "x"), ("wave", "(sorted(key))] += 6", "(sorted(key))] += 3"),
     ("lane", "n0 * v0 - n1 * v1", "n0 * v0 + n1 * v1"),
     ("lane", "mu0[0] * E0 + mu1[0] * E1", "mu0[0] * E0 - mu1[0] * E1"),
     ("lane", "(sum(map(abs, mu0)) + sum(map(abs, mu1)))", "sum(map(abs, mu1))"),
