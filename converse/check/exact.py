@@ -178,11 +178,14 @@ def is_definite(d):
     return d[0] > 0 and d[0] * d[2] > d[1] * d[1]
 
 
-def recursion(blocks, tail):
+def recursion(blocks, middle, tail):
     """The recursion of step (C3) from the first of these matrices on: d of each, and where what it
-    rests on begins, as it begins anew behind a place where d is not positive."""
+    rests on begins, as it begins anew behind a place where d is not positive, and in the middle,
+    where the other lane begins, if there was such a place before."""
     found, begin, inv = [], 0, tail
     for k, block in enumerate(blocks):
+        if k == middle and begin:
+            begin, inv = k, tail
         d = [x - y for x, y in zip(block, inv)]
         found.append((d, begin))
         begin, inv = (begin, inverse(d)) if is_definite(d) else (k + 1, tail)
@@ -199,7 +202,8 @@ def test_vectors(ahead, back, l):
     recursions.
     """
     tail, blocks = (l, 0.0, l), [*reversed(back), *ahead]
-    left, right = recursion(blocks, tail), recursion(blocks[::-1], tail)[::-1]
+    left = recursion(blocks, len(back), tail)
+    right = recursion(blocks[::-1], len(ahead), tail)[::-1]
     best, place, n = math.inf, None, [(0.0, 0.0)] * len(blocks)
     for k, (block, (d, begin), (beyond, end)) in enumerate(zip(blocks, left, right)):
         low, vector = least([x + y - z for x, y, z in zip(d, beyond, block)])
