@@ -119,9 +119,10 @@ def displacements(rng, cases):
                    for v, x, k in zip(point[3:], start[:2], (start[2], start[8]))]
         assert all(abs(s) <= 1 for s in symbols)
         symbols += e[:3]                                # in the order of the columns
+        assert n == 1 or max(map(abs, centre)) < 3.1416     # the core keeps them modulo 2 pi
         x = orbit(point, prism[10:12], min(n, 0), max(n, 1))[n]
         x = [y - 2 * mpmath.pi * mpmath.nint((y - mp(near)) / (2 * mpmath.pi))
-             for y, near in zip(x, centre)]             # the core keeps them modulo 2 pi
+             for y, near in zip(x, centre)]
         away = [y - mp(near) for y, near in zip(x, centre)]
         straight = [mp(sum(k * s for k, s in zip(row, symbols))) for row in columns]
         bent = [mp(sum(t * symbols[k] * symbols[l] for t, (k, l) in zip(row, PAIRS)))
