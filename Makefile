@@ -31,7 +31,7 @@ prove: $(VENV)/installed
 	$(VENV)/bin/converse -d30 -g build/trig274.ps inputs/trig274.in
 	@echo 'The figure of the prisms is build/trig274.ps.'
 
-# The tests but the slow ones; half a minute.
+# The tests but the slow ones; a minute.
 check: $(VENV)/with-test
 	$(VENV)/bin/pytest $(TWO) -q -m 'not slow' tests
 
