@@ -136,14 +136,14 @@ def displacements(rng, cases):
 
 def test_orbits_stay_within_reach():
     followed = tight = bowed = 0
-    for prism, measured, bounds in displacements(rng_for("loewner orbits"), CASES // 2):
+    for prism, measured, bounds in displacements(rng_for("loewner orbits"), CASES // 4):
         for row, bound in zip(measured, bounds):
             assert all(x <= y + 1e-35 for x, y in zip(row, bound)), prism   # mpmath rounds, too
         for i in range(2):
             followed += 1
             tight += bounds[0][i] <= 1e-10 or measured[0][i] > 0.02 * bounds[0][i]
             bowed += bounds[0][i] < 0.01 * measured[1][i]       # the bow tells what columns do not
-    assert followed > CASES // 4 and tight > 0.3 * followed and bowed > 0.02 * followed
+    assert followed > CASES // 8 and tight > 0.3 * followed and bowed > 0.02 * followed
 
 
 def second_variation(point, star, n, first, l, s, t):
