@@ -25,7 +25,8 @@ CLOSE = 1 / 200             # |I - L M| that is close enough
 BYTES = 250                 # of memory for each point of a grid: a ball in two arrays
 WIDTHS = [1.2 ** -j for j in range(26)]         # of the rate of decay: the rho that are tried
 ALPHAS = tuple(Fraction(a, 2) for a in (2, 3, 4, 5, 6, 8, 10, 12, 16))      # ratios of weights
-MOST_BITS = 4000
+MOST_BITS, MOST_LAYERS = 4000, 1024
+SECONDS = 1.2e-5            # for each point of a grid, about
 Progress = Optional[Callable[[str], None]]
 
 
@@ -204,23 +205,20 @@ class _Attempt:
                 raise ValueError("the torus has a mode 0, which is not to be given")
         self.norm = _norm(torus) if norm is None else norm
         self.far = _distances(torus, self.norm)
-        self.layers = layers or (1 if torus.part is None else
-                                 4 << (max(torus.degree, 1) - 1).bit_length())
+        self.layers = layers
         self.phases = Phases(torus, self.norm)
         self.tell("bounding small divisors")
         self.theorem = Theorem(self.phases, Divisors(
             torus.rotation, self.norm, lattice_basis(self.waves)))
 
     def run(self) -> Piece:
-        rate = self.torus.decay(self.far)
-        rate = min(rate, 5.0) if rate > 0 else 1.0
+        self.rate = rate = self._rate()
         widths = [Fraction(rate * x).limit_denominator(10 ** 6) for x in WIDTHS] \
             if self.rho is None else [self.rho]
         widths = [rho for rho in widths if rho > 0]
         inverse, grid, rho, at = self._plan(widths)
         bits = self.bits or self._bits(grid, rho, at[rho])
-        self.tell("computing the residual on %s points" % " x ".join(
-            map(str, grid.shape if grid.layers == 1 else (*grid.shape, grid.layers))))
+        self._tell("computing the residual", grid.shape, grid.layers)
         error = residual(self.torus, grid, bits)
 
         tries = []
@@ -237,14 +235,22 @@ class _Attempt:
         return Piece(self.torus, self.norm, constants, e0, verdict, rho, wider, radius, grid,
                      inverse.grid, bits, time.process_time() - self.start, BYTES * grid.points)
 
+    def _rate(self):
+        """At which coefficients decay; that of no modes, or of those that grow, is made up."""
+        rate = self.torus.decay(self.far)
+        return min(rate, 5.0) if rate > 0 else 1.0
+
     def _plan(self, widths):
         """(Inverse, the grid of the residual, about the best width, {width: needed residual})."""
-        points, known = 64 * self.layers, {}
+        points, known = 64, {}
+        layers = 1 if not self.phases.varies else 4 << self.torus.degree.bit_length()
+        while 2 * float(self._at(points, 1).reach) * self.rate < 12:
+            points *= 2
         while True:
-            self.tell("inverting I + Du on %d points" % points)
-            shape = best_shape(self.norm, self.waves, points // self.layers)
-            self._check_cost(points)
-            inverse = Inverse(self.torus, self.norm, shape, self.layers)
+            shape = best_shape(self.norm, self.waves, points)
+            self._check_cost(points * layers)
+            self._tell("inverting I + Du", shape, layers)
+            inverse = Inverse(self.torus, self.norm, shape, layers)
             constants = {rho: inverse.at(rho) for rho in widths}
             at = {}
             for rho, c in constants.items():
@@ -255,7 +261,7 @@ class _Attempt:
             best = self._grid(at)
             if best is not None:
                 grid, rho = best
-                if constants[rho].eta < CLOSE or 4 * points > 4 * grid.points:
+                if constants[rho].eta < CLOSE or points * layers > grid.points:
                     return inverse, grid, rho, at
             elif 4 * inverse.cut > 3 * self.far.max(initial=1) + 40:
                 raise NotProved("no inverse of I + Du was found, or the torus is too wild; find it "
@@ -269,13 +275,13 @@ class _Attempt:
         Of the residual only what the grid does not see is known before it is computed."""
         if not at:
             return None
+        layers = self.layers or self._layers(at)
         if self.shape is not None:
-            grid = Grid(self.norm, self.waves, self.shape, self.layers)
+            grid = Grid(self.norm, self.waves, self.shape, layers)
             return grid, max(at, key=lambda rho: self._ratio(grid, rho, at[rho]))
         points, found = 16, None
         while True:
-            shape = best_shape(self.norm, self.waves, points)
-            grid = Grid(self.norm, self.waves, shape, self.layers)
+            grid = self._at(points, layers)
             points *= 2
             if not all(float(grid.reach) > x for x in self.far):
                 self._check_cost(grid.points)
@@ -288,6 +294,26 @@ class _Attempt:
                 return found[1:]
             self._check_cost(grid.points)
             found = ratio, grid, rho
+
+    def _layers(self, at):
+        """Points of sigma, of which so many are needed with any grid of the angles."""
+        if not self.phases.varies:
+            return 1
+        layers = 2 << self.torus.degree.bit_length()
+        while layers < MOST_LAYERS and not any(
+                self.phases.sigma_tail(layers, rho)[0] < needed / AIM
+                for rho, needed in at.items()):
+            layers *= 2
+        return layers
+
+    def _at(self, points, layers):
+        return Grid(self.norm, self.waves, best_shape(self.norm, self.waves, points), layers)
+
+    def _tell(self, what, shape, layers):
+        points = [x for x in (*shape, layers) if x > 1] or [1]
+        seconds = SECONDS * math.prod(points)
+        self.tell("%s on %s points%s" % (what, " x ".join(map(str, points)), "" if seconds < 2
+                                         else ", some %.0f s" % seconds))
 
     def _ratio(self, grid, rho, needed):
         tail = self.phases.best_tail(grid, rho)[0]

@@ -29,6 +29,7 @@ from .torus import Torus
 
 SLACK = 1 + 2.0 ** -30      # above what MOST roundings of sums, products and roots amount to
 MOST = 1 << 21              # summands
+DIGIT = 256                 # |m_i| = coarse DIGIT + fine, of tables of exponentials
 TINY = 2.0 ** -1000         # above what underflows lose
 ROUND = 1 << 30             # denominator of the widths that are tried
 Columns = Dict[Tuple[int, int], Dict[int, acb]]      # (q1, j): {q0: coefficient}, modulo the grid
@@ -245,9 +246,10 @@ class Sizes:
         for alpha, m in zip(self.norm.alpha, self.m.T):
             with precision(64):
                 base = ball(rho * alpha)
-                table = np.array([above((base * int(j)).exp())
-                                  for j in range(int(m.max(initial=0)) + 1)])
-            found *= table[m]
+                fine, coarse = (np.array([above((base * (step * j)).exp()) for j in range(count)])
+                                for step, count in ((1, DIGIT), (
+                                    DIGIT, int(m.max(initial=0)) // DIGIT + 1)))
+            found *= fine[m % DIGIT] * coarse[m // DIGIT]
         return found
 
 
@@ -579,16 +581,19 @@ class Phases:
             total += 2 * arb(self._force(rho, radius)) / ball(radius) ** grid.layers
         return above(total)
 
+    def sigma_tail(self, layers: int, rho: Fraction) -> Tuple[float, Fraction]:
+        """(the second term, about the least, and the radius for it)."""
+        radius = 1 + _lowest(
+            lambda x: math.log(self._force(rho, 1 + x)) - layers * math.log1p(x), LADDER)
+        return 2 * self._force(rho, radius) / float(radius) ** layers, radius
+
     def best_tail(self, grid: Grid, rho: Fraction) -> Tuple[float, Fraction, Fraction]:
         """(tail, wider, radius), about the least tail.  Each of its terms is a logarithmically
         convex function of the width or of log radius, and so falls and then rises."""
         wider = _lowest(
             lambda x: math.log(self._force(x, Fraction(1))) - float((x - rho) * grid.reach),
             [x for x in LADDER if x > rho])
-        radius = Fraction(1)
-        if self.varies:
-            radius = 1 + _lowest(
-                lambda x: math.log(self._force(rho, 1 + x)) - grid.layers * math.log1p(x), LADDER)
+        radius = self.sigma_tail(grid.layers, rho)[1] if self.varies else Fraction(1)
         return self.tail(grid, rho, wider, radius), wider, radius
 
     def _force(self, rho, radius):
