@@ -14,10 +14,13 @@ from converse.tori.proved import prove
 from converse.tori.rotation import read_rotation
 
 
-@pytest.fixture(scope="module", params=["circle", "surface"])
+@pytest.fixture(scope="module", params=["circle", "surface", "range"])
 def proof(request):
     if request.param == "circle":
         problem = Problem.patch(["0.3", "-0.04"], (), [(1, 0), (2, 0, Q(1, 3))])
+        return prove(find(problem, read_rotation("golden", 1)))
+    if request.param == "range":
+        problem = Problem.patch(["0.35", "0.01"], [["0.3", "0"]], [(1, 0), (2, 0)])
         return prove(find(problem, read_rotation("golden", 1)))
     return prove(find(Problem.patch(["0.01", "0.01", "0.02"]), read_rotation("T49", 2)))
 
@@ -27,9 +30,10 @@ def test_what_was_written_is_read(proof, name, tmp_path):
     checksum = proof.save(tmp_path / name)
     found = certificate.read(tmp_path / name)
     assert found.sha256 == checksum
-    torus, = found.tori
-    for field in ("potential", "part", "rotation", "bits", "modes", "piece"):
-        assert getattr(torus, field) == getattr(proof.torus, field)
+    for torus, piece in zip(found.tori, proof.pieces):
+        for field in ("potential", "part", "rotation", "bits", "modes", "piece"):
+            assert getattr(torus, field) == getattr(piece.torus, field)
+    assert len(found.tori) == len(proof.pieces)
     assert (found.norm, found.rho) == (proof.worst.norm, proof.worst.rho)
     assert float(found.hints["residual"]) == pytest.approx(proof.residual)
 

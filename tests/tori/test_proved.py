@@ -4,6 +4,7 @@ import dataclasses
 import math
 from fractions import Fraction as Q
 
+import numpy as np
 import pytest
 from flint import arb
 
@@ -212,3 +213,59 @@ def test_best_shape_reaches_furthest():
     norm = Norm(((1, 1), (1, -1)), (Q(1), Q(3)))
     assert Grid(norm, ((1, 0), (0, 1)), best_shape(norm, ((1, 0), (0, 1)), 64)).reach == 8
     assert best_shape(Norm(((1,),), (Q(1),)), ((3,),), 64) == (1, 64)
+
+
+# ---- ranges
+
+RANGE = Problem.patch(["0.3"], [["0.2"]], [(1, 0)])
+
+
+@pytest.fixture(scope="module")
+def pieces():
+    return find(RANGE, GOLDEN)
+
+
+def test_a_range_is_proved(pieces):
+    proof = prove(pieces)
+    assert [piece.torus for piece in proof.pieces] == pieces
+    assert proof.residual < proof.needed and 0 < proof.distance < 1e-4
+    for p in "0.1", "0.25", "0.5":          # and its tori are those of single values
+        s = (Q(p) - Q("0.3")) / Q("0.2")
+        piece, = (x for x in proof.pieces if x.torus.piece[0] <= s <= x.torus.piece[1])
+        single, = prove(standard(p), GOLDEN).pieces
+        theta = np.linspace(0, 6, 7)[:, None]
+        gap = abs(piece.torus.x(theta, float(s)) - single.torus.x(theta)).max()
+        assert gap < 2 * (piece.distance + single.distance)
+
+
+RANGE_DAMAGES = {
+    "wider": lambda t: changed(t, part=tuple(p * Q(1001, 1000) for p in t.part)),
+    "shifted": lambda t: potential(t, Q(101, 100)),
+    "constant": lambda t: changed(t, {k: series[:1] for k, series in t.modes.items()}),
+    "a power": lambda t: changed(t, {
+        k: (series[0], tuple(x + (1 << t.bits) // 1000 for x in series[1]), *series[2:])
+        for k, series in t.modes.items()}),
+}
+
+
+@pytest.mark.parametrize("damage", RANGE_DAMAGES)
+def test_damaged_ranges_are_not_proved(damage, pieces):
+    with pytest.raises(NotProved):
+        prove([RANGE_DAMAGES[damage](torus) for torus in pieces])
+
+
+def test_pieces_must_tile_the_range(pieces):
+    torus, = pieces
+    first, second = (changed(torus, piece=ends) for ends in ((Q(-1), Q(0)), (Q(1, 2), Q(1))))
+    for wrong in [first], [second, first], [first, second], [torus, torus], [
+            changed(torus, piece=(Q(0), Q(0)))]:
+        with pytest.raises(ValueError, match="tile"):
+            check_cover(wrong)
+
+
+@pytest.mark.parametrize("problem, rotation", [
+    pytest.param(Problem.patch(["0.01", "0.01", "0.02"], [["0.002", "0.002", "0.004"]]), T49,
+                 marks=pytest.mark.slow)])
+def test_ranges_of_two_angles_are_proved(problem, rotation):
+    proof = prove(problem, rotation)
+    assert proof.residual < proof.needed and proof.distance < 1e-4
