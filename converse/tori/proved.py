@@ -23,7 +23,7 @@ from .torus import Torus
 AIM = 1000.0                # what grid and roundings are to leave of the admissible residual
 CLOSE = 1 / 200             # |I - L M| that is close enough
 BYTES = 250                 # of memory for each point of a grid: a ball in two arrays
-WIDTHS = [1.2 ** -j for j in range(26)]         # of the rate of decay: the rho that are tried
+WIDTHS = [1.25 ** -j for j in range(20)]        # of the rate of decay: the rho that are tried
 ALPHAS = tuple(Fraction(a, 2) for a in (2, 3, 4, 5, 6, 8, 10, 12, 16))      # ratios of weights
 MOST_BITS, MOST_LAYERS = 4000, 1024
 SECONDS = 1.2e-5            # for each point of a grid, about

@@ -22,7 +22,7 @@ NARROW = 100                            # rho/rho_inf
 SHARES = tuple(Fraction(s, 20) for s in (1, 2, 4, 8, 16))
 PARTS = 0.001, 0.003, 0.01, 0.025, 0.06, 0.15           # of 1/(l0 m0 a0), for t
 STEPS = 4                               # N: more are never worse, as (30) is made
-HALVINGS = 24                           # of the logarithm of the largest e0
+HALVINGS = 20                           # of the logarithm of the largest e0
 
 
 class Choice(NamedTuple):
@@ -143,7 +143,7 @@ class Theorem:
     def _largest(self, constants, choice):
         """(about the largest e0 with which the theorem holds, the choice), in doubles."""
         numbers, s, t = self._doubles(constants, choice)
-        low, high = -700.0, 0.0
+        low, high = -300.0, 0.0
         if not holds(numbers.bounds(math.exp(low), s, t), t):
             return 0.0, choice
         for _ in range(HALVINGS):

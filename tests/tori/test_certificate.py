@@ -14,13 +14,10 @@ from converse.tori.proved import prove
 from converse.tori.rotation import read_rotation
 
 
-@pytest.fixture(scope="module", params=["circle", "surface", "range"])
+@pytest.fixture(scope="module", params=["surface", "range"])
 def proof(request):
-    if request.param == "circle":
-        problem = Problem.patch(["0.3", "-0.04"], (), [(1, 0), (2, 0, Q(1, 3))])
-        return prove(find(problem, read_rotation("golden", 1)))
     if request.param == "range":
-        problem = Problem.patch(["0.35", "0.01"], [["0.3", "0"]], [(1, 0), (2, 0)])
+        problem = Problem.patch(["0.35", "-0.01"], [["0.3", "0"]], [(1, 0), (2, 0, Q(1, 3))])
         return prove(find(problem, read_rotation("golden", 1)))
     return prove(find(Problem.patch(["0.01", "0.01", "0.02"]), read_rotation("T49", 2)))
 

@@ -99,9 +99,10 @@ DAMAGES = {
 
 
 @pytest.mark.parametrize("damage, which", [(d, "circle") for d in DAMAGES] + [
-    ("a coefficient", "surface"), ("other potential", "surface"), ("nothing", "surface"),
+    ("a coefficient", "surface"),
     *(pytest.param(d, "surface", marks=pytest.mark.slow) for d in (
-        "a high coefficient", "smaller", "other sign", "other rotation", "24 bits"))])
+        "other potential", "nothing", "a high coefficient", "smaller", "other sign",
+        "other rotation", "24 bits"))])
 def test_damaged_tori_are_not_proved(damage, which, request):
     torus = request.getfixturevalue(which)
     with pytest.raises(NotProved) as error:
@@ -140,8 +141,7 @@ def test_a_coarser_choice_is_no_better(circle):
     """Whatever is chosen, the same true torus is near."""
     best, = prove(circle).pieces
     assert best.distance < 1e-8
-    for rho in Q(1, 100), Q(1, 20):
-        assert prove(circle, rho=rho).pieces[0].distance < 1e-6
+    assert prove(circle, rho=Q(1, 20)).pieces[0].distance < 1e-6
 
 
 @pytest.fixture(scope="module")
