@@ -24,6 +24,7 @@ import numpy as np
 from ..model.exact import Ends
 from ..model.potential import FourierSum
 from ..model.problem import Problem
+from ..storage.files import ConverseError
 
 if TYPE_CHECKING:
     from .rotation import Rotation
@@ -148,14 +149,24 @@ class Torus:
                              % (theta.shape, self.dimension))
         return theta
 
-    def decay(self, direction: Optional[np.ndarray] = None) -> float:
-        """The rate r at which the coefficients of u at s = 0 fall, |u_k| < C e^{-r d(k)} about.
+    def decay(self, direction: Optional[np.ndarray] = None, s: Optional[float] = None) -> float:
+        """The rate r at which the coefficients of u fall, |u_k| < C e^{-r d(k)} about.
 
-        direction -- d(k) of each of `vectors`, for instance a norm; by default sum of |k_i|.
+        direction -- d(k) of each of `vectors`, for instance a norm; by default sum of |k_i|
+        s -- the parameter, by default that in the middle of the piece
         It is the slope, over the outer half of the modes, of the upper concave envelope of
         log|u_k| over d(k); infinity if there are fewer than two modes.  No bound: an estimate."""
         far = np.abs(self.vectors).sum(1) if direction is None else np.asarray(direction)
-        return decay(far, np.abs(self._series[0]).max(1, initial=0))
+        coefficients = self._series[0] if s is None else self.coefficients(s)
+        return decay(far, np.abs(coefficients).max(1, initial=0))
+
+    def _repr_png_(self) -> Optional[bytes]:
+        """For notebooks; None without matplotlib."""
+        from ..draw.torus_figure import picture
+        try:
+            return picture([self])
+        except ConverseError:
+            return None
 
 
 def decay(far: np.ndarray, size: np.ndarray) -> float:

@@ -1,0 +1,70 @@
+"""Pictures of tori: they are drawn, in every format, and show what they should."""
+
+from fractions import Fraction
+from types import SimpleNamespace
+
+import pytest
+from conftest import not_sanitized
+
+from converse.draw import torus_figure
+from converse.model.potential import FourierSum
+from converse.storage.files import ConverseError
+from converse.tori.rotation import read_rotation
+from converse.tori.torus import Torus
+
+pytestmark = not_sanitized
+pytest.importorskip("matplotlib")
+NONE = Fraction(0)
+CIRCLE = FourierSum(((1, 0, NONE),), (Fraction(1, 2),), 1)
+WAVES = FourierSum(((1, 0, NONE), (0, 1, NONE)), (Fraction(1, 20), Fraction(1, 30)), 2)
+
+
+def proved(*tori):
+    return SimpleNamespace(pieces=[SimpleNamespace(torus=torus, rho=Fraction(1, 10), needed=1e-8,
+                                                   residual=1e-11) for torus in tori])
+
+
+ONE = proved(Torus(CIRCLE, None, read_rotation("golden"), 20, {
+    (k,): ((10 ** 6 >> 2 * k, -k),) for k in range(1, 9)}))
+TWO = proved(Torus(WAVES, None, read_rotation("T49"), 20, {
+    (1, 0): ((90000, 0, 9000, 10),), (0, 1): ((0, 10, 80000, -9),), (2, -1): ((1, 2, 3, 4),)}))
+RANGE = proved(*(Torus(CIRCLE, (Fraction(1, 4),), read_rotation("golden"), 20,
+                       {(1,): ((10 ** 5, 0), (10 ** 4, 3)), (2,): ((10 ** 3, 9),)},
+                       (Fraction(low), Fraction(low + 1))) for low in (-1, 0)))
+
+
+@pytest.mark.parametrize("proof", [ONE, TWO, RANGE], ids=["one angle", "two angles", "a range"])
+def test_a_proved_torus_is_drawn(proof, tmp_path):
+    for name, start in (("a.png", b"\x89PNG"), ("a.svg", b"<?xml"), ("a.pdf", b"%PDF")):
+        torus_figure.draw(proof, str(tmp_path / name))
+        assert (tmp_path / name).read_bytes().startswith(start)
+    assert torus_figure.picture([p.torus for p in proof.pieces], "svg", proof.pieces) \
+        == (tmp_path / "a.svg").read_bytes()                    # the same at every run
+
+
+def test_a_torus_draws_itself_in_a_notebook(monkeypatch):
+    torus = ONE.pieces[0].torus
+    assert torus._repr_png_().startswith(b"\x89PNG")
+
+    def missing():
+        raise ConverseError("no matplotlib")
+
+    monkeypatch.setattr(torus_figure.plot, "check", missing)
+    assert torus._repr_png_() is None
+
+
+def test_a_picture_is_refused_in_other_formats(tmp_path):
+    with pytest.raises(ConverseError, match="drawn as .svg"):
+        torus_figure.draw(ONE, str(tmp_path / "a.ps"))
+
+
+def test_the_copies_of_a_torus_fill_the_square(tmp_path):
+    """However far u moves it: no corner is left white."""
+    import matplotlib.image
+    far = Torus(WAVES, None, read_rotation("T49"), 20, {(1, 1): ((400000, 0, 0, 300000),)})
+    path = tmp_path / "a.png"
+    path.write_bytes(torus_figure.picture([far]))
+    image = matplotlib.image.imread(str(path))
+    height, width = image.shape[:2]
+    inner = image[height // 3:height // 2, width // 10:width // 5, :3]     # of the first panel
+    assert (inner.min(-1) < 0.97).all()
