@@ -166,7 +166,7 @@ def _errors(ax, proved):
             ax.text(rho, math.log10(value), "   %s %.1e" % (name, value), va="center")
         ax.annotate("", (rho, math.log10(piece.residual)), (rho, math.log10(piece.needed)),
                     arrowprops={"arrowstyle": "->", "color": GREY, "shrinkA": 5, "shrinkB": 5})
-        ax.set(xlim=(0, 2 * rho), xlabel=r"width $\rho$ of the strip")
+        ax.set(xlim=(0, 3 * rho), xlabel=r"width $\rho$ of the strip")
         ax.locator_params("x", nbins=3)
     ax.set(ylabel=r"$\log_{10} \|E\|_\rho$", title="error of the invariance equation")
     ax.margins(y=0.2)
