@@ -32,7 +32,8 @@ TOO_LARGE = "too large"
 class NotFound(Exception):
     """No torus was found; the text says why, and what was reached.
 
-    reached -- the part of the way from the start to the amplitudes asked for, in [0, 1]
+    reached -- the part of the way from the start to the amplitudes asked for, in [0, 1]; of a
+        range of amplitudes, the part from its lower end
     amplitude -- there, of each wave"""
 
     def __init__(self, text: str, reached: float, amplitude: Sequence[float]) -> None:
@@ -71,6 +72,7 @@ class Way:
         return self.first + Real(part) * (self.last - self.first)
 
     def mesh(self, box) -> Mesh:
+        """One that holds the mode numbers of a box, with room for products."""
         return Mesh.holding(self.potential, self.rotation, self.frame, np.array(box) / ROOM / 2)
 
     def follow(self, start: Optional[Found] = None) -> Found:

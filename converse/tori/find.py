@@ -109,9 +109,13 @@ class _Pieces:
             low, high = rest.pop()
             middle = (low + high) / 2
             ends = [found]
-            for s in (middle, high):
-                way = self.way(ends[-1].amplitude, self.amplitude(s))
-                ends.append(way.follow(ends[-1]))
+            for begin, end in ((low, middle), (middle, high)):
+                way = self.way(ends[-1].amplitude, self.amplitude(end))
+                try:
+                    ends.append(way.follow(ends[-1]))
+                except NotFound as error:
+                    s = float(begin) + error.reached * float(end - begin)
+                    raise NotFound(str(error), (s + 1) / 2, error.amplitude) from None
             torus = self._torus((low, high), ends)
             if torus is not None:
                 tori.append(torus)

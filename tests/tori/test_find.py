@@ -216,8 +216,11 @@ def test_pieces_of_a_range(problem, rotation, count):
 
 
 def test_a_range_that_goes_too_far():
-    with pytest.raises(NotFound, match="no torus of golden"):
+    with pytest.raises(NotFound, match="no torus of golden") as caught:
         find(Problem(("0.5", "1.2"), 0, 0), GOLDEN, points=1 << 11)
+    last, = caught.value.amplitude
+    assert 0.8 < last < 0.9717
+    assert caught.value.reached == pytest.approx((last - 0.5) / 0.7)
 
 
 @pytest.mark.slow
