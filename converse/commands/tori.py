@@ -80,8 +80,7 @@ def _prove_parser(commands):
     p.add_argument("-b", "--backup", metavar="FILE",
                    help="write the certificate to FILE, a new one; compressed, if it ends in .gz")
     p.add_argument("-g", "--graphics", metavar="FILE",
-                   help="draw the torus in FILE, by its name's ending as SVG, PNG, PDF or "
-                        "PostScript (.ps, .eps)")
+                   help="draw the torus in FILE, by its name's ending as SVG, PNG or PDF")
     p.add_argument("-r", "--restore", metavar="FILE",
                    help="start from the torus of the certificate FILE, of other amplitudes, not "
                         "from the map without potential; it has the rotation vector, too")
@@ -135,12 +134,11 @@ def _check_outputs(options):
             raise ConverseError("%s: exists; name another file or remove it" % options.backup)
         files.check_writable(options.backup)
     if options.graphics is not None:
-        from ..draw import figure, plot
+        from ..draw import plot
 
-        files.check_output(options.graphics, "figure", figure.ALL_FORMATS,
+        files.check_output(options.graphics, "figure", plot.FORMATS,
                            [options.input, options.backup, options.restore])
-        if figure.format_of(options.graphics) != "ps":
-            plot.check()
+        plot.check()
 
 
 def _norm(options, potential):
@@ -177,6 +175,8 @@ def _rotation(options, potential, start, norm):
 
 
 def prove_torus(options):
+    import numpy
+
     from .. import tori
     from ..tori import report
     from ..tori.torus import family
@@ -184,7 +184,7 @@ def prove_torus(options):
     _check_outputs(options)
     start = None if options.restore is None else _start(options.restore)
     problem = _read_problem(options)
-    potential, _ = family(problem)
+    potential, part = family(problem)
     norm = _norm(options, potential)
     rotation = _rotation(options, potential, start, norm)
     of_find = {name: value for name, value in (
@@ -195,23 +195,37 @@ def prove_torus(options):
         ("memory", options.memory and int(options.memory * GIGABYTE))) if value is not None}
     say(report.header(problem, rotation))
     began = time.process_time()
-    with ProgressLine() as line:
+    with ProgressLine() as line, numpy.errstate(all="ignore"):
         def progress(words):
             line(lambda: words)
         try:
             progress("looking for a torus")
             proof = tori.prove(tori.find(problem, rotation, **of_find),
                                progress=progress, **of_proof)
+            _check_claim(proof, potential, part, rotation)
         except (tori.NotFound, tori.NotProved) as reason:
             line.clear()
             say(report.undecided(problem, rotation, reason))
             return 1
-    checksum = "" if options.backup is None else proof.save(options.backup)
-    say(report.verdict(problem, proof, time.process_time() - began, options.backup, checksum))
+    certificate = {}
+    try:
+        if options.backup is not None:
+            certificate = {"certificate": options.backup, "checksum": proof.save(options.backup)}
+    finally:                            # the theorem is told, even if the disk is full
+        say(report.verdict(proof, time.process_time() - began, **certificate))
+    options.proved = True
     if options.graphics is not None:
         from ..draw import torus_figure
         torus_figure.draw(proof, options.graphics)
     return 0
+
+
+def _check_claim(proof, potential, part, rotation):
+    """Sees that what was proved is what was asked for: the map, the whole range, the torus."""
+    torus = proof.torus
+    if (torus.potential, torus.part, torus.rotation) != (potential, part, rotation):
+        raise ConverseError("what was proved is not what was asked for; this is an error of the "
+                            "program")
 
 
 def _start(path):
@@ -236,7 +250,12 @@ def run(options):
 
 def main(argv=None):
     """Runs the command and returns its exit status."""
-    return ended(COMMAND, lambda: run(parser().parse_args(argv)), lambda: "nothing is proved")
+    options = argparse.Namespace(proved=False)
+
+    def interrupted():
+        return "the figure is not drawn" if options.proved else "nothing is proved"
+
+    return ended(COMMAND, lambda: run(parser().parse_args(argv, options)), interrupted)
 
 
 if __name__ == "__main__":

@@ -6,6 +6,7 @@ from fractions import Fraction
 from typing import List, Optional, Sequence, Union
 
 from ..model.exact import decimal_text, rounded, rounded_text, short_text
+from ..model.potential import FourierSum
 from ..model.problem import Problem, wave_text
 from ..storage.files import plain
 from ..version import __version__
@@ -14,7 +15,7 @@ from .find import NotFound
 from .proved import NotProved, Piece, ProvedTorus
 from .residual import wave_vectors
 from .rotation import Rotation, element_text, polynomial_text
-from .torus import family
+from .torus import Part, family
 
 PLUSES = "+" * 48
 PLACES = 6                              # of amplitudes, at least
@@ -26,7 +27,7 @@ VECTOR = {1: "rotation number", 2: "rotation vector"}
 def header(problem: Problem, rotation: Rotation) -> str:
     """What is known before the search: the map, the rotation vector, comments of the input."""
     n = rotation.dimension
-    lines = ["Map : y' = y + J', J' = J - dV(y), V(y) = - the sum of :", *_waves(problem),
+    lines = ["Map : y' = y + J', J' = J - dV(y), V(y) = - the sum of :", *_waves(*family(problem)),
              "", "%s : %s" % (VECTOR[n].capitalize(), plain(str(rotation))),
              "t : the root of %s near %s" % (polynomial_text(rotation.polynomial), _rounded(
                  rotation, (Fraction(0), Fraction(1), Fraction(0))[:n + 1]))]
@@ -48,9 +49,8 @@ def _rounded(rotation, element):
         Fraction(math.floor(abs(low) * 10 ** DIGITS), 10 ** DIGITS), DIGITS)[:DIGITS]
 
 
-def _waves(problem: Problem) -> List[str]:
-    """Those that are present, exactly."""
-    potential, part = family(problem)
+def _waves(potential: FourierSum, part: Part) -> List[str]:
+    """The waves, exactly."""
     lines = []
     for j, (wave, p) in enumerate(zip(potential.waves, potential.amplitude)):
         moves = "" if part is None or not part[j] else " %s %s s" % (
@@ -59,15 +59,15 @@ def _waves(problem: Problem) -> List[str]:
     return lines + ([] if part is None else ["for -1 <= s <= 1"])
 
 
-def verdict(problem: Problem, proof: ProvedTorus, seconds: float,
-            certificate: Optional[str] = None, checksum: str = "") -> str:
+def verdict(proof: ProvedTorus, seconds: float, certificate: Optional[str] = None,
+            checksum: str = "") -> str:
     """The theorem, and how near it was.
 
     seconds -- that finding and proving took
     certificate, checksum -- the file's name and SHA-256, if there is one"""
     n, rotation, worst = proof.rotation.dimension, proof.rotation, proof.worst
     lines = ["I find %s of this %s for V(y) = - the sum of :" % (TORUS[n], VECTOR[n]),
-             *_waves(problem), "",
+             *_waves(proof.torus.potential, proof.torus.part), "",
              "It is a real analytic graph J = P + S'(y) over all angles, P constant, S periodic.",
              "The map takes its point y(theta) = theta + u(theta) to y(theta + w), w = 2 pi omega.",
              ""]
@@ -87,8 +87,10 @@ def verdict(problem: Problem, proof: ProvedTorus, seconds: float,
                   len(worst.torus.modes), worst.torus.bits,
                   "" if worst.torus.part is None else ", polynomials in s of degree %d"
                   % worst.torus.degree),
-              "Grid : %s" % " x ".join(map(str, worst.grid.shape if n == 2
-                                           else worst.grid.shape[-1:])), "",
+              "Grid : %s%s" % (" x ".join(map(str, worst.grid.shape if n == 2
+                                              else worst.grid.shape[-1:])),
+                               "" if worst.torus.part is None else ", for each of %d s"
+                               % worst.grid.layers), "",
               "This investigation took %.2f seconds." % seconds, ""]
     if certificate is not None:
         lines += ["Certificate : %s" % plain(certificate), "SHA-256 : %s" % checksum]
@@ -119,14 +121,15 @@ def _divisors(rotation: Rotation, norm: Norm, waves: Sequence[Sequence[int]]) ->
     return ["Small divisors : |1 - exp(i k.w)| >= %s/%s for k != 0, and %s/%s for |k| >= %s" % (
                 _down(float(divisors.gamma), 6), power, _down(float(divisors.gamma_tail), 6), power,
                 divisors.reach),
-            "k : the integer combinations of the waves', |k| = %s" % " + ".join(terms)]
+            *(["k : the integer combinations of the waves', |k| = %s" % " + ".join(terms)]
+              if n == 2 or norm.alpha != (1,) else [])]
 
 
 def undecided(problem: Problem, rotation: Rotation, reason: Union[NotFound, NotProved]) -> str:
     """That there is no theorem, and why."""
     n = rotation.dimension
     lines = ["I could not decide whether there is %s of this %s for V(y) = - the sum of :"
-             % (TORUS[n], VECTOR[n]), *_waves(problem), "",
+             % (TORUS[n], VECTOR[n]), *_waves(*family(problem)), "",
              "%s : %s" % ("Not found" if isinstance(reason, NotFound) else "Not proved",
                           plain(" ".join(str(reason).split())))]
     return "\n".join(lines) + "\n"
