@@ -134,7 +134,7 @@ def _check_outputs(options):
             raise ConverseError("%s: exists; name another file or remove it" % options.backup)
         files.check_writable(options.backup)
     if options.graphics is not None:
-        from ..draw import plot
+        from ..draw import plot, torus_figure  # noqa: F401, which would be missed too late
 
         files.check_output(options.graphics, "figure", plot.FORMATS,
                            [options.input, options.backup, options.restore])

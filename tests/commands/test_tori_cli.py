@@ -8,7 +8,7 @@ from fractions import Fraction
 import pytest
 from conftest import ROOT
 
-from converse import Problem, read_input, tori
+from converse import Problem, check, read_input, tori
 from converse.commands import tori as cli
 from converse.tori import report
 
@@ -55,6 +55,7 @@ def test_a_theorem(run, tmp_path):
     assert "SHA-256 : " + certificate.sha256 in out and "Certificate : %s" % file in out
     assert certificate.tori[0].rotation.vector == ((0, 1),)
     assert certificate.tori[0].potential.amplitude == (Fraction("0.9"),)
+    assert check.main([str(file)]) == 0             # by other means
 
 
 def test_a_theorem_with_choices(run, tmp_path):
