@@ -189,3 +189,11 @@ def test_a_range_is_told_exactly():
     problem = Problem.patch(["0.25"], [["0.05"]], waves=[(1, 0)])
     out = report.header(problem, tori.read_rotation("golden"))
     assert "p sin(y0), p = 0.250000 + 0.050000 s\nfor -1 <= s <= 1\n" in out
+
+
+def test_a_figure(run, tmp_path):
+    figure, problem = tmp_path / "torus.png", tmp_path / "standard.in"
+    problem.write_text("0.3 0.1\n0 0\n0 0\n1 1\n1 1\n")
+    status, out, err = run("prove", problem, "--rotation", "golden", "-g", figure)
+    assert (status, err) == (0, "") and figure.read_bytes().startswith(b"\x89PNG")
+    assert "p sin(y0), p = 0.300000 + 0.100000 s\nfor -1 <= s <= 1\n" in out.partition("I find")[2]
