@@ -45,7 +45,7 @@ def test_commands_are_understood():
         lines = re.findall(r"^    (?:\S*/)?(converse\S*) *(.*)$", text, re.MULTILINE)
         spans = re.findall(r"`(converse\S*) ([^`[]*)`", text)
         for command, arguments in lines + spans:
-            file = re.match("(proof|state|map) [0-9]$", arguments)      # its first line
+            file = re.match("(proof|state|map|torus) [0-9]$", arguments)      # its first line
             if command in PARSERS and "..." not in arguments and not file:
                 arguments = re.sub(r"\b[KN]\b", "3", arguments.partition("#")[0])
                 try:
