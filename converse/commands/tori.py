@@ -18,6 +18,9 @@ COMMAND = "converse-tori"
 STATUS = ("Exit status: 0 a theorem; 1 not found or not proved; 2 bad usage, input or file, or the "
           "certificate could not be saved; 129, 130 or 143 ended by a signal.")
 GIGABYTE = 10 ** 9
+# A torus whose residual is so many times larger than needed, at most, is found more accurately,
+# with a margin so many times larger.
+MOST_LACKING, FINER = 1e8, 1e4
 
 
 # ---- what is read
@@ -199,9 +202,7 @@ def prove_torus(options):
         def progress(words):
             line(lambda: words)
         try:
-            progress("looking for a torus")
-            proof = tori.prove(tori.find(problem, rotation, **of_find),
-                               progress=progress, **of_proof)
+            proof = _found_and_proved(problem, rotation, of_find, of_proof, progress)
             _check_claim(proof, potential, part, rotation)
         except (tori.NotFound, tori.NotProved) as reason:
             line.clear()
@@ -218,6 +219,24 @@ def prove_torus(options):
         from ..draw import torus_figure
         torus_figure.draw(proof, options.graphics)
     return 0
+
+
+def _found_and_proved(problem, rotation, of_find, of_proof, progress):
+    """The proof.  If the torus turns out to be not accurate enough, a more accurate one is tried,
+    unless the flags say how accurate the torus or the proof is to be."""
+    from .. import tori
+
+    again = "margin" not in of_find and not of_proof.keys() & {"bits", "shape", "rho"}
+    while True:
+        progress("looking for a torus")
+        found = tori.find(problem, rotation, **of_find)
+        try:
+            return tori.prove(found, progress=progress, **of_proof)
+        except tori.NotProved as reason:
+            if not (again and 0 < reason.needed < reason.residual < MOST_LACKING * reason.needed):
+                raise
+            of_find = {**of_find, "margin": FINER * reason.residual / reason.needed}
+            again = False
 
 
 def _check_claim(proof, potential, part, rotation):

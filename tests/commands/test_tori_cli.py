@@ -79,6 +79,24 @@ def test_a_theorem_near_a_place(run, tmp_path):
     assert "omega : -1+t = -0.38196601125010515" in out         # golden - 1
 
 
+@pytest.mark.parametrize("residual,needed,more,margins", [
+    (1e-9, 1e-12, [], [None, 1e7]), (1e-9, 0.0, [], [None]), (float("inf"), 1e-9, [], [None]),
+    (1e-3, 1e-12, [], [None]), (1e-9, 1e-12, ["--margin", "50"], [50]),
+    (1e-9, 1e-12, ["-p", "60"], [None])])
+def test_a_torus_that_is_not_accurate_enough_is_found_again(run, monkeypatch, residual, needed,
+                                                            more, margins):
+    """Once, with a larger margin, unless what is missing is infinite, or flags choose."""
+    asked = []
+
+    def prove(*_, **__):
+        raise tori.NotProved("it lacks", residual, needed)
+    monkeypatch.setattr(tori, "find", lambda *_, margin=None: asked.append(margin))
+    monkeypatch.setattr(tori, "prove", prove)
+    status, out, _ = run("prove", K09, "--rotation", "golden", *more)
+    assert status == 1 and "Not proved : it lacks\n" in out
+    assert asked == [margin and pytest.approx(margin) for margin in margins]
+
+
 def test_a_start_from_a_certificate(run, tmp_path):
     file = tmp_path / "golden.torus.gz"
     problem = tmp_path / "standard.in"
@@ -193,7 +211,7 @@ def test_a_range_is_told_exactly():
 
 def test_a_figure(run, tmp_path):
     figure, problem = tmp_path / "torus.png", tmp_path / "standard.in"
-    problem.write_text("0.3 0.1\n0 0\n0 0\n1 1\n1 1\n")
+    problem.write_text("0.3 0.01\n0 0\n0 0\n1 1\n1 1\n")
     status, out, err = run("prove", problem, "--rotation", "golden", "-g", figure)
     assert (status, err) == (0, "") and figure.read_bytes().startswith(b"\x89PNG")
-    assert "p sin(y0), p = 0.300000 + 0.100000 s\nfor -1 <= s <= 1\n" in out.partition("I find")[2]
+    assert "p sin(y0), p = 0.300000 + 0.010000 s\nfor -1 <= s <= 1\n" in out.partition("I find")[2]
