@@ -77,7 +77,8 @@ def verdict(proof: ProvedTorus, seconds: float, certificate: Optional[str] = Non
                                                                       _down(worst.needed)),
               ""]
     if len(proof.pieces) > 1:
-        lines += [_piece_line(piece) for piece in proof.pieces] + [""]
+        lines += [_piece_line(piece) for piece in proof.pieces]
+        lines += ["", "What follows is of the piece with the least margin."]
     lines += _divisors(rotation, worst.norm, wave_vectors(proof.torus))
     constants = worst.constants
     lines += ["Width rho of the strip : %.6g" % worst.rho,
