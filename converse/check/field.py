@@ -17,6 +17,7 @@ PI_LOW, PI_HIGH = Fraction(314159265358979, 10 ** 14), Fraction(314159265358980,
 E_LOW = Fraction(271828182845904, 10 ** 14)
 SHARES = 64                             # of an edge of the unit ball
 BITS = 256                              # of the root, to begin with
+SHY = 16                                # times the tail's bound: no larger divisors are looked at
 
 
 def rounded_up(x, bits=80):
@@ -37,6 +38,13 @@ def upper_root(x):
     """A rational not below the root of x >= 0."""
     x = rounded_up(Fraction(x)) * 4 ** 64
     return Fraction(math.isqrt(math.floor(x)) + 1, 2 ** 64)
+
+
+def exponential_below(x):
+    """A rational not above e^x, x >= 0."""
+    if x > 1:
+        return rounded_down(exponential_below(x / 2) ** 2)
+    return rounded_down(sum([x ** j / math.factorial(j) for j in range(13)]))
 
 
 def evaluate(polynomial, x):
@@ -257,7 +265,15 @@ class Divisors:
         if near > Fraction(1, 2):
             raise NotConfirmed("the small divisors have no bound")     # never, for such radii
         self.tail = rounded_down(2 * PI_LOW * gamma * (1 - (PI_HIGH * near) ** 2 / 6))
-        self.front = self._front(field, elements, radius)
+        self.field, self.elements = field, elements
+        self._look(radius)
+
+    def look(self, radius):
+        """Looks at all k one by one up to this radius, or as far as is not too much work."""
+        most = min(radius, math.floor((MAX_DIVISORS / 4 / math.prod(
+            [2 * float(w) for w in self.norm.widths()])) ** (1 / self.power)))
+        if most > self.radius:
+            self._look(most)
 
     @staticmethod
     def _largest_form(field, elements, corners):
@@ -300,37 +316,42 @@ class Divisors:
             found = max(found, 2 * 2 * root * (abs(a) + 2 * abs(b) * root))
         return rounded_up(found)
 
-    def _front(self, field, elements, radius):
-        """(|k|, lower bound) for those 0 < |k| <= radius that are worse than the tail's bound and
-        than all with a smaller |k|: no other k makes any supremum larger."""
+    def _look(self, radius):
+        """Finds the records, (|k|, lower bound) of those 0 < |k| <= radius whose divisor is smaller
+        than SHY times the tail's bound and than those of all smaller |k|: of these k no other makes
+        a supremum larger."""
         n, bits = self.power, 192
-        steps = [field.in_units(element, bits) for element in elements]
+        steps = [self.field.in_units(element, bits) for element in self.elements]
         reach = [math.floor(w * radius) for w in self.norm.widths()]
         one, found = 1 << bits, []
+        limit = self.tail * SHY * one / 4
         lattice = itertools.product(*[range(-r, r + 1) for r in reach[1:]], range(reach[0] + 1))
         for *rest, first in lattice:
             m = (first, *rest)
-            k = combination(m, self.norm.basis)
-            length = self.norm(k)
+            turn = sum([x * y for x, y in zip(m, steps)]) % one
+            near = min(turn, one - turn)
+            length = self.norm(combination(m, self.norm.basis))
             if not 0 < length <= radius:
                 continue
-            turn = sum([x * y for x, y in zip(m, steps)]) % one
-            error = sum(map(abs, m))
-            near = min(turn, one - turn) - error
+            near -= sum(map(abs, m))
             # 2 sin(pi x) >= 4 x up to 1/2: most k need no more than this.
-            if 4 * near * length ** n >= self.tail * one:
+            if near * length ** n >= limit:
                 continue
             if near <= 0:
                 raise NotConfirmed("the small divisors need more than %d bits" % bits)
             x = Fraction(near, one)
-            bound = rounded_down(2 * PI_LOW * x * (1 - (PI_HIGH * x) ** 2 / 6))
-            if bound * length ** n < self.tail:
-                found.append((length, bound))
-        front = []
+            found.append((length, rounded_down(
+                2 * PI_LOW * x * (1 - (PI_HIGH * x) ** 2 / 6))))
+        self.records, self.radius = [], radius
         for length, bound in sorted(found):
-            if not front or bound < front[-1][1]:
-                front.append((length, bound))
-        return front
+            if not self.records or bound < self.records[-1][1]:
+                self.records.append((length, bound))
+
+    @property
+    def front(self):
+        """Of the records those that are worse than the tail's bound."""
+        return [(length, bound) for length, bound in self.records
+                if bound * length ** self.power < self.tail]
 
     @property
     def least(self):
@@ -349,3 +370,12 @@ class Divisors:
             else:                       # the supremum is at d = delta
                 found = max(found, 1 / sum([x ** j / math.factorial(j) for j in range(7)]) / bound)
         return rounded_up(found)
+
+    def loss_at(self, d):
+        """An upper bound of the supremum over k of e^(-d |k|) / |1 - e^(2 pi i k.omega)|."""
+        n, radius = self.power, self.radius
+        generic = (n / (E_LOW * d)) ** n / self.tail
+        beyond = generic if d * radius < n else \
+            radius ** n / exponential_below(d * radius) / self.tail
+        return rounded_up(max([generic / SHY, beyond] + [
+            1 / exponential_below(d * length) / bound for length, bound in self.records]))

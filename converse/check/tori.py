@@ -22,7 +22,8 @@ from .words import decimal_text
 SHARES_OF_LOSS = [Fraction(x, 20) for x in (1, 2, 4, 8, 16)]        # s of the theorem
 CHANGES = [Fraction(x, 1000) for x in (1, 2, 5, 10, 20, 40, 70, 100, 150)]     # t l0 m0 a0
 ROUGH_BITS = 64                         # of the series for the constants
-TRIES, WIDTHS = 6, 3                    # of numbers of modes, for each width of the strip
+STEPS = 3                               # of the iteration, one by one, if it must be
+TRIES = 6                               # of numbers of modes, for each width of the strip
 POWERS = "", "t", "t^2", "t^3"
 FAR = "the torus is too far from the straight one"
 
@@ -87,32 +88,61 @@ def logarithm_below(x):
     return rounded_down(2 * sum([y ** j / j for j in range(1, 12, 2)]))
 
 
-def allowed(constants, waves, rho, kappa, divisors):
+def allowed(constants, waves, rho, kappa, divisors, steps=0, shares=SHARES_OF_LOSS,
+            changes=CHANGES):
     """(e, v): if ||E|| <= e there is a torus, at most v ||E|| from the approximate one, in the norm
-    of a hundredth of the strip.  waves: (|p|, |k|, bound of ||e^(i k.x)||)."""
+    of a hundredth of the strip.
+
+    waves: (|p|, |k|, bound of ||e^(i k.x)||).  steps: of the iteration that are followed one by
+    one, with the small divisors that are met in each.
+    """
     n, best = divisors.power, (Fraction(0), Fraction(0))
     scale = constants.l * constants.m * constants.a
-    for share in SHARES_OF_LOSS:
+    slow, fast = 1 - Fraction(2, 4 ** n), 1 - Fraction(1, 4 ** n)
+
+    def derivative(width):
+        return rounded_up(kappa / (E_LOW * width))
+
+    for share in shares:
         delta = rounded_down((rho - rho / 100) / (4 + 2 * share))
-        loss = divisors.loss(delta)
-
-        def derivative(width):
-            return rounded_up(kappa / (E_LOW * width))
-
-        for change in CHANGES:
+        deltas = [delta / 2 ** at for at in range(steps + 1)]
+        losses = [divisors.loss_at(x) for x in deltas[:-1]] + [divisors.loss(deltas[-1])]
+        for change in changes:
             t = rounded_down(change / scale)
             if (c := constants.after(t)) is None:
                 continue
-            step = rounded_up(c.a * (1 + c.b * c.p) * loss ** 2)
             third = sum([p * k ** 3 * g * exponential_above(k * t) for p, k, g in waves])
-            growth = step * c.l * ((2 * c.m * c.l * derivative(delta) if n > 1 else 0)
-                                   + derivative(2 * delta) + third * step * c.l ** 3 / 2)
-            v = step * c.l ** 2
-            e = min(1 / (2 ** (4 * n) * growth),
-                    t * (1 - Fraction(2, 4 ** n)) / (v * derivative(share * delta)),
-                    t * (1 - Fraction(1, 4 ** n)) / v)
+            moves, growths = [], []
+            for x, loss in zip(deltas, losses):
+                step = rounded_up(c.a * (1 + c.b * c.p) * loss ** 2)
+                moves.append(rounded_up(step * c.l ** 2))
+                growths.append(rounded_up(step * c.l * (
+                    (2 * c.m * c.l * derivative(x) if n > 1 else 0)
+                    + derivative(2 * x) + third * step * c.l ** 3 / 2)))
+
+            def moved(e):
+                """What the torus moves by, in all, if the residual is e; None, if it may be more
+                than t, or the iteration need not converge."""
+                total = slope = Fraction(0)
+                for at, (x, move, growth) in enumerate(zip(deltas, moves, growths)):
+                    last = at == steps
+                    total += move * e / (fast if last else 1)
+                    slope += derivative(share * x) * move * e / (slow if last else 1)
+                    if last and 2 ** (4 * n) * growth * e > 1 or max(total, slope) > t:
+                        return None
+                    e = rounded_up(growth * e * e)
+                return total
+
+            if steps:
+                e = rounded_down(1 / growths[0])
+                while e > best[0] and moved(e) is None:
+                    e = rounded_down(e * 7 / 10)
+            else:
+                e = rounded_down(min(1 / (2 ** (4 * n) * growths[0]),
+                                     t * slow / (moves[0] * derivative(share * delta)),
+                                     t * fast / moves[0]))
             if e > best[0]:
-                best = rounded_down(e), rounded_up(v / (1 - Fraction(1, 4 ** n)))
+                best = e, rounded_up(moved(e) / e)
     return best
 
 
@@ -207,6 +237,8 @@ class Torus:
             size = sum([math.isqrt(sum([x * x + y * y for x, y in vector])) + 1
                         for vector in series if any(map(any, vector))])
             self.sizes.append((norm(k), size, upper_root(sum([x * x for x in k]))))
+        if sum([size for _, size, _ in self.sizes]) >> self.bits > 100:
+            raise NotConfirmed(FAR)
         self.farthest = max([length for length, _, _ in self.sizes], default=1)
 
     def rate(self):
@@ -244,7 +276,7 @@ class Torus:
             near -= 1
         inner, last = sum(by_length[near * 2 // 3:]), total + by_length[near] + 1
         slope = math.log(max(inner // last, 1)) / max(near / 3, 1)
-        return near, near + math.ceil(min(4 / max(slope, 1e-6), near / 2) + near / 8) + 1
+        return near, near + math.ceil(min(3 / max(slope, 1e-6), near / 3) + near / 16) + 1
 
     def turn_by(self, bits):
         """A function: of the coordinates of k (cos, sin) of k.w, off by less than
@@ -613,13 +645,39 @@ def verify_piece(setting, piece, tell):
 
 
 def widths(torus, hint):
-    """Widths of the strip to try."""
-    rate = torus.rate()
-    own = min((4 * torus.n + 1) / torus.farthest, rate / 3)
-    found = []
-    if 0 < hint < min(rate, 200 / torus.farthest):
-        found.append(float(hint))
-    return (found + [own, own / 1.5, own * 1.3])[:WIDTHS]
+    """Widths of the strip to try: first the one in which about the fewest modes are needed."""
+    largest, rate = torus.farthest, torus.rate()
+    sums, slopes = [0.0] * (largest + 1), [0.0] * (largest + 1)
+    for length, size, width in torus.sizes:
+        sums[length] += 2 * in_double(size, torus.bits)
+        slopes[length] += 2 * in_double(size, torus.bits) * float(width)
+
+    def modes(rho):
+        """How far the modes reach, about; more than the file's, if these are too few."""
+        powers = [math.exp(rho * length) for length in range(largest + 1)]
+        slope = Fraction(1 + sum(map(float.__mul__, slopes, powers)))
+        height = sum(map(float.__mul__, sums, powers))
+        if slope > 100 or height * max([math.hypot(*k) for k, *_ in torus.waves], default=0) > 100:
+            return math.inf
+        waves = [(abs(middle) + abs(part), upper_root(sum([x * x for x in k])),
+                  Fraction(math.exp(rho * torus.norm(k) + math.hypot(*k) * height)))
+                 for k, _, middle, part in torus.waves]
+        rough = Constants(slope, slope, slope * upper_root(slope), Fraction(1), Fraction(1, 10))
+        needed = float(allowed(rough, waves, Fraction(rho), torus.norm.kappa, torus.divisors,
+                               0, SHARES_OF_LOSS[2:3], CHANGES[4:5])[0])
+        if not needed:
+            return math.inf
+        total = 0.0
+        for length in range(largest, 0, -1):
+            total += sums[length] * powers[length]
+            if total > needed / 1000:
+                return length + (math.log(1000 * total / needed) / rate
+                                 if length == largest else 0)
+        return 1
+
+    choice = [rate * 0.8 ** at for at in range(1, 40) if rate * 0.8 ** at * largest < 200]
+    best = min(choice, key=modes, default=rate / 10)
+    return [best, float(hint) if 0 < hint < min(rate, 200 / largest) else best * 1.3, best / 1.5]
 
 
 def verify_width(torus, width, tell):
@@ -661,6 +719,9 @@ def verify_width(torus, width, tell):
         if constants is None:
             return "too much of the torus was cut off"
         needed, v = allowed(constants, found.bounds, rho, norm.kappa, torus.divisors)
+        if residual > needed:
+            torus.divisors.look(math.ceil(40 * 2 ** STEPS / rho))
+            needed, v = allowed(constants, found.bounds, rho, norm.kappa, torus.divisors, STEPS)
         if residual <= needed:
             rounding = Fraction(4 * torus.n * len(torus.modes) * (torus.degree + 1), 1 << bits)
             cut = Fraction(torus.outside(powers, min(near, far)), unit)
