@@ -1,6 +1,8 @@
 """Runs converse on every input, in both modes, or with the flags that the input's comment names, or
 (JSON) with the sharper method, and compares with the golden outputs.
 
+The certificates of existence (tori/) are verified by converse-check.
+
 With --update our own golden outputs are written anew.  What the thesis reports (thesis/) is
 verbatim and is compared with the run --as-printed.  Exit status 1: something differs.
 """
@@ -14,6 +16,7 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 INPUTS = HERE.parent / "inputs"
 CONVERSE = Path(sys.executable).parent / "converse"
+CHECKER = CONVERSE.with_name("converse-check")
 MODES = {"as_printed": ["-d30", "--as-printed"], "sound": ["-d30"]}
 LOEWNER = "for --method loewner"        # a comment of the inputs that it is for
 TORI = "for converse-tori"              # and of those with tori, which are not run here
@@ -87,6 +90,9 @@ def main(update=False):
             if mode == "as_printed" and thesis.exists():
                 expected = as_thesis(lines(thesis.read_text("utf-8")))
                 bad += differences(expected, lines(found), "thesis/" + thesis.name)
+    for certificate in sorted((HERE / "tori").glob("*.torus*")):
+        if subprocess.run([str(CHECKER), "--quiet", str(certificate)], check=False).returncode:
+            bad.append("tori/%s is not verified" % certificate.name)
     print("\n".join(bad) if bad else "every golden output is as it was")
     return 1 if bad else 0
 

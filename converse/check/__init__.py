@@ -1,5 +1,5 @@
-"""The checker: it verifies the theorem of a proof file, or all those of a map, independently of the
-program that wrote them.
+"""The checker: it verifies the theorem of a proof file, all those of a map, or that of a
+certificate of existence, independently of the program that wrote them.
 
 It shares no code with the prover and imports nothing of the rest of converse; but for numpy, which
 it takes for speed where there is one, it needs nothing but Python.  docs/checker.md has its proof,
@@ -12,10 +12,11 @@ from .limits import INTERRUPTED, NOT_CONFIRMED, PART, REJECTED, SPOT_CHECK, UNUS
 from .maps import Map
 from .proof_file import load
 from .run import Result, read, verify
+from .torus_file import TorusClaim
 from .tree import check_tree
 from .version import __version__
 from .words import decimal_text
 
 __all__ = ["Failure", "INTERRUPTED", "Map", "NOT_CONFIRMED", "NotConfirmed", "PART", "REJECTED",
-           "Rejected", "Result", "SPOT_CHECK", "UNUSABLE", "Unusable", "VERIFIED", "__version__",
-           "check_tree", "decimal_text", "load", "main", "parser", "read", "shown", "verify"]
+           "Rejected", "Result", "SPOT_CHECK", "TorusClaim", "UNUSABLE", "Unusable", "VERIFIED",
+           "__version__", "check_tree", "decimal_text", "load", "main", "parser", "read", "shown", "verify"]

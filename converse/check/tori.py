@@ -196,10 +196,11 @@ class Torus:
     """The approximate torus of one piece, shifted by quarter turns such that its coefficients are
     imaginary, if that is possible, and what is needed to verify it."""
 
-    def __init__(self, setting, piece, is_odd):
+    def __init__(self, setting, piece, is_odd, is_trimmed):
         claim, norm = setting.claim, setting.norm
         self.norm, self.divisors, self.field = norm, setting.divisors, setting.field
         self.n, self.degree, self.bits = claim.dimension, piece.degree, piece.bits
+        self.omega = claim.rotation
         self.rotation = [combination(b, claim.rotation) for b in norm.basis]
         self.steps = {}
         middle, half = (piece.high + piece.low) / 2, (piece.high - piece.low) / 2
@@ -240,6 +241,50 @@ class Torus:
         if sum([size for _, size, _ in self.sizes]) >> self.bits > 100:
             raise NotConfirmed(FAR)
         self.farthest = max([length for length, _, _ in self.sizes], default=1)
+        self.has_noise = (knee := self.knee()) < self.farthest
+        if is_trimmed:
+            self.dropped += Fraction(2 * sum([size for length, size, _ in self.sizes
+                                              if length > knee]), 1 << self.bits)
+            self.modes = {k: series for k, series in self.modes.items() if norm(k) <= knee}
+            self.sizes = [size for size in self.sizes if size[0] <= knee]
+            self.farthest = knee
+
+    def knee(self):
+        """Where the decay of the coefficients ends, as it seems, and noise begins: the file's
+        torus without it may be the better one."""
+        width = self.farthest // 32 + 1
+        sums = [0] * (self.farthest // width + 1)
+        for length, size, _ in self.sizes:
+            sums[length // width] += size
+        logs = [math.log(x) for x in sums if x]
+        last = len(logs) - 1
+        if last < 8 or len(logs) < len(sums):
+            return self.farthest
+        # Where the curve is farthest below its chord.
+        at = max(range(1, last), key=lambda i: (logs[last] - logs[0]) * i / last - logs[i])
+        if (logs[0] - logs[at]) / at < 4 * (logs[at] - logs[last]) / (last - at):
+            return self.farthest
+        return (at + 1) * width
+
+    def error_at_a_point(self):
+        """About |E(u)| at some angles and s: more than that, its norm cannot be less."""
+        theta, sigma = (0.7, 1.9)[:self.n], 0.3
+        w = [2 * math.pi * float(self.field.interval(element)[0]) for element in self.omega]
+        at, difference = [0.0] * self.n, [0.0] * self.n
+        for k, series in self.modes.items():
+            wave = 2 * cmath.exp(1j * sum([x * y for x, y in zip(k, theta)]))
+            second = 2 * math.cos(math.fmod(sum([x * y for x, y in zip(k, w)]), 2 * math.pi)) - 2
+            for j, vector in enumerate(series):
+                for i, (re, im) in enumerate(vector):
+                    x = (complex(in_double(re, self.bits), in_double(im, self.bits)) * wave).real
+                    at[i] += x * sigma ** j
+                    difference[i] += x * second * sigma ** j
+        for k, phase, middle, part in self.waves:
+            angle = sum([x * (y + z) for x, y, z in zip(k, theta, at)])
+            force = float(middle + part * Fraction(sigma)) * math.cos(
+                angle + math.pi * float(phase % 2))
+            difference = [x - force * y for x, y in zip(difference, k)]
+        return math.hypot(*difference)
 
     def rate(self):
         """About how fast the coefficients decay: |u_k| ~ e^(-rate |k|)."""
@@ -630,17 +675,16 @@ class Setting:
 def verify_piece(setting, piece, tell):
     """Verified; or NotConfirmed is raised."""
     why = ""
-    for is_odd in (True, False):
-        torus = Torus(setting, piece, is_odd)
-        if is_odd and not torus.could_be_odd:
+    for is_odd, is_trimmed in itertools.product((True, False), repeat=2):
+        torus = Torus(setting, piece, is_odd, is_trimmed)
+        if is_odd and not torus.could_be_odd or is_trimmed and not torus.has_noise \
+                or not is_odd and torus.is_exactly_odd:
             continue
         for rho in widths(torus, setting.claim.rho / setting.scale):
             found = verify_width(torus, rho, tell)
             if isinstance(found, Verified):
                 return found
             why = found
-        if torus.is_exactly_odd:
-            break
     raise NotConfirmed(why)
 
 
@@ -700,6 +744,10 @@ def verify_width(torus, width, tell):
     needed, _ = allowed(whole, waves, rho, norm.kappa, torus.divisors)
     if needed < Fraction(1, 1 << MAX_BITS // 8):
         return "the constants are too large"
+    error = torus.error_at_a_point()
+    if error > 1e-10 and error > 1000 * needed:         # nothing helps: it takes no work to see
+        raise NotConfirmed("the error of the torus is %.1e, where less than %s is needed"
+                           % (error, scientific(needed)))
     # What is cut off u changes E by at most so many times its norm.
     factor = 4 + sum([p * k * k * g for p, k, g in waves])
     near, far = torus.extent(powers, needed / 64 / factor * unit)
@@ -803,7 +851,7 @@ def existence_report(claim, setting, found):
     lines[-1] += ", for all -1 <= s <= 1 and" if ranged else ", for"
     for wave in claim.waves:
         p = exact_text(wave.middle)
-        if ranged:
+        if any(wave.parts):
             p += " %s %s s" % ("-" if wave.parts[0] < 0 else "+", exact_text(abs(wave.parts[0])))
         lines.append("k = %s, phase = %s pi, p = %s" % (
             "(%d, %d)" % wave.k if n == 2 else wave.k[0], exact_text(wave.phase), p))

@@ -120,11 +120,73 @@ def test_it_is_verified_whole(run, options):
     assert (status, out) == (2, "") and "as a whole" in err
 
 
+GOLDEN_FILES = {
+    "standard-0.9": ["k = 1, phase = 0 pi, p = 0.9", "invariant circle"],
+    "standard-0.2-0.6": ["for all -1 <= s <= 1", "p = 0.4 + 0.2 s"],
+    "line-0.004": ["Lagrangian graph", "k = (1, 1), phase = 0 pi, p = 0.08971488"],
+    "phases": ["k = (0, 1), phase = 0.125 pi, p = 0.02", "0.754877666246..."],
+}
+
+
+@pytest.mark.parametrize("name", GOLDEN_FILES)
+def test_certificates_of_the_program_are_verified(root, run, name):
+    data = (root / "golden_outputs" / "tori" / (name + ".torus")).read_bytes()
+    status, out, err = run(data)
+    assert (status, err) == (0, "")
+    assert all(word in out for word in GOLDEN_FILES[name])
+    residual, needed = re.search("Residual : (.*), of at most (.*)", out).groups()
+    assert float(residual) <= float(needed) * 1.2
+
+
+CHANGES_OF_A_RANGE = [
+    # wrong bytes
+    (1, r"pieces: [0-9]+", "pieces: 2"), (1, r"piece -1 ", "piece -0.9 "),
+    (1, r"piece (\S+) 1 ", r"piece \1 0.9 "), (1, r"piece -1 \S+ ", "piece -1 -2 "),
+    (1, r"piece -1 (\S+) (.*)\n", r"piece -1 0.99 \2\n"), (1, "wave: 1 0 0 0.4 0.2", "wave: 1 0 0 0.4"),
+    # false, or not what the torus is for
+    (5, "wave: 1 0 0 0.4 0.2", "wave: 1 0 0 0.4 0.3"), (5, "wave: 1 0 0 0.4 0.2", "wave: 1 0 0 0.4 -0.2"),
+    (5, "wave: 1 0 0 0.4 0.2", "wave: 1 0 0 0.41 0.2"),
+    (5, r"\n1 1 (\S+) (\S+)\n", r"\n1 1 0 0\n"), (5, r"\n1 2 (\S+) (\S+)\n", r"\n1 2 \2 \1\n"),
+]
+
+
+@pytest.mark.parametrize("expected, pattern, new", CHANGES_OF_A_RANGE)
+def test_ranges_that_are_changed(root, run, expected, pattern, new):
+    text = (root / "golden_outputs" / "tori" / "standard-0.2-0.6.torus").read_text()
+    body = text[:text.rindex("checksum: ")]
+    other = re.sub(pattern, new, body, count=1)
+    assert other != body
+    status, out, err = run(sealed(other))
+    assert (status, out) == (expected, "") and err.count("\n") == 1, (status, out, err)
+
+
+CHANGES_OF_A_LINE = [
+    (1, "polynomial: -1 -2 1 1", "polynomial: -1 -2 2 1"), (1, "polynomial: -1 -2 1 1", "polynomial: 0 -2 1 1"),
+    (1, r"rotation: 25/13 -7/13 -8/13", "rotation: -23/13 8/13 11/13"),
+    (1, r"rotation: 25/13 -7/13 -8/13", "rotation: -46/13 16/13 22/13"),
+    (1, r"rotation: 25/13 -7/13 -8/13", "rotation: 1/3 0 0"), (1, "dimension: 2", "dimension: 1"),
+    (5, "wave: 1 0 0 ", "wave: 2 0 0 "), (5, r"rotation: 25/13", "rotation: 24/13"), (1, r"rotation: 25/13", "rotation: 25/0"),
+    (5, "wave: 1 1 0 0.08971488", "wave: 1 1 0 0.0897"),
+    (5, "wave: 1 1 0 0.08971488", "wave: 1 -1 0 0.08971488"),
+    (5, "wave: 1 1 0 0.08971488", "wave: 1 1 1/2 0.08971488"),
+    (5, "wave: 0 1 0 0.04485744", "wave: 0 1 0 -0.04485744"),
+    (5, r"\n1 0 0 (\S+) (\S+) (\S+) (\S+)\n", r"\n1 0 0 \3 \4 \1 \2\n"),
+    (1, r"\n1 0 0 (\S+) (\S+) (\S+) (\S+)\n", r"\n1 0 0 \1 \2\n"),
+    (1, r"\n1 0 0 (\S+)", r"\n-1 0 0 \1"), (1, r"\n1 0 0 (\S+)", r"\n0 0 0 \1"),
+]
+
+
+@pytest.mark.parametrize("expected, pattern, new", CHANGES_OF_A_LINE)
+def test_a_torus_of_two_angles_that_is_changed(root, run, expected, pattern, new):
+    text = (root / "golden_outputs" / "tori" / "line-0.004.torus").read_text()
+    body = text[:text.rindex("checksum: ")]
+    other = re.sub(pattern, new, body, count=1)
+    assert other != body
+    status, out, err = run(sealed(other))
+    assert (status, out) == (expected, "") and err.count("\n") == 1, (status, out, err)
+
+
 # ---- what is refused
-
-def without_checksum(text):
-    return text[:text.rindex("checksum: ")]
-
 
 FIRST = "1 0 " + GOLDEN[0]
 SECOND = "2 0 " + GOLDEN[1]
