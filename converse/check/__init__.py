@@ -19,4 +19,5 @@ from .words import decimal_text
 
 __all__ = ["Failure", "INTERRUPTED", "Map", "NOT_CONFIRMED", "NotConfirmed", "PART", "REJECTED",
            "Rejected", "Result", "SPOT_CHECK", "TorusClaim", "UNUSABLE", "Unusable", "VERIFIED",
-           "__version__", "check_tree", "decimal_text", "load", "main", "parser", "read", "shown", "verify"]
+           "__version__", "check_tree", "decimal_text", "load", "main", "parser", "read", "shown",
+           "verify"]
