@@ -7,7 +7,7 @@ import re
 import zlib
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import TYPE_CHECKING, Dict, List, NoReturn, Tuple, Union
+from typing import TYPE_CHECKING, Dict, NoReturn, Tuple, Union
 
 from ..model.exact import DECIMAL, RATIO, decimal_text
 from ..model.potential import FourierSum
@@ -177,7 +177,7 @@ class _Reader:
 
     def _header(self):
         """The fields up to tori: by name; lists of the waves and the rotation's components."""
-        found: Dict = {"wave": [], "rotation": []}
+        found = {"wave": [], "rotation": []}
         self.at = 1
         while True:
             line = self._next()
@@ -202,7 +202,7 @@ class _Reader:
         if not (0 <= bits <= 10 ** 6 and 0 <= degree <= 10 ** 4):
             raise _Damaged("so many bits, or such a degree, are not possible")
         n = potential.dimension
-        found: Dict[Tuple[int, ...], List] = {}
+        found = {}
         for _ in range(count):
             words = self._next().split(" ")
             if len(words) != n + 1 + 2 * n:

@@ -148,13 +148,16 @@ class Inverse:
 def spectral(entries: np.ndarray) -> np.ndarray:
     """The spectral norms of 1 x 1 or 2 x 2 matrices in axes 1 and 2, from above but for 2^-40 of
     each.  The square of a 2 x 2 matrix's is (S + root(S^2 - 4 |det|^2))/2, S the sum of squares;
-    what rounding takes from the root's argument is less than 1e-13 S^2."""
+    what rounding takes from the root's argument is less than 1e-13 S^2.  The largest entry is made
+    about 1 before, so that nothing underflows that counts."""
     if entries.shape[1] == 1:
         return abs(entries[:, 0, 0])
+    largest = abs(entries).max((1, 2)) + TINY
+    entries = entries / largest[:, None, None]
     square = (entries.real ** 2 + entries.imag ** 2).sum((1, 2))
     det = entries[:, 0, 0] * entries[:, 1, 1] - entries[:, 0, 1] * entries[:, 1, 0]
     inner = np.maximum(square ** 2 - 4 * (det.real ** 2 + det.imag ** 2), 0) + 1e-13 * square ** 2
-    return np.sqrt((square + np.sqrt(inner)) / 2)
+    return largest * np.sqrt((square + np.sqrt(inner)) / 2)
 
 
 def _jacobian(torus: Torus, grid: Grid, cut: Fraction, degree: int) -> List[Columns]:

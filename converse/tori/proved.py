@@ -48,8 +48,7 @@ class Piece:
     residual -- ||E(u)||_rho <= residual; `needed` would have done
     verdict -- of the theorem, with what was chosen in it
     rho, wider, radius -- widths: of the norms, and of the strip (and the disc of sigma) by which
-    what
-        the grid does not see is bounded
+        what the grid does not see is bounded
     grid, inverse_grid -- on which the residual and the inverse of I + Du were computed
     bits -- of the balls
     seconds, memory -- that the proof took; bytes, estimated
@@ -201,8 +200,9 @@ class _Attempt:
         self.start = time.process_time()
         self.waves = wave_vectors(torus)
         for k in torus.modes:
-            if not any(k):
-                raise ValueError("the torus has a mode 0, which is not to be given")
+            if len(k) != torus.dimension or not tuple(k) > (0,) * torus.dimension:
+                raise ValueError("the torus has the mode %s; of k and -k give the one whose first "
+                                 "component that is not 0 is positive, and no 0" % (tuple(k),))
         self.norm = _norm(torus) if norm is None else norm
         self.far = _distances(torus, self.norm)
         self.layers = layers

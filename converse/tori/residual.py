@@ -438,7 +438,7 @@ def _forces(torus: Torus, grid: Grid) -> Iterator[Layers]:
     for j0, line in enumerate(values(torus_columns(torus, grid), grid)):
         def parts(l):
             (u, v), = pairs([line], l)
-            force: List[List] = [[0] * m1, [0] * m1]
+            force = [[0] * m1, [0] * m1]
             for k, (q0, q1), table, factors in waves:
                 at, step = q0 * j0 * (size // m0), q1 * (size // m1)
                 cosine = [(x + table[(at + step * j) % size]).cos()
@@ -511,7 +511,8 @@ def residual(torus: Torus, grid: Grid, bits: int) -> Residual:
         middle, off = gather(_forces(torus, grid), grid, add_linear)
     # h_k of E_0 + i E_1 has |E_k|^2 = (|h_k|^2 + |h_-k|^2)/2
     size = abs(middle) * SLACK + off
-    size = np.sqrt((size * size + size[::-1] * size[::-1]) / 2)
+    largest = np.maximum(size, size[::-1]) + TINY       # by which squares do not underflow
+    size = largest * np.sqrt(((size / largest) ** 2 + (size[::-1] / largest) ** 2) / 2)
     parts = unpacked(middle, off)[:torus.dimension]
     return Residual(torus, grid, np.stack(parts, 1), Sizes(grid.norm, grid.inside[1], size))
 
@@ -546,7 +547,7 @@ class Phases:
                 for j, numbers in enumerate(series):
                     re = sum(a * b for a, b in zip(k, numbers[::2])) / unit
                     im = sum(a * b for a, b in zip(k, numbers[1::2])) / unit
-                    size[row, j] = 2 * math.sqrt(re * re + im * im)
+                    size[row, j] = 2 * math.hypot(re, im)
             self.sizes[k] = Sizes(norm, m, size)
 
     def exponential(self, k: Tuple[int, ...], rho: Fraction, radius: Fraction = Fraction(1)) -> arb:

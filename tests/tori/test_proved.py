@@ -113,8 +113,9 @@ def test_damaged_tori_are_not_proved(damage, which, request):
 def test_what_is_no_torus_is_refused(circle, surface):
     with pytest.raises(ValueError, match="lattice"):    # all waves have even k
         prove(changed(circle, potential=circle.potential._replace(waves=((2, 0, Q(0)),))))
-    with pytest.raises(ValueError, match="mode 0"):
-        prove(changed(circle, {**circle.modes, (0,): ((1, 0),)}))
+    for k in (0,), (-1,):
+        with pytest.raises(ValueError, match="has the mode"):
+            prove(changed(circle, {**circle.modes, k: ((1, 0),)}))
     with pytest.raises(ValueError, match="different"):
         check_cover([circle, surface])
     with pytest.raises(ValueError, match="tile"):
