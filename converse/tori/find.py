@@ -73,10 +73,14 @@ def _amplitudes(potential, rotation, start):
 
 
 def _single(found, potential, rotation, margin):
+    digits = None
     for number in range(ROUNDS):
         aim = plan(found, margin, 1.2 ** number)
-        digits = digits_for(aim, found.mesh, margin)
-        digits.add(digits.picked(found.mesh.moved(found.u, digits.mesh))[None])
+        before, digits = digits, digits_for(aim, found.mesh, margin)
+        if before is None:
+            digits.add(digits.picked(found.mesh.moved(found.u, digits.mesh))[None])
+        else:
+            digits.take(before)
         torus, ratio = refined(digits, aim, potential, None, rotation, margin)
         if ratio <= 1 / margin:
             break

@@ -137,6 +137,15 @@ class Digits:
                 flat = [int(x) for x in (other * 2.0 ** self.bits).ravel().tolist()]
                 mine += np.array(flat, object).reshape(mine.shape)
 
+    def take(self, other: "Digits") -> None:
+        """Takes the coefficients of another one, of the modes that both have."""
+        place = {k: i for i, k in enumerate(map(tuple, other.k.T.tolist()))}
+        pairs = [(i, place[k]) for i, k in enumerate(map(tuple, self.k.T.tolist())) if k in place]
+        mine, theirs = (list(each) for each in zip(*pairs))
+        unit = self.bits - other.bits
+        taken = other.parts[..., theirs]
+        self.parts[..., mine] = taken << unit if unit > 0 else taken >> -unit
+
     def doubles(self) -> np.ndarray:
         """The coefficients (degree + 1, n, modes)."""
         unit = 1 << self.bits

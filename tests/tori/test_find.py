@@ -10,6 +10,7 @@ from converse.model.problem import LINE, Problem
 from converse.tori.continuation import Way
 from converse.tori.find import NotFound, find
 from converse.tori.newton import Mesh, default_frame, triangular
+from converse.tori.refinement import Digits
 from converse.tori.rotation import read_rotation
 from converse.tori.torus import family
 
@@ -185,6 +186,23 @@ def test_refinement_mends_a_torus(name, monkeypatch):
     mended = find(problem, read_rotation(rotation))
     theta = np.random.default_rng(2).uniform(0, 6, (5, right.dimension))
     assert mended.x(theta) == pytest.approx(right.x(theta), abs=1e-10)
+
+
+def test_more_modes_begin_with_the_coefficients_of_fewer():
+    potential, _ = family(POTENTIALS["phases"][0])
+    frame = default_frame(potential)
+    small, large = (Mesh(potential, read_rotation("spiral"), frame, sizes)
+                    for sizes in ((16, 8), (32, 16)))
+    first = Digits(small, small.inside & (abs(small.k).sum(0) > 0), 30)
+    second = Digits(large, large.inside & (abs(large.k).sum(0) > 0), 40)
+    random = np.random.default_rng(4)
+    first.add(random.normal(size=(1, *first.k.shape)) + 1j * random.normal(size=first.k.shape))
+    second.take(first)
+    assert (small.spread(first.k, first.doubles()[0]) == large.moved(
+        large.spread(second.k, second.doubles()[0]), small)).all()
+    third = Digits(small, small.inside & (abs(small.k).sum(0) > 0), 30)
+    third.take(second)
+    assert (third.parts == first.parts).all()
 
 
 @pytest.mark.slow
