@@ -257,6 +257,10 @@ class Divisors:
         scale = lcm(*(a.denominator for a in self.norm.alpha))
         weights = [int(a * scale) for a in self.norm.alpha]
         limit = floor(self.reach * scale)
+        if any(weight * sum(abs(x) * size for x, size in zip(row, self._box)) >= 1 << 61
+               for weight, row in zip(weights, self.norm.frame)):
+            raise ValueError("alpha, %s, has too many digits; round it"
+                             % " ".join(map(str, self.norm.alpha)))
         top = self.basis[0][0]
         found = []
         if n == 1:

@@ -183,6 +183,13 @@ def test_a_vector_that_is_nearly_resonant_is_refused():
         Divisors(read_rotation("t^2-2: 1/2 + t/10^20"), ONE, ((1,),), 10 ** 6)
 
 
+def test_weights_that_machine_integers_cannot_hold_are_refused():
+    alpha = 1, 1 + Fraction(1, 10 ** 17)
+    with pytest.raises(ValueError, match="too many digits"):
+        Divisors(read_rotation("T49"), Norm(LINE, alpha), SQUARE, 300)
+    assert Divisors(read_rotation("T49"), Norm(LINE, alpha), SQUARE, 3).records
+
+
 def test_a_reach_without_sense_is_refused():
     for reach in (0, 10 ** 12):
         with pytest.raises(ValueError, match="reach"):
