@@ -91,8 +91,10 @@ def test_quiet_says_nothing(run):
     ("program: by hand", "program:  \x1b[2J"), ("pieces: 1", "pieces: 1\ncomment: a\ncomment: b"),
     ("pieces: 1", "hint-grid: 1 2 3\npieces: 1"), ("wave: 1 0 0 0.5", "wave: 1 0 2 1/2"),
     ("wave: 1 0 0 0.5", "wave: -1 0 1 0.5"), ("wave: 1 0 0 0.5", "wave: 1 0 1 -0.5"),
-    ("wave: 1 0 0 0.5", "wave: 1 0 0 0.25\nwave: 1 0 0 0.25"), ("polynomial: -1 1 1", "polynomial: 7 -7 -7"),
-    ("rotation: 0 1", "rotation: 1 1"), ("rotation: 0 1", "rotation: 0 -1"), ("root: 0 1", "root: -2 -1"),
+    ("wave: 1 0 0 0.5", "wave: 1 0 0 0.25\nwave: 1 0 0 0.25"),
+    ("polynomial: -1 1 1", "polynomial: 7 -7 -7"),
+    ("rotation: 0 1", "rotation: 1 1"), ("rotation: 0 1", "rotation: 0 -1"),
+    ("root: 0 1", "root: -2 -1"),
     ("wave: 1 0 0 0.5", "wave: 1 0 0 0.5\nwave: 0 1 0 0"),
     ("rotation: 0 1", "rotation: 1 -1")])
 def test_hints_and_other_words_change_nothing(run, hints):
@@ -109,7 +111,8 @@ def test_it_is_near_the_torus_of_the_file(run):
     coarse = sealed(HEADER % 14 + modes_text(GOLDEN[:14]))
     status, text, err = run(coarse)
     assert status == 0, err
-    lost = 2 * sum(math.hypot(*[int(x, 16) for x in value.split()]) for value in GOLDEN[14:]) / 2 ** 40
+    lost = 2 * sum(math.hypot(*[int(x, 16) for x in value.split()])
+                   for value in GOLDEN[14:]) / 2 ** 40
     assert float(re.search("within ([0-9.e-]+) of", text).group(1)) >= lost / 2
     assert distance < 1e-3
 
@@ -142,9 +145,11 @@ CHANGES_OF_A_RANGE = [
     # wrong bytes
     (1, r"pieces: [0-9]+", "pieces: 2"), (1, r"piece -1 ", "piece -0.9 "),
     (1, r"piece (\S+) 1 ", r"piece \1 0.9 "), (1, r"piece -1 \S+ ", "piece -1 -2 "),
-    (1, r"piece -1 (\S+) (.*)\n", r"piece -1 0.99 \2\n"), (1, "wave: 1 0 0 0.4 0.2", "wave: 1 0 0 0.4"),
+    (1, r"piece -1 (\S+) (.*)\n", r"piece -1 0.99 \2\n"),
+    (1, "wave: 1 0 0 0.4 0.2", "wave: 1 0 0 0.4"),
     # false, or not what the torus is for
-    (5, "wave: 1 0 0 0.4 0.2", "wave: 1 0 0 0.4 0.3"), (5, "wave: 1 0 0 0.4 0.2", "wave: 1 0 0 0.4 -0.2"),
+    (5, "wave: 1 0 0 0.4 0.2", "wave: 1 0 0 0.4 0.3"),
+    (5, "wave: 1 0 0 0.4 0.2", "wave: 1 0 0 0.4 -0.2"),
     (5, "wave: 1 0 0 0.4 0.2", "wave: 1 0 0 0.41 0.2"),
     (5, r"\n1 1 (\S+) (\S+)\n", r"\n1 1 0 0\n"), (5, r"\n1 2 (\S+) (\S+)\n", r"\n1 2 \2 \1\n"),
 ]
@@ -161,11 +166,13 @@ def test_ranges_that_are_changed(root, run, expected, pattern, new):
 
 
 CHANGES_OF_A_LINE = [
-    (1, "polynomial: -1 -2 1 1", "polynomial: -1 -2 2 1"), (1, "polynomial: -1 -2 1 1", "polynomial: 0 -2 1 1"),
+    (1, "polynomial: -1 -2 1 1", "polynomial: -1 -2 2 1"),
+    (1, "polynomial: -1 -2 1 1", "polynomial: 0 -2 1 1"),
     (1, r"rotation: 25/13 -7/13 -8/13", "rotation: -23/13 8/13 11/13"),
     (1, r"rotation: 25/13 -7/13 -8/13", "rotation: -46/13 16/13 22/13"),
     (1, r"rotation: 25/13 -7/13 -8/13", "rotation: 1/3 0 0"), (1, "dimension: 2", "dimension: 1"),
-    (5, "wave: 1 0 0 ", "wave: 2 0 0 "), (5, r"rotation: 25/13", "rotation: 24/13"), (1, r"rotation: 25/13", "rotation: 25/0"),
+    (5, "wave: 1 0 0 ", "wave: 2 0 0 "), (5, r"rotation: 25/13", "rotation: 24/13"),
+    (1, r"rotation: 25/13", "rotation: 25/0"),
     (5, "wave: 1 1 0 0.08971488", "wave: 1 1 0 0.0897"),
     (5, "wave: 1 1 0 0.08971488", "wave: 1 -1 0 0.08971488"),
     (5, "wave: 1 1 0 0.08971488", "wave: 1 1 1/2 0.08971488"),
@@ -191,7 +198,8 @@ def test_a_torus_of_two_angles_that_is_changed(root, run, expected, pattern, new
 FIRST = "1 0 " + GOLDEN[0]
 SECOND = "2 0 " + GOLDEN[1]
 BAD_BYTES = {
-    "cut off": sealed(BODY)[:-40], "no end": sealed(BODY)[:-4], "more after the end": sealed(BODY) + "\n",
+    "cut off": sealed(BODY)[:-40], "no end": sealed(BODY)[:-4],
+    "more after the end": sealed(BODY) + "\n",
     "a number changed": sealed(BODY).replace("0.5", "0.4"), "nothing": "converse torus 1\n",
     "CR LF": sealed(BODY).replace("\n", "\r\n"),
     "two ends": sealed(BODY) + sealed(BODY), "no tori": sealed(BODY.replace("tori:\n", "")),
@@ -219,13 +227,15 @@ BAD_TEXT = [
     ("alpha: 1", "alpha: 0"), ("alpha: 1", "alpha: -1"), ("alpha: 1", "alpha: 1 1"),
     ("rho: 0.3", "rho: much"), ("pieces: 1", "pieces: 0"), ("pieces: 1", "pieces: 2"),
     ("pieces: 1", "pieces: one"), ("piece 0 0", "piece -1 1"), ("piece 0 0", "piece 0 1"),
-    ("piece 0 0 40", "piece 0 0 -40"), ("piece 0 0 40", "piece 0 0 \uff14\uff10"), ("piece 0 0 40", "peace 0 0 40"),
+    ("piece 0 0 40", "piece 0 0 -40"), ("piece 0 0 40", "piece 0 0 \uff14\uff10"),
+    ("piece 0 0 40", "peace 0 0 40"),
     ("piece 0 0 40 0", "piece 0 0 40 1"), ("piece 0 0 40", "piece 0 0 040"),
     (" 40 0 %d\n" % len(GOLDEN), " 40 0 %d\n" % (len(GOLDEN) - 1)),
     (" 40 0 %d\n" % len(GOLDEN), " 40 0 %d\n" % (len(GOLDEN) + 1)),
     (FIRST, FIRST + "\n" + FIRST), (FIRST, "-" + FIRST), (FIRST, "0 0 0 0"), (FIRST, "0" + FIRST),
     (FIRST, FIRST.upper()), (FIRST, FIRST + " 0 0"), (FIRST, "1 1 " + GOLDEN[0]),
-    (FIRST, "1 0 0x" + GOLDEN[0]), (FIRST, "1 0 +" + GOLDEN[0]), (FIRST, "1 0 -0 " + GOLDEN[0].split()[1]),
+    (FIRST, "1 0 0x" + GOLDEN[0]), (FIRST, "1 0 +" + GOLDEN[0]),
+    (FIRST, "1 0 -0 " + GOLDEN[0].split()[1]),
     (FIRST, FIRST.replace(" ", "  ")), (FIRST, FIRST + " "), (FIRST, ""), (FIRST, "1 0 1_0 0"),
     (SECOND, "1 0 " + GOLDEN[1]), (FIRST, "\u0661 0 " + GOLDEN[0]), (FIRST, "1/1 0 " + GOLDEN[0]),
 ]
@@ -240,7 +250,8 @@ TOO_MUCH = [
 ]
 # Each would be a false claim, or one that this torus is no proof of.
 FALSE = {
-    "a coefficient": (FIRST, "1 0 " + " ".join("%x" % (int(x, 16) + (1 << 31)) for x in GOLDEN[0].split())),
+    "a coefficient": (FIRST, "1 0 " + " ".join("%x" % (int(x, 16) + (1 << 31))
+                                               for x in GOLDEN[0].split())),
     "the amplitude": ("wave: 1 0 0 0.5", "wave: 1 0 0 0.5005"),
     "its sign": ("wave: 1 0 0 0.5", "wave: 1 0 0 -0.5"),
     "a phase": ("wave: 1 0 0 0.5", "wave: 1 0 1e-3 0.5"),
@@ -348,7 +359,8 @@ def test_small_divisors_are_bounded(name):
     n = len(omega)
     assert 0.98 * gamma < found.tail / (2 * math.pi) <= gamma * 1.00001
     assert 0.95 * least < found.least <= least * 1.00001
-    t = mp.findroot(lambda x: mp.polyval(polynomial[::-1], x), (mp.mpf(root[0]) + root[1]) / 2)
+    t = mp.findroot(lambda x: sum(c * x ** j for j, c in enumerate(polynomial)),
+                    (mp.mpf(root[0]) + root[1]) / 2)
     w = [sum(mp.mpf(c.numerator) / c.denominator * t ** j for j, c in enumerate(x)) for x in omega]
     for delta in (Fraction(1), Fraction(1, 10), Fraction(1, 50)):
         worst = 0
