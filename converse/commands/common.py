@@ -30,16 +30,16 @@ class Parser(argparse.ArgumentParser):
         raise ConverseError("%s; see %s --help" % (message, self.prog))
 
 
-def whole_number(least):
-    """The type of an argument that is a whole number from least to LIMIT."""
+def whole_number(least, most=LIMIT):
+    """The type of an argument that is a whole number from least to most."""
     def convert(text):
         try:
             number = int(text)
         except ValueError:
             number = None
-        if number is None or not least <= number <= LIMIT:
+        if number is None or not least <= number <= most:
             raise argparse.ArgumentTypeError("'%s' is not a whole number from %d to %d"
-                                             % (text, least, LIMIT))
+                                             % (text, least, most))
         return number
     return convert
 

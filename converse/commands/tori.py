@@ -18,9 +18,6 @@ COMMAND = "converse-tori"
 STATUS = ("Exit status: 0 a theorem; 1 not found or not proved; 2 bad usage, input or file, or the "
           "certificate could not be saved; 129, 130 or 143 ended by a signal.")
 GIGABYTE = 10 ** 9
-# A torus whose residual is so many times larger than needed, at most, is found more accurately,
-# with a margin so many times larger.
-MOST_LACKING, FINER = 1e8, 1e4
 
 
 # ---- what is read
@@ -98,7 +95,7 @@ def _prove_parser(commands):
                    help="the width of the strip in which the residual is bounded (default: chosen)")
     p.add_argument("--margin", type=_positive, metavar="X", help="find a torus whose residual is X "
                    "times smaller than the theorem needs, about (default 100)")
-    p.add_argument("--points", type=whole_number(16), metavar="N",
+    p.add_argument("--points", type=whole_number(16, 1 << 26), metavar="N",
                    help="of the grid on which the torus is looked for, at most")
     p.add_argument("--memory", type=_positive, metavar="GB", help="what the proof may take, in GB "
                    "(default: three quarters of what is free)")
@@ -190,11 +187,10 @@ def prove_torus(options):
     potential, part = family(problem)
     norm = _norm(options, potential)
     rotation = _rotation(options, potential, start, norm)
-    of_find = {name: value for name, value in (
+    choices = {name: value for name, value in (
         ("start", start), ("margin", options.margin and float(options.margin)),
-        ("points", options.points)) if value is not None}
-    of_proof = {name: value for name, value in (
-        ("norm", norm), ("shape", options.grid), ("bits", options.precision), ("rho", options.rho),
+        ("points", options.points), ("norm", norm), ("shape", options.grid),
+        ("bits", options.precision), ("rho", options.rho),
         ("memory", options.memory and int(options.memory * GIGABYTE))) if value is not None}
     say(report.header(problem, rotation))
     began = time.process_time()
@@ -202,7 +198,7 @@ def prove_torus(options):
         def progress(words):
             line(lambda: words)
         try:
-            proof = _found_and_proved(problem, rotation, of_find, of_proof, progress)
+            proof = tori.prove(problem, rotation, progress=progress, **choices)
             _check_claim(proof, potential, part, rotation)
         except (tori.NotFound, tori.NotProved) as reason:
             line.clear()
@@ -219,24 +215,6 @@ def prove_torus(options):
         from ..draw import torus_figure
         torus_figure.draw(proof, options.graphics)
     return 0
-
-
-def _found_and_proved(problem, rotation, of_find, of_proof, progress):
-    """The proof.  If the torus turns out to be not accurate enough, a more accurate one is tried,
-    unless the flags say how accurate the torus or the proof is to be."""
-    from .. import tori
-
-    again = "margin" not in of_find and not of_proof.keys() & {"bits", "shape", "rho"}
-    while True:
-        progress("looking for a torus")
-        found = tori.find(problem, rotation, **of_find)
-        try:
-            return tori.prove(found, progress=progress, **of_proof)
-        except tori.NotProved as reason:
-            if not (again and 0 < reason.needed < reason.residual < MOST_LACKING * reason.needed):
-                raise
-            of_find = {**of_find, "margin": FINER * reason.residual / reason.needed}
-            again = False
 
 
 def _check_claim(proof, potential, part, rotation):

@@ -1,9 +1,9 @@
 """Tori that are proved along the rays of a map of a plane: the frontier from its other side.
 
 On each ray, that is, in each direction in which the map's frontier was estimated, tori of a few
-rotation vectors are looked for below it; the one that is proved with the largest amplitudes is kept
-as a certificate (docs/format.md), in a file of its own.  Below the largest amplitude nothing is said
-of others: a torus is proved for the amplitudes of its certificate alone.
+rotation vectors are looked for below it; the one that is proved with the largest amplitudes is
+kept as a certificate (docs/format.md), in a file of its own.  It is a torus for these amplitudes;
+nothing is claimed of smaller ones.
 """
 
 import math
@@ -16,9 +16,9 @@ from ..storage.files import ConverseError
 from . import region
 from .map import Map, Place
 
-VECTORS = "spiral", "seven", "T49", "V1"
+VECTORS = "T49", "V1", "seven"
 PARTS = 0.985, 0.95, 0.9, 0.8, 0.65     # of the radius to which tori are found: proofs are tried
-POINTS = 1 << 14                        # of a grid on which a torus is looked for
+POINTS = 1 << 15                        # of a grid on which a torus is looked for
 UNIT = Fraction(1, 10 ** 5)             # of a radius
 ENDING = ".torus"
 
@@ -28,8 +28,8 @@ Progress = Optional[Callable[[int, int], None]]
 
 
 def rays(found: Map) -> Iterator[Tuple[int, Place]]:
-    """The (face, place) of the directions in which the frontier was estimated; one of those that two
-    faces share.  ConverseError: it is the map of the sphere."""
+    """The (face, place) of the directions in which the frontier was estimated, each direction once.
+    ConverseError: it is the map of the sphere."""
     if len(found.directions[0]) > 2:
         raise ConverseError("tori are proved along the rays of a plane; name a plane's map")
     known = set()
@@ -43,8 +43,9 @@ def rays(found: Map) -> Iterator[Tuple[int, Place]]:
 
 def prove_tori(found: Map, directory: Path, *, vectors: Sequence[str] = VECTORS,
                points: int = POINTS, progress: Progress = None) -> None:
-    """Proves a torus on each ray of a plane's map that has no certificate in the directory, which is
-    made if need be, and writes its certificate there, named by the face and the place of the ray.
+    """Proves a torus on each ray of a plane's map that has no certificate in the directory, and
+    writes its certificate there, named by the face and the place of the ray.  The directory is made
+    if need be.
 
     vectors -- names of rotation vectors (converse.tori) that are tried
     points -- of the grid on which a torus is looked for, at most: effort
@@ -84,22 +85,18 @@ def _best(direction, frontier, vectors, points):
 def _proved(direction, rotation, frontier, least, points):
     """A proof of a torus of this rotation vector at a radius above the least, and the radius; or
     (None, least)."""
-    from ..tori import NotFound, NotProved, find, prove
+    from ..tori import NotFound, NotProved, prove
 
-    top = frontier
-    try:
-        torus = find(_problem(direction, top), rotation, points=points)
-    except NotFound as failure:
-        top, torus = top * failure.reached, None
-    for part in (1.0, *PARTS) if torus else PARTS:
-        if top * part <= least:
-            break
+    top, parts = frontier, (1.0, *PARTS)
+    while parts and top * parts[0] > least:
+        radius, parts = top * parts[0], parts[1:]
         try:
-            if torus is None:
-                torus = find(_problem(direction, top * part), rotation, points=points)
-            return prove(torus), top * part
-        except (NotFound, NotProved):
-            torus = None
+            return prove(_problem(direction, radius), rotation, points=points), radius
+        except NotFound as failure:
+            if failure.reached and top == frontier:     # the search got so far
+                top, parts = radius * failure.reached, PARTS
+        except NotProved:
+            pass
     return None, least
 
 

@@ -27,6 +27,9 @@ WIDTHS = [1.25 ** -j for j in range(20)]        # of the rate of decay: the rho 
 ALPHAS = tuple(Fraction(a, 2) for a in (2, 3, 4, 5, 6, 8, 10, 12, 16))      # ratios of weights
 MOST_BITS, MOST_LAYERS = 4000, 1024
 SECONDS = 1.2e-5            # for each point of a grid, about
+# A torus whose residual is so many times larger than needed, at most, is found more accurately,
+# with a margin so many times larger.
+MOST_LACKING, FINER = 1e8, 1e4
 Progress = Optional[Callable[[str], None]]
 
 
@@ -140,6 +143,14 @@ class ProvedTorus:
     def memory(self) -> int:
         return max(piece.memory for piece in self.pieces)
 
+    def _repr_png_(self) -> Optional[bytes]:
+        """For notebooks; None without matplotlib."""
+        from ..draw.torus_figure import picture
+        try:
+            return picture([piece.torus for piece in self.pieces], "png", self.pieces)
+        except ConverseError:
+            return None
+
     def save(self, path: Union[str, "os.PathLike[str]"]) -> str:
         """Writes the certificate (docs/format.md), compressed if the name ends in .gz, and returns
         its SHA-256.  ConverseError: it cannot be written."""
@@ -148,28 +159,53 @@ class ProvedTorus:
 
 
 def prove(source: Union[Problem, Torus, Sequence[Torus]], rotation: Optional[Rotation] = None, *,
-          norm: Optional[Norm] = None, shape: Optional[Tuple[int, int]] = None,
-          layers: Optional[int] = None, bits: Optional[int] = None,
-          rho: Optional[Fraction] = None, memory: Optional[int] = None,
-          progress: Progress = None) -> ProvedTorus:
+          start: Optional[Torus] = None, margin: Optional[float] = None,
+          points: Optional[int] = None, norm: Optional[Norm] = None,
+          shape: Optional[Tuple[int, int]] = None, layers: Optional[int] = None,
+          bits: Optional[int] = None, rho: Optional[Fraction] = None,
+          memory: Optional[int] = None, progress: Progress = None) -> ProvedTorus:
     """Proves that there is an invariant torus near the given one, or near one that is found first.
 
     source -- a Torus, or tori that cover a range, or a Problem, to which a rotation vector belongs
+    start, margin, points -- with a Problem: what `find` takes
     norm, shape, layers, bits, rho -- of the proof (docs/existence.md); chosen, if they are not
-    given memory -- bytes that the proof may take; by default three quarters of what is free
+        given
+    memory -- bytes that the proof may take; by default three quarters of what is free
     progress -- is told in words what is going on
+
+    If a torus that was found turns out to be not accurate enough, a more accurate one is tried,
+    unless the arguments say how accurate it, or the proof, is to be.
 
     NotProved: the inequality does not hold.  ValueError: the arguments do not go together, or a
     mode of a torus is not in the lattice that its waves generate.  What `find` raises."""
-    if isinstance(source, Problem):
-        if rotation is None:
-            raise ValueError("a problem needs a rotation vector")
-        from .find import find
-        source = find(source, rotation)
-    tori = [source] if isinstance(source, Torus) else list(source)
-    check_cover(tori)
-    return ProvedTorus(tuple(
-        _Attempt(torus, norm, shape, layers, bits, rho, memory, progress).run() for torus in tori))
+    def proof(found):
+        tori = [found] if isinstance(found, Torus) else list(found)
+        check_cover(tori)
+        return ProvedTorus(tuple(_Attempt(torus, norm, shape, layers, bits, rho, memory,
+                                          progress).run() for torus in tori))
+
+    finding = {name: value for name, value in
+               (("start", start), ("margin", margin), ("points", points)) if value is not None}
+    if not isinstance(source, Problem):
+        if finding:
+            raise ValueError("start, margin and points are for a Problem, whose torus is looked "
+                             "for")
+        return proof(source)
+    if rotation is None:
+        raise ValueError("a problem needs a rotation vector")
+    from .find import find
+
+    if progress:
+        progress("looking for a torus")
+    try:
+        return proof(find(source, rotation, **finding))
+    except NotProved as failure:
+        lacking = failure.residual / failure.needed if failure.needed else math.inf
+        if not 1 < lacking < MOST_LACKING or any((margin, shape, bits, rho)):
+            raise
+    if progress:
+        progress("looking for a more accurate torus")
+    return proof(find(source, rotation, **dict(finding, margin=FINER * lacking)))
 
 
 def check_cover(tori: Sequence[Torus]) -> None:

@@ -79,24 +79,6 @@ def test_a_theorem_near_a_place(run, tmp_path):
     assert "omega : -1+t = -0.38196601125010515" in out         # golden - 1
 
 
-@pytest.mark.parametrize("residual,needed,more,margins", [
-    (1e-9, 1e-12, [], [None, 1e7]), (1e-9, 0.0, [], [None]), (float("inf"), 1e-9, [], [None]),
-    (1e-3, 1e-12, [], [None]), (1e-9, 1e-12, ["--margin", "50"], [50]),
-    (1e-9, 1e-12, ["-p", "60"], [None])])
-def test_a_torus_that_is_not_accurate_enough_is_found_again(run, monkeypatch, residual, needed,
-                                                            more, margins):
-    """Once, with a larger margin, unless what is missing is infinite, or flags choose."""
-    asked = []
-
-    def prove(*_, **__):
-        raise tori.NotProved("it lacks", residual, needed)
-    monkeypatch.setattr(tori, "find", lambda *_, margin=None: asked.append(margin))
-    monkeypatch.setattr(tori, "prove", prove)
-    status, out, _ = run("prove", K09, "--rotation", "golden", *more)
-    assert status == 1 and "Not proved : it lacks\n" in out
-    assert asked == [margin and pytest.approx(margin) for margin in margins]
-
-
 def test_a_start_from_a_certificate(run, tmp_path):
     file = tmp_path / "golden.torus.gz"
     problem = tmp_path / "standard.in"
@@ -169,8 +151,8 @@ def test_no_theorem_is_told_that_was_not_asked_for(run, tmp_path, monkeypatch):
     """A proof for the middle of a range is none for the range."""
     problem = tmp_path / "range.in"
     problem.write_text("0.5 0.01\n0 0\n0 0\n1 1\n1 1\n")
-    middle = tori.find(Problem.patch(["0.5"], waves=[(1, 0)]), tori.read_rotation("golden"))
-    monkeypatch.setattr(tori, "find", lambda *_, **__: middle)
+    middle = tori.prove(Problem.patch(["0.5"], waves=[(1, 0)]), tori.read_rotation("golden"))
+    monkeypatch.setattr(tori, "prove", lambda *_, **__: middle)
     status, out, err = run("prove", problem, "--rotation", "golden")
     assert status == 2 and "I find" not in out and "not what was asked for" in err
 

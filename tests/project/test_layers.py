@@ -18,6 +18,7 @@ UPWARDS = {("prover.proof", "draw.figure"): "Proof.figure",
            ("maps.map", "draw.map_figure"): "Map.draw",
            ("orbits.state", "orbits.figures"): "State._repr_png_",
            ("tori.torus", "draw.torus_figure"): "Torus._repr_png_",
+           ("tori.proved", "draw.torus_figure"): "ProvedTorus._repr_png_",
            ("prover.proof", "prover.proof_file"): "Proof.load, Proof.save",
            ("tori.proved", "tori.certificate"): "ProvedTorus.save"}
 

@@ -2,6 +2,7 @@
 
 import dataclasses
 import math
+import sys
 from fractions import Fraction as Q
 
 import numpy as np
@@ -9,6 +10,7 @@ import pytest
 from flint import arb
 
 from converse.model.problem import Problem
+from converse.tori import proved
 from converse.tori.constants import Constants
 from converse.tori.divisors import Divisors, Norm, lattice_basis
 from converse.tori.find import find
@@ -270,3 +272,38 @@ def test_pieces_must_tile_the_range(pieces):
 def test_ranges_of_two_angles_are_proved(problem, rotation):
     proof = prove(problem, rotation)
     assert proof.residual < proof.needed and proof.distance < 1e-4
+
+
+@pytest.mark.parametrize("residual,needed,more,margins", [
+    (1e-9, 1e-12, {}, [None, 1e7]), (1e-9, 0.0, {}, [None]), (float("inf"), 1e-9, {}, [None]),
+    (1e-3, 1e-12, {}, [None]), (1e-9, 1e-12, {"margin": 50}, [50]),
+    (1e-9, 1e-12, {"bits": 60}, [None])])
+def test_a_torus_that_is_not_accurate_enough_is_found_again(monkeypatch, residual, needed, more,
+                                                            margins):
+    """Once, with a larger margin, unless what is missing is infinite, or the caller chose."""
+    asked = []
+
+    class Attempt:
+        def __init__(self, *_):
+            pass
+
+        def run(self):
+            raise NotProved("it lacks", residual, needed)
+    monkeypatch.setattr(sys.modules["converse.tori.find"], "find",
+                        lambda *_, margin=None: asked.append(margin) or [])
+    monkeypatch.setattr(proved, "check_cover", lambda tori: tori.append(None))
+    monkeypatch.setattr(proved, "_Attempt", Attempt)
+    with pytest.raises(NotProved, match="it lacks"):
+        prove(standard("0.5"), GOLDEN, **more)
+    assert asked == [margin and pytest.approx(margin) for margin in margins]
+
+
+def test_waves_of_one_direction_in_two_angles():
+    """Their torus is found with too little accuracy first."""
+    proof = prove(Problem.patch([0, 0, "0.09"]), T49)
+    assert proof.residual < proof.needed
+
+
+def test_what_looks_for_a_torus_needs_a_problem(circle):
+    with pytest.raises(ValueError, match="for a Problem"):
+        prove(circle, margin=10.0)

@@ -1,0 +1,74 @@
+"""Tori that are proved along the rays of a map."""
+
+from fractions import Fraction as F
+
+import pytest
+
+from converse import check
+from converse.commands import map as cli
+from converse.maps import tori
+from converse.maps.map import Map
+from converse.storage.files import ConverseError
+
+
+@pytest.fixture(scope="module")
+def few(tmp_path_factory):
+    """A map of a = b with an estimate in two directions, far below the frontier; and certificates
+    of tori there."""
+    found = Map.new("a=b", F(21, 20))
+    found.estimate[:] = [{(F(0),): 0.06, (F(1),): 0.03}, {(F(0),): 0.09, (F(1),): 0.03}]
+    directory = tmp_path_factory.mktemp("tori") / "ab.tori"
+    done = []
+    tori.prove_tori(found, directory, vectors=("T49",), progress=lambda *each: done.append(each))
+    assert done == [(0, 3), (1, 3), (2, 3)]         # the faces share a direction
+    return found, directory
+
+
+def test_a_torus_is_proved_on_each_ray(few):
+    found, directory = few
+    points = tori.proved_points(directory)
+    assert {name for _, name in points} == {"T49"}
+    for a, b, c in (point for point, _ in points):
+        assert a == b and (a == 0 or c in (0, a)) and 0 < a + c
+    assert sorted(max(point) for point, _ in points) == sorted([F("0.06"), F("0.03"), F("0.09")])
+
+
+def test_the_checker_confirms_them(few, capsys):
+    for path in few[1].iterdir():
+        assert check.main([str(path)]) == 0
+    assert "invariant Lagrangian graph" in capsys.readouterr().out
+
+
+def test_what_is_there_is_not_proved_again(few, monkeypatch):
+    monkeypatch.setattr(tori, "_best", lambda *_: pytest.fail("asked again"))
+    tori.prove_tori(*few)
+
+
+def test_beyond_the_frontier_there_is_none():
+    assert tori._best((1, 1, 0), 40.0, ("T49",), 1 << 6) is None
+
+
+def test_a_torus_of_another_kind_is_refused(few, tmp_path):
+    path = next(few[1].iterdir())
+    (tmp_path / "x.torus").write_bytes(path.read_bytes()[:200])
+    with pytest.raises(ConverseError, match="x.torus"):
+        tori.proved_points(tmp_path)
+    with pytest.raises(ConverseError, match="name the directory"):
+        tori.proved_points(tmp_path / "nowhere")
+
+
+def test_the_sphere_is_refused(tmp_path):
+    with pytest.raises(ConverseError, match="plane"):
+        tori.prove_tori(Map.new("sphere", F(2)), tmp_path)
+
+
+def test_the_command_draws_them(few, tmp_path, capsys):
+    found, directory = few
+    for face, (_, far) in enumerate(found.directions):
+        for place in found.places(face):
+            found.estimate[face].setdefault(place, 0.1)
+    path, picture = tmp_path / "ab.json", tmp_path / "ab.svg"
+    found.save(path)
+    assert cli.main(["--tori", str(directory), "-g", str(picture), str(path)]) == 1
+    assert "Tori : 3 proved" in capsys.readouterr().out
+    assert "a torus is proved" in picture.read_text()
