@@ -14,6 +14,7 @@ import mpmath
 import pytest
 
 from converse.check import field, series, ship
+
 from checker import check
 
 mp = mpmath.mp.clone()
