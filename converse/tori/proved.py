@@ -6,7 +6,7 @@ import os
 import time
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Callable, Optional, Sequence, Tuple, Union
+from typing import Any, Callable, Dict, Optional, Sequence, Tuple, Union
 
 import numpy as np
 
@@ -184,8 +184,8 @@ def prove(source: Union[Problem, Torus, Sequence[Torus]], rotation: Optional[Rot
         return ProvedTorus(tuple(_Attempt(torus, norm, shape, layers, bits, rho, memory,
                                           progress).run() for torus in tori))
 
-    finding = {name: value for name, value in
-               (("start", start), ("margin", margin), ("points", points)) if value is not None}
+    finding: Dict[str, Any] = {name: value for name, value in (
+        ("start", start), ("margin", margin), ("points", points)) if value is not None}
     if not isinstance(source, Problem):
         if finding:
             raise ValueError("start, margin and points are for a Problem, whose torus is looked "
