@@ -1,12 +1,11 @@
 """Tori that are proved along the rays of a map of a plane: the frontier from its other side.
 
-On each ray, that is, in each direction in which the map's frontier was estimated, tori of a few
-rotation vectors are looked for below it; the one that is proved with the largest amplitudes is
+On each ray, that is, in some of the directions in which the map's frontier was estimated, tori of a
+few rotation vectors are looked for below it; the one that is proved with the largest amplitudes is
 kept as a certificate (docs/format.md), in a file of its own.  It is a torus for these amplitudes;
 nothing is claimed of smaller ones.
 """
 
-import math
 import os
 from fractions import Fraction
 from typing import Callable, Dict, Iterator, List, Optional, Sequence, Tuple, Union
@@ -19,6 +18,7 @@ from .map import Map, Place
 VECTORS = "T49", "V1", "seven"
 PARTS = 0.985, 0.95, 0.9, 0.8, 0.65     # of the radius to which tori are found: proofs are tried
 POINTS = 1 << 15                        # of a grid on which a torus is looked for
+FINEST = 8                              # intervals between the rays of a face, at most
 UNIT = Fraction(1, 10 ** 5)             # of a radius
 ENDING = ".torus"
 
@@ -28,7 +28,7 @@ Progress = Optional[Callable[[int, int], None]]
 
 
 def rays(found: Map) -> Iterator[Tuple[int, Place]]:
-    """The (face, place) of the directions in which the frontier was estimated, each direction once.
+    """The (face, place) of the directions in which tori are looked for, each direction once.
     ConverseError: it is the map of the sphere."""
     if len(found.directions[0]) > 2:
         raise ConverseError("tori are proved along the rays of a plane; name a plane's map")
@@ -36,7 +36,7 @@ def rays(found: Map) -> Iterator[Tuple[int, Place]]:
     for face, estimate in enumerate(found.estimate):
         for place in sorted(estimate):
             direction = region.direction(found.directions[face], place)
-            if direction not in known:
+            if place[0].denominator <= FINEST and direction not in known:
                 known.add(direction)
                 yield face, place
 
@@ -101,7 +101,7 @@ def _proved(direction, rotation, frontier, least, points):
 
 
 def _problem(direction, radius):
-    exact = math.floor(radius / UNIT) * UNIT
+    exact = round(radius / UNIT) * UNIT
     return Problem.patch([exact * d for d in direction])
 
 
