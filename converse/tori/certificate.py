@@ -26,6 +26,7 @@ LONGEST_NUMBER = 2000                   # characters
 INTEGER = re.compile("0|-?[1-9][0-9]{0,999}", re.ASCII)
 HEXADECIMAL = re.compile("0|-?[1-9a-f][0-9a-f]*", re.ASCII)
 HINT = "hint-"
+FIELDS = "program", "comment", "dimension", "polynomial", "root", "frame", "alpha", "rho", "pieces"
 Path = Union[str, "os.PathLike[str]"]
 
 
@@ -145,9 +146,11 @@ class _Reader:
             if n not in (1, 2):
                 raise _Damaged("a dimension is 1 or 2")
             potential, part = _map(header["wave"], n)
+            polynomial = tuple(map(_integer, header["polynomial"].split(" ")))
+            if len(polynomial) != n + 2 or not polynomial[-1]:
+                raise _Damaged("the polynomial is not of degree %d" % (n + 1))
             rotation = Rotation(
-                header["hint-name"] if HINT + "name" in header else "",
-                tuple(map(_integer, header["polynomial"].split(" "))),
+                header["hint-name"] if HINT + "name" in header else "", polynomial,
                 _root(header["root"]),
                 tuple(_numbers(line, n + 1) for line in header["rotation"]))
             if rotation.dimension != n:
@@ -188,6 +191,8 @@ class _Reader:
                 raise _Damaged("'%.40s' is not 'name: value'" % line)
             if name in ("wave", "rotation"):
                 found[name].append(value)
+            elif name not in FIELDS and not re.fullmatch("hint-[a-z0-9-]+", name, re.ASCII):
+                raise _Damaged("there is no field %.40s" % name)
             elif name in found and name != "comment":
                 raise _Damaged("the field %.40s stands twice" % name)
             else:

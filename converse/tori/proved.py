@@ -15,7 +15,7 @@ from ..model.problem import Problem
 from ..storage.files import ConverseError
 from .constants import Constants, Inverse
 from .divisors import Divisors, Norm, lattice_basis
-from .residual import Grid, Phases, Sizes, residual, wave_vectors
+from .residual import LADDER, Grid, Phases, Sizes, residual, wave_vectors
 from .rotation import Rotation
 from .theorem import Bounds, Theorem, Verdict
 from .torus import Torus
@@ -26,6 +26,7 @@ BYTES = 250                 # of memory for each point of a grid: a ball in two 
 WIDTHS = [1.25 ** -j for j in range(20)]        # of the rate of decay: the rho that are tried
 ALPHAS = tuple(Fraction(a, 2) for a in (2, 3, 4, 5, 6, 8, 10, 12, 16))      # ratios of weights
 MOST_BITS, MOST_LAYERS = 4000, 1024
+HUGE = 1 << 30              # above the components of modes and of coefficients
 SECONDS = 1.2e-5            # for each point of a grid, about
 # A torus whose residual is so many times larger than needed, at most, is found more accurately,
 # with a margin so many times larger.
@@ -215,6 +216,7 @@ def check_cover(tori: Sequence[Torus]) -> None:
         raise ValueError("there is no torus")
     first = tori[0]
     for torus in tori:
+        _check(torus)
         if (torus.potential, torus.part, torus.rotation) != (
                 first.potential, first.part, first.rotation):
             raise ValueError("the tori are of different potentials or rotation vectors")
@@ -226,6 +228,26 @@ def check_cover(tori: Sequence[Torus]) -> None:
         raise ValueError("the pieces do not tile the range, one after the other")
 
 
+def _check(torus: Torus) -> None:
+    """ValueError: this is not what the class says a torus is."""
+    waves, amplitude, n = torus.potential
+    if n not in (1, 2) or n == 1 and any(k1 for _, k1, _ in waves):
+        raise ValueError("the potential is not one of %s angles: its waves are %s" % (n, waves))
+    if len(amplitude) != len(waves) or torus.part is not None and len(torus.part) != len(waves):
+        raise ValueError("each wave has one amplitude, and one part if there is a range")
+    for k, series in torus.modes.items():
+        if len(k) != n or not tuple(k) > (0,) * n:
+            raise ValueError("the torus has the mode %s; of k and -k give the one whose first "
+                             "component that is not 0 is positive, and no 0" % (tuple(k),))
+        if not series or not all(len(c) == 2 * n and all(type(x) is int for x in c)
+                                 for c in series):
+            raise ValueError("the coefficients of the mode %s are not %d integers each"
+                             % (tuple(k), 2 * n))
+        if any(abs(x) >= HUGE for x in k) or any(
+                abs(x) >> torus.bits >= HUGE for c in series for x in c):
+            raise ValueError("the mode %s, or its coefficient, is too large" % (tuple(k),))
+
+
 class _Attempt:
     """The proof of one torus."""
 
@@ -235,10 +257,11 @@ class _Attempt:
         self.tell = progress or (lambda text: None)
         self.start = time.process_time()
         self.waves = wave_vectors(torus)
-        for k in torus.modes:
-            if len(k) != torus.dimension or not tuple(k) > (0,) * torus.dimension:
-                raise ValueError("the torus has the mode %s; of k and -k give the one whose first "
-                                 "component that is not 0 is positive, and no 0" % (tuple(k),))
+        if norm is not None and norm.dimension != torus.dimension:
+            raise ValueError("the norm is one of %d angles, and the map has %d"
+                             % (norm.dimension, torus.dimension))
+        if rho is not None and not 0 < rho < LADDER[-1]:
+            raise ValueError("rho = %s is not between 0 and %d" % (rho, LADDER[-1]))
         self.norm = _norm(torus) if norm is None else norm
         self.far = _distances(torus, self.norm)
         self.layers = layers

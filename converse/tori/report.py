@@ -120,7 +120,7 @@ def _divisors(rotation: Rotation, norm: Norm, waves: Sequence[Sequence[int]]) ->
                                  angle[2:] if angle[0] == "+" else "-" + angle[2:]))
     power = "|k|" if n == 1 else "|k|^2"
     return ["Small divisors : |1 - exp(i k.w)| >= %s/%s for k != 0, and %s/%s for |k| >= %s" % (
-                _down(float(divisors.gamma), 6), power, _down(float(divisors.gamma_tail), 6), power,
+                _down(divisors.gamma, 6), power, _down(divisors.gamma_tail, 6), power,
                 divisors.reach),
             *(["k : the integer combinations of the waves', |k| = %s" % " + ".join(terms)]
               if n == 2 or norm.alpha != (1,) else [])]
@@ -141,7 +141,7 @@ def _up(x: float, digits: int = 3) -> str:
     return _text(Fraction(x), digits, True) if math.isfinite(x) else "unbounded"
 
 
-def _down(x: float, digits: int = 3) -> str:
+def _down(x: Union[float, Fraction], digits: int = 3) -> str:
     """x >= 0, rounded down."""
     return _text(Fraction(x), digits, False)
 

@@ -63,7 +63,7 @@ def above(x: arb) -> float:
     float() rounds the upper end, a number without radius, to the nearest double; SLACK and TINY
     exceed what it can lose."""
     number = float(x.upper())
-    if not number < math.inf:
+    if not abs(number) < math.inf:
         return math.inf
     return number * (SLACK if number > 0 else 1 / SLACK) + TINY
 
@@ -87,8 +87,9 @@ class Grid:
     layers: int = 1
 
     def __post_init__(self) -> None:
-        if not all(type(x) is int and x > 0 for x in (*self.shape, self.layers)):
-            raise ValueError("a grid has positive numbers of points, not %r and %r"
+        if not all(type(x) is int and x > 0 and not x & (x - 1)
+                   for x in (*self.shape, self.layers)):
+            raise ValueError("a grid's numbers of points are powers of two, not %r and %r"
                              % (self.shape, self.layers))
 
     @cached_property
@@ -511,8 +512,7 @@ def residual(torus: Torus, grid: Grid, bits: int) -> Residual:
         middle, off = gather(_forces(torus, grid), grid, add_linear)
     # h_k of E_0 + i E_1 has |E_k|^2 = (|h_k|^2 + |h_-k|^2)/2
     size = abs(middle) * SLACK + off
-    largest = np.maximum(size, size[::-1]) + TINY       # by which squares do not underflow
-    size = largest * np.sqrt(((size / largest) ** 2 + (size[::-1] / largest) ** 2) / 2)
+    size = np.hypot(size, size[::-1]) * math.sqrt(0.5)      # whose squares do not underflow
     parts = unpacked(middle, off)[:torus.dimension]
     return Residual(torus, grid, np.stack(parts, 1), Sizes(grid.norm, grid.inside[1], size))
 

@@ -178,7 +178,7 @@ class Theorem:
         return self._found[key]
 
     def _doubles(self, constants, choice):
-        key = constants.rho, choice.s, choice.steps
+        key = constants, choice.s, choice.steps
         if key not in self._found:
             with precision(BITS):
                 numbers, s, _ = self._balls(constants, choice)
