@@ -265,3 +265,41 @@ def test_powers_of_s_that_are_cut_off_are_counted():
     sizes = inverse.cut_off.size[:, 1]
     truth = [2 * math.hypot(*k) * math.hypot(*series[1]) / 2 ** 12 for k, series in MODES.items()]
     assert (sizes >= truth).all() and sizes == pytest.approx(truth)
+
+
+class Stub:
+    """Sizes of a given norm."""
+
+    def __init__(self, norm):
+        self.norm = norm
+
+    def norm_at(self, rho):
+        return self.norm
+
+    def sup(self):
+        return self.norm
+
+
+def constants_of(m=2.0, rest=0.1, cut_off=0.02, z=1.5, eta_z=0.01):
+    inverse = object.__new__(Inverse)
+    inverse.m, inverse.rest, inverse.cut_off = Stub(m), Stub(rest), Stub(cut_off)
+    inverse.slopes, inverse.product, inverse.others = Stub(0.3), Stub(5.0), Stub(0.7)
+    inverse.inverse_mean, inverse.mean_off = (z, eta_z), 0.03
+    return inverse.at(Q(1, 10))
+
+
+def test_the_constants_are_those_of_the_page():
+    """(34) to (37) and (40)."""
+    found = constants_of(z=0.6)
+    eta = 0.1 + 0.02 * 2
+    m0 = 2 / (1 - eta)
+    err = 2 * eta / (1 - eta) * (m0 + 2)
+    assert (found.l0, found.m0, found.a0, found.b0, found.p0, found.eta) == pytest.approx(
+        (1.3, m0, 5 + err, 0.6 / (1 - 0.01 - (err + 0.03) * 0.6), 0.7 + err, eta))
+
+
+@pytest.mark.parametrize("change", [
+    {"rest": 1.0}, {"rest": math.nan}, {"m": math.nan}, {"m": math.inf}, {"cut_off": 0.5},
+    {"z": 0.8}, {"eta_z": 1.0}, {"eta_z": math.nan}, {"z": math.inf}])
+def test_no_constants_without_an_inverse(change):
+    assert constants_of(**{"z": 0.6, **change}) is None
