@@ -191,7 +191,10 @@ def prove(source: Union[Problem, Torus, Sequence[Torus]], rotation: Optional[Rot
         if finding:
             raise ValueError("start, margin and points are for a Problem, whose torus is looked "
                              "for")
-        return proof(source)
+        tori = [source] if isinstance(source, Torus) else list(source)
+        if rotation is not None and any(torus.rotation != rotation for torus in tori):
+            raise ValueError("the torus has another rotation vector than the one that is given")
+        return proof(tori)
     if rotation is None:
         raise ValueError("a problem needs a rotation vector")
     from .find import find

@@ -303,3 +303,24 @@ def test_the_constants_are_those_of_the_page():
     {"z": 0.8}, {"eta_z": 1.0}, {"eta_z": math.nan}, {"z": math.inf}])
 def test_no_constants_without_an_inverse(change):
     assert constants_of(**{"z": 0.6, **change}) is None
+
+
+def test_a_torus_is_not_proved_for_another_vector():
+    with pytest.raises(ValueError, match="another rotation vector"):
+        prove(circle("0.1"), read_rotation("silver"))
+
+
+def test_the_first_divisors_are_those_that_there_are():
+    torus = plane()
+    theorem = Theorem(Phases(torus, SKEW), Divisors(torus.rotation, SKEW, ((1, 0), (0, 2)), 60))
+    at, worst = theorem.divisors.c_at, theorem.divisors.c
+    assert theorem._small(Q(3), 2) == [at(Q(3)), at(Q(3, 2)), worst(Q(3, 4))]
+    assert worst(Q(3, 4)) > at(Q(3, 4))
+
+
+@pytest.mark.parametrize("name", ["T49", "spiral", "seven", "V1"])
+def test_the_orientation_of_the_frame_is_the_same(name):
+    """The two edges of the parallelogram are exchanged."""
+    one, other = (Divisors(read_rotation(name), Norm(frame, (1, 2)), ((1, 0), (0, 1)), 30)
+                  for frame in (((1, 0), (0, 1)), ((1, 0), (0, -1))))
+    assert one.gamma_tail == other.gamma_tail and one.records == other.records
