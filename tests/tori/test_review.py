@@ -2,6 +2,7 @@
 the wrong direction."""
 
 import dataclasses
+import itertools
 import math
 from fractions import Fraction as Q
 
@@ -318,9 +319,51 @@ def test_the_first_divisors_are_those_that_there_are():
     assert worst(Q(3, 4)) > at(Q(3, 4))
 
 
-@pytest.mark.parametrize("name", ["T49", "spiral", "seven", "V1"])
-def test_the_orientation_of_the_frame_is_the_same(name):
-    """The two edges of the parallelogram are exchanged."""
-    one, other = (Divisors(read_rotation(name), Norm(frame, (1, 2)), ((1, 0), (0, 1)), 30)
-                  for frame in (((1, 0), (0, 1)), ((1, 0), (0, -1))))
+@pytest.mark.parametrize("name, frame, alpha", [
+    ("V1", ((1, 0), (0, 1)), (1, Q(1, 4))), ("seven", ((1, 1), (1, -1)), (1, Q(1, 2)))])
+def test_the_orientation_of_the_frame_is_the_same(name, frame, alpha):
+    """The two edges of the parallelogram, one with a larger product than the other, change places."""
+    turned = frame[0], tuple(-x for x in frame[1])
+    one, other = (Divisors(read_rotation(name), Norm(each, alpha), ((1, 0), (0, 1)), 30)
+                  for each in (frame, turned))
     assert one.gamma_tail == other.gamma_tail and one.records == other.records
+
+
+def test_kappa_is_rounded_up():
+    assert Norm(((1, 1), (1, -1)), (Q(1), Q(1))).kappa ** 2 >= Q(1, 2)
+    assert Norm(((1, 2), (0, 3)), (Q(2), Q(1))).kappa ** 2 >= Q(5, 9)
+
+
+@pytest.mark.parametrize("elements", [
+    "(4-t-t^2)/(t+3), (4-t-t^2)/(t^2+1)", "1/(t+3), 1/((t^2+1)(4-t-t^2))"])
+def test_mixed_coefficients_of_the_norm_have_denominators_too(elements):
+    """13 splits in this field, t + 3 has the norm -13, and t^2 + 1, 4 - t - t^2 are conjugates."""
+    rotation = read_rotation("t^3+t^2-2t-1: " + elements)
+    divisors, field = Divisors(rotation, PLAIN, ((1, 0), (0, 1)), 10), rotation.field
+    a, b = rotation.vector
+    for p, m0, m1 in itertools.product(range(3), range(-2, 3), range(-2, 3)):
+        norm = field.norm(tuple(p * (j == 0) + m0 * x + m1 * y
+                                for j, (x, y) in enumerate(zip(a, b))))
+        assert (divisors._denominator() * norm).denominator == 1
+
+
+@pytest.mark.parametrize("name", ["seven", "spiral"])
+def test_gamma_is_that_of_the_page(name):
+    """(27) and (28), with real and with complex conjugates, by sums along the edges."""
+    rotation, reach = read_rotation(name), 3.0
+    roots = sorted(np.roots(rotation.polynomial[::-1]), key=lambda z: (abs(z.imag), -z.real))
+    w = np.array([[sum(float(c) * t ** j for j, c in enumerate(element))
+                   for element in rotation.vector] for t in roots])
+    x = np.linspace(0, 1, 20001)
+    ends = np.concatenate([np.stack([x, 1 - x], 1), np.stack([x, x - 1], 1)])
+    others = abs(ends @ (w[1:] - w[0]).T)
+    largest, spread = others.prod(1).max(), others.sum(1).max()
+    gamma = 1 / (largest + spread / largest / reach ** 3 + largest ** -2 / reach ** 6)
+    divisors = Divisors(rotation, PLAIN, ((1, 0), (0, 1)), 3)
+    assert float(divisors.gamma_tail) == pytest.approx(
+        2 * math.pi * gamma * (1 - (math.pi * gamma / 9) ** 2 / 6), rel=1e-6)
+
+
+def test_large_coefficients_are_enclosed_as_narrowly():
+    low, high = GOLDEN.field.bounds((Q(0), Q(10 ** 60)), 25)
+    assert 0 < (high - low) * 10 ** 25 <= 1
