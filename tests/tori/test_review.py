@@ -322,7 +322,7 @@ def test_the_first_divisors_are_those_that_there_are():
 @pytest.mark.parametrize("name, frame, alpha", [
     ("V1", ((1, 0), (0, 1)), (1, Q(1, 4))), ("seven", ((1, 1), (1, -1)), (1, Q(1, 2)))])
 def test_the_orientation_of_the_frame_is_the_same(name, frame, alpha):
-    """The two edges of the parallelogram, one with a larger product than the other, change places."""
+    """The edges of the parallelogram, one with a larger product than the other, change places."""
     turned = frame[0], tuple(-x for x in frame[1])
     one, other = (Divisors(read_rotation(name), Norm(each, alpha), ((1, 0), (0, 1)), 30)
                   for each in (frame, turned))
