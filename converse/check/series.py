@@ -48,9 +48,11 @@ class Box:
         self.wide, self.high = wide, high
         self.size = (2 * wide + 1) * (2 * high + 1) * steps
         self.origin = ((2 * wide + 1) * high + wide) * steps
-        if self.size > MAX_TERMS:
+        # The sums over modes of equal |k| of two series are multiplied for each pair of powers.
+        terms = max(self.size, (limit + 1) * (degree + 1) ** 2)
+        if terms > MAX_TERMS:
             raise NotConfirmed("series of %d terms are needed, the checker's limit is %d"
-                               % (self.size, MAX_TERMS))
+                               % (terms, MAX_TERMS))
         self.rows, self.lengths, self.runs = {}, [], []     # of row b: its first group, least a
         slopes = [sum(x * y for x, y in zip(row, norm.basis[0])) for row in norm.frame]
         for b in range(-high, high + 1):

@@ -14,7 +14,7 @@ from .arith import GUARD, fixed_of
 from .failures import NotConfirmed, Rejected, named
 from .field import (E_LOW, Divisors, Field, Norm, combination, identity, rounded_down, rounded_up,
                     upper_root)
-from .limits import MAX_BITS, MAX_LENGTH
+from .limits import MAX_BITS, MAX_GRID, MAX_LENGTH
 from .series import FINE, Box, Ring, greatest, powers_of
 from .version import __version__
 from .words import decimal_text
@@ -208,6 +208,8 @@ class Torus:
         for shift in itertools.product((0, 1), repeat=self.n):
             modes = {}
             for k, series in piece.modes.items():
+                if not any(any(map(any, vector)) for vector in series):
+                    continue
                 turns = sum([x * y for x, y in zip(k, shift)]) % 4
                 modes[k] = [[turn(x, turns) for x in vector] for vector in series]
             turned[shift] = modes
@@ -269,7 +271,7 @@ class Torus:
     def error_at_a_point(self):
         """About |E(u)| at some angles and s: more than that, its norm cannot be less."""
         theta, sigma = (0.7, 1.9)[:self.n], 0.3
-        w = [2 * math.pi * float(self.field.interval(element)[0]) for element in self.omega]
+        w = [2 * math.pi * float(self.field.interval(element)[0] % 1) for element in self.omega]
         at, difference = [0.0] * self.n, [0.0] * self.n
         for k, series in self.modes.items():
             wave = 2 * cmath.exp(1j * sum([x * y for x, y in zip(k, theta)]))
@@ -457,6 +459,9 @@ def approximate_inverse(torus, ring, f, near):
     shape = [power_of_two(3 * reach[1] + 1), power_of_two(3 * reach[0] + 1),
              power_of_two(2 * step) if step > 1 else 1]
     size = math.prod(shape)
+    if size > MAX_GRID:
+        raise NotConfirmed("a grid of %d points is needed, the checker's limit is %d"
+                           % (size, MAX_GRID))
     places = []                         # of the modes |k| <= near
     for at, (m, length) in enumerate(zip(box.modes(), box.lengths)):
         if length <= near:
@@ -663,11 +668,12 @@ class Setting:
         basis = lattice([wave.k[:n] for wave in claim.waves], n)
         self.scale = math.lcm(*[x.denominator for x in claim.alpha])
         self.norm = Norm(claim.frame, [int(x * self.scale) for x in claim.alpha], basis)
+        for modes in ([wave.k[:n] for wave in claim.waves], *[x.modes for x in claim.pieces]):
+            if max(map(self.norm, modes), default=0) > MAX_LENGTH:
+                raise NotConfirmed("a mode is longer than %d, the checker's limit" % MAX_LENGTH)
         for piece in claim.pieces:
             if any(x.denominator > 1 for k in piece.modes for x in self.norm.coordinates(k)):
                 raise Rejected("there is a mode outside of the group that the waves' k generate")
-            if max(map(self.norm, piece.modes), default=0) > MAX_LENGTH:
-                raise NotConfirmed("a mode is longer than %d, the checker's limit" % MAX_LENGTH)
         self.field = Field(claim.polynomial, *claim.root)
         self.divisors = Divisors(self.field, claim.rotation, self.norm)
 
@@ -701,7 +707,8 @@ def widths(torus, hint):
         powers = [math.exp(rho * length) for length in range(largest + 1)]
         slope = Fraction(1 + sum(map(float.__mul__, slopes, powers)))
         height = sum(map(float.__mul__, sums, powers))
-        if slope > 100 or height * max([math.hypot(*k) for k, *_ in torus.waves], default=0) > 100:
+        if slope > 100 or height * max([math.hypot(*k) for k, *_ in torus.waves], default=0) > 100 \
+                or rho * max([torus.norm(k) for k, *_ in torus.waves], default=0) > 200:
             return math.inf
         waves = [(abs(middle) + abs(part), upper_root(sum([x * x for x in k])),
                   Fraction(math.exp(rho * torus.norm(k) + math.hypot(*k) * height)))
@@ -721,7 +728,8 @@ def widths(torus, hint):
 
     choice = [rate * 0.8 ** at for at in range(1, 40) if rate * 0.8 ** at * largest < 200]
     best = min(choice, key=modes, default=rate / 10)
-    return [best, float(hint) if 0 < hint < min(rate, 200 / largest) else best * 1.3, best / 1.5]
+    other = hint if 0 < hint < min(rate, 200 / largest) else min(best * 1.3, 250 / largest)
+    return [best, float(other), best / 1.5]
 
 
 def verify_width(torus, width, tell):
@@ -736,6 +744,8 @@ def verify_width(torus, width, tell):
     waves = []
     for k, _, middle, part in torus.waves:
         length = upper_root(sum([x * x for x in k]))
+        if rho * norm(k) > 300:
+            return "the strip is too wide for the fastest wave"
         exponent = rounded_up(length * Fraction(torus.outside(powers, 0), unit))
         if exponent > 100:
             return FAR
@@ -751,10 +761,10 @@ def verify_width(torus, width, tell):
     # What is cut off u changes E by at most so many times its norm.
     factor = 4 + sum([p * k * k * g for p, k, g in waves])
     near, far = torus.extent(powers, needed / 64 / factor * unit)
-    spare = 14
+    spare, reach = 14, max([norm(k) for k, *_ in torus.waves], default=0)
     for _ in range(TRIES):
         box = Box(norm, far, torus.degree)
-        bits = spare + math.ceil(math.log2(
+        bits = spare + math.ceil(reach * width * math.log2(math.e) + math.log2(
             (box.degree + 1) * sum([math.exp(width * x) for x in box.lengths]) / float(needed)))
         ring = Ring(box, sigma, bits)
         tell("the residual, with %d modes of %d bits" % (box.groups, bits))

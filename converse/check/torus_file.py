@@ -1,6 +1,8 @@
 """Reading a certificate of existence: what it claims, exact; docs/format.md describes it."""
 
 import hashlib
+import io
+import itertools
 import re
 from dataclasses import dataclass
 from fractions import Fraction
@@ -68,17 +70,22 @@ def read_torus(data):
     start = data.find(b"\ntori:\n", 0, end) + 1
     if not start:
         raise Rejected("there are no tori")
-    header = torus_header(bytes(view[:start]))
-    body = bytes(view[start + len(b"tori:\n"):end]).decode("utf-8", "replace").split("\n")
-    body.pop()                          # what is after the last line end: nothing
-    return parse_torus(header, body, data.count(b"\n", 0, start) + 2,
+    header = torus_header(view[:start])
+    body = view[start + len(b"tori:\n"):end]
+    return parse_torus(header, lines_of(body), data.count(b"\n", 0, start) + 2,
                        hashlib.sha256(view).hexdigest())
+
+
+def lines_of(data):
+    """The lines, one after the other: a list of all would take many times their space."""
+    for line in io.BytesIO(data):
+        yield line.decode("utf-8", "replace").rstrip("\n")
 
 
 def torus_header(head):
     """The fields, each of them given once but waves and components of the rotation."""
     header = {"wave": [], "rotation": []}
-    for at, line in enumerate(head.decode("utf-8", "replace").split("\n")[1:-1], 2):
+    for at, line in itertools.islice(enumerate(lines_of(head), 1), 1, None):
         if len(line) > MAX_LINE:
             raise NotConfirmed("line %d is longer than the checker's limit" % at)
         name, colon, value = line.partition(": ")
@@ -196,6 +203,8 @@ def read_piece(lines, n, parameter, before):
         if j in entry:
             raise Rejected("line %d: the mode was there before" % at)
         entry[j] = tuple(zip(values[::2], values[1::2]))
+    if len(modes) * (degree + 1) > MAX_MODES:
+        raise NotConfirmed("a piece has more than %d coefficients, the checker's limit" % MAX_MODES)
     zero = ((0, 0),) * n
     return Piece(low, high, bits, degree, {
         k: tuple([entry.get(j, zero) for j in range(degree + 1)]) for k, entry in modes.items()})

@@ -13,7 +13,7 @@ from fractions import Fraction
 import mpmath
 import pytest
 
-from converse.check import field, series, ship
+from converse.check import field, series, ship, tori, torus_file
 
 from checker import check
 
@@ -287,6 +287,58 @@ def test_what_is_too_much_is_not_confirmed(run, change):
     assert (status, out) == (5, "") and "not confirmed: " in err and err.count("\n") == 1, err
     assert "Error" not in err
 
+RANGE = [("wave: 1 0 0 0.5", "wave: 1 0 0 0.5 0"), ("piece 0 0 40 0", "piece -1 1 40 100")]
+# A few hundred bytes that would take gigabytes or hours.
+HEAVY = {
+    "large weights": [("alpha: 1", "alpha: 99999/1000")],
+    "large weights of powers": [("alpha: 1", "alpha: 1000/37"), *RANGE],
+    "a fast wave": [("wave: 1 0 0 0.5", "wave: 1 0 0 0.5\nwave: 100 0 0 1e-300"),
+                    ("alpha: 1", "alpha: 99999/1000")],
+}
+
+
+@pytest.mark.parametrize("name", HEAVY)
+def test_small_files_of_much_work_are_not_confirmed(run, name):
+    text = BODY
+    for old, new in HEAVY[name]:
+        assert old in text
+        text = text.replace(old, new, 1)
+    status, out, err = run(sealed(text))
+    assert (status, out) == (5, "") and "the checker's limit" in err, err
+
+
+def test_a_far_mode_needs_too_large_a_grid(run, monkeypatch):
+    monkeypatch.setattr(tori, "MAX_GRID", 1 << 12)
+    status, out, err = run(changed(" 40 0 %d\n" % len(GOLDEN),
+                                   " 40 0 %d\n4181 0 200000 0\n" % (len(GOLDEN) + 1)))
+    assert (status, out) == (5, "") and "points is needed, the checker's limit" in err, err
+
+
+def test_coefficients_that_are_not_given_count(run, monkeypatch):
+    """Each k of a piece takes the space of all powers of s."""
+    monkeypatch.setattr(torus_file, "MAX_MODES", 100 * len(GOLDEN))
+    text = BODY
+    for old, new in RANGE:
+        text = text.replace(old, new, 1)
+    status, out, err = run(sealed(text))
+    assert (status, out) == (5, "") and "coefficients, the checker's limit" in err, err
+
+
+@pytest.mark.parametrize("change", [
+    (" 40 0 %d\n" % len(GOLDEN), " 40 0 %d\n100000 0 0 0\n" % (len(GOLDEN) + 1)),
+    ("rotation: 0 1", "rotation: 1%s 1" % ("0" * 299))])
+def test_modes_of_zero_and_whole_turns_change_nothing(run, change):
+    status, out, err = run(changed(*change))
+    assert (status, err) == (0, ""), err
+
+
+def test_a_wave_may_be_fast(run):
+    """The strip is as narrow as it needs."""
+    text = (HEADER % 0).replace("alpha: 1", "alpha: 10").replace(
+        "wave: 1 0 0 0.5", "wave: 1 0 0 1e-300\nwave: 100 0 0 1e-300")
+    status, out, err = run(sealed(text))
+    assert (status, err) == (0, ""), err
+
 
 @pytest.mark.parametrize("name", FALSE)
 def test_what_is_false_is_not_confirmed(run, name):
@@ -444,3 +496,7 @@ def test_the_forms_that_are_shipped_verify_it_too(tmp_path, run):
         done = subprocess.run([sys.executable, "-I", "-S", tmp_path / form, tmp_path / "x"],
                               capture_output=True, text=True)
         assert (done.returncode, done.stdout, done.stderr) == (0, out, "")
+    done = subprocess.run([sys.executable, "-I", "-S", tmp_path / "referee.py", tmp_path / "x"],
+                          capture_output=True, text=True)
+    assert (done.returncode, done.stdout) == (2, "") and done.stderr.count("\n") == 1
+    assert "is a map or a certificate of existence, which converse-check verifies" in done.stderr
