@@ -486,6 +486,165 @@ def test_norms_of_matrices_are_spectral():
         assert exact - 1e-12 < found < exact * (1 + 1e-7)
 
 
+def constant_function(ring, number, radius):
+    """number +- radius, up to roundings of them."""
+    entries = ring.more(ring.series(1, 1, [([0] * ring.box.count, None)]), 0).entries
+    entries[0][0][ring.box.centre] = int(number * ring.one)
+    return ring.series(1, 1, entries, int(radius * ring.one) << series.FINE)
+
+
+def test_radii_count_all_that_a_function_may_be():
+    """Each bound is attained by constants."""
+    ring = series.Ring(series.Box(field.Norm([[1]], (1,), [(1,)]), 4, 0), Fraction(9, 8), 60)
+    f, g = [constant_function(ring, *x) for x in ((1.5, 0.25), (2.0, 0.125))]
+
+    def highest(h):
+        return h.entries[0][0][ring.box.centre] / ring.one \
+            + h.radius / (ring.one << series.FINE)
+
+    assert highest(ring.multiply(f, g)) >= 1.75 * 2.125
+    assert highest(ring.multiply(f, f)) >= 1.75 ** 2
+    assert highest(ring.add(f, g)) >= 3.875
+    assert ring.norm(f) >= 1.75 * (ring.one << series.FINE)
+    for x, radius in ((0.25, 0.125), (1.5, 0.25)):
+        assert highest(ring.exponential(constant_function(ring, x, radius))) \
+            >= math.exp(x + radius) * (1 - 1e-9)
+
+
+def test_roundings_are_counted():
+    """Of a product in few bits with no modes beyond the box, and of an exponential."""
+    ring = series.Ring(series.Box(field.Norm([[1]], (1,), [(1,)]), 9, 0), Fraction(9, 8), 12)
+    rng = random.Random(5)
+    f, g = [ring.series(1, 1, [([rng.randrange(-4096, 4096) * (abs(k) < 4)
+                                 for k in range(-9, 10)], None)]) for _ in range(2)]
+    product = ring.multiply(f, g)
+    x, y = f.entries[0][0], g.entries[0][0]
+    exact = [sum(x[i] * y[k - i] for i in range(19) if 0 <= k - i < 19) for k in range(9, 28)]
+    off = sum([abs(Fraction(a, ring.one) - b) * Fraction(9, 8) ** abs(k) for k, a, b in zip(
+        range(-9, 10), exact, product.entries[0][0])])
+    assert 0 < off * 2 ** series.FINE <= product.radius
+    power = ring.exponential(constant_function(ring, 0.7, 0))
+    off = abs(power.entries[0][0][9] - math.exp(int(0.7 * 4096) / 4096) * 4096)
+    assert 0 < off * 2 ** series.FINE <= power.radius
+    assert all(x * 8 ** k >= 9 ** k << series.FINE for k, x in enumerate(ring.powers))
+
+
+# ---- the theorem
+
+def conditions(c, waves, rho, kappa, divisors, steps, share, change, e):
+    """The left sides of (16), of (17) and (18) divided by t, and (18), of existence.md."""
+    n, (l0, m0, a0, b0, p0) = divisors.power, map(mp.mpf, map(float, (c.l, c.m, c.a, c.b, c.p)))
+    rho, kappa, share, e = [mp.mpf(float(x)) for x in (rho, kappa, share, e)]
+    t = float(change) / (l0 * m0 * a0)
+    sigma = (2 * l0 + t) * t
+    assert max(m0 * t, a0 * sigma) < 1
+    l, m, a = l0 + t, m0 / (1 - m0 * t), a0 / (1 - a0 * sigma)
+    da = a * a0 * sigma
+    assert b0 * da < 1
+    h = 1 + b0 / (1 - b0 * da) * (p0 + da)
+    third = sum([float(p) * float(k) ** 3 * float(g) * mp.exp(float(k) * t) for p, k, g in waves])
+    moved = sloped = mp.mpf(0)
+    for i in range(steps + 1):
+        delta = rho * 99 / 100 / (4 + 2 * share) / 2 ** i
+        last, exact = i == steps, Fraction(float(delta))
+        loss = float(divisors.loss(exact) if last else divisors.loss_at(exact))
+        ahc = a * h * loss ** 2
+        v = ahc * l ** 2 * e
+        moved += v / (1 - mp.mpf(4) ** -n if last else 1)
+        sloped += kappa / (mp.e * share * delta) * v / (1 - 2 * mp.mpf(4) ** -n if last else 1)
+        growth = ahc * l * ((2 * m * l * kappa / (mp.e * delta) if n > 1 else 0)
+                            + kappa / (mp.e * 2 * delta) + third * ahc * l ** 3 / 2)
+        q, e = 16 ** n * growth * e, growth * e * e
+    return q, sloped / t, moved / t, moved
+
+
+@pytest.mark.parametrize("name", ["golden", "T49"])
+@pytest.mark.parametrize("steps", [0, 3])
+@pytest.mark.parametrize("waves", [[(0.5, 1, 2)], [(40, 2, 300)], [(1e-9, 1, 2)]])
+def test_the_largest_residual_meets_the_conditions(name, steps, waves):
+    polynomial, root, omega, frame, alpha, basis, *_ = VECTORS[name]
+    found = divisors_of(polynomial, root, [tuple(map(Fraction, x)) for x in omega], frame, alpha,
+                        basis)
+    c = tori.Constants(*map(Fraction, (1.5, 1.75, 2, 1.25, 0.75)))
+    waves = [tuple(map(Fraction, wave)) for wave in waves]
+    rho, kappa = Fraction(1, 10), found.norm.kappa
+    for share in tori.SHARES_OF_LOSS:
+        for change in tori.CHANGES[::4]:
+            e, v = tori.allowed(c, waves, rho, kappa, found, steps, [share], [change])
+            q, sloped, moved, distance = conditions(c, waves, rho, kappa, found, steps, share,
+                                                    change, e)
+            assert e > 0 and max(q, sloped, moved) <= 1 + 1e-9
+            assert distance <= v * e * (1 + mp.mpf(1e-9))
+
+
+def test_losses_of_single_steps():
+    """No small divisor is forgotten."""
+    for name in ("golden", "T49"):
+        polynomial, root, omega, frame, alpha, basis, *_ = VECTORS[name]
+        omega = [tuple(map(Fraction, x)) for x in omega]
+        found = divisors_of(polynomial, root, omega, frame, alpha, basis)
+        w = [float(found.field.interval(x)[0]) for x in omega]
+        ks = [(a, b)[:len(w)] for a in range(60) for b in range(-60, 61)]
+        for d in (1, 0.2, 0.05, 0.02):
+            worst = max(math.exp(-d * found.norm(k)) / abs(
+                2 * math.sin(math.pi * sum(x * y for x, y in zip(k, w)))) for k in ks if any(k))
+            assert worst <= found.loss_at(Fraction(d)) * (1 + 1e-9)
+            # what is beyond all that were looked at
+            n, x = len(w), max(d * found.radius, len(w))
+            assert (x / d) ** n * math.exp(-x) / float(found.tail) \
+                <= found.loss_at(Fraction(d)) * (1 + 1e-9)
+
+
+def small_torus(modes, wave="1 0 0 0.5", bits=40):
+    text = (HEADER % len(modes)).replace("1 0 0 0.5", wave).replace("0 0 40", "0 0 %d" % bits)
+    claim = torus_file.read_torus(sealed(text + modes_text(modes)).encode())
+    return tori.Torus(tori.Setting(claim), claim.pieces[0], True, False)
+
+
+def test_constants_count_what_is_left_out():
+    """L = 1 + y for all y of norm up to x: the bounds are attained by y = x and -x."""
+    torus, x = small_torus([]), Fraction(1, 16)
+    ring = series.Ring(series.Box(torus.norm, 3, 0), Fraction(9, 8), 64)
+    m, eta, a, b, p = tori.constants_with(torus, ring, 2, x)
+    assert eta >= x and m >= 1 / (1 - x) and a >= 1 / (1 - x) ** 2
+    assert b >= (1 + x) ** 2 and p >= 2 * x - x ** 2
+    old = tori.Constants(*map(Fraction, (1, 1, 1, 1, 0)))
+    new = old.after(x)
+    assert new.l >= 1 + x and new.m >= 1 / (1 - x) and new.a >= 1 / (1 - x) ** 2
+    assert new.b >= (1 + x) ** 2 and new.p >= 2 * x - x ** 2
+
+
+@pytest.mark.parametrize("limit, bits", [(6, 60), (24, 24)])
+def test_the_residual_is_within_its_radius(monkeypatch, limit, bits):
+    """Each coefficient of E(u), from values at 128 angles."""
+    seen, norm, sigma = [], series.Ring.norm, Fraction(9, 8)
+    monkeypatch.setattr(series.Ring, "norm", lambda ring, f: seen.append(f) or norm(ring, f))
+    torus = small_torus(["0 -4000000000", "0 800000000"], "1 0 1/8 0.5")
+    ring = series.Ring(series.Box(torus.norm, limit, 0), sigma, bits)
+    found, size, modes = tori.Residual(torus, ring, 5), 128, limit + 1
+    (re, im), = seen[-1].entries
+    u = [mp.mpf(-4 * 16 ** 9) / 2 ** 40, mp.mpf(8 * 16 ** 8) / 2 ** 40]
+    w = mp.pi * (mp.sqrt(5) - 1)
+    assert torus.modes[(1,)][0][0][1] == -4 * 16 ** 9
+    at = [2 * mp.pi * n / size for n in range(size)]
+
+    def x(theta):
+        return -2 * sum(c * mp.sin(k * theta) for k, c in enumerate(u, 1))
+
+    values = [x(t + w) - 2 * x(t) + x(t - w) - mp.cos(t + x(t) + mp.pi / 8) / 2 for t in at]
+    off, total = mp.mpf(0), mp.mpf(0)
+    for k in range(-modes, modes + 1):
+        exact = sum(v * mp.expj(-k * t) for v, t in zip(values, at)) / size
+        computed = mp.mpc(re[k + modes], im[k + modes]) / ring.one
+        off += abs(exact - computed) * mp.mpf(1.125) ** abs(k)
+        total += abs(exact) * mp.mpf(1.125) ** abs(k)
+    assert off <= found.radius.numerator / mp.mpf(found.radius.denominator)
+    assert total <= float(found.polynomial + found.radius) * (1 + 1e-9)
+    for n in range(8):                  # on the strip's boundary
+        theta = mp.mpc(n, -mp.log(1.125))
+        assert abs(mp.expj(theta + x(theta))) <= float(found.bounds[0][2])
+
+
 # ---- other forms of the checker
 
 def test_the_forms_that_are_shipped_verify_it_too(tmp_path, run):
