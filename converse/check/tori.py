@@ -844,7 +844,7 @@ def existence_report(claim, setting, found):
     places = 12
     omega = ", ".join(["%s = %s..." % (
         sum_text(element, POWERS),
-        decimal_text(Fraction(math.floor(setting.field.interval(element)[0] * 10 ** places),
+        decimal_text(Fraction(math.trunc(setting.field.interval(element)[0] * 10 ** places),
                               10 ** places))) for element in claim.rotation])
     lines = ["Verified :",
              "The map x[j+1] = 2 x[j] - x[j-1] - V'(x[j]) of %s (modulo 2 pi),"
