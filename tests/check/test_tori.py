@@ -526,7 +526,8 @@ def test_roundings_are_counted():
     power = ring.exponential(constant_function(ring, 0.7, 0))
     off = abs(power.entries[0][0][9] - math.exp(int(0.7 * 4096) / 4096) * 4096)
     assert 0 < off * 2 ** series.FINE <= power.radius
-    assert all(x * 8 ** k >= 9 ** k << series.FINE for k, x in enumerate(ring.powers))
+    powers = series.powers_of(Fraction(10, 9), 9)
+    assert all(x * 9 ** k >= 10 ** k << series.FINE for k, x in enumerate(powers))
 
 
 # ---- the theorem
@@ -608,10 +609,23 @@ def test_constants_count_what_is_left_out():
     m, eta, a, b, p = tori.constants_with(torus, ring, 2, x)
     assert eta >= x and m >= 1 / (1 - x) and a >= 1 / (1 - x) ** 2
     assert b >= (1 + x) ** 2 and p >= 2 * x - x ** 2
+    assert tori.constants_with(torus, ring, 2, Fraction(21, 20)) is None
     old = tori.Constants(*map(Fraction, (1, 1, 1, 1, 0)))
     new = old.after(x)
     assert new.l >= 1 + x and new.m >= 1 / (1 - x) and new.a >= 1 / (1 - x) ** 2
     assert new.b >= (1 + x) ** 2 and new.p >= 2 * x - x ** 2
+
+
+@pytest.mark.parametrize("share, status", [(0.4, 0), (0.6, 5)])
+def test_all_of_the_residual_is_compared(run, monkeypatch, share, status):
+    class Known(tori.Residual):
+        def __init__(self, *arguments):
+            super().__init__(*arguments)
+            self.polynomial = self.radius = Fraction(share) / 10 ** 6
+
+    monkeypatch.setattr(tori, "Residual", Known)
+    monkeypatch.setattr(tori, "allowed", lambda *_: (Fraction(1, 10 ** 6), Fraction(9)))
+    assert run(sealed(BODY))[0] == status
 
 
 @pytest.mark.parametrize("limit, bits", [(6, 60), (24, 24)])
