@@ -147,7 +147,7 @@ def _check_graphics(options):
         others.append(sys.stdin.fileno())
     files.check_output(options.graphics, "figure", figure.ALL_FORMATS, others)
     if figure.format_of(options.graphics) != "ps":
-        plot.check()
+        plot.check(", or name the figure .ps")
 
 
 @contextlib.contextmanager

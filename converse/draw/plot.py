@@ -37,13 +37,13 @@ METADATA = {"svg": {"Creator": PROGRAM, "Date": None}, "png": {"Software": PROGR
             "pdf": {"Creator": PROGRAM, "CreationDate": None}}
 
 
-def check():
-    """ConverseError if matplotlib is missing."""
+def check(instead=""):
+    """ConverseError if matplotlib is missing; `instead` ends its text with what else would do."""
     try:
         import matplotlib  # noqa: F401
     except ImportError:
-        raise files.ConverseError("SVG, PNG and PDF need matplotlib; pip install matplotlib, "
-                                  "or name the figure .ps") from None
+        raise files.ConverseError("SVG, PNG and PDF need matplotlib; pip install matplotlib"
+                                  + instead) from None
 
 
 def figure_bytes(proof, kind, caption=True):

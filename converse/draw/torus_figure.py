@@ -2,6 +2,7 @@
 a proved torus is below what the theorem allows.  Needs matplotlib (the extra "plot")."""
 
 import math
+import textwrap
 
 import numpy as np
 
@@ -51,19 +52,22 @@ def picture(tori, kind="png", proved=()):
         (_line if n == 1 else _lattice)(figure, axes[n], tori[-1])
         if proved:
             _errors(axes[n + 1], proved)
-        figure.suptitle(_title(tori), fontsize=9)
+        figure.suptitle(_title(tori, 50 * columns), fontsize=9)
         return plot.encode(figure, kind, dpi=160)
 
 
-def _title(tori):
+def _title(tori, width):
+    """In lines of so many characters at most."""
     first = tori[0]
-    text = "torus of %s" % first.rotation
+    text = "torus of rotation %s %s" % ("vector" if first.dimension > 1 else "number",
+                                        first.rotation)
     amplitudes = [[float(p + s * q) for p, q in zip(
         first.potential.amplitude, first.part or [0] * len(first.potential.amplitude))]
         for s in (_s(tori)[0], _s(tori)[-1])]
     ranges = ["%.6g" % low if low == high else "%.6g to %.6g" % (low, high)
               for low, high in zip(*amplitudes)]
-    return "%s; amplitudes %s" % (text, ", ".join(ranges))
+    text = "%s; amplitude%s %s" % (text, "s" * (len(ranges) > 1), ", ".join(ranges))
+    return "\n".join(textwrap.wrap(text, width))
 
 
 def _s(tori):
@@ -104,8 +108,13 @@ def _surface(figure, ax, torus, i):
                 image = ax.pcolormesh(moved[..., 0], moved[..., 1], J, shading="gouraud",
                                       cmap="viridis", vmin=J.min(), vmax=J.max(), rasterized=True)
     ax.set(xlim=(0, 1), ylim=(0, 1), aspect="equal", xlabel=r"$x_0\,/\,2\pi$",
-           ylabel=r"$x_1\,/\,2\pi$", title=r"$J_%d\,/\,2\pi$" % i)
+           ylabel=r"$x_1\,/\,2\pi$", title=r"$J_%d\,/\,2\pi$%s" % (i, _at_end(torus)))
     figure.colorbar(image, ax=ax, shrink=0.8)
+
+
+def _at_end(torus):
+    """Of which parameter a panel is, if there is one."""
+    return "" if torus.part is None else ", s = %.3g" % torus.piece[1]
 
 
 def _sizes(torus):
@@ -130,7 +139,8 @@ def _line(figure, ax, torus):
         ax.plot(ends, top - rate * ends / math.log(10), color=VERMILLION,
                 label=r"$\sim e^{-%.2g k}$" % rate)
         ax.legend()
-    ax.set(xlabel=r"$k$", ylabel=r"$\log_{10} |u_k|$", title="Fourier coefficients")
+    ax.set(xlabel=r"$k$", ylabel=r"$\log_{10} |u_k|$",
+           title="Fourier coefficients" + _at_end(torus))
 
 
 def _lattice(figure, ax, torus):
@@ -142,7 +152,7 @@ def _lattice(figure, ax, torus):
                         linewidths=0, cmap="magma", rasterized=True)
     ax.set(aspect="equal", xlabel=r"$k_0$", ylabel=r"$k_1$", xlim=(-1.05 * extent, 1.05 * extent),
            ylim=(-1.05 * extent, 1.05 * extent),
-           title=r"$\log_{10} |u_k|$")
+           title=r"$\log_{10} |u_k|$" + _at_end(torus))
     figure.colorbar(points, ax=ax, shrink=0.8)
 
 
