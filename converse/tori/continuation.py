@@ -7,7 +7,7 @@ computation counts as zero.
 """
 
 from math import inf, isfinite, log
-from typing import List, NamedTuple, Optional, Sequence, Tuple, Union
+from typing import Callable, List, NamedTuple, Optional, Sequence, Tuple, Union
 
 import numpy as np
 
@@ -64,9 +64,11 @@ class Way:
     """From amplitudes for which a torus is known to those asked for, one for each wave."""
 
     def __init__(self, potential: FourierSum, rotation: Rotation, frame: Frame, points: int,
-                 first: np.ndarray, last: np.ndarray) -> None:
+                 first: np.ndarray, last: np.ndarray,
+                 tell: Callable[[str], None] = lambda words: None) -> None:
         self.potential, self.rotation, self.frame = potential, rotation, frame
         self.points, self.first, self.last = points, first, last
+        self.tell = tell
 
     def amplitude(self, part: float) -> np.ndarray:
         return self.first + Real(part) * (self.last - self.first)
@@ -83,7 +85,7 @@ class Way:
         while known[-1].part < 1:
             last = known[-1]
             if not self._hopeful(known):
-                break
+                raise self._not_found(known)
             part = 1.0 if last.part + 1.25 * step >= 1 else last.part + step
             found = self._solved(part, last, _extrapolated(known, part))
             if isinstance(found, Found):
@@ -92,10 +94,8 @@ class Way:
                 continue
             step = (part - last.part) / 2.5
             if found == TOO_LARGE and step < SMALL_STEP or step < LEAST_STEP:
-                break
-        else:
-            return known[-1]
-        raise NotFound(*self._story(known))
+                raise self._not_found(known, found == TOO_LARGE)
+        return known[-1]
 
     def _straight(self):
         rank = len(Mesh.holding(self.potential, self.rotation, self.frame, (1, 1)).sizes)
@@ -119,6 +119,7 @@ class Way:
         mesh, keep, more = last.mesh, last.keep, 1.0
         amplitude = self.amplitude(part)
         for _ in range(ENLARGED):
+            self.tell("looking for the torus at %s, on %d points" % (_text(amplitude), mesh.points))
             solved = newton(mesh, u, amplitude, keep)
             if solved is None:
                 return None
@@ -171,17 +172,23 @@ class Way:
         (x0, y0), (x1, y1) = [(f.part, f.rates.min()) for f in known[-2:]]
         return x1 + y1 * (x1 - x0) / (y0 - y1) if y1 < y0 else inf
 
-    def _story(self, known):
+    def _not_found(self, known, too_large=False):
         last = known[-1]
-        at = ", ".join("%.6g" % float(p) for p in self.amplitude(last.part))
+        at = _text(self.amplitude(last.part))
         end = self._breakdown(known) if len(known) > 1 else inf
-        guess = ", ".join("%.6g" % float(p) for p in self.amplitude(end)) if isfinite(end) else ""
+        guess = _text(self.amplitude(end)) if isfinite(end) else ""
         text = "no torus of %s was found for the amplitudes asked for: the last one is at %s" % (
             self.rotation, at)
         text += ", with %d points" % last.mesh.points
+        if too_large:
+            text += "; farther on it needs more than the %d that are allowed" % self.points
         if guess and end < 2:
             text += "; its coefficients decay at a rate that would be 0 near %s" % guess
-        return text, last.part, [float(p) for p in self.amplitude(last.part)]
+        return NotFound(text, last.part, [float(p) for p in self.amplitude(last.part)])
+
+
+def _text(amplitude):
+    return ", ".join("%.6g" % float(p) for p in amplitude)
 
 
 def _rates(mesh, seen, q):

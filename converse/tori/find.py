@@ -6,7 +6,7 @@ from typing import Callable, List, Optional, Tuple, Union
 
 import numpy as np
 
-from ..model.exact import Ends
+from ..model.exact import Ends, short_text
 from ..model.potential import FourierSum
 from ..model.problem import Problem
 from .continuation import POINTS, Found, NotFound, Way, ellipse, newton
@@ -23,11 +23,13 @@ LEAST_DEGREE = 4
 LAYERS = 32                 # points of the circle of sigma, half of which are computed
 LARGEST = 1 << 18           # points of the mesh times degree, where degrees may be chosen
 NARROWEST = 1e-3            # piece, of s
+MOST_MARGIN = 1e100         # coefficients times 2^bits are doubles on their way to integers
 
 
 def find(problem: Problem, rotation: Rotation, *, start: Optional[Torus] = None,
          frame: Optional[Frame] = None, margin: float = MARGIN,
-         points: int = POINTS) -> Union[Torus, List[Torus]]:
+         points: int = POINTS,
+         progress: Optional[Callable[[str], None]] = None) -> Union[Torus, List[Torus]]:
     """The invariant torus of a rotation vector, about: no proof is made.  If the problem has a
     parameter, tori for the pieces of its range, which tile it.
 
@@ -36,9 +38,14 @@ def find(problem: Problem, rotation: Rotation, *, start: Optional[Torus] = None,
     frame -- integer rows of the mode numbers, in whose directions rates of decay may differ
     margin -- by which the error of the torus should be smaller than the theorem needs
     points -- of a mesh of angles, at most
+    progress -- is told in words what is going on
 
     NotFound: there is none, as far as can be seen, or it needs more points.
-    ValueError: problem, rotation vector and start do not go together."""
+    ValueError: problem, rotation vector and start do not go together, or the margin is not from
+    1 to 1e100."""
+    if not 1 <= margin <= MOST_MARGIN:
+        raise ValueError("the margin, %g, is not from 1 to %g" % (margin, MOST_MARGIN))
+    tell = progress or (lambda words: None)
     potential, part = family(problem)
     if rotation.dimension != potential.dimension:
         raise ValueError("the rotation vector has %d component%s, but the potential depends on %d "
@@ -47,32 +54,39 @@ def find(problem: Problem, rotation: Rotation, *, start: Optional[Torus] = None,
     begin = {} if start is None else _amplitudes(potential, rotation, start)
 
     def way(first: np.ndarray, last: np.ndarray) -> Way:
-        return Way(potential, rotation, frame or default_frame(potential), points, first, last)
+        return Way(potential, rotation, frame or default_frame(potential), points, first, last,
+                   tell)
 
     middle = _wide(potential.amplitude)
     first = way(np.array([begin.get(wave, Real(0)) for wave in potential.waves]),
                 middle - _wide(part) if part else middle)
     found = first.follow(None if start is None else first.taken_up(start))
     if part is None:
-        return _single(found, potential, rotation, margin)
-    return _Pieces(potential, part, rotation, way, margin).cover(found)
+        return _single(found, potential, rotation, margin, tell)
+    return _Pieces(potential, part, rotation, way, margin, tell).cover(found)
 
 
 def _wide(numbers):
     return np.array([Real(p.numerator) / p.denominator for p in numbers])
 
 
+def _range_text(piece):
+    return "%s <= s <= %s" % tuple(map(short_text, piece))
+
+
 def _amplitudes(potential, rotation, start):
     """Of each wave of the start."""
     known = dict(zip(start.potential.waves, _wide(start.potential.amplitude)))
-    if start.rotation.floats != rotation.floats or start.part is not None \
-            or not set(known) <= set(potential.waves):
-        raise ValueError("the torus to start from has another rotation vector, a parameter, or "
-                         "waves that the potential does not have")
+    for wrong, has in ((start.rotation.floats != rotation.floats, "another rotation vector"),
+                       (start.part is not None, "a parameter; take a torus of one map"),
+                       (not set(known) <= set(potential.waves),
+                        "waves that the potential does not have")):
+        if wrong:
+            raise ValueError("the torus to start from has " + has)
     return known
 
 
-def _single(found, potential, rotation, margin):
+def _single(found, potential, rotation, margin, tell):
     digits = None
     for number in range(ROUNDS):
         aim = plan(found, margin, 1.2 ** number)
@@ -81,6 +95,7 @@ def _single(found, potential, rotation, margin):
             digits.add(digits.picked(found.mesh.moved(found.u, digits.mesh))[None])
         else:
             digits.take(before)
+        tell("refining a torus of %d modes" % len(digits.at))
         torus, ratio = refined(digits, aim, potential, None, rotation, margin)
         if ratio <= 1 / margin:
             break
@@ -98,9 +113,10 @@ class _Pieces:
     decay too slowly, or Newton's method fails: it is cut in half."""
 
     def __init__(self, potential: FourierSum, part: Tuple[Fraction, ...], rotation: Rotation,
-                 way: Callable[[np.ndarray, np.ndarray], Way], margin: float) -> None:
+                 way: Callable[[np.ndarray, np.ndarray], Way], margin: float,
+                 tell: Callable[[str], None]) -> None:
         self.potential, self.part, self.rotation = potential, part, rotation
-        self.way, self.margin = way, margin
+        self.way, self.margin, self.tell = way, margin, tell
 
     def amplitude(self, s: Fraction) -> np.ndarray:
         return _wide([p + s * q for p, q in zip(self.potential.amplitude, self.part)])
@@ -156,6 +172,8 @@ class _Pieces:
             u = source.mesh.moved(mesh_wide.reshape(len(each), *source.mesh.sizes), digits.mesh)
             moved[j] = digits.picked(u)
         digits.add(moved)
+        self.tell("refining the tori of %s, %d modes of degree %d" % (
+            _range_text(piece), len(digits.at), degree))
         torus, ratio = refined(digits, aim, self.potential, self.part, self.rotation, self.margin,
                                piece)
         return torus if ratio <= 10 / self.margin else None
@@ -167,6 +185,7 @@ class _Pieces:
         low, middle, high = (self._complex(found, mesh) for found in ends)
         source = Digits(mesh, keep & (abs(mesh.k).max(0) > 0), 0)
         half = (ends[-1].amplitude - ends[0].amplitude) / 2
+        self.tell("looking for the tori of %s, on %d points" % (_range_text(piece), mesh.points))
         circle = []
         for l in range(LAYERS // 2 + 1):
             sigma = np.exp(2j * np.pi * l / LAYERS)

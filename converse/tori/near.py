@@ -43,7 +43,8 @@ def near(w0: Number, w1: Optional[Number] = None, norm: Optional[Norm] = None,
     target = tuple(exact(w) for w in (w0, w1) if w is not None)
     within, n = exact(tolerance), len(target)
     if not LEAST <= within <= 1:
-        raise ValueError("the tolerance, %s, is not from %s to 1" % (tolerance, short_text(LEAST)))
+        raise ValueError("the tolerance, %s, is not from %s to 1"
+                         % (short_text(within), short_text(LEAST)))
     if norm is None:
         norm = Norm(tuple(tuple(int(i == j) for j in range(n)) for i in range(n)),
                     (Fraction(1),) * n)

@@ -403,8 +403,10 @@ def torus_columns(torus: Torus, grid: Grid) -> Columns:
     for k, series in torus.modes.items():
         places = grid.place(k), grid.place([-x for x in k])
         if not grid.within(k, grid.reach):
-            raise ValueError("the grid of %d x %d points is too small for the mode %s"
-                             % (*grid.shape, k))
+            raise ValueError("the grid of %s points is too small for the mode %s; take a larger "
+                             "one, or let the program choose it"
+                             % (" x ".join(map(str, grid.shape[-len(grid.basis):])),
+                                ", ".join(map(str, k))))
         if len(series) > grid.layers:
             raise ValueError("%d points are too few for the degree %d"
                              % (grid.layers, len(series) - 1))

@@ -1,5 +1,6 @@
 """Tori that are found, without proof: they are invariant to many digits, whatever the potential."""
 
+import re
 from fractions import Fraction
 
 import mpmath
@@ -123,7 +124,15 @@ def test_a_torus_is_continued_from_another_one():
         find(Problem.patch(["0.3"], (), [(2, 0)]), GOLDEN, start=first)
 
 
+def test_a_grid_that_is_too_small_is_said():
+    """Not only where the torus would seem to break up."""
+    with pytest.raises(NotFound, match="farther on it needs more than the 256 that are allowed"):
+        find(Problem("0.9", 0, 0), GOLDEN, points=256)
+
+
 def test_what_does_not_go_together_is_refused():
+    with pytest.raises(ValueError, match="margin"):
+        find(Problem("0.5", 0, 0), GOLDEN, margin=1e300)
     with pytest.raises(ValueError, match="2 components.*1 angle"):
         find(Problem("0.5", 0, 0), read_rotation("T49"))
     with pytest.raises(ValueError, match="no wave"):
@@ -245,3 +254,15 @@ def test_a_range_that_goes_too_far():
 def test_the_line_of_the_thesis_up_to_0_006():
     torus = find(line("0.006"), read_rotation("T49"))
     assert len(torus.modes) < 4000 and torus.decay() > 0.1
+
+
+def test_what_is_going_on_is_told():
+    """Of a single torus and of a range: where it is, and how much work."""
+    words = []
+    find(Problem("0.2", 0, 0), GOLDEN, progress=words.append)
+    assert re.fullmatch(r"looking for the torus at 0\.\d+, on \d+ points", words[0])
+    assert re.fullmatch(r"refining a torus of \d+ modes", words[-1])
+    words.clear()
+    find(Problem(("0.09", "0.11"), 0, 0), GOLDEN, progress=words.append)
+    assert re.fullmatch(r"looking for the tori of -1 <= s <= 1, on \d+ points", words[-2])
+    assert re.fullmatch(r"refining the tori of -1 <= s <= 1, \d+ modes of degree \d+", words[-1])
