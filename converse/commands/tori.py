@@ -6,8 +6,9 @@ import re
 import sys
 import time
 from dataclasses import replace
+from fractions import Fraction
 
-from ..model.exact import exact
+from ..model.exact import exact, short_text
 from ..model.inputs import read_input
 from ..storage import files
 from ..storage.files import ConverseError, plain
@@ -18,6 +19,8 @@ COMMAND = "converse-tori"
 STATUS = ("Exit status: 0 a theorem; 1 not found or not proved; 2 bad usage, input or file, or the "
           "certificate could not be saved; 129, 130 or 143 ended by a signal.")
 GIGABYTE = 10 ** 9
+MOST_POINTS = 1 << 26
+LIGHTEST = Fraction(1, 1000)            # of weights
 
 
 # ---- what is read
@@ -95,8 +98,9 @@ def _prove_parser(commands):
                    help="the width of the strip in which the residual is bounded (default: chosen)")
     p.add_argument("--margin", type=_positive, metavar="X", help="find a torus whose residual is X "
                    "times smaller than the theorem needs, about (default 100)")
-    p.add_argument("--points", type=whole_number(16, 1 << 26), metavar="N",
-                   help="of the grid on which the torus is looked for, at most")
+    p.add_argument("--points", type=whole_number(16, MOST_POINTS), metavar="N",
+                   help="points of the grid on which the torus is looked for, at most (default "
+                        "2097152)")
     p.add_argument("--memory", type=_positive, metavar="GB", help="what the proof may take, in GB "
                    "(default: three quarters of what is free)")
     return p
@@ -130,9 +134,9 @@ def _check_outputs(options):
         if options.restore is not None and files.same(options.backup, options.restore):
             raise ConverseError("'%s': the certificate would overwrite it; name another file"
                                 % options.backup)
+        files.check_writable(options.backup)
         if os.path.exists(options.backup) and os.path.getsize(options.backup):
             raise ConverseError("%s: exists; name another file or remove it" % options.backup)
-        files.check_writable(options.backup)
     if options.graphics is not None:
         from ..draw import plot, torus_figure  # noqa: F401, which would be missed too late
 
@@ -152,6 +156,10 @@ def _norm(options, potential):
         raise ConverseError("--weights has %d numbers, and the map %d angle%s: give as many"
                             % (len(options.weights), potential.dimension,
                                "s" * (potential.dimension - 1)))
+    for weight in options.weights:
+        if not LIGHTEST <= weight <= 1 / LIGHTEST:
+            raise ConverseError("--weights: %s is not from %s to %s"
+                                % (short_text(weight), *map(short_text, (LIGHTEST, 1 / LIGHTEST))))
     return Norm(default_frame(potential), tuple(options.weights))
 
 
@@ -160,6 +168,11 @@ def _rotation(options, potential, start, norm):
 
     if options.tolerance is not None and options.near is None:
         raise ConverseError("--tolerance goes with --near; leave it out, or give --near")
+    if start is not None and start.dimension != potential.dimension:
+        raise ConverseError("%s: its map has %d angle%s, and this one %d; start from another "
+                            "certificate, or without" % (
+                                options.restore, start.dimension, "s" * (start.dimension - 1),
+                                potential.dimension))
     if options.rotation is not None:
         return tori.read_rotation(options.rotation, potential.dimension)
     if options.near is None:
@@ -185,8 +198,13 @@ def prove_torus(options):
     start = None if options.restore is None else _start(options.restore)
     problem = _read_problem(options)
     potential, part = family(problem)
+    if options.grid is not None and potential.dimension == 1 and options.grid[0] != 1:
+        raise ConverseError("--grid %dx%d is for two angles, and the map has one; write --grid N"
+                            % options.grid)
     norm = _norm(options, potential)
-    rotation = _rotation(options, potential, start, norm)
+    with ProgressLine() as line:
+        line(lambda: "choosing the rotation vector")
+        rotation = _rotation(options, potential, start, norm)
     choices = {name: value for name, value in (
         ("start", start), ("margin", options.margin and float(options.margin)),
         ("points", options.points), ("norm", norm), ("shape", options.grid),
@@ -202,7 +220,7 @@ def prove_torus(options):
             _check_claim(proof, potential, part, rotation)
         except (tori.NotFound, tori.NotProved) as reason:
             line.clear()
-            say(report.undecided(problem, rotation, reason))
+            say(report.undecided(problem, rotation, reason, _by_hand(options, reason)))
             return 1
     certificate = {}
     try:
@@ -215,6 +233,16 @@ def prove_torus(options):
         from ..draw import torus_figure
         torus_figure.draw(proof, options.graphics)
     return 0
+
+
+def _by_hand(options, reason):
+    """The flags that chose what the program would have chosen otherwise, and that may be why."""
+    from .. import tori
+
+    flags = ["margin", "points"]
+    if isinstance(reason, tori.NotProved):
+        flags += ["grid", "weights", "rho", "precision", "memory"]
+    return ["--" + flag for flag in flags if getattr(options, flag) is not None]
 
 
 def _check_claim(proof, potential, part, rotation):

@@ -126,13 +126,19 @@ def _divisors(rotation: Rotation, norm: Norm, waves: Sequence[Sequence[int]]) ->
               if n == 2 or norm.alpha != (1,) else [])]
 
 
-def undecided(problem: Problem, rotation: Rotation, reason: Union[NotFound, NotProved]) -> str:
-    """That there is no theorem, and why."""
+def undecided(problem: Problem, rotation: Rotation, reason: Union[NotFound, NotProved],
+              by_hand: Sequence[str] = ()) -> str:
+    """That there is no theorem, and why.
+
+    by_hand -- flags that took a choice from the program"""
     n = rotation.dimension
     lines = ["I could not decide whether there is %s of this %s for V(y) = - the sum of :"
              % (TORUS[n], VECTOR[n]), *_waves(*family(problem)), "",
              "%s : %s" % ("Not found" if isinstance(reason, NotFound) else "Not proved",
                           plain(" ".join(str(reason).split())))]
+    if by_hand:
+        lines.append("Chosen by hand : %s; leave out such a flag, and the program chooses"
+                     % ", ".join(by_hand))
     return "\n".join(lines) + "\n"
 
 

@@ -87,6 +87,9 @@ def test_a_start_from_a_certificate(run, tmp_path):
         status, out, err = run("prove", problem, *more)
         assert (status, err) == (0, "") and "Rotation number : golden" in out
         assert "p sin(y0), p = %s" % k in out
+    status, out, err = run("prove", TRIG, "-r", file)
+    assert (status, out) == (2, "") and one_line(err)
+    assert "its map has 1 angle, and this one 2" in err
 
 
 @pytest.mark.parametrize("arguments,words", [
@@ -133,7 +136,11 @@ def test_beyond_the_last_torus_there_is_no_theorem(run, tmp_path, numbers, rotat
     (["prove", K09, "--rotation", "golden", "-p", "2"], "whole number from 24"),
     (["prove", K09, "--rotation", "golden", "--rho", "-1"], "above 0"),
     (["prove", K09, "--rotation", "golden", "--weights", "1", "2"], "--weights has 2 numbers"),
+    (["prove", K09, "--rotation", "golden", "--weights", "1e-30"], "from 0.001 to 1000"),
+    (["prove", K09, "--rotation", "golden", "--grid", "32x32"], "write --grid N"),
+    (["prove", K09, "--near", "0.6", "--tolerance", "1e-7"], "the tolerance, 1e-7, is"),
     (["prove", K09, "--rotation", "golden", "-b", "zero.in"], "zero.in: exists"),
+    (["prove", K09, "--rotation", "golden", "-b", "."], "is a directory"),
     (["prove", K09, "--rotation", "golden", "-b", "no/where"], "no/where"),
     (["prove", K09, "--rotation", "golden", "-g", "a.txt"], "the name of the figure ends in"),
     (["prove", K09, "--rotation", "golden", "-b", "a.svg", "-g", "a.svg"], "would overwrite"),
@@ -145,6 +152,25 @@ def test_bad_usage_is_a_line(run, tmp_path, monkeypatch, arguments, words):
     (tmp_path / "zero.in").write_text("0 0\n0 0\n0 0\n1 1\n1 1\n")
     status, out, err = run(*arguments)
     assert (status, out) == (2, "") and one_line(err) and words in err
+
+
+@pytest.mark.parametrize("arguments,words", [
+    (["--margin", "1e300"], "the margin, 1e+300, is not from 1 to 1e+100"),
+    (["--margin", "1e-300"], "the margin, 1e-300, is not from"),
+    (["--grid", "32"], "the grid of 32 points is too small for the mode 16; take a larger one")])
+def test_what_the_library_refuses_is_a_line(run, arguments, words):
+    status, out, err = run("prove", K09, "--rotation", "golden", *arguments)
+    assert status == 2 and one_line(err) and words in err and "I find" not in out
+
+
+def test_flags_that_may_be_the_reason_are_named(run, monkeypatch):
+    monkeypatch.setattr(tori, "prove", lambda *_, **__: (_ for _ in ()).throw(
+        tori.NotProved("it lacks")))
+    _, out, _ = run("prove", K09, "--rotation", "golden", "-p", "24", "--points", 1 << 18)
+    assert out.endswith("\nChosen by hand : --points, --precision; leave out such a flag, and the "
+                        "program chooses\n")
+    _, out, _ = run("prove", K09, "--rotation", "golden")
+    assert out.endswith("Not proved : it lacks\n")
 
 
 def test_no_theorem_is_told_that_was_not_asked_for(run, tmp_path, monkeypatch):
