@@ -202,14 +202,15 @@ def prove(source: Union[Problem, Torus, Sequence[Torus]], rotation: Optional[Rot
     if progress:
         progress("looking for a torus")
     try:
-        return proof(find(source, rotation, **finding))
+        return proof(find(source, rotation, progress=progress, **finding))
     except NotProved as failure:
         lacking = failure.residual / failure.needed if failure.needed else math.inf
         if not 1 < lacking < MOST_LACKING or any((margin, shape, bits, rho)):
             raise
     if progress:
         progress("looking for a more accurate torus")
-    return proof(find(source, rotation, **dict(finding, margin=FINER * lacking)))
+    return proof(find(source, rotation, progress=progress,
+                      **dict(finding, margin=FINER * lacking)))
 
 
 def check_cover(tori: Sequence[Torus]) -> None:

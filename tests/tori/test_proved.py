@@ -290,7 +290,7 @@ def test_a_torus_that_is_not_accurate_enough_is_found_again(monkeypatch, residua
         def run(self):
             raise NotProved("it lacks", residual, needed)
     monkeypatch.setattr(sys.modules["converse.tori.find"], "find",
-                        lambda *_, margin=None: asked.append(margin) or [])
+                        lambda *_, margin=None, **__: asked.append(margin) or [])
     monkeypatch.setattr(proved, "check_cover", lambda tori: tori.append(None))
     monkeypatch.setattr(proved, "_Attempt", Attempt)
     with pytest.raises(NotProved, match="it lacks"):
