@@ -80,6 +80,10 @@ def test_senseless_files_are_refused(proof, tmp_path):
         refused(path, sealed(lines[:at] + ["x" + lines[at][:3]] + lines[at + 1:]))
         if ": " in lines[at] and not lines[at].startswith(("hint", "program")):
             refused(path, sealed(lines[:at] + [lines[at] + " 1"] + lines[at + 1:]))
+        if lines[at].startswith("polynomial"):
+            refused(path, sealed(lines[:at] + [lines[at] + " 0"] + lines[at + 1:]))
+    for unknown in "depth: 3", "Wave: 1 0 0 0.1", "hint_a: 1":
+        assert "no field" in refused(path, sealed([lines[0], unknown, *lines[1:]]))
     mode = lines[start]
     for wrong in (mode + " 1", "-" + mode, "", lines[start + 1],
                   mode.replace(" ", "  ", 1), mode + "g"):
