@@ -45,6 +45,9 @@ def find(problem: Problem, rotation: Rotation, *, start: Optional[Torus] = None,
     1 to 1e100."""
     if not 1 <= margin <= MOST_MARGIN:
         raise ValueError("the margin, %g, is not from 1 to %g" % (margin, MOST_MARGIN))
+    if not isinstance(rotation, Rotation):
+        raise TypeError("the rotation vector is a Rotation, such as read_rotation('golden'), not %r"
+                        % (rotation,))
     tell = progress or (lambda words: None)
     potential, part = family(problem)
     if rotation.dimension != potential.dimension:

@@ -131,6 +131,8 @@ def test_a_grid_that_is_too_small_is_said():
 
 
 def test_what_does_not_go_together_is_refused():
+    with pytest.raises(TypeError, match=r"read_rotation\('golden'\)"):
+        find(Problem("0.5", 0, 0), "golden")
     with pytest.raises(ValueError, match="margin"):
         find(Problem("0.5", 0, 0), GOLDEN, margin=1e300)
     with pytest.raises(ValueError, match="2 components.*1 angle"):
