@@ -10,7 +10,7 @@ from typing import Any, Callable, Dict, Optional, Sequence, Tuple, Union
 
 import numpy as np
 
-from ..model.exact import rounded_text
+from ..model.exact import exact, rounded_text
 from ..model.problem import Problem
 from ..storage.files import ConverseError
 from .constants import Constants, Inverse
@@ -256,7 +256,8 @@ class _Attempt:
     """The proof of one torus."""
 
     def __init__(self, torus, norm, shape, layers, bits, rho, memory, progress):
-        self.torus, self.shape, self.bits, self.rho = torus, shape, bits, rho
+        self.torus, self.shape, self.bits = torus, shape, bits
+        self.rho = rho = None if rho is None else exact(rho)    # products of doubles are rounded
         self.memory = _free_memory() * 3 // 4 if memory is None else memory
         self.tell = progress or (lambda text: None)
         self.start = time.process_time()
@@ -341,6 +342,7 @@ class _Attempt:
         layers = self.layers or self._layers(at)
         if self.shape is not None:
             grid = Grid(self.norm, self.waves, self.shape, layers)
+            self._check_cost(grid.points)
             return grid, max(at, key=lambda rho: self._ratio(grid, rho, at[rho]))
         points, found = 16, None
         while True:
@@ -393,7 +395,7 @@ class _Attempt:
 
     def _check_cost(self, points):
         if points * BYTES > self.memory:
-            raise NotProved("a grid of %d points takes %.1f GB of memory, and %.1f GB may be used; "
+            raise NotProved("a grid of %d points takes %.3g GB of memory, and %.3g GB may be used; "
                             "give a torus with fewer modes, or more memory"
                             % (points, points * BYTES / 1e9, self.memory / 1e9))
 
@@ -402,7 +404,9 @@ class _Attempt:
             _number(e0), float(rho), _number(needed))
         if not math.isfinite(e0) or tail > e0 / 2:
             return text + "what the grid does not see is too much; take a larger grid"
-        return text + "the torus is not accurate enough; find it with more modes and digits"
+        text += "the torus is not accurate enough; find it with more modes and digits"
+        return text if self.bits is None else \
+            text + ", or balls of %d bits are too few; take more" % self.bits
 
 
 def _number(x):

@@ -138,6 +138,10 @@ def test_choices_of_ones_own(circle):
         prove(circle, rho=at, bits=24)
     with pytest.raises(NotProved, match="memory"):
         prove(circle, memory=1000)
+    with pytest.raises(NotProved, match="memory"):
+        prove(circle, shape=(1, 1 << 29), memory=10 ** 9)
+    with pytest.raises(TypeError, match="not an exact number"):
+        prove(circle, rho=0.03)
 
 
 def test_a_coarser_choice_is_no_better(circle):
