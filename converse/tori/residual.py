@@ -28,7 +28,7 @@ from .divisors import Norm
 from .torus import Torus
 
 SLACK = 1 + 2.0 ** -30      # above what MOST roundings of sums, products and roots amount to
-MOST = 1 << 21              # summands
+MOST = 1 << 22              # summands
 DIGIT = 256                 # |m_i| = coarse DIGIT + fine, of tables of exponentials
 TINY = 2.0 ** -1000         # above what underflows lose
 ROUND = 1 << 30             # denominator of the widths that are tried
