@@ -24,9 +24,10 @@ from pathlib import Path
 
 HOME = Path(__file__).resolve().parent
 sys.path[:0] = [str(HOME), str(HOME.parent / "kernels")]
-import build  # noqa: E402
 from accepted import ACCEPTED  # noqa: E402
 from operators import OPERATORS, mutants  # noqa: E402
+
+import build  # noqa: E402
 
 ROOT = HOME.parent.parent
 PATIENCE = 900                          # seconds, for the tests of one file
