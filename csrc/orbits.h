@@ -32,23 +32,26 @@ int cv_action(const cv_potential *v, long q, double eps, const double (*base)[2]
               const double (*u)[2], double *action, double (*gradient)[2]);
 
 /* u = (Hessian of the action + mu)^-1 b.  blocks: beta_j = 2 - eps V''(x_j).  Returns how many
-   eigenvalues of Hessian + mu are negative (then u is no descent), or an error.  b, u: NULL to
-   count only. */
+   eigenvalues of Hessian + mu are negative (then u is no descent).  work: CV_WORK doubles for each
+   point; NULL: count only, b and u are not looked at. */
+enum { CV_WORK = 7 };
 long cv_solve(int n, long q, const double (*beta)[3], double mu, const double (*b)[2],
-              double (*u)[2]);
+              double (*u)[2], double *work);
+
+/* How many eigenvalues of the Hessian are negative, and the logarithm of its determinant's
+   modulus. */
+long cv_determinant(int n, long q, const double (*beta)[3], double *log_det);
 
 typedef struct {
     long steps;                             /* tried, accepted or not */
     int escapes;                            /* from saddles */
     double largest;                         /* coordinate of the gradient */
-    double damping;                         /* of the next step */
 } cv_relaxed;
 
 /* Damped Newton: lowers the action until the largest coordinate of its gradient is at most tol, or
    100 tol where rounding hides what would lower it, and leaves saddles along their most negative
-   direction.  CV_RUNNING: not there after max_steps steps in all, or, if there were fewer, no step
-   helps; u is the best state met.  All zero in *how begins; what an earlier call left there goes on
-   where it ended, so that long runs can be broken into calls, and interrupted between them. */
+   direction.  CV_RUNNING: not there after max_steps steps, or, if there were fewer, no step helps;
+   u is the best state met.  *how: zero, to be filled in.  CV_ESTOPPED: Python wants an end. */
 int cv_relax(const cv_potential *v, long q, double eps, const double (*base)[2], double (*u)[2],
              double tol, long max_steps, cv_relaxed *how);
 
@@ -57,9 +60,6 @@ int cv_relax(const cv_potential *v, long q, double eps, const double (*base)[2],
    one in round r was not positive definite: then the orbit run through r + 1 times is no minimum,
    since the pivots up to there are those of its Hessian with the other points held fixed. */
 long cv_pivots(int n, long q, const double (*beta)[3], long max_rounds, double (*d)[3]);
-
-/* The logarithms, over q, of the moduli of the eigenvalues of d_{q-1} ... d_0, larger first. */
-void cv_growth(long q, const double (*d)[3], double growth[2]);
 
 /* The count closest pairs of q points on the torus, closest first.  Returns how many there are, or
    CV_ESTOPPED. */

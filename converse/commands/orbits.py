@@ -292,7 +292,7 @@ def _exponent(state, x):
     from ..orbits.state import ROUNDS
 
     least = 2 / max(ROUNDS, 5 * state.q)
-    return "unknown" if math.isnan(x) else "below %.0e" % least if abs(x) < least else "%.10g" % x
+    return "below %.0e" % least if x < least else "%.10g" % x
 
 
 def report(state):
@@ -302,6 +302,8 @@ def report(state):
         "State : %s (%s)" % (state.label, MEANINGS.get(state.label, MEANINGS["best"])),
         "Action per point less |p/q|^2/2 : %.12g" % state.action,
         "Exponents : " + ", ".join(_exponent(state, x) for x in state.exponents),
+        ("Residue : %.10g" % state.residue if state.potential.n == 1 else
+         "Stability indices : " + ", ".join(format(x, ".10g") for x in state.indices)),
         "Gradient : largest %.2g, root mean square %.2g" % (state.shadow, state.grad_size),
         "Deviation : %.10g from the line through x_0, %.10g from the line at eps 0, %.10g from the "
         "best line" % state.deviation,

@@ -41,6 +41,14 @@ def alone():
             ctx.prec = before
 
 
+@contextmanager
+def with_digits(digits):
+    """Alone, and with so many decimal places."""
+    with alone():
+        ctx.prec = digits * 3322 // 1000 + BITS
+        yield
+
+
 # ---- numbers
 
 def ball(x):

@@ -13,22 +13,22 @@ STUBBORN = 40               # cones that are tried
 
 def growth(chain, strict, away):
     """Enclosures (low, high) of log |l|, larger first, for every orbit whose blocks beta_j are
-    within `away` of those of the chain, an Enclosure; strict > away.  None: the pivots could not be
-    enclosed."""
+    within `away` of those of the chain, an Enclosure; strict > away; and the sign of the l, 0 where
+    they are complex or that is undecided.  None: the pivots could not be enclosed."""
     s, t = chain.below(ball(strict)), chain.above(ball(away), ball(strict))
     if s is None or t is None or not is_positive(t[0] - s[0]):
         return None
     det = _det(s)
     total = _ends(det.log())[0], _ends(_det(t).log())[1]
     if chain.n == 1:
-        return (total,)
+        return (total,), 1
     half = total[0] / 2, total[1] / 2
-    matrices = _in_frames(s, t, _directions(s, 4 * chain.places))
+    matrices, sign = _in_frames(s, t, _directions(s, 4 * chain.places))
     one = _of_cone(matrices)
     if one is not None:
         one = _ends(one[0].log())[0], _ends(one[1].log())[1]
         other = total[0] - one[1], total[1] - one[0]
-        return tuple(map(max, one, other)), tuple(map(min, one, other))
+        return (tuple(map(max, one, other)), tuple(map(min, one, other))), sign
     # No cone closes.  If (trace)^2 < 4 det, the eigenvalues are complex, and their moduli equal;
     # anyway the larger row sum bounds them.
     product = unit(2)
@@ -36,9 +36,9 @@ def growth(chain, strict, away):
         product = matrices[j] * product
     trace = product[0, 0] + product[1, 1]
     if trace * trace < 4 * det:
-        return half, half
+        return (half, half), 0
     high = max(upper((abs(a) + abs(b)).upper().log()) for a, b in product.tolist())
-    return (half[0], high), (total[0] - high, half[1])
+    return ((half[0], high), (total[0] - high, half[1])), 0
 
 
 def _ends(x):
@@ -75,7 +75,7 @@ def _directions(s, squarings):
 def _in_frames(s, t, directions):
     """Balls around the matrices that D_j are in the frames (v_j, Jv_j), J the quarter turn: D_j is
     within trace (t_j - s_j) of s_j.  The last frame is the first again, or its negative if the
-    direction turned round."""
+    direction turned round: then the sign that is returned too is -1."""
     def frame(v):
         x, y = v.entries()
         return arb_mat(2, 2, [x, -y, y, x])
@@ -88,9 +88,9 @@ def _in_frames(s, t, directions):
         D = s[j] + arb_mat(2, 2, [wide] * 4)
         after = frames[j + 1]
         matrices.append(after.transpose() * D * frames[j] * (1 / after.det()))
-    if matrices[-1][0, 0] < 0:
-        matrices[-1] = -matrices[-1]
-    return matrices
+    sign = -1 if matrices[-1][0, 0] < 0 else 1
+    matrices[-1] *= sign
+    return matrices, sign
 
 
 def _of_cone(matrices):

@@ -140,8 +140,7 @@ def labels(states):
 
 
 def exponents_words(state):
-    return "exponents " + ", ".join("unknown" if np.isnan(x) else "%.4f" % x
-                                    for x in state.exponents)
+    return "exponents " + ", ".join("%.4f" % x for x in state.exponents)
 
 
 def shape(state):
@@ -176,13 +175,8 @@ def std_demo(figure, families):
     number = np.arange(20)[:, None]
     for panel, k in zip(axes, KICKS):
         x, p = (number + 0.5) / 20, number * float(farey.GOLDEN) % 1.0
-        orbit = []
-        for _ in range(200):
-            p = p - k * standard.evaluate(x)[1]
-            x = (x + p) % 1.0
-            orbit.append((x, p % 1.0))
-        xs, ps = np.array(orbit).transpose(1, 0, 2, 3)
-        panel.plot(xs.ravel(), ps.ravel(), color=DARK, **POINTS)
+        xs, ps = standard.orbit(x, p, 200, k)
+        panel.plot(xs[1:].ravel() % 1, ps[1:].ravel() % 1, color=DARK, **POINTS)
         panel.set(xlim=(0, 1), ylim=(0, 1), aspect="equal", xlabel="$x$")
         panel.set_title("$k$ = %g" % k)
     axes[0].set_ylabel("$p$")

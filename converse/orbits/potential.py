@@ -20,6 +20,7 @@ from ..model.exact import Ends, Number, exact, root_bounds, short_text
 from ..model.potential import FourierSum, from_terms, per_period, product
 from ..prover.native import check
 from ..storage.files import plain
+from .stability import derivatives
 
 STUDIED = {}                # by name, the potentials at the end of this file
 COMPARED = 7                # points where a potential from Python is compared with differences
@@ -139,6 +140,52 @@ class Potential:
         hessian[:, 0, 0], hessian[:, 1, 1] = bend[:, 0], bend[:, 2]
         hessian[:, 0, 1] = hessian[:, 1, 0] = bend[:, 1]
         return value, gradient[:, :self.n], hessian[:, :self.n, :self.n]
+
+    # ---- the map.  Angles and momenta have period 1 here: of input files and proofs, whose period
+    # ---- is 2 pi, they are y/(2 pi) and J/(2 pi).  Nothing is reduced modulo the period.
+
+    def map(self, x: Any, p: Any, eps: float = 1.0) -> Tuple[np.ndarray, np.ndarray]:
+        """(x', p') with p' = p - eps grad V(x), x' = x + p': arrays of the shape of x and p.
+
+        x, p -- arrays (..., n) of any number of points; with one angle of any shape"""
+        x, p, gradient, _ = self._at(x, p, eps)
+        p = p - gradient
+        return x + p, p
+
+    def inverse(self, x: Any, p: Any, eps: float = 1.0) -> Tuple[np.ndarray, np.ndarray]:
+        """The (x, p) that map() takes to what is given."""
+        x, p = np.broadcast_arrays(np.asarray(x, float), np.asarray(p, float))
+        before, p, gradient, _ = self._at(x - p, p, eps)
+        return before, p + gradient
+
+    def tangent(self, x: Any, eps: float = 1.0) -> np.ndarray:
+        """The derivative of map() at x, any p: array (..., 2n, 2n), x before p, that is,
+        [[1 - eps V'', 1], [-eps V'', 1]]."""
+        x, _, _, bend = self._at(x, 0.0, eps)
+        shape = x.shape[:-1] if x.shape[-1:] == (self.n,) else x.shape
+        return derivatives(bend).reshape(*shape, 2 * self.n, 2 * self.n)
+
+    def orbit(self, x: Any, p: Any, steps: int, eps: float = 1.0) -> Tuple[np.ndarray, np.ndarray]:
+        """The orbits that begin at the points: arrays (|steps| + 1, ...), the first row what is
+        given; backwards if steps < 0."""
+        steps = whole("steps", steps, 1 - 2 ** 31)
+        x, p = np.broadcast_arrays(np.asarray(x, float), np.asarray(p, float))
+        xs, ps = (np.empty((abs(steps) + 1, *x.shape)) for _ in range(2))
+        xs[0], ps[0] = x, p
+        step = self.map if steps > 0 else self.inverse
+        for j in range(abs(steps)):
+            xs[j + 1], ps[j + 1] = step(xs[j], ps[j], eps)
+        return xs, ps
+
+    def _at(self, x, p, eps):
+        """x and p of one shape, there eps times the gradient, and eps V'' as an array (m, n, n)."""
+        eps, = finite("eps", [eps])
+        x, p = np.broadcast_arrays(np.asarray(x, float), np.asarray(p, float))
+        if self.n == 2 and x.shape[-1:] != (2,):
+            raise ValueError("points of two angles are arrays of shape (..., 2), not %r"
+                             % (x.shape,))
+        _, gradient, bend = self.evaluate(x.reshape(-1, self.n))
+        return x, p, eps * gradient.reshape(x.shape), eps * bend
 
 
 def _one(digits):

@@ -45,6 +45,8 @@ class ProvedOrbit:
                  however often the orbit is run through
     action    -- (low, high): its action per point less that of the straight orbit, |p/q|^2/2
     exponents -- ((low, high), ...): its n positive Lyapunov exponents, larger first
+    sign      -- 1 or -1: that of its multipliers, which are real; 0: they are complex, or it is not
+                 decided whether
     moved     -- how far the points are from those of the state: the largest coordinate, on the
                  torus
     """
@@ -55,6 +57,7 @@ class ProvedOrbit:
     least: Fraction
     action: Ends
     exponents: Tuple[Ends, ...]
+    sign: int
     moved: float
     displacements: Tuple[Tuple[Fraction, ...], ...]
 
@@ -77,6 +80,30 @@ class ProvedOrbit:
         """The points that were proved as doubles have them, to be drawn or measured."""
         return self.state.moved(np.array(self.displacements, dtype=float))
 
+    @cached_property
+    def indices(self) -> Optional[Tuple[Ends, ...]]:
+        """Enclosures of its n stability indices rho = l + 1/l, in the order of the exponents; None
+        where the multipliers l are not known to be real.  Exact numbers of many digits."""
+        if not self.sign:
+            return None
+        from .enclosure import ball, lower, upper, with_digits
+
+        found = []
+        with with_digits(KEPT):
+            for ends in self.exponents:             # l + 1/l grows with |l|
+                low, high = (2 * (self.state.q * ball(end)).cosh() for end in ends)
+                found.append(sorted((self.sign * lower(low), self.sign * upper(high))))
+        return tuple((low, high) for low, high in found)
+
+    @property
+    def residue(self) -> Ends:
+        """An enclosure of Greene's residue (2 - rho)/4, which is negative; ValueError for n = 2."""
+        if self.state.potential.n != 1 or self.indices is None:
+            raise ValueError("Greene's residue is of maps with one angle; with two there are the "
+                             "stability indices, .indices")
+        (low, high), = self.indices
+        return (2 - high) / 4, (2 - low) / 4
+
     def report(self) -> str:
         """The theorem in words."""
         state, (within, moved) = self.state, distances(self)
@@ -93,6 +120,8 @@ class ProvedOrbit:
             "second variation at least %s." % rounded_text(self.least, 3, up=False),
             "Action per point less |p/q|^2/2: %s." % interval_text(*self.action, SHOWN)] + [
             "Exponent: %s." % interval_text(*ends, SHOWN) for ends in self.exponents]
+        if state.potential.n == 1 and self.residue[0] > -10 ** SHOWN:
+            lines.append("Greene's residue: %s." % interval_text(*self.residue, SHOWN))
         return "\n".join(lines) + "\n"
 
 
@@ -182,16 +211,17 @@ def _attempt(state, exact, growth, places, wanted):
     strict = max(4 * away, ulp * 10 ** GUARD)
     if strict > least / 2:
         raise _TooFewPlaces("the minimum is too flat")
-    exponents = growth(exact, strict, away)
-    if exponents is None:
+    grown = growth(exact, strict, away)
+    if grown is None:
         raise _TooFewPlaces("the pivots could not be enclosed")
+    exponents, sign = grown
     exponents = tuple((rounded(max(low, 0) / state.q, KEPT, up=False),
                        rounded(high / state.q, KEPT, up=True)) for low, high in exponents)
     action = (rounded(exact.action[0] - exact.gradient * radius / state.q, shown, up=False),
               rounded(exact.action[1], shown, up=True))
     moved = max(abs(step - round(step)) for step in steps)
-    return ProvedOrbit(state, places, radius, left, action, exponents, moved,
-                       displacements)
+    return ProvedOrbit(state, places, radius, left, action, exponents, sign,
+                       moved, displacements)
 
 
 def _refine(state, exact, places, floor):

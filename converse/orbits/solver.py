@@ -143,10 +143,10 @@ def newton(state: State, eps: Optional[float] = None, tol: float = 1e-13,
     for steps in range(max_steps + 1):
         if steps == max_steps or np.abs(state.gradient).max() <= tol:
             break
-        gradient, step = np.zeros((state.q, 2)), np.zeros((state.q, 2))
+        gradient, step, work = (np.zeros((state.q, k)) for k in (2, 2, lib.CV_WORK))
         gradient[:, :n] = state.gradient
         done(lib.cv_solve(n, state.q, address(state.blocks, "double(*)[3]"), 0.0,
-                          address(gradient), address(step)))
+                          address(gradient), address(step), address(work, "double *")))
         u = state.u - step[:, :n]
         if not (np.abs(u) < FARTHEST).all():
             break

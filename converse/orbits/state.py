@@ -11,13 +11,13 @@ import numpy as np
 from .._native import ffi, lib
 from ..storage.files import ConverseError
 from .potential import Potential, address, done, finite, known, look_up, whole
+from .stability import Monodromy, beyond, derivatives, log_excesses, log_multipliers, product
 
 STATIONARY = 1e-9           # of the gradient's largest coordinate: above it a state is no orbit
 ROUNDING = 1e-12            # of eigenvalues
 FAR = 1e-3                  # further along a direction than that, its eigenvalue may be another
 NEAR_NULL = 1e-8            # of eigenvalues: along their directions the phase is not determined
 ROUNDS = 200000             # points that the pivots run through at most, but five rounds
-POINTS = 250000             # times steps, of relax, before Ctrl-C is looked for
 LONGEST = 10 ** 7           # points
 FARTHEST = 1000             # displacement or origin: beyond, a point has too few digits left
 
@@ -208,7 +208,7 @@ class State:
         """How many eigenvalues of the Hessian are below shift."""
         shift, = finite("shift", [shift])
         return done(lib.cv_solve(self.potential.n, self.q, address(self.blocks, "double(*)[3]"),
-                                 -shift, ffi.NULL, ffi.NULL))
+                                 -shift, ffi.NULL, ffi.NULL, ffi.NULL))
 
     @cached_property
     def least(self) -> float:
@@ -224,13 +224,12 @@ class State:
     # ---- what kind of state it is
 
     @cached_property
-    def _pivots(self) -> Tuple[np.ndarray, int]:
-        """The pivots d_j = beta_j - 1/d_{j-1}, array (q, 3), and the rounds until they repeated; 0:
-        they did not; -r: not all are positive definite, in round r."""
+    def _rounds(self) -> int:
+        """Rounds until the pivots d_j = beta_j - 1/d_{j-1} repeated; 0: they did not; -r: not all
+        are positive definite, in round r."""
         pivots = np.zeros((self.q, 3))
-        rounds = lib.cv_pivots(self.potential.n, self.q, address(self.blocks, "double(*)[3]"),
-                               max(5, ROUNDS // self.q), address(pivots, "double(*)[3]"))
-        return _fixed(pivots), rounds
+        return lib.cv_pivots(self.potential.n, self.q, address(self.blocks, "double(*)[3]"),
+                             max(5, ROUNDS // self.q), address(pivots, "double(*)[3]"))
 
     @property
     def label(self) -> str:
@@ -240,7 +239,7 @@ class State:
         searches", of a minimum found so."""
         if not self.shadow < STATIONARY:
             return "not stationary"
-        rounds = self._pivots[1]
+        rounds = self._rounds
         if rounds <= 0:
             if self.repeat(1 - rounds).below(-max(ROUNDING, self.shadow / FAR)):
                 return "saddle"
@@ -254,19 +253,58 @@ class State:
         -NEAR_NULL and NEAR_NULL.  The phases along them are not determined."""
         return self.below(NEAR_NULL) - self.below(-NEAR_NULL)
 
+    # ---- how neighbours move away: stability.py
+
+    @property
+    def _derivatives(self) -> np.ndarray:
+        return derivatives(self.eps * self._local[2])
+
+    @property
+    def monodromy(self) -> Monodromy:
+        """DF^q at x_0, x before p: a matrix (2n, 2n), times e^log, so that nothing overflows."""
+        return product(self._derivatives)
+
     @cached_property
+    def _log_excesses(self) -> np.ndarray:
+        """log (rho - 2) of the stability indices."""
+        log = ffi.new("double *")
+        negative = lib.cv_determinant(self.potential.n, self.q,
+                                      address(self.blocks, "double(*)[3]"), log)
+        return _fixed(log_excesses(self.monodromy, log[0] + (negative % 2) * np.pi * 1j))
+
+    @property
+    def log_multipliers(self) -> np.ndarray:
+        """log l of those n multipliers, eigenvalues of DF^q, whose modulus is at least 1 (the
+        others are 1/l), larger first: complex array (n,).  The imaginary part is the angle by which
+        neighbours turn, pi where they are reflected."""
+        return log_multipliers(self._log_excesses)
+
+    @property
+    def multipliers(self) -> np.ndarray:
+        """These l themselves: array (n,), complex if one is; infinite beyond 1e308."""
+        return beyond(self.log_multipliers)
+
+    @property
+    def indices(self) -> np.ndarray:
+        """The stability indices rho = l + 1/l, array (n,): an orbit is stable to first order if
+        they are real, distinct and between -2 and 2.  Infinite beyond 1e308."""
+        return 2 + beyond(self._log_excesses)
+
+    @property
+    def residue(self) -> float:
+        """Greene's residue (2 - trace DF^q)/4 of an orbit of one angle: below 0 hyperbolic, as
+        minima are, from 0 to 1 elliptic, above 1 hyperbolic with reflection.  Infinite beyond
+        1e308.  ValueError for n = 2: see indices."""
+        if self.potential.n != 1:
+            raise ValueError("Greene's residue is of maps with one angle; with two there are the "
+                             "stability indices, state.indices")
+        return float(-beyond(self._log_excesses)[0] / 4)
+
+    @property
     def exponents(self) -> np.ndarray:
-        """The n Lyapunov exponents (1/q) log |l| >= 0 of the orbit, larger first, array (n,); NaN
-        where the pivots are not positive definite.  An exponent below 2/max(ROUNDS, 5 q), that is,
-        1/100,000 while q is at most 40,000, is so small, and no more is known: the pivots of an
-        orbit without exponents give half of that.  Larger ones are right to some per cent or
-        better."""
-        pivots, rounds = self._pivots
-        growth = ffi.new("double[2]")
-        if rounds < 0:
-            return _fixed(np.full(self.potential.n, np.nan))
-        lib.cv_growth(self.q, address(pivots, "double(*)[3]"), growth)
-        return _fixed(np.maximum(list(growth)[:self.potential.n], 0.0))
+        """The n Lyapunov exponents (1/q) log |l| >= 0, larger first, array (n,).  One below
+        2/max(ROUNDS, 5 q), that is, 1/100,000 while q is at most 40,000, is not told from 0."""
+        return _fixed(self.log_multipliers.real / self.q)
 
     # ---- measures
 
@@ -322,14 +360,10 @@ class State:
         max_steps = whole("max_steps", max_steps, 0)
         u, base = np.zeros((q, 2)), np.zeros((q, 2))
         u[:, :n], base[:, :n] = self.u, self.base
-        how, code = ffi.new("cv_relaxed *"), lib.CV_RUNNING
-        while code == lib.CV_RUNNING:
-            look_up()
-            until = min(max_steps, how.steps + max(1, POINTS // q))
-            code = done(lib.cv_relax(self.potential.native, q, eps, address(base), address(u), tol,
-                                     until, how), self.potential)
-            if how.steps < until or until == max_steps:
-                break
+        how = ffi.new("cv_relaxed *")
+        look_up()
+        code = done(lib.cv_relax(self.potential.native, q, eps, address(base), address(u), tol,
+                                 max_steps, how), self.potential)
         if code != lib.CV_OK:
             raise ConverseError(
                 "no orbit of type (%s)/%d found at eps %r: the gradient is still %.1e after %d "

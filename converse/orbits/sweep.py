@@ -97,7 +97,7 @@ def onset(potential: Potential, p: Tuple[int, ...], q: int, exponent: Optional[f
             if not below.eps < eps < above.eps:         # no double is between them
                 break
         state = _further(below, eps)
-        if state.exponents[0] > limit:          # false where it is NaN, since it is no minimum
+        if state.exponents[0] > limit and state.label == "minimum":
             above = state
         else:
             below = state

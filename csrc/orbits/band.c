@@ -1,7 +1,7 @@
 /* band.c - the Hessian of the action, a cyclic band of blocks beta_j = 2 - eps V''(x_j) with -1
    beside them and in both corners. */
 #include <math.h>
-#include <stdlib.h>
+#include <stddef.h>
 
 #include "converse.h"
 #include "orbits/band.h"
@@ -17,77 +17,98 @@ static inline void times(double r[2], sym m, const double v[2])
 
 static inline double dot(const double v[2], const double w[2]) { return v[0] * w[0] + v[1] * w[1]; }
 
+typedef struct {
+    sym inverse;
+    mat w;
+} row;     /* of work: CV_WORK doubles */
+_Static_assert(sizeof(row) == CV_WORK * sizeof(double), "CV_WORK");
+
 /* Block elimination of the first q - 1 points, one after the other, leaves d_j of point j; w_j, its
    coupling to the last point, goes along: w_{j+1} = d_j^-1 w_j.  Both neighbours of the last point
    couple to it, and with q = 2 they are one, with q = 1 itself.  The eigenvalues below zero of all
-   the pivots together are as many as those of the whole (Sylvester). */
-long cv_solve(int n, long q, const double (*beta)[3], double mu, const double (*b)[2],
-              double (*u)[2])
+   the pivots together are as many as those of the whole (Sylvester), and are returned; log, unless
+   it is NULL, is that of the modulus of the determinant. */
+static long eliminate(int n, long q, const double (*beta)[3], double mu, row *rows, sym *last,
+                      double *log_det)
 {
     const mat corner = { { { -1.0, 0.0 }, { 0.0, n == 2 ? -1.0 : 0.0 } } };
-    const size_t size = (size_t)q;
-    sym *const inverse = malloc(size * sizeof *inverse), last = sym_of(beta[q - 1]), d;
-    mat *const w = malloc(size * sizeof *w), next;
-    double sum[2] = { 0.0, 0.0 };
     const double idle = n == 2 ? mu : 0.0;      /* an idle coordinate keeps its positive pivots */
+    row here = { { 0.0, 0.0, 0.0 }, corner };
+    mat next = corner;
+    double total = 0.0;
     long negative = 0;
 
-    if (!inverse || !w) {
-        free(inverse);
-        free(w);
-        return CV_ENOMEM;
-    }
-    last.a += mu;
-    last.c += idle;
+    *last = sym_of(beta[q - 1]);
+    last->a += mu;
+    last->c += idle;
     if (q == 1) {
-        last.a -= 2.0;
-        last.c -= n == 2 ? 2.0 : 0.0;
+        last->a -= 2.0;
+        last->c -= n == 2 ? 2.0 : 0.0;
     }
     for (long j = 0; j < q - 1; j++) {
-        mat *const here = &w[j];
-        d = sym_of(beta[j]);
+        sym d = sym_of(beta[j]);
         d.a += mu;
         d.c += idle;
         if (j > 0)
-            d = sym_sub(d, inverse[j - 1]);
+            d = sym_sub(d, here.inverse);
         negative += sym_negative(d);
-        inverse[j] = sym_inverse(d);
-        *here = j > 0 ? next : corner;
+        here.inverse = sym_inverse(d);
+        here.w = next;
         for (int k = 0; j == q - 2 && k < 2; k++)
-            here->v[k][k] += corner.v[k][k];
+            here.w.v[k][k] += corner.v[k][k];
         for (int k = 0; k < 2; k++)
-            times(next.v[k], inverse[j], here->v[k]);
-        last.a -= dot(here->v[0], next.v[0]);
-        last.b -= dot(here->v[0], next.v[1]);
-        last.c -= dot(here->v[1], next.v[1]);
+            times(next.v[k], here.inverse, here.w.v[k]);
+        last->a -= dot(here.w.v[0], next.v[0]);
+        last->b -= dot(here.w.v[0], next.v[1]);
+        last->c -= dot(here.w.v[1], next.v[1]);
+        if (rows)
+            rows[j] = here;
+        if (log_det)
+            total += log(fabs(n == 2 ? sym_det(d) : d.a));
     }
-    negative += sym_negative(last);
-    if (b && u) {
-        for (long j = 0; j < q - 1; j++) {          /* right-hand sides; u_j = d_j^-1 of them */
-            double r[2] = { b[j][0], b[j][1] };
-            for (int i = 0; j > 0 && i < 2; i++)
-                r[i] += u[j - 1][i];
-            times(u[j], inverse[j], r);
-            for (int k = 0; k < 2; k++)
-                sum[k] += dot(w[j].v[k], u[j]);
-        }
-        sum[0] = b[q - 1][0] - sum[0];
-        sum[1] = b[q - 1][1] - sum[1];
-        times(u[q - 1], sym_inverse(last), sum);
-        for (long j = q - 2; j >= 0; j--) {
-            double r[2];
-            for (int i = 0; i < 2; i++) {
-                r[i] = -(w[j].v[0][i] * u[q - 1][0] + w[j].v[1][i] * u[q - 1][1]);
-                if (j < q - 2)
-                    r[i] += u[j + 1][i];
-            }
-            times(r, inverse[j], r);
-            u[j][0] += r[0];
-            u[j][1] += r[1];
-        }
+    if (log_det)
+        *log_det = total + log(fabs(n == 2 ? sym_det(*last) : last->a));
+    return negative + sym_negative(*last);
+}
+
+long cv_determinant(int n, long q, const double (*beta)[3], double *log_det)
+{
+    sym last;
+    return eliminate(n, q, beta, 0.0, NULL, &last, log_det);
+}
+
+long cv_solve(int n, long q, const double (*beta)[3], double mu, const double (*b)[2],
+              double (*u)[2], double *work)
+{
+    row *const rows = (row *)work;
+    double sum[2] = { 0.0, 0.0 };
+    sym last;
+    const long negative = eliminate(n, q, beta, mu, rows, &last, NULL);
+
+    if (!rows)
+        return negative;
+    for (long j = 0; j < q - 1; j++) {              /* right-hand sides; u_j = d_j^-1 of them */
+        double r[2] = { b[j][0], b[j][1] };
+        for (int i = 0; j > 0 && i < 2; i++)
+            r[i] += u[j - 1][i];
+        times(u[j], rows[j].inverse, r);
+        for (int k = 0; k < 2; k++)
+            sum[k] += dot(rows[j].w.v[k], u[j]);
     }
-    free(inverse);
-    free(w);
+    sum[0] = b[q - 1][0] - sum[0];
+    sum[1] = b[q - 1][1] - sum[1];
+    times(u[q - 1], sym_inverse(last), sum);
+    for (long j = q - 2; j >= 0; j--) {
+        double r[2];
+        for (int i = 0; i < 2; i++) {
+            r[i] = -(rows[j].w.v[0][i] * u[q - 1][0] + rows[j].w.v[1][i] * u[q - 1][1]);
+            if (j < q - 2)
+                r[i] += u[j + 1][i];
+        }
+        times(r, rows[j].inverse, r);
+        u[j][0] += r[0];
+        u[j][1] += r[1];
+    }
     return negative;
 }
 
@@ -114,31 +135,4 @@ long cv_pivots(int n, long q, const double (*beta)[3], long max_rounds, double (
             return round;
     }
     return 0;
-}
-
-/* The product is carried as a matrix of size about one and the logarithm of what was divided out.
-   The product of the eigenvalues' moduli is that of the determinants, which keeps the smaller one
-   from drowning in the larger one's rounding. */
-void cv_growth(long q, const double (*d)[3], double growth[2])
-{
-    mat p = { { { 1.0, 0.0 }, { 0.0, 1.0 } } };
-    double size = 0.0, both = 0.0, half, disc;
-
-    for (long j = 0; j < q; j++) {
-        double scale = 0.0;
-        for (int k = 0; k < 2; k++) {
-            times(p.v[k], sym_of(d[j]), p.v[k]);
-            scale = fmax(scale, fmax(fabs(p.v[k][0]), fabs(p.v[k][1])));
-        }
-        for (int k = 0; k < 4; k++)
-            p.v[k / 2][k % 2] /= scale;
-        size += log(scale);
-        both += log(sym_det(sym_of(d[j])));
-    }
-    half = 0.5 * (p.v[0][0] + p.v[1][1]);
-    disc = half * half - (p.v[0][0] * p.v[1][1] - p.v[0][1] * p.v[1][0]);
-    growth[0] = disc > 0.0 ? size + log(fabs(half) + sqrt(disc)) : 0.5 * both;
-    growth[1] = both - growth[0];
-    for (int i = 0; i < 2; i++)
-        growth[i] /= (double)q;
 }

@@ -8,7 +8,7 @@
 static const double CAP = 0.1;          /* no coordinate moves further in one step */
 static const double FLAT = 1e-11;       /* of eigenvalues: below it, rounding says which sign */
 static const double HOPELESS = 1e9;     /* a damping with which nothing moves any more */
-enum { MOST_ESCAPES = 50, WALK = 1000 };
+enum { MOST_ESCAPES = 50, WALK = 1000, ASK = 1 << 18 };
 
 typedef double point[2];
 typedef double block[3];
@@ -20,6 +20,8 @@ typedef struct {
     const point *base;
     point *x;                           /* base + u, scratch */
     double *value;                      /* scratch */
+    double *work;                       /* of cv_solve */
+    long points;                        /* dealt with since Ctrl-C was looked for */
 } action_of;
 
 typedef struct {
@@ -28,6 +30,23 @@ typedef struct {
     double action, largest, mean_square;
     double noise, doubt;    /* of the rounding of actions; and where V, not its slope, cancels */
 } place;
+
+/* Is the search to end?  To be asked after each round through all points. */
+static int stopped(action_of *of)
+{
+    of->points += of->q;
+    if (of->points < ASK)
+        return 0;
+    of->points = 0;
+    return cv_python_interrupts();
+}
+
+/* cv_solve; CV_ESTOPPED, if the search is to end. */
+static long solve(action_of *of, const block *beta, double mu, const point *b, point *u)
+{
+    return stopped(of) ? CV_ESTOPPED
+                       : cv_solve(of->v->n, of->q, beta, mu, b, u, b ? of->work : NULL);
+}
 
 /* Action, gradient and, unless it is NULL, the Hessian's blocks at at->u. */
 static int look(const action_of *of, place *at)
@@ -76,7 +95,7 @@ int cv_action(const cv_potential *v, long q, double eps, const double (*base)[2]
 {
     const size_t size = (size_t)q;
     action_of of = {
-        v, q, eps, base, malloc(size * sizeof *of.x), malloc(size * sizeof *of.value)
+        v, q, eps, base, malloc(size * sizeof *of.x), malloc(size * sizeof *of.value), NULL, 0
     };
     place at = { malloc(size * sizeof *at.u), gradient, NULL, 0.0, 0.0, 0.0, 0.0, 0.0 };
     int status = CV_ENOMEM;
@@ -111,17 +130,18 @@ static double widest(long q, const point *v)
 
 /* The eigenvector of the least eigenvalue, which is below -FLAT: inverse iteration with a shift
    that the counts of negative eigenvalues bring within a twentieth of it. */
-static long downhill(int n, long q, const block *beta, point *v)
+static long downhill(action_of *of, const block *beta, point *v)
 {
+    const long q = of->q;
     double low = FLAT, high = 1.0, most;
     unsigned long long random = 88172645463325252ULL;
     long negative;
 
-    while ((negative = cv_solve(n, q, beta, high, NULL, NULL)) > 0)
+    while ((negative = solve(of, beta, high, NULL, NULL)) > 0)
         high *= 2.0;
     while (negative >= 0 && high > 1.05 * low) {
         const double middle = low > 0.01 * high ? 0.5 * (low + high) : sqrt(low * high);
-        negative = cv_solve(n, q, beta, middle, NULL, NULL);
+        negative = solve(of, beta, middle, NULL, NULL);
         if (negative > 0)
             low = middle;
         else
@@ -132,10 +152,10 @@ static long downhill(int n, long q, const block *beta, point *v)
             random ^= random << 13;
             random ^= random >> 7;
             random ^= random << 17;
-            v[j][i] = i < n ? (double)(random >> 11) * 0x1p-53 - 0.5 : 0.0;
+            v[j][i] = i < of->v->n ? (double)(random >> 11) * 0x1p-53 - 0.5 : 0.0;
         }
     for (int k = 0; k < 12 && negative >= 0; k++) {
-        negative = cv_solve(n, q, beta, high, (const point *)v, v);
+        negative = solve(of, beta, high, (const point *)v, v);
         most = widest(q, (const point *)v);
         for (long j = 0; j < q; j++)
             for (int i = 0; i < 2; i++)
@@ -171,9 +191,9 @@ static int lower(long q, const place *b, const place *a, int may_walk)
 
 /* Steps off a saddle, to the lower one of both sides, as far as that is lower than here.  Returns
    whether there is such a step, or an error. */
-static long escape(const action_of *of, place *at, place *other, point *along)
+static long escape(action_of *of, place *at, place *other, point *along)
 {
-    long status = downhill(of->v->n, of->q, (const block *)at->beta, along);
+    long status = downhill(of, (const block *)at->beta, along);
     double best = at->action - at->noise, chosen = 0.0;
 
     for (double t = 0.5 * CAP; t > 1e-7 && chosen == 0.0 && status == CV_OK; t *= 0.25)
@@ -193,11 +213,11 @@ static long escape(const action_of *of, place *at, place *other, point *along)
     return status < 0 ? status : 1;
 }
 
-static int descend(const action_of *of, place *at, place *other, point *along, double tol,
-                   long max_steps, cv_relaxed *how)
+static int descend(action_of *of, place *at, place *other, point *along, double tol, long max_steps,
+                   cv_relaxed *how)
 {
     const long q = of->q;
-    double mu = how->damping;
+    double mu = 0.0;
     int status = look(of, at);
 
     while (status == CV_OK) {
@@ -207,7 +227,7 @@ static int descend(const action_of *of, place *at, place *other, point *along, d
         /* Before break-up a gradient along directions that cost nothing may be all that rounding
            leaves, and no step lowers what it hides. */
         if (at->largest <= tol || (mu > HOPELESS && at->largest <= 100.0 * tol)) {
-            negative = cv_solve(of->v->n, q, (const block *)at->beta, FLAT, NULL, NULL);
+            negative = solve(of, (const block *)at->beta, FLAT, NULL, NULL);
             if (negative > 0 && how->escapes < MOST_ESCAPES) {
                 how->escapes++;
                 negative = escape(of, at, other, along);
@@ -217,12 +237,11 @@ static int descend(const action_of *of, place *at, place *other, point *along, d
             }
             return negative < 0 ? (int)negative : CV_OK;
         }
-        how->damping = mu;
         if (how->steps >= max_steps || !(at->largest < HUGE_VAL) || mu > HOPELESS)
             return CV_RUNNING;
         how->steps++;
-        while ((negative = cv_solve(of->v->n, q, (const block *)at->beta, mu,
-                                    (const point *)at->gradient, along)) > 0 &&
+        while ((negative = solve(of, (const block *)at->beta, mu, (const point *)at->gradient,
+                                 along)) > 0 &&
                mu < HOPELESS)
             mu = fmax(4.0 * mu, fmax(0.01 * slope, 1e-15));
         if (negative < 0)
@@ -243,12 +262,17 @@ int cv_relax(const cv_potential *v, long q, double eps, const double (*base)[2],
              double tol, long max_steps, cv_relaxed *how)
 {
     const size_t size = (size_t)q;
-    const action_of of = {
-        v, q, eps, base, malloc(size * sizeof *of.x), malloc(size * sizeof *of.value)
-    };
+    action_of of = { v,
+                     q,
+                     eps,
+                     base,
+                     malloc(size * sizeof *of.x),
+                     malloc(size * sizeof *of.value),
+                     malloc(size * CV_WORK * sizeof *of.work),
+                     0 };
     place places[2], *const at = &places[0], *const other = &places[1];
     point *const along = malloc(size * sizeof *along);
-    int status = CV_ENOMEM, complete = of.x && of.value && along;
+    int status = CV_ENOMEM, complete = of.x && of.value && of.work && along;
 
     for (int k = 0; k < 2; k++) {
         places[k] = (place){ malloc(size * sizeof *at->u),
@@ -273,6 +297,7 @@ int cv_relax(const cv_potential *v, long q, double eps, const double (*base)[2],
     }
     free(of.x);
     free(of.value);
+    free(of.work);
     free(along);
     return status;
 }

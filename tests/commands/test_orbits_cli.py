@@ -85,7 +85,7 @@ def test_what_is_no_minimum_ends_with_status_1(run, monkeypatch):
     status, out, err = run("find", "standard", "1/3", "0.5")
     assert (status, err) == (1, "")
     assert "State : saddle (seen in doubles: its action can be lowered" in out
-    assert "Exponents : unknown\n" in out
+    assert "Exponents : below 1e-05\n" in out and "Residue : 0." in out
 
 
 def test_what_is_not_found_ends_with_status_1(run, monkeypatch):

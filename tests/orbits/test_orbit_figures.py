@@ -397,7 +397,7 @@ def test_states_picture():
         assert "3/8: minimum" in title(panel) and "ε = %r" % state.eps in title(panel)
     saddle, _ = newton(orbits.straight(orbits.trig, (2, 3), 5, (0.1489578, 0.1489578)), 0.01)
     assert figures.kind(saddle) == "saddle"
-    assert figures.exponents_words(saddle) == "exponents unknown, unknown"
+    assert figures.exponents_words(saddle) == "exponents %.4f, %.4f" % tuple(saddle.exponents)
     assert figures.states_picture([saddle]).startswith(b"<?xml")
     for number in 0, figures.ROWS + 1:
         with pytest.raises(ValueError, match="choose fewer eps"):

@@ -442,8 +442,9 @@ def test_the_band_against_a_dense_matrix(potential, p, q, eps):
         mu = rng.uniform(-1, 1)
         b, u = np.zeros((q, 2)), np.zeros((q, 2))
         b[:, :n] = rng.normal(size=(q, n))
+        work = np.zeros((q, lib.CV_WORK))
         negative = lib.cv_solve(n, q, address(state.blocks, "double(*)[3]"), mu, address(b),
-                                address(u))
+                                address(u), address(work, "double *"))
         true = np.linalg.solve(matrix + mu * np.eye(n * q), b[:, :n].ravel()).reshape(q, n)
         away = 1 / np.abs(eigenvalues + mu).min()
         assert negative == (eigenvalues < -mu).sum()

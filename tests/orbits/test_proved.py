@@ -168,18 +168,20 @@ def shoot(state, x0, x1):
     raise AssertionError("the truth did not converge")
 
 
-def truth_exponents(M, q):
-    """From the eigenvalues l, 1/l of a symplectic matrix: l + 1/l = s."""
+def truth_indices(M):
+    """s = l + 1/l of the eigenvalues l, 1/l of a symplectic matrix."""
     t = sum(M[i, i] for i in range(M.rows))
     if M.rows == 2:
-        sums = [t]
-    else:
-        square = M * M
-        e2 = (t * t - sum(square[i, i] for i in range(4))) / 2
-        root = mpmath.sqrt(mpmath.mpc(t * t - 4 * (e2 - 2)))
-        sums = [(t + root) / 2, (t - root) / 2]
+        return [t]
+    square = M * M
+    e2 = (t * t - sum(square[i, i] for i in range(4))) / 2
+    root = mpmath.sqrt(mpmath.mpc(t * t - 4 * (e2 - 2)))
+    return [(t + root) / 2, (t - root) / 2]
+
+
+def truth_exponents(M, q):
     sizes = []
-    for s in sums:
+    for s in truth_indices(M):
         root = mpmath.sqrt(mpmath.mpc(s * s - 4))
         sizes.append(max(abs(s + root), abs(s - root)) / 2)
     return sorted((mpmath.log(x) / q for x in sizes), reverse=True)
@@ -235,6 +237,12 @@ def contains(orbit, near, digits):
         assert inside(truth_action(state, points), orbit.action)
         for exponent, ends in zip(truth_exponents(M, state.q), orbit.exponents):
             assert inside(exponent, ends)
+        indices = sorted(truth_indices(M), key=abs, reverse=True)
+        assert (orbit.indices is None) == any(mpmath.im(s) != 0 for s in indices)
+        for s, ends in zip(indices, orbit.indices or ()):
+            assert inside(mpmath.re(s), ends)
+        if M.rows == 2:
+            assert inside((2 - indices[0]) / 4, orbit.residue)
     return points
 
 
@@ -329,7 +337,7 @@ def test_negative_multipliers():
     product = np.eye(2)
     for d in pivots(blocks(orbit.state, points)):
         product = d @ product
-    assert max(np.linalg.eigvals(product)) < 0
+    assert max(np.linalg.eigvals(product)) < 0 and orbit.sign == -1
     assert all(high - low < high / 10**9 for low, high in orbit.exponents)
 
 
@@ -757,7 +765,7 @@ def test_few_places_pivots(few):
             state, exact = COMPLEX, enclosed(COMPLEX)
             exact.evaluate(11)
         away = Fraction(rng.choice([0, 1e-9, 1e-6, 1e-5]))
-        logs = growth(exact, 2 * away + Fraction(1, 10**9), away)
+        logs, sign = growth(exact, 2 * away + Fraction(1, 10**9), away)
         kinds.add(len(logs) == 2 and logs[0] == logs[1])
         assert state is not COMPLEX or logs[0] == logs[1]
         beta = blocks(state, exact_points(state, exact.displacements()))
@@ -769,7 +777,9 @@ def test_few_places_pivots(few):
         product = np.eye(n)
         for d in pivots(beta):
             product = d @ product
-        sizes = sorted(np.log(np.abs(np.linalg.eigvals(product))), reverse=True)
+        values = np.linalg.eigvals(product)
+        assert sign == 0 or (np.isreal(values).all() and (sign * values.real > 0).all())
+        sizes = sorted(np.log(np.abs(values)), reverse=True)
         for size, (low, high) in zip(sizes, logs):
             assert low <= size <= high
     assert kinds == {True, False}
