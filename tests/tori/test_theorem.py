@@ -2,12 +2,17 @@
 each identity, bound and constant of the page is compared with what it is about.  Numbers in
 parentheses are the page's."""
 
+import dataclasses
 import itertools
 import math
-from typing import NamedTuple, Tuple
+from functools import lru_cache
+from typing import List, NamedTuple, Tuple
 
 import numpy as np
 import pytest
+
+from converse import Problem
+from converse.tori import NotProved, find, prove, read_rotation
 
 GOLDEN = (math.sqrt(5) - 1) / 2
 SPIRAL = 1.3247179572447460             # t^3 = t + 1
@@ -43,12 +48,14 @@ every_case = pytest.mark.parametrize("case", CASES.values(), ids=CASES)
 
 # ---- functions on grids: components first, then the grid
 
+@lru_cache(maxsize=None)
 def modes(case):
     """k, an array (n, N, ...)."""
     return np.array(np.meshgrid(*[np.fft.fftfreq(case.N, 1 / case.N)] * len(case.omega),
                                 indexing="ij"))
 
 
+@lru_cache(maxsize=None)
 def size(case):
     """|k| (4)."""
     return sum(a * abs(np.tensordot(row, modes(case), 1))
@@ -59,6 +66,7 @@ def kappa(case):
     return max(np.linalg.norm(c) / a for c, a in zip(np.linalg.inv(case.frame).T, case.alpha))
 
 
+@lru_cache(maxsize=None)
 def in_lattice(case):
     """Which modes are in K, not too near the grid's end."""
     allowed = np.zeros(modes(case).shape[1:], bool)
@@ -149,14 +157,16 @@ def residual(case, u):
     return shifted(case, u) - 2 * u + shifted(case, u, -1) + force(case, theta(case) + u)
 
 
+@lru_cache(maxsize=None)
 def divided(case):
     """1/(e^{ik.w} - 1); zero at k = 0 and outside of K."""
     d = np.exp(2j * np.pi * np.tensordot(case.omega, modes(case), 1)) - 1
-    allowed = in_lattice(case)
+    allowed = in_lattice(case).copy()
     allowed[(0,) * len(case.omega)] = False
     return np.where(allowed, 1 / np.where(allowed, d, 1), 0)
 
 
+@lru_cache(maxsize=None)
 def small_divisors(case, reach):
     """|k| and |1 - e^{ik.w}| for the k of K in a large box."""
     n = len(case.basis)
@@ -296,6 +306,119 @@ def test_one_step_obeys_its_bounds(case, amount):
             rest = times(inverse(turn(step.L)), times(step.W, step.y)) + times(step.DE, step.z) + Q
             assert abs(after - rest).max() < 1e-9
         u = u + step.v
+
+
+# ---- sections 3 and 6
+
+def uniform_c(case, delta, reach=300):
+    """(30)."""
+    tau = len(case.omega)
+    far, low = small_divisors(case, reach)
+    x = delta * far
+    return float((np.where(x <= tau, np.exp(-x), (tau / (math.e * x)) ** tau) / low).max())
+
+
+class Iteration(NamedTuple):
+    """(12) to (18): q, the sums, and e_i, v_i, delta_i of all steps up to a few beyond N."""
+
+    q: float
+    of_Dv: float
+    of_v: float
+    t: float
+    e: List[float]
+    v: List[float]
+    delta: List[float]
+    bounds: Tuple[float, ...]           # l, m, a, b, p
+
+
+def iteration(case, u, rho, rho_inf, s, factor, N, beyond=3):
+    step = Step(case, u)
+    e0, l0, m0, a0, b0, p0 = step.numbers(case, rho)
+    tau, n = len(case.omega), len(case.omega)
+    t = factor / (l0 * m0 * a0)
+    sigma = (2 * l0 + t) * t
+    l, m, a = l0 + t, m0 / (1 - m0 * t), a0 / (1 - a0 * sigma)
+    da = a * a0 * sigma
+    b, p = b0 / (1 - b0 * da), p0 + da
+    assert m0 * t < 1 and a0 * sigma < 1 and b0 * da < 1
+    h = 1 + b * p
+    T = sum(abs(amplitude) * np.linalg.norm(k) ** 3 * g * math.exp(np.linalg.norm(k) * t)
+            for (k, amplitude, _), g in zip(case.waves, weights(case, u, rho)))
+    delta = [2. ** -i * (rho - rho_inf) / (4 + 2 * s) for i in range(N + beyond + 1)]
+    C = [c_of(case, delta[i]) for i in range(N)] + [uniform_c(case, delta[N])]
+    K = kappa(case) / math.e
+    G = [a * h * c ** 2 * l * (2 * m * l * K / d * (n > 1) + K / (2 * d)
+                               + T * a * h * c ** 2 * l ** 3 / 2) for c, d in zip(C, delta)]
+    e = [e0]
+    for i in range(N):
+        e.append(G[i] * e[i] ** 2)
+    v = [a * h * c ** 2 * l ** 2 * each for c, each in zip(C, e)]
+    q = 2 ** (4 * tau) * G[N] * e[N]
+    of_Dv = sum(K / (s * d) * each for d, each in zip(delta[:N], v)) \
+        + K / (s * delta[N]) * v[N] / (1 - 2 ** (1 - 2 * tau))
+    of_v = sum(v[:N]) + v[N] / (1 - 2 ** (-2 * tau))
+    for r in range(1, beyond + 1):
+        e.append(e[N] * min(q, 1) ** (2 ** r - 1) * 2. ** (-4 * tau * r))
+        v.append(v[N] * 2. ** (-2 * tau * r))
+    return Iteration(q, of_Dv, of_v, t, e, v, delta, (l, m, a, b, p))
+
+
+@every_case
+@pytest.mark.parametrize("N", [0, 1, 3])
+def test_newtons_method_does_as_the_theorem_says(case, N):
+    """The claim of section 6, from a u about as far from a torus as the conditions admit."""
+    case = case._replace(waves=tuple((k, p / 4, phase) for k, p, phase in case.waves))
+    rho, rho_inf, s = .3, .02, .4
+    torus = np.zeros((len(case.omega), *[case.N] * len(case.omega)))
+    for _ in range(6):
+        torus = torus + Step(case, torus).v
+    change = some_u(case, np.random.default_rng(7), 1)
+    for power in range(2, 12):
+        start = torus + change * 10. ** -power
+        said = iteration(case, start, rho, rho_inf, s, .1, N)
+        if said.q <= 1 and said.of_Dv <= said.t and said.of_v <= said.t:
+            break
+    assert said.e[0] > 1e-11            # it is not rounding alone
+    u, noise = start, 1e-12
+    for e, v, delta in zip(said.e, said.v, said.delta):
+        step = Step(case, u)
+        now, l, m, a, b, p = step.numbers(case, rho)
+        assert now <= e + noise
+        assert all(x <= y for x, y in zip((l, m, a, b, p), said.bounds))
+        assert norm(case, step.v, rho - 2 * delta) <= v + noise
+        rho -= (2 + s) * delta
+        assert norm(case, derivative(case, step.v), rho) <= \
+            kappa(case) / (math.e * s * delta) * v + 30 * noise
+        u = u + step.v
+    assert rho > rho_inf and abs(residual(case, u)).max() < 1e-13
+    assert norm(case, u - start, rho_inf) <= said.of_v
+    assert norm(case, derivative(case, u - start), rho_inf) <= said.of_Dv
+    assert norm(case, u - start, 0) > 1e-14
+
+
+@pytest.mark.slow
+def test_the_true_torus_is_as_near_as_is_proved():
+    """A torus is cut to fewer and fewer modes, as long as it can be proved; Newton's limit, from
+    zero, is within the distance of the last one.  The mean of the theorem's u, at most the
+    distance, is a translation, which moves u by 1 + l0 times as much."""
+    case = CASES["standard"]
+    torus = find(Problem.patch(["0.5"], (), [(1, 0)]), read_rotation("golden"))
+    last, cut = None, .6
+    while True:
+        most = cut * max(torus.modes)[0]
+        torus = dataclasses.replace(
+            torus, modes={k: c for k, c in torus.modes.items() if k[0] <= most})
+        try:
+            last, cut = prove(torus).pieces[0], .85
+        except NotProved:
+            break
+    assert last is not None and last.distance > 1e-6
+    u = np.zeros((1, case.N))
+    for _ in range(6):
+        u = u + Step(case, u).v
+    computed = last.torus.x(theta(case).T).T - theta(case)
+    off = norm(case, u - u.mean() - computed, 0)
+    assert last.distance / 1e4 < off <= (2 + last.constants.l0) * last.distance
 
 
 # ---- section 7
