@@ -10,6 +10,7 @@ import sys
 import time
 import warnings
 
+from ..model.inputs import read_input
 from ..model.problem import InputError
 from ..prover.settings import LIMIT
 from ..prover.workers import WorkersGone
@@ -167,6 +168,20 @@ def check_mpi(options, module, command="converse"):
                  % (world.Get_size(), world.Get_size(), module), command)
         world.Barrier()                 # a process that ends may take the others with it
         sys.exit(BAD)
+
+
+# ---- the input
+
+def read_problem(name, command="converse"):
+    """The Problem in an input file, or in standard input if the name is None or -."""
+    source = name
+    if source in (None, "-"):
+        source = sys.stdin
+        if source is None:
+            raise ConverseError("standard input is closed; name an input file")
+        if source.isatty():
+            tell("reading the problem from standard input; end it with Ctrl-D", command)
+    return read_input(source)
 
 
 # ---- the end of a command

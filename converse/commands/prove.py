@@ -9,14 +9,13 @@ import time
 from dataclasses import replace
 
 from ..model.exact import decimal_text, exact
-from ..model.inputs import read_input
 from ..prover.report import header, verdict
 from ..prover.settings import AS_PRINTED, METHODS, REGION, THEOREM, UNDECIDED, Settings
 from ..storage import files
 from ..storage.files import ConverseError
 from ..version import __version__
 from .common import (REFRESH_SECONDS, Parser, ProgressLine, add_worker_options, check_mpi, ended,
-                     executor_of, say, seconds, tell, whole_number)
+                     executor_of, read_problem, say, seconds, tell, whole_number)
 
 STATUS = {THEOREM: 0, UNDECIDED: 1, REGION: 3, AS_PRINTED: 4}
 LEAF_WORDS = {"P": "proved", "S": "symmetric", "U": "undecided"}
@@ -121,14 +120,7 @@ def _read_problem(options, restored):
     """The problem that the input is, or that of the restored proof where there is no input."""
     if restored is not None and options.input is None:
         return restored.problem
-    source = options.input
-    if source in (None, "-"):
-        source = sys.stdin
-        if source is None:
-            raise ConverseError("standard input is closed; name an input file")
-        if source.isatty():
-            tell("reading the problem from standard input; end it with Ctrl-D")
-    problem = read_input(source)
+    problem = read_problem(options.input)
     if not problem.by_ranges:
         if options.together:
             raise ConverseError("--together is for ranges of a, b and c; name a parameter in the "

@@ -4,9 +4,10 @@ from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
 from math import gcd
-from typing import TYPE_CHECKING, List, Optional, Sequence, Tuple, Union
+from typing import TYPE_CHECKING, Optional, Sequence, Tuple, Union
 
 from .exact import Ends, Number, exact, is_decimal, outward, range_text
+from .lattice import echelon
 from .potential import Wave, sum_text
 
 NAMES = ("a", "b", "c", "v0", "v1")
@@ -258,19 +259,10 @@ class Problem:
 
         Sums and differences of such conditions are such conditions, so Euclid's algorithm makes of
         them one for s1 alone, one more that has s0, and those that s has no part in."""
-        rows = [[Fraction(k0), Fraction(k1), phase] for k0, k1, phase in self.waves]
+        pivots, rest = echelon([(Fraction(k0), Fraction(k1), phase)
+                                for k0, k1, phase in self.waves], 2)
         s = [Fraction(0), Fraction(0)]
-        pivots: List[Optional[List[Fraction]]] = []
-        for i in range(2):
-            while sum(row[i] != 0 for row in rows) > 1:
-                least = min((row for row in rows if row[i]), key=lambda row: abs(row[i]))
-                for row in rows:
-                    if row is not least:
-                        times = row[i] // least[i]
-                        row[:] = [x - times * y for x, y in zip(row, least)]
-            pivots.append(next((row for row in rows if row[i]), None))
-            rows = [row for row in rows if not row[i]]
-        if any(row[2].denominator != 1 for row in rows):
+        if any(row[2].denominator != 1 for row in rest):
             return None
         for i, pivot in reversed(list(enumerate(pivots))):
             if pivot is not None:

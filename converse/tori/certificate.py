@@ -1,10 +1,8 @@
 """The certificate of a proof (docs/format.md, "converse torus 1"): the map, the rotation vector and
 the modes of the torus, exactly, which are the claim; and hints how it may be proved."""
 
-import hashlib
 import os
 import re
-import zlib
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import TYPE_CHECKING, Dict, NoReturn, Tuple, Union
@@ -49,14 +47,7 @@ class Certificate:
 
 def write(proof: "ProvedTorus", path: Path) -> str:
     """ProvedTorus.save()."""
-    text = _text(proof)
-    data = text.encode("utf-8")
-    checksum = hashlib.sha256(data).hexdigest()
-    if os.fspath(path).endswith(".gz"):
-        import gzip
-        data = gzip.compress(data, 6, mtime=0)
-    files.write(path, data)
-    return checksum
+    return files.write_text(path, _text(proof))
 
 
 def _text(proof):
@@ -78,7 +69,7 @@ def _text(proof):
     for piece in proof.pieces:
         lines += _piece(piece.torus)
     text = "\n".join(lines) + "\n"
-    return text + "checksum: sha256 %s\nend\n" % hashlib.sha256(text.encode("utf-8")).hexdigest()
+    return text + "checksum: sha256 %s\nend\n" % files.sha256(text)
 
 
 def _words(numbers):
@@ -98,24 +89,9 @@ def read(path: Path) -> Certificate:
     """The certificate in a file, compressed or not.
 
     ConverseError, in one line: it cannot be read, is no certificate, or was changed or damaged."""
-    text = _decoded(path)
+    text = files.read_text(path, "certificate",
+                           ": the file is truncated or no certificate of this program")
     return _Reader(path, text).certificate()
-
-
-def _decoded(path):
-    try:
-        with open(path, "rb") as file:
-            data = file.read()
-        if data[:2] == b"\x1f\x8b":
-            import gzip
-            data = gzip.decompress(data)
-        return data.decode("utf-8")
-    except OSError as error:
-        raise ConverseError("%s: cannot be read (%s); name a readable certificate"
-                            % (path, files.reason(error))) from None
-    except (EOFError, zlib.error, UnicodeDecodeError):
-        raise ConverseError("%s: the file is truncated or no certificate of this program; use an "
-                            "intact copy" % path) from None
 
 
 class _Damaged(ValueError):
@@ -125,13 +101,13 @@ class _Damaged(ValueError):
 class _Reader:
     def __init__(self, path, text):
         self.path, self.lines, self.at = path, text.split("\n"), 0
-        self.sha256 = hashlib.sha256(text.encode("utf-8")).hexdigest()
+        self.sha256 = files.sha256(text)
         if self.lines[0] != FIRST_LINE:
             self.fail(1, "this is no certificate of a torus, version 1")
         if self.lines[-2:] != ["end", ""] or len(self.lines) < 4:
             self.fail(len(self.lines), "the file is truncated")
         body = "\n".join(self.lines[:-3]) + "\n"
-        if self.lines[-3] != "checksum: sha256 " + hashlib.sha256(body.encode("utf-8")).hexdigest():
+        if self.lines[-3] != "checksum: sha256 " + files.sha256(body):
             self.fail(len(self.lines) - 2, "the file was changed or damaged (wrong checksum)")
         del self.lines[-3:]
 

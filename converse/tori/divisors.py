@@ -9,13 +9,14 @@ a bound of the form Gamma |k|^-tau, since the norm of a number that is not 0 is 
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
-from math import ceil, floor, gcd, lcm
+from math import ceil, floor, lcm
 from typing import Any, Iterable, List, NamedTuple, Sequence, Tuple, Union
 
 import numpy as np
 from flint import arb, fmpq
 
 from ..model.exact import Number, exact, pi_bounds, root_bounds, rounded, sine_bounds
+from ..model.lattice import echelon
 from .field import Element, determinant
 from .rotation import Rotation
 
@@ -94,17 +95,11 @@ def lattice_basis(waves: Iterable[Sequence[int]]) -> Tuple[Vector, ...]:
     vectors = [tuple(wave) for wave in waves]
     if len({len(k) for k in vectors}) != 1 or len(vectors[0]) not in (1, 2):
         raise ValueError("waves have one integer each or two each, not %r" % (vectors,))
-    if len(vectors[0]) == 1:
-        return (gcd(*(k for k, in vectors)) or 1,),
-    top, below = (0, 0), 0              # generate what was read: top and (0, below)
-    for k0, k1 in vectors:
-        a, b = top, (k0, k1)
-        while b[0]:
-            times = a[0] // b[0]
-            a, b = b, (a[0] - times * b[0], a[1] - times * b[1])
-        top, below = a, gcd(below, b[1])
-    below = below or 1
-    if not top[0]:
+    top, *more = echelon(vectors, len(vectors[0]))[0]
+    if not more:
+        return (abs(top[0]) if top else 1,),
+    below = abs(more[0][1]) if more[0] else 1
+    if not top:
         return (1, 0), (0, below)
     if top[0] < 0:
         top = -top[0], -top[1]

@@ -15,6 +15,7 @@ from typing import Iterable, List, Sequence, Tuple
 
 import numpy as np
 
+from ..model.lattice import echelon
 from ..model.potential import FourierSum
 from .rotation import Rotation
 
@@ -29,22 +30,11 @@ def triangular(vectors: Sequence[Sequence[int]], frame: Frame) -> List[Tuple[int
     m = F k the second has the form (0, m1): a basis in Hermite's normal form.
 
     For a group of one dimension: the one vector."""
-    rows = [[*(sum(f * k for f, k in zip(row, vector)) for row in frame), *vector]
+    size = len(frame)
+    rows = [(*(sum(f * k for f, k in zip(row, vector)) for row in frame), *vector)
             for vector in vectors]
-    basis, size = [], len(frame)
-    for i in range(size):
-        while sum(row[i] != 0 for row in rows) > 1:
-            least = min((row for row in rows if row[i]), key=lambda row: abs(row[i]))
-            for row in rows:
-                if row is not least:
-                    times = row[i] // least[i]
-                    row[:] = [x - times * y for x, y in zip(row, least)]
-        pivot = next((row for row in rows if row[i]), None)
-        if pivot is not None:
-            rows.remove(pivot)
-            sign = 1 if pivot[i] > 0 else -1
-            basis.append(tuple(sign * x for x in pivot[size:]))
-    return basis
+    return [tuple(x if pivot[i] > 0 else -x for x in pivot[size:])
+            for i, pivot in enumerate(echelon(rows, size)[0]) if pivot is not None]
 
 
 def default_frame(potential: FourierSum) -> Frame:

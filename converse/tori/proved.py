@@ -18,7 +18,7 @@ from .divisors import Divisors, Norm, lattice_basis
 from .residual import LADDER, Grid, Phases, Sizes, residual, wave_vectors
 from .rotation import Rotation
 from .theorem import Bounds, Theorem, Verdict
-from .torus import Torus
+from .torus import Torus, family
 
 AIM = 1000.0                # what grid and roundings are to leave of the admissible residual
 CLOSE = 1 / 200             # |I - L M| that is close enough
@@ -182,6 +182,10 @@ def prove(source: Union[Problem, Torus, Sequence[Torus]], rotation: Optional[Rot
     def proof(found):
         tori = [found] if isinstance(found, Torus) else list(found)
         check_cover(tori)
+        if isinstance(source, Problem) and \
+                (tori[0].potential, tori[0].part, tori[0].rotation) != (*family(source), rotation):
+            raise ConverseError("the torus that was found is not of the problem; this is an error "
+                                "of the program")
         return ProvedTorus(tuple(_Attempt(torus, norm, shape, layers, bits, rho, memory,
                                           progress).run() for torus in tori))
 

@@ -174,16 +174,6 @@ def test_flags_that_may_be_the_reason_are_named(run, monkeypatch):
     assert out.endswith("Not proved : it lacks\n")
 
 
-def test_no_theorem_is_told_that_was_not_asked_for(run, tmp_path, monkeypatch):
-    """A proof for the middle of a range is none for the range."""
-    problem = tmp_path / "range.in"
-    problem.write_text("0.5 0.01\n0 0\n0 0\n1 1\n1 1\n")
-    middle = tori.prove(Problem.patch(["0.5"], waves=[(1, 0)]), tori.read_rotation("golden"))
-    monkeypatch.setattr(tori, "prove", lambda *_, **__: middle)
-    status, out, err = run("prove", problem, "--rotation", "golden")
-    assert status == 2 and "I find" not in out and "not what was asked for" in err
-
-
 def test_an_interrupt_leaves_nothing(run, tmp_path, monkeypatch):
     def strike(*_, **__):
         raise KeyboardInterrupt

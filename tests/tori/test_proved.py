@@ -10,6 +10,7 @@ import pytest
 from flint import arb
 
 from converse.model.problem import Problem
+from converse.storage.files import ConverseError
 from converse.tori import proved
 from converse.tori.constants import Constants
 from converse.tori.divisors import Divisors, Norm, lattice_basis
@@ -293,9 +294,10 @@ def test_a_torus_that_is_not_accurate_enough_is_found_again(monkeypatch, residua
 
         def run(self):
             raise NotProved("it lacks", residual, needed)
+    torus = find(standard("0.5"), GOLDEN)
     monkeypatch.setattr(sys.modules["converse.tori.find"], "find",
-                        lambda *_, margin=None, **__: asked.append(margin) or [])
-    monkeypatch.setattr(proved, "check_cover", lambda tori: tori.append(None))
+                        lambda *_, margin=None, **__: asked.append(margin) or [torus])
+    monkeypatch.setattr(proved, "check_cover", lambda tori: None)
     monkeypatch.setattr(proved, "_Attempt", Attempt)
     with pytest.raises(NotProved, match="it lacks"):
         prove(standard("0.5"), GOLDEN, **more)
@@ -311,3 +313,12 @@ def test_waves_of_one_direction_in_two_angles():
 def test_what_looks_for_a_torus_needs_a_problem(circle):
     with pytest.raises(ValueError, match="for a Problem"):
         prove(circle, margin=10.0)
+
+
+def test_no_theorem_is_claimed_that_was_not_asked_for(circle, monkeypatch):
+    """A proof for the middle of a range is none for the range, nor one for another map."""
+    monkeypatch.setattr(sys.modules["converse.tori.find"], "find", lambda *_, **__: circle)
+    for problem in (Problem.patch(["0.8"], [["0.01"]], [(1, 0)]), standard("0.81")):
+        with pytest.raises(ConverseError, match="not of the problem"):
+            prove(problem, GOLDEN)
+    assert prove(standard("0.8"), GOLDEN).torus is circle

@@ -1,0 +1,27 @@
+"""Groups that vectors of integers generate."""
+
+from typing import List, Optional, Sequence, Tuple
+
+Row = Tuple
+
+
+def echelon(rows: Sequence[Sequence], columns: int) -> Tuple[List[Optional[Row]], List[Row]]:
+    """Rows that generate the same group, by Euclid's algorithm: for each of the first columns the
+    one row that is not 0 there but is 0 in those before, or None; and the rows that are 0 in all
+    of these columns.
+
+    rows -- of integers or Fractions; columns further on are carried along"""
+    rest = [tuple(row) for row in rows]
+    pivots: List[Optional[Row]] = []
+    for i in range(columns):
+        here = [row for row in rest if row[i]]
+        rest = [row for row in rest if not row[i]]
+        while len(here) > 1:
+            least = min(here, key=lambda row: abs(row[i]))
+            here.remove(least)
+            reduced = [tuple(x - row[i] // least[i] * y for x, y in zip(row, least))
+                       for row in here]
+            rest += [row for row in reduced if not row[i]]
+            here = [least, *(row for row in reduced if row[i])]
+        pivots.append(here[0] if here else None)
+    return pivots, rest
