@@ -78,7 +78,7 @@ typedef struct {
 } cv_wave;
 
 /* A patch of parameter space, and the region of x_1 = frame v = (frame[0] v0 + frame[1] v1,
-   frame[2] v0 + frame[3] v1), of determinant 1 or -1. */
+   frame[2] v0 + frame[3] v1), whose determinant is not 0. */
 typedef struct {
     int n_waves, n_parameters;          /* 1 to 16, and 0 to 3 */
     const cv_wave *waves;

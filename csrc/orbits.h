@@ -51,9 +51,11 @@ typedef struct {
 /* Damped Newton: lowers the action until the largest coordinate of its gradient is at most tol, or
    100 tol where rounding hides what would lower it, and leaves saddles along their most negative
    direction.  CV_RUNNING: not there after max_steps steps, or, if there were fewer, no step helps;
-   u is the best state met.  *how: zero, to be filled in.  CV_ESTOPPED: Python wants an end. */
+   u is the best state met.  *how: zero, to be filled in.  CV_ESTOPPED: Python wants an end.
+   held: this coordinate of the first point, 0 or 1, stays as it is, and its entry of the gradient
+   does not count; -1: none. */
 int cv_relax(const cv_potential *v, long q, double eps, const double (*base)[2], double (*u)[2],
-             double tol, long max_steps, cv_relaxed *how);
+             int held, double tol, long max_steps, cv_relaxed *how);
 
 /* The pivots d_j = beta_j - 1/d_{j-1} from d_0 = beta_0, run round the orbit until they repeat to
    relative 1e-13 or for max_rounds.  Returns the rounds it took, 0 if they did not settle; -r if

@@ -10,7 +10,8 @@
    wrapping effect; Lohner's remedy is to carry remainders in a moving frame).  Here the linearized
    map is factored instead, and r is bounded by two recursions of first order that follow its
    factors, r[j+1] = d[j] r[j] + f[j], f[j] = f[j-1]/d[j-1] + e[j], d[j] = beta - 1/d[j-1]:
-   docs/proof.md, section 5, (R) and (F).
+   docs/proof.md, section 5, (R) and (F).  Both are bounded entry by entry, in axes along the
+   largest wave and across it.
 
    Along each wave rad = rho bounds |D[j]|. */
 #include "prism.h"
@@ -81,8 +82,7 @@ static void finish(const batch *w, point *q)
        |p| (|cos y| (b (2a + b)/2 + rho^4/24) + |sin y| rho^3/6)
        + h (|cos y| rho^2/2 + |sin y| (b + rho^3/6)) + err_amp.
    Sines are off by (4 + err_angle) u, and the dozen roundings are relative: 2^-40 is a thousand
-   times as much as either needs.  The last summand is for what T itself makes of the wave, which
-   roundings put off by (16 + err_angle) u (|p| a^2/2 + h a). */
+   times as much as either needs. */
 static vec wave_remainder(const batch *w, const point *q, int wave)
 {
     const vec a = q->lin_bound[wave], b = q->nonlin_bound[wave], rho = q->rad[wave];
@@ -91,8 +91,16 @@ static vec wave_remainder(const batch *w, const point *q, int wave)
     const vec half_square = 0.5 * rho * rho, cube = rho * half_square * (1.0 / 3.0);
 
     return mag(w->p[wave]) * (c * (b * (a + 0.5 * b) + 0.25 * rho * cube) + s * cube) +
-           w->h[wave] * (c * half_square + s * (b + cube)) + w->err_amp[wave] +
-           w->size[wave] * off * rho * (1.0 + rho);
+           w->h[wave] * (c * half_square + s * (b + cube)) + w->err_amp[wave];
+}
+
+/* What roundings make of the quadratic form that a wave adds to T: (16 + err_angle) u
+   (|p| a^2/2 + h a). */
+static vec bending_err(const batch *w, const point *q, int wave)
+{
+    const vec rho = q->rad[wave], unit = 0x1p-40 * (1.0 + q->err_angle);
+
+    return unit * w->size[wave] * rho * (1.0 + rho);
 }
 
 /* lin and quad of next, the point after q, seen from o before it, and their bounds. */
@@ -111,22 +119,29 @@ INLINE void propagate_and_measure(const batch *w, point *next, const point *q, c
    SHIFT rounds to an integer what is below 2^51.  The step of the centre is off, with every
    rounding, by 2 u |q| + 1.4 u |o| + 3.4 u |before| + 4.7 u |x| and what its waves are off:
    residual has 8 u of each, and err_beta.  The remainder obeys r' = beta r - r(o) + e, where e is
-   what wave_remainder bounds, the residual, and the roundings of lin and quad, 2 u of them and
-   propagate_err.  Writing r' = d r + f and, from the last step, r(o) = (r - f(o))/d(o), gives f =
-   f(o)/d(o) + e + (beta - 1/d(o) - d) r, where the last bracket is rounding: of beta, below
-   err_beta with that of the difference; of the inverse, whose determinant is off by 1 + condition
-   units, 4 + condition units of its trace, where `rounded` has 8 (1 + condition).
+   what wave_remainder bounds along each wave, and in each coordinate the residual and the roundings
+   of lin and quad, 2 u of them, propagate_err and bending_err.  Writing r' = d r + f and, from the
+   last step, r(o) = (r - f(o))/d(o), gives f = f(o)/d(o) + e + (beta - 1/d(o) - d) r.
+
+   rem, force and d are those of R r, R f and R d R'/|k|^2, R as in set_axes, for which the same
+   holds with R e, and with R beta R'/|k|^2 for beta.  The last bracket is rounding.  Of what is off
+   in an entry of beta, u (3 + (9 + err_angle) S), an entry has twice as much there, as (|k0| +
+   |k1|)^2 is 2 |k|^2 at most; along_axes loses 4 u of sums below 2 (2 + S), and the difference u of
+   that: u (26 + (28 + 2 err_angle) S) in all, below 2/3 err_beta, where there are 2 err_beta.  The
+   inverse, whose determinant is off by 1 + condition units, is off by 4 + condition units of its
+   trace with the difference, where `rounded` has 8 (1 + condition).
 
    All of a step is one function, however long, as formal/roundings.py reads its loops in turn. */
 static void step(const batch *w, point *next, point *q, const point *o, int is_first)
 {
     static const double SHIFT = 0x1.8p52, USELESS = 0x1p10;
     vec inverse[3] = { every(0.0), every(0.0), every(0.0) }, rounded = every(0.0);
-    vec g[WAVES], wave_err[WAVES], rem_sum;
+    vec g[WAVES], wave_err[WAVES], lost[WAVES], err[2], turned[3];
 
     FOR_WAVES(w, j) {
         g[j] = w->p[j] * q->cosine[j];
-        wave_err[j] = wave_remainder(w, q, j) + propagate_err(w, q, j);
+        wave_err[j] = wave_remainder(w, q, j);
+        lost[j] = propagate_err(w, q, j) + bending_err(w, q, j);
     }
     for (int i = 0; i < 2; i++) {
         const vec before = o->x[i] - q->windings[i] * TWO_PI;
@@ -153,18 +168,20 @@ static void step(const batch *w, point *next, point *q, const point *o, int is_f
         inverse[2] = d[0] * one;
         rounded = 0x1p-50 * (inverse[0] + inverse[2]) * (1.0 + condition);
     }
-    rem_sum = q->rem[0] + q->rem[1];
+    for (int i = 0; i < 2; i++)
+        err[i] = sum_abs_k(w, i, lost) + q->residual[i] +
+                 0x1p-50 * (next->lin_bound[i] + next->quad_bound[i] + o->rad[i]);
     for (int i = 0; i < 2; i++) {
         const vec i0 = mag(inverse[i]) + rounded, i1 = mag(inverse[i + 1]) + rounded;
-        vec e = sum_abs_k(w, i, wave_err);
+        vec e = sum_onto(w, i, wave_err) + onto_axis(w, i, err);
 
-        e += q->residual[i];
-        e += 0x1p-50 * (next->lin_bound[i] + next->quad_bound[i] + o->rad[i]);
         e += is_first ? o->rem[i] : i0 * o->force[0] + i1 * o->force[1];
-        q->force[i] = (e + (2.0 * q->err_beta + rounded) * rem_sum) * WIDEN;
+        e += (2.0 * q->err_beta + rounded) * (q->rem[0] + q->rem[1]);
+        q->force[i] = e * WIDEN;
     }
+    along_axes(w, turned, q->beta);
     for (int j = 0; j < 3; j++)
-        q->d[j] = q->beta[j] - inverse[j];
+        q->d[j] = turned[j] - inverse[j];
     for (int i = 0; i < 2; i++)
         next->rem[i] =
             (mag(q->d[i]) * q->rem[0] + mag(q->d[i + 1]) * q->rem[1] + q->force[i]) * WIDEN;
@@ -179,11 +196,13 @@ static void step(const batch *w, point *next, point *q, const point *o, int is_f
 static void begin(batch *w)
 {
     point *const origin = w->orbit + ORIGIN;
+    const double *const off = w->problem->xstar_err;
+    const vec star_err[2] = { every(off[0]), every(off[1]) };
 
     memset(origin, 0, 2 * sizeof *origin);
     for (int i = 0; i < 2; i++) {
         origin->x[i] = every(w->problem->xstar[i]);
-        origin->rem[i] = every(w->problem->xstar_err[i]);
+        origin->rem[i] = onto_axis(w, i, star_err) * WIDEN;
         const double *const frame = w->problem->frame[i];
         origin[1].x[i] = frame[0] * w->v[0] + frame[1] * w->v[1];
         for (int k = 0; k < 2; k++)

@@ -54,8 +54,8 @@ typedef struct {
     vec residual[2];                    /* of the step from here: a bound of |E| at the centre */
     vec lin[2][COLUMNS];                /* L: columns of v0, v1, then the parameters that move */
     vec quad[2][PAIRS];                 /* T: the coefficients of e_k e_l, at pair(k, l) */
-    vec rem[2], force[2];               /* bounds of r and f */
-    vec d[3];                           /* the factor: d00, d01, d11 */
+    vec rem[2], force[2];               /* bounds of r and f along the axes of the problem */
+    vec d[3];                           /* the factor in these axes: d00, d01, d11 */
     vec sine[WAVES], cosine[WAVES];
     vec lin_bound[WAVES], quad_bound[WAVES];    /* of D along a wave: |L e| and |T[e, e]| */
     vec nonlin_bound[WAVES], rad[WAVES];        /* |D - L e| and |D| */

@@ -131,6 +131,8 @@ static const engine *fastest_engine(int general)
    sums of absolute values but for the identity, which is exact; v and width take in that, too. */
 static void set_angles(loewner *w, const patch *problem)
 {
+    const int *const f = problem->frame;
+    const double det = abs(f[0] * f[3] - f[1] * f[2]);
     double off[2] = { 0.0, 0.0 };
 
     for (int i = 0; i < 2; i++) {
@@ -140,15 +142,15 @@ static void set_angles(loewner *w, const patch *problem)
         w->xstar[i] = near(problem->xstar[i]);
         w->xstar_err[i] = 0x1p-49 * fabs(w->xstar[i]);
         for (int k = 0; k < 2; k++)
-            w->frame[i][k] = problem->frame[2 * i + k];
+            w->frame[i][k] = f[2 * i + k];
     }
     w->seen[0][0] = w->seen[1][1] = 1.0;
-    for (int i = 0; i < 2 && !is_identity(problem->frame); i++)
+    for (int i = 0; i < 2 && !is_identity(f); i++)
         for (int k = 0; k < 2; k++)
             off[i] += 0x1p-50 * fabs(w->frame[i][k]) * (fabs(w->centre[k]) + w->half[k]);
     for (int i = 0; i < 2; i++)         /* |frame^-1| off */
         w->err_v[i] +=
-            fabs(w->frame[1 - i][1 - i]) * off[i] + fabs(w->frame[i][1 - i]) * off[1 - i];
+            (fabs(w->frame[1 - i][1 - i]) * off[i] + fabs(w->frame[i][1 - i]) * off[1 - i]) / det;
 }
 
 /* One more wave; engines for any waves take those that there are. */
@@ -166,10 +168,8 @@ static void add_wave(loewner *w, const patch *problem, int given, int general)
     w->phase[i] = near(problem->phase[given]);
     w->err_amp[i] = 0x1p-48 * size;
     w->present[i] = size != 0.0;
-    for (int j = 0; j < 2; j++) {
+    for (int j = 0; j < 2; j++)
         w->k[i][j] = k[j];
-        w->feels[j] |= w->present[i] && k[j] != 0;
-    }
     w->square_k[i] = square(fabs(w->k[i][0]) + fabs(w->k[i][1]));
     w->most_k = larger(w->most_k, fabs(w->k[i][0]) + fabs(w->k[i][1]));
     w->waves += w->present[i] || !general;
@@ -201,8 +201,8 @@ static void set_wave_slots(loewner *w, const patch *problem, int general)
 
 /* Where all waves are m q, q primitive, s = q.x moves by itself: s' = 2s - s(o) + |q|^2 sum m p cos
    y, and vectors n = q nu make of Q |q|^2 times what it is for waves (m, 0) of amplitude |q|^2 p at
-   s.  So these may be taken for them, if the frame tells s apart: then s_1 is v1 or -v1, and v0 is
-   not felt.  s* = q.x* and the products with |q|^2 are rounded by u or two more. */
+   s.  So these may be taken for them, if the frame tells s apart: then s_1 is a multiple of v1, and
+   v0 is not felt.  s* = q.x* and the products with |q|^2 are rounded by u or two more. */
 static void straighten(loewner *w)
 {
     const double *const k = w->k[2], common = divisor(fabs(k[0]), fabs(k[1]));
@@ -231,12 +231,46 @@ static void straighten(loewner *w)
         w->square_k[i] = square(w->k[i][0]);
         w->most_k = larger(w->most_k, fabs(w->k[i][0]));
     }
-    w->feels[0] = 1;
-    w->feels[1] = 0;
     for (int i = 0; i < 2; i++) {
         w->seen[0][i] = q[i];
         w->seen[1][i] = 0.0;
     }
+}
+
+/* The axes in which remainders are bounded (orbit.c: step): along k of the wave that bends most,
+   and across it.  Orbits stretch along such axes, and products of matrices bounded entry by entry
+   grow there much as they do themselves, where in other coordinates entries that cancel would be
+   added.  R is orthogonal but for the factor |k|, and made of integers; quotients are off by u. */
+static void set_axes(loewner *w)
+{
+    double k[2] = { 1.0, 0.0 }, most = -1.0, common, square_k;
+
+    for (int i = 0; i < w->waves; i++) {
+        double bends = fabs(w->amplitude[i]);
+        for (int m = 0; m < w->n_parameters; m++)
+            bends += fabs(w->part[i][m]);
+        bends *= square(w->k[i][0]) + square(w->k[i][1]);
+        if (w->present[i] && bends > most) {
+            most = bends;
+            memcpy(k, w->k[i], sizeof k);
+        }
+    }
+    common = divisor(fabs(k[0]), fabs(k[1]));
+    for (int j = 0; j < 2; j++)
+        k[j] /= common;
+    square_k = square(k[0]) + square(k[1]);
+    w->axes[0][0] = w->axes[1][1] = k[0];
+    w->axes[0][1] = k[1];
+    w->axes[1][0] = -k[1];
+    w->turn[0] = k[0] * k[0] / square_k;
+    w->turn[1] = k[0] * k[1] / square_k;
+    w->turn[2] = k[1] * k[1] / square_k;
+    w->turn[3] = (k[0] * k[0] - k[1] * k[1]) / square_k;
+    for (int i = 0; i < w->waves; i++)
+        for (int j = 0; j < 2; j++) {
+            w->onto[j][i] = fabs(w->axes[j][0] * w->k[i][0] + w->axes[j][1] * w->k[i][1]);
+            w->along[i][j] = w->onto[j][i] / square_k;
+        }
 }
 
 /* B at the corners of the parameters' cube; infinity if it is not to be bounded.  An amplitude
@@ -273,6 +307,7 @@ loewner *loewner_new(const patch *problem, int with_bounds)
     set_angles(w, problem);
     set_wave_slots(w, problem, general);
     straighten(w);
+    set_axes(w);
     set_corners(w, with_bounds);
     w->engine = fastest_engine(general);
     w->memory = calloc(1, w->engine->size + ALIGNMENT);

@@ -32,11 +32,14 @@ struct loewner {
     int waves;                          /* slots in use; waves.h says what the first two are */
     double k[SLOTS][2], phase[SLOTS], square_k[SLOTS], most_k; /* (|k0| + |k1|)^2, largest sum */
     double amplitude[SLOTS], part[SLOTS][PARAMETERS], err_amp[SLOTS];
+    double axes[2][2];                  /* R, rows k and k_perp of the largest wave: set_axes */
+    double turn[4];                     /* k0^2, k0 k1, k1^2, k0^2 - k1^2, over |k|^2 */
+    double onto[2][SLOTS], along[SLOTS][2];     /* of a wave |R_i.k|, and that over |R_i|^2 */
     double xstar[2], xstar_err[2], corner[8];                   /* bounds B at the corners */
     int n_parameters, columns;          /* the symbols: v0, v1, and the parameters that count */
     int axis[COLUMNS];                  /* of a column: the cell's */
     int moves[SLOTS][COLUMNS];          /* has the column's parameter a part of the wave? */
-    int present[SLOTS], feels[2];       /* is there such a wave at all; does one feel x0, x1? */
+    int present[SLOTS];                 /* is there such a wave at all? */
     const engine *engine;
     char *memory;
     void *work;                         /* there, aligned */

@@ -81,18 +81,28 @@ static void attempt(batch *w, mask active, progress s[], outcome *const out[], m
     }
 }
 
-/* The column that makes the ends of lane k's orbit widest. */
+/* How far a column of a point's L reaches along the waves of lane k, by their weights. */
+static double reach_of(const batch *w, const point *q, int column, int k)
+{
+    double most = 0.0;
+
+    for (int i = 0; i < waves_of(w); i++) {
+        const vec along = dot_k(w, i, q->lin[0][column], q->lin[1][column]);
+        if (w->problem->present[i])
+            most = fmax(most, at(&w->weight[i], k) * fabs(at(&along, k)));
+    }
+    return most;
+}
+
+/* The column that makes the ends of lane k's orbit widest, as waves feel them. */
 static int widest_at_ends(const batch *w, int k)
 {
     double width[COLUMNS];
     int widest = 0;
 
     for (int c = 0; c < w->problem->columns; c++) {
-        width[c] = 0.0;
-        for (int i = 0; i < 2; i++)
-            if (w->problem->feels[i])
-                width[c] += fabs(at(&w->orbit[w->last[k]].lin[i][c], k)) +
-                            fabs(at(&w->orbit[w->first[k]].lin[i][c], k));
+        width[c] =
+            reach_of(w, w->orbit + w->first[k], c, k) + reach_of(w, w->orbit + w->last[k], c, k);
         if (width[c] > width[widest])
             widest = c;
     }

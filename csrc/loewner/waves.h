@@ -84,10 +84,39 @@ INLINE vec sum_abs_k(const batch *w, int i, const vec f[])
     return sum;
 }
 
-/* A bound of the remainder of D along a wave. */
+/* A bound of axis i of the sum of k f over the waves, |R_i.k| |f|, and of that of a vector, from
+   bounds of its coordinates. */
+INLINE vec sum_onto(const batch *w, int i, const vec f[])
+{
+    vec sum = every(0.0);
+
+    FOR_WAVES(w, j)
+        sum += w->problem->onto[i][j] * f[j];
+    return sum;
+}
+
+INLINE vec onto_axis(const batch *w, int i, const vec x[2])
+{
+    const double *const axis = w->problem->axes[i];
+
+    return fabs(axis[0]) * x[0] + fabs(axis[1]) * x[1];
+}
+
+/* R m R'/|k|^2, of a symmetric matrix m. */
+INLINE void along_axes(const batch *w, vec turned[3], const vec m[3])
+{
+    const double *const turn = w->problem->turn;
+
+    turned[0] = turn[0] * m[0] + 2.0 * turn[1] * m[1] + turn[2] * m[2];
+    turned[1] = turn[1] * (m[2] - m[0]) + turn[3] * m[1];
+    turned[2] = turn[2] * m[0] - 2.0 * turn[1] * m[1] + turn[0] * m[2];
+}
+
+/* A bound of the remainder of D along a wave: k.r = sum of (R_i.k) (R_i.r)/|R_i|^2. */
 INLINE vec rem_along(const batch *w, const point *q, int wave)
 {
-    const vec rem = dot_abs_k(w, wave, q->rem[0], q->rem[1]);
+    const double *const along = w->problem->along[wave];
+    const vec rem = along[0] * q->rem[0] + along[1] * q->rem[1];
 
     return wave < 2 ? rem : rem + q->err_dot[wave];
 }

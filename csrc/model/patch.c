@@ -93,7 +93,7 @@ int patch_read(patch *p, const cv_problem *given)
             return CV_EARGUMENT;
         p->frame[j] = f[j];
     }
-    if (abs(f[0] * f[3] - f[1] * f[2]) != 1)
+    if (f[0] * f[3] == f[1] * f[2])
         return CV_EARGUMENT;
     p->n_waves = given->n_waves;
     p->n_parameters = given->n_parameters;

@@ -23,6 +23,16 @@ typedef struct {
 } row;     /* of work: CV_WORK doubles */
 _Static_assert(sizeof(row) == CV_WORK * sizeof(double), "CV_WORK");
 
+/* A pivot by which can be divided: one that is singular to the last bit is moved by rounding. */
+static sym regular(sym d)
+{
+    for (double t = 1e-15 * (fabs(d.a) + fabs(d.c)) + 1e-20; sym_det(d) == 0.0; t *= 2.0) {
+        d.a += t;
+        d.c += t;
+    }
+    return d;
+}
+
 /* Block elimination of the first q - 1 points, one after the other, leaves d_j of point j; w_j, its
    coupling to the last point, goes along: w_{j+1} = d_j^-1 w_j.  Both neighbours of the last point
    couple to it, and with q = 2 they are one, with q = 1 itself.  The eigenvalues below zero of all
@@ -51,6 +61,7 @@ static long eliminate(int n, long q, const double (*beta)[3], double mu, row *ro
         d.c += idle;
         if (j > 0)
             d = sym_sub(d, here.inverse);
+        d = regular(d);
         negative += sym_negative(d);
         here.inverse = sym_inverse(d);
         here.w = next;

@@ -4,7 +4,7 @@
 
 #include "orbits/potential.h"
 
-enum { ASK = 1 << 22 };                 /* pairs looked at before Ctrl-C is looked for */
+enum { ASK = 1 << 18 };                 /* pairs looked at before Ctrl-C is looked for */
 
 typedef struct {
     double square;

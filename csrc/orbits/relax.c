@@ -8,6 +8,7 @@
 static const double CAP = 0.1;          /* no coordinate moves further in one step */
 static const double FLAT = 1e-11;       /* of eigenvalues: below it, rounding says which sign */
 static const double HOPELESS = 1e9;     /* a damping with which nothing moves any more */
+static const double STIFF = 1e100;      /* of the Hessian, where a coordinate is held */
 enum { MOST_ESCAPES = 50, WALK = 1000, ASK = 1 << 18 };
 
 typedef double point[2];
@@ -18,6 +19,7 @@ typedef struct {
     long q;
     double eps;
     const point *base;
+    int held;                           /* as cv_relax says */
     point *x;                           /* base + u, scratch */
     double *value;                      /* scratch */
     double *work;                       /* of cv_solve */
@@ -67,7 +69,9 @@ static int look(const action_of *of, place *at)
         double term = -of->eps * of->value[j], total;
         for (int i = 0; i < 2; i++) {
             const double step = after[i] - here[i];
-            const double g = (here[i] - before[i]) - step - of->eps * at->gradient[j][i];
+            double g = (here[i] - before[i]) - step - of->eps * at->gradient[j][i];
+            if (j == 0 && i == of->held)
+                g = 0.0;
             term += 0.5 * step * step;
             size += step * step;
             squares += g * g;
@@ -82,6 +86,10 @@ static int look(const action_of *of, place *at)
         for (int i = 0; at->beta && i < 3; i++)
             at->beta[j][i] = (i == 1 ? 0.0 : 2.0) - of->eps * at->beta[j][i];
     }
+    if (at->beta && of->held >= 0) {
+        at->beta[0][2 * of->held] = STIFF;
+        at->beta[0][1] = 0.0;
+    }
     at->action = sum + lost;
     at->noise = 1e-15 * size;
     at->doubt = at->noise + 1e-15 * slopes;
@@ -95,7 +103,7 @@ int cv_action(const cv_potential *v, long q, double eps, const double (*base)[2]
 {
     const size_t size = (size_t)q;
     action_of of = {
-        v, q, eps, base, malloc(size * sizeof *of.x), malloc(size * sizeof *of.value), NULL, 0
+        v, q, eps, base, -1, malloc(size * sizeof *of.x), malloc(size * sizeof *of.value), NULL, 0
     };
     place at = { malloc(size * sizeof *at.u), gradient, NULL, 0.0, 0.0, 0.0, 0.0, 0.0 };
     int status = CV_ENOMEM;
@@ -259,13 +267,14 @@ static int descend(action_of *of, place *at, place *other, point *along, double 
 }
 
 int cv_relax(const cv_potential *v, long q, double eps, const double (*base)[2], double (*u)[2],
-             double tol, long max_steps, cv_relaxed *how)
+             int held, double tol, long max_steps, cv_relaxed *how)
 {
     const size_t size = (size_t)q;
     action_of of = { v,
                      q,
                      eps,
                      base,
+                     held,
                      malloc(size * sizeof *of.x),
                      malloc(size * sizeof *of.value),
                      malloc(size * CV_WORK * sizeof *of.work),
