@@ -12,6 +12,8 @@ try:
     from .branch_and_bound import LeastAction, least_action
     from .mather import Floor, floor
     from .measures import Prelude, prelude
+    from .minimax import Pair
+    from .points import load
     from .potential import (Fourier, FromPython, Potential, ff, froeschle, parameters, poly,
                             read_potential, standard, trig)
     from .proved import NotProved, ProvedOrbit, prove
@@ -30,8 +32,8 @@ except ImportError as _error:           # said when something is asked for: the 
         from ..prover import native  # noqa: F401, which says more if it is the core that is missing
         raise ConverseError(_MISSING)
 
-__all__ = ["Family", "Floor", "Fourier", "FromPython", "LeastAction", "NotProved", "Onset",
+__all__ = ["Family", "Floor", "Fourier", "FromPython", "LeastAction", "NotProved", "Onset", "Pair",
            "Potential", "Prelude", "ProvedOrbit", "State", "enclosed_action", "ff", "floor",
-           "follow", "froeschle", "least_action", "onset", "onsets", "parameters", "poly",
+           "follow", "froeschle", "least_action", "load", "onset", "onsets", "parameters", "poly",
            "prelude", "prove", "read_csv", "read_potential", "search", "standard", "straight",
            "sweep", "trig"]

@@ -8,7 +8,7 @@ A corridor, one rectangle for each point, is excluded by min-plus sums over the 
 import heapq
 from dataclasses import dataclass
 from math import gcd, inf, sqrt
-from typing import Tuple
+from typing import Callable, Optional, Tuple
 
 import numpy as np
 
@@ -17,7 +17,7 @@ from ..prover.native import check
 from ..storage.files import ConverseError
 from .action import (LARGEST_EPS, U, action_bounds, action_on_grid, errors_near, floats_within,
                      gradient_bounds, per_point, rounding_errors)
-from .potential import Potential, address, known, whole
+from .potential import Potential, address, known, told, whole
 from .state import FARTHEST, State
 
 LONGEST = 500               # q
@@ -44,6 +44,7 @@ class LeastAction:
 NODES = 65                  # at least, along an axis of a rectangle
 PITCH = 1 / 64              # at most, if there are no more than
 MOST_NODES = 2000000        # in all rectangles together: a quarter of a second
+ROWS = 64                   # of a matrix, multiplied before Ctrl-C is looked for
 TINY = 1e-12                # of an action per point: what is as well known is settled
 
 
@@ -55,10 +56,10 @@ class _Settled:
     copies: int
 
 
-def _least_eigenvalue(matrix):
-    """A number, proved to be no more than any eigenvalue of a symmetric matrix."""
+def _least_eigenvalue(matrix, guess):
+    """A number, proved to be no more than any eigenvalue of a symmetric matrix, of which the least
+    is about the guess."""
     size = len(matrix)
-    guess = float(np.linalg.eigvalsh(matrix)[0])
     guess -= 1e-14 * size + 1e-3 * abs(guess)
     shifted = matrix - guess * np.eye(size)
     try:
@@ -66,10 +67,13 @@ def _least_eigenvalue(matrix):
     except np.linalg.LinAlgError:
         return -inf
     # lower lower^T has no negative eigenvalue, and the rest no larger one than its rows' sums
-    rest = np.abs(shifted - np.einsum("ik,jk->ij", lower, lower))
-    rest += 4 * (size + 4) * U * (np.einsum("ik,jk->ij", np.abs(lower), np.abs(lower))
-                                  + np.abs(matrix) + abs(guess))
-    return guess - 1.001 * float(rest.sum(1).max())
+    sizes, sums = np.abs(lower), np.zeros(size)
+    for rows in (slice(k, k + ROWS) for k in range(0, size, ROWS)):
+        rest = np.abs(shifted[rows] - np.einsum("ik,jk->ij", lower[rows], lower))
+        rest += 4 * (size + 4) * U * (np.einsum("ik,jk->ij", sizes[rows], sizes)
+                                      + np.abs(matrix[rows]) + abs(guess))
+        sums[rows] = rest.sum(1)
+    return guess - 1.001 * float(sums.max())
 
 
 class _Search:
@@ -145,7 +149,7 @@ class _Search:
             matrix[(j + 1) % q, :, j] -= np.eye(n)
         off = (1.001 * abs(self.eps) * errors_near(state)[2]
                + 32 * U * float(np.abs(matrix).max()))
-        return _least_eigenvalue(matrix.reshape(size, size)) - change - off
+        return _least_eigenvalue(matrix.reshape(size, size), state.least) - change - off
 
     def settled(self, low, high):
         """_Settled, if the action is convex in the corridor and its least value there known.
@@ -184,12 +188,14 @@ class _Search:
                     return d
         return 1
 
-    def run(self, gap, corridors):
+    def run(self, gap, corridors, progress=None):
         """Looks into corridors, the lowest first, until the least action is known to gap.  Returns
         a lower bound of it, copies as above, and how many corridors were looked into."""
         self.relaxed(np.zeros((self.q, 2)) + [*self.potential.start, 0.0][:2])
         pending, settled, count, pushed = [(-inf, 0, *self.root())], [], 0, 0
         while pending and count < corridors and self.known - pending[0][0] > gap:
+            if progress is not None:
+                progress(count, pending[0][0] / self.q, self.known / self.q)
             lowest, _, low, high = heapq.heappop(pending)
             done = self.settled(low, high)
             if done is not None:
@@ -225,16 +231,19 @@ class _Search:
 
 
 def least_action(potential: Potential, p: Tuple[int, ...], q: int, eps: float, gap: float = 1e-9,
-                 corridors: int = 10000) -> LeastAction:
+                 corridors: int = 10000,
+                 progress: Optional[Callable[[int, float, float], object]] = None) -> LeastAction:
     """A LeastAction: bounds of the least action of all states of type (p, q), by branch and bound.
 
     gap       -- how far apart the bounds may stay
     corridors -- how many to look into at most: then the bounds are as far apart as they are
+    progress(corridors, low, high) -- is told how many were looked into and about what is known
 
     Above the eps where an orbit's tori break, q up to 30 takes seconds to minutes, and a gap of
     1e-12 is as cheap as a larger one.  Below, states slide along each other at no cost, and a small
     gap takes corridors without end."""
     known(potential)
+    told(progress)
     rounding_errors(potential, 1.0)
     eps, gap = floats_within("eps and gap", [eps, gap], LARGEST_EPS)
     corridors = whole("corridors", corridors, 1, 10 ** 9)
@@ -243,6 +252,6 @@ def least_action(potential: Potential, p: Tuple[int, ...], q: int, eps: float, g
     if eps == 0:
         return LeastAction(0.0, 0.0, state, gcd(*state.p, state.q), 0)
     search = _Search(state)
-    low, copies, count = search.run(gap * state.q, corridors)
+    low, copies, count = search.run(gap * state.q, corridors, progress)
     low, high = per_point(low, search.known, state.q)
     return LeastAction(low, high, search.best, copies, count)

@@ -193,7 +193,8 @@ class Enclosure:
     action   -- two Fractions around the action per point less the straight orbit's
     """
 
-    def __init__(self, state, eps):
+    def __init__(self, state, eps, tell=None):
+        self.tell, self.rounds = tell, 0        # tell(places, rounds through all points)
         self.law = LAWS[state.potential.native.kind]
         self.potential, self.q, self.n = state.potential, state.q, state.potential.n
         self.eps, self.places = eps, None
@@ -204,6 +205,7 @@ class Enclosure:
     def evaluate(self, places):
         """Gradient, Hessian and action of the points as they are, with so many decimal places."""
         n, q, u = self.n, self.q, self.u
+        self.begin(places)
         if places != self.places:
             ctx.prec = places * 3322 // 1000 + BITS
             self.places, self.ulp = places, ball(Fraction(1, 10 ** places))
@@ -227,6 +229,12 @@ class Enclosure:
         self.gradient = upper(squares.upper().sqrt())
         self.action = lower(action / q), upper(action / q)
 
+    def begin(self, places):
+        """Another round through all points."""
+        self.rounds += 1
+        if self.tell is not None:
+            self.tell(places, self.rounds)
+
     def noise(self):
         """About the least that can be asked of the gradient."""
         radii = sum((square(force - force.mid()) for force in self.force), arb(0))
@@ -237,19 +245,20 @@ class Enclosure:
 
     # ---- eliminations, of midpoints: what they find serves as a guess, which is then checked
 
-    def _eliminate(self, shift, links=None):
+    def _eliminate(self, shift, links=None, force=None):
         """The points 1, 2, ..., q - 1 of the chain from point 0 once round to point 0 again are
         eliminated, with beta + shift for beta.  Returns E, which that adds to the block of the
         first point, F, where -F couples it to the last, and G, the block of the last.  None: a
         pivot is not positive definite.
         links: a list that receives each point's inverse pivot, what couples it to the first point,
         and its right-hand side, -force and what is eliminated; of the last point that alone."""
+        self.begin(self.places)
         zero, shift = unit(self.n, 0), unit(self.n, shift)
-        before, E, F, side = zero, zero, unit(self.n), self.force[0] * 0
+        before, E, F, side = zero, zero, unit(self.n), arb_mat(self.n, 1)
         for j in points(1, self.q + 1):
             G = (self.beta[j % self.q] + shift - before).mid()
             if links is not None:
-                side = (before * side - self.force[j % self.q]).mid()
+                side = (before * side - force[j % self.q]).mid()
             before = inverse(G)
             if before is None:
                 return None
@@ -277,11 +286,21 @@ class Enclosure:
     def newton(self, shift):
         """Makes a step of Newton's method with Hessian + shift, if that is positive definite.  No
         promise."""
+        moves = self.solution(self.force, shift)
+        if moves is not None:
+            self.move(moves)
+
+    def move(self, moves):
+        self.u = [(u + move).mid() for u, move in zip(self.u, moves)]
+
+    def solution(self, force, shift):
+        """About the v with (Hessian + shift) v = -force, if that is positive definite; else None.
+        No promise."""
         links = []
-        chain = self._eliminate(ball(shift), links)
+        chain = self._eliminate(ball(shift), links, force)
         pivot = None if chain is None else inverse(self._last(*chain))
         if pivot is None:
-            return
+            return None
         side = links.pop()
         for before, F, r in links:
             side += F * (before * r)
@@ -291,7 +310,7 @@ class Enclosure:
             before, F, r = links[j]
             after = (before * (r + after + F.transpose() * first)).mid()
             moves.append(after)
-        self.u = [(u + move).mid() for u, move in zip(self.u, [first] + moves[::-1])]
+        return [first] + moves[::-1]
 
     def nudge(self):
         """Moves point 0 by 10^-10, in no particular direction."""
@@ -325,6 +344,7 @@ class Enclosure:
 
         as a norm, for every beta_j in its ball.  None: an s_j, j < q, is not positive definite, or
         the radii are too large."""
+        self.begin(self.places)
         s, shift, radii = [first], unit(self.n, shift), unit(self.n, 0)
         for j in points(1, self.q + 1):
             turned = inverse(s[-1])

@@ -6,6 +6,9 @@ in each direction.  A component of the graph of links is a cluster if all its ch
 curve of type (a, b) if all wind by multiples of (a, b), and a surface otherwise.  The type is the
 one for which this holds over the widest range of r that begins below WIDEST.  Curves that touch are
 one component; how many curves there are is therefore counted on lines across them.
+
+The captions of the figures orb-* use this: the thesis counts the curves of orb-spnf1, orb-sphd2 and
+orb-auhd2, and speaks of clumps in orb-spnf2 and orb-sphd2.
 """
 
 from math import gcd
@@ -59,6 +62,13 @@ def filaments(x):
     gap, distance, kind = max(ranges, key=lambda found: found[1] / found[0])
     axis = int(abs(kind[1]) >= abs(kind[0]))
     return Filaments(kind, gap, distance, axis, clusters(x, axis, kind[1 - axis] / kind[axis]))
+
+
+def clumps(x, link):
+    """How many components the points x (q, 2), of period 1, form when those at most so far apart
+    are linked."""
+    edges, _ = _spanning_tree(np.array(x, dtype=float) % 1.0)
+    return 1 + sum(length > link for length, _, _ in edges)
 
 
 def clusters(x, axis, slope=0.0):

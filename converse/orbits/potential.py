@@ -38,7 +38,7 @@ def known(potential):
 def told(progress):
     """ValueError, unless it is None or can be called."""
     if progress is not None and not callable(progress):
-        raise ValueError("progress is a function of two arguments, not %r" % (progress,))
+        raise ValueError("progress is a function that is told how far it is, not %r" % (progress,))
 
 
 def finite(what, values):
@@ -176,6 +176,27 @@ class Potential:
         for j in range(abs(steps)):
             xs[j + 1], ps[j + 1] = step(xs[j], ps[j], eps)
         return xs, ps
+
+    def portrait(self, eps: float = 1.0, x: Any = None, p: Any = None, steps: int = 500,
+                 plane: Optional[Tuple[str, str]] = None,
+                 within: Optional[Mapping[str, Tuple[float, float]]] = None,
+                 period: float = 1, ax: Any = None, **style: Any) -> Any:
+        """A phase portrait: the orbits of initial points, angles and momenta modulo the period.
+
+        x, p -- initial points as for orbit(), of period 1; by default 20, spread evenly
+        steps -- of each orbit; backwards if negative
+        plane -- the coordinates to the right and upwards.  With one angle "x" and "p"; with two,
+            two of "x0", "x1", "p0", "p1", by default "x0" and "p0": what is seen is a projection
+        within -- {name: (middle, half width)} of other coordinates, of period 1: only the points
+            there are drawn, which is a slice
+        period -- of the axes: 1, or 2 * math.pi, as in input files and proofs
+        ax -- Axes of matplotlib, which are drawn into and returned; with None a Figure is
+        style -- as for Axes.plot; color=None gives each orbit a colour of its own
+
+        ValueError: the arguments make no portrait.  ConverseError: there is no matplotlib."""
+        from .portrait import portrait
+        return portrait(self, eps, x, p, whole("steps", steps, 1 - 2 ** 31), plane, within, period,
+                        ax, style)
 
     def _at(self, x, p, eps):
         """x and p of one shape, there eps times the gradient, and eps V'' as an array (m, n, n)."""

@@ -10,13 +10,14 @@ from dataclasses import dataclass
 from decimal import Decimal
 from fractions import Fraction
 from functools import cached_property
-from typing import Optional, Tuple
+from typing import Any, Callable, Optional, Tuple
 
 import numpy as np
 
 from .._native import lib
 from ..model.exact import Ends, interval_text, rounded, rounded_text
 from ..storage.files import ConverseError
+from .potential import told
 from .state import NEAR_NULL, ROUNDING, STATIONARY, State, expected
 
 DIGITS = 20                 # the radius is at most 10^-DIGITS unless another number is asked for
@@ -104,6 +105,16 @@ class ProvedOrbit:
         (low, high), = self.indices
         return (2 - high) / 4, (2 - low) / 4
 
+    def figure(self, ax: Any = None) -> Any:
+        """The state nearest to it, as State.figure."""
+        from .pictures import figure
+        return figure(self, ax)
+
+    def _repr_html_(self) -> str:
+        """For notebooks: the theorem and, where there is matplotlib, the figure."""
+        from .pictures import proved_html
+        return proved_html(self)
+
     def report(self) -> str:
         """The theorem in words."""
         state, (within, moved) = self.state, distances(self)
@@ -125,7 +136,8 @@ class ProvedOrbit:
         return "\n".join(lines) + "\n"
 
 
-def prove(state: State, digits: Optional[int] = None, descend: bool = False) -> ProvedOrbit:
+def prove(state: State, digits: Optional[int] = None, descend: bool = False,
+          progress: Optional[Callable[[int, int], object]] = None) -> ProvedOrbit:
     """Proves that a true orbit lies beside a state of least action: a ProvedOrbit, whose radius is
     at most 10^-digits, by default 10^-20.
 
@@ -133,9 +145,12 @@ def prove(state: State, digits: Optional[int] = None, descend: bool = False) -> 
     determined here, and the points may move: see `moved`.
     descend -- from a saddle whose least eigenvalue is above -1e-8, prove the minimum below it,
                which is elsewhere; a steeper one is left by state.relax()
+    progress(places, rounds) -- is told with how many decimal places it is tried, and how often all
+               points were gone through
     NotProved, with a reason: among others, because the state is not stationary, or a saddle."""
     wanted = DIGITS if digits is None else digits
     expected(state)
+    told(progress)
     if not isinstance(wanted, int) or not 1 <= wanted <= MOST - 2 * GUARD:
         raise ValueError("digits is a number from 1 to %d, not %r" % (MOST - 2 * GUARD, digits))
     if state.eps == 0:
@@ -159,7 +174,7 @@ def prove(state: State, digits: Optional[int] = None, descend: bool = False) -> 
     places, most = wanted + 2 * GUARD, min(MOST, wanted + 2 * GUARD + MORE)
     orbit, reason = None, None
     with alone():
-        exact = Enclosure(state, Fraction(_eps(state)))
+        exact = Enclosure(state, Fraction(_eps(state)), progress)
         while True:
             try:
                 orbit = _attempt(state, exact, growth, places, wanted)

@@ -2,15 +2,16 @@
 
 import csv
 import math
+import os
 from dataclasses import dataclass, replace
-from typing import Callable, Iterator, List, Optional, Sequence, TextIO, Tuple
+from typing import Any, Callable, Iterator, List, Optional, Sequence, TextIO, Tuple, Union
 
 import numpy as np
 
 from .._native import lib
 from ..storage.files import ConverseError
 from .potential import Potential, address, done, finite, known, told, trig
-from .state import FARTHEST, State, type_of
+from .state import FARTHEST, State, expected, type_of
 
 PER_CURVATURE = 0.2         # the step of eps from one state to the next guess, times the curvature
 HALVED = 64                 # times less, at least, where the solver fails
@@ -68,11 +69,34 @@ class Family:
         """Array (len, n)."""
         return np.array([state.exponents for state in self.states])
 
+    def plot(self, column: str, ax: Any = None) -> Any:
+        """A measure of its states against eps, as a Figure of matplotlib, which a notebook shows.
+        Hollow points are of states in which doubles see no minimum.
+
+        column -- "exponents", "action", "residue" (of one angle), "deviation", "least", "shadow",
+            "grad_size" or "undetermined", as State has them
+        ax -- Axes to draw into, which are returned
+
+        ValueError: there is no such column, or no state.  ConverseError: no matplotlib."""
+        from .pictures import family_plot
+        return family_plot(self, column, ax)
+
+    def _repr_html_(self) -> str:
+        """For notebooks: a table and, where there is matplotlib, the exponents."""
+        from .pictures import family_html
+        return family_html(self)
+
     def write_csv(self, file: TextIO) -> None:
         """A row for each state, with its measures."""
         rows = csv.writer(file, lineterminator="\n")
         rows.writerow(COLUMNS)
         rows.writerows(map(row, self.states))
+
+    def save(self, path: Union[str, "os.PathLike[str]"]) -> None:
+        """Writes all states to a file as State.save does one.  ValueError: there is none, or they
+        are not of one potential and type."""
+        from .points import save
+        save(self.states, path)
 
 
 COLUMNS = ("potential", "p", "q", "eps", "label", "action", "shadow", "grad_size", "exponent_1",
@@ -87,10 +111,10 @@ def row(state):
             *map(repr, state.deviation), state.undetermined]
 
 
-def reached(potential, eps):
+def reached(potential, eps, begin=0.0):
     """As a list of floats; ValueError, unless they are finite numbers that follow comes to."""
     eps, step = finite("eps", eps), step_of(potential)
-    for a, b in zip([0.0] + eps, eps):
+    for a, b in zip([begin] + eps, eps):
         if not abs(b - a) <= MOST_EPS_STEPS * step:
             raise ValueError("eps %r is more than %d steps of %g away from %r: too far to be "
                              "followed" % (b, MOST_EPS_STEPS, step, a))
@@ -98,19 +122,31 @@ def reached(potential, eps):
 
 
 def follow(potential: Potential, p: Tuple[int, ...], q: int, eps: Sequence[float],
-           progress: Optional[Callable[[int, State], object]] = None) -> Family:
-    """A Family: the states that continuation from eps 0 reaches at each eps in turn.
+           progress: Optional[Callable[[int, State], object]] = None,
+           start: Optional[State] = None,
+           on_step: Optional[Callable[[State], object]] = None) -> Family:
+    """A Family: the states that continuation reaches at each eps in turn, from the straight orbit
+    at eps 0 or from another state.
 
     eps -- finite numbers, in the order wanted; from each to the next at most MOST_EPS_STEPS steps
     progress(done, state) -- is told each state
+    start -- a state of this type, such as orbits.load reads, instead of the straight orbit
+    on_step(state) -- is told these and all states on the way to them
 
     Each state is the guess for the next, at most step_of(potential) further, and less where the
     solver fails.  A branch of minima is followed, which need not stay the least.  ConverseError, if
     it is lost."""
     state = straight(potential, p, q)
+    if start is not None:
+        expected(start)
+        if (start.p, start.q) != (state.p, state.q) or start.potential is not potential:
+            raise ValueError("the start is %r, and no state of the potential %s and type (%s)/%d"
+                             % (start, potential.name, ", ".join(map(str, state.p)), state.q))
+        state = start
     states: List[State] = []
-    eps, longest = reached(potential, eps), step_of(potential)
+    eps, longest = reached(potential, eps, state.eps), step_of(potential)
     told(progress)
+    told(on_step)
     for target in eps:
         step = longest
         while state.eps != target or not states:
@@ -125,6 +161,8 @@ def follow(potential: Potential, p: Tuple[int, ...], q: int, eps: Sequence[float
                 if step < longest / HALVED:
                     raise
                 continue
+            if on_step is not None:
+                on_step(state)
             if there == target:
                 break
         states.append(state)

@@ -1,10 +1,11 @@
-"""States: periodic orbits, or what is to become one (thesis, sections 2.1 and 2.2)."""
+"""Periodic states: periodic orbits of a map, or approximations of one (thesis, 2.1 and 2.2)."""
 
+import os
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import combinations
 from math import asinh, isfinite, sinh, sqrt
-from typing import NamedTuple, Optional, Tuple
+from typing import TYPE_CHECKING, Any, NamedTuple, Optional, Tuple, Union
 
 import numpy as np
 
@@ -13,19 +14,26 @@ from ..storage.files import ConverseError
 from .potential import Potential, address, done, finite, known, look_up, whole
 from .stability import Monodromy, beyond, derivatives, log_excesses, log_multipliers, product
 
-STATIONARY = 1e-9           # of the gradient's largest coordinate: above it a state is no orbit
+if TYPE_CHECKING:
+    from .minimax import Pair
+
+STATIONARY = 1e-9           # a state is an orbit if its shadow is below this
 ROUNDING = 1e-12            # of eigenvalues
-FAR = 1e-3                  # further along a direction than that, its eigenvalue may be another
-NEAR_NULL = 1e-8            # of eigenvalues: along their directions the phase is not determined
-ROUNDS = 200000             # points that the pivots run through at most, but five rounds
-LONGEST = 10 ** 7           # points
-FARTHEST = 1000             # displacement or origin: beyond, a point has too few digits left
+FAR = 1e-3                  # over this distance an eigenvalue is taken to be constant
+NEAR_NULL = 1e-8            # an eigenvalue below this in size leaves the phase undetermined
+ROUNDS = 200000             # the pivots pass at most so many points, or five times round the orbit
+LONGEST = 10 ** 7           # the largest q
+FARTHEST = 1000             # the largest displacement or origin: doubles keep 13 digits after the
+                            # point there
 
 
 class Deviation(NamedTuple):
-    """The largest displacement of a point from a straight orbit: from that through x_0, from that
-    where the calculation began, and from the best one, the nearest of all: the radius of the
-    smallest circle around all displacements.  So from_best is never larger than the others."""
+    """The largest distance |u_j - c| of a point from its place on a straight orbit.
+
+    from_point -- the straight orbit through x_0: c = u_0
+    from_start -- that where continuation began: c = 0
+    from_best  -- that for which the distance is least: the radius of the smallest circle around all
+        displacements.  It is never larger than the other two."""
 
     from_point: float
     from_start: float
@@ -35,9 +43,9 @@ class Deviation(NamedTuple):
 def middle(points):
     """The centre of the smallest circle around points, an array (q, n), n one or two.
 
-    It is that of a few of them: the smallest around these few is found, and then the point farthest
-    from its centre joins those on its rim, until none is outside.  Each circle is larger than the
-    one before, or rounding decides."""
+    The method keeps the two or three points on the circle.  The point farthest from the centre
+    joins them, and the smallest circle around these few is found, until no point is outside.  The
+    radius grows in each step, so the method ends; it also ends where rounding stops the growth."""
     def circles(few):
         """Those with two of them as a diameter, or through three: (centre, radius)."""
         for a, b in combinations(few, 2):
@@ -61,13 +69,14 @@ def middle(points):
 
 
 def _fixed(array):
-    """An array that is remembered, and therefore not to be changed."""
+    """The same array, made read-only because it is cached."""
     array.flags.writeable = False
     return array
 
 
 class Pairs(NamedTuple):
-    """The closest pairs of points, closest first: indices, |dx| on the torus, and |dp|."""
+    """The closest pairs of points, closest first: their indices i and j, the distance |dx| of the
+    angles on the torus, and the distance |dp| of the momenta; arrays of one length."""
 
     i: np.ndarray
     j: np.ndarray
@@ -75,8 +84,18 @@ class Pairs(NamedTuple):
     momentum: np.ndarray
 
 
+class Gaps(NamedTuple):
+    """The gaps of an orbit of one angle on the circle, widest first: from point i up to point j,
+    which is its neighbour; the width; and x_i, where the gap begins."""
+
+    i: np.ndarray
+    j: np.ndarray
+    width: np.ndarray
+    x: np.ndarray
+
+
 def type_of(potential, p, q):
-    """The type (p, q) as integers; ValueError, if these are no type."""
+    """The type (p, q) as integers.  ValueError: these are no type of the potential."""
     n = potential.n
     try:
         numbers = tuple(int(i) for i in p)
@@ -92,13 +111,17 @@ def type_of(potential, p, q):
 
 @dataclass(frozen=True, eq=False)
 class State:
-    """q points of type (p, q), x_{j+q} = x_j + p, with x_j = origin + (j p mod q)/q + u_j.
+    """A state of type (p, q): q points x_j = origin + (j p mod q)/q + u_j, continued by
+    x_{j+q} = x_j + p.  Angles and momenta have period 1.
 
-    p       -- n integers; p/q need not be in lowest terms
-    eps     -- the size of the perturbation
-    u       -- array (q, n), the displacements from the straight orbit
-    origin  -- n numbers: where the straight orbit begins
-    searches -- of how many searches this is the state of least action; 0: none was made
+    p        -- n integers; p/q need not be in lowest terms
+    eps      -- the size of the perturbation
+    u        -- array (q, n): the displacements from the straight orbit
+    origin   -- n numbers: the point of the straight orbit with j = 0
+    searches -- the number of searches among whose results this has the least action; 0: there was
+        no search
+
+    A state cannot be changed.  ValueError: the arguments make no state.
     """
 
     potential: Potential
@@ -114,7 +137,7 @@ class State:
         n = self.potential.n
         p, q = type_of(self.potential, self.p, self.q)
         try:
-            u = np.array([] if np.iscomplexobj(self.u) else self.u, dtype=float)    # of its own
+            u = np.array([] if np.iscomplexobj(self.u) else self.u, dtype=float)    # a copy
         except (TypeError, ValueError):
             u = np.empty(0)
         if u.shape != (q, n) or not (np.abs(u) < FARTHEST).all():
@@ -132,7 +155,7 @@ class State:
                             ("eps", eps), ("searches", whole("searches", self.searches, 0))):
             object.__setattr__(self, name, value)
 
-    def __reduce__(self):               # what was remembered, and that u is fixed, would get lost
+    def __reduce__(self):               # the default would copy caches and make u writable
         return State, (self.potential, self.p, self.q, self.eps, self.u, self.origin, self.searches)
 
     def __repr__(self) -> str:
@@ -148,19 +171,19 @@ class State:
 
     @cached_property
     def base(self) -> np.ndarray:
-        """The straight orbit on the torus, origin + (j p mod q)/q, array (q, n)."""
+        """The straight orbit, origin + (j p mod q)/q: array (q, n)."""
         j = np.arange(self.q, dtype=np.int64)[:, None]
         return _fixed(np.array(self.origin) + j * (np.array(self.p) % self.q) % self.q / self.q)
 
     @property
     def x(self) -> np.ndarray:
-        """The points on the torus, array (q, n), from 0 up to 1."""
+        """The angles x_j modulo 1, in [0, 1): array (q, n)."""
         x = (self.base + self.u) % 1.0
         return np.where(x < 1.0, x, 0.0)
 
     @cached_property
     def momenta(self) -> np.ndarray:
-        """p_j = x_{j+1} - x_j + eps grad V(x_j), array (q, n)."""
+        """The momenta p_j = x_{j+1} - x_j + eps grad V(x_j): array (q, n)."""
         return _fixed(self.rotation + np.roll(self.u, -1, 0) - self.u + self.eps * self._local[1])
 
     @cached_property
@@ -171,13 +194,14 @@ class State:
 
     @property
     def action(self) -> float:
-        """The action per point less that of the straight orbit at eps 0, |p/q|^2/2."""
+        """The mean over j of |x_{j+1} - x_j|^2/2 - eps V(x_j), less |p/q|^2/2, which is that of the
+        straight orbit at eps 0."""
         step = np.roll(self.u, -1, 0) - self.u
         return float(np.mean((step ** 2).sum(1) / 2 - self.eps * self._local[0]))
 
     @cached_property
     def gradient(self) -> np.ndarray:
-        """dL/dx_j, array (q, n)."""
+        """The derivatives dL/dx_j of the action: array (q, n)."""
         return _fixed(2 * self.u - np.roll(self.u, 1, 0) - np.roll(self.u, -1, 0)
                       - self.eps * self._local[1])
 
@@ -188,14 +212,14 @@ class State:
 
     @property
     def shadow(self) -> float:
-        """The largest distance between (x_{j+1}, p_{j+1}) and the image of (x_j, p_j).  Since the x
-        agree, it is the largest |dL/dx_j|."""
+        """The largest distance between (x_{j+1}, p_{j+1}) and the image of (x_j, p_j).  The angles
+        agree exactly, so it is the largest |dL/dx_j|."""
         return sqrt(float((self.gradient ** 2).sum(1).max()))
 
     @cached_property
     def blocks(self) -> np.ndarray:
-        """beta_j = 2 - eps V''(x_j), entries 00, 01 and 11: array (q, 3).  With one angle the
-        second coordinate is idle."""
+        """The diagonal blocks beta_j = 2 - eps V''(x_j) of the Hessian of the action: array (q, 3)
+        of the entries 00, 01 and 11.  With one angle, 01 is 0 and 11 is 2."""
         bend = self._local[2]
         blocks = np.tile([2.0, 0.0, 2.0], (self.q, 1))
         blocks[:, 0] -= self.eps * bend[:, 0, 0]
@@ -212,8 +236,8 @@ class State:
 
     @cached_property
     def least(self) -> float:
-        """The least eigenvalue of the Hessian, to a relative 1e-5 or an absolute 1e-15, but for the
-        rounding of the Hessian, about 1e-15 too."""
+        """The least eigenvalue of the Hessian, by bisection, to a relative 1e-5 or an absolute
+        1e-15.  The rounding of the Hessian adds about 1e-15."""
         high = asinh(1e15 * (2 * float(np.abs(self.blocks).max()) + 2))
         low = -high
         for _ in range(24):
@@ -225,18 +249,23 @@ class State:
 
     @cached_property
     def _rounds(self) -> int:
-        """Rounds until the pivots d_j = beta_j - 1/d_{j-1} repeated; 0: they did not; -r: not all
-        are positive definite, in round r."""
+        """The number of rounds of the orbit after which the pivots d_j = beta_j - 1/d_{j-1} repeat.
+        0: they did not repeat; -r: in round r one is not positive definite."""
         pivots = np.zeros((self.q, 3))
         return lib.cv_pivots(self.potential.n, self.q, address(self.blocks, "double(*)[3]"),
                              max(5, ROUNDS // self.q), address(pivots, "double(*)[3]"))
 
     @property
     def label(self) -> str:
-        """What is known of it, in doubles: "not stationary"; "saddle", if the action of it or of an
-        n-fold copy of it can be lowered to second order; "minimum", if not, except along directions
-        too flat to tell (undetermined); "stationary", if rounding hides which; "best of N
-        searches", of a minimum found so."""
+        """What doubles show of it.
+
+        "not stationary" -- no orbit: the shadow is not below STATIONARY
+        "saddle" -- an orbit; its Hessian, or that of the orbit run through several times, has a
+            negative eigenvalue
+        "minimum" -- an orbit without such an eigenvalue; those counted by `undetermined` are too
+            small to have a sign
+        "best of N searches" -- a minimum, of least action among the results of N searches
+        "stationary" -- an orbit; rounding hides whether it is a minimum or a saddle"""
         if not self.shadow < STATIONARY:
             return "not stationary"
         rounds = self._rounds
@@ -249,8 +278,8 @@ class State:
 
     @property
     def undetermined(self) -> int:
-        """Along how many directions the state may be moved at (almost) no cost: eigenvalues between
-        -NEAR_NULL and NEAR_NULL.  The phases along them are not determined."""
+        """The number of eigenvalues of the Hessian between -NEAR_NULL and NEAR_NULL.  Along their
+        eigenvectors the action hardly changes, and the phase of the state is not determined."""
         return self.below(NEAR_NULL) - self.below(-NEAR_NULL)
 
     # ---- how neighbours move away: stability.py
@@ -266,7 +295,7 @@ class State:
 
     @cached_property
     def _log_excesses(self) -> np.ndarray:
-        """log (rho - 2) of the stability indices."""
+        """log (rho - 2) of the stability indices rho: complex array (n,)."""
         log = ffi.new("double *")
         negative = lib.cv_determinant(self.potential.n, self.q,
                                       address(self.blocks, "double(*)[3]"), log)
@@ -274,20 +303,21 @@ class State:
 
     @property
     def log_multipliers(self) -> np.ndarray:
-        """log l of those n multipliers, eigenvalues of DF^q, whose modulus is at least 1 (the
-        others are 1/l), larger first: complex array (n,).  The imaginary part is the angle by which
-        neighbours turn, pi where they are reflected."""
+        """log l of the n multipliers l (eigenvalues of DF^q) of modulus at least 1, the larger
+        first: complex array (n,).  The other n are 1/l.  The imaginary part is the argument of l:
+        the angle of rotation, or pi for a negative multiplier."""
         return log_multipliers(self._log_excesses)
 
     @property
     def multipliers(self) -> np.ndarray:
-        """These l themselves: array (n,), complex if one is; infinite beyond 1e308."""
+        """The multipliers l of log_multipliers: array (n,), complex if one is; infinite beyond
+        1e308."""
         return beyond(self.log_multipliers)
 
     @property
     def indices(self) -> np.ndarray:
-        """The stability indices rho = l + 1/l, array (n,): an orbit is stable to first order if
-        they are real, distinct and between -2 and 2.  Infinite beyond 1e308."""
+        """The stability indices rho = l + 1/l: array (n,).  The orbit is linearly stable if they
+        are real, distinct and between -2 and 2.  Infinite beyond 1e308."""
         return 2 + beyond(self._log_excesses)
 
     @property
@@ -302,15 +332,15 @@ class State:
 
     @property
     def exponents(self) -> np.ndarray:
-        """The n Lyapunov exponents (1/q) log |l| >= 0, larger first, array (n,).  One below
-        2/max(ROUNDS, 5 q), that is, 1/100,000 while q is at most 40,000, is not told from 0."""
+        """The n Lyapunov exponents (1/q) log |l| >= 0, larger first: array (n,).  An exponent below
+        2/max(ROUNDS, 5 q), which is 1/100,000 for q up to 40,000, cannot be told from 0."""
         return _fixed(self.log_multipliers.real / self.q)
 
     # ---- measures
 
     @property
     def deviation(self) -> Deviation:
-        """See Deviation."""
+        """The largest displacements from three straight orbits."""
         def away(centre):
             return sqrt(float(((self.u - centre) ** 2).sum(1).max()))
 
@@ -319,7 +349,7 @@ class State:
                          min(from_point, from_start, away(middle(self.u))))
 
     def pairs(self, count: int = 800) -> Pairs:
-        """The count closest pairs of its points on the torus."""
+        """The `count` pairs of points with the closest angles on the torus."""
         count = min(whole("count", count, 0), self.q * (self.q - 1) // 2)
         x = np.zeros((self.q, 2))
         x[:, :self.potential.n] = self.x
@@ -330,49 +360,100 @@ class State:
         momentum = np.sqrt(((self.momenta[i] - self.momenta[j]) ** 2).sum(1))
         return Pairs(i, j, distance[:found], momentum)
 
-    def _repr_png_(self):
-        """For notebooks: its angles and momenta; None without matplotlib."""
-        from .figures import states_picture
-        try:
-            return states_picture([self], "png", caption=False)
-        except ConverseError:
-            return None
+    def gaps(self, count: Optional[int] = None) -> Gaps:
+        """The gaps between neighbouring points on the circle, all q or so many, widest first; those
+        of one width in the order of x.  ValueError for n = 2."""
+        if self.potential.n != 1:
+            raise ValueError("gaps are those of an orbit on a circle; with two angles nothing lies "
+                             "between two points: see state.pairs() and the figure")
+        count = self.q if count is None else whole("count", count, 0)
+        x = self.x[:, 0]
+        i = np.argsort(x, kind="stable")
+        j = np.roll(i, -1)
+        width = x[j] - x[i]
+        width[-1] += 1
+        order = np.argsort(-width, kind="stable")[:count]
+        return Gaps(i[order], j[order], width[order], x[i[order]])
+
+    def minimax(self, step: int = 0) -> "Pair":
+        """The pass from this minimum to one of its neighbours, itself begun at another point: a
+        Pair, with the difference of action, which for one angle is the flux through the gap.
+
+        step -- with two angles, which neighbour: 0 the nearest; 1, 2 the others around a cell
+
+        ValueError: the type is not in lowest terms.  ConverseError: the state is no minimum, or
+        certainly not the least; or no pass is found."""
+        from .minimax import minimax
+        return minimax(self, step)
+
+    def save(self, path: Union[str, "os.PathLike[str]"]) -> None:
+        """Writes points, momenta and all else of the state to a file, .csv or .npz, from which
+        orbits.load reads it to the last bit.  ConverseError: it cannot be written, or exists and is
+        no such file."""
+        from .points import save
+        save([self], path)
+
+    # ---- pictures
+
+    def figure(self, ax: Any = None) -> Any:
+        """Its angles and momenta, as a Figure of matplotlib, which a notebook shows.
+
+        ax -- Axes to draw into, which are returned: with one angle one; with two a pair, for the
+            angles and for the momenta, or one, for the angles
+
+        ValueError: ax are too many.  ConverseError: there is no matplotlib."""
+        from .pictures import figure
+        return figure(self, ax)
+
+    def _repr_html_(self) -> str:
+        """For notebooks: its measures and, where there is matplotlib, its figure."""
+        from .pictures import state_html
+        return state_html(self)
 
     # ---- other states
 
     def moved(self, u: np.ndarray) -> "State":
-        """This state with other displacements."""
+        """The state with other displacements u, array (q, n)."""
         return replace(self, u=u, searches=0)
 
     def repeat(self, n: int) -> "State":
-        """The orbit run through n times, of type (n p, n q)."""
+        """The orbit run through n times: a state of type (n p, n q)."""
         n = whole("how often an orbit is run through", n, 1, LONGEST // self.q)
         return replace(self, p=tuple(n * i for i in self.p), q=n * self.q,
                        u=np.tile(self.u, (n, 1)), searches=0)
 
     def relax(self, eps: Optional[float] = None, tol: float = 1e-13,
               max_steps: int = 10000) -> "State":
-        """A state of least action near this one, at this or another eps, by damped Newton: the
-        gradient's coordinates are at most tol, or 100 tol where rounding hides what would lower
-        them.  ConverseError if that many steps do not reach it."""
-        n, q = self.potential.n, self.q
+        """A nearby minimum of the action, at this or another eps, by Newton's method with damping.
+
+        tol -- the largest coordinate of its gradient; 100 tol where rounding prevents less
+        ConverseError: max_steps steps do not reach it."""
         eps, tol = finite("eps and tol", [self.eps if eps is None else eps, tol])
-        max_steps = whole("max_steps", max_steps, 0)
-        u, base = np.zeros((q, 2)), np.zeros((q, 2))
-        u[:, :n], base[:, :n] = self.u, self.base
-        how = ffi.new("cv_relaxed *")
-        look_up()
-        code = done(lib.cv_relax(self.potential.native, q, eps, address(base), address(u), tol,
-                                 max_steps, how), self.potential)
+        code, how, u = descended(self, eps, tol, whole("max_steps", max_steps, 0))
         if code != lib.CV_OK:
             raise ConverseError(
                 "no orbit of type (%s)/%d found at eps %r: the gradient is still %.1e after %d "
-                "steps" % (", ".join(map(str, self.p)), q, eps, how.largest, how.steps))
-        return replace(self, eps=eps, u=u[:, :n], searches=0)
+                "steps" % (", ".join(map(str, self.p)), self.q, eps, how.largest, how.steps))
+        return replace(self, eps=eps, u=u, searches=0)
+
+
+def descended(state, eps, tol, max_steps, held=None):
+    """What cv_relax makes of a state: its code, how it went, and the displacements, array (q, n).
+    held: None, or (j, i): coordinate i of point j stays where it is."""
+    n, q = state.potential.n, state.q
+    first, axis = held or (0, -1)
+    u, base = np.zeros((q, 2)), np.zeros((q, 2))
+    u[:, :n], base[:, :n] = np.roll(state.u, -first, 0), np.roll(state.base, -first, 0)
+    how = ffi.new("cv_relaxed *")
+    look_up()
+    code = done(lib.cv_relax(state.potential.native, q, eps, address(base), address(u), axis, tol,
+                             max_steps, how), state.potential)
+    return code, how, np.roll(u[:, :n], first, 0)
 
 
 def expected(state):
-    """ValueError, unless it is a State."""
+    """Returns what it is given; raises ValueError unless that is a State."""
     if not isinstance(state, State):
         raise ValueError("a state is expected, such as follow and relax return, not %.200r"
                          % (state,))
+    return state

@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from converse import orbits
-from converse.orbits.filaments import Filaments, clusters, filaments
+from converse.orbits.filaments import Filaments, clumps, clusters, filaments
 
 from truth import TORTURE
 
@@ -100,3 +100,10 @@ def test_the_thesis(potential, p, q, eps, count, kind, resonance):
 def test_a_torus_is_no_filament():
     state, = orbits.follow(orbits.trig, (1432, 1897), 2513, [0.0075])
     assert filaments(state.x) is None
+
+
+def test_clumps():
+    """Components of the graph whose links are at most so long, on the torus."""
+    x = np.array([[0.001, 0.5], [0.999, 0.5], [0.004, 0.5], [0.3, 0.9], [0.3, 0.1]])
+    assert [clumps(x, link) for link in (0.001, 0.0025, 0.0035, 0.21, 0.6)] == [5, 4, 3, 2, 1]
+    assert clumps(x[:1], 0.1) == 1

@@ -231,15 +231,26 @@ def test_corridors_against_all_paths():
 
 
 def test_least_eigenvalue():
-    """Below the true one, and close."""
+    """Below the true one, and close; below it whatever was guessed."""
     rng = np.random.default_rng(7)
-    for size in (1, 2, 9, 40):
+    for size in (1, 2, 9, 40, branch_and_bound.ROWS + 3):
         a = rng.normal(size=(size, size))
         for matrix in (a @ a.T, a + a.T, np.eye(size)):
             true = min(mpmath.eigsy(mpmath.matrix(matrix.tolist()), eigvals_only=True))
-            bound = branch_and_bound._least_eigenvalue(matrix)
+            bound = branch_and_bound._least_eigenvalue(matrix, float(true))
             assert bound <= true
             assert bound >= true - 0.01 * abs(true) - 1e-10 * abs(matrix).max()
+            for wrong in (-1.0, 0.01, 1.0, 100.0):
+                assert branch_and_bound._least_eigenvalue(matrix, float(true) + wrong) <= true
+
+
+def test_least_action_sees_ctrl_c_between_short_steps(monkeypatch):
+    """The largest matrices are multiplied in parts: no call in between takes all of it."""
+    parts = []
+    monkeypatch.setattr(branch_and_bound.np, "einsum", lambda how, a, b: parts.append(len(a))
+                        or np.matmul(a, b.T))
+    branch_and_bound._least_eigenvalue(2.1 * np.eye(1000), 2.1)
+    assert len(parts) > 20 and max(parts) <= branch_and_bound.ROWS
 
 
 @pytest.mark.parametrize("potential", POTENTIALS, ids=by)

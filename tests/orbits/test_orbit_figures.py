@@ -1,5 +1,6 @@
 """The figures of orbits: drawn from short orbits, they show what they say, where they say it."""
 
+import dataclasses
 import itertools
 import math
 import os
@@ -13,7 +14,6 @@ import pytest
 
 from converse import ConverseError, orbits
 from converse.orbits import farey
-from converse.orbits.solver import newton
 
 from truth import TORTURE
 
@@ -22,9 +22,10 @@ pytest.importorskip("matplotlib")
 from matplotlib.figure import Figure  # noqa: E402
 from matplotlib.text import Text  # noqa: E402
 
-from converse.orbits import figures  # noqa: E402
+from converse.orbits import figures, pictures  # noqa: E402
+from converse.orbits.figures import appendix, hedlund, shared, states, twist_maps  # noqa: E402
 
-REAL = figures.ORBITS
+REAL = states.ORBITS
 SPIRAL, TENTH = ((28, 37), 49), ((11, 68), 110)
 START = {"svg": b"<?xml", "png": b"\x89PNG", "pdf": b"%PDF"}
 
@@ -32,19 +33,20 @@ START = {"svg": b"<?xml", "png": b"\x89PNG", "pdf": b"%PDF"}
 @pytest.fixture(scope="module")
 def families():
     """Found once for all tests."""
-    return figures.Families()
+    return shared.Families()
 
 
 @pytest.fixture(autouse=True)
 def short(monkeypatch):
     """Stand-ins for the thesis's long orbits."""
-    vectors = {figures.SPIRAL: SPIRAL, figures.TENTH: TENTH}
-    monkeypatch.setattr(figures, "ORBITS", {
+    vectors = {shared.SPIRAL: SPIRAL, shared.TENTH: TENTH}
+    monkeypatch.setattr(states, "ORBITS", {
         name: (potential, vectors[vector], *rest)
-        for name, (potential, vector, *rest) in figures.ORBITS.items()})
-    for name, value in (("SPIRAL", SPIRAL), ("TENTH", TENTH), ("SEQUENCE", (8, 21, 47, 110)),
-                        ("CANTORUS", (1.001635, (34,), 89))):
-        monkeypatch.setattr(figures, name, value)
+        for name, (potential, vector, *rest) in states.ORBITS.items()})
+    for module, name, value in ((shared, "SPIRAL", SPIRAL), (shared, "TENTH", TENTH),
+                                (hedlund, "SEQUENCE", (8, 21, 47, 110)),
+                                (twist_maps, "CANTORUS", (1.001635, (34,), 89))):
+        monkeypatch.setattr(module, name, value)
 
 
 @pytest.fixture
@@ -78,16 +80,16 @@ def test_all_of_them_are_there():
         assert (q, p0) == {"sp": (2513, 1432), "au": (3770, 377)}[kind[:2]]
         assert first_known == (kind in ("spnf1", "spff1")) and (not first_known
                                                                or sizes[0] == 0.0075)
-        assert set(sizes) <= set(figures.FINE) and list(sizes) == sorted(sizes)
-    assert all(float("%.4f" % eps) == eps for eps in figures.STEPS)     # that is what is written
-    assert set(figures.SMOOTH) <= set(figures.STEPS)
+        assert set(sizes) <= {k / 800 for k in range(33)} and list(sizes) == sorted(sizes)
+    assert all(float("%.4f" % eps) == eps for eps in shared.STEPS)     # that is what is written
+    assert set(states.SMOOTH) <= set(shared.STEPS)
 
 
 @pytest.mark.parametrize("name", sorted(REAL))
 def test_projections(name, drawn, families):
     """The angles to the left, the momenta to the right, in the right order, all of them in sight;
     and what is said beside them is true of them."""
-    potential, vector, sizes, first_known = figures.ORBITS[name]
+    potential, vector, sizes, first_known = states.ORBITS[name]
     figure, words = drawn(name)
     assert len(figure.axes) == 2 * len(sizes)
     for number, eps in enumerate(sizes):
@@ -113,7 +115,7 @@ def test_projections(name, drawn, families):
         assert ("arbitrary" in head) == (state.undetermined > 0)
         away = np.hypot(*(state.momenta - state.rotation).T).max()
         assert float(re.search(r"up to (\d\.\d{3})", head)[1]) == pytest.approx(away, abs=1e-3)
-    assert figures.NAMES[potential.name] in words and "nothing is proved" in words
+    assert shared.NAMES[potential.name] in words and "nothing is proved" in words
     assert ("The first ε is the thesis's" in words) == first_known and "chosen here" in words
 
 
@@ -122,56 +124,42 @@ def test_the_curves_that_the_text_names(monkeypatch):
     monkeypatch.undo()
     for name, words in (("orb-spnf1", "3 curves of type (1, -1)"),
                         ("orb-sphd2", "7 curves of type (0, 1)")):
-        potential, vector, sizes, _ = figures.ORBITS[name]
-        assert len(sizes) == 2 and name in figures.TEXT
-        assert figures.shape(orbits.follow(potential, *vector, sizes[1:])[0]).startswith(words)
+        potential, vector, sizes, _ = states.ORBITS[name]
+        assert len(sizes) == 2 and name in states.TEXT
+        assert states.shape(orbits.follow(potential, *vector, sizes[1:])[0]).startswith(words)
 
 
-def test_points_that_doubles_cannot_tell_apart():
-    state = orbits.follow(orbits.trig, *SPIRAL, [0.01])[-1]
-    assert figures.coinciding(state) == 0
-    assert figures.coinciding(state.repeat(3)) == 3 * state.q
-    u = state.u.copy()
-    u[5] += (state.x[9] - state.x[5]) + [3e-14, -2e-14]
-    u[7] += (state.x[9] - state.x[7]) + [1e-11, 0]
-    u[2] += (1 - 1e-15, 0.3) - state.x[2]               # the torus has no edge
-    u[3] += (1e-14, 0.3) - state.x[3]
-    assert figures.coinciding(state.moved(u)) == 4
-    figure = Figure()
-    words = figures.pairs_of_projections(figure, [state, state.repeat(2), state.moved(u)])
-    assert "98 points of (b) and 4 points of (c)" in words
-    assert "not stationary" in title(figure.axes[4])
-
-
-def test_shapes_in_words():
+def test_shapes_in_words(monkeypatch):
     potential = orbits.trig
     p, q, eps = (1432, 1897), 2513, 0.025
     state = orbits.follow(potential, p, q, [eps])[-1]
-    assert re.fullmatch(r"3 curves of type \(1, -1\) at links up to 0\.\d+", figures.shape(state))
-    assert figures.shape(orbits.straight(potential, (500, 701), 5001)) == "curves not looked for"
+    assert re.fullmatch(r"3 curves of type \(1, -1\) at links up to 0\.\d+", states.shape(state))
+    monkeypatch.setattr(states, "filaments", lambda x: None)
+    assert states.shape(state) == "no curves to be told apart"
 
 
 def test_standard_map(drawn):
     figure, words = drawn("std-demo")
     assert len(figure.axes) == 3
-    for panel, k in zip(figure.axes, figures.KICKS):
-        points = data(panel).reshape(200, 20, 2).transpose(1, 0, 2)
-        for orbit in points:
+    for panel, k in zip(figure.axes, twist_maps.KICKS):
+        assert len(panel.get_lines()) == 20
+        for orbit in (data(panel, number) for number in range(20)):
+            assert len(orbit) == 201
             x, p = orbit[:-1].T
             after = (p - k / (2 * math.pi) * np.sin(2 * math.pi * x))
             off = np.stack([x + after, after], 1) - orbit[1:]
             assert abs(off - np.rint(off)).max() < 1e-12
         assert panel.get_title() == "$k$ = %g" % k
         assert panel.get_xlim() == panel.get_ylim() == (0, 1)
-    assert figures.KICKS[0] < figures.KICKS[1] < 4 / 3 < figures.KICKS[2]
+    assert twist_maps.KICKS[0] < twist_maps.KICKS[1] < 4 / 3 < twist_maps.KICKS[2]
     assert "chosen here" in words
 
 
 def test_billiards():
     """It turns twice, and at each corner both angles with the wall are the same."""
     t = 2 * np.pi * np.arange(4000) / 4000
-    x, y = figures.table(t)
-    length, star = figures.longest_star(x, y)
+    x, y = twist_maps.table(t)
+    length, star = twist_maps.longest_star(x, y)
     points = np.stack([x, y], 1)[star]
     steps = np.roll(points, -1, axis=0) - points
     assert length == pytest.approx(np.hypot(*steps.T).sum())
@@ -180,14 +168,14 @@ def test_billiards():
     walls = np.roll(np.stack([x, y], 1), -1, axis=0) - np.roll(np.stack([x, y], 1), 1, axis=0)
     walls = walls[star] / np.hypot(*walls[star].T)[:, None]
     assert abs(((units - np.roll(units, 1, axis=0)) * walls).sum(1)).max() < 4e-3
-    circle = figures.longest_star(np.cos(t), np.sin(t))[0]
+    circle = twist_maps.longest_star(np.cos(t), np.sin(t))[0]
     assert circle == pytest.approx(10 * math.sin(2 * math.pi / 5))
 
 
 def test_cantorus(drawn, families):
     figure, words = drawn("cantorus")
     panel, = figure.axes
-    k, p, q = figures.CANTORUS
+    k, p, q = twist_maps.CANTORUS
     state, = families(orbits.standard, (p, q), (k,))
     x, y = data(panel).T
     assert np.array_equal(x, state.x[:, 0]) and len(x) == q
@@ -218,32 +206,57 @@ def test_potentials(drawn):
                 value = potential.evaluate(path.vertices)[0]
                 assert -value == pytest.approx(np.full(len(value), level), abs=2e-3)
         assert data(panel)[0] == pytest.approx(potential.start)
-        assert figures.NAMES[potential.name] in panel.get_title()
+        assert shared.NAMES[potential.name] in panel.get_title()
     assert [re.findall(r"from (\S+) to (\S+)", panel.get_title())[0] for panel in figure.axes] == [
         ("-1", "1"), ("-0.25", "1"), ("-0.551", "1")]
 
 
 def test_exponents(drawn, families):
+    """All of them to the left; to the right, on a logarithmic scale, how they leave 0."""
     figure, words = drawn("Lyaps")
     order = (orbits.trig, TENTH), (orbits.poly, TENTH), (orbits.trig, SPIRAL), (orbits.ff, SPIRAL)
-    for panel, (potential, vector) in zip(figure.axes, order):
-        family = families(potential, vector)
-        assert figures.NAMES[potential.name] in panel.get_title()
-        assert figures.vector_words(*vector) in panel.get_title()
+    count = 0
+    for left, right, (potential, vector) in zip(figure.axes[::2], figure.axes[1::2], order):
+        family = families.resolved(potential, vector)
+        count += len(family)
+        assert left.get_title() == "%s, %s" % (shared.NAMES[potential.name],
+                                               pictures.vector_words(*vector))
+        assert right.get_yscale() == "log" and right.get_xlim()[1] < left.get_xlim()[1]
+        said = re.fullmatch(r"above 1/q from ε = (\S+) and (\S+) on", right.get_title())
         for k, name in enumerate(("first", "second")):
-            line = panel.get_lines()[k]
-            assert line.get_label() == name
-            assert np.array_equal(data(panel, k), np.stack([family.eps, family.exponents[:, k]], 1))
-        said = float(re.search(r"first > 0.003 from ε = (\S+) on", panel.get_title())[1])
-        first = family.exponents[:, 0]
-        assert (first[family.eps < said] <= 0.003).all() and first[family.eps == said] > 0.003
-    assert "Labels of the states: minimum (68)." in words and "chosen here" in words
+            exponents = family.exponents[:, k]
+            assert left.get_lines()[k].get_label() == name
+            assert np.array_equal(data(left, k), np.stack([family.eps, exponents], 1))
+            seen = data(right, k)[:, 1]
+            assert np.array_equal(seen[exponents > 1e-5], exponents[exponents > 1e-5])
+            assert np.isnan(seen[exponents <= 1e-5]).all()
+            above = int(np.argmax(exponents > 1 / vector[1]))
+            assert above and float(said[k + 1]) == pytest.approx(family.eps[above], abs=5e-6)
+            assert family.eps[above] - family.eps[above - 1] <= shared.SHORTEST
+        assert right.get_lines()[2].get_ydata()[0] == 1 / vector[1]
+    assert "Labels of the states: minimum (%d)." % count in words and "chosen here" in words
+    assert states.leaves(families(orbits.trig, SPIRAL, (0.001, 0.002)), 0) == "beyond"
+
+
+def test_steps_that_adapt_themselves(families):
+    """They are short where much changes, and only there."""
+    for potential in orbits.trig, orbits.ff:
+        family = families.resolved(potential, SPIRAL)
+        steps = np.diff(family.eps)
+        assert family.eps[0] == 0 and family.eps[-1] == shared.TOP == 0.04
+        assert shared.SHORTEST / 2 < steps[:-1].min()           # the last one ends at TOP
+        assert steps.max() == pytest.approx(shared.LONGEST)
+        assert (steps > shared.LONGEST * 0.999).sum() >= 5
+        large = [abs(after.exponents - before.exponents).max() > shared.CHANGE
+                 for before, after in zip(family, list(family)[1:])]
+        assert (steps[large] <= shared.SHORTEST).all()
+    assert families.resolved(orbits.ff, SPIRAL) is family
 
 
 def test_pairs(drawn, families, monkeypatch):
-    monkeypatch.setattr(figures, "PAIRS", 60)
+    monkeypatch.setattr(states, "PAIRS", 60)
     figure, words = drawn("smooth")
-    for panel, eps in zip(figure.axes, figures.SMOOTH):
+    for panel, eps in zip(figure.axes, states.SMOOTH):
         state = families.at(orbits.trig, SPIRAL, eps)
         distance, ratio = data(panel).T
         pairs = state.pairs(60)
@@ -258,50 +271,72 @@ def test_pairs(drawn, families, monkeypatch):
 
 
 def test_pairs_that_are_left_out(monkeypatch):
-    class Doubled(figures.Families):
+    class Doubled(shared.Families):
         def at(self, *arguments):
             return super().at(*arguments).repeat(2)
 
-    monkeypatch.setattr(figures, "PAIRS", 100)
+    monkeypatch.setattr(states, "PAIRS", 100)
     figure = Figure()
-    words = figures.smooth(figure, Doubled())
+    words = states.smooth(figure, Doubled())
     assert "less %d that are nearer" % (6 * 49) in words
     assert all(len(data(panel)) == 51 for panel in figure.axes)
 
 
 def test_deviations(drawn, families):
     figure, words = drawn("deev")
-    largest = 0
+    found, leaps = [], []
     for panel, vector in zip(figure.axes, (SPIRAL, TENTH)):
         for k, potential in enumerate((orbits.trig, orbits.poly, orbits.ff)):
-            family = families(potential, vector, figures.FINE)
+            family = families.resolved(potential, vector)
+            found += family
             solid, dotted = panel.get_lines()[2 * k:2 * k + 2]
-            assert solid.get_label() == figures.NAMES[potential.name]
+            assert solid.get_label() == shared.NAMES[potential.name]
             assert (solid.get_linestyle(), dotted.get_linestyle()) == ("-", ":")
             for line, means in (solid, "from_start"), (dotted, "from_point"):
-                assert list(line.get_xdata()) == list(figures.FINE)
+                assert np.array_equal(line.get_xdata(), family.eps)
                 assert line.get_ydata() == pytest.approx(
                     [getattr(state.deviation, means) for state in family])
-            largest = max(largest, *solid.get_ydata())
-        assert panel.get_title() == figures.vector_words(*vector)
+        leaps += hedlund.jumps(family)                  # of ff, the last
+        assert panel.get_title() == pictures.vector_words(*vector)
         assert panel.get_lines()[-1].get_ydata()[0] == pytest.approx(math.sqrt(0.5))
-    assert "%.3f at most" % largest in words and "chosen here" in words
-    dotted = max(max(line.get_ydata()) for panel in figure.axes for line in panel.get_lines()
-                 if line.get_linestyle() == ":")
-    assert ("that is not so" in words) == (dotted > 0.5 ** 0.5)
-    arbitrary = sum(state.undetermined > 0 for potential in (orbits.trig, orbits.poly, orbits.ff)
-                    for vector in (SPIRAL, TENTH)
-                    for state in families(potential, vector, figures.FINE))
-    assert "In %d of 198 states a phase is arbitrary" % arbitrary in words and arbitrary
+    for number in (max(state.deviation.from_start for state in found),
+                   max(state.deviation.from_point for state in found),
+                   max(hedlund.across(state) for state in found)):
+        assert "%.3f at most" % number in words
+    assert all("%.3f at ε = %.5f" % (by, eps) in words for eps, by in leaps)
+    arbitrary = sum(state.undetermined > 0 for state in found)
+    assert "In %d of %d states a phase is arbitrary" % (arbitrary, len(found)) in words
+
+
+def test_distance_from_the_line():
+    """Along the line points may move as they like; across, by a whole line, not only the circle."""
+    state = orbits.straight(orbits.trig, (3, 4), 5)
+    u = np.zeros((5, 2))
+    u[1:] = np.outer([1, -2, 0.5, 3], [0.03, 0.04])
+    assert hedlund.across(state.moved(u)) == pytest.approx(0, abs=1e-15)
+    u[2] += [0.08, -0.06]
+    u[3] -= [0.04, -0.03]
+    assert hedlund.across(state.moved(u)) == pytest.approx(0.1)
+    assert hedlund.across(state.moved(u + [0.3, 0.1])) == pytest.approx(0.1)
+
+
+def test_jumps():
+    """Those that the shortest steps leave, not what changes while a step is long."""
+    state = orbits.straight(orbits.trig, (3, 4), 5)
+    family = orbits.Family(tuple(
+        dataclasses.replace(state, eps=eps, u=np.full((5, 2), size))
+        for eps, size in ((0, 0), (0.001, 0.5), (0.00101, 0.51), (0.00102, 0.61), (0.002, 0.7))))
+    (eps, by), = hedlund.jumps(family)
+    assert eps == 0.00102 and by == pytest.approx(0.1 * math.sqrt(2))
 
 
 def test_sequence(drawn, families):
     figure, words = drawn("hed_st")
     mediants = {m.q: m.p for m in itertools.islice(farey.triangle(("1/10", farey.GOLDEN)), 20)}
-    for number, q in enumerate(figures.SEQUENCE):
+    for number, q in enumerate(hedlund.SEQUENCE):
         left, right = figure.axes[2 * number:2 * number + 2]
         state = families.at(orbits.poly, (mediants[q], q), 0.02)
-        assert figures.vector_words(mediants[q], q) in title(left) and state.label in title(left)
+        assert pictures.vector_words(mediants[q], q) in title(left) and state.label in title(left)
         assert np.array_equal(data(left), state.x) and np.array_equal(data(right), state.momenta)
     assert len(figure.axes) == 8 and len({panel.get_xlim() for panel in figure.axes[1::2]}) == 1
     assert "ε = 0.02" in words and "chosen here" in words
@@ -310,9 +345,9 @@ def test_sequence(drawn, families):
 def test_sequence_of_the_thesis(monkeypatch):
     monkeypatch.undo()
     mediants = {m.q: m.p for m in itertools.islice(farey.triangle(("1/10", farey.GOLDEN)), 37)}
-    assert set(figures.SEQUENCE) <= set(mediants) and figures.SEQUENCE[-1] == 3770
-    assert figures.TENTH == (mediants[3770], 3770)
-    assert figures.SPIRAL in [m[:2] for m in itertools.islice(farey.triangle(farey.SPIRAL), 30)]
+    assert set(hedlund.SEQUENCE) <= set(mediants) and hedlund.SEQUENCE[-1] == 3770
+    assert shared.TENTH == (mediants[3770], 3770)
+    assert shared.SPIRAL in [m[:2] for m in itertools.islice(farey.triangle(farey.SPIRAL), 30)]
 
 
 def test_tree(drawn):
@@ -344,8 +379,8 @@ def test_triangles(drawn):
     places = []
     for panel in figure.axes:
         *loops, dot = [data(panel, k) for k in range(len(panel.get_lines()))]
-        assert len(loops) == 2 * (2 ** figures.LEVELS - 1)
-        for level in range(figures.LEVELS):
+        assert len(loops) == 2 * (2 ** appendix.LEVELS - 1)
+        for level in range(appendix.LEVELS):
             cells = loops[2 * (2 ** level - 1):2 * (2 ** (level + 1) - 1)]
             assert sum(abs(area(*cell[:3])) for cell in cells) == pytest.approx(1)
         inside = [number for number, (a, b, c, _) in enumerate(cells)
@@ -383,25 +418,7 @@ def test_every_caption_is_inside(families):
         assert float(root.get("width")[:-2]) > 72 * figures.FIGURES[name][0] * 0.8
         assert float(root.get("height")[:-2]) > 72 * figures.FIGURES[name][1] * 0.8
     strange = orbits.Fourier({(1, 0): (1, 0), (0, 1): (1, 0)}, "$x^{")
-    assert figures.states_picture(orbits.follow(strange, (2, 3), 7, [0.001])).startswith(b"<?xml")
-
-
-def test_states_picture():
-    family = orbits.follow(orbits.standard, (3,), 8, [0.5, 0.9])
-    for kind, start in START.items():
-        assert figures.states_picture(family, kind).startswith(start)
-    figure = Figure()
-    figures.phase_planes(figure, family)
-    for panel, state in zip(figure.axes, family):
-        assert np.array_equal(data(panel), np.column_stack([state.x, state.momenta]))
-        assert "3/8: minimum" in title(panel) and "ε = %r" % state.eps in title(panel)
-    saddle, _ = newton(orbits.straight(orbits.trig, (2, 3), 5, (0.1489578, 0.1489578)), 0.01)
-    assert figures.kind(saddle) == "saddle"
-    assert figures.exponents_words(saddle) == "exponents %.4f, %.4f" % tuple(saddle.exponents)
-    assert figures.states_picture([saddle]).startswith(b"<?xml")
-    for number in 0, figures.ROWS + 1:
-        with pytest.raises(ValueError, match="choose fewer eps"):
-            figures.states_picture([saddle] * number)
+    assert pictures.states_picture(orbits.follow(strange, (2, 3), 7, [0.001])).startswith(b"<?xml")
 
 
 def fonts_and_labels(figure):
@@ -423,8 +440,8 @@ def fonts_and_labels(figure):
 @pytest.fixture
 def seen(monkeypatch):
     """The figures that are written from here on."""
-    seen, encode = [], figures.plot.encode
-    monkeypatch.setattr(figures.plot, "encode", lambda figure, kind, **options: (
+    seen, encode = [], pictures.plot.encode
+    monkeypatch.setattr(pictures.plot, "encode", lambda figure, kind, **options: (
         seen.append(figure), encode(figure, kind, **options))[1])
     return seen
 
@@ -441,53 +458,95 @@ def test_readable(name, families, seen):
     assert not seen[1].texts and without != with_words
 
 
-def test_a_state_draws_itself(monkeypatch, seen):
-    for potential, vector in (orbits.trig, SPIRAL), (orbits.standard, ((3,), 8)):
-        state = orbits.follow(potential, *vector, [0.01])[0]
-        assert state._repr_png_().startswith(START["png"])
-        sizes, right, upwards = fonts_and_labels(seen[-1])
-        assert min(sizes) >= 8 and right and upwards and not seen[-1].texts
-    monkeypatch.setitem(sys.modules, "matplotlib", None)
-    assert state._repr_png_() is None
-
-
-def test_twist():
+def test_twist(drawn):
     """To the right the more, the larger p is; areas stay."""
+    _, after = drawn("twist")[0].axes
+    for k in range(6):
+        assert (np.diff(data(after, k)[:, 0]) > 0).all()
     p = np.linspace(-1, 2, 500)
     for x in 0.0, 0.3, 0.77:
-        assert (np.diff(figures.twisted(x, p)[0]) > 0).all()
+        assert (np.diff(twist_maps.twisted(x, p)[0]) > 0).all()
         h = 1e-6
-        dx, dp = ((np.array(figures.twisted(x + h * a, p + h * b))
-                   - figures.twisted(x - h * a, p - h * b)) / (2 * h) for a, b in ((1, 0), (0, 1)))
+        dx, dp = ((np.array(twist_maps.twisted(x + h * a, p + h * b))
+                   - twist_maps.twisted(x - h * a, p - h * b)) / (2 * h)
+                  for a, b in ((1, 0), (0, 1)))
         assert dx[0] * dp[1] - dx[1] * dp[0] == pytest.approx(np.ones(len(p)), abs=1e-8)
 
 
-@pytest.mark.parametrize("block", [(1, 2, 1), (2, 4, 2), (3, 1, 2)])
+GEODESICS = {(1, 2, 1): 0.03 + math.sqrt(1 - 2e-4),
+             (2, 4, 2): 0.08 + 1.5 * (math.sqrt(1 - 2e-4) - 0.01)}
+
+
+@pytest.mark.parametrize("block", GEODESICS)
 def test_hedlunds_geodesics(block):
-    """They close up, run in tunnels and leap half a unit, three times, whatever the type is."""
-    corners = np.array(figures.hedlund_geodesic(*block))
-    assert (corners[-1] - corners[0] == block).all()
+    """They close up, run in tunnels and leap between them, and have the length of the bound."""
+    corners = np.array(hedlund.hedlund_geodesic(*block))
+    assert corners[-1] - corners[0] == pytest.approx(block)
     legs = np.diff(corners, axis=0)
-    assert (np.count_nonzero(legs, axis=1) <= 1).all()
-    assert np.abs(legs[1::2]).sum(1) == pytest.approx([0.5] * 3)
-    for number, (line, fixed) in enumerate((((1, 2), (0, 0)), ((0, 2), (0, 0.5)),
-                                            ((0, 1), (0.5, 0.5)), ((1, 2), (0, 0)))):
+    tunnels = {0: ((1, 2), (0, 0)), 1: ((0, 2), (0, 0.5)), 2: ((0, 1), (0.5, 0.5))}
+    for number, leg in enumerate(legs[::2]):
+        along, = np.nonzero(leg)[0]
+        line, fixed = tunnels[int(along)]
         for corner in corners[2 * number:2 * number + 2]:
             assert tuple(corner[list(line)] % 1) == fixed
-        assert not legs[2 * number][list(line)].any()
-    assert figures.hedlund_length(corners) == pytest.approx(1.5 + (sum(block) - 1.5) / 100)
+    if len(legs) % 2 == 0:                      # the last leap ends where the first tunnel begins
+        assert tuple(corners[-1][1:] % 1) == tuple(corners[0][1:] % 1) == (0, 0)
+    assert hedlund.hedlund_length(corners) == pytest.approx(GEODESICS[block], abs=1e-12)
+    with pytest.raises(ValueError, match="known"):
+        hedlund.hedlund_geodesic(3, 1, 2)
+
+
+@pytest.mark.parametrize("block", GEODESICS)
+def test_no_curve_is_shorter(block):
+    """Of those with corners on a grid of halves, which are no shorter than the shortest of all, and
+    longer by what a slant saves in each leap."""
+    box = [np.arange(-1, 2 * size + 2) / 2 for size in block]
+    points = np.stack(np.meshgrid(*box, indexing="ij"), -1).reshape(-1, 3)
+    step = points[:, None] - points
+    cost = np.sqrt((step ** 2).sum(2))
+    families = ((1, 2), (0, 0)), ((0, 2), (0, 0.5)), ((0, 1), (0.5, 0.5))
+    for line, fixed in families:
+        within = (points[:, list(line)] % 1 == fixed).all(1)
+        same = within[:, None] & within & (step[:, :, list(line)] == 0).all(2)
+        cost[same] *= hedlund.TUNNEL
+    shortest = np.inf
+    for start in itertools.product((0, 0.5), repeat=3):
+        far = np.where((points == start).all(1), 0.0, np.inf)
+        for _ in range(12):                             # Bellman and Ford
+            far = np.minimum(far, (far[:, None] + cost).min(0))
+        shortest = min(shortest, far[(points == np.add(start, block)).all(1)][0])
+    leaps = {(1, 2, 1): 2, (2, 4, 2): 3}[block]
+    assert GEODESICS[block] < shortest <= GEODESICS[block] + 1e-4 * leaps * 0.51
+    assert shortest == pytest.approx({2: 1.03, 3: 1.565}[leaps])
 
 
 def test_the_drawings_of_hedlunds_examples(drawn):
     one, two = drawn("hed1")[0].axes
-    assert [panel.get_title() for panel in (one, two)] == ["type (1, 2)", "type (2, 4)"]
-    for panel, times in ((one, 1), (two, 2)):           # crossings of both sides of the square
+    assert [panel.get_title() for panel in (one, two)] == [
+        "type (1, 2): length 2.236", "type (2, 4): length 4.472"]
+    for panel, times in ((one, 1), (two, 2)):           # end to end, through one point
         lines = [data(panel, k) for k in range(len(panel.get_lines()))]
-        assert all((b - a)[1] == 2 * (b - a)[0] for a, b in lines)
-        assert sum(0 <= a[0] < 1 for a, _ in lines) == 2 * times
-        assert sum(a[0] < 1 <= b[0] for a, b in lines) == times
-    words = drawn("hed2")[1]
-    assert "1.565" in words and "3.05" in words
+        copies = [line for line in lines if len(line) == 2 and (line[1] - line[0] != 0).all()]
+        assert [line.tolist() for line in copies[:times]] == [
+            [[k, 2 * k], [k + 1, 2 * k + 2]] for k in range(times)]
+        assert (lines[-1] % 1 == 0).all() and len(lines[-1]) == times + 1
+    figure, words = drawn("hed2")
+    assert [panel.get_title() for panel in figure.axes] == [
+        "type (1, 2, 1): length 1.0299", "type (2, 4, 2): length 1.5648"]
+    assert "1.5648" in words and "2.0598" in words
+
+
+def test_the_cylinder(drawn):
+    """Its orbits are those of the map, on rotational circles: they stay within it."""
+    figure, words = drawn("cyl-def")
+    behind, front = (data(figure.axes[0], k) for k in (5, 6))
+    assert len(behind) + len(front) == 401 * len(twist_maps.ON_CYLINDER)
+    xs, ps = orbits.standard.orbit(np.zeros(2), twist_maps.ON_CYLINDER, 400, twist_maps.KICKS[0])
+    assert 0 < ps.min() < ps.max() < 1
+    drawn_at = np.concatenate([behind, front])
+    for x, p in zip(xs[::37].ravel(), ps[::37].ravel()):
+        assert abs(drawn_at - twist_maps.cylinder(x, p)).sum(1).min() < 1e-12
+    assert (abs(front[:, 0]) <= 1).all() and "k = 0.5" in words
 
 
 def test_bad_orders(tmp_path, monkeypatch):
@@ -524,7 +583,7 @@ def test_no_display():
 def test_the_thesis(monkeypatch, tmp_path):
     """All the real figures; and what the thesis says about them, in their words."""
     monkeypatch.undo()
-    families, said = figures.Families(), {}
+    families, said = shared.Families(), {}
     for name, (_, _, fill) in figures.FIGURES.items():
         figure = Figure()
         words = fill(figure, families)
@@ -535,11 +594,16 @@ def test_the_thesis(monkeypatch, tmp_path):
     assert said["orb-sphd2"].count("7 curves of type (0, 1)") == 2
     assert "1 curve of type (1, -4)" in said["orb-auhd2"]
     assert "curves of type (1, -1)" in said["orb-spff1"]            # already at 0.0075
+    (before, after), = re.findall(r"\(a\) form (\d+) clumps, those of \(b\) (\d+)",
+                                  said["orb-sphd2"])
+    assert int(after) < int(before) / 2
+    assert "at most 0.24 in (a)" in said["orb-spnf1"]
     near, far = (float(re.search(r"up to (\d\.\d{3})", said[name])[1])
                  for name in ("orb-sphd1", "orb-spnf1"))
     assert near < far / 2                       # poly's momenta stay near; at 0.0025 and 0.0075
-    assert "first > 0.003 from ε = 0.01 on" in said["Lyaps"]
-    assert float(re.search(r"perturbation, (\S+) at most", said["deev"])[1]) < 1 / math.sqrt(2)
-    assert "not so: polynomial, (1432, 1897)/2513, ε = 0.04: 0.82." in said["deev"]
+    assert "from ε = 0.00625 and 0.00783 on" in said["Lyaps"]
+    assert "from ε = 0.00778 and 0.00923 on" in said["Lyaps"]
+    assert "by 0.046 at ε = 0.01065 and 0.089 at ε = 0.01077" in said["deev"]
+    assert "At right angles to that line it is 0.653 at most." in said["deev"]
     figures.figures(tmp_path)
     assert len(os.listdir(tmp_path)) == len(figures.FIGURES)

@@ -3,6 +3,9 @@ so."""
 
 import math
 import runpy
+import signal
+import subprocess
+import sys
 import time
 
 import mpmath
@@ -13,8 +16,8 @@ from conftest import ROOT
 import converse
 from converse import orbits
 from converse._native import ffi, lib
-from converse.commands import orbits as orbits_cli
 from converse.model.problem import Problem
+from converse.orbits.pictures import exponent_text
 from converse.orbits.potential import Stoppable, address
 from converse.orbits.solver import newton
 
@@ -204,8 +207,7 @@ def test_no_step_is_longer_than_a_tenth():
     assert abs(wild.u[0, 0] - 0.251) > 10
     how, u = ffi.new("cv_relaxed *"), np.array([[0.251, 0.0]])
     assert lib.cv_relax(orbits.standard.native, 1, 0.5, address(np.zeros((1, 2))), address(u),
-                        1e-13,
-                        1, how) == lib.CV_RUNNING
+                        -1, 1e-13, 1, how) == lib.CV_RUNNING
     assert how.steps == 1 and u[0, 0] == pytest.approx(0.351, abs=1e-12)
     assert state.relax().x[0, 0] == pytest.approx(0.5, abs=1e-12)
 
@@ -297,7 +299,7 @@ def test_exponents_of_1989_are_wrong_by_log_q_over_q():
         found = gram_schmidt_exponents(state, rounds, seed)
         assert (0.7 * math.log(n) / n < found).all() and (found < 1.2 * math.log(n) / n).all()
     assert (0 <= state.exponents).all() and (state.exponents < 1e-5).all()
-    assert all(orbits_cli._exponent(state, x) == "below 1e-05" for x in state.exponents)
+    assert all(exponent_text(state, x, 10) == "below 1e-05" for x in state.exponents)
     free = orbits.State(orbits.trig, (1, 1), 3, 0.0, np.zeros((3, 2)), (0.0, 0.0))
     assert (free.exponents < 1e-5).all()
     assert (gram_schmidt_exponents(free, 1000) < 3e-3).all()
@@ -528,3 +530,38 @@ def test_blocks_of_ten_thousand_against_a_dense_step():
     left = np.stack([a * u[:, 0] + c * u[:, 1], c * u[:, 0] + d * u[:, 1]], 1) + 0.01 * u \
         - np.roll(u, 1, 0) - np.roll(u, -1, 0)
     assert np.abs(left - b).max() < 1e-11
+
+
+LONG = {                                # calls that last, at some 100,000 points
+    "follow": "[orbits.follow(orbits.trig, *LONG, [0.03]) for _ in range(99)]",
+    "search": "orbits.search(orbits.trig, *LONG, 0.02, 1000)",
+    "prove": "orbits.prove(orbits.follow(orbits.trig, *LONG, [0.0125])[0])",
+    "pairs": "[orbits.straight(orbits.trig, *LONG).pairs(200000) for _ in range(99)]",
+    "minimax": "[orbits.follow(orbits.standard, (46368,), 121393, [1.2])[0].minimax().prove() "
+               "for _ in range(99)]",
+    "least_action": "orbits.least_action(orbits.trig, (199, 301), 499, 0.02, 1e-13)",
+    "load": "[(state.save(PATH), orbits.load(PATH)) for state in "
+            "[orbits.straight(orbits.trig, *LONG)] * 99]"}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", LONG)
+def test_ctrl_c_ends_every_long_call(name, tmp_path):
+    """Soon, wherever it strikes.  A second on a machine with nothing else to do; the bound is for
+    one with much."""
+    code = ("from converse import orbits\nfrom converse.orbits import proved, search\n"
+            "LONG, PATH = ((57031, 75550), 100083), %r\nprint(flush=True)\n"
+            "try:\n    %s\nexcept KeyboardInterrupt:\n    print('ended', flush=True)"
+            % (str(tmp_path / "a.csv"), LONG[name]))
+    for delay in (1.0, 4.0):
+        process = subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, text=True)
+        process.stdout.readline()
+        time.sleep(delay)
+        assert process.poll() is None
+        begin = time.monotonic()
+        process.send_signal(signal.SIGINT)
+        assert process.stdout.readline() == "ended\n"
+        took = time.monotonic() - begin
+        process.communicate()
+        print("%s, after %g s: ended in %.2f s" % (name, delay, took))
+        assert took < 10

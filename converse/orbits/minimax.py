@@ -1,0 +1,250 @@
+"""Minimax orbits: the passes between a minimum and its neighbours, and how much action they cost.
+
+A minimum x of type (p, q) has copies of the same action, x_{j+r} less whole turns, which are
+displaced by the vectors r p/q + m of a lattice.  On the way to one of them, through sequences of
+points of the same type, the action rises at least to that of a pass, which is an orbit, too: a
+saddle with one direction down.  With one angle that is the minimax orbit of the Birkhoff pair, and
+the difference of action the flux through the gap of the (p, q) cantorus approximant (MacKay, Meiss
+and Percival, Physica D 13, 1984).
+
+The coordinate in which the two differ most is held, and the action minimized over all others, from
+one to the other.  Every way passes through each value of that coordinate, and so it rises to the
+largest of these minima; where they depend on it continuously, the state there is a pass.
+"""
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Callable, Optional, Tuple
+
+import numpy as np
+
+from .._native import lib
+from ..storage.files import ConverseError
+from .potential import address, done
+from .proved import balls
+from .solver import newton
+from .state import ROUNDING, STATIONARY, State, descended, expected
+
+if TYPE_CHECKING:
+    from .proved_pair import ProvedPair
+
+DISORDER = 1e-9             # of neighbours on the circle: what is less may be rounding
+STOPS = 32                  # on the way from the minimum to its neighbour
+HALVINGS = 24               # of the part of the way where the pass is
+STEPS = 1000                # of the descent with a coordinate held
+EASY = 1e-13                # of the gradient of the others
+FLAT = 1e-13                # of that of the one held: a way without slopes
+PASS = 1e-10                # of that of a pass
+POLISH = 12                 # steps of Newton's method
+CLOSE = 1e-4                # what is nearer did not jump
+JUMPS = 3                   # one inside the other
+TRIES = 4                   # coordinates that are held
+LEAVE = 0.05                # of the way to the nearest neighbour, by which a pass is left
+
+
+@dataclass(frozen=True, eq=False)
+class Pair:
+    """A minimum and a pass on the way to one of its neighbours.
+
+    minimum -- the state that was given
+    minimax -- the pass: a saddle with exactly one direction of less action among the states of its
+               type, unless its label says that rounding hides it
+    step    -- by how much that neighbour is displaced: n whole numbers over q
+    turn    -- the neighbour begins at this point of the minimum
+    """
+
+    minimum: State
+    minimax: State
+    step: Tuple[int, ...]
+    turn: int
+
+    def __post_init__(self):
+        low, high = expected(self.minimum), expected(self.minimax)
+        if (low.potential is not high.potential or (low.p, low.q, low.eps) !=
+                (high.p, high.q, high.eps) or (low.potential.n == 1 and self.step != (1,))
+                or not isinstance(self.turn, int)
+                or any((self.turn * k - i) % low.q for k, i in zip(low.p, self.step))):
+            raise ValueError("a pair is what state.minimax() returns: two states of one map and "
+                             "type, and the step to a neighbour")
+
+    def __repr__(self):
+        return "<Pair of %s, type (%s)/%d, eps %r, step (%s)/%d, barrier %.10g>" % (
+            self.minimum.potential.name, ", ".join(map(str, self.minimum.p)), self.minimum.q,
+            self.minimum.eps, ", ".join(map(str, self.step)), self.minimum.q, self.barrier)
+
+    @property
+    def barrier(self) -> float:
+        """The action of the pass less that of the minimum, of all q points together, in doubles:
+        its rounding is about 1e-16 times the root of q, and eps where that is larger than 1."""
+        return difference(self.minimum, self.minimax)
+
+    @property
+    def flux(self) -> float:
+        """Of one angle: the area that each iterate of the map carries through the gap, in either
+        direction, if the gap holds no other orbits of the type.  It is the barrier.  ValueError for
+        n = 2."""
+        self.check_flux()
+        return self.barrier
+
+    def check_flux(self) -> None:
+        """ValueError, unless there is one angle."""
+        if self.minimum.potential.n != 1:
+            raise ValueError("the flux is of maps with one angle; with two there is the difference "
+                             "of action, .barrier")
+
+    @cached_property
+    def ends(self) -> Tuple[State, State]:
+        """Where descents from the pass to either side end.  With one angle these are the minimum
+        and its neighbour, or others between them; with two they may be any minima.  ConverseError:
+        rounding hides which way is down."""
+        saddle, n, q = self.minimax, self.minimax.potential.n, self.minimax.q
+        if saddle.label != "saddle":
+            raise ConverseError("the pass is too flat: rounding hides which way is down")
+        v, work = np.random.default_rng(0).normal(size=(q, 2)), np.zeros((q, lib.CV_WORK))
+        for _ in range(4):                      # of inverse iteration
+            v[:, n:], along = 0, np.zeros((q, 2))
+            done(lib.cv_solve(n, q, address(saddle.blocks, "double(*)[3]"), -1.001 * saddle.least,
+                              address(v), address(along), address(work, "double *")))
+            v = along / np.abs(along).max()
+        away = LEAVE * np.abs(_gap(self.minimum, *_neighbour(self.minimum, 0))).max() * v[:, :n]
+        first, second = (saddle.moved(saddle.u + side * away).relax() for side in (-1, 1))
+        return first, second
+
+    def prove(self, digits: Optional[int] = None,
+              progress: Optional[Callable[[int, int], object]] = None) -> "ProvedPair":
+        """Proves both orbits, and encloses the difference of their actions to ten digits at least:
+        a ProvedPair.  NotProved, with a reason.
+
+        digits   -- both orbits are known to 10^-digits at least, by default 10^-20
+        progress -- as of orbits.prove"""
+        balls()
+        from .proved_pair import prove_pair
+        return prove_pair(self, digits, progress)
+
+
+def gap_of(pair):
+    """How far the neighbour's points are from those of the minimum, array (q, n)."""
+    return _gap(pair.minimum, pair.turn, pair.step)
+
+
+def difference(low, high):
+    """The action of all points of one state less that of another's."""
+    steps = [np.roll(state.u, -1, 0) - state.u for state in (low, high)]
+    kinetic = (steps[1] - steps[0]) * (steps[1] + steps[0]) / 2
+    return math.fsum([*kinetic.ravel(), *(low.eps * (low._local[0] - high._local[0]))])
+
+
+def minimax(state, step=0):
+    """See State.minimax."""
+    if math.gcd(*state.p, state.q) > 1:
+        raise ValueError("the type (%s)/%d is not in lowest terms: take the state of the shorter "
+                         "type" % (", ".join(map(str, state.p)), state.q))
+    if state.eps == 0:
+        raise ConverseError("at eps 0 all states of a type have the same action: there is no "
+                            "minimum and no pass")
+    if state.label in ("saddle", "not stationary"):
+        raise ConverseError("a pass leads from a minimum to its neighbour, and the state is %s: "
+                            "relax() it" % {"saddle": "a saddle"}.get(state.label, state.label))
+    r, vector = _neighbour(state, step)
+    gap = _gap(state, r, vector)
+    if state.potential.n == 1 and not gap.min() > -DISORDER:
+        raise ConverseError("the points of the state are not ordered as those of a rotation, so "
+                            "that it is not the least of its type: search() for that")
+    beyond = state.moved(state.u + gap)
+    for rank in range(min(TRIES, gap.size)):
+        found = _Way(state, beyond, JUMPS, rank).top(least=state.potential.n == 1)
+        if found is not None and (state.potential.n == 2 or (
+                np.abs(found.u - state.u - gap / 2) < gap / 2 + DISORDER).all()):
+            return Pair(state, found, vector, r)
+    raise ConverseError("no pass found on the way to the neighbour: whatever coordinate is held, "
+                        "the others jump" + "; try another step, 0, 1 or 2" * (gap.shape[1] == 2))
+
+
+def _gap(state, r, vector):
+    """How far the neighbour's points are from those of the state, array (q, n)."""
+    return np.roll(state.u, -r, 0) - state.u + np.array(vector) / state.q
+
+
+def _neighbour(state, which):
+    """The which-th neighbour: the r for which it begins at x_r, and q times its displacement.  With
+    two angles the three bound a cell of the lattice: the two shortest vectors, and the shorter one
+    of their sum and difference."""
+    n, q = state.potential.n, state.q
+    if isinstance(which, (bool, float)) or which not in range(2 * n - 1):
+        raise ValueError("step is %s, not %r" % ("0, 1 or 2, the nearest neighbour first" if n == 2
+                                                 else "0 with one angle", which))
+    if n == 1:
+        return pow(state.p[0], -1, q) if q > 1 else 0, (1,)
+    c = np.arange(q, dtype=np.int64)[:, None] * (np.array(state.p) % q) % q
+    c = np.concatenate([np.where(2 * c > q, c - q, c), [[q, 0], [0, q]]])
+    r = np.append(np.arange(q), [0, 0])
+    order = np.argsort((c ** 2).sum(1), kind="stable")[1:]          # the first one is zero
+    first = order[0]
+    second = order[np.argmax(c[order, 0] * c[first, 1] != c[order, 1] * c[first, 0])]
+    sign = -1 if c[first] @ c[second] > 0 else 1
+    turn, vector = ((r[first], c[first]), (r[second], c[second]),
+                    ((r[first] + sign * r[second]) % q, c[first] + sign * c[second]))[which]
+    return int(turn), tuple(map(int, vector))
+
+
+class _Way:
+    """From one state to another, along t from 0 to 1, with the coordinate in which they differ most
+    (rank 0; or 1 less, and so on) held at t times the difference."""
+
+    def __init__(self, first, last, jumps, rank=0):
+        self.first, self.gap, self.jumps = first, last.u - first.u, jumps
+        order = np.argsort(-np.abs(self.gap), axis=None, kind="stable")
+        self.held = tuple(map(int, np.unravel_index(order[rank], self.gap.shape)))
+        self.noise = 1e-15 * first.q * max(1.0, abs(first.eps))
+
+    def at(self, t, near):
+        """The state of least action near one at another t; its action above the first one's; and
+        the slope of that."""
+        guess = near.u + (t - self.t_of(near)) * self.gap
+        guess[self.held] = self.first.u[self.held] + t * self.gap[self.held]
+        _, _, u = descended(near.moved(guess), near.eps, EASY, STEPS, self.held)
+        found = self.first.moved(u)
+        return (found, difference(self.first, found),
+                float(found.gradient[self.held] * np.sign(self.gap[self.held])))
+
+    def t_of(self, state):
+        return float((state.u[self.held] - self.first.u[self.held]) / self.gap[self.held])
+
+    def top(self, least=False):
+        """The pass: of all states where the action ceases to rise, that with most of it; None: no
+        such state is found, or none where it rises highest.  least: the first state is to have the
+        least action."""
+        stops = [(self.first, 0.0, math.inf)]
+        for k in range(1, STOPS + 1):
+            stops.append(self.at(k / STOPS, stops[-1][0]))
+            if least and stops[-1][1] < -self.noise:
+                raise ConverseError("on the way to its neighbour there is less action than that of "
+                                    "the state: search() for the least one first")
+        if max(abs(slope) for _, _, slope in stops[1:]) < FLAT:
+            return stops[STOPS // 2][0]
+        tops = []
+        for low, high in zip(stops, stops[1:]):
+            if low[2] > 0 and not self.rises(low, high):
+                tops.append(self.between(low, high))
+        return max(tops, key=lambda top: top[1])[0] if tops else None
+
+    def rises(self, low, high):
+        return high[2] > 0 and high[1] >= low[1] - self.noise
+
+    def between(self, low, high):
+        """The pass between two stops where the action ceases to rise, or None, and its action above
+        the first state's, or how far that rises at least.  If the state jumps there, another
+        coordinate leads from one side to the other."""
+        for _ in range(HALVINGS):
+            middle = self.at((self.t_of(low[0]) + self.t_of(high[0])) / 2, low[0])
+            found, _ = newton(middle[0], max_steps=POLISH)
+            begin, t, end = (self.t_of(state) for state in (low[0], found, high[0]))
+            if (found.shadow < PASS and begin - DISORDER <= t <= end + DISORDER
+                    and found.below(-ROUNDING) == found.below(ROUNDING) == 1):
+                return found, difference(self.first, found)
+            low, high = (middle, high) if self.rises(low, middle) else (low, middle)
+        if np.abs(high[0].u - low[0].u).max() < CLOSE:                  # too flat for doubles
+            return middle[0] if middle[0].shadow < STATIONARY else None, middle[1]
+        found = _Way(low[0], high[0], self.jumps - 1).top() if self.jumps else None
+        return found, low[1] if found is None else difference(self.first, found)

@@ -1,0 +1,324 @@
+"""Pictures and tables of states, proved orbits and families, as notebooks and the command
+converse-orbits show them.  Pictures need matplotlib (the extra "plot"), whose settings stay."""
+
+from collections import Counter
+from typing import NamedTuple, Optional
+
+import numpy as np
+
+from ..draw import notebook, plot
+from ..draw.plot import BLUE, DARK, VERMILLION
+from ..storage import files
+from .proved import ProvedOrbit, distances
+from .state import ROUNDS, State
+
+FEW = 300                               # points that are drawn larger
+MOST_STATES = 40                        # in a picture
+MOST_ROWS = 60                          # in a table
+WIDTH, HEIGHT = 6.2, 3.25               # of the picture of a state, in inches
+LOST = 1e-13                            # distances below are rounding
+PLOTTED = {                             # what Family.plot draws: the name of its axis
+    "action": "action per point less $|p/q|^2/2$",
+    "exponents": "Lyapunov exponents",
+    "residue": "Greene's residue",
+    "deviation": "largest displacement",
+    "least": "least eigenvalue of the Hessian",
+    "shadow": r"largest $|\partial L/\partial x_j|$",
+    "grad_size": r"root mean square of $|\partial L/\partial x_j|$",
+    "undetermined": "near-null directions",
+}
+PARTS = {"exponents": ("first", "second"),      # of what is more than one number
+         "deviation": ("from the line through $x_0$", "from the line at $\\varepsilon = 0$",
+                       "from the best line")}
+SCALES = {"shadow": {"value": "log"}, "grad_size": {"value": "log"},
+          "residue": {"value": "symlog", "linthresh": 1.0}}
+
+LABELS = ("Minimum: a local one, as far as doubles show; nothing is proved, and there may be "
+          "states of less action.")
+PROVED = ("Proved: a true orbit is so near to the points drawn, before these were rounded to "
+          "doubles, and a local minimum of the action; there may be states of less.")
+
+
+class Shown(NamedTuple):
+    """What a picture shows of a state or of a proved orbit: its points, and what they are."""
+
+    state: State
+    proof: Optional[ProvedOrbit]
+
+    @classmethod
+    def of(cls, one):
+        return cls(one.nearest, one) if isinstance(one, ProvedOrbit) else cls(one, None)
+
+    @property
+    def kind(self):
+        """What it is: what was proved, or what doubles show."""
+        if self.proof is not None:
+            return "proved within %s, at most %s from the state found" % distances(self.proof)
+        return kind(self.state)
+
+
+# ---- words
+
+def vector_words(p, q):
+    """As the thesis writes it: (1432, 1897)/2513."""
+    return ("(%s)/%d" if len(p) > 1 else "%s/%d") % (", ".join(map(str, p)), q)
+
+
+def quality(state):
+    """How good a state is."""
+    return "shadow %.0e, grad size %.0e" % (state.shadow, state.grad_size)
+
+
+def kind(state):
+    """What it is, as far as doubles show."""
+    words = state.label
+    if state.undetermined:
+        words += ", %d near-null direction%s (phase arbitrary)" % (
+            state.undetermined, "s" * (state.undetermined > 1))
+    return words
+
+
+def labels(states):
+    """How many states there are of each kind."""
+    count = Counter(state.label for state in states)
+    return "Labels of the states: %s." % ", ".join("%s (%d)" % item for item in count.items())
+
+
+def exponents_words(state):
+    return "exponents " + ", ".join("%.4f" % x for x in state.exponents)
+
+
+def exponent_text(state, exponent, digits):
+    """An exponent to so many digits; of one that is not told from 0, only that it is small."""
+    least = 2 / max(ROUNDS, 5 * state.q)
+    return "below %.0e" % least if exponent < least else "%.*g" % (digits, exponent)
+
+
+def coinciding(state):
+    """How many points have another one nearer than doubles can tell."""
+    x = state.x[np.argsort(state.x[:, 0])]
+    near = np.zeros(len(x), bool)
+    for shift in range(1, len(x)):
+        step = np.roll(x, -shift, axis=0) - x
+        step = abs(step - np.rint(step))
+        if not (step[:, 0] < LOST).any():               # nor with a larger shift
+            break
+        close = (step < LOST).all(axis=1)
+        near |= close | np.roll(close, shift)
+    return np.count_nonzero(near)
+
+
+# ---- one state
+
+def figure(one, ax=None):
+    """A state, or the state nearest to a proved orbit: as a Figure, or drawn into ax."""
+    shown = Shown.of(one)
+    n = shown.state.potential.n
+    if ax is None:
+        return plot.new(WIDTH, HEIGHT, lambda page: _uncaptioned(page, [shown]))
+    plot.check()
+    axes = np.ravel(ax)
+    if not 1 <= len(axes) <= n:
+        raise ValueError("a state of %s is drawn into %s of matplotlib, not into %d" % (
+            *(("two angles", "Axes, or into a pair of Axes") if n == 2 else
+              ("one angle", "Axes")), len(axes)))
+    if n == 1:
+        plane(axes[0], shown.state)
+    else:
+        angles(axes[0], shown.state)
+        if len(axes) == 2:
+            momenta(axes[1], shown.state, *square(shown.state))
+    return ax
+
+
+def dots(state):
+    """How the points of a state are drawn."""
+    return {"linestyle": "none", "marker": "o", "markersize": 3 if state.q < FEW else 1.3,
+            "markeredgewidth": 0, "rasterized": True, "color": DARK}
+
+
+def _uncaptioned(page, shown):
+    rows(page, shown)
+
+
+def plane(ax, state):
+    """A state of one angle: x and p."""
+    ax.plot(state.x, state.momenta, **dots(state))
+    ax.set(xlim=(0, 1), xlabel="$x$", ylabel="$p$")
+
+
+def angles(ax, state):
+    """The angles of a state of two."""
+    ax.plot(*state.x.T, **dots(state))
+    ax.set(xlim=(0, 1), ylim=(0, 1), aspect="equal", xlabel="$x_0$", ylabel="$x_1$")
+
+
+def momenta(ax, state, middle, half):
+    """The momenta of a state of two angles, and a cross at p/q, in a square about middle."""
+    ax.plot(*state.momenta.T, **dots(state))
+    ax.plot(*state.rotation, "+", color=VERMILLION, markersize=7)
+    ax.set(xlim=(middle[0] - half, middle[0] + half), ylim=(middle[1] - half, middle[1] + half),
+           aspect="equal", xlabel="$p_0$", ylabel="$p_1$")
+    for axis in ax.xaxis, ax.yaxis:
+        axis.get_major_locator().set_params(nbins=5)
+
+
+def square(state):
+    """The middle and half the side of a square that the momenta lie in."""
+    low, high = state.momenta.min(0), state.momenta.max(0)
+    return (low + high) / 2, max(0.55 * (high - low).max(), 1e-9)
+
+
+# ---- several states
+
+def rows(page, shown, more=None):
+    """A row of panels for each of some Shown, with what is known of it; returns what is to be said
+    of all of them.  more(state) adds words to the title of each."""
+    grid = page.subplots(len(shown), shown[0].state.potential.n, squeeze=False,
+                         gridspec_kw={"hspace": 0.42})
+    lost = []
+    for number, (panels, one) in enumerate(zip(grid, shown)):
+        state = one.state
+        letter = "abcdefghijklmnopqrstuvwxyz"[number % 26] * (1 + number // 26)
+        lines = ["ε = %r, %s: %s" % (state.eps, vector_words(state.p, state.q), one.kind),
+                 "%s, %s" % (quality(state), exponents_words(state))]
+        if state.potential.n == 1:
+            plane(panels[0], state)
+        else:
+            angles(panels[0], state)
+            momenta(panels[1], state, *square(state))
+            away = np.sqrt(((state.momenta - state.rotation) ** 2).sum(1)).max()
+            if len(shown) > 1:
+                lines[0] = "(%s)  %s" % (letter, lines[0])
+            lines.append("$|p_j - p/q|$ up to %.3f" % away + ("; " + more(state) if more else ""))
+            count = coinciding(state)
+            if count:
+                lost.append("%d points" % count + " of (%s)" % letter * (len(shown) > 1))
+        panels[0].set_title("\n".join(lines), loc="left")
+    if shown[0].state.potential.n == 1:
+        return ""
+    words = "Left the angles, right the momenta, the cross at p/q."
+    if lost:
+        words += "  Doubles cannot tell %s from another one (nearer than %g)." % (
+            " and ".join(lost), LOST)
+    return words
+
+
+def states_picture(states, kind="svg", caption=True):
+    """States of a potential, or what prove() made of them, as the bytes of a file of that kind:
+    their angles and momenta; with a caption or without."""
+    if kind not in plot.FORMATS:
+        raise ValueError("figures are %s, not %s" % (", ".join(plot.FORMATS), kind))
+    shown = [Shown.of(one) for one in states]
+    if not 0 < len(shown) <= MOST_STATES:
+        raise ValueError("a picture shows 1 to %d states, not %d; choose fewer eps"
+                         % (MOST_STATES, len(shown)))
+
+    def fill(page):
+        proved = {one.proof is not None for one in shown}
+        said = ["The potential %s." % shown[0].state.potential.name,
+                *[LABELS] * (False in proved), *[PROVED] * (True in proved), rows(page, shown)]
+        return "  ".join(filter(None, said)) if caption else None
+
+    return plot.written(WIDTH, HEIGHT * len(shown), kind, fill)
+
+
+# ---- families
+
+def family_plot(family, column, ax=None):
+    """A column of a family against eps: as a Figure, or drawn into ax."""
+    if column not in PLOTTED:
+        raise ValueError("there is no column %r to be drawn; there are %s"
+                         % (column, ", ".join(PLOTTED)))
+    if not len(family):
+        raise ValueError("a family without states cannot be drawn")
+    plot.check()
+    values = np.array([getattr(state, column) for state in family], dtype=float)
+    minima = np.array([minimum(state) for state in family])
+    if ax is not None:
+        return _against_eps(ax, family, column, values, minima)
+
+    def fill(page):
+        ax = page.subplots()
+        _against_eps(ax, family, column, values, minima)
+        first = family[0]
+        ax.set_title("%s, %s" % (first.potential.name, vector_words(first.p, first.q)))
+        if ax.get_legend_handles_labels()[1]:
+            ax.legend()
+
+    return plot.new(5.0, 3.4, fill)
+
+
+def _against_eps(ax, family, column, values, minima):
+    eps = family.eps
+    parts = values.reshape(len(eps), -1).T
+    names = PARTS.get(column, ()) if len(parts) > 1 else ()
+    for k, (part, colour) in enumerate(zip(parts, (DARK, BLUE, VERMILLION))):
+        ax.plot(eps, part, "o-", markersize=3, color=colour, label=names[k] if names else None)
+        if not minima.all():
+            ax.plot(eps[~minima], part[~minima], "o", markersize=3, color=colour,
+                    markerfacecolor="white", label="no minimum" if k == 0 else None)
+    if column in SCALES:
+        ax.set_yscale(**SCALES[column])
+    ax.set(xlabel="ε", ylabel=PLOTTED[column])
+    ax.xaxis.get_major_locator().set_params(nbins=6)
+    return ax
+
+
+def minimum(state):
+    """Whether doubles show a minimum."""
+    return state.label == "minimum" or state.label.startswith("best of")
+
+
+# ---- what a notebook shows
+
+def measures(state):
+    """What a table says of a state: {name: text}."""
+    found = {"eps": "%r" % state.eps, "label": state.label, "action": "%.12g" % state.action,
+             "exponents": ", ".join(exponent_text(state, x, 6) for x in state.exponents)}
+    if state.potential.n == 1:
+        found["residue"] = "%.6g" % state.residue
+    else:
+        found["indices"] = ", ".join(format(x, ".6g") for x in state.indices)
+    found.update(shadow="%.1e" % state.shadow,
+                 deviation=", ".join("%.6g" % x for x in state.deviation),
+                 undetermined="%d" % state.undetermined)
+    return found
+
+
+def state_html(state):
+    said = measures(state)
+    words = notebook.table(_name(state), None, said.items())
+    return notebook.html(words, lambda: states_picture([state], "png", caption=False), "png",
+                         "its points")
+
+
+def proved_html(proof):
+    return notebook.html(proof.report(),
+                         lambda: states_picture([proof], "png", caption=False), "png",
+                         "its points")
+
+
+def family_html(family):
+    """A table of all states, without those in the middle if there are many, and the exponents."""
+    if not len(family):
+        return notebook.html("a family without states", _nothing, "png", "")
+    states = list(family)
+    half = MOST_ROWS // 2
+    few = states if len(states) <= MOST_ROWS else states[:half] + states[-half:]
+    said = [measures(state) for state in few]
+    table = [list(each.values()) for each in said]
+    if len(few) < len(states):
+        table[half:half] = [["…"] * len(said[0])]
+    words = notebook.table("%s, %d states" % (_name(states[0]), len(states)), list(said[0]), table)
+    return notebook.html(
+        words, lambda: plot.encode(family_plot(family, "exponents"), "png", dpi=100), "png",
+        "the exponents")
+
+
+def _name(state):
+    return "%s, type %s" % (state.potential.name, vector_words(state.p, state.q))
+
+
+def _nothing():
+    raise files.ConverseError("nothing to be drawn")

@@ -1,0 +1,256 @@
+"""Proved pairs: that a true pass lies beside one that was found, and how much more action it has
+than the proved minimum.  docs/orbits-proof.md, section 6, has the theorem and its proof.
+
+The pass is a saddle.  One coordinate of one point is made stiffer by sigma, H = P - sigma e e^T, so
+that P is positive definite, which the same pivots certify as for minima, and what is said of H
+follows by the formula of Sherman and Morrison.
+"""
+
+import math
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Optional, Tuple
+
+import numpy as np
+from flint import arb, arb_mat
+
+from .._native import lib
+from ..model.exact import Ends, interval_text, rounded, rounded_text
+from .enclosure import Enclosure, alone, ball, lower, points, square, upper
+from .exponents import growth
+from .minimax import Pair, gap_of
+from .potential import address, told, whole
+from .proved import (DIGITS, GUARD, MORE, MOST, SHOWN, STEPS, NotProved, ProvedOrbit, _eps, _type,
+                     prove)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class ProvedPair:
+    """A theorem about a minimum and a pass.
+
+    pair    -- the states that were given
+    minimum -- the proved minimum
+    digits  -- decimal places the proof of the pass was computed with
+    radius  -- there is exactly one true orbit of the type whose displacements are within radius of
+               `displacements`, in the Euclidean norm of all coordinates together; the Hessian of
+               its action has exactly one negative eigenvalue, and none is zero
+    action  -- (low, high): its action per point less that of the straight orbit
+    barrier -- (low, high): its action less the minimum's, of all q points together
+    residue -- (low, high): its residue, which is positive; None for n = 2
+    between -- is it proved that each of its points lies between that of the minimum and of its
+               neighbour (n = 1)?  If not, nothing is said
+    """
+
+    pair: Pair
+    minimum: ProvedOrbit
+    digits: int
+    radius: Fraction
+    displacements: Tuple[Tuple[Fraction, ...], ...]
+    action: Ends
+    barrier: Ends
+    residue: Optional[Ends]
+    between: bool
+
+    def __repr__(self):
+        return "<ProvedPair %s, %s, eps %r, barrier %s>" % (
+            self.pair.minimum.potential.name, _type(self.pair.minimum), self.pair.minimum.eps,
+            interval_text(*self.barrier, SHOWN))
+
+    @property
+    def flux(self) -> Ends:
+        """The barrier, of one angle; see Pair.flux.  ValueError for n = 2."""
+        self.pair.check_flux()
+        return self.barrier
+
+    def report(self) -> str:
+        """The theorem in words, that of the minimum first."""
+        state = self.pair.minimax
+        lines = [
+            "Proved, with %d decimal places: the same map has exactly one orbit of type %s within "
+            "%s of the points" % (self.digits, _type(state),
+                                  rounded_text(self.radius, 2, up=True)),
+            "computed of the pass (Euclidean norm of all coordinates together).  The second "
+            "variation of its action, run",
+            "through once, has exactly one negative direction and is nondegenerate.",
+            *["Each of its points is between that of the minimum and that of the minimum's "
+              "neighbour."] * self.between,
+            "Its action less that of the minimum, of all points together: %s."
+            % interval_text(*self.barrier, shown(self.barrier))]
+        if self.residue is not None and self.residue[1] < 10 ** SHOWN:
+            lines.append("Its residue: %s." % interval_text(*self.residue, shown(self.residue)))
+        return self.minimum.report() + "\n".join(lines) + "\n"
+
+
+def shown(ends):
+    """Places with which an interval shows about SHOWN significant digits."""
+    size = math.log10(ends[1].numerator) - math.log10(ends[1].denominator)      # no double, maybe
+    return SHOWN + max(0, -math.floor(size))
+
+
+def prove_pair(pair, digits=None, progress=None):
+    """See Pair.prove."""
+    told(progress)
+    if pair.minimax.label == "not stationary":
+        raise NotProved("the pass is not stationary, its gradient is %.1e" % pair.minimax.shadow)
+    digits = DIGITS if digits is None else whole("digits", digits, 1, MOST - 2 * GUARD)
+    minimum, reason = prove(pair.minimum, digits, progress=progress), ""
+    first = digits + 2 * GUARD
+    for places in range(first, min(first + 2 * MORE, MOST + 1), MORE // 5):
+        with alone():
+            exact = Enclosure(pair.minimax, Fraction(_eps(pair.minimax)), progress)
+            try:
+                found = _Pass(pair, minimum, exact, digits, places).proved()
+            except _Undecided as error:
+                reason = str(error)
+                continue
+        width, most = found.barrier[1] - found.barrier[0], found.barrier[1] / 10 ** GUARD
+        if width <= most:
+            return found
+        reason = "the difference of action is known to %.1e only" % width
+        if 2 * pair.minimum.q * (minimum.action[1] - minimum.action[0]) > most:
+            minimum = prove(pair.minimum, min(places, MOST - 2 * GUARD), progress=progress)
+    raise NotProved("of the pass, with %d decimal places: %s" % (places, reason))
+
+
+class _Undecided(Exception):
+    """What the proof stumbled over; more decimal places may help."""
+
+
+class _Pass:
+    """The proof of one pass, with so many digits wanted, with so many decimal places."""
+
+    def __init__(self, pair, minimum, exact, digits, places):
+        self.pair, self.minimum, self.exact = pair, minimum, exact
+        self.digits, self.places = digits, places
+        gap = gap_of(pair)
+        self.j, self.i = map(int, np.unravel_index(np.argmax(np.abs(gap)), gap.shape))
+        if pair.minimax.label != "saddle":
+            if pair.minimum.potential.n == 2:
+                raise NotProved("the pass is too flat: in doubles it is no saddle")
+            self.halfway()
+        self.sigma = self.stiffness(pair.minimax)
+        self.e = [arb_mat(exact.n, 1, [int((j, k) == (self.j, self.i)) for k in range(exact.n)])
+                  for j in range(exact.q)]
+
+    def halfway(self):
+        """Begins half-way between the proved minimum and its neighbour: where doubles see no
+        saddle, W is a sine wave."""
+        q, own = self.exact.q, self.minimum.displacements
+        r = self.pair.turn
+        shift = Fraction(self.pair.step[0], q)
+        self.exact.evaluate(self.places)
+        self.exact.u = [arb_mat(1, 1, [ball((own[j][0] + own[(j + r) % q][0] + shift) / 2).mid()])
+                        for j in range(q)]
+
+    def stiffness(self, state):
+        """sigma: 1 - 2 S, S < 0 the Schur complement of that coordinate in H."""
+        b, v, work = np.zeros((state.q, 2)), np.zeros((state.q, 2)), np.zeros((state.q,
+                                                                               lib.CV_WORK))
+        b[self.j, self.i] = 1
+        lib.cv_solve(state.potential.n, state.q, address(state.blocks, "double(*)[3]"), 0.0,
+                     address(b), address(v), address(work, "double *"))
+        inside = v[self.j, self.i]
+        return 1 + Fraction(min(2 / abs(inside), 1e6) if inside < 0 else 0.0)
+
+    def evaluate(self):
+        """Gradient, action, and P for the Hessian."""
+        exact = self.exact
+        exact.evaluate(self.places)
+        entries = exact.beta[self.j].entries()
+        entries[self.i * (exact.n + 1)] += ball(self.sigma)
+        exact.beta[self.j] = arb_mat(exact.n, exact.n, entries)
+
+    def column(self):
+        """About P^-1 e."""
+        found = self.exact.solution([-e for e in self.e], 0)
+        if found is None:
+            raise _Undecided("with one coordinate held it is no minimum")
+        return found
+
+    def at(self, v):
+        return v[self.j][self.i, 0]
+
+    def refine(self):
+        """Newton's method until the gradient is as small as so many places allow."""
+        exact, sigma = self.exact, ball(self.sigma)
+        for _ in range(STEPS):
+            self.evaluate()
+            if exact.gradient < 4 * exact.noise():
+                return
+            w, v = self.column(), exact.solution(exact.force, 0)
+            along = (sigma * self.at(v) / (1 - sigma * self.at(w))).mid()
+            exact.move([a + b * along for a, b in zip(v, w)])
+            if not all(abs(x) < 1000 for u in exact.u for x in u.entries()):
+                break
+        raise _Undecided("Newton's method did not converge")
+
+    def proved(self):
+        exact, state, sigma = self.exact, self.pair.minimax, ball(self.sigma)
+        self.refine()
+        m = Fraction(1)
+        while not exact.least(m):
+            m /= 4
+            if m < Fraction(1, 10 ** (self.places - GUARD)):
+                raise _Undecided("with one coordinate held it is too flat")
+        w = self.column()
+        left, size = arb(0), arb(0)             # of |P w - e|^2 and |w|^2
+        for j in points(0, exact.q):
+            left += square(exact.beta[j] * w[j] - w[j - 1] - w[j + 1 - exact.q] - self.e[j])
+            size += square(w[j])
+        off = left.upper().sqrt() / ball(m)
+        size = (size.upper().sqrt() + off).upper()      # not below |P^-1 e|
+        inside = self.at(w) + arb(0, 1) * off.upper()   # e.P^-1 e
+        lost = 1 - sigma * inside
+        if not lost < 0:
+            raise _Undecided("it is not decided whether there is a direction down")
+        inverse = upper(1 / ball(m) + sigma * size * size / abs(lost))
+        # A double that is at least what docs/orbits-proof.md says, taken as what it is.
+        bend = abs(exact.eps) * Fraction(state.potential.lipschitz)
+        shown = self.places + GUARD
+        radius = rounded(2 * inverse * exact.gradient + Fraction(1, 10 ** self.places), shown,
+                         up=True)
+        if not (inverse * (exact.gradient + bend * radius ** 2 / 2) <= radius
+                and inverse * bend * radius < 1):
+            raise _Undecided("the pass is too flat")
+        if radius > Fraction(1, 10 ** self.digits):
+            raise _Undecided("the pass is known to %.1e only" % radius)
+        reach = (4 + abs(exact.eps) * Fraction(state.potential.curvature)) * radius ** 2 / 2
+        action = (rounded(exact.action[0] - reach / exact.q, shown, up=False),
+                  rounded(exact.action[1] + reach / exact.q, shown, up=True))
+        own = self.minimum.action
+        residue = None
+        if exact.n == 1:
+            residue = self.residue(m, bend * radius, size, inside, shown)
+        displacements = exact.displacements()
+        return ProvedPair(self.pair, self.minimum, self.places, radius, displacements, action,
+                          (exact.q * (action[0] - own[1]), exact.q * (action[1] - own[0])), residue,
+                          exact.n == 1 and self.between(displacements, radius))
+
+    def residue(self, m, away, size, inside, shown):
+        """Of every orbit whose blocks are within `away` of these: -det P (1 - sigma e.P^-1 e)/4,
+        where det P is l + 1/l - 2 of the chain of P."""
+        ulp = Fraction(1, 10 ** self.places)
+        away += ulp
+        strict = max(4 * away, ulp * 10 ** GUARD)
+        if strict > m / 2:
+            raise _Undecided("with one coordinate held it is too flat")
+        grown = growth(self.exact, strict, away)
+        if grown is None:
+            raise _Undecided("the pivots could not be enclosed")
+        (low, high), = grown[0]
+        det = 2 * (ball(low).union(ball(high))).cosh() - 2
+        far = ball(away) * size * size / (1 - ball(away / m))
+        lost = 1 - ball(self.sigma) * (inside + arb(0, 1) * far.upper())
+        found = -det * lost / 4
+        if not found > 0:
+            raise _Undecided("the sign of the residue is not decided")
+        return rounded(lower(found), shown, up=False), rounded(upper(found), shown, up=True)
+
+    def between(self, displacements, radius):
+        """Is each point, wherever in its ball, between the minimum's and its neighbour's?"""
+        q, own, away = self.exact.q, self.minimum.displacements, self.minimum.radius + radius
+        origins = [Fraction(state.origin[0]) for state in (self.pair.minimum, self.pair.minimax)]
+        r, step = self.pair.turn, Fraction(self.pair.step[0], q)
+        shift = origins[1] - origins[0]
+        return all(own[j][0] + away < displacements[j][0] + shift
+                   < own[(j + r) % q][0] + step - away for j in range(q))

@@ -1,0 +1,293 @@
+"""Pictures and tables of states, proved orbits and families, and phase portraits: they show what
+the program computed, and say what that is."""
+
+import math
+import re
+import sys
+import xml.etree.ElementTree as ET
+
+import numpy as np
+import pytest
+
+from converse import ConverseError, orbits
+from converse.orbits.portrait import starts
+from converse.orbits.solver import Family, newton
+
+pytest.importorskip("matplotlib")
+
+from matplotlib.figure import Figure  # noqa: E402
+from matplotlib.text import Text  # noqa: E402
+
+from converse.orbits import pictures  # noqa: E402
+
+START = {"svg": b"<?xml", "png": b"\x89PNG", "pdf": b"%PDF"}
+SPIRAL = (28, 37), 49
+TURN = 2 * math.pi
+
+
+@pytest.fixture(scope="module")
+def plane():
+    """States of two angles."""
+    return orbits.follow(orbits.trig, *SPIRAL, [0.005, 0.01])
+
+
+@pytest.fixture(scope="module")
+def line():
+    """States of one angle."""
+    return orbits.follow(orbits.standard, (3,), 8, [0.5, 0.9])
+
+
+@pytest.fixture(scope="module")
+def saddle():
+    found, _ = newton(orbits.straight(orbits.trig, (2, 3), 5, (0.1489578, 0.1489578)), 0.01)
+    assert found.label == "saddle"
+    return found
+
+
+def data(axes, number=0):
+    return np.array(axes.get_lines()[number].get_data()).T
+
+
+def shown(*states):
+    return [pictures.Shown.of(state) for state in states]
+
+
+def text(html):
+    """A piece of HTML: what is in its table or <pre>, and the images."""
+    page = ET.fromstring("<body>%s</body>" % re.sub("(<img [^>]*)>", r"\1/>", html))
+    images = page.findall("img")
+    rows = [[cell.text or "" for cell in row] for row in page.iter("tr")]
+    return rows or page.find("pre").text, images
+
+
+# ---- states
+
+def test_a_row_for_each_state(plane, line):
+    figure = Figure()
+    pictures.rows(figure, shown(*plane))
+    for number, state in enumerate(plane):
+        left, right = figure.axes[2 * number:2 * number + 2]
+        assert np.array_equal(data(left), state.x) and np.array_equal(data(right), state.momenta)
+        assert left.get_title(loc="left").startswith(
+            "(%s)  ε = %r, (28, 37)/49: minimum" % ("ab"[number], state.eps))
+    assert plane[0].figure().axes[0].get_title(loc="left").startswith("ε = 0.005, (28, 37)/49")
+    figure = Figure()
+    assert pictures.rows(figure, shown(*line)) == ""
+    for panel, state in zip(figure.axes, line):
+        assert np.array_equal(data(panel), np.column_stack([state.x, state.momenta]))
+        assert panel.get_title(loc="left").startswith("ε = %r, 3/8: minimum" % state.eps)
+
+
+def test_points_that_doubles_cannot_tell_apart(plane):
+    state = plane[-1]
+    assert pictures.coinciding(state) == 0
+    assert pictures.coinciding(state.repeat(3)) == 3 * state.q
+    u = state.u.copy()
+    u[5] += (state.x[9] - state.x[5]) + [3e-14, -2e-14]
+    u[7] += (state.x[9] - state.x[7]) + [1e-11, 0]
+    u[2] += (1 - 1e-15, 0.3) - state.x[2]               # the torus has no edge
+    u[3] += (1e-14, 0.3) - state.x[3]
+    assert pictures.coinciding(state.moved(u)) == 4
+    figure = Figure()
+    words = pictures.rows(figure, shown(state, state.repeat(2), state.moved(u)))
+    assert "98 points of (b) and 4 points of (c)" in words
+    assert "not stationary" in figure.axes[4].get_title(loc="left")
+
+
+def test_files(plane, line, saddle):
+    for kind, start in START.items():
+        assert pictures.states_picture(line, kind).startswith(start)
+    assert pictures.states_picture([saddle]) == pictures.states_picture([saddle])
+    assert pictures.kind(saddle) == "saddle"
+    assert pictures.exponents_words(saddle) == "exponents %.4f, %.4f" % tuple(saddle.exponents)
+    for number in 0, pictures.MOST_STATES + 1:
+        with pytest.raises(ValueError, match="choose fewer eps"):
+            pictures.states_picture([saddle] * number)
+    with pytest.raises(ValueError, match="svg, png, pdf, not gif"):
+        pictures.states_picture([saddle], "gif")
+    strange = orbits.Fourier({(1, 0): (1, 0), (0, 1): (1, 0)}, "$x^{")
+    picture = pictures.states_picture(orbits.follow(strange, (2, 3), 7, [0.001]))
+    assert picture.startswith(b"<?xml")
+
+
+def test_a_figure_of_a_state(plane, line):
+    """A Figure that a notebook shows, with letters of eight points at least; or only the points, in
+    Axes of one's own."""
+    for state in plane[0], line[0]:
+        figure = state.figure()
+        assert len(figure.axes) == state.potential.n and not figure.texts
+        assert figure._repr_png_().startswith(START["png"])
+        assert min(word.get_size() for word in figure.findobj(Text) if word.get_text()) >= 8
+    axes = Figure().subplots(1, 2)
+    assert plane[0].figure(axes) is axes
+    assert np.array_equal(data(axes[0]), plane[0].x)
+    assert np.array_equal(data(axes[1]), plane[0].momenta) and not axes[0].get_title(loc="left")
+    one = Figure().subplots()
+    assert plane[1].figure(ax=one) is one and np.array_equal(data(one), plane[1].x)
+    one = Figure().subplots()
+    line[0].figure(one)
+    assert np.array_equal(data(one)[:, 1], line[0].momenta[:, 0])
+    for state, ax in (line[0], axes), (plane[0], Figure().subplots(3)):
+        with pytest.raises(ValueError, match="is drawn into"):
+            state.figure(ax)
+
+
+# ---- families
+
+def test_columns_of_a_family(plane, line, saddle):
+    for column in pictures.PLOTTED:
+        if column == "residue":
+            continue
+        axes = Figure().subplots()
+        assert plane.plot(column, ax=axes) is axes
+        values = np.array([getattr(state, column) for state in plane]).reshape(len(plane), -1)
+        assert len(axes.get_lines()) == values.shape[1]
+        for k in range(values.shape[1]):
+            assert np.array_equal(data(axes, k), np.column_stack([plane.eps, values[:, k]]))
+        assert axes.get_xlabel() == "ε" and axes.get_ylabel()
+    assert [line.plot("residue").axes[0].get_lines()[0].get_ydata()[k] for k in range(2)] \
+        == [state.residue for state in line]
+    assert plane.plot("exponents").axes[0].get_title() == "trig, (28, 37)/49"
+    with pytest.raises(ValueError, match="no column 'colour'.*exponents"):
+        plane.plot("colour")
+    with pytest.raises(ValueError, match="Greene"):
+        plane.plot("residue")
+    with pytest.raises(ValueError, match="without states"):
+        Family(()).plot("action")
+
+
+def test_states_that_are_no_minima_are_hollow(saddle):
+    family = Family((saddle, saddle.relax()))
+    assert family[1].label == "minimum"
+    axes = family.plot("action").axes[0]
+    full, hollow = axes.get_lines()
+    assert list(full.get_ydata()) == [state.action for state in family]
+    assert list(hollow.get_ydata()) == [saddle.action]
+    assert hollow.get_markerfacecolor() == "white" and hollow.get_label() == "no minimum"
+
+
+# ---- notebooks
+
+def test_a_notebook_shows_a_state(plane, line):
+    for state in plane[1], line[1]:
+        rows, (image,) = text(state._repr_html_())
+        said = dict(rows)
+        assert said["eps"] == repr(state.eps) and said["label"] == "minimum"
+        assert float(said["action"]) == pytest.approx(state.action)
+        for x, exponent in zip(said["exponents"].split(", "), state.exponents):
+            assert exponent < 1e-5 if x == "below 1e-05" else float(x) == pytest.approx(exponent)
+        assert image.get("src").startswith("data:image/png;base64,iVBOR")
+        assert ("residue" in said) == (state is line[1]) != ("indices" in said)
+
+
+def test_a_notebook_shows_a_family(plane, line, monkeypatch):
+    for family in plane, line:
+        (head, *rows), (image,) = text(family._repr_html_())
+        assert [row[head.index("eps")] for row in rows] == [repr(state.eps) for state in family]
+        assert image.get("alt") == "the exponents"
+    monkeypatch.setattr(pictures, "MOST_ROWS", 4)
+    many = Family(tuple(plane[0].relax(0.001 * k) for k in range(1, 8)))
+    rows, _ = text(many._repr_html_())
+    assert [row[0] for row in rows[1:]] == ["0.001", "0.002", "…", "0.006", "0.007"]
+    words, images = text(Family(())._repr_html_())
+    assert words == "a family without states" and not images
+
+
+def test_a_notebook_shows_a_proved_orbit(line):
+    proof = orbits.prove(line[1])
+    words, (image,) = text(proof._repr_html_())
+    assert words == proof.report()
+    title = proof.figure().axes[0].get_title(loc="left")
+    assert "proved within" in title
+    assert np.array_equal(data(proof.figure().axes[0])[:, 0], proof.nearest.x[:, 0])
+
+
+def test_what_is_said_is_no_markup():
+    strange = orbits.Fourier({(1,): (-1, 0)}, "<b>&")
+    state = orbits.straight(strange, (1,), 3)
+    assert "<b>" not in state._repr_html_() and "&lt;b&gt;&amp;" in state._repr_html_()
+
+
+def test_without_matplotlib(plane, monkeypatch):
+    monkeypatch.setitem(sys.modules, "matplotlib", None)
+    for value in plane, plane[0]:
+        rows, images = text(value._repr_html_())
+        assert rows and not images
+    for draw in plane[0].figure, lambda: plane.plot("action"), orbits.trig.portrait:
+        with pytest.raises(ConverseError, match="pip install matplotlib"):
+            draw()
+
+
+# ---- phase portraits
+
+def test_starts_are_spread():
+    for n in 1, 2:
+        x, p = starts(n, 400)
+        points = np.concatenate([x.reshape(400, n), p.reshape(400, n)], axis=1)
+        assert ((points >= 0) & (points < 1)).all()
+        cells = np.unique((3 * points).astype(int), axis=0)
+        assert len(cells) == 3 ** (2 * n)
+
+
+@pytest.mark.parametrize("period", [1, TURN])
+def test_a_portrait_of_one_angle(period):
+    figure = orbits.standard.portrait(0.9, [0.1, 0.6], [0.2, 0.3], 50, period=period)
+    panel, = figure.axes
+    xs, ps = orbits.standard.orbit([0.1, 0.6], [0.2, 0.3], 50, 0.9)
+    for k in range(2):
+        orbit = np.column_stack([xs[:, k], ps[:, k]]) % 1.0
+        assert data(panel, k) == pytest.approx(period * orbit)
+    names = panel.get_xlabel(), panel.get_ylabel()
+    assert names == (("$x$  mod $1$", "$p$  mod $1$") if period == 1 else (
+        r"$y = 2\pi x$  mod $2\pi$", r"$J = 2\pi p$  mod $2\pi$"))
+    assert panel.get_xlim() == panel.get_ylim() == (0, period)
+    assert not panel.get_title()
+
+
+def test_a_portrait_in_one_line():
+    panel, = orbits.standard.portrait(0.97).axes
+    assert len(panel.get_lines()) == 20 and {len(data(panel, k)) for k in range(20)} == {501}
+    axes = Figure().subplots()
+    assert orbits.standard.portrait(0.97, ax=axes, color="red", steps=-3) is axes
+    assert axes.get_lines()[0].get_color() == "red" and len(data(axes)) == 4
+    axes = Figure().subplots()
+    orbits.standard.portrait(0.97, 0.1, 0.2, 3, ax=axes)            # one orbit
+    orbits.standard.portrait(0.97, np.zeros((2, 3)), 0.2, 3, ax=axes)
+    assert len(axes.get_lines()) == 1 + 6
+    colours = {each.get_color() for each in orbits.standard.portrait(
+        0.9, [0.1, 0.2, 0.3], 0.0, 3, color=None).axes[0].get_lines()}
+    assert len(colours) == 3
+
+
+def test_a_projection_and_a_slice():
+    x, p = np.random.default_rng(3).random((2, 30, 2))
+    xs, ps = (each % 1 for each in orbits.trig.orbit(x, p, 40, 0.01))
+    panel, = orbits.trig.portrait(0.01, x, p, 40).axes
+    assert "projected" in panel.get_title() and panel.get_xlabel() == "$x_0$  mod $1$"
+    for k in range(30):
+        assert data(panel, k) == pytest.approx(np.stack([xs[:, k, 0], ps[:, k, 0]], 1))
+    panel, = orbits.trig.portrait(0.01, x, p, 40, plane=("p1", "x1"),
+                                  within={"x0": (0.0, 0.1), "p0": (0.5, 0.3)}).axes
+    assert panel.get_title().startswith("slice") and "x_0 - 0" in panel.get_title()
+    assert panel.get_xlabel() == "$p_1$  mod $1$" and panel.get_ylabel() == "$x_1$  mod $1$"
+    inside = (np.minimum(xs[..., 0], 1 - xs[..., 0]) <= 0.1) & (abs(ps[..., 0] - 0.5) <= 0.3)
+    assert 20 < inside.sum() < inside.size / 2
+    drawn = np.concatenate([data(panel, k) for k in range(30)])
+    drawn = drawn[np.isfinite(drawn[:, 0])]
+    expected = np.stack([ps[..., 1][inside], xs[..., 1][inside]], 1)
+    assert drawn[np.lexsort(drawn.T)] == pytest.approx(expected[np.lexsort(expected.T)])
+
+
+@pytest.mark.parametrize("potential, wrong, words", [
+    (orbits.standard, {"x": 0.1}, "both x and p"), (orbits.standard, {"period": 3}, "period"),
+    (orbits.standard, {"plane": ("x0", "p0")}, "two of x, p"),
+    (orbits.trig, {"plane": ("x0", "x0")}, "two of x0, x1, p0, p1"),
+    (orbits.trig, {"plane": "x0"}, "two of"), (orbits.trig, {"within": {"x0": (0, 1)}}, "not in"),
+    (orbits.trig, {"within": {"x1": 0.1}}, "half width"), (orbits.trig, {"steps": 1.5}, "steps"),
+    (orbits.trig, {"within": {"x1": (0.1, 0.0)}}, "half width"),
+    (orbits.trig, {"x": [0.1], "p": [0.2]}, "shape"), (orbits.trig, {"steps": 10 ** 8}, "10000000"),
+    (orbits.standard, {"x": [], "p": []}, "0 orbits"), (orbits.trig, {"eps": math.nan}, "eps")])
+def test_bad_portraits(potential, wrong, words):
+    with pytest.raises(ValueError, match=words) as caught:
+        potential.portrait(**wrong)
+    assert "\n" not in str(caught.value)

@@ -1,0 +1,142 @@
+"""Proved pairs against mpmath, and what must not be proved."""
+
+import re
+from dataclasses import replace
+from fractions import Fraction
+
+import mpmath
+import numpy as np
+import pytest
+from test_minimax import golden, least, truth
+
+from converse import orbits
+from converse.orbits import NotProved, Pair
+from converse.orbits.enclosure import Enclosure, alone
+from converse.orbits.proved_pair import _Pass, _Undecided
+
+from truth import mp
+
+
+def refined(state, displacements):
+    """A state with exact displacements, for `truth`."""
+    class Exact:
+        q, p, origin = state.q, state.p, [mp(Fraction(state.origin[0]))]
+        u = {(j, 0): mp(row[0]) for j, row in enumerate(displacements)}
+    return Exact
+
+
+@pytest.mark.parametrize("p, q, eps", [
+    (0, 1, "0.5"), (1, 2, "2"), (1, 3, "0.3"), (8, 21, "0.2"), (34, 89, "0.971635406"),
+    (34, 89, "0.5"), (34, 89, "8"), (21, 100, "1.3")])
+def test_against_many_digits(p, q, eps):
+    """Flux and residues contain those of the true orbits: where the flux is 0.02, and where it is
+    1e-33 and doubles see no saddle."""
+    pair = least(orbits.standard, (p,), q, float(eps)).minimax()
+    proved = pair.prove()
+    with mpmath.workdps(90):
+        (low, below), (high, above) = (
+            truth(refined(state, found.displacements), mpmath.mpf(eps))
+            for state, found in ((pair.minimum, proved.minimum), (pair.minimax, proved)))
+        off = mpmath.mpf(10) ** -43             # of the truth's own solution
+        for (first, last), number in ((proved.flux, high - low), (proved.residue, above),
+                                      (proved.minimum.residue, below)):
+            assert mp(first) - off * max(1, abs(number)) <= number
+            assert number <= mp(last) + off * max(1, abs(number))
+    assert 0 < proved.flux[0] and proved.flux[1] - proved.flux[0] <= proved.flux[1] / 10 ** 10
+    assert proved.minimum.residue[1] < 0 < proved.residue[0]
+    assert proved.between or eps == "8"         # where gaps are below 10^-20
+    assert proved.radius <= Fraction(1, 10 ** 20)
+
+
+def test_what_the_report_says():
+    proved = golden(6, 0.971635406).minimax().prove(30)
+    text = proved.report()
+    assert text.startswith(proved.minimum.report()) and all(len(line) < 130
+                                                            for line in text.splitlines())
+    assert "exactly one orbit of type (5)/13 within" in text and "one negative direction" in text
+    assert "Each of its points is between" in text
+    low, high = map(Fraction, re.search("together: from (.*) to (.*)[.]", text).groups())
+    assert low <= proved.flux[0] < proved.flux[1] <= high < low * Fraction(10001, 10000)
+    assert "0.2466" in re.search("Its residue: (.*)", text)[1]
+    assert proved.radius <= Fraction(1, 10 ** 30) and "barrier from" in repr(proved)
+
+
+@pytest.mark.parametrize("name, p, q, eps", [
+    ("trig", (5, 7), 9, 0.06), ("ff", (5, 7), 9, 0.02), ("poly", (5, 7), 9, 0.02),
+    ("froeschle", (1, 1), 2, 0.03)])
+def test_two_angles(name, p, q, eps):
+    pair = least(getattr(orbits, name), p, q, eps).minimax()
+    proved = pair.prove()
+    low, high = proved.barrier
+    assert low - Fraction(1, 10 ** 15) < Fraction(pair.barrier) < high + Fraction(1, 10 ** 15)
+    assert high - low < high / 10 ** 10 and proved.residue is None and not proved.between
+    with pytest.raises(ValueError, match="one angle"):
+        proved.flux
+    moved = np.array(proved.displacements, dtype=float) - pair.minimax.u
+    assert np.abs(moved).max() < 1e-9
+
+
+def test_states_of_different_maps_are_no_pair():
+    """Nothing is claimed of two states that do not belong together."""
+    one, other = (golden(5, eps).minimax() for eps in (0.5, 0.6))
+    for changed in ({"minimax": other.minimax}, {"step": (2,)}, {"turn": one.turn + 1},
+                    {"turn": float(one.turn)}, {"minimax": one.minimax.repeat(2)},
+                    {"minimum": "a"}):
+        with pytest.raises(ValueError):
+            replace(one, **changed)
+
+
+def test_a_minimum_or_nothing_in_the_place_of_the_pass():
+    """No pass is proved where there is none: with the coordinate held a minimum is one, too, but
+    has no direction down."""
+    pair = golden(6, 1.5).minimax()
+
+    class Held(_Pass):
+        def refine(self):
+            self.evaluate()
+
+    with pytest.raises(_Undecided, match="direction down"), alone():
+        Held(pair, pair.minimum, Enclosure(pair.minimum, Fraction("1.5")), 5, 40).proved()
+    swapped = Pair(pair.minimax, pair.minimax, pair.step, pair.turn)
+    with pytest.raises(NotProved, match="saddle"):
+        swapped.prove()
+    away = pair.minimax.moved(pair.minimax.u + 1e-5)
+    with pytest.raises(NotProved, match="not stationary"):
+        Pair(pair.minimum, away, pair.step, pair.turn).prove()
+
+
+def test_a_potential_of_which_nothing_can_be_proved():
+    class Sine:
+        def value(self, x):
+            return np.sin(2 * np.pi * x[:, 0]) / 40
+
+        def gradient(self, x):
+            return 2 * np.pi * np.cos(2 * np.pi * x) / 40
+
+        def hessian(self, x):
+            return -(2 * np.pi) ** 2 * np.sin(2 * np.pi * x)[:, :, None] / 40
+
+    pair = orbits.straight(orbits.FromPython(Sine(), 1, "sine"), (1,), 3).relax(0.5).minimax()
+    assert pair.minimax.label == "saddle"
+    with pytest.raises(ValueError, match="nothing can be proved"):
+        pair.prove()
+    for digits in (0, 1.5, "a", 10 ** 6):
+        with pytest.raises(ValueError, match="digits"):
+            golden(4, 0.5).minimax().prove(digits)
+
+
+def test_proved_pairs_beyond_the_reach_are_refused():
+    with pytest.raises(NotProved, match="decimal places"):
+        golden(12, 0.3).minimax().prove()
+    with pytest.raises(NotProved, match="of the pass, with 1000 decimal places"):
+        golden(5, 0.5).minimax().prove(980)     # the most that are tried
+
+
+def test_a_flux_below_the_least_double():
+    """2 eps/(4 pi^2), at the two fixed points."""
+    pair = orbits.follow(orbits.standard, (0,), 1, [1e-323])[0].minimax()
+    low, high = map(Fraction, re.search("together: from (.*) to (.*)[.]",
+                                        pair.prove(400).report()).groups())
+    with mpmath.workdps(400):
+        true = mpmath.mpf("1e-323") / (2 * mpmath.pi ** 2)
+        assert mp(low) < true < mp(high) < mp(low) * (1 + mpmath.mpf(10) ** -15)
