@@ -1,6 +1,6 @@
 """The problem: a potential, the patch of parameters it has, and the angles of a successor."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import cached_property
 from math import gcd
@@ -51,7 +51,9 @@ class Problem:
     ranges taken together are one.
 
     by_ranges: whether ranges of a, b and c describe the patch; if not, these are None.
-    axes: the frame, x_1 = frame.(v0, v1), as (f00, f01, f10, f11); None: chosen to suit the waves.
+    axes: the frame, x_1 = frame.(v0, v1), as (f00, f01, f10, f11); None: where v0 and v1 are all of
+    the torus, chosen, with the region that stands for it (region.py); else the identity.  Axes that
+    would be chosen anyhow become None; `axes_named` tells that there were some.
     alone: the coordinate that is examined alone, 0 or 1, or "no"; None: chosen.  `factor` has it.
 
     TypeError, ValueError: an argument is not what it must be; the text says which, and why.
@@ -67,6 +69,7 @@ class Problem:
     _patch: Optional[Tuple[Tuple[Wave, ...], Numbers, Tuple[Numbers, ...]]] = None
     axes: Optional[Frame] = None
     alone: Union[int, str, None] = None
+    axes_named: bool = field(default=False, init=False, compare=False)
 
     if TYPE_CHECKING:                   # what is given; above is what becomes of it
         def __init__(self, a: Union[Range, Number, None] = None,
@@ -154,11 +157,11 @@ class Problem:
         if self.axes is not None:
             axes = tuple(self.axes)
             if len(axes) != 4 or not all(type(f) is int and abs(f) <= HIGHEST for f in axes) or \
-                    abs(axes[0] * axes[3] - axes[1] * axes[2]) != 1:
-                raise ValueError("the axes are four integers up to %d with determinant 1 or -1, "
-                                 "not %r"
-                                 % (HIGHEST, self.axes))
+                    axes[0] * axes[3] == axes[1] * axes[2]:
+                raise ValueError("the axes are four integers up to %d whose determinant is not 0, "
+                                 "not %r" % (HIGHEST, self.axes))
             object.__setattr__(self, "axes", None if axes == self._best_frame() else axes)
+            object.__setattr__(self, "axes_named", True)
         if self.alone is not None:
             if self.alone not in (0, 1, "no") or isinstance(self.alone, bool):
                 raise ValueError("alone is 0, 1 or 'no', not %r" % (self.alone,))
@@ -225,7 +228,7 @@ class Problem:
         q = max(directions, default=(0, 0))
         if not directions <= {q, (-q[0], -q[1])} or 0 in q or not self.full_torus:
             return IDENTITY
-        sign, (x, y) = (1 if q[1] > 0 else -1), _bezout(*q)
+        sign, (x, y) = (1 if q[1] > 0 else -1), bezout(*q)
         return sign * q[1], x, -sign * q[0], y  # of determinant sign q.(x, y)
 
     @cached_property
@@ -274,6 +277,12 @@ class Problem:
         """1 if the potential is given on the circle, else 2."""
         return 2 if self.by_ranges or any(k1 for _, k1, _ in self.waves) else 1
 
+    @property
+    def is_flat(self) -> bool:
+        """Do those waves that the search needs feel one combination of the angles alone?"""
+        k = [wave for wave, _ in self._present()]
+        return self.factor is not None or all(a * d == b * c for a, b in k for c, d in k)
+
     # ---- ranges
 
     @property
@@ -290,15 +299,25 @@ class Problem:
 
     @property
     def full_torus(self) -> bool:
-        """Does the region hold every possible successor?"""
-        return all(high - low >= 2 for low, high in (self.v0, self.v1))
+        """Does the region hold every possible successor?  (region.symmetries_used also sees where
+        it need not.)"""
+        return all(high - low >= period for (low, high), period
+                   in zip((self.v0, self.v1), periods(self.axes or IDENTITY)))
 
 
-def _bezout(a, b):
+def periods(frame: Frame) -> Tuple[Fraction, Fraction]:
+    """P0 and P1, in units of pi: x_1 = frame.v is the same point of the torus where v is moved by
+    (0, P1), and by (P0, some number)."""
+    f00, f01, f10, f11 = frame
+    common = gcd(f01, f11)
+    return Fraction(2 * common, abs(f00 * f11 - f01 * f10)), Fraction(2, common)
+
+
+def bezout(a: int, b: int) -> Tuple[int, int]:
     """(x, y) with a x + b y = 1, where there are such integers."""
     if b == 0:
         return a, 0
-    x, y = _bezout(b, a % b)
+    x, y = bezout(b, a % b)
     return y, x - a // b * y
 
 

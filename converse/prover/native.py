@@ -1,5 +1,6 @@
 """The C core in terms of Python."""
 
+import math
 import os
 import threading
 from dataclasses import asdict, dataclass, fields
@@ -11,6 +12,7 @@ from typing import Dict, List, Optional, Tuple
 from ..model.exact import decimal_text
 from ..model.problem import Problem
 from ..storage.files import ConverseError
+from . import tree
 from .settings import Settings
 
 try:
@@ -45,8 +47,8 @@ MESSAGES = {
 class WrongTree(ConverseError):
     """A tree that no search of this kind can have grown."""
 
-    def __init__(self):
-        super().__init__("the tree does not belong to a search of this kind")
+    def __init__(self, wrong="the tree does not belong to a search of this kind"):
+        super().__init__(wrong)
 
 
 def check(code):
@@ -76,6 +78,7 @@ class Counts:
     most_cuts: int = 0          # of a proved prism
     max_steps: int = 0          # longest orbit of the tries in double precision (thesis's method)
     max_NTsteps: int = 0        # longest orbit of a proved prism
+    linked: int = 0             # leaves linked to another part, of which the core knows nothing
 
     def __add__(self, other):
         """The statistics of both searches together."""
@@ -230,8 +233,8 @@ class Search:
         if code == lib.CV_EARGUMENT:
             raise WrongTree()
         check(code)
-        return Begun((self._constant(0), self._constant(1)),
-                     {name: self._constant(which) for name, which
+        return Begun((self.constant(0), self.constant(1)),
+                     {name: self.constant(which) for name, which
                       in CONSTANTS[self.task.settings.method].items()},
                      bool(lib.cv_at_once(self.handle)), *self._state())
 
@@ -249,12 +252,12 @@ class Search:
         pending = ffi.new("cv_cell[]", lib.cv_pending(self.handle, ffi.NULL))
         lib.cv_pending(self.handle, pending)
         counts = lib.cv_get_counts(self.handle)
-        values = {item.name: getattr(counts, item.name) for item in fields(Counts)}
+        values = {item.name: getattr(counts, item.name, 0) for item in fields(Counts)}
         return ([(tuple(cell.index), tuple(cell.cuts), cell.hint) for cell in pending],
                 Counts(**{name: value if isinstance(value, int) else tuple(value)
                           for name, value in values.items()}))
 
-    def _constant(self, which):
+    def constant(self, which):
         text = lib.cv_constant(self.handle, which)
         if not text:
             raise MemoryError("there is not enough memory")
@@ -291,6 +294,12 @@ class Stop:
         return bool(lib.cv_stop_get(self.handle))
 
 
+def chosen_start(task):
+    """The x* that a search would choose."""
+    search = Search(task)
+    return search.constant(0), search.constant(1)
+
+
 def begin(task, tree, stop):
     """What a worker does first, with the tree as far as it is known: Begun, or None if stopped."""
     search = _search(task, stop)
@@ -309,3 +318,13 @@ def grow(task, cells, seconds, max_leaves, want_steps, stop=None):
     except BaseException:
         _mine.task = _mine.search = None    # nobody knows in what state it is
         raise
+
+
+def survey(task, most, stop=None):
+    """What a tree becomes from its root on with so many leaves at most: Grown, or None if it was
+    stopped before that."""
+    search = Search(task)
+    if not search.prepare(stop):
+        return None
+    grown = search.grow([(*tree.ROOT, 0)], math.inf, most, stop, True)
+    return None if grown.cells and stop is not None and stop.is_set() else grown

@@ -4,11 +4,13 @@ The methods that report, draw, verify, save and load are conveniences: what they
 and is imported when it is called for, since matplotlib, or the checker, takes a while."""
 
 import os
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Dict, List, Optional, Tuple, Union
 
+from ..model.exact import Ends
 from ..model.problem import Problem
+from ..model.region import symmetries_used
 from ..version import __version__
 from . import tree
 from .native import Counts
@@ -19,6 +21,20 @@ if TYPE_CHECKING:
     from .. import check
 
 
+@dataclass(frozen=True)
+class Part:
+    """A further starting point, and what was decided of a region of its successors.
+
+    v0, v1: the region, in units of pi.
+    xstar, tree, pending: as of a Proof."""
+
+    xstar: Tuple[str, str]
+    v0: Ends
+    v1: Ends
+    tree: str = ""
+    pending: Tuple[int, ...] = ()
+
+
 @dataclass(frozen=True, repr=False)
 class Proof:
     """A search and its result, finished or not: true if it proves that there are no invariant tori.
@@ -26,7 +42,8 @@ class Proof:
     What it proves rests on its tree, which prove() grew; a Proof that was loaded, or made by hand,
     is believed.  verify() believes nothing.
 
-    problem, settings: what was asked.
+    problem, settings: what was asked; where that is all of the torus, and there is an x*, with the
+    frame and the region that are searched (symmetries_used).
     tree: one character for each prism, in preorder (docs/format.md).
     counts: the statistics of the search.
     xstar: the two angles of the starting point, in radians, as decimal strings; None: not yet
@@ -39,8 +56,9 @@ class Proof:
     their parents' tries suggest (0: unknown).
     at_once: nor have any s times these amplitudes tori, s > 1 (if there is one parameter, as where
     a, b and c move together: s times those at its upper end).
-    restored: how many leaves of the tree come from a file.
+    restored: how many leaves were read from a file; links may have taken the place of some.
     sha256: of the proof's file, uncompressed; "" if there is none.
+    parts: a, b, c, ... to which cells of this tree, or of parts before them, are linked.
     """
 
     problem: Problem
@@ -55,15 +73,17 @@ class Proof:
     at_once: bool = False
     restored: int = field(default=0, compare=False)
     sha256: str = field(default="", compare=False)
+    parts: Tuple[Part, ...] = ()
 
     def __bool__(self):
         return self.no_tori
 
     def __repr__(self):
-        return "<Proof: %s; %d prisms proved, %d skipped, %d undecided; %s, %s>" % (
+        return "<Proof: %s; %d prisms proved, %d %s, %d undecided; %s, %s>" % (
             {THEOREM: "no invariant tori", REGION: "none through a part of the torus",
              UNDECIDED: "undecided", AS_PRINTED: "as printed, not a proof"}[self.conclusion],
-            self.counts.proved, self.counts.symmetric, self.counts.undecided, self.method,
+            self.counts.proved, self.counts.linked if self.parts else self.counts.symmetric,
+            "linked" if self.parts else "skipped", self.counts.undecided, self.method,
             self.arithmetic)
 
     @property
@@ -84,8 +104,15 @@ class Proof:
 
     @cached_property
     def all_decided(self) -> bool:
-        """Is the tree whole and without an undecided prism?"""
-        return "U" not in self.tree and tree.complete(self.tree)
+        """Are the trees whole and without an undecided prism?"""
+        return all("U" not in text and tree.complete(text)
+                   for text in (self.tree, *(part.tree for part in self.parts)))
+
+    @cached_property
+    def symmetries_used(self) -> Optional[List[str]]:
+        """By which symmetries, in words, the region stands for every possible successor; None: it
+        is a part of the torus only."""
+        return symmetries_used(self.problem, self.xstar)
 
     @property
     def conclusion(self) -> str:
@@ -96,7 +123,7 @@ class Proof:
             return UNDECIDED
         if self.as_printed:
             return AS_PRINTED
-        return THEOREM if self.problem.full_torus else REGION
+        return REGION if self.symmetries_used is None else THEOREM
 
     @property
     def no_tori(self) -> bool:
@@ -110,8 +137,16 @@ class Proof:
 
     @property
     def undecided(self) -> List[Leaf]:
-        """The prisms on which the search gave up: a list of Leaf, angles in units of pi."""
-        return list(tree.leaves(self.problem, self.tree, "U")) if "U" in self.tree else []
+        """The prisms on which the search gave up: a list of Leaf, angles in units of pi.  Those of
+        further starting points follow."""
+        trees = [(self.problem, self.tree),
+                 *((self.part_problem(part), part.tree) for part in self.parts)]
+        return [leaf for problem, text in trees if "U" in text
+                for leaf in tree.leaves(problem, text, "U")]
+
+    def part_problem(self, part: Part) -> Problem:
+        """The problem with the region of a part."""
+        return replace(self.problem, v0=part.v0, v1=part.v1, axes=self.problem.frame)
 
     def report(self) -> str:
         """The report of 1989, and what a reader needs beside it."""
@@ -156,7 +191,8 @@ class Proof:
 
     @classmethod
     def load(cls, path: Union[str, "os.PathLike[str]"]) -> "Proof":
-        """Reads a proof file; ConverseError says in one line what is wrong with it.  Its leaves are
-        believed: verify() and converse-check do not believe them."""
+        """Reads a proof file; ConverseError says in one line what is wrong with it.  Its leaves and
+        links are believed, though prove(resume=...) shows the links anew: verify() and
+        converse-check believe neither."""
         from .proof_file import load
         return load(path)

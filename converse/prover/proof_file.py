@@ -1,4 +1,5 @@
-"""The proof file, format 3 (docs/format.md), of a proof that is finished or not."""
+"""The proof file, formats 3 and 4 (docs/format.md), of a proof that is finished or not: files of
+the thesis's method are of format 3, which knows of frames with determinant 1 or -1 alone."""
 
 import re
 from dataclasses import asdict, fields
@@ -9,12 +10,15 @@ from ..storage import files
 from ..storage.files import ConverseError
 from . import tree
 from .native import CONSTANTS, Counts
-from .proof import Proof
+from .proof import Part, Proof
 from .settings import Settings
 
-FIRST_LINE, BEFORE = "converse proof 3", "converse proof 2"
+FIRST_LINES = {"converse proof 3": 3, "converse proof 4": 4}
+BEFORE = "converse proof 2"
+FORMATS = {"thesis": 3, "loewner": 4}        # that are written, by method
 PROGRAM = re.compile(r"converse ([0-9A-Za-z.+-]{1,40})")
 CLAIMS = {False: "sound", True: "as printed, not a proof"}       # by as_printed
+NEW_COUNT = "linked"                         # of format 4
 LINE_WIDTH = 78                              # of the tree's lines
 
 
@@ -36,7 +40,7 @@ def load(path):
     if lines[0] == BEFORE:
         raise ConverseError("%s: is a proof file of format 2, which releases up to 1.6.0 read; "
                             "continue it with one of those, which writes format 3" % path)
-    if lines[0] != FIRST_LINE:
+    if lines[0] not in FIRST_LINES:
         fail(1, "this is not a proof file of this program")
     if lines[-2:] != ["end", ""]:
         fail(len(lines), "the file is truncated")
@@ -44,9 +48,11 @@ def load(path):
     if lines[-3] != "checksum: sha256 " + files.sha256(body):
         fail(len(lines) - 2, "the file was changed or damaged (wrong checksum)")
 
-    start = lines.index("tree:") if "tree:" in lines else fail(len(lines), "there is no tree")
+    starts = [number for number, line in enumerate(lines) if line == "tree:"]
+    if not starts:
+        fail(len(lines), "there is no tree")
     values, comments, waves = {}, [], []
-    for number, line in enumerate(lines[1:start], 2):
+    for number, line in enumerate(lines[1:starts[0]], 2):
         key, colon, value = line.partition(": ")
         if not colon:
             fail(number, "'%s' is not 'name: value'" % line)
@@ -58,36 +64,82 @@ def load(path):
             values[key] = value
     try:
         problem = _problem(values, waves, comments)
-        return _proof(values, problem, "".join(lines[start + 1:-3]), files.sha256(text))
+        if FIRST_LINES[lines[0]] == 3:
+            _check_format_3(values, problem)
+        proof = _proof(values, problem, _trees(lines[starts[0]:-3]), files.sha256(text))
+        if FIRST_LINES[lines[0]] == 3 and proof.parts:
+            raise ValueError("there are no parts in format 3")
+        return proof
     except (KeyError, IndexError, TypeError, ValueError) as error:
-        fail(start + 1, "the header or the tree makes no sense (%s)" % error)
+        fail(starts[0] + 1, "the header or a tree makes no sense (%s)" % error)
+
+
+def _trees(lines):
+    """Of the lines from the first `tree:` on: for each tree the fields of its part, none of the
+    first's, and its text."""
+    trees = [({}, [])]
+    for line in lines:
+        key, colon, value = line.partition(": ")
+        if key == "part" and colon:
+            if value != tree.LETTERS[len(trees) - 1]:
+                raise ValueError("part %.20s is out of its order" % value)
+            trees.append(({}, []))
+        elif colon:
+            trees[-1][0][key] = value
+        elif line != "tree:":
+            trees[-1][1].append(line)
+    if trees[0][0] or any(set(fields) != {"xstar", "v0", "v1"} for fields, _ in trees[1:]):
+        raise ValueError("a part has other fields than it should")
+    return [(fields, "".join(text)) for fields, text in trees]
 
 
 def _text(proof):
     problem, at_once = proof.problem, _yes(proof.at_once)
     if proof.at_once and len(problem.parts) == 1:
         at_once = "upper end"
-    lines = [FIRST_LINE, "kind: " + CLAIMS[proof.as_printed],
+    form = FORMATS[proof.method]
+    lines = ["converse proof %d" % form, "kind: " + CLAIMS[proof.as_printed],
              "program: converse " + proof.version, "method: " + proof.method]
     lines += _problem_lines(problem)
     lines += ["xstar: " + " ".join(proof.xstar)] if proof.xstar else []
     lines += ["depth: %d" % proof.depth, "digits: %d" % proof.digits,
               "stubborn: " + _yes(proof.settings.stubborn), "at once: " + at_once]
     lines += [] if proof.all_decided else ["seconds: %.2f" % proof.seconds]
-    lines += ["pending: " + " ".join(map(str, proof.pending))]
+    pending, before = proof.pending, _untried(proof.tree)
+    for part in proof.parts:            # a hint that is missing is 0
+        pending += (0,) * (before - len(pending)) + part.pending
+        before += _untried(part.tree)
+    lines += ["pending: " + " ".join(map(str, pending))]
     for name, value in asdict(proof.counts).items():
+        if form == 3 and name == NEW_COUNT:
+            continue
         values = value if isinstance(value, tuple) else (value,)
         lines.append("%s: %s" % (name, " ".join(map(str, values))))
     lines += ["%s: %s" % item for item in proof.constants.items()]
     lines += ["comment: " + comment for comment in problem.comments]
-    lines += ["tree:"]
-    lines += [proof.tree[i:i + LINE_WIDTH] for i in range(0, len(proof.tree), LINE_WIDTH)]
+    lines += _tree_lines(proof.tree)
+    for letter, part in zip(tree.LETTERS, proof.parts):
+        lines += ["part: " + letter, "xstar: " + " ".join(part.xstar),
+                  _ends_line("v0", part.v0), _ends_line("v1", part.v1), *_tree_lines(part.tree)]
     text = "\n".join(lines) + "\n"
     return text + "checksum: sha256 %s\nend\n" % files.sha256(text)
 
 
-def _proof(values, problem, nodes, sha256):
-    """The Proof of the header's fields, their values by name, and the tree."""
+def _tree_lines(text):
+    return ["tree:"] + [text[i:i + LINE_WIDTH] for i in range(0, len(text), LINE_WIDTH)]
+
+
+def _untried(text):
+    """How many prisms of a search that is not stubborn are yet to be tried: those with a `?` and
+    those that are missing at the end, unless an undecided one has ended it."""
+    if "U" in text:
+        return text.count(tree.UNTRIED)
+    cuts = sum(map(text.count, tree.CUTS))
+    return cuts + 1 - (len(text) - cuts - text.count(tree.UNTRIED))
+
+
+def _proof(values, problem, trees, sha256):
+    """The Proof of the header's fields, their values by name, and what _trees returns."""
     counts = {}
     for item in fields(Counts):
         numbers = tuple(int(word) for word in values[item.name].split())
@@ -104,11 +156,37 @@ def _proof(values, problem, nodes, sha256):
                         {kind: printed for printed, kind in CLAIMS.items()}[values["kind"]])
     constants = {name: _number(values[name]) for name in CONSTANTS[settings.method]
                  if name in values}
+    (_, nodes), *others = trees
     tree.complete(nodes)                # TreeError, a ValueError: it is not a tree
+    hints, parts = tuple(map(int, values["pending"].split())), []
+    pending, hints = _divided(hints, nodes) if others else (hints, ())
+    for named, text in others:
+        tree.complete(text)
+        x0, x1 = named["xstar"].split()
+        mine, hints = _divided(hints, text)
+        parts.append(Part((_number(x0), _number(x1)), _ends(named, "v0"), _ends(named, "v1"), text,
+                          mine))
+    tree.check_letters([text for _, text in trees])
+    if parts and (settings.method != "loewner" or problem.factor is not None):
+        raise ValueError("parts, which go with the sharper method and no coordinate that is alone")
     return Proof(problem, settings, nodes, Counts(**counts), xstar, constants,
-                 float(values.get("seconds", 0)), program[1],
-                 tuple(map(int, values["pending"].split())), _at_once(values, problem),
-                 nodes.count("P") + nodes.count("S"), sha256)
+                 float(values.get("seconds", 0)), program[1], pending, _at_once(values, problem),
+                 sum(text.count("P") + text.count("S") for _, text in trees), sha256, tuple(parts))
+
+
+def _divided(hints, text):
+    """The hints of a tree, if any of them is known, and those of the trees after it."""
+    mine, rest = hints[:_untried(text)], hints[_untried(text):]
+    return mine if any(mine) else (), rest
+
+
+def _check_format_3(values, problem):
+    """ValueError: it is not what a file of format 3 may hold, which lacks the new count."""
+    f00, f01, f10, f11 = problem.frame
+    if abs(f00 * f11 - f01 * f10) != 1:
+        raise ValueError("a frame of determinant %d in format 3" % (f00 * f11 - f01 * f10))
+    if values.setdefault(NEW_COUNT, "0") != "0":
+        raise ValueError("%s in format 3" % NEW_COUNT)
 
 
 def _problem_lines(problem):
@@ -118,9 +196,12 @@ def _problem_lines(problem):
     lines += ["frame: %d %d %d %d" % problem.frame,
               "alone: %s" % ("no" if problem.factor is None else problem.factor),
               "odd about: " + ("no" if problem.odd is None else "%s %s" % problem.odd)]
-    ends = zip(NAMES[3:], problem.centre[-2:], problem.half[-2:])
-    return lines + ["%s: %s %s" % (name, decimal_text(centre), decimal_text(half))
-                    for name, centre, half in ends]
+    return lines + [_ends_line(name, getattr(problem, name)) for name in NAMES[3:]]
+
+
+def _ends_line(name, ends):
+    low, high = ends
+    return "%s: %s %s" % (name, decimal_text((low + high) / 2), decimal_text((high - low) / 2))
 
 
 def _problem(values, waves, comments):
@@ -148,7 +229,7 @@ def _at_once(values, problem):
 
 
 def _ends(values, name):
-    centre, half = map(exact, values[name].split())
+    centre, half = (exact(_number(word)) for word in values[name].split())
     if half < 0:
         raise ValueError("the half-width of %s is negative" % name)
     return centre - half, centre + half

@@ -116,7 +116,7 @@ def _range(name, low, high, exactly=True):
 def _gaps(proof):
     """What stands in the way of a theorem, and what may help."""
     undecided = proof.undecided
-    unfinished = not tree.complete(proof.tree)
+    unfinished = not all(tree.complete(part.tree) for part in (proof, *proof.parts))
     lines = ["Undecided prisms : %d" % len(undecided)]
     if undecided:
         lines += ["The deepest of them was cut %d times." % max(leaf.depth for leaf in undecided)]
@@ -146,6 +146,10 @@ def _gaps(proof):
     return lines + ["To try : %s." % advice]
 
 
+def _leaves(counts):
+    return counts.proved + counts.symmetric + counts.undecided + counts.linked
+
+
 def _statistics(proof):
     counts = proof.counts
     if proof.method == "loewner":
@@ -153,9 +157,10 @@ def _statistics(proof):
             "Did %d rigorous bounding tries in double precision." % counts.tries,
             "The most deeply refined prism was cut %d times." % counts.most_cuts,
             "The longest successful orbit had %d points." % counts.max_NTsteps,
-            "Of the %d prisms %d were proved, %d skipped by symmetry." % (
-                counts.proved + counts.symmetric + counts.undecided, counts.proved,
-                counts.symmetric),
+            "Of the %d prisms %d were proved, %s." % (
+                _leaves(counts), counts.proved,
+                "%d linked to other starting points" % counts.linked if proof.parts else
+                "%d skipped by symmetry" % counts.symmetric),
             "",
             "This investigation took %.2f seconds." % proof.seconds,
         ]
@@ -186,28 +191,48 @@ def _method(proof):
     """The map, the method and the counts that the conclusion rests on."""
     problem = proof.problem
     lines = ["Map : " + MAP[0] + (MAP[1] if problem.by_ranges else WAVES + " such waves"),
-             *MAP[2:], *_choices(problem),
+             *MAP[2:], *_choices(proof),
              "Program : converse " + proof.version,
              "Method : " + METHOD_NAMES[proof.method],
              "Arithmetic : " + proof.arithmetic]
     lines += ["x* : %s %s" % proof.xstar] if proof.xstar else []
+    lines += _parts(proof)
     lines += ["%s : %s" % (name, proof.constants[name]) for name in ("T", "B")
               if name in proof.constants]
     lines += ["Tries that failed : %d" % sum(proof.counts.reasons)]
     lines += ["%d : %s" % pair for pair in zip(proof.counts.reasons, REASONS) if pair[0]]
     if proof.restored:
-        lines += ["Restored : %d of the %d prisms come from a backup, which is believed" % (
-            proof.restored, proof.counts.proved + proof.counts.symmetric + proof.counts.undecided)]
+        lines += ["Restored : %d prisms were read from a backup, which is believed"
+                  % proof.restored]
     if proof.sha256:
         lines += ["Proof file : SHA-256 " + proof.sha256]
     return lines
 
 
-def _choices(problem):
-    """How the search looks at the problem, where it is not just as it stands."""
+def _parts(proof):
+    """The further starting points, and what was proved over each."""
     lines = []
+    for letter, part in zip(tree.LETTERS, proof.parts):
+        lines += ["Part %s : x* %s %s, %s, %s : %d prisms proved, %d linked" % (
+            letter, *part.xstar, _range("v[0] / pi", *part.v0), _range("v[1] / pi", *part.v1),
+            part.tree.count("P"), tree.count_linked(part.tree))]
+    if lines:
+        lines += ["Links : %d prisms of one x* lead, on an invariant graph, into the region of a "
+                  "part" % proof.counts.linked,
+                  "(the theorem rests on what graphs do at several points: docs/proof.md, "
+                  "section 10)"]
+    return lines
+
+
+def _choices(proof):
+    """How the search looks at the problem, where it is not just as it stands."""
+    problem, lines = proof.problem, []
     if problem.frame != IDENTITY:
         lines += ["Frame : the angles at the next time are " + frame_text(problem.frame, "v[%d]")]
+    if proof.symmetries_used:
+        lines += ["Region : %s, %s" % (_range("v[0] / pi", *problem.v0),
+                                       _range("v[1] / pi", *problem.v1)),
+                  "which by %s stands for the whole torus" % " and ".join(proof.symmetries_used)]
     if problem.dimension == 1:
         lines += ["Circles : those that go around are graphs (Birkhoff), and times {J1 = 0} such "
                   "tori"]

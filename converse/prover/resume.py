@@ -8,11 +8,15 @@ from ..model.problem import NAMES
 from ..storage.files import ConverseError
 from ..version import __version__
 from . import tree
+from .tree_search import KINDS, kinds_of
 
 
-def _as_before(problem, before, differs):
-    """The problem, which must be the one of before but for its comments, with the frame and the
-    coordinate that were chosen then, unless it names others."""
+def _as_before(problem, proof, differs):
+    """The problem, which must be the one of the proof but for its comments, with the region, the
+    frame and the coordinate that were chosen then, unless it names others."""
+    before = proof.problem
+    if proof.method == "loewner" and problem.full_torus and proof.symmetries_used is not None:
+        problem = replace(problem, v0=before.v0, v1=before.v1)
     for key in NAMES:
         theirs, ours = getattr(before, key), getattr(problem, key)
         if None not in (theirs, ours) and theirs != ours:
@@ -38,6 +42,7 @@ def continued(proof, name, problem=None, given=None, xstar=None):
     the proof; but the depth may be greater, and `stubborn` another.
     ConverseError: something does not agree; name is that of the proof in the message."""
     given = given or {}
+    proof = _without_unused(proof, name)
     settings = replace(proof.settings, **{key: value for key, value in given.items()
                                           if key in ("depth", "stubborn")})
 
@@ -53,7 +58,7 @@ def continued(proof, name, problem=None, given=None, xstar=None):
     if settings.depth < proof.settings.depth:
         differs("depth", proof.settings.depth, settings.depth)
     if problem is not None:
-        problem = _as_before(problem, proof.problem, differs)
+        problem = _as_before(problem, proof, differs)
     if xstar is not None:
         if proof.xstar is not None and list(map(Decimal, proof.xstar)) != list(map(Decimal, xstar)):
             differs("x*", " ".join(proof.xstar), " ".join(xstar))
@@ -64,13 +69,42 @@ def continued(proof, name, problem=None, given=None, xstar=None):
     if settings.depth > proof.settings.depth:
         proof = _with_undecided_untried(proof)
     return replace(proof, settings=settings, problem=problem or proof.problem,
-                   restored=sum(map(proof.tree.count, "PS")))
+                   restored=sum(part.tree.count(kind) for part in (proof, *proof.parts)
+                                for kind in "PS"))
+
+
+def _without_unused(proof, name):
+    """The proof without the parts that nothing is linked to, as when an undecided prism before
+    those that were ended the search.  ConverseError: a letter is of no later part."""
+    try:
+        tree.check_letters([proof.tree, *(part.tree for part in proof.parts)])
+    except tree.TreeError as error:
+        raise ConverseError("%s: %s; use an intact copy or start anew" % (name, error)) from None
+    used, kept = set(proof.tree), {}
+    for letter, part in zip(tree.LETTERS, proof.parts):     # links lead to later parts alone
+        if letter in used:
+            used |= set(part.tree)
+            kept[letter] = part
+    names = {ord(old): new for old, new in zip(kept, tree.LETTERS)}
+    rest = replace(proof, tree=proof.tree.translate(names), parts=tuple(
+        replace(part, tree=part.tree.translate(names)) for part in kept.values()))
+    return rest if len(kept) == len(proof.parts) else replace(rest, counts=counted(rest))
+
+
+def counted(proof):
+    """The statistics, nodes being counted in all trees."""
+    trees = [proof.tree, *(part.tree for part in proof.parts)]
+    return replace(proof.counts, **dict(zip(KINDS, map(sum, zip(*map(kinds_of, trees))))),
+                   most_cuts=max(map(tree.most_cuts, trees)))
 
 
 def _with_undecided_untried(proof):
     """The proof whose undecided prisms are to be tried again, without hints."""
-    hints, known = [], iter(proof.pending)
-    for leaf in tree.UNDECIDED_OR_UNTRIED.findall(proof.tree):
-        hints.append(next(known, 0) if leaf == tree.UNTRIED else 0)
-    return replace(proof, tree=proof.tree.replace("U", tree.UNTRIED), pending=(*hints, *known),
+    def again(part):
+        hints, known = [], iter(part.pending)
+        for leaf in tree.UNDECIDED_OR_UNTRIED.findall(part.tree):
+            hints.append(next(known, 0) if leaf == tree.UNTRIED else 0)
+        return replace(part, tree=part.tree.replace("U", tree.UNTRIED), pending=(*hints, *known))
+
+    return replace(again(proof), parts=tuple(map(again, proof.parts)),
                    counts=replace(proof.counts, undecided=0))

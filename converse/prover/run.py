@@ -5,23 +5,29 @@ import math
 import os
 import time
 from dataclasses import dataclass, replace
+from fractions import Fraction
 from typing import Any, Callable, Dict, Optional, Tuple, Union
 
 from ..model.exact import Number, decimal_text, exact
 from ..model.problem import Problem
+from ..model.region import reduced, skips
 from ..storage.backup import Backup
 from ..storage.files import ConverseError
 from ..storage.signals import interruptible, postponed
 from ..version import __version__
 from . import native, tree
+from .links import wrong_letter
 from .native import Counts, Task
 from .proof import Proof
-from .resume import continued
+from .resume import continued, counted
 from .settings import Settings
-from .tree_search import OLD, TreeSearch
-from .workers import LOOK_SECONDS
+from .starts import plan
+from .tree_search import KINDS, OLD, TreeSearch, kinds_of
+from .workers import LOOK_SECONDS, WorkerPool
 
 Path = Union[str, "os.PathLike[str]"]
+
+LONG = 400                              # points: of a proved prism's orbit
 
 
 def prove(problem: Optional[Problem] = None, *, method: Optional[str] = None,
@@ -71,12 +77,23 @@ def prove(problem: Optional[Problem] = None, *, method: Optional[str] = None,
         if resume is not None:
             proof = resume if isinstance(resume, Proof) else Proof.load(resume)
             before = continued(proof, name, problem, given, star)
-        before = replace(before, problem=before.settings.accept(before.problem))
         try:
-            return _Run(before, backup_file, options).run()
+            return _Run(ready(before), backup_file, options).run()
         except native.WrongTree as error:
             raise ConverseError("%s: %s; use an intact copy or start anew"
                                 % (name, error)) from None
+
+
+def ready(before: Proof) -> Proof:
+    """What a search begins with: the problem as the method takes it and, unless it has begun
+    already, with the sharper method the region that it is to search, for which x* is chosen.
+    ConverseError: the problem is not for this program; ValueError: not for this method."""
+    problem, xstar = before.settings.accept(before.problem), before.xstar
+    if before.method == "loewner" and not before.tree and problem.full_torus and \
+            not problem.axes_named:
+        xstar = xstar or native.chosen_start(Task(problem, before.settings))
+        problem = reduced(problem, xstar)
+    return replace(before, problem=problem, xstar=xstar)
 
 
 def _check_problem(problem, resume):
@@ -120,36 +137,137 @@ class _Options:
 
 
 class _Run:
-    """One run of a search, from what was known before it to a Proof."""
+    """One run of a search, from what was known before it to a Proof.
+
+    The trees over the starting points are grown one after the other: over that of the proof, and
+    over those of its parts, which come into being where one leaves prisms undecided."""
 
     def __init__(self, before, backup, options):
-        self.before, self.backup, self.options = before, backup, options
-        self.began = time.monotonic()
+        self.proof, self.backup, self.options = before, backup, options
+        self.began, self.seconds_before = time.monotonic(), before.seconds
         self.end = self.began + options.time_limit
-        self.search = TreeSearch(Task(before.problem, before.settings, before.xstar), options.jobs,
-                                 options.executor, want_steps=options.on_leaf is not None)
-        self.walk, self.prism, self.seen = tree.Walk(), tree.prisms(before.problem), 0
+        self.examined = self.share = 0.0    # before the tree that is grown now; of all, told last
+        self.growing, self.search = 0, None     # the number of that tree, and its search
+        self.counts = before.counts             # when that began
+        self.tried = False                      # were other starting points looked for?
 
     def run(self):
-        with self.search as search:
-            before = self.before
-            begun = search.begin(before.tree, before.pending, before.counts, self._seconds_left)
-            if begun is None:           # no time even to set it up
-                return self._finished(replace(before, seconds=self._seconds()))
-            self.before = replace(before, xstar=begun.xstar, constants=begun.constants,
-                                  at_once=begun.at_once)
-            try:
-                self._look()
-                while not search.finished and self._seconds_left() > 0:
-                    search.work(min(LOOK_SECONDS, max(0.0, self._seconds_left())))
-                    self._look()
-                search.settle()
-                self._look()
-            except BaseException:       # what is known is saved, unless a change was half done
-                search.settle()
+        try:
+            while self._grow():
+                linked = (not self._decided() or self._is_hard()) and self._link()
+                if not linked and self._decided():
+                    if self.growing == len(self.proof.parts):
+                        break
+                    self.growing += 1
+                elif not linked and "U" in self._piece()[1].tree:
+                    break
+                self.examined = self.share
+        except native.WrongTree:            # the file is left to whoever wants to mend it
+            self.backup.leave()
+            raise
+        except BaseException:               # what is known is saved, unless a change was half done
+            if self.search is not None:
+                self.search.settle()
+            if self.search is not None or self.proof.tree:
                 self._save_what_stands()
-                raise
-            return self._finished(self._snapshot())
+            raise
+        return self._finished(self._snapshot())
+
+    # ---- one tree
+
+    def _grow(self):
+        """Grows one of the trees; False if time is up first.  It is left as it is, too, when it
+        turns out to be so hard that other starting points are to be looked for."""
+        problem, piece = self._piece()
+        task = Task(problem, self.proof.settings, piece.xstar)
+        with TreeSearch(task, self.options.jobs, self.options.executor,
+                        want_steps=self.options.on_leaf is not None) as search:
+            counts = self.counts = self.proof.counts
+            if self.proof.parts:
+                counts = replace(counts, **dict(zip(KINDS, kinds_of(piece.tree))))
+            begun = search.begin(piece.tree, piece.pending, counts, self._seconds_left)
+            if begun is None:               # no time even to set it up
+                return False
+            if self.growing == 0:
+                self.proof = replace(self.proof, xstar=begun.xstar, constants=begun.constants,
+                                     at_once=begun.at_once)
+            wrong = wrong_letter(problem, Fraction(begun.constants["B"]), begun.xstar, piece.tree,
+                                 self.proof.parts)
+            if wrong:
+                raise native.WrongTree("a leaf that is linked to part %s may lead out of its region"
+                                       % wrong)
+            self.search = search
+            self.walk, self.prism, self.seen = tree.Walk(), tree.prisms(problem), 0
+            self._look()
+            while not (search.finished or self._is_hard()) and self._seconds_left() > 0:
+                search.work(min(LOOK_SECONDS, max(0.0, self._seconds_left())))
+                self._look()
+            search.settle()
+            self._look()
+            ended = search.finished or self._is_hard()
+            self.proof, self.search = self._snapshot(), None
+            return ended
+
+    def _piece(self):
+        """The problem, and the Proof or the Part, of the tree that is grown."""
+        if self.growing == 0:
+            return self.proof.problem, self.proof
+        part = self.proof.parts[self.growing - 1]
+        return self.proof.part_problem(part), part
+
+    def _decided(self):
+        text = self._piece()[1].tree
+        return "U" not in text and tree.complete(text)
+
+    def _with(self, **changes):
+        """The proof with changes of the tree that is grown."""
+        if self.growing == 0:
+            return replace(self.proof, **changes)
+        parts = list(self.proof.parts)
+        parts[self.growing - 1] = replace(parts[self.growing - 1], **changes)
+        return replace(self.proof, parts=tuple(parts))
+
+    # ---- other starting points
+
+    def _is_hard(self):
+        """Did the tree over the first starting point need so long an orbit that others are to be
+        looked for before it is known what becomes of it?  That this is so of some prism does not
+        depend on when it is seen."""
+        counts = self.proof.counts if self.search is None else self.search.counts
+        return counts.max_NTsteps >= LONG and self._may_link() and self.growing == 0 and \
+            not self.tried
+
+    def _may_link(self):
+        """Once is enough for a tree; and where the core skips mirror images, what they are the
+        images of must be proved, not linked."""
+        problem, piece = self._piece()
+        settings = self.proof.settings
+        return settings.method == "loewner" and not settings.stubborn and \
+            problem.factor is None and not skips(problem, piece.xstar) and \
+            not tree.count_linked(piece.tree)
+
+    def _link(self):
+        """Links what the tree leaves undecided to new parts, if some are found."""
+        problem, piece = self._piece()
+        settings = self.proof.settings
+        if not self._may_link():
+            return False
+        undecided, self.tried = not self._is_hard(), True
+        with WorkerPool(None, self.options.jobs, native.Stop()) as pool:
+            found = plan(problem, settings.depth, piece.xstar, undecided,
+                         Fraction(self.proof.constants["B"]), len(self.proof.parts), pool,
+                         self._seconds_left)
+        if found is None:
+            return False
+        proof = self._with(tree=found.tree, pending=())
+        counts = self.counts if self.growing else Counts()      # without what was in vain
+        self.proof = replace(proof, parts=proof.parts + tuple(found.parts),
+                             counts=counts + found.counts)
+        self.walk, self.prism, self.seen = tree.Walk(), tree.prisms(problem), 0
+        self._tell(found.tree, found.steps)
+        return True
+
+    # ---- what is told
 
     def _seconds_left(self):
         return self.end - time.monotonic()
@@ -159,22 +277,32 @@ class _Run:
         if self.options.on_leaf:
             text, steps = self.search.beginning(self.seen)
             self.seen += len(text)
-            for node, points in zip(text, steps):
-                for kind, cell in self.walk.feed(node):
-                    if points != OLD:
-                        leaf = tree.Leaf(kind, *self.prism(cell), sum(cell[1]))
-                        self.options.on_leaf(leaf, points)
+            self._tell(text, steps)
         if self.options.progress:
-            self.options.progress(self.search.examined, self.search.counts)
+            left = len(self.proof.parts) - self.growing + 1
+            self.share = max(self.share, self.examined
+                             + (1 - self.examined) * self.search.examined / left)
+            self.options.progress(self.share, self.search.counts)
         self.backup.update(self._snapshot)
 
-    def _seconds(self):
-        return self.before.seconds + time.monotonic() - self.began
+    def _tell(self, text, steps):
+        for node, points in zip(text if self.options.on_leaf else "", steps):
+            for kind, cell in self.walk.feed(node):
+                if points != OLD:
+                    leaf = tree.Leaf(kind, *self.prism(cell), sum(cell[1]))
+                    self.options.on_leaf(leaf, points)
 
     def _snapshot(self):
-        text, pending = self.search.text()
-        return replace(self.before, tree=text, counts=self.search.counts, pending=tuple(pending),
-                       seconds=self._seconds(), version=__version__, sha256="")
+        """The proof as it stands."""
+        proof = self.proof
+        if self.search is not None:
+            text, pending = self.search.text()
+            proof = replace(self._with(tree=text, pending=tuple(pending)),
+                            counts=self.search.counts)
+        if proof.parts:
+            proof = replace(proof, counts=counted(proof))
+        return replace(proof, seconds=self.seconds_before + time.monotonic() - self.began,
+                       version=__version__, sha256="")
 
     def _save_what_stands(self):
         try:

@@ -2,17 +2,20 @@
 
 0 and 1 are cuts along v0 and v1; 2, 3 and 4 along the parameters (a, b and c, or where they move
 together 2 along all of them); the lower half comes first.  The leaves are P (proved), S (skipped by
-symmetry), U (undecided) and ? (untried); where a text ends too early, untried prisms are missing.
+symmetry), a lower-case letter (linked to the part of the proof that it names), U (undecided) and ?
+(untried); where a text ends too early, untried prisms are missing.
 """
 
 import re
 from array import array
 from collections import namedtuple
 from itertools import accumulate
+from string import ascii_lowercase
 
 CUTS = "01234"
 UNTRIED = "?"
-KINDS = "PSU" + UNTRIED
+LETTERS = ascii_lowercase
+KINDS = "PSU" + UNTRIED + LETTERS
 UNDECIDED_OR_UNTRIED = re.compile("[U?]")
 ROOT = (0,) * 5, (0,) * 5
 
@@ -102,3 +105,31 @@ def complete(text):
     if min(accumulate(opened[:-1]), default=0) < 0 or balance < -1:
         raise TreeError("text follows the end of the tree")
     return balance == -1 and UNTRIED not in text
+
+
+def count_linked(text):
+    """How many leaves are linked to other starting points."""
+    return len(text) - len(text.translate(dict.fromkeys(map(ord, LETTERS))))
+
+
+def check_letters(texts):
+    """TreeError: a leaf is linked to a part that is not there, or not after its own.
+
+    texts: the trees of a proof and of its parts a, b, ..."""
+    for n, text in enumerate(texts):
+        wrong = set(text) & set(LETTERS) - set(LETTERS[n:len(texts) - 1])
+        if wrong:
+            raise TreeError("a leaf of %s is linked to %s, which is no later part" % (
+                "part " + LETTERS[n - 1] if n else "the tree", min(wrong)))
+
+
+def most_cuts(text):
+    """The most cuts above a proved leaf, 0 if there is none."""
+    pending, most = [0], 0              # the cuts above the nodes that follow
+    for node in text:
+        cuts = pending.pop()
+        if node in CUTS:
+            pending += [cuts + 1] * 2
+        elif node == "P" and cuts > most:
+            most = cuts
+    return most

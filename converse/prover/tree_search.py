@@ -26,7 +26,7 @@ class Part:
     def __init__(self, cells, text=""):
         self.cells, self.pieces = list(cells), [text]
         self.steps = [OLD] * len(text)      # orbit lengths, by node of the text, if wanted
-        self.kinds = _kinds(text)
+        self.kinds = kinds_of(text)
 
     @property
     def stopped(self):
@@ -39,9 +39,13 @@ class Part:
         self.kinds = tuple(map(int.__add__, self.kinds, kinds))
 
 
-def _kinds(text):
-    """The numbers of nodes that are cuts, proved, symmetric, undecided."""
-    return (sum(map(text.count, tree.CUTS)), *map(text.count, "PSU"))
+KINDS = "cuts", "proved", "symmetric", "undecided", "linked"
+LINKED_AS_PROVED = dict.fromkeys(map(ord, tree.LETTERS), "P")   # the core knows of no links
+
+
+def kinds_of(text):
+    """The numbers of nodes of each of these kinds."""
+    return (sum(map(text.count, tree.CUTS)), *map(text.count, "PSU"), tree.count_linked(text))
 
 
 class TreeSearch(Resource):
@@ -73,7 +77,7 @@ class TreeSearch(Resource):
 
         hints: of the untried prisms, in their order."""
         began = time.monotonic()
-        self.pool.give(None, native.begin, self.task, text, here=True)
+        self.pool.give(None, native.begin, self.task, text.translate(LINKED_AS_PROVED), here=True)
         done = []
         while not done:
             seconds = seconds_left()
@@ -88,9 +92,10 @@ class TreeSearch(Resource):
         # is over sooner is not divided.
         self.began = time.monotonic()
         self.alone_until = self.began + max(ALONE_SECONDS, 10 * (self.began - began))
-        for name in "cuts", "proved", "symmetric", "undecided":
-            if getattr(begun.counts, name) != getattr(counts, name):
-                raise native.WrongTree()
+        seen = begun.counts
+        if (seen.cuts, seen.proved, seen.symmetric, seen.undecided) != (
+                counts.cuts, counts.proved + counts.linked, counts.symmetric, counts.undecided):
+            raise native.WrongTree()
         hints = iter(hints)
         cells = [(index, cuts, next(hints, 0)) for index, cuts, _ in begun.cells]
         *pieces, last = text.split(tree.UNTRIED)
@@ -113,10 +118,8 @@ class TreeSearch(Resource):
     def counts(self):
         """The statistics.  The nodes counted are those of the tree as it is, but the tries include
         those of parts that were dropped, since an undecided prism before them ended the search."""
-        cuts, proved, symmetric, undecided = map(
-            sum, zip(*(part.kinds for part in self._relevant()), (0,) * 4))
-        return replace(self.statistics, cuts=cuts, proved=proved, symmetric=symmetric,
-                       undecided=undecided)
+        kinds = map(sum, zip(*(part.kinds for part in self._relevant()), (0,) * len(KINDS)))
+        return replace(self.statistics, **dict(zip(KINDS, kinds)))
 
     @property
     def finished(self):
@@ -141,11 +144,11 @@ class TreeSearch(Resource):
 
     def _check(self, text):
         """AssertionError if the text lacks a prism or has one too many, so that it is not saved."""
-        kinds = cuts, proved, symmetric, undecided = _kinds(text)
-        missing = cuts + 1 - proved - symmetric - undecided - text.count(tree.UNTRIED)
+        kinds = cuts, *leaves = kinds_of(text)
+        missing = cuts + 1 - sum(leaves) - text.count(tree.UNTRIED)
         counts = self.counts
-        if (missing < 0 if undecided and not self.stubborn else missing != 0) or kinds != (
-                counts.cuts, counts.proved, counts.symmetric, counts.undecided):
+        if (missing < 0 if counts.undecided and not self.stubborn else missing != 0) or kinds != (
+                tuple(getattr(counts, name) for name in KINDS)):
             raise AssertionError("the tree is not whole")
 
     @contextlib.contextmanager
@@ -177,7 +180,7 @@ class TreeSearch(Resource):
         if grown is None:                   # stopped before it could begin
             return
         with self._change():
-            part.append([grown.text], grown.steps, _kinds(grown.text))
+            part.append([grown.text], grown.steps, kinds_of(grown.text))
             part.cells = grown.cells
             self.statistics += grown.counts
 
@@ -238,7 +241,7 @@ class TreeSearch(Resource):
             for part in self.parts:
                 if parts and not parts[-1].cells and (self.stubborn or not parts[-1].stopped):
                     parts[-1].append(part.pieces, part.steps, part.kinds)
-                    part.pieces, part.steps, part.kinds = [], [], _kinds("")
+                    part.pieces, part.steps, part.kinds = [], [], kinds_of("")
                     if not part.cells:
                         continue
                 parts.append(part)

@@ -9,6 +9,7 @@ Blocking signals by pthread_sigmask would not do: the mask is that of one thread
 receives the signal, and Python runs the handler in the main thread all the same."""
 
 import signal
+import sys
 import threading
 from typing import List
 
@@ -18,6 +19,7 @@ ENDING = [getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP")
 _depth = 0                              # of postponed(), in the main thread
 _heard: List[int] = []                  # numbers of the signals since interruptible() began
 _due = False                            # the first of them is yet to be raised
+_hook = sys.unraisablehook              # that of others
 
 
 def _interrupt(number, frame):
@@ -31,6 +33,16 @@ def _interrupt(number, frame):
             frame = frame.f_back
         if frame is None:               # else a Resource's __enter__ or __exit__ raises it
             _raise_if_due()
+
+
+def _not_passed_on(unraisable):
+    """The hook for what Python cannot pass on, as it was raised in a weakref's callback or a
+    __del__: if that is the signal, it is yet to be raised."""
+    global _due
+    if _heard and unraisable.exc_type is KeyboardInterrupt:
+        _due = True
+    else:
+        _hook(unraisable)
 
 
 def _raise_if_due():
@@ -81,17 +93,20 @@ class interruptible(Resource):
         self.numbers, self.at_end, self.before, self.heard = numbers, at_end, {}, _heard
 
     def acquire(self):
-        global _due
+        global _due, _hook
         for number in self.numbers if _in_main_thread() else ():
             handler = signal.getsignal(number)
             if handler in (signal.SIG_DFL, signal.default_int_handler):
                 if not self.before:
                     _heard.clear()
                     _due = False
+                    _hook, sys.unraisablehook = sys.unraisablehook, _not_passed_on
                 self.before[number] = handler
                 signal.signal(number, _interrupt)
 
     def release(self):
+        if self.before:
+            sys.unraisablehook = _hook
         # In reverse, so that SIGINT comes last: with Python's own handler back it may strike here.
         for number, handler in reversed(self.before.items()):
             signal.signal(number, signal.SIG_IGN if self.at_end and _heard else handler)

@@ -81,6 +81,8 @@ MUTATIONS = [                           # file, what stands there, what to put i
     (WAVES, "lost : lost + p * q->err_dot[wave];", "lost : lost;", "propagated"),
     (WAVES, "+ w->h[wave]);", ");", "propagated"),
     ("loewner/orbit.c", "const vec off = 0x1p-40", "const vec off = 0x1p-53", "sines"),
+    (WAVES, "q->err_beta = 0x1p-49 *", "q->err_beta = 0x1p-52 *", "turned"),
+    ("loewner/orbit.c", "unit = 0x1p-40 * (1.0", "unit = 0x1p-60 * (1.0", "propagated"),
     ("loewner/orbit.c", "WIDEN = 1.0 + 0x1p-43", "WIDEN = 1.0 + 0x1p-49", "widen"),
     ("loewner/orbit.c", "+ q->force[i]) * WIDEN;", "+ q->force[i]);", "widen"),
     ("loewner/orbit.c", "(q->lin_bound[i] + q->nonlin_bound[i]) * WIDEN",

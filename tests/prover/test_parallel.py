@@ -20,7 +20,7 @@ from conftest import ROOT
 from converse import ConverseError, Problem, Proof, prove
 from converse.model.exact import decimal_text
 from converse.model.problem import LINE
-from converse.prover import run, tree, tree_search, workers
+from converse.prover import native, run, tree, tree_search, workers
 
 from moments import PATIENCE
 from truth import TORTURE
@@ -34,7 +34,7 @@ def line(low, high):
                    together=True)
 
 
-LONG = line("0.0144", "0.0149")             # a second or so
+LONG = line("0.0140", "0.0149")             # a second or so
 
 
 @pytest.fixture(autouse=True)
@@ -54,10 +54,11 @@ def divided(monkeypatch):
 
 @pytest.fixture
 def ends(monkeypatch):
-    """ends(when): the time is up when the test says so."""
+    """ends(when): the time of a search that has begun is up when the test says so."""
     def ends(when):
         monkeypatch.setattr(run._Run, "end", property(
-            lambda self: -math.inf if when(self) else math.inf, lambda *_: None), raising=False)
+            lambda self: -math.inf if self.search is not None and when(self) else math.inf,
+            lambda *_: None), raising=False)
     return ends
 
 
@@ -413,16 +414,17 @@ def test_mpi(proof, tmp_path):
 
 
 class Late(Inline):
-    """Brings what is leftmost of the tree last: when nothing else is there to be waited for."""
+    """Brings last what was given to it first, that is, what is leftmost of the tree: when nothing
+    else is there to be waited for."""
 
     def __init__(self):
         self.late = []
 
-    def submit(self, work, task, cells, *rest):
-        if cells[0][0] != (0,) * 5:
-            return super().submit(work, task, cells, *rest)
+    def submit(self, work, *arguments):
+        if self.late:
+            return super().submit(work, *arguments)
         future = concurrent.futures.Future()
-        self.late.append(lambda: future.set_result(work(task, cells, *rest)))
+        self.late.append(lambda: future.set_result(work(*arguments)))
         return future
 
     def wait(self, futures, *rest, wait=concurrent.futures.wait):
@@ -435,7 +437,9 @@ class Late(Inline):
 def test_an_undecided_prism_before_finished_ones(tmp_path, monkeypatch, divided, jobs):
     """A search that is not stubborn ends at the first; what others did beyond it is of no
     account."""
-    monkeypatch.setattr(tree_search, "MANY", 40)
+    grow = native.grow                                  # a task ends after 40 leaves, however slow
+    monkeypatch.setattr(native, "grow", lambda task, cells, seconds, many, *rest: grow(
+        task, cells, math.inf, 40, *rest))
     executor = Late()
     monkeypatch.setattr(concurrent.futures, "wait", executor.wait)
     problem, path = line("0.0170", "0.0280"), tmp_path / "a.proof"
@@ -514,11 +518,11 @@ def test_what_lies_beyond_an_undecided_prism_is_not_its_own():
 def test_many_gaps_cost_little(monkeypatch):
     """Thousands of prisms that were given up are tried again without a look at all of them for
     each."""
-    shallow = prove(line("0.0130", "0.0280"), method="loewner", depth=16, stubborn=True)
+    shallow = prove(line("0.0130", "0.0280"), method="loewner", depth=18, stubborn=True)
     assert shallow.tree.count("U") > 2000
     monkeypatch.setattr(run, "LOOK_SECONDS", PATIENCE)      # however slowly it goes on
     looks, merge = [], tree_search.TreeSearch._merge
     monkeypatch.setattr(tree_search.TreeSearch, "_merge",
                         lambda self: (looks.append(self), merge(self)))
-    assert prove(resume=shallow, depth=17, jobs=2).counts.cuts > shallow.counts.cuts
+    assert prove(resume=shallow, depth=19, jobs=2).counts.cuts > shallow.counts.cuts
     assert len(looks) < 300

@@ -545,8 +545,10 @@ def test_format_2_is_refused(made_up, tmp_path):
     assert "\n" not in str(caught.value)
 
 
-def test_a_search_without_a_frame_is_continued_so(tmp_path):
-    """What was grown in the angles themselves, with all waves, whatever is asked for anew."""
+def test_a_search_without_a_frame_is_continued_so(tmp_path, monkeypatch):
+    """What was grown in the angles themselves, with all waves and on all of the torus, whatever is
+    asked for anew."""
+    monkeypatch.setattr(run, "reduced", lambda problem, xstar: problem)
     for problem in Problem(0, 0, "0.6"), Problem("1.1", "0.1", 0):
         path = tmp_path / ("%d.proof" % bool(problem.a[0]))
         plain = replace(problem, axes=IDENTITY, alone="no")

@@ -75,6 +75,22 @@ def test_only_the_first_signal_counts():
             raise
 
 
+def test_a_signal_that_python_does_not_pass_on_is_raised_later():
+    """As what is raised in a __del__ is not."""
+    class Last:
+        def __del__(self):
+            os.kill(os.getpid(), signal.SIGINT)
+            struck.append(True)
+
+    struck, hook, passed = [], sys.unraisablehook, False
+    with pytest.raises(KeyboardInterrupt), interruptible(ENDING):
+        Last()
+        passed = True
+        with postponed():
+            pass
+    assert passed and not struck and sys.unraisablehook is hook
+
+
 def test_a_handler_of_the_users_own_stays():
     heard = []
     before = signal.signal(signal.SIGINT, lambda *_: heard.append(1))

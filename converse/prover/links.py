@@ -1,0 +1,321 @@
+"""Links between starting points: what an invariant graph does at one point says what it does at
+another (docs/proof.md, section 10).
+
+Let f be the map of an invariant graph, f(x*) = F v and f(x) = F v'.  Then v' - v lies in a small
+rectangle that depends on x* and x alone.  So where v' must lie in a region that is excluded over
+x, v is excluded over x*.  All of this is exact arithmetic on rationals; nothing of it is floating.
+"""
+
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from itertools import product
+from typing import Dict, List, Optional, Sequence, Tuple
+
+from ..model.exact import Ends, pi_bounds, root_bounds, sine_bounds
+from ..model.problem import Problem
+from . import tree
+from .proof import Part
+
+PIECES = 8                              # of the segment, with a bound K of its own each
+DIGITS = 30                             # to which what is irrational is known
+COARSE = 10 ** 12                       # bounds are in units of 1/COARSE
+SPARE = Fraction(1, 10 ** 6)            # of widths, left to those who bound more loosely
+PI = pi_bounds(DIGITS)
+LEAST_GAP, MOST_CLUSTERS = Fraction(1, 256), 8      # as a part of a region's sides
+
+Box = Tuple[Ends, Ends]                 # the ranges of v0 and v1, in units of pi
+Cell = Tuple[Tuple[int, ...], Tuple[int, ...]]      # as in tree.Walk
+
+
+def _up(x):
+    return Fraction(-(-x * COARSE // 1), COARSE)
+
+
+def _root(x):
+    """A bound of the root of x >= 0."""
+    return root_bounds(x, 12)[1]
+
+
+def _most(low, high, y, reach):
+    """A bound of -p sin over p in [low, high] and the angles y - reach .. y + reach, y in units of
+    pi:  sin(y + t) is sin y cos t + cos y sin t, which is near sin y."""
+    bottom, top = sine_bounds(y, DIGITS)
+    slope = max(map(abs, sine_bounds(y + Fraction(1, 2), DIGITS)))
+    off = reach * slope + reach ** 2 / 2
+    ends = max(bottom - off, Fraction(-1)), min(top + off, Fraction(1))
+    return _up(max(-p * s for p in (low, high) for s in ends))
+
+
+def least_slope(largest: Fraction) -> Fraction:
+    """l with l + 1/l >= `largest`, at or above which no eigenvalue of beta is (Lemma 4)."""
+    if largest < 2:
+        raise ValueError("the largest eigenvalue of beta makes no sense: %s" % largest)
+    return 2 / (largest + _root(largest ** 2 - 4))  # rounded down, as the root is rounded up
+
+
+# ---- the lemma
+
+@dataclass(frozen=True)
+class Link:
+    """From the point here to the point there, both exact and in radians: v' - v lies in this box,
+    in units of pi, for every invariant graph of any parameters of the problem."""
+
+    box: Box
+
+    @classmethod
+    def between(cls, problem: Problem, largest: Fraction, here: Tuple[str, str],
+                there: Tuple[str, str]) -> "Link":
+        """Lemma 10 along the segment in pieces.  largest: a bound of B, of all parameters of the
+        problem."""
+        start, end = ([Fraction(x) for x in point] for point in (here, there))
+        step = [(b - a) / PIECES for a, b in zip(start, end)]
+        l, inverse = least_slope(largest), _inverse(problem.frame)
+        middle, radius = [Fraction(0)] * 2, [Fraction(0)] * 2
+        for piece in range(PIECES):
+            centre = [a + d * (piece + Fraction(1, 2)) for a, d in zip(start, step)]
+            d = _spread(problem, l, centre, [abs(x) / 2 for x in step])
+            moved = _applied(d, step)
+            width = _dot(step, moved)
+            for i, u in enumerate(inverse):
+                middle[i] += l * _dot(u, step) + _dot(u, moved) / 2
+                radius[i] += _root(max(Fraction(0), _dot(u, _applied(d, u)) * width)) / 2
+        return cls(tuple(_over_pi(m - r, m + r) for m, r in zip(middle, radius)))
+
+    def image(self, box: Box) -> Box:
+        """Where v' lies if v lies in the box."""
+        (a0, b0), (a1, b1) = self.box
+        return (box[0][0] + a0, box[0][1] + b0), (box[1][0] + a1, box[1][1] + b1)
+
+    def leads_into(self, box: Box, region: Box) -> bool:
+        """Does v' lie in the region if v lies in the box, with something to spare?"""
+        return all(a <= low - SPARE and high + SPARE <= b
+                   for (low, high), (a, b) in zip(self.image(box), region))
+
+
+def crests(problem: Problem) -> List[Fraction]:
+    """Bounds of the largest eigenvalue of beta, with every wave at its largest, at the ends of the
+    parameters; of the first parameter the slowest.  In each parameter they are convex."""
+    found = []
+    for signs in product((-1, 1), repeat=len(problem.parts)):
+        d = [Fraction(2), Fraction(0), Fraction(2)]
+        for (k0, k1, _), p, *parts in zip(problem.waves, problem.amplitude, *problem.parts):
+            size = abs(p + sum(sign * part for sign, part in zip(signs, parts)))
+            d = [x + size * k for x, k in zip(d, (k0 * k0, k0 * k1, k1 * k1))]
+        found.append(_up((d[0] + d[2]) / 2 + _root((d[0] - d[2]) ** 2 / 4 + d[1] ** 2)))
+    return found
+
+
+def _largest(ends, index, cuts):
+    """Of what is convex in each parameter, a bound in a slice of them: what lies between its values
+    at their ends.  The checker bounds B in the same way, and no worse: so its l is not less."""
+    found = []
+    for corner in product((0, 1), repeat=len(ends).bit_length() - 1):
+        values = ends
+        for i, k, upper in zip(index, cuts, corner):
+            half, at = len(values) // 2, Fraction(i + upper, 1 << k)
+            values = [low + at * (high - low) for low, high in zip(values[:half], values[half:])]
+        found.append(values[0])
+    return max(found)
+
+
+def _spread(problem, l, centre, reach):
+    """D = K - l, K >= beta(x) - l for all parameters and all x = centre - reach .. centre +
+    reach: three numbers.  Each wave is taken where it is largest."""
+    d = [2 - 2 * l, Fraction(0), 2 - 2 * l]
+    for (k0, k1, phase), p, *parts in zip(problem.waves, problem.amplitude, *problem.parts):
+        h = sum(map(abs, parts), Fraction(0))
+        y = (k0 * centre[0] + k1 * centre[1]) / PI[0]
+        off = 4 * abs(y) * (PI[1] - PI[0])          # as PI[0] is not pi
+        size = _most(p - h, p + h, y + phase, abs(k0) * reach[0] + abs(k1) * reach[1] + off)
+        d = [x + size * k for x, k in zip(d, (k0 * k0, k0 * k1, k1 * k1))]
+    return d
+
+
+def _applied(d, x):
+    return [d[0] * x[0] + d[1] * x[1], d[1] * x[0] + d[2] * x[1]]
+
+
+def _dot(x, y):
+    return x[0] * y[0] + x[1] * y[1]
+
+
+def _inverse(frame):
+    """The rows of F^-1."""
+    a, b, c, d = map(Fraction, frame)
+    determinant = a * d - b * c
+    return (d / determinant, -b / determinant), (-c / determinant, a / determinant)
+
+
+def _over_pi(low, high):
+    """An enclosure of low/pi .. high/pi with few digits."""
+    low, high = low / PI[low > 0], high / PI[high < 0]
+    return -_up(-low), _up(high)
+
+
+class Links:
+    """The links from one point to another for the parameters of cells, each for those of one."""
+
+    def __init__(self, problem: Problem, largest: Fraction, here: Tuple[str, str],
+                 there: Tuple[str, str]) -> None:
+        """largest: B, of all parameters of the problem."""
+        self.problem, self.largest, self.points = problem, largest, (here, there)
+        self.crests = crests(problem)
+        self.known: Dict[Tuple[Tuple[int, ...], ...], Link] = {}
+
+    def of(self, cell: Cell) -> Link:
+        """The link for the parameters of a cell."""
+        slices = cell[0][2:], cell[1][2:]
+        if slices not in self.known:
+            largest = min(self.largest, _largest(self.crests, *slices))
+            self.known[slices] = Link.between(_slice(self.problem, *slices), largest, *self.points)
+        return self.known[slices]
+
+
+def _slice(problem, index, cuts):
+    """The problem for such a slice of its parameters."""
+    t = [Fraction(2 * i + 1, 1 << k) - 1 for i, k in zip(index, cuts)]
+    amplitude = [p + sum(map(Fraction.__mul__, t, parts))
+                 for p, *parts in zip(problem.amplitude, *problem.parts)]
+    parts = [[p / (1 << k) for p in part] for part, k in zip(problem.parts, cuts)]
+    return Problem.patch(amplitude, parts, problem.waves, problem.v0, problem.v1,
+                         axes=problem.frame, alone=problem.alone)
+
+
+# ---- what one starting point leaves to others
+
+@dataclass(frozen=True)
+class Target:
+    """A part that cells may be linked to."""
+
+    letter: str
+    links: Links
+    region: Box
+
+
+def part_problem(problem: Problem, region: Box) -> Problem:
+    """The same problem with another region."""
+    return replace(problem, v0=region[0], v1=region[1], axes=problem.frame)
+
+
+def clusters(problem: Problem, text: str) -> List[List[Cell]]:
+    """The undecided cells of the tree, those that are near each other in one cluster; at most
+    MOST_CLUSTERS, and fewer cells are near each other then.  [] if that is not to be had."""
+    cells = [cell for kind, cell in tree.cells(text) if kind == "U"]
+    gap = LEAST_GAP
+    while gap < 1:
+        found = _joined(cells, [2 * h / gap for h in problem.half[-2:]])
+        if len(found) <= MOST_CLUSTERS:
+            return found
+        gap *= 2
+    return []
+
+
+def _joined(cells: Sequence[Cell], sizes: Sequence[Fraction]) -> List[List[Cell]]:
+    """The cells in clusters, when the region is covered by a grid with squares of which so many
+    belong to a side: those of the same square, and of two that touch, belong together."""
+    squares: Dict[Tuple[int, ...], List[Cell]] = {}
+    for cell in cells:
+        ranges = [range(int(size * i / (1 << k)), int(size * (i + 1) / (1 << k)) + 1)
+                  for i, k, size in zip(*cell, sizes)]
+        for square in product(*ranges):
+            squares.setdefault(square, []).append(cell)
+    found = []
+    for first in sorted(squares):
+        members: Dict[Cell, None] = {}
+        near = [first]
+        while near:
+            m, n = near.pop()
+            members.update(dict.fromkeys(squares.pop((m, n), ())))
+            near += [square for square in product((m - 1, m, m + 1), (n - 1, n, n + 1))
+                     if square in squares]
+        if members:
+            found.append(list(members))
+    return found
+
+
+def hull_of(problem: Problem, cells: Sequence[Cell]) -> Box:
+    """The rectangle that holds the cells."""
+    def side(axis: int) -> Ends:
+        middle, half = problem.centre[axis - 2], problem.half[axis - 2]
+        low = min(Fraction(index[axis], 1 << cuts[axis]) for index, cuts in cells)
+        high = max(Fraction(index[axis] + 1, 1 << cuts[axis]) for index, cuts in cells)
+        return middle - half + 2 * half * low, middle - half + 2 * half * high
+
+    return side(0), side(1)
+
+
+def _boxes(problem):
+    """A function from cells to boxes."""
+    prism = tree.prisms(problem)
+
+    def box(cell):
+        return tuple((c - h, c + h) for c, h in zip(*prism(cell)))
+
+    return box
+
+
+def region_around(box: Box, link: Link) -> Box:
+    """A region that the cells of the box are linked into, its ends with few digits."""
+    return _rounded(link.image(box))
+
+
+def region_of(problem: Problem, cells: Sequence[Cell], links: Links) -> Box:
+    """A region that all these cells are linked into, its ends with few digits."""
+    slices: Dict[tuple, List[Cell]] = {}
+    for cell in cells:
+        slices.setdefault((cell[0][2:], cell[1][2:]), []).append(cell)
+    images = [links.of(some[0]).image(hull_of(problem, some)) for some in slices.values()]
+    return _rounded(tuple((min(low for low, _ in ends), max(high for _, high in ends))
+                          for ends in zip(*images)))
+
+
+def _rounded(image):
+    def around(low: Fraction, high: Fraction) -> Ends:
+        spare, places = (high - low) / 32 + 2 * SPARE, 10 ** 5
+        return (Fraction((low - spare) * places // 1, places),
+                Fraction(-((-high - spare) * places // 1), places))
+
+    v0, v1 = image
+    return around(*v0), around(*v1)
+
+
+def wrong_letter(problem: Problem, largest: Fraction, xstar: Tuple[str, str], text: str,
+                 parts: Sequence[Part]) -> Optional[str]:
+    """The first of those leaves of a tree over xstar that are linked to a part, and may lead out of
+    its region: its letter.  None: there is none.  largest: B; parts: a, b, ... of the proof."""
+    targets = {letter: Target(letter, Links(problem, largest, xstar, part.xstar),
+                              (part.v0, part.v1))
+               for letter, part in zip(tree.LETTERS, parts) if letter in text}
+    box = _boxes(problem)
+    return next((kind for kind, cell in tree.cells(text if targets else "") if kind in targets
+                 and not targets[kind].links.of(cell).leads_into(
+                     box(cell), targets[kind].region)), None)
+
+
+def linked_tree(problem: Problem, text: str, steps: List[int],
+                targets: List[Target]) -> Tuple[str, List[int]]:
+    """The tree with a letter in the place of each node above undecided cells all of whose box is
+    linked to a part, as high up as may be; and the steps of the nodes that are left.  Cells that
+    are linked to no part stay undecided."""
+    size = len(text)
+    end, open_ = [0] * size, [False] * size     # of each node: where the next begins; anything U
+    for i in range(size - 1, -1, -1):
+        if text[i] in tree.CUTS:
+            other = end[i + 1]
+            end[i], open_[i] = end[other], open_[i + 1] or open_[other]
+        else:
+            end[i], open_[i] = i + 1, text[i] == "U"
+    nodes, kept, box = [], [], _boxes(problem)
+    walk, i = tree.Walk(), 0
+    while i < size:
+        cell, node = walk.pending[-1], text[i]
+        if open_[i]:
+            here = box(cell)
+            node = next((target.letter for target in targets
+                         if target.links.of(cell).leads_into(here, target.region)), node)
+        for _ in walk.feed(node):
+            pass
+        nodes.append(node)
+        kept.append(steps[i] if node == text[i] else 0)
+        i = i + 1 if node == text[i] else end[i]
+    return "".join(nodes), kept

@@ -1,0 +1,204 @@
+"""Further starting points: which, where one leaves prisms undecided.
+
+Orbits that minimize leave gaps, and x* must lie in one; but those of different rotation vectors
+leave different gaps.  So one x* may contradict all but a few clusters of prisms, and for each of
+these another x*, near by, is better.  The tree over the first x* is grown to a moderate depth; what
+is left is linked (links.py) to regions over others.  Nothing rests on how those are chosen."""
+
+from dataclasses import dataclass
+from fractions import Fraction
+from itertools import chain, compress, product
+from math import inf
+from typing import List, Tuple
+
+from ..model.exact import decimal_text
+from ..model.problem import Problem
+from . import native, tree
+from .links import (Link, Links, Target, clusters, crests, hull_of, linked_tree, part_problem,
+                    region_around, region_of)
+from .proof import Part
+from .settings import Settings
+from .workers import LOOK_SECONDS
+
+LOOK_DEPTH, LOOK_LEAVES = 24, 200000    # of the tree whose undecided prisms are clustered
+DEEPER = 4                              # cuts, as long as they halve what the clusters cover,
+SMALL = Fraction(1, 10000)              # and this is more, in units of pi squared
+TRY_DEPTH, TRY_LEAVES = 16, 10000       # of those by which starting points are compared
+ALL_LEAVES = 40000                      # of a proof that is tried to the end
+FINE_STEPS, NEAR_STEPS, FAR_STEPS = (   # between points, in radians
+    [Fraction(x, 1000) for x in steps] for steps in ((4, 8), (16, 32, 64), (128, 256, 512)))
+MOST_PARTS = 26
+
+
+@dataclass
+class Plan:
+    """What becomes of the tree over a starting point: its text, the lengths of its nodes' orbits,
+    the statistics of the search, and the new parts."""
+
+    tree: str
+    steps: List[int]
+    counts: native.Counts
+    parts: List[Part]
+
+
+def plan(problem, depth, xstar, undecided, largest, before, pool, seconds_left):
+    """A Plan for a region over xstar; None: none was found, or seconds_left() fell to 0 before.
+    Prisms for which there is no better point become untried.
+
+    undecided: is it known that x* alone will not do; before: how many further parts there are
+    already; largest: B; pool: of this process."""
+    grown, found = _look(problem, depth, xstar, pool, seconds_left)
+    if not found or before + len(found) > MOST_PARTS:
+        return None
+    targets, parts = [], []
+    points = [] if undecided else [tuple(Fraction(x) for x in xstar)]   # x* itself may do
+    for cells in found:
+        best = _best_start(problem, depth, xstar, largest, hull_of(problem, cells), points, pool,
+                           seconds_left)
+        if seconds_left() <= 0:
+            return None
+        if best is not None and _text(best) != xstar:
+            links = Links(problem, largest, xstar, _text(best))
+            region = region_of(problem, cells, links)
+            targets.append(Target(tree.LETTERS[before + len(parts)], links, region))
+            parts.append(Part(_text(best), *region))
+            points += [best] if best not in points else []
+    text, steps = linked_tree(problem, grown.text, grown.steps, targets)
+    used = [target.letter in text for target in targets]    # one region may do for two clusters
+    names = zip(compress((ord(target.letter) for target in targets), used), tree.LETTERS[before:])
+    text = text.translate(dict(names)).replace("U", tree.UNTRIED)
+    return Plan(text, steps, grown.counts, list(compress(parts, used))) if any(used) else None
+
+
+def _look(problem, depth, xstar, pool, seconds_left):
+    """What was grown over xstar, and the clusters of its undecided prisms: to LOOK_DEPTH cuts, and
+    deeper as long as they are large and shrink.  (None, []) if there is too much of it, or time was
+    up."""
+    best, covered, cuts = (None, []), inf, LOOK_DEPTH
+    while cuts <= depth:
+        grown = _surveys(pool, seconds_left, [_task(problem, xstar, cuts)], LOOK_LEAVES)
+        if not grown or grown[0].cells:
+            break
+        found = clusters(problem, grown[0].text)
+        area = sum((b - a) * (d - c) for (a, b), (c, d)
+                   in (hull_of(problem, cells) for cells in found))
+        if best[1] and 2 * area > covered:
+            break
+        best, covered, cuts = (grown[0], found), area, cuts + DEEPER
+        if area < SMALL or 3 * len(grown[0].text) > 2 * LOOK_LEAVES:
+            break
+    return best
+
+
+def _task(problem, xstar, depth):
+    return native.Task(problem, Settings("loewner", depth, stubborn=True), xstar)
+
+
+def _surveys(pool, seconds_left, tasks, most):
+    """What was grown of each task, up to so many leaves; [] if time was up before."""
+    for key, task in enumerate(tasks):
+        pool.give(key, native.survey, task, most, here=True)
+    found = {}
+    while len(found) < len(tasks):
+        seconds = seconds_left()
+        if seconds <= 0:
+            pool.stop.set()
+        found.update(pool.take(seconds if seconds > 0 else LOOK_SECONDS))
+    return [] if None in found.values() else [found[key] for key in range(len(tasks))]
+
+
+def _best_start(problem, depth, xstar, largest, box, others, pool, seconds_left):
+    """A starting point over which the box's image is proved where the waves bend least; if none is
+    found, that over which the fewest prisms resist; None if that is x* or time is up.
+
+    others: points to be tried first."""
+    weakest, start = _weakest(problem), tuple(Fraction(x) for x in xstar)
+    largest = min(largest, *crests(weakest))
+
+    def task(point, settings):
+        link = Link.between(weakest, largest, xstar, _text(point))
+        return native.Task(part_problem(weakest, region_around(box, link)), settings, _text(point))
+
+    def does(point):
+        grown = _surveys(pool, seconds_left, [task(point, Settings("loewner", depth))], ALL_LEAVES)
+        return grown and tree.complete(grown[0].text) and not grown[0].counts.undecided
+
+    known = {}          # scores
+
+    def look(points):
+        """The best of these points; None if there was no time."""
+        new = [point for point in dict.fromkeys(points) if point not in known]
+        most = min([TRY_LEAVES, *(2 * leaves for _, leaves in sorted(known.values())[:1])])
+        grown = _surveys(pool, seconds_left, [
+            task(point, Settings("loewner", TRY_DEPTH, stubborn=True)) for point in new], most)
+        known.update(zip(new, map(_score, grown)))
+        return min(points, key=known.__getitem__) if len(grown) == len(new) else None
+
+    tried = set()
+    for point in chain(others, _candidates(look, known, start, _ways(problem))):
+        if point not in tried and does(point):
+            return point
+        tried.add(point)
+    best = min(known, key=known.__getitem__, default=start)
+    return None if best == start or known[best][0] == inf or seconds_left() <= 0 else best
+
+
+def _ways(problem):
+    """Along the axes of the frame and across, each of length 1; only those that the waves feel
+    where they feel one combination of the angles."""
+    columns = [problem.frame[i::2] for i in range(2)]
+    ways = [*columns, *([a + sign * b for a, b in zip(*columns)] for sign in (1, -1))]
+    if problem.is_flat:
+        ways = [next((k0, k1) for (k0, k1, _), p, *parts in zip(
+            problem.waves, problem.amplitude, *problem.parts) if p or any(parts))]
+    return [tuple(Fraction(sign * x, max(map(abs, way))) for x in way)
+            for way in ways if any(way) for sign in (1, -1)]
+
+
+def _candidates(look, known, start, ways):
+    """Yields points over which few prisms resist, good ones first, as long as look() has time: of
+    those near start, and of those that smaller steps lead to from the best one; and then of those
+    farther away."""
+    best = look([start])
+    for steps in NEAR_STEPS, FAR_STEPS:
+        rings = [look([_moved(start, step, way) for way in ways]) for step in steps]
+        if best is None or None in rings:
+            return
+        best = min([best, *rings], key=known.__getitem__)
+        yield best
+        for step in reversed([*FINE_STEPS, *steps]):
+            while known[best][0]:
+                better = look([_moved(best, step, way) for way in ways])
+                if better is None:
+                    return
+                if not known[better] < known[best]:
+                    break
+                best = better
+        yield best
+        yield from sorted(rings, key=known.__getitem__)
+
+
+def _moved(point, step, way):
+    return tuple(round(a + step * b, 6) for a, b in zip(point, way))
+
+
+def _weakest(problem):
+    """The problem at that corner of its parameters where the waves bend least: there most prisms
+    resist, and cuts of parameters do not hide how many."""
+    corners = [[p + sum(s * part for s, part in zip(signs, parts))
+                for p, *parts in zip(problem.amplitude, *problem.parts)]
+               for signs in product((-1, 1), repeat=len(problem.parts))]
+    amplitude = min(corners, key=lambda corner: sum(
+        abs(p) * (k0 * k0 + k1 * k1) for p, (k0, k1, _) in zip(corner, problem.waves)))
+    return Problem.patch(amplitude, (), problem.waves, problem.v0, problem.v1, axes=problem.frame)
+
+
+def _score(grown) -> Tuple[float, int]:
+    """How many prisms resist, and how many there are."""
+    counts = grown.counts
+    return (inf if grown.cells else counts.undecided,
+            counts.proved + counts.undecided + len(grown.cells))
+
+
+def _text(point):
+    return tuple(decimal_text(x) for x in point)

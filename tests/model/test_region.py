@@ -1,0 +1,198 @@
+"""Which regions stand for the torus: the rule, against orbits with many digits."""
+
+import math
+from dataclasses import replace
+from fractions import Fraction
+
+import mpmath
+import pytest
+
+from converse import Problem, Proof, Settings, prove
+from converse.model import region
+from converse.model.problem import IDENTITY, LINE, periods
+from converse.model.region import DIAGONALS, EXCHANGE, REVERSAL
+
+from truth import TORTURE, mp, rng_for
+
+CASES = 200 * TORTURE
+STAR = "0.858028", "0.858028"
+
+
+def line(low, high=None, **ranges):
+    low, high = Fraction(low) * LINE, Fraction(high or low) * LINE
+    return Problem((low, high), (low, high), (2 * low, 2 * high), together=low != high, **ranges)
+
+
+def draw(rng):
+    """A problem of waves of any kind, with up to three parameters, and x*."""
+    waves = list({(rng.randrange(-3, 4) or 1, rng.randrange(-3, 4), Fraction(rng.randrange(8), 7))
+                  for _ in range(rng.randrange(1, 5))})
+    amplitude = [Fraction(rng.randrange(-999, 999) or 1, 1000) for _ in waves]
+    parts = [[Fraction(rng.randrange(-99, 99), 1000) for _ in waves]
+             for _ in range(rng.randrange(4))]
+    star = tuple(str(Fraction(rng.randrange(-4000, 4000), 1000) * 1.0) for _ in range(2))
+    return Problem.patch(amplitude, parts, waves, alone=None), star
+
+
+def frames(rng):
+    while True:
+        frame = tuple(rng.randrange(-4, 5) for _ in range(4))
+        if frame[0] * frame[3] != frame[1] * frame[2]:
+            yield frame
+
+
+def successors(problem, star, t):
+    """x[-1] + x[1] of every orbit through x*, in units of pi."""
+    result = []
+    for i in range(2):
+        force = mp(0)
+        for wave, p, *parts in zip(problem.waves, problem.amplitude, *problem.parts):
+            size = mp(p + sum((e * g for e, g in zip(t, parts)), Fraction(0)))
+            angle = wave[0] * mp(star[0]) + wave[1] * mp(star[1]) + mp(wave[2]) * mpmath.pi
+            force += size * wave[i] * mpmath.cos(angle)
+        result.append((2 * mp(star[i]) + force) / mpmath.pi)
+    return result
+
+
+def test_the_centre_of_the_reversal():
+    """c0 is between its bounds for all parameters, which the corners attain."""
+    rng = rng_for("reversal centre")
+    with mpmath.workdps(50):
+        for frame, _ in zip(frames(rng), range(CASES)):
+            problem, star = draw(rng)
+            problem = replace(problem, axes=frame,
+                              alone="no" if problem.factor is not None else None)
+            low, high = map(mp, region.reversal_centre(problem, star))
+            f00, f01, f10, f11 = problem.frame
+            seen = []
+            for corner in range(3 ** len(problem.parts)):
+                t = [corner // 3 ** m % 3 - 1 for m in range(len(problem.parts))]
+                x0, x1 = successors(problem, star, t)
+                seen.append((f11 * x0 - f01 * x1) / (2 * (f00 * f11 - f01 * f10)))
+            assert low <= min(seen) and max(seen) <= high
+            assert min(seen) - low + high - max(seen) < 1e-25
+
+
+def test_the_cosine_of_many_turns():
+    """There the digits of pi decide, and the bounds are no wider than they need to be."""
+    rng = rng_for("cosine")
+    with mpmath.workdps(80):
+        for _ in range(CASES):
+            angle = Fraction(rng.randrange(10 ** 30), 10 ** 10)
+            phase = Fraction(rng.randrange(7), 7)
+            least, most = map(mp, region._cosine(angle, phase))
+            true = mpmath.cos(mp(angle) + mp(phase) * mpmath.pi)
+            assert least <= true <= most and most - least < 1e-18
+
+
+def brought(problem, star, t, v):
+    """v after shifts, reversal and exchange as the proof has them, if it is in the region then."""
+    (low0, high0), (low1, high1) = problem.v0, problem.v1
+    f00, f01, f10, f11 = problem.frame
+    det = f00 * f11 - f01 * f10
+    total = successors(problem, star, t)
+    twice = [(f11 * total[0] - f01 * total[1]) / det, (f00 * total[1] - f10 * total[0]) / det]
+    for u in (v, [c - x for c, x in zip(twice, v)]):
+        x = [f00 * u[0] + f01 * u[1], f10 * u[0] + f11 * u[1]]
+        for m in range(-9, 10):
+            for n in range(-9, 10):
+                y = [x[0] + 2 * m, x[1] + 2 * n]
+                w = [(f11 * y[0] - f01 * y[1]) / det, (f00 * y[1] - f10 * y[0]) / det]
+                for z in (w[1], -w[1]) if problem.v1 == (0, 1) else (w[1],):
+                    if low0 <= w[0] <= high0 and low1 <= z <= high1:
+                        return True
+    return False
+
+
+@pytest.mark.parametrize("problem, star, frame, used", [
+    (line("0.0142"), STAR, DIAGONALS, [REVERSAL, EXCHANGE]),
+    (line("0.0142", "0.0280"), STAR, DIAGONALS, [REVERSAL, EXCHANGE]),
+    (line("0.0142"), ("0.858", "0.8"), (1, -1, 1, 1), [REVERSAL]),
+    (Problem(("0.3", "0.4"), ("0.3", "0.4"), "0.6"), STAR, DIAGONALS, [REVERSAL, EXCHANGE]),
+    (Problem(("0.3", "0.4"), ("0.3", "0.5"), "0.6"), STAR, (1, -1, 1, 1), [REVERSAL]),
+    (Problem("0.9", "0.9", "0.1"), ("0.3", "1.5"), IDENTITY, [REVERSAL]),
+    (Problem("0.3", "0.9", "0.1"), ("0.3", "1.5"), (0, 1, 1, 0), [REVERSAL]),
+    (Problem("0.3", "0.9", 0), STAR, (0, 1, 1, 0), [REVERSAL]),
+    (Problem(0, 0, "0.6"), STAR, (1, 0, -1, 1), []),
+    (Problem.patch(["0.2", "0.3"], (), [(1, 0), (4, -2)]), STAR, (2, 1, -1, 2), [REVERSAL]),
+    (Problem.patch(["0.2", "0.2", "0.3"], (), [(1, 0), (0, 1), (1, -1, "1/2")]), STAR,
+     (1, 1, -1, 1), [REVERSAL]),
+])
+def test_the_region_that_is_chosen(problem, star, frame, used):
+    """Any successor is in it, but for shifts and the symmetries that are said to be used."""
+    rng, chosen = rng_for("chosen region"), region.reduced(problem, star)
+    assert chosen.frame == frame and region.symmetries_used(chosen, star) == used
+    assert (chosen.v1 == (0, 1)) == (EXCHANGE in used)
+    assert region.symmetries_used(chosen, None) == (None if used else [])
+    share = math.prod((high - low) / period for (low, high), period
+                      in zip((chosen.v0, chosen.v1), periods(frame)))
+    assert share * 2 ** len(used) < 1.2
+    with mpmath.workdps(30):
+        for _ in range(10 * TORTURE):
+            t = [rng.choice([-1, 1, 0]) for _ in problem.parts]
+            assert brought(chosen, star, t, [mp(rng.uniform(-1, 1)) for _ in range(2)]) or \
+                problem.factor is not None
+
+
+@pytest.mark.parametrize("change", [
+    lambda v0, v1: ((v0[0] + Fraction(1, 10 ** 6), v0[1]), v1),
+    lambda v0, v1: ((v0[0], v0[1] - Fraction(1, 10 ** 6)), v1),
+    lambda v0, v1: (v0, (v1[0], v1[1] - Fraction(1, 10 ** 30))),
+    lambda v0, v1: (v0, (v1[0] + Fraction(1, 10 ** 30), v1[1])),
+])
+def test_less_is_a_part_of_the_torus(change):
+    chosen = region.reduced(line("0.0142", "0.0145"), STAR)
+    v0, v1 = change(chosen.v0, chosen.v1)
+    less = replace(chosen, v0=v0, v1=v1)
+    assert region.symmetries_used(less, STAR) is None
+    proof = Proof(less, Settings("loewner"), "P", xstar=STAR)
+    assert proof.conclusion == "region" and not proof.no_tori
+    assert "only a part of the torus" in proof.report()
+
+
+def test_exchange_needs_the_diagonal_and_the_symmetry():
+    chosen = region.reduced(line("0.0142"), STAR)
+    assert region.symmetries_used(chosen, ("0.858028", "0.858029")) is None
+    skew = Problem.patch(["0.16", "0.16000001", "0.32"], v0=chosen.v0, v1=chosen.v1, axes=DIAGONALS)
+    assert region.symmetries_used(skew, STAR) is None
+    for parts, good in (([["0.01", 0, 0], [0, "0.01", 0]], True), ([["0.01", 0, 0]], False),
+                        ([["0.01", "-0.01", 0]], False), ([["0.01", "0.01", 0]], True)):
+        patch = Problem.patch(["0.3", "0.3", "0.6"], parts)
+        assert region.exchangeable(patch, STAR) == good
+    assert not region.exchangeable(Problem("0.9", "0.9", 0), STAR)      # one is looked at alone
+
+
+@pytest.mark.parametrize("problem, star", [
+    (Problem("1e100", "1e100", "1e100"), STAR),                     # c0 is far away
+    (Problem((-4, 4), (-4, 4), "0.1"), STAR),                       # or moves too far
+    (line("0.0142"), ("1000.5", "1000.5")),
+    (Problem.patch(["0.2", "0.3"], [["5", "5"]], [(1, 0), (2, 1)]), STAR)])
+def test_where_reversal_gains_nothing(problem, star):
+    chosen = region.reduced(problem, star)
+    low, high = chosen.v0
+    assert low == 0 and high >= periods(chosen.frame)[0]
+    assert REVERSAL not in region.symmetries_used(chosen, star)
+
+
+def test_a_place_is_found_modulo_the_lattice():
+    rng = rng_for("nearest")
+    for frame, _ in zip(frames(rng), range(CASES)):
+        x, centre = ([Fraction(rng.randrange(-999, 999), 100) for _ in range(2)] for _ in range(2))
+        v0, v1 = region.nearest(frame, x, centre)
+        off = frame[0] * v0 + frame[1] * v1 - x[0], frame[2] * v0 + frame[3] * v1 - x[1]
+        assert all(y % 2 == 0 for y in off)
+        assert all(2 * abs(v - c) <= period for v, c, period
+                   in zip((v0, v1), centre, periods(frame)))
+
+
+def test_the_same_theorem_from_less():
+    """What is proved with the frame and region of its choice is proved with whole circles, too."""
+    problem = line("0.0150")
+    small = prove(problem, method="loewner")
+    whole = prove(replace(problem, axes=(0, 1, 1, 0)), method="loewner")
+    assert small.no_tori and whole.no_tori and whole.problem.v0 == (0, 2)
+    assert 6 * len(small.tree) < len(whole.tree)
+    named = prove(replace(problem, axes=IDENTITY), method="loewner")    # which is no choice of ours
+    assert named.no_tori and named.problem.frame == IDENTITY and named.problem.v0 == (0, 2)
+    assert "which by reversal of time and exchange of the angles stands for the whole torus" in \
+        small.report() and "Region :" not in whole.report()

@@ -1,0 +1,407 @@
+"""Several starting points: what is proved over one is linked to others."""
+
+import re
+from dataclasses import dataclass, replace
+from fractions import Fraction
+
+import numpy as np
+import pytest
+
+from converse import ConverseError, Problem, Proof, check, prove, read_input
+from converse.check.claim import Claim, Wave
+from converse.check.criterion import Criterion
+from converse.check.links import displacement
+from converse.model.problem import LINE
+from converse.prover import run, starts, tree
+from converse.prover.links import (SPARE, Link, Links, Target, clusters, crests, hull_of,
+                                   least_slope, linked_tree, part_problem, region_around)
+from converse.prover.native import Counts
+from converse.prover.proof import Part
+from converse.prover.resume import counted
+from converse.storage import files
+from converse.tori.find import find
+from converse.tori.rotation import read_rotation
+
+DIAGONAL = 1, 1, 1, -1
+
+
+def line(low, high=None):
+    ends = LINE * Fraction(low), LINE * Fraction(high or low)
+    return Problem(ends, ends, tuple(2 * x for x in ends), together=True)
+
+
+def _easily(monkeypatch):
+    monkeypatch.setattr(run, "LONG", 15)
+    monkeypatch.setattr(starts, "LOOK_DEPTH", 8)
+    monkeypatch.setattr(starts, "SMALL", 1)
+    monkeypatch.setattr(starts, "TRY_DEPTH", 6)
+    monkeypatch.setattr(starts, "ALL_LEAVES", 5)
+    for name, steps in ("FINE", []), ("NEAR", [Fraction("0.032")]), ("FAR", []):
+        monkeypatch.setattr(starts, name + "_STEPS", steps)
+
+
+@pytest.fixture
+def easily(monkeypatch):
+    """Links are made of short orbits already, where one starting point would do."""
+    _easily(monkeypatch)
+
+
+@pytest.fixture(scope="module")
+def linked():
+    with pytest.MonkeyPatch.context() as monkeypatch:
+        _easily(monkeypatch)
+        return prove(line("0.015"), method="loewner")
+
+
+def timeless(proof):
+    return replace(proof, seconds=0)
+
+
+# ---- the lemma
+
+@pytest.mark.parametrize("problem, rotation", [
+    (line("0.004"), "T49"),
+    (Problem.patch(["0.05", "0.04", "-0.02"], (), [
+        (1, 0), (0, 1, Fraction(1, 8)), (1, -1, Fraction(1, 3))]), "spiral")])
+@pytest.mark.parametrize("frame", [(1, 0, 0, 1), DIAGONAL, (2, -1, 1, 2)])
+def test_invariant_tori_obey_the_link(problem, rotation, frame):
+    """The map of a torus that exists takes v' where the lemma says, for many pairs of points."""
+    torus = find(Problem.patch(problem.amplitude, (), problem.waves), read_rotation(rotation))
+    problem = Problem.patch(problem.amplitude, (), problem.waves, axes=frame)
+    rng = np.random.default_rng(5)
+    inverse = np.linalg.inv(np.reshape(frame, (2, 2)))
+    amplitude, k = np.array(problem.amplitude, float), np.array([w[:2] for w in problem.waves])
+    phase = np.pi * np.array([float(w[2]) for w in problem.waves])
+    largest = Fraction(2 + float(np.abs(amplitude) @ (k ** 2).sum(1))).limit_denominator(10 ** 9)
+    for _ in range(25):
+        theta = rng.uniform(0, 7, 2)
+        points = np.array([theta, theta + rng.normal(0, 0.02, 2)])
+        x, J = torus.x(points), torus.J(points)
+        # V' = -sum of p k cos(k.x + phase), and f(x) = x + J - V'(x)
+        v = (x + J + np.cos(x @ k.T + phase) @ (amplitude[:, None] * k)) @ inverse.T / np.pi
+        here, there = (tuple("%.17f" % number for number in point) for point in x)
+        for moved, (low, high) in zip(v[1] - v[0],
+                                      Link.between(problem, largest, here, there).box):
+            assert float(low) - 1e-12 < moved < float(high) + 1e-12
+
+
+@pytest.mark.parametrize("frame", [(1, 0, 0, 1), DIAGONAL, (2, -1, 1, 2)])
+def test_the_box_is_no_wider_than_the_lemma_needs(frame):
+    """Close by, K is beta - l, and some symmetric matrix between l and K moves v to each end of the
+    box: l + D^1/2 (1 + R)/2 D^1/2 with the reflection R that takes D^1/2 w to D^1/2 u."""
+    problem = Problem.patch(["0.15", "0.16", "0.3"], (), [(1, 0), (0, 1), (1, 1)], axes=frame)
+    x, w, B = np.array([0.85, 0.9]), np.array([3e-6, -2e-6]), Fraction("2.7")
+    l = float(least_slope(B))
+    s = [0.15 * np.sin(x[0]), 0.16 * np.sin(x[1]), 0.3 * np.sin(x.sum())]
+    D = np.array([[2 - s[0] - s[2], -s[2]], [-s[2], 2 - s[1] - s[2]]]) - 2 * l * np.eye(2)
+    size, axes = np.linalg.eigh(D)
+    root = axes @ np.diag(size ** 0.5) @ axes.T
+    box = Link.between(problem, B, *(tuple("%.12f" % y for y in z) for z in (x, x + w)))
+    for u, (low, high) in zip(np.linalg.inv(np.reshape(frame, (2, 2))), box.box):
+        a, b = (root @ y / np.linalg.norm(root @ y) for y in (u, w))
+        for sign, end in (-1, low), (1, high):
+            bisector = a + sign * b if abs(a + sign * b).max() > 1e-9 else np.array([-a[1], a[0]])
+            R = 2 * np.outer(bisector, bisector) / bisector.dot(bisector) - np.eye(2)
+            between = l * np.eye(2) + root @ (np.eye(2) + R) @ root / 2
+            assert 0 <= sign * (float(end) - u @ between @ w / np.pi) < 1e-9
+
+
+def test_least_slope():
+    for largest in Fraction("2.001"), Fraction("2.736074882225"), Fraction(10), Fraction(10) ** 20:
+        l = least_slope(largest)
+        assert 0 <= l + 1 / l - largest < Fraction(1, 10 ** 6) and l < 1
+    with pytest.raises(ValueError):
+        least_slope(Fraction("1.9"))
+
+
+def test_a_link_holds_for_all_parameters():
+    """The box of a patch holds those of its points."""
+    patch = Problem(("0.15", "0.17"), ("0.15", "0.17"), ("0.3", "0.35"))
+    boxes = [Link.between(problem, Fraction(3), ("0.85", "0.86"), ("0.88", "0.84")).box
+             for problem in (patch, Problem("0.15", "0.17", "0.35"),
+                             Problem("0.16", "0.15", "0.3"))]
+    for box in boxes[1:]:
+        assert all(a[0] <= b[0] and b[1] <= a[1] for a, b in zip(boxes[0], box))
+
+
+def test_links_of_cells_are_narrower():
+    """Of a slice of the parameters, the box holds those of its points, and lies in that of all."""
+    problem, points = line("0.0139", "0.0280"), (("0.858", "0.858"), ("0.88", "0.84"))
+    links = Links(problem, Fraction("3.5"), *points)
+    whole, quarter = (links.of(((0, 0, index), (1, 2, cuts))) for index, cuts in ((0, 0), (1, 2)))
+    assert links.of(((5, 5, 1), (6, 6, 2))) is quarter
+    width = Fraction("0.0141") / 4
+    for epsilon in (Fraction("0.0139") + width, Fraction("0.0139") + 2 * width):
+        point = Link.between(line(epsilon), crests(line(epsilon))[0], *points)
+        for a, b, c in zip(whole.box, quarter.box, point.box):
+            assert a[0] < b[0] <= c[0] and c[1] <= b[1] < a[1]
+
+
+@pytest.mark.parametrize("problem", [
+    Problem.patch(["0.5", "0"], [["0", "0.5"]], [(1, 0), (1, 1)], v0=(0, 1), v1=(0, 1)),
+    Problem(("0.3", "0.6"), ("0.3", "0.6"), "0"), Problem(("0.1", "0.4"), ("0.1", "0.4"), "0.2"),
+    Problem.patch(["0.3", "-0.1", "0.2"], [["0.1", "0.2", 0], ["-0.1", "0.1", "0.3"]], [
+        (1, 0), (0, 1, Fraction(1, 8)), (1, -1, Fraction(1, 3))], axes=DIAGONAL)])
+@pytest.mark.parametrize("points", [
+    (("0.85", "0.86"), ("0.88", "0.84")), (("1.32", "1.32"), ("1.82", "1.82"))])
+def test_the_checker_links_no_worse(problem, points):
+    """What is linked with SPARE the checker links, whatever the cell, wide or narrow."""
+    waves = [Wave(wave[:2], wave[2], p, tuple(parts)) for wave, p, *parts
+             in zip(problem.waves, problem.amplitude, *problem.parts)]
+    here, there = (tuple(map(Fraction, point)) for point in points)
+    criterion = Criterion(Claim(tuple(waves), problem.centre[-2:], problem.half[-2:], problem.frame,
+                                None, here, {"most_cuts": 12}, "no", "234PPPP", ""))
+    links = Links(problem, Fraction(criterion.B, criterion.fixed.one), *points)
+    for index, cuts in ((0, 0, 0), (0, 0, 0)), ((1, 0, 0), (1, 0, 0)), ((7, 7, 0), (4, 4, 0)), (
+            (2, 12, 1), (4, 4, 2)):
+        cell = (0, 0, *index), (0, 0, *cuts)
+        for (a, b), (low, high) in zip(links.of(cell).box, displacement(
+                criterion, cell, here, there)):
+            assert a - SPARE < low < high < b + SPARE
+
+
+# ---- letters
+
+@dataclass
+class Everywhere:
+    """The same link for all cells."""
+
+    link: Link
+
+    def of(self, cell):
+        return self.link
+
+
+def test_letters_stand_as_high_up_as_may_be():
+    problem = Problem("0.1", "0.1", "0.2", v0=(0, 1), v1=(0, 1))
+    still = Everywhere(Link(((Fraction(0), Fraction(0)),) * 2))
+    text, steps = "00PU1UP", [0, 0, 5, 0, 0, 0, 7]
+    assert [hull_of(problem, cells) for cells in clusters(problem, text)] == [
+        ((Fraction(1, 4), 1), (0, 1))]
+    whole = Target("b", still, ((Fraction(-1), Fraction(2)),) * 2)
+    assert linked_tree(problem, text, steps, [whole]) == ("b", [0])
+    left = Target("c", still, ((Fraction(-1), Fraction("0.51")), (Fraction(-1), Fraction(2))))
+    assert linked_tree(problem, text, steps, [left]) == ("0c1UP", [0, 0, 0, 0, 7])
+    tight = Target("d", still, ((Fraction(1, 4), Fraction(1)), (Fraction(0), Fraction(1))))
+    assert linked_tree(problem, text, steps, [tight]) == (text, steps)      # nothing to spare
+    far = Target("e", Everywhere(Link(((Fraction(3), Fraction(3)),) * 2)), whole.region)
+    assert linked_tree(problem, text, steps, [far]) == (text, steps)
+
+
+def test_cells_are_linked_into_the_region_around_them():
+    link = Link(((Fraction("-0.01"), Fraction("0.02")), (Fraction("-0.03"), Fraction("-0.02"))))
+    box = (Fraction("0.1"), Fraction("0.2")), (Fraction("0.7"), Fraction("0.71"))
+    assert link.leads_into(box, region_around(box, link))
+    assert not link.leads_into(box, box)
+
+
+def test_counting():
+    assert tree.count_linked("0a1PzU?") == 2
+    assert tree.most_cuts("00P1Pa1Pb") == 3 and tree.most_cuts("U") == 0
+    assert tree.complete("0aP") and not tree.complete("0a")
+
+
+# ---- whole proofs
+
+def test_a_linked_proof(linked, tmp_path):
+    """It is found, written, read and verified by the checker; the report names the points."""
+    assert linked.no_tori and len(linked.parts) == 2
+    assert {"a", "b"} <= set(linked.tree) and linked.counts.linked == tree.count_linked(linked.tree)
+    trees = [linked.tree, *(part.tree for part in linked.parts)]
+    assert linked.counts.proved == sum(text.count("P") for text in trees)
+    assert linked.counts.most_cuts == max(map(tree.most_cuts, trees))
+    linked.save(tmp_path / "proof")
+    assert timeless(replace(Proof.load(tmp_path / "proof"), restored=0)) == timeless(linked)
+    assert linked.verify()
+    for part in linked.parts:
+        assert "x* %s %s, " % part.xstar in linked.report()
+
+
+@pytest.mark.parametrize("change", [
+    lambda text: replaced_tree(text, "a", "a"),             # part a is linked to itself
+    lambda text: replaced_tree(text, "b", "a"),             # or to one before it
+    lambda text: replaced_tree(text, "", "0ac"),            # there is no part c
+    lambda text: re.sub("(part: a\nxstar: .*\nv0): .*", r"\1: 1/3 1", text),
+    lambda text: text.replace("method: loewner", "method: thesis"),
+    lambda text: text.replace("part: b", "part: c"),
+    lambda text: re.sub("part: a\nxstar: .*\n", "part: a\n", text),
+    lambda text: text.replace("part: a\n", "part: a\nframe: 1 0 0 1\n"),
+    lambda text: text.replace("converse proof 4", "converse proof 3"),
+    lambda text: text[:text.index("part: b")] + text[text.index("checksum"):],
+    lambda text: re.sub("(part: a\n[^P]*)P", r"\1a", text),
+    lambda text: re.sub("(part: b\n[^P]*)P", r"\1a", text),
+    lambda text: text.replace("method: loewner", "method: thesis"),
+])
+def test_wrong_parts(linked, tmp_path, change):
+    with pytest.raises(ConverseError, match="makes no sense"):
+        Proof.load(changed(linked, tmp_path / "proof", change))
+
+
+def changed(proof, path, change):
+    """The path of the proof's file, its text changed and its checksum renewed."""
+    proof.save(path)
+    text = change(path.read_text())
+    body = text[:text.index("checksum: ")]
+    path.write_text(body + "checksum: sha256 %s\nend\n" % files.sha256(body))
+    return path
+
+
+def replaced_tree(text, letter, tree):
+    """The text of a file with another tree of a part, or with "" of the proof itself."""
+    begin = text.index("tree:\n", text.index("part: " + letter) if letter else 0) + 6
+    end = re.compile("part: |checksum: ").search(text, begin).start()
+    return text[:begin] + tree + "\n" + text[end:]
+
+
+@pytest.mark.parametrize("change, wrong", [
+    (lambda text: replaced_tree(text, "", "0ab"), "part a may lead out of its region"),
+    (lambda text: re.sub("(part: b\nxstar): .*", r"\1: 0.906 0.6", text), "part b may lead out"),
+    (lambda text: re.sub("(part: a(\n.*)*?\nv0: [0-9.]*) .*", r"\1 0.05", text), "part a may"),
+    (lambda text: text.replace("frame: 1 1 1 -1", "frame: 1 0 0 1"), "may lead out"),
+    (lambda text: replaced_tree(text, "b", "S"), "does not belong"),
+    (lambda text: replaced_tree(text, "b", "4PP"), "does not belong")])
+def test_wrong_links_are_not_resumed(linked, tmp_path, change, wrong):
+    """What can be seen at once is not believed of a file; and its trees are left as they were."""
+    def trees():
+        return re.search("^tree:.*(?=^checksum)", path.read_text(), re.M | re.S)[0]
+
+    path = changed(linked, tmp_path / "proof", change)
+    before = trees()
+    with pytest.raises(ConverseError, match=wrong):
+        prove(resume=path)
+    assert trees() == before
+
+
+@pytest.mark.parametrize("ending, parts", [(".*?P", 0), (".*?b.*?P", 1)])
+def test_parts_that_nothing_is_linked_to(linked, tmp_path, ending, parts):
+    """An undecided prism ended the search before others were linked: a deeper one has no parts
+    that the checker would refuse, and their prisms are not counted."""
+    text = re.match(ending, linked.tree)[0]
+    assert text.count("a") == 0
+    before = replace(linked, tree=text[:-1] + "U")
+    again = prove(resume=replace(before, counts=counted(before)), depth=linked.depth + 1)
+    assert again.no_tori and len(again.parts) == parts
+    assert again.verify()
+
+
+def test_one_region_may_do_for_two_clusters(easily, monkeypatch):
+    """A part that no cell is linked to, as those before it take them all, is not written."""
+    monkeypatch.setattr(starts, "region_of", lambda *_: ((Fraction(-1), Fraction(2)),) * 2)
+    monkeypatch.setattr(starts, "_best_start", lambda *_: (Fraction("0.86"), Fraction("0.85")))
+    proof = prove(line("0.015"), method="loewner", time_limit=20)
+    assert len(proof.parts) == 1 and set(tree.LETTERS) & set(proof.tree) == {"a"}
+
+
+def test_prisms_that_are_skipped_are_not_linked(easily):
+    """The checker wants the mirror images of such proved."""
+    square = replace(line("0.015"), v0=(Fraction("0.4"), Fraction("1.6")),
+                     v1=(Fraction("0.4"), Fraction("1.6")))
+    proof = prove(square, method="loewner", xstar=("0.858", "0.858"))
+    assert proof.counts.symmetric and not proof.parts and proof.conclusion == "region"
+    assert proof.verify(2).status == 3
+
+
+def test_a_smaller_region_is_not_verified(linked):
+    """The checker does not believe a letter whose region lost an edge."""
+    part = linked.parts[0]
+    narrower = replace(part, v0=(part.v0[0] + (part.v0[1] - part.v0[0]) / 8, part.v0[1]))
+    with pytest.raises(check.NotConfirmed):
+        replace(linked, parts=(narrower, *linked.parts[1:])).verify()
+
+
+@pytest.mark.parametrize("jobs", [1, 3])
+def test_resumed_at_any_moment(linked, easily, tmp_path, jobs):
+    """However often it is interrupted, the proof is the same."""
+    path = tmp_path / "backup"
+
+    def interrupts(*_):
+        calls.append(1)
+        if len(calls) == moment:
+            raise KeyboardInterrupt
+
+    parts = set()
+    for moment in range(1, 9):
+        calls = []
+        path.unlink(missing_ok=True)
+        try:
+            proof = prove(line("0.015"), method="loewner", backup=path, jobs=jobs,
+                          progress=interrupts)
+        except KeyboardInterrupt:
+            before = Proof.load(path)
+            parts.add(len(before.parts))
+            proof = prove(resume=path, jobs=jobs)
+        assert timeless(replace(proof, restored=0, sha256="")) == timeless(linked)
+        assert timeless(replace(Proof.load(path), restored=0, sha256="")) == timeless(linked)
+    assert parts == {0, 2}
+
+
+def test_leaves_of_all_trees_are_told(linked, easily):
+    told = []
+    prove(line("0.015"), method="loewner", on_leaf=lambda leaf, points: told.append(leaf.kind))
+    for letter in "ab":
+        assert told.count(letter) == linked.tree.count(letter)
+    assert told.count("P") >= linked.counts.proved
+
+
+@pytest.mark.parametrize("a, low, high", [("0.2", "0.5", "1.3"), ("0.19", "-0.1", "0.7")])
+def test_mirror_images_are_not_linked(easily, monkeypatch, a, low, high):
+    """Where prisms are skipped, their mirror images must be proved, not linked."""
+    monkeypatch.setattr(run, "LONG", 8)
+    a = Fraction(a)
+    proof = prove(Problem(a, a, 2 * a, (low, high), (low, high)), method="loewner")
+    assert proof.conclusion == "region" and "S" in proof.tree and not proof.parts
+    assert proof.verify().verdict
+
+
+def test_undecided_stays_undecided(easily):
+    """Where there are tori, links prove nothing."""
+    proof = prove(line("0.004"), method="loewner", depth=14)
+    assert not proof.no_tori and proof.conclusion == "undecided"
+
+
+def test_an_undecided_part_is_no_proof(linked):
+    part = linked.parts[1]
+    for text in part.tree.replace("P", "U", 1), part.tree[:-1]:
+        proof = replace(linked, parts=(linked.parts[0], replace(part, tree=text)))
+        assert not proof and "I could not decide" in proof.report()
+        assert ("ended before the whole region" in proof.report()) == ("U" not in text)
+    assert len(replace(linked, parts=(linked.parts[0], replace(
+        part, tree=part.tree.replace("P", "U", 1)))).undecided) == 1
+
+
+def test_hints_of_several_trees(linked, tmp_path):
+    first, second = linked.parts
+    proof = replace(linked, tree="0?", pending=(3, 4), parts=(
+        replace(first, tree="0P1"), replace(second, tree="0", pending=(0, 9))), counts=Counts(
+            cuts=4, proved=1))
+    proof.save(tmp_path / "proof")
+    assert timeless(replace(Proof.load(tmp_path / "proof"), restored=0, sha256="")) == \
+        timeless(proof)
+
+
+def test_regions_of_parts(linked):
+    part = linked.parts[0]
+    problem = linked.part_problem(part)
+    assert isinstance(part, Part) and (problem.v0, problem.v1) == (part.v0, part.v1)
+    assert problem.frame == linked.problem.frame == DIAGONAL
+    assert problem == part_problem(linked.problem, (part.v0, part.v1))
+
+
+def test_the_linked_input(root):
+    """The Froeschle map of the inputs; the checker confirms all of it."""
+    proof = prove(read_input(root / "inputs" / "froeschle-linked.json"), method="loewner")
+    assert proof.no_tori and proof.parts and proof.verify()
+
+
+def test_one_angle_is_linked():
+    """What waves of one combination of the angles do not feel is no way to another point."""
+    for waves in ([(1, 0), (2, 0)], [(1, 1), (2, 2)]):
+        ways = starts._ways(Problem.patch(["0.5", "0.2"], (), waves))
+        assert ways == [waves[0], tuple(-k for k in waves[0])]
+
+
+@pytest.mark.slow
+def test_epsilon_0139():
+    """The classes of rotation vectors that one x* leaves, each from its own."""
+    proof = prove(line("0.0139"), method="loewner")
+    assert proof.no_tori and len(proof.parts) == 2 and proof.counts.proved < 100000
