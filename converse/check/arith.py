@@ -105,6 +105,20 @@ def angle_of(wave, x):
     return k0 * x[0] + k1 * x[1] + phase
 
 
+def turn_of(waves):
+    """(q0, q1), the frame of the errors, step (C5): along the wave that bends most, of pairs of k
+    and an amplitude not below 0; (1, 0) where that is along an axis."""
+    (k0, k1), _ = max(waves, key=lambda wave: wave[1] * (wave[0][0] ** 2 + wave[0][1] ** 2),
+                      default=((1, 0), 0))
+    common = math.gcd(k0, k1)
+    return (k0 // common, k1 // common) if k0 and k1 else (1, 0)
+
+
+def turned(turn, k):
+    """A vector in that frame, times |q|."""
+    return turn[0] * k[0] + turn[1] * k[1], turn[0] * k[1] - turn[1] * k[0]
+
+
 def stiffness(waves):
     """The sum of |k|^2 (|k0| + |k1|): where each amplitude is off by one, and each slope of a wave
     by |k0| + |k1|, an eigenvalue is off by no more."""

@@ -14,7 +14,8 @@ DECIMAL = r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]{1,3})?"
 NUMBER = re.compile(DECIMAL, re.ASCII)
 RATIO = re.compile("[+-]?[0-9]+/0*[1-9][0-9]*|" + DECIMAL, re.ASCII)
 THESIS = (1, 0), (0, 1), (1, 1)         # k of the three waves of the thesis
-IDENTITY = (1, 0, 0, 1)
+IDENTITY, DIAGONALS = (1, 0, 0, 1), (1, 1, 1, -1)        # frames
+LETTERS = "abcdefghijklmnopqrstuvwxyz"  # of parts, and of leaves linked to them
 
 
 @dataclass(frozen=True)
@@ -37,7 +38,8 @@ def present(waves):
 
 @dataclass(frozen=True)
 class Claim:
-    """What a proof file says, or a proved cell of a map: exact; v0 and v1 in units of pi."""
+    """What a proof file says, one of its parts, or a proved cell of a map: exact; v0 and v1 in
+    units of pi."""
 
     waves: tuple
     centre: tuple                       # of v0 and v1
@@ -49,7 +51,8 @@ class Claim:
     at_once: str                        # does the claim cover larger multiples: yes, no, upper end
     tree: str
     sha256: str                         # of the file, uncompressed
-    where: str = ""                     # of a cell of a map: which it is
+    where: str = ""                     # of a part, or a cell of a map: which it is
+    parts: tuple = ()                   # of a proof file: a, b, ..., each a Claim
 
     @property
     def parameters(self):
@@ -79,16 +82,17 @@ def number(text, name, form=NUMBER):
     return value
 
 
-def check_frame(words, name):
-    """The frame: four integers (as text) of a change of coordinates of the torus."""
+def check_frame(words, name, unimodular=True):
+    """The frame: four integers (as text), of a determinant that is not 0, or is 1 or -1."""
     if len(words) != 4 or not all(re.fullmatch("[+-]?[0-9]{1,3}", word, re.ASCII)
                                   for word in words):
         raise Rejected(name + " is not four integers")
     a, b, c, d = frame = tuple(map(int, words))
     if max(map(abs, frame)) > MAX_K:
         raise Rejected("%s has an entry beyond %d" % (name, MAX_K))
-    if abs(a * d - b * c) != 1:
-        raise Rejected(name + " has not determinant 1 or -1")
+    if a * d == b * c or unimodular and abs(a * d - b * c) != 1:
+        raise Rejected(name + (" has not determinant 1 or -1" if unimodular
+                               else " has determinant 0"))
     return frame
 
 

@@ -49,7 +49,7 @@ def parser():
     p.add_argument("--state", metavar="FILE", help=(
         "remember in FILE what was confirmed, and go on from there if it exists; it is believed"))
     p.add_argument("--exact", action="store_true", help=(
-        "bound all leaves in integers, not first in doubles by numpy: hundreds of times slower"))
+        "bound all leaves in integers, not first in doubles by numpy: dozens of times slower"))
     p.add_argument("--quiet", action="store_true", help="no report of status 0, no progress")
     p.add_argument("--version", action="version", version="converse-check " + __version__)
     return p

@@ -1,5 +1,6 @@
 """The criterion (C3) on the leaves of one claim, in integers."""
 
+import copy
 import itertools
 import math
 from fractions import Fraction
@@ -9,7 +10,7 @@ from .exact import Prism, PrismWave, attempt
 from .failures import NotConfirmed, Rejected
 from .limits import CAUTION, LAG, MAX_BITS, MAX_HALVINGS, MAX_PIECES
 from .torus import is_at_once, torus_bound
-from .tree import changed
+from .tree import changed, trees
 
 
 class Criterion:
@@ -17,19 +18,20 @@ class Criterion:
 
     def __init__(self, claim, bound=None):
         """bound: of B, exact, if it is known."""
-        widths = [x for x in claim.half if x] + [abs(g) for wave in claim.examined
-                                                 for g in wave.parts if g]
+        parts = [part for part, _ in trees(claim)]
+        widths = [x for part in parts for x in part.half if x] + [
+            abs(g) for wave in claim.examined for g in wave.parts if g]
         narrow = max([h.denominator.bit_length() - h.numerator.bit_length() for h in widths] + [0])
-        bits = max(96, 64 + narrow + claim.counts["most_cuts"])
+        bits = max([96] + [64 + narrow + part.counts["most_cuts"] for part in parts])
         if bits > MAX_BITS:
             raise NotConfirmed("numbers of %d bits are needed; the checker's limit is %d"
                                % (bits, MAX_BITS))
-        self.claim, self.fixed = claim, fixed_of(bits)
+        self.fixed = fixed_of(bits)
         one, waves = self.fixed.one, claim.examined
         self.waves = in_units(self.fixed, waves)
         if max([abs(x) for wave in waves for x in (wave.middle, *wave.parts)] + [0]) >= one:
             raise NotConfirmed("the parameters are too large for this checker")     # l has no digit
-        self.xstar = tuple([math.floor(x * one) for x in claim.xstar])
+        self.take(claim)
         # The symbols: of the parameters that count, and of the angles.
         self.axes = [2 + m for m in range(claim.parameters)
                      if any(wave.parts[m] for wave in waves)] + [0, 1]
@@ -40,7 +42,8 @@ class Criterion:
         else:
             corners = [tuple([math.floor(wave.at(t) * one) for wave in waves])
                        for t in itertools.product((-1, 1), repeat=claim.parameters)]
-            apart = [[x] for x in corners] if set("234") & set(claim.tree) else [corners]
+            apart = [[x] for x in corners] if any(set("234") & set(part.tree) for part in parts) \
+                else [corners]
             found = {}
             for ends in map(tuple, apart):
                 if ends not in found:
@@ -53,6 +56,16 @@ class Criterion:
             raise NotConfirmed("beta has no eigenvalue above 2: the criterion does not apply")
         self.l_of = {}                      # by the cell's slices of the parameters
         self.fast = None                    # a Lockstep, where there is one
+
+    def take(self, claim):
+        self.claim = claim
+        self.xstar = tuple([math.floor(x * self.fixed.one) for x in claim.xstar])
+
+    def of_part(self, part):
+        """That of a part of the claim, which has another x* and another region."""
+        other = copy.copy(self)
+        other.take(part)
+        return other
 
     def least_pivot(self, cell):
         """l of step 2 for the parameters of the cell, from below.

@@ -11,6 +11,7 @@ import collections
 import itertools
 import math
 
+from .arith import turn_of, turned
 from .limits import FIRST_TRY, MAX_SITES
 from .torus import least
 
@@ -36,9 +37,8 @@ class Prism:
 
     def __init__(self, fixed, waves, xstar, x1, symbols):
         self.fixed, self.waves, self.symbols = fixed, waves, symbols
-        across = sum([6 * abs(wave.k0 * wave.k1 * wave.amplitude) for wave in waves])
-        total = sum([(wave.k0 ** 2 + wave.k1 ** 2) * abs(wave.amplitude) for wave in waves])
-        self.rotated = across > total       # the frame of the errors; either is right
+        self.pairs = list(itertools.combinations_with_replacement(range(symbols), 2))
+        self.turn = turn_of([((wave.k0, wave.k1), abs(wave.amplitude)) for wave in waves])
         blank = [0] * symbols
         start = xstar, (blank, blank), (1, 1)
         self.lanes = Lane(self, start, x1), Lane(self, x1, start)
@@ -55,9 +55,7 @@ class Prism:
 
     def strengths(self, wave):
         """How strongly a wave moves the two coordinates of the frame of the errors."""
-        if self.rotated:
-            return abs(wave.k0 + wave.k1), abs(wave.k0 - wave.k1)
-        return abs(wave.k0), abs(wave.k1)
+        return tuple(map(abs, turned(self.turn, (wave.k0, wave.k1))))
 
 
 class Lane:
@@ -67,8 +65,9 @@ class Lane:
         self.prism, self.sites, self.ended = prism, [], False
         (self.x0, self.L0, self.r0), (self.x, self.L, self.r) = before, first
         self.first_columns, self.first_rest = self.L, self.r
-        if prism.rotated:                   # of x0 + x1 and x0 - x1
-            self.r0, self.r = (sum(self.r0),) * 2, (sum(self.r),) * 2
+        self.T0 = self.T = [[0] * len(prism.pairs)] * 2         # of pairs, as form in advance()
+        a, b = map(abs, prism.turn)         # of the frame of the errors
+        self.r0, self.r = [(a * u + b * v, b * u + a * v) for u, v in (self.r0, self.r)]
         self.strengths = [prism.strengths(wave) for wave in prism.waves]
         self.d = self.f = None              # of step (C5); d in half units
 
@@ -80,48 +79,59 @@ class Lane:
     def advance(self):
         """Adds this site to the lane and goes on to the next one; False if a wave reaches beyond
         1, or the matrices are singular."""
-        prism, (u, v), (L0, L1), (r0, r1) = self.prism, self.x, self.L, self.r
-        fixed, rotated = prism.fixed, prism.rotated
+        prism, (u, v), (L0, L1), (T0, T1), (r0, r1) = self.prism, self.x, self.L, self.T, self.r
+        fixed, pairs, length = prism.fixed, prism.pairs, sum([x * x for x in prism.turn])
         bits, one, sincos = fixed.bits, fixed.one, fixed.sincos
         waves, reaches, p, q, r = [], [], 0, 0, 0           # the last three for V''
         E0 = E1 = push0 = push1 = error0 = error1 = 0
         new0 = [2 * a - b for a, b in zip(L0, self.L0[0])]
         new1 = [2 * a - b for a, b in zip(L1, self.L0[1])]
+        curve0 = [2 * a - b for a, b in zip(T0, self.T0[0])]
+        curve1 = [2 * a - b for a, b in zip(T1, self.T0[1])]
         for wave, (strong0, strong1) in zip(prism.waves, self.strengths):
             k0, k1, phase, amplitude, parts, error = wave
             xi = L0 if (k0, k1) == (1, 0) else L1 if (k0, k1) == (0, 1) else [
                 k0 * a + k1 * b for a, b in zip(L0, L1)]
+            tau = [k0 * a + k1 * b for a, b in zip(T0, T1)]
             size = sum(map(abs, xi))
-            rest = (strong0 * r0 + strong1 * r1 + rotated) >> rotated
+            rest = -(-(strong0 * r0 + strong1 * r1) // length) + (sum([
+                abs(x) if i == j else 2 * abs(x) for (i, j), x in zip(pairs, tau)]) + 1 >> 1)
             reach = size + rest
             if reach > one:
                 return False
             s, c = sincos(k0 * u + k1 * v + phase)
             sine, cosine = amplitude * s >> bits, amplitude * c >> bits
-            mean = cosine * (size * size >> bits) >> bits + 2
-            E0, E1 = E0 + k0 * mean, E1 + k1 * mean
             push0, push1 = push0 + k0 * cosine, push1 + k1 * cosine
             p, q, r = p + k0 * k0 * sine, q + k0 * k1 * sine, r + k1 * k1 * sine
             # What the model lacks of p' cos(y + z): (iii) of step (C6), for the matrix without
-            # rounding; each column is rounded down by less than a unit.
-            square = (reach * reach >> bits) + 1
-            cube = (square * reach >> bits) + 1
-            fall = (abs(cosine) * square >> bits + 1) + 1
-            bent = max(abs(mean), fall - abs(mean)) + (abs(sine) * cube // 6 >> bits) \
-                + 2 * error + len(xi) + 2
-            turned = [sine * a >> bits for a in xi]
-            if k0:
-                new0 = [a - k0 * b for a, b in zip(new0, turned)]
-            if k1:
-                new1 = [a - k1 * b for a, b in zip(new1, turned)]
+            # rounding; what is rounded down to units is off by less than one each.
+            square, far = (reach * reach >> bits) + 1, (rest * (reach + size) >> bits) + 1
+            cube, fourth = (square * reach >> bits) + 1, (square * square >> bits) + 1
+            bent = ((abs(cosine) * (12 * far + fourth) + 4 * abs(sine) * cube) // 24 >> bits) \
+                + 2 * error + len(xi) + len(pairs) + 2
+            # Of second order, of e[i] e[j]; its mean, by which X is moved; and with that of T,
+            # of e[i]^2 - 1/2 and e[i] e[j].
+            form = [cosine * xi[i] * xi[j] >> bits + (i == j) for i, j in pairs]
             moved = []
-            for i, part in parts:
+            for m, part in parts:
                 sine_part, cosine_part = part * s >> bits, part * c >> bits
-                moved.append((i, cosine_part, sine_part))
-                new0[i] += k0 * cosine_part
-                new1[i] += k1 * cosine_part
-                bent += (abs(cosine_part) * square >> bits + 1) + (abs(sine_part) * reach >> bits) \
-                    + 2
+                moved.append((m, cosine_part, sine_part))
+                form = [x + sine_part * xi[i + j - m] if m in (i, j) else x
+                        for (i, j), x in zip(pairs, form)]
+                new0[m] += k0 * cosine_part
+                new1[m] += k1 * cosine_part
+                bent += ((3 * abs(cosine_part) * square + abs(sine_part) * (6 * rest + cube))
+                         // 6 >> bits) + 1
+            mean = sum([x for (i, j), x in zip(pairs, form) if i == j]) >> bits + 1
+            E0, E1 = E0 + k0 * mean, E1 + k1 * mean
+            slopes = [sine * a >> bits for a in xi]
+            form = [sine * a + x >> bits for a, x in zip(tau, form)]
+            if k0:
+                new0 = [a - k0 * b for a, b in zip(new0, slopes)]
+                curve0 = [a - k0 * b for a, b in zip(curve0, form)]
+            if k1:
+                new1 = [a - k1 * b for a, b in zip(new1, slopes)]
+                curve1 = [a - k1 * b for a, b in zip(curve1, form)]
             error0, error1 = error0 + strong0 * bent, error1 + strong1 * bent
             waves.append(SiteWave(cosine, sine, moved, xi, size, rest, error))
             reaches.append(reach / one)
@@ -129,7 +139,8 @@ class Lane:
         x = 2 * u - self.x0[0] + push0 - E0, 2 * v - self.x0[1] + push1 - E1
         if not self.bound_errors(4 * one - 2 * p, -2 * q, 4 * one - 2 * r, error0, error1):
             return False
-        self.x0, self.x, self.L0, self.L = self.x, x, self.L, (new0, new1)
+        self.x0, self.L0, self.T0 = self.x, self.L, self.T
+        self.x, self.L, self.T = x, (new0, new1), (curve0, curve1)
         return True
 
     def moved(self, symbol):
@@ -141,10 +152,15 @@ class Lane:
 
     def bound_errors(self, p, q, r, error0, error1):
         """The errors of the next site, step (C5): from beta = [p q; q r] in half units, and the
-        error of the step.  d[q] = beta - M is exact; False if there is no M."""
+        error of the step.  d[q] = beta - M is exact but that beta, in the frame of the errors, is
+        off by less than a half unit; False if there is no M."""
         bits, (r0, r1), (old0, old1) = self.prism.fixed.bits + 1, self.r, self.r0
-        if self.prism.rotated:
-            p, q, r = (p + r >> 1) + q, p - r >> 1, (p + r >> 1) - q
+        a, b = self.prism.turn
+        more = (r0 + r1 >> bits) + 1 if b else 0
+        length, error0, error1 = a * a + b * b, error0 + more, error1 + more
+        p, q, r = ((a * a * p + 2 * a * b * q + b * b * r) // length,
+                   (a * b * (r - p) + (a * a - b * b) * q) // length,
+                   (b * b * p - 2 * a * b * q + a * a * r) // length)
         if self.d is None:
             f0, f1 = old0 + error0, old1 + error1
         else:
@@ -197,20 +213,22 @@ def test_vectors(ahead, back, l):
     nothing rests on it.
 
     At each site the recursions from both ends of the orbit are compared, the one from the lane's
-    own end only where it has not failed.  Where both together have a negative eigenvalue that is
-    nearest to zero, and n as a rule is largest, is its eigenvector; n follows outwards by the
-    recursions.
+    own end only where it has not failed.  Of each part of the orbit that they cover without
+    beginning anew, where both together have a negative eigenvalue that is nearest to zero, and n
+    as a rule is largest, is its eigenvector; n follows outwards by the recursions.  The part is
+    taken where this eigenvalue is lowest: others may contradict next to nothing.
     """
     tail, blocks = (l, 0.0, l), [*reversed(back), *ahead]
     left = recursion(blocks, len(back), tail)
     right = recursion(blocks[::-1], len(ahead), tail)[::-1]
-    best, place, n = math.inf, None, [(0.0, 0.0)] * len(blocks)
+    found, n = {}, [(0.0, 0.0)] * len(blocks)
     for k, (block, (d, begin), (beyond, end)) in enumerate(zip(blocks, left, right)):
         low, vector = least([x + y - z for x, y, z in zip(d, beyond, block)])
-        if 0 < -low < best and not (begin if k < len(back) else end):
-            best, place, chosen = -low, k, vector
-    if place is not None:
-        n[place] = chosen
+        if low < 0 and not (begin if k < len(back) else end):
+            found[begin, end] = max(found.get((begin, end), (-math.inf,)), (low, k, vector))
+    if found:
+        _, place, n_place = min(found.values())
+        n[place] = n_place
         for k in range(place, left[place][1], -1):
             n[k - 1] = matrix_times(inverse(left[k - 1][0]), n[k])
         for k in range(place + 1, len(n) - right[place][1]):

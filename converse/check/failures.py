@@ -35,10 +35,12 @@ def reason(error):
 
 @contextlib.contextmanager
 def named(name):
-    """What fails within is told by this name."""
+    """What fails within is told by this name, if there is one."""
     try:
         yield
     except Failure as error:
+        if not name:
+            raise
         raise type(error)("%s: %s" % (name, error)) from None
 
 

@@ -17,6 +17,7 @@ PI_LOW, PI_HIGH = Fraction(314159265358979, 10 ** 14), Fraction(314159265358980,
 E_LOW = Fraction(271828182845904, 10 ** 14)
 SHARES = 64                             # of an edge of the unit ball
 BITS = 256                              # of the root, to begin with
+TURN_BITS = 192                         # of k.omega modulo 1
 SHY = 16                                # times the tail's bound: no larger divisors are looked at
 
 
@@ -38,6 +39,14 @@ def upper_root(x):
     """A rational not below the root of x >= 0."""
     x = rounded_up(Fraction(x)) * 4 ** 64
     return Fraction(math.isqrt(math.floor(x)) + 1, 2 ** 64)
+
+
+def exponential_above(x):
+    """A rational not below e^x, x >= 0."""
+    if x > 1:
+        return rounded_up(exponential_above(x / 2) ** 2)
+    return rounded_up(sum([x ** j / math.factorial(j) for j in range(13)])
+                      + 2 * x ** 13 / math.factorial(13))
 
 
 def exponential_below(x):
@@ -118,9 +127,8 @@ class Field:
         low, high = self.low, self.high
         a, b = math.floor(low * 2 ** bits), math.ceil(high * 2 ** bits)
         while b - a > 1:
-            c = (a + b) // 2
-            x = Fraction(c, 1 << bits)
-            if x >= high or x > low and (evaluate(self.polynomial, x) > 0) == self.rises:
+            c = (a + b) // 2            # between low and high
+            if (evaluate(self.polynomial, Fraction(c, 1 << bits)) > 0) == self.rises:
                 b = c
             else:
                 a = c
@@ -208,9 +216,47 @@ class Norm:
         return sum([a * abs(sum([x * y for x, y in zip(row, k)]))
                     for a, row in zip(self.alpha, self.frame)])
 
+    def row(self, b, limit):
+        """(least, largest) a of the k = a b_0 + b b_1 with |k| <= limit; none, if least > largest.
+
+        |k| is the largest of the forms, linear in a, that have any signs of the l_i.k."""
+        low, top = -math.inf, math.inf
+        starts, slopes = self.forms(b)
+        for signs in itertools.product((1, -1), repeat=self.dimension):
+            start = sum([s * a * x for s, a, x in zip(signs, self.alpha, starts)])
+            slope = sum([s * a * x for s, a, x in zip(signs, self.alpha, slopes)])
+            if slope > 0:
+                top = min(top, (limit - start) // slope)
+            elif slope < 0:
+                low = max(low, -((limit - start) // -slope))
+            elif start > limit:
+                return 0, -1
+        return low, top
+
+    def forms(self, b):
+        """The l_i.k of k = a b_0 + b b_1: (at a = 0, per a)."""
+        last = self.basis[1] if self.dimension > 1 else (0,)
+        return [[sum([x * y for x, y in zip(row, v)]) for row in self.frame]
+                for v in ([b * x for x in last], self.basis[0])]
+
+    def lengths(self, b, low, top):
+        """|k| of those k with low <= a <= top."""
+        terms = list(zip(self.alpha, *self.forms(b)))
+        return [sum([w * abs(p + q * a) for w, p, q in terms]) for a in range(low, top + 1)]
+
     def coordinates(self, k, basis=None):
         """Of k in the lattice's basis: rationals, integers on the lattice."""
         return combination(k, inverse_matrix(basis or self.basis))
+
+    def place(self, k):
+        """Those of k in its own basis; None, if it is not in the lattice."""
+        if self.dimension == 1:
+            (p,), d = k, self.basis[0][0]
+            return (p // d,) if not p % d else None
+        (p, q), ((a, b), (c, d)) = k, self.basis
+        det = a * d - b * c
+        x, y = p * d - q * c, q * a - p * b
+        return (x // det, y // det) if not x % det and not y % det else None
 
     def widths(self, basis=None):
         """How large the coordinates are in the ball |k| <= 1."""
@@ -320,7 +366,7 @@ class Divisors:
         """Finds the records, (|k|, lower bound) of those 0 < |k| <= radius whose divisor is smaller
         than SHY times the tail's bound and than those of all smaller |k|: of these k no other makes
         a supremum larger."""
-        n, bits = self.power, 192
+        n, bits = self.power, TURN_BITS
         steps = [self.field.in_units(element, bits) for element in self.elements]
         reach = [math.floor(w * radius) for w in self.norm.widths()]
         one, found = 1 << bits, []

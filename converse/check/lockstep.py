@@ -12,7 +12,7 @@ import math
 import random
 from fractions import Fraction
 
-from .arith import fixed_of
+from .arith import fixed_of, turn_of, turned
 from .claim import IDENTITY
 from .failures import complain
 from .limits import CAUTION, FIRST_TRY, LAG, MAX_CUTS, MAX_HALVINGS, MAX_PIECES, MAX_SITES
@@ -118,9 +118,8 @@ class Shape:
             *(abs(x) * self.K for x in (p * p, p * q, q * q)))
         self.strong = self.table(abs(p) * self.K, abs(q) * self.K)
         self.forms = self.table(p * p, p * q, q * q)
-        self.rotated = self.table(abs(p + q), abs(p - q))
         self.mixed = self.rows(k[2:])               # k.x of x
-        self.sizes = self.rows(abs(k)), self.rows(abs(np.stack((p + q, p - q), axis=1)) / 2)
+        self.sizes = self.rows(abs(k))
 
     def table(self, *rows):
         """The rows, of a number for each wave, as combined() takes them."""
@@ -129,6 +128,11 @@ class Shape:
     @staticmethod
     def rows(columns):
         return [[(i, x) for i, x in enumerate(row) if x] for row in columns]
+
+    def in_frame(self, turn):
+        """Of that frame of the errors: V' from waves, and k.x of x, but for signs."""
+        k = np.array([turned(turn, k) for k, _ in self.known], float)
+        return self.table(*abs(k.T)), self.rows(abs(k) / (turn[0] ** 2 + turn[1] ** 2))
 
     def along(self, v):
         """k.v for all waves."""
@@ -176,12 +180,28 @@ def least_of(d):
     return (d[0] + d[2] - np.sqrt((d[0] - d[2]) ** 2 + 4 * d[1] * d[1])) / 2
 
 
+def quadratic(pairs, xi, bend, parts):
+    """Step (C6): what p' cos(y + z) has of second order in the symbols, but for the sign, as the
+    coefficients of e[i] e[j] for these pairs, i <= j, and its mean; from the columns xi of k.L,
+    P cos y, and pairs (symbol, h sin y)."""
+    form, mean = bend * products(xi), 0
+    for x, (i, j) in zip(form, pairs):
+        if i == j:
+            x /= 2
+        for m, part in parts:
+            if m in (i, j):
+                x += part * xi[i + j - m]
+        if i == j:
+            mean = mean + x / 2
+    return form, mean
+
+
 def bending(P, H, W, s, c, size, rest, reach):
     """Step (C6), (iii), of a wave with |sin y| <= s and |cos y| <= c."""
     second = reach * reach / 2
-    far = rest * (reach + size) / 2
-    return np.abs(P) * (c * (size * size / 4 + far) + s * second * reach / 3) \
-        + H * (c * second + s * reach) + W
+    third, fourth = second * reach / 3, second * second / 6
+    return np.abs(P) * (c * (rest * (reach + size) / 2 + fourth) + s * third) \
+        + H * (c * second + s * (rest + third)) + W
 
 
 def remainder(P, H, W, A0, alpha, B0, beta, weight, size, rest, reach):
@@ -339,22 +359,23 @@ class Prisms:
         self.caution = [self.both(x + 0 * l, x + 0 * l) for x in caution]
         absent = (self.magnitude == 0) & (self.H == 0) & (self.W == 0)  # in these lanes
         self.absent = {w: absent[w] for w in shape.present if absent[w].any()}
-        form = combined(shape.forms, self.magnitude.mean(axis=1)[:, None])[:, 0]
         stiff = combined(shape.stiff, self.magnitude)
-        across = [abs(k0 * k1) * x for ((k0, k1), _), x in zip(shape.known,
-                                                               self.magnitude.mean(axis=1))]
-        self.rotated = bool(6 * sum(across) > form[0] + form[2])     # of rests; either is right
+        self.turn = turn_of([(k, x) for (k, _), x in zip(shape.known,
+                                                         self.magnitude.mean(axis=1))])
         self.F = shape.grain * (1 + stiff[::2])
         self.F01 = shape.grain * stiff[1]
         self.angles = shape.parameters                          # their first symbol
         self.known = self.angles + 2
+        self.pairs = list(itertools.combinations_with_replacement(range(self.known), 2))
+        self.halves = np.array([[0.5 if i == j else 1] for i, j in self.pairs])
         start, none = xstar + 0 * x, np.zeros_like(x)
         columns = np.zeros((2, self.known, self.size))
         columns[:, self.angles:] = sides
         blank, rounding = np.zeros_like(columns), np.full_like(x, XSTAR_REST)
         self.sides, self.rounding = self.both(sides, 0 * sides), self.both(off, rounding)
-        if self.rotated:                                         # of x0 + x1 and of x0 - x1
-            off, rounding = off[0] + off[1] + none, 2 * rounding
+        a, b = map(abs, self.turn)
+        off, rounding = [np.stack((a * u + b * v, b * u + a * v))
+                         for u, v in (off + none, rounding)]
         self.before = self.both(start, x), self.both(blank, columns), self.both(rounding, off)
         self.first = self.both(x, start), self.both(columns, blank), self.both(off, rounding)
         self.sites = []
@@ -386,23 +407,28 @@ class Prisms:
         P, h, H, W, F, F01, shape = self.P, self.h, self.H, self.W, self.F, self.F01, self.shape
         slope, n = P / TWO_PI, len(P)
         slack, from_H = SINE * shape.K[:, None], shape.grain * combined(shape.strong, H)
-        along, beside = (F[0] + F[1],) * 2 if self.rotated else (F, F01)     # of the frame's beta
+        q0, q1 = self.turn                                  # of rests
+        along, beside = (F[0] + F[1],) * 2 if q1 else (F, F01)      # of that frame's beta
+        strengths, sizes = shape.in_frame(self.turn)
+        flat, skew, steep = [x / (q0 * q0 + q1 * q1) for x in (q0 * q0, q0 * q1, q1 * q1)]
         (X0, L0, r0), (X, L, r) = self.before, self.first
-        size0 = np.abs(L0).sum(axis=1)
+        T = T0 = np.zeros((2, len(self.pairs), P.shape[1]))
+        near0 = np.abs(L0).sum(axis=1)
         alive, d, f, due = np.ones(X.shape[1], bool), None, None, FIRST_TRY
         while True:
             columns = shape.along(L)
             size = np.abs(columns).sum(axis=1) * MORE
-            rest = combined(shape.sizes[self.rotated], r)
+            curve = (self.halves * np.abs(shape.along(T))).sum(axis=1)
+            rest, near = curve + combined(sizes, r), size[:2] + curve[:2] * MORE
             if shape.mixed:
-                rest[2:] += 3 * UNIT * combined(shape.sizes[0][2:], size[:2])
+                rest[2:] += 3 * UNIT * combined(shape.sizes[2:], near)
             rest *= MORE
             reach = (size + rest) * MORE
             if not self.sites:                      # how far each symbol moves a lane's last site
                 self.last = self.moved(columns)
             for w in shape.present:
-                near = reach[w] <= FARTHEST
-                alive = alive & (near | self.absent[w] if w in self.absent else near)
+                known = reach[w] <= FARTHEST
+                alive = alive & (known | self.absent[w] if w in self.absent else known)
             if self.sites and (not alive.any() or len(self.sites) == MAX_SITES):
                 yield True
                 return
@@ -412,35 +438,36 @@ class Prisms:
             if len(self.sites) == due:
                 yield True
                 due *= 2
-            for array in (L, r, columns, size, rest, reach):
+            for array in (L, T, r, columns, size, rest, reach, near):
                 np.copyto(array, 0, where=~alive)
             np.copyto(self.last, self.moved(columns), where=alive)
             s, c = lockstep_sincos(shape.turns(X))
             beta = combined(shape.forms, P * -s)
             beta[::2] += 2
-            mean_square = size * size / 4
-            wave = P * c * mean_square
+            new, bow, mean = applied(beta[:, None], L) - L0, applied(beta[:, None], T) - T0, 0 * s
+            for w in shape.present:
+                symbols = shape.moving[w]
+                form, mean[w] = quadratic(self.pairs, columns[w], P[w] * c[w],
+                                          [(m, h[w, m] * s[w]) for m in symbols])
+                forces = [(m, h[w, m] * c[w]) for m in symbols]
+                for i, k in enumerate(shape.known[w][0]):
+                    if k:
+                        bow[i] -= form if k == 1 else k * form
+                        for m, wave in forces:
+                            new[i, m] += wave if k == 1 else k * wave
             self.sites.append(Sites(alive, s, c, columns, size, rest, reach, beta,
-                                   combined(shape.forces, wave)))
+                                   combined(shape.forces, mean)))
 
-            wave = slope * c * (1 - mean_square)
+            wave = slope * c - mean / TWO_PI
             X, X0 = 2 * X - X0 + combined(shape.forces, wave), X
             X -= np.rint(X)
-            new = applied(beta[:, None], L) - L0
-            for w, symbols in enumerate(shape.moving):
-                for m in symbols:
-                    wave = h[w, m] * c[w]
-                    for i, k in enumerate(shape.known[w][0]):
-                        if k:
-                            new[i, m] += wave if k == 1 else k * wave
-            bent = bending(P, H, W, np.abs(s) + slack, np.abs(c) + 2 * slack, size, rest, reach)
-            err = F * (1 + size[:2]) + F01 * size[1::-1] + (4 + n) * UNIT * size0[:2] + from_H
-            if self.rotated:
-                mean, half = (beta[0] + beta[2]) / 2, (beta[0] - beta[2]) / 2
-                err = combined(shape.rotated, bent) + (err[0] + err[1])
-                block = np.stack((mean + beta[1], half, mean - beta[1]))
-            else:
-                err, block = combined(shape.strengths, bent) + err, beta
+            bent = bending(P, H, W, np.abs(s) + slack, np.abs(c) + slack, size, rest, reach)
+            err = F * (1 + near) + F01 * near[::-1] + (4 + n) * UNIT * near0 + from_H
+            err, block = combined(strengths, bent) + abs(q0) * err + abs(q1) * err[::-1], beta
+            if q1:
+                block = np.stack((flat * beta[0] + 2 * skew * beta[1] + steep * beta[2],
+                                  skew * (beta[2] - beta[0]) + (flat - steep) * beta[1],
+                                  steep * beta[0] - 2 * skew * beta[1] + flat * beta[2]))
             if d is None:                           # d[q] = beta, f = err - r[o] + roundings
                 f, d = r0 + err + along * r + beside * r[::-1], block
             else:
@@ -448,7 +475,15 @@ class Prisms:
                 alive, d = alive & (np.abs(det) > 2.0 ** -60), block - M
             f = f * MORE
             r, r0 = (applied(np.abs(d), r) + f) * MORE, r
-            L, L0, size0 = new, L, size
+            L, L0, T, T0, near0 = new, L, bow, T, near
+
+    @staticmethod
+    def keep_plainest(over, best, place, forms):
+        """Empties part 1 where it is over, and puts it in the place of part 2 if it is plainer."""
+        plainer = over & (best[1] > best[2]) & (best[1] < math.inf)
+        for array in best, place, forms:
+            np.copyto(array[2], array[1], where=plainer)
+        np.copyto(best[1], math.inf, where=over)
 
     def test_vectors(self):
         """Vectors n for each site, and how many tails begin there: one where a lane ends, one where
@@ -456,8 +491,10 @@ class Prisms:
 
         At each site the recursions from both ends of the orbit are compared, as by test_vectors,
         to beta and something for what the bound will add to a site.  A recursion that fails begins
-        anew behind that site.  Where both together have a negative eigenvalue that is nearest to
-        zero, and n as a rule is largest, is its eigenvector; n follows outwards by the recursions.
+        anew behind that site.  Of each part of the orbit that they cover without beginning anew,
+        where both together have a negative eigenvalue that is nearest to zero, and n as a rule is
+        largest, is its eigenvector; n follows outwards by the recursions.  The part is taken where
+        this eigenvalue is lowest: others may contradict next to nothing, however small the prism.
         """
         sites, none, shape = self.sites, np.zeros_like(self.l), self.shape
         blocks, tail = [], np.stack((self.l, none, self.l))
@@ -475,20 +512,33 @@ class Prisms:
         outer, back, whole = outer[::-1], back[::-1], whole[::-1]
         begins, ahead = [], []                      # the recursion from the other lane
         good, inverse = self.other(good & beyond), self.other(inverse)
-        best, place = np.full_like(none, math.inf), np.full(none.shape, -1)
-        form = np.zeros((3, none.size))
+        spans = good                                # from that lane's end, along the whole orbit
+        best, place = np.full((3, none.size), math.inf), np.full((3, none.size), -1)
+        forms = np.zeros((3, 3, none.size))         # of the whole, of a part, of the plainest part
+        best[2] = 0
         for k, (site, block) in enumerate(zip(sites, blocks)):
             begins.append(~good)
+            self.keep_plainest(begins[-1], best, place, forms)
+            spans = spans & good
             inner = block - np.where(good, inverse, tail)
             joint = outer[k] + inner - block
             low = least_of(joint)
             score = np.where(site.alive & whole[k] & (low < 0), -low, math.inf)
-            better = score < best
-            best, place = np.where(better, score, best), np.where(better, k, place)
-            np.copyto(form, joint, where=better)
+            for part, where in enumerate((spans, ~spans)):
+                better = where & (score < best[part])
+                np.copyto(best[part], score, where=better)
+                np.copyto(place[part], k, where=better)
+                np.copyto(forms[part], joint, where=better)
             good, inverse = are_definite(inner), inverses(inner)
             ahead.append(inverse)
-        first = self.both(best[:self.size] <= best[self.size:], best[self.size:] < best[:self.size])
+        self.keep_plainest(none == 0, best, place, forms)
+        nearer = self.both(best[0, :self.size] <= best[0, self.size:],
+                           best[0, self.size:] < best[0, :self.size])
+        best[1] = np.where(nearer, best[0], math.inf)
+        place[1], forms[1] = place[0], forms[0]
+        self.keep_plainest(none == 0, best, place, forms)
+        best, place, form = best[2], place[2], forms[2]
+        first = self.both(best[:self.size] >= best[self.size:], best[self.size:] > best[:self.size])
         place = np.where(first, place, -1)          # of the two lanes one
         low = least_of(form)
         p, q, r = form
@@ -537,7 +587,7 @@ class Prisms:
             B[:, 0] -= omega * c
             slopes = sums.add_waves(shape, P, self.h, columns, A, B)
             most = np.abs(mu).sum(axis=1)
-            weight = K * combined(shape.sizes[0], most) + square_K * long
+            weight = K * combined(shape.sizes, most) + square_K * long
             sums.error += remainder(
                 P, H, W, A[:, 0], np.abs(A[:, 1:]).sum(axis=1), B[:, 0],
                 np.abs(B[:, 1:]).sum(axis=1), weight, size, rest, reach).sum(axis=0)
@@ -742,5 +792,5 @@ def make_lockstep(claims):
         why = "numpy is not installed"
     except (ValueError, OverflowError):
         return None
-    complain(why + ": all is checked in integers, hundreds of times slower")
+    complain(why + ": all is checked in integers, dozens of times slower")
     return None

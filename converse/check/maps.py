@@ -16,7 +16,8 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from .arith import fixed_of, stiffness
-from .claim import THESIS, Claim, Wave, check_alone, check_frame, number, present
+from .claim import ANGLES, THESIS, Claim, Wave, check_alone, check_frame, number, present
+from .cover import is_whole
 from .failures import NotConfirmed, Rejected, Unusable, named
 from .limits import MAX_ITEMS
 from .torus import is_at_once, torus_bound
@@ -27,6 +28,7 @@ REGIONS = {"b=0": (((1, 0, 0), (0, 0, 1)), ((0, 0, 1), (1, 0, 0))),
            "a=b": (((1, 1, 0), (0, 0, 1)), ((0, 0, 1), (1, 1, 0))),
            "c=0": (((1, 0, 0), (0, 1, 0)),),
            "sphere": (((1, 0, 0), (0, 1, 0), (0, 0, 1)), ((0, 0, 1), (1, 0, 0), (0, 1, 0)))}
+MAP_FORMAT = "converse map "            # and the version, 1 or 2
 MAP_AXES, MAP_KINDS = "012", "PAOX"     # of the tree of a face: cuts of r, s, t; leaves
 GRID, MAP_CELLS = (16, 8), 2000         # slices of s, or of s and t; cells of the torus for B
 
@@ -147,8 +149,10 @@ def strict_json(data):
 def read_map(data):
     """The map; every patch of its own is whole, and nothing in it is of unknown meaning."""
     content = strict_json(data)
-    if not isinstance(content, dict) or content.get("format") != "converse map 1":
-        raise Unusable("is not a map of the version that this checker knows, converse map 1")
+    version = isinstance(content, dict) and {MAP_FORMAT + "1": 1, MAP_FORMAT + "2": 2}.get(
+        str(content.get("format")))
+    if not version:
+        raise Unusable("is not a map of a version that this checker knows, converse map 1 and 2")
     _, _, region, down_to, faces, sha256 = fields_of(
         content, "the map", "seconds", format=str, program=str, region=str, down_to=str, faces=list,
         sha256=str)
@@ -168,7 +172,7 @@ def read_map(data):
     whole, claims, file = [], [], hashlib.sha256(data).hexdigest()
     for at, face in enumerate(faces, 1):
         with named("face %d" % at):
-            whole.append(read_face(face, claims, at, file))
+            whole.append(read_face(face, claims, version, at, file))
     if sorted(face.directions for face in whole) != sorted(REGIONS[region]):
         raise Rejected("the faces are not those of the region")
     found = Map(region, tuple(whole), tuple(claims), file)
@@ -177,7 +181,7 @@ def read_map(data):
     return found
 
 
-def read_face(face, claims, at, sha256):
+def read_face(face, claims, version, at, sha256):
     """A face of a map; adds the claims of its proved cells."""
     directions, radius, tree, proofs = fields_of(face, "it", "tried", "estimate", directions=list,
                                                  radius=str, tree=str, proofs=list)
@@ -196,25 +200,32 @@ def read_face(face, claims, at, sha256):
             if (proof := next(proofs, None)) is None:
                 raise Rejected("it has fewer proofs than proved cells")
             with named("cell %d" % len(cells)):
-                claims.append(read_cell(proof, Face(directions, radius, ()).waves(cell),
-                                        "face %d, cell %d: " % (at, len(cells)), sha256))
+                claims.append(read_cell(proof, Face(directions, radius, ()).waves(cell), version,
+                                        "face %d, cell %d" % (at, len(cells)), sha256))
     if next(proofs, None) is not None:
         raise Rejected("it has more proofs than proved cells")
     return Face(directions, radius, tuple(cells))
 
 
-def read_cell(proof, waves, name, sha256):
-    """The claim of a proved cell."""
-    xstar, frame, alone, tree = fields_of(proof, "its proof", xstar=list, frame=list, alone=str,
-                                          tree=str)
-    xstar = tuple(number(x, "x*") for x in list_of(xstar, 2, str, "x*"))
-    frame = check_frame([str(x) for x in list_of(frame, 4, int, "the frame")], "the frame")
+def read_cell(proof, waves, version, name, sha256):
+    """The claim of a proved cell.  In version 1 its region is all of the torus."""
+    xstar, frame, alone, tree, *ranges = fields_of(
+        proof, "its proof", xstar=list, frame=list, alone=str, tree=str,
+        **dict.fromkeys(ANGLES if version > 1 else (), list))
+    xstar, *ranges = [tuple(number(x, key) for x in list_of(pair, 2, str, key))
+                      for key, pair in zip(("x*", *ANGLES), (xstar, *ranges))]
+    centre, half = zip(*ranges or [(Fraction(1), Fraction(1))] * 2)
+    if min(half) < 0:
+        raise Rejected("a half-width is negative")
+    frame = check_frame([str(x) for x in list_of(frame, 4, int, "the frame")], "the frame",
+                        version < 2)
     if alone not in ("no", "0", "1"):
         raise Rejected("alone is neither no nor 0 nor 1")
     alone = None if alone == "no" else int(alone)
     check_alone(waves, alone)
-    one = Fraction(1)
-    claim = Claim(waves, (one, one), (one, one), frame, alone, xstar, {}, "no", tree, sha256, name)
+    claim = Claim(waves, centre, half, frame, alone, xstar, {}, "no", tree, sha256, name)
+    if not is_whole(claim):
+        raise Rejected("its region does not hold enough of the torus")
     claim.counts.update(tree_counts(claim))
     check_mirror_images(claim)
     return claim

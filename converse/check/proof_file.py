@@ -5,8 +5,9 @@ import hashlib
 import io
 import re
 import zlib
+from dataclasses import replace
 
-from .claim import ANGLES, NUMBER, RATIO, Claim, Wave, check_alone, check_frame, number
+from .claim import ANGLES, LETTERS, NUMBER, RATIO, Claim, Wave, check_alone, check_frame, number
 from .failures import NotConfirmed, Rejected, Unusable, reason
 from .limits import MAX_BYTES, MAX_K, MAX_LINE, MAX_WAVES
 
@@ -17,6 +18,7 @@ IGNORED = ("program", "method", "digits", "stubborn", "quick_tries", "tries", "R
 OPTIONAL = {"T", "Tr-", "Tr+", "lambda-min", "lambda-max", "seconds", "comment"}    # ignored, too
 FIELDS = {*ANGLES, *COUNTS, *IGNORED, "kind", "xstar", "at once", "wave", "frame", "alone",
           "odd about"}
+LINKED = "linked"                       # a count that version 4 has, too
 REPEATED = {"wave", "comment"}
 MAGIC = b"converse proof "               # and the version, alone on the first line
 TORUS_MAGIC = b"converse torus "        # of a certificate of existence, as long
@@ -52,8 +54,8 @@ def read_proof(data):
     if first == b"2":
         raise Unusable("is a proof file of version 2, which converse-check up to release 1.6.0 "
                        "verifies")
-    if first != b"3":
-        raise Unusable("is a proof file of another version; this checker knows version 3")
+    if first not in (b"3", b"4"):
+        raise Unusable("is a proof file of another version; this checker knows versions 3 and 4")
     marker = b"checksum: sha256 "
     end = data.rfind(b"\n" + marker) + 1
     end_line = data[end + len(marker):]
@@ -65,23 +67,25 @@ def read_proof(data):
     start = data.find(b"\ntree:\n", 0, end) + 1
     if not start:
         raise Rejected("there is no tree")
-    tree = data[start + len(b"tree:\n"):end].translate(None, b"\n").decode("latin-1")
+    tree = data[start + len(b"tree:\n"):end].decode("latin-1")
     return parse(bytes(view[:start]), tree, hashlib.sha256(view).hexdigest())
 
 
 def parse_header(head):
-    """The fields, each of them given once, and none of unknown meaning.
+    """The version, and the fields, each of them given once, and none of unknown meaning.
 
     Nothing of it is repeated in a message but the names of fields that are known.
     """
     header, file = {"wave": []}, io.BytesIO(head)
-    file.readline()                     # the version, which read_proof has seen to
+    fields, version = set(FIELDS), 3    # which read_proof has seen to
+    if file.readline() == MAGIC + b"4\n":
+        fields, version = fields | {LINKED}, 4
     for at, line in enumerate(iter(lambda: file.readline(MAX_LINE), b""), 2):
         if len(line) == MAX_LINE:
             raise NotConfirmed("line %d is longer than the checker's limit, %d bytes"
                                % (at, MAX_LINE - 1))
         name, colon, value = line.decode("utf-8", "replace").rstrip("\n").partition(": ")
-        if not colon or name not in FIELDS | OPTIONAL:
+        if not colon or name not in fields | OPTIONAL:
             raise Rejected("line %d, in the header, is of unknown meaning" % at)
         if name in header and name not in REPEATED:
             raise Rejected("the header gives %s twice" % name)
@@ -91,45 +95,76 @@ def parse_header(head):
             header[name] = value
     if "xstar" not in header:
         raise Rejected("the search had not begun when it was left: there is no x* yet")
-    if FIELDS - header.keys():
-        raise Rejected("the header lacks %s" % ", ".join(sorted(FIELDS - header.keys())))
+    if fields - header.keys():
+        raise Rejected("the header lacks %s" % ", ".join(sorted(fields - header.keys())))
     if header["kind"] != "sound":
         raise Rejected("the file's kind is not 'sound': it is not meant as a proof")
-    return header
+    return version, header
+
+
+def pair(value, name, form=NUMBER):
+    """Two numbers."""
+    words = value.split(" ", 2)
+    if len(words) != 2 or not all(map(form.fullmatch, words)):
+        raise Rejected(name + " is not two decimal numbers")
+    return tuple(number(word, name, form) for word in words)
+
+
+def place(xstar, ranges, name):
+    """x*, and centres and half-widths of v0 and v1."""
+    xstar, *ranges = [pair(value, name + key) for value, key in
+                      zip((xstar, *ranges), ("xstar", *ANGLES))]
+    if min(half for _, half in ranges) < 0:
+        raise Rejected("a half-width is negative")
+    return xstar, *zip(*ranges)
+
+
+def parse_part(text, letter, claim):
+    """A part of a claim, from what follows `part: `: four lines and a tree."""
+    name, lines = "part " + letter, text.split("\n", 5)
+    if len(lines) < 6 or lines[0] != letter or lines[4] != "tree:" or not all(
+            line.startswith(key + ": ") for key, line in zip(("xstar", *ANGLES), lines[1:])):
+        raise Rejected("%s is not 'part: %s', xstar, v0, v1 and a tree, each on its line"
+                       % (name, letter))
+    xstar, *ranges = [line.partition(": ")[2] for line in lines[1:4]]
+    xstar, centre, half = place(xstar, ranges, name + "'s ")
+    return replace(claim, xstar=xstar, centre=centre, half=half, tree=lines[5].replace("\n", ""),
+                   where=name, counts={}, at_once="no")
 
 
 def parse(head, tree, sha256):
-    """The claim of a header and a tree."""
-    header = parse_header(head)
-
-    def pair(name, form=NUMBER):
-        words = header[name].split(" ", 2)
-        if len(words) != 2 or not all(map(form.fullmatch, words)):
-            raise Rejected("the header's %s is not two decimal numbers" % name)
-        return tuple(number(word, "the header's " + name, form) for word in words)
+    """The claim of a header, and of what follows it: a tree, and perhaps parts."""
+    version, header = parse_header(head)
+    tree, *parts = ("\n" + tree).split("\npart: ") if version > 3 else [tree]
 
     def one_of(name, *values):
         if header[name] not in values:
             raise Rejected("the header's %s is neither %s" % (name, " nor ".join(values)))
         return header[name]
 
-    ranges = [pair(name) for name in ANGLES]
-    xstar = pair("xstar")
-    if min(half for _, half in ranges) < 0:
-        raise Rejected("a half-width is negative")
-    for name in COUNTS:
+    xstar, centre, half = place(header["xstar"], [header[name] for name in ANGLES],
+                                "the header's ")
+    counts = COUNTS + (LINKED,) * (version > 3)
+    for name in counts:
         if not re.fullmatch("[0-9]{1,18}", header[name], re.ASCII):
             raise Rejected("the header's %s is not a count" % name)
     at_once = one_of("at once", "yes", "no", "upper end")
     waves = parse_waves(header["wave"])
-    frame = check_frame(header["frame"].split(" "), "the header's frame")
+    frame = check_frame(header["frame"].split(" "), "the header's frame", version < 4)
     alone = {"no": None, "0": 0, "1": 1}[one_of("alone", "no", "0", "1")]
     check_alone(waves, alone)
-    odd = None if header["odd about"] == "no" else pair("odd about", RATIO)
-    claim = Claim(waves, *zip(*ranges), frame, alone, xstar,
-                  {name: int(header[name]) for name in COUNTS}, at_once, tree, sha256)
+    odd = None if header["odd about"] == "no" else \
+        pair(header["odd about"], "the header's odd about", RATIO)
+    claim = Claim(waves, centre, half, frame, alone, xstar,
+                  {name: int(header[name]) for name in counts}, at_once, tree.replace("\n", ""),
+                  sha256)
     check_odd(claim, odd)
-    return claim
+    if len(parts) > len(LETTERS):
+        raise Rejected("there are more parts than letters")
+    if parts and alone is not None:
+        raise Rejected("a coordinate is alone, and there are parts: links are of whole graphs")
+    return replace(claim, parts=tuple([parse_part(text, letter, claim)
+                                       for text, letter in zip(parts, LETTERS)]))
 
 
 def check_odd(claim, odd):

@@ -10,8 +10,9 @@ import sys
 from .criterion import Criterion, check_at_once
 from .failures import Failure, NotConfirmed, complain
 from .limits import INTERRUPTED, UNUSABLE
+from .links import check_links
 from .proof_file import load, read_proof
-from .tree import check_mirror_images, check_tree, leaves
+from .tree import check_mirror_images, check_tree, leaves, trees
 from .words import claimed, not_excluded, report
 
 
@@ -21,15 +22,18 @@ def referee(path):
     check_tree(claim)
     check_mirror_images(claim)
     criterion = Criterion(claim)
+    check_links(claim, criterion)
     check_at_once(criterion)
     confirmed = pieces = 0
-    for position, cell in leaves(claim.tree):
-        if claim.tree[position] == "P":
-            why, tried = criterion.excluded(cell)
-            if why:
-                raise NotConfirmed(not_excluded(claim, confirmed, cell, why))
-            confirmed, pieces = confirmed + 1, pieces + tried
-    status, lines = report([claim], claimed(claim), criterion, confirmed, pieces)
+    for part, letters in trees(claim):
+        ours, before = criterion.of_part(part), confirmed
+        for position, cell in leaves(part.tree, kinds="PS" + letters):
+            if part.tree[position] == "P":
+                why, tried = ours.excluded(cell)
+                if why:
+                    raise NotConfirmed(not_excluded(part, confirmed - before, cell, why))
+                confirmed, pieces = confirmed + 1, pieces + tried
+    status, lines = report((claim, *claim.parts), claimed(claim), criterion, confirmed, pieces)
     return status, "\n".join([*lines, "SHA-256 : " + claim.sha256])
 
 

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from .criterion import check_at_once
 from .failures import NotConfirmed, Unusable
 from .limits import PART, SPOT_CHECK, VERIFIED
+from .links import check_links
 from .lockstep import make_lockstep
 from .maps import Map, check_map, mapped, read_map
 from .progress import Bar
@@ -73,7 +74,8 @@ def verify(path, jobs=1, sample=None, state=None, bar=False, exact=False):
     else:
         check_tree(file)
         check_mirror_images(file)
-        problems = Problems((file,))
+        problems = Problems((file, *file.parts))
+        check_links(file, problems.criterion(0))
         check_at_once(problems.criterion(0))
     if not exact and problems.claims:
         problems.fast = make_lockstep(problems.claims)

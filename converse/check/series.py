@@ -8,6 +8,7 @@ function is from the polynomial, which is at most the radius.
 """
 
 import decimal
+import functools
 import itertools
 import math
 from dataclasses import dataclass
@@ -16,6 +17,7 @@ from .failures import NotConfirmed
 from .limits import MAX_DIGITS, MAX_TERMS
 
 FINE = 64                               # bits that norms have beyond the coefficients
+TEXTS = 1 << 14                         # numbers that are written as text at a time
 EXACT = decimal.Context(prec=decimal.MAX_PREC, Emax=decimal.MAX_EMAX, Emin=decimal.MIN_EMIN,
                         traps=[decimal.Inexact, decimal.Rounded, decimal.InvalidOperation])
 
@@ -35,44 +37,63 @@ def powers_of(sigma, count):
 
 class Box:
     """The modes (k, j) with |k| <= limit and j <= degree, k in a lattice, in the order of the
-    coordinates b, a of k and of j.
-
-    A group is all modes with one k.  At (b W + a) J + j, with the number W of all a, these modes
-    are the powers of one variable, in which series are multiplied.
-    """
+    coordinates b, a of k and of j.  A group is all modes with one k."""
 
     def __init__(self, norm, limit, degree):
         self.norm, self.limit, self.degree = norm, limit, degree
-        self.reach = [math.floor(w * limit) for w in norm.widths()]
-        (wide, high), steps = (self.reach + [0])[:2], 2 * degree + 1
-        self.wide, self.high = wide, high
-        self.size = (2 * wide + 1) * (2 * high + 1) * steps
-        self.origin = ((2 * wide + 1) * high + wide) * steps
+        wide, high = ([math.floor(w * limit) for w in norm.widths()] + [0])[:2]
         # The sums over modes of equal |k| of two series are multiplied for each pair of powers.
-        terms = max(self.size, (limit + 1) * (degree + 1) ** 2)
+        terms = max((2 * wide + 1) * (2 * high + 1) * (degree + 1), (limit + 1) * (degree + 1) ** 2)
         if terms > MAX_TERMS:
             raise NotConfirmed("series of %d terms are needed, the checker's limit is %d"
                                % (terms, MAX_TERMS))
-        self.rows, self.lengths, self.runs = {}, [], []     # of row b: its first group, least a
-        slopes = [sum(x * y for x, y in zip(row, norm.basis[0])) for row in norm.frame]
+        self.reach = wide, high
+        self.rows, self.lengths = {}, []            # of row b: its first group, least a, count
         for b in range(-high, high + 1):
-            starts = [sum(x * b * y for x, y in zip(row, norm.basis[-1])) * (len(slopes) > 1)
-                      for row in norm.frame]
-            terms = list(zip(norm.alpha, starts, slopes))
-            found = [(a, length) for a in range(-wide, wide + 1)
-                     if (length := sum([w * abs(p + q * a) for w, p, q in terms])) <= limit]
-            if not found:
-                continue
-            self.rows[b] = len(self.lengths), found[0][0], len(found)
-            self.lengths += [length for _, length in found]
-            first = ((b + high) * (2 * wide + 1) + found[0][0] + wide) * steps
-            if degree:
-                self.runs += [(first + at * steps, degree + 1) for at in range(len(found))]
-            else:
-                self.runs.append((first, len(found)))
+            low, top = norm.row(b, limit)
+            if low <= top:
+                self.rows[b] = len(self.lengths), low, top - low + 1
+                self.lengths += norm.lengths(b, low, top)
         self.groups = len(self.lengths)
         self.centre = self.groups // 2  # k = 0: opposite k are opposite in order
         self.count = self.groups * (degree + 1)
+
+    @functools.cached_property
+    def places(self):
+        """(size, powers, turns): of each mode a power of X, below size, and a number of times that
+        X^size is taken off.  No two powers are the same, and with both (k, j) belongs to X^(at
+        steps + j), where steps = degree + 1 and `at` is a linear function of k, 1 at k = b_0."""
+        steps = self.degree + 1
+        for period, stride in self._periods():
+            pairs = [divmod(first + stride * b + a, period)
+                     for b, (_, first, count) in self.rows.items() for a in range(count)]
+            if len({place for _, place in pairs}) == self.groups:
+                return (period * steps,
+                        [place * steps + j for _, place in pairs for j in range(steps)],
+                        [turns for turns, _ in pairs for _ in range(steps)])
+        raise AssertionError
+
+    def _periods(self):
+        """(period, stride), such that a + stride b seems to be different for all k = (a, b) of the
+        box modulo the period, for a small period; then those of the smallest rectangle.
+
+        They are different if no k != 0 with a + stride b = 0 has |k| <= 2 limit.  These k are a
+        lattice: vectors (x, y + 1) and (-z, y) of it are tried that are just longer.
+        """
+        wide, high = self.reach
+        spans = [self.norm.row(b, 2 * self.limit) for b in range(2 * high + 2)]
+        tried = []
+        for y, more, other in itertools.product(range(1, 2 * high + 1), range(3), range(3)):
+            x, z = spans[y + 1][1] + 1 + more, 1 - spans[y][0] + other
+            tried.append((x * y + z * (y + 1), -(x + z)))
+        for period, stride in sorted(tried):
+            if period >= self.groups and not any(
+                    low <= at <= top or low <= at - period <= top
+                    for b, (low, top) in enumerate(spans[1:], 1)
+                    for at in [-stride * b % period]):
+                yield period, stride
+                break
+        yield (2 * wide + 1) * (2 * high + 1), 2 * wide + 1
 
     def modes(self):
         """The coordinates of all k, in order."""
@@ -97,11 +118,87 @@ class Series:
     entries: tuple
     radius: int
 
+    def of(self, entry, radius=0):
+        """Another of one row and column."""
+        return Series(1, 1, (tuple(entry),), radius)
+
+    @property
+    def without_radius(self):
+        """Its polynomial."""
+        return Series(self.rows, self.columns, self.entries, 0)
+
     @property
     def transposed(self):
         return Series(self.columns, self.rows, tuple([
             self.entries[j * self.columns + i]
             for i in range(self.columns) for j in range(self.rows)]), self.radius)
+
+
+class Packing:
+    """How products are made of large numbers: series over a box are polynomials in X = 10^digits
+    modulo X^size + 1, as (k, j) belongs to the power of X that `places` says.  With real
+    coefficients `size` is that of the places, and with complex ones twice as large: X^(size / 2) is
+    the imaginary unit.  A coefficient of a product must be below X/2 in absolute value.
+    """
+
+    def __init__(self, box, digits, is_real):
+        self.apart, self.powers, self.turns = box.places
+        self.is_real, self.digits = is_real, digits
+        self.size = self.apart * (1 if is_real else 2)
+        if digits * self.size > MAX_DIGITS:
+            raise NotConfirmed("numbers of more than %d digits are needed, the checker's limit"
+                               % MAX_DIGITS)
+        self.half = 5 * 10 ** (digits - 1)
+        self.blank = decimal.Decimal(str(self.half) * self.size)
+        # X^size + 1 and, rounded up, half of that.
+        self.modulus = EXACT.add(EXACT.scaleb(decimal.Decimal(1), digits * self.size), 1)
+        self.most = EXACT.add(EXACT.scaleb(decimal.Decimal(5), digits * self.size - 1), 1)
+
+    def pack(self, re, im):
+        """The number of a series."""
+        half, apart, form = self.half, self.apart, ("%%0%dd" % self.digits).__mod__
+        numbers = [half] * self.size    # the highest power first
+        if self.is_real:
+            for at, quarters, x in zip(self.powers, self.turns, re):
+                numbers[~at] = half - x if quarters & 1 else half + x
+        else:
+            for at, quarters, x, y in zip(self.powers, self.turns, re, im or itertools.repeat(0)):
+                x, y = turn(x, y, quarters)
+                numbers[~at] = half + x
+                numbers[~at - apart] = half + y
+        # A list of all texts would take many times their space.
+        text = "".join(["".join(map(form, numbers[at:at + TEXTS]))
+                        for at in range(0, self.size, TEXTS)])
+        return EXACT.subtract(decimal.Decimal(text), self.blank)
+
+    def unpack(self, number, bits):
+        """(re, im or None) of a product, times 2^-bits, rounded down."""
+        digits, half = self.digits, self.half
+        length = digits * self.size
+        high = EXACT.shift(number, -length)
+        number = EXACT.subtract(EXACT.subtract(number, EXACT.scaleb(high, length)), high)
+        while number.copy_abs() > self.most:
+            number = EXACT.subtract(number, self.modulus.copy_sign(number))
+        text = str(EXACT.add(number, self.blank)).rjust(length, "0")
+        re, im = [], None if self.is_real else []
+        for at, quarters in zip(self.powers, self.turns):
+            at = length - (at + 1) * digits
+            x = int(text[at:at + digits]) - half
+            if im is None:
+                re.append((-x if quarters & 1 else x) >> bits)
+                continue
+            at -= digits * self.apart
+            x, y = turn(x, int(text[at:at + digits]) - half, -quarters)
+            re.append(x >> bits)
+            im.append(y >> bits)
+        return re, im
+
+
+def turn(x, y, quarters):
+    """x + iy times i^quarters."""
+    if quarters & 2:
+        x, y = -x, -y
+    return (-y, x) if quarters & 1 else (x, y)
 
 
 class Ring:
@@ -111,6 +208,19 @@ class Ring:
         self.box, self.bits, self.one, self.sigma = box, bits, 1 << bits, sigma
         self.powers = powers_of(sigma, box.limit)
         self.ones = (box.degree + 1) * sum([self.powers[length] for length in box.lengths])
+
+    @functools.cached_property
+    def weights(self):
+        """sigma^|k| of all modes, rounded up, in units of 2^-FINE."""
+        return [self.powers[length] for length in self.box.lengths
+                for _ in range(self.box.degree + 1)]
+
+    @functools.cached_property
+    def _aside(self):
+        """What a pair of modes that is left out is at most where it comes to lie, of the product of
+        their norms, in units of 2^-FINE."""
+        norm, box = self.box.norm, self.box
+        return self.powers[min(norm(norm.basis[0]), box.limit)] if box.degree else 1 << FINE
 
     # ---- norms, in units of 2^-(bits + FINE)
 
@@ -168,59 +278,43 @@ class Ring:
         return self.series(f.rows, f.columns, entries, f.radius)
 
     def multiply(self, f, g):
-        """The product.  Its modes beyond the box are left out, and while the box is a period of
-        what is multiplied (Kronecker's substitution) they may come to lie on those within; neither
-        is more than the sum over these pairs of modes of the product of their norms."""
-        box, zero = self.box, decimal.Decimal(0)
-        parts = [x for h in (f, g) for entry in h.entries for x in entry if x is not None]
-        sums = max(sum(map(abs, x)) for entry in g.entries for x in entry if x is not None)
-        most = max(map(greatest, parts))
-        digits = len(str(8 * f.columns * most * max(sums, 1))) + 1
-        if digits * box.size > MAX_DIGITS:
-            raise NotConfirmed("numbers of more than %d digits are needed, the checker's limit"
-                               % MAX_DIGITS)
-
-        # Complex numbers are multiplied with three products instead of four.
-        def packed(h):
-            found = []
-            for re, im in h.entries:
-                x = self._pack(re, digits)
-                y = None if im is None else x if im is re else self._pack(im, digits)
-                found.append((x, y, None if y is None else EXACT.add(x, y)))
-            return found
-
-        left = packed(f)
-        right = left if f is g else packed(g)
-        entries = []
-        for i, j in itertools.product(range(f.rows), range(g.columns)):
-            re = im = zero
-            is_real = True
-            for n in range(f.columns):
-                x, y, xy = left[i * f.columns + n]
-                u, v, uv = right[n * g.columns + j]
-                first = EXACT.multiply(x, u)
-                re = EXACT.add(re, first)
-                if y is None and v is None:
-                    continue
-                is_real = False
-                if y is None:
-                    im = EXACT.add(im, EXACT.multiply(x, v))
-                elif v is None:
-                    im = EXACT.add(im, EXACT.multiply(y, u))
-                else:
-                    second = EXACT.multiply(y, v)
-                    re = EXACT.subtract(re, second)
-                    im = EXACT.add(im, EXACT.subtract(EXACT.multiply(xy, uv),
-                                                      EXACT.add(first, second)))
-            entries.append((self._unpack(re, digits),
-                            None if is_real else self._unpack(im, digits)))
+        """The product.  Of two modes with |k + k'| > limit it is left out, and may come to lie on
+        one within: neither is more than the product of their norms.  If |k + k'| <= limit, but
+        j + j' > degree, it comes to k + k' + b_0: that is at most sigma^|b_0| times as much.
+        """
         p = self.profile(f)
         q = p if f is g else self.profile(g)
         m, n = sum(map(sum, p)), sum(map(sum, q))
-        found = self.series(f.rows, g.columns, entries)
+        found = self.series(f.rows, g.columns, self.convolved(f, g, self.bits))
         radius = self.product_of_norms(m + f.radius, g.radius) \
-            + self.product_of_norms(n, f.radius) + 2 * self._beyond(p, q) + self.rounding(found)
-        return self.series(f.rows, g.columns, entries, radius)
+            + self.product_of_norms(n, f.radius) + self.rounding(found) \
+            + ((1 << FINE) + self._aside) * self._beyond(p, q) // (1 << FINE) + 1
+        return self.series(f.rows, g.columns, found.entries, radius)
+
+    def convolved(self, f, g, bits):
+        """The entries of the product of f and of g, a series in units of 2^-bits, rounded down:
+        Kronecker's substitution, with complex numbers as polynomials modulo X^period - i."""
+        is_real = all(im is None for h in (f, g) for _, im in h.entries)
+
+        def sizes(h):
+            """(the largest, the largest sum of the parts of an entry), at least 1."""
+            parts = [[x for x in entry if x is not None] for entry in h.entries]
+            return (max(1, *[greatest(x) for entry in parts for x in entry]),
+                    max(1, *[sum([sum(map(abs, x)) for x in entry]) for entry in parts]))
+
+        (f_most, f_sum), (g_most, g_sum) = sizes(f), sizes(g)
+        digits = len(str(2 * f.columns * min(f_most * g_sum, g_most * f_sum)))
+        packing = Packing(self.box, digits, is_real)
+        left = [packing.pack(*entry) for entry in f.entries]
+        right = left if f is g else [packing.pack(*entry) for entry in g.entries]
+        entries = []
+        for i, j in itertools.product(range(f.rows), range(g.columns)):
+            total = decimal.Decimal(0)
+            for n in range(f.columns):
+                total = EXACT.add(total, EXACT.multiply(left[i * f.columns + n],
+                                                        right[n * g.columns + j]))
+            entries.append(packing.unpack(total, bits))
+        return entries
 
     def _beyond(self, p, q):
         """The sum of the products of all norms of modes that have |k| + |k'| > limit or
@@ -238,31 +332,6 @@ class Ring:
                 else:                   # |k'| > limit - |k|: the last |k| of them
                     total += sum([x * y for x, y in zip(sums[1:], rest)])
         return (total >> self.bits + FINE) + 1
-
-    def _pack(self, values, digits):
-        """The sum of value 10^(digits place), the first mode having the highest place."""
-        size, half = self.box.size, 5 * 10 ** (digits - 1)
-        blank, form = "5" + "0" * (digits - 1), "%%0%dd" % digits
-        text, at, place = [], 0, 0
-        for first, count in self.box.runs:
-            text.append(blank * (first - place))
-            text += [form % (x + half) for x in values[at:at + count]]
-            at, place = at + count, first + count
-        text.append(blank * (size - place))
-        return EXACT.subtract(decimal.Decimal("".join(text)), decimal.Decimal(blank * size))
-
-    def _unpack(self, number, digits):
-        """Those of the places of a product that are in the box, in units of 2^-bits, rounded down;
-        the product's value at the place i + j is that of the factors' places i and j."""
-        places, half = 2 * self.box.size - 1, 5 * 10 ** (digits - 1)
-        blank = decimal.Decimal(("5" + "0" * (digits - 1)) * places)
-        text = str(EXACT.add(number, blank)).rjust(places * digits, "0")
-        found, bits = [], self.bits
-        for first, count in self.box.runs:
-            start = (first + self.box.origin) * digits
-            found += [int(text[at:at + digits]) - half >> bits
-                      for at in range(start, start + count * digits, digits)]
-        return found
 
     def exponential(self, f):
         """e^f of a series with values in numbers: Taylor's polynomial of f / 2^m, squared m times.

@@ -17,10 +17,10 @@ import zipfile
 
 FOLDER = os.path.dirname(os.path.abspath(__file__))
 # In the order in which they are read; each needs only those before it.
-SHARED = ("version", "limits", "failures", "claim", "tree", "proof_file", "arith", "torus", "exact",
-          "criterion", "words")
+SHARED = ("version", "limits", "failures", "claim", "tree", "proof_file", "arith", "cover", "torus",
+          "exact", "criterion", "links", "words")
 ORDER = (*SHARED, "lockstep", "maps", "signals", "state", "progress", "workers",
-         "torus_file", "field", "series", "tori", "run", "command")
+         "torus_file", "field", "series", "exponential", "tori", "run", "command")
 REFEREE = (*SHARED, "referee")
 MAIN = '''import sys
 

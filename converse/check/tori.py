@@ -7,15 +7,17 @@ judges, and how many modes and bits are used.  No bound rests on them.
 import cmath
 import itertools
 import math
+import operator
 from dataclasses import dataclass
 from fractions import Fraction
 
 from .arith import GUARD, fixed_of
+from .exponential import conjugate, exponential_of_imaginary, reversed_
 from .failures import NotConfirmed, Rejected, named
-from .field import (E_LOW, Divisors, Field, Norm, combination, identity, rounded_down, rounded_up,
-                    upper_root)
+from .field import (E_LOW, Divisors, Field, Norm, combination, exponential_above, identity,
+                    rounded_down, rounded_up, upper_root)
 from .limits import MAX_BITS, MAX_GRID, MAX_LENGTH
-from .series import FINE, Box, Ring, greatest, powers_of
+from .series import FINE, Box, Ring, greatest, powers_of, turn
 from .version import __version__
 from .words import decimal_text
 
@@ -72,14 +74,6 @@ class Constants:
             return None
         return Constants(*map(rounded_up, (self.l + t, self.m / (1 - self.m * t), a,
                                            self.b / (1 - self.b * da), self.p + da)))
-
-
-def exponential_above(x):
-    """A rational not below e^x, x >= 0."""
-    if x > 1:
-        return rounded_up(exponential_above(x / 2) ** 2)
-    return rounded_up(sum([x ** j / math.factorial(j) for j in range(13)])
-                      + 2 * x ** 13 / math.factorial(13))
 
 
 def logarithm_below(x):
@@ -204,28 +198,16 @@ class Torus:
         self.rotation = [combination(b, claim.rotation) for b in norm.basis]
         self.steps = {}
         middle, half = (piece.high + piece.low) / 2, (piece.high - piece.low) / 2
-        turned = {}                     # of each shift the coefficients
-        for shift in itertools.product((0, 1), repeat=self.n):
-            modes = {}
-            for k, series in piece.modes.items():
-                if not any(any(map(any, vector)) for vector in series):
-                    continue
-                turns = sum([x * y for x, y in zip(k, shift)]) % 4
-                modes[k] = [[turn(x, turns) for x in vector] for vector in series]
-            turned[shift] = modes
-        real = {shift: sum([abs(re) for series in modes.values() for vector in series
-                            for re, _ in vector]) for shift, modes in turned.items()}
-        shift = min(real, key=real.get)
-        self.is_exactly_odd = not real[shift]
+        shift, real, _ = quarter_turns(piece, self.n)
         self.is_odd = is_odd
-        self.modes = turned[shift]
-        self.dropped = Fraction(0)      # of |u| for real angles
-        if is_odd:
-            self.dropped = Fraction(2 * real[shift], 1 << self.bits)
-            self.modes = {k: [[(0, im) for _, im in vector] for vector in series]
-                          for k, series in self.modes.items()}
-        self.could_be_odd = real[shift] << 16 <= sum([
-            abs(im) for series in self.modes.values() for vector in series for _, im in vector])
+        self.dropped = Fraction(2 * real * is_odd, 1 << self.bits)      # of |u| for real angles
+        self.modes = {}
+        for k, series in piece.modes.items():
+            if any(any(map(any, vector)) for vector in series):
+                turns = sum([x * y for x, y in zip(k, shift)]) % 4
+                series = [[turn(*x, turns) for x in vector] for vector in series]
+                self.modes[k] = [[(0, im) for _, im in vector] for vector in series] \
+                    if is_odd else series
         self.waves = []                 # (k, phase, p at the middle, p's part)
         for wave in claim.waves:
             part = wave.parts[0] if wave.parts else Fraction(0)
@@ -234,21 +216,27 @@ class Torus:
                                    [x * y for x, y in zip(wave.k, shift)]), 2),
                                wave.middle + part * middle, part * half))
         self.varies = any(part for *_, part in self.waves)
-        # |k|, |u_k| summed over the powers of s, 2 for k and -k; and |k| as a vector.
-        self.sizes = []
+        # Of each k |k|, |u_k| summed over the powers of s, and |k| as a vector in units of 2^-32.
+        sizes = []
         for k, series in self.modes.items():
             size = sum([math.isqrt(sum([x * x + y * y for x, y in vector])) + 1
                         for vector in series if any(map(any, vector))])
-            self.sizes.append((norm(k), size, upper_root(sum([x * x for x in k]))))
-        if sum([size for _, size, _ in self.sizes]) >> self.bits > 100:
+            sizes.append((norm(k), size, math.isqrt(sum([x * x for x in k]) << 64) + 1))
+        if sum([size for _, size, _ in sizes]) >> self.bits > 100:
             raise NotConfirmed(FAR)
-        self.farthest = max([length for length, _, _ in self.sizes], default=1)
+        self.farthest = max([length for length, _, _ in sizes], default=1)
+        # Of each length the sums of |u_k| and |u_k| |k|, and the largest |u_k|.
+        self.sums, self.slopes, self.tops = [[0] * (self.farthest + 1) for _ in range(3)]
+        for length, size, width in sizes:
+            self.sums[length] += size
+            self.slopes[length] += size * width
+            self.tops[length] = max(self.tops[length], size)
         self.has_noise = (knee := self.knee()) < self.farthest
         if is_trimmed:
-            self.dropped += Fraction(2 * sum([size for length, size, _ in self.sizes
-                                              if length > knee]), 1 << self.bits)
+            self.dropped += Fraction(2 * sum(self.sums[knee + 1:]), 1 << self.bits)
             self.modes = {k: series for k, series in self.modes.items() if norm(k) <= knee}
-            self.sizes = [size for size in self.sizes if size[0] <= knee]
+            self.sums, self.slopes, self.tops = [
+                x[:knee + 1] for x in (self.sums, self.slopes, self.tops)]
             self.farthest = knee
 
     def knee(self):
@@ -256,7 +244,7 @@ class Torus:
         torus without it may be the better one."""
         width = self.farthest // 32 + 1
         sums = [0] * (self.farthest // width + 1)
-        for length, size, _ in self.sizes:
+        for length, size in enumerate(self.sums):
             sums[length // width] += size
         logs = [math.log(x) for x in sums if x]
         last = len(logs) - 1
@@ -290,11 +278,7 @@ class Torus:
 
     def rate(self):
         """About how fast the coefficients decay: |u_k| ~ e^(-rate |k|)."""
-        largest_at = {}
-        for length, size, _ in self.sizes:
-            if size > 1:
-                largest_at[length] = max(largest_at.get(length, 0), size)
-        points = [(length, math.log(size)) for length, size in largest_at.items()]
+        points = [(length, math.log(size)) for length, size in enumerate(self.tops) if size > 1]
         top = max([y for _, y in points], default=0)
         # the least slope of all lines from the top that lie above the points beyond e^-7
         slopes = [(top - y) / length for length, y in points if y < top - 7]
@@ -302,21 +286,18 @@ class Torus:
 
     def outside(self, powers, limit):
         """The sum of |u_k| sigma^|k| over |k| > limit, in units of 2^-(bits + FINE)."""
-        return 2 * sum([size * powers[length] for length, size, _ in self.sizes
-                        if length > limit])
+        return 2 * sum(map(operator.mul, self.sums[limit + 1:], powers[limit + 1:]))
 
     def derivative_outside(self, powers, limit):
         """The sum of |u_k| |k|_2 sigma^|k| over |k| > limit."""
-        return rounded_up(Fraction(2, 1 << self.bits + FINE) * sum(
-            [size * powers[length] * width for length, size, width in self.sizes
-             if length > limit]))
+        return rounded_up(Fraction(2 * sum(map(
+            operator.mul, self.slopes[limit + 1:], powers[limit + 1:])),
+            1 << self.bits + FINE + 32))
 
     def extent(self, powers, spared):
         """(near, far): modes |k| > near add up to no more than what may be spared, and about as
         little is lost of products and exponentials, if these have modes |k| <= far."""
-        by_length = [0] * (self.farthest + 2)
-        for length, size, _ in self.sizes:
-            by_length[length] += 2 * size * powers[length]
+        by_length = [2 * size * power for size, power in zip(self.sums, powers)]
         near, total = self.farthest, 0
         while near > 1 and total + by_length[near] < spared:
             total += by_length[near]
@@ -349,7 +330,7 @@ class Torus:
         for k, series in self.modes.items():
             if self.norm(k) > limit:
                 continue
-            m = tuple(map(int, self.norm.coordinates(k)))
+            m = self.norm.place(k)
             for at, sign in ((box.find(m), 1), (box.find(tuple([-x for x in m])), -1)):
                 for j, vector in enumerate(series):
                     for entry, (re, im) in zip(entries, vector):
@@ -359,10 +340,21 @@ class Torus:
             (None if self.is_odd else re, im) for re, im in entries])
 
 
-def turn(z, quarters):
-    """z i^quarters."""
-    re, im = z
-    return ((re, im), (-im, re), (-re, -im), (im, -re))[quarters]
+def quarter_turns(piece, n):
+    """(shift, real, imaginary): by how many quarter turns of each angle the coefficients become as
+    nearly imaginary as they can, and the sums of the absolute values of their parts then."""
+    found = []
+    parts = [(k, sum([abs(re) for vector in series for re, _ in vector]),
+              sum([abs(im) for vector in series for _, im in vector]))
+             for k, series in piece.modes.items()]
+    for shift in itertools.product((0, 1), repeat=n):
+        sums = [0, 0]
+        for k, *sizes in parts:
+            turns = sum([x * y for x, y in zip(k, shift)]) % 2
+            sums[0] += sizes[turns]
+            sums[1] += sizes[1 - turns]
+        found.append((shift, *sums))
+    return min(found, key=lambda x: x[1])
 
 
 def shifted(x, bits):
@@ -573,10 +565,10 @@ class Residual:
     def power(self, k):
         """e^(i k.u)."""
         if k < tuple([-x for x in k]):
-            return self.conjugate(self.power(tuple([-x for x in k])))
+            return conjugate(self.power(tuple([-x for x in k])), self.torus.degree)
         if k not in self.known:
             if sum(map(abs, k)) == 1:
-                found = self.ring.exponential(self.angles[k.index(1)])
+                found = exponential_of_imaginary(self.ring, self.angles[k.index(1)])
             elif not any(x % 2 for x in k):
                 half = self.power(tuple([x // 2 for x in k]))
                 found = self.ring.multiply(half, half)
@@ -588,16 +580,10 @@ class Residual:
             self.known[k] = found
         return self.known[k]
 
-    def conjugate(self, f):
-        degree = self.torus.degree
-        (re, im), = f.entries
-        return self.ring.series(1, 1, [(reversed_(re, degree), im and [
-            -x for x in reversed_(im, degree)])], f.radius)
-
     def add_wave(self, totals, k, g, amplitudes):
         """Adds -k p e^(i (k.theta + pi phase)) g to the totals."""
         torus, box, wide = self.torus, self.ring.box, self.wide.box
-        a, b = (*map(int, torus.norm.coordinates(k)), 0)[:2]
+        a, b = (*torus.norm.place(k), 0)[:2]
         step, far = torus.degree + 1, wide.degree + 1
         (re, im), = g.entries
         for row, (start, first, count) in box.rows.items():
@@ -634,14 +620,6 @@ class Residual:
         return found
 
 
-def reversed_(values, degree):
-    """Those at -k, for all k."""
-    if not degree:
-        return values[::-1]
-    step = degree + 1
-    return [x for at in range(len(values) - step, -1, -step) for x in values[at:at + step]]
-
-
 # ---- a piece, and a whole file (T9)
 
 @dataclass(frozen=True)
@@ -672,7 +650,7 @@ class Setting:
             if max(map(self.norm, modes), default=0) > MAX_LENGTH:
                 raise NotConfirmed("a mode is longer than %d, the checker's limit" % MAX_LENGTH)
         for piece in claim.pieces:
-            if any(x.denominator > 1 for k in piece.modes for x in self.norm.coordinates(k)):
+            if any(self.norm.place(k) is None for k in piece.modes):
                 raise Rejected("there is a mode outside of the group that the waves' k generate")
         self.field = Field(claim.polynomial, *claim.root)
         self.divisors = Divisors(self.field, claim.rotation, self.norm)
@@ -681,10 +659,11 @@ class Setting:
 def verify_piece(setting, piece, tell):
     """Verified; or NotConfirmed is raised."""
     why = ""
-    for is_odd, is_trimmed in itertools.product((True, False), repeat=2):
+    _, real, imaginary = quarter_turns(piece, setting.claim.dimension)
+    kinds = [True] * (real << 16 <= imaginary) + [False] * (real > 0)
+    for is_odd, is_trimmed in itertools.product(kinds, (True, False)):
         torus = Torus(setting, piece, is_odd, is_trimmed)
-        if is_odd and not torus.could_be_odd or is_trimmed and not torus.has_noise \
-                or not is_odd and torus.is_exactly_odd:
+        if is_trimmed and not torus.has_noise:
             continue
         for rho in widths(torus, setting.claim.rho / setting.scale):
             found = verify_width(torus, rho, tell)
@@ -697,10 +676,8 @@ def verify_piece(setting, piece, tell):
 def widths(torus, hint):
     """Widths of the strip to try: first the one in which about the fewest modes are needed."""
     largest, rate = torus.farthest, torus.rate()
-    sums, slopes = [0.0] * (largest + 1), [0.0] * (largest + 1)
-    for length, size, width in torus.sizes:
-        sums[length] += 2 * in_double(size, torus.bits)
-        slopes[length] += 2 * in_double(size, torus.bits) * float(width)
+    sums = [2 * in_double(x, torus.bits) for x in torus.sums]
+    slopes = [2 * in_double(x, torus.bits + 32) for x in torus.slopes]
 
     def modes(rho):
         """How far the modes reach, about; more than the file's, if these are too few."""

@@ -9,8 +9,8 @@ import itertools
 from array import array
 from fractions import Fraction
 
-from .claim import AXES, IDENTITY
-from .failures import NotConfirmed, Rejected
+from .claim import AXES, IDENTITY, LETTERS
+from .failures import NotConfirmed, Rejected, named
 from .limits import MAX_CUTS
 
 ROOT = (0,) * 5, (0,) * 5
@@ -34,7 +34,8 @@ def leaves(tree, axes=AXES, kinds="PSU"):
         elif node in kinds:
             yield position, cell
         else:
-            raise Rejected("%a is not a node of a finished tree, at node %d" % (node, position))
+            raise Rejected("%a is not a node of a finished tree%s, at node %d" % (
+                node, " nor a later part" if node in LETTERS else "", position))
         if sum(cuts) > MAX_CUTS:
             raise NotConfirmed("node %d lies below %d cuts, the checker's limit"
                                % (position, MAX_CUTS))
@@ -42,12 +43,18 @@ def leaves(tree, axes=AXES, kinds="PSU"):
         raise Rejected("the tree is incomplete: %d of its parts are missing" % len(pending))
 
 
-def tree_counts(claim):
+def trees(claim):
+    """A proof file's own claim, with x*, region and tree, and those of its parts a, b, ...: with
+    the letters of the parts that their leaves may be linked to."""
+    return [(part, LETTERS[n:len(claim.parts)]) for n, part in enumerate((claim, *claim.parts))]
+
+
+def tree_counts(claim, letters=""):
     """What the tree has, counted; Rejected, if it is not whole and decided."""
     total = most_cuts = deepest = 0
     if set(AXES[2 + claim.parameters:]) & set(claim.tree):
         raise Rejected("the tree cuts a parameter that there is not")
-    for position, (_, cuts) in leaves(claim.tree):
+    for position, (_, cuts) in leaves(claim.tree, kinds="PSU" + letters):
         total, depth, kind = total + 1, sum(cuts), claim.tree[position]
         if kind == "U":
             raise Rejected("leaf %d is undecided: the file claims no theorem" % total)
@@ -55,18 +62,28 @@ def tree_counts(claim):
         most_cuts = max(most_cuts, depth if kind == "P" else 0)
     return {"cuts": total - 1, "proved": claim.tree.count("P"),
             "symmetric": claim.tree.count("S"), "undecided": 0, "most_cuts": most_cuts,
-            "depth": deepest}
+            "depth": deepest, "linked": sum(map(claim.tree.count, letters))}
 
 
 def check_tree(claim):
-    """Rejected, if the tree is not whole, decided, and what the header's counts say."""
-    found = tree_counts(claim)
-    if found.pop("depth") > claim.counts["depth"]:
+    """Rejected, if the trees are not whole, decided, and what the header's counts say, or a part is
+    without a leaf that is linked to it; then each has its own counts."""
+    found = []
+    for part, letters in trees(claim):
+        with named(part.where):
+            found.append(tree_counts(part, letters))
+    if max([counts["depth"] for counts in found]) > claim.counts["depth"]:
         raise Rejected("a leaf was cut more often than the depth allows")
-    for name, value in found.items():
+    for name in claim.counts.keys() - {"depth"}:
+        value = (max if name == "most_cuts" else sum)([counts[name] for counts in found])
         if claim.counts[name] != value:
             raise Rejected("the header's %s is %d, the tree's %d"
                            % (name, claim.counts[name], value))
+    for letter in LETTERS[:len(claim.parts)]:
+        if not any(letter in part.tree for part, _ in trees(claim)):
+            raise Rejected("no leaf is linked to part " + letter)
+    for (part, _), counts in zip(trees(claim), found):
+        part.counts.update(counts)
 
 
 def coefficients(waves, swap=False, order=None):
@@ -85,6 +102,16 @@ def coefficients(waves, swap=False, order=None):
     return {key: value for key, value in found.items() if any(value)}
 
 
+def exchange_orders(claim):
+    """The orders of the parameters in which the potential with its coordinates exchanged, t'[m] =
+    t[order[m]], is the potential; none, if x* is not its own image or a coordinate is alone."""
+    if claim.xstar[0] != claim.xstar[1] or claim.alone is not None:
+        return []
+    # V(sigma y; t) = V(y; t'):  the part of t[order[m]] is, exchanged, that of t'[m].
+    return [order for order in itertools.permutations(range(claim.parameters))
+            if coefficients(claim.waves, True, order) == coefficients(claim.waves)]
+
+
 class Mirror:
     """The exchange of the two coordinates: may a leaf be skipped for the sake of its mirror image?
 
@@ -94,12 +121,9 @@ class Mirror:
     """
 
     def __init__(self, claim):
-        (v0, v1), waves = zip(claim.centre, claim.half), claim.examined
-        self.orders = []                                    # of the parameters
-        if v0 == v1 and claim.xstar[0] == claim.xstar[1] and claim.frame == IDENTITY:
-            # V(sigma y; t) = V(y; t'):  the part of t[order[m]] is, exchanged, that of t'[m].
-            self.orders = [order for order in itertools.permutations(range(claim.parameters))
-                           if coefficients(waves, True, order) == coefficients(waves)]
+        v0, v1 = zip(claim.centre, claim.half)
+        fits = v0 == v1 and claim.frame == IDENTITY
+        self.orders = exchange_orders(claim) if fits else []    # of the parameters
         self.tree = claim.tree
         self.upper = array("i", [0]) * len(self.tree)       # where a node's upper half begins
         unfinished = []                                     # nodes whose lower half goes on
@@ -143,19 +167,20 @@ class Mirror:
 
 def check_mirror_images(claim):
     """Rejected, if a leaf is skipped by symmetry that may not be."""
-    if "S" not in claim.tree:
-        return
-    mirror, skipped = Mirror(claim), 0
-    for position, cell in leaves(claim.tree):
-        if claim.tree[position] == "S":
-            why = mirror.refusal(cell)
-            if why:
-                raise Rejected(leaf_text(claim, "S", skipped, cell) + " " + why)
-            skipped += 1
+    for part, letters in trees(claim):
+        if "S" not in part.tree:
+            continue
+        mirror, skipped = Mirror(part), 0
+        for position, cell in leaves(part.tree, kinds="PS" + letters):
+            if part.tree[position] == "S":
+                why = mirror.refusal(cell)
+                if why:
+                    raise Rejected(leaf_text(part, "S", skipped, cell) + " " + why)
+                skipped += 1
 
 
 def leaf_text(claim, kind, ordinal, cell):
-    """Names a leaf by its number among those of its kind, its depth and where it lies."""
+    """Names a leaf by its part, its number among those of its kind, its depth and where it lies."""
     index, cuts = cell
 
     def sides(ends):
@@ -166,7 +191,8 @@ def leaf_text(claim, kind, ordinal, cell):
               for c, h, i, k in zip(claim.centre, claim.half, index, cuts)]
     spread = [sum([abs(g) / (1 << k) for g, k in zip(wave.parts, cuts[2:])])
               for wave in claim.waves]
-    return "%s leaf %d of %d (v in %s pi, amplitudes in %s, %d cuts)" % (
-        {"P": "proved", "S": "symmetric"}[kind], ordinal + 1, claim.tree.count(kind),
+    return "%s%s leaf %d of %d (v in %s pi, amplitudes in %s, %d cuts)" % (
+        claim.where and claim.where + ": ",
+        {"P": "proved", "S": "symmetric"}.get(kind, "linked"), ordinal + 1, claim.tree.count(kind),
         sides(angles), sides([(wave.at(t) - x, wave.at(t) + x)
                               for wave, x in zip(claim.waves, spread)]), sum(cuts))

@@ -3,6 +3,7 @@
 from fractions import Fraction
 
 from .claim import ANGLES, IDENTITY, RANGES, THESIS
+from .cover import is_whole, symmetries_used
 from .limits import PART, VERIFIED
 from .tree import leaf_text
 from .version import __version__
@@ -40,7 +41,7 @@ def is_boxed(claim):
 
 def claimed(claim):
     """What a proof file claims, in lines."""
-    boxed, torus = is_boxed(claim), min(claim.half) >= 1
+    boxed, torus = is_boxed(claim), is_whole(claim)
     potential = TRIG if boxed else "V(y) = - the sum of p sin(k.y + phase) over the waves below"
     lines = [SYSTEM, potential + ", " + GRAPH[0], *GRAPH[1:]]
     if not torus:
@@ -81,31 +82,40 @@ def claimed(claim):
 
 def not_excluded(claim, ordinal, cell, why):
     """That a leaf is not confirmed, and why."""
-    return "%s%s is not excluded: %s; the claim is false or its proof beyond the limits of this " \
-        "checker" % (claim.where, leaf_text(claim, "P", ordinal, cell), why)
+    return "%s is not excluded: %s; the claim is false or its proof beyond the limits of this " \
+        "checker" % (leaf_text(claim, "P", ordinal, cell), why)
 
 
 def report(claims, theorem, criterion, confirmed, pieces, fast=False):
     """The exit status and the lines of a report: the theorem, exactly as far as it was verified.
 
-    theorem: what is claimed, in lines; criterion: of a proof file, not of a map.
+    claims: of the cells of a map, or of a proof file and its parts; theorem: what is claimed, in
+    lines; criterion: of a proof file, not of a map.
     """
-    proved, skipped = [sum([claim.counts[kind] for claim in claims])
-                       for kind in ("proved", "symmetric")]
-    whole = all(min(claim.half) >= 1 for claim in claims)
+    proved, skipped, linked = [sum([claim.counts.get(kind, 0) for claim in claims])
+                               for kind in ("proved", "symmetric", "linked")]
+    whole = all(map(is_whole, claims[:1] if criterion else claims))
     lines = ["Verified" + ", for a part of the torus only" * (not whole) + " :", *theorem, "",
              "Checker : converse-check " + __version__,
-             "Method : Loewner criterion, multipliers, %sin integers%s" % (
+             "Method : Loewner criterion, multipliers, %s%sin integers%s" % (
+                 "links between starting points, " * (linked > 0),
                  "in doubles and where these fail " * fast,
                  " of %d bits" % criterion.fixed.bits if criterion else "")]
     if criterion:
         places, claim = 9, criterion.claim
         bound = -(-criterion.B * 10 ** places // criterion.fixed.one)       # rounded up
-        lines += ["x* : %s %s" % tuple(map(decimal_text, claim.xstar)),
-                  "B : %s" % decimal_text(Fraction(bound, 10 ** places))]
+        if used := symmetries_used(claim):
+            lines += ["Successors : x[1] = (%+d v0 %+d v1, %+d v0 %+d v1)," % claim.frame
+                      + ",".join([" " + range_text(name + " / pi", c - h, c + h) for name, c, h in
+                                  zip(ANGLES, claim.centre, claim.half)])
+                      + "; all others by " + " and ".join(used)]
+        lines += ["x*%s : %s %s" % (part.where and " of " + part.where,
+                                    *map(decimal_text, part.xstar)) for part in claims]
+        lines += ["B : %s" % decimal_text(Fraction(bound, 10 ** places))]
         if claim.alone is not None:
             lines += ["Alone : x%d, a map of its own" % claim.alone]
-    lines += ["Leaves : %d, of which %d proved and %d symmetric" % (
-        proved + skipped, proved, skipped),
+    lines += ["Leaves : %d, of which %d proved%s and %d symmetric" % (
+        proved + skipped + linked, proved, ", %d linked to other parts" % linked * (linked > 0),
+        skipped),
         "Proved leaves checked : %d, in %d pieces" % (confirmed, pieces)]
     return VERIFIED if whole else PART, lines

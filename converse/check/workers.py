@@ -1,11 +1,11 @@
 """The leaves of all claims, divided among processes."""
 
 import collections
-import contextlib
 import os
 import signal
 import threading
 
+from .claim import LETTERS
 from .criterion import Criterion
 from .failures import Unusable, named
 from .lockstep import import_numpy_if_sound
@@ -17,16 +17,20 @@ _worker = []                            # in each process: its Problems
 
 
 class Problems:
-    """The claims of a file, one or those of a map's cells, with a bound of B for each if there are
-    any; the fast path of all, if there is one."""
+    """The claims of a file: its own and those of its parts, or those of a map's cells with a bound
+    of B for each; the fast path of all, if there is one."""
 
     def __init__(self, claims, bounds=None):
         self.claims, self.bounds, self.fast, self.known = claims, bounds, None, {}
 
     def criterion(self, n):
         if n not in self.known:
-            with named(self.claims[n].where) if self.claims[n].where else contextlib.nullcontext():
-                self.known[n] = Criterion(self.claims[n], self.bounds and self.bounds[n])
+            claim = self.claims[n]
+            if n and self.bounds is None:
+                self.known[n] = self.criterion(0).of_part(claim)
+            else:
+                with named(claim.where):
+                    self.known[n] = Criterion(claim, self.bounds and self.bounds[n])
         return self.known[n]
 
     def least_in_double(self, leaf):
@@ -38,7 +42,7 @@ class Problems:
     def leaves(self):
         """The leaves P of all claims, as (number of the claim, cell), in their order."""
         for n, claim in enumerate(self.claims):
-            for position, cell in leaves(claim.tree):
+            for position, cell in leaves(claim.tree, kinds="PS" + LETTERS):
                 if claim.tree[position] == "P":
                     yield n, cell
 

@@ -3,6 +3,7 @@
 import ast
 import builtins
 import contextlib
+import dataclasses
 import decimal
 import errno
 import gzip
@@ -231,7 +232,9 @@ def deep(texts):
 @pytest.fixture(scope="module")
 def moving(tmp_path_factory):
     """Proof files of the method loewner, by name: parameters on a segment, that of the inputs or
-    another, or in a box about a piece of it; with cuts of the parameters or without."""
+    another, or in a box about a piece of it; with cuts of the parameters or without.  They are of
+    the whole torus, in the frame in which leaves may be mirror images: what the program makes of
+    it is in test_version4.py."""
     inputs = [LINE * k for k in (1, 1, 2)]          # times epsilon
     slanted = (Fraction(12), Fraction("10.5"), Fraction(23))
     found = {}
@@ -248,7 +251,9 @@ def moving(tmp_path_factory):
                           (*((q - p) / 2 for p, q in zip(*ends)), Fraction(1), Fraction(1)), (),
                           together)
         path = tmp_path_factory.mktemp("proofs") / "moving"
-        prove(problem, method="loewner").save(path)
+        with pytest.MonkeyPatch.context() as patch:
+            patch.setattr("converse.prover.run.reduced", lambda problem, xstar: problem)
+            prove(problem, method="loewner").save(path)
         found[name] = path.read_text(encoding="utf-8")
     return found
 
@@ -273,7 +278,7 @@ def test_confirms_what_needs_orbits(deep, run):
     status, out, _ = run(deep, "--exact")
     assert status == 0 and "\n0.2199 <= a <= 0.2201\n" in out
     pieces = int(re.search("in ([0-9]+) pieces", out).group(1))
-    assert pieces == tree_of(deep).count("P")
+    assert pieces < 1.1 * tree_of(deep).count("P")
 
 
 @pytest.mark.parametrize("name, cuts, at_once", [
@@ -650,7 +655,7 @@ def test_unreadable(run, data):
 
 
 def test_other_versions_and_line_ends(texts, run):
-    for version in ("1", "4", "2.0", "", "22" * 999):
+    for version in ("1", "5", "2.0", "", "22" * 999):
         status, _, err = run(texts["trig278"].replace("proof 3", "proof " + version))
         assert status == 2 and "another version" in err
     status, _, err = run(texts["trig278"].replace("proof 3", "proof 2"))
@@ -908,7 +913,7 @@ def test_the_referee_has_all_that_it_needs(forms):
     known |= {node.name for node in nodes if isinstance(node, ast.ExceptHandler)}
     assert {node.id for node in nodes if isinstance(node, ast.Name)} <= known
     assert not {"numpy", "multiprocessing", "json"} & known
-    assert text.count("\n") <= 1450
+    assert text.count("\n") <= 1700
 
 
 def test_every_form_is_made_the_same_again(forms, tmp_path):
@@ -1046,7 +1051,7 @@ def test_the_format_names_what_the_checker_knows(root, texts, monkeypatch):
     header = page[page.index("## The header"):page.index("## The tree")]
     names = set(re.findall("`([^`\n]+)`", header)) - {"sound", "yes", "no", "0", "1", "upper end",
                                                       "as printed, not a proof"}
-    assert names == check.FIELDS | check.OPTIONAL
+    assert names == check.FIELDS | check.OPTIONAL | {check.LINKED}
     maps = page[page.index("## Maps"):page.index("## Going on")]
     assert all("`%s`" % name in maps for name in (*check.REGIONS, *check.MAP_KINDS))
     assert "2^22" in page and check.MAX_ITEMS == 1 << 22
@@ -1687,6 +1692,12 @@ def test_prisms_cover_their_cells(texts, generator, monkeypatch):
     assert tight > 50
 
 
+def pairs_of(eta):
+    """What the quadratic parts of orbits are coefficients of, in their order."""
+    return [x * y - Fraction(i == j, 2) for (i, x), (j, y) in
+            itertools.combinations_with_replacement(enumerate(eta), 2)]
+
+
 def test_exact_orbits(texts, generator, monkeypatch):
     """True orbits of a prism are where the centres and columns say, within the errors."""
     monkeypatch.setattr(check, "torus_bound", lambda fixed, *_: 4 * fixed.one)      # unused
@@ -1705,15 +1716,15 @@ def test_exact_orbits(texts, generator, monkeypatch):
         for lane, true in zip(prism.lanes, true_orbit(waves, amplitudes, angles, 20)):
             for x in true:
                 gaps = [y * one - c - sum(a * real(e) for a, e in zip(columns, eta))
-                        for y, c, columns in zip(x, lane.x, lane.L)]
-                if prism.rotated:
-                    gaps = [gaps[0] + gaps[1], gaps[0] - gaps[1]]
+                        - sum(a * real(e) for a, e in zip(form, pairs_of(eta)))
+                        for y, c, columns, form in zip(x, lane.x, lane.L, lane.T)]
+                gaps = check.turned(prism.turn, gaps)
                 assert all(abs(gap) <= rest for gap, rest in zip(gaps, lane.r))
                 if not lane.advance():
                     break
                 cases += 1
                 tight += any(abs(gap) > rest / 20 for gap, rest in zip(gaps, lane.r))
-                turned += prism.rotated
+                turned += prism.turn != (1, 0)
     assert cases > 180 * TORTURE and tight > cases / 10 and turned > 20
 
 
@@ -1915,13 +1926,17 @@ def test_lockstep_sincos(np, generator):
 def test_lockstep_orbits(np, generator, monkeypatch):
     """True orbits of a prism are where the models say, within their rests, rounded as they are."""
     cases = tight = others = 0
-    turns, centres = check.Shape.turns, []
+    turns, along, centres, bows = check.Shape.turns, check.Shape.along, [], []
     monkeypatch.setattr(check.Shape, "turns",
                         lambda self, x: centres.append(x.copy()) or turns(self, x))
+    # k.x of centres, of columns and of the quadratic parts, site by site
+    monkeypatch.setattr(check.Shape, "along", lambda self, x: bows.append(along(self, x))
+                        or bows[-1].copy())
     for _ in range(16 * TORTURE):
         prisms = random_prisms(np, generator)
         known = [(k, Fraction(phase)) for k, phase in prisms.shape.known]
         centres.clear()
+        bows.clear()
         with np.errstate(all="ignore"):
             assert all(prisms.follow())
         for lane in range(prisms.size):
@@ -1930,7 +1945,8 @@ def test_lockstep_orbits(np, generator, monkeypatch):
                     for k in (lane, lane + prisms.size)]
             orbits = true_orbit(known, amplitudes, angles, min(max(ends), 20))
             for orbit, k, end in zip(orbits, (lane, lane + prisms.size), ends):
-                for site, centre, x in list(zip(prisms.sites[:end], centres, orbit)):
+                for site, centre, bow, x in list(zip(prisms.sites[:end], centres, bows[1::3],
+                                                     orbit)):
                     _, _, _, columns, size, rest, reach, _, _ = site
                     centre = [Fraction(float(turns[k])) for turns in centre]
                     for w in prisms.shape.present:
@@ -1943,8 +1959,12 @@ def test_lockstep_orbits(np, generator, monkeypatch):
                         if reach[w, k] <= 1:
                             assert abs(off) <= mp.mpf(float(rest[w, k]))
                             assert size[w, k] >= sum(map(abs, columns[w, :, k]))
+                            off -= sum(mp.mpf(float(a)) * real(e) for a, e in zip(
+                                bow[w, :, k], pairs_of(eta)))
+                            left = rest[w, k] - (prisms.halves[:, 0] * abs(bow[w, :, k])).sum()
+                            assert abs(off) <= left + 2.0 ** -50 * rest[w, k]
                             cases += 1
-                            tight += abs(off) > rest[w, k] / 20
+                            tight += abs(off) > left / 20
                             others += w > 2
     assert cases > 1000 * TORTURE and tight > 20 and others > 100
 
@@ -1969,11 +1989,17 @@ def worst_bending(functions, generator, count):
     """The largest quotient, or one above 1, of what a wave does to r in a step and its bound."""
     worst = 0
     for _ in range(count):
-        P, H, W, y, size, rest, (e, i, j, k, *_) = extremes(generator)
-        xi, w = i * mp.mpf(size), j * mp.mpf(rest)
+        P, H, W, y, size, rest, (e, i, j, k, *others) = extremes(generator)
+        shares = [generator.choice((-1, 0, 0, 1, generator.uniform(-1, 1))) for _ in "012"]
+        shares = [i * size * x / max(sum(map(abs, shares)), 1) for x in shares]
+        eta, parts = [e, *others], [(0, H * math.sin(y))] if H else []
+        pairs = list(itertools.combinations_with_replacement(range(3), 2))
+        form, mean = functions.quadratic(pairs, check.np.array([[x] for x in shares]),
+                                         P * math.cos(y), parts)
+        xi, w = sum(mp.mpf(x) * z for x, z in zip(shares, eta)), j * mp.mpf(rest)
         c, s = mp.cos(y), mp.sin(y)
-        true = (P + H * e + W * k) * mp.cos(y + xi + w) - P * c * (1 - mp.mpf(size) ** 2 / 4) \
-            + P * s * (xi + w) - H * e * c
+        true = (P + H * e + W * k) * mp.cos(y + xi + w) - P * c + P * s * (xi + w) - H * e * c \
+            + mean[0] + sum(float(x[0]) * mp.mpf(z) for x, z in zip(form, pairs_of(eta)))
         bound = functions.bending(P, H, W, abs(math.sin(y)), abs(math.cos(y)), size, rest,
                                   size + rest)
         worst = max(worst, abs(true) / (bound * check.MORE + mp.mpf(10) ** -15))
@@ -2024,21 +2050,25 @@ def worst_summit(functions, generator, count):
     return worst
 
 
-WORST = (worst_bending, worst_remainder, worst_summit)
+WORST = (worst_bending, worst_remainder, worst_summit, worst_bending)
 
 
-@pytest.mark.parametrize("worst", WORST)
+@pytest.mark.parametrize("worst", WORST[:3])
 def test_lockstep_terms(np, generator, worst):
     """What is left of a wave is bounded, hardly too far; and a polynomial over the cube."""
     assert 0.99 < worst(check, generator, 3000 if worst != worst_summit else 400) <= 1
 
 
 @pytest.mark.parametrize("worst, old, new", [
-    (0, "size * size / 4 + far", "far"), (0, "c * (size * size / 4 + far)", "c * size * size / 4"),
-    (0, "far = rest * (reach + size) / 2", "far = rest * rest / 2"),
-    (0, "s * second * reach / 3", "0"),
-    (0, "H * (c * second + s * reach)", "0"), (0, "c * second + s", "s"),
-    (0, "c * second + s * reach", "c * second"), (0, "s * reach) + W", "s * reach)"),
+    (0, "rest * (reach + size) / 2 + fourth", "fourth"), (0, "/ 2 + fourth", "/ 2"),
+    (0, "rest * (reach + size) / 2", "rest * rest / 2"), (0, "+ s * third)", ")"),
+    (0, "H * (c * second + s * (rest + third))", "0"), (0, "c * second + s", "s"),
+    (0, "+ s * (rest + third)", ""), (0, "s * (rest + third)", "s * rest"),
+    (0, "s * (rest + third)", "s * third"), (0, "third)) + W", "third))"),
+    (3, "bend * products(xi), 0", "-bend * products(xi), 0"), (3, "x /= 2", "pass"),
+    (3, "x += part * xi", "x -= part * xi"), (3, "xi[i + j - m]", "xi[m]"),
+    (3, "mean = mean + x / 2", "mean = mean - x / 2"), (3, "mean + x / 2", "mean + x"),
+    (3, "if m in (i, j)", "if i == j == m"), (3, "if m in (i, j)", "if i < j and m in (i, j)"),
     (1, "np.where(P * A0 > 0, fourth, rest * rest / 2)", "fourth"),
     (1, "np.where(P * A0 > 0, fourth, rest * rest / 2)", "rest * rest / 2"),
     (1, "P * A0 > 0", "P * A0 < 0"), (1, " + alpha * far", ""), (1, "/ 2 + fourth", "/ 2"),
@@ -2058,11 +2088,13 @@ def test_lockstep_terms(np, generator, worst):
     (2, "np.abs(odd) + even", "np.abs(odd)")])
 def test_no_term_may_be_missing(np, generator, worst, old, new):
     """Each of them decides somewhere: without it the bounds fail the test above."""
-    source = inspect.getsource((check.bending, check.remainder, check.summit)[worst])
+    source = inspect.getsource((check.bending, check.remainder, check.summit,
+                                check.quadratic)[worst])
     assert source.count(old) == 1
     names = {**vars(lockstep)}
     exec(source.replace(old, new), names)
-    assert WORST[worst](types.SimpleNamespace(**names), generator, 2000 if worst < 2 else 300) > 1
+    assert WORST[worst](types.SimpleNamespace(**names), generator,
+                        300 if worst == 2 else 2000) > 1
 
 
 def left_side(waves, amplitudes, lanes, n, tails, l, lane, size, m=mp):
@@ -2118,6 +2150,36 @@ def test_lockstep_bound(np, generator, chosen):
                 least = min(least, bound[lane] - true if true else 1)
                 cases += 1
     assert cases > 36 * TORTURE and 0 < least < (1e-6 if chosen == "at random" else 1)
+
+
+def test_a_leaf_of_long_orbits(np, texts, generator, monkeypatch):
+    """A leaf of the proof from 0.01391 to 0.0140 over its second point: one piece, in doubles and
+    in integers, where models of first order took more than 4,096; and the bound is near the truth.
+    """
+    monkeypatch.setattr(check, "MAX_SITES", 300)
+    half = Fraction("0.0005046462")
+    claim = claim_of(general(
+        texts["trig274"], [(k, 0, p * Fraction("0.1564963938"), [p * half]) for k, p in zip(
+            check.THESIS, (1, 1, 2))],
+        (Fraction("0.670635"), Fraction("0.021925")), (Fraction("0.00781"), Fraction("0.0096")),
+        xstar=(Fraction("0.846028"), Fraction("0.846028"))))
+    claim = dataclasses.replace(claim, frame=check.DIAGONALS)
+    cell = (96814, 858, 5, 0, 0), (17, 12, 10, 0, 0)
+    criterion, fast = check.Criterion(claim), check.Lockstep([claim])
+    l = criterion.least_in_double(cell)
+    assert criterion.attempt(criterion.least_pivot(cell), cell, check.CAUTION[0]) is None
+    with np.errstate(all="ignore"):
+        prisms = check.Prisms(fast.box(*cells_of(np, [cell]), np.array([0])), fast.shape,
+                              fast.xstar, np.array([l]))
+        bounds = [prisms.bound()[0][0] for _ in prisms.follow()]
+        n, tails = prisms.test_vectors()
+    assert bounds[-1] < 0 and len(n) > 190
+    known = [(k, Fraction(phase)) for k, phase in prisms.shape.known]
+    for _ in range(3):
+        _, amplitudes, angles = inside(generator, prisms, 0)
+        true = left_side(known, amplitudes, true_orbit(known, amplitudes, angles, len(n)), n,
+                         tails, mp.mpf(l), 0, 1)
+        assert true <= bounds[-1] < 0.8 * true
 
 
 def test_lockstep_polynomial(np, generator):
@@ -2650,7 +2712,7 @@ def test_no_orbit_of_a_leaf_of_version_3_minimizes(others, generator, name):
     ("a patch", "frame", "1 0 0 1 0", 1, "four"), ("a patch", "frame", "1 0 0 1.0", 1, "four"),
     ("a patch", "frame", "1000000000 1 1 0", 1, "four"), ("a patch", "alone", "0", 1, "both"),
     ("a patch", "alone", "2", 1, "neither"), ("a patch", "alone", "yes", 1, "neither"),
-    ("one alone", "alone", "1", 5, "not excluded"), ("one alone", "alone", "no", 5, "not excluded"),
+    ("one alone", "alone", "1", 5, "not excluded"), ("one alone", "alone", "no", 0, ""),
     ("a patch", "odd about", "1/2 0", 1, "not odd"), ("a patch", "odd about", "1/0 0", 1, "two"),
     ("a patch", "odd about", "yes", 1, "two"), ("a patch", "odd about", "1 -7", 0, ""),
     ("(1, -1)", "odd about", "1/2 -1/2", 0, ""), ("(1, -1)", "odd about", "0 0", 1, "not odd"),
@@ -2851,7 +2913,7 @@ def path_of(content, *path):
 
 
 @pytest.mark.parametrize("path, value, status, why", [
-    (("format",), "converse map 2", 2, "version"), (("region",), "a=0", 1, "region is none"),
+    (("format",), "converse map 3", 2, "version"), (("region",), "a=0", 1, "region is none"),
     (("region",), "a=b", 1, "not those of the region"), (("region",), "c=0", 1, "1 faces"),
     (("region",), 7, 1, "type"), (("down to",), "x", 1, "down to"), (("extra",), 1, 1, "no other"),
     (("faces", 0, "extra"), 1, 1, "no other"), (("faces", 0, "radius"), "0", 1, "not above 0"),

@@ -9,7 +9,7 @@ import types
 
 import pytest
 
-from converse.check import exact
+from converse.check import arith, exact
 
 E = [*itertools.product((-1, 1), repeat=2), (0.6, -0.3)]   # where symbols are tried
 
@@ -62,21 +62,24 @@ def worst_step(names, draw, count):
         prism = names["Prism"](fixed, waves, centre[:2], (centre[2:], columns, error), known)
         lane, steps = prism.lanes[0], []
         while len(steps) < 4:
-            before, r = (lane.x0, lane.x), lane.r
+            before, T, r = (lane.x0, lane.x), lane.T, lane.r
             if not lane.advance():
                 break
-            steps.append((*before, lane.x, lane.L, lane.r))
+            steps.append((*before, lane.x, lane.L, lane.T, lane.r))
             for (k0, k1, *_), wave in zip(waves, lane.sites[-1].waves):
-                most = (abs(k0 + k1) * r[0] + abs(k0 - k1) * r[1]) / 2 if prism.rotated \
-                    else abs(k0) * r[0] + abs(k1) * r[1]
+                a, b = prism.turn
+                most = (abs(a * k0 + b * k1) * r[0] + abs(a * k1 - b * k0) * r[1]) / (a * a + b * b)
+                most += sum(abs(k0 * x + k1 * y) * (1 - (i == j) / 2)
+                            for (i, j), x, y in zip(prism.pairs, *T))
                 worst = max(worst, quotient(most, wave.rest))
         for _ in range(16 if steps else 0):
             old = [draw.choice((-1, 1)) for _ in "01"]
-            e = draw.choice(([1] * known, [-1] * known,
-                             [draw.choice((-1, 1)) for _ in range(known)]))
+            e = draw.choice(([1] * known, [-1] * known, [0] * known,
+                             [draw.choice((-1, 1)) for _ in range(known)],
+                             [draw.choice((-1, 0, 1)) for _ in range(known)]))
             new = [sum(a * x for a, x in zip(row, e)) + draw.choice((-1, 1)) * rest
                    for row, rest in zip(columns, error)]
-            for X0, X, X1, L, r in steps:
+            for X0, X, X1, L, T, r in steps:
                 after = [2 * (a + u) - b - v - w for a, b, u, v, w in zip(new, old, X, X0, X1)]
                 for (k0, k1, _, P, parts, _), off in zip(waves, unsure):
                     s, c = angles[k0 * X[0] + k1 * X[1]]
@@ -86,9 +89,10 @@ def worst_step(names, draw, count):
                         + draw.choice((-1, 1)) * off * (abs(math.cos(z)) + abs(math.sin(z)))
                     after = [after[0] + k0 * force, after[1] + k1 * force]
                 old, new = new, after
-                gap = [x - sum(a * y for a, y in zip(row, e)) for x, row in zip(new, L)]
-                if prism.rotated:
-                    gap = [gap[0] + gap[1], gap[0] - gap[1]]
+                pairs = [e[i] * e[j] - (i == j) / 2 for i, j in prism.pairs]
+                gap = [x - sum(a * y for a, y in zip([*row, *form], [*e, *pairs]))
+                       for x, row, form in zip(new, L, T)]
+                gap = arith.turned(prism.turn, gap)
                 worst = max(worst, *[quotient(abs(x), rest) for x, rest in zip(gap, r)])
         if worst > 1:
             break
@@ -102,7 +106,8 @@ def worst_errors(names, draw, count):
         bits = draw.choice((4, 6, 30))
         unit = 2 << bits                                    # of matrices
         fixed = types.SimpleNamespace(bits=bits)
-        lane = names["Lane"](types.SimpleNamespace(fixed=fixed, rotated=False, waves=[]),
+        a, b = turn = draw.choice(((1, 0), (1, 0), (1, 1), (2, -1)))
+        lane = names["Lane"](types.SimpleNamespace(fixed=fixed, turn=turn, waves=[], pairs=[]),
                              *[((0, 0), ((), ()), (0, 0))] * 2)
         before = [draw.choice((1, 1, 1 / 9, 40)) * draw.uniform(-2, 2) for _ in "012"]
         lane.d = before = [round(x * unit) for x in before]
@@ -123,7 +128,9 @@ def worst_errors(names, draw, count):
             x0, step, g = [[sign * x for sign, x in zip(signs[i:], pair)]
                            for i, pair in ((0, r0), (2, error), (4, f))]
             x = [y / unit + z for y, z in zip(exact.matrix_times(before, x0), g)]
-            new = [y / unit - u + z for y, u, z in zip(exact.matrix_times(beta, x), x0, step)]
+            forces = exact.matrix_times(beta, (a * x[0] - b * x[1], b * x[0] + a * x[1]))
+            forces = [y / (a * a + b * b) for y in arith.turned(turn, forces)]
+            new = [y / unit - u + z for y, u, z in zip(forces, x0, step)]
             left = [y - z / unit for y, z in zip(new, exact.matrix_times(lane.d, x))]
             worst = max(worst, *[quotient(abs(y), most)
                                  for y, most in zip(new + left, [*lane.r, *lane.f])])
@@ -296,26 +303,41 @@ def test_bounds_of_the_exact_path(name):
 
 
 @pytest.mark.parametrize("name, old, new", [
-    ("step", "strong1 * r1 + rotated)", "strong1 * r1)"),
-    ("step", "strong0 * r0 + strong1 * r1 + rotated", "strong0 * r0 + rotated"),
+    ("step", "-(-(strong0 * r0 + strong1 * r1) // length)",
+     "(strong0 * r0 + strong1 * r1) // length"),
+    ("step", "strong0 * r0 + strong1 * r1", "strong0 * r0"),
     ("step", "reach = size + rest\n            if", "reach = size\n            if"),
     ("step", "E0, E1 = E0 + k0 * mean", "E0, E1 = E0 - k0 * mean"),
     ("step", "push0 + k0 * cosine", "push0 - k0 * cosine"), ("step", "push0 - E0", "push0 + E0"),
-    ("step", "square = (reach * reach >> bits) + 1", "square = reach * reach >> bits"),
-    ("step", "square = (reach * reach >> bits) + 1", "square = (size * size >> bits) + 1"),
-    ("step", "cube // 6", "cube // 9"), ("step", "square >> bits + 1) + 1\n", "0) + 1\n"),
-    ("step", "max(abs(mean), fall - abs(mean))", "abs(mean)"),
-    ("step", " + (abs(sine) * cube // 6 >> bits)", ""),
-    ("step", "+ 2 * error + len", "+ error + len"),
-    ("step", "error + len(xi) + 2", "error + 2"),
-    ("step", "[a - k0 * b for", "[a + k0 * b for"),
-    ("step", "new1[i] += k1 * cosine_part", "new1[i] -= k1 * cosine_part"),
-    ("step", "(abs(cosine_part) * square >> bits + 1) + (", "("),
-    ("step", "+ 1) + (abs(sine_part) * reach >> bits)", "+ 1)"),
+    ("step", "(reach * reach >> bits) + 1,", "(size * size >> bits) + 1,"),
+    ("step", "(rest * (reach + size) >> bits) + 1", "(rest * rest >> bits) + 1"),
+    ("step", "(rest * (reach + size) >> bits) + 1", "(rest * (reach + size) >> bits)"),
+    ("step", "12 * far + fourth", "12 * far"), ("step", "12 * far + fourth", "fourth"),
+    ("step", " + 4 * abs(sine) * cube)", ")"), ("step", "+ 2 * error + len", "+ error + len"),
+    ("step", "len(xi) + len(pairs) + 2", "len(xi) + 2"),
+    ("step", "[cosine * xi[i]", "[-cosine * xi[i]"), ("step", ">> bits + (i == j)", ">> bits"),
+    ("step", "x + sine_part * xi", "x - sine_part * xi"),
+    ("step", "if m in (i, j) else x", "if i == j == m else x"),
+    ("step", "3 * abs(cosine_part) * square + ", ""), ("step", "(6 * rest + cube)", "6 * rest"),
+    ("step", "(6 * rest + cube)", "cube"),
+    ("step", "mean = sum(", "mean = -sum("), ("step", "i == j]) >> bits + 1", "i == j]) >> bits"),
+    ("step", "[sine * a + x >>", "[x - sine * a >>"), ("step", "[sine * a + x >>", "[x >>"),
+    ("step", "k0 * b for a, b in zip(curve0", "0 * b for a, b in zip(curve0"),
+    ("step", "k1 * b for a, b in zip(curve1", "k0 * b for a, b in zip(curve1"),
+    ("step", "[2 * a - b for a, b in zip(T1", "[2 * a + b for a, b in zip(T1"),
+    ("step", "else 2 * abs(x)", "else abs(x)"), ("step", "tau)]) + 1 >> 1)", "tau)]) >> 1)"),
+    ("step", "abs(x) if i == j", "0 if i == j"), ("step", "self.L, self.T\n", "self.L, self.T0\n"),
+    ("step", "k0 * b for a, b in zip(new0", "0 * b for a, b in zip(new0"),
+    ("step", "new1[m] += k1 * cosine_part", "new1[m] -= k1 * cosine_part"),
     ("step", "error0 + strong0 * bent", "error0 + bent"), ("step", "- self.x0[1]", "+ self.x0[1]"),
-    ("step", "4 * one - 2 * p, -2", "4 * one + 2 * p, -2"), ("step", "(p + r >> 1) - q", "p + q"),
-    ("step", "abs(wave.k0 + wave.k1), abs(wave.k0 - wave.k1)", "abs(wave.k0), abs(wave.k1)"),
-    ("step", "(sum(self.r0),) * 2, (sum(self.r),) * 2", "self.r0, self.r"),
+    ("step", "4 * one - 2 * p, -2", "4 * one + 2 * p, -2"),
+    ("errors", "a * a * p + 2 * a * b * q", "a * a * p - 2 * a * b * q"),
+    ("errors", "(a * b * (r - p)", "(a * b * (p - r)"), ("errors", "(a * a - b * b) * q", "q"),
+    ("errors", "b * b * p - 2 * a", "b * b * p + 2 * a"),
+    ("errors", "b * b * r) // length", "b * b * r)"),
+    ("errors", "(r0 + r1 >> bits) + 1 if b", "0 if b"),
+    ("step", "turned(self.turn, (wave.k0, wave.k1))", "(wave.k0, wave.k1)"),
+    ("step", "[(a * u + b * v, b * u + a * v) for", "[(u, v) for"),
     ("step", "old0 + error0, old1 + error1", "error0, error1"),
     ("step", "(blank, blank), (1, 1)", "(blank, blank), (0, 0)"),
     ("errors", "p, q, r = p - m, q - n, r - o", "p, q, r = p + m, q + n, r + o"),

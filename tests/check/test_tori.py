@@ -13,7 +13,7 @@ from fractions import Fraction
 import mpmath
 import pytest
 
-from converse.check import field, series, ship, tori, torus_file
+from converse.check import exponential, field, series, ship, tori, torus_file
 
 from checker import check
 
@@ -127,6 +127,7 @@ def test_it_is_verified_whole(run, options):
 GOLDEN_FILES = {
     "standard-0.9": ["k = 1, phase = 0 pi, p = 0.9", "invariant circle"],
     "standard-0.2-0.6": ["for all -1 <= s <= 1", "p = 0.4 + 0.2 s"],
+    "standard-0.1-0.75": ["p = 0.425 + 0.325 s", "Pieces : 2\n"],
     "line-0.004": ["Lagrangian graph", "k = (1, 1), phase = 0 pi, p = 0.08971488"],
     "phases": ["k = (0, 1), phase = 0.125 pi, p = 0.02", "0.754877666246..."],
 }
@@ -148,6 +149,8 @@ CHANGES_OF_A_RANGE = [
     (1, r"piece (\S+) 1 ", r"piece \1 0.9 "), (1, r"piece -1 \S+ ", "piece -1 -2 "),
     (1, r"piece -1 (\S+) (.*)\n", r"piece -1 0.99 \2\n"),
     (1, "wave: 1 0 0 0.4 0.2", "wave: 1 0 0 0.4"),
+    (1, "wave: 1 0 0 0.4 0.2", "wave: 1 0 0 0.4 0.2 0.1"),
+    (1, "wave: 1 0 0 0.4 0.2", "wave: 1 0 0 0.4 0.2 0"),
     # false, or not what the torus is for
     (5, "wave: 1 0 0 0.4 0.2", "wave: 1 0 0 0.4 0.3"),
     (5, "wave: 1 0 0 0.4 0.2", "wave: 1 0 0 0.4 -0.2"),
@@ -166,6 +169,44 @@ def test_ranges_that_are_changed(root, run, expected, pattern, new):
     assert (status, out) == (expected, "") and err.count("\n") == 1, (status, out, err)
 
 
+CHANGES_OF_TWO_PIECES = [
+    # a gap, an overlap, an order
+    (1, r"\npiece 0 1 ", r"\npiece 1/10 1 "), (1, r"\npiece 0 1 ", r"\npiece -1/10 1 "),
+    (1, r"\npiece 0 1 ", r"\npiece 0 0 "), (1, r"\npiece 0 1 ", r"\npiece -1 1 "),
+    # false in one of them
+    (5, r"piece -1 0 (.*(?:\n.*)*\npiece) 0 1 ", r"piece -1 1/2 \1 1/2 1 "),
+    (5, r"piece -1 0 (.*(?:\n.*)*\npiece) 0 1 ", r"piece -1 -1/2 \1 -1/2 1 "),
+    (5, r"(piece -1 0 .*\n)1 0 (\S+) (\S+)\n", r"\g<1>1 0 \3 \2\n"),
+    (5, r"(piece 0 1 .*\n)1 0 (\S+) (\S+)\n", r"\g<1>1 0 \3 \2\n"),
+]
+
+
+@pytest.mark.parametrize("expected, pattern, new", CHANGES_OF_TWO_PIECES)
+def test_each_piece_is_verified(root, run, expected, pattern, new):
+    text = (root / "golden_outputs" / "tori" / "standard-0.1-0.75.torus").read_text()
+    body = text[:text.rindex("checksum: ")]
+    other = re.sub(pattern, new, body, count=1)
+    assert other != body
+    status, out, err = run(sealed(other))
+    words = "not confirmed: piece " if status == 5 else "rejected: line "
+    assert (status, out) == (expected, "") and words in err, (status, out, err)
+
+
+def test_the_whole_of_each_piece_is_verified(root):
+    """The amplitudes at sigma = -1 and 1 are those at its ends, and u is the file's."""
+    claim = torus_file.read_torus(
+        (root / "golden_outputs" / "tori" / "standard-0.1-0.75.torus").read_bytes())
+    setting = tori.Setting(claim)
+    for piece, ends in zip(claim.pieces, (("0.1", "0.425"), ("0.425", "0.75"))):
+        torus = tori.Torus(setting, piece, False, False)
+        (_, _, middle, half), = torus.waves
+        assert (middle - half, middle + half) == tuple(map(Fraction, ends))
+        assert {k: [[re * re + im * im for re, im in vector] for vector in series]
+                for k, series in torus.modes.items()} == \
+            {k: [[re * re + im * im for re, im in vector] for vector in series]
+             for k, series in piece.modes.items()}
+
+
 CHANGES_OF_A_LINE = [
     (1, "polynomial: -1 -2 1 1", "polynomial: -1 -2 2 1"),
     (1, "polynomial: -1 -2 1 1", "polynomial: 0 -2 1 1"),
@@ -181,6 +222,9 @@ CHANGES_OF_A_LINE = [
     (5, r"\n1 0 0 (\S+) (\S+) (\S+) (\S+)\n", r"\n1 0 0 \3 \4 \1 \2\n"),
     (1, r"\n1 0 0 (\S+) (\S+) (\S+) (\S+)\n", r"\n1 0 0 \1 \2\n"),
     (1, r"\n1 0 0 (\S+)", r"\n-1 0 0 \1"), (1, r"\n1 0 0 (\S+)", r"\n0 0 0 \1"),
+    (1, r"frame: .*", "frame: 1 1 2 2"), (1, r"frame: .*", "frame: 0 1 0 1"),
+    (1, r"alpha: .*", "alpha: 1 -1"), (1, r"alpha: .*", "alpha: 0 1"),
+    (1, r"wave: 0 1 .*\nwave: 1 1 .*\n", ""),
 ]
 
 
@@ -378,7 +422,8 @@ X1 = tuple(Fraction(x, 13) for x in (25, -7, -8))
 def test_irreducible_polynomials():
     for polynomial in ((-1, 1, 1), (-1, -2, 1, 1), (-1, -1, 0, 1), (1, 0, 1), (-2, 0, 0, 1)):
         assert field.is_irreducible(polynomial)
-    for polynomial in ((-1, 0, 1), (0, 0, 1), (-6, 11, -6, 1), (1, 0, 0, 1), (0, 1, 1, 1)):
+    for polynomial in ((-1, 0, 1), (0, 0, 1), (-6, 11, -6, 1), (1, 0, 0, 1), (0, 1, 1, 1),
+                       (3, 8, 4), (1, 3, 3, 2)):        # (2t + 1)(2t + 3), (2t + 1)(t^2 + t + 1)
         assert not field.is_irreducible(polynomial)
 
 
@@ -424,6 +469,132 @@ def test_small_divisors_are_bounded(name):
                 for d in (delta, delta / 3):
                     worst = max(worst, (d / delta) ** n * mp.exp(-d * found.norm(k)) / divisor)
         assert worst <= found.loss(delta)
+
+
+@pytest.mark.parametrize("bits", [0, 1, 5, 40, 300])
+def test_roots_are_enclosed(bits):
+    """Also if another root is near; and multiples are what they say they are."""
+    near = 49, -200, 200
+    for polynomial, low, high in (((-1, 1, 1), 0, 1), (T49, 1, 2), (T49, -1, 0), (T49, -2, -1),
+                                  (near, "0.49", "0.6"), (near, "1/3", "0.49")):
+        one = field.Field(polynomial, Fraction(low), Fraction(high))
+        a, b = one.root(bits)
+        assert (b - a) * 2 ** bits == 1 or bits < 2
+        inside = max(a, Fraction(low)), min(b, Fraction(high))
+        assert field.evaluate(polynomial, inside[0]) * field.evaluate(polynomial, inside[1]) < 0
+        for element in ((0, 1), (Fraction(1, 3), -10 ** 20), (10 ** 30, 7 * 10 ** 40)):
+            with mp.workdps(200):
+                t = mp.findroot(lambda x: sum(c * x ** j for j, c in enumerate(polynomial)),
+                                sum(float(x) for x in one.root(60)) / 2)
+                exact = 2 ** bits * sum(mp.mpf(Fraction(x).numerator) / Fraction(x).denominator
+                                        * t ** j for j, x in enumerate(element))
+                found = one.in_units(tuple(map(Fraction, element)) + (Fraction(0),) * (
+                    one.degree - 2), bits)
+                assert abs(found - exact) < 1
+
+
+def test_norms_have_the_common_denominator():
+    """Of the norms of p + m_0 x_0 + m_1 x_1: it makes them integers."""
+    one = field.Field(T49, Fraction(1), Fraction(2))
+    elements = [tuple(map(Fraction, x)) for x in (("1/2", "1/2", 0), (0, 0, "1/3"))]
+    roots = [2 * mp.cos(2 * mp.pi * n / 7) for n in (1, 2, 3)]
+    found = one.norm_denominator(elements)
+    for p in range(-2, 3):
+        for m in [(a, b) for a in range(-3, 4) for b in range(-3, 4)]:
+            x = [p + m[0] / mp.mpf(2) * (1 + t) + m[1] / mp.mpf(3) * t ** 2 for t in roots]
+            number = found * x[0] * x[1] * x[2]
+            assert abs(number - mp.nint(number)) < 1e-20
+    assert found == 216
+    assert one.norm_denominator([X0, X1]) == 13
+
+
+SPIRAL, SEVEN = VECTORS["spiral"][2], ((-1, 1, 0), (-1, 0, 1))
+
+
+@pytest.mark.parametrize("polynomial, omega, frame, alpha", [
+    (T49, (X0, X1), [[1, 1], [1, -1]], [1, 3]), (T49, (X0, X1), [[1, 0], [0, 1]], [1, 1]),
+    ((-1, -1, 0, 1), SPIRAL, [[1, 2], [0, 1]], [3, 2]),
+    ((-1, -1, 0, 1), SPIRAL, [[1, 0], [0, 1]], [1, 1]),
+    # the largest value is within an edge, of both in turn
+    (T49, SEVEN, [[1, 1], [1, -1]], [2, 1]), (T49, SEVEN, [[1, 1], [0, 1]], [2, 1])])
+def test_forms_on_the_unit_ball_are_bounded(polynomial, omega, frame, alpha):
+    """Q and mu of (27) in existence.md, by values along the edges; and what follows from them."""
+    omega = [tuple(map(Fraction, x)) for x in omega]
+    found = divisors_of(polynomial, (1, 2), omega, frame, alpha, [(1, 0), (0, 1)])
+    corners = [found.norm.coordinates(v) for v in found.norm.vertices]
+    t = mp.findroot(lambda x: sum(c * x ** j for j, c in enumerate(polynomial)), 1.3)
+    half, product = -(polynomial[2] + t) / 2, t * (polynomial[2] + t) + polynomial[1]
+    others = [half + sign * mp.sqrt(half ** 2 - product) for sign in (1, -1)]
+    w = [[sum(mp.mpf(c.numerator) / c.denominator * x ** j for j, c in enumerate(element))
+          for element in omega] for x in (t, *others)]
+    largest = spread = mp.mpf(0)
+    v, u = [[mp.mpf(x.numerator) / x.denominator for x in corner]
+            for corner in found.norm.vertices]
+    for sign in (1, -1):
+        for n in range(501):
+            k = [x * n / 500 + sign * y * (500 - n) / 500 for x, y in zip(v, u)]
+            sizes = [abs(sum(x * (a - b) for x, a, b in zip(k, other, w[0]))) for other in w[1:]]
+            largest, spread = max(largest, sizes[0] * sizes[1]), max(spread, sum(sizes))
+    bound = [mp.mpf(x.numerator) / x.denominator for x in (
+        f(found.field, found.elements, corners) for f in (
+            found._largest_form, found._conjugates))]
+    assert largest * (1 - 1e-30) <= bound[0] <= 1.001 * largest
+    assert spread <= bound[1] <= 100 * spread
+    g = 1 / (found.field.norm_denominator(found.elements) * largest)
+    K, D = found.radius, found.field.norm_denominator(found.elements)
+    gamma = 1 / D / (largest + g * spread / K ** 3 + g ** 2 / K ** 6)
+    assert float(found.tail) <= 2 * mp.pi * gamma * (1 - (mp.pi * gamma / K ** 2) ** 2 / 6)
+    for k in [(a, b) for a in range(-9, 10) for b in range(-9, 10)]:
+        assert math.hypot(*k) <= float(found.norm.kappa * found.norm(k)) * (1 + 1e-12)
+    assert any(math.hypot(*map(float, v)) > float(found.norm.kappa) * (1 - 1e-12)
+               for v in found.norm.vertices)
+
+
+@pytest.mark.parametrize("name, root", [("golden", 5), ("silver", 8)])
+def test_the_divisors_far_out_are_those_of_the_page(name, root):
+    """(27) and (28) of existence.md with n = 1, Q the difference of the two roots."""
+    polynomial, ends, omega, frame, alpha, basis, *_ = VECTORS[name]
+    found = divisors_of(polynomial, ends, [tuple(map(Fraction, x)) for x in omega], frame, alpha,
+                        basis)
+    Q, K = mp.sqrt(root), found.radius
+    gamma = 1 / (Q + 1 / Q / K ** 2)
+    exact = 2 * mp.pi * gamma * (1 - (mp.pi * gamma / K) ** 2 / 6)
+    assert exact * (1 - 1e-9) <= mp.mpf(found.tail.numerator) / found.tail.denominator <= exact
+
+
+@pytest.mark.parametrize("name", ["golden", "T49"])
+def test_few_bits_of_a_turn_give_smaller_divisors(name, monkeypatch):
+    """What k.omega is off by is taken off."""
+    monkeypatch.setattr(field, "TURN_BITS", 24)
+    polynomial, root, omega, frame, alpha, basis, *_ = VECTORS[name]
+    found = divisors_of(polynomial, root, [tuple(map(Fraction, x)) for x in omega], frame, alpha,
+                        basis)
+    w = [found.field.interval(tuple(map(Fraction, x)))[0] for x in omega]
+    reach = range(-30, 31)
+    sizes = []
+    for k in [(a, b)[:len(w)] for a in reach for b in (reach if len(w) > 1 else [0])]:
+        turn = float(sum(x * y for x, y in zip(k, w)) % 1)
+        sizes += [(found.norm(k), 2 * abs(math.sin(math.pi * turn)))] if any(k) else []
+    assert len(found.records) > 3
+    for length, bound in found.records:
+        assert bound <= min(size for far, size in sizes if far <= length)
+
+
+@pytest.mark.parametrize("name", ["golden", "silver", "spiral"])
+def test_losses_are_those_of_all_narrower_strips(name):
+    polynomial, root, omega, frame, alpha, basis, *_ = VECTORS[name]
+    found = divisors_of(polynomial, root, [tuple(map(Fraction, x)) for x in omega], frame, alpha,
+                        basis)
+    n = found.power
+    w = [float(found.field.interval(x)[0]) for x in [tuple(map(Fraction, x)) for x in omega]]
+    ks = [k for k in [(a, b)[:n] for a in range(12) for b in range(-12, 13)] if any(k)]
+    sizes = [(found.norm(k), abs(2 * math.sin(math.pi * sum(x * y for x, y in zip(k, w)))))
+             for k in ks]
+    for delta in (Fraction(1, 4), Fraction(3), Fraction(10)):
+        widths = [float(delta) * 0.97 ** j for j in range(150)]
+        worst = max((d / float(delta)) ** n * math.exp(-d * length) / size
+                    for length, size in sizes for d in widths)
+        assert worst <= found.loss(delta) <= 3 * worst
 
 
 # ---- series
@@ -530,6 +701,191 @@ def test_roundings_are_counted():
     assert all(x * 9 ** k >= 10 ** k << series.FINE for k, x in enumerate(powers))
 
 
+FRAMES = {"one": ([[1]], (1,), [(1,)]), "two": ([[1, 1], [1, -1]], (1, 3), [(1, 0), (0, 1)]),
+          "skew": ([[1, 2], [0, 1]], (3, 2), [(1, 0), (0, 1)]),
+          "part": ([[1, 1], [1, -1]], (2, 5), [(1, 1), (2, 0)])}
+
+
+def table(ring, entry):
+    """{(k, j): coefficient}."""
+    re, im = entry
+    steps, found = ring.box.degree + 1, {}
+    for at, m in enumerate(ring.box.modes()):
+        k = field.combination(m, ring.box.norm.basis)
+        for j in range(steps):
+            found[k, j] = (re[at * steps + j], im[at * steps + j] if im else 0)
+    return found
+
+
+@pytest.mark.parametrize("name", FRAMES)
+@pytest.mark.parametrize("limit, degree", [(17, 0), (11, 2)])
+@pytest.mark.parametrize("extreme", [False, True])
+def test_products_within_the_box_are_exact(name, limit, degree, extreme):
+    """But for one rounding; also if all coefficients are as large as their digits allow.  Powers of
+    s that are left out come to the next k."""
+    ring = series.Ring(series.Box(field.Norm(*FRAMES[name]), limit, degree), Fraction(9, 8), 20)
+    rng, steps, beside = random.Random(limit), degree + 1, ring.box.norm.basis[0]
+    for is_real in (True, False):
+        factors = []
+        for _ in range(2):
+            entry = [[0 if 2 * length > limit - ring.box.norm(beside) else 10 ** 6 if extreme
+                      else rng.randrange(-10 ** 6, 10 ** 6)
+                      for length in ring.box.lengths for _ in range(steps)] for _ in range(2)]
+            factors.append(ring.series(1, 1, [(entry[0], None if is_real else entry[1])]))
+        f, g = [table(ring, factor.entries[0]) for factor in factors]
+        exact = dict.fromkeys(f, (0, 0))
+        for (k, i), (a, b) in f.items():
+            for (q, j), (c, d) in g.items():
+                if (a or b) and (c or d):
+                    more, power = divmod(i + j, steps)
+                    to = tuple(x + y + more * z for x, y, z in zip(k, q, beside)), power
+                    re, im = exact[to]
+                    exact[to] = re + a * c - b * d, im + a * d + b * c
+        product = ring.multiply(*factors)
+        assert degree or product.radius < 9 + 2 * ring.ones        # nothing but roundings
+        found = table(ring, product.entries[0])
+        assert all((x >> 20, y >> 20) == found[at] for at, (x, y) in exact.items())
+
+
+@pytest.mark.parametrize("limit, most", [(9, 4), (3, 3)])
+def test_powers_that_are_left_out_count_where_they_come_to_lie(limit, most):
+    """s^2 times s^2: it is lost, and comes to another k, |k| = 4 if that is in the box."""
+    ring = series.Ring(series.Box(field.Norm([[1]], (4,), [(1,)]), limit, 2), Fraction(9, 8), 40)
+    entry = [0] * ring.box.count
+    entry[ring.box.centre * 3 + 2] = ring.one
+    f = ring.series(1, 1, [(entry, None)])
+    product = ring.multiply(f, f)
+    off = ring.norm(product) - product.radius + (ring.one << series.FINE)
+    assert off >= (ring.one << series.FINE) * (1 + (limit > 4))
+    assert product.radius >= off and product.radius >= int(
+        (1 + Fraction(9, 8) ** most) * (ring.one << series.FINE))
+
+
+@pytest.mark.parametrize("name", FRAMES)
+def test_modes_have_places_of_their_own(name, monkeypatch):
+    """In hardly more space than there are modes; and a choice that will not do is not taken."""
+    for limit, degree in ((6, 0), (30, 0), (61, 1)):
+        box = series.Box(field.Norm(*FRAMES[name]), limit, degree)
+        size, powers, turns = box.places
+        assert len(set(powers)) == box.count and max(powers) < size and min(powers) >= 0
+        at = {m: power + size * turn for m, power, turn in zip(
+            box.modes(), powers[::degree + 1], turns[::degree + 1])}
+        zero = at[(0,) * box.norm.dimension]
+        steps = [at[m] - zero for m in ((1, 0), (0, 1)) if m in at]
+        if len(steps) == 2:
+            assert all(x - zero == a * steps[0] + b * steps[1] for (a, b), x in at.items())
+        assert limit < 30 or size <= 1.1 * box.count
+        other = series.Box(box.norm, limit, degree)
+        periods = [(box.groups - 1, 1), *other._periods()]
+        monkeypatch.setattr(series.Box, "_periods", lambda _, periods=periods: iter(periods))
+        assert other.places == box.places
+        monkeypatch.undo()
+
+
+@pytest.mark.parametrize("name", FRAMES)
+def test_modes_outside_of_the_lattice_are_found(name):
+    norm, found = field.Norm(*FRAMES[name]), 0
+    for k in [(a, b)[:norm.dimension] for a in range(-5, 6) for b in range(-5, 6)]:
+        exact = norm.coordinates(k)
+        place = norm.place(k)
+        found += place is None
+        assert place == (None if any(x.denominator > 1 for x in exact) else exact)
+    assert bool(found) == (name == "part")
+
+
+# ---- exponentials that are guessed and then verified
+
+def bound_of_the_page(ring, f, g):
+    """(38) in existence.md, without roundings and modes beyond the box; n = 1 and 2, degree 0."""
+    norm = ring.box.norm
+    rows = [row for row, _ in sorted(zip(norm.frame, norm.alpha), key=lambda x: -x[1])]
+    alpha = sorted(norm.alpha, reverse=True)
+    one, weight = mp.mpf(ring.one), mp.mpf(9) / 8
+    f, g = [{k: mp.mpc(*z) / one for (k, _), z in table(ring, h.entries[0]).items()}
+            for h in (f, g)]
+
+    def along(k, row):
+        return sum(x * y for x, y in zip(k, row))
+
+    rest = {k: along(k, rows[0]) * z for k, z in g.items()}
+    for k, z in f.items():
+        for q, w in g.items():
+            to = tuple(x + y for x, y in zip(k, q))
+            if to in rest:
+                rest[to] -= along(k, rows[0]) * z * w
+    size = {k: abs(z) * weight ** norm(k) for k, z in rest.items()}
+    r = sum(size[k] for k in size if not along(k, rows[0]))
+    R = sum(size[k] / abs(along(k, rows[0])) for k in size if along(k, rows[0]))
+    slope = sum(abs(along(k, rows[0]) * z) * weight ** norm(k) for k, z in f.items())
+    height = mp.exp(sum(abs(z) * weight ** norm(k) for k, z in f.items()))
+
+    def restricted(h, xi):              # at the angle xi of the second row
+        return sum(z * mp.expj(along(k, rows[1]) * xi if len(rows) > 1 else 0)
+                   for k, z in h.items())
+
+    count = 128 if len(rows) > 1 else 1
+    values = [restricted(g, x) * mp.exp(-restricted(f, x)) - 1
+              for x in [2 * mp.pi * j / count for j in range(count)]]
+    start = sum(abs(sum(v * mp.expj(-2 * mp.pi * j * b / count) for j, v in enumerate(values))
+                    / count) * weight ** (alpha[1] * abs(b) if count > 1 else 0)
+                for b in range(-15 * (count > 1), 15 * (count > 1) + 1))
+    return height * (start + 2 * height * (r + (1 + slope) * R)), r, R, start
+
+
+def real_angle(ring, rng, scale):
+    """i s, s real for real angles."""
+    re, im = random_entry(rng, ring, False, scale)
+    return ring.series(1, 1, [([x - y for x, y in zip(re, re[::-1])],
+                               [x + y for x, y in zip(im, im[::-1])])])
+
+
+@pytest.mark.parametrize("name", ["one", "skew"])
+@pytest.mark.parametrize("kind", ["constant", "mode", "other", "none"])
+def test_wrong_guesses_have_large_radii(name, kind, monkeypatch):
+    """Whatever is guessed, e^(i s) is within the radius, which is not less than (38)."""
+    norm = field.Norm(*FRAMES[name])
+    ring = series.Ring(series.Box(norm, 16, 0), Fraction(9, 8), 60)
+    rng = random.Random(5)
+    f = real_angle(ring, rng, 0.1)
+    right = exponential.guess(ring, f)
+    re, im = map(list, right.entries[0])
+    k = {"mode": norm.basis[0], "other": tuple(map(sum, zip(*norm.basis)))}.get(kind)
+    if kind != "none":
+        re[ring.box.find(norm.place(k)) if k else ring.box.centre] += ring.one >> 10
+    wrong = right.of((re, im))
+    monkeypatch.setattr(exponential, "guess", lambda *_: wrong)
+    found = exponential.exponential_of_imaginary(ring, f)
+    bound, r, R, start = bound_of_the_page(ring, f, wrong)
+    radius = found.radius / mp.mpf(ring.one << series.FINE)
+    assert found.entries == wrong.entries
+    assert radius >= bound * (1 - mp.mpf(1e-9))
+    if kind != "none":                  # no part may be forgotten
+        assert radius - bound < (start / 100 if kind == "constant" else min(start, r, R))
+    for _ in range(4):
+        theta = [mp.mpc(rng.uniform(0, 6), 0) for _ in norm.alpha]
+        assert abs(value(wrong, ring, 0, theta, 0) - mp.exp(value(f, ring, 0, theta, 0))) <= radius
+
+
+def test_what_a_product_leaves_out_is_in_the_radius_of_an_exponential(monkeypatch):
+    ring = series.Ring(series.Box(field.Norm(*FRAMES["two"]), 12, 0), Fraction(9, 8), 60)
+    f, multiply = real_angle(ring, random.Random(2), 0.1), series.Ring.multiply
+    known, more = exponential.exponential_of_imaginary(ring, f), 1 << 100
+    monkeypatch.setattr(series.Ring, "multiply", lambda self, x, y: (
+        product := multiply(self, x, y)).of(product.entries[0], product.radius + more * (
+            self is ring)))
+    assert exponential.exponential_of_imaginary(ring, f).radius >= known.radius + 2 * more
+
+
+@pytest.mark.parametrize("name", FRAMES)
+def test_guesses_are_good(name):
+    """Newton's method, in several steps: no more than some roundings away."""
+    norm = field.Norm(*FRAMES[name])
+    ring = series.Ring(series.Box(norm, 80, 0), Fraction(33, 32), 130)
+    rng = random.Random(3)
+    found = exponential.exponential_of_imaginary(ring, real_angle(ring, rng, 0.1))
+    assert found.radius < 2000 * ring.ones
+
+
 # ---- the theorem
 
 def conditions(c, waves, rho, kappa, divisors, steps, share, change, e):
@@ -586,13 +942,16 @@ def test_losses_of_single_steps():
         found = divisors_of(polynomial, root, omega, frame, alpha, basis)
         w = [float(found.field.interval(x)[0]) for x in omega]
         ks = [(a, b)[:len(w)] for a in range(60) for b in range(-60, 61)]
-        for d in (1, 0.2, 0.05, 0.02):
+        for d in (20, 1, 0.2, 0.05, 0.02):
             worst = max(math.exp(-d * found.norm(k)) / abs(
                 2 * math.sin(math.pi * sum(x * y for x, y in zip(k, w)))) for k in ks if any(k))
             assert worst <= found.loss_at(Fraction(d)) * (1 + 1e-9)
             # what is beyond all that were looked at
             n, x = len(w), max(d * found.radius, len(w))
             assert (x / d) ** n * math.exp(-x) / float(found.tail) \
+                <= found.loss_at(Fraction(d)) * (1 + 1e-9)
+            # and what was not, with divisors above 16 times the tail's bound
+            assert (n / (math.e * d)) ** n / float(found.tail) / 16 \
                 <= found.loss_at(Fraction(d)) * (1 + 1e-9)
 
 
@@ -657,6 +1016,162 @@ def test_the_residual_is_within_its_radius(monkeypatch, limit, bits):
     for n in range(8):                  # on the strip's boundary
         theta = mp.mpc(n, -mp.log(1.125))
         assert abs(mp.expj(theta + x(theta))) <= float(found.bounds[0][2])
+
+
+def test_roundings_of_second_differences_are_counted(monkeypatch):
+    """Those of u_+ - 2u + u_- for many modes, beside which the force is nothing."""
+    seen, norm, rng = [], series.Ring.norm, random.Random(3)
+    monkeypatch.setattr(series.Ring, "norm", lambda ring, f: seen.append(f) or norm(ring, f))
+    torus = small_torus(["0 %x" % rng.randrange(1 << 30) for _ in range(20)], "1 0 0 1e-9")
+    ring = series.Ring(series.Box(torus.norm, 20, 0), Fraction(9, 8), 24)
+    found = tori.Residual(torus, ring, 20)
+    (re, im), = seen[-1].entries
+    (_, u), = found.u.entries
+    off, w = mp.mpf(0), mp.pi * (mp.sqrt(5) - 1)
+    for k in range(-20, 21):
+        exact = (2 * mp.cos(k * w) - 2) * u[k + 20] * mp.j
+        off += abs(exact - mp.mpc(re[k + 21], im[k + 21])) * mp.mpf(1.125) ** abs(k) / ring.one
+    assert 0 < off <= found.radius.numerator / mp.mpf(found.radius.denominator)
+
+
+# ---- a piece: what is lost on the way
+
+def exact_sizes(torus):
+    """Of each |k| the sum of 2 |u_k|, n = 1."""
+    return [(abs(k[0]), 2 * mp.hypot(*series[0][0]) / mp.mpf(2) ** torus.bits)
+            for k, series in torus.modes.items()]
+
+
+class Recorded:
+    """Calls of `allowed`, which says that any residual up to 1 will do."""
+
+    def __init__(self, monkeypatch):
+        self.calls, self.rings = [], []
+        series_of = tori.Torus.series
+        monkeypatch.setattr(tori, "allowed", self)
+        monkeypatch.setattr(tori.Torus, "series", lambda torus, ring, near: self.rings.append(
+            (ring, near, found := series_of(torus, ring, near))) or found)
+
+    def __call__(self, constants, waves, rho, *_):
+        self.calls.append((constants, rho))
+        return Fraction(1), Fraction(0)
+
+
+def test_numbers_are_on_the_safe_side():
+    assert mp.mpf(field.E_LOW.numerator) / field.E_LOW.denominator <= mp.e
+    assert mp.mpf(field.PI_LOW.numerator) / field.PI_LOW.denominator <= mp.pi
+    assert mp.mpf(field.PI_HIGH.numerator) / field.PI_HIGH.denominator >= mp.pi
+    for x in (Fraction(1, 3), Fraction(2, 3), Fraction(10, 7), Fraction(29), Fraction(1, 10 ** 40)):
+        assert field.rounded_down(x) <= x <= field.rounded_up(x)
+        assert field.upper_root(x) ** 2 >= x and field.upper_root(x * x) >= x
+        with mp.workdps(150):
+            number, below, above, log = [mp.mpf(y.numerator) / y.denominator for y in (
+                x, field.exponential_below(x), field.exponential_above(x),
+                tori.logarithm_below(1 + x))]
+            assert below <= mp.exp(number) <= above and log <= mp.log(1 + number)
+
+
+@pytest.mark.parametrize("width", [0.01, 0.1, 0.3])
+def test_the_strip_is_no_wider_than_the_norm_says(monkeypatch, width):
+    """rho, with which the theorem is asked, and S of the series: e^rho <= S."""
+    seen = Recorded(monkeypatch)
+    torus = small_torus(GOLDEN)
+    found = tori.verify_width(torus, width, lambda text: None)
+    assert len(seen.calls) > 1
+    for ring, _, _ in seen.rings:
+        for rho in [found.rho] + [rho for _, rho in seen.calls]:
+            assert mp.exp(mp.mpf(rho.numerator) / rho.denominator) \
+                <= mp.mpf(ring.sigma.numerator) / ring.sigma.denominator
+    assert found.rho > 0.99 * width
+
+
+def test_what_is_cut_off_changes_the_constants(monkeypatch):
+    """The theorem is asked about the torus that the residual is of."""
+    seen = Recorded(monkeypatch)
+    torus = small_torus(GOLDEN)
+    monkeypatch.setattr(tori.Torus, "extent", lambda *_: (4, 30))
+    assert isinstance(tori.verify_width(torus, 0.1, lambda text: None), tori.Verified)
+    (whole, _), (cut, _) = seen.calls
+    sigma = mp.mpf(seen.rings[-1][0].sigma.numerator) / seen.rings[-1][0].sigma.denominator
+    beyond = sum(size * k * sigma ** k for k, size in exact_sizes(torus) if k > 4)
+    assert beyond > 1e-3
+    exact = whole.after(Fraction(float(beyond)))
+    for name in "lmabp":
+        assert getattr(cut, name) >= getattr(exact, name) * (1 - Fraction(1, 10 ** 12))
+
+
+@pytest.mark.parametrize("near", [3, 100])
+def test_the_distance_counts_what_was_cut_and_rounded(monkeypatch, near):
+    """Here all of it, as the theorem is said to move the torus by nothing."""
+    seen = Recorded(monkeypatch)
+    torus = small_torus(GOLDEN)
+    monkeypatch.setattr(tori.Torus, "extent", lambda *_: (min(near, torus.farthest), 30))
+    found = tori.verify_width(torus, 0.1, lambda text: None)
+    ring, _, used = seen.rings[-1]
+    (_, im), = used.entries
+    off = mp.mpf(0)
+    for k, series_ in torus.modes.items():
+        at = ring.box.find(k)
+        exact = mp.mpf(series_[0][0][1]) / mp.mpf(2) ** torus.bits
+        off += 2 * abs(exact - mp.mpf(im[at]) / ring.one) if at is not None else 2 * abs(exact)
+    assert off > 0
+    assert mp.mpf(found.distance.numerator) / found.distance.denominator >= off
+    assert found.distance < 100 * off
+
+
+def test_the_distance_counts_what_was_dropped(monkeypatch):
+    """Real parts, of a torus that is nearly odd; and noise."""
+    Recorded(monkeypatch)
+    size = 1 << 33
+    values = [value.split() for value in GOLDEN[:10]]
+    other = [(x, "%x" % size) if y == "0" else ("%x" % size, y) for x, y in values]
+    torus = small_torus([" ".join(pair) for pair in other])
+    assert tori.verify_width(torus, 0.1, lambda text: None).distance >= Fraction(20 * size, 1 << 40)
+    plain = tori.verify_width(small_torus(GOLDEN[:10]), 0.1, lambda text: None)
+    assert plain.distance < Fraction(size, 1 << 40)
+    claim = torus_file.read_torus(sealed(
+        (HEADER % 400).replace(" 40 0 400", " 100 0 400") + "".join(
+            "%d 0 0 %x\n" % (k, (1 << 90) >> 2 * k if k < 40 else 1 << 9)
+            for k in range(1, 401))).encode())
+    torus = tori.Torus(tori.Setting(claim), claim.pieces[0], True, True)
+    left_out = [k for k in range(1, 401) if (k,) not in torus.modes]
+    assert len(left_out) > 300
+    assert torus.dropped >= Fraction(2 * len(left_out) << 9, 1 << 100)
+    assert tori.verify_width(torus, 0.1, lambda text: None).distance >= torus.dropped
+
+
+def test_the_constants_count_that_u_was_rounded(monkeypatch):
+    """What stands for L = I + Du, in few bits, is no further from it than its radius."""
+    torus = small_torus(GOLDEN)
+    ring = series.Ring(series.Box(torus.norm, 29, 0), Fraction(9, 8), 30)
+    products, multiply = [], series.Ring.multiply
+    monkeypatch.setattr(series.Ring, "multiply", lambda self, f, g: products.append(f)
+                        or multiply(self, f, g))
+    tori.constants_with(torus, ring, 29, Fraction(0))
+    left, sigma = products[0], mp.mpf(9) / 8
+    (re, im), = left.entries
+    off = mp.mpf(0)
+    for at, (k,) in enumerate(ring.box.modes()):
+        exact = mp.mpf(k == 0)
+        if (abs(k),) in torus.modes:    # i k u_k, u_k imaginary, odd in k
+            exact -= abs(k) * mp.mpf(torus.modes[abs(k),][0][0][1]) / mp.mpf(2) ** torus.bits
+        off += abs(exact - mp.mpc(re[at], im[at] if im else 0) / ring.one) * sigma ** abs(k)
+    assert 0 < off <= mp.mpf(left.radius) / 2 ** (ring.bits + series.FINE)
+
+
+@pytest.mark.parametrize("is_real", [True, False])
+def test_a_delayed_function_is_within_its_radius(is_real):
+    """f(. - w), in few bits."""
+    torus, rng = small_torus(GOLDEN), random.Random(11)
+    ring = series.Ring(series.Box(torus.norm, 8, 0), Fraction(9, 8), 16)
+    f = ring.series(1, 1, [random_entry(rng, ring, is_real, 1.0)], 12345)
+    found = tori.delayed(torus, ring, f)
+    (x, y), (re, im) = f.entries[0], found.entries[0]
+    off, w = mp.mpf(0), mp.pi * (mp.sqrt(5) - 1)
+    for at, (k,) in enumerate(ring.box.modes()):
+        exact = mp.mpc(x[at], y[at] if y else 0) * mp.expj(-k * w)
+        off += abs(exact - mp.mpc(re[at], im[at])) * (mp.mpf(9) / 8) ** abs(k)
+    assert 0 < off <= mp.mpf(found.radius - 12345) / 2 ** series.FINE
 
 
 # ---- other forms of the checker

@@ -1,0 +1,767 @@
+"""Version 4 of the proof file: frames of any determinant, regions that hold enough of the torus by
+reversal and exchange, and parts that leaves are linked to.  What is right is confirmed, and what is
+wrong in any one place is not, by both paths of the checker and by the referee."""
+
+import contextlib
+import hashlib
+import itertools
+import math
+import random
+import re
+from fractions import Fraction
+
+import numpy as np
+import pytest
+
+from converse import Problem, prove
+from converse.check import main, verify
+
+from checker import check
+
+HEAD = """converse proof 4
+kind: sound
+program: by hand
+method: loewner
+digits: 0
+stubborn: 0
+quick_tries: 0
+tries: 0
+Rtries: 0
+HermSuccess: 0
+LLSuccess: 0
+ll_used: 0
+reasons: none
+max_steps: 0
+max_NTsteps: 0
+B: 0
+pending: 0
+"""
+SYMMETRIC = ["1 0 0 0.2242872", "0 1 0 0.2242872", "1 1 0 0.4485744"]       # epsilon = 0.02
+XSTAR, OTHER = "0.858 0.858", "0.875 0.875"
+DIAGONALS = "1 1 1 -1"
+HALF = "0.5362 0.2502", "0.5 0.5"       # of the torus by reversal and exchange: c0 = 0.28612..
+
+
+def file_of(tree, v0=HALF[0], v1=HALF[1], waves=SYMMETRIC, frame=DIAGONALS, xstar=XSTAR, parts=(),
+            **fields):
+    """A proof file; parts are (xstar, v0, v1, tree)."""
+    trees, most = [tree, *[part[3] for part in parts]], 0
+
+    def count(kinds):
+        return sum(tree.count(kind) for tree in trees for kind in kinds)
+
+    for text in trees:
+        with contextlib.suppress(check.Rejected):       # in what is wrong on purpose
+            for at, (_, cuts) in check.leaves(text, kinds="PSU?" + check.LETTERS):
+                most = max(most, sum(cuts) if text[at] == "P" else 0)
+    header = {"frame": frame, "xstar": xstar, "v0": v0, "v1": v1, "odd about": "no", "alone": "no",
+              "at once": "no", "depth": 99, "cuts": count("01234"), "proved": count("P"),
+              "symmetric": count("S"), "undecided": count("U?"), "most_cuts": most,
+              "linked": count(check.LETTERS)}
+    header.update({name.replace("_", " "): value for name, value in fields.items()})
+    text = HEAD + "".join("wave: %s\n" % wave for wave in waves)
+    text += "".join("%s: %s\n" % item for item in header.items()) + "tree:\n%s\n" % tree
+    for letter, part in zip(check.LETTERS + "z", parts):
+        text += "part: %s\nxstar: %s\nv0: %s\nv1: %s\ntree:\n%s\n" % (letter, *part)
+    return sealed(text)
+
+
+def sealed(text):
+    body = text.partition("checksum: ")[0]
+    return body + "checksum: sha256 %s\nend\n" % hashlib.sha256(body.encode()).hexdigest()
+
+
+def claim_of(text):
+    return check.read_proof(text.encode())
+
+
+def halves(cell, axis):
+    index, cuts = cell
+    cuts = check.changed(cuts, axis, cuts[axis] + 1)
+    return [(check.changed(index, axis, 2 * index[axis] + upper), cuts) for upper in (0, 1)]
+
+
+def found(v0=HALF[0], v1=HALF[1], **more):
+    """A tree that proves this, by the fast path alone and a cut where it says so."""
+    assert check.import_numpy_if_sound()
+    claim = claim_of(file_of("P", v0, v1, **more))
+    criterion, fast = check.Criterion(claim), check.Lockstep([claim])
+    nodes, todo = {}, [check.ROOT]
+    while todo:
+        assert len(nodes) < 5000
+        batch, todo = todo[-256:], todo[:-256]
+        l = np.array([criterion.least_in_double(cell) for cell in batch])
+        index, cuts = [np.array([cell[i] for cell in batch], np.int64).T for i in (0, 1)]
+        excluded, axis = fast.attempt(index, cuts, np.zeros(len(batch), int), l, check.CAUTION[0])
+        for cell, good, at in zip(batch, excluded.tolist(), axis.tolist()):
+            nodes[cell] = "P" if good else check.AXES[at]
+            todo += [] if good else halves(cell, at)
+    tree, todo = [], [check.ROOT]
+    while todo:
+        cell = todo.pop()
+        tree.append(nodes[cell])
+        if tree[-1] != "P":
+            todo += reversed(halves(cell, int(tree[-1])))
+    return "".join(tree)
+
+
+def region_of(claim, cell, moved, margin):
+    """v0 and v1 of what a cell is moved to, and this margin about it."""
+    ranges = []
+    for i, k, c, h, (low, high) in zip(*cell, claim.centre, claim.half, moved):
+        low, high = c - h + 2 * h * i / (1 << k) + low, c - h + 2 * h * (i + 1) / (1 << k) + high
+        unit = 10 ** 40
+        middle = Fraction(round((low + high) / 2 * unit), unit)
+        half = Fraction(math.ceil((max(high - middle, middle - low) + margin) * unit), unit)
+        ranges.append("%s %s" % (check.decimal_text(middle), check.decimal_text(half)))
+    return ranges
+
+
+def linked(tree, others=(OTHER,), margin=Fraction(1, 1000), **more):
+    """The arguments of a file whose deepest leaf is linked to a part with another x*, the deepest
+    leaf of which is linked to the next."""
+    trees, places, regions = [tree], [more.get("xstar", XSTAR), *others], [
+        (more.pop("v0", HALF[0]), more.pop("v1", HALF[1]))]
+    for letter, here, there in zip(check.LETTERS, places, others):
+        tree, region = trees[-1], regions[-1]
+        claim = claim_of(file_of("P", *region, **{**more, "xstar": here}))
+        at, cell = max(((at, cell) for at, cell in check.leaves(tree)),
+                       key=lambda leaf: sum(leaf[1][1]))
+        trees[-1] = tree[:at] + letter + tree[at + 1:]
+        moved = check.displacement(check.Criterion(claim), cell, claim.xstar,
+                                   tuple(map(Fraction, there.split())))
+        regions.append(region_of(claim, cell, moved, margin))
+        trees.append(found(*regions[-1], **{**more, "xstar": there}))
+    return {"tree": trees[0], "v0": regions[0][0], "v1": regions[0][1], **more,
+            "parts": [(x, *region, tree) for x, region, tree in
+                      zip(others, regions[1:], trees[1:])]}
+
+
+@pytest.fixture(scope="module")
+def tree():
+    """Of half the torus by reversal and exchange."""
+    return found()
+
+
+@pytest.fixture(scope="module")
+def one_link(tree):
+    return linked(tree)
+
+
+@pytest.fixture(scope="module")
+def two_links(tree):
+    return linked(tree, (OTHER, "0.85 0.87"))
+
+
+@pytest.fixture
+def run(tmp_path, capsys):
+    """What the checker says of a text: (status, stdout, stderr); of the same status by the exact
+    path, and by the referee, who says what that says."""
+    def run(text):
+        path = tmp_path / "some.proof"
+        path.write_bytes(text if isinstance(text, bytes) else text.encode())
+        with pytest.MonkeyPatch.context() as patch:
+            for name, value in (("LINE_SECONDS", math.inf), ("MAX_PIECES", 64), ("MAX_SITES", 150)):
+                patch.setattr(check, name, value)
+            found = [(command(arguments), *capsys.readouterr()) for command, arguments in (
+                (main, [str(path)]), (main, ["--exact", str(path)]),
+                (check.referee_main, [str(path)]))]
+        assert found[0][0] == found[1][0] and found[1] == found[2]
+        status, out, err = found[0]
+        assert bool(out) == (status in (0, 3)) != bool(err)
+        return status, out, err
+    return run
+
+
+# ---- regions that hold enough
+
+def test_half_of_the_torus_is_enough(tree, run):
+    """By reversal and exchange; and the whole by neither."""
+    status, out, _ = run(file_of(tree))
+    assert status == 0 and out.startswith("Verified :") and "region" not in out
+    assert "; all others by reversal of time and exchange of the angles\n" in out
+    whole = found("1 0.5", "1 1")
+    status, out, _ = run(file_of(whole, "1 0.5", "1 1"))
+    assert status == 0 and "all others" not in out and len(whole) > 3 * len(tree)
+
+
+@pytest.mark.parametrize("waves, xstar, told", [
+    (SYMMETRIC, None, "reversal of time and exchange of the angles"),
+    (["1 0 0 0.4", "0 1 0 0.1", "2 1 0 0.25"], None, "reversal of time"),
+    (SYMMETRIC, ("0.86", "0.85"), "reversal of time")])
+def test_what_the_program_writes(run, tmp_path, waves, xstar, told):
+    """Its choice of frame and region holds enough, by the symmetries that there are."""
+    words = [wave.split() for wave in waves]
+    problem = Problem.patch([p for *_, p in words], waves=[(int(k), int(l)) for k, l, *_ in words])
+    path = tmp_path / "written"
+    prove(problem, method="loewner", xstar=xstar).save(path)
+    status, out, _ = run(path.read_bytes())
+    assert status == 0 and "; all others by %s\n" % told in out
+    assert out.startswith("Verified :") and "converse proof 4\n" in path.read_text()
+
+
+def c0_of(text):
+    return [float(x) for x in check.reversal_centre(claim_of(text))]
+
+
+def test_the_centre_of_the_reversal():
+    """It is what doubles say, for all parameters; and its ends are taken."""
+    generator = random.Random(4)
+    for _ in range(60):
+        parts, waves = generator.randint(0, 3), []
+        for _ in range(generator.randint(1, 4)):
+            k = generator.choice(((1, 0), (0, 1), (1, 1), (2, -1), (0, 3)))
+            numbers = [round(generator.uniform(-1, 1), 3) for _ in range(2 + parts)]
+            waves.append((k, numbers))
+        frame = generator.choice(((1, 0, 0, 1), (1, 1, 1, -1), (2, -1, 1, 2), (0, 1, 1, 0),
+                                  (-3, 1, 0, 2)))
+        x = [round(generator.uniform(-4, 4), 3) for _ in "01"]
+        text = file_of("P", waves=[" ".join(map(str, (*k, *numbers))) for k, numbers in waves],
+                       frame=" ".join(map(str, frame)), xstar="%s %s" % tuple(x))
+        ends = []
+        for t in itertools.product((-1, 1), repeat=parts):
+            c = np.array(x, float)
+            for k, (phase, p, *more) in waves:
+                p += sum(a * b for a, b in zip(more, t))
+                c += np.array(k) * p / 2 * math.cos(np.dot(k, x) + math.pi * phase)
+            ends.append(np.linalg.solve(np.reshape(frame, (2, 2)), c)[0] / math.pi)
+        low, high = c0_of(text)
+        assert abs(low - min(ends)) < 1e-12 and abs(high - max(ends)) < 1e-12 and low <= high
+
+
+def decimal(x):
+    return check.decimal_text(Fraction(x))
+
+
+def ranged(low, high):
+    low, high = Fraction(low), Fraction(high)
+    return "%s %s" % (decimal((low + high) / 2), decimal((high - low) / 2))
+
+
+MOVING = ["1 0 0 0.225 0.001", "0 1 0 0.225 0.001", "1 1 0 0.45 0.002"]
+APART = ["1 0 0 0.225 0.001 0", "0 1 0 0.225 0 0.001", "1 1 0 0.45 0 0"]
+
+
+@pytest.mark.parametrize("waves", [SYMMETRIC, MOVING, APART])
+def test_how_much_of_v0_is_enough(waves):
+    """[c0, c0 + 1/2] for all parameters, and 1e-12 less at either end is not; or any length 1."""
+    low, high = [Fraction(x).limit_denominator(10 ** 16) for x in c0_of(file_of("P", waves=waves))]
+    low = Fraction(math.floor(low * 10 ** 14), 10 ** 14)
+    high = Fraction(math.ceil(high * 10 ** 14), 10 ** 14) + Fraction(1, 2)
+    step = Fraction(1, 10 ** 12)
+    for ends, enough in (((low, high), True), ((low - 1, high), True), ((low + step, high), False),
+                         ((low, high - step), False), ((low - 1, high - 1), False),
+                         ((low + 1, high + 1), False), ((0, 1), True), ((-7, -6), True),
+                         ((5, Fraction(6) - step), False)):
+        assert check.is_whole(claim_of(file_of("P", ranged(*ends), waves=waves))) == enough
+
+
+@pytest.mark.parametrize("frame, xstar, v1, waves, enough", [
+    (DIAGONALS, XSTAR, (0, 1), SYMMETRIC, True), (DIAGONALS, XSTAR, (0, 1), APART, True),
+    (DIAGONALS, XSTAR, (-1, 1), SYMMETRIC, True), (DIAGONALS, XSTAR, (3, 5), SYMMETRIC, True),
+    (DIAGONALS, "0.858 0.8580", (-3, 1), SYMMETRIC, True),
+    (DIAGONALS, XSTAR, (-1, 0), SYMMETRIC, False), (DIAGONALS, XSTAR, (1, 2), SYMMETRIC, False),
+    (DIAGONALS, XSTAR, (0, "0.999999999999"), SYMMETRIC, False),
+    (DIAGONALS, XSTAR, ("1e-20", 1), SYMMETRIC, False),
+    (DIAGONALS, "0.858 0.85800000000000000001", (0, 1), SYMMETRIC, False),
+    (DIAGONALS, "0.858 -0.858", (0, 1), SYMMETRIC, False),
+    (DIAGONALS, XSTAR, (0, 1), ["1 0 0 0.2", "0 1 0 0.2000000000000001", "1 1 0 0.4"], False),
+    (DIAGONALS, XSTAR, (0, 1), ["1 0 0.1 0.2", "0 1 0 0.2", "1 1 0 0.4"], False),
+    (DIAGONALS, XSTAR, (0, 1), ["1 0 0 0.2 0.01 0", "0 1 0 0.2 0 0.011", "1 1 0 0.4 0 0"], False),
+    (DIAGONALS, XSTAR, (0, 1), ["2 -1 0 0.2", "1 -2 1 0.2"], True),
+    (DIAGONALS, XSTAR, (0, 1), ["2 -1 0 0.2", "1 -2 0 0.2"], False),
+    ("1 1 -1 1", XSTAR, (0, 1), SYMMETRIC, False), ("1 -1 1 1", XSTAR, (0, 1), SYMMETRIC, False),
+    ("1 0 0 1", XSTAR, (0, 1), SYMMETRIC, False), ("-1 -1 -1 1", XSTAR, (0, 1), SYMMETRIC, False),
+    ("2 0 0 2", XSTAR, (0, 1), SYMMETRIC, True), ("1 4 0 -2", XSTAR, (0, 1), SYMMETRIC, True),
+    ("1 4 0 -2", XSTAR, (0, "0.99"), SYMMETRIC, False),
+    ("3 3 -1 1", XSTAR, (0, 1), SYMMETRIC, False), ("3 3 -1 1", XSTAR, (0, 2), SYMMETRIC, True)])
+def test_how_much_of_v1_is_enough(frame, xstar, v1, waves, enough):
+    text = file_of("P", "0 1", ranged(*v1), frame=frame, xstar=xstar, waves=waves)
+    assert check.is_whole(claim_of(text)) == enough
+
+
+FRAMES = [(1, 0, 0, 1), (0, 1, 1, 0), (1, 1, 1, -1), (2, 1, 1, 1), (2, 0, 0, 3), (1, 2, 0, -4),
+          (3, 3, -1, 1), (2, -3, 3, 2), (-1, 6, 1, 3), (5, 2, 1, -2)]
+
+
+@pytest.mark.parametrize("frame", FRAMES)
+def test_periods_against_points(frame):
+    """A box of the lengths that the page says holds each point of the torus, and 1% less along
+    either axis does not."""
+    draw, f = random.Random(str(frame)), np.reshape(frame, (2, 2)).astype(float)
+    g, det = math.gcd(frame[1], frame[3]), abs(round(np.linalg.det(f)))
+    shifts = np.linalg.solve(f, 2 * np.mgrid[-40:41, -40:41].reshape(2, -1)).T
+    lengths = Fraction(2 * g, det), Fraction(2, g)
+
+    def holds(box, x):
+        v = x + shifts
+        return bool(((v >= 0) & (v <= np.array(box, float))).all(axis=1).any())
+
+    for shrink in ((1, 1), (Fraction(99, 100), 1), (1, Fraction(99, 100))):
+        box = [Fraction(math.ceil(length * s * 10 ** 9), 10 ** 9)
+               for length, s in zip(lengths, shrink)]
+        points = [np.array([draw.uniform(0, float(x)) for x in lengths]) for _ in range(25)]
+        points += [np.array([float(x) * 0.995 for x in lengths])]
+        whole = all(holds(box, point) for point in points)
+        assert whole == (shrink == (1, 1))
+        text = file_of("P", *(ranged(0, x) for x in box), frame=" ".join(map(str, frame)),
+                       waves=["1 0 0 0.3", "0 1 0 0.4"], xstar="20 30")
+        assert check.is_whole(claim_of(text)) == whole
+
+
+@pytest.mark.parametrize("t", [(-1, -1), (0.3, 1)])
+def test_reversal_and_exchange_map_orbits_to_orbits(t):
+    """Of any x[1], in v: by the lattice, the reversal and the exchange a point of the region, and
+    its orbit has the second variation of the first."""
+    draw, f = random.Random(7), np.array([[1, 1], [1, -1]])
+    amplitudes = [0.225 + 0.001 * t[0], 0.225 + 0.001 * t[1], 0.45]
+    low, high = c0_of(file_of("P", waves=APART))
+
+    def force(x, p):
+        a, b, c = p[0] * math.cos(x[0]), p[1] * math.cos(x[1]), p[2] * math.cos(x[0] + x[1])
+        return np.array([a + c, b + c])                 # -V'
+
+    def betas(v, p):
+        x = [np.array([0.858, 0.858]), math.pi * f @ v]
+        for _ in range(6):
+            x.append(2 * x[-1] - x[-2] + force(x[-1], p))
+        for _ in range(6):
+            x.insert(0, 2 * x[0] - x[1] + force(x[0], p))
+        return [tuple(np.array(p) * np.sin([y[0], y[1], y[0] + y[1]])) for y in x[1:-1]]
+
+    for _ in range(40):
+        v, p = np.array([draw.uniform(-3, 3) for _ in "01"]), amplitudes
+        before = betas(v, p)
+        x = np.array([0.858, 0.858])
+        c = np.linalg.solve(f, x + force(x, p) / 2) / math.pi
+        assert low - 1e-9 <= c[0] <= high + 1e-9
+        n = math.floor(v[0] - c[0] + 0.5)
+        v = v - n * np.array([1, 1])                    # (P0, 1) is in the lattice
+        reverse = v[0] < c[0]
+        if reverse:
+            v = 2 * c - v
+        v[1] -= 2 * math.floor(v[1] / 2 + 0.5)
+        exchange = v[1] < 0
+        if exchange:
+            v, p = v * [1, -1], [p[1], p[0], p[2]]
+        assert low <= v[0] <= high + 0.5 and 0 <= v[1] <= 1
+        after = betas(v, p)[::-1 if reverse else 1]
+        if exchange:
+            after = [(b, a, c) for a, b, c in after]
+        # The orbits are known from x[-5] to x[6] and from x[5] to x[-6].
+        before, after = (before[:-1], after[1:]) if reverse else (before, after)
+        assert np.allclose(before, after, atol=1e-6)
+
+
+def test_one_coordinate_alone(run):
+    """The other's waves do not move c0, and its x* is not looked at."""
+    waves, xstar = ["1 0 0 1.8 0.1", "0 1 0 0.01 0.01"], "1.5707963267948966 0"
+    whole = found("1 1", "1 1", waves=waves, xstar=xstar, frame="1 0 0 1", alone="0")
+    assert run(file_of(whole, "1 1", "1 1", waves=waves, xstar=xstar, frame="1 0 0 1",
+                       alone="0"))[0] == 0
+    v0 = "1.001 0.5011"                 # c0 = 0.5
+    half = found(v0, "1 1", waves=waves, xstar=xstar, frame="1 0 0 1", alone="0")
+    text = file_of(half, v0, "1 1", waves=waves, xstar=xstar, frame="1 0 0 1", alone="0")
+    status, out, _ = run(text)
+    assert status == 0 and "all others by reversal of time\n" in out
+    assert run(sealed(text.replace("v0: " + v0, "v0: 1.002 0.5011")))[0] == 3
+    low, high = c0_of(file_of("P", waves=["1 0 0 1.3 0.1", "0 1 0 9 0.01"], xstar="1 7",
+                              frame="1 1 0 1", alone="0"))
+    p = math.cos(1) / 2 / math.pi
+    assert np.allclose((low, high), [(1 - 7) / math.pi + p * x for x in (1.2, 1.4)])
+
+
+# ---- links
+
+def test_links(one_link, two_links, run):
+    """What is verified names the starting points, and what was linked."""
+    for link, parts in ((one_link, 1), (two_links, 2)):
+        status, out, _ = run(file_of(**link))
+        assert status == 0 and out.startswith("Verified :") and "links between" in out
+        assert "\nx* : 0.858 0.858\nx* of part a : 0.875 0.875\n" in out
+        assert re.search("Leaves : .*, %d linked to other parts and 0 symmetric" % parts, out)
+
+
+def test_links_of_a_region(one_link, run):
+    """The region of the first part alone is what is claimed; here it is less than the torus."""
+    assert run(file_of(**{**one_link, "v0": "0.5364 0.2502"}))[0] == 3
+    narrow = {**one_link, "v0": HALF[0], "xstar": "0.858 0.8580000000000000001"}
+    status, out, _ = run(file_of(**narrow))
+    assert status == 3 and "goes on to x[1] = (v0, v1) in the region" in out
+    assert "x* of part a" in out
+
+
+def test_a_link_to_the_same_place(tree, run):
+    """With the same x* nothing moves; with its tree, part a proves all that part 0 asks."""
+    link = {"tree": "a", "parts": [(XSTAR, *HALF, tree)]}
+    assert run(file_of(**link))[0] == 0
+    assert run(file_of("0aa", parts=[(XSTAR, *HALF, tree)]))[0] == 0
+
+
+def test_links_with_parameters(run):
+    """Of each slice of the parameters by its own l and its own bound of beta."""
+    more = {"waves": MOVING}
+    v0 = "0.5362 0.2503"
+    tree = found(v0, **more)
+    link = linked("2" + tree + tree, v0=v0, **more)
+    assert run(file_of(**link))[0] == 0
+    claim = claim_of(file_of("2PP", v0, **more))
+    criterion = check.Criterion(claim)
+    other = Fraction(7, 8), Fraction(7, 8)
+    root, (low, high) = [check.displacement(criterion, cell, claim.xstar, other)
+                         for cell in (check.ROOT,)][0], halves(check.ROOT, 2)
+    for cell in (low, high):
+        inner = check.displacement(criterion, cell, claim.xstar, other)
+        closer = [(c - a, b - d) for (a, b), (c, d) in zip(root, inner)]
+        assert all(min(ends) > -1e-28 and max(ends) > 1e-6 for ends in closer)  # roots are rounded
+
+
+def random_link(draw):
+    """A claim with parameters, and another x*."""
+    count = draw.randint(0, 2)
+    waves = []
+    for k in draw.sample(((1, 0), (0, 1), (1, 1), (1, -1), (2, 1)), draw.randint(1, 3)):
+        p = [draw.uniform(-1, 1) * 0.7] + [draw.uniform(-0.1, 0.1) for _ in range(count)]
+        waves.append("%d %d %.3f %s" % (*k, draw.uniform(-1, 1),
+                                        " ".join(["%.4f" % x for x in p])))
+    frame = draw.choice(FRAMES)
+    x = [Fraction(round(draw.uniform(-3, 3), 4)).limit_denominator(10 ** 5) for _ in "01"]
+    reach = draw.choice((1e-3, 0.05, 0.5))
+    y = tuple(a + Fraction(round(draw.uniform(-reach, reach), 6)).limit_denominator(10 ** 6)
+              for a in x)
+    return claim_of(file_of("P", waves=waves, frame=" ".join(map(str, frame)),
+                            xstar="%s %s" % tuple(map(decimal, x)))), y
+
+
+def test_displacements_against_derivatives():
+    """Whatever the derivative of f is between l and beta - l, f(y*) is where the bound says, and
+    sometimes near its ends."""
+    draw, cases, near = random.Random(3), 0, [0.0, 0.0]
+    while cases < 60:
+        claim, y = random_link(draw)
+        criterion = check.Criterion(claim)
+        k = draw.randint(0, 2)
+        cell = (0, 0, *[draw.randrange(1 << k) for _ in "234"]), (0, 0, k, k, k)
+        bounds = check.displacement(criterion, cell, claim.xstar, y)
+        t = [(2 * i + 1 + draw.choice((-1, 0, 1))) / 2 ** n - 1
+             for i, n in zip(cell[0][2:], cell[1][2:])]
+        l = criterion.least_pivot(cell) / criterion.fixed.one
+        x, w = np.array(claim.xstar, float), np.array(y, float) - np.array(claim.xstar, float)
+        inverse = np.linalg.inv(np.reshape(claim.frame, (2, 2)).astype(float))
+        for u in (*inverse, *-inverse):
+            total, sites = np.zeros(2), 400
+            for n in range(sites):
+                z = x + (n + 0.5) / sites * w
+                beta = 2 * np.eye(2)
+                for wave in claim.examined:
+                    p = float(wave.middle) + sum(float(g) * s for g, s in zip(wave.parts, t))
+                    beta -= p * math.sin(np.dot(wave.k, z) + math.pi * float(wave.phase)) \
+                        * np.outer(wave.k, wave.k)
+                D = beta - 2 * l * np.eye(2)
+                values, vectors = np.linalg.eigh(D)
+                if values[0] < 0:
+                    break
+                root = vectors * np.sqrt(values) @ vectors.T
+                a, b = root @ u, root @ w
+                a, b = a / np.linalg.norm(a), b / np.linalg.norm(b)
+                # The R with |R| <= 1/2 that turns b to a makes u.A w largest.
+                c = (a + b) / np.linalg.norm(a + b)
+                R = np.outer(c, c) - np.eye(2) / 2
+                total += (l * np.eye(2) + D / 2 + root @ R @ root) @ w / sites
+            else:
+                moved = inverse @ total / math.pi
+                for v, (low, high) in zip(moved, bounds):
+                    assert float(low) <= v <= float(high)
+                    where = (v - float(low)) / float(high - low)
+                    near = [max(near[0], where), max(near[1], 1 - where)]
+                cases += 1
+    assert min(near) > 0.99
+
+
+def test_displacements_on_a_torus():
+    """f of the golden circle of the standard map at k = 0.5, by a long periodic orbit, which all
+    but lies on it: f(y) - f(x) is within the bound for many pairs of its points."""
+    k, p, q = 0.5, 233, 377
+    x = 2 * math.pi * p / q * np.arange(q) + 0.1
+    turn = 2 * math.pi * p
+    for _ in range(30):                 # Newton
+        ahead, back = np.append(x[1:], x[0] + turn), np.append(x[-1] - turn, x[:-1])
+        residual = 2 * x - ahead - back + k * np.cos(x)     # V = -k sin x
+        hessian = np.diag(2 - k * np.sin(x))
+        hessian -= np.roll(np.eye(q), 1, axis=0) + np.roll(np.eye(q), -1, axis=0)
+        # Along the torus the action is as good as constant: no step is made there.
+        x = x - np.linalg.lstsq(hessian, residual, rcond=1e-12)[0]
+    assert abs(residual).max() < 1e-9
+    order = np.argsort(x % (2 * math.pi))
+    here = x[order] % (2 * math.pi)
+    there = (np.append(x[1:], x[0] + turn) - x)[order] + here
+    text = file_of("P", "1 1", "1 1", waves=["1 0 0 %s" % k], frame="1 0 0 1", xstar="1 0")
+    criterion, draw = check.Criterion(claim_of(text)), random.Random(1)
+    for _ in range(60):
+        i = draw.randrange(q - 40)
+        j = i + draw.randint(1, 40)
+        (low, high), _ = check.displacement(criterion, check.ROOT, *[
+            (Fraction(here[n]), Fraction(0)) for n in (i, j)])
+        assert low < (there[j] - there[i]) / math.pi < high
+
+
+# ---- wrong files: what is changed, and what the checker says
+
+def with_line(text, name, value, number=0):
+    """The text with another value of the field, or of its other occurrences, those of parts."""
+    lines = text.split("\n")
+    at = [i for i, line in enumerate(lines) if line.startswith(name + ": ")][number]
+    lines[at] = "%s: %s" % (name, value)
+    return sealed("\n".join(lines))
+
+
+def value_of(text, name, number=0):
+    return re.findall("(?m)^%s: (.*)$" % name, text)[number]
+
+
+def replaced(text, old, new, count=1):
+    assert old in text
+    return sealed(text.replace(old, new, count))
+
+
+def with_part(link, n=0, **changes):
+    """The arguments with another x*, v0, v1 or tree of a part."""
+    names = ("xstar", "v0", "v1", "tree")
+    parts = [dict(zip(names, part)) for part in link["parts"]]
+    parts[n].update(changes)
+    return {**link, "parts": [tuple(part[name] for name in names) for part in parts]}
+
+
+def with_leaf(tree, kind, number=0, old="P"):
+    at = [at for at, node in enumerate(tree) if node == old][number]
+    return tree[:at] + kind + tree[at + 1:]
+
+
+def shorter(text, end, by):
+    """A range with one of its ends moved inwards."""
+    centre, half = map(Fraction, text.split())
+    return "%s %s" % (decimal(centre - end * by / 2), decimal(half - by / 2))
+
+
+def tree_of_part(link, n=0):
+    return link["parts"][n][3]
+
+
+WRONG_STRUCTURE = {         # arguments of a file with two links -> a text; and what is said
+    "a letter to its own part": (lambda f: file_of(**with_part(f, 0, tree="0a" + tree_of_part(f))),
+                                 "nor a later part"),
+    "a letter to an earlier part": (lambda f: file_of(**with_part(
+        f, 1, tree="0a" + tree_of_part(f, 1))), "part b: 'a' is not a node"),
+    "a letter to a missing part": (lambda f: file_of(**{**f, "tree": with_leaf(f["tree"], "c")}),
+                                   "'c' is not a node of a finished tree nor a later part"),
+    "a letter without parts": (lambda f: file_of(f["tree"]), "'a' is not a node"),
+    "a capital letter": (lambda f: file_of(**{**f, "tree": with_leaf(f["tree"], "A")}),
+                         "'A' is not a node of a finished tree, at"),
+    "a part that nobody needs": (lambda f: file_of(**{**f, "tree": with_leaf(
+        f["tree"], "P", old="a")}), "no leaf is linked to part a"),
+    "the last part is not needed": (lambda f: file_of(**with_part(f, 0, tree=with_leaf(
+        tree_of_part(f), "P", old="b"))), "no leaf is linked to part b"),
+    "an altered part": (lambda f: file_of(**f).replace("xstar: " + OTHER, "xstar: 0.875 0.876"),
+                        "wrong checksum"),
+    "an empty tree": (lambda f: file_of(**with_part(f, 1, tree="")),
+                      "part b: the tree is incomplete"),
+    "an empty first tree": (lambda f: file_of(**{**f, "tree": ""}), "the tree is incomplete"),
+    "a tree cut off": (lambda f: file_of(**with_part(f, 1, tree="0P")), "the tree is incomplete"),
+    "a tree too long": (lambda f: file_of(**with_part(f, 1, tree="PP")), "before its text does"),
+    "undecided in a part": (lambda f: replaced(file_of(**with_part(
+        f, 1, tree="0U" + tree_of_part(f, 1))), "undecided: 1", "undecided: 0"), "is undecided"),
+    "undecided in the first tree": (lambda f: file_of(**{**f, "tree": with_leaf(f["tree"], "U")}),
+                                    "is undecided"),
+    "untried in a part": (lambda f: file_of(**with_part(f, 1, tree="?")), "'?' is not a node"),
+    "a parameter that there is not": (lambda f: file_of(**with_part(
+        f, 1, tree="2PP")), "cuts a parameter that there is not"),
+    "symmetric in a part": (lambda f: file_of(**with_part(f, 0, tree="0S" + tree_of_part(f))),
+                            "is skipped, but the problem is not symmetric"),
+    "alone with links": (lambda f: with_line(file_of(**f), "alone", "0"), "no coordinate is alone"),
+    "alone with links, of a product": (lambda f: file_of(**{**f, "waves": SYMMETRIC[:2],
+                                                            "alone": "0"}),
+                                       "links are of whole graphs"),
+    "linked too few": (lambda f: with_line(file_of(**f), "linked", 1), "linked is 1, the tree's 2"),
+    "linked too many": (lambda f: with_line(file_of(**f), "linked", 3), "linked is 3"),
+    "linked missing": (lambda f: replaced(file_of(**f), "linked: 2\n", ""), "lacks linked"),
+    "linked twice": (lambda f: replaced(file_of(**f), "linked: 2\n", "linked: 2\nlinked: 2\n"),
+                     "gives linked twice"),
+    "linked no count": (lambda f: with_line(file_of(**f), "linked", -2), "linked is not a count"),
+    "proved of the first tree only": (lambda f: with_line(file_of(**f), "proved",
+                                                          f["tree"].count("P")), "proved is"),
+    "cuts of the first tree only": (lambda f: with_line(file_of(**with_part(
+        f, 1, tree="0PP")), "cuts", f["tree"].count("0") + f["tree"].count("1")), "cuts is"),
+    "most_cuts": (lambda f: with_line(file_of(**f), "most_cuts", 99), "most_cuts is 99"),
+    "depth of a part": (lambda f: with_line(file_of(**with_part(
+        f, 1, tree="0P" * 20 + "P")), "depth", 19), "more often than the depth allows"),
+    "parts in another order": (lambda f: replaced(replaced(replaced(
+        file_of(**f), "part: a", "part: x"), "part: b", "part: a"), "part: x", "part: b"),
+        "part a is not 'part: a'"),
+    "a part twice": (lambda f: replaced(file_of(**f), "part: b", "part: a"), "part b is not"),
+    "a part left out": (lambda f: replaced(file_of(**f), "part: b", "part: c"), "part b is not"),
+    "a part without name": (lambda f: replaced(file_of(**f), "part: b", "part: "), "part b is not"),
+    "a part without x*": (lambda f: replaced(file_of(**f), "xstar: %s\n" % OTHER, ""),
+                          "part a is not"),
+    "x* and v0 exchanged": (lambda f: replaced(file_of(**f), "part: a\nxstar: %s\nv0: %s\n"
+                                               % f["parts"][0][:2], "part: a\nv0: %s\nxstar: %s\n"
+                                               % f["parts"][0][1::-1]), "part a is not"),
+    "one more line": (lambda f: replaced(file_of(**f), "part: a\n", "part: a\ncomment: no\n"),
+                      "part a is not"),
+    "a part that gives its waves": (lambda f: replaced(
+        file_of(**f), "part: b\n", "part: b\nwave: 1 0 0 9\n"), "part b is not"),
+    "an x* with one number": (lambda f: file_of(**with_part(f, 1, xstar="1")),
+                              "part b's xstar is not two decimal numbers"),
+    "an x* that is a ratio": (lambda f: file_of(**with_part(f, 1, xstar="1/3 1")),
+                              "part b's xstar is not two decimal numbers"),
+    "a range that is no number": (lambda f: file_of(**with_part(f, 1, v1="1 nan")),
+                                 "v1 is not two"),
+    "a negative half-width": (lambda f: file_of(**with_part(f, 1, v1="1 -1")), "half-width is neg"),
+    "version 3 with parts": (lambda f: replaced(replaced(file_of(**{**f, "frame": "1 0 0 1"}),
+                                                         "proof 4", "proof 3"), "linked: 2\n", ""),
+                             "the tree"),
+    "version 3 with linked": (lambda f: replaced(file_of(
+        "P", frame="1 0 0 1"), "proof 4", "proof 3"), "of unknown meaning"),
+    "version 3 with another determinant": (lambda f: replaced(replaced(
+        file_of("P"), "proof 4", "proof 3"), "linked: 0\n", ""), "not determinant 1 or -1"),
+    "determinant 0": (lambda f: with_line(file_of(**f), "frame", "1 2 2 4"), "determinant 0"),
+    "a frame of zeros": (lambda f: with_line(file_of(**f), "frame", "0 0 0 0"), "determinant 0"),
+    "a frame too large": (lambda f: with_line(file_of(**f), "frame", "101 0 0 1"), "beyond 100"),
+    "a frame of three": (lambda f: with_line(file_of(**f), "frame", "1 0 1"), "not four integers"),
+    "27 parts": (lambda f: file_of("a", parts=[(XSTAR, *HALF, letter) for letter in
+                                               check.LETTERS[1:] + "PP"]),
+                 "more parts than letters"),
+    "the region of a part with x* of a comment": (lambda f: replaced(
+        file_of(**f), "part: b\n", "part: b\n\n"), "part b is not"),
+    "CR LF": (lambda f: sealed(file_of(**f).replace("\n", "\r\n")), "CR LF"),
+    "an S without exchange": (lambda f: file_of("0SP"), "the problem is not symmetric"),
+    "at once without a point": (lambda f: with_line(file_of(**f), "at once", "yes"),
+                                "only where V is odd about a point"),
+    "at once where it is not": (lambda f: with_line(with_line(
+        file_of(**f), "odd about", "0 0"), "at once", "yes"), "not excluded at once: B <= 10/3"),
+}
+
+
+@pytest.mark.parametrize("name", WRONG_STRUCTURE)
+def test_wrong_files_are_rejected(two_links, run, name):
+    change, why = WRONG_STRUCTURE[name]
+    status, out, err = run(change(two_links))
+    assert (status, out) == (1, "") and why in err, err
+
+
+TIGHT = Fraction(1, 10 ** 39)           # the margin of a region, which is given to 40 digits
+
+
+@pytest.fixture(scope="module")
+def tight(tree):
+    """A link to a region that is hardly larger than it must be."""
+    return linked(tree, margin=TIGHT)
+
+
+def moved(text, n, by):
+    words = [Fraction(word) for word in text.split()]
+    words[n] += Fraction(by)
+    return "%s %s" % tuple(map(decimal, words))
+
+
+STICKS_OUT = {
+    **{"%s of the part short by %s at its %s end" % (name, by, ["lower", "upper"][end > 0]): (
+        lambda f, name=name, end=end, by=by: with_part(f, 0, **{
+            name: shorter(f["parts"][0][1 + (name == "v1")], end, Fraction(by))}))
+       for name in ("v0", "v1") for end in (-1, 1) for by in ("1e-30", "1e-4")},
+    **{"x*%d of the part moved by %s" % (n, by): (
+        lambda f, n=n, by=by: with_part(f, 0, xstar=moved(OTHER, n, by)))
+       for n in (0, 1) for by in ("1e-20", "-1e-20", "0.01", "-0.01")},
+    **{"x*%d of part 0 moved by %s" % (n, by): (
+        lambda f, n=n, by=by: {**f, "xstar": moved(XSTAR, n, by)})
+       for n in (0, 1) for by in ("1e-20", "-1e-20")},
+    "turns count": lambda f: with_part(f, 0, v0=moved(f["parts"][0][1], 0, 2)),
+    "the part of the neighbour": lambda f: {
+        **f, "tree": with_leaf(with_leaf(f["tree"], "P", old="a"), "a", 0)},
+    "the whole region": lambda f: {**f, "tree": "a"},
+    "amplitudes with width": lambda f: {**f, "waves": [wave + " 1e-20" for wave in SYMMETRIC]},
+    "larger amplitudes": lambda f: {**f, "waves": ["1 0 0 0.2242872", "0 1 0 0.2242872",
+                                                   "1 1 0 0.45"]},
+    "another phase": lambda f: {**f, "waves": [*SYMMETRIC[:2], "1 1 0.001 0.4485744"]},
+    "a wider leaf": lambda f: {**f, "v1": "0.5 0.501"},
+    "another frame": lambda f: {**f, "frame": "1 1 -1 1"},
+    "a region of no width": lambda f: with_part(f, 0, v0=f["parts"][0][1].split()[0] + " 0"),
+}
+
+
+@pytest.mark.parametrize("name", STICKS_OUT)
+def test_links_that_lead_out_are_not_confirmed(tight, run, name):
+    status, out, err = run(file_of(**STICKS_OUT[name](tight)))
+    assert (status, out) == (5, "") and "is linked to part a, but may lead out of" in err
+
+
+def test_tight_links_are_confirmed(tight, run):
+    """So what is wrong above is what was changed."""
+    assert run(file_of(**tight))[0] == 0
+
+
+def test_a_part_that_is_not_proved(tight, two_links, run):
+    """The leaves of a part are checked like others, and named."""
+    for link, letter in ((tight, "a"), (two_links, "b")):
+        n = check.LETTERS.index(letter)
+        wide = with_part(link, n, v0="0 1", v1="0 1", tree="P")
+        status, out, err = run(file_of(**wide))
+        assert (status, out) == (5, "") and "part %s: proved leaf 1 of 1" % letter in err
+    wide = with_part(tight, 0, xstar="-1.5 -1.5", v0="0 5", v1="0 5", tree="P")
+    assert run(file_of(**wide))[0] == 5
+
+
+def test_numbers_too_large_are_not_confirmed(two_links, run):
+    """No x* is so far off, no digit so fine, that anything but one line comes of it."""
+    for far in ("1e300 0", "1e30 1e30"):
+        status, out, err = run(file_of(**with_part(two_links, 1, xstar=far)))
+        assert (status, out) == (5, "") and "too far off" in err and err.count("\n") == 1
+        assert not check.is_whole(claim_of(file_of("P", xstar=far)))
+    status, _, err = run(file_of(**with_part(two_links, 1, v0="1e300 1e-290")))
+    assert status == 5 and err.count("\n") == 1
+
+
+NOT_ALL = {             # of files without links: verified, but of a part of the torus
+    "v0 short of c0 by 1e-12": lambda c: {"v0": ranged(c + Fraction(1, 10 ** 12), "0.7864")},
+    "v0 short of c0 + 1/2 by 1e-12": lambda c: {
+        "v0": ranged("0.286", c + Fraction(1, 2) - Fraction(1, 10 ** 12))},
+    "v1 short of 0": lambda c: {"v1": ranged("1e-12", 1)},
+    "v1 short of 1": lambda c: {"v1": ranged(0, "0.999999999999")},
+    "waves not symmetric": lambda c: {"waves": [SYMMETRIC[0], "0 1 0 0.2242873", SYMMETRIC[2]]},
+    "phases not symmetric": lambda c: {"waves": [SYMMETRIC[0], "0 1 1e-9 0.2242872", SYMMETRIC[2]]},
+    "x* off the diagonal": lambda c: {"xstar": "0.858 0.85800001"},
+    "a phase moves c0": lambda c: {"waves": [*SYMMETRIC[:2], "1 1 0.01 0.4485744"]},
+    "a parameter with width moves c0": lambda c: {"waves": [
+        *[wave + " 0" for wave in SYMMETRIC[:2]], "1 1 0 0.4485744 0.03"]},
+    "parameters that no exchange maps": lambda c: {"waves": [
+        "1 0 0 0.2242872 1e-9 0", "0 1 0 0.2242872 0 2e-9", SYMMETRIC[2] + " 0 0"]},
+    "x* moves c0": lambda c: {"xstar": "0.857 0.857"},
+    "another frame": lambda c: {"frame": "1 -1 1 1", "v1": "0.5 0.499"},
+}
+
+
+@pytest.mark.parametrize("name", NOT_ALL)
+def test_regions_that_are_not_enough(run, name):
+    """They are verified, which is said to be for a part of the torus only."""
+    c = Fraction(c0_of(file_of("P"))[0])
+    more = NOT_ALL[name](Fraction(round(c * 10 ** 16), 10 ** 16))
+    v0, v1 = more.pop("v0", HALF[0]), more.pop("v1", HALF[1])
+    status, out, _ = run(file_of(found(v0, v1, **more), v0, v1, **more))
+    assert status == 3 and out.startswith("Verified, for a part of the torus only :")
+
+
+def test_a_sample_and_a_state_of_linked_files(two_links, tmp_path):
+    """Links and trees are checked whole whatever the sample; a state counts the leaves P of all
+    parts."""
+    path, state = tmp_path / "x", tmp_path / "state"
+    path.write_text(file_of(**two_links))
+    total = sum(tree.count("P") for tree in
+                (two_links["tree"], *[part[3] for part in two_links["parts"]]))
+    result = verify(path, sample=3)
+    assert result.status == 4 and not result and "links between starting points" in result.text
+    assert "3 of %d proved" % total in result.text
+    assert verify(path, state=state, jobs=2).status == 0
+    assert "confirmed: %d\n" % total in state.read_text()
+    assert "%d of %d leaves by an earlier run" % (total, total) in verify(path, state=state).text
+    path.write_text(file_of(**with_part(two_links, 1, v1="9 0.1")))
+    with pytest.raises(check.NotConfirmed, match="may lead out of"):
+        verify(path, sample=1)
