@@ -6,37 +6,59 @@ From Coq Require Import Reals ZArith QArith Qreals List Bool Lra Lia.
 From Interval.Real Require Import Xreal.
 From Interval.Float Require Import Basic Sig.
 From Interval.Interval Require Import Interval.
-From Converse Require Import Map Tree Share Torus Reduce Lane Prism.
+From Converse Require Import Map Criterion Tree Share Torus Reduce Cover Lane Prism Parts.
+From Converse Require Graph Link.
 Import ListNotations.
 Open Scope R_scope.
 
-(* What is claimed: if x1 may be anywhere, that there is no invariant graph, else that no minimizing
-   orbit goes from x* to the region; and perhaps that there is no graph for larger amplitudes. *)
-Definition of_orbits (c : claim) : Prop :=
-  if whole (of_region c) then forall t, in_cube t -> no_invariant_graph (waves (of_patch c) t)
-  else no_minimizing_orbit_into (of_region c) (of_patch c) (of_xstar c).
+(* A further part of a proof: its own x*, ranges of v0 and v1 (centres and half-widths) and tree; the
+   waves, the parameters and the frame are the claim's. *)
+Record part := Part { starts_at : Q * Q; range0 : Q * Q; range1 : Q * Q; its_tree : tree }.
 
-Definition statement (c : claim) : Prop :=
+(* What is claimed: of the whole torus, that there is no invariant graph, else that no minimizing
+   orbit goes from x* to the region, or, where parts are linked, no orbit of an invariant graph; and
+   perhaps that there is no graph for larger amplitudes. *)
+Definition of_orbits (c : claim) (ps : list part) : Prop :=
+  if of_whole c then forall t, in_cube t -> no_invariant_graph (waves (of_patch c) t)
+  else match ps with
+       | [] => no_minimizing_orbit_into (of_region c) (of_patch c) (of_xstar c)
+       | _ => forall t, in_cube t ->
+              no_invariant_graph_into (of_region c) (waves (of_patch c) t) (point (of_xstar c))
+       end.
+
+Definition statement (c : claim) (ps : list part) : Prop :=
   match of_once c with
-  | No => of_orbits c
+  | No => of_orbits c ps
   | Whole_patch =>
-    of_orbits c /\
+    of_orbits c ps /\
     (forall t s, in_cube t -> 1 <= s -> no_invariant_graph (scaled s (waves (of_patch c) t)))
   | Upper_end =>
-    of_orbits c /\
+    of_orbits c ps /\
     (forall s, 1 <= s ->
      no_invariant_graph (scaled s (waves (of_patch c) (repeat 1 (parameters (of_patch c))))))
   end.
+
+(* The claim with the part's x* and region, and all trees with theirs. *)
+Definition at_part (c : claim) (p : part) : claim :=
+  let r := of_region c in
+  Claim (of_patch c)
+    (Region (m00 r) (m01 r) (m10 r) (m11 r) (fst (range0 p)) (snd (range0 p))
+            (fst (range1 p)) (snd (range1 p)))
+    (starts_at p) (of_whole c) (of_alone c) (of_once c) (odd c).
+
+Definition all_parts (c : claim) (t : tree) (ps : list part) : list (claim * tree) :=
+  (c, t) :: map (fun p => (at_part c p, its_tree p)) ps.
 
 (* A bound of beta's eigenvalues and l for the tails, l + 1/l >= bound; for larger amplitudes a place,
    in units of pi, and a vector. *)
 Record hints := Hints { bound : Q; tail : Q; place : (Q * Q) * (Q * Q) }.
 
-(* The problem of a claim; its waves that are felt; and perhaps in the frame of x0 + x1 and x0 - x1,
+(* The waves of a claim that are felt, its problem; and perhaps in the frame of x0 + x1 and x0 - x1,
    which is better where waves that feel both coordinates count. *)
+Definition examined (c : claim) : list term := felt (of_alone c) (of_patch c).
+
 Definition plain_problem (c : claim) : problem :=
-  let p := problem_of (of_region c) (of_patch c) (of_xstar c) in
-  with_terms p (felt (of_alone c) (of_patch c)).
+  problem_of (of_region c) (examined c) (of_xstar c).
 
 Definition strength (w : term) : Q := Qabs.Qabs (middle w).
 Definition better_turned (patch : list term) : bool :=
@@ -49,7 +71,7 @@ Definition final_problem (c : claim) : problem :=
 
 Module Check (F : FloatOps with Definition radix := Zaux.radix2
                            with Definition sensible_format := true).
-Include Prism F.
+Include Parts F.
 
 (* Of the arithmetic; doubles have 53 bits whatever this is. *)
 Definition prec : F.precision := F.PtoP 60.
@@ -151,7 +173,7 @@ Definition leaf_ok (c : claim) (h : hints) : cell -> bool :=
 Definition axes (c : claim) : nat := 2 + parameters (of_patch c).
 
 Definition once_ok (c : claim) (h : hints) : bool :=
-  let patch := felt (of_alone c) (of_patch c) in
+  let patch := examined c in
   match of_once c, odd c with
   | No, _ => true
   | _, None => false
@@ -162,10 +184,69 @@ Definition once_ok (c : claim) (h : hints) : bool :=
     && Nat.eqb (parameters patch) (parameters (of_patch c))
   end.
 
-Definition header_ok (c : claim) (h : hints) (t : tree) : bool :=
-  alone_ok (of_alone c) (of_patch c) && tail_ok (bound h) (tail h)
+(* cos(k.z + phase) of a term. *)
+Definition cosine_at (z : Q * Q) (w : term) : I.type :=
+  let along := add prec (mul prec (integer prec (of_k0 w)) (rational prec (fst z)))
+                        (mul prec (integer prec (of_k1 w)) (rational prec (snd z))) in
+  snd (sines (add prec (div prec along turn_around) (half prec (rational prec (of_phase w))))).
+
+(* Cover.pushed and turning_point, the latter for all parameters of the cube. *)
+Definition pushed_of (r : region) (patch : list term) (z : Q * Q) (f : term -> Q) : I.type :=
+  fold_right (fun w total =>
+      add prec (mul prec (mul prec (integer prec (push r w)) (cosine_at z w)) (rational prec (f w))) total)
+    I.zero patch.
+
+Definition turning_points (r : region) (patch : list term) (z : Q * Q) : I.type :=
+  let moved := fold_right (fun i total =>
+      add prec (mul prec (pushed_of r patch z (fun w => nth i (parts w) 0%Q)) (unit exact)) total)
+    I.zero (seq 0 (parameters patch)) in
+  let at_rest := sub prec (mul prec (integer prec (m11 r)) (rational prec (fst z)))
+                          (mul prec (integer prec (m01 r)) (rational prec (snd z))) in
+  div prec (add prec at_rest (half prec (add prec (pushed_of r patch z middle) moved)))
+           (mul prec (sharp_pi prec) (integer prec (determinant r))).
+
+(* Is v0's range enough, as orbits may be reversed? *)
+Definition reverses (r : region) (patch : list term) (z : Q * Q) : bool :=
+  let v0 := turning_points r patch z in
+  let more := div prec (integer prec (divisor r)) (integer prec (Z.abs (determinant r))) in
+  non_negative (sub prec v0 (rational prec (centre0 r - half0 r)))
+  && non_negative (sub prec (rational prec (centre0 r + half0 r)) (add prec v0 more)).
+
+(* Is the region enough for all x1? *)
+Definition covers (c : claim) : bool :=
+  let r := of_region c in let patch := examined c in let z := of_xstar c in
+  negb (determinant r =? 0)%Z && (direct0 r || reverses r patch z)
+  && (direct1 r || exchanges r patch z (parameters (of_patch c))).
+
+(* Graphs are not followed to waves of one coordinate. *)
+Definition may_link (c : claim) (ps : list part) : bool :=
+  match ps, of_alone c with
+  | [], _ => true
+  | _, Both => negb (determinant (of_region c) =? 0)%Z
+  | _, _ => false
+  end.
+
+(* Does a linked leaf lead into the region of one of the later parts? *)
+Definition linked_ok (c : claim) (h : hints) (later : list claim) : nat -> cell -> bool :=
+  let ways := map (fun c' => (displacement prec series (examined c) (of_region c) (tail h)
+                                (of_xstar c) (of_xstar c'), of_region c')) later in
+  fun k leaf => match nth_error ways k with
+                | Some (i, r) => leads_into prec i (of_region c) r leaf
+                | None => false
+                end.
+
+Fixpoint trees_ok (h : hints) (trees : list (claim * tree)) : bool :=
+  match trees with
+  | [] => true
+  | (c, t) :: later =>
+    mirrored (axes c) (orders_of (plain_problem c) (parameters (of_patch c))) t
+    && all_links (linked_ok c h (map fst later)) (root (axes c)) t && trees_ok h later
+  end.
+
+Definition header_ok (c : claim) (h : hints) (t : tree) (ps : list part) : bool :=
+  (covers c || negb (of_whole c)) && alone_ok (of_alone c) (of_patch c) && tail_ok (bound h) (tail h)
   && patch_below prec (terms (plain_problem c)) (bound h)
-  && mirrored (axes c) (orders_of (plain_problem c) (parameters (of_patch c))) t && once_ok c h.
+  && may_link c ps && trees_ok h (all_parts c t ps) && once_ok c h.
 
 Definition leaves_of (c : claim) (t : tree) : list cell := leaves (root (axes c)) t.
 
@@ -173,8 +254,10 @@ Definition leaves_of (c : claim) (t : tree) : list cell := leaves (root (axes c)
 Definition every_leaf (c : claim) (f : cell -> bool) (t : tree) : bool :=
   all_leaves f (root (axes c)) t.
 
-Definition check (c : claim) (h : hints) (t : tree) : bool :=
-  header_ok c h t && forallb (leaf_ok c h) (leaves_of c t).
+Definition check (c : claim) (h : hints) (t : tree) (ps : list part) : bool :=
+  header_ok c h t ps
+  && forallb (fun ct => forallb (leaf_ok (fst ct) h) (leaves_of (fst ct) (snd ct)))
+             (all_parts c t ps).
 
 (* ---- that it is right *)
 
@@ -211,28 +294,230 @@ Proof.
   now apply turned_excluded.
 Qed.
 
-Theorem check_orbits c h t : check c h t = true ->
-  no_minimizing_orbit_into (of_region c) (of_patch c) (of_xstar c).
+Lemma header_parts c h t ps : header_ok c h t ps = true ->
+  (covers c || negb (of_whole c)) = true /\ alone_ok (of_alone c) (of_patch c) = true /\
+  tail_ok (bound h) (tail h) = true /\
+  patch_below prec (terms (plain_problem c)) (bound h) = true /\
+  may_link c ps = true /\ trees_ok h (all_parts c t ps) = true /\ once_ok c h = true.
+Proof. unfold header_ok. rewrite !andb_true_iff. tauto. Qed.
+
+Lemma waves_few c w : In w (examined c) -> (length (parts w) <= parameters (of_patch c))%nat.
+Proof. intros Hw. apply filter_In in Hw. now apply parameters_most. Qed.
+
+(* Without parts no orbit minimizes, whether or not it lies on a graph, *)
+Theorem check_examined c h t : check c h t [] = true ->
+  no_minimizing_orbit_into (of_region c) (examined c) (of_xstar c).
 Proof.
-  unfold check, header_ok. rewrite !andb_true_iff.
-  intros (((((Ha & Ht) & Hp) & Hm) & _) & Hleaves).
-  apply (into_of_problem _ _ _ (parameters (of_patch c))); [apply parameters_most |].
+  unfold check. rewrite andb_true_iff. intros [Hheader Hleaves].
+  apply header_parts in Hheader as (_ & _ & Ht & Hp & _ & Htrees & _).
+  cbn [all_parts map forallb fst snd] in Hleaves. rewrite andb_true_r in Hleaves.
+  cbn [all_parts map trees_ok] in Htrees. rewrite !andb_true_iff in Htrees.
+  destruct Htrees as ((Hm & Hlinks) & _).
+  apply (into_of_problem _ _ _ (parameters (of_patch c))); [apply waves_few |].
   intros u Hu Cube.
-  apply (felt_excluded (problem_of (of_region c) (of_patch c) (of_xstar c)) (of_alone c) Ha).
-  apply (tree_covers (axes c) (excluded (plain_problem c)) t _ Hm); auto.
+  destruct (tree_covers (axes c) (excluded (plain_problem c)) (fun _ => False)
+              (linked_ok c h []) t _ Hm) with (u := u) as [H | []]; auto.
   - intros leaf Hleaf v Hv. rewrite forallb_forall in Hleaves.
     exact (leaf_excluded c h leaf v Ht Hp (Hleaves leaf Hleaf) Hv).
   - intros order Horder v Hv. now apply (orders_excluded _ (parameters (of_patch c))).
+  - intros k leaf Hlink. unfold linked_ok in Hlink. destruct k; discriminate.
 Qed.
 
-Theorem check_sound c h t : check c h t = true -> statement c.
+(* with parts none that lies on a graph. *)
+Lemma excluded_graph c u0 u1 t k S S' p q : excluded (plain_problem c) (u0 :: u1 :: t) ->
+  in_cube t -> periodic S -> has_gradient S S' -> invariant_graph (waves (examined c) t) k S' ->
+  Link.on_graph (waves (examined c) t) k S' (point (of_xstar c))
+  <> plus (second (plain_problem c) u0 u1) (Criterion.turns p q).
 Proof.
-  intros H. assert (Orbits := check_orbits c h t H). unfold statement.
-  assert (Here : of_orbits c).
-  { unfold of_orbits. destruct (whole (of_region c)) eqn:W;
-      [exact (graphs _ _ _ W Orbits) | exact Orbits]. }
-  unfold check, header_ok, once_ok in H. rewrite !andb_true_iff in H.
-  destruct H as (((((Ha & _) & _) & _) & Ho) & _).
+  intros Hex Ht HS HS' Hinv E.
+  destruct (Graph.graph_orbits_minimize _ k S S' HS HS' Hinv (point (of_xstar c)))
+    as (x & Hx & Hx0 & Hstep & Hmin).
+  destruct (shifted _ _ p q Hx) as (Hx' & Hx0' & Hrefuted).
+  destruct Hrefuted as (n & s & m & Hn & Hneg); [| specialize (Hmin n s m Hn); lra].
+  apply (Hex Ht _ Hx'); [now rewrite Hx0' |].
+  assert (E1 : x 1%Z = Link.on_graph (waves (examined c) t) k S' (point (of_xstar c))).
+  { rewrite <- Hx0. exact (Hstep 0%Z). }
+  unfold shift. rewrite E1, E, !Z.mul_1_r.
+  apply vec_eq; unfold minus, plus, Criterion.turns; cbn [fst snd]; ring.
+Qed.
+
+Definition no_graph_of (c : claim) : Prop := forall t, in_cube t ->
+  no_invariant_graph_into (of_region c) (waves (examined c) t) (point (of_xstar c)).
+
+(* Of the same map and in the same frame. *)
+Definition alike (c c' : claim) : Prop :=
+  of_patch c' = of_patch c /\ of_alone c' = of_alone c /\
+  m00 (of_region c') = m00 (of_region c) /\ m01 (of_region c') = m01 (of_region c) /\
+  m10 (of_region c') = m10 (of_region c) /\ m11 (of_region c') = m11 (of_region c).
+
+Lemma trees_graphs c0 h trees : determinant (of_region c0) <> 0%Z ->
+  tail_ok (bound h) (tail h) = true -> patch_below prec (examined c0) (bound h) = true ->
+  trees_ok h trees = true ->
+  forallb (fun ct => forallb (leaf_ok (fst ct) h) (leaves_of (fst ct) (snd ct))) trees = true ->
+  Forall (fun ct => alike c0 (fst ct)) trees -> Forall (fun ct => no_graph_of (fst ct)) trees.
+Proof.
+  intros Hdet Hh Hbelow. induction trees as [| [c t] later IH]; intros Htrees Hleaves Halike;
+    [constructor |].
+  inversion Halike as [| ? ? Hc Hlater]; subst. cbn [fst] in Hc.
+  cbn [trees_ok] in Htrees. cbn [forallb fst snd] in Hleaves.
+  rewrite !andb_true_iff in Htrees. rewrite andb_true_iff in Hleaves.
+  destruct Htrees as ((Hm & Hlinks) & Htrees), Hleaves as (Hleaf & Hleaves).
+  specialize (IH Htrees Hleaves Hlater). constructor; [| exact IH]. cbn [fst].
+  destruct Hc as (Epatch & Ealone & E00 & E01 & E10 & E11).
+  assert (Eex : examined c = examined c0) by (unfold examined; now rewrite Epatch, Ealone).
+  assert (Hp : patch_below prec (terms (plain_problem c)) (bound h) = true)
+    by (unfold plain_problem; cbn [terms problem_of]; now rewrite Eex).
+  assert (Hr : determinant (of_region c) <> 0%Z)
+    by (unfold determinant in *; now rewrite E00, E01, E10, E11).
+  destruct (tail_ok_correct _ _ Hh) as (Hl & HB). assert (Below := patch_below_correct prec _ _ Hp).
+  intros t' Ht' k S S' HS HS' Hinv (v0 & v1 & i & j & Hv0 & Hv1 & Hx1).
+  set (n := parameters (of_patch c)).
+  rewrite <- (waves_fitted n (examined c) t' (waves_few c)) in Hinv, Hx1.
+  apply (fitted_in_cube n) in Ht'. set (ts := fitted n t') in *.
+  destruct (in_units _ _ _ Hv0) as (u0 & Hu0 & E0).
+  destruct (in_units _ _ _ Hv1) as (u1 & Hu1 & E1).
+  pose proof (Rle_trans _ _ _ (Rabs_pos _) Hv0) as Hh0.
+  pose proof (Rle_trans _ _ _ (Rabs_pos _) Hv1) as Hh1. rewrite E0, E1 in Hx1.
+  set (r := of_region c) in *.
+  set (leads := fun u => forall a b s, u = a :: b :: s -> in_cube s -> forall k S S' p q,
+    periodic S -> has_gradient S S' -> invariant_graph (waves (examined c) s) k S' ->
+    Link.on_graph (waves (examined c) s) k S' (point (of_xstar c)) <>
+    plus (at_v r (Q2R (centre0 r) + Q2R (half0 r) * a) (Q2R (centre1 r) + Q2R (half1 r) * b))
+         (Criterion.turns p q)).
+  assert (Hon : Link.on_graph (waves (examined c) ts) k S' (point (of_xstar c)) =
+    plus (at_v r (Q2R (centre0 r) + Q2R (half0 r) * u0) (Q2R (centre1 r) + Q2R (half1 r) * u1))
+         (Criterion.turns i j)) by exact Hx1.
+  destruct (tree_covers (axes c) (excluded (plain_problem c)) leads
+              (linked_ok c h (map fst later)) t _ Hm)
+    with (u := u0 :: u1 :: ts) as [Hex | Hlead]; try exact Hlinks.
+  - intros leaf Hin v Hv. rewrite forallb_forall in Hleaf.
+    exact (leaf_excluded c h leaf v Hh Hp (Hleaf leaf Hin) Hv).
+  - intros order Horder v Hv. now apply (orders_excluded _ (parameters (of_patch c))).
+  - intros m leaf Hlink u Hu a b s -> Hs k' T T' p q HT HT' Hinv' E.
+    unfold linked_ok in Hlink. rewrite nth_error_map in Hlink.
+    destruct (nth_error (map fst later) m) as [c' |] eqn:Hnth; [| discriminate].
+    cbn [option_map] in Hlink. apply nth_error_In in Hnth. apply in_map_iff in Hnth as (ct & <- & Hin).
+    rewrite Forall_forall in IH, Hlater. specialize (IH ct Hin). specialize (Hlater ct Hin).
+    destruct ct as [c' tr]. cbn [fst] in *. destruct Hlater as (P & A & F00 & F01 & F10 & F11).
+    assert (Ex' : examined c' = examined c) by (rewrite Eex; unfold examined; now rewrite P, A).
+    specialize (IH s Hs). rewrite Ex' in IH. apply (IH k' T T' HT HT' Hinv').
+    destruct (displacement_ok prec series (make_constants_ok prec) (examined c) r (tail h) _
+      (of_xstar c) (of_xstar c') s k' T T' Hr Hl HB (Below s Hs) Hs HT HT' Hinv') as [D0 D1].
+    refine (leads_into_ok prec _ r _ leaf a b s _ _ p q Hr _ _ _ _ Hh0 Hh1 Hlink Hu E D0 D1);
+      congruence.
+  - cbn. unfold ts. now rewrite fitted_length.
+  - constructor; [assumption |]. now constructor.
+  - apply (excluded_graph c u0 u1 ts k S S' i j Hex Ht' HS HS' Hinv). rewrite Hon. f_equal.
+    unfold at_v, second, plain_problem, problem_of.
+    cbn [f00 f01 f10 f11 mid0 wid0 mid1 wid1]. now rewrite !Reduce.Q2R_inject_Z.
+  - exact (Hlead u0 u1 ts eq_refl Ht' k S S' i j HS HS' Hinv Hon).
+Qed.
+
+Theorem check_graphs c h t p ps : check c h t (p :: ps) = true -> of_alone c = Both /\ no_graph_of c.
+Proof.
+  unfold check. rewrite andb_true_iff. intros [Hheader Hleaves].
+  apply header_parts in Hheader as (_ & _ & Ht & Hp & Hlink & Htrees & _).
+  unfold may_link in Hlink. destruct (of_alone c) eqn:Ealone; try discriminate. split; [reflexivity |].
+  apply negb_true_iff, Z.eqb_neq in Hlink.
+  assert (H := trees_graphs c h _ Hlink Ht Hp Htrees Hleaves). unfold all_parts in H.
+  apply Forall_inv in H; [exact H |]. constructor; [repeat split |].
+  apply Forall_map, Forall_forall. intros x _. repeat split.
+Qed.
+
+(* The waves that are not felt, where both coordinates are, change nothing of the map. *)
+Lemma felt_force c t y : of_alone c = Both ->
+  V' (waves (of_patch c) t) y = V' (waves (examined c) t) y.
+Proof.
+  intros E. unfold examined. rewrite E, waves_felt. cbn [feels_wave]. rewrite filter_all.
+  rewrite <- (scaled_1 (waves (filter _ _) t)), V'_present. now rewrite scaled_1.
+Qed.
+
+Lemma cosine_at_ok z w : cont (cosine_at z w) (cos (angle (wave_at [] w) (point z))).
+Proof.
+  assert (Hpi : 2 * PI <> 0) by (pose proof PI_neq0; lra).
+  replace (angle (wave_at [] w) (point z)) with (2 * PI *
+    ((IZR (of_k0 w) * Q2R (fst z) + IZR (of_k1 w) * Q2R (snd z)) / (2 * PI) + Q2R (of_phase w) / 2))
+    by (unfold angle, along; cbn [wave_at k0 k1 phase point fst snd]; field; apply PI_neq0).
+  apply sines_ok, cont_add; [|apply cont_half, cont_rational].
+  apply cont_div; [exact Hpi | | apply cont_mul; [apply cont_integer | apply sharp_pi_ok]].
+  apply cont_add; apply cont_mul; try apply cont_integer; apply cont_rational.
+Qed.
+
+Lemma pushed_ok r patch z f : cont (pushed_of r patch z f) (pushed r patch (point z) f).
+Proof.
+  induction patch as [| w patch IH]; [exact cont_zero |].
+  apply cont_add; [|exact IH]. apply cont_mul; [|apply cont_rational].
+  apply cont_mul; [apply cont_integer | apply cosine_at_ok].
+Qed.
+
+Lemma turning_points_ok r patch z t : determinant r <> 0%Z -> in_cube t ->
+  cont (turning_points r patch z) (turning_point r patch z t).
+Proof.
+  intros Hr Ht. rewrite (turning_point_linear _ _ _ (parameters patch)) by apply parameters_most.
+  apply cont_div.
+  - apply Rmult_integral_contrapositive. split; [apply PI_neq0 | now apply not_0_IZR].
+  - apply cont_add; [apply cont_sub; apply cont_mul; try apply cont_integer; apply cont_rational |].
+    rewrite Rmult_comm. apply cont_half, cont_add; [apply pushed_ok |].
+    induction (seq 0 _) as [| i l IH]; [exact cont_zero |].
+    apply cont_add; [| exact IH]. apply cont_mul; [apply pushed_ok |].
+    apply exact_ok. now apply nth_in_cube.
+  - apply cont_mul; [apply sharp_pi_ok | apply cont_integer].
+Qed.
+
+Lemma reverses_correct r patch z t : determinant r <> 0%Z -> reverses r patch z = true ->
+  in_cube t -> Q2R (centre0 r) - Q2R (half0 r) <= turning_point r patch z t /\
+               turning_point r patch z t + reach r <= Q2R (centre0 r) + Q2R (half0 r).
+Proof.
+  intros Hr H Ht. apply andb_prop in H as [Hlow Hhigh].
+  pose proof (turning_points_ok r patch z t Hr Ht) as Hv0.
+  assert (Hmore : cont (div prec (integer prec (divisor r)) (integer prec (Z.abs (determinant r))))
+                       (reach r)).
+  { apply cont_div; try apply cont_integer. apply not_0_IZR. lia. }
+  pose proof (non_negative_correct _ _ Hlow (cont_sub prec _ _ _ _ Hv0 (cont_rational prec _))) as L.
+  pose proof (non_negative_correct _ _ Hhigh (cont_sub prec _ _ _ _ (cont_rational prec _)
+    (cont_add prec _ _ _ _ Hv0 Hmore))) as U.
+  rewrite Q2R_minus in L. rewrite Q2R_plus in U. lra.
+Qed.
+
+Lemma covers_correct c : covers c = true ->
+  determinant (of_region c) <> 0%Z /\ all0 (of_region c) (examined c) (of_xstar c) /\
+  all1 (of_region c) (examined c) (of_xstar c).
+Proof.
+  unfold covers. rewrite !andb_true_iff, negb_true_iff, Z.eqb_neq. intros ((Hr & H0) & H1).
+  split; [exact Hr |]. split; [| now apply all1_correct in H1].
+  apply orb_prop in H0 as [H0 | H0]; [left; now apply direct0_correct | right].
+  intros t Ht. now apply reverses_correct.
+Qed.
+
+Theorem check_orbits c h t ps : check c h t ps = true -> of_orbits c ps.
+Proof.
+  intros H. assert (Hheader := H). apply andb_prop in Hheader as [Hheader _].
+  apply header_parts in Hheader as (Hw & Ha & _). unfold of_orbits.
+  destruct ps as [| p ps].
+  - assert (Examined := check_examined c h t H). destruct (of_whole c).
+    + rewrite orb_false_r in Hw. destruct (covers_correct c Hw) as (Hr & H0 & H1).
+      apply (Graph.no_graph _ (of_xstar c)).
+      assert (Hnone := whole_orbits _ _ _ Hr H0 H1 Examined). intros t' Ht' x Hx Hx0.
+      refine (felt_refuted (of_alone c) _ (point (of_xstar c)) (fun _ => True) Ha _ t' Ht' x Hx Hx0 I).
+      intros t'' Ht'' x' Hx' Hx0' _. exact (Hnone t'' Ht'' x' Hx' Hx0').
+    + exact (felt_refuted (of_alone c) _ _ (into (of_region c)) Ha Examined).
+  - destruct (check_graphs c h t p ps H) as [Ealone Hgraphs].
+    assert (Esame := fun t' y => felt_force c t' y Ealone). destruct (of_whole c).
+    + rewrite orb_false_r in Hw. destruct (covers_correct c Hw) as (Hr & H0 & H1).
+      intros t' Ht' k S S' HS HS' Hinv.
+      apply (whole_graphs _ _ _ Hr H0 H1 Hgraphs t' Ht' k S S' HS HS').
+      now apply (invariant_ext (waves (of_patch c) t')).
+    + intros t' Ht' k S S' HS HS' Hinv Hinto.
+      apply (Hgraphs t' Ht' k S S' HS HS');
+        [now apply (invariant_ext (waves (of_patch c) t')) |].
+      unfold F in *. cbn [fst snd] in *. now rewrite <- Esame.
+Qed.
+
+Theorem check_sound c h t ps : check c h t ps = true -> statement c ps.
+Proof.
+  intros H. assert (Here := check_orbits c h t ps H). unfold statement.
+  apply andb_prop in H as [H _]. apply header_parts in H as (_ & Ha & _ & _ & _ & _ & Ho).
+  unfold once_ok in Ho.
   destruct (of_once c); [exact Here | |]; (destruct (odd c) as [z |]; [| discriminate]);
     (split; [exact Here |]); rewrite !andb_true_iff in Ho.
   - destruct Ho as (Hz & Hy). intros t' s Ht' Hs.

@@ -261,6 +261,46 @@ Proof.
   - apply refuted_ext. intros m v. apply beta_turns.
 Qed.
 
+(* ---- backwards in time *)
+
+Definition reversed (x : Z -> vec) : Z -> vec := fun j => x (- j)%Z.
+
+Lemma orbit_reversed ws x : orbit ws x -> orbit ws (reversed x).
+Proof.
+  intros Hx j. unfold reversed. replace (- (j + 1))%Z with (- j - 1)%Z by ring.
+  replace (- (j - 1))%Z with (- j + 1)%Z by ring. rewrite (Hx (- j)%Z).
+  apply vec_eq; unfold minus, scale; cbn [fst snd]; ring.
+Qed.
+
+(* What a sequence and its reversal add up to differs by the products at the two ends. *)
+Lemma variation_reversed ws x n s k :
+  variation ws (reversed x) (reversed n) (1 - s - Z.of_nat k) k =
+  variation ws x n s k
+  + 2 * dot (n (s + Z.of_nat k - 1)%Z) (n (s + Z.of_nat k)%Z) - 2 * dot (n (s - 1)%Z) (n s).
+Proof.
+  induction k as [|k IH]; [cbn; rewrite Z.add_0_r; ring|].
+  rewrite (variation_snoc ws x n k s). cbn [variation].
+  replace (1 - s - Z.of_nat (S k) + 1)%Z with (1 - s - Z.of_nat k)%Z by lia. rewrite IH.
+  unfold reversed. replace (- (1 - s - Z.of_nat (S k)))%Z with (s + Z.of_nat k)%Z by lia.
+  replace (- (1 - s - Z.of_nat k))%Z with (s + Z.of_nat k - 1)%Z by lia.
+  replace (s + Z.of_nat (S k) - 1)%Z with (s + Z.of_nat k)%Z by lia.
+  replace (s + Z.of_nat (S k))%Z with (s + Z.of_nat k + 1)%Z by lia.
+  unfold dot. ring.
+Qed.
+
+Lemma refuted_reversed ws x : refuted ws (reversed x) -> refuted ws x.
+Proof.
+  intros (n & s & k & Hn & Hneg). exists (reversed n), (1 - s - Z.of_nat k)%Z, k. split.
+  - intros j Hj. apply Hn. lia.
+  - replace (variation ws x _ _ k)
+      with (variation ws (reversed (reversed x)) (reversed n) (1 - s - Z.of_nat k) k).
+    + rewrite (variation_reversed ws (reversed x) n s k), (Hn (s - 1)%Z), (Hn (s + Z.of_nat k)%Z)
+        by lia.
+      rewrite dot_zero_r. unfold dot in *; cbn [fst snd]. lra.
+    + apply variation_ext; [|reflexivity]. intros j v _. unfold reversed.
+      now rewrite Z.opp_involutive.
+Qed.
+
 (* ---- the regions of x1 *)
 
 (* It is enough to look at the x1 of the region itself, not moved by turns. *)
@@ -279,46 +319,6 @@ Proof.
   exists v0, v1. repeat split; try assumption.
   unfold shift. rewrite Hx1, !Z.mul_1_r.
   apply vec_eq; unfold minus, turns; cbn [fst snd]; ring.
-Qed.
-
-(* Some number that is u modulo 2 is within 1 of c. *)
-Lemma near u c : exists p : Z, Rabs (u - 2 * IZR p - c) <= 1.
-Proof.
-  exists (up ((u - c - 1) / 2)). destruct (archimed ((u - c - 1) / 2)). apply Rabs_le. lra.
-Qed.
-
-(* A square of side 2 pi, and what an integer matrix of determinant 1 or -1 makes of it, holds
-   every point modulo 2 pi. *)
-Lemma into_all r y :
-  (m00 r * m11 r - m01 r * m10 r = 1 \/ m00 r * m11 r - m01 r * m10 r = -1)%Z ->
-  (1 <= half0 r)%Q -> (1 <= half1 r)%Q -> into r y.
-Proof.
-  intros Hdet H0 H1. apply Qle_Rle in H0, H1.
-  replace (Q2R 1) with 1 in H0, H1 by (unfold Q2R; cbn; lra).
-  destruct r as [a b c d c0 h0 c1 h1]; cbn [m00 m01 m10 m11 half0 half1] in *.
-  set (D := (a * d - b * c)%Z) in *.
-  set (u0 := IZR D * (IZR d * fst y - IZR b * snd y) / PI).
-  set (u1 := IZR D * (IZR a * snd y - IZR c * fst y) / PI).
-  assert (HD : IZR D * (IZR a * IZR d - IZR b * IZR c) = 1).
-  { rewrite <- !mult_IZR, <- minus_IZR. fold D. rewrite <- mult_IZR. f_equal. lia. }
-  assert (Hy0 : PI * (IZR a * u0 + IZR b * u1) = fst y).
-  { rewrite <- (Rmult_1_l (fst y)), <- HD. unfold u0, u1. field. apply PI_neq0. }
-  assert (Hy1 : PI * (IZR c * u0 + IZR d * u1) = snd y).
-  { rewrite <- (Rmult_1_l (snd y)), <- HD. unfold u0, u1. field. apply PI_neq0. }
-  destruct (near u0 (Q2R c0)) as [p0 Hp0]. destruct (near u1 (Q2R c1)) as [p1 Hp1].
-  exists (u0 - 2 * IZR p0), (u1 - 2 * IZR p1), (a * p0 + b * p1)%Z, (c * p0 + d * p1)%Z.
-  cbn [m00 m01 m10 m11 half0 half1 centre0 centre1].
-  repeat split; [lra | lra |].
-  rewrite !plus_IZR, !mult_IZR. apply vec_eq; cbn [fst snd]; lra.
-Qed.
-
-Theorem whole_torus : forall r patch xstar,
-  (m00 r * m11 r - m01 r * m10 r = 1 \/ m00 r * m11 r - m01 r * m10 r = -1)%Z ->
-  (1 <= half0 r)%Q -> (1 <= half1 r)%Q ->
-  no_minimizing_orbit_into r patch xstar -> no_minimizing_orbit patch xstar.
-Proof.
-  intros r patch xstar Hdet H0 H1 H t Ht x Hx Hx0. apply (H t Ht); try assumption.
-  now apply into_all.
 Qed.
 
 (* ---- the turned frame: the sum and the difference of the angles, halved *)

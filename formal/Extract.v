@@ -16,6 +16,6 @@ Extract Constant ClassicalDedekindReals.sig_forall_dec => "(fun _ -> assert fals
 Definition below := patch_below prec.
 
 Set Warnings "-extraction-opaque-accessed".
-Extraction "checker.ml" header_ok leaf_ok every_leaf whole felt odd_about
-  alone_ok mirrored axes orders_of plain_problem parameters below
+Extraction "checker.ml" header_ok leaf_ok every_leaf all_parts at_part covers felt odd_about
+  alone_ok mirrored all_links linked_ok axes orders_of plain_problem parameters below
   Z.add Z.mul Z.opp Z.div_eucl Z.compare Qplus Qminus Qmult Qcompare Qred.

@@ -19,6 +19,7 @@ Inductive once := No | Whole_patch | Upper_end.
 
 Record claim := Claim {
   of_patch : list term; of_region : region; of_xstar : Q * Q;
+  of_whole : bool;                                  (* is the region said to be enough for all x1? *)
   of_alone : alone; of_once : once;
   odd : option (Q * Q)                              (* V is odd about this point *)
 }.
@@ -149,9 +150,6 @@ Definition alone_ok (a : alone) (patch : list term) : bool :=
   | _ => forallb (fun w => negb (present w) || (of_k0 w * of_k1 w =? 0)%Z) patch
   end.
 
-Definition with_terms (p : problem) (l : list term) : problem :=
-  Problem l (start p) (f00 p) (f01 p) (f10 p) (f11 p) (mid0 p) (wid0 p) (mid1 p) (wid1 p).
-
 Lemma Q2R_zero q : Qeq_bool q 0 = true -> Q2R q = 0.
 Proof. intros H. apply Qeq_bool_eq, Qeq_eqR in H. rewrite H. unfold Q2R; cbn. ring. Qed.
 
@@ -257,14 +255,18 @@ Proof.
   unfold scaled. rewrite <- (map_id ws) at 2. apply map_ext. intros []; cbn. now rewrite Rmult_1_l.
 Qed.
 
-Theorem felt_excluded : forall p a, alone_ok a (terms p) = true -> forall u,
-  excluded (with_terms p (felt a (terms p))) u -> excluded p u.
+(* So it is enough to refute the orbits of the felt waves, whatever is known of x1. *)
+Theorem felt_refuted : forall a patch x0 (P : vec -> Prop), alone_ok a patch = true ->
+  (forall t, in_cube t -> forall x, orbit (waves (felt a patch) t) x -> x 0%Z = x0 -> P (x 1%Z) ->
+   refuted (waves (felt a patch) t) x) ->
+  forall t, in_cube t -> forall x, orbit (waves patch t) x -> x 0%Z = x0 -> P (x 1%Z) ->
+  refuted (waves patch t) x.
 Proof.
-  intros p a Hok [|u0 [|u1 t]]; try easy. intros H Ht x Hx Hx0 Hx1.
-  rewrite <- (scaled_1 (waves (terms p) t)) in *.
-  destruct (felt_orbit a (terms p) t 1 x Hok Hx) as [Ho Hr]. apply Hr.
+  intros a patch x0 P Hok H t Ht x Hx Hx0 Hx1.
+  rewrite <- (scaled_1 (waves patch t)) in *.
+  destruct (felt_orbit a patch t 1 x Hok Hx) as [Ho Hr]. apply Hr.
   rewrite scaled_1 in *.
-  apply (H Ht); [assumption | now rewrite freed_0 | now rewrite freed_1].
+  apply (H t Ht); [assumption | now rewrite freed_0 | now rewrite freed_1].
 Qed.
 
 (* ---- the turned frame *)
@@ -384,20 +386,6 @@ Proof.
 Qed.
 
 (* ---- invariant graphs *)
-
-(* Does the region hold every point modulo 2 pi? *)
-Definition whole (r : region) : bool :=
-  let determinant := (m00 r * m11 r - m01 r * m10 r)%Z in
-  ((determinant =? 1)%Z || (determinant =? -1)%Z)
-  && Qle_bool 1 (half0 r) && Qle_bool 1 (half1 r).
-
-Theorem graphs : forall r patch xstar, whole r = true -> no_minimizing_orbit_into r patch xstar ->
-  forall t, in_cube t -> no_invariant_graph (waves patch t).
-Proof.
-  intros r patch xstar Hwhole Hinto. apply (Graph.no_graph patch xstar).
-  unfold whole in Hwhole. rewrite !andb_true_iff, orb_true_iff, !Z.eqb_eq, !Qle_bool_iff in Hwhole.
-  destruct Hwhole as [[Hdet H0] H1]. now apply (whole_torus r).
-Qed.
 
 (* There is no graph if all orbits through some point are refuted. *)
 Lemma no_graph_through ws y : (forall x, orbit ws x -> x 0%Z = y -> refuted ws x) ->

@@ -32,11 +32,21 @@ Proof.
   - apply (H' (S i)). lia.
 Qed.
 
+(* The same of several lists, of which each file takes its share. *)
+Corollary shares_all_of : forall A B (f : B -> A -> bool) (l : B -> list A) K bs,
+  Forall (fun i => forallb (fun b => forallb (f b) (share i K (l b))) bs = true) (seq 0 K) -> 0 < K ->
+  forallb (fun b => forallb (f b) (l b)) bs = true.
+Proof.
+  intros A B f l K bs H HK. apply forallb_forall. intros b Hb.
+  apply (shares_all _ _ K); [| exact HK]. revert H. apply Forall_impl. intros i H.
+  rewrite forallb_forall in H. exact (H b Hb).
+Qed.
+
 (* Does f hold of each proved leaf's cell?  The tree's own cell is c. *)
 Fixpoint all_leaves (f : cell -> bool) (c : cell) (t : tree) : bool :=
   match t with
   | Proved => f c
-  | Skipped => true
+  | Skipped | Linked _ => true
   | Cut a lower upper =>
     all_leaves f (half_cell false a c) lower && all_leaves f (half_cell true a c) upper
   end.
@@ -44,7 +54,7 @@ Fixpoint all_leaves (f : cell -> bool) (c : cell) (t : tree) : bool :=
 Lemma all_leaves_before f t : forall rest c,
   forallb f (leaves_before rest c t) = all_leaves f c t && forallb f rest.
 Proof.
-  induction t as [| | a lower IHl upper IHu]; intros rest c; simpl; try easy.
+  induction t as [| | | a lower IHl upper IHu]; intros rest c; simpl; try easy.
   now rewrite IHl, IHu, andb_assoc.
 Qed.
 

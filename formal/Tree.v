@@ -11,8 +11,9 @@ Open Scope R_scope.
 (* ---- trees and their text *)
 
 (* The axes are 0 and 1 for v0 and v1, then the parameters.  The lower half comes first.  A leaf
-   that is undecided has no tree. *)
-Inductive tree := Proved | Skipped | Cut (axis : nat) (lower upper : tree).
+   that is linked leads to the k-th of the later parts: only to later ones.  A leaf that is undecided
+   has no tree. *)
+Inductive tree := Proved | Skipped | Linked (k : nat) | Cut (axis : nat) (lower upper : tree).
 
 (* From the last character to the first: a leaf is put on the stack, and a cut takes its two parts
    from there. *)
@@ -29,7 +30,9 @@ Definition read_node (node : ascii) (stack : list tree) : option (list tree) :=
   | "2"%char => cut 2%nat
   | "3"%char => cut 3%nat
   | "4"%char => cut 4%nat
-  | _ => None
+  | _ => let code := N_of_ascii node in       (* a is the next part, b the one after it *)
+         if ((97 <=? code) && (code <=? 122))%N then Some (Linked (N.to_nat (code - 97)) :: stack)
+         else None
   end.
 
 Fixpoint read_backwards (text : list ascii) (stack : list tree) : option tree :=
@@ -159,7 +162,7 @@ Qed.
 Fixpoint leaves_before (rest : list cell) (c : cell) (t : tree) : list cell :=
   match t with
   | Proved => c :: rest
-  | Skipped => rest
+  | Skipped | Linked _ => rest
   | Cut a lower upper =>
       leaves_before (leaves_before rest (half_cell true a c) upper) (half_cell false a c) lower
   end.
@@ -168,7 +171,7 @@ Definition leaves (c : cell) (t : tree) : list cell := leaves_before [] c t.
 
 Lemma leaves_before_app t : forall rest c, leaves_before rest c t = leaves c t ++ rest.
 Proof.
-  induction t as [| |a lower IHl upper IHu]; intros rest c; [reflexivity | reflexivity |].
+  induction t as [| | |a lower IHl upper IHu]; intros rest c; try reflexivity.
   unfold leaves; cbn. rewrite !IHl, !IHu. now rewrite app_nil_r, app_assoc.
 Qed.
 
@@ -176,6 +179,15 @@ Qed.
 Lemma in_leaves_cut a lower upper c l : In l (leaves c (Cut a lower upper)) <->
   In l (leaves (half_cell false a c) lower) \/ In l (leaves (half_cell true a c) upper).
 Proof. unfold leaves at 1; cbn. rewrite !leaves_before_app, app_nil_r. apply in_app_iff. Qed.
+
+(* The linked ones: does f hold of each, of what it is linked to and its cell? *)
+Fixpoint all_links (f : nat -> cell -> bool) (c : cell) (t : tree) : bool :=
+  match t with
+  | Proved | Skipped => true
+  | Linked k => f k c
+  | Cut a lower upper =>
+      all_links f (half_cell false a c) lower && all_links f (half_cell true a c) upper
+  end.
 
 (* ---- mirror images *)
 
@@ -195,7 +207,7 @@ Fixpoint within (c : cell) (ways : list way) : cell :=
 Fixpoint covered (ways : list way) (t : tree) : bool :=
   match t with
   | Proved => true
-  | Skipped => false
+  | Skipped | Linked _ => false
   | Cut a lower upper =>
       match nth a ways [] with
       | [] => covered ways lower && covered ways upper
@@ -219,7 +231,7 @@ Definition image {A} (missing : A) (order : list nat) (l : list A) : list A :=
    The ways lead, backwards, from the leaf to the root of the whole tree. *)
 Fixpoint skips_ok (orders : list (list nat)) (whole : tree) (ways : list way) (t : tree) : bool :=
   match t with
-  | Proved => true
+  | Proved | Linked _ => true
   | Skipped => existsb (fun order => covered (map (@rev bool) (image [] order ways)) whole) orders
   | Cut a lower upper => skips_ok orders whole (change (cons false) a ways) lower
                          && skips_ok orders whole (change (cons true) a ways) upper
@@ -277,8 +289,9 @@ Qed.
 Lemma covered_correct t : forall ways c u, List.length ways = List.length c ->
   covered ways t = true -> in_cell (within c ways) u -> exists l, In l (leaves c t) /\ in_cell l u.
 Proof.
-  induction t as [| |a lower IHl upper IHu]; intros ways c u Hlength Hcovered Hu.
+  induction t as [| | |a lower IHl upper IHu]; intros ways c u Hlength Hcovered Hu.
   - exists c. split; [now left | now apply within_inside in Hu].
+  - discriminate.
   - discriminate.
   - cbn in Hcovered.
     assert (Hl : List.length ways = List.length (half_cell false a c)) by
@@ -330,11 +343,13 @@ Proof.
 Qed.
 
 Section Covers.
-Variables (n : nat) (excluded : list R -> Prop) (whole : tree) (orders : list (list nat)).
+Variables (n : nat) (excluded leads : list R -> Prop) (linked : nat -> cell -> bool) (whole : tree)
+  (orders : list (list nat)).
 Hypothesis lengths : forall order, In order orders -> (2 + List.length order)%nat = n.
 Hypothesis proved : forall c, In c (leaves (root n) whole) -> forall u, in_cell c u -> excluded u.
 Hypothesis symmetry : forall order, In order orders -> forall u, List.length u = n ->
   excluded (image 0 order u) -> excluded u.
+Hypothesis lead : forall k c, linked k c = true -> forall u, in_cell c u -> leads u.
 
 (* A skipped leaf is excluded, as its image is. *)
 Lemma skipped_covers ways u : List.length ways = n -> skips_ok orders whole ways Skipped = true ->
@@ -354,13 +369,14 @@ Qed.
 (* So is all below a node. *)
 Lemma part_covers t : forall ways u, List.length ways = n -> skips_ok orders whole ways t = true ->
   (forall c, In c (leaves (cell_of ways) t) -> In c (leaves (root n) whole)) ->
-  in_cell (cell_of ways) u -> excluded u.
+  all_links linked (cell_of ways) t = true -> in_cell (cell_of ways) u -> excluded u \/ leads u.
 Proof.
-  induction t as [| |a lower IHl upper IHu]; intros ways u Hways Hskips Hin Hu.
-  - apply (proved (cell_of ways)); [|assumption]. apply Hin. now left.
-  - now apply skipped_covers with ways.
-  - cbn in Hskips. apply andb_prop in Hskips as [Hlower Hupper].
-    setoid_rewrite in_leaves_cut in Hin.
+  induction t as [| |k |a lower IHl upper IHu]; intros ways u Hways Hskips Hin Hlinks Hu.
+  - left. apply (proved (cell_of ways)); [|assumption]. apply Hin. now left.
+  - left. now apply skipped_covers with ways.
+  - right. now apply (lead k (cell_of ways)).
+  - cbn in Hskips, Hlinks. apply andb_prop in Hskips as [Hlower Hupper], Hlinks as [Hl Hr].
+    rewrite <- !cell_of_cut in Hl, Hr. setoid_rewrite in_leaves_cut in Hin.
     destruct (cell_halves a _ u Hu) as [H|H]; rewrite <- cell_of_cut in H.
     + apply IHl with (change (cons false) a ways); auto; [now rewrite change_length|].
       rewrite cell_of_cut. auto.
@@ -371,21 +387,24 @@ Qed.
 End Covers.
 
 (* If the proved leaves are excluded, and every skipped one is the mirror image of proved ones, then
-   the whole region is excluded.  (What is cut along an axis that is not there would be wrong in a
+   the whole region is excluded but for what leads elsewhere.  (What is cut along an axis that is not there would be wrong in a
    file, but does no harm.) *)
-Theorem tree_covers : forall n (excluded : list R -> Prop) t orders,
+Theorem tree_covers : forall n (excluded leads : list R -> Prop) linked t orders,
   mirrored n orders t = true ->
   (forall c, In c (leaves (root n) t) -> forall u, in_cell c u -> excluded u) ->
   (forall order, In order orders -> forall u, List.length u = n ->
    excluded (image 0 order u) -> excluded u) ->
-  forall u, List.length u = n -> Forall (fun x => -1 <= x <= 1) u -> excluded u.
+  all_links linked (root n) t = true ->
+  (forall k c, linked k c = true -> forall u, in_cell c u -> leads u) ->
+  forall u, List.length u = n -> Forall (fun x => -1 <= x <= 1) u -> excluded u \/ leads u.
 Proof.
-  intros n excluded t orders Hmirrored Hproved Hsymmetry u Hn Hu.
+  intros n excluded leads linked t orders Hmirrored Hproved Hsymmetry Hlinks Hlead u Hn Hu.
   apply andb_prop in Hmirrored as [Hlengths Hskips].
-  apply (part_covers n excluded t orders) with t (repeat [] n); auto.
+  apply (part_covers n excluded leads linked t orders) with t (repeat [] n); auto.
   - intros order Horder. rewrite forallb_forall in Hlengths.
     now apply Nat.eqb_eq, Hlengths.
   - apply repeat_length.
+  - now rewrite cell_of_root.
   - now rewrite cell_of_root.
   - rewrite cell_of_root, <- Hn. now apply in_root.
 Qed.
@@ -747,6 +766,16 @@ Proof.
       apply sum_ext; intros w _; ring.
 Qed.
 
+(* So the exchange maps orbits to orbits, and refuted ones to refuted ones. *)
+Lemma exchanged_orbit patch order t x : symmetric patch order = true -> orbit (waves patch t) x ->
+  orbit (waves patch (reordered 0 order t)) (fun j => swap (x j)) /\
+  (refuted (waves patch (reordered 0 order t)) (fun j => swap (x j)) -> refuted (waves patch t) x).
+Proof.
+  intros Hsymmetric Hx. pose proof (symmetric_correct _ _ Hsymmetric t) as Hsame. split.
+  - apply orbit_swap in Hx. revert Hx. apply orbit_ext. intros y. apply (Hsame y y).
+  - intros H. apply refuted_swap. revert H. apply refuted_ext. intros j v. symmetry. apply Hsame.
+Qed.
+
 (* No minimizing orbit goes from x* to this point, for these parameters; u has first the place of x1
    between its bounds, the same for both angles. *)
 Definition excluded (patch : list term) (xstar : vec) (c h : R) (u : list R) : Prop :=
@@ -759,13 +788,8 @@ Theorem mirror_excluded : forall patch xstar c h order u, symmetric patch order 
 Proof.
   intros patch xstar c h order u Hsymmetric Hxstar Himage x Hx Hx0 Hx1.
   destruct u as [|v0 [|v1 t]]; [now apply Himage | now apply Himage |].
-  cbn [tl] in *. pose proof (symmetric_correct _ _ Hsymmetric t) as Hsame.
-  apply refuted_swap. apply orbit_swap in Hx. set (x' := fun j => swap (x j)) in *.
-  apply (refuted_ext (waves patch (reordered 0 order t)) _ x').
-  - intros j v. symmetry. apply Hsame.
-  - apply Himage; cbn [image tl].
-    + apply (orbit_ext (map exchange (waves patch t))); [|assumption].
-      intros y. now apply (Hsame y y).
-    + unfold x', swap. rewrite Hx0, Hxstar. rewrite <- Hxstar at 1. now destruct xstar.
-    + unfold x', swap. now rewrite Hx1.
+  cbn [tl] in *. destruct (exchanged_orbit patch order t x Hsymmetric Hx) as [Ho Hr].
+  apply Hr, Himage; [assumption | |]; unfold swap; cbn [image nth].
+  - rewrite Hx0, Hxstar. rewrite <- Hxstar at 1. now destruct xstar.
+  - now rewrite Hx1.
 Qed.

@@ -193,7 +193,11 @@ class Model:
             moves=[[True] * columns] * self.slots, phase=[self.phase(i) for i in range(self.slots)],
             square_k=[1.0, 1.0, 4.0] if known else
             [Rounded((x.size + y.size) * (x.size + y.size)) for x, y in k],
-            most_k=2.0)
+            most_k=2.0, axes=[[exact("R%d_%d" % (i, j)) for j in range(2)] for i in range(2)],
+            onto=[[exact("R%d.k%d" % (j, i)) for i in range(self.slots)] for j in range(2)],
+            along=[[self.quotient(symbol("R%d.k%d" % (j, i))) for j in range(2)]
+                   for i in range(self.slots)],
+            turn=[self.quotient(1) for _ in range(4)])
         self.w = SimpleNamespace(
             problem=problem, p=p, h=h, part=self.part, err_amp=[0.0] * self.slots,
             size=[Rounded(rounded(x).size + y.size) for x, y in zip(p, h)])
@@ -218,6 +222,10 @@ class Model:
         """One of waves.h."""
         return function(self.texts["loewner/waves.h"], name).bound(
             self.names if names is None else names)
+
+    def quotient(self, size):
+        """Of integers, by |k|^2: off by u.  Those of the axes are 1 at most."""
+        return Rounded(size, Polynomial.of(size) * UNIT)
 
     def phase(self, i):
         """near() puts it 8 u off, and it may be 10^-40 off before."""
@@ -293,6 +301,15 @@ def err_beta(model):
     return min(left("err_beta", x.off, model.q.err_beta.least()) for x in model.q.beta)
 
 
+def turned(model):
+    """beta along the axes is off by less than 15/16 of the 2 err_beta of `step`, which leaves more
+    than u |beta| for the difference from the inverse."""
+    made = [None] * 3
+    model.function("along_axes")(model.w, made, model.q.beta)
+    there = model.q.err_beta.least() * 2
+    return min(left("axes", x.off + (x.size + x.off) * UNIT, there) for x in made)
+
+
 class Turn(Rounded):
     """2 pi, and the double below it.  What is divided by it says how many turns are taken off; any
     integer will do."""
@@ -329,8 +346,8 @@ def residual(model):
     statements = function(text, "step").statements
     loops = [node for node in statements if isinstance(node, c_ast.For)][:2]
     begin = [node for node in statements[:statements.index(loops[0])] if node.name == "SHIFT"]
-    room = {"g": [0.0] * model.slots, "wave_err": [0.0] * model.slots, "TWO_PI": two_pi,
-            "wave_remainder": lambda *_: 0.0, "propagate_err": lambda *_: 0.0}
+    room = {**{name: [0.0] * model.slots for name in ("g", "wave_err", "lost")}, "TWO_PI": two_pi,
+            **{name: lambda *_: 0.0 for name in ("wave_remainder", "propagate_err", "bending_err")}}
     run(begin + loops, {**model.names, **room, "w": model.w, "q": q, "o": o, "next": following},
         noted)
     worst = []
@@ -346,7 +363,8 @@ def residual(model):
 def propagated(model):
     """What lin and quad of the next point lose is less than what the step adds to force for it.
 
-    wave_remainder counts from what doubles make of k.L, so the squares in T have no slips.  A
+    wave_remainder counts from what doubles make of k.L, so the squares in T have no slips: what
+    these lose bending_err has.  A
     sum is known: 2L - o, which is the next column less what the waves add."""
     w, q, o = model.w, model.q, model.o
     for i in range(2):
@@ -359,11 +377,8 @@ def propagated(model):
     model.names["propagate"](w, lin, q, o, model.columns)
     model.slipping = "T"
     model.names["propagate"](w, quad, q, o, model.columns)
-    wave_remainder = function(model.texts["loewner/orbit.c"], "wave_remainder").bound(model.names)
-    alone = SimpleNamespace(p=[0.0] * model.slots, h=[0.0] * model.slots, err_amp=w.err_amp,
-                            size=w.size)        # for wave_remainder's last term alone
-    q.nonlin_bound = [Rounded(0)] * model.slots
-    bent = [wave_remainder(alone, q, i) if i >= model.first else 0.0 for i in range(model.slots)]
+    bending_err = function(model.texts["loewner/orbit.c"], "bending_err").bound(model.names)
+    bent = [bending_err(w, q, i) if i >= model.first else 0.0 for i in range(model.slots)]
     err = [model.names["propagate_err"](w, q, i) if i >= model.first else 0.0
            for i in range(model.slots)]
     worst = {"lin": [], "quad": []}
@@ -431,8 +446,10 @@ def widen(model):
     factor = Fraction(constant(text, "WIDEN"))
     names.update(WIDEN=exact("WIDEN"), bound_err_dot=lambda *_: None,
                  larger=lambda *_: exact("rad_max"),
-                 wave_remainder=function(text, "wave_remainder").bound(names))
-    names["rem_along"] = model.function("rem_along")
+                 **{name: function(text, name).bound(names)
+                    for name in ("wave_remainder", "bending_err")})
+    for name in ("rem_along", "sum_onto", "onto_axis", "along_axes"):
+        names[name] = model.function(name)
     wave = {name: Kept(name, model.slots) for name in
             ("lin_bound", "quad_bound", "nonlin_bound", "rad", "err_dot", "p", "h", "err_amp",
              "size", "weight",
@@ -451,10 +468,11 @@ def widen(model):
     loops = [node for node in function(text, "step").statements if isinstance(node, c_ast.For)]
     scope = {**names, "w": w, "q": q, "o": o, "is_first": 0, "inverse": Kept("inverse", 3),
              "rounded": exact("rounded"), "rem_sum": exact("rem_sum")}
-    scope["g"], scope["wave_err"] = [0.0] * model.slots, [0.0] * model.slots
+    scope.update({name: [0.0] * model.slots for name in ("g", "wave_err", "lost")},
+                 err=[0.0, 0.0])
     scope["next"] = SimpleNamespace(rem=Kept("rem", 2), lin_bound=q.lin_bound,
                                     quad_bound=q.quad_bound)
-    run([loops[0], loops[2], loops[4]], scope)
+    run([loops[0], loops[2], loops[3], loops[5]], scope)
     made = [kept.made for kept in
             (q.lin_bound, q.quad_bound, q.nonlin_bound, q.rad, q.force, scope["next"].rem)]
     if not all(made):
@@ -516,7 +534,8 @@ def proved(read, columns=COLUMNS):
     result = {}
     for waves in (None, 1, 3, MOST_WAVES):
         model = Model(read, waves, columns if waves != MOST_WAVES else 2)
-        found = {"err_beta": err_beta(model), "residual": residual(model), **propagated(model),
+        found = {"err_beta": err_beta(model), "axes": turned(model),
+                 "residual": residual(model), **propagated(model),
                  "sines in wave_remainder": sines(model), "err_dot": model.slip,
                  "widen": widen(model)}
         found.update({"left": multipliers(model)} if waves is None else {"at once": at_once(model)})

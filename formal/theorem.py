@@ -1,6 +1,6 @@
 """Writes a finished proof file as a theorem for Coq: python formal/theorem.py FILE NAME DIRECTORY
 
-The claim, exact, is that of the file's header as converse-check reads it.  The tree, and the hints
+The claim, exact, is that of the file's header as converse-check reads it.  The trees, and the hints
 (a bound B of the largest eigenvalue, l, and where the eigenvalue is small enough for larger
 parameters to be excluded at once), are only proposals: Coq's kernel finds that they serve, or that
 they do not, and then there is no theorem.
@@ -23,6 +23,9 @@ ROOT = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT))
 
 from converse import check  # noqa: E402  (it needs the path)
+from converse.check.claim import LETTERS  # noqa: E402
+from converse.check.cover import is_whole  # noqa: E402
+from converse.check.tree import trees  # noqa: E402
 
 WIDTH = 100                                                     # of a line
 DIGITS = 10 ** 9                                                # of a hint, decimal
@@ -107,9 +110,19 @@ def hints(claim):
 
 # ---- the text
 
-def tree_text(tree):
+def tree_text(tree, later):
+    """A tree in Coq, where a is the next part and b the one after it; later: the letters that
+    these have in the file."""
     width = WIDTH - 6
-    return '";\n   "'.join(tree[k:k + width] for k in range(0, len(tree), width))
+    tree = tree.translate(str.maketrans(later, LETTERS[:len(later)]))
+    return "read_tree\n  [\"%s\"]%%string" % '";\n   "'.join(
+        tree[k:k + width] for k in range(0, len(tree), width))
+
+
+def part_text(part, later):
+    """A part, its x*, ranges and tree."""
+    return "Part %s %s %s (%s)" % (*map(pair, (part.xstar, *zip(part.centre, part.half))),
+                                   tree_text(part.tree, later))
 
 
 def patch_text(claim, indent):
@@ -143,8 +156,11 @@ def statement(claim):
     """What is proved, spelled out in the words of Map.v: it is Check.statement of the claim."""
     patch = "let patch :=\n    %s in\n  " % patch_text(claim, 4)
     lines = ["forall t, in_cube t -> no_invariant_graph (waves patch t)"]
-    if min(claim.half) < 1:
+    if not is_whole(claim):
         lines = ["no_minimizing_orbit_into %s patch %s" % (region_text(claim), pair(claim.xstar))]
+        if claim.parts:
+            lines = ["forall t, in_cube t -> no_invariant_graph_into %s (waves patch t) (point %s)"
+                     % (region_text(claim), pair(claim.xstar))]
     if claim.at_once == "yes":
         lines += ["forall t s, in_cube t -> (1 <= s)%R -> no_invariant_graph (scaled s (waves "
                   "patch t))"]
@@ -161,9 +177,10 @@ COMPUTED = "Proof. vm_cast_no_check (eq_refl true). Qed.\n"
 
 
 def definitions(claim, odd, arithmetic):
-    """The claim, the hints and the tree; and what is checked once."""
+    """The claim, the hints and the trees; and what is checked once."""
     B, l, place, vector = hints(claim)
     alone = {None: "Both", 0: "First", 1: "Second"}[claim.alone]
+    (_, later), *parts = trees(claim)
     once = {"no": "No", "yes": "Whole_patch", "upper end": "Upper_end"}[claim.at_once]
     return CHECKING % arithmetic + """\
 Definition the_claim : claim :=
@@ -172,23 +189,27 @@ Definition the_claim : claim :=
 Definition the_hints : hints :=
   %s
 
-Definition the_tree : tree := read_tree
-  ["%s"]%%string.
+Definition the_tree : tree := %s.
 
-Lemma header : header_ok the_claim the_hints the_tree = true.
-%s""" % ("Claim %s\n  %s %s %s %s %s." % (
-            patch_text(claim, 8), region_text(claim), pair(claim.xstar), alone, once,
+Definition the_parts : list part :=
+  [%s].
+
+Lemma header : header_ok the_claim the_hints the_tree the_parts = true.
+%s""" % ("Claim %s\n  %s %s %s %s %s %s." % (
+            patch_text(claim, 8), region_text(claim), pair(claim.xstar),
+            "true" if is_whole(claim) else "false", alone, once,
             "None" if odd is None else "(Some %s)" % pair(odd)),
          "Hints %s %s (%s, %s)." % (number(B), number(l), pair(place), pair(vector)),
-         tree_text(claim.tree), COMPUTED)
+         tree_text(claim.tree, later), ";\n   ".join(itertools.starmap(part_text, parts)), COMPUTED)
 
 
 def part(name, arithmetic, i, count):
     return CHECKING % arithmetic + """\
 From Converse.build Require Import {0}_claim.
 
-Lemma leaves :
-  forallb (leaf_ok the_claim the_hints) (share {1} {2} (leaves_of the_claim the_tree)) = true.
+Lemma leaves : forallb (fun ct =>
+    forallb (leaf_ok (fst ct) the_hints) (share {1} {2} (leaves_of (fst ct) (snd ct))))
+  (all_parts the_claim the_tree the_parts) = true.
 {3}""".format(name, i, count, COMPUTED)
 
 
@@ -203,9 +224,9 @@ From Converse.build Require {0}_claim {2}.
 Theorem {0} : {0}_says.
 Proof.
   refine ({1}.check_sound
-            {0}_claim.the_claim {0}_claim.the_hints {0}_claim.the_tree _).
+            {0}_claim.the_claim {0}_claim.the_hints {0}_claim.the_tree {0}_claim.the_parts _).
   apply andb_true_intro. split; [exact {0}_claim.header |].
-  apply (Share.shares_all _ _ {3}); [| repeat constructor].
+  apply (Share.shares_all_of _ _ _ _ {3}); [| repeat constructor].
   exact ({4}).
 Qed.
 

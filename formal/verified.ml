@@ -150,24 +150,31 @@ let load path =
   with Sys_error why -> refuse "cannot be read (%s)" why
      | Unix.Unix_error (error, _, _) -> refuse "cannot be read (%s)" (Unix.error_message error)
 
+(* A tree and how many leaves it has; of the claim itself, without a name, or of a part. *)
+type grown = { name : string; its : claim; tree : tree; proved : int; symmetric : int; linked : int }
+
 type file = {
   claim : claim;
-  tree : tree;
-  proved : int; symmetric : int;                (* leaves *)
+  further : part list;
+  trees : grown list;                           (* the claim's, then those of the parts *)
   sha256 : string
 }
 
-let counts = ["depth"; "cuts"; "proved"; "symmetric"; "undecided"; "most_cuts"]
+let total f file = List.fold_left (fun n tree -> n + f tree) 0 file.trees
+let letters = "abcdefghijklmnopqrstuvwxyz"      (* of parts, and of leaves linked to them *)
+
+let counts version = ["depth"; "cuts"; "proved"; "symmetric"; "undecided"; "most_cuts"]
+                     @ (if version > 3 then ["linked"] else [])
 let ignored = ["program"; "method"; "digits"; "stubborn"; "quick_tries"; "tries"; "Rtries";
                "HermSuccess"; "LLSuccess"; "ll_used"; "reasons"; "max_steps"; "max_NTsteps"; "B";
                "pending"]
 let optional = ["T"; "Tr-"; "Tr+"; "lambda-min"; "lambda-max"; "seconds"; "comment"]
-let known = ["v0"; "v1"; "kind"; "xstar"; "at once"; "wave"; "frame"; "alone"; "odd about"]
-            @ counts @ ignored
+let known version = ["v0"; "v1"; "kind"; "xstar"; "at once"; "wave"; "frame"; "alone"; "odd about"]
+                    @ counts version @ ignored
 
 (* The fields of the header, each once, and its waves. *)
-let fields lines =
-  let found = Hashtbl.create 64 and waves = ref [] in
+let fields version lines =
+  let found = Hashtbl.create 64 and waves = ref [] and known = known version in
   List.iteri (fun i line ->
       let at = i + 2 in
       if String.length line >= max_line then
@@ -213,18 +220,24 @@ let wave at line =
       middle = number decimal name amplitude; parts = List.map (number decimal name) parts }
   | _ -> reject "%s is not K0 K1 PHASE AMPLITUDE and at most three parts" name
 
-let claim_of lines =
-  let field, lines = fields lines in
+let pair ?(form = decimal) name text =
+  match String.split_on_char ' ' text with
+  | [x; y] -> number form name x, number form name y
+  | _ -> reject "%s is not two numbers" name
+
+(* A centre and a half-width. *)
+let range name text =
+  let centre, half = pair name text in
+  if less half (whole 0) then reject "a half-width is negative";
+  centre, half
+
+(* The claim, and the counts.  Of the whole torus is said what Coq's `covers` lets be said of it. *)
+let claim_of version lines =
+  let field, lines = fields version lines in
   if field "kind" <> "sound" then
     reject "the file's kind is not 'sound': it is not meant as a proof";
-  let pair ?(form = decimal) name =
-    match String.split_on_char ' ' (field name) with
-    | [x; y] -> let name = "the header's " ^ name in number form name x, number form name y
-    | _ -> reject "the header's %s is not two numbers" name in
-  let range name =
-    let centre, half = pair name in
-    if less half (whole 0) then reject "a half-width is negative";
-    centre, half in
+  let given ?form name = pair ?form ("the header's " ^ name) (field name) in
+  let ranged name = range ("the header's " ^ name) (field name) in
   let one_of name values =
     match List.assoc_opt (field name) values with
     | Some value -> value
@@ -234,9 +247,9 @@ let claim_of lines =
     if not (all_digits (field name) && String.length (field name) <= 18) then
       reject "the header's %s is not a count" name;
     int_of_string ("0u" ^ field name) in
-  let (centre0, half0), (centre1, half1) = range "v0", range "v1" in
-  let of_xstar = pair "xstar" in
-  let counted = List.map (fun name -> name, count name) counts in
+  let (centre0, half0), (centre1, half1) = ranged "v0", ranged "v1" in
+  let of_xstar = given "xstar" in
+  let counted = List.map (fun name -> name, count name) (counts version) in
   let count_of_waves = List.length lines in
   if count_of_waves > 16 || count_of_waves = 0 then
     reject "the header has %d waves, not 1 to 16" count_of_waves;
@@ -246,13 +259,15 @@ let claim_of lines =
             (String.split_on_char ' ' (field "frame")) with
     | [a; b; c; d] ->
       (match Z.add (Z.mul a d) (Z.opp (Z.mul b c)) with
+       | Z0 -> reject "the header's frame has determinant 0"
        | Zpos XH | Zneg XH -> a, b, c, d
+       | _ when version > 3 -> a, b, c, d
        | _ -> reject "the header's frame has not determinant 1 or -1")
     | _ -> reject "the header's frame is not four integers" in
   let of_alone = one_of "alone" ["no", Both; "0", First; "1", Second] in
   let of_once = one_of "at once" ["no", No; "yes", Whole_patch; "upper end", Upper_end] in
   let odd =
-    if field "odd about" = "no" then None else Some (pair ~form:decimal_or_ratio "odd about") in
+    if field "odd about" = "no" then None else Some (given ~form:decimal_or_ratio "odd about") in
   if of_once = Upper_end && List.length (List.hd of_patch).parts <> 1 then
     reject "without exactly one parameter there is no upper end";
   if of_once <> No && odd = None then
@@ -261,43 +276,9 @@ let claim_of lines =
    | Some point when not (odd_about (felt of_alone of_patch) point) ->
      reject "V is not odd about the point that the header names"
    | _ -> ());
-  { of_patch; of_xstar; of_alone; of_once; odd;
-    of_region = { m00; m01; m10; m11; centre0; half0; centre1; half1 } }, counted
-
-(* The tree, if it is whole, decided, and what the header's counts say. *)
-let tree_of text parameters counted =
-  let position = ref 0 and proved = ref 0 and symmetric = ref 0 and most_cuts = ref 0
-  and deepest = ref 0 in
-  let axis = [| O; S O; S (S O); S (S (S O)); S (S (S (S O))) |] in
-  let rec node cuts =
-    if cuts > max_cuts then
-      beyond "node %d lies below %d cuts, the checker's limit" !position max_cuts;
-    if !position = String.length text then reject "the tree is incomplete";
-    let c = text.[!position] in
-    incr position;
-    match c with
-    | 'P' ->
-      incr proved; most_cuts := max cuts !most_cuts; deepest := max cuts !deepest; Proved
-    | 'S' -> incr symmetric; deepest := max cuts !deepest; Skipped
-    | 'U' -> reject "a leaf is undecided: the file claims no theorem"
-    | '0' .. '4' ->
-      let k = Char.code c - 48 in
-      if k >= 2 + parameters then reject "the tree cuts a parameter that there is not";
-      let lower = node (cuts + 1) in
-      let upper = node (cuts + 1) in
-      Cut (axis.(k), lower, upper)
-    | _ -> reject "node %d is not one of a finished tree" (!position - 1) in
-  let tree = node 0 in
-  if !position < String.length text then
-    reject "the tree ends before its text does, at node %d" !position;
-  if !deepest > List.assoc "depth" counted then
-    reject "a leaf was cut more often than the depth allows";
-  List.iter (fun (name, value) ->
-      if List.assoc name counted <> value then
-        reject "the header's %s is %d, the tree's %d" name (List.assoc name counted) value)
-    ["cuts", !proved + !symmetric - 1; "proved", !proved; "symmetric", !symmetric;
-     "undecided", 0; "most_cuts", !most_cuts];
-  tree, !proved, !symmetric
+  let claim = { of_patch; of_xstar; of_alone; of_once; odd; of_whole = true;
+                of_region = { m00; m01; m10; m11; centre0; half0; centre1; half1 } } in
+  { claim with of_whole = covers claim }, counted
 
 (* Where a text begins in the data, from a position on; or before the end. *)
 let find text data start =
@@ -308,7 +289,105 @@ let find text data start =
       Option.bind (String.index_from_opt data (i + 1) text.[0]) from in
   Option.bind (String.index_from_opt data start text.[0]) from
 
+(* The text in pieces, between which another text stood. *)
+let rec split_at separator text =
+  match find separator text 0 with
+  | None -> [text]
+  | Some at ->
+    let from = at + String.length separator in
+    String.sub text 0 at :: split_at separator (String.sub text from (String.length text - from))
+
+(* The tree of a text without lines, if it is whole and decided, with the depth of its deepest leaf,
+   and of its deepest leaf P.  Leaves may be linked to the parts from the one of number `first` on. *)
+let tree_of name its text first parts parameters =
+  let reject form = reject ("%s" ^^ form) (if name = "" then "" else name ^ ": ") in
+  let position = ref 0 and proved = ref 0 and symmetric = ref 0 and linked = ref 0
+  and most_cuts = ref 0 and deepest = ref 0 in
+  let axis = [| O; S O; S (S O); S (S (S O)); S (S (S (S O))) |] in
+  let rec nat_of n = if n = 0 then O else S (nat_of (n - 1)) in
+  let rec node cuts =
+    if cuts > max_cuts then
+      beyond "node %d lies below %d cuts, the checker's limit" !position max_cuts;
+    if !position = String.length text then reject "the tree is incomplete";
+    let c = text.[!position] in
+    incr position;
+    let leaf count kind = incr count; deepest := max cuts !deepest; kind in
+    match c with
+    | 'P' -> most_cuts := max cuts !most_cuts; leaf proved Proved
+    | 'S' -> leaf symmetric Skipped
+    | 'U' -> reject "a leaf is undecided: the file claims no theorem"
+    | '0' .. '4' ->
+      let k = Char.code c - 48 in
+      if k >= 2 + parameters then reject "the tree cuts a parameter that there is not";
+      let lower = node (cuts + 1) in
+      let upper = node (cuts + 1) in
+      Cut (axis.(k), lower, upper)
+    | _ ->
+      match String.index_opt letters c with
+      | Some k when first <= k && k < parts -> leaf linked (Linked (nat_of (k - first)))
+      | Some _ -> reject "node %d is linked to part %c, which is no later part" (!position - 1) c
+      | None -> reject "node %d is not one of a finished tree" (!position - 1) in
+  let tree = node 0 in
+  if !position < String.length text then
+    reject "the tree ends before its text does, at node %d" !position;
+  { name; its; tree; proved = !proved; symmetric = !symmetric; linked = !linked },
+  !deepest, !most_cuts
+
+(* A part but for its tree, and the text of that, from what follows `part: `. *)
+let part_of letter text =
+  let name = Printf.sprintf "part %c" letter in
+  let lacking () =
+    reject "%s is not 'part: %c', xstar, v0, v1 and a tree, each on its line" name letter in
+  let value form key line =
+    let prefix = key ^ ": " in
+    if not (String.starts_with ~prefix line) then lacking ();
+    let from = String.length prefix in
+    fun () -> form (name ^ "'s " ^ key) (String.sub line from (String.length line - from)) in
+  match String.split_on_char '\n' text with
+  | first :: xstar :: v0 :: v1 :: "tree:" :: (_ :: _ as tree) when first = String.make 1 letter ->
+    let xstar, v0, v1 = value (fun name -> pair name) "xstar" xstar, value range "v0" v0, value range "v1" v1 in
+    { starts_at = xstar (); range0 = v0 (); range1 = v1 (); its_tree = Proved },
+    String.concat "" tree
+  | _ -> lacking ()
+
 let sha256 data = Sha256.(to_hex (string data))
+
+(* The claim, and what follows the header: a tree, and perhaps parts. *)
+let file_of version claim counted text sha256 =
+  let parameters = List.length (List.hd claim.of_patch).parts in
+  let first, parts = match if version > 3 then split_at "\npart: " ("\n" ^ text) else [text] with
+    | first :: parts -> String.concat "" (String.split_on_char '\n' first), parts
+    | [] -> "", [] in
+  let count = List.length parts in
+  if count > String.length letters then reject "there are more parts than letters";
+  if count > 0 && claim.of_alone <> Both then
+    reject "a coordinate is alone, and there are parts: links are of whole graphs";
+  let parts = List.mapi (fun n text -> part_of letters.[n] text) parts in
+  let texts = first :: List.map snd parts in
+  let claims = ("", claim) :: List.mapi (fun n (part, _) ->
+      Printf.sprintf "part %c" letters.[n], at_part claim part) parts in
+  let grown = List.mapi (fun n (name, its) ->
+      tree_of name its (List.nth texts n) n count parameters) claims in
+  let trees = List.map (fun (tree, _, _) -> tree) grown in
+  let further = List.map2 (fun (part, _) { tree; _ } -> { part with its_tree = tree })
+      parts (List.tl trees) in
+  let file = { claim; further; trees; sha256 } in
+  if List.exists (fun (_, deepest, _) -> deepest > List.assoc "depth" counted) grown then
+    reject "a leaf was cut more often than the depth allows";
+  let proved = total (fun tree -> tree.proved) file and linked = total (fun tree -> tree.linked) file
+  and symmetric = total (fun tree -> tree.symmetric) file in
+  let found = ["cuts", proved + symmetric + linked - List.length trees; "proved", proved;
+               "symmetric", symmetric; "undecided", 0; "linked", linked;
+               "most_cuts", List.fold_left (fun n (_, _, most) -> max n most) 0 grown] in
+  List.iter (fun (name, count) ->
+      match List.assoc_opt name found with
+      | Some value when value <> count ->
+        reject "the header's %s is %d, the tree's %d" name count value
+      | _ -> ()) counted;
+  List.iteri (fun n _ ->
+      if not (List.exists (fun text -> String.contains text letters.[n]) texts) then
+        reject "no leaf is linked to part %c" letters.[n]) parts;
+  file
 
 let magic = "converse proof "
 
@@ -318,15 +397,16 @@ let read path =
     refuse "is a map, or no proof file; converse-check verifies maps";
   if not (String.starts_with ~prefix:magic data) then refuse "is not a proof file";
   let start = String.length magic in
-  let version = match String.index_from_opt data start '\n' with
+  let first = match String.index_from_opt data start '\n' with
     | Some stop when stop - start <= 9 -> String.sub data start (stop - start)
     | _ -> "" in
-  if String.ends_with ~suffix:"\r" version then
+  if String.ends_with ~suffix:"\r" first then
     reject "its lines end in CR LF: it was altered on its way; ask for the original";
-  if version = "2" then
-    refuse "is a proof file of version 2, which converse-check up to release 1.6.0 verifies";
-  if version <> "3" then
-    refuse "is a proof file of another version; this checker knows version 3";
+  let version = match first with
+    | "3" -> 3
+    | "4" -> 4
+    | "2" -> refuse "is a proof file of version 2, which converse-check up to release 1.6.0 verifies"
+    | _ -> refuse "is a proof file of another version; this checker knows versions 3 and 4" in
   let seal = "checksum: sha256 " and length = String.length data in
   let stop = length - (String.length seal + 64 + String.length "\nend\n") in
   if stop < 1 || String.sub data (stop - 1) (1 + String.length seal) <> "\n" ^ seal
@@ -340,13 +420,11 @@ let read path =
       let from = at + String.length marker in
       String.sub data 0 at, String.sub data from (stop - from)
     | _ -> reject "there is no tree" in
-  let claim, counted = claim_of (List.tl (String.split_on_char '\n' head)) in
+  let claim, counted = claim_of version (List.tl (String.split_on_char '\n' head)) in
   let parameters = List.length (List.hd claim.of_patch).parts in
   if List.exists (fun w -> List.length w.parts <> parameters) claim.of_patch then
     reject "a wave of the header has not as many parts as the first";
-  let tree = String.concat "" (String.split_on_char '\n' tree) in
-  let tree, proved, symmetric = tree_of tree parameters counted in
-  { claim; tree; proved; symmetric; sha256 = sha256 data }
+  file_of version claim counted tree (sha256 data)
 
 (* ---- what the proof needs beside the claim, from doubles: wrong hints prove nothing *)
 
@@ -413,12 +491,12 @@ let hints_of claim =
 
 (* ---- the leaves, shared out *)
 
-(* The chosen leaves, of which process k of n takes every n-th.  It writes a dot for each one that
+(* The chosen leaves of all parts, of which process k of n takes every n-th.  It writes a dot for each one that
    is excluded; the number of the first that is not ends its work.  every_leaf is proved to give what
    asking of all leaves gives; that it asks of each leaf once, in their order, until one is refused, is to
-   be read in its five lines (all_leaves, Tree.v). *)
+   be read in its five lines (all_leaves, Share.v). *)
 let work file hints chosen k n output =
-  let number = ref (-1) and turn = ref (-1) and decide = leaf_ok file.claim hints in
+  let number = ref (-1) and turn = ref (-1) and decide = ref (fun _ -> false) and going = ref true in
   let excluded cell =
     incr number;
     if not (chosen !number) then true
@@ -426,13 +504,16 @@ let work file hints chosen k n output =
       incr turn;
       if !turn mod n <> k then true
       else begin
-        let good = decide cell in
+        let good = !decide cell in
         output_string output (if good then "." else string_of_int !number ^ "\n");
         flush output;
         good
       end
     end in
-  ignore (every_leaf file.claim excluded file.tree)
+  List.iter (fun (claim, tree) ->
+      decide := leaf_ok claim hints;
+      if !going then going := every_leaf claim excluded tree)
+    (all_parts file.claim (List.hd file.trees).tree file.further)
 
 let signals = [Sys.sighup, 1; Sys.sigint, 2; Sys.sigterm, 15]
 let ignore_signals () =
@@ -490,9 +571,6 @@ let share file hints chosen jobs progress =
 
 (* ---- what is said *)
 
-(* Coq's word for it, by which Check.statement tells what is proved. *)
-let covers_torus = Checker.whole
-
 let range_text name low high =
   let low, high = text_of low, text_of high in
   if low = high then name ^ " = " ^ low else Printf.sprintf "%s <= %s <= %s" low name high
@@ -525,7 +603,7 @@ let claimed claim =
   let potential = if boxed then "V(y) = -a sin y0 - b sin y1 - c sin(y0 + y1)"
     else "V(y) = - the sum of p sin(k.y + phase) over the waves below" in
   let where =
-    if covers_torus claim.of_region then [last_of_graph ^ any]
+    if claim.of_whole then [last_of_graph ^ any]
     else
       [last_of_graph;
        "whose orbit through x[0] = x* goes on to x[1] = (v0, v1) in the region";
@@ -572,23 +650,30 @@ let claimed claim =
 
 (* The theorem, as far as it was verified; or the result of a spot check. *)
 let report file hints checked sampled =
-  let x, y = file.claim.of_xstar in
+  let proved = total (fun tree -> tree.proved) file and linked = total (fun tree -> tree.linked) file
+  and symmetric = total (fun tree -> tree.symmetric) file in
   (if sampled then
      [Printf.sprintf
         "Spot check of %d of %d proved leaves, NOT a verification: none of them fails."
-        checked file.proved; "What is claimed and NOT verified :"]
-   else if covers_torus file.claim.of_region then ["Verified :"]
+        checked proved; "What is claimed and NOT verified :"]
+   else if file.claim.of_whole then ["Verified :"]
    else ["Verified, for a part of the torus only :"])
   @ claimed file.claim
   @ [""; "Checker : " ^ program ^ " " ^ Version.number;
-     "Method : Loewner criterion, proved in Coq; intervals of doubles";
-     Printf.sprintf "x* : %s %s" (text_of x) (text_of y); "B : " ^ text_of hints.bound]
+     "Method : Loewner criterion" ^ (if linked > 0 then ", links between starting points" else "")
+     ^ ", proved in Coq; intervals of doubles"]
+  @ List.map (fun { name; its; _ } ->
+      let x, y = its.of_xstar in
+      Printf.sprintf "x*%s : %s %s" (if name = "" then "" else " of " ^ name) (text_of x) (text_of y))
+    file.trees
+  @ ["B : " ^ text_of hints.bound]
   @ (match file.claim.of_alone with
       | Both -> []
       | First -> ["Alone : x0, a map of its own"]
       | Second -> ["Alone : x1, a map of its own"])
-  @ [Printf.sprintf "Leaves : %d, of which %d proved and %d symmetric"
-       (file.proved + file.symmetric) file.proved file.symmetric;
+  @ [Printf.sprintf "Leaves : %d, of which %d proved%s and %d symmetric"
+       (proved + symmetric + linked) proved
+       (if linked > 0 then Printf.sprintf ", %d linked to other parts" linked else "") symmetric;
      Printf.sprintf "Proved leaves checked : %d" checked;
      "SHA-256 : " ^ file.sha256]
 
@@ -637,6 +722,12 @@ let rec parsed options = function
   | word :: rest when options.path = None -> parsed { options with path = Some word } rest
   | _ -> refuse "one file at a time; see %s --help" program
 
+(* The tree that has a leaf P of this number, and its number there. *)
+let rec located n = function
+  | { proved; _ } :: (_ :: _ as later) when n >= proved -> located (n - proved) later
+  | tree :: _ -> tree, n
+  | [] -> invalid_arg "no leaf has this number"
+
 (* Which leaves of so many, and how many they are. *)
 let choice total = function
   | Some count when count < total ->
@@ -661,12 +752,28 @@ let nearest waves count =
   for _ = 1 to 4 do Array.iteri (fun m _ -> descend m) t done;
   List.map (fun x -> billionths (1e9 *. x)) (Array.to_list t)
 
+(* Where a linked leaf may lead out of the region that it is linked to; Coq has refused it. *)
+let rec blame_links hints = function
+  | [] -> ()
+  | { name; its; tree; linked; _ } :: later ->
+    let leads = linked_ok its hints (List.map (fun tree -> tree.its) later) and seen = ref 0 in
+    let number_of k = let rec count n = function O -> n | S k -> count (n + 1) k in count 0 k in
+    let good k cell =
+      incr seen;
+      leads k cell || beyond "%slinked leaf %d of %d is linked to %s, but may lead out of its region"
+        (if name = "" then "" else name ^ ": ") !seen linked (List.nth later (number_of k)).name in
+    ignore (all_links good (root (axes its)) tree);
+    blame_links hints later
+
 (* Tells what is false from what is beyond the checker, where Coq has refused the header. *)
-let blame { claim; tree; _ } =
+let blame hints { claim; trees; _ } =
   let patch = claim.of_patch in
   if not (alone_ok claim.of_alone patch) then reject "no coordinate is alone: a wave feels both";
-  if not (mirrored (axes claim) (orders_of (plain_problem claim) (parameters patch)) tree) then
-    reject "a skipped leaf has no mirror image that is proved";
+  List.iter (fun { name; its; tree; _ } ->
+      if not (mirrored (axes its) (orders_of (plain_problem its) (parameters patch)) tree) then
+        reject "%sa skipped leaf has no mirror image that is proved"
+          (if name = "" then "" else name ^ ": ")) trees;
+  blame_links hints trees;
   let larger = match claim.of_once with
     | No -> ""
     | Upper_end | Whole_patch as once ->
@@ -684,8 +791,8 @@ let blame { claim; tree; _ } =
 let verify options path =
   let file = read path in
   let hints = hints_of file.claim in
-  if not (header_ok file.claim hints file.tree) then blame file;
-  let chosen, total = choice file.proved options.sample in
+  if not (header_ok file.claim hints (List.hd file.trees).tree file.further) then blame hints file;
+  let chosen, total = choice (total (fun tree -> tree.proved) file) options.sample in
   let shown = ref 0 in
   let progress count =
     if Unix.isatty Unix.stderr && (100 * count / total > !shown || count = total) then begin
@@ -698,12 +805,13 @@ let verify options path =
    | count, "" when count = total -> ()
    | _, "" -> refuse "a process ended before its share was done (out of memory?)"
    | _, number ->
-     beyond "proved leaf %d of %d is not excluded; the claim is false or its proof beyond the \
-             limits of this checker" (1 + int_of_string number) file.proved);
+     let { name; proved; _ }, n = located (int_of_string number) file.trees in
+     beyond "%sproved leaf %d of %d is not excluded; the claim is false or its proof beyond the \
+             limits of this checker" (if name = "" then "" else name ^ ": ") (1 + n) proved);
   ignore_signals ();                            (* the last word is to be the only one *)
   print_endline (String.concat "\n" (report file hints total (options.sample <> None)));
   if options.sample <> None then spot_check
-  else if covers_torus file.claim.of_region then verified else part
+  else if file.claim.of_whole then verified else part
 
 (* Every failure is one line. *)
 let () =

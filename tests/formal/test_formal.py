@@ -9,6 +9,7 @@ import sys
 from dataclasses import replace
 
 import pytest
+import test_version4 as version4
 from conftest import ROOT
 
 from converse import prove, read_input
@@ -68,6 +69,24 @@ def test_who_reads_map_and_says_has_read_enough(proof, tmp_path):
     assert commands == ["Definition trig278_says : Prop :=", "Theorem trig278 : trig278_says."]
 
 
+def test_linked_parts(tmp_path):
+    """They are in the claim's file, where a is the next part; what is said is in the same words."""
+    found = version4.linked(version4.found(), (version4.OTHER, "0.85 0.87"))
+    (tmp_path / "build").mkdir()
+    for v0, said in ((found["v0"], "(forall t, in_cube t -> no_invariant_graph (waves patch t))"),
+                     ("0.5364 0.2502", "no_invariant_graph_into (Region 1 1 1 (-1) 0.5364 0.2502 "
+                      "0.5 0.5) (waves patch t) (point (0.858, 0.858))")):
+        (tmp_path / "proof").write_text(version4.file_of(**{**found, "v0": v0}))
+        files = write(tmp_path / "proof", "linked", tmp_path)
+        assert said.strip("()") in files["linked_says"].read_text()
+        claim = files["linked_claim"].read_text()
+        parts = claim.partition("the_parts")[2].split("Part (")[1:]
+        assert [text[:14] for text in parts] == ["0.875, 0.875) ", "0.85, 0.87) (0"]
+        assert "a" in claim.partition("the_tree")[2].partition("]")[0]
+        assert [re.search(r'\["(.*)"\]', text)[1] for text in parts] == [
+            found["parts"][0][3].replace("b", "a"), found["parts"][1][3]]
+
+
 @needs_coq
 def test_words_that_mean_something_else(proof, folder):
     """A file like the written ones that gives Map.v's words another meaning: what it proves is the
@@ -83,8 +102,9 @@ def test_words_that_mean_something_else(proof, folder):
     for name in ("trig278_says", "trig278_claim", "trig278_0"):
         assert compiled(folder, "build/%s.v" % name) == (True, "")
     accepted, said = compiled(folder, "build/trig278.v")
-    assert not accepted and re.search(r'"Check\.statement trig278_claim\.the_claim" while it is '
-                                      r'expected to have type\s+"trig278_says"', said), said
+    assert not accepted and re.search(
+        r'"Check\.statement trig278_claim\.the_claim trig278_claim\.the_parts"\s+while it is\s+'
+        r'expected to have type\s+"trig278_says"', said), said
     # The trick is one: with the proposition in a file that imports the others it is proved.
     proposition = re.search(r"(?s):=(.*)\.", too_much)[1]
     text = theorem.read_text().partition("Add Printing")[0]
@@ -131,6 +151,17 @@ def test_no_torus(proof, folder):
         if accepted:
             others = assumed().others("Integers", said)
             assert others == ["trig180.trig180 : trig180_says.trig180_says"]
+
+
+@needs_coq
+def test_what_links_two_points_of_a_graph(folder):
+    """It is true of every invariant graph of Map.v, and assumes no more than the reals."""
+    (folder / "build" / "link.v").write_text(
+        "From Converse Require Import Map Link.\n"
+        "Check (link : forall ws c S S', periodic S -> has_gradient S S' ->\n"
+        "       invariant_graph ws c S' -> _).\nPrint Assumptions link.\n")
+    accepted, said = compiled(folder, "build/link.v")
+    assert accepted and not assumed().others("Integers", said), said
 
 
 def assumed():
