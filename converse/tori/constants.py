@@ -167,7 +167,7 @@ def _jacobian(torus: Torus, grid: Grid, cut: Fraction, degree: int) -> List[Colu
     for k, series in torus.modes.items():
         if not grid.within(k, cut):
             continue
-        places = grid.place(k), grid.place([-x for x in k])
+        places = grid.places(k)
         factor = acb(-k[1] if n == 2 else 0, k[0])          # i (k_0 + i k_1)
         for j, numbers in enumerate(series[:degree + 1]):
             for row, re, im in zip(rows, numbers[::2], numbers[1::2]):

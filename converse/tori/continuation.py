@@ -2,8 +2,9 @@
 numbers, from a map where it is known: without potential, every torus is there.
 
 The number of modes follows the decay of the coefficients, in two directions at different rates.
-Small divisors magnify the rounding errors of high modes, so an error below the noise of its own
-computation counts as zero.
+On the way it is no larger than the next step asks for; at its end it is as large as doubles can
+tell. Small divisors magnify the rounding errors of high modes, so an error below the noise of its
+own computation counts as zero.
 """
 
 from math import inf, isfinite, log
@@ -12,6 +13,7 @@ from typing import Callable, List, NamedTuple, Optional, Sequence, Tuple, Union
 import numpy as np
 
 from ..model.potential import FourierSum
+from .effort import BYTES, SOLVING, free_memory, some
 from .newton import Frame, Mesh, Real
 from .rotation import Rotation
 from .torus import Torus, decay
@@ -21,9 +23,11 @@ FLAT = 5.0                  # a decay rate; what falls faster has one or two mod
 POINTS = 1 << 21            # of a mesh, at most
 FIRST_STEP, SMALL_STEP, LEAST_STEP = 0.25, 0.01, 1e-5   # of the way to the amplitudes asked for
 SPARE = 1.25                # of the log of the smallest coefficient: amplitudes ahead need more
+ENOUGH = 1e-9               # the least coefficients that count on the way
 ASPECTS = 1.0, 0.25, 0.4, 0.6, 1.6, 2.5, 4.0, 6.0   # of rates of decay in two directions
 ITERATIONS = 9              # of Newton's method
 USEFUL, STALLED = 1e-7, 1e-12   # errors where the method stops: more modes are needed, or not
+WIDE = 2                    # steps of it in wide numbers
 ENLARGED = 8                # numbers of modes that are tried
 HISTORY = 4                 # tori from which the next one is extrapolated
 TOO_LARGE = "too large"
@@ -47,7 +51,7 @@ class Found(NamedTuple):
     mesh, u -- the torus, as coefficients on a mesh, of the modes `keep`
     seen -- the modes whose coefficients are above the noise
     rates -- at which they decay in each mode number
-    reach -- log of the largest coefficient over the noise: e^-reach is about the least that is seen
+    reach -- log of the largest coefficient over the least that count, with some to spare
     """
 
     part: float
@@ -88,6 +92,8 @@ class Way:
                 raise self._not_found(known)
             part = 1.0 if last.part + 1.25 * step >= 1 else last.part + step
             found = self._solved(part, last, _extrapolated(known, part))
+            if isinstance(found, Found) and part == 1:
+                found = self._solved(part, found, found.u, 0.0)
             if isinstance(found, Found):
                 known = [*known[1 - HISTORY:], found]
                 step *= 1.6
@@ -100,7 +106,7 @@ class Way:
     def _straight(self):
         rank = len(Mesh.holding(self.potential, self.rotation, self.frame, (1, 1)).sizes)
         mesh = self.mesh((8,) * rank)
-        u = np.zeros((self.potential.dimension, *mesh.k.shape[1:]), np.clongdouble)
+        u = np.zeros((self.potential.dimension, *mesh.k.shape[1:]), complex)
         return Found(0.0, self.first, mesh, u, mesh.inside, mesh.inside, np.full(rank, FLAT), 1.0)
 
     def taken_up(self, torus: Torus) -> Found:
@@ -109,21 +115,23 @@ class Way:
         m = self.mesh((1, 1)).numbers(k)
         seen = size > float(np.finfo(Real).eps) / 100
         mesh = self.mesh(abs(m[:, seen]).max(1, initial=1) + 1)
-        u = mesh.spread(k, torus.coefficients().T.astype(np.clongdouble))
+        u = mesh.spread(k, torus.coefficients().T)
         return self._measured(0.0, mesh, u)
 
-    def _solved(self, part: float, last: Found, u: np.ndarray) -> Union[Found, str, None]:
+    def _solved(self, part: float, last: Found, u: np.ndarray,
+                least: float = ENOUGH) -> Union[Found, str, None]:
         """The torus there, from coefficients about its own on the last mesh; a mesh is taken whose
-        modes reach down to the noise.  None: Newton's method failed; TOO_LARGE: the mesh would be.
-        """
+        modes reach down to coefficients of the size `least`, or to the noise.  None: Newton's
+        method failed; TOO_LARGE: the mesh would be."""
         mesh, keep, more = last.mesh, last.keep, 1.0
         amplitude = self.amplitude(part)
         for _ in range(ENLARGED):
-            self.tell("looking for the torus at %s, on %d points" % (_text(amplitude), mesh.points))
+            self.tell("looking for the torus at %s, on %d points%s" % (
+                _text(amplitude), mesh.points, some(SOLVING * mesh.points)))
             solved = newton(mesh, u, amplitude, keep)
             if solved is None:
                 return None
-            found = self._measured(part, mesh, solved[0])
+            found = self._measured(part, mesh, solved[0], least)
             u, more = found.u, more * (1.3 if solved[1] > STALLED else 1)
             box = more * found.reach / found.rates
             if all(b <= 2 * ROOM * half for b, half in zip(box, mesh.half)):
@@ -139,7 +147,27 @@ class Way:
             keep = ellipse(mesh, found.rates, more * found.reach)
         return None
 
-    def _measured(self, part, mesh, u):
+    def widened(self, found: Found, mesh: Mesh, keep: np.ndarray) -> Found:
+        """The torus at the end of the way on another mesh, of the modes `keep`, more accurate: of
+        wide numbers."""
+        u = found.mesh.moved(found.u, mesh).astype(np.clongdouble)
+        noise = mesh.noise(found.amplitude)
+        for _ in range(WIDE):
+            error = mesh.error(u, found.amplitude)
+            error[abs(error) < noise] = 0
+            u = (u + mesh.correction(u, error)) * keep
+        return self._measured(1.0, mesh, u, 0.0)
+
+    def check_cost(self, points: int) -> None:
+        """NotFound: balls on a grid of so many points take more memory than is free."""
+        free = free_memory() * 3 // 4
+        if points * BYTES > free:
+            raise NotFound("the torus is seen, but to refine it takes a grid of %d points and %.3g "
+                           "GB of memory, and %.3g GB may be used" % (
+                               points, points * BYTES / 1e9, free / 1e9),
+                           1.0, [float(p) for p in self.last])
+
+    def _measured(self, part, mesh, u, enough=ENOUGH):
         """The rates of decay, of coefficients above the noise, and the modes to keep.
 
         The noise of u is that of E over the smallest divisor so far: by L, in v = L z, the noise of
@@ -149,7 +177,8 @@ class Way:
         order = np.argsort(far, kind="stable")
         least = np.minimum.accumulate(np.where(far > 0, turn.ravel(), 4)[order])
         noise = np.empty(turn.size)
-        noise[order] = mesh.noise(self.amplitude(part)) / least
+        noise[order] = np.maximum(mesh.noise(self.amplitude(part), u.real.dtype.type) / least,
+                                  enough)
         size = abs(u).max(0).astype(float).ravel()
         seen = np.where((size > noise) & mesh.inside.ravel(), size, 0)
         rates, reach = np.full(len(mesh.sizes), FLAT), 8 * FLAT
@@ -163,7 +192,7 @@ class Way:
     def _hopeful(self, known):
         """Do the rates of decay, if they go on as they do, stay above 0 for half of what is left?
         """
-        if len(known) < HISTORY or known[-1].mesh.points < self.points >> 4:
+        if len(known) < HISTORY or known[-1].mesh.points < self.points >> 2:
             return True
         return self._breakdown(known) > (known[-1].part + 1) / 2
 
@@ -177,13 +206,14 @@ class Way:
         at = _text(self.amplitude(last.part))
         end = self._breakdown(known) if len(known) > 1 else inf
         guess = _text(self.amplitude(end)) if isfinite(end) else ""
-        text = "no torus of %s was found for the amplitudes asked for: the last one is at %s" % (
-            self.rotation, at)
-        text += ", with %d points" % last.mesh.points
+        text = "no torus of this rotation %s was found for the amplitudes asked for: the last is " \
+            "at %s, on a grid of %d points" % (
+                "vector" if self.potential.dimension > 1 else "number", at, last.mesh.points)
         if too_large:
-            text += "; farther on it needs more than the %d that are allowed" % self.points
+            text += "; farther on it needs more than the %d points that are allowed" \
+                % self.points
         if guess and end < 2:
-            text += "; its coefficients decay at a rate that would be 0 near %s" % guess
+            text += "; the rate at which its coefficients decay would be 0 near %s" % guess
         return NotFound(text, last.part, [float(p) for p in self.amplitude(last.part)])
 
 
@@ -209,10 +239,10 @@ def _extrapolated(known: List[Found], part: float) -> np.ndarray:
     mesh = known[-1].mesh
     total = np.zeros_like(known[-1].u)
     for i, found in enumerate(known):
-        weight = Real(1)
+        weight = 1.0
         for j, other in enumerate(known):
             if i != j:
-                weight *= Real(part - other.part) / Real(found.part - other.part)
+                weight *= (part - other.part) / (found.part - other.part)
         total += weight * (found.u if found.mesh is mesh else found.mesh.moved(found.u, mesh))
     return total
 
@@ -221,7 +251,7 @@ def newton(mesh: Mesh, u: np.ndarray, amplitude: np.ndarray,
            keep: np.ndarray) -> Optional[Tuple[np.ndarray, float]]:
     """The coefficients of the modes `keep` that solve the equation, as exactly as the noise and the
     other modes permit, and what is left of the error; None: the method does not converge from u."""
-    noise = mesh.noise(amplitude)
+    noise = mesh.noise(amplitude, u.real.dtype.type)
     before = inf
     for _ in range(ITERATIONS):
         error = mesh.error(u, amplitude)

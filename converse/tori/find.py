@@ -10,18 +10,20 @@ from ..model.exact import Ends, short_text
 from ..model.potential import FourierSum
 from ..model.problem import Problem
 from .continuation import POINTS, Found, NotFound, Way, ellipse, newton
+from .effort import BALLS, REFINING, SINGLE, SOLVING, some
 from .newton import Frame, Mesh, Real, default_frame
-from .refinement import MARGIN, Digits, digits_for, plan, refined
+from .refinement import MARGIN, Digits, digits_for, layers_for, plan, refined
 from .rotation import Rotation
 from .torus import Torus, decay, family
 
 __all__ = ["NotFound", "find"]
 
 ROUNDS = 3                  # numbers of modes that are tried
+LACKING, SURE = 4.0, 0.05   # of the margin may lack so much, if the error is so small a part
 MOST_DEGREE = 24            # in sigma
 LEAST_DEGREE = 4
 LAYERS = 32                 # points of the circle of sigma, half of which are computed
-LARGEST = 1 << 18           # points of the mesh times degree, where degrees may be chosen
+LARGEST = 1 << 22           # points of the mesh times degree, where degrees may be chosen
 NARROWEST = 1e-3            # piece, of s
 MOST_MARGIN = 1e100         # coefficients times 2^bits are doubles on their way to integers
 
@@ -65,7 +67,7 @@ def find(problem: Problem, rotation: Rotation, *, start: Optional[Torus] = None,
                 middle - _wide(part) if part else middle)
     found = first.follow(None if start is None else first.taken_up(start))
     if part is None:
-        return _single(found, potential, rotation, margin, tell)
+        return _single(found, first, margin)
     return _Pieces(potential, part, rotation, way, margin, tell).cover(found)
 
 
@@ -89,19 +91,29 @@ def _amplitudes(potential, rotation, start):
     return known
 
 
-def _single(found, potential, rotation, margin, tell):
-    digits = None
-    for number in range(ROUNDS):
-        aim = plan(found, margin, 1.2 ** number)
+def _single(found, way, margin):
+    """The torus of one potential.  How many modes it needs is known from its decay in doubles, then
+    better from that in wide numbers, and then from the error that is left."""
+    aim = plan(found, margin)
+    mesh = aim.mesh(found.mesh)
+    way.check_cost(mesh.points)
+    found = way.widened(found, mesh, aim.keep(mesh))
+    more, digits = 1.0, None
+    for _ in range(ROUNDS):
+        aim = plan(found, margin, more)
         before, digits = digits, digits_for(aim, found.mesh, margin)
+        way.check_cost(digits.mesh.points)
         if before is None:
-            digits.add(digits.picked(found.mesh.moved(found.u, digits.mesh))[None])
+            digits.add(digits.picked(found.mesh.moved(found.u * found.seen, digits.mesh))[None])
         else:
             digits.take(before)
-        tell("refining a torus of %d modes" % len(digits.at))
-        torus, ratio = refined(digits, aim, potential, None, rotation, margin)
-        if ratio <= 1 / margin:
+        way.tell("refining a torus of %d modes%s" % (
+            len(digits.at), some(SINGLE * BALLS * digits.mesh.points)))
+        torus, ratio = refined(digits, aim, way.potential, None, way.rotation,
+                               lambda sigma: way.last, margin)
+        if ratio <= max(1 / margin, min(LACKING / margin, SURE)):
             break
+        more *= 1.05 + log(ratio * margin) / ((aim.rate - aim.rho) * aim.size)
     return torus
 
 
@@ -144,9 +156,9 @@ class _Pieces:
                 tori.append(torus)
                 found = ends[-1]
             elif high - low < 2 * NARROWEST:
-                raise NotFound("no torus of %s was found for a range of amplitudes, however short, "
-                               "about %s" % (self.rotation, ", ".join(
-                                   "%.6g" % float(p) for p in self.amplitude(middle))),
+                raise NotFound("no torus that is a polynomial in the parameter was found on a "
+                               "piece of the range, however short, at %s" % ", ".join(
+                                   "%.6g" % float(p) for p in self.amplitude(middle)),
                                float(low + 1) / 2, [float(p) for p in self.amplitude(low)])
             else:
                 rest += [(middle, high), (low, middle)]
@@ -161,10 +173,9 @@ class _Pieces:
             return None
         source, c = series
         weight = np.exp(aim.rho * aim.length(source.mesh).ravel()[source.at])
-        sizes = (np.sqrt((abs(c) ** 2).sum(1)) * weight).sum(1)[:LAYERS // 2]
-        rate = decay(np.arange(len(sizes)), np.where(sizes > 1e-13 * sizes.max(), sizes, 0))
+        sizes = (np.sqrt((abs(c) ** 2).sum(1)) * weight).sum(1)
         degree = max(LEAST_DEGREE, ceil(
-            log(sizes.max() * 10 * self.margin / aim.needed) / rate))
+            log(sizes.max() * 10 * self.margin / aim.needed) / series_rate(sizes)))
         digits = digits_for(aim, worst.mesh, self.margin, degree)
         if degree > max(LEAST_DEGREE, min(MOST_DEGREE, LARGEST // digits.mesh.points)):
             return None
@@ -175,22 +186,27 @@ class _Pieces:
             u = source.mesh.moved(mesh_wide.reshape(len(each), *source.mesh.sizes), digits.mesh)
             moved[j] = digits.picked(u)
         digits.add(moved)
-        self.tell("refining the tori of %s, %d modes of degree %d" % (
-            _range_text(piece), len(digits.at), degree))
-        torus, ratio = refined(digits, aim, self.potential, self.part, self.rotation, self.margin,
-                               piece)
+        self.tell("refining the tori of %s, %d modes of degree %d%s" % (
+            _range_text(piece), len(digits.at), degree,
+            some(REFINING * BALLS * digits.mesh.points * layers_for(degree))))
+        low, middle, high = (found.amplitude for found in ends)
+        torus, ratio = refined(digits, aim, self.potential, self.part, self.rotation,
+                               lambda sigma: middle + sigma * (high - low) / 2, self.margin, piece)
         return torus if ratio <= 10 / self.margin else None
 
     def _series(self, piece, ends, worst):
-        """(where its modes are, the coefficients of the torus as a series in sigma)."""
+        """(where its modes are, the coefficients of the torus as a series in sigma, as
+        Digits.series gives them)."""
         mesh = Mesh(self.potential, self.rotation, worst.mesh.frame, worst.mesh.sizes, real=False)
         keep = ellipse(mesh, worst.rates, worst.reach)
         low, middle, high = (self._complex(found, mesh) for found in ends)
         source = Digits(mesh, keep & (abs(mesh.k).max(0) > 0), 0)
         half = (ends[-1].amplitude - ends[0].amplitude) / 2
-        self.tell("looking for the tori of %s, on %d points" % (_range_text(piece), mesh.points))
+        half_circle = range(LAYERS // 2 + 1)
+        self.tell("looking for the tori of %s, on %d points%s" % (
+            _range_text(piece), mesh.points, some(SOLVING * mesh.points * len(half_circle))))
         circle = []
-        for l in range(LAYERS // 2 + 1):
+        for l in half_circle:
             sigma = np.exp(2j * np.pi * l / LAYERS)
             guess = middle + (high - low) / 2 * sigma + ((high + low) / 2 - middle) * sigma ** 2
             solved = newton(mesh, guess, ends[1].amplitude + sigma * half, keep)
@@ -205,3 +221,10 @@ class _Pieces:
         place = source.inside & (abs(found.u).max(0) > 0)
         k, u = source.k[:, place], found.u[:, place]
         return mesh.spread(k, u)
+
+
+def series_rate(sizes: np.ndarray) -> float:
+    """The rate at which the sizes of a series' coefficients decay with the power, as far as they
+    are above the noise: the second half of them, those of negative powers, is nothing else."""
+    powers, noise = np.split(sizes, 2)
+    return decay(np.arange(len(powers)), np.where(powers > 10 * noise.max(), powers, 0))

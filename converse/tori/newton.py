@@ -6,8 +6,9 @@ of the error E solves two equations of the form g(. + w) - g = f, each a divisio
 coefficients by e^{i k.w} - 1, and leaves an error of the order of E^2.  It costs some Fourier
 transforms; no system of linear equations is solved.
 
-The error E is wanted to more digits than v: E is computed in the widest floating-point numbers that
-numpy transforms (the 80 bits of x86 where there are such), v in doubles.
+The error E is wanted to more digits than v. It is computed in the numbers of the coefficients,
+which are doubles or the widest that numpy transforms (the 80 bits of x86 where there are such); v
+in doubles. E(u + v) - E(u) is computed to as many digits, however small v is.
 """
 
 from math import ceil, log2
@@ -188,30 +189,51 @@ class Mesh:
     # ---- the equation
 
     def error(self, u: np.ndarray, amplitude: np.ndarray) -> np.ndarray:
-        """The coefficients of E(u) = u(. + w) - 2 u + u(. - w) + grad V(theta + u), in wide
-        numbers."""
+        """The coefficients of E(u) = u(. + w) - 2 u + u(. - w) + grad V(theta + u), in numbers of
+        the kind of u's."""
         values = self.values(u)
-        force = np.zeros_like(values)
+
+        def force(phase, vector):
+            return np.cos(phase + np.tensordot(vector, values, 1))
+
+        return self._linear(u) + self._force(force, values, amplitude)
+
+    def change(self, u: np.ndarray, v: np.ndarray, amplitude: np.ndarray) -> np.ndarray:
+        """E(u + v) - E(u), to as many digits as v has: cos(a + s) - cos a is
+        -2 sin(a + s/2) sin(s/2)."""
+        values, step = self.values(u), self.values(v)
+
+        def force(phase, vector):
+            half = np.tensordot(vector, step, 1) / 2
+            return -2 * np.sin(phase + np.tensordot(vector, values, 1) + half) * np.sin(half)
+
+        return self._linear(v) + self._force(force, values, amplitude)
+
+    def _linear(self, u):
+        return -self.turn.astype(u.real.dtype) * u * self.inside
+
+    def _force(self, cosine, like, amplitude):
+        """The coefficients of - sum of p_j k_j cosine(k_j.theta + pi phase_j, k_j), of values in
+        numbers of the kind of `like`."""
+        real, force = like.real.dtype.type, np.zeros_like(like)
         n = self.potential.dimension
-        for wave, a, p in zip(self.potential.waves, self.waves, amplitude):
-            phase = Real(wave[2].numerator) / wave[2].denominator / 2
+        for wave, a, p in zip(self.potential.waves, self.waves, amplitude.astype(like.dtype)):
+            phase = real(wave[2].numerator) / wave[2].denominator / 2
             for i, (number, size) in enumerate(zip(a, self.sizes)):
-                turns = np.arange(size) * number % size / Real(size)
+                turns = np.arange(size) * number % size / real(size)
                 phase = phase + turns.reshape([-1 if j == i else 1 for j in range(len(a))])
-            angle = 2 * PI * (phase - np.rint(phase)) + np.tensordot(
-                np.array(wave[:n]), values, 1)
-            angle = np.cos(angle)
+            found = cosine(real(2 * PI) * (phase - np.rint(phase)), np.array(wave[:n], real))
             for i in range(n):
                 if wave[i]:
-                    force[i] -= p * wave[i] * angle
-        return (self.coefficients(force) - self.turn * u) * self.inside
+                    force[i] -= p * wave[i] * found
+        return self.coefficients(force) * self.inside
 
-    def noise(self, amplitude: np.ndarray) -> float:
-        """About the largest rounding error of a coefficient of `error`: the errors of many values
-        add up like random numbers."""
+    def noise(self, amplitude: np.ndarray, real: type = Real) -> float:
+        """About the largest rounding error of a coefficient of `error` in numbers of a kind: the
+        errors of many values add up like random numbers."""
         force = sum(float(abs(p)) * max(map(abs, wave[:2]))
                     for p, wave in zip(amplitude, self.potential.waves))
-        return self._rounding(np.finfo(Real)) * force
+        return self._rounding(np.finfo(real)) * force
 
     def _rounding(self, info):
         """Of coefficients, in terms of values."""

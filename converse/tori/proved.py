@@ -4,7 +4,7 @@ constants in ball arithmetic, and check the theorem's inequality (docs/existence
 import math
 import os
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any, Callable, Dict, Optional, Sequence, Tuple, Union
 
@@ -15,19 +15,19 @@ from ..model.problem import Problem
 from ..storage.files import ConverseError
 from .constants import Constants, Inverse
 from .divisors import Divisors, Norm, lattice_basis
+from .effort import BALLS, BYTES, free_memory, proving, some
+from .processes import Processes
 from .residual import LADDER, Grid, Phases, Sizes, residual, wave_vectors
 from .rotation import Rotation
 from .theorem import Bounds, Theorem, Verdict
 from .torus import Torus, family
 
-AIM = 1000.0                # what grid and roundings are to leave of the admissible residual
+AIM = 200.0                 # what grid and roundings are to leave of the admissible residual
 CLOSE = 1 / 200             # |I - L M| that is close enough
-BYTES = 250                 # of memory for each point of a grid: a ball in two arrays
 WIDTHS = [1.25 ** -j for j in range(20)]        # of the rate of decay: the rho that are tried
 ALPHAS = tuple(Fraction(a, 2) for a in (2, 3, 4, 5, 6, 8, 10, 12, 16))      # ratios of weights
 MOST_BITS, MOST_LAYERS = 4000, 1024
 HUGE = 1 << 30              # above the components of modes and of coefficients
-SECONDS = 1.2e-5            # for each point of a grid, about
 # A torus whose residual is so many times larger than needed, at most, is found more accurately,
 # with a margin so many times larger.
 MOST_LACKING, FINER = 1e8, 1e4
@@ -53,6 +53,8 @@ class Piece:
     verdict -- of the theorem, with what was chosen in it
     rho, wider, radius -- widths: of the norms, and of the strip (and the disc of sigma) by which
         what the grid does not see is bounded
+    tried -- (width, residual, needed) of all widths from which rho was chosen, `needed` not
+        checked in balls
     grid, inverse_grid -- on which the residual and the inverse of I + Du were computed
     bits -- of the balls
     seconds, memory -- that the proof took; bytes, estimated
@@ -66,6 +68,7 @@ class Piece:
     rho: Fraction
     wider: Fraction
     radius: Fraction
+    tried: Tuple[Tuple[Fraction, float, float], ...]
     grid: Grid
     inverse_grid: Grid
     bits: int
@@ -144,17 +147,16 @@ class ProvedTorus:
     def memory(self) -> int:
         return max(piece.memory for piece in self.pieces)
 
-    def _repr_png_(self) -> Optional[bytes]:
-        """For notebooks; None without matplotlib."""
-        from ..draw.torus_figure import picture
-        try:
-            return picture([piece.torus for piece in self.pieces], "png", self.pieces)
-        except ConverseError:
-            return None
+    def _repr_html_(self) -> str:
+        """For notebooks: the theorem and, where there is matplotlib, the picture."""
+        from ..draw.torus_figure import proved_html
+        return proved_html(self)
 
     def save(self, path: Union[str, "os.PathLike[str]"]) -> str:
         """Writes the certificate (docs/format.md), compressed if the name ends in .gz, and returns
-        its SHA-256.  ConverseError: it cannot be written."""
+        its SHA-256 (that of the uncompressed file).  As with Proof.save() a file that is there is
+        replaced; the command converse-tori refuses to.  ConverseError: it cannot be written; the
+        older file, if any, is intact."""
         from .certificate import write
         return write(self, path)
 
@@ -164,7 +166,7 @@ def prove(source: Union[Problem, Torus, Sequence[Torus]], rotation: Optional[Rot
           points: Optional[int] = None, norm: Optional[Norm] = None,
           shape: Optional[Tuple[int, int]] = None, layers: Optional[int] = None,
           bits: Optional[int] = None, rho: Optional[Fraction] = None,
-          memory: Optional[int] = None, progress: Progress = None) -> ProvedTorus:
+          memory: Optional[int] = None, jobs: int = 1, progress: Progress = None) -> ProvedTorus:
     """Proves that there is an invariant torus near the given one, or near one that is found first.
 
     source -- a Torus, or tori that cover a range, or a Problem, to which a rotation vector belongs
@@ -172,6 +174,7 @@ def prove(source: Union[Problem, Torus, Sequence[Torus]], rotation: Optional[Rot
     norm, shape, layers, bits, rho -- of the proof (docs/existence.md); chosen, if they are not
         given
     memory -- bytes that the proof may take; by default three quarters of what is free
+    jobs -- how many pieces of a range are proved at a time, each in a process of its own
     progress -- is told in words what is going on
 
     If a torus that was found turns out to be not accurate enough, a more accurate one is tried,
@@ -186,9 +189,10 @@ def prove(source: Union[Problem, Torus, Sequence[Torus]], rotation: Optional[Rot
                 (tori[0].potential, tori[0].part, tori[0].rotation) != (*family(source), rotation):
             raise ConverseError("the torus that was found is not of the problem; this is an error "
                                 "of the program")
-        return ProvedTorus(tuple(_Attempt(torus, norm, shape, layers, bits, rho, memory,
-                                          progress).run() for torus in tori))
+        return ProvedTorus(_pieces(tori, (norm, shape, layers, bits, rho), memory, jobs, progress))
 
+    if jobs < 1:
+        raise ValueError("jobs is %s; at least one piece is proved at a time" % jobs)
     finding: Dict[str, Any] = {name: value for name, value in (
         ("start", start), ("margin", margin), ("points", points)) if value is not None}
     if not isinstance(source, Problem):
@@ -215,6 +219,34 @@ def prove(source: Union[Problem, Torus, Sequence[Torus]], rotation: Optional[Rot
         progress("looking for a more accurate torus")
     return proof(find(source, rotation, progress=progress,
                       **dict(finding, margin=FINER * lacking)))
+
+
+def _pieces(tori, choices, memory, jobs, progress):
+    """Their proofs."""
+    memory, jobs = free_memory() * 3 // 4 if memory is None else memory, min(jobs, len(tori))
+    tell = progress or (lambda text: None)
+    if jobs == 1:
+        tell("proving %s%s" % ("the torus" if len(tori) == 1 else "%d pieces" % len(tori),
+                               some(sum(map(proving, tori)))))
+        return tuple(_Attempt(torus, *choices, memory, tell).run() for torus in tori)
+
+    seconds, found = list(map(proving, tori)), {}
+    order = sorted(range(len(tori)), key=seconds.__getitem__, reverse=True)     # the longest first
+    with Processes(jobs) as processes:
+        for number in order:
+            processes.give(_proved_apart, tori[number], *choices, memory // jobs)
+        tell("proving %d pieces, %d at a time%s" % (
+            len(tori), jobs, some(max(sum(seconds) / jobs, *seconds))))
+        for number, piece in zip(order, processes.results()):
+            found[number] = replace(piece, torus=tori[number])
+            tell("%d of %d pieces are proved" % (len(found), len(tori)))
+    return tuple(found[number] for number in range(len(tori)))
+
+
+def _proved_apart(torus, *others):
+    """A piece, by a process of Processes."""
+    with np.errstate(all="ignore"):
+        return _Attempt(torus, *others, lambda text: None).run()
 
 
 def check_cover(tori: Sequence[Torus]) -> None:
@@ -259,16 +291,17 @@ def _check(torus: Torus) -> None:
 class _Attempt:
     """The proof of one torus."""
 
-    def __init__(self, torus, norm, shape, layers, bits, rho, memory, progress):
+    def __init__(self, torus, norm, shape, layers, bits, rho, memory, tell):
         self.torus, self.shape, self.bits = torus, shape, bits
         self.rho = rho = None if rho is None else exact(rho)    # products of doubles are rounded
-        self.memory = _free_memory() * 3 // 4 if memory is None else memory
-        self.tell = progress or (lambda text: None)
+        self.memory, self.tell = memory, tell
         self.start = time.process_time()
         self.waves = wave_vectors(torus)
         if norm is not None and norm.dimension != torus.dimension:
             raise ValueError("the norm is one of %d angles, and the map has %d"
                              % (norm.dimension, torus.dimension))
+        if bits is not None and not 2 <= bits <= MOST_BITS:
+            raise ValueError("balls have from 2 to %d bits, not %s" % (MOST_BITS, bits))
         if rho is not None and not 0 < rho < LADDER[-1]:
             raise ValueError("rho = %s is not between 0 and %d" % (rho, LADDER[-1]))
         self.norm = _norm(torus) if norm is None else norm
@@ -300,7 +333,8 @@ class _Attempt:
         if verdict.bounds is None:
             raise NotProved(self._remedy(e0, tail, verdict.needed, error.sizes, rho),
                             e0, verdict.needed)
-        return Piece(self.torus, self.norm, constants, e0, verdict, rho, wider, radius, grid,
+        tried = tuple(sorted((width, reached, at[width]) for _, width, reached, *_ in tries))
+        return Piece(self.torus, self.norm, constants, e0, verdict, rho, wider, radius, tried, grid,
                      inverse.grid, bits, time.process_time() - self.start, BYTES * grid.points)
 
     def _rate(self):
@@ -332,8 +366,9 @@ class _Attempt:
                 if constants[rho].eta < CLOSE or points * layers > grid.points:
                     return inverse, grid, rho, at
             elif 4 * inverse.cut > 3 * self.far.max(initial=1) + 40:
-                raise NotProved("no inverse of I + Du was found, or the torus is too wild; find it "
-                                "with more modes, or for smaller amplitudes")
+                raise NotProved("no approximate inverse of I + Du is good enough for the theorem "
+                                "to hold with any residual; find a torus with more points, or for "
+                                "smaller amplitudes")
             points *= 2
 
     def _grid(self, at):
@@ -380,9 +415,8 @@ class _Attempt:
 
     def _tell(self, what, shape, layers):
         points = [x for x in (*shape, layers) if x > 1] or [1]
-        seconds = SECONDS * math.prod(points)
-        self.tell("%s on %s points%s" % (what, " x ".join(map(str, points)), "" if seconds < 2
-                                         else ", some %.0f s" % seconds))
+        self.tell("%s on %s points%s" % (what, " x ".join(map(str, points)),
+                                         some(BALLS * math.prod(points))))
 
     def _ratio(self, grid, rho, needed):
         tail = self.phases.best_tail(grid, rho)[0]
@@ -394,26 +428,28 @@ class _Attempt:
         mass = Sizes(self.norm, m, np.ones((len(m), 1))).norm_at(rho) * grid.layers
         bits = math.log2(mass * AIM * 64 / needed)
         if not bits < MOST_BITS:
-            raise NotProved("the residual would have to be computed with too many digits", needed=0)
+            raise NotProved("the residual would have to be computed with more than %d bits; find a "
+                            "torus for smaller amplitudes" % MOST_BITS)
         return max(64, math.ceil(bits))
 
     def _check_cost(self, points):
         if points * BYTES > self.memory:
             raise NotProved("a grid of %d points takes %.3g GB of memory, and %.3g GB may be used; "
-                            "give a torus with fewer modes, or more memory"
+                            "give a torus with fewer modes, more memory, or fewer jobs"
                             % (points, points * BYTES / 1e9, self.memory / 1e9))
 
     def _remedy(self, e0, tail, needed, sizes, rho):
         text = "the residual is %s at rho = %.4g, and the theorem needs %s: " % (
-            _number(e0), float(rho), _number(needed))
+            _number(e0), float(rho), rounded_text(Fraction(needed), 2, up=False))
         if not math.isfinite(e0) or tail > e0 / 2:
             return text + "what the grid does not see is too much; take a larger grid"
-        text += "the torus is not accurate enough; find it with more modes and digits"
+        text += "the torus is not accurate enough; find it with a larger margin, or more points"
         return text if self.bits is None else \
             text + ", or balls of %d bits are too few; take more" % self.bits
 
 
 def _number(x):
+    """x >= 0, rounded up."""
     return rounded_text(Fraction(x), 2, up=True) if math.isfinite(x) else "unbounded"
 
 
@@ -453,15 +489,3 @@ def _distances(torus, norm):
     """The |k| of the modes, in doubles."""
     m = abs(torus.vectors @ np.array(norm.frame).T)
     return m @ np.array([float(a) for a in norm.alpha])
-
-
-def _free_memory():
-    """Bytes; 4 GB if the system does not say."""
-    try:
-        with open("/proc/meminfo") as file:
-            for line in file:
-                if line.startswith("MemAvailable:"):
-                    return int(line.split()[1]) * 1024
-    except (OSError, ValueError, IndexError):
-        pass
-    return 4 << 30

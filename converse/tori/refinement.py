@@ -1,14 +1,18 @@
 """Refinement of a torus: Newton's method, its error computed with as many digits as the theorem
 asks for, by the midpoints of ball arithmetic; and how many modes and digits these are.
 
+Balls are slow, so the error is computed in them once, or twice: what a correction changes in it is
+known to as many digits in floating-point numbers (Mesh.change).
+
 The coefficients may be polynomials in sigma, the variable of a range of amplitudes.  They are then
 corrected at points of the circle |sigma| = 1, from where Cauchy's formula, a Fourier transform,
 leads back to the polynomials.
 """
 
 from fractions import Fraction
+from itertools import repeat
 from math import ceil, exp, inf, log2
-from typing import Iterator, NamedTuple, Optional, Tuple
+from typing import Callable, Iterator, NamedTuple, Optional, Tuple
 
 import numpy as np
 
@@ -22,20 +26,24 @@ from .rotation import Rotation
 from .torus import NO_RANGE, Part, Torus
 
 MARGIN = 100.0              # of the theorem's inequality, that is aimed at
-TURNS = 5                   # of refinement
-EDGE = 1.5                  # the error is computed for so many times the largest |k| of the torus
+TURNS = 5                   # in balls
+STEPS = 8                   # of Newton's method in each of them
+EDGE = 1.13                 # the error is computed for so many times the largest |k| of the plan
+ROOM = 0.9                  # a part of that is taken by the torus, from which the rest is left out
 
 
 class Plan(NamedTuple):
     """norm -- of modes, that of the theorem; alpha -- |k| = sum of alpha_i |m_i| on a mesh
-    size -- of the largest k that is kept
-    rho, needed -- the width of the strip, and about the largest ||E||_rho that the theorem takes"""
+    size -- of the largest k that matters
+    rho, needed -- the width of the strip, and about the largest ||E||_rho that the theorem takes
+    rate -- at which coefficients decay with |k|"""
 
     norm: Norm
     alpha: np.ndarray
     size: float
     rho: float
     needed: float
+    rate: float
 
     def length(self, mesh: Mesh) -> np.ndarray:
         """|k| of the modes of a mesh."""
@@ -45,6 +53,11 @@ class Plan(NamedTuple):
         """One on which products of the modes that are kept have room."""
         return Mesh.holding(like.potential, like.rotation, like.frame,
                             [EDGE * self.size / a for a in self.alpha], real)
+
+    def keep(self, mesh: Mesh) -> np.ndarray:
+        """The modes of a mesh that a torus may have."""
+        reach = float((self.alpha * mesh.half).min())
+        return mesh.inside & (self.length(mesh) <= ROOM * reach) & (abs(mesh.k).max(0) > 0)
 
 
 def plan(found: Found, margin: float = MARGIN, more: float = 1.0) -> Plan:
@@ -65,63 +78,73 @@ def plan(found: Found, margin: float = MARGIN, more: float = 1.0) -> Plan:
     largest = float((size * np.exp(np.minimum(rate * length, 600)))[found.seen].max(initial=1e-3))
     density = (2 if len(alpha) == 1 else 4) / float(alpha.prod())   # of modes near |k| <= 1
     K = (4 * tau + 1) / (0.9 * rate)
+    theorem = _Needed(found, alpha)
     while True:
         rho = (4 * tau + 1) / K
         x = rate - rho
         tail = density * largest * exp(-x * K) * (1 / x if len(alpha) == 1
                                                   else K / x + 1 / x ** 2)
-        needed = _needed(found, alpha, rho)
+        needed = theorem.at(rho)
         if tail <= needed / margin:
             break
         K *= 1.05
     norm = Norm(mesh.frame, tuple(Fraction(int(a)) for a in weights))
     if more > 1:
-        needed = _needed(found, alpha, rho / more)
-    return Plan(norm, alpha, K * more, rho / more, needed)
+        needed = theorem.at(rho / more)
+    return Plan(norm, alpha, K * more, rho / more, needed, rate)
 
 
 def _length(mesh, alpha):
     return sum(a * abs(m) for a, m in zip(alpha, mesh.m))
 
 
-def _needed(found, alpha, rho):
+class _Needed:
     """About the largest ||E||_rho for which the theorem holds (docs/existence.md): from norms in
     doubles, the divisors of the mesh, and the loss in 4 + 2 s parts with s = 0.3."""
-    mesh, tau = found.mesh, found.mesh.potential.dimension
-    length = _length(mesh, alpha)
-    weight = np.exp(np.minimum(length * rho, 200))
-    at, _ = mesh.positive(found.keep)
 
-    def norm(coefficients):
-        components = tuple(range(coefficients.ndim - len(mesh.sizes)))
-        size = np.sqrt((abs(coefficients) ** 2).sum(components))
-        return float(size.flat[0] + 2 * (size * weight).ravel()[at].sum())
+    def __init__(self, found: Found, alpha: np.ndarray) -> None:
+        self.mesh, self.alpha = found.mesh, alpha
+        mesh = found.mesh
+        at, _ = mesh.positive(found.keep)
+        self.length = _length(mesh, alpha).ravel()[at]
+        self.divisors = abs(mesh.back).ravel()[at]
 
-    L, A, du = mesh.frames(found.u)
-    l = 1 + norm(du)
-    m, a = (norm(mesh.coefficients(inverted(x))) for x in (L, A))
-    delta = rho / 4.6
-    sizes = abs(mesh.back).ravel()[at]
-    c = float((np.exp(-delta * length.ravel()[at]) / sizes).max())
-    d = 1 / (delta * exp(1) * alpha.min())
-    T = 0.0
-    for k, p in zip(mesh.vectors, found.amplitude):
-        growth = exp(min(50, norm(np.tensordot(np.array(k), found.u, 1)[None])))
-        T += float(abs(p)) * float(np.dot(k, k)) ** 1.5 * growth
-    h = 1.1
-    G = a * h * c ** 2 * l * ((2 * m * l * d if tau > 1 else 0) + d / 2
-                              + T / 2 * a * h * c ** 2 * l ** 3)
-    return 2.0 ** (-4 * tau) / G
+        def sizes(coefficients):
+            components = tuple(range(coefficients.ndim - len(mesh.sizes)))
+            size = np.sqrt((abs(coefficients) ** 2).sum(components)).ravel()
+            return float(size[0]), size[at]
+
+        L, A, du = mesh.frames(found.u)
+        self.du, self.m, self.a = (sizes(x) for x in (
+            du, *(mesh.coefficients(inverted(x)) for x in (L, A))))
+        self.waves = [(float(abs(p)) * float(np.dot(k, k)) ** 1.5, sizes(np.tensordot(
+            np.array(k), found.u, 1)[None])) for k, p in zip(mesh.vectors, found.amplitude)]
+
+    def at(self, rho: float) -> float:
+        weight, tau = np.exp(np.minimum(self.length * rho, 200)), self.mesh.potential.dimension
+
+        def norm(sizes):
+            return sizes[0] + 2 * float(weight @ sizes[1])
+
+        l, m, a = 1 + norm(self.du), norm(self.m), norm(self.a)
+        delta = rho / 4.6
+        c = float((np.exp(-delta * self.length) / self.divisors).max())
+        d = 1 / (delta * exp(1) * self.alpha.min())
+        T = sum(size * exp(min(50, norm(phase))) for size, phase in self.waves)
+        h = 1.1
+        G = a * h * c ** 2 * l * ((2 * m * l * d if tau > 1 else 0) + d / 2
+                                  + T / 2 * a * h * c ** 2 * l ** 3)
+        return float(2.0 ** (-4 * tau) / G)
 
 
 class Digits:
     """The coefficients of a torus with many digits, as integers times 2^-bits, on a mesh: a complex
     one if there is a parameter.
 
-    k -- the modes, one of each k and -k, integers (n, modes)"""
+    k -- the modes of `keep`, one of each k and -k, integers (n, modes)"""
 
     def __init__(self, mesh: Mesh, keep: np.ndarray, bits: int, degree: int = 0) -> None:
-        self.mesh, self.bits, self.degree = mesh, bits, degree
+        self.mesh, self.keep, self.bits, self.degree = mesh, keep, bits, degree
         self.at, self.plain = mesh.positive(keep)
         k = mesh.k.reshape(len(mesh.k), -1)[:, self.at]
         self.k = np.where(self.plain, k, -k)
@@ -163,7 +186,10 @@ class Digits:
 
     def on_circle(self, c: np.ndarray, layers: int) -> Iterator[np.ndarray]:
         """The sums of c_j sigma^j, c of shape (degree + 1, n, modes), on the mesh, at
-        sigma = e^{2 pi i l/layers} for l = 0, ..., layers/2."""
+        sigma = e^{2 pi i l/layers} for l = 0, ..., layers/2; of degree 0 on a real mesh."""
+        if self.mesh.real:
+            yield self.mesh.spread(self.k, c[0])
+            return
         both = [np.fft.ifft(each, layers, axis=0, norm="forward") for each in (c, c.conj())]
         for at_k, at_minus_k in list(zip(*both))[:layers // 2 + 1]:
             u = np.zeros((len(self.k), self.mesh.points), at_k.dtype)
@@ -172,12 +198,30 @@ class Digits:
 
     def series(self, circle: Iterator[np.ndarray], layers: int) -> np.ndarray:
         """The opposite: c_j for j = 0, ..., layers - 1."""
+        if self.mesh.real:
+            return np.array([self.picked(u) for u in circle])
         at_k, conjugate = [], []
         for u in circle:
             u = u.reshape(len(u), -1)
             at_k.append(u[:, self.at])
             conjugate.append(u[:, self.negative].conj())
         return np.fft.fft(np.array(at_k + conjugate[-2:0:-1]), axis=0, norm="forward")
+
+    def prune(self, plan: Plan, potential: FourierSum, part: Part, most: float) -> float:
+        """Leaves out the coefficients that matter least, as many as make up `most` of ||E||_rho;
+        returns about what they make up.  |E'(u) v| is less than 4 + sum |p_j| |k_j|^2 times |v|."""
+        slope = 4.0
+        for j, k in enumerate(self.mesh.vectors):
+            p = abs(potential.amplitude[j]) + (0 if part is None else abs(part[j]))
+            slope += float(p) * float(np.dot(k, k))
+        length = plan.length(self.mesh).ravel()[self.at]
+        c = np.sqrt((abs(self.doubles()) ** 2).sum(1)).sum(0)
+        cost = 2 * slope * c * np.exp(plan.rho * length)
+        order = np.argsort(cost, kind="stable")
+        total = np.cumsum(cost[order])
+        count = int(np.searchsorted(total, most))
+        self.parts[..., order[:count]] = 0
+        return float(total[count - 1]) if count else 0.0
 
     def torus(self, potential: FourierSum, part: Part, rotation: Rotation,
               piece: Ends = NO_RANGE) -> Torus:
@@ -192,40 +236,86 @@ class Digits:
 
 
 def refined(digits: Digits, plan: Plan, potential: FourierSum, part: Part, rotation: Rotation,
-            margin: float, piece: Ends = NO_RANGE) -> Tuple[Torus, float]:
-    """The torus after as many corrections as help; ||E||_rho over what the theorem needs."""
+            amplitude: Callable[[complex], np.ndarray], margin: float,
+            piece: Ends = NO_RANGE) -> Tuple[Torus, float]:
+    """The torus after as many corrections as help; about ||E||_rho over what the theorem needs.
+
+    amplitude(sigma) -- of each wave"""
     mesh, before = digits.mesh, inf
-    layers = 1 if part is None else 2 << max(digits.degree - 1, 0).bit_length()
+    layers = 1 if part is None else layers_for(digits.degree)
+    amplitudes = [amplitude(np.exp(2j * np.pi * l / layers) if layers > 1 else 0)
+                  for l in range(layers // 2 + 1)]
     shape = mesh.sizes[-2] if len(mesh.sizes) == 2 else 1, mesh.sizes[-1]
     grid = Grid(plan.norm, mesh.vectors, shape, layers)
+    reach = float(grid.reach)
+    length = plan.length(mesh)
+    weights = np.where(length < reach, np.exp(np.minimum(plan.rho * length, 600)), 0)
+    enough = plan.needed / 2 / margin
     for _ in range(TURNS):
-        torus = digits.torus(potential, part, rotation, piece)
-        result = residual(torus, grid, digits.bits + 24)
-        size = np.sqrt((abs(result.values) ** 2).sum(1)).sum(1)
-        length = sum(float(a) * abs(m) for a, m in zip(plan.norm.alpha, result.sizes.m.T))
-        ratio = float((size * np.exp(plan.rho * length)).sum()) / plan.needed
-        if ratio <= 1 / margin or not ratio < before / 4:
-            break
-        before = ratio
+        result = residual(digits.torus(potential, part, rotation, piece), grid,
+                          max(64, digits.bits))
         place, ok = mesh.index(result.k.T)
         spot = (slice(None), *(x[ok] for x in place))
         error = np.zeros((layers, len(mesh.k), *mesh.k.shape[1:]), complex)
         for j in range(layers):
             error[j][spot] = result.values[ok, :, j].T
-        if part is None:
-            u = mesh.spread(digits.k, digits.doubles()[0])
-            digits.add(digits.picked(mesh.correction(u, error[0]))[None])
-        else:
-            error = np.fft.ifft(error, axis=0, norm="forward")
-            circle = (mesh.correction(u, e) for u, e in
-                      zip(digits.on_circle(digits.doubles(), layers), error))
-            digits.add(digits.series(circle, layers)[:digits.degree + 1])
-    return torus, ratio
+        error = np.fft.ifft(error, axis=0, norm="forward")[:layers // 2 + 1]
+        v, size, rest = _corrected(digits, error, weights, amplitudes, layers, enough)
+        if v is not None:
+            digits.add(v)
+        if size - rest <= enough or not size < before / 4:
+            break
+        before = size
+    size += digits.prune(plan, potential, part, enough / 4)
+    return digits.torus(potential, part, rotation, piece), size / plan.needed
+
+
+class _Left(NamedTuple):
+    """v -- a correction of u, None for none
+    size -- about the norm of E(u + v), of which `rest` is of modes that the torus cannot have"""
+
+    v: Optional[np.ndarray]
+    size: float
+    rest: float
+
+
+def _corrected(digits, error, weights, amplitudes, layers, enough):
+    """What several steps of Newton's method lead to, given E(u) as Digits.on_circle gives
+    functions: the correction is so small that doubles will do.  In norms modes are counted with
+    their weights, e^{rho |k|}; of the circle the largest norm is taken."""
+    mesh, u, best = digits.mesh, digits.doubles(), _Left(None, inf, 0.0)
+    weights = weights * (2 if mesh.real else 1)         # which has one of k and -k, about
+    rest = weights * ~digits.keep
+    v = None
+    for _ in range(STEPS):
+        left, norms = [], []
+        steps = repeat(None) if v is None else digits.on_circle(v, layers)
+        for at, step, e, p in zip(digits.on_circle(u, layers), steps, error, amplitudes):
+            if step is not None:
+                e = e + mesh.change(at.astype(step.dtype), step, p) * (weights > 0)
+                at = at + step
+            size = np.sqrt((abs(e) ** 2).sum(0))
+            norms.append((float((size * weights).sum()), float((size * rest).sum())))
+            left.append(mesh.correction(at.astype(complex), e))
+        found = _Left(v, *max(norms))
+        if not found.size < best.size:
+            break
+        stalled, best = found.size > best.size / 2, found
+        if stalled or found.size - found.rest <= enough / 2:
+            break
+        more = digits.series(iter(left), layers)[:digits.degree + 1]
+        v = more.astype(np.clongdouble) if v is None else v + more
+    return best
+
+
+def layers_for(degree: int) -> int:
+    """How many points of the circle |sigma| = 1 are taken."""
+    return 2 << max(degree - 1, 0).bit_length()
 
 
 def digits_for(plan: Plan, like: Mesh, margin: float, degree: Optional[int] = None) -> Digits:
     """Room for the coefficients that the plan asks for."""
     mesh = plan.mesh(like, degree is None)
-    keep = mesh.inside & (plan.length(mesh) <= plan.size) & (abs(mesh.k).max(0) > 0)
+    keep = plan.keep(mesh)
     bits = ceil(log2(margin / plan.needed) + log2(keep.sum()) + 16)
     return Digits(mesh, keep, bits, degree or 0)

@@ -72,13 +72,12 @@ def verdict(proof: ProvedTorus, seconds: float, certificate: Optional[str] = Non
              "The map takes its point y(theta) = theta + u(theta) to y(theta + w), w = 2 pi omega.",
              ""]
     lines += ["|u - u0| at most : %s, u0 the computed u" % _up(proof.distance),
-              "|Du - Du0| at most : %s" % _up(max(piece.slope for piece in proof.pieces)),
-              "Residual : %s at most; the theorem needs %s, about" % (_up(worst.residual),
-                                                                      _down(worst.needed)),
-              ""]
+              "|Du - Du0| at most : %s" % _up(max(piece.slope for piece in proof.pieces)), ""]
     if len(proof.pieces) > 1:
         lines += [_piece_line(piece) for piece in proof.pieces]
         lines += ["", "What follows is of the piece with the least margin."]
+    lines += ["Residual : %s at most; the theorem needs %s, about" % (_up(worst.residual),
+                                                                      _down(worst.needed))]
     lines += _divisors(rotation, worst.norm, wave_vectors(proof.torus))
     constants = worst.constants
     lines += ["Width rho of the strip : %.6g" % worst.rho,
@@ -90,8 +89,8 @@ def verdict(proof: ProvedTorus, seconds: float, certificate: Optional[str] = Non
                   % worst.torus.degree),
               "Grid : %s%s" % (" x ".join(map(str, worst.grid.shape if n == 2
                                               else worst.grid.shape[-1:])),
-                               "" if worst.torus.part is None else ", for each of %d s"
-                               % worst.grid.layers), "",
+                               "" if worst.torus.part is None else
+                               ", at each of %d complex values of s" % worst.grid.layers), "",
               "This investigation took %.2f seconds." % seconds, ""]
     if certificate is not None:
         lines += ["Certificate : %s" % plain(certificate), "SHA-256 : %s" % checksum]
@@ -137,7 +136,7 @@ def undecided(problem: Problem, rotation: Rotation, reason: Union[NotFound, NotP
              "%s : %s" % ("Not found" if isinstance(reason, NotFound) else "Not proved",
                           plain(" ".join(str(reason).split())))]
     if by_hand:
-        lines.append("Chosen by hand : %s; leave out such a flag, and the program chooses"
+        lines.append("Chosen by hand : %s; without such a flag the program chooses"
                      % ", ".join(by_hand))
     return "\n".join(lines) + "\n"
 

@@ -15,6 +15,7 @@ neither shifted nor differentiated.
 """
 
 import math
+from array import array
 from contextlib import contextmanager
 from dataclasses import dataclass
 from fractions import Fraction
@@ -27,8 +28,8 @@ from flint import acb, arb, ctx, fmpq
 from .divisors import Norm
 from .torus import Torus
 
-SLACK = 1 + 2.0 ** -30      # above what MOST roundings of sums, products and roots amount to
-MOST = 1 << 22              # summands
+MOST = 1 << 24              # summands
+SLACK = 1 + 2.0 ** -28      # above what MOST + 20 roundings amount to: (1 + 2^-53)^(MOST + 20)
 DIGIT = 256                 # |m_i| = coarse DIGIT + fine, of tables of exponentials
 TINY = 2.0 ** -1000         # above what underflows lose
 ROUND = 1 << 30             # denominator of the widths that are tried
@@ -114,11 +115,11 @@ class Grid:
                              % (tuple(k),))
         return (0, q[0]) if len(q) == 1 else (q[0], q[1])
 
-    def place(self, k: Sequence[int]) -> Tuple[int, int]:
-        """q modulo the grid.  Those of two k inside are never the same, but one of their components
-        may be."""
-        q0, q1 = self.index(k)
-        return q0 % self.shape[0], q1 % self.shape[1]
+    def places(self, k: Sequence[int]) -> Tuple[Tuple[int, int], Tuple[int, int]]:
+        """q modulo the grid, of k and of -k.  Those of two k inside are never the same, but one of
+        their components may be."""
+        (q0, q1), (m0, m1) = self.index(k), self.shape
+        return (q0 % m0, q1 % m1), (-q0 % m0, -q1 % m1)
 
     @cached_property
     def _units(self) -> Tuple[Tuple[int, ...], int]:
@@ -175,7 +176,8 @@ class Grid:
     def within(self, k: Sequence[int], size: Fraction) -> bool:
         """Is |k| < size?"""
         unit, common = self._units
-        return sum(u * abs(m) for u, m in zip(unit, self.numbers(k))) < size * common
+        return size.denominator * sum(u * abs(m) for u, m in zip(unit, self.numbers(k))) \
+            < size.numerator * common
 
     @property
     def points(self) -> int:
@@ -285,16 +287,22 @@ def coefficients(lines: Iterator[Layers], grid: Grid, kept: Sequence[int]
                  ) -> Iterator[Tuple[int, int, List[acb]]]:
     """The inverse of `values`: for each q1 of `kept` and each j (q1, j, list over q0)."""
     m0, layers = grid.shape[0], grid.layers
-    rows: Dict[Tuple[int, int], List[acb]] = {(q1, j): [] for q1 in kept for j in range(layers)}
+    rows: Dict[int, List[List[acb]]] = {q1: [[] for _ in range(layers)] for q1 in kept} \
+        if m0 > 1 else {}
     for line in lines:
         line = [acb.dft(layer, inverse=True) for layer in line]
         for q1 in kept:
             column = [layer[q1] for layer in line]
-            for j, value in enumerate(acb.dft(column, inverse=True) if layers > 1 else column):
-                rows[q1, j].append(value)
-    for q1, j in list(rows):
-        row = rows.pop((q1, j))
-        yield q1, j, acb.dft(row, inverse=True) if m0 > 1 else row
+            if layers > 1:
+                column = acb.dft(column, inverse=True)
+            for j, value in enumerate(column):
+                if m0 > 1:
+                    rows[q1][j].append(value)
+                else:
+                    yield q1, j, [value]
+    for q1 in list(rows):
+        for j, row in enumerate(rows.pop(q1)):
+            yield q1, j, acb.dft(row, inverse=True)
 
 
 def gather(lines: Iterator[Layers], grid: Grid, change: Callable[[int, int, list], None]
@@ -303,16 +311,21 @@ def gather(lines: Iterator[Layers], grid: Grid, change: Callable[[int, int, list
     (count, layers).  change(q1, j, line) may change a line of `coefficients` before."""
     q = grid.inside[0] % np.array(grid.shape)
     order = np.argsort(q[:, 1], kind="stable")
-    found, begin = np.unique(q[order, 1], return_index=True)
-    rows = dict(zip(found.tolist(), np.split(order, begin[1:])))
-    middle = np.zeros((len(q), grid.layers), complex)
-    off = np.zeros((len(q), grid.layers))
-    for q1, j, line in coefficients(lines, grid, list(rows)):
+    kept, begin = np.unique(q[order, 1], return_index=True)
+    end, q0 = iter([*begin[1:].tolist(), len(q)]), q[order, 0].tolist()
+    near, far = ([array("d") for _ in range(grid.layers)] for _ in range(2))
+    for q1, j, line in coefficients(lines, grid, kept.tolist()):
         change(q1, j, line)
-        chosen = [line[q0] for q0 in q[rows[q1], 0].tolist()]
-        near = [complex(c) for c in chosen]
-        middle[rows[q1], j] = near
-        off[rows[q1], j] = [above((c - x).abs_upper()) for c, x in zip(chosen, near)]
+        if j == 0:
+            row = q0[len(far[0]):next(end)]
+        for place in row:
+            c = line[place]
+            x = complex(c)
+            near[j].append(x.real)
+            near[j].append(x.imag)
+            far[j].append(above((c - x).abs_upper()))
+    middle, off = np.zeros((len(q), grid.layers), complex), np.zeros((len(q), grid.layers))
+    middle[order], off[order] = np.array(near).view(complex).T, np.array(far).T
     return middle, off
 
 
@@ -399,10 +412,9 @@ def torus_columns(torus: Torus, grid: Grid) -> Columns:
 
     ValueError: a mode is not in K, or the grid is too small for it."""
     columns: Columns = {}
-    exponent = -torus.bits
+    exponent, reach = -torus.bits, grid.reach
     for k, series in torus.modes.items():
-        places = grid.place(k), grid.place([-x for x in k])
-        if not grid.within(k, grid.reach):
+        if not grid.within(k, reach):
             raise ValueError("the grid of %s points is too small for the mode %s; take a larger "
                              "one, or let the program choose it"
                              % (" x ".join(map(str, grid.shape[-len(grid.basis):])),
@@ -410,6 +422,7 @@ def torus_columns(torus: Torus, grid: Grid) -> Columns:
         if len(series) > grid.layers:
             raise ValueError("%d points are too few for the degree %d"
                              % (grid.layers, len(series) - 1))
+        places = grid.places(k)
         for j, (a0, b0, *second) in enumerate(series):
             a1, b1 = second or (0, 0)
             for (q0, q1), re, im in zip(places, (a0 - b1, a0 + b1), (b0 + a1, a1 - b0)):
@@ -427,7 +440,8 @@ def _forces(torus: Torus, grid: Grid) -> Iterator[Layers]:
     waves = []
     for k, wave, (c, d) in zip(wave_vectors(torus), torus.potential.waves, amplitudes(torus)):
         phase = Fraction(wave[2])
-        table = [pi * ball(Fraction(1) - (1 - phase + Fraction(2 * j, size)) % 2)
+        one, start = phase.denominator * size, phase.numerator * size
+        table = [pi * arb(fmpq(one - (one - start + 2 * j * phase.denominator) % (2 * one), one))
                  for j in range(size)]
         factors = []
         for l in range(layers):
@@ -504,8 +518,8 @@ def residual(torus: Torus, grid: Grid, bits: int) -> Residual:
         sines = {}
         for k in torus.modes:
             sine = turns(k, omega).sin_pi()
-            for each in k, [-x for x in k]:
-                sines[grid.place(each)] = -4 * sine * sine
+            for place in grid.places(k):
+                sines[place] = -4 * sine * sine
 
         def add_linear(q1, j, line):
             for q0, c in columns.get((q1, j), {}).items():

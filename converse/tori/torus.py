@@ -24,7 +24,6 @@ import numpy as np
 from ..model.exact import Ends
 from ..model.potential import FourierSum
 from ..model.problem import Problem
-from ..storage.files import ConverseError
 
 if TYPE_CHECKING:
     from .rotation import Rotation
@@ -74,7 +73,7 @@ class Torus:
 
     def __repr__(self) -> str:
         where = "" if self.part is None else ", s from %s to %s" % self.piece
-        return "<Torus of %s, %d modes%s>" % (self.rotation.name, len(self.modes), where)
+        return "<Torus, rotation %s, %d modes%s>" % (self.rotation, len(self.modes), where)
 
     @property
     def dimension(self) -> int:
@@ -160,13 +159,10 @@ class Torus:
         coefficients = self._series[0] if s is None else self.coefficients(s)
         return decay(far, np.abs(coefficients).max(1, initial=0))
 
-    def _repr_png_(self) -> Optional[bytes]:
-        """For notebooks; None without matplotlib."""
-        from ..draw.torus_figure import picture
-        try:
-            return picture([self])
-        except ConverseError:
-            return None
+    def _repr_html_(self) -> str:
+        """For notebooks: a line and, where there is matplotlib, the picture."""
+        from ..draw.torus_figure import torus_html
+        return torus_html(self)
 
 
 def decay(far: np.ndarray, size: np.ndarray) -> float:

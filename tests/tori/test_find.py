@@ -8,10 +8,12 @@ import numpy as np
 import pytest
 
 from converse.model.problem import LINE, Problem
+from converse.tori import continuation
 from converse.tori.continuation import Way
-from converse.tori.find import NotFound, find
+from converse.tori.divisors import Norm
+from converse.tori.find import NotFound, find, series_rate
 from converse.tori.newton import Mesh, default_frame, triangular
-from converse.tori.refinement import Digits
+from converse.tori.refinement import Digits, Plan
 from converse.tori.rotation import read_rotation
 from converse.tori.torus import family
 
@@ -109,7 +111,7 @@ def test_beyond_the_frontier_nothing_is_found(problem, rotation):
     with pytest.raises(NotFound) as caught:
         find(problem, read_rotation(rotation), points=1 << 15)
     reached = float(caught.value.amplitude[0])
-    assert 0.8 < reached < 0.9717 and "no torus of golden" in str(caught.value)
+    assert 0.8 < reached < 0.9717 and "no torus of this rotation number" in str(caught.value)
     assert reached == pytest.approx(caught.value.reached * float(problem.amplitude[0]))
 
 
@@ -126,7 +128,7 @@ def test_a_torus_is_continued_from_another_one():
 
 def test_a_grid_that_is_too_small_is_said():
     """Not only where the torus would seem to break up."""
-    with pytest.raises(NotFound, match="farther on it needs more than the 256 that are allowed"):
+    with pytest.raises(NotFound, match="farther on it needs more than the 256 points that are"):
         find(Problem("0.9", 0, 0), GOLDEN, points=256)
 
 
@@ -199,6 +201,53 @@ def test_refinement_mends_a_torus(name, monkeypatch):
     assert mended.x(theta) == pytest.approx(right.x(theta), abs=1e-10)
 
 
+@pytest.mark.parametrize("name", ["two waves", "phases"])
+def test_a_small_change_of_the_error_is_known_to_all_digits(name):
+    """E(u + v) - E(u) for v of 1e-12, of which the difference in doubles has four digits left."""
+    problem, rotation = POTENTIALS[name]
+    potential, _ = family(problem)
+    mesh = Mesh(potential, read_rotation(rotation), default_frame(potential),
+                (32, 16)[:potential.dimension])
+    amplitude = np.array(potential.amplitude, float)
+    random = np.random.default_rng(5)
+    inside = mesh.k[:, mesh.inside & (abs(mesh.k).sum(0) > 0)]
+    u, v = (mesh.spread(inside[:, :5], size * (random.normal(size=(potential.dimension, 5)) + 1j))
+            for size in (0.1, 1e-12))
+    # the derivative of E, by a difference of much larger steps of which the errors are odd
+    large = v * 1e6
+    slope = (mesh.error(u + large, amplitude) - mesh.error(u - large, amplitude)) / 2e6
+    found = mesh.change(u, v, amplitude)
+    assert abs(found - slope).max() < 1e-9 * abs(found).max()
+    assert abs(mesh.change(u, large, amplitude) - (
+        mesh.error(u + large, amplitude) - mesh.error(u, amplitude))).max() < 1e-15
+
+
+def test_what_is_left_out_of_a_torus_is_about_what_it_may_be():
+    """Of E's norm: it grows by no more than it is said to, with fewer modes."""
+    potential, _ = family(Problem("0.8", 0, 0))
+    torus = find(Problem("0.8", 0, 0), GOLDEN, margin=1e8)
+    mesh = Mesh(potential, GOLDEN, default_frame(potential), (512,))
+    aim = Plan(Norm(((1,),), (Fraction(1),)), np.array([1.0]), 200, 0.05, 1e-8, 0.1)
+    digits = Digits(mesh, mesh.inside & (abs(mesh.k).max(0) > 0), torus.bits)
+    digits.add(digits.picked(mesh.spread(torus.vectors.T, torus.coefficients().T))[None])
+
+    def norm():
+        u = mesh.spread(digits.k, digits.doubles()[0])
+        error = mesh.error(u, np.array([0.8]))
+        return 2 * float((abs(error[0]) * np.exp(0.05 * mesh.k[0])).sum())
+
+    before, modes = norm(), len(digits.torus(potential, None, GOLDEN).modes)
+    said = digits.prune(aim, potential, None, 1e-6)
+    assert 1e-7 < said < 1e-6 and len(digits.torus(potential, None, GOLDEN).modes) < modes
+    assert said / 20 < norm() - before < said
+
+
+def test_a_grid_that_memory_does_not_hold_is_refused(monkeypatch):
+    monkeypatch.setattr(continuation, "free_memory", lambda: 10 ** 5)
+    with pytest.raises(NotFound, match="takes a grid of 1024 points and 0.000256 GB of memory"):
+        find(Problem("0.9", 0, 0), GOLDEN)
+
+
 def test_more_modes_begin_with_the_coefficients_of_fewer():
     potential, _ = family(POTENTIALS["phases"][0])
     frame = default_frame(potential)
@@ -245,7 +294,7 @@ def test_pieces_of_a_range(problem, rotation, count):
 
 
 def test_a_range_that_goes_too_far():
-    with pytest.raises(NotFound, match="no torus of golden") as caught:
+    with pytest.raises(NotFound, match="no torus of this rotation number") as caught:
         find(Problem(("0.5", "1.2"), 0, 0), GOLDEN, points=1 << 11)
     last, = caught.value.amplitude
     assert 0.8 < last < 0.9717
@@ -268,3 +317,10 @@ def test_what_is_going_on_is_told():
     find(Problem(("0.09", "0.11"), 0, 0), GOLDEN, progress=words.append)
     assert re.fullmatch(r"looking for the tori of -1 <= s <= 1, on \d+ points", words[-2])
     assert re.fullmatch(r"refining the tori of -1 <= s <= 1, \d+ modes of degree \d+", words[-1])
+
+
+def test_noise_does_not_decay():
+    """A short piece has few powers above the noise, and a small degree."""
+    noise = 1e-9 * np.random.default_rng(5).uniform(0.1, 1, 32)
+    sizes = noise + np.concatenate([np.exp(-4.0 * np.arange(16)), np.zeros(16)])
+    assert series_rate(sizes) == pytest.approx(4, rel=0.1)

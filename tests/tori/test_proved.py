@@ -55,7 +55,13 @@ def test_tori_are_proved(problem, rotation):
     assert proof.residual <= proof.needed and piece.margin > 10
     assert 0 < piece.distance < 1e-6 and piece.distance <= piece.slope
     assert piece.constants.eta < 0.02
+    widths = {rho: (residual, needed) for rho, residual, needed in piece.tried}
+    assert widths[piece.rho][0] == piece.residual and len(widths) > 5
+    assert widths[piece.rho][1] == pytest.approx(piece.needed, rel=0.3)
+    assert max(widths, key=lambda rho: widths[rho][1] / widths[rho][0]) == piece.rho
     assert piece.bounds.q <= 1
+    shown = proof._repr_html_()
+    assert shown.startswith("<pre>I find") and "It is a real analytic graph" in shown
 
 
 def changed(torus, modes=None, **others):
@@ -143,12 +149,15 @@ def test_choices_of_ones_own(circle):
         prove(circle, shape=(1, 1 << 29), memory=10 ** 9)
     with pytest.raises(TypeError, match="not an exact number"):
         prove(circle, rho=0.03)
+    for bits in 0, 4001:
+        with pytest.raises(ValueError, match="balls have from 2 to 4000 bits"):
+            prove(circle, bits=bits)
 
 
 def test_a_coarser_choice_is_no_better(circle):
     """Whatever is chosen, the same true torus is near."""
     best, = prove(circle).pieces
-    assert best.distance < 1e-8
+    assert best.distance < 1e-7
     assert prove(circle, rho=Q(1, 20)).pieces[0].distance < 1e-6
 
 

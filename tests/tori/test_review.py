@@ -15,8 +15,8 @@ from converse.tori import constants
 from converse.tori.constants import Constants, Inverse, spectral
 from converse.tori.divisors import Divisors, Norm
 from converse.tori.proved import check_cover, prove
-from converse.tori.residual import (Grid, Phases, Sizes, above, between, precision, residual,
-                                    rotation_balls)
+from converse.tori.residual import (MOST, SLACK, Grid, Phases, Sizes, above, between, precision,
+                                    residual, rotation_balls)
 from converse.tori.rotation import read_rotation
 from converse.tori.theorem import Bounds, Choice, Numbers, Theorem, holds
 from converse.tori.torus import Torus
@@ -83,8 +83,15 @@ def test_sums_are_rounded_up():
     exact = sum((Q(k) * Q(1, 7) for k, in m.tolist()), Q(0))       # e^x > 1 + x
     assert Q(sizes.norm_at(Q(1, 7))) > 30 + exact / 10
     exact = sum((arb(k) / 7).exp() for k, in m.tolist()) * arb(0.1)
-    assert arb(sizes.norm_at(Q(1, 7))) > exact > sizes.norm_at(Q(1, 7)) * (1 - 1e-8)
+    assert arb(sizes.norm_at(Q(1, 7))) > exact > sizes.norm_at(Q(1, 7)) / SLACK ** 6
     assert Q(sizes.sup()) > Q(0.1)
+
+
+def test_so_many_roundings_are_less_than_the_slack():
+    """A relative error of 2^-53 each, whatever its sign."""
+    with precision(200):
+        one = (1 - arb(2) ** -53) ** (MOST + 20)
+        assert one * (1 - arb(2) ** -53) * arb(SLACK) > 1
 
 
 # ---- tori that are not what they say
