@@ -14,7 +14,8 @@ from ..storage.files import ConverseError
 from ..version import __version__
 from .region import RADIUS, REGIONS, Cell, root
 
-FORMAT = "converse map 1"
+FORMAT, OLD_FORMAT = "converse map 2", "converse map 1"
+TORUS = {"v0": ["1", "1"], "v1": ["1", "1"]}     # the region of all proofs of the old format
 PROVED, AT_ONCE, OPEN, OUTSIDE = "PAOX"
 ESTIMATE_GRID = {1: 32, 2: 8}       # intervals of a side, by sides: of a plane, of the sphere
 
@@ -27,7 +28,8 @@ class Node:
 
     kind: PROVED; AT_ONCE, proved with all larger multiples by Mather's criterion; OPEN; OUTSIDE, a
     mirror image of other cells.
-    proof: of a proved leaf, the tree of its prisms with x*, frame and coordinate, as plain data.
+    proof: of a proved leaf, the tree of its prisms with x*, frame, coordinate and region, as plain
+    data.
     tried: of an open leaf, the largest number of leaves with which a proof was tried in vain."""
 
     __slots__ = ("cell", "kind", "axis", "halves", "proof", "tried")
@@ -201,6 +203,11 @@ class Map:
         from ..draw import map_figure
         map_figure.draw(self, path, list(tori))
 
+    def _repr_html_(self) -> str:
+        """For notebooks: the report and, where there is matplotlib, the picture."""
+        from ..draw import map_figure
+        return map_figure.html(self)
+
     def __repr__(self):
         return "<Map of %s: %d cells proved, %d at once, %d open>" % (
             self.region, *map(self.count, (PROVED, AT_ONCE, OPEN)))
@@ -244,8 +251,14 @@ class Map:
                                 "--method loewner" % path)
         try:
             digest = data.pop("sha256")
-            if data["format"] != FORMAT or digest != _digest(data):
+            if digest != _digest(data):
                 raise ValueError("it was changed or damaged")
+            if data["format"] not in (FORMAT, OLD_FORMAT):
+                raise ValueError("its format, %s, is of another version of the program"
+                                 % data["format"])
+            for proof in (proof for face in data["faces"] for proof in face["proofs"]
+                          if data["format"] == OLD_FORMAT):
+                proof.update(TORUS)
             made = cls.new(data["region"], exact(data["down to"]))
             made.seconds = float(data["seconds"])
             made.sha256 = files.sha256(text)
@@ -274,8 +287,11 @@ def _read_tree(tree, face):
             continue
         if kind not in (PROVED, AT_ONCE, OPEN, OUTSIDE):
             raise ValueError("'%s' is not a kind of cell" % kind)
-        node.decide(kind, next(proofs) if kind == PROVED else None)
+        proof = next(proofs, None) if kind == PROVED else None
+        if kind == PROVED and proof is None:
+            raise ValueError("there are fewer proofs than proved cells")
+        node.decide(kind, proof)
         if kind == OPEN:
-            node.tried = next(tried)
+            node.tried = next(tried, 0)
     if todo:
         raise ValueError("the tree of cells ends too early")

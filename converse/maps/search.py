@@ -11,6 +11,7 @@ from typing import Callable, Optional
 
 from ..model.exact import Number, decimal_text, exact
 from ..model.problem import IDENTITY, Problem
+from ..model.region import DIAGONALS, exchangeable, reduced
 from ..prover import native
 from ..prover.run import Path
 from ..prover.settings import Settings
@@ -30,14 +31,15 @@ FIRST_BUDGET, LARGEST_BUDGET = 1 << 15, 1 << 21
 BUDGET_FACTOR = 4                   # from one try at a cell to the next
 FIRST_CHUNK = 1 << 9                # leaves after which the cost is estimated for the first time
 PESSIMISM = 4                       # a try ends when it is expected to cost so many budgets
-TRIAL_BUDGET = 1 << 12              # where one frame and x* are compared with others
+TRIAL_BUDGET = 1 << 12             # where one x* is compared with others
 POINT_BUDGET = {1: 1 << 14, 2: 1 << 12}     # of the estimate, by sides: of a plane, of the sphere
 
 WIDEST = 0.25                       # width of the first cells as a part of their radius
 GRAIN = 6                           # least width of a cell that is cut, as a part of down_to - 1
 FINER = 8                           # less by this factor where the largest budget was not enough
 
-SHEARED = (1, 0, -1, 1)             # a frame, x_1 = (v0, v1 - v0), in which the wave c lacks v0
+SHEARED = (1, 0, -1, 1)             # a frame in which the wave a feels v0 alone, and c v1 alone;
+WEAK = 5                            # in the identity b does the latter: for c less by this factor
 ASIDE = Fraction(3, 10)             # shift of x* along the direction that the wave c lacks
 RIGHT_ANGLES = ("1.570796", "1.570796")     # x* where the waves a and b have their maxima
 TOO_LONG = native.lib.CV_REASON_TOO_LONG    # of a failed try: more cuts will not help
@@ -78,29 +80,30 @@ def _prove_within(problem, xstar, budget, stop):
     return "".join(pieces), leaves, begun
 
 
-def _ways(directions, cell, stop):
-    """The promising pairs (frame, x*) for a cell, sorted by the cost of a proof for its middle;
-    None if stopped.  x* None: the program chooses."""
-    ways = [(IDENTITY, None)]
+def _way(directions, cell, stop):
+    """The frame and x* for a cell: of those that promise most, the pair that costs least for its
+    middle; None if stopped.  A frame that is None is chosen."""
     r, *place = cell.middle
     a, b, c = point = tuple(r * d for d in region.direction(directions, place))
-    if c > 2 * max(a, b):
-        ways.append((SHEARED, None))
-    if 0 < 10 * c < min(a, b):                  # nearly two separate standard maps
+    problem = Problem.patch(point)
+    xstar = native.chosen_start(native.Task(problem, SETTINGS))
+    if problem.is_flat:
+        return None, xstar
+    frame = DIAGONALS if exchangeable(problem, xstar) else \
+        IDENTITY if WEAK * c < min(a, b) else SHEARED
+    ways = [(frame, xstar)]
+    if 10 * c < min(a, b):                      # nearly two separate standard maps
         ways.append((IDENTITY, RIGHT_ANGLES))
-    if len(ways) == 1:
-        return ways
-    costs = []
-    for frame, xstar in ways:
-        found = _prove_within(Problem.patch(point, axes=frame), xstar, TRIAL_BUDGET, stop)
+    if c > 10 * max(a, b) and frame != DIAGONALS:
+        x0, x1 = map(Fraction, xstar)
+        ways.append((frame, (decimal_text(x0 - ASIDE), decimal_text(x1 + ASIDE))))
+    costs = {}
+    for frame, xstar in ways if len(ways) > 1 else ():
+        found = _prove_within(reduced(problem, xstar, frame), xstar, TRIAL_BUDGET, stop)
         if found is None:
             return None
-        _, cost, begun = found
-        costs.append((cost, (frame, begun.xstar)))
-        if frame == SHEARED and xstar is None and c > 10 * max(a, b) > 0:
-            x0, x1 = map(Fraction, begun.xstar)
-            ways.append((SHEARED, (decimal_text(x0 - ASIDE), decimal_text(x1 + ASIDE))))
-    return [way for _, way in sorted(costs, key=lambda each: each[0])]
+        costs[frame, xstar] = found[1]
+    return min(costs, key=costs.__getitem__, default=ways[0])
 
 
 def attempt(directions, cell, budget, stop=None):
@@ -110,11 +113,11 @@ def attempt(directions, cell, budget, stop=None):
     if cell.high[0] == region.RADIUS:           # it must hold for all larger radii, too
         begun = native.begin(native.Task(Problem.patch(middle, parts), SETTINGS), "", stop)
         return begun and Outcome(AT_ONCE if begun.at_once else OPEN)
-    ways = _ways(directions, cell, stop)
-    if ways is None:
+    way = _way(directions, cell, stop)
+    if way is None:
         return None
-    frame, xstar = ways[0]
-    problem = Problem.patch(middle, parts, axes=frame)
+    frame, xstar = way
+    problem = reduced(Problem.patch(middle, parts), xstar, frame)
     found = _prove_within(problem, xstar, budget, stop)
     if found is None:
         return None
@@ -125,7 +128,13 @@ def attempt(directions, cell, budget, stop=None):
         return Outcome(OPEN)
     return Outcome(PROVED, {"xstar": list(begun.xstar), "frame": list(problem.frame),
                             "alone": "no" if problem.factor is None else str(problem.factor),
-                            "tree": tree})
+                            **_region_text(problem), "tree": tree})
+
+
+def _region_text(problem):
+    """Centres and half-widths of v0 and v1."""
+    return {name: [decimal_text((low + high) / 2), decimal_text((high - low) / 2)]
+            for name, (low, high) in (("v0", problem.v0), ("v1", problem.v1))}
 
 
 def estimate_frontier(directions, place, stop=None):
@@ -135,12 +144,12 @@ def estimate_frontier(directions, place, stop=None):
 
     def proved(radius, budget):
         cell = region.Cell(0, (radius, *place), (radius, *place))
-        ways = _ways(directions, cell, stop)
-        if ways is None:
+        way = _way(directions, cell, stop)
+        if way is None:
             return None
-        frame, xstar = ways[0]
+        frame, xstar = way
         point = region.patch(directions, cell)[0]
-        found = _prove_within(Problem.patch(point, axes=frame), xstar, budget, stop)
+        found = _prove_within(reduced(Problem.patch(point), xstar, frame), xstar, budget, stop)
         return found and (found[0] is not None or found[2].at_once)
 
     low, high = 0, region.RADIUS

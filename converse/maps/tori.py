@@ -8,14 +8,17 @@ nothing is claimed of smaller ones.
 
 import os
 from fractions import Fraction
-from typing import Callable, Dict, Iterator, List, Optional, Sequence, Tuple, Union
+from typing import TYPE_CHECKING, Callable, Dict, Iterable, Iterator, List, Optional, Tuple, Union
 
 from ..model.problem import THESIS, Problem
 from ..storage.files import ConverseError
 from . import region
 from .map import Map, Place
 
-VECTORS = "T49", "V1", "seven"
+if TYPE_CHECKING:                       # tori needs an extra
+    from ..tori import ProvedTorus, Rotation
+
+VECTORS = {1: ("golden",), 2: ("T49", "V1", "seven")}   # by the number of angles
 PARTS = 0.985, 0.95, 0.9, 0.8, 0.65     # of the radius to which tori are found: proofs are tried
 POINTS = 1 << 15                        # of a grid on which a torus is looked for
 FINEST = 8                              # intervals between the rays of a face, at most
@@ -25,29 +28,42 @@ ENDING = ".torus"
 Path = Union[str, "os.PathLike[str]"]
 Point = Tuple[Fraction, Fraction, Fraction]
 Progress = Optional[Callable[[int, int], None]]
+Choice = Callable[[Point, float], Iterable[Tuple["Rotation", float]]]
 
 
 def rays(found: Map) -> Iterator[Tuple[int, Place]]:
-    """The (face, place) of the directions in which tori are looked for, each direction once.
-    ConverseError: it is the map of the sphere."""
+    """The (face, place) of the directions in which tori are looked for, each direction once, those
+    of a coarse grid first.  ConverseError: it is the map of the sphere."""
     if len(found.directions[0]) > 2:
         raise ConverseError("tori are proved along the rays of a plane; name a plane's map")
     known = set()
-    for face, estimate in enumerate(found.estimate):
-        for place in sorted(estimate):
-            direction = region.direction(found.directions[face], place)
-            if place[0].denominator <= FINEST and direction not in known:
-                known.add(direction)
-                yield face, place
+    places = [(place[0].denominator, face, place) for face, estimate in enumerate(found.estimate)
+              for place in estimate]
+    for denominator, face, place in sorted(places):
+        direction = region.direction(found.directions[face], place)
+        if denominator <= FINEST and direction not in known:
+            known.add(direction)
+            yield face, place
 
 
-def prove_tori(found: Map, directory: Path, *, vectors: Sequence[str] = VECTORS,
-               points: int = POINTS, progress: Progress = None) -> None:
+def named(direction: Point, estimate: float) -> List[Tuple["Rotation", float]]:
+    """The rotation vectors that are tried by default, up to the estimate."""
+    from ..tori import read_rotation
+    from ..tori.torus import family
+
+    potential, _ = family(Problem.patch(direction))
+    return [(read_rotation(name, potential.dimension), estimate)
+            for name in VECTORS[potential.dimension]]
+
+
+def prove_tori(found: Map, directory: Path, *, vectors: Choice = named, points: int = POINTS,
+               progress: Progress = None) -> None:
     """Proves a torus on each ray of a plane's map that has no certificate in the directory, and
     writes its certificate there, named by the face and the place of the ray.  The directory is made
     if need be.
 
-    vectors -- names of rotation vectors (converse.tori) that are tried
+    vectors(direction, estimate) -- the rotation vectors that are tried along that direction, where
+        the frontier is estimated at so many times it, and the radius up to which each is tried
     points -- of the grid on which a torus is looked for, at most: effort
     progress(rays done, all rays) is called as rays are done
 
@@ -64,44 +80,41 @@ def prove_tori(found: Map, directory: Path, *, vectors: Sequence[str] = VECTORS,
         if progress:
             progress(done, len(todo))
         if not os.path.exists(path):
-            best = _best(region.direction(found.directions[face], place),
-                         found.estimated(face, place), vectors, points)
+            direction = region.direction(found.directions[face], place)
+            estimate = found.estimated(face, place)
+            best, reached = None, 0.0
+            for rotation, top in vectors(direction, estimate):
+                proof, reached = highest(lambda radius: _problem(direction, radius), rotation, top,
+                                         points, reached)
+                best = proof or best
             if best:
                 best.save(path)
 
 
-def _best(direction, frontier, vectors, points):
-    """The proof of the torus with the largest radius, or None."""
-    from ..tori import read_rotation
+def highest(problem_at: Callable[[float], Problem], rotation: "Rotation", top: float,
+            points: int = POINTS, least: float = 0.0) -> Tuple[Optional["ProvedTorus"], float]:
+    """A proof of a torus of this rotation vector for the problem at a value above `least` and not
+    above `top`, the largest of a few values that are tried, and the value; or (None, least).
 
-    best, reached = None, 0.0
-    for name in vectors:
-        proof, radius = _proved(direction, read_rotation(name, 2), frontier, reached, points)
-        if proof:
-            best, reached = proof, radius
-    return best
-
-
-def _proved(direction, rotation, frontier, least, points):
-    """A proof of a torus of this rotation vector at a radius above the least, and the radius; or
-    (None, least)."""
+    points -- of the grid on which the torus is looked for, at most: effort"""
     from ..tori import NotFound, NotProved, prove
 
-    top, parts = frontier, (1.0, *PARTS)
+    whole = top
+    parts: Tuple[float, ...] = (1.0, *PARTS)
     while parts and top * parts[0] > least:
-        radius, parts = top * parts[0], parts[1:]
+        value, parts = top * parts[0], parts[1:]
         try:
-            return prove(_problem(direction, radius), rotation, points=points), radius
+            return prove(problem_at(value), rotation, points=points), value
         except NotFound as failure:
-            if failure.reached and top == frontier:     # the search got so far
-                top, parts = radius * failure.reached, PARTS
+            if failure.reached and top == whole:        # the search got so far
+                top, parts = value * failure.reached, PARTS
         except NotProved:
             pass
     return None, least
 
 
 def _problem(direction, radius):
-    exact = round(radius / UNIT) * UNIT
+    exact = max(1, round(radius / UNIT)) * UNIT         # not 0, where there is no wave
     return Problem.patch([exact * d for d in direction])
 
 

@@ -8,7 +8,13 @@ from converse import check
 from converse.commands import map as cli
 from converse.maps import tori
 from converse.maps.map import Map
+from converse.model.problem import Problem
 from converse.storage.files import ConverseError
+from converse.tori import read_rotation
+
+
+def t49(direction, estimate):
+    return [(read_rotation("T49"), estimate)]
 
 
 @pytest.fixture(scope="module")
@@ -19,7 +25,7 @@ def few(tmp_path_factory):
     found.estimate[:] = [{(F(0),): 0.06, (F(1),): 0.03}, {(F(0),): 0.09, (F(1),): 0.03}]
     directory = tmp_path_factory.mktemp("tori") / "ab.tori"
     done = []
-    tori.prove_tori(found, directory, vectors=("T49",), progress=lambda *each: done.append(each))
+    tori.prove_tori(found, directory, vectors=t49, progress=lambda *each: done.append(each))
     assert done == [(0, 3), (1, 3), (2, 3)]         # the faces share a direction
     return found, directory
 
@@ -40,12 +46,40 @@ def test_the_checker_confirms_them(few, capsys):
 
 
 def test_what_is_there_is_not_proved_again(few, monkeypatch):
-    monkeypatch.setattr(tori, "_best", lambda *_: pytest.fail("asked again"))
+    monkeypatch.setattr(tori, "highest", lambda *_: pytest.fail("asked again"))
     tori.prove_tori(*few)
 
 
 def test_beyond_the_frontier_there_is_none():
-    assert tori._best((1, 1, 0), 40.0, ("T49",), 1 << 6) is None
+    def at(radius):
+        a = F(max(1, round(radius)))
+        return Problem.patch([a, a, F(0)])
+
+    assert tori.highest(at, read_rotation("T49"), 40.0, 1 << 6) == (None, 0.0)
+
+
+def test_the_highest_is_proved_where_it_can_be():
+    """Beyond its break-up nothing is found, and lower values are tried; none below `least`."""
+    def at(k):
+        tried.append(k)
+        return Problem.patch([F(round(1000 * k), 1000)], waves=[(1, 0)])
+
+    tried = []
+    golden = read_rotation("golden")
+    proof, k = tori.highest(at, golden, 1.1, 1 << 12)
+    assert 0.8 < k < 0.9716 and k == tried[-1] == min(tried) and tried[0] == 1.1
+    assert proof.torus.potential.amplitude == (F(round(1000 * k), 1000),)
+    tried.clear()
+    assert tori.highest(at, golden, 1.1, 1 << 12, least=1.0) == (None, 1.0)
+    assert tried == [1.1]
+
+
+def test_where_one_angle_is_alone_the_golden_circle_is_proved(tmp_path):
+    found = Map.new("c=0", F(21, 20))
+    found.estimate[:] = [{(F(0),): 0.3, (F(1),): 0.03}]
+    tori.prove_tori(found, tmp_path)
+    points = dict(tori.proved_points(tmp_path))
+    assert points[F("0.3"), 0, 0] == "golden" and points[F("0.03"), F("0.03"), 0] in ("T49", "V1")
 
 
 def test_a_torus_of_another_kind_is_refused(few, tmp_path):

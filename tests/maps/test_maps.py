@@ -147,7 +147,7 @@ def test_a_cell_that_is_not_proved_is_not_believed(made, tmp_path):
     found = Map.load(made[1])
     proof = next(leaf.proof for leaf in found.leaves() if leaf.kind == PROVED)
     lowest = next(leaf for leaf in found.leaves() if leaf.kind == OPEN and leaf.cell.low[0] == 0)
-    lowest.decide(PROVED, {**proof, "tree": "P"})
+    lowest.decide(PROVED, {**proof, **map_module.TORUS, "tree": "P"})
     found.save(tmp_path / "map.json")
     with pytest.raises(check.NotConfirmed):
         check.verify(tmp_path / "map.json")
@@ -178,14 +178,30 @@ def test_one_whole_run_or_several(coarse, tmp_path):
     assert known.seconds < deeper.seconds
 
 
-def test_ways_are_compared_though_none_ends_in_time(monkeypatch):
-    """Where c prevails the axes that follow it are the better ones, and with a small a an x* aside
-    of the program's, whether or not a trial is long enough for a proof."""
+def test_starts_are_compared_though_no_trial_ends_in_time(monkeypatch):
+    """Where c prevails the program's x* and one aside of it, whether or not a trial is long enough
+    for a proof; where it is tiny the x* that is best for both other waves."""
     monkeypatch.setattr(search, "TRIAL_BUDGET", 1 << 11)
     cell = region.Cell(0, (F(99, 200), F(1, 32)), (F(99, 200), F(1, 32)))
-    ways = search._ways(region.REGIONS["b=0"][1], cell, search.native.Stop())
-    assert [frame for frame, _ in ways] == [search.SHEARED, search.SHEARED, search.IDENTITY]
-    assert ways[0][1] == ("1.270796", "0.3") and ways[1][1] == ("1.570796", "0")
+    best = search._way(region.REGIONS["b=0"][1], cell, search.native.Stop())
+    assert best == (search.SHEARED, ("1.270796", "0.3"))
+    cell = region.Cell(0, (F(1), F(1, 200)), (F(1), F(1, 200)))
+    best = search._way(region.REGIONS["a=b"][0], cell, search.native.Stop())
+    assert best == (search.IDENTITY, search.RIGHT_ANGLES)
+
+
+@pytest.mark.parametrize("abc, frame", [
+    ((1, 0, F(1, 4)), search.SHEARED), ((1, F(1, 2), F(1, 4)), search.SHEARED),
+    ((1, F(1, 2), F(1, 16)), search.IDENTITY), ((F(1, 2), F(1, 2), 1), search.DIAGONALS),
+    ((1, 1, F(1, 8)), search.IDENTITY), ((0, 0, 1), None), ((1, F(1, 2), 0), None)])
+def test_the_frame_follows_the_two_largest_waves(abc, frame):
+    """Each of them feels one of v0, v1 alone; or they are those of the exchange of the angles, or
+    of the only wave that counts, chosen elsewhere."""
+    a, b, c = map(F, abc)
+    directions = (a, b, c), (0, 0, 0)
+    cell = region.Cell(0, (F(1), F(0)), (F(1), F(0)))
+    found, xstar = search._way(directions, cell, search.native.Stop())
+    assert found == frame and xstar is not None
 
 
 def test_progress_says_what_is_done(coarse, tmp_path, monkeypatch):
@@ -303,6 +319,8 @@ def test_the_sphere(coarse, tmp_path):
     assert all(estimate[place] == estimate[place[::-1]] for place in estimate)
     assert found.count(OUTSIDE)
     found.draw(tmp_path / "map.svg")
+    shown = found._repr_html_()
+    assert shown.startswith("<pre>No invariant tori") and "data:image/png;base64" in shown
 
 
 # ---- the file
@@ -315,6 +333,39 @@ def test_it_is_what_it_was(made, tmp_path, name):
     assert repr(again) == repr(made[0]) and again.estimate == made[0].estimate
     assert [(leaf.cell, leaf.kind, leaf.proof, leaf.tried) for leaf in again.leaves()] == [
         (leaf.cell, leaf.kind, leaf.proof, leaf.tried) for leaf in made[0].leaves()]
+
+
+def test_maps_of_version_1_are_read(made, tmp_path):
+    """Their proofs are of the whole torus."""
+    data = json.loads(made[1].read_text())
+    del data["sha256"]
+    data["format"] = "converse map 1"
+    for proof in (proof for face in data["faces"] for proof in face["proofs"]):
+        assert proof.pop("v0") != ["1", "1"] and proof.pop("v1")
+    path = tmp_path / "old.json"
+    path.write_text(json.dumps({**data, "sha256": map_module._digest(data)}))
+    old = Map.load(path)
+    proofs = [leaf.proof for leaf in old.leaves() if leaf.kind == PROVED]
+    assert proofs and all(p["v0"] == p["v1"] == ["1", "1"] for p in proofs)
+    old.save(tmp_path / "new.json")
+    assert json.loads((tmp_path / "new.json").read_text())["format"] == "converse map 2"
+
+
+def test_what_a_map_lacks_is_said(made, tmp_path):
+    def refused(**changed):
+        data = {**json.loads(made[1].read_text()), **changed}
+        del data["sha256"]
+        path = tmp_path / "map.json"
+        path.write_text(json.dumps({**data, "sha256": map_module._digest(data)}))
+        with pytest.raises(ConverseError) as error:
+            Map.load(path)
+        return str(error.value)
+
+    faces = json.loads(made[1].read_text())["faces"]
+    del faces[0]["proofs"][-1]
+    assert "there are fewer proofs than proved cells; use an intact copy" in refused(
+        faces=faces).replace(")", "")
+    assert "its format, converse map 3, is of another version" in refused(format="converse map 3")
 
 
 def test_a_damaged_file_is_refused_in_a_line(made, tmp_path):
