@@ -25,7 +25,7 @@ import numpy as np
 from converse import orbits
 from converse.commands.common import ended
 from converse.draw import plot
-from converse.draw.plot import BLUE, DARK, VERMILLION
+from converse.draw.plot import BLUE, DARK, GREEN, VERMILLION
 from converse.storage import files
 
 TRIG = {"step": 0.0005, "width": 1e-5, "top": 0.02}
@@ -38,6 +38,7 @@ SPREAD = 0.7548776662466927, 0.5698402909980532
 NEAR = 0.295401276 + 0.003327283, 0.295401276 - 0.003327283
 TORI = 0.0121
 PROVED = (("this program", 0.0140), ("the thesis, 1989", 0.0272))     # no tori from there on
+PROVED_TORUS = "V1", 0.0115             # docs/tori.md
 TOP = 0.0335                            # of the picture
 CHAPTER = ((1432, 1897), 2513), ((377, 2330), 3770)
 K_C = 0.971635406                       # where the standard map's golden torus breaks up (Greene)
@@ -210,16 +211,19 @@ def draw_frontier(figure, table, last, chapter):
               "not yet hyperbolic" % (len(eps), table["q"].min(), table["q"].max()),
               va="bottom")
 
-    def mark(x, y, marker, words):
-        axes.plot(x, np.full(np.shape(x), y), marker, color=VERMILLION, markersize=6, zorder=3)
+    def mark(x, y, marker, words, color=VERMILLION):
+        axes.plot(x, np.full(np.shape(x), y), marker, color=color, markersize=6, zorder=3)
         axes.annotate(words, (np.max(x), y), (bound + 0.0006, y), va="center",
                       arrowprops={"arrowstyle": "-", "color": "0.5", "linewidth": 0.6})
 
     mark(chapter, 8, "|", "seen: the thesis's two vectors")
     mark(last, 2.5, "*", "seen: the toughest, q in the thousands")
     mark(TORI, 0.8, "D", "seen: tori, by Fourier series")
-    axes.annotate("", (last, 0.2), (bound, 0.2), arrowprops={"arrowstyle": "<->", "color": "0.3"})
-    axes.annotate("open", ((last + bound) / 2, 0.2), (0, 4), textcoords="offset points",
+    name, torus = PROVED_TORUS
+    mark(torus, 0.3, "s", "PROVED: a torus, of %s, at %.4f" % (name, torus), GREEN)
+    axes.annotate("", (torus, 0.17), (bound, 0.17),
+                  arrowprops={"arrowstyle": "<->", "color": "0.3"})
+    axes.annotate("open", ((torus + bound) / 2, 0.17), (0, 3), textcoords="offset points",
                   ha="center")
 
 

@@ -194,8 +194,8 @@ def orbits(repeat):
         for _ in range(repeat):
             how, u = ffi.new("cv_relaxed *"), np.zeros((q, 2))
             begin = time.perf_counter()
-            lib.cv_relax(guess.potential.native, q, 0.0025, address(guess.base), address(u), 1e-13,
-                         10, how)
+            lib.cv_relax(guess.potential.native, q, 0.0025, address(guess.base), address(u), -1,
+                         1e-13, 10, how)
             seconds.append((time.perf_counter() - begin) / how.steps)
         begin = time.perf_counter()
         if q < 10000:

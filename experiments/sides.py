@@ -1,0 +1,183 @@
+"""What a proof costs, the nearer it is to where order ends: from both sides, and of two maps.
+
+    python experiments/sides.py [DIRECTORY] [--quick] [--draw]
+
+Writes sides.csv and sides.svg into DIRECTORY (build).  Each row is a proof for one map, without
+width, in a process of its own: seconds of the processor, with the search for the torus or the tree
+but without Python's start; the most memory that the process had; bytes of the proof file or the
+certificate.  --draw draws what was measured.  All takes half an hour and up to 3 GB, --quick less
+than a minute.
+"""
+
+import concurrent.futures
+import csv
+import io
+import multiprocessing
+import os
+import resource
+import sys
+import tempfile
+import time
+from fractions import Fraction
+from pathlib import Path
+
+import converse
+from converse import tori
+from converse.commands.common import Parser, ended
+from converse.draw import plot
+from converse.draw.plot import BLUE, GREEN
+from converse.model.problem import LINE, Problem
+from converse.storage import files
+
+COLUMNS = "map", "side", "parameter", "seconds", "megabytes", "bytes", "parts", "longest"
+# Where order ends, to measure distances from.  The golden circle's break-up is known from numerics
+# to many digits (Greene); of the line it is known only that the toughest orbits that were seen turn
+# hyperbolic there (experiments/toughest.py).
+FRONTIER = {"standard": 0.971635406, "line": 0.0126}
+ROTATION = {"standard": "golden", "line": "V1"}
+GRID = 1 << 23                          # points on which a torus is looked for, at most
+POINTS = {
+    ("standard", "torus"): ("0.5", "0.8", "0.9", "0.95", "0.96", "0.965", "0.97", "0.971",
+                            "0.9714"),
+    ("standard", "none"): ("1.34", "1.1", "1", "0.984375", "0.98", "0.976", "0.974", "0.973",
+                           "0.9725", "0.972"),
+    ("line", "torus"): ("0.002", "0.004", "0.006", "0.008", "0.009", "0.010", "0.0105", "0.011",
+                        "0.0115"),
+    ("line", "none"): ("0.0272", "0.0240", "0.0200", "0.0180", "0.0160", "0.0150", "0.0145",
+                       "0.0142", "0.0141", "0.01405", "0.0140", "0.0139"),
+}
+QUICK = {"standard": 0.008, "line": 0.0026}     # as near as that
+WORDS = {("standard", "torus"): ("o", "the standard map: its golden circle"),
+         ("standard", "none"): ("s", "the standard map: no circle"),
+         ("line", "torus"): ("^", "the thesis's line: a torus of V1"),
+         ("line", "none"): ("D", "the thesis's line: no torus")}
+STYLE = {**plot.STYLE, "axes.spines.top": False, "axes.spines.right": False, "axes.grid": True,
+         "axes.axisbelow": True, "grid.color": "0.92", "lines.markersize": 4.5}
+COLOURS = {"torus": GREEN, "none": BLUE}
+
+
+def problem_of(name, value):
+    """The standard map with k = value, or the thesis's with epsilon = value."""
+    k = Fraction(value)
+    if name == "standard":
+        return Problem.patch([k], waves=[(1, 0)])
+    return Problem.patch([LINE * k, LINE * k, 2 * LINE * k])
+
+
+def measured(name, side, value):
+    """A row without its first three columns; None: it was not proved."""
+    problem = problem_of(name, value)
+    with tempfile.TemporaryDirectory() as directory:
+        path = os.path.join(directory, "proof")
+        if side == "none":
+            runs = []
+            while len(runs) < 5 and sum(runs) < 1:      # short ones: the least of a few
+                began = time.process_time()
+                proof = converse.prove(problem, method="loewner", jobs=1)
+                runs.append(time.process_time() - began)
+            if not proof.no_tori:
+                return None
+            seconds = min(runs)
+            parts, longest = proof.counts.proved, proof.counts.max_NTsteps
+        else:
+            rotation = tori.read_rotation(ROTATION[name], 1 if name == "standard" else 2)
+            began = time.process_time()
+            try:
+                proof = tori.prove(problem, rotation, points=GRID)
+            except (tori.NotFound, tori.NotProved):
+                return None
+            seconds = time.process_time() - began
+            parts, longest = len(proof.torus.modes), ""
+        memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1000
+        proof.save(path)
+        return seconds, memory, os.path.getsize(path), parts, longest
+
+
+def measure(quick):
+    """The rows of the table, in the order of POINTS."""
+    spawn = multiprocessing.get_context("spawn")
+    for (name, side), values in POINTS.items():
+        for value in values:
+            if quick and distance(name, value) * FRONTIER[name] < QUICK[name]:
+                continue
+            with concurrent.futures.ProcessPoolExecutor(1, mp_context=spawn) as one:
+                row = one.submit(measured, name, side, value).result()
+            if row is None:
+                print("%s %s: %s was not proved" % (name, side, value), flush=True)
+                continue
+            yield name, side, value, *row
+
+
+def distance(name, value):
+    """From the frontier, as a part of it."""
+    return abs(float(Fraction(value)) / FRONTIER[name] - 1)
+
+
+def table(rows):
+    text = io.StringIO(newline="")
+    csv.writer(text, lineterminator="\n").writerows(
+        [COLUMNS] + [["%.4g" % x if isinstance(x, float) else x for x in row] for row in rows])
+    return text.getvalue()
+
+
+def read(path):
+    """The rows of a table.  ConverseError: it is none."""
+    header, *rows = csv.reader(io.StringIO(files.read_text(path, "table", ": is no such table")))
+    if tuple(header) != COLUMNS or not rows:
+        raise files.ConverseError("%s: is not a table of this script; measure anew" % path)
+    return [(*row[:3], float(row[3]), float(row[4]), int(row[5]), *row[6:]) for row in rows]
+
+
+def draw(rows):
+    """The picture, as the bytes of an SVG file."""
+    from matplotlib import style
+    from matplotlib.figure import Figure
+
+    with style.context(["default", STYLE]):
+        figure = Figure(figsize=(7.2, 3.9))
+        panels = figure.subplots(1, 2, gridspec_kw={"wspace": 0.25})
+        for axes, column, words in ((panels[0], 3, "seconds of one core"),
+                                    (panels[1], 5, "bytes of the proof file or the certificate")):
+            for (name, side), (marker, label) in WORDS.items():
+                mine = [row for row in rows if row[:2] == (name, side)]
+                axes.plot([distance(name, row[2]) for row in mine], [row[column] for row in mine],
+                          marker + "-", color=COLOURS[side], label=label,
+                          markerfacecolor=COLOURS[side] if name == "line" else "white")
+            axes.set(xscale="log", yscale="log", ylabel=words,
+                     xlabel="distance from the frontier, as a part of it")
+        handles, labels = panels[0].get_legend_handles_labels()
+        figure.legend(handles, labels, loc="upper center", ncol=2, bbox_to_anchor=(0.5, 1.02))
+        return plot.encode(figure, "svg", pad_inches=0.08)
+
+
+def run(options):
+    plot.check()
+    os.makedirs(options.directory, exist_ok=True)
+    data, picture = (os.path.join(options.directory, "sides." + ending)
+                     for ending in ("csv", "svg"))
+    files.check_writable(picture)
+    if not options.draw:
+        rows = []
+        for row in measure(options.quick):
+            rows.append(row)
+            files.write_text(data, table(rows))
+            print(table(rows).splitlines()[-1], flush=True)
+    files.write(picture, draw(read(data)))
+    return 0
+
+
+def parser():
+    p = Parser(prog="sides.py", description="What proofs cost, near to where order ends.")
+    p.add_argument("directory", nargs="?", default=str(Path("build")))
+    p.add_argument("--quick", action="store_true", help="leave out what takes long")
+    p.add_argument("--draw", action="store_true", help="draw the table that is there")
+    return p
+
+
+def main(argv=None):
+    return ended("sides.py", lambda: run(parser().parse_args(argv)),
+                 lambda: "the rows that were measured are kept")
+
+
+if __name__ == "__main__":
+    sys.exit(main())
