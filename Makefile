@@ -78,9 +78,10 @@ memcheck: $(VENV)/installed
 	PYTHONMALLOC=malloc valgrind -q --error-exitcode=9 --suppressions=tests/memcheck.supp $(VENV)/bin/python tests/memcheck.py
 
 # The rooms whose tests call the core in ways of their own.  What other rooms ask of it they ask, too,
-# and sanitizers find nothing in Python, nor in figures or in the texts of roundings.
+# and sanitizers find nothing in Python, nor in figures or in the texts of roundings.  Linked proofs
+# are many ordinary searches.
 SANITIZED_TESTS = $(addprefix tests/, arith loewner orbits prover search thesis) \
-    $(addprefix --ignore=tests/, orbits/test_orbit_figures.py loewner/test_margins.py)
+    $(addprefix --ignore=tests/, orbits/test_orbit_figures.py loewner/test_margins.py prover/test_links.py)
 
 # Safe path: the clone, where this starts, holds a core without sanitizers.
 sanitize: export CFLAGS = $(SANITIZE)
@@ -115,8 +116,8 @@ charts: $(VENV)/with-plot
 # The pictures of docs/ drawn anew, those of proofs, orbits and most experiments; five minutes.  Not:
 # chart-bound and chart-wall (make charts, on a quiet machine; minutes); orbit-finders, which measures
 # times, too (experiments/finders.py; a minute); frontier and toughest (experiments/toughest.py, which
-# calls the second map.svg; ten minutes); map-ab, map-b0, map-sphere (converse-map, as docs/map.md
-# says; minutes each).
+# calls the second map.svg; ten minutes); map-ab, map-b0, map-c0, map-sphere (converse-map and
+# experiments/rays.py, as docs/map.md says; minutes each); chart-sides (experiments/sides.py).
 figures: $(VENV)/with-orbits $(VENV)/with-plot
 	$(VENV)/bin/python docs/figures.py
 

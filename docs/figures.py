@@ -9,7 +9,8 @@ from dataclasses import replace
 from pathlib import Path
 
 from converse import orbits, prove, read_input
-from converse.orbits.figures import SPIRAL, states_picture
+from converse.orbits.figures.shared import SPIRAL
+from converse.orbits.pictures import states_picture
 from converse.storage import files
 
 DOCS = Path(__file__).resolve().parent

@@ -216,7 +216,13 @@ def _find_parser(commands):
                       "than continuation finds, N times")
     find.add_argument("--prove", action="store_true", help="prove that an orbit is beside each "
                       "state, that it is a minimum, its action and its exponents")
+    find.add_argument("--minimax", action="store_true", help="find the pass to the neighbouring "
+                      "minimum, and the flux; with --prove, prove both")
     find.add_argument("--csv", metavar="FILE", help="write a row for each state")
+    find.add_argument("--points", metavar="FILE", help="write the points and momenta of the "
+                      "states: CSV or NPZ by the name")
+    find.add_argument("--from", dest="start", metavar="FILE", help="begin at that of the "
+                      "states in a file of --points which is nearest in eps, not at eps 0")
     find.add_argument("-g", "--graphics", metavar="FILE", help="draw the angles and the momenta of "
                       "the states: SVG, PNG or PDF by the name")
     find.add_argument("--no-caption", action="store_true", help="leave out the figure's caption")
@@ -287,21 +293,15 @@ def _numbers(values):
     return ", ".join("%.10g" % x for x in values)
 
 
-def _exponent(state, x):
-    """Of an exponent below what the pivots can tell, no digits."""
-    from ..orbits.state import ROUNDS
-
-    least = 2 / max(ROUNDS, 5 * state.q)
-    return "below %.0e" % least if x < least else "%.10g" % x
-
-
 def report(state):
     """What is known of a state."""
+    from ..orbits.pictures import exponent_text
+
     lines = [
         "eps : %r" % state.eps,
         "State : %s (%s)" % (state.label, MEANINGS.get(state.label, MEANINGS["best"])),
         "Action per point less |p/q|^2/2 : %.12g" % state.action,
-        "Exponents : " + ", ".join(_exponent(state, x) for x in state.exponents),
+        "Exponents : " + ", ".join(exponent_text(state, x, 10) for x in state.exponents),
         ("Residue : %.10g" % state.residue if state.potential.n == 1 else
          "Stability indices : " + ", ".join(format(x, ".10g") for x in state.indices)),
         "Gradient : largest %.2g, root mean square %.2g" % (state.shadow, state.grad_size),
@@ -313,18 +313,52 @@ def report(state):
     return "\n".join(lines) + "\n"
 
 
+def pass_report(pair):
+    """What is known of the pass beside a minimum."""
+    towards = "towards the neighbour displaced by (%s)/%d" % (
+        ", ".join(map(str, pair.step)), pair.minimum.q)
+    if pair.minimax.label != "saddle":
+        return "Pass : too flat for doubles, %s\n" % towards
+    one = pair.minimum.potential.n == 1
+    return "Pass : saddle, %s\n%s\n%s : %.10g\n" % (
+        towards,
+        "Residue of the minimax orbit : %.10g" % pair.minimax.residue if one else
+        "Stability indices of the pass : " + ", ".join(
+            format(x, ".10g") for x in pair.minimax.indices),
+        "Flux" if one else "Difference of action", pair.barrier)
+
+
 # ---- what is done
 
 def _check_outputs(options, potential_file):
+    others = [potential_file, options.start]
     if options.csv is not None:
-        files.check_output(options.csv, "table", ["csv"], [potential_file])
+        files.check_output(options.csv, "table", ["csv"], others)
+    if options.points is not None:
+        from ..orbits.points import ENDINGS
+        files.check_output(options.points, "file of points", ENDINGS, [*others, options.csv])
     if options.graphics is not None:
-        files.check_output(options.graphics, "figure", plot.FORMATS, [potential_file])
-        from ..orbits.figures import ROWS, check
-        check([], format_of(options.graphics))
-        if sum(map(len, options.eps)) > ROWS:
+        files.check_output(options.graphics, "figure", plot.FORMATS, others)
+        from ..orbits.pictures import MOST_STATES
+        plot.check()
+        if sum(map(len, options.eps)) > MOST_STATES:
             raise ConverseError("a figure shows %d states at most; choose fewer eps, or no figure"
-                                % ROWS)
+                                % MOST_STATES)
+
+
+def _start(options, potential, straight, eps):
+    """The state that is followed: the straight orbit, or that of a file."""
+    if options.start is None:
+        return straight
+    if options.search is not None:
+        raise ConverseError("--search begins anew at each eps; leave out --from")
+    from ..orbits.points import load
+
+    family = load(options.start, potential)
+    if (family[0].p, family[0].q) != (straight.p, straight.q):
+        raise ConverseError("%s: its states are of type %s, not %s" % (
+            options.start, type_text(family[0]), type_text(straight)))
+    return min(family, key=lambda state: abs(state.eps - eps))
 
 
 def find_states(options):
@@ -332,37 +366,64 @@ def find_states(options):
     p, q = _check_type(potential, options.type)
     _check_outputs(options, options.potential)
 
-    from ..orbits.proved import balls, prove
+    from ..orbits.points import encoded
+    from ..orbits.proved import NotProved, balls, prove
     from ..orbits.search import search
     from ..orbits.solver import Family, follow, reached, straight
 
     if options.prove:
         balls()
-    eps = reached(potential, [x for each in options.eps for x in each])
+    if options.minimax and math.gcd(*p, q) > 1:
+        raise ConverseError("--minimax: the type is not in lowest terms; divide it by %d"
+                            % math.gcd(*p, q))
+    eps = [x for each in options.eps for x in each]
+    start = _start(options, potential, straight(potential, p, q), eps[0])
+    eps = reached(potential, eps, start.eps)
     states, drawn, status = [], [], 0   # drawn: what was proved, and of what was not, the state
 
     def found(state):
         nonlocal status
         states.append(state)
         drawn.append(state)
-        say("\n" + report(state))
+        tell("\n" + report(state))
         if state.label in NO_MINIMUM:
             status = 1
-        if options.prove:
-            try:
-                drawn[-1] = prove(state)
-                say(drawn[-1].report())
-            except ConverseError as reason:
-                say("Not proved : %s\n" % plain(str(reason)))
-                status = 1
+        try:
+            pair = state.minimax() if options.minimax else None
+            if pair is not None:
+                tell(pass_report(pair))
+            if options.prove:
+                def progress(*at):
+                    line(lambda: "proving eps %g: %d decimal places, %d rounds" % (state.eps, *at))
+                if pair is not None:
+                    proof = pair.prove(progress=progress)
+                    drawn[-1] = proof.minimum
+                else:
+                    proof = drawn[-1] = prove(state, progress=progress)
+                tell(proof.report())
+        except ConverseError as reason:
+            tell("%s : %s\n" % ("Not proved" if isinstance(reason, NotProved) else "No pass",
+                                plain(str(reason))))
+            status = 1
 
-    say(header(straight(potential, p, q)))
+    def tell(text):
+        line.clear()
+        say(text)
+
+    say(header(start))
     try:
-        if options.search is None:
-            follow(potential, p, q, eps, progress=lambda _, state: found(state))
-        else:
-            for x in eps:
-                found(search(potential, p, q, x, options.search, seed=options.seed))
+        with ProgressLine() as line:
+            if options.search is None:
+                follow(potential, p, q, eps, start=start, progress=lambda _, state: found(state),
+                       on_step=lambda state: line(lambda: "at eps %g, %d of %d states found" % (
+                           state.eps, len(states), len(eps))))
+            else:
+                for x in eps:
+                    found(search(
+                        potential, p, q, x, options.search, seed=options.seed,
+                        progress=lambda done, best: line(
+                            lambda: "eps %g: %d of %d searches, least action %.12g" % (
+                                best.eps, done, options.search, best.action))))
     except ConverseError as reason:
         say("\nNot found : %s\n" % plain(str(reason)))
         status = 1
@@ -370,8 +431,10 @@ def find_states(options):
         table = io.StringIO(newline="")
         Family(tuple(states)).write_csv(table)
         files.write(options.csv, table.getvalue().encode("utf-8"))
+    if options.points is not None and states:
+        files.write(options.points, encoded(states, options.points))
     if options.graphics is not None and states:
-        from ..orbits.figures import states_picture
+        from ..orbits.pictures import states_picture
         files.write(options.graphics, states_picture(drawn, format_of(options.graphics),
                                                      caption=not options.no_caption))
     return status
@@ -423,7 +486,7 @@ def main(argv=None):
     options = argparse.Namespace(run=None)
 
     def interrupted():
-        return {find_states: "neither table nor figure is written",
+        return {find_states: "no table, points or figure is written",
                 sweep_types: "the same command continues it",
                 draw_figures: "the figures that were finished are kept"}.get(options.run,
                                                                              "nothing was begun")

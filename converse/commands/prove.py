@@ -86,7 +86,7 @@ def _leaf_line(leaf, points):
     """A line of -t: kind, centre and half-widths in radians, cuts, steps."""
     numbers = ["%.10g" % (x * math.pi) for x in leaf.centre + leaf.half]
     return "%-9s (%s, %s) +- (%s, %s), %d cuts, %d steps" % (
-        LEAF_WORDS[leaf.kind], *numbers, leaf.depth, points)
+        LEAF_WORDS.get(leaf.kind, "linked"), *numbers, leaf.depth, points)
 
 
 class Progress:
@@ -153,7 +153,7 @@ def _said_in_a_line():
 
 def run(options):
     from ..prover.proof import Proof  # these need the C core, and say so where it is missing
-    from ..prover.run import prove
+    from ..prover.run import prove, ready
 
     check_mpi(options, "converse.commands.prove")
     if options.graphics == "off":
@@ -170,19 +170,21 @@ def run(options):
     if options.together and restored is not None and not restored.problem.together:
         raise ConverseError("%s: is of another run: its parameters do not move together; leave out "
                             "--together" % options.restore)
-    problem = _read_problem(options, restored)
+    problem, xstar = _read_problem(options, restored), options.xstar
     if restored is None:
         with _said_in_a_line():
-            settings.accept(problem)
+            begun = ready(Proof(problem, settings, xstar=xstar and tuple(xstar)))
+        problem, xstar = begun.problem, begun.xstar
     else:
-        settings = restored.settings
+        begun = ready(replace(restored, problem=replace(
+            restored.problem, comments=problem.comments)))
 
     def on_leaf(leaf, points):
         say(_leaf_line(leaf, points) + "\n")
 
     with ProgressLine(not options.verbose) as line, executor_of(options) as executor:
-        progress = Progress(options, line, problem, options.as_printed or settings.as_printed)
-        proof = prove(problem, xstar=options.xstar, jobs=options.jobs, executor=executor,
+        progress = Progress(options, line, begun.problem, begun.as_printed)
+        proof = prove(problem, xstar=xstar, jobs=options.jobs, executor=executor,
                       backup=options.backup, resume=options.restore, time_limit=options.time_limit,
                       progress=progress, on_leaf=on_leaf if options.verbose else None, **given)
         if not options.begun:           # there was no time even to set the search up

@@ -1,10 +1,10 @@
 """The command: converse-tori prove."""
 
 import argparse
+import contextlib
 import os
 import re
 import sys
-import time
 from dataclasses import replace
 from fractions import Fraction
 
@@ -100,6 +100,8 @@ def _prove_parser(commands):
     p.add_argument("--points", type=whole_number(16, MOST_POINTS), metavar="N",
                    help="points of the grid on which the torus is looked for, at most (default "
                         "2097152)")
+    p.add_argument("--jobs", type=whole_number(1), metavar="N",
+                   help="prove N pieces of a range at a time, in processes (default 1)")
     p.add_argument("--memory", type=_positive, metavar="GB", help="what the proof may take, in GB "
                    "(default: three quarters of what is free)")
     return p
@@ -120,13 +122,15 @@ def _read_problem(options):
     return problem
 
 
-def _check_outputs(options):
-    """Before the work starts: files that cannot be written, or would overwrite something."""
+def _check_outputs(options, locks):
+    """Before the work starts: files that cannot be written, or would overwrite something.  The
+    certificate's is locked, so that another run does not choose the same."""
     if options.backup is not None:
         if options.restore is not None and files.same(options.backup, options.restore):
             raise ConverseError("'%s': the certificate would overwrite it; name another file"
                                 % options.backup)
-        files.check_writable(options.backup)
+        files.check_writable(options.backup, regular=True)
+        locks.enter_context(files.Lock(options.backup))
         if os.path.exists(options.backup) and os.path.getsize(options.backup):
             raise ConverseError("%s: exists; name another file or remove it" % options.backup)
     if options.graphics is not None:
@@ -145,14 +149,19 @@ def _norm(options, potential):
     if options.weights is None:
         return None
     if len(options.weights) != potential.dimension:
-        raise ConverseError("--weights has %d numbers, and the map %d angle%s: give as many"
-                            % (len(options.weights), potential.dimension,
-                               "s" * (potential.dimension - 1)))
+        raise _unequal("--weights", options.weights, potential)
     for weight in options.weights:
         if not LIGHTEST <= weight <= 1 / LIGHTEST:
             raise ConverseError("--weights: %s is not from %s to %s"
                                 % (short_text(weight), *map(short_text, (LIGHTEST, 1 / LIGHTEST))))
     return Norm(default_frame(potential), tuple(options.weights))
+
+
+def _unequal(flag, numbers, potential):
+    """The error that these are not as many as the map has angles."""
+    return ConverseError("%s has %s, and the map %s: give as many" % (
+        flag, *("%d %s%s" % (count, what, "s" * (count != 1)) for count, what in (
+            (len(numbers), "number"), (potential.dimension, "angle")))))
 
 
 def _rotation(options, potential, start, norm):
@@ -172,21 +181,24 @@ def _rotation(options, potential, start, norm):
             raise ConverseError("which torus? Give --rotation, such as golden or T49, or --near W")
         return start.rotation
     if len(options.near) != potential.dimension:
-        raise ConverseError("--near has %d numbers, and the map %d angle%s: give as many"
-                            % (len(options.near), potential.dimension,
-                               "s" * (potential.dimension - 1)))
+        raise _unequal("--near", options.near, potential)
     more = {} if options.tolerance is None else {"tolerance": options.tolerance}
     return tori.near(*options.near, norm=norm, **more)
 
 
 def prove_torus(options):
+    with contextlib.ExitStack() as locks:
+        _check_outputs(options, locks)
+        return _prove_torus(options)
+
+
+def _prove_torus(options):
     import numpy
 
     from .. import tori
     from ..tori import report
     from ..tori.torus import family
 
-    _check_outputs(options)
     start = None if options.restore is None else _start(options.restore)
     problem = _read_problem(options)
     potential, part = family(problem)
@@ -201,9 +213,10 @@ def prove_torus(options):
         ("start", start), ("margin", options.margin and float(options.margin)),
         ("points", options.points), ("norm", norm), ("shape", options.grid),
         ("bits", options.precision), ("rho", options.rho),
-        ("memory", options.memory and int(options.memory * GIGABYTE))) if value is not None}
+        ("memory", options.memory and int(options.memory * GIGABYTE)),
+        ("jobs", options.jobs)) if value is not None}
     say(report.header(problem, rotation))
-    began = time.process_time()
+    began = _processor_time()
     with ProgressLine() as line, numpy.errstate(all="ignore"):
         def progress(words):
             line(lambda: words)
@@ -218,12 +231,17 @@ def prove_torus(options):
         if options.backup is not None:
             certificate = {"certificate": options.backup, "checksum": proof.save(options.backup)}
     finally:                            # the theorem is told, even if the disk is full
-        say(report.verdict(proof, time.process_time() - began, **certificate))
+        say(report.verdict(proof, _processor_time() - began, **certificate))
     options.proved = True
     if options.graphics is not None:
         from ..draw import torus_figure
         torus_figure.draw(proof, options.graphics)
     return 0
+
+
+def _processor_time():
+    """Seconds, those of processes that ended included."""
+    return sum(os.times()[:4])
 
 
 def _by_hand(options, reason):

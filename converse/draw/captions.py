@@ -6,9 +6,12 @@ from fractions import Fraction
 
 from ..model.exact import short_text
 from ..model.problem import IDENTITY, frame_text, wave_text
+from ..model.region import nearest
 from ..prover import tree
 
-KIND_NAMES = {"P": "proved", "S": "skipped by symmetry", "?": "untried", "U": "undecided"}
+LINKED = "a"                            # stands for all letters
+KIND_NAMES = {"P": "proved", "S": "skipped by symmetry", LINKED: "linked to another x*",
+              "?": "untried", "U": "undecided"}
 STAR = "x*, whose successors these are"
 LINE_LENGTH = 78                        # characters of a line of the head, at most
 LEAST = 1 / 128                         # of a side: what is not proved is drawn no smaller
@@ -41,7 +44,7 @@ def head(proof):
         words[:0] = ["on a part of this box"]
     if problem.dimension == 1:
         words[-1] = words[-1].replace("invariant tori", "rotational invariant circles")
-    if not problem.full_torus and proof.conclusion != "region":
+    if proof.symmetries_used is None and proof.conclusion != "region":
         words.append("a part of the torus only")
     if proof.as_printed:
         words.append("as printed in the thesis, a historical reconstruction: not a proof")
@@ -57,14 +60,22 @@ def foot(proof):
                      "what is not proved lies on top")
     if proof.problem.frame != IDENTITY:
         lines.append("the angles after x* are " + frame_text(proof.problem.frame, "v%d"))
+    if proof.symmetries_used:
+        lines.append("this region stands for the whole torus by "
+                     + " and ".join(proof.symmetries_used))
     if proof.sha256:
         lines.append("proof file: SHA-256 " + proof.sha256)
     return lines
 
 
+def nodes(proof):
+    """The tree that is drawn: that of the proof's x*, with one letter for all."""
+    return proof.tree.translate(dict.fromkeys(map(ord, tree.LETTERS), LINKED))
+
+
 def counts(proof):
     """The number of prisms of each kind that occurs."""
-    found = {kind: proof.tree.count(kind) for kind in KIND_NAMES}
+    found = {kind: nodes(proof).count(kind) for kind in KIND_NAMES}
     cuts = sum(map(proof.tree.count, tree.CUTS))
     found["?"] += 1 + cuts - sum(found.values())        # those that are missing at the end
     return {kind: count for kind, count in found.items() if count}
@@ -76,13 +87,10 @@ def star(proof):
     places = []
     if proof.xstar is None:
         return None
-    x0, x1 = (Fraction(text) / Fraction(math.pi) for text in proof.xstar)
-    f = proof.problem.frame                 # of determinant 1 or -1, which its inverse has, too
-    sign = f[0] * f[3] - f[1] * f[2]
-    for axis, v in enumerate((sign * (f[3] * x0 - f[1] * x1), sign * (f[0] * x1 - f[2] * x0))):
-        centre, half = proof.problem.centre[axis - 2], proof.problem.half[axis - 2]
-        offset = (v - centre + 1) % 2 - 1
-        if half == 0 or abs(offset) > half:
+    x = [Fraction(text) / Fraction(math.pi) for text in proof.xstar]
+    centre, half = proof.problem.centre[-2:], proof.problem.half[-2:]
+    for v, middle, side in zip(nearest(proof.problem.frame, x, centre), centre, half):
+        if side == 0 or abs(v - middle) > side:
             return None
-        places.append(float((offset / half + 1) / 2))
+        places.append(float(((v - middle) / side + 1) / 2))
     return tuple(places)

@@ -5,15 +5,13 @@ prism: where parameters were cut several prisms share a place, and what is not p
 top.
 """
 
-import base64
-import html as markup
 import os
 
 from ..model.exact import short_text
 from ..prover import tree
 from ..prover.report import verdict
 from ..storage import files
-from . import captions, plot
+from . import captions, notebook, plot
 
 SIDE = 400                              # of the square, in points
 LEFT_MARGIN, RIGHT_MARGIN = 44, 24      # beside it
@@ -23,7 +21,7 @@ STRING_LENGTH = 60000                   # nodes of the tree in a string; PostScr
 
 ALL_FORMATS = *plot.FORMATS, "ps", "eps"         # as the name of a file says
 
-MARKS = {"P": "dark", "S": "light", "?": "white", "U": "crossed"}
+MARKS = {"P": "dark", "S": "light", captions.LINKED: "ringed", "?": "white", "U": "crossed"}
 
 PROLOG = """\
 /outline {              % x y w h gray: inside the rectangle, if there is room
@@ -51,6 +49,10 @@ PROLOG = """\
   x y w h rectstroke
   x y moveto w h rlineto x y h add moveto w h neg rlineto stroke
 } bind def
+/ring {                 % x y w h
+  4 copy 1 setgray rectfill
+  0 0.45 0.7 setrgbcolor 0.8 setlinewidth rectstroke
+} bind def
 /drop { pop pop pop pop } bind def
 /nodes 12 dict def      % what to do with the prism x y w h on the stack
 nodes begin
@@ -59,7 +61,7 @@ nodes begin
   (1) 0 get { /h exch def /w exch def /y exch def /x exch def
     x y h 2 div add w h 2 div   x y w h 2 div } bind def
   (234) { { 4 copy } bind def } forall          % a cut of a parameter: two in one place
-  (PSU?) { { drop } bind def } forall
+  (PSU?a) { { drop } bind def } forall
 end
 /each {                 % (kind) procedure: for each prism x y w h of that kind
   nodes begin 1 index 0 get exch def end
@@ -132,18 +134,15 @@ def svg(proof):
 
 
 def html(proof):
-    """The verdict and, where there is matplotlib, the figure.  It is an image, not part of the
-    page, whose style it would change."""
-    text, image = "<pre>%s</pre>" % markup.escape(verdict(proof)), svg(proof)
-    if image:
-        text += '<img alt="the prisms" src="data:image/svg+xml;base64,%s">' \
-            % base64.b64encode(image.encode("utf-8")).decode("ascii")
-    return text
+    """The verdict and, where there is matplotlib, the figure."""
+    return notebook.html(verdict(proof), lambda: plot.figure_bytes(proof, "svg"), "svg",
+                         "the prisms")
 
 
 def postscript(proof, caption=True):
     counts = captions.counts(proof)
-    nodes = proof.tree + tree.UNTRIED * (counts.get("?", 0) - proof.tree.count(tree.UNTRIED))
+    nodes = captions.nodes(proof)
+    nodes += tree.UNTRIED * (counts.get("?", 0) - nodes.count(tree.UNTRIED))
     key = ["%s: %s (%d)" % (MARKS[kind], captions.KIND_NAMES[kind], count)
            for kind, count in counts.items()]
     star = captions.star(proof)
@@ -175,7 +174,8 @@ def postscript(proof, caption=True):
     lines += ["] def", "gsave %d %d translate" % (LEFT_MARGIN, below)]
     lines += ["(%s) { %s } each" % (kind, paint) for kind, paint in (
         ("S", "0.65 0.85 box"), ("P", "0.35 setgray rectfill"), ("P", "0 outline"),
-        ("?", "seen 0.65 1 box"), ("U", "seen cross")) if kind in counts]
+        (captions.LINKED, "seen ring"), ("?", "seen 0.65 1 box"),
+        ("U", "seen cross")) if kind in counts]
     lines += ["0 setgray 0.6 setlinewidth 0 0 side side rectstroke"]
     if star:
         lines += ["%g %g star" % tuple(SIDE * part for part in star)]

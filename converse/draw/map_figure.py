@@ -8,7 +8,7 @@ from ..maps.map import AT_ONCE, OPEN, PROVED
 from ..maps.region import RADIUS, direction
 from ..model.problem import LINE
 from ..storage import files
-from . import plot
+from . import notebook, plot
 from .figure import format_of
 
 PARAMETERS = "abc"
@@ -48,6 +48,17 @@ def draw(region_map, path, tori=()):
     """Draws a map in a file, and in that of a plane the points (a, b, c) at which tori are proved;
     ConverseError: it cannot be drawn, or has no estimate yet."""
     kind = check(path)
+    files.write(path, picture(region_map, kind, tori))
+
+
+def html(region_map):
+    """What a notebook shows of a map: what is proved, and its picture."""
+    return notebook.html(region_map.report(), lambda: picture(region_map, "png"), "png", "the map")
+
+
+def picture(region_map, kind, tori=()):
+    """A map, and points at which tori are proved, as the bytes of a file of that kind."""
+    plot.check()
     if not all(region_map.estimate):
         raise files.ConverseError("the map has nothing to draw yet: it was left while the frontier "
                                   "was estimated; continue it with -r")
@@ -60,7 +71,7 @@ def draw(region_map, path, tori=()):
             _draw_sphere(region_map, figure)
         else:
             _draw_plane(region_map, figure, tori)
-        files.write(path, plot.encode(figure, kind, dpi=160, pad_inches=0.08))
+        return plot.encode(figure, kind, dpi=160, pad_inches=0.08)
 
 
 def _draw_plane(region_map, figure, tori):

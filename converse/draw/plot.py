@@ -5,6 +5,7 @@ Neither the backend nor the settings of matplotlib are changed.
 
 import io
 import math
+import textwrap
 from fractions import Fraction
 
 from ..model.exact import short_text
@@ -17,21 +18,23 @@ FORMATS = "svg", "png", "pdf"
 # Okabe and Ito's colours, told apart by the colour-blind, too; and greys.
 BLUE, SKY, ORANGE, VERMILLION = "#0072b2", "#56b4e9", "#e69f00", "#d55e00"
 GREEN, PURPLE, DARK, GREY = "#009e73", "#cc79a7", "0.1", "0.6"
-COLOURS = {"P": "0.35", "S": "0.85", "?": "1.0", "U": "#f4b183"}
-EDGES = {"P": "0.1", "S": "0.6", "?": "0.6", "U": VERMILLION}
+COLOURS = {"P": "0.35", "S": "0.85", "a": SKY, "?": "1.0", "U": "#f4b183"}
+EDGES = {"P": "0.1", "S": "0.6", "a": BLUE, "?": "0.6", "U": VERMILLION}
 WIDTHS = {"U": 0.8}                     # of the edges, in points
-LAYERS = "SP?U"                         # from the bottom: what is not proved is never hidden
+LAYERS = "SPa?U"                        # from the bottom: what is not proved is never hidden
 RASTER = 2000                           # with more prisms than this the depth of the cuts is drawn
 PIXELS = 1200
 SINGLE = Fraction(1, 10 ** 200)         # half-widths below are drawn as 0: matplotlib fails on them
 DEPTHS, SHADE = ("#9ecae1", "#4292c6", "#08306b"), "#4292c6"    # of the cuts; one for the legend
-RASTER_COLOURS = {"S": (217, 217, 217, 255), "?": (255, 255, 255, 255), "U": (213, 94, 0, 255)}
+RASTER_COLOURS = {"S": (217, 217, 217, 255), "a": (230, 159, 0, 255),
+                  "?": (255, 255, 255, 255), "U": (213, 94, 0, 255)}
 SALT = {"svg.hashsalt": "converse"}     # so that the same picture gives the same file
 STYLE = {                               # of all pictures but those of proofs
     **SALT, "font.size": 8, "axes.titlesize": 9, "axes.labelsize": 9, "xtick.labelsize": 8,
     "ytick.labelsize": 8, "legend.fontsize": 8, "legend.title_fontsize": 8,
     "legend.framealpha": 0.85, "legend.edgecolor": "0.8", "lines.linewidth": 1,
 }
+LETTERS = 17                            # of a caption, in an inch
 PROGRAM = "converse " + __version__         # by which files.check_output knows its pictures
 METADATA = {"svg": {"Creator": PROGRAM, "Date": None}, "png": {"Software": PROGRAM},
             "pdf": {"Creator": PROGRAM, "CreationDate": None}}
@@ -42,7 +45,7 @@ def check(instead=""):
     try:
         import matplotlib  # noqa: F401
     except ImportError:
-        raise files.ConverseError("SVG, PNG and PDF need matplotlib; pip install matplotlib"
+        raise files.ConverseError("figures need matplotlib; pip install matplotlib"
                                   + instead) from None
 
 
@@ -60,6 +63,35 @@ def encode(figure, kind, **options):
     data = io.BytesIO()
     figure.savefig(data, format=kind, bbox_inches="tight", metadata=METADATA.get(kind), **options)
     return data.getvalue()
+
+
+def new(width, height, fill):
+    """A Figure that a notebook shows, of that size in inches.  fill(figure) draws it; the user's
+    settings do not matter to it.  fill may return a caption, which is written below."""
+    check()
+    from matplotlib import style
+
+    from .page import Page
+
+    with style.context(["default", STYLE]):
+        figure = Page(encode, figsize=(width, height))
+        words = fill(figure)
+        figure.subplots_adjust(left=0.55 / width, right=1 - 0.1 / width, bottom=0.5 / height,
+                               top=1 - 0.4 / height)
+        if words:
+            lines = textwrap.wrap(words.replace("$", r"\$"), int(LETTERS * width))
+            figure.text(0.1 / width, 0.0, "\n".join(lines), color="0.25", va="top",
+                        linespacing=1.35)
+    return figure
+
+
+def written(width, height, kind, fill):
+    """What new() makes, as the bytes of a file of that kind."""
+    figure = new(width, height, fill)
+    from matplotlib import style
+
+    with style.context(["default", STYLE]):
+        return encode(figure, kind, dpi=200, pad_inches=0.1)
 
 
 def page(proof, caption=True):
@@ -92,9 +124,9 @@ def draw(proof, axes):
     (left, width), (bottom, height) = (_axis(proof.problem, axes, k) for k in range(2))
     count = captions.counts(proof)
     if sum(count.values()) <= RASTER:
-        paths, colours = _paths(proof.tree), COLOURS
+        paths, colours = _paths(captions.nodes(proof)), COLOURS
     else:
-        _raster(axes, proof.tree, (left, left + width, bottom, bottom + height))
+        _raster(axes, captions.nodes(proof), (left, left + width, bottom, bottom + height))
         paths = {}
         colours = {"P": SHADE, **{kind: [x / 255 for x in colour]
                                   for kind, colour in RASTER_COLOURS.items()}}

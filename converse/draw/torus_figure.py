@@ -7,7 +7,8 @@ import textwrap
 import numpy as np
 
 from ..storage import files
-from . import plot
+from ..tori.report import verdict
+from . import notebook, plot
 from .figure import format_of
 from .plot import BLUE, DARK, GREY, VERMILLION
 
@@ -30,10 +31,21 @@ def draw(proof, path):
     files.write(path, picture([piece.torus for piece in proof.pieces], kind, proof.pieces))
 
 
+def torus_html(torus):
+    """What a notebook shows of a Torus."""
+    return notebook.html(repr(torus), lambda: picture([torus]), "png", "the torus")
+
+
+def proved_html(proof):
+    """What a notebook shows of a ProvedTorus: the theorem and its picture."""
+    return notebook.html(verdict(proof, proof.seconds), lambda: picture(
+        [piece.torus for piece in proof.pieces], "png", proof.pieces), "png", "the torus")
+
+
 def picture(tori, kind="png", proved=()):
     """The bytes of a picture of tori that cover a range, or of one torus.
 
-    proved -- of each what its proof says: rho, residual and needed"""
+    proved -- of each what its proof says (proved.Piece)"""
     plot.check()
     from matplotlib import style
     from matplotlib.figure import Figure
@@ -59,8 +71,7 @@ def picture(tori, kind="png", proved=()):
 def _title(tori, width):
     """In lines of so many characters at most."""
     first = tori[0]
-    text = "torus of rotation %s %s" % ("vector" if first.dimension > 1 else "number",
-                                        first.rotation)
+    text = "rotation %s: %s" % ("vector" if first.dimension > 1 else "number", first.rotation)
     amplitudes = [[float(p + s * q) for p, q in zip(
         first.potential.amplitude, first.part or [0] * len(first.potential.amplitude))]
         for s in (_s(tori)[0], _s(tori)[-1])]
@@ -157,26 +168,24 @@ def _lattice(figure, ax, torus):
 
 
 def _errors(ax, proved):
-    """The norm of the error, and what the theorem allows: at the widths of their strips, or over
-    the parameter."""
+    """The norm of the error, and what the theorem needs: over the parameter, or at the widths of
+    the strip that were tried, of which the proof took the one that is marked."""
     if len(proved) > 1:
         ends = [float(proved[0].torus.piece[0])]
         ends += [float(piece.torus.piece[1]) for piece in proved]
-        for values, colour, name in (([p.needed for p in proved], GREY, "allowed"),
+        for values, colour, name in (([p.needed for p in proved], GREY, "needed"),
                                      ([p.residual for p in proved], BLUE, "reached")):
             ax.stairs(np.log10(values), ends, color=colour, baseline=None, label=name)
         ax.set(xlabel="parameter s")
-        ax.legend()
     else:
         piece, = proved
-        rho = float(piece.rho)
-        for value, colour, name in ((piece.needed, GREY, "allowed"),
-                                    (piece.residual, BLUE, "reached")):
-            ax.plot([rho], [math.log10(value)], "o", color=colour)
-            ax.text(rho, math.log10(value), "   %s %.1e" % (name, value), va="center")
-        ax.annotate("", (rho, math.log10(piece.residual)), (rho, math.log10(piece.needed)),
-                    arrowprops={"arrowstyle": "->", "color": GREY, "shrinkA": 5, "shrinkB": 5})
-        ax.set(xlim=(0, 3 * rho), xlabel=r"width $\rho$ of the strip")
-        ax.locator_params("x", nbins=3)
+        rho, reached, needed = np.log10([[float(x) for x in row] for row in piece.tried
+                                         if 0 < row[1] < math.inf]).T
+        ax.plot(rho, needed, ".-", color=GREY, label="needed")
+        ax.plot(rho, reached, ".-", color=BLUE, label="reached")
+        ax.axvline(math.log10(piece.rho), color=DARK, linewidth=0.6, linestyle=":",
+                   label=r"chosen: $\rho = %.3g$" % piece.rho)
+        ax.set(xlabel=r"$\log_{10} \rho$, the width of the strip")
+    ax.legend()
     ax.set(ylabel=r"$\log_{10} \|E\|_\rho$", title="error of the invariance equation")
     ax.margins(y=0.2)

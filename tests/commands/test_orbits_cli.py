@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 
 from converse import orbits
 from converse.commands import orbits as cli
-from converse.orbits import farey, figures
+from converse.orbits import farey, pictures
 from converse.orbits.solver import newton
 from converse.orbits.sweep import LOST, ONSET_COLUMNS
 from converse.storage.files import ConverseError
@@ -81,11 +81,27 @@ def test_what_is_no_minimum_ends_with_status_1(run, monkeypatch):
     minimax = newton(orbits.straight(orbits.standard, (1,), 3, origin=(0.0,)), 0.5)[0]
     assert minimax.label == "saddle"
     monkeypatch.setattr("converse.orbits.solver.follow",
-                        lambda *_, progress: progress(1, minimax))
+                        lambda *_, progress, **how: progress(1, minimax))
     status, out, err = run("find", "standard", "1/3", "0.5")
     assert (status, err) == (1, "")
     assert "State : saddle (seen in doubles: its action can be lowered" in out
     assert "Exponents : below 1e-05\n" in out and "Residue : 0." in out
+
+
+def test_find_minimax(run):
+    status, out, err = run("find", "standard", "8/21", "0.971635406", "--minimax", "--prove")
+    assert (status, err) == (0, "")
+    assert "Pass : saddle, towards the neighbour displaced by (1)/21\n" in out
+    assert "Residue of the minimax orbit : 0.2522989653\nFlux : 4.728387149e-06\n" in out
+    assert "one negative direction" in out and "together: from 0.0000047283871" in out
+    status, out, err = run("find", "trig", "5,7/9", "0.02", "--minimax")
+    assert status == 0 and "Difference of action : 0.0001613288491\n" in out
+    status, out, err = run("find", "standard", "8/21", "0.2", "--minimax")
+    assert status == 0 and "Pass : too flat for doubles" in out
+    status, out, err = run("find", "standard", "8/20", "0.2", "--minimax")
+    assert (status, out, err.count("\n")) == (2, "", 1) and "divide it by 4" in err
+    status, out, err = run("find", "standard", "1/3", "0", "--minimax")
+    assert (status, err) == (1, "") and "No pass : at eps 0 all states" in out
 
 
 def test_what_is_not_found_ends_with_status_1(run, monkeypatch):
@@ -129,23 +145,24 @@ def test_table_and_figure(run, tmp_path):
 def test_the_picture_of_what_is_proved(run, tmp_path, monkeypatch):
     """The proved points are drawn, and called so; what is not proved, is not."""
     shown, said = [], []
-    planes = figures.phase_planes
-    monkeypatch.setattr(figures, "phase_planes", lambda figure, states: (
-        shown.extend(states), planes(figure, states)))
-    monkeypatch.setattr(figures, "_page", lambda width, height, kind, fill, *rest: (
+    rows = pictures.rows
+    monkeypatch.setattr(pictures, "rows", lambda page, drawn: (
+        shown.extend(drawn), rows(page, drawn))[1])
+    monkeypatch.setattr(pictures.plot, "written", lambda width, height, kind, fill: (
         said.append(fill(Figure())), b"")[1])
     status, out, _ = run("find", "standard", "1/3", "0.5", "0.9", "--prove", "-g",
                          tmp_path / "x.svg")
     assert status == 0 and out.count("Proved, with") == 2
     proofs = [orbits.prove(s) for s in orbits.follow(orbits.standard, (1,), 3, [0.5, 0.9])]
-    for proof, state in zip(proofs, shown):
-        assert np.array_equal(state.x, proof.nearest.x) and state.label.startswith("proved within ")
-        near, away = re.findall(r"\d\S*e\S*\d", state.label)     # rounded up, as the report
+    for proof, one in zip(proofs, shown):
+        assert np.array_equal(one.state.x, proof.nearest.x)
+        assert one.kind.startswith("proved within ")
+        near, away = re.findall(r"\d\S*e\S*\d", one.kind)        # rounded up, as the report
         assert Fraction(near) >= proof.radius and Fraction(away) >= proof.moved
         assert "within %s of the points" % near in out and "within %s of those" % away in out
     assert "nothing is proved" not in said[0] and "Proved: a true orbit" in said[0]
     assert run("find", "standard", "1/3", "0", "0.5", "--prove", "-g", tmp_path / "x.svg")[0] == 1
-    assert [state.label.startswith("proved") for state in shown[2:]] == [False, True]
+    assert [one.kind.startswith("proved") for one in shown[2:]] == [False, True]
     assert "nothing is proved" in said[1] and "Proved: a true orbit" in said[1]
     run("find", "standard", "1/3", "0.5", "-g", tmp_path / "x.svg")
     assert "nothing is proved" in said[2] and "Proved: a true orbit" not in said[2]

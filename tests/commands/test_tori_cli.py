@@ -10,6 +10,7 @@ from conftest import ROOT
 
 from converse import Problem, check, read_input, tori
 from converse.commands import tori as cli
+from converse.storage import files
 from converse.tori import report
 
 K09 = str(ROOT / "inputs" / "standard-k090.in")
@@ -125,7 +126,7 @@ def test_beyond_the_last_torus_there_is_no_theorem(run, tmp_path, numbers, rotat
     (["prove", K09, "--rotation", "0.618"], "no rotation vector"),
     (["prove", K09, "--rotation", "golden", "--near", "0.6"], "not allowed with"),
     (["prove", K09, "--near", "0.6", "0.4"], "--near has 2 numbers, and the map 1 angle:"),
-    (["prove", TRIG, "--near", "0.6"], "--near has 1 numbers, and the map 2 angles:"),
+    (["prove", TRIG, "--near", "0.6"], "--near has 1 number, and the map 2 angles:"),
     (["prove", K09, "--near", "x"], "'x'"),
     (["prove", K09, "--rotation", "golden", "--tolerance", "0.1"], "--tolerance goes with --near"),
     (["prove", K09, "--near", "0.6", "--tolerance", "1e-12"], "tolerance"),
@@ -168,7 +169,7 @@ def test_flags_that_may_be_the_reason_are_named(run, monkeypatch):
     monkeypatch.setattr(tori, "prove", lambda *_, **__: (_ for _ in ()).throw(
         tori.NotProved("it lacks")))
     _, out, _ = run("prove", K09, "--rotation", "golden", "-p", "24", "--points", 1 << 18)
-    assert out.endswith("\nChosen by hand : --points, --precision; leave out such a flag, and the "
+    assert out.endswith("\nChosen by hand : --points, --precision; without such a flag the "
                         "program chooses\n")
     _, out, _ = run("prove", K09, "--rotation", "golden")
     assert out.endswith("Not proved : it lacks\n")
@@ -182,6 +183,34 @@ def test_an_interrupt_leaves_nothing(run, tmp_path, monkeypatch):
     status, out, err = run("prove", K09, "--rotation", "golden", "-b", file)
     assert status == 130 and one_line(err) and "interrupted" in err
     assert "I find" not in out and not file.exists()
+
+
+def test_a_certificate_is_one_runs_alone(run, tmp_path):
+    """Another run that is to write the same file is refused while the first one works, and a file
+    that is there stays."""
+    file = tmp_path / "golden.torus"
+    with files.Lock(str(file)):
+        status, out, err = run("prove", K09, "--rotation", "golden", "-b", file)
+    assert (status, out) == (2, "") and one_line(err) and "another run is writing" in err
+    assert not list(tmp_path.iterdir())
+    status, *_ = run("prove", K09, "--rotation", "golden", "-b", file)
+    assert status == 0 and [each.name for each in tmp_path.iterdir()] == [file.name]
+    before = file.read_bytes()
+    status, out, err = run("prove", K09, "--rotation", "golden", "-b", file)
+    assert (status, out) == (2, "") and "exists" in err and file.read_bytes() == before
+
+
+def test_a_report_of_a_range_says_of_which_piece_it_speaks(run, tmp_path):
+    """The residual of the piece with the least margin need not be the largest."""
+    problem = tmp_path / "standard.in"
+    problem.write_text("0.45 0.35\n0 0\n0 0\n1 1\n1 1\n")
+    status, out, err = run("prove", problem, "--rotation", "golden")
+    assert (status, err) == (0, "")
+    pieces, of_one = out.partition("I find")[2].split("What follows is of the piece with the least")
+    assert pieces.count("For -1 <= s <= 0 : ") == pieces.count("For 0 <= s <= 1 : ") == 1
+    assert "Residual : " not in pieces and "Residual : " in of_one
+    assert value(of_one, "Residual : # at most") in [
+        float(x) for x in re.findall("residual ([0-9.e-]+),", pieces)]
 
 
 def test_without_python_flint(tmp_path):

@@ -18,8 +18,11 @@ WAVES = FourierSum(((1, 0, NONE), (0, 1, NONE)), (Fraction(1, 20), Fraction(1, 3
 
 
 def proved(*tori):
-    return SimpleNamespace(pieces=[SimpleNamespace(torus=torus, rho=Fraction(1, 10), needed=1e-8,
-                                                   residual=1e-11) for torus in tori])
+    return SimpleNamespace(pieces=[SimpleNamespace(
+        torus=torus, rho=Fraction(1, 10), needed=1e-8, residual=1e-11,
+        tried=((Fraction(1, 20), 1e-12, 1e-10), (Fraction(1, 10), 1e-11, 1e-8),
+               (Fraction(1, 5), 1e-3, 1e-7), (Fraction(2, 5), float("inf"), 1e-9)))
+        for torus in tori])
 
 
 ONE = proved(Torus(CIRCLE, None, read_rotation("golden"), 20, {
@@ -39,6 +42,19 @@ def test_a_proved_torus_is_drawn_as_the_name_says(tmp_path):
         torus_figure.draw(ONE, str(tmp_path / "a.ps"))
 
 
+def test_the_widths_that_were_tried_are_shown():
+    """The residual that is needed and the one that was reached, over rho; infinite ones are not."""
+    from matplotlib.figure import Figure
+    axes = Figure().subplots()
+    torus_figure._errors(axes, ONE.pieces)
+    needed, reached, chosen = axes.lines
+    assert 10 ** needed.get_xdata() == pytest.approx([0.05, 0.1, 0.2])
+    assert 10 ** needed.get_ydata() == pytest.approx([1e-10, 1e-8, 1e-7])
+    assert 10 ** reached.get_ydata() == pytest.approx([1e-12, 1e-11, 1e-3])
+    assert [line.get_label() for line in (needed, reached)] == ["needed", "reached"]
+    assert chosen.get_xdata() == pytest.approx([-1, -1])
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("proof", [ONE, TWO, RANGE], ids=["one angle", "two angles", "a range"])
 def test_the_same_picture_is_the_same_file(proof):
@@ -49,13 +65,14 @@ def test_the_same_picture_is_the_same_file(proof):
 
 def test_a_torus_draws_itself_in_a_notebook(monkeypatch):
     torus = ONE.pieces[0].torus
-    assert torus._repr_png_().startswith(b"\x89PNG")
+    words = "<pre>%s</pre>" % repr(torus).replace("<", "&lt;").replace(">", "&gt;")
+    assert torus._repr_html_().startswith(words + '<img alt="the torus" src="data:image/png;base64')
 
     def missing():
         raise ConverseError("no matplotlib")
 
     monkeypatch.setattr(torus_figure.plot, "check", missing)
-    assert torus._repr_png_() is None
+    assert torus._repr_html_() == words
 
 
 @pytest.mark.slow

@@ -15,10 +15,16 @@ BESIDE = ["check", "_build"]            # import nothing of the others
 # Methods of a value that need more than the value does: each imports it when it is called.
 UPWARDS = {("prover.proof", "draw.figure"): "Proof.figure",
            ("prover.proof", "check"): "Proof.verify",
-           ("maps.map", "draw.map_figure"): "Map.draw",
-           ("orbits.state", "orbits.figures"): "State._repr_png_",
-           ("tori.torus", "draw.torus_figure"): "Torus._repr_png_",
-           ("tori.proved", "draw.torus_figure"): "ProvedTorus._repr_png_",
+           ("maps.map", "draw.map_figure"): "Map.draw, Map._repr_html_",
+           ("orbits.state", "orbits.pictures"): "State.figure, State._repr_html_",
+           ("orbits.proved", "orbits.pictures"): "ProvedOrbit.figure, ProvedOrbit._repr_html_",
+           ("orbits.solver", "orbits.pictures"): "Family.plot, Family._repr_html_",
+           ("orbits.state", "orbits.minimax"): "State.minimax",
+           ("orbits.minimax", "orbits.proved_pair"): "Pair.prove",
+           ("orbits.state", "orbits.points"): "State.save",
+           ("orbits.solver", "orbits.points"): "Family.save",
+           ("tori.torus", "draw.torus_figure"): "Torus._repr_html_",
+           ("tori.proved", "draw.torus_figure"): "ProvedTorus._repr_html_",
            ("prover.proof", "prover.proof_file"): "Proof.load, Proof.save",
            ("tori.proved", "tori.certificate"): "ProvedTorus.save"}
 

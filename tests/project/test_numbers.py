@@ -63,7 +63,7 @@ def given(name, together=False):
 
 def test_the_standard_map():
     head, *table = columns("method.md", "k")
-    assert head == ("k", "longest orbit", "prisms", "seconds, two cores")
+    assert head == ("k", "longest orbit", "prisms", "CPU seconds")
     for k, points, prisms, _ in table:
         counts = sharper(Problem(k, 0, 0))
         assert (counts.max_NTsteps, counts.proved) == (number(points), number(prisms))
@@ -112,15 +112,12 @@ def _named_ends(problem):
 
 
 def test_another_xstar():
-    """For two harmonics, and for B = 0.3, where the program's choice costs too much to try here."""
-    assert "K1 = 0.6 is proved with `--xstar 1.836 0`, not with the program's\nchoice of 1.856" \
+    """For two harmonics, and for B = 0.3, where the program's choice needs links."""
+    assert "`--xstar 1.836 0` alone; from the program's choice of\n1.856, two prisms are linked" \
         in PAGES["method.md"]
-    problem = POINTS["two harmonics, K2 = 0.4"][1]("0.6")
-    proof = prove(problem, method="loewner")
-    assert not proof.no_tori and proof.xstar[0].startswith("1.856")
-    sharper(problem, xstar=("1.836", "0"))
-    assert "B = 0.3 K = 0.62 is not proved, with `--xstar 0.31 3.04` it is" in PAGES["method.md"]
-    sharper(POINTS["Froeschlé, B = 0.3"][1]("0.62"), xstar=("0.31", "3.04"))
+    assert not sharper(POINTS["two harmonics, K2 = 0.4"][1]("0.6"), xstar=("1.836", "0")).linked
+    assert "`--xstar 0.31 3.04` needs no link" in PAGES["method.md"]
+    assert not sharper(POINTS["Froeschlé, B = 0.3"][1]("0.62"), xstar=("0.31", "3.04")).linked
 
 
 def test_the_thesis_method():
@@ -146,19 +143,19 @@ def test_the_line():
 
 
 def test_what_is_checked_and_what_coq_proves():
-    """As many leaves as the proofs have."""
-    leaves = {"standard": sharper(given("standard-63-64.in")).proved}
-    leaves.update({"box" + n: sharper(given("trig%s.in" % n)).proved
-                   for n in ("272", "274", "276", "278")})
-    head, *table = rows("trust.md", "theorem")
-    assert head[1] == "leaves"
-    for names, count, *_ in table:
-        for name in re.findall(r"`(\w+)`", names) if count else []:
-            if name not in leaves:
-                leaves[name] = sharper(given(name + ".in", together=True)).proved
-            assert leaves[name] == number(count.partition(" ")[0]), name
-    assert sharper(given("trig141.in", together=True)).proved \
-        == said("trust.md", r"epsilon_c <= 0.0141 \(([0-9,]+) leaves")[0]
+    """As many leaves as the proofs have now, but where it says that they are of version 3."""
+    head, *table = rows("trust.md", "epsilon_c")
+    assert head[3] == "leaves, version 4" and len(table) == 3
+    leaves = {}
+    for epsilon, _, _, count, *_ in table[:2]:
+        problem = given("trig%s.in" % epsilon.replace("0.0", ""), together=True)
+        leaves[epsilon] = sharper(problem).proved
+        assert leaves[epsilon] == number(count)
+    assert said("trust.md", r"epsilon_c <= 0.0141 \(([0-9,]+) leaves") == [leaves["0.0141"]]
+    assert {name: number(count.split()[0]) for names, count, *_ in rows("trust.md", "theorem")[1:]
+            for name in re.findall("`(trig[0-9]+)`", names) if "version 3" not in names} == {
+        name: sharper(given(name + ".in", together=True)).proved for name in
+        ["trig%d" % n for n in (272, 274, 276, 278, 240, 180, 160, 152, 148, 142)]}
 
 
 def test_fewer_places():

@@ -1,0 +1,60 @@
+"""experiments/vectors.py: rotation vectors whose tori last long."""
+
+import numpy as np
+import pytest
+import vectors
+
+from converse import orbits, tori
+from converse.model.inputs import read_potential
+from converse.tori import read_rotation
+
+STANDARD = "inputs/standard.json"
+
+
+@pytest.fixture(autouse=True)
+def here(root, monkeypatch):
+    monkeypatch.chdir(root)
+
+
+def test_the_golden_circle_lasts_to_where_it_does():
+    potential = vectors.potential_at(STANDARD, "K", 1.0)
+    assert vectors.judge(potential, read_rotation("golden")) == pytest.approx(0.9716, abs=0.005)
+    assert vectors.judge(potential, read_rotation("silver")) < 0.965
+
+
+def test_the_search_finds_noble_numbers_near_the_golden_mean(monkeypatch):
+    monkeypatch.setattr(vectors, "COUNT", 60)
+    monkeypatch.setattr(vectors, "ROUNDS", 2)
+    potential = vectors.potential_at(STANDARD, "K", 1.0)
+    (multiple, (w,)), *_ = best = vectors.search(potential)
+    assert 0.9 < multiple < 0.975 and min(abs(w - 0.382), abs(w - 0.618)) < 0.02
+    assert best == sorted(best, reverse=True)
+    assert len(vectors.search(potential, enough=0.5)) == 1
+
+
+def test_files_mean_the_same_for_orbits_and_proofs():
+    """And so they do in the thesis's map, where V1 is tougher than the others."""
+    path = "inputs/froeschle-0.3.json"
+    source, problem = read_potential(path, {"K": "0.4"}), vectors.problem_at(path, "K", 0.4)
+    assert problem.waves == source.waves and problem.amplitude == source.amplitude
+    x = np.random.default_rng(1).random((5, 2))
+    assert np.array_equal(vectors.potential_at(path, "K", 0.4).evaluate(x)[1],
+                          orbits.Fourier.of(source).evaluate(x)[1])
+    here = orbits.Fourier.of(read_potential("inputs/trig141.in", dict(zip("abc", (
+        "0.158", "0.158", "0.316")))))
+    ranked = vectors.ranked(here, [read_rotation(name) for name in ("seven", "V1", "spiral")])
+    assert ranked[0][1].name == "V1" and 0.8 < ranked[0][0] < 0.95
+
+
+def test_what_it_proves_is_written(tmp_path, monkeypatch, capsys):
+    monkeypatch.setattr(vectors, "COUNT", 20)
+    monkeypatch.setattr(vectors, "ROUNDS", 1)
+    monkeypatch.setattr(vectors, "BISECTIONS", 2)
+    path = tmp_path / "k.torus"
+    assert vectors.main([STANDARD, "K", "1.2", "--points", "2048", "--save", str(path)]) == 0
+    out = capsys.readouterr().out
+    assert "proved at K = 0." in out and "K = 0.6: tori are seen" in out
+    assert "K = 0.9: tori are seen" in out and "--rotation 't^2+t-1: " in out
+    torus = tori.read(path).tori[0]
+    assert float(torus.potential.amplitude[0]) == pytest.approx(
+        float(out.split("proved at K = ")[1].split(":")[0]), abs=1e-4)
