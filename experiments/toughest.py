@@ -37,7 +37,7 @@ SPREAD = 0.7548776662466927, 0.5698402909980532
 # Invariant tori were seen by Fourier series near this vector up to TORI.
 NEAR = 0.295401276 + 0.003327283, 0.295401276 - 0.003327283
 TORI = 0.0121
-PROVED = (("this program", 0.0140), ("the thesis, 1989", 0.0272))     # no tori from there on
+PROVED = (("this program", 0.01391), ("the thesis, 1989", 0.0272))     # no tori from there on
 PROVED_TORUS = "V1", 0.0115             # docs/tori.md
 TOP = 0.0335                            # of the picture
 CHAPTER = ((1432, 1897), 2513), ((377, 2330), 3770)
@@ -205,8 +205,8 @@ def draw_frontier(figure, table, last, chapter):
              title="The two sides of the frontier (trig: a = b = c/2)")
     axes.yaxis.set_major_formatter("{x:g}")
     axes.text(bound + 0.0004, 80, "PROVED by %s: no tori,\nwhatever their rotation vector,\n"
-              "from %.4f on" % (program, bound), va="top")
-    axes.text(old + 0.0003, 80, "%s:\nfrom %.4f on" % (thesis, old), va="top")
+              "from %g on" % (program, bound), va="top")
+    axes.text(old + 0.0003, 80, "%s:\nfrom %g on" % (thesis, old), va="top")
     axes.text(0.0004, 0.07, "SEEN: of so many of\n%d vectors, q = %d\nto %d, the orbits are\n"
               "not yet hyperbolic" % (len(eps), table["q"].min(), table["q"].max()),
               va="bottom")
