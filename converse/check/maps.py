@@ -12,7 +12,7 @@ import hashlib
 import itertools
 import json
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 
 from .arith import fixed_of, stiffness
@@ -223,12 +223,12 @@ def read_cell(proof, waves, version, name, sha256):
         raise Rejected("alone is neither no nor 0 nor 1")
     alone = None if alone == "no" else int(alone)
     check_alone(waves, alone)
-    claim = Claim(waves, centre, half, frame, alone, xstar, {}, "no", tree, sha256, name)
+    claim = Claim(waves, centre, half, frame, alone, xstar, {}, "no", tree, sha256)
     if not is_whole(claim):
         raise Rejected("its region does not hold enough of the torus")
     claim.counts.update(tree_counts(claim))
     check_mirror_images(claim)
-    return claim
+    return replace(claim, where=name)
 
 
 def check_map(file):

@@ -10,7 +10,7 @@ from array import array
 from fractions import Fraction
 
 from .claim import AXES, IDENTITY, LETTERS
-from .failures import NotConfirmed, Rejected, named
+from .failures import NotConfirmed, Rejected, Unfinished, named
 from .limits import MAX_CUTS
 
 ROOT = (0,) * 5, (0,) * 5
@@ -34,13 +34,14 @@ def leaves(tree, axes=AXES, kinds="PSU"):
         elif node in kinds:
             yield position, cell
         else:
-            raise Rejected("%a is not a node of a finished tree%s, at node %d" % (
-                node, " nor a later part" if node in LETTERS else "", position))
+            raise (Unfinished if node == "?" else Rejected)(
+                "%a is not a node of a finished tree%s, at node %d" % (
+                    node, " nor a later part" if node in LETTERS else "", position))
         if sum(cuts) > MAX_CUTS:
             raise NotConfirmed("node %d lies below %d cuts, the checker's limit"
                                % (position, MAX_CUTS))
     if pending:
-        raise Rejected("the tree is incomplete: %d of its parts are missing" % len(pending))
+        raise Unfinished("the tree is incomplete: %d of its parts are missing" % len(pending))
 
 
 def trees(claim):
@@ -71,7 +72,10 @@ def check_tree(claim):
     found = []
     for part, letters in trees(claim):
         with named(part.where):
-            found.append(tree_counts(part, letters))
+            try:
+                found.append(tree_counts(part, letters))
+            except Unfinished as error:
+                raise Rejected("%s; continue the search with converse -r FILE" % error) from None
     if max([counts["depth"] for counts in found]) > claim.counts["depth"]:
         raise Rejected("a leaf was cut more often than the depth allows")
     for name in claim.counts.keys() - {"depth"}:

@@ -454,16 +454,29 @@ def test_a_leaf_without_a_proved_mirror_image(texts, run):
     assert refused > 10
 
 
+CONTINUE = "; continue the search with converse -r FILE\n"
+
+
 @pytest.mark.parametrize("tree, why", [
-    ("S", "mirror image"), ("0PS", "mirror image"), ("0SS", "mirror"), ("", "incomplete"),
-    ("0P", "incomplete"), ("PP", "ends before"), ("0PPP", "ends before"), ("U", "undecided"),
-    ("0PU", "undecided"), ("2PPP", "ends before"), ("2P", "incomplete"), ("p", "not a node"),
-    ("0 PP", "not a node"),
-    ("5PP", "not a node"), ("?", "not a node"), ("3P?", "not a node"), ("4?P", "not a node"),
+    ("S", "mirror image"), ("0PS", "mirror image"), ("0SS", "mirror"),
+    ("", "incomplete: 1 of its parts are missing" + CONTINUE),
+    ("0P", "incomplete: 1 of its parts are missing" + CONTINUE), ("PP", "ends before"),
+    ("0PPP", "ends before"), ("U", "undecided"), ("0PU", "undecided"), ("2PPP", "ends before"),
+    ("2P", "incomplete"), ("p", "not a node"), ("0 PP", "not a node"),
+    ("5PP", "'5' is not a node of a finished tree, at node 0\n"),
+    ("?", "not a node of a finished tree, at node 0" + CONTINUE), ("3P?", "not a node"),
+    ("4?P", "not a node"),
     ("0" * 1200, "the checker's limit"), ("0" * 40 + "P" * 41, "depth")])
 def test_trees(texts, run, tree, why):
     status, _, err = run(sealed(with_tree(texts["trig278"], tree)))
     assert status == (5 if "limit" in why else 1) and why in err
+
+
+def test_a_search_that_had_not_begun(texts, run):
+    text = re.sub("xstar: .*\n", "", texts["trig278"])
+    assert run(sealed(text)) == (1, "", "converse-check: FILE: rejected: the search had not begun "
+                                 "when it was left: there is no x* yet; begin it with converse -r "
+                                 "FILE\n")
 
 
 @pytest.mark.parametrize("name", ["trig272", "deep"])
@@ -2930,9 +2943,9 @@ def path_of(content, *path):
     (("faces", 0, "tree"), "2O0PA", 1, "not a node"),
     (("faces", 0, "tree"), "0O0PU", 1, "not a node"),
     (("faces", 0, "proofs", 0, "tree"), "0PU", 1, "undecided"),
-    (("faces", 0, "proofs", 0, "tree"), "0P", 1, "incomplete"),
+    (("faces", 0, "proofs", 0, "tree"), "0P", 1, "incomplete: 1 of its parts are missing\n"),
     (("faces", 0, "proofs", 0, "tree"), "4PP", 1, "a parameter that there is not"),
-    (("faces", 0, "proofs", 0, "tree"), "0SP", 1, "not symmetric"),
+    (("faces", 0, "proofs", 0, "tree"), "0SP", 1, "rejected: face 1: cell 2: symmetric leaf 1 of"),
     (("faces", 0, "proofs", 0, "alone"), "0", 1, "both"),
     (("faces", 0, "proofs", 0, "alone"), None, 1, "type"),
     (("faces", 0, "proofs", 0, "frame"), [1, 0, 0, 2], 1, "determinant"),
