@@ -17,6 +17,7 @@ from converse import Problem, prove
 from converse.check import main, verify
 
 from checker import check
+from trees import found_tree, halves
 
 HEAD = """converse proof 4
 kind: sound
@@ -75,34 +76,9 @@ def claim_of(text):
     return check.read_proof(text.encode())
 
 
-def halves(cell, axis):
-    index, cuts = cell
-    cuts = check.changed(cuts, axis, cuts[axis] + 1)
-    return [(check.changed(index, axis, 2 * index[axis] + upper), cuts) for upper in (0, 1)]
-
-
 def found(v0=HALF[0], v1=HALF[1], **more):
-    """A tree that proves this, by the fast path alone and a cut where it says so."""
-    assert check.import_numpy_if_sound()
-    claim = claim_of(file_of("P", v0, v1, **more))
-    criterion, fast = check.Criterion(claim), check.Lockstep([claim])
-    nodes, todo = {}, [check.ROOT]
-    while todo:
-        assert len(nodes) < 5000
-        batch, todo = todo[-256:], todo[:-256]
-        l = np.array([criterion.least_in_double(cell) for cell in batch])
-        index, cuts = [np.array([cell[i] for cell in batch], np.int64).T for i in (0, 1)]
-        excluded, axis = fast.attempt(index, cuts, np.zeros(len(batch), int), l, check.CAUTION[0])
-        for cell, good, at in zip(batch, excluded.tolist(), axis.tolist()):
-            nodes[cell] = "P" if good else check.AXES[at]
-            todo += [] if good else halves(cell, at)
-    tree, todo = [], [check.ROOT]
-    while todo:
-        cell = todo.pop()
-        tree.append(nodes[cell])
-        if tree[-1] != "P":
-            todo += reversed(halves(cell, int(tree[-1])))
-    return "".join(tree)
+    """A tree that proves this."""
+    return found_tree(claim_of(file_of("P", v0, v1, **more)), 5000)
 
 
 def region_of(claim, cell, moved, margin):

@@ -8,6 +8,7 @@ import mpmath
 import numpy as np
 import pytest
 from test_minimax import golden, least, truth
+from test_points import Sine
 
 from converse import orbits
 from converse.orbits import NotProved, Pair
@@ -106,16 +107,6 @@ def test_a_minimum_or_nothing_in_the_place_of_the_pass():
 
 
 def test_a_potential_of_which_nothing_can_be_proved():
-    class Sine:
-        def value(self, x):
-            return np.sin(2 * np.pi * x[:, 0]) / 40
-
-        def gradient(self, x):
-            return 2 * np.pi * np.cos(2 * np.pi * x) / 40
-
-        def hessian(self, x):
-            return -(2 * np.pi) ** 2 * np.sin(2 * np.pi * x)[:, :, None] / 40
-
     pair = orbits.straight(orbits.FromPython(Sine(), 1, "sine"), (1,), 3).relax(0.5).minimax()
     assert pair.minimax.label == "saddle"
     with pytest.raises(ValueError, match="nothing can be proved"):
