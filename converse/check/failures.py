@@ -16,10 +16,6 @@ class Rejected(Failure):
     status, word = REJECTED, "rejected: "
 
 
-class Unfinished(Rejected):
-    """The tree ends early, or has prisms that were not tried."""
-
-
 class NotConfirmed(Failure):
     """The checker has reached a limit of its own: what the file claims may be true or false."""
 

@@ -94,8 +94,7 @@ def parse_header(head):
         else:
             header[name] = value
     if "xstar" not in header:
-        raise Rejected("the search had not begun when it was left: there is no x* yet; "
-                       "begin it with converse -r FILE")
+        raise Rejected("the search had not begun when it was left; converse -r FILE begins it")
     if fields - header.keys():
         raise Rejected("the header lacks %s" % ", ".join(sorted(fields - header.keys())))
     if header["kind"] != "sound":

@@ -10,10 +10,11 @@ from array import array
 from fractions import Fraction
 
 from .claim import AXES, IDENTITY, LETTERS
-from .failures import NotConfirmed, Rejected, Unfinished, named
+from .failures import NotConfirmed, Rejected, named
 from .limits import MAX_CUTS
 
 ROOT = (0,) * 5, (0,) * 5
+GO_ON = "; converse -r FILE goes on with the search"
 
 
 def changed(values, axis, value):
@@ -23,25 +24,24 @@ def changed(values, axis, value):
 def leaves(tree, axes=AXES, kinds="PSU"):
     """Yields (position, cell) for each leaf, in preorder; Rejected if it is not a whole tree."""
     pending = [((0,) * len(axes),) * 2]
-    for position, node in enumerate(tree):
+    for at, node in enumerate(tree):
         if not pending:
-            raise Rejected("the tree ends before its text does, at node %d" % position)
+            raise Rejected("the tree ends before its text does, at node %d" % at)
         index, cuts = cell = pending.pop()
         axis = axes.find(node)
         if axis >= 0:
             cuts = changed(cuts, axis, cuts[axis] + 1)
             pending += ((changed(index, axis, 2 * index[axis] + upper), cuts) for upper in (1, 0))
         elif node in kinds:
-            yield position, cell
+            yield at, cell
         else:
-            raise (Unfinished if node == "?" else Rejected)(
-                "%a is not a node of a finished tree%s, at node %d" % (
-                    node, " nor a later part" if node in LETTERS else "", position))
+            raise Rejected("%a is not a node of a finished tree%s, at node %d%s" % (
+                node, " nor a later part" * (node in LETTERS), at, GO_ON * (node == "?")))
         if sum(cuts) > MAX_CUTS:
-            raise NotConfirmed("node %d lies below %d cuts, the checker's limit"
-                               % (position, MAX_CUTS))
-    if pending:
-        raise Unfinished("the tree is incomplete: %d of its parts are missing" % len(pending))
+            raise NotConfirmed("node %d lies below %d cuts, the checker's limit" % (at, MAX_CUTS))
+    if pending:                         # what is written of a map is whole
+        raise Rejected("the tree is incomplete: %d of its parts are missing%s" % (
+            len(pending), GO_ON * (axes == AXES)))
 
 
 def trees(claim):
@@ -59,8 +59,7 @@ def tree_counts(claim, letters=""):
         total, depth, kind = total + 1, sum(cuts), claim.tree[position]
         if kind == "U":
             raise Rejected("leaf %d is undecided: the file claims no theorem" % total)
-        deepest = max(deepest, depth)
-        most_cuts = max(most_cuts, depth if kind == "P" else 0)
+        deepest, most_cuts = max(deepest, depth), max(most_cuts, depth if kind == "P" else 0)
     return {"cuts": total - 1, "proved": claim.tree.count("P"),
             "symmetric": claim.tree.count("S"), "undecided": 0, "most_cuts": most_cuts,
             "depth": deepest, "linked": sum(map(claim.tree.count, letters))}
@@ -72,10 +71,7 @@ def check_tree(claim):
     found = []
     for part, letters in trees(claim):
         with named(part.where):
-            try:
-                found.append(tree_counts(part, letters))
-            except Unfinished as error:
-                raise Rejected("%s; continue the search with converse -r FILE" % error) from None
+            found.append(tree_counts(part, letters))
     if max([counts["depth"] for counts in found]) > claim.counts["depth"]:
         raise Rejected("a leaf was cut more often than the depth allows")
     for name in claim.counts.keys() - {"depth"}:
@@ -177,8 +173,7 @@ def check_mirror_images(claim):
         mirror, skipped = Mirror(part), 0
         for position, cell in leaves(part.tree, kinds="PS" + letters):
             if part.tree[position] == "S":
-                why = mirror.refusal(cell)
-                if why:
+                if why := mirror.refusal(cell):
                     raise Rejected(leaf_text(part, "S", skipped, cell) + " " + why)
                 skipped += 1
 
