@@ -20,6 +20,7 @@ from converse import Problem, Settings, prove
 from converse.model.problem import LINE
 from converse.model.region import EXCHANGE, REVERSAL
 from converse.prover.native import Search, Task, ffi, lib
+from converse.prover.starts import LOOK_DEPTH
 from converse.prover.tree import ROOT, cells, complete
 from converse.prover.tree_search import MANY
 
@@ -726,17 +727,29 @@ def falls(betas, l):
     return False
 
 
-@pytest.mark.parametrize("problem", [
+WITH_TORI = [
     Problem.around((Fraction(0),) * 3 + (Fraction(1),) * 2,
                    (Fraction(0),) * 3 + (Fraction(1),) * 2),
-    line("0.0001", "0.0001"), line("0.001", "0.001"), line("0.01", "0.01"), line("0", "0.0280"),
-    line("0.0120", "0.0280"), line("-0.001", "0.001"), line("0.01", "0.01", skew="0.5"),
-    line("0.005", "0.0280", together=False)])
+    line("0.0001", "0.0001"), line("0.001", "0.001"), line("0.0120", "0.0280"),
+    line("0.01", "0.01"), line("-0.001", "0.001"), line("0.01", "0.01", skew="0.5"),
+    line("0", "0.0280"), line("0.005", "0.0280", together=False)]
+
+
+@pytest.mark.parametrize("problem", WITH_TORI)
 def test_never_a_false_theorem(problem):
-    for stubborn, depth in ((False, 40), (True, 12)):
+    """Over one starting point; it takes as many cuts as these until others are looked for."""
+    for stubborn, depth in ((False, 23), (True, 12)):
         result = prove(problem, depth=depth, stubborn=stubborn, method="loewner")
         assert not result.no_tori and "I could not decide" in result.report()
         assert result.undecided or not stubborn
+
+
+@pytest.mark.parametrize("problem", WITH_TORI if TORTURE > 1 else WITH_TORI[-2:])
+def test_nor_over_several_starting_points(problem):
+    """The search for these takes seconds, and of some of the problems a minute."""
+    assert LOOK_DEPTH == 24
+    result = prove(problem, depth=40, method="loewner")
+    assert not result.no_tori and "I could not decide" in result.report()
 
 
 def grow(task, cell, max_leaves=MANY):
