@@ -247,7 +247,7 @@ def test_one_map_in_both_inputs():
                       method="loewner")
         assert proof.no_tori and not proof.at_once and proof.counts.proved < 300
     lower = prove(read({"harmonics": [{"k": [1], "amplitude": "0.95"}]}), method="loewner",
-                  depth=30)
+                  depth=23)             # with more, other starting points are looked for
     assert lower.conclusion == "undecided"      # its golden circle lives to 0.9716
 
 
