@@ -691,9 +691,9 @@ def test_numbers(texts, run, name, value, status, why):
 
 def test_numbers_of_many_digits(texts, run):
     text = with_parameters(texts["trig278"], *[("0.313", "0")] * 2, ("0.626", "0"))
-    centre, half = "0.626%s3" % ("0" * 900), "0.%s1e-500" % ("0" * 99)
+    centre, half = "0.626%s3" % ("0" * 400), "0.%s1e-300" % ("0" * 99)
     status, out, _ = run(sealed(with_field(text, "c", centre + " " + half)))
-    assert status == 0 and re.search("in integers of 2[0-9]{3} bits", out)
+    assert status == 0 and re.search("in integers of 1[0-9]{3} bits", out)
     with decimal.localcontext() as exact:
         exact.prec = 2000
         ends = [decimal.Decimal(centre) + sign * decimal.Decimal(half) for sign in (-1, 1)]
@@ -853,21 +853,24 @@ def test_it_imports_nothing_of_the_program(root):
 
 def test_every_form_says_the_same(texts, deep, moving, others, maps, forms, run, tmp_path):
     """Of the same files, good and bad, with numpy and without; word for word.  The zip file, whose
-    modules are the package's as they are, of one of each kind."""
+    modules are the package's as they are, of one of each kind; the referee of proof files what the
+    exact path says."""
     bad = with_field(texts["trig274"], "c", "0.617 0.618")
     tree = tree_of(texts["trig276"])
-    cases = [texts["trig276"], texts["trig278"], deep, moving["segment"], moving["narrow box"],
-             others["a patch"], others["in a frame"], part_of(texts["trig274"]),
-             map_text(maps["b=0"]), bad, sealed(bad),
-             sealed(with_tree(texts["trig276"], tree[:-1])), "junk"]
-    path, statuses = tmp_path / "some.proof", set()
-    few = deep, cases[7], cases[8], sealed(bad), "junk"
+    cases = [texts["trig278"], deep, moving["narrow box"], others["a patch"],
+             others["in a frame"], part_of(texts["trig274"]), map_text(maps["b=0"]), bad,
+             sealed(bad), sealed(with_tree(texts["trig276"], tree[:-1])), "junk"]
+    path, statuses, foreign = tmp_path / "some.proof", set(), [cases[6]]
+    few = deep, cases[5], cases[6], sealed(bad), "junk"
     for text in cases:
         for isolated, options in (("-I",), ("--jobs", "2")), (("-I", "-S"), ("--exact",)):
             status, out, err = run(text, *options)
             statuses.add(status)
-            for form in FORMS if text in few else ["converse_check.py"]:
-                done = subprocess.run([sys.executable, *isolated, forms / form, path, *options],
+            forms_of_it = FORMS if text in few else FORMS[1:]
+            for form in (*forms_of_it, *["referee.py"] * (options == ("--exact",)
+                                                          and text not in foreign)):
+                arguments = [path] if form == "referee.py" else [path, *options]
+                done = subprocess.run([sys.executable, *isolated, forms / form, *arguments],
                                       capture_output=True, text=True, env=PLAIN, cwd=tmp_path)
                 found = done.returncode, done.stdout, done.stderr.replace(str(path), "FILE")
                 # The tests allow the exact path less than it would try.
@@ -888,19 +891,8 @@ def test_every_form_runs_alone(texts, forms, tmp_path, form):
     assert "numpy is not installed" in done.stderr and done.stderr.count("\n") == 1
 
 
-def test_the_referee_says_the_same(texts, deep, others, forms, run, tmp_path):
-    """Of proof files, good and bad, what the exact path says; and of a map that it reads none."""
-    tree, path, statuses = tree_of(texts["trig276"]), tmp_path / "some.proof", set()
-    for text in (deep, part_of(texts["trig274"]), others["a patch"], others["in a frame"],
-                 sealed(with_field(texts["trig274"], "c", "0.617 0.618")),
-                 sealed(with_tree(texts["trig276"], tree[:-1])), "junk"):
-        status, out, err = run(text, "--exact")
-        done = subprocess.run([sys.executable, "-I", "-S", forms / "referee.py", path],
-                              capture_output=True, text=True, env=PLAIN, cwd=tmp_path)
-        found = done.returncode, done.stdout, done.stderr.replace(str(path), "FILE")
-        assert found == (status, out, err) or status == found[0] == 5 and "limits" in found[2]
-        statuses.add(status)
-    assert statuses == {0, 1, 2, 3, 5}
+def test_the_referee_takes_a_file(forms, tmp_path):
+    path = tmp_path / "some.proof"
     for arguments in ((), (path, path), ("--help",)):
         done = subprocess.run([sys.executable, forms / "referee.py", *arguments],
                               capture_output=True, text=True)
@@ -931,10 +923,10 @@ def test_every_form_is_made_the_same_again(forms, tmp_path):
 
 
 @pytest.mark.parametrize("form", ["package", *FORMS])
-def test_a_state_belongs_to_these_very_sources(deep, forms, tmp_path, form):
+def test_a_state_belongs_to_these_very_sources(texts, tmp_path, form):
     """Of each form; changed anywhere, it is another checker, which begins anew."""
     path, state, home = tmp_path / "x", tmp_path / "state", tmp_path / "home"
-    path.write_text(deep, encoding="utf-8")
+    path.write_text(texts["trig276"], encoding="utf-8")
     shutil.copytree(FOLDER, home / "checker", ignore=shutil.ignore_patterns("__pycache__"))
     code = "import sys; sys.path.insert(0, sys.argv.pop(1)); from checker import main; " \
         "sys.exit(main())"
@@ -2360,10 +2352,10 @@ def test_both_paths_agree(np, deep, moving, run):
     for text in (deep, moving["slanted" if TORTURE > 1 else "beginning"]):
         for change in (lambda x: x, lambda x: with_field(x, "xstar", "1.2 1.2")):
             results = []
-            for options in ((), ("--exact",), ("--jobs", "2")):
+            for options in ((), ("--exact",)):
                 status, out, _ = run(sealed(change(text)), *options)
                 results.append((status, out.partition("\nChecker")[0]))
-            assert results[0] == results[1] == results[2]
+            assert results[0] == results[1]
 
 
 def test_the_fast_path_goes_on(np, deep, run, tmp_path, monkeypatch):
@@ -2388,20 +2380,20 @@ def test_the_fast_path_goes_on(np, deep, run, tmp_path, monkeypatch):
     assert run(deep, "--state", str(state))[0] == 0 and len(calls) == 12
 
 
-def test_without_numpy(deep, run, monkeypatch):
+def test_without_numpy(texts, run, monkeypatch):
     for module, why in ((None, "numpy is not installed"), ("rounds", "does not round")):
         if module is None:
             monkeypatch.setitem(sys.modules, "numpy", None)
         else:
             monkeypatch.undo()
             monkeypatch.setattr(check, "import_numpy_if_sound", lambda: False)
-        status, out, err = run(deep)
+        status, out, err = run(texts["trig278"])
         assert status == 0 and why in err and err.count("\n") == 1
         assert "Method : Loewner criterion, multipliers, in integers" in out
     monkeypatch.undo()
-    status, out, err = run(deep, "--exact")
+    status, out, err = run(texts["trig278"], "--exact")
     assert (status, err) == (0, "") and "in doubles" not in out
-    status, out, err = run(deep)
+    status, out, err = run(texts["trig278"])
     assert (status, err) == (0, "") and "in doubles" in out
 
 
@@ -3027,18 +3019,17 @@ def test_proved_from(generator):
             assert found[0] is None or found[0] >= worst
 
 
-def test_products_of_strips_are_bounded(maps, run):
-    """Strips of s below strips of t: a short file with a million different directions."""
+def test_products_of_strips_are_bounded(maps, run, monkeypatch):
+    """Strips of s below strips of t: a short file with 2^18 different directions."""
     def comb(axis, depth):
         return (axis + comb(axis, depth - 1) * 2) if depth else "O"
 
     face = check.REGIONS["sphere"]
     content = {**maps["b=0"], "region": "sphere", "faces": [
-        face_of(face[0], "2", "0" + comb("1", 10) + comb("2", 10)), face_of(face[1], "2", "0OA")]}
-    began = time.process_time()
+        face_of(face[0], "2", "0" + comb("1", 9) + comb("2", 9)), face_of(face[1], "2", "0OA")]}
+    monkeypatch.setattr(check, "MAX_ITEMS", 1 << 18)
     status, out, err = run(map_text(content))
     assert (status, out) == (5, "") and "face 1: its cells lie in too many ways" in err
-    assert time.process_time() < began + 30
     content["faces"][0]["tree"] = "0" + comb("1", 4) + comb("2", 4)
     assert run(map_text(content))[0] == 0
 

@@ -328,7 +328,7 @@ def refuted(claim, cases):
     return None
 
 
-@settings(MANY, max_examples=100 * TORTURE)
+@settings(MANY, max_examples=40 * TORTURE)
 @given(which=st.integers(0, 6), changes=changes)
 @example(2, [("stretch", "20", None)])
 @example(6, [("scale", "-1", None)])

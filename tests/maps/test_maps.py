@@ -29,7 +29,7 @@ from moments import PATIENCE
 def coarse(monkeypatch):
     """An estimate at few places and with little effort."""
     monkeypatch.setattr(map_module, "ESTIMATE_GRID", {1: 4, 2: 1})
-    monkeypatch.setattr(search, "POINT_BUDGET", {1: 1 << 9, 2: 1 << 9})
+    monkeypatch.setattr(search, "POINT_BUDGET", {1: 1 << 7, 2: 1 << 7})
 
 
 @pytest.fixture(scope="module")
@@ -229,7 +229,7 @@ def test_progress_says_what_is_done(coarse, tmp_path, monkeypatch):
 
 def test_processes(coarse, tmp_path):
     with concurrent.futures.ProcessPoolExecutor(2) as pool:
-        found = maps.explore("c=0", "1.4", path=tmp_path / "map.json", executor=pool)
+        found = maps.explore("c=0", "1.3", path=tmp_path / "map.json", executor=pool)
     assert found.complete and found.sha256 == Map.load(tmp_path / "map.json").sha256
 
 
@@ -252,14 +252,14 @@ class Unreliable(concurrent.futures.ThreadPoolExecutor):
 
 def test_workers_that_die(coarse, tmp_path):
     with Unreliable(3) as pool:
-        assert maps.explore("c=0", "1.4", path=tmp_path / "map.json", executor=pool).complete
+        assert maps.explore("c=0", "1.3", path=tmp_path / "map.json", executor=pool).complete
         assert pool.deaths                  # it did come to that
     with Unreliable(1) as pool, pytest.raises(ConverseError, match="keep failing"):
-        maps.explore("c=0", "1.4", path=tmp_path / "other.json", executor=pool)
+        maps.explore("c=0", "1.3", path=tmp_path / "other.json", executor=pool)
     assert not Map.load(tmp_path / "other.json").complete
     pool.shutdown()
     with pytest.raises(ConverseError, match="workers are gone"):
-        maps.explore("c=0", "1.4", path=tmp_path / "third.json", executor=pool)
+        maps.explore("c=0", "1.3", path=tmp_path / "third.json", executor=pool)
 
 
 @pytest.mark.parametrize("when", [3, 10])
