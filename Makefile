@@ -78,10 +78,11 @@ memcheck: $(VENV)/installed
 	PYTHONMALLOC=malloc valgrind -q --error-exitcode=9 --suppressions=tests/memcheck.supp $(VENV)/bin/python tests/memcheck.py
 
 # The rooms whose tests call the core in ways of their own.  What other rooms ask of it they ask, too,
-# and sanitizers find nothing in Python, nor in figures or in the texts of roundings.  Linked proofs
-# are many ordinary searches.
+# and sanitizers find nothing in Python, nor in figures, reports or the texts of roundings.  Linked
+# proofs are many ordinary searches.
 SANITIZED_TESTS = $(addprefix tests/, arith loewner orbits prover search thesis) \
-    $(addprefix --ignore=tests/, orbits/test_orbit_figures.py loewner/test_margins.py prover/test_links.py)
+    $(addprefix --ignore=tests/, orbits/test_orbit_figures.py orbits/test_pictures.py loewner/test_margins.py \
+    prover/test_links.py prover/test_report.py)
 
 # Safe path: the clone, where this starts, holds a core without sanitizers.
 sanitize: export CFLAGS = $(SANITIZE)
