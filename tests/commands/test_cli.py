@@ -379,7 +379,8 @@ def test_options_that_do_not_fit_a_backup(command, sample, tmp_path):
     (["-d", "60"], "or deeper cuts (-d 120)."),
     (["--method", "loewner", "-d", "60000"], "or larger parameters.")])
 def test_advice_that_can_be_taken(command, sample, arguments, advice):
-    stdin = sample.read_bytes() if arguments == ["-d", "3"] else b"0 0\n0 0\n0 0\n1 1\n1 1\n"
+    """(Of a square no leaf is linked, which is tried for minutes else.)"""
+    stdin = sample.read_bytes() if arguments == ["-d", "3"] else b"0 0\n0 0\n0 0\n1 .5\n1 .5\n"
     status, out, err = command(*arguments, stdin=stdin)
     assert status == 1 and err == ""
     assert re.search(r"To try : .*\.", out)[0].endswith(advice)
