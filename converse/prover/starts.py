@@ -23,6 +23,7 @@ from .workers import LOOK_SECONDS
 LOOK_DEPTH, LOOK_LEAVES = 24, 200000    # of the tree whose undecided prisms are clustered
 DEEPER = 4                              # cuts, as long as they halve what the clusters cover,
 SMALL = Fraction(1, 10000)              # and this is more, in units of pi squared
+SHRINKS = 0.7                           # what so many cuts leave of what was undecided before
 TRY_DEPTH, TRY_LEAVES = 16, 10000       # of those by which starting points are compared
 ALL_LEAVES = 40000                      # of a proof that is tried to the end
 FINE_STEPS, NEAR_STEPS, FAR_STEPS = (   # between points, in radians
@@ -75,7 +76,7 @@ def _look(problem, depth, xstar, pool, seconds_left):
     deeper as long as they are large and shrink.  (None, []) if there is too much of it, or time was
     up."""
     best, covered, cuts = (None, []), inf, LOOK_DEPTH
-    while cuts <= depth:
+    while cuts <= depth and (best[0] or _shrinks(problem, xstar, pool, seconds_left)):
         grown = _surveys(pool, seconds_left, [_task(problem, xstar, cuts)], LOOK_LEAVES)
         if not grown or grown[0].cells:
             break
@@ -88,6 +89,21 @@ def _look(problem, depth, xstar, pool, seconds_left):
         if area < SMALL or 3 * len(grown[0].text) > 2 * LOOK_LEAVES:
             break
     return best
+
+
+def _shrinks(problem, xstar, pool, seconds_left):
+    """Does what is undecided become less with each DEEPER cuts?  If there are tori it does not: each
+    has a successor of any x*, and to cut prisms around these to LOOK_DEPTH may take minutes."""
+    volume = inf
+    for cuts in range(LOOK_DEPTH - 3 * DEEPER, LOOK_DEPTH, DEEPER):
+        grown = _surveys(pool, seconds_left, [_task(problem, xstar, cuts)], LOOK_LEAVES)
+        if not grown or grown[0].cells:
+            return False
+        left = sum(0.5 ** sum(cell[1]) for kind, cell in tree.cells(grown[0].text) if kind == "U")
+        if left > SHRINKS * volume:
+            return False
+        volume = left
+    return True
 
 
 def _task(problem, xstar, depth):
