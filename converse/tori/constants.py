@@ -13,6 +13,7 @@ function f + i g (f alone if n = 1).
 """
 
 import math
+from collections import defaultdict
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import partial
@@ -22,7 +23,7 @@ import numpy as np
 from flint import acb, arb
 
 from .divisors import Norm
-from .residual import (TINY, Columns, Grid, Layers, Sizes, frame_modes, gather, packed, pairs,
+from .residual import (TINY, ZERO, Columns, Grid, Layers, Sizes, frame_modes, gather, packed, pairs,
                        precision, rotation_balls, turns, unpacked, values, wave_vectors)
 from .torus import Torus
 
@@ -68,17 +69,18 @@ class Inverse:
         self._slopes(torus, norm, degree)
         with precision(BITS):
             of_l = _jacobian(torus, grid, self.cut, degree)
-            of_m, back = _proposal(of_l, torus, grid, self.cut, degree)
+            of_m, back, series = _proposal(of_l, torus, grid, self.cut, degree)
             rest: List[List[Layers]] = [[] for _ in range(n)]
             product: List[List[Layers]] = [[] for _ in range(n)]
             lines = [[values(row, grid) for row in each] for each in (of_l, of_m, back)]
-            for _ in range(shape[0]):
+            del of_l, of_m, back                    # values() drops them, too, when it has begun
+            for _ in range(grid.lines[0]):
                 l, m, m_back = ([next(row) for row in each] for each in lines)
                 for found, x, y, across in (rest, l, m, False), (product, m, m_back, True):
                     line = packed(partial(_layer, x, y, across), layers)
                     for row, each in zip(found, line):
                         row.append(each)
-            self.m = self._matrix([_series(row, grid) for row in of_m])[0]
+            self.m = self._matrix(series)[0]
             self.rest = self._matrix([
                 gather(iter(row), grid, partial(_subtract, one))
                 for row, one in zip(rest, (acb(1), acb(0, 1)))])[0]
@@ -91,17 +93,14 @@ class Inverse:
 
     def _slopes(self, torus, norm, degree):
         """Sizes of Du: (Du)_k = i u_k k^T has the spectral norm |u_k|_2 |k|_2; and of L - L~."""
-        grid, unit = self.grid, 1 << torus.bits
-        m = np.array([grid.numbers(k) for k in torus.modes], dtype=np.int64)
+        unit, m = 1 << torus.bits, self.grid.all_numbers(torus.vectors)
         size = np.zeros((len(torus.modes), torus.degree + 1))
         for row, (k, series) in enumerate(torus.modes.items()):
             length = math.sqrt(sum(a * a for a in k))
             for j, numbers in enumerate(series):
                 size[row, j] = 2 * length * math.hypot(*(x / unit for x in numbers))
-        m = m.reshape(-1, torus.dimension)
         self.slopes = Sizes(norm, m, size)
-        near = np.array([grid.within(k, self.cut) for k in torus.modes], dtype=bool)
-        rest = size.copy()
+        near, rest = self.grid.within(m, self.cut), size.copy()
         rest[near, :degree + 1] = 0
         self.cut_off = Sizes(norm, m, rest)
 
@@ -163,31 +162,37 @@ def spectral(entries: np.ndarray) -> np.ndarray:
 def _jacobian(torus: Torus, grid: Grid, cut: Fraction, degree: int) -> List[Columns]:
     """The rows of L, cut: (L_ab)_k = i u_k,a k_b, and I at k = 0."""
     n, exponent = torus.dimension, -torus.bits
-    rows: List[Columns] = [{(0, 0): {0: one}} for one in (acb(1), acb(0, 1))[:n]]
-    for k, series in torus.modes.items():
-        if not grid.within(k, cut):
-            continue
-        places = grid.places(k)
+    rows: List[Columns] = [_columns(grid) for _ in range(n)]
+    for row, one in zip(rows, (acb(1), acb(0, 1))):
+        row[0, 0][0] = one
+    near = np.flatnonzero(grid.within(grid.all_numbers(torus.vectors), cut))
+    series, q = list(torus.modes.values()), grid.index(torus.vectors[near])
+    for at, k, *places in zip(near.tolist(), torus.vectors[near].tolist(),
+                              grid.places(q).tolist(), grid.places(-q).tolist()):
         factor = acb(-k[1] if n == 2 else 0, k[0])          # i (k_0 + i k_1)
-        for j, numbers in enumerate(series[:degree + 1]):
+        for j, numbers in enumerate(series[at][:degree + 1]):
             for row, re, im in zip(rows, numbers[::2], numbers[1::2]):
                 for (q0, q1), sign in zip(places, (1, -1)):
                     c = acb(arb((re, exponent)), arb((sign * im, exponent)))
-                    row.setdefault((q1, j), {})[q0] = sign * factor * c
+                    row[q1, j][q0] = sign * factor * c
     return rows
 
 
+def _columns(grid: Grid) -> Columns:
+    """Columns of zeros."""
+    return defaultdict(lambda: [ZERO] * grid.lines[0])
+
+
 def _proposal(rows: List[Columns], torus: Torus, grid: Grid, cut: Fraction, degree: int
-              ) -> Tuple[List[Columns], List[Columns]]:
-    """M, about L^-1, and M_-: each a list of rows."""
+              ) -> Tuple[List[Columns], List[Columns], List[Tuple[np.ndarray, np.ndarray]]]:
+    """M, about L^-1, and M_-: each a list of rows; and those of M as `gather` gives functions."""
     n, size = torus.dimension, (*grid.shape, grid.layers)
     parts = []
     for row in rows:
-        table = np.zeros(size, complex)
+        table = np.zeros((*grid.lines, grid.layers), complex)
         for (q1, j), column in row.items():
-            for q0, c in column.items():
-                table[q0, q1, j] = complex(c)
-        table = np.fft.fftn(table)
+            table[:, q1, j] = list(map(complex, column))
+        table = np.fft.fftn(table.reshape(size))            # in rank 1 the lines follow each other
         other = table[:, :, -np.arange(size[2])].conj()
         parts.append([(table + other) / 2, (table - other) / 2j])
     if n == 1:
@@ -196,36 +201,28 @@ def _proposal(rows: List[Columns], torus: Torus, grid: Grid, cut: Fraction, degr
         (l00, l01), (l10, l11) = parts
         det = l00 * l11 - l01 * l10
         inverse = [(l11 - 1j * l01) / det, (1j * l00 - l10) / det]
-    q, m = grid.ball(cut)
-    q = q % np.array(grid.shape)
-    omega = rotation_balls(torus, BITS)
+    q, m = grid.inside
+    near = grid.within(m, cut)
+    q, omega = q[near], rotation_balls(torus, BITS)
+    places, at = grid.places(q).tolist(), tuple((q % np.array(grid.shape)).T)
     shift = []
-    for k in frame_modes(grid, m).tolist():
+    for k in frame_modes(grid, m[near]).tolist():
         sine, cosine = (-2 * turns(k, omega)).sin_cos_pi()
         shift.append(acb(cosine, sine))
-    found, back = [], []
+    found, back, series = [], [], []
     for table in inverse:
-        numbers: Any = np.fft.ifftn(table)[q[:, 0], q[:, 1], :degree + 1]
-        straight: Columns = {}
-        turned: Columns = {}
-        for (q0, q1), series, factor in zip(q.tolist(), numbers.tolist(), shift):
-            for j, number in enumerate(series):
-                straight.setdefault((q1, j), {})[q0] = acb(number)
-                turned.setdefault((q1, j), {})[q0] = acb(number) * factor
+        numbers: Any = np.fft.ifftn(table)[at][:, :degree + 1]
+        straight, turned = _columns(grid), _columns(grid)
+        for (q0, q1), powers, factor in zip(places, numbers, shift):
+            for j, number in enumerate(powers.tolist()):
+                straight[q1, j][q0] = acb(number)
+                turned[q1, j][q0] = acb(number) * factor
         found.append(straight)
         back.append(turned)
-    return found, back
-
-
-def _series(row: Columns, grid: Grid) -> Tuple[np.ndarray, np.ndarray]:
-    """Coefficients that are doubles, as `gather` gives them."""
-    q = grid.inside[0] % np.array(grid.shape)
-    places = {each: at for at, each in enumerate(map(tuple, q.tolist()))}
-    middle = np.zeros((len(q), grid.layers), complex)
-    for (q1, j), column in row.items():
-        for q0, c in column.items():
-            middle[places[q0, q1], j] = complex(c)
-    return middle, np.zeros(middle.shape)
+        middle = np.zeros((len(m), grid.layers), complex)
+        middle[near, :degree + 1] = numbers
+        series.append((middle, np.zeros(middle.shape)))
+    return found, back, series
 
 
 def _subtract(one, q1, j, line):

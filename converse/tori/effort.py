@@ -3,19 +3,32 @@ memory."""
 
 from .torus import Torus
 
-SOLVING = 5e-6              # for each point of a mesh: Newton's method in floating-point numbers
-BALLS = 1.2e-5              # for each point of a grid: a residual in ball arithmetic
-# About so many residuals take as long as refining a torus, refining one that is a polynomial in the
-# parameter, and a proof.
-SINGLE, REFINING, PROVING = 1.4, 2, 3
-BYTES = 250                 # of memory for each point of a grid: a ball in two arrays
-POINTS = {1: 4, 2: 9}       # of the grid of the residual for each mode, by the number of angles
+# Seconds for each point of a grid: Newton's method in floating-point numbers, a residual in balls,
+# and an inverse.
+SOLVING, BALLS, INVERSE = 4e-6, 1.2e-5, 2.5e-5
+SHORT, LONGER = 128, 1.6    # bits of balls up to which these are the times; how much longer it is
+# About so many residuals take as long as refining a torus, and one that is a polynomial in the
+# parameter.
+SINGLE, REFINING = 2.5, 2
+# Bytes of memory for each point of a grid: a residual, all that a torus takes that is refined, and
+# an inverse.
+BYTES, REFINING_BYTES, INVERTING = 350, 750, 850
+# By the number of angles: points of the grid of the residual for each mode, at least, before they
+# are a power of two, and that part of them that the grid of the inverse has.
+GRIDS = {1: (2.3, 1 / 4), 2: (10, 1 / 32)}
+
+
+def balls(points: int, bits: int) -> float:
+    """Seconds, of a residual."""
+    return BALLS * points * (1 if bits <= SHORT else LONGER)
 
 
 def proving(torus: Torus) -> float:
-    """Seconds."""
+    """Seconds.  The inverse is tried on smaller grids before, which takes as long again."""
+    each, part = GRIDS[torus.dimension]
+    points = 1 << max(0, int(each * len(torus.modes)) - 1).bit_length()
     layers = 1 if torus.part is None else 2 << torus.degree.bit_length()
-    return PROVING * BALLS * POINTS[torus.dimension] * len(torus.modes) * layers
+    return layers * (balls(points, torus.bits) + 2 * INVERSE * points * part)
 
 
 def some(seconds: float) -> str:

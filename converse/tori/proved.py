@@ -15,7 +15,7 @@ from ..model.problem import Problem
 from ..storage.files import ConverseError
 from .constants import Constants, Inverse
 from .divisors import Divisors, Norm, lattice_basis
-from .effort import BALLS, BYTES, free_memory, proving, some
+from .effort import BYTES, INVERSE, INVERTING, balls, free_memory, proving, some
 from .processes import Processes
 from .residual import LADDER, Grid, Phases, Sizes, residual, wave_vectors
 from .rotation import Rotation
@@ -319,7 +319,7 @@ class _Attempt:
         widths = [rho for rho in widths if rho > 0]
         inverse, grid, rho, at = self._plan(widths)
         bits = self.bits or self._bits(grid, rho, at[rho])
-        self._tell("computing the residual", grid.shape, grid.layers)
+        self._tell("computing the residual", grid.shape, grid.layers, balls(grid.points, bits))
         error = residual(self.torus, grid, bits)
 
         tries = []
@@ -335,7 +335,8 @@ class _Attempt:
                             e0, verdict.needed)
         tried = tuple(sorted((width, reached, at[width]) for _, width, reached, *_ in tries))
         return Piece(self.torus, self.norm, constants, e0, verdict, rho, wider, radius, tried, grid,
-                     inverse.grid, bits, time.process_time() - self.start, BYTES * grid.points)
+                     inverse.grid, bits, time.process_time() - self.start,
+                     max(BYTES * grid.points, INVERTING * inverse.grid.points))
 
     def _rate(self):
         """At which coefficients decay; that of no modes, or of those that grow, is made up."""
@@ -350,8 +351,8 @@ class _Attempt:
             points *= 2
         while True:
             shape = best_shape(self.norm, self.waves, points)
-            self._check_cost(points * layers)
-            self._tell("inverting I + Du", shape, layers)
+            self._check_cost(points * layers, INVERTING)
+            self._tell("inverting I + Du", shape, layers, INVERSE * points * layers)
             inverse = Inverse(self.torus, self.norm, shape, layers)
             constants = {rho: inverse.at(rho) for rho in widths}
             at = {}
@@ -387,7 +388,7 @@ class _Attempt:
         while True:
             grid = self._at(points, layers)
             points *= 2
-            if not all(float(grid.reach) > x for x in self.far):
+            if not float(grid.reach) > self.far.max(initial=0):
                 self._check_cost(grid.points)
                 continue
             rho = max(at, key=lambda rho: self._ratio(grid, rho, at[rho]))
@@ -413,10 +414,9 @@ class _Attempt:
     def _at(self, points, layers):
         return Grid(self.norm, self.waves, best_shape(self.norm, self.waves, points), layers)
 
-    def _tell(self, what, shape, layers):
+    def _tell(self, what, shape, layers, seconds):
         points = [x for x in (*shape, layers) if x > 1] or [1]
-        self.tell("%s on %s points%s" % (what, " x ".join(map(str, points)),
-                                         some(BALLS * math.prod(points))))
+        self.tell("%s on %s points%s" % (what, " x ".join(map(str, points)), some(seconds)))
 
     def _ratio(self, grid, rho, needed):
         tail = self.phases.best_tail(grid, rho)[0]
@@ -432,11 +432,11 @@ class _Attempt:
                             "torus for smaller amplitudes" % MOST_BITS)
         return max(64, math.ceil(bits))
 
-    def _check_cost(self, points):
-        if points * BYTES > self.memory:
+    def _check_cost(self, points, each=BYTES):
+        if points * each > self.memory:
             raise NotProved("a grid of %d points takes %.3g GB of memory, and %.3g GB may be used; "
                             "give a torus with fewer modes, more memory, or fewer jobs"
-                            % (points, points * BYTES / 1e9, self.memory / 1e9))
+                            % (points, points * each / 1e9, self.memory / 1e9))
 
     def _remedy(self, e0, tail, needed, sizes, rho):
         text = "the residual is %s at rho = %.4g, and the theorem needs %s: " % (

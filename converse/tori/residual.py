@@ -9,6 +9,15 @@ generate.  q is the vector of k's coordinates in a basis of K; a function of the
 is one of angles chi with k.theta = q.chi, and the grid is chi = -2 pi (j0/M0, j1/M1): no point is
 met twice, whatever K is.  A lattice of rank 1, as on the circle, has M0 = 1.
 
+Transforms.  The grid is a matrix of `lines`, and balls are Python objects for no more than this
+matrix: the coefficients of the torus are made column by column when they are asked for, and the
+values are there one line at a time.  In rank 2 the matrix is the grid.  In rank 1 the M points are
+put into a matrix, too, P times Q: with j = j0 + P j1 and q = Q q0 + q1,
+
+    q j/M = q0 j0/P + q1 j0/M + q1 j1/Q   modulo 1,
+
+so a transform is one of each column, a factor e^{-2 pi i q1 j0/M}, and one of each line.
+
 A range of parameters is one more axis.  A polynomial in sigma is a Fourier series in the
 angle of sigma = e^{-i psi} whose modes j are not negative; it is sampled at `layers` points, and
 neither shifted nor differentiated.
@@ -20,7 +29,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
-from typing import Any, Callable, Dict, Iterator, List, Sequence, Tuple
+from typing import Any, Callable, Dict, Iterator, List, Mapping, Sequence, Tuple
 
 import numpy as np
 from flint import acb, arb, ctx, fmpq
@@ -33,8 +42,8 @@ SLACK = 1 + 2.0 ** -28      # above what MOST + 20 roundings amount to: (1 + 2^-
 DIGIT = 256                 # |m_i| = coarse DIGIT + fine, of tables of exponentials
 TINY = 2.0 ** -1000         # above what underflows lose
 ROUND = 1 << 30             # denominator of the widths that are tried
-Columns = Dict[Tuple[int, int], Dict[int, acb]]      # (q1, j): {q0: coefficient}, modulo the grid
-Layers = List[List[acb]]                             # of each sigma, the values along chi_1
+Columns = Mapping[Tuple[int, int], List[acb]]        # (q1, j): the coefficients over q0
+Layers = List[List[acb]]                             # of each sigma, the values of a line
 
 
 @contextmanager
@@ -98,28 +107,54 @@ class Grid:
         """Of F K in Hermite's normal form: (g,), or (p, r) and (0, s), or one pair."""
         return hermite([self.numbers(k) for k in self.waves])
 
+    @cached_property
+    def lines(self) -> Tuple[int, int]:
+        """(P, Q): the shape of the matrix that is transformed."""
+        if len(self.basis) == 2:
+            return self.shape
+        rows = 1 << (self.shape[1].bit_length() - 1) // 2
+        return rows, self.shape[1] // rows
+
     def numbers(self, k: Sequence[int]) -> Tuple[int, ...]:
         """m = F k."""
         return tuple(sum(f * each for f, each in zip(row, k)) for row in self.norm.frame)
 
-    def index(self, k: Sequence[int]) -> Tuple[int, int]:
-        """q; ValueError: k is not in K."""
-        m = self.numbers(k)
-        q, rest = [], list(m)
-        for row in self.basis:
-            pivot = next(i for i, each in enumerate(row) if each)
-            q.append(rest[pivot] // row[pivot])
-            rest = [a - q[-1] * b for a, b in zip(rest, row)]
-        if any(rest):
-            raise ValueError("the mode %s is not in the lattice that the waves generate"
-                             % (tuple(k),))
-        return (0, q[0]) if len(q) == 1 else (q[0], q[1])
+    def all_numbers(self, k: np.ndarray) -> np.ndarray:
+        """m of modes k, both (count, n).
 
-    def places(self, k: Sequence[int]) -> Tuple[Tuple[int, int], Tuple[int, int]]:
-        """q modulo the grid, of k and of -k.  Those of two k inside are never the same, but one of
-        their components may be."""
-        (q0, q1), (m0, m1) = self.index(k), self.shape
-        return (q0 % m0, q1 % m1), (-q0 % m0, -q1 % m1)
+        ValueError: they are so long that |k| is no integer of 64 bits in the units of `_units`."""
+        longest = [int(abs(x).max(initial=0)) for x in k.T]
+        if sum(unit * sum(abs(f) * each for f, each in zip(row, longest))
+               for unit, row in zip(self._units[0], self.norm.frame)) >= 1 << 62:
+            raise ValueError("a mode is too long for the weights; take rounder ones")
+        return k @ np.array(self.norm.frame, dtype=np.int64).T
+
+    def index(self, k: np.ndarray) -> np.ndarray:
+        """q of modes k, (count, 2); ValueError: one of them is not in K."""
+        rest, q = self.all_numbers(k), np.zeros((len(k), 2), np.int64)
+        for i, row in enumerate(self.basis, 2 - len(self.basis)):
+            pivot = next(j for j, each in enumerate(row) if each)
+            q[:, i] = rest[:, pivot] // row[pivot]
+            rest = rest - q[:, i, None] * np.array(row, dtype=np.int64)
+        wrong = rest.any(1)
+        if wrong.any():
+            raise ValueError("the mode %s is not in the lattice that the waves generate"
+                             % (tuple(k[wrong][0].tolist()),))
+        return q
+
+    def places(self, q: np.ndarray) -> np.ndarray:
+        """(q0, q1), where the modes stand in the matrix of `lines`.  Those of two k inside are
+        never the same, but one of their components may be."""
+        if len(self.basis) == 2:
+            return q % np.array(self.shape)
+        rows, size = self.lines
+        return np.stack([q[:, 1] // size % rows, q[:, 1] % size], 1)
+
+    def turning(self, q: Sequence[int]) -> Tuple[Fraction, Fraction]:
+        """(a0, a1): at the point (j0, j1) of `lines` q.chi is -2 pi (a0 j0 + a1 j1)."""
+        rows, size = self.lines
+        return Fraction(q[0] if len(self.basis) == 2 else q[1],
+                        rows if len(self.basis) == 2 else rows * size), Fraction(q[1], size)
 
     @cached_property
     def _units(self) -> Tuple[Tuple[int, ...], int]:
@@ -173,11 +208,10 @@ class Grid:
         q = np.concatenate(parts)
         return q, np.stack([p * q[:, 0], r * q[:, 0] + s * q[:, 1]], 1)
 
-    def within(self, k: Sequence[int], size: Fraction) -> bool:
-        """Is |k| < size?"""
+    def within(self, m: np.ndarray, size: Fraction) -> np.ndarray:
+        """Of each m = F k, is |k| < size?"""
         unit, common = self._units
-        return size.denominator * sum(u * abs(m) for u, m in zip(unit, self.numbers(k))) \
-            < size.numerator * common
+        return abs(m) @ np.array(unit, dtype=np.int64) < math.ceil(size * common)
 
     @property
     def points(self) -> int:
@@ -262,15 +296,14 @@ ZERO = acb(0)
 
 
 def values(columns: Columns, grid: Grid) -> Iterator[Layers]:
-    """For j0 = 0, ..., M0 - 1 the values of sum c_qj e^{iq.chi} sigma^j at chi = -2 pi (j0/M0,
-    j1/M1), sigma = e^{-2 pi i l/layers}, as a list over l of lists over j1."""
-    (m0, m1), layers = grid.shape, grid.layers
-    rows = {}
-    for key, column in columns.items():
-        line = [ZERO] * m0
-        for q0, c in column.items():
-            line[q0] = c
-        rows[key] = acb.dft(line) if m0 > 1 else line
+    """For j0 = 0, ..., P - 1 the values of sum c_qj e^{iq.chi} sigma^j on a line, sigma = e^{-2 pi
+    i l/layers}, as a list over l of lists over j1."""
+    (m0, m1), layers, turned = grid.lines, grid.layers, _turned(grid, 1)
+    rows, line = {}, None
+    for q1, j in columns:
+        line = columns[q1, j]
+        rows[q1, j] = turned(acb.dft(line) if m0 > 1 else list(line), q1)
+    del columns, line
     for j0 in range(m0):
         found = [[ZERO] * m1 for _ in range(layers)]
         for (q1, j), line in rows.items():
@@ -286,7 +319,7 @@ def values(columns: Columns, grid: Grid) -> Iterator[Layers]:
 def coefficients(lines: Iterator[Layers], grid: Grid, kept: Sequence[int]
                  ) -> Iterator[Tuple[int, int, List[acb]]]:
     """The inverse of `values`: for each q1 of `kept` and each j (q1, j, list over q0)."""
-    m0, layers = grid.shape[0], grid.layers
+    m0, layers, turned = grid.lines[0], grid.layers, _turned(grid, -1)
     rows: Dict[int, List[List[acb]]] = {q1: [[] for _ in range(layers)] for q1 in kept} \
         if m0 > 1 else {}
     for line in lines:
@@ -302,22 +335,46 @@ def coefficients(lines: Iterator[Layers], grid: Grid, kept: Sequence[int]
                     yield q1, j, [value]
     for q1 in list(rows):
         for j, row in enumerate(rows.pop(q1)):
-            yield q1, j, acb.dft(row, inverse=True)
+            yield q1, j, acb.dft(turned(row, q1), inverse=True)
+
+
+def _turned(grid: Grid, sign: int) -> Callable[[List[acb], int], List[acb]]:
+    """What multiplies the numbers x_j0 of a column q1 by e^{-sign 2 pi i q1 j0/M}: the exponent is
+    a multiple of 1/P and one of 1/M below 1/P, from two tables.  In rank 2 there is no factor."""
+    if len(grid.basis) == 2:
+        return lambda line, q1: line
+    m0, m1 = grid.lines
+    coarse, fine = ([_root(Fraction(-2 * sign * j, size)) for j in range(count)]
+                    for count, size in ((m0, m0), (m1, m0 * m1)))
+
+    def turned(line, q1):
+        found = []
+        for j0, x in enumerate(line):
+            high, low = divmod(q1 * j0, m1)
+            found.append(x * coarse[high] * fine[low])
+        return found
+    return turned
+
+
+def _root(half_turns: Fraction) -> acb:
+    """e^{pi i half_turns}."""
+    x = fmpq(half_turns.numerator, half_turns.denominator)
+    return acb(arb.cos_pi_fmpq(x), arb.sin_pi_fmpq(x))
 
 
 def gather(lines: Iterator[Layers], grid: Grid, change: Callable[[int, int, list], None]
            ) -> Tuple[np.ndarray, np.ndarray]:
     """The coefficients of `grid.inside` as complex doubles and what each is off by at most, shape
     (count, layers).  change(q1, j, line) may change a line of `coefficients` before."""
-    q = grid.inside[0] % np.array(grid.shape)
+    q = grid.places(grid.inside[0])
     order = np.argsort(q[:, 1], kind="stable")
     kept, begin = np.unique(q[order, 1], return_index=True)
-    end, q0 = iter([*begin[1:].tolist(), len(q)]), q[order, 0].tolist()
+    end, q0 = iter([*begin[1:].tolist(), len(q)]), q[order, 0]
     near, far = ([array("d") for _ in range(grid.layers)] for _ in range(2))
     for q1, j, line in coefficients(lines, grid, kept.tolist()):
         change(q1, j, line)
         if j == 0:
-            row = q0[len(far[0]):next(end)]
+            row = q0[len(far[0]):next(end)].tolist()
         for place in row:
             c = line[place]
             x = complex(c)
@@ -398,7 +455,7 @@ def wave_vectors(torus: Torus) -> Tuple[Tuple[int, ...], ...]:
 
 def turns(k: Sequence[int], omega: Sequence[arb]) -> arb:
     """k.omega, in turns."""
-    return sum((int(a) * w for a, w in zip(k, omega)), arb(0))
+    return k[0] * omega[0] if len(k) == 1 else k[0] * omega[0] + k[1] * omega[1]
 
 
 def rotation_balls(torus: Torus, bits: int) -> List[arb]:
@@ -406,60 +463,85 @@ def rotation_balls(torus: Torus, bits: int) -> List[arb]:
     return [between(low, high) for low, high in torus.rotation.turns(bits * 302 // 1000 + 5)]
 
 
-def torus_columns(torus: Torus, grid: Grid) -> Columns:
-    """The coefficients of u_0 + i u_1 (of u_0, if n = 1), exactly.  With u_k = a + ib, u_-k = a -
-    ib in each component: (a_0 - b_1) + i (b_0 + a_1) at k and (a_0 + b_1) + i (a_1 - b_0) at -k.
+class TorusColumns(Columns):
+    """The coefficients of u_0 + i u_1 (of u_0, if n = 1), each column made when it is asked for.
+    With u_k = a + ib, u_-k = a - ib in each component: (a_0 - b_1) + i (b_0 + a_1) at k
+    and (a_0 + b_1) + i (a_1 - b_0) at -k.
 
     ValueError: a mode is not in K, or the grid is too small for it."""
-    columns: Columns = {}
-    exponent, reach = -torus.bits, grid.reach
-    for k, series in torus.modes.items():
-        if not grid.within(k, reach):
+
+    def __init__(self, torus: Torus, grid: Grid) -> None:
+        self.unit, self.size = arb((1, -torus.bits)), grid.lines[0]
+        self.k, self.series = torus.vectors, list(torus.modes.values())
+        q = grid.index(self.k)
+        far = ~grid.within(grid.all_numbers(self.k), grid.reach)
+        if far.any():
             raise ValueError("the grid of %s points is too small for the mode %s; take a larger "
                              "one, or let the program choose it"
                              % (" x ".join(map(str, grid.shape[-len(grid.basis):])),
-                                ", ".join(map(str, k))))
-        if len(series) > grid.layers:
+                                ", ".join(map(str, self.k[far][0]))))
+        if torus.degree >= grid.layers:
             raise ValueError("%d points are too few for the degree %d"
-                             % (grid.layers, len(series) - 1))
-        places = grid.places(k)
-        for j, (a0, b0, *second) in enumerate(series):
-            a1, b1 = second or (0, 0)
-            for (q0, q1), re, im in zip(places, (a0 - b1, a0 + b1), (b0 + a1, a1 - b0)):
-                columns.setdefault((q1, j), {})[q0] = acb(
-                    arb((re, exponent)), arb((im, exponent)))
-    return columns
+                             % (grid.layers, torus.degree))
+        places = grid.places(np.concatenate([q, -q]))
+        # k number i is entry i, and -k entry i + count
+        self.order = np.argsort(places[:, 1], kind="stable")
+        self.q0 = places[self.order, 0]
+        columns, begin = np.unique(places[self.order, 1], return_index=True)
+        self.parts = dict(zip(columns.tolist(), map(slice, begin, [*begin[1:], len(places)])))
+        self.degree = torus.degree
+
+    def __len__(self) -> int:
+        return len(self.parts) * (self.degree + 1)
+
+    def __iter__(self) -> Iterator[Tuple[int, int]]:
+        return ((q1, j) for q1 in self.parts for j in range(self.degree + 1))
+
+    def entries(self, q1: int) -> Iterator[Tuple[int, int, bool]]:
+        """(q0, the number of k, whether -k stands there) of a column."""
+        part, count = self.parts.get(q1, slice(0)), len(self.series)
+        return ((q0, at % count, at >= count) for q0, at in zip(
+            self.q0[part].tolist(), self.order[part].tolist()))
+
+    def __getitem__(self, key: Tuple[int, int]) -> List[acb]:
+        (q1, j), line, unit = key, [ZERO] * self.size, self.unit
+        for q0, at, negative in self.entries(q1):
+            if j < len(self.series[at]):
+                a0, b0, *second = self.series[at][j]
+                a1, b1 = second or (0, 0)
+                re, im = (a0 + b1, a1 - b0) if negative else (a0 - b1, b0 + a1)
+                line[q0] = acb(re, im) * unit
+        return line
 
 
-def _forces(torus: Torus, grid: Grid) -> Iterator[Layers]:
+def _forces(torus: Torus, grid: Grid, columns: Columns) -> Iterator[Layers]:
     """The values on the grid of g_0 + i g_1, g = grad V(theta + u) = -sum p_j k_j cos(k_j.x + pi
     phase_j), in the order of `values`.  k_j.theta = q_j.chi is a rational part of 2 pi there."""
-    (m0, m1), layers = grid.shape, grid.layers
-    size = max(m0, m1)
-    pi = arb.pi()
+    m1, layers = grid.lines[1], grid.layers
     waves = []
-    for k, wave, (c, d) in zip(wave_vectors(torus), torus.potential.waves, amplitudes(torus)):
-        phase = Fraction(wave[2])
-        one, start = phase.denominator * size, phase.numerator * size
-        table = [pi * arb(fmpq(one - (one - start + 2 * j * phase.denominator) % (2 * one), one))
-                 for j in range(size)]
+    places = grid.index(np.array(wave_vectors(torus), dtype=np.int64)).tolist()
+    for k, q, wave, (c, d) in zip(wave_vectors(torus), places, torus.potential.waves,
+                                  amplitudes(torus)):
+        across, along = grid.turning(q)
+        table = [_angle(-2 * along * j) for j in range(m1)]
         factors = []
         for l in range(layers):
             p: Any = ball(c)
             if d:
-                sigma = acb(arb(fmpq(-2 * l, layers)).cos_pi(), arb(fmpq(-2 * l, layers)).sin_pi())
+                sigma = _root(Fraction(-2 * l, layers))
                 p = ball(c) + ball(d) * (sigma.real if 2 * l % layers == 0 else sigma)
             factors.append([-p * each for each in k])
-        waves.append((k, grid.index(k), table, factors))
+        waves.append((k, wave[2], across, table, factors))
 
-    for j0, line in enumerate(values(torus_columns(torus, grid), grid)):
+    for j0, line in enumerate(values(columns, grid)):
+        starts = [_angle(phase - 2 * across * j0) for _, phase, across, _, _ in waves]
+
         def parts(l):
             (u, v), = pairs([line], l)
             force = [[0] * m1, [0] * m1]
-            for k, (q0, q1), table, factors in waves:
-                at, step = q0 * j0 * (size // m0), q1 * (size // m1)
-                cosine = [(x + table[(at + step * j) % size]).cos()
-                          for j, x in enumerate(_combined(k, u, v))]
+            for (k, _, _, table, factors), start in zip(waves, starts):
+                cosine = [(x + (start + angle)).cos()
+                          for x, angle in zip(_combined(k, u, v), table)]
                 for i, component in enumerate(k):
                     if component:
                         f = factors[l][i]
@@ -467,6 +549,11 @@ def _forces(torus: Torus, grid: Grid) -> Iterator[Layers]:
             return [(force[0], force[1])]
 
         yield packed(parts, layers)[0]
+
+
+def _angle(half_turns: Fraction) -> arb:
+    """pi half_turns, modulo 2 pi, in (-pi, pi]."""
+    return arb.pi() * ball(1 - (1 - half_turns) % 2)
 
 
 def _combined(k, u, v):
@@ -513,19 +600,21 @@ def residual(torus: Torus, grid: Grid, bits: int) -> Residual:
     the grid; the linear part -4 sin(k.w/2)^2 u_k is exact but for rounding.
     ValueError: a mode of the torus is not in K, or the grid is too small."""
     with precision(bits):
-        columns = torus_columns(torus, grid)
-        omega = rotation_balls(torus, bits)
-        sines = {}
-        for k in torus.modes:
-            sine = turns(k, omega).sin_pi()
-            for place in grid.places(k):
-                sines[place] = -4 * sine * sine
+        columns, omega = TorusColumns(torus, grid), rotation_balls(torus, bits)
+        sines: Dict[int, List[arb]] = {}            # of one column
 
         def add_linear(q1, j, line):
-            for q0, c in columns.get((q1, j), {}).items():
-                line[q0] = line[q0] + sines[q0, q1] * c
+            if q1 not in columns.parts or j > columns.degree:
+                return
+            if q1 not in sines:
+                sines.clear()
+                sines[q1] = [turns(k, omega).sin_pi() for k in columns.k[
+                    [at for _, at, _ in columns.entries(q1)]].tolist()]
+            column = columns[q1, j]
+            for (q0, _, _), sine in zip(columns.entries(q1), sines[q1]):
+                line[q0] -= 4 * sine * sine * column[q0]
 
-        middle, off = gather(_forces(torus, grid), grid, add_linear)
+        middle, off = gather(_forces(torus, grid, columns), grid, add_linear)
     # h_k of E_0 + i E_1 has |E_k|^2 = (|h_k|^2 + |h_-k|^2)/2
     size = abs(middle) * SLACK + off
     size = np.hypot(size, size[::-1]) * math.sqrt(0.5)      # whose squares do not underflow
@@ -551,9 +640,7 @@ class Phases:
         self.torus, self.norm = torus, norm
         self.wave_vectors, self.amplitudes = wave_vectors(torus), amplitudes(torus)
         self.varies = torus.degree > 0 or any(d for _, d in self.amplitudes)
-        grid = Grid(norm, self.wave_vectors, (1, 1))
-        m = np.array([grid.numbers(k) for k in torus.modes], dtype=np.int64)
-        m = m.reshape(-1, torus.dimension)
+        m = Grid(norm, self.wave_vectors, (1, 1)).all_numbers(torus.vectors)
         unit = 1 << torus.bits
         self._forces: Dict[Tuple[Fraction, Fraction], float] = {}
         self.sizes: Dict[Tuple[int, ...], Sizes] = {}

@@ -5,6 +5,7 @@ import signal
 import subprocess
 import sys
 import time
+from dataclasses import replace
 
 import pytest
 
@@ -102,12 +103,18 @@ def test_how_long_it_takes_is_said_in_words(seconds, words):
 
 
 def test_a_longer_step_is_said_to_take_longer(pieces):
-    """In seconds that a grid of so many points takes, each 12 microseconds."""
+    """In seconds that the points of a grid take, 12 microseconds each for the residual, more with
+    longer balls, and 25 for the inverse, which is made on grids of 1/4, 1/8, ... of them."""
     single = find(Problem.patch(["0.9"], (), [(1, 0)]), GOLDEN)
-    assert proving(single) == pytest.approx(3 * 12e-6 * 4 * len(single.modes))
     first, second = pieces
-    assert proving(first) == pytest.approx(3 * 12e-6 * 4 * len(first.modes) * 32)
-    assert proving(second) > 3 * proving(first)
+    for torus, layers in (single, 1), (first, 32), (second, 64):
+        points = 1
+        while points < 2.3 * len(torus.modes):
+            points *= 2
+        assert proving(torus) == pytest.approx(layers * points * (12e-6 + 25e-6 / 2))
+        assert proving(replace(torus, bits=129)) == pytest.approx(
+            layers * points * (1.6 * 12e-6 + 25e-6 / 2))
+    assert proving(second) > 2 * proving(first)
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])

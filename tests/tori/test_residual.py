@@ -2,15 +2,19 @@
 
 import itertools
 import random
+import tracemalloc
 from fractions import Fraction as Q
 
 import numpy as np
 import pytest
+from flint import acb
 
 from converse.model.potential import FourierSum
 from converse.tori.constants import Inverse
 from converse.tori.divisors import Norm
-from converse.tori.residual import Grid, Phases, hermite, residual, wave_vectors
+from converse.tori.effort import BYTES, INVERTING
+from converse.tori.residual import (Grid, Phases, coefficients, frame_modes, hermite, precision,
+                                    residual, values, wave_vectors)
 from converse.tori.rotation import read_rotation
 from converse.tori.torus import Torus
 
@@ -112,8 +116,8 @@ def test_grid_tells_modes_apart(case):
     for a, b in itertools.product(range(-9, 10), repeat=2):
         k = tuple(a * x + b * y for x, y in zip(vectors[0], vectors[1]))
         if norm.of(k) < grid.reach:
-            assert list(grid.index(k)) in q.tolist()
-            assert list(grid.numbers(k)) == m[q.tolist().index(list(grid.index(k)))].tolist()
+            place, = grid.index(np.array([k])).tolist()
+            assert list(grid.numbers(k)) == m[q.tolist().index(place)].tolist()
     # and the least vector that the grid takes for 0 is twice as long as it reaches
     assert 2 * grid.reach == min(norm.of(k) for k in itertools.product(range(-160, 161), repeat=n)
                                  if any(k) and _on(grid, k))
@@ -121,10 +125,10 @@ def test_grid_tells_modes_apart(case):
 
 def _on(grid, k):
     try:
-        q = grid.index(k)
+        q, = grid.index(np.array([k]))
     except ValueError:
         return False
-    return q[0] % grid.shape[0] == 0 == q[1] % grid.shape[1]
+    return bool(q[0] % grid.shape[0] == 0 == q[1] % grid.shape[1])
 
 
 def test_modes_of_one_column_of_the_grid_are_told_apart():
@@ -134,7 +138,8 @@ def test_modes_of_one_column_of_the_grid_are_told_apart():
                         (7, 7): ((3, 1 << 40, 1 << 41, 1 << 38),),
                         (9, 9): ((1 << 38, -(1 << 40), 1 << 37, 7),)})
     fine, grid = Fine(torus, 1, 128), Grid(CROSS, wave_vectors(torus), (128, 16))
-    assert len({place[1] for place in grid.places((8, 8))}) == 1
+    q = grid.index(np.array([(8, 8)]))
+    assert (grid.places(q)[:, 1] == grid.places(-q)[:, 1]).all()
     truth, found = fine.coefficients(fine.residual()), residual(torus, grid, 100)
     for k, values in zip(found.k.tolist(), found.values):
         if max(map(abs, k)) < 20:
@@ -174,6 +179,67 @@ def test_residual_is_that_of_sums(case, degree):
     assert wider > RHO and (radius > 1) == bool(degree)
 
 
+@pytest.mark.parametrize("points", [1, 2, 4, 8, 32, 128])
+def test_a_line_of_points_is_transformed_as_a_matrix(points):
+    """Of rank 1: values of a few modes, summed by hand, and back."""
+    grid, chance = Grid(CIRCLE_NORM, ((2,), (4,)), (1, points)), random.Random(3)
+    rows, size = grid.lines
+    assert rows * size == points and rows <= size <= 2 * rows
+    wanted = {q: complex(chance.gauss(0, 1), chance.gauss(0, 1)) for q in range(points)}
+    places = grid.places(np.array([(0, q) for q in wanted])).tolist()
+    columns = {(q1, 0): [acb(0)] * rows for q1 in range(size)}
+    for (q0, q1), c in zip(places, wanted.values()):
+        columns[q1, 0][q0] = acb(c)
+    with precision(80):
+        found = list(values(columns, grid))
+        for j0, (line,) in enumerate(found):
+            for j1, value in enumerate(line):
+                assert complex(value) == pytest.approx(sum(
+                    c * np.exp(-2j * np.pi * (q * (j0 + rows * j1) % points) / points)
+                    for q, c in wanted.items()), abs=1e-12)
+        back = {(q1, q0): c for q1, _, line in coefficients(iter(found), grid, range(size))
+                for q0, c in enumerate(line)}
+        for (q0, q1), c in zip(places, wanted.values()):
+            assert abs(back[q1, q0] - c) < 1e-18 and float(back[q1, q0].abs_upper()) < 10
+
+
+@pytest.mark.parametrize("case", range(len(CASES)))
+def test_short_balls_enclose_what_long_ones_show(case):
+    """In their radii: with 20 bits the upper bounds of all |E_k| are above what they are."""
+    potential, norm, shape = CASES[case]
+    torus = some_torus(potential)
+    short, long = (residual(torus, Grid(norm, wave_vectors(torus), shape), bits)
+                   for bits in (20, 150))
+    exact = np.sqrt((abs(long.values) ** 2).sum(1))
+    assert (short.sizes.size >= exact).all() and (short.sizes.size < exact + 1e-3).all()
+    assert (abs(short.values - long.values) > 1e-9).any()
+
+
+@pytest.mark.parametrize("what", ["residual", "inverse"])
+@pytest.mark.parametrize("case", [0, 1])
+def test_memory_is_what_is_said(case, what):
+    """Python's own, of a grid that is full of modes; of the digits of balls above 128 bits there is
+    no account here, and they are in what is said."""
+    potential, norm, _ = CASES[case]
+    shape = (64, 32) if potential.dimension == 2 else (1, 2048)
+    waves = tuple(wave[:potential.dimension] for wave in potential.waves)
+    q, m = (grid := Grid(norm, waves, shape)).inside
+    modes = {tuple(k): ((1,) * 2 * potential.dimension,) for k in frame_modes(grid, m).tolist()
+             if tuple(k) > (0,) * potential.dimension}
+    torus = Torus(potential, None, read_rotation(("golden", "T49")[case]), 90, modes)
+    tracemalloc.start()
+    try:
+        if what == "residual":
+            residual(torus, grid, 120)
+        else:
+            Inverse(torus, norm, shape)
+        most = tracemalloc.get_traced_memory()[1]
+    finally:
+        tracemalloc.stop()
+    bound = BYTES if what == "residual" else INVERTING
+    assert bound / 3 < most / grid.points < bound
+
+
 @pytest.mark.parametrize("case", range(len(CASES)))
 def test_what_a_coarse_grid_does_not_see_is_bounded(case):
     potential, norm, shape = CASES[case]
@@ -182,8 +248,8 @@ def test_what_a_coarse_grid_does_not_see_is_bounded(case):
     exact = fine.norm(fine.residual(), norm, RHO)
     for shape in (1, 8), (1, 16), (8, 8), (16, 8):
         grid = Grid(norm, wave_vectors(torus), shape)
-        if (shape[0] == 1) != (len(grid.basis) == 1) or not all(
-                grid.within(k, grid.reach) for k in torus.modes):
+        if (shape[0] == 1) != (len(grid.basis) == 1) or not grid.within(
+                grid.all_numbers(torus.vectors), grid.reach).all():
             continue
         tail, *_ = Phases(torus, norm).best_tail(grid, RHO)
         assert residual(torus, grid, 80).norm_at(RHO, tail) >= exact * (1 - 1e-9)
