@@ -98,8 +98,9 @@ def _prove_parser(commands):
     p.add_argument("--margin", type=_positive, metavar="X", help="find a torus whose residual is X "
                    "times smaller than the theorem needs, about (default 100)")
     p.add_argument("--points", type=whole_number(16, MOST_POINTS), metavar="N",
-                   help="points of the grid on which the torus is looked for, at most (default "
-                        "2097152)")
+                   help="points of the grid on which the torus is looked for in floating-point "
+                        "numbers, at most (default 2097152); those on which it is then refined "
+                        "and proved are limited by memory alone")
     p.add_argument("--jobs", type=whole_number(1), metavar="N",
                    help="prove N pieces of a range at a time, in processes (default 1)")
     p.add_argument("--memory", type=_positive, metavar="GB", help="what the proof may take, in GB "

@@ -13,7 +13,7 @@ from typing import Callable, List, NamedTuple, Optional, Sequence, Tuple, Union
 import numpy as np
 
 from ..model.potential import FourierSum
-from .effort import BYTES, SOLVING, free_memory, some
+from .effort import REFINING_BYTES, SOLVING, free_memory, some
 from .newton import Frame, Mesh, Real
 from .rotation import Rotation
 from .torus import Torus, decay
@@ -27,7 +27,7 @@ ENOUGH = 1e-9               # the least coefficients that count on the way
 ASPECTS = 1.0, 0.25, 0.4, 0.6, 1.6, 2.5, 4.0, 6.0   # of rates of decay in two directions
 ITERATIONS = 9              # of Newton's method
 USEFUL, STALLED = 1e-7, 1e-12   # errors where the method stops: more modes are needed, or not
-WIDE = 2                    # steps of it in wide numbers
+WIDE = 4                    # steps of it in wide numbers, at most
 ENLARGED = 8                # numbers of modes that are tried
 HISTORY = 4                 # tori from which the next one is extrapolated
 TOO_LARGE = "too large"
@@ -151,20 +151,23 @@ class Way:
         """The torus at the end of the way on another mesh, of the modes `keep`, more accurate: of
         wide numbers."""
         u = found.mesh.moved(found.u, mesh).astype(np.clongdouble)
-        noise = mesh.noise(found.amplitude)
+        noise, before = mesh.noise(found.amplitude), inf
         for _ in range(WIDE):
             error = mesh.error(u, found.amplitude)
             error[abs(error) < noise] = 0
-            u = (u + mesh.correction(u, error)) * keep
+            size = float(abs(error).sum())
+            if not size < before / 2:
+                break
+            before, u = size, (u + mesh.correction(u, error)) * keep
         return self._measured(1.0, mesh, u, 0.0)
 
     def check_cost(self, points: int) -> None:
         """NotFound: balls on a grid of so many points take more memory than is free."""
         free = free_memory() * 3 // 4
-        if points * BYTES > free:
+        if points * REFINING_BYTES > free:
             raise NotFound("the torus is seen, but to refine it takes a grid of %d points and %.3g "
                            "GB of memory, and %.3g GB may be used" % (
-                               points, points * BYTES / 1e9, free / 1e9),
+                               points, points * REFINING_BYTES / 1e9, free / 1e9),
                            1.0, [float(p) for p in self.last])
 
     def _measured(self, part, mesh, u, enough=ENOUGH):
@@ -209,10 +212,10 @@ class Way:
         text = "no torus of this rotation %s was found for the amplitudes asked for: the last is " \
             "at %s, on a grid of %d points" % (
                 "vector" if self.potential.dimension > 1 else "number", at, last.mesh.points)
-        if too_large:
-            text += "; farther on it needs more than the %d points that are allowed" \
+        if more := too_large or end >= 1 and last.mesh.points >= self.points >> 2:
+            text += "; farther on it needs more than the %d points that are allowed (--points)" \
                 % self.points
-        if guess and end < 2:
+        if guess and end < (1 if more else 2):
             text += "; the rate at which its coefficients decay would be 0 near %s" % guess
         return NotFound(text, last.part, [float(p) for p in self.amplitude(last.part)])
 

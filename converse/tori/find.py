@@ -10,9 +10,9 @@ from ..model.exact import Ends, short_text
 from ..model.potential import FourierSum
 from ..model.problem import Problem
 from .continuation import POINTS, Found, NotFound, Way, ellipse, newton
-from .effort import BALLS, REFINING, SINGLE, SOLVING, some
+from .effort import BALLS, REFINING, SINGLE, SOLVING, balls, some
 from .newton import Frame, Mesh, Real, default_frame
-from .refinement import MARGIN, Digits, digits_for, layers_for, plan, refined
+from .refinement import MARGIN, SPARE_BITS, Digits, digits_for, layers_for, plan, refined
 from .rotation import Rotation
 from .torus import Torus, decay, family
 
@@ -104,11 +104,13 @@ def _single(found, way, margin):
         before, digits = digits, digits_for(aim, found.mesh, margin)
         way.check_cost(digits.mesh.points)
         if before is None:
-            digits.add(digits.picked(found.mesh.moved(found.u * found.seen, digits.mesh))[None])
+            # With those below the noise: they belong to the errors of the others, and E does not
+            # feel both together.
+            digits.add(digits.picked(found.mesh.moved(found.u, digits.mesh))[None])
         else:
             digits.take(before)
         way.tell("refining a torus of %d modes%s" % (
-            len(digits.at), some(SINGLE * BALLS * digits.mesh.points)))
+            len(digits.at), some(SINGLE * balls(digits.mesh.points, digits.bits + SPARE_BITS))))
         torus, ratio = refined(digits, aim, way.potential, None, way.rotation,
                                lambda sigma: way.last, margin)
         if ratio <= max(1 / margin, min(LACKING / margin, SURE)):

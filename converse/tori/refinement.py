@@ -28,6 +28,7 @@ from .torus import NO_RANGE, Part, Torus
 MARGIN = 100.0              # of the theorem's inequality, that is aimed at
 TURNS = 5                   # in balls
 STEPS = 8                   # of Newton's method in each of them
+SPARE_BITS = 8              # of the balls, beyond those of the coefficients
 EDGE = 1.13                 # the error is computed for so many times the largest |k| of the plan
 ROOM = 0.9                  # a part of that is taken by the torus, from which the rest is left out
 
@@ -162,12 +163,17 @@ class Digits:
 
     def take(self, other: "Digits") -> None:
         """Takes the coefficients of another one, of the modes that both have."""
-        place = {k: i for i, k in enumerate(map(tuple, other.k.T.tolist()))}
-        pairs = [(i, place[k]) for i, k in enumerate(map(tuple, self.k.T.tolist())) if k in place]
-        mine, theirs = (list(each) for each in zip(*pairs))
+        shape = other.mesh.k.shape[1:]
+        numbers = np.full(other.mesh.k[0].size, -1)
+        numbers[other.at] = np.arange(len(other.at))
+        found = np.full(len(self.at), -1)
+        for sign in (1, -1):                        # one of k and -k is there
+            place, ok = other.mesh.index(sign * self.k)
+            there = numbers[np.ravel_multi_index(place, shape)]
+            found = np.maximum(found, np.where(ok, there, -1))
         unit = self.bits - other.bits
-        taken = other.parts[..., theirs]
-        self.parts[..., mine] = taken << unit if unit > 0 else taken >> -unit
+        taken = other.parts[..., found[found >= 0]]
+        self.parts[..., found >= 0] = taken << unit if unit > 0 else taken >> -unit
 
     def doubles(self) -> np.ndarray:
         """The coefficients (degree + 1, n, modes)."""
@@ -226,12 +232,12 @@ class Digits:
     def torus(self, potential: FourierSum, part: Part, rotation: Rotation,
               piece: Ends = NO_RANGE) -> Torus:
         numbers = self.parts.transpose(3, 1, 2, 0).reshape(len(self.at), self.degree + 1, -1)
-        modes = {}
-        for k, series in sorted(zip(map(tuple, self.k.T.tolist()), numbers.tolist())):
+        order, modes = np.lexsort(self.k[::-1]), {}
+        for k, series in zip(map(tuple, self.k.T[order].tolist()), map(list, numbers[order])):
             while series and not any(series[-1]):
                 series.pop()
             if series:
-                modes[k] = tuple(map(tuple, series))
+                modes[k] = tuple(tuple(each) for each in series)
         return Torus(potential, part, rotation, self.bits, modes, piece)
 
 
@@ -253,7 +259,7 @@ def refined(digits: Digits, plan: Plan, potential: FourierSum, part: Part, rotat
     enough = plan.needed / 2 / margin
     for _ in range(TURNS):
         result = residual(digits.torus(potential, part, rotation, piece), grid,
-                          max(64, digits.bits))
+                          max(64, digits.bits + SPARE_BITS))
         place, ok = mesh.index(result.k.T)
         spot = (slice(None), *(x[ok] for x in place))
         error = np.zeros((layers, len(mesh.k), *mesh.k.shape[1:]), complex)
@@ -314,8 +320,11 @@ def layers_for(degree: int) -> int:
 
 
 def digits_for(plan: Plan, like: Mesh, margin: float, degree: Optional[int] = None) -> Digits:
-    """Room for the coefficients that the plan asks for."""
-    mesh = plan.mesh(like, degree is None)
+    """Room for the coefficients that the plan asks for, with so many bits that what is cut off them
+    makes up less than needed/margin/16 of ||E||_rho."""
+    mesh = plan.mesh(like, real=degree is None)
     keep = plan.keep(mesh)
-    bits = ceil(log2(margin / plan.needed) + log2(keep.sum()) + 16)
-    return Digits(mesh, keep, bits, degree or 0)
+    degree = degree or 0
+    weights = (degree + 1) * np.exp(np.minimum(plan.rho * plan.length(mesh)[keep], 600))
+    bits = ceil(log2(margin / plan.needed) + log2(max(float(weights.sum()), 1)) + 8)
+    return Digits(mesh, keep, bits, degree)

@@ -1,6 +1,7 @@
 """Tori that are found, without proof: they are invariant to many digits, whatever the potential."""
 
 import re
+import sys
 from fractions import Fraction
 
 import mpmath
@@ -132,6 +133,28 @@ def test_a_grid_that_is_too_small_is_said():
         find(Problem("0.9", 0, 0), GOLDEN, points=256)
 
 
+def test_the_decay_is_told_only_if_it_ends_before():
+    with pytest.raises(NotFound, match=r"allowed \(--points\)$"):
+        find(Problem("0.97", 0, 0), GOLDEN, points=1 << 12)
+    with pytest.raises(NotFound, match=r"allowed \(--points\); the rate .* would be 0 near 0.97"):
+        find(Problem("0.98", 0, 0), GOLDEN, points=1 << 15)
+
+
+def test_refinement_begins_with_what_is_below_the_noise(monkeypatch):
+    """It belongs to the errors of the other coefficients: without it E is 100 times larger here."""
+    begun = []
+
+    def refined(digits, *_):
+        u = digits.mesh.spread(digits.k, digits.doubles()[0])
+        begun.append(abs(digits.mesh.error(u, np.array([0.965]))).sum())
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(sys.modules["converse.tori.find"], "refined", refined)
+    with pytest.raises(KeyboardInterrupt):
+        find(Problem("0.965", 0, 0), GOLDEN)
+    assert begun[0] < 1e-13
+
+
 def test_what_does_not_go_together_is_refused():
     with pytest.raises(TypeError, match=r"read_rotation\('golden'\)"):
         find(Problem("0.5", 0, 0), "golden")
@@ -244,7 +267,7 @@ def test_what_is_left_out_of_a_torus_is_about_what_it_may_be():
 
 def test_a_grid_that_memory_does_not_hold_is_refused(monkeypatch):
     monkeypatch.setattr(continuation, "free_memory", lambda: 10 ** 5)
-    with pytest.raises(NotFound, match="takes a grid of 1024 points and 0.000256 GB of memory"):
+    with pytest.raises(NotFound, match="takes a grid of 1024 points and 0.000768 GB of memory"):
         find(Problem("0.9", 0, 0), GOLDEN)
 
 
