@@ -95,7 +95,7 @@ def test_a_start_from_a_certificate(run, tmp_path):
 
 @pytest.mark.parametrize("arguments,words", [
     (["--rotation", "golden", "-p", "24"], "or balls of 24 bits are too few"),
-    (["--rotation", "golden", "--grid", "536870912", "--memory", "1"], "134 GB of memory"),
+    (["--rotation", "golden", "--grid", "536870912", "--memory", "1"], "188 GB of memory"),
     (["--rotation", "golden", "--memory", "1e-6"], "memory"),
     (["--rotation", "golden", "--rho", "10"], "inverse"),
 ])
