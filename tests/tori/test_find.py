@@ -14,7 +14,7 @@ from converse.tori.continuation import Way
 from converse.tori.divisors import Norm
 from converse.tori.find import NotFound, find, series_rate
 from converse.tori.newton import Mesh, default_frame, triangular
-from converse.tori.refinement import Digits, Plan
+from converse.tori.refinement import Digits, Plan, digits_for
 from converse.tori.rotation import read_rotation
 from converse.tori.torus import family
 
@@ -314,6 +314,16 @@ def test_pieces_of_a_range(problem, rotation, count):
                 assert torus.J(theta, float(s)) == pytest.approx(alone.J(theta), abs=1e-7)
     with pytest.raises(ValueError, match="outside"):
         pieces[0].x(theta, 1.5)
+
+
+def test_rounded_coefficients_leave_what_the_theorem_needs():
+    """Those that count most, at the edge of a wide strip, too."""
+    potential, _ = family(Problem("0.8", 0, 0))
+    like = Mesh(potential, GOLDEN, default_frame(potential), (8,))
+    aim = Plan(Norm(((1,),), (Fraction(1),)), np.array([1.0]), 300, 0.1, 1e-20, 0.3)
+    digits = digits_for(aim, like, 100)
+    rounding = 2.0 ** -digits.bits * np.exp(aim.rho * aim.length(digits.mesh)[digits.keep]).sum()
+    assert rounding < aim.needed / 100 / 200
 
 
 def test_a_range_that_goes_too_far():
