@@ -27,6 +27,7 @@ CLOSE = 1 / 200             # |I - L M| that is close enough
 WIDTHS = [1.25 ** -j for j in range(20)]        # of the rate of decay: the rho that are tried
 ALPHAS = tuple(Fraction(a, 2) for a in (2, 3, 4, 5, 6, 8, 10, 12, 16))      # ratios of weights
 MOST_BITS, MOST_LAYERS = 4000, 1024
+SPARE = 1.03                # a grid reaches so many times as far as the modes, at least
 HUGE = 1 << 30              # above the components of modes and of coefficients
 # A torus whose residual is so many times larger than needed, at most, is found more accurately,
 # with a margin so many times larger.
@@ -462,20 +463,25 @@ def best_shape(norm: Norm, waves: Sequence[Tuple[int, ...]], points: int) -> Tup
 
 
 def _norm(torus):
-    """A norm in which the modes are few and divisors are large.  The width that suits a torus whose
-    modes end at K is (4 tau + 1)/K about, and the loss of the first step a quarter of it: of some
-    ratios of weights the one with the least c(2/K) is taken."""
+    """A norm in which the modes need a small grid and divisors are large.  The width that suits a
+    torus whose modes end at K is (4 tau + 1)/K about, and the loss of the first step a quarter of
+    it: of some ratios of weights the one with the least product of c(2/K) and the points of a grid
+    that holds the modes is taken."""
     if torus.dimension == 1:
         return Norm(((1,),), (Fraction(1),))
     from .newton import default_frame
     frame = default_frame(torus.potential)
-    basis = lattice_basis(wave_vectors(torus))
+    waves = wave_vectors(torus)
+    basis = lattice_basis(waves)
     best = None
     for a, b in [(1, r) for r in ALPHAS] + [(r, 1) for r in ALPHAS[1:]]:
         norm = Norm(frame, (Fraction(a), Fraction(b)))
-        delta = Fraction(2 / _distances(torus, norm).max(initial=1)).limit_denominator(10 ** 6)
+        far, points = _distances(torus, norm).max(initial=1), 16
+        while float(Grid(norm, waves, best_shape(norm, waves, points)).reach) < SPARE * far:
+            points *= 2
         try:
-            cost = float(Divisors(torus.rotation, norm, basis, 100).c(delta))
+            cost = points * float(Divisors(torus.rotation, norm, basis, 100).c(
+                Fraction(2 / far).limit_denominator(10 ** 6)))
         except ValueError:
             continue
         if best is None or cost < best[0]:
