@@ -27,7 +27,7 @@ def proving(torus: Torus) -> float:
     """Seconds.  The inverse is tried on smaller grids before, which takes as long again."""
     each, part = GRIDS[torus.dimension]
     points = 1 << max(0, int(each * len(torus.modes)) - 1).bit_length()
-    layers = 1 if torus.part is None else 2 << torus.degree.bit_length()
+    layers = 1 if torus.part is None else 1 << torus.degree.bit_length()
     return layers * (balls(points, torus.bits) + 2 * INVERSE * points * part)
 
 

@@ -1,7 +1,7 @@
 """Finds invariant tori, without proof: for one potential, or for all potentials of a range."""
 
 from fractions import Fraction
-from math import ceil, log
+from math import ceil, exp, inf, log, log2
 from typing import Callable, List, Optional, Tuple, Union
 
 import numpy as np
@@ -20,11 +20,12 @@ __all__ = ["NotFound", "find"]
 
 ROUNDS = 3                  # numbers of modes that are tried
 LACKING, SURE = 4.0, 0.05   # of the margin may lack so much, if the error is so small a part
-MOST_DEGREE = 24            # in sigma
+DEGREE, MOST_DEGREE = 20, 24            # in sigma
 LEAST_DEGREE = 4
 LAYERS = 32                 # points of the circle of sigma, half of which are computed
-LARGEST = 1 << 22           # points of the mesh times degree, where degrees may be chosen
+LARGEST = 1 << 23           # points of the mesh times degree, where degrees may be chosen
 NARROWEST = 1e-3            # piece, of s
+ALL = 0.93                  # of what is left of a range: then a piece takes the rest, too
 MOST_MARGIN = 1e100         # coefficients times 2^bits are doubles on their way to integers
 
 
@@ -126,45 +127,91 @@ class _Pieces:
     the theorem needs.
 
     Its coefficients follow, by Cauchy's formula, from the tori at complex amplitudes, on the circle
-    that has the piece as its diameter.  On a piece that comes too near to the end of the tori they
-    decay too slowly, or Newton's method fails: it is cut in half."""
+    that has the piece as its diameter.  If the tori end at s = e, those of sigma^j fall about as
+    r^j, r the half of the piece's length over the distance of its middle from e.  So a piece is
+    made as long as the degree wanted permits.  Where e was guessed too far away, they decay too
+    slowly, or Newton's method fails: a shorter piece is tried.
+
+    end -- e, about, beyond 1 or beyond -1; infinity: far away"""
 
     def __init__(self, potential: FourierSum, part: Tuple[Fraction, ...], rotation: Rotation,
                  way: Callable[[np.ndarray, np.ndarray], Way], margin: float,
                  tell: Callable[[str], None]) -> None:
         self.potential, self.part, self.rotation = potential, part, rotation
         self.way, self.margin, self.tell = way, margin, tell
+        self.end = inf
 
     def amplitude(self, s: Fraction) -> np.ndarray:
         return _wide([p + s * q for p, q in zip(self.potential.amplitude, self.part)])
 
     def cover(self, found: Found) -> List[Torus]:
         """The pieces from s = -1, whose torus this is, to 1."""
-        tori: List[Torus] = []
-        rest = [(Fraction(-1), Fraction(1))]
-        while rest:
-            low, high = rest.pop()
-            middle = (low + high) / 2
-            ends = [found]
-            for begin, end in ((low, middle), (middle, high)):
-                way = self.way(ends[-1].amplitude, self.amplitude(end))
-                try:
-                    ends.append(way.follow(ends[-1]))
-                except NotFound as error:
-                    s = float(begin) + error.reached * float(end - begin)
-                    raise NotFound(str(error), (s + 1) / 2, error.amplitude) from None
-            torus = self._torus((low, high), ends)
+        low, longest, tori = Fraction(-1), Fraction(2), []
+        middle = self._followed(found, low, Fraction(0))
+        last = self._followed(middle, Fraction(0), Fraction(1))
+        at = [float(np.prod(each.rates)) ** (1 / len(each.rates))
+              for each in (found, middle, last)]
+        if at[2] < at[1]:               # as if rates of decay fell along a line
+            self.end = 1 + at[2] / (at[1] - at[2])
+        elif at[0] < at[1]:
+            self.end = -1 - at[0] / (at[1] - at[0])
+        while low < 1:
+            high = min(low + min(longest, self._length(low, found, last)), Fraction(1))
+            middle = self._followed(found, low, (low + high) / 2)
+            ends = [found, middle, last if high == 1 else self._followed(
+                middle, (low + high) / 2, high)]
+            guess, torus = self.end, self._torus((low, high), ends)
             if torus is not None:
                 tori.append(torus)
-                found = ends[-1]
+                low, found, longest = high, ends[-1], Fraction(2)
             elif high - low < 2 * NARROWEST:
                 raise NotFound("no torus that is a polynomial in the parameter was found on a "
                                "piece of the range, however short, at %s" % ", ".join(
-                                   "%.6g" % float(p) for p in self.amplitude(middle)),
+                                   "%.6g" % float(p) for p in self.amplitude((low + high) / 2)),
                                float(low + 1) / 2, [float(p) for p in self.amplitude(low)])
-            else:
-                rest += [(middle, high), (low, middle)]
+            else:                       # by less, if it is known now where the tori end
+                longest = (high - low) * (Fraction(1, 2) if self.end == guess else Fraction(7, 8))
         return tori
+
+    def _followed(self, found: Found, begin: Fraction, end: Fraction) -> Found:
+        """The torus at s = end, from that at s = begin."""
+        return self._placed(begin, end, lambda way: way.follow(found))
+
+    def _placed(self, begin, end, call):
+        """What a call does with the way from s = begin to s = end."""
+        try:
+            return call(self.way(self.amplitude(begin), self.amplitude(end)))
+        except NotFound as error:
+            s = float(begin) + error.reached * float(end - begin)
+            raise NotFound(str(error), (s + 1) / 2, error.amplitude) from None
+
+    def _length(self, low: Fraction, found: Found, last: Found) -> Fraction:
+        """Of the piece from `low` on, whose torus is found; `last` is that at s = 1.  Between both,
+        what the theorem needs and the points of the mesh are taken for powers of the distance from
+        the end."""
+        ends = []
+        for each in (found, last):
+            aim = plan(each, self.margin)
+            ends.append((log(self.margin / aim.needed), log(aim.mesh(each.mesh).points)))
+        begin, rest = float(low), 1 - float(low)
+        gap = abs(self.end - begin)
+
+        def is_short(length):
+            part = length / rest
+            if gap < inf:
+                part = log(gap / abs(self.end - begin - length)) / log(gap / abs(self.end - 1))
+            digits, points = ((1 - part) * x + part * y for x, y in zip(*ends))
+            degree = min(DEGREE, max(LEAST_DEGREE, LARGEST / exp(points)))
+            ratio = 2 * abs(self.end - begin - length / 2) / length
+            return length <= rest and degree * log(ratio) >= digits
+
+        length, step = 0.0, rest
+        while step > NARROWEST:
+            length, step = length + step * is_short(length + step), step / 2
+            if length > ALL * rest:
+                return 1 - low
+        unit = 32 << max(0, ceil(-log2(max(length, NARROWEST))))
+        return Fraction(ceil(max(length, NARROWEST) * unit), unit)
 
     def _torus(self, piece: Ends, ends: List[Found]) -> Optional[Torus]:
         """The torus of a piece, from those at its ends and in its middle; None: it is too long."""
@@ -176,11 +223,16 @@ class _Pieces:
         source, c = series
         weight = np.exp(aim.rho * aim.length(source.mesh).ravel()[source.at])
         sizes = (np.sqrt((abs(c) ** 2).sum(1)) * weight).sum(1)
-        degree = max(LEAST_DEGREE, ceil(
-            log(sizes.max() * 10 * self.margin / aim.needed) / series_rate(sizes)))
+        rate, (low, high) = series_rate(sizes), map(float, piece)
+        side = -1 if self.end < 0 else 1
+        self.end = side * max(1 + NARROWEST, side * (low + high) / 2
+                              + (high - low) / 2 * exp(min(rate, 50)))
+        degree = max(LEAST_DEGREE, ceil(log(sizes.max() * 10 * self.margin / aim.needed) / rate))
         digits = digits_for(aim, worst.mesh, self.margin, degree)
         if degree > max(LEAST_DEGREE, min(MOST_DEGREE, LARGEST // digits.mesh.points)):
             return None
+        points = digits.mesh.points * layers_for(degree)
+        self._placed(*piece, lambda way: way.check_cost(points))
         moved = np.zeros((degree + 1, *digits.k.shape), c.dtype)
         for j, each in enumerate(c[:degree + 1]):
             mesh_wide = np.zeros((len(each), source.mesh.points), c.dtype)
@@ -190,10 +242,10 @@ class _Pieces:
         digits.add(moved)
         self.tell("refining the tori of %s, %d modes of degree %d%s" % (
             _range_text(piece), len(digits.at), degree,
-            some(REFINING * BALLS * digits.mesh.points * layers_for(degree))))
-        low, middle, high = (found.amplitude for found in ends)
+            some(REFINING * BALLS * points)))
+        middle, half = ends[1].amplitude, (ends[-1].amplitude - ends[0].amplitude) / 2
         torus, ratio = refined(digits, aim, self.potential, self.part, self.rotation,
-                               lambda sigma: middle + sigma * (high - low) / 2, self.margin, piece)
+                               lambda sigma: middle + sigma * half, self.margin, piece)
         return torus if ratio <= 10 / self.margin else None
 
     def _series(self, piece, ends, worst):

@@ -347,7 +347,7 @@ class _Attempt:
     def _plan(self, widths):
         """(Inverse, the grid of the residual, about the best width, {width: needed residual})."""
         points, known = 64, {}
-        layers = 1 if not self.phases.varies else 4 << self.torus.degree.bit_length()
+        layers = self._inverse_layers()
         while 2 * float(self._at(points, 1).reach) * self.rate < 12:
             points *= 2
         while True:
@@ -368,10 +368,24 @@ class _Attempt:
                 if constants[rho].eta < CLOSE or points * layers > grid.points:
                     return inverse, grid, rho, at
             elif 4 * inverse.cut > 3 * self.far.max(initial=1) + 40:
+                if layers <= 2 * self.torus.degree:
+                    layers *= 2
+                    continue
                 raise NotProved("no approximate inverse of I + Du is good enough for the theorem "
                                 "to hold with any residual; find a torus with more points, or for "
                                 "smaller amplitudes")
             points *= 2
+
+    def _inverse_layers(self):
+        """Points of sigma for the inverse of L.  It need not be more than close, so its powers may
+        end where the rest of those of Du is small, in a strip as wide as suits the torus."""
+        if not self.phases.varies:
+            return 1
+        width = (4 * self.torus.dimension + 1) / self.far.max(initial=1)
+        weights = np.linalg.norm(self.torus.vectors, axis=1) * np.exp(width * self.far)
+        sizes = 2 * self.torus.lengths @ weights
+        beyond = sizes.sum() - np.cumsum(sizes)         # of the powers above each
+        return 2 << int(np.argmax(beyond < CLOSE / 20)).bit_length()
 
     def _grid(self, at):
         """The smallest grid that sees enough, and the best width with it; None if there is no
@@ -405,7 +419,7 @@ class _Attempt:
         """Points of sigma, of which so many are needed with any grid of the angles."""
         if not self.phases.varies:
             return 1
-        layers = 2 << self.torus.degree.bit_length()
+        layers = max(2, 1 << self.torus.degree.bit_length())
         while layers < MOST_LAYERS and not any(
                 self.phases.sigma_tail(layers, rho)[0] < needed / AIM
                 for rho, needed in at.items()):

@@ -278,7 +278,8 @@ def refined(digits: Digits, plan: Plan, potential: FourierSum, part: Part, rotat
 
 class _Left(NamedTuple):
     """v -- a correction of u, None for none
-    size -- about the norm of E(u + v), of which `rest` is of modes that the torus cannot have"""
+    size -- about the norm of E(u + v), of which `rest` is of modes and powers of sigma that the
+        torus cannot have"""
 
     v: Optional[np.ndarray]
     size: float
@@ -294,7 +295,7 @@ def _corrected(digits, error, weights, amplitudes, layers, enough):
     rest = weights * ~digits.keep
     v = None
     for _ in range(STEPS):
-        left, norms = [], []
+        left, norms, errors = [], [], []
         steps = repeat(None) if v is None else digits.on_circle(v, layers)
         for at, step, e, p in zip(digits.on_circle(u, layers), steps, error, amplitudes):
             if step is not None:
@@ -303,7 +304,14 @@ def _corrected(digits, error, weights, amplitudes, layers, enough):
             size = np.sqrt((abs(e) ** 2).sum(0))
             norms.append((float((size * weights).sum()), float((size * rest).sum())))
             left.append(mesh.correction(at.astype(complex), e))
-        found = _Left(v, *max(norms))
+            if layers > 1:
+                errors.append(e.astype(complex))
+        size, beyond = max(norms)
+        if layers > 1:
+            powers = digits.series(iter(errors), layers)[digits.degree + 1:]
+            beyond += 2 * float(np.sqrt((abs(powers) ** 2).sum(1)).sum(0)
+                                @ weights.ravel()[digits.at])
+        found = _Left(v, size, beyond)
         if not found.size < best.size:
             break
         stalled, best = found.size > best.size / 2, found
@@ -315,8 +323,9 @@ def _corrected(digits, error, weights, amplitudes, layers, enough):
 
 
 def layers_for(degree: int) -> int:
-    """How many points of the circle |sigma| = 1 are taken."""
-    return 2 << max(degree - 1, 0).bit_length()
+    """How many points of the circle |sigma| = 1 are taken: a power of two, so large that some
+    powers beyond the degree do not stand in the place of lower ones."""
+    return 1 << (degree + max(2, degree // 4) - 1).bit_length()
 
 
 def digits_for(plan: Plan, like: Mesh, margin: float, degree: Optional[int] = None) -> Digits:

@@ -108,6 +108,12 @@ class Torus:
                                  for re, im in zip(numbers[::2], numbers[1::2])]
         return found
 
+    @property
+    def lengths(self) -> np.ndarray:
+        """The |u_kj|_2 of sigma^j, in doubles, modes in the order of `vectors`: shape (degree + 1,
+        modes)."""
+        return np.linalg.norm(self._series, axis=2)
+
     def coefficients(self, s: float = 0) -> np.ndarray:
         """The u_k at a parameter s, in doubles, in the order of `vectors`: shape (modes, n)."""
         sigma = self.sigma(s)

@@ -9,12 +9,13 @@ import numpy as np
 import pytest
 
 from converse.model.problem import LINE, Problem
-from converse.tori import continuation
+from converse.tori import continuation, refinement
 from converse.tori.continuation import Way
 from converse.tori.divisors import Norm
-from converse.tori.find import NotFound, find, series_rate
+from converse.tori.find import MOST_DEGREE, NotFound, _Pieces, find, series_rate
 from converse.tori.newton import Mesh, default_frame, triangular
-from converse.tori.refinement import Digits, Plan, digits_for
+from converse.tori.refinement import Digits, Plan, digits_for, layers_for
+from converse.tori.residual import residual
 from converse.tori.rotation import read_rotation
 from converse.tori.torus import family
 
@@ -269,6 +270,9 @@ def test_a_grid_that_memory_does_not_hold_is_refused(monkeypatch):
     monkeypatch.setattr(continuation, "free_memory", lambda: 10 ** 5)
     with pytest.raises(NotFound, match="takes a grid of 1024 points and 0.000768 GB of memory"):
         find(Problem("0.9", 0, 0), GOLDEN)
+    with pytest.raises(NotFound, match="takes a grid of .* points and") as caught:
+        find(Problem(("0.1", "0.5"), 0, 0), GOLDEN)
+    assert caught.value.reached == 1
 
 
 def test_more_modes_begin_with_the_coefficients_of_fewer():
@@ -314,6 +318,34 @@ def test_pieces_of_a_range(problem, rotation, count):
                 assert torus.J(theta, float(s)) == pytest.approx(alone.J(theta), abs=1e-7)
     with pytest.raises(ValueError, match="outside"):
         pieces[0].x(theta, 1.5)
+
+
+@pytest.mark.parametrize("ends", [("0.3", "0.85"), ("-0.85", "-0.3")])
+def test_pieces_are_as_long_as_their_degree_permits(ends, monkeypatch):
+    """On either side of the map without potential: no trial is lost, and no turn in balls."""
+    residuals, words = [], []
+    monkeypatch.setattr(refinement, "residual",
+                        lambda *given: residuals.append(given) or residual(*given))
+    pieces = find(Problem(ends, 0, 0), GOLDEN, progress=words.append)
+    assert len(pieces) == len(residuals) == 2
+    assert sum(word.startswith("looking for the tori of") for word in words) == 2
+    assert max(torus.degree for torus in pieces) in range(12, MOST_DEGREE + 1)
+
+
+def test_a_piece_that_is_too_long_is_cut(monkeypatch):
+    """If the end of the tori is thought to be far away."""
+    words = []
+    monkeypatch.setattr(_Pieces, "_length", lambda self, low, *_: 1 - low)
+    pieces = find(Problem(("0.3", "0.85"), 0, 0), GOLDEN, progress=words.append)
+    ends = [torus.piece for torus in pieces]
+    assert [ends[0][0], *(high for _, high in ends)] == [*(low for low, _ in ends), 1]
+    assert len(pieces) < sum(word.startswith("looking for the tori of") for word in words)
+
+
+@pytest.mark.parametrize("degree, layers", [(0, 2), (4, 8), (12, 16), (13, 16), (14, 32), (20, 32),
+                                            (24, 32), (26, 32), (27, 64)])
+def test_points_of_sigma_leave_room_for_powers_beyond_the_degree(degree, layers):
+    assert layers_for(degree) == layers
 
 
 def test_rounded_coefficients_leave_what_the_theorem_needs():

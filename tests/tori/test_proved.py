@@ -255,6 +255,22 @@ def test_a_range_is_proved(pieces):
         assert gap < 2 * (piece.distance + single.distance)
 
 
+def test_the_inverse_takes_few_powers_of_the_parameter(pieces, monkeypatch):
+    """And with more of them the constants are the same, to what they are needed."""
+    few, = prove(pieces).pieces
+    assert few.inverse_grid.layers <= few.grid.layers
+    monkeypatch.setattr(proved._Attempt, "_inverse_layers", lambda self: 64)
+    many, = prove(pieces).pieces
+    assert many.inverse_grid.layers == 64 and few.constants.near(
+        dataclasses.replace(many.constants, rho=few.rho))
+
+
+def test_an_inverse_with_too_few_powers_is_mended(pieces, monkeypatch):
+    monkeypatch.setattr(proved._Attempt, "_inverse_layers", lambda self: 2)
+    piece, = prove(pieces).pieces
+    assert piece.residual < piece.needed
+
+
 RANGE_DAMAGES = {
     "wider": lambda t: changed(t, part=tuple(p * Q(1001, 1000) for p in t.part)),
     "shifted": lambda t: potential(t, Q(101, 100)),
