@@ -295,17 +295,15 @@ def _corrected(digits, error, weights, amplitudes, layers, enough):
     rest = weights * ~digits.keep
     v = None
     for _ in range(STEPS):
-        left, norms, errors = [], [], []
+        errors, norms = [], []
         steps = repeat(None) if v is None else digits.on_circle(v, layers)
         for at, step, e, p in zip(digits.on_circle(u, layers), steps, error, amplitudes):
             if step is not None:
-                e = e + mesh.change(at.astype(step.dtype), step, p) * (weights > 0)
-                at = at + step
+                change = mesh.change(at.astype(step.dtype), step, p)
+                e = (e + change * (weights > 0)).astype(complex)
             size = np.sqrt((abs(e) ** 2).sum(0))
             norms.append((float((size * weights).sum()), float((size * rest).sum())))
-            left.append(mesh.correction(at.astype(complex), e))
-            if layers > 1:
-                errors.append(e.astype(complex))
+            errors.append(e)
         size, beyond = max(norms)
         if layers > 1:
             powers = digits.series(iter(errors), layers)[digits.degree + 1:]
@@ -317,7 +315,9 @@ def _corrected(digits, error, weights, amplitudes, layers, enough):
         stalled, best = found.size > best.size / 2, found
         if stalled or found.size - found.rest <= enough / 2:
             break
-        more = digits.series(iter(left), layers)[:digits.degree + 1]
+        now = digits.on_circle(u if v is None else (u + v).astype(complex), layers)
+        more = digits.series((mesh.correction(at, e) for at, e in zip(now, errors)),
+                             layers)[:digits.degree + 1]
         v = more.astype(np.clongdouble) if v is None else v + more
     return best
 
