@@ -266,6 +266,19 @@ def test_what_is_left_out_of_a_torus_is_about_what_it_may_be():
     assert said / 20 < norm() - before < said
 
 
+def test_a_torus_that_is_accurate_enough_is_not_corrected(monkeypatch):
+    potential, _ = family(Problem("0.8", 0, 0))
+    mesh = Mesh(potential, GOLDEN, default_frame(potential), (64,))
+    digits = Digits(mesh, mesh.inside & (abs(mesh.k).max(0) > 0), 60)
+    error = np.full((1, 1, *mesh.k.shape[1:]), 1e-9 + 0j)
+    calls, correction = [], Mesh.correction
+    monkeypatch.setattr(Mesh, "correction", lambda *given: calls.append(0) or correction(*given))
+    for enough, needed in ((1e-6, False), (1e-9, True)):
+        refinement._corrected(digits, error, np.ones(mesh.k.shape[1:]), [np.array([0.8])], 1,
+                              enough)
+        assert bool(calls) == needed
+
+
 def test_a_grid_that_memory_does_not_hold_is_refused(monkeypatch):
     monkeypatch.setattr(continuation, "free_memory", lambda: 10 ** 5)
     with pytest.raises(NotFound, match="takes a grid of 1024 points and 0.000768 GB of memory"):
