@@ -92,8 +92,8 @@ def _look(problem, depth, xstar, pool, seconds_left):
 
 
 def _shrinks(problem, xstar, pool, seconds_left):
-    """Does what is undecided become less with each DEEPER cuts?  If there are tori it does not: each
-    has a successor of any x*, and to cut prisms around these to LOOK_DEPTH may take minutes."""
+    """Does what is undecided become less with each DEEPER cuts?  If there are tori it does not:
+    each has a successor of any x*, and cuts around these to LOOK_DEPTH may take minutes."""
     volume = inf
     for cuts in range(LOOK_DEPTH - 3 * DEEPER, LOOK_DEPTH, DEEPER):
         grown = _surveys(pool, seconds_left, [_task(problem, xstar, cuts)], LOOK_LEAVES)

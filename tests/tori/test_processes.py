@@ -115,7 +115,6 @@ def test_a_longer_step_is_said_to_take_longer(pieces):
         assert proving(torus) == pytest.approx(layers * points * (12e-6 + 25e-6 / 2))
         assert proving(replace(torus, bits=129)) == pytest.approx(
             layers * points * (1.6 * 12e-6 + 25e-6 / 2))
-    assert proving(second) > proving(first)
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
