@@ -28,7 +28,6 @@ Notation scale1 := (scale1 prec).
 Notation scale2 := (scale2 prec).
 Notation product := (product prec).
 Notation product3 := (product3 prec).
-Notation square := (square prec).
 Variable K : limits.
 Hypothesis K_ok : limits_ok K.
 Notation range1 := (range1 prec (unit K)).
@@ -65,12 +64,11 @@ Let PB := mul P B.
 
 Definition with_1 : form1 := scale1 A h.
 Definition with_2 : form2 :=
-  add2 (scale2 (mul (ihalf K) PA) (square (xi s))) (product h alpha).
+  add2 (scale2 (mul (ihalf K) PA) (sq s)) (product h alpha).
 Definition with_3 : form3 :=
-  let sq := square (xi s) in
   let first := negate1 (add1 (scale1 (mul (ihalf K) P) alpha)
     (add1 (scale1 (mul (isixth K) PB) (xi s)) (scale1 (mul (ihalf K) A) h))) in
-  add3 (product3 first sq) (product3 h (product beta' (xi s))).
+  add3 (product3 first (sq s)) (product3 h (product beta' (xi s))).
 (* what D is multiplied with *)
 Definition turning : affine :=
   (PB, add1 (scale1 P beta') (add1 (negate1 (scale1 PA (xi s))) (scale1 B h))).
@@ -99,7 +97,7 @@ Definition wave_real (Y y nu mu : vec) (a : moving) : R :=
                       - mid_amp a * cos (angle (its a) Y))
   - amplitude (its a) * sin (angle (its a) y) * (along (its a) nu * along (its a) nu).
 
-Lemma wave_ok e Y l r s a n nu mi0 mi1 mu0 mu1 : cube e -> sees e Y l r s a ->
+Lemma wave_ok e Y l q r s a n nu mi0 mi1 mu0 mu1 : cube e -> sees e Y l q r s a ->
   cont_vec n nu -> cont_vec mi0 mu0 -> hold_vec e mi1 mu1 ->
   exists v1 v2 v3 c g, hold1 e (with_1 s n mi0) v1 /\ hold2 e (with_2 s n mi0 mi1) v2 /\
     hold3 e e (with_3 s n mi0 mi1) v3 /\ cont (left_over s n mi0 mi1) c /\
@@ -107,7 +105,7 @@ Lemma wave_ok e Y l r s a n nu mi0 mi1 mu0 mu1 : cube e -> sees e Y l r s a ->
     wave_real Y (plus Y (plus l r)) nu (plus mu0 mu1) a =
       v1 + v2 + v3 + c + g * (along (its a) l + along (its a) r).
 Proof.
-  intros C (Ha & Hw & Hsn & Hcs & Hps & Hpc & Hxi & Hsize & Hoff & Hz) Hn Hm0 Hm1.
+  intros C (Ha & Hw & Hsn & Hcs & Hps & Hpc & Hxi & Hsq & _ & Hsize & Hoff & Hz) Hn Hm0 Hm1.
   pose proof K_ok as (_ & _ & _ & _ & _ & _ & Khalf & Ksixth & _).
   assert (Hom := cont_sqr prec _ _ (cont_dir prec e _ a n nu Hw Hn)).
   assert (H0 := cont_dir prec e _ a mi0 mu0 Hw Hm0).
@@ -130,7 +128,6 @@ Proof.
     exact (hold_scale1 prec e _ _ _ _ (cont_neg _ _ Hsn) H1).
   set (A := p0 * cos theta - o * sin theta) in *. set (B := - (_ + _)) in *.
   set (al := cos theta * p1) in *. set (be := - sin theta * p1) in *.
-  assert (Hsq := hold_square prec e _ _ Hxi).
   destruct (cos2 z) as (t2 & T2 & E2), (sin3 z) as (t3 & T3 & E3), (cos4 z) as (t4 & T4 & E4),
     (sin5 z) as (t5 & T5 & E5).
   destruct K_ok as (_ & _ & Up2 & Up6 & Up24 & Up120 & _).
@@ -280,7 +277,7 @@ Qed.
 Lemma hold_nothing e : hold_affine e nothing 0.
 Proof. exists 0, 0. split; [exact cont_zero |]. split; [apply hold1_nil | ring]. Qed.
 
-Lemma waves_ok e Y l r n nu mi0 mi1 mu0 mu1 ss ws : cube e -> Forall2 (sees e Y l r) ss ws ->
+Lemma waves_ok e Y l q r n nu mi0 mi1 mu0 mu1 ss ws : cube e -> Forall2 (sees e Y l q r) ss ws ->
   cont_vec n nu -> cont_vec mi0 mu0 -> hold_vec e mi1 mu1 ->
   exists v1 v2 v3 c g0 g1,
   hold1 e (total [] add1 (fun s => with_1 s n mi0) ss) v1 /\
@@ -296,13 +293,13 @@ Proof.
   { exists 0, 0, 0, 0, 0, 0. repeat split; simpl;
       auto using hold1_nil, hold2_nil, hold3_nil, cont_zero, hold_nothing. ring. }
   destruct IH as (v1 & v2 & v3 & c & g0 & g1 & H1 & H2 & H3 & Hc & Hg0 & Hg1 & E).
-  destruct (wave_ok e Y l r s a n nu mi0 mi1 mu0 mu1 C Hs Hn Hm0 Hm1)
+  destruct (wave_ok e Y l q r s a n nu mi0 mi1 mu0 mu1 C Hs Hn Hm0 Hm1)
     as (w1 & w2 & w3 & x & g & J1 & J2 & J3 & Jc & Jg & E').
   exists (w1 + v1), (w2 + v2), (w3 + v3), (x + c), (IZR (k0 (its a)) * g + g0),
     (IZR (k1 (its a)) * g + g1).
   split; [now apply hold_add1 |]. split; [now apply hold_add2 |]. split; [now apply hold_add3 |].
   split; [now apply cont_add |].
-  destruct (k0_ok _ _ _ _ _ _ Hs) as (Ek0 & Hk0), (k1_ok _ _ _ _ _ _ Hs) as (Ek1 & Hk1).
+  destruct (k0_ok _ _ _ _ _ _ _ Hs) as (Ek0 & Hk0), (k1_ok _ _ _ _ _ _ _ Hs) as (Ek1 & Hk1).
   split; [| split].
   - apply (gather_step _ _ _ _ (hold_affine e)); auto using hold_plus_affine, hold_negate_affine.
     intros. now apply hold_scale_affine.
@@ -340,7 +337,7 @@ Proof.
          repeat split; auto using cont_zero, hold1_nil, hold2_nil, hold3_nil, hold_nothing;
          unfold dot; simpl; ring).
   inversion Hns as [| n' nu ns' nus' Hn Hns' E1 E2]. subst n' ns' nus. clear Hns.
-  destruct Lane as (Y & lx & r & E & Dn & Ey & ED & S & (HE0 & HE1) & (HB0 & HB1) & EDn & Lane).
+  destruct Lane as (Y & lx & q & r & E & Dn & Ey & ED & S & (HE0 & HE1) & (HB0 & HB1) & EDn & Lane).
   destruct (IH sites nus' y (next (map its ws) o y) D Dn Lane Hns') as
     (t0 & t1 & t2 & t3 & H & mu & T0 & T1 & T2 & T3 & (TH0 & TH1) & (TM0 & TM1) & TV & ET).
   { simpl in Length. lia. }
@@ -350,7 +347,7 @@ Proof.
   destruct (hold_centers_affine _ _ _ TH1) as (c1 & w1 & Hc1 & Hw1).
   assert (HM0 : hold_affine e (affine_centers (fst (on_D t))) (c0 + w0)) by now exists c0, w0.
   assert (HM1 : hold_affine e (affine_centers (snd (on_D t))) (c1 + w1)) by now exists c1, w1.
-  destruct (waves_ok e Y lx r n nu (fst (affine_centers (fst (on_D t))),
+  destruct (waves_ok e Y lx q r n nu (fst (affine_centers (fst (on_D t))),
     fst (affine_centers (snd (on_D t)))) (snd (affine_centers (fst (on_D t))),
     snd (affine_centers (snd (on_D t)))) (c0, c1) (w0, w1) (view s) ws C S Hn (conj Hc0 Hc1)
     (conj Hw0 Hw1)) as (v1 & v2 & v3 & x & g0 & g1 & V1 & V2 & V3 & Hx & G0 & G1 & EW).
@@ -403,10 +400,10 @@ Proof.
     unfold next_D in D0, D1. simpl in D0, D1. simpl in EW.
     assert (Dl0 : fst lx + fst r = fst D) by (now rewrite ED).
     assert (Dl1 : snd lx + snd r = snd D) by (now rewrite ED). rewrite Dl0, Dl1 in EW.
-    set (q := sum _ ws) in *.
+    set (push := sum _ ws) in *.
     replace (pull k0 ws Y y) with (fst Dn - 2 * fst D + fst Do - fst E) in EW by lra.
     replace (pull k1 ws Y y) with (snd Dn - 2 * snd D + snd Do - snd E) in EW by lra.
-    replace q with ((c0 + w0) * (fst Dn - 2 * fst D + fst Do - fst E)
+    replace push with ((c0 + w0) * (fst Dn - 2 * fst D + fst Do - fst E)
       + (c1 + w1) * (snd Dn - 2 * snd D + snd Do - snd E)
       - (v1 + v2 + v3 + x + g0 * fst D + g1 * snd D)) by lra.
     unfold dot. simpl. ring.

@@ -121,10 +121,11 @@ Proof. apply sincos_correct, make_constants_ok. Qed.
 
 (* ---- a leaf *)
 
-(* n is chosen boldly and cautiously in turn; orbits are as long as their cells are deep. *)
-Definition manner_of (cuts : nat) : manner :=
-  if Nat.even cuts then Manner (2 * cuts * cuts) one_float F.zero (center (rational prec (1 # 5)))
-  else Manner (2 * cuts * cuts) one_float (center (rational prec (3 # 10))) F.zero.
+(* Orbits may be as long as their cells are deep; n is chosen more and less cautiously in turn, as a
+   leaf is halved. *)
+Definition manner_of (cuts halved : nat) : manner :=
+  let '(c1, c2) := nth (halved mod 4) [(0, 1 # 5); (3 # 10, 0); (0, 1); (1, 0)]%Q (0, 0)%Q in
+  Manner (2 * cuts * cuts) one_float (center (rational prec c1)) (center (rational prec c2)).
 
 Fixpoint greatest (l : list F.type) (at_ : nat) (best : F.type * nat) : nat :=
   match l with
@@ -153,10 +154,10 @@ Definition cuts_of (c : cell) : list nat := map snd c.
 
 (* None if the cell, of a leaf, is excluded, else the axis along which to halve it. *)
 Definition attempt (rd : ready) (leaf c : cell) : option nat :=
-  match prism_bound prec exact sines (manner_of (list_sum (cuts_of c))) rd c with
-  | Some (i, blames) =>
-    if negative i then None
-    else Some (axis_of blames (zip Nat.sub (cuts_of c) (cuts_of leaf)))
+  let cuts := cuts_of c in
+  let halved := zip Nat.sub cuts (cuts_of leaf) in
+  match prism_bound prec exact sines (manner_of (list_sum cuts) (list_sum halved)) rd c with
+  | Some (i, blames) => if negative i then None else Some (axis_of blames halved)
   | None => Some (length c)
   end.
 

@@ -9,6 +9,21 @@ From Coq Require Import ZArith QArith Extraction.
 From Coq Require Import ExtrOcamlBasic ExtrOCamlFloats ExtrOCamlInt63.
 From Converse Require Import Tree Share Torus Reduce Check Doubles.
 
+(* The same operations, put where they are called, for OCaml to compile them there. *)
+Extract Inlined Constant PrimFloat.abs => "Float64.abs".
+Extract Inlined Constant PrimFloat.sqrt => "Float64.sqrt".
+Extract Inlined Constant PrimFloat.opp => "Float64.opp".
+Extract Inlined Constant PrimFloat.eqb => "Float64.eq".
+Extract Inlined Constant PrimFloat.ltb => "Float64.lt".
+Extract Inlined Constant PrimFloat.leb => "Float64.le".
+Extract Inlined Constant PrimFloat.compare => "Float64.compare".
+Extract Inlined Constant PrimFloat.mul => "Float64.mul".
+Extract Inlined Constant PrimFloat.add => "Float64.add".
+Extract Inlined Constant PrimFloat.sub => "Float64.sub".
+Extract Inlined Constant PrimFloat.div => "Float64.div".
+Extract Inlined Constant PrimFloat.next_up => "Float64.next_up".
+Extract Inlined Constant PrimFloat.next_down => "Float64.next_down".
+
 (* The functor's formats of numbers name real numbers, which no computation asks for. *)
 Extract Constant ClassicalDedekindReals.sig_forall_dec => "(fun _ -> assert false)".
 

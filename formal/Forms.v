@@ -201,6 +201,35 @@ Proof.
   - destruct H as (c & r & Hc & Hr & ->). simpl. auto using cont_add, cont_mul.
 Qed.
 
+(* The square of a symbol is not below zero. *)
+Fixpoint range2 (q : form2) : I.type :=
+  match q with
+  | (a :: row) :: q => add (add (mul a proper) (range1 row)) (range2 q)
+  | [] :: q => range2 q
+  | [] => I.zero
+  end.
+
+Lemma hold1_times x e l v : hold1 e l v -> hold1 (map (Rmult x) e) l (x * v).
+Proof.
+  revert l v. induction e as [| s e IH]; intros [| a l] v H; try easy; try (simpl in *; rewrite H; ring).
+  destruct H as (c & r & Hc & Hr & ->). exists c, (x * r). split; [exact Hc |].
+  split; [now apply IH | ring].
+Qed.
+
+Lemma cont_range2 e q v : cube e -> hold2 e q v -> cont (range2 q) v.
+Proof.
+  intros C. revert q v. induction C as [| s e Hs C IH]; intros [| row q] v H; try easy;
+    try (rewrite (hold2_none _ _ H); exact cont_zero).
+  destruct H as (c & r & Hc & Hr & ->). specialize (IH _ _ Hr). destruct row as [| a row].
+  { rewrite (hold1_none _ _ Hc), Rmult_0_l, Rplus_0_l. exact IH. }
+  destruct Hc as (x & y & Hx & Hy & ->). cbn [range2].
+  replace ((x * s + y) * s + r) with (x * (s * s) + s * y + r) by ring.
+  apply cont_add; [| exact IH]. apply cont_add.
+  - apply cont_mul; [exact Hx |]. apply proper_ok. nra.
+  - apply (cont_range1 (map (Rmult s) e)); [| now apply hold1_times].
+    apply Forall_map. revert C. apply Forall_impl. intros t Ht. nra.
+Qed.
+
 (* ---- the largest value over the cube *)
 
 Lemma cont_convex i x y z : cont i x -> cont i z -> x <= y <= z -> cont i y.

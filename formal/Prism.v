@@ -106,6 +106,11 @@ Definition placed (n : nat) (base : I.type) (side : I.type * I.type) (u0 u1 : I.
 (* ---- the choice of n, on floats: by the recursion d' = beta - 1/d from both ends *)
 
 Definition zero3 : symmetric := (F.zero, F.zero, F.zero).
+
+(* A lane's first site and the one before it. *)
+Definition begin (O X : plane) (P L : form1 * form1) (ro r : I.type * I.type) : state :=
+  State O X P L ([], []) ([], []) (F.zero, F.zero) (F.zero, F.zero) ro r r zero3 zero3.
+
 Definition add3' (a b : symmetric) : symmetric :=
   let '(a0, a1, a2) := a in let '(b0, b1, b2) := b in (fadd a0 b0, fadd a1 b1, fadd a2 b2).
 Definition sub3 (a b : symmetric) : symmetric :=
@@ -258,11 +263,10 @@ Definition prism_bound (h : manner) (rd : ready) (c : cell) : option (I.type * l
     let ws := map (wave_in ts) (plain rd) in
     let '(x, l0, r0) := placed (length ts) (fst (base rd)) (fst (sides rd)) u0 u1 in
     let '(y, l1, r1) := placed (length ts) (snd (base rd)) (snd (sides rd)) u0 u1 in
-    let none := ([], []) in
     let sa := follow prec K sincos (longest h) (limit h) ws
-      (State (X0 rd) (x, y) none (l0, l1) (rest_0 rd) (r0, r1) (r0, r1) zero3 zero3) in
+      (begin (X0 rd) (x, y) ([], []) (l0, l1) (rest_0 rd) (r0, r1)) in
     let sb := follow prec K sincos (longest h) (limit h) ws
-      (State (x, y) (X0 rd) (l0, l1) none (r0, r1) (rest_0 rd) (rest_0 rd) zero3 zero3) in
+      (begin (x, y) (X0 rd) (l0, l1) ([], []) (r0, r1) (rest_0 rd)) in
     match witness h (center (end_ rd)) sa sb with
     | Some (na, (n0 :: _) as nb) =>
       if (Nat.leb (length na) (length sa) && Nat.leb (length nb) (length sb))%bool then
@@ -411,11 +415,13 @@ Qed.
 Lemma start_good e o y X Y Lo L ro r lov lv rov rv :
   hold_vec e Lo lov -> hold_vec e L lv -> cont_vec ro rov -> cont_vec r rv ->
   near (real_of X) (minus o (plus lov rov)) -> near (real_of Y) (minus y (plus lv rv)) ->
-  good e o y (plus lov rov) (plus lv rv) (State X Y Lo L ro r r zero3 zero3).
+  good e o y (plus lov rov) (plus lv rv) (begin X Y Lo L ro r).
 Proof.
-  intros HLo HL Hro Hr HX HY. exists lov, lv, rov, rv, rv. repeat (split; [assumption |]).
-  split; [reflexivity |]. split; [reflexivity |]. cbn.
-  rewrite number_zero. destruct rv. unfold plus. simpl. f_equal; ring.
+  intros HLo HL Hro Hr HX HY. exists lov, lv, (0, 0), (0, 0), rov, rv, rv.
+  repeat (split; [assumption |]). split; [split; apply hold2_nil |]. split; [split; apply hold2_nil |].
+  repeat (split; [assumption |]).
+  unfold real_of, plus. cbn. rewrite number_zero. destruct rov, rv.
+  split; [| split]; simpl; f_equal; ring.
 Qed.
 
 (* What backward_ok says of one lane. *)
@@ -543,8 +549,8 @@ Proof.
     (lv0, lv1) (0, 0) (rv0, rv1) ov (conj Hl0 Hl1) None' (conj Hrr0 Hrr1) HO N1 N0) as GB.
   apply (follow_ok prec K K_ok sincos sincos_ok (longest h) (limit h) e ws ms) in GA; auto.
   apply (follow_ok prec K K_ok sincos sincos_ok (longest h) (limit h) e ws ms) in GB; auto.
-  set (sa := follow _ _ _ _ _ ws (State (X0 rd) _ _ _ _ _ _ _ _)) in *.
-  set (sb := follow _ _ _ _ _ ws (State (X, Y) _ _ _ _ _ _ _ _)) in *.
+  set (sa := follow _ _ _ _ _ ws (begin (X0 rd) _ _ _ _ _)) in *.
+  set (sb := follow _ _ _ _ _ ws (begin (X, Y) _ _ _ _ _)) in *.
   destruct (witness h _ sa sb) as [(na, [| nb0 nb]) |];
     try (apply some_pair in E; rewrite <- E in Neg; discriminate Neg).
   cbv beta iota in E.
