@@ -66,8 +66,12 @@ Definition better_turned (patch : list term) : bool :=
   negb (Qle_bool (6 * along (fun w => Z.abs (of_k0 w * of_k1 w)))
                  (along (fun w => of_k0 w * of_k0 w + of_k1 w * of_k1 w)%Z)).
 
+(* Without the parameters that move no wave. *)
+Definition felt_axes (c : claim) : list bool := effective (examined c) (parameters (of_patch c)).
+
 Definition final_problem (c : claim) : problem :=
-  let p := plain_problem c in if better_turned (terms p) then turned_problem p else p.
+  let p := kept_problem (felt_axes c) (plain_problem c) in
+  if better_turned (terms p) then turned_problem p else p.
 
 Module Check (F : FloatOps with Definition radix := Zaux.radix2
                            with Definition sensible_format := true).
@@ -167,7 +171,8 @@ Definition most_cuts : nat := 2 ^ 14.
 
 Definition leaf_ok (c : claim) (h : hints) : cell -> bool :=
   let rd := prepare prec exact (sharp_pi prec) (final_problem c) (tail h) in
-  fun leaf => settled (attempt rd leaf) most_deep most_cuts leaf.
+  let keep := felt_axes c in
+  fun leaf => let leaf := kept_axes keep leaf in settled (attempt rd leaf) most_deep most_cuts leaf.
 
 (* ---- what is decided once *)
 
@@ -271,8 +276,9 @@ Qed.
 
 (* For a proof in which the limits are any. *)
 Lemma leaf_ok_settled c h leaf : leaf_ok c h leaf =
-  settled (attempt (prepare prec exact (sharp_pi prec) (final_problem c) (tail h)) leaf)
-          most_deep most_cuts leaf.
+  settled (attempt (prepare prec exact (sharp_pi prec) (final_problem c) (tail h))
+                   (kept_axes (felt_axes c) leaf))
+          most_deep most_cuts (kept_axes (felt_axes c) leaf).
 Proof. reflexivity. Qed.
 
 Lemma leaf_excluded c h leaf u : tail_ok (bound h) (tail h) = true ->
@@ -281,8 +287,12 @@ Lemma leaf_excluded c h leaf u : tail_ok (bound h) (tail h) = true ->
 Proof.
   intros Ht Hp Hleaf Hu. destruct (tail_ok_correct _ _ Ht) as (Hl & HB).
   assert (Below := patch_below_correct prec _ _ Hp).
-  rewrite leaf_ok_settled in Hleaf. revert Hleaf u Hu. generalize most_deep most_cuts.
-  intros deep cuts Hleaf. refine (settled_covers (excluded (plain_problem c)) _ _ _ _ leaf Hleaf).
+  rewrite leaf_ok_settled in Hleaf.
+  assert (Hstill : Forall (still (felt_axes c)) (terms (plain_problem c))) by apply effective_still.
+  apply (kept_excluded _ _ _ Hstill). apply (kept_in_cell (felt_axes c)) in Hu.
+  revert Hleaf Hu. generalize (kept_axes (felt_axes c) u), (kept_axes (felt_axes c) leaf).
+  clear u leaf. intros u leaf. generalize most_deep most_cuts. intros deep cuts Hleaf. revert u.
+  refine (settled_covers (excluded (kept_problem (felt_axes c) (plain_problem c))) _ _ _ _ leaf Hleaf).
   clear Hleaf. intros piece Hleaf u Hu. unfold attempt in Hleaf.
   destruct (prism_bound _ _ _ _ _ piece) as [(i, b) |] eqn:E in Hleaf; [| discriminate].
   destruct (negative i) eqn:Neg; [| discriminate].
@@ -290,7 +300,8 @@ Proof.
   { eapply (bound_ok prec exact exact_ok sines sines_ok);
       [exact Hl | exact HB | | apply prepare_ok; auto using exact_ok, sharp_pi_ok
        | exact E | exact Neg | exact Hu].
-    unfold final_problem. destruct (better_turned _); [now apply turned_largest | exact Below]. }
+    pose proof (kept_largest _ _ _ Hstill Below) as Below'.
+    unfold final_problem. destruct (better_turned _); [now apply turned_largest | exact Below']. }
   unfold final_problem in Final. destruct (better_turned _); [| exact Final].
   now apply turned_excluded.
 Qed.

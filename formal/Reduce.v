@@ -337,6 +337,126 @@ Proof.
   rewrite waves_turned. apply largest_turned. now apply HB.
 Qed.
 
+(* ---- parameters that move nothing *)
+
+(* Those of n parameters that do. *)
+Definition effective (patch : list term) (n : nat) : list bool :=
+  map (fun m => existsb (fun w => negb (Qnum (nth m (parts w) 0%Q) =? 0)%Z) patch) (seq 0 n).
+
+(* The elements that are to be kept, and all beyond. *)
+Fixpoint kept {A} (keep : list bool) (l : list A) : list A :=
+  match keep, l with
+  | b :: keep, x :: l => if b then x :: kept keep l else kept keep l
+  | _, _ => l
+  end.
+
+(* Zeros put in where kept leaves out. *)
+Fixpoint filled (keep : list bool) (t : list R) : list R :=
+  match keep, t with
+  | false :: keep, _ => 0 :: filled keep t
+  | true :: keep, x :: t => x :: filled keep t
+  | _, _ => t
+  end.
+
+(* Of points and cells: the angles come first. *)
+Definition kept_axes {A} (keep : list bool) (l : list A) : list A :=
+  match l with
+  | u0 :: u1 :: t => u0 :: u1 :: kept keep t
+  | _ => l
+  end.
+
+Definition kept_term (keep : list bool) (w : term) : term :=
+  Term (of_k0 w) (of_k1 w) (of_phase w) (middle w) (kept keep (parts w)).
+
+Definition kept_problem (keep : list bool) (p : problem) : problem :=
+  Problem (map (kept_term keep) (terms p)) (start p) (f00 p) (f01 p) (f10 p) (f11 p)
+    (mid0 p) (wid0 p) (mid1 p) (wid1 p).
+
+Definition still (keep : list bool) (w : term) : Prop :=
+  forall m, nth m keep true = false -> Qnum (nth m (parts w) 0%Q) = 0%Z.
+
+Lemma combined_kept keep parts t :
+  (forall m, nth m keep true = false -> Qnum (nth m parts 0%Q) = 0%Z) ->
+  combined (kept keep parts) (kept keep t) = combined parts t.
+Proof.
+  revert parts t. induction keep as [|b keep IH]; intros parts t H; [reflexivity|].
+  destruct parts as [|q parts]; [reflexivity|].
+  destruct t as [|x t]; [unfold combined; now rewrite !combine_nil|].
+  assert (E := IH parts t (fun m => H (S m))). specialize (H 0%nat).
+  change (combined (q :: parts) (x :: t)) with (Q2R q * x + combined parts t). cbn [kept].
+  destruct b.
+  - change (combined (q :: kept keep parts) (x :: kept keep t))
+      with (Q2R q * x + combined (kept keep parts) (kept keep t)). now rewrite E.
+  - cbn in H. assert (Z : Q2R q = 0) by (unfold Q2R; rewrite H by reflexivity; ring).
+    rewrite E, Z. ring.
+Qed.
+
+Lemma waves_kept keep patch t : Forall (still keep) patch ->
+  waves (map (kept_term keep) patch) (kept keep t) = waves patch t.
+Proof.
+  unfold waves. rewrite map_map. intros H. apply map_ext_in. intros w Hw.
+  rewrite Forall_forall in H. cbn [kept_term of_k0 of_k1 of_phase middle parts].
+  now rewrite (combined_kept keep (parts w) t (H w Hw)).
+Qed.
+
+Lemma effective_still patch n : Forall (still (effective patch n)) patch.
+Proof.
+  apply Forall_forall. intros w Hw m H. destruct (Nat.lt_ge_cases m n) as [Hm|Hm].
+  - unfold effective in H. rewrite (nth_indep _ true (existsb (fun w => negb (Qnum (nth 0 (parts w) 0%Q)
+      =? 0)%Z) patch)) in H by now rewrite map_length, seq_length.
+    rewrite (map_nth (fun m => existsb (fun w => negb (Qnum (nth m (parts w) 0%Q) =? 0)%Z) patch)) in H.
+    rewrite seq_nth in H by assumption. cbn [Nat.add] in H.
+    destruct (Z.eqb_spec (Qnum (nth m (parts w) 0%Q)) 0) as [E|E]; [exact E|].
+    assert (existsb (fun w => negb (Qnum (nth m (parts w) 0%Q) =? 0)%Z) patch = true); [|congruence].
+    apply existsb_exists. exists w. split; [exact Hw|]. now apply negb_true_iff, Z.eqb_neq.
+  - rewrite nth_overflow in H; [discriminate|]. unfold effective. now rewrite map_length, seq_length.
+Qed.
+
+Lemma Forall_kept {A} (P : A -> Prop) keep l : Forall P l -> Forall P (kept keep l).
+Proof.
+  intros H. revert keep. induction H as [|x l Hx Hl IH]; intros [|b keep]; try now constructor.
+  cbn. destruct b; [constructor|]; auto.
+Qed.
+
+Lemma kept_filled keep t : kept keep (filled keep t) = t.
+Proof.
+  revert t. induction keep as [|[] keep IH]; intros t; [now destruct t| |exact (IH t)].
+  destruct t as [|x t]; [reflexivity|]. cbn. now rewrite IH.
+Qed.
+
+Lemma filled_in_cube keep t : in_cube t -> in_cube (filled keep t).
+Proof.
+  revert t. induction keep as [|[] keep IH]; intros t H; [now destruct t| |].
+  - destruct H; [constructor|]. constructor; [assumption|]. now apply IH.
+  - constructor; [lra|]. now apply IH.
+Qed.
+
+Theorem kept_excluded : forall keep p u, Forall (still keep) (terms p) ->
+  excluded (kept_problem keep p) (kept_axes keep u) -> excluded p u.
+Proof.
+  intros keep p [|u0 [|u1 t]] Hstill; try easy. intros H Ht x Hx Hx0 Hx1.
+  cbn [kept_axes excluded kept_problem terms start] in H. rewrite waves_kept in H by exact Hstill.
+  apply H; trivial. now apply Forall_kept.
+Qed.
+
+Theorem kept_largest : forall keep p B, Forall (still keep) (terms p) ->
+  (forall t, in_cube t -> forall y v, beta (waves (terms p) t) y v <= B * dot v v) ->
+  (forall t, in_cube t -> forall y v,
+   beta (waves (terms (kept_problem keep p)) t) y v <= B * dot v v).
+Proof.
+  intros keep p B Hstill HB t Ht. cbn [kept_problem terms].
+  rewrite <- (kept_filled keep t), waves_kept by exact Hstill. now apply HB, filled_in_cube.
+Qed.
+
+Lemma kept_in_cell keep c u : in_cell c u -> in_cell (kept_axes keep c) (kept_axes keep u).
+Proof.
+  intros H. destruct H as [|s0 x0 c u H0 H]; [constructor|].
+  destruct H as [|s1 x1 c u H1 H]; [now constructor; [|constructor]|].
+  cbn [kept_axes]. constructor; [assumption|]. constructor; [assumption|].
+  revert keep. induction H as [|s x c u Hs H IH]; intros [|b keep]; cbn; try now constructor.
+  destruct b; [constructor; [assumption|]|]; exact (IH keep).
+Qed.
+
 (* ---- mirror images *)
 
 Definition permutations (n : nat) : list (list nat) :=
