@@ -50,8 +50,10 @@ Definition all_parts (c : claim) (t : tree) (ps : list part) : list (claim * tre
   (c, t) :: map (fun p => (at_part c p, its_tree p)) ps.
 
 (* A bound of beta's eigenvalues and l for the tails, l + 1/l >= bound; for larger amplitudes a place,
-   in units of pi, and a vector. *)
-Record hints := Hints { bound : Q; tail : Q; place : (Q * Q) * (Q * Q) }.
+   in units of pi, and a vector; and of the parameters of linked leaves, in slices, the same bound and l. *)
+Record hints := Hints {
+  bound : Q; tail : Q; place : (Q * Q) * (Q * Q); nearer : list (list slice * (Q * Q))
+}.
 
 (* The waves of a claim that are felt, its problem; and perhaps in the frame of x0 + x1 and x0 - x1,
    which is better where waves that feel both coordinates count. *)
@@ -232,12 +234,33 @@ Definition may_link (c : claim) (ps : list part) : bool :=
   | _, _ => false
   end.
 
+(* How far f moves for parameters in these slices, to each of the later parts; nothing if the bound or
+   l is wrong. *)
+Definition ways_for (c : claim) (later : list claim) (ts : list slice) (Bl : Q * Q) :
+    list ((I.type * I.type) * region) :=
+  let patch := sliced ts (examined c) in
+  if tail_ok (fst Bl) (snd Bl) && patch_below prec patch (fst Bl)
+  then map (fun c' => (displacement prec series patch (of_region c) (snd Bl)
+                         (of_xstar c) (of_xstar c'), of_region c')) later
+  else [].
+
+Definition same_slice (s s' : slice) : bool := (fst s =? fst s')%Z && (snd s =? snd s')%nat.
+Fixpoint same_slices (ts ts' : list slice) : bool :=
+  match ts, ts' with
+  | [], [] => true
+  | s :: ts, s' :: ts' => same_slice s s' && same_slices ts ts'
+  | _, _ => false
+  end.
+
 (* Does a linked leaf lead into the region of one of the later parts? *)
 Definition linked_ok (c : claim) (h : hints) (later : list claim) : nat -> cell -> bool :=
-  let ways := map (fun c' => (displacement prec series (examined c) (of_region c) (tail h)
-                                (of_xstar c) (of_xstar c'), of_region c')) later in
-  fun k leaf => match nth_error ways k with
-                | Some (i, r) => leads_into prec i (of_region c) r leaf
+  let ways := map (fun n => (fst n, ways_for c later (fst n) (snd n))) (nearer h) in
+  fun k leaf => match find (fun w => same_slices (fst w) (skipn 2 leaf)) ways with
+                | Some (_, ways) =>
+                  match nth_error ways k with
+                  | Some (i, r) => leads_into prec i (of_region c) r leaf
+                  | None => false
+                  end
                 | None => false
                 end.
 
@@ -316,6 +339,30 @@ Proof. unfold header_ok. rewrite !andb_true_iff. tauto. Qed.
 Lemma waves_few c w : In w (examined c) -> (length (parts w) <= parameters (of_patch c))%nat.
 Proof. intros Hw. apply filter_In in Hw. now apply parameters_most. Qed.
 
+Lemma same_slices_eq ts ts' : same_slices ts ts' = true -> ts = ts'.
+Proof.
+  revert ts'. induction ts as [| [i k] ts IH]; intros [| [i' k'] ts']; try discriminate; [reflexivity |].
+  cbn [same_slices]. unfold same_slice. cbn [fst snd].
+  rewrite !andb_true_iff, Z.eqb_eq, Nat.eqb_eq. intros ((-> & ->) & H). now rewrite (IH _ H).
+Qed.
+
+(* What a leaf that is linked is linked by. *)
+Lemma linked_way c h later k leaf : linked_ok c h later k leaf = true -> exists B l c',
+  nth_error later k = Some c' /\ tail_ok B l = true /\
+  patch_below prec (sliced (skipn 2 leaf) (examined c)) B = true /\
+  leads_into prec (displacement prec series (sliced (skipn 2 leaf) (examined c)) (of_region c) l
+                     (of_xstar c) (of_xstar c')) (of_region c) (of_region c') leaf = true.
+Proof.
+  unfold linked_ok. destruct (find _ _) as [[ts ways] |] eqn:Hfind; [| discriminate].
+  apply find_some in Hfind as [Hin Hsame]. apply same_slices_eq in Hsame. cbn [fst] in Hsame.
+  apply in_map_iff in Hin as ([ts' [B l]] & E & _). cbn [fst snd] in E. injection E as -> <-.
+  rewrite <- Hsame. unfold ways_for. cbn [fst snd].
+  destruct (tail_ok B l && _) eqn:Hok; [| now destruct k].
+  apply andb_prop in Hok as [Ht Hp]. rewrite nth_error_map.
+  destruct (nth_error later k) as [c' |]; [| discriminate]. intros H.
+  now exists B, l, c'.
+Qed.
+
 (* Without parts no orbit minimizes, whether or not it lies on a graph, *)
 Theorem check_examined c h t : check c h t [] = true ->
   no_minimizing_orbit_into (of_region c) (examined c) (of_xstar c).
@@ -332,7 +379,8 @@ Proof.
   - intros leaf Hleaf v Hv. rewrite forallb_forall in Hleaves.
     exact (leaf_excluded c h leaf v Ht Hp (Hleaves leaf Hleaf) Hv).
   - intros order Horder v Hv. now apply (orders_excluded _ (parameters (of_patch c))).
-  - intros k leaf Hlink. unfold linked_ok in Hlink. destruct k; discriminate.
+  - intros k leaf Hlink. apply linked_way in Hlink as (B & l & c' & Hc' & _).
+    destruct k; discriminate.
 Qed.
 
 (* with parts none that lies on a graph. *)
@@ -406,16 +454,22 @@ Proof.
     exact (leaf_excluded c h leaf v Hh Hp (Hleaf leaf Hin) Hv).
   - intros order Horder v Hv. now apply (orders_excluded _ (parameters (of_patch c))).
   - intros m leaf Hlink u Hu a b s -> Hs k' T T' p q HT HT' Hinv' E.
-    unfold linked_ok in Hlink. rewrite nth_error_map in Hlink.
-    destruct (nth_error (map fst later) m) as [c' |] eqn:Hnth; [| discriminate].
-    cbn [option_map] in Hlink. apply nth_error_In in Hnth. apply in_map_iff in Hnth as (ct & <- & Hin).
+    apply linked_way in Hlink as (B & l & c' & Hnth & HBl & HB' & Hlink).
+    apply nth_error_In in Hnth. apply in_map_iff in Hnth as (ct & <- & Hin).
+    destruct leaf as [| s0 [| s1 slices]]; try discriminate Hlink.
+    assert (Hslices : Forall2 in_slice slices s).
+    { inversion Hu as [| ? ? ? ? _ Hu']. now inversion Hu'. }
+    destruct (sliced_waves _ _ Hslices) as (s' & Hs' & Es). specialize (Es (examined c)).
+    cbn [skipn] in HB', Hlink. destruct (tail_ok_correct _ _ HBl) as (Hl' & HBl').
+    assert (Below' := patch_below_correct prec _ _ HB').
     rewrite Forall_forall in IH, Hlater. specialize (IH ct Hin). specialize (Hlater ct Hin).
     destruct ct as [c' tr]. cbn [fst] in *. destruct Hlater as (P & A & F00 & F01 & F10 & F11).
     assert (Ex' : examined c' = examined c) by (rewrite Eex; unfold examined; now rewrite P, A).
     specialize (IH s Hs). rewrite Ex' in IH. apply (IH k' T T' HT HT' Hinv').
-    destruct (displacement_ok prec series (make_constants_ok prec) (examined c) r (tail h) _
-      (of_xstar c) (of_xstar c') s k' T T' Hr Hl HB (Below s Hs) Hs HT HT' Hinv') as [D0 D1].
-    refine (leads_into_ok prec _ r _ leaf a b s _ _ p q Hr _ _ _ _ Hh0 Hh1 Hlink Hu E D0 D1);
+    rewrite <- Es in Hinv', E |- *.
+    destruct (displacement_ok prec series (make_constants_ok prec) (sliced slices (examined c)) r l _
+      (of_xstar c) (of_xstar c') s' k' T T' Hr Hl' HBl' (Below' s' Hs') Hs' HT HT' Hinv') as [D0 D1].
+    refine (leads_into_ok prec _ r _ _ a b s _ _ p q Hr _ _ _ _ Hh0 Hh1 Hlink Hu E D0 D1);
       congruence.
   - cbn. unfold ts. now rewrite fitted_length.
   - constructor; [assumption |]. now constructor.

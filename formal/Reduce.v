@@ -457,6 +457,62 @@ Proof.
   destruct b; [constructor; [assumption|]|]; exact (IH keep).
 Qed.
 
+(* ---- slices of the parameters *)
+
+(* Of a slice the middle and the half-width. *)
+Definition slice_middle (s : slice) : Q := (inject_Z (2 * fst s + 1) / inject_Z (2 ^ Z.of_nat (snd s)) - 1)%Q.
+Definition slice_half (s : slice) : Q := (/ inject_Z (2 ^ Z.of_nat (snd s)))%Q.
+
+Fixpoint sliced_middle (gs : list Q) (ts : list slice) (middle : Q) : Q :=
+  match gs, ts with
+  | g :: gs, s :: ts => sliced_middle gs ts (Qred (middle + g * slice_middle s))
+  | _, _ => middle
+  end.
+Fixpoint sliced_parts (gs : list Q) (ts : list slice) : list Q :=
+  match gs, ts with
+  | g :: gs, s :: ts => Qred (g * slice_half s) :: sliced_parts gs ts
+  | _, _ => []
+  end.
+
+(* The patch for parameters in these slices, which are the cube of it. *)
+Definition sliced (ts : list slice) (patch : list term) : list term :=
+  map (fun w => Term (of_k0 w) (of_k1 w) (of_phase w) (sliced_middle (parts w) ts (middle w))
+                     (sliced_parts (parts w) ts)) patch.
+
+Lemma slice_in_Q s u : in_slice s u ->
+  exists e, -1 <= e <= 1 /\ u = Q2R (slice_middle s) + Q2R (slice_half s) * e.
+Proof.
+  destruct s as [i c]. intros H. destruct (slice_symbol i c u H) as (e & He & E).
+  exists e. split; [exact He|]. unfold slice_middle, slice_half, Qdiv. cbn [fst snd].
+  pose proof (power_pos c) as Hp. unfold power in Hp.
+  assert (Hq : ~ (inject_Z (2 ^ Z.of_nat c) == 0)%Q).
+  { intros Z. apply Qeq_eqR in Z. rewrite Q2R_inject_Z in Z. change 0%Q with (inject_Z 0) in Z.
+    rewrite Q2R_inject_Z in Z. lra. }
+  change 1%Q with (inject_Z 1).
+  rewrite Q2R_minus, Q2R_mult, Q2R_inv, !Q2R_inject_Z, plus_IZR, mult_IZR by exact Hq.
+  rewrite E. field. lra.
+Qed.
+
+Lemma sliced_waves ts t : Forall2 in_slice ts t ->
+  exists s, in_cube s /\ forall patch, waves (sliced ts patch) s = waves patch t.
+Proof.
+  intros H. assert (exists s, in_cube s /\ forall gs m,
+    Q2R (sliced_middle gs ts m) + combined (sliced_parts gs ts) s = Q2R m + combined gs t)
+    as (s & Hs & E).
+  { induction H as [|i u ts t Hi H (s & Hs & E)].
+    - exists []. split; [constructor|]. intros [|g gs] m; reflexivity.
+    - destruct (slice_in_Q i u Hi) as (e & He & Eu). exists (e :: s).
+      split; [now constructor|]. intros [|g gs] m; [reflexivity|].
+      cbn [sliced_middle sliced_parts].
+      change (combined (g :: gs) (u :: t)) with (Q2R g * u + combined gs t).
+      change (combined (Qred (g * slice_half i) :: sliced_parts gs ts) (e :: s))
+        with (Q2R (Qred (g * slice_half i)) * e + combined (sliced_parts gs ts) s).
+      specialize (E gs (Qred (m + g * slice_middle i))).
+      rewrite !(Qeq_eqR _ _ (Qred_correct _)), ?Q2R_plus, !Q2R_mult in *. rewrite Eu. lra. }
+  exists s. split; [exact Hs|]. intros patch. unfold waves, sliced. rewrite map_map.
+  apply map_ext. intros w. cbn [of_k0 of_k1 of_phase middle parts]. now rewrite E.
+Qed.
+
 (* ---- mirror images *)
 
 Definition permutations (n : nat) : list (list nat) :=

@@ -25,7 +25,7 @@ sys.path.insert(0, str(ROOT))
 from converse import check  # noqa: E402  (it needs the path)
 from converse.check.claim import LETTERS  # noqa: E402
 from converse.check.cover import is_whole  # noqa: E402
-from converse.check.tree import trees  # noqa: E402
+from converse.check.tree import leaves, trees  # noqa: E402
 
 WIDTH = 100                                                     # of a line
 DIGITS = 10 ** 9                                                # of a hint, decimal
@@ -86,26 +86,41 @@ def lowest(waves, f):
     return y
 
 
-def hints(claim):
-    """B, l and the place and the vector of `at once`."""
-    waves, parameters = claim.examined, claim.parameters
+def near(x):
+    return Fraction(math.floor(x * DIGITS), DIGITS)
+
+
+def bound_and_tail(waves, ends):
+    """B and l for parameters between these ends."""
     B = 2.0
-    for corner in itertools.product((-1, 1), repeat=parameters):
+    for corner in itertools.product(*ends):
         at = floats(waves, corner)
         y = lowest(at, lambda y: -eigenvalues(at, y)[1])
         B = max(B, eigenvalues(at, y)[1])
     B = math.ceil(B * (1 + 1e-6) * DIGITS) / DIGITS             # for the kernel to see it fast
     l = 2 / (B + math.sqrt(B * B - 4))
+    return Fraction(round(B * DIGITS), DIGITS), near(l) - Fraction(1, DIGITS)
+
+
+def linked_slices(claim):
+    """The slices (i, cuts) of the parameters of all leaves that are linked, each once."""
+    return sorted({tuple(zip(index[2:], cuts[2:])) for part, letters in trees(claim)
+                   for position, (index, cuts) in leaves(part.tree, kinds="PS" + letters)
+                   if part.tree[position] in letters})
+
+
+def hints(claim):
+    """B and l, the place and the vector of `at once`, and B and l for slices of linked leaves."""
+    waves, parameters = claim.examined, claim.parameters
     at = floats(waves, [1 if claim.at_once == "upper end" else 0] * parameters)
     y = lowest(at, lambda y: eigenvalues(at, y)[0])
     n = eigenvalues(at, y)[2]
     size = math.hypot(*n) or 1
-
-    def near(x):
-        return Fraction(math.floor(x * DIGITS), DIGITS)
-
-    return (Fraction(round(B * DIGITS), DIGITS), near(l) - Fraction(1, DIGITS),
-            [near(x / math.pi) for x in y], [near(x / size) for x in n])
+    nearer = [(slices, bound_and_tail(waves, [
+        [2 * (i + upper) / (1 << cuts) - 1 for upper in (0, 1)] for i, cuts in slices]))
+        for slices in linked_slices(claim)]
+    return (bound_and_tail(waves, [(-1, 1)] * parameters),
+            [near(x / math.pi) for x in y], [near(x / size) for x in n], nearer)
 
 
 # ---- the text
@@ -178,7 +193,7 @@ COMPUTED = "Proof. vm_cast_no_check (eq_refl true). Qed.\n"
 
 def definitions(claim, odd, arithmetic):
     """The claim, the hints and the trees; and what is checked once."""
-    B, l, place, vector = hints(claim)
+    (B, l), place, vector, nearer = hints(claim)
     alone = {None: "Both", 0: "First", 1: "Second"}[claim.alone]
     (_, later), *parts = trees(claim)
     once = {"no": "No", "yes": "Whole_patch", "upper end": "Upper_end"}[claim.at_once]
@@ -199,7 +214,10 @@ Lemma header : header_ok the_claim the_hints the_tree the_parts = true.
             patch_text(claim, 8), region_text(claim), pair(claim.xstar),
             "true" if is_whole(claim) else "false", alone, once,
             "None" if odd is None else "(Some %s)" % pair(odd)),
-         "Hints %s %s (%s, %s)." % (number(B), number(l), pair(place), pair(vector)),
+         "Hints %s %s (%s, %s)\n  [%s]." % (
+             number(B), number(l), pair(place), pair(vector), ";\n   ".join(
+                 "([%s], %s)" % ("; ".join(["(%d%%Z, %d%%nat)" % s for s in slices]), pair(Bl))
+                 for slices, Bl in nearer)),
          tree_text(claim.tree, later), ";\n   ".join(itertools.starmap(part_text, parts)), COMPUTED)
 
 

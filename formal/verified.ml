@@ -465,29 +465,49 @@ let at claim t =
       List.fold_left2 (fun p g t -> p +. t *. float_of g) (float_of w.middle) w.parts t)
     (felt claim.of_alone claim.of_patch)
 
-let rec corners n =
-  if n = 0 then [[]]
-  else List.concat_map (fun t -> [-1.0 :: t; 1.0 :: t]) (corners (n - 1))
+let rec corners = function
+  | [] -> [[]]
+  | (low, high) :: ends -> List.concat_map (fun t -> [low :: t; high :: t]) (corners ends)
 
 (* A double in units of 10^-9. *)
 let billionths x = ratio (z_of (truncate x)) (power_of_10 9)
 
-let hints_of claim =
-  let parameters = List.length (List.hd claim.of_patch).parts in
+(* A bound of beta's eigenvalues and l for the tails, for parameters between these ends. *)
+let bound_and_tail claim ends =
   let largest waves =
     let level y = let _, largest, _ = eigen waves y in -. largest in
     2.0 -. level (minimum waves level) in
-  let b = List.fold_left (fun b t -> max b (largest (at claim t))) 2.0 (corners parameters) in
+  let b = List.fold_left (fun b t -> max b (largest (at claim t))) 2.0 (corners ends) in
   let b = ceil (1e9 *. (b *. (1.0 +. 1e-6))) in
   let l = let b = b /. 1e9 in 2.0 /. (b +. sqrt (b *. b -. 4.0)) in
+  billionths b, billionths (floor (1e9 *. l) -. 1.0)
+
+let rec number_of = function O -> 0 | S k -> 1 + number_of k
+
+let ends_of (i, cuts) =
+  let end_of i = ldexp (float_of (ratio i (z_of 1))) (1 - number_of cuts) -. 1.0 in
+  end_of i, end_of (Z.add i (z_of 1))
+
+(* The parameters' slices of all leaves that are linked, each once. *)
+let linked_slices trees =
+  let found = Hashtbl.create 16 in
+  let note _ cell =
+    (match cell with _ :: _ :: slices -> Hashtbl.replace found slices () | _ -> ()); true in
+  List.iter (fun { its; tree; _ } -> ignore (all_links note (root (axes its)) tree)) trees;
+  List.of_seq (Hashtbl.to_seq_keys found)
+
+let hints_of { claim; trees; _ } =
+  let parameters = List.length (List.hd claim.of_patch).parts in
+  let bound, tail = bound_and_tail claim (List.init parameters (fun _ -> -1.0, 1.0)) in
   let waves = at claim (List.init parameters (fun _ -> if claim.of_once = Upper_end then 1.0 else 0.0)) in
   let level y = let least, _, _ = eigen waves y in least in
   let y = minimum waves level in
   let _, _, n = eigen waves y in
   let size = Float.hypot (fst n) (snd n) in
   let both f (x, y) = billionths (1e9 *. f x), billionths (1e9 *. f y) in
-  { bound = billionths b; tail = billionths (floor (1e9 *. l) -. 1.0);
-    place = both (fun y -> y /. pi) y, both (fun n -> n /. size) n }
+  { bound; tail; place = both (fun y -> y /. pi) y, both (fun n -> n /. size) n;
+    nearer = List.map (fun slices -> slices, bound_and_tail claim (List.map ends_of slices))
+        (linked_slices trees) }
 
 (* ---- the leaves, shared out *)
 
@@ -757,7 +777,6 @@ let rec blame_links hints = function
   | [] -> ()
   | { name; its; tree; linked; _ } :: later ->
     let leads = linked_ok its hints (List.map (fun tree -> tree.its) later) and seen = ref 0 in
-    let number_of k = let rec count n = function O -> n | S k -> count (n + 1) k in count 0 k in
     let good k cell =
       incr seen;
       leads k cell || beyond "%slinked leaf %d of %d is linked to %s, but may lead out of its region"
@@ -790,7 +809,7 @@ let blame hints { claim; trees; _ } =
 
 let verify options path =
   let file = read path in
-  let hints = hints_of file.claim in
+  let hints = hints_of file in
   if not (header_ok file.claim hints (List.hd file.trees).tree file.further) then blame hints file;
   let chosen, total = choice (total (fun tree -> tree.proved) file) options.sample in
   let shown = ref 0 in
