@@ -133,17 +133,27 @@ Definition blocked (h : manner) (s : site) : symmetric :=
       add3' a (fmul m (fmul k0 k0), fmul m (fmul k0 k1), fmul m (fmul k1 k1)))
     (center b00, center b01, center b11) (view s).
 
-(* From one end: of each site d, whether it is definite, and what takes n outwards from the next. *)
-Fixpoint scan (l : F.type) (before : symmetric) (blocks : list symmetric) :
-    list (symmetric * (bool * symmetric)) :=
+(* From one end: of each site d, at which site the recursion began, and what takes n outwards from the
+   next.  It begins anew behind a site where d is not positive; next_ goes on behind the last. *)
+Fixpoint scan (l : F.type) (next_ : nat -> nat -> symmetric -> list (symmetric * (nat * symmetric)))
+    (at_ begun : nat) (before : symmetric) (blocks : list symmetric) :
+    list (symmetric * (nat * symmetric)) :=
   match blocks with
-  | [] => []
+  | [] => next_ at_ begun before
   | b :: blocks =>
     let d := sub3 b before in
-    let good := definite d in
-    let inv := if good then inverted prec d else (l, F.zero, l) in
-    (d, (good, inv)) :: scan l inv blocks
+    let inv := inverted prec d in
+    (d, (begun, inv)) :: (if definite d then scan l next_ (S at_) begun inv blocks
+                          else scan l next_ (S at_) (S at_) (l, F.zero, l) blocks)
   end.
+
+(* Along two lanes, anew in the second if it did so in the first. *)
+Definition scan_both (l : F.type) (one two : list symmetric) : list (symmetric * (nat * symmetric)) :=
+  let tail := (l, F.zero, l) in
+  scan l (fun at_ begun before =>
+      let '(begun, before) := match begun with O => (begun, before) | _ => (at_, tail) end in
+      scan l (fun _ _ _ => []) at_ begun before two)
+    0 0 tail one.
 
 Definition least (a : symmetric) : F.type :=
   let '(p, q, r) := a in
@@ -160,45 +170,73 @@ Definition eigenvector (a : symmetric) : plane :=
   if above length F.zero then (fdiv (fst v) length, fdiv (snd v) length)
   else if above p r then (F.zero, fone K) else (fone K, F.zero).
 
-(* Where the two scans together have the negative eigenvalue next to zero. *)
-Fixpoint choose (blocks : list symmetric) (lefts rights : list (symmetric * (bool * symmetric)))
-    (at_ : nat) (best : option (F.type * nat * symmetric)) : option (F.type * nat * symmetric) :=
-  match blocks, lefts, rights with
-  | b :: blocks, l :: lefts, r :: rights =>
-    let joint := sub3 (add3' (fst l) (fst r)) b in
-    let low := least joint in
-    let better := above F.zero low &&
-      match best with Some (other, _, _) => above low other | None => true end in
-    choose blocks lefts rights (S at_) (if better then Some (low, at_, joint) else best)
-  | _, _, _ => best
+(* Where the two scans together have a negative eigenvalue: the eigenvalue, the site, where they began,
+   and the matrix. *)
+Definition candidate : Type := F.type * nat * (nat * nat) * symmetric.
+
+Definition lowest (a b : option candidate) : option candidate :=
+  match a, b with
+  | Some (x, _, _, _), Some (y, _, _, _) => if above y x then a else b
+  | None, _ => b
+  | _, None => a
   end.
 
-(* n outwards from v, by the scan's inverses as far as they are good, then by the tail. *)
-Fixpoint spread (l : F.type) (good : bool) (v : plane) (scans : list (bool * symmetric)) :
-    list plane :=
+(* Of each part of the orbit over which neither scan begins anew the place where the eigenvalue is next
+   to zero, and of these parts the one where it is lowest; a scan from a lane's own end is to come
+   from there.  back: so many sites are of the lane back. *)
+Fixpoint choose (back : nat) (blocks : list symmetric)
+    (lefts rights : list (symmetric * (nat * symmetric))) (at_ : nat) (best run : option candidate) :
+    option candidate :=
+  match blocks, lefts, rights with
+  | b :: blocks, (d, (begun, _)) :: lefts, (d', (ended, _)) :: rights =>
+    let joint := sub3 (add3' d d') b in
+    let low := least joint in
+    let go := choose (pred back) blocks lefts rights (S at_) in
+    match match back with O => ended | _ => begun end, above F.zero low with
+    | O, true =>
+      let new := Some (low, at_, (begun, ended), joint) in
+      match run with
+      | Some (other, _, (begun', ended'), _) =>
+        if ((begun =? begun') && (ended =? ended'))%nat then go best (if above low other then new else run)
+        else go (lowest run best) new
+      | None => go best new
+      end
+    | _, _ => go best run
+    end
+  | _, _, _ => lowest run best
+  end.
+
+(* n outwards from v, for so many sites by the scan's inverses, then by the tail. *)
+Fixpoint spread (l : F.type) (count : nat) (v : plane) (scans : list symmetric) : list plane :=
   match scans with
   | [] => []
-  | (ok, inv) :: scans =>
-    let good := good && ok in
-    let n := if good then apply3 inv v else (fmul l (fst v), fmul l (snd v)) in
-    n :: spread l good n scans
+  | inv :: scans =>
+    let n := match count with O => (fmul l (fst v), fmul l (snd v)) | _ => apply3 inv v end in
+    n :: spread l (pred count) n scans
   end.
 
-(* Of the sites ahead and back. *)
+(* Of the sites ahead and back: of the part that contradicts most plainly, and on towards the middle if
+   it ends before. *)
 Definition witness (h : manner) (l : F.type) (ahead back : list site) :
     option (list plane * list plane) :=
-  let blocks := rev_append (map (blocked h) back) (map (blocked h) ahead) in
-  let ends := (l, F.zero, l) in
-  let lefts := scan l ends blocks in
-  let rights := rev_append (scan l ends (rev_append blocks [])) [] in
-  match choose blocks lefts rights 0 None with
+  let b := length back in
+  let back := map (blocked h) back in
+  let ahead := map (blocked h) ahead in
+  let blocks := rev_append back ahead in
+  let lefts := scan_both l (rev_append back []) ahead in
+  let rights := rev_append (scan_both l (rev_append ahead []) back) [] in
+  match choose b blocks lefts rights 0 None None with
   | None => None
-  | Some (_, at_, joint) =>
+  | Some (_, at_, (begun, ended), joint) =>
     let v := eigenvector joint in
-    let lower := spread l true v (map snd (rev_append (firstn at_ lefts) [])) in
-    let upper := spread l true v (map snd (skipn (S at_) rights)) in
+    let below := (at_ - begun)%nat in
+    let beyond := (length blocks - S at_ - ended)%nat in
+    let lower := spread l below v (firstn (Nat.max below (S at_ - b))
+                                     (map (fun x => snd (snd x)) (rev_append (firstn at_ lefts) []))) in
+    let upper := spread l beyond v (firstn (Nat.max beyond (b - S at_))
+                                      (map (fun x => snd (snd x)) (skipn (S at_) rights))) in
     let all := rev_append lower (v :: upper) in
-    let b := length back in
+    let b := (b - (at_ - length lower))%nat in
     Some (skipn b all, rev_append (firstn b all) [])
   end.
 
