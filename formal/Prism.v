@@ -181,9 +181,12 @@ Definition lowest (a b : option candidate) : option candidate :=
   | _, None => a
   end.
 
+(* Has the scan from a lane's own end come from there?  back: so many sites are of the lane back. *)
+Definition from_end (back begun ended : nat) : bool :=
+  match back with O => Nat.eqb ended 0 | _ => Nat.eqb begun 0 end.
+
 (* Of each part of the orbit over which neither scan begins anew the place where the eigenvalue is next
-   to zero, and of these parts the one where it is lowest; a scan from a lane's own end is to come
-   from there.  back: so many sites are of the lane back. *)
+   to zero, and of these parts the one where it is lowest. *)
 Fixpoint choose (back : nat) (blocks : list symmetric)
     (lefts rights : list (symmetric * (nat * symmetric))) (at_ : nat) (best run : option candidate) :
     option candidate :=
@@ -192,17 +195,16 @@ Fixpoint choose (back : nat) (blocks : list symmetric)
     let joint := sub3 (add3' d d') b in
     let low := least joint in
     let go := choose (pred back) blocks lefts rights (S at_) in
-    match match back with O => ended | _ => begun end, above F.zero low with
-    | O, true =>
-      let new := Some (low, at_, (begun, ended), joint) in
+    let new := Some (low, at_, (begun, ended), joint) in
+    if from_end back begun ended && above F.zero low then
       match run with
       | Some (other, _, (begun', ended'), _) =>
-        if ((begun =? begun') && (ended =? ended'))%nat then go best (if above low other then new else run)
+        if Nat.eqb begun begun' && Nat.eqb ended ended'
+        then go best (if above low other then new else run)
         else go (lowest run best) new
       | None => go best new
       end
-    | _, _ => go best run
-    end
+    else go best run
   | _, _, _ => lowest run best
   end.
 
