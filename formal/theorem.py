@@ -104,7 +104,8 @@ def bound_and_tail(waves, ends):
 
 def linked_slices(claim):
     """The slices (i, cuts) of the parameters of all leaves that are linked, each once."""
-    return sorted({tuple(zip(index[2:], cuts[2:])) for part, letters in trees(claim)
+    axes = slice(2, 2 + claim.parameters)
+    return sorted({tuple(zip(index[axes], cuts[axes])) for part, letters in trees(claim)
                    for position, (index, cuts) in leaves(part.tree, kinds="PS" + letters)
                    if part.tree[position] in letters})
 

@@ -83,6 +83,8 @@ def test_linked_parts(tmp_path):
         parts = claim.partition("the_parts")[2].split("Part (")[1:]
         assert [text[:14] for text in parts] == ["0.875, 0.875) ", "0.85, 0.87) (0"]
         assert "a" in claim.partition("the_tree")[2].partition("]")[0]
+        hints = claim.partition("the_hints")[2].partition("the_tree")[0]
+        assert re.findall(r"\(\[(.*?)\], \(", hints) == [""]       # no parameter
         assert [re.search(r'\["(.*)"\]', text)[1] for text in parts] == [
             found["parts"][0][3].replace("b", "a"), found["parts"][1][3]]
 

@@ -261,6 +261,18 @@ def test_where_a_link_leads_out(links, tmp_path, name, end, margin):
             "region\n")
 
 
+def test_links_are_for_the_parameters_of_their_leaf(tmp_path):
+    """What leads into the region for half of the parameters need not for all of them."""
+    waves = ["%s -0.004" % wave for wave in version4.SYMMETRIC[:2]] + [
+        version4.SYMMETRIC[2] + " -0.008"]
+    tree = version4.found(waves=waves)
+    link = version4.linked("2" + tree + tree, margin=EDGE, waves=waves)
+    assert agree(tmp_path, version4.file_of(**link)) == PART
+    at = link["tree"].index("a") - 1
+    whole = tree[:at] + "a" + tree[at + 1:]
+    assert agree(tmp_path, version4.file_of(**{**link, "tree": whole})) == NOT_CONFIRMED
+
+
 @pytest.mark.parametrize("name", version4.STICKS_OUT)
 def test_links_that_lead_out(links, tmp_path, name):
     """As the other checker says; the file that these changes were made for is beyond this one."""
