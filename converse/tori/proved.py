@@ -276,6 +276,11 @@ def _check(torus: Torus) -> None:
         raise ValueError("the potential is not one of %s angles: its waves are %s" % (n, waves))
     if len(amplitude) != len(waves) or torus.part is not None and len(torus.part) != len(waves):
         raise ValueError("each wave has one amplitude, and one part if there is a range")
+    numbers = [*amplitude, *(torus.part or ()), *torus.piece, *(phase for _, _, phase in waves)]
+    if not all(type(x) in (int, Fraction) for x in numbers) or not all(
+            type(x) is int for k in (*torus.modes, *(wave[:2] for wave in waves)) for x in k):
+        raise ValueError("amplitudes, their parts, phases and pieces are Fractions, and waves and "
+                         "modes integers; give them so, for other numbers are rounded")
     for k, series in torus.modes.items():
         if len(k) != n or not tuple(k) > (0,) * n:
             raise ValueError("the torus has the mode %s; of k and -k give the one whose first "

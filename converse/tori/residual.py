@@ -187,10 +187,14 @@ class Grid:
         return self.ball(self.reach)
 
     def ball(self, size: Fraction) -> Tuple[np.ndarray, np.ndarray]:
-        """The same for all k with |k| < size."""
+        """The same for all k with |k| < size.
+
+        ValueError: |k| is no integer of 64 bits in the units of `_units`."""
         unit, common = self._units
         bound = size * common                   # 'below' is the largest integer below it
         below = math.ceil(bound) - 1
+        if below >= 1 << 62:
+            raise ValueError("the grid reaches too far for the weights; take rounder ones")
         if below < 0:
             return np.zeros((0, 2), np.int64), np.zeros((0, len(unit)), np.int64)
         if len(self.basis) == 1:
@@ -689,7 +693,7 @@ class Phases:
         """(the second term, about the least, and the radius for it)."""
         radius = 1 + _lowest(
             lambda x: math.log(self._force(rho, 1 + x)) - layers * math.log1p(x), LADDER)
-        return 2 * self._force(rho, radius) / float(radius) ** layers, radius
+        return 2 * self._force(rho, radius) * float(radius) ** -layers, radius
 
     def best_tail(self, grid: Grid, rho: Fraction) -> Tuple[float, Fraction, Fraction]:
         """(tail, wider, radius), about the least tail.  Each of its terms is a logarithmically

@@ -15,8 +15,8 @@ from converse.tori import constants
 from converse.tori.constants import Constants, Inverse, spectral
 from converse.tori.divisors import Divisors, Norm
 from converse.tori.proved import check_cover, prove
-from converse.tori.residual import (MOST, SLACK, Grid, Phases, Sizes, above, between, precision,
-                                    residual, rotation_balls)
+from converse.tori.residual import (MOST, SLACK, Grid, Phases, Sizes, above, amplitudes, between,
+                                    precision, residual, rotation_balls)
 from converse.tori.rotation import read_rotation
 from converse.tori.theorem import Bounds, Choice, Numbers, Theorem, holds
 from converse.tori.torus import Torus
@@ -105,10 +105,41 @@ def test_so_many_roundings_are_less_than_the_slack():
     ({"potential": FourierSum(((1, 1, Q(0)),), (Q(1, 10),), 1)}, "not one of 1 angles"),
     ({"potential": FourierSum(CIRCLE * 2, (Q(1, 10),), 1)}, "one amplitude"),
     ({"part": (), "piece": (Q(-1), Q(1))}, "one part"),
+    ({"modes": {(1.5,): ((1, 0),)}}, "waves and modes integers"),
+    ({"potential": FourierSum(((1.0, 0, Q(0)),), (Q(1, 10),), 1)}, "waves and modes integers"),
+    ({"potential": FourierSum(((1, 0, 0.3),), (Q(1, 10),), 1)}, "phases .* are Fractions"),
+    ({"potential": FourierSum(CIRCLE, (0.1,), 1)}, "amplitudes.* are Fractions"),
+    ({"part": (0.01,), "piece": (Q(-1), Q(1))}, "parts.* are Fractions"),
 ])
 def test_what_is_no_torus_is_refused(change, words):
     with pytest.raises(ValueError, match=words):
         check_cover([dataclasses.replace(circle("0.1"), **change)])
+
+
+@pytest.mark.parametrize("end", [0.1, 0.3, 0.55])
+def test_pieces_that_would_be_rounded_are_refused(end):
+    """The amplitudes of the piece (-1, end) would end below those with which (end, 1) begins."""
+    low, high = (dataclasses.replace(circle("0.1"), part=(Q(1, 100),), piece=piece)
+                 for piece in ((-1.0, end), (end, 1.0)))
+    ((c, d),), ((a, b),) = amplitudes(low), amplitudes(high)
+    assert Q(c) + Q(d) < Q(a) - Q(b)
+    with pytest.raises(ValueError, match="pieces are Fractions"):
+        check_cover([low, high])
+
+
+def test_weights_that_leave_no_room_in_64_bits_are_refused():
+    """Modes far out would count as near: 511 times 2^55 + 1 is more than 2^63."""
+    grid = Grid(Norm(((1,),), (1 + Q(1, 2 ** 55),)), ((1,),), (1, 1024))
+    with pytest.raises(ValueError, match="take rounder ones"):
+        grid.within(grid.inside[1], grid.reach / 2)
+
+
+@pytest.mark.parametrize("layers", [2, 256, 1024])
+def test_many_points_of_sigma(layers):
+    torus = dataclasses.replace(circle("0.001"), part=(Q(1, 10 ** 4),), piece=(Q(-1), Q(1)))
+    piece, = prove(torus, layers=layers).pieces
+    exact = 0.0011 * math.exp(piece.rho)
+    assert exact <= piece.residual < 2 * exact
 
 
 def test_choices_without_sense_are_refused():
