@@ -95,7 +95,7 @@ def _shrinks(problem, xstar, pool, seconds_left):
     """Does what is undecided become less with each DEEPER cuts?  If there are tori it does not:
     each has a successor of any x*, and cuts around these to LOOK_DEPTH may take minutes."""
     volume = inf
-    for cuts in range(LOOK_DEPTH - 3 * DEEPER, LOOK_DEPTH, DEEPER):
+    for cuts in range(max(DEEPER, LOOK_DEPTH - 3 * DEEPER), LOOK_DEPTH, DEEPER):
         grown = _surveys(pool, seconds_left, [_task(problem, xstar, cuts)], LOOK_LEAVES)
         if not grown or grown[0].cells:
             return False

@@ -143,19 +143,17 @@ def test_the_line():
 
 
 def test_what_is_checked_and_what_coq_proves():
-    """As many leaves as the proofs have now, but where it says that they are of version 3."""
-    head, *table = rows("trust.md", "epsilon_c")
-    assert head[3] == "leaves, version 4" and len(table) == 3
-    leaves = {}
-    for epsilon, _, _, count, *_ in table[:2]:
-        problem = given("trig%s.in" % epsilon.replace("0.0", ""), together=True)
-        leaves[epsilon] = sharper(problem).proved
-        assert leaves[epsilon] == number(count)
-    assert said("trust.md", r"epsilon_c <= 0.0141 \(([0-9,]+) leaves") == [leaves["0.0141"]]
+    """As many leaves as the proofs have now."""
+    head, *table = rows("trust.md", "epsilon")
+    assert [row[0] for row in table[:3]] == ["from 0.0142", "from 0.0141", "from 0.0140"]
+    counts = [number(row[1]) for row in table]
+    assert counts[:2] == [sharper(given(name, together=True)).proved
+                          for name in ("trig142.in", "trig141.in")]
+    assert said("trust.md", r"epsilon_c <= 0.0140 \(([0-9,]+) leaves") == [counts[2]]
     assert {name: number(count.split()[0]) for names, count, *_ in rows("trust.md", "theorem")[1:]
-            for name in re.findall("`(trig[0-9]+)`", names) if "version 3" not in names} == {
+            for name in re.findall("`(trig[0-9]+)`", names)} == {
         name: sharper(given(name + ".in", together=True)).proved for name in
-        ["trig%d" % n for n in (272, 274, 276, 278, 240, 180, 160, 152, 148, 142)]}
+        ["trig%d" % n for n in (272, 274, 276, 278, 240, 180, 160, 152, 148, 144, 142)]}
 
 
 def test_fewer_places():
