@@ -15,9 +15,10 @@ from converse.model.problem import LINE
 from converse.prover import run, starts, tree
 from converse.prover.links import (SPARE, Link, Links, Target, clusters, crests, hull_of,
                                    least_slope, linked_tree, part_problem, region_around)
-from converse.prover.native import Counts
+from converse.prover.native import Counts, Stop
 from converse.prover.proof import Part
 from converse.prover.resume import counted
+from converse.prover.workers import WorkerPool
 from converse.storage import files
 from converse.tori.find import find
 from converse.tori.rotation import read_rotation
@@ -363,6 +364,25 @@ def test_undecided_stays_undecided(easily):
     """Where there are tori, links prove nothing."""
     proof = prove(line("0.004"), method="loewner", depth=14)
     assert not proof.no_tori and proof.conclusion == "undecided"
+
+
+@pytest.mark.parametrize("problem,xstar,found", [
+    (Problem("0.5", 0, 0), ("1.570796", "1.570796"), False),
+    (line("0.005"), ("0.858028", "0.858028"), False),
+    (line("0.01391", "0.0280"), ("0.858028", "0.858028"), True),
+    (line("0.0139"), ("0.858028", "0.858028"), True)])
+def test_where_there_are_tori_no_starting_points_are_looked_for(problem, xstar, found, monkeypatch):
+    """What is undecided does not shrink there: the tree is not grown to the depth of clusters."""
+    depths, surveys = [], starts._surveys
+
+    def noted(pool, seconds_left, tasks, most):
+        depths.extend(task.settings.depth for task in tasks)
+        return surveys(pool, seconds_left, tasks, most)
+
+    monkeypatch.setattr(starts, "_surveys", noted)
+    with WorkerPool(None, 1, Stop()) as pool:
+        clusters_of = starts._look(problem, 24, xstar, pool, lambda: 60.0)[1]
+    assert bool(clusters_of) == (24 in depths) == found
 
 
 def test_an_undecided_part_is_no_proof(linked):
