@@ -366,12 +366,12 @@ def test_undecided_stays_undecided(easily):
     assert not proof.no_tori and proof.conclusion == "undecided"
 
 
-@pytest.mark.parametrize("problem,xstar,found", [
-    (Problem("0.5", 0, 0), ("1.570796", "1.570796"), False),
-    (line("0.005"), ("0.858028", "0.858028"), False),
-    (line("0.01391", "0.0280"), ("0.858028", "0.858028"), True),
-    (line("0.0139"), ("0.858028", "0.858028"), True)])
-def test_where_there_are_tori_no_starting_points_are_looked_for(problem, xstar, found, monkeypatch):
+@pytest.mark.parametrize("problem,x,found", [
+    (Problem("0.5", 0, 0), "1.570796", False), (line("0.005"), "0.858028", False),
+    (line("0.0139"), "0.858028", True), (Problem.patch(["0.02", "0.02", "0.5"], waves=[
+        (1, 0, Fraction(-1, 2)), (0, 1, Fraction(-1, 2)), (1, 1, Fraction(-1, 2))]),
+     "1.579997", True)])
+def test_where_there_are_tori_no_starting_points_are_looked_for(problem, x, found, monkeypatch):
     """What is undecided does not shrink there: the tree is not grown to the depth of clusters."""
     depths, surveys = [], starts._surveys
 
@@ -381,8 +381,8 @@ def test_where_there_are_tori_no_starting_points_are_looked_for(problem, xstar, 
 
     monkeypatch.setattr(starts, "_surveys", noted)
     with WorkerPool(None, 1, Stop()) as pool:
-        clusters_of = starts._look(problem, 24, xstar, pool, lambda: 60.0)[1]
-    assert bool(clusters_of) == (24 in depths) == found
+        left = starts._look(problem, 24, (x, x), pool, lambda: 60.0)[1]
+    assert depths == ([12, 16, 20, 24] if found else [12, 16]) and bool(left) == found
 
 
 def test_an_undecided_part_is_no_proof(linked):
