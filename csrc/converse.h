@@ -44,7 +44,8 @@ typedef struct {
 enum { CV_THESIS, CV_LOEWNER };                       /* methods */
 
 /* A prism of the tree: along axis k it is slice index[k] of the 2^cuts[k] equal slices of the
-   root.  Axes: 0, 1 the angles v0, v1; 2, 3, 4 the parameters t_1, t_2, t_3. */
+   root.  Axes: 0, 1 the angles v0, v1, less what the parameters shift them; 2, 3, 4 the parameters
+   t_1, t_2, t_3. */
 typedef struct {
     unsigned long long index[5];
     int cuts[5];
@@ -78,18 +79,20 @@ typedef struct {
 } cv_wave;
 
 /* A patch of parameter space, and the region of x_1 = frame v = (frame[0] v0 + frame[1] v1,
-   frame[2] v0 + frame[3] v1), whose determinant is not 0. */
+   frame[2] v0 + frame[3] v1), whose determinant is not 0.  The region may move with the parameters:
+   v_i lies within half[i] of angle[i] + t_1 shift[i][0] + t_2 shift[i][1] + t_3 shift[i][2]. */
 typedef struct {
     int n_waves, n_parameters;          /* 1 to 16, and 0 to 3 */
     const cv_wave *waves;
     const char *angle[2], *half[2];     /* centre and half-width of v0, v1 in units of pi */
+    const char *shift[2][3];            /* likewise; NULL: none */
     int frame[4];
     int odd;                            /* is V odd about some point?  Else nothing is at once */
 } cv_problem;
 
 /* A new search; it covers an enclosure of the problem's region.  The thesis's waves are (1, 0),
    (0, 1) and (1, 1) in this order, without phases; its method takes only these, as they are, each
-   with a parameter of its own, and no other frame.
+   with a parameter of its own, no other frame and no shifts.
    xstar: the two coordinates of the starting point, or NULL to have one chosen.
    On success *s must be freed with cv_search_free.  It begins with the root as its only prism. */
 int cv_search_new(cv_search **s, const cv_problem *problem, const char *const xstar[2], int method,

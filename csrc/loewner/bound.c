@@ -181,7 +181,7 @@ INLINE void sum_up(batch *w, sums *result, mask active, int columns)
                 t.mass += mag(steep) * q->rad[i];
                 if (j == ORIGIN)
                     t.rest += mag(steep) * q->rad[i];
-                for (int k = 0; k < 2 && j > ORIGIN; k++)
+                for (int k = 0; k < columns && j > ORIGIN; k++)
                     t.slope[k] += steep * q->lin[i][k];
             }
             t.rounding += left * q->rad[i];

@@ -31,10 +31,11 @@ int loewner_at_once(const loewner *w, const double x[2], int at_end);
 /* The upper bound of the largest eigenvalue over the torus that belongs to the whole root. */
 double loewner_largest(const loewner *w);
 
-/* The prism of a cell as doubles have it.  0: it is too thin for them, or its parameters are too
-   large. */
+/* The prism of a cell as doubles have it: v + width e + shift e, with the symbols e of v0, v1 and
+   of the parameters.  0: it is too thin for them, or its parameters are too large. */
 typedef struct {
-    double v[2], width[2], p[SLOTS], part[SLOTS][PARAMETERS], err_amp[SLOTS], l;
+    double v[2], width[2], shift[2][PARAMETERS];
+    double p[SLOTS], part[SLOTS][PARAMETERS], err_amp[SLOTS], l;
 } loewner_cell;
 int loewner_prism(const loewner *w, const cv_cell *cell, loewner_cell *c);
 

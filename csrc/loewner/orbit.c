@@ -192,7 +192,7 @@ static void step(const batch *w, point *next, point *q, const point *o, int is_f
     finish(w, next);
 }
 
-/* The two points that the prisms give. */
+/* The two points that the prisms give.  What their roundings lose is in the widths: set_angles. */
 static void begin(batch *w)
 {
     point *const origin = w->orbit + ORIGIN;
@@ -207,6 +207,8 @@ static void begin(batch *w)
         origin[1].x[i] = frame[0] * w->v[0] + frame[1] * w->v[1];
         for (int k = 0; k < 2; k++)
             origin[1].lin[i][k] = frame[k] * w->width[k];
+        for (int k = 2; k < w->problem->columns; k++)
+            origin[1].lin[i][k] = frame[0] * w->shift[0][k] + frame[1] * w->shift[1][k];
         origin[i].reached = ~none();
     }
     measure(w, origin + 1, w->problem->columns);

@@ -10,10 +10,10 @@
 
        Q = sum n[j].beta(x[j])n[j] - 2 sum n[j].n[j+1] - l (|n[s]|^2 + |n[t]|^2) < 0.           (1)
 
-   A prism is a set of orbits: x[0] = x*, x[1] in a rectangle, the amplitudes on an affine image of
-   the parameters' box.  orbit.c follows it, witness.c chooses n for the orbit of its centre,
-   bound.c bounds (1) for that n over all of it, and try.c does one after the other until it is
-   proved or hopeless.
+   A prism is a set of orbits: x[0] = x*, x[1] in a rectangle, which may move with the parameters,
+   the amplitudes on an affine image of the parameters' box.  orbit.c follows it, witness.c chooses n
+   for the orbit of its centre, bound.c bounds (1) for that n over all of it, and try.c does one
+   after the other until it is proved or hopeless.
 
    Lanes.  What is a vec here is a number of each of the prisms at hand, and all of them go through
    the same operations; where their orbits differ in length, masks say which lanes are active.  No
@@ -77,7 +77,7 @@ typedef struct {
     vec h[WAVES], err_amp[WAVES];               /* h: the sum of |part|; err_amp: rounding */
     vec weight[WAVES];                  /* of the rad along a wave: see weigh_waves */
     vec size[WAVES];                            /* |p| + h + err_amp */
-    vec v[2], width[2], l;
+    vec v[2], width[2], shift[2][COLUMNS], l;   /* shift[i][k]: of v_i with column k, from 2 on */
     /* what bound.c finds */
     vec slope[COLUMNS], square[PAIRS], cubic[COLUMNS][PAIRS];           /* Q's part with signs */
     vec bound, rounding, share[COLUMNS];

@@ -53,6 +53,10 @@ int loewner_prism(const loewner *w, const cv_cell *cell, loewner_cell *c)
     for (int i = 0; i < 2; i++) {
         c->v[i] = w->centre[i] + w->half[i] * at_axis[i];
         c->width[i] = w->half[i] * part[i] + w->err_v[i];
+        for (int m = 0; m < w->n_parameters; m++) {
+            c->v[i] += w->shift[i][m] * at_axis[2 + m];
+            c->shift[i][m] = w->shift[i][m] * part[2 + m];
+        }
     }
     for (int m = 0; m < w->n_parameters; m++) {
         low[m] = 0.5 * (1.0 + at_axis[2 + m] - part[2 + m]);
@@ -78,6 +82,8 @@ int cut_helps(const loewner *w, const cv_cell *cell, int axis)
 
     for (int i = 0; i < w->waves && axis >= 2; i++)
         wide = wide || ldexp(fabs(w->part[i][axis - 2]), 2 - cell->cuts[axis]) > w->err_amp[i];
+    for (int i = 0; i < 2 && axis >= 2; i++)
+        wide = wide || ldexp(fabs(w->shift[i][axis - 2]), 2 - cell->cuts[axis]) > w->err_v[i];
     return wide && cell->cuts[axis] < MAX_CUTS;
 }
 
@@ -127,18 +133,29 @@ static const engine *fastest_engine(int general)
     return general ? &general_scalar : &engine_scalar;
 }
 
-/* The angles, and x*.  x_1 = frame v, and the columns frame width, are off by less than 4 u of the
-   sums of absolute values but for the identity, which is exact; v and width take in that, too. */
+/* The angles, and x*.  With S the sum of |shift|, in units u: centre, half and shifts are off by 8
+   of themselves (near), products with shares of a cell, |at_axis| + part <= 1, by 1, those with
+   part by nothing, and the at most 4 sums by 1 each of (|centre| + half + S).  So v and width and
+   shifts of a cell are off by 13 of that, width by 1 more of itself and err_v, where err_v has 32.
+   x_1 = frame v, and the columns frame width and frame shift, are off by less than 2 |frame| v, 1
+   |frame| half and 2 |frame| S, of which off has 8 of (|centre| + half + S), but for the identity,
+   which is exact; v and width take in that, too. */
 static void set_angles(loewner *w, const patch *problem)
 {
     const int *const f = problem->frame;
     const double det = abs(f[0] * f[3] - f[1] * f[2]);
-    double off[2] = { 0.0, 0.0 };
+    double off[2] = { 0.0, 0.0 }, size[2];
 
+    w->n_parameters = problem->n_parameters;
     for (int i = 0; i < 2; i++) {
         w->centre[i] = near(problem->angle[i]);
         w->half[i] = near(problem->half[i]);
-        w->err_v[i] = 0x1p-48 * (fabs(w->centre[i]) + w->half[i]);
+        size[i] = fabs(w->centre[i]) + w->half[i];
+        for (int m = 0; m < w->n_parameters; m++) {
+            w->shift[i][m] = near(problem->shift[i][m]);
+            size[i] += fabs(w->shift[i][m]);
+        }
+        w->err_v[i] = 0x1p-48 * size[i];
         w->xstar[i] = near(problem->xstar[i]);
         w->xstar_err[i] = 0x1p-49 * fabs(w->xstar[i]);
         for (int k = 0; k < 2; k++)
@@ -147,7 +164,7 @@ static void set_angles(loewner *w, const patch *problem)
     w->seen[0][0] = w->seen[1][1] = 1.0;
     for (int i = 0; i < 2 && !is_identity(f); i++)
         for (int k = 0; k < 2; k++)
-            off[i] += 0x1p-50 * fabs(w->frame[i][k]) * (fabs(w->centre[k]) + w->half[k]);
+            off[i] += 0x1p-50 * fabs(w->frame[i][k]) * size[k];
     for (int i = 0; i < 2; i++)         /* |frame^-1| off */
         w->err_v[i] +=
             (fabs(w->frame[1 - i][1 - i]) * off[i] + fabs(w->frame[i][1 - i]) * off[1 - i]) / det;
@@ -175,10 +192,9 @@ static void add_wave(loewner *w, const patch *problem, int given, int general)
     w->waves += w->present[i] || !general;
 }
 
-/* The waves, and the columns of their parameters. */
+/* The waves, and the columns of the parameters that move them or the region. */
 static void set_wave_slots(loewner *w, const patch *problem, int general)
 {
-    w->n_parameters = problem->n_parameters;
     w->columns = 2;
     w->axis[1] = 1;
     w->most_k = 1.0;
@@ -189,7 +205,7 @@ static void set_wave_slots(loewner *w, const patch *problem, int general)
     for (int i = 0; i < problem->n_waves; i++)
         add_wave(w, problem, i, general);
     for (int m = 0; m < w->n_parameters; m++) {         /* what does not move needs no symbol */
-        int counts = 0;
+        int counts = w->shift[0][m] != 0.0 || w->shift[1][m] != 0.0;
         for (int i = 0; i < w->waves; i++) {
             w->moves[i][w->columns] = w->part[i][m] != 0.0;
             counts |= w->moves[i][w->columns];
@@ -201,8 +217,9 @@ static void set_wave_slots(loewner *w, const patch *problem, int general)
 
 /* Where all waves are m q, q primitive, s = q.x moves by itself: s' = 2s - s(o) + |q|^2 sum m p cos
    y, and vectors n = q nu make of Q |q|^2 times what it is for waves (m, 0) of amplitude |q|^2 p at
-   s.  So these may be taken for them, if the frame tells s apart: then s_1 is a multiple of v1, and
-   v0 is not felt.  s* = q.x* and the products with |q|^2 are rounded by u or two more. */
+   s.  So these may be taken for them, if the frame tells s apart: then s_1 is a multiple of v1, with
+   what shifts it, and v0 is not felt.  s* = q.x* and the products with |q|^2 are rounded by u or
+   two more. */
 static void straighten(loewner *w)
 {
     const double *const k = w->k[2], common = divisor(fabs(k[0]), fabs(k[1]));

@@ -28,6 +28,7 @@ extern const engine general_scalar, general_baseline, general_avx2, general_avx5
 
 struct loewner {
     double centre[2], half[2], err_v[2], frame[2][2];           /* of v0, v1 */
+    double shift[2][PARAMETERS];        /* what a parameter adds to these centres where it is 1 */
     double seen[2][2];                  /* coordinates that waves are given in: see straighten */
     int waves;                          /* slots in use; waves.h says what the first two are */
     double k[SLOTS][2], phase[SLOTS], square_k[SLOTS], most_k; /* (|k0| + |k1|)^2, largest sum */

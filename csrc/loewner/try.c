@@ -38,6 +38,8 @@ static void set_lane(batch *w, int k, const loewner_cell *c)
     for (int i = 0; i < 2; i++) {
         put_at(&w->v[i], k, c->v[i]);
         put_at(&w->width[i], k, c->width[i]);
+        for (int column = 2; column < w->problem->columns; column++)
+            put_at(&w->shift[i][column], k, c->shift[i][w->problem->axis[column] - 2]);
     }
     put_at(&w->l, k, c->l);
     weigh_waves(w, k);

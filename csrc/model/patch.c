@@ -19,6 +19,8 @@ static void for_each(patch *p, void (*what)(apm_t))
     for (int j = 0; j < 2; j++) {
         what(p->angle[j]);
         what(p->half[j]);
+        for (int m = 0; m < PARAMETERS; m++)
+            what(p->shift[j][m]);
         what(p->xstar[j]);
     }
 }
@@ -106,11 +108,24 @@ int patch_read(patch *p, const cv_problem *given)
             status = read_number(p->half[j], given->half[j]);
         if (status == CV_OK && apm_sgn(p->half[j]) < 0)
             status = CV_EARGUMENT;
+        for (int m = 0; m < p->n_parameters && status == CV_OK; m++)
+            if (given->shift[j][m] != NULL)
+                status = read_number(p->shift[j][m], given->shift[j][m]);
     }
     return status;
 }
 
 /* ---- what it is */
+
+int has_shifts(const patch *p)
+{
+    int some = 0;
+
+    for (int i = 0; i < 2; i++)
+        for (int m = 0; m < p->n_parameters; m++)
+            some = some || apm_sgn(p->shift[i][m]) != 0;
+    return some;
+}
 
 int is_identity(const int frame[4])
 {
@@ -164,7 +179,7 @@ static int exchangeable(const patch *p, const apm_struct *const amplitude[MOST_W
 int patch_symmetric(const patch *p)
 {
     const apm_struct *vector[MOST_WAVES];
-    int good = is_identity(p->frame) && apm_cmp(p->angle[0], p->angle[1]) == 0 &&
+    int good = is_identity(p->frame) && !has_shifts(p) && apm_cmp(p->angle[0], p->angle[1]) == 0 &&
                apm_cmp(p->half[0], p->half[1]) == 0;
 
     for (int i = 0; i < p->n_waves; i++)

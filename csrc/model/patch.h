@@ -12,7 +12,7 @@ enum { MOST_WAVES = 16, PARAMETERS = 3 };
 typedef struct {
     int n_waves, n_parameters, k[MOST_WAVES][2], frame[4], odd;
     apm_t phase[MOST_WAVES], amplitude[MOST_WAVES], part[MOST_WAVES][PARAMETERS];
-    apm_t angle[2], half[2], xstar[2];
+    apm_t angle[2], half[2], shift[2][PARAMETERS], xstar[2];
 } patch;
 
 void patch_init(patch *p);
@@ -29,7 +29,11 @@ int thesis_waves(const patch *p);
 /* And has each of them a parameter of its own? */
 int thesis_parameters(const patch *p);
 
-/* Does the exchange of the coordinates map the patch and the region of x_1 to themselves? */
+/* Does the region of x_1 move with the parameters? */
+int has_shifts(const patch *p);
+
+/* Does the exchange of the coordinates map the patch and the region of x_1 to themselves?  Of a
+   region that moves nobody asks: 0. */
 int patch_symmetric(const patch *p);
 
 /* The amplitudes in doubles, in the middle or, at_end, where the parameters are 1. */
@@ -38,5 +42,9 @@ void patch_amplitudes(const patch *p, int at_end, double to[MOST_WAVES]);
 /* region.c: centre +- half, in units of pi, becomes an interval in radians that encloses it.
    pi: cut off after dp places, to which the results are rounded. */
 void to_radians(apm_t centre, apm_t half, const apm_t pi, long dp);
+
+/* The same of a shift, which is multiplied by t, |t| <= 1: what it is off is added to half, which
+   is in radians already. */
+void shift_to_radians(apm_t shift, apm_t half, const apm_t pi, long dp);
 
 #endif

@@ -27,3 +27,25 @@ void to_radians(apm_t centre, apm_t half, const apm_t pi, long dp)
     apm_clear(off);
     apm_clear(exact);
 }
+
+void shift_to_radians(apm_t shift, apm_t half, const apm_t pi, long dp)
+{
+    apm_t ulp, off, exact;
+
+    if (apm_sgn(shift) == 0)
+        return;
+    apm_init(ulp);
+    apm_init(off);
+    apm_init(exact);
+    apm_set_si(ulp, 1, -dp);                            /* pi < pi cut off + ulp */
+    apm_abs(off, shift);
+    apm_mul(off, off, ulp);                             /* how far |shift pi| may be off */
+    apm_mul(exact, shift, pi);
+    apm_round(shift, exact, dp, APM_TRUNC);
+    if (apm_cmp(shift, exact) != 0)
+        apm_add(off, off, ulp);
+    apm_add(half, half, off);
+    apm_clear(ulp);
+    apm_clear(off);
+    apm_clear(exact);
+}

@@ -103,8 +103,11 @@ static void set_up_method(void *data)
 
     apm_init(pi);
     apm_pi(pi, pi_dp);
-    for (int j = 0; j < 2; j++)
+    for (int j = 0; j < 2; j++) {
         to_radians(s->problem.angle[j], s->problem.half[j], pi, pi_dp);
+        for (int m = 0; m < PARAMETERS; m++)
+            shift_to_radians(s->problem.shift[j][m], s->problem.half[j], pi, pi_dp);
+    }
     apm_clear(pi);
     s->status = s->method->prepare(&s->work, &s->problem, &s->precision, s->constants, &s->at_once);
 }

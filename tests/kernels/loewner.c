@@ -3,7 +3,8 @@
    Those of the thesis's waves begin with BOX numbers: centres and half-widths of a, b, c, v0, v1
    (as set_patch says), x* and together (0 or 1).  Those of any waves begin with the numbers of
    waves, at most 4, and of parameters; seven numbers of each wave, k0, k1, phase in radians,
-   amplitude and three parts; centre and half-width of v0 and of v1, the frame and x*. */
+   amplitude and three parts; centre and half-width of v0 and of v1, the frame, x*, and three shifts
+   each of v0 and of v1. */
 #include <math.h>
 #include <string.h>
 #include <time.h>
@@ -83,19 +84,25 @@ static double *show(double *y, const known_point *p, int slots)
     return y;
 }
 
-/* Index and cuts of five axes -> centres and widths of v0, v1; p, h and err_amp of a, b, c; l; B
-   at the corners of the parameters (together: at two), the lower end of a first. */
-static int k_cell(const request *r, double y[])
+static cv_cell cell_of(const request *r)
 {
     cv_cell cell = { { 0, 0, 0, 0, 0 }, { 0, 0, 0, 0, 0 }, 0 };
-    loewner_cell prism;
-    int good;
 
     for (int j = 0; j < 5; j++) {
         cell.index[j] = (unsigned long long)fabs(r->more[j]);
         cell.cuts[j] = (int)fmin(fabs(r->more[5 + j]), 100.0);
     }
-    good = loewner_prism(r->w, &cell, &prism);
+    return cell;
+}
+
+/* Index and cuts of five axes -> centres and widths of v0, v1; p, h and err_amp of a, b, c; l; B
+   at the corners of the parameters (together: at two), the lower end of a first. */
+static int k_cell(const request *r, double y[])
+{
+    const cv_cell cell = cell_of(r);
+    loewner_cell prism;
+    const int good = loewner_prism(r->w, &cell, &prism);
+
     memcpy(y, prism.v, sizeof prism.v);
     memcpy(y + 2, prism.width, sizeof prism.width);
     for (int j = 0; j < 3; j++) {
@@ -105,6 +112,23 @@ static int k_cell(const request *r, double y[])
     }
     y[13] = prism.l;
     memcpy(y + 14, r->w->corner, sizeof r->w->corner);
+    return good;
+}
+
+/* Index and cuts of five axes -> centres and widths of v0, v1, three shifts of each, of how many
+   columns the prisms are, and would a cut of each axis help? */
+static int k_shifted(const request *r, double y[])
+{
+    const cv_cell cell = cell_of(r);
+    loewner_cell prism;
+    const int good = loewner_prism(r->w, &cell, &prism);
+
+    memcpy(y, prism.v, sizeof prism.v);
+    memcpy(y + 2, prism.width, sizeof prism.width);
+    memcpy(y + 4, prism.shift, sizeof prism.shift);
+    y[10] = r->w->columns;
+    for (int axis = 0; axis < 5; axis++)
+        y[11 + axis] = cut_helps(r->w, &cell, axis);
     return good;
 }
 
@@ -198,6 +222,7 @@ static const row kernels[] = {
     { "loewner_sites", 2, SITE * SHOWN, 0, 0, SITES, SITES, k_sites },
     { "waves_bound", 3, 5 + 2 * SITES, 1, 0, SITES, SITES, k_bound },
     { "waves_sites", 2, ANY_SITE * ANY_SHOWN, 1, 0, SITES, SITES, k_sites },
+    { "waves_cell", 10, 16, 1, 0, 0x1p60, 0x1p60, k_shifted },
     { "waves_largest", 0, 1, 1, 1, SITES, SITES, k_largest },
 };
 
@@ -221,6 +246,8 @@ static void set_patch(patch *b, apm_t in[], int together, const apm_t zero)
     for (int i = 0; i < 2; i++) {
         *b->angle[i] = *in[3 + i];
         *b->half[i] = *in[8 + i];
+        for (int m = 0; m < b->n_parameters; m++)
+            *b->shift[i][m] = *zero;
         *b->xstar[i] = *in[10 + i];
     }
 }
@@ -233,7 +260,7 @@ static int set_any(patch *b, const question *q, int more)
     const int parameters = q->nin < 2 ? 0 : (int)apm_get_d(in[1]);
 
     if (waves < 1 || waves > MOST_SHOWN || parameters < 0 || parameters > PARAMETERS ||
-        q->nin != rest + 10 + more)
+        q->nin != rest + 16 + more)
         return 0;
     memset(b, 0, sizeof *b);
     b->n_waves = waves;
@@ -251,6 +278,8 @@ static int set_any(patch *b, const question *q, int more)
         *b->angle[j] = *in[rest + 2 * j];
         *b->half[j] = *in[rest + 2 * j + 1];
         *b->xstar[j] = *in[rest + 8 + j];
+        for (int m = 0; m < PARAMETERS; m++)
+            *b->shift[j][m] = *in[rest + 10 + PARAMETERS * j + m];
     }
     for (int j = 0; j < 4; j++)
         b->frame[j] = (int)apm_get_d(in[rest + 4 + j]);

@@ -25,9 +25,9 @@ UNIT = Fraction(1, 2 ** 53)
 THESIS = ((1, 0), (0, 1), (1, 1))
 
 
-def draw(rng, kinds=KINDS):
+def draw(rng, kinds=KINDS, shifts=False):
     """A random patch: k, phase in radians, amplitude and parts of each wave; v0, v1, frame and
-    x*."""
+    x*; by how much v0 and v1 are shifted by three parameters, if at all."""
     size = 10.0 ** rng.uniform(-2, 0)
     parameters = rng.randrange(4)
 
@@ -40,10 +40,15 @@ def draw(rng, kinds=KINDS):
              for _ in range(rng.randrange(1, MOST + 1))]
     centre = [rng.choice([rng.uniform(-7, 7), 1e-9]) for _ in range(2)]
     half = [rng.choice([0.0, 10.0 ** rng.uniform(-13, -1)]) for _ in range(2)]
-    return SimpleNamespace(
+    patch = SimpleNamespace(
         waves=[(*w[:2], *map(Fraction, w[2:])) for w in waves], parameters=parameters,
         centre=[*map(Fraction, centre)], half=[*map(Fraction, half)], frame=rng.choice(FRAMES),
-        xstar=[Fraction(rng.choice([rng.uniform(-4, 4), 0.8547])) for _ in range(2)])
+        xstar=[Fraction(rng.choice([rng.uniform(-4, 4), 0.8547])) for _ in range(2)],
+        shifts=[[Fraction(0)] * 3 for _ in range(2)])
+    for row in patch.shifts if shifts else ():
+        row[:parameters] = [Fraction(rng.choice([0.0, rng.choice([-1, 1]) * 10.0 ** rng.uniform(
+            -13, -1)])) for _ in range(parameters)]
+    return patch
 
 
 def straightened(patch):
@@ -58,14 +63,15 @@ def arguments(patch):
     """The patch as kernels take it."""
     angles = [x for pair in zip(patch.centre, patch.half) for x in pair]
     return [len(patch.waves), patch.parameters, *(x for w in patch.waves for x in w), *angles,
-            *patch.frame, *patch.xstar]
+            *patch.frame, *patch.xstar, *itertools.chain(*patch.shifts)]
 
 
 def inside(rng, patch):
     """A random exact point of the patch, often at its edge: five symbols, amplitudes, x_1."""
     e = [Fraction(rng.choice([-1, 1, 0, rng.uniform(-1, 1)])) for _ in range(5)]
     p = [w[3] + sum(t * g for t, g in zip(e[2:], w[4:])) for w in patch.waves]
-    v = [c + h * s for c, h, s in zip(patch.centre, patch.half, e)]
+    v = [c + h * s + sum(map(Fraction.__mul__, row, e[2:]))
+         for c, h, s, row in zip(patch.centre, patch.half, e, patch.shifts)]
     f = patch.frame
     return e, p, (f[0] * v[0] + f[1] * v[1], f[2] * v[0] + f[3] * v[1])
 
@@ -148,26 +154,29 @@ def modulo(x):
     return x - 2 * mpmath.pi * mpmath.nint(x / (2 * mpmath.pi))
 
 
-def symbols(first, v):
-    """Those of v0 and v1 for which the core's first point is v: its sides are a little longer."""
+def symbols(first, v, t=()):
+    """Those of v0 and v1 for which the core's first point is v, where the parameters' are t: its
+    sides are a little longer."""
     (a, b), (c, d) = (row[:2] for row in first.lin)
-    x, y = (mp(end) - centre for end, centre in zip(v, first.x))
+    x, y = (mp(end) - centre - sum(shift * mp(e) for shift, e in zip(row[2:], t))
+            for end, centre, row in zip(v, first.x, first.lin))
     result = [(d * x - b * y) / (a * d - b * c), (a * y - c * x) / (a * d - b * c)]
     assert all(abs(s) <= 1 for s in result)
     return result
 
 
-def test_orbits_stay_within_reach():
-    rng = rng_for("waves orbits")
+@pytest.mark.parametrize("shifts", [False, True])
+def test_orbits_stay_within_reach(shifts):
+    rng = rng_for("waves orbits" + " with shifts" * shifts)
     followed = tight = slanted = 0
     for _ in range(CASES // 2):
-        patch = draw(rng)
+        patch = draw(rng, shifts=shifts)
         n = rng.choice([-1, 1]) * rng.randrange(1, 7)
         found = not straightened(patch) and sites(patch, min(n, 0), max(n, 1))
         if not found or max(found[n].rad) > 3:
             continue
         q, (e, p, v) = found[n], inside(rng, patch)
-        e = symbols(found[1], v) + [*map(mp, e[2:])]
+        e = symbols(found[1], v, e[2:]) + [*map(mp, e[2:])]
         away = [modulo(y - near)
                 for y, near in zip(orbit(patch, p, v, min(n, 0), max(n, 1))[n], q.x)]
         straight = [sum(c * s for c, s in zip(row, e)) for row in q.lin]
@@ -186,10 +195,10 @@ def test_orbits_stay_within_reach():
     assert followed > CASES // 4 and tight > 0.2 * followed and slanted > CASES // 40
 
 
-def variations(rng, cases):
+def variations(rng, cases, shifts):
     """Yields patch, the core's bound, and the true values at three random points."""
     for _ in range(cases):
-        patch = draw(rng)
+        patch = draw(rng, shifts=shifts)
         if straightened(patch):
             continue
         s, t = -rng.randrange(0, 5), rng.randrange(1, 6)
@@ -205,10 +214,12 @@ def variations(rng, cases):
                 for _ in range(3)]
 
 
-def test_the_bound_holds():
+@pytest.mark.parametrize("shifts", [False, True])
+def test_the_bound_holds(shifts):
     """The second variation with the core's vectors, along true orbits, is below its bound."""
     seen = proved = close = 0
-    for patch, bound, totals in variations(rng_for("waves bound"), CASES // 2):
+    rng = rng_for("waves bound" + " with shifts" * shifts)
+    for patch, bound, totals in variations(rng, CASES // 2, shifts):
         assert max(totals) <= bound, patch
         seen += 1
         proved += bound < 0
@@ -337,12 +348,13 @@ def test_convexity_bounds_it_between_the_corners():
 
 # ---- whole searches
 
-def patch_of(waves, amplitude, parts=(), frame=(1, 0, 0, 1), odd=True, v0=(0, 2), v1=(0, 2)):
+def patch_of(waves, amplitude, parts=(), frame=(1, 0, 0, 1), odd=True, v0=(0, 2), v1=(0, 2),
+             shifts=()):
     return SimpleNamespace(
         waves=tuple((*w[:2], Fraction(w[2]) if len(w) > 2 else Fraction(0)) for w in waves),
         amplitude=tuple(map(Fraction, amplitude)), frame=frame, odd=odd or None,
         parts=tuple(tuple(map(Fraction, g)) for g in parts), v0=v0, v1=v1,
-        searched=range(len(waves)))
+        searched=range(len(waves)), shifts=shifts)
 
 
 def searched(patch, xstar=None, leaves=20000):
