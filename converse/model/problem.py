@@ -6,7 +6,7 @@ from functools import cached_property
 from math import gcd
 from typing import TYPE_CHECKING, Optional, Sequence, Tuple, Union
 
-from .exact import Ends, Number, exact, is_decimal, outward, range_text
+from .exact import Ends, Number, decimal_text, exact, is_decimal, outward, range_text
 from .lattice import echelon
 from .potential import Wave, sum_text
 
@@ -23,6 +23,7 @@ IDENTITY = 1, 0, 0, 1
 Range = Tuple[Number, Number]           # what becomes of it: Ends
 Frame = Tuple[int, int, int, int]
 Numbers = Tuple[Fraction, ...]
+Shifts = Tuple[Tuple[Fraction, Fraction], ...]         # of v0 and v1, by each parameter
 
 
 class InputError(ValueError):
@@ -55,6 +56,9 @@ class Problem:
     the torus, chosen, with the region that stands for it (region.py); else the identity.  Axes that
     would be chosen anyhow become None; `axes_named` tells that there were some.
     alone: the coordinate that is examined alone, 0 or 1, or "no"; None: chosen.  `factor` has it.
+    shifts: of each parameter, by how much it moves v0 and v1 at its upper end, in units of pi: the
+    region of t is that of v0 and v1, moved by sum of t[m] shifts[m].  (): none.  Only regions of
+    parts have some (links.part_problem); no input, and no proof as a whole.
 
     TypeError, ValueError: an argument is not what it must be; the text says which, and why.
     """
@@ -69,6 +73,7 @@ class Problem:
     _patch: Optional[Tuple[Tuple[Wave, ...], Numbers, Tuple[Numbers, ...]]] = None
     axes: Optional[Frame] = None
     alone: Union[int, str, None] = None
+    shifts: Shifts = ()
     axes_named: bool = field(default=False, init=False, compare=False)
 
     if TYPE_CHECKING:                   # what is given; above is what becomes of it
@@ -77,7 +82,8 @@ class Problem:
                      v0: Union[Range, Number] = (0, 2), v1: Union[Range, Number] = (0, 2),
                      comments: Union[str, Sequence[str]] = (), together: bool = False,
                      _patch: Optional[tuple] = None, axes: Optional[Frame] = None,
-                     alone: Union[int, str, None] = None) -> None: ...
+                     alone: Union[int, str, None] = None,
+                     shifts: Sequence[Sequence[Number]] = ()) -> None: ...
 
     def __post_init__(self) -> None:
         for name in NAMES if self.by_ranges else NAMES[3:]:
@@ -95,6 +101,7 @@ class Problem:
                 raise ValueError("a, b, c and together do not go with a patch")
             self._normalize()
         self._check_choices()
+        self._check_shifts()
 
     @classmethod
     def around(cls, centre: Sequence[Number], half: Sequence[Number],
@@ -170,9 +177,31 @@ class Problem:
             if self.alone == ("no" if self._best_alone() is None else self._best_alone()):
                 object.__setattr__(self, "alone", None)
 
+    def _check_shifts(self):
+        """Exact numbers, a pair for each parameter, or () if all of them are 0."""
+        try:
+            shifts = [tuple(pair) for pair in self.shifts]
+        except TypeError:
+            raise TypeError("shifts are pairs of numbers") from None
+        if shifts and len(shifts) != len(self.parts):
+            raise ValueError("there are shifts by %d parameters for %d"
+                             % (len(shifts), len(self.parts)))
+        for m, pair in enumerate(shifts):
+            if len(pair) != 2:
+                raise ValueError("the shifts by a parameter are of v0 and v1, not %d numbers"
+                                 % len(pair))
+            shifts[m] = tuple(_exact_of("a shift", x) for x in pair)
+            for x in shifts[m]:
+                if not is_decimal(x):
+                    raise ValueError("a shift: %s is no finite decimal" % x)
+        object.__setattr__(self, "shifts", tuple(shifts) if any(map(any, shifts)) else ())
+
     def __repr__(self):
         ranges = ["%s=%s" % (name, range_text(*getattr(self, name))) for name in NAMES
                   if getattr(self, name) is not None]
+        if self.shifts:
+            ranges.append("shifts=(%s)" % "; ".join(
+                "%s %s" % tuple(map(decimal_text, pair)) for pair in self.shifts))
         if self.by_ranges:
             return "Problem(%s%s)" % (", ".join(ranges), ", together" if self.together else "")
         return "Problem.patch(%s, %s)" % (", ".join(

@@ -27,7 +27,10 @@ Point = Tuple[str, str]
 
 
 def symmetries_used(problem: Problem, xstar: Optional[Point]) -> Optional[List[str]]:
-    """By which symmetries the region stands for the whole torus; None: it does not."""
+    """By which symmetries the region stands for the whole torus; None: it does not, or has shifts.
+    """
+    if problem.shifts:
+        return None
     period0, period1 = periods(problem.frame)
     (low0, high0), (low1, high1) = problem.v0, problem.v1
     used = []
@@ -61,7 +64,8 @@ def exchangeable(problem: Problem, xstar: Point) -> bool:
 def skips(problem: Problem, xstar: Point) -> bool:
     """May the search skip prisms for the sake of their mirror images, which must then be proved,
     and not be linked to other starting points?"""
-    return problem.frame == IDENTITY and problem.v0 == problem.v1 and exchangeable(problem, xstar)
+    return problem.frame == IDENTITY and problem.v0 == problem.v1 and not problem.shifts and \
+        exchangeable(problem, xstar)
 
 
 def _sums(waves):

@@ -12,7 +12,7 @@ from itertools import product
 from typing import Dict, List, Optional, Sequence, Tuple
 
 from ..model.exact import Ends, pi_bounds, root_bounds, sine_bounds
-from ..model.problem import Problem
+from ..model.problem import Problem, Shifts
 from . import tree
 from .proof import Part
 
@@ -65,11 +65,13 @@ class Link:
     @classmethod
     def between(cls, problem: Problem, largest: Fraction, here: Tuple[str, str],
                 there: Tuple[str, str]) -> "Link":
-        """Lemma 10 along the segment in pieces.  largest: a bound of B, of all parameters of the
-        problem."""
+        """Lemma 10 along the segment in pieces; of a point and itself nothing but 0.  largest: a
+        bound of B, of all parameters of the problem."""
         start, end = ([Fraction(x) for x in point] for point in (here, there))
         step = [(b - a) / PIECES for a, b in zip(start, end)]
         l, inverse = least_slope(largest), _inverse(problem.frame)
+        if start == end:                # roots are rounded up
+            return cls(((Fraction(0), Fraction(0)),) * 2)
         middle, radius = [Fraction(0)] * 2, [Fraction(0)] * 2
         for piece in range(PIECES):
             centre = [a + d * (piece + Fraction(1, 2)) for a, d in zip(start, step)]
@@ -87,7 +89,8 @@ class Link:
         return (box[0][0] + a0, box[0][1] + b0), (box[1][0] + a1, box[1][1] + b1)
 
     def leads_into(self, box: Box, region: Box) -> bool:
-        """Does v' lie in the region if v lies in the box, with something to spare?"""
+        """Does v' lie in the region if v lies in the box, with something to spare?  Where the
+        region moves, the box is that of v as seen from it: tree.prisms, `still`."""
         return all(a <= low - SPARE and high + SPARE <= b
                    for (low, high), (a, b) in zip(self.image(box), region))
 
@@ -189,12 +192,13 @@ class Target:
 
     letter: str
     links: Links
-    region: Box
+    region: Box                         # in the middle of the parameters
+    shifts: Shifts = ()
 
 
-def part_problem(problem: Problem, region: Box) -> Problem:
-    """The same problem with another region."""
-    return replace(problem, v0=region[0], v1=region[1], axes=problem.frame)
+def part_problem(problem: Problem, region: Box, shifts: Shifts = ()) -> Problem:
+    """The same problem with another region, which moves by these shifts."""
+    return replace(problem, v0=region[0], v1=region[1], axes=problem.frame, shifts=shifts)
 
 
 def clusters(problem: Problem, text: str) -> List[List[Cell]]:
@@ -233,8 +237,12 @@ def _joined(cells: Sequence[Cell], sizes: Sequence[Fraction]) -> List[List[Cell]
     return found
 
 
-def hull_of(problem: Problem, cells: Sequence[Cell]) -> Box:
-    """The rectangle that holds the cells."""
+def hull_of(problem: Problem, cells: Sequence[Cell], still: Shifts = ()) -> Box:
+    """The rectangle that holds the cells for all their parameters; still: as seen from what moves
+    by such shifts."""
+    if problem.shifts or any(map(any, still)):
+        return _around(map(_boxes(problem, still), cells))
+
     def side(axis: int) -> Ends:
         middle, half = problem.centre[axis - 2], problem.half[axis - 2]
         low = min(Fraction(index[axis], 1 << cuts[axis]) for index, cuts in cells)
@@ -244,9 +252,14 @@ def hull_of(problem: Problem, cells: Sequence[Cell]) -> Box:
     return side(0), side(1)
 
 
-def _boxes(problem):
-    """A function from cells to boxes."""
-    prism = tree.prisms(problem)
+def _around(boxes):
+    return tuple((min(low for low, _ in ends), max(high for _, high in ends))
+                 for ends in zip(*boxes))
+
+
+def _boxes(problem, still=()):
+    """A function from cells to boxes, seen from what moves by the shifts `still`."""
+    prism = tree.prisms(problem, still)
 
     def box(cell):
         return tuple((c - h, c + h) for c, h in zip(*prism(cell)))
@@ -259,14 +272,14 @@ def region_around(box: Box, link: Link) -> Box:
     return _rounded(link.image(box))
 
 
-def region_of(problem: Problem, cells: Sequence[Cell], links: Links) -> Box:
-    """A region that all these cells are linked into, its ends with few digits."""
+def region_of(problem: Problem, cells: Sequence[Cell], links: Links, shifts: Shifts = ()) -> Box:
+    """A region that all these cells are linked into, its ends with few digits; shifts: by which it
+    is to move with the parameters, from there in their middle."""
     slices: Dict[tuple, List[Cell]] = {}
     for cell in cells:
         slices.setdefault((cell[0][2:], cell[1][2:]), []).append(cell)
-    images = [links.of(some[0]).image(hull_of(problem, some)) for some in slices.values()]
-    return _rounded(tuple((min(low for low, _ in ends), max(high for _, high in ends))
-                          for ends in zip(*images)))
+    return _rounded(_around(links.of(some[0]).image(hull_of(problem, some, shifts))
+                            for some in slices.values()))
 
 
 def _rounded(image):
@@ -284,12 +297,12 @@ def wrong_letter(problem: Problem, largest: Fraction, xstar: Tuple[str, str], te
     """The first of those leaves of a tree over xstar that are linked to a part, and may lead out of
     its region: its letter.  None: there is none.  largest: B; parts: a, b, ... of the proof."""
     targets = {letter: Target(letter, Links(problem, largest, xstar, part.xstar),
-                              (part.v0, part.v1))
+                              (part.v0, part.v1), part.shifts)
                for letter, part in zip(tree.LETTERS, parts) if letter in text}
-    box = _boxes(problem)
+    boxes = {target.shifts: _boxes(problem, target.shifts) for target in targets.values()}
     return next((kind for kind, cell in tree.cells(text if targets else "") if kind in targets
                  and not targets[kind].links.of(cell).leads_into(
-                     box(cell), targets[kind].region)), None)
+                     boxes[targets[kind].shifts](cell), targets[kind].region)), None)
 
 
 def linked_tree(problem: Problem, text: str, steps: List[int],
@@ -305,14 +318,15 @@ def linked_tree(problem: Problem, text: str, steps: List[int],
             end[i], open_[i] = end[other], open_[i + 1] or open_[other]
         else:
             end[i], open_[i] = i + 1, text[i] == "U"
-    nodes, kept, box = [], [], _boxes(problem)
+    nodes, kept = [], []
+    boxes = {target.shifts: _boxes(problem, target.shifts) for target in targets}
     walk, i = tree.Walk(), 0
     while i < size:
         cell, node = walk.pending[-1], text[i]
         if open_[i]:
-            here = box(cell)
-            node = next((target.letter for target in targets
-                         if target.links.of(cell).leads_into(here, target.region)), node)
+            here = {shifts: box(cell) for shifts, box in boxes.items()}
+            node = next((target.letter for target in targets if target.links.of(cell).leads_into(
+                here[target.shifts], target.region)), node)
         for _ in walk.feed(node):
             pass
         nodes.append(node)

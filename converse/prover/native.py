@@ -193,6 +193,7 @@ def native_problem(problem, owners):
         "n_waves": len(problem.waves), "n_parameters": len(problem.parts), "waves": waves,
         "angle": [text((low + high) / 2) for low, high in ends],
         "half": [text((high - low) / 2) for low, high in ends],
+        "shift": [[text(pair[i]) for pair in problem.shifts] for i in range(2)],
         "frame": problem.frame, "odd": problem.odd is not None})
 
 

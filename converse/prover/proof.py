@@ -9,7 +9,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any, Dict, List, Optional, Tuple, Union
 
 from ..model.exact import Ends
-from ..model.problem import Problem
+from ..model.problem import Problem, Shifts
 from ..model.region import symmetries_used
 from ..version import __version__
 from . import tree
@@ -25,7 +25,8 @@ if TYPE_CHECKING:
 class Part:
     """A further starting point, and what was decided of a region of its successors.
 
-    v0, v1: the region, in units of pi.
+    v0, v1: the region, in units of pi, in the middle of the parameters.
+    shifts: by how much each parameter moves it at its upper end, (of v0, of v1); (): not at all.
     xstar, tree, pending: as of a Proof."""
 
     xstar: Tuple[str, str]
@@ -33,6 +34,11 @@ class Part:
     v1: Ends
     tree: str = ""
     pending: Tuple[int, ...] = ()
+    shifts: Shifts = ()
+
+    def __post_init__(self) -> None:
+        if not any(map(any, self.shifts)):      # one part, one Part
+            object.__setattr__(self, "shifts", ())
 
 
 @dataclass(frozen=True, repr=False)
@@ -138,7 +144,8 @@ class Proof:
     @property
     def undecided(self) -> List[Leaf]:
         """The prisms on which the search gave up: a list of Leaf, angles in units of pi.  Those of
-        further starting points follow."""
+        further starting points follow; where regions move with the parameters, a Leaf is as wide
+        as all places of its prism."""
         trees = [(self.problem, self.tree),
                  *((self.part_problem(part), part.tree) for part in self.parts)]
         return [leaf for problem, text in trees if "U" in text
@@ -146,7 +153,8 @@ class Proof:
 
     def part_problem(self, part: Part) -> Problem:
         """The problem with the region of a part."""
-        return replace(self.problem, v0=part.v0, v1=part.v1, axes=self.problem.frame)
+        return replace(self.problem, v0=part.v0, v1=part.v1, axes=self.problem.frame,
+                       shifts=part.shifts)
 
     def report(self) -> str:
         """The report of 1989, and what a reader needs beside it."""

@@ -1,8 +1,10 @@
-"""The proof file, formats 3 and 4 (docs/format.md), of a proof that is finished or not: files of
-the thesis's method are of format 3, which knows of frames with determinant 1 or -1 alone."""
+"""The proof file, formats 3 to 5 (docs/format.md), of a proof that is finished or not: files of
+the thesis's method are of format 3, which knows of frames with determinant 1 or -1 alone, and those
+in which the region of a part moves with the parameters of format 5."""
 
 import re
 from dataclasses import asdict, fields
+from fractions import Fraction
 
 from ..model.exact import DECIMAL, decimal_text, exact
 from ..model.problem import NAMES, Problem
@@ -13,9 +15,10 @@ from .native import CONSTANTS, Counts
 from .proof import Part, Proof
 from .settings import Settings
 
-FIRST_LINES = {"converse proof 3": 3, "converse proof 4": 4}
+FIRST_LINES = {"converse proof 3": 3, "converse proof 4": 4, "converse proof 5": 5}
 BEFORE = "converse proof 2"
-FORMATS = {"thesis": 3, "loewner": 4}        # that are written, by method
+FORMATS = {"thesis": 3, "loewner": 4}        # that are written, by method, but for
+WITH_SHIFTS = 5
 PROGRAM = re.compile(r"converse ([0-9A-Za-z.+-]{1,40})")
 CLAIMS = {False: "sound", True: "as printed, not a proof"}       # by as_printed
 NEW_COUNT = "linked"                         # of format 4
@@ -62,12 +65,13 @@ def load(path):
             waves.append(value.split())
         else:
             values[key] = value
+    form = FIRST_LINES[lines[0]]
     try:
         problem = _problem(values, waves, comments)
-        if FIRST_LINES[lines[0]] == 3:
+        if form == 3:
             _check_format_3(values, problem)
-        proof = _proof(values, problem, _trees(lines[starts[0]:-3]), files.sha256(text))
-        if FIRST_LINES[lines[0]] == 3 and proof.parts:
+        proof = _proof(values, problem, _trees(lines[starts[0]:-3]), files.sha256(text), form)
+        if form == 3 and proof.parts:
             raise ValueError("there are no parts in format 3")
         return proof
     except (KeyError, IndexError, TypeError, ValueError) as error:
@@ -98,6 +102,10 @@ def _text(proof):
     if proof.at_once and len(problem.parts) == 1:
         at_once = "upper end"
     form = FORMATS[proof.method]
+    if problem.shifts:                  # which the header cannot say
+        raise ValueError("the region of a whole proof does not move with the parameters")
+    if any(part.shifts for part in proof.parts):
+        form = WITH_SHIFTS
     lines = ["converse proof %d" % form, "kind: " + CLAIMS[proof.as_printed],
              "program: converse " + proof.version, "method: " + proof.method]
     lines += _problem_lines(problem)
@@ -120,7 +128,9 @@ def _text(proof):
     lines += _tree_lines(proof.tree)
     for letter, part in zip(tree.LETTERS, proof.parts):
         lines += ["part: " + letter, "xstar: " + " ".join(part.xstar),
-                  _ends_line("v0", part.v0), _ends_line("v1", part.v1), *_tree_lines(part.tree)]
+                  _ends_line("v0", part.v0, [s0 for s0, _ in part.shifts]),
+                  _ends_line("v1", part.v1, [s1 for _, s1 in part.shifts]),
+                  *_tree_lines(part.tree)]
     text = "\n".join(lines) + "\n"
     return text + "checksum: sha256 %s\nend\n" % files.sha256(text)
 
@@ -138,8 +148,9 @@ def _untried(text):
     return cuts + 1 - (len(text) - cuts - text.count(tree.UNTRIED))
 
 
-def _proof(values, problem, trees, sha256):
-    """The Proof of the header's fields, their values by name, and what _trees returns."""
+def _proof(values, problem, trees, sha256, form):
+    """The Proof of the header's fields, their values by name, and what _trees returns; form: the
+    format's number."""
     counts = {}
     for item in fields(Counts):
         numbers = tuple(int(word) for word in values[item.name].split())
@@ -164,8 +175,8 @@ def _proof(values, problem, trees, sha256):
         tree.complete(text)
         x0, x1 = named["xstar"].split()
         mine, hints = _divided(hints, text)
-        parts.append(Part((_number(x0), _number(x1)), _ends(named, "v0"), _ends(named, "v1"), text,
-                          mine))
+        (v0, s0), (v1, s1) = (_moving(named, name, len(problem.parts), form) for name in NAMES[3:])
+        parts.append(Part((_number(x0), _number(x1)), v0, v1, text, mine, tuple(zip(s0, s1))))
     tree.check_letters([text for _, text in trees])
     if parts and (settings.method != "loewner" or problem.factor is not None):
         raise ValueError("parts, which go with the sharper method and no coordinate that is alone")
@@ -199,9 +210,10 @@ def _problem_lines(problem):
     return lines + [_ends_line(name, getattr(problem, name)) for name in NAMES[3:]]
 
 
-def _ends_line(name, ends):
+def _ends_line(name, ends, shifts=()):
     low, high = ends
-    return "%s: %s %s" % (name, decimal_text((low + high) / 2), decimal_text((high - low) / 2))
+    return "%s: %s" % (name, " ".join(map(decimal_text, (
+        (low + high) / 2, (high - low) / 2, *shifts))))
 
 
 def _problem(values, waves, comments):
@@ -229,10 +241,25 @@ def _at_once(values, problem):
 
 
 def _ends(values, name):
-    centre, half = (exact(_number(word)) for word in values[name].split())
+    words = values[name].split()
+    if len(words) != 2:
+        raise ValueError("%s has %d numbers, not 2" % (name, len(words)))
+    centre, half = (exact(_number(word)) for word in words)
     if half < 0:
         raise ValueError("the half-width of %s is negative" % name)
     return centre - half, centre + half
+
+
+def _moving(values, name, parameters, form):
+    """The ends of a range of a part, and its shifts by so many parameters."""
+    words = values[name].split()
+    if form < WITH_SHIFTS or len(words) == 2:
+        return _ends(values, name), [Fraction(0)] * parameters
+    if len(words) != 2 + parameters:
+        raise ValueError("%s of a part has %d numbers, not 2 or %d"
+                         % (name, len(words), 2 + parameters))
+    return (_ends({name: " ".join(words[:2])}, name),
+            [exact(_number(word)) for word in words[2:]])
 
 
 def _number(text):

@@ -213,15 +213,30 @@ def _parts(proof):
     """The further starting points, and what was proved over each."""
     lines = []
     for letter, part in zip(tree.LETTERS, proof.parts):
-        lines += ["Part %s : x* %s %s, %s, %s : %d prisms proved, %d linked" % (
-            letter, *part.xstar, _range("v[0] / pi", *part.v0), _range("v[1] / pi", *part.v1),
-            part.tree.count("P"), tree.count_linked(part.tree))]
+        lines += ["Part %s : x* %s %s, %s : %d prisms proved, %d linked" % (
+            letter, *part.xstar, _region(proof.problem, part), part.tree.count("P"),
+            tree.count_linked(part.tree))]
     if lines:
         lines += ["Links : %d prisms of one x* lead, on an invariant graph, into the region of a "
                   "part" % proof.counts.linked,
                   "(the theorem rests on what graphs do at several points: docs/proof.md, "
                   "section 10)"]
     return lines
+
+
+def _region(problem, part):
+    """The region of a part, and how it moves with the parameters."""
+    ranges = _range("v[0] / pi", *part.v0), _range("v[1] / pi", *part.v1)
+    if not part.shifts:
+        return "%s, %s" % ranges
+    moves = ["by %s %s" % tuple(decimal_text(x, LEAST_PLACES) for x in pair)
+             for pair in part.shifts]
+    if len(moves) == 1:
+        moves = [moves[0] + " to their upper ends"]
+    else:
+        names = "abc" if problem.by_ranges else ["t[%d]" % m for m in range(1, len(moves) + 1)]
+        moves = ["%s to the upper end of %s" % pair for pair in zip(moves, names)]
+    return "%s and %s in the middle of the parameters, moved %s" % (*ranges, ", ".join(moves))
 
 
 def _choices(proof):

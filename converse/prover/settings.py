@@ -51,6 +51,9 @@ class Settings:
     def accept(self, problem: Problem) -> Problem:
         """The problem as this method takes it: the thesis's knows of no frames, and does not look
         at one coordinate alone.  ValueError: the method cannot treat the problem."""
+        if problem.shifts:
+            raise ValueError("only the region of a further starting point moves with the "
+                             "parameters, not that of a whole proof: give no shifts")
         if self.method != "thesis":
             return problem
         if problem.together:

@@ -9,7 +9,8 @@ symmetry), a lower-case letter (linked to the part of the proof that it names), 
 import re
 from array import array
 from collections import namedtuple
-from itertools import accumulate
+from fractions import Fraction
+from itertools import accumulate, zip_longest
 from string import ascii_lowercase
 
 CUTS = "01234"
@@ -19,7 +20,8 @@ KINDS = "PSU" + UNTRIED + LETTERS
 UNDECIDED_OR_UNTRIED = re.compile("[U?]")
 ROOT = (0,) * 5, (0,) * 5
 
-Leaf = namedtuple("Leaf", "kind centre half depth")     # centre and half: (v0, v1), units of pi
+# centre and half: (v0, v1), in units of pi, as of prisms()
+Leaf = namedtuple("Leaf", "kind centre half depth")
 
 
 class TreeError(ValueError):
@@ -63,8 +65,15 @@ def cells(text):
         yield UNTRIED, cell
 
 
-def prisms(problem):
-    """A function from cells to (centre, half), the exact sides (v0, v1) in units of pi."""
+def prisms(problem, still=()):
+    """A function from cells to (centre, half), the exact sides (v0, v1) in units of pi.
+
+    Where the problem has shifts the prism moves with the parameters: these are the sides of the
+    least rectangle that holds it for all parameters of the cell.  still: shifts of something else,
+    from which the prism is looked at; only what the problem's shifts differ from these moves."""
+    pairs = zip_longest(problem.shifts, still, fillvalue=(0, 0))
+    moves = [tuple(a - b for a, b in zip(*pair)) for pair in pairs]
+    moves = moves if any(map(any, moves)) else []
     half = {}                               # (axis, cuts) -> half-width
     centre = {}                             # (axis, slice, cuts) -> centre
 
@@ -79,6 +88,11 @@ def prisms(problem):
     def prism(cell):
         (i, j, *_), (k, l, *_) = cell
         (c0, h0), (c1, h1) = side(-2, i, k), side(-1, j, l)
+        for (s0, s1), i, k in zip(moves, cell[0][2:], cell[1][2:]):
+            width = Fraction(1, 1 << k)
+            t = (2 * i + 1) * width - 1
+            c0, c1 = c0 + s0 * t, c1 + s1 * t
+            h0, h1 = h0 + abs(s0) * width, h1 + abs(s1) * width
         return (c0, c1), (h0, h1)
 
     return prism
