@@ -10,9 +10,10 @@ import mpmath
 import pytest
 
 from converse.prover.native import ffi, lib, native_problem
+from converse.prover.tree import cells
 
 import kernels
-from truth import SANITIZED, TORTURE, mp, rng_for
+from truth import SANITIZED, TORTURE, mp, rng_for, uniform
 
 CASES = (500 if SANITIZED else 1500) * TORTURE
 MOST = 4                                # waves of a kernel's potential
@@ -297,6 +298,84 @@ def test_margins():
     assert all(x > mp(1) / 300 for x in worst.values()), worst
 
 
+# ---- regions that move with the parameters
+
+def shifted_cells(rng, cases):
+    """Yields how far, in units of the sum of |centre|, half and |shifts| and of roundings, v of the
+    corners of cells is from the core's prisms, whose sides are longer by how much; the latter."""
+    for _ in range(cases):
+        patch = draw(rng, shifts=True)
+        patch.frame = FRAMES[0]
+        for row in (patch.centre, patch.half, *patch.shifts):   # more digits than doubles have
+            row[:] = [x * uniform(rng, Fraction(1, 2), 1, 30) for x in row]
+        deep = rng.choice([1, 10, 46])
+        cuts = [rng.randrange(deep + 1) for _ in range(5)]
+        index = [rng.randrange(1 << k) for k in cuts]
+        out = [*map(Fraction, kernels.call("waves_cell", [*arguments(patch), *index, *cuts], 16,
+                                           1080))]
+        part = [Fraction(1, 1 << k) for k in cuts]
+        middle = [(2 * i + 1) * w - 1 for i, w in zip(index, part)]
+        for i in range(2):
+            scale = UNIT * (abs(patch.centre[i]) + patch.half[i] + sum(map(abs, patch.shifts[i])))
+            moved = out[4 + 3 * i:7 + 3 * i]
+            for signs in itertools.product((-1, 1), repeat=4):
+                t = [m + e * w for m, e, w in zip(middle[2:], signs[1:], part[2:])]
+                v = patch.centre[i] + patch.half[i] * (middle[i] + signs[0] * part[i])
+                v += sum(map(Fraction.__mul__, patch.shifts[i], t))
+                x = out[i] + sum(map(Fraction.__mul__, moved, map(Fraction, signs[1:])))
+                assert abs(v - x) <= out[2 + i], patch
+                yield ((abs(v - x) - patch.half[i] * part[i]) / scale,
+                       (out[2 + i] - patch.half[i] * part[i]) / scale)
+
+
+def test_shifted_cells():
+    """They hold their corners, and are hardly wider, down to the finest of doubles."""
+    needed, there = zip(*shifted_cells(rng_for("waves cells"), CASES // 10))
+    assert 1 < max(needed) < 14 and 30 < min(there) and max(there) < 34
+
+
+def test_a_parameter_that_only_moves_the_region_counts():
+    """It has a symbol, and may be cut where that helps."""
+    def cell(shift, cuts):
+        patch = draw(rng_for("waves symbols"), [(1, 1), (1, -1)])
+        patch.waves = [(1, 0, *map(Fraction, (0, 1, "0.1", 0, 0)))]
+        patch.parameters, patch.frame, patch.half = 3, FRAMES[0], [Fraction(1, 10)] * 2
+        patch.shifts[1][1] = Fraction(shift)
+        found = kernels.call("waves_cell", [*arguments(patch), *[0] * 5, *[0] * 3, cuts, 0], 16, 20)
+        return int(found[10]), [*map(int, found[11:])]
+
+    assert cell("0", 0) == (3, [1, 1, 1, 0, 0])
+    assert cell("-0.1", 0) == cell("1e-11", 0) == cell("1", 46 - 1) == (4, [1, 1, 1, 1, 0])
+    assert cell("1", 46) == cell("1e-9", 30) == (4, [1, 1, 1, 0, 0])
+
+
+def test_straightened_orbits_with_shifts():
+    """Where all waves feel s = q.x alone, s and its columns are what the core follows."""
+    rng, followed = rng_for("waves straight"), 0
+    for _ in range(CASES // 4):
+        patch = draw(rng, [(2, 1), (4, 2), (-2, -1)], shifts=True)
+        patch.frame = rng.choice([(1, 0, -2, 1), (1, 3, -2, 0), (-1, 1, 2, 1)])
+        n = rng.choice([-1, 1]) * rng.randrange(1, 6)
+        found = straightened(patch) and sites(patch, min(n, 0), max(n, 1))
+        if not found or max(found[n].rad[:1]) > 3:
+            continue
+        e, p, v = inside(rng, patch)
+        first = next(w for w in patch.waves if any(w[3:]))
+        q = (2, 1) if first[0] > 0 else (-2, -1)
+        x = orbit(patch, p, v, min(n, 0), max(n, 1))
+        start, row = q[0] * x[1][0] + q[1] * x[1][1], found[1].lin[0]
+        assert row[0] == 0
+        left = start - found[1].x[0] - sum(c * mp(s) for c, s in zip(row[2:], e[2:]))
+        symbol = left / row[1]
+        assert abs(symbol) <= 1
+        D = modulo(q[0] * x[n][0] + q[1] * x[n][1] - found[n].x[0])
+        L = sum(c * s for c, s in zip(found[n].lin[0], [0, symbol, *map(mp, e[2:])]))
+        assert abs(D) <= found[n].rad[0] + 1e-35
+        assert abs(D - L) <= found[n].nonlin_bound[0] + 1e-35
+        followed += any(patch.shifts[1]) and n not in (0, 1)
+    assert followed > CASES // 20, followed
+
+
 # ---- B
 
 def summit(waves):
@@ -389,6 +468,73 @@ def test_the_general_instance_proves_what_the_special_one_proves():
     assert "S" not in framed
     assert abs(len(again) - len(tree)) <= 0.02 * len(tree)
     assert abs(len(turned) - len(tree)) <= 0.02 * len(tree)
+
+
+MOVING = dict(parts=[("0.001", "0.001", "0.002")], frame=(1, 1, 1, -1),
+              v0=(Fraction("0.5"), Fraction("0.7")), v1=(Fraction(-1, 10), Fraction(1, 10)))
+
+
+def test_a_shift_of_nothing_changes_nothing():
+    start = ("0.858", "0.858")
+    _, tree = searched(patch_of(THESIS, LINE, **MOVING), start)
+    _, moved = searched(patch_of(THESIS, LINE, **MOVING, shifts=[(0, 0)]), start)
+    assert tree == moved and "U" not in tree and len(tree) > 20
+
+
+@pytest.mark.parametrize("sign", [-1, 1])
+def test_a_region_that_moves_is_proved_where_all_of_its_way_is(sign):
+    """And where the prisms that resist move along it, with fewer cuts."""
+    start = ("0.858", "0.858")
+    pair = sign * Fraction("0.02"), sign * Fraction("-0.03")
+    wide = dict(MOVING, v0=(Fraction("0.48"), Fraction("0.72")),
+                v1=(Fraction("-0.13"), Fraction("0.13")))
+    _, whole = searched(patch_of(THESIS, LINE, **wide), start)
+    _, moved = searched(patch_of(THESIS, LINE, **MOVING, shifts=[pair]), start)
+    _, still = searched(patch_of(THESIS, LINE, **MOVING), start)
+    assert "U" not in whole + moved + still and len(set((whole, moved, still))) == 3
+
+
+@pytest.mark.parametrize("sign", [-1, 1])
+def test_what_minimizes_is_met_where_the_region_has_it(sign):
+    """The fixed point at the top of V minimizes, for each t; the region holds it at one end of t.
+    There prisms resist; at the other end, where a shift of the wrong sign has it, none does."""
+    patch = patch_of([(1, 0)], ["4"], [("0.01",)], v0=(Fraction("-0.442"), Fraction("-0.438")),
+                     v1=(0, 0), shifts=[(sign * Fraction("0.06"), 0)])
+    owners, handle = [], ffi.new("cv_search **")
+    star = [ffi.new("char[]", text) for text in (b"-1.5707963267948966", b"0")]
+    assert lib.cv_search_new(handle, native_problem(patch, owners), star, lib.CV_LOEWNER, 30, 16,
+                             1, 0) == lib.CV_OK
+    s = ffi.gc(handle[0], lib.cv_search_free)
+    assert lib.cv_prepare(s, ffi.NULL) == lib.CV_OK
+    lib.cv_step(s, 10 ** 6, 1e9, ffi.NULL)
+    length = ffi.new("size_t *")
+    text = lib.cv_tree(s, length)
+    resist = [sign * (Fraction(2 * index[2] + 1, 1 << cuts[2]) - 1)
+              for kind, (index, cuts) in cells(ffi.unpack(text, length[0]).decode())
+              if kind != "P"]
+    assert min(resist) < Fraction("-0.99") and max(resist) < Fraction(1, 2)
+
+
+def test_mirror_images_of_regions_that_move():
+    """None is skipped, as x_1 and its image need not have the same parameters."""
+    ends = dict(v0=(Fraction("0.4"), Fraction("1.6")), v1=(Fraction("0.4"), Fraction("1.6")))
+    for shifts, skips in ((), True), ([(0, 0)], True), ([("0.001", "0.001")], False):
+        shifts = [tuple(map(Fraction, pair)) for pair in shifts]
+        patch = patch_of(THESIS, LINE, [("0.0001", "0.0001", "0.0002")], shifts=shifts, **ends)
+        s, tree = searched(patch, ("0.858", "0.858"))
+        assert bool(kernels.symmetric(s)) == skips == ("S" in tree)
+        assert lib.cv_resume(s, b"01PS1PP", 7) == (lib.CV_OK if skips else lib.CV_EARGUMENT)
+
+
+def test_the_thesis_knows_of_no_shifts():
+    parts = [("0.001", 0, 0), (0, "0.001", 0), (0, 0, "0.001")]
+    for shift, status in ("0", lib.CV_OK), ("1e-9", lib.CV_EARGUMENT):
+        patch = patch_of(THESIS, LINE, parts, shifts=[(0, 0), (0, Fraction(shift)), (0, 0)])
+        owners, handle = [], ffi.new("cv_search **")
+        assert lib.cv_search_new(handle, native_problem(patch, owners), ffi.NULL, lib.CV_THESIS,
+                                 30, 30, 0, 0) == status
+        if status == lib.CV_OK:
+            lib.cv_search_free(handle[0])
 
 
 def test_whole_turns_are_no_phases():
