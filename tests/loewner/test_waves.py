@@ -470,8 +470,8 @@ def test_the_general_instance_proves_what_the_special_one_proves():
     assert abs(len(turned) - len(tree)) <= 0.02 * len(tree)
 
 
-MOVING = dict(parts=[("0.001", "0.001", "0.002")], frame=(1, 1, 1, -1),
-              v0=(Fraction("0.5"), Fraction("0.7")), v1=(Fraction(-1, 10), Fraction(1, 10)))
+MOVING = {"parts": [("0.001", "0.001", "0.002")], "frame": (1, 1, 1, -1),
+          "v0": (Fraction("0.5"), Fraction("0.7")), "v1": (Fraction(-1, 10), Fraction(1, 10))}
 
 
 def test_a_shift_of_nothing_changes_nothing():
@@ -483,15 +483,14 @@ def test_a_shift_of_nothing_changes_nothing():
 
 @pytest.mark.parametrize("sign", [-1, 1])
 def test_a_region_that_moves_is_proved_where_all_of_its_way_is(sign):
-    """And where the prisms that resist move along it, with fewer cuts."""
     start = ("0.858", "0.858")
     pair = sign * Fraction("0.02"), sign * Fraction("-0.03")
-    wide = dict(MOVING, v0=(Fraction("0.48"), Fraction("0.72")),
-                v1=(Fraction("-0.13"), Fraction("0.13")))
+    wide = {**MOVING, "v0": (Fraction("0.48"), Fraction("0.72")),
+            "v1": (Fraction("-0.13"), Fraction("0.13"))}
     _, whole = searched(patch_of(THESIS, LINE, **wide), start)
     _, moved = searched(patch_of(THESIS, LINE, **MOVING, shifts=[pair]), start)
     _, still = searched(patch_of(THESIS, LINE, **MOVING), start)
-    assert "U" not in whole + moved + still and len(set((whole, moved, still))) == 3
+    assert "U" not in whole + moved + still and len({whole, moved, still}) == 3
 
 
 @pytest.mark.parametrize("sign", [-1, 1])
@@ -517,7 +516,7 @@ def test_what_minimizes_is_met_where_the_region_has_it(sign):
 
 def test_mirror_images_of_regions_that_move():
     """None is skipped, as x_1 and its image need not have the same parameters."""
-    ends = dict(v0=(Fraction("0.4"), Fraction("1.6")), v1=(Fraction("0.4"), Fraction("1.6")))
+    ends = dict.fromkeys(("v0", "v1"), (Fraction("0.4"), Fraction("1.6")))
     for shifts, skips in ((), True), ([(0, 0)], True), ([("0.001", "0.001")], False):
         shifts = [tuple(map(Fraction, pair)) for pair in shifts]
         patch = patch_of(THESIS, LINE, [("0.0001", "0.0001", "0.0002")], shifts=shifts, **ends)

@@ -1,0 +1,340 @@
+"""Regions of parts that move with the parameters: links into them, proofs, files and reports."""
+
+import re
+from dataclasses import replace
+from fractions import Fraction
+from itertools import product
+
+import pytest
+
+from converse import ConverseError, Problem, Proof, Settings, prove
+from converse.model.problem import LINE
+from converse.model.region import skips, symmetries_used
+from converse.prover import native, tree
+from converse.prover.links import (SPARE, Link, Links, Target, hull_of, linked_tree, part_problem,
+                                   region_of, wrong_letter)
+from converse.prover.proof import Part
+from converse.prover.proof_file import load, save
+from converse.prover.run import ready
+from converse.storage import files
+
+from truth import rng_for
+
+HERE, THERE = ("0.858", "0.858"), ("0.842", "0.85")
+B = Fraction("2.8")
+SHIFTS = (Fraction("0.01"), Fraction("-0.02")),
+
+
+def line(low, high):
+    ends = LINE * Fraction(low), LINE * Fraction(high)
+    return Problem(ends, ends, tuple(2 * x for x in ends), together=True, axes=(1, 1, 1, -1))
+
+
+PATCH = Problem.patch(["0.15", "0.16", "0.3"], [["0.001", 0, 0], [0, "0.002", 0]],
+                      axes=(1, 1, 1, -1), v0=("0.5", "0.7"), v1=("-0.1", "0.3"))
+TWO = (Fraction("0.01"), Fraction("-0.02")), (Fraction(0), Fraction("0.005"))
+
+
+# ---- the problem
+
+def test_shifts_are_exact():
+    problem = part_problem(line("0.014", "0.015"), ((0, 1), (0, 1)), [("0.01", "-2e-2")])
+    assert problem.shifts == SHIFTS and "0.01 -0.02" in repr(problem)
+    again = replace(problem)
+    assert again == problem and hash(again) == hash(problem)
+    still = part_problem(problem, ((0, 1), (0, 1)))
+    assert still.shifts == () != problem.shifts and still != problem
+    assert replace(problem, shifts=[(0, 0)]) == still and "shifts" not in repr(still)
+    for wrong in ([(0, 0)] * 2, [(1,)], [(1, 2, 3)], [("1/3", 0)]):
+        with pytest.raises(ValueError):
+            replace(problem, shifts=wrong)
+    for wrong in ([(0.1, 0)], [1], 3):
+        with pytest.raises(TypeError):
+            replace(problem, shifts=wrong)
+
+
+def test_no_whole_proof_has_shifts(tmp_path):
+    """Its file's header could not say so."""
+    problem = replace(line("0.014", "0.015"), shifts=SHIFTS)
+    for method in "loewner", "thesis":
+        with pytest.raises(ValueError, match="give no shifts"):
+            prove(problem, method=method)
+    with pytest.raises(ValueError, match="does not move"):
+        save(Proof(problem), tmp_path / "proof")
+    wide = replace(line("0.02", "0.021"), v0=(0, 2), v1=(0, 2))
+    assert symmetries_used(wide, HERE) == []
+    assert symmetries_used(replace(wide, shifts=SHIFTS), HERE) is None
+
+
+def test_mirror_images():
+    square = replace(line("0.015", "0.016"), axes=(1, 0, 0, 1))
+    assert skips(square, HERE) and not skips(replace(square, shifts=SHIFTS), HERE)
+
+
+# ---- prisms and links
+
+def random_cell(rng, parameters):
+    cuts = [rng.randrange(5) if axis < 2 + parameters else 0 for axis in range(5)]
+    return tuple(rng.randrange(1 << k) for k in cuts), tuple(cuts)
+
+
+def corners(problem, cell):
+    """(t, v) at the corners of a cell, in exact numbers, as the definition has them."""
+    index, cuts = cell
+    for ends in product((0, 1), repeat=2 + len(problem.parts)):
+        u = [Fraction(2 * (i + e), 1 << k) - 1 for i, k, e in zip(index, cuts, ends)]
+        yield u[2:], [c + h * x + sum(pair[i] * t for pair, t in zip(problem.shifts, u[2:]))
+                      for i, (c, h, x) in enumerate(zip(problem.centre[-2:], problem.half[-2:], u))]
+
+
+@pytest.mark.parametrize("still", [(), TWO, (TWO[1], TWO[0])])
+def test_prisms_are_the_least_rectangles(still):
+    """Seen from what stands still, and from what moves."""
+    rng = rng_for("shifted prisms %s" % (still,))
+    problem = part_problem(PATCH, (PATCH.v0, PATCH.v1), TWO)
+    for _ in range(50):
+        cell = random_cell(rng, 2)
+        seen = [[x - sum(pair[i] * t for pair, t in zip(still, ts)) for i, x in enumerate(v)]
+                for ts, v in corners(problem, cell)]
+        centre, half = tree.prisms(problem, still)(cell)
+        assert [(c - h, c + h) for c, h in zip(centre, half)] == [
+            (min(xs), max(xs)) for xs in zip(*seen)]
+        assert hull_of(problem, [cell], still) == tuple((min(xs), max(xs)) for xs in zip(*seen))
+
+
+def lands(problem, cell, link, target):
+    """Does each v' of each corner lie in the target's region there, with SPARE left?"""
+    return all(a - SPARE >= low and b + SPARE <= high
+               for ts, v in corners(problem, cell)
+               for i, ((low, high), (d0, d1)) in enumerate(zip(target.region, link.box))
+               for moved in [v[i] - sum(pair[i] * t for pair, t in zip(target.shifts, ts))]
+               for a, b in [(moved + d0, moved + d1)])
+
+
+@pytest.mark.parametrize("mine", [(), TWO])
+@pytest.mark.parametrize("theirs", [(), TWO, (TWO[1], TWO[0])])
+def test_links_lead_into_regions_that_move(mine, theirs):
+    """To the edge: an end that is nearer by any amount is not enough."""
+    problem = part_problem(PATCH, (PATCH.v0, PATCH.v1), mine)
+    rng, links = rng_for("shifted links %s %s" % (mine, theirs)), Links(problem, B, HERE, THERE)
+    for _ in range(10):
+        cell = random_cell(rng, 2)
+        link = links.of(cell)
+        seen = [[x - sum(pair[i] * t for pair, t in zip(theirs, ts)) for i, x in enumerate(v)]
+                for ts, v in corners(problem, cell)]
+        exact = [[min(xs) + d0 - SPARE, max(xs) + d1 + SPARE]
+                 for xs, (d0, d1) in zip(zip(*seen), link.box)]
+        for axis, end in (None, 0), *product(range(2), range(2)):
+            region = [list(ends) for ends in exact]
+            if axis is not None:
+                region[axis][end] += (1, -1)[end] * Fraction(1, 10 ** 30)
+            target = Target("a", links, tuple(map(tuple, region)), theirs)
+            assert lands(problem, cell, link, target) == (axis is None)
+            part = Part(THERE, *target.region, shifts=theirs)
+            whole = tree_of(cell)
+            wrong = wrong_letter(problem, B, HERE, whole, [part])
+            assert wrong == (None if axis is None else "a")
+            grown, _ = linked_tree(problem, whole.replace("a", "U"), [0] * len(whole), [target])
+            assert ("a" in grown) == (axis is None)
+
+
+def tree_of(cell):
+    """A tree in which a cell is linked to part a, and all others are proved."""
+    index, cuts = cell
+    nodes = [(str(axis), index[axis] >> k - 1 - level & 1)
+             for axis, k in enumerate(cuts) for level in range(k)]
+    text = "a"
+    for axis, upper in reversed(nodes):
+        text = axis + ("P" + text if upper else text + "P")
+    assert [found for kind, found in tree.cells(text) if kind == "a"] == [cell]
+    return text
+
+
+def test_a_region_for_cells_takes_them_all():
+    rng = rng_for("shifted regions")
+    for mine, theirs, there in product(((), TWO), ((), TWO), (HERE, THERE)):
+        problem = part_problem(PATCH, (PATCH.v0, PATCH.v1), mine)
+        links = Links(problem, B, HERE, there)
+        cells = [random_cell(rng, 2) for _ in range(5)]
+        target = Target("a", links, region_of(problem, cells, links, theirs), theirs)
+        for cell in cells:
+            assert lands(problem, cell, links.of(cell), target)
+            assert wrong_letter(problem, B, HERE, tree_of(cell), [
+                Part(there, *target.region, shifts=theirs)]) is None
+        sizes = [high - low for low, high in target.region]
+        hull = hull_of(problem, cells, theirs)
+        assert all(size < (high - low) * Fraction(9, 8) + 2 * (d1 - d0) + Fraction(1, 1000)
+                   for size, (low, high), (d0, d1) in zip(
+                       sizes, hull, Link.between(problem, B, HERE, there).box))
+
+
+def test_a_point_is_linked_to_itself():
+    zero = ((Fraction(0), Fraction(0)),) * 2
+    assert Link.between(PATCH, B, HERE, HERE).box == zero
+    assert Link.between(PATCH, B, HERE, ("0.8580", "858e-3")).box == zero
+    assert Link.between(PATCH, B, HERE, THERE).box != zero
+
+
+# ---- whole proofs
+
+@pytest.fixture(scope="module")
+def begun():
+    """A proof over three x*, nothing of whose parts is grown: of the part a, over the same x*, and
+    of b, the regions move."""
+    problem = line("0.0150", "0.0151")
+    before = ready(Proof(problem, Settings("loewner"), xstar=HERE))
+    problem = replace(before.problem, v0=(Fraction("0.2"), Fraction("1.3")),
+                      v1=(Fraction("-0.1"), Fraction("1.1")))
+    task = native.Task(problem, Settings("loewner", 8, stubborn=True), HERE)
+    start = native.begin(task, "", None)
+    grown = native.survey(task, 10 ** 5)
+    cells = [cell for kind, cell in tree.cells(grown.text) if kind == "U"]
+    assert len(cells) > 3
+    largest = Fraction(start.constants["B"])
+    first, parts = Links(problem, largest, HERE, HERE), []
+    shifts = (Fraction("-0.05"), Fraction("0.03")),
+    parts.append(Part(HERE, *region_of(problem, cells, first, shifts), shifts=shifts))
+    text, _ = linked_tree(problem, grown.text, grown.steps, [
+        Target("a", first, (parts[0].v0, parts[0].v1), shifts)])
+    assert "a" in text and "U" not in text
+    other, there = (Fraction("-0.04"), Fraction(0)), ("0.85", "0.85")
+    middle = part_problem(problem, (parts[0].v0, parts[0].v1), shifts)
+    second = Links(middle, largest, HERE, there)
+    region = region_of(middle, [tree.ROOT], second, (other,))
+    parts = [replace(parts[0], tree="b"), Part(there, *region, shifts=(other,))]
+    return Proof(problem, Settings("loewner"), text, replace(
+        grown.counts, undecided=0, linked=text.count("a") + 1), HERE, start.constants,
+        parts=tuple(parts))
+
+
+@pytest.fixture(scope="module")
+def moved(begun):
+    proof = prove(resume=begun)
+    assert proof.no_tori
+    return proof
+
+
+def timeless(proof):
+    return replace(proof, seconds=0, restored=0, sha256="")
+
+
+def changed(proof, path, change):
+    proof.save(path)
+    text = change(path.read_text())
+    body = text[:text.index("checksum: ")]
+    path.write_text(body + "checksum: sha256 %s\nend\n" % files.sha256(body))
+    return path
+
+
+def test_a_proof_with_regions_that_move(moved, begun):
+    first, second = moved.parts
+    assert first.tree == "b" and set(second.tree) <= set("012P") and len(second.tree) > 1
+    assert moved.part_problem(second) == part_problem(
+        moved.problem, (second.v0, second.v1), second.shifts)
+    still = tuple(replace(part, shifts=()) for part in begun.parts)
+    with pytest.raises(ConverseError, match="may lead out of its region"):
+        prove(resume=replace(begun, parts=(still[0], begun.parts[1])))
+    with pytest.raises(ConverseError, match="may lead out of its region"):
+        prove(resume=replace(begun, parts=(begun.parts[0], still[1])))
+
+
+def test_the_report_tells_how_regions_move(moved):
+    assert re.search(
+        r"Part b : x\* 0\.85 0\.85, 0\.[0-9]+ < v\[0\] / pi < [01]\.[0-9]+ and -?0\.[0-9]+ < "
+        r"v\[1\] / pi < [01]\.[0-9]+ in the middle of the parameters, moved by -0\.040000 0\.000000 "
+        r"to their upper ends : [0-9]+ prisms proved, 0 linked\n", moved.report())
+    part = replace(moved.parts[1], shifts=TWO)
+    several = replace(moved, problem=replace(PATCH), parts=(part,))
+    assert "moved by 0.010000 -0.020000 to the upper end of t[1], by 0.000000 0.005000 to the upper " \
+        "end of t[2] : " in several.report()
+    ranges = replace(moved, problem=Problem("0.3", "0.3", "0.6"), parts=(
+        replace(part, shifts=(*TWO, TWO[0])),))
+    assert "of b, by 0.010000 -0.020000 to the upper end of c : " in ranges.report()
+    without = replace(moved, parts=tuple(replace(part, shifts=()) for part in moved.parts))
+    assert "moved" not in without.report() and re.search(
+        r"Part b : x\* 0\.85 0\.85, \S+ < v\[0\] / pi < \S+, \S+ < v\[1\] / pi < \S+ : [0-9]+ prisms",
+        without.report())
+
+
+def test_format_5(moved, tmp_path):
+    path = tmp_path / "proof"
+    moved.save(path)
+    text = path.read_text()
+    assert text.startswith("converse proof 5\n")
+    assert re.search(r"part: b\nxstar: 0.85 0.85\nv0: \S+ \S+ -0.04\nv1: \S+ \S+ 0\ntree:", text)
+    again = load(path)
+    assert timeless(again) == timeless(moved) and again.parts[1].shifts == moved.parts[1].shifts
+    half = replace(moved, parts=(replace(moved.parts[0], shifts=()), moved.parts[1]))
+    half.save(path)
+    assert re.search(r"part: a\nxstar: 0.858 0.858\nv0: \S+ \S+\nv1: \S+ \S+\n", path.read_text())
+    assert timeless(load(path)) == timeless(half)
+    still = replace(half, parts=(half.parts[0], replace(half.parts[1], shifts=((0, 0),))))
+    still.save(path)
+    assert path.read_text().startswith("converse proof 4\n")
+    assert timeless(load(path)) == timeless(still)
+
+
+@pytest.mark.parametrize("change, wrong", [
+    (lambda text: text.replace("proof 5", "proof 4"), "v0 has 3 numbers, not 2"),
+    (lambda text: text.replace("proof 5", "proof 6"), "not a proof file of this program"),
+    (lambda text: re.sub("(part: b\n.*\nv0: .*)", r"\1 0", text), "v0 .* 4 numbers, not 2 or 3"),
+    (lambda text: re.sub("(part: b\n.*\n.*\nv1: .*)", r"\1 0", text), "v1 .* 4 numbers, not 2 or"),
+    (lambda text: re.sub("(part: b\n.*\nv0: [^ ]*).*", r"\1", text), "v0 .* 1 numbers"),
+    (lambda text: re.sub("\n(v0: .*)", r"\n\1 0", text, count=1), "v0 has 3 numbers, not 2"),
+    (lambda text: re.sub("(part: b\n.*\nv0: .*) .*", r"\1 1/3", text), "not a decimal number"),
+    (lambda text: re.sub("(part: b\n.*\nv0: .*) .*", r"\1 1e301", text), "out of range"),
+    (lambda text: re.sub("(part: b\n.*\nv0: [^ ]*) [^ ]*", r"\1 -1", text), "negative"),
+    (lambda text: re.sub("(part: b\n.*\nv0: .*) .*", r"\1 inf", text), "not a decimal number")])
+def test_wrong_numbers_of_parts(moved, tmp_path, change, wrong):
+    with pytest.raises(ConverseError, match=wrong) as caught:
+        load(changed(moved, tmp_path / "proof", change))
+    assert "\n" not in str(caught.value)
+
+
+def test_a_part_may_have_two_numbers_in_format_5(moved, tmp_path):
+    path = changed(moved, tmp_path / "proof", lambda text: re.sub(
+        "(part: b\n.*\n.*\nv1: .*) 0\n", r"\1\n", text))
+    assert timeless(load(path)) == timeless(moved)
+
+
+def test_wrong_shifts_are_not_resumed(moved, tmp_path):
+    path = changed(moved, tmp_path / "proof", lambda text: re.sub(
+        "(part: b\n.*\nv0: .*) -0.04", r"\1 0.04", text))
+    with pytest.raises(ConverseError, match="part b may lead out of its region"):
+        prove(resume=path)
+
+
+@pytest.mark.parametrize("moment", [1, 2, 3])
+def test_interrupted(begun, moved, tmp_path, monkeypatch, moment):
+    """A backup of format 5 is read and continued to the same proof."""
+    path, calls = tmp_path / "backup", []
+    begun.save(path)
+    assert timeless(load(path)) == timeless(begun)
+
+    def interrupts(*_):
+        calls.append(1)
+        if len(calls) == moment:
+            raise KeyboardInterrupt
+
+    try:
+        prove(resume=path, progress=interrupts, backup=path)
+    except KeyboardInterrupt:
+        assert path.read_text().startswith("converse proof 5\n")
+    assert timeless(prove(resume=path)) == timeless(moved)
+
+
+def test_undecided_prisms_of_parts_that_move(moved):
+    """They are told as wide as all their places."""
+    part = moved.parts[1]
+    proof = replace(moved, parts=(moved.parts[0], replace(part, tree="2PU")))
+    leaf, = proof.undecided
+    for i, (low, high) in enumerate((part.v0, part.v1)):
+        s, half = part.shifts[0][i], (high - low) / 2
+        assert leaf.half[i] == half + abs(s) / 2 and leaf.centre[i] == (low + high) / 2 + s / 2
+    assert "The first of them" in proof.report()
+
+
+def test_leaves_are_told(begun):
+    told = []
+    prove(resume=begun, on_leaf=lambda leaf, points: told.append(leaf))
+    assert {leaf.kind for leaf in told} >= {"P"}
