@@ -11,8 +11,8 @@ from converse import ConverseError, Problem, Proof, Settings, prove
 from converse.model.problem import LINE
 from converse.model.region import skips, symmetries_used
 from converse.prover import native, tree
-from converse.prover.links import (SPARE, Link, Links, Target, hull_of, linked_tree, part_problem,
-                                   region_of, wrong_letter)
+from converse.prover.links import (PI, SPARE, Link, Links, Target, hull_of, linked_tree,
+                                   part_problem, region_of, wrong_letter)
 from converse.prover.proof import Part
 from converse.prover.proof_file import load, save
 from converse.prover.run import ready
@@ -339,3 +339,20 @@ def test_leaves_are_told(begun):
     told = []
     prove(resume=begun, on_leaf=lambda leaf, points: told.append(leaf))
     assert {leaf.kind for leaf in told} >= {"P"}
+
+
+@pytest.mark.parametrize("digits", [6, 8, 35])
+def test_shifts_in_radians(digits):
+    """What the core makes of a shift is off by the half-width that it adds, even with a pi of one
+    place; and not by much more."""
+    halves = []
+    for shifts in (), ((Fraction("0.0123456789"), Fraction("-0.5")),):
+        problem = part_problem(line("0.0150", "0.0151"), ((0, 1), (0, 1)), shifts)
+        search = native.Search(native.Task(problem, Settings("loewner", digits=digits), HERE))
+        assert search.prepare(None)
+        halves.append([Fraction(search.constant(which)) for which in (9, 11)])
+    places = digits - 5
+    for i, shift in enumerate(shifts[0]):
+        scale = 10 ** places
+        off = abs(shift) * PI[1] - Fraction(abs(shift) * (PI[0] * scale // 1) // 1, scale)
+        assert off <= halves[1][i] - halves[0][i] <= Fraction(2, scale)
