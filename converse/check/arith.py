@@ -101,8 +101,7 @@ def in_units(fixed, waves):
 
 
 def angle_of(wave, x):
-    k0, k1, phase = wave
-    return k0 * x[0] + k1 * x[1] + phase
+    return wave[0] * x[0] + wave[1] * x[1] + wave[2]
 
 
 def turn_of(waves):

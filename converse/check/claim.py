@@ -30,6 +30,11 @@ class Wave:
     def at(self, t):
         return self.middle + sum([g * x for g, x in zip(self.parts, t)])
 
+    def over(self, cell):
+        """p in the middle of a cell, and how far it goes from there."""
+        t = [Fraction(2 * i + 1, 1 << k) - 1 for i, k in zip(cell[0][2:], cell[1][2:])]
+        return self.at(t), sum([abs(g) / (1 << k) for g, k in zip(self.parts, cell[1][2:])])
+
 
 def present(waves):
     """Those whose amplitude is not always zero."""
@@ -53,10 +58,24 @@ class Claim:
     sha256: str                         # of the file, uncompressed
     where: str = ""                     # of a part, or a cell of a map: which it is
     parts: tuple = ()                   # of a proof file: a, b, ..., each a Claim
+    shifts: tuple = ()                  # of a part: what each parameter adds to v0 and v1, or none
 
     @property
     def parameters(self):
         return len(self.waves[0].parts)
+
+    @property
+    def moves(self):
+        """How (v0, v1) change along each axis of cells, from the region's middle to its end."""
+        none, (h0, h1) = Fraction(0), self.half
+        return (h0, none), (none, h1), *self.shifts, *[(none, none)] * (3 - len(self.shifts))
+
+    def box(self, cell):
+        """Of v0 and v1: the middle of a cell, and how they change from there along its axes."""
+        at = [Fraction(2 * i + 1, 1 << k) - 1 for i, k in zip(*cell)]
+        return [(c + sum([x * y for x, y in zip(at, along)]),
+                 [y / (1 << k) for y, k in zip(along, cell[1])])
+                for c, along in zip(self.centre, zip(*self.moves))]
 
     @property
     def examined(self):

@@ -32,9 +32,6 @@ class Criterion:
         if max([abs(x) for wave in waves for x in (wave.middle, *wave.parts)] + [0]) >= one:
             raise NotConfirmed("the parameters are too large for this checker")     # l has no digit
         self.take(claim)
-        # The symbols: of the parameters that count, and of the angles.
-        self.axes = [2 + m for m in range(claim.parameters)
-                     if any(wave.parts[m] for wave in waves)] + [0, 1]
         # The ends of the parameters: a cell's B is no larger than what lies between B there.  An
         # end is off by less than a unit for each wave, and the eigenvalue by less than stiffness.
         if bound is not None:
@@ -42,13 +39,11 @@ class Criterion:
         else:
             corners = [tuple([math.floor(wave.at(t) * one) for wave in waves])
                        for t in itertools.product((-1, 1), repeat=claim.parameters)]
-            apart = [[x] for x in corners] if any(set("234") & set(part.tree) for part in parts) \
-                else [corners]
-            found = {}
-            for ends in map(tuple, apart):
-                if ends not in found:
-                    found[ends] = torus_bound(self.fixed, self.waves, ends) + stiffness(self.waves)
-            self.B_at = [found[tuple(ends)] for ends in apart]
+            apart = [(x,) for x in corners] if any(set("234") & set(part.tree) for part in parts) \
+                else [tuple(corners)]
+            found = {ends: torus_bound(self.fixed, self.waves, ends) + stiffness(self.waves)
+                     for ends in set(apart)}
+            self.B_at = [found[ends] for ends in apart]
         self.B = max(self.B_at)
         if self.B <= 2 * one:
             # The tails of step 2 must be square-summable, l < 1, which needs B > 2.  (The mean of
@@ -59,6 +54,9 @@ class Criterion:
 
     def take(self, claim):
         self.claim = claim
+        # The symbols: of the parameters that move a wave or the region, and of the angles.
+        self.axes = [axis for axis in range(2, 2 + claim.parameters) if any(claim.moves[axis])
+                     or any(wave.parts[axis - 2] for wave in claim.examined)] + [0, 1]
         self.xstar = tuple([math.floor(x * self.fixed.one) for x in claim.xstar])
 
     def of_part(self, part):
@@ -106,28 +104,23 @@ class Criterion:
         are their parts, and so are their products with sines and cosines, which are within
         SINE_ERROR units.  x[1] is within 2 units, as angle() says, but for turns: orbits that
         differ by 2 pi in x[1] differ by 2 pi j in x[j], and nothing else changes.  A column is off
-        by 2 units for pi as often as it has it, and by one more.
+        by 2 units for pi as often as it has it, and by one more; it is exact if it is zero.
         """
-        index, cuts = cell
-        fixed, one, symbols = self.fixed, self.fixed.one, len(self.axes)
-        at = [Fraction(2 * i + 1, 1 << k) - 1 for i, k in zip(index, cuts)]
-        waves = []
+        (_, cuts), fixed, one, waves = cell, self.fixed, self.fixed.one, []
         for (k0, k1, phase), wave in zip(self.waves, self.claim.examined):
-            amplitude = math.floor(wave.at(at[2:]) * one)
+            amplitude = math.floor(wave.over(cell)[0] * one)
             parts = [(i, math.floor(wave.parts[axis - 2] / (1 << cuts[axis]) * one))
                      for i, axis in enumerate(self.axes[:-2]) if wave.parts[axis - 2]]
             size = abs(amplitude) + sum([abs(part) for _, part in parts])
             waves.append(PrismWave(k0, k1, phase, amplitude, parts,
                                    (size * SINE_ERROR >> fixed.bits) + 3 + 2 * len(parts)))
-        v = [c + h * t for c, h, t in zip(self.claim.centre, self.claim.half, at)]
-        half = [h / (1 << k) for h, k in zip(self.claim.half, cuts)]
-        x, columns, error = [], [], []
-        for row in self.claim.frame[:2], self.claim.frame[2:]:
-            sides = [f * h for f, h in zip(row, half)]
-            x.append(fixed.angle(sum([f * y for f, y in zip(row, v)])))
-            columns.append([0] * (symbols - 2) + [math.floor(side * fixed.pi) for side in sides])
-            error.append(2 + sum([2 * math.ceil(abs(side)) + 1 for side in sides]))
-        return Prism(fixed, waves, self.xstar, (x, columns, error), symbols)
+        ((v0, along0), (v1, along1)), x, columns, error = self.claim.box(cell), [], [], []
+        for p, q in self.claim.frame[:2], self.claim.frame[2:]:
+            sides = [p * along0[axis] + q * along1[axis] for axis in self.axes]
+            x.append(fixed.angle(p * v0 + q * v1))
+            columns.append([math.floor(side * fixed.pi) for side in sides])
+            error.append(2 + sum([2 * math.ceil(abs(side)) + 1 for side in sides if side]))
+        return Prism(fixed, waves, self.xstar, (x, columns, error), len(self.axes))
 
     def attempt(self, l, cell, caution):
         """Is (C3) true of the whole cell?  None if so, or else why not, and for each of its axes
@@ -137,9 +130,8 @@ class Criterion:
         except (OverflowError, ValueError, ZeroDivisionError):
             # A number too large, a singular matrix, a NaN: no bound was established, and an
             # attempt that establishes none excludes nothing.
-            return "the arithmetic failed", [
-                float(self.claim.half[axis] / (1 << cell[1][axis]) > 0) if axis < 2 else 0.0
-                for axis in self.axes]
+            moves = self.claim.moves
+            return "the arithmetic failed", [float(any(moves[axis])) for axis in self.axes]
 
     def excluded(self, cell):
         """Does no minimizing orbit go from x* to the cell?  (None or else why not, pieces tried)"""

@@ -33,14 +33,13 @@ Site = collections.namedtuple("Site", "waves E beta reach")
 
 class Prism:
     """A prism: its waves, x[0] and x[1] as (centre, columns, error), each for two coordinates, and
-    the number of its symbols, the last two of them those of the parallelogram."""
+    the number of its symbols: of parameters, which may move x[1], too, and two of its own."""
 
     def __init__(self, fixed, waves, xstar, x1, symbols):
         self.fixed, self.waves, self.symbols = fixed, waves, symbols
         self.pairs = list(itertools.combinations_with_replacement(range(symbols), 2))
         self.turn = turn_of([((wave.k0, wave.k1), abs(wave.amplitude)) for wave in waves])
-        blank = [0] * symbols
-        start = xstar, (blank, blank), (1, 1)
+        start = xstar, ([0] * symbols,) * 2, (1, 1)
         self.lanes = Lane(self, start, x1), Lane(self, x1, start)
         self.sizes = [(k0, k1, (abs(amplitude) + sum([abs(x) for _, x in parts])) / fixed.one)
                       for k0, k1, _, amplitude, parts, _ in waves]
@@ -90,8 +89,7 @@ class Lane:
         curve1 = [2 * a - b for a, b in zip(T1, self.T0[1])]
         for wave, (strong0, strong1) in zip(prism.waves, self.strengths):
             k0, k1, phase, amplitude, parts, error = wave
-            xi = L0 if (k0, k1) == (1, 0) else L1 if (k0, k1) == (0, 1) else [
-                k0 * a + k1 * b for a, b in zip(L0, L1)]
+            xi = [k0 * a + k1 * b for a, b in zip(L0, L1)]
             tau = [k0 * a + k1 * b for a, b in zip(T0, T1)]
             size = sum(map(abs, xi))
             rest = -(-(strong0 * r0 + strong1 * r1) // length) + (sum([

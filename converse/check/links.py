@@ -1,6 +1,7 @@
 """Leaves that are linked to another part: step (C25)."""
 
 import math
+from dataclasses import replace
 from fractions import Fraction
 
 from .arith import SINE_ERROR, upper_sqrt
@@ -21,14 +22,12 @@ def upper_beta(claim, fixed, cell, middle, w):
     sin(y + z) = sin y + z cos y - z^2/2 sin(some angle).
     """
     p, q, r, off = Fraction(2), Fraction(0), Fraction(2), Fraction(SINE_ERROR + 1, fixed.one)
-    t = [Fraction(2 * i + 1, 1 << k) - 1 for i, k in zip(cell[0][2:], cell[1][2:])]
     for wave in claim.examined:
-        k0, k1 = wave.k
+        (k0, k1), (amplitude, half) = wave.k, wave.over(cell)
         angle = math.floor((k0 * middle[0] + k1 * middle[1]) * fixed.one)
         s, c = [Fraction(x, fixed.one) for x in fixed.sincos(angle + fixed.angle(wave.phase))]
-        h, amplitude = abs(k0 * w[0] + k1 * w[1]) / 2, wave.at(t)
+        h = abs(k0 * w[0] + k1 * w[1]) / 2
         far = off + (abs(c) + off) * h + h * h / 2
-        half = sum([abs(part) / (1 << cuts) for part, cuts in zip(wave.parts, cell[1][2:])])
         most = max([-x * sine for x in (amplitude - half, amplitude + half)
                     for sine in (max(s - far, -1), min(s + far, 1))])
         p, q, r = p + k0 * k0 * most, q + k0 * k1 * most, r + k1 * k1 * most
@@ -63,23 +62,24 @@ def check_links(claim, criterion):
     region."""
     known = {}                          # displacements
     for part, letters in trees(claim):
-        seen = dict.fromkeys(letters, 0)
         for position, cell in leaves(part.tree, kinds="PS" + letters):
             letter = part.tree[position]
-            if letter not in seen:
+            if letter not in letters:
                 continue
-            seen[letter] += 1
             target = claim.parts[LETTERS.index(letter)]
             key = part.where, letter, *[x[2:] for x in cell]
             if key not in known:
                 try:
                     known[key] = displacement(criterion, cell, part.xstar, target.xstar)
                 except OverflowError:
-                    raise NotConfirmed("the x* of a part is too far off for this checker") \
-                        from None
-            for i, k, c, h, (low, high), middle, half in zip(
-                    *cell, part.centre, part.half, known[key], target.centre, target.half):
-                least = c - h + 2 * h * i / (1 << k)
-                if least + low < middle - half or least + 2 * h / (1 << k) + high > middle + half:
+                    raise NotConfirmed("the x* of a part is too far off for this checker") from None
+            # The leaf, where the target's region stands still and has its middle at 0.
+            leaf = replace(part, centre=[x - y for x, y in zip(part.centre, target.centre)],
+                           shifts=[(a - c, b - d) for (a, b), (c, d) in
+                                   zip(part.moves[2:], target.moves[2:])])
+            for (x, along), (low, high), half in zip(leaf.box(cell), known[key], target.half):
+                reach = sum(map(abs, along))
+                if x - reach + low < -half or x + reach + high > half:
                     raise NotConfirmed("%s is linked to part %s, but may lead out of its region" % (
-                        leaf_text(part, letter, seen[letter] - 1, cell), letter))
+                        leaf_text(part, letter, part.tree.count(letter, 0, position), cell),
+                        letter))

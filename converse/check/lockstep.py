@@ -97,15 +97,16 @@ class Shape:
     """What the waves of the fast path are but for their amplitudes: their k and phases, the first
     two those of the coordinates; and which of them are present anywhere, and have which symbols."""
 
-    def __init__(self, waves, moving=()):
+    def __init__(self, waves, moving=(), parameters=0):
         """waves: (k, phase) of those that are present; moving: pairs of the number of such a wave
-        and of a symbol that moves its amplitude."""
+        and of a symbol that moves its amplitude; parameters: so many symbols at least, some of
+        which may move x[1] alone."""
         self.known = [((1, 0), 0), ((0, 1), 0)]
         self.known += [wave for wave in waves if wave not in self.known]
         at = self.at = [self.known.index(wave) for wave in waves]   # their numbers here
         self.present = sorted(at)
         self.moving = [[m for w, m in moving if at[w] == here] for here in range(len(self.known))]
-        self.parameters = 1 + max([m for _, m in moving], default=-1)
+        self.parameters = max([parameters] + [1 + m for _, m in moving])
         k = np.array([k for k, _ in self.known], float)
         self.K = abs(k).sum(axis=1)
         self.square = (k * k).sum(axis=1)
@@ -287,7 +288,7 @@ class Sums:
         self.cubic = np.zeros((known, len(self.pairs), lanes))      # of e[i] and of a pair
         self.mixed = np.zeros((angles, known, lanes))   # of e[i] and a parameter's symbol
         self.skew = np.zeros((angles, known, known, lanes))
-        self.ends = None                                # of the sides of the parallelogram
+        self.ends = None                                # of e[i] and the columns of x[1]
 
     def add_waves(self, shape, P, h, columns, A, B):
         """Adds the polynomial of step (C8) of all waves, but for P (A0 + alpha), of which with the
@@ -333,12 +334,11 @@ class Sums:
                 add(self.mixed[k, i], i, k)
                 for j in range(self.known):
                     add(self.skew[k, i, j], i, j, k)
-            for k in (0, 1):
-                add(self.ends[k, 1 + i], i, self.angles + k)
+            for k in range(self.known):
+                add(self.ends[k, 1 + i], i, k)
+            add(self.ends[i, 0], i)
         for at, (j, k) in enumerate(self.pairs):
             add((1 + (j < k)) * self.square[at], j, k)
-        for k in (0, 1):
-            add(self.ends[k, 0], self.angles + k)
         return form
 
 
@@ -347,11 +347,11 @@ class Prisms:
     before those back."""
 
     def __init__(self, box, shape, xstar, l, caution=CAUTION[0]):
-        """The box: P, h (by wave and symbol) and W of the waves, X[1] in turns, the sides of the
-        parallelogram as columns and what x[1] may be off, in radians; the Shape; x* in turns; l;
-        and how much the choice of n shies at sites that are not well known, by their reach and
+        """The box: P, h (by wave and symbol) and W of the waves, X[1] in turns, its columns (by
+        coordinate and symbol, the last two those of the parallelogram) and what x[1] may be off,
+        in radians; the Shape; x* in turns; l; and how much the choice of n shies at sites that are not well known, by their reach and
         by its square."""
-        P, h, W, x, sides, off = box
+        P, h, W, x, columns, off = box
         self.size, self.shape = x.shape[1], shape
         self.P, self.h, self.W = self.both(P, P), self.both(h, h), self.both(W, W)
         self.H = np.abs(self.h).sum(axis=1) * MORE
@@ -369,10 +369,8 @@ class Prisms:
         self.pairs = list(itertools.combinations_with_replacement(range(self.known), 2))
         self.halves = np.array([[0.5 if i == j else 1] for i, j in self.pairs])
         start, none = xstar + 0 * x, np.zeros_like(x)
-        columns = np.zeros((2, self.known, self.size))
-        columns[:, self.angles:] = sides
         blank, rounding = np.zeros_like(columns), np.full_like(x, XSTAR_REST)
-        self.sides, self.rounding = self.both(sides, 0 * sides), self.both(off, rounding)
+        self.ends, self.rounding = self.both(columns, blank), self.both(off, rounding)
         a, b = map(abs, self.turn)
         off, rounding = [np.stack((a * u + b * v, b * u + a * v))
                          for u, v in (off + none, rounding)]
@@ -604,8 +602,8 @@ class Prisms:
                 across = self.other(mu)
                 G, terms = G - across, terms + np.abs(across).sum(axis=1)
                 small = most * F + np.abs(G).sum(axis=1) * self.rounding \
-                    + grain * terms * (np.abs(self.sides).sum(axis=1) + self.rounding)
-                sums.ends = np.stack([G[0] * x + G[1] * y for x, y in zip(*self.sides)])
+                    + grain * terms * (np.abs(self.ends).sum(axis=1) + self.rounding)
+                sums.ends = np.stack([G[0] * x + G[1] * y for x, y in zip(*self.ends)])
             sums.error += small[0] + small[1]
         sums.join(self.joined)
         sums.value -= 2 * (n[0][0, :self.size] * n[0][0, self.size:]
@@ -643,7 +641,9 @@ class Lockstep:
         if not all(claim.examined for claim in claims):
             raise ValueError("no wave: orbits without end")
         self.axes = sorted({2 + m for claim in claims for wave in claim.examined
-                            for m, part in enumerate(wave.parts) if float(part)})   # or TINY
+                            for m, part in enumerate(wave.parts) if float(part)}    # or TINY
+                           | {2 + m for claim in claims for m, shift in enumerate(claim.shifts)
+                              if any(shift)})
         shape = (len(waves), len(claims))
         self.middle, self.scale = np.zeros(shape), np.zeros(shape)
         self.parts = np.zeros((len(self.axes), *shape))
@@ -655,16 +655,20 @@ class Lockstep:
                 self.middle[w, q] += float(wave.middle)
                 self.parts[:, w, q] += [float(part) for part in parts]
                 self.scale[w, q] += 2 * float(abs(wave.middle) + sum(map(abs, parts)))
-        self.shape = Shape(waves, [(w, m) for m, w in zip(*self.parts.any(axis=2).nonzero())])
+        self.shape = Shape(waves, [(w, m) for m, w in zip(*self.parts.any(axis=2).nonzero())],
+                           len(self.axes))
         self.axes += [0, 1]                         # of the symbols
         self.centre = np.array([[float(v / 2 % 1) for v in claim.centre] for claim in claims]).T
         self.half = np.array([[float(v / 2) for v in claim.half] for claim in claims]).T
+        self.shifts = np.array([[[float(claim.moves[axis][i] / 2) for claim in claims]
+                                 for axis in self.axes[:-2]] for i in (0, 1)]).reshape(
+                                     2, len(self.axes) - 2, len(claims))
         self.frame = np.array([claim.frame for claim in claims], float).T
         fixed, half_turn = fixed_of(128), Fraction(1, 2)
         self.xstar = np.array([[float(
             (Fraction(math.floor(x * fixed.one), 2 * fixed.pi) + half_turn) % 1 - half_turn)
             for x in claim.xstar] for claim in claims]).T
-        sizes = self.scale, self.half, self.frame, [max(map(abs, c.xstar)) for c in claims], \
+        sizes = self.scale, self.half, self.shifts, self.frame, [max(map(abs, c.xstar)) for c in claims], \
             [max(map(abs, c.centre)) for c in claims]
         if max([np.max(np.array(x, float), initial=0) for x in map(np.abs, sizes)]) > FAST_SIZE:
             raise ValueError("too large for the fast path")
@@ -675,9 +679,11 @@ class Lockstep:
 
         at and part are exact.  The doubles near middles and parts are off by u of them, the
         products and sums by u of theirs, of four at most: all in all by less than 8 u of their
-        sum, of which scale is the double.  Centres and half-widths of the angles alike; in a frame
-        other than the identity x[1] has the roundings of two products and a sum, in turns, and its
-        columns have those of their products.
+        sum, of which scale is the double.  Centres and half-widths of the angles alike, and at most
+        three shifts, in at most four sums: 6 u of the centre, 7 u of the half-widths, 6 u of the
+        shifts and 3 u more of these for their columns, all of which the sides are longer for.  In a
+        frame other than the identity x[1] has the roundings of two products and a sum, in turns,
+        and so have its columns.
         """
         part = np.ldexp(1.0, -cuts.astype(np.intc))
         at = (2 * index + 1 - (1 << cuts)) * part
@@ -692,14 +698,20 @@ class Lockstep:
         for w, scale in zip(self.shape.at, self.scale):
             W[w] = np.where(scale[number] > 0, 8 * UNIT * scale[number] + TINY, 0)
         V = self.centre[:, number] + self.half[:, number] * at[:2]
+        moves, moved = np.zeros((2, len(self.axes), number.size)), 0
+        for m, axis in enumerate(self.axes[:-2]):
+            shifts = self.shifts[:, m, number]
+            V += shifts * at[axis]
+            moves[:, m] = TWO_PI * shifts * part[axis]
+            moved = moved + np.abs(shifts)
         V -= np.rint(V)
-        sides = TWO_PI * MORE * (self.half[:, number] * part[:2] + (
-            8 * UNIT * (self.centre + self.half)[:, number] + TINY))
+        moves[(0, 1), (-2, -1)] = TWO_PI * MORE * (self.half[:, number] * part[:2] + (
+            8 * UNIT * ((self.centre + self.half)[:, number] + 2 * moved) + TINY))
         frame = self.frame[:, number]
-        columns = frame.reshape(2, 2, -1) * sides
-        X = np.stack((frame[0] * V[0] + frame[1] * V[1], frame[2] * V[0] + frame[3] * V[1]))
-        off = UNIT * (8 * np.abs(frame.reshape(2, 2, -1)).sum(axis=1)
-                      + 2 * np.abs(columns).sum(axis=1))
+        X, columns, sizes = [np.stack((f[0] * v[0] + f[1] * v[1], f[2] * v[0] + f[3] * v[1]))
+                             for f, v in ((frame, V), (frame, moves),
+                                          (np.abs(frame), np.abs(moves)))]
+        off = UNIT * (8 * np.abs(frame.reshape(2, 2, -1)).sum(axis=1) + 4 * sizes.sum(axis=1))
         off[:, (frame.T == IDENTITY).all(axis=1)] = 0
         return P, h, W, X - np.rint(X), columns, off
 

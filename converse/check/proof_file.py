@@ -6,6 +6,7 @@ import io
 import re
 import zlib
 from dataclasses import replace
+from fractions import Fraction
 
 from .claim import ANGLES, LETTERS, NUMBER, RATIO, Claim, Wave, check_alone, check_frame, number
 from .failures import NotConfirmed, Rejected, Unusable, reason
@@ -54,8 +55,8 @@ def read_proof(data):
     if first == b"2":
         raise Unusable("is a proof file of version 2, which converse-check up to release 1.6.0 "
                        "verifies")
-    if first not in (b"3", b"4"):
-        raise Unusable("is a proof file of another version; this checker knows versions 3 and 4")
+    if first not in (b"3", b"4", b"5"):
+        raise Unusable("is a proof file of another version; this checker knows versions 3 to 5")
     marker = b"checksum: sha256 "
     end = data.rfind(b"\n" + marker) + 1
     end_line = data[end + len(marker):]
@@ -77,9 +78,8 @@ def parse_header(head):
     Nothing of it is repeated in a message but the names of fields that are known.
     """
     header, file = {"wave": []}, io.BytesIO(head)
-    fields, version = set(FIELDS), 3    # which read_proof has seen to
-    if file.readline() == MAGIC + b"4\n":
-        fields, version = fields | {LINKED}, 4
+    version = int(file.readline()[len(MAGIC):])     # which read_proof has seen to
+    fields = FIELDS | {LINKED} if version > 3 else FIELDS
     for at, line in enumerate(iter(lambda: file.readline(MAX_LINE), b""), 2):
         if len(line) == MAX_LINE:
             raise NotConfirmed("line %d is longer than the checker's limit, %d bytes"
@@ -102,34 +102,34 @@ def parse_header(head):
     return version, header
 
 
-def pair(value, name, form=NUMBER):
-    """Two numbers."""
-    words = value.split(" ", 2)
-    if len(words) != 2 or not all(map(form.fullmatch, words)):
-        raise Rejected(name + " is not two decimal numbers")
-    return tuple(number(word, name, form) for word in words)
+def pair(value, name, form=NUMBER, count=0):
+    """Two numbers, or with so many more."""
+    words = value.split(" ", 9)
+    if len(words) not in (2, 2 + count) or not all(map(form.fullmatch, words)):
+        raise Rejected("%s is not two%s decimal numbers" % (
+            name, " or %d" % (2 + count) if count else ""))
+    return tuple([number(word, name, form) for word in words])
 
 
-def place(xstar, ranges, name):
-    """x*, and centres and half-widths of v0 and v1."""
-    xstar, *ranges = [pair(value, name + key) for value, key in
-                      zip((xstar, *ranges), ("xstar", *ANGLES))]
-    if min(half for _, half in ranges) < 0:
+def place(xstar, v0, v1, name, count=0):
+    """x*, centres and half-widths of v0 and v1, and their shifts by so many parameters, if any."""
+    ranges = [pair(v0, name + "v0", count=count), pair(v1, name + "v1", count=count)]
+    if min(half for _, half, *_ in ranges) < 0:
         raise Rejected("a half-width is negative")
-    return xstar, *zip(*ranges)
+    centre, half, *shifts = zip(*[(x + (Fraction(0),) * count)[:2 + count] for x in ranges])
+    return pair(xstar, name + "xstar"), centre, half, tuple(shifts) * any(map(any, shifts))
 
 
-def parse_part(text, letter, claim):
+def parse_part(text, letter, claim, count):
     """A part of a claim, from what follows `part: `: four lines and a tree."""
-    name, lines = "part " + letter, text.split("\n", 5)
-    if len(lines) < 6 or lines[0] != letter or lines[4] != "tree:" or not all(
-            line.startswith(key + ": ") for key, line in zip(("xstar", *ANGLES), lines[1:])):
+    name, found = "part " + letter, re.match(
+        letter + "\nxstar: (.*)\nv0: (.*)\nv1: (.*)\ntree:\n", text)
+    if not found:
         raise Rejected("%s is not 'part: %s', xstar, v0, v1 and a tree, each on its line"
                        % (name, letter))
-    xstar, *ranges = [line.partition(": ")[2] for line in lines[1:4]]
-    xstar, centre, half = place(xstar, ranges, name + "'s ")
-    return replace(claim, xstar=xstar, centre=centre, half=half, tree=lines[5].replace("\n", ""),
-                   where=name, counts={}, at_once="no")
+    xstar, centre, half, shifts = place(*found.groups(), name + "'s ", count)
+    return replace(claim, xstar=xstar, centre=centre, half=half, shifts=shifts, where=name,
+                   tree=text[found.end():].replace("\n", ""), counts={}, at_once="no")
 
 
 def parse(head, tree, sha256):
@@ -142,8 +142,7 @@ def parse(head, tree, sha256):
             raise Rejected("the header's %s is neither %s" % (name, " nor ".join(values)))
         return header[name]
 
-    xstar, centre, half = place(header["xstar"], [header[name] for name in ANGLES],
-                                "the header's ")
+    xstar, centre, half, _ = place(*[header[x] for x in ("xstar", *ANGLES)], "the header's ")
     counts = COUNTS + (LINKED,) * (version > 3)
     for name in counts:
         if not re.fullmatch("[0-9]{1,18}", header[name], re.ASCII):
@@ -159,11 +158,12 @@ def parse(head, tree, sha256):
                   {name: int(header[name]) for name in counts}, at_once, tree.replace("\n", ""),
                   sha256)
     check_odd(claim, odd)
+    count = claim.parameters * (version > 4)    # of shifts
     if len(parts) > len(LETTERS):
         raise Rejected("there are more parts than letters")
     if parts and alone is not None:
         raise Rejected("a coordinate is alone, and there are parts: links are of whole graphs")
-    return replace(claim, parts=tuple([parse_part(text, letter, claim)
+    return replace(claim, parts=tuple([parse_part(text, letter, claim, count)
                                        for text, letter in zip(parts, LETTERS)]))
 
 

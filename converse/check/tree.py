@@ -7,7 +7,6 @@ region exactly.
 
 import itertools
 from array import array
-from fractions import Fraction
 
 from .claim import AXES, IDENTITY, LETTERS
 from .failures import NotConfirmed, Rejected, named
@@ -122,7 +121,7 @@ class Mirror:
 
     def __init__(self, claim):
         v0, v1 = zip(claim.centre, claim.half)
-        fits = v0 == v1 and claim.frame == IDENTITY
+        fits = v0 == v1 and claim.frame == IDENTITY and not claim.shifts
         self.orders = exchange_orders(claim) if fits else []    # of the parameters
         self.tree = claim.tree
         self.upper = array("i", [0]) * len(self.tree)       # where a node's upper half begins
@@ -170,28 +169,22 @@ def check_mirror_images(claim):
     for part, letters in trees(claim):
         if "S" not in part.tree:
             continue
-        mirror, skipped = Mirror(part), 0
+        mirror = Mirror(part)
         for position, cell in leaves(part.tree, kinds="PS" + letters):
-            if part.tree[position] == "S":
-                if why := mirror.refusal(cell):
-                    raise Rejected(leaf_text(part, "S", skipped, cell) + " " + why)
-                skipped += 1
+            if part.tree[position] == "S" and (why := mirror.refusal(cell)):
+                before = part.tree.count("S", 0, position)
+                raise Rejected(leaf_text(part, "S", before, cell) + " " + why)
 
 
 def leaf_text(claim, kind, ordinal, cell):
     """Names a leaf by its part, its number among those of its kind, its depth and where it lies."""
-    index, cuts = cell
 
     def sides(ends):
-        return " x ".join(["[%.9g, %.9g]" % (low, high) for low, high in ends])
+        return " x ".join(["[%.9g, %.9g]" % (x - h, x + h) for x, h in ends])
 
-    t = [Fraction(2 * i + 1, 1 << k) - 1 for i, k in zip(index[2:], cuts[2:])]
-    angles = [(c - h + 2 * h * i / (1 << k), c - h + 2 * h * (i + 1) / (1 << k))
-              for c, h, i, k in zip(claim.centre, claim.half, index, cuts)]
-    spread = [sum([abs(g) / (1 << k) for g, k in zip(wave.parts, cuts[2:])])
-              for wave in claim.waves]
-    return "%s%s leaf %d of %d (v in %s pi, amplitudes in %s, %d cuts)" % (
+    return "%s%s leaf %d of %d (v in %s pi%s, amplitudes in %s, %d cuts)" % (
         claim.where and claim.where + ": ",
         {"P": "proved", "S": "symmetric"}.get(kind, "linked"), ordinal + 1, claim.tree.count(kind),
-        sides(angles), sides([(wave.at(t) - x, wave.at(t) + x)
-                              for wave, x in zip(claim.waves, spread)]), sum(cuts))
+        sides([(x, along[n]) for n, (x, along) in enumerate(claim.box(cell))]),
+        " at the parameters' middle" if claim.shifts else "",
+        sides([wave.over(cell) for wave in claim.waves]), sum(cell[1]))

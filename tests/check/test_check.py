@@ -1649,10 +1649,23 @@ def off_by(true, centre, columns, eta):
     return abs(true - centre - sum(x * real(e) for x, e in zip(columns, eta)))
 
 
+def with_shifts(generator, claim, width="0.1"):
+    """The claim, or one whose region moves with some of its parameters, as those of parts may."""
+    shifts = tuple([tuple([exact_decimal(generator, width) * generator.choice((0, 1, 1))
+                           for _ in "01"]) for _ in range(claim.parameters)])
+    return generator.choice((claim, dataclasses.replace(claim, shifts=shifts)))
+
+
+def moved_by(claim, along):
+    """What the parameters add to v0 and v1."""
+    return [sum([shift[i] * t for shift, t in zip(claim.shifts, along[2:])]) for i in (0, 1)]
+
+
 def random_prism(generator, texts, most=12):
     """(criterion, cell, prism) of the exact path."""
     while True:
         claim = claim_of(random_text(generator, texts["trig274"], "P", 1, "0.5"))
+        claim = with_shifts(generator, claim)
         if claim.examined:
             criterion, cell = check.Criterion(claim), random_cell(generator, claim, most)
             return criterion, cell, criterion.prism(cell)
@@ -1662,7 +1675,8 @@ def true_point(generator, criterion, cell):
     """Symbols, and the amplitudes, x[0] and x[1] that they stand for, exact."""
     claim, eta = criterion.claim, [near(generator) for _ in range(5)]
     along = [Fraction(2 * i + 1 + e, 1 << k) - 1 for i, k, e in zip(*cell, eta)]
-    v = [c % 2 + h * t for c, h, t in zip(claim.centre, claim.half, along)]
+    v = [c % 2 + h * t + s for c, h, t, s in zip(claim.centre, claim.half, along,
+                                                 moved_by(claim, along))]
     return ([eta[axis] for axis in criterion.axes], [wave.at(along[2:]) for wave in claim.examined],
             [[real(x) for x in claim.xstar], in_frame(claim.frame, [real(x) * mp.pi for x in v])])
 
@@ -1840,12 +1854,13 @@ def np():
 
 def random_prisms(np, generator, count=8, scale=1.0):
     """Prisms of any kind, from needles to parallelograms, of the thesis's waves or others, with
-    parameters that move many waves or one or none; in some lanes a wave may be missing."""
+    parameters that move many waves or one or none, and x[1], or not; in some lanes a wave may be
+    missing."""
     waves = some_waves(generator)
     moving = generator.choice((
         [(w, 0) for w in range(len(waves))], [(w, w % 3) for w in range(len(waves))], [],
         [(w, m) for w in range(len(waves)) for m in range(3)], [(0, 0)]))
-    shape = check.Shape(waves, moving)
+    shape = check.Shape(waves, moving, generator.choice((0, 0, 1, 3)))
     draw = np.random.default_rng(generator.getrandbits(64))
     P, width = np.zeros((len(shape.known), count)), 2.0 ** draw.uniform(
         generator.choice((-40, -7)), -2, count)
@@ -1861,10 +1876,12 @@ def random_prisms(np, generator, count=8, scale=1.0):
     x = draw.uniform(-0.5, 0.5, (2, count))
     sides = draw.uniform(0, 1, (2, count)) * width * generator.choice((1, np.array([[1], [0]])))
     frame = np.array(generator.choice(FRAMES), float).reshape(2, 2, 1)
+    columns = draw.uniform(-1, 1, (2, shape.parameters, count)) * width * generator.choice((0, 0, 1))
+    columns = np.concatenate((columns, frame * sides), axis=1)
     off = draw.uniform(0, 1, (2, count)) * width * generator.choice((0, 0, 2.0 ** -20, 2.0 ** -45))
     xstar = np.array([[generator.choice((0.25, draw.uniform(-0.5, 0.5)))] for _ in "01"]) \
         + generator.choice((0, 0.1)) * draw.uniform(-0.5, 0.5, (2, count))
-    return check.Prisms((P, h, W, x, frame * sides, off), shape, xstar,
+    return check.Prisms((P, h, W, x, columns, off), shape, xstar,
                         draw.uniform(0, 0.9, count))
 
 
@@ -1876,13 +1893,13 @@ def inside(generator, prisms, lane, eta=None):
         amplitudes.append(real(Fraction(float(P[lane])) + Fraction(float(W[lane])) * near(generator)
                                + sum(Fraction(float(x)) * e for x, e in zip(h[:, lane], eta))))
     angles = []
-    for turns, rest, sides in (
-            (prisms.before[0], prisms.other(prisms.rounding), 0 * prisms.sides),
-            (prisms.first[0], prisms.rounding, prisms.sides)):
+    for turns, rest, columns in (
+            (prisms.before[0], prisms.other(prisms.rounding), 0 * prisms.ends),
+            (prisms.first[0], prisms.rounding, prisms.ends)):
         angles.append([
             2 * mp.pi * real(Fraction(float(turns[i, lane]))) + real(
                 Fraction(float(rest[i, lane])) * near(generator)
-                + sum(Fraction(float(sides[i, j, lane])) * eta[prisms.angles + j] for j in (0, 1)))
+                + sum(Fraction(float(x)) * e for x, e in zip(columns[i, :, lane], eta)))
             for i in (0, 1)])
     return eta, amplitudes, angles
 
@@ -2192,9 +2209,9 @@ def test_lockstep_polynomial(np, generator):
         draw = np.random.default_rng(generator.getrandbits(64))
         n = draw.uniform(-1, 1, (4, 2, 2 * size)) * draw.uniform(0.3, 1)
         for shrink in (2.0 ** -4, 2.0 ** -5):
-            width = shrink / (abs(box.sides[..., :size]).max(axis=(0, 1)) + 2.0 ** -99)
+            width = shrink / (abs(box.ends[:, -2:, :size]).max(axis=(0, 1)) + 2.0 ** -99)
             prisms = check.Prisms((box.P[:, :size], box.h[..., :size] * width, 0 * box.W[:, :size],
-                                   box.first[0][:, :size], box.sides[..., :size] * width,
+                                   box.first[0][:, :size], box.ends[..., :size] * width,
                                    np.zeros((2, size))), box.shape, box.before[0][:, :size],
                                   box.l[:size])
             with np.errstate(all="ignore"):
@@ -2227,10 +2244,10 @@ def test_lockstep_polynomial(np, generator):
 
 def test_lockstep_boxes_cover_their_cells(np, texts, generator):
     """Of many claims at a time: the same symbols lead to all amplitudes, and to both angles."""
-    kinds = 0
+    kinds = shifted = 0
     for _ in range(6 * min(TORTURE, 4)):
         claims = [claim_of(random_text(generator, texts["trig274"], "P", 1, 9)) for _ in range(4)]
-        claims = [claim for claim in claims if claim.examined]
+        claims = [with_shifts(generator, claim, 9) for claim in claims if claim.examined]
         fast, numbers = check.Lockstep(claims), [generator.randrange(len(claims))
                                                  for _ in range(40)]
         cells = [random_cell(generator, claims[q], 52) for q in numbers]
@@ -2249,25 +2266,27 @@ def test_lockstep_boxes_cover_their_cells(np, texts, generator):
                 assert abs(amplitude - found) <= Fraction(float(W[w, n]))
                 assert (W[w, n] == 0) == all(
                     fast.shape.known[w] != (wave.k, wave.phase % 2) for wave in claim.examined)
-            turns = in_frame(claim.frame, [c + v * t for c, v, t in zip(
-                claim.centre, claim.half, along)])
-            gap = [2 * mp.pi * real((x / 2 - Fraction(float(y)) + Fraction(1, 2)) % 1
-                                    - Fraction(1, 2)) for x, y in zip(turns, X[:, n])]
-            f = claim.frame
-            sides = [max(mp.mpf(float(abs(columns[i, m, n]))) / abs(f[2 * i + m])
-                         for i in (0, 1) if f[2 * i + m]) for m in (0, 1)]
+            turns = in_frame(claim.frame, [c + v * t + s for c, v, t, s in zip(
+                claim.centre, claim.half, along, moved_by(claim, along))])
+            gap = [2 * mp.pi * real(x / 2 - Fraction(float(y))) - sum(
+                mp.mpf(float(a)) * real(e) for a, e in zip(columns[i, :-2, n], symbols))
+                for i, (x, y) in enumerate(zip(turns, X[:, n]))]
+            gap = [(x + mp.pi) % (2 * mp.pi) - mp.pi for x in gap]
+            f, shifted = claim.frame, shifted + columns[:, :-2, n].any()
+            sides = [max(mp.mpf(float(abs(columns[i, m, n]))) / abs(f[2 * i + m + 2])
+                         for i in (0, 1) if f[2 * i + m + 2]) for m in (-2, -1)]
             back = in_frame([f[3], -f[1], -f[2], f[0]], gap)        # the inverse but for its sign
             back = [(x * (f[0] * f[3] - f[1] * f[2]) + mp.pi) % (2 * mp.pi) - mp.pi for x in back]
             gap = in_frame(f, back)                                 # which may be more than a turn
             at = [min(max(x / y, -1), 1) for x, y in zip(back, sides)]
             for i in (0, 1):
-                left = gap[i] - sum(mp.mpf(float(columns[i, m, n])) * at[m] for m in (0, 1))
+                left = gap[i] - sum(mp.mpf(float(columns[i, m, n])) * at[m] for m in (-2, -1))
                 assert abs(left) <= mp.mpf(float(off[i, n])) * (1 + mp.mpf(10) ** -40) \
                     + mp.mpf(10) ** -50
                 assert abs(X[i, n]) <= 0.5
             assert off[:, n].any() == (f != check.IDENTITY)
             kinds += f != check.IDENTITY
-    assert kinds > 20
+    assert kinds > 20 and shifted > 20
 
 
 def test_lockstep_xstar(np, texts, generator):
@@ -2331,10 +2350,10 @@ def test_numbers_that_are_none_prove_nothing(np, generator):
             if part > 2 and (row == 2 or bad == 1e300):
                 continue                            # two angles; and large ones are no harm
             prisms = random_prisms(np, generator)
-            while len(prisms.shape.present) < 2 or part == 1 and not prisms.h.size:
+            while len(prisms.shape.present) < 2 or part == 1 and not any(prisms.shape.moving):
                 prisms = random_prisms(np, generator)
             box = [x[..., :prisms.size].copy() for x in (
-                prisms.P, prisms.h, prisms.W, prisms.first[0], prisms.sides, prisms.rounding)]
+                prisms.P, prisms.h, prisms.W, prisms.first[0], prisms.ends, prisms.rounding)]
             if part == 1:
                 w = generator.choice([w for w, m in enumerate(prisms.shape.moving) if m])
                 box[part][w, prisms.shape.moving[w][0]] = bad

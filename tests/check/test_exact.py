@@ -339,7 +339,7 @@ def test_bounds_of_the_exact_path(name):
     ("step", "turned(self.turn, (wave.k0, wave.k1))", "(wave.k0, wave.k1)"),
     ("step", "[(a * u + b * v, b * u + a * v) for", "[(u, v) for"),
     ("step", "old0 + error0, old1 + error1", "error0, error1"),
-    ("step", "(blank, blank), (1, 1)", "(blank, blank), (0, 0)"),
+    ("step", "* 2, (1, 1)", "* 2, (0, 0)"),
     ("errors", "p, q, r = p - m, q - n, r - o", "p, q, r = p + m, q + n, r + o"),
     ("errors", "abs(m) * f0 + abs(n) * f1, ", "abs(m) * f0, "),
     ("errors", "abs(one - m * a - n * b) * old0 + abs(m * b", "abs(m * b"),
