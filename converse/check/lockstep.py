@@ -349,8 +349,8 @@ class Prisms:
     def __init__(self, box, shape, xstar, l, caution=CAUTION[0]):
         """The box: P, h (by wave and symbol) and W of the waves, X[1] in turns, its columns (by
         coordinate and symbol, the last two those of the parallelogram) and what x[1] may be off,
-        in radians; the Shape; x* in turns; l; and how much the choice of n shies at sites that are not well known, by their reach and
-        by its square."""
+        in radians; the Shape; x* in turns; l; and how much the choice of n shies at sites that are
+        not well known, by their reach and by its square."""
         P, h, W, x, columns, off = box
         self.size, self.shape = x.shape[1], shape
         self.P, self.h, self.W = self.both(P, P), self.both(h, h), self.both(W, W)
@@ -668,8 +668,8 @@ class Lockstep:
         self.xstar = np.array([[float(
             (Fraction(math.floor(x * fixed.one), 2 * fixed.pi) + half_turn) % 1 - half_turn)
             for x in claim.xstar] for claim in claims]).T
-        sizes = self.scale, self.half, self.shifts, self.frame, [max(map(abs, c.xstar)) for c in claims], \
-            [max(map(abs, c.centre)) for c in claims]
+        sizes = self.scale, self.half, self.shifts, self.frame, *[
+            [max(map(abs, x)) for x in xs] for xs in zip(*[(c.xstar, c.centre) for c in claims])]
         if max([np.max(np.array(x, float), initial=0) for x in map(np.abs, sizes)]) > FAST_SIZE:
             raise ValueError("too large for the fast path")
         self.batch = BATCH

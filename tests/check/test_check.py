@@ -1876,7 +1876,8 @@ def random_prisms(np, generator, count=8, scale=1.0):
     x = draw.uniform(-0.5, 0.5, (2, count))
     sides = draw.uniform(0, 1, (2, count)) * width * generator.choice((1, np.array([[1], [0]])))
     frame = np.array(generator.choice(FRAMES), float).reshape(2, 2, 1)
-    columns = draw.uniform(-1, 1, (2, shape.parameters, count)) * width * generator.choice((0, 0, 1))
+    columns = draw.uniform(-1, 1, (2, shape.parameters, count)) * width
+    columns *= generator.choice((0, 0, 1))
     columns = np.concatenate((columns, frame * sides), axis=1)
     off = draw.uniform(0, 1, (2, count)) * width * generator.choice((0, 0, 2.0 ** -20, 2.0 ** -45))
     xstar = np.array([[generator.choice((0.25, draw.uniform(-0.5, 0.5)))] for _ in "01"]) \
