@@ -66,7 +66,7 @@ class Claim:
 
     @property
     def moves(self):
-        """How (v0, v1) change along each axis of cells, from the region's middle to its end."""
+        """How (v0, v1) change along each axis of cells from the middle to the end: step (C26)."""
         none, (h0, h1) = Fraction(0), self.half
         return (h0, none), (none, h1), *self.shifts, *[(none, none)] * (3 - len(self.shifts))
 

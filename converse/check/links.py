@@ -1,4 +1,4 @@
-"""Leaves that are linked to another part: step (C25)."""
+"""Leaves that are linked to another part: steps (C25), (C26)."""
 
 import math
 from dataclasses import replace
