@@ -662,7 +662,7 @@ def test_unreadable(run, data):
 
 
 def test_other_versions_and_line_ends(texts, run):
-    for version in ("1", "5", "2.0", "", "22" * 999):
+    for version in ("1", "6", "2.0", "", "22" * 999):
         status, _, err = run(texts["trig278"].replace("proof 3", "proof " + version))
         assert status == 2 and "another version" in err
     status, _, err = run(texts["trig278"].replace("proof 3", "proof 2"))
