@@ -11,9 +11,11 @@ From Converse Require Graph Link.
 Import ListNotations.
 Open Scope R_scope.
 
-(* A further part of a proof: its own x*, ranges of v0 and v1 (centres and half-widths) and tree; the
-   waves, the parameters and the frame are the claim's. *)
-Record part := Part { starts_at : Q * Q; range0 : Q * Q; range1 : Q * Q; its_tree : tree }.
+(* A further part of a proof: its own x*, ranges of v0 and v1 (centres and half-widths), what the
+   parameters shift their centres by, and tree; the waves, the parameters and the frame are the
+   claim's. *)
+Record part := Part { starts_at : Q * Q; range0 : Q * Q; range1 : Q * Q;
+                      its_shifts : list Q * list Q; its_tree : tree }.
 
 (* What is claimed: of the whole torus, that there is no invariant graph, else that no minimizing
    orbit goes from x* to the region, or, where parts are linked, no orbit of an invariant graph; and
@@ -44,7 +46,7 @@ Definition at_part (c : claim) (p : part) : claim :=
   Claim (of_patch c)
     (Region (m00 r) (m01 r) (m10 r) (m11 r) (fst (range0 p)) (snd (range0 p))
             (fst (range1 p)) (snd (range1 p)))
-    (starts_at p) (of_whole c) (of_alone c) (of_once c) (odd c).
+    (its_shifts p) (starts_at p) (of_whole c) (of_alone c) (of_once c) (odd c).
 
 Definition all_parts (c : claim) (t : tree) (ps : list part) : list (claim * tree) :=
   (c, t) :: map (fun p => (at_part c p, its_tree p)) ps.
@@ -60,7 +62,7 @@ Record hints := Hints {
 Definition examined (c : claim) : list term := felt (of_alone c) (of_patch c).
 
 Definition plain_problem (c : claim) : problem :=
-  problem_of (of_region c) (examined c) (of_xstar c).
+  problem_of (of_region c) (shifts c) (examined c) (of_xstar c).
 
 Definition strength (w : term) : Q := Qabs.Qabs (middle w).
 Definition better_turned (patch : list term) : bool :=
@@ -68,8 +70,9 @@ Definition better_turned (patch : list term) : bool :=
   negb (Qle_bool (6 * along (fun w => Z.abs (of_k0 w * of_k1 w)))
                  (along (fun w => of_k0 w * of_k0 w + of_k1 w * of_k1 w)%Z)).
 
-(* Without the parameters that move no wave. *)
-Definition felt_axes (c : claim) : list bool := effective (examined c) (parameters (of_patch c)).
+(* Without the parameters that move no wave and shift nothing. *)
+Definition felt_axes (c : claim) : list bool :=
+  effective (moves_of (plain_problem c)) (parameters (of_patch c)).
 
 Definition final_problem (c : claim) : problem :=
   let p := kept_problem (felt_axes c) (plain_problem c) in
@@ -234,14 +237,15 @@ Definition may_link (c : claim) (ps : list part) : bool :=
   | _, _ => false
   end.
 
-(* How far f moves for parameters in these slices, to each of the later parts; nothing if the bound or
-   l is wrong. *)
+(* How far f moves for parameters in these slices, to each of the later parts, and between which ends
+   it is to lead; nothing if the bound or l is wrong. *)
 Definition ways_for (c : claim) (later : list claim) (ts : list slice) (Bl : Q * Q) :
-    list ((I.type * I.type) * region) :=
+    list ((I.type * I.type) * ((Q * Q) * (Q * Q))) :=
   let patch := sliced ts (examined c) in
   if tail_ok (fst Bl) (snd Bl) && patch_below prec patch (fst Bl)
   then map (fun c' => (displacement prec series patch (of_region c) (snd Bl)
-                         (of_xstar c) (of_xstar c'), of_region c')) later
+                         (of_xstar c) (of_xstar c'), ends_of (of_region c') (shifts c) (shifts c') ts))
+         later
   else [].
 
 Definition same_slice (s s' : slice) : bool := (fst s =? fst s')%Z && (snd s =? snd s')%nat.
@@ -258,7 +262,7 @@ Definition linked_ok (c : claim) (h : hints) (later : list claim) : nat -> cell 
   fun k leaf => match find (fun w => same_slices (fst w) (skipn 2 leaf)) ways with
                 | Some (_, ways) =>
                   match nth_error ways k with
-                  | Some (i, r) => leads_into prec i (of_region c) r leaf
+                  | Some (i, ends) => leads_into prec i (of_region c) ends leaf
                   | None => false
                   end
                 | None => false
@@ -272,8 +276,12 @@ Fixpoint trees_ok (h : hints) (trees : list (claim * tree)) : bool :=
     && all_links (linked_ok c h (map fst later)) (root (axes c)) t && trees_ok h later
   end.
 
+(* Only the regions of further parts may be shifted. *)
+Definition unshifted (c : claim) : bool :=
+  match shifts c with ([], []) => true | _ => false end.
+
 Definition header_ok (c : claim) (h : hints) (t : tree) (ps : list part) : bool :=
-  (covers c || negb (of_whole c)) && alone_ok (of_alone c) (of_patch c) && tail_ok (bound h) (tail h)
+  unshifted c && (covers c || negb (of_whole c)) && alone_ok (of_alone c) (of_patch c) && tail_ok (bound h) (tail h)
   && patch_below prec (terms (plain_problem c)) (bound h)
   && may_link c ps && trees_ok h (all_parts c t ps) && once_ok c h.
 
@@ -311,7 +319,8 @@ Proof.
   intros Ht Hp Hleaf Hu. destruct (tail_ok_correct _ _ Ht) as (Hl & HB).
   assert (Below := patch_below_correct prec _ _ Hp).
   rewrite leaf_ok_settled in Hleaf.
-  assert (Hstill : Forall (still (felt_axes c)) (terms (plain_problem c))) by apply effective_still.
+  assert (Hstill : Forall (still (felt_axes c)) (moves_of (plain_problem c)))
+    by apply effective_still.
   apply (kept_excluded _ _ _ Hstill). apply (kept_in_cell (felt_axes c)) in Hu.
   revert Hleaf Hu. generalize (kept_axes (felt_axes c) u), (kept_axes (felt_axes c) leaf).
   clear u leaf. intros u leaf. generalize most_deep most_cuts. intros deep cuts Hleaf. revert u.
@@ -329,12 +338,16 @@ Proof.
   now apply turned_excluded.
 Qed.
 
-Lemma header_parts c h t ps : header_ok c h t ps = true ->
+Lemma header_parts c h t ps : header_ok c h t ps = true -> shifts c = ([], []) /\
   (covers c || negb (of_whole c)) = true /\ alone_ok (of_alone c) (of_patch c) = true /\
   tail_ok (bound h) (tail h) = true /\
   patch_below prec (terms (plain_problem c)) (bound h) = true /\
   may_link c ps = true /\ trees_ok h (all_parts c t ps) = true /\ once_ok c h = true.
-Proof. unfold header_ok. rewrite !andb_true_iff. tauto. Qed.
+Proof.
+  unfold header_ok, unshifted. rewrite !andb_true_iff.
+  destruct (shifts c) as [[| ? ?] [| ? ?]]; [tauto | | |]; intros; exfalso;
+    intuition discriminate.
+Qed.
 
 Lemma waves_few c w : In w (examined c) -> (length (parts w) <= parameters (of_patch c))%nat.
 Proof. intros Hw. apply filter_In in Hw. now apply parameters_most. Qed.
@@ -351,7 +364,8 @@ Lemma linked_way c h later k leaf : linked_ok c h later k leaf = true -> exists 
   nth_error later k = Some c' /\ tail_ok B l = true /\
   patch_below prec (sliced (skipn 2 leaf) (examined c)) B = true /\
   leads_into prec (displacement prec series (sliced (skipn 2 leaf) (examined c)) (of_region c) l
-                     (of_xstar c) (of_xstar c')) (of_region c) (of_region c') leaf = true.
+                     (of_xstar c) (of_xstar c')) (of_region c)
+    (ends_of (of_region c') (shifts c) (shifts c') (skipn 2 leaf)) leaf = true.
 Proof.
   unfold linked_ok. destruct (find _ _) as [[ts ways] |] eqn:Hfind; [| discriminate].
   apply find_some in Hfind as [Hin Hsame]. apply same_slices_eq in Hsame. cbn [fst] in Hsame.
@@ -368,12 +382,12 @@ Theorem check_examined c h t : check c h t [] = true ->
   no_minimizing_orbit_into (of_region c) (examined c) (of_xstar c).
 Proof.
   unfold check. rewrite andb_true_iff. intros [Hheader Hleaves].
-  apply header_parts in Hheader as (_ & _ & Ht & Hp & _ & Htrees & _).
+  apply header_parts in Hheader as (Hs & _ & _ & Ht & Hp & _ & Htrees & _).
   cbn [all_parts map forallb fst snd] in Hleaves. rewrite andb_true_r in Hleaves.
   cbn [all_parts map trees_ok] in Htrees. rewrite !andb_true_iff in Htrees.
   destruct Htrees as ((Hm & Hlinks) & _).
   apply (into_of_problem _ _ _ (parameters (of_patch c))); [apply waves_few |].
-  intros u Hu Cube.
+  intros u Hu Cube. rewrite <- Hs. fold (plain_problem c).
   destruct (tree_covers (axes c) (excluded (plain_problem c)) (fun _ => False)
               (linked_ok c h []) t _ Hm) with (u := u) as [H | []]; auto.
   - intros leaf Hleaf v Hv. rewrite forallb_forall in Hleaves.
@@ -387,7 +401,7 @@ Qed.
 Lemma excluded_graph c u0 u1 t k S S' p q : excluded (plain_problem c) (u0 :: u1 :: t) ->
   in_cube t -> periodic S -> has_gradient S S' -> invariant_graph (waves (examined c) t) k S' ->
   Link.on_graph (waves (examined c) t) k S' (point (of_xstar c))
-  <> plus (second (plain_problem c) u0 u1) (Criterion.turns p q).
+  <> plus (second (plain_problem c) t u0 u1) (Criterion.turns p q).
 Proof.
   intros Hex Ht HS HS' Hinv E.
   destruct (Graph.graph_orbits_minimize _ k S S' HS HS' Hinv (point (of_xstar c)))
@@ -401,8 +415,22 @@ Proof.
   apply vec_eq; unfold minus, plus, Criterion.turns; cbn [fst snd]; ring.
 Qed.
 
-Definition no_graph_of (c : claim) : Prop := forall t, in_cube t ->
+(* No graph whose orbit leads from x* to the region, for its parameters: where nothing is shifted
+   this is no_invariant_graph_into (unshifted_graphs). *)
+Definition no_graph_of (c : claim) : Prop := forall t, length t = parameters (of_patch c) ->
+  in_cube t -> forall k S S', periodic S -> has_gradient S S' ->
+  invariant_graph (waves (examined c) t) k S' ->
+  ~ into_shifted (of_region c) (shifts c) t
+      (Link.on_graph (waves (examined c) t) k S' (point (of_xstar c))).
+
+Lemma unshifted_graphs c : shifts c = ([], []) -> no_graph_of c -> forall t, in_cube t ->
   no_invariant_graph_into (of_region c) (waves (examined c) t) (point (of_xstar c)).
+Proof.
+  intros Hs H t Ht k S S' HS HS' Hinv Hinto. set (n := parameters (of_patch c)).
+  rewrite <- (waves_fitted n (examined c) t (waves_few c)) in Hinv, Hinto.
+  apply (H (fitted n t) (fitted_length n t) (fitted_in_cube n t Ht) k S S' HS HS' Hinv).
+  rewrite Hs. now apply into_unshifted.
+Qed.
 
 (* Of the same map and in the same frame. *)
 Definition alike (c c' : claim) : Prop :=
@@ -430,30 +458,27 @@ Proof.
   assert (Hr : determinant (of_region c) <> 0%Z)
     by (unfold determinant in *; now rewrite E00, E01, E10, E11).
   destruct (tail_ok_correct _ _ Hh) as (Hl & HB). assert (Below := patch_below_correct prec _ _ Hp).
-  intros t' Ht' k S S' HS HS' Hinv (v0 & v1 & i & j & Hv0 & Hv1 & Hx1).
-  set (n := parameters (of_patch c)).
-  rewrite <- (waves_fitted n (examined c) t' (waves_few c)) in Hinv, Hx1.
-  apply (fitted_in_cube n) in Ht'. set (ts := fitted n t') in *.
+  intros ts Hn Ht' k S S' HS HS' Hinv (v0 & v1 & i & j & Hv0 & Hv1 & Hx1).
+  set (n := parameters (of_patch c)) in *.
   destruct (in_units _ _ _ Hv0) as (u0 & Hu0 & E0).
   destruct (in_units _ _ _ Hv1) as (u1 & Hu1 & E1).
   pose proof (Rle_trans _ _ _ (Rabs_pos _) Hv0) as Hh0.
   pose proof (Rle_trans _ _ _ (Rabs_pos _) Hv1) as Hh1. rewrite E0, E1 in Hx1.
-  set (r := of_region c) in *.
-  set (leads := fun u => forall a b s, u = a :: b :: s -> in_cube s -> forall k S S' p q,
+  set (r := of_region c) in *. set (sh := shifts c) in *.
+  set (leads := fun u => forall a b s, u = a :: b :: s -> length s = n -> in_cube s ->
+    forall k S S' p q,
     periodic S -> has_gradient S S' -> invariant_graph (waves (examined c) s) k S' ->
     Link.on_graph (waves (examined c) s) k S' (point (of_xstar c)) <>
-    plus (at_v r (Q2R (centre0 r) + Q2R (half0 r) * a) (Q2R (centre1 r) + Q2R (half1 r) * b))
+    plus (at_v r (Q2R (centre0 r) + combined (fst sh) s + Q2R (half0 r) * a)
+                 (Q2R (centre1 r) + combined (snd sh) s + Q2R (half1 r) * b))
          (Criterion.turns p q)).
-  assert (Hon : Link.on_graph (waves (examined c) ts) k S' (point (of_xstar c)) =
-    plus (at_v r (Q2R (centre0 r) + Q2R (half0 r) * u0) (Q2R (centre1 r) + Q2R (half1 r) * u1))
-         (Criterion.turns i j)) by exact Hx1.
   destruct (tree_covers (axes c) (excluded (plain_problem c)) leads
               (linked_ok c h (map fst later)) t _ Hm)
     with (u := u0 :: u1 :: ts) as [Hex | Hlead]; try exact Hlinks.
   - intros leaf Hin v Hv. rewrite forallb_forall in Hleaf.
     exact (leaf_excluded c h leaf v Hh Hp (Hleaf leaf Hin) Hv).
   - intros order Horder v Hv. now apply (orders_excluded _ (parameters (of_patch c))).
-  - intros m leaf Hlink u Hu a b s -> Hs k' T T' p q HT HT' Hinv' E.
+  - intros m leaf Hlink u Hu a b s -> Hm' Hs k' T T' p q HT HT' Hinv' E.
     apply linked_way in Hlink as (B & l & c' & Hnth & HBl & HB' & Hlink).
     apply nth_error_In in Hnth. apply in_map_iff in Hnth as (ct & <- & Hin).
     destruct leaf as [| s0 [| s1 slices]]; try discriminate Hlink.
@@ -465,28 +490,31 @@ Proof.
     rewrite Forall_forall in IH, Hlater. specialize (IH ct Hin). specialize (Hlater ct Hin).
     destruct ct as [c' tr]. cbn [fst] in *. destruct Hlater as (P & A & F00 & F01 & F10 & F11).
     assert (Ex' : examined c' = examined c) by (rewrite Eex; unfold examined; now rewrite P, A).
-    specialize (IH s Hs). rewrite Ex' in IH. apply (IH k' T T' HT HT' Hinv').
+    unfold no_graph_of in IH. rewrite P, <- Epatch, Ex' in IH.
+    apply (IH s Hm' Hs k' T T' HT HT' Hinv').
     rewrite <- Es in Hinv', E |- *.
     destruct (displacement_ok prec series (make_constants_ok prec) (sliced slices (examined c)) r l _
       (of_xstar c) (of_xstar c') s' k' T T' Hr Hl' HBl' (Below' s' Hs') Hs' HT HT' Hinv') as [D0 D1].
-    refine (leads_into_ok prec _ r _ _ a b s _ _ p q Hr _ _ _ _ Hh0 Hh1 Hlink Hu E D0 D1);
-      congruence.
-  - cbn. unfold ts. now rewrite fitted_length.
+    refine (leads_into_ok prec _ r _ sh _ (s0 :: s1 :: slices) a b s _ _ p q Hr _ _ _ _ Hh0 Hh1
+              Hlink Hu E D0 D1); congruence.
+  - cbn. now rewrite Hn.
   - constructor; [assumption |]. now constructor.
-  - apply (excluded_graph c u0 u1 ts k S S' i j Hex Ht' HS HS' Hinv). rewrite Hon. f_equal.
+  - apply (excluded_graph c u0 u1 ts k S S' i j Hex Ht' HS HS' Hinv). rewrite Hx1. f_equal.
     unfold at_v, second, plain_problem, problem_of.
-    cbn [f00 f01 f10 f11 mid0 wid0 mid1 wid1]. now rewrite !Reduce.Q2R_inject_Z.
-  - exact (Hlead u0 u1 ts eq_refl Ht' k S S' i j HS HS' Hinv Hon).
+    cbn [f00 f01 f10 f11 mid0 shift0 wid0 mid1 shift1 wid1]. now rewrite !Reduce.Q2R_inject_Z.
+  - exact (Hlead u0 u1 ts eq_refl Hn Ht' k S S' i j HS HS' Hinv Hx1).
 Qed.
 
-Theorem check_graphs c h t p ps : check c h t (p :: ps) = true -> of_alone c = Both /\ no_graph_of c.
+Theorem check_graphs c h t p ps : check c h t (p :: ps) = true -> of_alone c = Both /\
+  forall t, in_cube t ->
+  no_invariant_graph_into (of_region c) (waves (examined c) t) (point (of_xstar c)).
 Proof.
   unfold check. rewrite andb_true_iff. intros [Hheader Hleaves].
-  apply header_parts in Hheader as (_ & _ & Ht & Hp & Hlink & Htrees & _).
+  apply header_parts in Hheader as (Hs & _ & _ & Ht & Hp & Hlink & Htrees & _).
   unfold may_link in Hlink. destruct (of_alone c) eqn:Ealone; try discriminate. split; [reflexivity |].
   apply negb_true_iff, Z.eqb_neq in Hlink.
   assert (H := trees_graphs c h _ Hlink Ht Hp Htrees Hleaves). unfold all_parts in H.
-  apply Forall_inv in H; [exact H |]. constructor; [repeat split |].
+  apply Forall_inv in H; [exact (unshifted_graphs c Hs H) |]. constructor; [repeat split |].
   apply Forall_map, Forall_forall. intros x _. repeat split.
 Qed.
 
@@ -558,7 +586,7 @@ Qed.
 Theorem check_orbits c h t ps : check c h t ps = true -> of_orbits c ps.
 Proof.
   intros H. assert (Hheader := H). apply andb_prop in Hheader as [Hheader _].
-  apply header_parts in Hheader as (Hw & Ha & _). unfold of_orbits.
+  apply header_parts in Hheader as (_ & Hw & Ha & _). unfold of_orbits.
   destruct ps as [| p ps].
   - assert (Examined := check_examined c h t H). destruct (of_whole c).
     + rewrite orb_false_r in Hw. destruct (covers_correct c Hw) as (Hr & H0 & H1).
@@ -582,7 +610,7 @@ Qed.
 Theorem check_sound c h t ps : check c h t ps = true -> statement c ps.
 Proof.
   intros H. assert (Here := check_orbits c h t ps H). unfold statement.
-  apply andb_prop in H as [H _]. apply header_parts in H as (_ & Ha & _ & _ & _ & _ & Ho).
+  apply andb_prop in H as [H _]. apply header_parts in H as (_ & _ & Ha & _ & _ & _ & _ & Ho).
   unfold once_ok in Ho.
   destruct (of_once c); [exact Here | |]; (destruct (odd c) as [z |]; [| discriminate]);
     (split; [exact Here |]); rewrite !andb_true_iff in Ho.

@@ -283,8 +283,9 @@ Proof.
     rewrite Rplus_0_l, Rmult_comm. apply cont_mul; [now apply K_ok | exact Hr].
 Qed.
 
-(* In v0 and v1. *)
+(* In v0 and v1; between equal points exactly 0. *)
 Definition displacement (patch : list term) (r : region) (l : Q) (y z : Q * Q) : I.type * I.type :=
+  if Qeq_bool (fst y) (fst z) && Qeq_bool (snd y) (snd z) then (I.zero, I.zero) else
   let d := piece_of y z in
   let bs := betas patch y d pieces in
   let turn := sharp_pi prec [*] integer prec (determinant r) in
@@ -303,7 +304,14 @@ Theorem displacement_ok patch r l B y z t c S S' : determinant r <> 0%Z ->
   cont (snd (displacement patch r l y z)) (v1_of r moved).
 Proof.
   intros Hr Hl HBl HB Ht HS HS' Hinv moved.
-  assert (A : forall u0 u1, cont
+  unfold displacement. destruct (Qeq_bool (fst y) (fst z) && _) eqn:Esame.
+  { apply andb_prop in Esame as [E0 E1]. apply Qeq_bool_eq, Qeq_eqR in E0, E1.
+    assert (Ep : point z = point y) by (unfold point; now rewrite E0, E1).
+    assert (Em : moved = (0, 0))
+      by (unfold moved; rewrite Ep; unfold minus; apply vec_eq; cbn [fst snd]; ring).
+    rewrite Em. cbn [fst snd]. split; [replace (v0_of r (0, 0)) with 0 | replace (v1_of r (0, 0)) with 0];
+      try exact cont_zero; unfold v0_of, v1_of; cbn [fst snd]; unfold Rdiv; ring. }
+  clear Esame. assert (A : forall u0 u1, cont
     (moved_along (rational prec l)
        (rational prec (fst (piece_of y z)), rational prec (snd (piece_of y z)))
        (integer prec u0, integer prec u1) (betas patch y (piece_of y z) pieces))
@@ -319,7 +327,7 @@ Proof.
     by (apply cont_mul; [apply sharp_pi_ok | apply cont_integer]).
   assert (Hnot : PI * IZR (determinant r) <> 0).
   { apply Rmult_integral_contrapositive. split; [apply PI_neq0 | now apply not_0_IZR]. }
-  unfold displacement. cbn [fst snd]. split.
+  cbn [fst snd]. split.
   - replace (v0_of r moved) with (dot moved (IZR (m11 r), IZR (- m01 r)) / (PI * IZR (determinant r)))
       by (unfold v0_of, dot; rewrite opp_IZR; cbn [fst snd]; f_equal; ring).
     now apply cont_div.
@@ -343,47 +351,119 @@ Proof.
     destruct Q2R_0_1 as [E0 _]. rewrite E0 in E. lra.
 Qed.
 
-(* Is a slice of one range, moved so far, within another range? *)
-Definition slice_in (i : I.type) (s : slice) (c h c' h' : Q) : bool :=
-  non_negative (i [+] rational prec (end_of c h (fst s) (snd s) - (c' - h')))
-  && non_negative (rational prec (c' + h' - end_of c h (fst s + 1) (snd s)) [-] i).
+(* Is a slice of one range, moved so far, between these ends? *)
+Definition slice_in (i : I.type) (s : slice) (c h : Q) (ends : Q * Q) : bool :=
+  non_negative (i [+] rational prec (end_of c h (fst s) (snd s) - fst ends))
+  && non_negative (rational prec (snd ends - end_of c h (fst s + 1) (snd s)) [-] i).
 
-Lemma slice_in_ok i x s c h c' h' u : slice_in i s c h c' h' = true -> cont i x -> 0 <= Q2R h ->
-  in_slice s u -> Rabs (Q2R c + Q2R h * u + x - Q2R c') <= Q2R h'.
+Lemma slice_in_ok i x s c h ends u : slice_in i s c h ends = true -> cont i x -> 0 <= Q2R h ->
+  in_slice s u -> Q2R (fst ends) <= Q2R c + Q2R h * u + x <= Q2R (snd ends).
 Proof.
   unfold slice_in, in_slice. rewrite andb_true_iff. intros [Hlow Hhigh] Hx Hh [Ul Uu].
   pose proof (non_negative_correct _ _ Hlow (cont_add prec _ _ _ _ Hx (cont_rational prec _))) as L.
   pose proof (non_negative_correct _ _ Hhigh (cont_sub prec _ _ _ _ (cont_rational prec _) Hx)) as U.
-  rewrite Q2R_minus, Q2R_end, Q2R_minus in L.
-  rewrite Q2R_minus, Q2R_end, Q2R_plus, plus_IZR in U.
-  apply Rabs_le. apply (Rmult_le_compat_l (Q2R h)) in Ul, Uu; [lra | exact Hh | exact Hh].
+  rewrite Q2R_minus, Q2R_end in L. rewrite Q2R_minus, Q2R_end, plus_IZR in U.
+  apply (Rmult_le_compat_l (Q2R h)) in Ul, Uu; [lra | exact Hh | exact Hh].
 Qed.
 
-(* From a cell over one point into the region over another one. *)
-Definition leads_into (i : I.type * I.type) (r r' : region) (cl : cell) : bool :=
+(* What is combined from these numbers, for parameters in these slices, is within a half-width of a
+   middle. *)
+Fixpoint spread_over (gs : list Q) (ts : list slice) : Q * Q :=
+  match gs, ts with
+  | g :: gs, s :: ts =>
+    let (m, h) := spread_over gs ts in
+    (m + g * slice_middle s, h + Qabs.Qabs g * slice_half s)
+  | _, _ => (0, 0)
+  end%Q.
+
+Lemma Q2R_abs q : Q2R (Qabs.Qabs q) = Rabs (Q2R q).
+Proof.
+  destruct q as [n d]. unfold Q2R. cbn [Qabs.Qabs Qnum Qden]. rewrite abs_IZR, Rabs_mult. f_equal.
+  symmetry. apply Rabs_right, Rle_ge, Rlt_le, Rinv_0_lt_compat, IZR_lt. reflexivity.
+Qed.
+
+Lemma spread_over_ok ts t : Forall2 in_slice ts t -> forall gs,
+  Rabs (combined gs t - Q2R (fst (spread_over gs ts))) <= Q2R (snd (spread_over gs ts)).
+Proof.
+  assert (Z : Q2R 0 = 0) by (unfold Q2R; cbn; ring).
+  induction 1 as [| s u ts t Hs H IH]; intros [| g gs];
+    try (unfold combined; cbn; rewrite Z, Rminus_0_r, Rabs_R0; lra).
+  specialize (IH gs). cbn [spread_over]. destruct (spread_over gs ts) as [m h]. cbn [fst snd] in *.
+  change (combined (g :: gs) (u :: t)) with (Q2R g * u + combined gs t).
+  destruct (slice_in_Q s u Hs) as (e & He & ->). rewrite !Q2R_plus, !Q2R_mult, Q2R_abs.
+  assert (Hh : 0 <= Q2R (slice_half s)).
+  { unfold slice_half. pose proof (power_pos (snd s)) as Hp. unfold power in Hp.
+    rewrite Q2R_inv, Reduce.Q2R_inject_Z; [now apply Rlt_le, Rinv_0_lt_compat |].
+    intros E. apply Qeq_eqR in E. rewrite Reduce.Q2R_inject_Z, Z in E. lra. }
+  replace (_ - _) with (combined gs t - Q2R m + Q2R g * Q2R (slice_half s) * e) by ring.
+  eapply Rle_trans; [apply Rabs_triang |]. apply Rplus_le_compat; [exact IH |].
+  rewrite !Rabs_mult, (Rabs_right (Q2R (slice_half s))) by lra.
+  assert (Rabs e <= 1) by (apply Rabs_le; lra).
+  assert (0 <= Rabs (Q2R g) * Q2R (slice_half s)) by (apply Rmult_le_pos; [apply Rabs_pos | exact Hh]).
+  nra.
+Qed.
+
+(* Where a number must be, if what the parameters of these slices add to it, s, and to c, s', is to
+   leave it within h of c. *)
+Definition ends_within (s s' : list Q) (ts : list slice) (c h : Q) : Q * Q :=
+  let (m, w) := spread_over (added (-1) s s') ts in (Qred (c - h - m + w), Qred (c + h - m - w)).
+
+Lemma ends_within_ok s s' ts c h t v : Forall2 in_slice ts t ->
+  Q2R (fst (ends_within s s' ts c h)) <= v <= Q2R (snd (ends_within s s' ts c h)) ->
+  Rabs (v + combined s t - (Q2R c + combined s' t)) <= Q2R h.
+Proof.
+  intros H. pose proof (spread_over_ok ts t H (added (-1) s s')) as S. rewrite combined_added in S.
+  unfold ends_within. destruct (spread_over _ ts) as [m w]. cbn [fst snd] in *.
+  rewrite !(Qeq_eqR _ _ (Qred_correct _)), Q2R_minus, !Q2R_plus, !Q2R_minus, Q2R_plus.
+  replace (Q2R (-1)) with (-1) in S by (unfold Q2R; cbn; lra).
+  intros Hv. apply Rcomplements.Rabs_le_between in S. apply Rabs_le. lra.
+Qed.
+
+(* Is a point in the region that the parameters t have shifted? *)
+Definition into_shifted (r : region) (s : list Q * list Q) (t : list R) (y : vec) : Prop :=
+  exists v0 v1 (i j : Z),
+  Rabs (v0 - (Q2R (centre0 r) + combined (fst s) t)) <= Q2R (half0 r) /\
+  Rabs (v1 - (Q2R (centre1 r) + combined (snd s) t)) <= Q2R (half1 r) /\
+  y = plus (at_v r v0 v1) (Criterion.turns i j).
+
+(* The region where nothing is shifted. *)
+Lemma into_unshifted r t y : into r y -> into_shifted r ([], []) t y.
+Proof.
+  intros (v0 & v1 & i & j & H0 & H1 & E). exists v0, v1, i, j. cbn [fst snd].
+  change (combined [] t) with 0. rewrite !Rplus_0_r. repeat split; assumption.
+Qed.
+
+(* From a cell over one point into the region over another one, whose ranges have these ends where
+   those of the first are not shifted. *)
+Definition ends_of (r' : region) (s s' : list Q * list Q) (ts : list slice) : (Q * Q) * (Q * Q) :=
+  (ends_within (fst s) (fst s') ts (centre0 r') (half0 r'),
+   ends_within (snd s) (snd s') ts (centre1 r') (half1 r')).
+
+Definition leads_into (i : I.type * I.type) (r : region) (ends : (Q * Q) * (Q * Q)) (cl : cell) : bool :=
   match cl with
-  | s0 :: s1 :: _ => slice_in (fst i) s0 (centre0 r) (half0 r) (centre0 r') (half0 r')
-                     && slice_in (snd i) s1 (centre1 r) (half1 r) (centre1 r') (half1 r')
+  | s0 :: s1 :: _ => slice_in (fst i) s0 (centre0 r) (half0 r) (fst ends)
+                     && slice_in (snd i) s1 (centre1 r) (half1 r) (snd ends)
   | _ => false
   end.
 
-Lemma leads_into_ok i r r' cl u0 u1 t y z p q : determinant r <> 0%Z ->
+Lemma leads_into_ok i r r' s s' cl u0 u1 t y z p q : determinant r <> 0%Z ->
   m00 r' = m00 r -> m01 r' = m01 r -> m10 r' = m10 r -> m11 r' = m11 r ->
   0 <= Q2R (half0 r) -> 0 <= Q2R (half1 r) ->
-  leads_into i r r' cl = true -> in_cell cl (u0 :: u1 :: t) ->
-  y = plus (at_v r (Q2R (centre0 r) + Q2R (half0 r) * u0) (Q2R (centre1 r) + Q2R (half1 r) * u1))
+  leads_into i r (ends_of r' s s' (skipn 2 cl)) cl = true -> in_cell cl (u0 :: u1 :: t) ->
+  y = plus (at_v r (Q2R (centre0 r) + combined (fst s) t + Q2R (half0 r) * u0)
+                   (Q2R (centre1 r) + combined (snd s) t + Q2R (half1 r) * u1))
            (Criterion.turns p q) ->
-  cont (fst i) (v0_of r (minus z y)) -> cont (snd i) (v1_of r (minus z y)) -> into r' z.
+  cont (fst i) (v0_of r (minus z y)) -> cont (snd i) (v1_of r (minus z y)) -> into_shifted r' s' t z.
 Proof.
   intros Hr E00 E01 E10 E11 H0 H1 Hin Hu Hy Hi0 Hi1.
-  inversion Hu as [| s0 ? cl0 ? Hs0 Hu0]; subst cl. inversion Hu0 as [| s1 ? cl1 ? Hs1 _]; subst cl0.
-  cbn [leads_into] in Hin. apply andb_prop in Hin as [Hin0 Hin1].
-  pose proof (slice_in_ok _ _ _ _ _ _ _ _ Hin0 Hi0 H0 Hs0) as R0.
-  pose proof (slice_in_ok _ _ _ _ _ _ _ _ Hin1 Hi1 H1 Hs1) as R1.
-  exists (Q2R (centre0 r) + Q2R (half0 r) * u0 + v0_of r (minus z y)),
-    (Q2R (centre1 r) + Q2R (half1 r) * u1 + v1_of r (minus z y)), p, q.
+  inversion Hu as [| s0 ? cl0 ? Hs0 Hu0]; subst cl. inversion Hu0 as [| s1 ? cl1 ? Hs1 Ht]; subst cl0.
+  cbn [leads_into skipn] in Hin. apply andb_prop in Hin as [Hin0 Hin1]. unfold ends_of in Hin0, Hin1.
+  pose proof (ends_within_ok _ _ _ _ _ t _ Ht (slice_in_ok _ _ _ _ _ _ _ Hin0 Hi0 H0 Hs0)) as R0.
+  pose proof (ends_within_ok _ _ _ _ _ t _ Ht (slice_in_ok _ _ _ _ _ _ _ Hin1 Hi1 H1 Hs1)) as R1.
+  exists (Q2R (centre0 r) + Q2R (half0 r) * u0 + v0_of r (minus z y) + combined (fst s) t),
+    (Q2R (centre1 r) + Q2R (half1 r) * u1 + v1_of r (minus z y) + combined (snd s) t), p, q.
   split; [exact R0 |]. split; [exact R1 |]. pose proof (at_v_of r Hr (minus z y)) as E.
-  clear R0 R1 Hi0 Hi1. rewrite E00, E01, E10, E11.
+  clear R0 R1 Hi0 Hi1. unfold at_v at 1. rewrite E00, E01, E10, E11.
   generalize dependent (v0_of r (minus z y)). generalize dependent (v1_of r (minus z y)).
   intros d1 d0 E. unfold at_v, plus, minus, Criterion.turns in *. injection E as Ez0 Ez1.
   rewrite Hy in Ez0, Ez1. cbn [fst snd] in *. apply vec_eq; cbn [fst snd]; lra.

@@ -18,6 +18,7 @@ Record ready := Ready {
   X0 : plane; rest_0 : I.type * I.type;             (* of x0 *)
   base : I.type * I.type;                           (* x1 for u = 0, in radians *)
   sides : (I.type * I.type) * (I.type * I.type);    (* what u0 and u1 add to it *)
+  shears : list I.type * list I.type;                (* and the parameters; [] where they shift nothing *)
   end_ : I.type                                     (* l *)
 }.
 
@@ -61,6 +62,10 @@ Definition in_turns (x : I.type) : F.type * Z := wrap prec K 512 (fmul (center x
 Definition beyond_turns (x : I.type) (t : F.type * Z) : I.type :=
   sub x (mul (itwo_pi K) (add (exactly (fst t)) (integer (snd t)))).
 
+(* a s + b s', in rationals. *)
+Definition shearing (a : Q) (s : list Q) (b : Q) (s' : list Q) : list Q :=
+  map Qred (added b (map (Qmult a) s) s').
+
 Definition prepare (p : problem) (l : Q) : ready :=
   let x := rational (fst (start p)) in
   let y := rational (snd (start p)) in
@@ -69,10 +74,11 @@ Definition prepare (p : problem) (l : Q) : ready :=
   let row a b := mul pi (add (mul (rational a) (rational (mid0 p)))
                              (mul (rational b) (rational (mid1 p)))) in
   let side a w := mul pi (mul (rational a) (rational w)) in
+  let row_shears a b := map (fun g => mul pi (rational g)) (shearing a (shift0 p) b (shift1 p)) in
   Ready (map prepare_wave (terms p)) (fst tx, fst ty) (beyond_turns x tx, beyond_turns y ty)
     (row (f00 p) (f01 p), row (f10 p) (f11 p))
     ((side (f00 p) (wid0 p), side (f01 p) (wid1 p)), (side (f10 p) (wid0 p), side (f11 p) (wid1 p)))
-    (rational l).
+    (row_shears (f00 p) (f01 p), row_shears (f10 p) (f11 p)) (rational l).
 
 (* The middle and the half-width of a slice. *)
 Definition span (s : slice) : I.type * I.type :=
@@ -94,12 +100,20 @@ Definition wave_in (ts : list (I.type * I.type)) (w : pwave * list I.type) : pwa
   let '(w, gs) := w in
   PWave (z0 w) (z1 w) (i0 w) (i1 w) (turns w) (centred gs ts (amp w)) (moved gs ts).
 
-(* x1 along one coordinate: its centre, columns and rest; n parameters come first. *)
-Definition placed (n : nat) (base : I.type) (side : I.type * I.type) (u0 u1 : I.type * I.type) :
-    F.type * form1 * I.type :=
-  let x := add base (add (mul (fst side) (fst u0)) (mul (snd side) (fst u1))) in
+(* A column for each of the parameters. *)
+Fixpoint sheared (gs : list I.type) (ts : list (I.type * I.type)) : form1 :=
+  match ts, gs with
+  | t :: ts, g :: gs => mul g (snd t) :: sheared gs ts
+  | _ :: ts, [] => I.zero :: sheared [] ts
+  | [], _ => []
+  end.
+
+(* x1 along one coordinate: its centre, columns and rest; the parameters come first. *)
+Definition placed (ts : list (I.type * I.type)) (base : I.type) (shears : list I.type)
+    (side : I.type * I.type) (u0 u1 : I.type * I.type) : F.type * form1 * I.type :=
+  let x := centred shears ts (add base (add (mul (fst side) (fst u0)) (mul (snd side) (fst u1)))) in
   let t := in_turns x in
-  let c := repeat I.zero n ++ [mul (fst side) (snd u0); mul (snd side) (snd u1)] in
+  let c := sheared shears ts ++ [mul (fst side) (snd u0); mul (snd side) (snd u1)] in
   let l := centers c in
   (fst t, l, add (beyond_turns x t) (range1 prec (unit K) (add1 c (negate1 l)))).
 
@@ -301,8 +315,8 @@ Definition prism_bound (h : manner) (rd : ready) (c : cell) : option (I.type * l
   match map span c with
   | u0 :: u1 :: ts =>
     let ws := map (wave_in ts) (plain rd) in
-    let '(x, l0, r0) := placed (length ts) (fst (base rd)) (fst (sides rd)) u0 u1 in
-    let '(y, l1, r1) := placed (length ts) (snd (base rd)) (snd (sides rd)) u0 u1 in
+    let '(x, l0, r0) := placed ts (fst (base rd)) (fst (shears rd)) (fst (sides rd)) u0 u1 in
+    let '(y, l1, r1) := placed ts (snd (base rd)) (snd (shears rd)) (snd (sides rd)) u0 u1 in
     let sa := follow prec K sincos (longest h) (limit h) ws
       (begin (X0 rd) (x, y) ([], []) (l0, l1) (rest_0 rd) (r0, r1)) in
     let sb := follow prec K sincos (longest h) (limit h) ws
@@ -415,28 +429,63 @@ Proof.
   apply cont_add; [apply cont_exactly | apply cont_integer].
 Qed.
 
-Lemma hold1_after es e l v : hold1 e l v -> hold1 (es ++ e) (repeat I.zero (length es) ++ l) v.
+Definition shears_by (g : I.type) (q : Q) : Prop := cont g (PI * Q2R q).
+
+Lemma shearing_ok a s b s' t :
+  combined (shearing a s b s') t = Q2R a * combined s t + Q2R b * combined s' t.
 Proof.
-  intros H. induction es as [| x es IH]; [exact H |].
-  exists 0, v. split; [exact cont_zero |]. split; [exact IH | ring].
+  unfold shearing. rewrite <- combined_scaled, <- combined_added.
+  generalize (added b (map (Qmult a) s) s'). intros l. revert t.
+  induction l as [| q l IH]; intros [| x t]; try reflexivity.
+  change (Q2R (Qred q) * x + combined (map Qred l) t = Q2R q * x + combined l t).
+  now rewrite IH, (Qeq_eqR _ _ (Qred_correct q)).
 Qed.
 
-Lemma placed_ok es e0 e1 ib (iside u0 u1 : I.type * I.type) b s0 s1 a0 r0 a1 r1 :
-  cube (es ++ [e0; e1]) -> cont ib b -> cont (fst iside) s0 -> cont (snd iside) s1 ->
-  cont (fst u0) a0 -> cont (snd u0) r0 -> cont (fst u1) a1 -> cont (snd u1) r1 ->
-  let '(X, l, r) := placed (length es) ib iside u0 u1 in
-  exists (n : Z) lv rv, hold1 (es ++ [e0; e1]) l lv /\ cont r rv /\
-  b + (s0 * (a0 + r0 * e0) + s1 * (a1 + r1 * e1)) = 2 * PI * (number X + IZR n) + (lv + rv).
+Lemma sheared_ok e l v gs qs : Forall2 shears_by gs qs -> hold1 e l v ->
+  forall ts t es isum x, located ts t es -> cont isum x ->
+  exists m h, cont (centred gs ts isum) (x + m) /\ hold1 (es ++ e) (sheared gs ts ++ l) (h + v) /\
+  PI * combined qs t = m + h.
 Proof.
-  intros C Hb H0 H1 Ha0 Hr0 Ha1 Hr1. unfold placed.
-  set (ix := add ib _). generalize (in_turns ix). intros t.
-  assert (Hx : cont ix (b + (s0 * a0 + s1 * a1)))
-    by (unfold ix; auto using cont_add, cont_mul).
-  assert (Hc : hold1 (es ++ [e0; e1]) (repeat I.zero (length es) ++
-    [mul (fst iside) (snd u0); mul (snd iside) (snd u1)]) (s0 * r0 * e0 + s1 * r1 * e1)).
-  { apply hold1_after. exists (s0 * r0), (s1 * r1 * e1). split; [now apply cont_mul |].
+  intros Hg Hl. induction Hg as [| g q gs qs Hq Hg IH]; intros ts t es isum x L Hx.
+  - exists 0, 0. rewrite Rplus_0_r, Rplus_0_l. split; [now destruct ts |]. split.
+    + revert t es L. induction ts as [| i ts IH]; intros [| t0 t] [| e0 es] L; try easy.
+      exists 0, v. split; [exact cont_zero |]. split; [now apply (IH t), L | ring].
+    + unfold combined. simpl. ring.
+  - destruct ts as [| i ts], t as [| t0 t], es as [| e0 es]; try easy.
+    { exists 0, 0. rewrite Rplus_0_r, Rplus_0_l. split; [exact Hx |]. split; [exact Hl |].
+      unfold combined. simpl. ring. }
+    destruct L as ((a & r & Ha & Hr & E) & L).
+    destruct (IH ts t es (add isum (mul g (fst i))) (x + PI * Q2R q * a) L)
+      as (m & h & Hm & Hh & Eq).
+    { apply cont_add; [exact Hx |]. now apply cont_mul. }
+    exists (PI * Q2R q * a + m), (PI * Q2R q * r * e0 + h). split; [now rewrite <- Rplus_assoc |].
+    split.
+    + exists (PI * Q2R q * r), (h + v). split; [now apply cont_mul |]. split; [exact Hh | ring].
+    + change (combined (q :: qs) (t0 :: t)) with (Q2R q * t0 + combined qs t).
+      rewrite Rmult_plus_distr_l, Eq, E. ring.
+Qed.
+
+Lemma placed_ok ts t es e0 e1 ib gs qs (iside u0 u1 : I.type * I.type) b s0 s1 a0 r0 a1 r1 :
+  cube (es ++ [e0; e1]) -> located ts t es -> Forall2 shears_by gs qs ->
+  cont ib b -> cont (fst iside) s0 -> cont (snd iside) s1 ->
+  cont (fst u0) a0 -> cont (snd u0) r0 -> cont (fst u1) a1 -> cont (snd u1) r1 ->
+  let '(X, l, r) := placed ts ib gs iside u0 u1 in
+  exists (n : Z) lv rv, hold1 (es ++ [e0; e1]) l lv /\ cont r rv /\
+  b + (s0 * (a0 + r0 * e0) + s1 * (a1 + r1 * e1)) + PI * combined qs t
+    = 2 * PI * (number X + IZR n) + (lv + rv).
+Proof.
+  intros C L Hg Hb H0 H1 Ha0 Hr0 Ha1 Hr1. unfold placed.
+  assert (Hc : hold1 [e0; e1] [mul (fst iside) (snd u0); mul (snd iside) (snd u1)]
+    (s0 * r0 * e0 + s1 * r1 * e1)).
+  { exists (s0 * r0), (s1 * r1 * e1). split; [now apply cont_mul |].
     split; [| reflexivity]. exists (s1 * r1), 0. split; [now apply cont_mul |].
     split; [reflexivity | ring]. }
+  destruct (sheared_ok _ _ _ _ _ Hg Hc ts t es
+    (add ib (add (mul (fst iside) (fst u0)) (mul (snd iside) (fst u1))))
+    (b + (s0 * a0 + s1 * a1)) L) as (m & h & Hx & Hc' & Ed);
+    [auto using cont_add, cont_mul |].
+  clear Hc. rename Hc' into Hc. rewrite Ed. clear Ed.
+  set (ix := centred gs ts _) in *. generalize (in_turns ix). clear t L. intros t.
   destruct (hold_centers _ _ _ Hc) as (lv & Hl).
   exists (snd t), lv. eexists. split; [exact Hl |].
   split; [apply cont_add; [apply (beyond_turns_ok _ _ t Hx) |] |].
@@ -532,6 +581,8 @@ Record ready_ok (p : problem) (l : Q) (rd : ready) : Prop := {
   ok_side01 : cont (snd (fst (sides rd))) (PI * (Q2R (f01 p) * Q2R (wid1 p)));
   ok_side10 : cont (fst (snd (sides rd))) (PI * (Q2R (f10 p) * Q2R (wid0 p)));
   ok_side11 : cont (snd (snd (sides rd))) (PI * (Q2R (f11 p) * Q2R (wid1 p)));
+  ok_shear0 : Forall2 shears_by (fst (shears rd)) (shearing (f00 p) (shift0 p) (f01 p) (shift1 p));
+  ok_shear1 : Forall2 shears_by (snd (shears rd)) (shearing (f10 p) (shift0 p) (f11 p) (shift1 p));
   ok_end : cont (end_ rd) (Q2R l)
 }.
 
@@ -539,7 +590,10 @@ Lemma prepare_ok p l : ready_ok p l (prepare p l).
 Proof.
   unfold prepare. generalize (in_turns (rational (fst (start p)))).
   generalize (in_turns (rational (snd (start p)))). intros ty tx.
-  constructor; cbn [plain rest_0 X0 base sides end_]; [reflexivity | | in_rationals ..].
+  assert (Shears : forall qs, Forall2 shears_by (map (fun g => mul pi (rational g)) qs) qs).
+  { intros qs. induction qs as [| q qs IH]; constructor; [unfold shears_by; in_rationals | exact IH]. }
+  constructor; cbn [plain rest_0 X0 base sides shears end_ fst snd];
+    [reflexivity | | in_rationals .. | apply Shears | apply Shears | in_rationals].
   exists (Q2R (fst (start p)) - 2 * PI * (number (fst tx) + IZR (snd tx)),
           Q2R (snd (start p)) - 2 * PI * (number (fst ty) + IZR (snd ty))).
   split; [split; apply beyond_turns_ok, cont_rational |].
@@ -565,19 +619,19 @@ Proof.
   { apply (f_equal (@length _)) in EC. rewrite map_length in EC. simpl in EC, N. lia. }
   assert (Ne : length c = length (es ++ [e0; e1])) by (rewrite app_length; simpl in *; lia).
   destruct (waves_held ts t es [e0; e1] (terms p) L) as (ms & HW & Wms & Ems).
-  rewrite Nt, Ne, (ok_plain _ _ _ R) in E.
+  rewrite Ne, (ok_plain _ _ _ R) in E.
   set (e := es ++ [e0; e1]) in *.
   set (ws := map (wave_in ts) _) in *.
   (* where x1 and x0 are *)
-  assert (PX := placed_ok es e0 e1 _ _ i0 i1 _ _ _ a0 r0 a1 r1 C' (ok_base0 _ _ _ R)
-    (ok_side00 _ _ _ R) (ok_side01 _ _ _ R) Ha0 Hr0 Ha1 Hr1).
-  destruct (placed _ (fst (base rd)) (fst (sides rd)) i0 i1) as ((X, l0), rr0).
+  assert (PX := placed_ok ts t es e0 e1 _ _ _ _ i0 i1 _ _ _ a0 r0 a1 r1 C' L (ok_shear0 _ _ _ R)
+    (ok_base0 _ _ _ R) (ok_side00 _ _ _ R) (ok_side01 _ _ _ R) Ha0 Hr0 Ha1 Hr1).
+  destruct (placed _ (fst (base rd)) _ (fst (sides rd)) i0 i1) as ((X, l0), rr0).
   destruct PX as (n0 & lv0 & rv0 & Hl0 & Hrr0 & EX).
-  assert (PY := placed_ok es e0 e1 _ _ i0 i1 _ _ _ a0 r0 a1 r1 C' (ok_base1 _ _ _ R)
-    (ok_side10 _ _ _ R) (ok_side11 _ _ _ R) Ha0 Hr0 Ha1 Hr1).
-  destruct (placed _ (snd (base rd)) (snd (sides rd)) i0 i1) as ((Y, l1), rr1).
+  assert (PY := placed_ok ts t es e0 e1 _ _ _ _ i0 i1 _ _ _ a0 r0 a1 r1 C' L (ok_shear1 _ _ _ R)
+    (ok_base1 _ _ _ R) (ok_side10 _ _ _ R) (ok_side11 _ _ _ R) Ha0 Hr0 Ha1 Hr1).
+  destruct (placed _ (snd (base rd)) _ (snd (sides rd)) i0 i1) as ((Y, l1), rr1).
   destruct PY as (n1 & lv1 & rv1 & Hl1 & Hrr1 & EY).
-  rewrite <- E0, <- E1 in EX, EY. fold e in Hl0, Hl1.
+  rewrite <- E0, <- E1, shearing_ok in EX, EY. fold e in Hl0, Hl1.
   destruct (ok_start _ _ _ R) as (ov & HO & N0). rewrite <- X0x in N0.
   assert (N1 : near (real_of (X, Y)) (minus (x 1%Z) (plus (lv0, lv1) (rv0, rv1)))).
   { exists n0, n1. rewrite X1x. unfold second, minus, plus, real_of. cbn [fst snd].

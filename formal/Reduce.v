@@ -18,7 +18,9 @@ Inductive alone := Both | First | Second.
 Inductive once := No | Whole_patch | Upper_end.
 
 Record claim := Claim {
-  of_patch : list term; of_region : region; of_xstar : Q * Q;
+  of_patch : list term; of_region : region;
+  shifts : list Q * list Q;        (* what the parameters add to the centres of v0 and of v1 *)
+  of_xstar : Q * Q;
   of_whole : bool;                                  (* is the region said to be enough for all x1? *)
   of_alone : alone; of_once : once;
   odd : option (Q * Q)                              (* V is odd about this point *)
@@ -26,35 +28,37 @@ Record claim := Claim {
 
 (* ---- problems *)
 
-(* x0 is the start, x1 is pi times the matrix applied to v, v = middle + half-width times u, and u
-   and the parameters are from -1 to 1. *)
+(* x0 is the start, x1 is pi times the matrix applied to v, v = middle + what the parameters shift it
+   by + half-width times u, and u and the parameters are from -1 to 1. *)
 Record problem := Problem {
   terms : list term;
   start : Q * Q;
   f00 : Q; f01 : Q; f10 : Q; f11 : Q;
-  mid0 : Q; wid0 : Q; mid1 : Q; wid1 : Q
+  mid0 : Q; shift0 : list Q; wid0 : Q;
+  mid1 : Q; shift1 : list Q; wid1 : Q
 }.
 
-(* x1, for the u of both angles. *)
-Definition second (p : problem) (u0 u1 : R) : vec :=
-  let v0 := Q2R (mid0 p) + Q2R (wid0 p) * u0 in
-  let v1 := Q2R (mid1 p) + Q2R (wid1 p) * u1 in
+(* x1, for the parameters and the u of both angles. *)
+Definition second (p : problem) (t : list R) (u0 u1 : R) : vec :=
+  let v0 := Q2R (mid0 p) + combined (shift0 p) t + Q2R (wid0 p) * u0 in
+  let v1 := Q2R (mid1 p) + combined (shift1 p) t + Q2R (wid1 p) * u1 in
   (PI * (Q2R (f00 p) * v0 + Q2R (f01 p) * v1), PI * (Q2R (f10 p) * v0 + Q2R (f11 p) * v1)).
 
 (* For the point u = (u0, u1, parameters) of the problem's cube. *)
 Definition excluded (p : problem) (u : list R) : Prop :=
   match u with
   | u0 :: u1 :: t => in_cube t -> forall x, orbit (waves (terms p) t) x ->
-                     x 0%Z = point (start p) -> x 1%Z = second p u0 u1 ->
+                     x 0%Z = point (start p) -> x 1%Z = second p t u0 u1 ->
                      refuted (waves (terms p) t) x
   | _ => True
   end.
 
 (* ---- the problem of a region *)
 
-Definition problem_of (r : region) (patch : list term) (xstar : Q * Q) : problem :=
+Definition problem_of (r : region) (s : list Q * list Q) (patch : list term) (xstar : Q * Q) :
+    problem :=
   Problem patch xstar (inject_Z (m00 r)) (inject_Z (m01 r)) (inject_Z (m10 r)) (inject_Z (m11 r))
-          (centre0 r) (half0 r) (centre1 r) (half1 r).
+          (centre0 r) (fst s) (half0 r) (centre1 r) (snd s) (half1 r).
 
 Lemma Q2R_inject_Z z : Q2R (inject_Z z) = IZR z.
 Proof. unfold Q2R; cbn. field. Qed.
@@ -109,11 +113,11 @@ Proof.
   intros Hn. apply map_ext_in. intros w Hw. now rewrite combined_fitted by now apply Hn.
 Qed.
 
-(* If all points of the problem's cube are excluded, so is the region. *)
+(* If all points of the problem's cube are excluded, so is the region, where nothing is shifted. *)
 Theorem into_of_problem : forall r patch xstar (n : nat),
   (forall w, In w patch -> (length (parts w) <= n)%nat) ->
   (forall u, length u = (2 + n)%nat -> Forall (fun x => -1 <= x <= 1) u ->
-   excluded (problem_of r patch xstar) u) ->
+   excluded (problem_of r ([], []) patch xstar) u) ->
   no_minimizing_orbit_into r patch xstar.
 Proof.
   intros r patch xstar n Hn Hexcluded. apply into_rectangle.
@@ -123,8 +127,9 @@ Proof.
   apply (Hexcluded (u0 :: u1 :: fitted n t)); try assumption.
   - cbn. now rewrite fitted_length.
   - constructor; [assumption|]. now constructor.
-  - rewrite Hx1. unfold second, problem_of; cbn [f00 f01 f10 f11 mid0 wid0 mid1 wid1].
-    now rewrite !Q2R_inject_Z.
+  - rewrite Hx1. unfold second, problem_of.
+    cbn [f00 f01 f10 f11 mid0 shift0 wid0 mid1 shift1 wid1 fst snd].
+    change (combined [] (fitted n t)) with 0. now rewrite !Q2R_inject_Z, !Rplus_0_r.
 Qed.
 
 (* ---- the waves that are felt *)
@@ -282,7 +287,7 @@ Definition turned_problem (p : problem) : problem :=
     (halved (fst (start p) + snd (start p)), halved (fst (start p) - snd (start p)))
     (halved (f00 p + f10 p)) (halved (f01 p + f11 p))
     (halved (f00 p - f10 p)) (halved (f01 p - f11 p))
-    (mid0 p) (wid0 p) (mid1 p) (wid1 p).
+    (mid0 p) (shift0 p) (wid0 p) (mid1 p) (shift1 p) (wid1 p).
 
 Lemma Q2R_halved q : Q2R (halved q) = Q2R q / 2.
 Proof.
@@ -310,9 +315,10 @@ Proof.
   now rewrite !Q2R_halved, Q2R_plus, Q2R_minus.
 Qed.
 
-Lemma second_turned p u0 u1 : second (turned_problem p) u0 u1 = turn (second p u0 u1).
+Lemma second_turned p t u0 u1 : second (turned_problem p) t u0 u1 = turn (second p t u0 u1).
 Proof.
-  unfold second, turn, turned_problem; cbn [f00 f01 f10 f11 mid0 wid0 mid1 wid1 fst snd].
+  unfold second, turn, turned_problem.
+  cbn [f00 f01 f10 f11 mid0 shift0 wid0 mid1 shift1 wid1 fst snd].
   rewrite !Q2R_halved, !Q2R_plus, !Q2R_minus. f_equal; field.
 Qed.
 
@@ -339,9 +345,11 @@ Qed.
 
 (* ---- parameters that move nothing *)
 
-(* Those of n parameters that do. *)
-Definition effective (patch : list term) (n : nat) : list bool :=
-  map (fun m => existsb (fun w => negb (Qnum (nth m (parts w) 0%Q) =? 0)%Z) patch) (seq 0 n).
+(* Those of n parameters that do: waves or angles, by their parts or shifts. *)
+Definition effective (moves : list (list Q)) (n : nat) : list bool :=
+  map (fun m => existsb (fun gs => negb (Qnum (nth m gs 0%Q) =? 0)%Z) moves) (seq 0 n).
+
+Definition moves_of (p : problem) : list (list Q) := shift0 p :: shift1 p :: map parts (terms p).
 
 (* The elements that are to be kept, and all beyond. *)
 Fixpoint kept {A} (keep : list bool) (l : list A) : list A :=
@@ -370,16 +378,15 @@ Definition kept_term (keep : list bool) (w : term) : term :=
 
 Definition kept_problem (keep : list bool) (p : problem) : problem :=
   Problem (map (kept_term keep) (terms p)) (start p) (f00 p) (f01 p) (f10 p) (f11 p)
-    (mid0 p) (wid0 p) (mid1 p) (wid1 p).
+    (mid0 p) (kept keep (shift0 p)) (wid0 p) (mid1 p) (kept keep (shift1 p)) (wid1 p).
 
-Definition still (keep : list bool) (w : term) : Prop :=
-  forall m, nth m keep true = false -> Qnum (nth m (parts w) 0%Q) = 0%Z.
+Definition still (keep : list bool) (gs : list Q) : Prop :=
+  forall m, nth m keep true = false -> Qnum (nth m gs 0%Q) = 0%Z.
 
-Lemma combined_kept keep parts t :
-  (forall m, nth m keep true = false -> Qnum (nth m parts 0%Q) = 0%Z) ->
+Lemma combined_kept keep parts t : still keep parts ->
   combined (kept keep parts) (kept keep t) = combined parts t.
 Proof.
-  revert parts t. induction keep as [|b keep IH]; intros parts t H; [reflexivity|].
+  unfold still. revert parts t. induction keep as [|b keep IH]; intros parts t H; [reflexivity|].
   destruct parts as [|q parts]; [reflexivity|].
   destruct t as [|x t]; [unfold combined; now rewrite !combine_nil|].
   assert (E := IH parts t (fun m => H (S m))). specialize (H 0%nat).
@@ -391,24 +398,24 @@ Proof.
     rewrite E, Z. ring.
 Qed.
 
-Lemma waves_kept keep patch t : Forall (still keep) patch ->
+Lemma waves_kept keep patch t : Forall (still keep) (map parts patch) ->
   waves (map (kept_term keep) patch) (kept keep t) = waves patch t.
 Proof.
   unfold waves. rewrite map_map. intros H. apply map_ext_in. intros w Hw.
   rewrite Forall_forall in H. cbn [kept_term of_k0 of_k1 of_phase middle parts].
-  now rewrite (combined_kept keep (parts w) t (H w Hw)).
+  now rewrite (combined_kept keep (parts w) t (H _ (in_map parts _ _ Hw))).
 Qed.
 
-Lemma effective_still patch n : Forall (still (effective patch n)) patch.
+Lemma effective_still moves n : Forall (still (effective moves n)) moves.
 Proof.
-  apply Forall_forall. intros w Hw m H. destruct (Nat.lt_ge_cases m n) as [Hm|Hm].
-  - unfold effective in H. rewrite (nth_indep _ true (existsb (fun w => negb (Qnum (nth 0 (parts w) 0%Q)
-      =? 0)%Z) patch)) in H by now rewrite map_length, seq_length.
-    rewrite (map_nth (fun m => existsb (fun w => negb (Qnum (nth m (parts w) 0%Q) =? 0)%Z) patch)) in H.
+  apply Forall_forall. intros gs Hgs m H. destruct (Nat.lt_ge_cases m n) as [Hm|Hm].
+  - unfold effective in H. rewrite (nth_indep _ true (existsb (fun gs => negb (Qnum (nth 0 gs 0%Q)
+      =? 0)%Z) moves)) in H by now rewrite map_length, seq_length.
+    rewrite (map_nth (fun m => existsb (fun gs => negb (Qnum (nth m gs 0%Q) =? 0)%Z) moves)) in H.
     rewrite seq_nth in H by assumption. cbn [Nat.add] in H.
-    destruct (Z.eqb_spec (Qnum (nth m (parts w) 0%Q)) 0) as [E|E]; [exact E|].
-    assert (existsb (fun w => negb (Qnum (nth m (parts w) 0%Q) =? 0)%Z) patch = true); [|congruence].
-    apply existsb_exists. exists w. split; [exact Hw|]. now apply negb_true_iff, Z.eqb_neq.
+    destruct (Z.eqb_spec (Qnum (nth m gs 0%Q)) 0) as [E|E]; [exact E|].
+    assert (existsb (fun gs => negb (Qnum (nth m gs 0%Q) =? 0)%Z) moves = true); [|congruence].
+    apply existsb_exists. exists gs. split; [exact Hgs|]. now apply negb_true_iff, Z.eqb_neq.
   - rewrite nth_overflow in H; [discriminate|]. unfold effective. now rewrite map_length, seq_length.
 Qed.
 
@@ -431,21 +438,25 @@ Proof.
   - constructor; [lra|]. now apply IH.
 Qed.
 
-Theorem kept_excluded : forall keep p u, Forall (still keep) (terms p) ->
+Theorem kept_excluded : forall keep p u, Forall (still keep) (moves_of p) ->
   excluded (kept_problem keep p) (kept_axes keep u) -> excluded p u.
 Proof.
   intros keep p [|u0 [|u1 t]] Hstill; try easy. intros H Ht x Hx Hx0 Hx1.
-  cbn [kept_axes excluded kept_problem terms start] in H. rewrite waves_kept in H by exact Hstill.
+  inversion Hstill as [|? ? H0 Hrest]; subst. inversion Hrest as [|? ? H1 Hwaves]; subst.
+  cbn [kept_axes excluded] in H. unfold second in H.
+  cbn [kept_problem terms start f00 f01 f10 f11 mid0 shift0 wid0 mid1 shift1 wid1] in H.
+  rewrite waves_kept in H by exact Hwaves. rewrite !combined_kept in H by assumption.
   apply H; trivial. now apply Forall_kept.
 Qed.
 
-Theorem kept_largest : forall keep p B, Forall (still keep) (terms p) ->
+Theorem kept_largest : forall keep p B, Forall (still keep) (moves_of p) ->
   (forall t, in_cube t -> forall y v, beta (waves (terms p) t) y v <= B * dot v v) ->
   (forall t, in_cube t -> forall y v,
    beta (waves (terms (kept_problem keep p)) t) y v <= B * dot v v).
 Proof.
   intros keep p B Hstill HB t Ht. cbn [kept_problem terms].
-  rewrite <- (kept_filled keep t), waves_kept by exact Hstill. now apply HB, filled_in_cube.
+  rewrite <- (kept_filled keep t), waves_kept by exact (Forall_inv_tail (Forall_inv_tail Hstill)).
+  now apply HB, filled_in_cube.
 Qed.
 
 Lemma kept_in_cell keep c u : in_cell c u -> in_cell (kept_axes keep c) (kept_axes keep u).
@@ -524,10 +535,12 @@ Definition permutations (n : nat) : list (list nat) :=
   | _ => []
   end%nat.
 
-(* Does the mirror map x0 to itself, and the region of x1 to itself by exchanging v0 and v1? *)
+(* Does the mirror map x0 to itself, and the region of x1, which is not to be shifted, to itself by
+   exchanging v0 and v1? *)
 Definition even_sided (p : problem) : bool :=
   Qeq_bool (f00 p) 1 && Qeq_bool (f01 p) 0 && Qeq_bool (f10 p) 0 && Qeq_bool (f11 p) 1
   && Qeq_bool (mid0 p) (mid1 p) && Qeq_bool (wid0 p) (wid1 p)
+  && forallb (fun q => Qeq_bool q 0) (shift0 p) && forallb (fun q => Qeq_bool q 0) (shift1 p)
   && Qeq_bool (fst (start p)) (snd (start p)).
 
 (* The orders of n parameters for which the problem is its own mirror image. *)
@@ -536,13 +549,14 @@ Definition orders_of (p : problem) (n : nat) : list (list nat) :=
 
 Lemma even_sided_correct p : even_sided p = true ->
   fst (point (start p)) = snd (point (start p)) /\
-  forall u0 u1, second p u0 u1 = (PI * (Q2R (mid0 p) + Q2R (wid0 p) * u0),
-                                  PI * (Q2R (mid0 p) + Q2R (wid0 p) * u1)).
+  forall t u0 u1, second p t u0 u1 = (PI * (Q2R (mid0 p) + Q2R (wid0 p) * u0),
+                                      PI * (Q2R (mid0 p) + Q2R (wid0 p) * u1)).
 Proof.
   unfold even_sided. rewrite !andb_true_iff.
-  intros ((((((H00 & H01) & H10) & H11) & Hm) & Hw) & Hs).
+  intros ((((((((H00 & H01) & H10) & H11) & Hm) & Hw) & S0) & S1) & Hs).
   apply Qeq_bool_eq, Qeq_eqR in H00, H01, H10, H11, Hm, Hw, Hs.
-  split; [exact Hs|]. intros u0 u1. unfold second. rewrite H00, H01, H10, H11, Hm, Hw.
+  split; [exact Hs|]. intros t u0 u1. unfold second. rewrite H00, H01, H10, H11, Hm, Hw.
+  rewrite (combined_zero _ t S0), (combined_zero _ t S1).
   replace (Q2R 0) with 0 by (unfold Q2R; cbn; lra).
   replace (Q2R 1) with 1 by (unfold Q2R; cbn; lra).
   f_equal; ring.

@@ -231,6 +231,19 @@ let range name text =
   if less half (whole 0) then reject "a half-width is negative";
   centre, half
 
+(* The same of a part, and from version 5 on perhaps a shift for each of the parameters. *)
+let shifted_range version parameters name text =
+  match String.split_on_char ' ' text with
+  | centre :: half :: (_ :: _ as shifts) when version > 4 ->
+    if List.length shifts <> parameters then
+      reject "%s is not two numbers, nor %d with shifts" name (2 + parameters);
+    let range = range name (centre ^ " " ^ half) in
+    range, List.map (number decimal name) shifts
+  | _ -> range name text, []
+
+(* Does a parameter move the region? *)
+let is_shifted { shifts = s0, s1; _ } = not (List.for_all vanishes (s0 @ s1))
+
 (* The claim, and the counts.  Of the whole torus is said what Coq's `covers` lets be said of it. *)
 let claim_of version lines =
   let field, lines = fields version lines in
@@ -276,7 +289,7 @@ let claim_of version lines =
    | Some point when not (odd_about (felt of_alone of_patch) point) ->
      reject "V is not odd about the point that the header names"
    | _ -> ());
-  let claim = { of_patch; of_xstar; of_alone; of_once; odd; of_whole = true;
+  let claim = { of_patch; of_xstar; shifts = [], []; of_alone; of_once; odd; of_whole = true;
                 of_region = { m00; m01; m10; m11; centre0; half0; centre1; half1 } } in
   { claim with of_whole = covers claim }, counted
 
@@ -314,6 +327,8 @@ let tree_of name its text first parts parameters =
     let leaf count kind = incr count; deepest := max cuts !deepest; kind in
     match c with
     | 'P' -> most_cuts := max cuts !most_cuts; leaf proved Proved
+    | 'S' when is_shifted its ->
+      reject "a leaf is symmetric, and the region has shifts: it is not its own mirror image"
     | 'S' -> leaf symmetric Skipped
     | 'U' -> reject "a leaf is undecided: the file claims no theorem"
     | '0' .. '4' ->
@@ -334,7 +349,7 @@ let tree_of name its text first parts parameters =
   !deepest, !most_cuts
 
 (* A part but for its tree, and the text of that, from what follows `part: `. *)
-let part_of letter text =
+let part_of version parameters letter text =
   let name = Printf.sprintf "part %c" letter in
   let lacking () =
     reject "%s is not 'part: %c', xstar, v0, v1 and a tree, each on its line" name letter in
@@ -345,8 +360,13 @@ let part_of letter text =
     fun () -> form (name ^ "'s " ^ key) (String.sub line from (String.length line - from)) in
   match String.split_on_char '\n' text with
   | first :: xstar :: v0 :: v1 :: "tree:" :: (_ :: _ as tree) when first = String.make 1 letter ->
-    let xstar, v0, v1 = value (fun name -> pair name) "xstar" xstar, value range "v0" v0, value range "v1" v1 in
-    { starts_at = xstar (); range0 = v0 (); range1 = v1 (); its_tree = Proved },
+    let range = shifted_range version parameters in
+    let xstar = value (fun name -> pair name) "xstar" xstar
+    and v0 = value range "v0" v0 and v1 = value range "v1" v1 in
+    let starts_at = xstar () in
+    let range0, shifts0 = v0 () in
+    let range1, shifts1 = v1 () in
+    { starts_at; range0; range1; its_shifts = shifts0, shifts1; its_tree = Proved },
     String.concat "" tree
   | _ -> lacking ()
 
@@ -362,7 +382,7 @@ let file_of version claim counted text sha256 =
   if count > String.length letters then reject "there are more parts than letters";
   if count > 0 && claim.of_alone <> Both then
     reject "a coordinate is alone, and there are parts: links are of whole graphs";
-  let parts = List.mapi (fun n text -> part_of letters.[n] text) parts in
+  let parts = List.mapi (fun n text -> part_of version parameters letters.[n] text) parts in
   let texts = first :: List.map snd parts in
   let claims = ("", claim) :: List.mapi (fun n (part, _) ->
       Printf.sprintf "part %c" letters.[n], at_part claim part) parts in
@@ -405,8 +425,9 @@ let read path =
   let version = match first with
     | "3" -> 3
     | "4" -> 4
+    | "5" -> 5
     | "2" -> refuse "is a proof file of version 2, which converse-check up to release 1.6.0 verifies"
-    | _ -> refuse "is a proof file of another version; this checker knows versions 3 and 4" in
+    | _ -> refuse "is a proof file of another version; this checker knows versions 3 to 5" in
   let seal = "checksum: sha256 " and length = String.length data in
   let stop = length - (String.length seal + 64 + String.length "\nend\n") in
   if stop < 1 || String.sub data (stop - 1) (1 + String.length seal) <> "\n" ^ seal
