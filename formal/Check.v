@@ -240,7 +240,7 @@ Definition may_link (c : claim) (ps : list part) : bool :=
 (* How far f moves for parameters in these slices, to each of the later parts, and between which ends
    it is to lead; nothing if the bound or l is wrong. *)
 Definition ways_for (c : claim) (later : list claim) (ts : list slice) (Bl : Q * Q) :
-    list ((I.type * I.type) * ((Q * Q) * (Q * Q))) :=
+    list (option (I.type * I.type) * ((Q * Q) * (Q * Q))) :=
   let patch := sliced ts (examined c) in
   if tail_ok (fst Bl) (snd Bl) && patch_below prec patch (fst Bl)
   then map (fun c' => (displacement prec series patch (of_region c) (snd Bl)
@@ -493,10 +493,10 @@ Proof.
     unfold no_graph_of in IH. rewrite P, <- Epatch, Ex' in IH.
     apply (IH s Hm' Hs k' T T' HT HT' Hinv').
     rewrite <- Es in Hinv', E |- *.
-    destruct (displacement_ok prec series (make_constants_ok prec) (sliced slices (examined c)) r l _
-      (of_xstar c) (of_xstar c') s' k' T T' Hr Hl' HBl' (Below' s' Hs') Hs' HT HT' Hinv') as [D0 D1].
+    pose proof (displacement_ok prec series (make_constants_ok prec) (sliced slices (examined c)) r l _
+      (of_xstar c) (of_xstar c') s' k' T T' Hr Hl' HBl' (Below' s' Hs') Hs' HT HT' Hinv') as D.
     refine (leads_into_ok prec _ r _ sh _ (s0 :: s1 :: slices) a b s _ _ p q Hr _ _ _ _ Hh0 Hh1
-              Hlink Hu E D0 D1); congruence.
+              Hlink Hu E D); congruence.
   - cbn. now rewrite Hn.
   - constructor; [assumption |]. now constructor.
   - apply (excluded_graph c u0 u1 ts k S S' i j Hex Ht' HS HS' Hinv). rewrite Hx1. f_equal.

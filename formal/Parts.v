@@ -283,16 +283,23 @@ Proof.
     rewrite Rplus_0_l, Rmult_comm. apply cont_mul; [now apply K_ok | exact Hr].
 Qed.
 
-(* In v0 and v1; between equal points exactly 0. *)
-Definition displacement (patch : list term) (r : region) (l : Q) (y z : Q * Q) : I.type * I.type :=
-  if Qeq_bool (fst y) (fst z) && Qeq_bool (snd y) (snd z) then (I.zero, I.zero) else
+(* In v0 and v1; None between equal points, where it is 0 and not only near it. *)
+Definition displacement (patch : list term) (r : region) (l : Q) (y z : Q * Q) :
+    option (I.type * I.type) :=
+  if Qeq_bool (fst y) (fst z) && Qeq_bool (snd y) (snd z) then None else
   let d := piece_of y z in
   let bs := betas patch y d pieces in
   let turn := sharp_pi prec [*] integer prec (determinant r) in
   let along u0 u1 :=
     div prec (moved_along (rational prec l) (rational prec (fst d), rational prec (snd d))
                 (integer prec u0, integer prec u1) bs) turn in
-  (along (m11 r) (- m01 r)%Z, along (- m10 r)%Z (m00 r)).
+  Some (along (m11 r) (- m01 r)%Z, along (- m10 r)%Z (m00 r)).
+
+Definition moved_by (i : option (I.type * I.type)) (d0 d1 : R) : Prop :=
+  match i with
+  | None => d0 = 0 /\ d1 = 0
+  | Some i => cont (fst i) d0 /\ cont (snd i) d1
+  end.
 
 Theorem displacement_ok patch r l B y z t c S S' : determinant r <> 0%Z ->
   0 < Q2R l < 1 -> B <= Q2R l + / Q2R l ->
@@ -300,8 +307,7 @@ Theorem displacement_ok patch r l B y z t c S S' : determinant r <> 0%Z ->
   periodic S -> has_gradient S S' -> invariant_graph (waves patch t) c S' ->
   let moved := minus (Link.on_graph (waves patch t) c S' (point z))
                      (Link.on_graph (waves patch t) c S' (point y)) in
-  cont (fst (displacement patch r l y z)) (v0_of r moved) /\
-  cont (snd (displacement patch r l y z)) (v1_of r moved).
+  moved_by (displacement patch r l y z) (v0_of r moved) (v1_of r moved).
 Proof.
   intros Hr Hl HBl HB Ht HS HS' Hinv moved.
   unfold displacement. destruct (Qeq_bool (fst y) (fst z) && _) eqn:Esame.
@@ -309,8 +315,7 @@ Proof.
     assert (Ep : point z = point y) by (unfold point; now rewrite E0, E1).
     assert (Em : moved = (0, 0))
       by (unfold moved; rewrite Ep; unfold minus; apply vec_eq; cbn [fst snd]; ring).
-    rewrite Em. cbn [fst snd]. split; [replace (v0_of r (0, 0)) with 0 | replace (v1_of r (0, 0)) with 0];
-      try exact cont_zero; unfold v0_of, v1_of; cbn [fst snd]; unfold Rdiv; ring. }
+    rewrite Em. split; unfold v0_of, v1_of, Rdiv; cbn [fst snd]; ring. }
   clear Esame. assert (A : forall u0 u1, cont
     (moved_along (rational prec l)
        (rational prec (fst (piece_of y z)), rational prec (snd (piece_of y z)))
@@ -327,7 +332,7 @@ Proof.
     by (apply cont_mul; [apply sharp_pi_ok | apply cont_integer]).
   assert (Hnot : PI * IZR (determinant r) <> 0).
   { apply Rmult_integral_contrapositive. split; [apply PI_neq0 | now apply not_0_IZR]. }
-  cbn [fst snd]. split.
+  cbn [moved_by fst snd]. split.
   - replace (v0_of r moved) with (dot moved (IZR (m11 r), IZR (- m01 r)) / (PI * IZR (determinant r)))
       by (unfold v0_of, dot; rewrite opp_IZR; cbn [fst snd]; f_equal; ring).
     now apply cont_div.
@@ -351,18 +356,29 @@ Proof.
     destruct Q2R_0_1 as [E0 _]. rewrite E0 in E. lra.
 Qed.
 
-(* Is a slice of one range, moved so far, between these ends? *)
-Definition slice_in (i : I.type) (s : slice) (c h : Q) (ends : Q * Q) : bool :=
-  non_negative (i [+] rational prec (end_of c h (fst s) (snd s) - fst ends))
-  && non_negative (rational prec (snd ends - end_of c h (fst s + 1) (snd s)) [-] i).
+(* Is a slice of one range, moved so far or not at all, between these ends? *)
+Definition slice_in (i : option I.type) (s : slice) (c h : Q) (ends : Q * Q) : bool :=
+  let below := (end_of c h (fst s) (snd s) - fst ends)%Q in
+  let above := (snd ends - end_of c h (fst s + 1) (snd s))%Q in
+  match i with
+  | None => Qle_bool 0 below && Qle_bool 0 above
+  | Some i => non_negative (i [+] rational prec below) && non_negative (rational prec above [-] i)
+  end.
 
-Lemma slice_in_ok i x s c h ends u : slice_in i s c h ends = true -> cont i x -> 0 <= Q2R h ->
+Lemma slice_in_ok i x s c h ends u : slice_in i s c h ends = true ->
+  match i with None => x = 0 | Some i => cont i x end -> 0 <= Q2R h ->
   in_slice s u -> Q2R (fst ends) <= Q2R c + Q2R h * u + x <= Q2R (snd ends).
 Proof.
-  unfold slice_in, in_slice. rewrite andb_true_iff. intros [Hlow Hhigh] Hx Hh [Ul Uu].
-  pose proof (non_negative_correct _ _ Hlow (cont_add prec _ _ _ _ Hx (cont_rational prec _))) as L.
-  pose proof (non_negative_correct _ _ Hhigh (cont_sub prec _ _ _ _ (cont_rational prec _) Hx)) as U.
-  rewrite Q2R_minus, Q2R_end in L. rewrite Q2R_minus, Q2R_end, plus_IZR in U.
+  unfold slice_in, in_slice. set (below := Qminus _ _). set (above := Qminus _ _).
+  intros Hin Hx Hh [Ul Uu].
+  assert (0 <= x + Q2R below /\ 0 <= Q2R above - x) as [L U].
+  { destruct i as [i |]; apply andb_prop in Hin as [Hlow Hhigh].
+    - split.
+      + apply (non_negative_correct _ _ Hlow), cont_add; [exact Hx | apply cont_rational].
+      + apply (non_negative_correct _ _ Hhigh), cont_sub; [apply cont_rational | exact Hx].
+    - apply Qle_bool_iff, Qle_Rle in Hlow, Hhigh. replace (Q2R 0) with 0 in * by (unfold Q2R; cbn; ring).
+      lra. }
+  unfold below, above in *. rewrite Q2R_minus, Q2R_end in L. rewrite Q2R_minus, Q2R_end, plus_IZR in U.
   apply (Rmult_le_compat_l (Q2R h)) in Ul, Uu; [lra | exact Hh | exact Hh].
 Qed.
 
@@ -439,10 +455,11 @@ Definition ends_of (r' : region) (s s' : list Q * list Q) (ts : list slice) : (Q
   (ends_within (fst s) (fst s') ts (centre0 r') (half0 r'),
    ends_within (snd s) (snd s') ts (centre1 r') (half1 r')).
 
-Definition leads_into (i : I.type * I.type) (r : region) (ends : (Q * Q) * (Q * Q)) (cl : cell) : bool :=
+Definition leads_into (i : option (I.type * I.type)) (r : region) (ends : (Q * Q) * (Q * Q))
+    (cl : cell) : bool :=
   match cl with
-  | s0 :: s1 :: _ => slice_in (fst i) s0 (centre0 r) (half0 r) (fst ends)
-                     && slice_in (snd i) s1 (centre1 r) (half1 r) (snd ends)
+  | s0 :: s1 :: _ => slice_in (option_map fst i) s0 (centre0 r) (half0 r) (fst ends)
+                     && slice_in (option_map snd i) s1 (centre1 r) (half1 r) (snd ends)
   | _ => false
   end.
 
@@ -453,9 +470,16 @@ Lemma leads_into_ok i r r' s s' cl u0 u1 t y z p q : determinant r <> 0%Z ->
   y = plus (at_v r (Q2R (centre0 r) + combined (fst s) t + Q2R (half0 r) * u0)
                    (Q2R (centre1 r) + combined (snd s) t + Q2R (half1 r) * u1))
            (Criterion.turns p q) ->
-  cont (fst i) (v0_of r (minus z y)) -> cont (snd i) (v1_of r (minus z y)) -> into_shifted r' s' t z.
+  moved_by i (v0_of r (minus z y)) (v1_of r (minus z y)) -> into_shifted r' s' t z.
 Proof.
-  intros Hr E00 E01 E10 E11 H0 H1 Hin Hu Hy Hi0 Hi1.
+  intros Hr E00 E01 E10 E11 H0 H1 Hin Hu Hy Hi.
+  assert (match option_map fst i with None => v0_of r (minus z y) = 0
+                                    | Some i => cont i (v0_of r (minus z y)) end) as Hi0
+    by (destruct i; apply Hi).
+  assert (match option_map snd i with None => v1_of r (minus z y) = 0
+                                    | Some i => cont i (v1_of r (minus z y)) end) as Hi1
+    by (destruct i; apply Hi).
+  clear Hi.
   inversion Hu as [| s0 ? cl0 ? Hs0 Hu0]; subst cl. inversion Hu0 as [| s1 ? cl1 ? Hs1 Ht]; subst cl0.
   cbn [leads_into skipn] in Hin. apply andb_prop in Hin as [Hin0 Hin1]. unfold ends_of in Hin0, Hin1.
   pose proof (ends_within_ok _ _ _ _ _ t _ Ht (slice_in_ok _ _ _ _ _ _ _ Hin0 Hi0 H0 Hs0)) as R0.

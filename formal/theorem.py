@@ -135,10 +135,16 @@ def tree_text(tree, later):
         tree[k:k + width] for k in range(0, len(tree), width))
 
 
+def shifts_text(claim):
+    """What each parameter adds to v0, and what to v1."""
+    return "(%s)" % ", ".join(["[%s]" % "; ".join([number(shift[i]) for shift in claim.shifts])
+                               for i in (0, 1)])
+
+
 def part_text(part, later):
-    """A part, its x*, ranges and tree."""
-    return "Part %s %s %s (%s)" % (*map(pair, (part.xstar, *zip(part.centre, part.half))),
-                                   tree_text(part.tree, later))
+    """A part, its x*, ranges, shifts and tree."""
+    return "Part %s %s %s %s (%s)" % (*map(pair, (part.xstar, *zip(part.centre, part.half))),
+                                      shifts_text(part), tree_text(part.tree, later))
 
 
 def patch_text(claim, indent):
@@ -211,8 +217,8 @@ Definition the_parts : list part :=
   [%s].
 
 Lemma header : header_ok the_claim the_hints the_tree the_parts = true.
-%s""" % ("Claim %s\n  %s %s %s %s %s %s." % (
-            patch_text(claim, 8), region_text(claim), pair(claim.xstar),
+%s""" % ("Claim %s\n  %s %s %s %s %s %s %s." % (
+            patch_text(claim, 8), region_text(claim), shifts_text(claim), pair(claim.xstar),
             "true" if is_whole(claim) else "false", alone, once,
             "None" if odd is None else "(Some %s)" % pair(odd)),
          "Hints %s %s (%s, %s)\n  [%s]." % (

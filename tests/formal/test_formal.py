@@ -89,6 +89,18 @@ def test_linked_parts(tmp_path):
             found["parts"][0][3].replace("b", "a"), found["parts"][1][3]]
 
 
+def test_regions_that_move(tmp_path):
+    """What the parameters shift is in the claim's file: v0 by each of them, then v1."""
+    moves = "0.5362 0.2802 0.01 0.02", "0.5 0.535 -0.03 0.005"
+    text = version4.file_of("a", waves=version4.APART, parts=[(version4.XSTAR, *moves, "P")])
+    (tmp_path / "build").mkdir()
+    (tmp_path / "proof").write_text(version4.sealed(text.replace("proof 4", "proof 5")))
+    claim = write(tmp_path / "proof", "moving", tmp_path)["moving_claim"].read_text()
+    assert "Part (0.858, 0.858) (0.5362, 0.2802) (0.5, 0.535) ([0.01; 0.02], [(-0.03); 0.005]) (" \
+        in claim
+    assert claim.count("([], [])") == 1         # the header's
+
+
 @needs_coq
 def test_words_that_mean_something_else(proof, folder):
     """A file like the written ones that gives Map.v's words another meaning: what it proves is the

@@ -207,7 +207,7 @@ def test_half_of_a_coordinate_that_is_alone(texts, tmp_path):
     (lambda text: text.replace("linked: 0\n", ""), REJECTED),
     (lambda text: text.replace("linked: 0", "linked: 1"), REJECTED),
     (lambda text: text.replace("proof 4", "proof 3"), REJECTED),
-    (lambda text: text.replace("proof 4", "proof 5"), UNUSABLE),
+    (lambda text: text.replace("proof 4", "proof 6"), UNUSABLE),
     (lambda text: text.replace("tree:\nP", "tree:\na").replace("proved: 1", "proved: 0"),
      REJECTED)])
 def test_damage_of_version_4(texts, tmp_path, change, status):
@@ -285,6 +285,102 @@ def test_wrong_parts(links, tmp_path, name):
     path.write_text(version4.WRONG_STRUCTURE[name][0](links[1]), newline="")
     status, out, err = run(path)
     assert (status, out, err.count("\n")) == (REJECTED, "", 1), err
+
+
+# ---- regions that move with the parameters: format 5
+
+SHIFTS = {"v0": "0.01 0.02", "v1": "-0.03 0.005"}           # by the two parameters
+ROOM = {"v0": "0.5362 0.2802", "v1": "0.5 0.535"}           # as wide as half the torus and these
+
+
+def of_format_5(link):
+    return sealed(version4.file_of(**link).replace("converse proof 4", "converse proof 5"))
+
+
+@pytest.fixture(scope="module")
+def moving():
+    """The arguments of a file of three trees over the same x*: half of the torus, linked to a
+    region that moves and is no wider than it must be, linked to one that moves alike."""
+    ranges = {name: "%s %s" % (ROOM[name], SHIFTS[name]) for name in ROOM}
+    claim = version4.claim_of(version4.file_of("P", *ROOM.values(), waves=version4.APART))
+    claim = replace(claim, shifts=tuple(zip(*[map(Fraction, SHIFTS[name].split())
+                                              for name in ROOM])))
+    tree = version4.found_tree(claim, 5000)
+    return {"tree": "a", "waves": version4.APART, "parts": [
+        (version4.XSTAR, *ranges.values(), text) for text in ("b", tree)]}
+
+
+def test_regions_that_move(moving, tmp_path):
+    """Where both move alike nothing is lost; the report names all x*."""
+    assert agree(tmp_path, of_format_5(moving)) == VERIFIED
+    out = run(tmp_path / "proof")[1]
+    assert "\nx* of part b : %s\n" % version4.XSTAR in out
+    assert agree(tmp_path, of_format_5({**moving, "v0": "0.5362 0.25"})) == PART
+    assert agree(tmp_path, version4.file_of(**moving)) == REJECTED              # in format 4
+
+
+def test_regions_that_need_not_move(links, tmp_path):
+    """Two numbers in one range or both, or zeros."""
+    assert agree(tmp_path, of_format_5(links[1])) == VERIFIED
+    still = {**links[0], "waves": ["%s 0" % wave for wave in version4.SYMMETRIC]}
+    for more in ("", " 0"), (" 0", " 0.0"), (" 1e-12", ""), ("", " -0.000000000001"):
+        (xstar, v0, v1, tree), = still["parts"]
+        moved = {**still, "parts": [(xstar, v0 + more[0], v1 + more[1], tree)]}
+        assert agree(tmp_path, of_format_5(moved)) == VERIFIED
+
+
+@pytest.mark.parametrize("part, changes", [
+    (0, {"v0": "0.5362 0.28019999999999999999 0.01 0.02"}),
+    (0, {"v1": "0.5 0.53499999999999999999 -0.03 0.005"}),
+    (0, {"v0": "0.5362 0.2802 0.01 0.0200000000000000000001"}),
+    (0, {"v0": "0.5362 0.2802"}),
+    (1, {"v0": "0.5362 0.2802"}),
+    (1, {"v1": "0.5 0.535"}),
+    (1, {"v0": "0.5362 0.2802 0.02 0.01"}),                 # in another order
+    (1, {"v0": "0.5362 0.2802 -0.01 -0.02"}),
+    (1, {"v0": "0.5362 0.2802 -0.03 0.005", "v1": "0.5 0.535 0.01 0.02"}),
+    (1, {"v1": "0.5 0.535 -0.0300000000000000000001 0.005"})])
+def test_links_between_regions_that_move(moving, tmp_path, part, changes):
+    """A region that is not where the other one is for all parameters."""
+    (tmp_path / "proof").write_text(of_format_5(version4.with_part(moving, part, **changes)))
+    status, out, err = run(tmp_path / "proof")
+    assert (status, out) == (NOT_CONFIRMED, "")
+    assert re.search(": not confirmed: (part a: )?linked leaf 1 of 1 is linked to part [ab], but may",
+                     err)
+
+
+@pytest.mark.parametrize("part, changes, status", [
+    (0, {"v0": "0.5362 0.2802 0.01"}, REJECTED),
+    (0, {"v0": "0.5362 0.2802 0.01 0.02 0"}, REJECTED),
+    (0, {"v0": "0.5362"}, REJECTED),
+    (0, {"v1": "0.5 0.535  -0.03 0.005"}, REJECTED),
+    (0, {"v1": "0.5 0.535 -0.03 0.005 "}, REJECTED),
+    (1, {"v1": "0.5 0.535 -0.03 1/2"}, REJECTED),
+    (1, {"v1": "0.5 0.535 -0.03 nan"}, REJECTED),
+    (1, {"v1": "0.5 -0.535 -0.03 0.005"}, REJECTED),
+    (1, {"v1": "0.5 0.535 -0.03 1e301"}, NOT_CONFIRMED),
+    (1, {"v1": "0.5 0.535 -0.03 0.005" + 1000 * "0"}, NOT_CONFIRMED),
+    (1, {"xstar": "0.858 0.858 0 0"}, REJECTED),
+    (0, {"tree": "0bS"}, REJECTED)])
+def test_wrong_shifts(moving, tmp_path, part, changes, status):
+    assert agree(tmp_path, of_format_5(version4.with_part(moving, part, **changes))) == status
+
+
+def test_shifts_of_the_header(moving, tmp_path):
+    """It has none, whatever the format."""
+    for name, value in zip(("v0", "v1"), version4.HALF):
+        assert agree(tmp_path, of_format_5({**moving, name: value + " 0 0"})) == REJECTED
+
+
+def test_no_mirror_images_where_the_region_moves(tmp_path):
+    """A region in the plain frame may be its own mirror image, but not if it moves."""
+    shape = {"frame": "1 0 0 1", "waves": ["%s 0.0001" % wave for wave in version4.SYMMETRIC]}
+    lower, corner = (version4.found(*region, **shape) for region in (
+        ("-0.5 0.5", "0 1"), ("0.5 0.5", "0.5 0.5")))
+    for more, status in ("", VERIFIED), (" 0", VERIFIED), (" 1e-9", REJECTED):
+        part = (version4.XSTAR, "0 1.1" + more, "0 1.1" + more, "0%s1S%s" % (lower, corner))
+        text = of_format_5({**shape, "tree": "a", "v0": "0 1", "v1": "0 1", "parts": [part]})
+        assert agree(tmp_path, text) == status
 
 
 def test_a_part_that_is_not_proved(links, tmp_path):
