@@ -281,7 +281,8 @@ Definition unshifted (c : claim) : bool :=
   match shifts c with ([], []) => true | _ => false end.
 
 Definition header_ok (c : claim) (h : hints) (t : tree) (ps : list part) : bool :=
-  unshifted c && (covers c || negb (of_whole c)) && alone_ok (of_alone c) (of_patch c) && tail_ok (bound h) (tail h)
+  unshifted c && (covers c || negb (of_whole c)) && alone_ok (of_alone c) (of_patch c)
+  && tail_ok (bound h) (tail h)
   && patch_below prec (terms (plain_problem c)) (bound h)
   && may_link c ps && trees_ok h (all_parts c t ps) && once_ok c h.
 

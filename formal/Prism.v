@@ -615,8 +615,6 @@ Proof.
   assert (C' : cube (es ++ [e0; e1])).
   { inversion C as [| ? ? Q0 C1]. inversion C1 as [| ? ? Q1 C2]. apply Forall_app.
     split; [exact C2 |]. constructor; [exact Q0 | constructor; [exact Q1 | constructor]]. }
-  assert (Nt : length ts = length es).
-  { apply (f_equal (@length _)) in EC. rewrite map_length in EC. simpl in EC, N. lia. }
   assert (Ne : length c = length (es ++ [e0; e1])) by (rewrite app_length; simpl in *; lia).
   destruct (waves_held ts t es [e0; e1] (terms p) L) as (ms & HW & Wms & Ems).
   rewrite Ne, (ok_plain _ _ _ R) in E.

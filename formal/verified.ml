@@ -831,7 +831,7 @@ let blame hints { claim; trees; _ } =
 let verify options path =
   let file = read path in
   (* Almost all that a leaf makes is dead at once and never reaches the major heap, which is the tree's:
-     to go through that again and again, each time a little has been added, is a sixth of the work. *)
+     to go through that again and again, each time a little has been added, is a tenth of the work. *)
   Gc.set { (Gc.get ()) with Gc.space_overhead = 300 };
   let hints = hints_of file in
   if not (header_ok file.claim hints (List.hd file.trees).tree file.further) then blame hints file;

@@ -345,7 +345,7 @@ def test_links_between_regions_that_move(moving, tmp_path, part, changes):
     (tmp_path / "proof").write_text(of_format_5(version4.with_part(moving, part, **changes)))
     status, out, err = run(tmp_path / "proof")
     assert (status, out) == (NOT_CONFIRMED, "")
-    assert re.search(": not confirmed: (part a: )?linked leaf 1 of 1 is linked to part [ab], but may",
+    assert re.search(": not confirmed: (part a: )?linked leaf 1 of 1 is linked to part [ab], but ",
                      err)
 
 
@@ -381,6 +381,7 @@ def test_no_mirror_images_where_the_region_moves(tmp_path):
         part = (version4.XSTAR, "0 1.1" + more, "0 1.1" + more, "0%s1S%s" % (lower, corner))
         text = of_format_5({**shape, "tree": "a", "v0": "0 1", "v1": "0 1", "parts": [part]})
         assert agree(tmp_path, text) == status
+    assert "part a: a leaf is symmetric, and the region has shifts" in run(tmp_path / "proof")[2]
 
 
 def test_a_part_that_is_not_proved(links, tmp_path):
