@@ -18,6 +18,7 @@ from .links import (Link, Links, Target, clusters, crests, hull_of, linked_tree,
                     region_around, region_of)
 from .proof import Part
 from .settings import Settings
+from .shifts import best_shifts
 from .workers import LOOK_SECONDS
 
 LOOK_DEPTH, LOOK_LEAVES = 24, 200000    # of the tree whose undecided prisms are clustered
@@ -54,15 +55,16 @@ def plan(problem, depth, xstar, undecided, largest, before, pool, seconds_left):
     targets, parts = [], []
     points = [] if undecided else [tuple(Fraction(x) for x in xstar)]   # x* itself may do
     for cells in found:
-        best = _best_start(problem, depth, xstar, largest, hull_of(problem, cells), points, pool,
-                           seconds_left)
+        image = _Image(problem, depth, xstar, largest, cells, pool, seconds_left)
+        best = _best_start(image, points)
+        shifts = () if best is None else image.shifts(best)
         if seconds_left() <= 0:
             return None
-        if best is not None and _text(best) != xstar:
+        if best is not None and (_text(best) != xstar or shifts):
             links = Links(problem, largest, xstar, _text(best))
-            region = region_of(problem, cells, links)
-            targets.append(Target(tree.LETTERS[before + len(parts)], links, region))
-            parts.append(Part(_text(best), *region))
+            region = region_of(problem, cells, links, shifts)
+            targets.append(Target(tree.LETTERS[before + len(parts)], links, region, shifts))
+            parts.append(Part(_text(best), *region, shifts=shifts))
             points += [best] if best not in points else []
     text, steps = linked_tree(problem, grown.text, grown.steps, targets)
     used = [target.letter in text for target in targets]    # one region may do for two clusters
@@ -123,40 +125,66 @@ def _surveys(pool, seconds_left, tasks, most):
     return [] if None in found.values() else [found[key] for key in range(len(tasks))]
 
 
-def _best_start(problem, depth, xstar, largest, box, others, pool, seconds_left):
+class _Image:
+    """The image of a box over other starting points, where the waves bend least: there most prisms
+    resist, and cuts of parameters do not hide how many."""
+
+    def __init__(self, problem, depth, xstar, largest, cells, pool, seconds_left):
+        """cells: whose hull is the box, those that there are for the weakest waves."""
+        signs, self.weakest = _weakest(problem)
+        cells = [cell for cell in cells if _reaches(cell, signs)] or cells
+        self.problem, self.depth, self.xstar = problem, depth, xstar
+        self.largest, self.box = min(largest, *crests(self.weakest)), hull_of(problem, cells)
+        self.pool, self.seconds_left = pool, seconds_left
+
+    def region(self, point):
+        link = Link.between(self.weakest, self.largest, self.xstar, _text(point))
+        return region_around(self.box, link)
+
+    def grow(self, points, settings, most):
+        """What is grown over each of the points; [] if time was up."""
+        return _surveys(self.pool, self.seconds_left, [
+            native.Task(part_problem(self.weakest, self.region(point)), settings, _text(point))
+            for point in points], most)
+
+    def proof(self, point):
+        """A tree over the point, tried to the end; None if time was up."""
+        grown = self.grow([point], Settings("loewner", self.depth), ALL_LEAVES)
+        return grown[0] if grown else None
+
+    def shifts(self, point):
+        """How the region over this point is to move with the parameters; () if there are none."""
+        grown = self.proof(point) if any(map(any, self.problem.parts)) else None
+        return () if grown is None else best_shifts(
+            part_problem(self.problem, self.region(point)), self.weakest.amplitude, _text(point),
+            grown.text)
+
+
+def _best_start(image, others):
     """A starting point over which the box's image is proved where the waves bend least; if none is
     found, that over which the fewest prisms resist; None if that is x* or time is up.
 
     others: points to be tried first."""
-    weakest, start = _weakest(problem), tuple(Fraction(x) for x in xstar)
-    largest = min(largest, *crests(weakest))
-
-    def task(point, settings):
-        link = Link.between(weakest, largest, xstar, _text(point))
-        return native.Task(part_problem(weakest, region_around(box, link)), settings, _text(point))
-
-    def does(point):
-        grown = _surveys(pool, seconds_left, [task(point, Settings("loewner", depth))], ALL_LEAVES)
-        return grown and tree.complete(grown[0].text) and not grown[0].counts.undecided
-
+    start = tuple(Fraction(x) for x in image.xstar)
     known = {}          # scores
 
     def look(points):
         """The best of these points; None if there was no time."""
         new = [point for point in dict.fromkeys(points) if point not in known]
         most = min([TRY_LEAVES, *(2 * leaves for _, leaves in sorted(known.values())[:1])])
-        grown = _surveys(pool, seconds_left, [
-            task(point, Settings("loewner", TRY_DEPTH, stubborn=True)) for point in new], most)
+        grown = image.grow(new, Settings("loewner", TRY_DEPTH, stubborn=True), most)
         known.update(zip(new, map(_score, grown)))
         return min(points, key=known.__getitem__) if len(grown) == len(new) else None
 
     tried = set()
-    for point in chain(others, _candidates(look, known, start, _ways(problem))):
-        if point not in tried and does(point):
-            return point
+    for point in chain(others, _candidates(look, known, start, _ways(image.problem))):
+        if point not in tried:
+            grown = image.proof(point)
+            if grown and tree.complete(grown.text) and not grown.counts.undecided:
+                return point
         tried.add(point)
     best = min(known, key=known.__getitem__, default=start)
-    return None if best == start or known[best][0] == inf or seconds_left() <= 0 else best
+    return None if best == start or known[best][0] == inf or image.seconds_left() <= 0 else best
 
 
 def _ways(problem):
@@ -199,14 +227,21 @@ def _moved(point, step, way):
 
 
 def _weakest(problem):
-    """The problem at that corner of its parameters where the waves bend least: there most prisms
-    resist, and cuts of parameters do not hide how many."""
-    corners = [[p + sum(s * part for s, part in zip(signs, parts))
+    """The corner of the parameters where the waves bend least, as signs, and the problem there."""
+    def corner(signs):
+        return [p + sum(s * part for s, part in zip(signs, parts))
                 for p, *parts in zip(problem.amplitude, *problem.parts)]
-               for signs in product((-1, 1), repeat=len(problem.parts))]
-    amplitude = min(corners, key=lambda corner: sum(
-        abs(p) * (k0 * k0 + k1 * k1) for p, (k0, k1, _) in zip(corner, problem.waves)))
-    return Problem.patch(amplitude, (), problem.waves, problem.v0, problem.v1, axes=problem.frame)
+
+    signs = min(product((-1, 1), repeat=len(problem.parts)), key=lambda signs: sum(
+        abs(p) * (k0 * k0 + k1 * k1) for p, (k0, k1, _) in zip(corner(signs), problem.waves)))
+    return signs, Problem.patch(corner(signs), (), problem.waves, problem.v0, problem.v1,
+                                axes=problem.frame)
+
+
+def _reaches(cell, signs):
+    """Does the cell reach that corner of the parameters?"""
+    return all(i == (0 if sign < 0 else (1 << k) - 1)
+               for sign, i, k in zip(signs, cell[0][2:], cell[1][2:]))
 
 
 def _score(grown) -> Tuple[float, int]:
