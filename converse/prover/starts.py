@@ -22,6 +22,7 @@ from .shifts import best_shifts
 from .workers import LOOK_SECONDS
 
 LOOK_DEPTH, LOOK_LEAVES = 24, 200000    # of the tree whose undecided prisms are clustered
+FEW_LEAVES = 50000                      # where regions move, and larger ones will do
 DEEPER = 4                              # cuts, as long as they halve what the clusters cover,
 SMALL = Fraction(1, 10000)              # and this is more, in units of pi squared
 SHRINKS = 0.7                           # what so many cuts leave of what was undecided before
@@ -78,6 +79,7 @@ def _look(problem, depth, xstar, pool, seconds_left):
     deeper as long as they are large and shrink.  (None, []) if there is too much of it, or time was
     up."""
     best, covered, cuts = (None, []), inf, LOOK_DEPTH
+    enough = FEW_LEAVES if _has_width(problem) else LOOK_LEAVES
     while cuts <= depth and (best[0] or _shrinks(problem, xstar, pool, seconds_left)):
         grown = _surveys(pool, seconds_left, [_task(problem, xstar, cuts)], LOOK_LEAVES)
         if not grown or grown[0].cells:
@@ -88,7 +90,7 @@ def _look(problem, depth, xstar, pool, seconds_left):
         if best[1] and 2 * area > covered:
             break
         best, covered, cuts = (grown[0], found), area, cuts + DEEPER
-        if area < SMALL or 3 * len(grown[0].text) > 2 * LOOK_LEAVES:
+        if area < SMALL or 3 * len(grown[0].text) > 2 * enough:
             break
     return best
 
@@ -154,7 +156,7 @@ class _Image:
 
     def shifts(self, point):
         """How the region over this point is to move with the parameters; () if there are none."""
-        grown = self.proof(point) if any(map(any, self.problem.parts)) else None
+        grown = self.proof(point) if _has_width(self.problem) else None
         return () if grown is None else best_shifts(
             part_problem(self.problem, self.region(point)), self.weakest.amplitude, _text(point),
             grown.text)
@@ -224,6 +226,10 @@ def _candidates(look, known, start, ways):
 
 def _moved(point, step, way):
     return tuple(round(a + step * b, 6) for a, b in zip(point, way))
+
+
+def _has_width(problem):
+    return any(map(any, problem.parts))
 
 
 def _weakest(problem):
