@@ -11,8 +11,8 @@
        Q = sum n[j].beta(x[j])n[j] - 2 sum n[j].n[j+1] - l (|n[s]|^2 + |n[t]|^2) < 0.           (1)
 
    A prism is a set of orbits: x[0] = x*, x[1] in a rectangle, which may move with the parameters,
-   the amplitudes on an affine image of the parameters' box.  orbit.c follows it, witness.c chooses n
-   for the orbit of its centre, bound.c bounds (1) for that n over all of it, and try.c does one
+   the amplitudes on an affine image of the parameters' box.  orbit.c follows it, witness.c chooses
+   n for the orbit of its centre, bound.c bounds (1) for that n over all of it, and try.c does one
    after the other until it is proved or hopeless.
 
    Lanes.  What is a vec here is a number of each of the prisms at hand, and all of them go through

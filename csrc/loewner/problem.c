@@ -217,9 +217,9 @@ static void set_wave_slots(loewner *w, const patch *problem, int general)
 
 /* Where all waves are m q, q primitive, s = q.x moves by itself: s' = 2s - s(o) + |q|^2 sum m p cos
    y, and vectors n = q nu make of Q |q|^2 times what it is for waves (m, 0) of amplitude |q|^2 p at
-   s.  So these may be taken for them, if the frame tells s apart: then s_1 is a multiple of v1, with
-   what shifts it, and v0 is not felt.  s* = q.x* and the products with |q|^2 are rounded by u or
-   two more. */
+   s.  So these may be taken for them, if the frame tells s apart: then s_1 is a multiple of v1,
+   with what shifts it, and v0 is not felt.  s* = q.x* and the products with |q|^2 are rounded by u
+   or two more. */
 static void straighten(loewner *w)
 {
     const double *const k = w->k[2], common = divisor(fabs(k[0]), fabs(k[1]));
