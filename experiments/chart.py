@@ -38,13 +38,17 @@ BOXES = (("0.0278", "0.313"), ("0.02763", "0.311"), ("0.0274", "0.3085"), ("0.02
 SINGLES = ("0.0271", "0.02704", "0.0270")       # for the thesis's method, without width
 
 BOUNDS = ("0.0272", "0.0250", "0.0220", "0.0200", "0.0180", "0.0160", "0.0152", "0.0148", "0.0144",
-          "0.0142", "0.0141", "0.0140")
-# Release 1.1.0, whose sharper method was of first order: seconds of one core, taken in turn with
-# those of release 1.2.0, which took 9.8 for 0.0141; longest orbit.
+          "0.0142", "0.0141", "0.0140", "0.01395", "0.01393", "0.01391", "0.0139")
+# The sharper method of older releases: seconds of one core, longest orbit.  1.1.0 was of first
+# order; its times were taken in turn with those of 1.2.0, which took 9.8 for 0.0141.  1.6.0 bounded
+# orbits in x_0 and x_1, over all of the torus.
 FIRST = (("0.0272", 0.0017, 1), ("0.0250", 0.0020, 3), ("0.0220", 0.0028, 7),
          ("0.0200", 0.0044, 8), ("0.0180", 0.0101, 11), ("0.0160", 0.0499, 20),
          ("0.0152", 0.1517, 31), ("0.0148", 0.3999, 44), ("0.0144", 2.50, 72),
          ("0.0142", 19.3, 113), ("0.0141", 137.5, 142))
+SECOND = (("0.0272", 0.0011, 1), ("0.0180", 0.0040, 12), ("0.0160", 0.012, 18),
+          ("0.0152", 0.030, 36), ("0.0148", 0.066, 49), ("0.0144", 0.26, 87),
+          ("0.0142", 0.91, 113), ("0.0141", 2.7, 147), ("0.0140", 57, 339))
 LONG = 100                              # orbits from which the end of the curve is estimated
 
 # The diagonal x_0 = x_1 is invariant.  The last invariant circle seen there that runs round has the
@@ -59,7 +63,7 @@ WALLS = {
                "0.02703", "0.02702", "0.0270"),
     "loewner": ("0.0250", "0.0240", "0.0220", "0.0200", "0.0180", "0.0170", "0.0160", "0.0155",
                 "0.0150", "0.0147", "0.0145", "0.0144", "0.0143", "0.0142", "0.01415", "0.0141",
-                "0.01405", "0.0140", "0.01397", "0.01395"),
+                "0.01405", "0.0140", "0.01397", "0.01395", "0.01393", "0.01391", "0.0139", "0.01389"),
 }
 QUICK = {"bound": 0.0160, "thesis": 0.02704, "loewner": 0.0147}     # --quick stops there
 WALL_SECONDS = 40.0
@@ -73,7 +77,8 @@ POINTS = (2, 3, 4)                      # of the orbit, x* being number 0
 SAMPLES = 2000
 
 HEIGHTS = {"bound": 6.6, "wall": 5.4}   # of charts with two parts, in inches
-COLOURS = {"1989": DARK, "thesis": BLUE, "first order": "0.55", "loewner": ORANGE}
+COLOURS = {"1989": DARK, "thesis": BLUE, "first order": "0.7", "second order": "0.45",
+           "loewner": ORANGE, "linked": VERMILLION}
 ZOOM = 0.0165                           # up to there the chart of the bound is drawn larger
 SMALL = {"textcoords": "offset points", "fontsize": 8, "color": "0.3"}
 STYLE = {
@@ -146,8 +151,9 @@ def bound(quick):
         if not quick or float(epsilon) >= QUICK["bound"]:
             yield _bound_row("loewner", epsilon, on_line(epsilon, TOP, together=True),
                              method="loewner")
-    for epsilon, seconds, orbit in FIRST:
-        yield "first order", epsilon, seconds, orbit, "yes"
+    for name, older in ("first order", FIRST), ("second order", SECOND):
+        for epsilon, seconds, orbit in older:
+            yield name, epsilon, seconds, orbit, "yes"
     began = time.process_time()
     circle = last_circle()
     yield "last circle", "%.5f" % circle, time.process_time() - began, CIRCLE[1], "seen"
@@ -155,6 +161,8 @@ def bound(quick):
 
 def _bound_row(name, epsilon, problem, **options):
     proof, seconds = timed(problem, **options)
+    if proof.counts.linked:
+        name = "linked"
     return name, epsilon, seconds, proof.counts.max_NTsteps, _yes(proof.no_tori)
 
 
@@ -279,7 +287,9 @@ def draw_bound(figure, rows):
             ("1989", "^", "none", "the thesis, Sun-4, 1989"),
             ("thesis", "s", "none", "the thesis's method, this program, 35 digits"),
             ("first order", "v", "-", "method loewner, first order (release 1.1.0)"),
-            ("loewner", "o", "-", "method loewner, second order")):
+            ("second order", "<", "-", "second order, in $x_0$ and $x_1$ (release 1.6.0)"),
+            ("loewner", "o", "-", "second order, along the axes of the waves"),
+            ("linked", "D", "-", "several starting points, regions that move")):
         good = [row for row in rows if row[0] == name and row[4] == "yes"]
         for axes in (upper, lower):
             axes.plot([row[2] for row in good], [float(row[1]) for row in good], marker=marker,
@@ -293,7 +303,7 @@ def draw_bound(figure, rows):
                color=COLOURS["thesis"], linestyle="--")
     end = estimated_end(rows)
     if end is not None:
-        _level(lower, end, "estimate: the orbits needed\ngrow without end towards about %.4f" % end,
+        _level(lower, end, "estimate, of one x*:\nthe orbits needed grow\nwithout end near %.4f" % end,
                left=True, color=COLOURS["loewner"], linestyle=":")
     for _, epsilon, *_ in _pick(rows, 0, "last circle"):
         _level(lower, float(epsilon), "seen: up to %s the diagonal $x_0 = x_1$ has an invariant "
