@@ -228,7 +228,7 @@ let pair ?(form = decimal) name text =
 (* A centre and a half-width. *)
 let range name text =
   let centre, half = pair name text in
-  if less half (whole 0) then reject "a half-width is negative";
+  if less half (whole 0) then reject "%s: the half-width is negative" name;
   centre, half
 
 (* The same of a part, and from version 5 on perhaps a shift for each of the parameters. *)

@@ -366,6 +366,15 @@ def test_wrong_shifts(moving, tmp_path, part, changes, status):
     assert agree(tmp_path, of_format_5(version4.with_part(moving, part, **changes))) == status
 
 
+def test_the_range_with_a_negative_half_width_is_named(moving, tmp_path):
+    """Whichever checker says it."""
+    for text, name in (
+            (of_format_5(version4.with_part(moving, 1, v1="0.5 -0.535 -0.03 0.005")), "part b's v1"),
+            (of_format_5({**moving, "v0": "0.5362 -0.25"}), "the header's v0")):
+        assert agree(tmp_path, text) == REJECTED
+        assert run(tmp_path / "proof")[2].endswith("%s: the half-width is negative\n" % name)
+
+
 def test_shifts_of_the_header(moving, tmp_path):
     """It has none, whatever the format."""
     for name, value in zip(("v0", "v1"), version4.HALF):
