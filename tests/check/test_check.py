@@ -1661,11 +1661,11 @@ def moved_by(claim, along):
     return [sum([shift[i] * t for shift, t in zip(claim.shifts, along[2:])]) for i in (0, 1)]
 
 
-def random_prism(generator, texts, most=12):
-    """(criterion, cell, prism) of the exact path."""
+def random_prism(generator, texts, most=12, shift="0.1"):
+    """(criterion, cell, prism) of the exact path; shift: how far a parameter may move x[1]."""
     while True:
         claim = claim_of(random_text(generator, texts["trig274"], "P", 1, "0.5"))
-        claim = with_shifts(generator, claim)
+        claim = with_shifts(generator, claim, shift)
         if claim.examined:
             criterion, cell = check.Criterion(claim), random_cell(generator, claim, most)
             return criterion, cell, criterion.prism(cell)
@@ -1686,7 +1686,8 @@ def test_prisms_cover_their_cells(texts, generator, monkeypatch):
     monkeypatch.setattr(check, "torus_bound", lambda fixed, *_: 4 * fixed.one)      # unused
     tight = 0
     for _ in range(60 * min(TORTURE, 5)):
-        criterion, cell, prism = random_prism(generator, texts, 40)
+        criterion, cell, prism = random_prism(      # in 10^9 turns it counts that pi is off
+            generator, texts, 40, generator.choice(("0.1", 10 ** 9)))
         one, turn = criterion.fixed.one, 2 * mp.pi * criterion.fixed.one
         for _ in range(5):
             eta, amplitudes, angles = true_point(generator, criterion, cell)
@@ -1698,10 +1699,10 @@ def test_prisms_cover_their_cells(texts, generator, monkeypatch):
                     size * check.SINE_ERROR, one)
             for lane, true in zip(prism.lanes, angles[::-1]):
                 for x, y, columns, rest in zip(lane.x, true, lane.first_columns, lane.first_rest):
-                    gap = (y * one - x + turn / 2) % turn - turn / 2
-                    whole = [min(off_by(gap, n * turn, columns, eta) for n in range(-3, 4))]
-                    assert whole[0] <= rest + 30 * turn / one ** 2
-                    tight += whole[0] > rest / 20
+                    gap = y * one - x - sum(a * real(e) for a, e in zip(columns, eta))
+                    gap = abs((gap + turn / 2) % turn - turn / 2)
+                    assert gap <= rest + 10 ** 10 * turn / one ** 2
+                    tight += gap > rest / 20
     assert tight > 50
 
 
@@ -2248,7 +2249,8 @@ def test_lockstep_boxes_cover_their_cells(np, texts, generator):
     kinds = shifted = 0
     for _ in range(6 * min(TORTURE, 4)):
         claims = [claim_of(random_text(generator, texts["trig274"], "P", 1, 9)) for _ in range(4)]
-        claims = [with_shifts(generator, claim, 9) for claim in claims if claim.examined]
+        claims = [with_shifts(generator, claim, generator.choice((9, 900))) for claim in claims
+                  if claim.examined]
         fast, numbers = check.Lockstep(claims), [generator.randrange(len(claims))
                                                  for _ in range(40)]
         cells = [random_cell(generator, claims[q], 52) for q in numbers]

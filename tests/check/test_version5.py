@@ -2,6 +2,7 @@
 confirmed, and what is wrong in any one place is not, by both paths of the checker and by the
 referee; and orbits are where the checker says."""
 
+import contextlib
 import dataclasses
 import itertools
 import math
@@ -285,6 +286,23 @@ def test_a_parameter_that_moves_no_wave(idle, run):
     for line, at in (("v0", 3), ("v1", 3)):
         assert run(text_of(changed(idle, 0, line, at, times=2)))[0] == 5
         assert run(text_of(changed(idle, 0, line, at, times=-1)))[0] == 5
+
+
+@pytest.mark.parametrize("line, m", [(0, 0), (0, 1), (1, 0), (1, 1)])
+def test_each_shift_counts_alone(idle, line, m):
+    """None is taken for none because others are 0."""
+    lines = [words.split()[:2] + ["0", "0"] for words in idle["parts"][0][1:3]]
+    lines[line][2 + m] = "0.25"
+    part, = check.read_proof(text_of(with_lines(idle, 0, *map(" ".join, lines))).encode()).parts
+    assert part.shifts == tuple(tuple(Fraction((i, n) == (line, m), 4) for i in (0, 1))
+                                for n in (0, 1))
+
+
+def test_the_fast_path_is_not_made_for_large_shifts():
+    for size, fits in (("2047", True), ("2049", False)):
+        claim = part_claim(ONE, XSTAR, (V0 + " 0", V1 + " -" + size))
+        with contextlib.nullcontext() if fits else pytest.raises(ValueError, match="too large"):
+            check.Lockstep([claim])
 
 
 @pytest.mark.parametrize("part, shifts, status", [

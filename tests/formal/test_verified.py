@@ -319,6 +319,19 @@ def test_regions_that_move(moving, tmp_path):
     assert agree(tmp_path, version4.file_of(**moving)) == REJECTED              # in format 4
 
 
+def test_shifts_are_in_the_order_of_the_parameters(tmp_path):
+    """The first parameter is cut, so that what it moves, and only it, needs less room."""
+    lines, trees = [("0.5462 0.2602", "0.5 0.5"), ("0.5262 0.2602", "0.5 0.5")], []
+    for ranges in lines:
+        claim = version4.claim_of(version4.file_of("P", *ranges, waves=version4.APART))
+        trees.append(version4.found_tree(replace(claim, shifts=((Fraction(1, 50), Fraction(0)),
+                                                                (Fraction(0),) * 2)), 5000))
+    for shifts, status in (" 0.02 0", VERIFIED), (" 0 0.02", NOT_CONFIRMED):
+        parts = [(version4.XSTAR, v0 + shifts, v1, tree) for (v0, v1), tree in zip(lines, trees)]
+        assert agree(tmp_path, of_format_5({"tree": "2ab", "waves": version4.APART,
+                                            "parts": parts})) == status
+
+
 def test_regions_that_need_not_move(links, tmp_path):
     """Two numbers in one range or both, or zeros."""
     assert agree(tmp_path, of_format_5(links[1])) == VERIFIED
@@ -368,10 +381,10 @@ def test_wrong_shifts(moving, tmp_path, part, changes, status):
 
 def test_the_range_with_a_negative_half_width_is_named(moving, tmp_path):
     """Whichever checker says it."""
-    for text, name in (
-            (of_format_5(version4.with_part(moving, 1, v1="0.5 -0.535 -0.03 0.005")), "part b's v1"),
-            (of_format_5({**moving, "v0": "0.5362 -0.25"}), "the header's v0")):
-        assert agree(tmp_path, text) == REJECTED
+    for link, name in (
+            (version4.with_part(moving, 1, v1="0.5 -0.535 -0.03 0.005"), "part b's v1"),
+            ({**moving, "v0": "0.5362 -0.25"}, "the header's v0")):
+        assert agree(tmp_path, of_format_5(link)) == REJECTED
         assert run(tmp_path / "proof")[2].endswith("%s: the half-width is negative\n" % name)
 
 
