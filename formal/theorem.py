@@ -25,6 +25,7 @@ sys.path.insert(0, str(ROOT))
 from converse import check  # noqa: E402  (it needs the path)
 from converse.check.claim import LETTERS  # noqa: E402
 from converse.check.cover import is_whole  # noqa: E402
+from converse.check.tree import check_mirror_images  # noqa: E402
 from converse.check.tree import leaves, trees  # noqa: E402
 
 WIDTH = 100                                                     # of a line
@@ -287,6 +288,7 @@ def main():
         if isinstance(claim, check.Map):
             raise check.Unusable("is a map; a theorem is made from a proof file")
         check.check_tree(claim)
+        check_mirror_images(claim)      # Coq would say no more than that false is not true
         odd = odd_about(options.file)
     except check.Failure as error:
         sys.exit("theorem.py: %s: %s%s" % (check.shown(options.file), error.word, error))

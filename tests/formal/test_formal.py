@@ -100,6 +100,13 @@ def test_regions_that_move(tmp_path):
         in claim
     assert claim.count("([], [])") == 1         # the header's
 
+    text = version4.file_of("a", waves=version4.APART, parts=[(version4.XSTAR, *moves, "2PS")])
+    (tmp_path / "proof").write_text(version4.sealed(text.replace("proof 4", "proof 5")))
+    done = subprocess.run([sys.executable, FORMAL / "theorem.py", tmp_path / "proof", "wrong",
+                           tmp_path / "build"], stderr=subprocess.PIPE, text=True)
+    assert done.returncode == 1 and done.stderr.count("\n") == 1
+    assert "part a: symmetric leaf 1 of 1" in done.stderr
+
 
 @needs_coq
 def test_words_that_mean_something_else(proof, folder):
