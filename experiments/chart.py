@@ -63,7 +63,8 @@ WALLS = {
                "0.02703", "0.02702", "0.0270"),
     "loewner": ("0.0250", "0.0240", "0.0220", "0.0200", "0.0180", "0.0170", "0.0160", "0.0155",
                 "0.0150", "0.0147", "0.0145", "0.0144", "0.0143", "0.0142", "0.01415", "0.0141",
-                "0.01405", "0.0140", "0.01397", "0.01395", "0.01393", "0.01391", "0.0139", "0.01389"),
+                "0.01405", "0.0140", "0.01397", "0.01395", "0.01393", "0.01391", "0.0139",
+                "0.01389"),
 }
 QUICK = {"bound": 0.0160, "thesis": 0.02704, "loewner": 0.0147}     # --quick stops there
 WALL_SECONDS = 40.0
@@ -303,8 +304,8 @@ def draw_bound(figure, rows):
                color=COLOURS["thesis"], linestyle="--")
     end = estimated_end(rows)
     if end is not None:
-        _level(lower, end, "estimate, of one x*:\nthe orbits needed grow\nwithout end near %.4f" % end,
-               left=True, color=COLOURS["loewner"], linestyle=":")
+        words = "estimate, of one x*:\nthe orbits needed grow\nwithout end near %.4f" % end
+        _level(lower, end, words, left=True, color=COLOURS["loewner"], linestyle=":")
     for _, epsilon, *_ in _pick(rows, 0, "last circle"):
         _level(lower, float(epsilon), "seen: up to %s the diagonal $x_0 = x_1$ has an invariant "
                "circle: no proof from an x* there gets past" % epsilon, color=PURPLE,
