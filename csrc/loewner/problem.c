@@ -133,13 +133,20 @@ static const engine *fastest_engine(int general)
     return general ? &general_scalar : &engine_scalar;
 }
 
+/* A double that is not less than x >= 0. */
+static double above(const apm_t x)
+{
+    return apm_sgn(x) == 0 ? 0.0 : apm_nearest_d(x) * (1.0 + 0x1p-50) + 0x1p-1070;
+}
+
 /* The angles, and x*.  With S the sum of |shift|, in units u: centre, half and shifts are off by 8
    of themselves (near), products with shares of a cell, |at_axis| + part <= 1, by 1, those with
    part by nothing, and the at most 4 sums by 1 each of (|centre| + half + S).  So v and width and
    shifts of a cell are off by 13 of that, width by 1 more of itself and err_v, where err_v has 32.
    x_1 = frame v, and the columns frame width and frame shift, are off by less than 2 |frame| v, 1
    |frame| half and 2 |frame| S, of which off has 8 of (|centre| + half + S), but for the identity,
-   which is exact; v and width take in that, too. */
+   which is exact; v and width take in that, too, and what the radians are off, for other points'
+   links end at a prism's sides. */
 static void set_angles(loewner *w, const patch *problem)
 {
     const int *const f = problem->frame;
@@ -155,7 +162,7 @@ static void set_angles(loewner *w, const patch *problem)
             w->shift[i][m] = near(problem->shift[i][m]);
             size[i] += fabs(w->shift[i][m]);
         }
-        w->err_v[i] = 0x1p-48 * size[i];
+        w->err_v[i] = 0x1p-48 * size[i] + above(problem->off[i]);
         w->xstar[i] = near(problem->xstar[i]);
         w->xstar_err[i] = 0x1p-49 * fabs(w->xstar[i]);
         for (int k = 0; k < 2; k++)

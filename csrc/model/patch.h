@@ -13,6 +13,7 @@ typedef struct {
     int n_waves, n_parameters, k[MOST_WAVES][2], frame[4], odd;
     apm_t phase[MOST_WAVES], amplitude[MOST_WAVES], part[MOST_WAVES][PARAMETERS];
     apm_t angle[2], half[2], shift[2][PARAMETERS], xstar[2];
+    apm_t off[2];                       /* see region_to_radians */
 } patch;
 
 void patch_init(patch *p);
@@ -46,5 +47,9 @@ void to_radians(apm_t centre, apm_t half, const apm_t pi, long dp);
 /* The same of a shift, which is multiplied by t, |t| <= 1: what it is off is added to half, which
    is in radians already. */
 void shift_to_radians(apm_t shift, apm_t half, const apm_t pi, long dp);
+
+/* Both, of the patch.  Not only the region is enclosed: a prism of it, as the radians have it,
+   holds the prism that is meant if its sides are moved outwards by off. */
+void region_to_radians(patch *p, const apm_t pi, long dp);
 
 #endif

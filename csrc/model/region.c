@@ -49,3 +49,22 @@ void shift_to_radians(apm_t shift, apm_t half, const apm_t pi, long dp)
     apm_clear(off);
     apm_clear(exact);
 }
+
+/* Where c, s and h are centre, shifts and half-width, c + sum of s t + h u is off by what c and s
+   are, and by what h is, as |t| <= 1 and |u| <= 1.  h is longer than the one meant by what c and s
+   are off, or more; and pi is cut off.  So twice what it is longer than with that pi will do. */
+void region_to_radians(patch *p, const apm_t pi, long dp)
+{
+    apm_t least;
+
+    apm_init(least);
+    for (int j = 0; j < 2; j++) {
+        apm_mul(least, p->half[j], pi);
+        to_radians(p->angle[j], p->half[j], pi, dp);
+        for (int m = 0; m < PARAMETERS; m++)
+            shift_to_radians(p->shift[j][m], p->half[j], pi, dp);
+        apm_sub(p->off[j], p->half[j], least);
+        apm_mul_si(p->off[j], p->off[j], 2);
+    }
+    apm_clear(least);
+}

@@ -10,6 +10,7 @@
 
 enum { MAX_DP = 100000, MAX_DEPTH = 100000 };
 enum { PI_SHORT = 5 };                  /* see region.c */
+enum { LEAST_DP = 35 };                 /* of the region, for a method that works in doubles */
 
 /* After CV_ENOMEM the numbers are abandoned, not freed: see guard.c. */
 void cv_search_free(cv_search *s)
@@ -97,17 +98,14 @@ static void set_up_problem(void *data)
 static void set_up_method(void *data)
 {
     cv_search *const s = data;
-    const long dp = s->precision.digits;
+    const long given = s->precision.digits;
+    const long dp = s->method == &method_loewner && given < LEAST_DP ? LEAST_DP : given;
     const long pi_dp = s->precision.as_printed ? dp : dp > PI_SHORT ? dp - PI_SHORT : 1;
     apm_t pi;
 
     apm_init(pi);
     apm_pi(pi, pi_dp);
-    for (int j = 0; j < 2; j++) {
-        to_radians(s->problem.angle[j], s->problem.half[j], pi, pi_dp);
-        for (int m = 0; m < PARAMETERS; m++)
-            shift_to_radians(s->problem.shift[j][m], s->problem.half[j], pi, pi_dp);
-    }
+    region_to_radians(&s->problem, pi, pi_dp);
     apm_clear(pi);
     s->status = s->method->prepare(&s->work, &s->problem, &s->precision, s->constants, &s->at_once);
 }

@@ -40,6 +40,7 @@ TAKES = {
     "cone": "k = 4 or k = 16", "scale": "at most 100000 places",
     "cell": "lo <= hi of each parameter, and no negative half-widths",
     "region": "a half-width that is not negative",
+    "region_that_moves": "a half-width that is not negative",
     "constants": "half-widths that are not negative",
 }
 

@@ -122,6 +122,33 @@ static int region(long dp, apm_t in[], apm_t out[])
     return CV_OK;
 }
 
+/* Centre, half-width and a shift by each of three parameters, of v0 in units of pi -> the same in
+   radians, and what they are off. */
+static int region_that_moves(long dp, apm_t in[], apm_t out[])
+{
+    patch p;
+    apm_t pi;
+
+    if (apm_sgn(in[1]) < 0)
+        return CV_EARGUMENT;
+    apm_init(pi);
+    apm_pi(pi, dp);
+    patch_init(&p);
+    apm_set(p.angle[0], in[0]);
+    apm_set(p.half[0], in[1]);
+    for (int m = 0; m < PARAMETERS; m++)
+        apm_set(p.shift[0][m], in[2 + m]);
+    region_to_radians(&p, pi, dp);
+    apm_set(out[0], p.angle[0]);
+    apm_set(out[1], p.half[0]);
+    for (int m = 0; m < PARAMETERS; m++)
+        apm_set(out[2 + m], p.shift[0][m]);
+    apm_set(out[5], p.off[0]);
+    patch_clear(&p);
+    apm_clear(pi);
+    return CV_OK;
+}
+
 static int sine_and_cosine(long dp, apm_t in[], apm_t out[])
 {
     double sine, cosine;
@@ -220,6 +247,7 @@ static const struct {
     { { "order", 1, 1 }, order },
     { { "double", 1, 1 }, as_double },
     { { "region", 2, 2 }, region },
+    { { "region_that_moves", 5, 6 }, region_that_moves },
     { { "double_sincos", 1, 2 }, sine_and_cosine },
     { { "double_sincos_ns", 2, 1 }, sines_ns },
     { { "torus", 6, 2 }, torus },

@@ -7,12 +7,12 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from converse import ConverseError, Problem, Proof, check, prove, read_input
+from converse import ConverseError, Problem, Proof, Settings, check, prove, read_input
 from converse.check.claim import Claim, Wave
 from converse.check.criterion import Criterion
 from converse.check.links import displacement
 from converse.model.problem import LINE
-from converse.prover import run, starts, tree
+from converse.prover import native, run, starts, tree
 from converse.prover.links import (SPARE, Link, Links, Target, clusters, crests, hull_of,
                                    least_slope, linked_tree, part_problem, region_around)
 from converse.prover.native import Counts, Stop
@@ -432,3 +432,19 @@ def test_near_where_links_end(epsilon, parts):
     """The classes of rotation vectors that one x* leaves, each from its own."""
     proof = prove(line(epsilon), method="loewner")
     assert proof.no_tori and len(proof.parts) == parts and proof.counts.proved < 100000
+
+
+# ---- the prisms of the core
+
+@pytest.mark.parametrize("digits", [1, 6, 10, 35])
+def test_the_core_has_the_prisms_that_links_mean(digits):
+    """However pi is rounded: cells beside them may be linked, and end where these begin.
+
+    At x* = 0 the action is least, and so the orbit that stays there minimizes: no cell is proved
+    whose lower corner is v = (2, 2), in units of pi."""
+    waves = [(1, 0, "1.5"), (0, 1, "1.5"), (1, 1, "1.5")]
+    problem = Problem.patch(["0.3", "0.3", "0.6"], (), waves, (1, 3), (1, 3), axes=(1, 0, 0, 1))
+    task = native.Task(problem, Settings("loewner", 100, digits, stubborn=True), ("0", "0"))
+    for k in range(1, 41):
+        cell = (2 ** k // 2, 2 ** k // 2, 0, 0, 0), (k, k, 0, 0, 0), 0
+        assert native.grow(task, [cell], 9, 1, False).text != "P"

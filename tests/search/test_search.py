@@ -15,6 +15,7 @@ import pytest
 
 import converse
 from converse import Problem
+from converse.model.exact import pi_bounds
 from converse.model.problem import LINE
 from converse.prover.tree import leaves
 
@@ -72,6 +73,25 @@ def test_the_region_in_radians_holds_the_region(dp):
         found, reach = kernels.region(centre, half, dp)
         assert abs(centre * pi - found) + half * pi <= reach
         assert reach <= half * pi + (abs(centre) + half + 2) * ulp
+
+
+def test_prisms_of_the_region_that_is_meant_stay_within_reach():
+    """Of what moves with three parameters: centre, shifts and half-width together are off by no
+    more than they are said to be, however pi is rounded, and this is hardly too much."""
+    rng = rng_for("radians that move")
+    for _ in range(300 * TORTURE):
+        dp = rng.choice([1, 5, 30, 60])
+        c, h, *shifts = [Fraction(rng.choice([0, 1, rng.randrange(1, 10 ** 6)])
+                                  * rng.choice([-1, 1]), 10 ** rng.choice([0, 6, 40]))
+                         for _ in range(5)]
+        out = kernels.call("region_that_moves", [c, abs(h), *shifts], 6, dp)
+        (c_, h_, *shifts_), off = out[:5], out[5]
+        exact = [x * y for x in (c, abs(h), *shifts) for y in pi_bounds(100)]
+        parts = [max(abs(x - y) for y in exact[2 * i:2 * i + 2])
+                 for i, x in enumerate((c_, h_, *shifts_))]
+        assert sum(parts) <= off <= Fraction(2, 10 ** dp) * (
+            10 + 2 * sum(map(abs, (c, h, *shifts))))
+        assert h_ - exact[2] >= parts[0] + sum(parts[2:])
 
 
 def test_no_double_too_large_crashes():
