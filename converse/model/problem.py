@@ -178,23 +178,12 @@ class Problem:
                 object.__setattr__(self, "alone", None)
 
     def _check_shifts(self):
-        """Exact numbers, a pair for each parameter, or () if all of them are 0."""
-        try:
-            shifts = [tuple(pair) for pair in self.shifts]
-        except TypeError:
-            raise TypeError("shifts are pairs of numbers") from None
-        if shifts and len(shifts) != len(self.parts):
+        """A pair for each parameter, or none."""
+        shifts = exact_shifts(self.shifts)
+        if self.shifts and len(self.shifts) != len(self.parts):
             raise ValueError("there are shifts by %d parameters for %d"
-                             % (len(shifts), len(self.parts)))
-        for m, pair in enumerate(shifts):
-            if len(pair) != 2:
-                raise ValueError("the shifts by a parameter are of v0 and v1, not %d numbers"
-                                 % len(pair))
-            shifts[m] = tuple(_exact_of("a shift", x) for x in pair)
-            for x in shifts[m]:
-                if not is_decimal(x):
-                    raise ValueError("a shift: %s is no finite decimal" % x)
-        object.__setattr__(self, "shifts", tuple(shifts) if any(map(any, shifts)) else ())
+                             % (len(self.shifts), len(self.parts)))
+        object.__setattr__(self, "shifts", shifts)
 
     def __repr__(self):
         ranges = ["%s=%s" % (name, range_text(*getattr(self, name))) for name in NAMES
@@ -387,6 +376,23 @@ def _checked(waves, amplitude, parts):
             if not is_decimal(numbers[j]):
                 raise ValueError("%s of wave %d: %s is no finite decimal" % (name, j + 1, number))
     return tuple(waves), tuple(amplitude), tuple(map(tuple, parts))
+
+
+def exact_shifts(shifts: Sequence[Sequence[Number]]) -> Shifts:
+    """Exact pairs, () if all of them are 0.  TypeError, ValueError: they are no shifts."""
+    try:
+        pairs = [tuple(pair) for pair in shifts]
+    except TypeError:
+        raise TypeError("shifts are pairs of numbers") from None
+    for m, pair in enumerate(pairs):
+        if len(pair) != 2:
+            raise ValueError("the shifts by a parameter are of v0 and v1, not %d numbers"
+                             % len(pair))
+        pairs[m] = tuple(_exact_of("a shift", x) for x in pair)
+        for x in pairs[m]:
+            if not is_decimal(x):
+                raise ValueError("a shift: %s is no finite decimal" % x)
+    return tuple(pairs) if any(map(any, pairs)) else ()
 
 
 def _exact_of(name, number):

@@ -9,7 +9,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any, Dict, List, Optional, Tuple, Union
 
 from ..model.exact import Ends
-from ..model.problem import Problem, Shifts
+from ..model.problem import Problem, Shifts, exact_shifts
 from ..model.region import symmetries_used
 from ..version import __version__
 from . import tree
@@ -27,7 +27,9 @@ class Part:
 
     v0, v1: the region, in units of pi, in the middle of the parameters.
     shifts: by how much each parameter moves it at its upper end, (of v0, of v1); (): not at all.
-    xstar, tree, pending: as of a Proof."""
+    xstar, tree, pending: as of a Proof.
+
+    TypeError, ValueError: the shifts are no pairs of finite decimals, exact."""
 
     xstar: Tuple[str, str]
     v0: Ends
@@ -37,8 +39,7 @@ class Part:
     shifts: Shifts = ()
 
     def __post_init__(self) -> None:
-        if not any(map(any, self.shifts)):      # one part, one Part
-            object.__setattr__(self, "shifts", ())
+        object.__setattr__(self, "shifts", exact_shifts(self.shifts))   # one part, one Part
 
 
 @dataclass(frozen=True, repr=False)

@@ -70,7 +70,8 @@ def load(path):
         problem = _problem(values, waves, comments)
         if form == 3:
             _check_format_3(values, problem)
-        proof = _proof(values, problem, _trees(lines[starts[0]:-3]), files.sha256(text), form)
+        proof = _proof(values, problem, _trees(lines[starts[0]:-3]), files.sha256(text), form,
+                       len(waves[0]) - 4)
         if form == 3 and proof.parts:
             raise ValueError("there are no parts in format 3")
         return proof
@@ -106,6 +107,8 @@ def _text(proof):
         raise ValueError("the region of a whole proof does not move with the parameters")
     if any(part.shifts for part in proof.parts):
         form = WITH_SHIFTS
+    for part in proof.parts:            # ValueError: it has shifts by more or fewer parameters
+        proof.part_problem(part)
     lines = ["converse proof %d" % form, "kind: " + CLAIMS[proof.as_printed],
              "program: converse " + proof.version, "method: " + proof.method]
     lines += _problem_lines(problem)
@@ -148,9 +151,9 @@ def _untried(text):
     return cuts + 1 - (len(text) - cuts - text.count(tree.UNTRIED))
 
 
-def _proof(values, problem, trees, sha256, form):
+def _proof(values, problem, trees, sha256, form, parameters):
     """The Proof of the header's fields, their values by name, and what _trees returns; form: the
-    format's number."""
+    format's number; parameters: how many its waves have, of which a Problem may make more."""
     counts = {}
     for item in fields(Counts):
         numbers = tuple(int(word) for word in values[item.name].split())
@@ -175,8 +178,10 @@ def _proof(values, problem, trees, sha256, form):
         tree.complete(text)
         x0, x1 = named["xstar"].split()
         mine, hints = _divided(hints, text)
-        (v0, s0), (v1, s1) = (_moving(named, name, len(problem.parts), form) for name in NAMES[3:])
+        (v0, s0), (v1, s1) = (_moving(named, name, parameters, form) for name in NAMES[3:])
         parts.append(Part((_number(x0), _number(x1)), v0, v1, text, mine, tuple(zip(s0, s1))))
+        if parts[-1].shifts and "S" in text:
+            raise ValueError("a prism of a part is skipped (S), though the part's region moves")
     tree.check_letters([text for _, text in trees])
     if parts and (settings.method != "loewner" or problem.factor is not None):
         raise ValueError("parts, which go with the sharper method and no coordinate that is alone")
@@ -256,8 +261,8 @@ def _moving(values, name, parameters, form):
     if form < WITH_SHIFTS or len(words) == 2:
         return _ends(values, name), [Fraction(0)] * parameters
     if len(words) != 2 + parameters:
-        raise ValueError("%s of a part has %d numbers, not 2 or %d"
-                         % (name, len(words), 2 + parameters))
+        raise ValueError("%s of a part has %d numbers, not %s" % (
+            name, len(words), "2 or %d" % (2 + parameters) if parameters else 2))
     return (_ends({name: " ".join(words[:2])}, name),
             [exact(_number(word)) for word in words[2:]])
 
