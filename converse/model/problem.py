@@ -381,17 +381,19 @@ def _checked(waves, amplitude, parts):
 def exact_shifts(shifts: Sequence[Sequence[Number]]) -> Shifts:
     """Exact pairs, () if all of them are 0.  TypeError, ValueError: they are no shifts."""
     try:
-        pairs = [tuple(pair) for pair in shifts]
+        given = [tuple(pair) for pair in shifts]
     except TypeError:
         raise TypeError("shifts are pairs of numbers") from None
-    for m, pair in enumerate(pairs):
+    pairs = []
+    for pair in given:
         if len(pair) != 2:
             raise ValueError("the shifts by a parameter are of v0 and v1, not %d numbers"
                              % len(pair))
-        pairs[m] = tuple(_exact_of("a shift", x) for x in pair)
-        for x in pairs[m]:
+        s0, s1 = (_exact_of("a shift", x) for x in pair)
+        for x in s0, s1:
             if not is_decimal(x):
                 raise ValueError("a shift: %s is no finite decimal" % x)
+        pairs.append((s0, s1))
     return tuple(pairs) if any(map(any, pairs)) else ()
 
 
