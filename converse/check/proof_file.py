@@ -114,9 +114,8 @@ def pair(value, name, form=NUMBER, count=0):
 def place(xstar, v0, v1, name, count=0):
     """x*, centres and half-widths of v0 and v1, and their shifts by so many parameters, if any."""
     ranges = [pair(v0, name + "v0", count=count), pair(v1, name + "v1", count=count)]
-    for angle, (_, half, *_) in zip(ANGLES, ranges):
-        if half < 0:
-            raise Rejected("%s%s: the half-width is negative" % (name, angle))
+    if wrong := [angle for angle, (_, half, *_) in zip(ANGLES, ranges) if half < 0]:
+        raise Rejected("%s%s: the half-width is negative" % (name, wrong[0]))
     centre, half, *shifts = zip(*[(x + (Fraction(0),) * count)[:2 + count] for x in ranges])
     return pair(xstar, name + "xstar"), centre, half, tuple(shifts) * any(map(any, shifts))
 
