@@ -353,6 +353,26 @@ def test_cells_are_wider_by_what_radians_are_off():
         assert off <= Fraction(out[2 + axis]) <= off * (1 + 16 * UNIT) + TINY
 
 
+@pytest.mark.parametrize("frame", [*FRAMES, (1, 50, 0, 1), (3, 0, -40, 1), (0, 1, -1, 100)])
+def test_cells_are_wider_by_what_frames_lose(frame):
+    """8 u of |frame| (|centre| + half + |shifts|) in x_1 is |frame^-1| times as much in v."""
+    rng, (f00, f01, f10, f11) = rng_for("waves lost %s" % (frame,)), frame
+    for _ in range(10):
+        patch, widths = draw(rng, shifts=True), []
+        for patch.frame in (1, 0, 0, 1), frame:
+            out = kernels.call("waves_cell", [*arguments(patch), *[0] * 5, *[0] * 5], 16, 1080)
+            widths.append([*map(Fraction, out[2:4])])
+        sizes = [abs(c) + h + sum(map(abs, row))
+                 for c, h, row in zip(patch.centre, patch.half, patch.shifts)]
+        off = [8 * UNIT * (abs(a) * sizes[0] + abs(b) * sizes[1])
+               for a, b in ((f00, f01), (f10, f11))] if frame != (1, 0, 0, 1) else [0, 0]
+        det = abs(f00 * f11 - f01 * f10)
+        expected = [(abs(f11) * off[0] + abs(f01) * off[1]) / det,
+                    (abs(f10) * off[0] + abs(f00) * off[1]) / det]
+        for narrow, wide, more in zip(*widths, expected):
+            assert abs(wide - narrow - more) <= UNIT * (4 * wide + 16 * more)
+
+
 def test_a_parameter_that_only_moves_the_region_counts():
     """It has a symbol, and may be cut where that helps."""
     def cell(shift, cuts):
