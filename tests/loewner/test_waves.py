@@ -556,7 +556,8 @@ def test_what_minimizes_is_met_where_the_region_has_it(sign):
 def test_mirror_images_of_regions_that_move():
     """None is skipped, as x_1 and its image need not have the same parameters."""
     ends = dict.fromkeys(("v0", "v1"), (Fraction("0.4"), Fraction("1.6")))
-    for shifts, skips in ((), True), ([(0, 0)], True), ([("0.001", "0.001")], False):
+    for shifts, skips in ((), True), ([(0, 0)], True), ([("0.001", "0.001")], False), (
+            [(0, "-0.001")], False):
         shifts = [tuple(map(Fraction, pair)) for pair in shifts]
         patch = patch_of(THESIS, LINE, [("0.0001", "0.0001", "0.0002")], shifts=shifts, **ends)
         s, tree = searched(patch, ("0.858", "0.858"))
@@ -566,7 +567,7 @@ def test_mirror_images_of_regions_that_move():
 
 def test_the_thesis_knows_of_no_shifts():
     parts = [("0.001", 0, 0), (0, "0.001", 0), (0, 0, "0.001")]
-    for shift, status in ("0", lib.CV_OK), ("1e-9", lib.CV_EARGUMENT):
+    for shift, status in ("0", lib.CV_OK), *((x, lib.CV_EARGUMENT) for x in ("1e-9", "-1e-9")):
         patch = patch_of(THESIS, LINE, parts, shifts=[(0, 0), (0, Fraction(shift)), (0, 0)])
         owners, handle = [], ffi.new("cv_search **")
         assert lib.cv_search_new(handle, native_problem(patch, owners), ffi.NULL, lib.CV_THESIS,
