@@ -116,9 +116,3 @@ def test_a_range_is_linked_to_regions_that_move():
     proof = prove(line("0.01395", "0.028", axes=None), method="loewner")
     assert proof.no_tori and all(part.shifts for part in proof.parts)
     assert proof.counts.proved < 80000
-
-
-@pytest.mark.slow
-def test_a_single_value_has_nothing_to_move_with():
-    proof = prove(line("0.01395", axes=None), method="loewner")
-    assert proof.no_tori and proof.parts and not any(part.shifts for part in proof.parts)

@@ -429,9 +429,11 @@ def test_one_angle_is_linked():
 @pytest.mark.slow
 @pytest.mark.parametrize("epsilon, parts", [("0.01395", 1), ("0.0139", 2)][:1 + (TORTURE > 1)])
 def test_near_where_links_end(epsilon, parts):
-    """The classes of rotation vectors that one x* leaves, each from its own."""
+    """The classes of rotation vectors that one x* leaves, each from its own.  A single value has
+    nothing to move with."""
     proof = prove(line(epsilon), method="loewner")
     assert proof.no_tori and len(proof.parts) == parts and proof.counts.proved < 100000
+    assert not any(part.shifts for part in proof.parts)
 
 
 # ---- the prisms of the core
