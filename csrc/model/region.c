@@ -1,53 +1,54 @@
 /* region.c - the region of successors in radians. */
 #include "model/patch.h"
 
+/* x pi, cut off after dp places as pi is.  off: a bound of what that is off. */
+static void times_pi(apm_t x, apm_t off, const apm_t pi, const apm_t ulp, long dp)
+{
+    apm_t exact;
+
+    apm_init(exact);
+    apm_abs(off, x);
+    apm_mul(off, off, ulp);                             /* pi < pi cut off + ulp */
+    apm_mul(exact, x, pi);
+    apm_round(x, exact, dp, APM_TRUNC);
+    if (apm_cmp(x, exact) != 0)
+        apm_add(off, off, ulp);
+    apm_clear(exact);
+}
+
 /* An enclosure of the region meant, with pi cut off.  The search takes a pi that is cut off well
    before the errors of sines begin.  So the centres of prisms lie a little below the multiples of
    pi they stand for, by more than the errors of their sines, and what depends on the sign of such
    a sine (the column rotor) is no accident.  The pi of 1989 was short, too. */
 void to_radians(apm_t centre, apm_t half, const apm_t pi, long dp)
 {
-    apm_t ulp, off, exact;
+    apm_t ulp, off, above;
 
     apm_init(ulp);
     apm_init(off);
-    apm_init(exact);
-    apm_set_si(ulp, 1, -dp);                            /* pi < pi cut off + ulp */
-    apm_abs(off, centre);
-    apm_mul(off, off, ulp);                             /* how far |centre pi| may be off */
-    apm_mul(exact, centre, pi);
-    apm_round(centre, exact, dp, APM_TRUNC);
-    if (apm_cmp(centre, exact) != 0)
-        apm_add(off, off, ulp);
-    apm_add(exact, pi, ulp);
-    apm_mul(half, half, exact);
+    apm_init(above);
+    apm_set_si(ulp, 1, -dp);
+    times_pi(centre, off, pi, ulp, dp);
+    apm_add(above, pi, ulp);
+    apm_mul(half, half, above);
     apm_add(half, half, off);
     apm_round(half, half, dp, APM_UP);
     apm_clear(ulp);
     apm_clear(off);
-    apm_clear(exact);
+    apm_clear(above);
 }
 
 void shift_to_radians(apm_t shift, apm_t half, const apm_t pi, long dp)
 {
-    apm_t ulp, off, exact;
+    apm_t ulp, off;
 
-    if (apm_sgn(shift) == 0)
-        return;
     apm_init(ulp);
     apm_init(off);
-    apm_init(exact);
-    apm_set_si(ulp, 1, -dp);                            /* pi < pi cut off + ulp */
-    apm_abs(off, shift);
-    apm_mul(off, off, ulp);                             /* how far |shift pi| may be off */
-    apm_mul(exact, shift, pi);
-    apm_round(shift, exact, dp, APM_TRUNC);
-    if (apm_cmp(shift, exact) != 0)
-        apm_add(off, off, ulp);
+    apm_set_si(ulp, 1, -dp);
+    times_pi(shift, off, pi, ulp, dp);
     apm_add(half, half, off);
     apm_clear(ulp);
     apm_clear(off);
-    apm_clear(exact);
 }
 
 /* Where c, s and h are centre, shifts and half-width, c + sum of s t + h u is off by what c and s
