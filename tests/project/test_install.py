@@ -30,6 +30,15 @@ def test_the_core_is_this_environments_own(root):
         assert home.is_relative_to(Path(sys.prefix).resolve())
 
 
+def test_python_started_beside_the_clone(tmp_path):
+    """There `converse` is also a folder without __init__.py; the package must be found, not that."""
+    (tmp_path / "converse" / "converse").mkdir(parents=True)
+    environment = {name: value for name, value in os.environ.items() if name != "PYTHONSAFEPATH"}
+    done = subprocess.run([sys.executable, "-c", "import converse; print(converse.prove.__name__)"],
+                          cwd=tmp_path, capture_output=True, text=True, env=environment)
+    assert (done.returncode, done.stdout, done.stderr) == (0, "prove\n", "")
+
+
 def test_make_checker_needs_nothing_but_python(root, tmp_path):
     """From the sources of the checker alone; what it makes runs with no package within reach."""
     (tmp_path / "converse").mkdir()
@@ -95,12 +104,8 @@ def test_python_started_among_sources_without_core(root, tmp_path, sources, aske
                     ignore=shutil.ignore_patterns("_native.*", "__pycache__"))
     if sources:
         (tmp_path / "setup.py").touch()
-    code = (            # without the finder of an editable installation, which finds its core
-        "import sys\n"
-        "sys.meta_path[:] = [each for each in sys.meta_path if 'editable' not in "
-        "repr(each)]\n"
-        "import converse\nfrom converse import orbits\ntry: %s\nexcept converse.ConverseError as "
-        "error: print(error)" % asked)
+    code = ("import converse\nfrom converse import orbits\n"
+            "try: %s\nexcept converse.ConverseError as error: print(error)" % asked)
     environment = {name: value for name, value in os.environ.items() if name != "PYTHONSAFEPATH"}
     done = subprocess.run([sys.executable, "-c", code], cwd=tmp_path, capture_output=True,
                           text=True,
