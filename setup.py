@@ -1,16 +1,14 @@
-"""Builds the C core, the manual pages and completions, and the README of an index; everything else
-about the package is in pyproject.toml."""
+"""Builds the C core, and the README of an index; everything else about the package is in
+pyproject.toml."""
 
 import os
 import re
-import subprocess
 import sys
 import sysconfig
 import tempfile
 
 from setuptools import setup
 from setuptools.command.build_ext import build_ext
-from setuptools.command.install import install
 
 NEEDS = """
 converse cannot be built: {what}.
@@ -52,27 +50,6 @@ class BuildExt(build_ext):
         super().build_extensions()
 
 
-class Install(install):
-    """Adds the manual pages and completions to the data: they are made with the built package."""
-
-    def run(self):
-        share = os.path.join(self.get_finalized_command("build").build_base, "share")
-        paths = [os.path.abspath(self.build_lib), os.getcwd(), os.environ.get("PYTHONPATH", "")]
-        made = subprocess.run([sys.executable, os.path.join("docs", "manual.py"), share],
-                              env={**os.environ,
-                                   "PYTHONPATH": os.pathsep.join(filter(None, paths))},
-                              capture_output=True, text=True)
-        if made.returncode == 0:
-            self.distribution.data_files = [
-                (os.path.relpath(directory, os.path.dirname(share)),
-                 sorted(os.path.join(directory, name) for name in names))
-                for directory, _, names in sorted(os.walk(share)) if names]
-        else:
-            print("converse is installed without manual pages and completions:",
-                  *made.stderr.splitlines()[-1:])
-        super().run()
-
-
 def on_an_index(text):
     """The README where none of its files are: pictures and links become their names."""
     text = re.sub(r"!\[(.*?)\]\((.*?)\)", r"*Figure \2: \1.*", text)
@@ -89,6 +66,6 @@ core = [] if os.environ.get("CONVERSE_WITHOUT_CORE") else ["converse/_build.py:f
 # The core keeps to Python's stable ABI, which free-threaded Pythons do not have yet.
 stable = {} if sysconfig.get_config_var("Py_GIL_DISABLED") else {"py_limited_api": "cp39"}
 
-setup(cffi_modules=core, cmdclass={"build_ext": BuildExt, "install": Install},
+setup(cffi_modules=core, cmdclass={"build_ext": BuildExt},
       long_description=description, long_description_content_type="text/markdown",
       options={"bdist_wheel": stable})

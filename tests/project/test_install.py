@@ -12,6 +12,7 @@ from importlib import metadata
 from pathlib import Path
 
 import pytest
+from conftest import ROOT
 
 from converse import _native, prove, read_input
 
@@ -30,13 +31,28 @@ def test_the_core_is_this_environments_own(root):
         assert home.is_relative_to(Path(sys.prefix).resolve())
 
 
+def without_safe_path():
+    """The environment of a Python that sees its own folder first, as usual."""
+    return {name: value for name, value in os.environ.items() if name != "PYTHONSAFEPATH"}
+
+
 def test_python_started_beside_the_clone(tmp_path):
-    """There `converse` is also a folder without __init__.py; the package must be found, not that."""
+    """There `converse` is also a folder without __init__.py, which must not hide the package."""
     (tmp_path / "converse" / "converse").mkdir(parents=True)
-    environment = {name: value for name, value in os.environ.items() if name != "PYTHONSAFEPATH"}
     done = subprocess.run([sys.executable, "-c", "import converse; print(converse.prove.__name__)"],
-                          cwd=tmp_path, capture_output=True, text=True, env=environment)
+                          cwd=tmp_path, capture_output=True, text=True, env=without_safe_path())
     assert (done.returncode, done.stdout, done.stderr) == (0, "prove\n", "")
+
+
+@pytest.mark.skipif(not (ROOT / ".git").exists() or not shutil.which("git"), reason="not a clone")
+def test_the_source_distribution_is_complete():
+    """MANIFEST.in names every file and folder of the clone that setuptools does not add itself."""
+    tracked = subprocess.run(["git", "-c", "safe.directory=*", "ls-files"], cwd=ROOT, check=True,
+                             capture_output=True, text=True).stdout.split()
+    assert {path.partition("/")[0] for path in tracked} \
+        - {*(ROOT / "MANIFEST.in").read_text("utf-8").split()} \
+        == {".gitignore", "LICENSE", "MANIFEST.in", "README.md", "converse", "pyproject.toml",
+            "setup.py"}
 
 
 def test_make_checker_needs_nothing_but_python(root, tmp_path):
@@ -106,10 +122,8 @@ def test_python_started_among_sources_without_core(root, tmp_path, sources, aske
         (tmp_path / "setup.py").touch()
     code = ("import converse\nfrom converse import orbits\n"
             "try: %s\nexcept converse.ConverseError as error: print(error)" % asked)
-    environment = {name: value for name, value in os.environ.items() if name != "PYTHONSAFEPATH"}
     done = subprocess.run([sys.executable, "-c", code], cwd=tmp_path, capture_output=True,
-                          text=True,
-                          env=environment)
+                          text=True, env=without_safe_path())
     assert (done.returncode, done.stderr, done.stdout.count("\n")) == (0, "", 1)
     assert ("start Python elsewhere" in done.stdout and str(tmp_path) in done.stdout) == sources
     assert ("pip install" in done.stdout) != sources
