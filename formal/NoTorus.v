@@ -37,4 +37,3 @@ Qed.
 
 Set Printing Width 100.
 Check no_torus.
-Print Assumptions no_torus.

@@ -1,35 +1,70 @@
-"""Sees that theorems assume the axioms that they may, and no others:
-python assumed.py NUMBERS OUTPUT, where OUTPUT has what Print Assumptions says."""
+"""Asks Coq what a theorem proves and assumes, and refuses all axioms that axioms.txt does not list:
+python assumed.py NUMBERS [PROPOSITION] THEOREM, with full names, where Coq's folder Converse is."""
 
 import re
+import subprocess
 import sys
+import tempfile
 from pathlib import Path
 
-REALS = {"ClassicalDedekindReals.sig_forall_dec", "ClassicalDedekindReals.sig_not_dec",
-         "FunctionalExtensionality.functional_extensionality_dep", "Classical_Prop.classic"}
-# What the primitive types of Coq's kernel are and compute, by the library's files.
-WORDS = {"PrimInt63", "Uint63"}
-FLOATS = {"PrimFloat", "FloatAxioms"}
-PRIMITIVE = {"Integers": set(), "BigIntegers": WORDS, "Doubles": WORDS | FLOATS}
+# Full names, and no import: so no file of the theorem can give these words another meaning.
+QUESTION = """\
+Require %s.
+Set Printing Width 100.
+Check %s.
+Print Libraries.
+Print Assumptions %s.
+"""
+
+
+def statements(text):
+    """Each name with its type, without the breaks of lines."""
+    return [" ".join(lines.split()) for lines in re.split(r"\n(?=\S)", text)]
+
+
+def listed():
+    """The list of each kind of numbers, in the order of the file."""
+    text = Path(__file__).with_name("axioms.txt").read_text("ascii")
+    return {kind: statements(axioms.strip())
+            for kind, axioms in re.findall(r"(?m)^(\w+):\n((?:.+\n)+)", text)}
 
 
 def others(numbers, said):
-    """What the theorem assumes, beside what it may with these numbers."""
-    head, axioms, rest = said.partition("\nAxioms:\n")
-    if not axioms:
+    """What Coq's answer has that it may not have with these numbers."""
+    answer = re.search(r"Loaded library files: *\n((?:  \S+\n)+)\nAxioms:\n(.+)", said, re.S)
+    if not answer:
         return ["no list of axioms"]
-    # A name a line, perhaps with its type; what is indented goes on with it.  Then the time.
-    lines = [line for line in rest.split("\n") if re.match(r"\S(?!.*\.v: [0-9.]+ s, )", line)]
-    named = [re.fullmatch(r"((\w+)\.\w+)(?: : .*)?", line) for line in lines]
-    return [line for line, name in zip(lines, named) if not name
-            or name[1] not in REALS and name[2] not in PRIMITIVE[numbers]]
+    lists = listed()
+    kinds = list(lists)
+    may = sum([lists[kind] for kind in kinds[:kinds.index(numbers) + 1]], [])
+    # Coq prints only as much of a name as tells it from others.  So a file in Coq's folder Converse
+    # could have the name of a library that is not loaded, and its axioms, too.
+    names = set(re.findall(r"(\w+)(?=\.\w)", " ".join(sum(lists.values(), []))))
+    namesakes = ["a library of the name " + library for library in answer[1].split()
+                 if library.startswith("Converse.") and library.rpartition(".")[2] in names]
+    return namesakes + [axiom for axiom in statements(answer[2].strip()) if axiom not in may]
+
+
+def ask(*names):
+    """What Coq says of a proposition and the theorem that proves it, or of a theorem alone."""
+    libraries = " ".join([name.rpartition(".")[0] for name in names])
+    theorem = names[-1]
+    with tempfile.NamedTemporaryFile("w", suffix=".v") as file:
+        file.write(QUESTION % (libraries, "(%s)" % " : ".join(reversed(names)), theorem))
+        file.flush()
+        done = subprocess.run(["coqtop", "-q", "-Q", ".", "Converse", "-batch", "-l", file.name],
+                              text=True, stdout=subprocess.PIPE, check=False)
+    if done.returncode:
+        sys.exit("%s: Coq does not accept it as the theorem that it should be" % theorem)
+    return done.stdout
 
 
 def main():
-    numbers, path = sys.argv[1:]
-    found = others(numbers, Path(path).read_text("utf-8"))
-    if found:
-        sys.exit("%s: this may not be assumed with %s: %s" % (path, numbers, "; ".join(found)))
+    numbers, *names = sys.argv[1:]
+    said = ask(*names)
+    print(re.sub(r"(?s)Loaded library files:.*?\n\n", "", said), end="")
+    if found := others(numbers, said):
+        sys.exit("%s: this may not be assumed with %s: %s" % (names[-1], numbers, "; ".join(found)))
 
 
 if __name__ == "__main__":

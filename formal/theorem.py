@@ -260,7 +260,6 @@ Add Printing Constructor term region.
 Set Printing Width 100.
 Check {0}.
 Print {0}_says.
-Print Assumptions {0}.
 """.format(name, arithmetic, " ".join(parts), count,
            "".join("Forall_cons _ %s.leaves (" % part for part in parts) + "Forall_nil _"
            + ")" * count)

@@ -169,9 +169,9 @@ def test_no_torus(proof, folder):
         (folder / (file + ".v")).write_text(wanted)
         accepted, said = compiled(folder, file + ".v")
         assert accepted == (file == "NoTorus"), said
-        if accepted:
-            others = assumed().others("Integers", said)
-            assert others == ["trig180.trig180 : trig180_says.trig180_says"]
+    status, said, err = gate(folder, "Integers", "Converse.NoTorus.no_torus")
+    assert status == 1 and said.startswith("NoTorus.no_torus")
+    assert err.endswith(" with Integers: trig180.trig180 : trig180_says.trig180_says\n")
 
 
 @needs_coq
@@ -180,9 +180,52 @@ def test_what_links_two_points_of_a_graph(folder):
     (folder / "build" / "link.v").write_text(
         "From Converse Require Import Map Link.\n"
         "Check (link : forall ws c S S', periodic S -> has_gradient S S' ->\n"
-        "       invariant_graph ws c S' -> _).\nPrint Assumptions link.\n")
+        "       invariant_graph ws c S' -> _).\n")
     accepted, said = compiled(folder, "build/link.v")
-    assert accepted and not assumed().others("Integers", said), said
+    assert accepted, said
+    status, said, err = gate(folder, "Integers", "Converse.Link.link")
+    assert (status, err) == (0, "") and "\nAxioms:\n" in said
+    status, said, err = gate(folder, "Integers", "Converse.Map.in_cube", "Converse.Link.link")
+    assert (status, said) == (1, "")
+    assert err.endswith(": Coq does not accept it as the theorem that it should be\n")
+
+
+def gate(folder, *arguments):
+    """Asks Coq as `make formal` does: the exit status, the answer, and why it was refused."""
+    done = subprocess.run([sys.executable, FORMAL / "assumed.py", *arguments], cwd=folder,
+                          text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+    return done.returncode, done.stdout, done.stderr
+
+
+# The files that an attacker adds, how they prove anything, and which of their axioms is found.  In
+# the second attack the axiom is printed as the library's, but of other integers it is false.
+ATTACKS = [
+    ({"Uint63": "Axiom any_proposition : forall P : Prop, P."}, "Uint63.any_proposition _",
+     ["Uint63.any_proposition : forall P : Prop, P"]),
+    ({"PrimInt63": "Definition int := bool.\nDefinition eqb (i j : int) := true.",
+      "Uint63": "From Converse.build Require Import PrimInt63.\n"
+                "Axiom eqb_correct : forall i j : int, eqb i j = true -> i = j."},
+     "False_ind _ (Bool.diff_true_false (Uint63.eqb_correct true false eq_refl))", [])]
+
+
+@needs_coq
+@pytest.mark.parametrize("files, proof, found", ATTACKS)
+def test_a_file_that_has_the_name_of_one_of_coq(folder, files, proof, found):
+    """Its axioms are none of Coq's, whatever they are called."""
+    files = {**files, "x_says": "From Converse Require Import Map.\n"
+                                "Definition x_says : Prop := no_invariant_graph nil.",
+             "x": "From Coq Require Bool.\nFrom Converse.build Require x_says %s.\n"
+                  "Theorem x : x_says.x_says.\nProof. exact (%s). Qed." % (" ".join(files), proof)}
+    for name, text in files.items():
+        (folder / "build" / (name + ".v")).write_text(text)
+        assert compiled(folder, "build/%s.v" % name) == (True, "")
+    status, said, err = gate(folder, "BigIntegers", "Converse.build.x_says.x_says",
+                             "Converse.build.x.x")
+    found = ["a library of the name Converse.build." + name for name in files
+             if not name.startswith("x")] + found
+    assert status == 1 and said.startswith("x.x : x_says.x_says\n")
+    assert err == "Converse.build.x.x: this may not be assumed with BigIntegers: %s\n" % (
+        "; ".join(found))
 
 
 def assumed():
@@ -193,7 +236,16 @@ def assumed():
         sys.path.pop(0)
 
 
-REALS = """
+ANSWER = """\
+x.x : x_says.x_says
+     : x_says.x_says
+Loaded library files:\x20
+  Coq.Init.Prelude
+  Coq.Numbers.Cyclic.Int63.Uint63
+  Flocq.IEEE754.PrimFloat
+  Converse.Map
+  Converse.build.x
+
 Axioms:
 ClassicalDedekindReals.sig_not_dec : forall P : Prop, {~ ~ P} + {~ P}
 ClassicalDedekindReals.sig_forall_dec
@@ -203,19 +255,34 @@ FunctionalExtensionality.functional_extensionality_dep
   : forall (A : Type) (B : A -> Type) (f g : forall x : A, B x), (forall x : A, f x = g x) -> f = g
 Classical_Prop.classic : forall P : Prop, P \\/ ~ P
 """
+REFLEXIVE = "Uint63.eqb_refl : forall x : PrimInt63.int, PrimInt63.eqb x x = %s\n"
+ROOT_OF = "PrimFloat.sqrt\n  : PrimFloat.float ->\n    PrimFloat.float\n"
 
 
 @pytest.mark.parametrize("numbers, more, found", [
-    ("Integers", "", 0), ("Integers", "build/x.v: 3.1 s, 900 MB\n", 0),
-    ("Integers", "PrimInt63.int : Set\n", 1), ("BigIntegers", "PrimInt63.int : Set\n", 0),
-    ("BigIntegers", "FloatAxioms.mul_spec\n  : forall x y : PrimFloat.float, x = y\n", 1),
-    ("Doubles", "FloatAxioms.mul_spec\n  : forall x y : PrimFloat.float, x = y\n", 0),
+    ("Integers", "", 0), ("Integers", "PrimInt63.int : Set\n", 1),
+    ("BigIntegers", "PrimInt63.int : Set\n", 0), ("BigIntegers", REFLEXIVE % "true", 0),
+    ("BigIntegers", REFLEXIVE % "false", 1), ("BigIntegers", "Uint63.any : False\n", 1),
+    ("BigIntegers", ROOT_OF, 1), ("Doubles", ROOT_OF + REFLEXIVE % "true", 0),
+    ("Doubles", "FloatAxioms.mul_spec\n  : forall x y : PrimFloat.float, x = y\n", 1),
     ("Doubles", "trig278_0.leaves\n  : forallb f l = true\n", 1),
     ("Doubles", "leaves : forallb f l = true\n", 1), ("Doubles", "Reals.classic : False\n", 1),
     ("Doubles", "x relies on an unsafe hierarchy.\n", 1)])
 def test_what_may_be_assumed(numbers, more, found):
-    assert len(assumed().others(numbers, "x\n     : x_says\n" + REALS + more)) == found
+    assert len(assumed().others(numbers, ANSWER + more)) == found
 
 
-def test_no_list_of_axioms_is_no_good_news():
-    assert assumed().others("Doubles", "x\n     : x_says\n") == ["no list of axioms"]
+@pytest.mark.parametrize("library", ["Uint63", "BinInt", "Z", "x.SpecFloat"])
+def test_libraries_that_are_called_the_same(library):
+    """Coq leaves out the names of their folders."""
+    library = "Converse.build." + library
+    said = ANSWER.replace("Converse.build.x\n", library + "\n")
+    assert assumed().others("Doubles", said) == ["a library of the name " + library]
+
+
+@pytest.mark.parametrize("change", [
+    ("Axioms:", "Closed under the global context"), ("  Coq.Init.Prelude\n", "  And more:\n"),
+    ("\nAxioms:", "\nTheory: Type hierarchy is collapsed (logic is inconsistent)\nAxioms:")])
+def test_no_list_of_axioms_is_no_good_news(change):
+    assert assumed().others("Doubles", ANSWER) == []
+    assert assumed().others("Doubles", ANSWER.replace(*change)) == ["no list of axioms"]
