@@ -58,7 +58,13 @@ static int loewner_prepare(void **work, const patch *p, const precision *how,
     return CV_OK;
 }
 
-static void free_loewner(void *work) { loewner_free(work); }
+/* The work holds doubles and no number of GMP's. */
+static void free_loewner(void *work, int numbers_lost)
+{
+    (void)numbers_lost;
+    loewner_free(work);
+}
+
 static int loewner_axes(const patch *p) { return 2 + p->n_parameters; }
 static int lanes_of(const void *work) { return loewner_lanes(work); }
 

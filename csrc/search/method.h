@@ -45,7 +45,9 @@ typedef struct {
        has, and at_once (cv_at_once).  CV_OK or an error. */
     int (*prepare)(void **work, const patch *p, const precision *how, apm_t constants[N_CONSTANTS],
                    int *at_once);
-    void (*free)(void *work);           /* or NULL */
+    /* Frees work, which may be NULL.  If numbers_lost, GMP's numbers in it may be broken (guard.c):
+       these are abandoned, and all other memory is freed. */
+    void (*free)(void *work, int numbers_lost);
 
     int (*axes)(const patch *p);        /* of a cell, that may be cut */
     int (*lanes)(const void *work); /* cells that are best tried at once, at most MOST_LANES */

@@ -36,6 +36,7 @@ struct cv_search {
     apm_t constants[N_CONSTANTS];
     int depth, stubborn, symmetric, at_once;
     int prepared, spoilt, last_steps, status;        /* spoilt: setting up was broken off */
+    int numbers_lost;                   /* memory ran out inside GMP: its numbers are not usable */
 };
 
 static inline int all_cuts(const cv_cell *c)

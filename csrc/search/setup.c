@@ -12,13 +12,13 @@ enum { MAX_DP = 100000, MAX_DEPTH = 100000 };
 enum { PI_SHORT = 5 };                  /* see region.c */
 enum { LEAST_DP = 35 };                 /* of the region, for a method that works in doubles */
 
-/* After CV_ENOMEM the numbers are abandoned, not freed: see guard.c. */
+/* GMP's numbers are abandoned, not freed, if memory ran out inside GMP: see guard.c. */
 void cv_search_free(cv_search *s)
 {
     if (s == NULL)
         return;
-    if (s->status != CV_ENOMEM) {
-        s->method->free(s->work);
+    s->method->free(s->work, s->numbers_lost);
+    if (!s->numbers_lost) {
         patch_clear(&s->problem);
         for (int j = 0; j < N_CONSTANTS; j++)
             apm_clear(s->constants[j]);
@@ -121,7 +121,9 @@ int cv_prepare(cv_search *s, const cv_stop *stop)
     case GUARD_STOP:
         s->status = CV_EARGUMENT;       /* half prepared, it is good for nothing */
         return CV_RUNNING;
-    case GUARD_MEMORY: s->status = CV_ENOMEM;
+    case GUARD_MEMORY:
+        s->numbers_lost = 1;
+        s->status = CV_ENOMEM;
     }
     if (s->status == CV_OK && !machine_is_sound())
         s->status = CV_EMACHINE;
@@ -156,13 +158,13 @@ int cv_search_new(cv_search **result, const cv_problem *problem, const char *con
     s->depth = depth;
     s->stubborn = stubborn;
     g.s = s;
-    status = guard_run(set_up_problem, &g, NULL) == GUARD_MEMORY ? CV_ENOMEM : g.status;
+    s->numbers_lost = guard_run(set_up_problem, &g, NULL) == GUARD_MEMORY;
+    status = s->numbers_lost ? CV_ENOMEM : g.status;
     if (status == CV_OK)
         status = cv_resume(s, "", 0);   /* the whole root is to be tried */
     if (status == CV_OK) {
         *result = s;
     } else {
-        s->status = status;
         cv_search_free(s);
     }
     return status;

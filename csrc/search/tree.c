@@ -236,8 +236,10 @@ int cv_step(cv_search *s, long max_leaves, double max_seconds, const cv_stop *st
     ended = guard_run(take_step, &how, stop);
     if (ended != GUARD_DONE)            /* the node at hand is forgotten, the rest stands */
         s->counts = s->before;
-    if (ended == GUARD_MEMORY)
+    if (ended == GUARD_MEMORY) {
+        s->numbers_lost = 1;
         s->status = CV_ENOMEM;
+    }
     if (s->status >= CV_OK && !machine_is_sound())
         s->status = CV_EMACHINE;        /* who knows since when: see converse.h */
     return s->status;
@@ -245,7 +247,7 @@ int cv_step(cv_search *s, long max_leaves, double max_seconds, const cv_stop *st
 
 int cv_restart(cv_search *s, int n, const cv_cell *cells)
 {
-    if (s->status == CV_ENOMEM)         /* its numbers are abandoned */
+    if (s->numbers_lost)
         return CV_ENOMEM;
     if (n < 0 || s->spoilt)
         return CV_EARGUMENT;
@@ -321,8 +323,7 @@ int cv_resume(cv_search *s, const char *tree, size_t length)
     free(untried);
     if (status != CV_OK)
         s->pending = 0;
-    if (s->status != CV_ENOMEM)
-        s->status = status != CV_OK ? status : s->pending > 0 ? CV_RUNNING : CV_OK;
+    s->status = status != CV_OK ? status : s->pending > 0 ? CV_RUNNING : CV_OK;
     return status;
 }
 

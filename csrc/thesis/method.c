@@ -35,11 +35,12 @@ static void for_box(box *b, void (*what)(apm_t))
     what(b->xstar[1]);
 }
 
-static void free_bench(void *work)
+/* The work is GMP's numbers, in all its parts. */
+static void free_bench(void *work, int numbers_lost)
 {
     bench *const w = work;
 
-    if (w == NULL)
+    if (w == NULL || numbers_lost)
         return;
     Runit_free(w->exact);
     unit_free(w->quick);

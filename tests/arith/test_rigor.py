@@ -165,7 +165,7 @@ void *realloc(void *p, size_t n) { return fails() ? NULL : __libc_realloc(p, n);
 """
 
 STARVED = r"""
-import ctypes, sys
+import ctypes, resource, sys
 from fractions import Fraction
 import converse
 from converse.prover.native import native_problem
@@ -220,6 +220,9 @@ for n in list(range(0, 2000, 41)) + list(range(2000, 200000, 4999)):
     assert counts.proved == part.count(b"P") and counts.symmetric == part.count(b"S")
     seen["step"] += bool(failed)
     lib.cv_search_free(handle[0])
+def pages():
+    return int(open("/proc/self/statm").read().split()[0])
+before = pages()
 for n in range(0, 700):                      # the sharper method: making it, then a step
     shim.fail_after(n)
     code = new(method=1, depth=60)
@@ -229,6 +232,8 @@ for n in range(0, 700):                      # the sharper method: making it, th
     assert code == (lib.CV_ENOMEM if failed else 0), (n, code, failed)
     seen["loewner"] += bool(failed)
     lib.cv_search_free(handle[0])
+# Each such search works in 70 MB or more, which are freed whatever failed.
+assert (pages() - before) * resource.getpagesize() < 50 << 20, (before, pages())
 print(seen)
 assert all(seen.values())
 """
