@@ -111,12 +111,13 @@ int cv_restart(cv_search *s, int n, const cv_cell *cells);
    tree. */
 int cv_resume(cv_search *s, const char *tree, size_t length);
 
-/* Decides at most max_leaves further prisms, or works for about max_seconds; stopped, it forgets
-   the prism at hand.  CV_RUNNING: there is more to do.  CV_OK: all prisms are decided, or an
-   undecided one ended a search that is not stubborn.  CV_ENOMEM: the tree so far is good.
-   CV_EMACHINE: the arithmetic breaks the rules, before the step or after it: nothing that the
-   search did since cv_restart may be used. */
-int cv_step(cv_search *s, long max_leaves, double max_seconds, const cv_stop *stop);
+/* Decides at most max_leaves further prisms, or follows orbits of about max_points in all, or works
+   for about max_seconds; stopped, it forgets the prism at hand.  CV_RUNNING: there is more to do.
+   CV_OK: all prisms are decided, or an undecided one ended a search that is not stubborn.
+   CV_ENOMEM: the tree so far is good.  CV_EMACHINE: the arithmetic breaks the rules, before the
+   step or after it: nothing that the search did since cv_restart may be used. */
+int cv_step(cv_search *s, long max_leaves, double max_points, double max_seconds,
+            const cv_stop *stop);
 
 /* The prisms yet to be decided, the next one first: how many, and, unless cells is NULL, which. */
 int cv_pending(const cv_search *s, cv_cell *cells);

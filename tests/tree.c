@@ -27,7 +27,7 @@ int main(int argc, char **argv)
     if (cv_search_new(&s, &problem, NULL, CV_LOEWNER, 35, 120, 0, 0) != CV_OK ||
         cv_prepare(s, NULL) != CV_OK)
         return 1;
-    while (cv_step(s, 1L << 40, 1e9, NULL) == CV_RUNNING)
+    while (cv_step(s, 1L << 40, 1e300, 1e9, NULL) == CV_RUNNING)
         continue;
     fprintf(stderr, "%d prisms at a time\n", loewner_lanes(s->sharp));
     const char *const tree = cv_tree(s, &length);

@@ -239,10 +239,11 @@ class Search:
                       in CONSTANTS[self.task.settings.method].items()},
                      bool(lib.cv_at_once(self.handle)), *self._state())
 
-    def grow(self, cells, seconds, max_leaves, stop, want_steps):
-        """Decides cells, and those they are cut into, for about so long or up to so many leaves."""
+    def grow(self, cells, seconds, max_leaves, stop, want_steps, max_points=math.inf):
+        """Decides cells, and those they are cut into, for about so long or up to so many leaves, or
+        points of orbits."""
         check(lib.cv_restart(self.handle, len(cells), cells))
-        check(lib.cv_step(self.handle, max_leaves, seconds, _handle(stop)))
+        check(lib.cv_step(self.handle, max_leaves, max_points, seconds, _handle(stop)))
         size = ffi.new("size_t *")
         text, size = lib.cv_tree(self.handle, size), size[0]
         return Grown(ffi.unpack(text, size).decode("ascii") if size else "",
@@ -321,11 +322,11 @@ def grow(task, cells, seconds, max_leaves, want_steps, stop=None):
         raise
 
 
-def survey(task, most, stop=None):
-    """What a tree becomes from its root on with so many leaves at most: Grown, or None if it was
-    stopped before that."""
+def survey(task, leaves, points, stop=None):
+    """Grows a tree from its root, to so many leaves at most and until its orbits had about so many
+    points: Grown, or None if it was stopped before that."""
     search = Search(task)
     if not search.prepare(stop):
         return None
-    grown = search.grow([(*tree.ROOT, 0)], math.inf, most, stop, True)
+    grown = search.grow([(*tree.ROOT, 0)], math.inf, leaves, stop, True, points)
     return None if grown.cells and stop is not None and stop.is_set() else grown

@@ -22,6 +22,10 @@ from .shifts import best_shifts
 from .workers import LOOK_SECONDS
 
 LOOK_DEPTH, LOOK_LEAVES = 24, 200000    # of the tree whose undecided prisms are clustered
+# Where there are tori, the orbits of the tree are long, and no other x* helps.  Of all maps in
+# docs/method.md the crossed one with s = 0.58 needs the most points: 17 million, and 0.9 million
+# in the trees of less than LOOK_DEPTH cuts.
+LOOK_POINTS, SHRINK_POINTS = 50_000_000, 5_000_000
 FEW_LEAVES = 50000                      # where regions move, and larger ones will do
 DEEPER = 4                              # cuts, as long as they halve what the clusters cover,
 SMALL = Fraction(1, 10000)              # and this is more, in units of pi squared
@@ -81,7 +85,8 @@ def _look(problem, depth, xstar, pool, seconds_left):
     best, covered, cuts = (None, []), inf, LOOK_DEPTH
     enough = FEW_LEAVES if _has_width(problem) else LOOK_LEAVES
     while cuts <= depth and (best[0] or _shrinks(problem, xstar, pool, seconds_left)):
-        grown = _surveys(pool, seconds_left, [_task(problem, xstar, cuts)], LOOK_LEAVES)
+        grown = _surveys(pool, seconds_left, [_task(problem, xstar, cuts)], LOOK_LEAVES,
+                         LOOK_POINTS)
         if not grown or grown[0].cells:
             break
         found = clusters(problem, grown[0].text)
@@ -100,7 +105,8 @@ def _shrinks(problem, xstar, pool, seconds_left):
     each has a successor of any x*, and cuts around these to LOOK_DEPTH may take minutes."""
     volume = inf
     for cuts in range(max(DEEPER, LOOK_DEPTH - 3 * DEEPER), LOOK_DEPTH, DEEPER):
-        grown = _surveys(pool, seconds_left, [_task(problem, xstar, cuts)], LOOK_LEAVES)
+        grown = _surveys(pool, seconds_left, [_task(problem, xstar, cuts)], LOOK_LEAVES,
+                         SHRINK_POINTS)
         if not grown or grown[0].cells:
             return False
         left = sum(0.5 ** sum(cell[1]) for kind, cell in tree.cells(grown[0].text) if kind == "U")
@@ -114,10 +120,10 @@ def _task(problem, xstar, depth):
     return native.Task(problem, Settings("loewner", depth, stubborn=True), xstar)
 
 
-def _surveys(pool, seconds_left, tasks, most):
-    """What was grown of each task, up to so many leaves; [] if time was up before."""
+def _surveys(pool, seconds_left, tasks, leaves, points=inf):
+    """What was grown of each task, up to so many leaves or points; [] if time was up before."""
     for key, task in enumerate(tasks):
-        pool.give(key, native.survey, task, most, here=True)
+        pool.give(key, native.survey, task, leaves, points, here=True)
     found = {}
     while len(found) < len(tasks):
         seconds = seconds_left()

@@ -33,10 +33,11 @@ struct cv_search {
     size_t length, capacity;
     cv_counts counts, before;           /* before: as it was when the node at hand was begun */
     cv_history history;
+    double points;                      /* of all orbits that were followed since cv_restart */
     apm_t constants[N_CONSTANTS];
     int depth, stubborn, symmetric, at_once;
     int prepared, spoilt, last_steps, status;        /* spoilt: setting up was broken off */
-    int numbers_lost;                   /* memory ran out inside GMP: its numbers are not usable */
+    int numbers_lost;                   /* memory ran out inside GMP: guard.c */
 };
 
 static inline int all_cuts(const cv_cell *c)

@@ -112,16 +112,19 @@ static void set_up_method(void *data)
 
 int cv_prepare(cv_search *s, const cv_stop *stop)
 {
+    int ended;
+
     if (s->prepared || s->spoilt || s->status != CV_RUNNING)
         return s->prepared ? CV_OK : s->status < CV_OK ? s->status : CV_EARGUMENT;
     if (!machine_is_sound())
         return CV_EMACHINE;
     s->spoilt = 1;                      /* until it is done */
-    switch (guard_run(set_up_method, s, stop)) {
-    case GUARD_STOP:
+    ended = guard_run(set_up_method, s, stop);
+    if (ended == GUARD_STOP) {
         s->status = CV_EARGUMENT;       /* half prepared, it is good for nothing */
         return CV_RUNNING;
-    case GUARD_MEMORY:
+    }
+    if (ended == GUARD_MEMORY) {
         s->numbers_lost = 1;
         s->status = CV_ENOMEM;
     }

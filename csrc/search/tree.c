@@ -132,6 +132,7 @@ static void conclude(cv_search *s, const outcome *out)
         counts->max_steps = out->steps;
     s->stack[s->pending - 1].hint = out->hint;
     s->last_steps = v->nsteps;
+    s->points += v->nsteps;
     if (!v->no_tori) {
         counts->reasons[v->reason]++;
         cut(s, out->axis);
@@ -203,8 +204,8 @@ static long decided_leaves(const cv_search *s)
 /* How much of a search to do. */
 typedef struct {
     cv_search *s;
-    long enough;
-    double end;
+    long enough;                        /* leaves */
+    double points, end;
     const cv_stop *stop;
 } step;
 
@@ -213,7 +214,8 @@ static void take_step(void *data)
     const step *const how = data;
     cv_search *const s = how->s;
 
-    while (s->status == CV_RUNNING && s->pending > 0 && decided_leaves(s) < how->enough) {
+    while (s->status == CV_RUNNING && s->pending > 0 && decided_leaves(s) < how->enough &&
+           s->points < how->points) {
         if (make_room(s) != CV_OK) {
             s->status = CV_ENOMEM;
             break;
@@ -225,9 +227,11 @@ static void take_step(void *data)
     }
 }
 
-int cv_step(cv_search *s, long max_leaves, double max_seconds, const cv_stop *stop)
+int cv_step(cv_search *s, long max_leaves, double max_points, double max_seconds,
+            const cv_stop *stop)
 {
-    step how = { s, decided_leaves(s) + max_leaves, now() + max_seconds, stop };
+    step how = { s, decided_leaves(s) + max_leaves, s->points + max_points, now() + max_seconds,
+                 stop };
     int ended = GUARD_DONE;
 
     if (s->status == CV_RUNNING && (!s->prepared || !machine_is_sound()))
@@ -265,6 +269,7 @@ int cv_restart(cv_search *s, int n, const cv_cell *cells)
     forget_all_notes(s);
     s->pending = n;
     s->length = 0;
+    s->points = 0;
     memset(&s->counts, 0, sizeof s->counts);
     memset(&s->history, 0, sizeof s->history);
     s->status = n > 0 ? CV_RUNNING : CV_OK;

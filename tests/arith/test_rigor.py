@@ -188,7 +188,7 @@ def new(dp=35, method=0, depth=30):
             handle[0] = ffi.NULL
     return code
 def step():
-    return lib.cv_step(handle[0], 10**6, 1e9, ffi.NULL)
+    return lib.cv_step(handle[0], 10**6, 1e300, 1e9, ffi.NULL)
 seen = {"new": 0, "step": 0, "loewner": 0}
 for n in list(range(0, 3000, 29)) + list(range(3000, 60000, 2999)):
     shim.fail_after(n)

@@ -872,7 +872,7 @@ def test_a_search_that_was_busy_takes_up_a_tree():
             search.grow([((5, 9, 1, 0, 0), (4, 4, 1, 0, 0), 0), (*ROOT, 0)], math.inf, busy, None,
                         False)
         search.begin("20")                  # there are three cells
-        assert lib.cv_step(search.handle, MANY, math.inf, ffi.NULL) == lib.CV_OK
+        assert lib.cv_step(search.handle, MANY, math.inf, math.inf, ffi.NULL) == lib.CV_OK
         size = ffi.new("size_t *")
         text = lib.cv_tree(search.handle, size)
         texts.append(ffi.unpack(text, size[0]))

@@ -483,7 +483,7 @@ def searched(patch, xstar=None, leaves=20000):
                              lib.CV_LOEWNER, 30, 150, 0, 0) == lib.CV_OK
     s = ffi.gc(handle[0], lib.cv_search_free)
     assert lib.cv_prepare(s, ffi.NULL) == lib.CV_OK
-    lib.cv_step(s, leaves, 1e9, ffi.NULL)
+    lib.cv_step(s, leaves, 1e300, 1e9, ffi.NULL)
     length = ffi.new("size_t *")
     text = lib.cv_tree(s, length)
     assert lib.cv_pending(s, ffi.NULL) == 0
@@ -544,7 +544,7 @@ def test_what_minimizes_is_met_where_the_region_has_it(sign):
                              1, 0) == lib.CV_OK
     s = ffi.gc(handle[0], lib.cv_search_free)
     assert lib.cv_prepare(s, ffi.NULL) == lib.CV_OK
-    lib.cv_step(s, 10 ** 6, 1e9, ffi.NULL)
+    lib.cv_step(s, 10 ** 6, 1e300, 1e9, ffi.NULL)
     length = ffi.new("size_t *")
     text = lib.cv_tree(s, length)
     resist = [sign * (Fraction(2 * index[2] + 1, 1 << cuts[2]) - 1)

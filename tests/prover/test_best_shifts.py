@@ -24,7 +24,7 @@ def line(low, high=None, axes=(1, 1, 1, -1)):
 
 def grown(problem, depth=120, stubborn=False):
     return native.survey(native.Task(problem, Settings("loewner", depth, stubborn=stubborn), HERE),
-                         100000)
+                         100000, math.inf)
 
 
 @pytest.fixture(scope="module")

@@ -366,23 +366,30 @@ def test_undecided_stays_undecided(easily):
     assert not proof.no_tori and proof.conclusion == "undecided"
 
 
-@pytest.mark.parametrize("problem,x,found", [
-    (Problem("0.5", 0, 0), "1.570796", False), (line("0.005"), "0.858028", False),
-    (line("0.0139"), "0.858028", True), (Problem.patch(["0.02", "0.02", "0.5"], waves=[
+@pytest.mark.parametrize("problem,x,grown", [
+    (Problem.patch(["0"], waves=[(1, 0)]), "0.534071", [12]),
+    (Problem("0.5", 0, 0), "1.570796", [12, 16]), (line("0.005"), "0.858028", [12, 16]),
+    (line("0.0139"), "0.858028", [12, 16, 20, 24]),
+    (Problem.patch(["0.02", "0.02", "0.5"], waves=[
         (1, 0, Fraction(-1, 2)), (0, 1, Fraction(-1, 2)), (1, 1, Fraction(-1, 2))]),
-     "1.579997", True)])
-def test_where_there_are_tori_no_starting_points_are_looked_for(problem, x, found, monkeypatch):
-    """What is undecided does not shrink there: the tree is not grown to the depth of clusters."""
-    depths, surveys = [], starts._surveys
+     "1.579997", [12, 16, 20, 24])])
+def test_where_there_are_tori_no_starting_points_are_looked_for(problem, x, grown, monkeypatch):
+    """What is undecided does not shrink there, or takes too many points of orbits: the tree is not
+    grown to the depth of clusters."""
+    depths, points, surveys = [], [], starts._surveys
 
-    def noted(pool, seconds_left, tasks, most):
+    def noted(pool, seconds_left, tasks, *most):
         depths.extend(task.settings.depth for task in tasks)
-        return surveys(pool, seconds_left, tasks, most)
+        found = surveys(pool, seconds_left, tasks, *most)
+        points.extend(sum(tree.steps) for tree in found)
+        return found
 
     monkeypatch.setattr(starts, "_surveys", noted)
     with WorkerPool(None, 1, Stop()) as pool:
         left = starts._look(problem, 24, (x, x), pool, lambda: 60.0)[1]
-    assert depths == ([12, 16, 20, 24] if found else [12, 16]) and bool(left) == found
+    assert depths == grown and bool(left) == (24 in grown)
+    # A survey ends with the orbit that reaches the bound; none has more than 10,000 points.
+    assert max(points) < starts.SHRINK_POINTS + 10_000
 
 
 def test_an_undecided_part_is_no_proof(linked):

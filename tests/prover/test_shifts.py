@@ -1,5 +1,6 @@
 """Regions of parts that move with the parameters: links into them, proofs, files and reports."""
 
+import math
 import re
 from dataclasses import replace
 from fractions import Fraction
@@ -204,7 +205,7 @@ def begun():
                       v1=(Fraction("-0.1"), Fraction("1.1")))
     task = native.Task(problem, Settings("loewner", 8, stubborn=True), HERE)
     start = native.begin(task, "", None)
-    grown = native.survey(task, 10 ** 5)
+    grown = native.survey(task, 10 ** 5, math.inf)
     cells = [cell for kind, cell in tree.cells(grown.text) if kind == "U"]
     assert len(cells) > 3
     largest = Fraction(start.constants["B"])

@@ -278,7 +278,7 @@ def test_a_tree_that_is_taken_up(root):
     from converse.prover.native import WrongTree, ffi, lib
 
     search = core_search()
-    handle, step = search.handle, lambda: lib.cv_step(search.handle, 100, 1.0, ffi.NULL)
+    handle, step = search.handle, lambda: lib.cv_step(search.handle, 100, 1e300, 1.0, ffi.NULL)
     for text, status, pending in (("P", lib.CV_OK, 0), ("0PU", lib.CV_OK, 0),
                                   ("0SP", lib.CV_OK, -1),
                                   ("0P", lib.CV_OK, 1), ("0??", lib.CV_OK, 2), ("PP", -3, -1),
