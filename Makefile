@@ -11,6 +11,8 @@ SANITIZE = -fsanitize=address,undefined -fno-sanitize-recover=undefined -fno-omi
 TWO = -n 2 --dist worksteal
 
 PIP_INSTALL = pip install --quiet --disable-pip-version-check
+PIP_FAILED = { echo 'pip failed. If it found no version of a package, the network or the package index' \
+    'cannot be reached.' >&2; exit 1; }
 
 # Installs $(2) into the virtual environment $(1).  One that was not finished, or not by these
 # rules, is made anew; objects of an earlier build may have been compiled with other flags.
@@ -19,7 +21,7 @@ define install
 	test -e $@ || $(PYTHON) -m venv --clear $(1)
 	rm -rf build/lib* build/temp* build/bdist*
 	@echo 'Compiling and installing; pip says nothing until it is done.'
-	$(1)/bin/$(PIP_INSTALL) $(2)
+	$(1)/bin/$(PIP_INSTALL) $(2) || $(PIP_FAILED)
 	touch $@
 endef
 
@@ -162,12 +164,14 @@ warnings: $(VENV)/installed
 	done
 
 # Editable: Python started in the clone, or anywhere with this environment, sees these very files.
+# With numpy, as converse-check is much slower without.
 $(VENV)/installed: $(SOURCES)
-	$(call install,$(VENV),--editable .)
+	$(call install,$(VENV),--editable '.[check]')
 
 # What an extra of pyproject.toml adds to it.
 $(VENV)/with-%: $(VENV)/installed
-	$(VENV)/bin/$(PIP_INSTALL) 'converse-kam[$*]'
+	@echo 'Installing what the extra "$*" needs; pip says nothing until it is done.'
+	$(VENV)/bin/$(PIP_INSTALL) 'converse-kam[$*]' || $(PIP_FAILED)
 	touch $@
 
 # Not editable: its core has other flags and must not take the other one's place in the clone.

@@ -4,6 +4,7 @@ import os
 import signal
 import subprocess
 import sys
+from collections import Counter
 from fractions import Fraction
 from pathlib import Path
 
@@ -51,6 +52,14 @@ def pytest_collection_modifyitems(items):
         place = item.path.relative_to(ROOT / "tests").as_posix()
         if place.startswith(SLOW):
             item.add_marker("slow")
+
+
+def pytest_terminal_summary(terminalreporter):
+    """A line for each reason why tests were skipped, which names what to make or install."""
+    reasons = Counter(report.longrepr[2].partition(": ")[2]
+                      for report in terminalreporter.stats.get("skipped", ()))
+    for reason, count in reasons.most_common():
+        terminalreporter.write_line("%d skipped: %s" % (count, reason))
 
 
 @pytest.fixture(scope="session")
