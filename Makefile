@@ -98,8 +98,7 @@ sanitize: $(SANITIZED)/installed
 # libgmp-dev:arm64.
 TREE_FLAGS = -std=c11 -O2 -ffp-contract=off -fno-math-errno -Icsrc
 TREE_CORE = $(wildcard csrc/arith/*.c) $(addprefix csrc/thesis/, start.c rigorous.c double.c method.c) \
-    $(addprefix csrc/loewner/, problem.c start.c method.c \
-    $(foreach kind,scalar baseline avx2 avx512,$(kind).c general_$(kind).c)) \
+    $(addprefix csrc/loewner/, problem.c start.c method.c engine.c engine_avx2.c engine_avx512.c) \
     $(wildcard csrc/model/*.c) $(wildcard csrc/search/*.c)
 arm: tests/tree.c
 	@mkdir -p build

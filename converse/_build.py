@@ -9,8 +9,7 @@ from cffi import FFI
 SOURCES = ["arith/apm", "arith/special", "arith/guard", "arith/machine",
            "thesis/start", "thesis/rigorous", "thesis/double", "thesis/method",
            "loewner/problem", "loewner/start", "loewner/method",
-           *("loewner/" + kind + name for kind in ("", "general_")
-             for name in ("scalar", "baseline", "avx2", "avx512")),
+           "loewner/engine", "loewner/engine_avx2", "loewner/engine_avx512",
            "model/patch", "model/region", "model/stationary", "model/torus",
            "search/setup", "search/tree", "search/lookahead",
            "orbits/potential", "orbits/band", "orbits/relax", "orbits/measure", "orbits/minplus"]

@@ -171,29 +171,32 @@ def left(what, needed, there):
 # ---- the waves
 
 class Model:
-    """A point q of an orbit, the one before, and the waves: so many, or those of the thesis, which
-    an engine of csrc/loewner knows (KNOWN of waves.h); what each function of the text sees."""
+    """A point q of an orbit, the one before, and the waves: so many with any k, or those of the
+    thesis with theirs; what each function of the text sees."""
 
     def __init__(self, read, waves=None, columns=COLUMNS):
         Rounded.known.clear()
         self.columns, self.pairs = columns, columns * (columns + 1) // 2
-        known = waves is None
+        thesis = waves is None
         self.texts = {name: read(name) for name in
                       ("arith/sine.h", "loewner/prism.h", "loewner/orbit.c", "loewner/bound.c",
                        "loewner/problem.c", "loewner/waves.h")}
-        self.first, self.slots = (0, 3) if known else (2, 2 + waves)
+        self.first, self.slots = 2, 5 if thesis else 2 + waves
         present = range(self.first, self.slots)
         self.part = [[exact("g%d_%d" % (i, k)) if k > 1 and i in present else 0.0
                       for k in range(columns)] for i in range(self.slots)]
         h = [total(map(rounded, row)) for row in self.part]
         p = [exact("p%d" % i) if i in present else 0.0 for i in range(self.slots)]
-        k = [[exact("k%d_%d" % (i, j)) for j in range(2)] for i in range(self.slots)]
+        k = [[1.0, 0.0], [0.0, 1.0]] + (
+            [[1.0, 0.0], [0.0, 1.0], [1.0, 1.0]] if thesis else
+            [[exact("k%d_%d" % (i, j)) for j in range(2)] for i in range(2, self.slots)])
         problem = SimpleNamespace(
             present=[i in present for i in range(self.slots)], waves=self.slots, k=k,
             moves=[[True] * columns] * self.slots, phase=[self.phase(i) for i in range(self.slots)],
-            square_k=[1.0, 1.0, 4.0] if known else
-            [Rounded((x.size + y.size) * (x.size + y.size)) for x, y in k],
-            most_k=2.0, axes=[[exact("R%d_%d" % (i, j)) for j in range(2)] for i in range(2)],
+            square_k=[Rounded((x.size + y.size) * (x.size + y.size))
+                      for x, y in (map(rounded, row) for row in k)],
+            columns=columns, most_k=2.0,
+            axes=[[exact("R%d_%d" % (i, j)) for j in range(2)] for i in range(2)],
             onto=[[exact("R%d.k%d" % (j, i)) for i in range(self.slots)] for j in range(2)],
             along=[[self.quotient(symbol("R%d.k%d" % (j, i))) for j in range(2)]
                    for i in range(self.slots)],
@@ -202,15 +205,15 @@ class Model:
             problem=problem, p=p, h=h, part=self.part, err_amp=[0.0] * self.slots,
             size=[Rounded(rounded(x).size + y.size) for x, y in zip(p, h)])
         self.names = {
-            "KNOWN": int(known), "WAVES": self.slots, "FIRST": self.first, "COLUMNS": columns,
+            "SLOTS": self.slots, "FIRST": self.first, "COLUMNS": columns,
             "PAIRS": self.pairs, "mag": lambda x: x, "fabs": lambda x: x, "every": lambda x: x,
             "memset": clear, "double_sincos": self.double_sincos, "larger": self.larger,
             "dot_k": self.dot_k}
-        for name in ("waves_of", "k_of", "times", "add_times", "dot_abs_k", "sum_k", "sum_abs_k",
-                     "propagate", "propagate_err"):
+        for name in ("waves_of", "k_of", "dot_abs_k", "sum_k", "sum_abs_k", "propagate",
+                     "propagate_err"):
             self.names[name] = self.function(name)
-        for name in ("moves", "add_moves"):
-            self.names[name] = function(self.texts["loewner/prism.h"], name).bound(self.names)
+        self.names["add_moves"] = function(self.texts["loewner/prism.h"],
+                                           "add_moves").bound(self.names)
         self.sine_error = Fraction(defined(self.texts["arith/sine.h"], "SINE_ERROR"))
         self.slipping = "LT"            # of these k.L, k.T are meant, not what doubles make of them
         self.slip = Fraction(1)         # of its slip so many times what is off along a wave
@@ -254,7 +257,7 @@ class Model:
         A coordinate itself, and what is neither L nor T, is what the text makes of it."""
         text = self.function("dot_k")(self.w, wave, x, y)
         first = next(iter(x.size.terms))[0]
-        if (wave < 2 and self.names["KNOWN"]) or "_" not in first:
+        if "_" not in first:
             return text
         name = "%s%d_%s" % (first[0], wave, first.split("_")[1])
         along = symbol(name)
@@ -266,9 +269,10 @@ class Model:
         """How many times what k.L and k.T lose bound_err_dot has."""
         dot_k, q = self.function("dot_k"), self.point("L", "T", "x")
         self.function("bound_err_dot")(self.w, q)
-        return min(left("err_dot", sum((dot_k(self.w, j, x, y).off for rows in (q.lin, q.quad)
-                                     for x, y in zip(*rows)), ZERO), q.err_dot[j].least())
-                   for j in range(2, self.slots))
+        found = (left("err_dot", sum((dot_k(self.w, j, x, y).off for rows in (q.lin, q.quad)
+                                      for x, y in zip(*rows)), ZERO), q.err_dot[j].least())
+                 for j in range(2, self.slots))
+        return min(filter(None, found))         # along k = (1, 0) nothing is lost
 
     def double_sincos(self, sine, cosine, angle):
         """An angle is D u off at most, with far = D + N + 1: see larger."""
@@ -374,9 +378,9 @@ def propagated(model):
                 Rounded.known[_sum(2.0 * x, y)] = less
     lin, quad = (SimpleNamespace(lin=[[None] * model.columns for _ in range(2)],
                                    quad=[[None] * model.pairs for _ in range(2)]) for _ in range(2))
-    model.names["propagate"](w, lin, q, o, model.columns)
+    model.names["propagate"](w, lin, q, o)
     model.slipping = "T"
-    model.names["propagate"](w, quad, q, o, model.columns)
+    model.names["propagate"](w, quad, q, o)
     bending_err = function(model.texts["loewner/orbit.c"], "bending_err").bound(model.names)
     bent = [bending_err(w, q, i) if i >= model.first else 0.0 for i in range(model.slots)]
     err = [model.names["propagate_err"](w, q, i) if i >= model.first else 0.0
@@ -462,7 +466,7 @@ def widen(model):
     o = SimpleNamespace(rad=Kept("before", model.slots), force=Kept("push", 2),
                         rem=Kept("last", 2))
     slips, model.slipping = model.slipping, ""      # see propagated
-    function(text, "measure").bound(names)(w, q, model.columns)
+    function(text, "measure").bound(names)(w, q)
     model.slipping = slips
     function(text, "bound_displacement").bound(names)(w, q)
     loops = [node for node in function(text, "step").statements if isinstance(node, c_ast.For)]

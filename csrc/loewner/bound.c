@@ -74,7 +74,7 @@ static void set_multipliers(batch *w, mask active)
 /* What a pass over the orbit sums. */
 typedef struct {
     vec centre, mass, rest, cubes, rounding, err_angle;
-    vec along[WAVES], slope[COLUMNS], square[PAIRS];
+    vec along[SLOTS], slope[COLUMNS], square[PAIRS];
 } sums;
 
 /* What the prisms make of site q alone, for each wave: (5) is |A| rest_A[pA > 0] + |B| rest_B, the
@@ -120,9 +120,9 @@ INLINE vec remainder_of(const batch *w, const point *q, int i, vec A, vec B)
 /* Constant, linear and quadratic part, and what is bounded by absolute values; `cubes` is the cubic
    part if it is, too.  Outside of a lane's own sites n and mu are zero, and all else is finite.
    (One pass over the orbit makes all sums, and is long for that.) */
-INLINE void sum_up(batch *w, sums *result, mask active, int columns)
+static void sum_up(batch *w, sums *result, mask active)
 {
-    const int begin = begin_of(w, active), end = end_of(w, active);
+    const int columns = w->problem->columns, begin = begin_of(w, active), end = end_of(w, active);
     vec tails = every(0.0);
     sums t;
 
@@ -136,7 +136,7 @@ INLINE void sum_up(batch *w, sums *result, mask active, int columns)
         const mask linked = TRUTH(site < w->to);
         const vec link0 = pick(linked, n0 * next[0], every(0.0));
         const vec link1 = pick(linked, n1 * next[1], every(0.0));
-        vec omega[WAVES], m[WAVES];
+        vec omega[SLOTS], m[SLOTS];
 
         for (int i = 0; i < waves_of(w); i++) {
             omega[i] = square(dot_k(w, i, n0, n1));
@@ -165,7 +165,7 @@ INLINE void sum_up(batch *w, sums *result, mask active, int columns)
                 c[k] = dot_k(w, i, q->lin[0][k], q->lin[1][k]);
                 f[k] = -0.5 * p * A * c[k];
             }
-            add_moves(w, i, B, f, columns);
+            add_moves(w, i, B, f);
             for (int k = 0, kl = 0; k < columns; k++) {         /* (c.e) (f.e) */
                 t.square[kl++] += c[k] * f[k];
                 for (int l = k + 1; l < columns; l++)
@@ -189,7 +189,7 @@ INLINE void sum_up(batch *w, sums *result, mask active, int columns)
         }
     }
     FOR_WAVES(w, i)
-        add_moves(w, i, t.along[i], t.slope, columns);
+        add_moves(w, i, t.along[i], t.slope);
     for (int k = 0; k < LANES; k++)
         if (holds(&active, k)) {
             const point *const first = w->orbit + number(&w->from, k);
@@ -207,14 +207,14 @@ INLINE void sum_up(batch *w, sums *result, mask active, int columns)
 
 /* The cubic part of (4): cubic[m] at pair(k, l) is a coefficient of e_m e_k e_l, one of those that
    make it up. */
-INLINE void sum_cubic(batch *w, mask active, int columns)
+static void sum_cubic(batch *w, mask active)
 {
-    const int begin = begin_of(w, active), end = end_of(w, active);
+    const int columns = w->problem->columns, begin = begin_of(w, active), end = end_of(w, active);
 
     for (int j = begin; j <= end; j++) {
         const point *q = w->orbit + j;
         const mask now = active & within(w, j);
-        vec form[WAVES][PAIRS];
+        vec form[SLOTS][PAIRS];
         FOR_WAVES(w, i) {
             vec A, B;
             trig_coefficients(w, q, i, now, &A, &B);
@@ -227,14 +227,14 @@ INLINE void sum_cubic(batch *w, mask active, int columns)
                     const vec quad = dot_k(w, i, q->quad[0][kl], q->quad[1][kl]);
                     form[i][kl] = -pA * quad - third * cc;
                     for (int m = 2; m < columns; m++)
-                        if (moves(w, i, m, columns))
+                        if (w->problem->moves[i][m])
                             w->cubic[m][kl] +=
                                 pick(now, w->part[i][m] * (B * quad - A * cc), every(0.0));
                 }
             }
         }
         for (int m = 0; m < columns; m++) {                     /* (c.e) form[e, e] */
-            vec c[WAVES];
+            vec c[SLOTS];
             FOR_WAVES(w, i)
                 c[i] = dot_k(w, i, q->lin[0][m], q->lin[1][m]);
             for (int kl = 0; kl < columns * (columns + 1) / 2; kl++) {
@@ -252,8 +252,9 @@ INLINE void sum_cubic(batch *w, mask active, int columns)
    coefficient's size; that of e_k^2 e_l likewise with e_l, and of that of
    e_k^3 = 3/4 e_k + (4 e_k^3 - 3 e_k)/4 three quarters, and a quarter.  What remains is linear in
    each symbol and largest at a corner, where it is even + odd or even - odd. */
-INLINE vec summit(const batch *w, int columns, int with_cubic)
+static vec summit(const batch *w, int with_cubic)
 {
+    const int columns = w->problem->columns;
     vec slope[COLUMNS], triple[COLUMNS][COLUMNS][COLUMNS], sum = every(0.0);
     vec top = every(-HUGE_VAL);
 
@@ -306,15 +307,16 @@ INLINE vec summit(const batch *w, int columns, int with_cubic)
    err_angle) is 16 (1 + err_angle) u, with err_angle >= 2.  Positive sums are off by (22 N + 30) u
    of themselves, which `each` covers, too.  (2) leaves at most (13 + err_angle) u (1 + S) of the
    weights and 2 u of the neighbours' mu; `left` has 64 (1 + S)(1 + err_angle) and 8. */
-INLINE void bound_with(batch *w, mask active, int signs, int columns)
+static void bound_with(batch *w, mask active, int signs)
 {
+    const int columns = w->problem->columns;
     vec each = every(0.0), least, more, bound, rounding;
     mask refine;
     sums t;
 
     for (int k = 0; k < LANES; k++)
         put_at(&each, k, 0x1p-47 * (double)(number(&w->until, k) - number(&w->since, k) + 2));
-    sum_up(w, &t, active, columns);
+    sum_up(w, &t, active);
     for (int k = 0; k < columns; k++)
         w->slope[k] = pick(active, t.slope[k], w->slope[k]);
     for (int kl = 0; kl < columns * (columns + 1) / 2; kl++) {
@@ -325,12 +327,12 @@ INLINE void bound_with(batch *w, mask active, int signs, int columns)
     t.rounding += t.mass * (each + 0x1p-49 * (1.0 + t.err_angle));
     rounding = t.rounding * (1.0 + each);
     more = t.centre + (t.rest + rounding) * (1.0 + each);
-    least = more + summit(w, columns, 0);
+    least = more + summit(w, 0);
     bound = least + t.cubes * (1.0 + each);
     refine = active & (signs ? active : TRUTH(least < 0.0) & TRUTH(bound >= 0.0));
     if (any(refine)) {
-        sum_cubic(w, refine, columns);
-        bound = pick(refine, more + summit(w, columns, 1), bound);
+        sum_cubic(w, refine);
+        bound = pick(refine, more + summit(w, 1), bound);
     }
     bound = pick(TRUTH(t.mass >= 1.0), bound, every(HUGE_VAL));
     w->bound = pick(active, bound, w->bound);
@@ -347,12 +349,7 @@ static void bound_second_variation(batch *w, mask active, int signs)
     while (w->weighed_first > w->known_first)
         weigh(w, w->orbit + --w->weighed_first);
     set_multipliers(w, active);
-    switch (w->problem->columns) {
-    case 2: bound_with(w, active, signs, 2); break;
-    case 3: bound_with(w, active, signs, 3); break;
-    case 4: bound_with(w, active, signs, 4); break;
-    default: bound_with(w, active, signs, 5);
-    }
+    bound_with(w, active, signs);
 }
 
 /* w->share[k] after that: by how much, to first order, the bound falls with the width of each

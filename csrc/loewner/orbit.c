@@ -21,8 +21,10 @@ static const double FAR = 1e5;          /* periods in one step before which orbi
 static const double WIDEN = 1.0 + 0x1p-43;
 
 /* Bounds of |L e| and |T[e, e]| along each wave: sums of at most 15 positive terms. */
-INLINE void measure(const batch *w, point *q, int columns)
+static void measure(const batch *w, point *q)
 {
+    const int columns = w->problem->columns;
+
     for (int i = 0; i < waves_of(w); i++) {
         vec sum = every(0.0);
         for (int k = 0; k < columns; k++)
@@ -49,13 +51,13 @@ static void bound_displacement(const batch *w, point *q)
 }
 
 /* A point that a lane has no use for is zero there, so that all that follows is finite. */
-static void forget(const batch *w, point *q, int columns)
+static void forget(const batch *w, point *q)
 {
     /* clang-format off */
     vec *const parts[] = { q->x, q->windings, q->lin[0], q->lin[1], q->quad[0], q->quad[1],
                            q->rem, q->lin_bound, q->quad_bound, q->nonlin_bound, q->rad };
     /* clang-format on */
-    const int pairs = columns * (columns + 1) / 2;
+    const int columns = w->problem->columns, pairs = columns * (columns + 1) / 2;
     const int waves = waves_of(w);
     const int sizes[] = { 2, 2, columns, columns, pairs, pairs, 2, waves, waves, waves, waves };
 
@@ -103,14 +105,6 @@ static vec bending_err(const batch *w, const point *q, int wave)
     return unit * w->size[wave] * rho * (1.0 + rho);
 }
 
-/* lin and quad of next, the point after q, seen from o before it, and their bounds. */
-INLINE void propagate_and_measure(const batch *w, point *next, const point *q, const point *o,
-                                  int columns)
-{
-    propagate(w, next, q, o, columns);
-    measure(w, next, columns);
-}
-
 /* next = the point after q, seen from o before it; time may run either way.  The factor begins with
    d = beta, and f then holds r(o), which is zero or the rounding of x*.  Where the factor cannot go
    on, or next would be of no use, it is not reached.
@@ -136,7 +130,7 @@ static void step(const batch *w, point *next, point *q, const point *o, int is_f
 {
     static const double SHIFT = 0x1.8p52, USELESS = 0x1p10;
     vec inverse[3] = { every(0.0), every(0.0), every(0.0) }, rounded = every(0.0);
-    vec g[WAVES], wave_err[WAVES], lost[WAVES], err[2], turned[3];
+    vec g[SLOTS], wave_err[SLOTS], lost[SLOTS], err[2], turned[3];
 
     FOR_WAVES(w, j) {
         g[j] = w->p[j] * q->cosine[j];
@@ -153,12 +147,8 @@ static void step(const batch *w, point *next, point *q, const point *o, int is_f
     }
     next->winding_sum = mag(next->windings[0]) + mag(next->windings[1]);
     next->reached = TRUTH(next->winding_sum <= FAR);
-    switch (w->problem->columns) {      /* each count of its own: the compiler unrolls */
-    case 2: propagate_and_measure(w, next, q, o, 2); break;
-    case 3: propagate_and_measure(w, next, q, o, 3); break;
-    case 4: propagate_and_measure(w, next, q, o, 4); break;
-    default: propagate_and_measure(w, next, q, o, 5);
-    }
+    propagate(w, next, q, o);
+    measure(w, next);
     if (!is_first) {
         const vec *d = o->d, det = d[0] * d[2] - d[1] * d[1];
         const vec one = 1.0 / det, condition = (mag(d[0] * d[2]) + d[1] * d[1]) * one;
@@ -188,7 +178,7 @@ static void step(const batch *w, point *next, point *q, const point *o, int is_f
     bound_displacement(w, next);
     next->reached &= TRUTH(next->rad_max <= USELESS);
     if (any(~next->reached))
-        forget(w, next, w->problem->columns);
+        forget(w, next);
     finish(w, next);
 }
 
@@ -211,7 +201,7 @@ static void begin(batch *w)
             origin[1].lin[i][k] = frame[0] * w->shift[0][k] + frame[1] * w->shift[1][k];
         origin[i].reached = ~none();
     }
-    measure(w, origin + 1, w->problem->columns);
+    measure(w, origin + 1);
     for (int j = 0; j < 2; j++) {
         bound_displacement(w, origin + j);
         finish(w, origin + j);

@@ -32,19 +32,8 @@
 #include "arith/lanes.h"
 #include "problem.h"
 
-#ifdef THESIS_WAVES                     /* see waves.h */
-enum { KNOWN = 1, FIRST = 0, WAVES = 3 };
-#else
-enum { KNOWN = 0, FIRST = 2, WAVES = SLOTS };
-#endif
-/* Known waves are worth nothing unless their loops are unrolled, which GCC does not do by itself.
-   */
-#if defined(__GNUC__) && defined(THESIS_WAVES)
-#define UNROLL _Pragma("GCC unroll 3")
-#else
-#define UNROLL
-#endif
-#define FOR_WAVES(w, j) UNROLL for (int j = FIRST; j < waves_of(w); j++)
+enum { FIRST = 2 };                     /* the first slot that is a wave: see waves.h */
+#define FOR_WAVES(w, j) for (int j = FIRST; j < waves_of(w); j++)
 enum { MAX_POINTS = 4000, ORIGIN = MAX_POINTS };
 
 /* One point of the orbits of the prisms' centres, and all that is known of its neighbours. */
@@ -56,27 +45,27 @@ typedef struct {
     vec quad[2][PAIRS];                 /* T: the coefficients of e_k e_l, at pair(k, l) */
     vec rem[2], force[2];               /* bounds of r and f along the axes of the problem */
     vec d[3];                           /* the factor in these axes: d00, d01, d11 */
-    vec sine[WAVES], cosine[WAVES];
-    vec lin_bound[WAVES], quad_bound[WAVES];    /* of D along a wave: |L e| and |T[e, e]| */
-    vec nonlin_bound[WAVES], rad[WAVES];        /* |D - L e| and |D| */
-    vec err_dot[WAVES];                 /* what L e and T[e, e] lose along a wave, from 2 on */
+    vec sine[SLOTS], cosine[SLOTS];
+    vec lin_bound[SLOTS], quad_bound[SLOTS];    /* of D along a wave: |L e| and |T[e, e]| */
+    vec nonlin_bound[SLOTS], rad[SLOTS];        /* |D - L e| and |D| */
+    vec err_dot[SLOTS];                 /* what L e and T[e, e] lose along a wave, from 2 on */
     vec rad_max;                        /* the largest rad of a wave, by their weights */
     vec beta[3];                        /* beta00, beta01, beta11 */
     vec least;                          /* eigenvalue of beta, about */
     vec err_angle;                      /* how far angles may be off, in units u */
     vec err_beta;                       /* how far p sin, p cos and entries of beta may be off */
     vec n[2], mu[2];
-    vec rest_A[WAVES][2], rest_B[WAVES], cube_A[WAVES], cube_B[WAVES], load;    /* see weigh */
+    vec rest_A[SLOTS][2], rest_B[SLOTS], cube_A[SLOTS], cube_B[SLOTS], load;    /* see weigh */
     vec left[3], right[3];              /* the blocks of the recursion from either end */
     mask reached;                       /* can the orbit go on to here? */
 } point;
 
 typedef struct {
     const loewner *problem;
-    vec p[WAVES], part[WAVES][COLUMNS];     /* part[k] moves with the column k of a parameter */
-    vec h[WAVES], err_amp[WAVES];               /* h: the sum of |part|; err_amp: rounding */
-    vec weight[WAVES];                  /* of the rad along a wave: see weigh_waves */
-    vec size[WAVES];                            /* |p| + h + err_amp */
+    vec p[SLOTS], part[SLOTS][COLUMNS];     /* part[k] moves with the column k of a parameter */
+    vec h[SLOTS], err_amp[SLOTS];               /* h: the sum of |part|; err_amp: rounding */
+    vec weight[SLOTS];                  /* of the rad along a wave: see weigh_waves */
+    vec size[SLOTS];                            /* |p| + h + err_amp */
     vec v[2], width[2], shift[2][COLUMNS], l;   /* shift[i][k]: of v_i with column k, from 2 on */
     /* what bound.c finds */
     vec slope[COLUMNS], square[PAIRS], cubic[COLUMNS][PAIRS];           /* Q's part with signs */
@@ -91,18 +80,11 @@ typedef struct {
 
 static const double TINY = 0x1p-800;
 
-/* Does the wave's amplitude move with a column's symbol?  Where there is one parameter alone the
-   question takes longer than to add nothing. */
-INLINE int moves(const batch *w, int wave, int column, int columns)
-{
-    return columns == 3 || w->problem->moves[wave][column];
-}
-
 /* Adds, for each column, what the wave's amplitude moves with its symbol, times a factor. */
-INLINE void add_moves(const batch *w, int wave, vec factor, vec to[], int columns)
+INLINE void add_moves(const batch *w, int wave, vec factor, vec to[])
 {
-    for (int k = 2; k < columns; k++)
-        if (moves(w, wave, k, columns))
+    for (int k = 2; k < w->problem->columns; k++)
+        if (w->problem->moves[wave][k])
             to[k] += w->part[wave][k] * factor;
 }
 

@@ -1,5 +1,4 @@
 /* problem.c - what belongs to all prisms of a problem, and the engine that is to try them. */
-#include <limits.h>
 #include <math.h>
 #include <stdint.h>
 #include <stdlib.h>
@@ -112,25 +111,20 @@ static double near(const apm_t x)
     return good ? d : NAN;
 }
 
-/* The one with the most lanes that this machine can use; the environment variable CONVERSE_VECTORS
-   may limit the bits of its vectors. */
-static const engine *fastest_engine(int general)
+/* The engine with the most lanes that this machine can use.  The environment variable
+   CONVERSE_LANES limits that number, as tests compare the engines. */
+static const engine *fastest_engine(void)
 {
-    const char *const limit = getenv("CONVERSE_VECTORS");
-    const long bits = limit == NULL ? LONG_MAX : strtol(limit, NULL, 10);
+#ifdef __x86_64__
+    const char *const limit = getenv("CONVERSE_LANES");
+    const long lanes = limit == NULL ? MOST_LANES : strtol(limit, NULL, 10);
 
-#ifdef HAVE_X86
-    if (bits >= 512 && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq"))
-        return general ? &general_avx512 : &engine_avx512;
-    if (bits >= 256 && __builtin_cpu_supports("avx2"))
-        return general ? &general_avx2 : &engine_avx2;
+    if (lanes >= 8 && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq"))
+        return &engine_8;
+    if (lanes >= 4 && __builtin_cpu_supports("avx2"))
+        return &engine_4;
 #endif
-#ifdef HAVE_VECTORS
-    if (bits >= 128)
-        return general ? &general_baseline : &engine_baseline;
-#endif
-    (void)bits;
-    return general ? &general_scalar : &engine_scalar;
+    return &engine_2;
 }
 
 /* A double that is not less than x >= 0. */
@@ -177,8 +171,8 @@ static void set_angles(loewner *w, const patch *problem)
             (fabs(w->frame[1 - i][1 - i]) * off[i] + fabs(w->frame[i][1 - i]) * off[1 - i]) / det;
 }
 
-/* One more wave; engines for any waves take those that there are. */
-static void add_wave(loewner *w, const patch *problem, int given, int general)
+/* One more wave, if it is there at all. */
+static void add_wave(loewner *w, const patch *problem, int given)
 {
     const int i = w->waves, *const k = problem->k[given];
     double size;
@@ -196,21 +190,19 @@ static void add_wave(loewner *w, const patch *problem, int given, int general)
         w->k[i][j] = k[j];
     w->square_k[i] = square(fabs(w->k[i][0]) + fabs(w->k[i][1]));
     w->most_k = larger(w->most_k, fabs(w->k[i][0]) + fabs(w->k[i][1]));
-    w->waves += w->present[i] || !general;
+    w->waves += w->present[i];
 }
 
 /* The waves, and the columns of the parameters that move them or the region. */
-static void set_wave_slots(loewner *w, const patch *problem, int general)
+static void set_wave_slots(loewner *w, const patch *problem)
 {
     w->columns = 2;
     w->axis[1] = 1;
     w->most_k = 1.0;
-    if (general) {
-        w->k[0][0] = w->k[1][1] = 1.0;
-        w->waves = 2;
-    }
+    w->k[0][0] = w->k[1][1] = 1.0;
+    w->waves = 2;
     for (int i = 0; i < problem->n_waves; i++)
-        add_wave(w, problem, i, general);
+        add_wave(w, problem, i);
     for (int m = 0; m < w->n_parameters; m++) {         /* what does not move needs no symbol */
         int counts = w->shift[0][m] != 0.0 || w->shift[1][m] != 0.0;
         for (int i = 0; i < w->waves; i++) {
@@ -323,17 +315,16 @@ static void set_corners(loewner *w, int with_bounds)
 
 loewner *loewner_new(const patch *problem, int with_bounds)
 {
-    const int general = !thesis_waves(problem) || !is_identity(problem->frame);
     loewner *w = calloc(1, sizeof *w);
 
     if (w == NULL)
         return NULL;
     set_angles(w, problem);
-    set_wave_slots(w, problem, general);
+    set_wave_slots(w, problem);
     straighten(w);
     set_axes(w);
     set_corners(w, with_bounds);
-    w->engine = fastest_engine(general);
+    w->engine = fastest_engine();
     w->memory = calloc(1, w->engine->size + ALIGNMENT);
     if (w->memory == NULL) {
         free(w);

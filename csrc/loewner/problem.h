@@ -15,16 +15,7 @@ typedef struct {
                 outcome *const out[]);
 } engine;
 
-/* For the waves of the thesis, and for any. */
-extern const engine engine_scalar, engine_baseline, engine_avx2, engine_avx512;
-extern const engine general_scalar, general_baseline, general_avx2, general_avx512;
-
-#if defined(__GNUC__) && (defined(__SSE2__) || defined(__aarch64__))
-#define HAVE_VECTORS
-#endif
-#if defined(__GNUC__) && defined(__x86_64__)
-#define HAVE_X86
-#endif
+extern const engine engine_2, engine_4, engine_8;
 
 struct loewner {
     double centre[2], half[2], err_v[2], frame[2][2];           /* of v0, v1 */

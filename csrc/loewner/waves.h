@@ -1,13 +1,5 @@
 /* waves.h - the waves of the potential, as an engine sees them.
 
-   An engine is compiled for any waves, which it reads from the problem, or, with THESIS_WAVES, for
-   those of the thesis, (1, 0), (0, 1) and (1, 1) without phases, which are then KNOWN.  The code is
-   the same.  But where the waves are known the compiler unrolls the loops over them, and products
-   with 0 and 1 are left out, which the compiler may not do by itself, as 0 x is not 0 for each x.
-   What is left out is exact, so the bounds of rounding errors hold for both.  (Two sources, of
-   which one was written for the thesis's waves, were not faster by more than a few per cent; an
-   engine for any waves alone is slower by a third.)
-
    The slots 0 and 1 are the coordinates themselves, whether there are such waves or not: FIRST is
    the first slot with an amplitude.
 
@@ -25,44 +17,19 @@
 #include "arith/sine.h"
 #include "prism.h"
 
-INLINE int waves_of(const batch *w) { return KNOWN ? WAVES : w->problem->waves; }
-
-INLINE double k_of(const batch *w, int wave, int i)
-{
-    return KNOWN ? (double)(wave == 2 || wave == i) : w->problem->k[wave][i];
-}
-
-/* k x, and sum += k x. */
-INLINE vec times(double k, vec x) { return KNOWN && k == 1.0 ? x : k * x; }
-
-INLINE void add_times(vec *sum, double k, vec x)
-{
-    if (!KNOWN || k != 0.0)
-        *sum += times(k, x);
-}
+INLINE int waves_of(const batch *w) { return w->problem->waves; }
+INLINE const double *k_of(const batch *w, int wave) { return w->problem->k[wave]; }
 
 /* k.x */
 INLINE vec dot_k(const batch *w, int wave, vec x0, vec x1)
 {
-    const double k0 = k_of(w, wave, 0), k1 = k_of(w, wave, 1);
-
-    if (KNOWN && k1 == 0.0)
-        return times(k0, x0);
-    if (KNOWN && k0 == 0.0)
-        return times(k1, x1);
-    return times(k0, x0) + times(k1, x1);
+    return k_of(w, wave)[0] * x0 + k_of(w, wave)[1] * x1;
 }
 
 /* |k|.x */
 INLINE vec dot_abs_k(const batch *w, int wave, vec x0, vec x1)
 {
-    const double k0 = fabs(k_of(w, wave, 0)), k1 = fabs(k_of(w, wave, 1));
-
-    if (KNOWN && k1 == 0.0)
-        return times(k0, x0);
-    if (KNOWN && k0 == 0.0)
-        return times(k1, x1);
-    return times(k0, x0) + times(k1, x1);
+    return fabs(k_of(w, wave)[0]) * x0 + fabs(k_of(w, wave)[1]) * x1;
 }
 
 /* Coordinate i of the sum of k f over the waves, and a bound of it from bounds of f. */
@@ -71,7 +38,7 @@ INLINE vec sum_k(const batch *w, int i, const vec f[])
     vec sum = every(0.0);
 
     FOR_WAVES(w, j)
-        add_times(&sum, k_of(w, j, i), f[j]);
+        sum += k_of(w, j)[i] * f[j];
     return sum;
 }
 
@@ -80,7 +47,7 @@ INLINE vec sum_abs_k(const batch *w, int i, const vec f[])
     vec sum = every(0.0);
 
     FOR_WAVES(w, j)
-        add_times(&sum, fabs(k_of(w, j, i)), f[j]);
+        sum += fabs(k_of(w, j)[i]) * f[j];
     return sum;
 }
 
@@ -144,20 +111,15 @@ INLINE void evaluate(const batch *w, point *q)
     vec sizes = every(1.0);
 
     FOR_WAVES(w, j) {
-        const double k0 = k_of(w, j, 0), k1 = k_of(w, j, 1);
-        const double phase = KNOWN ? 0.0 : w->problem->phase[j];
-        vec y = dot_k(w, j, q->x[0], q->x[1]);
-        vec angle = dot_abs_k(w, j, mag(q->x[0]), mag(q->x[1])) * 3.0;
-        if (!KNOWN) {
-            y += phase;
-            angle += 10.0 * fabs(phase);
-        }
+        const double k0 = k_of(w, j)[0], k1 = k_of(w, j)[1], phase = w->problem->phase[j];
+        const vec y = dot_k(w, j, q->x[0], q->x[1]) + phase;
+        const vec angle = dot_abs_k(w, j, mag(q->x[0]), mag(q->x[1])) * 3.0 + 10.0 * fabs(phase);
         double_sincos(&q->sine[j], &q->cosine[j], y);
         farthest = larger(farthest, angle);
         const vec s = w->p[j] * q->sine[j];
-        add_times(&pull[0], k0 * k0, s);
-        add_times(&pull[1], k0 * k1, s);
-        add_times(&pull[2], k1 * k1, s);
+        pull[0] += k0 * k0 * s;
+        pull[1] += k0 * k1 * s;
+        pull[2] += k1 * k1 * s;
         sizes += w->problem->square_k[j] * w->size[j];
     }
     q->err_angle = farthest + (double)(waves_of(w) - FIRST + 1);
@@ -171,9 +133,9 @@ INLINE void evaluate(const batch *w, point *q)
        -p (c.e) sin y + h e cos y  and  -p T sin y - p (c.e)^2/2 cos y - h e (c.e) sin y.
    Where k.L = 0 for all waves, next->lin = 2L - L(o) but for one rounding, which a product with
    beta would not give. */
-INLINE void propagate(const batch *w, point *next, const point *q, const point *o, int columns)
+static void propagate(const batch *w, point *next, const point *q, const point *o)
 {
-    const int pairs = columns * (columns + 1) / 2;
+    const int columns = w->problem->columns, pairs = columns * (columns + 1) / 2;
     vec lin[2][COLUMNS], quads[2][PAIRS];
 
     memset(lin, 0, sizeof lin);
@@ -186,16 +148,16 @@ INLINE void propagate(const batch *w, point *next, const point *q, const point *
             f[k] = -half * c[k];
             push[k] = pull * c[k];
         }
-        add_moves(w, j, -q->sine[j], f, columns);
-        add_moves(w, j, q->cosine[j], push, columns);
+        add_moves(w, j, -q->sine[j], f);
+        add_moves(w, j, q->cosine[j], push);
         for (int k = 0, kl = 0; k < columns; k++) {
             for (int i = 0; i < 2; i++)
-                add_times(&lin[i][k], k_of(w, j, i), push[k]);
+                lin[i][k] += k_of(w, j)[i] * push[k];
             for (int l = k; l < columns; l++, kl++) {           /* (c.e) (f.e) */
                 const vec cf = l == k ? c[k] * f[k] : c[k] * f[l] + c[l] * f[k];
                 const vec quad = cf + pull * dot_k(w, j, q->quad[0][kl], q->quad[1][kl]);
                 for (int i = 0; i < 2; i++)
-                    add_times(&quads[i][kl], k_of(w, j, i), quad);
+                    quads[i][kl] += k_of(w, j)[i] * quad;
             }
         }
     }
@@ -224,8 +186,7 @@ INLINE vec gradient(const batch *w, const point *q, int i)
     vec sum = every(0.0);
 
     FOR_WAVES(w, j)
-        add_times(&sum, k_of(w, j, i),
-                  square(dot_k(w, j, q->n[0], q->n[1])) * w->p[j] * q->cosine[j]);
+        sum += k_of(w, j)[i] * (square(dot_k(w, j, q->n[0], q->n[1])) * w->p[j] * q->cosine[j]);
     return sum;
 }
 

@@ -133,7 +133,8 @@ int is_identity(const int frame[4])
     return frame[0] == 1 && frame[1] == 0 && frame[2] == 0 && frame[3] == 1;
 }
 
-int thesis_waves(const patch *p)
+/* Are these the thesis's waves, in its order and without phases? */
+static int thesis_waves(const patch *p)
 {
     int same = p->n_waves == 3;
 

@@ -24,10 +24,7 @@ int patch_read(patch *p, const cv_problem *given);
 
 int is_identity(const int frame[4]);
 
-/* Are these the thesis's waves, in its order and without phases? */
-int thesis_waves(const patch *p);
-
-/* And has each of them a parameter of its own? */
+/* Are these the thesis's waves, in its order and without phases, each with its own parameter? */
 int thesis_parameters(const patch *p);
 
 /* Does the region of x_1 move with the parameters? */

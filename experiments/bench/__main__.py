@@ -158,22 +158,19 @@ def frontier(repeat, older=None, whole=False):
 
 
 def steps(repeat):
-    """Nanoseconds per orbit step and prism of the sharper method, for every width of vectors, and
+    """Nanoseconds per orbit step and prism of the sharper method, with each number of lanes, and
     of six sines in plain doubles."""
     a = Fraction("0.166")
     prism = [a, a, 2 * a, Fraction("3.1"), Fraction("2.9"), *[Fraction(1, 10 ** 9)] * 5,
              Fraction("0.858"), Fraction("0.858")]
-    before = os.environ.get("CONVERSE_VECTORS")
-    for bits in ("0", "128", "256", "512"):
-        os.environ["CONVERSE_VECTORS"] = bits
+    for most in ("2", "4", "8"):
+        os.environ["CONVERSE_LANES"] = most
         *_, lanes = kernels.call("loewner_step", [*prism, 1, 18, 1], 4, 20)
-        print("nanoseconds per orbit step, vectors of %s bits at most (%d prisms at once): "
-              "%.0f with one parameter, %.0f with three" % (bits, lanes, *(
+        print("nanoseconds per orbit step, %d prisms at once: "
+              "%.0f with one parameter, %.0f with three" % (lanes, *(
                   min(kernels.call("loewner_step", [*prism, together, 18, 20000], 4, 20)[2]
                       for _ in range(repeat)) for together in (1, 0))))
-    os.environ.pop("CONVERSE_VECTORS")
-    if before is not None:
-        os.environ["CONVERSE_VECTORS"] = before
+    del os.environ["CONVERSE_LANES"]
     print("six sines in plain doubles: %.0f" % min(
         kernels.call("double_sincos_ns", [3, 300000], 1, 20)[0] for _ in range(repeat)))
 

@@ -35,7 +35,7 @@ void cv_free(char *text);
 """
 # What includes sources of the core, by a regular expression of their names.
 INCLUDED = {r"model/torus": "rectangle.h", r"thesis/(rigorous|double)": "thesis.h",
-            r"loewner/(general_)?(scalar|baseline|avx.*)": "engine.h"}
+            r"loewner/engine.*": "engine.h"}
 
 
 def product():
@@ -65,9 +65,8 @@ def units(sources, csrc):
 
 def _attributes(csrc, name, text):
     """The text with the attributes that clang gives to the functions of an engine."""
-    instructions = csrc / (name.replace("general_", "") + ".c")
-    push = re.search("^#pragma clang attribute push.*$", instructions.read_text("utf-8"),
-                     re.MULTILINE)
+    source = (csrc / (name + ".c")).read_text("utf-8")
+    push = re.search("^#pragma clang attribute push.*$", source, re.MULTILINE)
     if push is None:
         return text + "\n"
     return ("#ifdef __clang__\n%s\n#endif\n%s\n"

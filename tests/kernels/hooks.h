@@ -28,15 +28,10 @@ typedef struct {
     void (*look)(const void *work, int n, known_point *p);
 } hooks;
 
-#ifdef HAVE_X86
-/* clang-format off */
-#define ENGINES(X) X(engine_scalar) X(engine_baseline) X(engine_avx2) X(engine_avx512) \
-    X(general_scalar) X(general_baseline) X(general_avx2) X(general_avx512)
-/* clang-format on */
-#elif defined(HAVE_VECTORS)
-#define ENGINES(X) X(engine_scalar) X(engine_baseline) X(general_scalar) X(general_baseline)
+#ifdef __x86_64__
+#define ENGINES(X) X(engine_2) X(engine_4) X(engine_8)
 #else
-#define ENGINES(X) X(engine_scalar) X(general_scalar)
+#define ENGINES(X) X(engine_2)
 #endif
 
 #define DECLARE(engine) extern const hooks hooks_##engine;

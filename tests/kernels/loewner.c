@@ -14,8 +14,8 @@
 
 enum { BOX = 13, WAVE = 7, MOST_SHOWN = 4 };        /* numbers of a wave; waves of a problem */
 enum { SITES = 60 };                                    /* no point of an orbit is further */
-enum { POINT = 56, SITE = 69, SHOWN = 13, ANY_SITE = 81, ANY_SHOWN = 11 };
-enum { MOST_MORE = 10, MOST_OUT = 900 };
+enum { POINT = 64, SITE = 77, SHOWN = 13, ANY_SITE = 81, ANY_SHOWN = 11 };
+enum { MOST_MORE = 10, MOST_OUT = 1001 };
 
 /* What a routine is asked: the numbers after those of the problem. */
 typedef struct {
@@ -84,6 +84,31 @@ static double *show(double *y, const known_point *p, int slots)
     return y;
 }
 
+/* The slot of a wave of the thesis, j = 0, 1, 2: (1, 0), (0, 1), (1, 1); -1 where its amplitude is
+   0, as an engine has only waves that are there. */
+static int slot_of(const loewner *w, int j)
+{
+    for (int i = 2; i < w->waves; i++)
+        if (w->k[i][0] == (j != 1) && w->k[i][1] == (j != 0))
+            return i;
+    return -1;
+}
+
+/* Puts the bounds along the thesis's waves behind those of the two coordinates, in their order.  A
+   wave that is not there has those of its coordinate, or of (1, 1) their sums. */
+static void look_at_thesis(const loewner *w, double n, known_point *p)
+{
+    look(w, n, p);
+    double *const bounds[] = { p->lin_bound, p->quad_bound, p->nonlin_bound, p->rad };
+    for (size_t b = 0; b < sizeof bounds / sizeof *bounds; b++) {
+        double *const x = bounds[b], found[3] = { x[0], x[1], x[0] + x[1] };
+        for (int j = 0; j < 3; j++)
+            if (slot_of(w, j) >= 0)
+                found[j] = x[slot_of(w, j)];
+        memcpy(x + 2, found, sizeof found);
+    }
+}
+
 static cv_cell cell_of(const request *r)
 {
     cv_cell cell = { { 0, 0, 0, 0, 0 }, { 0, 0, 0, 0, 0 }, 0 };
@@ -106,9 +131,12 @@ static int k_cell(const request *r, double y[])
     memcpy(y, prism.v, sizeof prism.v);
     memcpy(y + 2, prism.width, sizeof prism.width);
     for (int j = 0; j < 3; j++) {
-        y[4 + j] = prism.p[j];
-        y[7 + j] = prism.part[j][r->together ? 0 : j];
-        y[10 + j] = prism.err_amp[j];
+        const int slot = slot_of(r->w, j);
+        if (slot < 0)
+            continue;
+        y[4 + j] = prism.p[slot];
+        y[7 + j] = prism.part[slot][r->together ? 0 : j];
+        y[10 + j] = prism.err_amp[slot];
     }
     y[13] = prism.l;
     memcpy(y + 14, r->w->corner, sizeof r->w->corner);
@@ -132,15 +160,15 @@ static int k_shifted(const request *r, double y[])
     return good;
 }
 
-/* n -> 2 coordinates, 2 rows of 5 columns, 2 bows of 15, 2 rests of point n, and for 3 waves the
-   reach of columns, bows, all but the columns, and all. */
+/* n -> 2 coordinates, 2 rows of 5 columns, 2 bows of 15, 2 rests of point n, and for the
+   coordinates and 3 waves the reach of columns, bows, all but the columns, and all. */
 static int k_orbit(const request *r, double y[])
 {
     known_point p;
     const int good = follow_to(r->w, r->more[0]);
 
-    look(r->w, r->more[0], &p);
-    show(y, &p, 3);
+    look_at_thesis(r->w, r->more[0], &p);
+    show(y, &p, 5);
     return good;
 }
 
@@ -155,7 +183,7 @@ static int k_step(const request *r, double y[])
 
     for (int j = 0; j < (int)repeat; j++)
         good = follow_to(r->w, n);
-    look(r->w, n, &p);
+    look_at_thesis(r->w, n, &p);
     memcpy(y, p.rad, 2 * sizeof *y);
     y[2] = 1e9 * (double)(clock() - begin) / CLOCKS_PER_SEC / fmax(repeat, 1.0) /
            fmax(fabs(n), 1.0) / loewner_lanes(r->w);
@@ -192,8 +220,8 @@ static int k_sites(const request *r, double y[])
         known_point p;
         memset(&p, 0, sizeof p);
         if (r->more[0] + j <= fmax(r->more[1], 1.0))
-            look(r->w, r->more[0] + j, &p);
-        end = show(end, &p, r->any ? 2 + MOST_SHOWN : 3);
+            (r->any ? look : look_at_thesis)(r->w, r->more[0] + j, &p);
+        end = show(end, &p, r->any ? 2 + MOST_SHOWN : 5);
     }
     return good;
 }

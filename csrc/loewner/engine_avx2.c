@@ -1,16 +1,13 @@
-/* avx2.c - prisms by fours, for processors with AVX2. */
-#if defined(__GNUC__) && defined(__x86_64__)
+/* engine_avx2.c - prisms by fours, for processors with AVX2. */
+#ifdef __x86_64__
 #ifdef __clang__
 #pragma clang attribute push(__attribute__((target("avx2"))), apply_to = function)
 #else
 #pragma GCC target("avx2")
 #endif
 #define LANES 4
-#ifndef ENGINE
-#define THESIS_WAVES
-#define ENGINE engine_avx2
-#endif
-#include "instance.h"
+#define ENGINE engine_4
+#include "engine.c"
 #ifdef __clang__
 #pragma clang attribute pop
 #endif
