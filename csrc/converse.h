@@ -52,13 +52,6 @@ typedef struct {
     int hint;                /* learnt from the prism it was cut from; 0 for the root */
 } cv_cell;
 
-/* What became of cells so far, to guess from it what will become of others.  Cells are of one kind
-   if they were cut as often and their parents learnt about as much: nodes[level][class] of them
-   were tried and cut[level][class] cut again; became[class][class]: the classes of these and of
-   their halves.  The last level takes in all that is deeper. */
-enum { CV_LEVELS = 128, CV_CLASSES = 16 };
-typedef struct { int nodes[128][16], cut[128][16], became[16][16]; } cv_history;
-
 typedef struct cv_search cv_search;
 
 /* A request to stop.  It may be made by another thread, while a call that was given it is under
@@ -125,8 +118,6 @@ int cv_pending(const cv_search *s, cv_cell *cells);
 const char *cv_tree(const cv_search *s, size_t *length);   /* nodes so far, in preorder */
 const cv_counts *cv_get_counts(const cv_search *s);
 const int *cv_steps(const cv_search *s);                   /* of each node: its orbit's length */
-const cv_history *cv_get_history(const cv_search *s);
-int cv_class(int hint);                                    /* of a cell with this hint */
 /* Method Loewner, V odd: 1 if B > 10/3 for all parameters; 2 if there is one, and this is so at its
    upper end t_1 = 1.  Then the theorem holds for every multiple s >= 1 of these amplitudes, too. */
 int cv_at_once(const cv_search *s);

@@ -29,8 +29,7 @@ SETTINGS = Settings(method="loewner")
 # The budget of a cell is the number of leaves that its proof may have.
 FIRST_BUDGET, LARGEST_BUDGET = 1 << 15, 1 << 21
 BUDGET_FACTOR = 4                   # from one try at a cell to the next
-FIRST_CHUNK = 1 << 9                # leaves after which the cost is estimated for the first time
-PESSIMISM = 4                       # a try ends when it is expected to cost so many budgets
+COARSE_BUDGET = 1 << 9              # leaves of a proof in the first bisection of the estimate
 TRIAL_BUDGET = 1 << 12             # where one x* is compared with others
 POINT_BUDGET = {1: 1 << 14, 2: 1 << 12}     # of the estimate, by sides: of a plane, of the sphere
 
@@ -56,27 +55,28 @@ class Outcome:
 
 
 def _prove_within(problem, xstar, budget, stop):
-    """(tree, leaves, Begun) of a proof with at most so many leaves, or None if stopped.  Where
-    there is no such proof the tree is None, and leaves is the number expected, perhaps infinite."""
+    """Returns (tree, leaves, Begun) of a proof with about `budget` leaves at most, None if stopped.
+
+    Where the budget does not suffice the tree is None, and leaves is the number to expect if the
+    rest of the volume costs as much as the part that was decided; or infinite, if no budget helps.
+    """
     begun = native.begin(native.Task(problem, SETTINGS, xstar), "", stop)
     if begun is None:
         return None
     task, cells = native.Task(problem, SETTINGS, begun.xstar), begun.cells
-    pieces, leaves, history = [], 0, native.History()
-    chunk = min(budget, FIRST_CHUNK)
+    pieces, leaves = [], 0
     while cells and not begun.at_once:
-        grown = native.grow(task, cells, LOOK_SECONDS, chunk, False, stop)
+        grown = native.grow(task, cells, LOOK_SECONDS, budget - leaves, False, stop)
         if grown is None or stop.is_set():
             return None
         pieces.append(grown.text)
         leaves += grown.counts.proved + grown.counts.symmetric
-        history.add(grown.history)
-        cells, chunk = grown.cells, budget // 8
+        cells = grown.cells
         if grown.counts.undecided or cells and grown.counts.reasons[TOO_LONG]:
             return None, math.inf, begun
-        expected = leaves + history.expected(cells) / 2
-        if cells and (leaves >= budget or expected > PESSIMISM * budget):
-            return None, expected, begun
+        if cells and leaves >= budget:
+            decided = 1 - sum(2.0 ** -sum(cuts) for _, cuts, _ in cells)
+            return None, leaves / decided, begun
     return "".join(pieces), leaves, begun
 
 
@@ -153,7 +153,7 @@ def estimate_frontier(directions, place, stop=None):
         return found and (found[0] is not None or found[2].at_once)
 
     low, high = 0, region.RADIUS
-    for budget, tolerance in ((FIRST_CHUNK, Fraction(1, 32)),
+    for budget, tolerance in ((COARSE_BUDGET, Fraction(1, 32)),
                               (POINT_BUDGET[len(place)], Fraction(1, 256))):
         step = 8 * tolerance
         while True:                             # down to where it fails

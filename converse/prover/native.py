@@ -122,51 +122,6 @@ class Grown:
     steps: List[int]                    # of each node; empty if nobody wants them
     cells: List[tuple]
     counts: Counts
-    history: "History"
-
-
-class History:
-    """What became of cells so far, by kinds of cells: see cv_history in csrc/converse.h."""
-
-    def __init__(self, history=None):
-        self.nodes, self.cut, self.became = {}, {}, {}
-        if history is not None:
-            wide, long = lib.CV_CLASSES, lib.CV_LEVELS * lib.CV_CLASSES
-            numbers = ffi.unpack(ffi.cast("int *", history), 2 * long + wide * wide)
-            for k, n in enumerate(numbers):
-                if n:
-                    which, place = divmod(k, long)
-                    (self.nodes, self.cut, self.became)[which][divmod(place, wide)] = n
-
-    def add(self, other):
-        for mine, theirs in ((self.nodes, other.nodes), (self.cut, other.cut),
-                             (self.became, other.became)):
-            for key, n in theirs.items():
-                mine[key] = mine.get(key, 0) + n
-
-    def expected(self, cells):
-        """How many nodes these cells will become, if each fares as those of its kind did on the
-        average: one, and if it is cut, as many as its two halves.  Kinds that were not seen are
-        taken for their like one level deeper."""
-        heirs = {}
-        for (before, after), n in self.became.items():
-            heirs.setdefault(before, []).append((after, n))
-        classes = {kind for _, kind in self.nodes} | set(map(lib.cv_class, {c[2] for c in cells}))
-        size = dict.fromkeys(classes, 1.0)
-        by_level = {}
-        for level in range(lib.CV_LEVELS - 1, -1, -1):
-            deeper, size = size, dict(size)
-            for kind in classes:
-                tried = self.nodes.get((level, kind))
-                cut = self.cut.get((level, kind), 0)
-                if tried:
-                    total = sum(n for _, n in heirs.get(kind, ()))
-                    size[kind] = 1 + (2 * cut / tried * sum(
-                        n * deeper.get(heir, 1.0) for heir, n in heirs[kind]) / total
-                        if total else 0)
-            by_level[level] = size
-        return sum(by_level[min(sum(cuts), lib.CV_LEVELS - 1)][lib.cv_class(hint)]
-                   for _, cuts, hint in cells)
 
 
 def native_text(text, owners):
@@ -248,7 +203,7 @@ class Search:
         text, size = lib.cv_tree(self.handle, size), size[0]
         return Grown(ffi.unpack(text, size).decode("ascii") if size else "",
                      ffi.unpack(lib.cv_steps(self.handle), size) if size and want_steps else [],
-                     *self._state(), History(lib.cv_get_history(self.handle)))
+                     *self._state())
 
     def _state(self):
         pending = ffi.new("cv_cell[]", lib.cv_pending(self.handle, ffi.NULL))

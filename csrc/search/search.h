@@ -32,7 +32,6 @@ struct cv_search {
     int *steps;                         /* of the orbit of each leaf */
     size_t length, capacity;
     cv_counts counts, before;           /* before: as it was when the node at hand was begun */
-    cv_history history;
     double points;                      /* of all orbits that were followed since cv_restart */
     apm_t constants[N_CONSTANTS];
     int depth, stubborn, symmetric, at_once;

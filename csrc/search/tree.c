@@ -165,30 +165,6 @@ static void decide(cv_search *s)
     forget_note(s, n);
 }
 
-/* The class of a cell: logarithmic, two to an octave. */
-int cv_class(int hint)
-{
-    int class = 0;
-
-    for (int bound = 2; class < CV_CLASSES - 1 && hint >= bound; class++)
-        bound = class % 2 == 0 ? bound / 2 * 3 : bound / 3 * 4;
-    return class;
-}
-
-static void decide_and_remember(cv_search *s)
-{
-    const cv_cell *c = &s->stack[s->pending - 1];
-    const int cuts = all_cuts(c), level = cuts < CV_LEVELS ? cuts : CV_LEVELS - 1;
-    const int class = cv_class(c->hint), pending = s->pending;
-
-    decide(s);
-    s->history.nodes[level][class]++;
-    if (s->pending > pending) {
-        s->history.cut[level][class]++;
-        s->history.became[class][cv_class(s->stack[pending].hint)]++;
-    }
-}
-
 static double now(void)
 {
     struct timespec t;
@@ -221,7 +197,7 @@ static void take_step(void *data)
             break;
         }
         s->before = s->counts;
-        decide_and_remember(s);
+        decide(s);
         if (now() >= how->end || cv_stop_get(how->stop))
             break;
     }
@@ -271,7 +247,6 @@ int cv_restart(cv_search *s, int n, const cv_cell *cells)
     s->length = 0;
     s->points = 0;
     memset(&s->counts, 0, sizeof s->counts);
-    memset(&s->history, 0, sizeof s->history);
     s->status = n > 0 ? CV_RUNNING : CV_OK;
     return CV_OK;
 }
@@ -346,7 +321,6 @@ const char *cv_tree(const cv_search *s, size_t *length)
 }
 
 const cv_counts *cv_get_counts(const cv_search *s) { return &s->counts; }
-const cv_history *cv_get_history(const cv_search *s) { return &s->history; }
 const int *cv_steps(const cv_search *s) { return s->steps; }
 int cv_at_once(const cv_search *s) { return s->at_once; }
 void cv_free(char *text) { free(text); }

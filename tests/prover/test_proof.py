@@ -460,29 +460,6 @@ def test_a_long_prism_obeys(problem, proof, monkeypatch):
     assert not result.all_decided and result.tree == "".join(grown) != "" == grown[-1]
 
 
-def test_the_work_left_is_estimated():
-    """Exactly, where cells of a kind fare alike; unseen kinds are taken for their like one
-    deeper."""
-    history = native.History()
-    history.nodes = {(0, 0): 1, (1, 0): 2, (2, 0): 4, (2, 3): 4}
-    history.cut = {(0, 0): 1, (1, 0): 2, (2, 3): 2}
-    history.became = {(0, 0): 2, (0, 3): 1, (3, 3): 2}
-
-    def cell(cuts, hint):
-        return (0,) * 5, (cuts, 0, 0, 0, 0), hint
-
-    assert [native.lib.cv_class(n) for n in (0, 1, 2, 3, 4, 5, 6, 8, 12, 10 ** 9)] == [
-        0, 0, 1, 2, 3, 3, 4, 5, 6, 15]
-    for cells, expected in (([], 0), ([cell(9, 0)], 1), ([cell(2, 0)], 1), ([cell(2, 4)], 2),
-                            ([cell(1, 0)], 1 + 2 * (2 * 1 + 2) / 3), ([cell(1, 4)], 2),
-                            ([cell(2, 4), cell(9, 4), cell(200, 9)], 4)):
-        assert history.expected(cells) == pytest.approx(expected)
-    twice = native.History()
-    twice.add(history)
-    twice.add(history)
-    assert twice.expected([cell(1, 0)]) == history.expected([cell(1, 0)])
-
-
 def test_verify(proof, problem, made_up):
     """The independent checker, from Python; what is not proved it does not verify."""
     result = proof.verify(jobs=2)
