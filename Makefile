@@ -56,7 +56,7 @@ format: $(VENV)/with-test
 
 # A hundred times as many random cases; hours.
 torture: $(VENV)/with-test
-	CONVERSE_TORTURE=100 $(VENV)/bin/pytest $(TWO) tests
+	CONVERSE_TORTURE=100 $(VENV)/bin/pytest $(TWO) --timeout 0 tests
 
 # Makes small mistakes in the core, a sample of them that SEED draws, and sees whether a test notices;
 # half an hour.

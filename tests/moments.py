@@ -2,7 +2,7 @@
 
 import time
 
-PATIENCE = 600                      # seconds: what takes longer hangs
+PATIENCE = 300                      # seconds: a process that takes longer hangs
 
 # The command, that decides so many prisms, makes a file and waits until that is gone, or it is to
 # stop.  Its worker waits, as if it were long at work; there is to be but one.
