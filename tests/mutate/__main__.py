@@ -221,8 +221,8 @@ def failure(test, work):
     """The name of the first test that fails with what was built in work; CRASH, ENDLESS or None."""
     command = [sys.executable, "-m", "pytest", "-x", "-q", "-p", "no:cacheprovider", "--no-header",
                "--rootdir", str(ROOT), "-c", str(ROOT / "pyproject.toml"), str(test)]
-    environment = {**os.environ, "PYTHONPATH": str(work), "PYTHONDONTWRITEBYTECODE": "1",
-                   "CONVERSE_CONSOLE": str(work / "console.so")}
+    environment = {**os.environ, "PYTEST_ADDOPTS": "", "PYTHONPATH": str(work),
+                   "PYTHONDONTWRITEBYTECODE": "1", "CONVERSE_CONSOLE": str(work / "console.so")}
     try:
         done = subprocess.run(command, cwd=work, env=environment, text=True, capture_output=True,
                               timeout=PATIENCE)

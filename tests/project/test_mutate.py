@@ -84,9 +84,10 @@ def test_samples():
         place.key for place in found)
 
 
-def test_a_fatal_mistake_is_caught(tmp_path):
+def test_a_fatal_mistake_is_caught(tmp_path, monkeypatch):
     """And nothing fails with the unchanged core, so that it is the mistake that is noticed; a test
-    that fails anyhow says nothing."""
+    that fails anyhow says nothing.  What the user asks of pytest is not asked of these tests."""
+    monkeypatch.setenv("PYTEST_ADDOPTS", "-m slow")
     base = TOOL["Base"](tmp_path)
     bounding, = (ROOT / "tests").rglob("test_bounding.py")
     assert TOOL["failure"](bounding, base.unchanged) is None
