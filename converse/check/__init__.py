@@ -1,9 +1,10 @@
 """The checker: it verifies the theorem of a proof file, all those of a map, or that of a
 certificate of existence, independently of the program that wrote them.
 
-It shares no code with the prover and imports nothing of the rest of converse; but for numpy, which
-it takes for speed where there is one, it needs nothing but Python.  docs/checker.md has its proof,
-in steps that the modules cite, and a table of the modules.
+It shares no mathematics with the prover and imports nothing of the rest of converse, which uses of
+it how calls run in processes (processes.py).  It needs nothing but Python, and takes numpy for
+speed where there is one.  docs/checker.md has its proof, in steps that the modules cite, and a
+table of the modules.
 """
 
 from .command import main, parser

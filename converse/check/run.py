@@ -18,7 +18,7 @@ from .tori import verify_torus
 from .torus_file import TorusClaim, read_torus
 from .tree import check_mirror_images, check_tree
 from .words import claimed, not_excluded, report
-from .workers import Problems, in_order
+from .workers import Problems, check_all
 
 CHUNKS, CHUNK = 8, 16                   # tasks of a process, about; leaves of one, with --exact
 FAST_CHUNK = 1 << 8, 1 << 14            # least and most of the fast path
@@ -97,7 +97,7 @@ def verify(path, jobs=1, sample=None, state=None, bar=False, exact=False):
     chunks = iter(lambda: list(itertools.islice(queue, size)), [])
     try:
         with Bar(work() if bar else (), len(chosen)) as progress, \
-                contextlib.closing(in_order(chunks, jobs, problems)) as results:
+                contextlib.closing(check_all(chunks, jobs, problems)) as results:
             for n, spent, pieces, failure in results:
                 done.advance(n, pieces)
                 progress.advance(n, spent)

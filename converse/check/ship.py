@@ -19,7 +19,7 @@ FOLDER = os.path.dirname(os.path.abspath(__file__))
 # In the order in which they are read; each needs only those before it.
 SHARED = ("version", "limits", "failures", "claim", "tree", "proof_file", "arith", "cover", "torus",
           "exact", "criterion", "links", "words")
-ORDER = (*SHARED, "lockstep", "maps", "signals", "state", "progress", "workers",
+ORDER = (*SHARED, "lockstep", "maps", "signals", "state", "progress", "processes", "workers",
          "torus_file", "field", "series", "exponential", "tori", "run", "command")
 REFEREE = (*SHARED, "referee")
 MAIN = '''import sys

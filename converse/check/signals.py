@@ -4,7 +4,6 @@ import contextlib
 import signal
 import threading
 
-LOOK_SECONDS = 0.1                      # a signal waits so long at most
 _late = None                            # where signals wait, the number of the one that came
 SIGNALS = [getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP")
            if hasattr(signal, name)]

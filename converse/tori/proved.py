@@ -4,8 +4,10 @@ constants in ball arithmetic, and check the theorem's inequality (docs/existence
 import math
 import os
 import time
+from contextlib import closing
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from functools import partial
 from typing import Any, Callable, Dict, Optional, Sequence, Tuple, Union
 
 import numpy as np
@@ -13,10 +15,10 @@ import numpy as np
 from ..model.exact import exact, rounded_text
 from ..model.problem import Problem
 from ..storage.files import ConverseError
+from ..storage.signals import postponed
 from .constants import Constants, Inverse
 from .divisors import Divisors, Norm, lattice_basis
 from .effort import BYTES, INVERSE, INVERTING, balls, free_memory, proving, some
-from .processes import Processes
 from .residual import LADDER, Grid, Phases, Sizes, residual, wave_vectors
 from .rotation import Rotation
 from .theorem import Bounds, Theorem, Verdict
@@ -231,23 +233,28 @@ def _pieces(tori, choices, memory, jobs, progress):
                                some(sum(map(proving, tori)))))
         return tuple(_Attempt(torus, *choices, memory, tell).run() for torus in tori)
 
+    from ..check.processes import ProcessDied, in_order
+
     seconds, found = list(map(proving, tori)), {}
     order = sorted(range(len(tori)), key=seconds.__getitem__, reverse=True)     # the longest first
-    with Processes(jobs) as processes:
-        for number in order:
-            processes.give(_proved_apart, tori[number], *choices, memory // jobs)
-        tell("proving %d pieces, %d at a time%s" % (
-            len(tori), jobs, some(max(sum(seconds) / jobs, *seconds))))
-        for number, piece in zip(order, processes.results()):
-            found[number] = replace(piece, torus=tori[number])
-            tell("%d of %d pieces are proved" % (len(found), len(tori)))
+    tell("proving %d pieces, %d at a time%s" % (
+        len(tori), jobs, some(max(sum(seconds) / jobs, *seconds))))
+    try:
+        with closing(in_order(partial(_proved_apart, choices, memory // jobs),
+                              [tori[number] for number in order], jobs, postponed)) as pieces:
+            for number, piece in zip(order, pieces):
+                found[number] = replace(piece, torus=tori[number])
+                tell("%d of %d pieces are proved" % (len(found), len(tori)))
+    except ProcessDied:
+        raise ConverseError("a process that worked at a piece died, perhaps for lack of memory; "
+                            "let fewer work at a time (jobs)") from None
     return tuple(found[number] for number in range(len(tori)))
 
 
-def _proved_apart(torus, *others):
-    """A piece, by a process of Processes."""
+def _proved_apart(choices, memory, torus):
+    """Proves a piece in a process of its own."""
     with np.errstate(all="ignore"):
-        return _Attempt(torus, *others, lambda text: None).run()
+        return _Attempt(torus, *choices, memory, lambda text: None).run()
 
 
 def check_cover(tori: Sequence[Torus]) -> None:

@@ -39,7 +39,7 @@ from converse.model.problem import LINE
 from checker import check
 from moments import PATIENCE
 from trees import cells_of, found_tree, halves
-from truth import STRIKE, TORTURE
+from truth import TORTURE
 
 # Of a process without sanitizers, which may import what lies about its file.
 PLAIN = {name: value for name, value in os.environ.items()
@@ -1081,16 +1081,17 @@ def confirmed(state):
     return int(re.search("(?m)^confirmed: (.*)$", state.read_text()).group(1))
 
 
-def test_struck_inside_the_locks_of_the_pool(long, tmp_path):
-    """A signal never fails the check with a RuntimeError of the library."""
-    code = STRIKE + """
+def test_struck_while_a_process_is_begun(long, tmp_path):
+    """Neither the parent nor the process, which has just been made, shows a traceback."""
+    code = """
+import os, signal, sys
 sys.path.insert(0, sys.argv.pop(1))
-from check import main, run
-in_order = run.in_order
-def struck(*args):
-    sys.setprofile(strike)
-    return in_order(*args)
-run.in_order = struck
+from check import main
+def strike(frame, event, arg):
+    if (event, frame.f_code.co_name) in (("call", "_bootstrap"), ("return", "_launch")):
+        sys.setprofile(None)
+        os.kill(os.getpid(), signal.SIGTERM)
+sys.setprofile(strike)
 sys.exit(main())
 """
     path, _ = long
@@ -1132,11 +1133,11 @@ signal.signal(2, signal.SIG_DFL)                # as Python starts and ends
 import sys, time
 sys.path.insert(0, sys.argv.pop(1))
 from check import main, progress, state, workers
-at_once = workers.check_chunk
-def check_chunk(chunk):                         # however fast the machine is
+at_once = workers.Problems.check_chunk
+def check_chunk(*args):                         # however fast the machine is
     time.sleep(0.005)
-    return at_once(chunk)
-check_chunk.__module__, workers.check_chunk = "check.workers", check_chunk
+    return at_once(*args)
+workers.Problems.check_chunk = check_chunk
 state.STATE_SECONDS, progress.LINE_SECONDS = 0.02, 1e9
 advance, most = state.State.advance, float(sys.argv.pop(1))
 def advance_or_wait(self, *more):
@@ -1171,7 +1172,7 @@ sys.exit(main())
         assert "Traceback" not in err and err.count("\n") <= 1
         if out:                                 # it is done, even if struck after its last word
             break
-        if n % 3 and "a worker process died; nothing was verified" in err:
+        if n % 3 and "a worker process died" in err:
             assert process.returncode == 2          # the whole group was struck, a worker first
         else:
             assert process.returncode in (-kind, 128 + kind), err
@@ -1335,11 +1336,25 @@ def test_a_worker_that_dies(deep, run, tmp_path, monkeypatch):
     monkeypatch.setattr(check.Criterion, "excluded", lambda self, cell: (
         os._exit(3) if cell == last else excluded(self, cell)))
     status, out, err = run(deep, "--jobs", "2", "--state", str(tmp_path / "state"), "--exact")
-    assert (status, out) == (2, "") and "a worker process died; nothing was verified" in err
+    assert (status, out) == (2, "")
+    assert "a worker process died, perhaps for lack of memory; nothing was verified\n" in err
     assert err.count("\n") == 1 and 0 < confirmed(tmp_path / "state") <= left
     monkeypatch.undo()
     status, out, err = run(deep, "--jobs", "2", "--state", str(tmp_path / "state"), "--exact")
     assert status == 0 and "earlier run" in out
+
+
+@pytest.mark.skipif(multiprocessing.get_start_method() != "fork", reason="the worker is a copy")
+def test_a_worker_whose_numpy_is_not_sound_uses_integers(np, texts, run, monkeypatch):
+    """However sound it was in the parent."""
+    parent, is_sound = os.getpid(), check.import_numpy_if_sound
+    exact = run(texts["trig278"], "--exact")[1]
+    monkeypatch.setattr(check, "import_numpy_if_sound",
+                        lambda: os.getpid() == parent and is_sound())
+    monkeypatch.setattr(check.Lockstep, "settle", lambda *_: os._exit(3))
+    status, out, err = run(texts["trig278"], "--jobs", "2")
+    assert (status, err) == (0, "")
+    assert re.search("checked : .*", out).group() == re.search("checked : .*", exact).group()
 
 
 def test_a_failure_of_its_own_is_no_success(deep, run, monkeypatch):

@@ -26,7 +26,8 @@ UPWARDS = {("prover.proof", "draw.figure"): "Proof.figure",
            ("tori.torus", "draw.torus_figure"): "Torus._repr_html_",
            ("tori.proved", "draw.torus_figure"): "ProvedTorus._repr_html_",
            ("prover.proof", "prover.proof_file"): "Proof.load, Proof.save",
-           ("tori.proved", "tori.certificate"): "ProvedTorus.save"}
+           ("tori.proved", "tori.certificate"): "ProvedTorus.save",
+           ("tori.proved", "check.processes"): "prove, whose pieces are proved in processes"}
 
 PACKAGE = ROOT / "converse"
 

@@ -1,5 +1,6 @@
 """Pieces of a range that are proved at the same time, in processes of their own."""
 
+import multiprocessing
 import os
 import signal
 import subprocess
@@ -9,12 +10,12 @@ from dataclasses import replace
 
 import pytest
 
+from converse.check import processes
 from converse.model.problem import Problem
 from converse.storage.files import ConverseError
 from converse.tori import proved
 from converse.tori.effort import proving, some
 from converse.tori.find import find
-from converse.tori.processes import Processes
 from converse.tori.proved import NotProved, prove
 from converse.tori.rotation import read_rotation
 
@@ -55,19 +56,24 @@ def test_no_jobs_are_refused(pieces):
         prove(pieces, jobs=0)
 
 
-def test_a_process_that_dies_is_told():
-    with pytest.raises(ConverseError, match="died, perhaps for lack"), Processes(2) as processes:
-        processes.give(os._exit, 1)
-        list(processes.results())
+def test_a_process_that_dies_is_told(pieces, monkeypatch, tmp_path):
+    """In the midst of its work, while the other one works, too."""
+    class Attempt:
+        def __init__(self, torus, *_):
+            self.at = int(torus.piece[0] != -1)
 
+        def run(self):
+            (tmp_path / str(self.at)).touch()
+            while not (tmp_path / str(1 - self.at)).exists():
+                time.sleep(0.005)
+            if self.at == 0:
+                os.kill(os.getpid(), signal.SIGKILL)
+            time.sleep(600)
 
-def test_an_error_does_not_wait_for_the_others():
-    began = time.monotonic()
-    with pytest.raises(ZeroDivisionError), Processes(2) as processes:
-        processes.give(divmod, 1, 0)
-        processes.give(time.sleep, 600)
-        list(processes.results())
-    assert time.monotonic() - began < 300
+    monkeypatch.setattr(proved, "_Attempt", Attempt)
+    with pytest.raises(ConverseError, match="died, perhaps for lack of memory; let fewer work"):
+        prove(pieces, jobs=2)
+    assert not multiprocessing.active_children()
 
 
 def test_memory_is_shared(pieces, monkeypatch):
@@ -80,14 +86,11 @@ def test_memory_is_shared(pieces, monkeypatch):
         def run(self):
             raise NotProved("enough")
 
-    class Here(Processes):
-        """Calls in this process."""
-
-        def give(self, call, *arguments):
-            call(*arguments)
+    def here(call, items, jobs, postponed):
+        yield from map(call, items)
 
     monkeypatch.setattr(proved, "_Attempt", Attempt)
-    monkeypatch.setattr(proved, "Processes", Here)
+    monkeypatch.setattr(processes, "in_order", here)
     with pytest.raises(NotProved):
         prove(pieces, jobs=2, memory=10 ** 9)
     with pytest.raises(NotProved):
