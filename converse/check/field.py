@@ -141,11 +141,12 @@ class Field:
         return value
 
     def in_units(self, element, bits):
-        """An integer within 1 of 2^bits times the element."""
+        """An integer within 3/4 of 2^bits times the element: the middle of an interval shorter than
+        1/2 is within 1/4, and rounding adds 1/2 at most."""
         for more in (64, 512, 2048, 8192):
             low, high = [x * 2 ** bits for x in self.interval(element, bits + more)]
             if high - low < Fraction(1, 2):
-                return math.floor(low)
+                return round((low + high) / 2)
         raise NotConfirmed("the rotation vector has too large coefficients for this checker")
 
     def product(self, x, y):
@@ -379,7 +380,7 @@ class Divisors:
             length = self.norm(combination(m, self.norm.basis))
             if not 0 < length <= radius:
                 continue
-            near -= sum(map(abs, m))
+            near -= sum(map(abs, m))    # each step is off by less than a unit
             # 2 sin(pi x) >= 4 x up to 1/2: most k need no more than this.
             if near * length ** n >= limit:
                 continue

@@ -515,8 +515,8 @@ class Residual:
     """A bound of ||E(u)|| for the torus cut at |k| = near and rounded, and of ||e^(i k.x)|| for
     the waves.
 
-    polynomial: the norm of the computed part of E; radius: of what it may be off by;
-    difference: the norm of what was cut and rounded off u.
+    polynomial: the norm of the computed part of E; radius: a bound of its error; bounds: of each
+    wave (|p|, |k|_2, a bound of ||e^(i k.x)||).
     """
 
     def __init__(self, torus, ring, near):

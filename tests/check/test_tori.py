@@ -490,7 +490,20 @@ def test_roots_are_enclosed(bits):
                                         * t ** j for j, x in enumerate(element))
                 found = one.in_units(tuple(map(Fraction, element)) + (Fraction(0),) * (
                     one.degree - 2), bits)
-                assert abs(found - exact) < 1
+                assert abs(found - exact) < 0.75
+
+
+def test_a_wide_enclosure_is_within_three_quarters():
+    """Its low end is just below an integer, and the element nearly half a unit above that end."""
+    one = field.Field((-1, 1, 1), Fraction(0), Fraction(1))
+    factor, errors = Fraction(31, 16) * 2 ** 62, []
+    for bits in range(32):
+        low = one.interval((Fraction(0), factor), bits + 64)[0] * 2 ** bits
+        rest = (math.floor(low) - low - Fraction(1, 1 << 20)) / 2 ** bits
+        found = one.in_units((rest, factor), bits)
+        exact = one.interval((rest, factor), 400)[0] * 2 ** bits
+        errors.append(abs(found - exact))
+    assert max(errors) <= Fraction(3, 4)
 
 
 def test_norms_have_the_common_denominator():
