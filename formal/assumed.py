@@ -38,7 +38,7 @@ def others(numbers, said):
     kinds = list(lists)
     may = sum([lists[kind] for kind in kinds[:kinds.index(numbers) + 1]], [])
     # Coq prints only as much of a name as tells it from others.  So a file in Coq's folder Converse
-    # could have the name of a library that is not loaded, and its axioms, too.
+    # could have the name of a library that is not loaded, and axioms of the names that are listed.
     names = set(re.findall(r"(\w+)(?=\.\w)", " ".join(sum(lists.values(), []))))
     namesakes = ["a library of the name " + library for library in answer[1].split()
                  if library.startswith("Converse.") and library.rpartition(".")[2] in names]

@@ -30,12 +30,15 @@ let refuse form = fail unusable "" form
 
 (* ---- exact numbers: Coq's own, to and from text and doubles *)
 
+(* Of a word without a sign, as -min_int is one. *)
 let rec positive_of n =
-  if n = 1 then XH else if n land 1 = 0 then XO (positive_of (n / 2)) else XI (positive_of (n / 2))
+  if n = 1 then XH
+  else if n land 1 = 0 then XO (positive_of (n lsr 1)) else XI (positive_of (n lsr 1))
 
 let z_of n = if n = 0 then Z0 else if n > 0 then Zpos (positive_of n) else Zneg (positive_of (-n))
 let ten = z_of 10
-let rec power_of_10 n = if n = 0 then z_of 1 else Z.mul ten (power_of_10 (n - 1))
+let rec power z n = if n = 0 then z_of 1 else Z.mul z (power z (n - 1))
+let power_of_10 = power ten
 
 (* m / n *)
 let ratio m = function
@@ -110,16 +113,26 @@ let text_of_ratio x =
   let x = qred x in
   text_of_z x.qnum ^ (if x.qden = XH then "" else "/" ^ text_of_z (Zpos x.qden))
 
-(* A finite decimal, exactly. *)
+(* The exponents of 2 and 5 in a number that has no other prime factors. *)
+let rec twos_and_fives = function
+  | XO p -> let twos, fives = twos_and_fives p in twos + 1, fives
+  | p ->
+    let rec fives n z = if Z.compare z (Zpos p) = Lt then fives (n + 1) (Z.mul (z_of 5) z) else n in
+    0, fives 0 (z_of 1)
+
+(* A finite decimal, exactly, without zeros at its end. *)
 let text_of x =
-  let rec places n x = if (qred x).qden = XH then n, (qred x).qnum
-    else places (n + 1) (qmult x (whole 10)) in
-  let places, digits = places 0 (absolute x) in
+  let twos, fives = twos_and_fives x.qden in
+  let places = max twos fives in
+  let digits = Z.mul (absolute x).qnum
+      (Z.mul (power (z_of 2) (places - twos)) (power (z_of 5) (places - fives))) in
   let digits = text_of_z digits in
   let digits = String.make (max 0 (places + 1 - String.length digits)) '0' ^ digits in
   let point = String.length digits - places in
+  let rec last k = if k > point && digits.[k - 1] = '0' then last (k - 1) else k in
+  let last = last (String.length digits) in
   (if less x (whole 0) then "-" else "") ^ String.sub digits 0 point ^
-  (if places = 0 then "" else "." ^ String.sub digits point places)
+  (if last = point then "" else "." ^ String.sub digits point (last - point))
 
 (* ---- the file *)
 
@@ -302,13 +315,15 @@ let find text data start =
       Option.bind (String.index_from_opt data (i + 1) text.[0]) from in
   Option.bind (String.index_from_opt data start text.[0]) from
 
-(* The text in pieces, between which another text stood. *)
-let rec split_at separator text =
-  match find separator text 0 with
-  | None -> [text]
-  | Some at ->
-    let from = at + String.length separator in
-    String.sub text 0 at :: split_at separator (String.sub text from (String.length text - from))
+(* The text in pieces, between which another text stood: so many at most, of which the last is the
+   rest. *)
+let split_at separator most text =
+  let rec pieces count start =
+    match if count = most then None else find separator text start with
+    | None -> [String.sub text start (String.length text - start)]
+    | Some at ->
+      String.sub text start (at - start) :: pieces (count + 1) (at + String.length separator) in
+  pieces 1 0
 
 (* The tree of a text without lines, if it is whole and decided, with the depth of its deepest leaf,
    and of its deepest leaf P.  Leaves may be linked to the parts from the one of number `first` on. *)
@@ -375,7 +390,8 @@ let sha256 data = Sha256.(to_hex (string data))
 (* The claim, and what follows the header: a tree, and perhaps parts. *)
 let file_of version claim counted text sha256 =
   let parameters = List.length (List.hd claim.of_patch).parts in
-  let first, parts = match if version > 3 then split_at "\npart: " ("\n" ^ text) else [text] with
+  let most = String.length letters + 2 in       (* the claim's own tree, and one part too many *)
+  let first, parts = match if version > 3 then split_at "\npart: " most ("\n" ^ text) else [text] with
     | first :: parts -> String.concat "" (String.split_on_char '\n' first), parts
     | [] -> "", [] in
   let count = List.length parts in
@@ -793,17 +809,29 @@ let nearest waves count =
   for _ = 1 to 4 do Array.iteri (fun m _ -> descend m) t done;
   List.map (fun x -> billionths (1e9 *. x)) (Array.to_list t)
 
-(* Where a linked leaf may lead out of the region that it is linked to; Coq has refused it. *)
+(* Where a linked leaf may lead out of the region that it is linked to; Coq has refused it.  It is named by
+   its number among the leaves that are linked to the same part. *)
 let rec blame_links hints = function
   | [] -> ()
-  | { name; its; tree; linked; _ } :: later ->
-    let leads = linked_ok its hints (List.map (fun tree -> tree.its) later) and seen = ref 0 in
-    let good k cell =
-      incr seen;
-      leads k cell || beyond "%slinked leaf %d of %d is linked to %s, but may lead out of its region"
-        (if name = "" then "" else name ^ ": ") !seen linked (List.nth later (number_of k)).name in
-    ignore (all_links good (root (axes its)) tree);
+  | { name; its; tree; _ } :: later ->
+    let leads = linked_ok its hints (List.map (fun tree -> tree.its) later) and seen = ref [] in
+    let visit f =
+      seen := [];
+      ignore (all_links (fun k cell -> seen := k :: !seen; f k cell) (root (axes its)) tree) in
+    visit (fun _ _ -> true);
+    let all = !seen and count k found = List.length (List.filter ((=) k) found) in
+    visit (fun k cell ->
+        leads k cell || beyond "%slinked leaf %d of %d is linked to %s, but may lead out of its region"
+          (if name = "" then "" else name ^ ": ") (count k !seen) (count k all)
+          (List.nth later (number_of k)).name);
     blame_links hints later
+
+(* Is it so large that no double is?  For a sum Coq multiplies denominators, and reduces nothing. *)
+let overflows x =
+  let is_large = function
+    | Zpos p -> snd (scaled p) > 1023
+    | _ -> false in
+  is_large (absolute x).qnum || is_large (Zpos x.qden)
 
 (* Tells what is false from what is beyond the checker, where Coq has refused the header. *)
 let blame hints { claim; trees; _ } =
@@ -826,6 +854,12 @@ let blame hints { claim; trees; _ } =
       if below there (ratio (z_of 10) (z_of 3)) then
         reject "larger parameters are not excluded at once: B <= 10/3 for some";
       ", or that larger parameters are excluded at once" in
+  let sum w = List.fold_left (fun x g -> qplus x (absolute g)) (absolute w.middle) w.parts in
+  List.iteri (fun i w ->
+      if List.mem w (felt claim.of_alone patch) && overflows (sum w) then
+        beyond "the header's wave %d: the amplitude and its parts have too many digits: the fraction \
+                that is their sum has a numerator or denominator above 1.8e308, the checker's limit"
+          (i + 1)) patch;
   beyond "the bound B%s" larger
 
 let verify options path =
@@ -851,8 +885,9 @@ let verify options path =
      let { name; proved; _ }, n = located (int_of_string number) file.trees in
      beyond "%sproved leaf %d of %d is not excluded; the claim is false or its proof beyond the \
              limits of this checker" (if name = "" then "" else name ^ ": ") (1 + n) proved);
+  let said = String.concat "\n" (report file hints total (options.sample <> None)) in
   ignore_signals ();                            (* the last word is to be the only one *)
-  print_endline (String.concat "\n" (report file hints total (options.sample <> None)));
+  print_endline said;
   if options.sample <> None then spot_check
   else if file.claim.of_whole then verified else part
 

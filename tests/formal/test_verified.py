@@ -7,6 +7,7 @@ import math
 import os
 import random
 import re
+import resource
 import signal
 import subprocess
 import time
@@ -273,6 +274,17 @@ def test_links_are_for_the_parameters_of_their_leaf(tmp_path):
     assert agree(tmp_path, version4.file_of(**{**link, "tree": whole})) == NOT_CONFIRMED
 
 
+def test_linked_leaves_are_numbered_as_the_other_checker_numbers_them(links, tmp_path):
+    """Among those that are linked to the same part."""
+    tree = links[1]["tree"]
+    at = tree.rindex("P")
+    assert tree.index("a") < at
+    (_, said), (_, _, err) = both(tmp_path, version4.file_of(
+        **{**links[1], "tree": tree[:at] + "b" + tree[at + 1:]}))
+    assert said.startswith("not confirmed: linked leaf 1 of 1 (")
+    assert ": not confirmed: linked leaf 1 of 1 is linked to part b, but " in err
+
+
 @pytest.mark.parametrize("name", version4.STICKS_OUT)
 def test_links_that_lead_out(links, tmp_path, name):
     """As the other checker says; the file that these changes were made for is beyond this one."""
@@ -285,6 +297,20 @@ def test_wrong_parts(links, tmp_path, name):
     path.write_text(version4.WRONG_STRUCTURE[name][0](links[1]), newline="")
     status, out, err = run(path)
     assert (status, out, err.count("\n")) == (REJECTED, "", 1), err
+
+
+def test_thousands_of_parts(tmp_path):
+    """Too many parts are rejected before the text is divided among them."""
+    text = version4.file_of("P").replace("checksum: ", "part: \n" * 20000 + "checksum: ")
+    (tmp_path / "proof").write_text(sealed(text))
+    assert limited(resource.RLIMIT_AS, 1 << 29, tmp_path / "proof") == (
+        REJECTED, "", "converse-verified: %s: rejected: there are more parts than letters\n"
+        % (tmp_path / "proof"))
+
+
+def limited(kind, limit, *arguments):
+    """As run, with a limit on what the process may use."""
+    return run(*arguments, preexec_fn=lambda: resource.setrlimit(kind, (limit, limit)))
 
 
 # ---- regions that move with the parameters: format 5
@@ -628,6 +654,32 @@ def test_numbers(texts, tmp_path):
         text = "1 0 0 %se%+d 0.00125" % (digits, e)
         assert agree(tmp_path, with_field(texts["version 3"], "wave", text)) \
             in (VERIFIED, NOT_CONFIRMED)
+
+
+def test_numbers_of_hundreds_of_digits(texts, tmp_path):
+    """They are printed fast.  Beyond the limit of an amplitude and its parts, this is said."""
+    waves = ["1 0 0 0.31 1e-%d", "0 1 0 0.31 1e-300", "1 1 0 0.62 1e-300"]
+
+    def text(exponent):
+        return with_waves(texts["version 3"], [waves[0] % exponent, *waves[1:]], "P", at_once="no",
+                          odd_about="no")
+
+    assert agree(tmp_path, text(306)) == VERIFIED
+    assert limited(resource.RLIMIT_CPU, 3, tmp_path / "proof")[0] == VERIFIED
+    (tmp_path / "proof").write_text(text(307))
+    status, out, err = run(tmp_path / "proof")
+    assert (status, out) == (NOT_CONFIRMED, "")
+    assert ": not confirmed: the header's wave 1: the amplitude and its parts have too many " in err
+
+
+def test_a_hint_that_is_the_least_of_the_integers(texts, tmp_path):
+    """B in units of 10^-9 is 2^62, one more than OCaml's largest integer."""
+    text = with_waves(texts["version 3"], ["1 0 0 4611681404.7459822", "0 1 0 0.1"], "P",
+                      at_once="no", odd_about="no")
+    (tmp_path / "proof").write_text(text)
+    assert run(tmp_path / "proof") == (
+        NOT_CONFIRMED, "", "converse-verified: %s: not confirmed: the bound B\n"
+        % (tmp_path / "proof"))
 
 
 def test_gzip(texts, tmp_path):
