@@ -6,9 +6,6 @@ docs/orbits-proof.md has the theorems.  The Hessian of the action is that of a c
 beta_j = 2 - eps V''(x_j), and -1 between neighbours, cyclically.
 """
 
-import os
-import threading
-from contextlib import contextmanager
 from fractions import Fraction
 
 from flint import arb, arb_mat, ctx, fmpq, fmpz
@@ -18,35 +15,11 @@ from .potential import look_up
 
 BITS = 64                   # of the balls' midpoints, beyond the decimal places asked for
 ASK = 256                   # points dealt with before Ctrl-C is looked for
-_turn = threading.Lock()    # held by the one proof that is under way
 
 
-def _fresh():
-    global _turn
-    _turn = threading.Lock()
-
-
-os.register_at_fork(after_in_child=_fresh)      # whoever held it is not there
-
-
-@contextmanager
-def alone():
-    """The precision of python-flint is one number for all threads: one proof at a time sets it, and
-    sets it back.  Balls are right at any precision; with a lower one they are only wider."""
-    with _turn:
-        before = ctx.prec
-        try:
-            yield
-        finally:
-            ctx.prec = before
-
-
-@contextmanager
-def with_digits(digits):
-    """Alone, and with so many decimal places."""
-    with alone():
-        ctx.prec = digits * 3322 // 1000 + BITS
-        yield
+def bits_of(places):
+    """The precision in which balls have so many decimal places, and some to spare."""
+    return places * 3322 // 1000 + BITS
 
 
 # ---- numbers
@@ -207,7 +180,7 @@ class Enclosure:
         n, q, u = self.n, self.q, self.u
         self.begin(places)
         if places != self.places:
-            ctx.prec = places * 3322 // 1000 + BITS
+            ctx.prec = bits_of(places)
             self.places, self.ulp = places, ball(Fraction(1, 10 ** places))
             self.local = self.law(self.potential, places + BITS // 3)
         eps = ball(self.eps)

@@ -87,10 +87,11 @@ class ProvedOrbit:
         where the multipliers l are not known to be real.  Exact numbers of many digits."""
         if not self.sign:
             return None
-        from .enclosure import ball, lower, upper, with_digits
+        from ..model.balls import precision
+        from .enclosure import ball, bits_of, lower, upper
 
         found = []
-        with with_digits(KEPT):
+        with precision(bits_of(KEPT)):
             for ends in self.exponents:             # l + 1/l grows with |l|
                 low, high = (2 * (self.state.q * ball(end)).cosh() for end in ends)
                 found.append(sorted((self.sign * lower(low), self.sign * upper(high))))
@@ -155,7 +156,7 @@ def prove(state: State, digits: Optional[int] = None, descend: bool = False,
         raise ValueError("digits is a number from 1 to %d, not %r" % (MOST - 2 * GUARD, digits))
     if state.eps == 0:
         raise NotProved("without a perturbation, at eps 0, no orbit is isolated")
-    alone, Enclosure, growth = balls()
+    precision, Enclosure, growth = balls()
     potential = state.potential
     if potential.native.kind == lib.CV_PYTHON:
         raise ValueError("nothing can be proved of the potential %s: only Fourier sums, poly "
@@ -173,7 +174,7 @@ def prove(state: State, digits: Optional[int] = None, descend: bool = False,
                         "of the action")
     places, most = wanted + 2 * GUARD, min(MOST, wanted + 2 * GUARD + MORE)
     orbit, reason = None, None
-    with alone():
+    with precision():
         exact = Enclosure(state, Fraction(_eps(state)), progress)
         while True:
             try:
@@ -193,12 +194,13 @@ def prove(state: State, digits: Optional[int] = None, descend: bool = False,
 def balls():
     """What needs python-flint, and is imported when something is to be proved."""
     try:
-        from .enclosure import Enclosure, alone
+        from ..model.balls import precision
+        from .enclosure import Enclosure
         from .exponents import growth
     except ImportError as error:
         raise ConverseError("proving orbits needs python-flint (%s); pip install "
                             "'converse-kam[orbits]'" % error) from None
-    return alone, Enclosure, growth
+    return precision, Enclosure, growth
 
 
 class _TooFewPlaces(Exception):

@@ -15,8 +15,9 @@ import numpy as np
 from flint import arb, arb_mat
 
 from .._native import lib
+from ..model.balls import precision
 from ..model.exact import Ends, interval_text, rounded, rounded_text
-from .enclosure import Enclosure, alone, ball, lower, points, square, upper
+from .enclosure import Enclosure, ball, lower, points, square, upper
 from .exponents import growth
 from .minimax import Pair, gap_of
 from .potential import address, told, whole
@@ -96,7 +97,7 @@ def prove_pair(pair, digits=None, progress=None):
     minimum, reason = prove(pair.minimum, digits, progress=progress), ""
     first = digits + 2 * GUARD
     for places in range(first, min(first + 2 * MORE, MOST + 1), MORE // 5):
-        with alone():
+        with precision():
             exact = Enclosure(pair.minimax, Fraction(_eps(pair.minimax)), progress)
             try:
                 found = _Pass(pair, minimum, exact, digits, places).proved()

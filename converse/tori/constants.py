@@ -22,9 +22,10 @@ from typing import Any, List, Optional, Tuple
 import numpy as np
 from flint import acb, arb
 
+from ..model.balls import precision
 from .divisors import Norm
 from .residual import (TINY, ZERO, Columns, Grid, Layers, Sizes, frame_modes, gather, packed, pairs,
-                       precision, rotation_balls, turns, unpacked, values, wave_vectors)
+                       rotation_balls, turns, unpacked, values, wave_vectors)
 from .torus import Torus
 
 BITS = 64                   # of the balls: the constants are needed to a per cent

@@ -14,6 +14,7 @@ from typing import Iterator, List, Optional, Tuple
 
 import numpy as np
 
+from ..model.balls import precision
 from ..model.exact import Number, exact, short_text
 from .divisors import Divisors, Norm
 from .field import Element, Field, real_roots
@@ -63,7 +64,8 @@ def near(w0: Number, w1: Optional[Number] = None, norm: Optional[Norm] = None,
         if any(low < w - within or high > w + within
                for (low, high), w in zip(rotation.turns(30), target)):
             continue
-        c = Divisors(rotation, norm, basis, min(10 / delta, Fraction(REACH))).c(delta)
+        with precision():
+            c = Divisors(rotation, norm, basis, min(10 / delta, Fraction(REACH))).c(delta)
         if least is None or c < least:
             best, least = rotation, c
     if best is None:

@@ -12,6 +12,7 @@ from typing import Any, Callable, Dict, Optional, Sequence, Tuple, Union
 
 import numpy as np
 
+from ..model.balls import precision
 from ..model.exact import exact, rounded_text
 from ..model.problem import Problem
 from ..storage.files import ConverseError
@@ -231,7 +232,7 @@ def _pieces(tori, choices, memory, jobs, progress):
     if jobs == 1:
         tell("proving %s%s" % ("the torus" if len(tori) == 1 else "%d pieces" % len(tori),
                                some(sum(map(proving, tori)))))
-        return tuple(_Attempt(torus, *choices, memory, tell).run() for torus in tori)
+        return tuple(_proof(torus, choices, memory, tell) for torus in tori)
 
     from ..check.processes import ProcessDied, in_order
 
@@ -254,7 +255,12 @@ def _pieces(tori, choices, memory, jobs, progress):
 def _proved_apart(choices, memory, torus):
     """Proves a piece in a process of its own."""
     with np.errstate(all="ignore"):
-        return _Attempt(torus, *choices, memory, lambda text: None).run()
+        return _proof(torus, choices, memory, lambda text: None)
+
+
+def _proof(torus, choices, memory, tell):
+    with precision():
+        return _Attempt(torus, *choices, memory, tell).run()
 
 
 def check_cover(tori: Sequence[Torus]) -> None:

@@ -25,15 +25,15 @@ neither shifted nor differentiated.
 
 import math
 from array import array
-from contextlib import contextmanager
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
 from typing import Any, Callable, Dict, Iterator, List, Mapping, Sequence, Tuple
 
 import numpy as np
-from flint import acb, arb, ctx, fmpq
+from flint import acb, arb, fmpq
 
+from ..model.balls import precision
 from .divisors import Norm
 from .torus import Torus
 
@@ -44,16 +44,6 @@ TINY = 2.0 ** -1000         # above what underflows lose
 ROUND = 1 << 30             # denominator of the widths that are tried
 Columns = Mapping[Tuple[int, int], List[acb]]        # (q1, j): the coefficients over q0
 Layers = List[List[acb]]                             # of each sigma, the values of a line
-
-
-@contextmanager
-def precision(bits: int):
-    """Balls have midpoints of so many bits in this context.  The number is one for all threads."""
-    before, ctx.prec = ctx.prec, bits
-    try:
-        yield
-    finally:
-        ctx.prec = before
 
 
 def ball(x: Fraction) -> arb:

@@ -13,9 +13,10 @@ from typing import Any, Callable, Iterator, NamedTuple, Optional, Sequence, Tupl
 
 from flint import arb
 
+from ..model.balls import precision
 from .constants import Constants
 from .divisors import Divisors
-from .residual import Phases, above, ball, precision
+from .residual import Phases, above, ball
 
 BITS = 96
 NARROW = 100                            # rho/rho_inf

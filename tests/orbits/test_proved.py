@@ -20,6 +20,7 @@ import pytest
 from flint import arb, arb_mat, ctx, fmpq
 
 from converse import ConverseError, orbits
+from converse.model.balls import precision
 from converse.orbits import enclosure, potential
 from converse.orbits.enclosure import Enclosure
 from converse.orbits.exponents import growth
@@ -502,7 +503,7 @@ def test_a_thread_ends_when_it_is_told():
         except KeyboardInterrupt:
             ended.append(True)
 
-    with enclosure.alone():                     # it waits for its turn
+    with precision():                           # it waits for its turn
         thread = threading.Thread(target=run)
         thread.start()
         begun.wait()
@@ -625,7 +626,7 @@ def test_potentials():
         for _ in range(40 * TORTURE):
             base = [Fraction(rng.choice([rng.randrange(97), 0, 97, 48]), 97) for _ in range(ours.n)]
             u = [rng.choice([rng.uniform(-1, 1), 0.0, 0.5, 0.25, -1e-30]) for _ in range(ours.n)]
-            with enclosure.alone():
+            with precision():
                 ctx.prec = 200
                 local = Enclosure(state, Fraction(1)).law(ours, 60)
                 found = local([fmpq(x.numerator, x.denominator) for x in base],
@@ -675,7 +676,7 @@ def enclosed(state):
 def few(monkeypatch):
     """Balls hardly better than an ulp."""
     monkeypatch.setattr(enclosure, "BITS", 7)
-    with enclosure.alone():
+    with precision():
         yield
 
 
@@ -843,7 +844,7 @@ def test_negative_blocks():
                             ("standard", (0,), 1, 9.0)):
         state = orbits.straight(given(name), p, q, (0.0,) * len(p))
         exact, m = enclosed(replace(state, eps=eps)), Fraction(1, 10**5)
-        with enclosure.alone():
+        with precision():
             exact.evaluate(30)
             assert not exact.bends(Fraction(0)) and not exact.least(m)
             assert growth(exact, m, m / 10) is None

@@ -9,12 +9,13 @@ import numpy as np
 import pytest
 from flint import acb
 
+from converse.model.balls import precision
 from converse.model.potential import FourierSum
 from converse.tori.constants import Inverse
 from converse.tori.divisors import Norm
 from converse.tori.effort import BYTES, INVERTING
-from converse.tori.residual import (Grid, Phases, coefficients, frame_modes, hermite, precision,
-                                    residual, values, wave_vectors)
+from converse.tori.residual import (Grid, Phases, coefficients, frame_modes, hermite, residual,
+                                    values, wave_vectors)
 from converse.tori.rotation import read_rotation
 from converse.tori.torus import Torus
 

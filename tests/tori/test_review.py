@@ -10,13 +10,14 @@ import numpy as np
 import pytest
 from flint import arb
 
+from converse.model.balls import precision
 from converse.model.potential import FourierSum
 from converse.tori import constants
 from converse.tori.constants import Constants, Inverse, spectral
 from converse.tori.divisors import Divisors, Norm
 from converse.tori.proved import check_cover, prove
 from converse.tori.residual import (MOST, SLACK, Grid, Phases, Sizes, above, amplitudes, between,
-                                    precision, residual, rotation_balls)
+                                    residual, rotation_balls)
 from converse.tori.rotation import read_rotation
 from converse.tori.theorem import Bounds, Choice, Numbers, Theorem, holds
 from converse.tori.torus import Torus
