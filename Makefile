@@ -83,7 +83,7 @@ memcheck: $(VENV)/installed
 # and sanitizers find nothing in Python, nor in figures, reports or the texts of roundings.  Linked
 # proofs are many ordinary searches.
 SANITIZED_TESTS = $(addprefix tests/, arith loewner orbits prover search thesis) \
-    $(addprefix --ignore=tests/, orbits/test_orbit_figures.py orbits/test_pictures.py loewner/test_margins.py \
+    $(addprefix --ignore=tests/, orbits/test_pictures.py loewner/test_margins.py \
     prover/test_links.py prover/test_report.py)
 
 # Safe path: the clone, where this starts, holds a core without sanitizers.

@@ -63,10 +63,6 @@ int cv_relax(const cv_potential *v, long q, double eps, const double (*base)[2],
    since the pivots up to there are those of its Hessian with the other points held fixed. */
 long cv_pivots(int n, long q, const double (*beta)[3], long max_rounds, double (*d)[3]);
 
-/* The count closest pairs of q points on the torus, closest first.  Returns how many there are, or
-   CV_ESTOPPED. */
-long cv_pairs(int n, long q, const double (*x)[2], long count, long *i, long *j, double *distance);
-
 /* ---- the least action over all orbits: minplus.c */
 
 /* What cv_evaluate may be off by, in V, its gradient and its Hessian (Euclidean and spectral norm),

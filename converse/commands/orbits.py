@@ -1,4 +1,4 @@
-"""The command: converse-orbits find | sweep | figures."""
+"""The command: converse-orbits find | sweep."""
 
 import argparse
 import concurrent.futures
@@ -195,7 +195,7 @@ def parser():
     p.add_argument("--version", action="version", version="%s %s" % (COMMAND, __version__))
     commands = p.add_subparsers(metavar="COMMAND", required=True)
 
-    made = [p, _find_parser(commands), _sweep_parser(commands), _figures_parser(commands)]
+    made = [p, _find_parser(commands), _sweep_parser(commands)]
     for each in made:                           # -12,16/21 is no option, nor is -0.02:0:0.01
         each._negative_number_matcher = re.compile(r"-\.?\d")
     return p
@@ -259,19 +259,6 @@ def _sweep_parser(commands):
                        help="work on N types at a time (default: one per core)")
     sweep.set_defaults(run=sweep_types)
     return sweep
-
-
-def _figures_parser(commands):
-    figures = commands.add_parser(
-        "figures", allow_abbrev=False, epilog=STATUS, help="draw the thesis's figures",
-        description="Computes and draws the figures of the thesis's chapter 2 and Appendix A, and "
-        "the standard map's of chapter 1.")
-    figures.add_argument("directory", metavar="DIR", help="where to write them")
-    figures.add_argument("--format", choices=plot.FORMATS, default=plot.FORMATS[0],
-                         help="of the figures")
-    figures.add_argument("--no-caption", action="store_true", help="leave out the captions")
-    figures.set_defaults(run=draw_figures)
-    return figures
 
 
 # ---- what is said
@@ -463,14 +450,6 @@ def sweep_types(options):
     return 1 if lost else 0
 
 
-def draw_figures(options):
-    from ..orbits.figures import figures
-
-    figures(options.directory, kind=options.format, caption=not options.no_caption,
-            progress=lambda path: say("written: %s\n" % plain(path)))
-    return 0
-
-
 def run(options):
     from converse import orbits
 
@@ -487,9 +466,7 @@ def main(argv=None):
 
     def interrupted():
         return {find_states: "no table, points or figure is written",
-                sweep_types: "the same command continues it",
-                draw_figures: "the figures that were finished are kept"}.get(options.run,
-                                                                             "nothing was begun")
+                sweep_types: "the same command continues it"}.get(options.run, "nothing was begun")
 
     return ended(COMMAND, lambda: run(parser().parse_args(argv, options)), interrupted)
 

@@ -11,7 +11,6 @@ try:
     from .action import enclosed_action
     from .branch_and_bound import LeastAction, least_action
     from .mather import Floor, floor
-    from .measures import Prelude, prelude
     from .minimax import Pair
     from .points import load
     from .potential import (Fourier, FromPython, Potential, ff, froeschle, parameters, poly,
@@ -33,7 +32,7 @@ except ImportError as _error:           # said when something is asked for: the 
         raise ConverseError(_MISSING)
 
 __all__ = ["Family", "Floor", "Fourier", "FromPython", "LeastAction", "NotProved", "Onset", "Pair",
-           "Potential", "Prelude", "ProvedOrbit", "State", "enclosed_action", "ff", "floor",
+           "Potential", "ProvedOrbit", "State", "enclosed_action", "ff", "floor",
            "follow", "froeschle", "least_action", "load", "onset", "onsets", "parameters", "poly",
-           "prelude", "prove", "read_csv", "read_potential", "search", "standard", "straight",
+           "prove", "read_csv", "read_potential", "search", "standard", "straight",
            "sweep", "trig"]

@@ -84,6 +84,35 @@ class Pairs(NamedTuple):
     momentum: np.ndarray
 
 
+def closest_pairs(x, count):
+    """The `count` closest pairs of points x (q, n) on the torus: indices i, j and distances, the
+    closest first.
+
+    In the order of the first angle each point is compared with its next, second, ... neighbour to
+    the right, round the torus, until that angle alone is farther than the widest pair kept.  Each
+    pair is met from the end that has the other within half a turn to its right."""
+    x = x - np.floor(x)
+    order = np.argsort(x[:, 0], kind="stable")
+    x, q = x[order], len(x)
+    i, j, square = np.zeros(0, int), np.zeros(0, int), np.zeros(0)
+    for offset in range(1, q if count else 1):
+        left = np.arange(q)
+        right = (left + offset) % q
+        gap = x[right, 0] - x[left, 0] + (right < left)
+        widest = square.max() if len(square) == count else 1.0
+        near = (gap * gap <= widest) & ((gap < 0.5) | ((gap == 0.5) & (left < right)))
+        if not near.any():
+            break
+        left, right = left[near], right[near]
+        away = x[right] - x[left]
+        i, j = np.append(i, left), np.append(j, right)
+        square = np.append(square, ((away - np.rint(away)) ** 2).sum(1))
+        kept = np.argpartition(square, count - 1)[:count] if len(square) > count else slice(None)
+        i, j, square = i[kept], j[kept], square[kept]
+    nearest = np.argsort(square, kind="stable")
+    return order[i[nearest]], order[j[nearest]], np.sqrt(square[nearest])
+
+
 class Gaps(NamedTuple):
     """The gaps of an orbit of one angle on the circle, widest first: from point i up to point j,
     which is its neighbour; the width; and x_i, where the gap begins."""
@@ -351,14 +380,9 @@ class State:
     def pairs(self, count: int = 800) -> Pairs:
         """The `count` pairs of points with the closest angles on the torus."""
         count = min(whole("count", count, 0), self.q * (self.q - 1) // 2)
-        x = np.zeros((self.q, 2))
-        x[:, :self.potential.n] = self.x
-        i, j, distance = np.zeros(count, "l"), np.zeros(count, "l"), np.zeros(count)
-        found = done(lib.cv_pairs(self.potential.n, self.q, address(x), count, address(i, "long *"),
-                                  address(j, "long *"), address(distance, "double *")))
-        i, j = i[:found], j[:found]
+        i, j, distance = closest_pairs(self.x, count)
         momentum = np.sqrt(((self.momenta[i] - self.momenta[j]) ** 2).sum(1))
-        return Pairs(i, j, distance[:found], momentum)
+        return Pairs(i, j, distance, momentum)
 
     def gaps(self, count: Optional[int] = None) -> Gaps:
         """The gaps between neighbouring points on the circle, all q or so many, widest first; those

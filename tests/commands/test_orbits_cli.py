@@ -272,23 +272,10 @@ def test_lost_types_end_with_status_1(run, tmp_path, monkeypatch):
     assert (orbits.read_csv(tmp_path / "x.csv")["label"] == LOST).all()
 
 
-# ---- figures, help
-
-def test_figures(run, tmp_path, monkeypatch):
-    seen = []
-
-    def figures(directory, kind, progress, caption):
-        seen.append((directory, kind, caption))
-        progress("one.png")
-
-    monkeypatch.setattr("converse.orbits.figures.figures", figures)
-    assert run("figures", tmp_path, "--format", "png") == (0, "written: one.png\n", "")
-    assert run("figures", tmp_path, "--no-caption") == (0, "written: one.png\n", "")
-    assert seen == [(str(tmp_path), "png", True), (str(tmp_path), "svg", False)]
-
+# ---- help
 
 def test_help_and_version(run):
-    for command in ((), ("find",), ("sweep",), ("figures",)):
+    for command in ((), ("find",), ("sweep",)):
         status, out, err = run(*command, "--help")
         assert (status, err) == (0, "") and "Exit status: 0 " in out
     assert run("--version")[1].startswith("converse-orbits ")
@@ -347,8 +334,7 @@ def test_help_and_version(run):
     (["sweep", "trig", "DIR/two", "--vectors", "DIR/two"], "overwrite"),
     (["sweep", "trig", "DIR/terms", "--random", "1"], "columns are others"),
     (["sweep", "trig", "DIR", "--random", "1"], "is a directory"),
-    (["figures"], "required"), (["figures", "DIR/terms"], "cannot be made a directory"),
-    (["figures", "DIR", "--format", "gif"], "choice"),
+    (["figures", "DIR"], "invalid choice"),
 ])
 def test_bad_usage(run, tmp_path, arguments, words):
     (tmp_path / "terms").write_text("1 0 0 1\n")
@@ -382,9 +368,8 @@ def test_a_bad_potential(run, tmp_path, text, words):
 
 @pytest.mark.parametrize("module, arguments", [
     ("numpy", ["find", "trig", SMALL, "0.01"]), ("numpy", ["sweep", "trig", "x", "--random", "1"]),
-    ("numpy", ["figures", "."]), ("converse._native", ["find", "trig", SMALL, "0.01"]),
-    ("matplotlib", ["find", "trig", SMALL, "0.01", "-g", "x.svg"]),
-    ("matplotlib", ["figures", "."])])
+    ("converse._native", ["find", "trig", SMALL, "0.01"]),
+    ("matplotlib", ["find", "trig", SMALL, "0.01", "-g", "x.svg"])])
 def test_what_is_missing_is_said(tmp_path, module, arguments):
     result = subprocess.run(
         [sys.executable, "-c", "import runpy, sys\nsys.modules[%r] = None\n"

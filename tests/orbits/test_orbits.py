@@ -383,7 +383,6 @@ def test_formulas_say_what_v_is():
     (lambda: orbits.State(orbits.trig, (1, 1), 2, 0.1, np.zeros((2, 2)), (0, 0), -3), "searches"),
     (lambda: orbits.prove(3), "a state is expected"),
     (lambda: orbits.enclosed_action(3), "a state is expected"),
-    (lambda: orbits.prelude("trig"), "potential is one of"),
     (lambda: orbits.floor(orbits.standard, 0.5, 0.5), "rotation: a list"),
     (lambda: orbits.floor("standard", 0.5, [0.5]), "potential is one of"),
     (lambda: orbits.least_action("trig", (5, 7), 9, 0.05), "potential is one of"),

@@ -16,7 +16,6 @@ from conftest import ROOT
 import converse
 from converse import orbits
 from converse._native import ffi, lib
-from converse.model.problem import Problem
 from converse.orbits.pictures import exponent_text
 from converse.orbits.potential import Stoppable, address
 from converse.orbits.solver import newton
@@ -305,34 +304,7 @@ def test_exponents_of_1989_are_wrong_by_log_q_over_q():
     assert (gram_schmidt_exponents(free, 1000) < 3e-3).all()
 
 
-# ---- the prelude, and the standard map
-
-@pytest.mark.parametrize("potential, numbers", [
-    (orbits.trig, (0.0385586, 0.0377680, 0.025179)), (orbits.poly, (1 / 24, 1 / 48, 0.010545)),
-    (orbits.ff, (1 / 30, 1 / 30, 0.020962)),
-    (orbits.froeschle, (2 / 49.3480, 2 / 49.3480, 0.025487)),
-    (orbits.standard, (2, 2, 4 / 3))], ids=str)
-def test_prelude(potential, numbers):
-    """The thesis's two eps_c; above the second and the third no state and no torus goes
-    everywhere."""
-    found = orbits.prelude(potential)
-    assert found[:2] == pytest.approx(numbers[:2], abs=1e-7)
-    assert found.graphs == pytest.approx(numbers[2], abs=6e-7)
-    assert found.graphs < found.worst <= found.lowest * (1 + 1e-12)
-
-
-def test_prelude_is_the_other_method_s_first_step():
-    """Without a single cut the Loewner criterion proves what the prelude says, and bounds 2 - eps
-    V'' by the same number."""
-    bound = orbits.prelude(orbits.trig).graphs
-    for eps, proved in ((1.004 * bound, True), (0.9996 * bound, False)):
-        a, b, c = (repr(x) for x in orbits.parameters(eps))
-        proof = converse.prove(Problem(a=a, b=b, c=c), method="loewner", depth=0)
-        assert proof.no_tori == proved
-        largest = 2 - eps * np.linalg.eigvalsh(orbits.trig.evaluate(
-            np.full((1, 2), 1 - 0.131738))[2])[0, 0]
-        assert float(proof.constants["B"]) == pytest.approx(largest, abs=1e-6)
-
+# ---- the standard map
 
 def test_greene_s_residues():
     """377/987 at k_c: R = (2 - trace DF^q)/4 is -0.2555 for the minimizing orbit and +0.2501 for

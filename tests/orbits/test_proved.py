@@ -552,18 +552,6 @@ def test_without_python_flint():
         assert "needs python-flint" in said and "pip install 'converse-kam[orbits]'" in said
 
 
-def test_ctrl_c_among_pairs():
-    """Many points above each other: all pairs have to be looked at."""
-    state = orbits.straight(orbits.trig, (0, 1), 4099)
-    define = potential.ffi.def_extern(name="cv_python_interrupts", error=1,
-                                      onerror=potential._interrupted)
-    define(lambda: signal.raise_signal(signal.SIGINT) or 0)
-    try:
-        with pytest.raises(KeyboardInterrupt):
-            state.pairs(800)
-    finally:
-        define(potential.cv_python_interrupts)
-
 
 def test_report():
     orbit = prove(found("trig", (5, 7), 9, 0.03))

@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .potential import Potential, known
+from converse.orbits.potential import Potential, known
 
 
 class Prelude(NamedTuple):

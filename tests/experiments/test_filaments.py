@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from thesis.filaments import Filaments, clumps, clusters, filaments
 
 from converse import orbits
-from converse.orbits.filaments import Filaments, clumps, clusters, filaments
 
 from truth import TORTURE
 

@@ -5,8 +5,8 @@ from fractions import Fraction
 
 import numpy as np
 
-from ...draw.plot import DARK, VERMILLION
-from .. import farey
+from converse.draw.plot import DARK, VERMILLION
+from converse.orbits import farey
 
 LEVELS = 5                              # of the triangles
 

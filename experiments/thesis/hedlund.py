@@ -6,10 +6,11 @@ from fractions import Fraction
 
 import numpy as np
 
-from ...draw.plot import BLUE, DARK, GREY, VERMILLION
-from .. import farey
-from ..pictures import angles, labels, momenta, quality, square, vector_words
-from ..potential import ff, poly, trig
+from converse.draw.plot import BLUE, DARK, GREY, VERMILLION
+from converse.orbits import farey
+from converse.orbits.pictures import angles, labels, momenta, quality, square, vector_words
+from converse.orbits.potential import ff, poly, trig
+
 from . import shared
 
 SEQUENCE = 60, 110, 199, 309, 720, 1330, 2550, 3770     # periods on the way to shared.TENTH

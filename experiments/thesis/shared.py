@@ -1,9 +1,9 @@
 """What several of the thesis's figures share: rotation vectors, families of states, and words."""
 
-from ...draw.plot import BLUE, DARK, VERMILLION
-from ...storage.files import ConverseError
-from ..pictures import LABELS
-from ..solver import STEP, Family, follow, straight
+from converse.draw.plot import BLUE, DARK, VERMILLION
+from converse.orbits.pictures import LABELS
+from converse.orbits.solver import STEP, Family, follow, straight
+from converse.storage.files import ConverseError
 
 SPIRAL = (1432, 1897), 2513             # near farey.SPIRAL
 TENTH = (377, 2330), 3770               # near (1/10, farey.GOLDEN)

@@ -9,8 +9,9 @@ are not changed.
 import functools
 import os
 
-from ...draw import plot
-from ...storage import files
+from converse.draw import plot
+from converse.storage import files
+
 from . import appendix, hedlund, shared, states, twist_maps
 
 FIGURES = {                             # the order of the thesis: width and height in inches

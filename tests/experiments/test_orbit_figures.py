@@ -19,11 +19,12 @@ from truth import TORTURE
 
 pytest.importorskip("matplotlib")
 
+import thesis as figures  # noqa: E402
 from matplotlib.figure import Figure  # noqa: E402
 from matplotlib.text import Text  # noqa: E402
+from thesis import appendix, hedlund, shared, states, twist_maps  # noqa: E402
 
-from converse.orbits import figures, pictures  # noqa: E402
-from converse.orbits.figures import appendix, hedlund, shared, states, twist_maps  # noqa: E402
+from converse.orbits import pictures  # noqa: E402
 
 REAL = states.ORBITS
 SPIRAL, TENTH = ((28, 37), 49), ((11, 68), 110)
@@ -572,10 +573,10 @@ def test_bad_orders(tmp_path, monkeypatch):
 def test_no_display():
     """Neither pyplot nor a backend with windows is loaded, and the user's settings stay."""
     code = ("import sys, matplotlib; before = dict(matplotlib.rcParams)\n"
-            "from converse.orbits import figures; figures.draw('tri', 'png')\n"
+            "import thesis; thesis.draw('tri', 'png')\n"
             "assert 'matplotlib.pyplot' not in sys.modules and before == dict(matplotlib.rcParams)")
     environment = {name: value for name, value in os.environ.items() if name != "DISPLAY"}
-    environment["MPLBACKEND"] = "tkagg"
+    environment.update(MPLBACKEND="tkagg", PYTHONPATH=os.pathsep.join(sys.path))
     subprocess.run([sys.executable, "-c", code], check=True, env=environment)
 
 

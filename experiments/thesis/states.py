@@ -2,12 +2,13 @@
 
 import numpy as np
 
-from ...draw.plot import BLUE, DARK, GREY, VERMILLION
-from .. import pictures
-from ..filaments import clumps, filaments
-from ..pictures import LOST, Shown, labels, vector_words
-from ..potential import ff, poly, trig
+from converse.draw.plot import BLUE, DARK, GREY, VERMILLION
+from converse.orbits import pictures
+from converse.orbits.pictures import LOST, Shown, labels, vector_words
+from converse.orbits.potential import ff, poly, trig
+
 from . import shared
+from .filaments import clumps, filaments
 
 SMOOTH = 0.005, 0.01, 0.0125, 0.02, 0.025, 0.03      # eps; the thesis: small to large
 PAIRS = 800
