@@ -61,7 +61,7 @@ class Pair:
 
     def __post_init__(self):
         low, high = expected(self.minimum), expected(self.minimax)
-        if (low.potential is not high.potential or (low.p, low.q, low.eps) !=
+        if (low.potential != high.potential or (low.p, low.q, low.eps) !=
                 (high.p, high.q, high.eps) or (low.potential.n == 1 and self.step != (1,))
                 or not isinstance(self.turn, int)
                 or any((self.turn * k - i) % low.q for k, i in zip(low.p, self.step))):

@@ -6,6 +6,7 @@ The map is x' = x + p', p' = p - eps grad V(x).
 import math
 import operator
 import os
+import pickle
 import threading
 from decimal import ROUND_CEILING, ROUND_FLOOR, Context, Decimal
 from fractions import Fraction
@@ -130,6 +131,16 @@ class Potential:
             return _studied, (self.name,)
         raise TypeError("the potential %s cannot be sent to another process" % self.name)
 
+    def _key(self) -> tuple:
+        """All that makes the potential what it is: two with the same key are equal."""
+        return self.name, self.n, self.start, self.formula, self.curvature, self.lipschitz
+
+    def __eq__(self, other: object) -> bool:
+        return self is other or (type(other) is type(self) and self._key() == other._key())
+
+    def __hash__(self) -> int:
+        return hash((self.name, self.n, self.start))
+
     def evaluate(self, x: np.ndarray) -> Tuple[np.ndarray, np.ndarray, np.ndarray]:
         """V, its gradient and its Hessian at x (m, n): arrays (m,), (m, n) and (m, n, n)."""
         x = points(x, self.n)
@@ -235,8 +246,9 @@ class Fourier(Potential):
             terms = {tuple(map(operator.index, k)): (Fraction(c), Fraction(s))
                      for k, (c, s) in terms.items()}
         except (AttributeError, TypeError, ValueError, ZeroDivisionError, OverflowError):
-            raise ValueError("terms are {(k0, k1): (cosine, sine)}, k0 and k1 whole numbers, with "
-                             "finite numbers, not %r" % (terms,)) from None
+            raise ValueError("terms are {(k0, k1): (cosine, sine)}, or {(k,): (cosine, sine)} for "
+                             "one angle: tuples of whole numbers with finite numbers, not %r"
+                             % (terms,)) from None
         widths = {len(k) for k in terms}
         if len(widths) != 1 or not widths <= {1, 2} or any(abs(i) > 1000 for k in terms for i in k):
             raise ValueError("a Fourier sum has terms, all with one or all with two integers from "
@@ -249,6 +261,9 @@ class Fourier(Potential):
            scale_enclosure: Callable[[int], Ends] = per_period) -> "Fourier":
         """From waves, amplitudes and phases, in the units of input files, where angles have period
         2 pi: with eps 1 the map is that of proofs (converse/model/potential.py)."""
+        if not isinstance(source, FourierSum):
+            raise ValueError("Fourier.of takes a FourierSum, not %.200r; orbits.read_potential "
+                             "takes an input file" % (source,))
         made = cls.__new__(cls)
         made._set_up(source, name, start, scale_enclosure)
         return made
@@ -275,6 +290,9 @@ class Fourier(Potential):
         if STUDIED.get(self.name) is self:
             return super().__reduce__()
         return Fourier.of, (self.sum, self.name, self.start, self.scale_enclosure)
+
+    def _key(self) -> tuple:
+        return (*super()._key(), self.sum, self.scale_enclosure)
 
     @property
     def terms(self) -> Mapping[Tuple[int, ...], Tuple[Fraction, Fraction]]:
@@ -387,6 +405,14 @@ class FromPython(Potential):
 
     def __reduce__(self):
         return FromPython, (self.source, self.n, self.name, self.start, self.curvature)
+
+    def _key(self) -> tuple:
+        """Sources are compared as their pickles: a class need not define equality."""
+        try:
+            source = pickle.dumps(self.source)
+        except Exception:               # of many kinds; such a source is equal to itself alone
+            source = id(self.source)
+        return (*super()._key(), source)
 
 
 @ffi.def_extern(error=lib.CV_EARGUMENT)

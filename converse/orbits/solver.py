@@ -4,7 +4,8 @@ import csv
 import math
 import os
 from dataclasses import dataclass, replace
-from typing import Any, Callable, Iterator, List, Optional, Sequence, TextIO, Tuple, Union
+from typing import (Any, Callable, Iterator, List, Optional, Sequence, TextIO, Tuple, Union,
+                    overload)
 
 import numpy as np
 
@@ -54,8 +55,14 @@ class Family:
     def __len__(self) -> int:
         return len(self.states)
 
-    def __getitem__(self, k: int) -> State:
-        return self.states[k]
+    @overload
+    def __getitem__(self, k: int) -> State: ...
+
+    @overload
+    def __getitem__(self, k: slice) -> "Family": ...
+
+    def __getitem__(self, k):
+        return Family(self.states[k]) if isinstance(k, slice) else self.states[k]
 
     def __iter__(self) -> Iterator[State]:
         return iter(self.states)
@@ -139,7 +146,7 @@ def follow(potential: Potential, p: Tuple[int, ...], q: int, eps: Sequence[float
     state = straight(potential, p, q)
     if start is not None:
         expected(start)
-        if (start.p, start.q) != (state.p, state.q) or start.potential is not potential:
+        if (start.p, start.q) != (state.p, state.q) or start.potential != potential:
             raise ValueError("the start is %r, and no state of the potential %s and type (%s)/%d"
                              % (start, potential.name, ", ".join(map(str, state.p)), state.q))
         state = start

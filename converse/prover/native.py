@@ -60,6 +60,9 @@ def check(code):
     return code
 
 
+MAXIMA = "most_cuts", "max_steps", "max_NTsteps"    # of Counts: all other fields are sums
+
+
 @dataclass(frozen=True)
 class Counts:
     """The statistics of a search; names after the thesis and csrc/converse.h."""
@@ -88,7 +91,7 @@ class Counts:
             if isinstance(mine, tuple):
                 both[name] = tuple(map(sum, zip(mine, theirs)))
             else:
-                both[name] = (max if name.startswith("m") else int.__add__)(mine, theirs)
+                both[name] = (max if name in MAXIMA else int.__add__)(mine, theirs)
         return Counts(**both)
 
 

@@ -193,8 +193,9 @@ class Proof:
 
     def save(self, path: Union[str, "os.PathLike[str]"]) -> str:
         """Writes the proof file, compressed when the name ends in .gz; returns its SHA-256 (that
-        of the uncompressed file).  However it was interrupted and continued, and whoever did the
-        work, the same search gives the same file."""
+        of the uncompressed file).  A finished search gives the same file however it was
+        interrupted and continued, and whoever did the work.  The file of an unfinished one also
+        holds the seconds that the search took, which differ from run to run."""
         from .proof_file import save
         return save(self, path)
 

@@ -38,7 +38,10 @@ def family(problem: Problem) -> Tuple[FourierSum, Part]:
     what the parameter s adds to each amplitude at s = 1; None if there is no parameter.
 
     Its dimension is 1 if all these waves have k1 = 0, else 2.
-    ValueError: there is more than one parameter, or no wave."""
+    TypeError: it is not a Problem; ValueError: there is more than one parameter, or no wave."""
+    if not isinstance(problem, Problem):
+        raise TypeError("the problem is a Problem, such as converse.read_input returns, not %.200r"
+                        % (problem,))
     parts = [part for part in problem.parts if any(part)]
     if len(parts) > 1:
         raise ValueError("the problem has %d parameters where one is possible; make the other "

@@ -263,9 +263,16 @@ def test_a_potential_stays_what_it_is():
         for again in ways(mine):
             for name in ("name", "n", "start", "formula", "curvature", "lipschitz"):
                 assert getattr(again, name) == getattr(mine, name), name
+            assert again == mine and hash(again) == hash(mine)
             assert all((a == b).all() for a, b in zip(again.evaluate(x), mine.evaluate(x)))
         for again in ways(state):
             assert again.action == state.action and again.label == state.label == "minimum"
+            assert orbits.follow(mine, (2,), 5, [0.1], start=again)[0].action == state.action
+    assert scaled(third) != scaled(lambda digits: third(digits))
+    assert orbits.FromPython(Cosine(), 1) != orbits.FromPython(Cosine(), 1, curvature=40.0)
+    other = Cosine()
+    other.scale = 2
+    assert orbits.FromPython(Cosine(), 1) != orbits.FromPython(other, 1) and orbits.trig != "trig"
     unnamed = scaled(lambda digits: (Fraction(1, 3),) * 2)
     assert copy.copy(unnamed).scale == copy.deepcopy(unnamed).scale == 1 / 3
     with pytest.raises((pickle.PicklingError, AttributeError), match="lambda"):
@@ -342,6 +349,8 @@ def test_formulas_say_what_v_is():
     (lambda: orbits.Fourier({(1, 2): (1e308, 0)}), "too large"),
     (lambda: orbits.Fourier({(0.5,): (1, 0)}), "whole"),
     (lambda: orbits.Fourier({"12": (1, 0)}), "whole"),
+    (lambda: orbits.Fourier.of({(1,): (1, 0)}), "takes a FourierSum, not"),
+    (lambda: orbits.Fourier({1: (1, 0)}), r"\{\(k,\): \(cosine, sine\)\} for one angle"),
     (lambda: orbits.Fourier({(1,): ("1/0", 0)}), "finite"),
     (lambda: orbits.Fourier({(1,): (1, 0)}, start=0.5), "1 finite"),
     (lambda: orbits.Fourier({(1,): (1, 0)}, start=()), "1 finite"),
@@ -649,6 +658,7 @@ def test_states_are_values(tmp_path):
     lengths = [np.hypot(*(state.u - line).T).max() for line in (state.u[0], 0)]
     assert state.deviation[:2] == pytest.approx(lengths, abs=1e-15)
     family = orbits.follow(orbits.trig, (5, 7), 9, [0.01, 0.02])
+    assert list(family[1:].eps) == [0.02] and family[1:].states == family.states[1:]
     text = io.StringIO()
     family.write_csv(text)
     lines = text.getvalue().splitlines()

@@ -159,6 +159,8 @@ def test_refinement_begins_with_what_is_below_the_noise(monkeypatch):
 def test_what_does_not_go_together_is_refused():
     with pytest.raises(TypeError, match=r"read_rotation\('golden'\)"):
         find(Problem("0.5", 0, 0), "golden")
+    with pytest.raises(TypeError, match="is a Problem, such as converse.read_input returns, not"):
+        find("standard-golden.in", GOLDEN)
     with pytest.raises(ValueError, match="margin"):
         find(Problem("0.5", 0, 0), GOLDEN, margin=1e300)
     with pytest.raises(ValueError, match="2 components.*1 angle"):
