@@ -30,6 +30,10 @@ class Parser(argparse.ArgumentParser):
     def error(self, message):
         raise ConverseError("%s; see %s --help" % (message, self.prog))
 
+    def _print_message(self, message, file=None):
+        """As argparse does, which ignores errors of writing."""
+        (file or sys.stderr).write(message)
+
 
 def whole_number(least, most=LIMIT):
     """The type of an argument that is a whole number from least to most."""
@@ -159,6 +163,9 @@ def check_mpi(options, module, command="converse"):
         from mpi4py import MPI
     except ImportError:
         raise ConverseError("--mpi needs mpi4py; pip install mpi4py") from None
+    except RuntimeError as error:       # of mpi4py's wheels, which bring no library
+        raise ConverseError("--mpi needs an MPI library (%s); install one (Debian: openmpi-bin)"
+                            % error) from None
     core = sys.modules.get("mpi4py.futures._core") or sys.modules.get("mpi4py.futures._lib")
     world = MPI.COMM_WORLD
     if world.Get_size() > 1 and getattr(core, "SharedPool", True) is None:
@@ -202,23 +209,33 @@ def _warnings_in_lines(command, unsaved):
         yield
 
 
+def _make_stderr():
+    """Opens the standard error that is closed: its number must not become a backup's."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), 2)
+    sys.stderr = open(2, "w", encoding="utf-8", closefd=False)
+
+
 def ended(command, run, interrupted):
     """The exit status of run(); every failure is one line on stderr, headed by the command's name.
     interrupted() says what Ctrl-C leaves behind."""
     heard, unsaved = [], []
     try:
-        if None in (sys.stdout, sys.stderr):
-            return BAD                  # a standard stream is closed: nowhere to say so
+        if sys.stderr is None:
+            _make_stderr()
+        if sys.stdout is None:
+            raise ConverseError("the standard output is closed; there is nowhere to report to")
         for stream in (sys.stdout, sys.stderr):
             stream.reconfigure(errors="backslashreplace")
         with interruptible(ENDING, at_end=True) as signals, _warnings_in_lines(command, unsaved):
             heard = signals.heard
-            status = run()
+            try:
+                status = run()
+            except SystemExit as end:   # of --help and --version
+                status = end.code
+            sys.stdout.flush()
         if not unsaved:
             return status
         message = ""
-    except SystemExit as end:           # of --help and --version
-        return end.code
     except (ConverseError, InputError, MemoryError) as error:
         message, status = str(error) or "there is not enough memory", BAD
         if isinstance(error, WorkersGone) and not unsaved:
@@ -226,6 +243,8 @@ def ended(command, run, interrupted):
     except KeyboardInterrupt:
         message = "interrupted" if unsaved else "interrupted; " + interrupted()
         status = ENDED_BY + (heard or [signal.SIGINT])[0]
+    except ModuleNotFoundError as error:
+        message, status = "%s is missing; pip install %s" % ((error.name,) * 2), BAD
     except ImportError as error:        # of a late import: memory may lack to map its library
         message, status = "a part of Python cannot be loaded (%s); give it more memory, or " \
                           "install it anew" % error, BAD

@@ -2,7 +2,10 @@
 
 import math
 
-import numpy as np
+try:
+    import numpy as np
+except ImportError:                     # matplotlib brings it, and plot.check() says so
+    np = None  # type: ignore[assignment]
 
 from ..maps.map import AT_ONCE, OPEN, PROVED
 from ..maps.region import RADIUS, direction

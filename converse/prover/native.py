@@ -12,21 +12,31 @@ from typing import Dict, List, Optional, Tuple
 from ..model.exact import decimal_text
 from ..model.problem import Problem
 from ..storage.files import ConverseError
+from ..version import __version__
 from . import tree
 from .settings import Settings
+
+
+
+def _without_core(error):
+    """Why the C core cannot be loaded, and what to do."""
+    if "libgmp" in str(error):
+        return "the C core needs GMP (%s); install its library (Debian: libgmp10)" % error
+    if getattr(error, "name", None) == "_cffi_backend":
+        return "the C core needs cffi (%s); pip install cffi" % error
+    home = str(Path(__file__).resolve().parents[2])
+    if os.path.isfile(os.path.join(home, "setup.py")):
+        return ("the sources in %s, which Python takes for the package, have no C core (%s); run "
+                "make there and use its .venv/bin/python, or, where the package is installed, "
+                "start Python elsewhere" % (home, error))
+    return ("the C core is missing (%s); with a C compiler and the headers of Python and GMP, run "
+            "pip install . in the sources of converse %s" % (error, __version__))
+
 
 try:
     from .._native import ffi, lib
 except ImportError as error:            # not built, or for another Python, or without cffi
-    _home = str(Path(__file__).resolve().parents[2])
-    raise ConverseError(
-        "the sources in %s, which Python takes for the package, have no C core (%s); run make "
-        "there and use its .venv/bin/python, or, where the package is installed, start Python "
-        "elsewhere"
-        % (_home, error)
-        if os.path.isfile(os.path.join(_home, "setup.py")) else
-        "the C core is missing (%s); pip install converse-kam anew, with a C compiler and GMP"
-        % error) from None
+    raise ConverseError(_without_core(error)) from None
 
 METHODS = {"thesis": lib.CV_THESIS, "loewner": lib.CV_LOEWNER}
 CONSTANTS = {                       # by method, the numbers of the theorem that are recorded

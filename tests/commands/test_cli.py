@@ -437,3 +437,21 @@ def test_a_point_is_chosen(command, sample, tmp_path):
         assert (status, out) == (2, "") and one_line(err) and "--xstar" in err
     status, out, err = command("--xstar", "0.8", "--jobs", "1", sample)
     assert (status, out) == (2, "") and one_line(err)
+
+
+def test_missing_packages_are_told(command, tmp_path):
+    """What is missing, and a command that brings it; the wheels of mpi4py hold no MPI library."""
+    fake = tmp_path / "mpi4py"
+    fake.mkdir()
+    (fake / "__init__.py").touch()
+    (fake / "futures.py").touch()
+    (fake / "MPI.py").write_text("raise RuntimeError('cannot load MPI library')")
+    status, out, err = command("--mpi", env=dict(os.environ, PYTHONPATH=str(tmp_path)))
+    assert (status, out) == (2, "") and one_line(err) and "needs an MPI library (cannot load" in err
+    code = ("import sys; sys.modules.update(dict.fromkeys(%r))\n"
+            "from converse.commands.map import main\nsys.exit(main(['-g', 'map.svg', 'map.json']))")
+    for missing in ["numpy", "matplotlib"], ["matplotlib"]:
+        done = subprocess.run([sys.executable, "-c", code % missing], capture_output=True,
+                              text=True, cwd=tmp_path)
+        assert done.returncode == 2
+        assert done.stderr == "converse-map: figures need matplotlib; pip install matplotlib\n"

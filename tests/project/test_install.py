@@ -15,6 +15,7 @@ import pytest
 from conftest import ROOT
 
 from converse import _native, prove, read_input
+from converse.prover.native import _without_core
 
 
 def test_the_core_is_this_environments_own(root):
@@ -103,6 +104,16 @@ def test_without_the_core_nothing_is_proved(root):
     status, out, err = without_core("converse.commands.prove", root / "inputs" / "trig278.in")
     assert status == 2 and out == ""
     assert err.startswith("converse: ") and err.count("\n") == 1 and "core" in err
+
+
+@pytest.mark.parametrize("error, remedy", [
+    (ImportError("libgmp.so.10: cannot open shared object file"), "(Debian: libgmp10)"),
+    (ModuleNotFoundError("No module named '_cffi_backend'", name="_cffi_backend"),
+     "pip install cffi")])
+def test_what_the_core_lacks_is_told(error, remedy):
+    """No compiler is needed where one library is missing."""
+    words = _without_core(error)
+    assert words.endswith(remedy) and str(error) in words
 
 
 def test_the_core_says_nothing_of_where_it_was_built(root):
