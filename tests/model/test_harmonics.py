@@ -114,6 +114,8 @@ def test_files(tmp_path):
     (one(k=[1, 2, 3]), "a list of 3"), (one(k=["1", 0]), "k: this has a string in it"),
     (one(k=[1.5, 0]), "k: (1.5, 0) is out of range"),
     (one(k=[101, 0]), "k: (101, 0) is out of range"),
+    (one(k=[10 ** 400, 0]), "is out of range; give integers from -100 to 100"),
+    (one(amplitude="0." + "3" * 10000), "amplitude: the number 0.333333333333333333... has 10002"),
     (one(k=[0, 0]), "k: this is zero"), (one(k=[True, 0]), "k: this has true in it"),
     ({"harmonics": [A, {"k": [1], "amplitude": 1}]}, "harmonic 2, k: 1 number, and 2 before"),
     ({"harmonics": [A, {**A, "phase": 2}]}, "harmonic 2: harmonic 1 has the same k and phase"),

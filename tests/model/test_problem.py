@@ -11,6 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from converse import ConverseError, Problem, prove
+from converse.model import inputs
 from converse.model.exact import decimal_text
 from converse.model.inputs import read_input
 from converse.model.problem import IDENTITY, THESIS, InputError
@@ -90,6 +91,7 @@ def changed(number, line):
     (changed(3, "1 1e-400"), 3, "out of range"), (changed(3, "1 1e9999999999999"), 3, "1e99"),
     (changed(3, "1 1e999999999"), 3, "out of range"), (changed(3, "0e999999999 0"), 3, "range"),
     (changed(3, "1" + "0" * 400 + " 0"), 3, "out of range"),
+    (changed(2, "0." + "3" * 10000 + " 0"), 2, "10002 characters where at most 10000 are possible"),
     (changed(2, "0.3085 -0.00125"), 2, "negative"), (changed(6, "1 -1"), 6, "negative"),
     (changed(5, "1.0"), 5, "1 number where two"), (changed(5, "1 1 1"), 5, "3 numbers where two"),
     (changed(1, "0x10 1"), 1, "0x10"), (changed(1, "1_0 1"), 1, "1_0"),
@@ -106,7 +108,7 @@ def test_mistakes(text, line, words):
     assert "\n" not in message
 
 
-def test_messages_name_the_file(tmp_path):
+def test_messages_name_the_file(tmp_path, monkeypatch):
     path = tmp_path / "bad.in"
     path.write_text("1 2 3\n")
     with pytest.raises(InputError, match="bad.in, line 1: "):
@@ -114,6 +116,9 @@ def test_messages_name_the_file(tmp_path):
     for missing in tmp_path / "missing.in", tmp_path:
         with pytest.raises(InputError, match="cannot be read"):
             read_input(missing)
+    monkeypatch.setattr(inputs, "MOST_BYTES", 5)
+    with pytest.raises(InputError, match="bad.in: is longer than 5 bytes; name an input file"):
+        read_input(path)
 
 
 # ---- named ranges
