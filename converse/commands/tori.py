@@ -165,7 +165,7 @@ def _unequal(flag, numbers, potential):
             (len(numbers), "number"), (potential.dimension, "angle")))))
 
 
-def _rotation(options, potential, start, norm):
+def _rotation(options, potential, start, norm, progress):
     from .. import tori
 
     if options.tolerance is not None and options.near is None:
@@ -184,7 +184,7 @@ def _rotation(options, potential, start, norm):
     if len(options.near) != potential.dimension:
         raise _unequal("--near", options.near, potential)
     more = {} if options.tolerance is None else {"tolerance": options.tolerance}
-    return tori.near(*options.near, norm=norm, **more)
+    return tori.near(*options.near, norm=norm, progress=progress, **more)
 
 
 def prove_torus(options):
@@ -208,8 +208,7 @@ def _prove_torus(options):
                             % options.grid)
     norm = _norm(options, potential)
     with ProgressLine() as line:
-        line(lambda: "choosing the rotation vector")
-        rotation = _rotation(options, potential, start, norm)
+        rotation = _rotation(options, potential, start, norm, lambda words: line(lambda: words))
     choices = {name: value for name, value in (
         ("start", start), ("margin", options.margin and float(options.margin)),
         ("points", options.points), ("norm", norm), ("shape", options.grid),

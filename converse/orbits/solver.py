@@ -4,8 +4,7 @@ import csv
 import math
 import os
 from dataclasses import dataclass, replace
-from typing import (Any, Callable, Iterator, List, Optional, Sequence, TextIO, Tuple, Union,
-                    overload)
+from typing import Any, Callable, Iterator, List, Optional, Sequence, TextIO, Tuple, Union, overload
 
 import numpy as np
 

@@ -17,7 +17,6 @@ from . import tree
 from .settings import Settings
 
 
-
 def _without_core(error):
     """Why the C core cannot be loaded, and what to do."""
     if "libgmp" in str(error):

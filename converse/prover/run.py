@@ -253,10 +253,15 @@ class _Run:
         if not self._may_link():
             return False
         undecided, self.tried = not self._is_hard(), True
+
+        def seconds_left():             # asked for again and again meanwhile
+            self._show(self.share, self.proof.counts)
+            return self._seconds_left()
+
         with WorkerPool(None, self.options.jobs, native.Stop()) as pool:
             found = plan(problem, settings.depth, piece.xstar, undecided,
                          Fraction(self.proof.constants["B"]), len(self.proof.parts), pool,
-                         self._seconds_left)
+                         seconds_left)
         if found is None:
             return False
         proof = self._with(tree=found.tree, pending=())
@@ -272,6 +277,10 @@ class _Run:
     def _seconds_left(self):
         return self.end - time.monotonic()
 
+    def _show(self, share, counts):
+        if self.options.progress:
+            self.options.progress(share, counts)
+
     def _look(self):
         """Tells whoever wants to know how far things are."""
         if self.options.on_leaf:
@@ -282,7 +291,7 @@ class _Run:
             left = len(self.proof.parts) - self.growing + 1
             self.share = max(self.share, self.examined
                              + (1 - self.examined) * self.search.examined / left)
-            self.options.progress(self.share, self.search.counts)
+            self._show(self.share, self.search.counts)
         self.backup.update(self._snapshot)
 
     def _tell(self, text, steps):

@@ -10,7 +10,7 @@ the noble numbers, whose continued fractions end in 1, 1, 1, ...
 from fractions import Fraction
 from itertools import permutations, product
 from math import ceil, floor
-from typing import Iterator, List, Optional, Tuple
+from typing import Callable, Iterator, List, Optional, Tuple
 
 import numpy as np
 
@@ -34,11 +34,13 @@ Triangle = Tuple[Tuple[int, int, int], ...]     # corners (q, p0, p1)
 
 
 def near(w0: Number, w1: Optional[Number] = None, norm: Optional[Norm] = None,
-         tolerance: Number = TOLERANCE) -> Rotation:
+         tolerance: Number = TOLERANCE,
+         progress: Optional[Callable[[str], None]] = None) -> Rotation:
     """The rotation vector with the best small divisors that was found near w0, or near (w0, w1).
 
     norm -- in which c(delta) of its Divisors is to be small; by default |k_0| + |k_1|
     tolerance -- how far each component may be away; the result's name tells it
+    progress -- is told in words what is going on
 
     ValueError: none was found so near."""
     target = tuple(exact(w) for w in (w0, w1) if w is not None)
@@ -55,11 +57,13 @@ def near(w0: Number, w1: Optional[Number] = None, norm: Optional[Norm] = None,
     # within^(-2/3), and the divisors that set this vector apart are those of such k.
     delta = Fraction(float(within) ** (0.5 if n == 1 else 2 / 3)).limit_denominator(10 ** 6)
     name = "best found within %s of %s" % (short_text(within), " ".join(map(short_text, target)))
+    tell = progress or (lambda words: None)
     found = _nobles(target[0], within, float(delta)) if n == 1 \
-        else _cubics(target, within, norm, float(delta))
+        else _cubics(target, within, norm, float(delta), tell)
     best, least = None, None
     basis = tuple(tuple(int(i == j) for j in range(n)) for i in range(n))
-    for field, vector in found:
+    for j, (field, vector) in enumerate(found, 1):
+        tell("comparing rotation vector %d of %d" % (j, len(found)))
         rotation = Rotation(name, field.polynomial, field.root, vector)
         if any(low < w - within or high > w + within
                for (low, high), w in zip(rotation.turns(30), target)):
@@ -110,7 +114,7 @@ def _quotient(field, weights, above, below):
 
 # ---- two angles
 
-def _cubics(target, within, norm, delta) -> List[Candidate]:
+def _cubics(target, within, norm, delta, tell) -> List[Candidate]:
     """The most promising vectors of both fields, as far as doubles can tell."""
     found = []
     for polynomial in FIELDS:
@@ -119,6 +123,8 @@ def _cubics(target, within, norm, delta) -> List[Candidate]:
         roots = roots[np.argsort(abs(roots - _value(field)))]           # t first
         values = bases @ np.vander(roots, 3, increasing=True).T         # (bases, weights, roots)
         for triangle in _triangles(target, within):
+            tell("choosing rotation vectors: denominators up to %d"
+                 % max(q for q, *_ in triangle))
             corners = np.array(triangle, float)
             at = values[..., 0].real @ corners                          # (bases, 3)
             close = np.flatnonzero((abs(at[:, 1:] / at[:, :1] - np.array(target, float))

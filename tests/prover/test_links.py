@@ -392,6 +392,22 @@ def test_where_there_are_tori_no_starting_points_are_looked_for(problem, x, grow
     assert max(points) < starts.SHRINK_POINTS + 10_000
 
 
+def test_progress_goes_on_while_starting_points_are_looked_for(easily, monkeypatch):
+    """For half a minute, where that is hard: the clock of the terminal must not stand."""
+    told, meanwhile = [], []
+
+    def looked(*arguments):
+        before = len(told)
+        arguments[-1]()                 # is there time left?
+        meanwhile.append(told[before:])
+
+    monkeypatch.setattr(run, "plan", looked)
+    proof = prove(line("0.015"), method="loewner", progress=lambda *how: told.append(how))
+    assert meanwhile and all(len(calls) == 1 for calls in meanwhile)
+    assert [share for share, _ in told] == sorted(share for share, _ in told)
+    assert told[-1][1].proved == proof.counts.proved
+
+
 def test_an_undecided_part_is_no_proof(linked):
     part = linked.parts[1]
     for text in part.tree.replace("P", "U", 1), part.tree[:-1]:

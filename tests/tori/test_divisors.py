@@ -199,7 +199,10 @@ def test_a_reach_without_sense_is_refused():
 @pytest.mark.slow
 def test_a_vector_near_the_last_torus():
     norm = Norm(LINE, (1, 4))
-    found = near("0.3139", "0.2947", norm)
+    told = []
+    found = near("0.3139", "0.2947", norm, progress=told.append)
+    assert told[0].startswith("choosing") and told[-1] == "comparing rotation vector 6 of 6"
+    assert len(set(told)) > 20
     assert abs(np.array(found.floats) - (.3139, .2947)).max() <= 1e-3 and "0.001" in str(found)
     new, old = (Divisors(rotation, norm, SQUARE, 400).c(Fraction(1, 1000))
                 for rotation in (found, read_rotation("T49")))
