@@ -406,7 +406,7 @@ class FromPython(Potential):
     def __reduce__(self):
         return FromPython, (self.source, self.n, self.name, self.start, self.curvature)
 
-    def _key(self) -> tuple:
+    def _key(self):
         """Sources are compared as their pickles: a class need not define equality."""
         try:
             source = pickle.dumps(self.source)
