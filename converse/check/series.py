@@ -118,15 +118,6 @@ class Series:
     entries: tuple
     radius: int
 
-    def of(self, entry, radius=0):
-        """Another of one row and column."""
-        return Series(1, 1, (tuple(entry),), radius)
-
-    @property
-    def without_radius(self):
-        """Its polynomial."""
-        return Series(self.rows, self.columns, self.entries, 0)
-
     @property
     def transposed(self):
         return Series(self.columns, self.rows, tuple([
@@ -208,12 +199,6 @@ class Ring:
         self.box, self.bits, self.one, self.sigma = box, bits, 1 << bits, sigma
         self.powers = powers_of(sigma, box.limit)
         self.ones = (box.degree + 1) * sum([self.powers[length] for length in box.lengths])
-
-    @functools.cached_property
-    def weights(self):
-        """sigma^|k| of all modes, rounded up, in units of 2^-FINE."""
-        return [self.powers[length] for length in self.box.lengths
-                for _ in range(self.box.degree + 1)]
 
     @functools.cached_property
     def _aside(self):
@@ -334,8 +319,8 @@ class Ring:
         return (total >> self.bits + FINE) + 1
 
     def exponential(self, f):
-        """e^f of a series with values in numbers: Taylor's polynomial of f / 2^m, squared m times.
-        """
+        """e^f of a series with values in numbers: Taylor's polynomial of f / 2^m, squared m times;
+        (38) of docs/existence.md bounds the remainder."""
         size = self.norm(f)
         one = 1 << self.bits + FINE
         plans = []
@@ -388,6 +373,18 @@ class Ring:
                           for x, y in zip(one, other)])
                    for one, other in zip(f.entries, g.entries)]
         return self.series(f.rows, f.columns, entries, f.radius + g.radius)
+
+
+def conjugate(f, degree):
+    """Returns the conjugate, for real angles, of a function with values in numbers."""
+    re, im = [x and opposite(x, degree) for x in f.entries[0]]
+    return Series(1, 1, ((re, im and [-x for x in im]),), f.radius)
+
+
+def opposite(values, degree):
+    """Returns a list with the value at (-k, j) in the place of (k, j)."""
+    step = degree + 1
+    return [x for at in range(len(values) - step, -1, -step) for x in values[at:at + step]]
 
 
 def weighted_sum(terms):

@@ -20,7 +20,7 @@ FOLDER = os.path.dirname(os.path.abspath(__file__))
 SHARED = ("version", "limits", "failures", "claim", "tree", "proof_file", "arith", "cover", "torus",
           "exact", "criterion", "links", "words")
 ORDER = (*SHARED, "lockstep", "maps", "signals", "state", "progress", "processes", "workers",
-         "torus_file", "field", "series", "exponential", "tori", "run", "command")
+         "torus_file", "field", "series", "tori", "run", "command")
 REFEREE = (*SHARED, "referee")
 MAIN = '''import sys
 

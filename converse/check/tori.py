@@ -12,12 +12,11 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from .arith import GUARD, fixed_of
-from .exponential import conjugate, exponential_of_imaginary, reversed_
 from .failures import NotConfirmed, Rejected, named
 from .field import (E_LOW, Divisors, Field, Norm, combination, exponential_above, identity,
                     rounded_down, rounded_up, upper_root)
 from .limits import MAX_BITS, MAX_GRID, MAX_LENGTH
-from .series import FINE, Box, Ring, greatest, powers_of, turn
+from .series import FINE, Box, Ring, conjugate, greatest, opposite, powers_of, turn
 from .version import __version__
 from .words import decimal_text
 
@@ -364,11 +363,6 @@ def shifted(x, bits):
     return x >> -bits if x >= 0 else -(-x >> -bits)
 
 
-def times_i(entry):
-    re, im = entry
-    return (None if im is None else [-x for x in im]) or [0] * len(re), re
-
-
 # ---- the constants (T6)
 
 def find_constants(torus, sigma, powers):
@@ -546,7 +540,7 @@ class Residual:
         found = []
         for (re, im), (x, y) in zip(totals, entries):
             # A cosine is half the sum of what is at k and of the conjugate of what is at -k.
-            shift, back = ring.bits + 1, (reversed_(re, degree), reversed_(im, degree))
+            shift, back = ring.bits + 1, (opposite(re, degree), opposite(im, degree))
             found.append(([z - (p + q >> shift) for z, p, q in zip(x, re, back[0])],
                           [z - (p - q >> shift) for z, p, q in zip(y, im, back[1])]))
         error = self.wide.series(n, 1, found)
@@ -568,7 +562,7 @@ class Residual:
             return conjugate(self.power(tuple([-x for x in k])), self.torus.degree)
         if k not in self.known:
             if sum(map(abs, k)) == 1:
-                found = exponential_of_imaginary(self.ring, self.angles[k.index(1)])
+                found = self.ring.exponential(self.angles[k.index(1)])
             elif not any(x % 2 for x in k):
                 half = self.power(tuple([x // 2 for x in k]))
                 found = self.ring.multiply(half, half)

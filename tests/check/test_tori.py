@@ -13,7 +13,7 @@ from fractions import Fraction
 import mpmath
 import pytest
 
-from converse.check import exponential, field, series, ship, tori, torus_file
+from converse.check import field, series, ship, tori, torus_file
 
 from checker import check
 
@@ -804,99 +804,6 @@ def test_modes_outside_of_the_lattice_are_found(name):
         found += place is None
         assert place == (None if any(x.denominator > 1 for x in exact) else exact)
     assert bool(found) == (name == "part")
-
-
-# ---- exponentials that are guessed and then verified
-
-def bound_of_the_page(ring, f, g):
-    """(38) in existence.md, without roundings and modes beyond the box; n = 1 and 2, degree 0."""
-    norm = ring.box.norm
-    rows = [row for row, _ in sorted(zip(norm.frame, norm.alpha), key=lambda x: -x[1])]
-    alpha = sorted(norm.alpha, reverse=True)
-    one, weight = mp.mpf(ring.one), mp.mpf(9) / 8
-    f, g = [{k: mp.mpc(*z) / one for (k, _), z in table(ring, h.entries[0]).items()}
-            for h in (f, g)]
-
-    def along(k, row):
-        return sum(x * y for x, y in zip(k, row))
-
-    rest = {k: along(k, rows[0]) * z for k, z in g.items()}
-    for k, z in f.items():
-        for q, w in g.items():
-            to = tuple(x + y for x, y in zip(k, q))
-            if to in rest:
-                rest[to] -= along(k, rows[0]) * z * w
-    size = {k: abs(z) * weight ** norm(k) for k, z in rest.items()}
-    r = sum(size[k] for k in size if not along(k, rows[0]))
-    R = sum(size[k] / abs(along(k, rows[0])) for k in size if along(k, rows[0]))
-    slope = sum(abs(along(k, rows[0]) * z) * weight ** norm(k) for k, z in f.items())
-    height = mp.exp(sum(abs(z) * weight ** norm(k) for k, z in f.items()))
-
-    def restricted(h, xi):              # at the angle xi of the second row
-        return sum(z * mp.expj(along(k, rows[1]) * xi if len(rows) > 1 else 0)
-                   for k, z in h.items())
-
-    count = 128 if len(rows) > 1 else 1
-    values = [restricted(g, x) * mp.exp(-restricted(f, x)) - 1
-              for x in [2 * mp.pi * j / count for j in range(count)]]
-    start = sum(abs(sum(v * mp.expj(-2 * mp.pi * j * b / count) for j, v in enumerate(values))
-                    / count) * weight ** (alpha[1] * abs(b) if count > 1 else 0)
-                for b in range(-15 * (count > 1), 15 * (count > 1) + 1))
-    return height * (start + 2 * height * (r + (1 + slope) * R)), r, R, start
-
-
-def real_angle(ring, rng, scale):
-    """i s, s real for real angles."""
-    re, im = random_entry(rng, ring, False, scale)
-    return ring.series(1, 1, [([x - y for x, y in zip(re, re[::-1])],
-                               [x + y for x, y in zip(im, im[::-1])])])
-
-
-@pytest.mark.parametrize("name", ["one", "skew"])
-@pytest.mark.parametrize("kind", ["constant", "mode", "other", "none"])
-def test_wrong_guesses_have_large_radii(name, kind, monkeypatch):
-    """Whatever is guessed, e^(i s) is within the radius, which is not less than (38)."""
-    norm = field.Norm(*FRAMES[name])
-    ring = series.Ring(series.Box(norm, 16, 0), Fraction(9, 8), 60)
-    rng = random.Random(5)
-    f = real_angle(ring, rng, 0.1)
-    right = exponential.guess(ring, f)
-    re, im = map(list, right.entries[0])
-    k = {"mode": norm.basis[0], "other": tuple(map(sum, zip(*norm.basis)))}.get(kind)
-    if kind != "none":
-        re[ring.box.find(norm.place(k)) if k else ring.box.centre] += ring.one >> 10
-    wrong = right.of((re, im))
-    monkeypatch.setattr(exponential, "guess", lambda *_: wrong)
-    found = exponential.exponential_of_imaginary(ring, f)
-    bound, r, R, start = bound_of_the_page(ring, f, wrong)
-    radius = found.radius / mp.mpf(ring.one << series.FINE)
-    assert found.entries == wrong.entries
-    assert radius >= bound * (1 - mp.mpf(1e-9))
-    if kind != "none":                  # no part may be forgotten
-        assert radius - bound < (start / 100 if kind == "constant" else min(start, r, R))
-    for _ in range(4):
-        theta = [mp.mpc(rng.uniform(0, 6), 0) for _ in norm.alpha]
-        assert abs(value(wrong, ring, 0, theta, 0) - mp.exp(value(f, ring, 0, theta, 0))) <= radius
-
-
-def test_what_a_product_leaves_out_is_in_the_radius_of_an_exponential(monkeypatch):
-    ring = series.Ring(series.Box(field.Norm(*FRAMES["two"]), 12, 0), Fraction(9, 8), 60)
-    f, multiply = real_angle(ring, random.Random(2), 0.1), series.Ring.multiply
-    known, more = exponential.exponential_of_imaginary(ring, f), 1 << 100
-    monkeypatch.setattr(series.Ring, "multiply", lambda self, x, y: (
-        product := multiply(self, x, y)).of(product.entries[0], product.radius + more * (
-            self is ring)))
-    assert exponential.exponential_of_imaginary(ring, f).radius >= known.radius + 2 * more
-
-
-@pytest.mark.parametrize("name", FRAMES)
-def test_guesses_are_good(name):
-    """Newton's method, in several steps: no more than some roundings away."""
-    norm = field.Norm(*FRAMES[name])
-    ring = series.Ring(series.Box(norm, 80, 0), Fraction(33, 32), 130)
-    rng = random.Random(3)
-    found = exponential.exponential_of_imaginary(ring, real_angle(ring, rng, 0.1))
-    assert found.radius < 2000 * ring.ones
 
 
 # ---- the theorem

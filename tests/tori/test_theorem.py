@@ -515,36 +515,3 @@ def test_what_a_coarse_grid_does_not_see(case, M):
         far = (lengths(case, f) * np.exp(rho * size(case)))[size(case) >= r].sum()
         assert lost + far <= tail + 1e-9
         assert lost <= far + 1e-9               # each mode is met once
-
-
-# ---- section 12
-
-@every_case
-def test_exponentials_are_verified(case):
-    """(38), with Taylor polynomials for G; and no G that is wrong is taken for good."""
-    u = some_u(case, np.random.default_rng(6), .05)
-    s, rho = np.tensordot(case.waves[0][0], u, 1), .1
-    exact = np.exp(1j * s)
-
-    def of(c, rho=rho):
-        size_of = abs(np.fft.fftn(c)) / c.size
-        return float((np.where(size_of > NOISE, size_of, 0) * np.exp(rho * size(case))).sum())
-
-    def slope(c, row):
-        return np.fft.ifftn(1j * np.tensordot(case.frame[row], modes(case), 1) * np.fft.fftn(c))
-
-    G, term = np.zeros_like(exact), np.ones_like(exact)
-    start = (0,) * len(case.omega)
-    for order in range(1, 6):
-        G = G + term
-        term = term * 1j * s / order
-        for factor in (1, 1.01):
-            g = G * factor
-            rests = [slope(g, row) - 1j * g * slope(s, row) for row in range(len(case.frame))]
-            big = math.exp(norm(case, s, rho))
-            k1 = big * sum(map(of, rests))
-            k2 = abs(g[start] * np.exp(-1j * s[start]) - 1)
-            error = of(g - exact)
-            assert error <= big * (k2 + 2 * k1) + 1e-12
-            assert error > .005 or factor == 1
-    assert of(G - exact) < 1e-4
