@@ -21,7 +21,7 @@ define install
 	test -e $@ || $(PYTHON) -m venv --clear $(1)
 	rm -rf build/lib* build/temp* build/bdist*
 	@echo 'Compiling and installing; pip says nothing until it is done.'
-	$(1)/bin/$(PIP_INSTALL) $(2) || $(PIP_FAILED)
+	@$(1)/bin/$(PIP_INSTALL) $(2) || $(PIP_FAILED)
 	touch $@
 endef
 
@@ -33,7 +33,8 @@ prove: $(VENV)/installed
 	$(VENV)/bin/converse -d30 -g build/trig274.ps inputs/trig274.in
 	@echo 'The figure of the prisms is build/trig274.ps.'
 
-# The tests but the slow ones; a minute.
+# The tests except the slow ones: 226 CPU seconds in November 2026, two minutes on two idle cores.  The
+# first run also downloads the test tools.
 check: $(VENV)/with-test
 	$(VENV)/bin/pytest $(TWO) -q -m 'not slow' tests
 
@@ -170,7 +171,7 @@ $(VENV)/installed: $(SOURCES)
 # What an extra of pyproject.toml adds to it.
 $(VENV)/with-%: $(VENV)/installed
 	@echo 'Installing what the extra "$*" needs; pip says nothing until it is done.'
-	$(VENV)/bin/$(PIP_INSTALL) 'converse-kam[$*]' || $(PIP_FAILED)
+	@$(VENV)/bin/$(PIP_INSTALL) 'converse-kam[$*]' || $(PIP_FAILED)
 	touch $@
 
 # Not editable: its core has other flags and must not take the other one's place in the clone.
