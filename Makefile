@@ -15,13 +15,14 @@ PIP_FAILED = { echo 'pip failed. If it found no version of a package, the networ
     'cannot be reached.' >&2; exit 1; }
 
 # Installs $(2) into the virtual environment $(1).  One that was not finished, or not by these
-# rules, is made anew; objects of an earlier build may have been compiled with other flags.
+# rules, is made anew; objects of an earlier build may have been compiled with other flags.  An
+# earlier pip (Debian 11) installs nothing editable with today's setuptools.
 define install
 	sh .ci/packages $(PYTHON)
 	test -e $@ || $(PYTHON) -m venv --clear $(1)
 	rm -rf build/lib* build/temp* build/bdist*
 	@echo 'Compiling and installing; pip says nothing until it is done.'
-	@$(1)/bin/$(PIP_INSTALL) $(2) || $(PIP_FAILED)
+	@$(1)/bin/$(PIP_INSTALL) 'pip>=21.3' && $(1)/bin/$(PIP_INSTALL) $(2) || $(PIP_FAILED)
 	touch $@
 endef
 
