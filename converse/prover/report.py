@@ -27,11 +27,13 @@ REASONS = (                             # in the order of csrc/converse.h
     "the arithmetic failed",
     "only the double-precision try succeeded",
 )
+TOO_BIG = 1                             # which the sharper method, without images, has as well
 
 
 def header(problem, as_printed=False):
     """What is known before the search: parameters, region, comments.  Comments are the input's and
-    not the program's words: but for a run as printed they are quoted."""
+    not the program's words, and so are the names and ranges of the parameters of a JSON file, which
+    are among them: except for a run as printed they are quoted."""
     lines = ["Parameters :"]
     lines += ["%s : %.14e \t %.14e" % row for row in zip(
         "abc" if problem.by_ranges else ["p of " + wave_text(wave) for wave in problem.waves],
@@ -68,18 +70,18 @@ TORI = {1: "rotational invariant circles", 2: "invariant tori"}         # by dim
 
 
 def _theorem(proof):
-    problem, exactly = proof.problem, not proof.as_printed
+    problem, exactly, sign = proof.problem, not proof.as_printed, _sign(proof)
     of = " for the range of parameters :" if problem.by_ranges else " for %s :" % WAVES
     lines = [FINDINGS[proof.conclusion] % TORI[problem.dimension]]
     if proof.conclusion == REGION:
-        lines += [_range("v[0] / pi", *problem.v0), _range("v[1] / pi", *problem.v1)]
+        lines += [_range("v[0] / pi", *problem.v0, sign), _range("v[1] / pi", *problem.v1, sign)]
         lines += ["(only a part of the torus: other successors were not examined)", of[1:]]
     else:
         lines[0] += of
     if not problem.by_ranges:
-        lines += _potential(problem)
+        lines += _potential(problem, sign)
     else:
-        lines += [_range(name, *getattr(problem, name), exactly) for name in "abc"]
+        lines += [_range(name, *getattr(problem, name), sign, exactly) for name in "abc"]
     if problem.together:
         lines += ["which move together, from all lower to all upper ends."]
     if proof.conclusion == UNDECIDED:
@@ -91,7 +93,12 @@ def _theorem(proof):
     return lines
 
 
-def _potential(problem):
+def _sign(proof):
+    """Both methods exclude closed ranges; the report of 1989 has the strict sign."""
+    return "<=" if proof.method == "loewner" else "<"
+
+
+def _potential(problem, sign):
     """The waves, exactly."""
     lines = []
     for wave, p, *parts in zip(problem.waves, problem.amplitude, *problem.parts):
@@ -100,17 +107,17 @@ def _potential(problem):
                         for m, part in enumerate(parts, 1) if part)
         lines.append("p %s, p = %s%s" % (wave_text(wave), decimal_text(p, LEAST_PLACES), moves))
     if problem.parts:
-        lines += ["for -1 < %s < 1" % ", ".join("t[%d]" % m
-                                                for m in range(1, len(problem.parts) + 1))]
+        names = ", ".join("t[%d]" % m for m in range(1, len(problem.parts) + 1))
+        lines += ["for -1 %s %s %s 1" % (sign, names, sign)]
     return lines
 
 
-def _range(name, low, high, exactly=True):
+def _range(name, low, high, sign, exactly=True):
     """The bounds of a range, exactly, or to the six places of 1989."""
     low, high = (decimal_text(x, LEAST_PLACES) if exactly else "%f" % x for x in (low, high))
     if exactly and low == high:
         return "%s = %s" % (name, low)
-    return "%s < %s < %s" % (low, name, high)
+    return "%s %s %s %s %s" % (low, sign, name, sign, high)
 
 
 def _gaps(proof):
@@ -199,14 +206,23 @@ def _method(proof):
     lines += _parts(proof)
     lines += ["%s : %s" % (name, proof.constants[name]) for name in ("T", "B")
               if name in proof.constants]
-    lines += ["Tries that failed : %d" % sum(proof.counts.reasons)]
-    lines += ["%d : %s" % pair for pair in zip(proof.counts.reasons, REASONS) if pair[0]]
+    lines += _reasons(proof)
     if proof.restored:
         lines += ["Restored : %d prisms were read from a backup, which is believed"
                   % proof.restored]
     if proof.sha256:
         lines += ["Proof file : SHA-256 " + proof.sha256]
     return lines
+
+
+def _reasons(proof):
+    """How many tries proved nothing, and why.  With the sharper method the usual reason is no
+    failure: the prism is cut."""
+    what, words = "Tries that failed", list(REASONS)
+    if proof.method == "loewner":
+        what, words[TOO_BIG] = "Tries without a proof", "the prism was too large"
+    return ["%s : %d" % (what, sum(proof.counts.reasons)),
+            *("%d : %s" % pair for pair in zip(proof.counts.reasons, words) if pair[0])]
 
 
 def _parts(proof):
@@ -226,7 +242,7 @@ def _parts(proof):
 
 def _region(problem, part):
     """The region of a part, and how it moves with the parameters."""
-    ranges = _range("v[0] / pi", *part.v0), _range("v[1] / pi", *part.v1)
+    ranges = _range("v[0] / pi", *part.v0, "<="), _range("v[1] / pi", *part.v1, "<=")
     if not part.shifts:
         return "%s, %s" % ranges
     moves = ["by %s %s" % tuple(decimal_text(x, LEAST_PLACES) for x in pair)
@@ -245,8 +261,8 @@ def _choices(proof):
     if problem.frame != IDENTITY:
         lines += ["Frame : the angles at the next time are " + frame_text(problem.frame, "v[%d]")]
     if proof.symmetries_used:
-        lines += ["Region : %s, %s" % (_range("v[0] / pi", *problem.v0),
-                                       _range("v[1] / pi", *problem.v1)),
+        lines += ["Region : %s, %s" % (_range("v[0] / pi", *problem.v0, _sign(proof)),
+                                       _range("v[1] / pi", *problem.v1, _sign(proof))),
                   "which by %s stands for the whole torus" % " and ".join(proof.symmetries_used)]
     if problem.dimension == 1:
         lines += ["Circles : those that go around are graphs (Birkhoff), and times {J1 = 0} such "

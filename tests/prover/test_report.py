@@ -41,6 +41,14 @@ def test_sound_mode_adds_its_grounds(made_up):
     assert "\n0 : " not in end
 
 
+def test_the_sharper_method_in_its_own_words(made_up):
+    """It has no images, a cut is no failure, and what it excludes is closed."""
+    text = made_up("P", method="loewner", counts=COUNTS).report()
+    assert "\nTries without a proof : 166\n4 : the orbit of the centre" in text
+    assert "\n158 : the prism was too large\n" in text and "image" not in text
+    assert "0.307250 <= a <= 0.309750\n" in text and " < " not in text
+
+
 def test_header_without_comments(made_up):
     assert header(made_up("P").problem).endswith(
         "v[1] : 3.14159265358979e+00 \t 3.14159265358979e+00\n\nComments :\n\n\n"
@@ -155,7 +163,7 @@ def test_a_patch_is_named_exactly(made_up):
             "p sin(y0), p = 0.400000 + 0.010000 t[1]\n"
             "p sin(y0 - y1 + 1/2 pi), p = -0.00000001 + 1.23456789 t[2]\n"
             "p sin(-2 y0 + 3 y1 - 1/3 pi), p = 2.000000 - 1.000000 t[1]\n"
-            "for -1 < t[1], t[2] < 1\n")
+            "for -1 <= t[1], t[2] <= 1\n")
         assert ("Nor are there any for s times such p, s > 1." in text) == (tree == "P" and at_once)
         assert "V(y) = - the sum of such waves\n" in text and "a sin y0" not in text
     lines = header(problem).split("\n")

@@ -258,8 +258,8 @@ def test_a_proof_with_regions_that_move(moved, begun):
 
 def test_the_report_tells_how_regions_move(moved):
     assert re.search(
-        r"Part b : x\* 0\.85 0\.85, 0\.[0-9]+ < v\[0\] / pi < [01]\.[0-9]+ and -?0\.[0-9]+ < "
-        r"v\[1\] / pi < [01]\.[0-9]+ in the middle of the parameters, moved by "
+        r"Part b : x\* 0\.85 0\.85, 0\.[0-9]+ <= v\[0\] / pi <= [01]\.[0-9]+ and -?0\.[0-9]+ <= "
+        r"v\[1\] / pi <= [01]\.[0-9]+ in the middle of the parameters, moved by "
         r"-0\.040000 0\.000000 to their upper ends : [0-9]+ prisms proved, 0 linked\n",
         moved.report())
     part = replace(moved.parts[1], shifts=TWO)
@@ -271,7 +271,7 @@ def test_the_report_tells_how_regions_move(moved):
     assert "of b, by 0.010000 -0.020000 to the upper end of c : " in ranges.report()
     without = replace(moved, parts=tuple(replace(part, shifts=()) for part in moved.parts))
     assert "moved" not in without.report() and re.search(
-        r"Part b : x\* 0\.85 0\.85, \S+ < v\[0\] / pi < \S+, \S+ < v\[1\] / pi < \S+ : [0-9]+ ",
+        r"Part b : x\* 0\.85 0\.85, \S+ <= v\[0\] / pi <= \S+, \S+ <= v\[1\] / pi <= \S+ : [0-9]+ ",
         without.report())
 
 
