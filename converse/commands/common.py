@@ -39,7 +39,7 @@ def whole_number(least, most=LIMIT):
     """The type of an argument that is a whole number from least to most."""
     def convert(text):
         try:
-            number = int(text)
+            number = int(text) if text.isascii() else None      # int() knows other digits, too
         except ValueError:
             number = None
         if number is None or not least <= number <= most:

@@ -48,8 +48,8 @@ def _eps(text):
         if len(ends) not in (1, 3) or not all(abs(x) < 10 ** 9 for x in ends):
             raise ValueError
     except ValueError:
-        raise argparse.ArgumentTypeError("'%s' is no number and no range LOW:HIGH:STEP"
-                                         % text) from None
+        raise argparse.ArgumentTypeError("'%s' is neither a number below 10^9 nor a range "
+                                         "LOW:HIGH:STEP of such numbers" % text) from None
     if len(ends) == 1:
         return [float(ends[0])]
     low, high, step = ends
@@ -63,8 +63,8 @@ def _vector(text):
     """'1432,1897/2513': ((1432, 1897), 2513)."""
     match = re.fullmatch(r"\(?(-?\d{1,9})(?:, *(-?\d{1,9}))?\)?/(\d{1,9})", text.strip(), re.ASCII)
     if not match or not int(match[3]):
-        raise argparse.ArgumentTypeError("'%s' is no type: write p0,p1/q, or p/q for one angle"
-                                         % text)
+        raise argparse.ArgumentTypeError("'%s' is no type: write p0,p1/q, or p/q for one "
+                                         "angle, whole numbers of at most 9 digits" % text)
     return tuple(int(p) for p in match.groups()[:2] if p is not None), int(match[3])
 
 

@@ -162,6 +162,9 @@ def run(options):
         _check_graphics(options)
     given = {name: value for name, value in vars(options).items() if value is not None and
              name in ("method", "depth", "digits", "stubborn", "as_printed")}
+    if options.method == "loewner" and options.digits is not None:
+        raise ConverseError("-p is of the thesis's arithmetic, and --method loewner works in "
+                            "doubles; leave one of them out")
     with _said_in_a_line():
         settings = Settings(**given)
     if options.backup is not None:

@@ -140,6 +140,9 @@ def _gaps(proof):
     if stuck and proof.method == "loewner":
         lines += ["One of them is as small as doubles can tell : "
                   "the orbit from x* to it may minimize."]
+    if not any(map(any, (proof.problem.amplitude, *proof.problem.parts))):
+        return lines + ["To try : amplitudes that are not all 0, as the map without potential has "
+                        "invariant tori."]
     if proof.method == "thesis":
         advice = "the sharper criterion (--method loewner)"
     elif undecided:

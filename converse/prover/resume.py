@@ -47,8 +47,8 @@ def continued(proof, name, problem=None, given=None, xstar=None):
                                           if key in ("depth", "stubborn")})
 
     def differs(what, theirs, ours):
-        raise ConverseError("%s: is of another run: its %s is %s, this one's is %s; name the "
-                            "backup of this run or start anew" % (name, what, theirs, ours))
+        raise ConverseError("%s: is of another run (%s: there %s, here %s); name the backup of "
+                            "this run or start anew" % (name, what, theirs, ours))
 
     if proof.version != __version__:
         differs("program", proof.version, __version__)

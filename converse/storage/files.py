@@ -50,7 +50,9 @@ def _beside(path):
 
 def check_writable(path, regular=False):
     """ConverseError if a file cannot be written: found out before the work starts."""
-    if os.path.isdir(path or os.curdir):
+    if not os.fspath(path):
+        raise ConverseError("the name of a file is empty; give one")
+    if os.path.isdir(path):
         raise ConverseError("'%s': is a directory; name a file" % path)
     if os.path.exists(path) and not os.path.isfile(path):
         if regular:

@@ -206,6 +206,8 @@ def test_the_sharper_method(command, root, tmp_path):
     (["-d", "x"], "'x'"), (["-dx"], "'x'"), (["-d", "-1"], "-1"), (["-d", "1.5"], "1.5"),
     (["-d", "9" * 30], "9999"), (["-d"], "-d"), (["-z"], "-z"), (["--dept", "3"], "--dept"),
     (["--unknown"], "--unknown"), (["-b"], "-b"), (["one", "two"], "two"),
+    (["-b", ""], "the name of a file is empty"), (["-d", "\u0663"], "is not a whole number"),
+    (["-p", "40", "--method", "loewner"], "-p is of the thesis's arithmetic"),
     (["/missing/file.in"], "/missing/file.in"), (["/"], "/"),
 ])
 def test_bad_usage(command, arguments, word):
@@ -377,10 +379,12 @@ def test_options_that_do_not_fit_a_backup(command, sample, tmp_path):
 @pytest.mark.parametrize("arguments, advice", [
     (["-d", "0"], "or deeper cuts (-d 10)."), (["-d", "3"], "or deeper cuts (-d 10)."),
     (["-d", "60"], "or deeper cuts (-d 120)."),
-    (["--method", "loewner", "-d", "60000"], "or larger parameters.")])
+    (["--method", "loewner", "-d", "60000"], "or larger parameters."),
+    ([], "not all 0, as the map without potential has invariant tori.")])
 def test_advice_that_can_be_taken(command, sample, arguments, advice):
     """(Of a square no leaf is linked, which is tried for minutes else.)"""
-    stdin = sample.read_bytes() if arguments == ["-d", "3"] else b"0 0\n0 0\n0 0\n1 .5\n1 .5\n"
+    stdin = sample.read_bytes() if arguments == ["-d", "3"] else \
+        b"%s 0\n0 0\n0 0\n1 .5\n1 .5\n" % (b".001" if arguments else b"0")
     status, out, err = command(*arguments, stdin=stdin)
     assert status == 1 and err == ""
     assert re.search(r"To try : .*\.", out)[0].endswith(advice)

@@ -257,7 +257,7 @@ def test_continue_as_printed(tmp_path, problem, interrupted):
     ("method", {}, {"method": "loewner"}),
 ])
 def test_another_run_is_refused(problem, proof, name, change, options):
-    with pytest.raises(ConverseError, match="its %s is .*, this one's is " % name):
+    with pytest.raises(ConverseError, match=r"\(%s: there .*, here " % name):
         prove(problem, resume=replace(proof, **change), **options)
 
 
@@ -266,7 +266,7 @@ def test_another_problem_is_refused(problem, proof, name):
     low, high = getattr(problem, name)
     for other in (low - Fraction(1, 10 ** 30), high), (low, high + Fraction(1, 10 ** 30)):
         other = replace(problem, **{name: other})
-        with pytest.raises(ConverseError, match="its %s is " % name):
+        with pytest.raises(ConverseError, match=r"\(%s: there " % name):
             prove(other, resume=proof)
 
 
@@ -359,7 +359,7 @@ def test_deeper(tmp_path, problem, proof):
     assert deeper.no_tori and deeper.tree == proof.tree and deeper.settings.stubborn
     assert deeper.restored == shallow.counts.proved + shallow.counts.symmetric
     assert Proof.load(path).no_tori
-    with pytest.raises(ConverseError, match="its depth is 30, this one's is 29"):
+    with pytest.raises(ConverseError, match=r"\(depth: there 30, here 29\)"):
         prove(resume=path, depth=29)
     stopped = prove(problem, depth=8)
     assert timeless(prove(resume=stopped, depth=30)).tree == proof.tree
@@ -500,7 +500,7 @@ def test_apart_is_not_together(root):
     problem = read_input(root / "inputs" / "trig180.in")
     for together in True, False:
         half = prove(replace(problem, together=together), method="loewner", depth=8, stubborn=True)
-        with pytest.raises(ConverseError, match="its together is %s, this one's is" % together):
+        with pytest.raises(ConverseError, match=r"\(together: there %s, here" % together):
             prove(replace(problem, together=not together), resume=half, depth=120)
 
 
@@ -612,9 +612,9 @@ def test_another_patch_is_refused(tmp_path):
     half = prove(problem, method="loewner", depth=2, stubborn=True)
     for other in (Problem.patch(["0.45"] * 3, [["0.01", "0.01", 0], [0, 0, "0.02"]]),
                   replace(problem, axes=(0, 1, 1, 0))):
-        with pytest.raises(ConverseError, match="its (potential|frame) is .*, this one's is "):
+        with pytest.raises(ConverseError, match=r"\((potential|frame): there .*, here "):
             prove(other, resume=half)
-    with pytest.raises(ConverseError, match="its .* is .*, this one's is "):
+    with pytest.raises(ConverseError, match=r"\(.*: there .*, here "):
         prove(Problem("0.45", "0.45", "0.45"), resume=half)
     assert prove(problem, resume=half, depth=60).no_tori
 
@@ -643,7 +643,7 @@ def test_a_point_of_ones_own(problem, tmp_path):
     assert prove(problem, xstar=(0, 2), depth=2).xstar == ("0", "2")
     half = prove(point, method="loewner", xstar=("0.8", "0.95"), depth=2)
     assert prove(resume=half, xstar=("0.80", "95e-2"), depth=60).no_tori
-    with pytest.raises(ConverseError, match=r"its x\* is 0.8 0.95, this one's is 0.8 0.9;"):
+    with pytest.raises(ConverseError, match=r"\(x\*: there 0.8 0.95, here 0.8 0.9\);"):
         prove(resume=half, xstar=("0.8", "0.9"), depth=60)
     nothing = prove(point, method="loewner", xstar=("0.8", "0.95"), time_limit=0)
     assert prove(resume=replace(nothing, xstar=None), xstar=("0.8", "0.9")).xstar == ("0.8", "0.9")
