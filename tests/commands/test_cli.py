@@ -145,7 +145,7 @@ def test_restore_alone(command, sample, root, tmp_path):
         status, out, err = command("-r", backup, *arguments)
         assert (status, out) == (2, "") and one_line(err)
         assert "of another run" in err and "--together" not in err
-    assert "its potential is " in err           # not its together, which the input cannot name
+    assert "(potential: there " in err           # not its together, which the input cannot name
     assert command("-r", backup, root / "inputs" / "trig180.in")[0] == 0
     assert Proof.load(backup) == whole
 
@@ -307,7 +307,7 @@ def test_bad_backups(command, sample, root, tmp_path):
         assert status == 2 and out == "" and one_line(err)
         assert str(path) in err and word in err
     status, out, err = command("-r", good, root / "inputs" / "trig276.in")
-    assert status == 2 and one_line(err) and "its a is 0.30725 .. 0.30975" in err
+    assert status == 2 and one_line(err) and "(a: there 0.30725 .. 0.30975" in err
     assert command("-r", good, "-p40", sample)[0] == 2
 
 
@@ -402,7 +402,7 @@ def test_a_potential_of_ones_own(command, root, tmp_path):
         "p sin(y0 - 1/2 pi), p = 1.158000 + 0.182000 t[1]\nfor -1 <= t[1] <= 1\n" \
         "Nor are there any for s times" in out
     status, out, err = command("-r", path, root / "inputs" / "two-harmonics.json")
-    assert (status, out) == (2, "") and one_line(err) and "its potential is " in err
+    assert (status, out) == (2, "") and one_line(err) and "(potential: there " in err
 
 
 @pytest.mark.parametrize("arguments, words", [
@@ -435,7 +435,7 @@ def test_a_point_is_chosen(command, sample, tmp_path):
     status, out, err = command("-d5", "--xstar", "0.8", "-0.95", "-b", tmp_path / "a", sample)
     assert (status, err) == (1, "") and "\nx* : 0.8 -0.95\n" in out
     status, out, err = command("-r", tmp_path / "a", "--xstar", "0.8", "0.95")
-    assert (status, out) == (2, "") and one_line(err) and "its x* is 0.8 -0.95" in err
+    assert (status, out) == (2, "") and one_line(err) and "(x*: there 0.8 -0.95" in err
     for words in ("0.8", "x"), ("1/3", "0"), ("1e999", "0"):
         status, out, err = command("--xstar", *words, sample)
         assert (status, out) == (2, "") and one_line(err) and "--xstar" in err
