@@ -140,7 +140,7 @@ formal-quick: $(VENV)/installed
 	sh .ci/packages $(PYTHON) $(FORMAL_PACKAGES)
 	$(MAKE) -C formal -j2 quick
 
-# The library and a theorem once more, by Coq's second checker; minutes.
+# The library's functors and a theorem once more, by Coq's second checker; minutes.
 formal-check: $(VENV)/installed
 	sh .ci/packages $(PYTHON) $(FORMAL_PACKAGES)
 	$(MAKE) -C formal -j2 check
