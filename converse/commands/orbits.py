@@ -220,7 +220,7 @@ def _find_parser(commands):
                       "minimum, and the flux; with --prove, prove both")
     find.add_argument("--csv", metavar="FILE", help="write a row for each state")
     find.add_argument("--points", metavar="FILE", help="write the points and momenta of the "
-                      "states: CSV or NPZ by the name")
+                      "states, as NPZ")
     find.add_argument("--from", dest="start", metavar="FILE", help="begin at that of the "
                       "states in a file of --points which is nearest in eps, not at eps 0")
     find.add_argument("-g", "--graphics", metavar="FILE", help="draw the angles and the momenta of "
@@ -419,7 +419,7 @@ def find_states(options):
         Family(tuple(states)).write_csv(table)
         files.write(options.csv, table.getvalue().encode("utf-8"))
     if options.points is not None and states:
-        files.write(options.points, encoded(states, options.points))
+        files.write(options.points, encoded(states))
     if options.graphics is not None and states:
         from ..orbits.pictures import states_picture
         files.write(options.graphics, states_picture(drawn, format_of(options.graphics),

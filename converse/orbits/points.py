@@ -1,11 +1,9 @@
-"""Files of states: their points and momenta, and all that a state is made of, as CSV or NPZ.
+"""Files of states: all that a state is made of, and its points and momenta, as arrays of NumPy.
 
-CSV: a row for each point, doubles as the shortest decimals that give them back.  NPZ: arrays of
-numpy, with those names of STORED that depend on a state stacked.  x and momenta are for others to
-read; a state is read from its displacements u and its origin, and compared with them.
+The arrays of states of one type are stacked.  A state is made of its displacements u and its
+origin; x and momenta are for others to read.
 """
 
-import csv
 import io
 import os
 import zipfile
@@ -20,54 +18,21 @@ from .potential import STUDIED, Potential, known
 from .solver import Family
 from .state import State
 
-ENDINGS = "csv", "npz"
-FORMAT = "states 1"
-AGREE = 1e-9                # of x and momenta in a file, and those of the state
-ORBIT = ("potential", "p", "q", "eps", "searches", "j")
-ARRAYS = "x", "momentum", "u", "origin"
-STORED = ("converse", "potential", "p", "q", "eps", "searches", "x", "momentum", "u", "origin")
-KINDS = {**dict.fromkeys(STORED, "f"), **dict.fromkeys(("converse", "potential"), "U"),
-         **dict.fromkeys(("p", "q", "searches"), "iu")}
-
-
-def columns(n):
-    return (*ORBIT, *("%s_%d" % (name, i + 1) for name in ARRAYS for i in range(n)))
+ENDINGS = ("npz",)
+FORMAT = "states 2"
 
 
 def save(states, path):
     """See State.save."""
     path = os.fspath(path)
     files.check_output(path, "file of points", ENDINGS)
-    files.write(path, encoded(states, path))
+    files.write(path, encoded(states))
 
 
-def encoded(states, path):
-    """The bytes of a file of states of one type, CSV or NPZ by the ending of its name.  ValueError:
-    they are none, or of several."""
-    if len({(id(state.potential), state.p, state.q) for state in states}) != 1:
+def encoded(states):
+    """The bytes of a file of states of one type.  ValueError: they are none, or of several."""
+    if len({(state.potential.name, state.p, state.q) for state in states}) != 1:
         raise ValueError("a file holds states of one potential and one type, at least one")
-    return (_csv if ending(path) == "csv" else _npz)(states)
-
-
-def ending(path):
-    return os.path.splitext(path)[1][1:].lower()
-
-
-def _csv(states):
-    text = io.StringIO(newline="")
-    rows = csv.writer(text, lineterminator="\n")
-    rows.writerow(columns(states[0].potential.n))
-    for state in states:
-        head = (state.potential.name, " ".join(map(str, state.p)), state.q, repr(state.eps),
-                state.searches)
-        origin = tuple(map(repr, state.origin))
-        for j, (x, p, u) in enumerate(zip(*(array.tolist() for array in (
-                state.x, state.momenta, state.u)))):
-            rows.writerow((*head, j, *map(repr, x), *map(repr, p), *map(repr, u), *origin))
-    return text.getvalue().encode("utf-8")
-
-
-def _npz(states):
     data, first = io.BytesIO(), states[0]
     np.savez(data, converse=FORMAT, potential=first.potential.name, p=first.p, q=first.q,
              eps=[state.eps for state in states], searches=[state.searches for state in states],
@@ -77,13 +42,21 @@ def _npz(states):
 
 
 def load(path: Union[str, "os.PathLike[str]"], potential: Optional[Potential] = None) -> Family:
-    """The Family of states in a file that State.save, Family.save or converse-orbits find --points
+    """Reads the Family of states that State.save, Family.save or converse-orbits find --points
     wrote, to the last bit.
 
-    potential -- that of the states, unless it is one with a name of its own (trig, standard, ...)
+    Parameters
+    ----------
+    path
+        The file.
+    potential
+        That of the states, unless it is one with a name here (trig, standard, ...).
 
-    ConverseError: the file cannot be read, is none of these, or its momenta are not those of the
-    potential."""
+    Raises
+    ------
+    ConverseError
+        The file cannot be read, is not such a file, or names another potential.
+    """
     if potential is not None:
         known(potential)
     path = os.fspath(path)
@@ -94,11 +67,21 @@ def load(path: Union[str, "os.PathLike[str]"], potential: Optional[Potential] = 
         raise ConverseError("%s: cannot be read (%s); name a readable file"
                             % (path, files.reason(error))) from None
     try:
-        name, found = (_from_npz if data[:2] == b"PK" else _from_csv)(data)
-    except (ValueError, KeyError, IndexError, TypeError, OverflowError, EOFError, csv.Error,
+        with np.load(io.BytesIO(data), allow_pickle=False) as stored:
+            if str(stored["converse"]) != FORMAT:
+                raise ValueError
+            name = str(stored["potential"])
+            p, q = tuple(int(x) for x in stored["p"]), int(stored["q"])
+            found = [(float(eps), u.astype(float, casting="same_kind"),
+                      tuple(map(float, origin)), int(searches))
+                     for eps, u, origin, searches in zip(
+                         *(stored[key] for key in ("eps", "u", "origin", "searches")))]
+    except (ValueError, KeyError, IndexError, TypeError, OverflowError, EOFError,
             zipfile.BadZipFile, MemoryError, RuntimeError, zlib.error):
-        raise ConverseError("%s: is no file of states, or damaged: name one that find --points or "
-                            "save() wrote" % path) from None
+        found = []
+    if not found:
+        raise ConverseError("%s: is not a file of states, or damaged: name one that find --points "
+                            "or save() wrote" % path)
     if potential is None:
         potential = STUDIED.get(name)
         if potential is None:
@@ -107,58 +90,8 @@ def load(path: Union[str, "os.PathLike[str]"], potential: Optional[Potential] = 
     if potential.name != name:
         raise ConverseError("%s: its potential is '%s', not %s" % (path, files.plain(name),
                                                                   potential.name))
-    states = []
-    for p, q, eps, searches, origin, u, x, momenta in found:
-        try:
-            states.append(State(potential, p, q, eps, u, origin, searches))
-        except ValueError as error:
-            raise ConverseError("%s: is damaged: %s" % (path, error)) from None
-        away = states[-1].x - x
-        if not ((abs(x) < 2) & (np.abs(away - np.round(away)) < AGREE)).all():
-            raise ConverseError("%s: its x are not origin + (j p mod q)/q + u: the file was "
-                                "changed; a state is made of these" % path)
-        if not (np.abs(states[-1].momenta - momenta) < AGREE * (1 + np.abs(momenta))).all():
-            raise ConverseError("%s: its momenta are not those of the potential %s at its points: "
-                                "it is another potential of this name, or the file was changed"
-                                % (path, name))
-    return Family(tuple(states))
-
-
-def _from_npz(data):
-    with np.load(io.BytesIO(data), allow_pickle=False) as stored:
-        if set(stored.files) != set(STORED) or str(stored["converse"]) != FORMAT:
-            raise ValueError
-        arrays = {name: stored[name] for name in STORED}
-    if any(array.dtype.kind not in KINDS[name] for name, array in arrays.items()):
-        raise ValueError
-    p, q = tuple(arrays["p"].tolist()), int(arrays["q"])
-    m, n = len(arrays["eps"]), len(p)
-    if m < 1 or any(arrays[name].shape != (m, q, n) for name in ("x", "momentum", "u")) or \
-            arrays["origin"].shape != (m, n) or arrays["searches"].shape != (m,):
-        raise ValueError
-    return str(arrays["potential"]), [
-        (p, q, float(eps), int(searches), tuple(origin.tolist()), u, x, momenta)
-        for eps, searches, origin, u, x, momenta in zip(*(arrays[name] for name in (
-            "eps", "searches", "origin", "u", "x", "momentum")))]
-
-
-def _from_csv(data):
-    header, *rows = csv.reader(io.StringIO(data.decode("utf-8"), newline=""))
-    n = (len(header) - len(ORBIT)) // len(ARRAYS)
-    if n not in (1, 2) or tuple(header) != columns(n) or not rows:
-        raise ValueError
-    found, first = [], rows[0]
-    while rows:
-        q = int(rows[0][2])
-        own, rows = rows[:q], rows[q:]
-        head, origin = own[0][:5], own[0][-n:]
-        if not len(own) == q >= 1 or head[:3] != first[:3]:
-            raise ValueError
-        for j, row in enumerate(own):
-            if len(row) != len(header) or row[:6] + row[-n:] != [*head, str(j), *origin]:
-                raise ValueError
-        numbers = np.array([row[6:-n] for row in own], dtype=float)
-        found.append((tuple(map(int, head[1].split())), q, float(head[3]), int(head[4]),
-                      tuple(map(float, origin)), numbers[:, 2 * n:], numbers[:, :n],
-                      numbers[:, n:2 * n]))
-    return first[0], found
+    try:
+        return Family(tuple(State(potential, p, q, eps, u, origin, searches)
+                            for eps, u, origin, searches in found))
+    except ValueError as error:
+        raise ConverseError("%s: is damaged: %s" % (path, error)) from None

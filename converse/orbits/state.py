@@ -411,7 +411,7 @@ class State:
         return minimax(self, step)
 
     def save(self, path: Union[str, "os.PathLike[str]"]) -> None:
-        """Writes points, momenta and all else of the state to a file, .csv or .npz, from which
+        """Writes points, momenta and all else of the state to a file, NAME.npz, from which
         orbits.load reads it to the last bit.  ConverseError: it cannot be written, or exists and is
         no such file."""
         from .points import save

@@ -12,7 +12,6 @@ import functools
 import io
 import math
 import os
-import zlib
 from typing import Any, Callable, NamedTuple, Optional, Sequence, Tuple, Union
 
 import numpy as np
@@ -32,7 +31,6 @@ HALVINGS = 10
 AHEAD = 2                               # tasks for each that is worked on
 ONSET_PER_CURVATURE = 0.03, 0.0006, 4.0     # step, width and top of onset() times curvature
 
-SEAL = "crc32"                          # the last column of a sweep's file: see _sealed
 ONSET_COLUMNS = ("potential", "p", "q", "label", "eps_below", "eps_above", "exponent_below",
                  "exponent_above")
 TABLELESS = ValueError, IndexError, csv.Error       # raised by _table for a text that is no table
@@ -125,8 +123,8 @@ def sweep(potential: Potential, vectors: Sequence[Type], eps: Sequence[float],
 
     executor -- a concurrent.futures.Executor, of threads, processes or others; by default this
         thread does all
-    file -- a CSV file that grows with every vector.  If it is there already it must be the
-        beginning of this very sweep, and is continued.  Its last column is a check sum.
+    file -- a CSV file that grows with every vector.  If it is there already its rows must be of
+        these vectors and eps, and the sweep continues after them.
     progress(done, of) -- is told how many vectors are finished
 
     Where continuation loses a branch the rest of its rows has the label "lost" and no numbers."""
@@ -135,8 +133,8 @@ def sweep(potential: Potential, vectors: Sequence[Type], eps: Sequence[float],
         reached(potential, eps)
     if not eps:
         raise ValueError("eps is a list of finite numbers, one at least, not %r" % (eps,))
-    return _sweep(functools.partial(_family, potential, eps), repr(eps), COLUMNS, potential,
-                  vectors, [[repr(x)] for x in eps], executor, file, progress)
+    return _sweep(functools.partial(_family, potential, eps), COLUMNS, potential, vectors,
+                  [[repr(x)] for x in eps], executor, file, progress)
 
 
 def onsets(potential: Potential, vectors: Sequence[Type],
@@ -147,14 +145,13 @@ def onsets(potential: Potential, vectors: Sequence[Type],
 
     The columns eps_below and eps_above enclose each onset; eps_above is inf where there is none.
     The exponents are the first ones there, and the label is that of the state above."""
-    return _sweep(functools.partial(_onset, potential, how), repr(sorted(how.items())),
-                  ONSET_COLUMNS, potential, vectors, [[]], executor, file, progress)
+    return _sweep(functools.partial(_onset, potential, how), ONSET_COLUMNS, potential, vectors,
+                  [[]], executor, file, progress)
 
 
 def read_csv(file: Union[str, "os.PathLike[str]"]) -> np.ndarray:
     """The table in a CSV file of this module or of Family.write_csv: an array with the columns'
-    names, but for the check sums', as its fields, p an array of integers; a number that is missing
-    is NaN."""
+    names as its fields, p an array of integers; a number that is missing is NaN."""
     try:
         with open(os.fspath(file), encoding="utf-8", newline="") as stream:
             return _table(stream.read())
@@ -166,8 +163,6 @@ def read_csv(file: Union[str, "os.PathLike[str]"]) -> np.ndarray:
 
 def _table(text):
     header, *rows = csv.reader(io.StringIO(text))
-    if header[-1:] == [SEAL] and all(len(row) == len(header) for row in rows):
-        header, *rows = (row[:-1] for row in (header, *rows))
     if tuple(header) not in (COLUMNS, ONSET_COLUMNS) or any(len(row) != len(header)
                                                             for row in rows):
         raise ValueError("no such columns")
@@ -186,12 +181,6 @@ def _text(rows):
     text = io.StringIO(newline="")
     csv.writer(text, lineterminator="\n").writerows(rows)
     return text.getvalue()
-
-
-def _sealed(seal, text):
-    """Rows, each with a check sum of what it says and of what the sweep is."""
-    return "".join("%s,%08x\n" % (line[:-1], zlib.crc32((seal + line).encode("utf-8")))
-                   for line in text.splitlines(keepends=True))
 
 
 def _type(potential, vector):
@@ -219,9 +208,8 @@ def _onset(potential, how, vector):
     return _text([[*_type(potential, vector), *found]])
 
 
-def _sweep(task, how, columns, potential, vectors, eps, executor, file, progress):
-    """Does all tasks.  how: the arguments that all rows depend on; eps: of each row of a vector,
-    what follows its type there."""
+def _sweep(task, columns, potential, vectors, eps, executor, file, progress):
+    """Does all tasks.  eps: of each row of a vector, what follows its type there."""
     known(potential)
     told(progress)
     if executor is not None and not hasattr(executor, "submit"):
@@ -231,26 +219,25 @@ def _sweep(task, how, columns, potential, vectors, eps, executor, file, progress
     except TypeError:
         raise ValueError("the rotation vectors are a list of pairs (p, q), not %r"
                          % (vectors,)) from None
-    texts = [_text([(*columns, SEAL)])]
-    seal = "%s %r %s\n" % (potential.formula, potential.start, how)
+    texts = [_text([columns])]
     with interruptible():
         if file is None:
-            return _table("".join(_grown(task, vectors, executor, seal, texts, [], progress)))
+            return _table("".join(_grown(task, vectors, executor, texts, [], progress)))
         files.check_writable(file, regular=True)
         with files.Lock(file):
-            texts += _finished(file, texts[0], potential, vectors, eps, task, seal)
+            texts += _finished(file, texts[0], potential, vectors, eps)
             with contextlib.closing(files.AppendedFile(file, "".join(texts))) as out:
-                return _table("".join(_grown(task, vectors, executor, seal, texts, out, progress)))
+                return _table("".join(_grown(task, vectors, executor, texts, out, progress)))
 
 
-def _grown(task, vectors, executor, seal, texts, out, progress):
+def _grown(task, vectors, executor, texts, out, progress):
     """The texts of the header and of all vectors, given the first of them; the others are appended
     to out as well."""
     tell = progress or (lambda *_: None)
     tell(len(texts) - 1, len(vectors))
     with contextlib.closing(_in_order(task, vectors[len(texts) - 1:], executor)) as results:
         for text in results:
-            texts.append(_sealed(seal, text))
+            texts.append(text)
             out.append(texts[-1])
             tell(len(texts) - 1, len(vectors))
     return texts
@@ -297,10 +284,9 @@ def _caught(task, vector):
         return error
 
 
-def _finished(path, header, potential, vectors, eps, task, seal):
-    """The texts of the vectors that a file has, whole ones only.  ConverseError if it is another
-    sweep's, or was changed: its rows are not of these vectors and eps, a check sum is wrong, or the
-    rows of the first vector, computed anew, are others."""
+def _finished(path, header, potential, vectors, eps):
+    """The texts of the vectors that a file has, whole ones only.  ConverseError if its rows are not
+    of these columns, vectors and eps."""
     try:
         with open(path, "rb") as stream:
             lines = stream.read().decode("utf-8", "replace").split("\n")
@@ -325,11 +311,8 @@ def _finished(path, header, potential, vectors, eps, task, seal):
         key = _type(potential, vectors[k // len(eps)]) + eps[k % len(eps)]
         if not line.startswith(_text([key])[:-1] + ","):
             refuse("its line %d is of another potential, type or eps" % (k + 2))
-    for k, line in enumerate(rows):
-        if line != _sealed(seal, line.rpartition(",")[0] + "\n"):
-            refuse("its line %d was changed, or found with another potential or other options"
-                   % (k + 2))
-    texts = ["".join(rows[k:k + len(eps)]) for k in range(0, len(rows) - len(eps) + 1, len(eps))]
-    if texts and texts[0] != _sealed(seal, task(vectors[0])):
-        refuse("its first rows, computed anew, are others")
-    return texts
+    try:
+        _table("".join([header, *rows]))
+    except TABLELESS:
+        refuse("it is damaged")
+    return ["".join(rows[k:k + len(eps)]) for k in range(0, len(rows) - len(eps) + 1, len(eps))]

@@ -75,8 +75,7 @@ MADE = {                                # by the ending of its name, how a file 
     "svg": (b"<?xml", b"<dc:title>converse "),              # begins, and what it holds
     "png": (b"\x89PNG", b"Software\0converse "), "pdf": (b"%PDF", b"/Creator (converse "),
     "ps": PS, "eps": PS,
-    "npz": (b"PK", b"converse.npy"), "points.csv": (b"potential,p,q,", b",searches,j,"),
-    "csv": (b"potential,p,q,", b",undetermined\n")}         # not a sweep's: it may be days of work
+    "npz": (b"PK", b"converse.npy")}    # and no tables: those of sweeps may be days of work
 
 
 def check_output(path, what, endings, others=()):
@@ -98,11 +97,11 @@ def check_output(path, what, endings, others=()):
     except OSError as error:
         raise ConverseError("%s: cannot be read (%s); name another file"
                             % (path, reason(error))) from None
-    head, mark = MADE["points.csv" if (what, ending) == ("file of points", "csv") else ending]
-    if data and not (data.startswith(head) and mark in data):
-        raise ConverseError("'%s': exists and is no %s of this program, or one to be kept (of a "
-                            "sweep, or of an older release); remove it or name another file"
-                            % (path, what))
+    head, mark = MADE.get(ending, (b"", b""))
+    if data and not (mark and data.startswith(head) and mark in data):
+        raise ConverseError("'%s': exists and is %s; remove it or name another file"
+                            % (path, "a table" if ending == "csv" else
+                               "not a %s of this program" % what))
 
 
 def write(path, data):

@@ -343,7 +343,7 @@ def test_a_figure_replaces_nothing_but_a_figure(command, sample, tmp_path, name)
                  b"<?xml version='1.0'?><svg/>"):
         path.write_bytes(text)
         status, out, err = command("-g", path, sample)
-        assert (status, out) == (2, "") and one_line(err) and "no figure of this program" in err
+        assert (status, out) == (2, "") and one_line(err) and "not a figure of this program" in err
         assert path.read_bytes() == text
     path.write_bytes(b"")
     for _ in range(2):                      # over nothing, and over itself

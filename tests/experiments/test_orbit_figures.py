@@ -562,7 +562,7 @@ def test_bad_orders(tmp_path, monkeypatch):
     with pytest.raises(ConverseError, match="tri.svg"):
         figures.figures(tmp_path, ["tree", "tri"])
     (tmp_path / "trimed.svg").write_text("<svg>somebody else's</svg>")
-    with pytest.raises(ConverseError, match="trimed.svg.: exists and is no figure of this program"):
+    with pytest.raises(ConverseError, match="trimed.svg.: exists and is not a figure"):
         figures.figures(tmp_path, ["tree", "trimed"])
     assert not (tmp_path / "tree.svg").exists()         # before anything is drawn
     monkeypatch.setitem(sys.modules, "matplotlib", None)

@@ -136,9 +136,7 @@ def test_a_sweep_is_its_families(whole):
     text = io.StringIO()
     families = [orbits.follow(orbits.trig, p, q, EPS) for p, q in VECTORS]
     orbits.Family(sum((family.states for family in families), ())).write_csv(text)
-    lines = [line.rpartition(",") for line in whole.decode().splitlines()]
-    assert [line[0] for line in lines] == text.getvalue().splitlines()
-    assert lines[0][2] == "crc32" and len({line[2] for line in lines}) == len(lines)
+    assert whole.decode() == text.getvalue()
     assert len(table) == len(VECTORS) * len(EPS) and table.dtype["p"].shape == (2,)
     for k, state in enumerate(state for family in families for state in family):
         row = table[k]
@@ -215,7 +213,7 @@ def test_what_is_finished_is_not_done_again(whole, path, monkeypatch):
         found.append((p, q)), orbits.follow(v, p, q, *rest, **options))[1])
     seen = []
     orbits.sweep(orbits.trig, VECTORS, EPS, file=path, progress=lambda *done: seen.append(done))
-    assert found == [VECTORS[0], VECTORS[3], VECTORS[4]]        # the first says that it is ours
+    assert found == [VECTORS[3], VECTORS[4]]
     assert path.read_bytes() == whole and seen[0] == (3, 5)
 
 
@@ -234,42 +232,11 @@ def test_the_file_of_another_sweep_is_refused(whole, path, potential, vectors, e
     assert path.read_bytes() == whole
 
 
-def test_the_file_of_another_potential_of_this_name_is_refused(path):
-    waves = [{(1,): (-1, 0)}, {(1,): (-2, 0)}]
-    orbits.sweep(orbits.Fourier(waves[0], "mine"), [((1,), 3)], EPS, file=path)
+def test_a_table_of_onsets_is_not_one_of_states(path):
+    orbits.onsets(orbits.standard, [((1,), 3), ((2,), 5)], file=path, width=0.001)
     data = path.read_bytes()
-    for other in orbits.Fourier(waves[1], "mine"), orbits.Fourier(waves[0], "mine", (0.4,)):
-        with pytest.raises(ConverseError,
-                           match="its line 2 was changed, or found with another pot"):
-            orbits.sweep(other, [((1,), 3)], EPS, file=path)
-    assert path.read_bytes() == data
-
-
-def test_another_potential_from_python_is_seen_by_its_first_rows(path):
-    """Nothing can be said of it in words."""
-    class Stronger(Cosine):
-        def value(self, x):
-            return 1.001 * super().value(x)
-
-        def gradient(self, x):
-            return 1.001 * super().gradient(x)
-
-        def hessian(self, x):
-            return 1.001 * super().hessian(x)
-
-    orbits.sweep(orbits.FromPython(Cosine(), 1, "mine", (0.5,)), [((1,), 3)], EPS, file=path)
-    with pytest.raises(ConverseError, match="computed anew"):
-        orbits.sweep(orbits.FromPython(Stronger(), 1, "mine", (0.5,)), [((1,), 3)], EPS, file=path)
-
-
-def test_onsets_by_another_criterion_are_refused(path):
-    vectors = [((1,), 3), ((2,), 5)]
-    orbits.onsets(orbits.standard, vectors, file=path, width=0.001)
-    data = path.read_bytes()
-    with pytest.raises(ConverseError, match="other options"):
-        orbits.onsets(orbits.standard, vectors, file=path, width=0.001, exponent=0.01)
     with pytest.raises(ConverseError, match="columns"):
-        orbits.sweep(orbits.standard, vectors, EPS, file=path)
+        orbits.sweep(orbits.standard, [((1,), 3), ((2,), 5)], EPS, file=path)
     assert path.read_bytes() == data
 
 
@@ -282,29 +249,16 @@ def test_what_is_no_sweep_is_refused(path, data):
     assert path.read_bytes() == data
 
 
-@pytest.mark.parametrize("old, new", [(b"minimum,", b"minimum;"), (b",minimum,", b",minimum,\0,"),
-                                      (b",0.", b",zero."), (b"e-0", b"\xff-0")])
+@pytest.mark.parametrize("old, new", [(b"minimum,", b"minimum;"), (b",0.", b",zero."),
+                                      (b"e-0", b"\xff-0")])
 def test_a_damaged_sweep_is_refused(whole, path, old, new):
     """Here the last line with such words."""
     head, _, tail = whole.rpartition(old)
     path.write_bytes(head + new + tail)
-    with pytest.raises(ConverseError, match="its line 1[01] was changed"):
+    with pytest.raises(ConverseError, match="it is damaged"):
         orbits.sweep(orbits.trig, VECTORS, EPS, file=path)
     with pytest.raises(ConverseError, match="is no table"):
         orbits.read_csv(path)
-
-
-def test_a_number_changed_in_any_row_is_seen(whole, path):
-    """One digit of one number, in each line in turn; and nothing is written."""
-    lines = whole.splitlines(keepends=True)
-    for k in range(1, len(lines)):
-        head, dot, tail = lines[k].rpartition(b",0.")
-        digit = b"%d" % ((int(tail[:1]) + 1) % 10)
-        data = b"".join(lines[:k] + [head + dot + digit + tail[1:]] + lines[k + 1:])
-        path.write_bytes(data)
-        with pytest.raises(ConverseError, match="its line %d was changed" % (k + 1)):
-            orbits.sweep(orbits.trig, VECTORS, EPS, file=path)
-        assert path.read_bytes() == data
 
 
 def test_two_sweeps_do_not_write_one_file(path):
