@@ -2,10 +2,10 @@
 
     python experiments/vectors.py FILE NAME VALUE [--points N] [--save FILE]
 
-Of the potential of an input file the parameter NAME varies, from VALUE down.  Where the orbits of
-rational rotation vectors turn hyperbolic (converse.orbits) tells in floating-point numbers for
-which vectors tori last longest; near the best ones vectors of number fields are taken (tori.near)
-and judged by their own approximants.  The best is proved for values of NAME as large as a search on
+Of the potential of an input file the parameter NAME varies, from VALUE down.  The onsets of
+rational rotation vectors (orbits.onset) tell in floating-point numbers for which vectors tori last
+longest; near the best ones vectors of number fields are taken (tori.near) and judged by their own
+approximants.  The best is proved for values of NAME as large as a search on
 a grid of N points reaches.  All but the proof is seen, not proved.
 """
 
@@ -38,8 +38,8 @@ POINTS = 1 << 20
 
 
 def onset(potential, w, q):
-    """The multiple of the potential at which an orbit of size about q near the rotation vector w
-    turns hyperbolic, about; 0 where continuation loses it."""
+    """The onset of an orbit of size about q near the rotation vector w, as a multiple of the
+    potential; 0 where continuation loses it."""
     try:
         return orbits.onset(potential, *rational(w, q), step=0.06 * TOP, width=0.002 * TOP,
                             top=TOP)[0].eps

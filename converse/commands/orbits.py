@@ -236,8 +236,8 @@ def _sweep_parser(commands):
     sweep = commands.add_parser(
         "sweep", allow_abbrev=False, epilog=STATUS, help="tabulate the states of many types",
         description="Writes a table of the states of many types at each eps or, without eps, of "
-        "where the orbit of each type turns hyperbolic.  The same command continues a sweep that "
-        "was interrupted.")
+        "the onset of each type: where the first Lyapunov exponent of its orbit exceeds 1/q.  The "
+        "same command continues a sweep that was interrupted.")
     sweep.add_argument("potential", metavar="POTENTIAL", help=POTENTIAL)
     sweep.add_argument("csv", metavar="FILE", help="the table; if it exists, the beginning of this "
                        "same sweep")

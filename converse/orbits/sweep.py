@@ -1,4 +1,4 @@
-"""Sweeps over many rotation vectors: their families, and where their orbits turn hyperbolic.
+"""Sweeps over many rotation vectors: their families, and the onsets of their orbits.
 
 The rows of a sweep are those of its vectors in the order given, whatever worker computes them: the
 same sweep always gives the same bytes.  Its file is at any time the beginning of the table, and an
@@ -36,7 +36,7 @@ ONSET_COLUMNS = ("potential", "p", "q", "label", "eps_below", "eps_above", "expo
 TABLELESS = ValueError, IndexError, csv.Error       # raised by _table for a text that is no table
 
 
-# ---- where an orbit turns hyperbolic
+# ---- onsets
 
 Type = Tuple[Tuple[int, ...], int]
 
@@ -51,11 +51,12 @@ class Onset(NamedTuple):
 def onset(potential: Potential, p: Tuple[int, ...], q: int, exponent: Optional[float] = None,
           step: Optional[float] = None, width: Optional[float] = None,
           top: Optional[float] = None) -> Onset:
-    """Where the orbit of type (p, q) that continuation from eps 0 follows turns hyperbolic: a
-    minimum whose first exponent exceeds the given one.  An Onset; its two eps are at most width
-    apart.
+    """The onset of the orbit of type (p, q) that continuation from eps 0 follows: where it becomes
+    a minimum whose first Lyapunov exponent, the largest, exceeds the given one.  An Onset; its two
+    eps are at most width apart.  (Minima are usually hyperbolic before their onset, too, with
+    exponents that may be far below what doubles see; prove() encloses them.)
 
-    exponent -- by default 1/q, an e-fold stretching by all of the orbit.  When a torus breaks up,
+    exponent -- by default 1/q: one period stretches e-fold.  When a torus breaks up,
         the stretching along the orbits beside it neither vanishes with growing q, as it does on a
         smooth torus, nor grows, as it does on what is left: for the golden torus of the standard
         map (Greene: residue -1/4) it is e^0.96.  So the onsets of approximants tend to where the

@@ -1,5 +1,5 @@
-"""Sweeps: the same bytes whoever computes them and however often they were interrupted; and where
-orbits turn hyperbolic."""
+"""Sweeps: the same bytes whoever computes them and however often they were interrupted; and
+onsets."""
 
 import concurrent.futures
 import importlib.util
@@ -69,7 +69,7 @@ def test_greenes_residue_at_the_golden_onset():
     assert -math.sinh(610 * state.exponents[0] / 2) ** 2 == pytest.approx(-0.2555, abs=0.001)
 
 
-def test_what_is_no_minimum_is_not_hyperbolic(monkeypatch):
+def test_a_saddle_is_no_onset(monkeypatch):
     """Whatever its exponents."""
     monkeypatch.setattr(orbits.State, "label", "saddle")
     assert orbits.onset(orbits.trig, (65, 86), 114, step=0.001, width=1e-4, top=0.004).above is None
@@ -85,7 +85,7 @@ def test_a_given_exponent_is_late():
     assert (same.below.eps, same.above.eps) == (free.below.eps, free.above.eps)
 
 
-def test_the_thesis_vectors_turn_hyperbolic_where_it_says():
+def test_the_onsets_of_the_thesis_vectors():
     """Thesis, section 2.3: trig's first exponent leaves zero when the state contracts; 0.0080."""
     below, above = orbits.onset(orbits.trig, (1432, 1897), 2513, step=0.0005, width=5e-5)
     assert 0.0075 < below.eps < above.eps < 0.0085
@@ -446,7 +446,7 @@ def toughest(root):
 
 
 def test_one_vector_stands_for_its_mirror_images(toughest):
-    """Their orbits are images of one another, so that they turn hyperbolic at the same eps."""
+    """Their orbits are images of one another, so that their onsets are equal."""
     images = [(65, 31), (31, 65), (-65, -31), (83, 49), (-31, -65), (49 + 114, 83)]
     assert len({toughest.rational(toughest.folded(np.array(p) / 114), 114) for p in images}) == 1
     how = {"step": 0.001, "width": 1e-6}
