@@ -118,10 +118,11 @@ def _divisors(rotation: Rotation, norm: Norm, waves: Sequence[Sequence[int]]) ->
         terms.append("%s|%s|" % ("" if a == 1 else "%s " % a,
                                  angle[2:] if angle[0] == "+" else "-" + angle[2:]))
     power = "|k|" if n == 1 else "|k|^2"
+    basis = " and ".join("(%s)" % ", ".join(map(str, k)) for k in divisors.basis)
     return ["Small divisors : |1 - exp(i k.w)| >= %s/%s for k != 0, and %s/%s for |k| >= %s" % (
                 _down(divisors.gamma, 6), power, _down(divisors.gamma_tail, 6), power,
                 divisors.reach),
-            *(["k : the integer combinations of the waves', |k| = %s" % " + ".join(terms)]
+            *(["k : the integer combinations of %s, |k| = %s" % (basis, " + ".join(terms))]
               if n == 2 or norm.alpha != (1,) else [])]
 
 

@@ -214,6 +214,17 @@ def test_a_report_of_a_range_says_of_which_piece_it_speaks(run, tmp_path):
         float(x) for x in re.findall("residual ([0-9.e-]+),", pieces)]
 
 
+@pytest.mark.parametrize("waves, words", [
+    ([(1, 0), (0, 1)], "(1, 0) and (0, 1)"), ([(2, 2)], "(2, 0) and (0, 1)"),
+    ([(1, 1), (1, -1)], "(1, 1) and (0, 2)")])
+def test_the_report_says_for_which_k_divisors_are_bounded(waves, words):
+    """Where the waves span a line, of more k than their integer combinations."""
+    rotation = tori.read_rotation("T49")
+    norm = tori.Norm(((1, 0), (0, 1)), (1, 1))
+    lines = report._divisors(rotation, norm, waves)
+    assert lines[1].startswith("k : the integer combinations of %s, |k| = |k[0]| + |k[1]|" % words)
+
+
 def test_without_python_flint(tmp_path):
     code = ("import sys; sys.modules['flint'] = None\n"
             "from converse.commands.tori import main\n"
