@@ -115,15 +115,11 @@ bench: $(VENV)/installed
 	$(VENV)/bin/python experiments/bench
 
 charts: $(VENV)/with-plot
-	$(VENV)/bin/python experiments/chart.py docs
+	$(VENV)/bin/python experiments/chart.py build
 
-# The pictures of docs/ drawn anew, those of proofs, orbits and most experiments; five minutes.  Not:
-# chart-bound and chart-wall (make charts, on a quiet machine; minutes); orbit-finders, which measures
-# times, too (experiments/finders.py; a minute); frontier and toughest (experiments/toughest.py, which
-# calls the second map.svg; ten minutes); map-ab, map-b0, map-c0, map-sphere (converse-map and
-# experiments/rays.py, as docs/map.md says; minutes each); chart-sides (experiments/sides.py).
+# The pictures of docs/ that docs/figures.csv lists, all or those of NAMES="...", drawn anew.
 figures: $(VENV)/with-orbits $(VENV)/with-plot
-	$(VENV)/bin/python docs/figures.py
+	$(VENV)/bin/python docs/figures.py $(NAMES)
 
 # Manual pages and completions, from the commands' own parsers.
 man: $(VENV)/with-man

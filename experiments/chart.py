@@ -1,8 +1,11 @@
-"""Four charts of what is measured on this machine: speed against accuracy.
+"""Three charts of speed against accuracy: how near to break-up proofs get and in what time (bound),
+how wide enclosures are (width), and where both methods fail (wall).
 
-    python experiments/chart.py [DIRECTORY] [--quick]
+    python experiments/chart.py [DIRECTORY] [--only NAME] [--quick] [--draw]
 
-Needs matplotlib (the extra "plot").  All on the line a = b = c/2 = 11.21436 epsilon.
+Writes chart-NAME.csv, measured on this machine, and chart-NAME.svg into DIRECTORY (.).  Needs
+matplotlib (the extra "plot") and, for tori, the extra "tori".  All on the line a = b = c/2 =
+11.21436 epsilon.  --draw draws the tables that are there.
 """
 
 import contextlib
@@ -18,46 +21,31 @@ import time
 from fractions import Fraction
 from pathlib import Path
 
+import sides
+
 import converse
 from converse.commands.common import Parser, ended
 from converse.draw import plot
-from converse.draw.plot import BLUE, DARK, ORANGE, PURPLE, VERMILLION
+from converse.draw.plot import BLUE, DARK, ORANGE
 from converse.model.problem import LINE, Problem
 from converse.storage import files
 from converse.storage.files import ConverseError
 
-sys.path.append(str(Path(__file__).resolve().parent.parent / "tests"))
-import kernels  # noqa: E402
-
 TOP = "0.0280"                          # above it there is nothing left to prove
 
-# The thesis, table of results: bound, seconds on a Sun-4 (it gives none for 0.0272), longest orbit.
-SUN = (("0.0278", 500, 3), ("0.0276", 759, 4), ("0.0274", 2698, 4))
+# The thesis, table of results: bound, seconds on a Sun-4 (it gives none for 0.0272).
+SUN = ("0.0278", 500.0), ("0.0276", 759.0), ("0.0274", 2698.0)
 # Their boxes, of half-width 0.00125 in a: what each proves, and the centre.
 BOXES = (("0.0278", "0.313"), ("0.02763", "0.311"), ("0.0274", "0.3085"), ("0.0272", "0.306"))
-SINGLES = ("0.0271", "0.02704", "0.0270")       # for the thesis's method, without width
 
+# Every epsilon from there to TOP is proved to have no torus; and the last proof, not repeated:
+# epsilon, CPU seconds, release.
 BOUNDS = ("0.0272", "0.0250", "0.0220", "0.0200", "0.0180", "0.0160", "0.0152", "0.0148", "0.0144",
-          "0.0142", "0.0141", "0.0140", "0.01395", "0.01393", "0.01391", "0.0139")
-# The sharper method of older releases: seconds of one core, longest orbit.  1.1.0 was of first
-# order; its times were taken in turn with those of 1.2.0, which took 9.8 for 0.0141.  1.6.0 bounded
-# orbits in x_0 and x_1, over all of the torus.
-FIRST = (("0.0272", 0.0017, 1), ("0.0250", 0.0020, 3), ("0.0220", 0.0028, 7),
-         ("0.0200", 0.0044, 8), ("0.0180", 0.0101, 11), ("0.0160", 0.0499, 20),
-         ("0.0152", 0.1517, 31), ("0.0148", 0.3999, 44), ("0.0144", 2.50, 72),
-         ("0.0142", 19.3, 113), ("0.0141", 137.5, 142))
-SECOND = (("0.0272", 0.0011, 1), ("0.0180", 0.0040, 12), ("0.0160", 0.012, 18),
-          ("0.0152", 0.030, 36), ("0.0148", 0.066, 49), ("0.0144", 0.26, 87),
-          ("0.0142", 0.91, 113), ("0.0141", 2.7, 147), ("0.0140", 57, 339))
-LONG = 100                              # orbits from which the end of the curve is estimated
-
-# The diagonal x_0 = x_1 is invariant.  The last invariant circle seen there that runs round has the
-# rotation number [0; 5, 1, 1, ...]; a convergent of it.  experiments/diagonal.py tries others.
-CIRCLE = (987,), 5545
-# Tori were seen up to there by Fourier series, and orbits that are not yet hyperbolic up to there,
-# near the toughest rotation vector that is known: experiments/toughest.py.
-SEEN = 0.0121, 0.01256
-DIGITS = (1, 2, 3, 4, 5, 7, 10, 15, 20, 35, 50, 75, 100, 150, 200)
+          "0.0142", "0.0141", "0.0140", "0.01391", "0.0139")
+LAST = "0.01389", 240.0, "1.12.0"
+# A torus is proved there; and for every epsilon from 0 to there, not repeated (docs/tori.md).
+TORI = "0.004", "0.006", "0.008", "0.009", "0.010", "0.011", "0.0115"
+RANGES = ("0.004", 12.0, "1.11.0"), ("0.005", 23.0, "1.11.0"), ("0.008", 166.0, "1.11.0")
 WALLS = {
     "thesis": ("0.0280", "0.0278", "0.0276", "0.0274", "0.0272", "0.0271", "0.02706", "0.02704",
                "0.02703", "0.02702", "0.0270"),
@@ -66,7 +54,8 @@ WALLS = {
                 "0.01405", "0.0140", "0.01397", "0.01395", "0.01393", "0.01391", "0.0139",
                 "0.01389"),
 }
-QUICK = {"bound": 0.0160, "thesis": 0.02704, "loewner": 0.0147}     # --quick stops there
+# --quick stops there.
+QUICK = {"bound": 0.0160, "torus": 0.004, "thesis": 0.02704, "loewner": 0.0147}
 WALL_SECONDS = 40.0
 
 # A prism of the size that proofs near the wall cut to, on an orbit of trig274: the centre and the
@@ -77,41 +66,14 @@ SUCCESSOR = ("4.9578", "0.0982"), ("0.003", "0.006")
 POINTS = (2, 3, 4)                      # of the orbit, x* being number 0
 SAMPLES = 2000
 
-HEIGHTS = {"bound": 6.6, "wall": 5.4}   # of charts with two parts, in inches
-COLOURS = {"1989": DARK, "thesis": BLUE, "first order": "0.7", "second order": "0.45",
-           "loewner": ORANGE, "linked": VERMILLION}
-ZOOM = 0.0165                           # up to there the chart of the bound is drawn larger
+HEIGHTS = {"wall": 5.4}                 # of a chart with two parts, in inches
+COLOURS = {"1989": DARK, "thesis": BLUE, "loewner": ORANGE}
 SMALL = {"textcoords": "offset points", "fontsize": 8, "color": "0.3"}
 STYLE = {
     **plot.STYLE, "lines.markersize": 5.5, "axes.spines.top": False,
     "axes.spines.right": False, "axes.grid": True, "axes.axisbelow": True, "grid.color": "0.92",
     "grid.linewidth": 0.6,
 }
-
-
-# ---- the map on the diagonal
-
-def diagonal():
-    """The potential of the map on x_0 = x_1, for converse.orbits: half of trig's there, since both
-    coordinates move."""
-    from converse import orbits
-
-    half = Fraction(-1, 2)
-    return orbits.Fourier({(1,): (0, half), (2,): (0, half)}, "diagonal",
-                          scale_enclosure=orbits.trig.scale_enclosure)
-
-
-def last_circle():
-    """Where the last invariant circle of the map on the diagonal breaks up: about where the orbits
-    of type CIRCLE turn hyperbolic.  An estimate from numerics.
-
-    The second variation along an orbit on the circle is positive within the diagonal, and where it
-    is across, too, as seen, no segment of the orbit contradicts anything.  One goes through every
-    x* of the diagonal: no proof from such an x* gets below."""
-    from converse import orbits
-
-    below, above = orbits.onset(diagonal(), *CIRCLE, step=0.0005, width=1e-6, top=0.02)
-    return (below.eps + above.eps) / 2
 
 
 # ---- measuring: each function yields the rows of a table
@@ -142,40 +104,28 @@ def _yes(truth):
 
 
 def bound(quick):
-    for epsilon, seconds, orbit in SUN:
-        yield "1989", epsilon, seconds, orbit, "yes"
+    for epsilon, seconds in SUN:
+        yield "1989", epsilon, seconds, "1989"
     for epsilon, centre in BOXES:
         yield _bound_row("thesis", epsilon, _problem(Fraction(centre), Fraction("0.00125")))
-    for epsilon in SINGLES:
-        yield _bound_row("thesis, single value", epsilon, on_line(epsilon), digits=20)
     for epsilon in BOUNDS:
         if not quick or float(epsilon) >= QUICK["bound"]:
-            yield _bound_row("loewner", epsilon, on_line(epsilon, TOP, together=True),
+            yield _bound_row("no torus", epsilon, on_line(epsilon, TOP, together=True),
                              method="loewner")
-    for name, older in ("first order", FIRST), ("second order", SECOND):
-        for epsilon, seconds, orbit in older:
-            yield name, epsilon, seconds, orbit, "yes"
-    began = time.process_time()
-    circle = last_circle()
-    yield "last circle", "%.5f" % circle, time.process_time() - began, CIRCLE[1], "seen"
+    for epsilon in TORI:
+        if not quick or float(epsilon) <= QUICK["torus"]:
+            seconds = sides.measured("line", "torus", epsilon)[0]
+            yield "torus", epsilon, seconds, converse.__version__
+    yield ("no torus", *LAST)
+    yield "torus", *sides.LONGEST[1][2:4], sides.LONGEST[1][-1]
+    for row in RANGES:
+        yield ("tori up to", *row)
 
 
 def _bound_row(name, epsilon, problem, **options):
     proof, seconds = timed(problem, **options)
-    if proof.counts.linked:
-        name = "linked"
-    return name, epsilon, seconds, proof.counts.max_NTsteps, _yes(proof.no_tori)
-
-
-def digits(quick):
-    problem = _problem(Fraction("0.3085"), Fraction("0.00125"))
-    for places in DIGITS:
-        proofs, before = zip(*((converse.prove(problem, digits=places, jobs=1),
-                                converse.prove(problem, digits=places, jobs=1, depth=0))
-                               for _ in range(3 if quick else 12)))
-        yield (places, min(proof.seconds for proof in proofs),
-               min(proof.seconds for proof in before), proofs[0].counts.proved,
-               _yes(proofs[0].no_tori))
+    assert proof.no_tori, epsilon
+    return name, epsilon, seconds, converse.__version__
 
 
 def true_extents():
@@ -204,6 +154,9 @@ def _ratio(halves, extents):
 
 
 def width(quick):
+    sys.path.append(str(Path(__file__).resolve().parent.parent / "tests"))
+    import kernels  # which compiles the core once more
+
     (p, dp), (v, dv) = PARAMETERS, SUCCESSOR
     extents = true_extents()
     zero = Fraction(0)
@@ -226,10 +179,10 @@ def width(quick):
             halves = [sum(map(abs, row)) for row in prism[1][5:]]
             yield ("fixed form" if n == POINTS[0] else "column rotor", name, n, ns,
                    _ratio(halves, extents[n]))
-    yield from taylor_width(extents)
+    yield from taylor_width(kernels, extents)
 
 
-def taylor_width(extents):
+def taylor_width(kernels, extents):
     """The same for the sharper method's Taylor models, several prisms at once, sines included."""
     (p, dp), (v, dv) = PARAMETERS, SUCCESSOR
     for n in POINTS:
@@ -259,100 +212,52 @@ def _pick(rows, column, value):
     return [row for row in rows if row[column] == value]
 
 
-def estimated_end(rows):
-    """Where proofs would need orbits without end: once orbits are long, the inverse of the longest
-    falls about linearly with epsilon, and the line of least squares says where it is 0.  An
-    estimate; None where the proofs do not give one."""
-    points = [(float(row[1]), 1 / row[3]) for row in rows
-              if row[0] == "loewner" and row[4] == "yes" and row[3] >= LONG]
-    if len(points) < 3:
-        return None
-    x, y = (sum(values) / len(points) for values in zip(*points))
-    rise = sum((p - x) * (q - y) for p, q in points)
-    end = x - y * sum((p - x) ** 2 for p, _ in points) / rise if rise > 0 else 0
-    return end if 0 < end < min(points)[0] else None
-
-
-def _level(axes, value, words, left=False, **line):
-    """A horizontal line and its words: below at the right or, left, above at the left."""
-    axes.axhline(value, linewidth=0.9, **line)
-    axes.annotate(words, (0.015 if left else 0.985, value), (0, 3 if left else -2.5),
-                  xycoords=axes.get_yaxis_transform(), textcoords="offset points", color="0.25",
-                  ha="left" if left else "right", va="bottom" if left else "top")
-
-
 def draw_bound(figure, rows):
-    upper, lower = figure.subplots(2, 1, sharex=True,
-                                   gridspec_kw={"hspace": 0.07, "height_ratios": (3, 2)})
-    for name, marker, line, label in (
-            ("1989", "^", "none", "the thesis, Sun-4, 1989"),
-            ("thesis", "s", "none", "the thesis's method, this program, 35 digits"),
-            ("first order", "v", "-", "method loewner, first order (release 1.1.0)"),
-            ("second order", "<", "-", "second order, in $x_0$ and $x_1$ (release 1.6.0)"),
-            ("loewner", "o", "-", "second order, along the axes of the waves"),
-            ("linked", "D", "-", "several starting points, regions that move")):
-        good = [row for row in rows if row[0] == name and row[4] == "yes"]
-        for axes in (upper, lower):
-            axes.plot([row[2] for row in good], [float(row[1]) for row in good], marker=marker,
-                      linestyle=line, color=COLOURS[name], label=label)
-
-    singles = _pick(rows, 0, "thesis, single value")
-    good, bad = ([row[1] for row in singles if row[4] == word] for word in ("yes", "no"))
-    if good:
-        words = "the thesis's method: %s alone is proved" % good[-1]
-        _level(upper, float(good[-1]), words + ", %s is not" % bad[0] if bad else words,
-               color=COLOURS["thesis"], linestyle="--")
-    end = estimated_end(rows)
-    if end is not None:
-        words = "estimate, of one x*:\nthe orbits needed grow\nwithout end near %.4f" % end
-        _level(lower, end, words, left=True, color=COLOURS["loewner"], linestyle=":")
-    for _, epsilon, *_ in _pick(rows, 0, "last circle"):
-        _level(lower, float(epsilon), "seen: up to %s the diagonal $x_0 = x_1$ has an invariant "
-               "circle: no proof from an x* there gets past" % epsilon, color=PURPLE,
-               linestyle="-.")
-    tori, not_hyperbolic = SEEN
-    for value, words in ((not_hyperbolic, "some orbits are not yet hyperbolic"),
-                         (tori, "tori, by Fourier series")):
-        lower.axhspan(0, value, color=COLOURS["thesis"], alpha=0.13, linewidth=0)
-        _level(lower, value, "seen: %s, up to %g" % (words, value), linestyle="none")
-    upper.set(xscale="log", ylim=(0.0134, 0.0286),
-              title="What is proved, and how long the proof takes")
-    lower.set(ylim=(tori - 0.0004, ZOOM), xlabel="time of the proof (seconds of one core)")
-    figure.supylabel("proven upper bound of $ε_c$", x=0.02, fontsize=9)
-    upper.legend(loc="center right", bbox_to_anchor=(1, 0.6))
-    caption = ("thesis: one box 0.0002 wide for each point (1989: the time for 0.0272 is not "
-               "known); loewner: everything above the point,\nin one proof.  Below: the same near "
-               "the end; what is seen is an estimate from numerics (docs/orbits.md), not proved")
-    if end is not None:
-        caption += ";\nthe dotted one: where 1 / (longest orbit) falls to 0"
-    return caption
-
-
-def draw_digits(figure, rows):
     from matplotlib import ticker
 
     axes = figure.subplots()
-    good = [row for row in rows if row[4] == "yes"]
-    bad = [row for row in rows if row[4] != "yes"]
-    axes.plot([row[0] for row in good], [1000 * row[1] for row in good], "s-",
-              color=COLOURS["thesis"], label="whole proof")
-    axes.plot([row[0] for row in rows], [1000 * row[2] for row in rows], "--", color="0.45",
-              label="of which before the search (bounds over the torus)")
-    if bad:
-        axes.plot([row[0] for row in bad], [1000 * row[1] for row in bad], "o", markersize=7,
-                  markerfacecolor="none", color=VERMILLION, label="undecided: too few digits")
-    changes = [row for row, last in zip(good, [None] + good) if not last or row[3] != last[3]]
-    for k, row in enumerate(changes):       # the number of prisms, where it changes
-        axes.annotate(str(row[3]), (row[0], 1000 * row[1]), (3, 13 if k % 2 else 6), **SMALL)
-    axes.set(xscale="log", ylim=(0, 1150 * max(row[1] for row in rows)),
-             xlabel="digits (decimal places)", ylabel="time (milliseconds)",
-             title="The price of digits: 0.0274 < ε < 0.0276, the thesis's method")
-    axes.xaxis.set_major_locator(ticker.FixedLocator(
-        [row[0] for row in rows if row[0] not in (4, 15, 75, 150)]))
+    end = 5400.0                        # seconds, and the end of both areas
+
+    def points(name):
+        return [(row[2], float(row[1])) for row in _pick(rows, 0, name)]
+
+    for name, above, colour, marker in (("no torus", 1, plot.BLUE, "o"),
+                                        ("torus", 0, plot.GREEN, "s")):
+        seconds, epsilon = zip(*points(name))
+        axes.plot(seconds, epsilon, marker + "-", color=colour)
+        axes.annotate(_pick(rows, 0, name)[-1][1], (seconds[-1], epsilon[-1]), color=colour,
+                      textcoords="offset points", xytext=(7, 4 if above else -4),
+                      va="bottom" if above else "top")
+        if above:
+            axes.fill_between([*seconds, end], [*epsilon, epsilon[-1]], 1, color=colour, alpha=0.16,
+                              linewidth=0)
+    seconds, epsilon = zip(*points("tori up to"), (end, points("tori up to")[-1][1]))
+    axes.fill_between(seconds, epsilon, step="post", color=plot.GREEN, alpha=0.2, linewidth=0)
+    for name, marker, colour, words, at in (
+            ("1989", "^", plot.DARK, "the thesis, 1989,\non a Sun-4", 900.0),
+            ("thesis", "v", "0.5", "its method, this program", 0.07)):
+        axes.plot(*zip(*points(name)), marker, color=colour)
+        axes.text(at, 0.0263, words, color=colour, ha="center", va="top")
+    last = sides.FRONTIER["line"]
+    axes.axhline(last, color=plot.VERMILLION, linestyle=":", linewidth=1)
+    axes.annotate("seen, not proved: the last onset of a rotation vector, %g" % last,
+                  (0.012, last), (0, -3), xycoords=axes.get_yaxis_transform(), va="top",
+                  textcoords="offset points", color=plot.VERMILLION)
+    for place, words, colour in (((0.5, 0.021), "PROVED: no invariant torus\n"
+                                  "for any epsilon on or above the line", plot.BLUE),
+                                 ((0.3, 0.0075), "PROVED: a torus\nat each square", plot.GREEN),
+                                 ((800, 0.0035), "PROVED: a torus for\nevery epsilon here",
+                                  plot.GREEN)):
+        axes.text(*place, words.replace("epsilon", "ε"), color=colour, ha="center", va="center")
+    axes.set(xscale="log", xlim=(0.002, end), ylim=(0, 0.029), xlabel="CPU time of the proof",
+             ylabel="ε (a = b = c/2 = 11.21436 ε)",
+             title="How near to break-up proofs get, and in what time")
+    axes.xaxis.set_major_locator(ticker.FixedLocator([0.01, 0.1, 1, 10, 60, 600, 3600]))
     axes.xaxis.set_minor_locator(ticker.NullLocator())
-    axes.xaxis.set_major_formatter("{x:g}")
-    axes.legend(loc="upper center")
-    return "one core; small numbers: prisms proved, where their number changes"
+    axes.xaxis.set_major_formatter(ticker.FixedFormatter(
+        ["10 ms", "0.1 s", "1 s", "10 s", "1 min", "10 min", "1 h"]))
+    return ("blue: one proof for every ε from the point to %s; black and grey: boxes 0.0002 wide; "
+            "one core" % TOP)
 
 
 def draw_width(figure, rows):
@@ -411,8 +316,7 @@ def draw_wall(figure, rows):
 
 
 CHARTS = {
-    "bound": (("method", "epsilon_c", "seconds", "longest_orbit", "proved"), bound, draw_bound),
-    "digits": (("digits", "seconds", "before_search", "prisms", "proved"), digits, draw_digits),
+    "bound": (("what", "epsilon", "seconds", "release"), bound, draw_bound),
     "width": (("form", "digits", "point", "nanoseconds", "ratio"), width, draw_width),
     "wall": (("method", "epsilon", "prisms", "deepest_cut", "proved"), wall, draw_wall),
 }
@@ -456,9 +360,24 @@ def table(name, rows):
     return text.getvalue().encode("utf-8")
 
 
+def read(name, path):
+    """The rows of a table.  ConverseError: it is not a table of this chart."""
+    header, *rows = csv.reader(io.StringIO(files.read_text(path, "table", ": is no such table")))
+    if tuple(header) != CHARTS[name][0] or not rows:
+        raise ConverseError("%s: is not a table of the chart %s; measure anew" % (path, name))
+    return [tuple(map(_number, header, row)) for row in rows]
+
+
+def _number(column, word):
+    """A cell; epsilon, digits and releases stay words."""
+    if column in ("seconds", "nanoseconds", "ratio"):
+        return float(word)
+    return int(word) if column in ("point", "prisms", "deepest_cut") else word
+
+
 def parser():
     p = Parser(prog="chart.py", allow_abbrev=False, description=(
-        "Measures on this machine and draws four charts: bound, digits, width, wall."), epilog=(
+        "Measures on this machine and draws three charts: bound, width, wall."), epilog=(
         "Exit status: 0 all are written; 2 bad usage or directory; 130 interrupted."))
     p.add_argument("directory", nargs="?", default=os.curdir,
                    help="where to write chart-NAME.svg and chart-NAME.csv (default: here)")
@@ -466,6 +385,8 @@ def parser():
                    help="of the charts")
     p.add_argument("--no-caption", action="store_true", help="leave out the captions")
     p.add_argument("--quick", action="store_true", help="leave out what takes long")
+    p.add_argument("--only", choices=CHARTS, metavar="NAME", help="of %s" % ", ".join(CHARTS))
+    p.add_argument("--draw", action="store_true", help="draw the tables that are there")
     return p
 
 
@@ -480,12 +401,14 @@ def run(options):
         raise ConverseError("%s: cannot be made a directory (%s); name another place"
                             % (options.directory, files.reason(error))) from None
     paths = {name: [os.path.join(options.directory, "chart-%s.%s" % (name, ending))
-                    for ending in (options.format, "csv")] for name in CHARTS}
+                    for ending in (options.format, "csv")]
+             for name in CHARTS if options.only in (None, name)}
     for path in itertools.chain(*paths.values()):
         files.check_writable(path)
-    for name, (header, measure, _) in CHARTS.items():
-        rows = []
-        for row in measure(options.quick):
+    for name in paths:
+        header, measure, _ = CHARTS[name]
+        rows = read(name, paths[name][1]) if options.draw else []
+        for row in () if options.draw else measure(options.quick):
             rows.append(row)
             print("%s: %s" % (name, ", ".join(map(" ".join, zip(header, _words(row))))),
                   flush=True)

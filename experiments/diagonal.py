@@ -5,8 +5,8 @@
 The diagonal is invariant, and the map on it is area-preserving.  Where that map has an invariant
 circle that runs round, an orbit on the circle starts from every x* of the diagonal; within the
 diagonal its second variation is positive, and if it is across, too, no proof can succeed from
-there.  This prints where the orbits of that map turn hyperbolic whose rotation numbers are noble,
-the last first; whether the successors that resist longest lie on the diagonal; and how many points
+there.  This prints the onsets (orbits.onset) of that map's orbits of noble rotation numbers, the
+last first; whether the successors that resist longest lie on the diagonal; and how many points
 to either side contradict all sampled successors on the diagonal of one x*.
 
 All that is found here is seen, not proved.  A few minutes.
@@ -15,8 +15,8 @@ All that is found here is seen, not proved.  A few minutes.
 import argparse
 import itertools
 import sys
+from fractions import Fraction
 
-import chart
 import numpy as np
 
 from converse import orbits
@@ -32,6 +32,16 @@ OFF = 0.0141, 0.858                     # eps and x* for which successors off th
 LINE = 20000                            # cells of the diagonal at first
 KEPT = 60000                            # cells, at most, that are cut
 PARTS = (np.arange(5) - 2) * 0.28       # of a cell, along a side; they overlap
+
+
+# ---- the map on the diagonal
+
+def diagonal():
+    """The potential of the map on x_0 = x_1, for converse.orbits: half of trig's there, since both
+    coordinates move."""
+    half = Fraction(-1, 2)
+    return orbits.Fourier({(1,): (0, half), (2,): (0, half)}, "diagonal",
+                          scale_enclosure=orbits.trig.scale_enclosure)
 
 
 # ---- noble rotation numbers
@@ -50,7 +60,7 @@ def nobles(length, largest, least):
     heads = [head for n in range(1, length + 1)
              for head in itertools.product(range(1, largest + 1), repeat=n)
              if head[0] > 1 and head[-1] > 1]
-    table = orbits.onsets(chart.diagonal(), [noble(head, least) for head in heads],
+    table = orbits.onsets(diagonal(), [noble(head, least) for head in heads],
                           step=0.0005, width=1e-5, top=0.02)
     return sorted(zip((table["eps_below"] + table["eps_above"]) / 2, heads), reverse=True)
 

@@ -1,12 +1,13 @@
-"""What a proof costs, the nearer it is to where order ends: from both sides, and of two maps.
+"""What a proof costs near break-up, on both sides of it and for two maps.
 
     python experiments/sides.py [DIRECTORY] [--quick] [--draw]
 
-Writes sides.csv and sides.svg into DIRECTORY (build).  Each row is a proof for one map, without
-width, in a process of its own: seconds of the processor, with the search for the torus or the tree
-but without Python's start; the most memory that the process had; bytes of the proof file or the
-certificate.  --draw draws what was measured.  All takes half an hour and up to 3 GB, --quick less
-than a minute.
+Writes chart-sides.csv and chart-sides.svg into DIRECTORY (build).  Each row is the proof for one
+parameter value, made in a separate process: CPU seconds of the search and the proof, without
+Python's start; the largest memory of that process; bytes of the proof file or certificate; and the
+release that was measured.  The proofs of LONGEST are not repeated, since each takes a quarter of an
+hour.  --draw draws the table that is there.  All takes ten minutes of one core and up to 3 GB,
+--quick less than a minute.
 """
 
 import concurrent.futures
@@ -29,10 +30,10 @@ from converse.draw.plot import BLUE, GREEN
 from converse.model.problem import LINE, Problem
 from converse.storage import files
 
-COLUMNS = "map", "side", "parameter", "seconds", "megabytes", "bytes", "parts", "longest"
-# Where order ends, to measure distances from.  The golden circle's break-up is known from numerics
-# to many digits (Greene); of the line it is known only that the toughest orbits that were seen turn
-# hyperbolic there (experiments/toughest.py).
+COLUMNS = ("map", "side", "parameter", "seconds", "megabytes", "bytes", "parts", "longest",
+           "release")
+# Distances are measured from break-up.  Numerics give the golden circle's to many digits (Greene).
+# For the line 0.0126 is an estimate: the last onset seen (experiments/toughest.py).
 FRONTIER = {"standard": 0.971635406, "line": 0.0126}
 ROTATION = {"standard": "golden", "line": "V1"}
 GRID = 1 << 23                          # points on which a torus is looked for, at most
@@ -44,8 +45,11 @@ POINTS = {
     ("line", "torus"): ("0.002", "0.004", "0.006", "0.008", "0.009", "0.010", "0.0105", "0.011",
                         "0.0115"),
     ("line", "none"): ("0.0272", "0.0240", "0.0200", "0.0180", "0.0160", "0.0150", "0.0145",
-                       "0.0142", "0.0141", "0.01405", "0.0140", "0.0139"),
+                       "0.0142", "0.0141", "0.01405", "0.0140", "0.01395", "0.0139"),
 }
+# Measured with --points 16777216, on the machine of docs/tori.md.
+LONGEST = (("standard", "torus", "0.9716", 725.0, 3800.0, 0, 1539249, "", "1.11.0"),
+           ("line", "torus", "0.0120", 784.0, 5600.0, 0, 523255, "", "1.11.0"))
 QUICK = {"standard": 0.008, "line": 0.0026}     # as near as that
 WORDS = {("standard", "torus"): ("o", "the standard map: its golden circle"),
          ("standard", "none"): ("s", "the standard map: no circle"),
@@ -105,11 +109,13 @@ def measure(quick):
             if row is None:
                 print("%s %s: %s was not proved" % (name, side, value), flush=True)
                 continue
-            yield name, side, value, *row
+            yield name, side, value, *row, converse.__version__
+    if not quick:
+        yield from LONGEST
 
 
 def distance(name, value):
-    """From the frontier, as a part of it."""
+    """The relative distance from break-up."""
     return abs(float(Fraction(value)) / FRONTIER[name] - 1)
 
 
@@ -128,6 +134,12 @@ def read(path):
     return [(*row[:3], float(row[3]), float(row[4]), int(row[5]), *row[6:]) for row in rows]
 
 
+def nearer(rows, name, side):
+    """The rows of one curve; the last is nearest to break-up."""
+    return sorted((row for row in rows if row[:2] == (name, side)),
+                  key=lambda row: -distance(name, row[2]))
+
+
 def draw(rows):
     """The picture, as the bytes of an SVG file."""
     from matplotlib import style
@@ -136,15 +148,21 @@ def draw(rows):
     with style.context(["default", STYLE]):
         figure = Figure(figsize=(7.2, 3.9))
         panels = figure.subplots(1, 2, gridspec_kw={"wspace": 0.25})
-        for axes, column, words in ((panels[0], 3, "seconds of one core"),
+        for axes, column, words in ((panels[0], 3, "CPU time (seconds)"),
                                     (panels[1], 5, "bytes of the proof file or the certificate")):
             for (name, side), (marker, label) in WORDS.items():
-                mine = [row for row in rows if row[:2] == (name, side)]
+                mine = [row for row in nearer(rows, name, side) if row[column]]
                 axes.plot([distance(name, row[2]) for row in mine], [row[column] for row in mine],
                           marker + "-", color=COLOURS[side], label=label,
                           markerfacecolor=COLOURS[side] if name == "line" else "white")
+                last = mine[-1]
+                axes.annotate(last[2], (distance(name, last[2]), last[column]), (0, 5),
+                              textcoords="offset points", ha="center", va="bottom",
+                              color=COLOURS[side])
             axes.set(xscale="log", yscale="log", ylabel=words,
-                     xlabel="distance from the frontier, as a part of it")
+                     xlabel="relative distance from break-up")
+            axes.invert_xaxis()
+            axes.margins(0.08)
         handles, labels = panels[0].get_legend_handles_labels()
         figure.legend(handles, labels, loc="upper center", ncol=2, bbox_to_anchor=(0.5, 1.02))
         return plot.encode(figure, "svg", pad_inches=0.08)
@@ -153,7 +171,7 @@ def draw(rows):
 def run(options):
     plot.check()
     os.makedirs(options.directory, exist_ok=True)
-    data, picture = (os.path.join(options.directory, "sides." + ending)
+    data, picture = (os.path.join(options.directory, "chart-sides." + ending)
                      for ending in ("csv", "svg"))
     files.check_writable(picture)
     if not options.draw:
@@ -167,7 +185,7 @@ def run(options):
 
 
 def parser():
-    p = Parser(prog="sides.py", description="What proofs cost, near to where order ends.")
+    p = Parser(prog="sides.py", description="What proofs cost near break-up.")
     p.add_argument("directory", nargs="?", default=str(Path("build")))
     p.add_argument("--quick", action="store_true", help="leave out what takes long")
     p.add_argument("--draw", action="store_true", help="draw the table that is there")

@@ -1,20 +1,24 @@
-"""Which ghost is toughest?  Where the orbits of many rotation vectors turn hyperbolic (trig).
+"""Which ghost is toughest?  The onsets of many rotation vectors (trig).
 
-    python experiments/toughest.py [DIRECTORY] [--quick] [--jobs N]
+    python experiments/toughest.py [DIRECTORY] [--quick] [--draw] [--jobs N]
 
 Writes into DIRECTORY (build/toughest), and continues there when it was interrupted:
-    sweep.csv     where a thousand vectors, well spread, turn hyperbolic, of q from 300 to 1201
+    sweep.csv     the onsets of a thousand vectors, well spread, of q from 300 to 1201
     search-K.csv  the same of vectors near the toughest, ever nearer and with ever larger q
     near.csv, near-fixed.csv, golden.csv, golden-fixed.csv    approximants of one vector
     chapter.csv   the thesis's two vectors
-    map.svg, sequence.svg, frontier.svg
+    toughest.svg, sequence.svg, frontier.svg
+    toughest.csv  what the first and the last of these show
 
-All that is found here is seen, not proved: that a periodic orbit of large q is not yet hyperbolic
-speaks for a torus beside it, and proves none.
+The onset of a vector is the eps above which the first Lyapunov exponent of its orbit exceeds 1/q
+(orbits.onset).  All that is found here is seen, not proved: an onset at a larger eps speaks for a
+torus near the vector up to there, and proves none.
 """
 
 import argparse
 import concurrent.futures
+import csv
+import io
 import math
 import os
 import random
@@ -25,7 +29,7 @@ import numpy as np
 from converse import orbits
 from converse.commands.common import ended
 from converse.draw import plot
-from converse.draw.plot import BLUE, DARK, GREEN, VERMILLION
+from converse.draw.plot import BLUE, DARK, GREEN, ORANGE, VERMILLION
 from converse.storage import files
 
 TRIG = {"step": 0.0005, "width": 1e-5, "top": 0.02}
@@ -37,8 +41,9 @@ SPREAD = 0.7548776662466927, 0.5698402909980532
 # Invariant tori were seen by Fourier series near this vector up to TORI.
 NEAR = 0.295401276 + 0.003327283, 0.295401276 - 0.003327283
 TORI = 0.0121
-PROVED = (("this program", 0.01389), ("the thesis, 1989", 0.0272))     # no tori from there on
-PROVED_TORUS = "V1", 0.0120             # docs/tori.md
+NO_TORI = 0.01389, 0.0272               # proved from there on by this program, and in 1989
+TORUS_UP_TO = 0.008                     # a torus is proved for every eps from 0, docs/tori.md
+TORUS_AT = 0.010, 0.011, 0.0115, 0.0120     # and for these
 TOP = 0.0335                            # of the picture
 CHAPTER = ((1432, 1897), 2513), ((377, 2330), 3770)
 K_C = 0.971635406                       # where the standard map's golden torus breaks up (Greene)
@@ -93,7 +98,7 @@ def golden(most):
         p, q = q, p + q
 
 
-# ---- where they turn hyperbolic
+# ---- onsets
 
 def middle(table):
     return (table["eps_below"] + table["eps_above"]) / 2
@@ -158,11 +163,12 @@ def draw_map(figure, table, best):
                  label="the toughest that the search met")
     axes.scatter(*NEAR, marker="D", s=30, **mark, label="tori seen by Fourier series, to %g" % TORI)
     axes.set(xlim=(0, 1), ylim=(0, 0.54), aspect="equal", xlabel="$w_0$", ylabel="$w_1$",
-             title="Where the orbits of %d rotation vectors turn hyperbolic (trig)" % len(table))
-    axes.legend(loc="upper right", bbox_to_anchor=(1.13, 1.02))
-    figure.colorbar(shown, ax=axes, shrink=0.55, label="ε")
-    axes.text(0, -0.2, "Seen, not proved; q from %d to %d.  All other vectors are mirror images of "
-              "these.\nGrey: resonances, $k\\cdot w$ whole, $|k_0| + |k_1|$ up to 3."
+             title="The onsets of %d rotation vectors (trig)" % len(table))
+    axes.legend(loc="upper left", bbox_to_anchor=(0.57, 1.02))
+    figure.colorbar(shown, ax=axes, shrink=0.55, label="onset (ε)")
+    axes.text(0, -0.2, "Onset: the ε above which the first Lyapunov exponent exceeds 1/q; seen, "
+              "not proved; q from %d to %d.\nGrey: resonances, $k\\cdot w$ whole, "
+              "$|k_0| + |k_1|$ up to 3.  All other vectors are mirror images of these."
               % (table["q"].min(), table["q"].max()), transform=axes.transAxes,
               va="top", color="0.35")
 
@@ -184,47 +190,80 @@ def draw_sequence(figure, near, near_fixed, gold, gold_fixed):
         axes.set(xscale="log", xlabel="q", title=title, ylim=span)
         axes.xaxis.set_minor_formatter("")
         axes.grid(color="0.93")
-    left.set_ylabel("k where the orbit turns hyperbolic")
-    right.set_ylabel("ε where the orbit turns hyperbolic")
+    left.set_ylabel("onset: k")
+    right.set_ylabel("onset: ε")
     left.legend(loc="upper right")
 
 
 def draw_frontier(figure, table, last, chapter):
-    axes = figure.subplots()
+    strips, curve = figure.subplots(2, 1, sharex=True,
+                                    gridspec_kw={"hspace": 0.12, "height_ratios": (3, 2)})
+    new, old = NO_TORI
+    strips.barh(2, TORUS_UP_TO, color=GREEN)
+    strips.plot(TORUS_AT, [2] * len(TORUS_AT), "s", color=GREEN, markersize=5)
+    strips.annotate("%.4f" % TORUS_AT[-1], (TORUS_AT[-1], 2), (5, 0), va="center", color=GREEN,
+                    textcoords="offset points")
+    strips.barh(1, TORI, color=ORANGE, alpha=0.35)
+    strips.plot(last, 1, "*", color=VERMILLION, markersize=8)
+    strips.annotate("the last onset, %.4f" % last, (last, 1), (9, 0), va="center",
+                    textcoords="offset points", color=VERMILLION)
+    strips.text(0.0003, 1, "tori, Fourier series, to %g" % TORI, va="center")
+    strips.barh(0, TOP - new, left=new, color=BLUE)
+    strips.barh(0, TOP - old, left=old, color=DARK)
+    for x, words in ((new, "%g" % new), (old, "1989: %g" % old)):
+        strips.text(x + 0.0003, 0, words, va="center", color="white")
+    strips.axvspan(TORUS_AT[-1], new, color="0.92", linewidth=0, zorder=0)
+    strips.text((TORUS_AT[-1] + new) / 2, 2.62, "open", ha="center", va="center")
+    strips.set(ylim=(-0.5, 2.85), title="Where the tori of a = b = c/2 = 11.21436 ε end")
+    strips.set_yticks([2, 1, 0], ["PROVED:\na torus", "SEEN", "PROVED:\nno torus"])
+    strips.tick_params(left=False)
     eps = np.sort(middle(table)[np.isfinite(middle(table))])
-    left = 100 * np.arange(len(eps), 0, -1) / len(eps)          # per cent, just before each onset
-    shown = sorted({0, *range(0, len(eps), 10), *range(max(0, len(eps) - 40), len(eps))})
-    curve = eps[shown], left[shown]
-    axes.fill_between(*curve, 0.05, step="pre", color=BLUE, alpha=0.2, linewidth=0)
-    axes.step(*curve, where="pre", color=BLUE)
-    (program, bound), (thesis, old) = PROVED
-    for low, high, grey in ((bound, old, "0.86"), (old, TOP, "0.74")):
-        axes.axvspan(low, high, color=grey, linewidth=0)
-    axes.set(yscale="log", xlim=(0, TOP), ylim=(0.05, 130), xlabel="ε",
-             ylabel="rotation vectors (%)",
-             title="The two sides of the frontier (trig: a = b = c/2)")
-    axes.yaxis.set_major_formatter("{x:g}")
-    axes.text(bound + 0.0004, 80, "PROVED by %s: no tori,\nwhatever their rotation vector,\n"
-              "from %g on" % (program, bound), va="top")
-    axes.text(old + 0.0003, 80, "%s:\nfrom %g on" % (thesis, old), va="top")
-    axes.text(0.0004, 0.07, "SEEN: of so many of\n%d vectors, q = %d\nto %d, the orbits are\n"
-              "not yet hyperbolic" % (len(eps), table["q"].min(), table["q"].max()),
-              va="bottom")
+    curve.step([0, *eps], 100 * np.arange(len(eps), -1, -1) / len(eps), where="post", color=ORANGE)
+    curve.plot(chapter, [100 * (eps > x).mean() for x in chapter], "o", color=DARK, markersize=4,
+               label="the thesis's two vectors")
+    curve.set(xlim=(0, TOP), ylim=(0, 103), xlabel="ε", ylabel="vectors before\ntheir onset (%)")
+    curve.text(0.0135, 60, "SEEN: of %d rotation vectors, q = %d to %d, the share\nwhose orbits "
+               "have a first exponent of at most 1/q" % (len(eps), table["q"].min(),
+                                                         table["q"].max()), va="center")
+    curve.legend(loc="lower right")
 
-    def mark(x, y, marker, words, color=VERMILLION):
-        axes.plot(x, np.full(np.shape(x), y), marker, color=color, markersize=6, zorder=3)
-        axes.annotate(words, (np.max(x), y), (bound + 0.0006, y), va="center",
-                      arrowprops={"arrowstyle": "-", "color": "0.5", "linewidth": 0.6})
 
-    mark(chapter, 8, "|", "seen: the thesis's two vectors")
-    mark(last, 2.5, "*", "seen: the toughest, q in the thousands")
-    mark(TORI, 0.8, "D", "seen: tori, by Fourier series")
-    name, torus = PROVED_TORUS
-    mark(torus, 0.3, "s", "PROVED: a torus, of %s, at %.4f" % (name, torus), GREEN)
-    axes.annotate("", (torus, 0.17), (bound, 0.17),
-                  arrowprops={"arrowstyle": "<->", "color": "0.3"})
-    axes.annotate("open", ((torus + bound) / 2, 0.17), (0, 3), textcoords="offset points",
-                  ha="center")
+# ---- what is shown
+
+SETS = "sweep", "search", "near", "chapter"
+COLUMNS = "set", "p", "q", "eps_below", "eps_above"
+
+
+def write(path, tables):
+    """The tables of SETS in one CSV file."""
+    text = io.StringIO(newline="")
+    out = csv.writer(text, lineterminator="\n")
+    out.writerow(COLUMNS)
+    for name, table in zip(SETS, tables):
+        out.writerows((name, "%d %d" % tuple(row["p"]), row["q"],
+                       *("%.7g" % row[column] for column in COLUMNS[3:])) for row in table)
+    files.write_text(path, text.getvalue())
+
+
+def read(path):
+    """The tables of SETS from such a file."""
+    _, *rows = csv.reader(io.StringIO(files.read_text(path, "table", ": is no such table")))
+    kinds = [("p", "i8", (2,)), ("q", "i8"), ("eps_below", "f8"), ("eps_above", "f8")]
+    return [np.array([(tuple(map(int, p.split())), int(q), float(low), float(high))
+                      for each, p, q, low, high in rows if each == name], dtype=kinds)
+            for name in SETS]
+
+
+def pictures(directory):
+    """Draws toughest.svg and frontier.svg from toughest.csv."""
+    def path(name):
+        return os.path.join(directory, name)
+
+    table, best, near, chapter = read(path("toughest.csv"))
+    long = best[best["q"] >= near["q"].min()]       # short orbits have late onsets
+    last = middle(toughest(np.concatenate([long, near]), 1))[0]
+    draw(path("toughest.svg"), (8.4, 4.4), draw_map, table, best)
+    draw(path("frontier.svg"), (7.2, 3.9), draw_frontier, table, last, middle(chapter))
 
 
 # ---- all together
@@ -234,7 +273,11 @@ def main():
     p.add_argument("directory", nargs="?", default=os.path.join("build", "toughest"))
     p.add_argument("--quick", action="store_true", help="few vectors, small q: seconds")
     p.add_argument("--jobs", type=int, default=os.cpu_count(), help="vectors at a time")
+    p.add_argument("--draw", action="store_true", help="draw toughest.csv, which is there")
     options = p.parse_args()
+    if options.draw:
+        pictures(options.directory)
+        return 0
     sizes = SIZES["quick" if options.quick else "full"]
     os.makedirs(options.directory, exist_ok=True)
 
@@ -258,7 +301,7 @@ def main():
                          ("golden", orbits.standard, gold, STANDARD))
                      for end, criterion in (("", {}), ("-fixed", {"exponent": FIXED}))]
     for eps in (0.004, 0.006, 0.008, 0.010, 0.011, 0.012):
-        print("not yet hyperbolic at %.3f: %4.1f %%" % (eps, 100 * (middle(table) > eps).mean()))
+        print("before their onset at %.3f: %4.1f %%" % (eps, 100 * (middle(table) > eps).mean()))
     print("the toughest:")
     for row in best:
         w0, w1 = row["p"] / row["q"]
@@ -267,11 +310,10 @@ def main():
     for row, fixed in zip(*sequences[:2]):
         print("    (%d, %d)/%d at %.5f, by the fixed exponent at %.5f"
               % (*row["p"], row["q"], middle(row), middle(fixed)))
-    long = np.concatenate([best, sequences[0]])
-    last = middle(toughest(long[long["q"] >= sizes["near"] // 3], 1))[0]
-    draw(path("map.svg"), (8.4, 4.4), draw_map, table, best)
+    long = sequences[0][sequences[0]["q"] >= sizes["near"] // 3]
+    write(path("toughest.csv"), (table, best, long, chapter))
     draw(path("sequence.svg"), (8.4, 3.2), draw_sequence, *sequences)
-    draw(path("frontier.svg"), (7.2, 3.6), draw_frontier, table, last, middle(chapter))
+    pictures(options.directory)
     return 0
 
 

@@ -19,10 +19,12 @@ STYLE = {**plot.STYLE, "axes.spines.top": False, "axes.spines.right": False}
 COLOURS = {PROVED: "#7fa8d1", AT_ONCE: "#cfdeed"}
 WORDS = {PROVED: "proved cell by cell: no tori",
          AT_ONCE: "proved at once, with all larger multiples"}
-MARKER = {"markersize": 9, "markerfacecolor": "white", "markeredgecolor": "black",
-        "linestyle": "none"}
-MARKED_POINTS = ((0.0272, "o", "0.0272, the thesis, 1989"),
-         (0.0140, "*", "0.0140, proved on the dashed line"))
+MARKER = {"markersize": 7, "markerfacecolor": "white", "markeredgecolor": "black",
+          "linestyle": "none"}
+MARKED_POINTS = (                       # of the dashed line, a = b = c/2
+    (0.0272, "o", "\u03b5 \u2265 0.0272: no torus (1989)"),
+    (0.01389, "*", "\u03b5 \u2265 0.01389: no torus"),
+    (0.0120, "s", "\u03b5 = 0.0120: a torus"))
 SAMPLES = 120                           # of the angles, and of the directions of a side
 AT_ONCE_LEVEL = 4 / 3                   # of B - 2, above which Mather's criterion proves
 
@@ -102,23 +104,22 @@ def _draw_plane(region_map, figure, tori):
                          for directions, found in zip(region_map.directions, region_map.estimate)
                          for place, radius in sorted(found.items())])
     axes.plot(*_around(mather[:, (horizontal, vertical)]).T, ":", color=plot.DARK, linewidth=1.2,
-              label="B = 10/3")
+              label="B = 10/3, where no orbit is needed")
     axes.plot(*_around(estimate).T, color=plot.VERMILLION, linewidth=1.6,
-              label="estimate: single points are proved down to here")
+              label="estimate: single points proved to here")
     if tori:
         places = np.array(sorted((float(p[horizontal]), float(p[vertical])) for p in tori))
         axes.plot(*places.T, "o", color=plot.GREEN, markersize=3.5,
-                  label="a torus is proved to be there")
+                  label="a torus is proved there")
     if region_map.region == "a=b":
         ends = np.array([0, 0.03]) * float(LINE)
         axes.plot(ends, 2 * ends, "--", color=plot.DARK, linewidth=0.6)
         for epsilon, marker, words in MARKED_POINTS:
-            axes.plot(LINE * epsilon, 2 * LINE * epsilon, marker, label="\u03b5 = " + words,
-                      **MARKER)
+            axes.plot(LINE * epsilon, 2 * LINE * epsilon, marker, label=words, **MARKER)
     most = 1.08 * mather.max()
     axes.set(xlim=(0, most), ylim=(0, 1.08 * mather[:, vertical].max()), aspect="equal",
              xlabel={"a=b": "a = b"}.get(region_map.region, "a"), ylabel=PARAMETERS[vertical])
-    axes.set_title({"b=0": "b = 0", "a=b": "a = b", "c=0": "c = 0"}[region_map.region])
+    axes.set_title("The plane %s; white: undecided" % region_map.region.replace("=", " = "))
     axes.legend(loc="upper center", bbox_to_anchor=(0.5, 0), borderaxespad=4.5, ncol=2)
 
 

@@ -480,7 +480,7 @@ def test_what_is_written_in_pictures_can_be_read(tmp_path, monkeypatch, name):
     assert min(text.get_fontsize() for text in words) >= 8
     texts = {text.get_text() for text in words}
     if name == "a=b":
-        assert {"a = b", "c", "\u03b5 = 0.0272, the thesis, 1989"} <= texts
+        assert {"a = b", "c", "\u03b5 \u2265 0.0272: no torus (1989)"} <= texts
         legend = drawn[0].axes[0].get_legend()
         assert legend.get_frame_on() and legend.get_window_extent().y1 < \
             drawn[0].axes[0].get_window_extent().y0     # it hides nothing

@@ -21,13 +21,10 @@ from converse.draw import plot
 from converse.model.problem import LINE
 
 ROWS = {
-    "bound": [("1989", "0.0274", 2698, 4, "yes"), ("thesis", "0.0274", 0.05, 3, "yes"),
-              ("thesis, single value", "0.0271", 0.1, 5, "yes"),
-              ("thesis, single value", "0.0270", 0.1, 7, "no"),
-              ("loewner", "0.0250", 0.001, 3, "yes"), ("loewner", "0.0145", 3.0, 50, "no"),
-              ("first order", "0.0250", 0.002, 3, "yes"),
-              ("last circle", "0.01381", 0.4, 5545, "seen")],
-    "digits": [(1, 0.04, 0.03, 0, "no"), (3, 0.05, 0.04, 243, "yes"), (200, 0.1, 0.09, 111, "yes")],
+    "bound": [("1989", "0.0274", 2698.0, "1989"), ("thesis", "0.0274", 0.05, "1.12.0"),
+              ("no torus", "0.0250", 0.001, "1.12.0"), ("no torus", "0.01389", 240.0, "1.12.0"),
+              ("torus", "0.004", 1.3, "1.12.0"), ("torus", "0.0120", 784.0, "1.11.0"),
+              ("tori up to", "0.004", 12.0, "1.11.0"), ("tori up to", "0.008", 166.0, "1.11.0")],
     "width": [("fixed form", "double", 2, 150.0, 1.02), ("column rotor", "35", 3, 5e4, 1.4),
               ("Taylor model", "double", 4, 160.0, 1.0)],
     "wall": [("thesis", "0.0280", 1, 0, "yes"), ("thesis", "0.0270", 71804, 28, "no"),
@@ -76,9 +73,25 @@ def test_files(quick, tmp_path, capsys):
             for word, item in zip(words, row):
                 assert word == item if isinstance(item, str) else float(word) == item
     assert out.count("\n") == sum(map(len, ROWS.values())) + 1
-    assert "digits: digits 3, seconds 0.05, before_search 0.04, prisms 243, proved yes\n" in out
+    assert "wall: method thesis, epsilon 0.0280, prisms 1, deepest_cut 0, proved yes\n" in out
     last = out.splitlines()[-1]
     assert last.startswith("written: ") and all("chart-%s.svg" % name in last for name in ROWS)
+
+
+def test_a_table_is_drawn_again(quick, tmp_path, monkeypatch, capsys):
+    """And what is in it is what is drawn; nothing is measured."""
+    assert chart.main([str(tmp_path), "--only", "wall"]) == 0
+    assert os.listdir(tmp_path) and not (tmp_path / "chart-bound.csv").exists()
+    picture = (tmp_path / "chart-wall.svg").read_bytes()
+    (tmp_path / "chart-wall.svg").unlink()
+    monkeypatch.setattr(chart, "WALLS", None)
+    assert chart.main([str(tmp_path), "--only", "wall", "--draw"]) == 0
+    assert (tmp_path / "chart-wall.svg").read_bytes() == picture
+    assert chart.read("wall", str(tmp_path / "chart-wall.csv")) == ROWS["wall"]
+    (tmp_path / "chart-wall.csv").write_text("a,b\n")
+    capsys.readouterr()
+    assert chart.main([str(tmp_path), "--only", "wall", "--draw"]) == common.BAD
+    assert "measure anew" in one_line(capsys)[1]
 
 
 def test_bad_places(quick, tmp_path, capsys):
@@ -176,53 +189,29 @@ def _pick(rows, word):
     return [row for row in rows if row[-1] == word]
 
 
-def loewner(points):
-    return [("loewner", "%.5f" % epsilon, 1.0, orbit, "yes") for epsilon, orbit in points]
-
-
-def test_estimate_of_the_end():
-    """Where the inverse of the longest orbit falls to 0: never in the midst of what is proved, and
-    not from short orbits."""
-    law = [(0.013 + step, round(0.06 / step)) for step in (0.0012, 0.0008, 0.0005, 0.0003, 0.0002)]
-    assert chart.estimated_end(loewner(law)) == pytest.approx(0.013, abs=2e-5)
-    assert chart.estimated_end(loewner(law[:2])) is None
-    assert chart.estimated_end(loewner([(e, n // 10) for e, n in law[:4]])) is None
-    assert chart.estimated_end(loewner([(e, 200) for e, _ in law])) is None
-    assert chart.estimated_end(loewner([(e, 400 - n) for e, n in law])) is None
-    assert chart.estimated_end([]) is None
-    rows = ROWS["bound"] + loewner(law)
-    caption, words, lines = drawn("bound", rows)
-    assert "estimate" in words and "0.0130" in words and "estimate" in caption
-    assert levels(lines) == pytest.approx([0.0121, 0.01256, 0.013, 0.01381, 0.0271], abs=2e-5)
-    caption, words, lines = drawn("bound", ROWS["bound"])
-    assert "estimate:" not in words and "dotted" not in caption and len(levels(lines)) == 4
-    assert "0.0271 alone is proved, 0.0270 is not" in words
-    assert "0.01381" in words and words.count("seen: ") == 3
-    caption, words, lines = drawn("bound", ROWS["bound"][:-1])
-    assert "circle" not in words and len(levels(lines)) == 3
-
-
-def levels(lines):
-    """Where horizontal lines are that run through the whole of a chart."""
-    return sorted(line.get_ydata()[0] for line in lines if len(set(line.get_ydata())) == 1
-                  and list(line.get_xdata()) == [0, 1])
+def test_the_two_sides_do_not_meet():
+    """The end of each curve is labelled, and no torus is drawn above one that is excluded."""
+    _, words, _ = drawn("bound", ROWS["bound"])
+    assert "0.01389" in words and "0.0120" in words and words.count("PROVED") == 3
+    rows = [*chart.BOUNDS, chart.LAST[0]], [*chart.TORI, *(each for each, *_ in chart.RANGES),
+                                            chart.sides.LONGEST[1][2]]
+    assert max(map(float, rows[1])) < chart.sides.FRONTIER["line"] < min(map(float, rows[0]))
 
 
 def test_the_last_circle_of_the_diagonal():
-    """The map on it is trig's, and of the noble rotation numbers none is seen to last longer; so
-    they do in the standard map, where the last one is known."""
-    diagonal = chart.diagonal()
+    """The map on it is trig's, and of the noble rotation numbers none is seen to last longer than
+    [0; 5, 1, 1, ...]; so they do in the standard map, where the last one is known."""
+    experiment = runpy.run_path(str(ROOT / "experiments" / "diagonal.py"))
+    diagonal = experiment["diagonal"]()
     t = np.random.default_rng(1).uniform(0, 1, (50, 1))
     both = orbits.trig.evaluate(np.hstack([t, t]))[1]
     assert np.abs(diagonal.evaluate(t)[1] - both).max() < 1e-13
-    circle = chart.last_circle()
-    assert 0.0138 < circle < 0.01382
-    experiment = runpy.run_path(str(ROOT / "experiments" / "diagonal.py"))
-    (p,), q = chart.CIRCLE
-    assert experiment["noble"]((5,), q) == chart.CIRCLE and p / q == pytest.approx(
-        1 / (4.5 + 5 ** 0.5 / 2), abs=1e-7)
+    (p,), q = experiment["noble"]((5,), 5545)
+    assert (p, q) == (987, 5545) and p / q == pytest.approx(1 / (4.5 + 5 ** 0.5 / 2), abs=1e-7)
+    below, above = orbits.onset(diagonal, (p,), q, step=0.0005, width=1e-6, top=0.02)
+    assert 0.0138 < below.eps < above.eps < 0.01382
     (first, head), (second, _), *_ = experiment["nobles"](2, 5, 100)
-    assert head == (5,) and abs(first - circle) < 3e-5 and second < circle
+    assert head == (5,) and abs(first - above.eps) < 3e-5 and second < below.eps
 
 
 def test_the_diagonal_stops_the_sharper_method(monkeypatch, capsys):
@@ -242,16 +231,10 @@ def test_the_diagonal_stops_the_sharper_method(monkeypatch, capsys):
                                                    ["eps", "0.01370", "-", "-"]]
 
 
-def test_no_line_above_a_proof():
-    """What is drawn as a limit of a method is not above anything that it proves."""
+def test_bounds_are_measured():
     rows = list(chart.bound(True))
-    _, words, _ = drawn("bound", rows)
-    for name in ("thesis", "loewner"):
-        proved = [float(row[1]) for row in rows if row[0].startswith(name) and row[4] == "yes"]
-        lost = [float(row[1]) for row in rows if row[0].startswith(name) and row[4] == "no"]
-        assert min(proved) > max(lost, default=0)
-    assert "%s alone is proved, %s is not" % chart.SINGLES[-2:] in words
-    assert all(row[3] >= 1 and math.isfinite(row[2]) for row in rows)
+    assert {row[0] for row in rows} == {row[0] for row in ROWS["bound"]}
+    assert all(row[2] > 0 and math.isfinite(row[2]) for row in rows)
 
 
 def test_width():

@@ -10,10 +10,11 @@ import sides
 from converse.commands import common
 from converse.storage.files import ConverseError
 
-ROWS = [("standard", "torus", "0.9", 0.55, 136.6, 5762, 318, ""),
-        ("standard", "none", "1", 0.0012, 140.0, 1200, 148, 57),
-        ("line", "torus", "0.004", 1.9, 150.0, 30000, 695, ""),
-        ("line", "none", "0.0160", 0.004, 141.0, 2500, 901, 18)]
+ROWS = [("standard", "torus", "0.9", 0.55, 136.6, 5762, 318, "", "1.12.0"),
+        ("standard", "torus", "0.9716", 725.0, 3800.0, 0, 1539249, "", "1.11.0"),
+        ("standard", "none", "1", 0.0012, 140.0, 1200, 148, 57, "1.12.0"),
+        ("line", "torus", "0.004", 1.9, 150.0, 30000, 695, "", "1.12.0"),
+        ("line", "none", "0.0160", 0.004, 141.0, 2500, 901, 18, "1.12.0")]
 
 
 @pytest.fixture
@@ -30,6 +31,7 @@ def test_proofs_are_measured(few, capsys):
                                          ("line", "torus", "0.002"), ("line", "none", "0.0240")]
     assert all(0 < row[3] < 60 and row[4] > 10 and row[5] > 100 for row in rows)
     assert [bool(row[7]) for row in rows] == [False, True, False, True]
+    assert all(row[8] == sides.converse.__version__ for row in rows)
     assert capsys.readouterr().out == ""                        # k = 0.971 is left out
 
 
@@ -39,12 +41,14 @@ def test_what_is_not_proved_is_told(monkeypatch, capsys):
     monkeypatch.setattr(sides, "POINTS", {("standard", "none"): ("0.5",)})
     monkeypatch.setattr(concurrent.futures, "ProcessPoolExecutor", lambda workers, mp_context:
                         concurrent.futures.ThreadPoolExecutor(workers))
-    assert list(sides.measure(quick=False)) == []
+    assert list(sides.measure(quick=False)) == list(sides.LONGEST)
     assert capsys.readouterr().out == "standard none: 0.5 was not proved\n"
 
 
 def test_the_frontier_lies_between():
-    """No torus is to be proved above, none to be excluded below."""
+    """No torus is to be proved above, none to be excluded below; and a curve ends nearest to it."""
+    ends = [sides.nearer(ROWS, "standard", side)[-1][2] for side in ("torus", "none")]
+    assert ends == ["0.9716", "1"]
     for (name, side), values in sides.POINTS.items():
         for value in values:
             assert (float(value) < sides.FRONTIER[name]) == (side == "torus")
@@ -55,11 +59,11 @@ def test_the_frontier_lies_between():
 
 def test_the_table_is_drawn(tmp_path):
     pytest.importorskip("matplotlib")
-    path = tmp_path / "sides.csv"
+    path = tmp_path / "chart-sides.csv"
     path.write_text(sides.table(ROWS))
     assert [row[:6] for row in sides.read(path)] == [row[:6] for row in ROWS]
     assert sides.main([str(tmp_path), "--draw"]) == 0
-    ET.parse(tmp_path / "sides.svg")
+    ET.parse(tmp_path / "chart-sides.svg")
     path.write_text("a,b\n")
     with pytest.raises(ConverseError, match="measure anew"):
         sides.read(path)

@@ -1,0 +1,98 @@
+"""docs/figures.csv lists the pictures of docs/, pictures show the tables of docs/data/, and the
+values that are proved are the same in all pictures, pages and scripts."""
+
+import csv
+import re
+import runpy
+from pathlib import Path
+
+import chart
+import pytest
+import sides
+
+from converse.draw.map_figure import MARKED_POINTS
+
+ROOT = Path(__file__).resolve().parent.parent.parent
+DOCS = ROOT / "docs"
+FIGURES = runpy.run_path(str(DOCS / "figures.py"))
+ROWS = {row["picture"]: row for row in FIGURES["rows"]()}
+WORDS = {path.stem: "\n".join(re.findall("<!-- (.*?) -->", path.read_text("utf-8"), re.DOTALL))
+         for path in DOCS.glob("*.svg")}
+
+# No torus of the line, and of the standard map, for all larger parameters; a torus; 1989.
+NO_TORUS, TORUS, NO_CIRCLE, CIRCLE, THESIS = "0.01389", "0.0120", "0.972", "0.9716", "0.0272"
+SHOWN = {
+    "chart-bound.svg": (NO_TORUS, TORUS), "frontier.svg": (NO_TORUS, TORUS, THESIS),
+    "map-ab.svg": (NO_TORUS, TORUS, THESIS),
+    "chart-sides.svg": (TORUS, NO_CIRCLE, CIRCLE),
+    "README.md": (NO_TORUS, TORUS, NO_CIRCLE, CIRCLE),
+    "frontier.md": (NO_TORUS, TORUS, NO_CIRCLE, CIRCLE), "map.md": (NO_TORUS, TORUS),
+    "speed.md": (NO_TORUS,), "trust.md": (NO_TORUS,), "orbits.md": (NO_TORUS, TORUS),
+    "tori.md": (TORUS, CIRCLE), "method.md": (NO_CIRCLE,), "where-methods-fail.md": (NO_CIRCLE,)}
+
+
+def text_of(name):
+    path = ROOT / name if name == "README.md" else DOCS / name
+    return WORDS[path.stem] if path.suffix == ".svg" else path.read_text("utf-8")
+
+
+def test_every_picture_has_a_row_and_every_table_a_picture():
+    assert set(ROWS) == set(WORDS) and list(ROWS) == sorted(ROWS)
+    assert {row["data"] for row in ROWS.values()} - {""} == {
+        path.stem for path in (DOCS / "data").iterdir()}
+
+
+@pytest.mark.parametrize("name", sorted(WORDS))
+def test_a_picture_is_of_its_release_and_table(name):
+    row, text = ROWS[name], (DOCS / (name + ".svg")).read_text("utf-8")
+    drawn_by = re.findall("<dc:title>converse (.*?)</dc:title>", text)
+    assert drawn_by in ([row["release"]], [])       # [] if a script drew it without converse.draw
+    assert text.endswith(FIGURES["seal"](row["data"]) if row["data"] else "</svg>\n")
+
+
+@pytest.mark.parametrize("name", SHOWN)
+def test_the_values_that_are_proved(name):
+    text = text_of(name)
+    assert [value for value in SHOWN[name] if value not in text] == []
+
+
+def test_scripts_draw_these_values():
+    toughest = runpy.run_path(str(ROOT / "experiments" / "toughest.py"))
+    assert toughest["NO_TORI"] == (float(NO_TORUS), float(THESIS))
+    assert toughest["TORUS_AT"][-1] == float(TORUS)
+    assert [value for value, *_ in MARKED_POINTS] == [*map(float, (THESIS, NO_TORUS, TORUS))]
+    assert chart.LAST[0] == NO_TORUS
+    assert [row[2] for row in sides.LONGEST] == [CIRCLE, TORUS]
+    assert sides.POINTS["standard", "none"][-1] == NO_CIRCLE
+
+
+def table(name):
+    with open(DOCS / "data" / (name + ".csv"), encoding="ascii", newline="") as file:
+        return list(csv.DictReader(file))
+
+
+def test_the_readme_and_the_frontier_say_the_same():
+    cells = [re.findall(r"^\| (?:standard map|the (?:thesis's )?line.*?) \|.*\| (.*?) \|$",
+                        text_of(name), re.MULTILINE)[:2] for name in ("README.md", "frontier.md")]
+    assert cells[0] == cells[1] == ["every k >= " + NO_CIRCLE, "every epsilon >= " + NO_TORUS]
+
+
+def test_tori_are_those_of_the_tables():
+    """Of single values: modes, seconds but for their rounding, and the release."""
+    rows = {(row["map"], row["parameter"]): row for row in table("chart-sides")
+            if row["side"] == "torus"}
+    shown, map_, rotation = 0, "", ""
+    page = text_of("tori.md")
+    for line in page[page.index("| map | rotation"):].split("\n\n")[0].splitlines()[2:]:
+        name, vector, modes, _, _, seconds, release = map(str.strip, line.strip("|").split("|"))
+        map_ = "standard" if "standard" in name else "line" if "thesis" in name else map_
+        rotation = vector.strip("`") or rotation
+        if rotation in ("golden", "V1") and modes[-1].isdigit():
+            row = rows[map_, re.search(r"0\.[0-9]+", name)[0]]
+            assert (modes.replace(",", ""), release) == (row["parts"], row["release"]), name
+            assert float(seconds) == pytest.approx(float(row["seconds"]), rel=0.03), name
+            shown += 1
+    assert shown == 12
+    for row in table("chart-bound"):
+        if row["what"] == "torus":
+            assert row["seconds"] == rows["line", row["epsilon"]]["seconds"]
