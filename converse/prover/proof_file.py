@@ -16,7 +16,7 @@ from .proof import Part, Proof
 from .settings import Settings
 
 FIRST_LINES = {"converse proof 3": 3, "converse proof 4": 4, "converse proof 5": 5}
-BEFORE = "converse proof 2"
+BEFORE, MAGIC = "converse proof 2", "converse proof "
 FORMATS = {"thesis": 3, "loewner": 4}        # that are written, by method, but for
 WITH_SHIFTS = 5
 PROGRAM = re.compile(r"converse ([0-9A-Za-z.+-]{1,40})")
@@ -43,10 +43,15 @@ def load(path):
     if lines[0] == BEFORE:
         raise ConverseError("%s: is a proof file of format 2, which releases up to 1.6.0 read; "
                             "continue it with one of those, which writes format 3" % path)
+    if lines[0].startswith(MAGIC) and lines[0].endswith("\r"):
+        fail(1, "the lines end in CR LF, so the file was altered on its way")
+    if re.fullmatch(MAGIC + "[0-9]+", lines[0]) and lines[0] not in FIRST_LINES:
+        raise ConverseError("%s: is a proof file of another format; this release reads formats 3 "
+                            "to 5, so continue it with the release that wrote it" % path)
     if lines[0] not in FIRST_LINES:
         fail(1, "this is not a proof file of this program")
     if lines[-2:] != ["end", ""]:
-        fail(len(lines), "the file is truncated")
+        fail(len(lines), "something follows the end" if "end" in lines else "the file is truncated")
     body = text[:text.rfind("\n", 0, len(text) - len("\nend\n")) + 1]
     if lines[-3] != "checksum: sha256 " + files.sha256(body):
         fail(len(lines) - 2, "the file was changed or damaged (wrong checksum)")

@@ -298,11 +298,13 @@ def test_figure_over_something_else(command, sample, tmp_path):
 def test_bad_backups(command, sample, root, tmp_path):
     good = tmp_path / "good"
     assert command("-b", good, sample)[0] == 0
-    truncated, edited = tmp_path / "truncated", tmp_path / "edited"
+    truncated, edited, longer = (tmp_path / name for name in ("truncated", "edited", "longer"))
     truncated.write_bytes(good.read_bytes()[:-40])
+    longer.write_bytes(good.read_bytes() + b"\n")
     edited.write_text(good.read_text().replace("depth: 30", "depth: 31"))
     for path, word in ((truncated, "truncated"), (edited, "damaged"), (sample, "not a proof file"),
-                       (tmp_path, "cannot be read"), (tmp_path / "missing", "cannot be read")):
+                       (longer, "something follows the end"), (tmp_path, "cannot be read"),
+                       (tmp_path / "missing", "cannot be read")):
         status, out, err = command("-r", path, sample)
         assert status == 2 and out == "" and one_line(err)
         assert str(path) in err and word in err

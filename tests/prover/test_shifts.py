@@ -295,7 +295,9 @@ def test_format_5(moved, tmp_path):
 
 @pytest.mark.parametrize("change, wrong", [
     (lambda text: text.replace("proof 5", "proof 4"), "v0 has 3 numbers, not 2"),
-    (lambda text: text.replace("proof 5", "proof 6"), "not a proof file of this program"),
+    (lambda text: text.replace("proof 5", "proof 6"), "is a proof file of another format; this"),
+    (lambda text: text.replace("proof 5", "proof five"), "not a proof file of this program"),
+    (lambda text: text.replace("\n", "\r\n"), "line 1: the lines end in CR LF"),
     (lambda text: re.sub("(part: b\n.*\nv0: .*)", r"\1 0", text), "v0 .* 4 numbers, not 2 or 3"),
     (lambda text: re.sub("(part: b\n.*\n.*\nv1: .*)", r"\1 0", text), "v1 .* 4 numbers, not 2 or"),
     (lambda text: re.sub("(part: b\n.*\nv0: [^ ]*).*", r"\1", text), "v0 .* 1 numbers"),
