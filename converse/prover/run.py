@@ -255,10 +255,12 @@ class _Run:
         undecided, self.tried = not self._is_hard(), True
 
         def seconds_left():             # asked for again and again meanwhile
+            workers.check()
             self._show(self.share, self.proof.counts)
             return self._seconds_left()
 
-        with WorkerPool(None, self.options.jobs, native.Stop()) as pool:
+        with WorkerPool(self.options.executor) as workers, \
+                WorkerPool(None, self.options.jobs, native.Stop()) as pool:
             found = plan(problem, settings.depth, piece.xstar, undecided,
                          Fraction(self.proof.constants["B"]), len(self.proof.parts), pool,
                          seconds_left)

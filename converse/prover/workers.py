@@ -148,6 +148,11 @@ class WorkerPool(Resource):
         """Can tasks still be given or cancelled?"""
         return self.client is None or self.client.status in ("running", "connecting")
 
+    def check(self):
+        """WorkersGone: they cannot."""
+        if not self.alive:
+            raise self._gone()
+
     @property
     def size(self):
         """How many tasks to have under way; 0 while there is no worker yet, of which a
@@ -168,8 +173,7 @@ class WorkerPool(Resource):
         """Raises what a failure of a task means; returns if the task may be tried again."""
         if task.here or isinstance(error, (ConverseError, MemoryError)):
             raise error
-        if not self.alive:
-            raise self._gone()
+        self.check()
         if task.attempts > 1:
             return
         words = " ".join(str(error).split()).partition(". ")[0]
@@ -183,8 +187,7 @@ class WorkerPool(Resource):
     def _ask(self):
         """Asks a Dask cluster for its workers, and each new worker whether it has this program:
         without it the first task would kill it."""
-        if not self.alive:
-            raise self._gone()
+        self.check()
         there, lack = {}, "the Dask scheduler does not answer"
         with contextlib.suppress(Exception):    # of many kinds, among them that time is up
             if self.client.status == "running":

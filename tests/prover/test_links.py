@@ -1,6 +1,7 @@
 """Several starting points: what is proved over one is linked to others."""
 
 import re
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from fractions import Fraction
 
@@ -18,7 +19,7 @@ from converse.prover.links import (SPARE, Link, Links, Target, clusters, crests,
 from converse.prover.native import Counts, Stop
 from converse.prover.proof import Part
 from converse.prover.resume import counted
-from converse.prover.workers import WorkerPool
+from converse.prover.workers import WorkerPool, WorkersGone
 from converse.storage import files
 from converse.tori.find import find
 from converse.tori.rotation import read_rotation
@@ -406,6 +407,29 @@ def test_progress_goes_on_while_starting_points_are_looked_for(easily, monkeypat
     assert meanwhile and all(len(calls) == 1 for calls in meanwhile)
     assert [share for share, _ in told] == sorted(share for share, _ in told)
     assert told[-1][1].proved == proof.counts.proved
+
+
+def test_a_lost_scheduler_is_noticed_while_starting_points_are_looked_for(
+        easily, monkeypatch, tmp_path):
+    """What was found until then is saved."""
+    class Executor(ThreadPoolExecutor):
+        status, num_workers = "running", 1
+
+        def nthreads(self, callback_timeout):
+            return {"worker": 1}
+
+    def looked(*arguments):
+        executor.status = "closed"
+        arguments[-1]()                 # is there time left?
+        raise AssertionError("nobody noticed")
+
+    monkeypatch.setattr(run, "plan", looked)
+    path = tmp_path / "proof"
+    with Executor(1) as executor:
+        executor._client = executor
+        with pytest.raises(WorkersGone, match="scheduler is gone"):
+            prove(line("0.015"), method="loewner", executor=executor, backup=path)
+    assert Proof.load(path).counts.proved
 
 
 def test_an_undecided_part_is_no_proof(linked):
