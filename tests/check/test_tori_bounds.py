@@ -183,6 +183,15 @@ def test_norms_are_sums_of_spectral_norms(seed):
         assert is_above(size) and (size < 3 or not is_above(size - 3))
 
 
+@pytest.mark.parametrize("rows, columns", [(1, 1), (2, 1), (2, 2)])
+def test_roundings_of_all_entries_are_counted(rows, columns):
+    """The worst matrix of errors has the parts 1 everywhere."""
+    ring, measure = random_ring(random.Random(1), 2, 1, 3, 4)
+    f = ring.series(rows, columns, [([1] * ring.box.count, [1] * ring.box.count)] * rows * columns)
+    exact = measure.of(array_of(f, ring, reach_of(ring), 1))
+    assert exact * (1 - ROUGH) <= ring.rounding(f) / unit_of(ring) <= 2 * exact
+
+
 @pytest.mark.parametrize("seed", range(24))
 def test_products_are_within_their_radius(seed):
     """The radius bounds the error with all lost and misplaced pairs, and is no looser than (T5)."""
@@ -742,6 +751,17 @@ def test_sums_of_modes_are_no_less(seed):
                              (float(torus.derivative_outside(powers, limit)),
                               (beyond * np.hypot.reduce(k)).sum())):
             assert exact * (1 - ROUGH) <= found <= exact + unit * case.largest * 2
+
+
+def test_lengths_of_modes_are_rounded_up():
+    """One mode (k, k), u_k = 3/4 + i: not the last bit of |k|_2 = k 2^(1/2) is missing."""
+    head, _, _ = random_case(1, bits=60).text.partition("pieces")
+    for k in range(1, 9):
+        text = head + "pieces: 1\ntori:\npiece 0 0 60 0 1\n%d %d 0 %x %x 0 0\n" % (
+            k, k, 3 << 58, 4 << 58)
+        torus = torus_of(Case(text, 2, *[None] * 6))
+        found = torus.derivative_outside(series.powers_of(Fraction(1), torus.farthest), 0)
+        assert 2 * (2 * k * Fraction(5, 4)) ** 2 <= found ** 2
 
 
 def test_roundings_of_u_are_in_the_constants(monkeypatch):
