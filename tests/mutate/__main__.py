@@ -32,9 +32,11 @@ import build  # noqa: E402
 ROOT = HOME.parent.parent
 PATIENCE = 900                          # seconds, for the tests of one file
 
-# What is mutated, by folders of csrc and by files of converse/orbits.  Not what guesses where to
-# start: nothing that is proved rests on it.
-ORBITS = ("enclosure.py", "exponents.py")
+# The files that are mutated: all of csrc, and these files of the folders of converse.  The files
+# that guess where to start are left out, because no proof rests on them.
+PYTHON = {"orbits": ("enclosure", "exponents"),
+          "check": ("field", "series", "tori", "torus_file"),
+          "tori": ("constants", "divisors", "field", "proved", "residual", "theorem")}
 GUESSES = ("thesis/start.c", "loewner/start.c", "model/stationary.c")
 
 # The tests that may notice, by what a file's name begins with; the likely one first.
@@ -42,6 +44,8 @@ NUMBERS = ["test_apm.py", "test_special.py", "test_bounding.py", "test_bd_trig.p
            "test_bounds.py",
            "test_images.py", "test_search.py"]
 SHARP = ["test_loewner.py", "test_waves.py", "test_search.py"]
+TORI = ["test_review.py", "test_theorem.py", "test_divisors.py", "test_residual.py",
+        "test_proved.py"]
 FINDERS = ["test_orbits.py", "test_orbits_fail.py", "test_floor.py", "test_proved.py"]
 TESTS = {
     "arith/apm": NUMBERS, "arith/special": ["test_special.py", *NUMBERS],
@@ -59,6 +63,8 @@ TESTS = {
     "loewner": [*SHARP, "test_margins.py"],
     "orbits/minplus": ["test_floor.py"], "orbits/enclosure": ["test_proved.py"],
     "orbits/exponents": ["test_proved.py"], "orbits": FINDERS,
+    "check": ["test_tori_bounds.py", "test_tori.py"], "check/torus_file": ["test_tori.py"],
+    "tori": TORI, "tori/field": ["test_rotation.py", *TORI],
 }
 
 
@@ -66,7 +72,9 @@ def sources():
     """{name: path} of what is mutated."""
     found = {path.relative_to(ROOT / "csrc").as_posix(): path
              for path in sorted([*ROOT.glob("csrc/**/*.[ch]"), *ROOT.glob("csrc/**/*.inc")])}
-    found.update(("orbits/" + name, ROOT / "converse" / "orbits" / name) for name in ORBITS)
+    for folder, names in PYTHON.items():
+        found.update(("%s/%s.py" % (folder, name), ROOT / "converse" / folder / (name + ".py"))
+                     for name in names)
     return {name: path for name, path in found.items() if name not in GUESSES}
 
 

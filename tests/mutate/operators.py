@@ -16,6 +16,7 @@ OPERATORS = {
     "logic": "&& for ||, or || for &&",
     "direction": "a rounding, bound or extreme of the other side: APM_UP for APM_DOWN, max for min",
     "term": "a term of a sum is left out",
+    "factor": "a factor of a product is left out (Python)",
     "constant": "twice a number, or 1 for 0",
     "index": "an index is one more",
     "drop": "a statement is left out",
@@ -197,13 +198,19 @@ PYTHON_EXTREMES = {"min": "max", "max": "min", "lower": "upper", "upper": "lower
 
 
 def python_places(text):
-    """The mutants' texts are what ast makes of the changed tree."""
-    tree = ast.parse(text)
-    for function in ast.walk(tree):
+    """A mutant's text is the source with what ast makes of the changed node in its place."""
+    data, starts = text.encode(), [0]
+    for line in data.splitlines(keepends=True):
+        starts.append(starts[-1] + len(line))
+    for function in ast.walk(ast.parse(text)):
         if isinstance(function, ast.FunctionDef):
             for node in ast.walk(function):
                 for operator, change, undo in python_changes(node):
-                    yield function.name, operator, node.lineno, change, ast.unparse(tree)
+                    new = ast.unparse(node)
+                    yield (function.name, operator, node.lineno, change, b"".join([
+                        data[:starts[node.lineno - 1] + node.col_offset],
+                        (new if isinstance(node, ast.stmt) else "(%s)" % new).encode(),
+                        data[starts[node.end_lineno - 1] + node.end_col_offset:]]).decode())
                     undo()
 
 
@@ -218,6 +225,14 @@ def python_changes(node):
         before = ast.unparse(node)
         undo = put(node, "op", PYTHON_SIGNS[type(node.op)]())
         yield "sign", "%s -> %s" % (before, ast.unparse(node)), undo
+        if isinstance(node, ast.BinOp):
+            undo = put(node, "right", ast.Constant(0))
+            yield "term", "%s -> %s" % (before, ast.unparse(node)), undo
+    elif isinstance(node, ast.BinOp) and isinstance(node.op, ast.Mult):
+        before = ast.unparse(node)
+        for side in ("left", "right"):
+            undo = put(node, side, ast.Constant(1))
+            yield "factor", "%s -> %s" % (before, ast.unparse(node)), undo
     elif isinstance(node, ast.Compare) and type(node.ops[0]) in PYTHON_COMPARISONS:
         before = ast.unparse(node)
         undo = put(node, "ops", [PYTHON_COMPARISONS[type(node.ops[0])](), *node.ops[1:]])

@@ -33,7 +33,7 @@ def test_places_of_c():
         ("direction", 1): "APM_UP -> APM_DOWN", ("drop", 1): "sum += APM_UP; -> ;",
         ("drop", 2): 'note("a + b", sum); -> ;'}
     assert "    return sum ;\n" in found["term", 1].text and "x[j + 1]" in found["index", 1].text
-    assert {operator for operator, _ in found} == set(OPERATORS)
+    assert {operator for operator, _ in found} == set(OPERATORS) - {"factor"}
 
 
 def test_formatting_and_names_of_variables_do_not_matter():
@@ -43,10 +43,11 @@ def test_formatting_and_names_of_variables_do_not_matter():
 
 def test_places_of_python():
     text = ("def width(x, n):\n    if x < n and min(x, 1) == n:\n        x += 0.5\n"
-            "    return x - n\n")
+            "    return x - 3 * n\n")
     found = [(m.operator, m.text) for m in mutants("small.py", text)]
     assert sorted(operator for operator, _ in found) == [
-        "compare", "compare", "constant", "constant", "direction", "logic", "sign", "sign"]
+        "compare", "compare", "constant", "constant", "constant", "direction", "factor", "factor",
+        "logic", "sign", "sign", "term"]
     assert all(other != text and compile(other, "small.py", "exec") for _, other in found)
     assert len({other for _, other in found}) == len(found)
 
@@ -93,6 +94,8 @@ def test_a_fatal_mistake_is_caught(tmp_path, monkeypatch):
     assert TOOL["failure"](bounding, base.unchanged) is None
     fatal, = TOOL["places"](["arith/apm.c:apm_cmp drop 1"])
     assert base.tried(fatal).startswith("caught by test_apm.py, test_")
+    fatal_too, = TOOL["places"](["check/series.py:sizes sign 1"])
+    assert base.tried(fatal_too).startswith("caught by test_tori_bounds.py, test_norms_are_sums")
     base.passed = dict.fromkeys(base.passed, False)
     assert base.tried(fatal).startswith("no verdict: test_apm.py fails without it, too")
 
