@@ -147,9 +147,16 @@ verified-check:
 	$(MAKE) -C formal -j2 build/converse-verified
 	@echo 'The checker is formal/build/converse-verified.'
 
-# The checker's other forms, a zip file to run and one file to read and mail; Python is enough.
+# The checker as one file that Python runs and that can be mailed; Python is enough.
 checker:
-	$(PYTHON) converse/check/ship.py build
+	rm -rf build/checker
+	mkdir -p build/checker
+	cp -R converse/check build/checker/converse_check
+	rm -rf build/checker/converse_check/__pycache__
+	printf 'import sys\n\nfrom converse_check import main\n\nif __name__ == "__main__":\n    sys.exit(main())\n' \
+	    > build/checker/__main__.py
+	$(PYTHON) -m zipapp -c -p '/usr/bin/env python3' -o build/converse-check.pyz build/checker
+	@echo 'build/converse-check.pyz is the checker: python3 build/converse-check.pyz FILE'
 
 # Every translation unit that converse/_build.py lists, with all warnings as errors.
 warnings: $(VENV)/installed

@@ -18,7 +18,7 @@ Install a C compiler, the headers of Python and the headers of GMP, then try aga
     macOS:           brew install gmp
     conda:           conda install -c conda-forge c-compiler gmp
 To check proofs you need none of these: CONVERSE_WITHOUT_CORE=1 leaves the core out, and
-make checker makes one file, build/converse_check.py, that runs alone.
+make checker makes one file, build/converse-check.pyz, that runs alone.
 """
 
 PROBES = [

@@ -47,7 +47,7 @@ def load(path):
 
 def read_proof(data):
     """The claim of a proof file, if it is whole and has the checksum that it says."""
-    if not data.startswith(MAGIC):      # the referee reads no other files
+    if not data.startswith(MAGIC):
         raise Unusable("is a map or a certificate of existence, which converse-check verifies")
     first = data[len(MAGIC):len(MAGIC) + 9].partition(b"\n")[0]
     if first.endswith(b"\r"):

@@ -1,7 +1,6 @@
 """The checker: it confirms what is proved, rejects everything else, and its bounds are bounds."""
 
 import ast
-import builtins
 import contextlib
 import dataclasses
 import decimal
@@ -32,7 +31,7 @@ import pytest
 from converse import Problem
 from converse import check as package
 from converse import prove, read_input
-from converse.check import lockstep, ship
+from converse.check import lockstep
 from converse.check import state as state_module
 from converse.model.problem import LINE
 
@@ -814,23 +813,31 @@ def alone(one_file, *arguments, before="", stdin=None):
                           env=PLAIN)
 
 
-# ---- its other forms: a zip file, and one file
+# ---- its other form, one file
 
 FOLDER = os.path.dirname(package.__file__)
-FORMS = ("converse-check.pyz", "converse_check.py")
+
+
+def made(home):
+    """What `make checker` makes of the sources of the checker in a folder."""
+    subprocess.run(["make", "-s", "-C", home, "checker", "PYTHON=" + sys.executable], check=True,
+                   stdout=subprocess.DEVNULL)
+    return home / "build" / "converse-check.pyz"
 
 
 @pytest.fixture(scope="module")
-def forms(tmp_path_factory):
-    """The folder that has them."""
-    folder = tmp_path_factory.mktemp("forms")
-    ship.main(str(folder))
-    return folder
+def sources(root, tmp_path_factory):
+    """A folder with the Makefile and the sources of the checker alone."""
+    home = tmp_path_factory.mktemp("sources")
+    shutil.copy(root / "Makefile", home)
+    shutil.copytree(FOLDER, home / "converse" / "check",
+                    ignore=shutil.ignore_patterns("__pycache__"))
+    return home
 
 
 @pytest.fixture(scope="module")
-def one_file(forms):
-    return forms / "converse_check.py"
+def one_file(sources):
+    return made(sources)
 
 
 @pytest.mark.skipif(sys.version_info < (3, 10), reason="it cannot name its own modules")
@@ -851,39 +858,29 @@ def test_it_imports_nothing_of_the_program(root):
             assert "import_module" not in str(getattr(node, "attr", "")), file
 
 
-def test_every_form_says_the_same(texts, deep, moving, others, maps, forms, run, tmp_path):
-    """Of the same files, good and bad, with numpy and without; word for word.  The zip file, whose
-    modules are the package's as they are, of one of each kind; the referee of proof files what the
-    exact path says."""
+def test_the_one_file_says_the_same(texts, deep, moving, maps, one_file, run, tmp_path):
+    """Of the same files, good and bad, with numpy and without; word for word."""
     bad = with_field(texts["trig274"], "c", "0.617 0.618")
-    tree = tree_of(texts["trig276"])
-    cases = [texts["trig278"], deep, moving["narrow box"], others["a patch"],
-             others["in a frame"], part_of(texts["trig274"]), map_text(maps["b=0"]), bad,
-             sealed(bad), sealed(with_tree(texts["trig276"], tree[:-1])), "junk"]
-    path, statuses, foreign = tmp_path / "some.proof", set(), [cases[6]]
-    few = deep, cases[5], cases[6], sealed(bad), "junk"
+    cases = [deep, part_of(texts["trig274"]), map_text(maps["b=0"]), bad, sealed(bad), "junk",
+             moving["narrow box"]]
+    path, statuses = tmp_path / "some.proof", set()
     for text in cases:
         for isolated, options in (("-I",), ("--jobs", "2")), (("-I", "-S"), ("--exact",)):
             status, out, err = run(text, *options)
             statuses.add(status)
-            forms_of_it = FORMS if text in few else FORMS[1:]
-            for form in (*forms_of_it, *["referee.py"] * (options == ("--exact",)
-                                                          and text not in foreign)):
-                arguments = [path] if form == "referee.py" else [path, *options]
-                done = subprocess.run([sys.executable, *isolated, forms / form, *arguments],
-                                      capture_output=True, text=True, env=PLAIN, cwd=tmp_path)
-                found = done.returncode, done.stdout, done.stderr.replace(str(path), "FILE")
-                # The tests allow the exact path less than it would try.
-                assert found == (status, out, err) or (
-                    status == found[0] == 5 and "limits" in found[2]), form
+            done = subprocess.run([sys.executable, *isolated, one_file, path, *options],
+                                  capture_output=True, text=True, env=PLAIN, cwd=tmp_path)
+            found = done.returncode, done.stdout, done.stderr.replace(str(path), "FILE")
+            # The tests allow the exact path less than it would try.
+            assert found == (status, out, err) or (
+                status == found[0] == 5 and "limits" in found[2])
     assert statuses == {0, 1, 2, 3, 5}
 
 
-@pytest.mark.parametrize("form", FORMS)
-def test_every_form_runs_alone(texts, forms, tmp_path, form):
+def test_the_one_file_runs_alone(texts, one_file, tmp_path):
     """No package about it, none installed; but two processes, a state, and its version."""
-    copy, path = tmp_path / form, tmp_path / "x"
-    copy.write_bytes((forms / form).read_bytes())
+    copy, path = tmp_path / "copy.pyz", tmp_path / "x"
+    copy.write_bytes(one_file.read_bytes())
     path.write_text(texts["trig274"], encoding="utf-8")
     done = subprocess.run([sys.executable, "-I", "-S", copy, path, "--jobs", "2", "--state",
                            tmp_path / "state"], capture_output=True, text=True, cwd=tmp_path)
@@ -891,87 +888,33 @@ def test_every_form_runs_alone(texts, forms, tmp_path, form):
     assert "numpy is not installed" in done.stderr and done.stderr.count("\n") == 1
 
 
-def test_the_referee_takes_a_file(forms, tmp_path):
-    path = tmp_path / "some.proof"
-    for arguments in ((), (path, path), ("--help",)):
-        done = subprocess.run([sys.executable, forms / "referee.py", *arguments],
-                              capture_output=True, text=True)
-        assert done.returncode == 2 and "usage: python referee.py FILE" in done.stderr
-
-
-def test_the_referee_has_all_that_it_needs(forms):
-    """What it leaves out of the modules is mentioned nowhere in the rest; and it is short."""
-    text = (forms / "referee.py").read_text(encoding="utf-8")
-    nodes = list(ast.walk(ast.parse(text)))
-    known = {node.name for node in nodes if isinstance(node, (ast.FunctionDef, ast.ClassDef))}
-    known |= {node.id for node in nodes
-              if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store)}
-    known |= {node.arg for node in nodes if isinstance(node, ast.arg)} | set(dir(builtins))
-    known |= {alias.name.split(".")[0] for node in nodes
-              if isinstance(node, (ast.Import, ast.ImportFrom)) for alias in node.names}
-    known |= {node.name for node in nodes if isinstance(node, ast.ExceptHandler)}
-    assert {node.id for node in nodes if isinstance(node, ast.Name)} <= known
-    assert not {"numpy", "multiprocessing", "json"} & known
-    assert text.count("\n") <= 1700
-
-
-def test_every_form_is_made_the_same_again(forms, tmp_path):
-    subprocess.run([sys.executable, "-I", "-S", ship.__file__, tmp_path], check=True,
-                   stdout=subprocess.DEVNULL)
-    for form in (*FORMS, "referee.py"):
-        assert (forms / form).read_bytes() == (tmp_path / form).read_bytes()
-
-
-@pytest.mark.parametrize("form", ["package", *FORMS])
-def test_a_state_belongs_to_these_very_sources(texts, tmp_path, form):
+@pytest.mark.parametrize("form", ["package", "one file"])
+def test_a_state_belongs_to_these_very_sources(texts, root, tmp_path, form):
     """Of each form; changed anywhere, it is another checker, which begins anew."""
     path, state, home = tmp_path / "x", tmp_path / "state", tmp_path / "home"
     path.write_text(texts["trig276"], encoding="utf-8")
-    shutil.copytree(FOLDER, home / "checker", ignore=shutil.ignore_patterns("__pycache__"))
-    code = "import sys; sys.path.insert(0, sys.argv.pop(1)); from checker import main; " \
+    folder = home / "converse" / "check"
+    shutil.copytree(FOLDER, folder, ignore=shutil.ignore_patterns("__pycache__"))
+    shutil.copy(root / "Makefile", home)
+    code = "import sys; sys.path.insert(0, sys.argv.pop(1)); from check import main; " \
         "sys.exit(main())"
-    command = [sys.executable, "-B", "-c", code, home]
-    if form != "package":
-        command = [sys.executable, home / form]
-
-    def made():
-        if form != "package":
-            subprocess.run([sys.executable, "-B", home / "checker" / "ship.py", home], check=True,
-                           stdout=subprocess.DEVNULL)
 
     def checked():
+        command = [sys.executable, "-B", "-c", code, home / "converse"] if form == "package" \
+            else [sys.executable, made(home)]
         return subprocess.run([*command, path, "--state", state], capture_output=True, text=True,
                               env=PLAIN)
 
-    made()
     assert checked().stdout.startswith("Verified :")
-    made()
     assert "by an earlier run" in checked().stdout.partition("\n")[0]
-    changed = {"package": ("arith", "lockstep"), FORMS[0]: ("arith",), FORMS[1]: ("words",)}
-    for name in changed[form]:
-        file = home / "checker" / (name + ".py")
+    for name in ("arith", "lockstep"):
+        file = folder / (name + ".py")
         original = file.read_text(encoding="utf-8")
         file.write_text(original + "\n\nUNUSED_HERE = 1\n", encoding="utf-8")
-        made()
         done = checked()
         assert (done.returncode, done.stdout) == (2, "") and "another checker" in done.stderr
         file.write_text(original, encoding="utf-8")
-    made()
     assert "by an earlier run" in checked().stdout.partition("\n")[0]
-
-
-@pytest.mark.parametrize("text, why", [
-    ("from .limits import LAG as lag", "only 'from .module import name'"),
-    ("from .. import version", "only 'from .module import name'"),
-    ("from .command import main", "comes after it"), ("ROOT = 1", "names of their own: ROOT"),
-    ("print()", "only imports and defines")])
-def test_what_cannot_be_put_together_is_refused(monkeypatch, text, why):
-    """Rather than put together into something else."""
-    source = ship.source
-    monkeypatch.setattr(ship, "source", lambda name: (
-        source(name) + "\n" + text + "\n" if name == "claim" else source(name)))
-    with pytest.raises(SystemExit, match=re.escape(why)):
-        ship.one_file()
 
 
 def test_help_names_every_status(capsys):

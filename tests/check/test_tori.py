@@ -6,14 +6,12 @@ import hashlib
 import math
 import random
 import re
-import subprocess
-import sys
 from fractions import Fraction
 
 import mpmath
 import pytest
 
-from converse.check import field, series, ship, tori, torus_file
+from converse.check import field, series, tori, torus_file
 
 from checker import check
 
@@ -1092,19 +1090,3 @@ def test_a_delayed_function_is_within_its_radius(is_real):
         exact = mp.mpc(x[at], y[at] if y else 0) * mp.expj(-k * w)
         off += abs(exact - mp.mpc(re[at], im[at])) * (mp.mpf(9) / 8) ** abs(k)
     assert 0 < off <= mp.mpf(found.radius - 12345) / 2 ** series.FINE
-
-
-# ---- other forms of the checker
-
-def test_the_forms_that_are_shipped_verify_it_too(tmp_path, run):
-    _, out, _ = run(sealed(BODY))
-    ship.main(str(tmp_path))
-    (tmp_path / "x").write_text(sealed(BODY))
-    for form in ("converse_check.py", "converse-check.pyz"):
-        done = subprocess.run([sys.executable, "-I", "-S", tmp_path / form, tmp_path / "x"],
-                              capture_output=True, text=True)
-        assert (done.returncode, done.stdout, done.stderr) == (0, out, "")
-    done = subprocess.run([sys.executable, "-I", "-S", tmp_path / "referee.py", tmp_path / "x"],
-                          capture_output=True, text=True)
-    assert (done.returncode, done.stdout) == (2, "") and done.stderr.count("\n") == 1
-    assert "is a map or a certificate of existence, which converse-check verifies" in done.stderr

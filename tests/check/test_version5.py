@@ -1,6 +1,6 @@
 """Version 5 of the proof file: parts whose regions move with the parameters.  What is right is
-confirmed, and what is wrong in any one place is not, by both paths of the checker and by the
-referee; and orbits are where the checker says."""
+confirmed, and what is wrong in any one place is not, by both paths of the checker; and orbits are
+where the checker says."""
 
 import contextlib
 import dataclasses

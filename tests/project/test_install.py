@@ -65,17 +65,9 @@ def test_make_checker_needs_nothing_but_python(root, tmp_path):
     subprocess.run(["make", "checker", "PYTHON=%s -I -S" % sys.executable], cwd=tmp_path,
                    check=True,
                    stdout=subprocess.DEVNULL)
-    forms = sorted((tmp_path / "build").iterdir())
-    assert [form.name for form in forms] == ["converse-check.pyz", "converse_check.py",
-                                             "referee.py"]
-    for form in forms:
-        result = subprocess.run([sys.executable, "-I", "-S", form, "--help"],
-                                capture_output=True, text=True, cwd=tmp_path / "build")
-        if form.name == "referee.py":           # it knows of nothing but a file
-            assert result.returncode == 2 and "usage: python referee.py FILE" in result.stderr
-        else:
-            assert (result.returncode, result.stderr) == (0, "")
-            assert "converse-check" in result.stdout
+    result = subprocess.run([sys.executable, "-I", "-S", "converse-check.pyz", "--help"],
+                            capture_output=True, text=True, cwd=tmp_path / "build")
+    assert (result.returncode, result.stderr) == (0, "") and "converse-check" in result.stdout
 
 
 WITHOUT_CORE = """
