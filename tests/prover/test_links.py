@@ -316,27 +316,29 @@ def test_a_smaller_region_is_not_verified(linked):
 @pytest.mark.parametrize("jobs, moments, found", [
     (1, (1, 2, 5, 8, 11), {(0, 0), (0, 1), (2, 0), (2, 1), (2, 2)}),
     (3, (2, 8), {(0, 1), (2, 1)})])
-def test_resumed_at_any_moment(linked, easily, tmp_path, jobs, moments, found):
+def test_resumed_at_any_moment(linked, easily, tmp_path, monkeypatch, jobs, moments, found):
     """Whenever it is interrupted, the proof is the same: before the tree, before the parts are
     found, and when none, one or two of these are proved."""
     path = tmp_path / "backup"
 
-    def interrupts(*_):
+    def interrupts(self):
         calls.append(1)
         if len(calls) == moment:
             raise KeyboardInterrupt
+        look(self)
 
-    states = set()
+    states, look = set(), run._Run._look
+    monkeypatch.setattr(run._Run, "_look", interrupts)
     for moment in moments:
         calls = []
         path.unlink(missing_ok=True)
         try:
-            proof = prove(line("0.015"), method="loewner", backup=path, jobs=jobs,
-                          progress=interrupts)
+            proof = prove(line("0.015"), method="loewner", backup=path, jobs=jobs)
         except KeyboardInterrupt:
             before = Proof.load(path)
             trees = [part.tree for part in before.parts] or [before.tree]
             states.add((len(before.parts), sum(map(bool, trees))))
+            moment = 0
             proof = prove(resume=path, jobs=jobs)
         assert timeless(replace(proof, restored=0, sha256="")) == timeless(linked)
         assert timeless(replace(Proof.load(path), restored=0, sha256="")) == timeless(linked)
