@@ -795,3 +795,11 @@ Proof.
   destruct (none t cube x O start inside) as [n [s [k [Z neg]]]].
   specialize (least n s k Z); lra.
 Qed.
+
+(* The two statements of Map.v exclude each other. *)
+Theorem none_or_one ws : no_invariant_graph ws <-> ~ has_invariant_graph ws.
+Proof.
+  split.
+  - intros none (c & S & S' & period & gradient & invariant); exact (none c S S' period gradient invariant).
+  - intros none c S S' period gradient invariant; apply none; now exists c, S, S'.
+Qed.

@@ -121,6 +121,10 @@ Definition invariant_graph (ws : list wave) (c : vec) (S' : vec -> vec) : Prop :
 Definition no_invariant_graph (ws : list wave) : Prop :=
   forall c S S', periodic S -> has_gradient S S' -> ~ invariant_graph ws c S'.
 
+(* The opposite. *)
+Definition has_invariant_graph (ws : list wave) : Prop :=
+  exists c S S', periodic S /\ has_gradient S S' /\ invariant_graph ws c S'.
+
 (* None whose orbit leads from x to the region. *)
 Definition no_invariant_graph_into (r : region) (ws : list wave) (x : vec) : Prop :=
   forall c S S', periodic S -> has_gradient S S' -> invariant_graph ws c S' ->
