@@ -174,6 +174,48 @@ def test_no_torus(proof, folder):
     assert err.endswith(" with Integers: trig180.trig180 : trig180_says.trig180_says\n")
 
 
+# Of the standard map with the parameter 0.1: sine coefficients of u0 in units of 2^-64.
+SINES = [-530926405919999403, 14564366147133731, -1172480179637604, 17704148907037, -6233377838905,
+         141275608745, -4627202103, 4441242788, -62899253, 6151008, -366845, 9769, -28836, 482]
+
+
+@needs_coq
+def test_certificates_of_existence(folder):
+    """One of them holds; it does not with an integer altered, nor for another sign or amplitude."""
+    altered = [*SINES[:3], SINES[3] + 10 ** 5, *SINES[4:]]
+    (folder / "build" / "certificates.v").write_text(
+        "From Coq Require Import ZArith List.\nFrom Converse Require Exists.\n"
+        "Import ListNotations.\n" + "".join(
+            "Goal Exists.holds (Exists.Certificate 5 4 (%d) %d %s%%Z (2 ^ 64) 60 10) = %s.\n"
+            "Proof. vm_compute. reflexivity. Qed.\n" % (sign, over, str(sines).replace(",", ";"),
+                                                       holds)
+            for sines, sign, over, holds in [
+                (SINES, 1, 10, "true"), (altered, 1, 10, "false"), (SINES, -1, 10, "false"),
+                (SINES, 1, 9, "false")]))
+    assert compiled(folder, "build/certificates.v") == (True, "")
+
+
+@needs_coq
+@pytest.mark.slow
+def test_golden(folder):
+    """It says what it says in Map.v's words alone; no other potential, and no other certificate."""
+    says, golden = ((FORMAL / name).read_text() for name in ("golden_says.v", "golden.v"))
+    assert re.findall("Converse.* Import (.*)", says) == ["Map."]
+    assert re.findall("Converse.* Import (.*)", golden) == ["golden_says."]
+    (folder / "build" / "golden_says.v").write_text(says.replace(" 0.5]", " (-0.5)]"))
+    assert compiled(folder, "build/golden_says.v") == (True, "")
+    first = re.search(r"\[(-\d+);", golden)[1]
+    for wanted, file, text in [
+            ('expected to have type "golden_says"', "other",
+             golden.replace("Converse Require Import", "Converse.build Require Import")),
+            ('"Exists.holds certificate = true"', "altered",
+             golden.replace(first, str(int(first) + 10 ** 9)))]:
+        assert text != golden
+        (folder / "build" / (file + ".v")).write_text(text)
+        accepted, said = compiled(folder, "build/%s.v" % file)
+        assert not accepted and wanted in " ".join(said.split()), said
+
+
 @needs_coq
 def test_what_links_two_points_of_a_graph(folder):
     """It is true of every invariant graph of Map.v, and assumes no more than the reals."""
