@@ -28,7 +28,7 @@ REGIONS = {"b=0": (((1, 0, 0), (0, 0, 1)), ((0, 0, 1), (1, 0, 0))),
            "a=b": (((1, 1, 0), (0, 0, 1)), ((0, 0, 1), (1, 1, 0))),
            "c=0": (((1, 0, 0), (0, 1, 0)),),
            "sphere": (((1, 0, 0), (0, 1, 0), (0, 0, 1)), ((0, 0, 1), (1, 0, 0), (0, 1, 0)))}
-MAP_FORMAT = "converse map "            # and the version, 1 or 2
+MAP_FORMAT = "converse map 2"
 MAP_AXES, MAP_KINDS = "012", "PAOX"     # of the tree of a face: cuts of r, s, t; leaves
 GRID, MAP_CELLS = (16, 8), 2000         # slices of s, or of s and t; cells of the torus for B
 
@@ -149,10 +149,8 @@ def strict_json(data):
 def read_map(data):
     """The map; every patch of its own is whole, and nothing in it is of unknown meaning."""
     content = strict_json(data)
-    version = isinstance(content, dict) and {MAP_FORMAT + "1": 1, MAP_FORMAT + "2": 2}.get(
-        str(content.get("format")))
-    if not version:
-        raise Unusable("is not a map of a version that this checker knows, converse map 1 and 2")
+    if not isinstance(content, dict) or content.get("format") != MAP_FORMAT:
+        raise Unusable("is not a map of the version that this checker knows, " + MAP_FORMAT)
     _, _, region, down_to, faces, sha256 = fields_of(
         content, "the map", "seconds", format=str, program=str, region=str, down_to=str, faces=list,
         sha256=str)
@@ -172,7 +170,7 @@ def read_map(data):
     whole, claims, file = [], [], hashlib.sha256(data).hexdigest()
     for at, face in enumerate(faces, 1):
         with named("face %d" % at):
-            whole.append(read_face(face, claims, version, at, file))
+            whole.append(read_face(face, claims, at, file))
     if sorted(face.directions for face in whole) != sorted(REGIONS[region]):
         raise Rejected("the faces are not those of the region")
     found = Map(region, tuple(whole), tuple(claims), file)
@@ -181,7 +179,7 @@ def read_map(data):
     return found
 
 
-def read_face(face, claims, version, at, sha256):
+def read_face(face, claims, at, sha256):
     """A face of a map; adds the claims of its proved cells."""
     directions, radius, tree, proofs = fields_of(face, "it", "tried", "estimate", directions=list,
                                                  radius=str, tree=str, proofs=list)
@@ -200,25 +198,24 @@ def read_face(face, claims, version, at, sha256):
             if (proof := next(proofs, None)) is None:
                 raise Rejected("it has fewer proofs than proved cells")
             with named("cell %d" % len(cells)):
-                claims.append(read_cell(proof, Face(directions, radius, ()).waves(cell), version,
+                claims.append(read_cell(proof, Face(directions, radius, ()).waves(cell),
                                         "face %d, cell %d" % (at, len(cells)), sha256))
     if next(proofs, None) is not None:
         raise Rejected("it has more proofs than proved cells")
     return Face(directions, radius, tuple(cells))
 
 
-def read_cell(proof, waves, version, name, sha256):
-    """The claim of a proved cell.  In version 1 its region is all of the torus."""
+def read_cell(proof, waves, name, sha256):
+    """The claim of a proved cell."""
     xstar, frame, alone, tree, *ranges = fields_of(
         proof, "its proof", xstar=list, frame=list, alone=str, tree=str,
-        **dict.fromkeys(ANGLES if version > 1 else (), list))
+        **dict.fromkeys(ANGLES, list))
     xstar, *ranges = [tuple(number(x, key) for x in list_of(pair, 2, str, key))
                       for key, pair in zip(("x*", *ANGLES), (xstar, *ranges))]
-    centre, half = zip(*ranges or [(Fraction(1), Fraction(1))] * 2)
+    centre, half = zip(*ranges)
     if min(half) < 0:
         raise Rejected("a half-width is negative")
-    frame = check_frame([str(x) for x in list_of(frame, 4, int, "the frame")], "the frame",
-                        version < 2)
+    frame = check_frame([str(x) for x in list_of(frame, 4, int, "the frame")], "the frame", False)
     if alone not in ("no", "0", "1"):
         raise Rejected("alone is neither no nor 0 nor 1")
     alone = None if alone == "no" else int(alone)

@@ -14,8 +14,7 @@ from ..storage.files import ConverseError
 from ..version import __version__
 from .region import RADIUS, REGIONS, Cell, root
 
-FORMAT, OLD_FORMAT = "converse map 2", "converse map 1"
-TORUS = {"v0": ["1", "1"], "v1": ["1", "1"]}     # the region of all proofs of the old format
+FORMAT = "converse map 2"
 PROVED, AT_ONCE, OPEN, OUTSIDE = "PAOX"
 ESTIMATE_GRID = {1: 32, 2: 8}       # intervals of a side, by sides: of a plane, of the sphere
 
@@ -253,12 +252,9 @@ class Map:
             digest = data.pop("sha256")
             if digest != _digest(data):
                 raise ValueError("it was changed or damaged")
-            if data["format"] not in (FORMAT, OLD_FORMAT):
+            if data["format"] != FORMAT:
                 raise ValueError("its format, %s, is of another version of the program"
                                  % data["format"])
-            for proof in (proof for face in data["faces"] for proof in face["proofs"]
-                          if data["format"] == OLD_FORMAT):
-                proof.update(TORUS)
             made = cls.new(data["region"], exact(data["down to"]))
             made.seconds = float(data["seconds"])
             made.sha256 = files.sha256(text)

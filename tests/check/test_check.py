@@ -2797,7 +2797,8 @@ def map_text(content):
 
 
 def proof_of(xstar, tree="P", alone="no", frame=(1, 0, 0, 1)):
-    return {"xstar": list(xstar), "frame": list(frame), "alone": alone, "tree": tree}
+    return {"xstar": list(xstar), "frame": list(frame), "alone": alone, "tree": tree,
+            "v0": ["1", "1"], "v1": ["1", "1"]}
 
 
 def face_of(directions, radius, tree, *proofs):
@@ -2811,7 +2812,7 @@ def maps():
     right, diagonal = (HALF_PI, HALF_PI), ("0.7854", "0.7854")
 
     def whole(region, *faces):
-        return {"format": "converse map 1", "program": "by hand", "region": region,
+        return {"format": "converse map 2", "program": "by hand", "region": region,
                 "down to": "1.05", "faces": [face_of(d, *more) for d, more in zip(
                     check.REGIONS[region], faces)]}
     return {
@@ -2884,7 +2885,7 @@ def path_of(content, *path):
     (("faces", 0, "proofs", 0, "tree"), "0SP", 1, "rejected: face 1: cell 2: symmetric leaf 1 of"),
     (("faces", 0, "proofs", 0, "alone"), "0", 1, "both"),
     (("faces", 0, "proofs", 0, "alone"), None, 1, "type"),
-    (("faces", 0, "proofs", 0, "frame"), [1, 0, 0, 2], 1, "determinant"),
+    (("faces", 0, "proofs", 0, "frame"), [1, 0, 0, 0], 1, "determinant"),
     (("faces", 0, "proofs", 0, "frame"), [1, 0, 0, True], 1, "a list of 4"),
     (("faces", 0, "proofs", 0, "frame"), [1, 0, 0, 1.0], 1, "a list of 4"),
     (("faces", 0, "proofs", 0, "xstar"), ["0", "0"], 5, "not excluded"),
