@@ -34,9 +34,6 @@ def __getattr__(name):
     """Imports what is asked for when it is asked for: the checker must run without the C core."""
     if name in _HOMES:
         return getattr(importlib.import_module("." + _HOMES[name], __name__), name)
-    if name == "kernels":
-        raise AttributeError("converse.kernels is no longer part of the package; the sources have "
-                             "it, as tests/kernels")
     raise AttributeError("module 'converse' has no attribute %r" % name)
 
 

@@ -3,7 +3,6 @@
 import argparse
 import concurrent.futures
 import io
-import json
 import math
 import os
 import random
@@ -13,7 +12,6 @@ import sys
 from ..draw import plot
 from ..draw.figure import format_of
 from ..model.exact import exact
-from ..model.problem import InputError
 from ..storage import files
 from ..storage.files import ConverseError, plain
 from ..version import __version__
@@ -122,26 +120,7 @@ def read_potential(source, at=()):
     if not os.path.exists(source):
         raise ConverseError("'%s' is no potential and no file; there are %s, or a JSON file of "
                             "harmonics (docs/format.md)" % (source, ", ".join(POTENTIALS)))
-    try:
-        return orbits.read_potential(source, dict(at))
-    except InputError as error:
-        raise ConverseError(_old_term(source) or str(error)) from None
-
-
-def _old_term(path):
-    """What to say of a file with lines 'k0 k1 cosine sine', as they were up to release 1.6; None if
-    it is not such a file."""
-    for _, line in _lines(path):
-        *k, cosine, sine = line.split() if len(line.split()) in (3, 4) else ("", "", "")
-        try:
-            list(map(int, k)), exact(cosine), exact(sine)
-        except ValueError:
-            return None
-        harmonics = [{"k": list(map(int, k)), "amplitude": number, "phase": phase}
-                     for number, phase in ((cosine, "-1/2"), (sine, "1")) if number.strip("0.")]
-        return ("%s: lines 'k0 k1 cosine sine' are not read any more; the first one is now %s, and "
-                "eps 4 pi^2 times as large (docs/orbits.md)" % (
-                    path, json.dumps({"harmonics": harmonics})))
+    return orbits.read_potential(source, dict(at))
 
 
 def _check_type(potential, vector):
