@@ -109,16 +109,16 @@ def draw(rows):
                 mine = [row for row in rows if row[:2] == (eps, name)]
                 seconds, shadow, far = ([row[k] for row in mine] for k in (3, 4, 5))
                 axes.plot(seconds, far, marker + "-", color=colour, markersize=4, linewidth=0.9,
-                          label=name + ": distance")
+                          label=name)
                 axes.plot(seconds, shadow, marker + ":", color=colour, markersize=4, linewidth=0.9,
-                          markerfacecolor="white", label="its shadow")
+                          markerfacecolor="white")
             axes.set(xscale="log", yscale="log", ylim=(1e-17, 30), xlabel="time (seconds)",
                      title="ε = %g" % eps)
             axes.grid(color="0.93", linewidth=0.6)
             if any(row[1] == "Newton" and row[5] > 1 for row in rows if row[0] == eps):
                 axes.text(0.45, 0.93, "Newton's method diverges", color="0.35",
                           transform=axes.transAxes)
-        figure.axes[0].set_ylabel("distance to the proved orbit; shadow")
+        figure.axes[0].set_ylabel("filled: distance to the proved orbit\nopen: shadow")
         figure.legend(*figure.axes[0].get_legend_handles_labels(), loc="upper center", ncol=3)
         figure.subplots_adjust(wspace=0.06, top=0.82)
         return plot.encode(figure, "svg")
