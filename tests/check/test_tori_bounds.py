@@ -250,6 +250,23 @@ def test_a_pair_of_modes_that_is_lost_counts(seed):
         assert 1 <= off <= found.radius / unit_of(ring) * (1 + ROUGH)
 
 
+@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("powers", [(1, 2), (2, 1), (2, 2)])
+def test_a_pair_of_powers_of_s_that_is_lost_counts(seed, powers):
+    """The degree is 2; the product belongs to s^3 or s^4."""
+    rng = random.Random(seed)
+    ring, measure = random_ring(rng, 1 + seed % 2, 2, 4, 30)
+    reach, places = reach_of(ring), list(ring.box.modes())
+    for pair in [(ring.box.centre, ring.box.centre), (rng.randrange(len(places)),) * 2]:
+        f, g = [ring.series(1, 1, [([ring.one * (at == 3 * group + j)
+                                     for at in range(ring.box.count)], None)])
+                for group, j in zip(pair, powers)]
+        found = ring.multiply(f, g)
+        x, y = [array_of(h, ring, reach, 2) for h in (f, g)]
+        off = measure.of(product(x, y) - padded(array_of(found, ring, reach, 2), 2 * reach, 4))
+        assert 1 <= off <= found.radius / unit_of(ring) * (1 + ROUGH)
+
+
 @pytest.mark.parametrize("rows", [1, 2])
 @pytest.mark.parametrize("is_real", [True, False])
 def test_coefficients_of_a_product_have_room(rows, is_real):
@@ -829,3 +846,20 @@ def test_records_are_those_of_all_modes(seed):
         for length, size in exact:
             assert size * 0.9 < bounds[length] <= size * (1 + ROUGH)
     assert met
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_constants_after_a_change_are_those_of_the_page(seed):
+    """(12), each to 20 digits; and none where a denominator is 0 or less."""
+    rng = random.Random(seed)
+    l0, m0, a0, b0, p0 = [Fraction(rng.randint(64, 128), 64) for _ in range(5)]
+    t = Fraction(rng.randint(1, 9), 1000)
+    change = (2 * l0 + t) * t
+    da = a0 * a0 * change / (1 - a0 * change)
+    exact = (l0 + t, m0 / (1 - m0 * t), a0 / (1 - a0 * change), b0 / (1 - b0 * da), p0 + da)
+    found = tori.Constants(l0, m0, a0, b0, p0)
+    for name, x in zip(CONSTANTS, exact):
+        assert x <= getattr(found.after(t), name) <= x * (1 + Fraction(1, 10 ** 20))
+    for name in "mab":                  # with one constant large there is no inverse
+        large = {key: getattr(found, key) * (100 if key == name else 1) for key in CONSTANTS}
+        assert tori.Constants(**large).after(Fraction(1, 50)) is None
