@@ -6,7 +6,17 @@ GAMMA = ("the map is affine in the parameters: on a path that changes them first
 BOTH_ROWS = "the sum over both rows is more than the larger row, which would do"
 UNIT = "a second belt: one of the vectors n is a unit vector"
 
+SPECTRAL = ("the squares are integers: if less than one is lost of a square x, isqrt(x) + 1 is "
+            "still above its root")
+FLOOR = ("the floor loses a unit of 2^-(bits + 64); the rounding of the same product is counted "
+         "with more than 2^63 units too many: 1 + e, where e complex entries need (2 e)^(1/2)")
+
 ACCEPTED = {
+    "check/series.py:_beyond term 1": FLOOR,
+    "check/series.py:multiply term 1": FLOOR,
+    "check/series.py:product_of_norms term 1": FLOOR,
+    "check/series.py:sizes term 5": SPECTRAL,
+    "check/series.py:sizes term 12": SPECTRAL,
     "arith/special.c:apm_pi drop 9":
         "without it pi is right unless fifteen digits of it coincide with nines or zeros",
     "loewner/bound.c:bound_with drop 14": UNIT,
