@@ -13,12 +13,13 @@ from .limits import INTERRUPTED, NOT_CONFIRMED, PART, REJECTED, SPOT_CHECK, UNUS
 from .maps import Map
 from .proof_file import load
 from .run import Result, read, verify
-from .torus_file import TorusClaim
+from .tori import Verified, verify_torus
+from .torus_file import TorusClaim, read_torus
 from .tree import check_tree
 from .version import __version__
 from .words import decimal_text
 
 __all__ = ["Failure", "INTERRUPTED", "Map", "NOT_CONFIRMED", "NotConfirmed", "PART", "REJECTED",
            "Rejected", "Result", "SPOT_CHECK", "TorusClaim", "UNUSABLE", "Unusable", "VERIFIED",
-           "__version__", "check_tree", "decimal_text", "load", "main", "parser", "read", "shown",
-           "verify"]
+           "Verified", "__version__", "check_tree", "decimal_text", "load", "main", "parser",
+           "read", "read_torus", "shown", "verify", "verify_torus"]

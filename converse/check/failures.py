@@ -17,7 +17,12 @@ class Rejected(Failure):
 
 
 class NotConfirmed(Failure):
-    """The checker has reached a limit of its own: what the file claims may be true or false."""
+    """The checker has reached a limit of its own: what the file claims may be true or false.
+
+    residual, needed: of a torus, if it is not accurate enough.
+    """
+
+    residual = needed = None
 
     status, word = NOT_CONFIRMED, "not confirmed: "
 
@@ -39,9 +44,9 @@ def named(name):
     try:
         yield
     except Failure as error:
-        if not name:
-            raise
-        raise type(error)("%s: %s" % (name, error)) from None
+        if name:
+            error.args = "%s: %s" % (name, error),
+        raise
 
 
 def shown(text):

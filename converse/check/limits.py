@@ -18,5 +18,6 @@ MAX_CELLS = 1 << 15                     # of the torus, about, when B is bounded
 MAX_DIVISORS = 1 << 21                 # of a rotation, computed one by one
 MAX_MODES, MAX_MODE = 1 << 21, 1 << 21  # of a torus; |k0| and |k1|
 MAX_ALPHA, MAX_LENGTH = 1000, 1 << 21    # of the weights of modes; of a mode with these
+MAX_WIDTH = 200                         # of the strip of a torus, times its longest mode
 MAX_TERMS, MAX_DIGITS = 1 << 24, 1 << 29     # of a series; of all its coefficients
 MAX_GRID = 1 << 20                      # of the points on which L is inverted in doubles

@@ -28,11 +28,13 @@ VERDICTS = {VERIFIED: "verified", PART: "verified in part", SPOT_CHECK: "spot ch
 @dataclass(frozen=True)
 class Result:
     """What came of a check in which nothing failed: true only if the whole claim is verified and
-    its region is the whole torus, or all that a map says is proved.  (All else is an exception.)"""
+    its region is the whole torus, or all that a map says is proved.  (All else is an exception.)
+    """
 
     status: int                         # VERIFIED, PART or SPOT_CHECK: the exit status, too
     verdict: str                        # "verified", "verified in part" or "spot check"
     text: str                           # the report
+    facts: tuple = ()                   # of a certificate of existence: of each piece a Verified
 
     def __bool__(self):
         return self.status == VERIFIED
@@ -53,7 +55,8 @@ def verify(path, jobs=1, sample=None, state=None, bar=False, exact=False):
 
     jobs: processes.  sample: so many leaves only, chosen by chance: a spot check.
     state: a file that remembers what was confirmed, so that an interrupted check can go on; it
-    is kept in the end.  (A certificate of existence is verified whole, by one process.)  bar: show
+    is kept in the end.  (A certificate of existence is verified whole: its pieces by jobs
+    processes.)  bar: show
     the progress on stderr.  exact: in integers alone, as where
     there is no numpy.
     """
@@ -67,8 +70,8 @@ def verify(path, jobs=1, sample=None, state=None, bar=False, exact=False):
             raise Unusable("a certificate of existence is verified as a whole: no --sample, no "
                            "--state")
         with Bar((file,) if bar else (), 1) as progress:
-            lines = verify_torus(file, progress.tell)
-        return Result(VERIFIED, "verified", "\n".join([*lines, "SHA-256 : " + file.sha256]))
+            lines, facts = verify_torus(file, progress.tell, jobs)
+        return Result(VERIFIED, "verified", "\n".join([*lines, "SHA-256 : " + file.sha256]), facts)
     if isinstance(file, Map):
         problems = Problems(file.claims, check_map(file))
     else:

@@ -5,6 +5,8 @@ judges, and how many modes and bits are used.  No bound rests on them.
 """
 
 import cmath
+import contextlib
+import functools
 import itertools
 import math
 import operator
@@ -12,11 +14,13 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from .arith import GUARD, fixed_of
-from .failures import NotConfirmed, Rejected, named
+from .failures import NotConfirmed, Rejected, Unusable, named
 from .field import (E_LOW, Divisors, Field, Norm, combination, exponential_above, identity,
                     rounded_down, rounded_up, upper_root)
-from .limits import MAX_BITS, MAX_GRID, MAX_LENGTH
+from .limits import MAX_BITS, MAX_GRID, MAX_LENGTH, MAX_WIDTH
+from .processes import ProcessDied, in_order
 from .series import FINE, Box, Ring, conjugate, greatest, opposite, powers_of, turn
+from .signals import undisturbed
 from .version import __version__
 from .words import decimal_text
 
@@ -189,7 +193,7 @@ class Torus:
     """The approximate torus of one piece, shifted by quarter turns such that its coefficients are
     imaginary, if that is possible, and what is needed to verify it."""
 
-    def __init__(self, setting, piece, is_odd, is_trimmed):
+    def __init__(self, setting, piece, is_odd):
         claim, norm = setting.claim, setting.norm
         self.norm, self.divisors, self.field = norm, setting.divisors, setting.field
         self.n, self.degree, self.bits = claim.dimension, piece.degree, piece.bits
@@ -224,36 +228,11 @@ class Torus:
         if sum([size for _, size, _ in sizes]) >> self.bits > 100:
             raise NotConfirmed(FAR)
         self.farthest = max([length for length, _, _ in sizes], default=1)
-        # Of each length the sums of |u_k| and |u_k| |k|, and the largest |u_k|.
-        self.sums, self.slopes, self.tops = [[0] * (self.farthest + 1) for _ in range(3)]
+        # Of each length the sums of |u_k| and |u_k| |k|.
+        self.sums, self.slopes = [[0] * (self.farthest + 1) for _ in range(2)]
         for length, size, width in sizes:
             self.sums[length] += size
             self.slopes[length] += size * width
-            self.tops[length] = max(self.tops[length], size)
-        self.has_noise = (knee := self.knee()) < self.farthest
-        if is_trimmed:
-            self.dropped += Fraction(2 * sum(self.sums[knee + 1:]), 1 << self.bits)
-            self.modes = {k: series for k, series in self.modes.items() if norm(k) <= knee}
-            self.sums, self.slopes, self.tops = [
-                x[:knee + 1] for x in (self.sums, self.slopes, self.tops)]
-            self.farthest = knee
-
-    def knee(self):
-        """Where the decay of the coefficients ends, as it seems, and noise begins: the file's
-        torus without it may be the better one."""
-        width = self.farthest // 32 + 1
-        sums = [0] * (self.farthest // width + 1)
-        for length, size in enumerate(self.sums):
-            sums[length // width] += size
-        logs = [math.log(x) for x in sums if x]
-        last = len(logs) - 1
-        if last < 8 or len(logs) < len(sums):
-            return self.farthest
-        # Where the curve is farthest below its chord.
-        at = max(range(1, last), key=lambda i: (logs[last] - logs[0]) * i / last - logs[i])
-        if (logs[0] - logs[at]) / at < 4 * (logs[at] - logs[last]) / (last - at):
-            return self.farthest
-        return (at + 1) * width
 
     def error_at_a_point(self):
         """About |E(u)| at some angles and s: more than that, its norm cannot be less."""
@@ -274,14 +253,6 @@ class Torus:
                 angle + math.pi * float(phase % 2))
             difference = [x - force * y for x, y in zip(difference, k)]
         return math.hypot(*difference)
-
-    def rate(self):
-        """About how fast the coefficients decay: |u_k| ~ e^(-rate |k|)."""
-        points = [(length, math.log(size)) for length, size in enumerate(self.tops) if size > 1]
-        top = max([y for _, y in points], default=0)
-        # the least slope of all lines from the top that lie above the points beyond e^-7
-        slopes = [(top - y) / length for length, y in points if y < top - 7]
-        return min([4.0, *slopes])
 
     def outside(self, powers, limit):
         """The sum of |u_k| sigma^|k| over |k| > limit, in units of 2^-(bits + FINE)."""
@@ -366,10 +337,10 @@ def shifted(x, bits):
 # ---- the constants (T6)
 
 def find_constants(torus, sigma, powers):
-    """Constants of the whole torus, or why there are none."""
+    """Constants of the whole torus; or NotConfirmed is raised."""
     l0 = rounded_up(1 + torus.derivative_outside(powers, 0))
     if l0 > 1000:
-        return FAR
+        raise NotConfirmed(FAR)
     near, found = 1, None
     while torus.derivative_outside(powers, near) > Fraction(1, 1000):
         near = near * 9 // 8 + 1
@@ -381,7 +352,7 @@ def find_constants(torus, sigma, powers):
             break
         near = near * 4 // 3 + 1
     if not found:
-        return "no approximate inverse is near enough"
+        raise NotConfirmed("no approximate inverse is near enough")
     m, _, a, b, p = found
     return Constants(l0, *map(rounded_up, (m, a, b, p)))
 
@@ -618,14 +589,17 @@ class Residual:
 
 @dataclass(frozen=True)
 class Verified:
-    """What was found of a piece."""
+    """What was found of a piece: the facts of which the report is made."""
 
-    residual: Fraction
-    needed: Fraction
+    residual: Fraction                  # ||E(u)|| is at most this,
+    needed: Fraction                    # and at most this would have done
     distance: Fraction                  # of the torus from that of the file, at real angles
-    rho: Fraction                       # of the strip
-    modes: int
+    rho: Fraction                       # the width of the strip, of |k| with integer weights
+    constants: Constants
+    modes: int                          # of the series, whose coefficients have so many bits
     bits: int
+    gamma: Fraction                     # |1 - e^(i k.w)| >= gamma |k|^-n for k != 0
+    basis: tuple                        # of the group of these k
 
 
 class Setting:
@@ -650,85 +624,64 @@ class Setting:
         self.divisors = Divisors(self.field, claim.rotation, self.norm)
 
 
-def verify_piece(setting, piece, tell):
+def verify_piece(setting, tell, number):
     """Verified; or NotConfirmed is raised."""
-    why = ""
-    _, real, imaginary = quarter_turns(piece, setting.claim.dimension)
-    kinds = [True] * (real << 16 <= imaginary) + [False] * (real > 0)
-    for is_odd, is_trimmed in itertools.product(kinds, (True, False)):
-        torus = Torus(setting, piece, is_odd, is_trimmed)
-        if is_trimmed and not torus.has_noise:
-            continue
-        for rho in widths(torus, setting.claim.rho / setting.scale):
-            found = verify_width(torus, rho, tell)
-            if isinstance(found, Verified):
-                return found
-            why = found
-    raise NotConfirmed(why)
+    claim, count = setting.claim, len(setting.claim.pieces)
+    piece, width = claim.pieces[number], claim.rho[number] / setting.scale
+    name = "piece %d of %d" % (number + 1, count) if count > 1 else ""
+    _, real, imaginary = quarter_turns(piece, claim.dimension)
+
+    def told(text):
+        tell("%s: %s" % (name, text) if name else text)
+
+    with named(name):
+        if real << 16 <= imaginary:
+            with contextlib.suppress(*[NotConfirmed] * bool(real)):
+                return verify_width(Torus(setting, piece, True), width, told)
+        return verify_width(Torus(setting, piece, False), width, told)
 
 
-def widths(torus, hint):
-    """Widths of the strip to try: first the one in which about the fewest modes are needed."""
-    largest, rate = torus.farthest, torus.rate()
-    sums = [2 * in_double(x, torus.bits) for x in torus.sums]
-    slopes = [2 * in_double(x, torus.bits + 32) for x in torus.slopes]
+def too_large(residual, needed):
+    """NotConfirmed: this residual is more than what is needed."""
+    error = NotConfirmed("the error of the torus is %s, where less than %s is needed" % (
+        scientific(residual), scientific(needed)))
+    error.residual, error.needed = residual, needed
+    return error
 
-    def modes(rho):
-        """How far the modes reach, about; more than the file's, if these are too few."""
-        powers = [math.exp(rho * length) for length in range(largest + 1)]
-        slope = Fraction(1 + sum(map(float.__mul__, slopes, powers)))
-        height = sum(map(float.__mul__, sums, powers))
-        if slope > 100 or height * max([math.hypot(*k) for k, *_ in torus.waves], default=0) > 100 \
-                or rho * max([torus.norm(k) for k, *_ in torus.waves], default=0) > 200:
-            return math.inf
-        waves = [(abs(middle) + abs(part), upper_root(sum([x * x for x in k])),
-                  Fraction(math.exp(rho * torus.norm(k) + math.hypot(*k) * height)))
-                 for k, _, middle, part in torus.waves]
-        rough = Constants(slope, slope, slope * upper_root(slope), Fraction(1), Fraction(1, 10))
-        needed = float(allowed(rough, waves, Fraction(rho), torus.norm.kappa, torus.divisors,
-                               0, SHARES_OF_LOSS[2:3], CHANGES[4:5])[0])
-        if not needed:
-            return math.inf
-        total = 0.0
-        for length in range(largest, 0, -1):
-            total += sums[length] * powers[length]
-            if total > needed / 1000:
-                return length + (math.log(1000 * total / needed) / rate
-                                 if length == largest else 0)
-        return 1
 
-    choice = [rate * 0.8 ** at for at in range(1, 40) if rate * 0.8 ** at * largest < 200]
-    best = min(choice, key=modes, default=rate / 10)
-    other = hint if 0 < hint < min(rate, 200 / largest) else min(best * 1.3, 250 / largest)
-    return [best, float(other), best / 1.5]
+def bounds_of_waves(torus, sigma, rho, powers):
+    """Of each wave (|p|, |k|, an upper bound of ||e^(i k.x)||)."""
+    found = []
+    for k, _, middle, part in torus.waves:
+        length = upper_root(sum([x * x for x in k]))
+        if rho * torus.norm(k) > 300:
+            raise NotConfirmed("the strip is too wide for the fastest wave")
+        exponent = rounded_up(length * Fraction(torus.outside(powers, 0), 1 << torus.bits + FINE))
+        if exponent > 100:
+            raise NotConfirmed(FAR)
+        found.append((abs(middle) + abs(part), length,
+                      rounded_up(sigma ** torus.norm(k)) * exponential_above(exponent)))
+    return found
 
 
 def verify_width(torus, width, tell):
-    """Verified, or why not."""
+    """Verified, with a strip of about this width; or NotConfirmed is raised."""
+    norm, unit = torus.norm, 1 << torus.bits + FINE
+    if width * torus.farthest > MAX_WIDTH:
+        raise NotConfirmed("the strip is too wide for the longest mode")
+    width = float(width)
     sigma = 1 + Fraction(max(round(math.expm1(width) * 2 ** 24), 1), 2 ** 24)
-    rho, norm, unit = logarithm_below(sigma), torus.norm, 1 << torus.bits + FINE
+    rho = logarithm_below(sigma)
     tell("the constants")
     powers = powers_of(sigma, torus.farthest)
     whole = find_constants(torus, sigma, powers)
-    if isinstance(whole, str):
-        return whole
-    waves = []
-    for k, _, middle, part in torus.waves:
-        length = upper_root(sum([x * x for x in k]))
-        if rho * norm(k) > 300:
-            return "the strip is too wide for the fastest wave"
-        exponent = rounded_up(length * Fraction(torus.outside(powers, 0), unit))
-        if exponent > 100:
-            return FAR
-        waves.append((abs(middle) + abs(part), length,
-                      rounded_up(sigma ** norm(k)) * exponential_above(exponent)))
+    waves = bounds_of_waves(torus, sigma, rho, powers)
     needed, _ = allowed(whole, waves, rho, norm.kappa, torus.divisors)
     if needed < Fraction(1, 1 << MAX_BITS // 8):
-        return "the constants are too large"
+        raise NotConfirmed("the constants are too large")
     error = torus.error_at_a_point()
     if error > 1e-10 and error > 1000 * needed:         # nothing helps: it takes no work to see
-        raise NotConfirmed("the error of the torus is %.1e, where less than %s is needed"
-                           % (error, scientific(needed)))
+        raise too_large(Fraction(error), needed)
     # What is cut off u changes E by at most so many times its norm.
     factor = 4 + sum([p * k * k * g for p, k, g in waves])
     near, far = torus.extent(powers, needed / 64 / factor * unit)
@@ -746,7 +699,7 @@ def verify_width(torus, width, tell):
             + Fraction(ring.rounding(found.u), 1 << bits + FINE) * rounded_up(norm.kappa * far)
         constants = whole.after(rounded_up(beyond))
         if constants is None:
-            return "too much of the torus was cut off"
+            raise NotConfirmed("too much of the torus was cut off")
         needed, v = allowed(constants, found.bounds, rho, norm.kappa, torus.divisors)
         if residual > needed:
             torus.divisors.look(math.ceil(40 * 2 ** STEPS / rho))
@@ -755,26 +708,38 @@ def verify_width(torus, width, tell):
             rounding = Fraction(4 * torus.n * len(torus.modes) * (torus.degree + 1), 1 << bits)
             cut = Fraction(torus.outside(powers, min(near, far)), unit)
             distance = rounded_up(v * residual + cut + rounding + torus.dropped)
-            return Verified(residual, needed, distance, rho, box.groups, bits)
+            return Verified(residual, needed, distance, rho, constants, box.groups, bits,
+                            torus.divisors.least, tuple(norm.basis))
         if found.polynomial > needed:
             break
         far, spare = far * 9 // 8 + 1, spare + 6
-    return "the error of the torus is %s, where less than %s is needed" % (
-        scientific(residual), scientific(needed))
+    raise too_large(residual, needed)
 
 
-def verify_torus(claim, tell=lambda text: None):
-    """The report, in lines; else a Failure is raised.  tell is told what is being done."""
-    setting, found = Setting(claim), []
-    for at, piece in enumerate(claim.pieces, 1):
-        if len(claim.pieces) == 1:
-            found.append(verify_piece(setting, piece, tell))
-            continue
-        name = "piece %d of %d" % (at, len(claim.pieces))
-        with named(name):
-            found.append(verify_piece(setting, piece, lambda text, name=name: tell(
-                "%s: %s" % (name, text))))
-    return existence_report(claim, setting, found)
+def verify_torus(claim, tell=lambda text: None, jobs=1):
+    """(the report in lines, of each piece what was Verified); else a Failure is raised.
+
+    tell is told what is being done.  jobs: so many pieces are verified at a time, in processes.
+    """
+    setting, numbers = Setting(claim), range(len(claim.pieces))
+    if min(jobs, len(numbers)) == 1:
+        found = [verify_piece(setting, tell, number) for number in numbers]
+        return existence_report(claim, setting, found), tuple(found)
+    found = []
+    try:
+        with contextlib.closing(in_order(functools.partial(verify_piece, setting, nobody), numbers,
+                                         min(jobs, len(numbers)), undisturbed)) as results:
+            for each in results:
+                found.append(each)
+                tell("%d of %d pieces are verified" % (len(found), len(numbers)))
+    except ProcessDied:
+        raise Unusable("a process that verified a piece died, perhaps for lack of memory; nothing "
+                       "was verified") from None
+    return existence_report(claim, setting, found), tuple(found)
+
+
+def nobody(text):
+    """Is told what processes do."""
 
 
 # ---- the report
@@ -845,7 +810,7 @@ def existence_report(claim, setting, found):
         "Pieces : %d" % len(found), "Modes : %d" % max(piece.modes for piece in found),
         "Strip : %s" % scientific(min(piece.rho for piece in found), False),
         "Small divisors : at least %s |k|^-%d, |k| = %s" % (
-            scientific(setting.divisors.least, False), n, " + ".join(
+            scientific(worst.gamma, False), n, " + ".join(
                 "%s|%s|" % ("%d " % a if a > 1 else "", sum_text(map(Fraction, row), ("k0", "k1")))
                 for a, row in zip(setting.norm.alpha, claim.frame))),
         "Residual : %s, of at most %s" % (scientific(worst.residual),

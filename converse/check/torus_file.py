@@ -34,7 +34,7 @@ class Piece:
 
 @dataclass(frozen=True)
 class TorusClaim:
-    """What a certificate of existence says, and its hints: exact."""
+    """What a certificate of existence says: the claim, and in what norms it is to be verified."""
 
     dimension: int
     waves: tuple                        # those that are present, of at most one part
@@ -43,8 +43,9 @@ class TorusClaim:
     rotation: tuple                     # of each component its coordinates in 1, t, t^2
     frame: tuple                        # rows
     alpha: tuple
-    rho: Fraction
+    rho: tuple                          # of each piece the width of the strip
     pieces: tuple
+    hints: dict                         # lines of the header by name, believed by nobody
     sha256: str                         # of the file, uncompressed
 
     @property
@@ -97,7 +98,7 @@ def torus_header(head):
             raise Rejected("the header gives %s twice" % name)
         else:
             header[name] = value
-    missing = [name for name in TORUS_FIELDS if name not in header and name != "rho"]
+    missing = [name for name in TORUS_FIELDS if name not in header]
     if missing:
         raise Rejected("the header lacks %s" % ", ".join(missing))
     return header
@@ -150,11 +151,13 @@ def parse_torus(header, body, line, sha256):
         raise Rejected("the header's alpha is not positive")
     if max(x.denominator for x in alpha) > MAX_ALPHA or max(alpha) > MAX_ALPHA:
         raise NotConfirmed("the header's alpha is beyond the checker's limit, %d" % MAX_ALPHA)
-    rho = number(header["rho"], "the header's rho", RATIO) if "rho" in header else Fraction(0)
     if not COUNT.fullmatch(header["pieces"]) or header["pieces"] == "0":
         raise Rejected("the header's pieces are not a count")
     if int(header["pieces"]) > MAX_PIECES:
         raise NotConfirmed("there are more than %d pieces, the checker's limit" % MAX_PIECES)
+    rho = rationals(header["rho"], int(header["pieces"]), "the header's rho")
+    if min(rho) <= 0:
+        raise Rejected("the header's rho is not positive")
     lines, pieces = iter(enumerate(body, line)), []
     for _ in range(int(header["pieces"])):
         pieces.append(read_piece(lines, n, parameter, pieces[-1].high if pieces else None))
@@ -163,7 +166,8 @@ def parse_torus(header, body, line, sha256):
     if parameter and pieces[-1].high != 1 or not parameter and len(pieces) > 1:
         raise Rejected("the pieces do not tile the range of the parameter")
     return TorusClaim(n, waves, polynomial, rationals(header["root"], 2, "the header's root"),
-                      rotation, frame, alpha, rho, tuple(pieces), sha256)
+                      rotation, frame, alpha, rho, tuple(pieces),
+                      {name: header[name] for name in header if name.startswith("hint-")}, sha256)
 
 
 def read_piece(lines, n, parameter, before):

@@ -6,9 +6,8 @@ import os
 import re
 import sys
 from dataclasses import replace
-from fractions import Fraction
 
-from ..model.exact import exact, short_text
+from ..model.exact import exact
 from ..storage import files
 from ..storage.files import ConverseError, plain
 from ..version import __version__
@@ -19,7 +18,6 @@ STATUS = ("Exit status: 0 a theorem; 1 not found or not proved; 2 bad usage, inp
           "certificate could not be saved; 129, 130 or 143 ended by a signal.")
 GIGABYTE = 10 ** 9
 MOST_POINTS = 1 << 26
-LIGHTEST = Fraction(1, 1000)            # of weights
 
 
 # ---- what is read
@@ -36,16 +34,6 @@ def _positive(text):
     if not number > 0:
         raise argparse.ArgumentTypeError("'%s' is not above 0" % text)
     return number
-
-
-def _grid(text):
-    """'1024': (1, 1024); '2048x512': (2048, 512)."""
-    match = re.fullmatch(r"(?:(\d{1,9})x)?(\d{1,9})", text, re.ASCII)
-    sizes = [int(size or 1) for size in match.groups()] if match else []
-    if not match or any(size < 1 or size & (size - 1) for size in sizes):
-        raise argparse.ArgumentTypeError("'%s' is no grid: write powers of two, N for one angle or "
-                                         "NxM for two" % text)
-    return tuple(sizes)
 
 
 def parser():
@@ -86,25 +74,16 @@ def _prove_parser(commands):
     p.add_argument("-r", "--restore", metavar="FILE",
                    help="start from the torus of the certificate FILE, of other amplitudes, not "
                         "from the map without potential; it has the rotation vector, too")
-    p.add_argument("-p", "--precision", type=whole_number(24), metavar="BITS",
-                   help="bits of the balls in which the residual is computed (default: chosen)")
-    p.add_argument("--grid", type=_grid, metavar="N[xM]", help="on which the residual is computed, "
-                   "powers of two (default: chosen)")
-    p.add_argument("--weights", nargs="+", type=_positive, metavar="ALPHA",
-                   help="weights of the norm of k, one for each direction of the frame (default: "
-                        "chosen)")
-    p.add_argument("--rho", type=_positive, metavar="RHO",
-                   help="the width of the strip in which the residual is bounded (default: chosen)")
     p.add_argument("--margin", type=_positive, metavar="X", help="find a torus whose residual is X "
                    "times smaller than the theorem needs, about (default 100)")
     p.add_argument("--points", type=whole_number(16, MOST_POINTS), metavar="N",
                    help="points of the grid on which the torus is looked for in floating-point "
-                        "numbers, at most (default 2097152); those on which it is then refined "
-                        "and proved are limited by memory alone")
+                        "numbers, at most (default 2097152); that on which it is then refined "
+                        "is limited by memory alone")
     p.add_argument("--jobs", type=whole_number(1), metavar="N",
-                   help="prove N pieces of a range at a time, in processes (default 1)")
-    p.add_argument("--memory", type=_positive, metavar="GB", help="what the proof may take, in GB "
-                   "(default: three quarters of what is free)")
+                   help="verify N pieces of a range at a time, in processes (default 1)")
+    p.add_argument("--memory", type=_positive, metavar="GB", help="what refining the torus may "
+                   "take, in GB (default: three quarters of what is free)")
     return p
 
 
@@ -142,30 +121,7 @@ def _check_outputs(options, locks):
         plot.check()
 
 
-def _norm(options, potential):
-    """That of --weights, or None."""
-    from ..tori import Norm
-    from ..tori.newton import default_frame
-
-    if options.weights is None:
-        return None
-    if len(options.weights) != potential.dimension:
-        raise _unequal("--weights", options.weights, potential)
-    for weight in options.weights:
-        if not LIGHTEST <= weight <= 1 / LIGHTEST:
-            raise ConverseError("--weights: %s is not from %s to %s"
-                                % (short_text(weight), *map(short_text, (LIGHTEST, 1 / LIGHTEST))))
-    return Norm(default_frame(potential), tuple(options.weights))
-
-
-def _unequal(flag, numbers, potential):
-    """The error that these are not as many as the map has angles."""
-    return ConverseError("%s has %s, and the map %s: give as many" % (
-        flag, *("%d %s%s" % (count, what, "s" * (count != 1)) for count, what in (
-            (len(numbers), "number"), (potential.dimension, "angle")))))
-
-
-def _rotation(options, potential, start, norm, progress):
+def _rotation(options, potential, start, progress):
     from .. import tori
 
     if options.tolerance is not None and options.near is None:
@@ -182,9 +138,11 @@ def _rotation(options, potential, start, norm, progress):
             raise ConverseError("which torus? Give --rotation, such as golden or T49, or --near W")
         return start.rotation
     if len(options.near) != potential.dimension:
-        raise _unequal("--near", options.near, potential)
+        raise ConverseError("--near has %s, and the map %s: give as many" % tuple(
+            "%d %s%s" % (count, what, "s" * (count != 1)) for count, what in (
+                (len(options.near), "number"), (potential.dimension, "angle"))))
     more = {} if options.tolerance is None else {"tolerance": options.tolerance}
-    return tori.near(*options.near, norm=norm, progress=progress, **more)
+    return tori.near(*options.near, progress=progress, **more)
 
 
 def prove_torus(options):
@@ -203,16 +161,11 @@ def _prove_torus(options):
     start = None if options.restore is None else _start(options.restore)
     problem = _read_problem(options)
     potential, part = family(problem)
-    if options.grid is not None and potential.dimension == 1 and options.grid[0] != 1:
-        raise ConverseError("--grid %dx%d is for two angles, and the map has one; write --grid N"
-                            % options.grid)
-    norm = _norm(options, potential)
     with ProgressLine() as line:
-        rotation = _rotation(options, potential, start, norm, lambda words: line(lambda: words))
+        rotation = _rotation(options, potential, start, lambda words: line(lambda: words))
     choices = {name: value for name, value in (
         ("start", start), ("margin", options.margin and float(options.margin)),
-        ("points", options.points), ("norm", norm), ("shape", options.grid),
-        ("bits", options.precision), ("rho", options.rho),
+        ("points", options.points),
         ("memory", options.memory and int(options.memory * GIGABYTE)),
         ("jobs", options.jobs)) if value is not None}
     say(report.header(problem, rotation))
@@ -224,7 +177,7 @@ def _prove_torus(options):
             proof = tori.prove(problem, rotation, progress=progress, **choices)
         except (tori.NotFound, tori.NotProved) as reason:
             line.clear()
-            say(report.undecided(problem, rotation, reason, _by_hand(options, reason)))
+            say(report.undecided(problem, rotation, reason, _by_hand(options)))
             return 1
     certificate = {}
     try:
@@ -244,14 +197,10 @@ def _processor_time():
     return sum(os.times()[:4])
 
 
-def _by_hand(options, reason):
+def _by_hand(options):
     """The flags that chose what the program would have chosen otherwise, and that may be why."""
-    from .. import tori
-
-    flags = ["margin", "points"]
-    if isinstance(reason, tori.NotProved):
-        flags += ["grid", "weights", "rho", "precision", "memory"]
-    return ["--" + flag for flag in flags if getattr(options, flag) is not None]
+    return ["--" + flag for flag in ("margin", "points", "memory")
+            if getattr(options, flag) is not None]
 
 
 def _start(path):

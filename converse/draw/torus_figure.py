@@ -38,7 +38,7 @@ def torus_html(torus):
 
 def proved_html(proof):
     """What a notebook shows of a ProvedTorus: the theorem and its picture."""
-    return notebook.html(verdict(proof, proof.seconds), lambda: picture(
+    return notebook.html(verdict(proof), lambda: picture(
         [piece.torus for piece in proof.pieces], "png", proof.pieces), "png", "the torus")
 
 
@@ -51,7 +51,7 @@ def picture(tori, kind="png", proved=()):
     from matplotlib.figure import Figure
 
     n = tori[0].dimension
-    panels = n + 1 + bool(proved)
+    panels = n + 1 + (len(proved) > 1)
     columns = 2 if panels == 4 else panels
     with style.context(["default", STYLE]):
         figure = Figure(figsize=(3.1 * columns, 2.9 * (panels // columns)), layout="constrained")
@@ -62,13 +62,13 @@ def picture(tori, kind="png", proved=()):
             for i in range(2):
                 _surface(figure, axes[i], tori[-1], i)
         (_line if n == 1 else _lattice)(figure, axes[n], tori[-1])
-        if proved:
+        if len(proved) > 1:
             _errors(axes[n + 1], proved)
-        figure.suptitle(_title(tori, 50 * columns), fontsize=9)
+        figure.suptitle(_title(tori, 50 * columns, proved), fontsize=9)
         return plot.encode(figure, kind, dpi=160)
 
 
-def _title(tori, width):
+def _title(tori, width, proved):
     """In lines of so many characters at most."""
     first = tori[0]
     text = "rotation %s: %s" % ("vector" if first.dimension > 1 else "number", first.rotation)
@@ -78,6 +78,9 @@ def _title(tori, width):
     ranges = ["%.6g" % low if low == high else "%.6g to %.6g" % (low, high)
               for low, high in zip(*amplitudes)]
     text = "%s; amplitude%s %s" % (text, "s" * (len(ranges) > 1), ", ".join(ranges))
+    if len(proved) == 1:
+        text += "; error of the invariance equation at most %.2e, admissible %.2e" % (
+            proved[0].residual, proved[0].needed)
     return "\n".join(textwrap.wrap(text, width))
 
 
@@ -133,7 +136,7 @@ def _sizes(torus):
     size = np.sqrt((abs(torus.coefficients(float(torus.piece[1]))) ** 2).sum(1))
     order = np.argsort(-size)[:LATTICE]
     order = order[size[order] > 0]
-    return torus.vectors[order], np.log10(size[order])
+    return torus.k[order], np.log10(size[order])
 
 
 def _line(figure, ax, torus):
@@ -168,24 +171,13 @@ def _lattice(figure, ax, torus):
 
 
 def _errors(ax, proved):
-    """The norm of the error, and what the theorem needs: over the parameter, or at the widths of
-    the strip that were tried, of which the proof took the one that is marked."""
-    if len(proved) > 1:
-        ends = [float(proved[0].torus.piece[0])]
-        ends += [float(piece.torus.piece[1]) for piece in proved]
-        for values, colour, name in (([p.needed for p in proved], GREY, "needed"),
-                                     ([p.residual for p in proved], BLUE, "reached")):
-            ax.stairs(np.log10(values), ends, color=colour, baseline=None, label=name)
-        ax.set(xlabel="parameter s")
-    else:
-        piece, = proved
-        rho, reached, needed = np.log10([[float(x) for x in row] for row in piece.tried
-                                         if 0 < row[1] < math.inf]).T
-        ax.plot(rho, needed, ".-", color=GREY, label="needed")
-        ax.plot(rho, reached, ".-", color=BLUE, label="reached")
-        ax.axvline(math.log10(piece.rho), color=DARK, linewidth=0.6, linestyle=":",
-                   label=r"chosen: $\rho = %.3g$" % piece.rho)
-        ax.set(xlabel=r"$\log_{10} \rho$, the width of the strip")
+    """The norm of the error, and what the theorem needs, over the parameter."""
+    ends = [float(proved[0].torus.piece[0])]
+    ends += [float(piece.torus.piece[1]) for piece in proved]
+    for values, colour, name in (([float(p.needed) for p in proved], GREY, "needed"),
+                                 ([float(p.residual) for p in proved], BLUE, "reached")):
+        ax.stairs(np.log10(values), ends, color=colour, baseline=None, label=name)
     ax.legend()
-    ax.set(ylabel=r"$\log_{10} \|E\|_\rho$", title="error of the invariance equation")
+    ax.set(xlabel="parameter s", ylabel=r"$\log_{10} \|E\|_\rho$",
+           title="error of the invariance equation")
     ax.margins(y=0.2)

@@ -1,4 +1,4 @@
-"""Invariant tori that are graphs: found in doubles, proved in ball arithmetic.
+"""Invariant tori that are graphs: found in doubles, refined, and proved by the checker.
 
     from converse import Problem, tori
     torus = tori.find(Problem.patch(["0.9"], waves=[(1, 0)]), tori.read_rotation("golden"))
@@ -7,12 +7,11 @@
 
 try:
     from .certificate import Certificate, read
-    from .divisors import Divisors, Norm, lattice_basis
     from .find import NotFound, find
     from .near import near
     from .proved import NotProved, ProvedTorus, prove
     from .rotation import Rotation, read_rotation
-    from .torus import Torus
+    from .torus import Strip, Torus
 except ImportError as _error:           # said when something is asked for: the command needs a line
     _MISSING = ("converse.tori needs numpy and python-flint (%s); pip install 'converse-kam[tori]'"
                 % _error)
@@ -23,5 +22,5 @@ except ImportError as _error:           # said when something is asked for: the 
             raise AttributeError(name)
         raise ConverseError(_MISSING)
 
-__all__ = ["Certificate", "Divisors", "Norm", "NotFound", "NotProved", "ProvedTorus", "Rotation",
-           "Torus", "find", "lattice_basis", "near", "prove", "read", "read_rotation"]
+__all__ = ["Certificate", "NotFound", "NotProved", "ProvedTorus", "Rotation", "Strip", "Torus",
+           "find", "near", "prove", "read", "read_rotation"]

@@ -14,7 +14,7 @@ import numpy as np
 
 from ..model.potential import FourierSum
 from .effort import REFINING_BYTES, SOLVING, free_memory, some
-from .newton import Frame, Mesh, Real
+from .newton import EPSILON, Frame, Mesh
 from .rotation import Rotation
 from .torus import Torus, decay
 
@@ -27,7 +27,6 @@ ENOUGH = 1e-9               # the least coefficients that count on the way
 ASPECTS = 1.0, 0.25, 0.4, 0.6, 1.6, 2.5, 4.0, 6.0   # of rates of decay in two directions
 ITERATIONS = 9              # of Newton's method
 USEFUL, STALLED = 1e-7, 1e-12   # errors where the method stops: more modes are needed, or not
-WIDE = 4                    # steps of it in wide numbers, at most
 ENLARGED = 8                # numbers of modes that are tried
 HISTORY = 4                 # tori from which the next one is extrapolated
 TOO_LARGE = "too large"
@@ -69,13 +68,14 @@ class Way:
 
     def __init__(self, potential: FourierSum, rotation: Rotation, frame: Frame, points: int,
                  first: np.ndarray, last: np.ndarray,
-                 tell: Callable[[str], None] = lambda words: None) -> None:
+                 tell: Callable[[str], None] = lambda words: None,
+                 memory: Optional[int] = None) -> None:
         self.potential, self.rotation, self.frame = potential, rotation, frame
         self.points, self.first, self.last = points, first, last
-        self.tell = tell
+        self.tell, self.memory = tell, memory
 
     def amplitude(self, part: float) -> np.ndarray:
-        return self.first + Real(part) * (self.last - self.first)
+        return self.first + part * (self.last - self.first)
 
     def mesh(self, box) -> Mesh:
         """One that holds the mode numbers of a box, with room for products."""
@@ -111,9 +111,9 @@ class Way:
 
     def taken_up(self, torus: Torus) -> Found:
         """A torus of the map at the beginning of the way."""
-        k, size = torus.vectors.T, abs(torus.coefficients()).max(1)
+        k, size = torus.k.T, abs(torus.coefficients()).max(1)
         m = self.mesh((1, 1)).numbers(k)
-        seen = size > float(np.finfo(Real).eps) / 100
+        seen = size > EPSILON / 100
         mesh = self.mesh(abs(m[:, seen]).max(1, initial=1) + 1)
         u = mesh.spread(k, torus.coefficients().T)
         return self._measured(0.0, mesh, u)
@@ -147,23 +147,9 @@ class Way:
             keep = ellipse(mesh, found.rates, more * found.reach)
         return None
 
-    def widened(self, found: Found, mesh: Mesh, keep: np.ndarray) -> Found:
-        """The torus at the end of the way on another mesh, of the modes `keep`, more accurate: of
-        wide numbers."""
-        u = found.mesh.moved(found.u, mesh).astype(np.clongdouble)
-        noise, before = mesh.noise(found.amplitude), inf
-        for _ in range(WIDE):
-            error = mesh.error(u, found.amplitude)
-            error[abs(error) < noise] = 0
-            size = float(abs(error).sum())
-            if not size < before / 2:
-                break
-            before, u = size, (u + mesh.correction(u, error)) * keep
-        return self._measured(1.0, mesh, u, 0.0)
-
     def check_cost(self, points: int) -> None:
-        """NotFound: balls on a grid of so many points take more memory than is free."""
-        free = free_memory() * 3 // 4
+        """NotFound: to refine a torus on a grid of so many points takes too much memory."""
+        free = free_memory() * 3 // 4 if self.memory is None else self.memory
         if points * REFINING_BYTES > free:
             raise NotFound("the torus is seen, but to refine it takes a grid of %d points and %.3g "
                            "GB of memory, and %.3g GB may be used" % (
@@ -175,14 +161,14 @@ class Way:
 
         The noise of u is that of E over the smallest divisor so far: by L, in v = L z, the noise of
         one mode reaches the others."""
-        turn = mesh.turn.astype(float)
+        turn = mesh.turn
         far = sum(abs(m) / half for m, half in zip(mesh.m, mesh.half)).ravel()
         order = np.argsort(far, kind="stable")
         least = np.minimum.accumulate(np.where(far > 0, turn.ravel(), 4)[order])
         noise = np.empty(turn.size)
-        noise[order] = np.maximum(mesh.noise(self.amplitude(part), u.real.dtype.type) / least,
+        noise[order] = np.maximum(mesh.noise(self.amplitude(part)) / least,
                                   enough)
-        size = abs(u).max(0).astype(float).ravel()
+        size = abs(u).max(0).ravel()
         seen = np.where((size > noise) & mesh.inside.ravel(), size, 0)
         rates, reach = np.full(len(mesh.sizes), FLAT), 8 * FLAT
         if seen.any():
@@ -254,7 +240,7 @@ def newton(mesh: Mesh, u: np.ndarray, amplitude: np.ndarray,
            keep: np.ndarray) -> Optional[Tuple[np.ndarray, float]]:
     """The coefficients of the modes `keep` that solve the equation, as exactly as the noise and the
     other modes permit, and what is left of the error; None: the method does not converge from u."""
-    noise = mesh.noise(amplitude, u.real.dtype.type)
+    noise = mesh.noise(amplitude)
     before = inf
     for _ in range(ITERATIONS):
         error = mesh.error(u, amplitude)

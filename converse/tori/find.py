@@ -1,5 +1,6 @@
 """Finds invariant tori, without proof: for one potential, or for all potentials of a range."""
 
+from dataclasses import replace
 from fractions import Fraction
 from math import ceil, exp, inf, log, log2
 from typing import Callable, List, Optional, Tuple, Union
@@ -11,8 +12,9 @@ from ..model.potential import FourierSum
 from ..model.problem import Problem
 from .continuation import POINTS, Found, NotFound, Way, ellipse, newton
 from .effort import BALLS, REFINING, SINGLE, SOLVING, balls, some
-from .newton import Frame, Mesh, Real, default_frame
-from .refinement import MARGIN, SPARE_BITS, Digits, digits_for, layers_for, plan, refined
+from .newton import Frame, Mesh, default_frame
+from .plan import MARGIN, Weights, plan
+from .refinement import SPARE_BITS, Modes, layers_for, numbers_of, refined, taken
 from .rotation import Rotation
 from .torus import Torus, decay, family
 
@@ -31,7 +33,7 @@ MOST_MARGIN = 1e100         # coefficients times 2^bits are doubles on their way
 
 def find(problem: Problem, rotation: Rotation, *, start: Optional[Torus] = None,
          frame: Optional[Frame] = None, margin: float = MARGIN,
-         points: int = POINTS,
+         points: int = POINTS, memory: Optional[int] = None,
          progress: Optional[Callable[[str], None]] = None) -> Union[Torus, List[Torus]]:
     """The invariant torus of a rotation vector, about: no proof is made.  If the problem has a
     parameter, tori for the pieces of its range, which tile it.
@@ -41,6 +43,7 @@ def find(problem: Problem, rotation: Rotation, *, start: Optional[Torus] = None,
     frame -- integer rows of the mode numbers, in whose directions rates of decay may differ
     margin -- by which the error of the torus should be smaller than the theorem needs
     points -- of a mesh of angles, at most
+    memory -- bytes that refining the torus may take; by default three quarters of what is free
     progress -- is told in words what is going on
 
     NotFound: there is none, as far as can be seen, or it needs more points.
@@ -61,19 +64,19 @@ def find(problem: Problem, rotation: Rotation, *, start: Optional[Torus] = None,
 
     def way(first: np.ndarray, last: np.ndarray) -> Way:
         return Way(potential, rotation, frame or default_frame(potential), points, first, last,
-                   tell)
+                   tell, memory)
 
-    middle = _wide(potential.amplitude)
-    first = way(np.array([begin.get(wave, Real(0)) for wave in potential.waves]),
-                middle - _wide(part) if part else middle)
+    middle = _doubles(potential.amplitude)
+    first = way(np.array([begin.get(wave, 0.0) for wave in potential.waves]),
+                middle - _doubles(part) if part else middle)
     found = first.follow(None if start is None else first.taken_up(start))
     if part is None:
         return _single(found, first, margin)
     return _Pieces(potential, part, rotation, way, margin, tell).cover(found)
 
 
-def _wide(numbers):
-    return np.array([Real(p.numerator) / p.denominator for p in numbers])
+def _doubles(numbers):
+    return np.array([float(p) for p in numbers])
 
 
 def _range_text(piece):
@@ -82,7 +85,7 @@ def _range_text(piece):
 
 def _amplitudes(potential, rotation, start):
     """Of each wave of the start."""
-    known = dict(zip(start.potential.waves, _wide(start.potential.amplitude)))
+    known = dict(zip(start.potential.waves, _doubles(start.potential.amplitude)))
     for wrong, has in ((start.rotation.floats != rotation.floats, "another rotation vector"),
                        (start.part is not None, "a parameter; take a torus of one map"),
                        (not set(known) <= set(potential.waves),
@@ -93,27 +96,23 @@ def _amplitudes(potential, rotation, start):
 
 
 def _single(found, way, margin):
-    """The torus of one potential.  How many modes it needs is known from its decay in doubles, then
-    better from that in wide numbers, and then from the error that is left."""
-    aim = plan(found, margin)
-    mesh = aim.mesh(found.mesh)
-    way.check_cost(mesh.points)
-    found = way.widened(found, mesh, aim.keep(mesh))
-    more, digits = 1.0, None
+    """The torus of one potential.  How many modes it needs is known from its decay in doubles, and
+    then from the error that is left."""
+    more, torus = 1.0, None
     for _ in range(ROUNDS):
         aim = plan(found, margin, more)
-        before, digits = digits, digits_for(aim, found.mesh, margin)
-        way.check_cost(digits.mesh.points)
-        if before is None:
-            # With those below the noise: they belong to the errors of the others, and E does not
-            # feel both together.
-            digits.add(digits.picked(found.mesh.moved(found.u, digits.mesh))[None])
-        else:
-            digits.take(before)
+        mesh = aim.mesh(found.mesh)
+        way.check_cost(mesh.points)
+        modes = Modes(mesh, aim.keep(mesh))
+        bits = aim.bits(modes.k, 0, margin)
+        # With those below the noise: they belong to the errors of the others, and E does not feel
+        # both together.
+        numbers = numbers_of(modes.picked(found.mesh.moved(found.u, mesh))[None], bits) \
+            if torus is None else taken(modes, bits, torus)
         way.tell("refining a torus of %d modes%s" % (
-            len(digits.at), some(SINGLE * balls(digits.mesh.points, digits.bits + SPARE_BITS))))
-        torus, ratio = refined(digits, aim, way.potential, None, way.rotation,
-                               lambda sigma: way.last, margin)
+            len(modes.at), some(SINGLE * balls(mesh.points, bits + SPARE_BITS))))
+        torus, ratio = refined(Torus(way.potential, None, way.rotation, bits, modes.k.T, numbers,
+                                     aim.strip), modes, aim, margin)
         if ratio <= max(1 / margin, min(LACKING / margin, SURE)):
             break
         more *= 1.05 + log(ratio * margin) / ((aim.rate - aim.rho) * aim.size)
@@ -140,15 +139,18 @@ class _Pieces:
         self.potential, self.part, self.rotation = potential, part, rotation
         self.way, self.margin, self.tell = way, margin, tell
         self.end = inf
+        self.alpha: Optional[Weights] = None
 
     def amplitude(self, s: Fraction) -> np.ndarray:
-        return _wide([p + s * q for p, q in zip(self.potential.amplitude, self.part)])
+        return _doubles([p + s * q for p, q in zip(self.potential.amplitude, self.part)])
 
     def cover(self, found: Found) -> List[Torus]:
         """The pieces from s = -1, whose torus this is, to 1."""
         low, longest, tori = Fraction(-1), Fraction(2), []
         middle = self._followed(found, low, Fraction(0))
         last = self._followed(middle, Fraction(0), Fraction(1))
+        worst = min(found, last, key=lambda each: float(each.rates.min()))
+        self.alpha = plan(worst, self.margin).alpha             # one norm for all pieces
         at = [float(np.prod(each.rates)) ** (1 / len(each.rates))
               for each in (found, middle, last)]
         if at[2] < at[1]:               # as if rates of decay fell along a line
@@ -191,7 +193,7 @@ class _Pieces:
         the end."""
         ends = []
         for each in (found, last):
-            aim = plan(each, self.margin)
+            aim = plan(each, self.margin, alpha=self.alpha)
             ends.append((log(self.margin / aim.needed), log(aim.mesh(each.mesh).points)))
         begin, rest = float(low), 1 - float(low)
         gap = abs(self.end - begin)
@@ -216,45 +218,41 @@ class _Pieces:
     def _torus(self, piece: Ends, ends: List[Found]) -> Optional[Torus]:
         """The torus of a piece, from those at its ends and in its middle; None: it is too long."""
         worst = min(reversed(ends), key=lambda found: float(found.rates.min()))
-        aim = plan(worst, self.margin)
+        aim = plan(worst, self.margin, alpha=self.alpha)
         series = self._series(piece, ends, worst)
         if series is None:
             return None
         source, c = series
-        weight = np.exp(aim.rho * aim.length(source.mesh).ravel()[source.at])
-        sizes = (np.sqrt((abs(c) ** 2).sum(1)) * weight).sum(1)
+        sizes = np.sqrt((abs(c) ** 2).sum(1)) @ np.exp(aim.rho * aim.length(source.k))
         rate, (low, high) = series_rate(sizes), map(float, piece)
         side = -1 if self.end < 0 else 1
         self.end = side * max(1 + NARROWEST, side * (low + high) / 2
                               + (high - low) / 2 * exp(min(rate, 50)))
         degree = max(LEAST_DEGREE, ceil(log(sizes.max() * 10 * self.margin / aim.needed) / rate))
-        digits = digits_for(aim, worst.mesh, self.margin, degree)
-        if degree > max(LEAST_DEGREE, min(MOST_DEGREE, LARGEST // digits.mesh.points)):
+        mesh = aim.mesh(worst.mesh, real=False)
+        if degree > max(LEAST_DEGREE, min(MOST_DEGREE, LARGEST // mesh.points)):
             return None
-        points = digits.mesh.points * layers_for(degree)
+        points = mesh.points * layers_for(degree)
         self._placed(*piece, lambda way: way.check_cost(points))
-        moved = np.zeros((degree + 1, *digits.k.shape), c.dtype)
-        for j, each in enumerate(c[:degree + 1]):
-            mesh_wide = np.zeros((len(each), source.mesh.points), c.dtype)
-            mesh_wide[:, source.at] = each
-            u = source.mesh.moved(mesh_wide.reshape(len(each), *source.mesh.sizes), digits.mesh)
-            moved[j] = digits.picked(u)
-        digits.add(moved)
+        modes = Modes(mesh, aim.keep(mesh))
+        bits = aim.bits(modes.k, degree, self.margin)
+        # on the mesh of the modes of the piece: those that both have
+        begun = Torus(self.potential, self.part, self.rotation, bits, source.k.T,
+                      numbers_of(c[:degree + 1], bits), aim.strip, piece)
+        torus = replace(begun, k=modes.k.T, numbers=taken(modes, bits, begun))
         self.tell("refining the tori of %s, %d modes of degree %d%s" % (
-            _range_text(piece), len(digits.at), degree,
+            _range_text(piece), len(modes.at), degree,
             some(REFINING * BALLS * points)))
-        middle, half = ends[1].amplitude, (ends[-1].amplitude - ends[0].amplitude) / 2
-        torus, ratio = refined(digits, aim, self.potential, self.part, self.rotation,
-                               lambda sigma: middle + sigma * half, self.margin, piece)
+        torus, ratio = refined(torus, modes, aim, self.margin)
         return torus if ratio <= 10 / self.margin else None
 
     def _series(self, piece, ends, worst):
         """(where its modes are, the coefficients of the torus as a series in sigma, as
-        Digits.series gives them)."""
+        Modes.series gives them)."""
         mesh = Mesh(self.potential, self.rotation, worst.mesh.frame, worst.mesh.sizes, real=False)
         keep = ellipse(mesh, worst.rates, worst.reach)
         low, middle, high = (self._complex(found, mesh) for found in ends)
-        source = Digits(mesh, keep & (abs(mesh.k).max(0) > 0), 0)
+        source = Modes(mesh, keep & (abs(mesh.k).max(0) > 0))
         half = (ends[-1].amplitude - ends[0].amplitude) / 2
         half_circle = range(LAYERS // 2 + 1)
         self.tell("looking for the tori of %s, on %d points%s" % (

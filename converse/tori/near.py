@@ -14,9 +14,7 @@ from typing import Callable, Iterator, List, Optional, Tuple
 
 import numpy as np
 
-from ..model.balls import precision
 from ..model.exact import Number, exact, short_text
-from .divisors import Divisors, Norm
 from .field import Element, Field, real_roots
 from .rotation import Rotation
 
@@ -25,7 +23,7 @@ FIELDS = (-1, -2, 1, 1), (-1, -1, 0, 1)         # of 2 cos(2 pi/7), and of the s
 GOLDEN = -1, 1, 1
 HIGHEST = 3                             # coefficient of the integers of a field that are tried
 STEEPEST = 60.0                         # ratio of weights in a triangle
-SEEN, COMPARED = 1000, 6                # candidates, judged in doubles and exactly
+SEEN, COMPARED = 1000, 6                # candidates, judged by few k and by many
 LARGEST = 20                            # denominator of a triangle, times the tolerance^(2/3)
 NEAREST, REACH = 40, 500                # |k| up to which divisors are judged so
 
@@ -33,12 +31,11 @@ Candidate = Tuple[Field, Tuple[Element, ...]]
 Triangle = Tuple[Tuple[int, int, int], ...]     # corners (q, p0, p1)
 
 
-def near(w0: Number, w1: Optional[Number] = None, norm: Optional[Norm] = None,
-         tolerance: Number = TOLERANCE,
+def near(w0: Number, w1: Optional[Number] = None, tolerance: Number = TOLERANCE,
          progress: Optional[Callable[[str], None]] = None) -> Rotation:
-    """The rotation vector with the best small divisors that was found near w0, or near (w0, w1).
+    """The rotation vector with the best small divisors that was found near w0, or near (w0, w1):
+    that for which c(delta) of docs/existence.md is least in doubles, with |k| = |k_0| + |k_1|.
 
-    norm -- in which c(delta) of its Divisors is to be small; by default |k_0| + |k_1|
     tolerance -- how far each component may be away; the result's name tells it
     progress -- is told in words what is going on
 
@@ -48,28 +45,22 @@ def near(w0: Number, w1: Optional[Number] = None, norm: Optional[Norm] = None,
     if not LEAST <= within <= 1:
         raise ValueError("the tolerance, %s, is not from %s to 1"
                          % (short_text(within), short_text(LEAST)))
-    if norm is None:
-        norm = Norm(tuple(tuple(int(i == j) for j in range(n)) for i in range(n)),
-                    (Fraction(1),) * n)
-    if norm.dimension != n:
-        raise ValueError("the norm is of %d angles; give as many numbers" % norm.dimension)
     # A Farey interval of this size has denominators of about within^(-1/2), a triangle of about
     # within^(-2/3), and the divisors that set this vector apart are those of such k.
     delta = Fraction(float(within) ** (0.5 if n == 1 else 2 / 3)).limit_denominator(10 ** 6)
     name = "best found within %s of %s" % (short_text(within), " ".join(map(short_text, target)))
     tell = progress or (lambda words: None)
     found = _nobles(target[0], within, float(delta)) if n == 1 \
-        else _cubics(target, within, norm, float(delta), tell)
+        else _cubics(target, within, float(delta), tell)
+    k = _modes(n, ceil(min(10 / float(delta), REACH)))
     best, least = None, None
-    basis = tuple(tuple(int(i == j) for j in range(n)) for i in range(n))
     for j, (field, vector) in enumerate(found, 1):
         tell("comparing rotation vector %d of %d" % (j, len(found)))
         rotation = Rotation(name, field.polynomial, field.root, vector)
         if any(low < w - within or high > w + within
                for (low, high), w in zip(rotation.turns(30), target)):
             continue
-        with precision():
-            c = Divisors(rotation, norm, basis, min(10 / delta, Fraction(REACH))).c(delta)
+        c = float(_near_part(np.array([rotation.floats]), k, abs(k).sum(1), float(delta))[0])
         if least is None or c < least:
             best, least = rotation, c
     if best is None:
@@ -114,7 +105,7 @@ def _quotient(field, weights, above, below):
 
 # ---- two angles
 
-def _cubics(target, within, norm, delta, tell) -> List[Candidate]:
+def _cubics(target, within, delta, tell) -> List[Candidate]:
     """The most promising vectors of both fields, as far as doubles can tell."""
     found = []
     for polynomial in FIELDS:
@@ -130,7 +121,7 @@ def _cubics(target, within, norm, delta, tell) -> List[Candidate]:
             close = np.flatnonzero((abs(at[:, 1:] / at[:, :1] - np.array(target, float))
                                     <= float(within)).all(1))
             if len(close):
-                score = _scores(values[close], corners, norm, delta)
+                score = _scores(values[close], corners, delta)
                 best = np.argsort(score, kind="stable")[:4 * COMPARED]
                 found += [(score[j], field, bases[close[j]], triangle) for j in best]
     chosen: List[Candidate] = []
@@ -193,34 +184,38 @@ def _determinant(a, b, c):
             + a[2] * (b[0] * c[1] - b[1] * c[0]))
 
 
-def _scores(values, corners, norm, delta) -> np.ndarray:
+def _scores(values, corners, delta) -> np.ndarray:
     """About c(delta) of each vector, in doubles; values: (number, weights, conjugates)."""
     total = np.einsum("nwr,wc->nrc", values, corners)
     conjugates = total[..., 1:] / total[..., :1]                        # (number, conjugate, 2)
     omega = conjugates[:, 0].real
     denominator = abs(total[..., 0].prod(1))                            # the norm of sum c_i q_i
-    v, w = (np.array([float(x) for x in k]) for k in norm.vertices)
+    v, w = np.eye(2)
 
     def form(m):
         return (((conjugates[:, 1:] - conjugates[:, :1]) @ m).prod(1)).real
 
     a, c = form(v), form(w)
     b, largest = form(v + w) - a - c, np.maximum(abs(a), abs(c))
-    for side in (b, -b):                # the largest value along an edge of the ball, as Divisors
+    for side in (b, -b):                # the largest value along an edge of the ball
         bend = a - side + c
         bend[bend == 0] = 1e-300
         at = (2 * a - side) / (2 * bend)
         largest = np.where((at > 0) & (at < 1), np.maximum(
             largest, abs((4 * a * c - b * b) / (4 * bend))), largest)
     score = (2 / (np.e * delta)) ** 2 * denominator * largest / (2 * np.pi)
-    reach = [floor(NEAREST * max(abs(k[i]) for k in norm.vertices)) for i in range(2)]
-    k = np.array([(i, j) for i in range(reach[0] + 1) for j in range(-reach[1], reach[1] + 1)
-                  if i > 0 or j > 0])
-    size = np.array(norm.alpha, float) @ abs(np.array(norm.frame) @ k.T)
+    k = _modes(2, NEAREST)
     best = np.argsort(score)[:SEEN]
     found = np.full(len(score), np.inf)
-    found[best] = np.maximum(score[best], _near_part(omega[best], k, size, delta))
+    found[best] = np.maximum(score[best], _near_part(omega[best], k, abs(k).sum(1), delta))
     return found
+
+
+def _modes(n, reach) -> np.ndarray:
+    """Of each k and -k one, k != 0, with components up to a reach: shape (count, n)."""
+    k = np.array(np.meshgrid(np.arange(reach + 1), *[np.arange(-reach, reach + 1)] * (n - 1),
+                             indexing="ij")).reshape(n, -1).T
+    return k[(k[:, 0] > 0) | (k[:, -1] > 0)]
 
 
 def _near_part(omega, k, size, delta) -> np.ndarray:

@@ -6,9 +6,8 @@ of the error E solves two equations of the form g(. + w) - g = f, each a divisio
 coefficients by e^{i k.w} - 1, and leaves an error of the order of E^2.  It costs some Fourier
 transforms; no system of linear equations is solved.
 
-The error E is wanted to more digits than v. It is computed in the numbers of the coefficients,
-which are doubles or the widest that numpy transforms (the 80 bits of x86 where there are such); v
-in doubles. E(u + v) - E(u) is computed to as many digits, however small v is.
+All numbers are doubles.  E(u + v) - E(u) has as many right digits as v, however small v is: that
+lets converse/tori/refinement.py correct a torus of many more digits.
 """
 
 from math import ceil, log2
@@ -20,9 +19,8 @@ from ..model.lattice import echelon
 from ..model.potential import FourierSum
 from .rotation import Rotation
 
-Real = np.longdouble
-PI = 4 * np.arctan(Real(1))
 WORD = 64                   # bits of k.omega modulo 1
+EPSILON = float(np.finfo(float).eps)
 Frame = Tuple[Tuple[int, ...], ...]
 
 
@@ -55,6 +53,27 @@ def pivots(basis: Sequence[Sequence[int]], frame: Frame) -> List[int]:
     return [sum(f * k for f, k in zip(row, vector)) for row, vector in zip(frame, basis)]
 
 
+def wave_vectors(potential: FourierSum) -> Tuple[Tuple[int, ...], ...]:
+    """The k of the waves, as n-tuples."""
+    return tuple((k0, k1)[:potential.dimension] for k0, k1, _ in potential.waves)
+
+
+def sizes_holding(potential: FourierSum, frame: Frame, box: Iterable[float]) -> List[int]:
+    """The sizes of the smallest mesh whose mode numbers reach box[i] in each direction."""
+    steps = pivots(triangular(wave_vectors(potential), frame), frame)
+    return [1 << max(3, ceil(log2(max(2 * reach / step, 1)))) for reach, step in zip(box, steps)]
+
+
+def turns(k: np.ndarray, rotation: Rotation) -> np.ndarray:
+    """k.omega modulo 1, in (-1/2, 1/2], of integers k (n, ...): exact integers modulo 2^64."""
+    total = np.zeros(k.shape[1:], np.int64)
+    for each, (low, high) in zip(k, rotation.turns(25)):
+        omega = round((low + high) / 2 * 2 ** WORD) % 2 ** WORD
+        omega -= 2 ** WORD if omega >= 2 ** (WORD - 1) else 0
+        total += each * np.int64(omega)             # numpy's integers wrap round, without a warning
+    return total / 2.0 ** WORD
+
+
 class Mesh:
     """A grid of angles and the modes that it tells apart.
 
@@ -68,14 +87,13 @@ class Mesh:
 
     k -- integers (n, *shape);  m -- the mode numbers (rank of K, *shape); if the rank is 1, those
         along the basis.  |m_i| < half[i] wherever `inside` is true
-    back -- 1 - e^{-i k.w};  turn -- 2 - 2 cos k.w, in wide numbers
+    back -- 1 - e^{-i k.w};  turn -- 2 - 2 cos k.w
     """
 
     def __init__(self, potential: FourierSum, rotation: Rotation, frame: Frame,
                  sizes: Sequence[int], real: bool = True) -> None:
         self.potential, self.rotation, self.frame, self.real = potential, rotation, frame, real
-        self.vectors: Tuple[Tuple[int, ...], ...] = tuple(
-            (k0, k1)[:potential.dimension] for k0, k1, _ in potential.waves)
+        self.vectors = wave_vectors(potential)
         self.sizes = tuple(sizes)
         self.basis = triangular(self.vectors, frame)
         self.axes = tuple(range(-len(self.sizes), 0))
@@ -93,10 +111,10 @@ class Mesh:
         self.m = self.numbers(self.k)
         self.half = [step * size / 2 for step, size in zip(steps, self.sizes)]
         self.inside = np.all([abs(m) < half for m, half in zip(self.m, self.half)], 0)
-        self.waves = [self._coordinates(np.array(vector)) for vector in self.vectors]
-        turns = self._turns()
-        self.turn = 4 * np.sin(PI * turns) ** 2
-        self.back = -np.expm1(-2j * np.pi * turns.astype(float))
+        self.waves = [self.coordinates(np.array(vector)) for vector in self.vectors]
+        turn = turns(self.k, rotation)
+        self.turn = 4 * np.sin(np.pi * turn) ** 2
+        self.back = -np.expm1(-2j * np.pi * turn)
         self.ik = 1j * self.k.astype(float)
 
     @classmethod
@@ -104,19 +122,15 @@ class Mesh:
                 box: Iterable[float], real: bool = True) -> "Mesh":
         """The smallest whose mode numbers reach box[i] in each direction (as many numbers as the
         group's rank)."""
-        vectors = [(k0, k1)[:potential.dimension] for k0, k1, _ in potential.waves]
-        steps = pivots(triangular(vectors, frame), frame)
-        return cls(potential, rotation, frame, [
-            1 << max(3, ceil(log2(max(2 * reach / step, 1)))) for reach, step in zip(box, steps)],
-            real)
+        return cls(potential, rotation, frame, sizes_holding(potential, frame, box), real)
 
     def numbers(self, k: np.ndarray) -> np.ndarray:
         """m of integers k (n, ...)."""
         if len(self.basis) == 2:
             return np.tensordot(np.array(self.frame), k, 1)
-        return np.array(self._coordinates(k))
+        return np.array(self.coordinates(k))
 
-    def _coordinates(self, k):
+    def coordinates(self, k):
         """The integers a with k = sum of a_i b_i, for an array k of shape (n, ...)."""
         if len(self.basis) == 1:
             i = next(i for i, b in enumerate(self.basis[0]) if b)
@@ -124,15 +138,6 @@ class Mesh:
         (p, q), (r, s) = self.basis
         det = p * s - q * r
         return [(k[0] * s - k[1] * r) // det, (p * k[1] - q * k[0]) // det]
-
-    def _turns(self):
-        """k.omega modulo 1, in (-1/2, 1/2]: exact integers modulo 2^64."""
-        total = np.zeros(self.k.shape[1:], np.int64)
-        for k, (low, high) in zip(self.k, self.rotation.turns(25)):
-            omega = round((low + high) / 2 * 2 ** WORD) % 2 ** WORD
-            omega -= 2 ** WORD if omega >= 2 ** (WORD - 1) else 0
-            total += k * np.int64(omega)        # numpy's integers wrap round, without a warning
-        return total.astype(Real) / Real(2) ** WORD
 
     # ---- transforms
 
@@ -159,7 +164,7 @@ class Mesh:
     def index(self, k: np.ndarray) -> Tuple[List[np.ndarray], np.ndarray]:
         """Where in an array of coefficients the modes k stand, integers (n, ...), and whether the
         grid has them."""
-        place = [a % size for a, size in zip(self._coordinates(k), self.sizes)]
+        place = [a % size for a, size in zip(self.coordinates(k), self.sizes)]
         ok = np.ones(k.shape[1:], bool)
         if self.real:
             ok = place[-1] <= self.sizes[-1] // 2
@@ -181,7 +186,8 @@ class Mesh:
         sign = np.zeros(self.k.shape[1:], np.int64)
         for k in self.k:
             sign = np.where(sign == 0, np.sign(k), sign)
-        twice = self._coordinates(self.k)[-1] % self.sizes[-1] == 0 if self.real else sign != 0
+        # where the last index is 0 or half of the size, both are there
+        twice = 2 * self.coordinates(self.k)[-1] % self.sizes[-1] == 0 if self.real else sign != 0
         at = np.flatnonzero(keep & self.inside & (sign > 0) | keep & self.inside & (sign < 0)
                             & ~twice)
         return at, sign.ravel()[at] > 0
@@ -189,8 +195,7 @@ class Mesh:
     # ---- the equation
 
     def error(self, u: np.ndarray, amplitude: np.ndarray) -> np.ndarray:
-        """The coefficients of E(u) = u(. + w) - 2 u + u(. - w) + grad V(theta + u), in numbers of
-        the kind of u's."""
+        """The coefficients of E(u) = u(. + w) - 2 u + u(. - w) + grad V(theta + u)."""
         values = self.values(u)
 
         def force(phase, vector):
@@ -210,48 +215,47 @@ class Mesh:
         return self._linear(v) + self._force(force, values, amplitude)
 
     def _linear(self, u):
-        return -self.turn.astype(u.real.dtype) * u * self.inside
+        return -self.turn * u * self.inside
 
     def _force(self, cosine, like, amplitude):
-        """The coefficients of - sum of p_j k_j cosine(k_j.theta + pi phase_j, k_j), of values in
-        numbers of the kind of `like`."""
-        real, force = like.real.dtype.type, np.zeros_like(like)
+        """The coefficients of - sum of p_j k_j cosine(k_j.theta + pi phase_j, k_j)."""
+        force = np.zeros_like(like)
         n = self.potential.dimension
         for wave, a, p in zip(self.potential.waves, self.waves, amplitude.astype(like.dtype)):
-            phase = real(wave[2].numerator) / wave[2].denominator / 2
+            phase = float(wave[2] % 2) / 2
             for i, (number, size) in enumerate(zip(a, self.sizes)):
-                turns = np.arange(size) * number % size / real(size)
-                phase = phase + turns.reshape([-1 if j == i else 1 for j in range(len(a))])
-            found = cosine(real(2 * PI) * (phase - np.rint(phase)), np.array(wave[:n], real))
+                along = np.arange(size) * number % size / size
+                phase = phase + along.reshape([-1 if j == i else 1 for j in range(len(a))])
+            found = cosine(2 * np.pi * (phase - np.rint(phase)), np.array(wave[:n], float))
             for i in range(n):
                 if wave[i]:
                     force[i] -= p * wave[i] * found
         return self.coefficients(force) * self.inside
 
-    def noise(self, amplitude: np.ndarray, real: type = Real) -> float:
-        """About the largest rounding error of a coefficient of `error` in numbers of a kind: the
-        errors of many values add up like random numbers."""
+    def noise(self, amplitude: np.ndarray) -> float:
+        """About the largest rounding error of a coefficient of `error`: the errors of many values
+        add up like random numbers."""
         force = sum(float(abs(p)) * max(map(abs, wave[:2]))
                     for p, wave in zip(amplitude, self.potential.waves))
-        return self._rounding(np.finfo(real)) * force
+        return self._rounding() * force
 
-    def _rounding(self, info):
+    def _rounding(self):
         """Of coefficients, in terms of values."""
-        return 4 * float(info.eps) * (log2(self.points) / self.points) ** 0.5
+        return 4 * EPSILON * (log2(self.points) / self.points) ** 0.5
 
     def _clean(self, values):
         """Their coefficients, without those that are rounding errors, which small divisors would
         magnify."""
         found = self.coefficients(values)
         size = float(np.sqrt((abs(values) ** 2).mean()))
-        found[abs(found) < self._rounding(np.finfo(float)) * size] = 0
+        found[abs(found) < self._rounding() * size] = 0
         return found
 
     def frames(self, u: np.ndarray) -> Tuple[np.ndarray, np.ndarray, np.ndarray]:
         """L = I + Du and A = L(. - w)^T L on the grid, and the coefficients of Du; in doubles."""
         n = len(u)
         one = np.eye(n).reshape(n, n, *(1,) * len(self.sizes))
-        du = u.astype(complex)[:, None] * self.ik[None]
+        du = u[:, None] * self.ik[None]
         L = self.values(du) + one
         before = self.values(du * (1 - self.back)) + one
         return L, _product(before.swapaxes(0, 1), L), du
@@ -261,7 +265,7 @@ class Mesh:
         v has no average."""
         zero: tuple = (0,) * len(self.sizes)
         scale = float(abs(error).max()) or 1.0
-        error = (error / scale).astype(complex)
+        error = error / scale
         L, A, du = self.frames(u)
         inverse = inverted(A)
         safe = self.back.copy()

@@ -10,12 +10,10 @@ from ..model.potential import FourierSum
 from ..model.problem import Problem, wave_text
 from ..storage.files import plain
 from ..version import __version__
-from .divisors import Divisors, Norm, lattice_basis
 from .find import NotFound
 from .proved import NotProved, Piece, ProvedTorus
-from .residual import wave_vectors
 from .rotation import Rotation, element_text, polynomial_text
-from .torus import Part, family
+from .torus import Part, Strip, family
 
 PLUSES = "+" * 48
 PLACES = 6                              # of amplitudes, at least
@@ -59,71 +57,66 @@ def _waves(potential: FourierSum, part: Part) -> List[str]:
     return lines + ([] if part is None else ["for -1 <= s <= 1"])
 
 
-def verdict(proof: ProvedTorus, seconds: float, certificate: Optional[str] = None,
-            checksum: str = "") -> str:
+def verdict(proof: ProvedTorus, seconds: Optional[float] = None,
+            certificate: Optional[str] = None, checksum: str = "") -> str:
     """The theorem, and how near it was.
 
-    seconds -- that finding and proving took
+    seconds -- that finding and proving took; by default what verifying took
     certificate, checksum -- the file's name and SHA-256, if there is one"""
-    n, rotation, worst = proof.rotation.dimension, proof.rotation, proof.worst
+    n, worst = proof.rotation.dimension, proof.worst
     lines = ["I find %s of this %s for V(y) = - the sum of :" % (TORUS[n], VECTOR[n]),
              *_waves(proof.torus.potential, proof.torus.part), "",
              "It is a real analytic graph J = P + S'(y) over all angles, P constant, S periodic.",
              "The map takes its point y(theta) = theta + u(theta) to y(theta + w), w = 2 pi omega.",
              ""]
-    lines += ["|u - u0| at most : %s, u0 the computed u" % _up(proof.distance),
-              "|Du - Du0| at most : %s" % _up(max(piece.slope for piece in proof.pieces)), ""]
+    lines += ["|u - u0| at most : %s, u0 the u of the certificate"
+              % _up(max(piece.distance for piece in proof.pieces)), ""]
     if len(proof.pieces) > 1:
         lines += [_piece_line(piece) for piece in proof.pieces]
         lines += ["", "What follows is of the piece with the least margin."]
     lines += ["Residual : %s at most; the theorem needs %s, about" % (_up(worst.residual),
                                                                       _down(worst.needed))]
-    lines += _divisors(rotation, worst.norm, wave_vectors(proof.torus))
-    constants = worst.constants
-    lines += ["Width rho of the strip : %.6g" % worst.rho,
-              "Constants : " + ", ".join("%s %s" % (name, _up(float(getattr(constants, name)), 4))
-                                         for name in ("l0", "m0", "a0", "b0", "p0")),
+    assert worst.torus.strip is not None
+    lines += _divisors(worst, worst.torus.strip)
+    lines += ["Width rho of the strip : %.6g" % worst.torus.strip.rho,
+              "Constants : " + ", ".join("%s0 %s" % (name, _up(getattr(worst.constants, name), 4))
+                                         for name in "lmabp"),
               "Torus : %d modes of %d bits%s" % (
-                  len(worst.torus.modes), worst.torus.bits,
+                  len(worst.torus.k), worst.torus.bits,
                   "" if worst.torus.part is None else ", polynomials in s of degree %d"
                   % worst.torus.degree),
-              "Grid : %s%s" % (" x ".join(map(str, worst.grid.shape if n == 2
-                                              else worst.grid.shape[-1:])),
-                               "" if worst.torus.part is None else
-                               ", at each of %d complex values of s" % worst.grid.layers), "",
-              "This investigation took %.2f seconds." % seconds, ""]
+              "Series : %d modes of %d bits" % (worst.modes, worst.bits), "",
+              "This investigation took %.2f seconds." % (
+                  proof.seconds if seconds is None else seconds), ""]
     if certificate is not None:
         lines += ["Certificate : %s" % plain(certificate), "SHA-256 : %s" % checksum]
     lines += ["Program : converse " + __version__,
-              "Method : an a-posteriori KAM theorem (docs/existence.md)",
-              "Arithmetic : balls of %d bits" % worst.bits]
+              "Method : an a-posteriori KAM theorem (docs/existence.md), verified in integers"]
     return "\n".join(lines) + "\n"
 
 
 def _piece_line(piece: Piece) -> str:
     low, high = piece.torus.piece
     return "For %s <= s <= %s : %d modes of degree %d, residual %s, needed %s" % (
-        short_text(low), short_text(high), len(piece.torus.modes), piece.torus.degree,
+        short_text(low), short_text(high), len(piece.torus.k), piece.torus.degree,
         _up(piece.residual), _down(piece.needed))
 
 
-def _divisors(rotation: Rotation, norm: Norm, waves: Sequence[Sequence[int]]) -> List[str]:
-    n = rotation.dimension
-    divisors = Divisors(rotation, norm, lattice_basis(waves))
+def _divisors(piece: Piece, strip: Strip) -> List[str]:
+    """The checker's gamma is for the weights alpha as integers, by their common denominator."""
+    n, scale = len(strip.alpha), math.lcm(*(a.denominator for a in strip.alpha))
     terms = []
-    for row, a in zip(norm.frame, norm.alpha):
+    for row, a in zip(strip.frame, strip.alpha):
         angle = " ".join("%s %s" % ("-" if x < 0 else "+", name if abs(x) == 1 else
                                     "%d %s" % (abs(x), name))
                          for x, name in zip(row, _names("k", n)) if x)
         terms.append("%s|%s|" % ("" if a == 1 else "%s " % a,
                                  angle[2:] if angle[0] == "+" else "-" + angle[2:]))
-    power = "|k|" if n == 1 else "|k|^2"
-    basis = " and ".join("(%s)" % ", ".join(map(str, k)) for k in divisors.basis)
-    return ["Small divisors : |1 - exp(i k.w)| >= %s/%s for k != 0, and %s/%s for |k| >= %s" % (
-                _down(divisors.gamma, 6), power, _down(divisors.gamma_tail, 6), power,
-                divisors.reach),
-            *(["k : the integer combinations of %s, |k| = %s" % (basis, " + ".join(terms))]
-              if n == 2 or norm.alpha != (1,) else [])]
+    return ["Small divisors : |1 - exp(i k.w)| >= %s/%s for k != 0" % (
+                _down(piece.gamma / scale ** n, 6), "|k|" if n == 1 else "|k|^2"),
+            *(["k : the integer combinations of %s, |k| = %s" % (" and ".join(
+                "(%s)" % ", ".join(map(str, k)) for k in piece.basis), " + ".join(terms))]
+              if n == 2 or strip.alpha != (1,) else [])]
 
 
 def undecided(problem: Problem, rotation: Rotation, reason: Union[NotFound, NotProved],
@@ -142,7 +135,7 @@ def undecided(problem: Problem, rotation: Rotation, reason: Union[NotFound, NotP
     return "\n".join(lines) + "\n"
 
 
-def _up(x: float, digits: int = 3) -> str:
+def _up(x: Union[float, Fraction], digits: int = 3) -> str:
     """x >= 0, rounded up."""
     return _text(Fraction(x), digits, True) if math.isfinite(x) else "unbounded"
 

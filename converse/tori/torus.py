@@ -17,7 +17,7 @@ For a range of parameters the amplitudes are p + s part with s in [-1, 1].  A to
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
-from typing import TYPE_CHECKING, Dict, List, Optional, Tuple
+from typing import TYPE_CHECKING, List, NamedTuple, Optional, Tuple
 
 import numpy as np
 
@@ -56,14 +56,29 @@ def family(problem: Problem) -> Tuple[FourierSum, Part]:
     return potential, tuple(part[j] for j in present) if parts else None
 
 
+class Strip(NamedTuple):
+    """In what norm the theorem is to be verified: a choice of the proof, no part of the claim.
+
+    frame, alpha -- |k| = sum of alpha[i] |frame[i].k|: n rows of n integers, n positive numbers
+    rho -- the width of the strip: ||f||_rho is the sum of |f_k| e^{rho |k|}
+    """
+
+    frame: Tuple[Tuple[int, ...], ...]
+    alpha: Tuple[Fraction, ...]
+    rho: Fraction
+
+
 @dataclass(frozen=True, eq=False)
 class Torus:
     """potential -- of dimension n; its amplitudes are those at s = 0
     part -- what s adds to them at s = 1, or None
     rotation -- omega
-    bits, modes -- {k: (c_0, ..., c_degree)} with k an n-tuple, the lexicographically positive one
-        of k and -k, and c_j = (re_0, im_0, ..., re_{n-1}, im_{n-1}) integers: the coefficient of
-        sigma^j in the components of u_k, times 2^bits
+    bits -- coefficients are integers times 2^-bits
+    k -- the modes, integers of shape (modes, n) in lexicographic order: of k and -k the one that is
+        lexicographically positive
+    numbers -- Python integers of shape (2, degree + 1, n, modes): the real and imaginary parts of
+        the coefficient of sigma^j in each component of u_k, times 2^bits
+    strip -- in which there is a proof, presumably; None if nothing is known of one
     piece -- (low, high), the s that are covered; (0, 0) if there is no parameter
     """
 
@@ -71,22 +86,32 @@ class Torus:
     part: Part
     rotation: "Rotation"
     bits: int
-    modes: Dict[Tuple[int, ...], Tuple[Tuple[int, ...], ...]]
+    k: np.ndarray
+    numbers: np.ndarray
+    strip: Optional[Strip] = None
     piece: Ends = NO_RANGE
 
     def __repr__(self) -> str:
         where = "" if self.part is None else ", s from %s to %s" % self.piece
-        return "<Torus, rotation %s, %d modes%s>" % (self.rotation, len(self.modes), where)
+        return "<Torus, rotation %s, %d modes%s>" % (self.rotation, len(self.k), where)
 
     @property
     def dimension(self) -> int:
         """n, of the angles theta."""
         return self.potential.dimension
 
-    @cached_property
+    @property
     def degree(self) -> int:
         """Of the coefficients as polynomials in sigma."""
-        return max(map(len, self.modes.values()), default=1) - 1
+        return self.numbers.shape[1] - 1
+
+    @cached_property
+    def amplitudes(self) -> Tuple[Tuple[Fraction, Fraction], ...]:
+        """Of each wave (c, d): its amplitude on the piece is c + d sigma."""
+        low, high = self.piece
+        part = self.part or (Fraction(0),) * len(self.potential.amplitude)
+        return tuple((p + (low + high) / 2 * d, (high - low) / 2 * d)
+                     for p, d in zip(self.potential.amplitude, part))
 
     def sigma(self, s: float = 0) -> float:
         """The variable of the piece, in [-1, 1], for a parameter s; ValueError: s is outside."""
@@ -96,34 +121,17 @@ class Torus:
         return (2 * s - low - high) / (high - low) if high > low else 0.0
 
     @cached_property
-    def vectors(self) -> np.ndarray:
-        """The k of the modes, shape (modes, n)."""
-        return np.array(list(self.modes), dtype=np.int64).reshape(-1, self.dimension)
-
-    @cached_property
-    def _series(self) -> np.ndarray:
-        """Complex doubles of shape (degree + 1, modes, n)."""
-        found = np.zeros((self.degree + 1, len(self.modes), self.dimension), complex)
+    def doubles(self) -> np.ndarray:
+        """The coefficients of the powers of sigma in complex doubles: shape (degree + 1, n, modes).
+        """
         unit = 1 << self.bits
-        for row, series in enumerate(self.modes.values()):
-            for j, numbers in enumerate(series):
-                found[j, row] = [complex(re / unit, im / unit)
-                                 for re, im in zip(numbers[::2], numbers[1::2])]
-        return found
-
-    @property
-    def lengths(self) -> np.ndarray:
-        """The |u_kj|_2 of sigma^j, in doubles, modes in the order of `vectors`: shape (degree + 1,
-        modes)."""
-        return np.linalg.norm(self._series, axis=2)
+        re, im = (np.array([x / unit for x in part.ravel().tolist()]).reshape(part.shape)
+                  for part in self.numbers)
+        return re + 1j * im
 
     def coefficients(self, s: float = 0) -> np.ndarray:
-        """The u_k at a parameter s, in doubles, in the order of `vectors`: shape (modes, n)."""
-        sigma = self.sigma(s)
-        total = np.zeros((len(self.modes), self.dimension), complex)
-        for each in self._series[::-1]:
-            total = total * sigma + each
-        return total
+        """The u_k at a parameter s, in doubles, in the order of `k`: shape (modes, n)."""
+        return np.tensordot(self.sigma(s) ** np.arange(self.degree + 1), self.doubles, 1).T
 
     def _sum(self, theta, coefficients):
         """2 Re sum of c_k e^{i k.theta} over the modes."""
@@ -131,7 +139,7 @@ class Torus:
         found = np.zeros(flat.shape)
         step = max(1, ENTRIES // max(len(flat), 1))
         for at in range(0, len(coefficients), step):
-            angle = flat @ self.vectors[at:at + step].T
+            angle = flat @ self.k[at:at + step].T
             found += 2 * (np.cos(angle) @ coefficients.real[at:at + step]
                           - np.sin(angle) @ coefficients.imag[at:at + step])
         return found.reshape(theta.shape)
@@ -145,7 +153,7 @@ class Torus:
     def J(self, theta: np.ndarray, s: float = 0) -> np.ndarray:
         """The actions J = x(theta) - x(theta - w) there: w + u(theta) - u(theta - w)."""
         theta = self._angles(theta)
-        turns = self.vectors @ np.array(self.rotation.floats, dtype=float)
+        turns = self.k @ np.array(self.rotation.floats, dtype=float)
         back = -np.expm1(-2j * np.pi * (turns - np.round(turns)))[:, None]
         return 2 * np.pi * np.array(self.rotation.floats, dtype=float) \
             + self._sum(theta, self.coefficients(s) * back)
@@ -160,12 +168,12 @@ class Torus:
     def decay(self, direction: Optional[np.ndarray] = None, s: Optional[float] = None) -> float:
         """The rate r at which the coefficients of u fall, |u_k| < C e^{-r d(k)} about.
 
-        direction -- d(k) of each of `vectors`, for instance a norm; by default sum of |k_i|
+        direction -- d(k) of each of `k`, for instance a norm; by default sum of |k_i|
         s -- the parameter, by default that in the middle of the piece
         It is the slope, over the outer half of the modes, of the upper concave envelope of
         log|u_k| over d(k); infinity if there are fewer than two modes.  No bound: an estimate."""
-        far = np.abs(self.vectors).sum(1) if direction is None else np.asarray(direction)
-        coefficients = self._series[0] if s is None else self.coefficients(s)
+        far = np.abs(self.k).sum(1) if direction is None else np.asarray(direction)
+        coefficients = self.doubles[0].T if s is None else self.coefficients(s)
         return decay(far, np.abs(coefficients).max(1, initial=0))
 
     def _repr_html_(self) -> str:

@@ -468,9 +468,10 @@ def random_case(seed, size=0.05, bits=24, is_odd=False):
         bare = "piece %s %s 1 0 0\n"
         pieces = [bare % (-1, low)] * (low > -1) + pieces + [bare % (high, 1)] * (high < 1)
     text = ("converse torus 1\nprogram: by hand\ndimension: %d\n" % n + "".join(lines) + field_text
-            + "frame: %s\nalpha: %s\npieces: %d\ntori:\n" % (
+            + "frame: %s\nalpha: %s\nrho:%s\npieces: %d\ntori:\n" % (
                 " ".join(str(x) for row in norm.frame for x in row),
-                " ".join(map(str, norm.alpha)), len(pieces)) + "".join(pieces))
+                " ".join(map(str, norm.alpha)), " 0.1" * len(pieces), len(pieces))
+            + "".join(pieces))
     return Case(text, n, mine, u, omega, norm.frame, norm.alpha, reach)
 
 
@@ -479,7 +480,7 @@ def torus_of(case, is_odd=False):
         case.text.encode()).hexdigest()
     claim = torus_file.read_torus(text.encode())
     piece = max(claim.pieces, key=lambda piece: len(piece.modes))
-    return tori.Torus(tori.Setting(claim), piece, is_odd, False)
+    return tori.Torus(tori.Setting(claim), piece, is_odd)
 
 
 class Truth:

@@ -3,6 +3,7 @@
 from fractions import Fraction
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
 
 from converse.draw import torus_figure
@@ -17,20 +18,25 @@ CIRCLE = FourierSum(((1, 0, NONE),), (Fraction(1, 2),), 1)
 WAVES = FourierSum(((1, 0, NONE), (0, 1, NONE)), (Fraction(1, 20), Fraction(1, 30)), 2)
 
 
+def torus(potential, part, modes, *piece):
+    """Of modes {k: of each power of sigma (re_0, im_0, ...)}."""
+    n, rows = potential.dimension, sorted(modes.items())
+    numbers = np.array([series for _, series in rows], object).reshape(len(rows), -1, n, 2)
+    return Torus(potential, part, read_rotation("golden" if n == 1 else "T49"), 20,
+                 np.array([k for k, _ in rows]), numbers.transpose(3, 1, 2, 0), None, *piece)
+
+
 def proved(*tori):
     return SimpleNamespace(pieces=[SimpleNamespace(
-        torus=torus, rho=Fraction(1, 10), needed=1e-8, residual=1e-11,
-        tried=((Fraction(1, 20), 1e-12, 1e-10), (Fraction(1, 10), 1e-11, 1e-8),
-               (Fraction(1, 5), 1e-3, 1e-7), (Fraction(2, 5), float("inf"), 1e-9)))
+        torus=torus, needed=Fraction(1, 10 ** 8), residual=Fraction(1, 10 ** 11))
         for torus in tori])
 
 
-ONE = proved(Torus(CIRCLE, None, read_rotation("golden"), 20, {
-    (k,): ((10 ** 6 >> 2 * k, -k),) for k in range(1, 9)}))
-TWO = proved(Torus(WAVES, None, read_rotation("T49"), 20, {
+ONE = proved(torus(CIRCLE, None, {(k,): ((10 ** 6 >> 2 * k, -k),) for k in range(1, 9)}))
+TWO = proved(torus(WAVES, None, {
     (1, 0): ((90000, 0, 9000, 10),), (0, 1): ((0, 10, 80000, -9),), (2, -1): ((1, 2, 3, 4),)}))
-RANGE = proved(*(Torus(CIRCLE, (Fraction(1, 4),), read_rotation("golden"), 20,
-                       {(1,): ((10 ** 5, 0), (10 ** 4, 3)), (2,): ((10 ** 3, 9),)},
+RANGE = proved(*(torus(CIRCLE, (Fraction(1, 4),),
+                       {(1,): ((10 ** 5, 0), (10 ** 4, 3)), (2,): ((10 ** 3, 9), (0, 0))},
                        (Fraction(low), Fraction(low + 1))) for low in (-1, 0)))
 
 
@@ -42,17 +48,17 @@ def test_a_proved_torus_is_drawn_as_the_name_says(tmp_path):
         torus_figure.draw(ONE, str(tmp_path / "a.ps"))
 
 
-def test_the_widths_that_were_tried_are_shown():
-    """The residual that is needed and the one that was reached, over rho; infinite ones are not."""
+def test_what_is_needed_and_what_was_reached_is_shown():
+    """Of a range over the parameter, of a single torus in the title."""
     from matplotlib.figure import Figure
     axes = Figure().subplots()
-    torus_figure._errors(axes, ONE.pieces)
-    needed, reached, chosen = axes.lines
-    assert 10 ** needed.get_xdata() == pytest.approx([0.05, 0.1, 0.2])
-    assert 10 ** needed.get_ydata() == pytest.approx([1e-10, 1e-8, 1e-7])
-    assert 10 ** reached.get_ydata() == pytest.approx([1e-12, 1e-11, 1e-3])
-    assert [line.get_label() for line in (needed, reached)] == ["needed", "reached"]
-    assert chosen.get_xdata() == pytest.approx([-1, -1])
+    torus_figure._errors(axes, RANGE.pieces)
+    needed, reached = axes.patches
+    assert [each.get_label() for each in (needed, reached)] == ["needed", "reached"]
+    assert 10 ** needed.get_data().values == pytest.approx([1e-8, 1e-8])
+    assert 10 ** reached.get_data().values == pytest.approx([1e-11, 1e-11])
+    title = torus_figure._title([ONE.pieces[0].torus], 500, ONE.pieces)
+    assert "at most 1.00e-11, admissible 1.00e-08" in title
 
 
 @pytest.mark.slow
@@ -64,22 +70,23 @@ def test_the_same_picture_is_the_same_file(proof):
 
 
 def test_a_torus_draws_itself_in_a_notebook(monkeypatch):
-    torus = ONE.pieces[0].torus
-    words = "<pre>%s</pre>" % repr(torus).replace("<", "&lt;").replace(">", "&gt;")
-    assert torus._repr_html_().startswith(words + '<img alt="the torus" src="data:image/png;base64')
+    circle = ONE.pieces[0].torus
+    words = "<pre>%s</pre>" % repr(circle).replace("<", "&lt;").replace(">", "&gt;")
+    assert circle._repr_html_().startswith(
+        words + '<img alt="the torus" src="data:image/png;base64')
 
     def missing():
         raise ConverseError("no matplotlib")
 
     monkeypatch.setattr(torus_figure.plot, "check", missing)
-    assert torus._repr_html_() == words
+    assert circle._repr_html_() == words
 
 
 @pytest.mark.slow
 def test_the_copies_of_a_torus_fill_the_square(tmp_path):
     """However far u moves it: no corner is left white."""
     import matplotlib.image
-    far = Torus(WAVES, None, read_rotation("T49"), 20, {(1, 1): ((400000, 0, 0, 300000),)})
+    far = torus(WAVES, None, {(1, 1): ((400000, 0, 0, 300000),)})
     path = tmp_path / "a.png"
     path.write_bytes(torus_figure.picture([far]))
     image = matplotlib.image.imread(str(path))

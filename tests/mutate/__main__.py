@@ -36,7 +36,7 @@ PATIENCE = 900                          # seconds, for the tests of one file
 # that guess where to start are left out, because no proof rests on them.
 PYTHON = {"orbits": ("enclosure", "exponents"),
           "check": ("field", "series", "tori", "torus_file"),
-          "tori": ("constants", "divisors", "field", "proved", "residual", "theorem")}
+          "tori": ("certificate", "field", "proved")}
 GUESSES = ("thesis/start.c", "loewner/start.c", "model/stationary.c")
 
 # The tests that may notice, by what a file's name begins with; the likely one first.
@@ -44,8 +44,7 @@ NUMBERS = ["test_apm.py", "test_special.py", "test_bounding.py", "test_bd_trig.p
            "test_bounds.py",
            "test_images.py", "test_search.py"]
 SHARP = ["test_loewner.py", "test_waves.py", "test_search.py"]
-TORI = ["test_review.py", "test_theorem.py", "test_divisors.py", "test_residual.py",
-        "test_proved.py"]
+TORI = ["test_certificate.py", "test_proved.py"]
 FINDERS = ["test_orbits.py", "test_orbits_fail.py", "test_floor.py", "test_proved.py"]
 TESTS = {
     "arith/apm": NUMBERS, "arith/special": ["test_special.py", *NUMBERS],

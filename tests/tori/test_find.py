@@ -11,13 +11,12 @@ import pytest
 from converse.model.problem import LINE, Problem
 from converse.tori import continuation, refinement
 from converse.tori.continuation import Way
-from converse.tori.divisors import Norm
 from converse.tori.find import MOST_DEGREE, NotFound, _Pieces, find, series_rate
 from converse.tori.newton import Mesh, default_frame, triangular
-from converse.tori.refinement import Digits, Plan, digits_for, layers_for
-from converse.tori.residual import residual
+from converse.tori.plan import Plan
+from converse.tori.refinement import Modes, layers_for, numbers_of, pruned, taken
 from converse.tori.rotation import read_rotation
-from converse.tori.torus import family
+from converse.tori.torus import Torus, family
 
 GOLDEN = read_rotation("golden")
 DIGITS = 50
@@ -49,10 +48,10 @@ def exact_torus(torus):
 
     def x(turns):
         total = [2 * mpmath.pi * t for t in turns]
-        for k, (c,) in torus.modes.items():
+        for k, c in zip(torus.k.tolist(), torus.numbers[:, 0].transpose(2, 1, 0).tolist()):
             e = mpmath.expjpi(2 * sum(a * t for a, t in zip(k, turns)))
             for i in range(n):
-                total[i] += 2 * unit * (c[2 * i] * e.real - c[2 * i + 1] * e.imag)
+                total[i] += 2 * unit * (c[i][0] * e.real - c[i][1] * e.imag)
         return total
 
     def step(y, J):
@@ -142,18 +141,18 @@ def test_the_decay_is_told_only_if_it_ends_before():
 
 
 def test_refinement_begins_with_what_is_below_the_noise(monkeypatch):
-    """It belongs to the errors of the other coefficients: without it E is 100 times larger here."""
+    """It belongs to the errors of the other coefficients: without it E is much larger, 7e-10."""
     begun = []
 
-    def refined(digits, *_):
-        u = digits.mesh.spread(digits.k, digits.doubles()[0])
-        begun.append(abs(digits.mesh.error(u, np.array([0.965]))).sum())
+    def refined(torus, modes, *_):
+        u = modes.mesh.spread(modes.k, torus.doubles[0])
+        begun.append(abs(modes.mesh.error(u, np.array([0.965]))).sum())
         raise KeyboardInterrupt
 
     monkeypatch.setattr(sys.modules["converse.tori.find"], "refined", refined)
     with pytest.raises(KeyboardInterrupt):
         find(Problem("0.965", 0, 0), GOLDEN)
-    assert begun[0] < 1e-13
+    assert begun[0] < 1e-12
 
 
 def test_what_does_not_go_together_is_refused():
@@ -253,30 +252,29 @@ def test_what_is_left_out_of_a_torus_is_about_what_it_may_be():
     potential, _ = family(Problem("0.8", 0, 0))
     torus = find(Problem("0.8", 0, 0), GOLDEN, margin=1e8)
     mesh = Mesh(potential, GOLDEN, default_frame(potential), (512,))
-    aim = Plan(Norm(((1,),), (Fraction(1),)), np.array([1.0]), 200, 0.05, 1e-8, 0.1)
-    digits = Digits(mesh, mesh.inside & (abs(mesh.k).max(0) > 0), torus.bits)
-    digits.add(digits.picked(mesh.spread(torus.vectors.T, torus.coefficients().T))[None])
+    aim = Plan(((1,),), (1,), 200, 0.05, 1e-8, 0.1)
 
-    def norm():
-        u = mesh.spread(digits.k, digits.doubles()[0])
+    def norm(torus):
+        u = mesh.spread(torus.k.T, torus.doubles[0])
         error = mesh.error(u, np.array([0.8]))
         return 2 * float((abs(error[0]) * np.exp(0.05 * mesh.k[0])).sum())
 
-    before, modes = norm(), len(digits.torus(potential, None, GOLDEN).modes)
-    said = digits.prune(aim, potential, None, 1e-6)
-    assert 1e-7 < said < 1e-6 and len(digits.torus(potential, None, GOLDEN).modes) < modes
-    assert said / 20 < norm() - before < said
+    shorter, said = pruned(torus, aim, 1e-6)
+    assert 1e-7 < said < 1e-6 and len(shorter.k) < len(torus.k)
+    assert said / 20 < norm(shorter) - norm(torus) < said
 
 
 def test_a_torus_that_is_accurate_enough_is_not_corrected(monkeypatch):
     potential, _ = family(Problem("0.8", 0, 0))
     mesh = Mesh(potential, GOLDEN, default_frame(potential), (64,))
-    digits = Digits(mesh, mesh.inside & (abs(mesh.k).max(0) > 0), 60)
+    modes = Modes(mesh, mesh.inside & (abs(mesh.k).max(0) > 0))
+    torus = Torus(potential, None, GOLDEN, 60, modes.k.T, numbers_of(
+        np.zeros((1, *modes.k.shape), complex), 60))
     error = np.full((1, 1, *mesh.k.shape[1:]), 1e-9 + 0j)
     calls, correction = [], Mesh.correction
     monkeypatch.setattr(Mesh, "correction", lambda *given: calls.append(0) or correction(*given))
     for enough, needed in ((1e-6, False), (1e-9, True)):
-        refinement._corrected(digits, error, np.ones(mesh.k.shape[1:]), [np.array([0.8])], 1,
+        refinement._corrected(torus, modes, error, np.ones(mesh.k.shape[1:]), [np.array([0.8])], 1,
                               enough)
         assert bool(calls) == needed
 
@@ -295,16 +293,18 @@ def test_more_modes_begin_with_the_coefficients_of_fewer():
     frame = default_frame(potential)
     small, large = (Mesh(potential, read_rotation("spiral"), frame, sizes)
                     for sizes in ((16, 8), (32, 16)))
-    first = Digits(small, small.inside & (abs(small.k).sum(0) > 0), 30)
-    second = Digits(large, large.inside & (abs(large.k).sum(0) > 0), 40)
+    few, many = (Modes(mesh, mesh.inside & (abs(mesh.k).sum(0) > 0)) for mesh in (small, large))
     random = np.random.default_rng(4)
-    first.add(random.normal(size=(1, *first.k.shape)) + 1j * random.normal(size=first.k.shape))
-    second.take(first)
-    assert (small.spread(first.k, first.doubles()[0]) == large.moved(
-        large.spread(second.k, second.doubles()[0]), small)).all()
-    third = Digits(small, small.inside & (abs(small.k).sum(0) > 0), 30)
-    third.take(second)
-    assert (third.parts == first.parts).all()
+    c = random.normal(size=(1, *few.k.shape)) + 1j * random.normal(size=few.k.shape)
+
+    def torus(modes, bits, numbers):
+        return Torus(potential, None, read_rotation("spiral"), bits, modes.k.T, numbers)
+
+    first = torus(few, 30, numbers_of(c, 30))
+    second = torus(many, 40, taken(many, 40, first))
+    assert (small.spread(few.k, first.doubles[0]) == large.moved(
+        large.spread(many.k, second.doubles[0]), small)).all()
+    assert (taken(few, 30, second) == first.numbers).all()
 
 
 @pytest.mark.slow
@@ -338,9 +338,9 @@ def test_pieces_of_a_range(problem, rotation, count):
 @pytest.mark.parametrize("ends", [("0.3", "0.85"), ("-0.85", "-0.3")])
 def test_pieces_are_as_long_as_their_degree_permits(ends, monkeypatch):
     """On either side of the map without potential: no trial is lost, and no turn in balls."""
-    residuals, words = [], []
-    monkeypatch.setattr(refinement, "residual",
-                        lambda *given: residuals.append(given) or residual(*given))
+    residuals, words, errors = [], [], refinement.errors
+    monkeypatch.setattr(refinement, "errors",
+                        lambda *given: residuals.append(given) or errors(*given))
     pieces = find(Problem(ends, 0, 0), GOLDEN, progress=words.append)
     assert len(pieces) == len(residuals) == 2
     assert sum(word.startswith("looking for the tori of") for word in words) == 2
@@ -367,9 +367,10 @@ def test_rounded_coefficients_leave_what_the_theorem_needs():
     """Those that count most, at the edge of a wide strip, too."""
     potential, _ = family(Problem("0.8", 0, 0))
     like = Mesh(potential, GOLDEN, default_frame(potential), (8,))
-    aim = Plan(Norm(((1,),), (Fraction(1),)), np.array([1.0]), 300, 0.1, 1e-20, 0.3)
-    digits = digits_for(aim, like, 100)
-    rounding = 2.0 ** -digits.bits * np.exp(aim.rho * aim.length(digits.mesh)[digits.keep]).sum()
+    aim = Plan(((1,),), (1,), 300, 0.1, 1e-20, 0.3)
+    mesh = aim.mesh(like)
+    k = mesh.k[:, aim.keep(mesh)]
+    rounding = 2.0 ** -aim.bits(k, 0, 100) * np.exp(aim.rho * aim.length(k)).sum()
     assert rounding < aim.needed / 100 / 200
 
 
@@ -384,7 +385,7 @@ def test_a_range_that_goes_too_far():
 @pytest.mark.slow
 def test_the_line_of_the_thesis_up_to_0_006():
     torus = find(line("0.006"), read_rotation("T49"))
-    assert len(torus.modes) < 4000 and torus.decay() > 0.1
+    assert len(torus.k) < 4000 and torus.decay() > 0.1
 
 
 def test_what_is_going_on_is_told():

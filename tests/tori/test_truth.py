@@ -35,11 +35,10 @@ def proved(request):
 def value(torus, theta):
     """u(theta) with many digits, from the integers of the torus."""
     u = [mpmath.mpf(0)] * torus.dimension
-    for k, (numbers,) in torus.modes.items():
+    for k, numbers in zip(torus.k.tolist(), torus.numbers[:, 0].transpose(2, 1, 0).tolist()):
         turn = mpmath.expj(mpmath.fdot(k, theta))
-        for i in range(torus.dimension):
-            c = mpmath.mpc(*numbers[2 * i:2 * i + 2]) / 2 ** torus.bits
-            u[i] += 2 * (c * turn).real
+        for i, parts in enumerate(numbers):
+            u[i] += 2 * (mpmath.mpc(*parts) / 2 ** torus.bits * turn).real
     return u
 
 
@@ -111,13 +110,13 @@ def test_the_true_torus_is_where_it_was_proved_to_be(name):
     problem, rotation = CASES[name]
     rough, fine = (prove(find(problem, rotation, margin=margin)) for margin in (10.0, 1e9))
     assert fine.distance < rough.distance / 4
-    units = [1 / F(2) ** proof.torus.bits for proof in (rough, fine)]
-    zero = ((0,) * (2 * rough.torus.dimension),)
+    coefficients = [dict(zip(map(tuple, torus.k.tolist()), torus.coefficients()))
+                    for torus in (rough.torus, fine.torus)]
     total = 0.0
-    for k in {*rough.torus.modes, *fine.torus.modes}:
-        (a,), (b,) = (proof.torus.modes.get(k, zero) for proof in (rough, fine))
-        total += 2 * np.linalg.norm([float(x * units[0] - y * units[1]) for x, y in zip(a, b)])
-    l0 = max(proof.worst.constants.l0 for proof in (rough, fine))
+    for k in {*coefficients[0], *coefficients[1]}:
+        a, b = (each.get(k, np.zeros(rough.torus.dimension)) for each in coefficients)
+        total += 2 * np.linalg.norm(a - b)
+    l0 = max(float(proof.worst.constants.l) for proof in (rough, fine))
     assert 0 < total <= (2 + l0) * (rough.distance + fine.distance)
 
 

@@ -1,0 +1,181 @@
+"""The error E(u) = u(. + w) - 2 u + u(. - w) + grad V(theta + u) of a torus with many digits, by
+python-flint.  It is computed at the midpoints of balls, whose radii are ignored: nothing rests on
+it.
+
+A function is evaluated on a mesh by fast Fourier transforms; its coefficients, and one line of
+values, are in memory at a time.  Where sigma is real so are the functions of theta, and two
+components are transformed as the parts of one complex function.
+"""
+
+from fractions import Fraction
+from typing import Dict, Iterator, List, Sequence, Tuple
+
+import numpy as np
+from flint import acb, arb, fmpq
+
+from ..model.balls import precision
+from .newton import Mesh
+from .torus import Torus
+
+ZERO, I, HALF_I = acb(0), acb(0, 1), acb(0, -0.5)
+Line = List[acb]
+
+
+def errors(mesh: Mesh, torus: Torus, layers: int, wanted: np.ndarray, bits: int
+           ) -> Iterator[np.ndarray]:
+    """The coefficients of E in doubles, as the mesh has them, at sigma = e^{2 pi i l/layers} for
+    l = 0, ..., layers/2; with one layer at sigma = 0, on a real mesh.
+
+    wanted -- of which modes of the mesh; the others are 0
+    bits -- of the midpoints"""
+    with precision(bits):
+        task = _Task(mesh, torus, wanted, bits)
+    for l in range(layers // 2 + 1):
+        with precision(bits):
+            sigma = _root(Fraction(2 * l, layers)) if layers > 1 else ZERO
+            found = task.error(sigma, 2 * l % layers == 0)
+        yield found
+
+
+class _Task:
+    """What is the same for all sigma."""
+
+    def __init__(self, mesh: Mesh, torus: Torus, wanted: np.ndarray, bits: int) -> None:
+        self.mesh, self.torus, self.wanted = mesh, torus, wanted
+        self.shape = (1, *mesh.sizes)[-2:]
+        self.places = [self._places(sign * torus.k.T) for sign in (1, -1)]
+        kept = self._places(mesh.k[:, wanted])[1]
+        self.kept = sorted({*kept, *(-q % self.shape[1] for q in kept)})
+        omega = [_ball((low + high) / 2) for low, high in torus.rotation.turns(bits // 3 + 20)]
+        self.turns = [4 * _dot(k, omega).sin_pi() ** 2 for k in torus.k.tolist()]
+        unit = arb((1, -torus.bits))
+        re, im = torus.numbers.reshape(2, torus.degree + 1, -1).transpose(0, 2, 1).tolist()
+        self.series = [[acb(a, b) * unit for a, b in zip(*each)] for each in zip(re, im)]
+        step = 2 * arb.pi() / self.shape[1]
+        self.waves = []                 # k, phase, turns per line, angles along a line
+        for (*k, phase), a in zip(torus.potential.waves, mesh.waves):
+            across, along = (0, *map(int, a))[-2:]
+            angles = [step * (-along * j % self.shape[1]) for j in range(self.shape[1])]
+            self.waves.append((k[:torus.dimension], phase, across, angles))
+
+    def _places(self, k):
+        """Where modes stand in the matrix of coefficients: their first indices, and the second."""
+        a = self.mesh.coordinates(k)
+        return [(x % size).tolist() for x, size in zip([0 * a[0], *a][-2:], self.shape)]
+
+    def error(self, sigma: acb, is_real: bool) -> np.ndarray:
+        n, (m0, m1) = self.torus.dimension, self.shape
+        at_k = self._at(sigma)
+        # At -k stands the conjugate of what stands at k where sigma is the conjugate.
+        at_minus_k = at_k if is_real else self._at(sigma.conjugate())
+        sides = [at_k, [[x.conjugate() for x in each] for each in at_minus_k]]
+        if is_real and n == 2:
+            sides = [[[x + I * y for x, y in zip(*side)]] for side in sides]
+        columns: List[Dict[int, Line]] = []
+        linear: List[Dict[int, List[Tuple[int, acb]]]] = []
+        for at in range(len(sides[0])):
+            columns.append({})
+            linear.append({})
+            for side, places in zip(sides, self.places):
+                for x, turn, q0, q1 in zip(side[at], self.turns, *places):
+                    if q1 not in columns[at]:
+                        columns[at][q1], linear[at][q1] = [ZERO] * m0, []
+                    columns[at][q1][q0] = x
+                    linear[at][q1].append((q0, turn * x))
+        del sides, at_k, at_minus_k
+        amplitudes = [_ball(c) + _ball(d) * (sigma.real if is_real else sigma)
+                      for c, d in self.torus.amplitudes]
+        found = np.zeros((len(columns), m0, m1), complex)
+        lines = self._forces(_values(columns, m0, m1), amplitudes, is_real)
+        for at, q1, line in _coefficients(lines, len(columns), m0, self.kept):
+            for q0, x in linear[at].get(q1, ()):
+                line[q0] -= x
+            found[at, :, q1] = list(map(complex, line))
+        if is_real:                     # E_0 + i E_1, both real
+            other = np.roll(found[0, ::-1, ::-1], 1, (0, 1)).conj()
+            found = np.array([(found[0] + other) / 2, (found[0] - other) / 2j][:n])
+        shape = self.mesh.k.shape[1:]
+        return found[:, :, :shape[-1]].reshape(n, *shape) * self.wanted
+
+    def _at(self, sigma):
+        """The coefficients at sigma: of each component those of all modes."""
+        count, degree = len(self.torus.k), self.torus.degree
+        if degree:
+            powers = [sigma ** j for j in range(degree + 1)]
+            found = [sum((c * p for c, p in zip(each, powers)), ZERO) for each in self.series]
+        else:
+            found = [c for c, in self.series]
+        return [found[i * count:(i + 1) * count] for i in range(self.torus.dimension)]
+
+    def _forces(self, lines, amplitudes, is_real):
+        """Lines of grad V(theta + u) = -sum p_j k_j cos(k_j.x + pi phase_j), from those of u."""
+        m0 = self.shape[0]
+        for j0, line in enumerate(lines):
+            if is_real:
+                line = [[w.real for w in line[0]], [w.imag for w in line[0]]]
+            force = [[0] * self.shape[1]] * self.torus.dimension
+            for (k, phase, across, angles), p in zip(self.waves, amplitudes):
+                start = arb.pi() * _ball((phase - Fraction(2 * across * j0, m0)) % 2)
+                wave = [(x + (start + angle)).cos()
+                        for x, angle in zip(_combined(k, line), angles)]
+                for i, each in enumerate(k):
+                    if each:
+                        factor = -p * each
+                        force[i] = [f + factor * x for f, x in zip(force[i], wave)]
+            if is_real and len(force) == 2:
+                force = [[x + I * y for x, y in zip(*force)]]
+            yield force
+
+
+def _values(columns: Sequence[Dict[int, Line]], m0: int, m1: int) -> Iterator[List[Line]]:
+    """For j0 = 0, ..., m0 - 1, of each function, a line of its values at the angles
+    -2 pi (j0/m0, j1/m1)."""
+    rows = [{q1: acb.dft(line) if m0 > 1 else line for q1, line in each.items()}
+            for each in columns]
+    for j0 in range(m0):
+        found = []
+        for each in rows:
+            line = [ZERO] * m1
+            for q1, column in each.items():
+                line[q1], column[j0] = column[j0], ZERO         # it is not needed again
+            found.append(acb.dft(line))
+        yield found
+
+
+def _coefficients(lines: Iterator[List[Line]], count: int, m0: int, kept: Sequence[int]
+                  ) -> Iterator[Tuple[int, int, Line]]:
+    """The inverse of `_values`: (number of the function, q1, column) of the columns that are kept.
+    """
+    rows: List[Dict[int, Line]] = [{q1: [] for q1 in kept} for _ in range(count)]
+    for each in lines:
+        for found, line in zip(rows, each):
+            line = acb.dft(line, inverse=True)
+            for q1 in kept:
+                found[q1].append(line[q1])
+    for at, found in enumerate(rows):
+        for q1 in kept:
+            column = found.pop(q1)
+            yield at, q1, acb.dft(column, inverse=True) if m0 > 1 else column
+
+
+def _ball(x: Fraction) -> arb:
+    return arb(fmpq(x.numerator, x.denominator))
+
+
+def _root(half_turns: Fraction) -> acb:
+    """e^{pi i half_turns}."""
+    x = fmpq(half_turns.numerator, half_turns.denominator)
+    return acb(arb.cos_pi_fmpq(x), arb.sin_pi_fmpq(x))
+
+
+def _dot(k, omega):
+    return sum((number * each for number, each in zip(k, omega)), arb(0))
+
+
+def _combined(k, line):
+    """k.u for each of the values."""
+    (number, each), *rest = [(number, each) for number, each in zip(k, line) if number]
+    found = each if number == 1 else [number * x for x in each]
+    for number, each in rest:
+        found = [x + number * y for x, y in zip(found, each)]
+    return found
