@@ -39,13 +39,13 @@ Proof.
   pose proof (Rabs_pos (height m)). pose proof (weight_1 r (number m) Hr). nra.
 Qed.
 
-Lemma bounded_0 r M f : 1 <= r -> bounded r M f -> 0 <= M.
+Lemma bounded_0 {r M f} : 1 <= r -> bounded r M f -> 0 <= M.
 Proof. intros Hr (p & _ & S). pose proof (size_0 r p Hr). lra. Qed.
 
-Lemma bounded_ext r M N f g : bounded r M f -> (forall t, g t = f t) -> M <= N -> bounded r N g.
+Lemma bounded_ext {r M N f g} : bounded r M f -> (forall t, g t = f t) -> M <= N -> bounded r N g.
 Proof. intros (p & E & S) H L. exists p. split; [intros t; now rewrite H | lra]. Qed.
 
-Lemma bounded_everywhere r M f t : 1 <= r -> bounded r M f -> Rabs (f t) <= M.
+Lemma bounded_everywhere {r M f} t : 1 <= r -> bounded r M f -> Rabs (f t) <= M.
 Proof.
   intros Hr (p & E & S). rewrite E. apply Rle_trans with (size r p); [| exact S]. clear E S.
   induction p as [| m p IH]; simpl; [rewrite Rabs_R0; lra |].
@@ -54,7 +54,7 @@ Proof.
   apply Rle_trans with 1; [apply Rabs_le, COS_bound | now apply weight_1].
 Qed.
 
-Lemma bounded_periodic r M f t : bounded r M f -> f (t + 2 * PI) = f t.
+Lemma bounded_periodic {r M f} t : bounded r M f -> f (t + 2 * PI) = f t.
 Proof.
   intros (p & E & _). rewrite !E. clear E. induction p as [| m p IH]; simpl; [reflexivity |]. rewrite IH.
   f_equal. unfold value. f_equal.
@@ -66,14 +66,14 @@ Proof.
     f_equal. ring.
 Qed.
 
-Lemma bounded_less r s M f : 0 <= s <= r -> bounded r M f -> bounded s M f.
+Lemma bounded_less r s {M f} : 0 <= s <= r -> bounded r M f -> bounded s M f.
 Proof.
   intros H (p & E & S). exists p. split; [exact E |]. apply Rle_trans with (size r p); [| exact S].
   clear E S. induction p as [| m p IH]; simpl; [lra |]. apply Rplus_le_compat; [| exact IH].
   apply Rmult_le_compat_l; [apply Rabs_pos | now apply pow_incr].
 Qed.
 
-Lemma bounded_plus r M N f g : bounded r M f -> bounded r N g -> bounded r (M + N) (fun t => f t + g t).
+Lemma bounded_plus {r M N f g} : bounded r M f -> bounded r N g -> bounded r (M + N) (fun t => f t + g t).
 Proof.
   intros (p & E & S) (q & E' & S'). exists (p ++ q). split.
   - intros t. rewrite E, E'. clear. induction p as [| m p IH]; simpl; [ring |]. rewrite <- IH. ring.
@@ -88,7 +88,7 @@ Lemma size_map r s c (h : mode -> mode) p :
   size s (map h p) <= c * size r p.
 Proof. intros H. induction p as [| m p IH]; simpl; [lra |]. specialize (H m). lra. Qed.
 
-Lemma bounded_scal r M c f : bounded r M f -> bounded r (Rabs c * M) (fun t => c * f t).
+Lemma bounded_scal {r M} c {f} : bounded r M f -> bounded r (Rabs c * M) (fun t => c * f t).
 Proof.
   intros (p & E & S). exists (map (fun m => Mode (number m) (c * height m) (shift m)) p). split.
   - intros t. rewrite E. clear. induction p as [| m p IH]; simpl; [ring |]. rewrite <- IH.
@@ -97,16 +97,16 @@ Proof.
     apply size_map. intros m. simpl. rewrite Rabs_mult. lra.
 Qed.
 
-Lemma bounded_opp r M f : bounded r M f -> bounded r M (fun t => - f t).
+Lemma bounded_opp {r M f} : bounded r M f -> bounded r M (fun t => - f t).
 Proof.
-  intros H. apply (bounded_ext _ _ _ _ _ (bounded_scal r M (-1) f H)); [intros t; ring |].
+  intros H. apply (bounded_ext (bounded_scal (-1) H)); [intros t; ring |].
   rewrite Rabs_left by lra. lra.
 Qed.
 
-Lemma bounded_minus r M N f g : bounded r M f -> bounded r N g -> bounded r (M + N) (fun t => f t - g t).
-Proof. intros F G. exact (bounded_plus _ _ _ _ _ F (bounded_opp _ _ _ G)). Qed.
+Lemma bounded_minus {r M N f g} : bounded r M f -> bounded r N g -> bounded r (M + N) (fun t => f t - g t).
+Proof. intros F G. exact (bounded_plus F (bounded_opp G)). Qed.
 
-Lemma bounded_moved r M w f : bounded r M f -> bounded r M (fun t => f (t + w)).
+Lemma bounded_moved {r M} w {f} : bounded r M f -> bounded r M (fun t => f (t + w)).
 Proof.
   intros (p & E & S).
   exists (map (fun m => Mode (number m) (height m) (IZR (number m) * w + shift m)) p). split.
@@ -118,7 +118,7 @@ Proof.
   - apply Rle_trans with (1 * size r p); [| lra]. apply size_map. intros m. simpl. lra.
 Qed.
 
-Lemma bounded_reflected r M f : bounded r M f -> bounded r M (fun t => f (- t)).
+Lemma bounded_reflected {r M f} : bounded r M f -> bounded r M (fun t => f (- t)).
 Proof.
   intros (p & E & S). exists (map (fun m => Mode (number m) (height m) (- shift m)) p). split.
   - intros t. rewrite E. clear. induction p as [| m p IH]; simpl; [ring |]. rewrite <- IH.
@@ -132,32 +132,32 @@ Proof. exists [Mode k a b]. split; [intros t; unfold eval, value; simpl; ring | 
 
 Lemma bounded_const r c : bounded r (Rabs c) (fun _ => c).
 Proof.
-  apply (bounded_ext _ _ _ _ _ (bounded_mode r 0 c 0)); [intros t | unfold weight; simpl; lra].
+  apply (bounded_ext (bounded_mode r 0 c 0)); [intros t | unfold weight; simpl; lra].
   rewrite Rmult_0_l, Rplus_0_l, cos_0. ring.
 Qed.
 
 Lemma bounded_cos r k : bounded r (weight r k) (fun t => cos (IZR k * t)).
 Proof.
-  apply (bounded_ext _ _ _ _ _ (bounded_mode r k 1 0)); [intros t | rewrite Rabs_R1; lra].
+  apply (bounded_ext (bounded_mode r k 1 0)); [intros t | rewrite Rabs_R1; lra].
   now rewrite Rmult_1_l, Rplus_0_r.
 Qed.
 
 Lemma bounded_sin r k : bounded r (weight r k) (fun t => sin (IZR k * t)).
 Proof.
-  apply (bounded_ext _ _ _ _ _ (bounded_mode r k 1 (- (PI / 2)))); [intros t | rewrite Rabs_R1; lra].
+  apply (bounded_ext (bounded_mode r k 1 (- (PI / 2)))); [intros t | rewrite Rabs_R1; lra].
   rewrite Rmult_1_l, <- cos_neg. replace (- (IZR k * t + - (PI / 2))) with (PI / 2 - IZR k * t) by ring.
   symmetry. apply cos_shift.
 Qed.
 
 Lemma bounded_cos1 r : bounded r r cos.
 Proof.
-  apply (bounded_ext _ _ _ _ _ (bounded_cos r 1)); [intros t; now rewrite Rmult_1_l | unfold weight;
+  apply (bounded_ext (bounded_cos r 1)); [intros t; now rewrite Rmult_1_l | unfold weight;
     simpl; lra].
 Qed.
 
 Lemma bounded_sin1 r : bounded r r sin.
 Proof.
-  apply (bounded_ext _ _ _ _ _ (bounded_sin r 1)); [intros t; now rewrite Rmult_1_l | unfold weight;
+  apply (bounded_ext (bounded_sin r 1)); [intros t; now rewrite Rmult_1_l | unfold weight;
     simpl; lra].
 Qed.
 
@@ -203,7 +203,7 @@ Proof.
   nra.
 Qed.
 
-Lemma bounded_mult r M N f g : 1 <= r ->
+Lemma bounded_mult {r M N f g} : 1 <= r ->
   bounded r M f -> bounded r N g -> bounded r (M * N) (fun t => f t * g t).
 Proof.
   intros Hr (p & E & S) (q & E' & S'). exists (product p q). split.
@@ -250,7 +250,7 @@ Proof.
   auto_derive; [exact I |]. rewrite cos_plus, cos_PI2, sin_PI2. ring.
 Qed.
 
-Lemma bounded_smooth r M f : bounded r M f -> {f' : R -> R | forall t, is_derive f t (f' t)}.
+Lemma bounded_smooth {r M f} : bounded r M f -> {f' : R -> R | forall t, is_derive f t (f' t)}.
 Proof.
   intros (p & E & _). exists (eval (derivative p)). intros t.
   apply (is_derive_ext (eval p)); [intros s; now rewrite E | apply derive_eval].
@@ -274,7 +274,7 @@ Section Divisors.
 Variable w : R.
 Hypothesis divisor : forall k : Z, k <> 0%Z -> 1 / Rabs (IZR k) <= Rabs (2 * sin (IZR k * w / 2)).
 
-Lemma bounded_difference r d K M f : 1 <= r - d -> 0 < d -> r <= K * d -> bounded r M f ->
+Lemma bounded_difference r d K {M f} : 1 <= r - d -> 0 < d -> r <= K * d -> bounded r M f ->
   {c : R & {g : R -> R & {_ : Rabs c <= M /\ forall t, g (t + w) - g t = f t - c &
     bounded (r - d) (K * M) g}}}.
 Proof.

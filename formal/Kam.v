@@ -101,29 +101,29 @@ Proof.
   - nra.
   - apply Rmult_lt_0_compat; [exact He | apply pow_lt; lra].
   - lra.
-  - apply (bounded_ext _ _ _ _ _ Bu'); [reflexivity | lra].
+  - apply (bounded_ext Bu'); [reflexivity | lra].
   - replace (1 + rho * h - 3 * (rho * h / 6)) with (1 + rho * (h / 2)) in * by field.
     assert (Hr1 : 0 <= 1 + rho * (h / 2) <= 1 + rho * h) by lra.
     unshelve eexists; [exists (fun t => u t + v t), (fun t => u' t + v' t); unshelve eexists; [| split;
       [split |]] |].
     + split; [intros t; rewrite Hodd, Hv; ring | intros t].
       exact (is_derive_plus (V := R_NormedModule) u v t _ _ (Du t) (Dv t)).
-    + apply (bounded_ext _ _ _ _ _ (bounded_plus _ _ _ _ _ (bounded_less _ _ _ _ Hr1 Bu) Bv));
+    + apply (bounded_ext (bounded_plus (bounded_less _ _ Hr1 Bu) Bv));
         [reflexivity | lra].
-    + apply (bounded_ext _ _ _ _ _ (bounded_plus _ _ _ _ _ (bounded_less _ _ _ _ Hr1 Bu') Bv'));
+    + apply (bounded_ext (bounded_plus (bounded_less _ _ Hr1 Bu') Bv'));
         [reflexivity | lra].
-    + destruct Sv as (N0 & HN). exists N0. intros N H. apply (bounded_ext _ _ _ _ _ (HN N H));
+    + destruct Sv as (N0 & HN). exists N0. intros N H. apply (bounded_ext (HN N H));
         [reflexivity | exact e4].
     + intros t. simpl. replace (u t + v t - u t) with (v t) by ring.
       apply Rle_trans with (700 * (K / h * (K / h)) * (e * h ^ 6)); [| exact e2].
-      apply (bounded_everywhere (1 + rho * (h / 2))); [lra | exact Bv].
+      apply (bounded_everywhere (r := 1 + rho * (h / 2))); [lra | exact Bv].
 Qed.
 
 Lemma start : state 0.
 Proof.
   exists u0, u0'. unshelve eexists; [now split |]. simpl half. rewrite Rmult_1_r. split; [split |].
-  - apply (bounded_ext _ _ _ _ _ B0); [reflexivity | lra].
-  - apply (bounded_ext _ _ _ _ _ B0'); [reflexivity | lra].
+  - apply (bounded_ext B0); [reflexivity | lra].
+  - apply (bounded_ext B0'); [reflexivity | lra].
   - replace (e * 1 ^ 6) with e by ring. exact S0.
 Qed.
 
@@ -169,7 +169,7 @@ Qed.
 (* What u has of each step's. *)
 Lemma u_periodic i t : u i (t + 2 * PI) = u i t.
 Proof. unfold u. destruct (states i) as (f & f' & D & ((B & B') & S)). simpl.
-exact (bounded_periodic _ _ _ t B). Qed.
+exact (bounded_periodic t B). Qed.
 
 Lemma u_lipschitz i s t : Rabs (u i s - u i t) <= 2 / 3 * Rabs (s - t).
 Proof.
@@ -180,7 +180,7 @@ Proof.
     apply D.
   - rewrite Rabs_mult. apply Rmult_le_compat_r; [apply Rabs_pos |]. pose proof (half_pos i).
     apply Rle_trans with (a + (1 - half i) / 1000); [| lra].
-    apply (bounded_everywhere (1 + rho * half i)); [| exact B]. assert (0 <= rho * half i) by nra. lra.
+    apply (bounded_everywhere (r := 1 + rho * half i)); [| exact B]. assert (0 <= rho * half i) by nra. lra.
 Qed.
 
 Lemma u_solves i t : Rabs (u i (t + w) - 2 * u i t + u i (t - w) - eps * sin (t + u i t)) <= half i.
@@ -190,7 +190,7 @@ Proof.
   assert (Hr : 1 <= 1 + rho * h) by nra.
   apply le_epsilon. intros x Hx. destruct (small_power (x / 2)) as (N1 & HN1); [lra |].
   set (N := (N0 + N1)%nat). specialize (S N ltac:(lia)).
-  pose proof (bounded_everywhere _ _ _ t Hr S) as R0. pose proof (bounded_everywhere _ _ _ t Hr B) as F0.
+  pose proof (bounded_everywhere t Hr S) as R0. pose proof (bounded_everywhere t Hr B) as F0.
   assert (F1 : Rabs (f t) <= 1 / 2) by lra.
   destruct (near N (f t) F1) as [Nc Ns].
   assert (HN : (1 / 2) ^ N <= x / 2).

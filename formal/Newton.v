@@ -78,19 +78,19 @@ Lemma kick_tail r U u N k alpha : 1 <= r -> U <= 1 / 2 -> bounded r U u ->
   / INR (fact N) <= alpha -> bounded r (4 * alpha * r * U ^ N) (fun t => kick (k + N) u t - kick N u t).
 Proof.
   intros Hr HU Hu Ha.
-  assert (U0 := bounded_0 _ _ _ Hr Hu).
+  assert (U0 := bounded_0 Hr Hu).
   assert (A0 : 0 < / INR (fact N)) by (apply Rinv_0_lt_compat, INR_fact_lt_0).
   assert (Hc : forall a, (forall n, Rabs (a n) <= / INR (fact n)) -> bounded r (2 * alpha * U ^ N)
      (fun t => sum_below a (k + N) (u t) - sum_below a N (u t))).
-  { intros a H. refine (bounded_ext _ _ _ _ _ (bounded_tail r U u a alpha N k Hr HU Hu _) _ _);
+  { intros a H. refine (bounded_ext (bounded_tail r U u a alpha N k Hr HU Hu _) _ _);
       [| reflexivity |].
     - intros n Hn. eapply Rle_trans; [apply H |].
       apply Rle_trans with (/ INR (fact N)); [now apply factorials | exact Ha].
     - apply Rmult_le_compat_l; [lra |]. pose proof (pow_le U (k + N) U0). lra. }
-  refine (bounded_ext _ _ _ _ _ (bounded_plus _ _ _ _ _
-    (bounded_mult _ _ _ _ _ Hr (bounded_sin1 r) (Hc (fun n => fst (cos_sin n)) (fun n => proj1
+  refine (bounded_ext (bounded_plus
+    (bounded_mult Hr (bounded_sin1 r) (Hc (fun n => fst (cos_sin n)) (fun n => proj1
       (coefficients n))))
-    (bounded_mult _ _ _ _ _ Hr (bounded_cos1 r) (Hc (fun n => snd (cos_sin n)) (fun n => proj2
+    (bounded_mult Hr (bounded_cos1 r) (Hc (fun n => snd (cos_sin n)) (fun n => proj2
       (coefficients n))))) _ _).
   - intros t. unfold kick, Cos, Sin. ring.
   - apply Req_le. ring.
@@ -110,7 +110,7 @@ Proof.
   assert (Hr1 : 1 <= r) by lra.
   assert (Hrd : 1 <= r - d) by lra. assert (Hrdd : 1 <= r - d - d) by lra.
   assert (K3 : 3 <= K) by (apply Rmult_le_reg_r with d; lra).
-  assert (U0 := bounded_0 _ _ _ Hr1 Hu).
+  assert (U0 := bounded_0 Hr1 Hu).
   assert (K9 : 9 <= K * K) by nra.
   assert (He1 : e <= 1 / 100) by nra.
   destruct E as (N0 & HN0).
@@ -131,10 +131,10 @@ Proof.
   set (mu := fun t => 1 - L t * M t).
   assert (evenu' := odd_derivative _ _ Du Hodd).
   assert (HL : bounded r (5 / 3) L).
-  { refine (bounded_ext _ _ _ _ _ (bounded_plus _ _ _ _ _ (bounded_const r 1) Hu') _ _);
+  { refine (bounded_ext (bounded_plus (bounded_const r 1) Hu') _ _);
       [reflexivity | rewrite Rabs_R1; lra]. }
   assert (Hmu : bounded r e mu).
-  { refine (bounded_ext _ _ _ _ _ (bounded_scal _ _ ((-1) ^ N) _ (bounded_power _ _ _ N Hr1 Hu')) _ _).
+  { refine (bounded_ext (bounded_scal ((-1) ^ N) (bounded_power N Hr1 Hu')) _ _).
     - intros t. unfold mu, L, M. clear. induction N as [| n IH]; [simpl; ring |].
       rewrite sum_below_S, Rmult_plus_distr_l.
       replace (1 - ((1 + u' t) * sum_below (fun n => (-1) ^ n) n (u' t) + (1 + u' t) * ((-1) ^ n * u' t
@@ -146,32 +146,32 @@ Proof.
       lra. }
   assert (HM : bounded r 3 M).
   { cut (bounded r (3 * (1 - (2 / 3) ^ N)) M).
-    { intros H. apply (bounded_ext _ _ _ _ _ H); [reflexivity |]. pose proof (pow_le (2 / 3) N). lra. }
+    { intros H. apply (bounded_ext H); [reflexivity |]. pose proof (pow_le (2 / 3) N). lra. }
     unfold M. clear -Hr1 Hu'. induction N as [| n IH].
-    - apply (bounded_ext _ _ _ _ _ (bounded_const r 0)); [reflexivity | rewrite Rabs_R0; simpl; lra].
-    - refine (bounded_ext _ _ _ _ _ (bounded_plus _ _ _ _ _ IH
-        (bounded_scal _ _ ((-1) ^ n) _ (bounded_power _ _ _ n Hr1 Hu'))) _ _); [reflexivity |].
+    - apply (bounded_ext (bounded_const r 0)); [reflexivity | rewrite Rabs_R0; simpl; lra].
+    - refine (bounded_ext (bounded_plus IH
+        (bounded_scal ((-1) ^ n) (bounded_power n Hr1 Hu'))) _ _); [reflexivity |].
       rewrite pow_1_abs. simpl. lra. }
   assert (evenM : even M) by (intros t; unfold M; now rewrite evenu').
   assert (M_above : forall t, 59 / 100 <= M t).
-  { intros t. pose proof (bounded_everywhere _ _ _ t Hr1 Hmu) as B1.
-    pose proof (bounded_everywhere _ _ _ t Hr1 Hu') as B2.
+  { intros t. pose proof (bounded_everywhere t Hr1 Hmu) as B1.
+    pose proof (bounded_everywhere t Hr1 Hu') as B2.
     apply Rabs_le_between in B1, B2. unfold mu, L in B1. nra. }
   (* B, nearly the inverse of A = L_- L, and its mean mB. *)
   set (B := fun t => M (t - w) * M t).
   assert (B_above : forall t, 1 / 3 <= B t).
   { intros t. unfold B. pose proof (M_above t). pose proof (M_above (t - w)). nra. }
   assert (HB : bounded r 9 B).
-  { refine (bounded_ext _ _ _ _ _ (bounded_mult _ _ _ _ _ Hr1 (bounded_moved _ _ (- w) _ HM) HM) _ _);
+  { refine (bounded_ext (bounded_mult Hr1 (bounded_moved (- w) HM) HM) _ _);
       [reflexivity | lra]. }
   assert (symB : forall t, B (w - t) = B t).
   { intros t. unfold B. rewrite <- (evenM t), <- (evenM (t - w)).
     replace (- (t - w)) with (w - t) by ring. replace (w - t - w) with (- t) by ring. ring. }
-  destruct (bounded_difference w divisor (r - d) d K _ _ ltac:(lra) Hd ltac:(lra)
-    (bounded_less r (r - d) _ _ ltac:(lra) HB)) as (mB & beta & (_ & Ebeta) & Hbeta).
+  destruct (bounded_difference w divisor (r - d) d K ltac:(lra) Hd ltac:(lra)
+    (bounded_less r (r - d) ltac:(lra) HB)) as (mB & beta & (_ & Ebeta) & Hbeta).
   (* g = R_+ (L P). *)
-  destruct (bounded_difference w divisor r d K _ _ ltac:(lra) Hd HK
-    (bounded_mult _ _ _ _ _ Hr1 HL HP)) as (mg & g0 & (_ & Eg0) & Hg0).
+  destruct (bounded_difference w divisor r d K ltac:(lra) Hd HK
+    (bounded_mult Hr1 HL HP)) as (mg & g0 & (_ & Eg0) & Hg0).
   set (g := fun t => / 2 * (g0 t + g0 (w - t))).
   assert (Eg : forall t, g (t + w) = g t + L t * P t).
   { intros t. unfold g. replace (w - (t + w)) with (- t) by ring.
@@ -182,17 +182,17 @@ Proof.
   assert (symg : forall t, g (w - t) = g t).
   { intros t. unfold g. replace (w - (w - t)) with t by ring. ring. }
   assert (Hg : bounded (r - d) (5 / 3 * (K * e)) g).
-  { refine (bounded_ext _ _ _ _ _ (bounded_scal _ _ (/ 2) _ (bounded_plus _ _ _ _ _ Hg0
-      (bounded_reflected _ _ _ (bounded_moved _ _ w _ Hg0)))) _ _).
+  { refine (bounded_ext (bounded_scal (/ 2) (bounded_plus Hg0
+      (bounded_reflected (bounded_moved w Hg0)))) _ _).
     - intros t. unfold g. do 3 f_equal. ring.
     - rewrite Rabs_right by lra. apply Req_le. field. }
   (* C, and z = R_- (B (C - g)). *)
-  destruct (bounded_difference w divisor (r - d) d K _ _ ltac:(lra) Hd ltac:(lra)
-    (bounded_mult _ _ _ _ _ Hrd (bounded_less r (r - d) _ _ ltac:(lra) HB) Hg))
+  destruct (bounded_difference w divisor (r - d) d K ltac:(lra) Hd ltac:(lra)
+    (bounded_mult Hrd (bounded_less r (r - d) ltac:(lra) HB) Hg))
     as (mBg & gamma & (HmBg & Egamma) & Hgamma).
   assert (HmB : 1 / 3 <= mB).
   { apply (mean_above w B beta mB (1 / 3) (K * 9) Ebeta B_above). intros t.
-    now apply (bounded_everywhere (r - d - d)). }
+    now apply (bounded_everywhere (r := r - d - d)). }
   set (C := mBg / mB).
   assert (EC : C * mB = mBg) by (unfold C; field; lra).
   assert (HC : Rabs C <= 45 * (K * e)).
@@ -218,12 +218,12 @@ Proof.
   assert (HK2 : 0 <= K * e) by nra.
   assert (Hz : bounded (r - d - d) (420 * (K * K) * e) z).
   { assert (H0 : bounded (r - d - d) (420 * (K * K) * e) z0).
-    { refine (bounded_ext _ _ _ _ _ (bounded_minus _ _ _ _ _ (bounded_scal _ _ C _ Hbeta) Hgamma) _ _);
+    { refine (bounded_ext (bounded_minus (bounded_scal C Hbeta) Hgamma) _ _);
         [reflexivity |].
       assert (0 <= K * (K * e)) by nra. nra. }
-    refine (bounded_ext _ _ _ _ _ (bounded_scal _ _ (/ 2) _ (bounded_minus _ _ _ _ _ (bounded_moved _ _
-      w _ H0)
-      (bounded_reflected _ _ _ (bounded_moved _ _ w _ H0)))) _ _); [reflexivity |].
+    refine (bounded_ext (bounded_scal (/ 2) (bounded_minus (bounded_moved
+      w H0)
+      (bounded_reflected (bounded_moved w H0)))) _ _); [reflexivity |].
     rewrite Rabs_right by lra. apply Req_le. field. }
   assert (zplus : forall t, z (t + w) = z t + M t * M (t + w) * (C - (g t + L t * P t))).
   { intros t. pose proof (Ez (t + w)) as E1. unfold y, B in E1.
@@ -232,8 +232,8 @@ Proof.
   { intros t. pose proof (Ez t) as E1. unfold y, B in E1. lra. }
   set (v := fun t => L t * z t).
   assert (Hv : bounded (r - d - d) (700 * (K * K) * e) v).
-  { refine (bounded_ext _ _ _ _ _ (bounded_mult _ _ _ _ _ Hrdd
-      (bounded_less r (r - d - d) _ _ ltac:(lra) HL) Hz) _ _); [reflexivity | lra]. }
+  { refine (bounded_ext (bounded_mult Hrdd
+      (bounded_less r (r - d - d) ltac:(lra) HL) Hz) _ _); [reflexivity | lra]. }
   assert (oddv : odd v).
   { intros t. unfold v, L. rewrite evenu', oddz. ring. }
   (* The derivative of P. *)
@@ -252,21 +252,21 @@ Proof.
         (is_derive_unique _ _ _ D4), (is_derive_unique _ _ _ D5).
       unfold P', L, c, tau. ring. }
   assert (HP' := bounded_derivative r d K e P P' ltac:(lra) HK DP HP).
-  assert (Hu2 : bounded r (1 / 2) u) by (apply (bounded_ext _ _ _ _ _ Hu); [reflexivity | nra]).
+  assert (Hu2 : bounded r (1 / 2) u) by (apply (bounded_ext Hu); [reflexivity | nra]).
   assert (Hr0 : r * (1 / 2) ^ N <= e / 2).
   { pose proof (pow_le (1 / 2) N ltac:(lra)). nra. }
   assert (Htau : bounded r e tau).
   { assert (T : forall a, (forall n, Rabs (a n) <= / INR (fact n)) ->
       bounded r ((1 / 2) ^ N) (fun t => sum_below a (S N) (u t) - sum_below a N (u t))).
-    { intros a Ha. refine (bounded_ext _ _ _ _ _ (bounded_scal _ _ (a N) _ (bounded_power _ _ _ N Hr1
+    { intros a Ha. refine (bounded_ext (bounded_scal (a N) (bounded_power N Hr1
         Hu2)) _ _).
       - intros t. simpl. ring.
       - pose proof (pow_le (1 / 2) N ltac:(lra)). specialize (Ha N).
         pose proof (factorials 0 N ltac:(lia)). simpl (/ INR (fact 0)) in H0. rewrite Rinv_1 in H0.
         rewrite <- (Rmult_1_l ((1 / 2) ^ N)) at 2. apply Rmult_le_compat_r; lra. }
-    refine (bounded_ext _ _ _ _ _ (bounded_minus _ _ _ _ _
-      (bounded_mult _ _ _ _ _ Hr1 (bounded_cos1 r) (T _ (fun n => proj1 (coefficients n))))
-      (bounded_mult _ _ _ _ _ Hr1 (bounded_sin1 r) (T _ (fun n => proj2 (coefficients n))))) _ _);
+    refine (bounded_ext (bounded_minus
+      (bounded_mult Hr1 (bounded_cos1 r) (T _ (fun n => proj1 (coefficients n))))
+      (bounded_mult Hr1 (bounded_sin1 r) (T _ (fun n => proj2 (coefficients n))))) _ _);
       [reflexivity | lra]. }
   (* The new residual. *)
   set (q := fun t => sin t * rest_Cos (S N) (u t) (v t) + cos t * rest_Sin (S N) (u t) (v t)).
@@ -278,21 +278,21 @@ Proof.
     - unfold P, residual, kick, c, q. rewrite second_Cos, second_Sin. ring.
     - unfold v. rewrite zplus, zminus. unfold P', mu. ring. }
   assert (HCg : bounded (r - d) (47 * (K * e)) (fun t => C - g t)).
-  { refine (bounded_ext _ _ _ _ _ (bounded_minus _ _ _ _ _ (bounded_const _ C) Hg) _ _);
+  { refine (bounded_ext (bounded_minus (bounded_const _ C) Hg) _ _);
       [reflexivity | lra]. }
   assert (HCg' : bounded (r - d) (47 * (K * e)) (fun t => C - (g t + L t * P t))).
-  { apply (bounded_ext _ _ _ _ _ (bounded_moved _ _ w _ HCg)); [intros t; now rewrite Eg | lra]. }
+  { apply (bounded_ext (bounded_moved w HCg)); [intros t; now rewrite Eg | lra]. }
   assert (Huv : bounded (r - d - d) (1 / 2) (fun t => u t + v t)).
-  { apply (bounded_ext _ _ _ _ _ (bounded_plus _ _ _ _ _ (bounded_less r (r - d - d) _ _ ltac:(lra) Hu)
+  { apply (bounded_ext (bounded_plus (bounded_less r (r - d - d) ltac:(lra) Hu)
       Hv));
       [reflexivity | exact HU]. }
-  assert (Hu2' := bounded_less r (r - d - d) _ _ ltac:(lra) Hu2).
+  assert (Hu2' := bounded_less r (r - d - d) ltac:(lra) Hu2).
   assert (Hq : bounded (r - d - d) 16 q).
-  { refine (bounded_ext _ _ _ _ _ (bounded_plus _ _ _ _ _
-      (bounded_mult _ _ _ _ _ Hrdd (bounded_sin1 _)
-        (bounded_rest_below _ _ _ _ (S N) Hrdd Hu2' Huv (fun n => proj1 (coefficients n))))
-      (bounded_mult _ _ _ _ _ Hrdd (bounded_cos1 _)
-        (bounded_rest_below _ _ _ _ (S N) Hrdd Hu2' Huv (fun n => proj2 (coefficients n))))) _ _);
+  { refine (bounded_ext (bounded_plus
+      (bounded_mult Hrdd (bounded_sin1 _)
+        (bounded_rest_below (S N) Hrdd Hu2' Huv (fun n => proj1 (coefficients n))))
+      (bounded_mult Hrdd (bounded_cos1 _)
+        (bounded_rest_below (S N) Hrdd Hu2' Huv (fun n => proj2 (coefficients n))))) _ _);
       [reflexivity | lra]. }
   assert (Ke0 : 0 <= K * K * e) by nra.
   assert (HR : bounded (r - d - d) (7999999 * (K * K * K * K) * (e * e)) (residual (S N) (fun t => u t
@@ -301,15 +301,14 @@ Proof.
       apply (bounded_less r); [lra | assumption]).
     assert (dd : forall M f, bounded (r - d) M f -> bounded (r - d - d) M f) by (intros;
       apply (bounded_less (r - d)); [lra | assumption]).
-    refine (bounded_ext _ _ _ _ _ (bounded_minus _ _ _ _ _ (bounded_plus _ _ _ _ _ (bounded_plus _ _ _
-      _ _ (bounded_plus _ _ _ _ _
-      (bounded_mult _ _ _ _ _ Hrdd (dd _ _ HP') Hz)
-      (bounded_mult _ _ _ _ _ Hrdd (bounded_scal _ _ eps _ (dn _ _ Htau)) Hz))
-      (bounded_mult _ _ _ _ _ Hrdd (dn _ _ Hmu) (dn _ _ HP)))
-      (bounded_mult _ _ _ _ _ Hrdd (dn _ _ HM) (bounded_minus _ _ _ _ _
-        (bounded_mult _ _ _ _ _ Hrdd (dn _ _ (bounded_moved _ _ (- w) _ Hmu)) (dd _ _ HCg))
-        (bounded_mult _ _ _ _ _ Hrdd (dn _ _ (bounded_moved _ _ w _ Hmu)) (dd _ _ HCg')))))
-      (bounded_scal _ _ eps _ (bounded_mult _ _ _ _ _ Hrdd Hq (bounded_mult _ _ _ _ _ Hrdd Hv Hv))))
+    refine (bounded_ext (bounded_minus (bounded_plus (bounded_plus (bounded_plus
+      (bounded_mult Hrdd (dd _ _ HP') Hz)
+      (bounded_mult Hrdd (bounded_scal eps (dn _ _ Htau)) Hz))
+      (bounded_mult Hrdd (dn _ _ Hmu) (dn _ _ HP)))
+      (bounded_mult Hrdd (dn _ _ HM) (bounded_minus
+        (bounded_mult Hrdd (dn _ _ (bounded_moved (- w) Hmu)) (dd _ _ HCg))
+        (bounded_mult Hrdd (dn _ _ (bounded_moved w Hmu)) (dd _ _ HCg')))))
+      (bounded_scal eps (bounded_mult Hrdd Hq (bounded_mult Hrdd Hv Hv))))
         Hnew _).
     set (k := Rabs eps) in *. assert (0 <= k) by apply Rabs_pos.
     assert (E2 : 0 <= e * e) by nra.
@@ -326,22 +325,22 @@ Proof.
     assert (A3 : 420 * (K * K * K) + 420 * (K * K) + 1 + 282 * K <= 159999 * (K * K * K * K)).
     { assert (27 <= K * K * K) by nra. nra. }
     apply (Rmult_le_compat_r (e * e)) in A3; [| exact E2]. lra. }
-  destruct (bounded_smooth _ _ _ Hv) as (v' & Dv).
+  destruct (bounded_smooth Hv) as (v' & Dv).
   exists v, v'. unshelve eexists; [now split |]. split; [split |].
-  - exact (bounded_less (r - d - d) (r - 3 * d) _ _ ltac:(lra) Hv).
-  - apply (bounded_ext (r - 3 * d) (K * (700 * (K * K) * e)) _ v'); [| reflexivity | lra].
+  - exact (bounded_less (r - d - d) (r - 3 * d) ltac:(lra) Hv).
+  - apply (bounded_ext (r := r - 3 * d) (M := K * (700 * (K * K) * e)) (f := v')); [| reflexivity | lra].
     apply (bounded_less (r - d - d - d)); [lra |].
     apply (bounded_derivative (r - d - d) d K _ v); [lra | lra | exact Dv | exact Hv].
   - exists (S N). intros N' HN'.
     assert (H : bounded (r - d - d) (e * e) (fun t => kick N' (fun t => u t + v t) t - kick (S N) (fun
       t => u t + v t) t)).
     { replace N' with ((N' - S N) + S N)%nat by lia.
-      refine (bounded_ext _ _ _ _ _ (kick_tail (r - d - d) (1 / 2) _ (S N) _ 1 Hrdd ltac:(lra) Huv _) _
+      refine (bounded_ext (kick_tail (r - d - d) (1 / 2) _ (S N) _ 1 Hrdd ltac:(lra) Huv _) _
         _); [| reflexivity |].
       - pose proof (factorials 0 (S N) ltac:(lia)). simpl (/ INR (fact 0)) in H. lra.
       - simpl. pose proof (pow_le (1 / 2) N ltac:(lra)). nra. }
     apply (bounded_less (r - d - d)); [lra |].
-    refine (bounded_ext _ _ _ _ _ (bounded_minus _ _ _ _ _ HR (bounded_scal _ _ eps _ H)) _ _).
+    refine (bounded_ext (bounded_minus HR (bounded_scal eps H)) _ _).
     + intros t. unfold residual. ring.
     + assert (1 <= K * K * K * K) by nra. nra.
 Qed.

@@ -83,10 +83,10 @@ Qed.
 Lemma bounded_re_im r k p : bounded r (norm r k p) (re k p) * bounded r (norm r k p) (im k p).
 Proof.
   revert k. induction p as [| a p IH]; intros k; cbn [norm].
-  - split; apply (bounded_ext _ _ _ _ _ (bounded_const r 0)); reflexivity || (rewrite Rabs_R0; lra).
+  - split; apply (bounded_ext (bounded_const r 0)); reflexivity || (rewrite Rabs_R0; lra).
   - destruct (IH (k + 1)%Z) as [Hr Hi]. split.
-    + exact (bounded_plus _ _ _ _ _ (bounded_scal _ _ (IZR a) _ (bounded_cos r k)) Hr).
-    + exact (bounded_plus _ _ _ _ _ (bounded_scal _ _ (IZR a) _ (bounded_sin r k)) Hi).
+    + exact (bounded_plus (bounded_scal (IZR a) (bounded_cos r k)) Hr).
+    + exact (bounded_plus (bounded_scal (IZR a) (bounded_sin r k)) Hi).
 Qed.
 
 (* ---- norms, in integers, with r = rn/rd *)
@@ -168,7 +168,7 @@ Definition top : Z := times_r (size_up b).
 
 Lemma u0_bounded : bounded r (IZR top / IZR D) u0.
 Proof.
-  refine (bounded_ext _ _ _ _ _ (bounded_scal _ _ (/ IZR D) _ (snd (bounded_re_im r 1 b))) _ _).
+  refine (bounded_ext (bounded_scal (/ IZR D) (snd (bounded_re_im r 1 b))) _ _).
   - intros t. unfold u0. field. apply IZR_lt in HD. lra.
   - apply IZR_lt in HD. rewrite Rabs_right by (apply Rle_ge, Rlt_le, Rinv_0_lt_compat; lra).
     unfold Rdiv. rewrite Rmult_comm. apply Rmult_le_compat_r; [apply Rlt_le, Rinv_0_lt_compat; lra |].
@@ -276,7 +276,7 @@ Proof.
   induction j as [| j IH].
   - cbn [series].
     assert (H : forall f : R -> R, (forall t, f t = 0) -> bounded r (0 / IZR one) f).
-    { intros f E. apply (bounded_ext _ _ _ _ _ (bounded_const r 0)); [exact E | rewrite Rabs_R0; lra]. }
+    { intros f E. apply (bounded_ext (bounded_const r 0)); [exact E | rewrite Rabs_R0; lra]. }
     split; split; apply H; intros t; unfold Cos, Sin; simpl; rewrite (Rmult_0_l t), ?cos_0, ?sin_0;
       field; lra.
   - cbn [series]. destruct (series j) as [[[T sum] eT] e]. destruct IH as [[Tr Ti] [Sr Si]].
@@ -312,9 +312,9 @@ Proof.
       assert (HU := u0_bounded). assert (Hn0 : 0 < / (IZR q * IZR one)) by (apply Rinv_0_lt_compat; nra).
       assert (Hj0 : 0 < / (INR j + 1)) by (apply Rinv_0_lt_compat; lra).
       split.
-      - refine (bounded_ext _ _ _ _ _ (bounded_plus _ _ _ _ _ (bounded_scal _ _ (- / (INR j + 1)) _
-          (bounded_mult _ _ _ _ _ r_1 HU Ti))
-          (bounded_scal _ _ (/ (IZR q * IZR one)) _ (fst HR))) _ _).
+      - refine (bounded_ext (bounded_plus (bounded_scal (- / (INR j + 1))
+          (bounded_mult r_1 HU Ti))
+          (bounded_scal (/ (IZR q * IZR one)) (fst HR))) _ _).
         + intros t. destruct (quot_re_im q X k' t) as [E1 _]. destruct (EX t) as [E2 _]. rewrite E2 in E1.
           fold Q Rm in E1.
           assert (E3 : re k' Q t = (- (2 * IZR D * u0 t) * im k (snd T) t - re k' Rm t) / IZR q)
@@ -322,9 +322,9 @@ Proof.
           destruct (EQ t) as [-> _]. rewrite E3. cbn [cos_sin fst pow]. rewrite Eq. field. lra.
         + rewrite Rabs_Ropp, !Rabs_right by lra. eapply Rle_trans; [| exact L]. unfold Rdiv at 4.
           unfold Rdiv in *. nra.
-      - refine (bounded_ext _ _ _ _ _ (bounded_plus _ _ _ _ _ (bounded_scal _ _ (/ (INR j + 1)) _
-          (bounded_mult _ _ _ _ _ r_1 HU Tr))
-          (bounded_scal _ _ (/ (IZR q * IZR one)) _ (snd HR))) _ _).
+      - refine (bounded_ext (bounded_plus (bounded_scal (/ (INR j + 1))
+          (bounded_mult r_1 HU Tr))
+          (bounded_scal (/ (IZR q * IZR one)) (snd HR))) _ _).
         + intros t. destruct (quot_re_im q X k' t) as [_ E1]. destruct (EX t) as [_ E2]. rewrite E2 in E1.
           fold Q Rm in E1.
           assert (E3 : im k' Q t = (2 * IZR D * u0 t * re k (snd T) t - im k' Rm t) / IZR q)
@@ -333,12 +333,12 @@ Proof.
         + rewrite !Rabs_right by lra. eapply Rle_trans; [| exact L]. unfold Rdiv in *. nra. }
     split; [exact HT |]. destruct HT as [Tr' Ti'].
     split.
-    + refine (bounded_ext _ _ _ _ _ (bounded_plus _ _ _ _ _ Sr Tr') _ _).
+    + refine (bounded_ext (bounded_plus Sr Tr') _ _).
       * intros t. destruct (sum_of_re_im sum T' t) as [-> _].
         change (Cos (S (S j)) (u0 t)) with (Cos (S j) (u0 t) + fst (cos_sin (S j)) * u0 t ^ S j).
         field. lra.
       * rewrite plus_IZR. apply Req_le. field. lra.
-    + refine (bounded_ext _ _ _ _ _ (bounded_plus _ _ _ _ _ Si Ti') _ _).
+    + refine (bounded_ext (bounded_plus Si Ti') _ _).
       * intros t. destruct (sum_of_re_im sum T' t) as [_ ->].
         change (Sin (S (S j)) (u0 t)) with (Sin (S j) (u0 t) + snd (cos_sin (S j)) * u0 t ^ S j).
         field. lra.
@@ -390,11 +390,11 @@ Lemma second_difference k p q : close k p q -> bounded r (norm r k p)
 Proof.
   revert k q. induction p as [| a p IH]; intros k [| c q] H; try contradiction;
     [| | destruct H as [Hc H]; specialize (IH (k + 1)%Z q H)];
-    try (apply (bounded_ext _ _ _ _ _ (bounded_const r 0)); [intros t; simpl; ring | rewrite Rabs_R0;
+    try (apply (bounded_ext (bounded_const r 0)); [intros t; simpl; ring | rewrite Rabs_R0;
       simpl; lra]).
   cbn [products im norm].
-  refine (bounded_ext _ _ _ _ _ (bounded_plus _ _ _ _ _ IH (bounded_scal _ _
-    (IZR a * (IZR one * (2 * cos (IZR k * w) - 2) - IZR c)) _ (bounded_sin r k))) _ _).
+  refine (bounded_ext (bounded_plus IH (bounded_scal
+    (IZR a * (IZR one * (2 * cos (IZR k * w) - 2) - IZR c)) (bounded_sin r k))) _ _).
   - intros t. replace (IZR k * (t + w)) with (IZR k * t + IZR k * w) by ring.
     replace (IZR k * (t - w)) with (IZR k * t - IZR k * w) by ring.
     rewrite sin_plus, sin_minus, mult_IZR. ring.
@@ -440,11 +440,11 @@ Proof.
   assert (P1 : 0 < / (IZR D * IZR one)) by (apply Rinv_0_lt_compat; nra).
   assert (P2 : 0 < / (IZR D * IZR ed * IZR one)) by (apply Rinv_0_lt_compat;
     repeat apply Rmult_lt_0_compat; lra).
-  refine (bounded_ext _ _ _ _ _ (bounded_plus _ _ _ _ _ (bounded_plus _ _ _ _ _
-    (bounded_scal _ _ (/ (IZR D * IZR ed * IZR one)) _ (snd (bounded_re_im r 1 l)))
-    (bounded_scal _ _ (/ (IZR D * IZR one)) _ (second_difference 1 b cs Hcs)))
-    (bounded_scal _ _ (- amp) _ (bounded_plus _ _ _ _ _
-      (bounded_mult _ _ _ _ _ r1 (bounded_sin1 r) Sr) (bounded_mult _ _ _ _ _ r1 (bounded_cos1 r)
+  refine (bounded_ext (bounded_plus (bounded_plus
+    (bounded_scal (/ (IZR D * IZR ed * IZR one)) (snd (bounded_re_im r 1 l)))
+    (bounded_scal (/ (IZR D * IZR one)) (second_difference 1 b cs Hcs)))
+    (bounded_scal (- amp) (bounded_plus
+      (bounded_mult r1 (bounded_sin1 r) Sr) (bounded_mult r1 (bounded_cos1 r)
         Si)))) _ _).
   - intros t. unfold residual, kick, u0.
     assert (El : im 1 l t = IZR ed * im 1 (products b cs) t - IZR en * IZR D * (sin t * re k (snd sum)
@@ -479,8 +479,8 @@ Proof.
     replace (IZR top / IZR D * IZR D) with (IZR top) by (field; lra). lra. }
   assert (Hf := INR_fact_lt_0 (S j)).
   exists (S j). intros N HN. replace N with ((N - S j) + S j)%nat by lia.
-  refine (bounded_ext _ _ _ _ _ (bounded_minus _ _ _ _ _ (residual_bounded j Hcs)
-    (bounded_scal _ _ (IZR en / IZR ed) _ (kick_tail r _ _ (S j) (N - S j) _ r_1 HU u0_bounded
+  refine (bounded_ext (bounded_minus (residual_bounded j Hcs)
+    (bounded_scal (IZR en / IZR ed) (kick_tail r _ _ (S j) (N - S j) _ r_1 HU u0_bounded
       (Rle_refl _)))) _ _).
   - intros t. unfold residual. ring.
   - assert (Hamp : Rabs (IZR en / IZR ed) = IZR (Z.abs en) / IZR ed).
@@ -530,7 +530,7 @@ Definition slope_top : Z := times_r (size_up (slopes 1 b)).
 Lemma u0'_bounded : bounded r (IZR slope_top / IZR D) u0'.
 Proof.
   apply IZR_lt in HD as HD'.
-  refine (bounded_ext _ _ _ _ _ (bounded_scal _ _ (/ IZR D) _ (fst (bounded_re_im r 1 (slopes 1 b)))) _ _).
+  refine (bounded_ext (bounded_scal (/ IZR D) (fst (bounded_re_im r 1 (slopes 1 b)))) _ _).
   - intros t. unfold u0'. field. lra.
   - rewrite Rabs_right by (apply Rle_ge, Rlt_le, Rinv_0_lt_compat; lra).
     unfold Rdiv. rewrite Rmult_comm. apply Rmult_le_compat_r; [apply Rlt_le, Rinv_0_lt_compat; lra |].

@@ -115,10 +115,10 @@ Qed.
 
 (* ---- functions of trigonometric polynomials *)
 
-Lemma bounded_power r M u n : 1 <= r -> bounded r M u -> bounded r (M ^ n) (fun t => u t ^ n).
+Lemma bounded_power {r M u} n : 1 <= r -> bounded r M u -> bounded r (M ^ n) (fun t => u t ^ n).
 Proof.
   intros Hr H. induction n as [| n IH]; [| now apply bounded_mult].
-  apply (bounded_ext _ _ _ _ _ (bounded_const r 1)); [reflexivity | rewrite Rabs_R1; simpl; lra].
+  apply (bounded_ext (bounded_const r 1)); [reflexivity | rewrite Rabs_R1; simpl; lra].
 Qed.
 
 (* The terms from N to N + k. *)
@@ -126,11 +126,11 @@ Lemma bounded_tail r M u a alpha N k : 1 <= r -> M <= 1 / 2 -> bounded r M u ->
   (forall n, (N <= n)%nat -> Rabs (a n) <= alpha) ->
   bounded r (2 * alpha * (M ^ N - M ^ (k + N))) (fun t => sum_below a (k + N) (u t) - sum_below a N (u t)).
 Proof.
-  intros Hr HM Hu Ha. pose proof (bounded_0 _ _ _ Hr Hu) as M0. induction k as [| k IH].
-  - apply (bounded_ext _ _ _ _ _ (bounded_const r 0)); [intros t; simpl; ring | rewrite Rabs_R0; simpl;
+  intros Hr HM Hu Ha. pose proof (bounded_0 Hr Hu) as M0. induction k as [| k IH].
+  - apply (bounded_ext (bounded_const r 0)); [intros t; simpl; ring | rewrite Rabs_R0; simpl;
       lra].
-  - refine (bounded_ext _ _ _ _ _ (bounded_plus _ _ _ _ _ IH
-      (bounded_scal _ _ (a (k + N)%nat) _ (bounded_power _ _ _ (k + N) Hr Hu))) _ _).
+  - refine (bounded_ext (bounded_plus IH
+      (bounded_scal (a (k + N)%nat) (bounded_power (k + N) Hr Hu))) _ _).
     + intros t. cbn [Nat.add sum_below]. ring.
     + cbn [Nat.add pow]. specialize (Ha (k + N)%nat ltac:(lia)). pose proof (pow_le M (k + N) M0).
       pose proof (Rabs_pos (a (k + N)%nat)).
@@ -140,10 +140,10 @@ Qed.
 Lemma bounded_below r M u a alpha N : 1 <= r -> M <= 1 / 2 -> bounded r M u ->
   (forall n, Rabs (a n) <= alpha) -> bounded r (2 * alpha) (fun t => sum_below a N (u t)).
 Proof.
-  intros Hr HM Hu Ha. apply (bounded_ext _ _ _ _ _ (bounded_tail r M u a alpha 0 N Hr HM Hu (fun n _ =>
+  intros Hr HM Hu Ha. apply (bounded_ext (bounded_tail r M u a alpha 0 N Hr HM Hu (fun n _ =>
     Ha n))).
   - intros t. rewrite Nat.add_0_r. simpl. ring.
-  - pose proof (pow_le M (N + 0) (bounded_0 _ _ _ Hr Hu)). specialize (Ha O). pose proof (Rabs_pos (a O)).
+  - pose proof (pow_le M (N + 0) (bounded_0 Hr Hu)). specialize (Ha O). pose proof (Rabs_pos (a O)).
     simpl (M ^ 0). nra.
 Qed.
 
@@ -182,14 +182,14 @@ Lemma bounded_rest r u v n : 1 <= r -> bounded r (1 / 2) u -> bounded r (1 / 2) 
   bounded r (2 * (INR n * (INR n - 1)) * (1 / 2) ^ n) (fun t => rest n (u t) (v t)).
 Proof.
   intros Hr Hu Huv. induction n as [| n IH].
-  - apply (bounded_ext _ _ _ _ _ (bounded_const r 0)); [reflexivity | rewrite Rabs_R0; simpl; lra].
-  - refine (bounded_ext _ _ _ _ _ (bounded_plus _ _ _ _ _ (bounded_mult _ _ _ _ _ Hr Huv IH)
-      (bounded_scal _ _ (INR n) _ (bounded_power _ _ _ (pred n) Hr Hu))) _ _); [reflexivity |].
+  - apply (bounded_ext (bounded_const r 0)); [reflexivity | rewrite Rabs_R0; simpl; lra].
+  - refine (bounded_ext (bounded_plus (bounded_mult Hr Huv IH)
+      (bounded_scal (INR n) (bounded_power (pred n) Hr Hu))) _ _); [reflexivity |].
     rewrite Rabs_right by (apply Rle_ge, pos_INR). rewrite S_INR.
     destruct n as [| n]; [simpl; lra |]. cbn [pred pow]. rewrite S_INR. apply Req_le. field.
 Qed.
 
-Lemma bounded_rest_below r u v a N : 1 <= r -> bounded r (1 / 2) u ->
+Lemma bounded_rest_below {r u v a} N : 1 <= r -> bounded r (1 / 2) u ->
   bounded r (1 / 2) (fun t => u t + v t) ->
   (forall n, Rabs (a n) <= / INR (fact n)) -> bounded r 4 (fun t => rest_below a N (u t) (v t)).
 Proof.
@@ -201,11 +201,11 @@ Proof.
     replace (INR n + 1 + 1 - 1) with ((INR n + 1) * 1) by ring. apply Rmult_le_compat_l; [lra |].
     apply Rmult_le_compat_l; lra. }
   cut (bounded r (4 * (1 - (1 / 2) ^ N)) (fun t => rest_below a N (u t) (v t))).
-  { intros H. apply (bounded_ext _ _ _ _ _ H); [reflexivity |]. pose proof (pow_le (1 / 2) N). lra. }
+  { intros H. apply (bounded_ext H); [reflexivity |]. pose proof (pow_le (1 / 2) N). lra. }
   induction N as [| N IH].
-  - apply (bounded_ext _ _ _ _ _ (bounded_const r 0)); [reflexivity | rewrite Rabs_R0; simpl; lra].
-  - refine (bounded_ext _ _ _ _ _ (bounded_plus _ _ _ _ _ IH
-      (bounded_scal _ _ (a N) _ (bounded_rest _ _ _ N Hr Hu Huv))) _ _); [reflexivity |].
+  - apply (bounded_ext (bounded_const r 0)); [reflexivity | rewrite Rabs_R0; simpl; lra].
+  - refine (bounded_ext (bounded_plus IH
+      (bounded_scal (a N) (bounded_rest _ _ _ N Hr Hu Huv))) _ _); [reflexivity |].
     cbn [pow]. pose proof (pow_le (1 / 2) N ltac:(lra)). destruct (F N) as [F0 F1].
     assert (Rabs (a N) * (INR N * (INR N - 1)) <= 1).
     { apply Rle_trans with (/ INR (fact N) * INR (fact N)).
