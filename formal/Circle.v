@@ -117,8 +117,8 @@ Definition U (y : R) : R := RInt (fun a => psi a - mean) 0 y.
 Lemma U_derive y : is_derive U y (psi y - mean).
 Proof.
   apply (is_derive_RInt (V := R_CompleteNormedModule) (fun a => psi a - mean) U 0 y).
-  - exists (mkposreal 1 Rlt_0_1). intros z _. apply (RInt_correct (V :=
-      R_CompleteNormedModule)), (ex_RInt_continuous (V := R_CompleteNormedModule)). intros a _.
+  - exists (mkposreal 1 Rlt_0_1). intros z _. apply (RInt_correct (V := R_CompleteNormedModule)).
+    apply (ex_RInt_continuous (V := R_CompleteNormedModule)). intros a _.
     apply (continuous_minus (V := R_NormedModule)); [apply psi_continuous | apply continuous_const].
   - apply (continuous_minus (V := R_NormedModule)); [apply psi_continuous | apply continuous_const].
 Qed.
@@ -128,8 +128,8 @@ Proof. unfold U. now rewrite RInt_point. Qed.
 
 Lemma U_2PI : U (2 * PI) = 0.
 Proof.
-  assert (H0 : ex_RInt psi 0 (2 * PI)) by (apply (ex_RInt_continuous (V := R_CompleteNormedModule));
-    intros a _; apply psi_continuous).
+  assert (H0 : ex_RInt psi 0 (2 * PI)).
+  { apply (ex_RInt_continuous (V := R_CompleteNormedModule)). intros a _. apply psi_continuous. }
   assert (H1 : ex_RInt (fun _ : R => mean) 0 (2 * PI)) by apply ex_RInt_const.
   pose proof (RInt_minus (V := R_CompleteNormedModule) psi (fun _ => mean) 0 (2 * PI) H0 H1) as E.
   rewrite RInt_const in E. change (U (2 * PI) = RInt psi 0 (2 * PI) - (2 * PI - 0) * mean) in E.
@@ -170,9 +170,8 @@ Proof.
     + intros y. unfold S2, S2'. cbn [fst snd]. apply is_derive_Reals, U_derive.
     + intros y. unfold S2, S2'. cbn [fst snd]. apply derivable_pt_lim_const.
     + apply Graph.continuous_ball. intros y. unfold S2'. cbn [fst].
-      apply (continuous_comp (U := prod_UniformSpace R_UniformSpace R_UniformSpace) fst (fun a => psi a
-        - mean));
-        [apply continuous_fst |].
+      apply (continuous_comp (U := prod_UniformSpace R_UniformSpace R_UniformSpace)
+        fst (fun a => psi a - mean)); [apply continuous_fst |].
       apply (continuous_minus (V := R_NormedModule)); [apply psi_continuous | apply continuous_const].
     + apply Graph.continuous_ball. intros y. unfold S2'. cbn [snd]. apply continuous_const.
   - intros y. unfold F. cbn [fst snd]. rewrite !force_of by exact first.

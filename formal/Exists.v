@@ -19,8 +19,8 @@ Definition omega : R := 2 * PI * Divisors.golden.
 Section Cosines.
 Variables (one : Z) (prec : Sine.Wide.precision).
 
-Definition angle_up : N.I.type := N.mul prec (N.pi prec) (N.sub prec (N.sqrt prec (N.integer prec 5))
-  (N.integer prec 1)).
+Definition angle_up : N.I.type :=
+  N.mul prec (N.pi prec) (N.sub prec (N.sqrt prec (N.integer prec 5)) (N.integer prec 1)).
 Definition multiplier (k : Z) : N.I.type :=
   let two := N.integer prec 2 in
   N.mul prec (N.integer prec one)
@@ -42,9 +42,8 @@ Qed.
 Fixpoint closely (k : Z) (cs : list Z) : bool :=
   match cs with
   | [] => true
-  | c :: cs => N.non_negative (N.sub prec (N.integer prec 1) (N.I.abs (N.sub prec (multiplier k)
-    (N.integer prec c))))
-               && closely (k + 1) cs
+  | c :: cs => N.non_negative (N.sub prec (N.integer prec 1)
+                 (N.I.abs (N.sub prec (multiplier k) (N.integer prec c)))) && closely (k + 1) cs
   end.
 
 Lemma closely_close k b cs : length b = length cs -> closely k cs = true -> Residual.close one omega k b cs.
@@ -99,13 +98,12 @@ Proof.
   unfold holds. cbv zeta. set (one := Z.shiftl 1 (digits c)).
   set (cs := chebyshev _ _ _ _). set (e := Residual.residual_up _ _ _ _ _ _ _ _ _).
   rewrite !andb_true_iff, !Z.ltb_lt, !Z.leb_le, Nat.eqb_eq.
-  intros ((((((((((((Hrd & Hr) & Hr2) & HD) & Hone) & Hed) & Hen) & Hl) & Hclose) & HU) & Ha) & He) &
-    Hsmall).
+  intros ((((((((((((Hrd & Hr) & Hr2) & HD) & Hone) & Hed) & Hen) & Hl) & Hclose) & HU) & Ha) & He)
+    & Hsmall).
   clearbody cs. assert (Hr' : (rd c <= rn c)%Z) by lia.
   assert (HU' : (2 * Residual.top (rn c) (rd c) (b c) <= D c)%Z) by lia.
-  assert (Hs := Residual.residual_solved (rn c) (rd c) Hrd Hr' (b c) (D c) one HD Hone omega (en c) (ed
-    c) cs Hed
-    (terms c) (closely_close one _ 1 (b c) cs Hl Hclose) HU'). fold e in Hs.
+  assert (Hs := Residual.residual_solved (rn c) (rd c) Hrd Hr' (b c) (D c) one HD Hone omega
+    (en c) (ed c) cs Hed (terms c) (closely_close one _ 1 (b c) cs Hl Hclose) HU'). fold e in Hs.
   assert (Bu := Residual.u0_bounded (rn c) (rd c) Hrd Hr' (b c) (D c) HD).
   assert (Bu' := Residual.u0'_bounded (rn c) (rd c) Hrd Hr' (b c) (D c) HD).
   apply IZR_lt in Hrd as Hrd1. apply IZR_lt in Hr as Hr1. apply IZR_le in Hr2 as Hr3.
@@ -115,18 +113,18 @@ Proof.
   set (rho := IZR (rn c) / IZR (rd c) - 1).
   replace (IZR (rn c) / IZR (rd c)) with (1 + rho) in * by (unfold rho; ring).
   assert (Hrho : 0 < rho <= 1).
-  { unfold rho. split; apply Rmult_lt_reg_r with (IZR (rd c)) || apply Rmult_le_reg_r with (IZR (rd
-      c)); try lra;
-      replace ((IZR (rn c) / IZR (rd c) - 1) * IZR (rd c)) with (IZR (rn c) - IZR (rd c)) by (field;
-        lra); lra. }
+  { unfold rho.
+    split; apply Rmult_lt_reg_r with (IZR (rd c)) || apply Rmult_le_reg_r with (IZR (rd c)); try lra;
+      replace ((IZR (rn c) / IZR (rd c) - 1) * IZR (rd c)) with (IZR (rn c) - IZR (rd c))
+        by (field; lra); lra. }
   set (K := 6 * IZR (rn c) / (IZR (rn c) - IZR (rd c))).
   apply (Kam.conjugacy omega (IZR (en c) / IZR (ed c)) rho K (IZR e / IZR one) Divisors.golden_divisor) with
     (u0 := Residual.u0 (b c) (D c)) (u0' := Residual.u0' (b c) (D c))
     (U := IZR (Residual.top (rn c) (rd c) (b c)) / IZR (D c))
     (a := IZR (Residual.slope_top (rn c) (rd c) (b c)) / IZR (D c));
     try assumption.
-  - unfold Rdiv. rewrite Rabs_mult, <- abs_IZR, (Rabs_right (/ _)) by (apply Rle_ge, Rlt_le,
-      Rinv_0_lt_compat; lra).
+  - unfold Rdiv.
+    rewrite Rabs_mult, <- abs_IZR, (Rabs_right (/ _)) by (apply Rle_ge, Rlt_le, Rinv_0_lt_compat; lra).
     apply Rmult_le_reg_r with (IZR (ed c)); [lra |]. rewrite Rmult_assoc, Rinv_l by lra.
     apply IZR_le in Hen. lra.
   - apply Req_le. unfold K, rho. field. lra.
@@ -138,8 +136,8 @@ Proof.
     replace (512000000 * (K * K * K * K) * (IZR e / IZR one))
       with (512000000 * (6 * IZR (rn c)) ^ 4 * IZR e * / (IZR one * d ^ 4)) by (unfold K; field; lra).
     apply Rmult_le_reg_r with (IZR one * d ^ 4); [now apply Rmult_lt_0_compat |].
-    rewrite Rmult_assoc, Rinv_l, Rmult_1_r, Rmult_1_l by (apply Rgt_not_eq;
-      now apply Rmult_lt_0_compat). exact Hsmall.
+    rewrite Rmult_assoc, Rinv_l, Rmult_1_r, Rmult_1_l
+      by (apply Rgt_not_eq; now apply Rmult_lt_0_compat). exact Hsmall.
   - apply IZR_le in HU. rewrite !mult_IZR in HU. apply Rmult_le_reg_r with (IZR (D c)); [lra |].
     rewrite Rmult_plus_distr_r. unfold Rdiv at 1. rewrite Rmult_assoc, Rinv_l by lra. lra.
   - apply IZR_le in Ha. rewrite !mult_IZR in Ha. apply Rmult_le_reg_r with (IZR (D c)); [lra |].

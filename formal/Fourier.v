@@ -58,8 +58,8 @@ Lemma bounded_periodic {r M f} t : bounded r M f -> f (t + 2 * PI) = f t.
 Proof.
   intros (p & E & _). rewrite !E. clear E. induction p as [| m p IH]; simpl; [reflexivity |]. rewrite IH.
   f_equal. unfold value. f_equal.
-  replace (IZR (number m) * (t + 2 * PI) + shift m) with (IZR (number m) * t + shift m + 2 * IZR
-    (number m) * PI) by ring.
+  replace (IZR (number m) * (t + 2 * PI) + shift m)
+    with (IZR (number m) * t + shift m + 2 * IZR (number m) * PI) by ring.
   generalize (IZR (number m) * t + shift m). intros x. destruct (Z_le_gt_dec 0 (number m)) as [H | H].
   - rewrite <- (Z2Nat.id (number m)), <- INR_IZR_INZ by exact H. apply cos_period.
   - rewrite <- (cos_period (x + _) (Z.to_nat (- number m))), INR_IZR_INZ, Z2Nat.id, opp_IZR by lia.
@@ -83,8 +83,8 @@ Qed.
 
 
 Lemma size_map r s c (h : mode -> mode) p :
-  (forall m, Rabs (height (h m)) * weight s (number (h m)) <= c * (Rabs (height m) * weight r (number
-    m))) ->
+  (forall m, Rabs (height (h m)) * weight s (number (h m))
+             <= c * (Rabs (height m) * weight r (number m))) ->
   size s (map h p) <= c * size r p.
 Proof. intros H. induction p as [| m p IH]; simpl; [lra |]. specialize (H m). lra. Qed.
 
@@ -112,8 +112,8 @@ Proof.
   exists (map (fun m => Mode (number m) (height m) (IZR (number m) * w + shift m)) p). split.
   - intros t. rewrite E. clear. induction p as [| m p IH]; simpl; [ring |]. rewrite <- IH.
     unfold value. simpl.
-    replace (IZR (number m) * (t + w) + shift m) with (IZR (number m) * t + (IZR (number m) * w + shift
-      m)) by ring.
+    replace (IZR (number m) * (t + w) + shift m)
+      with (IZR (number m) * t + (IZR (number m) * w + shift m)) by ring.
     reflexivity.
   - apply Rle_trans with (1 * size r p); [| lra]. apply size_map. intros m. simpl. lra.
 Qed.
@@ -151,14 +151,14 @@ Qed.
 
 Lemma bounded_cos1 r : bounded r r cos.
 Proof.
-  apply (bounded_ext (bounded_cos r 1)); [intros t; now rewrite Rmult_1_l | unfold weight;
-    simpl; lra].
+  apply (bounded_ext (bounded_cos r 1));
+    [intros t; now rewrite Rmult_1_l | unfold weight; simpl; lra].
 Qed.
 
 Lemma bounded_sin1 r : bounded r r sin.
 Proof.
-  apply (bounded_ext (bounded_sin r 1)); [intros t; now rewrite Rmult_1_l | unfold weight;
-    simpl; lra].
+  apply (bounded_ext (bounded_sin r 1));
+    [intros t; now rewrite Rmult_1_l | unfold weight; simpl; lra].
 Qed.
 
 Fixpoint product_one (m : mode) (q : list mode) : list mode :=
@@ -280,11 +280,11 @@ Lemma bounded_difference r d K {M f} : 1 <= r - d -> 0 < d -> r <= K * d -> boun
 Proof.
   intros H1 Hd HK (p & E & S).
   assert (HK0 : 0 < K) by nra.
-  cut {c : R & {q : list mode | Rabs c <= size r p /\ (forall t,
-    eval q (t + w) - eval q t = eval p t - c) /\
+  cut {c : R & {q : list mode | Rabs c <= size r p /\
+                 (forall t, eval q (t + w) - eval q t = eval p t - c) /\
                  size (r - d) q <= K * size r p}}.
-  { intros (c & q & Hc & Hq & Sq). exists c, (eval q). unshelve eexists; [split; [lra | intros t;
-      now rewrite E] |].
+  { intros (c & q & Hc & Hq & Sq). exists c, (eval q).
+    unshelve eexists; [split; [lra | intros t; now rewrite E] |].
     exists q. split; [reflexivity |]. apply Rle_trans with (K * size r p); [exact Sq |].
       apply Rmult_le_compat_l; lra. }
   clear E S. induction p as [| m p (c & q & Hc & Hq & Sq)].
@@ -302,10 +302,9 @@ Proof.
       { eapply Rlt_le_trans; [| exact divisor]. apply Rdiv_lt_0_compat; lra. }
       assert (Hs0 : s <> 0) by (intros Z0; rewrite Z0, Rabs_R0 in Hs; lra).
       exists c, (Mode k (a / s) (b - IZR k * w / 2 - PI / 2) :: q). simpl. split; [| split].
-      * pose proof (Rabs_pos a). assert (0 <= weight r k) by (pose proof (weight_1 r k ltac:(lra));
-          lra). nra.
-      * intros t. replace (value (Mode k a b) t + eval p t - c) with (value (Mode k a b) t + (eval p t
-          - c)) by ring.
+      * pose proof (Rabs_pos a). pose proof (weight_1 r k ltac:(lra)). nra.
+      * intros t. replace (value (Mode k a b) t + eval p t - c)
+          with (value (Mode k a b) t + (eval p t - c)) by ring.
         rewrite <- Hq.
         assert (A : value (Mode k (a / s) (b - IZR k * w / 2 - PI / 2)) (t + w)
                   - value (Mode k (a / s) (b - IZR k * w / 2 - PI / 2)) t = value (Mode k a b) t); [| lra].

@@ -1,5 +1,5 @@
-(* The iteration (docs/existence.md, section 6) and its limit.  The radii are 1 + rho h, h = 2^-i; the
-   residual falls by 64 at each step: far less than it does, but enough, and simple. *)
+(* The iteration (docs/existence.md, section 6) and its limit.  The radii are 1 + rho h, h = 2^-i.  The
+   induction claims only that each step divides the residual by 64, which is simple and enough. *)
 
 From Coq Require Import Reals ZArith List Lra Lia Psatz.
 From Coquelicot Require Import Coquelicot.
@@ -64,8 +64,8 @@ Definition state (i : nat) : Type := let h := half i in
     (bounded (1 + rho * h) (U + (1 - h) / 1000) u * bounded (1 + rho * h) (a + (1 - h) / 1000) u' *
      solved w eps (1 + rho * h) (e * h ^ 6) u)%type}}}.
 
-Lemma next i (s : state i) : {s' : state (S i) | forall t, Rabs (projT1 s' t - projT1 s t) <= half i /
-  2000}.
+Lemma next i (s : state i) :
+  {s' : state (S i) | forall t, Rabs (projT1 s' t - projT1 s t) <= half i / 2000}.
 Proof.
   destruct s as (u & u' & (Hodd & Du) & ((Bu & Bu') & Su)). cbv beta zeta in *.
   pose proof (half_pos i) as Hh. unfold state. cbn [half]. set (h := half i) in *.
@@ -78,22 +78,22 @@ Proof.
   assert (e2 : 700 * (K / h * (K / h)) * (e * h ^ 6) <= h / 2000).
   { replace (700 * (K / h * (K / h)) * (e * h ^ 6)) with (700 * (K * K) * e * (h * h * h * h))
       by (field; lra).
-    assert (h * h * h * h <= h) by nra. assert (0 <= h * h * h * h) by (repeat apply Rmult_le_pos;
-      lra). nra. }
+    assert (h * h * h * h <= h) by nra.
+    assert (0 <= h * h * h * h) by (repeat apply Rmult_le_pos; lra). nra. }
   assert (e3 : 700 * (K / h * (K / h) * (K / h)) * (e * h ^ 6) <= h / 2000).
-  { replace (700 * (K / h * (K / h) * (K / h)) * (e * h ^ 6)) with (700 * (K * K * K) * e * (h * h *
-      h)) by (field; lra).
+  { replace (700 * (K / h * (K / h) * (K / h)) * (e * h ^ 6))
+      with (700 * (K * K * K) * e * (h * h * h)) by (field; lra).
     assert (h * h * h <= h) by nra. assert (0 <= h * h * h) by (repeat apply Rmult_le_pos; lra). nra. }
-  assert (e4 : 8000000 * (K / h * (K / h) * (K / h) * (K / h)) * (e * h ^ 6 * (e * h ^ 6)) <= e * (h /
-    2) ^ 6).
+  assert (e4 : 8000000 * (K / h * (K / h) * (K / h) * (K / h)) * (e * h ^ 6 * (e * h ^ 6))
+               <= e * (h / 2) ^ 6).
   { replace (8000000 * (K / h * (K / h) * (K / h) * (K / h)) * (e * h ^ 6 * (e * h ^ 6)))
       with (512000000 * (K * K * K * K) * e * (h * h) * (e * (h / 2) ^ 6)) by (field; lra).
     assert (0 <= e * (h / 2) ^ 6) by (apply Rmult_le_pos; [lra | apply pow_le; lra]).
     rewrite <- (Rmult_1_l (e * (h / 2) ^ 6)) at 2. apply Rmult_le_compat_r; [exact H |].
     assert (0 <= K * K * K * K * e) by (repeat apply Rmult_le_pos; lra). nra. }
   assert (Hdh : 0 < rho * h) by (apply Rmult_lt_0_compat; lra).
-  destruct (step w eps divisor Heps (1 + rho * h) (rho * h / 6) (K / h) (e * h ^ 6)) with (u :=
-    u) (u' := u') (U := U + (1 - h) / 1000)
+  destruct (step w eps divisor Heps (1 + rho * h) (rho * h / 6) (K / h) (e * h ^ 6))
+    with (u := u) (u' := u') (U := U + (1 - h) / 1000)
     as (v & v' & (Hv & Dv) & ((Bv & Bv') & Sv)); try assumption.
   - lra.
   - lra.
@@ -104,16 +104,14 @@ Proof.
   - apply (bounded_ext Bu'); [reflexivity | lra].
   - replace (1 + rho * h - 3 * (rho * h / 6)) with (1 + rho * (h / 2)) in * by field.
     assert (Hr1 : 0 <= 1 + rho * (h / 2) <= 1 + rho * h) by lra.
-    unshelve eexists; [exists (fun t => u t + v t), (fun t => u' t + v' t); unshelve eexists; [| split;
-      [split |]] |].
+    unshelve eexists; [exists (fun t => u t + v t), (fun t => u' t + v' t);
+      unshelve eexists; [| split; [split |]] |].
     + split; [intros t; rewrite Hodd, Hv; ring | intros t].
       exact (is_derive_plus (V := R_NormedModule) u v t _ _ (Du t) (Dv t)).
-    + apply (bounded_ext (bounded_plus (bounded_less _ _ Hr1 Bu) Bv));
-        [reflexivity | lra].
-    + apply (bounded_ext (bounded_plus (bounded_less _ _ Hr1 Bu') Bv'));
-        [reflexivity | lra].
-    + destruct Sv as (N0 & HN). exists N0. intros N H. apply (bounded_ext (HN N H));
-        [reflexivity | exact e4].
+    + apply (bounded_ext (bounded_plus (bounded_less _ _ Hr1 Bu) Bv)); [reflexivity | lra].
+    + apply (bounded_ext (bounded_plus (bounded_less _ _ Hr1 Bu') Bv')); [reflexivity | lra].
+    + destruct Sv as (N0 & HN). exists N0. intros N H.
+      apply (bounded_ext (HN N H)); [reflexivity | exact e4].
     + intros t. simpl. replace (u t + v t - u t) with (v t) by ring.
       apply Rle_trans with (700 * (K / h * (K / h)) * (e * h ^ 6)); [| exact e2].
       apply (bounded_everywhere (r := 1 + rho * (h / 2))); [lra | exact Bv].
@@ -168,8 +166,9 @@ Qed.
 
 (* What u has of each step's. *)
 Lemma u_periodic i t : u i (t + 2 * PI) = u i t.
-Proof. unfold u. destruct (states i) as (f & f' & D & ((B & B') & S)). simpl.
-exact (bounded_periodic t B). Qed.
+Proof.
+  unfold u. destruct (states i) as (f & f' & D & ((B & B') & S)). exact (bounded_periodic t B).
+Qed.
 
 Lemma u_lipschitz i s t : Rabs (u i s - u i t) <= 2 / 3 * Rabs (s - t).
 Proof.
@@ -204,8 +203,8 @@ Proof.
     assert (e * h ^ 5 <= 1) by nra.
     replace (e * h ^ 6) with (h * (e * h ^ 5)) by ring. nra. }
   replace (f (t + w) - 2 * f t + f (t - w) - eps * sin (t + f t))
-    with (residual w eps N f t - eps * (sin t * (cos (f t) - Cos N (f t)) + cos t * (sin (f t) - Sin N
-      (f t))))
+    with (residual w eps N f t
+          - eps * (sin t * (cos (f t) - Cos N (f t)) + cos t * (sin (f t) - Sin N (f t))))
     by (unfold residual, kick; rewrite sin_plus; ring).
   eapply Rle_trans; [apply Rabs_triang |]. rewrite Rabs_Ropp. apply Rplus_le_compat; [lra |].
   apply small_product; [exact Heps |]. eapply Rle_trans; [apply Rabs_triang |].

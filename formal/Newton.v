@@ -3,8 +3,8 @@
 
    All functions are trigonometric polynomials: sine and cosine of u are replaced by Taylor polynomials
    of a degree that grows from step to step, and the inverse of 1 + u' by the first terms of Neumann's
-   series.  What is cut off is as small as one likes; it may be less than the square of the residual.
-   u is odd; so Lemma 1 of the page (the mean of L E is zero) is a matter of symmetry. *)
+   series.  There are so many terms that the omitted ones are less than the square of the residual.
+   u is odd, so Lemma 1 of the page (the mean of L E is zero) follows by symmetry. *)
 
 From Coq Require Import Reals ZArith List Lra Lia Psatz ConstructiveEpsilon.
 From Coquelicot Require Import Coquelicot.
@@ -16,8 +16,8 @@ Definition even (f : R -> R) : Prop := forall t, f (- t) = f t.
 
 Lemma odd_derivative f f' : (forall t, is_derive f t (f' t)) -> odd f -> even f'.
 Proof.
-  intros D H t. assert (E : is_derive f t (f' (- t))); [| now rewrite <- (is_derive_unique _ _ _ E),
-    (is_derive_unique _ _ _ (D t))].
+  intros D H t. assert (E : is_derive f t (f' (- t)));
+    [| now rewrite <- (is_derive_unique _ _ _ E), (is_derive_unique _ _ _ (D t))].
   apply (is_derive_ext (fun s => - f (- s))); [intros s; now rewrite H, Ropp_involutive |].
   pose proof (D (- t)) as D'. auto_derive; [now exists (f' (- t)) |].
   change (fun x => f x) with f. rewrite (is_derive_unique _ _ _ D'). ring.
@@ -26,8 +26,8 @@ Qed.
 (* A power that is small. *)
 Lemma small_power e : 0 < e -> {N : nat | (2 / 3) ^ N <= e}.
 Proof.
-  intros He. apply constructive_indefinite_ground_description_nat; [intros N;
-    destruct (Rle_dec ((2 / 3) ^ N) e); auto |].
+  intros He. apply constructive_indefinite_ground_description_nat;
+    [intros N; destruct (Rle_dec ((2 / 3) ^ N) e); auto |].
   destruct (pow_lt_1_zero (2 / 3)) with (y := e) as (N & H); [rewrite Rabs_right; lra | exact He |].
   exists N. specialize (H N (Nat.le_refl N)). rewrite Rabs_right in H; [lra |]. apply Rle_ge, pow_le. lra.
 Qed.
@@ -58,12 +58,12 @@ Hypothesis Heps : Rabs eps <= 1.
 
 (* The residual of u, with N terms of the Taylor series. *)
 Definition kick (N : nat) (u : R -> R) (t : R) : R := sin t * Cos N (u t) + cos t * Sin N (u t).
-Definition residual (N : nat) (u : R -> R) (t : R) : R := u (t + w) - 2 * u t + u (t - w) - eps * kick
-  N u t.
+Definition residual (N : nat) (u : R -> R) (t : R) : R :=
+  u (t + w) - 2 * u t + u (t - w) - eps * kick N u t.
 
 (* It is at most e for all N large enough. *)
-Definition solved (r e : R) (u : R -> R) : Type := {N0 : nat & forall N, (N0 <= N)%nat ->
-  bounded r e (residual N u)}.
+Definition solved (r e : R) (u : R -> R) : Type :=
+  {N0 : nat & forall N, (N0 <= N)%nat -> bounded r e (residual N u)}.
 
 Lemma odd_residual N u : odd u -> odd (residual N u).
 Proof.
@@ -82,16 +82,13 @@ Proof.
   assert (A0 : 0 < / INR (fact N)) by (apply Rinv_0_lt_compat, INR_fact_lt_0).
   assert (Hc : forall a, (forall n, Rabs (a n) <= / INR (fact n)) -> bounded r (2 * alpha * U ^ N)
      (fun t => sum_below a (k + N) (u t) - sum_below a N (u t))).
-  { intros a H. refine (bounded_ext (bounded_tail r U u a alpha N k Hr HU Hu _) _ _);
-      [| reflexivity |].
+  { intros a H. refine (bounded_ext (bounded_tail r U u a alpha N k Hr HU Hu _) _ _); [| reflexivity |].
     - intros n Hn. eapply Rle_trans; [apply H |].
       apply Rle_trans with (/ INR (fact N)); [now apply factorials | exact Ha].
     - apply Rmult_le_compat_l; [lra |]. pose proof (pow_le U (k + N) U0). lra. }
   refine (bounded_ext (bounded_plus
-    (bounded_mult Hr (bounded_sin1 r) (Hc (fun n => fst (cos_sin n)) (fun n => proj1
-      (coefficients n))))
-    (bounded_mult Hr (bounded_cos1 r) (Hc (fun n => snd (cos_sin n)) (fun n => proj2
-      (coefficients n))))) _ _).
+    (bounded_mult Hr (bounded_sin1 r) (Hc _ (fun n => proj1 (coefficients n))))
+    (bounded_mult Hr (bounded_cos1 r) (Hc _ (fun n => proj2 (coefficients n))))) _ _).
   - intros t. unfold kick, Cos, Sin. ring.
   - apply Req_le. ring.
 Qed.
@@ -122,8 +119,8 @@ Proof.
     pose proof (pow_le (2 / 3) N1 ltac:(lra)).
     assert ((2 / 3) ^ (N - N1) <= 1) by (rewrite <- (pow1 (N - N1)); apply pow_incr; lra).
     rewrite <- (Rmult_1_l ((2 / 3) ^ N1)) at 2. now apply Rmult_le_compat_r. }
-  assert (HN : (1 / 2) ^ N <= e * e / 4) by (apply Rle_trans with ((2 / 3) ^ N); [apply pow_incr;
-    lra | exact HN3]).
+  assert (HN : (1 / 2) ^ N <= e * e / 4).
+  { apply Rle_trans with ((2 / 3) ^ N); [apply pow_incr; lra | exact HN3]. }
   assert (Hee : e * e / 4 <= e / 4) by nra.
   assert (HP := HN0 (S N) ltac:(lia)). set (P := residual (S N) u) in *. clear E HN0 HN1.
   (* L, and M, nearly its inverse. *)
@@ -131,27 +128,22 @@ Proof.
   set (mu := fun t => 1 - L t * M t).
   assert (evenu' := odd_derivative _ _ Du Hodd).
   assert (HL : bounded r (5 / 3) L).
-  { refine (bounded_ext (bounded_plus (bounded_const r 1) Hu') _ _);
-      [reflexivity | rewrite Rabs_R1; lra]. }
+  { refine (bounded_ext (bounded_plus (bounded_const r 1) Hu') _ _); [reflexivity | rewrite Rabs_R1; lra]. }
   assert (Hmu : bounded r e mu).
   { refine (bounded_ext (bounded_scal ((-1) ^ N) (bounded_power N Hr1 Hu')) _ _).
     - intros t. unfold mu, L, M. clear. induction N as [| n IH]; [simpl; ring |].
-      rewrite sum_below_S, Rmult_plus_distr_l.
-      replace (1 - ((1 + u' t) * sum_below (fun n => (-1) ^ n) n (u' t) + (1 + u' t) * ((-1) ^ n * u' t
-        ^ n)))
-        with (1 - (1 + u' t) * sum_below (fun n => (-1) ^ n) n (u' t) - (1 + u' t) * ((-1) ^ n * u' t ^
-          n)) by ring.
+      rewrite sum_below_S. set (s := sum_below _ n (u' t)) in *.
+      replace (1 - (1 + u' t) * (s + (-1) ^ n * u' t ^ n))
+        with (1 - (1 + u' t) * s - (1 + u' t) * ((-1) ^ n * u' t ^ n)) by ring.
       rewrite IH. simpl. ring.
-    - replace (Rabs ((-1) ^ N)) with 1 by (symmetry; apply pow_1_abs). rewrite Rmult_1_l.
-      lra. }
+    - rewrite pow_1_abs. lra. }
   assert (HM : bounded r 3 M).
   { cut (bounded r (3 * (1 - (2 / 3) ^ N)) M).
     { intros H. apply (bounded_ext H); [reflexivity |]. pose proof (pow_le (2 / 3) N). lra. }
     unfold M. clear -Hr1 Hu'. induction N as [| n IH].
     - apply (bounded_ext (bounded_const r 0)); [reflexivity | rewrite Rabs_R0; simpl; lra].
-    - refine (bounded_ext (bounded_plus IH
-        (bounded_scal ((-1) ^ n) (bounded_power n Hr1 Hu'))) _ _); [reflexivity |].
-      rewrite pow_1_abs. simpl. lra. }
+    - refine (bounded_ext (bounded_plus IH (bounded_scal ((-1) ^ n) (bounded_power n Hr1 Hu'))) _ _);
+        [reflexivity |]. rewrite pow_1_abs. simpl. lra. }
   assert (evenM : even M) by (intros t; unfold M; now rewrite evenu').
   assert (M_above : forall t, 59 / 100 <= M t).
   { intros t. pose proof (bounded_everywhere t Hr1 Hmu) as B1.
@@ -162,8 +154,7 @@ Proof.
   assert (B_above : forall t, 1 / 3 <= B t).
   { intros t. unfold B. pose proof (M_above t). pose proof (M_above (t - w)). nra. }
   assert (HB : bounded r 9 B).
-  { refine (bounded_ext (bounded_mult Hr1 (bounded_moved (- w) HM) HM) _ _);
-      [reflexivity | lra]. }
+  { refine (bounded_ext (bounded_mult Hr1 (bounded_moved (- w) HM) HM) _ _); [reflexivity | lra]. }
   assert (symB : forall t, B (w - t) = B t).
   { intros t. unfold B. rewrite <- (evenM t), <- (evenM (t - w)).
     replace (- (t - w)) with (w - t) by ring. replace (w - t - w) with (- t) by ring. ring. }
@@ -182,8 +173,7 @@ Proof.
   assert (symg : forall t, g (w - t) = g t).
   { intros t. unfold g. replace (w - (w - t)) with t by ring. ring. }
   assert (Hg : bounded (r - d) (5 / 3 * (K * e)) g).
-  { refine (bounded_ext (bounded_scal (/ 2) (bounded_plus Hg0
-      (bounded_reflected (bounded_moved w Hg0)))) _ _).
+  { refine (bounded_ext (bounded_scal (/ 2) (bounded_plus Hg0 (bounded_reflected (bounded_moved w Hg0)))) _ _).
     - intros t. unfold g. do 3 f_equal. ring.
     - rewrite Rabs_right by lra. apply Req_le. field. }
   (* C, and z = R_- (B (C - g)). *)
@@ -196,7 +186,8 @@ Proof.
   set (C := mBg / mB).
   assert (EC : C * mB = mBg) by (unfold C; field; lra).
   assert (HC : Rabs C <= 45 * (K * e)).
-  { unfold C, Rdiv. rewrite Rabs_mult, (Rabs_right (/ mB)) by (apply Rle_ge, Rlt_le, Rinv_0_lt_compat; lra).
+  { unfold C, Rdiv. rewrite Rabs_mult, (Rabs_right (/ mB))
+      by (apply Rle_ge, Rlt_le, Rinv_0_lt_compat; lra).
     apply Rmult_le_reg_r with mB; [lra |]. rewrite Rmult_assoc, Rinv_l, Rmult_1_r by lra.
     assert (0 <= K * e) by nra. nra. }
   set (y := fun t => B t * (C - g t)).
@@ -218,11 +209,9 @@ Proof.
   assert (HK2 : 0 <= K * e) by nra.
   assert (Hz : bounded (r - d - d) (420 * (K * K) * e) z).
   { assert (H0 : bounded (r - d - d) (420 * (K * K) * e) z0).
-    { refine (bounded_ext (bounded_minus (bounded_scal C Hbeta) Hgamma) _ _);
-        [reflexivity |].
+    { refine (bounded_ext (bounded_minus (bounded_scal C Hbeta) Hgamma) _ _); [reflexivity |].
       assert (0 <= K * (K * e)) by nra. nra. }
-    refine (bounded_ext (bounded_scal (/ 2) (bounded_minus (bounded_moved
-      w H0)
+    refine (bounded_ext (bounded_scal (/ 2) (bounded_minus (bounded_moved w H0)
       (bounded_reflected (bounded_moved w H0)))) _ _); [reflexivity |].
     rewrite Rabs_right by lra. apply Req_le. field. }
   assert (zplus : forall t, z (t + w) = z t + M t * M (t + w) * (C - (g t + L t * P t))).
@@ -232,8 +221,8 @@ Proof.
   { intros t. pose proof (Ez t) as E1. unfold y, B in E1. lra. }
   set (v := fun t => L t * z t).
   assert (Hv : bounded (r - d - d) (700 * (K * K) * e) v).
-  { refine (bounded_ext (bounded_mult Hrdd
-      (bounded_less r (r - d - d) ltac:(lra) HL) Hz) _ _); [reflexivity | lra]. }
+  { refine (bounded_ext (bounded_mult Hrdd (bounded_less r (r - d - d) ltac:(lra) HL) Hz) _ _);
+      [reflexivity | lra]. }
   assert (oddv : odd v).
   { intros t. unfold v, L. rewrite evenu', oddz. ring. }
   (* The derivative of P. *)
@@ -258,8 +247,7 @@ Proof.
   assert (Htau : bounded r e tau).
   { assert (T : forall a, (forall n, Rabs (a n) <= / INR (fact n)) ->
       bounded r ((1 / 2) ^ N) (fun t => sum_below a (S N) (u t) - sum_below a N (u t))).
-    { intros a Ha. refine (bounded_ext (bounded_scal (a N) (bounded_power N Hr1
-        Hu2)) _ _).
+    { intros a Ha. refine (bounded_ext (bounded_scal (a N) (bounded_power N Hr1 Hu2)) _ _).
       - intros t. simpl. ring.
       - pose proof (pow_le (1 / 2) N ltac:(lra)). specialize (Ha N).
         pose proof (factorials 0 N ltac:(lia)). simpl (/ INR (fact 0)) in H0. rewrite Rinv_1 in H0.
@@ -273,18 +261,16 @@ Proof.
   assert (Hnew : forall t, residual (S N) (fun t => u t + v t) t =
     P' t * z t + eps * tau t * z t + mu t * P t
     + M t * (mu (t - w) * (C - g t) - mu (t + w) * (C - (g t + L t * P t))) - eps * (q t * (v t * v t))).
-  { intros t. transitivity (P t + (v (t + w) - 2 * v t + v (t - w)) - eps * (c t * v t + q t * (v t * v
-      t))).
+  { intros t.
+    transitivity (P t + (v (t + w) - 2 * v t + v (t - w)) - eps * (c t * v t + q t * (v t * v t))).
     - unfold P, residual, kick, c, q. rewrite second_Cos, second_Sin. ring.
     - unfold v. rewrite zplus, zminus. unfold P', mu. ring. }
   assert (HCg : bounded (r - d) (47 * (K * e)) (fun t => C - g t)).
-  { refine (bounded_ext (bounded_minus (bounded_const _ C) Hg) _ _);
-      [reflexivity | lra]. }
+  { refine (bounded_ext (bounded_minus (bounded_const _ C) Hg) _ _); [reflexivity | lra]. }
   assert (HCg' : bounded (r - d) (47 * (K * e)) (fun t => C - (g t + L t * P t))).
   { apply (bounded_ext (bounded_moved w HCg)); [intros t; now rewrite Eg | lra]. }
   assert (Huv : bounded (r - d - d) (1 / 2) (fun t => u t + v t)).
-  { apply (bounded_ext (bounded_plus (bounded_less r (r - d - d) ltac:(lra) Hu)
-      Hv));
+  { apply (bounded_ext (bounded_plus (bounded_less r (r - d - d) ltac:(lra) Hu) Hv));
       [reflexivity | exact HU]. }
   assert (Hu2' := bounded_less r (r - d - d) ltac:(lra) Hu2).
   assert (Hq : bounded (r - d - d) 16 q).
@@ -295,12 +281,12 @@ Proof.
         (bounded_rest_below (S N) Hrdd Hu2' Huv (fun n => proj2 (coefficients n))))) _ _);
       [reflexivity | lra]. }
   assert (Ke0 : 0 <= K * K * e) by nra.
-  assert (HR : bounded (r - d - d) (7999999 * (K * K * K * K) * (e * e)) (residual (S N) (fun t => u t
-    + v t))).
-  { assert (dn : forall M f, bounded r M f -> bounded (r - d - d) M f) by (intros;
-      apply (bounded_less r); [lra | assumption]).
-    assert (dd : forall M f, bounded (r - d) M f -> bounded (r - d - d) M f) by (intros;
-      apply (bounded_less (r - d)); [lra | assumption]).
+  assert (HR : bounded (r - d - d) (7999999 * (K * K * K * K) * (e * e))
+                       (residual (S N) (fun t => u t + v t))).
+  { assert (dn : forall M f, bounded r M f -> bounded (r - d - d) M f)
+      by (intros; apply (bounded_less r); [lra | assumption]).
+    assert (dd : forall M f, bounded (r - d) M f -> bounded (r - d - d) M f)
+      by (intros; apply (bounded_less (r - d)); [lra | assumption]).
     refine (bounded_ext (bounded_minus (bounded_plus (bounded_plus (bounded_plus
       (bounded_mult Hrdd (dd _ _ HP') Hz)
       (bounded_mult Hrdd (bounded_scal eps (dn _ _ Htau)) Hz))
@@ -308,20 +294,18 @@ Proof.
       (bounded_mult Hrdd (dn _ _ HM) (bounded_minus
         (bounded_mult Hrdd (dn _ _ (bounded_moved (- w) Hmu)) (dd _ _ HCg))
         (bounded_mult Hrdd (dn _ _ (bounded_moved w Hmu)) (dd _ _ HCg')))))
-      (bounded_scal eps (bounded_mult Hrdd Hq (bounded_mult Hrdd Hv Hv))))
-        Hnew _).
+      (bounded_scal eps (bounded_mult Hrdd Hq (bounded_mult Hrdd Hv Hv)))) Hnew _).
     set (k := Rabs eps) in *. assert (0 <= k) by apply Rabs_pos.
     assert (E2 : 0 <= e * e) by nra.
     assert (A1 : k * e * (420 * (K * K) * e) <= 420 * (K * K) * (e * e)).
     { replace (k * e * (420 * (K * K) * e)) with (k * (420 * (K * K) * (e * e))) by ring.
       rewrite <- (Rmult_1_l (420 * (K * K) * (e * e))) at 2. apply Rmult_le_compat_r; nra. }
-    assert (A2 : k * (16 * (700 * (K * K) * e * (700 * (K * K) * e))) <= 7840000 * (K * K * K * K) * (e
-      * e)).
-    { replace (16 * (700 * (K * K) * e * (700 * (K * K) * e))) with (7840000 * (K * K * K * K) * (e *
-        e)) by ring.
+    assert (A2 : k * (16 * (700 * (K * K) * e * (700 * (K * K) * e)))
+                 <= 7840000 * (K * K * K * K) * (e * e)).
+    { replace (16 * (700 * (K * K) * e * (700 * (K * K) * e)))
+        with (7840000 * (K * K * K * K) * (e * e)) by ring.
       rewrite <- (Rmult_1_l (7840000 * (K * K * K * K) * (e * e))) at 2.
-      apply Rmult_le_compat_r; [| exact Heps].
-      apply Rmult_le_pos; [nra | exact E2]. }
+      apply Rmult_le_compat_r; [apply Rmult_le_pos; [nra | exact E2] | exact Heps]. }
     assert (A3 : 420 * (K * K * K) + 420 * (K * K) + 1 + 282 * K <= 159999 * (K * K * K * K)).
     { assert (27 <= K * K * K) by nra. nra. }
     apply (Rmult_le_compat_r (e * e)) in A3; [| exact E2]. lra. }
@@ -332,11 +316,11 @@ Proof.
     apply (bounded_less (r - d - d - d)); [lra |].
     apply (bounded_derivative (r - d - d) d K _ v); [lra | lra | exact Dv | exact Hv].
   - exists (S N). intros N' HN'.
-    assert (H : bounded (r - d - d) (e * e) (fun t => kick N' (fun t => u t + v t) t - kick (S N) (fun
-      t => u t + v t) t)).
+    assert (H : bounded (r - d - d) (e * e)
+                        (fun t => kick N' (fun t => u t + v t) t - kick (S N) (fun t => u t + v t) t)).
     { replace N' with ((N' - S N) + S N)%nat by lia.
-      refine (bounded_ext (kick_tail (r - d - d) (1 / 2) _ (S N) _ 1 Hrdd ltac:(lra) Huv _) _
-        _); [| reflexivity |].
+      refine (bounded_ext (kick_tail (r - d - d) (1 / 2) _ (S N) _ 1 Hrdd ltac:(lra) Huv _) _ _);
+        [| reflexivity |].
       - pose proof (factorials 0 (S N) ltac:(lia)). simpl (/ INR (fact 0)) in H. lra.
       - simpl. pose proof (pow_le (1 / 2) N ltac:(lra)). nra. }
     apply (bounded_less (r - d - d)); [lra |].

@@ -1,9 +1,9 @@
 (* The residual of a trigonometric polynomial u0, bounded with integers.
 
-   A list of integers, with the number k of its first mode, stands for the sum of p[j] e^{i (k + j) t};
-   `re` and `im` are its real and imaginary part.  i u0 = w is such a list, W, divided by 2 D, so the terms
-   of the series of e^w are found one from the other, with P binary digits; what is cut off is bounded in
-   the norm of Fourier.v.  *)
+   A list p of integers and the number k of its first mode stand for the sum of p[j] e^{i (k + j) t};
+   `re` and `im` are the real and the imaginary part of the sum.  i u0 is such a list, W, divided by 2 D.
+   Each term of the series of e^{i u0} is computed from the term before, in units of 1/one.  The
+   remainders of the divisions are bounded in the norm of Fourier.v. *)
 
 From Coq Require Import Reals ZArith List Lra Lia Psatz.
 From Coquelicot Require Import Coquelicot.
@@ -178,8 +178,8 @@ Qed.
 
 Lemma W_re_im t : re (- Z.of_nat (length b)) W t = 0 /\ im (- Z.of_nat (length b)) W t = 2 * IZR D * u0 t.
 Proof.
-  unfold W, u0. destruct (app_re_im (rev (map (Z.mul (-1)) b)) (0%Z :: b) (- Z.of_nat (length b)) t) as
-    [-> ->].
+  unfold W, u0.
+  destruct (app_re_im (rev (map (Z.mul (-1)) b)) (0%Z :: b) (- Z.of_nat (length b)) t) as [-> ->].
   destruct (rev_re_im (map (Z.mul (-1)) b) (- Z.of_nat (length b)) t) as [-> ->].
   rewrite rev_length, map_length.
   replace (1 - - Z.of_nat (length b) - Z.of_nat (length b))%Z with 1%Z by lia.
@@ -219,7 +219,7 @@ Definition by_list (p : nat * list Z) (e : Z) (f g : R -> R) : Type :=
   (bounded r (IZR e / IZR one) (fun t => f t - re (- Z.of_nat (fst p)) (snd p) t / IZR one) *
    bounded r (IZR e / IZR one) (fun t => g t - im (- Z.of_nat (fst p)) (snd p) t / IZR one))%type.
 
-Lemma quot_re_im q p k t : 
+Lemma quot_re_im q p k t :
   re k p t = IZR q * re k (map (fun a => Z.quot a q) p) t + re k (map (fun a => Z.rem a q) p) t /\
   im k p t = IZR q * im k (map (fun a => Z.quot a q) p) t + im k (map (fun a => Z.rem a q) p) t.
 Proof.
@@ -255,13 +255,14 @@ Proof.
 Qed.
 
 Lemma sum_of_re_im p q t : let s := sum_of p q in
-  re (- Z.of_nat (fst s)) (snd s) t = re (- Z.of_nat (fst p)) (snd p) t + re (- Z.of_nat (fst q)) (snd
-    q) t /\
-  im (- Z.of_nat (fst s)) (snd s) t = im (- Z.of_nat (fst p)) (snd p) t + im (- Z.of_nat (fst q)) (snd q) t.
+  re (- Z.of_nat (fst s)) (snd s) t
+    = re (- Z.of_nat (fst p)) (snd p) t + re (- Z.of_nat (fst q)) (snd q) t /\
+  im (- Z.of_nat (fst s)) (snd s) t
+    = im (- Z.of_nat (fst p)) (snd p) t + im (- Z.of_nat (fst q)) (snd q) t.
 Proof.
   unfold sum_of. cbn [fst snd]. set (c := Nat.max _ _).
-  destruct (add_re_im (repeat 0%Z (c - fst p) ++ snd p) (repeat 0%Z (c - fst q) ++ snd q) (- Z.of_nat
-    c) t) as [-> ->].
+  destruct (add_re_im (repeat 0%Z (c - fst p) ++ snd p) (repeat 0%Z (c - fst q) ++ snd q)
+    (- Z.of_nat c) t) as [-> ->].
   destruct (zeros_re_im (c - fst p) (snd p) (- Z.of_nat c) t) as [-> ->].
   destruct (zeros_re_im (c - fst q) (snd q) (- Z.of_nat c) t) as [-> ->].
   replace (- Z.of_nat c + Z.of_nat (c - fst p))%Z with (- Z.of_nat (fst p))%Z by lia.
@@ -287,24 +288,24 @@ Proof.
     set (k := (- Z.of_nat (fst T))%Z) in *. set (k' := (- Z.of_nat c)%Z).
     assert (Ek : k' = (- Z.of_nat n + k)%Z) by (unfold k', k, c; lia).
     assert (EQ : forall t, re (- Z.of_nat (fst T')) (snd T') t = re k' Q t /\
-      im (- Z.of_nat (fst T')) (snd T') t = im k' Q t).
+                           im (- Z.of_nat (fst T')) (snd T') t = im k' Q t).
     { intros t. destruct (without_first_re_im c (without_last Q) t) as [E1 E2]. fold T' k' in E1, E2.
       destruct (without_last_re_im k' Q t) as [E3 E4]. rewrite E1, E2, E3, E4. now split. }
     assert (Hq : (0 < q)%Z) by (unfold q; nia). apply IZR_lt in Hq as Hq'.
-    assert (Eq : IZR q = 2 * IZR D * (INR j + 1)) by (unfold q;
-      now rewrite !mult_IZR, <- INR_IZR_INZ, S_INR).
+    assert (Eq : IZR q = 2 * IZR D * (INR j + 1))
+      by (unfold q; now rewrite !mult_IZR, <- INR_IZR_INZ, S_INR).
     assert (Hj : 0 < INR j + 1) by (pose proof (pos_INR j); lra).
     assert (HR := bounded_re_im r k' Rm).
     assert (HRn : norm r k' Rm <= IZR (size_from c 0 Rm)).
     { pose proof (norm_from c 0 Rm). fold k' in H. lra. }
     assert (EX : forall t, re k' X t = - (2 * IZR D * u0 t) * im k (snd T) t /\
-      im k' X t = 2 * IZR D * u0 t * re k (snd T) t).
+                           im k' X t = 2 * IZR D * u0 t * re k (snd T) t).
     { intros t. rewrite Ek. unfold X. destruct (mul_re_im W (snd T) (- Z.of_nat n) k t) as [-> ->].
       destruct (W_re_im t) as [E1 E2]. fold n in E1, E2. rewrite E1, E2. split; ring. }
-    assert (HT : by_list T' eT' (fun t => fst (cos_sin (S j)) * u0 t ^ S j) (fun t => snd (cos_sin (S
-      j)) * u0 t ^ S j)).
-    { assert (L : IZR top / IZR D * (IZR eT / IZR one) / (INR j + 1) + IZR (size_from c 0 Rm) / (IZR q
-        * IZR one) <= IZR eT' / IZR one).
+    assert (HT : by_list T' eT' (fun t => fst (cos_sin (S j)) * u0 t ^ S j)
+                                (fun t => snd (cos_sin (S j)) * u0 t ^ S j)).
+    { assert (L : IZR top / IZR D * (IZR eT / IZR one) / (INR j + 1)
+                  + IZR (size_from c 0 Rm) / (IZR q * IZR one) <= IZR eT' / IZR one).
       { pose proof (ceil_above (2 * top * eT + size_from c 0 Rm) q Hq) as H. fold eT' in H.
         rewrite plus_IZR, !mult_IZR in H. apply (Rmult_le_compat_r (/ IZR one)) in H;
           [| apply Rlt_le, Rinv_0_lt_compat; lra].
@@ -312,8 +313,7 @@ Proof.
       assert (HU := u0_bounded). assert (Hn0 : 0 < / (IZR q * IZR one)) by (apply Rinv_0_lt_compat; nra).
       assert (Hj0 : 0 < / (INR j + 1)) by (apply Rinv_0_lt_compat; lra).
       split.
-      - refine (bounded_ext (bounded_plus (bounded_scal (- / (INR j + 1))
-          (bounded_mult r_1 HU Ti))
+      - refine (bounded_ext (bounded_plus (bounded_scal (- / (INR j + 1)) (bounded_mult r_1 HU Ti))
           (bounded_scal (/ (IZR q * IZR one)) (fst HR))) _ _).
         + intros t. destruct (quot_re_im q X k' t) as [E1 _]. destruct (EX t) as [E2 _]. rewrite E2 in E1.
           fold Q Rm in E1.
@@ -322,8 +322,7 @@ Proof.
           destruct (EQ t) as [-> _]. rewrite E3. cbn [cos_sin fst pow]. rewrite Eq. field. lra.
         + rewrite Rabs_Ropp, !Rabs_right by lra. eapply Rle_trans; [| exact L]. unfold Rdiv at 4.
           unfold Rdiv in *. nra.
-      - refine (bounded_ext (bounded_plus (bounded_scal (/ (INR j + 1))
-          (bounded_mult r_1 HU Tr))
+      - refine (bounded_ext (bounded_plus (bounded_scal (/ (INR j + 1)) (bounded_mult r_1 HU Tr))
           (bounded_scal (/ (IZR q * IZR one)) (snd HR))) _ _).
         + intros t. destruct (quot_re_im q X k' t) as [_ E1]. destruct (EX t) as [_ E2]. rewrite E2 in E1.
           fold Q Rm in E1.
@@ -390,8 +389,8 @@ Lemma second_difference k p q : close k p q -> bounded r (norm r k p)
 Proof.
   revert k q. induction p as [| a p IH]; intros k [| c q] H; try contradiction;
     [| | destruct H as [Hc H]; specialize (IH (k + 1)%Z q H)];
-    try (apply (bounded_ext (bounded_const r 0)); [intros t; simpl; ring | rewrite Rabs_R0;
-      simpl; lra]).
+    try (apply (bounded_ext (bounded_const r 0));
+         [intros t; simpl; ring | rewrite Rabs_R0; simpl; lra]).
   cbn [products im norm].
   refine (bounded_ext (bounded_plus IH (bounded_scal
     (IZR a * (IZR one * (2 * cos (IZR k * w) - 2) - IZR c)) (bounded_sin r k))) _ _).
@@ -438,20 +437,19 @@ Proof.
     unfold weight in H. simpl in H. lra. }
   set (er := IZR e / IZR one) in *.
   assert (P1 : 0 < / (IZR D * IZR one)) by (apply Rinv_0_lt_compat; nra).
-  assert (P2 : 0 < / (IZR D * IZR ed * IZR one)) by (apply Rinv_0_lt_compat;
-    repeat apply Rmult_lt_0_compat; lra).
+  assert (P2 : 0 < / (IZR D * IZR ed * IZR one))
+    by (apply Rinv_0_lt_compat; repeat apply Rmult_lt_0_compat; lra).
   refine (bounded_ext (bounded_plus (bounded_plus
     (bounded_scal (/ (IZR D * IZR ed * IZR one)) (snd (bounded_re_im r 1 l)))
     (bounded_scal (/ (IZR D * IZR one)) (second_difference 1 b cs Hcs)))
     (bounded_scal (- amp) (bounded_plus
-      (bounded_mult r1 (bounded_sin1 r) Sr) (bounded_mult r1 (bounded_cos1 r)
-        Si)))) _ _).
+      (bounded_mult r1 (bounded_sin1 r) Sr) (bounded_mult r1 (bounded_cos1 r) Si)))) _ _).
   - intros t. unfold residual, kick, u0.
-    assert (El : im 1 l t = IZR ed * im 1 (products b cs) t - IZR en * IZR D * (sin t * re k (snd sum)
-      t + cos t * im k (snd sum) t)).
+    assert (El : im 1 l t = IZR ed * im 1 (products b cs) t
+                            - IZR en * IZR D * (sin t * re k (snd sum) t + cos t * im k (snd sum) t)).
     { unfold l, residual_list.
-      destruct (add_re_im (map (Z.mul ed) (products b cs)) (map (Z.mul (- (en * D))) (kick_list sum)) 1
-        t) as [_ ->].
+      destruct (add_re_im (map (Z.mul ed) (products b cs)) (map (Z.mul (- (en * D))) (kick_list sum))
+        1 t) as [_ ->].
       destruct (scale_re_im ed (products b cs) 1 t) as [_ ->].
       destruct (scale_re_im (- (en * D)) (kick_list sum) 1 t) as [_ ->].
       rewrite kick_list_im, opp_IZR, mult_IZR. fold k. ring. }
@@ -463,11 +461,12 @@ Proof.
     + apply Req_le. ring.
 Qed.
 
-(* In units of 1/one: the residual of the lists, what is not known of the cosines, what was cut off, and the
-   rest of the series. *)
+(* In units of 1/one: the residual of the lists, the errors of the cosines, the remainders of the
+   divisions, and the rest of the series. *)
 Definition residual_up (j : nat) : Z :=
   (ceil (size_residual j) (D * ed) + ceil top D + ceil (2 * rn * (Z.abs en * snd (series j))) (rd * ed)
-   + ceil (4 * rn * Z.abs en * Z.pow top (Z.of_nat (S j)) * one) (ed * rd * Z.pow D (Z.of_nat (S j)) * Sine.factorial (S j)))%Z.
+   + ceil (4 * rn * Z.abs en * Z.pow top (Z.of_nat (S j)) * one)
+          (ed * rd * Z.pow D (Z.of_nat (S j)) * Sine.factorial (S j)))%Z.
 
 Theorem residual_solved j : close 1 b cs -> (2 * top <= D)%Z ->
   solved w (IZR en / IZR ed) r (IZR (residual_up j) / IZR one) u0.
@@ -480,15 +479,15 @@ Proof.
   assert (Hf := INR_fact_lt_0 (S j)).
   exists (S j). intros N HN. replace N with ((N - S j) + S j)%nat by lia.
   refine (bounded_ext (bounded_minus (residual_bounded j Hcs)
-    (bounded_scal (IZR en / IZR ed) (kick_tail r _ _ (S j) (N - S j) _ r_1 HU u0_bounded
-      (Rle_refl _)))) _ _).
+    (bounded_scal (IZR en / IZR ed)
+      (kick_tail r _ _ (S j) (N - S j) _ r_1 HU u0_bounded (Rle_refl _)))) _ _).
   - intros t. unfold residual. ring.
   - assert (Hamp : Rabs (IZR en / IZR ed) = IZR (Z.abs en) / IZR ed).
     { unfold Rdiv. rewrite Rabs_mult, abs_IZR, (Rabs_right (/ IZR ed)); [reflexivity |].
       apply Rle_ge, Rlt_le, Rinv_0_lt_compat, Hed'. }
     rewrite Hamp. unfold residual_up. rewrite !plus_IZR.
     assert (scaled : forall a d x, (0 < d)%Z -> x = IZR a / IZR d / IZR one ->
-      x <= IZR (ceil a d) / IZR one).
+                     x <= IZR (ceil a d) / IZR one).
     { intros a d x Hd ->. pose proof (ceil_above a d Hd). apply Rmult_le_compat_r; [| assumption].
       apply Rlt_le, Rinv_0_lt_compat, Hone'. }
     assert (HDp : (0 < D ^ Z.of_nat (S j))%Z) by (apply Z.pow_pos_nonneg; lia).
@@ -499,14 +498,13 @@ Proof.
     + field. lra.
     + rewrite !mult_IZR. unfold r. field. lra.
     + rewrite !mult_IZR, <- Sine.fact_factorial, <- !pow_IZR. unfold r, Rdiv.
-      rewrite Rpow_mult_distr, pow_inv.
-      field. repeat split; try lra. apply pow_nonzero. lra.
+      rewrite Rpow_mult_distr, pow_inv. field. repeat split; try lra. apply pow_nonzero. lra.
 Qed.
 
 (* ---- the derivative *)
 
-Fixpoint slopes (k : Z) (p : list Z) : list Z := match p with [] => [] | a :: p => (k * a)%Z :: slopes
-  (k + 1) p end.
+Fixpoint slopes (k : Z) (p : list Z) : list Z :=
+  match p with [] => [] | a :: p => (k * a)%Z :: slopes (k + 1) p end.
 
 Lemma derive_im k p t : is_derive (im k p) t (re k (slopes k p) t).
 Proof.
