@@ -60,12 +60,11 @@ def seconds(text):
     return number
 
 
-def add_worker_options(p, what, mpi_help):
-    """The options --jobs, --dask, --mpi of a command that works on several `what` at a time."""
+def add_worker_options(p, what):
+    """Adds the options --jobs and --dask of a command that works on several `what` at a time."""
     p.add_argument("--jobs", type=whole_number(1), metavar="N",
                    help="work on N %s at a time (default: one per core)" % what)
     p.add_argument("--dask", metavar="ADDRESS", help="let the Dask cluster at ADDRESS work")
-    p.add_argument("--mpi", action="store_true", help=mpi_help)
 
 
 # ---- output
@@ -128,13 +127,9 @@ class ProgressLine:
 
 @contextlib.contextmanager
 def executor_of(options):
-    """The executor that --dask or --mpi names, or None."""
-    if options.dask is None and not options.mpi:
+    """The executor of the Dask cluster that --dask names, or None."""
+    if options.dask is None:
         yield None
-    elif options.mpi:
-        from mpi4py.futures import MPIPoolExecutor
-        with MPIPoolExecutor() as executor:
-            yield executor
     else:
         try:
             from distributed import Client
@@ -151,30 +146,6 @@ def executor_of(options):
         finally:
             with contextlib.suppress(Exception):        # the scheduler may be gone
                 client.close()
-
-
-def check_mpi(options, module, command="converse"):
-    """Ends the program if --mpi was given without mpi4py.futures' own launcher: then each of
-    several MPI processes runs this module's command, and all would do the same work."""
-    if not options.mpi:
-        return
-    try:
-        import mpi4py.futures  # noqa: F401
-        from mpi4py import MPI
-    except ImportError:
-        raise ConverseError("--mpi needs mpi4py; pip install mpi4py") from None
-    except RuntimeError as error:       # of mpi4py's wheels, which bring no library
-        raise ConverseError("--mpi needs an MPI library (%s); install one (Debian: openmpi-bin)"
-                            % error) from None
-    core = sys.modules.get("mpi4py.futures._core") or sys.modules.get("mpi4py.futures._lib")
-    world = MPI.COMM_WORLD
-    if world.Get_size() > 1 and getattr(core, "SharedPool", True) is None:
-        if world.Get_rank() == 0:
-            tell("--mpi: each of the %d processes would do the whole work; to divide it say "
-                 "mpiexec -n %d python -m mpi4py.futures -m %s --mpi ..."
-                 % (world.Get_size(), world.Get_size(), module), command)
-        world.Barrier()                 # a process that ends may take the others with it
-        sys.exit(BAD)
 
 
 # ---- the input

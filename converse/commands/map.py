@@ -12,8 +12,7 @@ from ..model.exact import decimal_text, exact
 from ..storage import files
 from ..storage.files import ConverseError, plain
 from ..version import __version__
-from .common import (Parser, ProgressLine, add_worker_options, check_mpi, ended, executor_of, say,
-                     seconds)
+from .common import Parser, ProgressLine, add_worker_options, ended, executor_of, say, seconds
 
 COMMAND = "converse-map"
 DOWN_TO = "1.05"
@@ -52,7 +51,7 @@ def parser():
     p.add_argument("--tori", metavar="DIRECTORY", help="prove tori, too, one along each direction "
                    "of a plane, and keep their certificates in DIRECTORY, for -g to draw them; "
                    "without --plane and -r those that are there are drawn")
-    add_worker_options(p, "cells", "let MPI processes work")
+    add_worker_options(p, "cells")
     p.add_argument("--time-limit", type=seconds, default=math.inf, metavar="SECONDS",
                    help="stop after about so long; -r goes on")
     p.add_argument("--version", action="version", version="%s %s" % (COMMAND, __version__))
@@ -70,7 +69,6 @@ def progress_text(share, found):
 
 
 def run(options):
-    check_mpi(options, "converse.commands.map", COMMAND)
     graphics = options.graphics
     if graphics is not None:
         files.check_output(graphics, "picture", plot.FORMATS, [options.map])

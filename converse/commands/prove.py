@@ -14,8 +14,8 @@ from ..prover.settings import AS_PRINTED, METHODS, REGION, THEOREM, UNDECIDED, S
 from ..storage import files
 from ..storage.files import ConverseError
 from ..version import __version__
-from .common import (REFRESH_SECONDS, Parser, ProgressLine, add_worker_options, check_mpi, ended,
-                     executor_of, read_problem, say, seconds, tell, whole_number)
+from .common import (REFRESH_SECONDS, Parser, ProgressLine, add_worker_options, ended, executor_of,
+                     read_problem, say, seconds, tell, whole_number)
 
 STATUS = {THEOREM: 0, UNDECIDED: 1, REGION: 3, AS_PRINTED: 4}
 LEAF_WORDS = {"P": "proved", "S": "symmetric", "U": "undecided"}
@@ -72,8 +72,7 @@ def parser():
                    help="a, b and c move together, from all lower to all upper ends (loewner)")
     p.add_argument("--xstar", nargs=2, type=_decimal, metavar=("X0", "X1"),
                    help="let x* be this point, angles in radians (default: the program chooses)")
-    add_worker_options(p, "parts", "let MPI processes work: mpiexec -n N python -m mpi4py.futures "
-                       "-m converse.commands.prove --mpi ...")
+    add_worker_options(p, "parts")
     p.add_argument("--time-limit", type=seconds, default=math.inf, metavar="SECONDS",
                    help="stop after about so long; what is left is undecided")
     p.add_argument("--list-inputs", action=ListInputs, nargs=0,
@@ -155,7 +154,6 @@ def run(options):
     from ..prover.proof import Proof  # these need the C core, and say so where it is missing
     from ..prover.run import prove, ready
 
-    check_mpi(options, "converse.commands.prove")
     if options.graphics == "off":
         options.graphics = None
     if options.graphics is not None:

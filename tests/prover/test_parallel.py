@@ -6,7 +6,6 @@ import math
 import os
 import random
 import re
-import shutil
 import signal
 import subprocess
 import sys
@@ -377,40 +376,6 @@ def test_dask_loses_a_worker(proof, tmp_path, divided):
         executor.submit = submit
         assert timeless(prove(LONG, method="loewner", executor=executor, jobs=4)) == proof
         assert len(submitted) > 3
-
-
-MPI = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1",
-           OMPI_MCA_rmaps_base_oversubscribe="1")
-with_mpi = pytest.mark.skipif(not shutil.which("mpiexec"), reason="there is no MPI here")
-
-
-@with_mpi
-@pytest.mark.parametrize("module, command",
-                         [("commands.prove", "converse"), ("commands.map", "converse-map")])
-def test_mpi_processes_that_would_all_do_the_same(tmp_path, module, command):
-    pytest.importorskip("mpi4py")
-    arguments = ["--plane", "c=0", "m.json"] if module == "commands.map" else []
-    result = subprocess.run(["mpiexec", "-n", "2", sys.executable, "-m", "converse." + module,
-                             "--mpi",
-                             *arguments], cwd=tmp_path, env=MPI, timeout=PATIENCE, text=True,
-                            input="0.32 0\n0.32 0\n0.64 0\n1 1\n1 1\n", capture_output=True)
-    assert (result.returncode, result.stdout) == (2, "")
-    said = [line for line in result.stderr.splitlines() if line.startswith(command + ": ")]
-    assert len(said) == 1
-    assert "mpiexec -n 2 python -m mpi4py.futures -m converse." + module in said[0]
-    assert not list(tmp_path.iterdir())
-
-
-@with_mpi
-def test_mpi(proof, tmp_path):
-    pytest.importorskip("mpi4py")
-    (tmp_path / "a.in").write_text(input_text(LONG))
-    command = ["converse.commands.prove", "--mpi", "--method", "loewner", "--together", "-b",
-               "a.proof", "a.in"]
-    subprocess.run(["mpiexec", "-n", "3", sys.executable, "-m", "mpi4py.futures", "-m", *command],
-                   cwd=tmp_path, env=MPI, check=True, timeout=PATIENCE, stdout=subprocess.DEVNULL)
-    assert timeless(Proof.load(tmp_path / "a.proof")) == replace(
-        proof, problem=replace(LONG, comments=()))
 
 
 class Late(Inline):
