@@ -1,6 +1,9 @@
 """About how long calculations take, in seconds of a processor, for those who wait, and how much
 memory."""
 
+import math
+import os
+
 # Seconds for each point of a grid: Newton's method in doubles, and an error with many digits.
 SOLVING, BALLS = 4e-6, 1.0e-5
 SHORT, LONGER = 128, 1.6    # bits of balls up to which these are the times; how much longer it is
@@ -24,13 +27,44 @@ def some(seconds: float) -> str:
     return ""
 
 
-def free_memory() -> int:
-    """Bytes; 4 GB if the system does not say."""
+def free_memory(root: str = "/") -> float:
+    """Bytes that are free on the machine and in all control groups of this process, such as a
+    container; 4 GB if the system does not say."""
+    free = [1024 * _number(os.path.join(root, "proc/meminfo"), "MemAvailable:")]
+    for group in _control_groups(root):
+        for limit, usage, cache in (
+                ("memory.max", "memory.current", "inactive_file"),
+                ("memory.limit_in_bytes", "memory.usage_in_bytes", "total_inactive_file")):
+            most, used = _number(os.path.join(group, limit)), _number(os.path.join(group, usage))
+            kept = _number(os.path.join(group, "memory.stat"), cache)
+            if used < math.inf:         # what files occupy and nobody uses is given back
+                free.append(max(0, most - used + (kept if kept < used else 0)))
+    return min(free) if min(free) < math.inf else 4 << 30
+
+
+def _control_groups(root):
+    """The folders of this process's control groups for memory, of version 1 or 2, and of those that
+    hold them."""
     try:
-        with open("/proc/meminfo") as file:
+        with open(os.path.join(root, "proc/self/cgroup")) as file:
+            lines = [line.rstrip("\n").split(":", 2) for line in file]
+    except OSError:
+        return
+    for number, controllers, path in lines:
+        if number == "0" or "memory" in controllers.split(","):
+            mount = os.path.join(root, "sys/fs/cgroup", "memory" if controllers else "")
+            names = [name for name in path.split("/") if name]
+            for depth in range(len(names) + 1):
+                yield os.path.join(mount, *names[:depth])
+
+
+def _number(path, name=""):
+    """The number after that name in a file, or the only one; infinity if there is none."""
+    try:
+        with open(path) as file:
             for line in file:
-                if line.startswith("MemAvailable:"):
-                    return int(line.split()[1]) * 1024
+                if not name or line.split()[:1] == [name]:
+                    return int(line.split()[-2 if line.endswith("kB\n") else -1])
     except (OSError, ValueError, IndexError):
         pass
-    return 4 << 30
+    return math.inf
