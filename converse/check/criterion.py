@@ -12,6 +12,8 @@ from .limits import CAUTION, LAG, MAX_BITS, MAX_HALVINGS, MAX_PIECES
 from .torus import is_at_once, torus_bound
 from .tree import changed, trees
 
+BOUND_BITS = 256        # of the bound B, which the thousands of bits of narrow cells do not improve
+
 
 class Criterion:
     """Everything that does not change from leaf to leaf."""
@@ -26,7 +28,8 @@ class Criterion:
         if bits > MAX_BITS:
             raise NotConfirmed("numbers of %d bits are needed; the checker's limit is %d"
                                % (bits, MAX_BITS))
-        self.fixed = fixed_of(bits)
+        self.fixed, self.coarse = fixed_of(bits), fixed_of(min(bits, BOUND_BITS))
+        coarse = self.coarse
         one, waves = self.fixed.one, claim.examined
         self.waves = in_units(self.fixed, waves)
         if max([abs(x) for wave in waves for x in (wave.middle, *wave.parts)] + [0]) >= one:
@@ -37,11 +40,12 @@ class Criterion:
         if bound is not None:
             self.B_at = [math.ceil(bound * one)]
         else:
-            corners = [tuple([math.floor(wave.at(t) * one) for wave in waves])
+            corners = [tuple([math.floor(wave.at(t) * coarse.one) for wave in waves])
                        for t in itertools.product((-1, 1), repeat=claim.parameters)]
             apart = [(x,) for x in corners] if any(set("234") & set(part.tree) for part in parts) \
                 else [tuple(corners)]
-            found = {ends: torus_bound(self.fixed, self.waves, ends) + stiffness(self.waves)
+            units = in_units(coarse, waves)
+            found = {ends: torus_bound(coarse, units, ends) + stiffness(units) << bits - coarse.bits
                      for ends in set(apart)}
             self.B_at = [found[ends] for ends in apart]
         self.B = max(self.B_at)
@@ -160,7 +164,7 @@ class Criterion:
 
     def at_once(self):
         """Is B > 10/3 for all parameters, or where that is claimed, at the upper end?"""
-        return is_at_once(self.fixed, self.claim.examined,
+        return is_at_once(self.coarse, self.claim.examined,
                           (1,) if self.claim.at_once == "upper end" else None)
 
     def not_at_once(self):
@@ -174,9 +178,9 @@ class Criterion:
                 t[m] = Fraction(math.floor(t[m] * 2 ** 60), 2 ** 60)
         if self.claim.at_once == "upper end":
             t = (1,)
-        nearest = tuple([math.floor(wave.at(t) * self.fixed.one) for wave in waves])
-        return 3 * (torus_bound(self.fixed, self.waves, [nearest])
-                    + stiffness(self.waves)) <= 10 * self.fixed.one
+        one, units = self.coarse.one, in_units(self.coarse, waves)
+        nearest = tuple([math.floor(wave.at(t) * one) for wave in waves])
+        return 3 * (torus_bound(self.coarse, units, [nearest]) + stiffness(units)) <= 10 * one
 
 
 def check_at_once(criterion):

@@ -1300,6 +1300,25 @@ def test_a_worker_whose_numpy_is_not_sound_uses_integers(np, texts, run, monkeyp
     assert re.search("checked : .*", out).group() == re.search("checked : .*", exact).group()
 
 
+def test_narrow_cells_do_not_make_the_bound_of_beta_slow(texts, tmp_path, monkeypatch):
+    """Cells of width 1e-999 need 3,400 bits; B needs no more than 256 to be as good."""
+    torus_bound, bits = check.torus_bound, []
+
+    def bound(fixed, *rest):
+        bits.append(fixed.bits)
+        return torus_bound(fixed, *rest)
+
+    monkeypatch.setattr(check, "torus_bound", bound)
+    found = []
+    for text in texts["trig278"], sealed(with_field(texts["trig278"], "v0", "0.5 1e-999")):
+        (tmp_path / "proof").write_text(text, encoding="utf-8")
+        criterion = check.Criterion(check.read(tmp_path / "proof"))
+        found.append(Fraction(criterion.B, criterion.fixed.one))
+        criterion.not_at_once()
+    assert criterion.fixed.bits > 3000 and max(bits) == 256 and len(bits) == 4
+    assert abs(found[0] - found[1]) < Fraction(1, 2 ** 80)
+
+
 def test_a_failure_of_its_own_is_no_success(deep, run, monkeypatch):
     for error in (MemoryError(), OSError(11, "Resource temporarily unavailable"), KeyError("x")):
         def fails(self, cell):
