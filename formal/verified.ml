@@ -176,18 +176,17 @@ type file = {
 let total f file = List.fold_left (fun n tree -> n + f tree) 0 file.trees
 let letters = "abcdefghijklmnopqrstuvwxyz"      (* of parts, and of leaves linked to them *)
 
-let counts version = ["depth"; "cuts"; "proved"; "symmetric"; "undecided"; "most_cuts"]
-                     @ (if version > 3 then ["linked"] else [])
+let counts = ["depth"; "cuts"; "proved"; "symmetric"; "linked"; "undecided"; "most_cuts"]
 let ignored = ["program"; "method"; "digits"; "stubborn"; "quick_tries"; "tries"; "Rtries";
                "HermSuccess"; "LLSuccess"; "ll_used"; "reasons"; "max_steps"; "max_NTsteps"; "B";
                "pending"]
 let optional = ["T"; "Tr-"; "Tr+"; "lambda-min"; "lambda-max"; "seconds"; "comment"]
-let known version = ["v0"; "v1"; "kind"; "xstar"; "at once"; "wave"; "frame"; "alone"; "odd about"]
-                    @ counts version @ ignored
+let known = ["v0"; "v1"; "kind"; "xstar"; "at once"; "wave"; "frame"; "alone"; "odd about"]
+            @ counts @ ignored
 
 (* The fields of the header, each once, and its waves. *)
-let fields version lines =
-  let found = Hashtbl.create 64 and waves = ref [] and known = known version in
+let fields lines =
+  let found = Hashtbl.create 64 and waves = ref [] in
   List.iteri (fun i line ->
       let at = i + 2 in
       if String.length line >= max_line then
@@ -244,10 +243,10 @@ let range name text =
   if less half (whole 0) then reject "%s: the half-width is negative" name;
   centre, half
 
-(* The same of a part, and from version 5 on perhaps a shift for each of the parameters. *)
-let shifted_range version parameters name text =
+(* The same of a part, and perhaps a shift for each of the parameters. *)
+let shifted_range parameters name text =
   match String.split_on_char ' ' text with
-  | centre :: half :: (_ :: _ as shifts) when version > 4 ->
+  | centre :: half :: (_ :: _ as shifts) ->
     if List.length shifts <> parameters then
       reject "%s is not two numbers, nor %d with shifts" name (2 + parameters);
     let range = range name (centre ^ " " ^ half) in
@@ -258,8 +257,8 @@ let shifted_range version parameters name text =
 let is_shifted { shifts = s0, s1; _ } = not (List.for_all vanishes (s0 @ s1))
 
 (* The claim, and the counts.  Of the whole torus is said what Coq's `covers` lets be said of it. *)
-let claim_of version lines =
-  let field, lines = fields version lines in
+let claim_of lines =
+  let field, lines = fields lines in
   if field "kind" <> "sound" then
     reject "the file's kind is not 'sound': it is not meant as a proof";
   let given ?form name = pair ?form ("the header's " ^ name) (field name) in
@@ -275,7 +274,7 @@ let claim_of version lines =
     int_of_string ("0u" ^ field name) in
   let (centre0, half0), (centre1, half1) = ranged "v0", ranged "v1" in
   let of_xstar = given "xstar" in
-  let counted = List.map (fun name -> name, count name) (counts version) in
+  let counted = List.map (fun name -> name, count name) counts in
   let count_of_waves = List.length lines in
   if count_of_waves > 16 || count_of_waves = 0 then
     reject "the header has %d waves, not 1 to 16" count_of_waves;
@@ -286,9 +285,7 @@ let claim_of version lines =
     | [a; b; c; d] ->
       (match Z.add (Z.mul a d) (Z.opp (Z.mul b c)) with
        | Z0 -> reject "the header's frame has determinant 0"
-       | Zpos XH | Zneg XH -> a, b, c, d
-       | _ when version > 3 -> a, b, c, d
-       | _ -> reject "the header's frame has not determinant 1 or -1")
+       | _ -> a, b, c, d)
     | _ -> reject "the header's frame is not four integers" in
   let of_alone = one_of "alone" ["no", Both; "0", First; "1", Second] in
   let of_once = one_of "at once" ["no", No; "yes", Whole_patch; "upper end", Upper_end] in
@@ -364,7 +361,7 @@ let tree_of name its text first parts parameters =
   !deepest, !most_cuts
 
 (* A part but for its tree, and the text of that, from what follows `part: `. *)
-let part_of version parameters letter text =
+let part_of parameters letter text =
   let name = Printf.sprintf "part %c" letter in
   let lacking () =
     reject "%s is not 'part: %c', xstar, v0, v1 and a tree, each on its line" name letter in
@@ -375,7 +372,7 @@ let part_of version parameters letter text =
     fun () -> form (name ^ "'s " ^ key) (String.sub line from (String.length line - from)) in
   match String.split_on_char '\n' text with
   | first :: xstar :: v0 :: v1 :: "tree:" :: (_ :: _ as tree) when first = String.make 1 letter ->
-    let range = shifted_range version parameters in
+    let range = shifted_range parameters in
     let xstar = value (fun name -> pair name) "xstar" xstar
     and v0 = value range "v0" v0 and v1 = value range "v1" v1 in
     let starts_at = xstar () in
@@ -388,17 +385,17 @@ let part_of version parameters letter text =
 let sha256 data = Sha256.(to_hex (string data))
 
 (* The claim, and what follows the header: a tree, and perhaps parts. *)
-let file_of version claim counted text sha256 =
+let file_of claim counted text sha256 =
   let parameters = List.length (List.hd claim.of_patch).parts in
   let most = String.length letters + 2 in       (* the claim's own tree, and one part too many *)
-  let first, parts = match if version > 3 then split_at "\npart: " most ("\n" ^ text) else [text] with
+  let first, parts = match split_at "\npart: " most ("\n" ^ text) with
     | first :: parts -> String.concat "" (String.split_on_char '\n' first), parts
     | [] -> "", [] in
   let count = List.length parts in
   if count > String.length letters then reject "there are more parts than letters";
   if count > 0 && claim.of_alone <> Both then
     reject "a coordinate is alone, and there are parts: links are of whole graphs";
-  let parts = List.mapi (fun n text -> part_of version parameters letters.[n] text) parts in
+  let parts = List.mapi (fun n text -> part_of parameters letters.[n] text) parts in
   let texts = first :: List.map snd parts in
   let claims = ("", claim) :: List.mapi (fun n (part, _) ->
       Printf.sprintf "part %c" letters.[n], at_part claim part) parts in
@@ -438,12 +435,7 @@ let read path =
     | _ -> "" in
   if String.ends_with ~suffix:"\r" first then
     reject "its lines end in CR LF: it was altered on its way; ask for the original";
-  let version = match first with
-    | "3" -> 3
-    | "4" -> 4
-    | "5" -> 5
-    | "2" -> refuse "is a proof file of version 2, which converse-check up to release 1.6.0 verifies"
-    | _ -> refuse "is a proof file of another version; this checker knows versions 3 to 5" in
+  if first <> "6" then refuse "is a proof file of another version; this checker knows version 6";
   let seal = "checksum: sha256 " and length = String.length data in
   let stop = length - (String.length seal + 64 + String.length "\nend\n") in
   if stop < 1 || String.sub data (stop - 1) (1 + String.length seal) <> "\n" ^ seal
@@ -457,11 +449,11 @@ let read path =
       let from = at + String.length marker in
       String.sub data 0 at, String.sub data from (stop - from)
     | _ -> reject "there is no tree" in
-  let claim, counted = claim_of version (List.tl (String.split_on_char '\n' head)) in
+  let claim, counted = claim_of (List.tl (String.split_on_char '\n' head)) in
   let parameters = List.length (List.hd claim.of_patch).parts in
   if List.exists (fun w -> List.length w.parts <> parameters) claim.of_patch then
     reject "a wave of the header has not as many parts as the first";
-  file_of version claim counted tree (sha256 data)
+  file_of claim counted tree (sha256 data)
 
 (* ---- what the proof needs beside the claim, from doubles: wrong hints prove nothing *)
 

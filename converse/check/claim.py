@@ -101,17 +101,16 @@ def number(text, name, form=NUMBER):
     return value
 
 
-def check_frame(words, name, unimodular=True):
-    """The frame: four integers (as text), of a determinant that is not 0, or is 1 or -1."""
+def check_frame(words, name):
+    """The frame: four integers (as text), of a determinant that is not 0."""
     if len(words) != 4 or not all(re.fullmatch("[+-]?[0-9]{1,3}", word, re.ASCII)
                                   for word in words):
         raise Rejected(name + " is not four integers")
     a, b, c, d = frame = tuple(map(int, words))
     if max(map(abs, frame)) > MAX_K:
         raise Rejected("%s has an entry beyond %d" % (name, MAX_K))
-    if a * d == b * c or unimodular and abs(a * d - b * c) != 1:
-        raise Rejected(name + (" has not determinant 1 or -1" if unimodular
-                               else " has determinant 0"))
+    if a * d == b * c:
+        raise Rejected(name + " has determinant 0")
     return frame
 
 

@@ -215,7 +215,7 @@ def read_cell(proof, waves, name, sha256):
     centre, half = zip(*ranges)
     if min(half) < 0:
         raise Rejected("a half-width is negative")
-    frame = check_frame([str(x) for x in list_of(frame, 4, int, "the frame")], "the frame", False)
+    frame = check_frame([str(x) for x in list_of(frame, 4, int, "the frame")], "the frame")
     if alone not in ("no", "0", "1"):
         raise Rejected("alone is neither no nor 0 nor 1")
     alone = None if alone == "no" else int(alone)

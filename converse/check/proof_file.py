@@ -12,16 +12,15 @@ from .claim import ANGLES, LETTERS, NUMBER, RATIO, Claim, Wave, check_alone, che
 from .failures import NotConfirmed, Rejected, Unusable, reason
 from .limits import MAX_BYTES, MAX_K, MAX_LINE, MAX_WAVES
 
-COUNTS = ("depth", "cuts", "proved", "symmetric", "undecided", "most_cuts")
+COUNTS = ("depth", "cuts", "proved", "symmetric", "linked", "undecided", "most_cuts")
 IGNORED = ("program", "method", "digits", "stubborn", "quick_tries", "tries", "Rtries",
            "HermSuccess", "LLSuccess", "ll_used", "reasons", "max_steps", "max_NTsteps",
            "B", "pending")
 OPTIONAL = {"T", "Tr-", "Tr+", "lambda-min", "lambda-max", "seconds", "comment"}    # ignored, too
 FIELDS = {*ANGLES, *COUNTS, *IGNORED, "kind", "xstar", "at once", "wave", "frame", "alone",
           "odd about"}
-LINKED = "linked"                       # a count that version 4 has, too
 REPEATED = {"wave", "comment"}
-MAGIC = b"converse proof "               # and the version, alone on the first line
+MAGIC, VERSION = b"converse proof ", b"6"       # the first line
 TORUS_MAGIC = b"converse torus "        # of a certificate of existence, as long
 
 
@@ -52,11 +51,8 @@ def read_proof(data):
     first = data[len(MAGIC):len(MAGIC) + 9].partition(b"\n")[0]
     if first.endswith(b"\r"):
         raise Rejected("its lines end in CR LF: it was altered on its way; ask for the original")
-    if first == b"2":
-        raise Unusable("is a proof file of version 2, which converse-check up to release 1.6.0 "
-                       "verifies")
-    if first not in (b"3", b"4", b"5"):
-        raise Unusable("is a proof file of another version; this checker knows versions 3 to 5")
+    if first != VERSION:
+        raise Unusable("is a proof file of another version; this checker knows version 6")
     marker = b"checksum: sha256 "
     end = data.rfind(b"\n" + marker) + 1
     end_line = data[end + len(marker):]
@@ -73,19 +69,18 @@ def read_proof(data):
 
 
 def parse_header(head):
-    """The version, and the fields, each of them given once, and none of unknown meaning.
+    """The fields, each of them given once, and none of unknown meaning.
 
     Nothing of it is repeated in a message but the names of fields that are known.
     """
     header, file = {"wave": []}, io.BytesIO(head)
-    version = int(file.readline()[len(MAGIC):])     # which read_proof has seen to
-    fields = FIELDS | {LINKED} if version > 3 else FIELDS
+    file.readline()                     # which read_proof has seen to
     for at, line in enumerate(iter(lambda: file.readline(MAX_LINE), b""), 2):
         if len(line) == MAX_LINE:
             raise NotConfirmed("line %d is longer than the checker's limit, %d bytes"
                                % (at, MAX_LINE - 1))
         name, colon, value = line.decode("utf-8", "replace").rstrip("\n").partition(": ")
-        if not colon or name not in fields | OPTIONAL:
+        if not colon or name not in FIELDS | OPTIONAL:
             raise Rejected("line %d, in the header, is of unknown meaning" % at)
         if name in header and name not in REPEATED:
             raise Rejected("the header gives %s twice" % name)
@@ -95,11 +90,11 @@ def parse_header(head):
             header[name] = value
     if "xstar" not in header:
         raise Rejected("the search had not begun when it was left; converse -r FILE begins it")
-    if fields - header.keys():
-        raise Rejected("the header lacks %s" % ", ".join(sorted(fields - header.keys())))
+    if FIELDS - header.keys():
+        raise Rejected("the header lacks %s" % ", ".join(sorted(FIELDS - header.keys())))
     if header["kind"] != "sound":
         raise Rejected("the file's kind is not 'sound': it is not meant as a proof")
-    return version, header
+    return header
 
 
 def pair(value, name, form=NUMBER, count=0):
@@ -120,22 +115,22 @@ def place(xstar, v0, v1, name, count=0):
     return pair(xstar, name + "xstar"), centre, half, tuple(shifts) * any(map(any, shifts))
 
 
-def parse_part(text, letter, claim, count):
+def parse_part(text, letter, claim):
     """A part of a claim, from what follows `part: `: four lines and a tree."""
     name, found = "part " + letter, re.match(
         letter + "\nxstar: (.*)\nv0: (.*)\nv1: (.*)\ntree:\n", text)
     if not found:
         raise Rejected("%s is not 'part: %s', xstar, v0, v1 and a tree, each on its line"
                        % (name, letter))
-    xstar, centre, half, shifts = place(*found.groups(), name + "'s ", count)
+    xstar, centre, half, shifts = place(*found.groups(), name + "'s ", claim.parameters)
     return replace(claim, xstar=xstar, centre=centre, half=half, shifts=shifts, where=name,
                    tree=text[found.end():].replace("\n", ""), counts={}, at_once="no")
 
 
 def parse(head, tree, sha256):
     """The claim of a header, and of what follows it: a tree, and perhaps parts."""
-    version, header = parse_header(head)
-    tree, *parts = ("\n" + tree).split("\npart: ") if version > 3 else [tree]
+    header = parse_header(head)
+    tree, *parts = ("\n" + tree).split("\npart: ")
 
     def one_of(name, *values):
         if header[name] not in values:
@@ -143,27 +138,25 @@ def parse(head, tree, sha256):
         return header[name]
 
     xstar, centre, half, _ = place(*[header[x] for x in ("xstar", *ANGLES)], "the header's ")
-    counts = COUNTS + (LINKED,) * (version > 3)
-    for name in counts:
+    for name in COUNTS:
         if not re.fullmatch("[0-9]{1,18}", header[name], re.ASCII):
             raise Rejected("the header's %s is not a count" % name)
     at_once = one_of("at once", "yes", "no", "upper end")
     waves = parse_waves(header["wave"])
-    frame = check_frame(header["frame"].split(" "), "the header's frame", version < 4)
+    frame = check_frame(header["frame"].split(" "), "the header's frame")
     alone = {"no": None, "0": 0, "1": 1}[one_of("alone", "no", "0", "1")]
     check_alone(waves, alone)
     odd = None if header["odd about"] == "no" else \
         pair(header["odd about"], "the header's odd about", RATIO)
     claim = Claim(waves, centre, half, frame, alone, xstar,
-                  {name: int(header[name]) for name in counts}, at_once, tree.replace("\n", ""),
+                  {name: int(header[name]) for name in COUNTS}, at_once, tree.replace("\n", ""),
                   sha256)
     check_odd(claim, odd)
-    count = claim.parameters * (version > 4)    # of shifts
     if len(parts) > len(LETTERS):
         raise Rejected("there are more parts than letters")
     if parts and alone is not None:
         raise Rejected("a coordinate is alone, and there are parts: links are of whole graphs")
-    return replace(claim, parts=tuple([parse_part(text, letter, claim, count)
+    return replace(claim, parts=tuple([parse_part(text, letter, claim)
                                        for text, letter in zip(parts, LETTERS)]))
 
 

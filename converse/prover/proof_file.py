@@ -1,6 +1,4 @@
-"""The proof file, formats 3 to 5 (docs/format.md), of a proof that is finished or not: files of
-the thesis's method are of format 3, which knows of frames with determinant 1 or -1 alone, and those
-in which the region of a part moves with the parameters of format 5."""
+"""The proof file (docs/format.md), of a proof that is finished or not."""
 
 import re
 from dataclasses import asdict, fields
@@ -15,13 +13,10 @@ from .native import CONSTANTS, Counts
 from .proof import Part, Proof
 from .settings import Settings
 
-FIRST_LINES = {"converse proof 3": 3, "converse proof 4": 4, "converse proof 5": 5}
-BEFORE, MAGIC = "converse proof 2", "converse proof "
-FORMATS = {"thesis": 3, "loewner": 4}        # that are written, by method, but for
-WITH_SHIFTS = 5
+MAGIC, VERSION = "converse proof ", "6"
+FIRST_LINE = MAGIC + VERSION
 PROGRAM = re.compile(r"converse ([0-9A-Za-z.+-]{1,40})")
 CLAIMS = {False: "sound", True: "as printed, not a proof"}       # by as_printed
-NEW_COUNT = "linked"                         # of format 4
 LINE_WIDTH = 78                              # of the tree's lines
 
 
@@ -40,15 +35,12 @@ def load(path):
         raise ConverseError("%s, line %d: %s; use an intact copy or start anew"
                             % (path, number, wrong))
 
-    if lines[0] == BEFORE:
-        raise ConverseError("%s: is a proof file of format 2, which releases up to 1.6.0 read; "
-                            "continue it with one of those, which writes format 3" % path)
     if lines[0].startswith(MAGIC) and lines[0].endswith("\r"):
         fail(1, "the lines end in CR LF, so the file was altered on its way")
-    if re.fullmatch(MAGIC + "[0-9]+", lines[0]) and lines[0] not in FIRST_LINES:
-        raise ConverseError("%s: is a proof file of another format; this release reads formats 3 "
-                            "to 5, so continue it with the release that wrote it" % path)
-    if lines[0] not in FIRST_LINES:
+    if re.fullmatch(MAGIC + "[0-9]+", lines[0]) and lines[0] != FIRST_LINE:
+        raise ConverseError("%s: is a proof file of another format; this release reads format %s, "
+                            "so continue it with the release that wrote it" % (path, VERSION))
+    if lines[0] != FIRST_LINE:
         fail(1, "this is not a proof file of this program")
     if lines[-2:] != ["end", ""]:
         fail(len(lines), "something follows the end" if "end" in lines else "the file is truncated")
@@ -70,16 +62,9 @@ def load(path):
             waves.append(value.split())
         else:
             values[key] = value
-    form = FIRST_LINES[lines[0]]
     try:
-        problem = _problem(values, waves, comments)
-        if form == 3:
-            _check_format_3(values, problem)
-        proof = _proof(values, problem, _trees(lines[starts[0]:-3]), files.sha256(text), form,
-                       len(waves[0]) - 4)
-        if form == 3 and proof.parts:
-            raise ValueError("there are no parts in format 3")
-        return proof
+        return _proof(values, _problem(values, waves, comments), _trees(lines[starts[0]:-3]),
+                      files.sha256(text), len(waves[0]) - 4)
     except (KeyError, IndexError, TypeError, ValueError) as error:
         fail(starts[0] + 1, "the header or a tree makes no sense (%s)" % error)
 
@@ -107,14 +92,11 @@ def _text(proof):
     problem, at_once = proof.problem, _yes(proof.at_once)
     if proof.at_once and len(problem.parts) == 1:
         at_once = "upper end"
-    form = FORMATS[proof.method]
     if problem.shifts:                  # which the header cannot say
         raise ValueError("the region of a whole proof does not move with the parameters")
-    if any(part.shifts for part in proof.parts):
-        form = WITH_SHIFTS
     for part in proof.parts:            # ValueError: it has shifts by more or fewer parameters
         proof.part_problem(part)
-    lines = ["converse proof %d" % form, "kind: " + CLAIMS[proof.as_printed],
+    lines = [FIRST_LINE, "kind: " + CLAIMS[proof.as_printed],
              "program: converse " + proof.version, "method: " + proof.method]
     lines += _problem_lines(problem)
     lines += ["xstar: " + " ".join(proof.xstar)] if proof.xstar else []
@@ -127,8 +109,6 @@ def _text(proof):
         before += _untried(part.tree)
     lines += ["pending: " + " ".join(map(str, pending))]
     for name, value in asdict(proof.counts).items():
-        if form == 3 and name == NEW_COUNT:
-            continue
         values = value if isinstance(value, tuple) else (value,)
         lines.append("%s: %s" % (name, " ".join(map(str, values))))
     lines += ["%s: %s" % item for item in proof.constants.items()]
@@ -156,9 +136,9 @@ def _untried(text):
     return cuts + 1 - (len(text) - cuts - text.count(tree.UNTRIED))
 
 
-def _proof(values, problem, trees, sha256, form, parameters):
-    """The Proof of the header's fields, their values by name, and what _trees returns; form: the
-    format's number; parameters: how many its waves have, of which a Problem may make more."""
+def _proof(values, problem, trees, sha256, parameters):
+    """The Proof of the header's fields, their values by name, and what _trees returns; parameters:
+    how many its waves have, of which a Problem may make more."""
     counts = {}
     for item in fields(Counts):
         numbers = tuple(int(word) for word in values[item.name].split())
@@ -183,7 +163,7 @@ def _proof(values, problem, trees, sha256, form, parameters):
         tree.complete(text)
         x0, x1 = named["xstar"].split()
         mine, hints = _divided(hints, text)
-        (v0, s0), (v1, s1) = (_moving(named, name, parameters, form) for name in NAMES[3:])
+        (v0, s0), (v1, s1) = (_moving(named, name, parameters) for name in NAMES[3:])
         parts.append(Part((_number(x0), _number(x1)), v0, v1, text, mine, tuple(zip(s0, s1))))
         if parts[-1].shifts and "S" in text:
             raise ValueError("a prism of a part is skipped (S), though the part's region moves")
@@ -199,15 +179,6 @@ def _divided(hints, text):
     """The hints of a tree, if any of them is known, and those of the trees after it."""
     mine, rest = hints[:_untried(text)], hints[_untried(text):]
     return mine if any(mine) else (), rest
-
-
-def _check_format_3(values, problem):
-    """ValueError: it is not what a file of format 3 may hold, which lacks the new count."""
-    f00, f01, f10, f11 = problem.frame
-    if abs(f00 * f11 - f01 * f10) != 1:
-        raise ValueError("a frame of determinant %d in format 3" % (f00 * f11 - f01 * f10))
-    if values.setdefault(NEW_COUNT, "0") != "0":
-        raise ValueError("%s in format 3" % NEW_COUNT)
 
 
 def _problem_lines(problem):
@@ -260,10 +231,10 @@ def _ends(values, name):
     return centre - half, centre + half
 
 
-def _moving(values, name, parameters, form):
+def _moving(values, name, parameters):
     """The ends of a range of a part, and its shifts by so many parameters."""
     words = values[name].split()
-    if form < WITH_SHIFTS or len(words) == 2:
+    if len(words) == 2:
         return _ends(values, name), [Fraction(0)] * parameters
     if len(words) != 2 + parameters:
         raise ValueError("%s of a part has %d numbers, not %s" % (

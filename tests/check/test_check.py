@@ -228,7 +228,7 @@ def moving(tmp_path_factory):
     """Proof files of the method loewner, by name: parameters on a segment, that of the inputs or
     another, or in a box about a piece of it; with cuts of the parameters or without.  They are of
     the whole torus, in the frame in which leaves may be mirror images: what the program makes of
-    it is in test_version4.py."""
+    it is in test_parts.py."""
     inputs = [LINE * k for k in (1, 1, 2)]          # times epsilon
     slanted = (Fraction(12), Fraction("10.5"), Fraction(23))
     found = {}
@@ -653,7 +653,7 @@ def test_header_lines(texts, run):
 
 
 @pytest.mark.parametrize("data", [b"", b"\x00\xff\xfe junk" * 99, b"\x1f\x8b", b"\x1f\x8b\x08junk",
-                                  b"tree", b"\xef\xbb\xbfconverse proof 3\n",
+                                  b"tree", b"\xef\xbb\xbfconverse proof 6\n",
                                   bytes(range(256)) * 10])
 def test_unreadable(run, data):
     status, out, err = run(data)
@@ -661,15 +661,14 @@ def test_unreadable(run, data):
 
 
 def test_other_versions_and_line_ends(texts, run):
-    for version in ("1", "6", "2.0", "", "22" * 999):
-        status, _, err = run(texts["trig278"].replace("proof 3", "proof " + version))
-        assert status == 2 and "another version" in err
-    status, _, err = run(texts["trig278"].replace("proof 3", "proof 2"))
-    assert status == 2 and "up to release 1.6.0" in err and err.count("\n") == 1
+    for version in ("1", "2", "3", "4", "5", "7", "6.0", "", "66" * 999):
+        status, _, err = run(texts["trig278"].replace("proof 6", "proof " + version))
+        assert status == 2 and err.endswith(
+            "of another version; this checker knows version 6\n") and err.count("\n") == 1
     status, _, err = run(texts["trig278"].replace("\n", "\r\n"))
     assert status == 1 and "CR LF" in err
     assert run(texts["trig278"].replace("\n", "\r"))[0] == 2
-    assert run("converse proof 3\n")[0] == run(b"converse proof 3\n\xff")[0] == 1
+    assert run("converse proof 6\n")[0] == run(b"converse proof 6\n\xff")[0] == 1
 
 
 @pytest.mark.parametrize("name, value, status, why", [
@@ -723,8 +722,8 @@ def test_nothing_of_the_file_is_echoed(texts, run, tmp_path, capsys):
 
 
 @pytest.mark.parametrize("start, filler, status", [
-    (b"", b"\0", 2), (b"", b"\n", 2), (b"converse proof 3\n", b"\0", 5),
-    (b"converse proof 3\n", b"comment: \n", 5), (b"converse proof 3\ntree:\n", b"0P", 5)])
+    (b"", b"\0", 2), (b"", b"\n", 2), (b"converse proof 6\n", b"\0", 5),
+    (b"converse proof 6\n", b"comment: \n", 5), (b"converse proof 6\ntree:\n", b"0P", 5)])
 def test_a_bomb_is_bounded(one_file, tmp_path, start, filler, status):
     """A file of kilobytes that unpacks to gigabytes, in a process with a gigabyte."""
     path = tmp_path / "bomb.gz"
@@ -943,7 +942,7 @@ def test_the_example_of_the_format(root, run):
     """A second reader, written from the page alone, finds in its example what the page says; the
     checker verifies it."""
     page = (root / "docs" / "format.md").read_text(encoding="utf-8")
-    example = page[page.rindex("    converse proof 3\n"):].split("\n\n")[0]
+    example = page[page.rindex("    converse proof 6\n"):].split("\n\n")[0]
     data = "".join(line[4:] + "\n" for line in example.split("\n")).encode()
     body, end = data[:data.rindex(b"checksum: ")], data[data.rindex(b"checksum: "):]
     assert end == b"checksum: sha256 %s\nend\n" % hashlib.sha256(body).hexdigest().encode()
@@ -993,7 +992,7 @@ def test_the_format_names_what_the_checker_knows(root, texts, monkeypatch):
     header = page[page.index("## The header"):page.index("## The tree")]
     names = set(re.findall("`([^`\n]+)`", header)) - {"sound", "yes", "no", "0", "1", "upper end",
                                                       "as printed, not a proof"}
-    assert names == check.FIELDS | check.OPTIONAL | {check.LINKED}
+    assert names == check.FIELDS | check.OPTIONAL
     maps = page[page.index("## Maps"):page.index("## Going on")]
     assert all("`%s`" % name in maps for name in (*check.REGIONS, *check.MAP_KINDS))
     assert "2^22" in page and check.MAX_ITEMS == 1 << 22
@@ -1561,7 +1560,7 @@ def as_text(x):
 
 def general(text, waves, v0=(1, 1), v1=(1, 1), frame=(1, 0, 0, 1), alone="no", odd="no",
             at_once="no", tree=None, xstar=None):
-    """A file of version 3, of the rest of the text; waves: (k, phase, amplitude, parts)."""
+    """A file of the rest of the text; waves: (k, phase, amplitude, parts)."""
     head, middle, rest = text.partition("\ntree:\n")
     lines = [line for line in head.split("\n")[1:] if line.partition(":")[0] not in (
         "v0", "v1", "at once", "wave", "frame", "alone", "odd about")]
@@ -1570,7 +1569,7 @@ def general(text, waves, v0=(1, 1), v1=(1, 1), frame=(1, 0, 0, 1), alone="no", o
     lines += ["v0: %s %s" % tuple(map(as_text, v0)), "v1: %s %s" % tuple(map(as_text, v1)),
               "frame: %d %d %d %d" % frame, "alone: " + alone, "odd about: " + odd,
               "at once: " + at_once]
-    text = "\n".join(["converse proof 3", *lines]) + middle + rest
+    text = "\n".join(["converse proof 6", *lines]) + middle + rest
     if xstar:
         text = with_field(text, "xstar", "%s %s" % tuple(map(as_text, xstar)))
     return sealed(with_tree(text, tree) if tree else text)
@@ -2619,7 +2618,7 @@ def test_not_at_once(texts, run, generator):
     assert (status, out) == (5, "") and "not confirmed: that larger parameters" in err
 
 
-# ---- version 3
+# ---- other potentials and frames
 
 HALF_PI = "1.5707963267948966"
 PROBLEMS = {                # waves, what else is said of them, and where minimizing is contradicted
@@ -2639,7 +2638,7 @@ PROBLEMS = {                # waves, what else is said of them, and where minimi
 
 @pytest.fixture(scope="module")
 def others(texts, tmp_path_factory):
-    """Proof files of version 3, by name."""
+    """Proof files of other potentials, by name."""
     found = {}
     for name, (waves, more, xstar) in PROBLEMS.items():
         text = general(texts["trig274"], waves, tree="P", xstar=xstar, **more)
@@ -2650,7 +2649,7 @@ def others(texts, tmp_path_factory):
 
 
 @pytest.mark.parametrize("name", PROBLEMS)
-def test_confirms_version_3(others, run, name):
+def test_confirms_other_potentials(others, run, name):
     text = others[name]
     status, out, err = run(text)
     assert (status, err) == (0, "") and out.startswith("Verified :")
@@ -2664,7 +2663,7 @@ def test_confirms_version_3(others, run, name):
 
 
 @pytest.mark.parametrize("name", PROBLEMS)
-def test_no_orbit_of_a_leaf_of_version_3_minimizes(others, generator, name):
+def test_no_orbit_of_a_leaf_of_other_potentials_minimizes(others, generator, name):
     claim = claim_of(others[name])
     cells = [cell for at, cell in check.leaves(claim.tree) if claim.tree[at] == "P"]
     waves = waves_of(claim)
@@ -2676,7 +2675,7 @@ def test_no_orbit_of_a_leaf_of_version_3_minimizes(others, generator, name):
 
 
 @pytest.mark.parametrize("name, field, value, status, why", [
-    ("a patch", "frame", "1 0 0 2", 1, "determinant"), ("a patch", "frame", "1 0 0", 1, "four"),
+    ("a patch", "frame", "1 2 2 4", 1, "determinant"), ("a patch", "frame", "1 0 0", 1, "four"),
     ("a patch", "frame", "1 0 0 1 0", 1, "four"), ("a patch", "frame", "1 0 0 1.0", 1, "four"),
     ("a patch", "frame", "1000000000 1 1 0", 1, "four"), ("a patch", "alone", "0", 1, "both"),
     ("a patch", "alone", "2", 1, "neither"), ("a patch", "alone", "yes", 1, "neither"),
@@ -2705,7 +2704,7 @@ def test_no_orbit_of_a_leaf_of_version_3_minimizes(others, generator, name):
     ("a patch", "wave", "1 1 0 1e301 0 0 0", 5, "out of range"),
     ("a patch", "wave", "1 1 0 %s 0 0 0" % ("1" * 1001), 5, "characters"),
     ("a patch", "wave", "1 1 1/2 0.6 0.01 0 0.02", 1, "not odd")])
-def test_header_of_version_3(others, run, name, field, value, status, why):
+def test_header_of_other_potentials(others, run, name, field, value, status, why):
     text = re.sub("(?m)^%s: .*$" % field, "%s: %s" % (field, value), others[name], count=1)
     if status == 0 and others[name] != text:
         assert "wrong checksum" in run(text)[2]
@@ -2772,7 +2771,7 @@ def test_which_potentials_are_symmetric(texts, generator, waves, order):
         assert check.Mirror(claim_of(text)).orders == []
 
 
-def test_symmetric_leaves_of_version_3(others, run):
+def test_symmetric_leaves_of_a_patch(others, run):
     text = others["a patch"]
     tree = tree_of(text)
     at = {cell: place for place, cell in check.leaves(tree)}

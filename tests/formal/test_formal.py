@@ -9,7 +9,7 @@ import sys
 from dataclasses import replace
 
 import pytest
-import test_version4 as version4
+import test_parts as by_hand
 from conftest import ROOT
 
 from converse import prove, read_input
@@ -71,12 +71,12 @@ def test_who_reads_map_and_says_has_read_enough(proof, tmp_path):
 
 def test_linked_parts(tmp_path):
     """They are in the claim's file, where a is the next part; what is said is in the same words."""
-    found = version4.linked(version4.found(), (version4.OTHER, "0.85 0.87"))
+    found = by_hand.linked(by_hand.found(), (by_hand.OTHER, "0.85 0.87"))
     (tmp_path / "build").mkdir()
     for v0, said in ((found["v0"], "(forall t, in_cube t -> no_invariant_graph (waves patch t))"),
                      ("0.5364 0.2502", "no_invariant_graph_into (Region 1 1 1 (-1) 0.5364 0.2502 "
                       "0.5 0.5) (waves patch t) (point (0.858, 0.858))")):
-        (tmp_path / "proof").write_text(version4.file_of(**{**found, "v0": v0}))
+        (tmp_path / "proof").write_text(by_hand.file_of(**{**found, "v0": v0}))
         files = write(tmp_path / "proof", "linked", tmp_path)
         assert said.strip("()") in files["linked_says"].read_text()
         claim = files["linked_claim"].read_text()
@@ -92,16 +92,16 @@ def test_linked_parts(tmp_path):
 def test_regions_that_move(tmp_path):
     """What the parameters shift is in the claim's file: v0 by each of them, then v1."""
     moves = "0.5362 0.2802 0.01 0.02", "0.5 0.535 -0.03 0.005"
-    text = version4.file_of("a", waves=version4.APART, parts=[(version4.XSTAR, *moves, "P")])
+    text = by_hand.file_of("a", waves=by_hand.APART, parts=[(by_hand.XSTAR, *moves, "P")])
     (tmp_path / "build").mkdir()
-    (tmp_path / "proof").write_text(version4.sealed(text.replace("proof 4", "proof 5")))
+    (tmp_path / "proof").write_text(text)
     claim = write(tmp_path / "proof", "moving", tmp_path)["moving_claim"].read_text()
     assert "Part (0.858, 0.858) (0.5362, 0.2802) (0.5, 0.535) ([0.01; 0.02], [(-0.03); 0.005]) (" \
         in claim
     assert claim.count("([], [])") == 1         # the header's
 
-    text = version4.file_of("a", waves=version4.APART, parts=[(version4.XSTAR, *moves, "2PS")])
-    (tmp_path / "proof").write_text(version4.sealed(text.replace("proof 4", "proof 5")))
+    text = by_hand.file_of("a", waves=by_hand.APART, parts=[(by_hand.XSTAR, *moves, "2PS")])
+    (tmp_path / "proof").write_text(text)
     done = subprocess.run([sys.executable, FORMAL / "theorem.py", tmp_path / "proof", "wrong",
                            tmp_path / "build"], stderr=subprocess.PIPE, text=True)
     assert done.returncode == 1 and done.stderr.count("\n") == 1

@@ -230,7 +230,7 @@ def test_a_linked_proof(linked, tmp_path):
     lambda text: text.replace("part: b", "part: c"),
     lambda text: re.sub("part: a\nxstar: .*\n", "part: a\n", text),
     lambda text: text.replace("part: a\n", "part: a\nframe: 1 0 0 1\n"),
-    lambda text: text.replace("converse proof 4", "converse proof 3"),
+    lambda text: text.replace("linked: ", "linking: "),
     lambda text: text[:text.index("part: b")] + text[text.index("checksum"):],
     lambda text: re.sub("(part: a\n[^P]*)P", r"\1a", text),
     lambda text: re.sub("(part: b\n[^P]*)P", r"\1a", text),

@@ -132,7 +132,7 @@ def test_file_says_what_it_is(tmp_path, made_up):
     made_up("0PS").save(tmp_path / "sound")
     made_up("0PS", as_printed=True).save(tmp_path / "printed")
     sound, printed = [(tmp_path / name).read_text().split("\n") for name in ("sound", "printed")]
-    assert sound[0] == printed[0] == "converse proof 3" and sound[-2:] == ["end", ""]
+    assert sound[0] == printed[0] == "converse proof 6" and sound[-2:] == ["end", ""]
     assert "kind: sound" in sound and "kind: as printed, not a proof" in printed
     assert {"wave: 1 0 0 0.3085 0.00125 0 0", "wave: 0 1 0 0.3085 0 0.00125 0",
             "wave: 1 1 0 0.617 0 0 0.0025", "frame: 1 0 0 1", "odd about: 0 0", "alone: no",
@@ -511,13 +511,13 @@ def resealed(text):
     return head + "checksum: sha256 %s\nend\n" % hashlib.sha256(head.encode("utf-8")).hexdigest()
 
 
-def test_format_2_is_refused(made_up, tmp_path):
-    """In a line that names the releases which read it."""
+@pytest.mark.parametrize("other", [2, 3, 4, 5, 7])
+def test_other_formats_are_refused(made_up, tmp_path, other):
     path = tmp_path / "old.proof"
     made_up("P").save(path)
-    path.write_text(resealed(path.read_text("utf-8").replace("proof 3", "proof 2")), "utf-8")
-    with pytest.raises(ConverseError,
-                       match="of format 2, which releases up to 1.6.0 read") as caught:
+    path.write_text(resealed(path.read_text("utf-8").replace("proof 6", "proof %d" % other)))
+    with pytest.raises(ConverseError, match="of another format; this release reads format 6, so "
+                       "continue it with the release that wrote it$") as caught:
         Proof.load(path)
     assert "\n" not in str(caught.value)
 

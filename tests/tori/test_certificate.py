@@ -79,7 +79,7 @@ def test_damaged_files_are_refused(proof, tmp_path):
     refused(path, b"")
     refused(path, b"\xff\xfe")
     refused(path, gzip.compress(data)[:-10])
-    refused(path, b"converse proof 3\n" + data)
+    refused(path, b"converse proof 6\n" + data)
     assert "cannot be read" in str(pytest.raises(
         ConverseError, certificate.read, tmp_path / "none").value)
 

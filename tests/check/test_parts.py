@@ -1,6 +1,6 @@
-"""Version 4 of the proof file: frames of any determinant, regions that hold enough of the torus by
-reversal and exchange, and parts that leaves are linked to.  What is right is confirmed, and what is
-wrong in any one place is not, by both paths of the checker."""
+"""Proof files with frames of any determinant, regions that hold enough of the torus by reversal and
+exchange, and parts that leaves are linked to.  What is right is confirmed, and what is wrong in any
+one place is not, by both paths of the checker."""
 
 import contextlib
 import hashlib
@@ -19,7 +19,7 @@ from converse.check import main, verify
 from checker import check
 from trees import found_tree, halves
 
-HEAD = """converse proof 4
+HEAD = """converse proof 6
 kind: sound
 program: by hand
 method: loewner
@@ -172,7 +172,7 @@ def test_what_the_program_writes(run, tmp_path, waves, xstar, told):
     prove(problem, method="loewner", xstar=xstar).save(path)
     status, out, _ = run(path.read_bytes())
     assert status == 0 and "; all others by %s\n" % told in out
-    assert out.startswith("Verified :") and "converse proof 4\n" in path.read_text()
+    assert out.startswith("Verified :") and "converse proof 6\n" in path.read_text()
 
 
 def c0_of(text):
@@ -591,13 +591,6 @@ WRONG_STRUCTURE = {         # arguments of a file with two links -> a text; and 
     "a range that is no number": (lambda f: file_of(**with_part(f, 1, v1="1 nan")),
                                  "v1 is not two"),
     "a negative half-width": (lambda f: file_of(**with_part(f, 1, v1="1 -1")), "half-width is neg"),
-    "version 3 with parts": (lambda f: replaced(replaced(file_of(**{**f, "frame": "1 0 0 1"}),
-                                                         "proof 4", "proof 3"), "linked: 2\n", ""),
-                             "the tree"),
-    "version 3 with linked": (lambda f: replaced(file_of(
-        "P", frame="1 0 0 1"), "proof 4", "proof 3"), "of unknown meaning"),
-    "version 3 with another determinant": (lambda f: replaced(replaced(
-        file_of("P"), "proof 4", "proof 3"), "linked: 0\n", ""), "not determinant 1 or -1"),
     "determinant 0": (lambda f: with_line(file_of(**f), "frame", "1 2 2 4"), "determinant 0"),
     "a frame of zeros": (lambda f: with_line(file_of(**f), "frame", "0 0 0 0"), "determinant 0"),
     "a frame too large": (lambda f: with_line(file_of(**f), "frame", "101 0 0 1"), "beyond 100"),

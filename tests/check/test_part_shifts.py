@@ -1,4 +1,4 @@
-"""Version 5 of the proof file: parts whose regions move with the parameters.  What is right is
+"""Proof files with parts whose regions move with the parameters.  What is right is
 confirmed, and what is wrong in any one place is not, by both paths of the checker; and orbits are
 where the checker says."""
 
@@ -12,7 +12,7 @@ from fractions import Fraction
 
 import pytest
 from mpmath import mp
-from test_version4 import OTHER, XSTAR, file_of, replaced, run, sealed, with_leaf  # noqa: F401
+from test_parts import OTHER, XSTAR, file_of, replaced, run, sealed, with_leaf  # noqa: F401
 
 from checker import check
 from trees import found_tree
@@ -27,8 +27,8 @@ def decimals(*numbers):
     return " ".join([check.decimal_text(Fraction(x)) for x in numbers])
 
 
-def version5(text):
-    return sealed(text.replace("converse proof 4\n", "converse proof 5\n", 1))
+def text_of(link):
+    return file_of(**link)
 
 
 def part_claim(waves, xstar, ranges):
@@ -85,10 +85,6 @@ def chain(waves, steps, margin=TIGHT, cut="2"):
     trees.append(found_tree(part_claim(waves, *here), 5000))
     return {"tree": trees[0], "v0": V0, "v1": V1, "waves": waves,
             "parts": [(*part, tree) for part, tree in zip(parts, trees[1:])]}
-
-
-def text_of(link):
-    return version5(file_of(**link))
 
 
 def changed(link, n, line, at, value=None, by=None, times=None):
@@ -162,9 +158,6 @@ REJECTED = {            # a change of a file, made of the arguments; and what is
                            "in the header, is of unknown meaning"),
     "a line of its own": (lambda f: replaced(text_of(f), "tree:\n", "shifts: 0 0\ntree:\n"),
                           "in the header, is of unknown meaning"),
-    "version 4": (lambda f: file_of(**f), "part a's v0 is not two decimal numbers"),
-    "version 3": (lambda f: sealed(file_of(**{**f, "frame": "1 0 0 1"}).replace(
-        "proof 4", "proof 3").replace("linked: 2\n", "")), "the tree"),
     "no number": (lambda f: text_of(changed(f, 0, "v0", 2, "nan")), "part a's v0 is not two or 3"),
     "infinite": (lambda f: text_of(changed(f, 1, "v1", 2, "inf")), "part b's v1 is not two or 3"),
     "a ratio": (lambda f: text_of(changed(f, 1, "v0", 2, "1/3")), "part b's v0 is not two or 3"),
