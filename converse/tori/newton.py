@@ -11,7 +11,7 @@ lets converse/tori/refinement.py correct a torus of many more digits.
 """
 
 from math import ceil, log2
-from typing import Iterable, List, Sequence, Tuple
+from typing import Any, Iterable, List, Sequence, Tuple
 
 import numpy as np
 
@@ -62,6 +62,12 @@ def sizes_holding(potential: FourierSum, frame: Frame, box: Iterable[float]) -> 
     """The sizes of the smallest mesh whose mode numbers reach box[i] in each direction."""
     steps = pivots(triangular(wave_vectors(potential), frame), frame)
     return [1 << max(3, ceil(log2(max(2 * reach / step, 1)))) for reach, step in zip(box, steps)]
+
+
+def combined(numbers: Sequence[int], arrays: Any) -> Any:
+    """The sum of numbers[i] arrays[i].  Of doubles np.tensordot would ask BLAS, whose threads cost
+    more than they bring."""
+    return sum(number * array for number, array in zip(numbers, arrays) if number)
 
 
 def turns(k: np.ndarray, rotation: Rotation) -> np.ndarray:
@@ -199,7 +205,7 @@ class Mesh:
         values = self.values(u)
 
         def force(phase, vector):
-            return np.cos(phase + np.tensordot(vector, values, 1))
+            return np.cos(phase + combined(vector, values))
 
         return self._linear(u) + self._force(force, values, amplitude)
 
@@ -209,8 +215,8 @@ class Mesh:
         values, step = self.values(u), self.values(v)
 
         def force(phase, vector):
-            half = np.tensordot(vector, step, 1) / 2
-            return -2 * np.sin(phase + np.tensordot(vector, values, 1) + half) * np.sin(half)
+            half = combined(vector, step) / 2
+            return -2 * np.sin(phase + combined(vector, values) + half) * np.sin(half)
 
         return self._linear(v) + self._force(force, values, amplitude)
 
@@ -226,7 +232,7 @@ class Mesh:
             for i, (number, size) in enumerate(zip(a, self.sizes)):
                 along = np.arange(size) * number % size / size
                 phase = phase + along.reshape([-1 if j == i else 1 for j in range(len(a))])
-            found = cosine(2 * np.pi * (phase - np.rint(phase)), np.array(wave[:n], float))
+            found = cosine(2 * np.pi * (phase - np.rint(phase)), wave[:n])
             for i in range(n):
                 if wave[i]:
                     force[i] -= p * wave[i] * found
@@ -277,12 +283,12 @@ class Mesh:
         g = _apply(inverse, g)
         mean = tuple(range(2, 2 + len(self.sizes)))
         C = np.linalg.solve(inverse.mean(mean), g.mean(self.axes))
-        y = self._clean(np.tensordot(inverse, C, ((1,), (0,))) - g)
+        y = self._clean(_apply(inverse, C) - g)
         z = y / safe
         z[(slice(None), *zero)] = 0
         v = self.coefficients(_apply(L, self.values(z)))
         average = v[(slice(None), *zero)]
-        v = v - np.tensordot(du, average, ((1,), (0,)))
+        v = v - _apply(du, average)
         v[(slice(None), *zero)] = 0
         return v * self.inside * scale
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from ..model.exact import rounded_text
 from .continuation import Found
-from .newton import Frame, Mesh, inverted, sizes_holding, triangular, turns
+from .newton import Frame, Mesh, combined, inverted, sizes_holding, triangular, turns
 from .rotation import Rotation
 from .torus import Strip
 
@@ -98,7 +98,7 @@ def plan(found: Found, margin: float = MARGIN, more: float = 1.0,
 
 
 def _length(frame, alpha, k):
-    return sum(a * abs(np.tensordot(row, k, 1)) for a, row in zip(alpha, frame))
+    return sum(a * abs(combined(row, k)) for a, row in zip(alpha, frame))
 
 
 class _Needed:
@@ -123,8 +123,8 @@ class _Needed:
         mean = inverse.mean(tuple(range(2, inverse.ndim)))
         self.h = 1 + float(np.linalg.norm(np.linalg.inv(mean), 2)) * float(
             self.a[1].max(initial=0))
-        self.waves = [(float(abs(p)) * float(np.dot(k, k)) ** 1.5, k, sizes(np.tensordot(
-            np.array(k), found.u, 1)[None])) for k, p in zip(mesh.vectors, found.amplitude)]
+        self.waves = [(float(abs(p)) * float(np.dot(k, k)) ** 1.5, k, sizes(
+            combined(k, found.u)[None])) for k, p in zip(mesh.vectors, found.amplitude)]
         self.divisors = _divisors(mesh.vectors, mesh.rotation, mesh.frame)
         corners = np.linalg.norm(np.linalg.inv(np.array(mesh.frame, float)), axis=0)
         self.corners = corners
