@@ -91,7 +91,7 @@ def measured(name, side, value):
             except (tori.NotFound, tori.NotProved):
                 return None
             seconds = time.process_time() - began
-            parts, longest = len(proof.torus.modes), ""
+            parts, longest = len(proof.torus.k), ""
         memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1000
         proof.save(path)
         return seconds, memory, os.path.getsize(path), parts, longest

@@ -152,7 +152,7 @@ def run(options):
         print("nothing is proved")
         return 1
     print("proved at %s = %.4g: %d modes, residual %.1e, needed %.1e, %.0f s\n    --rotation '%s'"
-          % (name, reached, len(proof.torus.modes), proof.residual, proof.needed,
+          % (name, reached, len(proof.torus.k), proof.residual, proof.needed,
              time.process_time() - began, proof.rotation.text()))
     if options.save:
         proof.save(options.save)
