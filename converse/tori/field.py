@@ -6,9 +6,10 @@ An element is the tuple of its rational coefficients of 1, t, t^2, ...; what is 
 
 from fractions import Fraction
 from functools import lru_cache
-from math import ceil, floor, gcd
+from math import gcd
 from typing import List, NamedTuple, Sequence, Tuple
 
+from ..check.field import roots_between
 from ..model.exact import Ends
 
 Element = Tuple[Fraction, ...]
@@ -51,25 +52,13 @@ class Field(NamedTuple):
                 total[i + j] += x * y
         return self.element(total)
 
-    def matrix(self, a: Element) -> List[List[Fraction]]:
-        """Of multiplication by a: its columns are a, a t, a t^2, ..."""
-        columns = [self.element([Fraction(0)] * j + list(a)) for j in range(self.degree)]
-        return [list(row) for row in zip(*columns)]
-
-    def trace(self, a: Element) -> Fraction:
-        return sum((row[i] for i, row in enumerate(self.matrix(a))), Fraction(0))
-
-    def norm(self, a: Element) -> Fraction:
-        return determinant(self.matrix(a))
-
     def inverse(self, a: Element) -> Element:
         """1/a.  ZeroDivisionError: a is 0."""
-        matrix = self.matrix(a)         # Cramer's rule for matrix x = (1, 0, ...)
-        whole, solution = determinant(matrix), []
-        for j in range(self.degree):
-            replaced = [row[:j] + [Fraction(not i)] + row[j + 1:] for i, row in enumerate(matrix)]
-            solution.append(determinant(replaced) / whole)
-        return tuple(solution)
+        columns = [self.element([Fraction(0)] * j + list(a)) for j in range(self.degree)]
+        whole = determinant(columns)    # Cramer's rule: a, a t, a t^2 times these are 1
+        one = self.element([Fraction(1)])
+        return tuple(determinant([*columns[:j], one, *columns[j + 1:]]) / whole
+                     for j in range(self.degree))
 
     def bounds(self, a: Element, digits: int) -> Ends:
         """The value of an element, to 10^-digits; exactly, if it is rational."""
@@ -86,16 +75,6 @@ class Field(NamedTuple):
             if (high - low) * 10 ** digits <= 1:
                 return low, high
             bits *= 2
-
-    def sign(self, a: Element) -> int:
-        """Of the value of an element: 1, 0 or -1."""
-        digits = 10
-        while any(a):                   # the powers of t below the degree are independent
-            low, high = self.bounds(a, digits)
-            if low > 0 or high < 0:
-                return 1 if low > 0 else -1
-            digits *= 2
-        return 0
 
 
 @lru_cache(maxsize=64)
@@ -132,53 +111,6 @@ def primitive(polynomial: Sequence[int]) -> Polynomial:
     """Without a common factor of its coefficients, and with a positive leading one."""
     factor = gcd(*polynomial) * (1 if polynomial[-1] > 0 else -1)
     return tuple(c // factor for c in polynomial)
-
-
-def is_irreducible(polynomial: Polynomial) -> bool:
-    """Of degree 2 or 3, which is so if it has no rational root.
-
-    If a is the leading coefficient, a x is an integer for every rational root x; and a multiple
-    root would be rational."""
-    lead = polynomial[-1]
-    if not polynomial[0] or len(_sturm(polynomial)[-1]) > 1:
-        return False
-    for low, high in real_roots(polynomial):
-        while (high - low) * abs(lead) > 1:         # two integers at most are left for a x
-            middle = (low + high) / 2
-            low, high = (middle, high) if roots_between(polynomial, middle, high) else (low, middle)
-        ends = floor(low * lead), ceil(low * lead), floor(high * lead), ceil(high * lead)
-        if not all(value_at(polynomial, Fraction(x, lead)) for x in ends):
-            return False
-    return True
-
-
-def _sturm(polynomial):
-    """Sturm's chain: polynomials of falling degree, the last constant if all roots are simple."""
-    chain = [[Fraction(c) for c in polynomial],
-             [Fraction(j * c) for j, c in enumerate(polynomial)][1:]]
-    while len(chain[-1]) > 1:
-        rest, by = list(chain[-2]), chain[-1]
-        while len(rest) >= len(by):
-            factor = rest[-1] / by[-1]
-            for j in range(len(by)):
-                rest[len(rest) - len(by) + j] -= factor * by[j]
-            rest.pop()
-        while rest and not rest[-1]:
-            rest.pop()
-        if not rest:
-            break
-        chain.append([-c for c in rest])
-    return chain
-
-
-def roots_between(polynomial: Polynomial, low: Fraction, high: Fraction) -> int:
-    """How many real roots are above low and not above high, if all roots are simple (Sturm)."""
-    def changes(x):
-        signs = [value > 0 for value in (value_at(p, x) for p in chain) if value]
-        return sum(a != b for a, b in zip(signs, signs[1:]))
-
-    chain = _sturm(polynomial)
-    return changes(low) - changes(high)
 
 
 def real_roots(polynomial: Polynomial) -> List[Ends]:

@@ -4,7 +4,7 @@ The rotation number of a torus of one angle is an element omega of Q(t), t a rea
 irreducible integer polynomial of degree 2; the rotation vector of a torus of two angles has two
 elements of Q(t), t of degree 3, that are independent with 1 over the rationals.  Then no
 combination k.omega, k != 0, is an integer, and how near to integers they come has a lower bound
-that can be computed: converse/tori/divisors.py.
+that can be computed: converse/check/field.py.
 """
 
 import re
@@ -14,9 +14,9 @@ from functools import cached_property
 from math import lcm
 from typing import Dict, Optional, Sequence, Tuple, Union
 
+from ..check.field import is_irreducible, roots_between
 from ..model.exact import Ends, exact
-from .field import (Element, Field, Polynomial, determinant, is_irreducible, primitive, real_roots,
-                    roots_between)
+from .field import Element, Field, Polynomial, determinant, primitive, real_roots
 
 LONGEST = 2000                          # characters of a rotation vector that is given as a text
 DEGREES = {2: "a quadratic", 3: "a cubic"}

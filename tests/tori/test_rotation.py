@@ -8,7 +8,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from converse.tori import Rotation, near, read_rotation
-from converse.tori.field import Field, is_irreducible, real_roots, value_at
+from converse.check.field import is_irreducible
+from converse.tori.field import Field, real_roots, value_at
 from converse.tori.rotation import NAMES
 
 
@@ -112,9 +113,6 @@ def test_bounds_hold_the_value_and_the_field_is_a_field(polynomial, numbers):
         assert field.bounds(field.element([0, 0, 0, 1]), 30)[0] <= high ** 3
         if any(a):
             assert field.product(a, field.inverse(a)) == field.element([1])
-            assert field.norm(a) * field.norm(field.inverse(a)) == 1
-            ends = field.bounds(a, 20)
-            assert field.sign(a) == (1 if ends[0] > 0 else -1)
 
 
 @pytest.mark.parametrize("number,tolerance", [("0.618", "1/1000"), ("0.4", "1/100"),
