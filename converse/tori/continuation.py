@@ -13,7 +13,7 @@ from typing import Callable, List, NamedTuple, Optional, Sequence, Tuple, Union
 import numpy as np
 
 from ..model.potential import FourierSum
-from .effort import REFINING_BYTES, SOLVING, free_memory, some
+from .effort import LAYER_BYTES, REFINING_BYTES, SOLVING, free_memory, some
 from .newton import EPSILON, Frame, Mesh
 from .rotation import Rotation
 from .torus import Torus, decay
@@ -147,13 +147,14 @@ class Way:
             keep = ellipse(mesh, found.rates, more * found.reach)
         return None
 
-    def check_cost(self, points: int) -> None:
+    def check_cost(self, points: int, layers: int = 0) -> None:
         """NotFound: to refine a torus on a grid of so many points takes too much memory."""
         free = free_memory() * 3 // 4 if self.memory is None else self.memory
-        if points * REFINING_BYTES > free:
+        memory = points * (REFINING_BYTES + LAYER_BYTES * layers)
+        if memory > free:
             raise NotFound("the torus is seen, but to refine it takes a grid of %d points and %.3g "
                            "GB of memory, and %.3g GB may be used" % (
-                               points, points * REFINING_BYTES / 1e9, free / 1e9),
+                               points, memory / 1e9, free / 1e9),
                            1.0, [float(p) for p in self.last])
 
     def _measured(self, part, mesh, u, enough=ENOUGH):

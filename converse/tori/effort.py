@@ -10,7 +10,8 @@ SHORT, LONGER = 128, 1.6    # bits of balls up to which these are the times; how
 # About so many errors take as long as refining a torus, and one that is a polynomial in the
 # parameter.
 SINGLE, REFINING = 2.5, 2
-REFINING_BYTES = 750        # Bytes for each point of a grid, while a torus is refined.
+# Bytes for each point of a grid while a torus is refined, and more for each point of sigma.
+REFINING_BYTES, LAYER_BYTES = 1300, 100
 
 
 def balls(points: int, bits: int) -> float:

@@ -232,8 +232,8 @@ class _Pieces:
         mesh = aim.mesh(worst.mesh, real=False)
         if degree > max(LEAST_DEGREE, min(MOST_DEGREE, LARGEST // mesh.points)):
             return None
-        points = mesh.points * layers_for(degree)
-        self._placed(*piece, lambda way: way.check_cost(points))
+        layers = layers_for(degree)
+        self._placed(*piece, lambda way: way.check_cost(mesh.points, layers))
         modes = Modes(mesh, aim.keep(mesh))
         bits = aim.bits(modes.k, degree, self.margin)
         # on the mesh of the modes of the piece: those that both have
@@ -242,7 +242,7 @@ class _Pieces:
         torus = replace(begun, k=modes.k.T, numbers=taken(modes, bits, begun))
         self.tell("refining the tori of %s, %d modes of degree %d%s" % (
             _range_text(piece), len(modes.at), degree,
-            some(REFINING * BALLS * points)))
+            some(REFINING * BALLS * mesh.points * layers)))
         torus, ratio = refined(torus, modes, aim, self.margin)
         return torus if ratio <= 10 / self.margin else None
 

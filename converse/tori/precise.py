@@ -43,9 +43,15 @@ class _Task:
     def __init__(self, mesh: Mesh, torus: Torus, wanted: np.ndarray, bits: int) -> None:
         self.mesh, self.torus, self.wanted = mesh, torus, wanted
         self.shape = (1, *mesh.sizes)[-2:]
-        self.places = [self._places(sign * torus.k.T) for sign in (1, -1)]
+        # Of all k, and then of all -k, where they stand in the matrix of coefficients.  Those of
+        # column q1 are the numbers entries[part] for the slice part = columns[q1].
+        q0, q1 = self._places(np.concatenate([torus.k, -torus.k]).T)
+        order = np.argsort(q1, kind="stable")
+        self.q0, self.entries = q0[order].tolist(), order.tolist()
+        used, begin = np.unique(q1[order], return_index=True)
+        self.columns = dict(zip(used.tolist(), map(slice, begin, [*begin[1:], len(order)])))
         kept = self._places(mesh.k[:, wanted])[1]
-        self.kept = sorted({*kept, *(-q % self.shape[1] for q in kept)})
+        self.kept = np.unique([kept, -kept % self.shape[1]]).tolist()
         omega = [_ball((low + high) / 2) for low, high in torus.rotation.turns(bits // 3 + 20)]
         self.turns = [4 * _dot(k, omega).sin_pi() ** 2 for k in torus.k.tolist()]
         unit = arb((1, -torus.bits))
@@ -61,7 +67,7 @@ class _Task:
     def _places(self, k):
         """Where modes stand in the matrix of coefficients: their first indices, and the second."""
         a = self.mesh.coordinates(k)
-        return [(x % size).tolist() for x, size in zip([0 * a[0], *a][-2:], self.shape)]
+        return [x % size for x, size in zip([0 * a[0], *a][-2:], self.shape)]
 
     def error(self, sigma: acb, is_real: bool) -> np.ndarray:
         n, (m0, m1) = self.torus.dimension, self.shape
@@ -71,25 +77,17 @@ class _Task:
         sides = [at_k, [[x.conjugate() for x in each] for each in at_minus_k]]
         if is_real and n == 2:
             sides = [[[x + I * y for x, y in zip(*side)]] for side in sides]
-        columns: List[Dict[int, Line]] = []
-        linear: List[Dict[int, List[Tuple[int, acb]]]] = []
-        for at in range(len(sides[0])):
-            columns.append({})
-            linear.append({})
-            for side, places in zip(sides, self.places):
-                for x, turn, q0, q1 in zip(side[at], self.turns, *places):
-                    if q1 not in columns[at]:
-                        columns[at][q1], linear[at][q1] = [ZERO] * m0, []
-                    columns[at][q1][q0] = x
-                    linear[at][q1].append((q0, turn * x))
+        functions = [[x for side in sides for x in side[at]] for at in range(len(sides[0]))]
         del sides, at_k, at_minus_k
         amplitudes = [_ball(c) + _ball(d) * (sigma.real if is_real else sigma)
                       for c, d in self.torus.amplitudes]
-        found = np.zeros((len(columns), m0, m1), complex)
-        lines = self._forces(_values(columns, m0, m1), amplitudes, is_real)
-        for at, q1, line in _coefficients(lines, len(columns), m0, self.kept):
-            for q0, x in linear[at].get(q1, ()):
-                line[q0] -= x
+        found = np.zeros((len(functions), m0, m1), complex)
+        count = len(self.turns)
+        for at, q1, line in self._coefficients(
+                self._forces(self._values(functions), amplitudes, is_real), len(functions)):
+            part = self.columns.get(q1, slice(0))
+            for q0, entry in zip(self.q0[part], self.entries[part]):
+                line[q0] -= self.turns[entry % count] * functions[at][entry]
             found[at, :, q1] = list(map(complex, line))
         if is_real:                     # E_0 + i E_1, both real
             other = np.roll(found[0, ::-1, ::-1], 1, (0, 1)).conj()
@@ -112,7 +110,8 @@ class _Task:
         m0 = self.shape[0]
         for j0, line in enumerate(lines):
             if is_real:
-                line = [[w.real for w in line[0]], [w.imag for w in line[0]]]
+                line = [[w.real for w in line[0]], *[[w.imag for w in line[0]]] * (
+                    self.torus.dimension - 1)]
             force = [[0] * self.shape[1]] * self.torus.dimension
             for (k, phase, across, angles), p in zip(self.waves, amplitudes):
                 start = arb.pi() * _ball((phase - Fraction(2 * across * j0, m0)) % 2)
@@ -126,36 +125,51 @@ class _Task:
                 force = [[x + I * y for x, y in zip(*force)]]
             yield force
 
+    def _values(self, functions: Sequence[Line]) -> Iterator[List[Line]]:
+        """For j0 = 0, ..., m0 - 1, of each function, a line of its values at the angles
+        -2 pi (j0/m0, j1/m1)."""
+        m0, m1 = self.shape
+        if m0 == 1:
+            lines = [[ZERO] * m1 for _ in functions]
+            for line, values in zip(lines, functions):
+                for q1, part in self.columns.items():
+                    line[q1] = values[self.entries[part][0]]
+            yield [acb.dft(lines.pop(0)) for _ in functions]
+            return
+        rows: List[Dict[int, Line]] = [{} for _ in functions]
+        for row, values in zip(rows, functions):
+            for q1, part in self.columns.items():
+                column = [ZERO] * m0
+                for q0, entry in zip(self.q0[part], self.entries[part]):
+                    column[q0] = values[entry]
+                row[q1] = acb.dft(column)
+        for j0 in range(m0):
+            found = []
+            for row in rows:
+                line = [ZERO] * m1
+                for q1, column in row.items():
+                    line[q1], column[j0] = column[j0], ZERO         # it is not needed again
+                found.append(acb.dft(line))
+            yield found
 
-def _values(columns: Sequence[Dict[int, Line]], m0: int, m1: int) -> Iterator[List[Line]]:
-    """For j0 = 0, ..., m0 - 1, of each function, a line of its values at the angles
-    -2 pi (j0/m0, j1/m1)."""
-    rows = [{q1: acb.dft(line) if m0 > 1 else line for q1, line in each.items()}
-            for each in columns]
-    for j0 in range(m0):
-        found = []
-        for each in rows:
-            line = [ZERO] * m1
-            for q1, column in each.items():
-                line[q1], column[j0] = column[j0], ZERO         # it is not needed again
-            found.append(acb.dft(line))
-        yield found
-
-
-def _coefficients(lines: Iterator[List[Line]], count: int, m0: int, kept: Sequence[int]
-                  ) -> Iterator[Tuple[int, int, Line]]:
-    """The inverse of `_values`: (number of the function, q1, column) of the columns that are kept.
-    """
-    rows: List[Dict[int, Line]] = [{q1: [] for q1 in kept} for _ in range(count)]
-    for each in lines:
-        for found, line in zip(rows, each):
-            line = acb.dft(line, inverse=True)
-            for q1 in kept:
-                found[q1].append(line[q1])
-    for at, found in enumerate(rows):
-        for q1 in kept:
-            column = found.pop(q1)
-            yield at, q1, acb.dft(column, inverse=True) if m0 > 1 else column
+    def _coefficients(self, lines: Iterator[List[Line]], count: int
+                      ) -> Iterator[Tuple[int, int, Line]]:
+        """The inverse of `_values`: (number of the function, q1, column) of the columns that are
+        kept."""
+        if self.shape[0] == 1:
+            for at, line in enumerate(next(lines)):
+                line = acb.dft(line, inverse=True)
+                yield from ((at, q1, [line[q1]]) for q1 in self.kept)
+            return
+        rows: List[Dict[int, Line]] = [{q1: [] for q1 in self.kept} for _ in range(count)]
+        for each in lines:
+            for row, line in zip(rows, each):
+                line = acb.dft(line, inverse=True)
+                for q1 in self.kept:
+                    row[q1].append(line[q1])
+        for at, row in enumerate(rows):
+            for q1 in self.kept:
+                yield at, q1, acb.dft(row.pop(q1), inverse=True)
 
 
 def _ball(x: Fraction) -> arb:
