@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from converse.tori import Rotation, near, read_rotation
 from converse.check.field import is_irreducible
+from converse.tori import Rotation, near, read_rotation
 from converse.tori.field import Field, real_roots, value_at
 from converse.tori.rotation import NAMES
 
