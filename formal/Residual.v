@@ -416,11 +416,11 @@ Proof.
   replace (1 + - Z.of_nat (S c))%Z with (- Z.of_nat c)%Z by lia. ring.
 Qed.
 
-Definition size_residual (j : nat) : Z :=
-  times_r (size_up (residual_list (snd (fst (fst (series j)))))).
+Definition size_residual (s : (nat * list Z) * (nat * list Z) * Z * Z) : Z :=
+  times_r (size_up (residual_list (snd (fst (fst s))))).
 
 Lemma residual_bounded j : close 1 b cs ->
-  let h := size_residual j in let e := snd (series j) in
+  let h := size_residual (series j) in let e := snd (series j) in
   bounded r (IZR h / (IZR D * IZR ed * IZR one) + IZR top / (IZR D * IZR one)
              + 2 * r * (Rabs (IZR en / IZR ed) * (IZR e / IZR one)))
     (residual w (IZR en / IZR ed) (S j) u0).
@@ -464,7 +464,8 @@ Qed.
 (* In units of 1/one: the residual of the lists, the errors of the cosines, the remainders of the
    divisions, and the rest of the series. *)
 Definition residual_up (j : nat) : Z :=
-  (ceil (size_residual j) (D * ed) + ceil top D + ceil (2 * rn * (Z.abs en * snd (series j))) (rd * ed)
+  (let s := series j in
+   ceil (size_residual s) (D * ed) + ceil top D + ceil (2 * rn * (Z.abs en * snd s)) (rd * ed)
    + ceil (4 * rn * Z.abs en * Z.pow top (Z.of_nat (S j)) * one)
           (ed * rd * Z.pow D (Z.of_nat (S j)) * Sine.factorial (S j)))%Z.
 
@@ -485,7 +486,7 @@ Proof.
   - assert (Hamp : Rabs (IZR en / IZR ed) = IZR (Z.abs en) / IZR ed).
     { unfold Rdiv. rewrite Rabs_mult, abs_IZR, (Rabs_right (/ IZR ed)); [reflexivity |].
       apply Rle_ge, Rlt_le, Rinv_0_lt_compat, Hed'. }
-    rewrite Hamp. unfold residual_up. rewrite !plus_IZR.
+    rewrite Hamp. unfold residual_up. cbv zeta. rewrite !plus_IZR.
     assert (scaled : forall a d x, (0 < d)%Z -> x = IZR a / IZR d / IZR one ->
                      x <= IZR (ceil a d) / IZR one).
     { intros a d x Hd ->. pose proof (ceil_above a d Hd). apply Rmult_le_compat_r; [| assumption].

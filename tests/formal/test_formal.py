@@ -196,24 +196,21 @@ def test_certificates_of_existence(folder):
 
 
 @needs_coq
-@pytest.mark.slow
 def test_golden(folder):
-    """It says what it says in Map.v's words alone; no other potential, and no other certificate."""
+    """It says what it says in Map.v's words alone, and it is about this potential."""
     says, golden = ((FORMAL / name).read_text() for name in ("golden_says.v", "golden.v"))
     assert re.findall("Converse.* Import (.*)", says) == ["Map."]
     assert re.findall("Converse.* Import (.*)", golden) == ["golden_says."]
-    (folder / "build" / "golden_says.v").write_text(says.replace(" 0.5]", " (-0.5)]"))
-    assert compiled(folder, "build/golden_says.v") == (True, "")
-    first = re.search(r"\[(-\d+);", golden)[1]
-    for wanted, file, text in [
-            ('expected to have type "golden_says"', "other",
-             golden.replace("Converse Require Import", "Converse.build Require Import")),
-            ('"Exists.holds certificate = true"', "altered",
-             golden.replace(first, str(int(first) + 10 ** 9)))]:
-        assert text != golden
-        (folder / "build" / (file + ".v")).write_text(text)
-        accepted, said = compiled(folder, "build/%s.v" % file)
-        assert not accepted and wanted in " ".join(said.split()), said
+    golden, changed = re.subn(r"(?s)Lemma (conjugated : .*?)Proof.*?Qed\.", r"Axiom \1", golden)
+    assert changed == 1     # what takes Coq half a minute
+    text = golden.replace("Converse Require Import", "Converse.build Require Import")
+    for amplitude in "0.8", "(-0.8)", "0.9":
+        (folder / "build" / "golden_says.v").write_text(says.replace("0.8]", amplitude + "]"))
+        (folder / "build" / "golden.v").write_text(text)
+        assert compiled(folder, "build/golden_says.v") == (True, "")
+        accepted, said = compiled(folder, "build/golden.v")
+        assert accepted == (amplitude == "0.8"), said
+        assert accepted or 'expected to have type "golden_says"' in " ".join(said.split()), said
 
 
 @needs_coq
