@@ -121,7 +121,7 @@ Definition invariant_graph (ws : list wave) (c : vec) (S' : vec -> vec) : Prop :
 Definition no_invariant_graph (ws : list wave) : Prop :=
   forall c S S', periodic S -> has_gradient S S' -> ~ invariant_graph ws c S'.
 
-(* The opposite. *)
+(* The opposite: there is one, for some c. *)
 Definition has_invariant_graph (ws : list wave) : Prop :=
   exists c S S', periodic S /\ has_gradient S S' /\ invariant_graph ws c S'.
 
