@@ -2,6 +2,7 @@
 
 import dataclasses
 import re
+import signal
 import subprocess
 import sys
 from fractions import Fraction
@@ -180,6 +181,55 @@ def test_an_interrupt_leaves_nothing(run, tmp_path, monkeypatch):
     status, out, err = run("prove", K09, "--rotation", "golden", "-b", file)
     assert status == 130 and one_line(err) and "interrupted" in err
     assert "I find" not in out and not file.exists()
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_a_signal_ends_all_processes(tmp_path, number):
+    """While pieces are verified, each of which would take minutes."""
+    code = """if True:
+        import sys, time
+        from converse.check import tori
+        from converse.commands import tori as cli
+        def verify(*_):
+            sys.stdout.write("verifying\\n")
+            sys.stdout.flush()
+            time.sleep(600)
+        tori.verify_width = verify
+        sys.exit(cli.main(sys.argv[1:]))
+        """
+    problem, file = tmp_path / "range.in", tmp_path / "range.torus"
+    problem.write_text("0.45 0.35\n0 0\n0 0\n1 1\n1 1\n")
+    run = subprocess.Popen([sys.executable, "-c", code, "prove", str(problem), "--rotation",
+                            "golden", "--jobs", "2", "-b", str(file)], text=True,
+                           stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+    assert any(line == "verifying\n" for line in run.stdout)
+    run.send_signal(number)
+    out, err = run.communicate(timeout=300)     # the pipes are closed, so the processes have ended
+    assert run.returncode == 128 + number
+    assert err == "converse-tori: interrupted; nothing is proved\n" and "I find" not in out
+    assert [each.name for each in tmp_path.iterdir()] == ["range.in"]
+
+
+def test_a_process_that_dies_is_told(tmp_path):
+    """In the midst of its work, while the other one works, too."""
+    code = """if True:
+        import os, signal, sys, time
+        from converse.check import tori
+        from converse.commands import tori as cli
+        def verify(*_):
+            if not os.path.exists("one"):
+                open("one", "w").close()
+                time.sleep(600)
+            os.kill(os.getpid(), signal.SIGKILL)
+        tori.verify_width = verify
+        sys.exit(cli.main(sys.argv[1:]))
+        """
+    problem = tmp_path / "range.in"
+    problem.write_text("0.45 0.35\n0 0\n0 0\n1 1\n1 1\n")
+    run = subprocess.run([sys.executable, "-c", code, "prove", "range.in", "--rotation", "golden",
+                          "--jobs", "2"], text=True, capture_output=True, cwd=tmp_path, timeout=300)
+    assert run.returncode == 2 and "I find" not in run.stdout
+    assert one_line(run.stderr) and "died, perhaps for lack of memory" in run.stderr
 
 
 def test_a_certificate_is_one_runs_alone(run, tmp_path):
