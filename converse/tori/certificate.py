@@ -21,7 +21,7 @@ Path = Union[str, "os.PathLike[str]"]
 
 
 class Certificate(NamedTuple):
-    """What a file says.  It proves nothing until it is checked.
+    """The contents of a file.  They prove nothing until the file is checked.
 
     tori -- the pieces, of one map and one rotation vector
     sha256 -- of the file, uncompressed

@@ -1,6 +1,5 @@
-"""What the theorem of docs/existence.md will need of a torus that is known in doubles: how many
-modes and digits, in which norm and strip.  These are estimates, and the only ones: what is needed
-is decided by the checker."""
+"""Estimates how many modes and digits the theorem of docs/existence.md will need of a torus that is
+known in doubles, and chooses the norm and the strip.  The checker decides what is needed."""
 
 from fractions import Fraction
 from functools import lru_cache
@@ -15,14 +14,14 @@ from .newton import Frame, Mesh, combined, inverted, sizes_holding, triangular, 
 from .rotation import Rotation
 from .torus import Strip
 
-MARGIN = 100.0              # The error of a torus is to be so many times smaller than needed.
+MARGIN = 100.0              # Factor by which the error of a torus is to be below what is needed.
 WEIGHTS = 1, 2, 3, 4, 5, 6, 8, 10, 12, 16       # Ratios of alpha that are tried.
 # E is computed for |k| up to EDGE times the longest mode that matters.  The torus takes up to ROOM
 # of these, so that most of what it leaves in E is seen.
 EDGE, ROOM = 1.13, 0.9
 SHARE = 0.3                 # s of the theorem
 BOX = {1: 1 << 16, 2: 700}  # Divisors are computed for modes with coordinates up to this.
-NOTABLE = 64.0              # |1 - e^{ik.w}| |k|^n may be so many times the least where they count.
+NOTABLE = 64.0              # Divisors count where |1 - e^{ik.w}| |k|^n is below this times its min.
 
 Weights = Tuple[int, ...]
 

@@ -18,8 +18,8 @@ from .find import find
 from .rotation import Rotation
 from .torus import Torus, family
 
-# A torus whose residual is so many times larger than needed, at most, is found more accurately,
-# with a margin so many times larger.
+# If the residual exceeds what is needed by a factor below MOST_LACKING, the torus is found again,
+# with a margin of FINER times this factor.
 MOST_LACKING, FINER = 1e8, 1e4
 Progress = Optional[Callable[[str], None]]
 
@@ -41,10 +41,9 @@ class Piece:
     numbers are rational and on the safe side.
 
     residual -- ||E(u)||_rho <= residual; `needed` would have done
-    distance -- the true torus's u is no further away than this from that of the certificate, for
-        real angles
+    distance -- a bound of |u - u0| at real angles, u0 being the u of the certificate
     rho -- the width of the strip
-    constants -- with the attributes l, m, a, b and p: those of the page
+    constants -- the constants l0, m0, a0, b0 and p0 of the page, as attributes l, m, a, b and p
     gamma, basis -- |1 - e^{i k.w}| >= gamma |k|^-n for all k != 0 of the group with this basis,
         the alpha of |k| being made integers by their common denominator
     modes, bits -- of the series that the checker computed with
@@ -70,8 +69,8 @@ class Piece:
 @dataclass(frozen=True)
 class ProvedTorus:
     """A theorem, which the checker has verified: for every s of the range (for the potential, if
-    there is no range) the map has a real analytic invariant graph, conjugate to the rotation, as
-    near to the pieces' tori as they say.
+    nothing varies) the map has a real analytic invariant graph, conjugate to the rotation, within
+    the pieces' distances of their tori.
 
     certificate -- the text that was verified
     seconds -- of processor time, that the checker took"""
@@ -85,7 +84,7 @@ class ProvedTorus:
 
     @property
     def torus(self) -> Torus:
-        """The first piece's; the only one if there is no range."""
+        """The torus of the first piece; the only torus if nothing varies."""
         return self.pieces[0].torus
 
     @property
@@ -117,7 +116,7 @@ class ProvedTorus:
 
     def save(self, path: Union[str, "os.PathLike[str]"]) -> str:
         """Writes the certificate (docs/format.md), compressed if the name ends in .gz, and returns
-        its SHA-256 (that of the uncompressed file).  As with Proof.save() a file that is there is
+        its SHA-256 (of the uncompressed file).  As with Proof.save() a file that is there is
         replaced; the command converse-tori refuses to.  ConverseError: it cannot be written; the
         older file, if any, is intact."""
         return files.write_text(path, self.certificate)
@@ -131,7 +130,7 @@ def prove(source: Union[Problem, Torus, Sequence[Torus]], rotation: Optional[Rot
 
     source -- a Torus, or tori that cover a range, or a Problem, to which a rotation vector belongs
     start, margin, points, memory -- with a Problem: what `find` takes
-    jobs -- how many pieces of a range are verified at a time, each in a process of its own
+    jobs -- how many pieces of a range are verified at a time, in processes
     progress -- is told in words what is going on
 
     If a torus that was found turns out to be not accurate enough, a more accurate one is tried,
@@ -185,7 +184,7 @@ def _ends(pieces: Sequence[Piece]) -> Ends:
 
 
 def _verified(tori, jobs, tell):
-    """What the checker says of a certificate of these tori."""
+    """Asks the checker to verify a certificate of these tori."""
     if not tori:
         raise ValueError("there is no torus")
     if any(torus.strip is None for torus in tori):
