@@ -1,6 +1,7 @@
 """Maps of the frontier: cells, the search, the file, the command, the picture."""
 
 import concurrent.futures
+import functools
 import io
 import json
 import os
@@ -25,11 +26,19 @@ from converse.storage.files import ConverseError
 from moments import PATIENCE
 
 
+@functools.lru_cache(maxsize=None)
+def estimated_once(direction, budget, real=search.estimate_frontier):
+    """The estimate depends on the direction alone, which is that of corners of several maps."""
+    return real((direction,), ())
+
+
 @pytest.fixture
 def coarse(monkeypatch):
-    """An estimate at few places and with little effort."""
+    """An estimate at few places and with little effort, made once for all tests."""
     monkeypatch.setattr(map_module, "ESTIMATE_GRID", {1: 4, 2: 1})
-    monkeypatch.setattr(search, "POINT_BUDGET", {1: 1 << 7, 2: 1 << 7})
+    monkeypatch.setattr(search, "POINT_BUDGET", dict.fromkeys(range(3), 1 << 7))
+    monkeypatch.setattr(search, "estimate_frontier", lambda directions, place, stop=None: (
+        estimated_once(region.direction(directions, place), 1 << 7)))
 
 
 @pytest.fixture(scope="module")
@@ -228,7 +237,10 @@ def test_progress_says_what_is_done(coarse, tmp_path, monkeypatch):
     assert shares[0] > 0.5 and "estimating" not in text     # it begins where it was left
 
 
-def test_processes(coarse, tmp_path):
+def test_processes(monkeypatch, tmp_path):
+    """They estimate, too."""
+    monkeypatch.setattr(map_module, "ESTIMATE_GRID", {1: 1})
+    monkeypatch.setattr(search, "POINT_BUDGET", {1: 1 << 7})
     with concurrent.futures.ProcessPoolExecutor(2) as pool:
         found = maps.explore("c=0", "1.3", path=tmp_path / "map.json", executor=pool)
     assert found.complete and found.sha256 == Map.load(tmp_path / "map.json").sha256
@@ -263,7 +275,7 @@ def test_workers_that_die(coarse, tmp_path):
         maps.explore("c=0", "1.3", path=tmp_path / "third.json", executor=pool)
 
 
-@pytest.mark.parametrize("when", [3, 10])
+@pytest.mark.parametrize("when", [3, 30])        # while it estimates, and with some cells proved
 def test_an_interruption_loses_nothing(coarse, tmp_path, when):
     path, calls = tmp_path / "map.json", []
 
@@ -276,6 +288,7 @@ def test_an_interruption_loses_nothing(coarse, tmp_path, when):
     with pytest.raises(KeyboardInterrupt):
         maps.explore("b=0", "1.3", path=path, jobs=1, progress=progress)
     before = Map.load(path)
+    assert before.estimated_all == (before.count(PROVED) > 0) == (when == 30)
     found = maps.explore(path=path, resume=True)
     assert found.complete and found.count(PROVED) >= before.count(PROVED)
     kept = {leaf.cell for leaf in before.leaves() if leaf.kind == PROVED}
