@@ -128,7 +128,7 @@ def _around(points):
     return points[np.argsort(np.arctan2(points[:, 1], points[:, 0]), kind="stable")]
 
 
-def heights(region_map, count=SAMPLES):
+def heights(region_map, count):
     """By face, at the middles of count x count squares of directions (or count intervals): the
     radius from which on all is proved."""
     made = []
@@ -151,7 +151,7 @@ def _draw_sphere(region_map, figure):
 
     places, values = [], []
     middles = (np.arange(SAMPLES) + 0.5) / SAMPLES
-    for directions, height in zip(region_map.directions, heights(region_map)):
+    for directions, height in zip(region_map.directions, heights(region_map, SAMPLES)):
         d0, d1, d2 = (np.array(d, float) for d in directions)
         unit = d0 + middles[:, None, None] * d1 + middles[None, :, None] * d2
         a, b, c = np.moveaxis(unit, -1, 0)

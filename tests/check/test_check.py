@@ -1094,7 +1094,7 @@ print(flush=True)
 sys.exit(main())
 """
     for n in range(60):
-        most = seen[-1] + 125 if n % 2 else math.inf    # every other time it is to get on first
+        most = seen[-1] + 200 if n % 2 else math.inf    # every other time it is to get on first
         process = subprocess.Popen(
             [sys.executable, "-I", "-c", code, os.path.dirname(FOLDER), str(most), path, "--jobs",
              jobs, "--state", state, "--exact"],
