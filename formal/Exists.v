@@ -57,7 +57,7 @@ Proof.
 Qed.
 End Cosines.
 
-(* 2 cos(omega), 240 binary digits of it.  A wrong digit would make `closely` false. *)
+(* 2 cos(omega) in units of 2^-240, about.  Digits that are wrong where they matter make `closely` false. *)
 Definition cos_omega : Z := -2605636075783219719737706859929130536190120032339722978415607386094439475.
 
 (* The numbers cs, by the recurrence of 2 cos(k omega). *)

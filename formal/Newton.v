@@ -32,8 +32,8 @@ Proof.
   exists N. specialize (H N (Nat.le_refl N)). rewrite Rabs_right in H; [lra |]. apply Rle_ge, pow_le. lra.
 Qed.
 
-(* A function that is a difference, up to a constant m: m is its mean along an orbit, and not less than all
-   its values. *)
+(* A function that is a difference, up to a constant m: m is its mean along an orbit, and at least each
+   lower bound of the function. *)
 Lemma mean_above w f g m c A : (forall t, g (t + w) - g t = f t - m) -> (forall t, c <= f t) ->
   (forall t, Rabs (g t) <= A) -> c <= m.
 Proof.

@@ -1,5 +1,5 @@
-(* A theorem of Kolmogorov, Arnold and Moser: the standard map with the parameter 0.8 has an invariant graph,
-   on which it is conjugate to the rotation of the golden mean.  The integers are the sine coefficients of
+(* A theorem of Kolmogorov, Arnold and Moser: the standard map with the parameter 0.8 has an invariant graph.
+   The lemma `conjugated` has the conjugacy to the rotation of the golden mean, and GoldenCircle.v states it.  The integers are the sine coefficients of
    u0(t) in units of 2^-80, found by Newton's method; nothing depends on how. *)
 
 From Coq Require Import Reals ZArith List Lra.
