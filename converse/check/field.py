@@ -217,6 +217,11 @@ class Norm:
         return sum([a * abs(sum([x * y for x, y in zip(row, k)]))
                     for a, row in zip(self.alpha, self.frame)])
 
+    def count(self, limit):
+        """About how many k of the lattice have |k| <= limit."""
+        cell = math.prod(self.alpha) * abs(determinant(self.frame) * determinant(self.basis))
+        return (2 * limit) ** self.dimension // (self.dimension * cell) + 1
+
     def row(self, b, limit):
         """(least, largest) a of the k = a b_0 + b b_1 with |k| <= limit; none, if least > largest.
 

@@ -28,6 +28,8 @@ SHARES_OF_LOSS = [Fraction(x, 20) for x in (1, 2, 4, 8, 16)]        # s of the t
 CHANGES = [Fraction(x, 1000) for x in (1, 2, 5, 10, 20, 40, 70, 100, 150)]     # t l0 m0 a0
 ROUGH_BITS = 64                         # of the series for the constants
 STEPS = 3                               # of the iteration, one by one, if it must be
+FEW_MODES = 1 << 14                     # Any torus may need so many. They take seconds.
+INVERSE_MODES = 64                      # of L^-1 per mode of u: sparse tori were seen to need 17
 TRIES = 6                               # of numbers of modes, for each width of the strip
 POWERS = "", "t", "t^2", "t^3"
 FAR = "the torus is too far from the straight one"
@@ -234,25 +236,25 @@ class Torus:
             self.sums[length] += size
             self.slopes[length] += size * width
 
+    @functools.cached_property
     def error_at_a_point(self):
-        """About |E(u)| at some angles and s: more than that, its norm cannot be less."""
-        theta, sigma = (0.7, 1.9)[:self.n], 0.3
-        w = [2 * math.pi * float(self.field.interval(element)[0] % 1) for element in self.omega]
-        at, difference = [0.0] * self.n, [0.0] * self.n
+        """About |E(u)| at theta = w and s = 1/2, in units of 2^-bits; ||E(u)|| is no less."""
+        bits = self.bits + 32
+        turn_of, fixed = self.turn_by(self.bits), fixed_of(bits)
+        at, error = [0] * self.n, [0] * self.n
         for k, series in self.modes.items():
-            wave = 2 * cmath.exp(1j * sum([x * y for x, y in zip(k, theta)]))
-            second = 2 * math.cos(math.fmod(sum([x * y for x, y in zip(k, w)]), 2 * math.pi)) - 2
+            cos, sin = turn_of(self.norm.place(k))
             for j, vector in enumerate(series):
                 for i, (re, im) in enumerate(vector):
-                    x = (complex(in_double(re, self.bits), in_double(im, self.bits)) * wave).real
-                    at[i] += x * sigma ** j
-                    difference[i] += x * second * sigma ** j
+                    x = 2 * (re * cos - im * sin) >> self.bits + j
+                    at[i] += x
+                    error[i] += 2 * x * (cos - fixed.one) >> bits
         for k, phase, middle, part in self.waves:
-            angle = sum([x * (y + z) for x, y, z in zip(k, theta, at)])
-            force = float(middle + part * Fraction(sigma)) * math.cos(
-                angle + math.pi * float(phase % 2))
-            difference = [x - force * y for x, y in zip(difference, k)]
-        return math.hypot(*difference)
+            cos, sin = turn_of(self.norm.place(k))
+            s, c = fixed.sincos(sum([x * y for x, y in zip(k, at)]) + fixed.angle(phase))
+            force = math.floor((middle + part / 2) * (cos * c - sin * s >> bits))
+            error = [x - force * y for x, y in zip(error, k)]
+        return math.isqrt(sum([x * x for x in error])) >> 32
 
     def outside(self, powers, limit):
         """The sum of |u_k| sigma^|k| over |k| > limit, in units of 2^-(bits + FINE)."""
@@ -339,13 +341,12 @@ def shifted(x, bits):
 def find_constants(torus, sigma, powers):
     """Constants of the whole torus; or NotConfirmed is raised."""
     l0 = rounded_up(1 + torus.derivative_outside(powers, 0))
-    if l0 > 1000:
-        raise NotConfirmed(FAR)
     near, found = 1, None
     while torus.derivative_outside(powers, near) > Fraction(1, 1000):
         near = near * 9 // 8 + 1
     near = near * 5 // 4 + 2
     for _ in range(TRIES):
+        refuse_too_many(torus, near * 3 // 2, INVERSE_MODES * (2 * len(torus.modes) + 1))
         ring = Ring(Box(torus.norm, near * 3 // 2, torus.degree), sigma, ROUGH_BITS)
         found = constants_with(torus, ring, near, torus.derivative_outside(powers, near))
         if found and found[1] < Fraction(1, 50):
@@ -649,6 +650,30 @@ def too_large(residual, needed):
     return error
 
 
+def refuse_if_hopeless(torus, rho, constants):
+    """NotConfirmed is raised, if |E(u)| at one point is larger than ||E(u)|| may be with these
+    constants or larger ones.  No proof rests on it."""
+    error = Fraction(torus.error_at_a_point, 1 << torus.bits)
+    # ||e^(i k.x)|| >= 1, which is |e^(i k.x)| at real angles.
+    waves = [(abs(middle) + abs(part), upper_root(sum([x * x for x in k])), 1)
+             for k, _, middle, part in torus.waves]
+    needed, _ = allowed(constants, waves, rho, torus.norm.kappa, torus.divisors)
+    if error > 2 * needed:
+        torus.divisors.look(math.ceil(40 * 2 ** STEPS / rho))
+        needed, _ = allowed(constants, waves, rho, torus.norm.kappa, torus.divisors, STEPS)
+    if error > 2 * needed:
+        raise too_large(error, needed)
+
+
+def refuse_too_many(torus, limit, most):
+    """NotConfirmed is raised, if far more modes have |k| <= limit than a torus needs whose norm was
+    chosen well."""
+    count = torus.norm.count(limit)
+    if count > max(FEW_MODES, most):
+        raise NotConfirmed("%d modes are needed, too many for a torus of %d: a mode is far out, or "
+                           "the frame, alpha are wrong" % (count, len(torus.modes)))
+
+
 def bounds_of_waves(torus, sigma, rho, powers):
     """Of each wave (|p|, |k|, an upper bound of ||e^(i k.x)||)."""
     found = []
@@ -674,17 +699,23 @@ def verify_width(torus, width, tell):
     rho = logarithm_below(sigma)
     tell("the constants")
     powers = powers_of(sigma, torus.farthest)
+    l0 = rounded_up(1 + torus.derivative_outside(powers, 0))
+    if l0 > 1000:
+        raise NotConfirmed(FAR)
+    # L and A are 1 in the mean and positive, as they are if the torus is a graph: m, a >= 1.
+    refuse_if_hopeless(torus, rho, Constants(l0, *map(Fraction, (1, 1, 0, 0))))
     whole = find_constants(torus, sigma, powers)
     waves = bounds_of_waves(torus, sigma, rho, powers)
     needed, _ = allowed(whole, waves, rho, norm.kappa, torus.divisors)
     if needed < Fraction(1, 1 << MAX_BITS // 8):
         raise NotConfirmed("the constants are too large")
-    error = torus.error_at_a_point()
-    if error > 1e-10 and error > 1000 * needed:         # nothing helps: it takes no work to see
-        raise too_large(Fraction(error), needed)
+    refuse_if_hopeless(torus, rho, whole)
     # What is cut off u changes E by at most so many times its norm.
     factor = 4 + sum([p * k * k * g for p, k, g in waves])
     near, far = torus.extent(powers, needed / 64 / factor * unit)
+    # Sums of two modes of the torus are about what products and exponentials have.
+    spread = max([abs(x) for k, *_ in torus.waves for x in norm.place(k)], default=1)
+    refuse_too_many(torus, far, (2 * len(torus.modes) + 1) ** 2 * spread ** torus.n)
     spare, reach = 14, max([norm(k) for k, *_ in torus.waves], default=0)
     for _ in range(TRIES):
         box = Box(norm, far, torus.degree)

@@ -11,7 +11,10 @@ from fractions import Fraction
 import mpmath
 import pytest
 
+from converse import Problem
 from converse.check import field, series, tori, torus_file
+from converse.tori.proved import prove
+from converse.tori.rotation import read_rotation
 
 from checker import check
 
@@ -356,6 +359,7 @@ def test_small_files_of_much_work_are_not_confirmed(run, name):
 
 def test_a_far_mode_needs_too_large_a_grid(run, monkeypatch):
     monkeypatch.setattr(tori, "MAX_GRID", 1 << 12)
+    monkeypatch.setattr(tori.Torus, "error_at_a_point", 0)      # which is too large
     text = BODY.replace("rho: 0.3", "rho: 1/1000").replace(
         " 40 0 %d\n" % len(GOLDEN), " 40 0 %d\n4181 0 200000 0\n" % (len(GOLDEN) + 1))
     status, out, err = run(sealed(text))
@@ -1044,7 +1048,7 @@ def test_what_is_cut_off_changes_the_constants(monkeypatch):
     torus = small_torus(GOLDEN)
     monkeypatch.setattr(tori.Torus, "extent", lambda *_: (4, 30))
     assert isinstance(tori.verify_width(torus, 0.1, lambda text: None), tori.Verified)
-    (whole, _), (cut, _) = seen.calls
+    *_, (whole, _), (cut, _) = seen.calls
     sigma = mp.mpf(seen.rings[-1][0].sigma.numerator) / seen.rings[-1][0].sigma.denominator
     beyond = sum(size * k * sigma ** k for k, size in exact_sizes(torus) if k > 4)
     assert beyond > 1e-3
@@ -1116,3 +1120,63 @@ def test_a_delayed_function_is_within_its_radius(is_real):
         exact = mp.mpc(x[at], y[at] if y else 0) * mp.expj(-k * w)
         off += abs(exact - mp.mpc(re[at], im[at])) * (mp.mpf(9) / 8) ** abs(k)
     assert 0 < off <= mp.mpf(found.radius - 12345) / 2 ** series.FINE
+
+
+@pytest.fixture(scope="module")
+def surface(tmp_path_factory):
+    """The text of a certificate of two angles, with some 200 modes."""
+    path, c = tmp_path_factory.mktemp("tori") / "surface", Fraction("0.02242872")
+    prove(Problem.patch([c, c, 2 * c]), read_rotation("T49", 2)).save(path)
+    return path.read_text(encoding="utf-8")
+
+
+def resealed(text, pattern, new):
+    """The certificate with a line that is another, and the checksum right."""
+    text, count = re.subn("(?m)^%s" % pattern, new, text[:text.rindex("checksum: ")], count=1)
+    assert count
+    return sealed(text)
+
+
+@pytest.mark.parametrize("pattern, new", [
+    ("0 5 ", "40 1 "), ("frame: .*", "frame: 1 2 1 3")])
+def test_a_wrong_mode_or_norm_is_refused_before_the_work(surface, run, monkeypatch, pattern, new):
+    """E(u) at one point is larger than its norm may be. No series are computed."""
+    monkeypatch.setattr(tori, "Ring", lambda *_: pytest.fail("a series is computed"))
+    status, out, err = run(resealed(surface, pattern, new))
+    assert (status, out) == (5, "") and "the error of the torus is " in err
+
+
+def test_constants_do_not_need_many_times_the_modes_of_the_torus(surface, run, monkeypatch):
+    monkeypatch.setattr(tori.Torus, "error_at_a_point", 0)
+    monkeypatch.setattr(tori, "Ring", lambda *_: pytest.fail("a series is computed"))
+    status, out, err = run(resealed(surface, "frame: .*", "frame: 1 2 1 3"))
+    assert (status, out) == (5, "") and "too many for a torus of " in err
+
+
+def test_a_few_modes_far_out_are_no_reason_for_a_large_box(surface, run, monkeypatch):
+    """Where no point shows that anything is wrong, the number of modes bounds the work."""
+    monkeypatch.setattr(tori.Torus, "error_at_a_point", 0)
+    box = tori.Box
+    monkeypatch.setattr(tori, "Box", lambda norm, limit, degree: box(norm, limit, degree)
+                        if limit < 400 else pytest.fail("a large box is made"))
+    text = resealed(surface, "rho: .*", "rho: 1/50")
+    text = resealed(text, r"(piece 0 0 \d+ 0) (\d+)\n", lambda found: "%s %d\n%s\n" % (
+        found[1], int(found[2]) + 1, "400 400 0 0 1 0 1"))
+    status, out, err = run(text)
+    assert (status, out) == (5, "") and "too many for a torus of " in err
+
+
+def test_the_number_of_modes_is_estimated():
+    for norm in (field.Norm(((2,),), (3,), [[1]]),
+                 field.Norm(((1, 1), (1, -1)), (1, 4), [[1, 0], [0, 1]]),
+                 field.Norm(((1, 2), (3, 4)), (2, 3), [[1, 1], [0, 2]])):
+        assert norm.count(500) == pytest.approx(series.Box(norm, 500, 0).groups, rel=0.05)
+
+
+@pytest.mark.slow
+def test_a_torus_that_is_nearly_odd(run, tmp_path):
+    """Parts of 8e-6 that are not odd are left out first, and then are not."""
+    torus = prove(Problem.patch(["0.3", "0.3", "0.000001"], (), [(1, 0), (0, 1), (1, 1)]),
+                  read_rotation("T49", 2))
+    torus.save(tmp_path / "torus")
+    assert run((tmp_path / "torus").read_text(encoding="utf-8"))[0] == 0
