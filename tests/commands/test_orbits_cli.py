@@ -343,7 +343,7 @@ def test_bad_usage(run, tmp_path, arguments, words):
 
 @pytest.mark.parametrize("text, words", [
     (b"", "line 1: the input is empty"), (b"1 0 x 1\n", "line 1: 'x' is not a decimal"),
-    (b"{", "no JSON"), (b"\xff\xfe\n", "not a text file"),
+    (b"{", "no JSON"), (b"\xff\xfe\n", "line 1: '\xff\xfe' is not a decimal number"),
     (b'{"harmonics": [{"k": [1, 0]}]}', "harmonic 1: amplitude is missing"),
     (b'{"harmonics": [{"k": [1, 0], "amplitude": [1, 2]}]}',
      "harmonic 1, amplitude: this is a range"),

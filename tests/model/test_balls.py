@@ -18,7 +18,7 @@ def test_proofs_side_by_side(monkeypatch):
 
     def of_torus():
         piece, = tori.prove(torus).pieces
-        return piece.residual, piece.verdict, piece.constants, piece.tried, piece.bits
+        return piece.residual, piece.needed, piece.distance, piece.modes, piece.bits
 
     def of_orbit():
         orbit = orbits.prove(state, 40)
