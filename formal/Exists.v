@@ -2,7 +2,7 @@
    u0(t) = sum of b[k]/D sin(k t), k from 1 on, has a residual that is small enough for the theorem.  The
    potential is V(y) = eps cos(y_0), the rotation that of the golden mean. *)
 
-From Coq Require Import Reals ZArith List Lra Lia Bool Psatz.
+From Coq Require Import Reals ZArith QArith Qreals List Lra Lia Bool Psatz.
 From Coquelicot Require Import Coquelicot.
 From Interval.Real Require Import Xreal.
 From Converse Require Import Map.
@@ -146,13 +146,26 @@ Proof.
   - exact (Residual.derive_u0 (b c) (D c) HD).
 Qed.
 
-Theorem graph_exists eps x : conjugacy eps x -> has_invariant_graph [Wave 1 0 (- (PI / 2)) eps].
+Theorem graph_exists phi eps x : conjugacy eps x -> has_invariant_graph [Wave 1 0 phi eps].
 Proof.
-  intros (increasing & turn & cont & solves). apply (Circle.circle_graph x omega increasing turn cont).
+  intros (increasing & turn & cont & solves). set (c := phi + PI / 2).
+  apply (Circle.circle_graph (fun t => x t - c) omega).
+  - intros s t L. apply increasing in L. lra.
+  - intros t. rewrite turn. ring.
+  - intros t. apply (continuous_minus (V := R_NormedModule)); [apply cont | apply continuous_const].
   - intros w [<- | []]. reflexivity.
   - intros t. rewrite <- (solves t). unfold Circle.force, V', angle, along, sum; simpl.
-    replace (1 * x t + 0 * 0 + - (PI / 2)) with (- (PI / 2 - x t)) by ring. rewrite cos_neg, cos_shift.
-    ring.
+    replace (1 * (x t - c) + 0 * 0 + phi) with (- (PI / 2 - x t)) by (unfold c; ring).
+    rewrite cos_neg, cos_shift. ring.
+Qed.
+
+(* Of a wave with any phase, in units of pi, and the amplitude p. *)
+Theorem certified rn rd b D digits terms phase p :
+  holds (Certificate rn rd (Qnum p) (Zpos (Qden p)) b D digits terms) = true ->
+  has_invariant_graph (waves [Term 1 0 phase p []] []).
+Proof.
+  intros H. destruct (conjugacy_exists _ H) as [x Hx]. cbn [en ed] in Hx.
+  apply (graph_exists _ _ x). unfold combined, sum, Q2R. cbn. now rewrite Rplus_0_r.
 Qed.
 
 (* The same on the circle alone, for maps of one angle: the curve p = psi(y), and x onto it. *)

@@ -47,4 +47,4 @@ Proof.
 Qed.
 
 Theorem golden : golden_says.
-Proof. destruct conjugated as [x H]. exact (Exists.graph_exists _ x H). Qed.
+Proof. destruct conjugated as [x H]. exact (Exists.graph_exists _ _ x H). Qed.
