@@ -9,6 +9,10 @@ Into the directory go NAME_says.v, the proposition, which imports Map.v alone; N
 has what the checker is to see; NAME_0.v, NAME_1.v, ..., each of which has it check every K-th leaf,
 and which can be compiled side by side; and NAME.v, "Theorem NAME : NAME_says".  This last imports
 nothing but Map.v and NAME_says.v: so whatever the others define, its words mean what they do there.
+
+Of a certificate of existence, of the kind that Exists.v is about, it makes NAME_exists_says.v and
+NAME_exists.v, which has the integers that `holds` of Exists.v is to find accurate enough; or it
+says by how much they are not.
 """
 
 import argparse
@@ -16,6 +20,8 @@ import itertools
 import math
 import re
 import sys
+import textwrap
+from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
 
@@ -23,13 +29,20 @@ ROOT = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT))
 
 from converse import check  # noqa: E402  (it needs the path)
+from converse.check import tori  # noqa: E402
 from converse.check.claim import LETTERS  # noqa: E402
 from converse.check.cover import is_whole  # noqa: E402
+from converse.check.series import Box, Ring  # noqa: E402
 from converse.check.tree import check_mirror_images  # noqa: E402
 from converse.check.tree import leaves, trees  # noqa: E402
 
 WIDTH = 100                                                     # of a line
 DIGITS = 10 ** 9                                                # of a hint, decimal
+# The r that are tried for the norms of a certificate of existence.
+RADII = [1 + Fraction(1, n) for n in (2, 3, 4, 6, 8, 12, 16, 24, 32, 50, 64, 100)]
+# A hundredth of the residual that the theorem allows is for the errors of Coq's computation.
+ROUNDINGS = 100
+MOST = Fraction(249, 500), Fraction(1997, 3000)     # norms of u and u' that Exists.v allows
 
 
 def number(x):
@@ -265,9 +278,97 @@ Print {0}_says.
            + ")" * count)
 
 
+# ---- certificates of existence
+
+def check_kind(claim):
+    """Raises Unusable, unless Exists.v has a theorem about such certificates."""
+    (r0, r1), *others = [element[:2] for element in claim.rotation]
+    if others:
+        raise check.Unusable("is about two angles; Coq's theorem of existence is about one")
+    if claim.has_parameter:
+        raise check.Unusable("has a parameter; Coq's theorem of existence is about one map")
+    if claim.polynomial not in ((-1, 1, 1), (1, -1, -1)) or abs(r1) != 1 or r0.denominator != 1:
+        raise check.Unusable("has another rotation than `--rotation golden`; Coq's theorem of "
+                             "existence has only that")
+    if [wave.k for wave in claim.waves] != [(1, 0)] or abs(claim.waves[0].middle) > 1 \
+            or 2 * claim.waves[0].phase % 1:
+        raise check.Unusable("has another potential than p sin(y) or p cos(y), abs(p) <= 1; Coq's "
+                             "theorem of existence has only these")
+
+
+def sines(torus):
+    """The coefficients of sin(k t), k = 1, 2, ..., of the torus, in its units, where V = p cos t.
+    The function is odd by construction; Coq finds whether it is accurate."""
+    upside_down = torus.waves[0][1] % 2 == Fraction(1, 2)
+    found = [0] * torus.farthest
+    for (k,), (((_, im),),) in torus.modes.items():
+        found[k - 1] = 2 * im if k % 2 and upside_down else -2 * im
+    return found
+
+
+def certificate(claim):
+    """r, the integers, their unit, and the digits and the terms of the computation, in Coq."""
+    setting = tori.Setting(replace(claim, frame=((1,),), alpha=(Fraction(1),)))        # of |k|
+    (piece,), p = claim.pieces, claim.waves[0].middle
+    torus, unit = tori.Torus(setting, piece, True), 1 << piece.bits
+    numbers, best = sines(torus), None
+    for r in RADII:
+        size, slope = (sum([k ** power * abs(x) * r ** k for k, x in enumerate(numbers, 1)]) / unit
+                       for power in (0, 1))
+        if size > MOST[0] or slope > MOST[1]:
+            continue
+        allowed = 1 / (512000000 * (6 * r / (r - 1)) ** 4)
+        box = Box(setting.norm, 2 * torus.farthest, 0)
+        bits = 24 + math.ceil(math.log2(1 / allowed) + box.limit * math.log2(r))
+        residual = tori.Residual(torus, Ring(box, r, bits), torus.farthest)
+        factor = (residual.polynomial + residual.radius + allowed / ROUNDINGS) / allowed
+        if best is None or factor < best[0]:
+            terms = next(j for j in itertools.count() if 8 * ROUNDINGS * abs(p) * size ** (j + 1)
+                         <= allowed * math.factorial(j + 1))
+            best = factor, r, bits, terms
+    if best is None:
+        raise check.NotConfirmed(
+            "the norms of its torus and of the derivative are %.4f and %.4f; Coq's theorem of "
+            "existence allows %s and %.4f, with any --margin" % (size, slope, *map(float, MOST)))
+    factor, r, bits, terms = best
+    if factor > 1:
+        raise check.NotConfirmed(
+            "the residual of its torus is %.2g times as large as Coq's theorem of existence "
+            "allows: let converse-tori prove it with a --margin 1e%d times as large"
+            % (float(factor), math.ceil(math.log10(factor)) + 1))
+    return "%d %d\n    [%s]%%Z\n    (2 ^ %d) %d %d" % (
+        r.numerator, r.denominator, textwrap.fill("; ".join(map(str, numbers)), WIDTH - 5,
+                                                  subsequent_indent=" " * 5),
+        piece.bits, bits, terms)
+
+
+def existence(claim, name):
+    """The texts of NAME_exists_says.v and of NAME_exists.v."""
+    check_kind(claim)
+    wave, proved, name = claim.waves[0], certificate(claim), name + "_exists"
+    return {"_exists_says": READING + "Definition %s_says : Prop :=\n  has_invariant_graph (waves "
+            "[%s] []).\n" % (name, term(wave)),
+            "_exists": READING + """\
+From Converse.build Require Import {0}_says.
+(* Not imported: no name of theirs hides one of those above. *)
+From Converse Require Exists.
+
+Theorem {0} : {0}_says.
+Proof.
+  refine (Exists.certified {1} {2} {3} _).
+  vm_cast_no_check (eq_refl true).
+Qed.
+
+Add Printing Constructor term.
+Set Printing Width 100.
+Check {0}.
+Print {0}_says.
+""".format(name, proved, number(wave.phase), number(wave.middle))}
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
-    parser.add_argument("file", help="a finished proof file")
+    parser.add_argument("file", help="a finished proof file, or a certificate of existence")
     parser.add_argument("name", help="of the theorem")
     parser.add_argument("directory", type=Path, help="where the files go")
     parser.add_argument("--numbers", choices=["Doubles", "BigIntegers", "Integers"],
@@ -285,16 +386,20 @@ def main():
     try:
         claim = check.read(options.file)
         if isinstance(claim, check.Map):
-            raise check.Unusable("is a map; a theorem is made from a proof file")
-        check.check_tree(claim)
-        check_mirror_images(claim)      # Coq would say no more than that false is not true
-        odd = odd_about(options.file)
+            raise check.Unusable("is a map; a theorem is made from a proof file or a certificate "
+                                 "of existence")
+        if isinstance(claim, check.TorusClaim):
+            texts = existence(claim, name)
+        else:
+            check.check_tree(claim)
+            check_mirror_images(claim)      # Coq would say no more than that false is not true
+            texts = {"_says": says(claim, name),
+                     "_claim": definitions(claim, odd_about(options.file), numbers),
+                     **{"_%d" % i: part(name, numbers, i, count) for i in range(count)},
+                     "": theorem(name, numbers, count)}
     except check.Failure as error:
         sys.exit("theorem.py: %s: %s%s" % (check.shown(options.file), error.word, error))
-    texts = {"_says": says(claim, name), "_claim": definitions(claim, odd, numbers),
-             **{"_%d" % i: part(name, numbers, i, count) for i in range(count)},
-             "": theorem(name, numbers, count)}
-    head = ("(* Made by formal/theorem.py from the proof file whose SHA-256 is\n   %s. *)\n\n"
+    head = ("(* Made by formal/theorem.py from the file whose SHA-256 is\n   %s. *)\n\n"
             % claim.sha256)
     for end, text in texts.items():
         (options.directory / (name + end + ".v")).write_text(head + text, "ascii")

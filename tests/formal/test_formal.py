@@ -12,7 +12,7 @@ import pytest
 import test_parts as by_hand
 from conftest import ROOT
 
-from converse import prove, read_input
+from converse import Problem, prove, read_input, tori
 
 FORMAL = ROOT / "formal"
 needs_coq = pytest.mark.skipif(
@@ -193,6 +193,57 @@ def test_certificates_of_existence(folder):
                 (SINES, 1, 10, "true"), (altered, 1, 10, "false"), (SINES, -1, 10, "false"),
                 (SINES, 1, 9, "false")]))
     assert compiled(folder, "build/certificates.v") == (True, "")
+
+
+def refused(file, folder):
+    """What theorem.py says of it, in one line."""
+    done = subprocess.run([sys.executable, FORMAL / "theorem.py", file, "x", folder / "build"],
+                          stderr=subprocess.PIPE, text=True)
+    assert done.returncode == 1 and done.stderr.count("\n") == 1
+    assert not list((folder / "build").glob("x*"))
+    return done.stderr
+
+
+def torus_file(path, k, margin=100, rotation="golden", phase=0):
+    """A certificate of existence for the standard map, in the place of one that is there."""
+    path.unlink(missing_ok=True)
+    problem = Problem.patch([k], waves=[(1, 0, phase)])
+    tori.prove(tori.find(problem, tori.read_rotation(rotation), margin=margin)).save(path)
+    return path
+
+
+def test_certificates_of_which_there_is_no_theorem(tmp_path):
+    (tmp_path / "build").mkdir()
+    for changes, said in [
+            ({"rotation": "silver"}, "has another rotation than `--rotation golden`"),
+            ({"phase": "0.25"}, "has another potential than p sin(y) or p cos(y)"),
+            ({"k": "0.9"}, "the norms of its torus and of the derivative are 0.4551 and 1.1154"),
+            ({}, "the residual of its torus is 2.6e+07 times as large as Coq's theorem of "
+                 "existence allows: let converse-tori prove it with a --margin 1e9 times as large"),
+            ({"margin": 2e10}, "is 1.1 times as large")]:
+        file = torus_file(tmp_path / "x.torus", **{"k": "0.3", **changes})
+        assert said in refused(file, tmp_path)
+
+
+@needs_coq
+def test_theorem_of_existence(folder):
+    """Of a certificate with the margin that the line of the other test asks for; Coq does not
+    accept it with the sign of an integer altered."""
+    files = write(torus_file(folder / "x.torus", "-0.3", 1e11, phase="0.5"), "x", folder)
+    says, proof = files["x_exists_says"], files["x_exists"]
+    assert re.findall("Converse.* Import (.*)", says.read_text()) == ["Map."]
+    assert re.findall("Converse.* Import (.*)", proof.read_text()) == ["Map.", "x_exists_says."]
+    assert compiled(folder, "build/x_exists_says.v") == (True, "")
+    accepted, said = compiled(folder, "build/x_exists.v")
+    assert accepted and "has_invariant_graph (waves [Term 1 0 0.5 (-0.3) []] [])" in said, said
+    status, said, err = gate(folder, "Integers", "Converse.build.x_exists_says.x_exists_says",
+                             "Converse.build.x_exists.x_exists")
+    assert (status, err) == (0, "") and said.startswith(
+        "x_exists.x_exists : x_exists_says.x_exists_says\n")
+    before, _, after = proof.read_text().partition("    [")
+    proof.write_text(before + "    [" + (after[1:] if after[0] == "-" else "-" + after))
+    accepted, said = compiled(folder, "build/x_exists.v")
+    assert not accepted and 'expected to have type\n "Exists.holds' in said, said
 
 
 @needs_coq
