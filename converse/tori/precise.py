@@ -17,7 +17,7 @@ from ..model.balls import precision
 from .newton import Mesh
 from .torus import Torus
 
-ZERO, I, HALF_I = acb(0), acb(0, 1), acb(0, -0.5)
+ZERO, I = acb(0), acb(0, 1)
 Line = List[acb]
 
 
