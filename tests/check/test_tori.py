@@ -1180,3 +1180,14 @@ def test_a_torus_that_is_nearly_odd(run, tmp_path):
                   read_rotation("T49", 2))
     torus.save(tmp_path / "torus")
     assert run((tmp_path / "torus").read_text(encoding="utf-8"))[0] == 0
+
+
+def test_the_theorem_is_asked_in_the_norm_of_the_file(root, monkeypatch):
+    """kappa, by which |k|_2 <= kappa |k|, is that of its frame and alpha, at each question."""
+    asked, allowed = [], tori.allowed
+    monkeypatch.setattr(tori, "allowed", lambda *arguments: (
+        asked.append(arguments[3]), allowed(*arguments))[1])
+    claim = torus_file.read_torus((root / "golden_outputs" / "tori" / "phases.torus").read_bytes())
+    tori.verify_torus(claim)
+    kappa = tori.Setting(claim).norm.kappa
+    assert kappa != 1 and len(asked) > 2 and set(asked) == {kappa}
