@@ -27,7 +27,7 @@ define install
 endef
 
 .PHONY: prove check test lint format torture mutate accuracy gappa sanitize memcheck warnings \
-    arm bench charts figures man clean formal formal-quick formal-check golden verified-check checker
+    arm bench charts figures docs man clean formal formal-quick formal-check golden verified-check checker
 
 prove: $(VENV)/installed
 	@mkdir -p build
@@ -67,7 +67,7 @@ mutate: $(VENV)/with-test
 
 # The table of proven bounds and worst errors, measured anew.
 accuracy: $(VENV)/with-test
-	PYTHONPATH=tests/loewner:tests/thesis $(VENV)/bin/python tests/accuracy.py > docs/accuracy.md
+	PYTHONPATH=tests/loewner:tests/thesis $(VENV)/bin/python tests/accuracy.py > docs/development/accuracy.md
 
 # What sine.h promises, proved from its text by Gappa, whose proofs Coq checks, and other margins for
 # roundings, from theirs; a minute.
@@ -120,6 +120,10 @@ charts: $(VENV)/with-plot
 # The pictures of docs/ that docs/figures.csv lists, all or those of NAMES="...", drawn anew.
 figures: $(VENV)/with-orbits $(VENV)/with-plot
 	$(VENV)/bin/python docs/figures.py $(NAMES)
+
+# The site, from the pages of docs/: build/docs/index.html.  A warning is an error.
+docs: $(VENV)/with-docs
+	$(VENV)/bin/sphinx-build -q -W --keep-going -j 2 docs build/docs
 
 # Manual pages and completions, from the commands' own parsers.
 man: $(VENV)/with-man

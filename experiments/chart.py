@@ -43,7 +43,7 @@ BOXES = (("0.0278", "0.313"), ("0.02763", "0.311"), ("0.0274", "0.3085"), ("0.02
 BOUNDS = ("0.0272", "0.0250", "0.0220", "0.0200", "0.0180", "0.0160", "0.0152", "0.0148", "0.0144",
           "0.0142", "0.0141", "0.0140", "0.01391", "0.0139")
 LAST = "0.01389", 240.0, "1.12.0"
-# A torus is proved there; and for every epsilon from 0 to there, not repeated (docs/tori.md).
+# A torus is proved there; and for every epsilon from 0 to there, not repeated (how-to/tori.md).
 TORI = "0.004", "0.006", "0.008", "0.009", "0.010", "0.011", "0.0115"
 RANGES = ("0.004", 12.0, "1.11.0"), ("0.005", 23.0, "1.11.0"), ("0.008", 166.0, "1.11.0")
 WALLS = {

@@ -47,7 +47,7 @@ POINTS = {
     ("line", "none"): ("0.0272", "0.0240", "0.0200", "0.0180", "0.0160", "0.0150", "0.0145",
                        "0.0142", "0.0141", "0.01405", "0.0140", "0.01395", "0.0139"),
 }
-# Measured with --points 16777216, on the machine of docs/tori.md.
+# Measured with --points 16777216, on the machine of docs/how-to/tori.md.
 LONGEST = (("standard", "torus", "0.9716", 725.0, 3800.0, 0, 1539249, "", "1.11.0"),
            ("line", "torus", "0.0120", 784.0, 5600.0, 0, 523255, "", "1.11.0"))
 QUICK = {"standard": 0.008, "line": 0.0026}     # as near as that

@@ -1,4 +1,4 @@
-(* The left side of (1) of docs/proof.md, bounded over a prism.  At each site of a lane a
+(* The left side of (1) of docs/proofs/argument.md, bounded over a prism.  At each site of a lane a
    multiplier mu of the equation of motion is added to it, affine in the symbols, such that what is
    linear in D cancels; what is left is a polynomial of third order in the symbols and an
    interval. *)

@@ -1,4 +1,4 @@
-(* From a conjugacy to an invariant graph, for one angle (docs/existence.md, section 7).  Let x be a
+(* From a conjugacy to an invariant graph, for one angle (docs/proofs/existence.md, section 7).  Let x be a
    continuous, increasing function, x(a + 2 pi) = x(a) + 2 pi, and x(a + w) - 2 x(a) + x(a - w) + V'(x(a)) = 0.
    Then J = x(a) - x(a - w) at y = x(a) is an invariant graph.  Nothing is said of derivatives of x. *)
 

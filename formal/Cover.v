@@ -1,5 +1,5 @@
 (* Which regions of x1 are enough: every orbit through x*, or the same backwards, has an x1 in them,
-   modulo 2 pi and perhaps with the angles exchanged.  docs/proof.md has the same in words, section
+   modulo 2 pi and perhaps with the angles exchanged.  docs/proofs/argument.md has the same in words, section
    2.
 
    x1 is pi times the integer matrix F applied to v, so v counts modulo the lattice F^-1 (2 Z^2).  It

@@ -1,5 +1,5 @@
 (* From finitely many sites to orbits that are not minimizing: what is true of every map of Map.v,
-   by real analysis alone.  docs/proof.md has the same in words, sections 3, 4 and 7. *)
+   by real analysis alone.  docs/proofs/argument.md has the same in words, sections 3, 4 and 7. *)
 
 From Coq Require Import Reals ZArith QArith Qreals List Permutation Lra Lia.
 From Converse Require Import Map.
@@ -85,7 +85,7 @@ Proof. unfold put. now rewrite Z.eqb_refl. Qed.
 Lemma put_else n j v i : i <> j -> put n j v i = n i.
 Proof. intros H. unfold put. now rewrite (proj2 (Z.eqb_neq i j) H). Qed.
 
-(* What is negative in (1) of docs/proof.md. *)
+(* What is negative in (1) of docs/proofs/argument.md. *)
 Definition ended ws x l (n : Z -> vec) s k : R :=
   variation ws x n s (S k)
   - l * (dot (n s) (n s) + dot (n (s + Z.of_nat k)%Z) (n (s + Z.of_nat k)%Z)).

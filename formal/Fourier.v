@@ -1,7 +1,7 @@
 (* Trigonometric polynomials and their norms.  A polynomial is a list of modes a cos(k t + p), where
    the same k may occur several times; its size, with the weight r > 1, is the sum of all |a| r^|k|.
    A function is `bounded` by M if it is a polynomial of size at most M.  Sums, products and
-   translations are bounded as in a Banach algebra (docs/existence.md, section 2), and the two
+   translations are bounded as in a Banach algebra (docs/proofs/existence.md, section 2), and the two
    operators that lose a part d of r, the derivative and division by small divisors, as well.
 
    There are no limits in this file, and no infinite sums.  That a function is bounded is a pair of the

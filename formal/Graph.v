@@ -1,8 +1,8 @@
 (* Orbits on invariant graphs minimize the action (Katok; MacKay, Meiss and Stark), so where no
-   orbit through a point does there is no invariant graph: docs/proof.md, lemmas 1 to 3, but without
+   orbit through a point does there is no invariant graph: docs/proofs/argument.md, lemmas 1 to 3, but without
    invariance of domain.  On the graph of psi = c + S' a step leads from y to
    f(y) = y + psi(y) - V'(y), and as the graph is invariant psi(f(y)) = f(y) - y: a step back leads
-   from z to g(z) = z - psi(z).  For each z the function H of docs/proof.md has a least value, and
+   from z to g(z) = z - psi(z).  For each z the function H of docs/proofs/argument.md has a least value, and
    where it is f(y) = z; so y = g(f(y)) = g(z).
 
    The theorems are at the end.  Besides, V_gradient, V_second, F_orbit and second_variation say

@@ -1,4 +1,4 @@
-(* The iteration (docs/existence.md, section 6) and its limit.  The radii are 1 + rho h, h = 2^-i.  The
+(* The iteration (docs/proofs/existence.md, section 6) and its limit.  The radii are 1 + rho h, h = 2^-i.  The
    induction claims only that each step divides the residual by 64, which is simple and enough. *)
 
 From Coq Require Import Reals ZArith List Lra Lia Psatz.

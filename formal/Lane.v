@@ -1,6 +1,6 @@
 (* One half of a prism's orbits, followed site by site to second order in the symbols e: at a site an
    orbit is at D = L e + T(e) + c + r from a centre, with columns L, a quadratic form T, a number c,
-   and r known to an interval.  docs/checker.md, steps C4 to C6, in interval arithmetic.
+   and r known to an interval.  docs/proofs/checker.md, steps C4 to C6, in interval arithmetic.
 
    What is computed here on floats alone (the next centre, L, T and c, the matrices d and M) is chosen,
    not proved: whatever these floats are, the intervals hold. *)

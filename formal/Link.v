@@ -2,7 +2,7 @@
    one on its orbit.  It is the gradient of a convex function, and its derivative, if it has one, is
    at least l and at most beta - l, l + 1/l >= B.  Without derivatives this says that two functions
    are convex with something to spare; and from that it follows how far f may move from x to x'
-   (theorem link; docs/proof.md, Lemmas 9 and 10). *)
+   (theorem link; docs/proofs/argument.md, Lemmas 9 and 10). *)
 
 From Coq Require Import Reals ZArith List Lra Lia.
 From Coquelicot Require Import Coquelicot.
@@ -530,7 +530,7 @@ Hypothesis period : periodic S.
 Hypothesis gradient : has_gradient S S'.
 Hypothesis invariant : invariant_graph ws c S'.
 
-(* H of docs/proof.md, Lemma 1, less its least value is Phi(y) + Psi(y') - y.y'. *)
+(* H of docs/proofs/argument.md, Lemma 1, less its least value is Phi(y) + Psi(y') - y.y'. *)
 Lemma graph_dual : exists Phi Psi g, dual ws Phi Psi (on_graph ws c S') g.
 Proof.
   set (f := on_graph ws c S'). set (g y := minus y (plus c (S' y))).

@@ -2,7 +2,7 @@
    read this file: there are no proofs in it, and what the others define appears in no statement.
 
    Angles are in radians, R^2 is the lifted torus.  The potential, the map and the second variation
-   are those of docs/proof.md, sections 1 and 2. *)
+   are those of docs/proofs/argument.md, sections 1 and 2. *)
 
 From Coq Require Import Reals ZArith QArith Qreals List.
 Import ListNotations.

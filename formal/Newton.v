@@ -1,4 +1,4 @@
-(* One step of Newton's method (docs/existence.md, sections 4 and 5), for one angle and the potential
+(* One step of Newton's method (docs/proofs/existence.md, sections 4 and 5), for one angle and the potential
    V(y) = eps cos y: x(t) = t + u(t) is looked for such that x(t + w) - 2 x(t) + x(t - w) = eps sin x(t).
 
    All functions are trigonometric polynomials: sine and cosine of u are replaced by Taylor polynomials

@@ -1,6 +1,6 @@
 (* From one x* to another, in intervals: where an invariant graph's successor of one point is, if that
    of another one is known (Link.links), and whether what leads into a cell over the one point leads
-   into a region over the other.  docs/proof.md, section 10. *)
+   into a region over the other.  docs/proofs/argument.md, section 10. *)
 
 From Coq Require Import Reals ZArith QArith Qreals List Bool Lra Lia.
 From Interval.Real Require Import Xreal.

@@ -1,4 +1,4 @@
-(* The tree of a proof file (docs/format.md): the boxes that it cuts the claim's region into, the
+(* The tree of a proof file (docs/reference/proof-file.md): the boxes that it cuts the claim's region into, the
    ones that are skipped for the sake of their mirror image, and why all the region is excluded if
    the boxes of its proved leaves are.  Everything here is in units of the region: each axis goes
    from -1 to 1. *)

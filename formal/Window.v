@@ -96,7 +96,7 @@ Proof.
   destruct k; [discriminate |]. apply IH. simpl in E |- *. lia.
 Qed.
 
-(* Criterion (1) of docs/proof.md, from the two lanes. *)
+(* Criterion (1) of docs/proofs/argument.md, from the two lanes. *)
 Theorem lanes_refuted ws x B l ahead back : (forall y v, beta ws y v <= B * dot v v) ->
   0 < l < 1 -> B <= l + / l -> orbit ws x -> ahead <> [] -> back <> [] ->
   part ws l ahead (x 0%Z) (x 1%Z) + part ws l back (x 1%Z) (x 0%Z)

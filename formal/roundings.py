@@ -11,8 +11,8 @@ higher order in u; and where each of its coefficients is at most that of the mar
 its text in the same way, the margin is proved.  What is printed is the least quotient of the two.
 
 This is about what doubles lose of what the text says, not about whether it says the right thing:
-signs, for one, are not looked at.  Left out, as docs/proof.md covers it by hand, is what products
-lose that are below 2^-1022.
+signs, for one, are not looked at.  Left out, as docs/proofs/argument.md covers it by hand, is what
+products lose that are below 2^-1022.
 """
 
 import sys
@@ -532,9 +532,9 @@ def at_once(model):
 
 
 def proved(read, columns=COLUMNS):
-    """The margins of section 8 of docs/proof.md that the text of csrc proves, read(file) of it: how
-    many times what is needed there is, of the thesis's waves and of one, of three, and of as many
-    as may be."""
+    """The margins of section 8 of docs/proofs/argument.md that the text of csrc proves, read(file)
+    of it: how many times what is needed there is, of the thesis's waves and of one, of three, and
+    of as many as may be."""
     result = {}
     for waves in (None, 1, 3, MOST_WAVES):
         model = Model(read, waves, columns if waves != MOST_WAVES else 2)

@@ -6,7 +6,7 @@
    the claim, and the theorem that is printed is that of the same claim.  The tree and the hints are
    no part of it: with wrong ones nothing is verified that is false.
 
-   The format of the file, and the exit statuses: docs/format.md. *)
+   The format of the file, and the exit statuses: docs/reference/proof-file.md. *)
 
 open Checker
 open Stdlib                                     (* its lists and numbers, not Coq's *)
@@ -730,7 +730,7 @@ let report file hints checked sampled =
 
 let help = {|usage: converse-verified [--jobs N] [--sample K] FILE
 
-Verifies the theorem of a proof file by a checker that is proved in Coq (docs/trust.md).
+Verifies the theorem of a proof file by a checker that is proved in Coq (docs/explanation/trust.md).
 
   --jobs N     processes (default: one for each core)
   --sample K   only a spot check, of K leaves chosen by chance; not a verification

@@ -1,6 +1,7 @@
 """How accurate the rigorous routines are: what csrc promises, and the worst that was seen.
 
-    PYTHONPATH=tests/loewner:tests/thesis python tests/accuracy.py [TIMES] > docs/accuracy.md
+    PYTHONPATH=tests/loewner:tests/thesis python tests/accuracy.py [TIMES] \
+        > docs/development/accuracy.md
 
 Prints a table in Markdown, one promise a row, the same at every run; TIMES multiplies the random
 cases (1, which takes three minutes).  The truth is rational arithmetic, or mpmath at many

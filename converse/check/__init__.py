@@ -3,8 +3,8 @@ certificate of existence, independently of the program that wrote them.
 
 It shares no mathematics with the prover and imports nothing of the rest of converse, which uses of
 it how calls run in processes (processes.py).  It needs nothing but Python, and takes numpy for
-speed where there is one.  docs/checker.md has its proof, in steps that the modules cite, and a
-table of the modules.
+speed where there is one.  docs/proofs/checker.md has its proof, in steps that the modules cite, and
+a table of the modules.
 """
 
 from .command import main, parser

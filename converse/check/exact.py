@@ -1,4 +1,5 @@
-"""The left side of (C3) over a prism, bounded in integers: steps (C4) to (C8) of docs/checker.md.
+"""The left side of (C3) over a prism, bounded in integers: steps (C4) to (C8) of
+docs/proofs/checker.md.
 
 Centres, columns, matrices, multipliers and vectors are chosen; the floating-point numbers that
 choose some of them are rounded to integers first, and whatever these integers are, the bound

@@ -1,5 +1,5 @@
 """Rotation vectors in real number fields of degree 2 and 3, and how near to whole turns their
-multiples come.  Rational arithmetic; steps (T2) and (T3) of docs/checker.md.
+multiples come.  Rational arithmetic; steps (T2) and (T3) of docs/proofs/checker.md.
 
 A polynomial is the tuple of its coefficients, the constant one first; an element of the field of
 its root t is that of its coordinates in 1, t, t^2.  An interval is a pair of rationals.

@@ -1,8 +1,8 @@
 """The fast path: a thousand prisms in lockstep, in doubles.
 
-The same bound as in exact.py, steps (C4) to (C8) of docs/checker.md, where rounding errors are
-bounded by steps (C9) to (C20).  What is not bounded below zero here is left to the integers.  All
-that is done to one prism is done to all of them, as arrays of numpy, whose operations round to
+The same bound as in exact.py, steps (C4) to (C8) of docs/proofs/checker.md, where rounding errors
+are bounded by steps (C9) to (C20).  What is not bounded below zero here is left to the integers.
+All that is done to one prism is done to all of them, as arrays of numpy, whose operations round to
 nearest (import_numpy_if_sound looks).
 """
 
@@ -254,8 +254,8 @@ def summit(form):
     return (np.abs(odd) + even).max(axis=0) + constant
 
 
-# A site of all lanes, in the words of docs/checker.md: which of them have it; s, c, k.L as columns
-# of the symbols, size, rest and reach of each wave; beta; and E of step (C7).
+# A site of all lanes, in the words of docs/proofs/checker.md: which of them have it; s, c, k.L as
+# columns of the symbols, size, rest and reach of each wave; beta; and E of step (C7).
 Sites = collections.namedtuple("Sites", "alive s c columns size rest reach beta E")
 
 

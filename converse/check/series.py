@@ -1,5 +1,5 @@
 """Fourier series with integer coefficients and a bound of what they leave out: step (T5) of
-docs/checker.md.
+docs/proofs/checker.md.
 
 A series is a function of n angles and perhaps of a parameter s, with values in matrices: a
 polynomial with the modes e^(i k.theta) s^j of a box, and a radius.  All is measured in the norm
@@ -320,7 +320,7 @@ class Ring:
 
     def exponential(self, f):
         """e^f of a series with values in numbers: Taylor's polynomial of f / 2^m, squared m times;
-        (38) of docs/existence.md bounds the remainder."""
+        (38) of docs/proofs/existence.md bounds the remainder."""
         size = self.norm(f)
         one = 1 << self.bits + FINE
         plans = []

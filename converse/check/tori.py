@@ -1,4 +1,4 @@
-"""Verifying a certificate of existence: steps (T1) to (T9) of docs/checker.md.
+"""Verifying a certificate of existence: steps (T1) to (T9) of docs/proofs/checker.md.
 
 Doubles choose what may be chosen at will: approximate inverses, which a product of series then
 judges, and how many modes and bits are used.  No bound rests on them.

@@ -1,4 +1,5 @@
-"""Reading a certificate of existence: what it claims, exact; docs/format.md describes it."""
+"""Reading a certificate of existence: what it claims, exact; docs/reference/torus-certificate.md
+describes it."""
 
 import hashlib
 import io

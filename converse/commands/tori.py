@@ -59,7 +59,7 @@ def _prove_parser(commands):
     which.add_argument("--rotation", metavar="ROTATION", help=(
         "the rotation vector in turns: golden, silver, spiral, seven, T49, V1, V2, or a polynomial "
         "and elements of the field of its largest real root t, such as 't^2+t-1: t' "
-        "(docs/tori.md)"))
+        "(docs/how-to/tori.md)"))
     which.add_argument("--near", nargs="+", type=_number, metavar="W",
                        help="take the rotation vector with the best small divisors that is found "
                             "near W, for two angles near W W")

@@ -173,7 +173,7 @@ class Map:
         """What is proved, in words."""
         proofs = [leaf.proof["tree"] for leaf in self.leaves() if leaf.proof is not None]
         lines = ["No invariant tori, for (a, b, c) = r d in the cells that are proved, and for",
-                 "their mirror images (docs/format.md).",
+                 "their mirror images (docs/reference/map-file.md).",
                  "Region : " + self.region]
         for face, directions in enumerate(self.directions):
             words = " + ".join("%s(%s)" % (name, ", ".join(map(str, d)))

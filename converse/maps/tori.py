@@ -2,8 +2,8 @@
 
 On each ray, that is, in some of the directions in which the map's frontier was estimated, tori of a
 few rotation vectors are looked for below it; the one that is proved with the largest amplitudes is
-kept as a certificate (docs/format.md), in a file of its own.  It is a torus for these amplitudes;
-nothing is claimed of smaller ones.
+kept as a certificate (docs/reference/map-file.md), in a file of its own.  It is a torus for these
+amplitudes; nothing is claimed of smaller ones.
 """
 
 import os

@@ -3,7 +3,8 @@
 A region is a rectangle of v, x_1 = F v with the integers F of the frame.  Two x_1 that differ by
 multiples of 2 pi are one point of the torus: in units of pi, v may be moved by (0, P1), and by
 (P0, a number), P0 = 2 g/|det F| and P1 = 2/g with g the divisor of F's second column.  Reversal of
-time takes v0 to 2 c0 - v0, and the exchange of the angles v1 to -v1: docs/proof.md, section 2.
+time takes v0 to 2 c0 - v0, and the exchange of the angles v1 to -v1: docs/proofs/argument.md,
+section 2.
 """
 
 import itertools

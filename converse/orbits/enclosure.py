@@ -2,8 +2,8 @@
 ball arithmetic: python-flint's arb, a midpoint and a radius that bounds every rounding, and
 matrices of them.
 
-docs/orbits-proof.md has the theorems.  The Hessian of the action is that of a chain: n x n blocks
-beta_j = 2 - eps V''(x_j), and -1 between neighbours, cyclically.
+docs/proofs/proved-orbits.md has the theorems.  The Hessian of the action is that of a chain: n x n
+blocks beta_j = 2 - eps V''(x_j), and -1 between neighbours, cyclically.
 """
 
 from fractions import Fraction

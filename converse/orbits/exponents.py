@@ -1,4 +1,4 @@
-"""The Lyapunov exponents of a proved orbit, in balls: docs/orbits-proof.md, section 3.
+"""The Lyapunov exponents of a proved orbit, in balls: docs/proofs/proved-orbits.md, section 3.
 
 The pivots D_j of the true orbit lie between two sequences of matrices, s_j <= D_j <= t_j, and its
 exponents are (1/q) log |l|, l the eigenvalues of D_{q-1} ... D_0.

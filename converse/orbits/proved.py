@@ -1,8 +1,8 @@
 """Proved orbits: that a true orbit lies beside a state, what it is, its action and its exponents.
 
-docs/orbits-proof.md has the theorems and their proofs; enclosure.py and exponents.py bound in balls
-all that has as many terms as the orbit has points; here the few numbers that remain are put
-together, as exact rationals.
+docs/proofs/proved-orbits.md has the theorems and their proofs; enclosure.py and exponents.py bound
+in balls all that has as many terms as the orbit has points; here the few numbers that remain are
+put together, as exact rationals.
 """
 
 import math
@@ -214,7 +214,7 @@ def _attempt(state, exact, growth, places, wanted):
     displacements = exact.displacements()
     steps = [abs(float(new - Fraction(old)))
              for row, olds in zip(displacements, state.u.tolist()) for new, old in zip(row, olds)]
-    # A double that is at least what docs/orbits-proof.md says, taken as what it is.
+    # A double that is at least what docs/proofs/proved-orbits.md says, taken as what it is.
     bend = abs(exact.eps) * Fraction(state.potential.lipschitz)
     least = _least(state, exact, floor, float(bend) * math.hypot(*steps))
     shown = places + GUARD

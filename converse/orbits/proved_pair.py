@@ -1,5 +1,5 @@
 """Proved pairs: that a true pass lies beside one that was found, and how much more action it has
-than the proved minimum.  docs/orbits-proof.md, section 6, has the theorem and its proof.
+than the proved minimum.  docs/proofs/proved-orbits.md, section 6, has the theorem and its proof.
 
 The pass is a saddle.  One coordinate of one point is made stiffer by sigma, H = P - sigma e e^T, so
 that P is positive definite, which the same pivots certify as for minima, and what is said of H
@@ -205,7 +205,7 @@ class _Pass:
         if not lost < 0:
             raise _Undecided("it is not decided whether there is a direction down")
         inverse = upper(1 / ball(m) + sigma * size * size / abs(lost))
-        # A double that is at least what docs/orbits-proof.md says, taken as what it is.
+        # A double that is at least what docs/proofs/proved-orbits.md says, taken as what it is.
         bend = abs(exact.eps) * Fraction(state.potential.lipschitz)
         shown = self.places + GUARD
         radius = rounded(2 * inverse * exact.gradient + Fraction(1, 10 ** self.places), shown,

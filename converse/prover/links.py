@@ -1,5 +1,5 @@
 """Links between starting points: what an invariant graph does at one point says what it does at
-another (docs/proof.md, section 10).
+another (docs/proofs/argument.md, section 10).
 
 Let f be the map of an invariant graph, f(x*) = F v and f(x) = F v'.  Then v' - v lies in a small
 rectangle that depends on x* and x alone.  So where v' must lie in a region that is excluded over

@@ -51,7 +51,7 @@ class Proof:
 
     problem, settings: what was asked; where that is all of the torus, and there is an x*, with the
     frame and the region that are searched (symmetries_used).
-    tree: one character for each prism, in preorder (docs/format.md).
+    tree: one character for each prism, in preorder (docs/reference/proof-file.md).
     counts: the statistics of the search.
     xstar: the two angles of the starting point, in radians, as decimal strings; None: not yet
     chosen.

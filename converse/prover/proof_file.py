@@ -1,4 +1,4 @@
-"""The proof file (docs/format.md), of a proof that is finished or not."""
+"""The proof file (docs/reference/proof-file.md), of a proof that is finished or not."""
 
 import re
 from dataclasses import asdict, fields

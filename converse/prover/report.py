@@ -238,8 +238,8 @@ def _parts(proof):
     if lines:
         lines += ["Links : %d prisms of one x* lead, on an invariant graph, into the region of a "
                   "part" % proof.counts.linked,
-                  "(the theorem rests on what graphs do at several points: docs/proof.md, "
-                  "section 10)"]
+                  "(the theorem rests on what graphs do at several points: "
+                  "docs/proofs/argument.md, section 10)"]
     return lines
 
 

@@ -23,8 +23,8 @@ from .workers import LOOK_SECONDS
 
 LOOK_DEPTH, LOOK_LEAVES = 24, 200000    # of the tree whose undecided prisms are clustered
 # Where there are tori, the orbits of the tree are long, and no other x* helps.  Of all maps in
-# docs/method.md the crossed one with s = 0.58 needs the most points: 17 million, and 0.9 million
-# in the trees of less than LOOK_DEPTH cuts.
+# docs/explanation/method.md the crossed one with s = 0.58 needs the most points: 17 million, and
+# 0.9 million in the trees of less than LOOK_DEPTH cuts.
 LOOK_POINTS, SHRINK_POINTS = 50_000_000, 5_000_000
 FEW_LEAVES = 50000                      # where regions move, and larger ones will do
 DEEPER = 4                              # cuts, as long as they halve what the clusters cover,

@@ -1,6 +1,6 @@
-"""The certificate of a torus (docs/format.md, "converse torus 1"): the map, the rotation vector and
-the modes of the torus, exactly, which are the claim; and the norm and strip in which it is
-verified.  The checker's parser is the only one."""
+"""The certificate of a torus (docs/reference/torus-certificate.md, "converse torus 1"): the map,
+the rotation vector and the modes of the torus, exactly, which are the claim; and the norm and strip
+in which it is verified.  The checker's parser is the only one."""
 
 import os
 from typing import List, NamedTuple, Sequence, Tuple, Union

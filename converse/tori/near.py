@@ -34,7 +34,8 @@ Triangle = Tuple[Tuple[int, int, int], ...]     # corners (q, p0, p1)
 def near(w0: Number, w1: Optional[Number] = None, tolerance: Number = TOLERANCE,
          progress: Optional[Callable[[str], None]] = None) -> Rotation:
     """The rotation vector with the best small divisors that was found near w0, or near (w0, w1):
-    that for which c(delta) of docs/existence.md is least in doubles, with |k| = |k_0| + |k_1|.
+    that for which c(delta) of docs/proofs/existence.md is least in doubles, with |k| = |k_0| +
+    |k_1|.
 
     tolerance -- how far each component may be away; the result's name tells it
     progress -- is told in words what is going on

@@ -1,6 +1,6 @@
 """Newton's method for invariant tori on a grid of angles, by fast Fourier transforms.
 
-One step is that of the proof of the theorem (docs/existence.md), after Levi and Moser, and de la
+One step is that of the theorem's proof (docs/proofs/existence.md), after Levi and Moser, and de la
 Llave, Gonzalez, Jorba and Villanueva: with L = I + Du and A = L(. - w)^T L, the correction v = L z
 of the error E solves two equations of the form g(. + w) - g = f, each a division of Fourier
 coefficients by e^{i k.w} - 1, and leaves an error of the order of E^2.  It costs some Fourier

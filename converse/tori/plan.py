@@ -1,5 +1,6 @@
-"""Estimates how many modes and digits the theorem of docs/existence.md will need of a torus that is
-known in doubles, and chooses the norm and the strip.  The checker decides what is needed."""
+"""Estimates how many modes and digits the theorem of docs/proofs/existence.md will need of a torus
+that is known in doubles, and chooses the norm and the strip.  The checker decides what is
+needed."""
 
 from fractions import Fraction
 from functools import lru_cache

@@ -1,6 +1,6 @@
 """Proofs that there are invariant tori: find one in doubles, refine it, write its certificate, and
 let the checker verify that.  Nothing here is proved by anything else: the theorem of
-docs/existence.md has one implementation, converse/check/tori.py."""
+docs/proofs/existence.md has one implementation, converse/check/tori.py."""
 
 import math
 import os
@@ -115,10 +115,10 @@ class ProvedTorus:
         return proved_html(self)
 
     def save(self, path: Union[str, "os.PathLike[str]"]) -> str:
-        """Writes the certificate (docs/format.md), compressed if the name ends in .gz, and returns
-        its SHA-256 (of the uncompressed file).  As with Proof.save() a file that is there is
-        replaced; the command converse-tori refuses to.  ConverseError: it cannot be written; the
-        older file, if any, is intact."""
+        """Writes the certificate (docs/reference/torus-certificate.md), compressed if the name ends
+        in .gz, and returns its SHA-256 (of the uncompressed file).  As with Proof.save() a file
+        that is there is replaced; the command converse-tori refuses to.  ConverseError: it cannot
+        be written; the older file, if any, is intact."""
         return files.write_text(path, self.certificate)
 
 

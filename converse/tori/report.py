@@ -91,7 +91,8 @@ def verdict(proof: ProvedTorus, seconds: Optional[float] = None,
     if certificate is not None:
         lines += ["Certificate : %s" % plain(certificate), "SHA-256 : %s" % checksum]
     lines += ["Program : converse " + __version__,
-              "Method : an a-posteriori KAM theorem (docs/existence.md), verified in integers"]
+              "Method : an a-posteriori KAM theorem (docs/proofs/existence.md), verified in "
+              "integers"]
     return "\n".join(lines) + "\n"
 
 

@@ -10,8 +10,8 @@
    wrapping effect; Lohner's remedy is to carry remainders in a moving frame).  Here the linearized
    map is factored instead, and r is bounded by two recursions of first order that follow its
    factors, r[j+1] = d[j] r[j] + f[j], f[j] = f[j-1]/d[j-1] + e[j], d[j] = beta - 1/d[j-1]:
-   docs/proof.md, section 5, (R) and (F).  Both are bounded entry by entry, in axes along the
-   largest wave and across it.
+   docs/proofs/argument.md, section 5, (R) and (F).  Both are bounded entry by entry, in axes along
+   the largest wave and across it.
 
    Along each wave rad = rho bounds |D[j]|. */
 #include "prism.h"

@@ -1,7 +1,7 @@
 /* prism.h - what the files of an engine share: the prisms at hand and the orbits that start in
    them, one in each lane.  The slots 0 and 1 of waves are the coordinates themselves: see waves.h.
 
-   The criterion (docs/proof.md has all of this file's mathematics, step by step).  Orbits on an
+   The criterion (docs/proofs/argument.md has all of this file's mathematics).  Orbits on an
    invariant Lagrangian graph minimize, so their second variation
    Q(n) = sum of n[j].beta(x[j])n[j] - 2 n[j].n[j+1] is not negative for any square-summable n
    (Katok; MacKay, Meiss and Stark, Nonlinearity 2, 1989).  With B >= the largest eigenvalue of beta

@@ -9,7 +9,7 @@
 
    The right side is convex in t; W grows with these coefficients in the Loewner order, and trace
    and largest eigenvalue are convex and grow with W.  So over a rectangle about v what they say of
-   W is largest at a corner.  docs/proof.md, section 4. */
+   W is largest at a corner.  docs/proofs/argument.md, section 4. */
 #include "model/patch.h"
 #include "model/torus.h"
 

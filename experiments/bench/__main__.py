@@ -1,4 +1,4 @@
-"""What docs/speed.md says of times, measured anew.
+"""What docs/explanation/speed.md says of times, measured anew.
 
     python experiments/bench [--repeat N] [--older DIRECTORY] [--whole] [WHAT ...]
 
@@ -206,7 +206,7 @@ PARTS = {part.__name__: part for part in (processes, images, steps, orbits, fron
 
 
 def main():
-    p = argparse.ArgumentParser(description="Measures the times that docs/speed.md speaks of.")
+    p = argparse.ArgumentParser(description="Measures the times in docs/explanation/speed.md.")
     p.add_argument("--repeat", type=int, default=3, metavar="N",
                    help="runs, of which the least counts")
     p.add_argument("--older", metavar="DIRECTORY", help="another commit, built in place: frontier")

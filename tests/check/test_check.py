@@ -938,12 +938,12 @@ def test_streams_that_are_closed_or_full(texts, one_file, tmp_path, stream):
         done.returncode in (0, 2) if stream == "| true" else done.returncode == 2
 
 
-# ---- docs/format.md
+# ---- the pages of the formats
 
 def test_the_example_of_the_format(root, run):
     """A second reader, written from the page alone, finds in its example what the page says; the
     checker verifies it."""
-    page = (root / "docs" / "format.md").read_text(encoding="utf-8")
+    page = (root / "docs/reference/proof-file.md").read_text(encoding="utf-8")
     example = page[page.rindex("    converse proof 6\n"):].split("\n\n")[0]
     data = "".join(line[4:] + "\n" for line in example.split("\n")).encode()
     body, end = data[:data.rindex(b"checksum: ")], data[data.rindex(b"checksum: "):]
@@ -990,12 +990,12 @@ def test_the_example_of_the_format(root, run):
 def test_the_format_names_what_the_checker_knows(root, texts, monkeypatch):
     """Each field, each limit, each status; and nothing that is in no file."""
     monkeypatch.undo()                          # the limits themselves
-    page = (root / "docs" / "format.md").read_text(encoding="utf-8")
+    page = (root / "docs/reference/proof-file.md").read_text(encoding="utf-8")
     header = page[page.index("## The header"):page.index("## The tree")]
     names = set(re.findall("`([^`\n]+)`", header)) - {"sound", "yes", "no", "0", "1", "upper end",
                                                       "as printed, not a proof"}
     assert names == check.FIELDS | check.OPTIONAL
-    maps = page[page.index("## Maps"):page.index("## Going on")]
+    maps = (root / "docs/reference/map-file.md").read_text(encoding="utf-8")
     assert all("`%s`" % name in maps for name in (*check.REGIONS, *check.MAP_KINDS))
     assert "2^22" in page and check.MAX_ITEMS == 1 << 22
     for value in (check.MAX_CHARACTERS, check.MAX_CUTS, check.MAX_BITS, check.MAX_SITES,

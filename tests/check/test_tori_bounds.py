@@ -1,5 +1,5 @@
 """The checker's bounds of tori against l1 norms that this file computes in its own way, from the
-formulas of docs/existence.md.
+formulas of docs/proofs/existence.md.
 
 The cases are random: frames, weights, waves, ranges of s, one and two angles.  The boxes are as
 narrow as is allowed and coefficients have few bits, so that a radius is most of a bound.  A bound

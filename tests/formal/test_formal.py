@@ -137,7 +137,8 @@ def test_words_that_mean_something_else(proof, folder):
 
 @needs_coq
 def test_a_theorem_of_another_proposition_of_the_name(folder):
-    """How docs/trust.md has Coq asked, for him who does not read the theorem's file either."""
+    """How docs/proofs/coq.md has Coq asked, for him who does not read the theorem's file
+    either."""
     says = "From Converse Require Import Map.\n" \
         "Definition x_says : Prop := no_invariant_graph nil.\n"
     (folder / "build" / "x_says.v").write_text(says)
@@ -146,7 +147,7 @@ def test_a_theorem_of_another_proposition_of_the_name(folder):
         "Module x_says. Definition x_says : Prop := True. End x_says.\n"
         "Theorem x : x_says. Proof. exact I. Qed.\nCheck x. Print Assumptions x.\n")
     question = re.search(r"(?m)^    (From Converse\.build Require NAME.*)\n    (Check .*)\n",
-                         (ROOT / "docs" / "trust.md").read_text("utf-8"))
+                         (ROOT / "docs/proofs/coq.md").read_text("utf-8"))
     (folder / "build" / "asked.v").write_text("\n".join(question.groups()).replace("NAME", "x"))
     for name in "x_says", "x":
         assert compiled(folder, "build/%s.v" % name)[0]

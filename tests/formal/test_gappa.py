@@ -37,7 +37,7 @@ def header(root):
 def test_the_promise_is_proved(tools, header, root, tmp_path):
     proof = tools[0].prove(header, tmp_path)
     rows = re.findall(r"^\| `?sine`? \|.*\| ([0-9.]+) \|",
-                      (root / "docs" / "proof.md").read_text("utf-8"), re.MULTILINE)
+                      (root / "docs/proofs/argument.md").read_text("utf-8"), re.MULTILINE)
     assert len(rows) == 2 and float(rows[1]) <= proof.error / max(proof.sine, proof.cosine)
     assert proof.turns < 2 ** 20 and proof.far < 0.7854
     assert max(proof.sine, proof.cosine) <= proof.error == Fraction(1, 2 ** 51)

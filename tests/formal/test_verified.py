@@ -134,7 +134,7 @@ def test_nothing_can_be_fused():
 
 
 def reversal_centres(text, frame):
-    """c0 of docs/proof.md at both ends of a text's parameter, in units of pi."""
+    """c0 of docs/proofs/argument.md at both ends of a text's parameter, in units of pi."""
     a, b, c, d = frame
     x = [float(x) for x in re.search("(?m)^xstar: (.*)$", text)[1].split()]
     found = []

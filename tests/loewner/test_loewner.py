@@ -379,7 +379,7 @@ def star_margins(rng, cases):
         yield from (("star", abs(x - y), rest) for x, y, rest in zip(star, out, out[42:]))
 
 
-# ---- the margins along orbits: docs/proof.md says what each must cover
+# ---- the margins along orbits: docs/proofs/argument.md says what each must cover
 
 def far_of(x, there):
     """`err_angle` of csrc/loewner/waves.h: `there` has a size for each wave, 0 if it is not there.
@@ -653,9 +653,9 @@ def worst_margins(cases):
 
 
 def test_margins(root):
-    """Of no margin more is needed than docs/proof.md proves, and of each some is."""
+    """Of no margin more is needed than docs/proofs/argument.md proves, and of each some is."""
     proved = dict(re.findall(r"^\| `([a-z_ ]+)` \|.*\| ([0-9.]+) \| [^|]* \|$",
-                             (root / "docs" / "proof.md").read_text("utf-8"), re.MULTILINE))
+                             (root / "docs/proofs/argument.md").read_text("utf-8"), re.MULTILINE))
     worst = worst_margins(CASES // 200)
     assert worst.keys() == proved.keys()
     for name, share in worst.items():

@@ -41,9 +41,10 @@ def read(root):
 
 @pytest.fixture(scope="module")
 def table(root):
-    """Of each row of docs/proof.md that a machine has proved: the factor that it is said to leave.
+    """Of each row of docs/proofs/argument.md that a machine has proved: the factor that it is said
+    to leave.
     """
-    text = (root / "docs" / "proof.md").read_text("utf-8")
+    text = (root / "docs/proofs/argument.md").read_text("utf-8")
     part = text[text.index("**What a machine has proved of this.**"):text.index("Why that much")]
     return {name: float(left) for name, left in
             re.findall(r"^\| ([a-z0-9_ *`]+?) \|.*\| ([0-9.]+) \|", part, re.MULTILINE)}
@@ -280,8 +281,8 @@ def worst_margins(tools, read):
 
 
 def test_margins_of_general_waves(tools, read, root):
-    """Of no margin more is needed than docs/proof.md proves, and of each some is."""
-    text = (root / "docs" / "proof.md").read_text("utf-8")
+    """Of no margin more is needed than docs/proofs/argument.md proves, and of each some is."""
+    text = (root / "docs/proofs/argument.md").read_text("utf-8")
     part = text[text.index("**General waves.**"):text.index("**What a machine has proved")]
     left = dict(re.findall(r"^\| ([a-z_]+|`s\*`) \|.*\| ([0-9.]+) \| [0-9]", part, re.MULTILINE))
     left.update({"residual": 1.7, "at once": 3.6})        # of the first table

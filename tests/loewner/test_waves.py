@@ -263,7 +263,7 @@ def margins(rng, cases):
                 force = sum(w[i] * mp(f) * mpmath.cos(z) for w, f, z in zip(patch.waves, p, y))
                 E = modulo(2 * q.x[i] - o.x[i] - following.x[i] + force)
                 yield "residual", abs(E), q.residual[i]
-            # columns and bow, against the margin of docs/proof.md
+            # columns and bow, against the margin of docs/proofs/argument.md
             lost, given = [mp(0), mp(0)], [mp(0), mp(0)]
             for m in range(5):
                 next_L = [2 * q.lin[i][m] - o.lin[i][m] for i in range(2)]

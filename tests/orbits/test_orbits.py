@@ -145,8 +145,9 @@ def test_the_other_half_of_the_package_has_the_same_map():
     ("two-harmonics.json", {"K1": 1}), ("trig278.in", {"a": "0.3", "b": "-0.1", "c": "1/3"}),
     (None, {})])
 def test_an_input_s_potential_has_the_input_s_map(root, tmp_path, file, at):
-    """Both maps from the same points: y' = y + J', J' = J - grad V(y) as docs/format.md has V, and
-    with y = 2 pi x, J = 2 pi p and eps = 1 that of the orbits."""
+    """Both maps from the same points: y' = y + J', J' = J - grad V(y) as
+    docs/reference/proof-file.md has V,
+    and with y = 2 pi x, J = 2 pi p and eps = 1 that of the orbits."""
     path = root / "inputs" / (file or "")
     if file is None:                    # the page's example, and phases without rational sines
         path = tmp_path / "mine.json"

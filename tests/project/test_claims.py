@@ -70,7 +70,7 @@ def test_the_boxes_of_the_chart():
         assert Fraction(centre) - Fraction("0.00125") <= LINE * Fraction(epsilon)
 
 
-@pytest.mark.parametrize("page", ["README.md", "docs/proof.md"])
+@pytest.mark.parametrize("page", ["README.md", "docs/proofs/argument.md"])
 def test_the_thesis_constant(page):
     """2 pi^2/M, and what 0.0140 is with it."""
     with mpmath.workdps(40):

@@ -14,6 +14,7 @@ from converse.draw.map_figure import MARKED_POINTS
 
 ROOT = Path(__file__).resolve().parent.parent.parent
 DOCS = ROOT / "docs"
+PAGES = {page.name: page.read_text("utf-8") for page in (ROOT / "README.md", *DOCS.rglob("*.md"))}
 FIGURES = runpy.run_path(str(DOCS / "figures.py"))
 ROWS = {row["picture"]: row for row in FIGURES["rows"]()}
 WORDS = {path.stem: "\n".join(re.findall("<!-- (.*?) -->", path.read_text("utf-8"), re.DOTALL))
@@ -27,13 +28,12 @@ SHOWN = {
     "chart-sides.svg": (TORUS, NO_CIRCLE, CIRCLE),
     "README.md": (NO_TORUS, TORUS, NO_CIRCLE, CIRCLE),
     "frontier.md": (NO_TORUS, TORUS, NO_CIRCLE, CIRCLE), "map.md": (NO_TORUS, TORUS),
-    "speed.md": (NO_TORUS,), "trust.md": (NO_TORUS,), "orbits.md": (NO_TORUS, TORUS),
-    "tori.md": (TORUS, CIRCLE), "method.md": (NO_CIRCLE,), "where-methods-fail.md": (NO_CIRCLE,)}
+    "speed.md": (NO_TORUS,), "trust.md": (NO_TORUS,), "questions-of-1989.md": (NO_TORUS, TORUS),
+    "tori.md": (TORUS, CIRCLE), "method.md": (NO_CIRCLE,), "limits.md": (NO_CIRCLE,)}
 
 
 def text_of(name):
-    path = ROOT / name if name == "README.md" else DOCS / name
-    return WORDS[path.stem] if path.suffix == ".svg" else path.read_text("utf-8")
+    return WORDS[name[:-4]] if name.endswith(".svg") else PAGES[name]
 
 
 def test_every_picture_has_a_row_and_every_table_a_picture():

@@ -1,4 +1,4 @@
-"""The rooms of the package: who may import whom.  docs/architecture.md draws it."""
+"""The rooms of the package: who may import whom.  docs/development/architecture.md draws it."""
 
 import ast
 from graphlib import TopologicalSorter
@@ -104,7 +104,7 @@ def test_no_circle(arrows):
 
 
 def test_the_page_shows_every_room():
-    page = (ROOT / "docs" / "architecture.md").read_text("utf-8")
+    page = (ROOT / "docs/development/architecture.md").read_text("utf-8")
     folders = [path for top in ("converse", "csrc") for path in (ROOT / top).iterdir()
                if any(path.glob("*.py")) or any(path.glob("*.c"))]      # not inputs
     assert len(folders) > 10

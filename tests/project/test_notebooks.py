@@ -11,7 +11,7 @@ pytest.importorskip("matplotlib").use("Agg")
 
 def cells(name):
     """The notebook as it is in the file: without results, which are made anew."""
-    notebook = json.loads((ROOT / "docs" / name).read_text("utf-8"))
+    notebook = json.loads((ROOT / "docs/tutorials" / name).read_text("utf-8"))
     assert (notebook["nbformat"], notebook["nbformat_minor"]) == (4, 5)
     ids = [cell["id"] for cell in notebook["cells"]]
     assert len(set(ids)) == len(ids)
@@ -39,8 +39,8 @@ def run(name):
 def test_orbits(capsys):
     import matplotlib.figure
 
-    names, shown = run("orbits.ipynb")
-    assert sum(len(source.splitlines()) for source in cells("orbits.ipynb")) < 50
+    names, shown = run("ghosts.ipynb")
+    assert sum(len(source.splitlines()) for source in cells("ghosts.ipynb")) < 50
     figures = [value for value in shown if isinstance(value, matplotlib.figure.Figure)]
     assert len(figures) == 4
     for figure in figures:

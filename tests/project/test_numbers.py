@@ -19,7 +19,7 @@ from truth import TORTURE
 
 ROOT = Path(__file__).resolve().parent.parent.parent
 PAGES = {page.name: page.read_text("utf-8")
-         for page in (ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md")))}
+         for page in (ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md")))}
 
 
 def rows(page, first):
@@ -166,7 +166,7 @@ def test_what_is_checked_and_what_coq_proves():
 
 
 def test_fewer_places():
-    head, *table = rows("where-methods-fail.md", "places")
+    head, *table = rows("limits.md", "places")
     for name, *found in table:
         problem = given(name.partition(",")[0] + ".in")
         for places, prisms in zip(head[1:], found):
@@ -175,13 +175,13 @@ def test_fewer_places():
 
 
 def test_towards_the_wall():
-    head, *table = columns("where-methods-fail.md", "epsilon")
+    head, *table = columns("limits.md", "epsilon")
     assert head == ("epsilon", "prisms", "deepest cut")
     for epsilon, prisms, cuts in table:
         counts = prove(chart.on_line(epsilon), digits=20).counts
         assert (counts.proved, counts.most_cuts) == (number(prisms), number(cuts))
     assert [sharper(Problem("0.2", "0.35", "0.5")).proved] \
-        == said("where-methods-fail.md", "the sharper one takes ([0-9,]+) prisms")
+        == said("limits.md", "the sharper one takes ([0-9,]+) prisms")
 
 
 def test_the_pieces_of_the_checker(tmp_path, capsys):
@@ -199,7 +199,7 @@ def test_the_pieces_of_the_checker(tmp_path, capsys):
 
 def test_how_far_down_orbits_are_proved():
     """The three of the table that take seconds, each followed from eps 0."""
-    head, *table = columns("orbits-proof.md", "trig (1432, 1897)/2513, eps")
+    head, *table = columns("proved-orbits.md", "trig (1432, 1897)/2513, eps")
     assert head[1:] == ("second variation at least", "smaller exponent", "places, seconds")
     for eps, least, exponent, places in table[:3]:
         state = orbits.follow(orbits.trig, (1432, 1897), 2513, [float(eps)])[-1]
@@ -213,7 +213,8 @@ def test_how_large_the_thousand_vectors_are():
     toughest = runpy.run_path(str(ROOT / "experiments" / "toughest.py"))
     size = toughest["SIZES"]["full"]
     q = [q for _, q in toughest["spread"](size["vectors"], size["q"])]
-    assert len(q) == 1000 and [min(q), max(q)] == said("orbits.md", "q from ([0-9]+) to ([0-9]+)")
+    assert len(q) == 1000 and [min(q), max(q)] == said(
+        "questions-of-1989.md", "q from ([0-9]+) to ([0-9]+)")
 
 
 # ---- what can be counted in the files
@@ -222,7 +223,7 @@ def test_how_large_the_thousand_vectors_are():
 LINES = [
     ("method.md", "the checker's ([0-9,]+) lines", "converse/check/*.py"),
     ("trust.md", "whose steps its ([0-9,]+) lines cite", "converse/check/*.py"),
-    ("trust.md", "in ([0-9,]+) lines without a proof", "formal/Map.v"),
+    ("coq.md", "in ([0-9,]+) lines without a proof", "formal/Map.v"),
     ("trust.md", "([0-9,]+) lines of `verified.ml`", "formal/verified.ml"),
     ("trust.md", "`formal/roundings.py`, a Python program of ([0-9,]+) lines",
      "formal/roundings.py"),
@@ -258,7 +259,7 @@ def test_what_a_referee_reads():
 
 def test_the_margins():
     """How many rows of the two tables are bounded by what."""
-    text = PAGES["proof.md"]
+    text = PAGES["argument.md"]
     end = text.index("**What a machine has proved of this.**")
     first, general = (re.findall(r"^\| (.*?) \|.*\| [0-9.]+ \| (.*?) ?\|$", part, re.MULTILINE)
                       for part in
@@ -287,7 +288,8 @@ def accuracy():
 
 
 def test_the_table_of_accuracy(accuracy):
-    """docs/accuracy.md was printed by tests/accuracy.py: its head and the words of its rows."""
+    """docs/development/accuracy.md was printed by tests/accuracy.py: its head and the words of its
+    rows."""
     page = PAGES["accuracy.md"]
     assert page.startswith(accuracy.HEAD % accuracy.DIGITS)
     printed = re.findall(r"^\| (.*?) \| (.*?) \| (.*?) \|.*\|$", page, re.MULTILINE)

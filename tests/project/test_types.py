@@ -56,7 +56,8 @@ def test_examples(root, tmp_path, monkeypatch):
     long.)"""
     monkeypatch.chdir(root)
     examples = []
-    for page in "README.md", "docs/python.md", "docs/orbits.md", "docs/tori.md":
+    for page in ("README.md", "docs/how-to/python.md", "docs/how-to/orbits.md",
+                 "docs/how-to/tori.md"):
         blocks = re.findall(r"^```python\n(.*?)^```$", (root / page).read_text("utf-8"),
                             re.MULTILINE | re.DOTALL)
         assert blocks

@@ -104,8 +104,8 @@ def test_undecided(made_up, tree, stubborn, number, deepest, ended):
 
 
 def test_where_x_star_may_be_the_cause(monkeypatch):
-    """For these two harmonics another x* proves it (docs/method.md), as it does where several are
-    not linked; a lack of depth is another thing."""
+    """For these two harmonics another x* proves it (docs/explanation/method.md), as it does where
+    several are not linked; a lack of depth is another thing."""
     monkeypatch.setattr(run._Run, "_may_link", lambda self: False)
     waves = [(1, 0, "-1/2"), (2, 0, "-1/2")]
     problem = Problem.patch(["0.6", "0.2"], waves=waves)

@@ -1,6 +1,6 @@
-"""docs/existence.md against brute force: functions are their values on fine grids of doubles, and
-each identity, bound and constant of the page is compared with what it is about.  Numbers in
-parentheses are the page's."""
+"""docs/proofs/existence.md against brute force: functions are their values on fine grids of
+doubles, and each identity, bound and constant of the page is compared with what it is about.
+Numbers in parentheses are the page's."""
 
 import dataclasses
 import itertools
