@@ -14,6 +14,7 @@
    the largest wave and across it.
 
    Along each wave rad = rho bounds |D[j]|. */
+#include "arith/sym2.h"
 #include "prism.h"
 
 static const double TWO_PI = 0x1.921fb54442d18p+2;      /* less than 2^-51 below it */
@@ -70,12 +71,8 @@ static void forget(const batch *w, point *q)
 /* The sines at q->x, and what follows from them. */
 static void finish(const batch *w, point *q)
 {
-    vec half, apart;
-
     evaluate(w, q);
-    half = 0.5 * (q->beta[0] - q->beta[2]);
-    apart = root_of(half * half + q->beta[1] * q->beta[1]);
-    q->least = 0.5 * (q->beta[0] + q->beta[2]) - apart;
+    q->least = sym2_least_eigenvalue(q->beta);
 }
 
 /* How far a wave p' cos(y + z), p' = p + h e + w, may be from what L and T make of it,

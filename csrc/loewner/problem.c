@@ -4,8 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "eigenvector.h"
 #include "arith/sine.h"
+#include "arith/sym2.h"
 #include "problem.h"
 #include "model/torus.h"
 

@@ -18,6 +18,7 @@
 #endif
 #include "loewner.h"
 #include "arith/sine.h"
+#include "arith/sym2.h"
 #include "start.h"
 
 enum { COARSEST_GRID = 24, FINEST_GRID = 240 };
@@ -78,13 +79,6 @@ static double depth_of(void *context, const double x[2], double enough)
     return o->f(o->v, x, g, h);
 }
 
-static double least_of(const double d[3])
-{
-    const double half = 0.5 * (d[0] - d[2]);
-
-    return 0.5 * (d[0] + d[2]) - sqrt(half * half + d[1] * d[1]);
-}
-
 /* What is least, or largest, on a grid. */
 typedef struct {
     int grid;
@@ -112,7 +106,8 @@ static survey survey_of(const waves *v, int on_diagonal)
     for (int i = 0; i < s.grid; i++)
         for (int j = 0; j < s.grid; j++) {
             const double y[2] = { 2 * PI * (i + 0.5) / s.grid, 2 * PI * (j + 0.5) / s.grid };
-            double beta[3] = { 2.0, 0.0, 2.0 }, value = 0.0, low;
+            vec beta[3] = { every(2.0), every(0.0), every(2.0) }, least_beta;
+            double value = 0.0, low;
             for (int w = 0; w < v->n; w++) {
                 const int k0 = v->k[w][0], k1 = v->k[w][1];
                 const int m = (k0 * (2 * i + 1) + k1 * (2 * j + 1)) % turn;
@@ -123,8 +118,9 @@ static survey survey_of(const waves *v, int on_diagonal)
                 beta[1] -= part * k0 * k1;
                 beta[2] -= part * k1 * k1;
             }
-            low = least_of(beta);
-            s.largest = fmax(s.largest, beta[0] + beta[2] - low);
+            least_beta = sym2_least_eigenvalue(beta);
+            low = at(&least_beta, 0);
+            s.largest = fmax(s.largest, at(&beta[0], 0) + at(&beta[2], 0) - low);
             if (on_diagonal && i != j)
                 continue;
             if (low < least) {
@@ -203,39 +199,29 @@ INLINE void look(const orbits *o, const vec x[2], vec force[2], vec beta[3])
     }
 }
 
-/* form -= 1/d */
-INLINE void take(vec form[3], const vec d[3])
-{
-    const vec inverse = 1.0 / (d[0] * d[2] - d[1] * d[1]);
-
-    form[0] -= d[2] * inverse;
-    form[1] += d[1] * inverse;
-    form[2] -= d[0] * inverse;
-}
-
 /* The eigenvalue that so many points on either side leave, given their beta; -HUGE_VAL if they
    contradict before.  More points leave less. */
 INLINE double left_by(const orbits *o, int points, vec beta[SIDES][REACH][3])
 {
-    double form[3] = { o->beta[0], o->beta[1], o->beta[2] };
+    vec form[3] = { every(o->beta[0]), every(o->beta[1]), every(o->beta[2]) }, least;
 
     for (int side = 0; side < SIDES; side++) {
         vec d[3] = { every(1.0 / o->l), every(0.0), every(1.0 / o->l) };
         vec taken[3] = { every(0.0), every(0.0), every(0.0) };
         for (int j = points - 1; j >= 0; j--) {
-            vec next[3] = { beta[side][j][0], beta[side][j][1], beta[side][j][2] };
-            take(next, d);
-            if (any(~(TRUTH(next[0] > o->l) &
-                      TRUTH((next[0] - o->l) * (next[2] - o->l) > next[1] * next[1]))))
+            vec next[3];
+            sym2_subtract_inverse(next, beta[side][j], d);
+            if (any(~sym2_is_above(next, every(o->l))))
                 return -HUGE_VAL;
             memcpy(d, next, sizeof d);
         }
-        take(taken, d);
+        sym2_subtract_inverse(taken, taken, d);
         for (int i = 0; i < 3; i++)
             for (int k = 0; k < LANES; k++)
                 form[i] += at(&taken[i], k);
     }
-    return least_of(form);
+    least = sym2_least_eigenvalue(form);
+    return at(&least, 0);
 }
 
 /* 1 on one side, -1 on the other. */

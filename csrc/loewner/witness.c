@@ -4,41 +4,10 @@
    beta - 1/d[j] of the Loewner bounds leads to a d[j] that is not above l; past and future are used
    alike.  n is chosen for the orbit of the prism's centre and then kept.  Nothing rigorous rests on
    it. */
-#include "eigenvector.h"
+#include "arith/sym2.h"
 #include "prism.h"
 
 static const double PLAINLY = 0.75; /* of l: blocks must fall below it while the orbit goes on */
-
-static mask above(const vec d[3], vec l)
-{
-    return TRUTH(d[0] > l) & TRUTH((d[0] - l) * (d[2] - l) > d[1] * d[1]);
-}
-
-static vec least_of(const vec d[3])
-{
-    const vec half = 0.5 * (d[0] - d[2]);
-
-    return 0.5 * (d[0] + d[2]) - root_of(half * half + d[1] * d[1]);
-}
-
-/* d' = beta - 1/d */
-INLINE void block(vec next[3], const vec beta[3], const vec d[3])
-{
-    const vec inverse = 1.0 / (d[0] * d[2] - d[1] * d[1]);
-
-    next[0] = beta[0] - d[2] * inverse;
-    next[1] = beta[1] + d[1] * inverse;
-    next[2] = beta[2] - d[0] * inverse;
-}
-
-/* m / d */
-INLINE void divide(vec n[2], const vec m[2], const vec d[3])
-{
-    const vec inverse = 1.0 / (d[0] * d[2] - d[1] * d[1]);
-
-    n[0] = (d[2] * m[0] - d[1] * m[1]) * inverse;
-    n[1] = (d[0] * m[1] - d[1] * m[0]) * inverse;
-}
 
 /* The recursion from the left, way 1, or from the right, -1, in the lanes that are active: from
    their sites `begin` to `end`, or to where it falls below l. */
@@ -72,12 +41,12 @@ INLINE int advance(batch *w, recursion *r, int way)
     if (!any(r->going) || r->site == r->last + way)
         return 0;
     now = r->going & (way > 0 ? TRUTH(r->begin <= site) : TRUTH(r->begin >= site));
-    block(next, q->beta, r->d);
+    sym2_subtract_inverse(next, q->beta, r->d);
     for (int k = 0; k < 3; k++) {
         r->d[k] = pick(now, next[k], r->d[k]);
         blocks[k] = pick(now, next[k], blocks[k]);
     }
-    falls = now & ~above(r->d, pick(TRUTH(r->end == site), w->l, PLAINLY * w->l));
+    falls = now & ~sym2_is_above(r->d, pick(TRUTH(r->end == site), w->l, PLAINLY * w->l));
     r->fall = choose(falls, site - none(), r->fall);
     r->fell |= falls;
     r->going &= ~falls & ~TRUTH(r->end == site);
@@ -117,7 +86,8 @@ static mask witness(batch *w, mask active)
     from = right.fall;
     to = last;
     alone = active & (~right.fell | TRUTH(from > fall));          /* two places apart */
-    other = alone & right.fell & TRUTH(least_of(right.d) < least_of(left.d));
+    other =
+        alone & right.fell & TRUTH(sym2_least_eigenvalue(right.d) < sym2_least_eigenvalue(left.d));
     alone &= ~other;
     if (any(alone)) {                   /* the left one */
         to = choose(alone, fall, to);
@@ -155,7 +125,7 @@ static mask witness(batch *w, mask active)
         const uint64_t here = (uint64_t)j;
         const mask in = TRUTH(here <= site) & TRUTH(here >= w->from);
         vec next[2];
-        divide(next, n, q[j].left);
+        sym2_solve(next, q[j].left, n);
         for (int i = 0; i < 2; i++) {
             n[i] = pick(in, pick(TRUTH(here == site), top[i], next[i]), every(0.0));
             q[j].n[i] = pick(active, n[i], q[j].n[i]);
@@ -167,7 +137,7 @@ static mask witness(batch *w, mask active)
         const uint64_t here = (uint64_t)j;
         const mask in = active & TRUTH(here > site);
         vec next[2];
-        divide(next, n, q[j].right);
+        sym2_solve(next, q[j].right, n);
         for (int i = 0; i < 2; i++) {
             n[i] = pick(TRUTH(here == site), top[i],
                         pick(in & TRUTH(here <= w->to), next[i], every(0.0)));
