@@ -39,9 +39,8 @@ PARTS = (np.arange(5) - 2) * 0.28       # of a cell, along a side; they overlap
 def diagonal():
     """The potential of the map on x_0 = x_1, for converse.orbits: half of trig's there, since both
     coordinates move."""
-    half = Fraction(-1, 2)
-    return orbits.Fourier({(1,): (0, half), (2,): (0, half)}, "diagonal",
-                          scale_enclosure=orbits.trig.scale_enclosure)
+    half = Fraction(-orbits.trig.scale) / 2
+    return orbits.Fourier({(1,): (0, half), (2,): (0, half)}, "diagonal")
 
 
 # ---- noble rotation numbers

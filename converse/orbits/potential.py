@@ -8,7 +8,6 @@ import operator
 import os
 import pickle
 import threading
-from decimal import ROUND_CEILING, ROUND_FLOOR, Context, Decimal
 from fractions import Fraction
 from types import MappingProxyType
 from typing import Any, Callable, Dict, List, Mapping, Optional, Sequence, Tuple, Union
@@ -220,28 +219,20 @@ class Potential:
         return x, p, eps * gradient.reshape(x.shape), eps * bend
 
 
-def _one(digits):
-    return Fraction(1), Fraction(1)
-
-
 class Fourier(Potential):
     """A finite Fourier sum, V(x) = scale * sum of cosine cos(2 pi k.x) + sine sin(2 pi k.x).
 
     terms -- {k: (cosine, sine)}, k a tuple of n integers; floats are taken as what they are exactly
     start -- a maximum of V; by default one is looked for
-    scale_enclosure(digits) -- two Fractions around the scale, no further apart than 10^-digits,
-             and around the same whenever it is asked.
-             To be sent to other processes it must be a function of a module, not a lambda
 
-    Fourier.of takes the potential of an input file.
+    The scale is 1.  Fourier.of takes the potential of an input file, whose scale is 1/(4 pi^2).
     """
 
     sum: FourierSum
-    scale_enclosure: Callable[[int], Ends]
+    _scale: str                         # a key of SCALES
 
     def __init__(self, terms: Dict[Tuple[int, ...], tuple], name: str = "fourier",
-                 start: Optional[Tuple[float, ...]] = None,
-                 scale_enclosure: Callable[[int], Ends] = _one):
+                 start: Optional[Tuple[float, ...]] = None):
         try:
             terms = {tuple(map(operator.index, k)): (Fraction(c), Fraction(s))
                      for k, (c, s) in terms.items()}
@@ -253,30 +244,31 @@ class Fourier(Potential):
         if len(widths) != 1 or not widths <= {1, 2} or any(abs(i) > 1000 for k in terms for i in k):
             raise ValueError("a Fourier sum has terms, all with one or all with two integers from "
                              "-1000 to 1000; there are %r" % sorted(terms))
-        self._set_up(from_terms(terms), name, start, scale_enclosure)
+        self._set_up(from_terms(terms), name, start)
 
     @classmethod
     def of(cls, source: FourierSum, name: str = "fourier",
-           start: Optional[Tuple[float, ...]] = None,
-           scale_enclosure: Callable[[int], Ends] = per_period) -> "Fourier":
+           start: Optional[Tuple[float, ...]] = None) -> "Fourier":
         """From waves, amplitudes and phases, in the units of input files, where angles have period
         2 pi: with eps 1 the map is that of proofs (converse/model/potential.py)."""
         if not isinstance(source, FourierSum):
             raise ValueError("Fourier.of takes a FourierSum, not %.200r; orbits.read_potential "
                              "takes an input file" % (source,))
+        return cls._scaled(source, name, start, PER_PERIOD)
+
+    @classmethod
+    def _scaled(cls, source, name, start, scale):
         made = cls.__new__(cls)
-        made._set_up(source, name, start, scale_enclosure)
+        made._set_up(source, name, start, scale)
         return made
 
-    def _set_up(self, source, name, start, scale_enclosure):
-        vars(self).update(sum=source, scale_enclosure=scale_enclosure)
-        self._said = -math.inf, math.inf        # what all that scale_enclosure said has in common
-        scale = self._scale()
-        vars(self).update(scale=float(sum(scale) / 2))
+    def _set_up(self, source, name, start, scale="1"):
+        low, high = SCALES[scale](30)
+        vars(self).update(sum=source, scale=float((low + high) / 2), _scale=scale)
         terms = _significant(source)
         super().__init__(lib.CV_FOURIER, name, source.dimension, start,
-                         _formula(source, scale_enclosure, scale),
-                         *_bounds(terms, max(map(abs, scale))))
+                         source.text() if scale == "1" else
+                         "s (%s), s = %s" % (source.text(), scale), *_bounds(terms, high))
         self._arrays = [np.array([k for k, *_ in terms], dtype=np.intc)] + [
             np.array([float(sum(term[i]) / 2) * self.scale for term in terms]) for i in (1, 2)]
         self.native.terms = len(terms)
@@ -289,10 +281,10 @@ class Fourier(Potential):
     def __reduce__(self):
         if STUDIED.get(self.name) is self:
             return super().__reduce__()
-        return Fourier.of, (self.sum, self.name, self.start, self.scale_enclosure)
+        return Fourier._scaled, (self.sum, self.name, self.start, self._scale)
 
     def _key(self) -> tuple:
-        return (*super()._key(), self.sum, self.scale_enclosure)
+        return (*super()._key(), self.sum, self._scale)
 
     @property
     def terms(self) -> Mapping[Tuple[int, ...], Tuple[Fraction, Fraction]]:
@@ -305,35 +297,12 @@ class Fourier(Potential):
         10^-digits."""
         sizes: List[Any] = [*self.sum.amplitude, self.scale]
         more = digits + 2 + len(str(math.ceil(max(map(abs, sizes)))))
-        scale = self.scale_within(more)
+        scale = self.scale_enclosure(more)
         return [(k, product(c, scale), product(d, scale)) for k, c, d in self.sum.terms(more)]
 
-    def scale_within(self, digits: int) -> Ends:
-        """What scale_enclosure says, if it is what it shall be, and no other scale than before."""
-        try:
-            low, high = map(Fraction, self.scale_enclosure(digits))
-            valid = 0 <= high - low <= Fraction(1, 10 ** digits)
-        except (TypeError, ValueError, OverflowError):
-            valid = False
-        if not valid:
-            raise ValueError("scale_enclosure(%d) is not two Fractions around the scale, the lower "
-                             "one first, as close as they were asked for" % digits)
-        self._said = max(low, self._said[0]), min(high, self._said[1])
-        if self._said[0] > self._said[1]:
-            raise ValueError("scale_enclosure(%d) contradicts what it said before: a potential "
-                             "cannot be changed, make another" % digits)
-        return low, high
-
-    def _scale(self):
-        """The scale to 30 digits after the point, and 18 significant ones at least."""
-        digits = 30
-        while True:
-            low, high = self.scale_within(digits)
-            if (high - low) * 10 ** 18 <= abs(low):
-                return low, high
-            if digits > 300:
-                raise ValueError("the scale cannot be told from zero")
-            digits += 30
+    def scale_enclosure(self, digits: int) -> Ends:
+        """The ends of an interval around the scale, no further apart than 10^-digits."""
+        return SCALES[self._scale](digits)
 
     def _maximum(self):
         """The best of a grid of points, then Newton."""
@@ -533,21 +502,6 @@ def _bounds(terms, size):
             for bound, x in zip(sums, (Fraction("39.4785"), Fraction("248.0503")))]
 
 
-def _formula(source, scale_enclosure, scale):
-    """V in words, exactly but for a scale that only scale_enclosure knows."""
-    if scale[0] == scale[1]:
-        factor, where = str(scale[0]), ""
-    else:
-        factor, where = "s", next(
-            (words for function, words in SCALES if function is scale_enclosure),
-            "s from %s to %s" % tuple(
-                Context(prec=20, rounding=rounding).divide(Decimal(end.numerator),
-                                                           Decimal(end.denominator))
-                for end, rounding in zip(scale, (ROUND_FLOOR, ROUND_CEILING))))
-    text = source.text()
-    return (text if factor == "1" else "%s (%s)" % (factor, text)) + (where and ", " + where)
-
-
 def _root_up(x):
     """Not below the square root, by at most 10^-9."""
     return root_bounds(Fraction(math.ceil(x * 10 ** 18), 10 ** 18), 9)[1] if x else Fraction(0)
@@ -560,8 +514,10 @@ def _trig_scale(digits):
             root_bounds(128 / (207 + 33 * low), digits + 5)[1])
 
 
-SCALES = ((_trig_scale, "s = 8 sqrt 2/sqrt(207 + 33 sqrt 33)"),
-          (per_period, "s = 1/(4 pi^2)"))
+# The scales of Fourier sums as formulas name them, and their bounds to 10^-digits.
+PER_PERIOD, TRIG = "1/(4 pi^2)", "8 sqrt 2/sqrt(207 + 33 sqrt 33)"
+SCALES: Dict[str, Callable[[int], Ends]] = {
+    "1": lambda digits: (Fraction(1), Fraction(1)), PER_PERIOD: per_period, TRIG: _trig_scale}
 
 _HALF = Fraction(1, 2)
 
@@ -582,8 +538,8 @@ _POLY_BOUNDS = (4096 * (3 / 8 / 16 + 0.022 * 0.1925),
 # The thesis's three, the real Froeschle map, and the standard map, whose eps is its parameter k.
 # Their names are theirs alone.
 # V = 1 at the start of trig, 1/4 at poly's, 27/49 at ff's, 9/16 at froeschle's.
-trig = Fourier({(1, 0): (0, -_HALF), (0, 1): (0, -_HALF), (1, 1): (0, -1)}, "trig",
-               (0.8510422, 0.8510422), _trig_scale)
+trig = Fourier._scaled(from_terms({(1, 0): (0, -_HALF), (0, 1): (0, -_HALF), (1, 1): (0, -1)}),
+                       "trig", (0.8510422, 0.8510422), TRIG)
 poly = Potential(lib.CV_POLY, "poly", 2, ((2 - math.sqrt(2)) / 4, 0.5),
                  "-4096 a^2 (a - 3/16) b^2, a = 1/4 - (x0 mod 1 - 1/2)^2, "
                  "b = 1/4 - (x1 mod 1 - 1/2)^2", *_POLY_BOUNDS)
@@ -592,7 +548,7 @@ ff = Potential(lib.CV_FF, "ff", 2, (2 / 7, 2 / 7),
                "x to the nearest integer", *_FF_BOUNDS)
 froeschle = Fourier({(1, 0): (-_HALF / 2, 0), (0, 1): (-_HALF / 2, 0), (1, 1): (-_HALF, 0)},
                     "froeschle", (0.29021531, 0.29021531))
-standard = Fourier({(1,): (-1, 0)}, "standard", (0.5,), per_period)
+standard = Fourier.of(from_terms({(1,): (-1, 0)}), "standard", (0.5,))
 
 STUDIED.update({potential.name: potential
                 for potential in (trig, poly, ff, froeschle, standard)})

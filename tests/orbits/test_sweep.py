@@ -11,12 +11,12 @@ import signal
 import subprocess
 import sys
 import threading
-from fractions import Fraction
 
 import numpy as np
 import pytest
 
 from converse import orbits
+from converse.model.potential import from_terms
 from converse.orbits import potential
 from converse.orbits.sweep import LOST, ONSET_COLUMNS
 from converse.storage import files
@@ -171,15 +171,10 @@ def test_whoever_works_the_bytes_are_the_same(whole, path, kind, workers):
     assert seen == [(k, len(VECTORS)) for k in range(len(VECTORS) + 1)]
 
 
-def third(digits):
-    low = Fraction(10 ** digits // 3, 10 ** digits)
-    return low, low + Fraction(1, 10 ** digits)
-
-
 def test_users_potentials_go_to_other_processes():
     terms = {(1, 0): (0, -0.5), (0, 1): (0, -0.5), (1, 1): (0, -1)}
     for potential, vectors in ((orbits.Fourier(terms, "mine"), VECTORS[:2]),
-                               (orbits.Fourier(terms, "mine", scale_enclosure=third), VECTORS[:2]),
+                               (orbits.Fourier.of(from_terms(terms), "mine"), VECTORS[:2]),
                                (orbits.FromPython(Cosine(), 1, "mine", (0.5,)), [((1,), 3)])):
         with concurrent.futures.ProcessPoolExecutor(1) as executor:
             there = orbits.sweep(potential, vectors, EPS, executor)
@@ -275,6 +270,7 @@ def test_a_full_disk(whole, path):
     result = subprocess.run([sys.executable, "-c", """
 import resource, signal, sys
 from converse import orbits
+from converse.model.potential import from_terms
 signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
 resource.setrlimit(resource.RLIMIT_FSIZE, (1000, 1000))
 try:
@@ -293,6 +289,7 @@ MANY = """
 import sys
 from concurrent import futures
 from converse import orbits
+from converse.model.potential import from_terms
 if __name__ == "__main__":
     vectors = [((57, 76), 100 + k) for k in range(1, 41)]
     with futures.ThreadPoolExecutor(2) as executor:
