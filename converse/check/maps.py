@@ -1,15 +1,14 @@
 """Maps: many patches of the thesis's potential in one file.
 
-The points of a face are (a, b, c) = r d(s, t), d(s, t) = d0 + s d1 + t d2, 0 <= r <= radius,
-0 <= s, t <= 1; without d2 there is no t.  About the middle of a cell of (r, s, t)
-      r d(s, t) = r d(sm, tm) + r (s - sm) d1 + r (t - tm) d2
-is covered by a patch of three parameters, or two: with middle rm d(sm, tm) and the parts
-(r1 - r0)/2 d(sm, tm), r1 (s1 - s0)/2 d1, r1 (t1 - t0)/2 d2.
+The points of a face are (a, b, c) = r d(s), d(s) = d0 + s d1, 0 <= r <= radius, 0 <= s <= 1.  About
+the middle of a cell of (r, s)
+      r d(s) = r d(sm) + r (s - sm) d1
+is covered by a patch of two parameters: with middle rm d(sm) and the parts (r1 - r0)/2 d(sm) and
+r1 (s1 - s0)/2 d1.
 """
 
 import functools
 import hashlib
-import itertools
 import json
 import math
 from dataclasses import dataclass, replace
@@ -21,21 +20,20 @@ from .cover import is_whole
 from .failures import NotConfirmed, Rejected, Unusable, named
 from .limits import MAX_ITEMS
 from .torus import is_at_once, torus_bound
-from .tree import changed, check_mirror_images, leaves, tree_counts
+from .tree import check_mirror_images, leaves, tree_counts
 from .words import GRAPH, SYSTEM, TRIG, decimal_text
 
 REGIONS = {"b=0": (((1, 0, 0), (0, 0, 1)), ((0, 0, 1), (1, 0, 0))),
            "a=b": (((1, 1, 0), (0, 0, 1)), ((0, 0, 1), (1, 1, 0))),
-           "c=0": (((1, 0, 0), (0, 1, 0)),),
-           "sphere": (((1, 0, 0), (0, 1, 0), (0, 0, 1)), ((0, 0, 1), (1, 0, 0), (0, 1, 0)))}
+           "c=0": (((1, 0, 0), (0, 1, 0)),)}
 MAP_FORMAT = "converse map 2"
-MAP_AXES, MAP_KINDS = "012", "PAOX"     # of the tree of a face: cuts of r, s, t; leaves
-GRID, MAP_CELLS = (16, 8), 2000         # slices of s, or of s and t; cells of the torus for B
+MAP_AXES, MAP_KINDS = "01", "PAO"       # of the tree of a face: cuts of r and s; leaves
+GRID, MAP_CELLS = 16, 2000              # slices of s; cells of the torus for B
 
 
 @dataclass(frozen=True)
 class Face:
-    """A face of a map: d0, d1 and perhaps d2, and its cells, (kind, index, cuts)."""
+    """A face of a map: d0 and d1, and its cells, (kind, index, cuts)."""
 
     directions: tuple
     radius: Fraction
@@ -44,37 +42,27 @@ class Face:
     @functools.cached_property
     def proved(self):
         """What proved_from says of it."""
-        return proved_from(self.cells, self.radius, len(self.directions) - 1)
+        return proved_from(self.cells, self.radius)
 
-    def d(self, place):
-        """d(s, t) of exact numbers."""
-        d0, *others = self.directions
-        return [x + sum([p * d[i] for p, d in zip(place, others)]) for i, x in enumerate(d0)]
+    def d(self, s):
+        """d(s) of an exact number."""
+        return [x + s * y for x, y in zip(*self.directions)]
 
     def box(self, index, cuts):
-        """The ends of r, and those of s and t."""
-        r, *sides = [(Fraction(i, 1 << k), Fraction(i + 1, 1 << k))
-                     for i, k in zip(index, cuts[:len(self.directions)])]
-        return [self.radius * x for x in r], sides
+        """The ends of r, and those of s."""
+        r, s = [(Fraction(i, 1 << k), Fraction(i + 1, 1 << k)) for i, k in zip(index, cuts)]
+        return [self.radius * x for x in r], s
 
     def waves(self, cell, least=False):
         """The waves of the patch of a cell; or of the patch of its points of the least r."""
-        (r0, r1), sides = self.box(*cell)
+        (r0, r1), (s0, s1) = self.box(*cell)
         if least:
             r1 = r0
-        middle = self.d([(low + high) / 2 for low, high in sides])
-        parts = [[(r1 - r0) / 2 * x for x in middle]] + [
-            [r1 * (high - low) / 2 * x for x in d]
-            for (low, high), d in zip(sides, self.directions[1:])]
+        middle = self.d((s0 + s1) / 2)
+        parts = [[(r1 - r0) / 2 * x for x in middle],
+                 [r1 * (s1 - s0) / 2 * x for x in self.directions[1]]]
         return tuple(Wave(k, Fraction(0), (r0 + r1) / 2 * x, tuple(column))
                      for k, x, column in zip(THESIS, middle, zip(*parts)))
-
-    def is_outside(self, cell):
-        """Is b >= a all over the cell, and not only b = a?  b - a is r times what is affine in s
-        and t: so it is at the corners."""
-        _, sides = self.box(*cell)
-        excess = [b - a for a, b, _ in map(self.d, itertools.product(*sides))]
-        return min(excess) >= 0 and max(excess) > 0
 
 
 @dataclass(frozen=True)
@@ -183,15 +171,13 @@ def read_face(face, claims, at, sha256):
     """A face of a map; adds the claims of its proved cells."""
     directions, radius, tree, proofs = fields_of(face, "it", "tried", "estimate", directions=list,
                                                  radius=str, tree=str, proofs=list)
-    if len(directions) not in (2, 3):
-        raise Rejected("it has not two or three directions")
     directions = tuple(tuple(number(x, "a direction") for x in list_of(d, 3, str, "a direction"))
-                       for d in directions)
+                       for d in list_of(directions, 2, list, "its directions"))
     radius = number(radius, "its radius")
     if radius <= 0:
         raise Rejected("its radius is not above 0")
-    axes, cells, proofs = MAP_AXES[:len(directions)], [], iter(proofs)
-    for position, cell in leaves(tree, axes, MAP_KINDS):
+    cells, proofs = [], iter(proofs)
+    for position, cell in leaves(tree, MAP_AXES, MAP_KINDS):
         kind = tree[position]
         cells.append((kind, *cell))
         if kind == "P":
@@ -229,13 +215,12 @@ def read_cell(proof, waves, name, sha256):
 
 
 def check_map(file):
-    """Rejected or NotConfirmed, if a cell is not outside or not at once; else for each proved cell
-    an upper bound of B.
+    """NotConfirmed, if a cell is not at once; else for each proved cell an upper bound of B.
 
     B - 2 is convex and homogeneous of degree 1 in the amplitudes.  So it is r times its value at
-    d(s, t), which lies below what is linear along s and along t between points of a grid; and over
-    a cell this, or the convex function itself where the cell has more than one slice of the grid,
-    is largest at a corner.
+    d(s), which lies below what is linear between points of a grid of s; and over a cell this, or
+    the convex function itself where the cell has more than one slice of the grid, is largest at an
+    end.
     """
     fixed, bounds, claims = fixed_of(96), [], iter(file.claims)
     for at, face in enumerate(file.faces, 1):
@@ -243,36 +228,29 @@ def check_map(file):
             face.proved                 # which has a limit: not to be met after hours
 
         @functools.lru_cache(maxsize=None)
-        def excess(place, face=face):
-            """B - 2 at a point of the grid, exact and from above."""
-            known = {(*k, 0): math.floor(x * fixed.one) for k, x in zip(THESIS, face.d(place)) if x}
+        def excess(k, face=face):
+            """B - 2 at a point k/GRID of the grid, exact and from above."""
+            known = {(*k, 0): math.floor(x * fixed.one)
+                     for k, x in zip(THESIS, face.d(Fraction(k, GRID))) if x}
             bound = torus_bound(fixed, list(known), [tuple(known.values())], MAP_CELLS) \
                 + stiffness(known)
             return Fraction(bound, fixed.one) - 2
 
-        grid = GRID[len(face.directions) - 2]
-
-        def between(place, grid=grid, excess=excess):
-            """The same, at any point of the face."""
-            nodes = [((), Fraction(1))]
-            for x in place:
-                low = Fraction(min(math.floor(x * grid), grid - 1), grid)
-                u = (x - low) * grid
-                nodes = [(node + (y,), weight * v) for node, weight in nodes
-                         for y, v in ((low, 1 - u), (low + Fraction(1, grid), u)) if v]
-            return sum([weight * excess(node) for node, weight in nodes])
+        def between(s, excess=excess):
+            """The same, for any s."""
+            k = min(math.floor(s * GRID), GRID - 1)
+            u = s * GRID - k
+            return sum([weight * excess(at) for at, weight in ((k, 1 - u), (k + 1, u)) if weight])
 
         for n, (kind, *cell) in enumerate(face.cells, 1):
             name = "face %d, cell %d" % (at, n)
-            if kind == "X" and not face.is_outside(cell):
-                raise Rejected("%s is said to be outside of the region, and is not" % name)
             if kind == "A" and not is_at_once(fixed, present(face.waves(cell, least=True))):
                 raise NotConfirmed("%s: that it and all larger multiples are excluded at once "
                                    "(B > 10/3)" % name)
             if kind == "P":
-                claim, ((_, r), sides) = next(claims), face.box(*cell)
+                claim, ((_, r), s) = next(claims), face.box(*cell)
                 if claim.alone is None:
-                    bounds.append(2 + r * max(map(between, itertools.product(*sides))))
+                    bounds.append(2 + r * max(map(between, s)))
                 else:       # one coordinate, whose waves add no more than their amplitudes
                     bounds.append(2 + sum([wave.k[claim.alone] ** 2 * (
                         abs(wave.middle) + sum(map(abs, wave.parts))) for wave in claim.examined]))
@@ -288,44 +266,35 @@ def sign_changes():
     return found
 
 
-def proved_from(cells, radius, axes):
+def proved_from(cells, radius):
     """The least r from which on, up to the radius, every direction of these cells is proved (None
     if not even at the radius), and whether every direction is proved from somewhere on for ever.
 
     A cell at once is proved from its least r on.  Directions in which some cell is finer are
     looked at in halves; where all cells are as wide as the directions, the unproved ones are
-    those not above the first that is at once.  NotConfirmed, if there are too many halves: narrow
-    strips of s below narrow strips of t have to be looked at in all pairs.
+    those not above the first that is at once.  NotConfirmed, if there are too many halves: wide
+    cells above many narrow ones are looked at once for each of these.
     """
     worst, forever, seen = Fraction(0), True, 0
-    todo = [((0,) * axes, (0,) * axes, cells)]
+    todo = [(0, 0, cells)]
     while todo:
         index, cuts, cells = todo.pop()
         seen += len(cells)
         if seen > MAX_ITEMS:
             raise NotConfirmed("its cells lie in too many ways below each other for this checker")
-        axis = next((m for m in range(axes)
-                     if any(cell[2][1 + m] > cuts[m] for cell in cells)), None)
-        if axis is None:
+        if all(cell[2][1] <= cuts for cell in cells):
             ends = [(kind, radius * i / (1 << k), radius * (i + 1) / (1 << k))
                     for kind, (i, *_), (k, *_) in cells]
             once = min([low for kind, low, _ in ends if kind == "A"], default=None)
             worst = max([worst] + [high if once is None else min(high, once)
                                    for kind, low, high in ends
                                    if kind == "O" and (once is None or low < once)])
-            forever &= once is not None or any(kind == "X" and high == radius
-                                               for kind, _, high in ends)
+            forever &= once is not None
             continue
-        for upper in (0, 1):
-            i, k = changed(index, axis, 2 * index[axis] + upper), changed(cuts, axis,
-                                                                          cuts[axis] + 1)
-
-            def meets(cell):
-                ours, theirs = k[axis], cell[2][1 + axis]
-                return cell[1][1 + axis] >> max(theirs - ours, 0) == \
-                    i[axis] >> max(ours - theirs, 0)
-
-            todo.append((i, k, [cell for cell in cells if meets(cell)]))
+        k = cuts + 1
+        for i in (2 * index, 2 * index + 1):
+            todo.append((i, k, [(kind, at, own) for kind, at, own in cells
+                                if at[1] >> max(own[1] - k, 0) == i >> max(k - own[1], 0)]))
     return worst if worst < radius else None, forever
 
 
@@ -341,13 +310,11 @@ def mapped(file):
               "a, b, c and by the exchange of a and b.  %d cells are open." % file.count("O"),
               "Region : " + file.region]
     for face in file.faces:
-        cells = [cell for cell in face.cells if cell[0] != "X"]
-        names = "st"[:len(face.directions) - 1]
-        lines += ["Face (a, b, c) = r (%s), 0 <= %s <= 1, r <= %s :" % (" + ".join([
-            name + "(%s)" % ", ".join(map(decimal_text, d))
-            for name, d in zip(("", *[x + " " for x in names]), face.directions)]),
-            ", ".join(names), decimal_text(face.radius))]
-        least = min([face.box(*cell)[0][0] for kind, *cell in cells if kind in "PA"], default=None)
+        lines += ["Face (a, b, c) = r (%s), 0 <= s <= 1, r <= %s :" % (" + s ".join([
+            "(%s)" % ", ".join(map(decimal_text, d)) for d in face.directions]),
+            decimal_text(face.radius))]
+        least = min([face.box(*cell)[0][0] for kind, *cell in face.cells if kind in "PA"],
+                    default=None)
         if least is None:
             lines += ["  nothing is proved"]
             continue

@@ -1,4 +1,4 @@
-"""The command: converse-map [--plane b=0 | --sphere] MAP."""
+"""The command: converse-map [--plane b=0] MAP."""
 
 import argparse
 import math
@@ -37,12 +37,7 @@ def parser():
         "is described, and drawn with -g."))
     p.add_argument("map", metavar="MAP", help="a file, new unless it is restored; compressed if "
                    "its name ends in .gz")
-    which = p.add_mutually_exclusive_group()
-    which.add_argument("--plane", choices=[name for name in REGIONS if name != "sphere"],
-                       help="all directions of a plane, a, b, c >= 0")
-    which.add_argument("--sphere", action="store_const", dest="plane", const="sphere",
-                       help="all directions with a >= b >= 0, c >= 0, whose mirror images are all "
-                       "that there are")
+    p.add_argument("--plane", choices=[*REGIONS], help="all directions of a plane, a, b, c >= 0")
     p.add_argument("--down-to", type=_ratio, metavar="RATIO", help=(
         "how near to the estimated frontier to come (%s times it)" % DOWN_TO))
     p.add_argument("-r", "--restore", action="store_true", help="continue MAP, as it was asked for "
@@ -65,7 +60,7 @@ def progress_text(share, found):
             math.floor(1000 * share) / 10, decimal_text(found.down_to), found.count(PROVED))
     return "estimating the frontier: %d of %d directions" % (
         sum(map(len, found.estimate)),
-        sum(1 for face in range(len(found.estimate)) for _ in found.places(face)))
+        len(found.estimate) * len(found.places()))
 
 
 def run(options):
@@ -77,7 +72,7 @@ def run(options):
         map_figure.check(graphics)
     if not options.plane and not options.restore:
         if options.down_to is not None:
-            raise ConverseError("--down-to needs --plane, --sphere or -r")
+            raise ConverseError("--down-to needs --plane or -r")
         found = Map.load(options.map)
     else:
         from ..maps.search import explore  # it needs the C core, and says so where it is missing

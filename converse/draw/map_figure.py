@@ -7,8 +7,8 @@ try:
 except ImportError:                     # matplotlib brings it, and plot.check() says so
     np = None  # type: ignore[assignment]
 
-from ..maps.map import AT_ONCE, OPEN, PROVED
-from ..maps.region import RADIUS, direction
+from ..maps.map import AT_ONCE, PROVED
+from ..maps.region import direction
 from ..model.problem import LINE
 from ..storage import files
 from . import notebook, plot
@@ -50,7 +50,8 @@ def check(path):
 
 
 def draw(region_map, path, tori=()):
-    """Draws a map in a file, and in that of a plane the points (a, b, c) at which tori are proved;
+    """Draws a map in a file, with the points (a, b, c) at which tori are proved.
+
     ConverseError: it cannot be drawn, or has no estimate yet."""
     kind = check(path)
     files.write(path, picture(region_map, kind, tori))
@@ -72,19 +73,16 @@ def picture(region_map, kind, tori=()):
 
     with style.context(["default", STYLE]):
         figure = Figure(figsize=(6.4, 5.0))
-        if len(region_map.directions[0]) == 3:
-            _draw_sphere(region_map, figure)
-        else:
-            _draw_plane(region_map, figure, tori)
+        _draw(region_map, figure, tori)
         return plot.encode(figure, kind, dpi=160, pad_inches=0.08)
 
 
-def _draw_plane(region_map, figure, tori):
+def _draw(region_map, figure, tori):
     horizontal, vertical = {"b=0": (0, 2), "a=b": (0, 2), "c=0": (0, 1)}[region_map.region]
     axes = figure.add_subplot()
 
-    def at(directions, r, place):
-        point = direction(directions, place)
+    def at(directions, r, s):
+        point = direction(directions, s)
         return float(r * point[horizontal]), float(r * point[vertical])
 
     corners = {PROVED: [], AT_ONCE: []}
@@ -93,16 +91,16 @@ def _draw_plane(region_map, figure, tori):
             (r0, s0), (r1, s1) = leaf.cell.low, leaf.cell.high
             directions = region_map.directions[leaf.cell.face]
             ends = [(r0, s0), (r1, s0), (r1, s1), (r0, s1), (r0, s0)]
-            corners[leaf.kind] += [at(directions, r, (s,)) for r, s in ends]
+            corners[leaf.kind] += [at(directions, r, s) for r, s in ends]
     for kind, points in corners.items():
         plot.rectangles(axes, points, facecolor=COLOURS[kind], edgecolor="white",
                            linewidth=0.2, label=WORDS[kind])
-    unit = [direction(directions, (k / SAMPLES,)) for directions in region_map.directions
+    unit = [direction(directions, k / SAMPLES) for directions in region_map.directions
             for k in range(SAMPLES + 1)]
     mather = np.array(unit) * (AT_ONCE_LEVEL / largest(unit))[:, None]
-    estimate = np.array([at(directions, radius, place)
+    estimate = np.array([at(directions, radius, s)
                          for directions, found in zip(region_map.directions, region_map.estimate)
-                         for place, radius in sorted(found.items())])
+                         for s, radius in sorted(found.items())])
     axes.plot(*_around(mather[:, (horizontal, vertical)]).T, ":", color=plot.DARK, linewidth=1.2,
               label="B = 10/3, where no orbit is needed")
     axes.plot(*_around(estimate).T, color=plot.VERMILLION, linewidth=1.6,
@@ -126,58 +124,3 @@ def _draw_plane(region_map, figure, tori):
 def _around(points):
     """In the order of the angle, so that faces follow each other."""
     return points[np.argsort(np.arctan2(points[:, 1], points[:, 0]), kind="stable")]
-
-
-def heights(region_map, count):
-    """By face, at the middles of count x count squares of directions (or count intervals): the
-    radius from which on all is proved."""
-    made = []
-    for directions, tree in zip(region_map.directions, region_map.roots):
-        sides = len(directions) - 1
-        height = np.zeros((count,) * sides)
-        for leaf in tree.nodes():
-            if leaf.kind == OPEN and not leaf.halves:
-                where = tuple(slice(math.ceil(low * count - 0.5), math.ceil(high * count - 0.5))
-                              for low, high in zip(leaf.cell.low[1:], leaf.cell.high[1:]))
-                height[where] = np.maximum(height[where], float(leaf.cell.high[0]))
-        made.append(height)
-    return made
-
-
-def _draw_sphere(region_map, figure):
-    """Each direction of the fundamental domain at its place in a triangle, coloured by B - 2 where
-    its proof begins."""
-    from matplotlib.tri import Triangulation
-
-    places, values = [], []
-    middles = (np.arange(SAMPLES) + 0.5) / SAMPLES
-    for directions, height in zip(region_map.directions, heights(region_map, SAMPLES)):
-        d0, d1, d2 = (np.array(d, float) for d in directions)
-        unit = d0 + middles[:, None, None] * d1 + middles[None, :, None] * d2
-        a, b, c = np.moveaxis(unit, -1, 0)
-        inside = (b <= a) & (height < RADIUS)
-        places.append(np.stack((b + c / 2, math.sqrt(0.75) * c), -1)[inside]
-                      / (a + c)[inside, None])
-        values.append(height[inside] * np.concatenate(
-            [largest(row) for row in unit])[inside.ravel()])
-    x, y = np.concatenate(places).T
-    values = np.concatenate(values)
-    axes = figure.add_subplot()
-    mesh = axes.tricontourf(Triangulation(x, y), values, levels=np.arange(0.6, 1.36, 0.025),
-                            cmap="viridis", extend="both")
-    mesh.set_rasterized(True)               # ten thousand triangles
-    figure.colorbar(mesh, ax=axes, shrink=0.7,
-                    label="B \u2212 2 from which on there are no tori, proved")
-    axes.plot([0, 1, 0.5, 0], [0, 0, math.sqrt(0.75), 0], color=plot.DARK, linewidth=0.8)
-    for place, words, align in (((0, 0), "a alone", "top"), ((1, 0), "a = b", "top"),
-                                ((0.5, math.sqrt(0.75)), "c alone", "bottom")):
-        axes.annotate(words, place, (0, -4 if align == "top" else 4), textcoords="offset points",
-                      ha="center", va=align)
-    line = np.array([1, 1, 2]) / 3
-    at_line = line[1] + line[2] / 2, math.sqrt(0.75) * line[2]
-    axes.plot(*at_line, "*", **MARKER)
-    axes.annotate("a = b = c/2", at_line, (7, 4), textcoords="offset points", bbox={
-        "boxstyle": "round,pad=0.2", "facecolor": "white", "edgecolor": "none"})
-    axes.set_title("all directions with a \u2265 b \u2265 0, c \u2265 0")
-    axes.set_aspect("equal")
-    axes.set_axis_off()

@@ -1,6 +1,5 @@
 """A map: what is proved of a region of parameter space, as a tree of cells, and its file."""
 
-import itertools
 import json
 import math
 import os
@@ -15,18 +14,15 @@ from ..version import __version__
 from .region import RADIUS, REGIONS, Cell, root
 
 FORMAT = "converse map 2"
-PROVED, AT_ONCE, OPEN, OUTSIDE = "PAOX"
-ESTIMATE_GRID = {1: 32, 2: 8}       # intervals of a side, by sides: of a plane, of the sphere
-
-Place = Tuple[Fraction, ...]
+PROVED, AT_ONCE, OPEN = "PAO"
+ESTIMATE_GRID = 32                  # intervals of s between the directions of the estimate
 
 
 class Node:
     """A cell of the tree: a leaf of some kind, or cut across an axis into two halves.  It is one or
     the other whenever an exception strikes.
 
-    kind: PROVED; AT_ONCE, proved with all larger multiples by Mather's criterion; OPEN; OUTSIDE, a
-    mirror image of other cells.
+    kind: PROVED; AT_ONCE, proved with all larger multiples by Mather's criterion; OPEN.
     proof: of a proved leaf, the tree of its prisms with x*, frame, coordinate and region, as plain
     data.
     tried: of an open leaf, the largest number of leaves with which a proof was tried in vain."""
@@ -62,11 +58,11 @@ class Node:
 class Map:
     """What is proved of a region of parameter space, and the estimate that led the search.
 
-    region: "b=0", "a=b", "c=0" or "sphere", the fundamental domain a >= b >= 0, c >= 0.
+    region: "b=0", "a=b" or "c=0", with a, b, c >= 0.
     down_to: how near to the estimated frontier the search was to come, as a ratio.
     roots: of the trees of its faces.
-    estimate: by face, the estimated frontier: for places (s,) or (s, t) the least radius at which
-    single parameters were proved with a certain effort.  It is no part of what is proved.
+    estimate: by face, the estimated frontier: by s, the least radius at which single parameters
+    were proved with a certain effort.  Nothing that is proved rests on it.
     seconds: that the search took.
     sha256: of the file, uncompressed; "" if there is none.
     """
@@ -74,7 +70,7 @@ class Map:
     region: str
     down_to: Fraction
     roots: List[Node]
-    estimate: List[Dict[Place, float]]
+    estimate: List[Dict[Fraction, float]]
     seconds: float = 0.0
     version: str = __version__
     sha256: str = ""
@@ -82,12 +78,12 @@ class Map:
     @classmethod
     def new(cls, region: str, down_to: Fraction) -> "Map":
         faces = REGIONS[region]
-        return cls(region, down_to, [Node(root(d, i)) for i, d in enumerate(faces)],
+        return cls(region, down_to, [Node(root(face)) for face in range(len(faces))],
                    [{} for _ in faces])
 
     @property
     def directions(self) -> Tuple[Tuple[Tuple[int, ...], ...], ...]:
-        """Of each face: d_0, d_1 (and d_2)."""
+        """d_0 and d_1 of each face."""
         return REGIONS[self.region]
 
     def leaves(self) -> Iterator[Node]:
@@ -100,44 +96,36 @@ class Map:
 
     # ---- the estimate
 
-    def places(self, face: int) -> Iterator[Place]:
-        """Where the frontier of a face is estimated, exactly."""
-        sides = len(self.directions[face]) - 1
-        grid = [Fraction(k, ESTIMATE_GRID[sides]) for k in range(ESTIMATE_GRID[sides] + 1)]
-        return itertools.product(grid, repeat=sides)
+    @staticmethod
+    def places() -> List[Fraction]:
+        """The s at which the frontier of a face is estimated, exactly."""
+        return [Fraction(k, ESTIMATE_GRID) for k in range(ESTIMATE_GRID + 1)]
 
-    def estimated(self, face: int, place: Place) -> float:
-        """The estimated frontier in a direction, linear along each side between known places."""
-        grid = ESTIMATE_GRID[len(place)]
-        total = 0.0
-        ends = [(min(math.floor(x * grid), grid - 1), x * grid) for x in place]
-        for upper in itertools.product((0, 1), repeat=len(place)):
-            weight = math.prod(float(x - k if up else k + 1 - x)
-                               for up, (k, x) in zip(upper, ends))
-            if weight:
-                total += weight * self.estimate[face][
-                    tuple(Fraction(k + up, grid) for up, (k, _) in zip(upper, ends))]
-        return total
+    def estimated(self, face: int, s: Fraction) -> float:
+        """The estimated frontier in a direction, linear between known places."""
+        k = min(math.floor(s * ESTIMATE_GRID), ESTIMATE_GRID - 1)
+        share, known = float(s * ESTIMATE_GRID - k), self.estimate[face]
+        return sum(weight * known[Fraction(place, ESTIMATE_GRID)]
+                   for place, weight in ((k, 1 - share), (k + 1, share)) if weight)
 
     def target(self, cell: Cell) -> float:
         """The least radius from which on any direction of a cell is to be proved: down_to times the
         least estimate."""
-        grid = ESTIMATE_GRID[len(cell.low) - 1]
-        ends = [[low, *(Fraction(k, grid) for k in range(math.floor(low * grid) + 1,
-                                                         math.ceil(high * grid))), high]
-                for low, high in zip(cell.low[1:], cell.high[1:])]
-        return float(self.down_to) * min(self.estimated(cell.face, place)
-                                         for place in itertools.product(*ends))
+        low, high = cell.low[1], cell.high[1]
+        inner = range(math.floor(low * ESTIMATE_GRID) + 1, math.ceil(high * ESTIMATE_GRID))
+        return float(self.down_to) * min(
+            self.estimated(cell.face, s)
+            for s in [low, *(Fraction(k, ESTIMATE_GRID) for k in inner), high])
 
     def area(self, cell: Optional[Cell] = None) -> float:
-        """About the area, in (r, s, t), of the part of a cell that is to be proved; without a cell,
-        of all that is to be proved."""
+        """About the area, in (r, s), of the part of a cell that is to be proved; without a cell, of
+        all that is to be proved."""
         if cell is None:
             return sum(max(0.0, RADIUS - float(self.down_to) * radius) / len(estimate)
                        for estimate in self.estimate for radius in estimate.values())
-        target = float(self.down_to) * self.estimated(cell.face, cell.middle[1:])
-        return max(0.0, float(cell.high[0]) - max(float(cell.low[0]), target)) * math.prod(
-            float(high - low) for low, high in zip(cell.low[1:], cell.high[1:]))
+        target = float(self.down_to) * self.estimated(cell.face, cell.middle[1])
+        return max(0.0, float(cell.high[0]) - max(float(cell.low[0]), target)) * float(
+            cell.high[1] - cell.low[1])
 
     # ---- what is proved
 
@@ -148,8 +136,7 @@ class Map:
     @property
     def estimated_all(self) -> bool:
         """Is the frontier estimated at all places?"""
-        return all(len(estimate) == sum(1 for _ in self.places(face))
-                   for face, estimate in enumerate(self.estimate))
+        return all(len(estimate) == len(self.places()) for estimate in self.estimate)
 
     @property
     def complete(self) -> bool:
@@ -176,11 +163,9 @@ class Map:
                  "their mirror images (docs/reference/map-file.md).",
                  "Region : " + self.region]
         for face, directions in enumerate(self.directions):
-            words = " + ".join("%s(%s)" % (name, ", ".join(map(str, d)))
-                               for name, d in zip(("", "s ", "t "), directions))
             height = self.height(face)
-            lines += ["d = %s, 0 <= %s <= 1 : %s" % (
-                words, ", ".join("st"[:len(directions) - 1]),
+            lines += ["d = %s, 0 <= s <= 1 : %s" % (
+                " + s ".join("(%s)" % ", ".join(map(str, d)) for d in directions),
                 "all r > %s" % decimal_text(height) if height < RADIUS else "not for all r > 2")]
         lines += ["Cells : %d proved, %d at once and for all larger multiples, %d open" % (
                       len(proofs), self.count(AT_ONCE), self.count(OPEN)),
@@ -198,7 +183,7 @@ class Map:
     def draw(self, path: Union[str, "os.PathLike[str]"],
              tori: Iterable[Tuple[Fraction, Fraction, Fraction]] = ()) -> None:
         """Draws it: SVG, PNG or PDF, by the name of the file (matplotlib).  tori: the (a, b, c) of
-        proved tori, for the map of a plane (maps.tori.proved_points)."""
+        proved tori (maps.tori.proved_points)."""
         from ..draw import map_figure
         map_figure.draw(self, path, list(tori))
 
@@ -225,8 +210,8 @@ class Map:
                 "proofs": [node.proof for node in nodes if node.kind == PROVED],
                 "tried": [node.tried for node in nodes
                           if node.kind == OPEN and not node.halves],
-                "estimate": [[*map(decimal_text, place), radius]
-                             for place, radius in sorted(estimate.items())]})
+                "estimate": [[decimal_text(s), radius]
+                             for s, radius in sorted(estimate.items())]})
         data = {"format": FORMAT, "program": "converse " + self.version, "region": self.region,
                 "down to": decimal_text(self.down_to), "seconds": round(self.seconds, 2),
                 "faces": faces}
@@ -261,8 +246,7 @@ class Map:
             made.version = data["program"].partition(" ")[2]
             for tree, face, estimate in zip(made.roots, data["faces"], made.estimate):
                 _read_tree(tree, face)
-                estimate.update((tuple(map(exact, place)), float(radius))
-                                for *place, radius in face["estimate"])
+                estimate.update((exact(s), float(radius)) for s, radius in face["estimate"])
             return made
         except (AttributeError, KeyError, IndexError, TypeError, ValueError) as error:
             raise ConverseError("%s: makes no sense (%s); use an intact copy or start anew"
@@ -278,10 +262,10 @@ def _read_tree(tree, face):
     todo, proofs, tried = [tree], iter(face["proofs"]), iter(face["tried"])
     for kind in face["tree"]:
         node = todo.pop()
-        if kind in "012"[:len(node.cell.low)]:
+        if kind in "01":
             todo += node.cut(int(kind))[::-1]
             continue
-        if kind not in (PROVED, AT_ONCE, OPEN, OUTSIDE):
+        if kind not in (PROVED, AT_ONCE, OPEN):
             raise ValueError("'%s' is not a kind of cell" % kind)
         proof = next(proofs, None) if kind == PROVED else None
         if kind == PROVED and proof is None:

@@ -21,7 +21,7 @@ from ..storage.files import ConverseError
 from ..storage.signals import interruptible, postponed
 from ..version import __version__
 from . import region
-from .map import AT_ONCE, OPEN, OUTSIDE, PROVED, Map
+from .map import AT_ONCE, OPEN, PROVED, Map
 from .region import REGIONS
 
 SETTINGS = Settings(method="loewner")
@@ -31,7 +31,7 @@ FIRST_BUDGET, LARGEST_BUDGET = 1 << 15, 1 << 21
 BUDGET_FACTOR = 4                   # from one try at a cell to the next
 COARSE_BUDGET = 1 << 9              # leaves of a proof in the first bisection of the estimate
 TRIAL_BUDGET = 1 << 12             # where one x* is compared with others
-POINT_BUDGET = {1: 1 << 14, 2: 1 << 12}     # of the estimate, by sides: of a plane, of the sphere
+POINT_BUDGET = 1 << 14              # in the second one, which is the estimate
 
 WIDEST = 0.25                       # width of the first cells as a part of their radius
 GRAIN = 6                           # least width of a cell that is cut, as a part of down_to - 1
@@ -83,8 +83,8 @@ def _prove_within(problem, xstar, budget, stop):
 def _way(directions, cell, stop):
     """The frame and x* for a cell: of those that promise most, the pair that costs least for its
     middle; None if stopped.  A frame that is None is chosen."""
-    r, *place = cell.middle
-    a, b, c = point = tuple(r * d for d in region.direction(directions, place))
+    r, s = cell.middle
+    a, b, c = point = tuple(r * d for d in region.direction(directions, s))
     problem = Problem.patch(point)
     xstar = native.chosen_start(native.Task(problem, SETTINGS))
     if problem.is_flat:
@@ -137,13 +137,13 @@ def _region_text(problem):
             for name, (low, high) in (("v0", problem.v0), ("v1", problem.v1))}
 
 
-def estimate_frontier(directions, place, stop=None):
+def estimate_frontier(directions, s, stop=None):
     """About the least radius at which a direction is proved with POINT_BUDGET leaves, by
     bisection: an estimate of where the method ends.  None if stopped."""
     stop = stop or native.Stop()
 
     def proved(radius, budget):
-        cell = region.Cell(0, (radius, *place), (radius, *place))
+        cell = region.Cell(0, (radius, s), (radius, s))
         way = _way(directions, cell, stop)
         if way is None:
             return None
@@ -154,7 +154,7 @@ def estimate_frontier(directions, place, stop=None):
 
     low, high = 0, region.RADIUS
     for budget, tolerance in ((COARSE_BUDGET, Fraction(1, 32)),
-                              (POINT_BUDGET[len(place)], Fraction(1, 256))):
+                              (POINT_BUDGET, Fraction(1, 256))):
         step = 8 * tolerance
         while True:                             # down to where it fails
             low = high * (1 - step)
@@ -179,7 +179,7 @@ def explore(name: Optional[str] = None, down_to: Optional[Number] = None, *, pat
             progress: Optional[Callable[[float, Map], None]] = None) -> Map:
     """Proves what can be proved of a region, and returns the Map, which is kept in a file.
 
-    name: "b=0", "a=b", "c=0" or "sphere".  down_to: how near to the estimated frontier to come, as
+    name: "b=0", "a=b" or "c=0".  down_to: how near to the estimated frontier to come, as
     a ratio above 1 (1.05).
     path: of the file, new, or with resume that of the map to continue.
     jobs: cells at a time, by default one per core; executor: whose workers they are, by default
@@ -256,16 +256,13 @@ class _Search:
     def _estimate(self):
         """Estimates the frontier where it is not yet known."""
         def take(key, radius):
-            face, place = key
-            known[face][place] = radius
-            if face in mirrored:
-                known[face][place[::-1]] = radius
+            face, s = key
+            known[face][s] = radius
 
-        known, faces = self.map.estimate, self.map.directions
-        mirrored = [face for face, d in enumerate(faces) if set(d[1:]) == {region.A, region.B}]
-        tasks = (((face, place), estimate_frontier, directions, place)
-                 for face, directions in enumerate(faces) for place in self.map.places(face)
-                 if place not in known[face] and not (face in mirrored and place[0] < place[1]))
+        known = self.map.estimate
+        tasks = (((face, s), estimate_frontier, directions, s)
+                 for face, directions in enumerate(self.map.directions)
+                 for s in self.map.places() if s not in known[face])
         self._work(lambda: next(tasks, None), take)
 
     def _explore(self):
@@ -294,7 +291,7 @@ class _Search:
 
         self._work(next_task, take)
 
-    def _widest(self, cell, axes):
+    def _widest(self, cell, axes=(0, 1)):
         """The axis along which a cell is widest in parameter space, and how wide; the directions d
         are of size 1."""
         return max((float((cell.high[k] - cell.low[k]) * (cell.high[0] if k else 1)), k)
@@ -302,18 +299,13 @@ class _Search:
 
     def _push(self, node):
         """Puts an open cell in the queue, cut where it is too large; drops what is not wanted."""
-        cell, sides = node.cell, range(1, len(node.cell.low))
-        directions = self.map.directions[cell.face]
-        if region.is_outside(directions, cell):
-            node.kind = OUTSIDE
-            self.decided += self.map.area(cell)     # nothing is left to be proved there
-            return
+        cell = node.cell
         if not self.map.wanted(cell):
             return
-        width, axis = self._widest(cell, sides)
+        width, axis = self._widest(cell, [1])
         if width < WIDEST * cell.high[0]:       # one x* does not serve more directions
             low = self.map.target(cell)
-            width, axis = self._widest(cell, range(len(cell.low)))
+            width, axis = self._widest(cell)
             if float(cell.low[0]) >= low or width <= self._grain(low):
                 area = self.map.area(cell)
                 heapq.heappush(self.queue, (-area / (node.tried or FIRST_BUDGET),
@@ -333,7 +325,7 @@ class _Search:
         if outcome.kind != OPEN:
             self.decided += self.map.area(cell)
             return
-        width, axis = self._widest(cell, range(len(cell.low)))
+        width, axis = self._widest(cell)
         low = self.map.target(cell)
         lower_half_counts = float(cell.middle[0]) > low
         if cell.high[0] == region.RADIUS or not lower_half_counts:

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Callable, Dict, Iterable, Iterator, List, Opti
 from ..model.problem import THESIS, Problem
 from ..storage.files import ConverseError
 from . import region
-from .map import Map, Place
+from .map import Map
 
 if TYPE_CHECKING:                       # tori needs an extra
     from ..tori import ProvedTorus, Rotation
@@ -31,19 +31,17 @@ Progress = Optional[Callable[[int, int], None]]
 Choice = Callable[[Point, float], Iterable[Tuple["Rotation", float]]]
 
 
-def rays(found: Map) -> Iterator[Tuple[int, Place]]:
-    """The (face, place) of the directions in which tori are looked for, each direction once, those
-    of a coarse grid first.  ConverseError: it is the map of the sphere."""
-    if len(found.directions[0]) > 2:
-        raise ConverseError("tori are proved along the rays of a plane; name a plane's map")
+def rays(found: Map) -> Iterator[Tuple[int, Fraction]]:
+    """The (face, s) of the directions in which tori are looked for, each direction once, those of a
+    coarse grid first."""
     known = set()
-    places = [(place[0].denominator, face, place) for face, estimate in enumerate(found.estimate)
-              for place in estimate]
-    for denominator, face, place in sorted(places):
-        direction = region.direction(found.directions[face], place)
+    places = [(s.denominator, face, s) for face, estimate in enumerate(found.estimate)
+              for s in estimate]
+    for denominator, face, s in sorted(places):
+        direction = region.direction(found.directions[face], s)
         if denominator <= FINEST and direction not in known:
             known.add(direction)
-            yield face, place
+            yield face, s
 
 
 def named(direction: Point, estimate: float) -> List[Tuple["Rotation", float]]:
@@ -58,7 +56,7 @@ def named(direction: Point, estimate: float) -> List[Tuple["Rotation", float]]:
 
 def prove_tori(found: Map, directory: Path, *, vectors: Choice = named, points: int = POINTS,
                progress: Progress = None) -> None:
-    """Proves a torus on each ray of a plane's map that has no certificate in the directory, and
+    """Proves a torus on each ray of a map that has no certificate in the directory, and
     writes its certificate there, named by the face and the place of the ray.  The directory is made
     if need be.
 
@@ -68,20 +66,20 @@ def prove_tori(found: Map, directory: Path, *, vectors: Choice = named, points: 
     progress(rays done, all rays) is called as rays are done
 
     A ray on which nothing is proved stays without a certificate.  ConverseError: a certificate
-    cannot be written, or it is a map of the sphere."""
+    cannot be written."""
     todo = list(rays(found))
     try:
         os.makedirs(directory, exist_ok=True)
     except OSError as error:
         raise ConverseError("%s: cannot be made (%s); name another directory"
                             % (os.fspath(directory), error.strerror)) from None
-    for done, (face, place) in enumerate(todo):
-        path = os.path.join(directory, "%d-%s%s" % (face, float(place[0]), ENDING))
+    for done, (face, s) in enumerate(todo):
+        path = os.path.join(directory, "%d-%s%s" % (face, float(s), ENDING))
         if progress:
             progress(done, len(todo))
         if not os.path.exists(path):
-            direction = region.direction(found.directions[face], place)
-            estimate = found.estimated(face, place)
+            direction = region.direction(found.directions[face], s)
+            estimate = found.estimated(face, s)
             best, reached = None, 0.0
             for rotation, top in vectors(direction, estimate):
                 proof, reached = highest(lambda radius: _problem(direction, radius), rotation, top,
