@@ -21,3 +21,15 @@ autodoc_default_options = {"members": True, "show-inheritance": True}
 autodoc_member_order = "bysource"
 autodoc_typehints = "none"              # numpydoc's sections say what arguments are
 numpydoc_show_class_members = False
+
+
+def readable(app, what, name, obj, options, lines):
+    """Shows a docstring as it stands, unless it has numpydoc's sections, whose bars are bars."""
+    if any(line.strip().startswith("---") for line in lines):
+        lines[:] = [line.replace("|", "\\|") for line in lines]
+    elif lines:
+        lines[:] = ["::", "", *("    " + line for line in lines), ""]
+
+
+def setup(app):
+    app.connect("autodoc-process-docstring", readable, priority=400)    # before numpydoc's own

@@ -25,7 +25,7 @@ STATUS = ("Exit status: 0 all was found that was asked for; 1 a state was not fo
           "minimum, or is not proved though --prove was given; 2 bad usage, input or file; 129, "
           "130 or 143 ended by a signal.")
 POTENTIAL = ("trig, poly, ff, froeschle, standard, or an input file: JSON of the harmonics of V "
-             "(docs/how-to/inputs.md)")
+             "(docs/reference/inputs.md)")
 AT = "the value of a parameter of the file's; any number of times"
 MEANINGS = {                            # of labels
     "minimum": "seen in doubles, not proved: no state near it has less action, others may",
@@ -119,7 +119,8 @@ def read_potential(source, at=()):
         return getattr(orbits, source)
     if not os.path.exists(source):
         raise ConverseError("'%s' is no potential and no file; there are %s, or a JSON file of "
-                            "harmonics (docs/how-to/inputs.md)" % (source, ", ".join(POTENTIALS)))
+                            "harmonics (docs/reference/inputs.md)" % (
+                                source, ", ".join(POTENTIALS)))
     return orbits.read_potential(source, dict(at))
 
 

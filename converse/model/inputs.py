@@ -1,5 +1,5 @@
 """Reads the files that describe a problem or a potential: the five lines of 1989 (thesis, Appendix
-B), or JSON with the harmonics of a Fourier sum (docs/how-to/inputs.md)."""
+B), or JSON with the harmonics of a Fourier sum (docs/reference/inputs.md)."""
 
 import json
 import os
@@ -28,7 +28,7 @@ def read_input(source: Source) -> Problem:
 
     That of the thesis (Appendix B): five lines of two numbers, centre and half-width, for a, b, c
     and the two angles, these in units of pi; then comment lines.  Blank lines may stand anywhere.
-    Or, if it begins with a brace or is called .json, a Fourier sum (docs/how-to/inputs.md).
+    Or, if it begins with a brace or is called .json, a Fourier sum (docs/reference/inputs.md).
     InputError: it is neither.
     """
     text, name = _read(source)

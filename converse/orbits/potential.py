@@ -321,9 +321,9 @@ class Fourier(Potential):
 
 
 def read_potential(path: Union[str, "os.PathLike[str]"], at: Mapping[str, Number] = {}) -> Fourier:
-    """The potential of an input file (docs/how-to/inputs.md), for these values of its parameters:
-    with eps 1 the map is that of the file.  InputError: it has none, or a parameter that has no
-    value."""
+    """The potential of an input file (docs/reference/inputs.md), for these values of its
+    parameters: with eps 1 the map is that of the file.  InputError: it has none, or a parameter
+    that has no value."""
     name = plain(os.path.splitext(os.path.basename(os.fspath(path)))[0])
     name += "".join(" %s=%s" % (key, short_text(exact(value))) for key, value in at.items())
     return Fourier.of(inputs.read_potential(path, at), name + ".json" * (name in STUDIED))

@@ -14,7 +14,7 @@ from converse.model.problem import LINE
 
 ROOT = Path(__file__).resolve().parent.parent.parent
 INPUTS = sorted((ROOT / "inputs").glob("*.in"))
-README = (ROOT / "README.md").read_text("utf-8")
+THESIS = (ROOT / "docs/1989.md").read_text("utf-8")
 LEAST_MULTIPLE = {"a": 1, "b": 1, "c": 2}              # of LINE epsilon
 
 
@@ -55,12 +55,11 @@ def test_the_k_of_an_input(path):
             assert prove(together, method="loewner").at_once
 
 
-def test_the_bounds_of_the_readme():
+def test_the_bounds_of_the_thesis():
     """epsilon_c <= ...: the input begins there, or below."""
     rows = re.findall(r"^\| epsilon_c <= (0\.[0-9]+)(?: \(1989: 0\.[0-9]+\))? \(`(\w+\.in)`\)",
-                      README,
-                      re.MULTILINE)
-    assert len(rows) == README.count("| epsilon_c <=") == 4
+                      THESIS, re.MULTILINE)
+    assert len(rows) == THESIS.count("| epsilon_c <=") == 4
     for epsilon, name in rows:
         assert holds(read_input(ROOT / "inputs" / name), epsilon)
 
@@ -70,7 +69,7 @@ def test_the_boxes_of_the_chart():
         assert Fraction(centre) - Fraction("0.00125") <= LINE * Fraction(epsilon)
 
 
-@pytest.mark.parametrize("page", ["README.md", "docs/proofs/argument.md"])
+@pytest.mark.parametrize("page", ["docs/1989.md", "docs/proofs/argument.md"])
 def test_the_thesis_constant(page):
     """2 pi^2/M, and what 0.0140 is with it."""
     with mpmath.workdps(40):

@@ -105,20 +105,9 @@ def test_files_that_are_named_exist(name):
     assert [path for path in paths if "NAME" not in path and not (ROOT / path).exists()] == []
 
 
-def test_the_readme_lists_every_flag():
-    table = re.search(r"^\| flag \|.*?\n\n", TEXTS["README.md"], re.MULTILINE | re.DOTALL)[0]
-    listed = set(re.findall(r"`(?:-\w [A-Z]+`, `|-\w`, `)?(--[a-z-]+)", table))
-    known = {option for action in cli.parser()._actions for option in action.option_strings
-             if option.startswith("--")}
-    assert listed == known - {"--help", "--version"}
-    assert set(re.findall(r"`(-\w)\b", table)) == {
-        option for action in cli.parser()._actions for option in action.option_strings
-        if not option.startswith("--") and option != "-h"}
-
-
 @pytest.mark.parametrize("column, command", [(1, "converse"), (2, "converse-check")])
-def test_the_readme_lists_every_status(column, command):
-    rows = re.findall(r"^\| ([0-9]+) \| *(.*?) *\| *(.*?) *\|$", TEXTS["README.md"], re.MULTILINE)
+def test_every_exit_status_is_listed(column, command):
+    rows = re.findall(r"^\| ([0-9]+) \| *(.*?) *\| *(.*?) *\|$", TEXTS["commands.md"], re.MULTILINE)
     listed = {number for row in rows if row[column]
               for number in re.findall("[0-9]+", row[0] + row[column])}
     told = PARSERS[command]().epilog
@@ -127,7 +116,7 @@ def test_the_readme_lists_every_status(column, command):
 
 @pytest.mark.parametrize("name", ["trig278", "trig276", "trig274", "trig272"])
 def test_the_table_beside_the_thesis(name):
-    row = re.search(r"^\|.*`%s\.in`.*$" % name, TEXTS["README.md"], re.MULTILINE)[0]
+    row = re.search(r"^\|.*`%s\.in`.*$" % name, TEXTS["1989.md"], re.MULTILINE)[0]
     for kind, cell in zip(("as_printed", "sound"), row.split("|")[3:5]):
         report = (ROOT / "golden_outputs" / kind / (name + ".out")).read_text("utf-8")
         found = re.search(r"the longest successful orbit, ([0-9]+) iter", report)[1], \

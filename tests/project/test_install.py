@@ -152,7 +152,7 @@ def test_the_readme_of_an_index(root):
     exec(compile(parsed, "setup.py", "exec"), names)
     readme = (root / "README.md").read_text("utf-8")
     text = names["on_an_index"](readme)
-    assert "](" in readme and "](" not in text and "*Figure docs/trig274.svg: " in text
+    assert "](" in readme and "](" not in text and "*Figure docs/chart-bound.svg: " in text
     assert {*re.findall(r"\]\(([^)#]+)", readme)} <= {
         *re.findall(r"(?<= \()[^) ]+(?=\))|(?<=Figure )[^:]+", text)}
 

@@ -81,6 +81,29 @@ def test_the_inputs_of_the_standard_map():
                 "longest successful orbit had ([0-9]+) points", "Of the ([0-9]+) prisms")]
 
 
+def test_the_files_of_the_inputs():
+    """The page lists each file, and the prisms of its proof are those of the golden output."""
+    head, *table = rows("inputs.md", "file")
+    listed = {row[0].strip("`"): row for row in table}
+    assert listed.keys() == {path.name for path in (ROOT / "inputs").iterdir()}
+    for name, (_, _, _, command, prisms) in listed.items():
+        kind = "loewner" if "loewner" in command else "sound"
+        report = ROOT / "golden_outputs" / kind / (Path(name).stem + ".out")
+        assert report.exists() == bool(prisms), name
+        for count in re.findall("[0-9]+(?:,[0-9]{3})*", prisms):
+            assert re.search(r"\b(%s|%d) (successful|prisms|were|linked)" % (
+                count, number(count)), report.read_text("utf-8")), name
+
+
+def test_the_tutorial_of_a_map(tmp_path):
+    """The file that it has one write is proved as it says."""
+    (tmp_path / "mine.json").write_text(
+        re.search(r"```json\n(.*?)```", PAGES["first-map.md"], re.DOTALL)[1])
+    counts = sharper(read_input(tmp_path / "mine.json"))
+    assert said("first-map.md", "with ([0-9,]+) prisms and orbits of up to ([0-9]+) points") == [
+        counts.proved, counts.max_NTsteps]
+
+
 def patch(waves, *amplitudes):
     return Problem.patch([Fraction(p) for p in amplitudes], waves=waves)
 
