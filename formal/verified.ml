@@ -180,7 +180,7 @@ let counts = ["depth"; "cuts"; "proved"; "symmetric"; "linked"; "undecided"; "mo
 let ignored = ["program"; "method"; "digits"; "stubborn"; "quick_tries"; "tries"; "Rtries";
                "HermSuccess"; "LLSuccess"; "ll_used"; "reasons"; "max_steps"; "max_NTsteps"; "B";
                "pending"]
-let optional = ["T"; "Tr-"; "Tr+"; "lambda-min"; "lambda-max"; "seconds"; "comment"]
+let optional = ["T"; "Tr-"; "Tr+"; "lambda-min"; "lambda-max"; "seconds"; "parameter"; "comment"]
 let known = ["v0"; "v1"; "kind"; "xstar"; "at once"; "wave"; "frame"; "alone"; "odd about"]
             @ counts @ ignored
 
@@ -197,7 +197,7 @@ let fields lines =
           name, String.sub value 1 (String.length value - 1)
         | _ -> reject "line %d, in the header, is of unknown meaning" at in
       if name = "wave" then waves := value :: !waves
-      else if Hashtbl.mem found name && name <> "comment" then
+      else if Hashtbl.mem found name && name <> "comment" && name <> "parameter" then
         reject "the header gives %s twice" name;
       Hashtbl.replace found name value) lines;
   if not (Hashtbl.mem found "xstar") then

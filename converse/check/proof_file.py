@@ -16,10 +16,11 @@ COUNTS = ("depth", "cuts", "proved", "symmetric", "linked", "undecided", "most_c
 IGNORED = ("program", "method", "digits", "stubborn", "quick_tries", "tries", "Rtries",
            "HermSuccess", "LLSuccess", "ll_used", "reasons", "max_steps", "max_NTsteps",
            "B", "pending")
-OPTIONAL = {"T", "Tr-", "Tr+", "lambda-min", "lambda-max", "seconds", "comment"}    # ignored, too
+OPTIONAL = {"T", "Tr-", "Tr+", "lambda-min", "lambda-max", "seconds",       # ignored, too
+            "parameter", "comment"}
 FIELDS = {*ANGLES, *COUNTS, *IGNORED, "kind", "xstar", "at once", "wave", "frame", "alone",
           "odd about"}
-REPEATED = {"wave", "comment"}
+REPEATED = {"wave", "parameter", "comment"}
 MAGIC, VERSION = b"converse proof ", b"6"       # the first line
 TORUS_MAGIC = b"converse torus "        # of a certificate of existence, as long
 

@@ -93,17 +93,16 @@ class Progress:
     much was done, how fast, and the share of parameters times torus.  No remaining time is shown:
     estimated from the prisms so far, proofs turned out six times as long, or half as long."""
 
-    def __init__(self, options, line, problem, as_printed):
-        self.options, self.line = options, line
-        self.problem, self.as_printed = problem, as_printed
+    def __init__(self, options, line, begun):
+        self.options, self.line, self.begun = options, line, begun
         self.before = 0                     # prisms proved before this run
 
     def __call__(self, examined, counts):
         if not self.options.begun:
             self.options.begun = True
-            if self.as_printed:
+            if self.begun.as_printed:
                 tell("--as-printed is a historical reconstruction, not a proof")
-            say(header(self.problem, self.as_printed))
+            say(header(self.begun))
             self.before = counts.proved
         self.line(lambda: self._words(examined, counts))
 
@@ -184,13 +183,13 @@ def run(options):
         say(_leaf_line(leaf, points) + "\n")
 
     with ProgressLine(not options.verbose) as line, executor_of(options) as executor:
-        progress = Progress(options, line, begun.problem, begun.as_printed)
+        progress = Progress(options, line, begun)
         proof = prove(problem, xstar=xstar, jobs=options.jobs, executor=executor,
                       backup=options.backup, resume=options.restore, time_limit=options.time_limit,
                       progress=progress, on_leaf=on_leaf if options.verbose else None, **given)
         if not options.begun:           # there was no time even to set the search up
             progress(0.0, proof.counts)
-    say(verdict(proof))
+    say(verdict(proof, options.backup or options.restore))
     if options.graphics is not None:
         proof.figure(options.graphics)
     return STATUS[proof.conclusion]

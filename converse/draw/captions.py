@@ -4,10 +4,10 @@ import math
 import textwrap
 from fractions import Fraction
 
-from ..model.exact import short_text
-from ..model.problem import IDENTITY, frame_text, wave_text
+from ..model.problem import IDENTITY, frame_text
 from ..model.region import nearest
 from ..prover import tree
+from ..prover.report import TORUS, conditions, potential_text
 
 LINKED = "a"                            # stands for all letters
 KIND_NAMES = {"P": "proved", "S": "skipped by symmetry", LINKED: "linked to another x*",
@@ -16,40 +16,33 @@ STAR = "x*, whose successors these are"
 LINE_LENGTH = 78                        # characters of a line of the head, at most
 LEAST = 1 / 128                         # of a side: what is not proved is drawn no smaller
 CONCLUSIONS = {
-    "theorem": "no invariant tori",
-    "region": "no invariant tori whose successor of x* lies in this part of the torus",
-    "undecided": "undecided whether there are invariant tori",
+    "theorem": "no %s",
+    "region": "no %s whose successor of x* lies in this part of the torus",
+    "undecided": "undecided whether there is %s",
     "as printed": "every prism decided",
 }
 
 
 def head(proof):
-    """The lines that say what is proved: the parameters, exactly, and the conclusion."""
+    """The lines that state what is proved: the conclusion, and the parameters, exactly."""
     problem = proof.problem
-    low, high = ([short_text(c + sign * h) for c, h in zip(problem.centre[:-2], problem.half)]
-                 for sign in (-1, 1))
-    names = "abc" if problem.by_ranges else [
-        "p of " + wave_text(wave) for wave in problem.waves]
-    ranges = ["%s < %s < %s" % (a, name, b) if a != b else "%s = %s" % (name, a)
-              for a, name, b in zip(low, names, high)]
-    if problem.together:
-        ranges = ["(a, b, c) moving together", "from (%s)" % ", ".join(low),
-                  "to (%s)" % ", ".join(high)]
-    # A range is divided between two lines only where it is too long for one.
-    text = (" " if problem.together else ",  ").join(
-        part.replace(" ", "\xa0") if len(part) < LINE_LENGTH else part for part in ranges)
-    words = [CONCLUSIONS[proof.conclusion]]
-    if not problem.by_ranges and any(
-            sum(map(bool, part)) > 1 for part in problem.parts):
-        words[:0] = ["on a part of this box"]
-    if problem.dimension == 1:
-        words[-1] = words[-1].replace("invariant tori", "rotational invariant circles")
+    torus = TORUS[problem.dimension]
+    if proof.conclusion == "undecided":
+        torus = ("an " if torus[0] == "i" else "a ") + torus
+    words = CONCLUSIONS[proof.conclusion]
+    words = [words % torus if "%s" in words else words]
     if proof.symmetries_used is None and proof.conclusion != "region":
         words.append("a part of the torus only")
     if proof.as_printed:
         words.append("as printed in the thesis, a historical reconstruction: not a proof")
-    return [line.replace("\xa0", " ")
-            for part in (text, "; ".join(words)) for line in textwrap.wrap(part, LINE_LENGTH)]
+    text = " ".join(conditions(problem, proof.at_once and proof.no_tori))
+    if not problem.by_ranges or problem.parameters:
+        text += "; V(y) = " + potential_text(problem)
+    # A range is divided between two lines only where it is too long for one.
+    text = " ".join(word if len(word) < LINE_LENGTH else word.replace("\xa0", " ")
+                    for word in text.split(" "))
+    return [line.replace("\xa0", " ") for part in ("; ".join(words), text)
+            for line in textwrap.wrap(part, LINE_LENGTH, break_on_hyphens=False)]
 
 
 def foot(proof):

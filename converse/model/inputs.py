@@ -7,7 +7,7 @@ import re
 from fractions import Fraction
 from typing import IO, Dict, Mapping, NamedTuple, NoReturn, Sequence, Union
 
-from .exact import Ends, Number, decimal_text, exact, is_decimal, short_text
+from .exact import Ends, Number, exact, is_decimal, short_text
 from .potential import FourierSum, Wave
 from .problem import HIGHEST, MOST_PARAMETERS, MOST_WAVES, InputError, Problem, interval
 
@@ -323,7 +323,7 @@ def _problem(described):
     and what is no finite decimal is enclosed."""
     names = list(described.parameters)
     parameters = [interval(name, ends) for name, ends in described.parameters.items()]
-    constants, slopes = [], []
+    constants, slopes, unnamed = [], [], []
     for j, amplitude in enumerate(described.amplitudes, 1):
         if isinstance(amplitude, dict):
             for key, number in amplitude.items():
@@ -337,7 +337,9 @@ def _problem(described):
         low, high = interval("amplitude", amplitude)
         constants.append(low if low == high else Fraction(0))
         slopes.append({} if low == high else {len(parameters): Fraction(1)})
-        parameters += [] if low == high else [(low, high)]
+        if low != high:
+            parameters.append((low, high))
+            unnamed.append("amplitude[%d]" % j)
     if len(parameters) > MOST_PARAMETERS:
         _fail("", "%d parameters and ranges of amplitudes" % len(parameters),
               "give %d at most" % MOST_PARAMETERS)
@@ -345,11 +347,10 @@ def _problem(described):
                  for constant, slope in zip(constants, slopes)]
     parts = [[slope.get(m, 0) * (high - low) / 2 for slope in slopes]
              for m, (low, high) in enumerate(parameters)]
-    comments = [*described.comments, *(         # the names, which no proof file says
-        "%s from %s to %s (t[%d])" % (name, *map(decimal_text, ends), m)
-        for m, (name, ends) in enumerate(zip(names, parameters), 1))]
+    named = [(name, *ends) for name, ends in zip(names + unnamed, parameters)] if names else []
     try:
-        return Problem.patch(amplitude, parts, described.waves, *described.region, comments)
+        return Problem.patch(amplitude, parts, described.waves, *described.region,
+                             described.comments, parameters=named)
     except ValueError as error:
         _fail("", error, "give moderate numbers")
 

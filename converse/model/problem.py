@@ -24,6 +24,7 @@ Range = Tuple[Number, Number]           # what becomes of it: Ends
 Frame = Tuple[int, int, int, int]
 Numbers = Tuple[Fraction, ...]
 Shifts = Tuple[Tuple[Fraction, Fraction], ...]         # of v0 and v1, by each parameter
+Parameter = Tuple[str, Fraction, Fraction]              # name, lower and upper end
 
 
 class InputError(ValueError):
@@ -56,6 +57,8 @@ class Problem:
     the torus, chosen, with the region that stands for it (region.py); else the identity.  Axes that
     would be chosen anyhow become None; `axes_named` tells that there were some.
     alone: the coordinate that is examined alone, 0 or 1, or "no"; None: chosen.  `factor` has it.
+    parameters: the name of each parameter and its range, (name, low, high), in which reports state
+    theorems; (): a, b and c where ranges of these describe the patch, else the t[m].
     shifts: of each parameter, by how much it moves v0 and v1 at its upper end, in units of pi: the
     region of t is that of v0 and v1, moved by sum of t[m] shifts[m].  (): none.  Only regions of
     parts have some (links.part_problem); no input, and no proof as a whole.
@@ -74,6 +77,7 @@ class Problem:
     axes: Optional[Frame] = None
     alone: Union[int, str, None] = None
     shifts: Shifts = ()
+    parameters: Tuple[Parameter, ...] = field(default=(), compare=False)
     axes_named: bool = field(default=False, init=False, compare=False)
 
     if TYPE_CHECKING:                   # what is given; above is what becomes of it
@@ -83,7 +87,8 @@ class Problem:
                      comments: Union[str, Sequence[str]] = (), together: bool = False,
                      _patch: Optional[tuple] = None, axes: Optional[Frame] = None,
                      alone: Union[int, str, None] = None,
-                     shifts: Sequence[Sequence[Number]] = ()) -> None: ...
+                     shifts: Sequence[Sequence[Number]] = (),
+                     parameters: Sequence[Parameter] = ()) -> None: ...
 
     def __post_init__(self) -> None:
         for name in NAMES if self.by_ranges else NAMES[3:]:
@@ -102,6 +107,7 @@ class Problem:
             self._normalize()
         self._check_choices()
         self._check_shifts()
+        self._check_parameters()
 
     @classmethod
     def around(cls, centre: Sequence[Number], half: Sequence[Number],
@@ -121,8 +127,8 @@ class Problem:
     def patch(cls, amplitude: Sequence[Number], parts: Sequence[Sequence[Number]] = (),
               waves: Sequence[tuple] = THESIS, v0: Union[Range, Number] = (0, 2),
               v1: Union[Range, Number] = (0, 2), comments: Union[str, Sequence[str]] = (),
-              axes: Optional[Frame] = None,
-              alone: Union[int, str, None] = None) -> "Problem":
+              axes: Optional[Frame] = None, alone: Union[int, str, None] = None,
+              parameters: Sequence[Parameter] = ()) -> "Problem":
         """A patch of the parameters of a potential:  amplitude + sum of t[m] parts[m],  each t[m]
         in [-1, 1].
 
@@ -137,7 +143,7 @@ class Problem:
         A patch that three ranges of a, b and c, or these together, can describe is that Problem.
         """
         return cls(None, None, None, v0, v1, comments, False, _checked(waves, amplitude, parts),
-                   axes, alone)
+                   axes, alone, parameters=parameters)
 
     def _normalize(self):
         """What a, b and c can say is said by them: one problem, one Problem."""
@@ -184,6 +190,16 @@ class Problem:
             raise ValueError("there are shifts by %d parameters for %d"
                              % (len(self.shifts), len(self.parts)))
         object.__setattr__(self, "shifts", shifts)
+
+    def _check_parameters(self):
+        """A name and a range for each parameter, or none."""
+        if self.parameters and len(self.parameters) != len(self.parts):
+            raise ValueError("there are names of %d parameters for %d"
+                             % (len(self.parameters), len(self.parts)))
+        for (name, low, high), part in zip(self.parameters, self.parts):
+            if low > high or low == high and any(part):
+                raise ValueError("the range of %.40s goes from %s to %s" % (name, low, high))
+        object.__setattr__(self, "parameters", tuple(self.parameters))
 
     def __repr__(self):
         ranges = ["%s=%s" % (name, range_text(*getattr(self, name))) for name in NAMES

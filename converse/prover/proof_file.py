@@ -51,7 +51,7 @@ def load(path):
     starts = [number for number, line in enumerate(lines) if line == "tree:"]
     if not starts:
         fail(len(lines), "there is no tree")
-    values, comments, waves = {}, [], []
+    values, comments, waves, parameters = {}, [], [], []
     for number, line in enumerate(lines[1:starts[0]], 2):
         key, colon, value = line.partition(": ")
         if not colon:
@@ -60,11 +60,13 @@ def load(path):
             comments.append(value)
         elif key == "wave":
             waves.append(value.split())
+        elif key == "parameter":
+            parameters.append(value.split(" "))
         else:
             values[key] = value
     try:
-        return _proof(values, _problem(values, waves, comments), _trees(lines[starts[0]:-3]),
-                      files.sha256(text), len(waves[0]) - 4)
+        return _proof(values, _problem(values, waves, comments, parameters),
+                      _trees(lines[starts[0]:-3]), files.sha256(text), len(waves[0]) - 4)
     except (KeyError, IndexError, TypeError, ValueError) as error:
         fail(starts[0] + 1, "the header or a tree makes no sense (%s)" % error)
 
@@ -112,6 +114,8 @@ def _text(proof):
         values = value if isinstance(value, tuple) else (value,)
         lines.append("%s: %s" % (name, " ".join(map(str, values))))
     lines += ["%s: %s" % item for item in proof.constants.items()]
+    lines += ["parameter: %s %s %s" % (name, decimal_text(low), decimal_text(high))
+              for name, low, high in problem.parameters]
     lines += ["comment: " + comment for comment in problem.comments]
     lines += _tree_lines(proof.tree)
     for letter, part in zip(tree.LETTERS, proof.parts):
@@ -197,8 +201,8 @@ def _ends_line(name, ends, shifts=()):
         (low + high) / 2, (high - low) / 2, *shifts))))
 
 
-def _problem(values, waves, comments):
-    """The problem of such fields, given all the words of each wave."""
+def _problem(values, waves, comments, parameters):
+    """The problem of such fields, given all the words of each wave and of each parameter."""
     amplitude, *parts = zip(*(words[3:] for words in waves))
     if len({len(words) for words in waves}) != 1:
         raise ValueError("the waves do not agree in how many parameters there are")
@@ -208,7 +212,9 @@ def _problem(values, waves, comments):
     v0, v1 = (_ends(values, name) for name in NAMES[3:])
     return Problem.patch(amplitude, parts, [(*map(int, words[:2]), words[2]) for words in waves],
                          v0, v1, comments, tuple(map(int, values["frame"].split())),
-                         alone if alone == "no" else int(alone))
+                         alone if alone == "no" else int(alone), [
+                             (name, exact(_number(low)), exact(_number(high)))
+                             for name, low, high in parameters])
 
 
 def _at_once(values, problem):

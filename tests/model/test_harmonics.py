@@ -39,7 +39,7 @@ def test_the_thesis_in_both_formats(root):
         {"k": k, "amplitude": {"epsilon": factor}} for k, factor in (
             ([1, 0], "11.21436"), ([0, 1], "11.21436"), ([1, 1], "22.42872"))]})
     assert line.together and (line.a, line.b, line.c) == ((low, high),) * 2 + ((2 * low, 2 * high),)
-    assert line.comments == ("epsilon from 0.0148 to 0.028 (t[1])",)
+    assert line.parameters == (("epsilon", Fraction("0.0148"), Fraction("0.028")),)
 
 
 def test_parameters():
@@ -52,7 +52,9 @@ def test_parameters():
     assert problem.waves == ((1, 0, Fraction(1, 2)), (-3, 2, Fraction(-1, 3)), (0, 1, 0),
                              (1, 1, Fraction(1, 2)))
     assert (problem.v0, problem.v1) == ((0, 2), (0, Fraction(1, 2)))
-    assert problem.comments == ("e from 1 to 1.5 (t[1])", "f from -0.5 to 0.25 (t[2])")
+    assert problem.parameters == (
+        ("e", 1, Fraction("1.5")), ("f", Fraction("-0.5"), Fraction("0.25")),
+        ("amplitude[3]", 7, 8))
     for e, f, own in ((-1, -1, -1), (1, -1, 1), (-1, 1, 1), (1, 1, -1)):
         p = [p + sum(t * x for t, x in zip((e, f, own), parts))
              for p, *parts in zip(problem.amplitude, *problem.parts)]

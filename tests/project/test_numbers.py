@@ -77,8 +77,8 @@ def test_the_inputs_of_the_standard_map():
         name = re.match("`(.*?).in`", name)[1]
         report = (ROOT / "golden_outputs" / "loewner" / (name + ".out")).read_text("utf-8")
         assert [number(points), number(prisms)] == [
-            int(re.search(words, report)[1]) for words in (
-                "longest successful orbit had ([0-9]+) points", "Of the ([0-9]+) prisms")]
+            number(re.search(words, report)[1]) for words in (
+                "orbits of up to ([0-9,]+) points", "Search +([0-9,]+) prisms proved")]
 
 
 def test_the_files_of_the_inputs():
@@ -136,10 +136,8 @@ def test_other_maps():
 
 
 def _named_ends(problem):
-    """The ends of the parameter that an input's comment names."""
-    for comment in problem.comments:
-        for pair in re.findall(r"from (\S+) to (\S+) \(t", comment):
-            yield tuple(map(Fraction, pair))
+    """The ends of the parameters that an input names."""
+    return [ends for _, *ends in problem.parameters]
 
 
 def test_another_xstar():

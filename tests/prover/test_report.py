@@ -1,15 +1,17 @@
-"""The report: the thesis's words to the letter, and no claim beyond what was examined."""
+"""The reports: the thesis's words to the letter, and no claim beyond what was examined."""
 
+import itertools
+import math
 import re
 from dataclasses import replace
 from fractions import Fraction
 
 import pytest
 
-from converse import Counts, Problem, prove
+from converse import Counts, Problem, Proof, prove
 from converse.model.problem import IDENTITY
 from converse.prover import run
-from converse.prover.report import header, verdict
+from converse.prover.report import conditions, header, potential_text, report, verdict
 from converse.version import __version__
 
 COUNTS = Counts(quick_tries=322, tries=318, Rtries=156, cuts=166, proved=156, symmetric=11,
@@ -42,22 +44,35 @@ def test_sound_mode_adds_its_grounds(made_up):
 
 
 def test_the_sharper_method_in_its_own_words(made_up):
-    """It has no images, a cut is no failure, and what it excludes is closed."""
-    text = made_up("P", method="loewner", counts=COUNTS).report()
-    assert "\nTries without a proof : 166\n4 : the orbit of the centre" in text
-    assert "\n158 : the prism was too large\n" in text and "image" not in text
-    assert "0.307250 <= a <= 0.309750\n" in text and " < " not in text
+    """The theorem comes first; the method has no images, and what it excludes is closed."""
+    text = made_up("P", method="loewner", counts=COUNTS, comments=("A line.",)).report()
+    assert text.startswith(
+        "THEOREM\n  The map  y' = y + J',  J' = J - grad V(y),  y modulo 2 pi,\n"
+        "  with  V(y) = -a sin y0 - b sin y1 - c sin(y0 + y1),\n"
+        "  has no invariant torus J = P + S'(y) over both angles, P constant, S periodic and C1\n"
+        "  for every a in [0.30725, 0.30975], b in [0.30725, 0.30975], c in [0.6145, 0.6195].\n\n"
+        "Verify     with -b FILE the proof is kept; converse-check FILE verifies it\n"
+        "Input      > A line.\n")
+    for words in ("converse " + __version__, "x* = (1.5, 1.5)", "B = 1.25: no eigenvalue",
+                  "156 prisms proved, 11 skipped by symmetry, cut 13 times at most; orbits of up "
+                  "to 4 points; 318 tries Time 12.50 s"):
+        assert words in " ".join(text.split())
+    assert "image" not in text and " < " not in text and "tries without" not in text
+    assert "Verify     converse-check a.proof\n" in verdict(
+        made_up("P", method="loewner"), "a.proof")
 
 
 def test_header_without_comments(made_up):
-    assert header(made_up("P").problem).endswith(
+    assert header(made_up("P")).endswith(
         "v[1] : 3.14159265358979e+00 \t 3.14159265358979e+00\n\nComments :\n\n\n"
         + "+" * 48 + "\n")
 
 
 def test_no_trailing_blanks(made_up):
-    for line in made_up("0PU", counts=COUNTS, comments=("one", "", "two")).report().split("\n"):
-        assert line == line.rstrip()
+    for method in "thesis", "loewner":
+        proof = made_up("0PU", method=method, counts=COUNTS, comments=("one", "", "two"))
+        for line in proof.report().split("\n"):
+            assert line == line.rstrip()
 
 
 def test_bounds_are_exact(made_up):
@@ -79,6 +94,10 @@ def test_part_of_the_torus(made_up):
         "0.250000 < v[0] / pi < 0.750000\n0.000000 < v[1] / pi < 2.000000\n"
         "(only a part of the torus: other successors were not examined)\n"
         "for the range of parameters :\n0.307250 < a < 0.309750\n")
+    text = verdict(made_up("P", v=("0.5", "1", "0.25", "1"), method="loewner"))
+    assert text.startswith("THEOREM, for a part of the torus only\n")
+    assert "\n  whose orbit goes from x* = (1.5, 1.5) to y' = (v0, v1), where\n" \
+        "  0.25 pi <= v0 <= 0.75 pi, 0 <= v1 <= 2 pi (no other y' was examined)\n" in text
 
 
 @pytest.mark.parametrize("tree, stubborn, number, deepest, ended", [
@@ -103,6 +122,19 @@ def test_undecided(made_up, tree, stubborn, number, deepest, ended):
         assert ("--method loewner" in text) == (not as_printed)
 
 
+@pytest.mark.parametrize("tree, words", [
+    ("0PU", "Undecided  1 prism, the deepest cut 1 time\n           the first of them: "),
+    ("00U", "           the search ended before the whole region was examined\n"),
+    ("", "To try     more time, from a backup"),
+])
+def test_undecided_by_the_sharper_method(made_up, tree, words):
+    text = made_up(tree, method="loewner", stubborn=tree == "0PU").report()
+    assert text.startswith("UNDECIDED: nothing is proved.  There may be an invariant torus (see "
+                           "converse-tori).\n  The map  ")
+    assert "  was examined for every a in [0.30725, 0.30975], " in text and words in text
+    assert "THEOREM" not in text and "has no" not in text and "Verify" not in text
+
+
 def test_where_x_star_may_be_the_cause(monkeypatch):
     """For these two harmonics another x* proves it (docs/explanation/method.md), as it does where
     several are not linked; a lack of depth is another thing."""
@@ -111,37 +143,42 @@ def test_where_x_star_may_be_the_cause(monkeypatch):
     problem = Problem.patch(["0.6", "0.2"], waves=waves)
     stuck = prove(problem, method="loewner", xstar=("1.856", "0"))
     text = stuck.report()
-    low, high = re.search(r"\nThe first of them : ([0-9.]+) < v\[0\] / pi < ([0-9.]+), ",
+    low, high = re.search(r"the first of them: ([0-9.]+) pi <= v0 <= ([0-9.]+) pi\n",
                           text).groups()
     (c, _), (h, _) = stuck.undecided[0].centre, stuck.undecided[0].half
     assert abs(Fraction(low) - c + h) <= h / 100 and abs(Fraction(high) - c - h) <= h / 100
-    assert "One of them is as small as doubles can tell : " in text
-    assert "\nTo try : another x* (--xstar X0 X1), or larger parameters." in text
+    assert "one of them is as small as doubles can tell: " in text
+    assert "\nTo try     another x* (--xstar X0 X1), or larger parameters\n" in text
     wide = Problem.patch(["0.6", "0.2"], [["0.001", 0]], waves=waves)
-    assert ", or a smaller range of parameters, or larger parameters." in prove(
+    assert ", or a smaller range of parameters, or larger parameters\n" in prove(
         wide, method="loewner", xstar=("1.856", "0")).report()
     assert prove(problem, method="loewner", xstar=("1.836", "0")).no_tori
     assert "x* (" not in prove(problem, method="loewner", xstar=("1.856", "0"), depth=5).report()
     point = prove(Problem.patch(["0.6", "0.2"], waves=waves, v0=c), method="loewner", depth=0,
                   xstar=("1.856", "0"))
-    assert "\nThe first of them : v[0] / pi = 1.1" in point.report()
+    assert re.search("the first of them: v0 = 1.1[0-9]* pi", point.report())
 
 
 def test_comments_are_not_the_programs_words(made_up):
     """Neither what a terminal obeys nor a sentence of the program's can be smuggled in."""
     claim = "I find no invariant tori for the range of parameters :"
-    proof = made_up("U", comments=(claim, "\x1b]0;x\x07 \u202e \x9b2J", "tab\tstays", "two\nlines"))
-    text = proof.report()
-    assert claim not in text.split("\n") and "> " + claim in text.split("\n")
-    assert "\x1b" not in text and "\x07" not in text and "\x9b" not in text and "\u202e" not in text
-    assert "> \\x1b]0;x\\x07 \\u202e \\x9b2J\n> tab\tstays\n> two\n> lines\n" in text
-    assert proof.problem.comments[3:] == ("two", "lines")
+    comments = claim, "\x1b]0;x\x07 \u202e \x9b2J", "tab\tstays", "THEOREM\nlines"
+    for method, blank in ("thesis", ""), ("loewner", " " * 11):
+        proof = made_up("U", comments=comments, method=method)
+        text = proof.report()
+        assert claim not in text.split("\n") and "> " + claim in text and "\nTHEOREM" not in text
+        assert not set("\x1b\x07\x9b\u202e") & set(text)
+        assert "\n".join(blank + line for line in (
+            "> \\x1b]0;x\\x07 \\u202e \\x9b2J", "> tab\tstays", "> THEOREM", "> lines")) in text
+    assert proof.problem.comments[3:] == ("THEOREM", "lines")
 
 
 def test_a_loaded_proof_says_whence_it_is(made_up):
     assert "Restored" not in made_up("0PS").report()
     assert "\nRestored : 2 prisms were read from a backup, which is believed" in \
         made_up("0PS", restored=2).report()
+    assert "\nRestored   2 prisms read from a backup, which is believed\n" in \
+        made_up("0PS", restored=2, method="loewner").report()
 
 
 def test_the_map_is_stated(made_up):
@@ -149,61 +186,133 @@ def test_the_map_is_stated(made_up):
         assert "\nMap : y' = y + J', J' = J - dV(y), V(y) = -a sin y0" in made_up(tree).report()
 
 
-# ---- patches and other potentials
+# ---- the theorem of the sharper method, in the parameters of the input
 
-def test_a_patch_is_named_exactly(made_up):
-    problem = Problem.patch(["0.4", "-1e-8", "2"], [["0.01", 0, "-1"], [0, "1.23456789", 0]],
-                            [(1, 0), (1, -1, "1/2"), (-2, 3, "-1/3")])
-    for tree, at_once in (("P", False), ("P", True), ("U", True)):
-        proof = replace(made_up(tree, method="loewner"), problem=problem, at_once=at_once)
-        text = verdict(proof)
-        assert text.startswith((
-            "I find no invariant tori" if tree == "P" else
-            "I could not decide whether there are invariant tori") + " for V(y) = - the sum of :\n"
-            "p sin(y0), p = 0.400000 + 0.010000 t[1]\n"
-            "p sin(y0 - y1 + 1/2 pi), p = -0.00000001 + 1.23456789 t[2]\n"
-            "p sin(-2 y0 + 3 y1 - 1/3 pi), p = 2.000000 - 1.000000 t[1]\n"
-            "for -1 <= t[1], t[2] <= 1\n")
-        assert ("Nor are there any for s times such p, s > 1." in text) == (tree == "P" and at_once)
-        assert "V(y) = - the sum of such waves\n" in text and "a sin y0" not in text
-    lines = header(problem).split("\n")
-    assert lines[1] == "p of sin(y0) : 4.00000000000000e-01 \t 1.00000000000000e-02"
-    assert lines[3] == "p of sin(-2 y0 + 3 y1 - 1/3 pi) : %.14e \t %.14e" % (2, 1)
+SIN, COS = (1, 0), (1, 0, "-1/2")
+K, B = ("K", Fraction("0.9"), Fraction("1.4")), ("B", Fraction("0.1"), Fraction("0.1"))
 
 
-def test_one_parameter_has_an_upper_end(made_up):
-    proof = replace(made_up("P"), problem=Problem.patch([1], [["0.1"]], [(1, 1)]), at_once=True)
-    assert "Nor are there any for s times those p of t[1] = 1, s > 1.\n" in verdict(proof)
-    proof = replace(proof, problem=Problem.patch([1], [], [(1, 1)]))
-    assert "Nor are there any for s times such p, s > 1.\n" in verdict(proof)
-    assert "\np sin(y0 + y1), p = 1.000000\nNor" in verdict(proof)
+def of_K(slope, constant=0):
+    """What patch() takes of an amplitude constant + slope K."""
+    low, high = K[1:]
+    return constant + slope * (low + high) / 2, slope * (high - low) / 2
 
 
-def test_circles(made_up):
-    problem = Problem.patch(["0.98", "0.1"], [["0.01", 0]], [(1, 0, "-1/2"), (2, 0)])
-    proof = replace(made_up("P"), problem=problem)
-    assert verdict(proof).startswith("I find no rotational invariant circles for V(y) = - the sum "
-                                     "of :\n")
-    assert "\nCircles : " in verdict(proof) and "\nCircles : " not in made_up("P").report()
-    part = verdict(replace(proof, problem=replace(problem, v0=(0, 1))))
-    assert part.startswith("I find no rotational invariant circles whose successor of x* lies in "
-                           "the region :\n"
-                           "0.000000 < v[0] / pi < 1.000000\n")
-    assert "\nfor V(y) = - the sum of :\np sin(y0 - 1/2 pi), p = 0.980000 + 0.010000 t[1]\n" in part
-    assert verdict(replace(proof, tree="U")).startswith(
-        "I could not decide whether there are rotational invariant circles for V")
+def named(*forms, waves=(COS, (0, 1, "-1/2"))):
+    """A patch with the parameter K, each amplitude as of_K takes it."""
+    amplitude, part = zip(*(of_K(*map(Fraction, form)) for form in forms))
+    return Problem.patch(amplitude, [part], waves[:len(forms)], parameters=[K])
+
+
+def value(text, **names):
+    """The number that a potential's text stands for."""
+    text = re.sub(r"(sin|cos) (\w+)", r"\1(\2)", text)
+    text = re.sub(r"(?<=[\w)\]]) (?=[\w(])", "*", text)
+    return eval(text, {"sin": math.sin, "cos": math.cos, "pi": math.pi, **names})
+
+
+@pytest.mark.parametrize("problem", [
+    Problem.patch(["0.4", "-1e-8", "2"], [["0.01", 0, "-1"], [0, "1.23456789", 0]],
+                  [(1, 0), (1, -1, "1/2"), (-2, 3, "-1/3")]),
+    Problem.patch([1, "0.5", "-0.25", 1], [], [(1, 0, "1/2"), (1, 1, 1), (2, 0), (0, 3, "-1/2")]),
+    Problem.patch(["-1", 1], [[0, "-0.5"]], [(1, 0, "3/4"), (2, 0, 1)]),
+    named((1, 0), ("-0.5", "0.25"), ("0.5", 0), (0, 0), waves=(SIN, COS, (0, 1), (1, 1))),
+], ids=range(4))
+def test_the_potential_is_the_maps(problem):
+    """At the ends of all parameters and several angles."""
+    text = potential_text(problem)
+    for t in itertools.product((-1, 1), repeat=len(problem.parts)):
+        ends = {name: float(high if sign > 0 else low)
+                for (name, low, high), sign in zip(problem.parameters, t)}
+        for y0, y1 in ((0.3, 1.1), (2.5, -0.7), (4.0, 5.5)):
+            V = -sum(float(p + sum(x * part for x, part in zip(t, parts)))
+                     * math.sin(k0 * y0 + k1 * y1 + math.pi * float(phase))
+                     for (k0, k1, phase), p, *parts
+                     in zip(problem.waves, problem.amplitude, *problem.parts))
+            assert abs(value(text, y=y0, y0=y0, y1=y1, t=(0, *t), **ends) - V) < 1e-12
+
+
+@pytest.mark.parametrize("problem, V, lines", [
+    (named((1, 0)), "K cos y", ["for every K in [0.9, 1.4]", "and for every K > 1.4"]),
+    (named((1, 0), ("0.5", 0)), "K cos y0 + 0.5 K cos y1",
+     ["for every K in [0.9, 1.4]", "and for every K > 1.4"]),
+    (named((1, 0), (0, "0.1")), "K cos y0 + 0.1 cos y1",
+     ["for every K in [0.9, 1.4]", "and for every multiple s >= 1 of the amplitudes at K = 1.4"]),
+    (named((1, "-0.1")), "(-0.1 + K) cos y",
+     ["for every K in [0.9, 1.4]", "and for every multiple s >= 1 of the amplitudes at K = 1.4"]),
+    (Problem.patch([-1], [["0.1"]], [COS], parameters=[("K", Fraction("-1.1"), Fraction("-0.9"))]),
+     "K cos y", ["for every K in [-1.1, -0.9]",
+                 "and for every multiple s >= 1 of the amplitudes at K = -0.9"]),
+    (Problem.patch([1, "0.1"], [["0.1", 0], [0, 0]], [COS, (2, 0, "-1/2")],
+                   parameters=[("K", Fraction("0.9"), Fraction("1.1")), B]),
+     "K cos y + 0.1 cos(2 y)", ["for every K in [0.9, 1.1]",
+                                "and for every multiple s >= 1 of these amplitudes"]),
+    (Problem.patch([1, 1], [["0.1", 0], [0, "0.1"]], [COS, (2, 0)]),
+     "(1 + 0.1 t[1]) cos y - (1 + 0.1 t[2]) sin(2 y)",
+     ["for every t[1] in [-1, 1], t[2] in [-1, 1]",
+      "and for every multiple s >= 1 of these amplitudes"]),
+    (Problem.patch([1], [], [(1, 1)]), "-sin(y0 + y1)",
+     ["and for every multiple s >= 1 of these amplitudes"]),
+    (Problem(("0.9", 1), 0, 0), "-a sin y0 - b sin y1 - c sin(y0 + y1)",
+     ["for every a in [0.9, 1], b = 0, c = 0", "and for every a > 1"]),
+    (Problem(("0.9", 1), (-1, 0), 0), "-a sin y0 - b sin y1 - c sin(y0 + y1)",
+     ["for every a in [0.9, 1], b in [-1, 0], c = 0",
+      "and for every multiple s (a, b, c), s >= 1"]),
+    (Problem(("0.9", 1), ("0.9", 1), ("1.8", 2), together=True),
+     "-a sin y0 - b sin y1 - c sin(y0 + y1)",
+     ["for every (a, b, c) on the segment from (0.9, 0.9, 1.8) to (1, 1, 2)",
+      "and for every multiple s >= 1 of the upper end"]),
+    (Problem(*(("0.165972528", "0.31400208"),) * 2, ("0.331945056", "0.62800416"), together=True),
+     "-a sin y0 - b sin y1 - c sin(y0 + y1)",
+     ["for every (a, b, c) on the segment from (0.165972528, 0.165972528, 0.331945056) to "
+      "(0.31400208, 0.31400208, 0.62800416)", "and for every multiple s >= 1 of the upper end",
+      "that is, with a = b = c/2 = 11.21436 epsilon, for every epsilon in [0.0148, 0.028] and "
+      "every epsilon > 0.028"]),
+], ids=range(12))
+def test_for_which_parameters(problem, V, lines):
+    """A multiple s >= 1 of all amplitudes, or of those at the upper end, and no more."""
+    assert potential_text(problem) == V
+    assert [line.replace("\xa0", " ") for line in conditions(problem, True)] == lines
+    without = [line.replace("\xa0", " ").partition(" and every")[0] for line in conditions(problem)]
+    assert without == [line.partition(" and every")[0] for line in lines if line[:3] != "and"]
+
+
+def test_the_theorem_of_a_circle(made_up):
+    proof = replace(made_up("P", method="loewner", xstar=("1.5", "0")), problem=named((1, 0)))
+    assert report(proof).startswith(
+        "THEOREM\n  The map  y' = y + J',  J' = J - V'(y),  y modulo 2 pi,\n"
+        "  with  V(y) = K cos y,\n"
+        "  has no rotational invariant circle\n  for every K in [0.9, 1.4].\n\n")
+    assert "\nStart      x* = 1.5\n" in report(proof)
+    assert "UNDECIDED: nothing is proved.  There may be a rotational invariant circle (see " in \
+        report(replace(proof, tree="U"))
+    for problem, words in ((Problem(1, 0, 0), "So the map of y0 alone has no rotational"),
+                           (Problem(0, 1, 0), "So the map of y1 alone has no rotational"),
+                           (Problem(1, 1, 0), None), (Problem(1, 0, 1), None)):
+        text = report(replace(proof, problem=problem))
+        assert (words or "has no invariant torus") in text and (words is not None) == (
+            "circle" in text)
+
+
+def test_names_of_parameters_are_kept(made_up, tmp_path):
+    proof = replace(made_up("P", method="loewner"), problem=named((1, 0)))
+    proof.save(tmp_path / "a.proof")
+    assert "\nparameter: K 0.9 1.4\n" in (tmp_path / "a.proof").read_text()
+    again = Proof.load(tmp_path / "a.proof")
+    assert again.problem.parameters == (K,) and "for every K in [0.9, 1.4].\n" in again.report()
+    for wrong in ((), (B,)), ((K, K), (K,)):
+        with pytest.raises(ValueError, match="K|B|parameters"):
+            Problem.patch([1], [["0.1"]], [COS], parameters=wrong[0] or wrong[1])
 
 
 @pytest.mark.parametrize("problem, words", [
-    (Problem(0, 0, 1), "Frame : the angles at the next time are (v[0], -v[0] + v[1])\n"),
-    (Problem.patch([1], [], [(3, -2)]),
-     "Frame : the angles at the next time are (2 v[0] - v[1], 3 v[0] - 2 v[1])\n"),
-    (Problem(1, 1, 0), "Alone : y0, as no wave feels both angles; what only y1 feels was left "
-                       "out\n"),
-    (Problem(1, 2, 0), "Alone : y1, as no wave feels both angles; what only y0 feels was left "
-                       "out\n")])
+    (Problem(0, 0, 1), "Searched   the y' = (v0, -v0 + v1) that follow x*, "),
+    (Problem.patch([1], [], [(3, -2)]), "the y' = (2 v0 - v1, 3 v0 - 2 v1) that follow x*, "),
+    (Problem(1, 1, 0), "           y0 alone was examined: no wave depends on both angles\n"),
+    (Problem(1, 2, 0), "           y1 alone was examined: no wave depends on both angles\n")])
 def test_what_was_chosen(made_up, problem, words):
-    text = verdict(replace(made_up("P"), problem=problem))
-    assert words in text and text.count("Frame : ") + text.count("Alone : ") == 1
-    plain = verdict(replace(made_up("P"), problem=replace(problem, axes=IDENTITY, alone="no")))
-    assert plain == text.replace(words, "")
+    proof = made_up("P", method="loewner")
+    text = verdict(replace(proof, problem=problem))
+    assert words in text
+    plain = verdict(replace(proof, problem=replace(problem, axes=IDENTITY, alone="no")))
+    assert words not in plain and "Searched   all y' that follow x*\n" in plain
