@@ -1,9 +1,12 @@
 """The site of docs/, by Sphinx: make docs."""
 
+import inspect
+
 from converse.version import __version__
 
 project = "converse"
 release = version = __version__
+myst_fence_as_directive = ["math"]
 extensions = ["myst_nb", "sphinx.ext.autodoc", "numpydoc"]
 html_theme = "alabaster"
 html_theme_options = {"description": "Proofs about invariant tori of symplectic maps",
@@ -24,12 +27,13 @@ numpydoc_show_class_members = False
 
 
 def readable(app, what, name, obj, options, lines):
-    """Shows a docstring as it stands, unless it has numpydoc's sections, whose bars are bars."""
-    if any(line.strip().startswith("---") for line in lines):
+    """Shows a docstring as it stands, unless it has numpydoc's sections, where bars are bars."""
+    text = inspect.cleandoc(obj.__doc__ or "")
+    if "\n---" in text:
         lines[:] = [line.replace("|", "\\|") for line in lines]
-    elif lines:
-        lines[:] = ["::", "", *("    " + line for line in lines), ""]
+    elif text:
+        lines[:] = ["::", "", *("    " + line for line in text.splitlines()), ""]
 
 
 def setup(app):
-    app.connect("autodoc-process-docstring", readable, priority=400)    # before numpydoc's own
+    app.connect("autodoc-process-docstring", readable, priority=600)    # after numpydoc
