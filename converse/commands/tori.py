@@ -168,7 +168,6 @@ def _prove_torus(options):
         ("points", options.points),
         ("memory", options.memory and int(options.memory * GIGABYTE)),
         ("jobs", options.jobs)) if value is not None}
-    say(report.header(problem, rotation))
     began = _processor_time()
     with ProgressLine() as line, numpy.errstate(all="ignore"):
         def progress(words):
@@ -184,7 +183,7 @@ def _prove_torus(options):
         if options.backup is not None:
             certificate = {"certificate": options.backup, "checksum": proof.save(options.backup)}
     finally:                            # the theorem is told, even if the disk is full
-        say(report.verdict(proof, _processor_time() - began, **certificate))
+        say(report.verdict(proof, _processor_time() - began, problem=problem, **certificate))
     options.proved = True
     if options.graphics is not None:
         from ..draw import torus_figure

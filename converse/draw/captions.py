@@ -6,8 +6,8 @@ from fractions import Fraction
 
 from ..model.problem import IDENTITY, frame_text
 from ..model.region import nearest
+from ..model.statement import TORUS, conditions, potential_text
 from ..prover import tree
-from ..prover.report import TORUS, conditions, potential_text
 
 LINKED = "a"                            # stands for all letters
 KIND_NAMES = {"P": "proved", "S": "skipped by symmetry", LINKED: "linked to another x*",

@@ -1,39 +1,58 @@
-"""What the command converse-tori prints, in the manner of the report of 1989.  Bounds are rounded
-to the safe side."""
+"""The report of converse-tori: the theorem in the parameters of the input, and what it rests on.
+Bounds are rounded to the safe side."""
 
 import math
 from fractions import Fraction
-from typing import List, Optional, Sequence, Union
+from typing import Iterator, Optional, Sequence, Tuple, Union
 
 from ..model.exact import decimal_text, rounded, rounded_text, short_text
-from ..model.potential import FourierSum
-from ..model.problem import Problem, wave_text
+from ..model.problem import Problem
+from ..model.statement import TORUS, conditions, ended, indented, labelled, map_lines
 from ..storage.files import plain
 from ..version import __version__
 from .find import NotFound
 from .proved import NotProved, Piece, ProvedTorus
 from .rotation import Rotation, element_text, polynomial_text
-from .torus import Part, Strip, family
+from .torus import Strip, family
 
-PLUSES = "+" * 48
-PLACES = 6                              # of amplitudes, at least
-DIGITS = 20                             # of omega
-TORUS = {1: "a rotational invariant circle", 2: "an invariant torus"}       # by dimension
+DIGITS, FEW = 20, 14                    # characters of omega, and of omega in the theorem
 VECTOR = {1: "rotation number", 2: "rotation vector"}
 
 
-def header(problem: Problem, rotation: Rotation) -> str:
-    """What is known before the search: the map, the rotation vector, comments of the input."""
+def _stated(problem: Problem) -> Problem:
+    """The problem as it is stated: that of one angle where no wave depends on the other angle."""
+    potential, part = family(problem)
+    if problem.dimension == potential.dimension:
+        return problem
+    moving = [(letter, *getattr(problem, letter)) for letter in "abc"
+              if problem.by_ranges and any(problem.half[:3]) and not problem.parameters
+              and getattr(problem, letter)[0] < getattr(problem, letter)[1]]
+    return Problem.patch(potential.amplitude, [part] if part else [], potential.waves,
+                         parameters=(problem.parameters or moving) if part else ())
+
+
+def _of(proof: ProvedTorus) -> Problem:
+    """The problem of a proof whose input is not at hand, with the parameter s in [-1, 1]."""
+    torus = proof.torus
+    return Problem.patch(torus.potential.amplitude, [torus.part] if torus.part else [],
+                         torus.potential.waves, parameters=[
+                             ("s", Fraction(-1), Fraction(1))] if torus.part else ())
+
+
+def _rotation_lines(rotation: Rotation) -> Iterator[Tuple[str, str]]:
+    """The rotation vector, exactly and to 20 digits."""
     n = rotation.dimension
-    lines = ["Map : y' = y + J', J' = J - dV(y), V(y) = - the sum of :", *_waves(*family(problem)),
-             "", "%s : %s" % (VECTOR[n].capitalize(), plain(str(rotation))),
-             "t : the root of %s near %s" % (polynomial_text(rotation.polynomial), _rounded(
-                 rotation, (Fraction(0), Fraction(1), Fraction(0))[:n + 1]))]
-    lines += ["%s : %s = %s..." % (name, element_text(element), _rounded(rotation, element))
-              for name, element in zip(_names("omega", n), rotation.vector)]
-    lines += ["", "Comments :", "", *(("> " + plain(comment)).rstrip()
-                                      for comment in problem.comments), "", PLUSES]
-    return "\n".join(lines) + "\n"
+    yield "Rotation", "%s, t the root of %s near %s" % (
+        plain(str(rotation)), polynomial_text(rotation.polynomial),
+        _rounded(rotation, (Fraction(0), Fraction(1), Fraction(0))[:n + 1]))
+    for name, element in zip(_names("omega", n), rotation.vector):
+        yield "", "%s = %s = %s..." % (name, element_text(element), _rounded(rotation, element))
+
+
+def _input_lines(problem: Optional[Problem]) -> Iterator[Tuple[str, str]]:
+    comments = problem.comments if problem else ()
+    for label, comment in zip(["Input"] + [""] * len(comments), comments):
+        yield label, ("> " + plain(comment)).rstrip()
 
 
 def _names(name, n):
@@ -47,63 +66,83 @@ def _rounded(rotation, element):
         Fraction(math.floor(abs(low) * 10 ** DIGITS), 10 ** DIGITS), DIGITS)[:DIGITS]
 
 
-def _waves(potential: FourierSum, part: Part) -> List[str]:
-    """The waves, exactly."""
-    lines = []
-    for j, (wave, p) in enumerate(zip(potential.waves, potential.amplitude)):
-        moves = "" if part is None or not part[j] else " %s %s s" % (
-            "-" if part[j] < 0 else "+", decimal_text(abs(part[j]), PLACES))
-        lines.append("p %s, p = %s%s" % (wave_text(wave), decimal_text(p, PLACES), moves))
-    return lines + ([] if part is None else ["for -1 <= s <= 1"])
-
-
 def verdict(proof: ProvedTorus, seconds: Optional[float] = None,
-            certificate: Optional[str] = None, checksum: str = "") -> str:
-    """The theorem, and how near it was.
+            certificate: Optional[str] = None, checksum: str = "",
+            problem: Optional[Problem] = None) -> str:
+    """The theorem, and how near the proof was to failing.
 
-    seconds -- that finding and proving took; by default what verifying took
-    certificate, checksum -- the file's name and SHA-256, if there is one"""
+    Parameters
+    ----------
+    proof
+    seconds
+        CPU seconds of the search and the proof; by default those of the verification.
+    certificate, checksum
+        The file's name and SHA-256, if there is one.
+    problem
+        The input, whose parameters and comments are used."""
     n, worst = proof.rotation.dimension, proof.worst
-    lines = ["I find %s of this %s for V(y) = - the sum of :" % (TORUS[n], VECTOR[n]),
-             *_waves(proof.torus.potential, proof.torus.part), "",
-             "It is a real analytic graph J = P + S'(y) over all angles, P constant, S periodic.",
-             "The map takes its point y(theta) = theta + u(theta) to y(theta + w), w = 2 pi omega.",
-             ""]
-    lines += ["|u - u0| at most : %s, u0 the u of the certificate"
-              % _up(max(piece.distance for piece in proof.pieces)), ""]
-    if len(proof.pieces) > 1:
-        lines += [_piece_line(piece) for piece in proof.pieces]
-        lines += ["", "What follows is of the piece with the least margin."]
-    lines += ["Residual : %s at most; the theorem needs %s, about" % (_up(worst.residual),
-                                                                      _down(worst.needed))]
-    assert worst.torus.strip is not None
-    lines += _divisors(worst, worst.torus.strip)
-    lines += ["Width rho of the strip : %.6g" % worst.torus.strip.rho,
-              "Constants : " + ", ".join("%s0 %s" % (name, _up(getattr(worst.constants, name), 4))
-                                         for name in "lmabp"),
-              "Torus : %d modes of %d bits%s" % (
-                  len(worst.torus.k), worst.torus.bits,
-                  "" if worst.torus.part is None else ", polynomials in s of degree %d"
-                  % worst.torus.degree),
-              "Series : %d modes of %d bits" % (worst.modes, worst.bits), "",
-              "This investigation took %.2f seconds." % (
-                  proof.seconds if seconds is None else seconds), ""]
-    if certificate is not None:
-        lines += ["Certificate : %s" % plain(certificate), "SHA-256 : %s" % checksum]
-    lines += ["Program : converse " + __version__,
-              "Method : an a-posteriori KAM theorem (docs/proofs/existence.md), verified in "
-              "integers"]
+    stated = _stated(problem) if problem else _of(proof)
+    lines = ["THEOREM", *map_lines(stated), *ended(indented([
+        "has %s with the %s omega = %s" % (_a(TORUS[n]), VECTOR[n], _omega(proof.rotation)),
+        *conditions(stated)])), *indented([
+            "It is a real analytic graph J = P + S'(y) over %s, P constant, S periodic.  The map "
+            "takes its point y(theta) = theta + u(theta) to y(theta + 2 pi omega)."
+            % ("the angle" if n == 1 else "both angles")]), ""]
+    for label, text in _grounds(proof, worst, certificate):
+        lines += labelled(label, text)
+    for label, text in (*_input_lines(problem), (
+            "Time", "%.2f CPU s" % (proof.seconds if seconds is None else seconds))):
+        lines += labelled(label, text)
+    if checksum:
+        lines += labelled("SHA-256", checksum + " (certificate)")
     return "\n".join(lines) + "\n"
+
+
+def _a(noun: str) -> str:
+    return ("an " if noun[0] == "i" else "a ") + noun
+
+
+def _omega(rotation: Rotation) -> str:
+    """The first digits of the rotation vector; its elements are on lines of their own."""
+    texts = [_rounded(rotation, element)[:FEW] + "..." for element in rotation.vector]
+    return texts[0] if len(texts) == 1 else "(%s)" % ", ".join(texts)
+
+
+def _grounds(proof: ProvedTorus, worst: Piece,
+             certificate: Optional[str]) -> Iterator[Tuple[str, str]]:
+    """(label, text) of what the theorem rests on."""
+    yield "Verify", "converse-check " + plain(certificate) if certificate else \
+        "with -b FILE the certificate is kept; converse-check FILE verifies it"
+    yield from _rotation_lines(proof.rotation)
+    yield "Distance", "|u - u0| <= %s, u0 the Fourier series of the certificate" % _up(
+        max(piece.distance for piece in proof.pieces))
+    if len(proof.pieces) > 1:
+        yield "Pieces", "s goes from -1 at the lower end of the parameter to 1 at the upper end:"
+        for piece in proof.pieces:
+            yield "", _piece_line(piece)
+        yield "", "The lines below are about the piece with the least margin."
+    yield "Residual", "%s, admissible: %s" % (_up(worst.residual), _down(worst.needed))
+    assert worst.torus.strip is not None
+    yield from _divisors(worst, worst.torus.strip)
+    yield "Strip", "rho = %.6g" % worst.torus.strip.rho
+    yield "Constants", ", ".join("%s0 = %s" % (name, _up(getattr(worst.constants, name), 4))
+                                 for name in "lmabp")
+    yield "Torus", "%s modes of %d bits%s" % (
+        format(len(worst.torus.k), ","), worst.torus.bits, "" if worst.torus.part is None else
+        ", polynomials in the parameter of degree %d" % worst.torus.degree)
+    yield "Series", "%s modes of %d bits" % (format(worst.modes, ","), worst.bits)
+    yield "Method", "an a-posteriori KAM theorem (manual: proofs/existence), verified in " \
+        "integers; converse " + __version__
 
 
 def _piece_line(piece: Piece) -> str:
     low, high = piece.torus.piece
-    return "For %s <= s <= %s : %d modes of degree %d, residual %s, needed %s" % (
+    return "%s <= s <= %s: %d modes of degree %d, residual %s, admissible %s" % (
         short_text(low), short_text(high), len(piece.torus.k), piece.torus.degree,
         _up(piece.residual), _down(piece.needed))
 
 
-def _divisors(piece: Piece, strip: Strip) -> List[str]:
+def _divisors(piece: Piece, strip: Strip) -> Iterator[Tuple[str, str]]:
     """The checker's gamma is for the weights alpha as integers, by their common denominator."""
     n, scale = len(strip.alpha), math.lcm(*(a.denominator for a in strip.alpha))
     terms = []
@@ -113,26 +152,29 @@ def _divisors(piece: Piece, strip: Strip) -> List[str]:
                          for x, name in zip(row, _names("k", n)) if x)
         terms.append("%s|%s|" % ("" if a == 1 else "%s " % a,
                                  angle[2:] if angle[0] == "+" else "-" + angle[2:]))
-    return ["Small divisors : |1 - exp(i k.w)| >= %s/%s for k != 0" % (
-                _down(piece.gamma / scale ** n, 6), "|k|" if n == 1 else "|k|^2"),
-            *(["k : the integer combinations of %s, |k| = %s" % (" and ".join(
-                "(%s)" % ", ".join(map(str, k)) for k in piece.basis), " + ".join(terms))]
-              if n == 2 or strip.alpha != (1,) else [])]
+    yield "Divisors", "|1 - exp(2 pi i k.omega)| >= %s/%s for k != 0" % (
+        _down(piece.gamma / scale ** n, 6), "|k|" if n == 1 else "|k|^2")
+    if n == 2 or strip.alpha != (1,):
+        yield "", "k: the integer combinations of %s; |k| = %s" % (" and ".join(
+            "(%s)" % ", ".join(map(str, k)) for k in piece.basis), " + ".join(terms))
 
 
 def undecided(problem: Problem, rotation: Rotation, reason: Union[NotFound, NotProved],
               by_hand: Sequence[str] = ()) -> str:
-    """That there is no theorem, and why.
+    """The report without a theorem, and why there is none.
 
-    by_hand -- flags that took a choice from the program"""
-    n = rotation.dimension
-    lines = ["I could not decide whether there is %s of this %s for V(y) = - the sum of :"
-             % (TORUS[n], VECTOR[n]), *_waves(*family(problem)), "",
-             "%s : %s" % ("Not found" if isinstance(reason, NotFound) else "Not proved",
-                          plain(" ".join(str(reason).split())))]
+    by_hand: flags that took a choice from the program."""
+    n, stated = rotation.dimension, _stated(problem)
+    lines = ["UNDECIDED: nothing is proved.  There may be no %s with this %s (see converse)." % (
+        TORUS[n], VECTOR[n]), *map_lines(stated),
+             *ended(indented(["was examined " + " ".join(conditions(stated))])), ""]
+    entries = [("Not found" if isinstance(reason, NotFound) else "Not proved",
+                plain(" ".join(str(reason).split())))]
     if by_hand:
-        lines.append("Chosen by hand : %s; without such a flag the program chooses"
-                     % ", ".join(by_hand))
+        entries.append(("By hand", "%s; without such a flag the program chooses"
+                        % ", ".join(by_hand)))
+    for label, text in (*entries, *_rotation_lines(rotation), *_input_lines(problem)):
+        lines += labelled(label, text)
     return "\n".join(lines) + "\n"
 
 

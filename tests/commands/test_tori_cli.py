@@ -35,6 +35,11 @@ def one_line(err):
     return err.startswith("converse-tori: ") and err.endswith("\n") and err.count("\n") == 1
 
 
+def flat(text):
+    """A report without its line ends."""
+    return " ".join(text.split())
+
+
 def value(out, pattern):
     """The number that a line of the report has there."""
     return float(re.search(pattern.replace("#", r"([0-9.]+(?:e-?[0-9]+)?)"), out)[1])
@@ -45,16 +50,16 @@ def test_a_theorem(run, tmp_path):
     status, out, err = run("prove", K09, "--rotation", "golden", "-b", file)
     assert (status, err) == (0, "")
     proof = tori.prove(tori.find(read_input(K09), tori.read_rotation("golden")))
-    assert "I find a rotational invariant circle of this rotation number" in out
-    assert "Rotation number : golden" in out and "p sin(y0), p = 0.900000\n" in out
+    assert out.startswith("THEOREM\n") and " has a rotational invariant circle with" in out
+    assert "Rotation   golden, " in out and "  with  V(y) = -0.9 sin y,\n" in out
     # The bounds are those of the proof, rounded to the safe side.
-    for pattern, number in (("Residual : # at most", proof.residual),
-                            (r"\|u - u0\| at most : #", proof.distance)):
+    for pattern, number in (("Residual   #,", proof.residual),
+                            (r"\|u - u0\| <= #,", proof.distance)):
         assert number <= value(out, pattern) <= number * 1.02
-    assert proof.needed * .98 <= value(out, "the theorem needs #,") <= proof.needed
+    assert proof.needed * .98 <= value(out, "admissible: #\n") <= proof.needed
     assert 1.82 < value(out, ">= #/.k. for k != 0") < 1.8640649
     certificate = tori.read(file)
-    assert "SHA-256 : " + certificate.sha256 in out and "Certificate : %s" % file in out
+    assert "SHA-256    " + certificate.sha256 in out and "converse-check %s" % file in out
     assert certificate.tori[0].rotation.vector == ((0, 1),)
     assert certificate.tori[0].potential.amplitude == (Fraction("0.9"),)
     assert check.main([str(file)]) == 0             # by other means
@@ -66,7 +71,7 @@ def test_a_theorem_with_choices(run, tmp_path):
     status, out, err = run("prove", problem, "--rotation", "T49", "--memory", 1, "--margin", 30,
                            "--points", 4096)
     assert (status, err) == (0, "")
-    assert "I find an invariant torus of this rotation vector" in out
+    assert "  has an invariant torus with the rotation vector omega = (" in out
     assert re.search(r"\|k\| = (\d+ )?\|k\[0\] \+ k\[1\]\| \+ (\d+ )?\|k\[0\] - k\[1\]\|\n", out)
 
 
@@ -75,8 +80,8 @@ def test_a_theorem_near_a_place(run, tmp_path):
     problem.write_text('{"harmonics": [{"k": [1], "amplitude": 0.5, "phase": "-1/3"}]}')
     status, out, err = run("prove", problem, "--near", "-0.38", "--tolerance", "0.005")
     assert (status, err) == (0, "")
-    assert "Rotation number : best found within 0.005 of -0.38\n" in out
-    assert "omega : -1+t = -0.38196601125010515" in out         # golden - 1
+    assert "Rotation   best found within 0.005 of -0.38, t the root" in out
+    assert "omega = -1+t = -0.38196601125010515" in out         # golden - 1
 
 
 def test_a_start_from_a_certificate(run, tmp_path):
@@ -85,8 +90,8 @@ def test_a_start_from_a_certificate(run, tmp_path):
     for k, more in (("0.5", ["--rotation", "golden", "-b", file]), ("0.55", ["-r", file])):
         problem.write_text(k + " 0\n0 0\n0 0\n1 1\n1 1\n")
         status, out, err = run("prove", problem, *more)
-        assert (status, err) == (0, "") and "Rotation number : golden" in out
-        assert "p sin(y0), p = %s" % k in out
+        assert (status, err) == (0, "") and "Rotation   golden, " in out
+        assert "V(y) = -%s sin y,\n" % k in out
     status, out, err = run("prove", TRIG, "-r", file)
     assert (status, out) == (2, "") and one_line(err)
     assert "its map has 1 angle, and this one 2" in err
@@ -99,15 +104,15 @@ def test_what_is_not_proved_is_said(run, tmp_path, monkeypatch):
     file = tmp_path / "golden.torus"
     status, out, err = run("prove", K09, "-b", file, "--rotation", "golden", "--margin", 100)
     assert (status, err) == (1, "") and not file.exists()
-    assert "I could not decide whether there is a rotational invariant circle" in out
-    assert re.search("\nNot proved : the error of the torus is [0-9.]+e-[0-9]+, where less than "
-                     "[0-9.]+e-[0-9]+ is needed\n", out) and "I find" not in out
+    assert out.startswith("UNDECIDED: nothing is proved.  There may be no rotational")
+    assert re.search("Not proved the error of the torus is [0-9.]+e-[0-9]+, where less than "
+                     "[0-9.]+e-[0-9]+ is needed ", flat(out)) and "THEOREM" not in out
 
 
 def test_too_little_memory_is_said(run):
     status, out, err = run("prove", K09, "--rotation", "golden", "--memory", "1e-6")
-    assert (status, err) == (1, "") and "I find" not in out
-    assert "GB of memory, and 1e-06 GB may be used\nChosen by hand : --memory;" in out
+    assert (status, err) == (1, "") and "THEOREM" not in out
+    assert "GB of memory, and 1e-06 GB may be used By hand --memory;" in flat(out)
 
 
 @pytest.mark.slow
@@ -117,8 +122,8 @@ def test_beyond_the_last_torus_there_is_no_theorem(run, tmp_path, numbers, rotat
     problem = tmp_path / "beyond.in"
     problem.write_text("".join("%s 0\n" % x for x in numbers) + "1 1\n1 1\n")
     status, out, err = run("prove", problem, "--rotation", rotation)
-    assert (status, err) == (1, "") and "I find" not in out
-    assert "Not found : no torus" in out
+    assert (status, err) == (1, "") and "THEOREM" not in out
+    assert "\nNot found  no torus" in out
 
 
 @pytest.mark.parametrize("arguments,words", [
@@ -160,17 +165,17 @@ def test_bad_usage_is_a_line(run, tmp_path, monkeypatch, arguments, words):
     (["--margin", "1e-300"], "the margin, 1e-300, is not from")])
 def test_what_the_library_refuses_is_a_line(run, arguments, words):
     status, out, err = run("prove", K09, "--rotation", "golden", *arguments)
-    assert status == 2 and one_line(err) and words in err and "I find" not in out
+    assert status == 2 and one_line(err) and words in err and "THEOREM" not in out
 
 
 def test_flags_that_may_be_the_reason_are_named(run, monkeypatch):
     monkeypatch.setattr(tori, "prove", lambda *_, **__: (_ for _ in ()).throw(
         tori.NotProved("it lacks")))
     _, out, _ = run("prove", K09, "--rotation", "golden", "--memory", "1", "--points", 1 << 18)
-    assert out.endswith("\nChosen by hand : --points, --memory; without such a flag the "
-                        "program chooses\n")
+    assert "\nNot proved it lacks\nBy hand    --points, --memory; without such a flag the " \
+        "program chooses\n" in out
     _, out, _ = run("prove", K09, "--rotation", "golden")
-    assert out.endswith("Not proved : it lacks\n")
+    assert "\nNot proved it lacks\nRotation   golden, " in out
 
 
 def test_an_interrupt_leaves_nothing(run, tmp_path, monkeypatch):
@@ -180,7 +185,7 @@ def test_an_interrupt_leaves_nothing(run, tmp_path, monkeypatch):
     file = tmp_path / "golden.torus"
     status, out, err = run("prove", K09, "--rotation", "golden", "-b", file)
     assert status == 130 and one_line(err) and "interrupted" in err
-    assert "I find" not in out and not file.exists()
+    assert "THEOREM" not in out and not file.exists()
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
@@ -206,7 +211,7 @@ def test_a_signal_ends_all_processes(tmp_path, number):
     run.send_signal(number)
     out, err = run.communicate(timeout=300)     # the pipes are closed, so the processes have ended
     assert run.returncode == 128 + number
-    assert err == "converse-tori: interrupted; nothing is proved\n" and "I find" not in out
+    assert err == "converse-tori: interrupted; nothing is proved\n" and "THEOREM" not in out
     assert [each.name for each in tmp_path.iterdir()] == ["range.in"]
 
 
@@ -228,7 +233,7 @@ def test_a_process_that_dies_is_told(tmp_path):
     problem.write_text("0.45 0.35\n0 0\n0 0\n1 1\n1 1\n")
     run = subprocess.run([sys.executable, "-c", code, "prove", "range.in", "--rotation", "golden",
                           "--jobs", "2"], text=True, capture_output=True, cwd=tmp_path, timeout=300)
-    assert run.returncode == 2 and "I find" not in run.stdout
+    assert run.returncode == 2 and "THEOREM" not in run.stdout
     assert one_line(run.stderr) and "died, perhaps for lack of memory" in run.stderr
 
 
@@ -253,11 +258,11 @@ def test_a_report_of_a_range_says_of_which_piece_it_speaks(run, tmp_path):
     problem.write_text("0.45 0.35\n0 0\n0 0\n1 1\n1 1\n")
     status, out, err = run("prove", problem, "--rotation", "golden")
     assert (status, err) == (0, "")
-    pieces, of_one = out.partition("I find")[2].split("What follows is of the piece with the least")
-    (cut,) = re.findall("For -1 <= s <= ([0-9.]+) : ", pieces)
-    assert pieces.count("For %s <= s <= 1 : " % cut) == 1
-    assert "Residual : " not in pieces and "Residual : " in of_one
-    assert value(of_one, "Residual : # at most") in [
+    pieces, of_one = out.partition("THEOREM")[2].split("The lines below are about the piece with")
+    (cut,) = re.findall(" -1 <= s <= ([0-9.]+): ", pieces)
+    assert pieces.count(" %s <= s <= 1: " % cut) == 1
+    assert "\nResidual" not in pieces and "\nResidual" in of_one
+    assert value(of_one, "Residual   #,") in [
         float(x) for x in re.findall("residual ([0-9.e-]+),", pieces)]
 
 
@@ -268,7 +273,7 @@ def test_the_report_says_for_which_k_divisors_are_bounded(waves, words):
     """Where the waves span a line, of all k."""
     problem = Problem.patch(["0.001"] * len(waves), (), waves)
     proof = tori.prove(problem, tori.read_rotation("T49"))
-    assert "\nk : the integer combinations of %s, |k| = " % words in report.verdict(proof)
+    assert "           k: the integer combinations of %s; |k| = " % words in report.verdict(proof)
 
 
 def test_without_python_flint(tmp_path):
@@ -290,9 +295,23 @@ def test_bounds_are_rounded_to_the_safe_side():
 
 
 def test_a_range_is_told_exactly():
-    problem = Problem.patch(["0.25"], [["0.05"]], waves=[(1, 0)])
-    out = report.header(problem, tori.read_rotation("golden"))
-    assert "p sin(y0), p = 0.250000 + 0.050000 s\nfor -1 <= s <= 1\n" in out
+    """In the parameter of the input; in s, where only the torus is at hand."""
+    golden = tori.read_rotation("golden")
+    for problem, V, words in (
+            (Problem.patch(["0.25"], [["0.05"]], waves=[(1, 0)]), "-(0.25 + 0.05 t[1]) sin y",
+             "every t[1] in [-1, 1]"),
+            (Problem(("0.2", "0.3"), 0, 0), "-a sin y", "every a in [0.2, 0.3]"),
+            (Problem.patch(["0.25", "0.01"], [["0.05", 0]], [(1, 0, "-1/2"), (2, 0)], parameters=[
+                ("K", Fraction("0.2"), Fraction("0.3"))]), "K cos y - 0.01 sin(2 y)",
+             "every K in [0.2, 0.3]")):
+        out = report.undecided(problem, golden, tori.NotProved("it lacks"))
+        assert "  with  V(y) = %s,\n  was examined for %s.\n" % (V, words) in out
+    proof = tori.prove(problem, golden)
+    theorem = report.verdict(proof, problem=problem)
+    assert "  with  V(y) = K cos y - 0.01 sin(2 y),\n" in theorem
+    assert "  for every K in [0.2, 0.3].\n" in theorem
+    assert "(0.25 + 0.05 s) cos y - 0.01 sin(2 y),\n" in report.verdict(proof)
+    assert "  for every s in [-1, 1].\n" in report.verdict(proof)
 
 
 def test_a_figure(run, tmp_path):
@@ -300,4 +319,4 @@ def test_a_figure(run, tmp_path):
     problem.write_text("0.3 0.01\n0 0\n0 0\n1 1\n1 1\n")
     status, out, err = run("prove", problem, "--rotation", "golden", "-g", figure)
     assert (status, err) == (0, "") and figure.read_bytes().startswith(b"\x89PNG")
-    assert "p sin(y0), p = 0.300000 + 0.010000 s\nfor -1 <= s <= 1\n" in out.partition("I find")[2]
+    assert "  for every a in [0.29, 0.31].\n" in out

@@ -10,8 +10,9 @@ import pytest
 
 from converse import Counts, Problem, Proof, prove
 from converse.model.problem import IDENTITY
+from converse.model.statement import conditions, potential_text
 from converse.prover import run
-from converse.prover.report import conditions, header, potential_text, report, verdict
+from converse.prover.report import header, report, verdict
 from converse.version import __version__
 
 COUNTS = Counts(quick_tries=322, tries=318, Rtries=156, cuts=166, proved=156, symmetric=11,
