@@ -5,14 +5,10 @@ integer or a Fraction, and a point on the cut counts as lying to the right; a do
 decide otherwise, is refused.
 """
 
-from fractions import Fraction
-from math import isqrt
 from typing import NamedTuple
 
 from ..model.exact import exact
 from ..storage.files import plain
-
-UNIT = 10 ** 60                         # what the constants below are rounded down to
 
 
 class Mediant(NamedTuple):
@@ -20,47 +16,6 @@ class Mediant(NamedTuple):
     p: tuple
     q: int
     address: str                        # the turns, l or r, that led to it
-
-
-def _largest(holds):
-    """The largest natural number with a property that all smaller ones have as well."""
-    high = 1
-    while holds(high):
-        high *= 2
-    low = 0
-    while high - low > 1:
-        middle = (low + high) // 2
-        low, high = (middle, high) if holds(middle) else (low, middle)
-    return low
-
-
-# (sqrt 5 - 1)/2, and (tau^-2, tau^-1) with tau^3 = tau + 1, 1/tau = tau^2 - 1: all below the true
-# values, by less than 10/UNIT.
-GOLDEN = Fraction(isqrt(5 * UNIT ** 2) - UNIT, 2 * UNIT)
-_TAU = Fraction(_largest(lambda n: n ** 3 <= (n + UNIT) * UNIT ** 2), UNIT)
-SPIRAL = ((_TAU ** 2 - 1) ** 2, _TAU ** 2 - 1)
-
-
-def continued_fraction(w):
-    """The partial quotients of w, one after another: they end, since what is given is rational.
-
-    Of a decimal that stands for an irrational number with n digits, those quotients are its own
-    whose convergents have denominators below 10^(n/2)."""
-    w = exact(w)
-    while True:
-        quotient = w.numerator // w.denominator
-        yield quotient
-        if w == quotient:
-            return
-        w = 1 / (w - quotient)
-
-
-def convergents(w):
-    """The fractions that the partial quotients of w lead to; the last is w."""
-    (p, q), before = (1, 0), (0, 1)
-    for quotient in continued_fraction(w):
-        (p, q), before = (quotient * p + before[0], quotient * q + before[1]), (p, q)
-        yield Fraction(p, q)
 
 
 def tree(w):

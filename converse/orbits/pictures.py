@@ -1,7 +1,6 @@
 """Pictures and tables of states, proved orbits and families, as notebooks and the command
 converse-orbits show them.  Pictures need matplotlib (the extra "plot"), whose settings stay."""
 
-from collections import Counter
 from typing import NamedTuple, Optional
 
 import numpy as np
@@ -76,12 +75,6 @@ def kind(state):
         words += ", %d near-null direction%s (phase arbitrary)" % (
             state.undetermined, "s" * (state.undetermined > 1))
     return words
-
-
-def labels(states):
-    """How many states there are of each kind."""
-    count = Counter(state.label for state in states)
-    return "Labels of the states: %s." % ", ".join("%s (%d)" % item for item in count.items())
 
 
 def exponents_words(state):

@@ -10,7 +10,7 @@ import numpy as np
 
 from .._native import lib
 from ..storage.files import ConverseError
-from .potential import Potential, address, done, finite, known, told, trig
+from .potential import Potential, address, done, finite, known, told
 from .state import FARTHEST, State, expected, type_of
 
 PER_CURVATURE = 0.2         # the step of eps from one state to the next guess, times the curvature
@@ -40,9 +40,6 @@ def step_of(potential):
     order = math.floor(math.log10(PER_CURVATURE / bend))
     return min((float("%se%d" % (digits, order)) for digits in ("1", "2.5", "5", "10")),
                key=lambda step: abs(math.log(step * bend / PER_CURVATURE)))
-
-
-STEP = step_of(trig)        # and that of poly and ff
 
 
 @dataclass(frozen=True, eq=False)

@@ -8,6 +8,8 @@ import numpy as np
 from converse.draw.plot import DARK, VERMILLION
 from converse.orbits import farey
 
+from . import shared
+
 LEVELS = 5                              # of the triangles
 
 
@@ -18,14 +20,14 @@ def tree(figure, families):
     for level in range(3):
         axes.plot([0, 1], [-level, -level], color=DARK, linewidth=0.8)
         mediants = [tuple(map(sum, zip(*pair))) for pair in zip(ends, ends[1:])]
-        best = next(itertools.islice(farey.tree(farey.GOLDEN), level, None))
+        best = next(itertools.islice(farey.tree(shared.GOLDEN), level, None))
         for p, q in ends + mediants:
             new = (p, q) in mediants
             axes.plot([p / q] * 2, [-level - 0.07, -level + 0.07], color=DARK, linewidth=0.8)
             axes.annotate("(%d, %d)" % (p, q), (p / q, -level), (0, -13 if new else 7), ha="center",
                           textcoords="offset points", color=DARK if new else "0.45",
                           weight="bold" if ((p,), q) == best[:2] else "normal")
-        axes.plot(float(farey.GOLDEN), -level, "o", color=DARK, markersize=4)
+        axes.plot(float(shared.GOLDEN), -level, "o", color=DARK, markersize=4)
         axes.annotate("level %d" % level, (-0.06, -level), ha="right", va="center")
         ends = sorted(ends + mediants, key=lambda end: Fraction(*end))
     axes.set(xlim=(-0.2, 1.05), ylim=(-2.3, 0.3))
@@ -75,7 +77,7 @@ def tri(figure, families):
         a, b, c = place
         place = [c, (a + c) / 2, b]
     ideal.plot(*place[0], "o", color=VERMILLION, markersize=4)
-    true.plot(*map(float, farey.SPIRAL), "o", color=VERMILLION, markersize=4)
+    true.plot(*map(float, shared.SPIRAL_MEAN), "o", color=VERMILLION, markersize=4)
     for letter, panel, ticks in (("a", ideal, ()), ("b", true, (0, 1))):
         panel.set(aspect="equal", xlim=(0, 1), ylim=(0, 1), title="(%s)" % letter, xticks=ticks,
                   yticks=ticks)

@@ -8,7 +8,7 @@ import numpy as np
 
 from converse.draw.plot import BLUE, DARK, GREY, VERMILLION
 from converse.orbits import farey
-from converse.orbits.pictures import angles, labels, momenta, quality, square, vector_words
+from converse.orbits.pictures import angles, momenta, quality, square, vector_words
 from converse.orbits.potential import ff, poly, trig
 
 from . import shared
@@ -159,7 +159,7 @@ def deev(figure, families):
                max(state.deviation.from_point for state in states), away,
                "" if away < 1 / math.sqrt(2) else ": that is not so", shared.CHANGE,
                shared.SHORTEST, "; ".join(leaps),
-               sum(state.undetermined > 0 for state in states), len(states), labels(states),
+               sum(state.undetermined > 0 for state in states), len(states), shared.labels(states),
                shared.RESOLVED))
 
 
@@ -180,7 +180,7 @@ def across(state):
 def hed_st(figure, families):
     """States of a Farey sequence of rotation vectors, at one eps."""
     potential, eps = poly, 0.02
-    w = Fraction(1, 10), farey.GOLDEN
+    w = Fraction(1, 10), shared.GOLDEN
     chain = [(m.p, m.q) for m in itertools.takewhile(lambda m: m.q <= SEQUENCE[-1],
                                                      farey.triangle(w)) if m.q in SEQUENCE]
     cells = figure.subplots(len(chain) // 2, 4, gridspec_kw={"hspace": 0.62, "wspace": 0.5})

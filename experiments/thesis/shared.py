@@ -1,18 +1,27 @@
 """What several of the thesis's figures share: rotation vectors, families of states, and words."""
 
+from collections import Counter
+from fractions import Fraction
+
+from converse import orbits
 from converse.draw.plot import BLUE, DARK, VERMILLION
 from converse.orbits.pictures import LABELS
-from converse.orbits.solver import STEP, Family, follow, straight
+from converse.orbits.solver import Family, follow, step_of, straight
 from converse.storage.files import ConverseError
 
-SPIRAL = (1432, 1897), 2513             # near farey.SPIRAL
-TENTH = (377, 2330), 3770               # near (1/10, farey.GOLDEN)
+# (sqrt 5 - 1)/2, and (tau^-2, tau^-1) with tau^3 = tau + 1, rounded down to 60 digits.
+GOLDEN = Fraction("0.618033988749894848204586834365638117720309179805762862135448")
+SPIRAL_MEAN = (Fraction("0.569840290998053265911399958119568648839797439128940220544730"),
+               Fraction("0.754877666246692760049508896358528691894606617772793143989283"))
+SPIRAL = (1432, 1897), 2513             # near SPIRAL_MEAN
+TENTH = (377, 2330), 3770               # near (1/10, GOLDEN)
 STEPS = tuple(k / 400 for k in range(17))           # eps, where the thesis does not say
 TOP, LONGEST, SHORTEST = STEPS[-1], 0.00125, 1e-5   # of Families.resolved: where it ends, its steps
 CHANGE = 0.02                           # of a measure, above which a step is halved
 NAMES = {"trig": "trigonometric", "poly": "polynomial", "ff": "fast-Froeschlé"}
 COLOURS = {"trig": DARK, "poly": BLUE, "ff": VERMILLION}
-HOW = "Found by continuation from ε = 0 in steps of at most %g.  %s" % (STEP, LABELS)
+HOW = "Found by continuation from ε = 0 in steps of at most %g.  %s" % (
+    step_of(orbits.trig), LABELS)       # those of poly and ff are as long
 RESOLVED = ("Found by continuation from ε = 0 in steps from %g to %g, short ones where much "
             "changes.  %s" % (LONGEST, SHORTEST, LABELS))
 
@@ -71,6 +80,12 @@ class Families:
         moved = abs(after.deviation.from_start - before.deviation.from_start) > CHANGE
         return hyperbolic.any() or changed.any() or (
             moved and not after.undetermined and not before.undetermined)
+
+
+def labels(states):
+    """How many states there are of each kind."""
+    count = Counter(state.label for state in states)
+    return "Labels of the states: %s." % ", ".join("%s (%d)" % item for item in count.items())
 
 
 def chosen(first_known=False):

@@ -4,7 +4,7 @@ import numpy as np
 
 from converse.draw.plot import BLUE, DARK, GREY, VERMILLION
 from converse.orbits import pictures
-from converse.orbits.pictures import LOST, Shown, labels, vector_words
+from converse.orbits.pictures import LOST, Shown, vector_words
 from converse.orbits.potential import ff, poly, trig
 
 from . import shared
@@ -122,8 +122,8 @@ def lyaps(figure, families):
             "time, first and second, the title says; at the state before, at most %g less, it is "
             "not.  Exponents below %g are not told from 0.  1989's method could not tell those "
             "below %g, about (log q)/q.  The thesis does not say the range of ε; 0 to %g was "
-            "chosen here.  %s  %s" % (shared.SHORTEST, SMALLEST, NOISE, shared.TOP, labels(states),
-                                      shared.RESOLVED))
+            "chosen here.  %s  %s" % (shared.SHORTEST, SMALLEST, NOISE, shared.TOP,
+                                      shared.labels(states), shared.RESOLVED))
 
 
 def leaves(family, k):

@@ -333,7 +333,7 @@ def test_jumps():
 
 def test_sequence(drawn, families):
     figure, words = drawn("hed_st")
-    mediants = {m.q: m.p for m in itertools.islice(farey.triangle(("1/10", farey.GOLDEN)), 20)}
+    mediants = {m.q: m.p for m in itertools.islice(farey.triangle(("1/10", shared.GOLDEN)), 20)}
     for number, q in enumerate(hedlund.SEQUENCE):
         left, right = figure.axes[2 * number:2 * number + 2]
         state = families.at(orbits.poly, (mediants[q], q), 0.02)
@@ -345,10 +345,11 @@ def test_sequence(drawn, families):
 
 def test_sequence_of_the_thesis(monkeypatch):
     monkeypatch.undo()
-    mediants = {m.q: m.p for m in itertools.islice(farey.triangle(("1/10", farey.GOLDEN)), 37)}
+    mediants = {m.q: m.p for m in itertools.islice(farey.triangle(("1/10", shared.GOLDEN)), 37)}
     assert set(hedlund.SEQUENCE) <= set(mediants) and hedlund.SEQUENCE[-1] == 3770
     assert shared.TENTH == (mediants[3770], 3770)
-    assert shared.SPIRAL in [m[:2] for m in itertools.islice(farey.triangle(farey.SPIRAL), 30)]
+    assert shared.SPIRAL in [m[:2] for m in itertools.islice(
+        farey.triangle(shared.SPIRAL_MEAN), 30)]
 
 
 def test_tree(drawn):

@@ -13,6 +13,11 @@ PADOVAN = [2, 2, 3, 4, 5, 7, 9, 12, 16, 21, 28, 37, 49, 65, 86, 114, 151, 200, 2
            816, 1081, 1432, 1897, 2513, 3329, 4410, 5842]
 TENTH = [2, 2, 3, 3, 5, 5, 8, 10, 13, 18, 21, 26, 39, 47, 60, 68, 81, 89, 102, 110, 191, 199, 301,
          309, 411, 610, 720, 1021, 1330, 1631, 1940, 2241, 2550, 2851, 3160, 3461, 3770]
+# (sqrt 5 - 1)/2, and (tau^-2, tau^-1) with tau^3 = tau + 1, rounded down to 60 digits.
+GOLDEN = Fraction("0.618033988749894848204586834365638117720309179805762862135448")
+SPIRAL_MEAN = (Fraction("0.569840290998053265911399958119568648839797439128940220544730"),
+               Fraction("0.754877666246692760049508896358528691894606617772793143989283"))
+STEP = Fraction(10, 10 ** 60)
 ADDRESS = "rlrrlllllrlllrlrlrllrrlrrrrrlrlrlrlr"    # thesis, Appendix A: of (377, 2330)/3770
 
 inside = st.fractions(0, 1).filter(lambda w: 0 < w < 1)
@@ -25,51 +30,48 @@ def take(generator, count):
 
 
 def test_the_constants():
-    """Each lies below the root it stands for, and 10/UNIT more lies above."""
-    step = Fraction(10, farey.UNIT)
-    roots = [(farey.GOLDEN, lambda x: x * x + x - 1),
-             (farey.SPIRAL[1], lambda x: x ** 3 + x * x - 1),       # 1/tau
-             (farey.SPIRAL[0], lambda x: x ** 3 - x * x + 2 * x - 1)]         # 1/tau^2
+    """Each lies below the root it stands for, and STEP more lies above."""
+    roots = [(GOLDEN, lambda x: x * x + x - 1),
+             (SPIRAL_MEAN[1], lambda x: x ** 3 + x * x - 1),       # 1/tau
+             (SPIRAL_MEAN[0], lambda x: x ** 3 - x * x + 2 * x - 1)]         # 1/tau^2
     for number, polynomial in roots:
-        assert polynomial(number) < 0 < polynomial(number + step)
-    assert [round(float(x), 7) for x in farey.SPIRAL] == [0.5698403, 0.7548777]
+        assert polynomial(number) < 0 < polynomial(number + STEP)
+    assert [round(float(x), 7) for x in SPIRAL_MEAN] == [0.5698403, 0.7548777]
 
 
 def test_the_constants_are_exact_enough():
     """Far beyond any period here, the true numbers' mediants are those of the constants."""
-    step, zero = Fraction(10, farey.UNIT), Fraction(0)
-    first = take(farey.triangle(farey.SPIRAL), 300)
-    for bump in (step, step), (step, zero), (zero, step):
-        assert take(farey.triangle([x + y for x, y in zip(farey.SPIRAL, bump)]), 300) == first
+    zero = Fraction(0)
+    first = take(farey.triangle(SPIRAL_MEAN), 300)
+    for bump in (STEP, STEP), (STEP, zero), (zero, STEP):
+        assert take(farey.triangle([x + y for x, y in zip(SPIRAL_MEAN, bump)]), 300) == first
     assert first[-1].q > 10 ** 30
-    assert take(farey.tree(farey.GOLDEN), 120) == take(farey.tree(farey.GOLDEN + step), 120)
+    assert take(farey.tree(GOLDEN), 120) == take(farey.tree(GOLDEN + STEP), 120)
 
 
 def test_spiral_mean():
-    mediants = take(farey.triangle(farey.SPIRAL), 30)
+    mediants = take(farey.triangle(SPIRAL_MEAN), 30)
     assert [m.q for m in mediants] == PADOVAN
     assert mediants[26] == ((1432, 1897), 2513, "r" * 26)
 
 
 def test_a_tenth_and_the_golden_mean():
     """A resonant vector: it comes to lie on an edge, and ties decide."""
-    w = Fraction(1, 10), farey.GOLDEN
+    w = Fraction(1, 10), GOLDEN
     mediants = take(farey.triangle(w), 37)
     assert [m.q for m in mediants] == TENTH
     assert mediants[36] == ((377, 2330), 3770, ADDRESS)
     assert mediants[26] == ((72, 445), 720, ADDRESS[:26])
-    assert mediants == take(farey.triangle(("1/10", farey.GOLDEN)), 37)
-    assert mediants == take(farey.triangle(("0.1", str(float(farey.GOLDEN)))), 37)
-    nearest = Fraction(0.1), farey.GOLDEN                   # the double is above a tenth
+    assert mediants == take(farey.triangle(("1/10", GOLDEN)), 37)
+    assert mediants == take(farey.triangle(("0.1", str(float(GOLDEN)))), 37)
+    nearest = Fraction(0.1), GOLDEN                   # the double is above a tenth
     assert take(farey.triangle(nearest), 37)[36] != mediants[36]
 
 
 def test_golden_mean():
     """The n-th approximant is the mediant of level n with the largest p + q."""
-    assert set(take(farey.continued_fraction(farey.GOLDEN), 1)) == {0}
-    assert set(take(farey.continued_fraction(farey.GOLDEN), 140)[1:]) == {1}
     intervals = [((0, 1), (1, 1))]
-    for n, mediant in enumerate(take(farey.tree(farey.GOLDEN), 9)):
+    for n, mediant in enumerate(take(farey.tree(GOLDEN), 9)):
         level = [tuple(map(sum, zip(*ends))) for ends in intervals]
         assert sum(max(level, key=sum)) == mediant.p[0] + mediant.q
         assert mediant.address == ("rl" * 9)[:n]
@@ -109,25 +111,6 @@ def test_tree(w):
             high, address = (p, q), address + "l"
     if len(mediants) < 400:
         assert Fraction(p, q) == w
-    fractions = {Fraction(p, q) for (p,), q, _ in mediants}
-    assert all(x in fractions for x in farey.convergents(w)
-               if 0 < x < 1 and x.denominator <= mediants[-1].q)
-
-
-@given(inside)
-def test_continued_fraction(w):
-    """It ends with w, and each convergent is nearer than what has a smaller denominator."""
-    quotients = list(farey.continued_fraction(w))
-    value = Fraction(quotients[-1])
-    for quotient in reversed(quotients[:-1]):
-        value = quotient + 1 / value
-    fractions = list(farey.convergents(w))
-    assert value == w == fractions[-1] and all(a > 0 for a in quotients[1:])
-    for x, y in zip(fractions, fractions[1:]):
-        assert abs(w - x) <= Fraction(1, x.denominator * y.denominator)
-    for x in fractions[1:]:
-        for q in range(1, min(x.denominator, 50)):
-            assert abs(w - x) < abs(w - Fraction(round(w * q), q))
 
 
 @given(vectors)
@@ -158,7 +141,7 @@ def test_rational_vectors_are_met(point):
 
 @pytest.mark.parametrize("w", [0.1, "x", "1/0", None, float("nan"), "\x1b[1m"])
 def test_what_is_no_exact_number(w):
-    for call in farey.tree, farey.continued_fraction, lambda w: farey.triangle((w, "0.5")):
+    for call in farey.tree, lambda w: farey.triangle((w, "0.5")):
         with pytest.raises((TypeError, ValueError), match=r"\A[ -~]+\Z"):
             next(call(w))
 
