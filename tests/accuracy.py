@@ -310,11 +310,12 @@ ROWS = [
 HEAD = """\
 # How accurate the rigorous routines are
 
-Each number is a bound's or a result's distance from the truth, which is rational arithmetic or
-mpmath with %d digits, in the unit of its row: least and largest seen, rounded outwards to three
-digits, and the median in brackets where nothing limits the distance upwards. A place is 10^-dp with
-dp places; in double precision, which promises only what csrc/loewner and sine.h do, it is 10^-15 relative to the
-arguments (for the inverse: error relative to its largest entry times the condition number).
+Each number is the distance of a bound or a result from the truth, in the unit of its row. The truth
+is rational arithmetic or mpmath with %d digits. A cell gives the least and the largest distance
+seen, rounded outwards to three digits. Where nothing limits the distance upwards, it also gives the
+median, in brackets. A place is 10^-dp with dp places. Double precision promises only the rows of
+csrc/loewner and sine.h; its unit is 10^-15 relative to the arguments. (For the inverse, the error
+is relative to its largest entry times the condition number.)
 """
 COLUMNS = ("operation", "algorithm", "promised in csrc", "limits", *DP, "cases")
 

@@ -180,7 +180,7 @@ def test_what_is_checked_and_what_coq_proves():
                           for name in ("trig142.in", "trig141.in")]
     assert table[-1][0] == "from 0.0139"
     assert said("trust.md", r"epsilon_c <= 0.0139 \(([0-9,]+) leaves") == [counts[-1]]
-    assert {name: number(count.split()[0]) for names, count, *_ in rows("trust.md", "theorem")[1:]
+    assert {name: number(count.split()[0]) for names, count, *_ in rows("coq.md", "theorem")[1:]
             for name in re.findall("`(trig[0-9]+)`", names)} == {
         name: sharper(given(name + ".in", together=True)).proved for name in
         ["trig%d" % n for n in (272, 274, 276, 278, 240, 180, 160, 152, 148, 144, 142, 141)]}
@@ -293,7 +293,7 @@ def test_the_margins():
         seen for name, seen in general if name not in more]
     assert [len(first) + len(general)] == said("trust.md", "the ([0-9]+) rows of two tables")
     assert [len(proved) + len(more) - 1] == said("trust.md",
-                                                 "for ([0-9]+) others `formal/roundings.py`")
+                                                 "For ([0-9]+) others `formal/roundings.py`")
     assert [len(by_hand), by_hand.count("")] == said(
         "trust.md", "remaining ([0-9]+) are bounded by hand, and tests hold all but ([0-9]+) of "
                     "these")
