@@ -28,20 +28,21 @@ def positive_int(text):
 def parser():
     p = Parser(prog="converse-check", allow_abbrev=False,
                formatter_class=argparse.RawDescriptionHelpFormatter, description=(
-        "Verifies the theorem of a proof file, all those of a map, or that of a certificate of\n"
-        "existence, independently of the program that wrote them."),
+        "Verifies the theorem of a proof file, all those of a map, or that of a portrait or a\n"
+        "certificate of existence, independently of the program that wrote them."),
         epilog="""exit status:
   0    verified
   1    rejected: the file is wrong (altered, unfinished, with undecided or missing
        parts, wrong counts, a skipped part without its mirror image), or it is a
-       map of which nothing is proved
+       map or portrait of which nothing is proved
   2    bad usage, or a file that cannot be read
   3    verified, but for successors in a part of the torus only
   4    a spot check in which nothing failed: NOT a verification
   5    not confirmed: the claim is false or its proof beyond the checker's limits
   130  interrupted (129, 143: by SIGHUP, SIGTERM)""")
     p.add_argument("file", help=(
-        "a finished proof file, a map or a certificate of existence, perhaps compressed by gzip"))
+        "a finished proof file, a map, a portrait or a certificate of existence, perhaps "
+        "compressed by gzip"))
     p.add_argument("--jobs", type=positive_int, default=1, metavar="N",
                    help="processes (default 1)")
     p.add_argument("--sample", type=positive_int, metavar="K",

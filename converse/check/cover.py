@@ -11,7 +11,8 @@ CENTRE_BITS = 256                       # of the centre of the reversal
 
 
 def reversal_centre(claim):
-    """Bounds of c0 of step (C24), in units of pi, over all parameters: exact numbers.
+    """Bounds of c0 of step (C24), in units of pi, over all parameters, less what the parameters
+    shift v0 by: exact numbers.
 
     pi c0 is the first component of F^-1 (x* - V'(x*)/2), that is u.x* + sum of p u.k cos(k.x* +
     phase)/2 over the waves, with u the first row of F^-1; and affine in the parameters.  A cosine
@@ -29,6 +30,9 @@ def reversal_centre(claim):
         middle += wave.middle * cosine
         moved = [x + part * cosine for x, part in zip(moved, wave.parts)]
         error += abs(weight) * (abs(wave.middle) + sum(map(abs, wave.parts))) * (SINE_ERROR + 3)
+    for m, (shift, _) in enumerate(claim.shifts):       # pi is within 2 units
+        moved[m] -= shift * Fraction(fixed.pi, one)
+        error += 2 * abs(shift)
     error = error / one + sum(map(abs, moved))
     ends = [x / Fraction(fixed.pi + off, one) for x in (middle - error, middle + error)
             for off in (-2, 2)]

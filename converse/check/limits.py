@@ -14,6 +14,7 @@ CAUTION = (0, 0.2), (0.3, 0), (0, 1.0), (1.0, 0)  # of the choice of n, in turns
 MAX_SITES, FIRST_TRY = 4096, 96         # of half an orbit; where its length is tried first
 MAX_WAVES, MAX_K = 16, 100              # of a potential; |k0| and |k1|
 MAX_ITEMS = 1 << 22                     # of a map
+MAX_COLUMNS, MAX_STRIP = 1 << 16, 0.5   # of a portrait; half the width of a column, times k
 MAX_CELLS = 1 << 15                     # of the torus, about, when B is bounded
 MAX_DIVISORS = 1 << 21                 # of a rotation, computed one by one
 MAX_MODES, MAX_MODE = 1 << 21, 1 << 21  # of a torus; |k0| and |k1|

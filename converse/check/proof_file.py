@@ -23,16 +23,17 @@ FIELDS = {*ANGLES, *COUNTS, *IGNORED, "kind", "xstar", "at once", "wave", "frame
 REPEATED = {"wave", "parameter", "comment"}
 MAGIC, VERSION = b"converse proof ", b"6"       # the first line
 TORUS_MAGIC = b"converse torus "        # of a certificate of existence, as long
+PORTRAIT_MAGIC = b"converse portra"     # of a portrait, as much of it
 
 
 def load(path):
-    """The bytes of a proof file, a map or a certificate of existence, uncompressed."""
+    """The bytes of a proof file, a map, a portrait or a certificate of existence, uncompressed."""
     try:
         with open(path, "rb") as file:
             packed = file.peek(2)[:2] == b"\x1f\x8b"
             stream = gzip.GzipFile(fileobj=file) if packed else file
             data = bytearray(stream.read(len(MAGIC)))
-            if data not in (MAGIC, TORUS_MAGIC) and not data.startswith(b"{"):
+            if data not in (MAGIC, TORUS_MAGIC, PORTRAIT_MAGIC) and not data.startswith(b"{"):
                 raise Unusable("is not a proof file")
             while (more := stream.read(1 << 20)) and len(data) <= MAX_BYTES:
                 data += more
@@ -48,40 +49,50 @@ def load(path):
 def read_proof(data):
     """The claim of a proof file, if it is whole and has the checksum that it says."""
     if not data.startswith(MAGIC):
-        raise Unusable("is a map or a certificate of existence, which converse-check verifies")
-    first = data[len(MAGIC):len(MAGIC) + 9].partition(b"\n")[0]
+        raise Unusable("is a map, a portrait or a certificate of existence, which converse-check "
+                       "verifies")
+    head, tree, sha256 = sealed(data, MAGIC + VERSION, "proof file", b"tree:\n", "is no tree")
+    return parse(bytes(head), bytes(tree).decode("latin-1"), sha256)
+
+
+def sealed(data, first_line, kind, marker, lack):
+    """What stands in a file before and after the line `marker`, which begins with this first line
+    and has the checksum that it says, as memoryviews; and the SHA-256 of the whole.  kind, lack:
+    what such a file is called, and that there is nothing after the marker, in words."""
+    start = first_line.rindex(b" ") + 1
+    first = data[start:start + 9].partition(b"\n")[0]
     if first.endswith(b"\r"):
         raise Rejected("its lines end in CR LF: it was altered on its way; ask for the original")
-    if first != VERSION:
-        raise Unusable("is a proof file of another version; this checker knows version 6")
-    marker = b"checksum: sha256 "
-    end = data.rfind(b"\n" + marker) + 1
-    end_line = data[end + len(marker):]
+    if first != first_line[start:]:
+        raise Unusable("is a %s of another version; this checker knows version %s"
+                       % (kind, first_line[start:].decode()))
+    checksum = b"checksum: sha256 "
+    end = data.rfind(b"\n" + checksum) + 1
+    end_line = data[end + len(checksum):]
     if not end or not re.fullmatch(b"[0-9a-f]{64}\nend\n", end_line):
         raise Rejected("the file does not end with its checksum; it is truncated or altered")
     view = memoryview(data)
     if end_line[:64] != hashlib.sha256(view[:end]).hexdigest().encode():
         raise Rejected("wrong checksum: the file was changed or damaged")
-    start = data.find(b"\ntree:\n", 0, end) + 1
-    if not start:
-        raise Rejected("there is no tree")
-    tree = data[start + len(b"tree:\n"):end].decode("latin-1")
-    return parse(bytes(view[:start]), tree, hashlib.sha256(view).hexdigest())
+    at = data.find(b"\n" + marker, 0, end) + 1
+    if not at:
+        raise Rejected("there " + lack)
+    return view[:at], view[at + len(marker):end], hashlib.sha256(view).hexdigest()
 
 
-def parse_header(head):
+def header_fields(head, known):
     """The fields, each of them given once, and none of unknown meaning.
 
     Nothing of it is repeated in a message but the names of fields that are known.
     """
     header, file = {"wave": []}, io.BytesIO(head)
-    file.readline()                     # which read_proof has seen to
+    file.readline()                     # which sealed has seen to
     for at, line in enumerate(iter(lambda: file.readline(MAX_LINE), b""), 2):
         if len(line) == MAX_LINE:
             raise NotConfirmed("line %d is longer than the checker's limit, %d bytes"
                                % (at, MAX_LINE - 1))
         name, colon, value = line.decode("utf-8", "replace").rstrip("\n").partition(": ")
-        if not colon or name not in FIELDS | OPTIONAL:
+        if not colon or name not in known:
             raise Rejected("line %d, in the header, is of unknown meaning" % at)
         if name in header and name not in REPEATED:
             raise Rejected("the header gives %s twice" % name)
@@ -89,6 +100,11 @@ def parse_header(head):
             header[name].append(value)
         else:
             header[name] = value
+    return header
+
+
+def parse_header(head):
+    header = header_fields(head, FIELDS | OPTIONAL)
     if "xstar" not in header:
         raise Rejected("the search had not begun when it was left; converse -r FILE begins it")
     if FIELDS - header.keys():

@@ -11,8 +11,9 @@ from .limits import PART, SPOT_CHECK, VERIFIED
 from .links import check_links
 from .lockstep import make_lockstep
 from .maps import Map, check_map, mapped, read_map
+from .portrait import Portrait, portrayed, read_portrait
 from .progress import Bar
-from .proof_file import TORUS_MAGIC, load, read_proof
+from .proof_file import PORTRAIT_MAGIC, TORUS_MAGIC, load, read_proof
 from .state import State
 from .tori import verify_torus
 from .torus_file import TorusClaim, read_torus
@@ -28,7 +29,8 @@ VERDICTS = {VERIFIED: "verified", PART: "verified in part", SPOT_CHECK: "spot ch
 @dataclass(frozen=True)
 class Result:
     """What came of a check in which nothing failed: true only if the whole claim is verified and
-    its region is the whole torus, or all that a map says is proved.  (All else is an exception.)
+    its region is the whole torus, or all that a map or a portrait says is proved.  (All else is an
+    exception.)
     """
 
     status: int                         # VERIFIED, PART or SPOT_CHECK: the exit status, too
@@ -41,17 +43,19 @@ class Result:
 
 
 def read(path):
-    """Reads a proof file, a map or a certificate of existence; nothing in it is believed but what
-    the claim is."""
+    """Reads a proof file, a map, a portrait or a certificate of existence; nothing in it is
+    believed but what the claim is."""
     data = load(path)
     if data.startswith(TORUS_MAGIC):
         return read_torus(data)
+    if data.startswith(PORTRAIT_MAGIC):
+        return read_portrait(data)
     return read_map(data) if data.startswith(b"{") else read_proof(data)
 
 
 def verify(path, jobs=1, sample=None, state=None, bar=False, exact=False):
-    """Verifies a proof file, a map or a certificate of existence: a Result; else Rejected,
-    NotConfirmed or Unusable is raised.
+    """Verifies a proof file, a map, a portrait or a certificate of existence: a Result; else
+    Rejected, NotConfirmed or Unusable is raised.
 
     jobs: processes.  sample: so many leaves only, chosen by chance: a spot check.
     state: a file that remembers what was confirmed, so that an interrupted check can go on; it
@@ -74,6 +78,8 @@ def verify(path, jobs=1, sample=None, state=None, bar=False, exact=False):
         return Result(VERIFIED, "verified", "\n".join([*lines, "SHA-256 : " + file.sha256]), facts)
     if isinstance(file, Map):
         problems = Problems(file.claims, check_map(file))
+    elif isinstance(file, Portrait):
+        problems = Problems(file.claims)
     else:
         check_tree(file)
         check_mirror_images(file)
@@ -110,10 +116,10 @@ def verify(path, jobs=1, sample=None, state=None, bar=False, exact=False):
                     raise NotConfirmed(not_excluded(claim, n - sum(proved[:at]), cell, why))
     finally:
         done.save()
-    is_map = isinstance(file, Map)
-    status, lines = report(problems.claims, mapped(file) if is_map else claimed(file),
-                           None if is_map else problems.criterion(0), done.confirmed, done.pieces,
-                           bool(problems.fast))
+    theorem_of = {Map: mapped, Portrait: portrayed}.get(type(file), claimed)
+    status, lines = report(problems.claims, theorem_of(file),
+                           problems.criterion(0) if theorem_of is claimed else None,
+                           done.confirmed, done.pieces, bool(problems.fast))
     if sample is not None:
         status = SPOT_CHECK
         lines[:1] = ["Spot check of %d of %d proved leaves, NOT a verification: none of them fails."

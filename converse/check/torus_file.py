@@ -1,7 +1,6 @@
 """Reading a certificate of existence: what it claims, exact; docs/reference/torus-certificate.md
 describes it."""
 
-import hashlib
 import io
 import itertools
 import re
@@ -9,9 +8,9 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from .claim import RATIO, number, present
-from .failures import NotConfirmed, Rejected, Unusable
+from .failures import NotConfirmed, Rejected
 from .limits import MAX_ALPHA, MAX_BITS, MAX_K, MAX_LINE, MAX_MODE, MAX_MODES, MAX_PIECES
-from .proof_file import TORUS_MAGIC, parse_waves
+from .proof_file import TORUS_MAGIC, parse_waves, sealed
 
 TORUS_FIELDS = ("program", "dimension", "wave", "polynomial", "root", "rotation", "frame", "alpha",
                 "rho", "pieces")
@@ -56,26 +55,8 @@ class TorusClaim:
 
 def read_torus(data):
     """The claim of a certificate, if it is whole and has the checksum that it says."""
-    first = data[len(TORUS_MAGIC):len(TORUS_MAGIC) + 9].partition(b"\n")[0]
-    if first.endswith(b"\r"):
-        raise Rejected("its lines end in CR LF: it was altered on its way; ask for the original")
-    if first != b"1":
-        raise Unusable("is a certificate of another version; this checker knows version 1")
-    marker = b"checksum: sha256 "
-    end = data.rfind(b"\n" + marker) + 1
-    end_line = data[end + len(marker):]
-    if not end or not re.fullmatch(b"[0-9a-f]{64}\nend\n", end_line):
-        raise Rejected("the file does not end with its checksum; it is truncated or altered")
-    view = memoryview(data)
-    if end_line[:64] != hashlib.sha256(view[:end]).hexdigest().encode():
-        raise Rejected("wrong checksum: the file was changed or damaged")
-    start = data.find(b"\ntori:\n", 0, end) + 1
-    if not start:
-        raise Rejected("there are no tori")
-    header = torus_header(view[:start])
-    body = view[start + len(b"tori:\n"):end]
-    return parse_torus(header, lines_of(body), data.count(b"\n", 0, start) + 2,
-                       hashlib.sha256(view).hexdigest())
+    head, body, sha256 = sealed(data, TORUS_MAGIC + b"1", "certificate", b"tori:\n", "are no tori")
+    return parse_torus(torus_header(head), lines_of(body), bytes(head).count(b"\n") + 2, sha256)
 
 
 def lines_of(data):

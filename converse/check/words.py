@@ -89,12 +89,13 @@ def not_excluded(claim, ordinal, cell, why):
 def report(claims, theorem, criterion, confirmed, pieces, fast=False):
     """The exit status and the lines of a report: the theorem, exactly as far as it was verified.
 
-    claims: of the cells of a map, or of a proof file and its parts; theorem: what is claimed, in
-    lines; criterion: of a proof file, not of a map.
+    claims: of the cells of a map, of the columns of a portrait, or of a proof file and its parts;
+    theorem: what is claimed, in lines; criterion: of a proof file only.
     """
-    proved, skipped, linked = [sum([claim.counts.get(kind, 0) for claim in claims])
-                               for kind in ("proved", "symmetric", "linked")]
-    whole = all(map(is_whole, claims[:1] if criterion else claims))
+    proved, skipped, linked, undecided = [
+        sum([claim.counts.get(kind, 0) for claim in claims])
+        for kind in ("proved", "symmetric", "linked", "undecided")]
+    whole = criterion is None or is_whole(claims[0])    # else a region that is not was rejected
     lines = ["Verified" + ", for a part of the torus only" * (not whole) + " :", *theorem, "",
              "Checker : converse-check " + __version__,
              "Method : Loewner criterion, multipliers, %s%sin integers%s" % (
@@ -114,8 +115,9 @@ def report(claims, theorem, criterion, confirmed, pieces, fast=False):
         lines += ["B : %s" % decimal_text(Fraction(bound, 10 ** places))]
         if claim.alone is not None:
             lines += ["Alone : x%d, a map of its own" % claim.alone]
-    lines += ["Leaves : %d, of which %d proved%s and %d symmetric" % (
-        proved + skipped + linked, proved, ", %d linked to other parts" % linked * (linked > 0),
-        skipped),
+    lines += ["Leaves : %d, of which %d proved%s%s and %d symmetric" % (
+        proved + skipped + linked + undecided, proved,
+        ", %d linked to other parts" % linked * (linked > 0),
+        ", %d undecided" % undecided * (undecided > 0), skipped),
         "Proved leaves checked : %d, in %d pieces" % (confirmed, pieces)]
     return VERIFIED if whole else PART, lines

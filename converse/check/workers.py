@@ -13,8 +13,8 @@ from .tree import leaves
 
 
 class Problems:
-    """The claims of a file: its own and those of its parts, or those of a map's cells with a bound
-    of B for each; the fast path of all, if there is one."""
+    """The claims of a file: its own and those of its parts, or those of a map's cells or of a
+    portrait's columns with a bound of B for each; the fast path of all, if there is one."""
 
     def __init__(self, claims, bounds=None):
         self.claims, self.bounds, self.fast, self.known = claims, bounds, None, {}
@@ -38,7 +38,7 @@ class Problems:
     def leaves(self):
         """The leaves P of all claims, as (number of the claim, cell), in their order."""
         for n, claim in enumerate(self.claims):
-            for position, cell in leaves(claim.tree, kinds="PS" + LETTERS):
+            for position, cell in leaves(claim.tree, kinds="PSU" + LETTERS):
                 if claim.tree[position] == "P":
                     yield n, cell
 

@@ -81,7 +81,8 @@ def _sums(waves):
 def reversal_centre(problem: Problem, xstar: Point) -> Ends:
     """Bounds of c0 in units of pi for all parameters, where pi c0 is the first component of
     F^-1 (x* - V'(x*)/2): of r.x* + sum of (r.k) p cos(k.x* + phase)/2, r the first row of F^-1,
-    over the waves that are examined.  It is affine in the parameters."""
+    over the waves that are examined.  It is affine in the parameters, whose shifts of v0 are
+    subtracted."""
     f00, f01, f10, f11 = problem.frame
     det = f00 * f11 - f01 * f10
     row, star = (Fraction(f11, det), Fraction(-f01, det)), tuple(map(Fraction, xstar))
@@ -94,6 +95,8 @@ def reversal_centre(problem: Problem, xstar: Point) -> Ends:
         _add(ends, weight * problem.amplitude[j], cosine)
         for move, part in zip(moves, problem.parts):
             _add(move, weight * part[j], cosine)
+    for move, (shift, _) in zip(moves, problem.shifts):
+        _add(move, -shift, pi_bounds(DIGITS))
     reach = sum([max(map(abs, move)) for move in moves], Fraction(0))
     quotients = [x / p for x in (ends[0] - reach, ends[1] + reach) for p in pi_bounds(DIGITS)]
     return min(quotients), max(quotients)

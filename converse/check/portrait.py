@@ -1,0 +1,227 @@
+"""A portrait: where in phase space there are no invariant circles, column by column; step (C27)."""
+
+import collections
+import math
+from dataclasses import dataclass, replace
+from fractions import Fraction
+
+from .arith import fixed_of
+from .claim import IDENTITY, NUMBER, RATIO, Claim, Wave, number, present
+from .cover import CENTRE_BITS, reversal_centre
+from .failures import NotConfirmed, Rejected, named
+from .limits import MAX_COLUMNS, MAX_STRIP
+from .proof_file import header_fields, parse_waves, sealed
+from .tree import leaves
+from .words import decimal_text
+
+FIRST_LINE = b"converse portrait 1"
+FIELDS = {"wave", "strip", "even about", "undecided", "program", "depth", "columns"}
+STRIP_AXIS = 3                          # of cells: that of t2, along which a strip is cut
+PLACES = 6                              # of the share that the header says
+
+
+@dataclass(frozen=True)
+class Portrait:
+    """What a portrait says; exact."""
+
+    waves: tuple
+    strip: Fraction                     # half the width of a column, in radians; 0: lines
+    even: object                        # V is even about this point, in units of pi; or None
+    claims: tuple                       # of the regions of all columns, in their order; the
+                                        # others are parts of the first, as their patch is one
+    sha256: str                         # of the file, uncompressed
+
+    @property
+    def columns(self):
+        """The regions of each column, in their order."""
+        found = {}
+        for claim in self.claims:
+            found.setdefault(claim.xstar, []).append(claim)
+        return list(found.values())
+
+    @property
+    def length(self):
+        """Of the interval in which x* lies, in radians, from below and from above."""
+        fixed = fixed_of(CENTRE_BITS)
+        turns = 1 if self.even is not None else 2
+        return [turns * Fraction(fixed.pi + off, fixed.one) for off in (-2, 2)]
+
+    @property
+    def undecided(self):
+        """At most this share of phase space, or of lines, has no proof, rounded up."""
+        shares = [share(column, self.strip) for column in self.columns]
+        if self.strip:
+            total = 1 - 2 * self.strip * sum([1 - x for x in shares]) / self.length[1]
+        else:
+            total = sum(shares) / len(shares)
+        return Fraction(math.ceil(total * 10 ** PLACES), 10 ** PLACES)
+
+
+def patch_of_strip(wave, strip):
+    """The waves of a patch that holds V(y + s) for all |s| <= strip, V(y) = -p sin(k y + phi).
+
+    It is -p cos(k s) sin(k y + phi) - p sin(k s) sin(k y + phi + pi/2).  With p = P + g t, t2 =
+    sin(k s)/angle and angle = k strip, p sin(k s) = P angle t2 + g angle (t t2), and t t2 is
+    another t3 in [-1, 1]; and |p cos(k s) - P (1 - angle^2/4)| <= angle^2/4 |P| + |g|.
+    """
+    (k, _), p, g = wave.k, wave.middle, (*wave.parts, Fraction(0))[0]
+    angle, zero = k * strip, Fraction(0)
+    bend = angle * angle / 4
+    along = bend * abs(p) + abs(g), zero, zero
+    across = zero, p * angle, g * angle
+    count = 3 if g else 2
+    return (Wave(wave.k, wave.phase, p * (1 - bend), along[:count]),
+            Wave(wave.k, wave.phase + Fraction(1, 2), zero, across[:count]))
+
+
+def share(column, strip):
+    """At most this share of a column has no proof.
+
+    Its regions hold half a turn of successors for each x[0] of the strip, and the reversal of time
+    has the other half.  A leaf U is there for those s of the strip whose t2 is in its slice of t2:
+    they are an interval of at most 1/sqrt(1 - angle^2) <= 1 + angle^2 times the slice's width
+    times strip, as s = arcsin(angle t2)/k, and angle^2 <= 1/2.  Cuts of t1 and t3 do not count: a
+    successor is proved only where all leaves over it are.
+    """
+    angle = column[0].waves[0].k[0] * strip
+    total = sum([2 * claim.half[0] * claim.counts["lost"] for claim in column])
+    return min(total * (1 + angle * angle), Fraction(1))
+
+
+def read_portrait(data):
+    """The portrait, if it is whole and all its regions are what they must be."""
+    head, body, sha256 = sealed(data, FIRST_LINE, "portrait", b"columns:\n", "are no columns")
+    header = header_fields(bytes(head), FIELDS | {"comment"})
+    if FIELDS - header.keys():
+        raise Rejected("the header lacks %s" % ", ".join(sorted(FIELDS - header.keys())))
+    waves, strip = present(parse_waves(header["wave"])), number(header["strip"], "the strip")
+    if any(wave.k[1] for wave in waves) or not waves:
+        raise Rejected("the waves are not those of a map of one angle")
+    if strip:
+        if strip < 0 or len(waves) > 1 or len(waves[0].parts) > 1:
+            raise Rejected("strips have a positive width, and are of one wave with one parameter "
+                           "at most")
+        if abs(waves[0].k[0]) * strip > MAX_STRIP:
+            raise NotConfirmed("the strips are wider than the checker's limit")
+        patch = patch_of_strip(waves[0], strip)
+    else:
+        patch = waves
+    even = None
+    if header["even about"] != "no":
+        even = number(header["even about"], "the header's even about", RATIO)
+        if any((wave.k[0] * even + wave.phase - Fraction(1, 2)) % 1 for wave in waves):
+            raise Rejected("V is not even about the point that the header names")
+    claims = [read_region(line, patch, strip, "column line %d" % at, sha256) for at, line in
+              enumerate(bytes(body).decode("latin-1").splitlines(), 1)]
+    if not claims:
+        raise Rejected("there are no columns")
+    claims[0] = replace(claims[0], parts=tuple(claims[1:]))
+    found = Portrait(waves, strip, even, tuple(claims), sha256)
+    check_places(found)
+    for column in found.columns:
+        with named(column[0].where):
+            check_column(column, strip)
+    said = number(header["undecided"], "the header's undecided")
+    if said != found.undecided:
+        raise Rejected("the header's undecided is %s, that of its columns %s"
+                       % (decimal_text(said), decimal_text(found.undecided)))
+    if not any("P" in claim.tree for claim in claims):
+        raise Rejected("no prism of the portrait is proved: it claims no theorem")
+    return found
+
+
+def read_region(line, patch, strip, name, sha256):
+    """The claim of a line: x*, the centre and half-width of v0, the shift by t2, and a tree."""
+    words = line.split(" ")
+    if len(words) != 5 or not all(map(NUMBER.fullmatch, words[:4])):
+        raise Rejected(name + " is not four decimal numbers and a tree")
+    x, centre, half, shift = [number(word, name) for word in words[:4]]
+    if half < 0 or shift and not strip:
+        raise Rejected("%s: %s" % (name, "the half-width is negative" if half < 0 else
+                                   "there are no strips, and the region moves"))
+    zero, one, count = Fraction(0), Fraction(1), len(patch[0].parts)
+    shifts = tuple([(shift if m == 1 else zero, zero) for m in range(count)]) if shift else ()
+    claim = Claim(patch, (centre, one), (half, one), IDENTITY, None, (x, zero), {}, "no", words[4],
+                  sha256, where=name, shifts=shifts)
+    lost, deepest, most_cuts = collections.Counter(), 0, 0
+    with named(name):
+        for at, (_, cuts) in leaves(claim.tree, kinds="PU"):
+            deepest = max(deepest, sum(cuts))
+            if claim.tree[at] == "P":
+                most_cuts = max(most_cuts, sum(cuts))
+            else:
+                lost[cuts[0] + (cuts[STRIP_AXIS] if strip else 0)] += 1
+            if any(cuts[2 + count:]):
+                raise Rejected("the tree cuts a parameter that there is not")
+    proved, undecided = map(claim.tree.count, "PU")
+    claim.counts.update(cuts=proved + undecided - 1, proved=proved, symmetric=0, linked=0,
+                        undecided=undecided, most_cuts=most_cuts, depth=deepest,
+                        lost=sum([Fraction(n, 1 << cuts) for cuts, n in lost.items()]))
+    return claim
+
+
+def check_places(portrait):
+    """Rejected, if strips overlap, each other or mirror images, or are not where they must be."""
+    stars = [column[0].xstar[0] for column in portrait.columns]
+    regions = [claim.xstar[0] for claim in portrait.claims]
+    if regions != sorted(regions) or any(b - a < 2 * portrait.strip
+                                         for a, b in zip(stars, stars[1:])):
+        raise Rejected("the columns are not in their order, or overlap")
+    if len(stars) > MAX_COLUMNS:
+        raise NotConfirmed("there are more columns than the checker's limit, %d" % MAX_COLUMNS)
+    low, high = stars[0] - portrait.strip, stars[-1] + portrait.strip
+    if portrait.even is not None:
+        fixed = fixed_of(CENTRE_BITS)
+        ends = [portrait.even * Fraction(fixed.pi + off, fixed.one) for off in (-2, 2)]
+        if low < max(ends) or high > min(ends) + portrait.length[0]:
+            raise Rejected("an x* lies outside of the half turn whose mirror image is the other "
+                           "half")
+    elif high - low > portrait.length[0]:
+        raise Rejected("an x* lies outside of the turn that begins with the first strip")
+
+
+def check_column(column, strip):
+    """Rejected, if the regions do not hold, for all parameters, all successors from c0 to c0 + 1,
+    c0 as in step (C24); they are one after the other, and overlap or touch."""
+    first, last = column[0], column[-1]
+    try:
+        least, most = reversal_centre(first)[0], reversal_centre(last)[1] + 1
+    except OverflowError:               # of an x* far off
+        raise Rejected("x* is too far off") from None
+    whole = first.centre[0] - first.half[0] <= least and most <= last.centre[0] + last.half[0]
+    for a, b in zip(column, column[1:]):
+        for t in (-1, 1):
+            high, low = [claim.centre[0] + sign * claim.half[0] + t * (
+                claim.shifts[1][0] if claim.shifts else 0) for claim, sign in ((a, 1), (b, -1))]
+            whole &= low <= high
+    if not whole:
+        raise Rejected("its region does not hold enough of the successors")
+
+
+def portrayed(portrait):
+    """What a portrait claims, in lines."""
+    count = len(portrait.columns)
+    lines = ["The map x[j+1] = 2 x[j] - x[j-1] - V'(x[j]) of one angle (modulo 2 pi),",
+             "V(y) = - the sum of p sin(k y + phase) over the waves below, has no rotational",
+             "invariant circle (no invariant graph p = P + S'(x), where p[j] = x[j] - x[j-1], P is",
+             "constant, S periodic and C1) with x[0] in a column and x[1] over a proved prism",
+             "for any parameters with"]
+    for wave in portrait.waves:
+        terms = [" %s %s t%d" % ("-" if g < 0 else "+", decimal_text(abs(g)), m)
+                 for m, g in enumerate(wave.parts, 1) if g]
+        lines += ["k = %d, phase = %s pi, p = %s" % (
+            wave.k[0], wave.phase, decimal_text(wave.middle) + "".join(terms))]
+    if any(map(any, [wave.parts for wave in portrait.waves])):
+        lines += ["-1 <= t <= 1"]
+    lines += ["Columns : %d%s, x[0] = x* %s" % (
+        count, " and their mirror images about x = %s pi" % portrait.even
+        if portrait.even is not None else "",
+        "+ s, |s| <= " + decimal_text(portrait.strip) if portrait.strip else "alone"),
+        "Undecided : at most %s of %s" % (decimal_text(portrait.undecided), "phase space"
+                                          if portrait.strip else "the successors, on average")]
+    if portrait.strip:
+        area = (1 - portrait.undecided) * portrait.length[0] ** 2 * (
+            4 if portrait.even is not None else 1)
+        lines += ["Area without circles : at least %s of 4 pi^2" % decimal_text(
+            Fraction(math.floor(area * 10 ** 4), 10 ** 4))]
+    return lines

@@ -1,0 +1,375 @@
+"""A phase portrait that is proved: where no rotational invariant circle of a map passes.
+
+The map has one angle.  A column is a vertical line of phase space at x_0 = x*, or a strip about it,
+|x_0 - x*| <= h.  A strip is a line of another map: of V(y + s), whose waves lie in a patch of two
+parameters or three (docs/portrait.md).  Of each column one tree of prisms is grown to a certain
+depth, and whatever is undecided then stays so.
+"""
+
+import concurrent.futures
+import math
+import os
+import re
+import time
+from collections import Counter
+from dataclasses import dataclass, field, replace
+from fractions import Fraction
+from functools import cached_property
+from typing import Callable, Dict, Iterable, List, Optional, Tuple, Union
+
+from ..model.exact import decimal_text, exact, pi_bounds, rounded
+from ..model.problem import Problem
+from ..model.region import MARGIN, PLACES, reversal_centre
+from ..storage import files
+from ..storage.backup import Backup
+from ..storage.files import ConverseError
+from ..storage.signals import interruptible, postponed
+from ..version import __version__
+from . import native, tree
+from .settings import Settings
+from .workers import LOOK_SECONDS, WorkerPool
+
+FIRST_LINE = "converse portrait 1"
+FIELDS = "program", "strip", "even about", "depth", "columns", "undecided"
+DIGITS = 12                             # decimals of x* and of the width of strips
+SHARE_DIGITS = 6                        # decimals of the share that a file says, rounded up
+WIDEST = 0.5                            # half the width of a strip times k; share() needs less
+MOST_COLUMNS = 1 << 16                  # a limit of the checker
+BARREN = re.compile("[0-4]UU")          # a cut that separates nothing proved
+
+Path = Union[str, "os.PathLike[str]"]
+
+
+@dataclass(frozen=True)
+class Region:
+    """Successors of a column, |v - centre - shift t2| <= half with x_1 = x* + ... = pi v, and their
+    tree; all of it exact, in units of pi."""
+
+    centre: Fraction
+    half: Fraction
+    shift: Fraction
+    tree: str
+
+    @cached_property
+    def lost(self) -> Dict[Tuple[int, int], int]:
+        """How many undecided leaves there are, by their cuts along v0 and along t2."""
+        return Counter((cuts[0], cuts[3]) for kind, (_, cuts) in tree.cells(self.tree)
+                       if kind == "U")
+
+
+@dataclass(eq=False)
+class Portrait:
+    """What is proved of the phase space of a map of one angle.
+
+    problem -- the map, whose amplitudes may have one parameter, or up to three without strips
+    strip -- half the width of a column, in radians; 0: the columns are lines
+    even -- a point, in units of pi, about which V is even: each column stands for its mirror image,
+        too; None: there is none
+    depth -- the most cuts above a prism
+    columns -- how many columns the circle was to have
+    found -- by x*, the regions of the columns that are done
+    seconds -- that the search took
+    sha256 -- of the file, uncompressed; "" if there is none
+    """
+
+    problem: Problem
+    strip: Fraction
+    even: Optional[Fraction]
+    depth: int
+    columns: int
+    found: Dict[Fraction, Tuple[Region, ...]] = field(default_factory=dict)
+    seconds: float = 0.0
+    sha256: str = ""
+
+    @classmethod
+    def new(cls, problem: Problem, columns: int = 600, depth: int = 15,
+            strips: bool = True) -> "Portrait":
+        """ValueError: the numbers or the map do not suit."""
+        problem = _of_circle(problem)
+        for name, value, most in (("columns", columns, MOST_COLUMNS), ("depth", depth, 1000)):
+            if isinstance(value, bool) or not isinstance(value, int) or not 1 <= value <= most:
+                raise ValueError("%s is a whole number from 1 to %d, not %r" % (name, most, value))
+        even = _even(problem)
+        count = -(-columns // 2) if even is not None else columns
+        if not strips:
+            return cls(problem, Fraction(0), even, depth, columns)
+        if len(problem.waves) > 1 or len(problem.parts) > 1:
+            raise ValueError("strips are for a single wave with at most one parameter; ask for "
+                             "lines (strips=False, --lines)")
+        length = pi_bounds(2 * DIGITS)[0] * (1 if even is not None else 2)
+        strip = rounded(length / (2 * count) - Fraction(1, 10 ** DIGITS), DIGITS, up=False)
+        if abs(problem.waves[0][0]) * strip > WIDEST:
+            raise ValueError("%d columns are too few for strips; give at least %d" % (
+                columns, math.ceil(2 * math.pi * abs(problem.waves[0][0]) / (2 * WIDEST)) + 1))
+        return cls(problem, strip, even, depth, columns)
+
+    @property
+    def turns(self) -> int:
+        """The length of the interval in which all x* lie, in units of pi."""
+        return 2 if self.even is None else 1
+
+    @property
+    def stars(self) -> List[Fraction]:
+        """The x* of all columns, in radians."""
+        count = -(-self.columns * self.turns // 2)
+        begin = -1 if self.even is None else self.even
+        low = rounded(max(begin * x for x in pi_bounds(2 * DIGITS)), DIGITS, up=True)
+        half = self.strip or rounded(self.turns * pi_bounds(2 * DIGITS)[0] / (2 * count)
+                                     - Fraction(1, 10 ** DIGITS), DIGITS, up=False)
+        return [low + (2 * i + 1) * half for i in range(count)]
+
+    @cached_property
+    def patch(self) -> Problem:
+        """The problem whose lines are the columns: docs/portrait.md."""
+        if not self.strip:
+            return self.problem
+        (wave,), (p,) = self.problem.waves, self.problem.amplitude
+        (g,), = self.problem.parts or ((Fraction(0),),)
+        angle = wave[0] * self.strip
+        bend = angle * angle / 4
+        zero = Fraction(0)
+        parts = [(bend * abs(p) + abs(g), zero), (zero, p * angle)] + [(zero, g * angle)] * bool(g)
+        return Problem.patch((p * (1 - bend), zero), parts,
+                             (wave, (*wave[:2], wave[2] + Fraction(1, 2))))
+
+    # ---- what is proved
+
+    def share(self, xstar: Fraction) -> Fraction:
+        """At most this share of a column is undecided."""
+        angle = self.problem.waves[0][0] * self.strip
+        lost = sum(2 * region.half * number / 2 ** (cuts + (along if self.strip else 0))
+                   for region in self.found[xstar]
+                   for (cuts, along), number in region.lost.items())
+        return min(lost * (1 + angle * angle), Fraction(1))
+
+    @property
+    def undecided(self) -> Fraction:
+        """At most this share of phase space is undecided or, if columns are lines, of the
+        successors in them, on average; rounded up."""
+        shares = [self.share(x) for x in self.found]
+        if self.strip:
+            length = self.turns * pi_bounds(4 * DIGITS)[1]
+            total = 1 - 2 * self.strip * sum(1 - x for x in shares) / length
+        else:
+            total = sum(shares, Fraction(0)) / len(shares) if shares else Fraction(1)
+        return rounded(total, SHARE_DIGITS, up=True)
+
+    @property
+    def complete(self) -> bool:
+        """Are all columns done that were asked for?"""
+        return len(self.found) == len(self.stars)
+
+    def report(self) -> str:
+        """What is proved, in words."""
+        shares = [self.share(x) for x in self.found]
+        of = "phase space" if self.strip else "the successors in them, on average"
+        lines = ["No rotational invariant circle passes through the prisms that are proved",
+                 "(docs/portrait.md says what exactly is proved)."]
+        for (k, _, phase), p, *parts in zip(self.problem.waves, self.problem.amplitude,
+                                            *self.problem.parts):
+            lines += ["Wave : k = %d, phase = %s pi, p = %s%s" % (
+                k, phase, decimal_text(p), "".join(" +- " + decimal_text(g) for g in parts))]
+        lines += ["Columns : %d of %d%s%s" % (
+            len(self.found), len(self.stars), "" if self.even is None else
+            ", and their mirror images about %s pi" % self.even,
+            ", strips %s wide" % decimal_text(2 * self.strip) if self.strip else ", lines"),
+            "Undecided : %s of %s" % (decimal_text(self.undecided), of)]
+        if shares:
+            lines += ["Undecided in a column : from %.4f to %.4f" % (min(shares), max(shares))]
+        if not any("P" in region.tree for each in self.found.values() for region in each):
+            lines += ["Nothing is proved : give a depth above %d (--depth)" % self.depth]
+        lines += ["Time : %.0f seconds" % self.seconds]
+        lines += ["SHA-256 : " + self.sha256] if self.sha256 else []
+        return "\n".join(lines) + "\n"
+
+    # ---- its file
+
+    def save(self, path: Path) -> str:
+        """Writes it to a file, compressed by gzip if its name ends in .gz; returns the SHA-256 of
+        the text.  ConverseError: it cannot be written."""
+        text = "\n".join([
+            FIRST_LINE, "program: converse " + __version__,
+            *["wave: " + " ".join([str(k0), str(k1), str(phase), *map(decimal_text, numbers)])
+              for (k0, k1, phase), *numbers in zip(self.problem.waves, self.problem.amplitude,
+                                                   *self.problem.parts)],
+            "strip: " + decimal_text(self.strip),
+            "even about: " + ("no" if self.even is None else str(self.even)),
+            "depth: %d" % self.depth, "columns: %d" % self.columns,
+            "undecided: " + decimal_text(self.undecided), "columns:",
+            *[" ".join([*map(decimal_text, (x, region.centre, region.half, region.shift)),
+                        region.tree]) for x in sorted(self.found) for region in self.found[x]],
+            ""])
+        return files.write_text(path, text + "checksum: sha256 %s\nend\n" % files.sha256(text))
+
+    @classmethod
+    def load(cls, path: Path) -> "Portrait":
+        """Reads a file.  ConverseError: it is not a portrait, or damaged."""
+        text = files.read_text(path, "portrait", ": the file is truncated or not a portrait")
+        body, end = text[:text.rfind("checksum: ")], text[text.rfind("checksum: "):]
+        lines = body.split("\n")
+        if lines[0] != FIRST_LINE:
+            raise ConverseError("%s: is not a portrait of this release" % path)
+        if end != "checksum: sha256 %s\nend\n" % files.sha256(body):
+            raise ConverseError("%s: the file was changed or damaged (wrong checksum); use an "
+                                "intact copy or start anew" % path)
+        try:
+            start = lines.index("columns:")
+            pairs = [line.split(": ", 1) for line in lines[1:start]]
+            waves = [value.split() for name, value in pairs if name == "wave"]
+            values = dict(pairs)
+            numbers = [list(map(exact, wave[3:])) for wave in waves]
+            problem = Problem.patch([p for p, *_ in numbers],
+                                    list(zip(*[parts for _, *parts in numbers])),
+                                    [(int(k0), int(k1), Fraction(phase))
+                                     for k0, k1, phase, *_ in waves])
+            even = values["even about"]
+            portrait = cls(problem, exact(values["strip"]),
+                           None if even == "no" else Fraction(even), int(values["depth"]),
+                           int(values["columns"]), sha256=files.sha256(text))
+            for line in lines[start + 1:-1]:
+                x, centre, half, shift, nodes = line.split(" ")
+                portrait.found[exact(x)] = portrait.found.get(exact(x), ()) + (
+                    Region(exact(centre), exact(half), exact(shift), nodes),)
+            portrait.undecided          # TreeError: a tree is none
+        except (KeyError, IndexError, TypeError, ValueError) as error:
+            raise ConverseError("%s: the portrait makes no sense (%s); use an intact copy or start "
+                                "anew" % (path, error)) from None
+        return portrait
+
+
+def _of_circle(problem):
+    """The problem with its waves alone that are there.  ValueError: it has two angles."""
+    seen = [j for j, (p, *parts) in enumerate(zip(problem.amplitude, *problem.parts))
+            if p or any(parts)]
+    if any(problem.waves[j][1] for j in seen):
+        raise ValueError("a portrait is of a map of one angle; this potential has a wave that "
+                         "feels a second one")
+    if not seen:
+        raise ValueError("the potential is zero: every orbit of the map lies on a circle")
+    parts = [[part[j] for j in seen] for part in problem.parts if any(part[j] for j in seen)]
+    return Problem.patch([problem.amplitude[j] for j in seen], parts,
+                         [problem.waves[j] for j in seen])
+
+
+def _even(problem):
+    """A point, in units of pi, about which V is even, or None: k c + phase + 1/2 is an integer for
+    every wave."""
+    (k, _, phase), *_ = problem.waves
+    points = [(m + Fraction(1, 2) - phase) / k for m in range(abs(k))]
+    return next((c for c in sorted(points, key=abs) if not any(
+        (k0 * c + phi + Fraction(1, 2)) % 1 for k0, _, phi in problem.waves)), None)
+
+
+# ---- the search
+
+def portray(problem: Optional[Problem] = None, *, path: Path, columns: int = 600, depth: int = 15,
+            strips: bool = True, resume: bool = False, jobs: Optional[int] = None,
+            executor: Optional[concurrent.futures.Executor] = None, time_limit: float = math.inf,
+            progress: Optional[Callable[[int, Portrait], None]] = None) -> Portrait:
+    """Proves where in phase space a map of one angle has no rotational invariant circles.
+
+    Parameters
+    ----------
+    problem
+        The map.  It may have a range of parameters: what is proved holds for all of them.
+    path
+        Of the file that keeps what is found: new, or with resume that of the portrait to continue.
+    columns
+        How many columns the circle has.
+    depth
+        The most cuts above a prism.
+    strips
+        Whether columns are strips, so that they leave no gaps; else they are lines.
+    resume
+        Whether to continue the portrait of the file: its columns are kept.
+    jobs, executor
+        Columns at a time, by default one per core; whose workers they are, by default threads.
+    time_limit
+        After about so many seconds the portrait is left as it is.
+    progress
+        progress(columns done, portrait) is called a few times a second.
+
+    Raises
+    ------
+    ValueError
+        The numbers or the map do not suit.
+    ConverseError
+        The file cannot be used; what was found is in it.
+    """
+    if problem is None and not resume:
+        raise TypeError("there must be a problem, or a portrait to continue")
+    asked = None if problem is None else Portrait.new(problem, columns, depth, strips)
+    with interruptible(), Backup(path, resumed=path if resume else None) as backup:
+        portrait = _continued(path, asked) if resume or asked is None else asked
+        began, stop = time.monotonic() - portrait.seconds, native.Stop()
+        end = time.monotonic() + time_limit
+        try:
+            with WorkerPool(executor, jobs, stop) as pool:
+                todo = [x for x in portrait.stars if x not in portrait.found][::-1]
+                while (todo or pool.running) and time.monotonic() < end:
+                    while todo and len(pool.running) <= pool.size:  # one waits, to follow at once
+                        pool.give(todo[-1], column, portrait.patch, bool(portrait.strip),
+                                  portrait.depth, todo.pop())
+                    for xstar, regions in pool.take(LOOK_SECONDS):
+                        if regions is not None:
+                            portrait.found[xstar] = regions
+                    portrait.seconds = time.monotonic() - began
+                    backup.update(lambda: portrait)
+                    if progress:
+                        progress(len(portrait.found), portrait)
+        finally:
+            with postponed():           # a signal must not cost the last write
+                portrait.sha256 = backup.finish(portrait)
+    return portrait
+
+
+def _continued(path: Path, asked: Optional[Portrait]) -> Portrait:
+    """The portrait in a file, if it is the one that is asked for."""
+    portrait = Portrait.load(path)
+    for name in ("problem", "strip", "depth", "columns") if asked is not None else ():
+        if getattr(asked, name) != getattr(portrait, name):
+            raise ConverseError("%s: is a portrait with another %s; name another file, or continue "
+                                "it as it is" % (path, name))
+    return portrait
+
+
+def column(patch: Problem, strip: bool, depth: int, xstar: Fraction,
+           stop: Optional[native.Stop] = None) -> Optional[Tuple[Region, ...]]:
+    """What a worker does: the regions of a column, with their trees; None if stopped."""
+    settings = Settings(method="loewner", depth=depth, stubborn=True)
+    found = []
+    star = decimal_text(xstar), "0"
+    for problem in regions_of(patch, strip, star):
+        task = native.Task(problem, settings, star)
+        begun = native.begin(task, "", stop)
+        grown = begun and native.grow(task, begun.cells, math.inf, 1 << 30, False, stop)
+        if not grown or grown.cells:
+            return None
+        low, high = problem.v0
+        found.append(Region((low + high) / 2, (high - low) / 2,
+                            problem.shifts[1][0] if problem.shifts else Fraction(0),
+                            pruned(grown.text)))
+    return tuple(found)
+
+
+def regions_of(patch: Problem, strip: bool, star: Tuple[str, str]) -> Iterable[Problem]:
+    """The patch with regions that hold, one after the other, all successors of x* from c0 to c0 +
+    1: the others are their images by the reversal of time."""
+    zero = Fraction(0)
+    if strip:       # the region moves as c0 does
+        k, _, phase = patch.waves[0]
+        slope = -k * math.sin(k * float(star[0]) + math.pi * phase) * float(patch.parts[1][1]) / 2
+        shift = Fraction(round(slope / math.pi * 10 ** DIGITS), 10 ** DIGITS)
+        patch = replace(patch, shifts=tuple((shift * (m == 1), zero)
+                                            for m in range(len(patch.parts))))
+    low, high = reversal_centre(patch, star)
+    yield replace(patch, v0=(rounded(low - MARGIN, PLACES, up=False),
+                             rounded(high + 1 + MARGIN, PLACES, up=True)))
+
+
+def pruned(text: str) -> str:
+    """The tree without cuts below which nothing is proved."""
+    while True:
+        text, count = BARREN.subn("U", text)
+        if not count:
+            return text
