@@ -262,9 +262,10 @@ def _even(problem):
 
 # ---- the search
 
-def portray(problem: Optional[Problem] = None, *, path: Path, columns: int = 600, depth: int = 15,
-            strips: bool = True, resume: bool = False, jobs: Optional[int] = None,
-            executor: Optional[concurrent.futures.Executor] = None, time_limit: float = math.inf,
+def portray(problem: Optional[Problem] = None, *, path: Optional[Path] = None,
+            columns: int = 600, depth: int = 15, strips: bool = True, resume: bool = False,
+            jobs: Optional[int] = None, executor: Optional[concurrent.futures.Executor] = None,
+            time_limit: float = math.inf,
             progress: Optional[Callable[[int, Portrait], None]] = None) -> Portrait:
     """Proves where in phase space a map of one angle has no rotational invariant circles.
 
@@ -274,6 +275,7 @@ def portray(problem: Optional[Problem] = None, *, path: Path, columns: int = 600
         The map.  It may have a range of parameters: what is proved holds for all of them.
     path
         Of the file that keeps what is found: new, or with resume that of the portrait to continue.
+        None: there is none.
     columns
         How many columns the circle has.
     depth
@@ -296,11 +298,14 @@ def portray(problem: Optional[Problem] = None, *, path: Path, columns: int = 600
     ConverseError
         The file cannot be used; what was found is in it.
     """
-    if problem is None and not resume:
-        raise TypeError("there must be a problem, or a portrait to continue")
     asked = None if problem is None else Portrait.new(problem, columns, depth, strips)
     with interruptible(), Backup(path, resumed=path if resume else None) as backup:
-        portrait = _continued(path, asked) if resume or asked is None else asked
+        if path is not None and resume:
+            portrait = _continued(path, asked)
+        elif asked is not None and not resume:
+            portrait = asked
+        else:
+            raise TypeError("there must be a problem, or the file of a portrait to continue")
         began, stop = time.monotonic() - portrait.seconds, native.Stop()
         end = time.monotonic() + time_limit
         try:

@@ -1,0 +1,123 @@
+"""The command: converse-portrait [INPUT] [-b FILE] [-g FILE]."""
+
+import argparse
+import math
+import sys
+
+from ..storage import files
+from ..storage.files import ConverseError
+from ..version import __version__
+from .common import (Parser, ProgressLine, add_worker_options, ended, executor_of, read_problem,
+                     say, seconds, whole_number)
+
+COMMAND = "converse-portrait"
+COLUMNS, DEPTH, DEEPEST, MOST = 600, 15, 1000, 1 << 16
+STATUS = ("Exit status: 0 all columns are done; 1 some are not, or nothing is proved; 2 bad usage, "
+          "input or file; 129, 130 or 143 ended by a signal, the portrait saved.")
+
+
+def parser():
+    p = Parser(prog=COMMAND, allow_abbrev=False, epilog=STATUS, description=(
+        "Proves where in phase space a map of one angle has no rotational invariant circles, "
+        "column by column, for all parameters of a range.  The file of the portrait is verified "
+        "by converse-check."))
+    p.add_argument("input", nargs="?", metavar="INPUT", help="input file, the thesis's or JSON; "
+                   "by default, and as -, standard input; not needed with -r")
+    p.add_argument("-b", "--backup", metavar="FILE",
+                   help="keep the portrait in FILE, a new one; compressed, if it ends in .gz")
+    p.add_argument("-r", "--restore", metavar="FILE", help="continue the portrait FILE: its "
+                   "columns are kept; one that is finished is described, and drawn with -g")
+    p.add_argument("--columns", type=whole_number(1, MOST), metavar="N",
+                   help="columns of the turn of x_0 (default %d)" % COLUMNS)
+    p.add_argument("--depth", type=whole_number(1, DEEPEST), metavar="N",
+                   help="most cuts of a prism (default %d): each one more takes twice as long, or "
+                   "longer, and leaves less undecided" % DEPTH)
+    p.add_argument("--lines", action="store_true", help="columns are vertical lines, between which "
+                   "nothing is proved, and not strips; for any potential of one angle")
+    p.add_argument("-g", "--graphics", metavar="FILE",
+                   help="draw the portrait, with orbits of the map: SVG, PNG or PDF by name")
+    p.add_argument("--rotation", metavar="ROTATION", action="append", default=[], help=(
+        "prove that there is an invariant circle of this rotation number, as converse-tori does, "
+        "and draw it; may be given again"))
+    add_worker_options(p, "columns")
+    p.add_argument("--time-limit", type=seconds, default=math.inf, metavar="SECONDS",
+                   help="stop after about so long; -r goes on")
+    p.add_argument("--version", action="version", version="%s %s" % (COMMAND, __version__))
+    return p
+
+
+def progress_text(done, portrait):
+    return "%d of %d columns" % (done, len(portrait.stars))
+
+
+def run(options):
+    graphics, path = options.graphics, options.restore or options.backup
+    if options.rotation and graphics is None:
+        raise ConverseError("--rotation is for the figure; name one with -g")
+    if options.restore and (options.backup or options.input or options.columns or options.depth
+                            or options.lines):
+        raise ConverseError("-r continues a portrait as it was asked for; leave out the input, -b, "
+                            "--columns, --depth and --lines")
+    if graphics is not None:
+        files.check_output(graphics, "picture", ("svg", "png", "pdf"), [path, options.input])
+        from ..draw import portrait_figure
+
+        portrait_figure.check(graphics)
+    from ..prover.portrait import portray  # it needs the C core, and says so where it is missing
+
+    problem = None if options.restore else read_problem(options.input, COMMAND)
+    rotations = _rotations(options.rotation)
+    try:
+        with ProgressLine() as line, executor_of(options) as executor:
+            found = portray(problem, path=path, columns=options.columns or COLUMNS,
+                            depth=options.depth or DEPTH, strips=not options.lines,
+                            resume=options.restore is not None, jobs=options.jobs,
+                            executor=executor, time_limit=options.time_limit,
+                            progress=lambda *done: line(lambda: progress_text(*done)))
+    except ValueError as error:
+        raise ConverseError(str(error)) from None
+    say(found.report())
+    if graphics is not None:
+        portrait_figure.draw(found, graphics, _tori(rotations, found.problem))
+    return 0 if found.complete and found.undecided < 1 else 1
+
+
+def _rotations(texts):
+    if not texts:
+        return []
+    from .. import tori
+
+    try:
+        return [tori.read_rotation(text, 1) for text in texts]
+    except ValueError as error:
+        raise ConverseError("--rotation: %s" % error) from None
+
+
+def _tori(rotations, problem):
+    """The circles that are proved; what is not is told."""
+    proved = []
+    for rotation in rotations:
+        from .. import tori
+
+        try:
+            proved.append(tori.prove(problem, rotation))
+            words = "proved, within %.0e" % proved[-1].distance
+        except (tori.NotFound, tori.NotProved) as error:
+            words = str(error)
+        say("Circle of rotation number %s : %s\n" % (rotation, words))
+    return proved
+
+
+def main(argv=None):
+    """Runs the command and returns its exit status."""
+    options = argparse.Namespace(restore=None, backup=None)
+
+    def interrupted():
+        path = options.restore or options.backup
+        return "continue with -r " + path if path else "nothing was saved; name a file with -b"
+
+    return ended(COMMAND, lambda: run(parser().parse_args(argv, options)), interrupted)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

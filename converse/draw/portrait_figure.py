@@ -1,0 +1,150 @@
+"""The figure of a phase portrait: SVG, PNG or PDF, by matplotlib."""
+
+import math
+
+try:
+    import numpy as np
+except ImportError:                     # matplotlib brings it, and plot.check() says so
+    np = None  # type: ignore[assignment]
+
+from ..model.exact import short_text
+from ..prover import tree
+from ..storage import files
+from . import plot
+from .figure import format_of
+
+ROWS, FINER = 720, 16                   # of the image; its cells are summed up over finer ones
+SIZE = 6.2, 5.6                         # inches
+ORBITS, STEPS = 90, 1200                # of the map, that are drawn
+CURVE = 4000                            # points of a circle that is proved
+TURN = 2 * math.pi
+COLOUR = 0.50, 0.66, 0.83               # where no circle passes: the less is undecided, the fuller
+
+
+def check(path):
+    """The format that a figure's name asks for; ConverseError: it cannot be drawn there."""
+    kind = format_of(path)
+    if kind not in plot.FORMATS:
+        raise files.ConverseError("%s: a portrait is drawn as %s; name the picture so"
+                                  % (path, ", ".join("." + each for each in plot.FORMATS)))
+    files.check_writable(path)
+    plot.check()
+    return kind
+
+
+def draw(portrait, path, tori=()):
+    """Draws a Portrait in a file, with orbits of its map and, in colour, the circles of tori that
+    are proved (ProvedTorus).  ConverseError: it cannot be drawn."""
+    kind = check(path)
+    files.write(path, plot.written(*SIZE, kind, lambda figure: fill(figure.subplots(), portrait,
+                                                                    tori)))
+
+
+def fill(axes, portrait, tori=()):
+    """Draws it into axes: x_0 across and x_1 - x_0 upwards."""
+    image, left, right = shares(portrait)
+    colours = np.empty((*image.shape, 4))
+    colours[..., :3], colours[..., 3] = COLOUR, 1 - np.minimum(image, 1)
+    axes.imshow(colours, origin="lower", extent=(left, right, -math.pi, math.pi), aspect="auto",
+                interpolation="nearest", zorder=0)
+    y, w = orbits(portrait.problem, left, right)
+    axes.plot(y, w, ",", color=plot.DARK, rasterized=True, zorder=1)
+    for torus, colour in zip(tori, (plot.VERMILLION, plot.GREEN, plot.PURPLE, plot.ORANGE) * 9):
+        y, w = circle(torus.torus, portrait.problem)
+        axes.plot((y - left) % TURN + left, wrapped(w), ",", color=colour, rasterized=True,
+                  zorder=2)
+        axes.plot([], [], color=colour, label=str(torus.rotation))
+    names = {0: "0", 2: r"$\pi$", -2: r"$-\pi$", 1: r"$\pi/2$", -1: r"$-\pi/2$"}
+    ticks = range(-4, 5)
+    for axis in axes.xaxis, axes.yaxis:
+        axis.set_ticks([m * math.pi / 2 for m in ticks],
+                       [names.get(m, r"$%g\pi$" % (m / 2)) for m in ticks])
+    axes.set(xlim=(left, right), ylim=(-math.pi, math.pi), xlabel="$x_0$", ylabel="$x_1 - x_0$",
+             title=title(portrait))
+    if tori:
+        axes.legend(loc="upper right", title="proved circles, rotation number")
+
+
+def title(portrait):
+    """What is proved, in two lines."""
+    waves = ["%s%s" % (short_text(p), "".join(r" \pm " + short_text(g) for g in parts))
+             for p, *parts in zip(portrait.problem.amplitude, *portrait.problem.parts)]
+    return "amplitude $%s$; coloured: proved, no rotational circle\n%s undecided: %.1f%% of %s" % (
+        ", ".join(waves), "strips," if portrait.strip else "lines,",
+        math.ceil(1000 * portrait.undecided) / 10,
+        "phase space" if portrait.strip else "their successors")
+
+
+def wrapped(w):
+    return (w + math.pi) % TURN - math.pi
+
+
+def force(problem, y):
+    """V'(y) in the middle of the patch."""
+    return -sum(float(p) * k * np.cos(k * y + math.pi * float(phase))
+                for (k, _, phase), p in zip(problem.waves, problem.amplitude))
+
+
+def orbits(problem, left, right):
+    """Points (x_0, x_1 - x_0) of orbits, evenly spread at first: arrays."""
+    at = (np.arange(ORBITS)[:, None] + 0.5) * [0.7548776662466927, 0.5698402909980532] % 1
+    y, w = left + (right - left) * at[:, 0], math.pi * (2 * at[:, 1] - 1)
+    found = []
+    for _ in range(STEPS):
+        y = (y + w - left) % TURN + left
+        w = wrapped(w - force(problem, y))
+        found.append((y, w))
+    return np.concatenate(found, axis=1)
+
+
+def circle(torus, problem):
+    """Points (x_0, x_1 - x_0) of an invariant circle and of its image by the reversal of time."""
+    theta = np.linspace(0, TURN, CURVE, endpoint=False)[:, None]
+    y, w = torus.x(theta)[:, 0], torus.J(theta + TURN * torus.rotation.floats[0])[:, 0]
+    return np.concatenate([y, y]), np.concatenate([w, -force(problem, y) - w])
+
+
+def shares(portrait):
+    """Of each column, from the left, and of ROWS intervals of x_1 - x_0 from -pi to pi, the share
+    that is undecided: an array; and where the columns begin and end."""
+    stars = portrait.stars
+    half = math.pi / len(stars) * portrait.turns / 2
+    image = np.ones((ROWS, len(stars) * 2 // portrait.turns))
+    left = float(stars[0]) - half
+    shift = 0 if portrait.even is None else len(stars)
+    for at, x in enumerate(stars):
+        if x in portrait.found:
+            image[:, shift + at] = column(portrait, x)
+            if shift:                   # the mirror image
+                image[:, shift - 1 - at] = image[::-1, shift + at]
+    left -= math.pi if shift else 0
+    return image, left, left + TURN
+
+
+def column(portrait, xstar):
+    """The shares that are undecided in one column."""
+    step = TURN / ROWS / FINER
+    ends, weights = [], []
+    k, _, _ = portrait.problem.waves[0]
+    for region in portrait.found[xstar]:
+        for kind, (index, cuts) in tree.cells(region.tree):
+            if kind != "U":
+                continue
+            u, t = ((2 * index[axis] + 1) / 2 ** cuts[axis] - 1 for axis in (0, 3))
+            half = float(region.half)
+            centre = float(region.centre) + float(region.shift) * t + half * u
+            w, y = math.pi * centre - float(xstar), float(xstar)
+            if portrait.strip:
+                y += math.asin(t * k * float(portrait.strip)) / k
+            half *= math.pi / 2 ** cuts[0]
+            for middle in w, -force(portrait.problem, y) - w:
+                ends.append((middle - half, middle + half))
+                weights.append(0.5 ** cuts[3])
+    fine = np.zeros(ROWS * FINER + 1)
+    if ends:
+        low, high = np.rint((np.array(ends).T + math.pi) / step).astype(int)
+        for turn in range(-3, 4):       # each is less than half a turn high
+            for at, sign in (low, 1), (high, -1):
+                np.add.at(fine, np.clip(at + turn * ROWS * FINER, 0, ROWS * FINER),
+                          sign * np.array(weights))
+    return np.minimum(np.cumsum(fine)[:-1].reshape(ROWS, FINER).mean(axis=1), 1)

@@ -1,0 +1,260 @@
+"""Portraits of phase space: what is proved, what is never excluded, and files that are refused."""
+
+import math
+from dataclasses import replace
+from fractions import Fraction
+
+import numpy as np
+import pytest
+
+from converse import check, tori
+from converse.check.portrait import patch_of_strip, read_portrait
+from converse.model.problem import Problem
+from converse.prover import tree
+from converse.prover.portrait import Portrait, portray, pruned
+from converse.storage import files
+from converse.storage.files import ConverseError
+
+GOLDEN = "t^2+t-1: "
+# Twenty rotation numbers, all of the field of the golden mean: (a + b t)/(c + d t).
+ROTATIONS = ["(%s)/(%s)" % pair for pair in [
+    ("t", "1"), ("1-t", "1"), ("1", "3+t"), ("2+t", "5+2t"), ("1+t", "4+3t"), ("1", "4+t"),
+    ("3+t", "7+2t"), ("1", "2+3t"), ("3+2t", "7+5t"), ("1+t", "3+4t"), ("2+t", "9+4t"),
+    ("1", "5+t"), ("1", "6+t"), ("4+t", "9+2t"), ("3+t", "8+3t"), ("3+2t", "8+5t"),
+    ("2+t", "7+3t"), ("1", "7+t"), ("5+t", "11+2t"), ("5+3t", "12+7t")]]
+EPSILON = 1e-9                          # of points of tori and ends of prisms, as doubles
+
+
+def standard(k, width=None):
+    return Problem.patch([k], [] if width is None else [[width]], [(1, 0)])
+
+
+@pytest.fixture(scope="module")
+def strips(tmp_path_factory):
+    """A portrait of k = 0.9 in 40 strips, and its file."""
+    path = tmp_path_factory.mktemp("portrait") / "strips.portrait"
+    return portray(standard("0.9"), path=path, columns=40, depth=8), path
+
+
+def resealed(text):
+    body = text[:text.index("checksum: ")]
+    return body + "checksum: sha256 %s\nend\n" % files.sha256(body)
+
+
+def leaf_at(region, t, v):
+    """The kinds of the leaves of a region that hold t2 and v, in units of pi, of any turn."""
+    kinds = set()
+    for kind, (index, cuts) in tree.cells(region.tree):
+        low, high = (2 * Fraction(index[3] + end, 2 ** cuts[3]) - 1 for end in (0, 1))
+        half = float(region.half) / 2 ** cuts[0]
+        u = (2 * index[0] + 1) / 2 ** cuts[0] - 1
+        off = float(region.centre) + float(region.shift) * t + float(region.half) * u - v
+        off -= 2 * round(off / 2)
+        if low - EPSILON <= t <= high + EPSILON and abs(off) <= half - EPSILON / 2:
+            kinds.add(kind)
+    return kinds
+
+
+def points(torus, portrait):
+    """(column, t2, v) of points of a circle and of its image by the reversal of time."""
+    theta = np.linspace(0, 2 * math.pi, 4 * len(portrait.stars), endpoint=False)[:, None] + 0.01
+    y = torus.x(theta)[:, 0]
+    following = torus.J(theta + 2 * math.pi * torus.rotation.floats[0])[:, 0]
+    back = -torus.J(theta)[:, 0]
+    for x, steps in zip(y, zip(following, back)):
+        for sign in 1, -1:              # the mirror image about pi/2, too
+            x0 = x if sign > 0 else math.pi - x
+            for star in portrait.stars:
+                s = (x0 - float(star) + math.pi) % (2 * math.pi) - math.pi
+                if abs(s) <= max(float(portrait.strip), 1e-3 * (not portrait.strip)):
+                    yield star, s, [sign * step for step in steps]
+
+
+def excluded_points(portrait, torus):
+    """Points of a circle that lie in proved prisms, and how many were looked at."""
+    wrong, seen = [], 0
+    for star, s, steps in points(torus, portrait):
+        t = math.sin(s) / float(portrait.strip)
+        for w in steps:
+            seen += 1
+            for region in portrait.found[star]:
+                if "P" in leaf_at(region, t, (w + float(star)) / math.pi):
+                    wrong.append((float(star), s, w))
+    return wrong, seen
+
+
+def test_patch_of_a_strip_holds_all_of_the_strip():
+    """V(y + s), for s and parameters at random and at the ends, in the prover and the checker."""
+    draw = np.random.default_rng(1)
+    for k, phase, p, g in ((1, "0", "0.9", None), (-3, "1/3", "-0.7", "0.05"),
+                           (2, "1/2", "0.01", "0.2")):
+        problem = Problem.patch([p], [] if g is None else [[g]], [(k, 0, Fraction(phase))])
+        portrait = Portrait.new(problem, columns=40)
+        patch, wave = portrait.patch, portrait.problem
+        theirs = patch_of_strip(check.claim.Wave((k, 0), wave.waves[0][2], wave.amplitude[0],
+                                                 tuple(part[0] for part in wave.parts)),
+                                portrait.strip)
+        assert [(each.k, each.phase % 2, each.middle, each.parts) for each in theirs] == [
+            ((k, 0), phi % 2, a, parts) for (_, _, phi), a, parts in
+            zip(patch.waves, patch.amplitude, zip(*patch.parts))]
+        h = float(portrait.strip)
+        for s, tau in [(h, 1), (-h, -1), (h, -1), (0, 1), *draw.uniform(-1, 1, (50, 2)) * (h, 1)]:
+            q = float(Fraction(p)) + tau * float(Fraction(g or 0))
+            cosine, sine = q * math.cos(k * s), q * math.sin(k * s)
+            t2 = math.sin(k * s) / (k * h)
+            rest = abs(cosine - float(patch.amplitude[0]))
+            assert rest <= float(patch.parts[0][0]) + 1e-15
+            along = [float(part[1]) for part in patch.parts]
+            assert abs(sine - along[1] * t2) <= sum(map(abs, along[2:])) + 1e-15
+            assert abs(t2) <= 1
+
+
+def test_portrait_is_verified_whole(strips):
+    portrait, path = strips
+    result = check.verify(path)
+    assert result and result.verdict == "verified"
+    assert "Undecided : at most 0.%06d of phase" % (portrait.undecided * 10 ** 6) in result.text
+    assert 0.2 < portrait.undecided < 0.5
+    assert "Area without circles : at least %.3f" % (
+        (1 - portrait.undecided) * 4 * math.pi ** 2 - 0.0005) in result.text
+    assert Portrait.load(path).found == portrait.found
+
+
+def test_no_point_of_a_proved_circle_is_excluded(strips):
+    """The negative control, with three of the twenty circles; the slow one has all."""
+    portrait, _ = strips
+    for name in ROTATIONS[:3]:
+        wrong, seen = excluded_points(portrait, tori.prove(
+            standard("0.9"), tori.read_rotation(GOLDEN + name)).torus)
+        assert seen > 100 and not wrong
+    torus = tori.prove(standard("0.9"), tori.read_rotation("golden")).torus
+    moved = replace(torus, numbers=-torus.numbers)  # not a circle of the map: it is told apart
+    assert len(excluded_points(portrait, moved)[0]) > 20
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("k, least", [("0.5", 20), ("0.9", 6), ("0.97", 2)])
+@pytest.mark.parametrize("width", [None, "0.0001"])
+def test_no_point_of_twenty_circles_is_excluded(k, least, width, tmp_path):
+    """Of those of the rotation numbers that can be proved; at k = 0.97 few circles are left."""
+    portrait = portray(standard(k, width), columns=60, depth=11)
+    proved = 0
+    for name in ROTATIONS:
+        try:
+            torus = tori.prove(standard(k), tori.read_rotation(GOLDEN + name)).torus
+        except (tori.NotFound, tori.NotProved):
+            continue
+        proved += 1
+        wrong, seen = excluded_points(portrait, torus)
+        assert seen > 400 and not wrong, name
+    assert proved >= least
+
+
+@pytest.mark.parametrize("old, new, why", [
+    ("undecided: 0.", "undecided: 0.0", "undecided is 0.0"),
+    ("strip: 0.07", "strip: 0.08", "overlap"),
+    ("even about: 1/2", "even about: 0", "not even about"),
+    ("even about: 1/2", "even about: no", "undecided is"),
+    ("wave: 1 0 0 0.9", "wave: 1 0 0 0.8", "does not hold enough"),
+    ("wave: 1 0 0 0.9", "wave: 1 1 0 0.9", "not those of a map of one angle"),
+    ("columns:\n", "columns:\n9.5 0 1 0 P\n", "not in their order"),
+    ("columns:\n1.6", "columns:\n1.5", "lies outside"),
+    ("P\nchecksum", "?\nchecksum", "not a node"),
+    ("U\n", "P\n", "undecided is"),
+    ("P\n", "\n", "incomplete"),
+    ("columns: 40", "colours: 40", "unknown meaning"),
+    ("depth: 8\n", "", "lacks depth"),
+])
+def test_altered_portraits_are_rejected(strips, tmp_path, old, new, why):
+    """With a checksum that is made anew; without, any change is told."""
+    path, text = tmp_path / "altered", strips[1].read_text()
+    assert old in text
+    text = new.join(text.rsplit(old, 1) if old.startswith(("U", "P")) else text.split(old, 1))
+    path.write_text(text)
+    with pytest.raises(check.Rejected, match="wrong checksum"):
+        check.verify(path)
+    path.write_text(resealed(text))
+    with pytest.raises(check.Rejected, match=why):
+        check.verify(path)
+
+
+def test_leaf_that_is_not_proved_is_not_confirmed(strips, tmp_path):
+    """Each U of a column made a P, and the share what it then would be: the leaves are looked at,
+    and through one of them a circle passes."""
+    portrait, path = strips
+    x = portrait.stars[3]
+    (region,) = portrait.found[x]
+    forged = Portrait.load(path)
+    forged.found[x] = (replace(region, tree=region.tree.replace("U", "P")),)
+    forged.save(tmp_path / "forged")
+    with pytest.raises(check.NotConfirmed, match="column line 4: proved leaf .* is not excluded"):
+        check.verify(tmp_path / "forged")
+
+
+def test_region_must_hold_the_successors_for_all_of_the_strip(strips):
+    """Each end of a region counts: one that is shorter by a little is refused."""
+    portrait, path = strips
+    lines = path.read_text().splitlines(keepends=True)
+    at = lines.index("columns:\n") + 5
+    for move in "-1e-8", "1e-8":
+        words = lines[at].split(" ")
+        words[1] = files_decimal(Fraction(words[1]) + Fraction(move))
+        text = "".join([*lines[:at], " ".join(words), *lines[at + 1:]])
+        with pytest.raises(check.Rejected, match="column line 5: .*does not hold enough"):
+            read_portrait(resealed(text).encode())
+
+
+def files_decimal(x):
+    return check.decimal_text(x)
+
+
+def test_portrait_is_continued(strips, tmp_path):
+    """A file without some columns: the others are kept as they are."""
+    portrait, path = strips
+    part = Portrait.load(path)
+    kept = part.stars[::3]
+    part.found = {x: part.found[x] for x in kept}
+    part.save(tmp_path / "part")
+    assert check.verify(tmp_path / "part").verdict == "verified"
+    more = portray(path=tmp_path / "part", resume=True)
+    assert more.found == portrait.found and more.complete
+    with pytest.raises(ConverseError, match="another depth"):
+        portray(standard("0.9"), path=path, columns=40, depth=9, resume=True)
+
+
+def test_lines_of_two_harmonics(tmp_path):
+    """Lines are for any potential of one angle, and for a range of parameters."""
+    problem = Problem.patch(["0.5", "0.1"], [["0.001", 0]], [(1, 0, "-1/2"), (2, 0, "-1/2")])
+    path = tmp_path / "lines"
+    portrait = portray(problem, path=path, columns=12, depth=8, strips=False)
+    assert portrait.undecided < 1 and check.verify(path)
+    with pytest.raises(ValueError, match="ask for lines"):
+        portray(problem, columns=12)
+
+
+@pytest.mark.parametrize("change, why", [
+    ({"columns": 0}, "columns is a whole number from 1"),
+    ({"columns": 4}, "give at least 8"),
+    ({"depth": 0}, "depth is a whole number from 1"),
+])
+def test_bad_numbers(change, why):
+    with pytest.raises(ValueError, match=why):
+        portray(standard("0.9"), **change)
+
+
+def test_bad_maps():
+    with pytest.raises(ValueError, match="one angle"):
+        portray(Problem(a="0.3", b="0.3", c="0.6"))
+    with pytest.raises(ValueError, match="is zero"):
+        portray(standard(0))
+
+
+def test_depth_that_proves_nothing_is_told(tmp_path):
+    portrait = portray(standard("0.3"), path=tmp_path / "flat", columns=20, depth=1)
+    assert portrait.undecided == 1 and "Nothing is proved : give a depth" in portrait.report()
+    with pytest.raises(check.Rejected, match="claims no theorem"):
+        check.verify(tmp_path / "flat")
+
+
+def test_pruned():
+    assert pruned("0P01UUU") == "0PU" and pruned("00UUU") == "U" and pruned("0PU") == "0PU"
