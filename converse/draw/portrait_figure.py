@@ -15,7 +15,7 @@ from .figure import format_of
 
 ROWS, FINER = 720, 16                   # of the image; its cells are summed up over finer ones
 SIZE = 6.2, 5.6                         # inches
-ORBITS, STEPS = 90, 1200                # of the map, that are drawn
+ORBITS, STEPS = 80, 800                # of the map, that are drawn
 CURVE = 4000                            # points of a circle that is proved
 TURN = 2 * math.pi
 COLOUR = 0.50, 0.66, 0.83               # where no circle passes: the less is undecided, the fuller
@@ -51,8 +51,8 @@ def fill(axes, portrait, tori=()):
     axes.plot(y, w, ",", color=plot.DARK, rasterized=True, zorder=1)
     for torus, colour in zip(tori, (plot.VERMILLION, plot.GREEN, plot.PURPLE, plot.ORANGE) * 9):
         y, w = circle(torus.torus, portrait.problem)
-        axes.plot((y - left) % TURN + left, wrapped(w), ",", color=colour, rasterized=True,
-                  zorder=2)
+        axes.plot((y - left) % TURN + left, wrapped(w), ".", color=colour, markersize=1,
+                  rasterized=True, zorder=2)
         axes.plot([], [], color=colour, label=str(torus.rotation))
     names = {0: "0", 2: r"$\pi$", -2: r"$-\pi$", 1: r"$\pi/2$", -1: r"$-\pi/2$"}
     ticks = range(-4, 5)

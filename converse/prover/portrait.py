@@ -2,8 +2,8 @@
 
 The map has one angle.  A column is a vertical line of phase space at x_0 = x*, or a strip about it,
 |x_0 - x*| <= h.  A strip is a line of another map: of V(y + s), whose waves lie in a patch of two
-parameters or three (docs/portrait.md).  Of each column one tree of prisms is grown to a certain
-depth, and whatever is undecided then stays so.
+parameters or three (docs/how-to/portrait.md).  Of each column one tree of prisms is grown to a
+certain depth, and whatever is undecided then stays so.
 """
 
 import concurrent.futures
@@ -120,7 +120,7 @@ class Portrait:
 
     @cached_property
     def patch(self) -> Problem:
-        """The problem whose lines are the columns: docs/portrait.md."""
+        """The problem whose lines are the columns: docs/how-to/portrait.md."""
         if not self.strip:
             return self.problem
         (wave,), (p,) = self.problem.waves, self.problem.amplitude
@@ -164,7 +164,7 @@ class Portrait:
         shares = [self.share(x) for x in self.found]
         of = "phase space" if self.strip else "the successors in them, on average"
         lines = ["No rotational invariant circle passes through the prisms that are proved",
-                 "(docs/portrait.md says what exactly is proved)."]
+                 "(docs/how-to/portrait.md says what exactly is proved)."]
         for (k, _, phase), p, *parts in zip(self.problem.waves, self.problem.amplitude,
                                             *self.problem.parts):
             lines += ["Wave : k = %d, phase = %s pi, p = %s%s" % (

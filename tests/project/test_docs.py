@@ -11,6 +11,7 @@ import pytest
 from converse import check
 from converse.commands import map as map_cli
 from converse.commands import orbits as orbits_cli
+from converse.commands import portrait as portrait_cli
 from converse.commands import prove as cli
 from converse.commands import tori as tori_cli
 from converse.version import __version__
@@ -22,7 +23,8 @@ PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").r
 FOLDERS = {page.name: page.parent for page in PAGES}
 TEXTS = {page.name: page.read_text("utf-8") for page in PAGES}
 PARSERS = {"converse": cli.parser, "converse-check": check.parser, "converse-map": map_cli.parser,
-           "converse-orbits": orbits_cli.parser, "converse-tori": tori_cli.parser}
+           "converse-orbits": orbits_cli.parser, "converse-portrait": portrait_cli.parser,
+           "converse-tori": tori_cli.parser}
 
 
 @pytest.mark.parametrize("name", [name for name, text in TEXTS.items() if "```python" in text])
@@ -36,7 +38,8 @@ def test_python_examples_run(name, tmp_path):
     result = subprocess.run([sys.executable, "example.py"], cwd=tmp_path, capture_output=True,
                             text=True, timeout=PATIENCE)
     assert (result.returncode, result.stderr) == (0, "")
-    said = {"orbits.md": "Proved", "tori.md": "Proved", "questions-of-1989.md": ""}
+    said = {"orbits.md": "Proved", "tori.md": "Proved", "questions-of-1989.md": "",
+            "portrait.md": "No rotational invariant circle"}
     assert said.get(name, "no invariant tori") in result.stdout
 
 
@@ -47,7 +50,7 @@ def test_commands_are_understood():
         lines = re.findall(r"^    (?:\S*/)?(converse\S*) *(.*)$", text, re.MULTILINE)
         spans = re.findall(r"`(converse\S*) ([^`[]*)`", text)
         for command, arguments in lines + spans:
-            file = re.match("(proof|state|map|torus) [0-9]$", arguments)      # its first line
+            file = re.match("(proof|state|map|portrait|torus) [0-9]$", arguments)     # a first line
             if command in PARSERS and "..." not in arguments and not file:
                 arguments = re.sub(r"\b[KN]\b", "3", arguments.partition("#")[0])
                 try:
