@@ -624,7 +624,17 @@ let range_text name low high =
   let low, high = text_of low, text_of high in
   if low = high then name ^ " = " ^ low else Printf.sprintf "%s <= %s <= %s" low name high
 
-let integer_text = Printf.sprintf "%+d"
+(* The angles that v0 and v1 stand for, such as (v0 + v1, v0 - v1). *)
+let frame_text frame =
+  let term text x name =
+    if x = 0 then text
+    else
+      let sign = if text <> "" then (if x < 0 then " - " else " + ") else if x < 0 then "-" else "" in
+      text ^ sign ^ (if abs x = 1 then name else Printf.sprintf "%d %s" (abs x) name) in
+  let sum x y = match term (term "" x "v0") y "v1" with "" -> "0" | text -> text in
+  Printf.sprintf "(%s, %s)" (sum (List.nth frame 0) (List.nth frame 1))
+    (sum (List.nth frame 2) (List.nth frame 3))
+
 let small_of z = truncate (float_of (ratio z (z_of 1)))
 
 (* Is it of the thesis's potential, with one parameter, or one for each of a, b, c or none? *)
@@ -644,25 +654,19 @@ let claimed claim =
   let boxed = is_boxed patch and parameters = List.length (List.hd patch).parts in
   let frame = List.map small_of [m00; m01; m10; m11] in
   let on_range name centre half = range_text name (qminus centre half) (qplus centre half) in
-  let any = " for any parameters with" in
-  let graph =
-    ["has no invariant Lagrangian graph";
-     "(no invariant torus p = P + S'(x) over the angles, where p[j] = x[j] - x[j-1], P is"] in
-  let last_of_graph = "constant, S periodic and C1)" in
+  let any = if boxed || parameters > 0 then " for any parameters with" else " for" in
+  let graph = ["has no invariant Lagrangian graph"] in
+  let last_of_graph =
+    "(no invariant torus J = P + S'(y) over both angles, P constant, S periodic and C1)" in
   let potential = if boxed then "V(y) = -a sin y0 - b sin y1 - c sin(y0 + y1)"
-    else "V(y) = - the sum of p sin(k.y + phase) over the waves below" in
+    else "V(y) = - the sum of A sin(k.y + phase) over the waves below" in
   let where =
     if claim.of_whole then [last_of_graph ^ any]
     else
       [last_of_graph;
-       "whose orbit through x[0] = x* goes on to x[1] = (v0, v1) in the region";
-       on_range "v0 / pi" centre0 half0; on_range "v1 / pi" centre1 half1]
-      @ (match frame with
-          | [1; 0; 0; 1] -> []
-          | _ -> let s = List.map integer_text frame in
-            [Printf.sprintf "where x[1] = (%s v0 %s v1, %s v0 %s v1)"
-               (List.nth s 0) (List.nth s 1) (List.nth s 2) (List.nth s 3)])
-      @ ["(only successors in this region were examined, which is not the full torus)" ^ any] in
+       "whose orbit goes from y = x* to y' = " ^ frame_text frame ^ " in the region";
+       on_range "v0 / pi" centre0 half0; on_range "v1 / pi" centre1 half1;
+       "(no other y' was examined, and the region is not the full torus)" ^ any] in
   let rising = List.for_all (fun w -> not (List.exists (fun g -> less g (whole 0)) w.parts)) patch in
   let sum = List.fold_left (fun x g -> qplus x (absolute g)) (whole 0) in
   let ranges =
@@ -683,7 +687,7 @@ let claimed claim =
               if vanishes g then []
               else [(if less g (whole 0) then "- " else "+ ") ^ text_of (absolute g) ^ " " ^ name])
               names w.parts) in
-          Printf.sprintf "k = (%d, %d), phase = %s pi, p = %s" (small_of w.of_k0)
+          Printf.sprintf "k = (%d, %d), phase = %s pi, A = %s" (small_of w.of_k0)
             (small_of w.of_k1) (text_of_ratio w.of_phase)
             (String.concat " " (text_of w.middle :: parts))) patch in
   let multiples what = ["and for any multiple s >= 1 of " ^ what ^ " (B > 10/3)"] in
@@ -694,7 +698,7 @@ let claimed claim =
                       else if rising then "the upper ends of these ranges"
                       else "these parameters at t = 1")
     | Whole_patch -> multiples (if boxed then "such parameters" else "such amplitudes") in
-  ["The map x[j+1] = 2 x[j] - x[j-1] - V'(x[j]) of two angles (modulo 2 pi),";
+  ["THEOREM.  The map y' = y + J', J' = J - grad V(y) of two angles y (modulo 2 pi),";
    potential ^ ", " ^ List.hd graph] @ List.tl graph @ where @ ranges @ larger
 
 (* The theorem, as far as it was verified; or the result of a spot check. *)
@@ -718,8 +722,8 @@ let report file hints checked sampled =
   @ ["B : " ^ text_of hints.bound]
   @ (match file.claim.of_alone with
       | Both -> []
-      | First -> ["Alone : x0, a map of its own"]
-      | Second -> ["Alone : x1, a map of its own"])
+      | First -> ["Alone : y0, since no wave depends on both angles"]
+      | Second -> ["Alone : y1, since no wave depends on both angles"])
   @ [Printf.sprintf "Leaves : %d, of which %d proved%s and %d symmetric"
        (proved + symmetric + linked) proved
        (if linked > 0 then Printf.sprintf ", %d linked to other parts" linked else "") symmetric;

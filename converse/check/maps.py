@@ -305,8 +305,8 @@ def mapped(file):
     lines[-1] += " for any (a, b, c)"
     lines += ["in the %d proved cells of the file, for any multiple s >= 1 of those in its %d cells"
               % (file.count("P"), file.count("A")),
-              "at once (B > 10/3), and for the images of all these by the %d changes of the signs "
-              "of" % signs,
+              "with B > 10/3, and for the images of all these by the %d changes of the signs of"
+              % signs,
               "a, b, c and by the exchange of a and b.  %d cells are open." % file.count("O"),
               "Region : " + file.region]
     for face in file.faces:
@@ -319,8 +319,8 @@ def mapped(file):
             lines += ["  nothing is proved"]
             continue
         start, forever = face.proved
-        lines += ["  every direction is proved from r = %s on, %s" % (
-            decimal_text(start), "for ever" if forever else "up to the face's radius")
+        lines += ["  every direction is proved for all r >= %s%s" % (
+            decimal_text(start), "" if forever else " up to the face's radius")
             if start is not None else "  not every direction is proved, even at the face's radius",
             "  the least r that is proved in some direction is %s" % decimal_text(least)]
     return lines

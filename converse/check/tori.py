@@ -814,13 +814,13 @@ def existence_report(claim, setting, found):
         decimal_text(Fraction(math.trunc(setting.field.interval(element)[0] * 10 ** places),
                               10 ** places))) for element in claim.rotation])
     lines = ["Verified :",
-             "The map x[j+1] = 2 x[j] - x[j-1] - V'(x[j]) of %s (modulo 2 pi),"
-             % ("two angles" if n == 2 else "an angle"),
-             "V(y) = - the sum of p sin(k.y + phase) over the waves below, has an invariant "
+             "THEOREM.  The map y' = y + J', J' = J - %s of %s (modulo 2 pi),"
+             % (("grad V(y)", "two angles y") if n == 2 else ("V'(y)", "an angle y")),
+             "V(y) = - the sum of A sin(k.y + phase) over the waves below, has an invariant "
              + ("Lagrangian graph" if n == 2 else "circle"),
-             "(p = P + S'(x) over the angles, where p[j] = x[j] - x[j-1], P is constant, S is "
-             "periodic and",
-             "real analytic), on which it is conjugate to the rotation by 2 pi omega,",
+             "(J = P + S'(y) over %s, P constant, S periodic and real analytic), on which"
+             % ("both angles" if n == 2 else "the angle"),
+             "it is conjugate to the rotation by 2 pi omega,",
              "omega = (%s)" % omega if n == 2 else "omega = " + omega,
              "where t is the root of %s between %s and %s" % (
                  sum_text(map(Fraction, claim.polynomial), POWERS), *map(exact_text, claim.root))]
@@ -830,10 +830,10 @@ def existence_report(claim, setting, found):
         p = exact_text(wave.middle)
         if any(wave.parts):
             p += " %s %s s" % ("-" if wave.parts[0] < 0 else "+", exact_text(abs(wave.parts[0])))
-        lines.append("k = %s, phase = %s pi, p = %s" % (
+        lines.append("k = %s, phase = %s pi, A = %s" % (
             "(%d, %d)" % wave.k if n == 2 else wave.k[0], exact_text(wave.phase), p))
     return lines + [
-        "It is within %s of the file's: x = theta + u(theta)."
+        "It is within %s of the file's: y = theta + u(theta)."
         % scientific(max(piece.distance for piece in found)), "",
         "Checker : converse-check " + __version__,
         "Method : KAM theorem a posteriori, Fourier series in integers of %d bits"
@@ -844,5 +844,5 @@ def existence_report(claim, setting, found):
             scientific(worst.gamma, False), n, " + ".join(
                 "%s|%s|" % ("%d " % a if a > 1 else "", sum_text(map(Fraction, row), ("k0", "k1")))
                 for a, row in zip(setting.norm.alpha, claim.frame))),
-        "Residual : %s, of at most %s" % (scientific(worst.residual),
+        "Residual : %s, admissible: %s" % (scientific(worst.residual),
                                           scientific(worst.needed, False))]

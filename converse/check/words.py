@@ -2,7 +2,7 @@
 
 from fractions import Fraction
 
-from .claim import ANGLES, IDENTITY, RANGES, THESIS
+from .claim import ANGLES, RANGES, THESIS
 from .cover import is_whole, symmetries_used
 from .limits import PART, VERIFIED
 from .tree import leaf_text
@@ -24,11 +24,25 @@ def range_text(name, low, high):
     return "%s = %s" % (name, low) if low == high else "%s <= %s <= %s" % (low, name, high)
 
 
-SYSTEM = "The map x[j+1] = 2 x[j] - x[j-1] - V'(x[j]) of two angles (modulo 2 pi),"
+SYSTEM = "THEOREM.  The map y' = y + J', J' = J - grad V(y) of two angles y (modulo 2 pi),"
 TRIG = "V(y) = -a sin y0 - b sin y1 - c sin(y0 + y1)"
 GRAPH = ["has no invariant Lagrangian graph",
-         "(no invariant torus p = P + S'(x) over the angles, where p[j] = x[j] - x[j-1], P is",
-         "constant, S periodic and C1)"]
+         "(no invariant torus J = P + S'(y) over both angles, P constant, S periodic and C1)"]
+
+
+def frame_text(frame):
+    """The angles that v0 and v1 stand for, such as (v0 + v1, v0 - v1)."""
+    return "(%s)" % ", ".join([sum_text(row, ANGLES) for row in (frame[:2], frame[2:])])
+
+
+def sum_text(coefficients, names):
+    """The sum of integers times names, without those that are 0."""
+    text = ""
+    for x, name in zip(coefficients, names):
+        if x:
+            text += (" - " if x < 0 else " + ") if text else "-" * (x < 0)
+            text += name if abs(x) == 1 else "%d %s" % (abs(x), name)
+    return text or "0"
 
 
 def is_boxed(claim):
@@ -42,16 +56,14 @@ def is_boxed(claim):
 def claimed(claim):
     """What a proof file claims, in lines."""
     boxed, torus = is_boxed(claim), is_whole(claim)
-    potential = TRIG if boxed else "V(y) = - the sum of p sin(k.y + phase) over the waves below"
+    potential = TRIG if boxed else "V(y) = - the sum of A sin(k.y + phase) over the waves below"
     lines = [SYSTEM, potential + ", " + GRAPH[0], *GRAPH[1:]]
     if not torus:
-        lines += ["whose orbit through x[0] = x* goes on to x[1] = (v0, v1) in the region",
+        lines += ["whose orbit goes from y = x* to y' = %s in the region" % frame_text(claim.frame),
                   *(range_text(name + " / pi", c - h, c + h)
                     for name, c, h in zip(ANGLES, claim.centre, claim.half)),
-                  "(only successors in this region were examined, which is not the full torus)"]
-        if claim.frame != IDENTITY:
-            lines[-1:] = ["where x[1] = (%+d v0 %+d v1, %+d v0 %+d v1)" % claim.frame, lines[-1]]
-    lines[-1] += " for any parameters with"
+                  "(no other y' was examined, and the region is not the full torus)"]
+    lines[-1] += " for any parameters with" if boxed or claim.parameters else " for"
     if boxed:
         spread = [sum(map(abs, wave.parts)) for wave in claim.waves]
         lines += [range_text(name, wave.middle - x, wave.middle + x)
@@ -68,7 +80,7 @@ def claimed(claim):
         for wave in claim.waves:
             terms = ["%s %s %s" % ("-" if g < 0 else "+", decimal_text(abs(g)), name)
                      for g, name in zip(wave.parts, names) if g]
-            lines += ["k = (%d, %d), phase = %s pi, p = %s" % (
+            lines += ["k = (%d, %d), phase = %s pi, A = %s" % (
                 *wave.k, wave.phase, " ".join([decimal_text(wave.middle), *terms]))]
     if claim.at_once != "no":
         upper = "these amplitudes at t1 = 1" if not boxed else (
@@ -106,7 +118,7 @@ def report(claims, theorem, criterion, confirmed, pieces, fast=False):
         places, claim = 9, criterion.claim
         bound = -(-criterion.B * 10 ** places // criterion.fixed.one)       # rounded up
         if used := symmetries_used(claim):
-            lines += ["Successors : x[1] = (%+d v0 %+d v1, %+d v0 %+d v1)," % claim.frame
+            lines += ["Successors : y' = %s," % frame_text(claim.frame)
                       + ",".join([" " + range_text(name + " / pi", c - h, c + h) for name, c, h in
                                   zip(ANGLES, claim.centre, claim.half)])
                       + "; all others by " + " and ".join(used)]
@@ -114,7 +126,7 @@ def report(claims, theorem, criterion, confirmed, pieces, fast=False):
                                     *map(decimal_text, part.xstar)) for part in claims]
         lines += ["B : %s" % decimal_text(Fraction(bound, 10 ** places))]
         if claim.alone is not None:
-            lines += ["Alone : x%d, a map of its own" % claim.alone]
+            lines += ["Alone : y%d, since no wave depends on both angles" % claim.alone]
     lines += ["Leaves : %d, of which %d proved%s%s and %d symmetric" % (
         proved + skipped + linked + undecided, proved,
         ", %d linked to other parts" % linked * (linked > 0),

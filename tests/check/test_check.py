@@ -392,7 +392,7 @@ def test_part_of_the_torus_is_said_to_be_a_part(texts, run):
     status, out, _ = run(text)
     assert status == 3 and out.startswith("Verified, for a part of the torus only :")
     assert run(text, "--sample", "3")[0] == 4
-    assert "only successors in this region were examined" in out
+    assert "no other y' was examined" in out
     assert "\n0.75 <= v0 / pi <= 1.25\n" in out
 
 
@@ -2659,8 +2659,8 @@ def test_confirms_other_potentials(others, run, name):
     waves, more, _ = PROBLEMS[name]
     if name == "with harmonics":
         assert "\n-1 <= t1, t2 <= 1\n" in out
-        assert "\nk = (2, 0), phase = -1/3 pi, p = 0.1 + 0.02 t2\n" in out
-    assert ("Alone : x0" in out) == (name == "one alone")
+        assert "\nk = (2, 0), phase = -1/3 pi, A = 0.1 + 0.02 t2\n" in out
+    assert ("Alone : y0" in out) == (name == "one alone")
     assert run(text, "--exact")[0] == 0 or len(tree_of(text)) > 300
 
 

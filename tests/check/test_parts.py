@@ -362,7 +362,7 @@ def test_links_of_a_region(one_link, run):
     assert run(file_of(**{**one_link, "v0": "0.5364 0.2502"}))[0] == 3
     narrow = {**one_link, "v0": HALF[0], "xstar": "0.858 0.8580000000000000001"}
     status, out, _ = run(file_of(**narrow))
-    assert status == 3 and "goes on to x[1] = (v0, v1) in the region" in out
+    assert status == 3 and "goes from y = x* to y' = (v0 + v1, v0 - v1) in the region" in out
     assert "x* of part a" in out
 
 

@@ -78,7 +78,7 @@ def run(tmp_path, capsys):
 def test_the_golden_circle_is_verified(run):
     status, out, err = run(sealed(BODY))
     assert (status, err) == (0, "")
-    assert out.startswith("Verified :\n") and "k = 1, phase = 0 pi, p = 0.5\n" in out
+    assert out.startswith("Verified :\n") and "k = 1, phase = 0 pi, A = 0.5\n" in out
     assert "omega = t = 0.618033988749..." in out
     assert run(gzip.compress(sealed(BODY).encode()))[:2] == (0, out)
 
@@ -127,11 +127,11 @@ def test_it_is_verified_whole(run, options):
 
 
 GOLDEN_FILES = {
-    "standard-0.9": ["k = 1, phase = 0 pi, p = 0.9", "invariant circle"],
-    "standard-0.2-0.6": ["for all -1 <= s <= 1", "p = 0.4 + 0.2 s"],
-    "standard-0.1-0.75": ["p = 0.425 + 0.325 s", "Pieces : 2\n"],
-    "line-0.004": ["Lagrangian graph", "k = (1, 1), phase = 0 pi, p = 0.08971488"],
-    "phases": ["k = (0, 1), phase = 0.125 pi, p = 0.02", "0.754877666246..."],
+    "standard-0.9": ["k = 1, phase = 0 pi, A = 0.9", "invariant circle"],
+    "standard-0.2-0.6": ["for all -1 <= s <= 1", "A = 0.4 + 0.2 s"],
+    "standard-0.1-0.75": ["A = 0.425 + 0.325 s", "Pieces : 2\n"],
+    "line-0.004": ["Lagrangian graph", "k = (1, 1), phase = 0 pi, A = 0.08971488"],
+    "phases": ["k = (0, 1), phase = 0.125 pi, A = 0.02", "0.754877666246..."],
 }
 
 
@@ -141,7 +141,7 @@ def test_certificates_of_the_program_are_verified(root, run, name):
     status, out, err = run(data)
     assert (status, err) == (0, "")
     assert all(word in out for word in GOLDEN_FILES[name])
-    residual, needed = re.search("Residual : (.*), of at most (.*)", out).groups()
+    residual, needed = re.search("Residual : (.*), admissible: (.*)", out).groups()
     assert float(residual) <= float(needed) * 1.2
 
 
@@ -399,7 +399,7 @@ def test_the_facts_of_a_check_are_values(tmp_path):
     fact, = result.facts
     assert 0 < fact.residual <= fact.needed and 0 < fact.distance < 1e-4
     assert tori.scientific(fact.distance) in result.text and abs(fact.rho - 0.3) < 1e-6
-    assert "Residual : %s, of at most" % tori.scientific(fact.residual) in result.text
+    assert "Residual : %s, admissible: " % tori.scientific(fact.residual) in result.text
     assert fact.modes > len(GOLDEN) and fact.bits > 20 and 1.82 < fact.gamma < 1.8641
     assert 1 < fact.constants.l < 10
     path.write_text(changed(*FALSE["a coefficient"]))
@@ -445,7 +445,7 @@ def test_a_random_change_of_a_byte_is_noticed(run):
         status, out, err = run(sealed(text))
         assert status in (0, 1, 5) and "Error" not in err, (text, err)
         if status == 0:                 # a hint, a low bit, or a word without meaning
-            assert "p = 0.5\n" in out and "0.618033988749..." in out
+            assert "A = 0.5\n" in out and "0.618033988749..." in out
 
 
 # ---- the field and the divisors
