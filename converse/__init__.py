@@ -1,10 +1,9 @@
-"""Computer-assisted proofs that a four-dimensional symplectic map has no invariant tori.
+"""Computer-assisted proofs about invariant tori of symplectic maps: where they end, where they are.
 
     import converse
-    problem = converse.Problem(a=("0.3072", "0.3097"), b=("0.3072", "0.3097"),
-                               c=("0.6145", "0.6195"))
-    proof = converse.prove(problem)
+    proof = converse.prove(converse.StandardMap("0.99"))
     print(proof.report())
+    torus = converse.tori.prove(converse.StandardMap("0.9"), "golden")
 """
 
 import importlib
@@ -13,7 +12,9 @@ from typing import TYPE_CHECKING
 from .version import __version__
 
 if TYPE_CHECKING:
+    from . import check, maps, orbits, tori
     from .model.inputs import read_input
+    from .model.map import FourierMap, FroeschleMap, MuldoonMap, StandardMap, SymplecticMap
     from .model.problem import InputError, Problem
     from .prover.native import Counts
     from .prover.proof import Proof
@@ -22,16 +23,21 @@ if TYPE_CHECKING:
     from .storage.files import ConverseError
 
 _HOMES = {"ConverseError": "storage.files", "Counts": "prover.native",
-          "InputError": "model.problem",
-          "Problem": "model.problem", "Proof": "prover.proof", "Settings": "prover.settings",
+          "FourierMap": "model.map", "FroeschleMap": "model.map", "InputError": "model.problem",
+          "MuldoonMap": "model.map", "Problem": "model.problem", "Proof": "prover.proof",
+          "Settings": "prover.settings", "StandardMap": "model.map", "SymplecticMap": "model.map",
           "prove": "prover.run", "read_input": "model.inputs"}
+_ROOMS = "check", "maps", "orbits", "tori"
 
-__all__ = ["ConverseError", "Counts", "InputError", "Problem", "Proof", "Settings", "__version__",
-           "prove", "read_input"]
+__all__ = ["ConverseError", "Counts", "FourierMap", "FroeschleMap", "InputError", "MuldoonMap",
+           "Problem", "Proof", "Settings", "StandardMap", "SymplecticMap", "__version__", "check",
+           "maps", "orbits", "prove", "read_input", "tori"]
 
 
 def __getattr__(name):
     """Imports what is asked for when it is asked for: the checker must run without the C core."""
+    if name in _ROOMS:
+        return importlib.import_module("." + name, __name__)
     if name in _HOMES:
         return getattr(importlib.import_module("." + _HOMES[name], __name__), name)
     raise AttributeError("module 'converse' has no attribute %r" % name)

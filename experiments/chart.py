@@ -27,7 +27,8 @@ import converse
 from converse.commands.common import Parser, ended
 from converse.draw import plot
 from converse.draw.plot import BLUE, DARK, ORANGE
-from converse.model.problem import LINE, Problem
+from converse.model.map import LINE
+from converse.model.problem import Problem
 from converse.storage import files
 from converse.storage.files import ConverseError
 

@@ -21,7 +21,7 @@ import numpy as np
 
 from converse import orbits
 from converse.commands.common import ended
-from converse.model.problem import LINE as THESIS_LINE
+from converse.model.map import LINE as THESIS_LINE
 
 SIZES = {"full": {"heads": (3, 7), "least": 1000, "cells": 1000, "most": 400,
                   "eps": (0.0144, 0.0142, 0.0141, 0.0140, 0.01395, 0.0139),
@@ -40,7 +40,7 @@ def diagonal():
     """The potential of the map on x_0 = x_1, for converse.orbits: half of trig's there, since both
     coordinates move."""
     half = Fraction(-orbits.trig.scale) / 2
-    return orbits.Fourier({(1,): (0, half), (2,): (0, half)}, "diagonal")
+    return orbits.potential.Fourier({(1,): (0, half), (2,): (0, half)}, "diagonal")
 
 
 # ---- noble rotation numbers

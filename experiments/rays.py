@@ -20,6 +20,7 @@ from converse.commands.common import Parser, ended
 from converse.maps.map import Map
 from converse.maps.region import direction
 from converse.maps.tori import prove_tori, rays
+from converse.model.map import THESIS, SymplecticMap
 from converse.model.problem import Problem
 from converse.storage import files
 from converse.tori.torus import family
@@ -31,8 +32,8 @@ REACH = 0.6                             # of where a torus is seen to end: where
 
 def potential(d, radius):
     """In the direction d, at a radius."""
-    problem = Problem.patch([Fraction("%.5g" % radius) * each for each in d])
-    return orbits.Fourier.of(family(problem)[0])
+    problem = Problem(SymplecticMap(THESIS, [Fraction("%.5g" % radius) * each for each in d]))
+    return orbits.potential.Fourier.of(family(problem)[0])
 
 
 def catalogue(found, path):

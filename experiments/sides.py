@@ -27,7 +27,8 @@ from converse import tori
 from converse.commands.common import Parser, ended
 from converse.draw import plot
 from converse.draw.plot import BLUE, GREEN
-from converse.model.problem import LINE, Problem
+from converse.model.map import LINE, THESIS, SymplecticMap
+from converse.model.problem import Problem
 from converse.storage import files
 
 COLUMNS = ("map", "side", "parameter", "seconds", "megabytes", "bytes", "parts", "longest",
@@ -64,8 +65,8 @@ def problem_of(name, value):
     """The standard map with k = value, or the thesis's with epsilon = value."""
     k = Fraction(value)
     if name == "standard":
-        return Problem.patch([k], waves=[(1, 0)])
-    return Problem.patch([LINE * k, LINE * k, 2 * LINE * k])
+        return Problem(SymplecticMap([(1, 0)], [k]))
+    return Problem(SymplecticMap(THESIS, [LINE * k, LINE * k, 2 * LINE * k]))
 
 
 def measured(name, side, value):

@@ -22,8 +22,7 @@ from converse import orbits, tori
 from converse.commands.common import Parser, ended
 from converse.maps.tori import highest
 from converse.model.exact import exact, short_text
-from converse.model.inputs import read_potential
-from converse.model.problem import Problem
+from converse.model.map import SymplecticMap
 from converse.storage.files import ConverseError
 
 COUNT, ROUNDS, PARENTS, CHILDREN = 300, 4, 6, 4     # of a search
@@ -125,12 +124,11 @@ def last(path, name, value):
 
 
 def potential_at(path, name, value):
-    return orbits.read_potential(path, {name: exact("%.6g" % value)})
+    return orbits.potential.known(map_at(path, name, value))
 
 
-def problem_at(path, name, value):
-    source = read_potential(path, {name: exact("%.4g" % value)})
-    return Problem.patch(source.amplitude, waves=source.waves)
+def map_at(path, name, value):
+    return SymplecticMap.read(path).at(**{name: exact("%.6g" % value)})
 
 
 def run(options):
@@ -146,7 +144,7 @@ def run(options):
         print("    %.4f  (%s)  %s" % (multiple, ", ".join("%.6f" % w for w in rotation.floats),
                                       rotation.text()), flush=True)
     began = time.process_time()
-    proof, reached = highest(lambda x: problem_at(path, name, x), found[0][1], value,
+    proof, reached = highest(lambda x: map_at(path, name, x), found[0][1], value,
                              options.points)
     if proof is None:
         print("nothing is proved")

@@ -12,6 +12,8 @@ import sys
 from ..draw import plot
 from ..draw.figure import format_of
 from ..model.exact import exact
+from ..model.map import SymplecticMap
+from ..model.problem import InputError
 from ..storage import files
 from ..storage.files import ConverseError, plain
 from ..version import __version__
@@ -121,7 +123,12 @@ def read_potential(source, at=()):
         raise ConverseError("'%s' is no potential and no file; there are %s, or a JSON file of "
                             "harmonics (docs/reference/inputs.md)" % (
                                 source, ", ".join(POTENTIALS)))
-    return orbits.read_potential(source, dict(at))
+    try:
+        return orbits.potential.known(SymplecticMap.read(source).at(**dict(at)))
+    except InputError:
+        raise
+    except ValueError as error:
+        raise ConverseError("%s: %s" % (source, error)) from None
 
 
 def _check_type(potential, vector):

@@ -124,8 +124,9 @@ def _read_problem(options, restored):
             raise ConverseError("--together is for ranges of a, b and c; name a parameter in the "
                                 "input instead")
         return problem
-    return replace(problem, together=options.together or problem.together or (
-        restored is not None and restored.problem.together))
+    if options.together or restored is not None and restored.problem.together:
+        return problem.tied()
+    return problem
 
 
 def _check_graphics(options):
@@ -174,7 +175,7 @@ def run(options):
     if restored is None:
         with _said_in_a_line():
             begun = ready(Proof(problem, settings, xstar=xstar and tuple(xstar)))
-        problem, xstar = begun.problem, begun.xstar
+        problem, xstar, given["method"] = begun.problem, begun.xstar, settings.method
     else:
         begun = ready(replace(restored, problem=replace(
             restored.problem, comments=problem.comments)))

@@ -5,7 +5,6 @@ import contextlib
 import os
 import re
 import sys
-from dataclasses import replace
 
 from ..model.exact import exact
 from ..storage import files
@@ -95,7 +94,7 @@ def _read_problem(options):
         if not problem.by_ranges:
             raise ConverseError("--together is for ranges of a, b and c; name a parameter in the "
                                 "input instead")
-        return replace(problem, together=True)
+        return problem.tied()
     if problem.by_ranges and sum(map(any, problem.parts)) > 1:
         raise ConverseError("a, b and c have ranges of their own; let them move together "
                             "(--together), or make all but one single numbers")

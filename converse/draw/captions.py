@@ -26,7 +26,7 @@ CONCLUSIONS = {
 def head(proof):
     """The lines that state what is proved: the conclusion, and the parameters, exactly."""
     problem = proof.problem
-    torus = TORUS[problem.dimension]
+    torus = TORUS[problem.map.dimension]
     if proof.conclusion == "undecided":
         torus = ("an " if torus[0] == "i" else "a ") + torus
     words = CONCLUSIONS[proof.conclusion]

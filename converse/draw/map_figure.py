@@ -9,7 +9,7 @@ except ImportError:                     # matplotlib brings it, and plot.check()
 
 from ..maps.map import AT_ONCE, PROVED
 from ..maps.region import direction
-from ..model.problem import LINE
+from ..model.map import LINE
 from ..storage import files
 from . import notebook, plot
 from .figure import format_of

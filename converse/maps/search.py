@@ -10,6 +10,7 @@ from fractions import Fraction
 from typing import Callable, Optional
 
 from ..model.exact import Number, decimal_text, exact
+from ..model.map import THESIS, SymplecticMap
 from ..model.problem import IDENTITY, Problem
 from ..model.region import DIAGONALS, exchangeable, reduced
 from ..prover import native
@@ -45,6 +46,10 @@ TOO_LONG = native.lib.CV_REASON_TOO_LONG    # of a failed try: more cuts will no
 
 
 # ---- what a worker does, on plain data
+
+def _problem(amplitude, parts=()):
+    return Problem(SymplecticMap(THESIS, amplitude, parts))
+
 
 @dataclass(frozen=True)
 class Outcome:
@@ -85,7 +90,7 @@ def _way(directions, cell, stop):
     middle; None if stopped.  A frame that is None is chosen."""
     r, s = cell.middle
     a, b, c = point = tuple(r * d for d in region.direction(directions, s))
-    problem = Problem.patch(point)
+    problem = _problem(point)
     xstar = native.chosen_start(native.Task(problem, SETTINGS))
     if problem.is_flat:
         return None, xstar
@@ -111,13 +116,13 @@ def attempt(directions, cell, budget, stop=None):
     stop = stop or native.Stop()
     middle, parts = region.patch(directions, cell)
     if cell.high[0] == region.RADIUS:           # it must hold for all larger radii, too
-        begun = native.begin(native.Task(Problem.patch(middle, parts), SETTINGS), "", stop)
+        begun = native.begin(native.Task(_problem(middle, parts), SETTINGS), "", stop)
         return begun and Outcome(AT_ONCE if begun.at_once else OPEN)
     way = _way(directions, cell, stop)
     if way is None:
         return None
     frame, xstar = way
-    problem = reduced(Problem.patch(middle, parts), xstar, frame)
+    problem = reduced(_problem(middle, parts), xstar, frame)
     found = _prove_within(problem, xstar, budget, stop)
     if found is None:
         return None
@@ -149,7 +154,7 @@ def estimate_frontier(directions, s, stop=None):
             return None
         frame, xstar = way
         point = region.patch(directions, cell)[0]
-        found = _prove_within(reduced(Problem.patch(point), xstar, frame), xstar, budget, stop)
+        found = _prove_within(reduced(_problem(point), xstar, frame), xstar, budget, stop)
         return found and (found[0] is not None or found[2].at_once)
 
     low, high = 0, region.RADIUS

@@ -10,7 +10,8 @@ import os
 from fractions import Fraction
 from typing import TYPE_CHECKING, Callable, Dict, Iterable, Iterator, List, Optional, Tuple, Union
 
-from ..model.problem import THESIS, Problem
+from ..model.map import THESIS, SymplecticMap
+from ..model.problem import Problem
 from ..storage.files import ConverseError
 from . import region
 from .map import Map
@@ -49,7 +50,7 @@ def named(direction: Point, estimate: float) -> List[Tuple["Rotation", float]]:
     from ..tori import read_rotation
     from ..tori.torus import family
 
-    potential, _ = family(Problem.patch(direction))
+    potential, _ = family(Problem(SymplecticMap(THESIS, direction)))
     return [(read_rotation(name, potential.dimension), estimate)
             for name in VECTORS[potential.dimension]]
 
@@ -113,7 +114,7 @@ def highest(problem_at: Callable[[float], Problem], rotation: "Rotation", top: f
 
 def _problem(direction, radius):
     exact = max(1, round(radius / UNIT)) * UNIT         # not 0, where there is no wave
-    return Problem.patch([exact * d for d in direction])
+    return Problem(SymplecticMap(THESIS, [exact * d for d in direction]))
 
 
 def proved_points(directory: Path) -> List[Tuple[Point, str]]:

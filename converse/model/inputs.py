@@ -5,15 +5,15 @@ import json
 import os
 import re
 from fractions import Fraction
-from typing import IO, Dict, Mapping, NamedTuple, NoReturn, Sequence, Union
+from typing import IO, Dict, NamedTuple, NoReturn, Sequence, Union
 
-from .exact import Ends, Number, exact, is_decimal, short_text
-from .potential import FourierSum, Wave
-from .problem import HIGHEST, MOST_PARAMETERS, MOST_WAVES, InputError, Problem, interval
+from .exact import Ends, exact, is_decimal
+from .map import CONSTANT, HIGHEST, MOST_PARAMETERS, MOST_WAVES, affine
+from .potential import Wave
+from .problem import InputError, Problem
 
 LABELS = ("a", "b", "c", "theta[0]", "theta[1]")        # as the input's documentation calls them
 PHASES = {"sin": Fraction(0), "cos": Fraction(1, 2)}    # sin(k.y + pi / 2) = cos k.y
-CONSTANT = "constant"
 NAME = re.compile(r"[^\W\d]\w{0,30}")
 # Of a number: one of 100,000 characters takes a proof 18 seconds before it begins, one of 10,000
 # takes half a second (November 2026).
@@ -32,27 +32,10 @@ def read_input(source: Source) -> Problem:
     InputError: it is neither.
     """
     text, name = _read(source)
-    return _named(name, lambda: _problem(_json(text, name))) if _is_json(text, name) else \
-        _five_lines(text, name)
-
-
-def read_potential(source: Source, at: Mapping[str, Number] = {}) -> FourierSum:
-    """Reads the potential alone, for these values of its parameters (those of the thesis's are a, b
-    and c).  A parameter whose range has no width needs none.  InputError, as above, and if a
-    parameter has no value."""
-    text, name = _read(source)
-    if _is_json(text, name):
-        return _named(name, lambda: _potential(_json(text, name), at))
-    problem = _five_lines(text, name)
-    return _named(name, lambda: _potential(_Description(
-        2, problem.waves, [{letter: Fraction(1)} for letter in "abc"],
-        {letter: getattr(problem, letter) for letter in "abc"}), at))
-
-
-def _named(name, call):
-    """What call() returns; InputError, with the file's name, if something is _Wrong."""
+    if not _is_json(text, name):
+        return _five_lines(text, name)
     try:
-        return call()
+        return _problem(_json(text, name))
     except _Wrong as wrong:
         raise InputError("%s%s" % (name, wrong)) from None
 
@@ -148,18 +131,20 @@ class _Description(NamedTuple):
     """What a file says, exactly: of each wave the amplitude, which is a range (low, high) or the
     factor of each named parameter and the constant; the parameters' ranges."""
 
-    dimension: int
     waves: Sequence[Wave]
     amplitudes: Sequence[Union[Ends, Dict[str, Fraction]]]
     parameters: Dict[str, Ends]
     region: Sequence[Ends] = ()         # the ranges of v0 and v1
     comments: Sequence[str] = ()
+    name: str = ""                      # of the file
 
 
 def _json(text: str, name: str) -> _Description:
     try:
+        stem = os.path.splitext(os.path.basename(name))[0]
         return _described(json.loads(text, parse_int=_Number, parse_float=_Number,
-                                     parse_constant=_constant, object_pairs_hook=_object))
+                                     parse_constant=_constant, object_pairs_hook=_object))._replace(
+                                         name=stem)
     except json.JSONDecodeError as error:
         raise InputError("%s, line %d: this is no JSON (%s, column %d); mend it there" % (
             name, error.lineno, error.msg[:1].lower() + error.msg[1:], error.colno)) from None
@@ -257,7 +242,7 @@ def _described(value):
         _fail("v1", "on the circle there is no second angle", "leave it out")
     region = [_range(key, value[key]) if key in value else (Fraction(0), Fraction(2))
               for key in ("v0", "v1")]
-    return _Description(size, waves, amplitudes, parameters, region,
+    return _Description(waves, amplitudes, parameters, region,
                         _comments(value.get("comments", [])))
 
 
@@ -319,63 +304,20 @@ def _amplitude(where, value, parameters):
 # ---- what becomes of a description
 
 def _problem(described):
-    """The Problem: ranges of amplitudes are parameters of their own, behind those that are named,
-    and what is no finite decimal is enclosed."""
-    names = list(described.parameters)
-    parameters = [interval(name, ends) for name, ends in described.parameters.items()]
-    constants, slopes, unnamed = [], [], []
+    """The Problem of a description."""
     for j, amplitude in enumerate(described.amplitudes, 1):
-        if isinstance(amplitude, dict):
-            for key, number in amplitude.items():
-                if not is_decimal(number):
-                    _fail("harmonic %d, amplitude, %s" % (j, key),
-                          "%s is no finite decimal" % number, "give one")
-            constants.append(amplitude.get(CONSTANT, Fraction(0)))
-            slopes.append({names.index(key): number for key, number in amplitude.items()
-                           if key != CONSTANT})
-            continue
-        low, high = interval("amplitude", amplitude)
-        constants.append(low if low == high else Fraction(0))
-        slopes.append({} if low == high else {len(parameters): Fraction(1)})
-        if low != high:
-            parameters.append((low, high))
-            unnamed.append("amplitude[%d]" % j)
-    if len(parameters) > MOST_PARAMETERS:
-        _fail("", "%d parameters and ranges of amplitudes" % len(parameters),
+        for key, number in amplitude.items() if isinstance(amplitude, dict) else ():
+            if not is_decimal(number):
+                _fail("harmonic %d, amplitude, %s" % (j, key),
+                      "%s is not a finite decimal" % number, "give one")
+    count = len(described.parameters) + sum(not isinstance(each, dict) and
+                             (each[0] != each[1] or not is_decimal(each[0]))
+                             for each in described.amplitudes)
+    if count > MOST_PARAMETERS:
+        _fail("", "%d parameters and ranges of amplitudes" % count,
               "give %d at most" % MOST_PARAMETERS)
-    amplitude = [constant + sum(slope[m] * sum(parameters[m]) / 2 for m in slope)
-                 for constant, slope in zip(constants, slopes)]
-    parts = [[slope.get(m, 0) * (high - low) / 2 for slope in slopes]
-             for m, (low, high) in enumerate(parameters)]
-    named = [(name, *ends) for name, ends in zip(names + unnamed, parameters)] if names else []
     try:
-        return Problem.patch(amplitude, parts, described.waves, *described.region,
-                             described.comments, parameters=named)
+        return Problem(affine(described.waves, described.amplitudes, described.parameters,
+                              described.name), *described.region, described.comments)
     except ValueError as error:
         _fail("", error, "give moderate numbers")
-
-
-def _potential(described, at):
-    """The FourierSum at these values of the parameters."""
-    names = list(described.parameters)
-    for name in at:
-        if name not in names:
-            _fail("", "there is no parameter %.40s" % name,
-                  "the parameters are " + (", ".join(names) or "none"))
-    values = {}
-    for name, (low, high) in described.parameters.items():
-        if name not in at and low != high:
-            _fail("", "%s goes from %s to %s" % (name, short_text(low), short_text(high)),
-                  "choose a value, for instance --at %s=%s" % (name, short_text((low + high) / 2)))
-        values[name] = exact(at[name]) if name in at else low
-    amplitude = []
-    for j, each in enumerate(described.amplitudes, 1):
-        if isinstance(each, dict):
-            amplitude.append(sum((number * values.get(key, 1) for key, number in each.items()),
-                                 Fraction(0)))
-            continue
-        if each[0] != each[1]:
-            _fail("harmonic %d, amplitude" % j, "this is a range", "give one number, or name a "
-                  "parameter in 'parameters', and choose its value")
-        amplitude.append(each[0])
-    return FourierSum(tuple(described.waves), tuple(amplitude), described.dimension)

@@ -1,6 +1,6 @@
-"""The problem: a potential, the patch of parameters it has, and the angles of a successor."""
+"""The problem: a map or a family of maps, and the region of successors that is searched."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cached_property
 from math import gcd
@@ -8,23 +8,15 @@ from typing import TYPE_CHECKING, Optional, Sequence, Tuple, Union
 
 from .exact import Ends, Number, decimal_text, exact, is_decimal, outward, range_text
 from .lattice import echelon
+from .map import (HIGHEST, PLACES, THESIS, MuldoonMap, Numbers, Range, SymplecticMap, ends_of,
+                  exact_of)
 from .potential import Wave, sum_text
 
 NAMES = ("a", "b", "c", "v0", "v1")
-PLACES = 40                             # to which what is no finite decimal is enclosed
-THESIS = (1, 0), (0, 1), (1, 1)         # the waves of a, b and c
-# The thesis's line is a = b = c/2 = LINE epsilon: this decimal defines epsilon here.  The thesis's
-# own constant is 2 pi^2/M = 11.2143598191..., M = sqrt(207 + 33 sqrt 33)/(8 sqrt 2), which
-# converse.orbits has.
-LINE = Fraction("11.21436")
-MOST_WAVES, MOST_PARAMETERS, HIGHEST = 16, 3, 100       # the last: of k and of a frame
 IDENTITY = 1, 0, 0, 1
 
-Range = Tuple[Number, Number]           # what becomes of it: Ends
 Frame = Tuple[int, int, int, int]
-Numbers = Tuple[Fraction, ...]
 Shifts = Tuple[Tuple[Fraction, Fraction], ...]         # of v0 and v1, by each parameter
-Parameter = Tuple[str, Fraction, Fraction]              # name, lower and upper end
 
 
 class InputError(ValueError):
@@ -33,81 +25,76 @@ class InputError(ValueError):
 
 @dataclass(frozen=True, repr=False)
 class Problem:
-    """Five ranges (low, high): of the parameters a, b and c, and of the angles v0 and v1 of the
-    point x_1 that follows x*, in units of pi.
+    """A map, or a family of maps, and where the point x_1 that follows x* is looked for.
 
-        Problem(a=("0.3072", "0.3097"), b=("0.3072", "0.3097"), c=("0.6145", "0.6195"))
+    Parameters
+    ----------
+    map
+        The map or the family.  Ends of its ranges that are not finite decimals, such as 4/3, are
+        moved outwards to 40 places.
+    v0, v1
+        The ranges of the angles of x_1, in units of pi; by default they cover the torus, as a
+        theorem needs.
+    comments
+        For the report and the proof file.
+    axes
+        The frame, x_1 = frame.(v0, v1), as (f00, f01, f10, f11).  By default, where v0 and v1 are
+        all of the torus, the frame is chosen with the region that stands for the torus (region.py);
+        else it is the identity.  Axes that would be chosen in any case become None; `axes_named`
+        tells that axes were given.
+    alone
+        The coordinate that is examined alone, 0 or 1, or "no"; by default it is chosen.  `factor`
+        has it.
+    shifts
+        Of each parameter, by how much it moves v0 and v1 at its upper end, in units of pi: the
+        region of t is that of v0 and v1, moved by sum of t[m] shifts[m].  Only the regions of
+        further starting points move (links.part_problem); no input moves, and no proof as a whole.
 
-    A number is an int, a Decimal, a Fraction, or a string such as "0.3085", "1.25e-3" or "63/64";
-    never a float, which is seldom the number that was meant.  One number alone is a range without
-    width.  What is no finite decimal, such as 4/3, is enclosed to 40 places.  By default the angles
-    cover the torus, as a theorem needs.
-
-    together: a, b and c move together, along the segment from all lower to all upper ends.
-
-    Problem.patch takes other potentials, and any patch of parameters.  In every problem
-
-        V(y) = - sum of p[j] sin(k[j].y + phi[j]),   p = amplitude + sum of t[m] parts[m],
-
-    -1 <= t[m] <= 1, the wave j being (k0, k1, phi / pi): three ranges are three parameters t[m],
-    ranges taken together are one.
-
-    by_ranges: whether ranges of a, b and c describe the patch; if not, these are None.
-    axes: the frame, x_1 = frame.(v0, v1), as (f00, f01, f10, f11); None: where v0 and v1 are all of
-    the torus, chosen, with the region that stands for it (region.py); else the identity.  Axes that
-    would be chosen anyhow become None; `axes_named` tells that there were some.
-    alone: the coordinate that is examined alone, 0 or 1, or "no"; None: chosen.  `factor` has it.
-    parameters: the name of each parameter and its range, (name, low, high), in which reports state
-    theorems; (): a, b and c where ranges of these describe the patch, else the t[m].
-    shifts: of each parameter, by how much it moves v0 and v1 at its upper end, in units of pi: the
-    region of t is that of v0 and v1, moved by sum of t[m] shifts[m].  (): none.  Only regions of
-    parts have some (links.part_problem); no input, and no proof as a whole.
-
-    TypeError, ValueError: an argument is not what it must be; the text says which, and why.
+    Raises
+    ------
+    TypeError, ValueError
+        An argument is not as described; the text names the argument and the reason.
     """
 
-    a: Optional[Ends] = None
-    b: Optional[Ends] = None
-    c: Optional[Ends] = None
+    map: SymplecticMap
     v0: Ends = (Fraction(0), Fraction(2))
     v1: Ends = (Fraction(0), Fraction(2))
     comments: Tuple[str, ...] = ()
-    together: bool = False
-    _patch: Optional[Tuple[Tuple[Wave, ...], Numbers, Tuple[Numbers, ...]]] = None
     axes: Optional[Frame] = None
     alone: Union[int, str, None] = None
     shifts: Shifts = ()
-    parameters: Tuple[Parameter, ...] = field(default=(), compare=False)
     axes_named: bool = field(default=False, init=False, compare=False)
 
-    if TYPE_CHECKING:                   # what is given; above is what becomes of it
-        def __init__(self, a: Union[Range, Number, None] = None,
-                     b: Union[Range, Number, None] = None, c: Union[Range, Number, None] = None,
-                     v0: Union[Range, Number] = (0, 2), v1: Union[Range, Number] = (0, 2),
-                     comments: Union[str, Sequence[str]] = (), together: bool = False,
-                     _patch: Optional[tuple] = None, axes: Optional[Frame] = None,
-                     alone: Union[int, str, None] = None,
-                     shifts: Sequence[Sequence[Number]] = (),
-                     parameters: Sequence[Parameter] = ()) -> None: ...
+    if TYPE_CHECKING:                   # the arguments; above are the values made of them
+        def __init__(self, map: SymplecticMap, v0: Union[Range, Number] = (0, 2),
+                     v1: Union[Range, Number] = (0, 2), comments: Union[str, Sequence[str]] = (),
+                     axes: Optional[Frame] = None, alone: Union[int, str, None] = None,
+                     shifts: Sequence[Sequence[Number]] = ()) -> None: ...
 
     def __post_init__(self) -> None:
-        for name in NAMES if self.by_ranges else NAMES[3:]:
-            object.__setattr__(self, name, interval(name, getattr(self, name)))
-        if not isinstance(self.together, bool):
-            raise TypeError("together must be True or False, not %r" % (self.together,))
+        if not isinstance(self.map, SymplecticMap):
+            raise TypeError("the map is a SymplecticMap, such as converse.StandardMap('0.9'), not "
+                            "%.200r" % (self.map,))
+        self.map.enclosed               # ValueError: an amplitude is not a finite decimal
+        for name in NAMES[3:]:
+            object.__setattr__(self, name, outward(*ends_of(name, getattr(self, name)), PLACES))
         comments = [self.comments] if isinstance(self.comments, str) else list(self.comments)
         if not all(isinstance(comment, str) for comment in comments):
             raise TypeError("comments are strings")
         object.__setattr__(self, "comments", tuple(
             line.encode("utf-8", "backslashreplace").decode("utf-8")
             for comment in comments for line in (comment.splitlines() or [""])))
-        if not self.by_ranges:
-            if self.together or (self.a, self.b, self.c) != (None,) * 3:
-                raise ValueError("a, b, c and together do not go with a patch")
-            self._normalize()
         self._check_choices()
         self._check_shifts()
-        self._check_parameters()
+
+    @classmethod
+    def of(cls, source: "Union[SymplecticMap, Problem]") -> "Problem":
+        """A problem as it is, or that of a map and all of the torus."""
+        return source if isinstance(source, Problem) else cls(source)
+
+    def tied(self) -> "Problem":
+        """The problem whose parameters move together, from all lower to all upper ends."""
+        return replace(self, map=self.map.tied())
 
     @classmethod
     def around(cls, centre: Sequence[Number], half: Sequence[Number],
@@ -121,49 +108,7 @@ class Problem:
             if h < 0:
                 raise ValueError("the half-width of %s is negative" % name)
         a, b, c, v0, v1 = [(middle - h, middle + h) for middle, h in pairs]
-        return cls(a, b, c, v0, v1, comments, together)
-
-    @classmethod
-    def patch(cls, amplitude: Sequence[Number], parts: Sequence[Sequence[Number]] = (),
-              waves: Sequence[tuple] = THESIS, v0: Union[Range, Number] = (0, 2),
-              v1: Union[Range, Number] = (0, 2), comments: Union[str, Sequence[str]] = (),
-              axes: Optional[Frame] = None, alone: Union[int, str, None] = None,
-              parameters: Sequence[Parameter] = ()) -> "Problem":
-        """A patch of the parameters of a potential:  amplitude + sum of t[m] parts[m],  each t[m]
-        in [-1, 1].
-
-            Problem.patch(["0.4", "0.35", 0], [["0.01", 0, 0], ["0.01", "0.02", 0]])
-
-        amplitude: of each wave, in the middle of the patch, a finite decimal.
-        parts: for each parameter, of which there are 3 at most, what it adds to each amplitude at
-        its upper end.
-        waves: at most 16 of (k0, k1) or (k0, k1, phase), k integer and up to 100, the phase exact
-        and in units of pi; by default those of a, b and c.  On the circle k1 is 0.
-
-        A patch that three ranges of a, b and c, or these together, can describe is that Problem.
-        """
-        return cls(None, None, None, v0, v1, comments, False, _checked(waves, amplitude, parts),
-                   axes, alone, parameters=parameters)
-
-    def _normalize(self):
-        """What a, b and c can say is said by them: one problem, one Problem."""
-        waves, amplitude, parts = _checked(*self._patch)
-        object.__setattr__(self, "_patch", (waves, amplitude, parts))
-        if waves != tuple((*k, Fraction(0)) for k in THESIS):
-            return
-        if len(parts) == 1:
-            half = parts[0]
-        elif parts and len(parts) < 3 or any(part[j] for m, part in enumerate(parts)
-                                             for j in range(3) if j != m):
-            return
-        else:
-            half = tuple(part[m] for m, part in enumerate(parts)) or (Fraction(0),) * 3
-        if min(half) < 0:
-            return
-        for name, p, h in zip("abc", amplitude, half):
-            object.__setattr__(self, name, (p - h, p + h))
-        object.__setattr__(self, "together", len(parts) == 1)
-        object.__setattr__(self, "_patch", None)
+        return cls(MuldoonMap(a, b, c, together=together), v0, v1, comments)
 
     def _check_choices(self):
         """Sees that axes and alone make sense; None where they say what would be chosen anyhow."""
@@ -191,58 +136,61 @@ class Problem:
                              % (len(self.shifts), len(self.parts)))
         object.__setattr__(self, "shifts", shifts)
 
-    def _check_parameters(self):
-        """A name and a range for each parameter, or none."""
-        if self.parameters and len(self.parameters) != len(self.parts):
-            raise ValueError("there are names of %d parameters for %d"
-                             % (len(self.parameters), len(self.parts)))
-        for (name, low, high), part in zip(self.parameters, self.parts):
-            if low > high or low == high and any(part):
-                raise ValueError("the range of %.40s goes from %s to %s" % (name, low, high))
-        object.__setattr__(self, "parameters", tuple(self.parameters))
-
     def __repr__(self):
-        ranges = ["%s=%s" % (name, range_text(*getattr(self, name))) for name in NAMES
-                  if getattr(self, name) is not None]
+        ranges = ["%s=%s" % (name, range_text(*getattr(self, name))) for name in NAMES[3:]]
         if self.shifts:
             ranges.append("shifts=(%s)" % "; ".join(
                 "%s %s" % tuple(map(decimal_text, pair)) for pair in self.shifts))
-        if self.by_ranges:
-            return "Problem(%s%s)" % (", ".join(ranges), ", together" if self.together else "")
-        return "Problem.patch(%s, %s)" % (", ".join(
-            "%s of (%d, %d)" % (range_text(p - h, p + h), k0, k1)
-            for (k0, k1, _), p, h in zip(self.waves, self.amplitude, self.half)), ", ".join(ranges))
+        return "<Problem: %s; %s>" % (self.map, ", ".join(ranges))
 
-    # ---- the one mechanism: what the core and a proof file are told
+    # ---- the map as the core and a proof file take it: in finite decimals
 
-    @cached_property
+    @property
     def waves(self) -> Tuple[Wave, ...]:
         """(k0, k1, phase in units of pi) of each wave."""
-        return (tuple((*k, Fraction(0)) for k in THESIS) if self._patch is None
-                else self._patch[0])
+        return self.map.harmonics
 
-    @cached_property
+    @property
     def amplitude(self) -> Numbers:
-        """Of each wave, in the middle of the patch."""
-        if self._patch is not None:
-            return self._patch[1]
-        return tuple(sum(getattr(self, name)) / 2 for name in "abc")
+        """Of each wave, in the middle of the patch of parameters."""
+        return self.map.enclosed[0]
+
+    @property
+    def parts(self) -> Tuple[Numbers, ...]:
+        """Of each parameter t[m] in [-1, 1], what it adds to each amplitude at its upper end."""
+        return self.map.enclosed[1]
+
+    @property
+    def parameters(self) -> Tuple[Tuple[str, Fraction, Fraction], ...]:
+        """The name of each parameter and its range, (name, low, high), in which reports state
+        theorems; (): a, b and c where ranges of these describe the patch, else the t[m]."""
+        if self.map.names == tuple("abc") and self.by_ranges:
+            return ()
+        return tuple((name, *outward(*ends, PLACES))
+                     for name, ends in zip(self.map.names, self.map.ranges))
 
     @cached_property
-    def parts(self) -> Tuple[Numbers, ...]:
-        """Of each parameter, what it adds to each amplitude at its upper end."""
-        if self._patch is not None:
-            return self._patch[2]
-        half = [(high - low) / 2 for low, high in (getattr(self, name) for name in "abc")]
-        if self.together:
-            return tuple(half),
-        return tuple(tuple(h if j == m else Fraction(0) for j in range(3))
-                     for m, h in enumerate(half))
+    def abc(self) -> Optional[Tuple[Ends, ...]]:
+        """The ranges of a, b and c, if these describe the patch: independent ranges, or ranges
+        that are taken together; else None."""
+        parts = self.parts
+        if self.waves != tuple((*k, Fraction(0)) for k in THESIS) or len(parts) not in (1, 3):
+            return None
+        half = parts[0] if len(parts) == 1 else tuple(part[m] for m, part in enumerate(parts))
+        if min(half) < 0 or len(parts) == 3 and any(
+                part[j] for m, part in enumerate(parts) for j in range(3) if j != m):
+            return None
+        return tuple((p - h, p + h) for p, h in zip(self.amplitude, half))
 
     @property
     def by_ranges(self) -> bool:
         """Is the patch described by ranges of a, b and c, perhaps taken together?"""
-        return self._patch is None
+        return self.abc is not None
+
+    @property
+    def together(self) -> bool:
+        """Are there ranges of a, b and c that are taken together?"""
+        return self.by_ranges and len(self.parts) == 1
 
     @cached_property
     def frame(self) -> Frame:
@@ -307,11 +255,6 @@ class Problem:
         return s[0], s[1]
 
     @property
-    def dimension(self) -> int:
-        """1 if the potential is given on the circle, else 2."""
-        return 2 if self.by_ranges or any(k1 for _, k1, _ in self.waves) else 1
-
-    @property
     def is_flat(self) -> bool:
         """Do those waves that the search needs feel one combination of the angles alone?"""
         k = [wave for wave, _ in self._present()]
@@ -355,45 +298,6 @@ def bezout(a: int, b: int) -> Tuple[int, int]:
     return y, x - a // b * y
 
 
-def _checked(waves, amplitude, parts):
-    """The three as Problem keeps them: tuples of exact numbers.  TypeError, ValueError: they are
-    something else, or do not go together."""
-    try:
-        waves, amplitude, parts = list(waves), list(amplitude), [list(part) for part in parts]
-        waves = [tuple(wave) for wave in waves]
-    except TypeError:
-        raise TypeError("waves, amplitudes and parts are sequences") from None
-    if not 1 <= len(waves) <= MOST_WAVES:
-        raise ValueError("there are %d waves; give 1 to %d" % (len(waves), MOST_WAVES))
-    if len(parts) > MOST_PARAMETERS:
-        raise ValueError("there are %d parameters; give %d at most" % (len(parts), MOST_PARAMETERS))
-    seen = {}
-    for j, wave in enumerate(waves):
-        if len(wave) not in (2, 3):
-            raise ValueError("wave %d: give (k0, k1) or (k0, k1, phase), not %d numbers"
-                             % (j + 1, len(wave)))
-        if not all(type(k) is int for k in wave[:2]):
-            raise TypeError("wave %d: k is two integers, not %r" % (j + 1, wave[:2]))
-        if wave[:2] == (0, 0) or max(map(abs, wave[:2])) > HIGHEST:
-            raise ValueError("wave %d: k = (%.20s, %.20s) is %s" % (
-                j + 1, *wave[:2], "no wave" if wave[:2] == (0, 0) else
-                "out of range (%d at most)" % HIGHEST))
-        phase = _exact_of("the phase of wave %d" % (j + 1), wave[2] if len(wave) == 3 else 0)
-        waves[j] = (*wave[:2], 1 - (1 - phase) % 2)
-        if waves[j] in seen:
-            raise ValueError("waves %d and %d are the same" % (seen[waves[j]], j + 1))
-        seen[waves[j]] = j + 1
-    for name, numbers in [("the amplitude", amplitude)] + [
-            ("part %d" % (m + 1), part) for m, part in enumerate(parts)]:
-        if len(numbers) != len(waves):
-            raise ValueError("%s has %d numbers for %d waves" % (name, len(numbers), len(waves)))
-        for j, number in enumerate(numbers):
-            numbers[j] = _exact_of("%s of wave %d" % (name, j + 1), number)
-            if not is_decimal(numbers[j]):
-                raise ValueError("%s of wave %d: %s is no finite decimal" % (name, j + 1, number))
-    return tuple(waves), tuple(amplitude), tuple(map(tuple, parts))
-
-
 def exact_shifts(shifts: Sequence[Sequence[Number]]) -> Shifts:
     """Exact pairs, () if all of them are 0.  TypeError, ValueError: they are no shifts."""
     try:
@@ -405,34 +309,12 @@ def exact_shifts(shifts: Sequence[Sequence[Number]]) -> Shifts:
         if len(pair) != 2:
             raise ValueError("the shifts by a parameter are of v0 and v1, not %d numbers"
                              % len(pair))
-        s0, s1 = (_exact_of("a shift", x) for x in pair)
+        s0, s1 = (exact_of("a shift", x) for x in pair)
         for x in s0, s1:
             if not is_decimal(x):
                 raise ValueError("a shift: %s is no finite decimal" % x)
         pairs.append((s0, s1))
     return tuple(pairs) if any(map(any, pairs)) else ()
-
-
-def _exact_of(name, number):
-    try:
-        return exact(number)
-    except (TypeError, ValueError) as error:
-        raise type(error)("%s: %s" % (name, error)) from None
-
-
-def interval(name, value):
-    """(low, high) as Fractions that are finite decimals."""
-    ends = value if isinstance(value, (tuple, list)) else (value, value)
-    if len(ends) != 2:
-        raise ValueError("%s is a range (low, high) or one number, not %d numbers"
-                         % (name, len(ends)))
-    try:
-        low, high = map(exact, ends)
-    except (TypeError, ValueError) as error:
-        raise type(error)("%s: %s" % (name, error)) from None
-    if low > high:
-        raise ValueError("%s: the lower end, %s, is above the upper one, %s" % (name, *ends))
-    return outward(low, high, PLACES)
 
 
 def wave_text(wave):

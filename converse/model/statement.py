@@ -5,8 +5,8 @@ import textwrap
 from fractions import Fraction
 
 from .exact import decimal_text, is_decimal
+from .map import LINE
 from .potential import sum_text
-from .problem import LINE
 
 WIDTH, INDENT = 98, 11                  # characters of a line, and of the labels at its left
 LONGEST = 12                            # A value of epsilon with more digits is not printed.
@@ -36,7 +36,7 @@ def whole(text):
 
 def map_lines(problem):
     """The map, with its potential, in lines."""
-    gradient = "V'(y)" if problem.dimension == 1 else "grad V(y)"
+    gradient = "V'(y)" if problem.map.dimension == 1 else "grad V(y)"
     return indented(["The map  y' = y + J',  J' = J - %s,  y modulo 2 pi," % gradient,
                      "with  V(y) = %s," % potential_text(problem)])
 
@@ -53,7 +53,7 @@ def ended(lines):
 def potential_text(problem):
     """V in the problem's parameters, exactly: -p sin(k.y + phi) is written as a cosine where phi
     is a multiple of pi/2."""
-    letters, text = ("y", "") if problem.dimension == 1 else ("y0", "y1"), ""
+    letters, text = ("y", "") if problem.map.dimension == 1 else ("y0", "y1"), ""
     for (k0, k1, phase), form in zip(problem.waves, _forms(problem)):
         angle, sign, function = sum_text(zip((k0, k1), letters)), -1, "sin"
         if (2 * phase).denominator == 1:        # phase is -1/2, 0, 1/2 or 1
@@ -107,7 +107,7 @@ def parameters(problem):
     if problem.together and any(problem.half[:3]):
         return None
     if problem.by_ranges:
-        return [(letter, *getattr(problem, letter)) for letter in "abc"]
+        return [(letter, *ends) for letter, ends in zip("abc", problem.abc)]
     return [("t[%d]" % m, Fraction(-1), Fraction(1)) for m in range(1, 1 + len(problem.parts))]
 
 
@@ -116,8 +116,7 @@ def conditions(problem, at_once=False):
     too (Proof.at_once)."""
     names = parameters(problem)
     if names is None:
-        ends = [whole("(%s)" % ", ".join(number_text(getattr(problem, letter)[i])
-                                          for letter in "abc")) for i in (0, 1)]
+        ends = [whole("(%s)" % ", ".join(map(number_text, corner))) for corner in zip(*problem.abc)]
         lines = ["for every (a, b, c) on the segment from %s to %s" % tuple(ends)]
     else:
         ranges = [whole("%s in [%s, %s]" % (name, *map(number_text, ends)))
@@ -151,11 +150,11 @@ def _multiples(problem, names):
 def _epsilon(problem, at_once):
     """The same in the thesis's epsilon, in a line, where epsilon parametrizes the patch."""
     if not problem.by_ranges or problem.parameters or not (
-            problem.together or all(low == high for low, high in (problem.a, problem.b,
-                                                                   problem.c))):
+            problem.together or all(low == high for low, high in problem.abc)):
         return []
-    ends = [x / LINE for x in problem.a]
-    if problem.b != problem.a or problem.c != tuple(2 * x for x in problem.a) or ends[0] <= 0 or \
+    a, b, c = problem.abc
+    ends = [x / LINE for x in a]
+    if b != a or c != tuple(2 * x for x in a) or ends[0] <= 0 or \
             not all(is_decimal(x) and len(number_text(x)) <= LONGEST for x in ends):
         return []
     low, high = map(number_text, ends)

@@ -13,8 +13,7 @@ try:
     from .mather import Floor, floor
     from .minimax import Pair
     from .points import load
-    from .potential import (Fourier, FromPython, Potential, ff, froeschle, parameters, poly,
-                            read_potential, standard, trig)
+    from .potential import FromPython, Potential, ff, froeschle, parameters, poly, standard, trig
     from .proved import NotProved, ProvedOrbit, prove
     from .search import search
     from .solver import Family, follow, straight
@@ -31,8 +30,8 @@ except ImportError as _error:           # said when something is asked for: the 
         from ..prover import native  # noqa: F401, which says more if it is the core that is missing
         raise ConverseError(_MISSING)
 
-__all__ = ["Family", "Floor", "Fourier", "FromPython", "LeastAction", "NotProved", "Onset", "Pair",
+__all__ = ["Family", "Floor", "FromPython", "LeastAction", "NotProved", "Onset", "Pair",
            "Potential", "ProvedOrbit", "State", "enclosed_action", "ff", "floor",
            "follow", "froeschle", "least_action", "load", "onset", "onsets", "parameters", "poly",
-           "prove", "read_csv", "read_potential", "search", "standard", "straight",
+           "prove", "read_csv", "search", "standard", "straight",
            "sweep", "trig"]

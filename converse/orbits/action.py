@@ -21,7 +21,7 @@ def rounding_errors(potential, reach):
     code = lib.cv_errors(potential.native, reach, errors)
     if potential.curvature is None or potential.lipschitz is None or code == lib.CV_EARGUMENT:
         raise ValueError("nothing can be proved of the potential %s: its rounding errors are not "
-                         "known; take orbits.Fourier or one of the thesis's" % potential.name)
+                         "known; take a SymplecticMap, trig, poly or ff" % potential.name)
     check(code)
     return tuple(errors)
 

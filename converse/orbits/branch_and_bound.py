@@ -8,7 +8,7 @@ A corridor, one rectangle for each point, is excluded by min-plus sums over the 
 import heapq
 from dataclasses import dataclass
 from math import gcd, inf, sqrt
-from typing import Callable, Optional, Tuple
+from typing import Callable, Optional
 
 import numpy as np
 
@@ -17,8 +17,8 @@ from ..prover.native import check
 from ..storage.files import ConverseError
 from .action import (LARGEST_EPS, U, action_bounds, action_on_grid, errors_near, floats_within,
                      gradient_bounds, per_point, rounding_errors)
-from .potential import Potential, address, known, told, whole
-from .state import FARTHEST, State
+from .potential import Numerators, Source, address, known, told, whole
+from .state import FARTHEST, State, type_of
 
 LONGEST = 500               # q
 
@@ -230,7 +230,7 @@ class _Search:
         return [(low, lower), (upper, high)]
 
 
-def least_action(potential: Potential, p: Tuple[int, ...], q: int, eps: float, gap: float = 1e-9,
+def least_action(potential: Source, p: Numerators, q: int, eps: float = 1.0, gap: float = 1e-9,
                  corridors: int = 10000,
                  progress: Optional[Callable[[int, float, float], object]] = None) -> LeastAction:
     """A LeastAction: bounds of the least action of all states of type (p, q), by branch and bound.
@@ -242,13 +242,14 @@ def least_action(potential: Potential, p: Tuple[int, ...], q: int, eps: float, g
     Above the eps where an orbit's tori break, q up to 30 takes seconds to minutes, and a gap of
     1e-12 is as cheap as a larger one.  Below, states slide along each other at no cost, and a small
     gap takes corridors without end."""
-    known(potential)
+    potential = known(potential)
     told(progress)
     rounding_errors(potential, 1.0)
     eps, gap = floats_within("eps and gap", [eps, gap], LARGEST_EPS)
     corridors = whole("corridors", corridors, 1, 10 ** 9)
     q = whole("q", q, 1, LONGEST)
-    state = State(potential, p, q, eps, np.zeros((q, potential.n)), (0.0,) * potential.n)
+    state = State(potential, type_of(potential, p, q)[0], q, eps, np.zeros((q, potential.n)),
+                  (0.0,) * potential.n)
     if eps == 0:
         return LeastAction(0.0, 0.0, state, gcd(*state.p, state.q), 0)
     search = _Search(state)

@@ -10,14 +10,14 @@ called estimates.
 from dataclasses import dataclass
 from itertools import combinations
 from math import inf, sqrt
-from typing import Sequence, Tuple
+from typing import Sequence, Tuple, Union
 
 import numpy as np
 
 from .._native import ffi, lib
 from ..prover.native import check
 from .action import LARGEST_EPS, U, action_on_grid, floats_within
-from .potential import Potential, address, known, whole
+from .potential import Potential, Source, address, known, whole
 
 LARGEST_ROTATION = 100
 
@@ -111,7 +111,7 @@ def _highest(planes, radius):
     return best[:n], float(best[n])
 
 
-def floor(potential: Potential, eps: float, rotation: Sequence[float],
+def floor(potential: Source, eps: float, rotation: Union[float, Sequence[float]],
           grid: int = 256) -> Floor:
     """A Floor: how little action per point orbits of this rotation vector can have, by value
     iteration on grid^n nodes (Mather's beta from below).
@@ -122,7 +122,7 @@ def floor(potential: Potential, eps: float, rotation: Sequence[float],
     The action of a path x_0 ... x_m exceeds c.(x_m - x_0) by at least m times the least average on
     the grid, whatever c is; the c that gives the most is looked for by cutting planes, first on
     coarse grids: each closed path bounds what a c can give."""
-    known(potential)
+    potential = known(potential)
     (eps,), n = floats_within("eps", [eps], LARGEST_EPS), potential.n
     w = np.array(floats_within("rotation", rotation, LARGEST_ROTATION))
     if len(w) != n:

@@ -14,7 +14,7 @@ import numpy as np
 
 from ..storage import files
 from ..storage.files import ConverseError
-from .potential import STUDIED, Potential, known
+from .potential import STUDIED, Source, known
 from .solver import Family
 from .state import State
 
@@ -41,7 +41,7 @@ def encoded(states):
     return data.getvalue()
 
 
-def load(path: Union[str, "os.PathLike[str]"], potential: Optional[Potential] = None) -> Family:
+def load(path: Union[str, "os.PathLike[str]"], potential: Optional[Source] = None) -> Family:
     """Reads the Family of states that State.save, Family.save or converse-orbits find --points
     wrote, to the last bit.
 
@@ -58,7 +58,7 @@ def load(path: Union[str, "os.PathLike[str]"], potential: Optional[Potential] = 
         The file cannot be read, is not such a file, or names another potential.
     """
     if potential is not None:
-        known(potential)
+        potential = known(potential)
     path = os.fspath(path)
     try:
         with open(path, "rb") as file:

@@ -5,22 +5,26 @@ The map is x' = x + p', p' = p - eps grad V(x).
 
 import math
 import operator
-import os
 import pickle
 import threading
 from fractions import Fraction
+from functools import lru_cache
+from numbers import Number
 from types import MappingProxyType
 from typing import Any, Callable, Dict, List, Mapping, Optional, Sequence, Tuple, Union
 
 import numpy as np
 
 from .._native import ffi, lib
-from ..model import inputs
-from ..model.exact import Ends, Number, exact, root_bounds, short_text
+from ..model.dynamics import Dynamics
+from ..model.exact import Ends, root_bounds
+from ..model.map import SymplecticMap
 from ..model.potential import FourierSum, from_terms, per_period, product
 from ..prover.native import check
 from ..storage.files import plain
-from .stability import derivatives
+
+Source = Union[SymplecticMap, "Potential"]
+Numerators = Union[int, Sequence[int]]      # the p of a type (p, q)
 
 STUDIED = {}                # by name, the potentials at the end of this file
 COMPARED = 7                # points where a potential from Python is compared with differences
@@ -28,11 +32,20 @@ DIFFERENCE = 1e-5           # over this distance to either side
 AGREE = 1e-3                # of the largest entry there
 
 
-def known(potential):
-    """What it is given; ValueError, unless that is a Potential."""
-    if not isinstance(potential, Potential):
-        raise ValueError("the potential is one of converse.orbits, not %.200r" % (potential,))
-    return potential
+def known(source: Any) -> "Potential":
+    """The potential of a map, or a Potential as it is.  ValueError: the source is neither, or a
+    parameter of the map has no value."""
+    if isinstance(source, SymplecticMap):
+        return _of_map(source, plain(str(source)))
+    if not isinstance(source, Potential):
+        raise ValueError("the map is a SymplecticMap, such as converse.StandardMap('0.9'), or a "
+                         "potential of converse.orbits, not %.200r" % (source,))
+    return source
+
+
+@lru_cache(maxsize=64)
+def _of_map(source, name):
+    return Fourier.of(source.potential(), name)
 
 
 def told(progress):
@@ -42,8 +55,8 @@ def told(progress):
 
 
 def finite(what, values):
-    """As a list of floats; ValueError, unless they are finite numbers."""
-    floats = _floats(values)
+    """As a list of floats, of one number or several; ValueError, unless they are finite."""
+    floats = _floats([values] if isinstance(values, (str, Number)) else values)
     if floats is None:
         raise ValueError("%s: finite numbers, as a list, not %.200r" % (what, values))
     return list(floats)
@@ -73,8 +86,9 @@ def address(array, kind="double(*)[2]"):
     return ffi.cast(kind, ffi.from_buffer(array))
 
 
-class Potential:
-    """A potential V(x), of period 1 in each of its n coordinates.  It cannot be changed.
+class Potential(Dynamics):
+    """A potential V(x), of period 1 in each of its n coordinates, and its map x' = x + p',
+    p' = p - eps grad V(x), angles and momenta of period 1.  It cannot be changed.
 
     name       -- for reports
     n          -- dimensions, 1 or 2
@@ -92,6 +106,7 @@ class Potential:
     lipschitz: Optional[float]
     scale: float                        # of a Fourier sum
     native: Any
+    period, letters = 1.0, "xp"
 
     def __init__(self, kind: int, name: str, n: int, start: Optional[Sequence[float]], formula: str,
                  curvature: Optional[float] = None, lipschitz: Optional[float] = None):
@@ -109,8 +124,8 @@ class Potential:
             if bound is not None and (_floats([bound]) is None or not bound >= 0):
                 raise ValueError("curvature and lipschitz are finite numbers, 0 or more, or None, "
                                  "not %r" % (bound,))
-        vars(self).update(name=name, n=n, start=start, formula=formula, curvature=curvature,
-                          lipschitz=lipschitz,
+        vars(self).update(name=name, n=n, dimension=n, start=start, formula=formula,
+                          curvature=curvature, lipschitz=lipschitz,
                           native=ffi.new("cv_potential *", {"kind": kind, "n": n}))
 
     def __setattr__(self, name, value):
@@ -151,72 +166,8 @@ class Potential:
         hessian[:, 0, 1] = hessian[:, 1, 0] = bend[:, 1]
         return value, gradient[:, :self.n], hessian[:, :self.n, :self.n]
 
-    # ---- the map.  Angles and momenta have period 1 here: of input files and proofs, whose period
-    # ---- is 2 pi, they are y/(2 pi) and J/(2 pi).  Nothing is reduced modulo the period.
-
-    def map(self, x: Any, p: Any, eps: float = 1.0) -> Tuple[np.ndarray, np.ndarray]:
-        """(x', p') with p' = p - eps grad V(x), x' = x + p': arrays of the shape of x and p.
-
-        x, p -- arrays (..., n) of any number of points; with one angle of any shape"""
-        x, p, gradient, _ = self._at(x, p, eps)
-        p = p - gradient
-        return x + p, p
-
-    def inverse(self, x: Any, p: Any, eps: float = 1.0) -> Tuple[np.ndarray, np.ndarray]:
-        """The (x, p) that map() takes to what is given."""
-        x, p = np.broadcast_arrays(np.asarray(x, float), np.asarray(p, float))
-        before, p, gradient, _ = self._at(x - p, p, eps)
-        return before, p + gradient
-
-    def tangent(self, x: Any, eps: float = 1.0) -> np.ndarray:
-        """The derivative of map() at x, any p: array (..., 2n, 2n), x before p, that is,
-        [[1 - eps V'', 1], [-eps V'', 1]]."""
-        x, _, _, bend = self._at(x, 0.0, eps)
-        shape = x.shape[:-1] if x.shape[-1:] == (self.n,) else x.shape
-        return derivatives(bend).reshape(*shape, 2 * self.n, 2 * self.n)
-
-    def orbit(self, x: Any, p: Any, steps: int, eps: float = 1.0) -> Tuple[np.ndarray, np.ndarray]:
-        """The orbits that begin at the points: arrays (|steps| + 1, ...), the first row what is
-        given; backwards if steps < 0."""
-        steps = whole("steps", steps, 1 - 2 ** 31)
-        x, p = np.broadcast_arrays(np.asarray(x, float), np.asarray(p, float))
-        xs, ps = (np.empty((abs(steps) + 1, *x.shape)) for _ in range(2))
-        xs[0], ps[0] = x, p
-        step = self.map if steps > 0 else self.inverse
-        for j in range(abs(steps)):
-            xs[j + 1], ps[j + 1] = step(xs[j], ps[j], eps)
-        return xs, ps
-
-    def portrait(self, eps: float = 1.0, x: Any = None, p: Any = None, steps: int = 500,
-                 plane: Optional[Tuple[str, str]] = None,
-                 within: Optional[Mapping[str, Tuple[float, float]]] = None,
-                 period: float = 1, ax: Any = None, **style: Any) -> Any:
-        """A phase portrait: the orbits of initial points, angles and momenta modulo the period.
-
-        x, p -- initial points as for orbit(), of period 1; by default 20, spread evenly
-        steps -- of each orbit; backwards if negative
-        plane -- the coordinates to the right and upwards.  With one angle "x" and "p"; with two,
-            two of "x0", "x1", "p0", "p1", by default "x0" and "p0": what is seen is a projection
-        within -- {name: (middle, half width)} of other coordinates, of period 1: only the points
-            there are drawn, which is a slice
-        period -- of the axes: 1, or 2 * math.pi, as in input files and proofs
-        ax -- Axes of matplotlib, which are drawn into and returned; with None a Figure is
-        style -- as for Axes.plot; color=None gives each orbit a colour of its own
-
-        ValueError: the arguments make no portrait.  ConverseError: there is no matplotlib."""
-        from .portrait import portrait
-        return portrait(self, eps, x, p, whole("steps", steps, 1 - 2 ** 31), plane, within, period,
-                        ax, style)
-
-    def _at(self, x, p, eps):
-        """x and p of one shape, there eps times the gradient, and eps V'' as an array (m, n, n)."""
-        eps, = finite("eps", [eps])
-        x, p = np.broadcast_arrays(np.asarray(x, float), np.asarray(p, float))
-        if self.n == 2 and x.shape[-1:] != (2,):
-            raise ValueError("points of two angles are arrays of shape (..., 2), not %r"
-                             % (x.shape,))
-        _, gradient, bend = self.evaluate(x.reshape(-1, self.n))
-        return x, p, eps * gradient.reshape(x.shape), eps * bend
+    def _derivatives(self, y):
+        return self.evaluate(y)[1:]
 
 
 class Fourier(Potential):
@@ -225,7 +176,7 @@ class Fourier(Potential):
     terms -- {k: (cosine, sine)}, k a tuple of n integers; floats are taken as what they are exactly
     start -- a maximum of V; by default one is looked for
 
-    The scale is 1.  Fourier.of takes the potential of an input file, whose scale is 1/(4 pi^2).
+    The scale is 1.  Fourier.of takes the potential of a map, whose scale is 1/(4 pi^2).
     """
 
     sum: FourierSum
@@ -252,8 +203,7 @@ class Fourier(Potential):
         """From waves, amplitudes and phases, in the units of input files, where angles have period
         2 pi: with eps 1 the map is that of proofs (converse/model/potential.py)."""
         if not isinstance(source, FourierSum):
-            raise ValueError("Fourier.of takes a FourierSum, not %.200r; orbits.read_potential "
-                             "takes an input file" % (source,))
+            raise ValueError("Fourier.of takes a FourierSum, not %.200r" % (source,))
         return cls._scaled(source, name, start, PER_PERIOD)
 
     @classmethod
@@ -318,15 +268,6 @@ class Fourier(Potential):
                 break
             best = better
         return tuple(map(float, best[0]))
-
-
-def read_potential(path: Union[str, "os.PathLike[str]"], at: Mapping[str, Number] = {}) -> Fourier:
-    """The potential of an input file (docs/reference/inputs.md), for these values of its
-    parameters: with eps 1 the map is that of the file.  InputError: it has none, or a parameter
-    that has no value."""
-    name = plain(os.path.splitext(os.path.basename(os.fspath(path)))[0])
-    name += "".join(" %s=%s" % (key, short_text(exact(value))) for key, value in at.items())
-    return Fourier.of(inputs.read_potential(path, at), name + ".json" * (name in STUDIED))
 
 
 class FromPython(Potential):

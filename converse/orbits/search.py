@@ -12,12 +12,12 @@ are too many; but the action is a sum along the orbit, and so
 import math
 import time
 from dataclasses import replace
-from typing import Callable, Optional, Tuple
+from typing import Callable, Optional
 
 import numpy as np
 
 from ..storage.files import ConverseError
-from .potential import Potential, told
+from .potential import Numerators, Source, told
 from .solver import follow, straight
 from .state import State
 
@@ -34,7 +34,7 @@ MOVES = (0.1, 0.3, 0.6)     # how far pieces are moved: a normal deviate times o
 RELIEF = 0.4                # see _recombined
 
 
-def search(potential: Potential, p: Tuple[int, ...], q: int, eps: float, searches: int = 200,
+def search(potential: Source, p: Numerators, q: int, eps: float = 1.0, searches: int = 200,
            seconds: float = math.inf, seed: int = 0,
            progress: Optional[Callable[[int, State], object]] = None) -> State:
     """The state of type (p, q) of least action that many searches find; State.searches says how

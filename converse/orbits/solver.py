@@ -10,7 +10,7 @@ import numpy as np
 
 from .._native import lib
 from ..storage.files import ConverseError
-from .potential import Potential, address, done, finite, known, told
+from .potential import Numerators, Source, address, done, finite, known, told
 from .state import FARTHEST, State, expected, type_of
 
 PER_CURVATURE = 0.2         # the step of eps from one state to the next guess, times the curvature
@@ -18,12 +18,12 @@ HALVED = 64                 # times less, at least, where the solver fails
 MOST_EPS_STEPS = 10000      # from one eps to the next
 
 
-def straight(potential: Potential, p: Tuple[int, ...], q: int,
+def straight(potential: Source, p: Numerators, q: int,
              origin: Optional[Tuple[float, ...]] = None) -> State:
     """The state x_j = origin + j p/q, least at eps 0; by default it begins at a maximum of V."""
-    known(potential)
-    p, q = type_of(potential, p, q)
-    return State(potential, p, q, 0.0, np.zeros((q, potential.n)),
+    potential = known(potential)
+    numerators, q = type_of(potential, p, q)
+    return State(potential, numerators, q, 0.0, np.zeros((q, potential.n)),
                  potential.start if origin is None else origin)
 
 
@@ -124,14 +124,17 @@ def reached(potential, eps, begin=0.0):
     return eps
 
 
-def follow(potential: Potential, p: Tuple[int, ...], q: int, eps: Sequence[float],
+def follow(potential: Source, p: Numerators, q: int, eps: Union[float, Sequence[float]] = 1.0,
            progress: Optional[Callable[[int, State], object]] = None,
            start: Optional[State] = None,
            on_step: Optional[Callable[[State], object]] = None) -> Family:
     """A Family: the states that continuation reaches at each eps in turn, from the straight orbit
     at eps 0 or from another state.
 
-    eps -- finite numbers, in the order wanted; from each to the next at most MOST_EPS_STEPS steps
+    potential -- a map without free parameters, or a potential of this room
+    p, q -- the type; with one angle p may be an integer
+    eps -- the potential is multiplied by each of these numbers in turn; by default by 1.  From
+        each to the next there are at most MOST_EPS_STEPS steps
     progress(done, state) -- is told each state
     start -- a state of this type, such as orbits.load reads, instead of the straight orbit
     on_step(state) -- is told these and all states on the way to them
@@ -139,6 +142,7 @@ def follow(potential: Potential, p: Tuple[int, ...], q: int, eps: Sequence[float
     Each state is the guess for the next, at most step_of(potential) further, and less where the
     solver fails.  A branch of minima is followed, which need not stay the least.  ConverseError, if
     it is lost."""
+    potential = known(potential)
     state = straight(potential, p, q)
     if start is not None:
         expected(start)
@@ -147,10 +151,10 @@ def follow(potential: Potential, p: Tuple[int, ...], q: int, eps: Sequence[float
                              % (start, potential.name, ", ".join(map(str, state.p)), state.q))
         state = start
     states: List[State] = []
-    eps, longest = reached(potential, eps, state.eps), step_of(potential)
+    targets, longest = reached(potential, eps, state.eps), step_of(potential)
     told(progress)
     told(on_step)
-    for target in eps:
+    for target in targets:
         step = longest
         while state.eps != target or not states:
             gap = target - state.eps

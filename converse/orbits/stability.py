@@ -23,16 +23,6 @@ class Monodromy(NamedTuple):
     log: float
 
 
-def derivatives(bend):
-    """DF at points where eps V'' is bend (m, n, n): array (m, 2n, 2n), x before p."""
-    n = bend.shape[1]
-    step = np.empty((len(bend), 2 * n, 2 * n))
-    step[:, :n, n:] = step[:, n:, n:] = np.eye(n)
-    step[:, n:, :n] = -bend
-    step[:, :n, :n] = np.eye(n) - bend
-    return step
-
-
 def product(steps):
     """The last of the matrices times ... times the first, as a Monodromy: pairs are multiplied,
     then pairs of these, and so on."""

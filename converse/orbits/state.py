@@ -10,9 +10,10 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Optional, Tuple, Union
 import numpy as np
 
 from .._native import ffi, lib
+from ..model.dynamics import jacobians
 from ..storage.files import ConverseError
 from .potential import Potential, address, done, finite, known, look_up, whole
-from .stability import Monodromy, beyond, derivatives, log_excesses, log_multipliers, product
+from .stability import Monodromy, beyond, log_excesses, log_multipliers, product
 
 if TYPE_CHECKING:
     from .minimax import Pair
@@ -127,6 +128,7 @@ def type_of(potential, p, q):
     """The type (p, q) as integers.  ValueError: these are no type of the potential."""
     n = potential.n
     try:
+        p = np.atleast_1d(p).tolist()
         numbers = tuple(int(i) for i in p)
         valid = numbers == tuple(p) and int(q) == q and 1 <= q <= LONGEST
     except (TypeError, ValueError, OverflowError):
@@ -162,7 +164,7 @@ class State:
     searches: int = 0
 
     def __post_init__(self):
-        known(self.potential)
+        object.__setattr__(self, "potential", known(self.potential))
         n = self.potential.n
         p, q = type_of(self.potential, self.p, self.q)
         try:
@@ -315,7 +317,7 @@ class State:
 
     @property
     def _derivatives(self) -> np.ndarray:
-        return derivatives(self.eps * self._local[2])
+        return jacobians(self.eps * self._local[2])
 
     @property
     def monodromy(self) -> Monodromy:

@@ -20,7 +20,7 @@ from ..prover.workers import LOOK_SECONDS, WorkerPool, WorkersGone
 from ..storage import files
 from ..storage.files import ConverseError
 from ..storage.signals import interruptible
-from .potential import Potential, Stoppable, finite, known, told
+from .potential import Numerators, Source, Stoppable, finite, known, told
 from .solver import COLUMNS, MOST_EPS_STEPS, follow, reached, row, straight
 from .state import ROUNDS, State
 
@@ -48,7 +48,7 @@ class Onset(NamedTuple):
     above: Optional[State]
 
 
-def onset(potential: Potential, p: Tuple[int, ...], q: int, exponent: Optional[float] = None,
+def onset(potential: Source, p: Numerators, q: int, exponent: Optional[float] = None,
           step: Optional[float] = None, width: Optional[float] = None,
           top: Optional[float] = None) -> Onset:
     """The onset of the orbit of type (p, q) that continuation from eps 0 follows: where it becomes
@@ -68,7 +68,7 @@ def onset(potential: Potential, p: Tuple[int, ...], q: int, exponent: Optional[f
 
     What is seen of one orbit is evidence, not proof, that a torus is near it, or that none is.
     ConverseError if continuation loses the branch."""
-    known(potential)
+    potential = known(potential)
     given = (step, width, top)
     if None in given and not potential.curvature:
         raise ValueError("the potential %s has no known curvature: give step, width and top"
@@ -116,7 +116,7 @@ def _further(state, eps, halvings=HALVINGS):
 
 # ---- sweeps
 
-def sweep(potential: Potential, vectors: Sequence[Type], eps: Sequence[float],
+def sweep(potential: Source, vectors: Sequence[Type], eps: Union[float, Sequence[float]],
           executor: Optional[concurrent.futures.Executor] = None,
           file: Union[str, "os.PathLike[str]", None] = None,
           progress: Optional[Callable[[int, int], object]] = None) -> np.ndarray:
@@ -129,16 +129,17 @@ def sweep(potential: Potential, vectors: Sequence[Type], eps: Sequence[float],
     progress(done, of) -- is told how many vectors are finished
 
     Where continuation loses a branch the rest of its rows has the label "lost" and no numbers."""
-    eps = finite("eps", eps)
-    if known(potential).curvature is not None:      # else the workers find out, whose it may be
-        reached(potential, eps)
-    if not eps:
+    values = finite("eps", eps)
+    potential = known(potential)
+    if potential.curvature is not None:      # else the workers find out, whose it may be
+        reached(potential, values)
+    if not values:
         raise ValueError("eps is a list of finite numbers, one at least, not %r" % (eps,))
-    return _sweep(functools.partial(_family, potential, eps), COLUMNS, potential, vectors,
-                  [[repr(x)] for x in eps], executor, file, progress)
+    return _sweep(functools.partial(_family, potential, values), COLUMNS, potential, vectors,
+                  [[repr(x)] for x in values], executor, file, progress)
 
 
-def onsets(potential: Potential, vectors: Sequence[Type],
+def onsets(potential: Source, vectors: Sequence[Type],
            executor: Optional[concurrent.futures.Executor] = None,
            file: Union[str, "os.PathLike[str]", None] = None,
            progress: Optional[Callable[[int, int], object]] = None, **how: Any) -> np.ndarray:
@@ -146,6 +147,7 @@ def onsets(potential: Potential, vectors: Sequence[Type],
 
     The columns eps_below and eps_above enclose each onset; eps_above is inf where there is none.
     The exponents are the first ones there, and the label is that of the state above."""
+    potential = known(potential)
     return _sweep(functools.partial(_onset, potential, how), ONSET_COLUMNS, potential, vectors,
                   [[]], executor, file, progress)
 
@@ -211,7 +213,6 @@ def _onset(potential, how, vector):
 
 def _sweep(task, columns, potential, vectors, eps, executor, file, progress):
     """Does all tasks.  eps: of each row of a vector, what follows its type there."""
-    known(potential)
     told(progress)
     if executor is not None and not hasattr(executor, "submit"):
         raise TypeError("the executor is a concurrent.futures.Executor, not %r" % (executor,))

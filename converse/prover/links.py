@@ -12,6 +12,7 @@ from itertools import product
 from typing import Dict, List, Optional, Sequence, Tuple
 
 from ..model.exact import Ends, pi_bounds, root_bounds, sine_bounds
+from ..model.map import SymplecticMap
 from ..model.problem import Problem, Shifts
 from . import tree
 from .proof import Part
@@ -180,8 +181,8 @@ def _slice(problem, index, cuts):
     amplitude = [p + sum(map(Fraction.__mul__, t, parts))
                  for p, *parts in zip(problem.amplitude, *problem.parts)]
     parts = [[p / (1 << k) for p in part] for part, k in zip(problem.parts, cuts)]
-    return Problem.patch(amplitude, parts, problem.waves, problem.v0, problem.v1,
-                         axes=problem.frame, alone=problem.alone)
+    return replace(problem, map=SymplecticMap(problem.waves, amplitude, parts), axes=problem.frame,
+                   comments=(), shifts=())
 
 
 # ---- what one starting point leaves to others

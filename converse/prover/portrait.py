@@ -18,6 +18,7 @@ from functools import cached_property
 from typing import Callable, Dict, Iterable, List, Optional, Tuple, Union
 
 from ..model.exact import decimal_text, exact, pi_bounds, rounded
+from ..model.map import SymplecticMap
 from ..model.problem import Problem
 from ..model.region import MARGIN, PLACES, reversal_centre
 from ..storage import files
@@ -129,8 +130,8 @@ class Portrait:
         bend = angle * angle / 4
         zero = Fraction(0)
         parts = [(bend * abs(p) + abs(g), zero), (zero, p * angle)] + [(zero, g * angle)] * bool(g)
-        return Problem.patch((p * (1 - bend), zero), parts,
-                             (wave, (*wave[:2], wave[2] + Fraction(1, 2))))
+        return Problem(SymplecticMap((wave, (*wave[:2], wave[2] + Fraction(1, 2))),
+                                     (p * (1 - bend), zero), parts))
 
     # ---- what is proved
 
@@ -218,10 +219,9 @@ class Portrait:
             waves = [value.split() for name, value in pairs if name == "wave"]
             values = dict(pairs)
             numbers = [list(map(exact, wave[3:])) for wave in waves]
-            problem = Problem.patch([p for p, *_ in numbers],
-                                    list(zip(*[parts for _, *parts in numbers])),
-                                    [(int(k0), int(k1), Fraction(phase))
-                                     for k0, k1, phase, *_ in waves])
+            problem = Problem(SymplecticMap(
+                [(int(k0), int(k1), Fraction(phase)) for k0, k1, phase, *_ in waves],
+                [p for p, *_ in numbers], list(zip(*[parts for _, *parts in numbers]))))
             even = values["even about"]
             portrait = cls(problem, exact(values["strip"]),
                            None if even == "no" else Fraction(even), int(values["depth"]),
@@ -247,8 +247,8 @@ def _of_circle(problem):
     if not seen:
         raise ValueError("the potential is zero: every orbit of the map lies on a circle")
     parts = [[part[j] for j in seen] for part in problem.parts if any(part[j] for j in seen)]
-    return Problem.patch([problem.amplitude[j] for j in seen], parts,
-                         [problem.waves[j] for j in seen])
+    return Problem(SymplecticMap([problem.waves[j] for j in seen],
+                                 [problem.amplitude[j] for j in seen], parts))
 
 
 def _even(problem):
@@ -262,7 +262,7 @@ def _even(problem):
 
 # ---- the search
 
-def portray(problem: Optional[Problem] = None, *, path: Optional[Path] = None,
+def portray(source: Union[SymplecticMap, Problem, None] = None, *, path: Optional[Path] = None,
             columns: int = 600, depth: int = 15, strips: bool = True, resume: bool = False,
             jobs: Optional[int] = None, executor: Optional[concurrent.futures.Executor] = None,
             time_limit: float = math.inf,
@@ -271,8 +271,9 @@ def portray(problem: Optional[Problem] = None, *, path: Optional[Path] = None,
 
     Parameters
     ----------
-    problem
-        The map.  It may have a range of parameters: what is proved holds for all of them.
+    source
+        The map, or a Problem of it.  It may have a range of parameters: what is proved holds for
+        all of them.
     path
         Of the file that keeps what is found: new, or with resume that of the portrait to continue.
         None: there is none.
@@ -298,7 +299,7 @@ def portray(problem: Optional[Problem] = None, *, path: Optional[Path] = None,
     ConverseError
         The file cannot be used; what was found is in it.
     """
-    asked = None if problem is None else Portrait.new(problem, columns, depth, strips)
+    asked = None if source is None else Portrait.new(Problem.of(source), columns, depth, strips)
     with interruptible(), Backup(path, resumed=path if resume else None) as backup:
         if path is not None and resume:
             portrait = _continued(path, asked)

@@ -5,6 +5,7 @@ from dataclasses import asdict, fields
 from fractions import Fraction
 
 from ..model.exact import DECIMAL, decimal_text, exact
+from ..model.map import from_patch
 from ..model.problem import NAMES, Problem
 from ..storage import files
 from ..storage.files import ConverseError
@@ -210,11 +211,11 @@ def _problem(values, waves, comments, parameters):
     if "odd about" not in values:
         raise KeyError("odd about")
     v0, v1 = (_ends(values, name) for name in NAMES[3:])
-    return Problem.patch(amplitude, parts, [(*map(int, words[:2]), words[2]) for words in waves],
-                         v0, v1, comments, tuple(map(int, values["frame"].split())),
-                         alone if alone == "no" else int(alone), [
-                             (name, exact(_number(low)), exact(_number(high)))
-                             for name, low, high in parameters])
+    harmonics = [(*map(int, words[:2]), words[2]) for words in waves]
+    named = [(name, exact(_number(low)), exact(_number(high))) for name, low, high in parameters]
+    return Problem(from_patch(harmonics, amplitude, parts, named), v0, v1, comments,
+                   tuple(map(int, values["frame"].split())),
+                   alone if alone == "no" else int(alone))
 
 
 def _at_once(values, problem):

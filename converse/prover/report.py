@@ -49,7 +49,7 @@ def report(proof):
 
 def _theorem(proof):
     problem, part = proof.problem, proof.conclusion == REGION
-    torus = TORUS[problem.dimension]
+    torus = TORUS[problem.map.dimension]
     lines = ["THEOREM" + ", for a part of the torus only" * part,
              *map_lines(problem), "  has no " + torus + _graph(problem)]
     if part:
@@ -57,7 +57,7 @@ def _theorem(proof):
                                 _star(problem, proof.xstar), frame_text(problem.frame, "v%d")),
                             "%s (no other y' was examined)" % _region(problem)])
     lines = ended([*lines, *indented(conditions(problem, proof.at_once))])
-    if problem.dimension == 2 and not part and one_angle(problem) is not None:
+    if problem.map.dimension == 2 and not part and one_angle(problem) is not None:
         lines += ["  So the map of y%d alone has no rotational invariant circle."
                   % one_angle(problem)]
     return [*lines, ""]
@@ -65,7 +65,7 @@ def _theorem(proof):
 
 def _graph(problem):
     """The definition of a torus, as the theorem needs it."""
-    if problem.dimension == 1:
+    if problem.map.dimension == 1:
         return ""
     return " J = P + S'(y) over both angles, P constant, S periodic and C1"
 
@@ -74,7 +74,7 @@ def _graph(problem):
 
 def _undecided(proof):
     problem, undecided = proof.problem, proof.undecided
-    torus = {1: "a rotational invariant circle", 2: "an invariant torus"}[problem.dimension]
+    torus = {1: "a rotational invariant circle", 2: "an invariant torus"}[problem.map.dimension]
     flat = not any(map(any, (problem.amplitude, *problem.parts)))
     lines = ["UNDECIDED: nothing is proved.  There may be %s (see converse-tori)." % torus,
              *map_lines(problem), *ended(indented(["was examined " + " ".join(
@@ -86,7 +86,7 @@ def _undecided(proof):
         leaf = undecided[0]
         lines += labelled("", "the first of them: " + ", ".join(
             _between("v%d" % i, c - h, c + h, h / 100)
-            for i, (c, h) in enumerate(zip(leaf.centre, leaf.half)) if i < problem.dimension))
+            for i, (c, h) in enumerate(zip(leaf.centre, leaf.half)) if i < problem.map.dimension))
     if not all(tree.complete(part.tree) for part in (proof, *proof.parts)):
         lines += labelled("", "the search ended before the whole region was examined")
     stuck = any(leaf.depth < proof.depth and min(leaf.half) < TINY for leaf in undecided)
@@ -121,7 +121,7 @@ def _grounds(proof, file):
             "with -b FILE the proof is kept; converse-check FILE verifies it"
     for label, comment in zip(["Input"] + [""] * len(problem.comments), problem.comments):
         yield label, quoted(comment)
-    if problem.dimension == 1 and proof.all_decided:
+    if problem.map.dimension == 1 and proof.all_decided:
         yield "Circle", "one that goes around the cylinder; it is a graph (Birkhoff)"
     yield "Method", "Loewner criterion in rigorous double precision; converse " + proof.version
     if problem.factor is not None:
@@ -154,7 +154,7 @@ def _grounds(proof, file):
 
 
 def _star(problem, xstar):
-    return xstar[0] if problem.dimension == 1 else "(%s, %s)" % tuple(xstar)
+    return xstar[0] if problem.map.dimension == 1 else "(%s, %s)" % tuple(xstar)
 
 
 def _searched(proof):
@@ -163,7 +163,7 @@ def _searched(proof):
     if problem.frame == IDENTITY and not used and problem.full_torus:
         return "all y' that follow x*"
     return "the y' = %s that follow x*, %s%s" % (
-        "v0" if problem.dimension == 1 else frame_text(problem.frame, "v%d"), _region(problem),
+        "v0" if problem.map.dimension == 1 else frame_text(problem.frame, "v%d"), _region(problem),
         "; the others follow by " + " and ".join(used) if used else "")
 
 
@@ -171,7 +171,7 @@ def _region(problem, part=None):
     """The region of the problem or of a part, and how a part's region moves with the parameters."""
     at = problem if part is None else part
     text = ", ".join(_between("v%d" % i, *ends) for i, ends in enumerate((at.v0, at.v1))
-                     if i < problem.dimension)
+                     if i < problem.map.dimension)
     if part is None or not part.shifts:
         return text
     names = parameters(problem)

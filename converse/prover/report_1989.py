@@ -68,7 +68,7 @@ def _theorem(proof):
                   "(only a part of the torus: other successors were not examined)", of]
     else:
         lines[0] += " " + of
-    lines += [_range(name, *getattr(problem, name), exactly) for name in "abc"]
+    lines += [_range(name, *ends, exactly) for name, ends in zip("abc", problem.abc)]
     if proof.conclusion == UNDECIDED:
         lines += [""] + _gaps(proof)
     return lines

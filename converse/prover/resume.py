@@ -17,16 +17,14 @@ def _as_before(problem, proof, differs):
     before = proof.problem
     if proof.method == "loewner" and problem.full_torus and proof.symmetries_used is not None:
         problem = replace(problem, v0=before.v0, v1=before.v1)
-    for key in NAMES:
-        theirs, ours = getattr(before, key), getattr(problem, key)
+    for key, theirs, ours in zip(NAMES, *((*(each.abc or (None,) * 3), each.v0, each.v1)
+                                          for each in (before, problem))):
         if None not in (theirs, ours) and theirs != ours:
             differs(key, *(" .. ".join(map(decimal_text, ends)) for ends in (theirs, ours)))
-    if problem.by_ranges != before.by_ranges or not problem.by_ranges and (
-            problem.waves, problem.amplitude, problem.parts) != (
-            before.waves, before.amplitude, before.parts):
-        differs("potential", before, problem)
     if problem.together != before.together:
         differs("together", before.together, problem.together)
+    if (problem.waves, problem.map.enclosed) != (before.waves, before.map.enclosed):
+        differs("potential", before, problem)
     same = replace(problem, **{key: getattr(before, key) for key in ("axes", "alone")
                                if getattr(problem, key) is None})
     for key, what in ("frame", "frame"), ("factor", "coordinate that stands alone"):

@@ -9,6 +9,7 @@ from fractions import Fraction
 from typing import Any, Callable, Dict, Optional, Tuple, Union
 
 from ..model.exact import Number, decimal_text, exact
+from ..model.map import SymplecticMap
 from ..model.problem import Problem
 from ..model.region import reduced, skips
 from ..storage.backup import Backup
@@ -30,7 +31,7 @@ Path = Union[str, "os.PathLike[str]"]
 LONG = 400                              # points: of a proved prism's orbit
 
 
-def prove(problem: Optional[Problem] = None, *, method: Optional[str] = None,
+def prove(source: Union[SymplecticMap, Problem, None] = None, *, method: Optional[str] = None,
           depth: Optional[int] = None, digits: Optional[int] = None,
           stubborn: Optional[bool] = None, as_printed: Optional[bool] = None,
           xstar: Optional[Tuple[Number, Number]] = None,
@@ -41,7 +42,9 @@ def prove(problem: Optional[Problem] = None, *, method: Optional[str] = None,
           on_leaf: Optional[Callable[[tree.Leaf, int], None]] = None) -> Proof:
     """Tries to prove that there are no invariant tori, and returns a Proof either way.
 
-    method, depth, digits, stubborn, as_printed: see Settings.
+    source: the map, or the family of maps; or a Problem, which says where x_1 is looked for, too.
+    method, depth, digits, stubborn, as_printed: see Settings.  The default method is the sharper
+    one, "loewner", unless digits or as_printed, which only the thesis's has, are given.
     xstar: the two angles of x*, in radians, exact numbers; by default the program chooses them.
 
     jobs: how many tasks at a time, by default one per core, or as many as keep the executor's
@@ -66,12 +69,16 @@ def prove(problem: Optional[Problem] = None, *, method: Optional[str] = None,
     given: Dict[str, Any] = {name: value for name, value in (
         ("method", method), ("depth", depth), ("digits", digits), ("stubborn", stubborn),
         ("as_printed", as_printed)) if value is not None}
-    _check_problem(problem, resume)
+    if source is None and resume is None:
+        raise TypeError("there must be a map or a problem, or a proof to resume")
+    problem = None if source is None else Problem.of(source)
     options = _Options(jobs, executor, time_limit, progress, on_leaf)
     star = None if xstar is None else _point(xstar)
     file = None if resume is None or isinstance(resume, Proof) else resume
     name = "the proof to resume" if file is None else os.fspath(file)
     if problem is not None and resume is None:
+        if method is None and digits is None and not as_printed:
+            given["method"] = "loewner"
         before = Proof(problem, Settings(**given), xstar=star)
     with interruptible(), Backup(file if backup is None else backup, resumed=file) as backup_file:
         if resume is not None:
@@ -94,13 +101,6 @@ def ready(before: Proof) -> Proof:
         xstar = xstar or native.chosen_start(Task(problem, before.settings))
         problem = reduced(problem, xstar)
     return replace(before, problem=problem, xstar=xstar)
-
-
-def _check_problem(problem, resume):
-    if problem is None and resume is None:
-        raise TypeError("there must be a problem, or a proof to resume")
-    if problem is not None and not isinstance(problem, Problem):
-        raise TypeError("the problem is a Problem, not %r" % (problem,))
 
 
 def _point(xstar):

@@ -5,14 +5,14 @@ leave different gaps.  So one x* may contradict all but a few clusters of prisms
 these another x*, near by, is better.  The tree over the first x* is grown to a moderate depth; what
 is left is linked (links.py) to regions over others.  Nothing rests on how those are chosen."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import chain, compress, product
 from math import inf
 from typing import List, Tuple
 
 from ..model.exact import decimal_text
-from ..model.problem import Problem
+from ..model.map import SymplecticMap
 from . import native, tree
 from .links import (Link, Links, Target, clusters, crests, hull_of, linked_tree, part_problem,
                     region_around, region_of)
@@ -246,8 +246,8 @@ def _weakest(problem):
 
     signs = min(product((-1, 1), repeat=len(problem.parts)), key=lambda signs: sum(
         abs(p) * (k0 * k0 + k1 * k1) for p, (k0, k1, _) in zip(corner(signs), problem.waves)))
-    return signs, Problem.patch(corner(signs), (), problem.waves, problem.v0, problem.v1,
-                                axes=problem.frame)
+    return signs, replace(problem, map=SymplecticMap(problem.waves, corner(signs)),
+                          axes=problem.frame, alone=None, comments=(), shifts=())
 
 
 def _reaches(cell, signs):

@@ -1,7 +1,7 @@
 """Invariant tori that are graphs: found in doubles, refined, and proved by the checker.
 
-    from converse import Problem, tori
-    torus = tori.find(Problem.patch(["0.9"], waves=[(1, 0)]), tori.read_rotation("golden"))
+    from converse import StandardMap, tori
+    torus = tori.find(StandardMap("0.9"), "golden")
     proof = tori.prove(torus)
 """
 

@@ -8,6 +8,7 @@ from typing import Callable, List, Optional, Tuple, Union
 import numpy as np
 
 from ..model.exact import Ends, short_text
+from ..model.map import SymplecticMap
 from ..model.potential import FourierSum
 from ..model.problem import Problem
 from .continuation import POINTS, Found, NotFound, Way, ellipse, newton
@@ -15,7 +16,7 @@ from .effort import BALLS, REFINING, SINGLE, SOLVING, balls, some
 from .newton import Frame, Mesh, default_frame
 from .plan import MARGIN, Weights, plan
 from .refinement import SPARE_BITS, Modes, layers_for, numbers_of, refined, taken
-from .rotation import Rotation
+from .rotation import Rotation, rotation_of
 from .torus import Torus, decay, family
 
 __all__ = ["NotFound", "find"]
@@ -31,13 +32,16 @@ ALL = 0.93                  # of what is left of a range: then a piece takes the
 MOST_MARGIN = 1e100         # coefficients times 2^bits are doubles on their way to integers
 
 
-def find(problem: Problem, rotation: Rotation, *, start: Optional[Torus] = None,
+def find(source: Union[SymplecticMap, Problem], rotation: Union[Rotation, str], *,
+         start: Optional[Torus] = None,
          frame: Optional[Frame] = None, margin: float = MARGIN,
          points: int = POINTS, memory: Optional[int] = None,
          progress: Optional[Callable[[str], None]] = None) -> Union[Torus, List[Torus]]:
-    """The invariant torus of a rotation vector, about: no proof is made.  If the problem has a
+    """The invariant torus of a rotation vector, about: no proof is made.  If the map has a
     parameter, tori for the pieces of its range, which tile it.
 
+    source -- the map, or a Problem of it
+    rotation -- the rotation vector, or its text as read_rotation takes it
     start -- a torus of the same rotation vector, of other amplitudes, from which to continue; by
         default the map without potential
     frame -- integer rows of the mode numbers, in whose directions rates of decay may differ
@@ -47,15 +51,13 @@ def find(problem: Problem, rotation: Rotation, *, start: Optional[Torus] = None,
     progress -- is told in words what is going on
 
     NotFound: there is none, as far as can be seen, or it needs more points.
-    ValueError: problem, rotation vector and start do not go together, or the margin is not from
+    ValueError: map, rotation vector and start do not go together, or the margin is not from
     1 to 1e100."""
     if not 1 <= margin <= MOST_MARGIN:
         raise ValueError("the margin, %g, is not from 1 to %g" % (margin, MOST_MARGIN))
-    if not isinstance(rotation, Rotation):
-        raise TypeError("the rotation vector is a Rotation, such as read_rotation('golden'), not %r"
-                        % (rotation,))
     tell = progress or (lambda words: None)
-    potential, part = family(problem)
+    potential, part = family(source)
+    rotation = rotation_of(rotation)
     if rotation.dimension != potential.dimension:
         raise ValueError("the rotation vector has %d component%s, but the potential depends on %d "
                          "angle%s" % (rotation.dimension, "s" * (rotation.dimension > 1),

@@ -10,7 +10,7 @@ the noble numbers, whose continued fractions end in 1, 1, 1, ...
 from fractions import Fraction
 from itertools import permutations, product
 from math import ceil, floor
-from typing import Callable, Iterator, List, Optional, Tuple
+from typing import Callable, Iterator, List, Optional, Tuple, Union
 
 import numpy as np
 
@@ -31,7 +31,8 @@ Candidate = Tuple[Field, Tuple[Element, ...]]
 Triangle = Tuple[Tuple[int, int, int], ...]     # corners (q, p0, p1)
 
 
-def near(w0: Number, w1: Optional[Number] = None, tolerance: Number = TOLERANCE,
+def near(w0: Union[Number, float], w1: Union[Number, float, None] = None,
+         tolerance: Union[Number, float] = TOLERANCE,
          progress: Optional[Callable[[str], None]] = None) -> Rotation:
     """The rotation vector with the best small divisors that was found near w0, or near (w0, w1):
     that for which c(delta) of docs/proofs/existence.md is least in doubles, with |k| = |k_0| +
@@ -41,8 +42,8 @@ def near(w0: Number, w1: Optional[Number] = None, tolerance: Number = TOLERANCE,
     progress -- is told in words what is going on
 
     ValueError: none was found so near."""
-    target = tuple(exact(w) for w in (w0, w1) if w is not None)
-    within, n = exact(tolerance), len(target)
+    target = tuple(_about(w) for w in (w0, w1) if w is not None)
+    within, n = _about(tolerance), len(target)
     if not LEAST <= within <= 1:
         raise ValueError("the tolerance, %s, is not from %s to 1"
                          % (short_text(within), short_text(LEAST)))
@@ -68,6 +69,11 @@ def near(w0: Number, w1: Optional[Number] = None, tolerance: Number = TOLERANCE,
         raise ValueError("no rotation vector was found within %s of %s; give a larger tolerance"
                          % (short_text(within), " ".join(map(short_text, target))))
     return best
+
+
+def _about(number):
+    """The number; a float stands for its decimal, since no theorem rests on it."""
+    return exact(repr(float(number)) if isinstance(number, float) else number)
 
 
 # ---- one angle

@@ -10,12 +10,13 @@ from typing import Any, Callable, Dict, Optional, Sequence, Tuple, Union
 
 from .. import check
 from ..model.exact import Ends
+from ..model.map import SymplecticMap
 from ..model.problem import Problem
 from ..storage import files
 from ..storage.files import ConverseError
 from . import certificate
 from .find import find
-from .rotation import Rotation
+from .rotation import Rotation, rotation_of
 from .torus import Torus, family
 
 # If the residual exceeds what is needed by a factor below MOST_LACKING, the torus is found again,
@@ -122,14 +123,16 @@ class ProvedTorus:
         return files.write_text(path, self.certificate)
 
 
-def prove(source: Union[Problem, Torus, Sequence[Torus]], rotation: Optional[Rotation] = None, *,
+def prove(source: Union[SymplecticMap, Problem, Torus, Sequence[Torus]],
+          rotation: Union[Rotation, str, None] = None, *,
           start: Optional[Torus] = None, margin: Optional[float] = None,
           points: Optional[int] = None, memory: Optional[int] = None, jobs: int = 1,
           progress: Progress = None) -> ProvedTorus:
     """Proves that there is an invariant torus near the given one, or near one that is found first.
 
-    source -- a Torus, or tori that cover a range, or a Problem, to which a rotation vector belongs
-    start, margin, points, memory -- with a Problem: what `find` takes
+    source -- a Torus, or tori that cover a range, or a map (or the Problem of one), to which a
+        rotation vector belongs
+    start, margin, points, memory -- with a map: what `find` takes
     jobs -- how many pieces of a range are verified at a time, in processes
     progress -- is told in words what is going on
 
@@ -144,16 +147,17 @@ def prove(source: Union[Problem, Torus, Sequence[Torus]], rotation: Optional[Rot
     finding: Dict[str, Any] = {name: value for name, value in (
         ("start", start), ("margin", margin), ("points", points), ("memory", memory))
         if value is not None}
-    if not isinstance(source, Problem):
+    rotation = None if rotation is None else rotation_of(rotation)
+    if not isinstance(source, (SymplecticMap, Problem)):
         if finding:
-            raise ValueError("start, margin, points and memory are for a Problem, whose torus is "
+            raise ValueError("start, margin, points and memory are for a map, whose torus is "
                              "looked for")
         tori = [source] if isinstance(source, Torus) else list(source)
         if rotation is not None and any(torus.rotation != rotation for torus in tori):
             raise ValueError("the torus has another rotation vector than the one that is given")
         return _verified(tori, jobs, tell)
     if rotation is None:
-        raise ValueError("a problem needs a rotation vector")
+        raise ValueError("a map needs a rotation vector")
     tell("looking for a torus")
     try:
         return _proved(source, rotation, find(source, rotation, progress=progress, **finding),

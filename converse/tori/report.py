@@ -6,6 +6,7 @@ from fractions import Fraction
 from typing import Iterator, Optional, Sequence, Tuple, Union
 
 from ..model.exact import decimal_text, rounded, rounded_text, short_text
+from ..model.map import from_patch
 from ..model.problem import Problem
 from ..model.statement import TORUS, conditions, ended, indented, labelled, map_lines
 from ..storage.files import plain
@@ -22,21 +23,20 @@ VECTOR = {1: "rotation number", 2: "rotation vector"}
 def _stated(problem: Problem) -> Problem:
     """The problem as it is stated: that of one angle where no wave depends on the other angle."""
     potential, part = family(problem)
-    if problem.dimension == potential.dimension:
+    if problem.map.dimension == potential.dimension:
         return problem
-    moving = [(letter, *getattr(problem, letter)) for letter in "abc"
-              if problem.by_ranges and any(problem.half[:3]) and not problem.parameters
-              and getattr(problem, letter)[0] < getattr(problem, letter)[1]]
-    return Problem.patch(potential.amplitude, [part] if part else [], potential.waves,
-                         parameters=(problem.parameters or moving) if part else ())
+    named = problem.parameters or [
+        (letter, *ends) for letter, ends in zip("abc", problem.abc or ())]
+    return Problem(from_patch(potential.waves, potential.amplitude, [part] if part else [], [
+        each for each in named if each[1] < each[2]]))
 
 
 def _of(proof: ProvedTorus) -> Problem:
     """The problem of a proof whose input is not at hand, with the parameter s in [-1, 1]."""
     torus = proof.torus
-    return Problem.patch(torus.potential.amplitude, [torus.part] if torus.part else [],
-                         torus.potential.waves, parameters=[
-                             ("s", Fraction(-1), Fraction(1))] if torus.part else ())
+    return Problem(from_patch(torus.potential.waves, torus.potential.amplitude,
+                              [torus.part] if torus.part else [],
+                              [("s", Fraction(-1), Fraction(1))] if torus.part else ()))
 
 
 def _rotation_lines(rotation: Rotation) -> Iterator[Tuple[str, str]]:

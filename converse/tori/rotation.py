@@ -155,6 +155,14 @@ def read_rotation(text: str, dimension: Optional[int] = None) -> Rotation:
     return rotation
 
 
+def rotation_of(given: Union[Rotation, str]) -> Rotation:
+    """A rotation vector as it is, or that of a text."""
+    if not isinstance(given, (Rotation, str)):
+        raise TypeError("the rotation vector is a Rotation, or a text such as 'golden', not %r"
+                        % (given,))
+    return given if isinstance(given, Rotation) else read_rotation(given)
+
+
 def _read(text, name):
     left, colon, right = text.partition(":")
     if not colon:

@@ -17,11 +17,12 @@ For a range of parameters the amplitudes are p + s part with s in [-1, 1].  A to
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
-from typing import TYPE_CHECKING, List, NamedTuple, Optional, Tuple
+from typing import TYPE_CHECKING, List, NamedTuple, Optional, Tuple, Union
 
 import numpy as np
 
 from ..model.exact import Ends
+from ..model.map import SymplecticMap
 from ..model.potential import FourierSum
 from ..model.problem import Problem
 
@@ -33,15 +34,14 @@ NO_RANGE = Fraction(0), Fraction(0)
 ENTRIES = 10 ** 6           # of the matrix of modes and angles that is evaluated at a time
 
 
-def family(problem: Problem) -> Tuple[FourierSum, Part]:
-    """The potential in the middle of a problem's patch, of the waves that are anywhere in it, and
+def family(source: Union[SymplecticMap, Problem]) -> Tuple[FourierSum, Part]:
+    """The potential in the middle of the patch of a map, of the waves that are anywhere in it, and
     what the parameter s adds to each amplitude at s = 1; None if there is no parameter.
 
     Its dimension is 1 if all these waves have k1 = 0, else 2.
-    TypeError: it is not a Problem; ValueError: there is more than one parameter, or no wave."""
-    if not isinstance(problem, Problem):
-        raise TypeError("the problem is a Problem, such as converse.read_input returns, not %.200r"
-                        % (problem,))
+    TypeError: it is not a map, nor the problem of one.  ValueError: there is more than one
+    parameter, or no wave."""
+    problem = Problem.of(source)
     parts = [part for part in problem.parts if any(part)]
     if len(parts) > 1:
         raise ValueError("the problem has %d parameters where one is possible; make the other "
@@ -145,8 +145,8 @@ class Torus:
         return found.reshape(theta.shape)
 
     def x(self, theta: np.ndarray, s: float = 0) -> np.ndarray:
-        """The points of angles theta, an array of shape (..., n) in radians, in doubles.  They
-        are not taken modulo 2 pi."""
+        """The points of angles theta, in radians and doubles: an array of shape (..., n), or of any
+        shape if n = 1.  They are not taken modulo 2 pi."""
         theta = self._angles(theta)
         return theta + self._sum(theta, self.coefficients(s))
 
@@ -160,7 +160,7 @@ class Torus:
 
     def _angles(self, theta):
         theta = np.asarray(theta, dtype=float)
-        if theta.ndim == 0 or theta.shape[-1] != self.dimension:
+        if self.dimension > 1 and theta.shape[-1:] != (self.dimension,):
             raise ValueError("theta has shape %s; its last axis must have length %d"
                              % (theta.shape, self.dimension))
         return theta

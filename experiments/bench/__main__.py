@@ -16,12 +16,11 @@ import subprocess
 import sys
 import tempfile
 import time
-from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
 
 from converse.model.exact import decimal_text
-from converse.model.problem import LINE
+from converse.model.map import LINE
 from converse.prover import tree_search
 
 ROOT = Path(__file__).resolve().parent.parent.parent
@@ -93,7 +92,9 @@ TIMED = """
 import sys, time
 from dataclasses import replace
 import converse
-problem = replace(converse.read_input(sys.argv[1]), together=sys.argv[2] == "together")
+problem = converse.read_input(sys.argv[1])
+if sys.argv[2] == "together":
+    problem = problem.tied() if hasattr(problem, "tied") else replace(problem, together=True)
 seconds = []
 while len(seconds) < 5 and sum(seconds) < 1:
     began = time.process_time()
@@ -136,7 +137,8 @@ def frontier(repeat, older=None, whole=False):
                 Path(path).write_text("".join("%s %s\n" % tuple(map(decimal_text, row)) for row in (
                     (centre, half), (centre, half), (2 * centre, 2 * half), (1, 1), (1, 1))))
             alone, *others = one_thread([str(ROOT)] + [older] * bool(older), path, how, repeat)
-            problem = replace(converse.read_input(path), together=how == "together")
+            problem = converse.read_input(path)
+            problem = problem.tied() if how == "together" else problem
             proof = min((converse.prove(problem, method="loewner")
                          for _ in range(repeat if alone < LONG / repeat else 1)),
                         key=lambda proof: proof.seconds)

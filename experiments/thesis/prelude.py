@@ -28,7 +28,7 @@ def prelude(potential: Potential) -> Prelude:
     eps (least eigenvalue of V''): since d_j = beta_j - 1/d_{j-1} > 0 and all beta_j <= B, all d_j
     and all 1/d_j are at least l, and beta_j is the sum of two of them.  With V'' between -m and M
     that ends where 2 - eps M = 2 l, at eps = 4 m/(M (M + 2 m))."""
-    known(potential)
+    potential = known(potential)
 
     def eigenvalues(x):
         return np.linalg.eigvalsh(potential.evaluate(x)[2])

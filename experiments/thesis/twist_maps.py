@@ -15,7 +15,7 @@ def std_demo(figure, families):
     """Phase portraits of the standard map."""
     axes = figure.subplots(1, 3, sharey=True, gridspec_kw={"wspace": 0.12})
     for panel, k in zip(axes, KICKS):
-        standard.portrait(k, steps=200, ax=panel)
+        standard.portrait(eps=k, steps=200, ax=panel)
         panel.set_title("$k$ = %g" % k)
     for panel in axes[1:]:
         panel.set_ylabel("")

@@ -33,7 +33,7 @@ from converse import check as package
 from converse import prove, read_input
 from converse.check import lockstep
 from converse.check import state as state_module
-from converse.model.problem import LINE
+from converse.model.map import LINE
 
 from checker import check
 from moments import PATIENCE
@@ -93,7 +93,7 @@ def texts(root, tmp_path_factory):
     found = {}
     for name in INPUTS:
         path = tmp_path_factory.mktemp("proofs") / name
-        prove(read_input(root / "inputs" / (name + ".in"))).save(path)
+        prove(read_input(root / "inputs" / (name + ".in")), method="thesis").save(path)
         found[name] = path.read_text(encoding="utf-8")
     return found
 

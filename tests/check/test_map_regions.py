@@ -10,6 +10,7 @@ import mpmath
 import pytest
 
 from converse.maps import region
+from converse.model.map import THESIS, SymplecticMap
 from converse.model.problem import Problem
 from converse.model.region import DIAGONALS, reduced
 
@@ -37,7 +38,7 @@ def problem_of(name, frame=None):
     plane, face, _, ends, xstar = CELLS[name]
     cell = region.Cell(face, *[tuple(map(Fraction, end)) for end in ends])
     middle, parts = region.patch(region.REGIONS[plane][face], cell)
-    return reduced(Problem.patch(middle, parts), xstar, frame), xstar
+    return reduced(Problem(SymplecticMap(THESIS, middle, parts)), xstar, frame), xstar
 
 
 def content_of(name, axes=None, version=2, **changes):

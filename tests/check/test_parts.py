@@ -15,6 +15,7 @@ import pytest
 
 from converse import Problem, prove
 from converse.check import main, verify
+from converse.model.map import SymplecticMap
 
 from checker import check
 from trees import found_tree, halves
@@ -167,7 +168,8 @@ def test_half_of_the_torus_is_enough(tree, run):
 def test_what_the_program_writes(run, tmp_path, waves, xstar, told):
     """Its choice of frame and region holds enough, by the symmetries that there are."""
     words = [wave.split() for wave in waves]
-    problem = Problem.patch([p for *_, p in words], waves=[(int(k), int(l)) for k, l, *_ in words])
+    problem = Problem(SymplecticMap([(int(k), int(l)) for k, l, *_ in words],
+                                    [p for *_, p in words]))
     path = tmp_path / "written"
     prove(problem, method="loewner", xstar=xstar).save(path)
     status, out, _ = run(path.read_bytes())

@@ -13,6 +13,7 @@ import pytest
 
 from converse import Problem
 from converse.check import field, series, tori, torus_file
+from converse.model.map import THESIS, SymplecticMap
 from converse.tori.proved import prove
 from converse.tori.rotation import read_rotation
 
@@ -1126,7 +1127,7 @@ def test_a_delayed_function_is_within_its_radius(is_real):
 def surface(tmp_path_factory):
     """The text of a certificate of two angles, with some 200 modes."""
     path, c = tmp_path_factory.mktemp("tori") / "surface", Fraction("0.02242872")
-    prove(Problem.patch([c, c, 2 * c]), read_rotation("T49", 2)).save(path)
+    prove(Problem(SymplecticMap(THESIS, [c, c, 2 * c])), read_rotation("T49", 2)).save(path)
     return path.read_text(encoding="utf-8")
 
 
@@ -1176,7 +1177,7 @@ def test_the_number_of_modes_is_estimated():
 @pytest.mark.slow
 def test_a_torus_that_is_nearly_odd(run, tmp_path):
     """Parts of 8e-6 that are not odd are left out first, and then are not."""
-    torus = prove(Problem.patch(["0.3", "0.3", "0.000001"], (), [(1, 0), (0, 1), (1, 1)]),
+    torus = prove(Problem(SymplecticMap([(1, 0), (0, 1), (1, 1)], ["0.3", "0.3", "0.000001"])),
                   read_rotation("T49", 2))
     torus.save(tmp_path / "torus")
     assert run((tmp_path / "torus").read_text(encoding="utf-8"))[0] == 0

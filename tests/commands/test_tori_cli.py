@@ -12,6 +12,7 @@ from conftest import ROOT
 
 from converse import Problem, check, read_input, tori
 from converse.commands import tori as cli
+from converse.model.map import MuldoonMap, SymplecticMap, from_patch
 from converse.storage import files
 from converse.tori import certificate, report
 
@@ -271,7 +272,7 @@ def test_a_report_of_a_range_says_of_which_piece_it_speaks(run, tmp_path):
     ([(1, 1), (1, -1)], "(1, 1) and (1, -1)")])
 def test_the_report_says_for_which_k_divisors_are_bounded(waves, words):
     """Where the waves span a line, of all k."""
-    problem = Problem.patch(["0.001"] * len(waves), (), waves)
+    problem = Problem(SymplecticMap(waves, ["0.001"] * len(waves)))
     proof = tori.prove(problem, tori.read_rotation("T49"))
     assert "           k: the integer combinations of %s; |k| = " % words in report.verdict(proof)
 
@@ -298,11 +299,11 @@ def test_a_range_is_told_exactly():
     """In the parameter of the input; in s, where only the torus is at hand."""
     golden = tori.read_rotation("golden")
     for problem, V, words in (
-            (Problem.patch(["0.25"], [["0.05"]], waves=[(1, 0)]), "-(0.25 + 0.05 t[1]) sin y",
+            (Problem(SymplecticMap([(1, 0)], ["0.25"], [["0.05"]])), "-(0.25 + 0.05 t[1]) sin y",
              "every t[1] in [-1, 1]"),
-            (Problem(("0.2", "0.3"), 0, 0), "-a sin y", "every a in [0.2, 0.3]"),
-            (Problem.patch(["0.25", "0.01"], [["0.05", 0]], [(1, 0, "-1/2"), (2, 0)], parameters=[
-                ("K", Fraction("0.2"), Fraction("0.3"))]), "K cos y - 0.01 sin(2 y)",
+            (Problem(MuldoonMap(("0.2", "0.3"), 0, 0)), "-a sin y", "every a in [0.2, 0.3]"),
+            (Problem(from_patch([(1, 0, "-1/2"), (2, 0)], ["0.25", "0.01"], [["0.05", 0]], [
+                ("K", Fraction("0.2"), Fraction("0.3"))])), "K cos y - 0.01 sin(2 y)",
              "every K in [0.2, 0.3]")):
         out = report.undecided(problem, golden, tori.NotProved("it lacks"))
         assert "  with  V(y) = %s,\n  was examined for %s.\n" % (V, words) in out

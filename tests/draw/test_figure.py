@@ -19,6 +19,7 @@ import pytest
 from converse import ConverseError, Problem, prove, read_input
 from converse.draw import captions, plot
 from converse.draw.figure import LEFT_MARGIN, PAGE_WIDTH, SIDE, format_of, postscript
+from converse.model.map import MuldoonMap, SymplecticMap, from_patch
 from converse.prover.tree import leaves
 
 RESOLUTION = 144                        # two pixels a point
@@ -254,7 +255,7 @@ def test_bounding_box(made_up, tmp_path, name, together, tree):
     """Nothing lies outside the bounding box, and hardly any room is lost."""
     path = tmp_path / "figure.ps"
     proof = made_up(tree, **TITLES[name])
-    replace(proof, problem=replace(proof.problem, together=together)).figure(path)
+    replace(proof, problem=proof.problem.tied() if together else proof.problem).figure(path)
     found = subprocess.run(["gs", "-q", "-dBATCH", "-dNOPAUSE", "-sDEVICE=bbox", str(path)],
                            check=True, stderr=subprocess.PIPE).stderr.decode()
     ink = list(map(int, re.search("BoundingBox: (.*)", found).group(1).split()))
@@ -328,7 +329,7 @@ def test_parameters_that_move_together(made_up):
         for name, k in (("a", 1), ("b", 1), ("c", 2)):
             found = re.search(r"%s in \[([\d.]+), ([\d.]+)\]" % name, text)
             assert [Fraction(x) for x in found.groups()] == [k * low, k * high]
-    for text in words(replace(proof, problem=replace(proof.problem, together=True))):
+    for text in words(replace(proof, problem=proof.problem.tied())):
         text = " ".join(text.split())
         found = re.search(r"\(a, b, c\) on the segment from \((.*?)\) to \((.*?)\)", text)
         assert [[Fraction(x) for x in part.split(", ")] for part in found.groups()] \
@@ -554,7 +555,7 @@ def test_no_side_effects(root, tmp_path):
 @pytest.mark.parametrize("frame", [(1, 0, -1, 1), (1, 0, 1, -1), (2, 1, -1, -1), (0, 1, 1, 0)])
 def test_the_star_stands_in_the_frame(made_up, frame):
     """What is drawn at (v0, v1) is the point frame.(v0, v1), a multiple of 2 pi aside."""
-    problem = replace(Problem(0, 0, ("0.4", "0.5")), axes=frame)
+    problem = replace(Problem(MuldoonMap(0, 0, ("0.4", "0.5"))), axes=frame)
     for x in (0.25, -1.5), (3.0, 7.0):
         proof = replace(made_up("P"), problem=problem, xstar=tuple(map(str, x)))
         v = [2 * math.pi * part
@@ -565,13 +566,13 @@ def test_the_star_stands_in_the_frame(made_up, frame):
 
 def test_what_is_said_of_other_problems(made_up):
     for problem, said in (
-            (Problem(0, 0, ("0.4", "0.5")),
+            (Problem(MuldoonMap(0, 0, ("0.4", "0.5"))),
              ["c in [0.4, 0.5], a = 0, b = 0", "the angles after x* are (v0, -v0 + v1)"]),
-            (Problem.patch(["0.4", 1], [["0.1", 0]], [(1, 0, "-1/2"), (2, -1)]), [
+            (Problem(SymplecticMap([(1, 0, "-1/2"), (2, -1)], ["0.4", 1], [["0.1", 0]])), [
                 "no invariant torus for every t[1] in [-1, 1]; "
                 "V(y) = (0.4 + 0.1 t[1]) cos y0 - sin(2 y0 - y1)"]),
-            (Problem.patch(["0.4", 1], [["0.1", "0.1"]], [(1, 0), (2, 0)], parameters=[
-                ("K", Fraction("0.3"), Fraction("0.5"))]), [
+            (Problem(from_patch([(1, 0), (2, 0)], ["0.4", 1], [["0.1", "0.1"]], [
+                ("K", Fraction("0.3"), Fraction("0.5"))])), [
                 "no rotational invariant circle for every K in [0.3, 0.5]; V(y) = -K sin y - "])):
         for text in words(replace(made_up("P"), problem=problem)):
             text = " ".join(text.split())

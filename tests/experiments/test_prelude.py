@@ -6,6 +6,7 @@ from thesis.prelude import prelude
 
 import converse
 from converse import Problem, orbits
+from converse.model.map import MuldoonMap
 
 
 @pytest.mark.parametrize("potential, numbers", [
@@ -28,7 +29,7 @@ def test_prelude_is_the_other_method_s_first_step():
     bound = prelude(orbits.trig).graphs
     for eps, proved in ((1.004 * bound, True), (0.9996 * bound, False)):
         a, b, c = (repr(x) for x in orbits.parameters(eps))
-        proof = converse.prove(Problem(a=a, b=b, c=c), method="loewner", depth=0)
+        proof = converse.prove(Problem(MuldoonMap(a, b, c)), method="loewner", depth=0)
         assert proof.no_tori == proved
         largest = 2 - eps * np.linalg.eigvalsh(orbits.trig.evaluate(
             np.full((1, 2), 1 - 0.131738))[2])[0, 0]

@@ -6,13 +6,13 @@ import re
 import shutil
 import subprocess
 import sys
-from dataclasses import replace
 
 import pytest
 import test_parts as by_hand
 from conftest import ROOT
 
 from converse import Problem, prove, read_input, tori
+from converse.model.map import SymplecticMap
 
 FORMAL = ROOT / "formal"
 needs_coq = pytest.mark.skipif(
@@ -24,7 +24,7 @@ def proof(tmp_path_factory):
     """Finished proof files."""
     def proof(name):
         path = tmp_path_factory.mktemp("proofs") / "proof"
-        problem = replace(read_input(ROOT / "inputs" / (name + ".in")), together=True)
+        problem = read_input(ROOT / "inputs" / (name + ".in")).tied()
         prove(problem, method="loewner").save(path)
         return path
     return proof
@@ -208,7 +208,7 @@ def refused(file, folder):
 def torus_file(path, k, margin=100, rotation="golden", phase=0):
     """A certificate of existence for the standard map, in the place of one that is there."""
     path.unlink(missing_ok=True)
-    problem = Problem.patch([k], waves=[(1, 0, phase)])
+    problem = Problem(SymplecticMap([(1, 0, phase)], [k]))
     tori.prove(tori.find(problem, tori.read_rotation(rotation), margin=margin)).save(path)
     return path
 

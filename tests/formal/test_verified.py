@@ -20,6 +20,7 @@ from conftest import ROOT
 
 from converse import Problem, check, prove, read_input
 from converse.model.exact import decimal_text
+from converse.model.map import MuldoonMap
 
 from moments import PATIENCE, wait_until
 
@@ -49,14 +50,14 @@ def texts(tmp_path_factory):
         ("trig278.in", True), ("trig180.in", True), ("trig276.in", False),
         ("standard-63-64.in", False), ("standard-972.in", False),
         *((name, False) for name in GENERAL))}
-    inputs["point"] = Problem(a="0.31", b="0.31", c="0.62"), False
+    inputs["point"] = Problem(MuldoonMap("0.31", "0.31", "0.62")), False
     inputs["part"] = Problem.around(("0.3085", "0.3085", "0.617", "0.4", "1.3"),
                                     ("0.00125", "0.00125", "0.0025", "0.2", "0.1")), False
     found = {}
     for name, (problem, together) in inputs.items():
         path = tmp_path_factory.mktemp("proofs") / "proof"
         if together:
-            problem = replace(problem, together=True)
+            problem = problem.tied()
         prove(problem, method="loewner").save(path)
         found[name] = path.read_text("utf-8")
     found["plain"] = about(found["trig278.in"], "1 0 0 1", "1 1", "1 1")

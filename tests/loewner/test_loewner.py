@@ -18,7 +18,7 @@ import mpmath
 import pytest
 
 from converse import Problem, Settings, prove
-from converse.model.problem import LINE
+from converse.model.map import LINE, MuldoonMap
 from converse.model.region import EXCHANGE, REVERSAL
 from converse.prover import run
 from converse.prover.native import Search, Task, ffi, lib
@@ -791,8 +791,9 @@ CPU = Path("/proc/cpuinfo").read_text("utf-8", "replace") if Path("/proc/cpuinfo
 @pytest.mark.parametrize("problem", [
     line("0.0170", "0.0280"), line("0.0200", "0.0280", together=False),
     line("0.0200", "0.0280", skew="0.75"),
-    Problem(a=("0.984375", "0.984375"), b=("0", "0"), c=("0", "0")),
-    Problem(a=("0.9745", "0.9755"), b=0, c=0),                  # orbits of very unlike lengths
+    Problem(MuldoonMap(("0.984375", "0.984375"), ("0", "0"), ("0", "0"))),
+    # orbits of very unlike lengths
+    Problem(MuldoonMap(("0.9745", "0.9755"), 0, 0)),
     line("0.0130", "0.0200", region=("0.125", "0.125"))])
 def test_any_number_of_lanes_grows_the_same_tree(problem, monkeypatch):
     """Whatever vectors the machine has, and in whatever company a prism is tried."""
@@ -830,8 +831,8 @@ def random_cells(rng, together, n):
 @pytest.mark.parametrize("problem, star", [
     (line("0.0170", "0.0280"), None), (line("0.0200", "0.0280", together=False), None),
     (line("0.0160", "0.0180"), ("0.85", "0.87")), (line("0.0100", "0.0500", skew="0.75"), None),
-    (Problem(a=("1.3", "1.5"), b=("-0.25", "0.25"), c=("0", "0")), ("-1", "2")),
-    (Problem(a=("1.5", "8"), b=("0", "1"), c=("-0.5", "0.5")), ("0.5", "-2"))])
+    (Problem(MuldoonMap(("1.3", "1.5"), ("-0.25", "0.25"), ("0", "0"))), ("-1", "2")),
+    (Problem(MuldoonMap(("1.5", "8"), ("0", "1"), ("-0.5", "0.5"))), ("0.5", "-2"))])
 def test_no_company_matters(problem, star, monkeypatch):
     """What is tried alone, by a search that never tried anything else, fares as in any company, and
     whatever was tried before."""
@@ -923,7 +924,7 @@ def test_not_at_once_by_a_rounding():
     """a and B stay below 4/3 and 10/3; but centre and half-width as doubles add up to more."""
     centre, half = Fraction("0.636378608205740996"), Fraction("0.696954725127592337")
     assert centre + half < Fraction(4, 3) < Fraction(float(centre) + float(half))
-    problem = Problem((centre - half, centre + half), 0, 0, together=True)
+    problem = Problem(MuldoonMap((centre - half, centre + half), 0, 0, together=True))
     assert not prove(problem, method="loewner", depth=0).at_once
 
 

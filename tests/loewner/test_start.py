@@ -7,6 +7,7 @@ from fractions import Fraction
 
 import pytest
 
+from converse.model.map import THESIS, MuldoonMap, SymplecticMap
 from converse.model.problem import Problem
 from converse.prover import native
 from converse.prover.settings import Settings
@@ -16,7 +17,7 @@ def decide(parameters, xstar=None, most=20000):
     """The first prism of a problem, or of three ranges, and what it is cut into, as far as `most`
     tries: x*, tries, all proved?"""
     problem = parameters if isinstance(parameters, Problem) else \
-        Problem(**dict(zip("abc", parameters)))
+        Problem(MuldoonMap(*parameters))
     search = native.Search(native.Task(problem, Settings(method="loewner"), xstar))
     assert search.prepare(None)
     begun = search.begin("")
@@ -90,9 +91,9 @@ def polar(a, b, c, r, s):
     """The patch of r ((a, b, 0) + s (0, 0, c)), r and s in these ranges."""
     (r0, r1), (s0, s1) = (tuple(map(Fraction, ends)) for ends in (r, s))
     r, s = (r0 + r1) / 2, (s0 + s1) / 2
-    return Problem.patch([r * a, r * b, r * s * c],
-                         [[(r1 - r0) / 2 * x for x in (a, b, s * c)],
-                          [0, 0, r1 * (s1 - s0) / 2 * c]])
+    return Problem(SymplecticMap(THESIS, [r * a, r * b, r * s * c],
+                                 [[(r1 - r0) / 2 * x for x in (a, b, s * c)],
+                          [0, 0, r1 * (s1 - s0) / 2 * c]]))
 
 
 # A wave that is next to nothing ended orbits, since nobody knew the angle that feels it; or the
@@ -124,16 +125,17 @@ def test_nothing_is_cut_for_ever(parameters, xstar, most):
 def two_harmonics(K1, K2="0.2", along=(1, 0)):
     """The standard map with a second harmonic; along y0, or y1, or y0 + y1."""
     size, phase = along[0] ** 2 + along[1] ** 2, "-1/2"
-    return Problem.patch([Decimal(p) / size for p in (K1, K2)], [],
-                         [(m * along[0], m * along[1], phase) for m in (1, 2)])
+    return Problem(SymplecticMap([(m * along[0], m * along[1], phase) for m in (1, 2)],
+                                 [Decimal(p) / size for p in (K1, K2)]))
 
 
 def froeschle(K, coupling):
-    return Problem.patch([K, K, coupling], [], [(1, 0, "-1/2"), (0, 1, "-1/2"), (1, 1, "-1/2")])
+    return Problem(SymplecticMap([(1, 0, "-1/2"), (0, 1, "-1/2"), (1, 1, "-1/2")],
+                                 [K, K, coupling]))
 
 
 def crossed(*amplitudes):
-    return Problem.patch(amplitudes, [], [(1, 0), (0, 1), (1, 1), (1, -1)])
+    return Problem(SymplecticMap([(1, 0), (0, 1), (1, 1), (1, -1)], amplitudes))
 
 
 @pytest.mark.parametrize("along", [(0, 1), (1, 1), (2, -1)])
@@ -148,8 +150,8 @@ def test_where_all_waves_are_parallel_it_is_one_question(along):
 # The best of 200 x* is in the gap that two harmonics leave to 0.59, and in none at 0.585.
 @pytest.mark.parametrize("problem", [
     two_harmonics("0.59"), two_harmonics("0.605"), two_harmonics("0.64"),
-    Problem.patch(["1", "0.1"], [], [(1, 0), (2, 0)]),
-    Problem.patch(["0.8", "0.1"], [], [(1, 0), (2, 0)]),
+    Problem(SymplecticMap([(1, 0), (2, 0)], ["1", "0.1"])),
+    Problem(SymplecticMap([(1, 0), (2, 0)], ["0.8", "0.1"])),
     froeschle("0.84", "0.1"), froeschle("0.65", "0.3"), froeschle("0.6", "0.3"),
     froeschle("0.37", "0.5"), froeschle("0.28", "0.5"), crossed("0.3", "0.3", "0.225", "0.075")],
     ids=repr)
@@ -168,5 +170,5 @@ def test_symmetry_is_given_up_only_for_longer_orbits():
 
 def test_high_harmonics_and_many_waves_have_a_choice():
     waves = [(k0, k1) for k0 in (0, 1, 97, 100) for k1 in (-100, -3, 1, 100)]
-    problem = Problem.patch([Decimal("0.0001")] * 16, [], waves)
+    problem = Problem(SymplecticMap(waves, [Decimal("0.0001")] * 16))
     assert all(map(math.isfinite, decide(problem, most=0)[0]))

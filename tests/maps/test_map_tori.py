@@ -8,6 +8,7 @@ from converse import check
 from converse.commands import map as cli
 from converse.maps import tori
 from converse.maps.map import Map
+from converse.model.map import THESIS, SymplecticMap
 from converse.model.problem import Problem
 from converse.storage.files import ConverseError
 from converse.tori import read_rotation
@@ -53,7 +54,7 @@ def test_what_is_there_is_not_proved_again(few, monkeypatch):
 def test_beyond_the_frontier_there_is_none():
     def at(radius):
         a = F(max(1, round(radius)))
-        return Problem.patch([a, a, F(0)])
+        return Problem(SymplecticMap(THESIS, [a, a, F(0)]))
 
     assert tori.highest(at, read_rotation("T49"), 40.0, 1 << 6) == (None, 0.0)
 
@@ -62,7 +63,7 @@ def test_the_highest_is_proved_where_it_can_be():
     """Beyond its break-up nothing is found, and lower values are tried; none below `least`."""
     def at(k):
         tried.append(k)
-        return Problem.patch([F(round(1000 * k), 1000)], waves=[(1, 0)])
+        return Problem(SymplecticMap([(1, 0)], [F(round(1000 * k), 1000)]))
 
     tried = []
     golden = read_rotation("golden")

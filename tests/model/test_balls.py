@@ -7,13 +7,14 @@ from flint import ctx
 
 from converse import Problem, orbits, tori
 from converse.model.balls import precision
+from converse.model.map import SymplecticMap
 
 
 def test_proofs_side_by_side(monkeypatch):
     """Tori and orbits in threads of one process: each proof is what it is alone, whatever the user
     has set, and that is set again afterwards."""
     golden = tori.read_rotation("golden")
-    torus = tori.find(Problem.patch(["0.8"], waves=[(1, 0)]), golden)
+    torus = tori.find(Problem(SymplecticMap([(1, 0)], ["0.8"])), golden)
     state = orbits.follow(orbits.standard, (3,), 8, [0.5])[0]
 
     def of_torus():

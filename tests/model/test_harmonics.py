@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from converse import InputError, Problem, prove, read_input
-from converse.model.problem import LINE
+from converse.model.map import LINE, SymplecticMap
 
 from truth import TORTURE
 
@@ -38,7 +38,7 @@ def test_the_thesis_in_both_formats(root):
     line = read({"parameters": {"epsilon": ["0.0148", "0.0280"]}, "harmonics": [
         {"k": k, "amplitude": {"epsilon": factor}} for k, factor in (
             ([1, 0], "11.21436"), ([0, 1], "11.21436"), ([1, 1], "22.42872"))]})
-    assert line.together and (line.a, line.b, line.c) == ((low, high),) * 2 + ((2 * low, 2 * high),)
+    assert line.together and line.abc == ((low, high),) * 2 + ((2 * low, 2 * high),)
     assert line.parameters == (("epsilon", Fraction("0.0148"), Fraction("0.028")),)
 
 
@@ -74,7 +74,7 @@ def test_numbers_are_exact():
 def test_files(tmp_path):
     for name, text in (("a.json", "\ufeff \n" + json.dumps(one())), ("b", json.dumps(one()))):
         (tmp_path / name).write_text(text, encoding="utf-8")
-        assert read_input(tmp_path / name) == Problem.patch([1], waves=[(1, 0)])
+        assert read_input(tmp_path / name) == Problem(SymplecticMap([(1, 0)], [1]))
     (tmp_path / "c.json").write_text("[1,\n 2")
     with pytest.raises(InputError, match="c.json, line 2: this is no JSON"):
         read_input(tmp_path / "c.json")
@@ -102,7 +102,7 @@ def test_files(tmp_path):
     (one(amplitude={"e": 1}), 'no parameter "e"; the parameters are none'),
     ({"parameters": {"e": 1}, **one()}, 'parameters, "e": no amplitude has it'),
     ({"parameters": {"e": 1}, **one(amplitude={"e": "1/3"})},
-     "amplitude, e: 1/3 is no finite decimal"),
+     "amplitude, e: 1/3 is not a finite decimal"),
     ({"parameters": {"e": "1e200"}, **one(amplitude={"e": "1e200"})}, "out of range"),
     ({"parameters": {"constant": 1}, **one()}, "no name for a parameter"),
     ({"parameters": {"a b": 1}, **one()}, "no name for a parameter"),
@@ -207,8 +207,8 @@ def test_the_usual_conventions(root, name, ends, force):
     assert problem.full_torus and len(problem.parts) == 1
     for t, K in ends.items():
         ours, theirs = of_period_one(problem, [t]), force(float(K))
-        here = there = ([0.123, 0.371 * (problem.dimension - 1)],
-                        [0.3, 0.17 * (problem.dimension - 1)])
+        here = there = ([0.123, 0.371 * (problem.map.dimension - 1)],
+                        [0.3, 0.17 * (problem.map.dimension - 1)])
         for _ in range(6):
             here = ours(*here)
             p = [u + f for u, f in zip(there[1], theirs(there[0]))]

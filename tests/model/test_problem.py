@@ -14,7 +14,8 @@ from converse import ConverseError, Problem, prove
 from converse.model import inputs
 from converse.model.exact import decimal_text
 from converse.model.inputs import read_input
-from converse.model.problem import IDENTITY, THESIS, InputError
+from converse.model.map import THESIS, MuldoonMap, SymplecticMap
+from converse.model.problem import IDENTITY, InputError
 from converse.prover import native
 
 GOOD = "0.3085 0.00125\n0.3085 0.00125\n0.617 0.0025\n\n1.0 1.0\n1.0 1.0\n\n"
@@ -125,26 +126,27 @@ def test_messages_name_the_file(tmp_path, monkeypatch):
 
 def test_named_ranges(root):
     problem = read_input(root / "inputs" / "trig274.in")
-    named = Problem(a=("0.30725", "0.30975"), b=(Decimal("0.30725"), Fraction("0.30975")),
-                    c=("6145e-4", "0.6195"), comments=problem.comments)
+    named = Problem(MuldoonMap(("0.30725", "0.30975"), (Decimal("0.30725"), Fraction("0.30975")),
+                               ("6145e-4", "0.6195")), comments=problem.comments)
     assert named == problem == Problem.around(problem.centre, problem.half, problem.comments)
-    assert repr(named) == "Problem(a=0.30725..0.30975, b=0.30725..0.30975, c=0.6145..0.6195, " \
-                          "v0=0..2, v1=0..2)"
-    point = Problem("63/64", 0, 0, together=True)
-    assert point.a == (Fraction(63, 64),) * 2 and point.half[:3] == (0, 0, 0)
-    assert point.full_torus and repr(point).endswith(", together)")
+    assert repr(named) == "<Problem: Muldoon map, a = 0.30725..0.30975, " \
+        "b = 0.30725..0.30975, c = 0.6145..0.6195; v0=0..2, v1=0..2>"
+    point = Problem(MuldoonMap("63/64", 0, 0, together=True))
+    assert point.abc[0] == (Fraction(63, 64),) * 2 and point.half[:3] == (0, 0, 0)
+    assert point.full_torus and point.together
 
 
 def test_what_is_no_decimal_is_enclosed():
     """4/3 is no finite decimal: the range that is covered holds it, and is hardly wider."""
     for third in "4/3", Fraction(4, 3):
-        low, high = Problem(third, 0, 0).a
+        low, high = Problem(MuldoonMap(third, 0, 0)).abc[0]
         assert low < Fraction(4, 3) < high and high - low == Fraction(1, 10 ** 40)
-    low, high = Problem(("-4/3", "-2/3"), 0, 0).a
+    low, high = Problem(MuldoonMap(("-4/3", "-2/3"), 0, 0)).abc[0]
     assert low < Fraction(-4, 3) and high > Fraction(-2, 3)
     assert decimal_text(low) and decimal_text(high)
-    assert read(GOOD.replace("0.3085 0.00125", "4/3 1/7", 1)).a[0] < Fraction(4, 3) - Fraction(1, 7)
-    assert prove(Problem(("4/3", "3/2"), 0, 0), method="loewner").no_tori
+    assert read(GOOD.replace("0.3085 0.00125", "4/3 1/7",
+                             1)).abc[0][0] < Fraction(4, 3) - Fraction(1, 7)
+    assert prove(Problem(MuldoonMap(("4/3", "3/2"), 0, 0)), method="loewner").no_tori
 
 
 @pytest.mark.parametrize("ranges, error, words", [
@@ -160,7 +162,8 @@ def test_what_is_no_decimal_is_enclosed():
 ])
 def test_bad_ranges(ranges, error, words):
     with pytest.raises(error) as caught:
-        Problem(**{"a": 0, "b": 0, "c": 0, **ranges})
+        region = {name: ranges.pop(name) for name in ("v0", "v1") if name in ranges}
+        Problem(MuldoonMap(**{"a": 0, "b": 0, "c": 0, **ranges}), **region)
     assert words in str(caught.value) and "\n" not in str(caught.value)
 
 
@@ -172,6 +175,8 @@ def test_four_ranges_or_unequal_ones():
         Problem.around((1,) * 5, (0, -1, 0, 1, 1))
     with pytest.raises(TypeError):
         Problem("1", "1")
+    with pytest.raises(TypeError, match="c: None"):
+        MuldoonMap("1", "1")
 
 
 @pytest.mark.parametrize("text", ["1e309", "-1e309", "1e99999", "nan", "", "1e400000"])
@@ -187,22 +192,23 @@ def test_the_core_refuses_what_no_problem_can_say(text, monkeypatch):
     for wrong in range(19):         # of three waves the phase, the amplitude, three parts; v0, v1
         told.clear()
         with pytest.raises(ConverseError, match="malformed or out of range|no sense"):
-            prove(Problem(1, 1, 1))
+            prove(Problem(MuldoonMap(1, 1, 1)), method="thesis")
         assert len(told) > wrong
 
 
 def test_comments_are_lines(tmp_path):
-    problem = Problem(2, 2, 2, comments=("one\ntwo\r\nthree", "", "a\udc80b", "tree:"))
+    problem = Problem(MuldoonMap(2, 2, 2), comments=("one\ntwo\r\nthree", "", "a\udc80b", "tree:"))
     assert problem.comments == ("one", "two", "three", "", "a\\udc80b", "tree:")
     proof = prove(problem, method="loewner", backup=tmp_path / "a.proof")
     assert type(proof).load(tmp_path / "a.proof") == replace(proof, seconds=0)
-    assert Problem(2, 2, 2, comments="one line").comments == ("one line",)
+    assert Problem(MuldoonMap(2, 2, 2), comments="one line").comments == ("one line",)
 
 
 @pytest.mark.parametrize("options", [{"together": "no"}, {"together": 1}, {"comments": (5,)}])
 def test_other_bad_arguments(options):
     with pytest.raises(TypeError):
-        Problem(1, 1, 1, **options)
+        Problem(MuldoonMap(1, 1, 1, **options)) if "together" in options else Problem(
+            MuldoonMap(1, 1, 1), **options)
 
 
 # ---- patches and other potentials
@@ -211,12 +217,12 @@ def test_ranges_are_patches():
     """What three ranges, or a segment, can say is the same Problem."""
     for parts, together in (([["0.01", 0, 0], [0, "0.02", 0], [0, 0, 0]], False), ([], False),
                             ([["0.01", "0.02", 0]], True)):
-        problem = Problem.patch(["0.4", "0.3", "0.2"], parts)
+        problem = Problem(SymplecticMap(THESIS, ["0.4", "0.3", "0.2"], parts))
         assert problem.by_ranges and problem.together is together
         halves = [sum(map(Fraction, column)) for column in zip([0] * 3, *parts)]
         assert problem == Problem.around(
             (*map(Fraction, ("0.4", "0.3", "0.2")), 1, 1), (*halves, 1, 1), together=together)
-        again = Problem.patch(problem.amplitude, problem.parts, problem.waves)
+        again = Problem(SymplecticMap(problem.waves, problem.amplitude, problem.parts))
         assert again == problem and replace(problem) == problem
 
 
@@ -226,23 +232,25 @@ def test_ranges_are_patches():
     [["0.01", "0.01", 0], [0, "0.02", 0], [0, 0, "0.02"]],
     [[0, "0.01", 0], ["0.02", 0, 0], [0, 0, 1]]])
 def test_other_patches_are_not_ranges(parts):
-    problem = Problem.patch(["0.4", "0.3", "0.2"], parts)
-    assert (problem.a, problem.b, problem.c, problem.together) == (None,) * 3 + (False,)
+    problem = Problem(SymplecticMap(THESIS, ["0.4", "0.3", "0.2"], parts))
+    assert problem.abc is None and not problem.together
     assert problem.amplitude == tuple(map(Fraction, ("0.4", "0.3", "0.2")))
     assert problem.parts == tuple(tuple(map(Fraction, part)) for part in parts)
     assert problem.half[:3] == tuple(sum(abs(Fraction(x)) for x in column)
                                      for column in zip(*parts))
     assert replace(problem) == problem and hash(replace(problem)) == hash(problem)
-    assert replace(problem, v0=(0, 1)).v0 == (0, 1) and problem != Problem("0.4", "0.3", "0.2")
-    assert repr(problem).startswith("Problem.patch(0.") and repr(problem).count(" of (") == 3
+    assert replace(problem, v0=(0, 1)).v0 == (0,
+                                              1) and problem != Problem(MuldoonMap("0.4", "0.3",
+                                                                                   "0.2"))
+    assert repr(problem).startswith("<Problem: 3 harmonics, t[1] = -1..1")
 
 
 def test_the_thesis_in_waves():
-    problem = Problem(("0.3", "0.4"), "0.2", ("0.5", "0.7"))
+    problem = Problem(MuldoonMap(("0.3", "0.4"), "0.2", ("0.5", "0.7")))
     assert problem.waves == tuple((*k, 0) for k in THESIS) and problem.odd == (0, 0)
     assert problem.amplitude == (Fraction("0.35"), Fraction("0.2"), Fraction("0.6"))
     assert problem.parts == ((Fraction("0.05"), 0, 0), (0, 0, 0), (0, 0, Fraction("0.1")))
-    assert replace(problem, together=True).parts == ((Fraction("0.05"), 0, Fraction("0.1")),)
+    assert problem.tied().parts == ((Fraction("0.05"), 0, Fraction("0.1")),)
     assert (problem.frame, problem.factor, problem.searched) == (IDENTITY, None, (0, 1, 2))
 
 
@@ -250,23 +258,26 @@ WAVE = {"amplitude": [1], "waves": [(1, 0)]}
 
 
 @pytest.mark.parametrize("arguments, error, words", [
-    ({"amplitude": [1, 1]}, ValueError, "2 numbers for 3 waves"),
-    ({"amplitude": [1, 1, "1/3"]}, ValueError, "wave 3: 1/3 is no finite decimal"),
-    ({"amplitude": [0.1, 1, 1]}, TypeError, "wave 1: 0.1 is not an exact number"),
+    ({"amplitude": [1, 1]}, ValueError, "2 numbers for 3 harmonics"),
+    ({**WAVE, "amplitude": ["1/3"]}, ValueError, "harmonic 1: 1/3 is not a finite decimal"),
+    ({"amplitude": [0.1, 1, 1]}, TypeError, "harmonic 1: 0.1 is not an exact number"),
     ({"amplitude": 5}, TypeError, "sequences"),
     ({"amplitude": [1] * 3, "parts": [5]}, TypeError, "seq"),
-    ({"amplitude": [1] * 3, "parts": [[1, 1]]}, ValueError, "part 1 has 2 numbers"),
-    ({"amplitude": [1] * 3, "parts": [[1, 1, "x"]]}, ValueError, "part 1 of wave 3: 'x' is not"),
+    ({"amplitude": [1] * 3, "parts": [[1, 1]]}, ValueError, "parameter 1 has 2 numbers"),
+    ({"amplitude": [1] * 3, "parts": [[1, 1, "x"]]}, ValueError,
+     "parameter 1 of harmonic 3: 'x' is not"),
     ({"amplitude": [1] * 3, "parts": [[1, 1, 1]] * 4}, ValueError, "4 parameters; give 3"),
-    ({"amplitude": [1], "waves": [(0, 0)]}, ValueError, "wave 1: k = (0, 0) is no wave"),
-    ({"amplitude": [1], "waves": [(1.0, 0)]}, TypeError, "wave 1: k is two integers"),
-    ({"amplitude": [1], "waves": [(True, 0)]}, TypeError, "wave 1: k is two integers"),
+    ({"amplitude": [1], "waves": [(0, 0)]}, ValueError, "harmonic 1: k = (0, 0) is not a harmonic"),
+    ({"amplitude": [1], "waves": [(1.0, 0)]}, TypeError, "harmonic 1: k is two integers"),
+    ({"amplitude": [1], "waves": [(True, 0)]}, TypeError, "harmonic 1: k is two integers"),
     ({"amplitude": [1], "waves": [(0, -101)]}, ValueError, "out of range"),
     ({"amplitude": [1], "waves": [(1,)]}, ValueError, "not 1 numbers"),
-    ({"amplitude": [1], "waves": [(1, 0, "pi")]}, ValueError, "the phase of wave 1: 'pi' is not"),
-    ({"amplitude": [], "waves": []}, ValueError, "there are 0 waves; give 1 to 16"),
-    ({"amplitude": [1] * 17, "waves": [(k, 1) for k in range(17)]}, ValueError, "17 waves"),
-    ({"amplitude": [1, 1], "waves": [(1, 0, 2), (1, 0)]}, ValueError, "waves 1 and 2 are the same"),
+    ({"amplitude": [1], "waves": [(1, 0, "pi")]}, ValueError,
+     "the phase of harmonic 1: 'pi' is not"),
+    ({"amplitude": [], "waves": []}, ValueError, "there are 0 harmonics; give 1 to 16"),
+    ({"amplitude": [1] * 17, "waves": [(k, 1) for k in range(17)]}, ValueError, "17 harmonics"),
+    ({"amplitude": [1, 1], "waves": [(1, 0, 2), (1, 0)]}, ValueError,
+     "harmonics 1 and 2 are the same"),
     ({**WAVE, "v0": (1, 0)}, ValueError, "v0: the lower end"),
     ({**WAVE, "axes": (1, 1, 1, 1)}, ValueError, "determinant"),
     ({**WAVE, "axes": (1, 0, 0)}, ValueError, "four integers"),
@@ -278,15 +289,10 @@ WAVE = {"amplitude": [1], "waves": [(1, 0)]}
     ({"amplitude": [1] * 3, "alone": 1}, ValueError, "no coordinate stands alone")])
 def test_bad_patches(arguments, error, words):
     with pytest.raises(error) as caught:
-        Problem.patch(**arguments)
+        waves, amplitude, parts = (arguments.pop(name, default) for name, default in (
+            ("waves", THESIS), ("amplitude", None), ("parts", ())))
+        Problem(SymplecticMap(waves, amplitude, parts), **arguments)
     assert words in str(caught.value) and "\n" not in str(caught.value)
-
-
-def test_a_patch_has_no_ranges():
-    problem = Problem.patch([1], waves=[(1, 1)])
-    for wrong in {"a": 1}, {"together": True}:
-        with pytest.raises(ValueError, match="do not go with a patch"):
-            replace(problem, **wrong)
 
 
 @given(st.lists(st.tuples(st.integers(-4, 4), st.integers(-4, 4),
@@ -295,7 +301,7 @@ def test_a_patch_has_no_ranges():
                 unique_by=lambda wave: (*wave[:2], wave[2] % 2)))
 def test_odd_about_a_point(waves):
     """A point that is named is one; if none is, none of those that two waves leave is one."""
-    problem = Problem.patch([1] * len(waves), waves=waves)
+    problem = Problem(SymplecticMap(waves, [1] * len(waves)))
 
     def odd(s):
         return all((k0 * s[0] + k1 * s[1] + phase).denominator == 1 for k0, k1, phase in waves)
@@ -321,7 +327,7 @@ def test_odd_about_a_point(waves):
     ([(2, 0, "1/3"), (4, 0, "2/3")], ("5/6", 0)),
     ([(1, 0), (2, 0, "1/2")], None), ([(1, -1, "1/2"), (1, 1)], ("3/4", "1/4"))])
 def test_what_is_odd(waves, shifts):
-    odd = Problem.patch([1] * len(waves), waves=waves).odd
+    odd = Problem(SymplecticMap(waves, [1] * len(waves))).odd
     assert odd == (shifts and tuple(map(Fraction, shifts)))
 
 
@@ -332,7 +338,7 @@ def test_what_is_odd(waves, shifts):
     ([(1, 1), (1, -1)], IDENTITY), (THESIS, IDENTITY)])
 def test_frames(waves, frame):
     """The first column moves nothing that a wave feels, where there is a use for that."""
-    f = Problem.patch([1] * len(waves), waves=waves).frame
+    f = Problem(SymplecticMap(waves, [1] * len(waves))).frame
     assert abs(f[0] * f[3] - f[1] * f[2]) == 1
     if frame is None:
         assert all(k0 * f[0] + k1 * f[2] == 0 for k0, k1, *_ in waves)
@@ -341,13 +347,18 @@ def test_frames(waves, frame):
 
 
 def test_frames_of_the_thesis():
-    assert Problem(0, 0, ("0.4", "0.5")).frame == (1, 0, -1, 1)     # the standard map in y0 + y1
-    assert Problem(0, 0, ("0.4", "0.5"), v0=(0, 1)).frame == IDENTITY      # x_1 as it was asked for
-    for problem in Problem(0, 0, 0), Problem(1, 0, 0), Problem("0.1", 0, 1):
+    # the standard map in y0 + y1
+    assert Problem(MuldoonMap(0, 0, ("0.4", "0.5"))).frame == (1, 0, -1, 1)
+    # x_1 as it was asked for
+    assert Problem(MuldoonMap(0, 0, ("0.4", "0.5")), v0=(0, 1)).frame == IDENTITY
+    for problem in Problem(MuldoonMap(0, 0,
+                                      0)), Problem(MuldoonMap(1, 0, 0)), Problem(MuldoonMap("0.1",
+                                                                                            0, 1)):
         assert problem.frame == IDENTITY
-    plain = replace(Problem(0, 0, "0.5"), axes=IDENTITY)
-    assert plain.frame == IDENTITY and plain != Problem(0, 0, "0.5")
-    assert replace(plain, axes=(1, 0, -1, 1)) == Problem(0, 0, "0.5")       # what is chosen anyhow
+    plain = replace(Problem(MuldoonMap(0, 0, "0.5")), axes=IDENTITY)
+    assert plain.frame == IDENTITY and plain != Problem(MuldoonMap(0, 0, "0.5"))
+    # what is chosen anyhow
+    assert replace(plain, axes=(1, 0, -1, 1)) == Problem(MuldoonMap(0, 0, "0.5"))
 
 
 @pytest.mark.parametrize("amplitude, waves, kept", [
@@ -356,7 +367,7 @@ def test_frames_of_the_thesis():
     ((1, "0.3"), [(1, 0), (0, 2)], 1), ((1, "-2"), [(1, 0), (0, 1)], 1),
     ((1, 1), [(1, 0), (1, 1)], None)])
 def test_a_coordinate_alone(amplitude, waves, kept):
-    problem = Problem.patch(amplitude, waves=waves)
+    problem = Problem(SymplecticMap(waves, amplitude))
     assert problem.factor == kept
     assert [problem.waves[j][:2] for j in problem.searched] == [
         k for k in waves if kept is None or k[1 - kept] == 0]
@@ -366,6 +377,6 @@ def test_a_coordinate_alone(amplitude, waves, kept):
 
 
 def test_the_circle():
-    assert Problem.patch([1, "0.1"], waves=[(1, 0), (2, 0)]).dimension == 1
-    assert Problem.patch([1, "0.1"], waves=[(1, 0), (0, 1)]).dimension == 2
-    assert Problem(1, 0, 0).dimension == 2
+    assert Problem(SymplecticMap([(1, 0), (2, 0)], [1, "0.1"])).map.dimension == 1
+    assert Problem(SymplecticMap([(1, 0), (0, 1)], [1, "0.1"])).map.dimension == 2
+    assert Problem(MuldoonMap(1, 0, 0)).map.dimension == 2

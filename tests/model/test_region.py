@@ -9,7 +9,8 @@ import pytest
 
 from converse import Problem, Proof, Settings, prove
 from converse.model import region
-from converse.model.problem import IDENTITY, LINE, periods
+from converse.model.map import LINE, THESIS, MuldoonMap, SymplecticMap
+from converse.model.problem import IDENTITY, periods
 from converse.model.region import DIAGONALS, EXCHANGE, REVERSAL
 
 from truth import TORTURE, mp, rng_for
@@ -20,7 +21,8 @@ STAR = "0.858028", "0.858028"
 
 def line(low, high=None, **ranges):
     low, high = Fraction(low) * LINE, Fraction(high or low) * LINE
-    return Problem((low, high), (low, high), (2 * low, 2 * high), together=low != high, **ranges)
+    return Problem(MuldoonMap((low, high), (low, high), (2 * low, 2 * high), together=low != high),
+                   **ranges)
 
 
 def draw(rng):
@@ -31,7 +33,7 @@ def draw(rng):
     parts = [[Fraction(rng.randrange(-99, 99), 1000) for _ in waves]
              for _ in range(rng.randrange(4))]
     star = tuple(str(Fraction(rng.randrange(-4000, 4000), 1000) * 1.0) for _ in range(2))
-    return Problem.patch(amplitude, parts, waves, alone=None), star
+    return Problem(SymplecticMap(waves, amplitude, parts), alone=None), star
 
 
 def frames(rng):
@@ -108,14 +110,15 @@ def brought(problem, star, t, v):
     (line("0.0142"), STAR, DIAGONALS, [REVERSAL, EXCHANGE]),
     (line("0.0142", "0.0280"), STAR, DIAGONALS, [REVERSAL, EXCHANGE]),
     (line("0.0142"), ("0.858", "0.8"), (1, -1, 1, 1), [REVERSAL]),
-    (Problem(("0.3", "0.4"), ("0.3", "0.4"), "0.6"), STAR, DIAGONALS, [REVERSAL, EXCHANGE]),
-    (Problem(("0.3", "0.4"), ("0.3", "0.5"), "0.6"), STAR, (1, -1, 1, 1), [REVERSAL]),
-    (Problem("0.9", "0.9", "0.1"), ("0.3", "1.5"), IDENTITY, [REVERSAL]),
-    (Problem("0.3", "0.9", "0.1"), ("0.3", "1.5"), (0, 1, 1, 0), [REVERSAL]),
-    (Problem("0.3", "0.9", 0), STAR, (0, 1, 1, 0), [REVERSAL]),
-    (Problem(0, 0, "0.6"), STAR, (1, 0, -1, 1), []),
-    (Problem.patch(["0.2", "0.3"], (), [(1, 0), (4, -2)]), STAR, (2, 1, -1, 2), [REVERSAL]),
-    (Problem.patch(["0.2", "0.2", "0.3"], (), [(1, 0), (0, 1), (1, -1, "1/2")]), STAR,
+    (Problem(MuldoonMap(("0.3", "0.4"), ("0.3", "0.4"), "0.6")), STAR, DIAGONALS,
+     [REVERSAL, EXCHANGE]),
+    (Problem(MuldoonMap(("0.3", "0.4"), ("0.3", "0.5"), "0.6")), STAR, (1, -1, 1, 1), [REVERSAL]),
+    (Problem(MuldoonMap("0.9", "0.9", "0.1")), ("0.3", "1.5"), IDENTITY, [REVERSAL]),
+    (Problem(MuldoonMap("0.3", "0.9", "0.1")), ("0.3", "1.5"), (0, 1, 1, 0), [REVERSAL]),
+    (Problem(MuldoonMap("0.3", "0.9", 0)), STAR, (0, 1, 1, 0), [REVERSAL]),
+    (Problem(MuldoonMap(0, 0, "0.6")), STAR, (1, 0, -1, 1), []),
+    (Problem(SymplecticMap([(1, 0), (4, -2)], ["0.2", "0.3"])), STAR, (2, 1, -1, 2), [REVERSAL]),
+    (Problem(SymplecticMap([(1, 0), (0, 1), (1, -1, "1/2")], ["0.2", "0.2", "0.3"])), STAR,
      (1, 1, -1, 1), [REVERSAL]),
 ])
 def test_the_region_that_is_chosen(problem, star, frame, used):
@@ -153,20 +156,22 @@ def test_less_is_a_part_of_the_torus(change):
 def test_exchange_needs_the_diagonal_and_the_symmetry():
     chosen = region.reduced(line("0.0142"), STAR)
     assert region.symmetries_used(chosen, ("0.858028", "0.858029")) is None
-    skew = Problem.patch(["0.16", "0.16000001", "0.32"], v0=chosen.v0, v1=chosen.v1, axes=DIAGONALS)
+    skew = Problem(SymplecticMap(THESIS, ["0.16", "0.16000001", "0.32"]), v0=chosen.v0,
+                   v1=chosen.v1, axes=DIAGONALS)
     assert region.symmetries_used(skew, STAR) is None
     for parts, good in (([["0.01", 0, 0], [0, "0.01", 0]], True), ([["0.01", 0, 0]], False),
                         ([["0.01", "-0.01", 0]], False), ([["0.01", "0.01", 0]], True)):
-        patch = Problem.patch(["0.3", "0.3", "0.6"], parts)
+        patch = Problem(SymplecticMap(THESIS, ["0.3", "0.3", "0.6"], parts))
         assert region.exchangeable(patch, STAR) == good
-    assert not region.exchangeable(Problem("0.9", "0.9", 0), STAR)      # one is looked at alone
+    # one is looked at alone
+    assert not region.exchangeable(Problem(MuldoonMap("0.9", "0.9", 0)), STAR)
 
 
 @pytest.mark.parametrize("problem, star", [
-    (Problem("1e100", "1e100", "1e100"), STAR),                     # c0 is far away
-    (Problem((-4, 4), (-4, 4), "0.1"), STAR),                       # or moves too far
+    (Problem(MuldoonMap("1e100", "1e100", "1e100")), STAR),                     # c0 is far away
+    (Problem(MuldoonMap((-4, 4), (-4, 4), "0.1")), STAR),                       # or moves too far
     (line("0.0142"), ("1000.5", "1000.5")),
-    (Problem.patch(["0.2", "0.3"], [["5", "5"]], [(1, 0), (2, 1)]), STAR)])
+    (Problem(SymplecticMap([(1, 0), (2, 1)], ["0.2", "0.3"], [["5", "5"]])), STAR)])
 def test_where_reversal_gains_nothing(problem, star):
     chosen = region.reduced(problem, star)
     low, high = chosen.v0

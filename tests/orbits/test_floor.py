@@ -19,7 +19,7 @@ from converse.orbits.potential import address
 TORTURE = int(os.environ.get("CONVERSE_TORTURE", "1"))
 POTENTIALS = [orbits.trig, orbits.poly, orbits.ff, orbits.froeschle, orbits.standard]
 SPIRAL = (0.5698402909980532, 0.7548776662466927)
-WAVES = orbits.Fourier({(0, 0): (1, 0), (3, -2): (0.25, -0.5), (0, 1): (-1, 0.125),
+WAVES = orbits.potential.Fourier({(0, 0): (1, 0), (3, -2): (0.25, -0.5), (0, 1): (-1, 0.125),
                         (2, 2): (0.5, 0)})
 
 

@@ -14,7 +14,7 @@ import pytest
 
 from converse import orbits
 from converse._native import lib
-from converse.model.inputs import read_potential
+from converse.model.map import SymplecticMap
 from converse.model.potential import FourierSum, from_terms
 from converse.orbits import solver
 from converse.orbits.potential import address
@@ -155,8 +155,8 @@ def test_an_input_s_potential_has_the_input_s_map(root, tmp_path, file, at):
             {"k": [1, 0], "amplitude": "1/3", "phase": "cos"}, {"k": [1, 0], "amplitude": "0.2"},
             {"k": [1, -1], "amplitude": "0.3", "phase": "1/3"},
             {"k": [1, -1], "amplitude": "-0.1", "phase": "-3/7"}]}))
-    source = read_potential(path, at)
-    mine = orbits.Fourier.of(source, "mine")
+    source = SymplecticMap.read(path).at(**at).potential()
+    mine = orbits.potential.Fourier.of(source, "mine")
     for again in (mine, *ways(mine)):
         rng = np.random.default_rng(6)
         x, p = rng.uniform(size=(20, mine.n)), rng.uniform(-1, 1, (20, mine.n))
@@ -176,7 +176,7 @@ def test_coefficients_hold_the_true_ones(digits):
     source = FourierSum(((1, 0, Fraction(1, 2)), (1, 0, Fraction(1)), (1, 0, Fraction(-2, 3)),
                          (3, -2, Fraction(1, 10 ** 9))),
                         (Fraction(1, 3), Fraction(10 ** 20), Fraction(-2, 7), Fraction(5)), 2)
-    mine = orbits.Fourier.of(source)
+    mine = orbits.potential.Fourier.of(source)
     found = mine.coefficients(digits)
     assert [k for k, *_ in found] == [(1, 0), (1, 0), (3, -2)]
     with mpmath.workdps(digits + 60):
@@ -197,7 +197,8 @@ def test_coefficients_hold_the_true_ones(digits):
 
 def test_one_s_own_potentials():
     """A Fourier sum, and an object, are as good as what is built in."""
-    mine = orbits.Fourier({k: (c * Fraction(orbits.trig.scale), s * Fraction(orbits.trig.scale))
+    mine = orbits.potential.Fourier({k: (c * Fraction(orbits.trig.scale),
+                                         s * Fraction(orbits.trig.scale))
                            for k, (c, s) in orbits.trig.terms.items()}, "mine")
     assert mine.start == pytest.approx(orbits.trig.start, abs=1e-6)
 
@@ -251,8 +252,9 @@ def ways(thing):
 def test_a_potential_stays_what_it_is():
     """Copied, and in another process, V is the same: start, bounds and scale with it."""
     x = np.random.default_rng(4).uniform(size=(50, 1))
-    for mine in (orbits.Fourier(MINE, "mine"), orbits.Fourier({(1,): (-1, 0)}, "mine", (0.25,)),
-                 orbits.Fourier.of(from_terms(MINE), "mine"), orbits.standard,
+    for mine in (orbits.potential.Fourier(MINE, "mine"),
+                 orbits.potential.Fourier({(1,): (-1, 0)}, "mine", (0.25,)),
+                 orbits.potential.Fourier.of(from_terms(MINE), "mine"), orbits.standard,
                  orbits.FromPython(Cosine(), 1, "mine", (0.5,), 40.0)):
         state = orbits.straight(mine, (2,), 5).relax(0.1)
         for again in ways(mine):
@@ -263,7 +265,9 @@ def test_a_potential_stays_what_it_is():
         for again in ways(state):
             assert again.action == state.action and again.label == state.label == "minimum"
             assert orbits.follow(mine, (2,), 5, [0.1], start=again)[0].action == state.action
-    assert orbits.Fourier(MINE, start=(0.5,)) != orbits.Fourier.of(from_terms(MINE), start=(0.5,))
+    assert orbits.potential.Fourier(MINE,
+                                    start=(0.5,)) != orbits.potential.Fourier.of(from_terms(MINE),
+                                                                                 start=(0.5,))
     assert orbits.FromPython(Cosine(), 1) != orbits.FromPython(Cosine(), 1, curvature=40.0)
     other = Cosine()
     other.scale = 2
@@ -295,10 +299,11 @@ def test_formulas_say_what_v_is():
         names["c"] = lambda x: 1 - 24 * abs(x - round(x)) ** 2 + 32 * abs(x - round(x)) ** 3
         return eval(re.sub(r"([\da-z)]) (?=[\da-z(])", r"\1*", words).replace("^", "**"), names)
 
-    shifted = orbits.Fourier.of(FourierSum(
+    shifted = orbits.potential.Fourier.of(FourierSum(
         ((1, 0, Fraction(1, 3)), (2, -1, Fraction(-1, 7)), (0, 1, Fraction(1))),
         (Fraction(2, 5), Fraction(-1), Fraction(1, 3)), 2))
-    odd = orbits.Fourier({(0, 0): (Fraction(1, 3), 5), (3, -2): (0.25, -0.5), (-1, 0): (2, 0)})
+    odd = orbits.potential.Fourier({(0, 0): (Fraction(1, 3), 5), (3, -2): (0.25, -0.5),
+                                    (-1, 0): (2, 0)})
     rng = np.random.default_rng(5)
     for potential in (orbits.trig, orbits.poly, orbits.ff, orbits.froeschle, orbits.standard, odd,
                       shifted):
@@ -310,23 +315,24 @@ def test_formulas_say_what_v_is():
 
 
 @pytest.mark.parametrize("make, word", [
-    (lambda: orbits.Fourier({}), "terms"),
-    (lambda: orbits.Fourier({(1,): (1, 0), (1, 1): (1, 0)}), "all with one or all with two"),
-    (lambda: orbits.Fourier({(1, 2): (float("nan"), 0)}), "finite"),
-    (lambda: orbits.Fourier({(1, 10 ** 9): (1, 0)}), "1000"),
-    (lambda: orbits.Fourier({(1, 2): (1e308, 0)}), "too large"),
-    (lambda: orbits.Fourier({(0.5,): (1, 0)}), "whole"),
-    (lambda: orbits.Fourier({"12": (1, 0)}), "whole"),
-    (lambda: orbits.Fourier.of({(1,): (1, 0)}), "takes a FourierSum, not"),
-    (lambda: orbits.Fourier({1: (1, 0)}), r"\{\(k,\): \(cosine, sine\)\} for one angle"),
-    (lambda: orbits.Fourier({(1,): ("1/0", 0)}), "finite"),
-    (lambda: orbits.Fourier({(1,): (1, 0)}, start=0.5), "1 finite"),
-    (lambda: orbits.Fourier({(1,): (1, 0)}, start=()), "1 finite"),
-    (lambda: orbits.Fourier({(1,): (1, 0)}, start=(float("nan"),)), "1 finite"),
-    (lambda: orbits.Fourier({(1,): (1, 0)}, "two\nlines"), "printable"),
-    (lambda: orbits.Fourier({(1,): (1, 0)}, ""), "printable"),
-    (lambda: orbits.Fourier({(1,): (1, 0)}, 3), "printable"),
-    (lambda: orbits.Fourier({(1, 0): (1, 0)}, "trig"), "the name trig is taken"),
+    (lambda: orbits.potential.Fourier({}), "terms"),
+    (lambda: orbits.potential.Fourier({(1,): (1, 0), (1, 1): (1, 0)}),
+     "all with one or all with two"),
+    (lambda: orbits.potential.Fourier({(1, 2): (float("nan"), 0)}), "finite"),
+    (lambda: orbits.potential.Fourier({(1, 10 ** 9): (1, 0)}), "1000"),
+    (lambda: orbits.potential.Fourier({(1, 2): (1e308, 0)}), "too large"),
+    (lambda: orbits.potential.Fourier({(0.5,): (1, 0)}), "whole"),
+    (lambda: orbits.potential.Fourier({"12": (1, 0)}), "whole"),
+    (lambda: orbits.potential.Fourier.of({(1,): (1, 0)}), "takes a FourierSum, not"),
+    (lambda: orbits.potential.Fourier({1: (1, 0)}), r"\{\(k,\): \(cosine, sine\)\} for one angle"),
+    (lambda: orbits.potential.Fourier({(1,): ("1/0", 0)}), "finite"),
+    (lambda: orbits.potential.Fourier({(1,): (1, 0)}, start=0.5), "1 finite"),
+    (lambda: orbits.potential.Fourier({(1,): (1, 0)}, start=()), "1 finite"),
+    (lambda: orbits.potential.Fourier({(1,): (1, 0)}, start=(float("nan"),)), "1 finite"),
+    (lambda: orbits.potential.Fourier({(1,): (1, 0)}, "two\nlines"), "printable"),
+    (lambda: orbits.potential.Fourier({(1,): (1, 0)}, ""), "printable"),
+    (lambda: orbits.potential.Fourier({(1,): (1, 0)}, 3), "printable"),
+    (lambda: orbits.potential.Fourier({(1, 0): (1, 0)}, "trig"), "the name trig is taken"),
     (lambda: orbits.FromPython(Cosine(), 1, "standard"), "the name standard is taken"),
     (lambda: orbits.FromPython(Cosine(), 1, curvature=float("nan")), "curvature"),
     (lambda: orbits.FromPython(Cosine(), 3), "one or two"),
@@ -589,7 +595,7 @@ def test_continuation_knows_no_unit_of_eps():
     terms = {(1, 0): (0, -0.3), (0, 1): (0, -0.3), (1, 1): (0, -0.6)}
     families = []
     for factor in (Fraction(1, 1000), 1, 1000):
-        mine = orbits.Fourier({k: (factor * Fraction(c), factor * Fraction(s))
+        mine = orbits.potential.Fourier({k: (factor * Fraction(c), factor * Fraction(s))
                                for k, (c, s) in terms.items()}, "mine", (0.85, 0.85))
         taken = []
         relax = orbits.State.relax
@@ -604,7 +610,7 @@ def test_continuation_knows_no_unit_of_eps():
     assert [solver.step_of(getattr(orbits, name)) for name in ("trig", "poly", "ff", "standard")] \
         == [0.0025, 0.0025, 0.0025, 0.25]
     assert solver.step_of(orbits.FromPython(Cosine(), 1)) == 0.005
-    assert solver.step_of(orbits.Fourier({(0,): (1, 0)}, "flat")) > 1e200
+    assert solver.step_of(orbits.potential.Fourier({(0,): (1, 0)}, "flat")) > 1e200
 
 
 def test_states_are_values(tmp_path):

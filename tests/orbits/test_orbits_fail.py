@@ -188,7 +188,7 @@ def test_continuation_loses_the_minimum():
 def test_it_leaves_a_saddle_for_the_lower_side():
     """From the least V of a skew potential both sides lead down, to the same maximum."""
     for skew in (0.3, -0.3):
-        potential = orbits.Fourier({(1,): (1, 0), (2,): (0, skew)}, "skew")
+        potential = orbits.potential.Fourier({(1,): (1, 0), (2,): (0, skew)}, "skew")
         axis = np.arange(10 ** 6)[:, None] / 10 ** 6
         low = axis[np.argmin(potential.evaluate(axis)[0])]
         saddle = newton(orbits.State(potential, (0,), 1, 0.01, [[0.0]], tuple(low)))[0]

@@ -9,7 +9,7 @@ import xml.etree.ElementTree as ET
 import numpy as np
 import pytest
 
-from converse import ConverseError, orbits
+from converse import ConverseError, StandardMap, orbits
 from converse.orbits.portrait import starts
 from converse.orbits.solver import Family, newton
 
@@ -105,7 +105,7 @@ def test_files(plane, line, saddle):
             pictures.states_picture([saddle] * number)
     with pytest.raises(ValueError, match="svg, png, pdf, not gif"):
         pictures.states_picture([saddle], "gif")
-    strange = orbits.Fourier({(1, 0): (1, 0), (0, 1): (1, 0)}, "$x^{")
+    strange = orbits.potential.Fourier({(1, 0): (1, 0), (0, 1): (1, 0)}, "$x^{")
     picture = pictures.states_picture(orbits.follow(strange, (2, 3), 7, [0.001]))
     assert picture.startswith(b"<?xml")
 
@@ -203,7 +203,7 @@ def test_a_notebook_shows_a_proved_orbit(line):
 
 
 def test_what_is_said_is_no_markup():
-    strange = orbits.Fourier({(1,): (-1, 0)}, "<b>&")
+    strange = orbits.potential.Fourier({(1,): (-1, 0)}, "<b>&")
     state = orbits.straight(strange, (1,), 3)
     assert "<b>" not in state._repr_html_() and "&lt;b&gt;&amp;" in state._repr_html_()
 
@@ -229,44 +229,44 @@ def test_starts_are_spread():
         assert len(cells) == 3 ** (2 * n)
 
 
-@pytest.mark.parametrize("period", [1, TURN])
-def test_a_portrait_of_one_angle(period):
-    figure = orbits.standard.portrait(0.9, [0.1, 0.6], [0.2, 0.3], 50, period=period)
+@pytest.mark.parametrize("system, period", [(orbits.standard, 1), (StandardMap(1), TURN)])
+def test_a_portrait_of_one_angle(system, period):
+    y, J = (period * np.array(each) for each in ([0.1, 0.6], [0.2, 0.3]))
+    figure = system.portrait(y, J, 50, eps=0.9)
     panel, = figure.axes
-    xs, ps = orbits.standard.orbit([0.1, 0.6], [0.2, 0.3], 50, 0.9)
+    ys, Js = system.orbit(y, J, 50, 0.9)
     for k in range(2):
-        orbit = np.column_stack([xs[:, k], ps[:, k]]) % 1.0
-        assert data(panel, k) == pytest.approx(period * orbit)
+        assert data(panel, k) == pytest.approx(np.column_stack([ys[:, k], Js[:, k]]) % period)
     names = panel.get_xlabel(), panel.get_ylabel()
     assert names == (("$x$  mod $1$", "$p$  mod $1$") if period == 1 else (
-        r"$y = 2\pi x$  mod $2\pi$", r"$J = 2\pi p$  mod $2\pi$"))
+        r"$y$  mod $2\pi$", r"$J$  mod $2\pi$"))
     assert panel.get_xlim() == panel.get_ylim() == (0, period)
     assert not panel.get_title()
 
 
 def test_a_portrait_in_one_line():
-    panel, = orbits.standard.portrait(0.97).axes
+    panel, = orbits.standard.portrait(eps=0.97).axes
     assert len(panel.get_lines()) == 20 and {len(data(panel, k)) for k in range(20)} == {501}
     axes = Figure().subplots()
-    assert orbits.standard.portrait(0.97, ax=axes, color="red", steps=-3) is axes
+    assert orbits.standard.portrait(eps=0.97, ax=axes, color="red", steps=-3) is axes
     assert axes.get_lines()[0].get_color() == "red" and len(data(axes)) == 4
     axes = Figure().subplots()
-    orbits.standard.portrait(0.97, 0.1, 0.2, 3, ax=axes)            # one orbit
-    orbits.standard.portrait(0.97, np.zeros((2, 3)), 0.2, 3, ax=axes)
+    orbits.standard.portrait(0.1, 0.2, 3, eps=0.97, ax=axes)            # one orbit
+    orbits.standard.portrait(np.zeros((2, 3)), 0.2, 3, eps=0.97, ax=axes)
     assert len(axes.get_lines()) == 1 + 6
     colours = {each.get_color() for each in orbits.standard.portrait(
-        0.9, [0.1, 0.2, 0.3], 0.0, 3, color=None).axes[0].get_lines()}
+        [0.1, 0.2, 0.3], 0.0, 3, eps=0.9, color=None).axes[0].get_lines()}
     assert len(colours) == 3
 
 
 def test_a_projection_and_a_slice():
     x, p = np.random.default_rng(3).random((2, 30, 2))
     xs, ps = (each % 1 for each in orbits.trig.orbit(x, p, 40, 0.01))
-    panel, = orbits.trig.portrait(0.01, x, p, 40).axes
+    panel, = orbits.trig.portrait(x, p, 40, eps=0.01).axes
     assert "projected" in panel.get_title() and panel.get_xlabel() == "$x_0$  mod $1$"
     for k in range(30):
         assert data(panel, k) == pytest.approx(np.stack([xs[:, k, 0], ps[:, k, 0]], 1))
-    panel, = orbits.trig.portrait(0.01, x, p, 40, plane=("p1", "x1"),
+    panel, = orbits.trig.portrait(x, p, 40, eps=0.01, plane=("p1", "x1"),
                                   within={"x0": (0.0, 0.1), "p0": (0.5, 0.3)}).axes
     assert panel.get_title().startswith("slice") and "x_0 - 0" in panel.get_title()
     assert panel.get_xlabel() == "$p_1$  mod $1$" and panel.get_ylabel() == "$x_1$  mod $1$"
@@ -279,14 +279,14 @@ def test_a_projection_and_a_slice():
 
 
 @pytest.mark.parametrize("potential, wrong, words", [
-    (orbits.standard, {"x": 0.1}, "both x and p"), (orbits.standard, {"period": 3}, "period"),
+    (orbits.standard, {"y": 0.1}, "both angles and momenta"),
     (orbits.standard, {"plane": ("x0", "p0")}, "two of x, p"),
     (orbits.trig, {"plane": ("x0", "x0")}, "two of x0, x1, p0, p1"),
     (orbits.trig, {"plane": "x0"}, "two of"), (orbits.trig, {"within": {"x0": (0, 1)}}, "not in"),
     (orbits.trig, {"within": {"x1": 0.1}}, "half width"), (orbits.trig, {"steps": 1.5}, "steps"),
     (orbits.trig, {"within": {"x1": (0.1, 0.0)}}, "half width"),
-    (orbits.trig, {"x": [0.1], "p": [0.2]}, "shape"), (orbits.trig, {"steps": 10 ** 8}, "10000000"),
-    (orbits.standard, {"x": [], "p": []}, "0 orbits"), (orbits.trig, {"eps": math.nan}, "eps")])
+    (orbits.trig, {"y": [0.1], "J": [0.2]}, "shape"), (orbits.trig, {"steps": 10 ** 8}, "10000000"),
+    (orbits.standard, {"y": [], "J": []}, "0 orbits"), (orbits.trig, {"eps": math.nan}, "eps")])
 def test_bad_portraits(potential, wrong, words):
     with pytest.raises(ValueError, match=words) as caught:
         potential.portrait(**wrong)

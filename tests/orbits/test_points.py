@@ -8,7 +8,7 @@ import pytest
 from converse import ConverseError, orbits
 from converse.commands import orbits as orbits_cli
 
-OWN = orbits.Fourier({(1,): (0.013, 0.007), (2,): (0.003, 0)}, 'my "own", 1')
+OWN = orbits.potential.Fourier({(1,): (0.013, 0.007), (2,): (0.003, 0)}, 'my "own", 1')
 
 
 class Sine:
@@ -126,7 +126,7 @@ def test_the_potential_is_named(tmp_path):
     state = orbits.follow(orbits.standard, (3,), 8, [0.9])[0]
     state.save(tmp_path / "a.npz")
     with pytest.raises(ConverseError, match="its potential is 'standard', not other"):
-        orbits.load(tmp_path / "a.npz", orbits.Fourier({(1,): (-1, 0)}, "other"))
+        orbits.load(tmp_path / "a.npz", orbits.potential.Fourier({(1,): (-1, 0)}, "other"))
     with pytest.raises(ValueError, match="potential is one of"):
         orbits.load(tmp_path / "a.npz", "standard")
 

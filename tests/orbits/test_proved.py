@@ -107,10 +107,11 @@ def three(f):
     return lambda: [(-quarter, f, (1, 0)), (-quarter, f, (0, 1)), (-2 * quarter, f, (1, 1))]
 
 
-ODD = orbits.Fourier({(1, 0): (Fraction(1, 3), Fraction(-1, 7)), (0, 1): (0, Fraction(2, 7)),
+ODD = orbits.potential.Fourier({(1, 0): (Fraction(1, 3), Fraction(-1, 7)),
+                                (0, 1): (0, Fraction(2, 7)),
                       (2, -1): (Fraction(1, 11), Fraction(1, 9))}, "odd")
 # Short waves, whose amplitudes hardly matter and whose errors do.
-NOISY = orbits.Fourier({(k,): (Fraction(-1, 40 if k == 1 else 10**6), Fraction(k, 10**7))
+NOISY = orbits.potential.Fourier({(k,): (Fraction(-1, 40 if k == 1 else 10**6), Fraction(k, 10**7))
                         for k in (1, 7, 8, 9, 10, 11, 12)}, "noisy")
 OWN = {"odd": ODD, "noisy": NOISY}
 
@@ -444,7 +445,7 @@ def test_flat_and_foreign():
     state = orbits.straight(orbits.standard, (1,), 3)
     with pytest.raises(NotProved, match="eps 0"):
         prove(state)
-    flat = orbits.Fourier({(1, 0): (1, 0)}, "flat")           # V does not depend on x_1
+    flat = orbits.potential.Fourier({(1, 0): (1, 0)}, "flat")           # V does not depend on x_1
     with pytest.raises(NotProved, match="too flat"):
         prove(orbits.straight(flat, (1, 1), 2).relax(0.01), digits=1)
 
@@ -677,7 +678,8 @@ def rough(rng):
                     + np.array(state.origin) - origin)
     exact, places = enclosed(state), rng.randrange(10, 12)
     ours = state.potential
-    if isinstance(ours, orbits.Fourier):        # coefficients as little known as they may be
+    # coefficients as little known as they may be
+    if isinstance(ours, orbits.potential.Fourier):
 
         def widened(low, high, digits):
             wide, t = Fraction(1, 10**digits) - (high - low), rng.choice([0, 1])

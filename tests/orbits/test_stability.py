@@ -6,7 +6,7 @@ import mpmath
 import numpy as np
 import pytest
 
-from converse import orbits
+from converse import SymplecticMap, orbits
 from converse.orbits.solver import newton
 
 LOWEST = {"trig": (0.1489578,) * 2, "poly": (0.5, 0.5), "ff": (0.0, 0.0), "standard": (0.0,)}
@@ -23,7 +23,7 @@ def test_the_map(potential):
     assert np.abs(p1 - (p - 0.3 * gradient)).max() < 1e-14 and np.abs(x1 - x - p1).max() < 1e-14
     for back, forth in zip(potential.inverse(x1, p1, 0.3), (x, p)):
         assert np.abs(back - forth).max() < 1e-13
-    found, h = potential.tangent(x, 0.3), 1e-6
+    found, h = potential.jacobian(x, 0.3), 1e-6
     assert found.shape == (5, 4, 2 * n, 2 * n)
     for k in range(2 * n):
         a, b = np.zeros((2, n))
@@ -39,8 +39,8 @@ def test_shapes_of_points():
     for shape in ((), (3,), (3, 1), (2, 3)):
         x, p = orbits.standard.map(np.full(shape, 0.2), 0.1, 0.5)
         assert x.shape == p.shape == shape
-    assert orbits.standard.tangent(0.2).shape == (2, 2)
-    assert orbits.standard.tangent([0.2, 0.3]).shape == (2, 2, 2)
+    assert orbits.standard.jacobian(0.2).shape == (2, 2)
+    assert orbits.standard.jacobian([0.2, 0.3]).shape == (2, 2, 2)
     assert orbits.trig.map([0.1, 0.2], [0.3, 0.4])[0].shape == (2,)
     for call in (lambda: orbits.trig.map(0.1, 0.2), lambda: orbits.trig.map([[0.1]], 0.2)):
         with pytest.raises(ValueError, match=r"shape \(..., 2\)"):
@@ -62,7 +62,7 @@ def test_orbits_of_points():
 
 def test_periods_of_one_and_of_two_pi():
     """x = y/(2 pi), p = J/(2 pi): the map of an input file, y' = y + J', J' = J - grad V(y)."""
-    mine = orbits.read_potential("inputs/froeschle-0.3.json", {"K": "0.6"})
+    mine = orbits.potential.known(SymplecticMap.read("inputs/froeschle-0.3.json").at(K="0.6"))
     turn, h = 2 * math.pi, 1e-6
     y, J = np.array([0.3, 2.0]), np.array([1.0, -0.4])
 

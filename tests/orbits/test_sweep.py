@@ -173,8 +173,9 @@ def test_whoever_works_the_bytes_are_the_same(whole, path, kind, workers):
 
 def test_users_potentials_go_to_other_processes():
     terms = {(1, 0): (0, -0.5), (0, 1): (0, -0.5), (1, 1): (0, -1)}
-    for potential, vectors in ((orbits.Fourier(terms, "mine"), VECTORS[:2]),
-                               (orbits.Fourier.of(from_terms(terms), "mine"), VECTORS[:2]),
+    for potential, vectors in ((orbits.potential.Fourier(terms, "mine"), VECTORS[:2]),
+                               (orbits.potential.Fourier.of(from_terms(terms), "mine"),
+                                VECTORS[:2]),
                                (orbits.FromPython(Cosine(), 1, "mine", (0.5,)), [((1,), 3)])):
         with concurrent.futures.ProcessPoolExecutor(1) as executor:
             there = orbits.sweep(potential, vectors, EPS, executor)

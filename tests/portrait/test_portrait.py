@@ -9,6 +9,7 @@ import pytest
 
 from converse import check, tori
 from converse.check.portrait import patch_of_strip, read_portrait
+from converse.model.map import MuldoonMap, SymplecticMap
 from converse.model.problem import Problem
 from converse.prover import tree
 from converse.prover.portrait import Portrait, portray, pruned
@@ -26,7 +27,7 @@ EPSILON = 1e-9                          # of points of tori and ends of prisms, 
 
 
 def standard(k, width=None):
-    return Problem.patch([k], [] if width is None else [[width]], [(1, 0)])
+    return Problem(SymplecticMap([(1, 0)], [k], [] if width is None else [[width]]))
 
 
 @pytest.fixture(scope="module")
@@ -88,7 +89,7 @@ def test_patch_of_a_strip_holds_all_of_the_strip():
     draw = np.random.default_rng(1)
     for k, phase, p, g in ((1, "0", "0.9", None), (-3, "1/3", "-0.7", "0.05"),
                            (2, "1/2", "0.01", "0.2")):
-        problem = Problem.patch([p], [] if g is None else [[g]], [(k, 0, Fraction(phase))])
+        problem = Problem(SymplecticMap([(k, 0, Fraction(phase))], [p], [] if g is None else [[g]]))
         portrait = Portrait.new(problem, columns=40)
         patch, wave = portrait.patch, portrait.problem
         theirs = patch_of_strip(check.claim.Wave((k, 0), wave.waves[0][2], wave.amplitude[0],
@@ -224,7 +225,8 @@ def test_portrait_is_continued(strips, tmp_path):
 
 def test_lines_of_two_harmonics(tmp_path):
     """Lines are for any potential of one angle, and for a range of parameters."""
-    problem = Problem.patch(["0.5", "0.1"], [["0.001", 0]], [(1, 0, "-1/2"), (2, 0, "-1/2")])
+    problem = Problem(SymplecticMap([(1, 0, "-1/2"), (2, 0, "-1/2")], ["0.5", "0.1"],
+                                    [["0.001", 0]]))
     path = tmp_path / "lines"
     portrait = portray(problem, path=path, columns=12, depth=8, strips=False)
     assert portrait.undecided < 1 and check.verify(path)
@@ -244,7 +246,7 @@ def test_bad_numbers(change, why):
 
 def test_bad_maps():
     with pytest.raises(ValueError, match="one angle"):
-        portray(Problem(a="0.3", b="0.3", c="0.6"))
+        portray(Problem(MuldoonMap("0.3", "0.3", "0.6")))
     with pytest.raises(ValueError, match="is zero"):
         portray(standard(0))
 

@@ -18,7 +18,7 @@ from conftest import ROOT
 from converse import orbits
 from converse.commands import common
 from converse.draw import plot
-from converse.model.problem import LINE
+from converse.model.map import LINE
 
 ROWS = {
     "bound": [("1989", "0.0274", 2698.0, "1989"), ("thesis", "0.0274", 0.05, "1.12.0"),

@@ -10,7 +10,7 @@ import mpmath
 import pytest
 
 from converse import prove, read_input
-from converse.model.problem import LINE
+from converse.model.map import LINE
 
 ROOT = Path(__file__).resolve().parent.parent.parent
 INPUTS = sorted((ROOT / "inputs").glob("*.in"))
@@ -21,9 +21,8 @@ LEAST_MULTIPLE = {"a": 1, "b": 1, "c": 2}              # of LINE epsilon
 def holds(problem, low, high=None):
     """Do the ranges hold the whole line from epsilon low to high (None: the problem is to hold its
     beginning, and all larger ones follow at once)?"""
-    return all(getattr(problem, name)[0] <= k * LINE * Fraction(low)
-               and getattr(problem, name)[1] >= k * LINE * Fraction(high or low)
-               for name, k in LEAST_MULTIPLE.items())
+    return all(least <= k * LINE * Fraction(low) and most >= k * LINE * Fraction(high or low)
+               for (least, most), k in zip(problem.abc, LEAST_MULTIPLE.values()))
 
 
 @pytest.mark.parametrize("path", INPUTS, ids=lambda path: path.stem)
@@ -49,9 +48,9 @@ def test_the_k_of_an_input(path):
     """Of the standard map: k > 4/3 are all of these, so the range must begin there."""
     problem = read_input(path)
     for sign, least in re.findall("k ([>=]) ([0-9./]+[0-9])", " ".join(problem.comments)):
-        assert problem.a[0] <= Fraction(least) <= problem.a[1]
+        assert problem.abc[0][0] <= Fraction(least) <= problem.abc[0][1]
         if sign == ">":                                 # and all larger ones follow at once
-            together = dataclasses.replace(problem, together=True)
+            together = dataclasses.problem.tied()
             assert prove(together, method="loewner").at_once
 
 

@@ -13,6 +13,7 @@ import mpmath
 import pytest
 
 from converse import Problem, check, orbits, prove, read_input
+from converse.model.map import MuldoonMap, SymplecticMap
 from converse.version import __version__
 
 from truth import TORTURE
@@ -56,7 +57,7 @@ def sharper(problem, xstar=None):
 def given(name, together=False):
     path = ROOT / "inputs" / name
     problem = read_input(path)
-    return Problem(problem.a, problem.b, problem.c, together=True) if together else problem
+    return problem.tied() if together else problem
 
 
 # ---- what the prover counts
@@ -65,7 +66,7 @@ def test_the_standard_map():
     head, *table = columns("method.md", "k")
     assert head == ("k", "longest orbit", "prisms", "CPU seconds")
     for k, points, prisms, _ in table:
-        counts = sharper(Problem(k, 0, 0))
+        counts = sharper(Problem(MuldoonMap(k, 0, 0)))
         assert (counts.max_NTsteps, counts.proved) == (number(points), number(prisms))
 
 
@@ -105,7 +106,7 @@ def test_the_tutorial_of_a_map(tmp_path):
 
 
 def patch(waves, *amplitudes):
-    return Problem.patch([Fraction(p) for p in amplitudes], waves=waves)
+    return Problem(SymplecticMap(waves, [Fraction(p) for p in amplitudes]))
 
 
 COS = "-1/2"
@@ -151,7 +152,7 @@ def test_another_xstar():
 
 def test_the_thesis_method():
     for name, *_, prisms in rows("speed.md", "")[2:]:
-        assert prove(given(name + ".in")).counts.proved == number(prisms)
+        assert prove(given(name + ".in"), method="thesis").counts.proved == number(prisms)
 
 
 def test_the_line():
@@ -201,7 +202,7 @@ def test_towards_the_wall():
     for epsilon, prisms, cuts in table:
         counts = prove(chart.on_line(epsilon), digits=20).counts
         assert (counts.proved, counts.most_cuts) == (number(prisms), number(cuts))
-    assert [sharper(Problem("0.2", "0.35", "0.5")).proved] \
+    assert [sharper(Problem(MuldoonMap("0.2", "0.35", "0.5"))).proved] \
         == said("limits.md", "the sharper one takes ([0-9,]+) prisms")
 
 

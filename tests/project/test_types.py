@@ -64,8 +64,9 @@ def test_examples(root, tmp_path, monkeypatch):
         examples.append(tmp_path / ("page_%d.py" % len(examples)))
         examples[-1].write_text("\n".join(blocks), "utf-8")
     wrong = tmp_path / "wrong.py"
-    wrong.write_text("import converse\nproblem = converse.Problem('0.3', 0, ('0.1', '0.2'))\n"
-                     "reveal_type(problem.a)\nproblem.v0.real\nconverse.Problem(0.5)\n", "utf-8")
+    wrong.write_text("import converse\nproblem = converse.Problem(converse.StandardMap(1), v0=1)\n"
+                     "reveal_type(problem.v0)\nproblem.v0.real\nconverse.StandardMap(0.5)\n",
+                     "utf-8")
     found = checked(root, "--strict", "--follow-imports=silent", *examples, wrong)
     assert all("wrong.py:" in line for line in found.splitlines())
     assert re.search(r'3: note: .*[Tt]uple\[fractions.Fraction, fractions.Fraction\]', found)

@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 import vectors
 
-from converse import orbits, tori
-from converse.model.inputs import read_potential
+from converse import MuldoonMap, SymplecticMap, orbits, tori
 from converse.tori import read_rotation
 
 STANDARD = "inputs/standard.json"
@@ -35,13 +34,12 @@ def test_the_search_finds_noble_numbers_near_the_golden_mean(monkeypatch):
 def test_files_mean_the_same_for_orbits_and_proofs():
     """And so they do in the thesis's map, where V1 is tougher than the others."""
     path = "inputs/froeschle-0.3.json"
-    source, problem = read_potential(path, {"K": "0.4"}), vectors.problem_at(path, "K", 0.4)
-    assert problem.waves == source.waves and problem.amplitude == source.amplitude
+    source, same = SymplecticMap.read(path).at(K="0.4"), vectors.map_at(path, "K", 0.4)
+    assert same == source
     x = np.random.default_rng(1).random((5, 2))
     assert np.array_equal(vectors.potential_at(path, "K", 0.4).evaluate(x)[1],
-                          orbits.Fourier.of(source).evaluate(x)[1])
-    here = orbits.Fourier.of(read_potential("inputs/trig141.in", dict(zip("abc", (
-        "0.158", "0.158", "0.316")))))
+                          orbits.potential.known(source).evaluate(x)[1])
+    here = orbits.potential.known(MuldoonMap("0.158", "0.158", "0.316"))
     ranked = vectors.ranked(here, [read_rotation(name) for name in ("seven", "V1", "spiral")])
     assert ranked[0][1].name == "V1" and 0.8 < ranked[0][0] < 0.95
 

@@ -6,7 +6,7 @@ import pytest
 
 import converse
 from converse import Problem
-from converse.model.problem import LINE
+from converse.model.map import LINE
 
 import kernels
 from truth import cube_of, cube_point, decimal, point_of, rng_for, step, uniform
@@ -90,12 +90,12 @@ def test_towards_the_wall():
     """The thesis's criterion has a wall near 0.0270: prisms and depth grow without bound."""
     table = []
     for epsilon in ("0.0280", "0.0276", "0.0274", "0.0272", "0.0271"):
-        proof = converse.prove(line(epsilon), depth=60)
+        proof = converse.prove(line(epsilon), depth=60, method="thesis")
         assert proof.no_tori
         table.append((proof.counts.proved, proof.counts.most_cuts))
     assert table == sorted(table)
     assert table[-1][0] > 8 * table[1][0]
-    beyond = converse.prove(line("0.0265"), depth=16)
+    beyond = converse.prove(line("0.0265"), depth=16, method="thesis")
     assert not beyond.no_tori and beyond.counts.undecided == 1
     assert sum(reasons(beyond).values()) > 0
 
@@ -108,7 +108,7 @@ def test_towards_the_wall():
 ])
 def test_unsymmetric_and_negative(a, b, c):
     """No symmetry is assumed that is not there, and signs do not matter."""
-    proof = converse.prove(problem(a, b, c))
+    proof = converse.prove(problem(a, b, c), method="thesis")
     assert proof.no_tori
     if a != b:
         assert proof.counts.symmetric == 0
@@ -119,7 +119,7 @@ def test_the_cylinder(k, theorem):
     """b = c = 0: two standard maps, one of them trivial.  The thesis's bound of the largest
     eigenvalue of a block, Tr d - lam_-, knows nothing of the other angle, and so Mather's 4/3
     is as far as it goes; where circles exist nothing is claimed."""
-    proof = converse.prove(problem((k, 0), ("0", 0), ("0", 0)), depth=12)
+    proof = converse.prove(problem((k, 0), ("0", 0), ("0", 0)), depth=12, method="thesis")
     if not theorem:
         assert not proof.no_tori and proof.counts.undecided > 0
     if proof.no_tori:
@@ -133,17 +133,18 @@ def test_huge_angles():
         v = ((Fraction(turns) + 1, "1"),) * 2
         return problem(("0.3085", "0"), ("0.3085", "0"), ("0.617", "0"), v)
 
-    assert converse.prove(there(10**6)).no_tori
-    far = converse.prove(there(10**20))
+    assert converse.prove(there(10**6), method="thesis").no_tori
+    far = converse.prove(there(10**20), method="thesis")
     assert not far.no_tori and reasons(far)["centre"] > 0
 
 
 def test_time_limit():
     """A search that would take ages stops when it is told to, and says what it left."""
-    proof = converse.prove(line("0.0262"), depth=10000, stubborn=True, time_limit=1.0)
+    proof = converse.prove(line("0.0262"), depth=10000, stubborn=True, time_limit=1.0,
+                           method="thesis")
     assert not proof.no_tori
     assert "ended before the whole region was examined" in proof.report()
-    assert converse.prove(line("0.0280"), time_limit=0).tree == ""
+    assert converse.prove(line("0.0280"), time_limit=0, method="thesis").tree == ""
 
 
 def test_many_digits():

@@ -7,7 +7,7 @@ from fractions import Fraction
 import pytest
 
 from converse import Problem, prove
-from converse.model.problem import LINE
+from converse.model.map import LINE, MuldoonMap, SymplecticMap
 from converse.prover import native, starts
 from converse.prover.links import part_problem
 from converse.prover.settings import Settings
@@ -19,7 +19,7 @@ REGION = (Fraction("0.6807"), Fraction("0.6851")), (Fraction(0), Fraction("0.006
 
 def line(low, high=None, axes=(1, 1, 1, -1)):
     ends = LINE * Fraction(low), LINE * Fraction(high or low)
-    return Problem(ends, ends, tuple(2 * x for x in ends), axes=axes, together=True)
+    return Problem(MuldoonMap(ends, ends, tuple(2 * x for x in ends), together=True), axes=axes)
 
 
 def grown(problem, depth=120, stubborn=False):
@@ -96,13 +96,14 @@ def test_undecided_prisms_come_first(narrow):
 
 def test_an_angle_that_is_not_felt():
     """Where waves feel one angle, the other need not move: least squares have no answer there."""
-    problem = Problem.patch(["0.98"], [["0.001"]], [(1, 0)], (0, 1), (0, 2), axes=(1, 0, 0, 1))
+    problem = Problem(SymplecticMap([(1, 0)], ["0.98"], [["0.001"]]), v0=(0, 1), v1=(0, 2),
+                      axes=(1, 0, 0, 1))
     ((s0, s1),) = best_shifts(problem, ["0.979"], ("3.14", "0"), "0P0PP")
     assert s0 != 0 and abs(s1) < Fraction(1, 10 ** 6)
 
 
 def test_where_the_waves_bend_least():
-    problem = Problem.patch(["0.3", "-0.2"], [["0.1", 0], [0, "0.1"]], [(1, 0), (0, 1)])
+    problem = Problem(SymplecticMap([(1, 0), (0, 1)], ["0.3", "-0.2"], [["0.1", 0], [0, "0.1"]]))
     signs, weakest = starts._weakest(problem)
     assert signs == (-1, 1) and weakest.amplitude == (Fraction("0.2"), Fraction("-0.1"))
     assert starts._reaches(((5, 3, 0, 3, 0), (3, 2, 4, 2, 0)), signs)

@@ -12,7 +12,7 @@ from converse import ConverseError, Problem, Proof, Settings, check, prove, read
 from converse.check.claim import Claim, Wave
 from converse.check.criterion import Criterion
 from converse.check.links import displacement
-from converse.model.problem import LINE
+from converse.model.map import LINE, MuldoonMap, SymplecticMap
 from converse.prover import native, run, starts, tree
 from converse.prover.links import (SPARE, Link, Links, Target, clusters, crests, hull_of,
                                    least_slope, linked_tree, part_problem, region_around)
@@ -31,7 +31,7 @@ DIAGONAL = 1, 1, 1, -1
 
 def line(low, high=None):
     ends = LINE * Fraction(low), LINE * Fraction(high or low)
-    return Problem(ends, ends, tuple(2 * x for x in ends), together=True)
+    return Problem(MuldoonMap(ends, ends, tuple(2 * x for x in ends), together=True))
 
 
 def _easily(monkeypatch):
@@ -65,13 +65,14 @@ def timeless(proof):
 
 @pytest.mark.parametrize("problem, rotation", [
     (line("0.004"), "T49"),
-    (Problem.patch(["0.05", "0.04", "-0.02"], (), [
-        (1, 0), (0, 1, Fraction(1, 8)), (1, -1, Fraction(1, 3))]), "spiral")])
+    (Problem(SymplecticMap([
+        (1, 0), (0, 1, Fraction(1, 8)), (1, -1, Fraction(1, 3))], ["0.05", "0.04", "-0.02"])),
+     "spiral")])
 @pytest.mark.parametrize("frame", [(1, 0, 0, 1), DIAGONAL, (2, -1, 1, 2)])
 def test_invariant_tori_obey_the_link(problem, rotation, frame):
     """The map of a torus that exists takes v' where the lemma says, for many pairs of points."""
-    torus = find(Problem.patch(problem.amplitude, (), problem.waves), read_rotation(rotation))
-    problem = Problem.patch(problem.amplitude, (), problem.waves, axes=frame)
+    torus = find(Problem(SymplecticMap(problem.waves, problem.amplitude)), read_rotation(rotation))
+    problem = Problem(SymplecticMap(problem.waves, problem.amplitude), axes=frame)
     rng = np.random.default_rng(5)
     inverse = np.linalg.inv(np.reshape(frame, (2, 2)))
     amplitude, k = np.array(problem.amplitude, float), np.array([w[:2] for w in problem.waves])
@@ -93,7 +94,7 @@ def test_invariant_tori_obey_the_link(problem, rotation, frame):
 def test_the_box_is_no_wider_than_the_lemma_needs(frame):
     """Close by, K is beta - l, and some symmetric matrix between l and K moves v to each end of the
     box: l + D^1/2 (1 + R)/2 D^1/2 with the reflection R that takes D^1/2 w to D^1/2 u."""
-    problem = Problem.patch(["0.15", "0.16", "0.3"], (), [(1, 0), (0, 1), (1, 1)], axes=frame)
+    problem = Problem(SymplecticMap([(1, 0), (0, 1), (1, 1)], ["0.15", "0.16", "0.3"]), axes=frame)
     x, w, B = np.array([0.85, 0.9]), np.array([3e-6, -2e-6]), Fraction("2.7")
     l = float(least_slope(B))
     s = [0.15 * np.sin(x[0]), 0.16 * np.sin(x[1]), 0.3 * np.sin(x.sum())]
@@ -120,10 +121,10 @@ def test_least_slope():
 
 def test_a_link_holds_for_all_parameters():
     """The box of a patch holds those of its points."""
-    patch = Problem(("0.15", "0.17"), ("0.15", "0.17"), ("0.3", "0.35"))
+    patch = Problem(MuldoonMap(("0.15", "0.17"), ("0.15", "0.17"), ("0.3", "0.35")))
     boxes = [Link.between(problem, Fraction(3), ("0.85", "0.86"), ("0.88", "0.84")).box
-             for problem in (patch, Problem("0.15", "0.17", "0.35"),
-                             Problem("0.16", "0.15", "0.3"))]
+             for problem in (patch, Problem(MuldoonMap("0.15", "0.17", "0.35")),
+                             Problem(MuldoonMap("0.16", "0.15", "0.3")))]
     for box in boxes[1:]:
         assert all(a[0] <= b[0] and b[1] <= a[1] for a, b in zip(boxes[0], box))
 
@@ -142,10 +143,12 @@ def test_links_of_cells_are_narrower():
 
 
 @pytest.mark.parametrize("problem", [
-    Problem.patch(["0.5", "0"], [["0", "0.5"]], [(1, 0), (1, 1)], v0=(0, 1), v1=(0, 1)),
-    Problem(("0.3", "0.6"), ("0.3", "0.6"), "0"), Problem(("0.1", "0.4"), ("0.1", "0.4"), "0.2"),
-    Problem.patch(["0.3", "-0.1", "0.2"], [["0.1", "0.2", 0], ["-0.1", "0.1", "0.3"]], [
-        (1, 0), (0, 1, Fraction(1, 8)), (1, -1, Fraction(1, 3))], axes=DIAGONAL)])
+    Problem(SymplecticMap([(1, 0), (1, 1)], ["0.5", "0"], [["0", "0.5"]]), v0=(0, 1), v1=(0, 1)),
+    Problem(MuldoonMap(("0.3", "0.6"), ("0.3", "0.6"), "0")),
+    Problem(MuldoonMap(("0.1", "0.4"), ("0.1", "0.4"), "0.2")),
+    Problem(SymplecticMap([
+        (1, 0), (0, 1, Fraction(1, 8)), (1, -1, Fraction(1, 3))], ["0.3", "-0.1", "0.2"],
+                          [["0.1", "0.2", 0], ["-0.1", "0.1", "0.3"]]), axes=DIAGONAL)])
 def test_the_checker_links_no_worse(problem):
     """What is linked with SPARE the checker links, whatever the cell, wide or narrow."""
     waves = [Wave(wave[:2], wave[2], p, tuple(parts)) for wave, p, *parts
@@ -177,7 +180,7 @@ class Everywhere:
 
 
 def test_letters_stand_as_high_up_as_may_be():
-    problem = Problem("0.1", "0.1", "0.2", v0=(0, 1), v1=(0, 1))
+    problem = Problem(MuldoonMap("0.1", "0.1", "0.2"), v0=(0, 1), v1=(0, 1))
     still = Everywhere(Link(((Fraction(0), Fraction(0)),) * 2))
     text, steps = "00PU1UP", [0, 0, 5, 0, 0, 0, 7]
     assert [hull_of(problem, cells) for cells in clusters(problem, text)] == [
@@ -359,7 +362,8 @@ def test_mirror_images_are_not_linked(easily, monkeypatch, a, low, high):
     """Where prisms are skipped, their mirror images must be proved, not linked."""
     monkeypatch.setattr(run, "LONG", 8)
     a = Fraction(a)
-    proof = prove(Problem(a, a, 2 * a, (low, high), (low, high)), method="loewner")
+    proof = prove(Problem(MuldoonMap(a, a, 2 * a), v0=(low, high), v1=(low, high)),
+                  method="loewner")
     assert proof.conclusion == "region" and "S" in proof.tree and not proof.parts
     assert proof.verify().verdict
 
@@ -371,11 +375,12 @@ def test_undecided_stays_undecided(easily):
 
 
 @pytest.mark.parametrize("problem,x,grown", [
-    (Problem.patch(["0"], waves=[(1, 0)]), "0.534071", [12]),
-    (Problem("0.5", 0, 0), "1.570796", [12, 16]), (line("0.005"), "0.858028", [12, 16]),
+    (Problem(SymplecticMap([(1, 0)], ["0"])), "0.534071", [12]),
+    (Problem(MuldoonMap("0.5", 0, 0)), "1.570796", [12, 16]), (line("0.005"), "0.858028", [12, 16]),
     (line("0.0139"), "0.858028", [12, 16, 20, 24]),
-    (Problem.patch(["0.02", "0.02", "0.5"], waves=[
-        (1, 0, Fraction(-1, 2)), (0, 1, Fraction(-1, 2)), (1, 1, Fraction(-1, 2))]),
+    (Problem(SymplecticMap([
+        (1, 0, Fraction(-1, 2)), (0, 1, Fraction(-1, 2)), (1, 1, Fraction(-1, 2))],
+                           ["0.02", "0.02", "0.5"])),
      "1.579997", [12, 16, 20, 24])])
 def test_where_there_are_tori_no_starting_points_are_looked_for(problem, x, grown, monkeypatch):
     """What is undecided does not shrink there, or takes too many points of orbits: the tree is not
@@ -472,7 +477,7 @@ def test_the_linked_input(root):
 def test_one_angle_is_linked():
     """What waves of one combination of the angles do not feel is no way to another point."""
     for waves in ([(1, 0), (2, 0)], [(1, 1), (2, 2)]):
-        ways = starts._ways(Problem.patch(["0.5", "0.2"], (), waves))
+        ways = starts._ways(Problem(SymplecticMap(waves, ["0.5", "0.2"])))
         assert ways == [waves[0], tuple(-k for k in waves[0])]
 
 
@@ -496,7 +501,8 @@ def test_the_core_has_the_prisms_that_links_mean(digits):
     At x* = 0 the action is least, and so the orbit that stays there minimizes: no cell is proved
     whose lower corner is v = (2, 2), in units of pi."""
     waves = [(1, 0, "1.5"), (0, 1, "1.5"), (1, 1, "1.5")]
-    problem = Problem.patch(["0.3", "0.3", "0.6"], (), waves, (1, 3), (1, 3), axes=(1, 0, 0, 1))
+    problem = Problem(SymplecticMap(waves, ["0.3", "0.3", "0.6"]), v0=(1, 3), v1=(1, 3),
+                      axes=(1, 0, 0, 1))
     task = native.Task(problem, Settings("loewner", 100, digits, stubborn=True), ("0", "0"))
     for k in range(1, 41):
         cell = (2 ** k // 2, 2 ** k // 2, 0, 0, 0), (k, k, 0, 0, 0), 0

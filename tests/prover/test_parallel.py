@@ -18,7 +18,7 @@ from conftest import ROOT
 
 from converse import ConverseError, Problem, Proof, prove
 from converse.model.exact import decimal_text
-from converse.model.problem import LINE
+from converse.model.map import LINE
 from converse.prover import native, run, tree, tree_search, workers
 
 from moments import PATIENCE
@@ -81,7 +81,8 @@ def test_the_method_of_the_thesis_too():
     problem = Problem.around((a, a, 2 * a, Fraction(1), Fraction(1)),
                       (b, b, 2 * b, Fraction(1), Fraction(1)))
     with concurrent.futures.ThreadPoolExecutor(3) as executor:
-        assert timeless(prove(problem, executor=executor)) == timeless(prove(problem, jobs=1))
+        assert timeless(prove(problem, executor=executor,
+                              method="thesis")) == timeless(prove(problem, jobs=1, method="thesis"))
 
 
 @pytest.mark.parametrize("stubborn", [False, True])

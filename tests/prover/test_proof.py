@@ -14,6 +14,7 @@ from fractions import Fraction
 import pytest
 
 from converse import ConverseError, Counts, Problem, Proof, Settings, check, prove, read_input
+from converse.model.map import THESIS, MuldoonMap, SymplecticMap
 from converse.model.problem import IDENTITY
 from converse.prover import native, run, tree_search
 from converse.prover.tree import leaves
@@ -32,7 +33,7 @@ def problem(root):
 
 @pytest.fixture(scope="session")
 def proof(problem):
-    return prove(problem)
+    return prove(problem, method="thesis")
 
 
 def timeless(proof):
@@ -57,7 +58,7 @@ def test_symmetric_prisms_mirror_examined_ones(proof):
 
 
 def test_same_again(problem, proof):
-    assert timeless(prove(problem)) == timeless(proof)
+    assert timeless(prove(problem, method="thesis")) == timeless(proof)
 
 
 def test_as_printed_is_no_proof(problem):
@@ -66,10 +67,10 @@ def test_as_printed_is_no_proof(problem):
 
 
 def test_undecided(problem):
-    stopped = prove(problem, depth=3)
+    stopped = prove(problem, depth=3, method="thesis")
     assert not stopped.no_tori and len(stopped.undecided) == 1
     assert stopped.tree.endswith("U") and stopped.counts.undecided == 1
-    stubborn = prove(problem, depth=3, stubborn=True)
+    stubborn = prove(problem, depth=3, stubborn=True, method="thesis")
     assert not stubborn.no_tori
     assert len(stubborn.undecided) == stubborn.counts.undecided > 1
     assert all(leaf.depth == 3 for leaf in stubborn.undecided)
@@ -79,7 +80,7 @@ def test_undecided(problem):
 def test_progress_and_leaves(problem, proof):
     fractions, seen = [], []
     result = prove(problem, progress=lambda fraction, counts: fractions.append(fraction),
-                   on_leaf=lambda leaf, steps: seen.append(leaf))
+                   on_leaf=lambda leaf, steps: seen.append(leaf), method="thesis")
     assert timeless(result) == timeless(proof)
     assert seen == list(leaves(problem, proof.tree))
     assert fractions[0] == 0 and fractions[-1] == 1 and all(0 <= x <= 1 for x in fractions)
@@ -90,7 +91,7 @@ def test_two_threads(problem, proof, root):
     results = {}
 
     def work(name, *arguments, **options):
-        results[name] = prove(*arguments, **options)
+        results[name] = prove(*arguments, method="thesis", **options)
 
     threads = [threading.Thread(target=work, args=(name, it), kwargs=options)
                for name, it, options in (("first", problem, {}), ("second", problem, {}),
@@ -106,7 +107,7 @@ def test_two_threads(problem, proof, root):
 @pytest.mark.parametrize("options", [{"digits": 0}, {"digits": -5}, {"depth": -1}])
 def test_bad_arguments(problem, options):
     with pytest.raises(ValueError):
-        prove(problem, **options)
+        prove(problem, method="thesis", **options)
 
 
 # ---- the proof file ---------------------------------------------------------------------
@@ -202,7 +203,7 @@ def interrupted(monkeypatch):
         with monkeypatch.context() as patch:
             patch.setattr(tree_search, "MANY", 1)        # leaves at a time
             with pytest.raises(KeyboardInterrupt):
-                prove(problem, backup=backup, on_leaf=on_leaf, jobs=1, **options)
+                prove(problem, backup=backup, on_leaf=on_leaf, jobs=1, method="thesis", **options)
     return interrupted
 
 
@@ -238,10 +239,10 @@ def test_continue_a_finished_proof(tmp_path, problem, proof):
 
 
 def test_continue_after_an_undecided_prism(problem):
-    stopped = prove(problem, depth=4)
+    stopped = prove(problem, depth=4, method="thesis")
     assert timeless(prove(problem, depth=4, resume=stopped)) == timeless(stopped)
     stubborn = prove(problem, depth=4, resume=stopped, stubborn=True)
-    assert timeless(stubborn) == timeless(prove(problem, depth=4, stubborn=True))
+    assert timeless(stubborn) == timeless(prove(problem, depth=4, stubborn=True, method="thesis"))
 
 
 def test_continue_as_printed(tmp_path, problem, interrupted):
@@ -263,9 +264,11 @@ def test_another_run_is_refused(problem, proof, name, change, options):
 
 @pytest.mark.parametrize("name", ["a", "b", "c", "v0", "v1"])
 def test_another_problem_is_refused(problem, proof, name):
-    low, high = getattr(problem, name)
+    ranges = dict(zip("abc", problem.abc), v0=problem.v0, v1=problem.v1)
+    low, high = ranges[name]
     for other in (low - Fraction(1, 10 ** 30), high), (low, high + Fraction(1, 10 ** 30)):
-        other = replace(problem, **{name: other})
+        changed = {**ranges, name: other}
+        other = Problem(MuldoonMap(*map(changed.pop, "abc")), **changed)
         with pytest.raises(ConverseError, match=r"\(%s: there " % name):
             prove(other, resume=proof)
 
@@ -287,12 +290,12 @@ def test_one_backup_for_two_runs_is_refused(tmp_path, problem):
 
     def second(*_):
         with pytest.raises(ConverseError) as caught:
-            prove(problem, backup=backup)
+            prove(problem, backup=backup, method="thesis")
         messages.append(str(caught.value))
         raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        prove(problem, backup=backup, on_leaf=second)
+        prove(problem, backup=backup, on_leaf=second, method="thesis")
     assert "another run is writing this file" in messages[0]
     assert prove(problem, backup=backup, resume=backup).no_tori
 
@@ -302,17 +305,17 @@ def test_a_backup_destroys_nothing_else(tmp_path, problem):
     path.write_text("my notes")
     for place in path, tmp_path, "/dev/null", tmp_path / "missing" / "backup":
         with pytest.raises(ConverseError):
-            prove(problem, backup=place)
+            prove(problem, backup=place, method="thesis")
     assert path.read_text() == "my notes"
 
 
 def test_zero_half_widths(tmp_path):
     point = Problem.around((Fraction("0.32"), Fraction("0.32"), Fraction("0.64"), Fraction(1),
                      Fraction(1)), (Fraction(0),) * 3 + (Fraction(1),) * 2)
-    assert prove(point).no_tori
+    assert prove(point, method="thesis").no_tori
     spot = Problem.around(point.centre[:3] + (Fraction("0.75"), Fraction("0.5")),
                           (Fraction(0),) * 5)
-    result = prove(spot, depth=2)
+    result = prove(spot, depth=2, method="thesis")
     assert set(result.tree) <= set("01PSU")
     result.figure(tmp_path / "spot.ps")
 
@@ -338,7 +341,7 @@ def test_what_is_claimed(made_up):
 @pytest.mark.parametrize("name", ["a.proof", "a.proof.gz"])
 def test_two_runs_write_one_file(tmp_path, problem, name, interrupted):
     first, second = tmp_path / ("1" + name), tmp_path / ("2" + name)
-    prove(problem, backup=first, jobs=1)
+    prove(problem, backup=first, jobs=1, method="thesis")
     interrupted(problem, second, 7)
     assert "seconds: " in _text(second)
     prove(resume=second, jobs=3)
@@ -353,7 +356,7 @@ def _text(path):
 def test_deeper(tmp_path, problem, proof):
     """What was given up for its depth is tried again; the rest is as it was."""
     path = tmp_path / "a.proof"
-    shallow = prove(problem, depth=8, stubborn=True, backup=path)
+    shallow = prove(problem, depth=8, stubborn=True, backup=path, method="thesis")
     assert shallow.undecided
     deeper = prove(resume=path, depth=30)
     assert deeper.no_tori and deeper.tree == proof.tree and deeper.settings.stubborn
@@ -361,7 +364,7 @@ def test_deeper(tmp_path, problem, proof):
     assert Proof.load(path).no_tori
     with pytest.raises(ConverseError, match=r"\(depth: there 30, here 29\)"):
         prove(resume=path, depth=29)
-    stopped = prove(problem, depth=8)
+    stopped = prove(problem, depth=8, method="thesis")
     assert timeless(prove(resume=stopped, depth=30)).tree == proof.tree
 
 
@@ -380,7 +383,7 @@ def test_a_failing_backup_does_not_end_the_run(tmp_path, problem, proof, monkeyp
 
     monkeypatch.setattr(files, "write", full)
     with pytest.warns(RuntimeWarning, match="No space left on device.*tries again"):
-        result = prove(problem, backup=path, jobs=1)
+        result = prove(problem, backup=path, jobs=1, method="thesis")
     assert len(writes) > 20 and timeless(result) == timeless(proof)
     assert Proof.load(path) == timeless(proof) and result.sha256
 
@@ -391,7 +394,7 @@ def test_a_backup_that_cannot_be_begun_is_an_error(tmp_path, problem, monkeypatc
 
     monkeypatch.setattr(files, "write", full)
     with pytest.raises(ConverseError, match="cannot be written"):
-        prove(problem, backup=tmp_path / "a.proof")
+        prove(problem, backup=tmp_path / "a.proof", method="thesis")
 
 
 @pytest.mark.parametrize("jobs", [1, 4])
@@ -399,18 +402,18 @@ def test_leaves_in_order_by_many_workers(problem, proof, jobs, monkeypatch):
     """on_leaf hears of every leaf in preorder, with its orbit's length, whoever decided it."""
     monkeypatch.setattr(tree_search, "ALONE_SECONDS", 0.0)
     expected = []
-    prove(problem, jobs=1, on_leaf=lambda *leaf: expected.append(leaf))
+    prove(problem, jobs=1, on_leaf=lambda *leaf: expected.append(leaf), method="thesis")
     assert [leaf for leaf, _ in expected] == list(leaves(problem, proof.tree))
     assert max(points for leaf, points in expected if leaf.kind == "P") == proof.counts.max_NTsteps
     with ThreadPoolExecutor(jobs) as executor:
         seen = []
         assert prove(problem, jobs=jobs, executor=executor,
-                     on_leaf=lambda *leaf: seen.append(leaf)).no_tori
+                     on_leaf=lambda *leaf: seen.append(leaf), method="thesis").no_tori
     assert seen == expected
 
 
 def test_only_new_leaves_are_told(problem, proof, interrupted):
-    half = prove(problem, depth=9, stubborn=True)
+    half = prove(problem, depth=9, stubborn=True, method="thesis")
     seen = []
     prove(resume=half, depth=30, on_leaf=lambda leaf, points: seen.append(leaf))
     old = set(leaves(problem, half.tree, "PS"))
@@ -464,8 +467,8 @@ def test_verify(proof, problem, made_up):
     """The independent checker, from Python; what is not proved it does not verify."""
     result = proof.verify(jobs=2)
     assert result and "no invariant Lagrangian graph" in result.text
-    assert not prove(replace(problem, v0=("0.5", "1")), depth=40).verify()
-    for bad in (prove(problem, depth=3), prove(problem, as_printed=True),
+    assert not prove(replace(problem, v0=("0.5", "1")), depth=40, method="thesis").verify()
+    for bad in (prove(problem, depth=3, method="thesis"), prove(problem, as_printed=True),
                 replace(proof, tree=proof.tree.replace("S", "P"))):
         with pytest.raises(check.Rejected):
             bad.verify()
@@ -484,14 +487,15 @@ def test_what_prove_refuses(problem, options, error):
     assert len(str(caught.value)) > 20
     for wrong in "x", None, 5:
         with pytest.raises(TypeError):
-            prove(wrong)
+            prove(wrong, method="thesis")
 
 
 def test_a_proof_of_nothing_can_be_shown(problem):
     nothing = prove(problem, digits=30000, time_limit=0)     # nor x*, which takes a while
     assert not nothing and nothing.xstar is None and nothing.report()
     assert nothing._repr_html_().startswith("<pre>")
-    assert prove(problem) == prove(problem)         # however long each took
+    # however long each took
+    assert prove(problem, method="thesis") == prove(problem, method="thesis")
 
 
 def test_apart_is_not_together(root):
@@ -499,9 +503,10 @@ def test_apart_is_not_together(root):
     way."""
     problem = read_input(root / "inputs" / "trig180.in")
     for together in True, False:
-        half = prove(replace(problem, together=together), method="loewner", depth=8, stubborn=True)
+        half = prove((problem.tied() if together else problem), method="loewner", depth=8,
+                     stubborn=True)
         with pytest.raises(ConverseError, match=r"\(together: there %s, here" % together):
-            prove(replace(problem, together=not together), resume=half, depth=120)
+            prove((problem.tied() if not together else problem), resume=half, depth=120)
 
 
 # ---- the format
@@ -526,8 +531,8 @@ def test_a_search_without_a_frame_is_continued_so(tmp_path, monkeypatch):
     """What was grown in the angles themselves, with all waves and on all of the torus, whatever is
     asked for anew."""
     monkeypatch.setattr(run, "reduced", lambda problem, xstar: problem)
-    for problem in Problem(0, 0, "0.6"), Problem("1.1", "0.1", 0):
-        path = tmp_path / ("%d.proof" % bool(problem.a[0]))
+    for problem in Problem(MuldoonMap(0, 0, "0.6")), Problem(MuldoonMap("1.1", "0.1", 0)):
+        path = tmp_path / ("%d.proof" % bool(problem.abc[0][0]))
         plain = replace(problem, axes=IDENTITY, alone="no")
         half = prove(plain, method="loewner", depth=3, stubborn=True, backup=path)
         assert Proof.load(path).problem == plain != problem
@@ -537,18 +542,19 @@ def test_a_search_without_a_frame_is_continued_so(tmp_path, monkeypatch):
 
 
 PATCHES = {
-    "thesis": Problem(("0.4", "0.5"), "0.4", ("0.4", "0.5")),
-    "segment": Problem.patch(["0.4", "0.4", "0.4"], [["0.01", "-0.01", 0]]),
-    "frame": Problem(0, 0, ("0.4", "0.5")),
-    "no frame": replace(Problem(0, 0, "0.5"), axes=IDENTITY),
-    "other frame": replace(Problem(0, 0, "0.5"), axes=(2, 1, -1, -1)),
-    "alone": Problem("0.5", ("0.3", "0.4"), 0),
-    "both": replace(Problem("0.5", "0.3", 0), alone="no"),
-    "other alone": replace(Problem("0.5", "0.3", 0), alone=1),
-    "part": Problem(1, 1, 1, v0=(0, "0.5")),
-    "waves": Problem.patch(["0.4", "-1e-30"], [["1e-9", 0], [0, "12.5"], ["7", "-7"]],
-                           [(1, 0, "1/3"), (-7, 100, "-1/2")], v1=("0.25", "4/3"), comments="c"),
-    "circle": Problem.patch(["0.4"] * 16, (), [(k, 0, "1/7") for k in range(1, 17)])}
+    "thesis": Problem(MuldoonMap(("0.4", "0.5"), "0.4", ("0.4", "0.5"))),
+    "segment": Problem(SymplecticMap(THESIS, ["0.4", "0.4", "0.4"], [["0.01", "-0.01", 0]])),
+    "frame": Problem(MuldoonMap(0, 0, ("0.4", "0.5"))),
+    "no frame": replace(Problem(MuldoonMap(0, 0, "0.5")), axes=IDENTITY),
+    "other frame": replace(Problem(MuldoonMap(0, 0, "0.5")), axes=(2, 1, -1, -1)),
+    "alone": Problem(MuldoonMap("0.5", ("0.3", "0.4"), 0)),
+    "both": replace(Problem(MuldoonMap("0.5", "0.3", 0)), alone="no"),
+    "other alone": replace(Problem(MuldoonMap("0.5", "0.3", 0)), alone=1),
+    "part": Problem(MuldoonMap(1, 1, 1), v0=(0, "0.5")),
+    "waves": Problem(SymplecticMap([(1, 0, "1/3"), (-7, 100, "-1/2")], ["0.4", "-1e-30"],
+                                   [["1e-9", 0], [0, "12.5"], ["7", "-7"]]), v1=("0.25", "4/3"),
+                     comments="c"),
+    "circle": Problem(SymplecticMap([(k, 0, "1/7") for k in range(1, 17)], ["0.4"] * 16))}
 
 
 @pytest.mark.parametrize("name", PATCHES)
@@ -600,32 +606,34 @@ def test_a_header_that_makes_no_sense(made_up, tmp_path, line, new):
 
 
 def test_nothing_is_at_once_that_is_not_odd(made_up, tmp_path):
-    problem = Problem.patch([1, 1], waves=[(1, 0), (2, 0, "1/2")])
+    problem = Problem(SymplecticMap([(1, 0), (2, 0, "1/2")], [1, 1]))
     replace(made_up("P"), problem=problem, at_once=True).save(tmp_path / "a.proof")
     with pytest.raises(ConverseError, match="at once: yes"):
         Proof.load(tmp_path / "a.proof")
-    assert not prove(Problem.patch([4, 4], waves=problem.waves), method="loewner").at_once
+    assert not prove(Problem(SymplecticMap(problem.waves, [4, 4])), method="loewner").at_once
 
 
 def test_another_patch_is_refused(tmp_path):
-    problem = Problem.patch(["0.45"] * 3, [["0.01", "0.01", 0], [0, 0, "0.01"]])
+    problem = Problem(SymplecticMap(THESIS, ["0.45"] * 3, [["0.01", "0.01", 0], [0, 0, "0.01"]]))
     half = prove(problem, method="loewner", depth=2, stubborn=True)
-    for other in (Problem.patch(["0.45"] * 3, [["0.01", "0.01", 0], [0, 0, "0.02"]]),
+    for other in (Problem(SymplecticMap(THESIS, ["0.45"] * 3,
+                                        [["0.01", "0.01", 0], [0, 0, "0.02"]])),
                   replace(problem, axes=(0, 1, 1, 0))):
         with pytest.raises(ConverseError, match=r"\((potential|frame): there .*, here "):
             prove(other, resume=half)
     with pytest.raises(ConverseError, match=r"\(.*: there .*, here "):
-        prove(Problem("0.45", "0.45", "0.45"), resume=half)
+        prove(Problem(MuldoonMap("0.45", "0.45", "0.45")), resume=half)
     assert prove(problem, resume=half, depth=60).no_tori
 
 
 def test_the_method_of_1989_takes_ranges_only():
-    for problem, words in ((Problem(1, 1, 1, together=True), "move together"),
-                           (Problem.patch([1], waves=[(1, 0)]), "method loewner")):
+    for problem, words in ((Problem(MuldoonMap(1, 1, 1, together=True)), "move together"),
+                           (Problem(SymplecticMap([(1, 0)], [1])), "method loewner")):
         with pytest.raises(ValueError, match=words):
-            prove(problem)
-    for problem in Problem(0, 0, 2), Problem(2, 2, 0):      # in no frame, and with all waves
-        proof = prove(problem)
+            prove(problem, method="thesis")
+    # in no frame, and with all waves
+    for problem in Problem(MuldoonMap(0, 0, 2)), Problem(MuldoonMap(2, 2, 0)):
+        proof = prove(problem, method="thesis")
         assert proof.problem.frame == IDENTITY and proof.problem.factor is None
         assert prove(problem, resume=proof).tree == proof.tree
 
@@ -633,14 +641,14 @@ def test_the_method_of_1989_takes_ranges_only():
 # ---- a point x* of one's own
 
 def test_a_point_of_ones_own(problem, tmp_path):
-    point = Problem("0.45", "0.45", "0.45")
+    point = Problem(MuldoonMap("0.45", "0.45", "0.45"))
     for xstar in (("0.8", "0.95"), (Fraction(4, 5), Decimal("0.95"))):
         proof = prove(point, method="loewner", xstar=xstar,
                       backup=tmp_path / ("%s" % type(xstar[0])))
         assert proof.no_tori
         assert tuple(map(Fraction, proof.xstar)) == (Fraction("0.8"), Fraction("0.95"))
     assert prove(point, method="loewner").xstar != proof.xstar
-    assert prove(problem, xstar=(0, 2), depth=2).xstar == ("0", "2")
+    assert prove(problem, xstar=(0, 2), depth=2, method="thesis").xstar == ("0", "2")
     half = prove(point, method="loewner", xstar=("0.8", "0.95"), depth=2)
     assert prove(resume=half, xstar=("0.80", "95e-2"), depth=60).no_tori
     with pytest.raises(ConverseError, match=r"\(x\*: there 0.8 0.95, here 0.8 0.9\);"):
@@ -656,4 +664,4 @@ def test_a_point_of_ones_own(problem, tmp_path):
     (("1e400", 0), ValueError), (("nan", 0), ValueError)])
 def test_a_point_that_is_none(problem, xstar, error):
     with pytest.raises(error, match="xstar"):
-        prove(problem, xstar=xstar)
+        prove(problem, xstar=xstar, method="thesis")

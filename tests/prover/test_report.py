@@ -9,6 +9,7 @@ from fractions import Fraction
 import pytest
 
 from converse import Counts, Problem, Proof, prove
+from converse.model.map import MuldoonMap, SymplecticMap, from_patch
 from converse.model.problem import IDENTITY
 from converse.model.statement import conditions, potential_text
 from converse.prover import run
@@ -84,7 +85,7 @@ def test_bounds_are_exact(made_up):
 
 def test_single_values(made_up):
     proof = made_up("P")
-    text = verdict(replace(proof, problem=Problem("0.3085", "0.3085", "0.617")))
+    text = verdict(replace(proof, problem=Problem(MuldoonMap("0.3085", "0.3085", "0.617"))))
     assert "a = 0.308500\nb = 0.308500\nc = 0.617000\n" in text and "<" not in text
 
 
@@ -141,7 +142,7 @@ def test_where_x_star_may_be_the_cause(monkeypatch):
     several are not linked; a lack of depth is another thing."""
     monkeypatch.setattr(run._Run, "_may_link", lambda self: False)
     waves = [(1, 0, "-1/2"), (2, 0, "-1/2")]
-    problem = Problem.patch(["0.6", "0.2"], waves=waves)
+    problem = Problem(SymplecticMap(waves, ["0.6", "0.2"]))
     stuck = prove(problem, method="loewner", xstar=("1.856", "0"))
     text = stuck.report()
     low, high = re.search(r"the first of them: ([0-9.]+) pi <= v0 <= ([0-9.]+) pi\n",
@@ -150,12 +151,12 @@ def test_where_x_star_may_be_the_cause(monkeypatch):
     assert abs(Fraction(low) - c + h) <= h / 100 and abs(Fraction(high) - c - h) <= h / 100
     assert "one of them is as small as doubles can tell: " in text
     assert "\nTo try     another x* (--xstar X0 X1), or larger parameters\n" in text
-    wide = Problem.patch(["0.6", "0.2"], [["0.001", 0]], waves=waves)
+    wide = Problem(SymplecticMap(waves, ["0.6", "0.2"], [["0.001", 0]]))
     assert ", or a smaller range of parameters, or larger parameters\n" in prove(
         wide, method="loewner", xstar=("1.856", "0")).report()
     assert prove(problem, method="loewner", xstar=("1.836", "0")).no_tori
     assert "x* (" not in prove(problem, method="loewner", xstar=("1.856", "0"), depth=5).report()
-    point = prove(Problem.patch(["0.6", "0.2"], waves=waves, v0=c), method="loewner", depth=0,
+    point = prove(Problem(SymplecticMap(waves, ["0.6", "0.2"]), v0=c), method="loewner", depth=0,
                   xstar=("1.856", "0"))
     assert re.search("the first of them: v0 = 1.1[0-9]* pi", point.report())
 
@@ -202,7 +203,7 @@ def of_K(slope, constant=0):
 def named(*forms, waves=(COS, (0, 1, "-1/2"))):
     """A patch with the parameter K, each amplitude as of_K takes it."""
     amplitude, part = zip(*(of_K(*map(Fraction, form)) for form in forms))
-    return Problem.patch(amplitude, [part], waves[:len(forms)], parameters=[K])
+    return Problem(from_patch(waves[:len(forms)], amplitude, [part], [K]))
 
 
 def value(text, **names):
@@ -213,10 +214,11 @@ def value(text, **names):
 
 
 @pytest.mark.parametrize("problem", [
-    Problem.patch(["0.4", "-1e-8", "2"], [["0.01", 0, "-1"], [0, "1.23456789", 0]],
-                  [(1, 0), (1, -1, "1/2"), (-2, 3, "-1/3")]),
-    Problem.patch([1, "0.5", "-0.25", 1], [], [(1, 0, "1/2"), (1, 1, 1), (2, 0), (0, 3, "-1/2")]),
-    Problem.patch(["-1", 1], [[0, "-0.5"]], [(1, 0, "3/4"), (2, 0, 1)]),
+    Problem(SymplecticMap([(1, 0), (1, -1, "1/2"), (-2, 3, "-1/3")], ["0.4", "-1e-8", "2"],
+                          [["0.01", 0, "-1"], [0, "1.23456789", 0]])),
+    Problem(SymplecticMap([(1, 0, "1/2"), (1, 1, 1), (2, 0), (0, 3, "-1/2")],
+                          [1, "0.5", "-0.25", 1])),
+    Problem(SymplecticMap([(1, 0, "3/4"), (2, 0, 1)], ["-1", 1], [[0, "-0.5"]])),
     named((1, 0), ("-0.5", "0.25"), ("0.5", 0), (0, 0), waves=(SIN, COS, (0, 1), (1, 1))),
 ], ids=range(4))
 def test_the_potential_is_the_maps(problem):
@@ -241,29 +243,30 @@ def test_the_potential_is_the_maps(problem):
      ["for every K in [0.9, 1.4]", "and for every multiple s >= 1 of the amplitudes at K = 1.4"]),
     (named((1, "-0.1")), "(-0.1 + K) cos y",
      ["for every K in [0.9, 1.4]", "and for every multiple s >= 1 of the amplitudes at K = 1.4"]),
-    (Problem.patch([-1], [["0.1"]], [COS], parameters=[("K", Fraction("-1.1"), Fraction("-0.9"))]),
+    (Problem(from_patch([COS], [-1], [["0.1"]], [("K", Fraction("-1.1"), Fraction("-0.9"))])),
      "K cos y", ["for every K in [-1.1, -0.9]",
                  "and for every multiple s >= 1 of the amplitudes at K = -0.9"]),
-    (Problem.patch([1, "0.1"], [["0.1", 0], [0, 0]], [COS, (2, 0, "-1/2")],
-                   parameters=[("K", Fraction("0.9"), Fraction("1.1")), B]),
+    (Problem(from_patch([COS, (2, 0, "-1/2")], [1, "0.1"], [["0.1", 0], [0, 0]], [
+        ("K", Fraction("0.9"), Fraction("1.1")), B])),
      "K cos y + 0.1 cos(2 y)", ["for every K in [0.9, 1.1]",
                                 "and for every multiple s >= 1 of these amplitudes"]),
-    (Problem.patch([1, 1], [["0.1", 0], [0, "0.1"]], [COS, (2, 0)]),
+    (Problem(SymplecticMap([COS, (2, 0)], [1, 1], [["0.1", 0], [0, "0.1"]])),
      "(1 + 0.1 t[1]) cos y - (1 + 0.1 t[2]) sin(2 y)",
      ["for every t[1] in [-1, 1], t[2] in [-1, 1]",
       "and for every multiple s >= 1 of these amplitudes"]),
-    (Problem.patch([1], [], [(1, 1)]), "-sin(y0 + y1)",
+    (Problem(SymplecticMap([(1, 1)], [1])), "-sin(y0 + y1)",
      ["and for every multiple s >= 1 of these amplitudes"]),
-    (Problem(("0.9", 1), 0, 0), "-a sin y0 - b sin y1 - c sin(y0 + y1)",
+    (Problem(MuldoonMap(("0.9", 1), 0, 0)), "-a sin y0 - b sin y1 - c sin(y0 + y1)",
      ["for every a in [0.9, 1], b = 0, c = 0", "and for every a > 1"]),
-    (Problem(("0.9", 1), (-1, 0), 0), "-a sin y0 - b sin y1 - c sin(y0 + y1)",
+    (Problem(MuldoonMap(("0.9", 1), (-1, 0), 0)), "-a sin y0 - b sin y1 - c sin(y0 + y1)",
      ["for every a in [0.9, 1], b in [-1, 0], c = 0",
       "and for every multiple s (a, b, c), s >= 1"]),
-    (Problem(("0.9", 1), ("0.9", 1), ("1.8", 2), together=True),
+    (Problem(MuldoonMap(("0.9", 1), ("0.9", 1), ("1.8", 2), together=True)),
      "-a sin y0 - b sin y1 - c sin(y0 + y1)",
      ["for every (a, b, c) on the segment from (0.9, 0.9, 1.8) to (1, 1, 2)",
       "and for every multiple s >= 1 of the upper end"]),
-    (Problem(*(("0.165972528", "0.31400208"),) * 2, ("0.331945056", "0.62800416"), together=True),
+    (Problem(MuldoonMap(*(("0.165972528", "0.31400208"),) * 2, ("0.331945056", "0.62800416"),
+                        together=True)),
      "-a sin y0 - b sin y1 - c sin(y0 + y1)",
      ["for every (a, b, c) on the segment from (0.165972528, 0.165972528, 0.331945056) to "
       "(0.31400208, 0.31400208, 0.62800416)", "and for every multiple s >= 1 of the upper end",
@@ -287,9 +290,12 @@ def test_the_theorem_of_a_circle(made_up):
     assert "\nStart      x* = 1.5\n" in report(proof)
     assert "UNDECIDED: nothing is proved.  There may be a rotational invariant circle (see " in \
         report(replace(proof, tree="U"))
-    for problem, words in ((Problem(1, 0, 0), "So the map of y0 alone has no rotational"),
-                           (Problem(0, 1, 0), "So the map of y1 alone has no rotational"),
-                           (Problem(1, 1, 0), None), (Problem(1, 0, 1), None)):
+    for problem, words in ((Problem(MuldoonMap(1, 0, 0)),
+                            "So the map of y0 alone has no rotational"),
+                           (Problem(MuldoonMap(0, 1, 0)),
+                            "So the map of y1 alone has no rotational"),
+                           (Problem(MuldoonMap(1, 1, 0)), None),
+                           (Problem(MuldoonMap(1, 0, 1)), None)):
         text = report(replace(proof, problem=problem))
         assert (words or "has no invariant torus") in text and (words is not None) == (
             "circle" in text)
@@ -303,14 +309,16 @@ def test_names_of_parameters_are_kept(made_up, tmp_path):
     assert again.problem.parameters == (K,) and "for every K in [0.9, 1.4].\n" in again.report()
     for wrong in ((), (B,)), ((K, K), (K,)):
         with pytest.raises(ValueError, match="K|B|parameters"):
-            Problem.patch([1], [["0.1"]], [COS], parameters=wrong[0] or wrong[1])
+            Problem(from_patch([COS], [1], [["0.1"]], wrong[0] or wrong[1]))
 
 
 @pytest.mark.parametrize("problem, words", [
-    (Problem(0, 0, 1), "Searched   the y' = (v0, -v0 + v1) that follow x*, "),
-    (Problem.patch([1], [], [(3, -2)]), "the y' = (2 v0 - v1, 3 v0 - 2 v1) that follow x*, "),
-    (Problem(1, 1, 0), "           y0 alone was examined: no wave depends on both angles\n"),
-    (Problem(1, 2, 0), "           y1 alone was examined: no wave depends on both angles\n")])
+    (Problem(MuldoonMap(0, 0, 1)), "Searched   the y' = (v0, -v0 + v1) that follow x*, "),
+    (Problem(SymplecticMap([(3, -2)], [1])), "the y' = (2 v0 - v1, 3 v0 - 2 v1) that follow x*, "),
+    (Problem(MuldoonMap(1, 1, 0)),
+     "           y0 alone was examined: no wave depends on both angles\n"),
+    (Problem(MuldoonMap(1, 2, 0)),
+     "           y1 alone was examined: no wave depends on both angles\n")])
 def test_what_was_chosen(made_up, problem, words):
     proof = made_up("P", method="loewner")
     text = verdict(replace(proof, problem=problem))

@@ -9,7 +9,7 @@ from itertools import product
 import pytest
 
 from converse import ConverseError, Problem, Proof, Settings, prove
-from converse.model.problem import LINE
+from converse.model.map import LINE, THESIS, MuldoonMap, SymplecticMap
 from converse.model.region import skips, symmetries_used
 from converse.prover import native, tree
 from converse.prover.links import (PI, SPARE, Link, Links, Target, hull_of, linked_tree,
@@ -28,11 +28,12 @@ SHIFTS = (Fraction("0.01"), Fraction("-0.02")),
 
 def line(low, high):
     ends = LINE * Fraction(low), LINE * Fraction(high)
-    return Problem(ends, ends, tuple(2 * x for x in ends), together=True, axes=(1, 1, 1, -1))
+    return Problem(MuldoonMap(ends, ends, tuple(2 * x for x in ends), together=True),
+                   axes=(1, 1, 1, -1))
 
 
-PATCH = Problem.patch(["0.15", "0.16", "0.3"], [["0.001", 0, 0], [0, "0.002", 0]],
-                      axes=(1, 1, 1, -1), v0=("0.5", "0.7"), v1=("-0.1", "0.3"))
+PATCH = Problem(SymplecticMap(THESIS, ["0.15", "0.16", "0.3"], [["0.001", 0, 0], [0, "0.002", 0]]),
+                axes=(1, 1, 1, -1), v0=("0.5", "0.7"), v1=("-0.1", "0.3"))
 TWO = (Fraction("0.01"), Fraction("-0.02")), (Fraction(0), Fraction("0.005"))
 
 
@@ -268,7 +269,7 @@ def test_the_report_tells_how_regions_move(moved):
     several = replace(moved, problem=replace(PATCH), parts=(part,))
     assert "moved by (0.01 pi, -0.02 pi) at the upper end of t[1], (0, 0.005 pi) at the " \
         "upper end of t[2]: " in said(several)
-    ranges = replace(moved, problem=Problem("0.3", "0.3", "0.6"), parts=(
+    ranges = replace(moved, problem=Problem(MuldoonMap("0.3", "0.3", "0.6")), parts=(
         replace(part, shifts=(*TWO, TWO[0])),))
     assert "of b, (0.01 pi, -0.02 pi) at the upper end of c: " in said(ranges)
     without = replace(moved, parts=tuple(replace(part, shifts=()) for part in moved.parts))

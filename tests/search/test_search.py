@@ -16,7 +16,7 @@ import pytest
 import converse
 from converse import Problem
 from converse.model.exact import pi_bounds
-from converse.model.problem import LINE
+from converse.model.map import LINE
 from converse.prover.tree import leaves
 
 import kernels
@@ -42,7 +42,8 @@ def line(epsilon, width="0"):
 @pytest.fixture(scope="module")
 def proofs(root):
     """The four theorems, sound."""
-    return {name: converse.prove(converse.read_input(root / "inputs" / (name + ".in")))
+    return {name: converse.prove(converse.read_input(root / "inputs" / (name + ".in")),
+                                 method="thesis")
             for name in ("trig278", "trig276", "trig274", "trig272")}
 
 
@@ -199,25 +200,26 @@ def test_few_digits_lose_the_proof_but_not_the_truth(root, digits):
 
 
 def test_only_symmetric_problems_skip():
-    assert converse.prove(line("0.0275", "0.0005")).counts.symmetric > 0
+    assert converse.prove(line("0.0275", "0.0005"), method="thesis").counts.symmetric > 0
     for b, c, v in ((("0.3085", "0.0004"), ("0.617", "0"), FULL),
                     (("0.3086", "0.0005"), ("0.617", "0"), FULL),
                     (("0.3085", "0.0005"), ("0.617", "0"), (("1", "1"), ("1", "1.0001")))):
-        proof = converse.prove(problem(("0.3085", "0.0005"), b, c, v))
+        proof = converse.prove(problem(("0.3085", "0.0005"), b, c, v), method="thesis")
         assert proof.counts.symmetric == 0
         assert proof.no_tori
 
 
 def test_single_parameter_values():
     """Half-widths of zero: nothing divides by them."""
-    assert converse.prove(line("0.0275")).no_tori
+    assert converse.prove(line("0.0275"), method="thesis").no_tori
 
 
 @pytest.mark.parametrize("v", [(("1", "0"), ("1", "1")), (("0.25", "0"), ("0.75", "0")),
                                (("0", "0"), ("0", "0"))])
 def test_regions_without_width(v):
     """A line or a point of successors is a legal region; it is not the torus."""
-    proof = converse.prove(problem(("0.3085", "0"), ("0.3085", "0"), ("0.617", "0"), v))
+    proof = converse.prove(problem(("0.3085", "0"), ("0.3085", "0"), ("0.617", "0"), v),
+                           method="thesis")
     assert not proof.problem.full_torus
     assert proof.counts.undecided == 0
 
@@ -229,7 +231,7 @@ def test_regions_without_width(v):
 ])
 def test_huge_parameters(a, b, c):
     """Far beyond the frontier: a theorem at once, and no overflow on the way."""
-    assert converse.prove(problem(a, b, c), depth=12).no_tori
+    assert converse.prove(problem(a, b, c), depth=12, method="thesis").no_tori
 
 
 def test_two_threads_do_not_meet(root):
@@ -361,7 +363,7 @@ def test_a_locale_with_a_comma(tmp_path):
                           capture_output=True, check=False)
     code = ("import locale; locale.setlocale(locale.LC_ALL, 'de_DE.UTF-8'); import converse; "
             "assert locale.localeconv()['decimal_point'] == ','; "
-            "p = converse.Problem('0.32', '0.32', '0.64'); "
+            "p = converse.MuldoonMap('0.32', '0.32', '0.64'); "
             "assert converse.prove(p) and converse.prove(p, method='loewner')")
     result = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True,
                             env=dict(os.environ, LOCPATH=str(tmp_path)), cwd=tmp_path)

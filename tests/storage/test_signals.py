@@ -122,11 +122,12 @@ def test_a_proof_is_left_as_it_is_whenever_a_signal_comes(root, tmp_path, monkey
 
     monkeypatch.setattr(backup, "SECONDS", 0)
     problem, path = read_input(root / "inputs" / "trig278.in"), tmp_path / "a.proof"
-    whole, rng = prove(problem, jobs=2).tree, random.Random(1)
+    whole, rng = prove(problem, jobs=2, method="thesis").tree, random.Random(1)
     strikes = Strikes()
     for _ in range(15 * TORTURE):
         path.unlink(missing_ok=True)
-        strikes.run(lambda: prove(problem, jobs=2, backup=path), rng.randint(1, 8000))
+        strikes.run(lambda: prove(problem, jobs=2, backup=path, method="thesis"),
+                    rng.randint(1, 8000))
         assert set(os.listdir(tmp_path)) <= {"a.proof"}
         if path.exists():
             half = Proof.load(path)

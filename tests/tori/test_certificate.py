@@ -8,6 +8,7 @@ from fractions import Fraction as Q
 import pytest
 
 from converse import check
+from converse.model.map import THESIS, SymplecticMap
 from converse.model.problem import Problem
 from converse.storage.files import ConverseError
 from converse.tori import certificate
@@ -19,9 +20,11 @@ from converse.tori.rotation import read_rotation
 @pytest.fixture(scope="module", params=["surface", "range"])
 def proof(request):
     if request.param == "range":
-        problem = Problem.patch(["0.35", "-0.01"], [["0.3", "0"]], [(1, 0), (2, 0, Q(1, 3))])
+        problem = Problem(SymplecticMap([(1, 0), (2, 0, Q(1, 3))], ["0.35", "-0.01"],
+                                        [["0.3", "0"]]))
         return prove(find(problem, read_rotation("golden", 1)))
-    return prove(find(Problem.patch(["0.01", "0.01", "0.02"]), read_rotation("T49", 2)))
+    return prove(find(Problem(SymplecticMap(THESIS, ["0.01", "0.01", "0.02"])),
+                      read_rotation("T49", 2)))
 
 
 @pytest.mark.parametrize("name", ["torus.txt", "torus.gz"])
@@ -40,7 +43,8 @@ def test_what_was_written_is_read(proof, name, tmp_path):
 
 def test_a_found_torus_is_in_its_certificate():
     """Its modes stay in their order, and coefficients that are 0 are not in the file."""
-    torus = find(Problem.patch(["0.35"], [["0.3"]], [(1, 0)]), read_rotation("golden", 1))[0]
+    torus = find(Problem(SymplecticMap([(1, 0)], ["0.35"], [["0.3"]])),
+                 read_rotation("golden", 1))[0]
     numbers = torus.numbers.copy()
     numbers[:, 1, :, 2] = 0
     torus = dataclasses.replace(torus, numbers=numbers, piece=(Q(-1), Q(1)))

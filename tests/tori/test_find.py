@@ -8,7 +8,8 @@ import mpmath
 import numpy as np
 import pytest
 
-from converse.model.problem import LINE, Problem
+from converse.model.map import LINE, MuldoonMap, SymplecticMap
+from converse.model.problem import Problem
 from converse.tori import continuation, refinement
 from converse.tori.continuation import Way
 from converse.tori.find import MOST_DEGREE, NotFound, _Pieces, find, series_rate
@@ -22,19 +23,22 @@ GOLDEN = read_rotation("golden")
 DIGITS = 50
 
 POTENTIALS = {
-    "standard map": (Problem("0.5", 0, 0), "golden"),
-    "a wave with a phase": (Problem.patch(["0.15"], (), [(2, 0, Fraction(1, 7))]), "silver"),
-    "two waves": (Problem.patch(["0.3", "-0.04"], (), [(1, 0), (2, 0, Fraction(1, 6))]), "golden"),
-    "the thesis's line": (Problem("0.02243", "0.02243", "0.04486"), "T49"),
-    "phases": (Problem.patch(["0.05", "0.04", "-0.02"], (), [
-        (1, 0), (0, 1, Fraction(1, 8)), (1, -1, Fraction(1, 3))]), "spiral"),
-    "a sublattice": (Problem.patch(["0.01", "0.003"], (), [(2, 0), (1, 3, Fraction(1, 5))]), "T49"),
-    "a single direction": (Problem.patch(["0.05"], (), [(1, 1, Fraction(1, 5))]), "T49")}
+    "standard map": (Problem(MuldoonMap("0.5", 0, 0)), "golden"),
+    "a wave with a phase": (Problem(SymplecticMap([(2, 0, Fraction(1, 7))], ["0.15"])), "silver"),
+    "two waves": (Problem(SymplecticMap([(1, 0), (2, 0, Fraction(1, 6))], ["0.3", "-0.04"])),
+                  "golden"),
+    "the thesis's line": (Problem(MuldoonMap("0.02243", "0.02243", "0.04486")), "T49"),
+    "phases": (Problem(SymplecticMap([
+        (1, 0), (0, 1, Fraction(1, 8)), (1, -1, Fraction(1, 3))], ["0.05", "0.04", "-0.02"])),
+               "spiral"),
+    "a sublattice": (Problem(SymplecticMap([(2, 0), (1, 3, Fraction(1, 5))], ["0.01", "0.003"])),
+                     "T49"),
+    "a single direction": (Problem(SymplecticMap([(1, 1, Fraction(1, 5))], ["0.05"])), "T49")}
 
 
 def line(epsilon):
     a = LINE * Fraction(epsilon)
-    return Problem(a, a, 2 * a)
+    return Problem(MuldoonMap(a, a, 2 * a))
 
 
 def exact_torus(torus):
@@ -92,7 +96,7 @@ def test_orbits_that_start_on_the_torus_stay_on_it(name):
 def test_the_orbit_has_the_rotation_number_asked_for():
     """By the mean of x_{m+1} - x_m with a weight that is flat at both ends (Das, Saiki, Sander and
     Yorke)."""
-    torus = find(Problem("0.9", 0, 0), GOLDEN)
+    torus = find(Problem(MuldoonMap("0.9", 0, 0)), GOLDEN)
     x, J = torus.x([1.0])[0], torus.J([1.0])[0]
     count = 3000
     t = np.arange(1, count) / count
@@ -106,8 +110,8 @@ def test_the_orbit_has_the_rotation_number_asked_for():
         (5 ** 0.5 - 1) / 2, abs=1e-9)
 
 
-@pytest.mark.parametrize("problem, rotation", [(Problem("0.98", 0, 0), "golden"),
-                                               (Problem("3", 0, 0), "golden")])
+@pytest.mark.parametrize("problem, rotation", [(Problem(MuldoonMap("0.98", 0, 0)), "golden"),
+                                               (Problem(MuldoonMap("3", 0, 0)), "golden")])
 def test_beyond_the_frontier_nothing_is_found(problem, rotation):
     with pytest.raises(NotFound) as caught:
         find(problem, read_rotation(rotation), points=1 << 15)
@@ -117,27 +121,28 @@ def test_beyond_the_frontier_nothing_is_found(problem, rotation):
 
 
 def test_a_torus_is_continued_from_another_one():
-    first = find(Problem("0.6", 0, 0), GOLDEN)
-    direct, continued = (find(Problem("0.8", 0, 0), GOLDEN, start=start) for start in (None, first))
+    first = find(Problem(MuldoonMap("0.6", 0, 0)), GOLDEN)
+    direct, continued = (find(Problem(MuldoonMap("0.8", 0, 0)), GOLDEN, start=start)
+                         for start in (None, first))
     theta = np.linspace(0, 6, 9)[:, None]
     assert continued.x(theta) == pytest.approx(direct.x(theta), abs=1e-10)
     with pytest.raises(ValueError, match="another rotation"):
-        find(Problem("0.8", 0, 0), read_rotation("silver"), start=first)
+        find(Problem(MuldoonMap("0.8", 0, 0)), read_rotation("silver"), start=first)
     with pytest.raises(ValueError, match="waves"):
-        find(Problem.patch(["0.3"], (), [(2, 0)]), GOLDEN, start=first)
+        find(Problem(SymplecticMap([(2, 0)], ["0.3"])), GOLDEN, start=first)
 
 
 def test_a_grid_that_is_too_small_is_said():
     """Not only where the torus would seem to break up."""
     with pytest.raises(NotFound, match="farther on it needs more than the 256 points that are"):
-        find(Problem("0.9", 0, 0), GOLDEN, points=256)
+        find(Problem(MuldoonMap("0.9", 0, 0)), GOLDEN, points=256)
 
 
 def test_the_decay_is_told_only_if_it_ends_before():
     with pytest.raises(NotFound, match=r"allowed \(--points\)$"):
-        find(Problem("0.97", 0, 0), GOLDEN, points=1 << 12)
+        find(Problem(MuldoonMap("0.97", 0, 0)), GOLDEN, points=1 << 12)
     with pytest.raises(NotFound, match=r"allowed \(--points\); the rate .* would be 0 near 0.97"):
-        find(Problem("0.98", 0, 0), GOLDEN, points=1 << 15)
+        find(Problem(MuldoonMap("0.98", 0, 0)), GOLDEN, points=1 << 15)
 
 
 def test_refinement_begins_with_what_is_below_the_noise(monkeypatch):
@@ -151,23 +156,23 @@ def test_refinement_begins_with_what_is_below_the_noise(monkeypatch):
 
     monkeypatch.setattr(sys.modules["converse.tori.find"], "refined", refined)
     with pytest.raises(KeyboardInterrupt):
-        find(Problem("0.965", 0, 0), GOLDEN)
+        find(Problem(MuldoonMap("0.965", 0, 0)), GOLDEN)
     assert begun[0] < 1e-12
 
 
 def test_what_does_not_go_together_is_refused():
     with pytest.raises(TypeError, match=r"read_rotation\('golden'\)"):
-        find(Problem("0.5", 0, 0), "golden")
+        find(Problem(MuldoonMap("0.5", 0, 0)), "golden")
     with pytest.raises(TypeError, match="is a Problem, such as converse.read_input returns, not"):
         find("standard-golden.in", GOLDEN)
     with pytest.raises(ValueError, match="margin"):
-        find(Problem("0.5", 0, 0), GOLDEN, margin=1e300)
+        find(Problem(MuldoonMap("0.5", 0, 0)), GOLDEN, margin=1e300)
     with pytest.raises(ValueError, match="2 components.*1 angle"):
-        find(Problem("0.5", 0, 0), read_rotation("T49"))
+        find(Problem(MuldoonMap("0.5", 0, 0)), read_rotation("T49"))
     with pytest.raises(ValueError, match="no wave"):
-        find(Problem(0, 0, 0), GOLDEN)
+        find(Problem(MuldoonMap(0, 0, 0)), GOLDEN)
     with pytest.raises(ValueError, match="2 parameters"):
-        find(Problem(("0.1", "0.2"), ("0.1", "0.2"), 0), read_rotation("T49"))
+        find(Problem(MuldoonMap(("0.1", "0.2"), ("0.1", "0.2"), 0)), read_rotation("T49"))
 
 
 @pytest.mark.parametrize("waves, frame", [
@@ -175,7 +180,7 @@ def test_what_does_not_go_together_is_refused():
     ([(2, 1), (1, 3)], ((1, 1), (1, -1))), ([(3, 0), (0, 2), (1, 1)], ((2, 1), (1, -1)))])
 def test_a_mesh_tells_its_modes_apart(waves, frame):
     """Coefficients of random modes in its box are found again in its values, summed by hand."""
-    potential, _ = family(Problem.patch(["0.1"] * len(waves), (), waves))
+    potential, _ = family(Problem(SymplecticMap(waves, ["0.1"] * len(waves))))
     mesh = Mesh(potential, read_rotation("T49"), frame, (16, 8))
     inside = mesh.k[:, mesh.inside].T
     assert len({tuple(k) for k in inside}) == len(inside)
@@ -249,8 +254,8 @@ def test_a_small_change_of_the_error_is_known_to_all_digits(name):
 
 def test_what_is_left_out_of_a_torus_is_about_what_it_may_be():
     """Of E's norm: it grows by no more than it is said to, with fewer modes."""
-    potential, _ = family(Problem("0.8", 0, 0))
-    torus = find(Problem("0.8", 0, 0), GOLDEN, margin=1e8)
+    potential, _ = family(Problem(MuldoonMap("0.8", 0, 0)))
+    torus = find(Problem(MuldoonMap("0.8", 0, 0)), GOLDEN, margin=1e8)
     mesh = Mesh(potential, GOLDEN, default_frame(potential), (512,))
     aim = Plan(((1,),), (1,), 200, 0.05, 1e-8, 0.1)
 
@@ -265,7 +270,7 @@ def test_what_is_left_out_of_a_torus_is_about_what_it_may_be():
 
 
 def test_a_torus_that_is_accurate_enough_is_not_corrected(monkeypatch):
-    potential, _ = family(Problem("0.8", 0, 0))
+    potential, _ = family(Problem(MuldoonMap("0.8", 0, 0)))
     mesh = Mesh(potential, GOLDEN, default_frame(potential), (64,))
     modes = Modes(mesh, mesh.inside & (abs(mesh.k).max(0) > 0))
     torus = Torus(potential, None, GOLDEN, 60, modes.k.T, numbers_of(
@@ -282,9 +287,9 @@ def test_a_torus_that_is_accurate_enough_is_not_corrected(monkeypatch):
 def test_a_grid_that_memory_does_not_hold_is_refused(monkeypatch):
     monkeypatch.setattr(continuation, "free_memory", lambda: 10 ** 5)
     with pytest.raises(NotFound, match="takes a grid of 1024 points and 0.00133 GB of memory"):
-        find(Problem("0.9", 0, 0), GOLDEN)
+        find(Problem(MuldoonMap("0.9", 0, 0)), GOLDEN)
     with pytest.raises(NotFound, match="takes a grid of .* points and") as caught:
-        find(Problem(("0.1", "0.5"), 0, 0), GOLDEN)
+        find(Problem(MuldoonMap(("0.1", "0.5"), 0, 0)), GOLDEN)
     assert caught.value.reached == 1
 
 
@@ -309,8 +314,10 @@ def test_more_modes_begin_with_the_coefficients_of_fewer():
 
 @pytest.mark.slow
 @pytest.mark.parametrize("problem, rotation, count", [
-    (Problem(("0", "0.5"), 0, 0), "golden", 1), (Problem(("0.3", "0.8"), 0, 0), "golden", 2),
-    (Problem.patch(["0.02", "0.01"], [["0.005", "-0.005"]], [(1, 0), (0, 1, Fraction(1, 3))]),
+    (Problem(MuldoonMap(("0", "0.5"), 0, 0)), "golden", 1),
+    (Problem(MuldoonMap(("0.3", "0.8"), 0, 0)), "golden", 2),
+    (Problem(SymplecticMap([(1, 0), (0, 1, Fraction(1, 3))], ["0.02", "0.01"],
+                           [["0.005", "-0.005"]])),
      "T49", 1)])
 def test_pieces_of_a_range(problem, rotation, count):
     """They tile it, and at each s they are the torus of these amplitudes."""
@@ -328,7 +335,7 @@ def test_pieces_of_a_range(problem, rotation, count):
         for s in (low, (low + 3 * high) / 4, high):
             amplitude = [p + s * q for p, q in zip(potential.amplitude, part)]
             if any(amplitude):
-                alone = find(Problem.patch(amplitude, (), potential.waves), rotation)
+                alone = find(Problem(SymplecticMap(potential.waves, amplitude)), rotation)
                 assert torus.x(theta, float(s)) == pytest.approx(alone.x(theta), abs=1e-7)
                 assert torus.J(theta, float(s)) == pytest.approx(alone.J(theta), abs=1e-7)
     with pytest.raises(ValueError, match="outside"):
@@ -341,7 +348,7 @@ def test_pieces_are_as_long_as_their_degree_permits(ends, monkeypatch):
     residuals, words, errors = [], [], refinement.errors
     monkeypatch.setattr(refinement, "errors",
                         lambda *given: residuals.append(given) or errors(*given))
-    pieces = find(Problem(ends, 0, 0), GOLDEN, progress=words.append)
+    pieces = find(Problem(MuldoonMap(ends, 0, 0)), GOLDEN, progress=words.append)
     assert len(pieces) == len(residuals) == 2
     assert sum(word.startswith("looking for the tori of") for word in words) == 2
     assert max(torus.degree for torus in pieces) in range(12, MOST_DEGREE + 1)
@@ -351,7 +358,7 @@ def test_a_piece_that_is_too_long_is_cut(monkeypatch):
     """If the end of the tori is thought to be far away."""
     words = []
     monkeypatch.setattr(_Pieces, "_length", lambda self, low, *_: 1 - low)
-    pieces = find(Problem(("0.3", "0.85"), 0, 0), GOLDEN, progress=words.append)
+    pieces = find(Problem(MuldoonMap(("0.3", "0.85"), 0, 0)), GOLDEN, progress=words.append)
     ends = [torus.piece for torus in pieces]
     assert [ends[0][0], *(high for _, high in ends)] == [*(low for low, _ in ends), 1]
     assert len(pieces) < sum(word.startswith("looking for the tori of") for word in words)
@@ -365,7 +372,7 @@ def test_points_of_sigma_leave_room_for_powers_beyond_the_degree(degree, layers)
 
 def test_rounded_coefficients_leave_what_the_theorem_needs():
     """Those that count most, at the edge of a wide strip, too."""
-    potential, _ = family(Problem("0.8", 0, 0))
+    potential, _ = family(Problem(MuldoonMap("0.8", 0, 0)))
     like = Mesh(potential, GOLDEN, default_frame(potential), (8,))
     aim = Plan(((1,),), (1,), 300, 0.1, 1e-20, 0.3)
     mesh = aim.mesh(like)
@@ -376,7 +383,7 @@ def test_rounded_coefficients_leave_what_the_theorem_needs():
 
 def test_a_range_that_goes_too_far():
     with pytest.raises(NotFound, match="no torus of this rotation number") as caught:
-        find(Problem(("0.5", "1.2"), 0, 0), GOLDEN, points=1 << 11)
+        find(Problem(MuldoonMap(("0.5", "1.2"), 0, 0)), GOLDEN, points=1 << 11)
     last, = caught.value.amplitude
     assert 0.8 < last < 0.9717
     assert caught.value.reached == pytest.approx((last - 0.5) / 0.7)
@@ -391,11 +398,11 @@ def test_the_line_of_the_thesis_up_to_0_006():
 def test_what_is_going_on_is_told():
     """Of a single torus and of a range: where it is, and how much work."""
     words = []
-    find(Problem("0.2", 0, 0), GOLDEN, progress=words.append)
+    find(Problem(MuldoonMap("0.2", 0, 0)), GOLDEN, progress=words.append)
     assert re.fullmatch(r"looking for the torus at 0\.\d+, on \d+ points", words[0])
     assert re.fullmatch(r"refining a torus of \d+ modes", words[-1])
     words.clear()
-    find(Problem(("0.09", "0.11"), 0, 0), GOLDEN, progress=words.append)
+    find(Problem(MuldoonMap(("0.09", "0.11"), 0, 0)), GOLDEN, progress=words.append)
     assert re.fullmatch(r"looking for the tori of -1 <= s <= 1, on \d+ points", words[-2])
     assert re.fullmatch(r"refining the tori of -1 <= s <= 1, \d+ modes of degree \d+", words[-1])
 

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from converse import check
+from converse.model.map import THESIS, SymplecticMap
 from converse.model.problem import Problem
 from converse.storage.files import ConverseError
 from converse.tori import certificate, proved
@@ -20,12 +21,12 @@ GOLDEN, T49 = read_rotation("golden", 1), read_rotation("T49", 2)
 
 
 def standard(k):
-    return Problem.patch([k], (), [(1, 0)])
+    return Problem(SymplecticMap([(1, 0)], [k]))
 
 
 def line(eps):
     c = Q("11.21436") * Q(eps)
-    return Problem.patch([c, c, 2 * c])
+    return Problem(SymplecticMap(THESIS, [c, c, 2 * c]))
 
 
 @pytest.fixture(scope="module")
@@ -40,12 +41,14 @@ def surface():
 
 @pytest.mark.parametrize("problem, rotation", [
     (standard("0.5"), GOLDEN), (standard("-0.8"), GOLDEN), (line("0.002"), T49),
-    (Problem.patch(["0.3", "0.04"], (), [(1, 0), (2, 0, Q(1, 3))]), GOLDEN),
-    (Problem.patch(["0.1"], (), [(2, 0, Q(-1, 5))]), read_rotation("silver", 1)),
-    (Problem.patch(["0.03", "0.02", "-0.01"], (), [(1, 0), (0, 1, Q(1, 8)), (1, -1, Q(-1, 10))]),
+    (Problem(SymplecticMap([(1, 0), (2, 0, Q(1, 3))], ["0.3", "0.04"])), GOLDEN),
+    (Problem(SymplecticMap([(2, 0, Q(-1, 5))], ["0.1"])), read_rotation("silver", 1)),
+    (Problem(SymplecticMap([(1, 0), (0, 1, Q(1, 8)), (1, -1, Q(-1, 10))],
+                           ["0.03", "0.02", "-0.01"])),
      read_rotation("spiral", 2)),
-    (Problem.patch([0, 0, "0.09"]), T49),               # waves of one direction in two angles
-    (Problem.patch(["1e-300"], (), [(1, 0)]), GOLDEN),
+    # waves of one direction in two angles
+    (Problem(SymplecticMap(THESIS, [0, 0, "0.09"])), T49),
+    (Problem(SymplecticMap([(1, 0)], ["1e-300"])), GOLDEN),
     pytest.param(line("0.004"), T49, marks=pytest.mark.slow)])
 def test_tori_are_proved(problem, rotation):
     proof = prove(problem, rotation)
@@ -161,7 +164,7 @@ def test_a_strip_that_does_not_suit_proves_nothing(circle, rho, words):
 
 # ---- ranges
 
-RANGE = Problem.patch(["0.3"], [["0.2"]], [(1, 0)])
+RANGE = Problem(SymplecticMap([(1, 0)], ["0.3"], [["0.2"]]))
 
 
 @pytest.fixture(scope="module")
@@ -171,7 +174,7 @@ def pieces():
 
 @pytest.fixture(scope="module")
 def two():
-    found = find(Problem.patch(["0.45"], [["0.35"]], [(1, 0)]), GOLDEN)
+    found = find(Problem(SymplecticMap([(1, 0)], ["0.45"], [["0.35"]])), GOLDEN)
     assert len(found) == 2
     return found
 
@@ -231,7 +234,8 @@ def test_what_one_process_cannot_prove_is_not_proved(two):
 
 
 @pytest.mark.parametrize("problem, rotation", [
-    pytest.param(Problem.patch(["0.01", "0.01", "0.02"], [["0.002", "0.002", "0.004"]]), T49,
+    pytest.param(Problem(SymplecticMap(THESIS, ["0.01", "0.01", "0.02"],
+                                       [["0.002", "0.002", "0.004"]])), T49,
                  marks=pytest.mark.slow)])
 def test_ranges_of_two_angles_are_proved(problem, rotation):
     proof = prove(problem, rotation)
@@ -259,7 +263,7 @@ def test_a_torus_that_is_not_accurate_enough_is_found_again(circle, monkeypatch,
 def test_no_theorem_is_claimed_that_was_not_asked_for(circle, monkeypatch):
     """A proof for the middle of a range is none for the range, nor one for another map."""
     monkeypatch.setattr(proved, "find", lambda *_, **__: circle)
-    for problem in (Problem.patch(["0.8"], [["0.01"]], [(1, 0)]), standard("0.81")):
+    for problem in (Problem(SymplecticMap([(1, 0)], ["0.8"], [["0.01"]])), standard("0.81")):
         with pytest.raises(ConverseError, match="not of the problem"):
             prove(problem, GOLDEN)
     assert prove(standard("0.8"), GOLDEN).torus.potential == circle.potential

@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 from converse import Problem
+from converse.model.map import SymplecticMap
 from converse.tori import NotProved, find, prove, read_rotation
 
 GOLDEN = (math.sqrt(5) - 1) / 2
@@ -402,7 +403,7 @@ def test_the_true_torus_is_as_near_as_is_proved():
     zero, is within the distance of the last one.  The mean of the theorem's u, at most the
     distance, is a translation, which moves u by 1 + l0 times as much."""
     case = CASES["standard"]
-    torus = find(Problem.patch(["0.5"], (), [(1, 0)]), read_rotation("golden"))
+    torus = find(Problem(SymplecticMap([(1, 0)], ["0.5"])), read_rotation("golden"))
     last, cut = None, .6
     while True:
         kept = torus.k[:, 0] <= cut * torus.k.max()

@@ -9,7 +9,8 @@ import mpmath
 import numpy as np
 import pytest
 
-from converse.model.problem import LINE, Problem
+from converse.model.map import LINE, MuldoonMap, SymplecticMap
+from converse.model.problem import Problem
 from converse.prover.run import prove as prove_no_tori
 from converse.prover.settings import THEOREM
 from converse.tori import NotFound, NotProved, find, prove, read_rotation
@@ -18,11 +19,12 @@ MORE = int(os.environ.get("CONVERSE_TORTURE", "1"))
 DIGITS = 50
 
 CASES = {
-    "golden": (Problem.patch(["0.8"], waves=[(1, 0)]), read_rotation("golden")),
-    "phase": (Problem.patch(["0.2", "-0.05"], waves=[(1, 0, F(1, 3)), (2, 0)]),
+    "golden": (Problem(SymplecticMap([(1, 0)], ["0.8"])), read_rotation("golden")),
+    "phase": (Problem(SymplecticMap([(1, 0, F(1, 3)), (2, 0)], ["0.2", "-0.05"])),
               read_rotation("silver")),
-    "line": (Problem(*(LINE * F("0.002") * m for m in (1, 1, 2))), read_rotation("T49")),
-    "phases": (Problem.patch(["0.04", "0.03"], waves=[(1, 0, F(1, 5)), (1, 1)]),
+    "line": (Problem(MuldoonMap(*(LINE * F("0.002") * m for m in (1, 1, 2)))),
+             read_rotation("T49")),
+    "phases": (Problem(SymplecticMap([(1, 0, F(1, 5)), (1, 1)], ["0.04", "0.03"])),
                read_rotation("spiral")),
 }
 
@@ -136,9 +138,9 @@ def has_none(problem):
 
 @pytest.mark.slow
 @pytest.mark.parametrize("problem, rotations, low, high", [
-    (lambda k: Problem.patch([k], waves=[(1, 0)]), ["golden", "silver"], 0.8, 1.2),
-    (lambda e: Problem(*(LINE * e * m for m in (1, 1, 2))), ["T49"], 0.001, 0.03),
-    (lambda e: Problem(LINE * e, 0, LINE * e), ["spiral", "T49"], 0.001, 0.06),
+    (lambda k: Problem(SymplecticMap([(1, 0)], [k])), ["golden", "silver"], 0.8, 1.2),
+    (lambda e: Problem(MuldoonMap(*(LINE * e * m for m in (1, 1, 2)))), ["T49"], 0.001, 0.03),
+    (lambda e: Problem(MuldoonMap(LINE * e, 0, LINE * e)), ["spiral", "T49"], 0.001, 0.06),
 ], ids=["standard", "line", "b = 0"])
 def test_never_both(problem, rotations, low, high):
     """No amplitude has a torus and has none; some have one, and some have none."""

@@ -1,0 +1,142 @@
+"""What a map does to points, in doubles: images, orbits, Jacobians, phase portraits."""
+
+from numbers import Integral
+from typing import TYPE_CHECKING, Any, Mapping, Optional, Tuple
+
+if TYPE_CHECKING:
+    import numpy as np
+
+
+class Dynamics:
+    """The map y' = y + J', J' = J - eps grad V(y) of a potential V.
+
+    The class that inherits these methods has `dimension`, the number n of angles, and `period`,
+    that of every angle and momentum.  No method reduces its results modulo the period.
+    """
+
+    dimension: int
+    period: float
+    letters: str                        # the names of an angle and of a momentum
+
+    def _derivatives(self, y: "np.ndarray") -> "Tuple[np.ndarray, np.ndarray]":
+        """The gradient (m, n) and the Hessian (m, n, n) of V at points (m, n)."""
+        raise NotImplementedError
+
+    def map(self, y: Any, J: Any, eps: float = 1.0) -> "Tuple[np.ndarray, np.ndarray]":
+        """The images of points.
+
+        Parameters
+        ----------
+        y, J
+            Angles and momenta: arrays (..., n) of any number of points.  With one angle the arrays
+            have any shape, and numbers are taken.
+        eps
+            The potential is multiplied by this number.
+
+        Returns
+        -------
+        y', J'
+            Arrays of the shape of y and J.
+        """
+        y, J, gradient, _ = self._at(y, J, eps)
+        J = J - gradient
+        return y + J, J
+
+    def inverse(self, y: Any, J: Any, eps: float = 1.0) -> "Tuple[np.ndarray, np.ndarray]":
+        """The points whose images these are; arguments and results as of map()."""
+        import numpy as np
+
+        y, J = np.broadcast_arrays(np.asarray(y, float), np.asarray(J, float))
+        before, J, gradient, _ = self._at(y - J, J, eps)
+        return before, J + gradient
+
+    def jacobian(self, y: Any, eps: float = 1.0) -> "np.ndarray":
+        """The derivative of map() at y, which does not depend on J: array (..., 2n, 2n), angles
+        before momenta, that is, [[1 - eps V'', 1], [-eps V'', 1]]."""
+        y, _, _, bend = self._at(y, 0.0, eps)
+        n = self.dimension
+        shape = y.shape[:-1] if y.shape[-1:] == (n,) else y.shape
+        return jacobians(bend).reshape(*shape, 2 * n, 2 * n)
+
+    def orbit(self, y: Any, J: Any, steps: int,
+              eps: float = 1.0) -> "Tuple[np.ndarray, np.ndarray]":
+        """The orbits of points: arrays (|steps| + 1, ...), the first row the points themselves;
+        backwards if steps < 0."""
+        import numpy as np
+
+        steps = _steps(steps)
+        y, J = np.broadcast_arrays(np.asarray(y, float), np.asarray(J, float))
+        ys, Js = (np.empty((abs(steps) + 1, *y.shape)) for _ in range(2))
+        ys[0], Js[0] = y, J
+        step = self.map if steps > 0 else self.inverse
+        for j in range(abs(steps)):
+            ys[j + 1], Js[j + 1] = step(ys[j], Js[j], eps)
+        return ys, Js
+
+    def portrait(self, y: Any = None, J: Any = None, steps: int = 500, *, eps: float = 1.0,
+                 plane: Optional[Tuple[str, str]] = None,
+                 within: Optional[Mapping[str, Tuple[float, float]]] = None,
+                 ax: Any = None, **style: Any) -> Any:
+        """A phase portrait: the orbits of initial points, modulo the period.
+
+        Parameters
+        ----------
+        y, J
+            Initial points as for orbit(); by default 20, spread evenly.
+        steps
+            Of each orbit; backwards if negative.
+        eps
+            As of map().
+        plane
+            The coordinates to the right and upwards.  With one angle "y" and "J" (with a potential
+            of converse.orbits "x" and "p").  With two angles two of "y0", "y1", "J0", "J1", by
+            default "y0" and "J0": the portrait is a projection.
+        within
+            {name: (middle, half width)} of other coordinates.  Only the points there are drawn,
+            which is a slice.
+        ax
+            Axes of matplotlib, which are drawn into and returned; with None a Figure is returned.
+        style
+            As for Axes.plot; color=None gives each orbit a colour of its own.
+
+        Raises
+        ------
+        ValueError
+            The arguments make no portrait.
+        ConverseError
+            There is no matplotlib.
+        """
+        from ..orbits.portrait import portrait
+        return portrait(self, eps, y, J, _steps(steps), plane, within, ax, style)
+
+    def _at(self, y, J, eps):
+        """y and J of one shape, there eps times the gradient, and eps V'' as an array (m, n, n)."""
+        import numpy as np
+
+        if not np.isfinite(eps):
+            raise ValueError("eps is a finite number, not %r" % (eps,))
+        y, J = np.broadcast_arrays(np.asarray(y, float), np.asarray(J, float))
+        if self.dimension == 2 and y.shape[-1:] != (2,):
+            raise ValueError("points of two angles are arrays of shape (..., 2), not %r"
+                             % (y.shape,))
+        gradient, bend = self._derivatives(y.reshape(-1, self.dimension))
+        return y, J, eps * gradient.reshape(y.shape), eps * bend
+
+
+def jacobians(bend: "np.ndarray") -> "np.ndarray":
+    """The derivatives of the map at points where eps V'' is bend (m, n, n): array (m, 2n, 2n),
+    angles before momenta."""
+    import numpy as np
+
+    n = bend.shape[1]
+    step = np.empty((len(bend), 2 * n, 2 * n))
+    step[:, :n, n:] = step[:, n:, n:] = np.eye(n)
+    step[:, n:, :n] = -bend
+    step[:, :n, :n] = np.eye(n) - bend
+    return step
+
+
+def _steps(steps):
+    if not isinstance(steps, Integral) or isinstance(steps, bool) or abs(steps) >= 2 ** 31:
+        raise ValueError("steps: a whole number below 2^31 in size, not %.200r" % (steps,))
+    return int(steps)

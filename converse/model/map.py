@@ -1,0 +1,392 @@
+"""The map: the value that proofs, tori, orbits and the maps of parameter space take.
+
+    from converse import FourierMap, StandardMap
+    StandardMap("0.9")
+    FourierMap({(1, 0): {"K": 1}, (0, 1): {"K": 1}, (1, 1): "0.3"}, K=("0.6", "0.602"))
+"""
+
+import math
+import re
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, Dict, Mapping, Sequence, Tuple, Union
+
+from .dynamics import Dynamics
+from .exact import Ends, Number, exact, is_decimal, outward, range_text, short_text
+from .potential import FourierSum, Wave
+
+THESIS = (1, 0), (0, 1), (1, 1)         # the harmonics of a, b and c
+# The line of Muldoon's thesis is a = b = c/2 = LINE epsilon: this decimal defines epsilon here.
+# The thesis's own constant is 2 pi^2/M = 11.2143598191..., M = sqrt(207 + 33 sqrt 33)/(8 sqrt 2),
+# which converse.orbits has.
+LINE = Fraction("11.21436")
+PLACES = 40                             # to which an end that is not a finite decimal is enclosed
+MOST_WAVES, MOST_PARAMETERS, HIGHEST = 16, 3, 100       # the last: of k and of a frame
+NAME = re.compile(r"[^\W\d]\w{0,30}(\[\d+\])?")      # of a parameter
+CONSTANT = "constant"                   # the part of an amplitude that no parameter moves
+
+Range = Tuple[Number, Number]           # Ends are made of it
+Numbers = Tuple[Fraction, ...]
+Amplitude = Union[Number, Range, Mapping[str, Number]]
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class SymplecticMap(Dynamics):
+    """A symplectic twist map of the torus in one or two angles, or a family of such maps:
+
+        y' = y + J', J' = J - grad V(y),    V(y) = - sum of p[j] sin(k[j].y + pi phase[j]),
+
+    y and J of period 2 pi.  The amplitudes are p = amplitude + sum over m of s[m] slopes[m], and
+    the parameter s[m] lies in the range ranges[m].  StandardMap, FroeschleMap, MuldoonMap and
+    FourierMap make such values, and SymplecticMap.read does from a file.
+
+    Parameters
+    ----------
+    harmonics
+        (k0, k1) or (k0, k1, phase) of each harmonic: k integers up to 100, the phase in units of
+        pi.  If all k1 are 0, the map has one angle.
+    amplitude
+        Of each harmonic where all parameters are 0, an exact number.
+    slopes
+        For each parameter the factor by which it moves each amplitude.
+    ranges
+        Of each parameter, (low, high) or one number; by default (-1, 1).
+    names
+        Of the parameters, or none.
+    name
+        Of the map, for reports.
+
+    Numbers are exact: ints, Fractions, Decimals, and strings such as "0.3085", "1.25e-3" and
+    "63/64".  Two values are equal if they are the same family of maps, whatever their parameters
+    are called.
+
+    Raises
+    ------
+    TypeError, ValueError
+        An argument is not as described; the text names the argument and the reason.
+    """
+
+    harmonics: Tuple[Wave, ...]
+    amplitude: Numbers
+    slopes: Tuple[Numbers, ...] = ()
+    ranges: Tuple[Ends, ...] = ()
+    names: Tuple[str, ...] = ()
+    name: str = ""
+
+    period, letters = 2 * math.pi, "yJ"
+
+    if TYPE_CHECKING:                   # the arguments; above are the values made of them
+        def __init__(self, harmonics: Sequence[tuple], amplitude: Sequence[Number],
+                     slopes: Sequence[Sequence[Number]] = (),
+                     ranges: Sequence[Union[Range, Number]] = (), names: Sequence[str] = (),
+                     name: str = "") -> None: ...
+
+    def __post_init__(self) -> None:
+        harmonics, amplitude, slopes = _checked(self.harmonics, self.amplitude, self.slopes)
+        ranges = [ends_of("the range of parameter %d" % m, ends)
+                  for m, ends in enumerate(self.ranges or [(-1, 1)] * len(slopes), 1)]
+        names = tuple(self.names)
+        for name in names:
+            if not isinstance(name, str) or not NAME.fullmatch(name):
+                raise ValueError("a parameter's name is a letter and then letters and digits, not "
+                                 "%.40r" % (name,))
+        if harmonics == tuple((*k, Fraction(0)) for k in THESIS) and not slopes:
+            slopes = tuple(tuple(Fraction(m == j) for j in range(3)) for m in range(3))
+            amplitude, ranges, names = (Fraction(0),) * 3, [(p, p) for p in amplitude], tuple("abc")
+        if len(ranges) != len(slopes) or names and len(set(names)) != len(slopes):
+            raise ValueError("there are %d parameters, %d ranges and %d different names of them"
+                             % (len(slopes), len(ranges), len(set(names))))
+        for name, value in (("harmonics", harmonics), ("amplitude", amplitude), ("slopes", slopes),
+                            ("ranges", tuple(ranges)), ("names", names)):
+            object.__setattr__(self, name, value)
+
+    @classmethod
+    def read(cls, source: Any) -> "SymplecticMap":
+        """The map of an input file (docs/format.md): the five lines of 1989, or JSON of harmonics.
+        InputError: the file is neither."""
+        from .inputs import read_input
+        return read_input(source).map
+
+    def _key(self):
+        middle, parts = self.patch
+        return self.harmonics, middle, tuple(filter(any, parts))
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, SymplecticMap) and self._key() == other._key()
+
+    def __hash__(self) -> int:
+        return hash(self._key())
+
+    def __str__(self) -> str:
+        text = self.name or "%d harmonic%s" % (len(self.harmonics), "s" * (len(self.harmonics) > 1))
+        names = self.names or ["t[%d]" % m for m in range(1, 1 + len(self.slopes))]
+        return ", ".join([text] + ["%s = %s" % (name, range_text(*ends))
+                                   for name, ends in zip(names, self.ranges)])
+
+    def __repr__(self) -> str:
+        return "<SymplecticMap: %s>" % self
+
+    @property
+    def dimension(self) -> int:     # type: ignore[override]
+        """The number of angles: 1 if no harmonic depends on y1, else 2."""
+        return 2 if any(k1 for _, k1, _ in self.harmonics) else 1
+
+    @cached_property
+    def patch(self) -> Tuple[Numbers, Tuple[Numbers, ...]]:
+        """The amplitudes in the middle of all ranges, and for each parameter what it adds to each
+        amplitude at its upper end."""
+        return _patch(self.amplitude, self.slopes, self.ranges)
+
+    @cached_property
+    def enclosed(self) -> Tuple[Numbers, Tuple[Numbers, ...]]:
+        """As `patch`, in finite decimals, of ranges whose ends are moved outwards to 40 places
+        where they are not finite decimals.  ValueError: an amplitude is not a finite decimal."""
+        middle, parts = _patch(self.amplitude, self.slopes,
+                               [outward(*ends, PLACES) for ends in self.ranges])
+        for name, numbers in [("the amplitude", middle)] + [
+                ("the part of parameter %d" % m, part) for m, part in enumerate(parts, 1)]:
+            for j, number in enumerate(numbers, 1):
+                if not is_decimal(number):
+                    raise ValueError("%s of harmonic %d: %s is not a finite decimal"
+                                     % (name, j, number))
+        return middle, parts
+
+    # ---- other maps
+
+    def at(self, **values: Number) -> "SymplecticMap":
+        """The map, or smaller family, at these values of parameters, which may lie outside of their
+        ranges.  ValueError: a parameter has another name."""
+        for name in values:
+            if name not in self.names:
+                raise ValueError("there is no parameter %.40s: the parameters are %s"
+                                 % (name, ", ".join(self.names) or "none"))
+        return replace(self, ranges=tuple(
+            ends_of(name, values.get(name, ends)) for name, ends in zip(self.names, self.ranges))
+            ) if values else self
+
+    def scaled(self, factor: Number) -> "SymplecticMap":
+        """The map whose amplitudes are this number times as large."""
+        times = exact(factor)
+        return replace(
+            self, amplitude=tuple(times * p for p in self.amplitude),
+            slopes=tuple(tuple(times * p for p in slope) for slope in self.slopes),
+            name="%s times %s" % (short_text(times), self.name or "the map"))
+
+    def tied(self) -> "SymplecticMap":
+        """The family whose parameters move together, from all lower to all upper ends."""
+        amplitude, parts = self.enclosed
+        return SymplecticMap(self.harmonics, amplitude,
+                             [tuple(map(sum, zip(*parts)))] if parts else (), name=self.name)
+
+    def potential(self) -> FourierSum:
+        """V alone, exactly.  ValueError: a parameter has a range, and so no value."""
+        for name, (low, high) in zip(self.names or ["t"] * 3, self.ranges):
+            if low != high:
+                raise ValueError("%s goes from %s to %s; choose a value, such as .at(%s='%s')" % (
+                    name, short_text(low), short_text(high), name, short_text((low + high) / 2)))
+        return FourierSum(self.harmonics, self.patch[0], self.dimension)
+
+    # ---- in doubles
+
+    def _derivatives(self, y):
+        import numpy as np
+
+        n = self.dimension
+        k = np.array([wave[:n] for wave in self.harmonics], float)
+        angle = y @ k.T + np.pi * np.array([float(phase) for *_, phase in self.harmonics])
+        p = np.array([float(p) for p in self.potential().amplitude])
+        return -(p * np.cos(angle)) @ k, np.einsum("mj,ja,jb->mab", p * np.sin(angle), k, k)
+
+
+# ---- the maps of the literature
+
+def StandardMap(k: Union[Range, Number]) -> SymplecticMap:
+    """The standard map y' = y + J', J' = J + k sin y (Chirikov 1979).
+
+    Parameters
+    ----------
+    k
+        A number or a range (low, high), exact.
+    """
+    return SymplecticMap([(1, 0, "-1/2")], [0], [[1]], [k], ["k"], "standard map")
+
+
+def FroeschleMap(k: Union[Range, Number], b: Union[Range, Number]) -> SymplecticMap:
+    """The Froeschlé map J_i' = J_i + k sin y_i + b sin(y_0 + y_1), i = 0, 1 (Froeschlé 1972).
+
+    Parameters
+    ----------
+    k, b
+        A number or a range (low, high), exact.
+    """
+    return SymplecticMap([(1, 0, "-1/2"), (0, 1, "-1/2"), (1, 1, "-1/2")], [0] * 3,
+                         [[1, 1, 0], [0, 0, 1]], [k, b], ["k", "b"], "Froeschlé map")
+
+
+def MuldoonMap(a: Union[Range, Number, None] = None, b: Union[Range, Number, None] = None,
+               c: Union[Range, Number, None] = None, *,
+               epsilon: Union[Range, Number, None] = None, together: bool = False) -> SymplecticMap:
+    """The map of Muldoon's thesis, V(y) = -a sin y0 - b sin y1 - c sin(y0 + y1).
+
+    Parameters
+    ----------
+    a, b, c
+        Numbers or ranges (low, high), exact.
+    epsilon
+        In the place of a, b and c: a = b = c/2 = 11.21436 epsilon.
+    together
+        The three ranges are one parameter: the segment from all lower to all upper ends.
+    """
+    if not isinstance(together, bool):
+        raise TypeError("together must be True or False, not %r" % (together,))
+    if epsilon is not None:
+        if (a, b, c) != (None,) * 3:
+            raise ValueError("a map has a, b and c, or epsilon; give the ones or the other")
+        return SymplecticMap(THESIS, [0] * 3, [[LINE, LINE, 2 * LINE]], [epsilon], ["epsilon"],
+                             "Muldoon map")
+    ranges = [ends_of(name, ends) for name, ends in zip("abc", (a, b, c))]
+    made = SymplecticMap(THESIS, [0] * 3, [[1, 0, 0], [0, 1, 0], [0, 0, 1]], ranges,
+                         tuple("abc"), "Muldoon map")
+    return made.tied() if together else made
+
+
+def FourierMap(harmonics: Mapping[Any, Amplitude], *, name: str = "",
+               **parameters: Union[Range, Number]) -> SymplecticMap:
+    """A map of any potential that is a finite Fourier sum, V(y) = - sum of p sin(k.y + pi phase).
+
+        FourierMap({(1, 0): {"K": 1}, (0, 1): {"K": 1}, (1, 1, "1/2"): "0.3"}, K=("0.6", "0.602"))
+
+    Parameters
+    ----------
+    harmonics
+        {k: p}.  A key is (k0, k1) or (k0, k1, phase), the phase in units of pi; with one angle an
+        integer k is taken.  An amplitude p is a number, a range (low, high), or {name: factor} of
+        parameters, with the name "constant" for what no parameter moves.
+    name
+        Of the map, for reports.
+    parameters
+        The values or ranges of the parameters.
+    """
+    waves = [(k, 0) if isinstance(k, int) else k for k in harmonics]
+    return affine(waves, list(harmonics.values()), parameters, name)
+
+
+def affine(waves: Sequence[tuple], amplitudes: Sequence[Amplitude],
+           parameters: Mapping[str, Union[Range, Number]], name: str) -> SymplecticMap:
+    """The map of amplitudes as FourierMap takes them.  Those that are ranges or not finite decimals
+    are parameters of their own, behind those that are named."""
+    ranges = {key: ends_of(key, ends) for key, ends in parameters.items()}
+    constants, slopes = [], []
+    for j, amplitude in enumerate(amplitudes, 1):
+        words = "the amplitude of harmonic %d" % j
+        if isinstance(amplitude, Mapping):
+            factors: Dict[str, Number] = dict(amplitude)
+        else:
+            low, high = ends_of(words, amplitude)
+            factors, own = {CONSTANT: low}, "amplitude[%d]" % j
+            if low != high or not is_decimal(low):
+                factors = {own: 1}
+                ranges[own] = low, high
+        unknown = set(factors) - {CONSTANT, *ranges}
+        if unknown:
+            raise ValueError("%s: there is no parameter %.40s; the parameters are %s" % (
+                words, min(unknown), ", ".join(parameters) or "none"))
+        constants.append(factors.pop(CONSTANT, 0))
+        slopes.append(factors)
+    return SymplecticMap(waves, constants, [[slope.get(key, 0) for slope in slopes]
+                                            for key in ranges], list(ranges.values()),
+                         list(ranges) if parameters else (), name)
+
+
+def from_patch(harmonics: Sequence[tuple], amplitude: Sequence[Number],
+               parts: Sequence[Sequence[Number]],
+               parameters: Sequence[Tuple[str, Fraction, Fraction]]) -> SymplecticMap:
+    """The map with these amplitudes in the middle of all ranges, and what each parameter adds to
+    them at its upper end.
+
+    parameters -- (name, low, high) of each; (): they have no names
+    ValueError: their numbers differ, or a range has no width though its parameter moves."""
+    if not parameters:
+        return SymplecticMap(harmonics, amplitude, parts)
+    if len(parameters) != len(parts):
+        raise ValueError("there are names of %d parameters for %d" % (len(parameters), len(parts)))
+    middle, slopes = [exact(p) for p in amplitude], []
+    for (name, low, high), part in zip(parameters, parts):
+        moves = [exact(p) for p in part]
+        if low > high or low == high and any(moves):
+            raise ValueError("the range of %.40s goes from %s to %s" % (name, low, high))
+        slopes.append([2 * p / (high - low) if p else p for p in moves])
+        middle = [p - slope * (low + high) / 2 for p, slope in zip(middle, slopes[-1])]
+    return SymplecticMap(harmonics, middle, slopes, [(low, high) for _, low, high in parameters],
+                         [name for name, *_ in parameters])
+
+
+# ---- arguments
+
+def _patch(amplitude, slopes, ranges):
+    middle = [p + sum(slope[j] * (low + high) / 2 for slope, (low, high) in zip(slopes, ranges))
+              for j, p in enumerate(amplitude)]
+    parts = [[p * (high - low) / 2 for p in slope] for slope, (low, high) in zip(slopes, ranges)]
+    name = "an amplitude"               # ValueError: out of range
+    return tuple(exact_of(name, p) for p in middle), tuple(
+        tuple(exact_of(name, p) for p in part) for part in parts)
+
+
+def ends_of(name: str, value: Any) -> Ends:
+    """The ends of a range, or a number twice, exactly.  TypeError, ValueError: it is neither, with
+    the name."""
+    ends = value if isinstance(value, (tuple, list)) else (value, value)
+    if len(ends) != 2:
+        raise ValueError("%s is a range (low, high) or one number, not %d numbers"
+                         % (name, len(ends)))
+    low, high = (exact_of(name, end) for end in ends)
+    if low > high:
+        raise ValueError("%s: the lower end, %s, is above the upper one, %s" % (name, *ends))
+    return low, high
+
+
+def exact_of(name: str, number: Any) -> Fraction:
+    """The number, exactly; the errors of exact(), with the name."""
+    try:
+        return exact(number)
+    except (TypeError, ValueError) as error:
+        raise type(error)("%s: %s" % (name, error)) from None
+
+
+def _checked(harmonics, amplitude, slopes):
+    """The three as SymplecticMap keeps them: tuples of exact numbers."""
+    try:
+        harmonics, amplitude = [tuple(wave) for wave in harmonics], list(amplitude)
+        slopes = [list(slope) for slope in slopes]
+    except TypeError:
+        raise TypeError("harmonics, amplitudes and slopes are sequences") from None
+    if not 1 <= len(harmonics) <= MOST_WAVES:
+        raise ValueError("there are %d harmonics; give 1 to %d" % (len(harmonics), MOST_WAVES))
+    if len(slopes) > MOST_PARAMETERS:
+        raise ValueError("there are %d parameters; give %d at most"
+                         % (len(slopes), MOST_PARAMETERS))
+    seen = {}
+    for j, wave in enumerate(harmonics):
+        if len(wave) not in (2, 3):
+            raise ValueError("harmonic %d: give (k0, k1) or (k0, k1, phase), not %d numbers"
+                             % (j + 1, len(wave)))
+        if not all(type(k) is int for k in wave[:2]):
+            raise TypeError("harmonic %d: k is two integers, not %r" % (j + 1, wave[:2]))
+        if wave[:2] == (0, 0) or max(map(abs, wave[:2])) > HIGHEST:
+            raise ValueError("harmonic %d: k = (%.20s, %.20s) is %s" % (
+                j + 1, *wave[:2], "not a harmonic" if wave[:2] == (0, 0) else
+                "out of range (%d at most)" % HIGHEST))
+        phase = exact_of("the phase of harmonic %d" % (j + 1), wave[2] if len(wave) == 3 else 0)
+        harmonics[j] = (*wave[:2], 1 - (1 - phase) % 2)
+        if harmonics[j] in seen:
+            raise ValueError("harmonics %d and %d are the same" % (seen[harmonics[j]], j + 1))
+        seen[harmonics[j]] = j + 1
+    for name, numbers in [("the amplitude", amplitude)] + [
+            ("the slope by parameter %d" % m, slope) for m, slope in enumerate(slopes, 1)]:
+        if len(numbers) != len(harmonics):
+            raise ValueError("%s has %d numbers for %d harmonics"
+                             % (name, len(numbers), len(harmonics)))
+        numbers[:] = [exact_of("%s of harmonic %d" % (name, j), x)
+                      for j, x in enumerate(numbers, 1)]
+    return tuple(harmonics), tuple(amplitude), tuple(map(tuple, slopes))
