@@ -127,7 +127,7 @@ def test_the_potential_is_named(tmp_path):
     state.save(tmp_path / "a.npz")
     with pytest.raises(ConverseError, match="its potential is 'standard', not other"):
         orbits.load(tmp_path / "a.npz", orbits.potential.Fourier({(1,): (-1, 0)}, "other"))
-    with pytest.raises(ValueError, match="potential is one of"):
+    with pytest.raises(ValueError, match="map is a SymplecticMap"):
         orbits.load(tmp_path / "a.npz", "standard")
 
 

@@ -45,7 +45,7 @@ def test_shapes_of_points():
     for call in (lambda: orbits.trig.map(0.1, 0.2), lambda: orbits.trig.map([[0.1]], 0.2)):
         with pytest.raises(ValueError, match=r"shape \(..., 2\)"):
             call()
-    with pytest.raises(ValueError, match="eps: finite"):
+    with pytest.raises(ValueError, match="eps is a finite"):
         orbits.trig.map([0.1, 0.2], [0.3, 0.4], math.nan)
 
 
