@@ -21,10 +21,11 @@ def _as_before(problem, proof, differs):
                                           for each in (before, problem))):
         if None not in (theirs, ours) and theirs != ours:
             differs(key, *(" .. ".join(map(decimal_text, ends)) for ends in (theirs, ours)))
+    if problem.by_ranges != before.by_ranges or not problem.by_ranges and (
+            problem.waves, problem.map.enclosed) != (before.waves, before.map.enclosed):
+        differs("potential", before, problem)
     if problem.together != before.together:
         differs("together", before.together, problem.together)
-    if (problem.waves, problem.map.enclosed) != (before.waves, before.map.enclosed):
-        differs("potential", before, problem)
     same = replace(problem, **{key: getattr(before, key) for key in ("axes", "alone")
                                if getattr(problem, key) is None})
     for key, what in ("frame", "frame"), ("factor", "coordinate that stands alone"):
