@@ -356,7 +356,8 @@ def test_formulas_say_what_v_is():
     (lambda: orbits.straight(orbits.standard, (1,), 3, 0.0), "origin"),
     (lambda: orbits.straight(orbits.standard, (1,), 3, []), "origin"),
     (lambda: orbits.straight(orbits.standard, (1,), 3, (1e17,)), "origin"),     # x_0 = x_1 = x_2
-    (lambda: orbits.State("trig", (1, 1), 2, 0.1, np.zeros((2, 2)), (0, 0)), "map is a SymplecticMap"),
+    (lambda: orbits.State("trig", (1, 1), 2, 0.1, np.zeros((2, 2)), (0, 0)),
+     "map is a SymplecticMap"),
     (lambda: orbits.State(orbits.trig, (1, 1), 2, 0.1, "a", (0, 0)), "rows"),
     (lambda: orbits.State(orbits.trig, (1, 1), 2, 0.1, np.zeros((2, 2)) * 1j, (0, 0)), "rows"),
     (lambda: orbits.State(orbits.trig, (1, 1), 2, 0.1, np.zeros((2, 2)), (0, 0), -3), "searches"),
