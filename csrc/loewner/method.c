@@ -78,7 +78,8 @@ static void try_cells(void *work, int n, const cv_cell *const cells[], outcome *
 const method method_loewner = {
     .accepts = loewner_accepts,
     .choose_start = loewner_choose_start,
-    .start_format = "%.6f",
+    .start_places = 6,
+    .least_digits = 35,
     .prepare = loewner_prepare,
     .free = free_loewner,
     .axes = loewner_axes,

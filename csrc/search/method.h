@@ -35,10 +35,12 @@ typedef struct {
     /* Can problems of this kind be proved, in this way?  CV_OK or CV_EARGUMENT. */
     int (*accepts)(const patch *p, const precision *how);
 
-    /* A starting point from which the proof is short, and how it is printed, before it is read
-       again.  On the diagonal, if it may be, where V is symmetric about it. */
+    /* A starting point from which the proof is short, and the decimal places to which it is
+       rounded.  On the diagonal, if it may be, where V is symmetric about it. */
     void (*choose_start)(const patch *p, int symmetric, double x[2]);
-    const char *start_format;
+    int start_places;
+
+    int least_digits;       /* the region is converted with at least so many decimal places */
 
     /* Sets up what all tries need, for a problem with angles in radians and x*.  *work: where they
        work, set as soon as there is something to be freed.  Sets those constants that the method
@@ -49,7 +51,7 @@ typedef struct {
        these are abandoned, and all other memory is freed. */
     void (*free)(void *work, int numbers_lost);
 
-    int (*axes)(const patch *p);        /* of a cell, that may be cut */
+    int (*axes)(const patch *p); /* of a cell, that may be cut */
     int (*lanes)(const void *work); /* cells that are best tried at once, at most MOST_LANES */
 
     /* Is it impossible that a minimizing orbit leads from x* to these cells?  What becomes of a

@@ -34,8 +34,8 @@ struct cv_search {
     cv_counts counts, before;           /* before: as it was when the node at hand was begun */
     double points;                      /* of all orbits that were followed since cv_restart */
     apm_t constants[N_CONSTANTS];
-    int depth, stubborn, symmetric, at_once;
-    int prepared, spoilt, last_steps, status;        /* spoilt: setting up was broken off */
+    int depth, stubborn, symmetric, at_once, last_steps, status;
+    enum { READ, PREPARED, SPOILT } stage;      /* SPOILT: cv_prepare was broken off */
     int numbers_lost;                   /* memory ran out inside GMP: guard.c */
 };
 

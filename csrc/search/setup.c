@@ -1,7 +1,5 @@
 /* setup.c - a search is made: the problem is read, and what every step needs is set up. */
-#include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "arith/guard.h"
 #include "arith/machine.h"
@@ -10,7 +8,6 @@
 
 enum { MAX_DP = 100000, MAX_DEPTH = 100000 };
 enum { PI_SHORT = 5 };                  /* see region.c */
-enum { LEAST_DP = 35 };                 /* of the region, for a method that works in doubles */
 
 /* GMP's numbers are abandoned, not freed, if memory ran out inside GMP: see guard.c. */
 void cv_search_free(cv_search *s)
@@ -31,33 +28,25 @@ void cv_search_free(cv_search *s)
     free(s);
 }
 
-/* Whatever the locale writes between whole numbers and decimals, a point replaces it. */
-static void with_a_point(char *text)
-{
-    char *end = text;
-
-    for (const char *c = text; *c != '\0'; c++)
-        if (strchr("0123456789+-e", *c) != NULL)
-            *end++ = *c;
-        else if (end == text || end[-1] != '.')
-            *end++ = '.';
-    *end = '\0';
-}
-
-/* The starting point of the method's choice. */
+/* The starting point of the method's choice, rounded to its decimal places. */
 static int choose_xstar(const cv_search *s, apm_t xstar[2])
 {
+    const long places = s->method->start_places;
+    int status = CV_OK;
     double start[2];
-    char text[40];
+    apm_t half;
 
     s->method->choose_start(&s->problem, s->symmetric, start);
+    apm_init(half);
+    apm_set_si(half, 5, -places - 1);
     for (int j = 0; j < 2; j++) {
-        snprintf(text, sizeof text, s->method->start_format, start[j]);
-        with_a_point(text);
-        if (apm_set_str(xstar[j], text) != APM_OK)
-            return CV_ENUMBER;
+        if (apm_set_d(xstar[j], start[j]) != APM_OK)
+            status = CV_ENUMBER;
+        apm_add(xstar[j], xstar[j], half);
+        apm_round(xstar[j], xstar[j], places, APM_DOWN);
     }
-    return CV_OK;
+    apm_clear(half);
+    return status;
 }
 
 static int set_start(cv_search *s, const char *const xstar[2])
@@ -98,8 +87,8 @@ static void set_up_problem(void *data)
 static void set_up_method(void *data)
 {
     cv_search *const s = data;
-    const long given = s->precision.digits;
-    const long dp = s->method == &method_loewner && given < LEAST_DP ? LEAST_DP : given;
+    const long given = s->precision.digits, least = s->method->least_digits;
+    const long dp = given < least ? least : given;
     const long pi_dp = s->precision.as_printed ? dp : dp > PI_SHORT ? dp - PI_SHORT : 1;
     apm_t pi;
 
@@ -114,11 +103,13 @@ int cv_prepare(cv_search *s, const cv_stop *stop)
 {
     int ended;
 
-    if (s->prepared || s->spoilt || s->status != CV_RUNNING)
-        return s->prepared ? CV_OK : s->status < CV_OK ? s->status : CV_EARGUMENT;
+    if (s->stage == PREPARED)
+        return CV_OK;
+    if (s->stage == SPOILT || s->status != CV_RUNNING)
+        return s->status < CV_OK ? s->status : CV_EARGUMENT;
     if (!machine_is_sound())
         return CV_EMACHINE;
-    s->spoilt = 1;                      /* until it is done */
+    s->stage = SPOILT;                  /* until it is done */
     ended = guard_run(set_up_method, s, stop);
     if (ended == GUARD_STOP) {
         s->status = CV_EARGUMENT;       /* half prepared, it is good for nothing */
@@ -131,8 +122,7 @@ int cv_prepare(cv_search *s, const cv_stop *stop)
     if (s->status == CV_OK && !machine_is_sound())
         s->status = CV_EMACHINE;
     if (s->status == CV_OK) {
-        s->prepared = 1;
-        s->spoilt = 0;
+        s->stage = PREPARED;
         s->status = CV_RUNNING;
         return CV_OK;
     }

@@ -210,8 +210,8 @@ int cv_step(cv_search *s, long max_leaves, double max_points, double max_seconds
                  stop };
     int ended = GUARD_DONE;
 
-    if (s->status == CV_RUNNING && (!s->prepared || !machine_is_sound()))
-        s->status = s->prepared ? CV_EMACHINE : CV_EARGUMENT;
+    if (s->status == CV_RUNNING && (s->stage != PREPARED || !machine_is_sound()))
+        s->status = s->stage == PREPARED ? CV_EMACHINE : CV_EARGUMENT;
     s->before = s->counts;
     ended = guard_run(take_step, &how, stop);
     if (ended != GUARD_DONE)            /* the node at hand is forgotten, the rest stands */
@@ -229,13 +229,8 @@ int cv_restart(cv_search *s, int n, const cv_cell *cells)
 {
     if (s->numbers_lost)
         return CV_ENOMEM;
-    if (n < 0 || s->spoilt)
+    if (s->stage == SPOILT)
         return CV_EARGUMENT;
-    for (int j = 0; j < n; j++)
-        for (int axis = 0; axis < AXES; axis++)
-            if (cells[j].cuts[axis] < 0 || cells[j].cuts[axis] > INDEX_BITS ||
-                cells[j].index[axis] >> cells[j].cuts[axis] != 0)
-                return CV_EARGUMENT;
     if (n + 1 > s->allocated && room_on_stack(s, n + 1) != CV_OK)
         return CV_ENOMEM;
     for (int j = 0; j < n; j++) {
@@ -327,7 +322,7 @@ void cv_free(char *text) { free(text); }
 
 char *cv_constant(const cv_search *s, int which)
 {
-    if (which < 0 || which >= 12 || (which >= 2 && !s->prepared))
+    if (which < 0 || which >= 12 || (which >= 2 && s->stage != PREPARED))
         return NULL;
     return apm_get_str(which < 2        ? s->problem.xstar[which]
                        : which < 8      ? s->constants[which - 2]

@@ -152,7 +152,7 @@ static void thesis_try(void *work, int n, const cv_cell *const cells[], outcome 
 const method method_thesis = {
     .accepts = thesis_accepts,
     .choose_start = thesis_choose_start,
-    .start_format = "%.17g",
+    .start_places = 16,
     .prepare = thesis_prepare,
     .free = free_bench,
     .axes = thesis_axes,
