@@ -25,6 +25,14 @@ def positive_int(text):
     return int(text)
 
 
+def shard(text):
+    found = re.fullmatch("([0-9]{1,6}|all)/([0-9]{1,6})", text, re.ASCII)
+    first, count = found.groups() if found else ("1", "0")
+    if int(count) < 1 or first != "all" and not 1 <= int(first) <= int(count):
+        raise argparse.ArgumentTypeError("'%.40s' is not I/N with 1 <= I <= N, nor all/N" % text)
+    return first if first == "all" else int(first), int(count)
+
+
 def parser():
     p = Parser(prog="converse-check", allow_abbrev=False,
                formatter_class=argparse.RawDescriptionHelpFormatter, description=(
@@ -36,7 +44,7 @@ def parser():
        parts, wrong counts, a skipped part without its mirror image), or it is a
        map or portrait of which nothing is proved
   2    bad usage, or a file that cannot be read
-  3    verified, but for successors in a part of the torus only
+  3    verified in part: for successors in a part of the torus only, or a shard
   4    a spot check in which nothing failed: NOT a verification
   5    not confirmed: the claim is false or its proof beyond the checker's limits
   130  interrupted (129, 143: by SIGHUP, SIGTERM)""")
@@ -49,6 +57,9 @@ def parser():
                    help="only a spot check, of K leaves chosen by chance; not a verification")
     p.add_argument("--state", metavar="FILE", help=(
         "remember in FILE what was confirmed, and go on from there if it exists; it is believed"))
+    p.add_argument("--shard", type=shard, metavar="I/N", help=(
+        "check only the proved leaves I, I + N, I + 2N, ...; keep the result in FILE.I-of-N, where "
+        "FILE is that of --state; all/N: put the N results together"))
     p.add_argument("--exact", action="store_true", help=(
         "bound all leaves in integers, not first in doubles by numpy: dozens of times slower"))
     p.add_argument("--quiet", action="store_true", help="no report of status 0, no progress")
@@ -65,7 +76,7 @@ def command(argv, options):
             stream.reconfigure(errors="backslashreplace")
         parser().parse_args(argv, options)
         result = verify(options.file, min(options.jobs, 61), options.sample, options.state,
-                        not options.quiet, options.exact)
+                        not options.quiet, options.exact, options.shard)
         try:
             if result.status != VERIFIED or not options.quiet:
                 print(result.text, flush=True)

@@ -14,7 +14,7 @@ from .maps import Map, check_map, mapped, read_map
 from .portrait import Portrait, portrayed, read_portrait
 from .progress import Bar
 from .proof_file import PORTRAIT_MAGIC, TORUS_MAGIC, load, read_proof
-from .state import State
+from .state import state_of
 from .tori import verify_torus
 from .torus_file import TorusClaim, read_torus
 from .tree import check_mirror_images, check_tree
@@ -22,7 +22,7 @@ from .words import claimed, not_excluded, report
 from .workers import Problems, check_all
 
 CHUNKS, CHUNK = 8, 16                   # tasks of a process, about; leaves of one, with --exact
-FAST_CHUNK = 1 << 8, 1 << 14            # least and most of the fast path
+FAST_CHUNK = 1 << 10, 1 << 14           # least (a batch of Lockstep) and most of the fast path
 VERDICTS = {VERIFIED: "verified", PART: "verified in part", SPOT_CHECK: "spot check"}
 
 
@@ -53,21 +53,23 @@ def read(path):
     return read_map(data) if data.startswith(b"{") else read_proof(data)
 
 
-def verify(path, jobs=1, sample=None, state=None, bar=False, exact=False):
+def verify(path, jobs=1, sample=None, state=None, bar=False, exact=False, shard=None):
     """Verifies a proof file, a map, a portrait or a certificate of existence: a Result; else
     Rejected, NotConfirmed or Unusable is raised.
 
-    jobs: processes.  sample: so many leaves only, chosen by chance: a spot check.
-    state: a file that remembers what was confirmed, so that an interrupted check can go on; it
-    is kept in the end.  (A certificate of existence is verified whole: its pieces by jobs
-    processes.)  bar: show
-    the progress on stderr.  exact: in integers alone, as where
-    there is no numpy.
+    jobs: processes.  sample: check only this number of leaves, chosen by chance: a spot check.
+    state: a file that remembers which leaves are confirmed, so that an interrupted check can go on;
+    it is kept in the end.  (A certificate of existence is verified whole: its pieces by jobs
+    processes.)  bar: show the progress on stderr.  exact: in integers alone, as without numpy.
+    shard: (i, n): check only the leaves i, i + n, i + 2n, ..., and keep the result in the file
+    STATE.i-of-n; ("all", n): check no leaf, and put the n results together.
     """
     if jobs < 1 or sample is not None and sample < 1:
         raise ValueError("jobs and sample are 1 or more")
-    if sample is not None and state is not None:
+    if sample is not None and (state is not None or shard is not None):
         raise Unusable("a spot check keeps no state; give --sample or --state")
+    if shard is not None and state is None:
+        raise Unusable("a shard keeps its result in a state; name one by --state FILE")
     file = read(path)
     if isinstance(file, TorusClaim):
         if sample is not None or state is not None:
@@ -76,25 +78,55 @@ def verify(path, jobs=1, sample=None, state=None, bar=False, exact=False):
         with Bar((file,) if bar else (), 1) as progress:
             lines, facts = verify_torus(file, progress.tell, jobs)
         return Result(VERIFIED, "verified", "\n".join([*lines, "SHA-256 : " + file.sha256]), facts)
-    if isinstance(file, Map):
-        problems = Problems(file.claims, check_map(file))
-    elif isinstance(file, Portrait):
-        problems = Problems(file.claims)
-    else:
-        check_tree(file)
-        check_mirror_images(file)
-        problems = Problems((file, *file.parts))
-        check_links(file, problems.criterion(0))
-        check_at_once(problems.criterion(0))
-    if not exact and problems.claims:
-        problems.fast = make_lockstep(problems.claims)
-    proved = [claim.counts["proved"] for claim in problems.claims]
-    done = State(state, file.sha256, sum(proved))
+    problems = problems_of(file)
+    total = sum([claim.counts["proved"] for claim in problems.claims])
+    done = state_of(state, file.sha256, total, shard)
     earlier = done.confirmed
-    chosen = range(earlier, sum(proved))
+    chosen = done.leaves[earlier:]
     if sample is not None:
-        chosen = set(random.SystemRandom().sample(chosen, min(sample, sum(proved))))
+        chosen = set(random.SystemRandom().sample(chosen, min(sample, total)))
+    if chosen and not exact:
+        problems.fast = make_lockstep(problems.claims)
+    check_leaves(problems, chosen, done, jobs, bar)
+    theorem_of = {Map: mapped, Portrait: portrayed}.get(type(file), claimed)
+    status, lines = report(problems.claims, theorem_of(file),
+                           problems.criterion(0) if theorem_of is claimed else None,
+                           done.confirmed, done.pieces, done.doubles)
+    if sample is not None:
+        status = SPOT_CHECK
+        lines[:1] = ["Spot check of %d of %d proved leaves, NOT a verification: none of them fails."
+                     % (done.confirmed, total), "What is claimed and NOT verified :"]
+    elif done.shard[1] > 1:
+        status = PART
+        lines[:1] = ["Shard %d of %d, %d of %d proved leaves: none of them fails."
+                     % (*shard, done.confirmed, total),
+                     "What is claimed, and NOT verified until all shards are put together :"]
+    elif earlier:
+        lines[0] = lines[0].replace(" :", ", %d of %d leaves by %s :"
+                                    % (earlier, total, done.earlier_runs))
+    if earlier:
+        lines += ["Of these, by %s whose state was believed : %d" % (done.earlier_runs, earlier)]
+    return Result(status, VERDICTS[status], "\n".join([*lines, "SHA-256 : " + file.sha256]))
 
+
+def problems_of(file):
+    """The Problems of a proof file, a map or a portrait, of which all has been checked but the
+    leaves."""
+    if isinstance(file, Map):
+        return Problems(file.claims, check_map(file))
+    if isinstance(file, Portrait):
+        return Problems(file.claims)
+    check_tree(file)
+    check_mirror_images(file)
+    problems = Problems((file, *file.parts))
+    check_links(file, problems.criterion(0))
+    check_at_once(problems.criterion(0))
+    return problems
+
+
+def check_leaves(problems, chosen, done, jobs, bar):
+    """Checks the leaves P with these numbers, and tells done (a State) how many are confirmed;
+    NotConfirmed, if one is not excluded."""
     def work():
         return ((n, leaf) for n, leaf in enumerate(problems.leaves()) if n in chosen)
 
@@ -103,29 +135,17 @@ def verify(path, jobs=1, sample=None, state=None, bar=False, exact=False):
     if problems.fast:
         fewest, most = FAST_CHUNK
         size = min(max(len(chosen) // (CHUNKS * jobs), fewest), most)
+    jobs = max(min(jobs, -(-len(chosen) // size)), 1)       # a process for one chunk is a waste
     chunks = iter(lambda: list(itertools.islice(queue, size)), [])
     try:
         with Bar(work() if bar else (), len(chosen)) as progress, \
                 contextlib.closing(check_all(chunks, jobs, problems)) as results:
-            for n, spent, pieces, failure in results:
-                done.advance(n, pieces)
+            for n, spent, pieces, fast, failure in results:
+                done.advance(n, pieces, n * fast)
                 progress.advance(n, spent)
                 if failure:
                     n, (at, cell), why = failure
-                    claim = problems.claims[at]
-                    raise NotConfirmed(not_excluded(claim, n - sum(proved[:at]), cell, why))
+                    before = sum([claim.counts["proved"] for claim in problems.claims[:at]])
+                    raise NotConfirmed(not_excluded(problems.claims[at], n - before, cell, why))
     finally:
         done.save()
-    theorem_of = {Map: mapped, Portrait: portrayed}.get(type(file), claimed)
-    status, lines = report(problems.claims, theorem_of(file),
-                           problems.criterion(0) if theorem_of is claimed else None,
-                           done.confirmed, done.pieces, bool(problems.fast))
-    if sample is not None:
-        status = SPOT_CHECK
-        lines[:1] = ["Spot check of %d of %d proved leaves, NOT a verification: none of them fails."
-                     % (done.confirmed, sum(proved)), "What is claimed and NOT verified :"]
-    elif earlier:
-        lines[0] = lines[0].replace(" :", ", %d of %d leaves by an earlier run :"
-                                    % (earlier, sum(proved)))
-        lines += ["Of these, by an earlier run whose state was believed : %d" % earlier]
-    return Result(status, VERDICTS[status], "\n".join([*lines, "SHA-256 : " + file.sha256]))

@@ -1,6 +1,7 @@
-"""What was confirmed already, in a file, so that a check that was interrupted can go on."""
+"""A file that remembers which leaves are confirmed, so that an interrupted check can go on."""
 
 import contextlib
+import functools
 import hashlib
 import importlib.util
 import os
@@ -14,14 +15,17 @@ from .failures import Unusable, complain, reason
 from .signals import undisturbed
 
 STATE_SECONDS = 10                      # between two writes of the state
-STATE = """converse-check state 2
+STATE = """converse-check state 3
 file: sha256 %s
 checker: sha256 %s
+shard: %d of %d
 confirmed: %d
 pieces: %d
+in doubles: %d
 """
 
 
+@functools.lru_cache(maxsize=None)
 def own_digest():
     """The SHA-256 of the sources of this very checker: of all modules of its package, in a folder
     or in a zip file, or of the one file that they were put together in."""
@@ -36,16 +40,44 @@ def own_digest():
     return found.hexdigest()
 
 
-class State:
-    """How many of the proved leaves of a proof file or map are confirmed, in their order; and if a
-    path is given, a small file that says so, with which an interrupted check can go on.
+def state_of(path, sha256, total, shard):
+    """The State of a proof file or map with so many leaves P.
 
-    The file belongs to one proof file or map and to this very checker.  It is believed: its
-    checksum guards against accidents, not against forgers.
+    shard: (i, n), whose state is the file PATH.i-of-n; or ("all", n), the sum of the states of n
+    shards, each of which must be complete; or None."""
+    if shard is None:
+        return State(path, sha256, total)
+    i, count = shard
+    if i != "all":
+        return State("%s.%d-of-%d" % (path, i, count), sha256, total, shard)
+    whole = State(None, sha256, total)
+    whole.earlier_runs = "the runs of %d shards" % count
+    for i in range(1, count + 1):
+        name = "%s.%d-of-%d" % (path, i, count)
+        if not os.path.lexists(name):
+            raise Unusable("the state %s is missing; run --shard %d/%d" % (name, i, count))
+        part = State(name, sha256, total, (i, count))
+        if part.confirmed < len(part.leaves):
+            raise Unusable("shard %d/%d is not finished (%d of %d leaves); run --shard %d/%d again"
+                           % (i, count, part.confirmed, len(part.leaves), i, count))
+        whole.advance(part.confirmed, part.pieces, part.doubles)
+    return whole
+
+
+class State:
+    """The number of leaves that are confirmed, in their order, of their pieces, and of the leaves
+    that were tried in doubles; and, if a path is given, a small file with these numbers.
+
+    The leaves are all leaves P of a proof file or map, or those of a shard (i, n): each n-th, from
+    the i-th on.  The file belongs to one proof file or map, one shard and this very checker.  It is
+    believed: its checksum guards against accidents, not against forgers.
     """
 
-    def __init__(self, path, sha256, total):
-        self.confirmed = self.pieces = 0
+    def __init__(self, path, sha256, total, shard=(1, 1)):
+        """total: the number of leaves P."""
+        self.confirmed = self.pieces = self.doubles = 0
+        self.shard, self.earlier_runs = shard, "an earlier run"
+        self.leaves = range(shard[0] - 1, total, shard[1])
         self.path, self.sha256, self.saved = path and os.path.realpath(path), sha256, 0
         if path is None:
             return
@@ -63,15 +95,19 @@ class State:
                            % (path, reason(error))) from None
         if not text.startswith(STATE.partition("\n")[0]):
             raise Unusable("%s is not a state of this checker; name another file" % path)
-        words = re.findall("(?m)^(?:file|checker): sha256 ([0-9a-f]{64})$", text)
-        found = [int(n) for n in re.findall("(?m)^(?:confirmed|pieces): ([0-9]{1,18})$", text)]
-        if len(words) != 2 or len(found) != 2 or text != self._sealed(*words, *found) \
-                or found[0] > total and words[0] == sha256:
+        fields = STATE.replace("%s", "([0-9a-f]{64})").replace("%d", "([0-9]{1,18})")
+        match = re.match(fields, text, re.ASCII)
+        values = match.groups() if match else ()
+        words, found = values[:2], [int(x) for x in values[2:]]
+        mine = (*words, *found[:2]) == (sha256, self.checker, *shard)
+        if not match or text != self._sealed(*words, *found) \
+                or mine and found[2] > len(self.leaves):
             raise Unusable("the state %s is damaged; delete it to begin anew" % path)
-        if words != [self.sha256, self.checker]:
+        if not mine:
             raise Unusable("the state %s belongs to another %s; name another file" % (
-                path, "checker" if words[0] == self.sha256 else "file"))
-        self.confirmed, self.pieces = found
+                path, "file" if words[0] != sha256 else "checker" if words[1] != self.checker
+                else "shard"))
+        self.confirmed, self.pieces, self.doubles = found[2:]
 
     @staticmethod
     def _sealed(*values):
@@ -92,7 +128,8 @@ class State:
         try:
             handle = os.open(name, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600)
             with open(handle, "w") as file:
-                file.write(self._sealed(self.sha256, self.checker, self.confirmed, self.pieces))
+                file.write(self._sealed(self.sha256, self.checker, *self.shard, self.confirmed,
+                                        self.pieces, self.doubles))
                 file.flush()
                 os.fsync(file.fileno())
             os.replace(name, self.path)
@@ -101,8 +138,10 @@ class State:
                 os.unlink(name)
             raise
 
-    def advance(self, leaves, pieces):
+    def advance(self, leaves, pieces, doubles):
+        """Adds confirmed leaves, their pieces, and how many of the leaves were tried in doubles."""
         self.confirmed, self.pieces = self.confirmed + leaves, self.pieces + pieces
+        self.doubles += doubles
         if self.path and time.monotonic() > self.saved + STATE_SECONDS:
             self.save()
 

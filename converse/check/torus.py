@@ -5,6 +5,7 @@ whether B is so large that all larger multiples are excluded at once.
 import heapq
 import itertools
 import math
+import operator
 from fractions import Fraction
 
 from .arith import SINE_ERROR, angle_of, forms, in_units, largest, stiffness
@@ -28,10 +29,12 @@ def cell_bound(fixed, waves, amplitudes, sides, y, w):
     m = [-p * s >> bits for p, (s, _) in zip(amplitudes, angles)]
     g = [-p * c * w >> 2 * bits for p, (_, c) in zip(amplitudes, angles)]
 
+    middle = forms(waves, m)
+    slopes = [forms(waves, [slope * ks[i] for slope, ks in zip(g, along)])
+              for i in range(len(sides))]
+
     def eigenvalue(d):
-        at = [value + slope * sum([k * e for k, e in zip(ks, d)])
-              for value, slope, ks in zip(m, g, along)]
-        p, q, r = forms(waves, at)
+        p, q, r = [x + sum(map(operator.mul, d, slope)) for x, *slope in zip(middle, *slopes)]
         return largest(2 * one + p, q, 2 * one + r, one)
 
     square = (w * w >> bits) + 1

@@ -98,11 +98,12 @@ def not_excluded(claim, ordinal, cell, why):
         "checker" % (leaf_text(claim, "P", ordinal, cell), why)
 
 
-def report(claims, theorem, criterion, confirmed, pieces, fast=False):
+def report(claims, theorem, criterion, confirmed, pieces, doubles):
     """The exit status and the lines of a report: the theorem, exactly as far as it was verified.
 
     claims: of the cells of a map, of the columns of a portrait, or of a proof file and its parts;
-    theorem: what is claimed, in lines; criterion: of a proof file only.
+    theorem: what is claimed, in lines; criterion: of a proof file only; doubles: the number of
+    leaves that were tried in doubles.
     """
     proved, skipped, linked, undecided = [
         sum([claim.counts.get(kind, 0) for claim in claims])
@@ -112,7 +113,8 @@ def report(claims, theorem, criterion, confirmed, pieces, fast=False):
              "Checker : converse-check " + __version__,
              "Method : Loewner criterion, multipliers, %s%sin integers%s" % (
                  "links between starting points, " * (linked > 0),
-                 "in doubles and where these fail " * fast,
+                 ("in doubles%s and where these fail " % (
+                     " (%d leaves)" % doubles * (doubles < confirmed))) * (doubles > 0),
                  " of %d bits" % criterion.fixed.bits if criterion else "")]
     if criterion:
         places, claim = 9, criterion.claim

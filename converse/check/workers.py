@@ -43,13 +43,14 @@ class Problems:
                     yield n, cell
 
     def check_chunk(self, chunk):
-        """Checks leaves in order: (how many are confirmed, their cost and pieces, what then
-        fails).
+        """Checks leaves in order: (how many are confirmed, their cost and pieces, whether they were
+        tried in doubles, what then fails).
 
         The rounding of numpy is looked at each time, in the process and thread that use it.
         """
         cells, refused, pieces = [leaf for _, leaf in chunk], None, []
-        if self.fast and import_numpy_if_sound():
+        fast = bool(self.fast) and import_numpy_if_sound()
+        if fast:
             refused, pieces = self.fast.settle(
                 cells, [self.least_in_double(leaf) for leaf in cells],
                 lambda n: self.excluded(cells[n]))
@@ -61,7 +62,7 @@ class Problems:
                     break
                 pieces.append(tried)
         n = refused[0] if refused else len(cells)
-        return n, sum([cost(cell) for _, cell in cells[:n]]), sum(pieces[:n]), \
+        return n, sum([cost(cell) for _, cell in cells[:n]]), sum(pieces[:n]), fast, \
             refused and (*chunk[n], refused[1])
 
 
