@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from .version import __version__
 
 if TYPE_CHECKING:
-    from . import check, maps, orbits, tori
+    from . import check, orbits, parameters, tori
     from .model.inputs import read_input
     from .model.map import FourierMap, FroeschleMap, MuldoonMap, StandardMap, SymplecticMap
     from .model.problem import InputError, Problem
@@ -27,11 +27,11 @@ _HOMES = {"ConverseError": "storage.files", "Counts": "prover.native",
           "MuldoonMap": "model.map", "Problem": "model.problem", "Proof": "prover.proof",
           "Settings": "prover.settings", "StandardMap": "model.map", "SymplecticMap": "model.map",
           "prove": "prover.run", "read_input": "model.inputs"}
-_ROOMS = "check", "maps", "orbits", "tori"
+_ROOMS = "check", "orbits", "parameters", "tori"
 
 __all__ = ["ConverseError", "Counts", "FourierMap", "FroeschleMap", "InputError", "MuldoonMap",
            "Problem", "Proof", "Settings", "StandardMap", "SymplecticMap", "__version__", "check",
-           "maps", "orbits", "prove", "read_input", "tori"]
+           "orbits", "parameters", "prove", "read_input", "tori"]
 
 
 def __getattr__(name):

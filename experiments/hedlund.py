@@ -85,7 +85,7 @@ def everywhere(types, long, first, last):
     between bounds of it there.  The action of one state of the long type is such a linear
     function: if it is less than these bounds at both eps, it is less between them."""
     state = long.relax((first + last) / 2)
-    ends = [(types.least(eps).low, orbits.State(
+    ends = [(types.least(eps).low, orbits.PeriodicOrbit(
         orbits.trig, state.p, state.q, eps, state.u, state.origin)) for eps in (first, last)]
     if all(low > orbits.enclosed_action(there)[1] for low, there in ends):
         return 1

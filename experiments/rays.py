@@ -17,11 +17,11 @@ import vectors
 
 from converse import orbits, tori
 from converse.commands.common import Parser, ended
-from converse.maps.map import Map
-from converse.maps.region import direction
-from converse.maps.tori import prove_tori, rays
 from converse.model.map import THESIS, SymplecticMap
 from converse.model.problem import Problem
+from converse.parameters.map import ParameterMap
+from converse.parameters.region import direction
+from converse.parameters.tori import prove_tori, rays
 from converse.storage import files
 from converse.tori.torus import family
 
@@ -55,7 +55,7 @@ def catalogue(found, path):
 
 
 def run(options):
-    found = Map.load(options.map)
+    found = ParameterMap.load(options.map)
     os.makedirs(options.directory, exist_ok=True)
     known = catalogue(found, os.path.join(options.directory, "vectors.txt"))
 

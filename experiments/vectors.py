@@ -20,9 +20,9 @@ from toughest import SPREAD, rational
 
 from converse import orbits, tori
 from converse.commands.common import Parser, ended
-from converse.maps.tori import highest
 from converse.model.exact import exact, short_text
 from converse.model.map import SymplecticMap
+from converse.parameters.tori import highest
 from converse.storage.files import ConverseError
 
 COUNT, ROUNDS, PARENTS, CHILDREN = 300, 4, 6, 4     # of a search

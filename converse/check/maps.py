@@ -66,7 +66,7 @@ class Face:
 
 
 @dataclass(frozen=True)
-class Map:
+class ParameterMap:
     """What a map says."""
 
     region: str
@@ -161,7 +161,7 @@ def read_map(data):
             whole.append(read_face(face, claims, at, file))
     if sorted(face.directions for face in whole) != sorted(REGIONS[region]):
         raise Rejected("the faces are not those of the region")
-    found = Map(region, tuple(whole), tuple(claims), file)
+    found = ParameterMap(region, tuple(whole), tuple(claims), file)
     if not found.count("P") and not found.count("A"):
         raise Rejected("no cell of the map is proved: it claims no theorem")
     return found

@@ -10,7 +10,7 @@ from .failures import NotConfirmed, Unusable
 from .limits import PART, SPOT_CHECK, VERIFIED
 from .links import check_links
 from .lockstep import make_lockstep
-from .maps import Map, check_map, mapped, read_map
+from .maps import ParameterMap, check_map, mapped, read_map
 from .portrait import Portrait, portrayed, read_portrait
 from .progress import Bar
 from .proof_file import PORTRAIT_MAGIC, TORUS_MAGIC, load, read_proof

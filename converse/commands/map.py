@@ -6,9 +6,9 @@ import os
 import sys
 
 from ..draw import plot
-from ..maps.map import PROVED, Map
-from ..maps.region import REGIONS
 from ..model.exact import decimal_text, exact
+from ..parameters.map import PROVED, ParameterMap
+from ..parameters.region import REGIONS
 from ..storage import files
 from ..storage.files import ConverseError, plain
 from ..version import __version__
@@ -73,9 +73,10 @@ def run(options):
     if not options.plane and not options.restore:
         if options.down_to is not None:
             raise ConverseError("--down-to needs --plane or -r")
-        found = Map.load(options.map)
+        found = ParameterMap.load(options.map)
     else:
-        from ..maps.search import explore  # it needs the C core, and says so where it is missing
+        from ..parameters.search import \
+            explore  # it needs the C core, and says so where it is missing
 
         with ProgressLine() as line, executor_of(options) as executor:
             found = explore(
@@ -91,7 +92,7 @@ def run(options):
 
 def _tori(options, found):
     """The points at which tori are proved, after more have been proved if that is asked for."""
-    from ..maps import tori
+    from ..parameters import tori
 
     if options.plane or options.restore:
         with ProgressLine() as line:

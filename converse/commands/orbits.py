@@ -440,7 +440,7 @@ def sweep_types(options):
 def run(options):
     from converse import orbits
 
-    orbits.State                        # or a line that says what is missing
+    orbits.PeriodicOrbit                        # or a line that says what is missing
     try:
         return options.run(options)
     except ValueError as error:         # what only the library can know to be bad

@@ -7,9 +7,9 @@ try:
 except ImportError:                     # matplotlib brings it, and plot.check() says so
     np = None  # type: ignore[assignment]
 
-from ..maps.map import AT_ONCE, PROVED
-from ..maps.region import direction
 from ..model.map import LINE
+from ..parameters.map import AT_ONCE, PROVED
+from ..parameters.region import direction
 from ..storage import files
 from . import notebook, plot
 from .figure import format_of

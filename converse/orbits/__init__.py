@@ -10,14 +10,14 @@ The torus has period 1 here, 2 pi in the rest of the package: converse/model/pot
 try:
     from .action import enclosed_action
     from .branch_and_bound import LeastAction, least_action
-    from .mather import Floor, floor
+    from .mather import MatherBeta, mather_beta
     from .minimax import Pair
     from .points import load
     from .potential import FromPython, Potential, ff, froeschle, parameters, poly, standard, trig
     from .proved import NotProved, ProvedOrbit, prove
     from .search import search
     from .solver import Family, follow, straight
-    from .state import State
+    from .state import PeriodicOrbit
     from .sweep import Onset, onset, onsets, read_csv, sweep
 except ImportError as _error:           # said when something is asked for: the command needs a line
     _MISSING = ("converse.orbits needs numpy and the C core (%s); pip install "
@@ -30,8 +30,8 @@ except ImportError as _error:           # said when something is asked for: the 
         from ..prover import native  # noqa: F401, which says more if it is the core that is missing
         raise ConverseError(_MISSING)
 
-__all__ = ["Family", "Floor", "FromPython", "LeastAction", "NotProved", "Onset", "Pair",
-           "Potential", "ProvedOrbit", "State", "enclosed_action", "ff", "floor",
+__all__ = ["Family", "MatherBeta", "FromPython", "LeastAction", "NotProved", "Onset", "Pair",
+           "Potential", "ProvedOrbit", "PeriodicOrbit", "enclosed_action", "ff", "mather_beta",
            "follow", "froeschle", "least_action", "load", "onset", "onsets", "parameters", "poly",
            "prove", "read_csv", "search", "standard", "straight",
            "sweep", "trig"]

@@ -8,7 +8,7 @@ import numpy as np
 from .._native import ffi, lib
 from ..prover.native import check
 from .potential import address
-from .state import State, expected
+from .state import PeriodicOrbit, expected
 
 U = 2.0 ** -53              # half the distance of the doubles next to 1
 LARGEST_EPS = 1e6
@@ -85,7 +85,7 @@ def per_point(low, high, q):
     return low - ulp(low), high + ulp(high)
 
 
-def enclosed_action(state: State) -> Tuple[float, float]:
+def enclosed_action(state: PeriodicOrbit) -> Tuple[float, float]:
     """Two numbers, proved to be around state.action, whether it is an orbit or not."""
     expected(state)
     floats_within("eps", [state.eps], LARGEST_EPS)

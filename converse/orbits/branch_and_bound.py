@@ -18,7 +18,7 @@ from ..storage.files import ConverseError
 from .action import (LARGEST_EPS, U, action_bounds, action_on_grid, errors_near, floats_within,
                      gradient_bounds, per_point, rounding_errors)
 from .potential import Numerators, Source, address, known, told, whole
-from .state import FARTHEST, State, type_of
+from .state import FARTHEST, PeriodicOrbit, type_of
 
 LONGEST = 500               # q
 
@@ -36,7 +36,7 @@ class LeastAction:
 
     low: float
     high: float
-    state: State
+    state: PeriodicOrbit
     copies: int
     corridors: int
 
@@ -248,7 +248,8 @@ def least_action(potential: Source, p: Numerators, q: int, eps: float = 1.0, gap
     eps, gap = floats_within("eps and gap", [eps, gap], LARGEST_EPS)
     corridors = whole("corridors", corridors, 1, 10 ** 9)
     q = whole("q", q, 1, LONGEST)
-    state = State(potential, type_of(potential, p, q)[0], q, eps, np.zeros((q, potential.n)),
+    state = PeriodicOrbit(potential, type_of(potential, p, q)[0], q, eps,
+                          np.zeros((q, potential.n)),
                   (0.0,) * potential.n)
     if eps == 0:
         return LeastAction(0.0, 0.0, state, gcd(*state.p, state.q), 0)

@@ -23,10 +23,10 @@ LARGEST_ROTATION = 100
 
 
 @dataclass(frozen=True, eq=False)
-class Floor:
+class MatherBeta:
     """low      -- the average action per point of any orbit of this rotation vector, and of any
                    other sequence of points, is no less: proved; less |rotation|^2/2, as
-                   State.action
+                   PeriodicOrbit.action
     estimate -- the same of paths on the grid: at most so much higher could low be
     c        -- low is |rotation - c|^2/2 below the least of W + |y - x - c|^2/2; any c bounds
     """
@@ -111,9 +111,9 @@ def _highest(planes, radius):
     return best[:n], float(best[n])
 
 
-def floor(potential: Source, eps: float, rotation: Union[float, Sequence[float]],
-          grid: int = 256) -> Floor:
-    """A Floor: how little action per point orbits of this rotation vector can have, by value
+def mather_beta(potential: Source, eps: float, rotation: Union[float, Sequence[float]],
+          grid: int = 256) -> MatherBeta:
+    """A MatherBeta: how little action per point orbits of this rotation vector can have, by value
     iteration on grid^n nodes (Mather's beta from below).
 
     rotation -- n numbers, as doubles have them
@@ -152,5 +152,6 @@ def floor(potential: Source, eps: float, rotation: Union[float, Sequence[float]]
             break
         torus = torus.refined(potential, eps)
     size = float(np.abs(w).max() + np.abs(b).max() + 1)
-    return Floor(potential, eps, tuple(map(float, w)), grid, low - torus.rise - 64 * U * size ** 2,
+    return MatherBeta(potential, eps, tuple(map(float, w)), grid,
+                      low - torus.rise - 64 * U * size ** 2,
                  estimate, tuple(map(float, w + b)))

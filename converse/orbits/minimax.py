@@ -24,7 +24,7 @@ from ..storage.files import ConverseError
 from .potential import address, done
 from .proved import balls
 from .solver import newton
-from .state import ROUNDING, STATIONARY, State, descended, expected
+from .state import ROUNDING, STATIONARY, PeriodicOrbit, descended, expected
 
 if TYPE_CHECKING:
     from .proved_pair import ProvedPair
@@ -54,8 +54,8 @@ class Pair:
     turn    -- the neighbour begins at this point of the minimum
     """
 
-    minimum: State
-    minimax: State
+    minimum: PeriodicOrbit
+    minimax: PeriodicOrbit
     step: Tuple[int, ...]
     turn: int
 
@@ -94,7 +94,7 @@ class Pair:
                              "of action, .barrier")
 
     @cached_property
-    def ends(self) -> Tuple[State, State]:
+    def ends(self) -> Tuple[PeriodicOrbit, PeriodicOrbit]:
         """Where descents from the pass to either side end.  With one angle these are the minimum
         and its neighbour, or others between them; with two they may be any minima.  ConverseError:
         rounding hides which way is down."""
@@ -136,7 +136,7 @@ def difference(low, high):
 
 
 def minimax(state, step=0):
-    """See State.minimax."""
+    """See PeriodicOrbit.minimax."""
     if math.gcd(*state.p, state.q) > 1:
         raise ValueError("the type (%s)/%d is not in lowest terms: take the state of the shorter "
                          "type" % (", ".join(map(str, state.p)), state.q))

@@ -9,7 +9,7 @@ from ..draw import notebook, plot
 from ..draw.plot import BLUE, DARK, VERMILLION
 from ..storage import files
 from .proved import ProvedOrbit, distances
-from .state import ROUNDS, State
+from .state import ROUNDS, PeriodicOrbit
 
 FEW = 300                               # points that are drawn larger
 MOST_STATES = 40                        # in a picture
@@ -41,7 +41,7 @@ PROVED = ("Proved: a true orbit is so near to the points drawn, before these wer
 class Shown(NamedTuple):
     """What a picture shows of a state or of a proved orbit: its points, and what they are."""
 
-    state: State
+    state: PeriodicOrbit
     proof: Optional[ProvedOrbit]
 
     @classmethod

@@ -16,14 +16,14 @@ from ..storage import files
 from ..storage.files import ConverseError
 from .potential import STUDIED, Source, known
 from .solver import Family
-from .state import State
+from .state import PeriodicOrbit
 
 ENDINGS = ("npz",)
 FORMAT = "states 2"
 
 
 def save(states, path):
-    """See State.save."""
+    """See PeriodicOrbit.save."""
     path = os.fspath(path)
     files.check_output(path, "file of points", ENDINGS)
     files.write(path, encoded(states))
@@ -42,8 +42,8 @@ def encoded(states):
 
 
 def load(path: Union[str, "os.PathLike[str]"], potential: Optional[Source] = None) -> Family:
-    """Reads the Family of states that State.save, Family.save or converse-orbits find --points
-    wrote, to the last bit.
+    """Reads the Family of states that PeriodicOrbit.save, Family.save or converse-orbits find
+    --points wrote, to the last bit.
 
     Parameters
     ----------
@@ -91,7 +91,7 @@ def load(path: Union[str, "os.PathLike[str]"], potential: Optional[Source] = Non
         raise ConverseError("%s: its potential is '%s', not %s" % (path, files.plain(name),
                                                                   potential.name))
     try:
-        return Family(tuple(State(potential, p, q, eps, u, origin, searches)
+        return Family(tuple(PeriodicOrbit(potential, p, q, eps, u, origin, searches)
                             for eps, u, origin, searches in found))
     except ValueError as error:
         raise ConverseError("%s: is damaged: %s" % (path, error)) from None

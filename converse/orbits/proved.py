@@ -18,7 +18,7 @@ from .._native import lib
 from ..model.exact import Ends, interval_text, rounded, rounded_text
 from ..storage.files import ConverseError
 from .potential import told
-from .state import NEAR_NULL, ROUNDING, STATIONARY, State, expected
+from .state import NEAR_NULL, ROUNDING, STATIONARY, PeriodicOrbit, expected
 
 DIGITS = 20                 # the radius is at most 10^-DIGITS unless another number is asked for
 MOST = 1000                 # places, with which no orbit is tried any more
@@ -52,7 +52,7 @@ class ProvedOrbit:
                  torus
     """
 
-    state: State
+    state: PeriodicOrbit
     digits: int
     radius: Fraction
     least: Fraction
@@ -77,7 +77,7 @@ class ProvedOrbit:
                      for j, u in enumerate(self.displacements))
 
     @cached_property
-    def nearest(self) -> State:
+    def nearest(self) -> PeriodicOrbit:
         """The points that were proved as doubles have them, to be drawn or measured."""
         return self.state.moved(np.array(self.displacements, dtype=float))
 
@@ -107,7 +107,7 @@ class ProvedOrbit:
         return (2 - high) / 4, (2 - low) / 4
 
     def figure(self, ax: Any = None) -> Any:
-        """The state nearest to it, as State.figure."""
+        """The state nearest to it, as PeriodicOrbit.figure."""
         from .pictures import figure
         return figure(self, ax)
 
@@ -137,7 +137,7 @@ class ProvedOrbit:
         return "\n".join(lines) + "\n"
 
 
-def prove(state: State, digits: Optional[int] = None, descend: bool = False,
+def prove(state: PeriodicOrbit, digits: Optional[int] = None, descend: bool = False,
           progress: Optional[Callable[[int, int], object]] = None) -> ProvedOrbit:
     """Proves that a true orbit lies beside a state of least action: a ProvedOrbit, whose radius is
     at most 10^-digits, by default 10^-20.

@@ -19,7 +19,7 @@ import numpy as np
 from ..storage.files import ConverseError
 from .potential import Numerators, Source, told
 from .solver import follow, straight
-from .state import State
+from .state import PeriodicOrbit
 
 MOST_NEWTON_STEPS = 1000    # in one search; few take more than a hundred
 TURNS = 50                  # of the best state, tried before anything at random
@@ -36,9 +36,10 @@ RELIEF = 0.4                # see _recombined
 
 def search(potential: Source, p: Numerators, q: int, eps: float = 1.0, searches: int = 200,
            seconds: float = math.inf, seed: int = 0,
-           progress: Optional[Callable[[int, State], object]] = None) -> State:
-    """The state of type (p, q) of least action that many searches find; State.searches says how
-    many, and its label "best of N searches" if it is a minimum.  It is not proved to be the least.
+           progress: Optional[Callable[[int, PeriodicOrbit], object]] = None) -> PeriodicOrbit:
+    """The state of type (p, q) of least action that many searches find.  Its attribute `searches`
+    is their number, and its label "best of N searches" if it is a minimum.  It is not proved to be
+    the least.
 
     A search is a descent of the action of type (p, q) to a state whose gradient vanishes.  The
     first is continuation's, so that none worse is returned.  Then come orbits composed of the best
@@ -275,5 +276,5 @@ def _joint(p, q, first, i, second, j):
     path = np.concatenate([
         np.roll(state.u, -k, 0) - state.u[k] + np.arange(state.q)[:, None] * state.rotation + begin
         for state, k, begin in ((first, i, 0.0), (second, j, np.array(first.p)))])
-    return State(first.potential, p, q, first.eps,
+    return PeriodicOrbit(first.potential, p, q, first.eps,
                  path - np.arange(q)[:, None] * (np.array(p) / q), first.x[i])

@@ -11,7 +11,7 @@ import numpy as np
 from .._native import lib
 from ..storage.files import ConverseError
 from .potential import Numerators, Source, address, done, finite, known, told
-from .state import FARTHEST, State, expected, type_of
+from .state import FARTHEST, PeriodicOrbit, expected, type_of
 
 PER_CURVATURE = 0.2         # the step of eps from one state to the next guess, times the curvature
 HALVED = 64                 # times less, at least, where the solver fails
@@ -19,11 +19,11 @@ MOST_EPS_STEPS = 10000      # from one eps to the next
 
 
 def straight(potential: Source, p: Numerators, q: int,
-             origin: Optional[Tuple[float, ...]] = None) -> State:
+             origin: Optional[Tuple[float, ...]] = None) -> PeriodicOrbit:
     """The state x_j = origin + j p/q, least at eps 0; by default it begins at a maximum of V."""
     potential = known(potential)
     numerators, q = type_of(potential, p, q)
-    return State(potential, numerators, q, 0.0, np.zeros((q, potential.n)),
+    return PeriodicOrbit(potential, numerators, q, 0.0, np.zeros((q, potential.n)),
                  potential.start if origin is None else origin)
 
 
@@ -46,13 +46,13 @@ def step_of(potential):
 class Family:
     """States of one type, in the order in which eps was asked for."""
 
-    states: Tuple[State, ...]
+    states: Tuple[PeriodicOrbit, ...]
 
     def __len__(self) -> int:
         return len(self.states)
 
     @overload
-    def __getitem__(self, k: int) -> State: ...
+    def __getitem__(self, k: int) -> PeriodicOrbit: ...
 
     @overload
     def __getitem__(self, k: slice) -> "Family": ...
@@ -60,7 +60,7 @@ class Family:
     def __getitem__(self, k):
         return Family(self.states[k]) if isinstance(k, slice) else self.states[k]
 
-    def __iter__(self) -> Iterator[State]:
+    def __iter__(self) -> Iterator[PeriodicOrbit]:
         return iter(self.states)
 
     @property
@@ -77,7 +77,7 @@ class Family:
         Hollow points are of states in which doubles see no minimum.
 
         column -- "exponents", "action", "residue" (of one angle), "deviation", "least", "shadow",
-            "grad_size" or "undetermined", as State has them
+            "grad_size" or "undetermined", as PeriodicOrbit has them
         ax -- Axes to draw into, which are returned
 
         ValueError: there is no such column, or no state.  ConverseError: no matplotlib."""
@@ -96,8 +96,8 @@ class Family:
         rows.writerows(map(row, self.states))
 
     def save(self, path: Union[str, "os.PathLike[str]"]) -> None:
-        """Writes all states to a file as State.save does one.  ValueError: there is none, or they
-        are not of one potential and type."""
+        """Writes all states to a file as PeriodicOrbit.save does one.  ValueError: there is no
+        state, or the states are not of one potential and type."""
         from .points import save
         save(self.states, path)
 
@@ -125,9 +125,9 @@ def reached(potential, eps, begin=0.0):
 
 
 def follow(potential: Source, p: Numerators, q: int, eps: Union[float, Sequence[float]] = 1.0,
-           progress: Optional[Callable[[int, State], object]] = None,
-           start: Optional[State] = None,
-           on_step: Optional[Callable[[State], object]] = None) -> Family:
+           progress: Optional[Callable[[int, PeriodicOrbit], object]] = None,
+           start: Optional[PeriodicOrbit] = None,
+           on_step: Optional[Callable[[PeriodicOrbit], object]] = None) -> Family:
     """A Family: the states that continuation reaches at each eps in turn, from the straight orbit
     at eps 0 or from another state.
 
@@ -150,7 +150,7 @@ def follow(potential: Source, p: Numerators, q: int, eps: Union[float, Sequence[
             raise ValueError("the start is %r, and no state of the potential %s and type (%s)/%d"
                              % (start, potential.name, ", ".join(map(str, state.p)), state.q))
         state = start
-    states: List[State] = []
+    states: List[PeriodicOrbit] = []
     targets, longest = reached(potential, eps, state.eps), step_of(potential)
     told(progress)
     told(on_step)
@@ -178,8 +178,8 @@ def follow(potential: Source, p: Numerators, q: int, eps: Union[float, Sequence[
     return Family(tuple(states))
 
 
-def newton(state: State, eps: Optional[float] = None, tol: float = 1e-13,
-           max_steps: int = 50) -> Tuple[State, int]:
+def newton(state: PeriodicOrbit, eps: Optional[float] = None, tol: float = 1e-13,
+           max_steps: int = 50) -> Tuple[PeriodicOrbit, int]:
     """Newton's method without damping (thesis, Appendix A): it finds whatever is stationary, a
     minimum or a saddle, or nothing.  Returns the last state, "not stationary" perhaps, and the
     number of steps."""

@@ -141,7 +141,7 @@ def type_of(potential, p, q):
 
 
 @dataclass(frozen=True, eq=False)
-class State:
+class PeriodicOrbit:
     """A state of type (p, q): q points x_j = origin + (j p mod q)/q + u_j, continued by
     x_{j+q} = x_j + p.  Angles and momenta have period 1.
 
@@ -187,10 +187,11 @@ class State:
             object.__setattr__(self, name, value)
 
     def __reduce__(self):               # the default would copy caches and make u writable
-        return State, (self.potential, self.p, self.q, self.eps, self.u, self.origin, self.searches)
+        return PeriodicOrbit, (self.potential, self.p, self.q, self.eps, self.u, self.origin,
+                               self.searches)
 
     def __repr__(self) -> str:
-        return "<State %s, type (%s)/%d, eps %r, %s>" % (
+        return "<PeriodicOrbit %s, type (%s)/%d, eps %r, %s>" % (
             self.potential.name, ", ".join(map(str, self.p)), self.q, self.eps, self.label)
 
     # ---- points
@@ -438,18 +439,18 @@ class State:
 
     # ---- other states
 
-    def moved(self, u: np.ndarray) -> "State":
+    def moved(self, u: np.ndarray) -> "PeriodicOrbit":
         """The state with other displacements u, array (q, n)."""
         return replace(self, u=u, searches=0)
 
-    def repeat(self, n: int) -> "State":
+    def repeat(self, n: int) -> "PeriodicOrbit":
         """The orbit run through n times: a state of type (n p, n q)."""
         n = whole("how often an orbit is run through", n, 1, LONGEST // self.q)
         return replace(self, p=tuple(n * i for i in self.p), q=n * self.q,
                        u=np.tile(self.u, (n, 1)), searches=0)
 
     def relax(self, eps: Optional[float] = None, tol: float = 1e-13,
-              max_steps: int = 10000) -> "State":
+              max_steps: int = 10000) -> "PeriodicOrbit":
         """A nearby minimum of the action, at this or another eps, by Newton's method with damping.
 
         tol -- the largest coordinate of its gradient; 100 tol where rounding prevents less
@@ -478,8 +479,8 @@ def descended(state, eps, tol, max_steps, held=None):
 
 
 def expected(state):
-    """Returns what it is given; raises ValueError unless that is a State."""
-    if not isinstance(state, State):
+    """Returns what it is given; raises ValueError unless that is a PeriodicOrbit."""
+    if not isinstance(state, PeriodicOrbit):
         raise ValueError("a state is expected, such as follow and relax return, not %.200r"
                          % (state,))
     return state

@@ -22,7 +22,7 @@ from ..storage.files import ConverseError
 from ..storage.signals import interruptible
 from .potential import Numerators, Source, Stoppable, finite, known, told
 from .solver import COLUMNS, MOST_EPS_STEPS, follow, reached, row, straight
-from .state import ROUNDS, State
+from .state import ROUNDS, PeriodicOrbit
 
 LOST = "lost"                           # in place of a label: continuation has lost the branch
 TOLERANCE = 1e-12                       # of gradients: before break-up, rounding hides what is less
@@ -44,8 +44,8 @@ Type = Tuple[Tuple[int, ...], int]
 class Onset(NamedTuple):
     """The states on both sides of an onset; above is None where there is none up to the end."""
 
-    below: State
-    above: Optional[State]
+    below: PeriodicOrbit
+    above: Optional[PeriodicOrbit]
 
 
 def onset(potential: Source, p: Numerators, q: int, exponent: Optional[float] = None,

@@ -9,10 +9,10 @@ from fractions import Fraction
 import mpmath
 import pytest
 
-from converse.maps import region
 from converse.model.map import THESIS, SymplecticMap
 from converse.model.problem import Problem
 from converse.model.region import DIAGONALS, reduced
+from converse.parameters import region
 
 from checker import check
 

@@ -105,14 +105,14 @@ def test_find_minimax(run):
 
 
 def test_what_is_not_found_ends_with_status_1(run, monkeypatch):
-    relax = orbits.State.relax
+    relax = orbits.PeriodicOrbit.relax
 
     def fails(state, eps, *rest, **options):
         if eps > 0.01:
             raise ConverseError("no orbit")
         return relax(state, eps, *rest, **options)
 
-    monkeypatch.setattr(orbits.State, "relax", fails)
+    monkeypatch.setattr(orbits.PeriodicOrbit, "relax", fails)
     status, out, err = run("find", "trig", SMALL, "0.01", "0.02")
     assert (status, err) == (1, "")
     assert out.count("State : minimum") == 1 and out.endswith("\nNot found : no orbit\n")

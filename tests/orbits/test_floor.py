@@ -180,7 +180,7 @@ def test_corridors_round():
         _, value = total(potential, q, p, eps, state.u)
         first = int(np.argmax(value))
         z = np.roll(state.u, -first, 0) + np.array(p) * first / q
-        state = orbits.State(potential, p, q, eps, z, (0.0,) * potential.n).relax(tol=1e-14)
+        state = orbits.PeriodicOrbit(potential, p, q, eps, z, (0.0,) * potential.n).relax(tol=1e-14)
         low, high = (number * q for number in orbits.enclosed_action(state))
         rng = np.random.default_rng(10)
         for _ in range(20):
@@ -259,7 +259,7 @@ def test_enclosed_action(potential):
     rng, n = np.random.default_rng(8), potential.n
     v = truth(potential)
     for q in (1, 2, 7):
-        state = orbits.State(potential, (3,) * n, q, 0.3, rng.normal(0, 2, (q, n)),
+        state = orbits.PeriodicOrbit(potential, (3,) * n, q, 0.3, rng.normal(0, 2, (q, n)),
                              rng.uniform(-2, 2, n))
         low, high = orbits.enclosed_action(state)
         with mpmath.workdps(40):
@@ -292,7 +292,8 @@ def test_no_state_has_less(potential, p, q, eps, known):
         assert found.high == pytest.approx(known, abs=1e-10)
     rng, n, met = np.random.default_rng(9), potential.n, 0
     for _ in range(60 * TORTURE):
-        start = orbits.State(potential, p, q, eps, rng.normal(0, 0.3, (q, n)), rng.uniform(0, 1, n))
+        start = orbits.PeriodicOrbit(potential, p, q, eps, rng.normal(0, 0.3, (q, n)),
+                                     rng.uniform(0, 1, n))
         low, high = orbits.enclosed_action(start.relax())
         assert high >= found.low
         met += low <= found.high
@@ -364,7 +365,7 @@ def test_floor_of_the_spiral_mean():
     """Value iteration's numbers, from elsewhere, lie between the proved and the estimate; states
     of types near it lie above."""
     for eps, known, grid in ((0.02, -0.0012623, 64), (0.04, -0.0060520, 64)):
-        found = orbits.floor(orbits.trig, eps, SPIRAL, grid)
+        found = orbits.mather_beta(orbits.trig, eps, SPIRAL, grid)
         assert found.low < known + 1e-6 < found.estimate + 1e-5
         assert found.estimate - found.low < 1.2 * 2 * (1 + eps * 67.4) / (8 * grid ** 2)
         for q in (9, 16, 28):
@@ -382,7 +383,7 @@ def test_floor_below_the_least_action(potential, p, q, eps):
     """Of its own type the least state is above the proved floor; with one degree of freedom it is
     the least of all and below the grid's."""
     grid = 512 if potential.n == 1 else 64
-    found = orbits.floor(potential, eps, np.array(p) / q, grid)
+    found = orbits.mather_beta(potential, eps, np.array(p) / q, grid)
     least = orbits.least_action(potential, p, q, eps)
     assert found.low < least.low
     price = potential.n * (1 + abs(eps) * potential.curvature) / (8 * grid ** 2)
@@ -393,7 +394,7 @@ def test_floor_below_the_least_action(potential, p, q, eps):
 
 def test_floor_holds_for_any_path():
     """Also for paths on the grid itself, whatever the rotation, and at eps 0."""
-    found = orbits.floor(orbits.standard, 0.0, (0.3,), 50)
+    found = orbits.mather_beta(orbits.standard, 0.0, (0.3,), 50)
     assert -1.2 / (8 * 50 ** 2) < found.low <= 0 <= found.estimate + 1e-12
     torus = mather._Torus(orbits.trig, 0.3, 16)
     c, rotation = (0.4, -0.2), np.array([0.3, 0.1])
@@ -437,13 +438,13 @@ FLAT = orbits.FromPython(Flat(), 2, curvature=1.0)
     lambda: orbits.least_action(orbits.trig, (1, 1), 100, 1e5),
     lambda: orbits.least_action(FLAT, (1, 1), 3, 0.1),
     lambda: orbits.enclosed_action(orbits.straight(FLAT, (1, 1), 3)),
-    lambda: orbits.floor(FLAT, 0.1, SPIRAL),
-    lambda: orbits.floor(orbits.trig, float("inf"), SPIRAL),
-    lambda: orbits.floor(orbits.trig, 0.1, (0.5,)),
-    lambda: orbits.floor(orbits.trig, 0.1, 0.5),
-    lambda: orbits.floor(orbits.trig, 0.1, (0.5, float("nan"))),
-    lambda: orbits.floor(orbits.trig, 0.1, SPIRAL, 7),
-    lambda: orbits.floor(orbits.trig, 0.1, SPIRAL, 64.5)])
+    lambda: orbits.mather_beta(FLAT, 0.1, SPIRAL),
+    lambda: orbits.mather_beta(orbits.trig, float("inf"), SPIRAL),
+    lambda: orbits.mather_beta(orbits.trig, 0.1, (0.5,)),
+    lambda: orbits.mather_beta(orbits.trig, 0.1, 0.5),
+    lambda: orbits.mather_beta(orbits.trig, 0.1, (0.5, float("nan"))),
+    lambda: orbits.mather_beta(orbits.trig, 0.1, SPIRAL, 7),
+    lambda: orbits.mather_beta(orbits.trig, 0.1, SPIRAL, 64.5)])
 def test_bad_input(call):
     with pytest.raises(ValueError) as refusal:
         call()

@@ -228,7 +228,7 @@ def test_a_state_that_is_not_the_least():
     """Of a potential with two maxima the orbit at the lower one is a minimum; beyond a pass there
     is less action."""
     potential = orbits.potential.Fourier({(1,): (0.01, 0), (2,): (0.05, 0)}, "two")
-    upper = orbits.State(potential, (0,), 1, 1.0, [[0.0]], (0.5,)).relax()
+    upper = orbits.PeriodicOrbit(potential, (0,), 1, 1.0, [[0.0]], (0.5,)).relax()
     assert upper.label == "minimum"
     with pytest.raises(ConverseError, match="search"):
         upper.minimax()

@@ -35,7 +35,7 @@ def dense(potential, p, q, eps, starts):
     found = []
     for k in range(starts):
         u = rng.normal(size=(q, potential.n)) * rng.choice((0, 0.2, 0.5))
-        state = orbits.State(potential, p, q, eps, u, rng.random(potential.n)).relax()
+        state = orbits.PeriodicOrbit(potential, p, q, eps, u, rng.random(potential.n)).relax()
         found.append(state.action)
     return min(found)
 
@@ -91,7 +91,7 @@ def test_continuation_loses(eps, gain):
     best = orbits.search(trig, *SPIRAL, eps, searches=100)
     assert followed.label == "minimum" and best.label == "best of 100 searches"
     assert gain <= followed.action - best.action < 1.01 * gain + 1e-8
-    assert best.action > orbits.floor(trig, eps, best.rotation, grid=32).low
+    assert best.action > orbits.mather_beta(trig, eps, best.rotation, grid=32).low
 
 
 def test_all_agree_where_tori_are():
@@ -140,7 +140,7 @@ def test_in_an_executor():
 def test_the_label_counts_searches():
     """Those that end; the returned state is the least that any of them ended in."""
     calls, ended = [], []
-    relax = orbits.State.relax
+    relax = orbits.PeriodicOrbit.relax
 
     def counted(state, *arguments, **options):
         found = relax(state, *arguments, **options)
@@ -149,7 +149,7 @@ def test_the_label_counts_searches():
         return found
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(orbits.State, "relax", counted)
+        patch.setattr(orbits.PeriodicOrbit, "relax", counted)
         best = orbits.search(trig, (28, 37), 49, 0.03, searches=25,
                              progress=lambda n, state: calls.append((n, state.action)))
     assert [n for n, _ in calls] == list(range(1, 26))
@@ -163,7 +163,7 @@ def test_the_label_counts_searches():
 def test_a_search_that_does_not_end_is_not_counted(monkeypatch):
     def fails(state, *arguments, **options):
         raise ConverseError("no orbit")
-    monkeypatch.setattr(orbits.State, "relax", fails)
+    monkeypatch.setattr(orbits.PeriodicOrbit, "relax", fails)
     with pytest.raises(ConverseError, match="none of 7 searches ended"):
         orbits.search(trig, (3, 4), 5, 0.03, searches=7)
 
@@ -199,7 +199,8 @@ def test_a_recombined_path_is_the_least(monkeypatch):
     monkeypatch.setattr(hunt, "RELIEF", 0.0)
     rng = np.random.default_rng(3)
     for _ in range(20):
-        state = orbits.State(trig, (4, 5), 7, 0.05, rng.normal(size=(7, 2)) / 4, (0.85, 0.85))
+        state = orbits.PeriodicOrbit(trig, (4, 5), 7, 0.05, rng.normal(size=(7, 2)) / 4,
+                                     (0.85, 0.85))
         u = rng.normal(size=(7, 2)) / 4
         near = np.argmin(((u - state.u) ** 2).sum(1))
         least = min(action_of(state, np.where(np.array(choice)[:, None], u, state.u))

@@ -356,15 +356,17 @@ def test_formulas_say_what_v_is():
     (lambda: orbits.straight(orbits.standard, (1,), 3, 0.0), "origin"),
     (lambda: orbits.straight(orbits.standard, (1,), 3, []), "origin"),
     (lambda: orbits.straight(orbits.standard, (1,), 3, (1e17,)), "origin"),     # x_0 = x_1 = x_2
-    (lambda: orbits.State("trig", (1, 1), 2, 0.1, np.zeros((2, 2)), (0, 0)),
+    (lambda: orbits.PeriodicOrbit("trig", (1, 1), 2, 0.1, np.zeros((2, 2)), (0, 0)),
      "map is a SymplecticMap"),
-    (lambda: orbits.State(orbits.trig, (1, 1), 2, 0.1, "a", (0, 0)), "rows"),
-    (lambda: orbits.State(orbits.trig, (1, 1), 2, 0.1, np.zeros((2, 2)) * 1j, (0, 0)), "rows"),
-    (lambda: orbits.State(orbits.trig, (1, 1), 2, 0.1, np.zeros((2, 2)), (0, 0), -3), "searches"),
+    (lambda: orbits.PeriodicOrbit(orbits.trig, (1, 1), 2, 0.1, "a", (0, 0)), "rows"),
+    (lambda: orbits.PeriodicOrbit(orbits.trig, (1, 1), 2, 0.1, np.zeros((2, 2)) * 1j, (0, 0)),
+     "rows"),
+    (lambda: orbits.PeriodicOrbit(orbits.trig, (1, 1), 2, 0.1, np.zeros((2, 2)), (0, 0), -3),
+     "searches"),
     (lambda: orbits.prove(3), "a state is expected"),
     (lambda: orbits.enclosed_action(3), "a state is expected"),
-    (lambda: orbits.floor(orbits.standard, 0.5, 0.5), "rotation: a list"),
-    (lambda: orbits.floor("standard", 0.5, [0.5]), "map is a SymplecticMap"),
+    (lambda: orbits.mather_beta(orbits.standard, 0.5, 0.5), "rotation: a list"),
+    (lambda: orbits.mather_beta("standard", 0.5, [0.5]), "map is a SymplecticMap"),
     (lambda: orbits.least_action("trig", (5, 7), 9, 0.05), "map is a SymplecticMap"),
     (lambda: orbits.onset("trig", (5, 7), 9), "map is a SymplecticMap"),
     (lambda: orbits.onset(orbits.trig, (5, 7), 0), "whole"),
@@ -382,9 +384,11 @@ def test_formulas_say_what_v_is():
     (lambda: orbits.straight(orbits.trig, (1, 2), 0), "whole"),
     (lambda: orbits.straight(orbits.trig, (1, 2.5), 3), "whole"),
     (lambda: orbits.straight(orbits.trig, (1,), 3), "2 whole"),
-    (lambda: orbits.State(orbits.trig, (1, 1), 2, 0.1, np.zeros((3, 2)), (0, 0)), "rows"),
-    (lambda: orbits.State(orbits.trig, (1, 1), 2, 0.1, np.full((2, 2), np.nan), (0, 0)), "finite"),
-    (lambda: orbits.State(orbits.trig, (1, 1), 2, np.inf, np.zeros((2, 2)), (0, 0)), "finite"),
+    (lambda: orbits.PeriodicOrbit(orbits.trig, (1, 1), 2, 0.1, np.zeros((3, 2)), (0, 0)), "rows"),
+    (lambda: orbits.PeriodicOrbit(orbits.trig, (1, 1), 2, 0.1, np.full((2, 2), np.nan), (0, 0)),
+     "finite"),
+    (lambda: orbits.PeriodicOrbit(orbits.trig, (1, 1), 2, np.inf, np.zeros((2, 2)), (0, 0)),
+     "finite"),
 ])
 def test_bad_arguments(make, word):
     with pytest.raises(ValueError, match=word) as error:
@@ -415,7 +419,8 @@ def test_the_band_against_a_dense_matrix(potential, p, q, eps):
     rng = np.random.default_rng(q)
     n = potential.n
     for _ in range(20):
-        state = orbits.State(potential, p, q, eps, rng.normal(size=(q, n)) / 5, potential.start)
+        state = orbits.PeriodicOrbit(potential, p, q, eps, rng.normal(size=(q, n)) / 5,
+                                     potential.start)
         matrix = dense(state)
         eigenvalues = np.linalg.eigvalsh(matrix)
         mu = rng.uniform(-1, 1)
@@ -438,7 +443,8 @@ def test_action_gradient_and_blocks_belong_together():
     for potential in POTENTIALS:
         n, q = potential.n, 7
         p = (3, -2)[:n]
-        state = orbits.State(potential, p, q, 0.3, rng.normal(size=(q, n)) / 3, potential.start)
+        state = orbits.PeriodicOrbit(potential, p, q, 0.3, rng.normal(size=(q, n)) / 3,
+                                     potential.start)
         lift = np.array(state.origin) + np.arange(q + 1)[:, None] * np.array(p) / q \
             + np.vstack([state.u, state.u[:1]])
         kinetic = (np.diff(lift, axis=0) ** 2).sum() / 2 / q - (state.rotation ** 2).sum() / 2
@@ -550,8 +556,8 @@ def test_labels():
     """A maximum of V is where a minimum runs through; the minima of V make the saddles."""
     least = orbits.straight(orbits.trig, (1, 1), 2).relax(0.02)
     assert least.label == "minimum" and least.repeat(3).label == "minimum"
-    low = orbits.State(orbits.standard, (0,), 1, 0.5, [[0.0]], (0.0,))
-    assert (low.label, orbits.State(orbits.standard, (0,), 1, 0.5, [[0.0]], (0.5,)).label) \
+    low = orbits.PeriodicOrbit(orbits.standard, (0,), 1, 0.5, [[0.0]], (0.0,))
+    assert (low.label, orbits.PeriodicOrbit(orbits.standard, (0,), 1, 0.5, [[0.0]], (0.5,)).label) \
         == ("saddle", "minimum")
     assert least.moved(least.u + 1e-3).label == "not stationary"
     assert low.relax().label == "minimum"               # it escapes
@@ -566,7 +572,7 @@ def test_the_best_line(n, numbers):
     potential, rng = orbits.trig if n == 2 else orbits.standard, np.random.default_rng(numbers)
     for scale in 1e-9, 1.0, 30.0:
         u = scale * rng.normal(size=(numbers, n))
-        deviation = orbits.State(potential, (0,) * n, numbers, 0.0, u, (0.0,) * n).deviation
+        deviation = orbits.PeriodicOrbit(potential, (0,) * n, numbers, 0.0, u, (0.0,) * n).deviation
         def away(line):
             return np.sqrt(((u - line) ** 2).sum(1)).max()
 
@@ -582,7 +588,7 @@ def test_the_best_line_of_known_points():
     for u, radius in ((corners, 0.5 ** 0.5), ([[0, 0], [4, 0], [2, 1]], 2.0), ([[3, 4]] * 5, 0.0),
                       ([[1, 0], [-0.6, 0.8], [-0.6, -0.8], [0.2, 0.3]], 1.0),
                       ([[k / 9, k / 9] for k in range(10)], 0.5 ** 0.5)):
-        state = orbits.State(orbits.trig, (0, 0), len(u), 0.0, u, (0.0, 0.0))
+        state = orbits.PeriodicOrbit(orbits.trig, (0, 0), len(u), 0.0, u, (0.0, 0.0))
         assert state.deviation.from_best == pytest.approx(radius, abs=1e-12)
     # An orbit of which half the extent, by both coordinates, is more than its displacements are.
     state = orbits.follow(orbits.poly, (28, 37), 49, [0.02])[0]
@@ -599,9 +605,9 @@ def test_continuation_knows_no_unit_of_eps():
         mine = orbits.potential.Fourier({k: (factor * Fraction(c), factor * Fraction(s))
                                for k, (c, s) in terms.items()}, "mine", (0.85, 0.85))
         taken = []
-        relax = orbits.State.relax
+        relax = orbits.PeriodicOrbit.relax
         with pytest.MonkeyPatch.context() as patch:
-            patch.setattr(orbits.State, "relax", lambda state, eps: (
+            patch.setattr(orbits.PeriodicOrbit, "relax", lambda state, eps: (
                 taken.append(eps), relax(state, eps))[1])
             families.append(orbits.follow(mine, (65, 86), 114, [0.02 / factor, 0.06 / factor]))
         assert len(taken) == 24

@@ -72,7 +72,8 @@ def test_newton_at_the_start_of_poly():
     steps lead anywhere.  Points whose digits are gone are no state."""
     straight = orbits.straight(orbits.poly, (377, 2330), 3770)
     assert straight.undetermined == 2
-    begun = orbits.State(orbits.poly, straight.p, straight.q, 0.0025, straight.u, straight.origin)
+    begun = orbits.PeriodicOrbit(orbits.poly, straight.p, straight.q, 0.0025, straight.u,
+                                 straight.origin)
     assert begun.below(0) >= 2 and begun.least < -1e-3
     wild, _ = newton(straight, 0.0025)
     assert wild.label == "not stationary" and np.abs(wild.u).max() > 1
@@ -119,9 +120,9 @@ def test_phases_along_soft_directions_are_not_determined():
 def test_a_direction_so_flat_that_nothing_is_known():
     """A saddle as flat as this is one if the gradient is zero; if not, the orbit may lie anywhere
     along it, and what is said is that this direction is not determined."""
-    sure = orbits.State(orbits.standard, (0,), 1, 1e-9, [[0.0]], (0.0,))
+    sure = orbits.PeriodicOrbit(orbits.standard, (0,), 1, 1e-9, [[0.0]], (0.0,))
     assert sure.label == "saddle" and sure.undetermined == 1
-    flat = orbits.State(orbits.standard, (0,), 1, 1e-9, [[0.0]], (2e-3,))
+    flat = orbits.PeriodicOrbit(orbits.standard, (0,), 1, 1e-9, [[0.0]], (2e-3,))
     assert flat.label == "stationary" and flat.undetermined == 1
     state = orbits.follow(orbits.trig, *SPIRAL, [0.0075])[0]        # 1e-13, and -4e-11
     assert state.label == "minimum" and state.undetermined == 2
@@ -132,7 +133,7 @@ def test_a_minimum_whose_copies_are_none():
     through twice there is a direction down; four times, and a minimum lies tenfold lower."""
     rng = np.random.default_rng(5)
     for _ in range(400):
-        state = orbits.State(orbits.poly, (1, 8), 8, 0.0619, rng.uniform(-0.5, 0.5, (8, 2)),
+        state = orbits.PeriodicOrbit(orbits.poly, (1, 8), 8, 0.0619, rng.uniform(-0.5, 0.5, (8, 2)),
                              orbits.poly.start).relax()
         if state.label == "saddle":
             break
@@ -162,7 +163,7 @@ def test_soft_directions_that_turn(monkeypatch):
     for soft, stiff, label in ((0.85, 10, "saddle"), (1.6, 10, "minimum"), (1.6, 30, "minimum")):
         monkeypatch.setattr(orbits.FromPython, "_compare", lambda self: None)
         potential = orbits.FromPython(Blocks(), 2)
-        state = orbits.State(potential, (1, 1), 3, 1.0, np.zeros((3, 2)), (0.0, 0.0))
+        state = orbits.PeriodicOrbit(potential, (1, 1), 3, 1.0, np.zeros((3, 2)), (0.0, 0.0))
         assert state.below(0) == 0 and state.label == label
         assert (state.repeat(2).least < 0) == (label == "saddle")
         if label == "minimum":      # DF^3 has complex eigenvalues, then two that are below -1
@@ -191,7 +192,7 @@ def test_it_leaves_a_saddle_for_the_lower_side():
         potential = orbits.potential.Fourier({(1,): (1, 0), (2,): (0, skew)}, "skew")
         axis = np.arange(10 ** 6)[:, None] / 10 ** 6
         low = axis[np.argmin(potential.evaluate(axis)[0])]
-        saddle = newton(orbits.State(potential, (0,), 1, 0.01, [[0.0]], tuple(low)))[0]
+        saddle = newton(orbits.PeriodicOrbit(potential, (0,), 1, 0.01, [[0.0]], tuple(low)))[0]
         assert saddle.label == "saddle"
         left, right = potential.evaluate([low - 0.05, low + 0.05])[0]
         assert abs(left - right) > 0.01
@@ -201,7 +202,7 @@ def test_it_leaves_a_saddle_for_the_lower_side():
 
 def test_no_step_is_longer_than_a_tenth():
     """Near an inflection of V Newton's step is longer than the torus."""
-    state = orbits.State(orbits.standard, (0,), 1, 0.5, [[0.251]], (0.0,))
+    state = orbits.PeriodicOrbit(orbits.standard, (0,), 1, 0.5, [[0.251]], (0.0,))
     wild, _ = newton(state, max_steps=1)
     assert abs(wild.u[0, 0] - 0.251) > 10
     how, u = ffi.new("cv_relaxed *"), np.array([[0.251, 0.0]])
@@ -299,7 +300,7 @@ def test_exponents_of_1989_are_wrong_by_log_q_over_q():
         assert (0.7 * math.log(n) / n < found).all() and (found < 1.2 * math.log(n) / n).all()
     assert (0 <= state.exponents).all() and (state.exponents < 1e-5).all()
     assert all(exponent_text(state, x, 10) == "below 1e-05" for x in state.exponents)
-    free = orbits.State(orbits.trig, (1, 1), 3, 0.0, np.zeros((3, 2)), (0.0, 0.0))
+    free = orbits.PeriodicOrbit(orbits.trig, (1, 1), 3, 0.0, np.zeros((3, 2)), (0.0, 0.0))
     assert (free.exponents < 1e-5).all()
     assert (gram_schmidt_exponents(free, 1000) < 3e-3).all()
 
@@ -339,7 +340,7 @@ def test_pairs_against_all_pairs(potential, q, count):
     n = potential.n
     for scale in (0.5, 1e-3):                   # all over the torus; in a clump over its corner
         u = scale * rng.uniform(-1, 1, (q, n))
-        state = orbits.State(potential, (0,) * n, q, 0.1, u, (0.0,) * n)
+        state = orbits.PeriodicOrbit(potential, (0,) * n, q, 0.1, u, (0.0,) * n)
         i, j = np.triu_indices(q, 1)
         apart = np.abs(state.x[i] - state.x[j])
         distance = np.sqrt((np.minimum(apart, 1 - apart) ** 2).sum(1))
@@ -354,7 +355,8 @@ def test_pairs_against_all_pairs(potential, q, count):
 
 def test_pairs_half_way_round():
     """Two points opposite each other are as far in both directions, and one pair."""
-    state = orbits.State(orbits.trig, (0, 0), 3, 0.0, [[0, 0], [0.5, 0], [0.25, 0.5]], (0, 0))
+    state = orbits.PeriodicOrbit(orbits.trig, (0, 0), 3, 0.0, [[0, 0], [0.5, 0], [0.25, 0.5]],
+                                 (0, 0))
     pairs = state.pairs()
     assert {frozenset(pair) for pair in zip(pairs.i, pairs.j)} == {frozenset(s) for s in
                                                                    ((0, 1), (0, 2), (1, 2))}
@@ -429,7 +431,8 @@ def test_bad_potentials(method, instead, error, word):
 def test_ctrl_c_ends_a_long_search():
     """A thread that shall end does so in the C core, which asks between rounds of 2^18 points."""
     rng = np.random.default_rng(7)
-    state = orbits.State(orbits.trig, (0, 0), 30000, 0.04, rng.uniform(-0.5, 0.5, (30000, 2)),
+    state = orbits.PeriodicOrbit(orbits.trig, (0, 0), 30000, 0.04,
+                                 rng.uniform(-0.5, 0.5, (30000, 2)),
                          (0, 0))
     asked = []
 
@@ -465,7 +468,8 @@ def test_the_action_of_a_long_orbit_keeps_its_digits():
     lose what tells a step down from one up."""
     rng = np.random.default_rng(9)
     q = 100083
-    state = orbits.State(orbits.trig, (57031, 75550), q, 0.025, rng.uniform(-0.1, 0.1, (q, 2)),
+    state = orbits.PeriodicOrbit(orbits.trig, (57031, 75550), q, 0.025,
+                                 rng.uniform(-0.1, 0.1, (q, 2)),
                          orbits.trig.start)
     action, gradient, u = ffi.new("double *"), np.zeros((q, 2)), state.u.copy()
     assert lib.cv_action(orbits.trig.native, q, 0.025, address(state.base), address(u), action,

@@ -57,7 +57,8 @@ def test_every_double_comes_back(tmp_path):
     rng = np.random.default_rng(1)
     u = rng.normal(size=(200, 2)) * 10.0 ** rng.integers(-300, 2, (200, 2))
     u[0] = -0.0, 5e-324
-    state = orbits.State(orbits.ff, (3, -800), 200, 1 / 3, u, (np.nextafter(0.3, 1), -1e-17), 7)
+    state = orbits.PeriodicOrbit(orbits.ff, (3, -800), 200, 1 / 3, u,
+                                 (np.nextafter(0.3, 1), -1e-17), 7)
     state.save(tmp_path / "a.npz")
     assert same(orbits.load(tmp_path / "a.npz")[0], state)
 

@@ -311,12 +311,12 @@ def test_more_digits():
 
 
 # The mirror image of what has its signs the other way: so what is cut off x makes it look steeper.
-COMPLEX = orbits.State(orbits.poly, (-1, -4), 4, 0.2547, [
+COMPLEX = orbits.PeriodicOrbit(orbits.poly, (-1, -4), 4, 0.2547, [
     [0.13872656450355808, 0.23636730472985026], [0.11127343549644189, 0.2363673047298503],
     [0.1323984999421461, 0.0435489119315375], [0.11760150005785408, 0.0435489119315374]], (0, 0))
 
 
-TURNED = orbits.State(orbits.poly, (1, 0), 6, 0.1336, [
+TURNED = orbits.PeriodicOrbit(orbits.poly, (1, 0), 6, 0.1336, [
     [0.1115, -0.3125], [0.0165, -0.236], [0.0461, -0.0711], [0.1206, -0.0711], [0.1502, -0.236],
     [0.0552, -0.3125]], (0, 0))
 
@@ -400,7 +400,7 @@ def test_a_saddle_whose_gradient_is_exactly_zero(name, p, origin):
 
 def test_minimum_that_copies_lose():
     """Its own Hessian is positive definite, but not that of two copies."""
-    state = orbits.State(orbits.poly, (6, 0), 7, 0.0829, [
+    state = orbits.PeriodicOrbit(orbits.poly, (6, 0), 7, 0.0829, [
         [0.09001452930093247, 0.22129605034580752], [0.05284261355621051, 0.22129605034580754],
         [0.10321553783195166, 0.17508214209550613], [0.10488570850555318, 0.0745211942219912],
         [0.07142857142857154, 0.03396091525211244], [0.0379714343515899, 0.07452119422199109],

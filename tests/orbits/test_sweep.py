@@ -71,7 +71,7 @@ def test_greenes_residue_at_the_golden_onset():
 
 def test_a_saddle_is_no_onset(monkeypatch):
     """Whatever its exponents."""
-    monkeypatch.setattr(orbits.State, "label", "saddle")
+    monkeypatch.setattr(orbits.PeriodicOrbit, "label", "saddle")
     assert orbits.onset(orbits.trig, (65, 86), 114, step=0.001, width=1e-4, top=0.004).above is None
 
 
@@ -324,7 +324,7 @@ def test_killed_and_continued(path, number):
 
 def test_ctrl_c_ends_the_threads_too(monkeypatch):
     """One that is in the midst of a vector goes no further than to the next look at its flag."""
-    relax, begun, ended = orbits.State.relax, threading.Event(), []
+    relax, begun, ended = orbits.PeriodicOrbit.relax, threading.Event(), []
 
     def held(state, *arguments, **options):
         if state.q == VECTORS[1][1]:
@@ -341,7 +341,7 @@ def test_ctrl_c_ends_the_threads_too(monkeypatch):
             assert begun.wait(PATIENCE)
             raise KeyboardInterrupt
 
-    monkeypatch.setattr(orbits.State, "relax", held)
+    monkeypatch.setattr(orbits.PeriodicOrbit, "relax", held)
     with concurrent.futures.ThreadPoolExecutor(1) as executor, pytest.raises(KeyboardInterrupt):
         orbits.sweep(orbits.trig, VECTORS, EPS, executor, progress=strike)
     assert ended == [VECTORS[1][1]]
@@ -366,7 +366,7 @@ def test_a_lost_branch_has_rows_without_numbers(path, monkeypatch):
 
 def test_the_solver_fails_and_smaller_steps_help(monkeypatch):
     """Only steps of less than 0.0003 succeed; then none does."""
-    relax, tried = orbits.State.relax, []
+    relax, tried = orbits.PeriodicOrbit.relax, []
 
     def fails(state, eps, **options):
         tried.append(eps - state.eps)
@@ -375,7 +375,7 @@ def test_the_solver_fails_and_smaller_steps_help(monkeypatch):
         return relax(state, eps, **options)
 
     expected = orbits.onset(orbits.trig, (65, 86), 114, step=0.001, width=1e-4)
-    monkeypatch.setattr(orbits.State, "relax", fails)
+    monkeypatch.setattr(orbits.PeriodicOrbit, "relax", fails)
     limit = 0.0003
     found = orbits.onset(orbits.trig, (65, 86), 114, step=0.001, width=1e-4)
     assert (found.below.eps, found.above.eps) == (expected.below.eps, expected.above.eps)

@@ -8,7 +8,7 @@ from conftest import ROOT
 
 # From the ground up; a room imports only what is on lower floors.  (_native is compiled; the
 # package itself, "", loads what it is asked for.)
-FLOORS = [["version", "_native", "storage", "model"], ["prover", "tori"], ["maps"],
+FLOORS = [["version", "_native", "storage", "model"], ["prover", "tori"], ["parameters"],
           ["draw"], ["orbits"], ["commands"], ["", "__main__"]]
 BESIDE = ["check", "_build"]            # import nothing of the others
 
@@ -17,13 +17,13 @@ UPWARDS = {("model.map", "model.inputs"): "SymplecticMap.read",
            ("model.dynamics", "orbits.portrait"): "SymplecticMap.portrait",
            ("prover.proof", "draw.figure"): "Proof.figure",
            ("prover.proof", "check"): "Proof.verify",
-           ("maps.map", "draw.map_figure"): "Map.draw, Map._repr_html_",
-           ("orbits.state", "orbits.pictures"): "State.figure, State._repr_html_",
+           ("parameters.map", "draw.map_figure"): "ParameterMap.draw, ParameterMap._repr_html_",
+           ("orbits.state", "orbits.pictures"): "PeriodicOrbit.figure, PeriodicOrbit._repr_html_",
            ("orbits.proved", "orbits.pictures"): "ProvedOrbit.figure, ProvedOrbit._repr_html_",
            ("orbits.solver", "orbits.pictures"): "Family.plot, Family._repr_html_",
-           ("orbits.state", "orbits.minimax"): "State.minimax",
+           ("orbits.state", "orbits.minimax"): "PeriodicOrbit.minimax",
            ("orbits.minimax", "orbits.proved_pair"): "Pair.prove",
-           ("orbits.state", "orbits.points"): "State.save",
+           ("orbits.state", "orbits.points"): "PeriodicOrbit.save",
            ("orbits.solver", "orbits.points"): "Family.save",
            ("tori.torus", "draw.torus_figure"): "Torus._repr_html_",
            ("tori.proved", "draw.torus_figure"): "ProvedTorus._repr_html_",

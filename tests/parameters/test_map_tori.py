@@ -6,10 +6,10 @@ import pytest
 
 from converse import check
 from converse.commands import map as cli
-from converse.maps import tori
-from converse.maps.map import Map
 from converse.model.map import THESIS, SymplecticMap
 from converse.model.problem import Problem
+from converse.parameters import tori
+from converse.parameters.map import ParameterMap
 from converse.storage.files import ConverseError
 from converse.tori import read_rotation
 
@@ -22,7 +22,7 @@ def t49(direction, estimate):
 def few(tmp_path_factory):
     """A map of a = b with an estimate in two directions, far below the frontier; and certificates
     of tori there."""
-    found = Map.new("a=b", F(21, 20))
+    found = ParameterMap.new("a=b", F(21, 20))
     found.estimate[:] = [{F(0): 0.06, F(1): 0.03}, {F(0): 0.09, F(1): 0.03}]
     directory = tmp_path_factory.mktemp("tori") / "ab.tori"
     done = []
@@ -76,7 +76,7 @@ def test_the_highest_is_proved_where_it_can_be():
 
 
 def test_where_one_angle_is_alone_the_golden_circle_is_proved(tmp_path):
-    found = Map.new("c=0", F(21, 20))
+    found = ParameterMap.new("c=0", F(21, 20))
     found.estimate[:] = [{F(0): 0.3, F(1): 0.03}]
     tori.prove_tori(found, tmp_path)
     points = dict(tori.proved_points(tmp_path))

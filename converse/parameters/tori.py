@@ -14,7 +14,7 @@ from ..model.map import THESIS, SymplecticMap
 from ..model.problem import Problem
 from ..storage.files import ConverseError
 from . import region
-from .map import Map
+from .map import ParameterMap
 
 if TYPE_CHECKING:                       # tori needs an extra
     from ..tori import ProvedTorus, Rotation
@@ -32,7 +32,7 @@ Progress = Optional[Callable[[int, int], None]]
 Choice = Callable[[Point, float], Iterable[Tuple["Rotation", float]]]
 
 
-def rays(found: Map) -> Iterator[Tuple[int, Fraction]]:
+def rays(found: ParameterMap) -> Iterator[Tuple[int, Fraction]]:
     """The (face, s) of the directions in which tori are looked for, each direction once, those of a
     coarse grid first."""
     known = set()
@@ -55,7 +55,8 @@ def named(direction: Point, estimate: float) -> List[Tuple["Rotation", float]]:
             for name in VECTORS[potential.dimension]]
 
 
-def prove_tori(found: Map, directory: Path, *, vectors: Choice = named, points: int = POINTS,
+def prove_tori(found: ParameterMap, directory: Path, *, vectors: Choice = named,
+               points: int = POINTS,
                progress: Progress = None) -> None:
     """Proves a torus on each ray of a map that has no certificate in the directory, and
     writes its certificate there, named by the face and the place of the ray.  The directory is made

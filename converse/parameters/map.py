@@ -55,7 +55,7 @@ class Node:
 
 
 @dataclass(eq=False, repr=False)
-class Map:
+class ParameterMap:
     """What is proved of a region of parameter space, and the estimate that led the search.
 
     region: "b=0", "a=b" or "c=0", with a, b, c >= 0.
@@ -76,7 +76,7 @@ class Map:
     sha256: str = ""
 
     @classmethod
-    def new(cls, region: str, down_to: Fraction) -> "Map":
+    def new(cls, region: str, down_to: Fraction) -> "ParameterMap":
         faces = REGIONS[region]
         return cls(region, down_to, [Node(root(face)) for face in range(len(faces))],
                    [{} for _ in faces])
@@ -183,7 +183,7 @@ class Map:
     def draw(self, path: Union[str, "os.PathLike[str]"],
              tori: Iterable[Tuple[Fraction, Fraction, Fraction]] = ()) -> None:
         """Draws it: SVG, PNG or PDF, by the name of the file (matplotlib).  tori: the (a, b, c) of
-        proved tori (maps.tori.proved_points)."""
+        proved tori (parameters.tori.proved_points)."""
         from ..draw import map_figure
         map_figure.draw(self, path, list(tori))
 
@@ -193,7 +193,7 @@ class Map:
         return map_figure.html(self)
 
     def __repr__(self):
-        return "<Map of %s: %d cells proved, %d at once, %d open>" % (
+        return "<ParameterMap of %s: %d cells proved, %d at once, %d open>" % (
             self.region, *map(self.count, (PROVED, AT_ONCE, OPEN)))
 
     def save(self, path: Union[str, "os.PathLike[str]"]) -> str:
@@ -219,7 +219,7 @@ class Map:
         return files.write_text(path, json.dumps(data, indent=1) + "\n")
 
     @classmethod
-    def load(cls, path: Union[str, "os.PathLike[str]"]) -> "Map":
+    def load(cls, path: Union[str, "os.PathLike[str]"]) -> "ParameterMap":
         """Reads a map; ConverseError says in one line what is wrong with it.  What it says is
         proved is believed: converse-check does not believe it."""
         damaged = ": is not a map, or truncated"

@@ -1,20 +1,20 @@
 """Maps of the frontier: for which (a, b, c) is it proved that there are no invariant tori?
 
-    from converse import maps
-    found = maps.explore("a=b", "1.05", path="map.json")
+    from converse import parameters
+    found = parameters.explore("a=b", "1.05", path="map.json")
     print(found.report())
     found.draw("map.svg")
 """
 
 from typing import TYPE_CHECKING
 
-from .map import Map, Node
+from .map import Node, ParameterMap
 from .region import REGIONS, Cell
 
 if TYPE_CHECKING:
     from .search import explore
 
-__all__ = ["Cell", "Map", "Node", "REGIONS", "explore"]
+__all__ = ["Cell", "Node", "ParameterMap", "REGIONS", "explore"]
 
 
 def __getattr__(name):
@@ -22,4 +22,4 @@ def __getattr__(name):
     if name == "explore":
         from .search import explore
         return explore
-    raise AttributeError("module 'converse.maps' has no attribute %r" % name)
+    raise AttributeError("module 'converse.parameters' has no attribute %r" % name)

@@ -22,7 +22,7 @@ from ..storage.files import ConverseError
 from ..storage.signals import interruptible, postponed
 from ..version import __version__
 from . import region
-from .map import AT_ONCE, OPEN, PROVED, Map
+from .map import AT_ONCE, OPEN, PROVED, ParameterMap
 from .region import REGIONS
 
 SETTINGS = Settings(method="loewner")
@@ -181,8 +181,8 @@ def estimate_frontier(directions, s, stop=None):
 def explore(name: Optional[str] = None, down_to: Optional[Number] = None, *, path: Path,
             resume: bool = False, jobs: Optional[int] = None,
             executor: Optional[concurrent.futures.Executor] = None, time_limit: float = math.inf,
-            progress: Optional[Callable[[float, Map], None]] = None) -> Map:
-    """Proves what can be proved of a region, and returns the Map, which is kept in a file.
+            progress: Optional[Callable[[float, ParameterMap], None]] = None) -> ParameterMap:
+    """Proves what can be proved of a region, and returns the ParameterMap, which is kept in a file.
 
     name: "b=0", "a=b" or "c=0".  down_to: how near to the estimated frontier to come, as
     a ratio above 1 (1.05).
@@ -201,7 +201,7 @@ def explore(name: Optional[str] = None, down_to: Optional[Number] = None, *, pat
         raise ValueError("the region is one of %s, not %r" % (", ".join(REGIONS), name))
     with interruptible(), Backup(path, resumed=path if resume else None) as backup:
         if resume:
-            region_map = Map.load(path)
+            region_map = ParameterMap.load(path)
             if name not in (None, region_map.region):
                 raise ConverseError("%s: is of another region, %s; name another, or this region"
                                     % (path, region_map.region))
@@ -210,7 +210,7 @@ def explore(name: Optional[str] = None, down_to: Optional[Number] = None, *, pat
                                     % (path, region_map.version))
             region_map.down_to = ratio or region_map.down_to
         else:
-            region_map = Map.new(str(name), ratio or Fraction(21, 20))
+            region_map = ParameterMap.new(str(name), ratio or Fraction(21, 20))
         return _Search(region_map, backup, jobs, executor, time_limit, progress).run()
 
 

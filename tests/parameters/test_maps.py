@@ -14,12 +14,12 @@ import pytest
 from matplotlib.text import Text
 
 import converse
-from converse import check, maps
+from converse import check, parameters
 from converse.commands import map as cli
 from converse.draw import map_figure
-from converse.maps import map as map_module
-from converse.maps import region, search
-from converse.maps.map import AT_ONCE, OPEN, PROVED, Map
+from converse.parameters import map as map_module
+from converse.parameters import region, search
+from converse.parameters.map import AT_ONCE, OPEN, PROVED, ParameterMap
 from converse.prover.workers import ATTEMPTS, WorkerPool
 from converse.storage.files import ConverseError
 
@@ -48,7 +48,7 @@ def made(tmp_path_factory):
         patch.setattr(map_module, "ESTIMATE_GRID", 4)
         patch.setattr(search, "POINT_BUDGET", 1 << 9)
         path = tmp_path_factory.mktemp("map") / "map.json"
-        yield maps.explore("b=0", "1.3", path=path), path
+        yield parameters.explore("b=0", "1.3", path=path), path
 
 
 def random_cell(rng, name):
@@ -111,7 +111,7 @@ def test_a_map(made):
 
 def test_a_cell_with_a_part_above_the_ratio_is_missing(made):
     """What straddles it counts as not yet proved."""
-    found = Map.load(made[1])
+    found = ParameterMap.load(made[1])
     straddling = next(leaf for leaf in found.leaves() if leaf.kind == PROVED
                       and leaf.cell.low[0] < found.target(leaf.cell))
     straddling.decide(OPEN, None)
@@ -128,7 +128,7 @@ def test_the_checker_confirms_it(made):
 
 def test_a_cell_that_is_not_proved_is_not_believed(made, tmp_path):
     """Below the frontier: the checker does not take anybody's word for it."""
-    found = Map.load(made[1])
+    found = ParameterMap.load(made[1])
     proof = next(leaf.proof for leaf in found.leaves() if leaf.kind == PROVED)
     lowest = next(leaf for leaf in found.leaves() if leaf.kind == OPEN and leaf.cell.low[0] == 0)
     lowest.decide(PROVED, {**proof, "tree": "P", "v0": ["1", "1"],
@@ -147,17 +147,17 @@ def test_what_reaches_to_infinity_is_at_once(made):
 def test_one_whole_run_or_several(coarse, tmp_path):
     """However it is divided, it ends with all that was asked for."""
     path, runs, handed_out, give = tmp_path / "map.json", 0, [], WorkerPool.give
-    found = maps.explore("c=0", "1.4", path=path, time_limit=0)
+    found = parameters.explore("c=0", "1.4", path=path, time_limit=0)
     while not found.complete:
         with pytest.MonkeyPatch.context() as patch:     # it is late when some tasks are handed out
             patch.setattr(WorkerPool, "give", lambda self, *task: (handed_out.append(task),
                                                              give(self, *task)))
             patch.setattr(search._Search, "late", property(lambda self: len(handed_out) > 8 * runs))
             handed_out, runs = [], runs + 1
-            found = maps.explore(path=path, resume=True, jobs=1)
-    known = Map.load(path)
+            found = parameters.explore(path=path, resume=True, jobs=1)
+    known = ParameterMap.load(path)
     assert runs > 1 and known.complete
-    deeper = maps.explore("c=0", "1.3", path=path, resume=True)
+    deeper = parameters.explore("c=0", "1.3", path=path, resume=True)
     assert deeper.complete and deeper.height(0) < found.height(0)
     assert deeper.reached <= 1.3 < found.reached <= 1.4
     assert known.seconds < deeper.seconds
@@ -198,7 +198,7 @@ def test_progress_says_what_is_done(coarse, tmp_path, monkeypatch):
         shares, written = [], []
         monkeypatch.setattr(cli.ProgressLine, "_write", written.append)
         with cli.ProgressLine() as line:
-            maps.explore("c=0", path=tmp_path / "map.json", jobs=1, progress=lambda *done: (
+            parameters.explore("c=0", path=tmp_path / "map.json", jobs=1, progress=lambda *done: (
                 shares.append(done[0]), setattr(line, "due", 0.0),
                 line(lambda: cli.progress_text(*done))), **options)
         return shares, "\n".join(written)
@@ -217,8 +217,8 @@ def test_processes(monkeypatch, tmp_path):
     monkeypatch.setattr(map_module, "ESTIMATE_GRID", 1)
     monkeypatch.setattr(search, "POINT_BUDGET", 1 << 7)
     with concurrent.futures.ProcessPoolExecutor(2) as pool:
-        found = maps.explore("c=0", "1.3", path=tmp_path / "map.json", executor=pool)
-    assert found.complete and found.sha256 == Map.load(tmp_path / "map.json").sha256
+        found = parameters.explore("c=0", "1.3", path=tmp_path / "map.json", executor=pool)
+    assert found.complete and found.sha256 == ParameterMap.load(tmp_path / "map.json").sha256
 
 
 class Unreliable(concurrent.futures.ThreadPoolExecutor):
@@ -240,14 +240,14 @@ class Unreliable(concurrent.futures.ThreadPoolExecutor):
 
 def test_workers_that_die(coarse, tmp_path):
     with Unreliable(3) as pool:
-        assert maps.explore("c=0", "1.3", path=tmp_path / "map.json", executor=pool).complete
+        assert parameters.explore("c=0", "1.3", path=tmp_path / "map.json", executor=pool).complete
         assert pool.deaths                  # it did come to that
     with Unreliable(1) as pool, pytest.raises(ConverseError, match="keep failing"):
-        maps.explore("c=0", "1.3", path=tmp_path / "other.json", executor=pool)
-    assert not Map.load(tmp_path / "other.json").complete
+        parameters.explore("c=0", "1.3", path=tmp_path / "other.json", executor=pool)
+    assert not ParameterMap.load(tmp_path / "other.json").complete
     pool.shutdown()
     with pytest.raises(ConverseError, match="workers are gone"):
-        maps.explore("c=0", "1.3", path=tmp_path / "third.json", executor=pool)
+        parameters.explore("c=0", "1.3", path=tmp_path / "third.json", executor=pool)
 
 
 @pytest.mark.parametrize("proved", [0, 5])      # while it estimates, and with so many cells proved
@@ -260,11 +260,11 @@ def test_an_interruption_loses_nothing(coarse, tmp_path, proved):
             raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        maps.explore("b=0", "1.3", path=path, jobs=1, progress=progress)
-    before = Map.load(path)
+        parameters.explore("b=0", "1.3", path=path, jobs=1, progress=progress)
+    before = ParameterMap.load(path)
     assert any(before.estimate) and before.count(PROVED) >= proved
     assert before.estimated_all == (proved > 0)
-    found = maps.explore(path=path, resume=True)
+    found = parameters.explore(path=path, resume=True)
     assert found.complete and found.count(PROVED) >= before.count(PROVED)
     kept = {leaf.cell for leaf in before.leaves() if leaf.kind == PROVED}
     assert kept <= {leaf.cell for leaf in found.leaves() if leaf.kind == PROVED}
@@ -275,7 +275,7 @@ def test_an_interruption_loses_nothing(coarse, tmp_path, proved):
     (("b=0", "1"), "above 1"), (("b=0", "x"), "not a decimal number"), (("b=0", 101), "above 1")])
 def test_arguments_that_make_no_sense(tmp_path, arguments, error):
     with pytest.raises(ValueError, match=error):
-        maps.explore(*arguments, path=tmp_path / "map.json")
+        parameters.explore(*arguments, path=tmp_path / "map.json")
     assert not os.listdir(tmp_path)
 
 
@@ -283,14 +283,14 @@ def test_nothing_is_overwritten(made, tmp_path):
     path = tmp_path / "map.json"
     path.write_text("precious")
     with pytest.raises(ConverseError, match="exists"):
-        maps.explore("b=0", path=path)
+        parameters.explore("b=0", path=path)
     with pytest.raises(ConverseError, match="is of another region, b=0"):
-        maps.explore("c=0", path=made[1], resume=True)
-    other = Map.load(made[1])
+        parameters.explore("c=0", path=made[1], resume=True)
+    other = ParameterMap.load(made[1])
     other.version = "0.9"
     other.save(tmp_path / "older.json")
     with pytest.raises(ConverseError, match="is of another program, 0.9"):
-        maps.explore(path=tmp_path / "older.json", resume=True)
+        parameters.explore(path=tmp_path / "older.json", resume=True)
     assert path.read_text() == "precious"
 
 
@@ -298,9 +298,9 @@ def test_nothing_is_overwritten(made, tmp_path):
 
 @pytest.mark.parametrize("name", ["map.json", "map.json.gz"])
 def test_it_is_what_it_was(made, tmp_path, name):
-    found = Map.load(made[1])
+    found = ParameterMap.load(made[1])
     assert found.save(tmp_path / name) == found.sha256
-    again = Map.load(tmp_path / name)
+    again = ParameterMap.load(tmp_path / name)
     assert repr(again) == repr(made[0]) and again.estimate == made[0].estimate
     assert [(leaf.cell, leaf.kind, leaf.proof, leaf.tried) for leaf in again.leaves()] == [
         (leaf.cell, leaf.kind, leaf.proof, leaf.tried) for leaf in made[0].leaves()]
@@ -313,7 +313,7 @@ def test_what_a_map_lacks_is_said(made, tmp_path):
         path = tmp_path / "map.json"
         path.write_text(json.dumps({**data, "sha256": map_module._digest(data)}))
         with pytest.raises(ConverseError) as error:
-            Map.load(path)
+            ParameterMap.load(path)
         return str(error.value)
 
     faces = json.loads(made[1].read_text())["faces"]
@@ -345,10 +345,10 @@ def test_a_damaged_file_is_refused_in_a_line(made, tmp_path):
         if loaded == whole:             # a blank
             continue
         with pytest.raises(ConverseError) as error:
-            Map.load(path)
+            ParameterMap.load(path)
         assert "\n" not in str(error.value) and str(path) in str(error.value)
     with pytest.raises(ConverseError, match="cannot be read"):
-        Map.load(tmp_path / "none.json")
+        ParameterMap.load(tmp_path / "none.json")
 
 
 # ---- the command and the picture
@@ -396,7 +396,7 @@ def test_an_input_is_no_map(root, capsys, name):
 def test_the_report(made, capsys):
     assert cli.main([str(made[1])]) == 0
     out = capsys.readouterr().out
-    assert out == Map.load(made[1]).report()
+    assert out == ParameterMap.load(made[1]).report()
     assert "all r > " in out and "SHA-256 : " + made[0].sha256 in out
 
 
@@ -425,7 +425,7 @@ def test_what_is_written_in_pictures_can_be_read(tmp_path, monkeypatch):
     monkeypatch.setattr(map_figure, "SAMPLES", 30)
     monkeypatch.setattr(map_figure.plot, "encode",
                         lambda page, *_, **__: drawn.append(page) or b"")
-    found = Map.new("a=b", F(2))
+    found = ParameterMap.new("a=b", F(2))
     for face, known in enumerate(found.estimate):
         known.update(dict.fromkeys(found.places(), 1.0))
         for half in found.roots[face].cut(0):
