@@ -88,7 +88,7 @@ def verify(path, jobs=1, sample=None, state=None, bar=False, exact=False, shard=
     if chosen and not exact:
         problems.fast = make_lockstep(problems.claims)
     check_leaves(problems, chosen, done, jobs, bar)
-    theorem_of = {Map: mapped, Portrait: portrayed}.get(type(file), claimed)
+    theorem_of = {ParameterMap: mapped, Portrait: portrayed}.get(type(file), claimed)
     status, lines = report(problems.claims, theorem_of(file),
                            problems.criterion(0) if theorem_of is claimed else None,
                            done.confirmed, done.pieces, done.doubles)
@@ -112,7 +112,7 @@ def verify(path, jobs=1, sample=None, state=None, bar=False, exact=False, shard=
 def problems_of(file):
     """The Problems of a proof file, a map or a portrait, of which all has been checked but the
     leaves."""
-    if isinstance(file, Map):
+    if isinstance(file, ParameterMap):
         return Problems(file.claims, check_map(file))
     if isinstance(file, Portrait):
         return Problems(file.claims)
