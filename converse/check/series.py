@@ -11,13 +11,15 @@ import decimal
 import functools
 import itertools
 import math
-from dataclasses import dataclass
+import operator
+from dataclasses import dataclass, replace
 
 from .failures import NotConfirmed
 from .limits import MAX_DIGITS, MAX_TERMS
 
 FINE = 64                               # bits that norms have beyond the coefficients
 TEXTS = 1 << 14                         # numbers that are written as text at a time
+PARTS = 32                              # Products are computed up to a multiple of limit/PARTS.
 EXACT = decimal.Context(prec=decimal.MAX_PREC, Emax=decimal.MAX_EMAX, Emin=decimal.MIN_EMIN,
                         traps=[decimal.Inexact, decimal.Rounded, decimal.InvalidOperation])
 
@@ -94,6 +96,14 @@ class Box:
                 yield period, stride
                 break
         yield (2 * wide + 1) * (2 * high + 1), 2 * wide + 1
+
+    def inner(self, part):
+        """(the box of the modes |k| <= part/PARTS of the limit, the places of its modes in the
+        lists of this one)."""
+        limit, step = self.limit * part // PARTS, self.degree + 1
+        return Box(self.norm, limit, self.degree), [
+            at * step + j for at, length in enumerate(self.lengths) if length <= limit
+            for j in range(step)]
 
     def modes(self):
         """The coordinates of all k, in order."""
@@ -262,23 +272,38 @@ class Ring:
             entries[place] = re[:at] + [re[at] + number * self.one] + re[at + 1:], im
         return self.series(f.rows, f.columns, entries, f.radius)
 
-    def multiply(self, f, g):
+    def multiply(self, f, g, spared=0):
         """The product.  Of two modes with |k + k'| > limit it is left out, and may come to lie on
         one within: neither is more than the product of their norms.  If |k + k'| <= limit, but
         j + j' > degree, it comes to k + k' + b_0: that is at most sigma^|b_0| times as much.
+        The limit is that of the box, or a smaller one, if what is lost by it is at most 2^spared
+        times what roundings lose.
         """
         p = self.profile(f)
         q = p if f is g else self.profile(g)
         m, n = sum(map(sum, p)), sum(map(sum, q))
-        found = self.series(f.rows, g.columns, self.convolved(f, g, self.bits))
+        rounding = (1 + f.rows * g.columns) * self.ones
+        part, beyond, low = PARTS, self._beyond(p, q, self.box.limit), 0
+        most = beyond + (rounding << spared)
+        while part - low > 1:
+            middle = (low + part) // 2
+            if (lost := self._beyond(p, q, self.box.limit * middle // PARTS)) <= most:
+                part, beyond = middle, lost
+            else:
+                low = middle
         radius = self.product_of_norms(m + f.radius, g.radius) \
-            + self.product_of_norms(n, f.radius) + self.rounding(found) \
-            + ((1 << FINE) + self._aside) * self._beyond(p, q) // (1 << FINE) + 1
-        return self.series(f.rows, g.columns, found.entries, radius)
+            + self.product_of_norms(n, f.radius) + rounding \
+            + ((1 << FINE) + self._aside) * beyond // (1 << FINE) + 1
+        return self.series(f.rows, g.columns, self.convolved(f, g, part), radius)
 
-    def convolved(self, f, g, bits):
-        """The entries of the product of f and of g, a series in units of 2^-bits, rounded down:
+    def convolved(self, f, g, part):
+        """The entries of the product of f and of g up to part/PARTS of the limit, rounded down:
         Kronecker's substitution, with complex numbers as polynomials modulo X^period - i."""
+        box, square = self.box, f is g
+        if part < PARTS:
+            box, places = box.inner(part)
+            f, g = [replace(h, entries=tuple([tuple([x and [x[at] for at in places] for x in entry])
+                                              for entry in h.entries])) for h in (f, g)]
         is_real = all(im is None for h in (f, g) for _, im in h.entries)
 
         def sizes(h):
@@ -289,33 +314,42 @@ class Ring:
 
         (f_most, f_sum), (g_most, g_sum) = sizes(f), sizes(g)
         digits = len(str(2 * f.columns * min(f_most * g_sum, g_most * f_sum)))
-        packing = Packing(self.box, digits, is_real)
+        packing = Packing(box, digits, is_real)
         left = [packing.pack(*entry) for entry in f.entries]
-        right = left if f is g else [packing.pack(*entry) for entry in g.entries]
+        right = left if square else [packing.pack(*entry) for entry in g.entries]
         entries = []
         for i, j in itertools.product(range(f.rows), range(g.columns)):
             total = decimal.Decimal(0)
             for n in range(f.columns):
                 total = EXACT.add(total, EXACT.multiply(left[i * f.columns + n],
                                                         right[n * g.columns + j]))
-            entries.append(packing.unpack(total, bits))
+            entries.append(packing.unpack(total, self.bits))
+        if part < PARTS:
+            entries = [tuple([x and self._spread(x, places) for x in entry]) for entry in entries]
         return entries
 
-    def _beyond(self, p, q):
+    def _spread(self, values, places):
+        found = [0] * self.box.count
+        for at, x in zip(places, values):
+            found[at] = x
+        return found
+
+    def _beyond(self, p, q, limit):
         """The sum of the products of all norms of modes that have |k| + |k'| > limit or
         j + j' > degree, from the two profiles."""
         tails = []
         for sums in q:
-            rest = list(itertools.accumulate(reversed(sums)))       # of the last 1, 2, ...
-            tails.append(rest)
-        total = 0
+            tails.append([0, *itertools.accumulate(reversed(sums))])    # of the last 0, 1, 2, ...
+        total, spare = 0, self.box.limit - limit
         for i, sums in enumerate(p):
             whole = sum(sums)
             for j, rest in enumerate(tails):
                 if i + j > self.box.degree:
                     total += whole * rest[-1]
-                else:                   # |k'| > limit - |k|: the last |k| of them
-                    total += sum([x * y for x, y in zip(sums[1:], rest)])
+                else:                   # |k'| > limit - |k|: the last |k| + spare of them, or all
+                    near = sums[:len(rest) - spare]
+                    total += sum(map(operator.mul, near, rest[spare:])) \
+                        + (whole - sum(near)) * rest[-1]
         return (total >> self.bits + FINE) + 1
 
     def exponential(self, f):
@@ -327,12 +361,16 @@ class Ring:
         for m in range(64):
             if size >> m > one // 2:    # the remainder is less than twice its first term
                 continue
-            degree, term = 0, one
-            while term > self.ones:
-                degree += 1
-                term = (term * ((size >> m) + 1) >> self.bits + FINE) // degree + 1
+            terms = [one]               # bounds of the norms of X^j / j!
+            while terms[-1] > self.ones:
+                terms.append((terms[-1] * ((size >> m) + 1) >> self.bits + FINE) // len(terms) + 1)
+            # A product that counts for little needs fewer modes and digits; a square is faster.
+            costs = [(math.log(max(x / self.ones, 1)) / math.log(one / self.ones))
+                     ** (self.box.norm.dimension + 1) for x in terms]
+            degree = len(terms) - 1
             for q in range(1, degree + 2):
-                plans.append((m + q - 1 + degree // q, m, degree, q, 2 * term))
+                plans.append((0.75 * (m + (q > 1)) + max(q - 2, 0) + sum(costs[q:degree + 1:q]),
+                              m, degree, q, 2 * terms[-1]))
             if len(plans) > 200:
                 break
         if not plans:
@@ -343,13 +381,14 @@ class Ring:
         scaled = self.series(1, 1, [tuple(map(down, f.entries[0]))])
         scaled = self.series(1, 1, scaled.entries,
                              (f.radius >> m) + 1 + self.rounding(scaled))
-        powers = [self.constant(1), scaled]
+        powers, smaller = [self.constant(1), scaled], (one // ((size >> m) + 1)).bit_length() - 1
         while len(powers) <= q:
             powers.append(self.multiply(powers[-1], scaled))
         total = None
         for first in range(degree // q * q, -1, -q):
             part = self._block(powers[:q], first)
-            total = part if total is None else self.add(self.multiply(total, powers[q]), part)
+            total = part if total is None else self.add(
+                self.multiply(total, powers[q], first * smaller), part)
         total = self.series(1, 1, total.entries, total.radius + remainder)
         for _ in range(m):
             total = self.multiply(total, total)

@@ -153,9 +153,14 @@ def transform(values, sign):
     if size == 1:
         return values
     even, odd = transform(values[::2], sign), transform(values[1::2], sign)
-    turn = sign * 2j * cmath.pi / size
-    odd = [cmath.exp(turn * at) * x for at, x in enumerate(odd)]
-    return [x + y for x, y in zip(even, odd)] + [x - y for x, y in zip(even, odd)]
+    odd = list(map(operator.mul, roots_of_one(size, sign), odd))
+    return list(map(operator.add, even, odd)) + list(map(operator.sub, even, odd))
+
+
+@functools.lru_cache(maxsize=64)
+def roots_of_one(size, sign):
+    """e^(sign 2 pi i j / size) for j < size/2."""
+    return [cmath.exp(sign * 2j * cmath.pi * j / size) for j in range(size // 2)]
 
 
 def transform_all(values, shape, sign):
@@ -276,7 +281,7 @@ class Torus:
             near -= 1
         inner, last = sum(by_length[near * 2 // 3:]), total + by_length[near] + 1
         slope = math.log(max(inner // last, 1)) / max(near / 3, 1)
-        return near, near + math.ceil(min(3 / max(slope, 1e-6), near / 3) + near / 16) + 1
+        return near, near + math.ceil(min(3 / max(slope, 1e-6), near / 3)) + 1
 
     def turn_by(self, bits):
         """A function: of the coordinates of k (cos, sin) of k.w, off by less than
@@ -716,7 +721,7 @@ def verify_width(torus, width, tell):
     # Sums of two modes of the torus are about what products and exponentials have.
     spread = max([abs(x) for k, *_ in torus.waves for x in norm.place(k)], default=1)
     refuse_too_many(torus, far, (2 * len(torus.modes) + 1) ** 2 * spread ** torus.n)
-    spare, reach = 14, max([norm(k) for k, *_ in torus.waves], default=0)
+    spare, reach = 12, max([norm(k) for k, *_ in torus.waves], default=0)
     for _ in range(TRIES):
         box = Box(norm, far, torus.degree)
         bits = spare + math.ceil(reach * width * math.log2(math.e) + math.log2(

@@ -194,7 +194,8 @@ def test_roundings_of_all_entries_are_counted(rows, columns):
 
 @pytest.mark.parametrize("seed", range(24))
 def test_products_are_within_their_radius(seed):
-    """The radius bounds the error with all lost and misplaced pairs, and is no looser than (T5)."""
+    """The radius bounds the error with all lost and misplaced pairs, and is no looser than (T5); in
+    every second case fewer modes are computed."""
     rng = random.Random(seed)
     n, degree = 1 + seed % 2, seed // 2 % 3
     ring, measure = random_ring(rng, n, degree, 3, rng.randint(4, 12))
@@ -206,7 +207,8 @@ def test_products_are_within_their_radius(seed):
         g = f
     reach = reach_of(ring)
     x, y = [array_of(h, ring, reach, degree) for h in (f, g)]
-    found = ring.multiply(f, g)
+    spared = seed // 6 % 2 * rng.choice([4, 8, ring.bits + 6])
+    found = ring.multiply(f, g, spared)
     off = measure.of(product(x, y) - padded(
         array_of(found, ring, reach, degree), 2 * reach, 2 * degree))
     (p, r), (q, s) = [(measure.of(h), k.radius / unit_of(ring)) for h, k in ((x, f), (y, g))]
@@ -226,7 +228,9 @@ def test_products_are_within_their_radius(seed):
     page = (1 + (beside if degree else 1)) * lost + p * s + q * r + r * s
     roundings = (1 + rows * columns) * ring.ones / unit_of(ring)
     slack = 2 * (1 + p + q + r + s) * len(lengths) * measure.sigma ** ring.box.limit / ring.one
-    assert radius <= page * (1 + ROUGH) + roundings + slack * (1 + beside) * (1 + lost + p + q)
+    more = 2 * beside * roundings * 2 ** spared if spared else 0
+    assert radius <= page * (1 + ROUGH) + roundings + more \
+        + slack * (1 + beside) * (1 + lost + p + q)
 
 
 @pytest.mark.parametrize("seed", range(30))
@@ -348,8 +352,8 @@ def test_roundings_of_an_exponential_are_counted(seed, monkeypatch):
     reach, total = reach_of(ring), measure.of(array_of(f, ring, reach_of(ring), 0))
     scale = 6 / total
     f = ring.series(1, 1, [tuple([int(y * scale) for y in x] for x in f.entries[0])])
-    monkeypatch.setattr(Ring, "multiply", lambda ring, f, g: factors.append(g)
-                        or multiply(ring, f, g))
+    monkeypatch.setattr(Ring, "multiply", lambda ring, f, g, spared=0: factors.append(g)
+                        or multiply(ring, f, g, spared))
     ring.exponential(f)
     scaled = factors[0]
     x, y = [array_of(h, ring, reach, 0) for h in (f, scaled)]
@@ -383,8 +387,8 @@ def less(monkeypatch, share, calls=None):
     radius grows by this error."""
     multiply, count = Ring.multiply, itertools.count()
 
-    def mine(ring, f, g):
-        found = multiply(ring, f, g)
+    def mine(ring, f, g, spared=0):
+        found = multiply(ring, f, g, spared)
         if calls is not None and next(count) not in calls:
             return found
         entries = [tuple(x and [y - int(y * share) for y in x] for x in entry)
@@ -786,7 +790,7 @@ def test_roundings_of_u_are_in_the_constants(monkeypatch):
     """The constants allow for the change of L by rounding u."""
     seen, made, series_of = [], [], tori.Torus.series
     monkeypatch.setattr(tori, "allowed", lambda constants, *_: seen.append(constants) or (
-        Fraction(10), Fraction(0)))
+        Fraction(5), Fraction(0)))
     monkeypatch.setattr(tori.Torus, "series", lambda torus, ring, near: made.append(
         (ring, found := series_of(torus, ring, near))) or found)
     for seed in (0, 4, 5):
