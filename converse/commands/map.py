@@ -9,7 +9,6 @@ from ..draw import plot
 from ..model.exact import decimal_text, exact
 from ..parameters.map import PROVED, ParameterMap
 from ..parameters.region import REGIONS
-from ..storage import files
 from ..storage.files import ConverseError, plain
 from ..version import __version__
 from .common import Parser, ProgressLine, add_worker_options, ended, executor_of, say, seconds
@@ -66,10 +65,7 @@ def progress_text(share, found):
 def run(options):
     graphics = options.graphics
     if graphics is not None:
-        files.check_output(graphics, "picture", plot.FORMATS, [options.map])
-        from ..draw import map_figure
-
-        map_figure.check(graphics)
+        plot.check_file(graphics, [options.map])
     if not options.plane and not options.restore:
         if options.down_to is not None:
             raise ConverseError("--down-to needs --plane or -r")

@@ -10,7 +10,6 @@ import re
 import sys
 
 from ..draw import plot
-from ..draw.figure import format_of
 from ..model.exact import exact
 from ..model.map import SymplecticMap
 from ..model.problem import InputError
@@ -312,9 +311,8 @@ def _check_outputs(options, potential_file):
         from ..orbits.points import ENDINGS
         files.check_output(options.points, "file of points", ENDINGS, [*others, options.csv])
     if options.graphics is not None:
-        files.check_output(options.graphics, "figure", plot.FORMATS, others)
         from ..orbits.pictures import MOST_STATES
-        plot.check()
+        plot.check_file(options.graphics, others)
         if sum(map(len, options.eps)) > MOST_STATES:
             raise ConverseError("a figure shows %d states at most; choose fewer eps, or no figure"
                                 % MOST_STATES)
@@ -409,7 +407,7 @@ def find_states(options):
         files.write(options.points, encoded(states))
     if options.graphics is not None and states:
         from ..orbits.pictures import states_picture
-        files.write(options.graphics, states_picture(drawn, format_of(options.graphics),
+        files.write(options.graphics, states_picture(drawn, plot.check_file(options.graphics),
                                                      caption=not options.no_caption))
     return status
 

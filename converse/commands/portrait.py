@@ -4,7 +4,6 @@ import argparse
 import math
 import sys
 
-from ..storage import files
 from ..storage.files import ConverseError
 from ..version import __version__
 from .common import (Parser, ProgressLine, add_worker_options, ended, executor_of, read_problem,
@@ -59,10 +58,9 @@ def run(options):
         raise ConverseError("-r continues a portrait as it was asked for; leave out the input, -b, "
                             "--columns, --depth and --lines")
     if graphics is not None:
-        files.check_output(graphics, "picture", ("svg", "png", "pdf"), [path, options.input])
-        from ..draw import portrait_figure
+        from ..draw import plot, portrait_figure
 
-        portrait_figure.check(graphics)
+        plot.check_file(graphics, [path, options.input])
     from ..prover.portrait import portray  # it needs the C core, and says so where it is missing
 
     problem = None if options.restore else read_problem(options.input, COMMAND)

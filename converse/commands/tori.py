@@ -115,9 +115,7 @@ def _check_outputs(options, locks):
     if options.graphics is not None:
         from ..draw import plot, torus_figure  # noqa: F401, which would be missed too late
 
-        files.check_output(options.graphics, "figure", plot.FORMATS,
-                           [options.input, options.backup, options.restore])
-        plot.check()
+        plot.check_file(options.graphics, [options.input, options.backup, options.restore])
 
 
 def _rotation(options, potential, start, progress):

@@ -12,7 +12,6 @@ from ..parameters.map import AT_ONCE, PROVED
 from ..parameters.region import direction
 from ..storage import files
 from . import notebook, plot
-from .figure import format_of
 
 PARAMETERS = "abc"
 STYLE = {**plot.STYLE, "axes.spines.top": False, "axes.spines.right": False}
@@ -38,22 +37,11 @@ def largest(p):
     return ((p0 + p1) / 2 + both + np.hypot((p0 - p1) / 2, both)).max((-1, -2))
 
 
-def check(path):
-    """The format that a figure's name asks for; ConverseError: it cannot be drawn there."""
-    kind = format_of(path)
-    if kind not in plot.FORMATS:
-        raise files.ConverseError("%s: a map is drawn as %s; name the picture so"
-                                  % (path, ", ".join("." + each for each in plot.FORMATS)))
-    files.check_writable(path)
-    plot.check()
-    return kind
-
-
 def draw(region_map, path, tori=()):
     """Draws a map in a file, with the points (a, b, c) at which tori are proved.
 
     ConverseError: it cannot be drawn, or has no estimate yet."""
-    kind = check(path)
+    kind = plot.check_file(path)
     files.write(path, picture(region_map, kind, tori))
 
 

@@ -5,6 +5,7 @@ Neither the backend nor the settings of matplotlib are changed.
 
 import io
 import math
+import os
 import textwrap
 from fractions import Fraction
 
@@ -47,6 +48,15 @@ def check(instead=""):
     except ImportError:
         raise files.ConverseError("figures need matplotlib; pip install matplotlib"
                                   + instead) from None
+
+
+def check_file(path, others=()):
+    """The format that the name of a new figure asks for.  ConverseError, before the work starts: it
+    cannot be drawn there, would overwrite one of the other files of the run or a file that is not a
+    figure of this program, or matplotlib is missing."""
+    files.check_output(path, "figure", FORMATS, others)
+    check()
+    return os.path.splitext(path)[1][1:].lower()
 
 
 def figure_bytes(proof, kind, caption=True):

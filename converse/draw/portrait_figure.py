@@ -11,7 +11,6 @@ from ..model.exact import short_text
 from ..prover import tree
 from ..storage import files
 from . import plot
-from .figure import format_of
 
 ROWS, FINER = 720, 16                   # of the image; its cells are summed up over finer ones
 SIZE = 6.2, 5.6                         # inches
@@ -21,21 +20,10 @@ TURN = 2 * math.pi
 COLOUR = 0.50, 0.66, 0.83               # where no circle passes: the less is undecided, the fuller
 
 
-def check(path):
-    """The format that a figure's name asks for; ConverseError: it cannot be drawn there."""
-    kind = format_of(path)
-    if kind not in plot.FORMATS:
-        raise files.ConverseError("%s: a portrait is drawn as %s; name the picture so"
-                                  % (path, ", ".join("." + each for each in plot.FORMATS)))
-    files.check_writable(path)
-    plot.check()
-    return kind
-
-
 def draw(portrait, path, tori=()):
     """Draws a Portrait in a file, with orbits of its map and, in colour, the circles of tori that
     are proved (ProvedTorus).  ConverseError: it cannot be drawn."""
-    kind = check(path)
+    kind = plot.check_file(path)
     files.write(path, plot.written(*SIZE, kind, lambda figure: fill(figure.subplots(), portrait,
                                                                     tori)))
 

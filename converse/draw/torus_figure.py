@@ -9,7 +9,6 @@ import numpy as np
 from ..storage import files
 from ..tori.report import verdict
 from . import notebook, plot
-from .figure import format_of
 from .plot import BLUE, DARK, GREY, VERMILLION
 
 STYLE = {**plot.STYLE, "axes.linewidth": 0.6}
@@ -23,11 +22,7 @@ TURN = 2 * math.pi
 def draw(proof, path):
     """Draws a ProvedTorus in a file, as its name says: SVG, PNG or PDF.  ConverseError: it cannot
     be drawn."""
-    kind = format_of(path)
-    if kind not in plot.FORMATS:
-        raise files.ConverseError("%s: a torus is drawn as %s; name the picture so"
-                                  % (path, ", ".join("." + each for each in plot.FORMATS)))
-    files.check_writable(path)
+    kind = plot.check_file(path)
     files.write(path, picture([piece.torus for piece in proof.pieces], kind, proof.pieces))
 
 

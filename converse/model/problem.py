@@ -317,11 +317,6 @@ def exact_shifts(shifts: Sequence[Sequence[Number]]) -> Shifts:
     return tuple(pairs) if any(map(any, pairs)) else ()
 
 
-def wave_text(wave):
-    """A wave (k0, k1, phase) as a function of y."""
-    return "sin(%s)" % sum_text(zip(wave, ("y0", "y1", "pi")))
-
-
 def frame_text(frame, name):
     """The angles that belong to v0 and v1, whose names are name % 0 and name % 1."""
     names = name % 0, name % 1

@@ -44,7 +44,7 @@ def test_a_proved_torus_is_drawn_as_the_name_says(tmp_path):
     for name, start in (("a.png", b"\x89PNG"), ("a.svg", b"<?xml"), ("a.pdf", b"%PDF")):
         torus_figure.draw(ONE, str(tmp_path / name))
         assert (tmp_path / name).read_bytes().startswith(start)
-    with pytest.raises(ConverseError, match="drawn as .svg"):
+    with pytest.raises(ConverseError, match="ends in .svg"):
         torus_figure.draw(ONE, str(tmp_path / "a.ps"))
 
 
