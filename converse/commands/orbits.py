@@ -21,6 +21,7 @@ from .common import Parser, ProgressLine, ended, say, whole_number
 COMMAND = "converse-orbits"
 POTENTIALS = "trig", "poly", "ff", "froeschle", "standard"
 MOST_EPS = 10000                        # values of eps
+LARGE = 1e10                            # Stability indices above it are given by their logarithm.
 SIZES = 300, 1200                       # q of a sweep, unless others are asked for
 STATUS = ("Exit status: 0 all was found that was asked for; 1 a state was not found, is no "
           "minimum, or is not proved though --prove was given; 2 bad usage, input or file; 129, "
@@ -29,10 +30,10 @@ POTENTIAL = ("trig, poly, ff, froeschle, standard, or an input file: JSON of the
              "(docs/reference/inputs.md)")
 AT = "the value of a parameter of the file's; any number of times"
 MEANINGS = {                            # of labels
-    "minimum": "seen in doubles, not proved: no state near it has less action, others may",
-    "best": "seen in doubles, not proved: a minimum, and the least action met",
-    "saddle": "seen in doubles: its action can be lowered, perhaps when it is run through often",
-    "stationary": "seen in doubles: rounding hides whether it is a minimum",
+    "minimum": "floating point, not proved: a local minimum of the action, perhaps not global",
+    "best": "floating point, not proved: a local minimum, of the least action met",
+    "saddle": "floating point: its action can be lowered, perhaps when it is run through often",
+    "stationary": "floating point: rounding hides whether it is a minimum",
     "not stationary": "not an orbit",
 }
 NO_MINIMUM = "saddle", "stationary", "not stationary"
@@ -276,28 +277,34 @@ def report(state):
         "Action per point less |p/q|^2/2 : %.12g" % state.action,
         "Exponents : " + ", ".join(exponent_text(state, x, 10) for x in state.exponents),
         ("Residue : %.10g" % state.residue if state.potential.n == 1 else
-         "Stability indices : " + ", ".join(format(x, ".10g") for x in state.indices)),
+         "Stability indices : " + ", ".join(map(_index_text, state.indices))),
         "Gradient : largest %.2g, root mean square %.2g" % (state.shadow, state.grad_size),
-        "Deviation : %.10g from the line through x_0, %.10g from the line at eps 0, %.10g from the "
-        "best line" % state.deviation,
-        "Phases : " + ("determined" if not state.undetermined else "undetermined along %d "
-                       "direction%s, in which the points can be moved at almost no cost"
-                       % (state.undetermined, "s" * (state.undetermined > 1)))]
+        "Deviation : " + ", ".join("%.10g from the %s" % each for each in zip(state.deviation, (
+            "line through x_0", "line at eps 0", "best line"))),
+        "Near-null directions : " + ("%d, along which the points can be moved at almost no cost"
+                                     % state.undetermined if state.undetermined else "none")]
     return "\n".join(lines) + "\n"
+
+
+def _index_text(rho):
+    """A stability index; a large one by its decimal logarithm."""
+    if isinstance(rho, complex) or not abs(rho) > LARGE:
+        return format(rho, ".10g")
+    return "%s10^%.4f" % ("-" if rho < 0 else "", math.log10(abs(rho)))
 
 
 def pass_report(pair):
     """What is known of the pass beside a minimum."""
-    towards = "towards the neighbour displaced by (%s)/%d" % (
-        ", ".join(map(str, pair.step)), pair.minimum.q)
+    from ..orbits.proved import vector_words
+
+    towards = "towards the neighbour displaced by " + vector_words(pair.step, pair.minimum.q)
     if pair.minimax.label != "saddle":
         return "Pass : too flat for doubles, %s\n" % towards
     one = pair.minimum.potential.n == 1
     return "Pass : saddle, %s\n%s\n%s : %.10g\n" % (
         towards,
         "Residue of the minimax orbit : %.10g" % pair.minimax.residue if one else
-        "Stability indices of the pass : " + ", ".join(
-            format(x, ".10g") for x in pair.minimax.indices),
+        "Stability indices of the pass : " + ", ".join(map(_index_text, pair.minimax.indices)),
         "Flux" if one else "Difference of action", pair.barrier)
 
 

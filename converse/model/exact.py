@@ -3,7 +3,7 @@ are irrational.
 
 Every exact number of the package is a Fraction.  It is read by exact(), from whatever a user may
 give, and written by decimal_text() if it is a finite decimal, by short_text() otherwise, and by
-rounded_text() and interval_text(), rounded outwards, where it is a bound.
+rounded_text() and ball_text(), rounded outwards, where it is a bound.
 """
 
 import math
@@ -15,6 +15,7 @@ from typing import Tuple, Union
 
 MAX_EXPONENT = 300
 FEWEST, MOST = 6, 10000                 # digits of short_text
+SHORT = 3                               # Intervals of numbers up to 10^SHORT need no exponent.
 DECIMAL = re.compile(r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]{1,9})?")
 RATIO = re.compile(r"[+-]?[0-9]+/[0-9]*[1-9][0-9]*")
 
@@ -121,24 +122,47 @@ def rounded_text(x: Fraction, digits: int, up: bool) -> str:
     """x >= 0 rounded down or up to so many significant digits, such as 1.3e-21."""
     if not x:
         return "0"
-    order = math.floor(math.log10(x.numerator) - math.log10(x.denominator))
-    while x >= Fraction(10) ** (order + 1):
-        order += 1
-    while x < Fraction(10) ** order:
-        order -= 1
+    order = _order(x)
     scaled = x / Fraction(10) ** (order - digits + 1)
     text = str(math.ceil(scaled) if up else math.floor(scaled))     # 10^digits at most
     return "%s.%se%d" % (text[0], text[1:digits], order + len(text) - digits)
 
 
-def interval_text(low: Fraction, high: Fraction, most: int) -> str:
-    """An interval, its ends rounded outwards: to a place or two after the first in which they
-    differ, and to at most so many."""
-    places = 2
-    while places < most and (high - low) * 10 ** places < 1:
-        places += 1
-    return "from %s to %s" % tuple(
-        decimal_text(rounded(x, places, up), places) for x, up in ((low, False), (high, True)))
+def ball_text(low: Fraction, high: Fraction, digits: int) -> str:
+    """An interval as a decimal and its error in units of the last digit, such as 3.0472(1)e-9: the
+    true number is between 3.0471e-9 and 3.0473e-9.
+
+    The text contains the interval.  digits: of the decimal, at most; there are fewer where the
+    interval is wide.  An interval that is 0 alone is 0."""
+    size = max(abs(low), abs(high))
+    if not size:
+        return "0"
+    order = _order(size)
+    middle, half = (low + high) / 2, (high - low) / 2
+    last = max(order - digits + 1, _order(half) if half else order - digits + 1)
+    while True:
+        unit = Fraction(10) ** last
+        value = round(middle / unit)
+        error = math.ceil(max(high - value * unit, value * unit - low) / unit)
+        if error < 100:
+            break
+        last += 1
+    error_text = "(%d)" % error if error else ""
+    if -SHORT <= order <= SHORT and last <= 0:
+        return decimal_text(value * unit, max(0, -last)) + error_text
+    text = str(abs(value))
+    return "%s%s%s%se%d" % ("-" * (value < 0), text[0], "." * (len(text) > 1) + text[1:],
+                            error_text, last + len(text) - 1)
+
+
+def _order(x):
+    """The exponent of x > 0 in scientific notation."""
+    order = math.floor(math.log10(x.numerator) - math.log10(x.denominator))
+    while x >= Fraction(10) ** (order + 1):
+        order += 1
+    while x < Fraction(10) ** order:
+        order -= 1
+    return order
 
 
 # ---- irrational numbers

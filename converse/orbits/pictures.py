@@ -8,7 +8,7 @@ import numpy as np
 from ..draw import notebook, plot
 from ..draw.plot import BLUE, DARK, VERMILLION
 from ..storage import files
-from .proved import ProvedOrbit, distances
+from .proved import ProvedOrbit, distances, vector_words
 from .state import ROUNDS, PeriodicOrbit
 
 FEW = 300                               # points that are drawn larger
@@ -57,11 +57,6 @@ class Shown(NamedTuple):
 
 
 # ---- words
-
-def vector_words(p, q):
-    """As the thesis writes it: (1432, 1897)/2513."""
-    return ("(%s)/%d" if len(p) > 1 else "%s/%d") % (", ".join(map(str, p)), q)
-
 
 def quality(state):
     """How good a state is."""

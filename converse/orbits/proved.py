@@ -15,7 +15,7 @@ from typing import Any, Callable, Optional, Tuple
 import numpy as np
 
 from .._native import lib
-from ..model.exact import Ends, interval_text, rounded, rounded_text
+from ..model.exact import Ends, ball_text, rounded, rounded_text
 from ..storage.files import ConverseError
 from .potential import told
 from .state import NEAR_NULL, ROUNDING, STATIONARY, PeriodicOrbit, expected
@@ -120,20 +120,21 @@ class ProvedOrbit:
         """The theorem in words."""
         state, (within, moved) = self.state, distances(self)
         lines = [
-            "Proved, with %d decimal places: the map x' = x + p', p' = p - eps grad V(x) with the "
-            "potential %s," % (self.digits, state.potential.name),
+            "THEOREM, proved with %d decimal places: the map x' = x + p', p' = p - eps grad V(x)"
+            % self.digits,
+            "with the potential %s," % state.potential.name,
             "V(x) = %s," % state.potential.formula,
             "and eps = %s has exactly one orbit of type %s within %s of the points computed"
             % (_eps(state), _type(state), within),
             "(Euclidean norm of all coordinates together), which are within %s of those given "
             "(each coordinate)." % moved,
             "It is hyperbolic and, run through any number of times, a nondegenerate local minimum "
-            "of the action:",
-            "second variation at least %s." % rounded_text(self.least, 3, up=False),
-            "Action per point less |p/q|^2/2: %s." % interval_text(*self.action, SHOWN)] + [
-            "Exponent: %s." % interval_text(*ends, SHOWN) for ends in self.exponents]
+            "of the action.",
+            "Second variation : at least %s" % rounded_text(self.least, 3, up=False),
+            "Action per point less |p/q|^2/2 : %s" % ball_text(*self.action, SHOWN)] + [
+            "Exponent : %s" % ball_text(*ends, SHOWN) for ends in self.exponents]
         if state.potential.n == 1 and self.residue[0] > -10 ** SHOWN:
-            lines.append("Greene's residue: %s." % interval_text(*self.residue, SHOWN))
+            lines.append("Greene's residue : %s" % ball_text(*self.residue, SHOWN))
         return "\n".join(lines) + "\n"
 
 
@@ -328,4 +329,9 @@ def _eps(state):
 
 
 def _type(state):
-    return "(%s)/%d" % (", ".join(map(str, state.p)), state.q)
+    return vector_words(state.p, state.q)
+
+
+def vector_words(p, q):
+    """As the thesis writes it, (1432, 1897)/2513; of one angle 8/21."""
+    return ("(%s)/%d" if len(p) > 1 else "%s/%d") % (", ".join(map(str, p)), q)

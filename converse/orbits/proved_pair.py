@@ -6,7 +6,6 @@ that P is positive definite, which the same pivots certify as for minima, and wh
 follows by the formula of Sherman and Morrison.
 """
 
-import math
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Optional, Tuple
@@ -16,7 +15,7 @@ from flint import arb, arb_mat
 
 from .._native import lib
 from ..model.balls import precision
-from ..model.exact import Ends, interval_text, rounded, rounded_text
+from ..model.exact import Ends, ball_text, rounded, rounded_text
 from .enclosure import Enclosure, ball, lower, points, square, upper
 from .exponents import growth
 from .minimax import Pair, gap_of
@@ -55,7 +54,7 @@ class ProvedPair:
     def __repr__(self):
         return "<ProvedPair %s, %s, eps %r, barrier %s>" % (
             self.pair.minimum.potential.name, _type(self.pair.minimum), self.pair.minimum.eps,
-            interval_text(*self.barrier, SHOWN))
+            ball_text(*self.barrier, SHOWN))
 
     @property
     def flux(self) -> Ends:
@@ -67,25 +66,20 @@ class ProvedPair:
         """The theorem in words, that of the minimum first."""
         state = self.pair.minimax
         lines = [
-            "Proved, with %d decimal places: the same map has exactly one orbit of type %s within "
-            "%s of the points" % (self.digits, _type(state),
+            "THEOREM, proved with %d decimal places: the same map has exactly one orbit of type %s "
+            "within %s of the points" % (self.digits, _type(state),
                                   rounded_text(self.radius, 2, up=True)),
             "computed of the pass (Euclidean norm of all coordinates together).  The second "
             "variation of its action, run",
             "through once, has exactly one negative direction and is nondegenerate.",
             *["Each of its points is between that of the minimum and that of the minimum's "
               "neighbour."] * self.between,
-            "Its action less that of the minimum, of all points together: %s."
-            % interval_text(*self.barrier, shown(self.barrier))]
+            "%s : %s" % ("Flux" if state.potential.n == 1 else
+                         "Action less that of the minimum, of all points together",
+                         ball_text(*self.barrier, SHOWN))]
         if self.residue is not None and self.residue[1] < 10 ** SHOWN:
-            lines.append("Its residue: %s." % interval_text(*self.residue, shown(self.residue)))
+            lines.append("Residue of the minimax orbit : %s" % ball_text(*self.residue, SHOWN))
         return self.minimum.report() + "\n".join(lines) + "\n"
-
-
-def shown(ends):
-    """Places with which an interval shows about SHOWN significant digits."""
-    size = math.log10(ends[1].numerator) - math.log10(ends[1].denominator)      # no double, maybe
-    return SHOWN + max(0, -math.floor(size))
 
 
 def prove_pair(pair, digits=None, progress=None):

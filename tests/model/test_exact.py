@@ -1,5 +1,6 @@
 """Exact numbers: what is read is what was written, and what is rounded is rounded outwards."""
 
+import re
 from decimal import Decimal
 from fractions import Fraction
 
@@ -8,8 +9,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from converse.model.exact import (decimal_text, exact, interval_text, outward, pi_bounds,
-                                  root_bounds, rounded, rounded_text, short_text, sine_bounds)
+from converse.model.exact import (ball_text, decimal_text, exact, outward, pi_bounds, root_bounds,
+                                  rounded, rounded_text, short_text, sine_bounds)
 
 LONG = "0." + "0123456789" * 12
 positive = st.fractions(min_value=Fraction(1, 10 ** 40), max_value=10 ** 40)
@@ -89,13 +90,24 @@ def test_rounded_text(x, digits):
     assert rounded_text(Fraction(999999), 2, up=True) == "1.0e6" and rounded_text(0, 2, True) == "0"
 
 
-@given(st.fractions(), positive)
-def test_interval_text(low, width):
-    ends = low, low + width
-    _, down, _, up = interval_text(*ends, 40).split()
-    assert Fraction(down) <= ends[0] and ends[1] <= Fraction(up)
-    places = len(down.partition(".")[2])
-    assert 2 <= places <= 40 and Fraction(up) - Fraction(down) <= width + Fraction(2, 10 ** places)
+@given(st.fractions(), st.one_of(st.just(0), positive), st.integers(-400, 400))
+def test_ball_text(low, width, power):
+    """The text contains the interval, and is not much wider; it has at most 20 digits."""
+    low, high = low * Fraction(10) ** power, (low + width) * Fraction(10) ** power
+    digits, error, exponent = re.fullmatch(r"(-?[0-9.]+)(?:\(([0-9]+)\))?(?:e(.*))?",
+                                           ball_text(low, high, 20)).groups()
+    unit = Fraction(10) ** (int(exponent or 0) - len(digits.partition(".")[2]))
+    middle, radius = Fraction(digits) * Fraction(10) ** int(exponent or 0), int(error or 0) * unit
+    assert middle - radius <= low and high <= middle + radius
+    assert radius <= (high - low) + Fraction(1, 10 ** 18) * max(abs(low), abs(high))
+    assert len(digits.replace(".", "").lstrip("-0")) <= 21
+
+
+def test_balls_as_they_are_printed():
+    for low, high, text in (("0.30472e-8", "0.30473e-8", "3.04725(5)e-9"), (0, 0, "0"),
+                            ("-0.2500001", "-0.25", "-0.250000(1)"), (100, 300, "2(1)e2"),
+                            ("-1e30", "1e30", "0(1)e30"), ("0.5", "0.5", "0.500000")):
+        assert ball_text(Fraction(low), Fraction(high), 6) == text
 
 
 # ---- irrational numbers

@@ -553,9 +553,9 @@ def test_without_python_flint():
 def test_report():
     orbit = prove(found("trig", (5, 7), 9, 0.03))
     text = orbit.report()
-    for part in ("Proved", "trig", "eps = 0.03 has exactly one orbit", "(5, 7)/9",
-                 "nondegenerate local minimum", "from 0.354820971654982389",
-                 "from -0.0030426956587949647"):
+    for part in ("THEOREM", "trig", "eps = 0.03 has exactly one orbit", "(5, 7)/9",
+                 "nondegenerate local minimum", "Exponent : 0.354820971654982389",
+                 " : -0.0030426956587949647"):
         assert part in text
     assert max(map(len, text.splitlines())) <= 110 and "proved" in orbit.label
     assert "\nV(x) = %s,\n" % orbits.trig.formula in text

@@ -50,17 +50,25 @@ def test_against_many_digits(p, q, eps):
     assert proved.radius <= Fraction(1, 10 ** 20)
 
 
+def ends(text):
+    """The interval that a report writes as value(error)."""
+    digits, error, power = re.fullmatch(r"(-?[0-9.]+)\(([0-9]+)\)(?:e(.*))?", text).groups()
+    unit = Fraction(1, 10 ** len(digits.partition(".")[2]))
+    scale = Fraction(10) ** int(power or 0)
+    return [(Fraction(digits) + sign * int(error) * unit) * scale for sign in (-1, 1)]
+
+
 def test_what_the_report_says():
     proved = golden(6, 0.971635406).minimax().prove(30)
     text = proved.report()
     assert text.startswith(proved.minimum.report()) and all(len(line) < 130
                                                             for line in text.splitlines())
-    assert "exactly one orbit of type (5)/13 within" in text and "one negative direction" in text
+    assert "exactly one orbit of type 5/13 within" in text and "one negative direction" in text
     assert "Each of its points is between" in text
-    low, high = map(Fraction, re.search("together: from (.*) to (.*)[.]", text).groups())
+    low, high = ends(re.search("\nFlux : (.*)\n", text)[1])
     assert low <= proved.flux[0] < proved.flux[1] <= high < low * Fraction(10001, 10000)
-    assert "0.2466" in re.search("Its residue: (.*)", text)[1]
-    assert proved.radius <= Fraction(1, 10 ** 30) and "barrier from" in repr(proved)
+    assert "0.2466" in re.search("Residue of the minimax orbit : (.*)", text)[1]
+    assert proved.radius <= Fraction(1, 10 ** 30) and ", barrier " in repr(proved)
 
 
 @pytest.mark.parametrize("name, p, q, eps", [
@@ -127,8 +135,7 @@ def test_proved_pairs_beyond_the_reach_are_refused():
 def test_a_flux_below_the_least_double():
     """2 eps/(4 pi^2), at the two fixed points."""
     pair = orbits.follow(orbits.standard, (0,), 1, [1e-323])[0].minimax()
-    low, high = map(Fraction, re.search("together: from (.*) to (.*)[.]",
-                                        pair.prove(400).report()).groups())
+    low, high = ends(re.search("\nFlux : (.*)\n", pair.prove(400).report())[1])
     with mpmath.workdps(400):
         true = mpmath.mpf("1e-323") / (2 * mpmath.pi ** 2)
         assert mp(low) < true < mp(high) < mp(low) * (1 + mpmath.mpf(10) ** -15)
