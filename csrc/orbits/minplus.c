@@ -164,7 +164,7 @@ static int too_low(const rectangle *r, int i, int k, double lowest)
     return most == HUGE_VAL || most + r->bend < lowest;
 }
 
-/* Excludes the nodes of which all cells are too low; these cells can still be told by them. */
+/* Excludes the nodes all of whose cells are too low. */
 static void exclude(rectangle *r, double lowest, double *wanted)
 {
     memset(wanted, 0, r->size * sizeof *wanted);
@@ -179,10 +179,10 @@ static void exclude(rectangle *r, double lowest, double *wanted)
             r->W[i] = HUGE_VAL;
 }
 
-/* Nodes from low to high, both included, W there, and (1) with all that W may be off by: cv_errors,
-   u of itself for the product, and u for eps, which stands for a decimal. */
-static int look(rectangle *r, const cv_potential *v, double eps, double curvature,
-                const double base[2], const double low[2], const double high[2], double (*x)[2])
+/* Lays nodes from low to high, both included, and evaluates W there.  r->bend becomes (1) plus the
+   error of W: cv_errors, u of itself for the product, and u for eps, which stands for a decimal. */
+static int lay_grid(rectangle *r, const cv_potential *v, double eps, double curvature,
+                    const double base[2], const double low[2], const double high[2], double (*x)[2])
 {
     double errors[3], reach = 0.0, largest = 0.0, squares = 0.0;
     int status;
@@ -215,8 +215,8 @@ static int look(rectangle *r, const cv_potential *v, double eps, double curvatur
     return status;
 }
 
-/* The least of what there is of an array, and where. */
-static double least_of(size_t n, const double *values, size_t *where)
+/* The least number of an array, and where it is. */
+static double array_min(size_t n, const double *values, size_t *where)
 {
     double least = HUGE_VAL;
     for (size_t i = 0; i < n; i++)
@@ -227,8 +227,8 @@ static double least_of(size_t n, const double *values, size_t *where)
     return least;
 }
 
-/* F of every rectangle and `end`, when the paths begin with u; T = end - u.  Returns the least of T
-   at the nodes that are not excluded, infinite if there is no path. */
+/* Forward pass: F of every rectangle and `end`, for paths whose cost begins with u; T = end - u.
+   Returns the least of T at the nodes that are not excluded, infinite if there is no path. */
 static double forward(corridor *c, size_t *where)
 {
     rectangle *const first = c->r;
@@ -242,7 +242,7 @@ static double forward(corridor *c, size_t *where)
     }
     for (size_t i = 0; i < first->size; i++)
         c->T[i] = first->W[i] < HUGE_VAL ? c->end[i] - c->u[i] : HUGE_VAL;
-    return least_of(first->size, c->T, where);
+    return array_min(first->size, c->T, where);
 }
 
 /* A path that ends in this node of the first rectangle, as cheap as any. */
@@ -259,7 +259,7 @@ static void trace_back(const corridor *c, size_t where, double (*path)[2])
                          d1 = y1 - here->at[1][i % (size_t)here->nodes[1]];
             c->T[i] = here->F[i] + here->W[i] + 0.5 * (d0 * d0 + d1 * d1);
         }
-        least_of(here->size, c->T, &where);
+        array_min(here->size, c->T, &where);
         path[j][0] = here->at[0][where / (size_t)here->nodes[1]];
         path[j][1] = here->at[1][where % (size_t)here->nodes[1]];
         next = here;
@@ -291,51 +291,34 @@ static int shrink(const corridor *c, const rectangle *r, double most, double low
     return last[0] >= 0;
 }
 
-/* Rounding: all numbers are sums of parts of one path's, and u's, so none is larger than `sum`
-   below.  A cost is off by c = 4u sum: 3u of the square, u of the sum.  So a step along both axes
-   loses 50c, to which W adds u sum, and q steps and the few operations on their sums lose less than
-   (q + 1) 2^-45 sum, which is (q + 1) 256u sum. */
-static int search(corridor *c, double known, double (*low)[2], double (*high)[2], double *least,
-                  double (*path)[2])
+/* Excludes cells that are too low; *bend is the sum of (1).  Returns a number that no sum of costs
+   along a path exceeds. */
+static double exclude_cells(corridor *c, double lowest, double *bend)
 {
-    rectangle *const first = c->r;
-    double lowest, sum = 0.0, bend = 0.0, largest = 0.0, margin;
-    size_t where = 0;
+    double sum = 0.0, largest = 0.0;
 
-    lowest = least_of(first->size, first->W, &where) - first->bend;
+    *bend = 0.0;
     for (int j = 0; j < c->q; j++) {
-        rectangle *const here = c->r + j, *const next = j + 1 < c->q ? here + 1 : first;
+        rectangle *const here = c->r + j, *const next = c->r + (j + 1 < c->q ? j + 1 : 0);
         for (size_t i = 0; i < here->size; i++)
             largest = larger(largest, fabs(here->W[i]));
         exclude(here, lowest, c->T);
-        bend += here->bend;
+        *bend += here->bend;
         for (int axis = 0; axis < 2; axis++) {
             const double up = next->at[axis][next->nodes[axis] - 1] - here->at[axis][0],
                          down = here->at[axis][here->nodes[axis] - 1] - next->at[axis][0];
             sum += 0.5 * larger(up * up, down * down);
         }
     }
-    sum += c->q * largest;
-    if (!(sum < 1e300))
-        return CV_EARITHMETIC;
-    memset(c->u, 0, first->size * sizeof *c->u);
-    *least = forward(c, &where);
-    for (size_t i = 0; i < first->size && *least < HUGE_VAL; i++)
-        c->u[i] = c->end[i] - *least;
-    if (*least < HUGE_VAL)
-        *least = forward(c, &where);
-    if (*least == HUGE_VAL)
-        return CV_OK;
-    largest = 0.0;
-    for (size_t i = 0; i < first->size; i++)
-        largest = larger(largest, fabs(c->u[i]));
-    margin = bend * (1.0 + 0x1p-40) + 0x1p-45 * (c->q + 1) * (sum + largest);
-    *least -= margin;
-    if (*least > known) {
-        *least = HUGE_VAL;
-        return CV_OK;
-    }
-    trace_back(c, where, path);
+    return sum + c->q * largest;
+}
+
+/* Backward pass: shrinks the rectangles to the cells through which a path of at most `most` may
+   lead.  0: a rectangle has none. */
+static int shrink_all(corridor *c, double most, double lowest, double (*low)[2], double (*high)[2])
+{
+    rectangle *const first = c->r;
+
     for (size_t i = 0; i < first->size; i++)
         c->G[i] = first->W[i] < HUGE_VAL ? -c->u[i] : HUGE_VAL;
     for (int j = c->q - 1; j >= 0; j--) {
@@ -347,63 +330,116 @@ static int search(corridor *c, double known, double (*low)[2], double (*high)[2]
             if (j == 0 && here->W[i] < HUGE_VAL)
                 c->T[i] = larger(c->T[i], c->end[i] - c->u[i]);
         }
-        if (!shrink(c, here, known + margin, lowest, low[j], high[j])) {
-            *least = HUGE_VAL;
-            return CV_OK;
-        }
+        if (!shrink(c, here, most, lowest, low[j], high[j]))
+            return 0;
     }
+    return 1;
+}
+
+/* cv_corridor, once W is known at all nodes.
+
+   Rounding: all numbers are sums of parts of one path's costs, and u's, so none is larger than
+   `sum` below.  A cost is off by c = 4u sum: 3u of the square, u of the sum.  So a step along both
+   axes loses 50c, to which W adds u sum, and q steps and the few operations on their sums lose less
+   than (q + 1) 2^-45 sum, which is (q + 1) 256u sum. */
+static int search(corridor *c, double known, double (*low)[2], double (*high)[2], double *least,
+                  double (*path)[2])
+{
+    rectangle *const first = c->r;
+    size_t where = 0;
+    const double lowest = array_min(first->size, first->W, &where) - first->bend;
+    double bend, margin, sum = exclude_cells(c, lowest, &bend);
+
+    if (!(sum < 1e300))
+        return CV_EARITHMETIC;
+    memset(c->u, 0, first->size * sizeof *c->u);
+    *least = forward(c, &where);
+    for (size_t i = 0; i < first->size && *least < HUGE_VAL; i++)
+        c->u[i] = c->end[i] - *least;
+    if (*least < HUGE_VAL)
+        *least = forward(c, &where);
+    if (*least == HUGE_VAL)
+        return CV_OK;
+    double largest = 0.0;
+    for (size_t i = 0; i < first->size; i++)
+        largest = larger(largest, fabs(c->u[i]));
+    margin = bend * (1.0 + 0x1p-40) + 0x1p-45 * (c->q + 1) * (sum + largest);
+    *least -= margin;
+    if (*least <= known) {
+        trace_back(c, where, path);
+        if (shrink_all(c, known + margin, lowest, low, high))
+            return CV_OK;
+    }
+    *least = HUGE_VAL;
     return CV_OK;
+}
+
+/* Arrays of doubles one after the other; without memory they are only counted. */
+typedef struct {
+    double *memory;
+    size_t used;
+} arena;
+
+static double *take(arena *a, size_t n)
+{
+    double *const here = a->memory ? a->memory + a->used : NULL;
+
+    a->used += n;
+    return here;
+}
+
+/* All arrays of a corridor; returns room for the points of any rectangle. */
+static double (*lay_out(corridor *c, const int (*nodes)[2], arena *a))[2]
+{
+    size_t widest = 0;
+
+    for (int j = 0; j < c->q; j++) {
+        const int *const next = nodes[j + 1 < c->q ? j + 1 : 0];
+        rectangle *const r = c->r + j;
+        for (int axis = 0; axis < 2; axis++) {
+            r->nodes[axis] = nodes[j][axis];
+            r->at[axis] = take(a, (size_t)nodes[j][axis]);
+        }
+        r->size = (size_t)r->nodes[0] * (size_t)r->nodes[1];
+        r->W = take(a, r->size);
+        r->F = take(a, r->size);
+        const size_t sizes[] = { r->size, (size_t)r->nodes[0] * (size_t)next[1],
+                                 (size_t)next[0] * (size_t)r->nodes[1] };
+        for (int k = 0; k < 3; k++)
+            widest = sizes[k] > widest ? sizes[k] : widest;
+    }
+    double **const parts[] = { &c->u, &c->end, &c->G, &c->T, &c->spare };
+    for (size_t k = 0; k < sizeof parts / sizeof *parts; k++)
+        *parts[k] = take(a, widest);
+    return (double (*)[2])take(a, 2 * widest);
 }
 
 int cv_corridor(const cv_potential *v, int q, double eps, double curvature, const double (*base)[2],
                 double known, const int (*nodes)[2], double (*low)[2], double (*high)[2],
                 double *least, double (*path)[2])
 {
-    size_t total = 0, widest = 0, used = 0;
-    double *memory, (*x)[2];
-    corridor c = { q, NULL, NULL, NULL, NULL, NULL, NULL };
-    int status = CV_OK;
+    corridor c = { .q = q, .r = malloc((size_t)q * sizeof *c.r) };
+    arena a = { NULL, 0 };
+    double (*x)[2] = NULL;
+    int status = machine_is_sound() ? CV_OK : CV_EMACHINE;
 
-    if (!machine_is_sound())
-        return CV_EMACHINE;
-    for (int j = 0; j < q; j++) {
-        const int *const here = nodes[j], *const next = nodes[j + 1 < q ? j + 1 : 0];
-        const size_t size = (size_t)here[0] * (size_t)here[1],
-                     between = (size_t)here[0] * (size_t)next[1],
-                     back = (size_t)next[0] * (size_t)here[1];
-        if (here[0] < 1 || here[0] > MAX_NODES || here[1] < 1 || here[1] > MAX_NODES)
-            return CV_EARGUMENT;
-        total += 2 * size + (size_t)here[0] + (size_t)here[1];
-        widest = size > widest ? size : widest;
-        widest = between > widest ? between : widest;
-        widest = back > widest ? back : widest;
+    for (int j = 0; j < 2 * q; j++)
+        if (nodes[j / 2][j % 2] < 1 || nodes[j / 2][j % 2] > MAX_NODES)
+            status = CV_EARGUMENT;
+    if (status == CV_OK && c.r != NULL) {
+        lay_out(&c, nodes, &a);
+        a = (arena){ malloc(a.used * sizeof *a.memory), 0 };
+        if (a.memory != NULL)
+            x = lay_out(&c, nodes, &a);
     }
-    c.r = malloc((size_t)q * sizeof *c.r);
-    memory = malloc((total + 5 * widest) * sizeof *memory);
-    x = malloc(widest * sizeof *x);
-    if (!c.r || !memory || !x)
+    if (status == CV_OK && x == NULL)
         status = CV_ENOMEM;
-    for (int j = 0; j < q && status == CV_OK; j++) {
-        rectangle *const r = c.r + j;
-        r->nodes[0] = nodes[j][0];
-        r->nodes[1] = nodes[j][1];
-        r->size = (size_t)r->nodes[0] * (size_t)r->nodes[1];
-        r->at[0] = memory + used;
-        r->at[1] = r->at[0] + r->nodes[0];
-        r->W = r->at[1] + r->nodes[1];
-        r->F = r->W + r->size;
-        used += 2 * r->size + (size_t)r->nodes[0] + (size_t)r->nodes[1];
-        status = look(r, v, eps, curvature, base[j], low[j], high[j], x);
-    }
-    if (status == CV_OK) {
-        double **const parts[] = { &c.u, &c.end, &c.G, &c.T, &c.spare };
-        for (size_t k = 0; k < sizeof parts / sizeof *parts; k++, used += widest)
-            *parts[k] = memory + used;
+    for (int j = 0; j < q && status == CV_OK; j++)
+        status = lay_grid(c.r + j, v, eps, curvature, base[j], low[j], high[j], x);
+    if (status == CV_OK)
         status = search(&c, known, low, high, least, path);
-    }
     free(c.r);
-    free(memory);
-    free(x);
+    free(a.memory);
     return status;
 }
 
