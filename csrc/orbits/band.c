@@ -142,11 +142,12 @@ long cv_solve(int n, long q, const double (*beta)[3], double mu, const double (*
     return negative;
 }
 
-static const double HELD = 1e100;       /* the pivot of a point that cannot move */
+static const double HELD_PIVOT = 1e100; /* the pivot of a point that cannot move */
 
 long cv_pivots(int n, long q, const double (*beta)[3], long max_rounds, double (*d)[3])
 {
-    double here[3] = { HELD, 0.0, n == 2 ? HELD : 1.0 }; /* the idle coordinate's stays at one */
+    double here[3] = { HELD_PIVOT, 0.0,
+                       n == 2 ? HELD_PIVOT : 1.0 }; /* the idle coordinate's stays at one */
 
     for (long round = 1; round <= max_rounds; round++) {
         double moved = 0.0;

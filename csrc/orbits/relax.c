@@ -5,11 +5,14 @@
 
 #include "orbits/potential.h"
 
-static const double CAP = 0.1;          /* no coordinate moves further in one step */
-static const double FLAT = 1e-11;       /* of eigenvalues: below it, rounding says which sign */
-static const double HOPELESS = 1e9;     /* a damping with which nothing moves any more */
-static const double STIFF = 1e100;      /* of the Hessian, where a coordinate is held */
-enum { MOST_ESCAPES = 50, WALK = 1000, ASK = 1 << 18 };
+/* Lengths are parts of the period, which is 1; eigenvalues are those of the Hessian, near 1. */
+static const double MAX_STEP = 0.1;     /* no coordinate moves further in one step */
+static const double NULL_EIGENVALUE = 1e-11;    /* rounding decides the sign of smaller ones */
+static const double MAX_DAMPING = 1e9; /* with a larger mu a step is below 1e-9 of the gradient */
+static const double HELD_ENTRY = 1e100; /* the Hessian's diagonal entry of a held coordinate */
+enum { MAX_ESCAPES = 50 }; /* from saddles */
+enum { WALKING_STEPS = 1000 }; /* later steps have to lower the action or the gradient */
+enum { POINTS_PER_POLL = 1 << 18 }; /* points dealt with between two looks for Ctrl-C */
 
 typedef double point[2];
 typedef double block[3];
@@ -19,25 +22,25 @@ typedef struct {
     long q;
     double eps;
     const point *base;
-    int held;                           /* as cv_relax says */
-    point *x;                           /* base + u, scratch */
-    double *value;                      /* scratch */
-    double *work;                       /* of cv_solve */
-    long points;                        /* dealt with since Ctrl-C was looked for */
+    int held; /* as cv_relax says */
+    point *x; /* base + u, scratch */
+    double *value; /* scratch */
+    double *work; /* of cv_solve */
+    long points; /* dealt with since Ctrl-C was looked for */
 } action_of;
 
 typedef struct {
     point *u, *gradient;
     block *beta;
     double action, largest, mean_square;
-    double noise, doubt;    /* of the rounding of actions; and where V, not its slope, cancels */
+    double noise, doubt; /* of the rounding of actions; and where V, not its slope, cancels */
 } place;
 
 /* Is the search to end?  To be asked after each round through all points. */
 static int stopped(action_of *of)
 {
     of->points += of->q;
-    if (of->points < ASK)
+    if (of->points < POINTS_PER_POLL)
         return 0;
     of->points = 0;
     return cv_python_interrupts();
@@ -50,8 +53,8 @@ static long solve(action_of *of, const block *beta, double mu, const point *b, p
                        : cv_solve(of->v->n, of->q, beta, mu, b, u, b ? of->work : NULL);
 }
 
-/* Action, gradient and, unless it is NULL, the Hessian's blocks at at->u. */
-static int look(const action_of *of, place *at)
+/* Evaluates action, gradient and, unless it is NULL, the Hessian's blocks at at->u. */
+static int evaluate(const action_of *of, place *at)
 {
     const long q = of->q;
     double sum = 0.0, lost = 0.0, size = 0.0, slopes = 0.0, squares = 0.0, largest = 0.0;
@@ -79,7 +82,7 @@ static int look(const action_of *of, place *at)
             slopes += fabs(of->eps * at->gradient[j][i]);
             at->gradient[j][i] = g;
         }
-        total = sum + term;     /* and what its rounding loses, which adds up over long orbits */
+        total = sum + term; /* and what its rounding loses, which adds up over long orbits */
         lost += (sum - (total - (total - sum))) + (term - (total - sum));
         sum = total;
         size += fabs(of->eps * of->value[j]);
@@ -87,35 +90,67 @@ static int look(const action_of *of, place *at)
             at->beta[j][i] = (i == 1 ? 0.0 : 2.0) - of->eps * at->beta[j][i];
     }
     if (at->beta && of->held >= 0) {
-        at->beta[0][2 * of->held] = STIFF;
+        at->beta[0][2 * of->held] = HELD_ENTRY;
         at->beta[0][1] = 0.0;
     }
     at->action = sum + lost;
     at->noise = 1e-15 * size;
     at->doubt = at->noise + 1e-15 * slopes;
-    at->largest = squares < HUGE_VAL ? largest : HUGE_VAL;      /* NaN: nowhere near */
+    at->largest = squares < HUGE_VAL ? largest : HUGE_VAL; /* NaN: nowhere near */
     at->mean_square = squares / (double)q;
     return CV_OK;
+}
+
+/* Makes room for a state and its derivatives; 0: there is no memory. */
+static int make_place(place *at, long q)
+{
+    const size_t size = (size_t)q;
+
+    *at = (place){ .u = malloc(size * sizeof *at->u),
+                   .gradient = malloc(size * sizeof *at->gradient),
+                   .beta = malloc(size * sizeof *at->beta) };
+    return at->u && at->gradient && at->beta;
+}
+
+static void free_place(place *at)
+{
+    free(at->u);
+    free(at->gradient);
+    free(at->beta);
+}
+
+/* Makes room for scratch; 0: there is no memory. */
+static int make_scratch(action_of *of)
+{
+    const size_t size = (size_t)of->q;
+
+    of->x = malloc(size * sizeof *of->x);
+    of->value = malloc(size * sizeof *of->value);
+    of->work = malloc(size * CV_WORK * sizeof *of->work);
+    return of->x && of->value && of->work;
+}
+
+static void free_scratch(action_of *of)
+{
+    free(of->x);
+    free(of->value);
+    free(of->work);
 }
 
 int cv_action(const cv_potential *v, long q, double eps, const double (*base)[2],
               const double (*u)[2], double *action, double (*gradient)[2])
 {
-    const size_t size = (size_t)q;
-    action_of of = {
-        v, q, eps, base, -1, malloc(size * sizeof *of.x), malloc(size * sizeof *of.value), NULL, 0
-    };
-    place at = { malloc(size * sizeof *at.u), gradient, NULL, 0.0, 0.0, 0.0, 0.0, 0.0 };
+    action_of of = { .v = v, .q = q, .eps = eps, .base = base, .held = -1 };
+    place at = { .u = malloc((size_t)q * sizeof *u), .gradient = gradient };
     int status = CV_ENOMEM;
 
-    if (of.x && of.value && at.u) {
-        memcpy(at.u, u, size * sizeof *at.u);
-        status = look(&of, &at);
+    if (make_scratch(&of) && at.u) {
+        memcpy(at.u, u, (size_t)q * sizeof *u);
+        status = evaluate(&of, &at);
         *action = at.action;
     }
-    free(of.x);
-    free(of.value);
     free(at.u);
+    free_scratch(&of);
     return status;
 }
 
@@ -136,12 +171,12 @@ static double widest(long q, const point *v)
     return most;
 }
 
-/* The eigenvector of the least eigenvalue, which is below -FLAT: inverse iteration with a shift
-   that the counts of negative eigenvalues bring within a twentieth of it. */
+/* Finds the eigenvector of the least eigenvalue, which is below -NULL_EIGENVALUE, by inverse
+   iteration.  Counts of negative eigenvalues bring the shift within a twentieth of it. */
 static long downhill(action_of *of, const block *beta, point *v)
 {
     const long q = of->q;
-    double low = FLAT, high = 1.0, most;
+    double low = NULL_EIGENVALUE, high = 1.0, most;
     unsigned long long random = 88172645463325252ULL;
     long negative;
 
@@ -204,10 +239,10 @@ static long escape(action_of *of, place *at, place *other, point *along)
     long status = downhill(of, (const block *)at->beta, along);
     double best = at->action - at->noise, chosen = 0.0;
 
-    for (double t = 0.5 * CAP; t > 1e-7 && chosen == 0.0 && status == CV_OK; t *= 0.25)
+    for (double t = 0.5 * MAX_STEP; t > 1e-7 && chosen == 0.0 && status == CV_OK; t *= 0.25)
         for (int sign = -1; sign <= 1 && status == CV_OK; sign += 2) {
             move(of->q, other, at, sign * t, (const point *)along);
-            status = look(of, other);
+            status = evaluate(of, other);
             if (other->action < best) {
                 best = other->action;
                 chosen = sign * t;
@@ -216,7 +251,7 @@ static long escape(action_of *of, place *at, place *other, point *along)
     if (status != CV_OK || chosen == 0.0)
         return status;
     move(of->q, other, at, chosen, (const point *)along);
-    status = look(of, other);
+    status = evaluate(of, other);
     swap(at, other);
     return status < 0 ? status : 1;
 }
@@ -226,7 +261,7 @@ static int descend(action_of *of, place *at, place *other, point *along, double 
 {
     const long q = of->q;
     double mu = 0.0;
-    int status = look(of, at);
+    int status = evaluate(of, at);
 
     while (status == CV_OK) {
         const double slope = sqrt(at->mean_square);
@@ -234,9 +269,9 @@ static int descend(action_of *of, place *at, place *other, point *along, double 
         how->largest = at->largest;
         /* Before break-up a gradient along directions that cost nothing may be all that rounding
            leaves, and no step lowers what it hides. */
-        if (at->largest <= tol || (mu > HOPELESS && at->largest <= 100.0 * tol)) {
-            negative = solve(of, (const block *)at->beta, FLAT, NULL, NULL);
-            if (negative > 0 && how->escapes < MOST_ESCAPES) {
+        if (at->largest <= tol || (mu > MAX_DAMPING && at->largest <= 100.0 * tol)) {
+            negative = solve(of, (const block *)at->beta, NULL_EIGENVALUE, NULL, NULL);
+            if (negative > 0 && how->escapes < MAX_ESCAPES) {
                 how->escapes++;
                 negative = escape(of, at, other, along);
                 mu = 0.0;
@@ -245,18 +280,19 @@ static int descend(action_of *of, place *at, place *other, point *along, double 
             }
             return negative < 0 ? (int)negative : CV_OK;
         }
-        if (how->steps >= max_steps || !(at->largest < HUGE_VAL) || mu > HOPELESS)
+        if (how->steps >= max_steps || !(at->largest < HUGE_VAL) || mu > MAX_DAMPING)
             return CV_RUNNING;
         how->steps++;
         while ((negative = solve(of, (const block *)at->beta, mu, (const point *)at->gradient,
                                  along)) > 0 &&
-               mu < HOPELESS)
+               mu < MAX_DAMPING)
             mu = fmax(4.0 * mu, fmax(0.01 * slope, 1e-15));
         if (negative < 0)
             return (int)negative;
-        move(q, other, at, -fmin(1.0, CAP / widest(q, (const point *)along)), (const point *)along);
-        status = look(of, other);
-        if (status == CV_OK && lower(q, other, at, how->steps < WALK)) {
+        move(q, other, at, -fmin(1.0, MAX_STEP / widest(q, (const point *)along)),
+             (const point *)along);
+        status = evaluate(of, other);
+        if (status == CV_OK && lower(q, other, at, how->steps < WALKING_STEPS)) {
             swap(at, other);
             mu = mu > 1e-14 ? 0.1 * mu : 0.0;
         } else {
@@ -269,44 +305,20 @@ static int descend(action_of *of, place *at, place *other, point *along, double 
 int cv_relax(const cv_potential *v, long q, double eps, const double (*base)[2], double (*u)[2],
              int held, double tol, long max_steps, cv_relaxed *how)
 {
-    const size_t size = (size_t)q;
-    action_of of = { v,
-                     q,
-                     eps,
-                     base,
-                     held,
-                     malloc(size * sizeof *of.x),
-                     malloc(size * sizeof *of.value),
-                     malloc(size * CV_WORK * sizeof *of.work),
-                     0 };
-    place places[2], *const at = &places[0], *const other = &places[1];
-    point *const along = malloc(size * sizeof *along);
-    int status = CV_ENOMEM, complete = of.x && of.value && of.work && along;
+    const size_t size = (size_t)q * sizeof *u;
+    action_of of = { .v = v, .q = q, .eps = eps, .base = base, .held = held };
+    place at, other;
+    point *const along = malloc(size);
+    int status = CV_ENOMEM;
 
-    for (int k = 0; k < 2; k++) {
-        places[k] = (place){ malloc(size * sizeof *at->u),
-                             malloc(size * sizeof *at->gradient),
-                             malloc(size * sizeof *at->beta),
-                             0.0,
-                             0.0,
-                             0.0,
-                             0.0,
-                             0.0 };
-        complete = complete && places[k].u && places[k].gradient && places[k].beta;
+    if (make_place(&at, q) & make_place(&other, q) & make_scratch(&of) && along) {
+        memcpy(at.u, u, size);
+        status = descend(&of, &at, &other, along, tol, max_steps, how);
+        memcpy(u, at.u, size);
     }
-    if (complete) {
-        memcpy(at->u, u, size * sizeof *u);
-        status = descend(&of, at, other, along, tol, max_steps, how);
-        memcpy(u, at->u, size * sizeof *u);
-    }
-    for (int k = 0; k < 2; k++) {
-        free(places[k].u);
-        free(places[k].gradient);
-        free(places[k].beta);
-    }
-    free(of.x);
-    free(of.value);
-    free(of.work);
+    free_place(&at);
+    free_place(&other);
+    free_scratch(&of);
     free(along);
     return status;
 }
