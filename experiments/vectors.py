@@ -22,7 +22,6 @@ from converse import orbits, tori
 from converse.commands.common import Parser, ended
 from converse.model.exact import exact, short_text
 from converse.model.map import SymplecticMap
-from converse.parameters.tori import highest
 from converse.storage.files import ConverseError
 
 COUNT, ROUNDS, PARENTS, CHILDREN = 300, 4, 6, 4     # of a search
@@ -34,6 +33,7 @@ APART = 0.004                           # of these places
 TOP = 1.1                               # times the amplitudes given: where a search ends
 BISECTIONS = 6
 POINTS = 1 << 20
+PARTS = 0.985, 0.95, 0.9, 0.8, 0.65     # of the value to which tori are found: proofs are tried
 
 
 def onset(potential, w, q):
@@ -125,6 +125,25 @@ def last(path, name, value):
 
 def potential_at(path, name, value):
     return orbits.potential.known(map_at(path, name, value))
+
+
+def highest(problem_at, rotation, top, points, least=0.0):
+    """A proof of a torus of this rotation vector for the problem at a value above `least` and not
+    above `top`, the largest of a few values that are tried, and the value; or (None, least).
+
+    points -- of the grid on which the torus is looked for, at most: effort"""
+    whole = top
+    parts = (1.0, *PARTS)
+    while parts and top * parts[0] > least:
+        value, parts = top * parts[0], parts[1:]
+        try:
+            return tori.prove(problem_at(value), rotation, points=points), value
+        except tori.NotFound as failure:
+            if failure.reached and top == whole:        # the search got so far
+                top, parts = value * failure.reached, PARTS
+        except tori.NotProved:
+            pass
+    return None, least
 
 
 def map_at(path, name, value):

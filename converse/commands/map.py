@@ -42,9 +42,8 @@ def parser():
     p.add_argument("-r", "--restore", action="store_true", help="continue MAP, as it was asked for "
                    "then, though perhaps with another --down-to")
     p.add_argument("-g", "--graphics", metavar="FILE", help="draw the map: SVG, PNG or PDF by name")
-    p.add_argument("--tori", metavar="DIRECTORY", help="prove tori, too, one along each direction "
-                   "of a plane, and keep their certificates in DIRECTORY, for -g to draw them; "
-                   "without --plane and -r those that are there are drawn")
+    p.add_argument("--tori", metavar="DIRECTORY", help="tell, and draw with -g, at which points "
+                   "DIRECTORY has certificates of tori")
     add_worker_options(p, "cells")
     p.add_argument("--time-limit", type=seconds, default=math.inf, metavar="SECONDS",
                    help="stop after about so long; -r goes on")
@@ -80,23 +79,16 @@ def run(options):
                 jobs=options.jobs, executor=executor, time_limit=options.time_limit,
                 progress=lambda *done: line(lambda: progress_text(*done)))
     say(found.report())
-    tori = [] if options.tori is None else _tori(options, found)
+    points = []
+    if options.tori is not None:
+        from ..parameters.tori import proved_points
+
+        points = [point for point, _ in proved_points(options.tori)]
+        say("Tori : %d proved, with a certificate each in %s\n" % (
+            len(points), plain(options.tori)))
     if graphics is not None:
-        found.draw(graphics, tori)
+        found.draw(graphics, points)
     return 0 if found.complete else 1
-
-
-def _tori(options, found):
-    """The points at which tori are proved, after more have been proved if that is asked for."""
-    from ..parameters import tori
-
-    if options.plane or options.restore:
-        with ProgressLine() as line:
-            tori.prove_tori(found, options.tori, progress=lambda done, count: line(
-                lambda: "proving tori: %d of %d directions" % (done, count)))
-    points = tori.proved_points(options.tori)
-    say("Tori : %d proved, with a certificate each in %s\n" % (len(points), plain(options.tori)))
-    return [point for point, _ in points]
 
 
 def main(argv=None):

@@ -3,13 +3,15 @@
 from fractions import Fraction as F
 
 import pytest
+import rays
+import vectors
 
 from converse import check
 from converse.commands import map as cli
 from converse.model.map import THESIS, SymplecticMap
 from converse.model.problem import Problem
-from converse.parameters import tori
 from converse.parameters.map import ParameterMap
+from converse.parameters.tori import proved_points
 from converse.storage.files import ConverseError
 from converse.tori import read_rotation
 
@@ -25,15 +27,15 @@ def few(tmp_path_factory):
     found = ParameterMap.new("a=b", F(21, 20))
     found.estimate[:] = [{F(0): 0.06, F(1): 0.03}, {F(0): 0.09, F(1): 0.03}]
     directory = tmp_path_factory.mktemp("tori") / "ab.tori"
-    done = []
-    tori.prove_tori(found, directory, vectors=t49, progress=lambda *each: done.append(each))
-    assert done == [(0, 3), (1, 3), (2, 3)]         # the faces share a direction
+    directory.mkdir()
+    rays.prove_tori(found, directory, t49, 1 << 15)
+    assert len([*directory.iterdir()]) == 3         # the faces share a direction
     return found, directory
 
 
 def test_a_torus_is_proved_on_each_ray(few):
     found, directory = few
-    points = tori.proved_points(directory)
+    points = proved_points(directory)
     assert {name for _, name in points} == {"T49"}
     for a, b, c in (point for point, _ in points):
         assert a == b and (a == 0 or c in (0, a)) and 0 < a + c
@@ -47,8 +49,8 @@ def test_the_checker_confirms_them(few, capsys):
 
 
 def test_what_is_there_is_not_proved_again(few, monkeypatch):
-    monkeypatch.setattr(tori, "highest", lambda *_: pytest.fail("asked again"))
-    tori.prove_tori(*few)
+    monkeypatch.setattr(vectors, "highest", lambda *_: pytest.fail("asked again"))
+    rays.prove_tori(*few, t49, 1 << 15)
 
 
 def test_beyond_the_frontier_there_is_none():
@@ -56,7 +58,7 @@ def test_beyond_the_frontier_there_is_none():
         a = F(max(1, round(radius)))
         return Problem(SymplecticMap(THESIS, [a, a, F(0)]))
 
-    assert tori.highest(at, read_rotation("T49"), 40.0, 1 << 6) == (None, 0.0)
+    assert vectors.highest(at, read_rotation("T49"), 40.0, 1 << 6) == (None, 0.0)
 
 
 def test_the_highest_is_proved_where_it_can_be():
@@ -67,19 +69,19 @@ def test_the_highest_is_proved_where_it_can_be():
 
     tried = []
     golden = read_rotation("golden")
-    proof, k = tori.highest(at, golden, 1.1, 1 << 12)
+    proof, k = vectors.highest(at, golden, 1.1, 1 << 12)
     assert 0.8 < k < 0.9716 and k == tried[-1] == min(tried) and tried[0] == 1.1
     assert proof.torus.potential.amplitude == (F(round(1000 * k), 1000),)
     tried.clear()
-    assert tori.highest(at, golden, 1.1, 1 << 12, least=1.0) == (None, 1.0)
+    assert vectors.highest(at, golden, 1.1, 1 << 12, least=1.0) == (None, 1.0)
     assert tried == [1.1]
 
 
 def test_where_one_angle_is_alone_the_golden_circle_is_proved(tmp_path):
     found = ParameterMap.new("c=0", F(21, 20))
     found.estimate[:] = [{F(0): 0.3, F(1): 0.03}]
-    tori.prove_tori(found, tmp_path)
-    points = dict(tori.proved_points(tmp_path))
+    rays.prove_tori(found, tmp_path, rays.named, 1 << 15)
+    points = dict(proved_points(tmp_path))
     assert points[F("0.3"), 0, 0] == "golden" and points[F("0.03"), F("0.03"), 0] in ("T49", "V1")
 
 
@@ -87,9 +89,9 @@ def test_a_torus_of_another_kind_is_refused(few, tmp_path):
     path = next(few[1].iterdir())
     (tmp_path / "x.torus").write_bytes(path.read_bytes()[:200])
     with pytest.raises(ConverseError, match="x.torus"):
-        tori.proved_points(tmp_path)
+        proved_points(tmp_path)
     with pytest.raises(ConverseError, match="name the directory"):
-        tori.proved_points(tmp_path / "nowhere")
+        proved_points(tmp_path / "nowhere")
 
 
 def test_the_command_draws_them(few, tmp_path, capsys):
