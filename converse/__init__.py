@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from .model.map import FourierMap, FroeschleMap, MuldoonMap, StandardMap, SymplecticMap
     from .model.problem import InputError, Problem
     from .prover.native import Counts
+    from .prover.portrait import Portrait, portray
     from .prover.proof import Proof
     from .prover.run import prove
     from .prover.settings import Settings
@@ -24,14 +25,15 @@ if TYPE_CHECKING:
 
 _HOMES = {"ConverseError": "storage.files", "Counts": "prover.native",
           "FourierMap": "model.map", "FroeschleMap": "model.map", "InputError": "model.problem",
-          "MuldoonMap": "model.map", "Problem": "model.problem", "Proof": "prover.proof",
+          "MuldoonMap": "model.map", "Portrait": "prover.portrait", "Problem": "model.problem",
+          "Proof": "prover.proof",
           "Settings": "prover.settings", "StandardMap": "model.map", "SymplecticMap": "model.map",
-          "prove": "prover.run", "read_input": "model.inputs"}
+          "portray": "prover.portrait", "prove": "prover.run", "read_input": "model.inputs"}
 _ROOMS = "check", "orbits", "parameters", "tori"
 
 __all__ = ["ConverseError", "Counts", "FourierMap", "FroeschleMap", "InputError", "MuldoonMap",
-           "Problem", "Proof", "Settings", "StandardMap", "SymplecticMap", "__version__", "check",
-           "orbits", "parameters", "prove", "read_input", "tori"]
+           "Portrait", "Problem", "Proof", "Settings", "StandardMap", "SymplecticMap",
+           "__version__", "check", "orbits", "parameters", "portray", "prove", "read_input", "tori"]
 
 
 def __getattr__(name):

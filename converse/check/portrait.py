@@ -200,21 +200,20 @@ def check_column(column, strip):
 
 def portrayed(portrait):
     """What a portrait claims, in lines."""
-    count = len(portrait.columns)
-    lines = ["The map x[j+1] = 2 x[j] - x[j-1] - V'(x[j]) of one angle (modulo 2 pi),",
-             "V(y) = - the sum of p sin(k y + phase) over the waves below, has no rotational",
-             "invariant circle (no invariant graph p = P + S'(x), where p[j] = x[j] - x[j-1], P is",
-             "constant, S periodic and C1) with x[0] in a column and x[1] over a proved prism",
-             "for any parameters with"]
+    count, ranges = len(portrait.columns), any(map(any, [wave.parts for wave in portrait.waves]))
+    lines = ["THEOREM.  The map y' = y + J', J' = J - V'(y) of one angle y (modulo 2 pi),",
+             "V(y) = - the sum of A sin(k y + phase) over the waves below, has no rotational",
+             "invariant circle (no invariant graph J = P + S'(y), P constant, S periodic and C1)",
+             "with y in a column and y' where no prism of the column is undecided, for%s" % (
+                 " any parameters with" * ranges)]
     for wave in portrait.waves:
         terms = [" %s %s t%d" % ("-" if g < 0 else "+", decimal_text(abs(g)), m)
                  for m, g in enumerate(wave.parts, 1) if g]
-        lines += ["k = %d, phase = %s pi, p = %s" % (
+        lines += ["k = %d, phase = %s pi, A = %s" % (
             wave.k[0], wave.phase, decimal_text(wave.middle) + "".join(terms))]
-    if any(map(any, [wave.parts for wave in portrait.waves])):
-        lines += ["-1 <= t <= 1"]
-    lines += ["Columns : %d%s, x[0] = x* %s" % (
-        count, " and their mirror images about x = %s pi" % portrait.even
+    lines += ["-1 <= t <= 1"] * ranges
+    lines += ["Columns : %d%s, y = x* %s" % (
+        count, " and their mirror images about y = %s pi" % portrait.even
         if portrait.even is not None else "",
         "+ s, |s| <= " + decimal_text(portrait.strip) if portrait.strip else "alone"),
         "Undecided : at most %s of %s" % (decimal_text(portrait.undecided), "phase space"

@@ -21,6 +21,7 @@ from ..model.exact import decimal_text, exact, pi_bounds, rounded
 from ..model.map import SymplecticMap
 from ..model.problem import Problem
 from ..model.region import MARGIN, PLACES, reversal_centre
+from ..model.statement import conditions, ended, indented, map_lines
 from ..storage import files
 from ..storage.backup import Backup
 from ..storage.files import ConverseError
@@ -83,10 +84,10 @@ class Portrait:
     sha256: str = ""
 
     @classmethod
-    def new(cls, problem: Problem, columns: int = 600, depth: int = 15,
+    def new(cls, source: Union[SymplecticMap, Problem], columns: int = 600, depth: int = 15,
             strips: bool = True) -> "Portrait":
         """ValueError: the numbers or the map do not suit."""
-        problem = _of_circle(problem)
+        problem = _of_circle(Problem.of(source))
         for name, value, most in (("columns", columns, MOST_COLUMNS), ("depth", depth, 1000)):
             if isinstance(value, bool) or not isinstance(value, int) or not 1 <= value <= most:
                 raise ValueError("%s is a whole number from 1 to %d, not %r" % (name, most, value))
@@ -164,12 +165,9 @@ class Portrait:
         """What is proved, in words."""
         shares = [self.share(x) for x in self.found]
         of = "phase space" if self.strip else "the successors in them, on average"
-        lines = ["No rotational invariant circle passes through the prisms that are proved",
-                 "(docs/how-to/portrait.md says what exactly is proved)."]
-        for (k, _, phase), p, *parts in zip(self.problem.waves, self.problem.amplitude,
-                                            *self.problem.parts):
-            lines += ["Wave : k = %d, phase = %s pi, p = %s%s" % (
-                k, phase, decimal_text(p), "".join(" +- " + decimal_text(g) for g in parts))]
+        lines = ["THEOREM, for the proved prisms", *map_lines(self.problem),
+                 *ended(["  has no rotational invariant circle through the points (y, y' - y) of "
+                         "these prisms", *indented(conditions(self.problem))]), ""]
         lines += ["Columns : %d of %d%s%s" % (
             len(self.found), len(self.stars), "" if self.even is None else
             ", and their mirror images about %s pi" % self.even,
@@ -255,8 +253,8 @@ def _even(problem):
     """A point, in units of pi, about which V is even, or None: k c + phase + 1/2 is an integer for
     every wave."""
     (k, _, phase), *_ = problem.waves
-    points = [(m + Fraction(1, 2) - phase) / k for m in range(abs(k))]
-    return next((c for c in sorted(points, key=abs) if not any(
+    points = [(m + Fraction(1, 2) - phase) / k % 1 for m in range(abs(k))]
+    return next((c for c in sorted(points) if not any(
         (k0 * c + phi + Fraction(1, 2)) % 1 for k0, _, phi in problem.waves)), None)
 
 
@@ -306,7 +304,7 @@ def portray(source: Union[SymplecticMap, Problem, None] = None, *, path: Optiona
         elif asked is not None and not resume:
             portrait = asked
         else:
-            raise TypeError("there must be a problem, or the file of a portrait to continue")
+            raise TypeError("there must be a map, or the file of a portrait to continue")
         began, stop = time.monotonic() - portrait.seconds, native.Stop()
         end = time.monotonic() + time_limit
         try:

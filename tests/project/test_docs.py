@@ -39,7 +39,7 @@ def test_python_examples_run(name, tmp_path):
                             text=True, timeout=PATIENCE)
     assert (result.returncode, result.stderr) == (0, "")
     said = {"orbits.md": "THEOREM, proved", "tori.md": "Proved", "questions-of-1989.md": "",
-            "portrait.md": "No rotational invariant circle"}
+            "portrait.md": "no rotational invariant circle"}
     assert said.get(name, "no invariant tori") in result.stdout
 
 
