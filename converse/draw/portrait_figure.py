@@ -29,7 +29,7 @@ def draw(portrait, path, tori=()):
 
 
 def fill(axes, portrait, tori=()):
-    """Draws it into axes: x_0 across and x_1 - x_0 upwards."""
+    """Draws it into axes: y across and y' - y upwards."""
     image, left, right = shares(portrait)
     colours = np.empty((*image.shape, 4))
     colours[..., :3], colours[..., 3] = COLOUR, 1 - np.minimum(image, 1)
@@ -47,7 +47,7 @@ def fill(axes, portrait, tori=()):
     for axis in axes.xaxis, axes.yaxis:
         axis.set_ticks([m * math.pi / 2 for m in ticks],
                        [names.get(m, r"$%g\pi$" % (m / 2)) for m in ticks])
-    axes.set(xlim=(left, right), ylim=(-math.pi, math.pi), xlabel="$x_0$", ylabel="$x_1 - x_0$",
+    axes.set(xlim=(left, right), ylim=(-math.pi, math.pi), xlabel="$y$", ylabel="$y' - y$",
              title=title(portrait))
     if tori:
         axes.legend(loc="upper right", title="proved circles, rotation number")
