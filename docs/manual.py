@@ -33,7 +33,8 @@ def page(parser, summary):
     text = str(Manpage(parser, {"project_name": "converse", "version": __version__,
                                 "manual_title": "converse", "description": summary},
                        format="single-commands-section"))
-    text = text.replace(".SH COMMENTS\nExit status: ", ".SH EXIT STATUS\n")
+    text = re.sub(r"\.SH COMMENTS\n(example:.*?)(?=\n\.SH|\Z)",       # as it is written
+                  r".SH EXAMPLE AND EXIT STATUS\n.nf\n\1\n.fi", text, flags=re.DOTALL)
     text = text.replace(" - " + summary, " \\- " + summary)         # the form that whatis reads
     return re.sub("^'", r"\\&'", text, flags=re.MULTILINE)          # a quote would begin a request
 

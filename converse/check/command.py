@@ -38,7 +38,15 @@ def parser():
                formatter_class=argparse.RawDescriptionHelpFormatter, description=(
         "Verifies the theorem of a proof file, all those of a map, or that of a portrait or a\n"
         "certificate of existence, independently of the program that wrote them."),
-        epilog="""exit status:
+        epilog="""example:
+  converse --method loewner --together trig148.in -b trig148.proof
+  converse-check trig148.proof
+
+see also:
+  converse, converse-map, converse-portrait  prove that there are no tori, and write such files
+  converse-tori                              proves that there is a torus, and writes a certificate
+
+exit status:
   0    verified
   1    rejected: the file is wrong (altered, unfinished, with undecided or missing
        parts, wrong counts, a skipped part without its mirror image), or it is a

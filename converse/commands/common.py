@@ -24,8 +24,18 @@ REFRESH_SECONDS = 0.25                  # between two texts of a ProgressLine
 
 # ---- arguments
 
+class _Formatter(argparse.HelpFormatter):
+    """A text with line ends is shown as it is written, any other is filled."""
+
+    def _fill_text(self, text, width, indent):
+        return text if "\n" in text else super()._fill_text(text, width, indent)
+
+
 class Parser(argparse.ArgumentParser):
     """Bad usage is a ConverseError, so that it becomes one line like every other failure."""
+
+    def __init__(self, **options):
+        super().__init__(**{"formatter_class": _Formatter, "allow_abbrev": False, **options})
 
     def error(self, message):
         raise ConverseError("%s; see %s --help" % (message, self.prog))
@@ -33,6 +43,20 @@ class Parser(argparse.ArgumentParser):
     def _print_message(self, message, file=None):
         """As argparse does, which ignores errors of writing."""
         (file or sys.stderr).write(message)
+
+
+MAP = ("the map  y' = y + J',  J' = J - grad V(y),  V(y) = - the sum of A sin(k.y + phase), "
+       "of one or two angles y modulo 2 pi")
+SIGNALS = "129, 130, 143", "ended by SIGHUP, Ctrl-C or SIGTERM"
+
+
+def ending(example, others, statuses):
+    """The end of a help text: an example, the commands to look at as well, the exit statuses."""
+    width = max(len(str(status)) for status, _ in statuses)
+    return "example:\n%s\n\nsee also:\n%s\n\nexit status:\n%s" % tuple("\n".join(
+        "  " + line for line in lines) for lines in (
+            example.split("\n"), others.split("\n"),
+            ["%-*s  %s" % (width, *status) for status in statuses]))
 
 
 def whole_number(least, most=LIMIT):

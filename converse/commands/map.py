@@ -11,12 +11,20 @@ from ..parameters.map import PROVED, ParameterMap
 from ..parameters.region import REGIONS
 from ..storage.files import ConverseError, plain
 from ..version import __version__
-from .common import Parser, ProgressLine, add_worker_options, ended, executor_of, say, seconds
+from .common import (SIGNALS, Parser, ProgressLine, add_worker_options, ended, ending, executor_of,
+                     say, seconds)
 
 COMMAND = "converse-map"
 DOWN_TO = "1.05"
-STATUS = ("Exit status: 0 all is proved that was asked for; 1 some of it is not; 2 bad usage, map "
-          "or file; 129, 130 or 143 ended by a signal, the map saved.")
+ENDING = ending(
+    "converse-map --plane a=b --down-to 1.1 ab.json\n"
+    "converse-map -g ab.svg ab.json\n"
+    "converse-check ab.json",
+    "converse-check  verifies the map independently\n"
+    "converse        proves one patch of parameters, of any potential\n"
+    "converse-tori   proves tori, as --tori does", (
+        (0, "all is proved that was asked for"), (1, "some of it is not"),
+        (2, "bad usage, map or file"), (SIGNALS[0], SIGNALS[1] + ", the map saved")))
 
 
 def _ratio(text):
@@ -30,10 +38,11 @@ def _ratio(text):
 
 
 def parser():
-    p = Parser(prog=COMMAND, allow_abbrev=False, epilog=STATUS, description=(
-        "Proves for as many (a, b, c) of a region as it can that there are no invariant tori, and "
-        "keeps what is proved in MAP, a file that converse-check verifies.  Without a region MAP "
-        "is described, and drawn with -g."))
+    p = Parser(prog=COMMAND, epilog=ENDING, description=(
+        "Proves for as many (a, b, c) of a plane as it can that the map  y' = y + J',  J' = J - "
+        "grad V(y),  V(y) = -a sin y0 - b sin y1 - c sin(y0 + y1), has no invariant torus, and "
+        "keeps what is proved in MAP, a file that converse-check verifies.  Without --plane and -r "
+        "MAP is described, and drawn with -g."))
     p.add_argument("map", metavar="MAP", help="a file, new unless it is restored; compressed if "
                    "its name ends in .gz")
     p.add_argument("--plane", choices=[*REGIONS], help="all directions of a plane, a, b, c >= 0")

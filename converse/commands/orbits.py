@@ -16,18 +16,26 @@ from ..model.problem import InputError
 from ..storage import files
 from ..storage.files import ConverseError, plain
 from ..version import __version__
-from .common import Parser, ProgressLine, ended, say, whole_number
+from .common import SIGNALS, Parser, ProgressLine, ended, ending, say, whole_number
 
 COMMAND = "converse-orbits"
 POTENTIALS = "trig", "poly", "ff", "froeschle", "standard"
 MOST_EPS = 10000                        # values of eps
 LARGE = 1e10                            # Stability indices above it are given by their logarithm.
 SIZES = 300, 1200                       # q of a sweep, unless others are asked for
-STATUS = ("Exit status: 0 all was found that was asked for; 1 a state was not found, is no "
-          "minimum, or is not proved though --prove was given; 2 bad usage, input or file; 129, "
-          "130 or 143 ended by a signal.")
+SISTERS = ("converse-tori      proves that a torus exists\n"
+           "converse-portrait  shows where in phase space a map of one angle has no circle\n"
+           "converse           proves that there are no tori")
+FIND = ending(
+    "converse-orbits find standard 89/233 0.9 0.97 --minimax --prove -g ghost.svg", SISTERS, (
+        (0, "all was found that was asked for"),
+        (1, "an orbit was not found, is no minimum, or is not proved although --prove was given"),
+        (2, "bad usage, input or file"), SIGNALS))
+SWEEP = ending("converse-orbits sweep standard onsets.csv --farey 0.618 --sizes 10:300", SISTERS, (
+    (0, "all was found that was asked for"), (1, "an orbit was lost"),
+    (2, "bad usage, input or file"), SIGNALS))
 POTENTIAL = ("trig, poly, ff, froeschle, standard, or an input file: JSON of the harmonics of V "
-             "(docs/reference/inputs.md)")
+             "(manual: reference/inputs)")
 AT = "the value of a parameter of the file's; any number of times"
 MEANINGS = {                            # of labels
     "minimum": "floating point, not proved: a local minimum of the action, perhaps not global",
@@ -121,7 +129,7 @@ def read_potential(source, at=()):
         return getattr(orbits, source)
     if not os.path.exists(source):
         raise ConverseError("'%s' is no potential and no file; there are %s, or a JSON file of "
-                            "harmonics (docs/reference/inputs.md)" % (
+                            "harmonics (manual: reference/inputs)" % (
                                 source, ", ".join(POTENTIALS)))
     try:
         return orbits.potential.known(SymplecticMap.read(source).at(**dict(at)))
@@ -176,9 +184,9 @@ def vectors_of(options, potential):
 
 
 def parser():
-    p = Parser(prog=COMMAND, allow_abbrev=False, description=(
+    p = Parser(prog=COMMAND, description=(
         "Finds periodic orbits of least action of the map x' = x + p', p' = p - eps grad V(x), "
-        "angles of period 1, by continuation from eps 0."), epilog=STATUS)
+        "angles of period 1, by continuation from eps 0."), epilog=FIND)
     p.add_argument("--version", action="version", version="%s %s" % (COMMAND, __version__))
     commands = p.add_subparsers(metavar="COMMAND", required=True)
 
@@ -190,7 +198,7 @@ def parser():
 
 def _find_parser(commands):
     find = commands.add_parser(
-        "find", allow_abbrev=False, epilog=STATUS, help="find the states of one type",
+        "find", epilog=FIND, help="find the orbits of one type",
         description="Finds the states of one type, and says what is known of them.")
     find.add_argument("potential", metavar="POTENTIAL", help=POTENTIAL)
     find.add_argument("type", metavar="TYPE", type=_vector, help="p0,p1/q, such as 1432,1897/2513; "
@@ -221,7 +229,7 @@ def _find_parser(commands):
 
 def _sweep_parser(commands):
     sweep = commands.add_parser(
-        "sweep", allow_abbrev=False, epilog=STATUS, help="tabulate the states of many types",
+        "sweep", epilog=SWEEP, help="tabulate the orbits of many types",
         description="Writes a table of the states of many types at each eps or, without eps, of "
         "the onset of each type: where the first Lyapunov exponent of its orbit exceeds 1/q.  The "
         "same command continues a sweep that was interrupted.")

@@ -6,19 +6,27 @@ import sys
 
 from ..storage.files import ConverseError
 from ..version import __version__
-from .common import (Parser, ProgressLine, add_worker_options, ended, executor_of, read_problem,
-                     say, seconds, whole_number)
+from .common import (SIGNALS, Parser, ProgressLine, add_worker_options, ended, ending, executor_of,
+                     read_problem, say, seconds, whole_number)
 
 COMMAND = "converse-portrait"
 COLUMNS, DEPTH, DEEPEST, MOST = 600, 15, 1000, 1 << 16
-STATUS = ("Exit status: 0 all columns are done; 1 some are not, or nothing is proved; 2 bad usage, "
-          "input or file; 129, 130 or 143 ended by a signal, the portrait saved.")
+ENDING = ending(
+    "converse-portrait standard-k090.in --rotation golden -b k090.json -g k090.svg\n"
+    "converse-check k090.json\n"
+    "(the input is one of those that converse --list-inputs names)",
+    "converse-check  verifies the portrait independently\n"
+    "converse        proves that there is no circle at all\n"
+    "converse-tori   proves circles, as --rotation does", (
+        (0, "all columns are done"), (1, "some are not, or nothing is proved"),
+        (2, "bad usage, input or file"), (SIGNALS[0], SIGNALS[1] + ", the portrait saved")))
 
 
 def parser():
-    p = Parser(prog=COMMAND, allow_abbrev=False, epilog=STATUS, description=(
-        "Proves where in phase space a map of one angle has no rotational invariant circles, "
-        "column by column, for all parameters of a range.  The file of the portrait is verified "
+    p = Parser(prog=COMMAND, epilog=ENDING, description=(
+        "Proves where in phase space the map  y' = y + J',  J' = J - V'(y),  V(y) = - the sum of "
+        "A sin(k y + phase), y modulo 2 pi, has no rotational invariant circles, column by column, "
+        "for all parameters of a range.  The file of the portrait is verified "
         "by converse-check."))
     p.add_argument("input", nargs="?", metavar="INPUT", help="input file, the thesis's or JSON; "
                    "by default, and as -, standard input; not needed with -r")

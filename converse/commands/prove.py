@@ -14,10 +14,23 @@ from ..prover.settings import AS_PRINTED, METHODS, REGION, THEOREM, UNDECIDED, S
 from ..storage import files
 from ..storage.files import ConverseError
 from ..version import __version__
-from .common import (REFRESH_SECONDS, Parser, ProgressLine, add_worker_options, ended, executor_of,
-                     read_problem, say, seconds, tell, whole_number)
+from .common import (MAP, REFRESH_SECONDS, SIGNALS, Parser, ProgressLine, add_worker_options, ended,
+                     ending, executor_of, read_problem, say, seconds, tell, whole_number)
 
 STATUS = {THEOREM: 0, UNDECIDED: 1, REGION: 3, AS_PRINTED: 4}
+ENDING = ending(
+    "converse --method loewner --together trig148.in -b trig148.proof\n"
+    "converse-check trig148.proof\n"
+    "(the input is one of those that converse --list-inputs names)",
+    "converse-check     verifies the proof independently\n"
+    "converse-tori      proves that there is a torus\n"
+    "converse-map       maps for which a, b, c there is none\n"
+    "converse-portrait  shows where in phase space a map of one angle has no circle\n"
+    "converse-orbits    finds periodic orbits, and proves them", (
+        (0, "a theorem"), (1, "undecided"),
+        (2, "bad usage, input or file; the result could not be saved; or the workers are gone"),
+        (3, "a theorem for a part of the torus only"),
+        (4, "as printed in the thesis, not a proof"), SIGNALS))
 LEAF_WORDS = {"P": "proved", "S": "symmetric", "U": "undecided"}
 
 
@@ -39,25 +52,23 @@ def _decimal(text):
 
 
 def parser():
-    p = Parser(prog="converse", allow_abbrev=False, description=(
-        "Tries to prove that a family of symplectic maps has no invariant tori."), epilog=(
-        "Exit status: 0 a theorem; 1 undecided; 2 bad usage, input or file, or what was found "
-        "could not be saved, or the workers are gone; 3 decided for a part of the torus only; "
-        "4 as printed, not a proof; 129, 130 or 143 ended by a signal."))
-    p.add_argument("input", nargs="?", help="input file, the thesis's or JSON, by default, and as "
-                   "-, standard input; with -r it is not needed, and must agree if given")
+    p = Parser(prog="converse", epilog=ENDING, description=(
+        "Tries to prove that %s, has no invariant torus, for all parameters of a range at a time."
+        % MAP))
+    p.add_argument("input", nargs="?", help="input file, the thesis's or JSON; standard input if "
+                   "it is - or left out; not needed with -r")
     p.add_argument("-d", "--depth", type=whole_number(0), metavar="N",
                    help="give up on a prism that was cut N times (default %d; loewner: %d)"
                    % (METHODS["thesis"], METHODS["loewner"]))
     p.add_argument("-b", "--backup", metavar="FILE",
-                   help="keep a backup in FILE, a new one, from which the run can be continued and "
-                   "which in the end is the proof")
+                   help="save progress to the new file FILE; when the run ends, it is the proof "
+                   "file")
     p.add_argument("-r", "--restore", metavar="FILE",
-                   help="continue the run whose backup is FILE, as it was asked for then, though "
-                   "perhaps deeper (-d), and keep FILE up to date unless -b names another")
+                   help="continue the run whose backup is FILE, with the settings of that run, "
+                   "except that -d may be larger; FILE is kept up to date, unless -b names another")
     p.add_argument("-g", "--graphics", metavar="FILE",
-                   help="draw the prisms in FILE, by its name's ending as SVG, PNG, PDF or "
-                        "PostScript (.ps, .eps); 'off' draws none (default)")
+                   help="draw the prisms in FILE: SVG, PNG, PDF or PostScript (.ps, .eps) by its "
+                        "name; 'off': no figure (default)")
     p.add_argument("-p", "--precision", dest="digits", type=whole_number(1), metavar="DP",
                    help="decimal places of the thesis's rigorous arithmetic (default 35)")
     p.add_argument("-s", "--stubborn", action="store_true", default=None,
@@ -67,16 +78,18 @@ def parser():
     p.add_argument("--as-printed", action="store_true", default=None,
                    help="follow the thesis's listing to the letter; not a proof")
     p.add_argument("--method", choices=tuple(METHODS),
-                   help="the thesis's criterion (default), or the sharper one, in doubles")
+                   help="the thesis's criterion (default), or the sharper one, in rigorous double "
+                   "precision")
     p.add_argument("--together", action="store_true",
-                   help="a, b and c move together, from all lower to all upper ends (loewner)")
+                   help="a, b and c move together along the segment from all lower to all upper "
+                   "ends (loewner)")
     p.add_argument("--xstar", nargs=2, type=_decimal, metavar=("X0", "X1"),
-                   help="let x* be this point, angles in radians (default: the program chooses)")
+                   help="the starting point x*, angles in radians (default: the program chooses)")
     add_worker_options(p, "parts")
     p.add_argument("--time-limit", type=seconds, default=math.inf, metavar="SECONDS",
-                   help="stop after about so long; what is left is undecided")
+                   help="stop after about this time; the rest is undecided")
     p.add_argument("--list-inputs", action=ListInputs, nargs=0,
-                   help="print where the inputs are that come with the program, and exit")
+                   help="print the paths of the input files that come with the program, and exit")
     p.add_argument("--version", action="version", version="converse " + __version__)
     return p
 

@@ -10,11 +10,19 @@ from ..model.exact import exact
 from ..storage import files
 from ..storage.files import ConverseError, plain
 from ..version import __version__
-from .common import Parser, ProgressLine, ended, read_problem, say, whole_number
+from .common import (MAP, SIGNALS, Parser, ProgressLine, ended, ending, read_problem, say,
+                     whole_number)
 
 COMMAND = "converse-tori"
-STATUS = ("Exit status: 0 a theorem; 1 not found or not proved; 2 bad usage, input or file, or the "
-          "certificate could not be saved; 129, 130 or 143 ended by a signal.")
+ENDING = ending(
+    "converse-tori prove standard-k090.in --rotation golden -b golden.torus\n"
+    "converse-check golden.torus\n"
+    "(the input is one of those that converse --list-inputs names)",
+    "converse-check   verifies the certificate independently\n"
+    "converse         proves that there is no torus at all\n"
+    "converse-orbits  finds the periodic orbits near a torus", (
+        (0, "a theorem"), (1, "not found or not proved"),
+        (2, "bad usage, input or file; or the certificate could not be saved"), SIGNALS))
 GIGABYTE = 10 ** 9
 MOST_POINTS = 1 << 26
 
@@ -36,9 +44,9 @@ def _positive(text):
 
 
 def parser():
-    p = Parser(prog=COMMAND, allow_abbrev=False, description=(
-        "Proves that a symplectic map has an invariant torus that is a graph, of a given rotation "
-        "vector."), epilog=STATUS)
+    p = Parser(prog=COMMAND, epilog=ENDING, description=(
+        "Proves that %s, has an invariant torus with a given rotation vector, a graph J = P + "
+        "S'(y)." % MAP))
     p.add_argument("--version", action="version", version="%s %s" % (COMMAND, __version__))
     commands = p.add_subparsers(metavar="COMMAND", required=True)
     for each in (p, _prove_parser(commands)):
@@ -47,42 +55,42 @@ def parser():
 
 
 def _prove_parser(commands):
-    p = commands.add_parser("prove", allow_abbrev=False, epilog=STATUS, help=(
+    p = commands.add_parser("prove", epilog=ENDING, help=(
         "find a torus in floating-point numbers, and prove that there is one near it"),
-        description="Finds an invariant torus in floating-point numbers, and proves that there is "
-        "one near it.")
+        description=("Finds an invariant torus of %s, in floating-point numbers, and proves that "
+                     "there is one near it." % MAP))
     p.set_defaults(run=prove_torus)
-    p.add_argument("input", nargs="?", metavar="FILE", help="input file, the thesis's or JSON, by "
-                   "default, and as -, standard input; one parameter may have a range")
+    p.add_argument("input", nargs="?", metavar="FILE", help="input file, the thesis's or "
+                   "JSON; standard input if it is - or left out; one parameter may have a range")
     which = p.add_mutually_exclusive_group()
     which.add_argument("--rotation", metavar="ROTATION", help=(
         "the rotation vector in turns: golden, silver, spiral, seven, T49, V1, V2, or a polynomial "
-        "and elements of the field of its largest real root t, such as 't^2+t-1: t' "
-        "(docs/how-to/tori.md)"))
+        "and elements of the field of its largest real root t, such as 't^2+t-1: t'"))
     which.add_argument("--near", nargs="+", type=_number, metavar="W",
                        help="take the rotation vector with the best small divisors that is found "
                             "near W, for two angles near W W")
     p.add_argument("--tolerance", type=_positive, metavar="T",
                    help="how far the vector of --near may be away (default 0.001)")
     p.add_argument("--together", action="store_true",
-                   help="a, b and c move together, from all lower to all upper ends")
+                   help="a, b and c move together along the segment from all lower to all upper "
+                   "ends")
     p.add_argument("-b", "--backup", metavar="FILE",
-                   help="write the certificate to FILE, a new one; compressed, if it ends in .gz")
+                   help="write the certificate to the new file FILE; compressed if it ends in .gz")
     p.add_argument("-g", "--graphics", metavar="FILE",
-                   help="draw the torus in FILE, by its name's ending as SVG, PNG or PDF")
+                   help="draw the torus in FILE: SVG, PNG or PDF by its name")
     p.add_argument("-r", "--restore", metavar="FILE",
-                   help="start from the torus of the certificate FILE, of other amplitudes, not "
-                        "from the map without potential; it has the rotation vector, too")
+                   help="start the search from the torus of the certificate FILE, which also gives "
+                        "the rotation vector, and not from the map without potential")
     p.add_argument("--margin", type=_positive, metavar="X", help="find a torus whose residual is X "
-                   "times smaller than the theorem needs, about (default 100)")
+                   "times smaller than the admissible residual, about (default 100)")
     p.add_argument("--points", type=whole_number(16, MOST_POINTS), metavar="N",
-                   help="points of the grid on which the torus is looked for in floating-point "
-                        "numbers, at most (default 2097152); that on which it is then refined "
+                   help="most points of the grid on which the torus is looked for in "
+                        "floating-point numbers (default 2097152); the grid of the refinement "
                         "is limited by memory alone")
     p.add_argument("--jobs", type=whole_number(1), metavar="N",
                    help="verify N pieces of a range at a time, in processes (default 1)")
-    p.add_argument("--memory", type=_positive, metavar="GB", help="what refining the torus may "
-                   "take, in GB (default: three quarters of what is free)")
+    p.add_argument("--memory", type=_positive, metavar="GB", help="the most memory that "
+                   "refining the torus takes, in GB (default: three quarters of what is free)")
     return p
 
 

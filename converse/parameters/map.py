@@ -159,22 +159,28 @@ class ParameterMap:
     def report(self) -> str:
         """What is proved, in words."""
         proofs = [leaf.proof["tree"] for leaf in self.leaves() if leaf.proof is not None]
-        lines = ["No invariant tori, for (a, b, c) = r d in the cells that are proved, and for",
-                 "their mirror images (docs/reference/map-file.md).",
-                 "Region : " + self.region]
+        lines = ["THEOREM.  The map  y' = y + J',  J' = J - grad V(y),  y modulo 2 pi,",
+                 "with  V(y) = -a sin y0 - b sin y1 - c sin(y0 + y1),",
+                 "has no invariant torus J = P + S'(y) over both angles, P constant, S periodic "
+                 "and C1,",
+                 "for (a, b, c) = r d in the proved cells, nor for their images by changes of "
+                 "signs", "and by exchange of a and b (converse-check names these).",
+                 "Region : " + self.region] if self.count(PROVED) or self.count(AT_ONCE) else [
+                     "UNDECIDED: nothing is proved.", "Region : " + self.region]
         for face, directions in enumerate(self.directions):
             height = self.height(face)
             lines += ["d = %s, 0 <= s <= 1 : %s" % (
                 " + s ".join("(%s)" % ", ".join(map(str, d)) for d in directions),
-                "all r > %s" % decimal_text(height) if height < RADIUS else "not for all r > 2")]
-        lines += ["Cells : %d proved, %d at once and for all larger multiples, %d open" % (
+                "all r >= %s" % decimal_text(height) if height < RADIUS else
+                "not all directions at any r")]
+        lines += ["Cells : %d proved, %d proved with all larger multiples (B > 10/3), %d open" % (
                       len(proofs), self.count(AT_ONCE), self.count(OPEN)),
                   "Prisms : %d proved" % sum(tree.count("P") for tree in proofs),
                   "Asked for : down to %s times the estimated frontier%s" % (
                       decimal_text(self.down_to),
                       "" if self.complete else "; not all of it is proved")]
         if self.estimated_all and self.reached < math.inf:
-            lines += ["Reached : all r > %.3f times the estimate" % (
+            lines += ["Reached : all r >= %.3f times the estimate" % (
                 math.ceil(1000 * self.reached + 1e-6) / 1000)]
         lines += ["Time : %.0f seconds" % self.seconds]
         lines += ["SHA-256 : " + self.sha256] if self.sha256 else []

@@ -267,7 +267,7 @@ def test_lost_types_end_with_status_1(run, tmp_path, monkeypatch):
 def test_help_and_version(run):
     for command in ((), ("find",), ("sweep",)):
         status, out, err = run(*command, "--help")
-        assert (status, err) == (0, "") and "Exit status: 0 " in out
+        assert (status, err) == (0, "") and "\nexit status:\n  0 " in out
     assert run("--version")[1].startswith("converse-orbits ")
 
 

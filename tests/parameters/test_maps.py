@@ -397,7 +397,7 @@ def test_the_report(made, capsys):
     assert cli.main([str(made[1])]) == 0
     out = capsys.readouterr().out
     assert out == ParameterMap.load(made[1]).report()
-    assert "all r > " in out and "SHA-256 : " + made[0].sha256 in out
+    assert "all r >= " in out and "SHA-256 : " + made[0].sha256 in out
 
 
 def test_without_the_core_a_map_is_described_and_drawn(made, tmp_path):
