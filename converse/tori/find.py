@@ -27,7 +27,7 @@ DEGREE, MOST_DEGREE = 20, 24            # in sigma
 LEAST_DEGREE = 4
 LAYERS = 32                 # points of the circle of sigma, half of which are computed
 LARGEST = 1 << 23           # points of the mesh times degree, where degrees may be chosen
-NARROWEST = 1e-3            # piece, of s
+NARROWEST = 1e-5            # piece, of s
 ALL = 0.93                  # of what is left of a range: then a piece takes the rest, too
 MOST_MARGIN = 1e100         # coefficients times 2^bits are doubles on their way to integers
 

@@ -58,7 +58,7 @@ def near(w0: Union[Number, float], w1: Union[Number, float, None] = None,
     best, least = None, None
     for j, (field, vector) in enumerate(found, 1):
         tell("comparing rotation vector %d of %d" % (j, len(found)))
-        rotation = Rotation(name, field.polynomial, field.root, vector)
+        rotation = Rotation(name, field.polynomial, (field.low, field.high), vector)
         if any(low < w - within or high > w + within
                for (low, high), w in zip(rotation.turns(30), target)):
             continue

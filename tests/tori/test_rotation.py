@@ -7,9 +7,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from converse.check.field import is_irreducible
+from converse.check.field import evaluate, is_irreducible
 from converse.tori import Rotation, near, read_rotation
-from converse.tori.field import Field, real_roots, value_at
+from converse.tori.field import Field, real_roots
 from converse.tori.rotation import NAMES
 
 
@@ -92,7 +92,7 @@ def test_a_root_must_be_isolated(root):
 @given(st.lists(st.integers(-9, 9), min_size=3, max_size=4).filter(lambda p: p[-1]))
 @settings(max_examples=100, deadline=None)
 def test_irreducible_polynomials_have_no_rational_root(polynomial):
-    rational = any(not value_at(polynomial, Fraction(p, q))
+    rational = any(not evaluate(polynomial, Fraction(p, q))
                    for p in range(-9, 10) for q in range(1, 10))
     assert is_irreducible(tuple(polynomial)) is not rational
 
@@ -108,7 +108,7 @@ def test_bounds_hold_the_value_and_the_field_is_a_field(polynomial, numbers):
         t = field.element([0, 1])
         low, high = field.bounds(t, 50)
         assert 0 < high - low <= Fraction(1, 10 ** 50) and root[0] < high and low < root[1]
-        assert value_at(polynomial, low) * value_at(polynomial, high) < 0
+        assert evaluate(polynomial, low) * evaluate(polynomial, high) < 0
         a = field.element(numbers)
         assert field.bounds(field.element([0, 0, 0, 1]), 30)[0] <= high ** 3
         if any(a):
