@@ -59,7 +59,16 @@ def torus_bound(fixed, waves, corners, most=None):
 
     If all k are multiples of q, a primitive vector, then beta depends on q.y alone, and has all its
     values on a piece of an axis, |y| <= pi/|q0| or pi/|q1|.
+
+    If each wave depends on one coordinate only, then beta is diagonal, and its eigenvalues are
+    those of the waves of either coordinate alone.  (Their maxima are lines in the torus, which
+    would take as many cells as there may be.)
     """
+    of_axis = [[n for n, wave in enumerate(waves) if wave[axis]] for axis in (0, 1)]
+    if all(of_axis) and not set(of_axis[0]) & set(of_axis[1]):
+        return max([torus_bound(fixed, [waves[n] for n in part],
+                                [tuple([p[n] for n in part]) for p in corners], most)
+                    for part in of_axis])
     corners = sorted(set(corners))
     sides, width = [(1, 0), (0, 1)], fixed.pi
     q0, q1 = waves[0][:2] if waves else (1, 0)
