@@ -340,11 +340,14 @@ def test_a_figure_has_a_figure_s_name(command, sample, tmp_path, name):
     assert list(tmp_path.iterdir()) == []
 
 
-@pytest.mark.parametrize("name", ["a.ps", "a.EPS", "a.svg", "a.png", "a.pdf"])
-def test_a_figure_replaces_nothing_but_a_figure(command, sample, tmp_path, name):
+@pytest.mark.parametrize("name, others", [
+    ("a.ps", [b"precious", b"%!PS-Adobe-3.0\n%%Creator: another\n"]),
+    ("a.EPS", [b"%!PS-Adobe-3.0\n%%Creator: another\n"]),
+    ("a.svg", [b"<?xml version='1.0'?><svg/>"]),
+    ("a.png", [b"precious"]), ("a.pdf", [b"precious"])])
+def test_a_figure_replaces_nothing_but_a_figure(command, sample, tmp_path, name, others):
     path = tmp_path / name
-    for text in (b"precious", b"%!PS-Adobe-3.0\n%%Creator: another\n",
-                 b"<?xml version='1.0'?><svg/>"):
+    for text in others:
         path.write_bytes(text)
         status, out, err = command("-g", path, sample)
         assert (status, out) == (2, "") and one_line(err) and "not a figure of this program" in err
