@@ -81,12 +81,13 @@ memcheck: $(VENV)/installed
 	$(VENV)/bin/python tests/kernels/build.py
 	PYTHONMALLOC=malloc valgrind -q --error-exitcode=9 --suppressions=tests/memcheck.supp $(VENV)/bin/python tests/memcheck.py
 
-# The rooms whose tests call the core in ways of their own.  What other rooms ask of it they ask, too,
-# and sanitizers find nothing in Python, nor in figures, reports or the texts of roundings.  Linked
-# proofs are many ordinary searches.
+# The rooms whose tests call the core in ways of their own.  The other rooms ask nothing else of it, and
+# sanitizers find nothing in Python, figures, reports, tables or the texts of roundings.  Linked proofs
+# are many ordinary searches, and so are the tasks of a Dask cluster, a sweep and the experiments.
 SANITIZED_TESTS = $(addprefix tests/, arith loewner orbits prover search thesis) \
-    $(addprefix --ignore=tests/, orbits/test_pictures.py loewner/test_margins.py \
-    prover/test_links.py prover/test_report.py)
+    $(addprefix --ignore=tests/, loewner/test_margins.py prover/test_best_shifts.py \
+    $(addprefix orbits/test_, farey.py pictures.py points.py sweep.py) \
+    $(addprefix prover/test_, links.py report.py)) -k 'not dask and not experiment and not long_call'
 
 # Safe path: the clone, where this starts, holds a core without sanitizers.
 sanitize: export CFLAGS = $(SANITIZE)

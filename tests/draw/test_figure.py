@@ -175,8 +175,9 @@ ELSEWHERE = {"xstar": ("9", "9"), "v": ("0.5", "0.5", "0.25", "0.25")}      # no
 @pytest.mark.parametrize("tree", ["2?P", "2P?", "2P", "3?0PP", "20PP?", "42P?P", "2S?"])
 def test_untried_prisms_are_not_hidden(made_up, shown, tree):
     """Where parameters were cut, proved prisms may share the place."""
-    assert share(shown(made_up(tree, **ELSEWHERE)), is_proved) < 0.03       # but for the frame
-    assert share(shown(made_up(tree, **ELSEWHERE)), is_white) > 0.9
+    rows = shown(made_up(tree, **ELSEWHERE))
+    assert share(rows, is_proved) < 0.03        # of the frame
+    assert share(rows, is_white) > 0.9
 
 
 @pytest.mark.parametrize("tree", ["2UP", "2PU", "2U2PP", "2U?", "2?U", "3P2?U", "2SU"])
