@@ -181,10 +181,14 @@ class SymplecticMap(Dynamics):
 
     def potential(self) -> FourierSum:
         """V alone, exactly.  ValueError: a parameter has a range, and so no value."""
-        for name, (low, high) in zip(self.names or ["t"] * 3, self.ranges):
+        for m, (low, high) in enumerate(self.ranges):
             if low != high:
-                raise ValueError("%s goes from %s to %s; choose a value, such as .at(%s='%s')" % (
-                    name, short_text(low), short_text(high), name, short_text((low + high) / 2)))
+                name = self.names[m] if self.names else "an amplitude"
+                raise ValueError("%s goes from %s to %s; %s" % (
+                    name, short_text(low), short_text(high),
+                    "choose a value: .at(%s='%s'), or --at %s=%s" % (
+                        (name, short_text((low + high) / 2)) * 2) if self.names else
+                    "give one number, or name a parameter and choose its value"))
         return FourierSum(self.harmonics, self.patch[0], self.dimension)
 
     # ---- in doubles

@@ -45,7 +45,7 @@ def known(source: Any) -> "Potential":
 
 @lru_cache(maxsize=64)
 def _of_map(source, name):
-    return Fourier.of(source.potential(), name)
+    return Fourier.of(source.potential(), name + ".json" * (name in STUDIED))
 
 
 def told(progress):

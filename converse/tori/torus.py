@@ -17,7 +17,7 @@ For a range of parameters the amplitudes are p + s part with s in [-1, 1].  A to
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
-from typing import TYPE_CHECKING, List, NamedTuple, Optional, Tuple, Union
+from typing import TYPE_CHECKING, Any, List, NamedTuple, Optional, Tuple, Union
 
 import numpy as np
 
@@ -144,13 +144,13 @@ class Torus:
                           - np.sin(angle) @ coefficients.imag[at:at + step])
         return found.reshape(theta.shape)
 
-    def x(self, theta: np.ndarray, s: float = 0) -> np.ndarray:
+    def x(self, theta: Any, s: float = 0) -> np.ndarray:
         """The points of angles theta, in radians and doubles: an array of shape (..., n), or of any
         shape if n = 1.  They are not taken modulo 2 pi."""
         theta = self._angles(theta)
         return theta + self._sum(theta, self.coefficients(s))
 
-    def J(self, theta: np.ndarray, s: float = 0) -> np.ndarray:
+    def J(self, theta: Any, s: float = 0) -> np.ndarray:
         """The actions J = x(theta) - x(theta - w) there: w + u(theta) - u(theta - w)."""
         theta = self._angles(theta)
         turns = self.k @ np.array(self.rotation.floats, dtype=float)

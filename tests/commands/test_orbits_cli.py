@@ -172,9 +172,9 @@ def test_a_potential_in_a_file(run, root, tmp_path):
     """The standard map of an input, half a turn aside; eps and K multiply each other."""
     path = root / "inputs" / "standard.json"
     mine = cli.read_potential(str(path), [("K", Fraction("0.9"))])
-    assert (mine.name, mine.n, mine.terms) == ("standard K=0.9", 1, {(1,): (Fraction(9, 10), 0)})
+    assert (mine.name, mine.n, mine.terms) == ("standard, K = 0.9", 1, {(1,): (Fraction(9, 10), 0)})
     status, out, err = run("find", path, "34/55", "1", "1.2", "--at", "K=0.9")
-    assert (status, err) == (0, "") and "Potential : standard K=0.9\n" in out
+    assert (status, err) == (0, "") and "Potential : standard, K = 0.9\n" in out
     assert "\nV(x) : s (9/10 cos(2 pi x)), s = 1/(4 pi^2)\n" in out
     states = orbits.follow(orbits.standard, (34,), 55, [0.9, 1.08])
     for (action,), state in zip(numbers(out, "Action per point less |p/q|^2/2"), states):
@@ -189,7 +189,7 @@ def test_a_potential_in_a_file(run, root, tmp_path):
     table = tmp_path / "table.csv"
     assert run("sweep", path, table, "0.5", "--at", "K=1", "--random", "2", "--sizes",
                "5:9")[0] == 0
-    assert set(orbits.read_csv(table)["potential"]) == {"standard K=1"}
+    assert set(orbits.read_csv(table)["potential"]) == {"standard, K = 1"}
 
 
 @pytest.mark.parametrize("text", ["1 0 0 -1/2\n0 1 0 -0.5\n", "2 0.25 -1\n"])
@@ -302,7 +302,7 @@ def test_help_and_version(run):
     (["find", "trig", SMALL, "0.01", "-g", "DIR/x.ps"], ".svg or .png or .pdf"),
     (["find", "trig", SMALL, "0.01", "-g", "DIR/other.svg"], "not a figure of this program"),
     (["find", "trig", SMALL, "0:0.04:0.0001", "-g", "DIR/x.svg"], "states at most"),
-    (["find", "DIR/terms.json", "1,2/3", "0.01", "--csv", "DIR/terms.json"], "overwrite"),
+    (["find", "DIR/terms.json", "1/3", "0.01", "--csv", "DIR/terms.json"], "overwrite"),
     (["find", "trig", SMALL, "0.01", "--at", "K=1"], "trig has no parameters"),
     (["find", "DIR/terms.json", SMALL, "0.01", "--at", "K=1"], "there is no parameter K"),
     (["find", "DIR/terms.json", SMALL, "0.01", "--at", "K"], "write NAME=NUMBER"),
@@ -346,9 +346,9 @@ def test_bad_usage(run, tmp_path, arguments, words):
     (b"{", "no JSON"), (b"\xff\xfe\n", "line 1: '\xff\xfe' is not a decimal number"),
     (b'{"harmonics": [{"k": [1, 0]}]}', "harmonic 1: amplitude is missing"),
     (b'{"harmonics": [{"k": [1, 0], "amplitude": [1, 2]}]}',
-     "harmonic 1, amplitude: this is a range"),
+     "an amplitude goes from 1 to 2; give one number"),
     (b'{"parameters": {"K": [1, 2]}, "harmonics": [{"k": [1, 0], "amplitude": {"K": 1}}]}',
-     "K goes from 1 to 2; choose a value, for instance --at K=1.5")])
+     "K goes from 1 to 2; choose a value: .at(K='1.5'), or --at K=1.5")])
 def test_a_bad_potential(run, tmp_path, text, words):
     path = tmp_path / "mine"
     path.write_bytes(text)
