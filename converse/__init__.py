@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from .model.problem import InputError, Problem
     from .prover.native import Counts
     from .prover.portrait import Portrait, portray
-    from .prover.proof import Proof
+    from .prover.proof import Proof, Tree
     from .prover.run import prove
     from .prover.settings import Settings
     from .storage.files import ConverseError
@@ -28,11 +28,12 @@ _HOMES = {"ConverseError": "storage.files", "Counts": "prover.native",
           "MuldoonMap": "model.map", "Portrait": "prover.portrait", "Problem": "model.problem",
           "Proof": "prover.proof",
           "Settings": "prover.settings", "StandardMap": "model.map", "SymplecticMap": "model.map",
-          "portray": "prover.portrait", "prove": "prover.run", "read_input": "model.inputs"}
+          "Tree": "prover.proof", "portray": "prover.portrait", "prove": "prover.run",
+          "read_input": "model.inputs"}
 _ROOMS = "check", "orbits", "parameters", "tori"
 
 __all__ = ["ConverseError", "Counts", "FourierMap", "FroeschleMap", "InputError", "MuldoonMap",
-           "Portrait", "Problem", "Proof", "Settings", "StandardMap", "SymplecticMap",
+           "Portrait", "Problem", "Proof", "Settings", "StandardMap", "SymplecticMap", "Tree",
            "__version__", "check", "orbits", "parameters", "portray", "prove", "read_input", "tori"]
 
 

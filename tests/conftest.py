@@ -12,7 +12,7 @@ import pytest
 from hypothesis import HealthCheck, settings
 
 import converse
-from converse import Counts, Problem, Proof, Settings
+from converse import Counts, Problem, Proof, Settings, Tree
 
 from moments import PATIENCE
 from truth import TORTURE
@@ -104,5 +104,7 @@ def made_up():
         names = "T", "Tr-", "Tr+", "B", "lambda-min", "lambda-max"
         facts = {"xstar": ("1.5", "1.5"), "seconds": 12.5,
                  "constants": dict.fromkeys(names, "1.25"), **options}
-        return Proof(problem=problem, settings=settings, tree=tree, counts=counts, **facts)
+        first = Tree(problem, *(facts.pop(name, empty) for name, empty in (
+            ("xstar", None), ("text", tree), ("pending", ()))))
+        return Proof((first,), settings, counts, **facts)
     return made_up

@@ -164,7 +164,7 @@ def _said_in_a_line():
 
 
 def run(options):
-    from ..prover.proof import Proof  # these need the C core, and say so where it is missing
+    from ..prover.proof import Proof, Tree  # these need the C core, and say so where it is missing
     from ..prover.run import prove, ready
 
     if options.graphics == "off":
@@ -187,10 +187,10 @@ def run(options):
     problem, xstar = _read_problem(options, restored), options.xstar
     if restored is None:
         with _said_in_a_line():
-            begun = ready(Proof(problem, settings, xstar=xstar and tuple(xstar)))
+            begun = ready(Proof((Tree(problem, xstar and tuple(xstar)),), settings))
         problem, xstar, given["method"] = begun.problem, begun.xstar, settings.method
     else:
-        begun = ready(replace(restored, problem=replace(
+        begun = ready(restored.with_tree(0, problem=replace(
             restored.problem, comments=problem.comments)))
 
     def on_leaf(leaf, points):

@@ -48,7 +48,7 @@ class Problem:
     shifts
         Of each parameter, by how much it moves v0 and v1 at its upper end, in units of pi: the
         region of t is that of v0 and v1, moved by sum of t[m] shifts[m].  Only the regions of
-        further starting points move (links.part_problem); no input moves, and no proof as a whole.
+        further starting points move (`part`); no input moves, and no proof as a whole.
 
     Raises
     ------
@@ -91,6 +91,11 @@ class Problem:
     def of(cls, source: "Union[SymplecticMap, Problem]") -> "Problem":
         """A problem as it is, or that of a map and all of the torus."""
         return source if isinstance(source, Problem) else cls(source)
+
+    def part(self, region: Tuple[Ends, Ends], shifts: Shifts = ()) -> "Problem":
+        """The same map with another region, in the same frame, which moves by these shifts."""
+        return replace(self, v0=region[0], v1=region[1], axes=self.frame, shifts=shifts,
+                       comments=())
 
     def tied(self) -> "Problem":
         """The problem whose parameters move together, from all lower to all upper ends."""

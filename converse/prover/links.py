@@ -15,7 +15,7 @@ from ..model.exact import Ends, pi_bounds, root_bounds, sine_bounds
 from ..model.map import SymplecticMap
 from ..model.problem import Problem, Shifts
 from . import tree
-from .proof import Part
+from .proof import Tree
 
 PIECES = 8                              # of the segment, with a bound K of its own each
 DIGITS = 30                             # to which what is irrational is known
@@ -197,11 +197,6 @@ class Target:
     shifts: Shifts = ()
 
 
-def part_problem(problem: Problem, region: Box, shifts: Shifts = ()) -> Problem:
-    """The same problem with another region, which moves by these shifts."""
-    return replace(problem, v0=region[0], v1=region[1], axes=problem.frame, shifts=shifts)
-
-
 def clusters(problem: Problem, text: str) -> List[List[Cell]]:
     """The undecided cells of the tree, those that are near each other in one cluster; at most
     MOST_CLUSTERS, and fewer cells are near each other then.  [] if that is not to be had."""
@@ -294,12 +289,16 @@ def _rounded(image):
 
 
 def wrong_letter(problem: Problem, largest: Fraction, xstar: Tuple[str, str], text: str,
-                 parts: Sequence[Part]) -> Optional[str]:
-    """The first of those leaves of a tree over xstar that are linked to a part, and may lead out of
-    its region: its letter.  None: there is none.  largest: B; parts: a, b, ... of the proof."""
-    targets = {letter: Target(letter, Links(problem, largest, xstar, part.xstar),
-                              (part.v0, part.v1), part.shifts)
-               for letter, part in zip(tree.LETTERS, parts) if letter in text}
+                 parts: Sequence[Tree]) -> Optional[str]:
+    """The letter of the first leaf of a tree over xstar that is linked to a part and may lead out
+    of its region.  None: there is none.  largest: B; parts: a, b, ... of the proof."""
+    targets = {}
+    for letter, part in zip(tree.LETTERS, parts):
+        if letter in text:
+            assert part.xstar is not None
+            at = part.problem
+            targets[letter] = Target(letter, Links(problem, largest, xstar, part.xstar),
+                                     (at.v0, at.v1), at.shifts)
     boxes = {target.shifts: _boxes(problem, target.shifts) for target in targets.values()}
     return next((kind for kind, cell in tree.cells(text if targets else "") if kind in targets
                  and not targets[kind].links.of(cell).leads_into(

@@ -8,8 +8,7 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Dict, List, Optional, Tuple, Union
 
-from ..model.exact import Ends
-from ..model.problem import Problem, Shifts, exact_shifts
+from ..model.problem import Problem
 from ..model.region import symmetries_used
 from ..version import __version__
 from . import tree
@@ -22,24 +21,26 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class Part:
-    """A further starting point, and what was decided of a region of its successors.
+class Tree:
+    """A starting point, and what was decided of a region of its successors.
 
-    v0, v1: the region, in units of pi, in the middle of the parameters.
-    shifts: by how much each parameter moves it at its upper end, (of v0, of v1); (): not at all.
-    xstar, tree, pending: as of a Proof.
+    problem: the map and the region.  Only regions of further starting points move with the
+    parameters.
+    xstar: the two angles of the starting point, in radians, as decimal strings; None: not yet
+    chosen.
+    text: one character for each prism, in preorder (docs/reference/proof-file.md).
+    pending: the hints of the untried prisms, in their order: how long an orbit to try first, as
+    their parents' tries suggest (0: unknown)."""
 
-    TypeError, ValueError: the shifts are no pairs of finite decimals, exact."""
-
-    xstar: Tuple[str, str]
-    v0: Ends
-    v1: Ends
-    tree: str = ""
+    problem: Problem
+    xstar: Optional[Tuple[str, str]] = None
+    text: str = ""
     pending: Tuple[int, ...] = ()
-    shifts: Shifts = ()
 
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "shifts", exact_shifts(self.shifts))   # one part, one Part
+    @property
+    def decided(self) -> bool:
+        """Is the tree whole and without an undecided prism?"""
+        return "U" not in self.text and tree.complete(self.text)
 
 
 @dataclass(frozen=True, repr=False)
@@ -49,38 +50,29 @@ class Proof:
     What it proves rests on its tree, which prove() grew; a Proof that was loaded, or made by hand,
     is believed.  verify() believes nothing.
 
-    problem, settings: what was asked; where that is all of the torus, and there is an x*, with the
-    frame and the region that are searched (symmetries_used).
-    tree: one character for each prism, in preorder (docs/reference/proof-file.md).
+    trees: over the starting point of the problem and then, a, b, c, ..., over those to which prisms
+    of trees before them are linked.
+    settings: what was asked.
     counts: the statistics of the search.
-    xstar: the two angles of the starting point, in radians, as decimal strings; None: not yet
-    chosen.
     constants: the numbers of the theorem, as decimal strings: B, a bound of the largest eigenvalue
     of beta, and with the thesis's method T, of its trace, and the limits of the uniform cones.
     seconds: that the search took, as far as is known.
     version: of the program that did the work.
-    pending: the hints of the untried prisms, in their order: how long an orbit to try first, as
-    their parents' tries suggest (0: unknown).
     at_once: nor have any s times these amplitudes tori, s > 1 (if there is one parameter, as where
     a, b and c move together: s times those at its upper end).
     restored: how many leaves were read from a file; links may have taken the place of some.
     sha256: of the proof's file, uncompressed; "" if there is none.
-    parts: a, b, c, ... to which cells of this tree, or of parts before them, are linked.
     """
 
-    problem: Problem
+    trees: Tuple[Tree, ...]
     settings: Settings = Settings()
-    tree: str = ""
     counts: Counts = Counts()
-    xstar: Optional[Tuple[str, str]] = None
     constants: Dict[str, str] = field(default_factory=dict)
     seconds: float = field(default=0.0, compare=False)
     version: str = __version__
-    pending: Tuple[int, ...] = ()
     at_once: bool = False
     restored: int = field(default=0, compare=False)
     sha256: str = field(default="", compare=False)
-    parts: Tuple[Part, ...] = ()
 
     def __bool__(self):
         return self.no_tori
@@ -92,6 +84,33 @@ class Proof:
             self.counts.proved, self.counts.linked if self.parts else self.counts.symmetric,
             "linked" if self.parts else "skipped", self.counts.undecided, self.method,
             self.arithmetic)
+
+    @property
+    def problem(self) -> Problem:
+        """What was asked; where that is all of the torus, and there is an x*, with the frame and
+        the region that are searched (symmetries_used)."""
+        return self.trees[0].problem
+
+    @property
+    def xstar(self) -> Optional[Tuple[str, str]]:
+        """The starting point of the problem."""
+        return self.trees[0].xstar
+
+    @property
+    def tree(self) -> str:
+        """The text of the tree over it."""
+        return self.trees[0].text
+
+    @property
+    def parts(self) -> Tuple[Tree, ...]:
+        """The trees over further starting points."""
+        return self.trees[1:]
+
+    def with_tree(self, number: int, **changes: Any) -> "Proof":
+        """The proof with changes of one of its trees."""
+        trees = list(self.trees)
+        trees[number] = replace(trees[number], **changes)
+        return replace(self, trees=tuple(trees))
 
     @property
     def method(self) -> str:
@@ -112,8 +131,7 @@ class Proof:
     @cached_property
     def all_decided(self) -> bool:
         """Are the trees whole and without an undecided prism?"""
-        return all("U" not in text and tree.complete(text)
-                   for text in (self.tree, *(part.tree for part in self.parts)))
+        return all(each.decided for each in self.trees)
 
     @cached_property
     def symmetries_used(self) -> Optional[List[str]]:
@@ -147,15 +165,8 @@ class Proof:
         """The prisms on which the search gave up: a list of Leaf, angles in units of pi.  Those of
         further starting points follow; where regions move with the parameters, a Leaf is as wide
         as all places of its prism."""
-        trees = [(self.problem, self.tree),
-                 *((self.part_problem(part), part.tree) for part in self.parts)]
-        return [leaf for problem, text in trees if "U" in text
-                for leaf in tree.leaves(problem, text, "U")]
-
-    def part_problem(self, part: Part) -> Problem:
-        """The problem with the region of a part."""
-        return replace(self.problem, v0=part.v0, v1=part.v1, axes=self.problem.frame,
-                       shifts=part.shifts)
+        return [leaf for each in self.trees if "U" in each.text
+                for leaf in tree.leaves(each.problem, each.text, "U")]
 
     def report(self) -> str:
         """The report of 1989, and what a reader needs beside it."""

@@ -11,7 +11,7 @@ from ..storage import files
 from ..storage.files import ConverseError
 from . import tree
 from .native import CONSTANTS, Counts
-from .proof import Part, Proof
+from .proof import Proof, Tree
 from .settings import Settings
 
 MAGIC, VERSION = "converse proof ", "6"
@@ -97,8 +97,6 @@ def _text(proof):
         at_once = "upper end"
     if problem.shifts:                  # which the header cannot say
         raise ValueError("the region of a whole proof does not move with the parameters")
-    for part in proof.parts:            # ValueError: it has shifts by more or fewer parameters
-        proof.part_problem(part)
     lines = [FIRST_LINE, "kind: " + CLAIMS[proof.as_printed],
              "program: converse " + proof.version, "method: " + proof.method]
     lines += _problem_lines(problem)
@@ -106,10 +104,10 @@ def _text(proof):
     lines += ["depth: %d" % proof.depth, "digits: %d" % proof.digits,
               "stubborn: " + _yes(proof.settings.stubborn), "at once: " + at_once]
     lines += [] if proof.all_decided else ["seconds: %.2f" % proof.seconds]
-    pending, before = proof.pending, _untried(proof.tree)
-    for part in proof.parts:            # a hint that is missing is 0
-        pending += (0,) * (before - len(pending)) + part.pending
-        before += _untried(part.tree)
+    pending, before = (), 0
+    for each in proof.trees:            # a hint that is missing is 0
+        pending += (0,) * (before - len(pending)) + each.pending
+        before += _untried(each.text)
     lines += ["pending: " + " ".join(map(str, pending))]
     for name, value in asdict(proof.counts).items():
         values = value if isinstance(value, tuple) else (value,)
@@ -121,9 +119,9 @@ def _text(proof):
     lines += _tree_lines(proof.tree)
     for letter, part in zip(tree.LETTERS, proof.parts):
         lines += ["part: " + letter, "xstar: " + " ".join(part.xstar),
-                  _ends_line("v0", part.v0, [s0 for s0, _ in part.shifts]),
-                  _ends_line("v1", part.v1, [s1 for _, s1 in part.shifts]),
-                  *_tree_lines(part.tree)]
+                  _ends_line("v0", part.problem.v0, [s0 for s0, _ in part.problem.shifts]),
+                  _ends_line("v1", part.problem.v1, [s1 for _, s1 in part.problem.shifts]),
+                  *_tree_lines(part.text)]
     text = "\n".join(lines) + "\n"
     return text + "checksum: sha256 %s\nend\n" % files.sha256(text)
 
@@ -148,10 +146,7 @@ def _proof(values, problem, trees, sha256, parameters):
     for item in fields(Counts):
         numbers = tuple(int(word) for word in values[item.name].split())
         counts[item.name] = numbers if isinstance(item.default, tuple) else numbers[0]
-    xstar = None
-    if "xstar" in values:
-        x0, x1 = values["xstar"].split()
-        xstar = _number(x0), _number(x1)
+    xstar = _point(values["xstar"]) if "xstar" in values else None
     program = PROGRAM.fullmatch(values["program"])
     if program is None:
         raise ValueError("of an unknown program")
@@ -160,24 +155,28 @@ def _proof(values, problem, trees, sha256, parameters):
                         {kind: printed for printed, kind in CLAIMS.items()}[values["kind"]])
     constants = {name: _number(values[name]) for name in CONSTANTS[settings.method]
                  if name in values}
-    (_, nodes), *others = trees
-    tree.complete(nodes)                # TreeError, a ValueError: it is not a tree
-    hints, parts = tuple(map(int, values["pending"].split())), []
-    pending, hints = _divided(hints, nodes) if others else (hints, ())
-    for named, text in others:
-        tree.complete(text)
-        x0, x1 = named["xstar"].split()
-        mine, hints = _divided(hints, text)
-        (v0, s0), (v1, s1) = (_moving(named, name, parameters) for name in NAMES[3:])
-        parts.append(Part((_number(x0), _number(x1)), v0, v1, text, mine, tuple(zip(s0, s1))))
-        if parts[-1].shifts and "S" in text:
+    hints, grown = tuple(map(int, values["pending"].split())), []
+    for named, text in trees:
+        tree.complete(text)             # TreeError, a ValueError: it is not a tree
+        mine, hints = _divided(hints, text) if len(trees) > 1 else (hints, ())
+        at, star = problem, xstar
+        if grown:
+            (v0, s0), (v1, s1) = (_moving(named, name, parameters) for name in NAMES[3:])
+            at, star = problem.part((v0, v1), tuple(zip(s0, s1))), _point(named["xstar"])
+        if at.shifts and "S" in text:
             raise ValueError("a prism of a part is skipped (S), though the part's region moves")
+        grown.append(Tree(at, star, text, mine))
     tree.check_letters([text for _, text in trees])
-    if parts and (settings.method != "loewner" or problem.factor is not None):
+    if grown[1:] and (settings.method != "loewner" or problem.factor is not None):
         raise ValueError("parts, which go with the sharper method and no coordinate that is alone")
-    return Proof(problem, settings, nodes, Counts(**counts), xstar, constants,
-                 float(values.get("seconds", 0)), program[1], pending, _at_once(values, problem),
-                 sum(text.count("P") + text.count("S") for _, text in trees), sha256, tuple(parts))
+    return Proof(tuple(grown), settings, Counts(**counts), constants,
+                 float(values.get("seconds", 0)), program[1], _at_once(values, problem),
+                 sum(text.count("P") + text.count("S") for _, text in trees), sha256)
+
+
+def _point(text):
+    x0, x1 = text.split()
+    return _number(x0), _number(x1)
 
 
 def _divided(hints, text):

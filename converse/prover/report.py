@@ -87,7 +87,7 @@ def _undecided(proof):
         lines += labelled("", "the first of them: " + ", ".join(
             _between("v%d" % i, c - h, c + h, h / 100)
             for i, (c, h) in enumerate(zip(leaf.centre, leaf.half)) if i < problem.map.dimension))
-    if not all(tree.complete(part.tree) for part in (proof, *proof.parts)):
+    if not all(tree.complete(each.text) for each in proof.trees):
         lines += labelled("", "the search ended before the whole region was examined")
     stuck = any(leaf.depth < proof.depth and min(leaf.half) < TINY for leaf in undecided)
     if stuck:
@@ -140,8 +140,8 @@ def _grounds(proof, file):
         _many(counts.tries, "try", "tries"))
     for letter, part in zip(tree.LETTERS, proof.parts):
         yield "Part " + letter, "x* = %s, %s: %s proved, %s linked" % (
-            _star(problem, part.xstar), _region(problem, part),
-            _many(part.tree.count("P"), "prism"), _count(tree.count_linked(part.tree)))
+            _star(problem, part.xstar), _region(part.problem),
+            _many(part.text.count("P"), "prism"), _count(tree.count_linked(part.text)))
     if proof.parts:
         yield "Links", "an invariant torus that leads from its x* into a linked prism leads from " \
             "the x* of a part into the region of that part (manual: proofs/argument, section 10)"
@@ -167,18 +167,17 @@ def _searched(proof):
         "; the others follow by " + " and ".join(used) if used else "")
 
 
-def _region(problem, part=None):
-    """The region of the problem or of a part, and how a part's region moves with the parameters."""
-    at = problem if part is None else part
-    text = ", ".join(_between("v%d" % i, *ends) for i, ends in enumerate((at.v0, at.v1))
+def _region(problem):
+    """The region of a problem, and how it moves with the parameters."""
+    text = ", ".join(_between("v%d" % i, *ends) for i, ends in enumerate((problem.v0, problem.v1))
                      if i < problem.map.dimension)
-    if part is None or not part.shifts:
+    if not problem.shifts:
         return text
-    names = parameters(problem)
+    names = problem.parameters or parameters(problem)
     ends = ["the upper end"] if names is None else [
         "the upper end of " + name for name, *_ in names]
     return "%s in the middle of the parameters, moved by %s" % (text, ", ".join(
-        "(%s, %s) at %s" % (*map(_angle, pair), end) for pair, end in zip(part.shifts, ends)))
+        "(%s, %s) at %s" % (*map(_angle, pair), end) for pair, end in zip(problem.shifts, ends)))
 
 
 def _between(name, low, high, error=Fraction(0)):

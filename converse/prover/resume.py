@@ -61,49 +61,49 @@ def continued(proof, name, problem=None, given=None, xstar=None):
     if xstar is not None:
         if proof.xstar is not None and list(map(Decimal, proof.xstar)) != list(map(Decimal, xstar)):
             differs("x*", " ".join(proof.xstar), " ".join(xstar))
-        proof = replace(proof, xstar=proof.xstar or xstar)
+        proof = proof.with_tree(0, xstar=proof.xstar or xstar)
     if "U" in proof.tree and proof.settings.stubborn and not settings.stubborn and \
             settings.depth == proof.settings.depth:
         differs("stubborn", True, False)
     if settings.depth > proof.settings.depth:
         proof = _with_undecided_untried(proof)
-    return replace(proof, settings=settings, problem=problem or proof.problem,
-                   restored=sum(part.tree.count(kind) for part in (proof, *proof.parts)
-                                for kind in "PS"))
+    proof = proof.with_tree(0, problem=problem or proof.problem)
+    return replace(proof, settings=settings, restored=sum(
+        each.text.count(kind) for each in proof.trees for kind in "PS"))
 
 
 def _without_unused(proof, name):
     """The proof without the parts that nothing is linked to, as when an undecided prism before
     those that were ended the search.  ConverseError: a letter is of no later part."""
     try:
-        tree.check_letters([proof.tree, *(part.tree for part in proof.parts)])
+        tree.check_letters([each.text for each in proof.trees])
     except tree.TreeError as error:
         raise ConverseError("%s: %s; use an intact copy or start anew" % (name, error)) from None
     used, kept = set(proof.tree), {}
     for letter, part in zip(tree.LETTERS, proof.parts):     # links lead to later parts alone
         if letter in used:
-            used |= set(part.tree)
+            used |= set(part.text)
             kept[letter] = part
     names = {ord(old): new for old, new in zip(kept, tree.LETTERS)}
-    rest = replace(proof, tree=proof.tree.translate(names), parts=tuple(
-        replace(part, tree=part.tree.translate(names)) for part in kept.values()))
+    rest = replace(proof, trees=tuple(replace(each, text=each.text.translate(names))
+                                      for each in (proof.trees[0], *kept.values())))
     return rest if len(kept) == len(proof.parts) else replace(rest, counts=counted(rest))
 
 
 def counted(proof):
     """The statistics, nodes being counted in all trees."""
-    trees = [proof.tree, *(part.tree for part in proof.parts)]
-    return replace(proof.counts, **dict(zip(KINDS, map(sum, zip(*map(kinds_of, trees))))),
-                   most_cuts=max(map(tree.most_cuts, trees)))
+    texts = [each.text for each in proof.trees]
+    return replace(proof.counts, **dict(zip(KINDS, map(sum, zip(*map(kinds_of, texts))))),
+                   most_cuts=max(map(tree.most_cuts, texts)))
 
 
 def _with_undecided_untried(proof):
     """The proof whose undecided prisms are to be tried again, without hints."""
-    def again(part):
-        hints, known = [], iter(part.pending)
-        for leaf in tree.UNDECIDED_OR_UNTRIED.findall(part.tree):
+    def again(each):
+        hints, known = [], iter(each.pending)
+        for leaf in tree.UNDECIDED_OR_UNTRIED.findall(each.text):
             hints.append(next(known, 0) if leaf == tree.UNTRIED else 0)
-        return replace(part, tree=part.tree.replace("U", tree.UNTRIED), pending=(*hints, *known))
+        return replace(each, text=each.text.replace("U", tree.UNTRIED), pending=(*hints, *known))
 
-    return replace(again(proof), parts=tuple(map(again, proof.parts)),
+    return replace(proof, trees=tuple(map(again, proof.trees)),
                    counts=replace(proof.counts, undecided=0))

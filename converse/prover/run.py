@@ -19,7 +19,7 @@ from ..version import __version__
 from . import native, tree
 from .links import wrong_letter
 from .native import Counts, Task
-from .proof import Proof
+from .proof import Proof, Tree
 from .resume import continued, counted
 from .settings import Settings
 from .starts import plan
@@ -79,7 +79,7 @@ def prove(source: Union[SymplecticMap, Problem, None] = None, *, method: Optiona
     if problem is not None and resume is None:
         if method is None and digits is None and not as_printed:
             given["method"] = "loewner"
-        before = Proof(problem, Settings(**given), xstar=star)
+        before = Proof((Tree(problem, star),), Settings(**given))
     with interruptible(), Backup(file if backup is None else backup, resumed=file) as backup_file:
         if resume is not None:
             proof = resume if isinstance(resume, Proof) else Proof.load(resume)
@@ -100,7 +100,7 @@ def ready(before: Proof) -> Proof:
             not problem.axes_named:
         xstar = xstar or native.chosen_start(Task(problem, before.settings))
         problem = reduced(problem, xstar)
-    return replace(before, problem=problem, xstar=xstar)
+    return before.with_tree(0, problem=problem, xstar=xstar)
 
 
 def _point(xstar):
@@ -139,27 +139,25 @@ class _Options:
 class _Run:
     """One run of a search, from what was known before it to a Proof.
 
-    The trees over the starting points are grown one after the other: over that of the proof, and
-    over those of its parts, which come into being where one leaves prisms undecided."""
+    The trees are grown one after the other.  Where a tree leaves prisms undecided, further ones are
+    added to the list."""
 
     def __init__(self, before, backup, options):
         self.proof, self.backup, self.options = before, backup, options
         self.began, self.seconds_before = time.monotonic(), before.seconds
         self.end = self.began + options.time_limit
         self.examined = self.share = 0.0    # before the tree that is grown now; of all, told last
-        self.growing, self.search = 0, None     # the number of that tree, and its search
+        self.number, self.search = 0, None      # of that tree, and its search
         self.counts = before.counts             # when that began
         self.tried = False                      # were other starting points looked for?
 
     def run(self):
         try:
-            while self._grow():
-                linked = (not self._decided() or self._is_hard()) and self._link()
-                if not linked and self._decided():
-                    if self.growing == len(self.proof.parts):
-                        break
-                    self.growing += 1
-                elif not linked and "U" in self._piece()[1].tree:
+            while self.number < len(self.proof.trees) and self._grow():
+                linked = (not self._tree.decided or self._is_hard()) and self._link()
+                if not linked and self._tree.decided:
+                    self.number += 1
+                elif not linked and "U" in self._tree.text:
                     break
                 self.examined = self.share
         except native.WrongTree:            # the file is left to whoever wants to mend it
@@ -178,20 +176,20 @@ class _Run:
     def _grow(self):
         """Grows one of the trees; False if time is up first.  It is left as it is, too, when it
         turns out to be so hard that other starting points are to be looked for."""
-        problem, piece = self._piece()
-        task = Task(problem, self.proof.settings, piece.xstar)
+        problem, text = self._tree.problem, self._tree.text
+        task = Task(problem, self.proof.settings, self._tree.xstar)
         with TreeSearch(task, self.options.jobs, self.options.executor,
                         want_steps=self.options.on_leaf is not None) as search:
             counts = self.counts = self.proof.counts
             if self.proof.parts:
-                counts = replace(counts, **dict(zip(KINDS, kinds_of(piece.tree))))
-            begun = search.begin(piece.tree, piece.pending, counts, self._seconds_left)
+                counts = replace(counts, **dict(zip(KINDS, kinds_of(text))))
+            begun = search.begin(text, self._tree.pending, counts, self._seconds_left)
             if begun is None:               # no time even to set it up
                 return False
-            if self.growing == 0:
-                self.proof = replace(self.proof, xstar=begun.xstar, constants=begun.constants,
-                                     at_once=begun.at_once)
-            wrong = wrong_letter(problem, Fraction(begun.constants["B"]), begun.xstar, piece.tree,
+            if self.number == 0:
+                self.proof = replace(self.proof.with_tree(0, xstar=begun.xstar),
+                                     constants=begun.constants, at_once=begun.at_once)
+            wrong = wrong_letter(problem, Fraction(begun.constants["B"]), begun.xstar, text,
                                  self.proof.parts)
             if wrong:
                 raise native.WrongTree("a leaf that is linked to part %s may lead out of its region"
@@ -208,24 +206,10 @@ class _Run:
             self.proof, self.search = self._snapshot(), None
             return ended
 
-    def _piece(self):
-        """The problem, and the Proof or the Part, of the tree that is grown."""
-        if self.growing == 0:
-            return self.proof.problem, self.proof
-        part = self.proof.parts[self.growing - 1]
-        return self.proof.part_problem(part), part
-
-    def _decided(self):
-        text = self._piece()[1].tree
-        return "U" not in text and tree.complete(text)
-
-    def _with(self, **changes):
-        """The proof with changes of the tree that is grown."""
-        if self.growing == 0:
-            return replace(self.proof, **changes)
-        parts = list(self.proof.parts)
-        parts[self.growing - 1] = replace(parts[self.growing - 1], **changes)
-        return replace(self.proof, parts=tuple(parts))
+    @property
+    def _tree(self):
+        """The tree that is grown."""
+        return self.proof.trees[self.number]
 
     # ---- other starting points
 
@@ -234,22 +218,20 @@ class _Run:
         looked for before it is known what becomes of it?  That this is so of some prism does not
         depend on when it is seen."""
         counts = self.proof.counts if self.search is None else self.search.counts
-        return counts.max_NTsteps >= LONG and self._may_link() and self.growing == 0 and \
+        return counts.max_NTsteps >= LONG and self._may_link() and self.number == 0 and \
             not self.tried
 
     def _may_link(self):
         """Once is enough for a tree; and where the core skips mirror images, what they are the
         images of must be proved, not linked."""
-        problem, piece = self._piece()
-        settings = self.proof.settings
+        problem, settings = self._tree.problem, self.proof.settings
         return settings.method == "loewner" and not settings.stubborn and \
-            problem.factor is None and not skips(problem, piece.xstar) and \
-            not tree.count_linked(piece.tree)
+            problem.factor is None and not skips(problem, self._tree.xstar) and \
+            not tree.count_linked(self._tree.text)
 
     def _link(self):
         """Links what the tree leaves undecided to new parts, if some are found."""
-        problem, piece = self._piece()
-        settings = self.proof.settings
+        problem = self._tree.problem
         if not self._may_link():
             return False
         undecided, self.tried = not self._is_hard(), True
@@ -261,14 +243,14 @@ class _Run:
 
         with WorkerPool(self.options.executor) as workers, \
                 WorkerPool(None, self.options.jobs, native.Stop()) as pool:
-            found = plan(problem, settings.depth, piece.xstar, undecided,
+            found = plan(problem, self.proof.depth, self._tree.xstar, undecided,
                          Fraction(self.proof.constants["B"]), len(self.proof.parts), pool,
                          seconds_left)
         if found is None:
             return False
-        proof = self._with(tree=found.tree, pending=())
-        counts = self.counts if self.growing else Counts()      # without what was in vain
-        self.proof = replace(proof, parts=proof.parts + tuple(found.parts),
+        proof = self.proof.with_tree(self.number, text=found.tree, pending=())
+        counts = self.counts if self.number else Counts()       # without what was in vain
+        self.proof = replace(proof, trees=proof.trees + tuple(found.parts),
                              counts=counts + found.counts)
         self.walk, self.prism, self.seen = tree.Walk(), tree.prisms(problem), 0
         self._tell(found.tree, found.steps)
@@ -290,7 +272,7 @@ class _Run:
             self.seen += len(text)
             self._tell(text, steps)
         if self.options.progress:
-            left = len(self.proof.parts) - self.growing + 1
+            left = len(self.proof.trees) - self.number
             self.share = max(self.share, self.examined
                              + (1 - self.examined) * self.search.examined / left)
             self._show(self.share, self.search.counts)
@@ -308,7 +290,7 @@ class _Run:
         proof = self.proof
         if self.search is not None:
             text, pending = self.search.text()
-            proof = replace(self._with(tree=text, pending=tuple(pending)),
+            proof = replace(proof.with_tree(self.number, text=text, pending=tuple(pending)),
                             counts=self.search.counts)
         if proof.parts:
             proof = replace(proof, counts=counted(proof))

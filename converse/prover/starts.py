@@ -14,9 +14,9 @@ from typing import List, Tuple
 from ..model.exact import decimal_text
 from ..model.map import SymplecticMap
 from . import native, tree
-from .links import (Link, Links, Target, clusters, crests, hull_of, linked_tree, part_problem,
-                    region_around, region_of)
-from .proof import Part
+from .links import (Link, Links, Target, clusters, crests, hull_of, linked_tree, region_around,
+                    region_of)
+from .proof import Tree
 from .settings import Settings
 from .shifts import best_shifts
 from .workers import LOOK_SECONDS
@@ -45,7 +45,7 @@ class Plan:
     tree: str
     steps: List[int]
     counts: native.Counts
-    parts: List[Part]
+    parts: List[Tree]
 
 
 def plan(problem, depth, xstar, undecided, largest, before, pool, seconds_left):
@@ -69,7 +69,7 @@ def plan(problem, depth, xstar, undecided, largest, before, pool, seconds_left):
             links = Links(problem, largest, xstar, _text(best))
             region = region_of(problem, cells, links, shifts)
             targets.append(Target(tree.LETTERS[before + len(parts)], links, region, shifts))
-            parts.append(Part(_text(best), *region, shifts=shifts))
+            parts.append(Tree(problem.part(region, shifts), _text(best)))
             points += [best] if best not in points else []
     text, steps = linked_tree(problem, grown.text, grown.steps, targets)
     used = [target.letter in text for target in targets]    # one region may do for two clusters
@@ -152,7 +152,7 @@ class _Image:
     def grow(self, points, settings, most):
         """What is grown over each of the points; [] if time was up."""
         return _surveys(self.pool, self.seconds_left, [
-            native.Task(part_problem(self.weakest, self.region(point)), settings, _text(point))
+            native.Task(self.weakest.part(self.region(point)), settings, _text(point))
             for point in points], most)
 
     def proof(self, point):
@@ -164,7 +164,7 @@ class _Image:
         """How the region over this point is to move with the parameters; () if there are none."""
         grown = self.proof(point) if _has_width(self.problem) else None
         return () if grown is None else best_shifts(
-            part_problem(self.problem, self.region(point)), self.weakest.amplitude, _text(point),
+            self.problem.part(self.region(point)), self.weakest.amplitude, _text(point),
             grown.text)
 
 

@@ -256,7 +256,7 @@ def test_bounding_box(made_up, tmp_path, name, together, tree):
     """Nothing lies outside the bounding box, and hardly any room is lost."""
     path = tmp_path / "figure.ps"
     proof = made_up(tree, **TITLES[name])
-    replace(proof, problem=proof.problem.tied() if together else proof.problem).figure(path)
+    proof.with_tree(0, problem=proof.problem.tied() if together else proof.problem).figure(path)
     found = subprocess.run(["gs", "-q", "-dBATCH", "-dNOPAUSE", "-sDEVICE=bbox", str(path)],
                            check=True, stderr=subprocess.PIPE).stderr.decode()
     ink = list(map(int, re.search("BoundingBox: (.*)", found).group(1).split()))
@@ -330,7 +330,7 @@ def test_parameters_that_move_together(made_up):
         for name, k in (("a", 1), ("b", 1), ("c", 2)):
             found = re.search(r"%s in \[([\d.]+), ([\d.]+)\]" % name, text)
             assert [Fraction(x) for x in found.groups()] == [k * low, k * high]
-    for text in words(replace(proof, problem=proof.problem.tied())):
+    for text in words(proof.with_tree(0, problem=proof.problem.tied())):
         text = " ".join(text.split())
         found = re.search(r"\(a, b, c\) on the segment from \((.*?)\) to \((.*?)\)", text)
         assert [[Fraction(x) for x in part.split(", ")] for part in found.groups()] \
@@ -558,7 +558,7 @@ def test_the_star_stands_in_the_frame(made_up, frame):
     """What is drawn at (v0, v1) is the point frame.(v0, v1), a multiple of 2 pi aside."""
     problem = replace(Problem(MuldoonMap(0, 0, ("0.4", "0.5"))), axes=frame)
     for x in (0.25, -1.5), (3.0, 7.0):
-        proof = replace(made_up("P"), problem=problem, xstar=tuple(map(str, x)))
+        proof = made_up("P").with_tree(0, problem=problem, xstar=tuple(map(str, x)))
         v = [2 * math.pi * part
              for part in captions.star(proof)]         # of a region from 0 to 2 pi
         there = frame[0] * v[0] + frame[1] * v[1], frame[2] * v[0] + frame[3] * v[1]
@@ -575,7 +575,7 @@ def test_what_is_said_of_other_problems(made_up):
             (Problem(from_patch([(1, 0), (2, 0)], ["0.4", 1], [["0.1", "0.1"]], [
                 ("K", Fraction("0.3"), Fraction("0.5"))])), [
                 "no rotational invariant circle for every K in [0.3, 0.5]; V(y) = -K sin y - "])):
-        for text in words(replace(made_up("P"), problem=problem)):
+        for text in words(made_up("P").with_tree(0, problem=problem)):
             text = " ".join(text.split())
             assert all(word in text for word in said), (said, text)
             assert ("the angles after" in text) == (problem.frame != (1, 0, 0, 1))

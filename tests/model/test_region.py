@@ -7,7 +7,7 @@ from fractions import Fraction
 import mpmath
 import pytest
 
-from converse import Problem, Proof, Settings, prove
+from converse import Problem, Proof, Settings, Tree, prove
 from converse.model import region
 from converse.model.map import LINE, THESIS, MuldoonMap, SymplecticMap
 from converse.model.problem import IDENTITY, periods
@@ -148,7 +148,7 @@ def test_less_is_a_part_of_the_torus(change):
     v0, v1 = change(chosen.v0, chosen.v1)
     less = replace(chosen, v0=v0, v1=v1)
     assert region.symmetries_used(less, STAR) is None
-    proof = Proof(less, Settings("loewner"), "P", xstar=STAR)
+    proof = Proof((Tree(less, STAR, "P"),), Settings("loewner"))
     assert proof.conclusion == "region" and not proof.no_tori
     assert proof.report().startswith("THEOREM, for a part of the torus only\n")
 

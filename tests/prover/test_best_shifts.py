@@ -9,7 +9,6 @@ import pytest
 from converse import Problem, prove
 from converse.model.map import LINE, MuldoonMap, SymplecticMap
 from converse.prover import native, starts
-from converse.prover.links import part_problem
 from converse.prover.settings import Settings
 from converse.prover.shifts import STEPS, best_shifts
 
@@ -30,8 +29,8 @@ def grown(problem, depth=120, stubborn=False):
 @pytest.fixture(scope="module")
 def narrow():
     """A narrow range of parameters, a tree for its lower end and the shifts that it suggests."""
-    problem = part_problem(line("0.01395", "0.013951"), REGION)
-    lower = part_problem(line("0.01395"), REGION)
+    problem = line("0.01395", "0.013951").part(REGION)
+    lower = line("0.01395").part(REGION)
     text = grown(lower).text
     return problem, lower, text, best_shifts(problem, lower.amplitude, HERE, text)
 
@@ -81,7 +80,7 @@ def test_fewer_prisms(narrow):
 def test_the_scale_of_the_parameter(narrow):
     """Shifts are what the parameter adds at its upper end: in proportion to the range."""
     problem, lower, text, ((s0, _),) = narrow
-    (wide,) = best_shifts(part_problem(line("0.01395", "0.01396"), REGION), lower.amplitude, HERE,
+    (wide,) = best_shifts(line("0.01395", "0.01396").part(REGION), lower.amplitude, HERE,
                           text)
     assert wide[0] == pytest.approx(10 * s0, rel=1e-2)
 
@@ -115,5 +114,5 @@ def test_where_the_waves_bend_least():
 def test_a_range_is_linked_to_regions_that_move():
     """With regions that stay where they are it takes 297,054 prisms."""
     proof = prove(line("0.01395", "0.028", axes=None), method="loewner")
-    assert proof.no_tori and all(part.shifts for part in proof.parts)
+    assert proof.no_tori and all(part.problem.shifts for part in proof.parts)
     assert proof.counts.proved < 80000

@@ -15,9 +15,9 @@ from converse.check.links import displacement
 from converse.model.map import LINE, MuldoonMap, SymplecticMap
 from converse.prover import native, run, starts, tree
 from converse.prover.links import (SPARE, Link, Links, Target, clusters, crests, hull_of,
-                                   least_slope, linked_tree, part_problem, region_around)
+                                   least_slope, linked_tree, region_around)
 from converse.prover.native import Counts, Stop
-from converse.prover.proof import Part
+from converse.prover.proof import Tree
 from converse.prover.resume import counted
 from converse.prover.workers import WorkerPool, WorkersGone
 from converse.storage import files
@@ -213,9 +213,10 @@ def test_counting():
 def test_a_linked_proof(linked, tmp_path):
     """It is found, written, read and verified by the checker; the report names the points."""
     assert linked.no_tori and len(linked.parts) == 2
-    assert not any(part.shifts for part in linked.parts)        # a single value moves nothing
+    # a single value moves nothing
+    assert not any(part.problem.shifts for part in linked.parts)
     assert {"a", "b"} <= set(linked.tree) and linked.counts.linked == tree.count_linked(linked.tree)
-    trees = [linked.tree, *(part.tree for part in linked.parts)]
+    trees = [linked.tree, *(part.text for part in linked.parts)]
     assert linked.counts.proved == sum(text.count("P") for text in trees)
     assert linked.counts.most_cuts == max(map(tree.most_cuts, trees))
     linked.save(tmp_path / "proof")
@@ -286,7 +287,7 @@ def test_parts_that_nothing_is_linked_to(linked, tmp_path, ending, parts):
     that the checker would refuse, and their prisms are not counted."""
     text = re.match(ending, linked.tree)[0]
     assert text.count("a") == 0
-    before = replace(linked, tree=text[:-1] + "U")
+    before = linked.with_tree(0, text=text[:-1] + "U")
     again = prove(resume=replace(before, counts=counted(before)), depth=linked.depth + 1)
     assert again.no_tori and len(again.parts) == parts
     assert again.verify()
@@ -312,9 +313,10 @@ def test_prisms_that_are_skipped_are_not_linked(easily):
 def test_a_smaller_region_is_not_verified(linked):
     """The checker does not believe a letter whose region lost an edge."""
     part = linked.parts[0]
-    narrower = replace(part, v0=(part.v0[0] + (part.v0[1] - part.v0[0]) / 8, part.v0[1]))
+    low, high = part.problem.v0
+    narrower = replace(part.problem, v0=(low + (high - low) / 8, high))
     with pytest.raises(check.NotConfirmed):
-        replace(linked, parts=(narrower, *linked.parts[1:])).verify()
+        linked.with_tree(1, problem=narrower).verify()
 
 
 @pytest.mark.parametrize("jobs, moments, found", [
@@ -340,7 +342,7 @@ def test_resumed_at_any_moment(linked, easily, tmp_path, monkeypatch, jobs, mome
             proof = prove(line("0.015"), method="loewner", backup=path, jobs=jobs)
         except KeyboardInterrupt:
             before = Proof.load(path)
-            trees = [part.tree for part in before.parts] or [before.tree]
+            trees = [part.text for part in before.parts] or [before.tree]
             states.add((len(before.parts), sum(map(bool, trees))))
             moment = 0
             proof = prove(resume=path, jobs=jobs)
@@ -442,19 +444,18 @@ def test_a_lost_scheduler_is_noticed_while_starting_points_are_looked_for(
 
 def test_an_undecided_part_is_no_proof(linked):
     part = linked.parts[1]
-    for text in part.tree.replace("P", "U", 1), part.tree[:-1]:
-        proof = replace(linked, parts=(linked.parts[0], replace(part, tree=text)))
+    for text in part.text.replace("P", "U", 1), part.text[:-1]:
+        proof = linked.with_tree(2, text=text)
         assert not proof and proof.report().startswith("UNDECIDED: ")
         assert ("ended before the whole region" in proof.report()) == ("U" not in text)
-    assert len(replace(linked, parts=(linked.parts[0], replace(
-        part, tree=part.tree.replace("P", "U", 1)))).undecided) == 1
+    assert len(linked.with_tree(2, text=part.text.replace("P", "U", 1)).undecided) == 1
 
 
 def test_hints_of_several_trees(linked, tmp_path):
     first, second = linked.parts
-    proof = replace(linked, tree="0?", pending=(3, 4), parts=(
-        replace(first, tree="0P1"), replace(second, tree="0", pending=(0, 9))), counts=Counts(
-            cuts=4, proved=1))
+    proof = replace(linked, trees=(
+        replace(linked.trees[0], text="0?", pending=(3, 4)), replace(first, text="0P1"),
+        replace(second, text="0", pending=(0, 9))), counts=Counts(cuts=4, proved=1))
     proof.save(tmp_path / "proof")
     assert timeless(replace(Proof.load(tmp_path / "proof"), restored=0, sha256="")) == \
         timeless(proof)
@@ -462,10 +463,9 @@ def test_hints_of_several_trees(linked, tmp_path):
 
 def test_regions_of_parts(linked):
     part = linked.parts[0]
-    problem = linked.part_problem(part)
-    assert isinstance(part, Part) and (problem.v0, problem.v1) == (part.v0, part.v1)
-    assert problem.frame == linked.problem.frame == DIAGONAL
-    assert problem == part_problem(linked.problem, (part.v0, part.v1))
+    problem = part.problem
+    assert isinstance(part, Tree) and problem.frame == linked.problem.frame == DIAGONAL
+    assert problem == linked.problem.part((problem.v0, problem.v1))
 
 
 def test_the_linked_input(root):
@@ -489,7 +489,7 @@ def test_near_where_links_end(epsilon, parts):
     nothing to move with."""
     proof = prove(line(epsilon), method="loewner")
     assert proof.no_tori and len(proof.parts) == parts and proof.counts.proved < 100000
-    assert not any(part.shifts for part in proof.parts)
+    assert not any(part.problem.shifts for part in proof.parts)
 
 
 # ---- the prisms of the core

@@ -281,7 +281,7 @@ def test_other_comments_are_no_other_problem(problem, proof):
 def test_a_tree_that_does_not_fit_is_refused(problem, proof):
     for tree in "PP", "1" * 40 + "P", "0P?":
         with pytest.raises((ConverseError, ValueError)):
-            prove(problem, resume=replace(proof, tree=tree, counts=Counts()))
+            prove(problem, resume=replace(proof.with_tree(0, text=tree), counts=Counts()))
 
 
 def test_one_backup_for_two_runs_is_refused(tmp_path, problem):
@@ -469,7 +469,7 @@ def test_verify(proof, problem, made_up):
     assert result and "no invariant Lagrangian graph" in result.text
     assert not prove(replace(problem, v0=("0.5", "1")), depth=40, method="thesis").verify()
     for bad in (prove(problem, depth=3, method="thesis"), prove(problem, as_printed=True),
-                replace(proof, tree=proof.tree.replace("S", "P"))):
+                proof.with_tree(0, text=proof.tree.replace("S", "P"))):
         with pytest.raises(check.Rejected):
             bad.verify()
 
@@ -561,8 +561,8 @@ PATCHES = {
 def test_every_problem_has_a_file(made_up, tmp_path, name):
     problem = PATCHES[name]
     for at_once in (False, True) if problem.odd is not None else (False,):
-        proof = replace(made_up("0PP", method="loewner"), problem=problem, at_once=at_once,
-                        constants={"B": "3.5"}, seconds=0)
+        proof = replace(made_up("0PP", method="loewner").with_tree(0, problem=problem),
+                        at_once=at_once, constants={"B": "3.5"}, seconds=0)
         proof.save(tmp_path / "a.proof")
         assert Proof.load(tmp_path / "a.proof") == proof
         text = (tmp_path / "a.proof").read_text()
@@ -573,14 +573,15 @@ def test_every_problem_has_a_file(made_up, tmp_path, name):
 
 
 def test_what_a_file_says(made_up, tmp_path):
-    replace(made_up("0PP", method="loewner"), problem=PATCHES["waves"]).save(tmp_path / "a.proof")
+    proof = made_up("0PP", method="loewner").with_tree(0, problem=PATCHES["waves"])
+    proof.save(tmp_path / "a.proof")
     lines = (tmp_path / "a.proof").read_text().split("\n")
     assert "wave: 1 0 1/3 0.4 0.000000001 0 7" in lines or "wave: 1 0 1/3 0.4 1E-9 0 7" in lines
     assert "wave: -7 100 -1/2 -1E-30 0 12.5 -7" in lines and "frame: 1 0 0 1" in lines
     assert "alone: no" in lines and any(line.startswith("odd about: ") for line in lines)
-    replace(made_up("0PP"), problem=PATCHES["frame"]).save(tmp_path / "b.proof")
+    made_up("0PP").with_tree(0, problem=PATCHES["frame"]).save(tmp_path / "b.proof")
     assert "frame: 1 0 -1 1" in (tmp_path / "b.proof").read_text().split("\n")
-    replace(made_up("0PP"), problem=PATCHES["alone"]).save(tmp_path / "c.proof")
+    made_up("0PP").with_tree(0, problem=PATCHES["alone"]).save(tmp_path / "c.proof")
     assert "alone: 0" in (tmp_path / "c.proof").read_text().split("\n")
 
 
@@ -607,7 +608,7 @@ def test_a_header_that_makes_no_sense(made_up, tmp_path, line, new):
 
 def test_nothing_is_at_once_that_is_not_odd(made_up, tmp_path):
     problem = Problem(SymplecticMap([(1, 0), (2, 0, "1/2")], [1, 1]))
-    replace(made_up("P"), problem=problem, at_once=True).save(tmp_path / "a.proof")
+    replace(made_up("P").with_tree(0, problem=problem), at_once=True).save(tmp_path / "a.proof")
     with pytest.raises(ConverseError, match="at once: yes"):
         Proof.load(tmp_path / "a.proof")
     assert not prove(Problem(SymplecticMap(problem.waves, [4, 4])), method="loewner").at_once
@@ -654,7 +655,8 @@ def test_a_point_of_ones_own(problem, tmp_path):
     with pytest.raises(ConverseError, match=r"\(x\*: there 0.8 0.95, here 0.8 0.9\);"):
         prove(resume=half, xstar=("0.8", "0.9"), depth=60)
     nothing = prove(point, method="loewner", xstar=("0.8", "0.95"), time_limit=0)
-    assert prove(resume=replace(nothing, xstar=None), xstar=("0.8", "0.9")).xstar == ("0.8", "0.9")
+    assert prove(resume=nothing.with_tree(0, xstar=None), xstar=("0.8", "0.9")).xstar == ("0.8",
+                                                                                          "0.9")
 
 
 @pytest.mark.parametrize("xstar, error", [

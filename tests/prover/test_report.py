@@ -85,7 +85,7 @@ def test_bounds_are_exact(made_up):
 
 def test_single_values(made_up):
     proof = made_up("P")
-    text = verdict(replace(proof, problem=Problem(MuldoonMap("0.3085", "0.3085", "0.617"))))
+    text = verdict(proof.with_tree(0, problem=Problem(MuldoonMap("0.3085", "0.3085", "0.617"))))
     assert "a = 0.308500\nb = 0.308500\nc = 0.617000\n" in text and "<" not in text
 
 
@@ -282,27 +282,27 @@ def test_for_which_parameters(problem, V, lines):
 
 
 def test_the_theorem_of_a_circle(made_up):
-    proof = replace(made_up("P", method="loewner", xstar=("1.5", "0")), problem=named((1, 0)))
+    proof = made_up("P", method="loewner", xstar=("1.5", "0")).with_tree(0, problem=named((1, 0)))
     assert report(proof).startswith(
         "THEOREM\n  The map  y' = y + J',  J' = J - V'(y),  y modulo 2 pi,\n"
         "  with  V(y) = K cos y,\n"
         "  has no rotational invariant circle\n  for every K in [0.9, 1.4].\n\n")
     assert "\nStart      x* = 1.5\n" in report(proof)
     assert "UNDECIDED: nothing is proved.  There may be a rotational invariant circle (see " in \
-        report(replace(proof, tree="U"))
+        report(proof.with_tree(0, text="U"))
     for problem, words in ((Problem(MuldoonMap(1, 0, 0)),
                             "So the map of y0 alone has no rotational"),
                            (Problem(MuldoonMap(0, 1, 0)),
                             "So the map of y1 alone has no rotational"),
                            (Problem(MuldoonMap(1, 1, 0)), None),
                            (Problem(MuldoonMap(1, 0, 1)), None)):
-        text = report(replace(proof, problem=problem))
+        text = report(proof.with_tree(0, problem=problem))
         assert (words or "has no invariant torus") in text and (words is not None) == (
             "circle" in text)
 
 
 def test_names_of_parameters_are_kept(made_up, tmp_path):
-    proof = replace(made_up("P", method="loewner"), problem=named((1, 0)))
+    proof = made_up("P", method="loewner").with_tree(0, problem=named((1, 0)))
     proof.save(tmp_path / "a.proof")
     assert "\nparameter: K 0.9 1.4\n" in (tmp_path / "a.proof").read_text()
     again = Proof.load(tmp_path / "a.proof")
@@ -321,7 +321,7 @@ def test_names_of_parameters_are_kept(made_up, tmp_path):
      "           y1 alone was examined: no wave depends on both angles\n")])
 def test_what_was_chosen(made_up, problem, words):
     proof = made_up("P", method="loewner")
-    text = verdict(replace(proof, problem=problem))
+    text = verdict(proof.with_tree(0, problem=problem))
     assert words in text
-    plain = verdict(replace(proof, problem=replace(problem, axes=IDENTITY, alone="no")))
+    plain = verdict(proof.with_tree(0, problem=replace(problem, axes=IDENTITY, alone="no")))
     assert words not in plain and "Searched   all y' that follow x*\n" in plain

@@ -12,9 +12,9 @@ from converse import ConverseError, Problem, Proof, Settings, prove
 from converse.model.map import LINE, THESIS, MuldoonMap, SymplecticMap
 from converse.model.region import skips, symmetries_used
 from converse.prover import native, tree
-from converse.prover.links import (PI, SPARE, Link, Links, Target, hull_of, linked_tree,
-                                   part_problem, region_of, wrong_letter)
-from converse.prover.proof import Part
+from converse.prover.links import (PI, SPARE, Link, Links, Target, hull_of, linked_tree, region_of,
+                                   wrong_letter)
+from converse.prover.proof import Tree
 from converse.prover.proof_file import load, save
 from converse.prover.run import ready
 from converse.storage import files
@@ -40,11 +40,11 @@ TWO = (Fraction("0.01"), Fraction("-0.02")), (Fraction(0), Fraction("0.005"))
 # ---- the problem
 
 def test_shifts_are_exact():
-    problem = part_problem(line("0.014", "0.015"), ((0, 1), (0, 1)), [("0.01", "-2e-2")])
+    problem = line("0.014", "0.015").part(((0, 1), (0, 1)), [("0.01", "-2e-2")])
     assert problem.shifts == SHIFTS and "0.01 -0.02" in repr(problem)
     again = replace(problem)
     assert again == problem and hash(again) == hash(problem)
-    still = part_problem(problem, ((0, 1), (0, 1)))
+    still = problem.part(((0, 1), (0, 1)))
     assert still.shifts == () != problem.shifts and still != problem
     assert replace(problem, shifts=[(0, 0)]) == still and "shifts" not in repr(still)
     for wrong in ([(0, 0)] * 2, [(1,)], [(1, 2, 3)], [("1/3", 0)]):
@@ -62,7 +62,7 @@ def test_no_whole_proof_has_shifts(tmp_path):
         with pytest.raises(ValueError, match="give no shifts"):
             prove(problem, method=method)
     with pytest.raises(ValueError, match="does not move"):
-        save(Proof(problem), tmp_path / "proof")
+        save(Proof((Tree(problem),)), tmp_path / "proof")
     wide = replace(line("0.02", "0.021"), v0=(0, 2), v1=(0, 2))
     assert symmetries_used(wide, HERE) == []
     assert symmetries_used(replace(wide, shifts=SHIFTS), HERE) is None
@@ -74,20 +74,19 @@ def test_mirror_images():
 
 
 def test_shifts_of_parts_are_exact():
-    """However they are given; of a wrong number of parameters there is no file."""
-    here = HERE, (Fraction(0), Fraction(1)), (Fraction(0), Fraction(1))
-    assert Part(*here, shifts=[["0.01", "-2e-2"]]) == Part(*here, shifts=SHIFTS)
-    assert Part(*here, shifts=[("0", 0)]) == Part(*here)
+    """However they are given; and as many as there are parameters."""
+    whole, region = line("0.014", "0.015"), ((0, 1), (0, 1))
+    assert whole.part(region, [["0.01", "-2e-2"]]) == whole.part(region, SHIFTS)
+    assert whole.part(region, [("0", 0)]) == whole.part(region)
     for wrong in [(1,)], [(1, 2, 3)], [("1/3", 0)], [("inf", 0)]:
         with pytest.raises(ValueError):
-            Part(*here, shifts=wrong)
+            whole.part(region, wrong)
     for wrong in [(0.1, 0)], [(float("nan"), 0)], [1], 3, [None]:
         with pytest.raises(TypeError):
-            Part(*here, shifts=wrong)
+            whole.part(region, wrong)
     for shifts in SHIFTS * 2, SHIFTS * 3:
         with pytest.raises(ValueError, match="by %d parameters for 1" % len(shifts)):
-            save(Proof(line("0.014", "0.015"), Settings("loewner"), "a",
-                       parts=(Part(*here, shifts=shifts),)), "nowhere/proof")
+            whole.part(region, shifts)
 
 
 # ---- prisms and links
@@ -110,7 +109,7 @@ def corners(problem, cell):
 def test_prisms_are_the_least_rectangles(still):
     """Seen from what stands still, and from what moves."""
     rng = rng_for("shifted prisms %s" % (still,))
-    problem = part_problem(PATCH, (PATCH.v0, PATCH.v1), TWO)
+    problem = PATCH.part((PATCH.v0, PATCH.v1), TWO)
     for _ in range(50):
         cell = random_cell(rng, 2)
         seen = [[x - sum(pair[i] * t for pair, t in zip(still, ts)) for i, x in enumerate(v)]
@@ -134,7 +133,7 @@ def lands(problem, cell, link, target):
 @pytest.mark.parametrize("theirs", [(), TWO, (TWO[1], TWO[0])])
 def test_links_lead_into_regions_that_move(mine, theirs):
     """To the edge: an end that is nearer by any amount is not enough."""
-    problem = part_problem(PATCH, (PATCH.v0, PATCH.v1), mine)
+    problem = PATCH.part((PATCH.v0, PATCH.v1), mine)
     rng, links = rng_for("shifted links %s %s" % (mine, theirs)), Links(problem, B, HERE, THERE)
     for _ in range(10):
         cell = random_cell(rng, 2)
@@ -149,7 +148,7 @@ def test_links_lead_into_regions_that_move(mine, theirs):
                 region[axis][end] += (1, -1)[end] * Fraction(1, 10 ** 30)
             target = Target("a", links, tuple(map(tuple, region)), theirs)
             assert lands(problem, cell, link, target) == (axis is None)
-            part = Part(THERE, *target.region, shifts=theirs)
+            part = Tree(problem.part(target.region, theirs), THERE)
             whole = tree_of(cell)
             wrong = wrong_letter(problem, B, HERE, whole, [part])
             assert wrong == (None if axis is None else "a")
@@ -172,14 +171,14 @@ def tree_of(cell):
 def test_a_region_for_cells_takes_them_all():
     rng = rng_for("shifted regions")
     for mine, theirs, there in product(((), TWO), ((), TWO), (HERE, THERE)):
-        problem = part_problem(PATCH, (PATCH.v0, PATCH.v1), mine)
+        problem = PATCH.part((PATCH.v0, PATCH.v1), mine)
         links = Links(problem, B, HERE, there)
         cells = [random_cell(rng, 2) for _ in range(5)]
         target = Target("a", links, region_of(problem, cells, links, theirs), theirs)
         for cell in cells:
             assert lands(problem, cell, links.of(cell), target)
             assert wrong_letter(problem, B, HERE, tree_of(cell), [
-                Part(there, *target.region, shifts=theirs)]) is None
+                Tree(problem.part(target.region, theirs), there)]) is None
         sizes = [high - low for low, high in target.region]
         hull = hull_of(problem, cells, theirs)
         assert all(size < (high - low) * Fraction(9, 8) + 2 * (d1 - d0) + Fraction(1, 1000)
@@ -201,7 +200,7 @@ def begun():
     """A proof over three x*, nothing of whose parts is grown: of the part a, over the same x*, and
     of b, the regions move."""
     problem = line("0.0150", "0.0151")
-    before = ready(Proof(problem, Settings("loewner"), xstar=HERE))
+    before = ready(Proof((Tree(problem, HERE),), Settings("loewner")))
     problem = replace(before.problem, v0=(Fraction("0.2"), Fraction("1.3")),
                       v1=(Fraction("-0.1"), Fraction("1.1")))
     task = native.Task(problem, Settings("loewner", 8, stubborn=True), HERE)
@@ -212,18 +211,17 @@ def begun():
     largest = Fraction(start.constants["B"])
     first, parts = Links(problem, largest, HERE, HERE), []
     shifts = (Fraction("-0.05"), Fraction("0.03")),
-    parts.append(Part(HERE, *region_of(problem, cells, first, shifts), shifts=shifts))
+    parts.append(Tree(problem.part(region_of(problem, cells, first, shifts), shifts), HERE))
     text, _ = linked_tree(problem, grown.text, grown.steps, [
-        Target("a", first, (parts[0].v0, parts[0].v1), shifts)])
+        Target("a", first, (parts[0].problem.v0, parts[0].problem.v1), shifts)])
     assert "a" in text and "U" not in text
     other, there = (Fraction("-0.04"), Fraction(0)), ("0.85", "0.85")
-    middle = part_problem(problem, (parts[0].v0, parts[0].v1), shifts)
+    middle = problem.part((parts[0].problem.v0, parts[0].problem.v1), shifts)
     second = Links(middle, largest, HERE, there)
     region = region_of(middle, [tree.ROOT], second, (other,))
-    parts = [replace(parts[0], tree="b"), Part(there, *region, shifts=(other,))]
-    return Proof(problem, Settings("loewner"), text, replace(
-        grown.counts, undecided=0, linked=text.count("a") + 1), HERE, start.constants,
-        parts=tuple(parts))
+    parts = [replace(parts[0], text="b"), Tree(middle.part(region, (other,)), there)]
+    return Proof((Tree(problem, HERE, text), *parts), Settings("loewner"), replace(
+        grown.counts, undecided=0, linked=text.count("a") + 1), start.constants)
 
 
 @pytest.fixture(scope="module")
@@ -247,14 +245,12 @@ def changed(proof, path, change):
 
 def test_a_proof_with_regions_that_move(moved, begun):
     first, second = moved.parts
-    assert first.tree == "b" and set(second.tree) <= set("012P") and len(second.tree) > 1
-    assert moved.part_problem(second) == part_problem(
-        moved.problem, (second.v0, second.v1), second.shifts)
-    still = tuple(replace(part, shifts=()) for part in begun.parts)
-    with pytest.raises(ConverseError, match="may lead out of its region"):
-        prove(resume=replace(begun, parts=(still[0], begun.parts[1])))
-    with pytest.raises(ConverseError, match="may lead out of its region"):
-        prove(resume=replace(begun, parts=(begun.parts[0], still[1])))
+    assert first.text == "b" and set(second.text) <= set("012P") and len(second.text) > 1
+    assert second.problem == moved.problem.part((second.problem.v0, second.problem.v1),
+                                                second.problem.shifts)
+    for number, part in enumerate(begun.parts, 1):
+        with pytest.raises(ConverseError, match="may lead out of its region"):
+            prove(resume=begun.with_tree(number, problem=replace(part.problem, shifts=())))
 
 
 def test_the_report_tells_how_regions_move(moved):
@@ -265,14 +261,18 @@ def test_the_report_tells_how_regions_move(moved):
         r"Part b x\* = \(0\.85, 0\.85\), 0\.[0-9]+ pi <= v0 <= [01]\.[0-9]+ pi, -?0\.[0-9]+ pi <= "
         r"v1 <= [01]\.[0-9]+ pi in the middle of the parameters, moved by "
         r"\(-0\.04 pi, 0\) at the upper end: [0-9,]+ prisms proved, 0 linked", said(moved))
-    part = replace(moved.parts[1], shifts=TWO)
-    several = replace(moved, problem=replace(PATCH), parts=(part,))
+    here, _, part = moved.trees
+    region = part.problem.v0, part.problem.v1
+    several = replace(moved, trees=(replace(here, problem=PATCH),
+                                    replace(part, problem=PATCH.part(region, TWO))))
     assert "moved by (0.01 pi, -0.02 pi) at the upper end of t[1], (0, 0.005 pi) at the " \
         "upper end of t[2]: " in said(several)
-    ranges = replace(moved, problem=Problem(MuldoonMap("0.3", "0.3", "0.6")), parts=(
-        replace(part, shifts=(*TWO, TWO[0])),))
+    point = Problem(MuldoonMap("0.3", "0.3", "0.6"))
+    ranges = replace(moved, trees=(replace(here, problem=point), replace(
+        part, problem=point.part(region, (*TWO, TWO[0])))))
     assert "of b, (0.01 pi, -0.02 pi) at the upper end of c: " in said(ranges)
-    without = replace(moved, parts=tuple(replace(part, shifts=()) for part in moved.parts))
+    without = replace(moved, trees=tuple(replace(each, problem=replace(each.problem, shifts=()))
+                                         for each in moved.trees))
     assert "moved" not in said(without) and re.search(
         r"Part b x\* = \(0\.85, 0\.85\), \S+ pi <= v0 <= \S+ pi, \S+ pi <= v1 <= \S+ pi: [0-9,]+ ",
         said(without))
@@ -284,12 +284,12 @@ def test_the_lines_of_a_part(moved, tmp_path):
     text = path.read_text()
     assert re.search(r"part: b\nxstar: 0.85 0.85\nv0: \S+ \S+ -0.04\nv1: \S+ \S+ 0\ntree:", text)
     again = load(path)
-    assert timeless(again) == timeless(moved) and again.parts[1].shifts == moved.parts[1].shifts
-    half = replace(moved, parts=(replace(moved.parts[0], shifts=()), moved.parts[1]))
+    assert timeless(again) == timeless(moved) and again.parts[1].problem.shifts
+    half = moved.with_tree(1, problem=replace(moved.parts[0].problem, shifts=()))
     half.save(path)
     assert re.search(r"part: a\nxstar: 0.858 0.858\nv0: \S+ \S+\nv1: \S+ \S+\n", path.read_text())
     assert timeless(load(path)) == timeless(half)
-    still = replace(half, parts=(half.parts[0], replace(half.parts[1], shifts=((0, 0),))))
+    still = half.with_tree(2, problem=replace(half.parts[1].problem, shifts=((0, 0),)))
     still.save(path)
     assert timeless(load(path)) == timeless(still)
 
@@ -350,10 +350,10 @@ def test_interrupted(begun, moved, tmp_path, monkeypatch, moment):
 def test_undecided_prisms_of_parts_that_move(moved):
     """They are told as wide as all their places."""
     part = moved.parts[1]
-    proof = replace(moved, parts=(moved.parts[0], replace(part, tree="2PU")))
+    proof = moved.with_tree(2, text="2PU")
     leaf, = proof.undecided
-    for i, (low, high) in enumerate((part.v0, part.v1)):
-        s, half = part.shifts[0][i], (high - low) / 2
+    for i, (low, high) in enumerate((part.problem.v0, part.problem.v1)):
+        s, half = part.problem.shifts[0][i], (high - low) / 2
         assert leaf.half[i] == half + abs(s) / 2 and leaf.centre[i] == (low + high) / 2 + s / 2
     assert "the first of them: " in proof.report()
 
@@ -370,7 +370,7 @@ def test_shifts_in_radians(digits):
     pi has 30 places at least."""
     halves = []
     for shifts in (), ((Fraction("0.0123456789"), Fraction("-0.5")),):
-        problem = part_problem(line("0.0150", "0.0151"), ((0, 1), (0, 1)), shifts)
+        problem = line("0.0150", "0.0151").part(((0, 1), (0, 1)), shifts)
         search = native.Search(native.Task(problem, Settings("loewner", digits=digits), HERE))
         assert search.prepare(None)
         halves.append([Fraction(search.constant(which)) for which in (9, 11)])
