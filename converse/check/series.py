@@ -283,17 +283,19 @@ class Ring:
         q = p if f is g else self.profile(g)
         m, n = sum(map(sum, p)), sum(map(sum, q))
         rounding = (1 + f.rows * g.columns) * self.ones
-        part, beyond, low = PARTS, self._beyond(p, q, self.box.limit), 0
-        most = beyond + (rounding << spared)
+        beyond = self._beyond(p, q, self.box.limit)
+        part, low, lost = PARTS, 0, 0   # by a smaller limit, whatever the powers of s
+        sums = [[list(map(sum, zip(*each)))] for each in (p, q)]
         while part - low > 1:
             middle = (low + part) // 2
-            if (lost := self._beyond(p, q, self.box.limit * middle // PARTS)) <= most:
-                part, beyond = middle, lost
+            more = self._beyond(*sums, self.box.limit * middle // PARTS)
+            if more <= rounding << spared:
+                part, lost = middle, more
             else:
                 low = middle
         radius = self.product_of_norms(m + f.radius, g.radius) \
             + self.product_of_norms(n, f.radius) + rounding \
-            + ((1 << FINE) + self._aside) * beyond // (1 << FINE) + 1
+            + ((1 << FINE) + self._aside) * (beyond + lost) // (1 << FINE) + 1
         return self.series(f.rows, g.columns, self.convolved(f, g, part), radius)
 
     def convolved(self, f, g, part):
