@@ -348,15 +348,70 @@ def _start(options, potential, straight, eps):
     return min(family, key=lambda state: abs(state.eps - eps))
 
 
+class _Finding:
+    """What `find` found: each state is reported, and proved if asked for, when it is known."""
+
+    def __init__(self, options, line):
+        self.options, self.line = options, line
+        self.states = []
+        self.drawn = []                 # of each state its proof or, if there is none, the state
+        self.failed = False
+
+    def tell(self, text):
+        self.line.clear()
+        say(text)
+
+    def add(self, state):
+        self.states.append(state)
+        self.drawn.append(state)
+        self.tell("\n" + report(state))
+        self.failed |= state.label in NO_MINIMUM
+        from ..orbits.proved import NotProved
+        try:
+            pair = state.minimax() if self.options.minimax else None
+            if pair is not None:
+                self.tell(pass_report(pair))
+            if self.options.prove:
+                self._prove(state, pair)
+        except ConverseError as reason:
+            self.tell("%s : %s\n" % ("Not proved" if isinstance(reason, NotProved) else "No pass",
+                                     plain(str(reason))))
+            self.failed = True
+
+    def _prove(self, state, pair):
+        from ..orbits.proved import prove
+
+        def progress(*at):
+            self.line(lambda: "proving eps %g: %d decimal places, %d rounds" % (state.eps, *at))
+
+        proof = prove(state, progress=progress) if pair is None else pair.prove(progress=progress)
+        self.drawn[-1] = proof if pair is None else proof.minimum
+        self.tell(proof.report())
+
+    def write_files(self):
+        options = self.options
+        if options.csv is not None:
+            from ..orbits.solver import Family
+            table = io.StringIO(newline="")
+            Family(tuple(self.states)).write_csv(table)
+            files.write(options.csv, table.getvalue().encode("utf-8"))
+        if options.points is not None and self.states:
+            from ..orbits.points import encoded
+            files.write(options.points, encoded(self.states))
+        if options.graphics is not None and self.states:
+            from ..orbits.pictures import states_picture
+            files.write(options.graphics, states_picture(
+                self.drawn, plot.check_file(options.graphics), caption=not options.no_caption))
+
+
 def find_states(options):
     potential = read_potential(options.potential, options.at)
     p, q = _check_type(potential, options.type)
     _check_outputs(options, options.potential)
 
-    from ..orbits.points import encoded
-    from ..orbits.proved import NotProved, balls, prove
+    from ..orbits.proved import balls
     from ..orbits.search import search
-    from ..orbits.solver import Family, follow, reached, straight
+    from ..orbits.solver import follow, reached, straight
 
     if options.prove:
         balls()
@@ -366,65 +421,27 @@ def find_states(options):
     eps = [x for each in options.eps for x in each]
     start = _start(options, potential, straight(potential, p, q), eps[0])
     eps = reached(potential, eps, start.eps)
-    states, drawn, status = [], [], 0   # drawn: what was proved, and of what was not, the state
-
-    def found(state):
-        nonlocal status
-        states.append(state)
-        drawn.append(state)
-        tell("\n" + report(state))
-        if state.label in NO_MINIMUM:
-            status = 1
-        try:
-            pair = state.minimax() if options.minimax else None
-            if pair is not None:
-                tell(pass_report(pair))
-            if options.prove:
-                def progress(*at):
-                    line(lambda: "proving eps %g: %d decimal places, %d rounds" % (state.eps, *at))
-                if pair is not None:
-                    proof = pair.prove(progress=progress)
-                    drawn[-1] = proof.minimum
-                else:
-                    proof = drawn[-1] = prove(state, progress=progress)
-                tell(proof.report())
-        except ConverseError as reason:
-            tell("%s : %s\n" % ("Not proved" if isinstance(reason, NotProved) else "No pass",
-                                plain(str(reason))))
-            status = 1
-
-    def tell(text):
-        line.clear()
-        say(text)
-
     say(header(start))
-    try:
-        with ProgressLine() as line:
+    with ProgressLine() as line:
+        found = _Finding(options, line)
+        try:
             if options.search is None:
-                follow(potential, p, q, eps, start=start, progress=lambda _, state: found(state),
+                follow(potential, p, q, eps, start=start,
+                       progress=lambda _, state: found.add(state),
                        on_step=lambda state: line(lambda: "at eps %g, %d of %d states found" % (
-                           state.eps, len(states), len(eps))))
+                           state.eps, len(found.states), len(eps))))
             else:
                 for x in eps:
-                    found(search(
+                    found.add(search(
                         potential, p, q, x, options.search, seed=options.seed,
                         progress=lambda done, best: line(
                             lambda: "eps %g: %d of %d searches, least action %.12g" % (
                                 best.eps, done, options.search, best.action))))
-    except ConverseError as reason:
-        say("\nNot found : %s\n" % plain(str(reason)))
-        status = 1
-    if options.csv is not None:
-        table = io.StringIO(newline="")
-        Family(tuple(states)).write_csv(table)
-        files.write(options.csv, table.getvalue().encode("utf-8"))
-    if options.points is not None and states:
-        files.write(options.points, encoded(states))
-    if options.graphics is not None and states:
-        from ..orbits.pictures import states_picture
-        files.write(options.graphics, states_picture(drawn, plot.check_file(options.graphics),
-                                                     caption=not options.no_caption))
-    return status
+        except ConverseError as reason:
+            found.tell("\nNot found : %s\n" % plain(str(reason)))
+            found.failed = True
+    found.write_files()
+    return int(found.failed)
 
 
 def sweep_types(options):
