@@ -17,10 +17,10 @@ from ..prover.native import check
 from ..storage.files import ConverseError
 from .action import (LARGEST_EPS, U, action_bounds, action_on_grid, errors_near, floats_within,
                      gradient_bounds, per_point, rounding_errors)
+from .limits import (MAX_DISPLACEMENT, MAX_NODES, MAX_PITCH, MAX_Q_LEAST_ACTION, MAX_SETTLED_GAP,
+                     MIN_NODES, ROWS_PER_POLL)
 from .potential import Numerators, Source, address, known, told, whole
-from .state import FARTHEST, PeriodicOrbit, type_of
-
-LONGEST = 500               # q
+from .state import PeriodicOrbit, type_of
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,11 +41,6 @@ class LeastAction:
     corridors: int
 
 
-NODES = 65                  # at least, along an axis of a rectangle
-PITCH = 1 / 64              # at most, if there are no more than
-MOST_NODES = 2000000        # in all rectangles together: a quarter of a second
-ROWS = 64                   # of a matrix, multiplied before Ctrl-C is looked for
-TINY = 1e-12                # of an action per point: what is as well known is settled
 
 
 @dataclass(frozen=True)
@@ -68,7 +63,7 @@ def _least_eigenvalue(matrix, guess):
         return -inf
     # lower lower^T has no negative eigenvalue, and the rest no larger one than its rows' sums
     sizes, sums = np.abs(lower), np.zeros(size)
-    for rows in (slice(k, k + ROWS) for k in range(0, size, ROWS)):
+    for rows in (slice(k, k + ROWS_PER_POLL) for k in range(0, size, ROWS_PER_POLL)):
         rest = np.abs(shifted[rows] - np.einsum("ik,jk->ij", lower[rows], lower))
         rest += 4 * (size + 4) * U * (np.einsum("ik,jk->ij", sizes[rows], sizes)
                                       + np.abs(matrix[rows]) + abs(guess))
@@ -112,7 +107,7 @@ class _Search:
         energy = self.known - self.q * float(W.min() - off - rise)
         j = np.arange(self.q)
         reach = np.sqrt(2 * max(energy, 0.0) * j * (self.q - j) / self.q)[:, None] * 1.001 + 1e-6
-        if not reach.max() < FARTHEST / 2:
+        if not reach.max() < MAX_DISPLACEMENT / 2:
             raise ValueError("eps %r is too large for %d points: they could lie anywhere"
                              % (self.eps, self.q))
         low, high = np.zeros((self.q, 2)), np.zeros((self.q, 2))
@@ -122,8 +117,8 @@ class _Search:
     def narrow(self, low, high):
         """Changes low and high to what a least state needs of them.  Returns the least action in
         there, infinite if there is none, and a path to begin with."""
-        nodes = np.clip(np.ceil((high - low) / PITCH) + 1, NODES, 1025)
-        nodes *= min(1.0, (MOST_NODES / nodes[:, :self.n].prod(1).sum()) ** (1 / self.n))
+        nodes = np.clip(np.ceil((high - low) / MAX_PITCH) + 1, MIN_NODES, 1025)
+        nodes *= min(1.0, (MAX_NODES / nodes[:, :self.n].prod(1).sum()) ** (1 / self.n))
         nodes = np.maximum(nodes, 3).astype(np.intc)
         nodes[:, self.n:] = 1
         least, path = ffi.new("double *"), np.zeros((self.q, 2))
@@ -169,7 +164,7 @@ class _Search:
         parts = np.append(g * t, mu / 2 * t ** 2)
         bound = (least + float(parts.sum()) - off * float((high - low).sum())
                  - 8 * len(parts) * U * float(np.abs(parts).sum()))
-        if bound <= self.known and most - bound > TINY * self.q:
+        if bound <= self.known and most - bound > MAX_SETTLED_GAP * self.q:
             return None
         return _Settled(bound, self.copies(state, low - room, high + room, mu))
 
@@ -247,7 +242,7 @@ def least_action(potential: Source, p: Numerators, q: int, eps: float = 1.0, gap
     rounding_errors(potential, 1.0)
     eps, gap = floats_within("eps and gap", [eps, gap], LARGEST_EPS)
     corridors = whole("corridors", corridors, 1, 10 ** 9)
-    q = whole("q", q, 1, LONGEST)
+    q = whole("q", q, 1, MAX_Q_LEAST_ACTION)
     state = PeriodicOrbit(potential, type_of(potential, p, q)[0], q, eps,
                           np.zeros((q, potential.n)),
                   (0.0,) * potential.n)

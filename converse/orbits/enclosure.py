@@ -11,15 +11,13 @@ from fractions import Fraction
 from flint import arb, arb_mat, ctx, fmpq, fmpz
 
 from .._native import lib
+from .limits import GUARD_BITS, POINTS_PER_POLL
 from .potential import look_up
-
-BITS = 64                   # of the balls' midpoints, beyond the decimal places asked for
-ASK = 256                   # points dealt with before Ctrl-C is looked for
 
 
 def bits_of(places):
     """The precision in which balls have so many decimal places, and some to spare."""
-    return places * 3322 // 1000 + BITS
+    return places * 3322 // 1000 + GUARD_BITS
 
 
 # ---- numbers
@@ -86,7 +84,7 @@ def square(v):
 def points(start, stop, step=1):
     """A range; a thread that shall end does so here."""
     for i, j in enumerate(range(start, stop, step)):
-        if i % ASK == 0:
+        if i % POINTS_PER_POLL == 0:
             look_up()
         yield j
 
@@ -182,7 +180,7 @@ class Enclosure:
         if places != self.places:
             ctx.prec = bits_of(places)
             self.places, self.ulp = places, ball(Fraction(1, 10 ** places))
-            self.local = self.law(self.potential, places + BITS // 3)
+            self.local = self.law(self.potential, places + GUARD_BITS // 3)
         eps = ball(self.eps)
         two, radii, squares, action = unit(n, 2), unit(n, 0), arb(0), arb(0)
         self.force, self.beta = [], []

@@ -7,8 +7,7 @@ exponents are (1/q) log |l|, l the eigenvalues of D_{q-1} ... D_0.
 from flint import arb, arb_mat
 
 from .enclosure import ball, is_positive, lower, points, unit, upper
-
-STUBBORN = 40               # cones that are tried
+from .limits import MAX_CONES
 
 
 def growth(chain, strict, away):
@@ -111,7 +110,7 @@ def _of_cone(matrices):
         return kappa, low, high
 
     after = carried(arb(0))
-    for n in range(STUBBORN):
+    for n in range(MAX_CONES):
         if after is None:
             return None
         kappa = after[0] * (2 << min(n, 8))

@@ -21,26 +21,17 @@ import numpy as np
 
 from .._native import lib
 from ..storage.files import ConverseError
+from .limits import (EIGENVALUE_ROUNDING, HELD_STEPS, LEAVING_SHARE, MAX_HELD, MAX_HELD_GRADIENT,
+                     MAX_NESTED_JUMPS, MAX_PASS_SHADOW, MAX_POLISH_STEPS, MAX_SHADOW, MIN_JUMP,
+                     MIN_SLOPE, ORDER_TOLERANCE, PASS_BISECTIONS, PASS_STOPS)
 from .potential import address, done
 from .proved import balls
 from .solver import newton
-from .state import ROUNDING, STATIONARY, PeriodicOrbit, descended, expected
+from .state import PeriodicOrbit, descended, expected
 
 if TYPE_CHECKING:
     from .proved_pair import ProvedPair
 
-DISORDER = 1e-9             # of neighbours on the circle: what is less may be rounding
-STOPS = 32                  # on the way from the minimum to its neighbour
-HALVINGS = 24               # of the part of the way where the pass is
-STEPS = 1000                # of the descent with a coordinate held
-EASY = 1e-13                # of the gradient of the others
-FLAT = 1e-13                # of that of the one held: a way without slopes
-PASS = 1e-10                # of that of a pass
-POLISH = 12                 # steps of Newton's method
-CLOSE = 1e-4                # what is nearer did not jump
-JUMPS = 3                   # one inside the other
-TRIES = 4                   # coordinates that are held
-LEAVE = 0.05                # of the way to the nearest neighbour, by which a pass is left
 
 
 @dataclass(frozen=True, eq=False)
@@ -107,7 +98,8 @@ class Pair:
             done(lib.cv_solve(n, q, address(saddle.blocks, "double(*)[3]"), -1.001 * saddle.least,
                               address(v), address(along), address(work, "double *")))
             v = along / np.abs(along).max()
-        away = LEAVE * np.abs(_gap(self.minimum, *_neighbour(self.minimum, 0))).max() * v[:, :n]
+        widest = np.abs(_gap(self.minimum, *_neighbour(self.minimum, 0))).max()
+        away = LEAVING_SHARE * widest * v[:, :n]
         first, second = (saddle.moved(saddle.u + side * away).relax() for side in (-1, 1))
         return first, second
 
@@ -148,14 +140,14 @@ def minimax(state, step=0):
                             "relax() it" % {"saddle": "a saddle"}.get(state.label, state.label))
     r, vector = _neighbour(state, step)
     gap = _gap(state, r, vector)
-    if state.potential.n == 1 and not gap.min() > -DISORDER:
+    if state.potential.n == 1 and not gap.min() > -ORDER_TOLERANCE:
         raise ConverseError("the points of the state are not ordered as those of a rotation, so "
                             "that it is not the least of its type: search() for that")
     beyond = state.moved(state.u + gap)
-    for rank in range(min(TRIES, gap.size)):
-        found = _Way(state, beyond, JUMPS, rank).top(least=state.potential.n == 1)
+    for rank in range(min(MAX_HELD, gap.size)):
+        found = _Way(state, beyond, MAX_NESTED_JUMPS, rank).top(least=state.potential.n == 1)
         if found is not None and (state.potential.n == 2 or (
-                np.abs(found.u - state.u - gap / 2) < gap / 2 + DISORDER).all()):
+                np.abs(found.u - state.u - gap / 2) < gap / 2 + ORDER_TOLERANCE).all()):
             return Pair(state, found, vector, r)
     raise ConverseError("no pass found on the way to the neighbour: whatever coordinate is held, "
                         "the others jump" + "; try another step, 0, 1 or 2" * (gap.shape[1] == 2))
@@ -203,7 +195,7 @@ class _Way:
         the slope of that."""
         guess = near.u + (t - self.t_of(near)) * self.gap
         guess[self.held] = self.first.u[self.held] + t * self.gap[self.held]
-        _, _, u = descended(near.moved(guess), near.eps, EASY, STEPS, self.held)
+        _, _, u = descended(near.moved(guess), near.eps, MAX_HELD_GRADIENT, HELD_STEPS, self.held)
         found = self.first.moved(u)
         return (found, difference(self.first, found),
                 float(found.gradient[self.held] * np.sign(self.gap[self.held])))
@@ -216,13 +208,13 @@ class _Way:
         such state is found, or none where it rises highest.  least: the first state is to have the
         least action."""
         stops = [(self.first, 0.0, math.inf)]
-        for k in range(1, STOPS + 1):
-            stops.append(self.at(k / STOPS, stops[-1][0]))
+        for k in range(1, PASS_STOPS + 1):
+            stops.append(self.at(k / PASS_STOPS, stops[-1][0]))
             if least and stops[-1][1] < -self.noise:
                 raise ConverseError("on the way to its neighbour there is less action than that of "
                                     "the state: search() for the least one first")
-        if max(abs(slope) for _, _, slope in stops[1:]) < FLAT:
-            return stops[STOPS // 2][0]
+        if max(abs(slope) for _, _, slope in stops[1:]) < MIN_SLOPE:
+            return stops[PASS_STOPS // 2][0]
         tops = []
         for low, high in zip(stops, stops[1:]):
             if low[2] > 0 and not self.rises(low, high):
@@ -236,15 +228,16 @@ class _Way:
         """The pass between two stops where the action ceases to rise, or None, and its action above
         the first state's, or how far that rises at least.  If the state jumps there, another
         coordinate leads from one side to the other."""
-        for _ in range(HALVINGS):
+        for _ in range(PASS_BISECTIONS):
             middle = self.at((self.t_of(low[0]) + self.t_of(high[0])) / 2, low[0])
-            found, _ = newton(middle[0], max_steps=POLISH)
+            found, _ = newton(middle[0], max_steps=MAX_POLISH_STEPS)
             begin, t, end = (self.t_of(state) for state in (low[0], found, high[0]))
-            if (found.shadow < PASS and begin - DISORDER <= t <= end + DISORDER
-                    and found.below(-ROUNDING) == found.below(ROUNDING) == 1):
+            if (found.shadow < MAX_PASS_SHADOW
+                    and begin - ORDER_TOLERANCE <= t <= end + ORDER_TOLERANCE
+                    and found.below(-EIGENVALUE_ROUNDING) == found.below(EIGENVALUE_ROUNDING) == 1):
                 return found, difference(self.first, found)
             low, high = (middle, high) if self.rises(low, middle) else (low, middle)
-        if np.abs(high[0].u - low[0].u).max() < CLOSE:                  # too flat for doubles
-            return middle[0] if middle[0].shadow < STATIONARY else None, middle[1]
+        if np.abs(high[0].u - low[0].u).max() < MIN_JUMP:                  # too flat for doubles
+            return middle[0] if middle[0].shadow < MAX_SHADOW else None, middle[1]
         found = _Way(low[0], high[0], self.jumps - 1).top() if self.jumps else None
         return found, low[1] if found is None else difference(self.first, found)

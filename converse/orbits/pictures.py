@@ -8,8 +8,9 @@ import numpy as np
 from ..draw import notebook, plot
 from ..draw.plot import BLUE, DARK, VERMILLION
 from ..storage import files
+from .limits import MAX_PIVOTS
 from .proved import ProvedOrbit, distances, vector_words
-from .state import ROUNDS, PeriodicOrbit
+from .state import PeriodicOrbit
 
 FEW = 300                               # points that are drawn larger
 MOST_STATES = 40                        # in a picture
@@ -78,7 +79,7 @@ def exponents_words(state):
 
 def exponent_text(state, exponent, digits):
     """An exponent to so many digits; of one that is not told from 0, only that it is small."""
-    least = 2 / max(ROUNDS, 5 * state.q)
+    least = 2 / max(MAX_PIVOTS, 5 * state.q)
     return "below %.0e" % least if exponent < least else "%.*g" % (digits, exponent)
 
 

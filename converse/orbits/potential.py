@@ -22,14 +22,12 @@ from ..model.map import SymplecticMap
 from ..model.potential import FourierSum, from_terms, per_period, product
 from ..prover.native import check
 from ..storage.files import plain
+from .limits import COMPARED_POINTS, DIFFERENCE_STEP, MAX_DISAGREEMENT
 
 Source = Union[SymplecticMap, "Potential"]
 Numerators = Union[int, Sequence[int]]      # the p of a type (p, q)
 
 STUDIED = {}                # by name, the potentials at the end of this file
-COMPARED = 7                # points where a potential from Python is compared with differences
-DIFFERENCE = 1e-5           # over this distance to either side
-AGREE = 1e-3                # of the largest entry there
 
 
 def known(source: Any) -> "Potential":
@@ -294,18 +292,18 @@ class FromPython(Potential):
 
     def _compare(self):
         """Compares gradient and Hessian with central differences.  What these are off by is some
-        DIFFERENCE^2 of the third derivative, and the rounding of V over DIFFERENCE."""
-        x = np.random.default_rng(0).random((COMPARED, self.n))
+        DIFFERENCE_STEP^2 of the third derivative, and the rounding of V over DIFFERENCE_STEP."""
+        x = np.random.default_rng(0).random((COMPARED_POINTS, self.n))
         value, gradient, hessian = self.evaluate(x)
         for axis in range(self.n):
-            step = DIFFERENCE * np.eye(self.n)[axis]
+            step = DIFFERENCE_STEP * np.eye(self.n)[axis]
             above, below = self.evaluate(x + step), self.evaluate(x - step)
             for what, of, said, k in (("gradient", "value", gradient[:, axis, None], 0),
                                       ("hessian", "gradient", hessian[:, :, axis], 1)):
-                seen = (above[k] - below[k]).reshape(said.shape) / (2 * DIFFERENCE)
+                seen = (above[k] - below[k]).reshape(said.shape) / (2 * DIFFERENCE_STEP)
                 size = np.abs(said).max() + np.abs(seen).max() + 1e-6 * np.abs(value).max()
                 off = np.abs(said - seen)
-                if off.max() > AGREE * size:
+                if off.max() > MAX_DISAGREEMENT * size:
                     point, i = np.unravel_index(np.argmax(off), off.shape)
                     entry = axis if k == 0 else (int(i), axis)
                     raise ValueError(

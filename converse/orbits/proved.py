@@ -17,17 +17,13 @@ import numpy as np
 from .._native import lib
 from ..model.exact import Ends, ball_text, rounded, rounded_text
 from ..storage.files import ConverseError
+from .limits import (DEFAULT_DIGITS, EIGENVALUE_ROUNDING, EXPONENT_PLACES, GUARD_PLACES,
+                     MAX_MORE_PLACES, MAX_PLACES, MAX_PROOF_STEPS, MAX_SHADOW, NULL_EIGENVALUE,
+                     SHOWN_PLACES)
 from .potential import told
-from .state import NEAR_NULL, ROUNDING, STATIONARY, PeriodicOrbit, expected
+from .state import PeriodicOrbit, expected
 
-DIGITS = 20                 # the radius is at most 10^-DIGITS unless another number is asked for
-MOST = 1000                 # places, with which no orbit is tried any more
-MORE = 100                  # places that are added in vain, at most
-STEPS = 60                  # of Newton's method, at most
-SOFT = Fraction(NEAR_NULL)  # in doubles, eigenvalues of the Hessian below it in size count as 0
-GUARD = 10                  # places by which what must be seen stands above rounding
-SHOWN = 20                  # places of an interval in a report, at most
-KEPT = 45                   # places of an exponent
+EXACT_NULL = Fraction(NULL_EIGENVALUE)
 
 
 class NotProved(ConverseError):
@@ -91,7 +87,7 @@ class ProvedOrbit:
         from .enclosure import ball, bits_of, lower, upper
 
         found = []
-        with precision(bits_of(KEPT)):
+        with precision(bits_of(EXPONENT_PLACES)):
             for ends in self.exponents:             # l + 1/l grows with |l|
                 low, high = (2 * (self.state.q * ball(end)).cosh() for end in ends)
                 found.append(sorted((self.sign * lower(low), self.sign * upper(high))))
@@ -131,10 +127,10 @@ class ProvedOrbit:
             "It is hyperbolic and, run through any number of times, a nondegenerate local minimum "
             "of the action.",
             "Second variation : at least %s" % rounded_text(self.least, 3, up=False),
-            "Action per point less |p/q|^2/2 : %s" % ball_text(*self.action, SHOWN)] + [
-            "Exponent : %s" % ball_text(*ends, SHOWN) for ends in self.exponents]
-        if state.potential.n == 1 and self.residue[0] > -10 ** SHOWN:
-            lines.append("Greene's residue : %s" % ball_text(*self.residue, SHOWN))
+            "Action per point less |p/q|^2/2 : %s" % ball_text(*self.action, SHOWN_PLACES)] + [
+            "Exponent : %s" % ball_text(*ends, SHOWN_PLACES) for ends in self.exponents]
+        if state.potential.n == 1 and self.residue[0] > -10 ** SHOWN_PLACES:
+            lines.append("Greene's residue : %s" % ball_text(*self.residue, SHOWN_PLACES))
         return "\n".join(lines) + "\n"
 
 
@@ -150,11 +146,12 @@ def prove(state: PeriodicOrbit, digits: Optional[int] = None, descend: bool = Fa
     progress(places, rounds) -- is told with how many decimal places it is tried, and how often all
                points were gone through
     NotProved, with a reason: among others, because the state is not stationary, or a saddle."""
-    wanted = DIGITS if digits is None else digits
+    wanted = DEFAULT_DIGITS if digits is None else digits
     expected(state)
     told(progress)
-    if not isinstance(wanted, int) or not 1 <= wanted <= MOST - 2 * GUARD:
-        raise ValueError("digits is a number from 1 to %d, not %r" % (MOST - 2 * GUARD, digits))
+    if not isinstance(wanted, int) or not 1 <= wanted <= MAX_PLACES - 2 * GUARD_PLACES:
+        raise ValueError("digits is a number from 1 to %d, not %r"
+                         % (MAX_PLACES - 2 * GUARD_PLACES, digits))
     if state.eps == 0:
         raise NotProved("without a perturbation, at eps 0, no orbit is isolated")
     precision, Enclosure, growth = balls()
@@ -164,23 +161,24 @@ def prove(state: PeriodicOrbit, digits: Optional[int] = None, descend: bool = Fa
                          "and ff have exact values" % potential.name)
     with np.errstate(all="ignore"):
         shadow = state.shadow
-    if not shadow < STATIONARY:
+    if not shadow < MAX_SHADOW:
         raise NotProved("the state is not stationary, its gradient is %.1e: relax() it first"
                         % shadow)
-    if state.least < -SOFT:
+    if state.least < -EXACT_NULL:
         raise NotProved("the state is a saddle: the least eigenvalue of its Hessian is about %.1e"
                         % state.least)
     if not descend and state.label == "saddle":
         raise NotProved("the state is a saddle: it, or it run through several times, is no minimum "
                         "of the action")
-    places, most = wanted + 2 * GUARD, min(MOST, wanted + 2 * GUARD + MORE)
+    places = wanted + 2 * GUARD_PLACES
+    most = min(MAX_PLACES, places + MAX_MORE_PLACES)
     orbit, reason = None, None
     with precision():
         exact = Enclosure(state, Fraction(_eps(state)), progress)
         while True:
             try:
                 orbit = _attempt(state, exact, growth, places, wanted)
-                if all(high - low <= high / 10 ** GUARD for low, high in orbit.exponents):
+                if all(high - low <= high / 10 ** GUARD_PLACES for low, high in orbit.exponents):
                     return orbit
             except _TooFewPlaces as error:
                 reason = error
@@ -210,7 +208,7 @@ class _TooFewPlaces(Exception):
 
 def _attempt(state, exact, growth, places, wanted):
     ulp = Fraction(1, 10 ** places)
-    floor = ulp * 10 ** (2 * GUARD)
+    floor = ulp * 10 ** (2 * GUARD_PLACES)
     _refine(state, exact, places, floor)
     displacements = exact.displacements()
     steps = [abs(float(new - Fraction(old)))
@@ -218,7 +216,7 @@ def _attempt(state, exact, growth, places, wanted):
     # A double that is at least what docs/proofs/proved-orbits.md says, taken as what it is.
     bend = abs(exact.eps) * Fraction(state.potential.lipschitz)
     least = _least(state, exact, floor, float(bend) * math.hypot(*steps))
-    shown = places + GUARD
+    shown = places + GUARD_PLACES
     radius = rounded(exact.gradient / least * Fraction(9, 8) + ulp, shown, up=True)
     left = rounded(least - bend * radius, shown, up=False)
     if not exact.gradient < radius * left or left < least / 2:
@@ -226,15 +224,16 @@ def _attempt(state, exact, growth, places, wanted):
     if radius > Fraction(1, 10 ** wanted):
         raise _TooFewPlaces("the orbit is known to %.1e only" % radius)
     away = bend * radius + ulp
-    strict = max(4 * away, ulp * 10 ** GUARD)
+    strict = max(4 * away, ulp * 10 ** GUARD_PLACES)
     if strict > least / 2:
         raise _TooFewPlaces("the minimum is too flat")
     grown = growth(exact, strict, away)
     if grown is None:
         raise _TooFewPlaces("the pivots could not be enclosed")
     exponents, sign = grown
-    exponents = tuple((rounded(max(low, 0) / state.q, KEPT, up=False),
-                       rounded(high / state.q, KEPT, up=True)) for low, high in exponents)
+    exponents = tuple((rounded(max(low, 0) / state.q, EXPONENT_PLACES, up=False),
+                       rounded(high / state.q, EXPONENT_PLACES, up=True))
+                      for low, high in exponents)
     action = (rounded(exact.action[0] - exact.gradient * radius / state.q, shown, up=False),
               rounded(exact.action[1], shown, up=True))
     moved = max(abs(step - round(step)) for step in steps)
@@ -251,14 +250,14 @@ def _refine(state, exact, places, floor):
     saddle where the gradient vanishes is left by a nudge."""
     exact.evaluate(places)
     noise, shift = 4 * exact.noise(), Fraction(0)
-    for _ in range(STEPS):
+    for _ in range(MAX_PROOF_STEPS):
         gradient, action = exact.gradient, exact.action
         if not exact.bends(shift or -floor):
             if not shift and exact.bends(floor):
                 raise _TooFewPlaces("the minimum is too flat, if it is one")
-            if not exact.bends(SOFT):
+            if not exact.bends(EXACT_NULL):
                 raise NotProved("the state is a saddle")
-            shift = _boundary(max(shift, floor), SOFT, exact.bends, 16)[1]
+            shift = _boundary(max(shift, floor), EXACT_NULL, exact.bends, 16)[1]
             if gradient < noise:
                 exact.nudge()
                 exact.evaluate(places)
@@ -270,7 +269,7 @@ def _refine(state, exact, places, floor):
         while (exact.gradient > max(gradient, noise)
                and (still is None or 2 * exact.gradient < still)):
             still = exact.gradient
-            exact.newton(SOFT)
+            exact.newton(EXACT_NULL)
             exact.evaluate(places)
         if exact.action[0] > action[1]:
             exact.u = before
@@ -292,14 +291,14 @@ def _least(state, exact, floor, change):
     guess = max(Fraction(state.least), Fraction(1, 10 ** 11)) * Fraction(49, 50)
     more = Fraction(21, 20)
     if exact.least(guess):
-        if change + ROUNDING < state.least / 100 or not exact.least(guess * more):
+        if change + EIGENVALUE_ROUNDING < state.least / 100 or not exact.least(guess * more):
             return guess
         low, high = guess * more, guess * 16
         while exact.least(high):
             low, high = high, high * 16
         return _boundary(low, high, lambda m: not exact.least(m), more)[0]
     if not exact.least(floor):
-        if exact.bends(-floor * 10 ** GUARD):
+        if exact.bends(-floor * 10 ** GUARD_PLACES):
             raise NotProved("the orbit is no minimum of the action when it is run through several "
                             "times")
         raise _TooFewPlaces("the minimum is too flat")
@@ -309,7 +308,7 @@ def _least(state, exact, floor, change):
 def _boundary(low, high, holds, ratio):
     """Brings low and high together, to that ratio, with holds(high) and not holds(low) as given."""
     while high > ratio * low:
-        scale = 10 ** (MOST + GUARD)
+        scale = 10 ** (MAX_PLACES + GUARD_PLACES)
         middle = Fraction(math.isqrt(int(low * high * scale ** 2)), scale)
         low, high = (low, middle) if holds(middle) else (middle, high)
     return low, high

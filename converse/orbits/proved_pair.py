@@ -18,10 +18,11 @@ from ..model.balls import precision
 from ..model.exact import Ends, ball_text, rounded, rounded_text
 from .enclosure import Enclosure, ball, lower, points, square, upper
 from .exponents import growth
+from .limits import (DEFAULT_DIGITS, GUARD_PLACES, MAX_MORE_PLACES, MAX_PLACES, MAX_PROOF_STEPS,
+                     SHOWN_PLACES)
 from .minimax import Pair, gap_of
 from .potential import address, told, whole
-from .proved import (DIGITS, GUARD, MORE, MOST, SHOWN, STEPS, NotProved, ProvedOrbit, _eps, _type,
-                     prove)
+from .proved import NotProved, ProvedOrbit, _eps, _type, prove
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -54,7 +55,7 @@ class ProvedPair:
     def __repr__(self):
         return "<ProvedPair %s, %s, eps %r, barrier %s>" % (
             self.pair.minimum.potential.name, _type(self.pair.minimum), self.pair.minimum.eps,
-            ball_text(*self.barrier, SHOWN))
+            ball_text(*self.barrier, SHOWN_PLACES))
 
     @property
     def flux(self) -> Ends:
@@ -76,9 +77,10 @@ class ProvedPair:
               "neighbour."] * self.between,
             "%s : %s" % ("Flux" if state.potential.n == 1 else
                          "Action less that of the minimum, of all points together",
-                         ball_text(*self.barrier, SHOWN))]
-        if self.residue is not None and self.residue[1] < 10 ** SHOWN:
-            lines.append("Residue of the minimax orbit : %s" % ball_text(*self.residue, SHOWN))
+                         ball_text(*self.barrier, SHOWN_PLACES))]
+        if self.residue is not None and self.residue[1] < 10 ** SHOWN_PLACES:
+            lines.append("Residue of the minimax orbit : %s"
+                         % ball_text(*self.residue, SHOWN_PLACES))
         return self.minimum.report() + "\n".join(lines) + "\n"
 
 
@@ -87,10 +89,12 @@ def prove_pair(pair, digits=None, progress=None):
     told(progress)
     if pair.minimax.label == "not stationary":
         raise NotProved("the pass is not stationary, its gradient is %.1e" % pair.minimax.shadow)
-    digits = DIGITS if digits is None else whole("digits", digits, 1, MOST - 2 * GUARD)
+    most_digits = MAX_PLACES - 2 * GUARD_PLACES
+    digits = DEFAULT_DIGITS if digits is None else whole("digits", digits, 1, most_digits)
     minimum, reason = prove(pair.minimum, digits, progress=progress), ""
-    first = digits + 2 * GUARD
-    for places in range(first, min(first + 2 * MORE, MOST + 1), MORE // 5):
+    first = digits + 2 * GUARD_PLACES
+    last = min(first + 2 * MAX_MORE_PLACES, MAX_PLACES + 1)
+    for places in range(first, last, MAX_MORE_PLACES // 5):
         with precision():
             exact = Enclosure(pair.minimax, Fraction(_eps(pair.minimax)), progress)
             try:
@@ -98,12 +102,12 @@ def prove_pair(pair, digits=None, progress=None):
             except _Undecided as error:
                 reason = str(error)
                 continue
-        width, most = found.barrier[1] - found.barrier[0], found.barrier[1] / 10 ** GUARD
+        width, most = found.barrier[1] - found.barrier[0], found.barrier[1] / 10 ** GUARD_PLACES
         if width <= most:
             return found
         reason = "the difference of action is known to %.1e only" % width
         if 2 * pair.minimum.q * (minimum.action[1] - minimum.action[0]) > most:
-            minimum = prove(pair.minimum, min(places, MOST - 2 * GUARD), progress=progress)
+            minimum = prove(pair.minimum, min(places, most_digits), progress=progress)
     raise NotProved("of the pass, with %d decimal places: %s" % (places, reason))
 
 
@@ -168,7 +172,7 @@ class _Pass:
     def refine(self):
         """Newton's method until the gradient is as small as so many places allow."""
         exact, sigma = self.exact, ball(self.sigma)
-        for _ in range(STEPS):
+        for _ in range(MAX_PROOF_STEPS):
             self.evaluate()
             if exact.gradient < 4 * exact.noise():
                 return
@@ -185,7 +189,7 @@ class _Pass:
         m = Fraction(1)
         while not exact.least(m):
             m /= 4
-            if m < Fraction(1, 10 ** (self.places - GUARD)):
+            if m < Fraction(1, 10 ** (self.places - GUARD_PLACES)):
                 raise _Undecided("with one coordinate held it is too flat")
         w = self.column()
         left, size = arb(0), arb(0)             # of |P w - e|^2 and |w|^2
@@ -201,7 +205,7 @@ class _Pass:
         inverse = upper(1 / ball(m) + sigma * size * size / abs(lost))
         # A double that is at least what docs/proofs/proved-orbits.md says, taken as what it is.
         bend = abs(exact.eps) * Fraction(state.potential.lipschitz)
-        shown = self.places + GUARD
+        shown = self.places + GUARD_PLACES
         radius = rounded(2 * inverse * exact.gradient + Fraction(1, 10 ** self.places), shown,
                          up=True)
         if not (inverse * (exact.gradient + bend * radius ** 2 / 2) <= radius
@@ -226,7 +230,7 @@ class _Pass:
         where det P is l + 1/l - 2 of the chain of P."""
         ulp = Fraction(1, 10 ** self.places)
         away += ulp
-        strict = max(4 * away, ulp * 10 ** GUARD)
+        strict = max(4 * away, ulp * 10 ** GUARD_PLACES)
         if strict > m / 2:
             raise _Undecided("with one coordinate held it is too flat")
         grown = growth(self.exact, strict, away)

@@ -17,21 +17,12 @@ from typing import Callable, Optional
 import numpy as np
 
 from ..storage.files import ConverseError
+from .limits import (JOINT_RELIEF, JOINT_SAMPLE, MAX_JOINTS_TRIED, MAX_SEARCH_STEPS,
+                     MAX_SHORT_SEARCHES, MAX_SHORT_SHARE, MAX_TURNS_TRIED, MOVE_SIZES, PIECE_LENGTH,
+                     PIECE_SPACING, SHORT_WORK)
 from .potential import Numerators, Source, told
 from .solver import follow, straight
 from .state import PeriodicOrbit
-
-MOST_NEWTON_STEPS = 1000    # in one search; few take more than a hundred
-TURNS = 50                  # of the best state, tried before anything at random
-JOINTS = 12                 # of two shorter states, tried before anything at random
-SHORT_WORK = 10000          # points times searches spent on a shorter type, but 2 JOINTS at least
-SHORT_SEARCHES = 100        # spent on a shorter type, at most
-SHORT_SHARE = 0.6           # of the seconds left that a shorter type may take
-SAMPLE = 1000               # points of a state that are compared with another's for a joint
-SPACING = 60                # points between pieces moved at once
-PIECE = 10                  # points of a piece, on the average
-MOVES = (0.1, 0.3, 0.6)     # how far pieces are moved: a normal deviate times one of these
-RELIEF = 0.4                # see _recombined
 
 
 def search(potential: Source, p: Numerators, q: int, eps: float = 1.0, searches: int = 200,
@@ -93,9 +84,9 @@ class _TypeSearch:
         except ConverseError:
             pass
         joints = self.joints()
-        for _ in range(JOINTS):
+        for _ in range(MAX_JOINTS_TRIED):
             self.joint(joints)
-        for r in self.turns[1:1 + TURNS]:
+        for r in self.turns[1:1 + MAX_TURNS_TRIED]:
             self.turn(r)
         while self.has_time:
             move = self.rng.integers(4) if self.best is not None else 3
@@ -114,7 +105,7 @@ class _TypeSearch:
             return None
         self.begun += 1
         try:
-            return self.record(guess.relax(max_steps=MOST_NEWTON_STEPS))
+            return self.record(guess.relax(max_steps=MAX_SEARCH_STEPS))
         except ConverseError:
             return None
 
@@ -147,9 +138,9 @@ class _TypeSearch:
         """Basin hopping in many places at once; then each piece is kept where it is better."""
         best, q = self.best, self.guess.q
         u = best.u.copy()
-        for start in self.rng.integers(q, size=max(1, q // SPACING)):
-            piece = (start + np.arange(min(q, self.rng.geometric(1 / PIECE)))) % q
-            u[piece] += self.rng.normal(size=u.shape[1]) * self.rng.choice(MOVES)
+        for start in self.rng.integers(q, size=max(1, q // PIECE_SPACING)):
+            piece = (start + np.arange(min(q, self.rng.geometric(1 / PIECE_LENGTH)))) % q
+            u[piece] += self.rng.normal(size=u.shape[1]) * self.rng.choice(MOVE_SIZES)
         other = self.descend(best.moved(u))
         if other is not None:
             self.recombine(best if other is self.best else other)
@@ -160,10 +151,10 @@ class _TypeSearch:
         guess, rng = self.guess, self.rng
         n, q = guess.u.shape[1], guess.q
         guess = replace(guess, origin=rng.random(n),
-                        u=rng.normal(size=(q, n)) * rng.choice((0.0, 0.0) + MOVES))
+                        u=rng.normal(size=(q, n)) * rng.choice((0.0, 0.0) + MOVE_SIZES))
         try:
             if rng.random() < 0.3:
-                there = guess.relax(guess.eps * rng.uniform(1.1, 2.0), max_steps=MOST_NEWTON_STEPS)
+                there = guess.relax(guess.eps * rng.uniform(1.1, 2.0), max_steps=MAX_SEARCH_STEPS)
                 guess = replace(there, eps=guess.eps)
         except ConverseError:
             pass
@@ -206,8 +197,9 @@ class _TypeSearch:
             if now > self.end:
                 return None
             guess = replace(self.guess, p=p, q=q, u=np.zeros((q, len(p))))
-            searches = min(self.searches, SHORT_SEARCHES, max(2 * JOINTS, SHORT_WORK // q))
-            inner = _TypeSearch(guess, searches, now + SHORT_SHARE * (self.end - now), self.rng,
+            searches = min(self.searches, MAX_SHORT_SEARCHES,
+                           max(2 * MAX_JOINTS_TRIED, SHORT_WORK // q))
+            inner = _TypeSearch(guess, searches, now + MAX_SHORT_SHARE * (self.end - now), self.rng,
                                 self.known)
             inner.run()
             self.known[key] = inner.best
@@ -234,13 +226,13 @@ def _recombined(state, u):
     state or that of the state displaced by u instead, for each j; None if it is the state itself.
     Found by dynamic programming along the orbit (Viterbi 1967).
 
-    A step from one to the other costs less by RELIEF times half the square of the gap between them:
-    about so much of its action is lost when the path relaxes."""
+    A step from one to the other costs less by JOINT_RELIEF times half the square of the gap between
+    them: about so much of its action is lost when the path relaxes."""
     v, eps = state.u, state.eps
     heights = (-eps * state._local[0], -eps * state.potential.evaluate(state.base + u)[0])
     gap = ((u - v) ** 2).sum(1)
     near = int(np.argmin(gap))                          # where the path starts, on the state
-    relief = RELIEF / 2 * np.minimum(gap, np.roll(gap, -1))
+    relief = JOINT_RELIEF / 2 * np.minimum(gap, np.roll(gap, -1))
     steps = [((np.roll(b, -1, 0) - a) ** 2).sum(1) / 2 + np.roll(h, -1) - relief * (a is not b)
              for a in (v, u) for b, h in zip((v, u), heights)]
     here, there, came = 0.0, math.inf, []
@@ -258,10 +250,10 @@ def _joints(p, q, first, second, rng):
     """Guesses of type (p, q): the points of first, then those of second, cut where points of both
     are near each other.  The nearest pair comes first; of pairs that follow each other along both
     orbits, which give the same guess, only one is used."""
-    some = [rng.permutation(state.q)[:SAMPLE] for state in (first, second)]
+    some = [rng.permutation(state.q)[:JOINT_SAMPLE] for state in (first, second)]
     apart = first.x[some[0]][:, None] - second.x[some[1]]
     apart -= np.round(apart)
-    nearest = np.argsort((apart ** 2).sum(2), axis=None, kind="stable")[:SAMPLE]
+    nearest = np.argsort((apart ** 2).sum(2), axis=None, kind="stable")[:JOINT_SAMPLE]
     cut = []
     for i, j in zip(*np.unravel_index(nearest, apart.shape[:2])):
         i, j = int(some[0][i]), int(some[1][j])

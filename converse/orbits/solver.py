@@ -10,12 +10,9 @@ import numpy as np
 
 from .._native import lib
 from ..storage.files import ConverseError
+from .limits import MAX_DISPLACEMENT, MAX_EPS_STEPS, MAX_STEP_DIVISOR, STEP_TIMES_CURVATURE
 from .potential import Numerators, Source, address, done, finite, known, told
-from .state import FARTHEST, PeriodicOrbit, expected, type_of
-
-PER_CURVATURE = 0.2         # the step of eps from one state to the next guess, times the curvature
-HALVED = 64                 # times less, at least, where the solver fails
-MOST_EPS_STEPS = 10000      # from one eps to the next
+from .state import PeriodicOrbit, expected, type_of
 
 
 def straight(potential: Source, p: Numerators, q: int,
@@ -28,18 +25,18 @@ def straight(potential: Source, p: Numerators, q: int,
 
 
 def step_of(potential):
-    """The step of eps in follow: about PER_CURVATURE over the curvature, which is estimated on a
-    grid if it is not known, rounded to 1, 2.5 or 5 times a power of ten.  The map of 1000 V and
-    eps/1000 thus has the same orbits as that of V and eps."""
+    """The step of eps in follow: about STEP_TIMES_CURVATURE over the curvature, rounded to 1, 2.5
+    or 5 times a power of ten.  The curvature is estimated on a grid if it is not known.  The map of
+    1000 V and eps/1000 thus has the same orbits as that of V and eps."""
     bend = potential.curvature
     if bend is None:
         axis = (np.arange(32) + 0.5) / 32
         grid = np.stack(np.meshgrid(*[axis] * potential.n), -1).reshape(-1, potential.n)
         bend = float(np.abs(np.linalg.eigvalsh(potential.evaluate(grid)[2])).max())
     bend = max(bend, 1e-300)
-    order = math.floor(math.log10(PER_CURVATURE / bend))
+    order = math.floor(math.log10(STEP_TIMES_CURVATURE / bend))
     return min((float("%se%d" % (digits, order)) for digits in ("1", "2.5", "5", "10")),
-               key=lambda step: abs(math.log(step * bend / PER_CURVATURE)))
+               key=lambda step: abs(math.log(step * bend / STEP_TIMES_CURVATURE)))
 
 
 @dataclass(frozen=True, eq=False)
@@ -118,9 +115,9 @@ def reached(potential, eps, begin=0.0):
     """As a list of floats; ValueError, unless they are finite numbers that follow comes to."""
     eps, step = finite("eps", eps), step_of(potential)
     for a, b in zip([begin] + eps, eps):
-        if not abs(b - a) <= MOST_EPS_STEPS * step:
+        if not abs(b - a) <= MAX_EPS_STEPS * step:
             raise ValueError("eps %r is more than %d steps of %g away from %r: too far to be "
-                             "followed" % (b, MOST_EPS_STEPS, step, a))
+                             "followed" % (b, MAX_EPS_STEPS, step, a))
     return eps
 
 
@@ -134,7 +131,7 @@ def follow(potential: Source, p: Numerators, q: int, eps: Union[float, Sequence[
     potential -- a map without free parameters, or a potential of this room
     p, q -- the type; with one angle p may be an integer
     eps -- the potential is multiplied by each of these numbers in turn; by default by 1.  From
-        each to the next there are at most MOST_EPS_STEPS steps
+        each to the next there are at most MAX_EPS_STEPS steps
     progress(done, state) -- is told each state
     start -- a state of this type, such as orbits.load reads, instead of the straight orbit
     on_step(state) -- is told these and all states on the way to them
@@ -165,7 +162,7 @@ def follow(potential: Source, p: Numerators, q: int, eps: Union[float, Sequence[
                 state = state.relax(there)
             except ConverseError:
                 step /= 2
-                if step < longest / HALVED:
+                if step < longest / MAX_STEP_DIVISOR:
                     raise
                 continue
             if on_step is not None:
@@ -193,7 +190,7 @@ def newton(state: PeriodicOrbit, eps: Optional[float] = None, tol: float = 1e-13
         done(lib.cv_solve(n, state.q, address(state.blocks, "double(*)[3]"), 0.0,
                           address(gradient), address(step), address(work, "double *")))
         u = state.u - step[:, :n]
-        if not (np.abs(u) < FARTHEST).all():
+        if not (np.abs(u) < MAX_DISPLACEMENT).all():
             break
         state = state.moved(u)
     return state, steps

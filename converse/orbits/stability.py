@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-LARGE = 40.0                # of a logarithm: beyond, 4 is nothing
+from .limits import MAX_LOG_EXCESS
 
 
 class Monodromy(NamedTuple):
@@ -49,7 +49,7 @@ def log_excesses(monodromy, log_det):
     if len(monodromy.matrix) == 2:
         return np.array([log_det])
     log = log_of(np.trace(monodromy.matrix)) + monodromy.log
-    if log.real < LARGE:
+    if log.real < MAX_LOG_EXCESS:
         log = log_of(np.exp(log).real - 4)
     scale = max(log.real, log_det.real / 2)         # what follows is in units of e^scale
     if scale == -np.inf:
@@ -63,8 +63,8 @@ def log_excesses(monodromy, log_det):
 
 def log_multipliers(log_excess):
     """log l of the eigenvalues l with l + 1/l = rho and |l| >= 1: rho - 2 = 4 sinh^2 (log l)/2."""
-    root = np.exp(np.minimum(log_excess.real, LARGE) / 2) * np.exp(log_excess.imag * 0.5j)
-    log = np.where(log_excess.real > LARGE, log_excess, 2 * np.arcsinh(root / 2))
+    root = np.exp(np.minimum(log_excess.real, MAX_LOG_EXCESS) / 2) * np.exp(log_excess.imag * 0.5j)
+    log = np.where(log_excess.real > MAX_LOG_EXCESS, log_excess, 2 * np.arcsinh(root / 2))
     return np.where(log.real < 0, -log, log)
 
 

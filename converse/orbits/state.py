@@ -12,20 +12,14 @@ import numpy as np
 from .._native import ffi, lib
 from ..model.dynamics import jacobians
 from ..storage.files import ConverseError
+from .limits import (EIGENVALUE_ROUNDING, MAX_DISPLACEMENT, MAX_PIVOTS, MAX_Q, MAX_SHADOW,
+                     NULL_EIGENVALUE, SHADOW_REACH)
 from .potential import Potential, address, done, finite, known, look_up, whole
 from .stability import Monodromy, beyond, log_excesses, log_multipliers, product
 
 if TYPE_CHECKING:
     from .minimax import Pair
 
-STATIONARY = 1e-9           # a state is an orbit if its shadow is below this
-ROUNDING = 1e-12            # of eigenvalues
-FAR = 1e-3                  # over this distance an eigenvalue is taken to be constant
-NEAR_NULL = 1e-8            # an eigenvalue below this in size leaves the phase undetermined
-ROUNDS = 200000             # the pivots pass at most so many points, or five times round the orbit
-LONGEST = 10 ** 7           # the largest q
-FARTHEST = 1000             # the largest displacement or origin: doubles keep 13 digits after the
-                            # point there
 
 
 class Deviation(NamedTuple):
@@ -130,13 +124,13 @@ def type_of(potential, p, q):
     try:
         p = np.atleast_1d(p).tolist()
         numbers = tuple(int(i) for i in p)
-        valid = numbers == tuple(p) and int(q) == q and 1 <= q <= LONGEST
+        valid = numbers == tuple(p) and int(q) == q and 1 <= q <= MAX_Q
     except (TypeError, ValueError, OverflowError):
         valid = False
     if not valid or len(numbers) != n or max(map(abs, numbers)) >= 2 ** 31:
         raise ValueError("a type is %d whole number%s p below 2^31 in size, as a tuple, and a "
                          "whole number q from 1 to %d, not %.200r and %.200r"
-                         % (n, "s" * (n > 1), LONGEST, p, q))
+                         % (n, "s" * (n > 1), MAX_Q, p, q))
     return numbers, int(q)
 
 
@@ -171,17 +165,18 @@ class PeriodicOrbit:
             u = np.array([] if np.iscomplexobj(self.u) else self.u, dtype=float)    # a copy
         except (TypeError, ValueError):
             u = np.empty(0)
-        if u.shape != (q, n) or not (np.abs(u) < FARTHEST).all():
+        if u.shape != (q, n) or not (np.abs(u) < MAX_DISPLACEMENT).all():
             raise ValueError("displacements are %d rows of %d finite numbers below %d in size"
-                             % (q, n, FARTHEST))
+                             % (q, n, MAX_DISPLACEMENT))
         try:
             origin, eps = tuple(float(x) for x in self.origin), float(self.eps)
-            valid = len(origin) == n and isfinite(eps) and all(abs(x) < FARTHEST for x in origin)
+            valid = len(origin) == n and isfinite(eps) and all(
+                abs(x) < MAX_DISPLACEMENT for x in origin)
         except (TypeError, ValueError, OverflowError):
             valid = False
         if not valid:
             raise ValueError("origin and eps are finite numbers, %d below %d in size and one, not "
-                             "%r and %r" % (n, FARTHEST, self.origin, self.eps))
+                             "%r and %r" % (n, MAX_DISPLACEMENT, self.origin, self.eps))
         for name, value in (("p", p), ("q", q), ("u", _fixed(u)), ("origin", origin),
                             ("eps", eps), ("searches", whole("searches", self.searches, 0))):
             object.__setattr__(self, name, value)
@@ -285,24 +280,24 @@ class PeriodicOrbit:
         0: they did not repeat; -r: in round r one is not positive definite."""
         pivots = np.zeros((self.q, 3))
         return lib.cv_pivots(self.potential.n, self.q, address(self.blocks, "double(*)[3]"),
-                             max(5, ROUNDS // self.q), address(pivots, "double(*)[3]"))
+                             max(5, MAX_PIVOTS // self.q), address(pivots, "double(*)[3]"))
 
     @property
     def label(self) -> str:
         """What doubles show of it.
 
-        "not stationary" -- no orbit: the shadow is not below STATIONARY
+        "not stationary" -- no orbit: the shadow is not below MAX_SHADOW
         "saddle" -- an orbit; its Hessian, or that of the orbit run through several times, has a
             negative eigenvalue
         "minimum" -- an orbit without such an eigenvalue; those counted by `undetermined` are too
             small to have a sign
         "best of N searches" -- a minimum, of least action among the results of N searches
         "stationary" -- an orbit; rounding hides whether it is a minimum or a saddle"""
-        if not self.shadow < STATIONARY:
+        if not self.shadow < MAX_SHADOW:
             return "not stationary"
         rounds = self._rounds
         if rounds <= 0:
-            if self.repeat(1 - rounds).below(-max(ROUNDING, self.shadow / FAR)):
+            if self.repeat(1 - rounds).below(-max(EIGENVALUE_ROUNDING, self.shadow / SHADOW_REACH)):
                 return "saddle"
             if rounds < 0:
                 return "stationary"
@@ -310,9 +305,10 @@ class PeriodicOrbit:
 
     @property
     def undetermined(self) -> int:
-        """The number of eigenvalues of the Hessian between -NEAR_NULL and NEAR_NULL.  Along their
-        eigenvectors the action hardly changes, and the phase of the state is not determined."""
-        return self.below(NEAR_NULL) - self.below(-NEAR_NULL)
+        """The number of eigenvalues of the Hessian between -NULL_EIGENVALUE and NULL_EIGENVALUE.
+        Along their eigenvectors the action hardly changes, and the phase of the state is not
+        determined."""
+        return self.below(NULL_EIGENVALUE) - self.below(-NULL_EIGENVALUE)
 
     # ---- how neighbours move away: stability.py
 
@@ -365,7 +361,7 @@ class PeriodicOrbit:
     @property
     def exponents(self) -> np.ndarray:
         """The n Lyapunov exponents (1/q) log |l| >= 0, larger first: array (n,).  An exponent below
-        2/max(ROUNDS, 5 q), which is 1/100,000 for q up to 40,000, cannot be told from 0."""
+        2/max(MAX_PIVOTS, 5 q), which is 1/100,000 for q up to 40,000, cannot be told from 0."""
         return _fixed(self.log_multipliers.real / self.q)
 
     # ---- measures
@@ -445,7 +441,7 @@ class PeriodicOrbit:
 
     def repeat(self, n: int) -> "PeriodicOrbit":
         """The orbit run through n times: a state of type (n p, n q)."""
-        n = whole("how often an orbit is run through", n, 1, LONGEST // self.q)
+        n = whole("how often an orbit is run through", n, 1, MAX_Q // self.q)
         return replace(self, p=tuple(n * i for i in self.p), q=n * self.q,
                        u=np.tile(self.u, (n, 1)), searches=0)
 

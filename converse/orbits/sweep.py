@@ -20,16 +20,13 @@ from ..prover.workers import LOOK_SECONDS, WorkerPool, WorkersGone
 from ..storage import files
 from ..storage.files import ConverseError
 from ..storage.signals import interruptible
+from .limits import (MAX_EPS_STEPS, MAX_ONSET_GRADIENT, MAX_ONSET_HALVINGS, MAX_ONSET_STEPS,
+                     MAX_PIVOTS, ONSET_TIMES_CURVATURE, TASKS_PER_WORKER)
 from .potential import Numerators, Source, Stoppable, finite, known, told
-from .solver import COLUMNS, MOST_EPS_STEPS, follow, reached, row, straight
-from .state import ROUNDS, PeriodicOrbit
+from .solver import COLUMNS, follow, reached, row, straight
+from .state import PeriodicOrbit
 
 LOST = "lost"                           # in place of a label: continuation has lost the branch
-TOLERANCE = 1e-12                       # of gradients: before break-up, rounding hides what is less
-FEW_STEPS = 3000                        # of the solver before a smaller step of eps is tried
-HALVINGS = 10
-AHEAD = 2                               # tasks for each that is worked on
-ONSET_PER_CURVATURE = 0.03, 0.0006, 4.0     # step, width and top of onset() times curvature
 
 ONSET_COLUMNS = ("potential", "p", "q", "label", "eps_below", "eps_above", "exponent_below",
                  "exponent_above")
@@ -64,7 +61,7 @@ def onset(potential: Source, p: Numerators, q: int, exponent: Optional[float] = 
         the same for all q is early for small and late for large ones.
     step, width -- of eps: with what steps the first such minimum is looked for, and to what the
         onset is then cut down.  top -- the eps where the search ends.  By default what
-        ONSET_PER_CURVATURE says over potential.curvature, to one digit.
+        ONSET_TIMES_CURVATURE says over potential.curvature, to one digit.
 
     What is seen of one orbit is evidence, not proof, that a torus is near it, or that none is.
     ConverseError if continuation loses the branch."""
@@ -75,14 +72,14 @@ def onset(potential: Source, p: Numerators, q: int, exponent: Optional[float] = 
                          % potential.name)
     step, width, top = finite("step, width and top", [
         float("%.0e" % (x / (potential.curvature or 1))) if y is None else y
-        for x, y in zip(ONSET_PER_CURVATURE, given)])
-    if not (0 < width <= step and 0 < top <= MOST_EPS_STEPS * step):
+        for x, y in zip(ONSET_TIMES_CURVATURE, given)])
+    if not (0 < width <= step and 0 < top <= MAX_EPS_STEPS * step):
         raise ValueError("step, width and top are positive, the width at most the step, and the "
                          "top at most %d steps, not %r, %r, %r"
-                         % (MOST_EPS_STEPS, step, width, top))
+                         % (MAX_EPS_STEPS, step, width, top))
     q = straight(potential, p, q).q
     limit, = finite("exponent", [1 / q if exponent is None else exponent])
-    if not limit >= 2 / max(ROUNDS, 5 * q):
+    if not limit >= 2 / max(MAX_PIVOTS, 5 * q):
         raise ValueError("an exponent of %r is too small to be seen" % limit)
     below, above, k = straight(potential, p, q), None, 0
     while above is None or above.eps - below.eps > width:
@@ -103,10 +100,10 @@ def onset(potential: Source, p: Numerators, q: int, exponent: Optional[float] = 
     return Onset(below, above)
 
 
-def _further(state, eps, halvings=HALVINGS):
+def _further(state, eps, halvings=MAX_ONSET_HALVINGS):
     """The state at a larger eps, in smaller steps if the solver fails."""
     try:
-        return state.relax(eps, tol=TOLERANCE, max_steps=FEW_STEPS)
+        return state.relax(eps, tol=MAX_ONSET_GRADIENT, max_steps=MAX_ONSET_STEPS)
     except ConverseError:
         if not halvings:
             raise
@@ -264,7 +261,7 @@ def _in_order(task, vectors, executor):
         with WorkerPool(executor, stop=task.stop) as pool:
             for wanted in range(len(vectors)):
                 while wanted not in results:
-                    room = AHEAD * pool.size - len(pool.running) - len(results)
+                    room = TASKS_PER_WORKER * pool.size - len(pool.running) - len(results)
                     for key in range(given, min(given + room, len(vectors))):
                         pool.give(key, task, vectors[key])
                         given = key + 1

@@ -233,7 +233,7 @@ def test_corridors_against_all_paths():
 def test_least_eigenvalue():
     """Below the true one, and close; below it whatever was guessed."""
     rng = np.random.default_rng(7)
-    for size in (1, 2, 9, 40, branch_and_bound.ROWS + 3):
+    for size in (1, 2, 9, 40, branch_and_bound.ROWS_PER_POLL + 3):
         a = rng.normal(size=(size, size))
         for matrix in (a @ a.T, a + a.T, np.eye(size)):
             true = min(mpmath.eigsy(mpmath.matrix(matrix.tolist()), eigvals_only=True))
@@ -250,7 +250,7 @@ def test_least_action_sees_ctrl_c_between_short_steps(monkeypatch):
     monkeypatch.setattr(branch_and_bound.np, "einsum", lambda how, a, b: parts.append(len(a))
                         or np.matmul(a, b.T))
     branch_and_bound._least_eigenvalue(2.1 * np.eye(1000), 2.1)
-    assert len(parts) > 20 and max(parts) <= branch_and_bound.ROWS
+    assert len(parts) > 20 and max(parts) <= branch_and_bound.ROWS_PER_POLL
 
 
 @pytest.mark.parametrize("potential", POTENTIALS, ids=by)

@@ -660,7 +660,7 @@ def enclosed(state):
 @pytest.fixture
 def few(monkeypatch):
     """Balls hardly better than an ulp."""
-    monkeypatch.setattr(enclosure, "BITS", 7)
+    monkeypatch.setattr(enclosure, "GUARD_BITS", 7)
     with precision():
         yield
 

@@ -1,0 +1,86 @@
+"""The thresholds of this room: what each bounds, in which unit, and why it has its value.
+
+The period of x is 1.  The Hessian of the action has eigenvalues of about 1.  A state's shadow is
+about its distance from an orbit.  Where no reason stands, the value is a choice of effort, and
+nothing that is proved rests on it.
+"""
+
+# ---- states
+
+MAX_Q = 10 ** 7                 # The period q of a state is at most this.
+MAX_DISPLACEMENT = 1000         # Displacements and origins are smaller: doubles keep 13 digits
+                                # after the point there.
+MAX_SHADOW = 1e-9               # A state whose shadow is smaller is an orbit.
+EIGENVALUE_ROUNDING = 1e-12     # The rounding of an eigenvalue is smaller.
+SHADOW_REACH = 1e-3             # Over this distance an eigenvalue is taken to be constant.
+NULL_EIGENVALUE = 1e-8          # An eigenvalue below this in size leaves the phase undetermined.
+MAX_PIVOTS = 200000             # The pivots pass so many points, or five times round the orbit.
+MAX_LOG_EXCESS = 40.0           # Beyond e^40 a double does not notice 4.
+
+# ---- continuation and onsets
+
+STEP_TIMES_CURVATURE = 0.2      # The step of eps to the next guess, times the curvature.
+MAX_STEP_DIVISOR = 64           # The step is divided by at most this where the solver fails.
+MAX_EPS_STEPS = 10000           # From one eps to the next there are no more steps.
+MAX_ONSET_GRADIENT = 1e-12      # Before break-up rounding hides smaller gradients.
+MAX_ONSET_STEPS = 3000          # After so many steps of the solver a smaller step of eps is tried.
+MAX_ONSET_HALVINGS = 10         # The step of eps is halved so often.
+ONSET_TIMES_CURVATURE = 0.03, 0.0006, 4.0   # Step, width and top of onset(), times the curvature.
+TASKS_PER_WORKER = 2            # One is worked on, the other waits.
+
+# ---- the search for less action
+
+MAX_SEARCH_STEPS = 1000         # Newton steps in one search; few take more than a hundred.
+MAX_TURNS_TRIED = 50            # Turns of the best state that are tried before random changes.
+MAX_JOINTS_TRIED = 12           # Joints of two shorter states that are tried before random changes.
+SHORT_WORK = 10000              # Points times searches for a shorter type, but two for each joint.
+MAX_SHORT_SEARCHES = 100        # Searches for a shorter type.
+MAX_SHORT_SHARE = 0.6           # The part of the seconds left that a shorter type may take.
+JOINT_SAMPLE = 1000             # Points of a state that are compared with another's for a joint.
+PIECE_SPACING = 60              # The mean distance, in points, of pieces that are moved together.
+PIECE_LENGTH = 10               # The mean length of a piece, in points.
+MOVE_SIZES = 0.1, 0.3, 0.6      # A piece moves by a normal deviate times one of these.
+JOINT_RELIEF = 0.4              # The part of a joint's cost that relaxing takes away: _recombined.
+
+# ---- passes
+
+ORDER_TOLERANCE = 1e-9          # A smaller disorder of neighbours on the circle may be rounding.
+PASS_STOPS = 32                 # Places on the way from a minimum to its neighbour.
+PASS_BISECTIONS = 24            # Bisections of the part of the way where the pass is.
+HELD_STEPS = 1000               # Steps of a descent with a coordinate held.
+MAX_HELD_GRADIENT = 1e-13       # The gradient of the other coordinates after it.
+MIN_SLOPE = 1e-13               # If the held coordinate's slope is smaller, the way is flat.
+MAX_PASS_SHADOW = 1e-10         # The shadow of a pass.
+MAX_POLISH_STEPS = 12           # Newton steps at a pass.
+MIN_JUMP = 1e-4                 # States that are nearer did not jump.
+MAX_NESTED_JUMPS = 3            # Jumps inside of jumps.
+MAX_HELD = 4                    # Coordinates that are held, one after the other.
+LEAVING_SHARE = 0.05            # The part of the way to the neighbour by which a pass is left.
+
+# ---- proofs, in decimal places and bits
+
+DEFAULT_DIGITS = 20             # The radius is at most 10^-DEFAULT_DIGITS by default.
+MAX_PLACES = 1000               # No orbit is tried with more decimal places.
+MAX_MORE_PLACES = 100           # Places that are added in vain.
+MAX_PROOF_STEPS = 60            # Newton steps.
+GUARD_PLACES = 10               # A quantity counts if it exceeds rounding by 10^GUARD_PLACES.
+SHOWN_PLACES = 20               # Places of an interval in a report.
+EXPONENT_PLACES = 45            # Places of an exponent.
+GUARD_BITS = 64                 # Bits of midpoints beyond the decimal places.
+MAX_CONES = 40                  # Cones that are tried for one exponent.
+POINTS_PER_POLL = 256           # Points between two looks for Ctrl-C.
+
+# ---- the least action
+
+MAX_Q_LEAST_ACTION = 500        # The period q for which a least action is looked for.
+MIN_NODES = 65                  # Nodes along an axis of a rectangle.
+MAX_PITCH = 1 / 64              # Their distance, if MAX_NODES allows that.
+MAX_NODES = 2000000             # Nodes of all rectangles: a quarter of a second.
+ROWS_PER_POLL = 64              # Rows that are multiplied between two looks for Ctrl-C.
+MAX_SETTLED_GAP = 1e-12         # An action per point that is known as well as this is settled.
+
+# ---- potentials from Python
+
+COMPARED_POINTS = 7             # Points where derivatives are compared with differences.
+DIFFERENCE_STEP = 1e-5          # The differences reach this far to either side.
+MAX_DISAGREEMENT = 1e-3         # As a part of the largest entry there.
