@@ -27,7 +27,7 @@ define install
 endef
 
 .PHONY: prove check test lint format torture mutate accuracy gappa sanitize memcheck warnings \
-    arm bench charts figures docs man clean formal formal-quick formal-check golden verified-check checker
+    arm bench charts figures docs dist man clean formal formal-quick formal-check golden verified-check checker
 
 prove: $(VENV)/installed
 	@mkdir -p build
@@ -125,6 +125,18 @@ figures: $(VENV)/with-orbits $(VENV)/with-plot
 # The site, from the pages of docs/: build/docs/index.html.  A warning is an error.
 docs: $(VENV)/with-docs
 	$(VENV)/bin/sphinx-build -q -W --keep-going -j 2 docs build/docs
+
+# The source distribution and a wheel, which are then tried in an environment of their own.  The wheel
+# is for this machine: it needs the GMP library of the system, and serves every CPython from 3.9 on.
+dist: $(VENV)/with-dist
+	rm -rf dist build/dist
+	$(VENV)/bin/pyproject-build >build/dist.log 2>&1 || { tail build/dist.log; exit 1; }
+	$(VENV)/bin/twine check --strict dist/*
+	$(PYTHON) -m venv build/dist
+	build/dist/bin/$(PIP_INSTALL) dist/*.whl
+	cd build/dist && bin/converse -b trig274.proof $$(bin/converse --list-inputs | grep trig274) \
+	    >/dev/null && bin/converse-check --quiet trig274.proof
+	@echo 'dist/ has both; the wheel proved and checked a theorem.'
 
 # Manual pages and completions, from the commands' own parsers.
 man: $(VENV)/with-man

@@ -395,7 +395,7 @@ def run(options):
     try:
         plot.check()
     except ConverseError:
-        raise ConverseError("charts need matplotlib; pip install matplotlib") from None
+        raise ConverseError("charts need matplotlib; pip install 'converse-kam[plot]'") from None
     try:
         os.makedirs(options.directory, exist_ok=True)
     except OSError as error:

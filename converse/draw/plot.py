@@ -46,7 +46,7 @@ def check(instead=""):
     try:
         import matplotlib  # noqa: F401
     except ImportError:
-        raise files.ConverseError("figures need matplotlib; pip install matplotlib"
+        raise files.ConverseError("figures need matplotlib; pip install 'converse-kam[plot]'"
                                   + instead) from None
 
 

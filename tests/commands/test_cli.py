@@ -457,4 +457,5 @@ def test_missing_packages_are_told(tmp_path):
         done = subprocess.run([sys.executable, "-c", code % missing], capture_output=True,
                               text=True, cwd=tmp_path)
         assert done.returncode == 2
-        assert done.stderr == "converse-map: figures need matplotlib; pip install matplotlib\n"
+        assert done.stderr == "converse-map: figures need matplotlib; " \
+            "pip install 'converse-kam[plot]'\n"

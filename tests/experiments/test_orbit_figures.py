@@ -567,7 +567,7 @@ def test_bad_orders(tmp_path, monkeypatch):
         figures.figures(tmp_path, ["tree", "trimed"])
     assert not (tmp_path / "tree.svg").exists()         # before anything is drawn
     monkeypatch.setitem(sys.modules, "matplotlib", None)
-    with pytest.raises(ConverseError, match="pip install matplotlib"):
+    with pytest.raises(ConverseError, match=r"converse-kam\[plot\]"):
         figures.draw("tree")
 
 

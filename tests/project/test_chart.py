@@ -118,7 +118,7 @@ def test_bad_usage(capsys):
 def test_no_matplotlib(tmp_path, monkeypatch, capsys):
     monkeypatch.setitem(sys.modules, "matplotlib", None)
     assert chart.main([str(tmp_path / "place")]) == common.BAD
-    assert "pip install matplotlib" in one_line(capsys)[1] and not os.listdir(tmp_path)
+    assert "pip install 'converse-kam[plot]'" in one_line(capsys)[1] and not os.listdir(tmp_path)
 
 
 def test_interrupted(quick, tmp_path, monkeypatch, capsys):
