@@ -1842,7 +1842,7 @@ def test_one_bound_in_two_arithmetics(np, texts, generator, monkeypatch):
         with np.errstate(all="ignore"):
             prisms = check.Prisms(fast.box(*cells_of([cell]), np.array([0])), fast.shape,
                                   fast.xstar, np.array([l / criterion.fixed.one]))
-            assert prisms.follow()
+            assert all(prisms.follow())
             value, form, error = prisms.expand()
             bound = value + check.summit(form) + error
         found, bounds = check.SecondVariation.bound, []
@@ -2001,7 +2001,7 @@ def test_lockstep_orbits(np, generator, monkeypatch):
         centres.clear()
         bows.clear()
         with np.errstate(all="ignore"):
-            assert prisms.follow()
+            assert all(prisms.follow())
         for lane in range(prisms.size):
             eta, amplitudes, angles = inside(generator, prisms, lane)
             ends = [[site[0][k] for site in prisms.sites].count(True)
@@ -2182,7 +2182,7 @@ def test_lockstep_bound(np, generator, chosen):
         prisms = random_prisms(np, generator)
         known = [(k, Fraction(phase)) for k, phase in prisms.shape.known]
         with np.errstate(all="ignore"):
-            assert prisms.follow()
+            assert all(prisms.follow())
             n, tails = prisms.test_vectors()
             if chosen == "at random":
                 draw = np.random.default_rng(generator.getrandbits(64))
@@ -2234,7 +2234,7 @@ def test_a_leaf_of_long_orbits(np, texts, generator, monkeypatch):
     with np.errstate(all="ignore"):
         prisms = check.Prisms(fast.box(*cells_of([cell]), np.array([0])), fast.shape,
                               fast.xstar, np.array([l]))
-        assert prisms.follow()
+        assert all(prisms.follow())
         bound = prisms.bound()[0][0]
         n, tails = prisms.test_vectors()
     assert bound < 0 and len(n) > 190
@@ -2263,7 +2263,7 @@ def test_lockstep_polynomial(np, generator):
                                    np.zeros((2, size))), box.shape, box.before[0][:, :size],
                                   box.l[:size])
             with np.errstate(all="ignore"):
-                assert prisms.follow()
+                assert all(prisms.follow())
             if len(prisms.sites) < 4:
                 break
             prisms.test_vectors = lambda: ([v * site[0] for v, site in zip(n, prisms.sites)]
@@ -2411,7 +2411,7 @@ def test_numbers_that_are_none_prove_nothing(np, generator):
             with np.errstate(all="ignore"):
                 prisms = check.Prisms(tuple(box), prisms.shape, prisms.before[0][:, :prisms.size],
                                       prisms.l[:prisms.size])
-                prisms.follow()
+                all(prisms.follow())
                 bound, _ = prisms.bound()
             assert not (bound < 0).any()
 
