@@ -15,7 +15,7 @@ from .tree import leaves
 from .words import decimal_text
 
 FIRST_LINE = b"converse portrait 1"
-FIELDS = {"wave", "strip", "even about", "undecided", "program", "depth", "columns"}
+PORTRAIT_FIELDS = {"wave", "strip", "even about", "undecided", "program", "depth", "columns"}
 STRIP_AXIS = 3                          # of cells: that of t2, along which a strip is cut
 PLACES = 6                              # of the share that the header says
 
@@ -91,9 +91,9 @@ def share(column, strip):
 def read_portrait(data):
     """The portrait, if it is whole and all its regions are what they must be."""
     head, body, sha256 = sealed(data, FIRST_LINE, "portrait", b"columns:\n", "are no columns")
-    header = header_fields(bytes(head), FIELDS | {"comment"})
-    if FIELDS - header.keys():
-        raise Rejected("the header lacks %s" % ", ".join(sorted(FIELDS - header.keys())))
+    header = header_fields(bytes(head), PORTRAIT_FIELDS | {"comment"})
+    if PORTRAIT_FIELDS - header.keys():
+        raise Rejected("the header lacks %s" % ", ".join(sorted(PORTRAIT_FIELDS - header.keys())))
     waves, strip = present(parse_waves(header["wave"])), number(header["strip"], "the strip")
     if any(wave.k[1] for wave in waves) or not waves:
         raise Rejected("the waves are not those of a map of one angle")
