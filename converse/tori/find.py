@@ -142,6 +142,7 @@ class _Pieces:
         self.way, self.margin, self.tell = way, margin, tell
         self.end = inf
         self.alpha: Optional[Weights] = None
+        self.more = 1.0                 # times as many modes as `plan` estimates
 
     def amplitude(self, s: Fraction) -> np.ndarray:
         return _doubles([p + s * q for p, q in zip(self.potential.amplitude, self.part)])
@@ -220,7 +221,7 @@ class _Pieces:
     def _torus(self, piece: Ends, ends: List[Found]) -> Optional[Torus]:
         """The torus of a piece, from those at its ends and in its middle; None: it is too long."""
         worst = min(reversed(ends), key=lambda found: float(found.rates.min()))
-        aim = plan(worst, self.margin, alpha=self.alpha)
+        aim = plan(worst, self.margin, self.more, self.alpha)
         series = self._series(piece, ends, worst)
         if series is None:
             return None
@@ -246,7 +247,10 @@ class _Pieces:
             _range_text(piece), len(modes.at), degree,
             some(REFINING * BALLS * mesh.points * layers)))
         torus, ratio = refined(torus, modes, aim, self.margin)
-        return torus if ratio <= 10 / self.margin else None
+        if ratio <= 10 / self.margin:
+            return torus
+        self.more *= 1.2                # a shorter piece with as few modes may fail, too
+        return None
 
     def _series(self, piece, ends, worst):
         """(where its modes are, the coefficients of the torus as a series in sigma, as
