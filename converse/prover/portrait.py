@@ -37,6 +37,11 @@ DIGITS = 12                             # decimals of x* and of the width of str
 SHARE_DIGITS = 6                        # decimals of the share that a file says, rounded up
 WIDEST = 0.5                            # half the width of a strip times k; share() needs less
 MOST_COLUMNS = 1 << 16                  # a limit of the checker
+# Of the slopes of strips: samples in half a turn of successors; points of their orbits to either
+# side; the least sum of squares of an orbit that separates, whose slope does not matter; the least
+# difference of slopes for which another piece begins, and how far it may move an end of a strip, in
+# units of the height of the smallest prisms.
+SAMPLES, STEPS, SEPARATED, TURNED, MOVED = 64, 12, 96.0, 0.1, 5.0
 BARREN = re.compile("[0-4]UU")          # a cut that separates nothing proved
 
 Path = Union[str, "os.PathLike[str]"]
@@ -312,7 +317,7 @@ def portray(source: Union[SymplecticMap, Problem, None] = None, *, path: Optiona
                 todo = [x for x in portrait.stars if x not in portrait.found][::-1]
                 while (todo or pool.running) and time.monotonic() < end:
                     while todo and len(pool.running) <= pool.size:  # one waits, to follow at once
-                        pool.give(todo[-1], column, portrait.patch, bool(portrait.strip),
+                        pool.give(todo[-1], column, portrait.patch, portrait.strip,
                                   portrait.depth, todo.pop())
                     for xstar, regions in pool.take(LOOK_SECONDS):
                         if regions is not None:
@@ -337,38 +342,88 @@ def _continued(path: Path, asked: Optional[Portrait]) -> Portrait:
     return portrait
 
 
-def column(patch: Problem, strip: bool, depth: int, xstar: Fraction,
+def column(patch: Problem, strip: Fraction, depth: int, xstar: Fraction,
            stop: Optional[native.Stop] = None) -> Optional[Tuple[Region, ...]]:
-    """What a worker does: the regions of a column, with their trees; None if stopped."""
-    settings = Settings(method="loewner", depth=depth, stubborn=True)
-    found = []
-    star = decimal_text(xstar), "0"
-    for problem in regions_of(patch, strip, star):
-        task = native.Task(problem, settings, star)
+    """The regions of a column, with their trees; None if stopped.  A worker calls it."""
+    star, found = (decimal_text(xstar), "0"), []
+    for problem in regions_of(patch, strip, depth, star):
+        low, high = problem.v0
+        cuts = max(0, depth + round(math.log2(high - low)))     # half a turn has them all
+        task = native.Task(problem, Settings(method="loewner", depth=cuts, stubborn=True), star)
         begun = native.begin(task, "", stop)
         grown = begun and native.grow(task, begun.cells, math.inf, 1 << 30, False, stop)
         if not grown or grown.cells:
             return None
-        low, high = problem.v0
         found.append(Region((low + high) / 2, (high - low) / 2,
                             problem.shifts[1][0] if problem.shifts else Fraction(0),
                             pruned(grown.text)))
     return tuple(found)
 
 
-def regions_of(patch: Problem, strip: bool, star: Tuple[str, str]) -> Iterable[Problem]:
+def regions_of(patch: Problem, strip: Fraction, depth: int,
+               star: Tuple[str, str]) -> Iterable[Problem]:
     """The patch with regions that hold, one after the other, all successors of x* from c0 to c0 +
-    1: the others are their images by the reversal of time."""
-    zero = Fraction(0)
-    if strip:       # the region moves as c0 does
-        k, _, phase = patch.waves[0]
-        slope = -k * math.sin(k * float(star[0]) + math.pi * phase) * float(patch.parts[1][1]) / 2
-        shift = Fraction(round(slope / math.pi * 10 ** DIGITS), 10 ** DIGITS)
-        patch = replace(patch, shifts=tuple((shift * (m == 1), zero)
-                                            for m in range(len(patch.parts))))
+    1: the others are their images by the reversal of time.  In a strip each has its own shift, and
+    they overlap by the difference of their shifts, so that no gap is between them for any t2."""
+    def moved(shift):
+        return replace(patch, shifts=tuple((shift * (m == 1), Fraction(0))
+                                           for m in range(len(patch.parts))))
+
+    def outward(low, high):
+        return rounded(low - MARGIN, PLACES, up=False), rounded(high + MARGIN, PLACES, up=True)
+
     low, high = reversal_centre(patch, star)
-    yield replace(patch, v0=(rounded(low - MARGIN, PLACES, up=False),
-                             rounded(high + 1 + MARGIN, PLACES, up=True)))
+    pieces = [(Fraction(0), Fraction(0))]           # where each begins, from 0 to 1, and its shift
+    if strip:
+        pieces = [(start, Fraction(round(slope * strip / math.pi * 10 ** DIGITS), 10 ** DIGITS))
+                  for start, slope in slopes(patch, strip, star, float(low + high) / 2, max(
+                      TURNED, MOVED * math.pi / 2 ** depth / float(strip)))]
+    for at, (start, shift) in enumerate(pieces):
+        problem = moved(shift)
+        low, high = reversal_centre(problem, star)
+        middle = (low + high) / 2
+        if at:
+            low = middle + start - abs(shift - pieces[at - 1][1]) / 2
+        if at + 1 < len(pieces):
+            following, other = pieces[at + 1]
+            high = middle + following - 1 + abs(shift - other) / 2
+        yield replace(problem, v0=outward(low, high + 1))
+
+
+def slopes(patch: Problem, strip: Fraction, star: Tuple[str, str], centre: float,
+           turned: float) -> List[Tuple[Fraction, float]]:
+    """Where pieces of half a turn of successors begin, as shares of it, and d x_1/d x_0 - 1 for
+    each.  Of all lines through a point of phase space, the line of this slope separates least, over
+    STEPS points to either side.  Circles have such slopes, and strips along them need fewer cuts.
+    A piece has the midrange of the slopes of its samples, which differ by `turned` at most.  In
+    doubles: any slope would be right."""
+    k, _, phase = patch.waves[0]
+    bend = float(patch.parts[1][1] / strip)         # p k
+
+    def slope(x1):
+        first, second = (float(star[0]), 1.0, 0.0), (x1, 1.0, 1.0)  # a point, d/d x_0 and d/d x_1
+        across = along = product = 0.0
+        for (x, a, b), (y, c, d) in (first, second), (second, first):   # forward and backward
+            for _ in range(STEPS):
+                across, along, product = across + d * d, along + c * c, product + c * d
+                angle = k * y + math.pi * phase
+                beta = 2 - k * bend * math.sin(angle)
+                x, y = y, 2 * y - x + bend * math.cos(angle)
+                a, b, c, d = c, d, beta * c - a, beta * d - b
+        return -product / across if along - product * product / across < SEPARATED else None
+
+    pieces: List[Tuple[Fraction, float]] = []
+    low = high = None
+    for n in range(SAMPLES):
+        found = slope(math.pi * (centre + (n + 0.5) / SAMPLES))
+        if found is None:
+            continue
+        if low is None or max(high, found) - min(low, found) > turned:
+            pieces.append((Fraction(n, SAMPLES), found))
+            low = high = found
+        low, high = min(low, found), max(high, found)
+        pieces[-1] = pieces[-1][0], (low + high) / 2
+    return [(Fraction(0), pieces[0][1]), *pieces[1:]] if pieces else [(Fraction(0), 0.0)]
 
 
 def pruned(text: str) -> str:
