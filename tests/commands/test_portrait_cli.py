@@ -1,0 +1,85 @@
+"""The command converse-portrait: its file, its figure, and one line for whatever is wrong."""
+
+import pytest
+
+from converse import check
+from converse.commands import portrait
+
+RANGE = ('{"parameters": {"k": ["0.5", "0.5002"]}, "harmonics": '
+         '[{"k": [1], "amplitude": {"k": 1}, "phase": "-1/2"}]}')
+TWO = '{"harmonics": [{"k": [1], "amplitude": "0.5"}, {"k": [2], "amplitude": "0.1"}]}'
+
+
+@pytest.fixture
+def run(capsys):
+    def call(*arguments):
+        status = portrait.main(list(map(str, arguments)))
+        return status, *capsys.readouterr()
+    return call
+
+
+@pytest.fixture
+def inputs(root, tmp_path):
+    """Names of input files."""
+    found = {"standard": root / "inputs" / "standard-k090.in",
+             "two angles": root / "inputs" / "trig274.in"}
+    for name, text in ("range", RANGE), ("two", TWO):
+        found[name] = tmp_path / (name + ".json")
+        found[name].write_text(text)
+    return found
+
+
+def test_portrait_is_kept_continued_and_drawn(run, inputs, tmp_path):
+    pytest.importorskip("matplotlib")
+    path, picture = tmp_path / "a.portrait.gz", tmp_path / "a.png"
+    status, out, err = run(inputs["range"], "--columns", 30, "--depth", 9, "-b", path,
+                           "--time-limit", 0)
+    assert (status, err) == (1, "") and "Columns : 0 of 15" in out
+    status, out, err = run("-r", path, "-g", picture, "--rotation", "golden")
+    assert (status, err) == (0, "") and "Columns : 15 of 15" in out
+    assert "for every t[1] in [-1, 1]" in out and check.verify(path)
+    assert "rotation number golden : proved" in out and picture.read_bytes()[:4] == b"\x89PNG"
+    before = path.read_bytes()
+    assert run("-r", path)[0] == 0 and path.read_bytes() == before
+
+
+@pytest.mark.parametrize("name, arguments, word", [
+    ("standard", ["--columns", 0], "--columns: '0' is not a whole number from 1"),
+    ("standard", ["--columns", 3], "give at least 8"),
+    ("standard", ["--depth", 0], "--depth: '0' is not a whole number from 1"),
+    ("standard", ["--rotation", "golden"], "name one with -g"),
+    ("standard", ["--rotation", "silly", "-g", "x.png"], "--rotation: 'silly' is no rotation"),
+    ("standard", ["-g", "x.gif"], "ends in .svg or .png or .pdf"),
+    ("standard", ["-b", "there", "--columns", 20], "there: exists"),
+    ("standard", ["-r", "there"], "leave out the input"),
+    ("two angles", [], "a portrait is of a map of one angle"),
+    ("two", ["--columns", 20], "strips are for a single wave"),
+    (None, ["-r", "missing"], "missing: cannot be read"),
+    (None, ["-r", "there"], "there: is not a portrait"),
+    ("nothing", [], "nothing"),
+])
+def test_bad_usage_is_one_line(run, inputs, tmp_path, monkeypatch, name, arguments, word):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "there").write_text("something else\n")
+    status, out, err = run(*[inputs.get(name, name)] * (name is not None), *arguments)
+    assert (status, out) == (2, "") and err.count("\n") == 1 and word in err
+    assert err.startswith("converse-portrait: ")
+    assert (tmp_path / "there").read_text() == "something else\n"
+
+
+def test_depth_that_proves_nothing_is_told(run, inputs):
+    status, out, err = run(inputs["standard"], "--columns", 30, "--depth", 1, "--lines")
+    assert (status, err) == (1, "")
+    assert "Undecided : 1 of" in out and "give a depth above 1 (--depth)" in out
+
+
+@pytest.mark.parametrize("change", [lambda text: text.replace("depth: 4", "depth: 5"),
+                                    lambda text: text[:-40]])
+def test_damaged_portrait_is_not_continued(run, inputs, tmp_path, change):
+    path = tmp_path / "damaged"
+    assert run(inputs["standard"], "--columns", 30, "--depth", 4, "-b", path)[0] == 0
+    kept = change(path.read_text())
+    path.write_text(kept)
+    status, out, err = run("-r", path)
+    assert (status, out) == (2, "") and err.count("\n") == 1 and "wrong checksum" in err
+    assert path.read_text() == kept
