@@ -2933,11 +2933,12 @@ def test_confirms_maps(maps, run, region, at_once, start):
         assert (status, err) == (0, ""), err
         assert out.startswith("Verified :") and "\nRegion : %s\n" % name in out
         proved = sum(face["tree"].count("P") for face in maps[region]["faces"])
-        assert "in the %d proved cells" % proved in out and "its %d cells\nat once" % at_once in out
+        assert "in the %d proved cells" % proved in out
+        assert "of those in its %d cells\nwith B > 10/3" % at_once in out
         assert "the 8 changes of the signs" in out
         assert hashlib.sha256(text.encode()).hexdigest() in out
     if start:
-        assert re.findall("proved from r = ([0-9.]+) on", out) == list(start)
+        assert re.findall("every direction is proved for all r >= ([0-9.]+)", out) == list(start)
     else:
         assert "not every direction is proved" in out
     assert run(text, "--sample", "2")[0] == 4
