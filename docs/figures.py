@@ -17,6 +17,7 @@ import sys
 from pathlib import Path
 
 from converse import Proof
+from converse.draw.figure import figure
 from converse.version import __version__
 
 DOCS = Path(__file__).resolve().parent
@@ -53,7 +54,7 @@ def draw(row, measure):
     for command in commands:
         run(command)
     if proof.exists():
-        Proof.load(proof).figure(picture, caption=False)
+        figure(Proof.load(proof), picture, caption=False)
     text = picture.read_text("utf-8")
     if data:
         shutil.copy(BUILD / (data + ".csv"), DOCS / "data")

@@ -96,7 +96,9 @@ def run(options):
         say("Tori : %d proved, with a certificate each in %s\n" % (
             len(points), plain(options.tori)))
     if graphics is not None:
-        found.draw(graphics, points)
+        from ..draw import map_figure
+
+        map_figure.draw(found, graphics, points)
     return 0 if found.complete else 1
 
 

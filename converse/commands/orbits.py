@@ -21,7 +21,6 @@ from .common import SIGNALS, Parser, ProgressLine, ended, ending, say, whole_num
 COMMAND = "converse-orbits"
 POTENTIALS = "trig", "poly", "ff", "froeschle", "standard"
 MOST_EPS = 10000                        # values of eps
-LARGE = 1e10                            # Stability indices above it are given by their logarithm.
 SIZES = 300, 1200                       # q of a sweep, unless others are asked for
 SISTERS = ("converse-tori      proves that a torus exists\n"
            "converse-portrait  shows where in phase space a map of one angle has no circle\n"
@@ -37,13 +36,6 @@ SWEEP = ending("converse-orbits sweep standard onsets.csv --farey 0.618 --sizes 
 POTENTIAL = ("trig, poly, ff, froeschle, standard, or an input file: JSON of the harmonics of V "
              "(manual: reference/inputs)")
 AT = "the value of a parameter of the file's; any number of times"
-MEANINGS = {                            # of labels
-    "minimum": "floating point, not proved: a local minimum of the action, perhaps not global",
-    "best": "floating point, not proved: a local minimum, of the least action met",
-    "saddle": "floating point: its action can be lowered, perhaps when it is run through often",
-    "stationary": "floating point: rounding hides whether it is a minimum",
-    "not stationary": "not an orbit",
-}
 NO_MINIMUM = "saddle", "stationary", "not stationary"
 
 
@@ -256,66 +248,6 @@ def _sweep_parser(commands):
     return sweep
 
 
-# ---- what is said
-
-def type_text(state):
-    return ("(%s)/%d" if len(state.p) > 1 else "%s/%d") % (", ".join(map(str, state.p)), state.q)
-
-
-def header(state):
-    """What is the same for all states of a report."""
-    potential = state.potential
-    return ("Map : x' = x + p', p' = p - eps grad V(x), angles of period 1\n"
-            "Potential : %s\nV(x) : %s\n"
-            "Type : %s, rotation vector %s\n" % (
-                potential.name, potential.formula, type_text(state), _numbers(state.rotation)))
-
-
-def _numbers(values):
-    return ", ".join("%.10g" % x for x in values)
-
-
-def report(state):
-    """What is known of a state."""
-    from ..orbits.pictures import exponent_text
-
-    lines = [
-        "eps : %r" % state.eps,
-        "State : %s (%s)" % (state.label, MEANINGS.get(state.label, MEANINGS["best"])),
-        "Action per point less |p/q|^2/2 : %.12g" % state.action,
-        "Exponents : " + ", ".join(exponent_text(state, x, 10) for x in state.exponents),
-        ("Residue : %.10g" % state.residue if state.potential.n == 1 else
-         "Stability indices : " + ", ".join(map(_index_text, state.indices))),
-        "Gradient : largest %.2g, root mean square %.2g" % (state.shadow, state.grad_size),
-        "Deviation : " + ", ".join("%.10g from the %s" % each for each in zip(state.deviation, (
-            "line through x_0", "line at eps 0", "best line"))),
-        "Near-null directions : " + ("%d, along which the points can be moved at almost no cost"
-                                     % state.undetermined if state.undetermined else "none")]
-    return "\n".join(lines) + "\n"
-
-
-def _index_text(rho):
-    """A stability index; a large one by its decimal logarithm."""
-    if isinstance(rho, complex) or not abs(rho) > LARGE:
-        return format(rho, ".10g")
-    return "%s10^%.4f" % ("-" if rho < 0 else "", math.log10(abs(rho)))
-
-
-def pass_report(pair):
-    """What is known of the pass beside a minimum."""
-    from ..orbits.proved import vector_words
-
-    towards = "towards the neighbour displaced by " + vector_words(pair.step, pair.minimum.q)
-    if pair.minimax.label != "saddle":
-        return "Pass : too flat for doubles, %s\n" % towards
-    one = pair.minimum.potential.n == 1
-    return "Pass : saddle, %s\n%s\n%s : %.10g\n" % (
-        towards,
-        "Residue of the minimax orbit : %.10g" % pair.minimax.residue if one else
-        "Stability indices of the pass : " + ", ".join(map(_index_text, pair.minimax.indices)),
-        "Flux" if one else "Difference of action", pair.barrier)
-
-
 # ---- what is done
 
 def _check_outputs(options, potential_file):
@@ -340,6 +272,7 @@ def _start(options, potential, straight, eps):
     if options.search is not None:
         raise ConverseError("--search begins anew at each eps; leave out --from")
     from ..orbits.points import load
+    from ..orbits.report import type_text
 
     family = load(options.start, potential)
     if (family[0].p, family[0].q) != (straight.p, straight.q):
@@ -362,6 +295,7 @@ class _Finding:
         say(text)
 
     def add(self, state):
+        from ..orbits.report import pass_report, report
         self.states.append(state)
         self.drawn.append(state)
         self.tell("\n" + report(state))
@@ -410,6 +344,7 @@ def find_states(options):
     _check_outputs(options, options.potential)
 
     from ..orbits.proved import balls
+    from ..orbits.report import header
     from ..orbits.search import search
     from ..orbits.solver import follow, reached, straight
 

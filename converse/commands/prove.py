@@ -205,7 +205,9 @@ def run(options):
             progress(0.0, proof.counts)
     say(verdict(proof, options.backup or options.restore))
     if options.graphics is not None:
-        proof.figure(options.graphics)
+        from ..draw.figure import figure
+
+        figure(proof, options.graphics)
     return STATUS[proof.conclusion]
 
 

@@ -94,18 +94,10 @@ end
 """
 
 
-def figure(proof, target=None, ax=None, format=None, caption=True):
-    """Draws a proof, finished or not.  The target is a path or a binary file; the format svg, png,
-    pdf or ps, by default that of the file's name, else PostScript.  ax: Axes of matplotlib, which
-    are drawn into and returned: only the prisms and x*, their labels ready for ax.legend().
-    With neither, returns a Figure of matplotlib, which a notebook shows.  caption: whether the
+def figure(proof, target, format=None, caption=True):
+    """Draws a proof, finished or not, in a file.  The target is a path or a binary file; the format
+    svg, png, pdf or ps, by default that of the file's name, else PostScript.  caption: whether the
     lines above say what is proved and by what."""
-    if target is None:
-        if format is not None:
-            raise ValueError("a format needs a target: a path or a binary file")
-        return plot.page(proof, caption) if ax is None else plot.draw(proof, ax)
-    if ax is not None:
-        raise ValueError("draw into ax or write to a target, not both")
     kind = format_of(target) if format is None else format
     if kind != "ps" and kind not in plot.FORMATS:
         raise ValueError("the format is one of %s, ps, not %r" % (", ".join(plot.FORMATS), kind))

@@ -52,22 +52,34 @@ def html(region_map):
 
 def picture(region_map, kind, tori=()):
     """A map, and points at which tori are proved, as the bytes of a file of that kind."""
+    figure = page(region_map, None, tori)
+    from matplotlib import style
+
+    with style.context(["default", STYLE]):
+        return plot.encode(figure, kind, dpi=160, pad_inches=0.08)
+
+
+def page(region_map, ax=None, tori=()):
+    """The map drawn into Axes, which are returned, or as a Figure that a notebook shows."""
     plot.check()
     if not all(region_map.estimate):
         raise files.ConverseError("the map has nothing to draw yet: it was left while the frontier "
                                   "was estimated; continue it with -r")
+    if ax is not None:
+        _draw(region_map, ax, tori)
+        return ax
     from matplotlib import style
-    from matplotlib.figure import Figure
+
+    from .page import Page
 
     with style.context(["default", STYLE]):
-        figure = Figure(figsize=(6.4, 5.0))
-        _draw(region_map, figure, tori)
-        return plot.encode(figure, kind, dpi=160, pad_inches=0.08)
+        figure = Page(plot.encode, figsize=(6.4, 5.0))
+        _draw(region_map, figure.add_subplot(), tori)
+    return figure
 
 
-def _draw(region_map, figure, tori):
+def _draw(region_map, axes, tori):
     horizontal, vertical = {"b=0": (0, 2), "a=b": (0, 2), "c=0": (0, 1)}[region_map.region]
-    axes = figure.add_subplot()
 
     def at(directions, r, s):
         point = direction(directions, s)

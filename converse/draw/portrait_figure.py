@@ -28,6 +28,15 @@ def draw(portrait, path, tori=()):
                                                                     tori)))
 
 
+def page(portrait, ax=None, tori=()):
+    """The portrait drawn into Axes, which are returned, or as a Figure that a notebook shows."""
+    plot.check()
+    if ax is None:
+        return plot.new(*SIZE, lambda figure: fill(figure.subplots(), portrait, tori))
+    fill(ax, portrait, tori)
+    return ax
+
+
 def fill(axes, portrait, tori=()):
     """Draws it into axes: y across and y' - y upwards."""
     image, left, right = shares(portrait)

@@ -41,26 +41,49 @@ def picture(tori, kind="png", proved=()):
     """The bytes of a picture of tori that cover a range, or of one torus.
 
     proved -- of each what its proof says (proved.Piece)"""
+    figure = page(tori, proved)
+    from matplotlib import style
+
+    with style.context(["default", STYLE]):
+        return plot.encode(figure, kind, dpi=160)
+
+
+def page(tori, proved=()):
+    """The picture as a Figure that a notebook shows."""
     plot.check()
     from matplotlib import style
-    from matplotlib.figure import Figure
+
+    from .page import Page
 
     n = tori[0].dimension
     panels = n + 1 + (len(proved) > 1)
     columns = 2 if panels == 4 else panels
     with style.context(["default", STYLE]):
-        figure = Figure(figsize=(3.1 * columns, 2.9 * (panels // columns)), layout="constrained")
+        figure = Page(plot.encode, figsize=(3.1 * columns, 2.9 * (panels // columns)),
+                      layout="constrained")
         axes = np.ravel(figure.subplots(panels // columns, columns))
-        if n == 1:
-            _curves(axes[0], tori)
-        else:
-            for i in range(2):
-                _surface(figure, axes[i], tori[-1], i)
+        into(axes[:n], tori)
         (_line if n == 1 else _lattice)(figure, axes[n], tori[-1])
         if len(proved) > 1:
             _errors(axes[n + 1], proved)
         figure.suptitle(_title(tori, 50 * columns, proved), fontsize=9)
-        return plot.encode(figure, kind, dpi=160)
+    return figure
+
+
+def into(ax, tori):
+    """Draws the tori into Axes, which are returned: one with one angle, a pair with two.
+    ValueError: there are more or fewer Axes."""
+    axes = np.ravel(ax)
+    n = tori[0].dimension
+    if len(axes) != n:
+        raise ValueError("a torus of %d angle%s is drawn into %d Axes, not %d"
+                         % (n, "s" * (n > 1), n, len(axes)))
+    if n == 1:
+        _curves(axes[0], tori)
+    else:
+        for i in range(2):
+            _surface(axes[i].figure, axes[i], tori[-1], i)
+    return ax
 
 
 def _title(tori, width, proved):

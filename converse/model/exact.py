@@ -11,9 +11,10 @@ import re
 from decimal import Context, Decimal
 from fractions import Fraction
 from functools import lru_cache
-from typing import Tuple, Union
+from typing import NamedTuple, Tuple, Union
 
 MAX_EXPONENT = 300
+SHOWN = 20                              # digits of an interval, at most
 FEWEST, MOST = 6, 10000                 # digits of short_text
 SHORT = 3                               # Intervals of numbers up to 10^SHORT need no exponent.
 DECIMAL = re.compile(r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]{1,9})?")
@@ -21,6 +22,35 @@ RATIO = re.compile(r"[+-]?[0-9]+/[0-9]*[1-9][0-9]*")
 
 Number = Union[int, str, Decimal, Fraction]
 Ends = Tuple[Fraction, Fraction]        # the lower and the upper end of an interval
+
+
+class Interval(NamedTuple):
+    """A proved interval: the true number is between the rational numbers lo and hi, or one of
+    them.  It is printed as a decimal and its error in units of the last digit, such as
+    3.0472(1)e-9."""
+
+    lo: Fraction
+    hi: Fraction
+
+    @property
+    def mid(self) -> Fraction:
+        """The middle, exactly."""
+        return (self.lo + self.hi) / 2
+
+    @property
+    def rad(self) -> Fraction:
+        """Half the width, exactly."""
+        return (self.hi - self.lo) / 2
+
+    def __float__(self) -> float:
+        return float(self.mid)
+
+    def __contains__(self, x: object) -> bool:
+        """Is a number, taken as what it is exactly, in the interval?"""
+        return isinstance(x, (int, float, Fraction, Decimal)) and self.lo <= Fraction(x) <= self.hi
+
+    def __repr__(self) -> str:
+        return ball_text(self.lo, self.hi, SHOWN)
 
 
 # ---- reading

@@ -12,7 +12,6 @@ try:
     from .branch_and_bound import LeastAction, least_action
     from .mather import MatherBeta, mather_beta
     from .minimax import Pair
-    from .points import load
     from .potential import FromPython, Potential, ff, froeschle, parameters, poly, standard, trig
     from .proved import NotProved, ProvedOrbit, prove
     from .search import search
@@ -32,6 +31,6 @@ except ImportError as _error:           # said when something is asked for: the 
 
 __all__ = ["Family", "MatherBeta", "FromPython", "LeastAction", "NotProved", "Onset", "Pair",
            "Potential", "ProvedOrbit", "PeriodicOrbit", "enclosed_action", "ff", "mather_beta",
-           "follow", "froeschle", "least_action", "load", "onset", "onsets", "parameters", "poly",
+           "follow", "froeschle", "least_action", "onset", "onsets", "parameters", "poly",
            "prove", "read_csv", "search", "standard", "straight",
            "sweep", "trig"]

@@ -15,7 +15,7 @@ from typing import Any, Callable, Optional, Tuple
 import numpy as np
 
 from .._native import lib
-from ..model.exact import Ends, ball_text, rounded, rounded_text
+from ..model.exact import Interval, rounded, rounded_text
 from ..storage.files import ConverseError
 from .limits import (DEFAULT_DIGITS, EIGENVALUE_ROUNDING, EXPONENT_PLACES, GUARD_PLACES,
                      MAX_MORE_PLACES, MAX_PLACES, MAX_PROOF_STEPS, MAX_SHADOW, NULL_EIGENVALUE,
@@ -40,8 +40,8 @@ class ProvedOrbit:
                  radius of `displacements`, in the Euclidean norm of all coordinates together
     least     -- no eigenvalue of the second variation of its action is below this positive number,
                  however often the orbit is run through
-    action    -- (low, high): its action per point less that of the straight orbit, |p/q|^2/2
-    exponents -- ((low, high), ...): its n positive Lyapunov exponents, larger first
+    action    -- its action per point less that of the straight orbit, |p/q|^2/2
+    exponents -- its n positive Lyapunov exponents, larger first
     sign      -- 1 or -1: that of its multipliers, which are real; 0: they are complex, or it is not
                  decided whether
     moved     -- how far the points are from those of the state: the largest coordinate, on the
@@ -52,8 +52,8 @@ class ProvedOrbit:
     digits: int
     radius: Fraction
     least: Fraction
-    action: Ends
-    exponents: Tuple[Ends, ...]
+    action: Interval
+    exponents: Tuple[Interval, ...]
     sign: int
     moved: float
     displacements: Tuple[Tuple[Fraction, ...], ...]
@@ -78,7 +78,7 @@ class ProvedOrbit:
         return self.state.moved(np.array(self.displacements, dtype=float))
 
     @cached_property
-    def indices(self) -> Optional[Tuple[Ends, ...]]:
+    def indices(self) -> Optional[Tuple[Interval, ...]]:
         """Enclosures of its n stability indices rho = l + 1/l, in the order of the exponents; None
         where the multipliers l are not known to be real.  Exact numbers of many digits."""
         if not self.sign:
@@ -91,19 +91,19 @@ class ProvedOrbit:
             for ends in self.exponents:             # l + 1/l grows with |l|
                 low, high = (2 * (self.state.q * ball(end)).cosh() for end in ends)
                 found.append(sorted((self.sign * lower(low), self.sign * upper(high))))
-        return tuple((low, high) for low, high in found)
+        return tuple(Interval(low, high) for low, high in found)
 
     @property
-    def residue(self) -> Ends:
+    def residue(self) -> Interval:
         """An enclosure of Greene's residue (2 - rho)/4, which is negative; ValueError for n = 2."""
         if self.state.potential.n != 1 or self.indices is None:
             raise ValueError("Greene's residue is of maps with one angle; with two there are the "
                              "stability indices, .indices")
         (low, high), = self.indices
-        return (2 - high) / 4, (2 - low) / 4
+        return Interval((2 - high) / 4, (2 - low) / 4)
 
-    def figure(self, ax: Any = None) -> Any:
-        """The state nearest to it, as PeriodicOrbit.figure."""
+    def plot(self, ax: Any = None) -> Any:
+        """The state nearest to it, as PeriodicOrbit.plot."""
         from .pictures import figure
         return figure(self, ax)
 
@@ -127,10 +127,10 @@ class ProvedOrbit:
             "It is hyperbolic and, run through any number of times, a nondegenerate local minimum "
             "of the action.",
             "Second variation : at least %s" % rounded_text(self.least, 3, up=False),
-            "Action per point less |p/q|^2/2 : %s" % ball_text(*self.action, SHOWN_PLACES)] + [
-            "Exponent : %s" % ball_text(*ends, SHOWN_PLACES) for ends in self.exponents]
+            "Action per point less |p/q|^2/2 : %r" % (self.action,)] + [
+            "Exponent : %r" % (ends,) for ends in self.exponents]
         if state.potential.n == 1 and self.residue[0] > -10 ** SHOWN_PLACES:
-            lines.append("Greene's residue : %s" % ball_text(*self.residue, SHOWN_PLACES))
+            lines.append("Greene's residue : %r" % (self.residue,))
         return "\n".join(lines) + "\n"
 
 
@@ -231,11 +231,12 @@ def _attempt(state, exact, growth, places, wanted):
     if grown is None:
         raise _TooFewPlaces("the pivots could not be enclosed")
     exponents, sign = grown
-    exponents = tuple((rounded(max(low, 0) / state.q, EXPONENT_PLACES, up=False),
-                       rounded(high / state.q, EXPONENT_PLACES, up=True))
+    exponents = tuple(Interval(rounded(max(low, 0) / state.q, EXPONENT_PLACES, up=False),
+                               rounded(high / state.q, EXPONENT_PLACES, up=True))
                       for low, high in exponents)
-    action = (rounded(exact.action[0] - exact.gradient * radius / state.q, shown, up=False),
-              rounded(exact.action[1], shown, up=True))
+    action = Interval(
+        rounded(exact.action[0] - exact.gradient * radius / state.q, shown, up=False),
+        rounded(exact.action[1], shown, up=True))
     moved = max(abs(step - round(step)) for step in steps)
     return ProvedOrbit(state, places, radius, left, action, exponents, sign,
                        moved, displacements)

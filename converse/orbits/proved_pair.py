@@ -15,7 +15,7 @@ from flint import arb, arb_mat
 
 from .._native import lib
 from ..model.balls import precision
-from ..model.exact import Ends, ball_text, rounded, rounded_text
+from ..model.exact import Interval, rounded, rounded_text
 from .enclosure import Enclosure, ball, lower, points, square, upper
 from .exponents import growth
 from .limits import (DEFAULT_DIGITS, GUARD_PLACES, MAX_MORE_PLACES, MAX_PLACES, MAX_PROOF_STEPS,
@@ -35,9 +35,9 @@ class ProvedPair:
     radius  -- there is exactly one true orbit of the type whose displacements are within radius of
                `displacements`, in the Euclidean norm of all coordinates together; the Hessian of
                its action has exactly one negative eigenvalue, and none is zero
-    action  -- (low, high): its action per point less that of the straight orbit
-    barrier -- (low, high): its action less the minimum's, of all q points together
-    residue -- (low, high): its residue, which is positive; None for n = 2
+    action  -- its action per point less that of the straight orbit
+    barrier -- its action less the minimum's, of all q points together
+    residue -- its residue, which is positive; None for n = 2
     between -- is it proved that each of its points lies between that of the minimum and of its
                neighbour (n = 1)?  If not, nothing is said
     """
@@ -47,18 +47,18 @@ class ProvedPair:
     digits: int
     radius: Fraction
     displacements: Tuple[Tuple[Fraction, ...], ...]
-    action: Ends
-    barrier: Ends
-    residue: Optional[Ends]
+    action: Interval
+    barrier: Interval
+    residue: Optional[Interval]
     between: bool
 
     def __repr__(self):
-        return "<ProvedPair %s, %s, eps %r, barrier %s>" % (
+        return "<ProvedPair %s, %s, eps %r, barrier %r>" % (
             self.pair.minimum.potential.name, _type(self.pair.minimum), self.pair.minimum.eps,
-            ball_text(*self.barrier, SHOWN_PLACES))
+            self.barrier)
 
     @property
-    def flux(self) -> Ends:
+    def flux(self) -> Interval:
         """The barrier, of one angle; see Pair.flux.  ValueError for n = 2."""
         self.pair.check_flux()
         return self.barrier
@@ -75,12 +75,11 @@ class ProvedPair:
             "through once, has exactly one negative direction and is nondegenerate.",
             *["Each of its points is between that of the minimum and that of the minimum's "
               "neighbour."] * self.between,
-            "%s : %s" % ("Flux" if state.potential.n == 1 else
+            "%s : %r" % ("Flux" if state.potential.n == 1 else
                          "Action less that of the minimum, of all points together",
-                         ball_text(*self.barrier, SHOWN_PLACES))]
+                         self.barrier)]
         if self.residue is not None and self.residue[1] < 10 ** SHOWN_PLACES:
-            lines.append("Residue of the minimax orbit : %s"
-                         % ball_text(*self.residue, SHOWN_PLACES))
+            lines.append("Residue of the minimax orbit : %r" % (self.residue,))
         return self.minimum.report() + "\n".join(lines) + "\n"
 
 
@@ -214,15 +213,16 @@ class _Pass:
         if radius > Fraction(1, 10 ** self.digits):
             raise _Undecided("the pass is known to %.1e only" % radius)
         reach = (4 + abs(exact.eps) * Fraction(state.potential.curvature)) * radius ** 2 / 2
-        action = (rounded(exact.action[0] - reach / exact.q, shown, up=False),
-                  rounded(exact.action[1] + reach / exact.q, shown, up=True))
+        action = Interval(rounded(exact.action[0] - reach / exact.q, shown, up=False),
+                          rounded(exact.action[1] + reach / exact.q, shown, up=True))
         own = self.minimum.action
         residue = None
         if exact.n == 1:
             residue = self.residue(m, bend * radius, size, inside, shown)
         displacements = exact.displacements()
         return ProvedPair(self.pair, self.minimum, self.places, radius, displacements, action,
-                          (exact.q * (action[0] - own[1]), exact.q * (action[1] - own[0])), residue,
+                          Interval(exact.q * (action[0] - own[1]), exact.q * (action[1] - own[0])),
+                          residue,
                           exact.n == 1 and self.between(displacements, radius))
 
     def residue(self, m, away, size, inside, shown):
@@ -243,7 +243,8 @@ class _Pass:
         found = -det * lost / 4
         if not found > 0:
             raise _Undecided("the sign of the residue is not decided")
-        return rounded(lower(found), shown, up=False), rounded(upper(found), shown, up=True)
+        return Interval(rounded(lower(found), shown, up=False),
+                        rounded(upper(found), shown, up=True))
 
     def between(self, displacements, radius):
         """Is each point, wherever in its ball, between the minimum's and its neighbour's?"""

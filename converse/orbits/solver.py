@@ -69,7 +69,12 @@ class Family:
         """Array (len, n)."""
         return np.array([state.exponents for state in self.states])
 
-    def plot(self, column: str, ax: Any = None) -> Any:
+    def report(self) -> str:
+        """What doubles show of each state, in lines."""
+        from .report import header, report
+        return header(self[0]) + "\n" + "\n".join(map(report, self)) if self.states else ""
+
+    def plot(self, ax: Any = None, column: str = "exponents") -> Any:
         """A measure of its states against eps, as a Figure of matplotlib, which a notebook shows.
         Hollow points are of states in which doubles see no minimum.
 
@@ -91,6 +96,22 @@ class Family:
         rows = csv.writer(file, lineterminator="\n")
         rows.writerow(COLUMNS)
         rows.writerows(map(row, self.states))
+
+    @classmethod
+    def load(cls, path: Union[str, "os.PathLike[str]"],
+             potential: Optional[Source] = None) -> "Family":
+        """Reads the states that PeriodicOrbit.save, Family.save or converse-orbits find --points
+        wrote, to the last bit.
+
+        potential -- that of the states, unless it is one with a name here (trig, standard, ...)
+        ConverseError: the file cannot be read, is not such a file, or names another potential."""
+        from .points import load
+        return load(path, potential)
+
+    def __repr__(self) -> str:
+        first = self.states[0] if self.states else None
+        return "<Family: %d states%s>" % (len(self), "" if first is None else " of %s, eps %g to %g"
+                                          % (first.potential.name, self.eps[0], self.eps[-1]))
 
     def save(self, path: Union[str, "os.PathLike[str]"]) -> None:
         """Writes all states to a file as PeriodicOrbit.save does one.  ValueError: there is no
@@ -133,7 +154,7 @@ def follow(potential: Source, p: Numerators, q: int, eps: Union[float, Sequence[
     eps -- the potential is multiplied by each of these numbers in turn; by default by 1.  From
         each to the next there are at most MAX_EPS_STEPS steps
     progress(done, state) -- is told each state
-    start -- a state of this type, such as orbits.load reads, instead of the straight orbit
+    start -- a state of this type, such as Family.load reads, instead of the straight orbit
     on_step(state) -- is told these and all states on the way to them
 
     Each state is the guess for the next, at most step_of(potential) further, and less where the

@@ -411,14 +411,19 @@ class PeriodicOrbit:
 
     def save(self, path: Union[str, "os.PathLike[str]"]) -> None:
         """Writes points, momenta and all else of the state to a file, NAME.npz, from which
-        orbits.load reads it to the last bit.  ConverseError: it cannot be written, or exists and is
+        Family.load reads it to the last bit.  ConverseError: it cannot be written, or exists and is
         no such file."""
         from .points import save
         save([self], path)
 
     # ---- pictures
 
-    def figure(self, ax: Any = None) -> Any:
+    def report(self) -> str:
+        """What doubles show of it, in lines."""
+        from .report import header, report
+        return header(self) + report(self)
+
+    def plot(self, ax: Any = None) -> Any:
         """Its angles and momenta, as a Figure of matplotlib, which a notebook shows.
 
         ax -- Axes to draw into, which are returned: with one angle one; with two a pair, for the
@@ -427,6 +432,12 @@ class PeriodicOrbit:
         ValueError: ax are too many.  ConverseError: there is no matplotlib."""
         from .pictures import figure
         return figure(self, ax)
+
+    @classmethod
+    def load(cls, path: Union[str, "os.PathLike[str]"], potential: Any = None) -> "PeriodicOrbit":
+        """Reads the orbit of a file, the first if there are several: see Family.load."""
+        from .points import load
+        return load(path, potential)[0]
 
     def _repr_html_(self) -> str:
         """For notebooks: its measures and, where there is matplotlib, its figure."""

@@ -5,13 +5,16 @@ import math
 import os
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Any, Dict, Iterable, Iterator, List, Optional, Tuple, Union
+from typing import TYPE_CHECKING, Any, Dict, Iterable, Iterator, List, Optional, Tuple, Union
 
 from ..model.exact import decimal_text, exact
 from ..storage import files
 from ..storage.files import ConverseError
 from ..version import __version__
 from .region import RADIUS, REGIONS, Cell, root
+
+if TYPE_CHECKING:
+    from .. import check
 
 FORMAT = "converse map 2"
 PROVED, AT_ONCE, OPEN = "PAO"
@@ -186,12 +189,16 @@ class ParameterMap:
         lines += ["SHA-256 : " + self.sha256] if self.sha256 else []
         return "\n".join(lines) + "\n"
 
-    def draw(self, path: Union[str, "os.PathLike[str]"],
-             tori: Iterable[Tuple[Fraction, Fraction, Fraction]] = ()) -> None:
-        """Draws it: SVG, PNG or PDF, by the name of the file (matplotlib).  tori: the (a, b, c) of
-        proved tori (parameters.tori.proved_points)."""
+    def plot(self, ax: Any = None,
+             tori: Iterable[Tuple[Fraction, Fraction, Fraction]] = ()) -> Any:
+        """Draws the map into Axes of matplotlib, which are returned; with None as a Figure, which a
+        notebook shows.  tori: the (a, b, c) of proved tori (parameters.tori.proved_points)."""
         from ..draw import map_figure
-        map_figure.draw(self, path, list(tori))
+        return map_figure.page(self, ax, list(tori))
+
+    def verify(self, jobs: int = 1) -> "check.Result":
+        """Verifies anew what is proved, as Proof.verify does."""
+        return files.verified(self, jobs)
 
     def _repr_html_(self) -> str:
         """For notebooks: the report and, where there is matplotlib, the picture."""

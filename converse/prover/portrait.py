@@ -15,7 +15,8 @@ from collections import Counter
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cached_property
-from typing import Callable, Dict, Iterable, List, Optional, Tuple, Union
+from typing import (TYPE_CHECKING, Any, Callable, Dict, Iterable, List, Optional, Sequence, Tuple,
+                    Union)
 
 from ..model.exact import decimal_text, exact, pi_bounds, rounded
 from ..model.map import SymplecticMap
@@ -30,6 +31,9 @@ from ..version import __version__
 from . import native, tree
 from .settings import Settings
 from .workers import LOOK_SECONDS, WorkerPool
+
+if TYPE_CHECKING:
+    from .. import check
 
 FIRST_LINE = "converse portrait 1"
 FIELDS = "program", "strip", "even about", "depth", "columns", "undecided"
@@ -64,7 +68,7 @@ class Region:
                        if kind == "U")
 
 
-@dataclass(eq=False)
+@dataclass(eq=False, repr=False)
 class Portrait:
     """What is proved of the phase space of a map of one angle.
 
@@ -187,6 +191,21 @@ class Portrait:
         return "\n".join(lines) + "\n"
 
     # ---- its file
+
+    def __repr__(self) -> str:
+        return "<Portrait: %s; %d of %d columns, at most %.1f%% undecided>" % (
+            self.problem.map, len(self.found), self.columns, 100 * self.undecided)
+
+    def plot(self, ax: Any = None, tori: Sequence[Any] = ()) -> Any:
+        """Draws the portrait into Axes of matplotlib, which are returned; with None as a Figure,
+        which a notebook shows.  tori: proved circles (ProvedTorus), which are drawn
+        in colour."""
+        from ..draw import portrait_figure
+        return portrait_figure.page(self, ax, tori)
+
+    def verify(self, jobs: int = 1) -> "check.Result":
+        """Verifies anew what is proved, as Proof.verify does."""
+        return files.verified(self, jobs)
 
     def save(self, path: Path) -> str:
         """Writes it to a file, compressed by gzip if its name ends in .gz; returns the SHA-256 of

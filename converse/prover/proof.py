@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, Dict, List, Optional, Tuple, Union
 
 from ..model.problem import Problem
 from ..model.region import symmetries_used
+from ..storage import files
 from ..version import __version__
 from . import tree
 from .native import Counts
@@ -173,11 +174,15 @@ class Proof:
         from .report import report
         return report(self)
 
-    def figure(self, target: Any = None, *, ax: Any = None, format: Optional[str] = None,
-               caption: bool = True) -> Any:
-        """Draws the prisms: see figure.figure."""
-        from ..draw.figure import figure
-        return figure(self, target, ax, format, caption)
+    def plot(self, ax: Any = None, caption: bool = True) -> Any:
+        """Draws the prisms.
+
+        ax: Axes of matplotlib, which are drawn into and returned: only the prisms and x*, their
+        labels ready for ax.legend().  With None a Figure is returned, which a notebook shows.
+        caption: whether the lines above a Figure state what is proved and by what.
+        ConverseError: there is no matplotlib."""
+        from ..draw import plot
+        return plot.page(self, caption) if ax is None else plot.draw(self, ax)
 
     def verify(self, jobs: int = 1) -> "check.Result":
         """Verifies the proof anew by the code of converse-check, which believes nothing of it and
@@ -186,21 +191,15 @@ class Proof:
         The Result is true if the theorem is verified; its text is the checker's report.
         check.Rejected, check.NotConfirmed, check.Unusable: it is not, and why.
         """
-        import tempfile
-
-        from .. import check
-        with tempfile.TemporaryDirectory() as directory:
-            path = os.path.join(directory, "proof")
-            self.save(path)
-            return check.verify(path, jobs)
+        return files.verified(self, jobs)
 
     def _repr_svg_(self):
-        from ..draw.figure import svg
-        return svg(self)
+        from ..draw import figure
+        return figure.svg(self)
 
     def _repr_html_(self):
-        from ..draw.figure import html
-        return html(self)
+        from ..draw import figure
+        return figure.html(self)
 
     def save(self, path: Union[str, "os.PathLike[str]"]) -> str:
         """Writes the proof file, compressed when the name ends in .gz; returns its SHA-256 (that

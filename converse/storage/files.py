@@ -3,6 +3,7 @@
 import contextlib
 import fcntl
 import os
+import tempfile
 import zlib
 
 from .signals import Resource, postponed
@@ -20,6 +21,16 @@ def plain(text):
     """The text with control characters, which a terminal would obey, written as escapes."""
     return "".join(c if c.isprintable() or c == "\t" else
                    c.encode("unicode_escape", "surrogatepass").decode("ascii") for c in text)
+
+
+def verified(value, jobs):
+    """What converse-check's code says of a value that has save(): a check.Result."""
+    from .. import check
+
+    with tempfile.TemporaryDirectory() as directory:
+        path = os.path.join(directory, "saved")
+        value.save(path)
+        return check.verify(path, jobs)
 
 
 def check_new(path, resumed=None):

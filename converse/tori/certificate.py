@@ -88,6 +88,13 @@ def text(tori: Sequence[Torus]) -> str:
     return body + "checksum: sha256 %s\nend\n" % files.sha256(body)
 
 
+def save(tori: Sequence[Torus], path: Path) -> str:
+    """Writes their certificate, compressed if the name ends in .gz, and returns its SHA-256."""
+    if any(torus.strip is None for torus in tori):
+        raise ValueError("the torus does not say in what strip it is to be verified")
+    return files.write_text(path, text(tori))
+
+
 def _words(numbers):
     return " ".join(map(str, numbers))
 

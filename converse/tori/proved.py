@@ -110,6 +110,32 @@ class ProvedTorus:
         """Of the farthest piece."""
         return float(max(piece.distance for piece in self.pieces))
 
+    def report(self) -> str:
+        """The theorem in words, and what it rests on."""
+        from .report import verdict
+        return verdict(self)
+
+    def plot(self, ax: Any = None) -> Any:
+        """Draws the tori into Axes of matplotlib, which are returned: one with one angle, a pair
+        with two.  With None a Figure is returned, which a notebook shows: also the Fourier
+        coefficients and, for a range, the error of the invariance equation."""
+        from ..draw import torus_figure
+        tori = [piece.torus for piece in self.pieces]
+        return torus_figure.page(tori, self.pieces) if ax is None else torus_figure.into(ax, tori)
+
+    def verify(self, jobs: int = 1) -> check.Result:
+        """Verifies the certificate anew, as Proof.verify does."""
+        return files.verified(self, jobs)
+
+    @classmethod
+    def load(cls, path: Union[str, "os.PathLike[str]"], jobs: int = 1) -> "ProvedTorus":
+        """Reads a certificate and lets the checker verify it: the result is a theorem again.
+
+        jobs -- how many pieces of a range are verified at a time, in processes
+        ConverseError: the file cannot be read, or is not a certificate.  NotProved: the checker
+        does not confirm it."""
+        return _verified(certificate.read(path).tori, jobs, lambda text: None)
+
     def _repr_html_(self) -> str:
         """For notebooks: the theorem and, where there is matplotlib, the picture."""
         from ..draw.torus_figure import proved_html

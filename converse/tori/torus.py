@@ -14,6 +14,7 @@ For a range of parameters the amplitudes are p + s part with s in [-1, 1].  A to
 (low, high) of these s by polynomials in sigma = (2 s - low - high)/(high - low).
 """
 
+import os
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
@@ -175,6 +176,31 @@ class Torus:
         far = np.abs(self.k).sum(1) if direction is None else np.asarray(direction)
         coefficients = self.doubles[0].T if s is None else self.coefficients(s)
         return decay(far, np.abs(coefficients).max(1, initial=0))
+
+    def report(self) -> str:
+        """What is known of it, in a line or two: it is not proved."""
+        return "%r\nCoefficients fall about as e^(-%.3g |k|), |k| the sum of |k_i|.  Nothing is " \
+            "proved: tori.prove(torus) does.\n" % (self, self.decay())
+
+    def plot(self, ax: Any = None) -> Any:
+        """Draws the torus into Axes of matplotlib, which are returned: one with one angle, a pair
+        with two.  With None a Figure is returned, which a notebook shows: also the Fourier
+        coefficients."""
+        from ..draw import torus_figure
+        return torus_figure.page([self]) if ax is None else torus_figure.into(ax, [self])
+
+    def save(self, path: Union[str, "os.PathLike[str]"]) -> str:
+        """Writes a certificate (docs/reference/torus-certificate.md) that nothing has verified;
+        returns its SHA-256.  ValueError: the torus has no strip."""
+        from . import certificate
+        return certificate.save([self], path)
+
+    @classmethod
+    def load(cls, path: Union[str, "os.PathLike[str]"]) -> "Torus":
+        """Reads the torus of a certificate, the first if there are several.  ConverseError: the
+        file cannot be read, or is not a certificate."""
+        from . import certificate
+        return certificate.read(path).tori[0]
 
     def _repr_html_(self) -> str:
         """For notebooks: a line and, where there is matplotlib, the picture."""

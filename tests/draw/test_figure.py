@@ -18,7 +18,9 @@ import pytest
 
 from converse import ConverseError, Problem, prove, read_input
 from converse.draw import captions, plot
-from converse.draw.figure import LEFT_MARGIN, PAGE_WIDTH, SIDE, format_of, postscript
+from converse.draw.figure import LEFT_MARGIN, PAGE_WIDTH, SIDE
+from converse.draw.figure import figure as write_figure
+from converse.draw.figure import format_of, postscript
 from converse.model.map import MuldoonMap, SymplecticMap, from_patch
 from converse.prover.tree import leaves
 
@@ -32,7 +34,7 @@ needs_gs = pytest.mark.skipif(not shutil.which("gs"), reason="ghostscript is not
 def render(proof, directory):
     """The pixels of the prisms' square as rows of (red, green, blue), the top one first."""
     path = directory / "figure.ps"
-    proof.figure(path)
+    write_figure(proof, path)
     data = subprocess.run(
         ["gs", "-q", "-dSAFER", "-dBATCH", "-dNOPAUSE", "-dEPSCrop", "-r%d" % RESOLUTION,
          "-sDEVICE=ppmraw", "-sOutputFile=-", str(path)],
@@ -66,7 +68,7 @@ def drawn(proof):
         figure = Figure(figsize=(4, 4), dpi=100)
         canvas = FigureCanvasAgg(figure)
         axes = figure.add_axes([0, 0, 1, 1])
-        assert proof.figure(ax=axes) is axes
+        assert proof.plot(ax=axes) is axes
         axes.set_axis_off()
         canvas.draw()
     pixels = bytes(canvas.buffer_rgba())
@@ -256,7 +258,8 @@ def test_bounding_box(made_up, tmp_path, name, together, tree):
     """Nothing lies outside the bounding box, and hardly any room is lost."""
     path = tmp_path / "figure.ps"
     proof = made_up(tree, **TITLES[name])
-    proof.with_tree(0, problem=proof.problem.tied() if together else proof.problem).figure(path)
+    write_figure(proof.with_tree(0, problem=proof.problem.tied() if together else proof.problem),
+                 path)
     found = subprocess.run(["gs", "-q", "-dBATCH", "-dNOPAUSE", "-sDEVICE=bbox", str(path)],
                            check=True, stderr=subprocess.PIPE).stderr.decode()
     ink = list(map(int, re.search("BoundingBox: (.*)", found).group(1).split()))
@@ -290,7 +293,7 @@ def test_labels(made_up):
 def words(proof):
     """The texts of matplotlib's figure and of PostScript's."""
     pytest.importorskip("matplotlib")
-    axes = proof.figure().axes[0]
+    axes = proof.plot().axes[0]
     texts = [axes.get_title(), *(text.get_text() for text in axes.texts)]
     texts += [text.get_text() for text in axes.get_legend().get_texts()]
     text = postscript(proof)
@@ -346,7 +349,7 @@ def test_legend_overlaps_nothing(made_up, monkeypatch):
     for limit in (plot.RASTER, 0):
         monkeypatch.setattr(plot, "RASTER", limit)
         for options in TITLES.values():
-            figure = made_up("20PU01PS1U", **options).figure()
+            figure = made_up("20PU01PS1U", **options).plot()
             canvas = FigureCanvasAgg(figure)
             canvas.draw()
             axes = figure.axes[0]
@@ -402,7 +405,7 @@ def test_other_formats(made_up, tmp_path, ending):
     pytest.importorskip("matplotlib")
     paths = [tmp_path / (name + ending) for name in "ab"]
     for path in paths:
-        made_up("0P1US").figure(str(path))
+        write_figure(made_up("0P1US"), str(path))
     first, second = (path.read_bytes() for path in paths)
     assert first == second
     start = {".svg": b"<?xml", ".png": b"\x89PNG", ".pdf": b"%PDF"}[ending.lower()]
@@ -415,23 +418,19 @@ def test_targets(made_up, tmp_path):
     pytest.importorskip("matplotlib")
     proof = made_up("01PSU")
     file = io.BytesIO()
-    assert proof.figure(file) is None and file.getvalue().startswith(b"%!PS")
+    assert write_figure(proof, file) is None and file.getvalue().startswith(b"%!PS")
     file = io.BytesIO()
-    proof.figure(file, format="png")
+    write_figure(proof, file, format="png")
     assert file.getvalue().startswith(b"\x89PNG")
-    proof.figure(tmp_path / "a.png", format="svg")
+    write_figure(proof, tmp_path / "a.png", format="svg")
     assert (tmp_path / "a.png").read_text() == proof._repr_svg_()
     with open(tmp_path / "b.svg", "wb") as file:
-        proof.figure(file)
+        write_figure(proof, file)
     assert (tmp_path / "b.svg").read_text() == proof._repr_svg_()
     assert [format_of(name) for name in ("a", "svg", "b.eps", "c.PDF", file)] \
         == ["ps", "ps", "ps", "pdf", "svg"]
-    for wrong in ({"format": "svg"}, {"target": "a", "format": "gif"},
-                  {"target": "a", "ax": proof.figure().axes[0]}):
-        with pytest.raises(ValueError):
-            proof.figure(**wrong)
-    with pytest.raises(TypeError):
-        proof.figure("a", None)                 # ax and format by name only
+    with pytest.raises(ValueError):
+        write_figure(proof, "a", format="gif")
 
 
 def test_into_axes(made_up):
@@ -443,7 +442,7 @@ def test_into_axes(made_up):
     axes = figure.subplots(2)[1]
     axes.set_title("mine")
     proof = made_up("20PU01PS1U")
-    assert proof.figure(ax=axes) is axes
+    assert proof.plot(ax=axes) is axes
     assert axes.get_title() == "mine" and axes.get_legend() is None and not axes.texts
     assert len(figure.axes) == 2 and not figure.axes[0].patches
     assert [text.get_text() for text in axes.legend().get_texts()] == [
@@ -455,12 +454,12 @@ def test_without_a_caption(made_up, tmp_path):
     """Only the prisms, their axes and the legend, in every format."""
     pytest.importorskip("matplotlib")
     proof = made_up("01PSU", sha256=SHA)
-    axes = proof.figure(caption=False).axes[0]
+    axes = proof.plot(caption=False).axes[0]
     assert not axes.get_title() and not axes.texts and axes.get_xlabel() and axes.get_legend()
     for name in "a.ps", "a.svg":
-        proof.figure(tmp_path / name)
+        write_figure(proof, tmp_path / name)
         said = (tmp_path / name).read_text()
-        proof.figure(tmp_path / name, caption=False)
+        write_figure(proof, tmp_path / name, caption=False)
         unsaid = (tmp_path / name).read_text()
         assert SHA in said and SHA not in unsaid
         assert "undecided whether" in said and "undecided whether" not in unsaid
@@ -473,7 +472,7 @@ def test_fonts(made_up, monkeypatch, raster):
     from matplotlib.text import Text
 
     monkeypatch.setattr(plot, "RASTER", raster)
-    fig = made_up("2U01PS?", sha256=SHA).figure()
+    fig = made_up("2U01PS?", sha256=SHA).plot()
     plot.encode(fig, "png")
     assert min(text.get_size() for text in fig.findobj(Text) if text.get_text()) >= 8
 
@@ -504,7 +503,7 @@ def test_the_colour_blind_tell_what_is_undecided(kind):
 
 def test_notebooks(made_up):
     pytest.importorskip("matplotlib")
-    assert made_up("P").figure()._repr_png_().startswith(b"\x89PNG")
+    assert made_up("P").plot()._repr_png_().startswith(b"\x89PNG")
     proof = made_up("01PSU", comments=("<script>&",), version="<b>")
     ET.fromstring(proof._repr_svg_().encode())
     text = proof._repr_html_()
@@ -519,10 +518,11 @@ def test_without_matplotlib(made_up, tmp_path, monkeypatch):
     proof = made_up("01PSU")
     assert proof._repr_svg_() is None
     assert proof._repr_html_().endswith("</pre>")
-    for options in ({}, {"target": tmp_path / "a.svg"}, {"ax": object()}):
+    for draw in (proof.plot, lambda: write_figure(proof, tmp_path / "a.svg"),
+                 lambda: proof.plot(ax=object())):
         with pytest.raises(ConverseError, match="matplotlib"):
-            proof.figure(**options)
-    proof.figure(tmp_path / "a.ps")
+            draw()
+    write_figure(proof, tmp_path / "a.ps")
 
 
 SIDE_EFFECTS = """
@@ -531,11 +531,12 @@ matplotlib.use("pdf")
 matplotlib.rcParams.update({"font.size": 21, "svg.hashsalt": None, "axes.facecolor": "red"})
 before = dict(matplotlib.rcParams)
 from converse import Proof, prove, read_input
+from converse.draw.figure import figure
 proof = prove(read_input(%r))
 svg = proof._repr_svg_()
-proof.figure(sys.argv[1]); proof.figure(); proof._repr_html_()
+figure(proof, sys.argv[1]); proof.plot(); proof._repr_html_()
 from matplotlib.figure import Figure
-proof.figure(ax=Figure().add_subplot())
+proof.plot(ax=Figure().add_subplot())
 assert dict(matplotlib.rcParams) == before and matplotlib.get_backend().lower() == "pdf"
 assert "matplotlib.pyplot" not in sys.modules
 matplotlib.rcdefaults()

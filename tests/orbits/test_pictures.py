@@ -70,7 +70,7 @@ def test_a_row_for_each_state(plane, line):
         assert np.array_equal(data(left), state.x) and np.array_equal(data(right), state.momenta)
         assert left.get_title(loc="left").startswith(
             "(%s)  ε = %r, (28, 37)/49: minimum" % ("ab"[number], state.eps))
-    assert plane[0].figure().axes[0].get_title(loc="left").startswith("ε = 0.005, (28, 37)/49")
+    assert plane[0].plot().axes[0].get_title(loc="left").startswith("ε = 0.005, (28, 37)/49")
     figure = Figure()
     assert pictures.rows(figure, shown(*line)) == ""
     for panel, state in zip(figure.axes, line):
@@ -114,22 +114,22 @@ def test_a_figure_of_a_state(plane, line):
     """A Figure that a notebook shows, with letters of eight points at least; or only the points, in
     Axes of one's own."""
     for state in plane[0], line[0]:
-        figure = state.figure()
+        figure = state.plot()
         assert len(figure.axes) == state.potential.n and not figure.texts
         assert figure._repr_png_().startswith(START["png"])
         assert min(word.get_size() for word in figure.findobj(Text) if word.get_text()) >= 8
     axes = Figure().subplots(1, 2)
-    assert plane[0].figure(axes) is axes
+    assert plane[0].plot(axes) is axes
     assert np.array_equal(data(axes[0]), plane[0].x)
     assert np.array_equal(data(axes[1]), plane[0].momenta) and not axes[0].get_title(loc="left")
     one = Figure().subplots()
-    assert plane[1].figure(ax=one) is one and np.array_equal(data(one), plane[1].x)
+    assert plane[1].plot(ax=one) is one and np.array_equal(data(one), plane[1].x)
     one = Figure().subplots()
-    line[0].figure(one)
+    line[0].plot(one)
     assert np.array_equal(data(one)[:, 1], line[0].momenta[:, 0])
     for state, ax in (line[0], axes), (plane[0], Figure().subplots(3)):
         with pytest.raises(ValueError, match="is drawn into"):
-            state.figure(ax)
+            state.plot(ax)
 
 
 # ---- families
@@ -139,27 +139,27 @@ def test_columns_of_a_family(plane, line, saddle):
         if column == "residue":
             continue
         axes = Figure().subplots()
-        assert plane.plot(column, ax=axes) is axes
+        assert plane.plot(axes, column) is axes
         values = np.array([getattr(state, column) for state in plane]).reshape(len(plane), -1)
         assert len(axes.get_lines()) == values.shape[1]
         for k in range(values.shape[1]):
             assert np.array_equal(data(axes, k), np.column_stack([plane.eps, values[:, k]]))
         assert axes.get_xlabel() == "ε" and axes.get_ylabel()
-    assert [line.plot("residue").axes[0].get_lines()[0].get_ydata()[k] for k in range(2)] \
+    assert [line.plot(column="residue").axes[0].get_lines()[0].get_ydata()[k] for k in range(2)] \
         == [state.residue for state in line]
-    assert plane.plot("exponents").axes[0].get_title() == "trig, (28, 37)/49"
+    assert plane.plot(column="exponents").axes[0].get_title() == "trig, (28, 37)/49"
     with pytest.raises(ValueError, match="no column 'colour'.*exponents"):
-        plane.plot("colour")
+        plane.plot(column="colour")
     with pytest.raises(ValueError, match="Greene"):
-        plane.plot("residue")
+        plane.plot(column="residue")
     with pytest.raises(ValueError, match="without states"):
-        Family(()).plot("action")
+        Family(()).plot(column="action")
 
 
 def test_states_that_are_no_minima_are_hollow(saddle):
     family = Family((saddle, saddle.relax()))
     assert family[1].label == "minimum"
-    axes = family.plot("action").axes[0]
+    axes = family.plot(column="action").axes[0]
     full, hollow = axes.get_lines()
     assert list(full.get_ydata()) == [state.action for state in family]
     assert list(hollow.get_ydata()) == [saddle.action]
@@ -197,9 +197,9 @@ def test_a_notebook_shows_a_proved_orbit(line):
     proof = orbits.prove(line[1])
     words, (image,) = text(proof._repr_html_())
     assert words == proof.report()
-    title = proof.figure().axes[0].get_title(loc="left")
+    title = proof.plot().axes[0].get_title(loc="left")
     assert "proved within" in title
-    assert np.array_equal(data(proof.figure().axes[0])[:, 0], proof.nearest.x[:, 0])
+    assert np.array_equal(data(proof.plot().axes[0])[:, 0], proof.nearest.x[:, 0])
 
 
 def test_what_is_said_is_no_markup():
@@ -213,7 +213,7 @@ def test_without_matplotlib(plane, monkeypatch):
     for value in plane, plane[0]:
         rows, images = text(value._repr_html_())
         assert rows and not images
-    for draw in plane[0].figure, lambda: plane.plot("action"), orbits.trig.portrait:
+    for draw in plane[0].plot, lambda: plane.plot(column="action"), orbits.trig.portrait:
         with pytest.raises(ConverseError, match=r"converse-kam\[plot\]"):
             draw()
 

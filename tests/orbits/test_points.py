@@ -38,17 +38,17 @@ def test_there_and_back(tmp_path, potential, p, q, eps, ending):
     family = orbits.follow(potential, p, q, eps)
     family.save(path)
     data = path.read_bytes()
-    again = orbits.load(path, potential)
+    again = orbits.Family.load(path, potential)
     assert len(again) == len(family) and all(map(same, again, family))
     if potential.name in ("trig", "standard", "poly"):
-        assert all(map(same, orbits.load(str(path)), family))
+        assert all(map(same, orbits.Family.load(str(path)), family))
     else:
         with pytest.raises(ConverseError, match="potential="):
-            orbits.load(path)
+            orbits.Family.load(path)
     again.save(path)                            # over itself, and the same bytes
     assert path.read_bytes() == data
     family[0].save(path)
-    one, = orbits.load(path, potential)
+    one, = orbits.Family.load(path, potential)
     assert same(one, family[0])
 
 
@@ -60,7 +60,7 @@ def test_every_double_comes_back(tmp_path):
     state = orbits.PeriodicOrbit(orbits.ff, (3, -800), 200, 1 / 3, u,
                                  (np.nextafter(0.3, 1), -1e-17), 7)
     state.save(tmp_path / "a.npz")
-    assert same(orbits.load(tmp_path / "a.npz")[0], state)
+    assert same(orbits.Family.load(tmp_path / "a.npz")[0], state)
 
 
 def test_what_others_read(tmp_path):
@@ -82,13 +82,13 @@ def test_files_that_are_none(tmp_path):
         path = tmp_path / name
         path.write_bytes(content)
         with pytest.raises(ConverseError) as raised:
-            orbits.load(path)
+            orbits.Family.load(path)
         assert str(raised.value).startswith(str(path)) and "\n" not in str(raised.value), name
     np.savez(tmp_path / "other.npz", x=[1.0])
     np.savez(tmp_path / "objects.npz", x=np.array([{}], dtype=object))
     for name in ("other.npz", "objects.npz", "missing", "."):
         with pytest.raises(ConverseError, match="is not a file of states|cannot be read"):
-            orbits.load(tmp_path / name)
+            orbits.Family.load(tmp_path / name)
 
 
 def test_arrays_that_are_no_numbers(tmp_path):
@@ -104,14 +104,14 @@ def test_arrays_that_are_no_numbers(tmp_path):
                             ("q", "a"), ("eps", [0.5, np.nan]), ("p", [[3]])):
             np.savez(bad, **{**arrays, name: value})
             with pytest.raises(ConverseError, match="is not a file of states|is damaged"):
-                orbits.load(bad)
+                orbits.Family.load(bad)
     data = bytearray(path.read_bytes())
     for at in range(len(data)):
         if data[at:at + 4] == b"PK\x01\x02":
             data[at + 8] |= 1
     bad.write_bytes(data)
     with pytest.raises(ConverseError, match="is not a file of states"):
-        orbits.load(bad)
+        orbits.Family.load(bad)
 
 
 def test_states_that_are_no_family_are_not_written(tmp_path):
@@ -127,9 +127,9 @@ def test_the_potential_is_named(tmp_path):
     state = orbits.follow(orbits.standard, (3,), 8, [0.9])[0]
     state.save(tmp_path / "a.npz")
     with pytest.raises(ConverseError, match="its potential is 'standard', not other"):
-        orbits.load(tmp_path / "a.npz", orbits.potential.Fourier({(1,): (-1, 0)}, "other"))
+        orbits.Family.load(tmp_path / "a.npz", orbits.potential.Fourier({(1,): (-1, 0)}, "other"))
     with pytest.raises(ValueError, match="map is a SymplecticMap"):
-        orbits.load(tmp_path / "a.npz", "standard")
+        orbits.Family.load(tmp_path / "a.npz", "standard")
 
 
 def test_what_is_in_the_way_is_kept(tmp_path):
@@ -170,13 +170,13 @@ def command(capsys, *arguments):
 def test_find_writes_points_and_begins_at_them(tmp_path, capsys):
     a, b = tmp_path / "a.npz", tmp_path / "b.npz"
     assert command(capsys, "find", "trig", "5,7/9", "0.02", "0.03", "--points", a)[0] == 0
-    family = orbits.load(a)
+    family = orbits.Family.load(a)
     direct = orbits.follow(orbits.trig, (5, 7), 9, [0.02, 0.03])
     assert all(map(same, family, direct))
     status, out, _ = command(capsys, "find", "trig", "5,7/9", "0.031", "--from", a, "--points", b)
     assert status == 0
     further, = orbits.follow(orbits.trig, (5, 7), 9, [0.031], start=family[1])
-    assert same(orbits.load(b)[0], further) and "%.12g" % further.action in out
+    assert same(orbits.Family.load(b)[0], further) and "%.12g" % further.action in out
 
 
 def test_from_keeps_a_branch_that_continuation_does_not_reach(tmp_path, capsys):
@@ -204,7 +204,7 @@ def test_bad_use_of_points(tmp_path, capsys):
         status, out, err = command(capsys, "find", *arguments)
         assert status == 2 and words in err and err.count("\n") == 1 and not out, arguments
     assert (tmp_path / "else.npz").read_text() == "mine\n"
-    state = orbits.load(a)[0]
+    state = orbits.Family.load(a)[0]
     for start in (state.repeat(2), orbits.follow(orbits.ff, (5, 7), 9, [0.01])[0]):
         with pytest.raises(ValueError, match="the start is"):
             orbits.follow(orbits.trig, (5, 7), 9, [0.02], start=start)

@@ -430,7 +430,7 @@ def test_what_is_written_in_pictures_can_be_read(tmp_path, monkeypatch):
         known.update(dict.fromkeys(found.places(), 1.0))
         for half in found.roots[face].cut(0):
             half.kind = AT_ONCE if half.cell.low[0] else OPEN
-    found.draw(tmp_path / "map.svg")
+    map_figure.draw(found, tmp_path / "map.svg")
     words = [text for text in drawn[0].findobj(Text) if text.get_text()]
     assert min(text.get_fontsize() for text in words) >= 8
     assert {"a = b", "c", "\u03b5 \u2265 0.0272: no torus (1989)"} <= {
@@ -443,10 +443,10 @@ def test_what_is_written_in_pictures_can_be_read(tmp_path, monkeypatch):
 @pytest.mark.parametrize("kind", ["svg", "png", "pdf"])
 def test_pictures(made, tmp_path, kind):
     path = tmp_path / ("map." + kind)
-    made[0].draw(path)
+    map_figure.draw(made[0], path)
     first = path.read_bytes()
     assert first.startswith({"svg": b"<?xml", "png": b"\x89PNG", "pdf": b"%PDF"}[kind])
-    made[0].draw(path)
+    map_figure.draw(made[0], path)
     assert path.read_bytes() == first
 
 

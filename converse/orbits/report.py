@@ -1,0 +1,69 @@
+"""What doubles show of an orbit, and of the pass beside a minimum, in lines."""
+
+import math
+
+from .pictures import exponent_text
+from .proved import vector_words
+
+LARGE = 1e10                            # Stability indices above it are given by their logarithm.
+MEANINGS = {                            # of labels
+    "minimum": "floating point, not proved: a local minimum of the action, perhaps not global",
+    "best": "floating point, not proved: a local minimum, of the least action met",
+    "saddle": "floating point: its action can be lowered, perhaps when it is run through often",
+    "stationary": "floating point: rounding hides whether it is a minimum",
+    "not stationary": "not an orbit",
+}
+
+
+def type_text(state):
+    return ("(%s)/%d" if len(state.p) > 1 else "%s/%d") % (", ".join(map(str, state.p)), state.q)
+
+
+def header(state):
+    """What is the same for all states of a report."""
+    potential = state.potential
+    return ("Map : x' = x + p', p' = p - eps grad V(x), angles of period 1\n"
+            "Potential : %s\nV(x) : %s\n"
+            "Type : %s, rotation vector %s\n" % (
+                potential.name, potential.formula, type_text(state), _numbers(state.rotation)))
+
+
+def _numbers(values):
+    return ", ".join("%.10g" % x for x in values)
+
+
+def report(state):
+    """What is known of a state."""
+    lines = [
+        "eps : %r" % state.eps,
+        "State : %s (%s)" % (state.label, MEANINGS.get(state.label, MEANINGS["best"])),
+        "Action per point less |p/q|^2/2 : %.12g" % state.action,
+        "Exponents : " + ", ".join(exponent_text(state, x, 10) for x in state.exponents),
+        ("Residue : %.10g" % state.residue if state.potential.n == 1 else
+         "Stability indices : " + ", ".join(map(_index_text, state.indices))),
+        "Gradient : largest %.2g, root mean square %.2g" % (state.shadow, state.grad_size),
+        "Deviation : " + ", ".join("%.10g from the %s" % each for each in zip(state.deviation, (
+            "line through x_0", "line at eps 0", "best line"))),
+        "Near-null directions : " + ("%d, along which the points can be moved at almost no cost"
+                                     % state.undetermined if state.undetermined else "none")]
+    return "\n".join(lines) + "\n"
+
+
+def _index_text(rho):
+    """A stability index; a large one by its decimal logarithm."""
+    if isinstance(rho, complex) or not abs(rho) > LARGE:
+        return format(rho, ".10g")
+    return "%s10^%.4f" % ("-" if rho < 0 else "", math.log10(abs(rho)))
+
+
+def pass_report(pair):
+    """What is known of the pass beside a minimum."""
+    towards = "towards the neighbour displaced by " + vector_words(pair.step, pair.minimum.q)
+    if pair.minimax.label != "saddle":
+        return "Pass : too flat for doubles, %s\n" % towards
+    one = pair.minimum.potential.n == 1
+    return "Pass : saddle, %s\n%s\n%s : %.10g\n" % (
+        towards,
+        "Residue of the minimax orbit : %.10g" % pair.minimax.residue if one else
+        "Stability indices of the pass : " + ", ".join(map(_index_text, pair.minimax.indices)),
+        "Flux" if one else "Difference of action", pair.barrier)
