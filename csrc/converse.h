@@ -3,7 +3,7 @@
    Nothing here prints, reads a file or ends the process, and nothing is global: two searches
    may run in two threads.  Numbers cross the border as decimal strings, exactly. */
 
-/* What the functions return. */
+/* Return values. */
 enum {
     CV_OK = 0,
     CV_RUNNING = 1,          /* the search wants to be stepped again */
@@ -84,8 +84,8 @@ typedef struct {
 } cv_problem;
 
 /* A new search; it covers an enclosure of the problem's region.  The thesis's waves are (1, 0),
-   (0, 1) and (1, 1) in this order, without phases; its method takes only these, as they are, each
-   with a parameter of its own, no other frame and no shifts.
+   (0, 1) and (1, 1) in this order, without phases.  Its method takes only these, each with a
+   separate parameter, in the identity frame and without shifts.
    xstar: the two coordinates of the starting point, or NULL to have one chosen.
    On success *s must be freed with cv_search_free.  It begins with the root as its only prism. */
 int cv_search_new(cv_search **s, const cv_problem *problem, const char *const xstar[2], int method,
@@ -118,12 +118,13 @@ int cv_pending(const cv_search *s, cv_cell *cells);
 const char *cv_tree(const cv_search *s, size_t *length);   /* nodes so far, in preorder */
 const cv_counts *cv_get_counts(const cv_search *s);
 const int *cv_steps(const cv_search *s);                   /* of each node: its orbit's length */
-/* Method Loewner, V odd: 1 if B > 10/3 for all parameters; 2 if there is one, and this is so at its
-   upper end t_1 = 1.  Then the theorem holds for every multiple s >= 1 of these amplitudes, too. */
+/* Mather's criterion, for the method Loewner and odd V.  1: B > 10/3 on the whole patch; 2: there
+   is one parameter, and B > 10/3 at its upper end t_1 = 1; 0: neither.  With 1 or 2 the theorem
+   also holds for every multiple s >= 1 of these amplitudes. */
 int cv_at_once(const cv_search *s);
 /* Numbers of the search as exact decimals; the caller frees.  which: 0, 1 the starting point;
    2 T, 3 Tr_-, 4 Tr_+, 5 B, 6 lambda_-min, 7 lambda_-max (thesis, section 3.3.4; 5 alone with the
-   method Loewner); 8 centre and 9 half-width of v0, 10 and 11 of v1, in radians.  Not before
-   cv_prepare but for 0 and 1.  NULL: no memory. */
+   method Loewner); 8 centre and 9 half-width of v0, 10 and 11 of v1, in radians.  Before
+   cv_prepare only 0 and 1 are known.  NULL: no memory. */
 char *cv_constant(const cv_search *s, int which);
 void cv_free(char *text);

@@ -6,8 +6,8 @@
    base_j = origin + (j p mod q)/q: the kinetic part of its gradient needs u alone.
    Symmetric matrices are stored as three numbers, the entries 00, 01 and 11.
 
-   These are doubles without promises, but for potentials and the least action: see there.  What is
-   proved with them is proved elsewhere. */
+   These functions work in doubles and promise nothing.  Potentials and the least action are the
+   exceptions, and state their errors.  converse/orbits/enclosure.py proves orbits in balls. */
 
 enum { CV_FOURIER, CV_POLY, CV_FF, CV_PYTHON };         /* kinds of potentials */
 
@@ -22,18 +22,18 @@ typedef struct {
 } cv_potential;
 
 /* V, its gradient and Hessian at m points.  value, gradient or hessian may be NULL.
-   CV_EARGUMENT: Python failed to say. */
+   CV_EARGUMENT: the Python callback raised. */
 int cv_evaluate(const cv_potential *v, long m, const double (*x)[2], double *value,
                 double (*gradient)[2], double (*hessian)[3]);
 
-/* The action minus that of the straight orbit, sum |u_{j+1} - u_j|^2/2 - eps V(x_j), and its
+/* The action minus the straight orbit's, sum |u_{j+1} - u_j|^2/2 - eps V(x_j), and its
    gradient. */
 int cv_action(const cv_potential *v, long q, double eps, const double (*base)[2],
               const double (*u)[2], double *action, double (*gradient)[2]);
 
 /* u = (Hessian of the action + mu)^-1 b.  blocks: beta_j = 2 - eps V''(x_j).  Returns how many
-   eigenvalues of Hessian + mu are negative (then u is no descent).  work: CV_WORK doubles for each
-   point; NULL: count only, b and u are not looked at. */
+   eigenvalues of Hessian + mu are negative (then u need not descend).  work: CV_WORK doubles for
+   each point; NULL: count only, b and u are not looked at. */
 enum { CV_WORK = 7 };
 long cv_solve(int n, long q, const double (*beta)[3], double mu, const double (*b)[2],
               double (*u)[2], double *work);
@@ -59,25 +59,25 @@ int cv_relax(const cv_potential *v, long q, double eps, const double (*base)[2],
 
 /* The pivots d_j = beta_j - 1/d_{j-1} from d_0 = beta_0, run round the orbit until they repeat to
    relative 1e-13 or for max_rounds.  Returns the rounds it took, 0 if they did not settle; -r if
-   one in round r was not positive definite: then the orbit run through r + 1 times is no minimum,
-   since the pivots up to there are those of its Hessian with the other points held fixed. */
+   one in round r was not positive definite: then the orbit run through r + 1 times is not a
+   minimum, since its Hessian, with the other points held fixed, has the same pivots up to there. */
 long cv_pivots(int n, long q, const double (*beta)[3], long max_rounds, double (*d)[3]);
 
 /* ---- the least action over all orbits: minplus.c */
 
-/* What cv_evaluate may be off by, in V, its gradient and its Hessian (Euclidean and spectral norm),
-   at points with coordinates up to reach that are off by 2^-53 (2 reach + 2) themselves.
-   CV_EARGUMENT: nothing is known of a potential of Python, or so far out.  CV_EMACHINE: nor of any,
-   with this arithmetic. */
+/* Bounds of cv_evaluate's errors in V, its gradient and its Hessian (Euclidean and spectral norm),
+   at points with coordinates up to reach that are themselves off by 2^-53 (2 reach + 2).
+   CV_EARGUMENT: no bound is known, since the potential is Python's, or since reach >= 1000.
+   CV_EMACHINE: the arithmetic breaks the rules. */
 int cv_errors(const cv_potential *v, double reach, double errors[3]);
 
 /* Which states of least action of type (p, q), q points z_j + j p/q, may have z_j in the rectangle
    low[j] to high[j] for all j, and V at z_0 (eps < 0: at least -V) as large as at any other?
-   base[j] is (j p mod q)/q rounded, curvature >= the norm of V'', and `known` no less than their
-   action, which is meant less that of the straight orbit.  Their points lie in the smaller
-   rectangles that are left in low and high, and their action is no less than *least, infinite if
-   there can be none; otherwise path may be near one.  nodes: how many to lay along each axis, 1 to
-   1025, both ends included; of an idle one 1. */
+   base[j] is (j p mod q)/q rounded, curvature >= the norm of V'', and `known` is an upper bound of
+   their action.  All actions are less the straight orbit's.  The points of these states lie in the
+   smaller rectangles that are left in low and high, and their action is at least *least, which is
+   infinite if there is no such state; otherwise path may be near one.  nodes: how many to lay along
+   each axis, 1 to 1025, both ends included; of an idle one 1. */
 int cv_corridor(const cv_potential *v, int q, double eps, double curvature, const double (*base)[2],
                 double known, const int (*nodes)[2], double (*low)[2], double (*high)[2],
                 double *least, double (*path)[2]);

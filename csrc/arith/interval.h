@@ -7,8 +7,8 @@
 
    No rounding mode is changed.  A double x that was rounded to nearest from z has
    |x - z| <= 2^-53 |x| + 2^-1075, gradual underflow included.  just_below moves it down by about
-   2^-51 |x| + 2^-951, and its own roundings cost less than 2^-52 |x| + 2^-1000; likewise
-   just_above.  (So does Arb with its intervals of doubles.) */
+   2^-51 |x| + 2^-951, and its own roundings cost less than 2^-52 |x| + 2^-1000; just_above moves it
+   up by as much.  (Arb's intervals of doubles do the same.) */
 #ifndef CONVERSE_INTERVAL_H
 #define CONVERSE_INTERVAL_H
 
@@ -78,7 +78,7 @@ INLINE interval interval_scale(double n, interval x)
                    : (interval){ just_below(low), just_above(high) };
 }
 
-/* What of x lies within [-1, 1]. */
+/* The part of x within [-1, 1]. */
 INLINE interval interval_clip(interval x)
 {
     return (interval){ x.low > -1.0 ? x.low : -1.0, x.high < 1.0 ? x.high : 1.0 };

@@ -1,6 +1,6 @@
 /* lanes.h - LANES doubles side by side, on each of which the same is done.
 
-   A file that includes this chooses LANES before, or has one, a plain double.  All operations are
+   Define LANES before the include; the default is 1, where vec is double.  All operations are
    those of doubles rounded to nearest, lane by lane and in the order of the source, so whatever is
    computed has the same bits on every machine and with every number of lanes. */
 #ifndef CONVERSE_LANES_H
@@ -23,7 +23,7 @@
 
 #if LANES == 1
 typedef double vec;
-typedef uint64_t mask;                  /* of each lane all bits, or none */
+typedef uint64_t mask;                  /* per lane all ones (true) or all zeros (false) */
 
 #define TRUTH(condition) (-(mask)(condition))
 INLINE mask bits_of(vec x)

@@ -1,8 +1,8 @@
 /* special.c - see special.h.
 
    All work is done with integers that stand for multiples of an ulp, 2^-w.  The error of a sine
-   has the three parts of the thesis's equation for reducedSin: that of the reduced argument,
-   that of the truncated intermediate results, and the rest of the Taylor series.  Unlike the
+   has the three parts of the thesis's equation for reducedSin: the errors of the reduced argument
+   and of truncated intermediate results, and the rest of the Taylor series.  Unlike the
    thesis we halve the reduced argument before the series, and double the angle after it.
 
    MPFR has these functions, but guard.c leaves a computation by longjmp when memory runs out, and
@@ -172,12 +172,12 @@ static void set_turn(trig_t *trig, long exp, mp_bitcnt_t bits)
    A power is a truncated product of two: if these are short by less than 2 units, it is short by
    less than 2/16 + 2/16 + 1 < 2.  If v/c is off by e units, the product with z^row is off by less
    than e/16 + 2/16 + 1 and a little; the power adds less than 2 and a division by c less than 1;
-   and then 2k (2k - 1) divides, which is at least 12 but for k = 1.  So e < 1/2 until k = 1, and
+   and then 2k (2k - 1) divides, which is at least 12 except for k = 1.  So e < 1/2 until k = 1, and
    then e < (1.3 + 2 + 1)/2, and the last division makes it less than 3.2.
 
    Less than a unit is left out: if j <= halvings, then b <= w + 2 halvings, which is what plan
    takes; and if not, z < 4^-j, each term gains on that by 4^(j - halvings), and b only by
-   2^(j - halvings).  As the truth is not negative, |v| is no farther from it than v. */
+   2^(j - halvings).  As the truth is not negative, |v| is as near to it as v. */
 static void versine(trig_t *trig, mp_bitcnt_t j, mp_bitcnt_t b)
 {
     mpz_t *const z = trig->power;

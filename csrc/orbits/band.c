@@ -52,11 +52,11 @@ static void regularize(double d[3])
     }
 }
 
-/* Block elimination of the first q - 1 points, one after the other, leaves d_j of point j; w_j, its
-   coupling to the last point, goes along: w_{j+1} = d_j^-1 w_j.  Both neighbours of the last point
-   couple to it, and with q = 2 they are one, with q = 1 itself.  The eigenvalues below zero of all
-   the pivots together are as many as those of the whole (Sylvester), and are returned; log, unless
-   it is NULL, is that of the modulus of the determinant. */
+/* Eliminates the first q - 1 points by blocks, one after the other.  The pivot of point j is d_j;
+   its coupling w_j to the last point goes along: w_{j+1} = d_j^-1 w_j.  Both neighbours of the last
+   point couple to it; with q = 2 they are one point, with q = 1 the last point itself.  Returns the
+   number of negative eigenvalues of all pivots, which the whole matrix has, by Sylvester's law.
+   *log_det, unless it is NULL, is the logarithm of the determinant's modulus. */
 static long eliminate(int n, long q, const double (*beta)[3], double mu, row *rows, double last[3],
                       double *log_det)
 {

@@ -14,7 +14,7 @@
 
    Whatever bounds all paths on the grid from below, bounds all paths less (1).  Where all points
    have the same grid, one threshold will do for all of them, y_j = e floor(x_j/e + r) with a random
-   r: then y_{j+1} - y_j, too, is one of two neighbours of its mean, and (1) has 1 in place of 2.
+   r: then y_{j+1} - y_j is also one of two neighbours of its mean, and (1) has 1 in place of 2.
 
    Rounding.  Unit u = 2^-53.  Nodes are doubles, so only W = -eps V is not what it should be there,
    by cv_errors, and what is computed from it rounds: see cheapest, and the margins that refer
@@ -36,7 +36,7 @@ enum { MAX_NODES = 1025 };              /* along an axis of a corridor */
    poly: 2^-43, 2^-41, 2^-39 are 1024u, 4096u and 16384u.  The roundings of the formulas make 40u,
    400u and 6000u of them at most, and the point, off by u(2 reach + 3) once its whole turns are
    taken off, moves V by 9 times, its gradient by 116 times, V'' by 2800 times as much.
-   ff: likewise; c, c', c'' have slopes of at most 12, 48 and 192, and x0 + x1 is off by
+   ff: the same; c, c', c'' have slopes of at most 12, 48 and 192, and x0 + x1 is off by
    u(6 reach + 6). */
 int cv_errors(const cv_potential *v, double reach, double errors[3])
 {
@@ -74,9 +74,10 @@ typedef struct {
    if i < i' and k < k',
        cost(k, i) + cost(k', i') <= cost(k, i') + cost(k', i).
    So the least of the row in the middle halves the search of the others.  Let a computed cost be
-   off by at most c.  The i found is least up to 2c, and so by the inequality the rows below it have
-   an i from it on whose cost is at most 2c above their least, likewise the rows above.  2048 rows
-   are halved 12 times: each comes out within 25c of the truth. */
+   off by at most c.  The i that is found is least up to 2c.  So by the inequality each row below
+   has an i that is not smaller, whose cost is at most 2c above the row's least; and each row above
+   has one that is not larger.  2048 rows are halved 12 times: each comes out within 25c of the
+   truth. */
 static void cheapest(const line *l, int first, int end, int left, int right)
 {
     while (first < end) {
@@ -228,7 +229,7 @@ static double array_min(size_t n, const double *values, size_t *where)
 }
 
 /* Forward pass: F of every rectangle and `end`, for paths whose cost begins with u; T = end - u.
-   Returns the least of T at the nodes that are not excluded, infinite if there is no path. */
+   Returns the least of T at the nodes that are not excluded; it is infinite without a path. */
 static double forward(corridor *c, size_t *where)
 {
     rectangle *const first = c->r;

@@ -9,8 +9,8 @@
 int cv_python_potential(void *self, long m, const double *x, double *value, double *gradient,
                         double *hessian);
 
-/* Defined there, too: does Python want an end?  It looks for signals.  To be called now and then
-   in every loop that may last, but not so often that it counts. */
+/* Does Python want an end?  Python defines this function, which looks for signals.  Every loop that
+   may last calls it now and then, but not so often that the calls take time. */
 int cv_python_interrupts(void);
 
 #endif

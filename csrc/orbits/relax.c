@@ -5,7 +5,7 @@
 
 #include "orbits/potential.h"
 
-/* Lengths are parts of the period, which is 1; eigenvalues are those of the Hessian, near 1. */
+/* The period is 1, and the eigenvalues of the Hessian are of about 1. */
 static const double MAX_STEP = 0.1;     /* no coordinate moves further in one step */
 static const double NULL_EIGENVALUE = 1e-11;    /* rounding decides the sign of smaller ones */
 static const double MAX_DAMPING = 1e9; /* with a larger mu a step is below 1e-9 of the gradient */
@@ -36,7 +36,7 @@ typedef struct {
     double noise, doubt; /* of the rounding of actions; and where V, not its slope, cancels */
 } place;
 
-/* Is the search to end?  To be asked after each round through all points. */
+/* Does Python want an end?  Asked after each round through all points. */
 static int stopped(action_of *of)
 {
     of->points += of->q;
@@ -101,7 +101,7 @@ static int evaluate(const action_of *of, place *at)
     return CV_OK;
 }
 
-/* Makes room for a state and its derivatives; 0: there is no memory. */
+/* Makes room for a state and its derivatives; 0: memory is missing. */
 static int make_place(place *at, long q)
 {
     const size_t size = (size_t)q;
@@ -119,7 +119,7 @@ static void free_place(place *at)
     free(at->beta);
 }
 
-/* Makes room for scratch; 0: there is no memory. */
+/* Makes room for scratch; 0: memory is missing. */
 static int make_scratch(action_of *of)
 {
     const size_t size = (size_t)of->q;

@@ -1,10 +1,10 @@
 /* lookahead.c - prisms are tried several at a time, some of them before their turn.
 
    A method may be quickest with several prisms at a time (method.h: lanes).  So the first of those
-   pending are tried together, and what became of them is noted.  Where one was cut its halves are
-   noted, too, and may be tried with those that follow.  Its turn comes in preorder all the same,
-   and only then does it count: since nothing depends on other prisms, the tree is as it would be
-   with one at a time. */
+   pending are tried together, and the outcomes are noted.  The halves of a prism that was cut are
+   also noted, and may be tried with the prisms that follow.  A prism counts only when its turn
+   comes in preorder.  Since no outcome depends on other prisms, the tree is the same as with one
+   prism at a time. */
 #include <stdlib.h>
 
 #include "search/search.h"
@@ -33,8 +33,8 @@ static int new_note(cv_search *s, const cv_cell *cell)
     return id;
 }
 
-/* Adds what is not yet known of a prism and those it was cut into to the list, in preorder.
-   Returns whether all is known. */
+/* Adds a prism and those it was cut into to the list, in preorder, if their outcomes are not known.
+   Returns whether all are known. */
 static int list_unknown(cv_search *s, int id, int list[], int *n, int most)
 {
     note *const p = &s->notes[id];
@@ -51,8 +51,8 @@ static int list_unknown(cv_search *s, int id, int list[], int *n, int most)
     return p->settled;
 }
 
-/* Tries the first prisms of those in line, as many as the method takes at once.  Where a try is
-   broken off its note is as if it had not begun. */
+/* Tries the first prisms in line, as many as the method takes together.  The note of a try that is
+   broken off is as if the try had not begun. */
 static void look_ahead(cv_search *s)
 {
     const int lanes = s->method->lanes(s->work);

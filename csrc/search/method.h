@@ -11,7 +11,7 @@ enum { MOST_LANES = 8 };
 /* The constants of the theorem: T, Tr_-, Tr_+, B, lambda_-min, lambda_-max. */
 enum { C_T, C_TRACE_MIN, C_TRACE_MAX, C_B, C_LAM_MIN, C_LAM_MAX, N_CONSTANTS };
 
-/* What became of one try of a prism. */
+/* The outcome of one try of a prism. */
 typedef struct {
     int no_tori;                        /* proved (by this arithmetic) */
     int reason;                         /* CV_REASON_... if not */
@@ -20,12 +20,12 @@ typedef struct {
     int ll_used[3];                     /* how often its best bound was CV_BY_... */
 } verdict;
 
-/* What became of a cell. */
+/* The outcome of a cell. */
 typedef struct {
     verdict v;                          /* of the last try */
     int axis;           /* to cut the cell across if it is not proved; -1: that would not help */
     int hint;                           /* what its halves are to know: cv_cell */
-    int quick_tries, tries, Rtries;     /* made of it, each 0 or 1, for cv_counts */
+    int quick_tries, tries, Rtries;     /* stages that were run, 0 or 1 each, for cv_counts */
     int steps, ll_used[3];              /* of the thesis's try in doubles */
 } outcome;
 
@@ -40,11 +40,11 @@ typedef struct {
     void (*choose_start)(const patch *p, int symmetric, double x[2]);
     int start_places;
 
-    int least_digits;       /* the region is converted with at least so many decimal places */
+    int least_digits;       /* the region is converted with at least this number of places */
 
-    /* Sets up what all tries need, for a problem with angles in radians and x*.  *work: where they
-       work, set as soon as there is something to be freed.  Sets those constants that the method
-       has, and at_once (cv_at_once).  CV_OK or an error. */
+    /* Sets up the tables of all tries, for a problem with angles in radians and x*.  *work receives
+       the workspace, even on failure if something must be freed.  Sets the constants that the
+       method has, and at_once (cv_at_once).  CV_OK or an error. */
     int (*prepare)(void **work, const patch *p, const precision *how, apm_t constants[N_CONSTANTS],
                    int *at_once);
     /* Frees work, which may be NULL.  If numbers_lost, GMP's numbers in it may be broken (guard.c):
@@ -52,11 +52,11 @@ typedef struct {
     void (*free)(void *work, int numbers_lost);
 
     int (*axes)(const patch *p); /* of a cell, that may be cut */
-    int (*lanes)(const void *work); /* cells that are best tried at once, at most MOST_LANES */
+    int (*lanes)(const void *work); /* cells that are best tried together, at most MOST_LANES */
 
-    /* Is it impossible that a minimizing orbit leads from x* to these cells?  What becomes of a
-       cell depends on itself and on cell->hint, and on no other cell.  Where a stop is asked for
-       in the middle nothing is known of them. */
+    /* Is it impossible that a minimizing orbit leads from x* to these cells?  The outcome of a cell
+       depends on the cell and its hint, and on no other cell.  If a stop is asked for in the
+       middle, no outcome is known. */
     void (*try)(void *work, int n, const cv_cell *const cells[], outcome *const out[]);
 } method;
 

@@ -2,9 +2,8 @@
 
    The list is a stack: a prism that fails is replaced by its two halves, the first of which is
    tried next.  So the tree of all prisms is met in preorder, and one character per node,
-   written as it is decided, is the whole of the proof.  What becomes of a prism depends on
-   itself and on what its parent learnt (cv_cell's hint), so parts of the tree can be grown
-   apart. */
+   written as it is decided, is the whole of the proof.  The outcome of a prism depends on itself
+   and on what its parent learnt (cv_cell's hint), so parts of the tree can be grown apart. */
 #define _POSIX_C_SOURCE 200809L
 
 #include <stdlib.h>
@@ -51,7 +50,7 @@ static int make_room(cv_search *s)
     return make_room_for_notes(s);
 }
 
-/* Counts a leaf of so many cuts. */
+/* Counts a leaf below that number of cuts. */
 static void count_leaf(cv_search *s, char kind, int cuts)
 {
     if (kind == 'P') {
