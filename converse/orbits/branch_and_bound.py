@@ -25,12 +25,12 @@ from .state import PeriodicOrbit, type_of
 
 @dataclass(frozen=True, eq=False)
 class LeastAction:
-    """low <= the least action of all states of state's type and eps <= high, both per point, less
-    that of the straight orbit, and proved.
+    """low <= the least action of all states of state's type and eps <= high: proved.  Both are per
+    point and less the straight orbit's action.
 
     state     -- one whose action is at most high
-    copies    -- the state of least action is an orbit run through so many times: proved; 1: nothing
-                 is claimed
+    copies    -- how often the state of least action runs through an orbit: proved; 1: nothing is
+                 claimed
     corridors -- how many products of rectangles were looked into
     """
 
@@ -45,7 +45,7 @@ class LeastAction:
 
 @dataclass(frozen=True)
 class _Settled:
-    """What a corridor was left with: no state in it has less action than bound; copies as above."""
+    """The result for a corridor: no state in it has less action than bound; copies as above."""
 
     bound: float
     copies: int
@@ -61,7 +61,7 @@ def _least_eigenvalue(matrix, guess):
         lower = np.linalg.cholesky(shifted)
     except np.linalg.LinAlgError:
         return -inf
-    # lower lower^T has no negative eigenvalue, and the rest no larger one than its rows' sums
+    # the eigenvalues of lower lower^T are not negative, those of the rest at most its rows' sums
     sizes, sums = np.abs(lower), np.zeros(size)
     for rows in (slice(k, k + ROWS_PER_POLL) for k in range(0, size, ROWS_PER_POLL)):
         rest = np.abs(shifted[rows] - np.einsum("ik,jk->ij", lower[rows], lower))
@@ -151,7 +151,7 @@ class _Search:
 
         With mu <= all eigenvalues and g the gradient at z, the action elsewhere exceeds that at z
         by at least g.t + mu |t|^2/2."""
-        room = (high - low) / 8             # a least state on the edge shall be inside, too
+        room = (high - low) / 8             # so that a least state on the edge is inside
         mu = self.convexity(low - room, high + room)
         if not mu > 0:
             return None

@@ -2,7 +2,7 @@
 ball arithmetic: python-flint's arb, a midpoint and a radius that bounds every rounding, and
 matrices of them.
 
-docs/proofs/proved-orbits.md has the theorems.  The Hessian of the action is that of a chain: n x n
+docs/proofs/proved-orbits.md has the theorems.  The Hessian of the action is a chain: n x n
 blocks beta_j = 2 - eps V''(x_j), and -1 between neighbours, cyclically.
 """
 
@@ -16,7 +16,7 @@ from .potential import look_up
 
 
 def bits_of(places):
-    """The precision in which balls have so many decimal places, and some to spare."""
+    """The precision, in bits, of balls with this number of decimal places, and some to spare."""
     return places * 3322 // 1000 + GUARD_BITS
 
 
@@ -174,7 +174,7 @@ class Enclosure:
         self.u = [arb_mat(self.n, 1, [arb(x) for x in row]) for row in state.u.tolist()]
 
     def evaluate(self, places):
-        """Gradient, Hessian and action of the points as they are, with so many decimal places."""
+        """Gradient, Hessian and action of the points as they are, to this number of places."""
         n, q, u = self.n, self.q, self.u
         self.begin(places)
         if places != self.places:
@@ -289,9 +289,9 @@ class Enclosure:
         self.u[0] = (self.u[0] + step).mid()
 
     def pivot_after_all(self, shift):
-        """The pivot of point 0 after ever so many rounds: the chain is joined to its like, and the
-        result to its like, until its ends do not feel each other.  None: there is none, some copies
-        of the orbit together are no minimum.  No promise."""
+        """The pivot of point 0 after very many rounds: the chain is joined to a copy of itself, and
+        so is the result, until its ends do not affect each other.  None: a pivot is not positive,
+        so some copies of the orbit together are not a minimum.  No promise."""
         chain = self._eliminate(shift)
         if chain is None:
             return None

@@ -12,8 +12,9 @@ from .limits import MAX_CONES
 
 def growth(chain, strict, away):
     """Enclosures (low, high) of log |l|, larger first, for every orbit whose blocks beta_j are
-    within `away` of those of the chain, an Enclosure; strict > away; and the sign of the l, 0 where
-    they are complex or that is undecided.  None: the pivots could not be enclosed."""
+    within `away` of the blocks of the chain, an Enclosure; strict > away.  Also the sign of the l,
+    which is 0 where they are complex or this is undecided.  None: the pivots could not be
+    enclosed."""
     s, t = chain.below(ball(strict)), chain.above(ball(away), ball(strict))
     if s is None or t is None or not is_positive(t[0] - s[0]):
         return None
@@ -53,7 +54,7 @@ def _det(matrices):
 
 def _directions(s, squarings):
     """About the directions that grow most, without radius: at point 0 the larger column of a high
-    power of the product of all s, and from there on as s carries it."""
+    power of the product of all s, and at the following points as s carries it."""
     def scaled(x):
         return (x * (1 / max(map(abs, x.entries())))).mid()
 

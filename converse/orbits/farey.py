@@ -1,4 +1,4 @@
-"""Rational approximation of one number or of two at once: thesis, Appendix A; Kim and Ostlund.
+"""Rational approximation of one number or of a pair: thesis, Appendix A; Kim and Ostlund.
 
 All is exact.  Which half of an interval or a triangle a point lies in is decided by the sign of an
 integer or a Fraction, and a point on the cut counts as lying to the right; a double, which could
@@ -19,7 +19,7 @@ class Mediant(NamedTuple):
 
 
 def tree(w):
-    """The Mediants of the intervals of the Farey tree that contain w, from (1)/2 on; they end with
+    """The Mediants of the intervals of the Farey tree that contain w: the first is (1)/2, the last
     w itself."""
     w = exact(w)
     if not 0 < w < 1:
@@ -54,8 +54,8 @@ def halves(triangle):
 
 
 def triangle(w):
-    """The Mediants of the Farey triangles that contain the vector w, from (1, 1)/2 on; they end
-    with w itself if they ever meet it."""
+    """The Mediants of the Farey triangles that contain the vector w: the first is (1, 1)/2, the
+    last w itself, if the triangles ever meet it."""
     try:
         w0, w1 = w
     except (TypeError, ValueError):

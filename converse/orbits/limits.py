@@ -14,7 +14,7 @@ MAX_SHADOW = 1e-9               # A state whose shadow is smaller is an orbit.
 EIGENVALUE_ROUNDING = 1e-12     # The rounding of an eigenvalue is smaller.
 SHADOW_REACH = 1e-3             # Over this distance an eigenvalue is taken to be constant.
 NULL_EIGENVALUE = 1e-8          # An eigenvalue below this in size leaves the phase undetermined.
-MAX_PIVOTS = 200000             # The pivots pass so many points, or five times round the orbit.
+MAX_PIVOTS = 200000             # The pivots pass at most this, or five times round the orbit.
 MAX_LOG_EXCESS = 40.0           # Beyond e^40 a double does not notice 4.
 
 # ---- continuation and onsets
@@ -23,7 +23,7 @@ STEP_TIMES_CURVATURE = 0.2      # The step of eps to the next guess, times the c
 MAX_STEP_DIVISOR = 64           # The step is divided by at most this where the solver fails.
 MAX_EPS_STEPS = 10000           # From one eps to the next there are no more steps.
 MAX_ONSET_GRADIENT = 1e-12      # Before break-up rounding hides smaller gradients.
-MAX_ONSET_STEPS = 3000          # After so many steps of the solver a smaller step of eps is tried.
+MAX_ONSET_STEPS = 3000          # After these steps of the solver a smaller step of eps is tried.
 MAX_ONSET_HALVINGS = 10         # The step of eps is halved so often.
 ONSET_TIMES_CURVATURE = 0.03, 0.0006, 4.0   # Step, width and top of onset(), times the curvature.
 TASKS_PER_WORKER = 2            # One is worked on, the other waits.

@@ -24,10 +24,10 @@ LARGEST_ROTATION = 100
 
 @dataclass(frozen=True, eq=False)
 class MatherBeta:
-    """low      -- the average action per point of any orbit of this rotation vector, and of any
-                   other sequence of points, is no less: proved; less |rotation|^2/2, as
+    """low      -- a lower bound, proved, of the average action per point of any orbit of this
+                   rotation vector, and of any other sequence of points; less |rotation|^2/2, as
                    PeriodicOrbit.action
-    estimate -- the same of paths on the grid: at most so much higher could low be
+    estimate -- the least action of paths on the grid: low cannot rise above it
     c        -- low is |rotation - c|^2/2 below the least of W + |y - x - c|^2/2; any c bounds
     """
 
@@ -58,7 +58,7 @@ class _Torus:
         return out
 
     def settle(self, c, tolerance, most):
-        """Makes T u - u constant, but for the tolerance if `most` steps reach it; half steps do not
+        """Makes T u - u constant, up to the tolerance if `most` steps reach it; half steps do not
         go round with an orbit.  Returns its least value less all roundings: no closed path on the
         grid has less W + |y - x - c|^2/2 per step."""
         for step in range(most):

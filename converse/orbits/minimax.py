@@ -2,10 +2,10 @@
 
 A minimum x of type (p, q) has copies of the same action, x_{j+r} less whole turns, which are
 displaced by the vectors r p/q + m of a lattice.  On the way to one of them, through sequences of
-points of the same type, the action rises at least to that of a pass, which is an orbit, too: a
-saddle with one direction down.  With one angle that is the minimax orbit of the Birkhoff pair, and
-the difference of action the flux through the gap of the (p, q) cantorus approximant (MacKay, Meiss
-and Percival, Physica D 13, 1984).
+points of the same type, the action rises at least to the action of a pass.  A pass is also an
+orbit: a saddle with one direction down.  With one angle it is the minimax orbit of the Birkhoff
+pair, and the difference of action is the flux through the gap of the (p, q) cantorus approximant
+(MacKay, Meiss and Percival, Physica D 13, 1984).
 
 The coordinate in which the two differ most is held, and the action minimized over all others, from
 one to the other.  Every way passes through each value of that coordinate, and so it rises to the
@@ -66,8 +66,8 @@ class Pair:
 
     @property
     def barrier(self) -> float:
-        """The action of the pass less that of the minimum, of all q points together, in doubles:
-        its rounding is about 1e-16 times the root of q, and eps where that is larger than 1."""
+        """The action of the pass less the minimum's, of all q points together, in doubles.
+        Its rounding is about 1e-16 times the root of q, and eps where eps is larger than 1."""
         return difference(self.minimum, self.minimax)
 
     @property
@@ -116,7 +116,7 @@ class Pair:
 
 
 def gap_of(pair):
-    """How far the neighbour's points are from those of the minimum, array (q, n)."""
+    """The displacements of the neighbour's points from the minimum's, array (q, n)."""
     return _gap(pair.minimum, pair.turn, pair.step)
 
 
@@ -154,7 +154,7 @@ def minimax(state, step=0):
 
 
 def _gap(state, r, vector):
-    """How far the neighbour's points are from those of the state, array (q, n)."""
+    """The displacements of the neighbour's points from the state's, array (q, n)."""
     return np.roll(state.u, -r, 0) - state.u + np.array(vector) / state.q
 
 

@@ -40,7 +40,7 @@ PROVED = ("Proved: a true orbit is so near to the points drawn, before these wer
 
 
 class Shown(NamedTuple):
-    """What a picture shows of a state or of a proved orbit: its points, and what they are."""
+    """A state or a proved orbit as a picture shows it: its points and their kind."""
 
     state: PeriodicOrbit
     proof: Optional[ProvedOrbit]
@@ -51,7 +51,7 @@ class Shown(NamedTuple):
 
     @property
     def kind(self):
-        """What it is: what was proved, or what doubles show."""
+        """The kind of the points: proved, or as far as doubles show."""
         if self.proof is not None:
             return "proved within %s, at most %s from the state found" % distances(self.proof)
         return kind(self.state)
@@ -65,7 +65,7 @@ def quality(state):
 
 
 def kind(state):
-    """What it is, as far as doubles show."""
+    """The kind of a state, as far as doubles show."""
     words = state.label
     if state.undetermined:
         words += ", %d near-null direction%s (phase arbitrary)" % (
@@ -78,7 +78,7 @@ def exponents_words(state):
 
 
 def exponent_text(state, exponent, digits):
-    """An exponent to so many digits; of one that is not told from 0, only that it is small."""
+    """An exponent to that number of digits; only a bound if doubles do not tell it from 0."""
     least = 2 / max(MAX_PIVOTS, 5 * state.q)
     return "below %.0e" % least if exponent < least else "%.*g" % (digits, exponent)
 
@@ -262,7 +262,7 @@ def minimum(state):
 # ---- what a notebook shows
 
 def measures(state):
-    """What a table says of a state: {name: text}."""
+    """The rows of a table about a state: {name: text}."""
     found = {"eps": "%r" % state.eps, "label": state.label, "action": "%.12g" % state.action,
              "exponents": ", ".join(exponent_text(state, x, 6) for x in state.exponents)}
     if state.potential.n == 1:

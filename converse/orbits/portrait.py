@@ -76,7 +76,7 @@ def chosen(system, plane, within):
 
 
 def title(system, plane, conditions):
-    """What a portrait shows of orbits with more than two coordinates; "" if it shows all."""
+    """The title of a portrait of orbits with more than two coordinates; "" if it shows all."""
     if system.dimension == 1:
         return ""
     words = [_math(name) for name in plane]

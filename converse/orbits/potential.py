@@ -236,7 +236,7 @@ class Fourier(Potential):
 
     @property
     def terms(self) -> Mapping[Tuple[int, ...], Tuple[Fraction, Fraction]]:
-        """{k: (cosine, sine)}, but for waves whose phase makes these irrational."""
+        """{k: (cosine, sine)}, without waves whose phase makes these irrational."""
         return MappingProxyType({k[:self.n]: (c[0], d[0]) for k, c, d in self.sum.terms(0)
                                  if c[0] == c[1]})
 
@@ -291,7 +291,7 @@ class FromPython(Potential):
         self._compare()
 
     def _compare(self):
-        """Compares gradient and Hessian with central differences.  What these are off by is some
+        """Compares gradient and Hessian with central differences.  Their error is about
         DIFFERENCE_STEP^2 of the third derivative, and the rounding of V over DIFFERENCE_STEP."""
         x = np.random.default_rng(0).random((COMPARED_POINTS, self.n))
         value, gradient, hessian = self.evaluate(x)
@@ -362,7 +362,7 @@ _mine = threading.local()   # error: what stopped this thread's C; stop: an Even
 
 
 def look_up():
-    """Ends the work of a thread that was told to, as Ctrl-C ends that of the main one."""
+    """Ends the work of a thread that was told to end, as Ctrl-C ends the main thread's."""
     stop = getattr(_mine, "stop", None)
     if stop is not None and stop.is_set():
         raise KeyboardInterrupt

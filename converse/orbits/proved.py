@@ -40,12 +40,11 @@ class ProvedOrbit:
                  radius of `displacements`, in the Euclidean norm of all coordinates together
     least     -- no eigenvalue of the second variation of its action is below this positive number,
                  however often the orbit is run through
-    action    -- its action per point less that of the straight orbit, |p/q|^2/2
+    action    -- its action per point less the straight orbit's, |p/q|^2/2
     exponents -- its n positive Lyapunov exponents, larger first
-    sign      -- 1 or -1: that of its multipliers, which are real; 0: they are complex, or it is not
-                 decided whether
-    moved     -- how far the points are from those of the state: the largest coordinate, on the
-                 torus
+    sign      -- 1 or -1: its multipliers are real and have this sign; 0: they are complex, or this
+                 is undecided
+    moved     -- the distance of the points from the state's: the largest coordinate, on the torus
     """
 
     state: PeriodicOrbit
@@ -191,7 +190,7 @@ def prove(state: PeriodicOrbit, digits: Optional[int] = None, descend: bool = Fa
 
 
 def balls():
-    """What needs python-flint, and is imported when something is to be proved."""
+    """Imports the modules that need python-flint, when something is to be proved."""
     try:
         from ..model.balls import precision
         from .enclosure import Enclosure
@@ -203,7 +202,7 @@ def balls():
 
 
 class _TooFewPlaces(Exception):
-    """What the proof stumbled over; more decimal places may help."""
+    """The reason why a proof fails; more decimal places may help."""
 
 
 def _attempt(state, exact, growth, places, wanted):
@@ -243,10 +242,10 @@ def _attempt(state, exact, growth, places, wanted):
 
 
 def _refine(state, exact, places, floor):
-    """Newton's method until the gradient is as small as so many places allow.
+    """Newton's method until the gradient is as small as this number of places allows.
 
-    Where the Hessian is not positive, but for less than what doubles see of it, the step is made
-    with Hessian + shift.  A long way along a soft direction bends into the others: steps with a
+    Where the Hessian is not positive, by less than doubles see, the step is made with Hessian +
+    shift.  A long way along a soft direction bends into the others: steps with a
     shift that stops the soft ones bring these back.  What raises the action is taken back.  A
     saddle where the gradient vanishes is left by a nudge."""
     exact.evaluate(places)
@@ -286,9 +285,8 @@ def _refine(state, exact, places, floor):
 
 
 def _least(state, exact, floor, change):
-    """A number that no eigenvalue of any copy's Hessian is below, within a few per cent of the
-    largest.  change: by how much the eigenvalues may be others than those of the state, whose
-    points are others."""
+    """A lower bound of the eigenvalues of any copy's Hessian, within a few per cent of the best.
+    change: a bound of the eigenvalues' change from the state's points to these."""
     guess = max(Fraction(state.least), Fraction(1, 10 ** 11)) * Fraction(49, 50)
     more = Fraction(21, 20)
     if exact.least(guess):

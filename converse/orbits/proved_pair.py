@@ -35,11 +35,11 @@ class ProvedPair:
     radius  -- there is exactly one true orbit of the type whose displacements are within radius of
                `displacements`, in the Euclidean norm of all coordinates together; the Hessian of
                its action has exactly one negative eigenvalue, and none is zero
-    action  -- its action per point less that of the straight orbit
+    action  -- its action per point less the straight orbit's
     barrier -- its action less the minimum's, of all q points together
     residue -- its residue, which is positive; None for n = 2
-    between -- is it proved that each of its points lies between that of the minimum and of its
-               neighbour (n = 1)?  If not, nothing is said
+    between -- is it proved that each of its points lies between the points of the minimum and of
+               its neighbour (n = 1)?  If not, nothing is said
     """
 
     pair: Pair
@@ -64,7 +64,7 @@ class ProvedPair:
         return self.barrier
 
     def report(self) -> str:
-        """The theorem in words, that of the minimum first."""
+        """The theorem in words, the minimum first."""
         state = self.pair.minimax
         lines = [
             "THEOREM, proved with %d decimal places: the same map has exactly one orbit of type %s "
@@ -111,11 +111,11 @@ def prove_pair(pair, digits=None, progress=None):
 
 
 class _Undecided(Exception):
-    """What the proof stumbled over; more decimal places may help."""
+    """The reason why a proof fails; more decimal places may help."""
 
 
 class _Pass:
-    """The proof of one pass, with so many digits wanted, with so many decimal places."""
+    """The proof of one pass to `digits` digits, computed with `places` decimal places."""
 
     def __init__(self, pair, minimum, exact, digits, places):
         self.pair, self.minimum, self.exact = pair, minimum, exact
@@ -169,7 +169,7 @@ class _Pass:
         return v[self.j][self.i, 0]
 
     def refine(self):
-        """Newton's method until the gradient is as small as so many places allow."""
+        """Newton's method until the gradient is as small as the places allow."""
         exact, sigma = self.exact, ball(self.sigma)
         for _ in range(MAX_PROOF_STEPS):
             self.evaluate()

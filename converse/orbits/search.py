@@ -64,7 +64,7 @@ def search(potential: Source, p: Numerators, q: int, eps: float = 1.0, searches:
 
 
 class _TypeSearch:
-    """The search for one type: that of a guess, the straight orbit at its eps."""
+    """The search for one type, which a guess has: the straight orbit at its eps."""
 
     def __init__(self, guess, searches, end, rng, known, progress=None):
         self.guess, self.searches, self.end, self.rng = guess, searches, end, rng
@@ -135,7 +135,7 @@ class _TypeSearch:
             self.recombine(self.best, r, self.shifts[r])
 
     def move_pieces(self):
-        """Basin hopping in many places at once; then each piece is kept where it is better."""
+        """Basin hopping in many places together; then each piece is kept where it is better."""
         best, q = self.best, self.guess.q
         u = best.u.copy()
         for start in self.rng.integers(q, size=max(1, q // PIECE_SPACING)):
@@ -222,12 +222,13 @@ def _turns(p, q, away):
 
 
 def _recombined(state, u):
-    """The displacements, an array (q, n), of the path of least action whose point j is that of the
-    state or that of the state displaced by u instead, for each j; None if it is the state itself.
-    Found by dynamic programming along the orbit (Viterbi 1967).
+    """The displacements, an array (q, n), of a path of least action; None if it is the state.
+
+    Point j of the path is the state's, or has the displacement u[j] instead, for each j.  The path
+    is found by dynamic programming along the orbit (Viterbi 1967).
 
     A step from one to the other costs less by JOINT_RELIEF times half the square of the gap between
-    them: about so much of its action is lost when the path relaxes."""
+    them: relaxing the path takes away about that part of its action."""
     v, eps = state.u, state.eps
     heights = (-eps * state._local[0], -eps * state.potential.evaluate(state.base + u)[0])
     gap = ((u - v) ** 2).sum(1)
@@ -264,7 +265,8 @@ def _joints(p, q, first, second, rng):
 
 
 def _joint(p, q, first, i, second, j):
-    """The points of first from x_i on, then those of second from x_j on, as one state."""
+    """The points of first, beginning with x_i, then those of second, beginning with x_j, as one
+    state."""
     path = np.concatenate([
         np.roll(state.u, -k, 0) - state.u[k] + np.arange(state.q)[:, None] * state.rotation + begin
         for state, k, begin in ((first, i, 0.0), (second, j, np.array(first.p)))])

@@ -82,7 +82,7 @@ class Family:
             "grad_size" or "undetermined", as PeriodicOrbit has them
         ax -- Axes to draw into, which are returned
 
-        ValueError: there is no such column, or no state.  ConverseError: no matplotlib."""
+        ValueError: the column or the states are missing.  ConverseError: so is matplotlib."""
         from .pictures import family_plot
         return family_plot(self, column, ax)
 
@@ -114,8 +114,8 @@ class Family:
                                           % (first.potential.name, self.eps[0], self.eps[-1]))
 
     def save(self, path: Union[str, "os.PathLike[str]"]) -> None:
-        """Writes all states to a file as PeriodicOrbit.save does one.  ValueError: there is no
-        state, or the states are not of one potential and type."""
+        """Writes all states to a file as PeriodicOrbit.save does one.  ValueError: there are
+        no states, or they are not of one potential and type."""
         from .points import save
         save(self.states, path)
 

@@ -44,7 +44,7 @@ def log_of(x):
 
 
 def log_excesses(monodromy, log_det):
-    """log (rho - 2) of the n stability indices as complex numbers, that of the larger multiplier
+    """log (rho - 2) of the n stability indices as complex numbers, the larger multiplier's
     first.  log_det: of the Hessian's determinant."""
     if len(monodromy.matrix) == 2:
         return np.array([log_det])

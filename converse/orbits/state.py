@@ -26,9 +26,9 @@ class Deviation(NamedTuple):
     """The largest distance |u_j - c| of a point from its place on a straight orbit.
 
     from_point -- the straight orbit through x_0: c = u_0
-    from_start -- that where continuation began: c = 0
-    from_best  -- that for which the distance is least: the radius of the smallest circle around all
-        displacements.  It is never larger than the other two."""
+    from_start -- the straight orbit where continuation began: c = 0
+    from_best  -- the straight orbit whose distance is least: the radius of the smallest circle
+        around all displacements.  It is never larger than the other two."""
 
     from_point: float
     from_start: float
@@ -119,7 +119,7 @@ class Gaps(NamedTuple):
 
 
 def type_of(potential, p, q):
-    """The type (p, q) as integers.  ValueError: these are no type of the potential."""
+    """The type (p, q) as integers.  ValueError: the potential has no such type."""
     n = potential.n
     try:
         p = np.atleast_1d(p).tolist()
@@ -221,7 +221,7 @@ class PeriodicOrbit:
 
     @property
     def action(self) -> float:
-        """The mean over j of |x_{j+1} - x_j|^2/2 - eps V(x_j), less |p/q|^2/2, which is that of the
+        """The mean over j of |x_{j+1} - x_j|^2/2 - eps V(x_j), less |p/q|^2/2, the action of the
         straight orbit at eps 0."""
         step = np.roll(self.u, -1, 0) - self.u
         return float(np.mean((step ** 2).sum(1) / 2 - self.eps * self._local[0]))
@@ -287,8 +287,8 @@ class PeriodicOrbit:
         """What doubles show of it.
 
         "not stationary" -- no orbit: the shadow is not below MAX_SHADOW
-        "saddle" -- an orbit; its Hessian, or that of the orbit run through several times, has a
-            negative eigenvalue
+        "saddle" -- an orbit; its Hessian, or the Hessian of the orbit run through several times,
+            has a negative eigenvalue
         "minimum" -- an orbit without such an eigenvalue; those counted by `undetermined` are too
             small to have a sign
         "best of N searches" -- a minimum, of least action among the results of N searches
@@ -384,8 +384,8 @@ class PeriodicOrbit:
         return Pairs(i, j, distance, momentum)
 
     def gaps(self, count: Optional[int] = None) -> Gaps:
-        """The gaps between neighbouring points on the circle, all q or so many, widest first; those
-        of one width in the order of x.  ValueError for n = 2."""
+        """The gaps between neighbouring points on the circle, all q or the `count` widest, widest
+        first; gaps of one width in the order of x.  ValueError for n = 2."""
         if self.potential.n != 1:
             raise ValueError("gaps are those of an orbit on a circle; with two angles nothing lies "
                              "between two points: see state.pairs() and the figure")
@@ -404,7 +404,7 @@ class PeriodicOrbit:
 
         step -- with two angles, which neighbour: 0 the nearest; 1, 2 the others around a cell
 
-        ValueError: the type is not in lowest terms.  ConverseError: the state is no minimum, or
+        ValueError: the type is not in lowest terms.  ConverseError: the state is not a minimum, or
         certainly not the least; or no pass is found."""
         from .minimax import minimax
         return minimax(self, step)
@@ -429,7 +429,7 @@ class PeriodicOrbit:
         ax -- Axes to draw into, which are returned: with one angle one; with two a pair, for the
             angles and for the momenta, or one, for the angles
 
-        ValueError: ax are too many.  ConverseError: there is no matplotlib."""
+        ValueError: ax are too many.  ConverseError: matplotlib is missing."""
         from .pictures import figure
         return figure(self, ax)
 
@@ -472,7 +472,7 @@ class PeriodicOrbit:
 
 
 def descended(state, eps, tol, max_steps, held=None):
-    """What cv_relax makes of a state: its code, how it went, and the displacements, array (q, n).
+    """The result of cv_relax: its code, how it went, and the displacements, an array (q, n).
     held: None, or (j, i): coordinate i of point j stays where it is."""
     n, q = state.potential.n, state.q
     first, axis = held or (0, -1)

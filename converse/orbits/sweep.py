@@ -1,7 +1,7 @@
 """Sweeps over many rotation vectors: their families, and the onsets of their orbits.
 
-The rows of a sweep are those of its vectors in the order given, whatever worker computes them: the
-same sweep always gives the same bytes.  Its file is at any time the beginning of the table, and an
+The rows of a sweep follow its vectors in the order given, whatever worker computes them: the same
+sweep always gives the same bytes.  Its file is at any time the beginning of the table, and an
 interrupted sweep continues after what it holds.
 """
 
@@ -39,7 +39,7 @@ Type = Tuple[Tuple[int, ...], int]
 
 
 class Onset(NamedTuple):
-    """The states on both sides of an onset; above is None where there is none up to the end."""
+    """The states on both sides of an onset; above is None where no onset was found."""
 
     below: PeriodicOrbit
     above: Optional[PeriodicOrbit]
@@ -50,20 +50,20 @@ def onset(potential: Source, p: Numerators, q: int, exponent: Optional[float] = 
           top: Optional[float] = None) -> Onset:
     """The onset of the orbit of type (p, q) that continuation from eps 0 follows: where it becomes
     a minimum whose first Lyapunov exponent, the largest, exceeds the given one.  An Onset; its two
-    eps are at most width apart.  (Minima are usually hyperbolic before their onset, too, with
-    exponents that may be far below what doubles see; prove() encloses them.)
+    eps are at most width apart.  (Minima are usually hyperbolic before their onset, with
+    exponents that may be too small for doubles; prove() encloses them.)
 
     exponent -- by default 1/q: one period stretches e-fold.  When a torus breaks up,
         the stretching along the orbits beside it neither vanishes with growing q, as it does on a
         smooth torus, nor grows, as it does on what is left: for the golden torus of the standard
         map (Greene: residue -1/4) it is e^0.96.  So the onsets of approximants tend to where the
-        torus breaks up, and soon: there they are within 3e-4 from q = 233 on.  An exponent that is
-        the same for all q is early for small and late for large ones.
+        torus breaks up, and soon: for the golden torus they are within 3e-4 for q >= 233.  An
+        exponent that is the same for all q is early for small q and late for large q.
     step, width -- of eps: with what steps the first such minimum is looked for, and to what the
-        onset is then cut down.  top -- the eps where the search ends.  By default what
-        ONSET_TIMES_CURVATURE says over potential.curvature, to one digit.
+        onset is then cut down.  top -- the eps where the search ends.  By default
+        ONSET_TIMES_CURVATURE over potential.curvature, to one digit.
 
-    What is seen of one orbit is evidence, not proof, that a torus is near it, or that none is.
+    An onset is evidence, not proof, that a torus is near the orbit before it, and none after it.
     ConverseError if continuation loses the branch."""
     potential = known(potential)
     given = (step, width, top)
@@ -143,7 +143,7 @@ def onsets(potential: Source, vectors: Sequence[Type],
     """onset() of many rotation vectors; how is handed to it, all else is as in sweep().
 
     The columns eps_below and eps_above enclose each onset; eps_above is inf where there is none.
-    The exponents are the first ones there, and the label is that of the state above."""
+    The exponents are the first ones there, and the label is the upper state's."""
     potential = known(potential)
     return _sweep(functools.partial(_onset, potential, how), ONSET_COLUMNS, potential, vectors,
                   [[]], executor, file, progress)
@@ -252,7 +252,7 @@ def _vector(potential, vector):
 
 
 def _in_order(task, vectors, executor):
-    """The results, in the order of the vectors; as many are under way as keep the executor busy."""
+    """The results, in the order of the vectors; tasks are given ahead to keep the executor busy."""
     if executor is None:
         yield from map(task, vectors)
         return
@@ -275,8 +275,8 @@ def _in_order(task, vectors, executor):
 
 
 def _caught(task, vector):
-    """What the task returns or the exception that it raises: what fails here would fail again,
-    unlike a task whose worker dies."""
+    """The result of the task or the exception that it raises: such a failure would happen again,
+    unlike the death of a worker."""
     try:
         return task(vector)
     except Exception as error:
