@@ -279,6 +279,11 @@ class Ring:
         The limit is that of the box, or a smaller one, if what is lost by it is at most 2^spared
         times what roundings lose.
         """
+        part, radius = self._planned(f, g, spared)
+        return self.series(f.rows, g.columns, self.convolved(f, g, part), radius)
+
+    def _planned(self, f, g, spared):
+        """(part, radius) of a product that is computed up to part/PARTS of the limit."""
         p = self.profile(f)
         q = p if f is g else self.profile(g)
         m, n = sum(map(sum, p)), sum(map(sum, q))
@@ -293,10 +298,9 @@ class Ring:
                 part, lost = middle, more
             else:
                 low = middle
-        radius = self.product_of_norms(m + f.radius, g.radius) \
+        return part, self.product_of_norms(m + f.radius, g.radius) \
             + self.product_of_norms(n, f.radius) + rounding \
             + ((1 << FINE) + self._aside) * (beyond + lost) // (1 << FINE) + 1
-        return self.series(f.rows, g.columns, self.convolved(f, g, part), radius)
 
     def convolved(self, f, g, part):
         """The entries of the product of f and of g up to part/PARTS of the limit, rounded down:
