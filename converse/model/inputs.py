@@ -24,12 +24,24 @@ Source = Union[str, "os.PathLike[str]", IO]
 
 
 def read_input(source: Source) -> Problem:
-    """Reads an input file from a path or an open file.
+    """Reads an input file (docs/reference/inputs.md).
 
-    That of the thesis (Appendix B): five lines of two numbers, centre and half-width, for a, b, c
-    and the two angles, these in units of pi; then comment lines.  Blank lines may stand anywhere.
-    Or, if it begins with a brace or is called .json, a Fourier sum (docs/reference/inputs.md).
-    InputError: it is neither.
+    The thesis's format (Appendix B) has five lines of two numbers, centre and half-width, for a, b,
+    c and the two angles, these in units of pi; then comment lines.  A file that begins with a brace
+    or is called .json is a Fourier sum.
+
+    Parameters
+    ----------
+    source : path or open file
+
+    Returns
+    -------
+    Problem
+
+    Raises
+    ------
+    InputError
+        The file has neither format.
     """
     text, name = _read(source)
     if not _is_json(text, name):

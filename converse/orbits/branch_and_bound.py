@@ -228,15 +228,32 @@ class _Search:
 def least_action(potential: Source, p: Numerators, q: int, eps: float = 1.0, gap: float = 1e-9,
                  corridors: int = 10000,
                  progress: Optional[Callable[[int, float, float], object]] = None) -> LeastAction:
-    """A LeastAction: bounds of the least action of all states of type (p, q), by branch and bound.
+    """Bounds the least action of all states of type (p, q), by branch and bound.
 
-    gap       -- how far apart the bounds may stay
-    corridors -- how many to look into at most: then the bounds are as far apart as they are
-    progress(corridors, low, high) -- is told how many were looked into and about what is known
+    Parameters
+    ----------
+    potential : SymplecticMap or Potential
+    p : int or sequence of int, shape (n,)
+    q : int
+    eps : float
+    gap : float
+        How far apart the bounds may stay, in action per point.
+    corridors : int
+        How many to look into at most; then the bounds are as far apart as they are.
+    progress : callable, optional
+        progress(corridors, low, high) is called with the number that was looked into, and with the
+        bounds so far, about.
 
+    Returns
+    -------
+    LeastAction
+
+    Notes
+    -----
     Above the eps where an orbit's tori break, q up to 30 takes seconds to minutes, and a gap of
     1e-12 is as cheap as a larger one.  Below, states slide along each other at no cost, and a small
-    gap takes corridors without end."""
+    gap takes corridors without end.
+    """
     potential = known(potential)
     told(progress)
     rounding_errors(potential, 1.0)

@@ -113,15 +113,28 @@ def _highest(planes, radius):
 
 def mather_beta(potential: Source, eps: float, rotation: Union[float, Sequence[float]],
           grid: int = 256) -> MatherBeta:
-    """A MatherBeta: how little action per point orbits of this rotation vector can have, by value
-    iteration on grid^n nodes (Mather's beta from below).
+    """Mather's beta from below: how little action per point orbits of a rotation vector can have.
 
-    rotation -- n numbers, as doubles have them
-    grid     -- nodes along an axis, 8 to 2048; the cost of the grid falls as 1/grid^2
+    Parameters
+    ----------
+    potential : SymplecticMap or Potential
+    eps : float
+    rotation : float or sequence of float, shape (n,)
+        In turns, as doubles have it.
+    grid : int
+        Nodes along an axis, 8 to 2048.  What the grid loses falls as 1/grid^2.
 
+    Returns
+    -------
+    MatherBeta
+
+    Notes
+    -----
     The action of a path x_0 ... x_m exceeds c.(x_m - x_0) by at least m times the least average on
-    the grid, whatever c is; the c that gives the most is looked for by cutting planes, first on
-    coarse grids: each closed path bounds what a c can give."""
+    the grid^n nodes, whatever c is.  The least average is found by value iteration.  The c that
+    gives the most is looked for by cutting planes, first on coarse grids: each closed path bounds
+    what a c can give.
+    """
     potential = known(potential)
     (eps,), n = floats_within("eps", [eps], LARGEST_EPS), potential.n
     w = np.array(floats_within("rotation", rotation, LARGEST_ROTATION))

@@ -135,16 +135,32 @@ class ProvedOrbit:
 
 def prove(state: PeriodicOrbit, digits: Optional[int] = None, descend: bool = False,
           progress: Optional[Callable[[int, int], object]] = None) -> ProvedOrbit:
-    """Proves that a true orbit lies beside a state of least action: a ProvedOrbit, whose radius is
-    at most 10^-digits, by default 10^-20.
+    """Proves that a true orbit lies beside a state of least action.
 
-    The points are made as exact as that needs.  Where phases are undetermined in doubles they are
-    determined here, and the points may move: see `moved`.
-    descend -- from a saddle whose least eigenvalue is above -1e-8, prove the minimum below it,
-               which is elsewhere; a steeper one is left by state.relax()
-    progress(places, rounds) -- is told with how many decimal places it is tried, and how often all
-               points were gone through
-    NotProved, with a reason: among others, because the state is not stationary, or a saddle."""
+    The points are made as exact as the proof needs.  Where phases are undetermined in doubles they
+    are determined here, and the points may move: see `moved` of the result.
+
+    Parameters
+    ----------
+    state : PeriodicOrbit
+    digits : int, optional
+        The radius of the result is at most 10^-digits, by default 10^-20.
+    descend : bool
+        From a saddle whose least eigenvalue is above -1e-8, prove the minimum below it, which is
+        elsewhere.  A steeper saddle is left by state.relax().
+    progress : callable, optional
+        progress(places, rounds) is called with the number of decimal places that are tried, and how
+        often all points were gone through.
+
+    Returns
+    -------
+    ProvedOrbit
+
+    Raises
+    ------
+    NotProved
+        With a reason: among others, because the state is not stationary, or a saddle.
+    """
     wanted = DEFAULT_DIGITS if digits is None else digits
     expected(state)
     told(progress)

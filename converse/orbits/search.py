@@ -28,22 +28,42 @@ from .state import PeriodicOrbit
 def search(potential: Source, p: Numerators, q: int, eps: float = 1.0, searches: int = 200,
            seconds: float = math.inf, seed: int = 0,
            progress: Optional[Callable[[int, PeriodicOrbit], object]] = None) -> PeriodicOrbit:
-    """The state of type (p, q) of least action that many searches find.  Its attribute `searches`
-    is their number, and its label "best of N searches" if it is a minimum.  It is not proved to be
-    the least.
+    """The state of type (p, q) of least action that many searches find.
 
+    It is not proved to be the least.  Its attribute `searches` is the number of searches, and its
+    label "best of N searches" if it is a minimum.
+
+    Parameters
+    ----------
+    potential : SymplecticMap or Potential
+    p : int or sequence of int, shape (n,)
+    q : int
+    eps : float
+    searches : int
+        How many at most.
+    seconds : float
+        For about how long; without it the result depends on `seed` only.
+    seed : int
+        Of numpy's random numbers.  Searches with several seeds, in any executor, are independent of
+        each other.
+    progress : callable, optional
+        progress(searches, best) is called after each search.
+
+    Returns
+    -------
+    PeriodicOrbit
+
+    Raises
+    ------
+    ConverseError
+        No search ends at a state.
+
+    Notes
+    -----
     A search is a descent of the action of type (p, q) to a state whose gradient vanishes.  The
     first is continuation's, so that none worse is returned.  Then come orbits composed of the best
     of shorter types, whose own searches are not counted; turns of the best state so far; pieces of
     it moved; and straight orbits elsewhere, some relaxed at a larger eps first.
-
-    searches, seconds -- how many at most, and for about how long; without seconds the result
-                         depends on the seed only
-    seed              -- of numpy's random numbers; searches with several, in any executor, are
-                         independent of each other
-    progress          -- called after each search with their number and the best state so far
-
-    ConverseError: no search ends at a state.
     """
     if isinstance(searches, bool) or not isinstance(searches, int) or searches < 1:
         raise ValueError("searches is a whole number, 1 or more, not %r" % (searches,))

@@ -17,7 +17,20 @@ from .state import PeriodicOrbit, expected, type_of
 
 def straight(potential: Source, p: Numerators, q: int,
              origin: Optional[Tuple[float, ...]] = None) -> PeriodicOrbit:
-    """The state x_j = origin + j p/q, least at eps 0; by default it begins at a maximum of V."""
+    """The state x_j = origin + j p/q, which is an orbit at eps 0.
+
+    Parameters
+    ----------
+    potential : SymplecticMap or Potential
+    p : int or sequence of int, shape (n,)
+    q : int
+    origin : tuple of float, shape (n,), optional
+        The first point, in turns; by default a maximum of V.
+
+    Returns
+    -------
+    PeriodicOrbit
+    """
     potential = known(potential)
     numerators, q = type_of(potential, p, q)
     return PeriodicOrbit(potential, numerators, q, 0.0, np.zeros((q, potential.n)),
@@ -146,20 +159,41 @@ def follow(potential: Source, p: Numerators, q: int, eps: Union[float, Sequence[
            progress: Optional[Callable[[int, PeriodicOrbit], object]] = None,
            start: Optional[PeriodicOrbit] = None,
            on_step: Optional[Callable[[PeriodicOrbit], object]] = None) -> Family:
-    """A Family: the states that continuation reaches at each eps in turn, from the straight orbit
-    at eps 0 or from another state.
+    """Follows a periodic orbit in eps, from the straight orbit at eps 0 or from another state.
 
-    potential -- a map without free parameters, or a potential of this room
-    p, q -- the type; with one angle p may be an integer
-    eps -- the potential is multiplied by each of these numbers in turn; by default by 1.  From
-        each to the next there are at most MAX_EPS_STEPS steps
-    progress(done, state) -- is told each state
-    start -- a state of this type, such as Family.load reads, instead of the straight orbit
-    on_step(state) -- is told these and all states on the way to them
+    Parameters
+    ----------
+    potential : SymplecticMap or Potential
+        A map without free parameters, or a potential of orbits.
+    p : int or sequence of int, shape (n,)
+        With q the type: x_{j+q} = x_j + p, in angles of period 1.
+    q : int
+        The period.
+    eps : float or sequence of float
+        The potential is multiplied by each of these numbers in turn.  From each to the next there
+        are at most MAX_EPS_STEPS steps.
+    progress : callable, optional
+        progress(done, state) is called for each state of the result.
+    start : PeriodicOrbit, optional
+        A state of this type, such as Family.load reads, instead of the straight orbit.
+    on_step : callable, optional
+        on_step(state) is called for these and all states on the way to them.
 
+    Returns
+    -------
+    Family
+        The states that continuation reaches at each eps.
+
+    Raises
+    ------
+    ConverseError
+        The branch is lost.
+
+    Notes
+    -----
     Each state is the guess for the next, at most step_of(potential) further, and less where the
-    solver fails.  A branch of minima is followed, which need not stay the least.  ConverseError, if
-    it is lost."""
+    solver fails.  A branch of minima is followed, which need not stay the least.
+    """
     potential = known(potential)
     state = straight(potential, p, q)
     if start is not None:

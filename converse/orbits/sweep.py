@@ -48,23 +48,46 @@ class Onset(NamedTuple):
 def onset(potential: Source, p: Numerators, q: int, exponent: Optional[float] = None,
           step: Optional[float] = None, width: Optional[float] = None,
           top: Optional[float] = None) -> Onset:
-    """The onset of the orbit of type (p, q) that continuation from eps 0 follows: where it becomes
-    a minimum whose first Lyapunov exponent, the largest, exceeds the given one.  An Onset; its two
-    eps are at most width apart.  (Minima are usually hyperbolic before their onset, with
-    exponents that may be too small for doubles; prove() encloses them.)
+    """The onset of the orbit of type (p, q) that continuation from eps 0 follows.
 
-    exponent -- by default 1/q: one period stretches e-fold.  When a torus breaks up,
-        the stretching along the orbits beside it neither vanishes with growing q, as it does on a
-        smooth torus, nor grows, as it does on what is left: for the golden torus of the standard
-        map (Greene: residue -1/4) it is e^0.96.  So the onsets of approximants tend to where the
-        torus breaks up, and soon: for the golden torus they are within 3e-4 for q >= 233.  An
-        exponent that is the same for all q is early for small q and late for large q.
-    step, width -- of eps: with what steps the first such minimum is looked for, and to what the
-        onset is then cut down.  top -- the eps where the search ends.  By default
-        ONSET_TIMES_CURVATURE over potential.curvature, to one digit.
+    Above its onset the orbit is a minimum whose first Lyapunov exponent, the largest, exceeds
+    `exponent`.  (Minima are usually hyperbolic before their onset, with exponents that may be far
+    below what doubles see; prove() encloses them.)
 
-    An onset is evidence, not proof, that a torus is near the orbit before it, and none after it.
-    ConverseError if continuation loses the branch."""
+    Parameters
+    ----------
+    potential : SymplecticMap or Potential
+    p : int or sequence of int, shape (n,)
+    q : int
+    exponent : float, optional
+        Per iterate; by default 1/q, so that one period stretches e-fold.
+    step : float, optional
+        Of eps: the steps with which the first such minimum is looked for.
+    width : float, optional
+        To this difference of eps the onset is cut down.
+    top : float, optional
+        The eps where the search ends.  Defaults of these three are ONSET_TIMES_CURVATURE divided by
+        potential.curvature, to one digit.
+
+    Returns
+    -------
+    Onset
+        The states below and above; their eps are at most `width` apart.
+
+    Raises
+    ------
+    ConverseError
+        Continuation loses the branch.
+
+    Notes
+    -----
+    When a torus breaks up, the stretching along the orbits beside it neither vanishes with growing
+    q, as it does on a smooth torus, nor grows, as it does on what is left.  For the golden torus of
+    the standard map (Greene: residue -1/4) it is e^0.96.  So the onsets of approximants tend to
+    where the torus breaks up: there they are within 3e-4 for q >= 233.  An exponent that is the
+    same for all q is early for small and late for large ones.  Onsets are evidence, not proof, that
+    a torus is near an orbit, or that none is.
+    """
     potential = known(potential)
     given = (step, width, top)
     if None in given and not potential.curvature:

@@ -40,31 +40,56 @@ def prove(source: Union[SymplecticMap, Problem, None] = None, *, method: Optiona
           time_limit: float = math.inf,
           progress: Optional[Callable[[float, Counts], None]] = None,
           on_leaf: Optional[Callable[[tree.Leaf, int], None]] = None) -> Proof:
-    """Tries to prove that there are no invariant tori, and returns a Proof either way.
+    """Tries to prove that a map, or a family of maps, has no invariant tori.
 
-    source: the map, or the family of maps; or a Problem, which says where x_1 is looked for, too.
-    method, depth, digits, stubborn, as_printed: see Settings.  The default method is the sharper
-    one, "loewner", unless digits or as_printed, which only the thesis's has, are given.
-    xstar: the two angles of x*, in radians, exact numbers; by default the program chooses them.
+    Parameters
+    ----------
+    source : SymplecticMap or Problem, optional
+        The maps; or a Problem, which also says where x_1 is looked for.  With `resume` it may be
+        left out, and must agree if it is given.
+    method, depth, digits, stubborn, as_printed : optional
+        See Settings.  The default method is the sharper one, "loewner", unless `digits` or
+        `as_printed`, which only the thesis's method has, are given.
+    xstar : tuple of two exact numbers, optional
+        The angles of x*, in radians.  By default the program chooses them.
+    jobs : int, optional
+        How many tasks at a time: by default one per core, or as many as keep the executor's workers
+        busy.  The result does not depend on it.
+    executor : concurrent.futures.Executor, optional
+        Its workers do the tasks, by default threads of this process.  The result does not depend on
+        it.
+    backup : path, optional
+        A new file that is kept up to date, and is the proof file in the end.
+    resume : Proof or path, optional
+        An unfinished proof, or its file, to continue with its settings; only `depth` may be
+        greater. A file is also kept up to date, unless `backup` names another.
+    time_limit : float
+        Seconds of this run after which, about, the search is left as it is.
+    progress : callable, optional
+        progress(examined, counts) is called a few times a second.  `examined`, from 0 to 1, is the
+        share of parameters and angles in prisms that are proved, skipped or given up.  It never
+        falls.
+    on_leaf : callable, optional
+        on_leaf(leaf, points) is called for every leaf that this run decides, in preorder; `points`
+        is the length of its orbit.
 
-    jobs: how many tasks at a time, by default one per core, or as many as keep the executor's
-    workers busy; executor: a concurrent.futures.Executor whose workers they are, by default threads
-    of this process.  The result does not depend on either.
+    Returns
+    -------
+    Proof
+        True if it proves a theorem; its `conclusion` says what was decided.
 
-    backup: a new file that is kept up to date.
-    resume: an unfinished proof, or its file, to continue; what is not said otherwise is as it was,
-    but depth may be greater.  A file is kept up to date, too, unless backup names another.
+    Raises
+    ------
+    ConverseError, MemoryError
+        The run ended; the backup is whole.
+    ValueError, TypeError
+        An argument is wrong.
 
-    time_limit: after about so many seconds of this run the search is left as it is.
-    progress(examined, counts) is called a few times a second; examined, from 0 to 1: the share of
-    parameters and angles in prisms that are proved, skipped or given up.  It never falls.  The last
-    of it takes longest, and how long is not known.
-    on_leaf(leaf, points) is called for every leaf that this run decides, in preorder; points: the
-    length of its orbit.
-
-    ConverseError, MemoryError: nothing is lost of the backup; ValueError, TypeError: an argument is
-    wrong.  RuntimeWarning: the backup cannot be written now, and will be tried again; NotSaved, one
-    of these: it could not be written in the end.
+    Warns
+    -----
+    RuntimeWarning
+        The backup cannot be written now, and will be tried again.  NotSaved, one of these: it could
+        not be written in the end.
     """
     given: Dict[str, Any] = {name: value for name, value in (
         ("method", method), ("depth", depth), ("digits", digits), ("stubborn", stubborn),

@@ -34,7 +34,18 @@ class Certificate(NamedTuple):
 def read(path: Path) -> Certificate:
     """The certificate in a file, compressed or not.
 
-    ConverseError, in one line: it cannot be read, is not a certificate, or was changed or damaged.
+    Parameters
+    ----------
+    path : path
+
+    Returns
+    -------
+    Certificate
+
+    Raises
+    ------
+    ConverseError
+        In one line: the file cannot be read, is not a certificate, or was changed or damaged.
     """
     try:
         claim = check.read(os.fspath(path))

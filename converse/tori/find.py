@@ -37,22 +37,40 @@ def find(source: Union[SymplecticMap, Problem], rotation: Union[Rotation, str], 
          frame: Optional[Frame] = None, margin: float = MARGIN,
          points: int = POINTS, memory: Optional[int] = None,
          progress: Optional[Callable[[str], None]] = None) -> Union[Torus, List[Torus]]:
-    """The invariant torus of a rotation vector, about: no proof is made.  If the map has a
-    parameter, tori for the pieces of its range, which tile it.
+    """Finds an invariant torus in floating-point numbers; nothing is proved.
 
-    source -- the map, or a Problem of it
-    rotation -- the rotation vector, or its text as read_rotation takes it
-    start -- a torus of the same rotation vector, of other amplitudes, from which to continue; by
-        default the map without potential
-    frame -- integer rows of the mode numbers, in whose directions rates of decay may differ
-    margin -- by which the error of the torus should be smaller than the theorem needs
-    points -- of a mesh of angles, at most
-    memory -- bytes that refining the torus may take; by default three quarters of what is free
-    progress -- is told in words what is going on
+    Parameters
+    ----------
+    source : SymplecticMap or Problem
+        The map; one parameter may have a range.
+    rotation : Rotation or str
+        The rotation vector, or its text as read_rotation takes it.
+    start : Torus, optional
+        A torus of the same rotation vector, of other amplitudes, from which to continue; by default
+        the map without potential.
+    frame : tuple of tuples of int, optional
+        Rows of the mode numbers, in whose directions rates of decay may differ.
+    margin : float
+        By which factor the error of the torus should be smaller than the theorem needs.
+    points : int
+        Of a mesh of angles, at most.
+    memory : int, optional
+        Bytes that refining the torus may take; by default three quarters of what is free.
+    progress : callable, optional
+        progress(text) is called with each step of the work.
 
-    NotFound: there is none, as far as can be seen, or it needs more points.
-    ValueError: map, rotation vector and start do not go together, or the margin is not from
-    1 to 1e100."""
+    Returns
+    -------
+    Torus, or list of Torus
+        With a range, tori for the pieces of the range, which tile it.
+
+    Raises
+    ------
+    NotFound
+        There is none, as far as can be seen, or it needs more points.
+    ValueError
+        Map, rotation vector and start do not go together, or the margin is not from 1 to 1e100.
+    """
     if not 1 <= margin <= MOST_MARGIN:
         raise ValueError("the margin, %g, is not from 1 to %g" % (margin, MOST_MARGIN))
     tell = progress or (lambda words: None)

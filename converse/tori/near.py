@@ -34,14 +34,29 @@ Triangle = Tuple[Tuple[int, int, int], ...]     # corners (q, p0, p1)
 def near(w0: Union[Number, float], w1: Union[Number, float, None] = None,
          tolerance: Union[Number, float] = TOLERANCE,
          progress: Optional[Callable[[str], None]] = None) -> Rotation:
-    """The rotation vector with the best small divisors that was found near w0, or near (w0, w1):
-    that for which c(delta) of docs/proofs/existence.md is least in doubles, with |k| = |k_0| +
-    |k_1|.
+    """The rotation vector with the best small divisors that was found near w0, or near (w0, w1).
 
-    tolerance -- how far each component may be away; the result's name tells it
-    progress -- is told in words what is going on
+    For it c(delta) of docs/proofs/existence.md is least in doubles, with the norm of k that adds
+    the absolute values of its components.
 
-    ValueError: none was found so near."""
+    Parameters
+    ----------
+    w0, w1 : number or str
+        In turns; w1 is given for two angles.
+    tolerance : number or str
+        How far each component may be away, in turns; the result's name tells it.
+    progress : callable, optional
+        progress(text) is called with each step of the work.
+
+    Returns
+    -------
+    Rotation
+
+    Raises
+    ------
+    ValueError
+        None was found so near.
+    """
     target = tuple(_about(w) for w in (w0, w1) if w is not None)
     within, n = _about(tolerance), len(target)
     if not LEAST <= within <= 1:

@@ -156,17 +156,37 @@ def prove(source: Union[SymplecticMap, Problem, Torus, Sequence[Torus]],
           progress: Progress = None) -> ProvedTorus:
     """Proves that there is an invariant torus near the given one, or near one that is found first.
 
-    source -- a Torus, or tori that cover a range, or a map (or the Problem of one), to which a
-        rotation vector belongs
-    start, margin, points, memory -- with a map: what `find` takes
-    jobs -- how many pieces of a range are verified at a time, in processes
-    progress -- is told in words what is going on
+    Parameters
+    ----------
+    source : Torus, sequence of Torus, SymplecticMap or Problem
+        A torus, tori that cover a range, or a map, which needs `rotation`.
+    rotation : Rotation or str, optional
+        With a map: the rotation vector.
+    start, margin, points, memory : optional
+        With a map: what `find` takes.
+    jobs : int
+        How many pieces of a range are verified at a time, in processes.
+    progress : callable, optional
+        progress(text) is called with each step of the work.
 
+    Returns
+    -------
+    ProvedTorus
+
+    Raises
+    ------
+    NotProved
+        The checker does not confirm the torus.
+    NotFound
+        As `find` raises it.
+    ValueError
+        The arguments do not go together, or the checker refuses what the torus claims.
+
+    Notes
+    -----
     If a torus that was found turns out to be not accurate enough, a more accurate one is tried,
     unless the arguments say how accurate it is to be.
-
-    NotProved: the checker does not confirm it.  ValueError: the arguments do not go together, or
-    the checker refuses what the torus claims.  What `find` raises."""
+    """
     if jobs < 1:
         raise ValueError("jobs is %s; at least one piece is proved at a time" % jobs)
     tell = progress or (lambda text: None)
