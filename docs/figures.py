@@ -73,8 +73,7 @@ def main(arguments):
     for row in table:
         if row["picture"] in names or not names and row["command"] and (measure or row["data"]):
             draw(row, measure)
-            if measure:
-                row["release"] = __version__
+            row["release"] = __version__
     with open(TABLE, "w", encoding="ascii", newline="") as file:
         out = csv.DictWriter(file, table[0], lineterminator="\n")
         out.writeheader()

@@ -70,11 +70,6 @@ SAMPLES = 2000
 HEIGHTS = {"wall": 5.4}                 # of a chart with two parts, in inches
 COLOURS = {"1989": DARK, "thesis": BLUE, "loewner": ORANGE}
 SMALL = {"textcoords": "offset points", "fontsize": 8, "color": "0.3"}
-STYLE = {
-    **plot.STYLE, "lines.markersize": 5.5, "axes.spines.top": False,
-    "axes.spines.right": False, "axes.grid": True, "axes.axisbelow": True, "grid.color": "0.92",
-    "grid.linewidth": 0.6,
-}
 
 
 # ---- measuring: each function yields the rows of a table
@@ -273,7 +268,8 @@ def draw_width(figure, rows):
         mine = [row for row in rows if row[0] == form]
         if mine:
             axes.plot([row[3] for row in mine], [row[4] for row in mine], marker, color=colour,
-                      label=form)
+                      label={"Taylor model": "Taylor model: the sharper method"}.get(
+                          form, form + ": the thesis's"))
     for form, name, n, ns, excess in rows:
         taylor = form == "Taylor model"
         if not taylor:
@@ -340,7 +336,7 @@ def chart(name, rows, kind, caption=True):
     from matplotlib.figure import Figure
 
     height = HEIGHTS.get(name, 4.3)
-    with style.context(["default", STYLE]):
+    with style.context(["default", plot.CHART]):
         figure = Figure(figsize=(7.2, height))
         words = CHARTS[name][2](figure, rows) + "\n" + machine().replace("$", "")
         figure.subplots_adjust(left=0.11, right=0.97, bottom=0.5 / height, top=1 - 0.4 / height)

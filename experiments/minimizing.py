@@ -59,44 +59,58 @@ def rows(potentials, types, eps, searches, grid):
 
 
 def draw(table, file):
-    """The gains, one panel for each map."""
-    from matplotlib import colormaps, style
+    """The gains for the thesis's map."""
+    from matplotlib import style
     from matplotlib.figure import Figure
 
-    names = list(dict.fromkeys(row[0] for row in table))
-    lengths = sorted({row[2] for row in table})
     with style.context(["default", plot.STYLE]):
-        figure = Figure(figsize=(9.2, 3.1), layout="constrained")
-        panels = figure.subplots(1, len(names), sharey=True, squeeze=False)[0]
-        for axes, name in zip(panels, names):
-            for k, q in enumerate(lengths):
-                here = [row for row in table if row[0] == name and row[2] == q]
-                eps = [row[3] for row in here]
-                axes.plot(eps, [row[6] or float("nan") for row in here], "o-", markersize=3,
-                          linewidth=1, color=colormaps["viridis"](0.9 * k / len(lengths)),
-                          label="q = %d" % q)
-            axes.plot(eps, [row[4] - row[8] for row in here], "--", color="0.3", linewidth=1,
-                      label="at most, proved (q = %d)" % q)
-            axes.plot(eps, [row[4] - row[9] for row in here], "x", color=plot.VERMILLION,
-                      markersize=5, label="estimated from grids (q = %d)" % q)
-            axes.set(yscale="log", xlabel="ε", title=name,
-                     xlim=(0, max(row[3] for row in table) * 1.05))
-            axes.grid(color="0.92", linewidth=0.6)
-        panels[0].set_ylabel("continuation's action per point\nabove the least that is found")
-        figure.legend(*panels[0].get_legend_handles_labels(), loc="outside right center")
+        figure = Figure(figsize=(5.6, 3.2), layout="constrained")
+        axes = figure.subplots()
+        table = [row for row in table if row[0] == "trig"]
+        lengths = sorted({row[2] for row in table})
+        for q in lengths:
+            here = [row for row in table if row[2] == q]
+            eps = [row[3] for row in here]
+            last = q == lengths[-1]
+            axes.plot(eps, [row[6] or float("nan") for row in here], "o-", markersize=3,
+                      linewidth=1.6 if last else 0.7, color=plot.BLUE if last else "0.7",
+                      zorder=3 if last else 2, label="q = %d" % q if last else
+                      "q = %d to %d" % (lengths[0], lengths[-2]) if q == lengths[0] else None)
+        axes.plot(eps, [row[4] - row[8] for row in here], "--", color=plot.DARK,
+                  label="proved: not more (q = %d)" % q)
+        axes.plot(eps, [row[4] - row[9] for row in here], "x", color=plot.VERMILLION,
+                  markersize=5, label="estimated from grids (q = %d)" % q)
+        axes.set(yscale="log", xlabel="ε", xlim=(0, max(eps) * 1.05),
+                 ylabel="action per point above\nthe least that is found",
+                 title="What continuation loses, for the thesis's map")
+        axes.grid(color="0.92", linewidth=0.6)
+        axes.legend(loc="lower right")
         data = plot.encode(figure, "svg", dpi=150)
     with open(file, "wb") as out:
         out.write(data)
+
+
+def read(path):
+    """The rows of such a table."""
+    with open(path, encoding="ascii", newline="") as file:
+        _, *rows = csv.reader(file)
+    return [(row[0], row[1], int(row[2]), *(float(x) if at != 4 and x else x
+                                            for at, x in enumerate(row[3:]))) for row in rows]
 
 
 def main(arguments=None):
     parser = argparse.ArgumentParser(description=__doc__.partition("\n\n")[0])
     parser.add_argument("directory", nargs="?", default=".", help="for minimizing.csv and .svg (.)")
     parser.add_argument("--quick", action="store_true", help="short orbits, few eps, a coarse grid")
+    parser.add_argument("--draw", action="store_true", help="draw minimizing.csv, which is there")
     options = parser.parse_args(arguments)
     cases = ((POTENTIALS, TYPES, EPS, SEARCHES, GRID) if not options.quick else
              (POTENTIALS, TYPES[:4], QUICK_EPS, 50, 64))
     try:
+        picture = os.path.join(options.directory, "minimizing.svg")
+        if options.draw:
+            draw(read(os.path.join(options.directory, "minimizing.csv")), picture)
+            return
         os.makedirs(options.directory, exist_ok=True)
         table = []
         with open(os.path.join(options.directory, "minimizing.csv"), "w", newline="") as file:
@@ -112,7 +126,7 @@ def main(arguments=None):
                     *("%.10f" % x if x != "" else "" for x in (estimate, floor))), flush=True)
                 out.writerow(row)
                 table.append(row)
-        draw(table, os.path.join(options.directory, "minimizing.svg"))
+        draw(table, picture)
     except (ConverseError, OSError) as error:
         sys.exit("minimizing.py: %s" % error)
 

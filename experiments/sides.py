@@ -56,8 +56,6 @@ WORDS = {("standard", "torus"): ("o", "the standard map: its golden circle"),
          ("standard", "none"): ("s", "the standard map: no circle"),
          ("line", "torus"): ("^", "the thesis's line: a torus of V1"),
          ("line", "none"): ("D", "the thesis's line: no torus")}
-STYLE = {**plot.STYLE, "axes.spines.top": False, "axes.spines.right": False, "axes.grid": True,
-         "axes.axisbelow": True, "grid.color": "0.92", "lines.markersize": 4.5}
 COLOURS = {"torus": GREEN, "none": BLUE}
 
 
@@ -146,7 +144,7 @@ def draw(rows):
     from matplotlib import style
     from matplotlib.figure import Figure
 
-    with style.context(["default", STYLE]):
+    with style.context(["default", plot.CHART]):
         figure = Figure(figsize=(7.2, 3.9))
         panels = figure.subplots(1, 2, gridspec_kw={"wspace": 0.25})
         for axes, column, words in ((panels[0], 3, "CPU time (seconds)"),

@@ -27,7 +27,6 @@ STATES = [(SPIRAL, 0.0075, None), (SPIRAL, 0.0125, 20), (LONGER, 0.0125, 20), (S
           (SPIRAL, 0.03, 60)]
 COUNT = 800
 CANDIDATES = 4000           # pairs, closest in doubles, among which are the closest
-WINDOW = 0.07               # of the projection, half its width
 STEEP = 40                  # pairs of largest L, whose distances along the orbit are listed
 
 
@@ -89,24 +88,32 @@ def draw(measured):
     from matplotlib.figure import Figure
 
     with style.context(["default", plot.STYLE]):
-        figure = Figure(figsize=(9.6, 3.2))
-        all_of_them, crossing, there = figure.subplots(1, 3)
-        figure.subplots_adjust(wspace=0.4)
+        figure = Figure(figsize=(7.2, 3.3))
+        all_of_them, crossing = figure.subplots(1, 2)
+        figure.subplots_adjust(wspace=0.35)
         draw_all(all_of_them, measured)
         draw_one(crossing, *measured[2])
-        draw_there(there, *measured[2])
         return plot.encode(figure, "svg", dpi=150)
 
 
 def draw_all(axes, measured):
     for (state, _, _, distance, momentum), colour in zip(
-            measured, (plot.GREY, plot.ORANGE, plot.DARK, plot.BLUE,
-                       plot.VERMILLION)):
+            measured, (plot.GREY, plot.ORANGE, plot.DARK, plot.BLUE, plot.VERMILLION)):
         axes.plot(distance, momentum / distance, ".", markersize=1.5, color=colour, rasterized=True,
                   label="q = %d, ε = %g" % (state.q, state.eps))
+    star(axes, *measured[2][3:], ratio=True)
     axes.set(xscale="log", yscale="log", ylim=(1e-3, 1e6), xlabel=r"$|\Delta x|$",
-             ylabel=r"$L = |\Delta p|\,/\,|\Delta x|$", title="the 800 closest pairs")
+             ylabel=r"$L = |\Delta p|\,/\,|\Delta x|$", title="closest pairs can be steep")
     axes.legend(markerscale=4, loc="upper left", labelspacing=0.2)
+
+
+def star(axes, distance, momentum, ratio):
+    """Marks the steepest pair."""
+    at = np.argmax(momentum / distance)
+    y = (momentum / distance if ratio else momentum)[at]
+    axes.plot(distance[at], y, "*", color=plot.VERMILLION, markersize=8)
+    axes.annotate("L = %.0f" % (momentum[at] / distance[at]), (distance[at], y), (7, 0),
+                  textcoords="offset points", va="center", color=plot.VERMILLION)
 
 
 def draw_one(axes, state, i, j, distance, momentum):
@@ -119,26 +126,10 @@ def draw_one(axes, state, i, j, distance, momentum):
             plot.BLUE, plot.ORANGE, plot.GREEN, plot.VERMILLION, plot.PURPLE)):
         of = apart == d
         axes.plot(distance[of], momentum[of], ".", markersize=2.5, color=colour, label="%d" % d)
-    at = np.argmax(momentum / distance)
-    axes.annotate("L = %.0f" % (momentum[at] / distance[at]), (distance[at], momentum[at]), (3, 6),
-                  textcoords="offset points")
+    star(axes, distance, momentum, ratio=False)
     axes.set(xscale="log", yscale="log", xlabel=r"$|\Delta x|$", ylabel=r"$|\Delta p|$",
-             title=r"q = %d, ε = %g: levels of $|\Delta p|$" % (state.q, state.eps))
-    axes.legend(title="|i − j|", loc="lower left", markerscale=2, labelspacing=0.2)
-
-
-def draw_there(axes, state, i, j, distance, momentum):
-    """The projection where the steepest pair is, coloured by the first momentum."""
-    at = np.argmax(momentum / distance)
-    off = (state.x - state.x[i[at]] + 0.5) % 1 - 0.5
-    near = np.abs(off).max(1) < WINDOW
-    p = 1e3 * (state.momenta - state.momenta[i[at]])[near, 0]
-    dots = axes.scatter(*off[near].T, c=p, s=4, cmap="coolwarm", linewidths=0)
-    bar = axes.figure.colorbar(dots, ax=axes, shrink=0.85)
-    bar.set_label(r"$10^3\,p_0$ less the pair's")
-    axes.plot(0, 0, "o", markersize=9, markerfacecolor="none", color="0.2", markeredgewidth=0.7)
-    axes.set(xlabel="$x_0$ less the pair's", ylabel="$x_1$ less the pair's",
-             title="the projection where L = %.0f" % (momentum[at] / distance[at]))
+             title=r"levels of $|\Delta p|$: q = %d, ε = %g" % (state.q, state.eps))
+    axes.legend(title="pairs with $|i - j|$ =", loc="lower left", markerscale=2, labelspacing=0.2)
 
 
 def main(directory="build"):

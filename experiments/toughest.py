@@ -131,14 +131,13 @@ def search(first, sizes, find):
 
 # ---- pictures
 
-STYLE = {**plot.STYLE, "axes.spines.top": False, "axes.spines.right": False}
 
 
 def draw(path, size, fill, *arguments):
     from matplotlib import style
     from matplotlib.figure import Figure
 
-    with style.context(["default", STYLE]):
+    with style.context(["default", plot.STYLE]):
         figure = Figure(figsize=size)
         fill(figure, *arguments)
         files.write(path, plot.encode(figure, "svg", pad_inches=0.08))

@@ -14,7 +14,6 @@ from ..storage import files
 from . import notebook, plot
 
 PARAMETERS = "abc"
-STYLE = {**plot.STYLE, "axes.spines.top": False, "axes.spines.right": False}
 COLOURS = {PROVED: "#7fa8d1", AT_ONCE: "#cfdeed"}
 WORDS = {PROVED: "proved cell by cell: no tori",
          AT_ONCE: "proved at once, with all larger multiples"}
@@ -55,7 +54,7 @@ def picture(region_map, kind, tori=()):
     figure = page(region_map, None, tori)
     from matplotlib import style
 
-    with style.context(["default", STYLE]):
+    with style.context(["default", plot.STYLE]):
         return plot.encode(figure, kind, dpi=160, pad_inches=0.08)
 
 
@@ -72,7 +71,7 @@ def page(region_map, ax=None, tori=()):
 
     from .page import Page
 
-    with style.context(["default", STYLE]):
+    with style.context(["default", plot.STYLE]):
         figure = Page(plot.encode, figsize=(6.4, 5.0))
         _draw(region_map, figure.add_subplot(), tori)
     return figure

@@ -14,11 +14,10 @@ from ..prover import tree
 from ..storage import files
 from ..version import __version__
 from . import captions
+from .style import (BLUE, CHART, DARK, GREEN, GREY, ORANGE, PURPLE, SALT, SKY, STYLE,  # noqa: F401
+                    VERMILLION)
 
 FORMATS = "svg", "png", "pdf"
-# Okabe and Ito's colours, told apart by the colour-blind, too; and greys.
-BLUE, SKY, ORANGE, VERMILLION = "#0072b2", "#56b4e9", "#e69f00", "#d55e00"
-GREEN, PURPLE, DARK, GREY = "#009e73", "#cc79a7", "0.1", "0.6"
 COLOURS = {"P": "0.35", "S": "0.85", "a": SKY, "?": "1.0", "U": "#f4b183"}
 EDGES = {"P": "0.1", "S": "0.6", "a": BLUE, "?": "0.6", "U": VERMILLION}
 WIDTHS = {"U": 0.8}                     # of the edges, in points
@@ -29,12 +28,6 @@ SINGLE = Fraction(1, 10 ** 200)         # half-widths below are drawn as 0: matp
 DEPTHS, SHADE = ("#9ecae1", "#4292c6", "#08306b"), "#4292c6"    # of the cuts; one for the legend
 RASTER_COLOURS = {"S": (217, 217, 217, 255), "a": (230, 159, 0, 255),
                   "?": (255, 255, 255, 255), "U": (213, 94, 0, 255)}
-SALT = {"svg.hashsalt": "converse"}     # so that the same picture gives the same file
-STYLE = {                               # of all pictures but those of proofs
-    **SALT, "font.size": 8, "axes.titlesize": 9, "axes.labelsize": 9, "xtick.labelsize": 8,
-    "ytick.labelsize": 8, "legend.fontsize": 8, "legend.title_fontsize": 8,
-    "legend.framealpha": 0.85, "legend.edgecolor": "0.8", "lines.linewidth": 1,
-}
 LETTERS = 17                            # of a caption, in an inch
 PROGRAM = "converse " + __version__         # by which files.check_output knows its pictures
 METADATA = {"svg": {"Creator": PROGRAM, "Date": None}, "png": {"Software": PROGRAM},

@@ -11,7 +11,6 @@ from ..tori.report import verdict
 from . import notebook, plot
 from .plot import BLUE, DARK, GREY, VERMILLION
 
-STYLE = {**plot.STYLE, "axes.linewidth": 0.6}
 POINTS = 600                # of the curve that is a torus of one angle
 CURVES = 5                  # for a range of parameters
 SIDE = 96                   # points of each angle of a torus of two
@@ -44,7 +43,7 @@ def picture(tori, kind="png", proved=()):
     figure = page(tori, proved)
     from matplotlib import style
 
-    with style.context(["default", STYLE]):
+    with style.context(["default", plot.STYLE]):
         return plot.encode(figure, kind, dpi=160)
 
 
@@ -58,7 +57,7 @@ def page(tori, proved=()):
     n = tori[0].dimension
     panels = n + 1 + (len(proved) > 1)
     columns = 2 if panels == 4 else panels
-    with style.context(["default", STYLE]):
+    with style.context(["default", plot.STYLE]):
         figure = Page(plot.encode, figsize=(3.1 * columns, 2.9 * (panels // columns)),
                       layout="constrained")
         axes = np.ravel(figure.subplots(panels // columns, columns))
