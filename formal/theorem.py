@@ -372,23 +372,27 @@ def main():
     parser.add_argument("name", help="of the theorem")
     parser.add_argument("directory", type=Path, help="where the files go")
     parser.add_argument("--numbers", choices=["Doubles", "BigIntegers", "Integers"],
-                        default="Doubles",
-                        help="the processor's floating-point numbers, or such as are made of the "
-                             "library Bignums' or of Coq's own integers (default: %(default)s)")
-    parser.add_argument("--parts", type=int, default=1, metavar="K",
-                        help="divide the leaves among K files (default: %(default)s)")
+                        help="the processor's floating-point numbers, or numbers made of the "
+                             "integers of the library Bignums or of Coq (default: Doubles); not "
+                             "for a certificate of existence, as --parts")
+    parser.add_argument("--parts", type=int, metavar="K",
+                        help="divide the leaves among K files (default: 1)")
     options = parser.parse_args()
-    name, numbers, count = options.name, options.numbers, options.parts
+    name, numbers = options.name, options.numbers or "Doubles"
+    count = 1 if options.parts is None else options.parts
     if not re.fullmatch("[A-Za-z][A-Za-z0-9_]*", name):
         sys.exit("theorem.py: the name is not letters, digits and _, a letter first")
     if count < 1:
         sys.exit("theorem.py: --parts: less than one")
     try:
         claim = check.read(options.file)
-        if isinstance(claim, check.Map):
+        if isinstance(claim, check.ParameterMap):
             raise check.Unusable("is a map; a theorem is made from a proof file or a certificate "
                                  "of existence")
         if isinstance(claim, check.TorusClaim):
+            if options.numbers or options.parts:
+                raise check.Unusable("is a certificate of existence, whose theorem is one file "
+                                     "with exact integers; leave out --numbers and --parts")
             texts = existence(claim, name)
         else:
             check.check_tree(claim)

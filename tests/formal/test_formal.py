@@ -227,6 +227,15 @@ def test_certificates_of_which_there_is_no_theorem(tmp_path):
 
 
 @needs_coq
+@pytest.mark.parametrize("flag", ["--parts=2", "--numbers=Doubles"])
+def test_a_certificate_takes_no_flags(tmp_path, flag):
+    done = subprocess.run([
+        sys.executable, FORMAL / "theorem.py", ROOT / "golden_outputs" / "tori" /
+        "standard-0.9.torus", "x", tmp_path, flag], capture_output=True, text=True, check=False)
+    assert done.returncode and "leave out --numbers and --parts" in done.stderr
+    assert done.stderr.count("\n") == 1 and not list(tmp_path.iterdir())
+
+
 def test_theorem_of_existence(folder):
     """Of a certificate with the margin that the line of the other test asks for; Coq does not
     accept it with the sign of an integer altered."""
