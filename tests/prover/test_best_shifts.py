@@ -112,7 +112,7 @@ def test_where_the_waves_bend_least():
 
 @pytest.mark.slow
 def test_a_range_is_linked_to_regions_that_move():
-    """With regions that stay where they are it takes 297,054 prisms."""
-    proof = prove(line("0.01395", "0.028", axes=None), method="loewner")
+    """With regions that stay where they are it takes 61,058 prisms."""
+    proof = prove(line("0.01397", "0.014", axes=None), method="loewner")
     assert proof.no_tori and all(part.problem.shifts for part in proof.parts)
-    assert proof.counts.proved < 80000
+    assert proof.parts and proof.counts.proved < 20000
