@@ -196,7 +196,7 @@ def action_of(state, u):
 
 def test_a_recombined_path_is_the_least(monkeypatch):
     """Without slip: no choice of points of two states, among those that begin like it, has less."""
-    monkeypatch.setattr(hunt, "RELIEF", 0.0)
+    monkeypatch.setattr(hunt, "JOINT_RELIEF", 0.0)
     rng = np.random.default_rng(3)
     for _ in range(20):
         state = orbits.PeriodicOrbit(trig, (4, 5), 7, 0.05, rng.normal(size=(7, 2)) / 4,
