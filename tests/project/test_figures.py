@@ -77,6 +77,14 @@ def test_the_readme_and_the_frontier_say_the_same():
     assert cells[0] == cells[1] == ["every k >= " + NO_CIRCLE, "every epsilon >= " + NO_TORUS]
 
 
+def test_the_readme_and_trust_name_the_same_theorems():
+    """The largest that each program has confirmed whole."""
+    row = re.search(r"^\| largest theorem .*$", text_of("trust.md"), re.MULTILINE)[0]
+    confirmed = re.findall("epsilon_c <= ([0-9.]+)", row)
+    assert len(confirmed) == 4 and confirmed == re.findall(
+        r"\| epsilon >= ([0-9.]+) \|$", text_of("README.md"), re.MULTILINE)
+
+
 def test_tori_are_those_of_the_tables():
     """Of single values measured with one release: modes, and seconds except for their rounding."""
     rows = {(row["map"], row["parameter"]): row for row in table("chart-sides")
