@@ -1,6 +1,5 @@
 """What inputs and pages claim in terms of epsilon, or of k, follows from the numbers exactly."""
 
-import dataclasses
 import re
 from fractions import Fraction
 from pathlib import Path
@@ -50,7 +49,7 @@ def test_the_k_of_an_input(path):
     for sign, least in re.findall("k ([>=]) ([0-9./]+[0-9])", " ".join(problem.comments)):
         assert problem.abc[0][0] <= Fraction(least) <= problem.abc[0][1]
         if sign == ">":                                 # and all larger ones follow at once
-            together = dataclasses.problem.tied()
+            together = problem.tied()
             assert prove(together, method="loewner").at_once
 
 

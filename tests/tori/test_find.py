@@ -161,9 +161,9 @@ def test_refinement_begins_with_what_is_below_the_noise(monkeypatch):
 
 
 def test_what_does_not_go_together_is_refused():
-    with pytest.raises(TypeError, match=r"read_rotation\('golden'\)"):
-        find(Problem(MuldoonMap("0.5", 0, 0)), "golden")
-    with pytest.raises(TypeError, match="is a Problem, such as converse.read_input returns, not"):
+    with pytest.raises(TypeError, match="a text such as 'golden'"):
+        find(Problem(MuldoonMap("0.5", 0, 0)), 0.618)
+    with pytest.raises(TypeError, match="the map is a SymplecticMap, such as .*, not 'standard-go"):
         find("standard-golden.in", GOLDEN)
     with pytest.raises(ValueError, match="margin"):
         find(Problem(MuldoonMap("0.5", 0, 0)), GOLDEN, margin=1e300)

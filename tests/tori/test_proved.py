@@ -59,7 +59,7 @@ def test_tori_are_proved(problem, rotation):
     assert frame == default_frame(family(problem)[0])
     assert set(map(type, alpha)) == {Q} and 0.7 * rho < piece.rho < 1.01 * rho
     shown = proof._repr_html_()
-    assert shown.startswith("<pre>I find") and "It is a real analytic graph" in shown
+    assert shown.startswith("<pre>THEOREM\n  The map")
     assert repr(proof).startswith("<ProvedTorus, rotation ")
 
 
@@ -150,7 +150,7 @@ def test_what_is_not_a_torus_is_refused(circle, surface):
         prove(circle, read_rotation("silver"))
     with pytest.raises(ValueError, match="jobs is 0; at least one"):
         prove(circle, jobs=0)
-    with pytest.raises(ValueError, match="for a Problem"):
+    with pytest.raises(ValueError, match="for a map"):
         prove(circle, margin=10.0)
 
 
