@@ -1,4 +1,4 @@
-"""What a proof file claims: waves, amplitudes, a region of the torus, x*; all of it exact."""
+"""The claim of a proof file: waves, amplitudes, a region of the torus, x*; all of it exact."""
 
 import re
 from dataclasses import dataclass
@@ -43,8 +43,8 @@ def present(waves):
 
 @dataclass(frozen=True)
 class Claim:
-    """What a proof file says, one of its parts, or a proved cell of a map: exact; v0 and v1 in
-    units of pi."""
+    """The claim of a proof file, of one of its parts, or of a proved cell of a map: exact; v0 and
+    v1 in units of pi."""
 
     waves: tuple
     centre: tuple                       # of v0 and v1

@@ -1,4 +1,4 @@
-"""What was verified, in words: exactly so much, and no more."""
+"""The theorem that was verified, in words: neither more nor less."""
 
 from fractions import Fraction
 
@@ -54,7 +54,7 @@ def is_boxed(claim):
 
 
 def claimed(claim):
-    """What a proof file claims, in lines."""
+    """The claim of a proof file, in lines."""
     boxed, torus = is_boxed(claim), is_whole(claim)
     potential = TRIG if boxed else "V(y) = - the sum of A sin(k.y + phase) over the waves below"
     lines = [SYSTEM, potential + ", " + GRAPH[0], *GRAPH[1:]]

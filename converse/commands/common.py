@@ -1,4 +1,4 @@
-"""What the commands share: types of arguments, output, workers, and how a command ends."""
+"""Parts of all commands: types of arguments, output, workers, and the end of a command."""
 
 import argparse
 import contextlib
@@ -94,7 +94,7 @@ def add_worker_options(p, what):
 # ---- output
 
 def say(text):
-    """Writes to standard output at once."""
+    """Writes to standard output immediately."""
     sys.stdout.write(text)
     sys.stdout.flush()
 

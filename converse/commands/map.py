@@ -61,7 +61,7 @@ def parser():
 
 
 def progress_text(share, found):
-    """What is being done on the map found, and how much of it."""
+    """The progress line: the present step of the work, and how much of it is done."""
     if found.estimated_all:
         return "proving: %.1f%% of the area down to %s times the estimate, %d cells" % (
             math.floor(1000 * share) / 10, decimal_text(found.down_to), found.count(PROVED))

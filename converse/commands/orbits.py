@@ -183,7 +183,7 @@ def parser():
     commands = p.add_subparsers(metavar="COMMAND", required=True)
 
     made = [p, _find_parser(commands), _sweep_parser(commands)]
-    for each in made:                           # -12,16/21 is no option, nor is -0.02:0:0.01
+    for each in made:                           # -12,16/21 and -0.02:0:0.01 are values
         each._negative_number_matcher = re.compile(r"-\.?\d")
     return p
 
@@ -266,7 +266,7 @@ def _check_outputs(options, potential_file):
 
 
 def _start(options, potential, straight, eps):
-    """The state that is followed: the straight orbit, or that of a file."""
+    """The state that is followed: the straight orbit, or a state of a file."""
     if options.start is None:
         return straight
     if options.search is not None:

@@ -128,7 +128,7 @@ class Progress:
 
 
 def _read_problem(options, restored):
-    """The problem that the input is, or that of the restored proof where there is no input."""
+    """The problem of the input; without an input, the problem of the restored proof."""
     if restored is not None and options.input is None:
         return restored.problem
     problem = read_problem(options.input)
@@ -201,7 +201,7 @@ def run(options):
         proof = prove(problem, xstar=xstar, jobs=options.jobs, executor=executor,
                       backup=options.backup, resume=options.restore, time_limit=options.time_limit,
                       progress=progress, on_leaf=on_leaf if options.verbose else None, **given)
-        if not options.begun:           # there was no time even to set the search up
+        if not options.begun:           # the time limit came before the search
             progress(0.0, proof.counts)
     say(verdict(proof, options.backup or options.restore))
     if options.graphics is not None:

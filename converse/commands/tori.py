@@ -50,7 +50,7 @@ def parser():
     p.add_argument("--version", action="version", version="%s %s" % (COMMAND, __version__))
     commands = p.add_subparsers(metavar="COMMAND", required=True)
     for each in (p, _prove_parser(commands)):
-        each._negative_number_matcher = re.compile(r"-\.?\d")   # -0.3 is no option
+        each._negative_number_matcher = re.compile(r"-\.?\d")   # -0.3 is a value
     return p
 
 

@@ -62,7 +62,7 @@ def foot(proof):
 
 
 def nodes(proof):
-    """The tree that is drawn: that of the proof's x*, with one letter for all."""
+    """The tree of the proof's x*, which is drawn, with one letter for all linked leaves."""
     return proof.tree.translate(dict.fromkeys(map(ord, tree.LETTERS), LINKED))
 
 

@@ -96,7 +96,7 @@ end
 
 def figure(proof, target, format=None, caption=True):
     """Draws a proof, finished or not, in a file.  The target is a path or a binary file; the format
-    svg, png, pdf or ps, by default that of the file's name, else PostScript.  caption: whether the
+    svg, png, pdf or ps, by default as the file's name ends, else PostScript.  caption: whether the
     lines above say what is proved and by what."""
     kind = format_of(target) if format is None else format
     if kind != "ps" and kind not in plot.FORMATS:

@@ -39,13 +39,13 @@ def largest(p):
 def draw(region_map, path, tori=()):
     """Draws a map in a file, with the points (a, b, c) at which tori are proved.
 
-    ConverseError: it cannot be drawn, or has no estimate yet."""
+    ConverseError: it cannot be drawn, or is not estimated yet."""
     kind = plot.check_file(path)
     files.write(path, picture(region_map, kind, tori))
 
 
 def html(region_map):
-    """What a notebook shows of a map: what is proved, and its picture."""
+    """The report of a map and its picture, for notebooks."""
     return notebook.html(region_map.report(), lambda: picture(region_map, "png"), "png", "the map")
 
 

@@ -1,4 +1,4 @@
-"""What a notebook shows of a value: words or a table, and a picture where there is matplotlib."""
+"""Values as notebooks show them: words or a table, and with matplotlib a picture."""
 
 import base64
 import html as markup

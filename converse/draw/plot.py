@@ -113,7 +113,7 @@ def page(proof, caption=True):
                       ha="center", va="bottom")
         axes.set_title(head, fontsize=9, pad=10 + 10.5 * len(captions.foot(proof)))
     axes.legend(loc="upper center", bbox_to_anchor=(0.5, 0), borderaxespad=5, ncol=3, fontsize=8,
-                frameon=False)          # so far below the axes that their labels have room
+                frameon=False)          # below the labels of the axes
     for image in axes.images[:1]:
         fig.colorbar(image, ax=axes, shrink=0.6, ticks=MaxNLocator(integer=True),
                      label="cuts of the smallest prism along both angles")

@@ -63,7 +63,7 @@ def fill(axes, portrait, tori=()):
 
 
 def title(portrait):
-    """What is proved, in two lines."""
+    """The theorem, in two lines."""
     waves = ["%s%s" % (short_text(p), "".join(r" \pm " + short_text(g) for g in parts))
              for p, *parts in zip(portrait.problem.amplitude, *portrait.problem.parts)]
     return "amplitude $%s$; coloured: proved, no rotational circle\n%s undecided: %.1f%% of %s" % (

@@ -26,12 +26,12 @@ def draw(proof, path):
 
 
 def torus_html(torus):
-    """What a notebook shows of a Torus."""
+    """A Torus and its picture, for notebooks."""
     return notebook.html(repr(torus), lambda: picture([torus]), "png", "the torus")
 
 
 def proved_html(proof):
-    """What a notebook shows of a ProvedTorus: the theorem and its picture."""
+    """The theorem of a ProvedTorus and its picture, for notebooks."""
     return notebook.html(verdict(proof), lambda: picture(
         [piece.torus for piece in proof.pieces], "png", proof.pieces), "png", "the torus")
 
@@ -86,7 +86,7 @@ def into(ax, tori):
 
 
 def _title(tori, width, proved):
-    """In lines of so many characters at most."""
+    """The title, in lines of at most `width` characters."""
     first = tori[0]
     text = "rotation %s: %s" % ("vector" if first.dimension > 1 else "number", first.rotation)
     amplitudes = [[float(p + s * q) for p, q in zip(

@@ -20,7 +20,7 @@ def type_text(state):
 
 
 def header(state):
-    """What is the same for all states of a report."""
+    """The lines that are the same for all states of a report."""
     potential = state.potential
     return ("Map : x' = x + p', p' = p - eps grad V(x), angles of period 1\n"
             "Potential : %s\nV(x) : %s\n"
@@ -33,7 +33,7 @@ def _numbers(values):
 
 
 def report(state):
-    """What is known of a state."""
+    """The lines of one state."""
     lines = [
         "eps : %r" % state.eps,
         "State : %s (%s)" % (state.label, MEANINGS.get(state.label, MEANINGS["best"])),
@@ -57,7 +57,7 @@ def _index_text(rho):
 
 
 def pass_report(pair):
-    """What is known of the pass beside a minimum."""
+    """The lines of the pass beside a minimum."""
     towards = "towards the neighbour displaced by " + vector_words(pair.step, pair.minimum.q)
     if pair.minimax.label != "saddle":
         return "Pass : too flat for doubles, %s\n" % towards

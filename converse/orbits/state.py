@@ -306,8 +306,8 @@ class PeriodicOrbit:
     @property
     def undetermined(self) -> int:
         """The number of eigenvalues of the Hessian between -NULL_EIGENVALUE and NULL_EIGENVALUE.
-        Along their eigenvectors the action hardly changes, and the phase of the state is not
-        determined."""
+        Along their eigenvectors the action changes by almost nothing, and the phase of the state is
+        not determined."""
         return self.below(NULL_EIGENVALUE) - self.below(-NULL_EIGENVALUE)
 
     # ---- how neighbours move away: stability.py

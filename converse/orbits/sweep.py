@@ -30,7 +30,7 @@ LOST = "lost"                           # in place of a label: continuation has 
 
 ONSET_COLUMNS = ("potential", "p", "q", "label", "eps_below", "eps_above", "exponent_below",
                  "exponent_above")
-TABLELESS = ValueError, IndexError, csv.Error       # raised by _table for a text that is no table
+TABLELESS = ValueError, IndexError, csv.Error       # raised by _table for any other text
 
 
 # ---- onsets

@@ -59,7 +59,7 @@ class Node:
 
 @dataclass(eq=False, repr=False)
 class ParameterMap:
-    """What is proved of a region of parameter space, and the estimate that led the search.
+    """The proofs over a region of parameter space, and the estimate that led the search.
 
     region: "b=0", "a=b" or "c=0", with a, b, c >= 0.
     down_to: how near to the estimated frontier the search was to come, as a ratio.
@@ -112,8 +112,8 @@ class ParameterMap:
                    for place, weight in ((k, 1 - share), (k + 1, share)) if weight)
 
     def target(self, cell: Cell) -> float:
-        """The least radius from which on any direction of a cell is to be proved: down_to times the
-        least estimate."""
+        """The least radius down to which all directions of a cell are to be proved: down_to times
+        the least estimate."""
         low, high = cell.low[1], cell.high[1]
         inner = range(math.floor(low * ESTIMATE_GRID) + 1, math.ceil(high * ESTIMATE_GRID))
         return float(self.down_to) * min(
@@ -149,18 +149,18 @@ class ParameterMap:
 
     @property
     def reached(self) -> float:
-        """About the least ratio of r to the estimate from which on all is proved."""
+        """About the least ratio of r to the estimate above which everything is proved."""
         return max(math.inf if leaf.cell.high[0] == RADIUS else
                    float(leaf.cell.high[0] * self.down_to) / self.target(leaf.cell)
                    for leaf in self.leaves() if leaf.kind == OPEN)
 
     def height(self, face: int) -> Fraction:
-        """The radius from which on all directions of a face are proved."""
+        """The radius above which all directions of a face are proved."""
         return max(leaf.cell.high[0] for leaf in self.leaves()
                    if leaf.kind == OPEN and leaf.cell.face == face)
 
     def report(self) -> str:
-        """What is proved, in words."""
+        """The theorem and the counts of the map, in lines."""
         proofs = [leaf.proof["tree"] for leaf in self.leaves() if leaf.proof is not None]
         lines = ["THEOREM.  The map  y' = y + J',  J' = J - grad V(y),  y modulo 2 pi,",
                  "with  V(y) = -a sin y0 - b sin y1 - c sin(y0 + y1),",

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Tuple
 
-RADIUS = 2          # from it on Mather's criterion holds in all directions: B > 10/3
+RADIUS = 2          # Beyond it Mather's criterion, B > 10/3, holds in all directions.
 
 A, B, C = (1, 0, 0), (0, 1, 0), (0, 0, 1)
 REGIONS = {                             # by name, d_0 and d_1 of each face
@@ -52,7 +52,7 @@ def patch(directions, cell):
     """The amplitudes (a, b, c) in the middle of a set of parameters that holds the cell, and what
     each of two parameters from -1 to 1 adds at its upper end.
 
-    r d(s) = r d(sm) + r (s - sm) d_1, and r is at most that of the cell's outer end.
+    r d(s) = r d(sm) + r (s - sm) d_1, and r is at most the r of the cell's outer end.
     """
     (r0, s0), (r1, s1) = cell.low, cell.high
     middle = direction(directions, cell.middle[1])

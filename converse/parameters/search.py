@@ -53,7 +53,7 @@ def _problem(amplitude, parts=()):
 
 @dataclass(frozen=True)
 class Outcome:
-    """What a try at a cell found: its kind and, of a proved one, the proof as plain data."""
+    """The result of a try at a cell: its kind and, if it is proved, the proof as plain data."""
 
     kind: str
     proof: Optional[dict] = None
@@ -112,7 +112,7 @@ def _way(directions, cell, stop):
 
 
 def attempt(directions, cell, budget, stop=None):
-    """The Outcome of a try to prove a cell with at most so many leaves; None if stopped."""
+    """The Outcome of a try to prove a cell with a limited number of leaves; None if stopped."""
     stop = stop or native.Stop()
     middle, parts = region.patch(directions, cell)
     if cell.high[0] == region.RADIUS:           # it must hold for all larger radii, too
@@ -186,10 +186,10 @@ def explore(name: Optional[str] = None, down_to: Optional[Number] = None, *, pat
 
     name: "b=0", "a=b" or "c=0".  down_to: how near to the estimated frontier to come, as
     a ratio above 1 (1.05).
-    path: of the file, new, or with resume that of the map to continue.
+    path: of the new file or, with resume, of the map to continue.
     jobs: cells at a time, by default one per core; executor: whose workers they are, by default
     threads of this process.
-    time_limit: after about so many seconds the map is left as it is.
+    time_limit: after about this number of seconds the map is left as it is.
     progress(share, map) is called a few times a second; share: of the area that is to be proved.
 
     ConverseError, MemoryError: what was found is in the file.  ValueError: an argument is wrong.
@@ -243,11 +243,11 @@ class _Search:
 
     def _work(self, next_task, take):
         """Hands out tasks (key, call, *arguments) and calls take(key, result) for what comes back,
-        until there are no more or there is no time."""
+        until no task or no time is left."""
         task, running = next_task(), self.pool.running
         while (task or running) and not self.late:
             size = self.pool.size
-            while task and size and len(running) <= size:       # one waits, to follow at once
+            while task and size and len(running) <= size:       # one task waits for the next worker
                 self.pool.give(*task)
                 task = next_task()
             for key, result in self.pool.take(LOOK_SECONDS):

@@ -26,7 +26,7 @@ REASONS = (                             # in the order of csrc/converse.h
 
 
 def header(proof):
-    """What is printed before the search: with the sharper method nothing."""
+    """The lines that are printed before the search: with the sharper method none."""
     return report_1989.header(proof.problem, proof.as_printed) if proof.method == "thesis" else ""
 
 

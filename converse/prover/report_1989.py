@@ -32,7 +32,7 @@ FINDINGS = {
 def header(problem, as_printed=False):
     """The lines above the row of pluses: parameters, region and comments.
 
-    The comments are those of the input.  They are quoted, because they are not the program's
+    Comments come from the input.  They are quoted, because they are not the program's
     words, except in a run as printed."""
     lines = ["Parameters :"]
     lines += ["%s : %.14e \t %.14e" % row for row in zip(
@@ -76,7 +76,7 @@ def _theorem(proof):
 
 def _range(name, low, high, exactly=True):
     """A range with its ends exact, or to the six places of 1989.  The report of 1989 has the
-    strict sign, although the ends are proved, too."""
+    strict sign, although the theorem includes the ends."""
     low, high = (decimal_text(x, LEAST_PLACES) if exactly else "%f" % x for x in (low, high))
     if exactly and low == high:
         return "%s = %s" % (name, low)
@@ -84,7 +84,7 @@ def _range(name, low, high, exactly=True):
 
 
 def _gaps(proof):
-    """Why there is no theorem, and what to try."""
+    """The reason why nothing is proved, and advice."""
     undecided = proof.undecided
     lines = ["Undecided prisms : %d" % len(undecided)]
     if undecided:

@@ -60,7 +60,7 @@ def _names(name, n):
 
 
 def _rounded(rotation, element):
-    """The value, cut after so many digits."""
+    """The value, cut after DIGITS characters."""
     low, _ = rotation.field.bounds(element, DIGITS + 2)
     return ("-" if low < 0 else "") + decimal_text(
         Fraction(math.floor(abs(low) * 10 ** DIGITS), 10 ** DIGITS), DIGITS)[:DIGITS]
@@ -75,7 +75,7 @@ def verdict(proof: ProvedTorus, seconds: Optional[float] = None,
     ----------
     proof
     seconds
-        CPU seconds of the search and the proof; by default those of the verification.
+        CPU seconds of the search and the proof; by default of the verification alone.
     certificate, checksum
         The file's name and SHA-256, if there is one.
     problem
