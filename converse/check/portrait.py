@@ -204,7 +204,8 @@ def portrayed(portrait):
     lines = ["THEOREM.  The map y' = y + J', J' = J - V'(y) of one angle y (modulo 2 pi),",
              "V(y) = - the sum of A sin(k y + phase) over the waves below, has no rotational",
              "invariant circle (no invariant graph J = P + S'(y), P constant, S periodic and C1)",
-             "with y in a column and y' where no prism of the column is undecided, for%s" % (
+             "with y in a column and y', or its image by the reversal of time, in proved prisms",
+             "alone, and in none that is undecided, for%s" % (
                  " any parameters with" * ranges)]
     for wave in portrait.waves:
         terms = [" %s %s t%d" % ("-" if g < 0 else "+", decimal_text(abs(g)), m)
