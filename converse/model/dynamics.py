@@ -1,4 +1,4 @@
-"""What a map does to points, in doubles: images, orbits, Jacobians, phase portraits."""
+"""Images of points under a map, orbits, Jacobians and phase portraits, in doubles."""
 
 from numbers import Integral
 from typing import TYPE_CHECKING, Any, Mapping, Optional, Tuple
@@ -97,14 +97,14 @@ class Dynamics:
         ax
             Axes of matplotlib, which are drawn into and returned; with None a Figure is returned.
         style
-            As for Axes.plot; color=None gives each orbit a colour of its own.
+            As for Axes.plot; color=None gives each orbit another colour.
 
         Raises
         ------
         ValueError
             The arguments make no portrait.
         ConverseError
-            There is no matplotlib.
+            matplotlib is missing.
         """
         from ..orbits.portrait import portrait
         return portrait(self, eps, y, J, _steps(steps), plane, within, ax, style)

@@ -309,8 +309,8 @@ def from_patch(harmonics: Sequence[tuple], amplitude: Sequence[Number],
     """The map with these amplitudes in the middle of all ranges, and what each parameter adds to
     them at its upper end.
 
-    parameters -- (name, low, high) of each; (): they have no names
-    ValueError: their numbers differ, or a range has no width though its parameter moves."""
+    parameters -- (name, low, high) of each; (): the parameters are unnamed
+    ValueError: their numbers differ, or a parameter moves amplitudes and its range is a point."""
     if not parameters:
         return SymplecticMap(harmonics, amplitude, parts)
     if len(parameters) != len(parts):

@@ -88,7 +88,7 @@ class Proof:
 
     @property
     def problem(self) -> Problem:
-        """What was asked; where that is all of the torus, and there is an x*, with the frame and
+        """The problem.  Where all of the torus was asked for, and x* is known, it has the frame and
         the region that are searched (symmetries_used)."""
         return self.trees[0].problem
 
@@ -180,7 +180,7 @@ class Proof:
         ax: Axes of matplotlib, which are drawn into and returned: only the prisms and x*, their
         labels ready for ax.legend().  With None a Figure is returned, which a notebook shows.
         caption: whether the lines above a Figure state what is proved and by what.
-        ConverseError: there is no matplotlib."""
+        ConverseError: matplotlib is missing."""
         from ..draw import plot
         return plot.page(self, caption) if ax is None else plot.draw(self, ax)
 
