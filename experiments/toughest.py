@@ -199,7 +199,8 @@ def draw_frontier(figure, table, last, chapter):
                                     gridspec_kw={"hspace": 0.12, "height_ratios": (3, 2)})
     new, old = NO_TORI
     strips.barh(2, TORUS_UP_TO, color=GREEN)
-    strips.plot(TORUS_AT, [2] * len(TORUS_AT), "s", color=GREEN, markersize=5)
+    strips.plot(TORUS_AT, [2] * len(TORUS_AT), "s", color=GREEN, markersize=5,
+                markeredgecolor="white", markeredgewidth=0.6)
     strips.annotate("%.4f" % TORUS_AT[-1], (TORUS_AT[-1], 2), (5, 0), va="center", color=GREEN,
                     textcoords="offset points")
     strips.barh(1, TORI, color=ORANGE, alpha=0.35)

@@ -60,8 +60,8 @@ class Shown(NamedTuple):
 # ---- words
 
 def quality(state):
-    """How good a state is."""
-    return "shadow %.0e, grad size %.0e" % (state.shadow, state.grad_size)
+    """How small the gradient of the action is."""
+    return "gradient at most %.0e, root mean square %.0e" % (state.shadow, state.grad_size)
 
 
 def kind(state):
@@ -170,7 +170,7 @@ def rows(page, shown, more=None):
         state = one.state
         letter = "abcdefghijklmnopqrstuvwxyz"[number % 26] * (1 + number // 26)
         lines = ["ε = %r, %s: %s" % (state.eps, vector_words(state.p, state.q), one.kind),
-                 "%s, %s" % (quality(state), exponents_words(state))]
+                 "%s; %s" % (exponents_words(state), quality(state))]
         if state.potential.n == 1:
             plane(panels[0], state)
         else:

@@ -108,10 +108,10 @@ def test_projections(name, drawn, families):
         head = title(left)
         assert head.startswith("(%s)  ε = %r, (%d, %d)/%d: %s" % (
             "abc"[number], eps, *vector[0], vector[1], state.label))
-        for label, value in (("shadow", state.shadow), ("grad size", state.grad_size)):
+        for label, value in (("at most", state.shadow), ("square", state.grad_size)):
             number = re.search(label + " (\\S+?)[,\n]", head)[1]
             assert float(number) == pytest.approx(value, rel=0.5)       # it has one digit
-        said = re.search("exponents (.*), (.*)\n", head)
+        said = re.search("exponents (.*), (.*);", head)
         assert [float(x) for x in said.groups()] == pytest.approx(state.exponents, abs=1e-4)
         assert ("arbitrary" in head) == (state.undetermined > 0)
         away = np.hypot(*(state.momenta - state.rotation).T).max()
