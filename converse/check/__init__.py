@@ -11,16 +11,14 @@ from .command import main, parser
 from .failures import Failure, NotConfirmed, Rejected, Unusable, shown
 from .limits import INTERRUPTED, NOT_CONFIRMED, PART, REJECTED, SPOT_CHECK, UNUSABLE, VERIFIED
 from .maps import ParameterMap
-from .proof_file import load
-from .run import Result, read, verify
+from .run import Result, load, read, verify
 from .tori import Verified, verify_torus
 from .torus_file import TorusClaim, read_torus
 from .tree import check_tree
 from .version import __version__
 from .words import decimal_text
 
-__all__ = ["Failure", "INTERRUPTED", "ParameterMap", "NOT_CONFIRMED", "NotConfirmed", "PART",
-           "REJECTED",
-           "Rejected", "Result", "SPOT_CHECK", "TorusClaim", "UNUSABLE", "Unusable", "VERIFIED",
-           "Verified", "__version__", "check_tree", "decimal_text", "load", "main", "parser",
-           "read", "read_torus", "shown", "verify", "verify_torus"]
+__all__ = ["Failure", "INTERRUPTED", "NOT_CONFIRMED", "NotConfirmed", "PART", "ParameterMap",
+           "REJECTED", "Rejected", "Result", "SPOT_CHECK", "TorusClaim", "UNUSABLE", "Unusable",
+           "VERIFIED", "Verified", "__version__", "check_tree", "decimal_text", "load", "main",
+           "parser", "read", "read_torus", "shown", "verify", "verify_torus"]

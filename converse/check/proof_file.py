@@ -1,49 +1,23 @@
 """Reading a proof file: nothing in it is believed but what the claim is."""
 
-import gzip
 import hashlib
 import io
 import re
-import zlib
 from dataclasses import replace
 from fractions import Fraction
 
 from .claim import ANGLES, LETTERS, NUMBER, RATIO, Claim, Wave, check_alone, check_frame, number
-from .failures import NotConfirmed, Rejected, Unusable, reason
-from .limits import MAX_BYTES, MAX_K, MAX_LINE, MAX_WAVES
+from .failures import NotConfirmed, Rejected, Unusable
+from .limits import MAX_K, MAX_LINE, MAX_WAVES
 
 COUNTS = ("depth", "cuts", "proved", "symmetric", "linked", "undecided", "most_cuts")
-IGNORED = ("program", "method", "digits", "stubborn", "quick_tries", "tries", "Rtries",
-           "HermSuccess", "LLSuccess", "ll_used", "reasons", "max_steps", "max_NTsteps",
-           "B", "pending")
-OPTIONAL = {"T", "Tr-", "Tr+", "lambda-min", "lambda-max", "seconds",       # ignored, too
-            "parameter", "comment"}
+IGNORED = ("program", "method", "digits", "stubborn", "quick_tries", "tries", "Rtries", "reasons",
+           "HermSuccess", "LLSuccess", "ll_used", "max_steps", "max_NTsteps", "B", "pending")
+OPTIONAL = {"T", "Tr-", "Tr+", "lambda-min", "lambda-max", "seconds", "parameter", "comment"}
 FIELDS = {*ANGLES, *COUNTS, *IGNORED, "kind", "xstar", "at once", "wave", "frame", "alone",
           "odd about"}
 REPEATED = {"wave", "parameter", "comment"}
 MAGIC, VERSION = b"converse proof ", b"6"       # the first line
-TORUS_MAGIC = b"converse torus "        # of a certificate of existence, as long
-PORTRAIT_MAGIC = b"converse portra"     # of a portrait, as much of it
-
-
-def load(path):
-    """The bytes of a proof file, a map, a portrait or a certificate of existence, uncompressed."""
-    try:
-        with open(path, "rb") as file:
-            packed = file.peek(2)[:2] == b"\x1f\x8b"
-            stream = gzip.GzipFile(fileobj=file) if packed else file
-            data = bytearray(stream.read(len(MAGIC)))
-            if data not in (MAGIC, TORUS_MAGIC, PORTRAIT_MAGIC) and not data.startswith(b"{"):
-                raise Unusable("is not a proof file")
-            while (more := stream.read(1 << 20)) and len(data) <= MAX_BYTES:
-                data += more
-    except (EOFError, zlib.error, gzip.BadGzipFile):
-        raise Unusable("the compressed file is damaged or truncated") from None
-    except (OSError, ValueError) as error:
-        raise Unusable("cannot be read (%s)" % reason(error)) from None
-    if len(data) > MAX_BYTES:
-        raise NotConfirmed("the file is larger than %d bytes, the checker's limit" % MAX_BYTES)
-    return data
 
 
 def read_proof(data):

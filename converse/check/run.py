@@ -1,28 +1,32 @@
 """Verifying a whole file."""
 
 import contextlib
+import gzip
 import itertools
 import random
+import zlib
 from dataclasses import dataclass
 
 from .criterion import check_at_once
-from .failures import NotConfirmed, Unusable
-from .limits import PART, SPOT_CHECK, VERIFIED
+from .failures import NotConfirmed, Unusable, reason
+from .limits import MAX_BYTES, PART, SPOT_CHECK, VERIFIED
 from .links import check_links
 from .lockstep import make_lockstep
 from .maps import ParameterMap, check_map, mapped, read_map
+from .portrait import FIRST_LINE as PORTRAIT
 from .portrait import Portrait, portrayed, read_portrait
 from .progress import Bar
-from .proof_file import PORTRAIT_MAGIC, TORUS_MAGIC, load, read_proof
+from .proof_file import MAGIC, read_proof
 from .state import state_of
 from .tori import verify_torus
-from .torus_file import TorusClaim, read_torus
+from .torus_file import TORUS_MAGIC, TorusClaim, read_torus
 from .tree import check_mirror_images, check_tree
 from .words import claimed, not_excluded, report
 from .workers import Problems, check_all
 
 CHUNKS, CHUNK = 8, 16                   # tasks of a process, about; leaves of one, with --exact
 FAST_CHUNK = 1 << 10, 1 << 14           # least (a batch of Lockstep) and most of the fast path
+PORTRAIT_MAGIC = PORTRAIT[:len(MAGIC)]
 VERDICTS = {VERIFIED: "verified", PART: "verified in part", SPOT_CHECK: "spot check"}
 
 
@@ -40,6 +44,26 @@ class Result:
 
     def __bool__(self):
         return self.status == VERIFIED
+
+
+def load(path):
+    """The bytes of a proof file, a map, a portrait or a certificate of existence, uncompressed."""
+    try:
+        with open(path, "rb") as file:
+            packed = file.peek(2)[:2] == b"\x1f\x8b"
+            stream = gzip.GzipFile(fileobj=file) if packed else file
+            data = bytearray(stream.read(len(MAGIC)))
+            if data not in (MAGIC, TORUS_MAGIC, PORTRAIT_MAGIC) and not data.startswith(b"{"):
+                raise Unusable("is not a proof file")
+            while (more := stream.read(1 << 20)) and len(data) <= MAX_BYTES:
+                data += more
+    except (EOFError, zlib.error, gzip.BadGzipFile):
+        raise Unusable("the compressed file is damaged or truncated") from None
+    except (OSError, ValueError) as error:
+        raise Unusable("cannot be read (%s)" % reason(error)) from None
+    if len(data) > MAX_BYTES:
+        raise NotConfirmed("the file is larger than %d bytes, the checker's limit" % MAX_BYTES)
+    return data
 
 
 def read(path):

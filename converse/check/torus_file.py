@@ -10,8 +10,9 @@ from fractions import Fraction
 from .claim import RATIO, number, present
 from .failures import NotConfirmed, Rejected
 from .limits import MAX_ALPHA, MAX_BITS, MAX_K, MAX_LINE, MAX_MODE, MAX_MODES, MAX_PIECES
-from .proof_file import TORUS_MAGIC, parse_waves, sealed
+from .proof_file import parse_waves, sealed
 
+TORUS_MAGIC = b"converse torus "        # the first line, before the version
 TORUS_FIELDS = ("program", "dimension", "wave", "polynomial", "root", "rotation", "frame", "alpha",
                 "rho", "pieces")
 INTEGER = re.compile("0|-?[1-9][0-9]*", re.ASCII)
