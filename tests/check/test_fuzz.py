@@ -179,7 +179,7 @@ def kept(proof_bytes, tmp_path_factory):
     path.write_bytes(proof_bytes)
     claim = check.read(path)
     state = check.State(path.with_suffix(".state"), claim.sha256, claim.tree.count("P"))
-    state.advance(7, 9)
+    state.advance(7, 9, 5)
     state.save()
     return claim, path.with_suffix(".state").read_bytes()
 
@@ -202,7 +202,7 @@ def test_any_change_of_a_state(kept, tmp_path_factory, edits, seal):
         one_line(error)
         assert path.read_bytes() == data != good
     else:
-        assert seal or (data, found.confirmed, found.pieces) == (good, 7, 9)
+        assert seal or (data, found.confirmed, found.pieces, found.doubles) == (good, 7, 9, 5)
         assert 0 <= found.confirmed <= claim.tree.count("P")
 
 
