@@ -367,7 +367,8 @@ def test_nothing_that_a_terminal_obeys(command, sample, tmp_path):
     """In messages, whatever name or text they quote."""
     backup, evil = tmp_path / "b", tmp_path / "\x1b[31mx"
     assert command("-b", backup, sample)[0] == 0
-    forged = backup.read_text().replace("program: converse 1", "program: converse \x1b[2J1")
+    forged = backup.read_text().replace("program: converse ", "program: converse \x1b[2J")
+    assert "\x1b" in forged
     body = forged[:forged.index("checksum:")]
     evil.write_text(body + "checksum: sha256 %s\nend\n" % hashlib.sha256(body.encode()).hexdigest())
     for arguments, stdin in ((["-r", evil], b""), ([evil], b""), ([], b"1 0\n\x1b[31mx 0\n"),
