@@ -17,7 +17,7 @@ import sys
 from pathlib import Path
 
 from converse import Proof
-from converse.draw.figure import figure
+from converse.draw import plot
 from converse.version import __version__
 
 DOCS = Path(__file__).resolve().parent
@@ -54,7 +54,7 @@ def draw(row, measure):
     for command in commands:
         run(command)
     if proof.exists():
-        figure(Proof.load(proof), picture, caption=False)
+        plot.write(Proof.load(proof), picture, caption=False)
     text = picture.read_text("utf-8")
     if data:
         shutil.copy(BUILD / (data + ".csv"), DOCS / "data")

@@ -144,14 +144,12 @@ def _read_problem(options, restored):
 
 def _check_graphics(options):
     """Refuses a figure that cannot be written or would overwrite something else."""
-    from ..draw import figure, plot  # these take a while
+    from ..draw import plot  # it takes a while
 
     others = [options.input, options.backup, options.restore]
     with contextlib.suppress(AttributeError, OSError, ValueError):
         others.append(sys.stdin.fileno())
-    files.check_output(options.graphics, "figure", figure.ALL_FORMATS, others)
-    if figure.format_of(options.graphics) != "ps":
-        plot.check(", or name the figure .ps")
+    plot.check_file(options.graphics, others, plot.PRISM_FORMATS)
 
 
 @contextlib.contextmanager
@@ -205,9 +203,9 @@ def run(options):
             progress(0.0, proof.counts)
     say(verdict(proof, options.backup or options.restore))
     if options.graphics is not None:
-        from ..draw.figure import figure
+        from ..draw import plot
 
-        figure(proof, options.graphics)
+        plot.write(proof, options.graphics)
     return STATUS[proof.conclusion]
 
 

@@ -1,1 +1,1 @@
-"""Figures of proofs and of maps: PostScript, or what matplotlib writes (the extra "plot")."""
+"""Figures of proofs, portraits, tori and maps, by matplotlib (the extra "plot")."""

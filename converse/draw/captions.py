@@ -1,4 +1,4 @@
-"""The words in a figure of a proof: the same in PostScript and by matplotlib."""
+"""The words in a figure of a proof: what is proved, how, and from which file."""
 
 import math
 import textwrap

@@ -11,7 +11,7 @@ from ..model.map import LINE
 from ..parameters.map import AT_ONCE, PROVED
 from ..parameters.region import direction
 from ..storage import files
-from . import notebook, plot
+from . import plot
 
 PARAMETERS = "abc"
 COLOURS = {PROVED: "#7fa8d1", AT_ONCE: "#cfdeed"}
@@ -23,6 +23,7 @@ MARKED_POINTS = (                       # of the dashed line, a = b = c/2
     (0.0272, "o", "\u03b5 \u2265 0.0272: no torus (1989)"),
     (0.01389, "*", "\u03b5 \u2265 0.01389: no torus"),
     (0.0120, "s", "\u03b5 = 0.0120: a torus"))
+SIZE = 6.4, 5.0                         # inches
 SAMPLES = 120                           # of the angles, and of the directions of a side
 AT_ONCE_LEVEL = 4 / 3                   # of B - 2, above which Mather's criterion proves
 
@@ -41,43 +42,23 @@ def draw(region_map, path, tori=()):
 
     ConverseError: it cannot be drawn, or is not estimated yet."""
     kind = plot.check_file(path)
-    files.write(path, picture(region_map, kind, tori))
-
-
-def html(region_map):
-    """The report of a map and its picture, for notebooks."""
-    return notebook.html(region_map.report(), lambda: picture(region_map, "png"), "png", "the map")
-
-
-def picture(region_map, kind, tori=()):
-    """A map, and points at which tori are proved, as the bytes of a file of that kind."""
-    figure = page(region_map, None, tori)
-    from matplotlib import style
-
-    with style.context(["default", plot.STYLE]):
-        return plot.encode(figure, kind, dpi=160, pad_inches=0.08)
+    files.write(path, plot.written(
+        *SIZE, kind, lambda figure: _draw(region_map, figure.add_subplot(), tori)))
 
 
 def page(region_map, ax=None, tori=()):
     """The map drawn into Axes, which are returned, or as a Figure that a notebook shows."""
+    if ax is None:
+        return plot.new(*SIZE, lambda figure: _draw(region_map, figure.add_subplot(), tori))
     plot.check()
-    if not all(region_map.estimate):
-        raise files.ConverseError("the map has nothing to draw yet: it was left while the frontier "
-                                  "was estimated; continue it with -r")
-    if ax is not None:
-        _draw(region_map, ax, tori)
-        return ax
-    from matplotlib import style
-
-    from .page import Page
-
-    with style.context(["default", plot.STYLE]):
-        figure = Page(plot.encode, figsize=(6.4, 5.0))
-        _draw(region_map, figure.add_subplot(), tori)
-    return figure
+    _draw(region_map, ax, tori)
+    return ax
 
 
 def _draw(region_map, axes, tori):
+    if not all(region_map.estimate):
+        raise files.ConverseError("the map has nothing to draw yet: it was left while the frontier "
+                                  "was estimated; continue it with -r")
     horizontal, vertical = {"b=0": (0, 2), "a=b": (0, 2), "c=0": (0, 1)}[region_map.region]
 
     def at(directions, r, s):

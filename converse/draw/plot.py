@@ -1,11 +1,12 @@
-"""The figure of a proof by matplotlib (the extra "plot"): SVG, PNG, PDF, or in the user's axes.
+"""The figure of the prisms of a proof, as in the thesis, and what all pictures share.
 
-Neither the backend nor the settings of matplotlib are changed.
+Every picture is drawn by matplotlib (the extra "plot"), whose backend and settings stay the same.
 """
 
 import io
 import math
 import os
+import re
 import textwrap
 from fractions import Fraction
 
@@ -17,13 +18,15 @@ from . import captions
 from .style import (BLUE, CHART, DARK, GREEN, GREY, ORANGE, PURPLE, SALT, SKY, STYLE,  # noqa: F401
                     VERMILLION)
 
-FORMATS = "svg", "png", "pdf"
+FORMATS = "svg", "png", "pdf"           # of all pictures, as their names end
+PRISM_FORMATS = *FORMATS, "ps", "eps"   # of the prisms; in 1989 -g wrote PostScript
 COLOURS = {"P": "0.35", "S": "0.85", "a": SKY, "?": "1.0", "U": "#f4b183"}
 EDGES = {"P": "0.1", "S": "0.6", "a": BLUE, "?": "0.6", "U": VERMILLION}
 WIDTHS = {"U": 0.8}                     # of the edges, in points
 LAYERS = "SPa?U"                        # from the bottom: what is not proved is never hidden
 RASTER = 2000                           # with more prisms than this the depth of the cuts is drawn
 PIXELS = 1200
+DPI = 200                               # of a file: PostScript of a raster has 5 MB
 SINGLE = Fraction(1, 10 ** 200)         # half-widths below are drawn as 0: matplotlib fails on them
 DEPTHS, SHADE = ("#9ecae1", "#4292c6", "#08306b"), "#4292c6"    # of the cuts; one for the legend
 RASTER_COLOURS = {"S": (217, 217, 217, 255), "a": (230, 159, 0, 255),
@@ -31,56 +34,68 @@ RASTER_COLOURS = {"S": (217, 217, 217, 255), "a": (230, 159, 0, 255),
 LETTERS = 17                            # of a caption, in an inch
 PROGRAM = "converse " + __version__         # by which files.check_output knows its pictures
 METADATA = {"svg": {"Creator": PROGRAM, "Date": None}, "png": {"Software": PROGRAM},
-            "pdf": {"Creator": PROGRAM, "CreationDate": None}}
+            "pdf": {"Creator": PROGRAM, "CreationDate": None}, "eps": {"Creator": PROGRAM}}
+PS_DATE = re.compile(rb"%%CreationDate: .*\n")        # which matplotlib always writes
 
 
-def check(instead=""):
-    """ConverseError if matplotlib is missing; `instead` ends its text with what else would do."""
+def check():
+    """Raises ConverseError if matplotlib is missing."""
     try:
         import matplotlib  # noqa: F401
     except ImportError:
-        raise files.ConverseError("figures need matplotlib; pip install 'converse-kam[plot]'"
-                                  + instead) from None
+        raise files.ConverseError(
+            "figures need matplotlib; pip install 'converse-kam[plot]'") from None
 
 
-def check_file(path, others=()):
+def check_file(path, others=(), formats=FORMATS):
     """The format that the name of a new figure asks for.  ConverseError, before the work starts: it
     cannot be drawn there, would overwrite one of the other files of the run or a file that is not a
     figure of this program, or matplotlib is missing."""
-    files.check_output(path, "figure", FORMATS, others)
+    files.check_output(path, "figure", formats, others)
     check()
+    return format_of(path)
+
+
+def format_of(path):
+    """The ending of a file's name, in small letters."""
     return os.path.splitext(path)[1][1:].lower()
 
 
-def figure_bytes(proof, kind, caption=True):
-    """The figure as the bytes of a file; the user's settings do not matter to it."""
+def write(proof, path, caption=True):
+    """Draws a proof, finished or not, in a file whose name ends as one of PRISM_FORMATS.
+
+    caption: whether the lines above the prisms state what is proved and by what.
+    ConverseError: the file cannot be written, or matplotlib is missing."""
     check()
     from matplotlib import style
 
     with style.context(["default", SALT]):
-        return encode(page(proof, caption), kind, dpi=300)
+        files.write(path, encode(page(proof, caption), format_of(path), dpi=DPI))
 
 
 def encode(figure, kind, **options):
-    """A Figure as the bytes of a file of that kind, without a date."""
+    """A Figure as the bytes of a file of that kind, without a date.  PostScript is encapsulated."""
     data = io.BytesIO()
-    figure.savefig(data, format=kind, bbox_inches="tight", metadata=METADATA.get(kind), **options)
-    return data.getvalue()
+    kind = "eps" if kind == "ps" else kind
+    figure.savefig(data, format=kind, bbox_inches="tight", metadata=METADATA[kind], **options)
+    return PS_DATE.sub(b"", data.getvalue()) if kind == "eps" else data.getvalue()
 
 
-def new(width, height, fill):
+def new(width, height, fill, layout=None):
     """A Figure that a notebook shows, of that size in inches.  fill(figure) draws it; the user's
-    settings do not matter to it.  fill may return a caption, which is written below."""
+    settings do not matter to it.  fill may return a caption, which is written below.  layout is an
+    engine of matplotlib's; without one the margins fit a single panel."""
     check()
     from matplotlib import style
 
     from .page import Page
 
     with style.context(["default", STYLE]):
-        figure = Page(encode, figsize=(width, height))
+        figure = Page(encode, figsize=(width, height), layout=layout)
         words = fill(figure)
-        figure.subplots_adjust(left=0.55 / width, right=1 - 0.1 / width, bottom=0.5 / height,
-                               top=1 - 0.4 / height)
+        if layout is None:
+            figure.subplots_adjust(left=0.55 / width, right=1 - 0.1 / width, bottom=0.5 / height,
+                                   top=1 - 0.4 / height)
         if words:
             lines = textwrap.wrap(words.replace("$", r"\$"), int(LETTERS * width))
             figure.text(0.1 / width, 0.0, "\n".join(lines), color="0.25", va="top",
@@ -88,9 +103,9 @@ def new(width, height, fill):
     return figure
 
 
-def written(width, height, kind, fill):
+def written(width, height, kind, fill, layout=None):
     """What new() makes, as the bytes of a file of that kind."""
-    figure = new(width, height, fill)
+    figure = new(width, height, fill, layout)
     from matplotlib import style
 
     with style.context(["default", STYLE]):

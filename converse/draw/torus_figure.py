@@ -7,8 +7,7 @@ import textwrap
 import numpy as np
 
 from ..storage import files
-from ..tori.report import verdict
-from . import notebook, plot
+from . import plot
 from .plot import BLUE, DARK, GREY, VERMILLION
 
 POINTS = 600                # of the curve that is a torus of one angle
@@ -25,48 +24,40 @@ def draw(proof, path):
     files.write(path, picture([piece.torus for piece in proof.pieces], kind, proof.pieces))
 
 
-def torus_html(torus):
-    """A Torus and its picture, for notebooks."""
-    return notebook.html(repr(torus), lambda: picture([torus]), "png", "the torus")
-
-
-def proved_html(proof):
-    """The theorem of a ProvedTorus and its picture, for notebooks."""
-    return notebook.html(verdict(proof), lambda: picture(
-        [piece.torus for piece in proof.pieces], "png", proof.pieces), "png", "the torus")
-
-
 def picture(tori, kind="png", proved=()):
     """The bytes of a picture of tori that cover a range, or of one torus.
 
     proved -- of each what its proof says (proved.Piece)"""
-    figure = page(tori, proved)
-    from matplotlib import style
-
-    with style.context(["default", plot.STYLE]):
-        return plot.encode(figure, kind, dpi=160)
+    return plot.written(*_size(tori, proved), kind, lambda figure: _fill(figure, tori, proved),
+                        "constrained")
 
 
 def page(tori, proved=()):
     """The picture as a Figure that a notebook shows."""
-    plot.check()
-    from matplotlib import style
+    return plot.new(*_size(tori, proved), lambda figure: _fill(figure, tori, proved),
+                    "constrained")
 
-    from .page import Page
 
-    n = tori[0].dimension
-    panels = n + 1 + (len(proved) > 1)
+def _panels(tori, proved):
+    """How many panels there are: in a row, and rows."""
+    panels = tori[0].dimension + 1 + (len(proved) > 1)
     columns = 2 if panels == 4 else panels
-    with style.context(["default", plot.STYLE]):
-        figure = Page(plot.encode, figsize=(3.1 * columns, 2.9 * (panels // columns)),
-                      layout="constrained")
-        axes = np.ravel(figure.subplots(panels // columns, columns))
-        into(axes[:n], tori)
-        (_line if n == 1 else _lattice)(figure, axes[n], tori[-1])
-        if len(proved) > 1:
-            _errors(axes[n + 1], proved)
-        figure.suptitle(_title(tori, 50 * columns, proved), fontsize=9)
-    return figure
+    return columns, panels // columns
+
+
+def _size(tori, proved):
+    columns, rows = _panels(tori, proved)
+    return 3.1 * columns, 2.9 * rows
+
+
+def _fill(figure, tori, proved):
+    n, (columns, rows) = tori[0].dimension, _panels(tori, proved)
+    axes = np.ravel(figure.subplots(rows, columns))
+    into(axes[:n], tori)
+    (_line if n == 1 else _lattice)(figure, axes[n], tori[-1])
+    if len(proved) > 1:
+        _errors(axes[n + 1], proved)
+    figure.suptitle(_title(tori, 50 * columns, proved), fontsize=9)
 
 
 def into(ax, tori):

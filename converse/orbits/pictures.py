@@ -1,20 +1,18 @@
-"""Pictures and tables of states, proved orbits and families, as notebooks and the command
-converse-orbits show them.  Pictures need matplotlib (the extra "plot"), whose settings stay."""
+"""Pictures of states, proved orbits and families.  They need matplotlib (the extra "plot"), whose
+settings stay as they are."""
 
 from typing import NamedTuple, Optional
 
 import numpy as np
 
-from ..draw import notebook, plot
+from ..draw import plot
 from ..draw.plot import BLUE, DARK, VERMILLION
-from ..storage import files
 from .limits import MAX_PIVOTS
 from .proved import ProvedOrbit, distances, vector_words
 from .state import PeriodicOrbit
 
 FEW = 300                               # points that are drawn larger
 MOST_STATES = 40                        # in a picture
-MOST_ROWS = 60                          # in a table
 WIDTH, HEIGHT = 6.2, 3.25               # of the picture of a state, in inches
 LOST = 1e-13                            # distances below are rounding
 PLOTTED = {                             # what Family.plot draws: the name of its axis
@@ -257,57 +255,3 @@ def _against_eps(ax, family, column, values, minima):
 def minimum(state):
     """Whether doubles show a minimum."""
     return state.label == "minimum" or state.label.startswith("best of")
-
-
-# ---- what a notebook shows
-
-def measures(state):
-    """The rows of a table about a state: {name: text}."""
-    found = {"eps": "%r" % state.eps, "label": state.label, "action": "%.12g" % state.action,
-             "exponents": ", ".join(exponent_text(state, x, 6) for x in state.exponents)}
-    if state.potential.n == 1:
-        found["residue"] = "%.6g" % state.residue
-    else:
-        found["indices"] = ", ".join(format(x, ".6g") for x in state.indices)
-    found.update(shadow="%.1e" % state.shadow,
-                 deviation=", ".join("%.6g" % x for x in state.deviation),
-                 undetermined="%d" % state.undetermined)
-    return found
-
-
-def state_html(state):
-    said = measures(state)
-    words = notebook.table(_name(state), None, said.items())
-    return notebook.html(words, lambda: states_picture([state], "png", caption=False), "png",
-                         "its points")
-
-
-def proved_html(proof):
-    return notebook.html(proof.report(),
-                         lambda: states_picture([proof], "png", caption=False), "png",
-                         "its points")
-
-
-def family_html(family):
-    """A table of all states, without those in the middle if there are many, and the exponents."""
-    if not len(family):
-        return notebook.html("a family without states", _nothing, "png", "")
-    states = list(family)
-    half = MOST_ROWS // 2
-    few = states if len(states) <= MOST_ROWS else states[:half] + states[-half:]
-    said = [measures(state) for state in few]
-    table = [list(each.values()) for each in said]
-    if len(few) < len(states):
-        table[half:half] = [["…"] * len(said[0])]
-    words = notebook.table("%s, %d states" % (_name(states[0]), len(states)), list(said[0]), table)
-    return notebook.html(
-        words, lambda: plot.encode(family_plot(family, "exponents"), "png", dpi=100), "png",
-        "the exponents")
-
-
-def _name(state):
-    return "%s, type %s" % (state.potential.name, vector_words(state.p, state.q))
-
-
-def _nothing():
-    raise files.ConverseError("nothing to be drawn")

@@ -106,11 +106,6 @@ class ProvedOrbit:
         from .pictures import figure
         return figure(self, ax)
 
-    def _repr_html_(self) -> str:
-        """For notebooks: the theorem and, where there is matplotlib, the figure."""
-        from .pictures import proved_html
-        return proved_html(self)
-
     def report(self) -> str:
         """The theorem in words."""
         state, (within, moved) = self.state, distances(self)

@@ -99,11 +99,6 @@ class Family:
         from .pictures import family_plot
         return family_plot(self, column, ax)
 
-    def _repr_html_(self) -> str:
-        """For notebooks: a table and, where there is matplotlib, the exponents."""
-        from .pictures import family_html
-        return family_html(self)
-
     def write_csv(self, file: TextIO) -> None:
         """A row for each state, with its measures."""
         rows = csv.writer(file, lineterminator="\n")

@@ -439,11 +439,6 @@ class PeriodicOrbit:
         from .points import load
         return load(path, potential)[0]
 
-    def _repr_html_(self) -> str:
-        """For notebooks: its measures and, where there is matplotlib, its figure."""
-        from .pictures import state_html
-        return state_html(self)
-
     # ---- other states
 
     def moved(self, u: np.ndarray) -> "PeriodicOrbit":

@@ -200,11 +200,6 @@ class ParameterMap:
         """Verifies anew what is proved, as Proof.verify does."""
         return files.verified(self, jobs)
 
-    def _repr_html_(self) -> str:
-        """For notebooks: the report and, where there is matplotlib, the picture."""
-        from ..draw import map_figure
-        return map_figure.html(self)
-
     def __repr__(self):
         return "<ParameterMap of %s: %d cells proved, %d at once, %d open>" % (
             self.region, *map(self.count, (PROVED, AT_ONCE, OPEN)))

@@ -193,14 +193,6 @@ class Proof:
         """
         return files.verified(self, jobs)
 
-    def _repr_svg_(self):
-        from ..draw import figure
-        return figure.svg(self)
-
-    def _repr_html_(self):
-        from ..draw import figure
-        return figure.html(self)
-
     def save(self, path: Union[str, "os.PathLike[str]"]) -> str:
         """Writes the proof file, compressed when the name ends in .gz; returns its SHA-256 (that
         of the uncompressed file).  A finished search gives the same file however it was

@@ -136,11 +136,6 @@ class ProvedTorus:
         does not confirm it."""
         return _verified(certificate.read(path).tori, jobs, lambda text: None)
 
-    def _repr_html_(self) -> str:
-        """For notebooks: the theorem and, where there is matplotlib, the picture."""
-        from ..draw.torus_figure import proved_html
-        return proved_html(self)
-
     def save(self, path: Union[str, "os.PathLike[str]"]) -> str:
         """Writes the certificate (docs/reference/torus-certificate.md), compressed if the name ends
         in .gz, and returns its SHA-256 (of the uncompressed file).  As with Proof.save() a file

@@ -202,11 +202,6 @@ class Torus:
         from . import certificate
         return certificate.read(path).tori[0]
 
-    def _repr_html_(self) -> str:
-        """For notebooks: a line and, where there is matplotlib, the picture."""
-        from ..draw.torus_figure import torus_html
-        return torus_html(self)
-
 
 def decay(far: np.ndarray, size: np.ndarray) -> float:
     """The rate r at which sizes fall with distances, about C e^{-r far}; see Torus.decay."""

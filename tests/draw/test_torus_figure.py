@@ -69,19 +69,6 @@ def test_the_same_picture_is_the_same_file(proof):
     assert first == second
 
 
-def test_a_torus_draws_itself_in_a_notebook(monkeypatch):
-    circle = ONE.pieces[0].torus
-    words = "<pre>%s</pre>" % repr(circle).replace("<", "&lt;").replace(">", "&gt;")
-    assert circle._repr_html_().startswith(
-        words + '<img alt="the torus" src="data:image/png;base64')
-
-    def missing():
-        raise ConverseError("no matplotlib")
-
-    monkeypatch.setattr(torus_figure.plot, "check", missing)
-    assert circle._repr_html_() == words
-
-
 @pytest.mark.slow
 def test_the_copies_of_a_torus_fill_the_square(tmp_path):
     """However far u moves it: no corner is left white."""

@@ -2,9 +2,7 @@
 the program computed, and say what that is."""
 
 import math
-import re
 import sys
-import xml.etree.ElementTree as ET
 
 import numpy as np
 import pytest
@@ -50,14 +48,6 @@ def data(axes, number=0):
 
 def shown(*states):
     return [pictures.Shown.of(state) for state in states]
-
-
-def text(html):
-    """A piece of HTML: what is in its table or <pre>, and the images."""
-    page = ET.fromstring("<body>%s</body>" % re.sub("(<img [^>]*)>", r"\1/>", html))
-    images = page.findall("img")
-    rows = [[cell.text or "" for cell in row] for row in page.iter("tr")]
-    return rows or page.find("pre").text, images
 
 
 # ---- states
@@ -166,53 +156,15 @@ def test_states_that_are_no_minima_are_hollow(saddle):
     assert hollow.get_markerfacecolor() == "white" and hollow.get_label() == "no minimum"
 
 
-# ---- notebooks
-
-def test_a_notebook_shows_a_state(plane, line):
-    for state in plane[1], line[1]:
-        rows, (image,) = text(state._repr_html_())
-        said = dict(rows)
-        assert said["eps"] == repr(state.eps) and said["label"] == "minimum"
-        assert float(said["action"]) == pytest.approx(state.action)
-        for x, exponent in zip(said["exponents"].split(", "), state.exponents):
-            assert exponent < 1e-5 if x == "below 1e-05" else float(x) == pytest.approx(exponent)
-        assert image.get("src").startswith("data:image/png;base64,iVBOR")
-        assert ("residue" in said) == (state is line[1]) != ("indices" in said)
-
-
-def test_a_notebook_shows_a_family(plane, line, monkeypatch):
-    for family in plane, line:
-        (head, *rows), (image,) = text(family._repr_html_())
-        assert [row[head.index("eps")] for row in rows] == [repr(state.eps) for state in family]
-        assert image.get("alt") == "the exponents"
-    monkeypatch.setattr(pictures, "MOST_ROWS", 4)
-    many = Family(tuple(plane[0].relax(0.001 * k) for k in range(1, 8)))
-    rows, _ = text(many._repr_html_())
-    assert [row[0] for row in rows[1:]] == ["0.001", "0.002", "…", "0.006", "0.007"]
-    words, images = text(Family(())._repr_html_())
-    assert words == "a family without states" and not images
-
-
-def test_a_notebook_shows_a_proved_orbit(line):
+def test_a_picture_of_a_proved_orbit(line):
     proof = orbits.prove(line[1])
-    words, (image,) = text(proof._repr_html_())
-    assert words == proof.report()
     title = proof.plot().axes[0].get_title(loc="left")
     assert "proved within" in title
     assert np.array_equal(data(proof.plot().axes[0])[:, 0], proof.nearest.x[:, 0])
 
 
-def test_what_is_said_is_no_markup():
-    strange = orbits.potential.Fourier({(1,): (-1, 0)}, "<b>&")
-    state = orbits.straight(strange, (1,), 3)
-    assert "<b>" not in state._repr_html_() and "&lt;b&gt;&amp;" in state._repr_html_()
-
-
 def test_without_matplotlib(plane, monkeypatch):
     monkeypatch.setitem(sys.modules, "matplotlib", None)
-    for value in plane, plane[0]:
-        rows, images = text(value._repr_html_())
-        assert rows and not images
     for draw in plane[0].plot, lambda: plane.plot(column="action"), orbits.trig.portrait:
         with pytest.raises(ConverseError, match=r"converse-kam\[plot\]"):
             draw()

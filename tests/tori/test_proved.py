@@ -58,8 +58,7 @@ def test_tori_are_proved(problem, rotation):
     frame, alpha, rho = piece.torus.strip
     assert frame == default_frame(family(problem)[0])
     assert set(map(type, alpha)) == {Q} and 0.7 * rho < piece.rho < 1.01 * rho
-    shown = proof._repr_html_()
-    assert shown.startswith("<pre>THEOREM\n  The map")
+    assert proof.report().startswith("THEOREM\n  The map")
     assert repr(proof).startswith("<ProvedTorus, rotation ")
 
 
