@@ -4,7 +4,7 @@
 
 Of the potential of an input file the parameter NAME varies, from VALUE down.  The onsets of
 rational rotation vectors (orbits.onset) tell in floating-point numbers for which vectors tori last
-longest; near the best ones vectors of number fields are taken (tori.near) and judged by their own
+longest; near the best ones vectors of number fields are taken (near.py) and judged by their own
 approximants.  The best is proved for values of NAME as large as a search on
 a grid of N points reaches.  All but the proof is seen, not proved.
 """
@@ -16,6 +16,7 @@ import time
 from fractions import Fraction
 
 import numpy as np
+from near import near
 from toughest import SPREAD, rational
 
 from converse import orbits, tori
@@ -98,7 +99,7 @@ def choose(potential, names=()):
     for w in places[:PLACES]:
         for tolerance in TOLERANCES:
             try:
-                vectors.append(tori.near(*(round(x, 6) for x in w), tolerance=tolerance))
+                vectors.append(near(*(round(x, 6) for x in w), tolerance=tolerance))
             except ValueError:          # there is none so near
                 pass
     return ranked(potential, {rotation.text(): rotation for rotation in vectors}.values())

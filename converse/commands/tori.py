@@ -62,15 +62,9 @@ def _prove_parser(commands):
     p.set_defaults(run=prove_torus)
     p.add_argument("input", nargs="?", metavar="FILE", help="input file, the thesis's or "
                    "JSON; standard input if it is - or left out; one parameter may have a range")
-    which = p.add_mutually_exclusive_group()
-    which.add_argument("--rotation", metavar="ROTATION", help=(
+    p.add_argument("--rotation", metavar="ROTATION", help=(
         "the rotation vector in turns: golden, silver, spiral, seven, T49, V1, V2, or a polynomial "
         "and elements of the field of its largest real root t, such as 't^2+t-1: t'"))
-    which.add_argument("--near", nargs="+", type=_number, metavar="W",
-                       help="take the rotation vector with the best small divisors that is found "
-                            "near W, for two angles near W W")
-    p.add_argument("--tolerance", type=_positive, metavar="T",
-                   help="how far the vector of --near may be away (default 0.001)")
     p.add_argument("--together", action="store_true",
                    help="a, b and c move together along the segment from all lower to all upper "
                    "ends")
@@ -126,11 +120,9 @@ def _check_outputs(options, locks):
         plot.check_file(options.graphics, [options.input, options.backup, options.restore])
 
 
-def _rotation(options, potential, start, progress):
+def _rotation(options, potential, start):
     from .. import tori
 
-    if options.tolerance is not None and options.near is None:
-        raise ConverseError("--tolerance goes with --near; leave it out, or give --near")
     if start is not None and start.dimension != potential.dimension:
         raise ConverseError("%s: its map has %d angle%s, and this one %d; start from another "
                             "certificate, or without" % (
@@ -138,16 +130,9 @@ def _rotation(options, potential, start, progress):
                                 potential.dimension))
     if options.rotation is not None:
         return tori.read_rotation(options.rotation, potential.dimension)
-    if options.near is None:
-        if start is None:
-            raise ConverseError("which torus? Give --rotation, such as golden or T49, or --near W")
-        return start.rotation
-    if len(options.near) != potential.dimension:
-        raise ConverseError("--near has %s, and the map %s: give as many" % tuple(
-            "%d %s%s" % (count, what, "s" * (count != 1)) for count, what in (
-                (len(options.near), "number"), (potential.dimension, "angle"))))
-    more = {} if options.tolerance is None else {"tolerance": options.tolerance}
-    return tori.near(*options.near, progress=progress, **more)
+    if start is None:
+        raise ConverseError("which torus? Give --rotation, such as golden or T49")
+    return start.rotation
 
 
 def prove_torus(options):
@@ -166,8 +151,7 @@ def _prove_torus(options):
     start = None if options.restore is None else _start(options.restore)
     problem = _read_problem(options)
     potential, part = family(problem)
-    with ProgressLine() as line:
-        rotation = _rotation(options, potential, start, lambda words: line(lambda: words))
+    rotation = _rotation(options, potential, start)
     choices = {name: value for name, value in (
         ("start", start), ("margin", options.margin and float(options.margin)),
         ("points", options.points),

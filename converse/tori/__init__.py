@@ -8,7 +8,6 @@
 try:
     from .certificate import Certificate, read
     from .find import NotFound, find
-    from .near import near
     from .proved import NotProved, ProvedTorus, prove
     from .rotation import Rotation, read_rotation
     from .torus import Strip, Torus
@@ -23,4 +22,4 @@ except ImportError as _error:           # said when something is asked for: the 
         raise ConverseError(_MISSING)
 
 __all__ = ["Certificate", "NotFound", "NotProved", "ProvedTorus", "Rotation", "Strip", "Torus",
-           "find", "near", "prove", "read", "read_rotation"]
+           "find", "prove", "read", "read_rotation"]

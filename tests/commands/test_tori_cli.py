@@ -76,13 +76,12 @@ def test_a_theorem_with_choices(run, tmp_path):
     assert re.search(r"\|k\| = (\d+ )?\|k\[0\] \+ k\[1\]\| \+ (\d+ )?\|k\[0\] - k\[1\]\|\n", out)
 
 
-def test_a_theorem_near_a_place(run, tmp_path):
+def test_a_theorem_for_a_negative_rotation_number(run, tmp_path):
     problem = tmp_path / "half.json"
     problem.write_text('{"harmonics": [{"k": [1], "amplitude": 0.5, "phase": "-1/3"}]}')
-    status, out, err = run("prove", problem, "--near", "-0.38", "--tolerance", "0.005")
+    status, out, err = run("prove", problem, "--rotation", "t^2+t-1: -1+t")
     assert (status, err) == (0, "")
-    assert "Rotation   best found within 0.005 of -0.38, t the root" in out
-    assert "omega = -1+t = -0.38196601125010515" in out         # golden - 1
+    assert "omega = -1+t = -0.38196601125010515" in out
 
 
 def test_a_start_from_a_certificate(run, tmp_path):
@@ -133,19 +132,13 @@ def test_beyond_the_last_torus_there_is_no_theorem(run, tmp_path, numbers, rotat
     (["prove", K09, "--rotation", "T49"], "one angle"),
     (["prove", K09, "--rotation", "t^2-1: t"], "reducible"),
     (["prove", K09, "--rotation", "0.618"], "no rotation vector"),
-    (["prove", K09, "--rotation", "golden", "--near", "0.6"], "not allowed with"),
-    (["prove", K09, "--near", "0.6", "0.4"], "--near has 2 numbers, and the map 1 angle:"),
-    (["prove", TRIG, "--near", "0.6"], "--near has 1 number, and the map 2 angles:"),
-    (["prove", K09, "--near", "x"], "'x'"),
-    (["prove", K09, "--rotation", "golden", "--tolerance", "0.1"], "--tolerance goes with --near"),
-    (["prove", K09, "--near", "0.6", "--tolerance", "1e-12"], "tolerance"),
+    (["prove", K09, "--rotation", "golden", "--memory", "x"], "'x'"),
     (["prove", RANGE, "--rotation", "T49"], "--together"),
     (["prove", "two.json", "--rotation", "golden"], "2 parameters"),
     (["prove", "two.json", "--rotation", "golden", "--together"], "--together"),
     (["prove", "zero.in", "--rotation", "golden"], "no wave"),
     (["prove", K09, "--rotation", "golden", "--rho", "0.1"], "--rho"),
     (["prove", K09, "--rotation", "golden", "--memory", "-1"], "above 0"),
-    (["prove", K09, "--near", "0.6", "--tolerance", "1e-7"], "the tolerance, 1e-7, is"),
     (["prove", K09, "--rotation", "golden", "-b", "zero.in"], "zero.in: exists"),
     (["prove", K09, "--rotation", "golden", "-b", "."], "is a directory"),
     (["prove", K09, "--rotation", "golden", "-b", "no/where"], "no/where"),

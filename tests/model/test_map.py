@@ -92,7 +92,6 @@ def test_what_is_typed_first():
     proof = converse.tori.prove(torus)
     assert len(repr(proof)) < 100 and proof.distance < 1e-6
     assert converse.prove(StandardMap("0.99")).no_tori
-    assert converse.tori.near(0.618, tolerance=1e-4).floats[0] == pytest.approx(0.618, abs=1e-4)
     with pytest.raises(TypeError, match="the map is a SymplecticMap, .* not orbits.standard"):
         converse.tori.find(converse.orbits.standard, "golden")
     with pytest.raises(TypeError, match="is a Rotation, or a text"):

@@ -1,5 +1,8 @@
-"""experiments/vectors.py: rotation vectors whose tori last long."""
+"""experiments/vectors.py and near.py: rotation vectors whose tori last long."""
 
+from fractions import Fraction
+
+import near
 import numpy as np
 import pytest
 import vectors
@@ -56,3 +59,30 @@ def test_what_it_proves_is_written(tmp_path, monkeypatch, capsys):
     torus = tori.read(path).tori[0]
     assert float(torus.potential.amplitude[0]) == pytest.approx(
         float(out.split("proved at K = ")[1].split(":")[0]), abs=1e-4)
+
+
+@pytest.mark.parametrize("number,tolerance", [("0.618", "1/1000"), ("0.4", "1/100"),
+                                              ("2.29", "1e-5"), ("-0.3", "1e-6")])
+def test_a_noble_number_is_near(number, tolerance):
+    rotation = near.near(number, tolerance=tolerance)
+    assert rotation.polynomial == (-1, 1, 1)
+    assert abs(rotation.floats[0] - float(number)) <= Fraction(tolerance) * (1 + 1e-9)
+    x, ones = rotation.turns(300)[0][0], 0      # the continued fraction ends in 1, 1, 1, ...
+    for _ in range(200):
+        quotient = x // 1
+        ones = ones + 1 if quotient == 1 else 0
+        x = 1 / (x - quotient)
+    assert ones > 80
+    assert number != "0.618" or rotation.text() == "t^2+t-1: t"
+
+
+def test_a_vector_near_a_place_is_printed_as_it_is_read(capsys):
+    assert near.main(["0.2987", "0.2921", "--tolerance", "1/100"]) == 0
+    rotation = read_rotation(capsys.readouterr().out, 2)
+    assert rotation.floats == pytest.approx([0.2987, 0.2921], abs=0.01)
+    for arguments, words in ((["0.3", "--tolerance", "1e-9"], "the tolerance, 1e-9, is not"),
+                             (["0.3", "0.2", "0.1"], "has one number or two, not 3"),
+                             (["0.3141593", "--tolerance", "1e-6"], None)):
+        assert near.main(arguments) == (2 if words else 0)
+        out, err = capsys.readouterr()
+        assert (words in err and err.count("\n") == 1 and not out) if words else not err

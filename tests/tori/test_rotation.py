@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from converse.check.field import evaluate, is_irreducible
-from converse.tori import Rotation, near, read_rotation
+from converse.tori import Rotation, read_rotation
 from converse.tori.field import Field, real_roots
 from converse.tori.rotation import NAMES
 
@@ -113,27 +113,3 @@ def test_bounds_hold_the_value_and_the_field_is_a_field(polynomial, numbers):
         assert field.bounds(field.element([0, 0, 0, 1]), 30)[0] <= high ** 3
         if any(a):
             assert field.product(a, field.inverse(a)) == field.element([1])
-
-
-@pytest.mark.parametrize("number,tolerance", [("0.618", "1/1000"), ("0.4", "1/100"),
-                                              ("2.29", "1e-5"), ("-0.3", "1e-6")])
-def test_a_noble_number_is_near(number, tolerance):
-    rotation = near(number, tolerance=tolerance)
-    assert rotation.polynomial == (-1, 1, 1)
-    assert abs(rotation.floats[0] - float(number)) <= Fraction(tolerance) * (1 + 1e-9)
-    x, ones = rotation.turns(300)[0][0], 0      # the continued fraction ends in 1, 1, 1, ...
-    for _ in range(200):
-        quotient = x // 1
-        ones = ones + 1 if quotient == 1 else 0
-        x = 1 / (x - quotient)
-    assert ones > 80
-    assert number != "0.618" or rotation.text() == "t^2+t-1: t"
-
-
-@pytest.mark.parametrize("arguments,words", [
-    (("0.3", None, "1e-9"), "tolerance"), (("x",), "'x'"),
-])
-def test_a_place_that_makes_no_sense_is_refused(arguments, words):
-    with pytest.raises(ValueError, match=".") as error:
-        near(*arguments)
-    assert words in str(error.value)

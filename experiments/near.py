@@ -1,5 +1,9 @@
 """Rotation vectors with good small divisors near a given place.
 
+    python experiments/near.py W [W] [--tolerance T]
+
+Prints the vector that converse-tori takes as --rotation.  For one angle it is a noble number.
+
 Near a vector of rationals there are vectors of a field: those that lie in one Farey triangle (of
 determinant 1 or -1) with its corners p_i/q_i weighed by a basis c_i of the integers of the field,
 (sum of c_i p_i)/(sum of c_i q_i).  Far out they all have the divisors of the field; a large
@@ -7,16 +11,20 @@ triangle, small norms and conjugates that nearly coincide make them better.  On 
 the noble numbers, whose continued fractions end in 1, 1, 1, ...
 """
 
+import argparse
+import sys
 from fractions import Fraction
 from itertools import permutations, product
 from math import ceil, floor
-from typing import Callable, Iterator, List, Optional, Tuple, Union
+from typing import Iterator, List, Optional, Tuple, Union
 
 import numpy as np
 
-from ..model.exact import Number, exact, short_text
-from .field import Element, Field, real_roots
-from .rotation import Rotation
+from converse.commands.common import Parser, ended
+from converse.model.exact import Number, exact, short_text
+from converse.storage.files import ConverseError
+from converse.tori.field import Element, Field, real_roots
+from converse.tori.rotation import Rotation
 
 TOLERANCE, LEAST = Fraction(1, 1000), Fraction(1, 10 ** 6)
 FIELDS = (-1, -2, 1, 1), (-1, -1, 0, 1)         # of 2 cos(2 pi/7), and of the spiral mean
@@ -32,8 +40,7 @@ Triangle = Tuple[Tuple[int, int, int], ...]     # corners (q, p0, p1)
 
 
 def near(w0: Union[Number, float], w1: Union[Number, float, None] = None,
-         tolerance: Union[Number, float] = TOLERANCE,
-         progress: Optional[Callable[[str], None]] = None) -> Rotation:
+         tolerance: Union[Number, float] = TOLERANCE) -> Rotation:
     """The rotation vector with the best small divisors that was found near w0, or near (w0, w1).
 
     For it c(delta) of docs/proofs/existence.md is least in doubles, with the norm of k that adds
@@ -45,8 +52,6 @@ def near(w0: Union[Number, float], w1: Union[Number, float, None] = None,
         In turns; w1 is given for two angles.
     tolerance : number or str
         How far each component may be away, in turns; the result's name tells it.
-    progress : callable, optional
-        progress(text) is called with each step of the work.
 
     Returns
     -------
@@ -66,13 +71,11 @@ def near(w0: Union[Number, float], w1: Union[Number, float, None] = None,
     # within^(-2/3), and the divisors that set this vector apart are those of such k.
     delta = Fraction(float(within) ** (0.5 if n == 1 else 2 / 3)).limit_denominator(10 ** 6)
     name = "best found within %s of %s" % (short_text(within), " ".join(map(short_text, target)))
-    tell = progress or (lambda words: None)
     found = _nobles(target[0], within, float(delta)) if n == 1 \
-        else _cubics(target, within, float(delta), tell)
+        else _cubics(target, within, float(delta))
     k = _modes(n, ceil(min(10 / float(delta), REACH)))
     best, least = None, None
-    for j, (field, vector) in enumerate(found, 1):
-        tell("comparing rotation vector %d of %d" % (j, len(found)))
+    for field, vector in found:
         rotation = Rotation(name, field.polynomial, (field.low, field.high), vector)
         if any(low < w - within or high > w + within
                for (low, high), w in zip(rotation.turns(30), target)):
@@ -127,7 +130,7 @@ def _quotient(field, weights, above, below):
 
 # ---- two angles
 
-def _cubics(target, within, delta, tell) -> List[Candidate]:
+def _cubics(target, within, delta) -> List[Candidate]:
     """The most promising vectors of both fields, as far as doubles can tell."""
     found = []
     for polynomial in FIELDS:
@@ -136,8 +139,6 @@ def _cubics(target, within, delta, tell) -> List[Candidate]:
         roots = roots[np.argsort(abs(roots - _value(field)))]           # t first
         values = bases @ np.vander(roots, 3, increasing=True).T         # (bases, weights, roots)
         for triangle in _triangles(target, within):
-            tell("choosing rotation vectors: denominators up to %d"
-                 % max(q for q, *_ in triangle))
             corners = np.array(triangle, float)
             at = values[..., 0].real @ corners                          # (bases, 3)
             close = np.flatnonzero((abs(at[:, 1:] / at[:, :1] - np.array(target, float))
@@ -246,3 +247,32 @@ def _near_part(omega, k, size, delta) -> np.ndarray:
     height = np.where(x <= n, np.exp(-x), (n / (np.e * np.maximum(x, 1e-9))) ** n)
     divisor = 2 * abs(np.sin(np.pi * (omega @ k.T)))
     return (height / np.maximum(divisor, 1e-300)).max(1)
+
+
+def number(text):
+    try:
+        return exact(text)
+    except ValueError as error:
+        raise argparse.ArgumentTypeError(str(error)) from None
+
+
+def run(options):
+    if len(options.place) > 2:
+        raise ConverseError("a place has one number or two, not %d" % len(options.place))
+    try:
+        print(near(*options.place, tolerance=options.tolerance).text())
+    except ValueError as error:
+        raise ConverseError(str(error)) from None
+    return 0
+
+
+def main(argv=None):
+    p = Parser(prog="near.py", description="Finds a rotation vector with good small divisors.")
+    p.add_argument("place", nargs="+", metavar="W", type=number, help="a component, in turns")
+    p.add_argument("--tolerance", type=number, default=TOLERANCE, metavar="T",
+                   help="how far each component may be away (default 0.001)")
+    return ended("near.py", lambda: run(p.parse_args(argv)), lambda: "no vector is chosen")
+
+
+if __name__ == "__main__":
+    sys.exit(main())
