@@ -16,7 +16,7 @@ import sys
 from fractions import Fraction
 from itertools import permutations, product
 from math import ceil, floor
-from typing import Iterator, List, Optional, Tuple, Union
+from typing import Iterator, List, Tuple, Union
 
 import numpy as np
 
