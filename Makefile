@@ -41,7 +41,7 @@ test: $(VENV)/with-test
 	$(VENV)/bin/pytest $(TWO) tests
 
 PYTHON_CODE = converse docs experiments formal golden_outputs setup.py tests
-C_CODE = $(wildcard csrc/*.h csrc/*/*.[ch] csrc/*/*.inc tests/kernels/*.[ch])
+C_CODE = $(wildcard csrc/*.h csrc/*/*.[ch] csrc/*/*.inc experiments/*/*.[ch] tests/kernels/*.[ch])
 
 # What pyproject.toml says of style, imports and types, and .clang-format of C.
 lint: $(VENV)/with-test

@@ -13,6 +13,7 @@ import argparse
 import sys
 
 import numpy as np
+from least_action import enclosed_action, least_action
 
 from converse import ConverseError, orbits
 
@@ -31,12 +32,12 @@ class Types:
     def least(self, eps):
         """The short type's."""
         if eps not in self.short:
-            self.short[eps] = orbits.least_action(orbits.trig, self.p, self.q, eps, gap=0)
+            self.short[eps] = least_action(orbits.trig, self.p, self.q, eps, gap=0)
         return self.short[eps]
 
     def least_long(self, eps):
         if eps not in self.long:
-            self.long[eps] = orbits.least_action(
+            self.long[eps] = least_action(
                 orbits.trig, tuple(self.times * i for i in self.p), self.times * self.q, eps, gap=0)
         return self.long[eps]
 
@@ -87,7 +88,7 @@ def everywhere(types, long, first, last):
     state = long.relax((first + last) / 2)
     ends = [(types.least(eps).low, orbits.PeriodicOrbit(
         orbits.trig, state.p, state.q, eps, state.u, state.origin)) for eps in (first, last)]
-    if all(low > orbits.enclosed_action(there)[1] for low, there in ends):
+    if all(low > enclosed_action(there)[1] for low, there in ends):
         return 1
     middle = round((first + last) / 2, DIGITS + 1)
     if not first < middle < last:

@@ -16,6 +16,8 @@ import itertools
 import os
 import sys
 
+from least_action import mather_beta
+
 from converse import ConverseError, orbits
 from converse.draw import plot
 
@@ -38,7 +40,7 @@ def states(potential, p, q, eps, searches):
 
 def bounds(potential, rotation, eps, grid):
     """The proved floor, and the estimates of two grids extrapolated: a grid costs 1/grid^2."""
-    fine, coarse = (orbits.mather_beta(potential, eps, rotation, grid=k) for k in (grid, grid // 2))
+    fine, coarse = (mather_beta(potential, eps, rotation, grid=k) for k in (grid, grid // 2))
     return fine.low, (4 * fine.estimate - coarse.estimate) / 3
 
 

@@ -8,9 +8,6 @@ The torus has period 1 here, 2 pi in the rest of the package: converse/model/pot
 """
 
 try:
-    from .action import enclosed_action
-    from .branch_and_bound import LeastAction, least_action
-    from .mather import MatherBeta, mather_beta
     from .minimax import Pair
     from .potential import FromPython, Potential, ff, froeschle, parameters, poly, standard, trig
     from .proved import NotProved, ProvedOrbit, prove
@@ -29,8 +26,6 @@ except ImportError as _error:           # said when something is asked for: the 
         from ..prover import native  # noqa: F401, which says more if it is the core that is missing
         raise ConverseError(_MISSING)
 
-__all__ = ["Family", "MatherBeta", "FromPython", "LeastAction", "NotProved", "Onset", "Pair",
-           "Potential", "ProvedOrbit", "PeriodicOrbit", "enclosed_action", "ff", "mather_beta",
-           "follow", "froeschle", "least_action", "onset", "onsets", "parameters", "poly",
-           "prove", "read_csv", "search", "standard", "straight",
-           "sweep", "trig"]
+__all__ = ["Family", "FromPython", "NotProved", "Onset", "Pair", "PeriodicOrbit", "Potential",
+           "ProvedOrbit", "ff", "follow", "froeschle", "onset", "onsets", "parameters", "poly",
+           "prove", "read_csv", "search", "standard", "straight", "sweep", "trig"]

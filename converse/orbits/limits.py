@@ -70,15 +70,6 @@ GUARD_BITS = 64                 # Bits of midpoints beyond the decimal places.
 MAX_CONES = 40                  # Cones that are tried for one exponent.
 POINTS_PER_POLL = 256           # Points between two looks for Ctrl-C.
 
-# ---- the least action
-
-MAX_Q_LEAST_ACTION = 500        # The period q for which a least action is looked for.
-MIN_NODES = 65                  # Nodes along an axis of a rectangle.
-MAX_PITCH = 1 / 64              # Their distance, if MAX_NODES allows that.
-MAX_NODES = 2000000             # Nodes of all rectangles: a quarter of a second.
-ROWS_PER_POLL = 64              # Rows that are multiplied between two looks for Ctrl-C.
-MAX_SETTLED_GAP = 1e-12         # An action per point that is known as well as this is settled.
-
 # ---- potentials from Python
 
 COMPARED_POINTS = 7             # Points where derivatives are compared with differences.

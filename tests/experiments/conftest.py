@@ -1,4 +1,4 @@
-"""Tests of experiments/thesis, which no other code uses: `make torture` runs them."""
+"""Tests of packages in experiments/, which no other code uses: `make torture` runs them."""
 
 from truth import TORTURE
 

@@ -45,7 +45,7 @@ NUMBERS = ["test_apm.py", "test_special.py", "test_bounding.py", "test_bd_trig.p
            "test_images.py", "test_search.py"]
 SHARP = ["test_loewner.py", "test_waves.py", "test_search.py"]
 TORI = ["test_certificate.py", "test_proved.py"]
-FINDERS = ["test_orbits.py", "test_orbits_fail.py", "test_floor.py", "test_proved.py"]
+FINDERS = ["test_orbits.py", "test_orbits_fail.py", "test_proved.py"]
 TESTS = {
     "arith/apm": NUMBERS, "arith/special": ["test_special.py", *NUMBERS],
     "arith/sine": ["test_loewner.py", "test_gappa.py", "test_waves.py"], "arith/lanes": SHARP,
@@ -61,7 +61,7 @@ TESTS = {
     "model": ["test_bounds.py", *SHARP], "search": ["test_search.py", *SHARP, "test_rigor.py"],
     "loewner/waves": ["test_waves.py", "test_margins.py", *SHARP],
     "loewner": [*SHARP, "test_margins.py"],
-    "orbits/minplus": ["test_floor.py"], "orbits/enclosure": ["test_proved.py"],
+    "orbits/enclosure": ["test_proved.py"],
     "orbits/exponents": ["test_proved.py"], "orbits": FINDERS,
     "check": ["test_tori_bounds.py", "test_tori.py"], "check/torus_file": ["test_tori.py"],
     "tori": TORI, "tori/field": ["test_rotation.py", *TORI],

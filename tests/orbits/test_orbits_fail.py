@@ -518,8 +518,7 @@ LONG = {                # what is made first, and a call that then lasts, at som
                 "[low.minimax() for _ in range(99)]"),
     "prove minimax": (
         "high = orbits.follow(orbits.standard, (46368,), 121393, [1.2])[0].minimax()",
-        "high.prove()"),
-    "least_action": ("", "orbits.least_action(orbits.trig, (199, 301), 499, 0.02, 1e-13)")}
+        "high.prove()")}
 
 
 @pytest.mark.slow

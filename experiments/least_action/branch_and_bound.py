@@ -2,7 +2,7 @@
 all roundings.
 
 A corridor, one rectangle for each point, is excluded by min-plus sums over the rectangles' grids
-(csrc/orbits/minplus.c, where the margins are proved), or is settled where the action is convex.
+(minplus.c, where the margins are proved), or is settled where the action is convex.
 """
 
 import heapq
@@ -12,15 +12,23 @@ from typing import Callable, Optional
 
 import numpy as np
 
-from .._native import ffi, lib
-from ..prover.native import check
-from ..storage.files import ConverseError
+from converse import ConverseError
+from converse._native import ffi
+from converse.orbits.limits import MAX_DISPLACEMENT
+from converse.orbits.potential import Numerators, Source, address, known, told, whole
+from converse.orbits.state import PeriodicOrbit, type_of
+from converse.prover.native import check
+
 from .action import (LARGEST_EPS, U, action_bounds, action_on_grid, errors_near, floats_within,
                      gradient_bounds, per_point, rounding_errors)
-from .limits import (MAX_DISPLACEMENT, MAX_NODES, MAX_PITCH, MAX_Q_LEAST_ACTION, MAX_SETTLED_GAP,
-                     MIN_NODES, ROWS_PER_POLL)
-from .potential import Numerators, Source, address, known, told, whole
-from .state import PeriodicOrbit, type_of
+from .build import library
+
+MAX_Q = 500                     # The period q for which a least action is looked for.
+MIN_NODES = 65                  # Nodes along an axis of a rectangle.
+MAX_PITCH = 1 / 64              # Their distance, if MAX_NODES allows that.
+MAX_NODES = 2000000             # Nodes of all rectangles: a quarter of a second.
+ROWS_PER_POLL = 64              # Rows that are multiplied between two looks for Ctrl-C.
+MAX_SETTLED_GAP = 1e-12         # An action per point that is known as well as this is settled.
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,8 +47,6 @@ class LeastAction:
     state: PeriodicOrbit
     copies: int
     corridors: int
-
-
 
 
 @dataclass(frozen=True)
@@ -122,7 +128,7 @@ class _Search:
         nodes = np.maximum(nodes, 3).astype(np.intc)
         nodes[:, self.n:] = 1
         least, path = ffi.new("double *"), np.zeros((self.q, 2))
-        check(lib.cv_corridor(
+        check(library().cv_corridor(
             self.potential.native, self.q, self.eps, self.potential.curvature, address(self.base),
             self.known, address(nodes, "int(*)[2]"), address(low), address(high), least,
             address(path)))
@@ -259,10 +265,9 @@ def least_action(potential: Source, p: Numerators, q: int, eps: float = 1.0, gap
     rounding_errors(potential, 1.0)
     eps, gap = floats_within("eps and gap", [eps, gap], LARGEST_EPS)
     corridors = whole("corridors", corridors, 1, 10 ** 9)
-    q = whole("q", q, 1, MAX_Q_LEAST_ACTION)
+    q = whole("q", q, 1, MAX_Q)
     state = PeriodicOrbit(potential, type_of(potential, p, q)[0], q, eps,
-                          np.zeros((q, potential.n)),
-                  (0.0,) * potential.n)
+                          np.zeros((q, potential.n)), (0.0,) * potential.n)
     if eps == 0:
         return LeastAction(0.0, 0.0, state, gcd(*state.p, state.q), 0)
     search = _Search(state)

@@ -2,7 +2,7 @@
 Lax-Oleinik operator on a grid.
 
 The action of any path, rounded at random to the corners of a grid's cells, grows by little on the
-average: csrc/orbits/minplus.c says by how much, and why.  So the least action on a grid, which is
+average: minplus.c says by how much, and why.  So the least action on a grid, which is
 found without guessing, bounds all from below.  `low` is proved, with all roundings; estimates are
 called estimates.
 """
@@ -14,10 +14,12 @@ from typing import Sequence, Tuple, Union
 
 import numpy as np
 
-from .._native import ffi, lib
-from ..prover.native import check
+from converse._native import ffi
+from converse.orbits.potential import Potential, Source, address, known, whole
+from converse.prover.native import check
+
 from .action import LARGEST_EPS, U, action_on_grid, floats_within
-from .potential import Potential, Source, address, known, whole
+from .build import library
 
 LARGEST_ROTATION = 100
 
@@ -51,7 +53,7 @@ class _Torus:
 
     def apply(self, c, back=None):
         out, c = np.empty_like(self.u), np.array([*c, 0.0][:2])
-        check(lib.cv_lax_oleinik(self.n, self.grid, address(c, "double *"),
+        check(library().cv_lax_oleinik(self.n, self.grid, address(c, "double *"),
                                  address(self.W, "double *"), address(self.u, "double *"),
                                  address(out, "double *"),
                                  ffi.NULL if back is None else address(back, "int(*)[2]")))
@@ -112,7 +114,7 @@ def _highest(planes, radius):
 
 
 def mather_beta(potential: Source, eps: float, rotation: Union[float, Sequence[float]],
-          grid: int = 256) -> MatherBeta:
+                grid: int = 256) -> MatherBeta:
     """Mather's beta from below: how little action per point orbits of a rotation vector can have.
 
     Parameters
@@ -167,4 +169,4 @@ def mather_beta(potential: Source, eps: float, rotation: Union[float, Sequence[f
     size = float(np.abs(w).max() + np.abs(b).max() + 1)
     return MatherBeta(potential, eps, tuple(map(float, w)), grid,
                       low - torus.rise - 64 * U * size ** 2,
-                 estimate, tuple(map(float, w + b)))
+                      estimate, tuple(map(float, w + b)))

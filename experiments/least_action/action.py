@@ -5,10 +5,12 @@ from typing import Tuple
 
 import numpy as np
 
-from .._native import ffi, lib
-from ..prover.native import check
-from .potential import address
-from .state import PeriodicOrbit, expected
+from converse._native import ffi, lib
+from converse.orbits.potential import address
+from converse.orbits.state import PeriodicOrbit, expected
+from converse.prover.native import check
+
+from .build import library
 
 U = 2.0 ** -53              # half the distance of the doubles next to 1
 LARGEST_EPS = 1e6
@@ -18,7 +20,7 @@ def rounding_errors(potential, reach):
     """What V, its gradient and its Hessian may be off by in doubles: cv_errors.  ValueError, unless
     potential is one with which anything can be proved."""
     errors = ffi.new("double[3]")
-    code = lib.cv_errors(potential.native, reach, errors)
+    code = library().cv_errors(potential.native, reach, errors)
     if potential.curvature is None or potential.lipschitz is None or code == lib.CV_EARGUMENT:
         raise ValueError("nothing can be proved of the potential %s: its rounding errors are not "
                          "known; take a SymplecticMap, trig, poly or ff" % potential.name)

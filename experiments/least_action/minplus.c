@@ -26,6 +26,7 @@
 #include "arith/lanes.h"
 #include "arith/machine.h"
 #include "orbits/potential.h"
+#include "minplus.h"
 
 enum { MAX_NODES = 1025 };              /* along an axis of a corridor */
 

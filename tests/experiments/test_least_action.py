@@ -1,22 +1,28 @@
-"""The floors: no orbit and no path has less action than what is proved of all of them."""
+"""Lower bounds of the action: no orbit and no path has less action than is proved of all."""
 
+import csv
 import ctypes
 import itertools
 import os
 import platform
 import runpy
+import subprocess
+import sys
 
 import mpmath
 import numpy as np
 import pytest
+from least_action import branch_and_bound, enclosed_action, least_action, mather, mather_beta
+from least_action.build import library
 from test_orbits import truth
 
 from converse import ConverseError, orbits
-from converse._native import ffi, lib
-from converse.orbits import branch_and_bound, mather
+from converse._native import ffi
 from converse.orbits.potential import address
 
-TORTURE = int(os.environ.get("CONVERSE_TORTURE", "1"))
+from moments import PATIENCE
+from truth import TORTURE
+
 POTENTIALS = [orbits.trig, orbits.poly, orbits.ff, orbits.froeschle, orbits.standard]
 SPIRAL = (0.5698402909980532, 0.7548776662466927)
 WAVES = orbits.potential.Fourier({(0, 0): (1, 0), (3, -2): (0.25, -0.5), (0, 1): (-1, 0.125),
@@ -42,7 +48,7 @@ def test_errors_of_values(potential):
     for reach in (1.0, 5.0, 90.0):
         x = rng.uniform(-reach, reach, (40 * TORTURE, n))
         errors = ffi.new("double[3]")
-        assert lib.cv_errors(potential.native, reach, errors) == 0
+        assert library().cv_errors(potential.native, reach, errors) == 0
         value, gradient, hessian = potential.evaluate(x)
         worst = np.zeros(3)
         with mpmath.workdps(40):
@@ -110,7 +116,7 @@ def test_lax_oleinik(n):
             W, u = rng.normal(0, 0.1, size), rng.normal(0, 0.1, size)
             out, back = np.empty(size), np.empty((size, 2), dtype=np.intc)
             c = np.array(c)
-            assert lib.cv_lax_oleinik(
+            assert library().cv_lax_oleinik(
                 n, grid, address(c, "double *"), address(W, "double *"), address(u, "double *"),
                 address(out, "double *"), address(back, "int(*)[2]")) == 0
             nodes = np.indices((grid,) * n).reshape(n, -1).T
@@ -133,9 +139,9 @@ def corridor(potential, q, p, eps, low, high, nodes, known):
     nodes = np.ascontiguousarray(np.column_stack(
         [nodes, np.ones((q, 2 - n))]).astype(np.intc))
     least, path = ffi.new("double *"), np.zeros((q, 2))
-    assert lib.cv_corridor(potential.native, q, eps, potential.curvature, address(base), known,
-                           address(nodes, "int(*)[2]"), address(low), address(high), least,
-                           address(path)) == 0
+    assert library().cv_corridor(
+        potential.native, q, eps, potential.curvature, address(base), known,
+        address(nodes, "int(*)[2]"), address(low), address(high), least, address(path)) == 0
     return least[0], low[:, :n], high[:, :n]
 
 
@@ -176,12 +182,12 @@ def test_corridors_round():
     to the last bit."""
     for potential, p, q, eps in ((orbits.trig, (5, 7), 9, 0.06), (orbits.standard, (3,), 8, 1.2),
                                  (orbits.ff, (3, 4), 5, 0.06)):
-        state = orbits.least_action(potential, p, q, eps, gap=1e-9).state
+        state = least_action(potential, p, q, eps, gap=1e-9).state
         _, value = total(potential, q, p, eps, state.u)
         first = int(np.argmax(value))
         z = np.roll(state.u, -first, 0) + np.array(p) * first / q
         state = orbits.PeriodicOrbit(potential, p, q, eps, z, (0.0,) * potential.n).relax(tol=1e-14)
-        low, high = (number * q for number in orbits.enclosed_action(state))
+        low, high = (number * q for number in enclosed_action(state))
         rng = np.random.default_rng(10)
         for _ in range(20):
             wide = 10.0 ** rng.uniform(-9, -8, z.shape)
@@ -261,7 +267,7 @@ def test_enclosed_action(potential):
     for q in (1, 2, 7):
         state = orbits.PeriodicOrbit(potential, (3,) * n, q, 0.3, rng.normal(0, 2, (q, n)),
                              rng.uniform(-2, 2, n))
-        low, high = orbits.enclosed_action(state)
+        low, high = enclosed_action(state)
         with mpmath.workdps(40):
             x = [[mpmath.mpf(state.origin[i]) + mpmath.mpf(3 * j % q) / q + float(state.u[j, i])
                   for i in range(n)] for j in range(q)]
@@ -285,7 +291,7 @@ KNOWN = [(orbits.trig, (5, 7), 9, 0.06, -0.0143010202),
 @pytest.mark.parametrize("potential, p, q, eps, known", KNOWN, ids=by)
 def test_no_state_has_less(potential, p, q, eps, known):
     """Not one of many starts, relaxed, comes out below; the bounds meet where some come out."""
-    found = orbits.least_action(potential, p, q, eps, gap=1e-12)
+    found = least_action(potential, p, q, eps, gap=1e-12)
     assert found.low <= found.high <= found.low + 2e-12
     assert found.low <= found.state.action + 1e-14 and found.state.label == "minimum"
     if known is not None:
@@ -294,7 +300,7 @@ def test_no_state_has_less(potential, p, q, eps, known):
     for _ in range(60 * TORTURE):
         start = orbits.PeriodicOrbit(potential, p, q, eps, rng.normal(0, 0.3, (q, n)),
                                      rng.uniform(0, 1, n))
-        low, high = orbits.enclosed_action(start.relax())
+        low, high = enclosed_action(start.relax())
         assert high >= found.low
         met += low <= found.high
     assert met > 0
@@ -302,36 +308,36 @@ def test_no_state_has_less(potential, p, q, eps, known):
 
 def test_where_nothing_is_least():
     """At eps 0 all straight states are alike."""
-    found = orbits.least_action(orbits.trig, (4, 6), 8, 0.0)
+    found = least_action(orbits.trig, (4, 6), 8, 0.0)
     assert (found.low, found.high, found.copies) == (0.0, 0.0, 2)
 
 
 def test_bounds_at_any_time():
     """However soon the search ends, its bounds hold; the longer, the closer."""
-    sharp = orbits.least_action(orbits.trig, (3, 4), 5, 0.08, gap=1e-13)
+    sharp = least_action(orbits.trig, (3, 4), 5, 0.08, gap=1e-13)
     last = -np.inf
     for corridors in (1, 3, 10, 30):
-        found = orbits.least_action(orbits.trig, (3, 4), 5, 0.08, gap=1e-13, corridors=corridors)
+        found = least_action(orbits.trig, (3, 4), 5, 0.08, gap=1e-13, corridors=corridors)
         assert last <= found.low <= sharp.high and sharp.low <= found.high
         assert found.corridors <= corridors and (found.low > sharp.low - 1e-13 or found.copies == 1)
         last = found.low
-    loose = orbits.least_action(orbits.trig, (3, 4), 5, 0.08, gap=1e-3)
+    loose = least_action(orbits.trig, (3, 4), 5, 0.08, gap=1e-3)
     assert 1e-13 < loose.high - loose.low <= 1e-3 and loose.corridors < sharp.corridors
 
 
 def test_copies():
     """One degree of freedom: Aubry's theorem.  Two: Hedlund's pathology, and where it is not."""
-    assert orbits.least_action(orbits.standard, (6,), 15, 2.0, gap=0).copies == 3
-    assert orbits.least_action(orbits.standard, (5,), 12, 2.0, gap=0).copies == 1
-    twice = orbits.least_action(orbits.trig, (4, 6), 8, 0.08, gap=0)
+    assert least_action(orbits.standard, (6,), 15, 2.0, gap=0).copies == 3
+    assert least_action(orbits.standard, (5,), 12, 2.0, gap=0).copies == 1
+    twice = least_action(orbits.trig, (4, 6), 8, 0.08, gap=0)
     assert twice.copies == 2
-    once = orbits.least_action(orbits.trig, (2, 3), 4, 0.08, gap=0)
+    once = least_action(orbits.trig, (2, 3), 4, 0.08, gap=0)
     assert max(once.low, twice.low) <= min(once.high, twice.high)
 
 
 def test_copies_are_not_taken_for_others():
     """A state that is nearly a copy is none."""
-    once = orbits.least_action(orbits.standard, (1,), 2, 2.0, gap=0)
+    once = least_action(orbits.standard, (1,), 2, 2.0, gap=0)
     search = branch_and_bound._Search(once.state.repeat(2))
     for off, copies in ((0.0, 2), (1e-3, 1)):
         state = once.state.repeat(2).moved(once.state.repeat(2).u + [[off], [0], [0], [0]])
@@ -341,8 +347,8 @@ def test_copies_are_not_taken_for_others():
 
 def test_hedlund():
     """For trig the least action of (10, 14)/18 is less than twice that of (5, 7)/9."""
-    short = orbits.least_action(orbits.trig, (5, 7), 9, 0.06)
-    long = orbits.least_action(orbits.trig, (10, 14), 18, 0.06)
+    short = least_action(orbits.trig, (5, 7), 9, 0.06)
+    long = least_action(orbits.trig, (10, 14), 18, 0.06)
     assert short.low > long.high + 2e-5
     assert long.copies == 1 and long.high == pytest.approx(-0.0143222602, abs=1e-10)
 
@@ -365,7 +371,7 @@ def test_floor_of_the_spiral_mean():
     """Value iteration's numbers, from elsewhere, lie between the proved and the estimate; states
     of types near it lie above."""
     for eps, known, grid in ((0.02, -0.0012623, 64), (0.04, -0.0060520, 64)):
-        found = orbits.mather_beta(orbits.trig, eps, SPIRAL, grid)
+        found = mather_beta(orbits.trig, eps, SPIRAL, grid)
         assert found.low < known + 1e-6 < found.estimate + 1e-5
         assert found.estimate - found.low < 1.2 * 2 * (1 + eps * 67.4) / (8 * grid ** 2)
         for q in (9, 16, 28):
@@ -383,8 +389,8 @@ def test_floor_below_the_least_action(potential, p, q, eps):
     """Of its own type the least state is above the proved floor; with one degree of freedom it is
     the least of all and below the grid's."""
     grid = 512 if potential.n == 1 else 64
-    found = orbits.mather_beta(potential, eps, np.array(p) / q, grid)
-    least = orbits.least_action(potential, p, q, eps)
+    found = mather_beta(potential, eps, np.array(p) / q, grid)
+    least = least_action(potential, p, q, eps)
     assert found.low < least.low
     price = potential.n * (1 + abs(eps) * potential.curvature) / (8 * grid ** 2)
     assert found.estimate - 1.2 * price <= found.low < found.estimate
@@ -394,7 +400,7 @@ def test_floor_below_the_least_action(potential, p, q, eps):
 
 def test_floor_holds_for_any_path():
     """Also for paths on the grid itself, whatever the rotation, and at eps 0."""
-    found = orbits.mather_beta(orbits.standard, 0.0, (0.3,), 50)
+    found = mather_beta(orbits.standard, 0.0, (0.3,), 50)
     assert -1.2 / (8 * 50 ** 2) < found.low <= 0 <= found.estimate + 1e-12
     torus = mather._Torus(orbits.trig, 0.3, 16)
     c, rotation = (0.4, -0.2), np.array([0.3, 0.1])
@@ -425,26 +431,29 @@ FLAT = orbits.FromPython(Flat(), 2, curvature=1.0)
 
 
 @pytest.mark.parametrize("call", [
-    lambda: orbits.least_action(orbits.trig, (1, 1), 3, float("nan")),
-    lambda: orbits.least_action(orbits.trig, (1, 1), 3, 1e9),
-    lambda: orbits.least_action(orbits.trig, (1, 1), 3, None),
-    lambda: orbits.least_action(orbits.trig, (1,), 3, 0.05),
-    lambda: orbits.least_action(orbits.trig, (1, 0.5), 3, 0.05),
-    lambda: orbits.least_action(orbits.trig, (1, 1), 0, 0.05),
-    lambda: orbits.least_action(orbits.trig, (1, 1), 501, 0.05),
-    lambda: orbits.least_action(orbits.trig, (1, 1), "3", 0.05),
-    lambda: orbits.least_action(orbits.trig, (1, 1), 3, 0.05, gap=float("nan")),
-    lambda: orbits.least_action(orbits.trig, (1, 1), 3, 0.05, corridors=0),
-    lambda: orbits.least_action(orbits.trig, (1, 1), 100, 1e5),
-    lambda: orbits.least_action(FLAT, (1, 1), 3, 0.1),
-    lambda: orbits.enclosed_action(orbits.straight(FLAT, (1, 1), 3)),
-    lambda: orbits.mather_beta(FLAT, 0.1, SPIRAL),
-    lambda: orbits.mather_beta(orbits.trig, float("inf"), SPIRAL),
-    lambda: orbits.mather_beta(orbits.trig, 0.1, (0.5,)),
-    lambda: orbits.mather_beta(orbits.trig, 0.1, 0.5),
-    lambda: orbits.mather_beta(orbits.trig, 0.1, (0.5, float("nan"))),
-    lambda: orbits.mather_beta(orbits.trig, 0.1, SPIRAL, 7),
-    lambda: orbits.mather_beta(orbits.trig, 0.1, SPIRAL, 64.5)])
+    lambda: least_action(orbits.trig, (1, 1), 3, float("nan")),
+    lambda: least_action(orbits.trig, (1, 1), 3, 1e9),
+    lambda: least_action(orbits.trig, (1, 1), 3, None),
+    lambda: least_action(orbits.trig, (1,), 3, 0.05),
+    lambda: least_action(orbits.trig, (1, 0.5), 3, 0.05),
+    lambda: least_action(orbits.trig, (1, 1), 0, 0.05),
+    lambda: least_action(orbits.trig, (1, 1), 501, 0.05),
+    lambda: least_action(orbits.trig, (1, 1), "3", 0.05),
+    lambda: least_action(orbits.trig, (1, 1), 3, 0.05, gap=float("nan")),
+    lambda: least_action(orbits.trig, (1, 1), 3, 0.05, corridors=0),
+    lambda: least_action(orbits.trig, (1, 1), 100, 1e5),
+    lambda: least_action(FLAT, (1, 1), 3, 0.1),
+    lambda: enclosed_action(orbits.straight(FLAT, (1, 1), 3)),
+    lambda: enclosed_action(3),
+    lambda: least_action("trig", (5, 7), 9, 0.05),
+    lambda: mather_beta("standard", 0.5, [0.5]),
+    lambda: mather_beta(FLAT, 0.1, SPIRAL),
+    lambda: mather_beta(orbits.trig, float("inf"), SPIRAL),
+    lambda: mather_beta(orbits.trig, 0.1, (0.5,)),
+    lambda: mather_beta(orbits.trig, 0.1, 0.5),
+    lambda: mather_beta(orbits.trig, 0.1, (0.5, float("nan"))),
+    lambda: mather_beta(orbits.trig, 0.1, SPIRAL, 7),
+    lambda: mather_beta(orbits.trig, 0.1, SPIRAL, 64.5)])
 def test_bad_input(call):
     with pytest.raises(ValueError) as refusal:
         call()
@@ -461,7 +470,7 @@ def test_bad_calls_of_c():
                                       (FLAT.native, 0.5, (3, 3), -3),
                                       (orbits.trig.native, float("nan"), (3, 3), -4)):
         low, high = one - wide, one + wide
-        assert lib.cv_corridor(
+        assert library().cv_corridor(
             native, 1, 0.1, 70.0, address(one), 0.0, ffi.new("int[1][2]", [nodes]), address(low),
             address(high), least, address(path)) == code
 
@@ -476,8 +485,35 @@ def test_the_arithmetic_is_looked_at():
     try:
         libm.fesetround(upward)
         with pytest.raises(ConverseError, match="floating-point"):
-            orbits.enclosed_action(state)
+            enclosed_action(state)
     finally:
         libm.fesetround(before)
-    low, high = orbits.enclosed_action(state)
+    low, high = enclosed_action(state)
     assert low <= state.action <= high
+
+
+# ---- experiments/minimizing.py
+
+def test_minimizing(root, tmp_path):
+    name = str(root / "experiments" / "minimizing.py")
+    code = ("import sys; sys.argv = ['minimizing.py', %r, '--quick']; sys.path.insert(0, %r);"
+            "import minimizing as m;"
+            "m.POTENTIALS, m.TYPES = m.POTENTIALS[:1], m.TYPES[:2]; m.QUICK_EPS = [0.01, 0.04];"
+            "m.main()" % (str(tmp_path / "new"), os.path.dirname(name)))
+    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True,
+                         timeout=PATIENCE)
+    assert run.returncode == 0 and not run.stderr
+    with open(tmp_path / "new" / "minimizing.csv", newline="") as file:
+        rows = list(csv.DictReader(file))
+    assert len(rows) == 4 and [row["eps"] for row in rows] == ["0.01", "0.04"] * 2
+    assert [float(row["gain"]) > 1e-6 for row in rows] == [False, True] * 2
+    assert all(float(row["floor"]) < float(row["best"]) for row in rows[2:])
+    assert b"<svg" in (tmp_path / "new" / "minimizing.svg").read_bytes()
+
+
+def test_errors_of_minimizing(root, tmp_path):
+    (tmp_path / "file").write_text("")
+    run = subprocess.run([sys.executable, str(root / "experiments" / "minimizing.py"),
+                          str(tmp_path / "file")], capture_output=True, text=True, timeout=PATIENCE)
+    assert run.returncode == 1 and run.stderr.count("\n") == 1
+    assert run.stderr.startswith("minimizing.py: ")
