@@ -19,9 +19,11 @@ def cell_bound(fixed, waves, amplitudes, sides, y, w):
     y.
 
     beta = 2I + sum of m k k', where m = -p sin(k.x + phase).
-    Taylor: m <= m(y) - p cos(k.y + phase) k.D + |p| (k.D)^2 / 2.  The part affine in d has a convex
-    largest eigenvalue, so its maximum lies at a corner of the cell; as |k.D| <= w sum of |k.side|
-    the rest adds at most the largest eigenvalue of the sum of |p| (w sum of |k.side|)^2 k k' / 2.
+    Taylor: with x = k.D, of |x| <= X = w sum of |k.side|, m is at most m(y) - p cos(k.y + phase) x
+    and a rest, the lesser of |p| x^2 / 2 and -m(y) x^2 / 2 + |p x^3| / 6.  The part affine in d has
+    a convex largest eigenvalue, so its maximum lies at a corner of the cell.  The rests add at most
+    the largest eigenvalue of the sum of k k' times a bound of the rest over |x| <= X.  Around the
+    maximum of beta m(y) is usually above 0, and that bound of third order in w.
     """
     bits, one = fixed.bits, fixed.one
     along = [[k0 * u + k1 * v for u, v in sides] for k0, k1, _ in waves]
@@ -37,9 +39,14 @@ def cell_bound(fixed, waves, amplitudes, sides, y, w):
         p, q, r = [x + sum(map(operator.mul, d, slope)) for x, *slope in zip(middle, *slopes)]
         return largest(2 * one + p, q, 2 * one + r, one)
 
-    square = (w * w >> bits) + 1
-    bend = largest(*forms(waves, [(abs(p) * square * sum(map(abs, ks)) ** 2 >> bits + 1) + 1
-                                  for p, ks in zip(amplitudes, along)]), one)
+    def rest(p, m, ks):
+        X, p = w * sum(map(abs, ks)), abs(p)
+        square = (X * X >> bits) + 1
+        third = ((p * square >> bits) + 1) * X // (6 << bits) + 1
+        m = max(-m, 0) + (SINE_ERROR * p >> bits) + 2
+        return min(p * square >> bits + 1, (m * square >> bits + 1) + 1 + third) + 1
+
+    bend = largest(*forms(waves, map(rest, amplitudes, m, along)), one)
     # Sines and floors: m is off by 1 + SINE_ERROR size units at most, and g d by 1 + SINE_ERROR
     # size w for each unit of k.side, where |k.side| <= |k0| + |k1|; 1 to spare.
     size = max(map(abs, amplitudes), default=0)
