@@ -20,22 +20,22 @@ from converse.prover.tree import leaves
 SHA = "0123456789abcdef" * 4
 ELSEWHERE = {"xstar": ("9", "9"), "v": ("0.5", "0.5", "0.25", "0.25")}      # no x* in the figure
 LONG = "0.3085123456789012345678901234567890123456"     # the centre of a range of forty digits
-def drawn(proof):
+def drawn(proof, dpi=50):
     """The pixels of the prisms' square as rows of (red, green, blue), the top one first."""
     matplotlib = pytest.importorskip("matplotlib")
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
     with matplotlib.rc_context():
-        figure = Figure(figsize=(4, 4), dpi=100)
+        figure = Figure(figsize=(4, 4), dpi=dpi)
         canvas = FigureCanvasAgg(figure)
         axes = figure.add_axes([0, 0, 1, 1])
         assert proof.plot(ax=axes) is axes
         axes.set_axis_off()
         canvas.draw()
     pixels = bytes(canvas.buffer_rgba())
-    return [[pixels[x:x + 3] for x in range(y, y + 1600, 4)]
-            for y in range(0, len(pixels), 1600)]
+    return [[pixels[x:x + 3] for x in range(y, y + 16 * dpi, 4)]
+            for y in range(0, len(pixels), 16 * dpi)]
 
 
 @pytest.fixture(params=["outlines", "raster"])
@@ -158,8 +158,8 @@ def test_tiny_undecided_prisms_are_seen(made_up, shown, tree):
 
 
 def test_tiny_untried_prisms_are_seen(made_up, shown):
-    rows = shown(made_up("0P1P" * 20 + "?", **ELSEWHERE))
-    assert share(rows, is_white) > share(shown(made_up("P", **ELSEWHERE)), is_white) == 0
+    rows = shown(made_up("0P1P" * 20 + "?", **ELSEWHERE), 100)
+    assert share(rows, is_white) > share(shown(made_up("P", **ELSEWHERE), 100), is_white) == 0
 
 
 @pytest.mark.parametrize("tree", ["P", "2PP", "2S0PS", "20SP0PS"])

@@ -532,7 +532,7 @@ def test_ctrl_c_ends_every_long_call(name):
             "    try:\n        %s\n    except KeyboardInterrupt:\n"
             "        print('ended', flush=True)" % (first, call))
     process = subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, text=True)
-    for delay in (0.3, 1.2):
+    for delay in (0.2, 0.7):
         assert process.stdout.readline() == "\n"
         time.sleep(delay)
         assert process.poll() is None
