@@ -237,31 +237,29 @@ def test_parameters_that_move_together(made_up):
     assert "<" not in text
 
 
-def test_legend_overlaps_nothing(made_up, monkeypatch):
+def test_legend_overlaps_nothing(made_up):
     """With four kinds and x*, small or large."""
     pytest.importorskip("matplotlib")
     from matplotlib.backends.backend_agg import FigureCanvasAgg
 
-    for limit in (plot.RASTER, 0):
-        monkeypatch.setattr(plot, "RASTER", limit)
-        for options in TITLES.values():
-            figure = made_up("20PU01PS1U", **options).plot()
-            canvas = FigureCanvasAgg(figure)
-            canvas.draw()
-            axes = figure.axes[0]
-            assert len(axes.get_legend().get_texts()) >= 4
-            parts = [axes.title, axes.xaxis.label, axes.get_legend(), *axes.texts]
-            boxes = [part.get_window_extent(canvas.get_renderer()) for part in parts]
-            boxes.append(axes.bbox)
-            boxes += [label.get_window_extent(canvas.get_renderer())
-                      for label in axes.get_xticklabels()][:2]
-            for i, one in enumerate(boxes):
-                for other in boxes[i + 1:-2] + [boxes[-2]] * (i < len(boxes) - 2):
-                    assert not one.overlaps(other), (limit, options)
-            for one in axes.get_legend().get_texts():
-                for other in axes.get_legend().get_texts():
-                    a, b = (x.get_window_extent(canvas.get_renderer()) for x in (one, other))
-                    assert one is other or not a.overlaps(b)
+    for options in TITLES.values():
+        figure = made_up("20PU01PS1U", **options).plot()
+        canvas = FigureCanvasAgg(figure)
+        canvas.draw()
+        axes = figure.axes[0]
+        assert len(axes.get_legend().get_texts()) >= 4
+        parts = [axes.title, axes.xaxis.label, axes.get_legend(), *axes.texts]
+        boxes = [part.get_window_extent(canvas.get_renderer()) for part in parts]
+        boxes.append(axes.bbox)
+        boxes += [label.get_window_extent(canvas.get_renderer())
+                  for label in axes.get_xticklabels()][:2]
+        for i, one in enumerate(boxes):
+            for other in boxes[i + 1:-2] + [boxes[-2]] * (i < len(boxes) - 2):
+                assert not one.overlaps(other), options
+        for one in axes.get_legend().get_texts():
+            for other in axes.get_legend().get_texts():
+                a, b = (x.get_window_extent(canvas.get_renderer()) for x in (one, other))
+                assert one is other or not a.overlaps(b)
 
 
 @pytest.mark.parametrize("count, most", [(plot.RASTER, 300000), (30000, 200000)])

@@ -15,7 +15,7 @@ from converse.prover.tree import cells
 import kernels
 from truth import SANITIZED, TORTURE, mp, rng_for, uniform
 
-CASES = (500 if SANITIZED else 1500) * TORTURE
+CASES = (500 if SANITIZED else 1000) * TORTURE
 MOST = 4                                # waves of a kernel's potential
 SITE, SHOWN, SITES = 81, 11, 60         # numbers of a point, points, and vectors of a kernel
 PAIRS = [*itertools.combinations_with_replacement(range(5), 2)]         # the order of the bows
