@@ -178,7 +178,8 @@ def vectors_of(options, potential):
 def parser():
     p = Parser(prog=COMMAND, description=(
         "Finds periodic orbits of least action of the map x' = x + p', p' = p - eps grad V(x), "
-        "angles of period 1, by continuation from eps 0."), epilog=FIND)
+        "by continuation from eps 0.  Angles have period 1; those of an input file, and of its "
+        "results, have period 2 pi."), epilog=FIND)
     p.add_argument("--version", action="version", version="%s %s" % (COMMAND, __version__))
     commands = p.add_subparsers(metavar="COMMAND", required=True)
 

@@ -55,16 +55,17 @@ class FourierSum(NamedTuple):
                 yield ((k0, k1), product((-p, -p), sine_bounds(phase, more)),
                        product((-p, -p), sine_bounds(phase + QUARTER, more)))
 
-    def text(self) -> str:
-        """V(2 pi x) in words, exactly."""
+    def text(self, turn: str = "2 pi", letter: str = "x") -> str:
+        """V(2 pi x) in words, exactly.  turn: the factor of the angles, or "" for V(y)."""
         parts = []
         for (*k, phase), p in zip(self.waves, self.amplitude):
-            names = ("x0", "x1") if self.dimension == 2 else ("x",)
+            names = (letter + "0", letter + "1") if self.dimension == 2 else (letter,)
             angle = sum_text(zip(k, names))
             if not any(k):                      # a constant, of phase 1/2
                 parts.append((-p, ""))
                 continue
-            angle = "2 pi %s" % (angle if angle in names else "(%s)" % angle)
+            if turn:
+                angle = "%s %s" % (turn, angle if angle in names else "(%s)" % angle)
             if (2 * phase).denominator == 1:
                 function = "cos" if phase % 1 else "sin"
                 sign = -sine_bounds(phase if phase % 1 else phase + QUARTER, 0)[0]

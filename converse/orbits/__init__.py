@@ -4,7 +4,8 @@
     family = orbits.follow(orbits.trig, (1432, 1897), 2513, [0.0025, 0.005, 0.0075, 0.01])
     print(family[-1].label, family[-1].exponents)
 
-The torus has period 1 here, 2 pi in the rest of the package: converse/model/potential.py converts.
+The states of a SymplecticMap have its units, angles of period 2 pi; those of the potentials with
+names have angles of period 1, as in the thesis.
 """
 
 try:

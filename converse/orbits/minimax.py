@@ -66,14 +66,16 @@ class Pair:
 
     @property
     def barrier(self) -> float:
-        """The action of the pass less the minimum's, of all q points together, in doubles.
-        Its rounding is about 1e-16 times the root of q, and eps where eps is larger than 1."""
-        return difference(self.minimum, self.minimax)
+        """The action of the pass less the minimum's, of all q points together, in doubles and in
+        the units of the map.  Its rounding is about 1e-16 times the root of q, and eps where eps is
+        larger than 1."""
+        return self.minimum.potential.period ** 2 * difference(self.minimum, self.minimax)
 
     @property
     def flux(self) -> float:
         """Of one angle: the area that each iterate of the map carries through the gap, in either
-        direction, if the gap holds no other orbits of the type.  It is the barrier.  ValueError for
+        direction, if the gap holds no other orbits of the type.  It is the barrier, an area in the
+        units of the map: the torus has the area period^2.  ValueError for
         n = 2."""
         self.check_flux()
         return self.barrier
@@ -121,7 +123,7 @@ def gap_of(pair):
 
 
 def difference(low, high):
-    """The action of all points of one state less that of another's."""
+    """The action of all points of one state less that of another's, on the torus of period 1."""
     steps = [np.roll(state.u, -1, 0) - state.u for state in (low, high)]
     kinetic = (steps[1] - steps[0]) * (steps[1] + steps[0]) / 2
     return math.fsum([*kinetic.ravel(), *(low.eps * (low._local[0] - high._local[0]))])
@@ -198,7 +200,7 @@ class _Way:
         _, _, u = descended(near.moved(guess), near.eps, MAX_HELD_GRADIENT, HELD_STEPS, self.held)
         found = self.first.moved(u)
         return (found, difference(self.first, found),
-                float(found.gradient[self.held] * np.sign(self.gap[self.held])))
+                float(found._gradient[self.held] * np.sign(self.gap[self.held])))
 
     def t_of(self, state):
         return float((state.u[self.held] - self.first.u[self.held]) / self.gap[self.held])
@@ -232,12 +234,12 @@ class _Way:
             middle = self.at((self.t_of(low[0]) + self.t_of(high[0])) / 2, low[0])
             found, _ = newton(middle[0], max_steps=MAX_POLISH_STEPS)
             begin, t, end = (self.t_of(state) for state in (low[0], found, high[0]))
-            if (found.shadow < MAX_PASS_SHADOW
+            if (found._shadow < MAX_PASS_SHADOW
                     and begin - ORDER_TOLERANCE <= t <= end + ORDER_TOLERANCE
                     and found.below(-EIGENVALUE_ROUNDING) == found.below(EIGENVALUE_ROUNDING) == 1):
                 return found, difference(self.first, found)
             low, high = (middle, high) if self.rises(low, middle) else (low, middle)
         if np.abs(high[0].u - low[0].u).max() < MIN_JUMP:                  # too flat for doubles
-            return middle[0] if middle[0].shadow < MAX_SHADOW else None, middle[1]
+            return middle[0] if middle[0]._shadow < MAX_SHADOW else None, middle[1]
         found = _Way(low[0], high[0], self.jumps - 1).top() if self.jumps else None
         return found, low[1] if found is None else difference(self.first, found)

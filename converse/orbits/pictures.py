@@ -83,7 +83,7 @@ def exponent_text(state, exponent, digits):
 
 def coinciding(state):
     """How many points have another one nearer than doubles can tell."""
-    x = state.x[np.argsort(state.x[:, 0])]
+    x = state.turns[np.argsort(state.turns[:, 0])]
     near = np.zeros(len(x), bool)
     for shift in range(1, len(x)):
         step = np.roll(x, -shift, axis=0) - x
@@ -131,21 +131,25 @@ def _uncaptioned(page, shown):
 def plane(ax, state):
     """A state of one angle: x and p."""
     ax.plot(state.x, state.momenta, **dots(state))
-    ax.set(xlim=(0, 1), xlabel="$x$", ylabel="$p$")
+    x, p = state.potential.letters
+    ax.set(xlim=(0, state.potential.period), xlabel="$%s$" % x, ylabel="$%s$" % p)
 
 
 def angles(ax, state):
     """The angles of a state of two."""
     ax.plot(*state.x.T, **dots(state))
-    ax.set(xlim=(0, 1), ylim=(0, 1), aspect="equal", xlabel="$x_0$", ylabel="$x_1$")
+    whole, x = (0, state.potential.period), state.potential.letters[0]
+    ax.set(xlim=whole, ylim=whole, aspect="equal", xlabel="$%s_0$" % x, ylabel="$%s_1$" % x)
 
 
 def momenta(ax, state, middle, half):
-    """The momenta of a state of two angles, and a cross at p/q, in a square about middle."""
+    """The momenta of a state of two angles, and a cross at the rotation vector, in a square about
+    middle."""
+    p = state.potential.letters[1]
     ax.plot(*state.momenta.T, **dots(state))
-    ax.plot(*state.rotation, "+", color=VERMILLION, markersize=7)
+    ax.plot(*state.potential.period * state.rotation, "+", color=VERMILLION, markersize=7)
     ax.set(xlim=(middle[0] - half, middle[0] + half), ylim=(middle[1] - half, middle[1] + half),
-           aspect="equal", xlabel="$p_0$", ylabel="$p_1$")
+           aspect="equal", xlabel="$%s_0$" % p, ylabel="$%s_1$" % p)
     for axis in ax.xaxis, ax.yaxis:
         axis.get_major_locator().set_params(nbins=5)
 
@@ -174,17 +178,20 @@ def rows(page, shown, more=None):
         else:
             angles(panels[0], state)
             momenta(panels[1], state, *square(state))
-            away = np.sqrt(((state.momenta - state.rotation) ** 2).sum(1)).max()
+            centre = state.potential.period * state.rotation
+            away = np.sqrt(((state.momenta - centre) ** 2).sum(1)).max()
             if len(shown) > 1:
                 lines[0] = "(%s)  %s" % (letter, lines[0])
-            lines.append("$|p_j - p/q|$ up to %.3f" % away + ("; " + more(state) if more else ""))
+            lines.append("momenta up to %.3f from the cross" % away
+                         + ("; " + more(state) if more else ""))
             count = coinciding(state)
             if count:
                 lost.append("%d points" % count + " of (%s)" % letter * (len(shown) > 1))
         panels[0].set_title("\n".join(lines), loc="left")
     if shown[0].state.potential.n == 1:
         return ""
-    words = "Left the angles, right the momenta, the cross at p/q."
+    words = "Left the angles, right the momenta, the cross at the rotation vector%s." % (
+        "" if shown[0].state.potential.period == 1 else " times 2 pi")
     if lost:
         words += "  Doubles cannot tell %s from another one (nearer than %g)." % (
             " and ".join(lost), LOST)

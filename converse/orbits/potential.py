@@ -43,7 +43,8 @@ def known(source: Any) -> "Potential":
 
 @lru_cache(maxsize=64)
 def _of_map(source, name):
-    return Fourier.of(source.potential(), name + ".json" * (name in STUDIED))
+    return Fourier._scaled(source.potential(), name + ".json" * (name in STUDIED), None, PER_PERIOD,
+                           TURN)
 
 
 def told(progress):
@@ -85,13 +86,18 @@ def address(array, kind="double(*)[2]"):
 
 
 class Potential(Dynamics):
-    """A potential V(x), of period 1 in each of its n coordinates, and its map x' = x + p',
-    p' = p - eps grad V(x), angles and momenta of period 1.  It cannot be changed.
+    """A potential V(x) on the torus of period 1, and its map x' = x + p', p' = p - eps grad V(x).
+    It cannot be changed.
+
+    Its map, and its states, have angles and momenta of another period if it is the potential of a
+    SymplecticMap: then they are y = 2 pi x and J = 2 pi p.  The methods of the map take these, and
+    evaluate() takes x.
 
     name       -- for reports
+    period     -- of the angles and momenta of the map and of states: 1, or 2 pi
     n          -- dimensions, 1 or 2
     start      -- a maximum of V, where orbits begin
-    formula    -- V(x) in words, exactly, for reports
+    formula    -- V(x), or V(y), in words, exactly, for reports
     curvature  -- an upper bound of the spectral norm of V'' anywhere; None: not known
     lipschitz  -- K with |V''(x) - V''(y)| <= K |x - y|, in these norms; None: not known
     """
@@ -165,7 +171,8 @@ class Potential(Dynamics):
         return value, gradient[:, :self.n], hessian[:, :self.n, :self.n]
 
     def _derivatives(self, y):
-        return self.evaluate(y)[1:]
+        _, gradient, hessian = self.evaluate(y / self.period)
+        return self.period * gradient, hessian
 
 
 class Fourier(Potential):
@@ -199,24 +206,28 @@ class Fourier(Potential):
     def of(cls, source: FourierSum, name: str = "fourier",
            start: Optional[Tuple[float, ...]] = None) -> "Fourier":
         """From waves, amplitudes and phases, in the units of input files, where angles have period
-        2 pi: with eps 1 the map is that of proofs (converse/model/potential.py)."""
+        2 pi: with eps 1, y = 2 pi x and J = 2 pi p the map is that of proofs
+        (converse/model/potential.py)."""
         if not isinstance(source, FourierSum):
             raise ValueError("Fourier.of takes a FourierSum, not %.200r" % (source,))
         return cls._scaled(source, name, start, PER_PERIOD)
 
     @classmethod
-    def _scaled(cls, source, name, start, scale):
+    def _scaled(cls, source, name, start, scale, period=1.0):
         made = cls.__new__(cls)
-        made._set_up(source, name, start, scale)
+        made._set_up(source, name, start, scale, period)
         return made
 
-    def _set_up(self, source, name, start, scale="1"):
+    def _set_up(self, source, name, start, scale="1", period=1.0):
         low, high = SCALES[scale](30)
-        vars(self).update(sum=source, scale=float((low + high) / 2), _scale=scale)
+        vars(self).update(sum=source, scale=float((low + high) / 2), _scale=scale, period=period,
+                          letters="xp" if period == 1 else "yJ")
         terms = _significant(source)
-        super().__init__(lib.CV_FOURIER, name, source.dimension, start,
-                         source.text() if scale == "1" else
-                         "s (%s), s = %s" % (source.text(), scale), *_bounds(terms, high))
+        formula = source.text("2 pi", "x") if period == 1 else source.text("", "y")
+        if period == 1 and scale != "1":
+            formula = "s (%s), s = %s" % (formula, scale)
+        super().__init__(lib.CV_FOURIER, name, source.dimension, start, formula,
+                         *_bounds(terms, high))
         self._arrays = [np.array([k for k, *_ in terms], dtype=np.intc)] + [
             np.array([float(sum(term[i]) / 2) * self.scale for term in terms]) for i in (1, 2)]
         self.native.terms = len(terms)
@@ -229,10 +240,10 @@ class Fourier(Potential):
     def __reduce__(self):
         if STUDIED.get(self.name) is self:
             return super().__reduce__()
-        return Fourier._scaled, (self.sum, self.name, self.start, self._scale)
+        return Fourier._scaled, (self.sum, self.name, self.start, self._scale, self.period)
 
     def _key(self) -> tuple:
-        return (*super()._key(), self.sum, self._scale)
+        return (*super()._key(), self.sum, self._scale, self.period)
 
     @property
     def terms(self) -> Mapping[Tuple[int, ...], Tuple[Fraction, Fraction]]:
@@ -452,6 +463,8 @@ def _trig_scale(digits):
     return (root_bounds(128 / (207 + 33 * high), digits + 5)[0],
             root_bounds(128 / (207 + 33 * low), digits + 5)[1])
 
+
+TURN = 2 * math.pi
 
 # The scales of Fourier sums as formulas name them, and their bounds to 10^-digits.
 PER_PERIOD, TRIG = "1/(4 pi^2)", "8 sqrt 2/sqrt(207 + 33 sqrt 33)"

@@ -16,6 +16,7 @@ import numpy as np
 
 from .._native import lib
 from ..model.exact import Interval, rounded, rounded_text
+from ..model.potential import per_period, product
 from ..storage.files import ConverseError
 from .limits import (DEFAULT_DIGITS, EIGENVALUE_ROUNDING, EXPONENT_PLACES, GUARD_PLACES,
                      MAX_MORE_PLACES, MAX_PLACES, MAX_PROOF_STEPS, MAX_SHADOW, NULL_EIGENVALUE,
@@ -37,14 +38,16 @@ class ProvedOrbit:
     state     -- the state that was given
     digits    -- decimal places the proof was computed with
     radius    -- there is exactly one true orbit of the state's type whose displacements are within
-                 radius of `displacements`, in the Euclidean norm of all coordinates together
+                 radius of `displacements`, in the Euclidean norm of all coordinates together; both
+                 are exact numbers of turns
     least     -- no eigenvalue of the second variation of its action is below this positive number,
                  however often the orbit is run through
-    action    -- its action per point less the straight orbit's, |p/q|^2/2
+    action    -- its action per point less the straight orbit's, in the units of the map
     exponents -- its n positive Lyapunov exponents, larger first
     sign      -- 1 or -1: its multipliers are real and have this sign; 0: they are complex, or this
                  is undecided
-    moved     -- the distance of the points from the state's: the largest coordinate, on the torus
+    moved     -- the distance of the points from the state's: the largest coordinate, on the torus,
+                 in turns
     """
 
     state: PeriodicOrbit
@@ -65,7 +68,7 @@ class ProvedOrbit:
 
     @cached_property
     def points(self) -> Tuple[Tuple[Fraction, ...], ...]:
-        """The centre of the ball: q points in [0, 1)^n, exactly."""
+        """The centre of the ball: q points in [0, 1)^n, in turns, exactly."""
         state = self.state
         return tuple(tuple((Fraction(o) + Fraction(j * p % state.q, state.q) + x) % 1
                            for o, p, x in zip(state.origin, state.p, u))
@@ -110,10 +113,10 @@ class ProvedOrbit:
         """The theorem in words."""
         state, (within, moved) = self.state, distances(self)
         lines = [
-            "THEOREM, proved with %d decimal places: the map x' = x + p', p' = p - eps grad V(x)"
-            % self.digits,
+            "THEOREM, proved with %d decimal places: the map %s"
+            % (self.digits, map_words(state.potential)),
             "with the potential %s," % state.potential.name,
-            "V(x) = %s," % state.potential.formula,
+            "V(%s) = %s," % (state.potential.letters[0], state.potential.formula),
             "and eps = %s has exactly one orbit of type %s within %s of the points computed"
             % (_eps(state), _type(state), within),
             "(Euclidean norm of all coordinates together), which are within %s of those given "
@@ -121,7 +124,7 @@ class ProvedOrbit:
             "It is hyperbolic and, run through any number of times, a nondegenerate local minimum "
             "of the action.",
             "Second variation : at least %s" % rounded_text(self.least, 3, up=False),
-            "Action per point less |p/q|^2/2 : %r" % (self.action,)] + [
+            "%s : %r" % (action_words(state.potential), self.action)] + [
             "Exponent : %r" % (ends,) for ends in self.exponents]
         if state.potential.n == 1 and self.residue[0] > -10 ** SHOWN_PLACES:
             lines.append("Greene's residue : %r" % (self.residue,))
@@ -170,7 +173,7 @@ def prove(state: PeriodicOrbit, digits: Optional[int] = None, descend: bool = Fa
         raise ValueError("nothing can be proved of the potential %s: only Fourier sums, poly "
                          "and ff have exact values" % potential.name)
     with np.errstate(all="ignore"):
-        shadow = state.shadow
+        shadow = state._shadow
     if not shadow < MAX_SHADOW:
         raise NotProved("the state is not stationary, its gradient is %.1e: relax() it first"
                         % shadow)
@@ -244,9 +247,8 @@ def _attempt(state, exact, growth, places, wanted):
     exponents = tuple(Interval(rounded(max(low, 0) / state.q, EXPONENT_PLACES, up=False),
                                rounded(high / state.q, EXPONENT_PLACES, up=True))
                       for low, high in exponents)
-    action = Interval(
-        rounded(exact.action[0] - exact.gradient * radius / state.q, shown, up=False),
-        rounded(exact.action[1], shown, up=True))
+    action = in_units(state.potential, (exact.action[0] - exact.gradient * radius / state.q,
+                                        exact.action[1]), shown)
     moved = max(abs(step - round(step)) for step in steps)
     return ProvedOrbit(state, places, radius, left, action, exponents, sign,
                        moved, displacements)
@@ -326,10 +328,35 @@ def _boundary(low, high, holds, ratio):
 
 # ---- numbers
 
+def in_units(potential, action, digits):
+    """The ends of an action on the torus of period 1, as an Interval around the action in the units
+    of the map, rounded to these digits."""
+    if potential.period != 1:
+        low, high = per_period(digits + GUARD_PLACES)           # around 1/(2 pi)^2
+        action = product(action, (1 / high, 1 / low))
+    return Interval(rounded(action[0], digits, up=False), rounded(action[1], digits, up=True))
+
+
+def distance_words(potential, turns):
+    """A distance in turns, in words, in the units of the map, rounded up."""
+    unit = 1 if potential.period == 1 else Fraction(6283185308, 10 ** 9)       # above 2 pi
+    return rounded_text(turns * unit, 2, up=True)
+
+
 def distances(proof):
     """radius and moved in words, rounded up."""
-    return (rounded_text(proof.radius, 2, up=True),
-            rounded_text(Fraction(proof.moved) * (1 + Fraction(1, 2 ** 50)), 2, up=True))
+    potential, moved = proof.state.potential, Fraction(proof.moved) * (1 + Fraction(1, 2 ** 50))
+    return distance_words(potential, proof.radius), distance_words(potential, moved)
+
+
+def map_words(potential):
+    x, p = potential.letters
+    return "%s' = %s + %s', %s' = %s - eps grad V(%s)" % (x, x, p, p, p, x)
+
+
+def action_words(potential):
+    """What a line of a report is, which shows an action."""
+    return "Action per point less |%sp/q|^2/2" % ("" if potential.period == 1 else "2 pi ")
 
 
 def _eps(state):

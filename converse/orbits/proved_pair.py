@@ -15,14 +15,14 @@ from flint import arb, arb_mat
 
 from .._native import lib
 from ..model.balls import precision
-from ..model.exact import Interval, rounded, rounded_text
+from ..model.exact import Interval, rounded
 from .enclosure import Enclosure, ball, lower, points, square, upper
 from .exponents import growth
 from .limits import (DEFAULT_DIGITS, GUARD_PLACES, MAX_MORE_PLACES, MAX_PLACES, MAX_PROOF_STEPS,
                      SHOWN_PLACES)
 from .minimax import Pair, gap_of
 from .potential import address, told, whole
-from .proved import NotProved, ProvedOrbit, _eps, _type, prove
+from .proved import NotProved, ProvedOrbit, _eps, _type, distance_words, in_units, prove
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -33,10 +33,10 @@ class ProvedPair:
     minimum -- the proved minimum
     digits  -- decimal places the proof of the pass was computed with
     radius  -- there is exactly one true orbit of the type whose displacements are within radius of
-               `displacements`, in the Euclidean norm of all coordinates together; the Hessian of
-               its action has exactly one negative eigenvalue, and none is zero
-    action  -- its action per point less the straight orbit's
-    barrier -- its action less the minimum's, of all q points together
+               `displacements`, in the Euclidean norm of all coordinates together, both in turns;
+               the Hessian of its action has exactly one negative eigenvalue, and none is zero
+    action  -- its action per point less the straight orbit's, in the units of the map
+    barrier -- its action less the minimum's, of all q points together, in the units of the map
     residue -- its residue, which is positive; None for n = 2
     between -- is it proved that each of its points lies between the points of the minimum and of
                its neighbour (n = 1)?  If not, nothing is said
@@ -69,7 +69,7 @@ class ProvedPair:
         lines = [
             "THEOREM, proved with %d decimal places: the same map has exactly one orbit of type %s "
             "within %s of the points" % (self.digits, _type(state),
-                                  rounded_text(self.radius, 2, up=True)),
+                                      distance_words(state.potential, self.radius)),
             "computed of the pass (Euclidean norm of all coordinates together).  The second "
             "variation of its action, run",
             "through once, has exactly one negative direction and is nondegenerate.",
@@ -87,7 +87,7 @@ def prove_pair(pair, digits=None, progress=None):
     """See Pair.prove."""
     told(progress)
     if pair.minimax.label == "not stationary":
-        raise NotProved("the pass is not stationary, its gradient is %.1e" % pair.minimax.shadow)
+        raise NotProved("the pass is not stationary, its gradient is %.1e" % pair.minimax._shadow)
     most_digits = MAX_PLACES - 2 * GUARD_PLACES
     digits = DEFAULT_DIGITS if digits is None else whole("digits", digits, 1, most_digits)
     minimum, reason = prove(pair.minimum, digits, progress=progress), ""
@@ -213,8 +213,8 @@ class _Pass:
         if radius > Fraction(1, 10 ** self.digits):
             raise _Undecided("the pass is known to %.1e only" % radius)
         reach = (4 + abs(exact.eps) * Fraction(state.potential.curvature)) * radius ** 2 / 2
-        action = Interval(rounded(exact.action[0] - reach / exact.q, shown, up=False),
-                          rounded(exact.action[1] + reach / exact.q, shown, up=True))
+        action = in_units(state.potential, (exact.action[0] - reach / exact.q,
+                                            exact.action[1] + reach / exact.q), shown)
         own = self.minimum.action
         residue = None
         if exact.n == 1:

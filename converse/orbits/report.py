@@ -3,7 +3,7 @@
 import math
 
 from .pictures import exponent_text
-from .proved import vector_words
+from .proved import action_words, map_words, vector_words
 
 LARGE = 1e10                            # Stability indices above it are given by their logarithm.
 MEANINGS = {                            # of labels
@@ -22,10 +22,12 @@ def type_text(state):
 def header(state):
     """The lines that are the same for all states of a report."""
     potential = state.potential
-    return ("Map : x' = x + p', p' = p - eps grad V(x), angles of period 1\n"
-            "Potential : %s\nV(x) : %s\n"
+    return ("Map : %s, angles of period %s\n"
+            "Potential : %s\nV(%s) : %s\n"
             "Type : %s, rotation vector %s\n" % (
-                potential.name, potential.formula, type_text(state), _numbers(state.rotation)))
+                map_words(potential), "1" if potential.period == 1 else "2 pi", potential.name,
+                potential.letters[0], potential.formula, type_text(state),
+                _numbers(state.rotation)))
 
 
 def _numbers(values):
@@ -37,7 +39,7 @@ def report(state):
     lines = [
         "eps : %r" % state.eps,
         "State : %s (%s)" % (state.label, MEANINGS.get(state.label, MEANINGS["best"])),
-        "Action per point less |p/q|^2/2 : %.12g" % state.action,
+        "%s : %.12g" % (action_words(state.potential), state.action),
         "Exponents : " + ", ".join(exponent_text(state, x, 10) for x in state.exponents),
         ("Residue : %.10g" % state.residue if state.potential.n == 1 else
          "Stability indices : " + ", ".join(map(_index_text, state.indices))),

@@ -272,7 +272,7 @@ def _joints(p, q, first, second, rng):
     are near each other.  The nearest pair comes first; of pairs that follow each other along both
     orbits, which give the same guess, only one is used."""
     some = [rng.permutation(state.q)[:JOINT_SAMPLE] for state in (first, second)]
-    apart = first.x[some[0]][:, None] - second.x[some[1]]
+    apart = first.turns[some[0]][:, None] - second.turns[some[1]]
     apart -= np.round(apart)
     nearest = np.argsort((apart ** 2).sum(2), axis=None, kind="stable")[:JOINT_SAMPLE]
     cut = []
@@ -291,4 +291,4 @@ def _joint(p, q, first, i, second, j):
         np.roll(state.u, -k, 0) - state.u[k] + np.arange(state.q)[:, None] * state.rotation + begin
         for state, k, begin in ((first, i, 0.0), (second, j, np.array(first.p)))])
     return PeriodicOrbit(first.potential, p, q, first.eps,
-                 path - np.arange(q)[:, None] * (np.array(p) / q), first.x[i])
+                 path - np.arange(q)[:, None] * (np.array(p) / q), first.turns[i])

@@ -233,10 +233,10 @@ def newton(state: PeriodicOrbit, eps: Optional[float] = None, tol: float = 1e-13
     state = replace(state, eps=state.eps if eps is None else eps, searches=0)
     n = state.potential.n
     for steps in range(max_steps + 1):
-        if steps == max_steps or np.abs(state.gradient).max() <= tol:
+        if steps == max_steps or np.abs(state._gradient).max() <= tol:
             break
         gradient, step, work = (np.zeros((state.q, k)) for k in (2, 2, lib.CV_WORK))
-        gradient[:, :n] = state.gradient
+        gradient[:, :n] = state._gradient
         done(lib.cv_solve(n, state.q, address(state.blocks, "double(*)[3]"), 0.0,
                           address(gradient), address(step), address(work, "double *")))
         u = state.u - step[:, :n]

@@ -23,7 +23,8 @@ if TYPE_CHECKING:
 
 
 class Deviation(NamedTuple):
-    """The largest distance |u_j - c| of a point from its place on a straight orbit.
+    """The largest distance |u_j - c| of a point from its place on a straight orbit, in the units of
+    the map.
 
     from_point -- the straight orbit through x_0: c = u_0
     from_start -- the straight orbit where continuation began: c = 0
@@ -71,7 +72,8 @@ def _fixed(array):
 
 class Pairs(NamedTuple):
     """The closest pairs of points, closest first: their indices i and j, the distance |dx| of the
-    angles on the torus, and the distance |dp| of the momenta; arrays of one length."""
+    angles on the torus, and the distance |dp| of the momenta, in the units of the map; arrays of
+    one length."""
 
     i: np.ndarray
     j: np.ndarray
@@ -110,7 +112,7 @@ def closest_pairs(x, count):
 
 class Gaps(NamedTuple):
     """The gaps of an orbit of one angle on the circle, widest first: from point i up to point j,
-    which is its neighbour; the width; and x_i, where the gap begins."""
+    which is its neighbour; the width; and x_i, where the gap begins, in the units of the map."""
 
     i: np.ndarray
     j: np.ndarray
@@ -137,12 +139,16 @@ def type_of(potential, p, q):
 @dataclass(frozen=True, eq=False)
 class PeriodicOrbit:
     """A state of type (p, q): q points x_j = origin + (j p mod q)/q + u_j, continued by
-    x_{j+q} = x_j + p.  Angles and momenta have period 1.
+    x_{j+q} = x_j + p.
+
+    Units: p, q, u, origin and base are in turns, as doubles have them exactly.  All that is
+    computed has the units of the map, whose angles have the period `potential.period`: 2 pi for a
+    SymplecticMap, 1 for trig, poly, ff, froeschle, orbits.standard and user-defined potentials.
 
     p        -- n integers; p/q need not be in lowest terms
     eps      -- the size of the perturbation
-    u        -- array (q, n): the displacements from the straight orbit
-    origin   -- n numbers: the point of the straight orbit with j = 0
+    u        -- array (q, n), in turns: the displacements from the straight orbit
+    origin   -- n numbers, in turns: the point of the straight orbit with j = 0
     searches -- the number of searches among whose results this has the least action; 0: there was
         no search
 
@@ -193,42 +199,55 @@ class PeriodicOrbit:
 
     @property
     def rotation(self) -> np.ndarray:
-        """p/q as an array (n,)."""
+        """The rotation vector p/q, in turns: array (n,)."""
         return np.array(self.p) / self.q
 
     @cached_property
     def base(self) -> np.ndarray:
-        """The straight orbit, origin + (j p mod q)/q: array (q, n)."""
+        """The straight orbit, origin + (j p mod q)/q, in turns: array (q, n)."""
         j = np.arange(self.q, dtype=np.int64)[:, None]
         return _fixed(np.array(self.origin) + j * (np.array(self.p) % self.q) % self.q / self.q)
 
     @property
     def x(self) -> np.ndarray:
-        """The angles x_j modulo 1, in [0, 1): array (q, n)."""
+        """The angles modulo the period, in [0, period): array (q, n)."""
+        return self.potential.period * self.turns
+
+    @property
+    def turns(self) -> np.ndarray:
+        """The angles in turns, in [0, 1): array (q, n)."""
         x = (self.base + self.u) % 1.0
         return np.where(x < 1.0, x, 0.0)
 
     @cached_property
     def momenta(self) -> np.ndarray:
         """The momenta p_j = x_{j+1} - x_j + eps grad V(x_j): array (q, n)."""
-        return _fixed(self.rotation + np.roll(self.u, -1, 0) - self.u + self.eps * self._local[1])
+        return _fixed(self.potential.period * (self.rotation + np.roll(self.u, -1, 0) - self.u
+                                               + self.eps * self._local[1]))
 
     @cached_property
     def _local(self) -> Tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """V on the torus of period 1, its gradient and its Hessian at the points."""
         return tuple(map(_fixed, self.potential.evaluate(self.base + self.u)))
 
     # ---- action
 
     @property
     def action(self) -> float:
-        """The mean over j of |x_{j+1} - x_j|^2/2 - eps V(x_j), less |p/q|^2/2, the action of the
-        straight orbit at eps 0."""
+        """The mean over j of |x_{j+1} - x_j|^2/2 - eps V(x_j), less |period p/q|^2/2, the action of
+        the straight orbit at eps 0."""
         step = np.roll(self.u, -1, 0) - self.u
-        return float(np.mean((step ** 2).sum(1) / 2 - self.eps * self._local[0]))
+        return self.potential.period ** 2 * float(
+            np.mean((step ** 2).sum(1) / 2 - self.eps * self._local[0]))
 
-    @cached_property
+    @property
     def gradient(self) -> np.ndarray:
         """The derivatives dL/dx_j of the action: array (q, n)."""
+        return _fixed(self.potential.period * self._gradient)
+
+    @cached_property
+    def _gradient(self) -> np.ndarray:
+        """The derivatives of the action by angles in turns: array (q, n)."""
         return _fixed(2 * self.u - np.roll(self.u, 1, 0) - np.roll(self.u, -1, 0)
                       - self.eps * self._local[1])
 
@@ -241,7 +260,12 @@ class PeriodicOrbit:
     def shadow(self) -> float:
         """The largest distance between (x_{j+1}, p_{j+1}) and the image of (x_j, p_j).  The angles
         agree exactly, so it is the largest |dL/dx_j|."""
-        return sqrt(float((self.gradient ** 2).sum(1).max()))
+        return self.potential.period * self._shadow
+
+    @property
+    def _shadow(self) -> float:
+        """The shadow on the torus of period 1."""
+        return sqrt(float((self._gradient ** 2).sum(1).max()))
 
     @cached_property
     def blocks(self) -> np.ndarray:
@@ -286,18 +310,19 @@ class PeriodicOrbit:
     def label(self) -> str:
         """What doubles show of it.
 
-        "not stationary" -- no orbit: the shadow is not below MAX_SHADOW
+        "not stationary" -- no orbit: the shadow is not below MAX_SHADOW periods
         "saddle" -- an orbit; its Hessian, or the Hessian of the orbit run through several times,
             has a negative eigenvalue
         "minimum" -- an orbit without such an eigenvalue; those counted by `undetermined` are too
             small to have a sign
         "best of N searches" -- a minimum, of least action among the results of N searches
         "stationary" -- an orbit; rounding hides whether it is a minimum or a saddle"""
-        if not self.shadow < MAX_SHADOW:
+        if not self._shadow < MAX_SHADOW:
             return "not stationary"
         rounds = self._rounds
         if rounds <= 0:
-            if self.repeat(1 - rounds).below(-max(EIGENVALUE_ROUNDING, self.shadow / SHADOW_REACH)):
+            rounding = max(EIGENVALUE_ROUNDING, self._shadow / SHADOW_REACH)
+            if self.repeat(1 - rounds).below(-rounding):
                 return "saddle"
             if rounds < 0:
                 return "stationary"
@@ -370,7 +395,7 @@ class PeriodicOrbit:
     def deviation(self) -> Deviation:
         """The largest displacements from three straight orbits."""
         def away(centre):
-            return sqrt(float(((self.u - centre) ** 2).sum(1).max()))
+            return self.potential.period * sqrt(float(((self.u - centre) ** 2).sum(1).max()))
 
         from_point, from_start = away(self.u[0]), away(0.0)
         return Deviation(from_point, from_start,
@@ -379,9 +404,9 @@ class PeriodicOrbit:
     def pairs(self, count: int = 800) -> Pairs:
         """The `count` pairs of points with the closest angles on the torus."""
         count = min(whole("count", count, 0), self.q * (self.q - 1) // 2)
-        i, j, distance = closest_pairs(self.x, count)
+        i, j, distance = closest_pairs(self.turns, count)
         momentum = np.sqrt(((self.momenta[i] - self.momenta[j]) ** 2).sum(1))
-        return Pairs(i, j, distance, momentum)
+        return Pairs(i, j, self.potential.period * distance, momentum)
 
     def gaps(self, count: Optional[int] = None) -> Gaps:
         """The gaps between neighbouring points on the circle, all q or the `count` widest, widest
@@ -394,7 +419,7 @@ class PeriodicOrbit:
         i = np.argsort(x, kind="stable")
         j = np.roll(i, -1)
         width = x[j] - x[i]
-        width[-1] += 1
+        width[-1] += self.potential.period
         order = np.argsort(-width, kind="stable")[:count]
         return Gaps(i[order], j[order], width[order], x[i[order]])
 
@@ -455,7 +480,8 @@ class PeriodicOrbit:
               max_steps: int = 10000) -> "PeriodicOrbit":
         """A nearby minimum of the action, at this or another eps, by Newton's method with damping.
 
-        tol -- the largest coordinate of its gradient; 100 tol where rounding prevents less
+        tol -- the largest coordinate of its gradient, in turns; 100 tol where rounding prevents
+            less
         ConverseError: max_steps steps do not reach it."""
         eps, tol = finite("eps and tol", [self.eps if eps is None else eps, tol])
         code, how, u = descended(self, eps, tol, whole("max_steps", max_steps, 0))

@@ -6,7 +6,8 @@ the Lax-Oleinik operator (Mather's beta).
     mather_beta(orbits.trig, 0.04, (0.56984029, 0.75487767)).low
 
 The first import compiles minplus.c.  experiments/hedlund.py and experiments/minimizing.py are the
-commands that use this package.  Actions have the units of converse.orbits.
+commands that use this package.  Actions are those of
+angles with period 1, also for a SymplecticMap.
 """
 
 from .action import enclosed_action

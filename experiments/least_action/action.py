@@ -77,8 +77,8 @@ def action_bounds(state):
 
 def gradient_bounds(state):
     """Of the action, and what each of its coordinates may be off by."""
-    off = 8 * U * (4 * float(np.abs(state.u).max()) + float(np.abs(state.gradient).max()))
-    return (state.gradient,
+    off = 8 * U * (4 * float(np.abs(state.u).max()) + float(np.abs(state._gradient).max()))
+    return (state._gradient,
             off + 1.001 * abs(state.eps) * errors_near(state)[1])
 
 
@@ -88,7 +88,8 @@ def per_point(low, high, q):
 
 
 def enclosed_action(state: PeriodicOrbit) -> Tuple[float, float]:
-    """Two numbers, proved to be around state.action, whether it is an orbit or not."""
+    """Two numbers, proved to be around the action per point of a state, an orbit or not, for angles
+    of period 1."""
     expected(state)
     floats_within("eps", [state.eps], LARGEST_EPS)
     low, high = action_bounds(state)

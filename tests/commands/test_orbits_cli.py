@@ -1,6 +1,7 @@
 """The command converse-orbits: what it says is what the API finds, and every failure is a line."""
 
 import io
+import math
 import re
 import signal
 import subprocess
@@ -175,17 +176,18 @@ def test_a_potential_in_a_file(run, root, tmp_path):
     assert (mine.name, mine.n, mine.terms) == ("standard, K = 0.9", 1, {(1,): (Fraction(9, 10), 0)})
     status, out, err = run("find", path, "34/55", "1", "1.2", "--at", "K=0.9")
     assert (status, err) == (0, "") and "Potential : standard, K = 0.9\n" in out
-    assert "\nV(x) : s (9/10 cos(2 pi x)), s = 1/(4 pi^2)\n" in out
+    assert "J' = J - eps grad V(y), angles of period 2 pi\n" in out
+    assert "\nV(y) : 9/10 cos(y)\n" in out
     states = orbits.follow(orbits.standard, (34,), 55, [0.9, 1.08])
-    for (action,), state in zip(numbers(out, "Action per point less |p/q|^2/2"), states):
-        assert action == pytest.approx(state.action, abs=1e-11)
+    for (action,), state in zip(numbers(out, "Action per point less |2 pi p/q|^2/2"), states):
+        assert action == pytest.approx(4 * math.pi ** 2 * state.action, abs=1e-11)
     named = tmp_path / "trig.json"                  # another potential, another name
     named.write_text('{"harmonics": [{"k": [1], "amplitude": 1}]}')
-    assert "Potential : trig.json\nV(x) : " in run("find", named, "1/3", "0.1")[1]
+    assert "Potential : trig.json\nV(y) : " in run("find", named, "1/3", "0.1")[1]
     status, out, err = run("find", root / "inputs" / "trig278.in", "5,7/9", "1", "--at", "a=0.1",
                            "--at", "b=1/7", "--at", "c=-0.2")
     assert (status, err) == (0, "") and (
-        "V(x) : s (-1/10 sin(2 pi x0) - 1/7 sin(2 pi x1) + 1/5 sin(2 pi (x0 + x1)))" in out)
+        "V(y) : -1/10 sin(y0) - 1/7 sin(y1) + 1/5 sin(y0 + y1)\n" in out)
     table = tmp_path / "table.csv"
     assert run("sweep", path, table, "0.5", "--at", "K=1", "--random", "2", "--sizes",
                "5:9")[0] == 0
