@@ -280,12 +280,17 @@ def affine(waves: Sequence[tuple], amplitudes: Sequence[Amplitude],
            parameters: Mapping[str, Union[Range, Number]], name: str) -> SymplecticMap:
     """The map of amplitudes as FourierMap takes them.  Those that are ranges or not finite decimals
     are parameters of their own, behind those that are named."""
+    for key in parameters:
+        if not key.isidentifier() or key == CONSTANT:
+            raise ValueError("%.40r is not a name for a parameter; a name is a letter and then "
+                             "letters and digits, and not %r" % (key, CONSTANT))
     ranges = {key: ends_of(key, ends) for key, ends in parameters.items()}
     constants, slopes = [], []
     for j, amplitude in enumerate(amplitudes, 1):
         words = "the amplitude of harmonic %d" % j
         if isinstance(amplitude, Mapping):
-            factors: Dict[str, Number] = dict(amplitude)
+            factors: Dict[str, Number] = {
+                key: exact_of("%s, %.40s" % (words, key), x) for key, x in amplitude.items()}
         else:
             low, high = ends_of(words, amplitude)
             factors, own = {CONSTANT: low}, "amplitude[%d]" % j
@@ -294,10 +299,13 @@ def affine(waves: Sequence[tuple], amplitudes: Sequence[Amplitude],
                 ranges[own] = low, high
         unknown = set(factors) - {CONSTANT, *ranges}
         if unknown:
-            raise ValueError("%s: there is no parameter %.40s; the parameters are %s" % (
+            raise ValueError("%s: there is no parameter %.40r; the parameters are %s" % (
                 words, min(unknown), ", ".join(parameters) or "none"))
         constants.append(factors.pop(CONSTANT, 0))
         slopes.append(factors)
+    unused = set(parameters).difference(*slopes)
+    if unused:
+        raise ValueError("no amplitude depends on the parameter %r; leave it out" % min(unused))
     return SymplecticMap(waves, constants, [[slope.get(key, 0) for slope in slopes]
                                             for key in ranges], list(ranges.values()),
                          list(ranges) if parameters else (), name)
@@ -384,7 +392,8 @@ def _checked(harmonics, amplitude, slopes):
         phase = exact_of("the phase of harmonic %d" % (j + 1), wave[2] if len(wave) == 3 else 0)
         harmonics[j] = (*wave[:2], 1 - (1 - phase) % 2)
         if harmonics[j] in seen:
-            raise ValueError("harmonics %d and %d are the same" % (seen[harmonics[j]], j + 1))
+            raise ValueError("harmonics %d and %d are the same; add up their amplitudes"
+                             % (seen[harmonics[j]], j + 1))
         seen[harmonics[j]] = j + 1
     for name, numbers in [("the amplitude", amplitude)] + [
             ("the slope by parameter %d" % m, slope) for m, slope in enumerate(slopes, 1)]:

@@ -39,7 +39,7 @@ def test_files_are_maps(root):
     (lambda: StandardMap(0.9), "0.9 is not an exact number"),
     (lambda: MuldoonMap(epsilon=0.01), "0.01 is not an exact number"),
     (lambda: MuldoonMap(1, 1, 1, epsilon=1), "or epsilon"),
-    (lambda: FourierMap({1: {"K": 1}}), "no parameter K"),
+    (lambda: FourierMap({1: {"K": 1}}), "no parameter 'K'"),
     (lambda: SymplecticMap([(1, 0)], [1], [[1]], [1], ["a", "b"]), "1 parameters"),
     (lambda: SymplecticMap([(1, 0), (2, 0)], [1, 1], [[1, 0], [0, 1]], names=["a", "a"]),
      "1 different names")])

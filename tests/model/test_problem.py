@@ -92,7 +92,7 @@ def changed(number, line):
     (changed(3, "1 1e-400"), 3, "out of range"), (changed(3, "1 1e9999999999999"), 3, "1e99"),
     (changed(3, "1 1e999999999"), 3, "out of range"), (changed(3, "0e999999999 0"), 3, "range"),
     (changed(3, "1" + "0" * 400 + " 0"), 3, "out of range"),
-    (changed(2, "0." + "3" * 10000 + " 0"), 2, "10002 characters where at most 10000 are possible"),
+    (changed(2, "0." + "3" * 10000 + " 0"), 2, "10002 characters; give at most 10000"),
     (changed(2, "0.3085 -0.00125"), 2, "negative"), (changed(6, "1 -1"), 6, "negative"),
     (changed(5, "1.0"), 5, "1 number where two"), (changed(5, "1 1 1"), 5, "3 numbers where two"),
     (changed(1, "0x10 1"), 1, "0x10"), (changed(1, "1_0 1"), 1, "1_0"),
