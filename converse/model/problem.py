@@ -1,6 +1,6 @@
 """The problem: a map or a family of maps, and the region of successors that is searched."""
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
 from math import gcd
@@ -23,9 +23,12 @@ class InputError(ValueError):
     """The input is not a problem; the text names the file, the line and the remedy."""
 
 
-@dataclass(frozen=True, repr=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Problem:
     """A map, or a family of maps, and where the point x_1 that follows x* is looked for.
+
+    Two problems are equal if their maps, regions and comments are, with the frame and the coordinate
+    that are chosen where none is given.
 
     Parameters
     ----------
@@ -40,15 +43,14 @@ class Problem:
     axes
         The frame, x_1 = frame.(v0, v1), as (f00, f01, f10, f11).  By default, where v0 and v1 are
         all of the torus, the frame is chosen with the region that stands for the torus (region.py);
-        else it is the identity.  Axes that would be chosen in any case become None; `axes_named`
-        tells that axes were given.
+        else it is the identity.  `frame` has it.
     alone
         The coordinate that is examined alone, 0 or 1, or "no"; by default it is chosen.  `factor`
         has it.
     shifts
-        Of each parameter, by how much it moves v0 and v1 at its upper end, in units of pi: the
-        region of t is that of v0 and v1, moved by sum of t[m] shifts[m].  Only the regions of
-        further starting points move (`part`); no input moves, and no proof as a whole.
+        For each parameter, the distances by which it moves v0 and v1 at its upper end, in units of
+        pi: at t the region is that of v0 and v1, moved by sum of t[m] shifts[m].  Only the regions
+        of further starting points move (`part`).
 
     Raises
     ------
@@ -63,7 +65,6 @@ class Problem:
     axes: Optional[Frame] = None
     alone: Union[int, str, None] = None
     shifts: Shifts = ()
-    axes_named: bool = field(default=False, init=False, compare=False)
 
     if TYPE_CHECKING:                   # the arguments; above are the values made of them
         def __init__(self, map: SymplecticMap, v0: Union[Range, Number] = (0, 2),
@@ -116,30 +117,36 @@ class Problem:
         return cls(MuldoonMap(a, b, c, together=together), v0, v1, comments)
 
     def _check_choices(self):
-        """Sees that axes and alone make sense; None where they say what would be chosen anyhow."""
+        """Checks the axes and alone."""
         if self.axes is not None:
             axes = tuple(self.axes)
             if len(axes) != 4 or not all(type(f) is int and abs(f) <= HIGHEST for f in axes) or \
                     axes[0] * axes[3] == axes[1] * axes[2]:
                 raise ValueError("the axes are four integers up to %d whose determinant is not 0, "
                                  "not %r" % (HIGHEST, self.axes))
-            object.__setattr__(self, "axes", None if axes == self._best_frame() else axes)
-            object.__setattr__(self, "axes_named", True)
+            object.__setattr__(self, "axes", axes)
         if self.alone is not None:
             if self.alone not in (0, 1, "no") or isinstance(self.alone, bool):
                 raise ValueError("alone is 0, 1 or 'no', not %r" % (self.alone,))
             if self.alone != "no" and self._best_alone() is None:
                 raise ValueError("no coordinate stands alone: a wave feels both, or all feel one")
-            if self.alone == ("no" if self._best_alone() is None else self._best_alone()):
-                object.__setattr__(self, "alone", None)
 
     def _check_shifts(self):
-        """A pair for each parameter, or none."""
+        """Checks that there is a pair for each parameter, or none."""
         shifts = exact_shifts(self.shifts)
         if self.shifts and len(self.shifts) != len(self.parts):
             raise ValueError("there are shifts by %d parameters for %d"
                              % (len(self.shifts), len(self.parts)))
         object.__setattr__(self, "shifts", shifts)
+
+    def _key(self):
+        return (self.map, self.v0, self.v1, self.comments, self.frame, self.factor, self.shifts)
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Problem) and self._key() == other._key()
+
+    def __hash__(self) -> int:
+        return hash(self._key())
 
     def __repr__(self):
         ranges = ["%s=%s" % (name, range_text(*getattr(self, name))) for name in NAMES[3:]]

@@ -122,7 +122,7 @@ def ready(before: Proof) -> Proof:
     ConverseError: the problem is not for this program; ValueError: not for this method."""
     problem, xstar = before.settings.accept(before.problem), before.xstar
     if before.method == "loewner" and not before.tree and problem.full_torus and \
-            not problem.axes_named:
+            problem.axes is None:
         xstar = xstar or native.chosen_start(Task(problem, before.settings))
         problem = reduced(problem, xstar)
     return before.with_tree(0, problem=problem, xstar=xstar)
