@@ -6,9 +6,9 @@ import math
 import os
 import sys
 import time
-from dataclasses import replace
 
 from ..model.exact import decimal_text, exact
+from ..model.problem import InputError
 from ..prover.report import header, verdict
 from ..prover.settings import AS_PRINTED, METHODS, REGION, THEOREM, UNDECIDED, Settings
 from ..storage import files
@@ -102,21 +102,29 @@ def _leaf_line(leaf, points):
 
 
 class Progress:
-    """What prove() calls: prints the header when the search begins, and then shows in the line how
-    much was done, how fast, and the share of parameters times torus.  No remaining time is shown:
-    estimated from the prisms so far, proofs turned out six times as long, or half as long."""
+    """Prints the header when the search begins, and then shows in the line how much was done, how
+    fast, and the share of parameters times torus.  No remaining time is shown: estimated from the
+    prisms so far, proofs turned out six times as long, or half as long."""
 
-    def __init__(self, options, line, begun):
-        self.options, self.line, self.begun = options, line, begun
+    def __init__(self, options, line):
+        self.options, self.line = options, line
+        self.begun = None                   # the proof as it is before the search
         self.before = 0                     # prisms proved before this run
 
+    def begin(self, proof):
+        """Called by prove() before the search."""
+        if self.options.together and not proof.problem.together:
+            raise ConverseError("%s: is of another run: its parameters do not move together; leave "
+                                "out --together" % self.options.restore)
+        self.begun, self.before = proof, proof.counts.proved
+
     def __call__(self, examined, counts):
+        """Called by prove() as the search goes on."""
         if not self.options.begun:
             self.options.begun = True
             if self.begun.as_printed:
                 tell("--as-printed is a historical reconstruction, not a proof")
             say(header(self.begun))
-            self.before = counts.proved
         self.line(lambda: self._words(examined, counts))
 
     def _words(self, examined, counts):
@@ -127,19 +135,17 @@ class Progress:
             ", %d undecided" % counts.undecided if counts.undecided else "")
 
 
-def _read_problem(options, restored):
-    """The problem of the input; without an input, the problem of the restored proof."""
-    if restored is not None and options.input is None:
-        return restored.problem
+def _read_problem(options):
+    """The problem of the input; None: without an input, that of the restored proof."""
+    if options.restore is not None and options.input is None:
+        return None
     problem = read_problem(options.input)
-    if not problem.by_ranges:
-        if options.together:
-            raise ConverseError("--together is for ranges of a, b and c; name a parameter in the "
-                                "input instead")
+    if not options.together:
         return problem
-    if options.together or restored is not None and restored.problem.together:
-        return problem.tied()
-    return problem
+    if not problem.by_ranges:
+        raise ConverseError("--together is for ranges of a, b and c; name a parameter in the input "
+                            "instead")
+    return problem.tied()
 
 
 def _check_graphics(options):
@@ -152,18 +158,8 @@ def _check_graphics(options):
     plot.check_file(options.graphics, others, plot.PRISM_FORMATS)
 
 
-@contextlib.contextmanager
-def _said_in_a_line():
-    """Meanwhile a ValueError, of arguments that exclude each other, becomes a ConverseError."""
-    try:
-        yield
-    except ValueError as error:
-        raise ConverseError(str(error)) from None
-
-
 def run(options):
-    from ..prover.proof import Proof, Tree  # these need the C core, and say so where it is missing
-    from ..prover.run import prove, ready
+    from ..prover.run import prove  # it needs the C core, and says so where it is missing
 
     if options.graphics == "off":
         options.graphics = None
@@ -174,33 +170,28 @@ def run(options):
     if options.method == "loewner" and options.digits is not None:
         raise ConverseError("-p is of the thesis's arithmetic, and --method loewner works in "
                             "doubles; leave one of them out")
-    with _said_in_a_line():
-        settings = Settings(**given)
     if options.backup is not None:
         files.check_new(options.backup, options.restore)
-    restored = None if options.restore is None else Proof.load(options.restore)
-    if options.together and restored is not None and not restored.problem.together:
-        raise ConverseError("%s: is of another run: its parameters do not move together; leave out "
-                            "--together" % options.restore)
-    problem, xstar = _read_problem(options, restored), options.xstar
-    if restored is None:
-        with _said_in_a_line():
-            begun = ready(Proof((Tree(problem, xstar and tuple(xstar)),), settings))
-        problem, xstar, given["method"] = begun.problem, begun.xstar, settings.method
-    else:
-        begun = ready(restored.with_tree(0, problem=replace(
-            restored.problem, comments=problem.comments)))
 
     def on_leaf(leaf, points):
         say(_leaf_line(leaf, points) + "\n")
 
-    with ProgressLine(not options.verbose) as line, executor_of(options) as executor:
-        progress = Progress(options, line, begun)
-        proof = prove(problem, xstar=xstar, jobs=options.jobs, executor=executor,
-                      backup=options.backup, resume=options.restore, time_limit=options.time_limit,
-                      progress=progress, on_leaf=on_leaf if options.verbose else None, **given)
-        if not options.begun:           # the time limit came before the search
-            progress(0.0, proof.counts)
+    try:
+        method = Settings(**given).method
+        problem = _read_problem(options)
+        with ProgressLine(not options.verbose) as line, executor_of(options) as executor:
+            progress = Progress(options, line)
+            proof = prove(problem, xstar=options.xstar, jobs=options.jobs, executor=executor,
+                          backup=options.backup, resume=options.restore,
+                          time_limit=options.time_limit, on_begin=progress.begin,
+                          progress=progress, on_leaf=on_leaf if options.verbose else None,
+                          **(given if options.restore is not None else {**given, "method": method}))
+            if not options.begun:           # the time limit came before the search
+                progress(0.0, proof.counts)
+    except InputError:
+        raise
+    except ValueError as error:             # arguments exclude each other
+        raise ConverseError(str(error)) from None
     say(verdict(proof, options.backup or options.restore))
     if options.graphics is not None:
         from ..draw import plot

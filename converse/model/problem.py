@@ -27,8 +27,8 @@ class InputError(ValueError):
 class Problem:
     """A map, or a family of maps, and where the point x_1 that follows x* is looked for.
 
-    Two problems are equal if their maps, regions and comments are, with the frame and the coordinate
-    that are chosen where none is given.
+    Two problems are equal if their maps, regions and comments are equal, and the frames and the
+    coordinates that are given or chosen.
 
     Parameters
     ----------

@@ -37,7 +37,7 @@ def prove(source: Union[SymplecticMap, Problem, None] = None, *, method: Optiona
           xstar: Optional[Tuple[Number, Number]] = None,
           jobs: Optional[int] = None, executor: Optional[concurrent.futures.Executor] = None,
           backup: Optional[Path] = None, resume: Union[Proof, Path, None] = None,
-          time_limit: float = math.inf,
+          time_limit: float = math.inf, on_begin: Optional[Callable[[Proof], None]] = None,
           progress: Optional[Callable[[float, Counts], None]] = None,
           on_leaf: Optional[Callable[[tree.Leaf, int], None]] = None) -> Proof:
     """Tries to prove that a map, or a family of maps, has no invariant tori.
@@ -65,6 +65,8 @@ def prove(source: Union[SymplecticMap, Problem, None] = None, *, method: Optiona
         greater. A file is also kept up to date, unless `backup` names another.
     time_limit : float
         Seconds of this run after which, about, the search is left as it is.
+    on_begin : callable, optional
+        on_begin(proof) is called once, with the proof as it is before the search.
     progress : callable, optional
         progress(examined, counts) is called a few times a second.  `examined`, from 0 to 1, is the
         share of parameters and angles in prisms that are proved, skipped or given up.  It never
@@ -109,8 +111,11 @@ def prove(source: Union[SymplecticMap, Problem, None] = None, *, method: Optiona
         if resume is not None:
             proof = resume if isinstance(resume, Proof) else Proof.load(resume)
             before = continued(proof, name, problem, given, star)
+        before = ready(before)
+        if on_begin is not None:
+            on_begin(before)
         try:
-            return _Run(ready(before), backup_file, options).run()
+            return _Run(before, backup_file, options).run()
         except native.WrongTree as error:
             raise ConverseError("%s: %s; use an intact copy or start anew"
                                 % (name, error)) from None
@@ -243,14 +248,15 @@ class _Run:
         looked for before it is known what becomes of it?  That this is so of some prism does not
         depend on when it is seen."""
         counts = self.proof.counts if self.search is None else self.search.counts
-        return counts.max_NTsteps >= LONG and self._may_link() and self.number == 0 and \
-            not self.tried
+        return counts.max_NTsteps >= LONG and self._may_link() and self.number == 0
 
     def _may_link(self):
-        """Once is enough for a tree; and where the core skips mirror images, what they are the
-        images of must be proved, not linked."""
+        """May the tree be linked?  Other points are looked for once, since a second look would try
+        the same points.  Where the core skips mirror images, the originals must be proved, and
+        not linked."""
         problem, settings = self._tree.problem, self.proof.settings
-        return settings.method == "loewner" and not settings.stubborn and \
+        return not (self.tried and self.number == 0) and \
+            settings.method == "loewner" and not settings.stubborn and \
             problem.factor is None and not skips(problem, self._tree.xstar) and \
             not tree.count_linked(self._tree.text)
 

@@ -147,7 +147,7 @@ def test_restore_alone(command, sample, root, tmp_path):
         assert (status, out) == (2, "") and one_line(err)
         assert "of another run" in err and "--together" not in err
     assert "(potential: there " in err           # not its together, which the input cannot name
-    assert command("-r", backup, root / "inputs" / "trig180.in")[0] == 0
+    assert command("-r", backup, root / "inputs" / "trig180.in", "--together")[0] == 0
     assert Proof.load(backup) == whole
 
 
@@ -306,7 +306,7 @@ def test_bad_backups(command, sample, root, tmp_path):
     longer.write_bytes(good.read_bytes() + b"\n")
     edited.write_text(good.read_text().replace("depth: 30", "depth: 31"))
     for path, word in ((truncated, "truncated"), (edited, "damaged"), (sample, "not a proof file"),
-                       (longer, "something follows the end"), (tmp_path, "cannot be read"),
+                       (longer, "something follows the end"), (tmp_path, "is a directory"),
                        (tmp_path / "missing", "cannot be read")):
         status, out, err = command("-r", path, sample)
         assert status == 2 and out == "" and one_line(err)
@@ -436,7 +436,7 @@ def test_json_mistakes_are_one_line(command, tmp_path):
                                      '"\\u001b]0;x\\n"}]}')
     status, out, err = command("--method", "loewner", tmp_path / "a.json")
     assert (status, out) == (2, "") and one_line(err) and "\x1b" not in err
-    assert "a.json, harmonic 1, amplitude: " in err
+    assert "a.json: the amplitude of harmonic 1: " in err
 
 
 def test_a_point_is_chosen(command, sample, tmp_path):
