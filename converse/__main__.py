@@ -2,6 +2,6 @@
 
 import sys
 
-from .commands.prove import main
+from .commands import start_prove
 
-sys.exit(main())
+sys.exit(start_prove())

@@ -5,6 +5,7 @@ import io
 import os
 import random
 import signal
+import subprocess
 import sys
 
 import pytest
@@ -152,3 +153,16 @@ def test_ctrl_c_while_a_full_disk_is_written(tmp_path, monkeypatch):
     with pytest.raises(KeyboardInterrupt), interruptible():
         files.write(tmp_path / "file", b"text")
     assert list(tmp_path.iterdir()) == []
+
+
+EARLY = """
+import importlib, os, signal
+from converse import commands
+importlib.import_module = lambda *_: os.kill(os.getpid(), signal.SIGINT)
+commands.start_prove()
+"""
+
+
+def test_a_signal_while_a_command_is_loaded():
+    done = subprocess.run([sys.executable, "-c", EARLY], capture_output=True)
+    assert (done.returncode, done.stderr) == (-signal.SIGINT, b"")
