@@ -161,7 +161,7 @@ def _cubics(target, within, delta) -> List[Candidate]:
 
 def _value(field) -> float:
     """t."""
-    return float(field.bounds((Fraction(0), Fraction(1), Fraction(0)), 20)[0])
+    return float(field.bounds(field.t, 20)[0])
 
 
 def _bases(field) -> np.ndarray:

@@ -146,6 +146,7 @@ def _prove_torus(options):
 
     from .. import tori
     from ..tori import report
+    from ..tori.proved import processor_time
     from ..tori.torus import family
 
     start = None if options.restore is None else _start(options.restore)
@@ -157,7 +158,7 @@ def _prove_torus(options):
         ("points", options.points),
         ("memory", options.memory and int(options.memory * GIGABYTE)),
         ("jobs", options.jobs)) if value is not None}
-    began = _processor_time()
+    began = processor_time()
     with ProgressLine() as line, numpy.errstate(all="ignore"):
         def progress(words):
             line(lambda: words)
@@ -172,17 +173,12 @@ def _prove_torus(options):
         if options.backup is not None:
             certificate = {"certificate": options.backup, "checksum": proof.save(options.backup)}
     finally:                            # the theorem is told, even if the disk is full
-        say(report.verdict(proof, _processor_time() - began, problem=problem, **certificate))
+        say(report.verdict(proof, processor_time() - began, problem=problem, **certificate))
     options.proved = True
     if options.graphics is not None:
         from ..draw import torus_figure
         torus_figure.draw(proof, options.graphics)
     return 0
-
-
-def _processor_time():
-    """Seconds, those of processes that ended included."""
-    return sum(os.times()[:4])
 
 
 def _by_hand(options):

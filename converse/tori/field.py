@@ -21,13 +21,13 @@ class Field(field.Field):
 
     def __init__(self, polynomial: Polynomial, root: Ends) -> None:
         super().__init__(polynomial, *root)
+        self.t: Element = (Fraction(0), Fraction(1), Fraction(0))[:self.degree]
 
     def element(self, coefficients: Sequence) -> Element:
         """A polynomial in t, given by ascending rational coefficients, as an element."""
-        t = (Fraction(0), Fraction(1), Fraction(0))[:self.degree]
         found = (Fraction(0),) * self.degree
         for c in reversed(coefficients):
-            first, *rest = self.product(found, t)
+            first, *rest = self.product(found, self.t)
             found = (first + c, *rest)
         return found
 
@@ -58,7 +58,8 @@ def determinant(matrix: Sequence[Sequence]) -> Fraction:
 # ---- polynomials
 
 def primitive(polynomial: Sequence[int]) -> Polynomial:
-    """Without a common factor of its coefficients, and with a positive leading one."""
+    """Divides by the coefficients' common factor; the leading coefficient becomes positive."""
+    polynomial = polynomial[:max(j for j, c in enumerate(polynomial) if c) + 1]
     factor = gcd(*polynomial) * (1 if polynomial[-1] > 0 else -1)
     return tuple(c // factor for c in polynomial)
 

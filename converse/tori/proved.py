@@ -37,29 +37,20 @@ class NotProved(ConverseError):
 
 
 @dataclass(frozen=True)
-class Piece:
-    """What the checker verified of one torus: of one potential, or of a piece of a range.  The
-    numbers are rational and on the safe side.
+class Piece(check.Verified):
+    """The facts that the checker verified of one torus, of one potential or of a piece of a range.
+    The numbers are rational and on the safe side.
 
-    residual -- ||E(u)||_rho <= residual; `needed` would have done
+    residual -- ||E(u)||_rho <= residual; the theorem would admit `needed`
     distance -- a bound of |u - u0| at real angles, u0 being the u of the certificate
     rho -- the width of the strip
     constants -- the constants l0, m0, a0, b0 and p0 of the page, as attributes l, m, a, b and p
+    modes, bits -- of the series that the checker computed with
     gamma, basis -- |1 - e^{i k.w}| >= gamma |k|^-n for all k != 0 of the group with this basis,
         the alpha of |k| being made integers by their common denominator
-    modes, bits -- of the series that the checker computed with
     """
 
     torus: Torus
-    residual: Fraction
-    needed: Fraction
-    distance: Fraction
-    rho: Fraction
-    constants: Any
-    modes: int
-    bits: int
-    gamma: Fraction
-    basis: Tuple[Tuple[int, ...], ...]
 
     @property
     def margin(self) -> float:
@@ -236,7 +227,7 @@ def _verified(tori, jobs, tell):
         raise ValueError("the torus does not say in what strip it is to be verified")
     if len({(torus.potential, torus.part, torus.rotation, torus.strip[:2]) for torus in tori}) > 1:
         raise ValueError("the tori are of different potentials, rotation vectors or norms")
-    text, began = certificate.text(tori), _processor_time()
+    text, began = certificate.text(tori), processor_time()
     tell("verifying the torus" if len(tori) == 1 else "verifying %d pieces" % len(tori))
     try:
         claim = check.read_torus(text.encode())
@@ -250,11 +241,11 @@ def _verified(tori, jobs, tell):
     except check.Failure as error:
         raise ConverseError(str(error)) from None
     return ProvedTorus(tuple(
-        Piece(torus, **vars(fact))
+        Piece(**vars(fact), torus=torus)
         for torus, fact in zip(certificate.tori_of(claim), facts)), text,
-        _processor_time() - began)
+        processor_time() - began)
 
 
-def _processor_time():
-    """Seconds, those of processes that ended included."""
+def processor_time() -> float:
+    """CPU seconds of this process and of its children that ended."""
     return sum(os.times()[:4])

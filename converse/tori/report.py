@@ -44,7 +44,7 @@ def _rotation_lines(rotation: Rotation) -> Iterator[Tuple[str, str]]:
     n = rotation.dimension
     yield "Rotation", "%s, t the root of %s near %s" % (
         plain(str(rotation)), polynomial_text(rotation.polynomial),
-        _rounded(rotation, (Fraction(0), Fraction(1), Fraction(0))[:n + 1]))
+        _rounded(rotation, rotation.field.t))
     for name, element in zip(_names("omega", n), rotation.vector):
         yield "", "%s = %s = %s..." % (name, element_text(element), _rounded(rotation, element))
 

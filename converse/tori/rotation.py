@@ -19,7 +19,6 @@ from ..model.exact import Ends, exact
 from .field import Element, Field, Polynomial, determinant, primitive, real_roots
 
 LONGEST = 2000                          # characters of a rotation vector that is given as a text
-DEGREES = {2: "a quadratic", 3: "a cubic"}
 
 
 @dataclass(frozen=True)
@@ -41,25 +40,16 @@ class Rotation:
     vector: Tuple[Element, ...]
 
     def __post_init__(self) -> None:
-        polynomial = tuple(self.polynomial)
-        if not all(type(c) is int for c in polynomial) or not any(polynomial):
-            raise ValueError("a polynomial has integer coefficients that are not all 0, unlike "
-                             "%.80r" % (self.polynomial,))
-        while not polynomial[-1]:
-            polynomial = polynomial[:-1]
-        polynomial = primitive(polynomial)
+        polynomial = _minimal(self.polynomial)
         vector = tuple(tuple(map(exact, element)) for element in self.vector)
         low, high = map(exact, self.root)
         degree = len(polynomial) - 1
-        if degree not in DEGREES or len(vector) != degree - 1:
+        if len(vector) != degree - 1:
             raise ValueError("%d component%s of degree %d: one angle takes a quadratic polynomial "
-                             "and one component, two angles take a cubic one and two"
+                             "and one component, two angles take a cubic one and two components"
                              % (len(vector), "s" * (len(vector) != 1), degree))
         if any(len(element) != degree for element in vector):
             raise ValueError("each component has %d coefficients, of 1, t, ..." % degree)
-        if not is_irreducible(polynomial):
-            raise ValueError("%s is reducible over the rationals: give the irreducible factor that "
-                             "has the root, or another polynomial" % polynomial_text(polynomial))
         if not low < high or roots_between(polynomial, low, high) != 1:
             raise ValueError("between %s and %s the polynomial %s has not one real root"
                              % (low, high, polynomial_text(polynomial)))
@@ -94,16 +84,15 @@ class Rotation:
         return tuple(float(low) for low, _ in self.turns(30))
 
     def text(self) -> str:
-        """What read_rotation reads as this vector: the polynomial, the root unless it is the
-        largest real one, and the components."""
-        roots = real_roots(self.polynomial)
-        near, t = "", self.field.bounds((Fraction(0), Fraction(1)) + (Fraction(0),) *
-                                        (self.dimension - 1), 20)
-        if t[1] <= roots[-1][0]:
-            places = 1
-            while _nearest(self.polynomial, round(t[0], places)) != _index(roots, t):
+        """The text that read_rotation reads as this vector: the polynomial, the root unless it is
+        the largest real one, and the components."""
+        roots, (low, _) = real_roots(self.polynomial), self.field.bounds(self.field.t, 20)
+        index = next(i for i, (_, high) in enumerate(roots) if low < high)
+        near, places = "", 1
+        if index < len(roots) - 1:
+            while _nearest(self.polynomial, roots, round(low, places)) != index:
                 places += 1
-            near = " near %s" % float(round(t[0], places))
+            near = " near %s" % float(round(low, places))
         return "%s%s: %s" % (polynomial_text(self.polynomial), near,
                              ", ".join(map(element_text, self.vector)))
 
@@ -111,8 +100,19 @@ class Rotation:
         return self.name or self.text()
 
 
-def _index(roots, t):
-    return next(i for i, (low, high) in enumerate(roots) if t[0] < high)
+def _minimal(coefficients: Sequence[Union[int, Fraction]]) -> Polynomial:
+    """The polynomial, made primitive.  ValueError: it defines no field of degree 2 or 3."""
+    if not any(coefficients) or any(c != int(c) for c in coefficients):
+        raise ValueError("a polynomial has integer coefficients that are not all 0, unlike %.80s"
+                         % polynomial_text(coefficients))
+    polynomial = primitive([int(c) for c in coefficients])
+    if len(polynomial) not in (3, 4):
+        raise ValueError("%s is of degree %d: one angle takes a quadratic polynomial, two angles "
+                         "take a cubic one" % (polynomial_text(polynomial), len(polynomial) - 1))
+    if not is_irreducible(polynomial):
+        raise ValueError("%s is reducible over the rationals: give the irreducible factor that has "
+                         "the root, or another polynomial" % polynomial_text(polynomial))
+    return polynomial
 
 
 # ---- names
@@ -140,7 +140,8 @@ def read_rotation(text: str, dimension: Optional[int] = None) -> Rotation:
         POLYNOMIAL near 1.2: ...                the real root t that is nearest to 1.2
 
     such as "t^3+t^2-2t-1: (-23+8t+11t^2)/13, (25-7t-8t^2)/13".  Without `near` t is the largest
-    real root.  Elements are made of rational numbers and t by + - * / ^ and parentheses.
+    real root.  An element is a sum of terms such as 3/4 t^2, or a quotient of two sums in
+    parentheses.
 
     ValueError, in one line: it is none, or not of so many angles as `dimension` says.
     """
@@ -164,152 +165,69 @@ def rotation_of(given: Union[Rotation, str]) -> Rotation:
 
 
 def _read(text, name):
+    text = re.sub(r"\s*([-+*/^()t,:])\s*", r"\1", text.strip())
     left, colon, right = text.partition(":")
     if not colon:
         raise ValueError("%.60r is no rotation vector: give a name (%s) or POLYNOMIAL: ELEMENTS, "
                          "such as 't^2+t-1: t'" % (text, ", ".join(NAMES)))
     left, near, place = left.partition("near")
-    coefficients = _parsed(left, None)
-    if not all(c.denominator == 1 for c in coefficients):
-        raise ValueError("%s: a polynomial has integer coefficients" % left.strip())
-    polynomial = tuple(int(c) for c in coefficients)
-    if len(polynomial) - 1 not in DEGREES:
-        raise ValueError("%s is of degree %d: one angle takes a quadratic polynomial, two angles "
-                         "take a cubic one" % (left.strip(), len(polynomial) - 1))
-    if not is_irreducible(polynomial):
-        raise ValueError("%s is reducible over the rationals: give the irreducible factor that has "
-                         "the root, or another polynomial" % left.strip())
-    roots = real_roots(polynomial)
-    if not roots:
-        raise ValueError("%s has no real root" % left.strip())
-    root = roots[_nearest(polynomial, exact(place.strip())) if near else -1]
-    field = Field(polynomial, root)
-    parts = right.split(",")
-    if len(parts) != field.degree - 1:
-        raise ValueError("%s is of degree %d, so give %s, not %d" % (
-            left.strip(), field.degree, ("one component", "two components")[field.degree - 2],
-            len(parts)))
-    return Rotation(name, polynomial, root, tuple(_parsed(part, field) for part in parts))
-
-
-def _nearest(polynomial, place):
-    """The index of the real root that is nearest to a place."""
+    polynomial = _minimal(_sum(left.strip()))
     roots = real_roots(polynomial)
     if not roots:
         raise ValueError("%s has no real root" % polynomial_text(polynomial))
-    digits = 10
-    while digits < 400:
-        ends = []
-        for root in roots:
-            low, high = Field(polynomial, root).bounds(
-                (-place, Fraction(1)) + (Fraction(0),) * (len(polynomial) - 3), digits)
-            ends.append((max(low, -high, 0), max(-low, high)))
-        best = min(range(len(roots)), key=lambda i: ends[i][1])
-        if all(ends[best][1] < low for i, (low, _) in enumerate(ends) if i != best):
-            return best
-        digits *= 4
-    raise ValueError("two real roots of %s are equally near to %s: say which one"
-                     % (polynomial_text(polynomial), place))
+    root = roots[_nearest(polynomial, roots, exact(place.strip())) if near else -1]
+    return Rotation(name, polynomial, root, tuple(
+        _element(part, Field(polynomial, root)) for part in right.split(",")))
+
+
+def _nearest(polynomial, roots, place):
+    """The index of the real root that is nearest to a place."""
+    fields = [Field(polynomial, root) for root in roots]
+    gaps = [abs(field.bounds(field.t, DIGITS)[0] - place) for field in fields]
+    first, *rest = sorted(gaps)
+    if rest and rest[0] - first < Fraction(4, 10 ** DIGITS):
+        raise ValueError("two real roots of %s are equally near to %s: say which one"
+                         % (polynomial_text(polynomial), place))
+    return gaps.index(first)
 
 
 # ---- reading and writing polynomials
 
-TOKEN = re.compile(r"\s*(?:([0-9]+(?:\.[0-9]+)?|\.[0-9]+)|([-+*/^()t]))")
-HIGHEST, DEEPEST = 40, 40               # exponent; parentheses
+DIGITS = 60                             # Distances of roots from a place are compared to these.
+QUOTIENT = re.compile(r"(\()?([^()]*)(?(1)\))(?:/(\()?([^()]*)(?(3)\)))?")
+TERM = re.compile(r"([-+])(?=[\d.t])(\d+/\d+|\d*\.?\d+)?(?:(?:(?<=\d)\*)?(t)(?:\^(\d{1,2}))?)?"
+                  r"(?:/(\d+))?", re.ASCII)
 
 
-def _parsed(text, field):
-    """A polynomial in t as ascending coefficients; an element, if a field is given."""
-    tokens, at = [], 0
-    text = text.strip()
-    while at < len(text):
-        match = TOKEN.match(text, at)
+def _sum(text):
+    """Ascending coefficients of a sum of terms such as 3/4 t^2."""
+    terms = text if text[:1] in ("+", "-") else "+" + text
+    total, at = [Fraction(0)], 0
+    while at < len(terms):
+        match = TERM.match(terms, at)
         if not match:
-            raise ValueError("%.60r: what is %r? A polynomial in t has numbers, t, + - * / ^ and "
-                             "parentheses" % (text, text[at:at + 10].strip()))
-        tokens.append(match.group(1) or match.group(2))
+            raise ValueError("%.60r: what is %r? Give a sum of terms such as 3/4 t^2"
+                             % (text, terms[at:at + 10]))
+        sign, number, power, exponent, below = match.groups()
+        j = int(exponent or 1) if power else 0
+        total += [Fraction(0)] * (j + 1 - len(total))
+        total[j] += exact(sign + (number or "1")) / exact(below or "1")
         at = match.end()
-    if tokens.count("(") > DEEPEST:
-        raise ValueError("a polynomial in t has at most %d parentheses" % DEEPEST)
+    return total
+
+
+def _element(text, field):
+    """The element that is a sum, or a quotient of sums in parentheses."""
+    match = QUOTIENT.fullmatch(text)
+    if not match:
+        raise ValueError("%.60r is no sum of terms, nor a quotient of two sums in parentheses"
+                         % text)
     try:
-        value, rest = _sum(tokens, field)
-        if rest:
-            raise ValueError("%r is left over" % rest[0])
+        found = field.element(_sum(match[2]))
+        return found if match[4] is None else field.product(
+            found, field.inverse(field.element(_sum(match[4]))))
     except ZeroDivisionError:
         raise ValueError("%.60r divides by 0" % text) from None
-    except (ValueError, IndexError) as error:
-        raise ValueError("%.60r is no polynomial in t%s" % (
-            text, ": %s" % error if str(error) and isinstance(error, ValueError)
-            else ": it ends too early")) from None
-    while len(value) > 1 and not value[-1] and not field:
-        value = value[:-1]
-    return field.element(value) if field else tuple(value)
-
-
-def _sum(tokens, field):
-    sign, total = 1, [Fraction(0)]
-    if tokens and tokens[0] in "+-":
-        sign, tokens = (-1 if tokens[0] == "-" else 1), tokens[1:]
-    while True:
-        value, tokens = _product(tokens, field)
-        size = max(len(total), len(value))
-        total = [(total[j] if j < len(total) else 0) + (sign * value[j] if j < len(value) else 0)
-                 for j in range(size)]
-        if not tokens or tokens[0] not in "+-":
-            return total, tokens
-        sign, tokens = (-1 if tokens[0] == "-" else 1), tokens[1:]
-
-
-def _product(tokens, field):
-    value, tokens = _power(tokens, field)
-    while tokens and tokens[0] not in "+-)":
-        divide = tokens[0] == "/"
-        factor, tokens = _power(tokens[1:] if tokens[0] in "*/" else tokens, field)
-        if divide:
-            if field:
-                factor = list(field.inverse(field.element(factor)))
-            elif any(factor[1:]):
-                raise ValueError("a polynomial is divided by numbers only")
-            else:
-                factor = [1 / factor[0]]
-        value = _times(value, factor, field)
-    return value, tokens
-
-
-def _power(tokens, field):
-    first, tokens = tokens[0], tokens[1:]
-    if first == "(":
-        value, tokens = _sum(tokens, field)
-        if tokens[0] != ")":
-            raise ValueError("%r where a parenthesis should close" % tokens[0])
-        tokens = tokens[1:]
-    elif first == "t":
-        value = [Fraction(0), Fraction(1)]
-    elif first in "+-*/^)":
-        raise ValueError("%r where a number or t should be" % first)
-    else:
-        value = [exact(first)]
-    if tokens and tokens[0] == "^":
-        if not tokens[1].isdigit() or int(tokens[1]) > HIGHEST:
-            raise ValueError("an exponent is a whole number up to %d, not %.20s"
-                             % (HIGHEST, tokens[1]))
-        base, tokens, exponent = value, tokens[2:], int(tokens[1])
-        value = [Fraction(1)]
-        for _ in range(exponent):
-            value = _times(value, base, field)
-    return value, tokens
-
-
-def _times(a, b, field):
-    total = [Fraction(0)] * (len(a) + len(b) - 1)
-    for i, x in enumerate(a):
-        for j, y in enumerate(b):
-            total[i + j] += x * y
-    if field:
-        return list(field.element(total))
-    if len(total) > HIGHEST + 1:
-        raise ValueError("its degree is above %d" % HIGHEST)
-    return total
 
 
 def polynomial_text(polynomial: Sequence[Union[int, Fraction]], ascending: bool = False) -> str:
