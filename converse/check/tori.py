@@ -241,26 +241,6 @@ class Torus:
             self.sums[length] += size
             self.slopes[length] += size * width
 
-    @functools.cached_property
-    def error_at_a_point(self):
-        """About |E(u)| at theta = w and s = 1/2, in units of 2^-bits; ||E(u)|| is no less."""
-        bits = self.bits + 32
-        turn_of, fixed = self.turn_by(self.bits), fixed_of(bits)
-        at, error = [0] * self.n, [0] * self.n
-        for k, series in self.modes.items():
-            cos, sin = turn_of(self.norm.place(k))
-            for j, vector in enumerate(series):
-                for i, (re, im) in enumerate(vector):
-                    x = 2 * (re * cos - im * sin) >> self.bits + j
-                    at[i] += x
-                    error[i] += 2 * x * (cos - fixed.one) >> bits
-        for k, phase, middle, part in self.waves:
-            cos, sin = turn_of(self.norm.place(k))
-            s, c = fixed.sincos(sum([x * y for x, y in zip(k, at)]) + fixed.angle(phase))
-            force = math.floor((middle + part / 2) * (cos * c - sin * s >> bits))
-            error = [x - force * y for x, y in zip(error, k)]
-        return math.isqrt(sum([x * x for x in error])) >> 32
-
     def outside(self, powers, limit):
         """The sum of |u_k| sigma^|k| over |k| > limit, in units of 2^-(bits + FINE)."""
         return 2 * sum(map(operator.mul, self.sums[limit + 1:], powers[limit + 1:]))
@@ -655,21 +635,6 @@ def too_large(residual, needed):
     return error
 
 
-def refuse_if_hopeless(torus, rho, constants):
-    """NotConfirmed is raised, if |E(u)| at one point is larger than ||E(u)|| may be with these
-    constants or larger ones.  No proof rests on it."""
-    error = Fraction(torus.error_at_a_point, 1 << torus.bits)
-    # ||e^(i k.x)|| >= 1, which is |e^(i k.x)| at real angles.
-    waves = [(abs(middle) + abs(part), upper_root(sum([x * x for x in k])), 1)
-             for k, _, middle, part in torus.waves]
-    needed, _ = allowed(constants, waves, rho, torus.norm.kappa, torus.divisors)
-    if error > 2 * needed:
-        torus.divisors.look(math.ceil(40 * 2 ** STEPS / rho))
-        needed, _ = allowed(constants, waves, rho, torus.norm.kappa, torus.divisors, STEPS)
-    if error > 2 * needed:
-        raise too_large(error, needed)
-
-
 def refuse_too_many(torus, limit, most):
     """NotConfirmed is raised, if far more modes have |k| <= limit than a torus needs whose norm was
     chosen well."""
@@ -707,14 +672,11 @@ def verify_width(torus, width, tell):
     l0 = rounded_up(1 + torus.derivative_outside(powers, 0))
     if l0 > 1000:
         raise NotConfirmed(FAR)
-    # L and A are 1 in the mean and positive, as they are if the torus is a graph: m, a >= 1.
-    refuse_if_hopeless(torus, rho, Constants(l0, *map(Fraction, (1, 1, 0, 0))))
     whole = find_constants(torus, sigma, powers)
     waves = bounds_of_waves(torus, sigma, rho, powers)
     needed, _ = allowed(whole, waves, rho, norm.kappa, torus.divisors)
     if needed < Fraction(1, 1 << MAX_BITS // 8):
         raise NotConfirmed("the constants are too large")
-    refuse_if_hopeless(torus, rho, whole)
     # What is cut off u changes E by at most so many times its norm.
     factor = 4 + sum([p * k * k * g for p, k, g in waves])
     near, far = torus.extent(powers, needed / 64 / factor * unit)
