@@ -22,6 +22,7 @@ WEIGHTS = 1, 2, 3, 4, 5, 6, 8, 10, 12, 16       # Ratios of alpha that are tried
 EDGE, ROOM = 1.13, 0.9
 SHARE = 0.3                 # s of the theorem
 BOX = {1: 1 << 16, 2: 700}  # Divisors are computed for modes with coordinates up to this.
+OUTER = 4                   # Ratio of lengths among which there are divisors of the usual size.
 NOTABLE = 64.0              # Divisors count where |1 - e^{ik.w}| |k|^n is below this times its min.
 
 Weights = Tuple[int, ...]
@@ -172,14 +173,27 @@ class _Needed:
 
         l, m, a = 1 + norm(self.du), norm(self.m), norm(self.a)
         delta = rho / (4 + 2 * SHARE)
-        k, divisor = self.divisors
-        c = float((np.exp(-delta * (np.array(alpha) @ k)) / divisor).max())
+        c = _loss(*self.divisors, alpha, delta)
         d = float((self.corners / alpha).max()) / (delta * exp(1))
         T = sum(size * exp(min(50, norm(phase) + rho * float(
             _length(self.mesh.frame, alpha, np.array(k))))) for size, k, phase in self.waves)
         G = a * self.h * c ** 2 * l * ((2 * m * l * d if tau > 1 else 0) + d / 2
                                        + T / 2 * a * self.h * c ** 2 * l ** 3)
         return float(2.0 ** (-4 * tau) / G)
+
+
+def _loss(k: np.ndarray, divisor: np.ndarray, alpha: Weights, delta: float) -> float:
+    """About c(delta), from what _divisors gives.  The k that count most have about the length
+    n/delta.  If the box does not hold all of these, they are taken to have the least
+    |1 - e^{ik.w}| |k|^n of the longest k that it holds."""
+    n = len(alpha)
+    length, whole = np.array(alpha) @ k, BOX[n] * min(alpha)
+    seen = float((np.exp(-delta * length) / divisor).max())
+    if n < delta * whole:
+        return seen
+    far = (length > whole / OUTER) & (length <= whole)
+    least = float((divisor[far] * length[far] ** float(n)).min(initial=NOTABLE))
+    return max(seen, (n / (exp(1) * delta)) ** n / least)
 
 
 @lru_cache(maxsize=4)

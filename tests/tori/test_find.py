@@ -8,13 +8,14 @@ import mpmath
 import numpy as np
 import pytest
 
+from converse.check import field
 from converse.model.map import LINE, MuldoonMap, SymplecticMap
 from converse.model.problem import Problem
 from converse.tori import continuation, refinement
 from converse.tori.continuation import Way
 from converse.tori.find import MOST_DEGREE, NotFound, _Pieces, find, series_rate
 from converse.tori.newton import Mesh, default_frame, triangular
-from converse.tori.plan import Plan
+from converse.tori.plan import Plan, _divisors, _loss
 from converse.tori.refinement import Modes, layers_for, numbers_of, pruned, taken
 from converse.tori.rotation import read_rotation
 from converse.tori.torus import Torus, family
@@ -412,3 +413,16 @@ def test_noise_does_not_decay():
     noise = 1e-9 * np.random.default_rng(5).uniform(0.1, 1, 32)
     sizes = noise + np.concatenate([np.exp(-4.0 * np.arange(16)), np.zeros(16)])
     assert series_rate(sizes) == pytest.approx(4, rel=0.1)
+
+
+@pytest.mark.parametrize("name, frame, alpha", [
+    ("golden", ((1,),), (1,)), ("T49", ((1, 1), (1, -1)), (1, 4)),
+    ("V1", ((1, 1), (1, -1)), (1, 6))])
+def test_the_loss_of_narrow_strips_is_about_what_the_checker_finds(name, frame, alpha):
+    """Where the k that count most are beyond those whose divisors are computed, too."""
+    rotation = read_rotation(name)
+    unit = tuple(map(tuple, np.eye(len(alpha), dtype=int).tolist()))
+    exact = field.Divisors(rotation.field, rotation.vector, field.Norm(frame, alpha, unit))
+    for delta in 1e-2, 1e-3, 1e-5, 1e-7:
+        found = _loss(*_divisors(unit, rotation, frame), alpha, delta)
+        assert 0.4 < found / float(exact.loss(Fraction(delta))) < 1.01
