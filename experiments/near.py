@@ -22,6 +22,7 @@ import numpy as np
 
 from converse.commands.common import Parser, ended
 from converse.model.exact import Number, exact, short_text
+from converse.orbits import farey
 from converse.storage.files import ConverseError
 from converse.tori.field import Element, Field, real_roots
 from converse.tori.rotation import Rotation
@@ -186,25 +187,14 @@ def _triangles(target, within) -> Iterator[Triangle]:
     """The Farey triangles that hold the target, each half of the one before (Kim and Ostlund),
     until they lie within the tolerance or have large denominators."""
     base = tuple(floor(w) for w in target)
-    point = (Fraction(1), *target)
-    a, b, c = ((1, base[0] + x, base[1] + y) for x, y in
-               (((1, 0), (1, 1), (0, 1)) if sum(target) - sum(base) >= 1
-                else ((1, 0), (0, 0), (0, 1))))
-    while max(a[0], b[0], c[0]) ** 3 * within ** 2 < LARGEST ** 3:
-        yield a, b, c
-        if all(abs(Fraction(p, q) - w) <= within
-               for q, *ps in (a, b, c) for p, w in zip(ps, target)):
+    for cell, _ in farey.triangles(*(w - b for w, b in zip(target, base))):
+        corners = tuple((q, p0 + base[0] * q, p1 + base[1] * q) for p0, p1, q in cell)
+        if max(q for q, *_ in corners) ** 3 * within ** 2 >= LARGEST ** 3:
             return
-        middle = a[0] + c[0], a[1] + c[1], a[2] + c[2]
-        if _determinant(b, middle, point) * _determinant(b, middle, c) >= 0:
-            a, b, c = c, middle, b
-        else:
-            a, b, c = b, middle, a
-
-
-def _determinant(a, b, c):
-    return (a[0] * (b[1] * c[2] - b[2] * c[1]) - a[1] * (b[0] * c[2] - b[2] * c[0])
-            + a[2] * (b[0] * c[1] - b[1] * c[0]))
+        yield corners
+        if all(abs(Fraction(p, q) - w) <= within
+               for q, *ps in corners for p, w in zip(ps, target)):
+            return
 
 
 def _scores(values, corners, delta) -> np.ndarray:

@@ -63,15 +63,22 @@ def triangle(w):
     w0, w1 = exact(w0), exact(w1)
     if not (0 <= w0 <= 1 and 0 <= w1 <= 1) or {w0, w1} <= {0, 1}:
         raise ValueError("(%s, %s): is not in the unit square, or is one of its corners" % (w0, w1))
-    point = (w0, w1, 1)
-    cell, address = UPPER if w0 + w1 >= 1 else LOWER, ""
-    while True:
-        a, b, c = cell
-        p0, p1, q = middle = _sum(a, c)
+    for (a, _, c), address in triangles(w0, w1):
+        p0, p1, q = _sum(a, c)
         yield Mediant((p0, p1), q, address)
         if (p0, p1) == (w0 * q, w1 * q):
             return
-        side = determinant(b, middle, point) * determinant(b, middle, c)
+
+
+def triangles(w0, w1):
+    """The Farey triangles that contain a vector of the unit square, each a half of the one before,
+    without end: (corners, address)."""
+    cell, address = UPPER if w0 + w1 >= 1 else LOWER, ""
+    while True:
+        yield cell, address
+        a, b, c = cell
+        middle = _sum(a, c)
+        side = determinant(b, middle, (w0, w1, 1)) * determinant(b, middle, c)
         cell = halves(cell)[side >= 0]
         address += "lr"[side >= 0]
 
