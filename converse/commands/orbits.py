@@ -273,12 +273,11 @@ def _start(options, potential, straight, eps):
     if options.search is not None:
         raise ConverseError("--search begins anew at each eps; leave out --from")
     from ..orbits.points import load
-    from ..orbits.report import type_text
 
     family = load(options.start, potential)
     if (family[0].p, family[0].q) != (straight.p, straight.q):
         raise ConverseError("%s: its states are of type %s, not %s" % (
-            options.start, type_text(family[0]), type_text(straight)))
+            options.start, family[0].type_text, straight.type_text))
     return min(family, key=lambda state: abs(state.eps - eps))
 
 

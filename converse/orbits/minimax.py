@@ -27,7 +27,7 @@ from .limits import (EIGENVALUE_ROUNDING, HELD_STEPS, LEAVING_SHARE, MAX_HELD, M
 from .potential import address, done
 from .proved import balls
 from .solver import newton
-from .state import PeriodicOrbit, descended, expected
+from .state import PeriodicOrbit, descended, expected, vector_words
 
 if TYPE_CHECKING:
     from .proved_pair import ProvedPair
@@ -60,9 +60,10 @@ class Pair:
                              "type, and the step to a neighbour")
 
     def __repr__(self):
-        return "<Pair of %s, type (%s)/%d, eps %r, step (%s)/%d, barrier %.10g>" % (
-            self.minimum.potential.name, ", ".join(map(str, self.minimum.p)), self.minimum.q,
-            self.minimum.eps, ", ".join(map(str, self.step)), self.minimum.q, self.barrier)
+        low = self.minimum
+        return "<Pair of %s, type %s, eps %r, step %s, barrier %.10g>" % (
+            low.potential.name, low.type_text, low.eps, vector_words(self.step, low.q),
+            self.barrier)
 
     @property
     def barrier(self) -> float:
@@ -132,8 +133,8 @@ def difference(low, high):
 def minimax(state, step=0):
     """See PeriodicOrbit.minimax."""
     if math.gcd(*state.p, state.q) > 1:
-        raise ValueError("the type (%s)/%d is not in lowest terms: take the state of the shorter "
-                         "type" % (", ".join(map(str, state.p)), state.q))
+        raise ValueError("the type %s is not in lowest terms: take the state of the shorter type"
+                         % state.type_text)
     if state.eps == 0:
         raise ConverseError("at eps 0 all states of a type have the same action: there is no "
                             "minimum and no pass")

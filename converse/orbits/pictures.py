@@ -8,7 +8,7 @@ import numpy as np
 from ..draw import plot
 from ..draw.plot import BLUE, DARK, VERMILLION
 from .limits import MAX_PIVOTS
-from .proved import ProvedOrbit, distances, vector_words
+from .proved import ProvedOrbit, distances
 from .state import PeriodicOrbit
 
 FEW = 300                               # points that are drawn larger
@@ -171,7 +171,7 @@ def rows(page, shown, more=None):
     for number, (panels, one) in enumerate(zip(grid, shown)):
         state = one.state
         letter = "abcdefghijklmnopqrstuvwxyz"[number % 26] * (1 + number // 26)
-        lines = ["ε = %r, %s: %s" % (state.eps, vector_words(state.p, state.q), one.kind),
+        lines = ["ε = %r, %s: %s" % (state.eps, state.type_text, one.kind),
                  "%s; %s" % (exponents_words(state), quality(state))]
         if state.potential.n == 1:
             plane(panels[0], state)
@@ -236,7 +236,7 @@ def family_plot(family, column, ax=None):
         ax = page.subplots()
         _against_eps(ax, family, column, values, minima)
         first = family[0]
-        ax.set_title("%s, %s" % (first.potential.name, vector_words(first.p, first.q)))
+        ax.set_title("%s, %s" % (first.potential.name, first.type_text))
         if ax.get_legend_handles_labels()[1]:
             ax.legend()
 

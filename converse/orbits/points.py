@@ -8,13 +8,12 @@ import io
 import os
 import zipfile
 import zlib
-from typing import Optional, Union
 
 import numpy as np
 
 from ..storage import files
 from ..storage.files import ConverseError
-from .potential import STUDIED, Source, known
+from .potential import STUDIED, known
 from .solver import Family
 from .state import PeriodicOrbit
 
@@ -41,22 +40,8 @@ def encoded(states):
     return data.getvalue()
 
 
-def load(path: Union[str, "os.PathLike[str]"], potential: Optional[Source] = None) -> Family:
-    """Reads the Family of states that PeriodicOrbit.save, Family.save or converse-orbits find
-    --points wrote, to the last bit.
-
-    Parameters
-    ----------
-    path
-        The file.
-    potential
-        That of the states, unless it is one with a name here (trig, standard, ...).
-
-    Raises
-    ------
-    ConverseError
-        The file cannot be read, is not such a file, or names another potential.
-    """
+def load(path, potential=None):
+    """See Family.load."""
     if potential is not None:
         potential = known(potential)
     path = os.fspath(path)

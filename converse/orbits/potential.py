@@ -27,6 +27,9 @@ from .limits import COMPARED_POINTS, DIFFERENCE_STEP, MAX_DISAGREEMENT
 Source = Union[SymplecticMap, "Potential"]
 Numerators = Union[int, Sequence[int]]      # the p of a type (p, q)
 
+TURN = 2 * math.pi
+# The scales of Fourier sums, as formulas name them.
+PER_PERIOD, TRIG = "1/(4 pi^2)", "8 sqrt 2/sqrt(207 + 33 sqrt 33)"
 STUDIED = {}                # by name, the potentials at the end of this file
 
 
@@ -43,7 +46,7 @@ def known(source: Any) -> "Potential":
 
 @lru_cache(maxsize=64)
 def _of_map(source, name):
-    return Fourier._scaled(source.potential(), name + ".json" * (name in STUDIED), None, PER_PERIOD,
+    return Fourier.of(source.potential(), name + ".json" * (name in STUDIED), None, PER_PERIOD,
                            TURN)
 
 
@@ -204,16 +207,13 @@ class Fourier(Potential):
 
     @classmethod
     def of(cls, source: FourierSum, name: str = "fourier",
-           start: Optional[Tuple[float, ...]] = None) -> "Fourier":
+           start: Optional[Tuple[float, ...]] = None, scale: str = PER_PERIOD,
+           period: float = 1.0) -> "Fourier":
         """From waves, amplitudes and phases, in the units of input files, where angles have period
         2 pi: with eps 1, y = 2 pi x and J = 2 pi p the map is that of proofs
         (converse/model/potential.py)."""
         if not isinstance(source, FourierSum):
             raise ValueError("Fourier.of takes a FourierSum, not %.200r" % (source,))
-        return cls._scaled(source, name, start, PER_PERIOD)
-
-    @classmethod
-    def _scaled(cls, source, name, start, scale, period=1.0):
         made = cls.__new__(cls)
         made._set_up(source, name, start, scale, period)
         return made
@@ -240,7 +240,7 @@ class Fourier(Potential):
     def __reduce__(self):
         if STUDIED.get(self.name) is self:
             return super().__reduce__()
-        return Fourier._scaled, (self.sum, self.name, self.start, self._scale, self.period)
+        return Fourier.of, (self.sum, self.name, self.start, self._scale, self.period)
 
     def _key(self) -> tuple:
         return (*super()._key(), self.sum, self._scale, self.period)
@@ -464,10 +464,7 @@ def _trig_scale(digits):
             root_bounds(128 / (207 + 33 * low), digits + 5)[1])
 
 
-TURN = 2 * math.pi
-
-# The scales of Fourier sums as formulas name them, and their bounds to 10^-digits.
-PER_PERIOD, TRIG = "1/(4 pi^2)", "8 sqrt 2/sqrt(207 + 33 sqrt 33)"
+# The bounds of scales to 10^-digits.
 SCALES: Dict[str, Callable[[int], Ends]] = {
     "1": lambda digits: (Fraction(1), Fraction(1)), PER_PERIOD: per_period, TRIG: _trig_scale}
 
@@ -490,7 +487,7 @@ _POLY_BOUNDS = (4096 * (3 / 8 / 16 + 0.022 * 0.1925),
 # The thesis's three, the real Froeschle map, and the standard map, whose eps is its parameter k.
 # Their names are theirs alone.
 # V = 1 at the start of trig, 1/4 at poly's, 27/49 at ff's, 9/16 at froeschle's.
-trig = Fourier._scaled(from_terms({(1, 0): (0, -_HALF), (0, 1): (0, -_HALF), (1, 1): (0, -1)}),
+trig = Fourier.of(from_terms({(1, 0): (0, -_HALF), (0, 1): (0, -_HALF), (1, 1): (0, -1)}),
                        "trig", (0.8510422, 0.8510422), TRIG)
 poly = Potential(lib.CV_POLY, "poly", 2, ((2 - math.sqrt(2)) / 4, 0.5),
                  "-4096 a^2 (a - 3/16) b^2, a = 1/4 - (x0 mod 1 - 1/2)^2, "

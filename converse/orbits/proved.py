@@ -64,7 +64,7 @@ class ProvedOrbit:
 
     def __repr__(self):
         return "<ProvedOrbit %s, %s, eps %r, radius %s>" % (
-            self.state.potential.name, _type(self.state), self.state.eps, distances(self)[0])
+            self.state.potential.name, self.state.type_text, self.state.eps, distances(self)[0])
 
     @cached_property
     def points(self) -> Tuple[Tuple[Fraction, ...], ...]:
@@ -118,7 +118,7 @@ class ProvedOrbit:
             "with the potential %s," % state.potential.name,
             "V(%s) = %s," % (state.potential.letters[0], state.potential.formula),
             "and eps = %s has exactly one orbit of type %s within %s of the points computed"
-            % (_eps(state), _type(state), within),
+            % (_eps(state), state.type_text, within),
             "(Euclidean norm of all coordinates together), which are within %s of those given "
             "(each coordinate)." % moved,
             "It is hyperbolic and, run through any number of times, a nondegenerate local minimum "
@@ -362,12 +362,3 @@ def action_words(potential):
 def _eps(state):
     """eps as the exact decimal that it stands for."""
     return str(Decimal(repr(state.eps)))
-
-
-def _type(state):
-    return vector_words(state.p, state.q)
-
-
-def vector_words(p, q):
-    """As the thesis writes it, (1432, 1897)/2513; of one angle 8/21."""
-    return ("(%s)/%d" if len(p) > 1 else "%s/%d") % (", ".join(map(str, p)), q)

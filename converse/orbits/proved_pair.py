@@ -22,7 +22,7 @@ from .limits import (DEFAULT_DIGITS, GUARD_PLACES, MAX_MORE_PLACES, MAX_PLACES, 
                      SHOWN_PLACES)
 from .minimax import Pair, gap_of
 from .potential import address, told, whole
-from .proved import NotProved, ProvedOrbit, _eps, _type, distance_words, in_units, prove
+from .proved import NotProved, ProvedOrbit, _eps, distance_words, in_units, prove
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -54,7 +54,7 @@ class ProvedPair:
 
     def __repr__(self):
         return "<ProvedPair %s, %s, eps %r, barrier %r>" % (
-            self.pair.minimum.potential.name, _type(self.pair.minimum), self.pair.minimum.eps,
+            self.pair.minimum.potential.name, self.pair.minimum.type_text, self.pair.minimum.eps,
             self.barrier)
 
     @property
@@ -68,7 +68,7 @@ class ProvedPair:
         state = self.pair.minimax
         lines = [
             "THEOREM, proved with %d decimal places: the same map has exactly one orbit of type %s "
-            "within %s of the points" % (self.digits, _type(state),
+            "within %s of the points" % (self.digits, state.type_text,
                                       distance_words(state.potential, self.radius)),
             "computed of the pass (Euclidean norm of all coordinates together).  The second "
             "variation of its action, run",

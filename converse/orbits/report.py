@@ -3,7 +3,8 @@
 import math
 
 from .pictures import exponent_text
-from .proved import action_words, map_words, vector_words
+from .proved import action_words, map_words
+from .state import vector_words
 
 LARGE = 1e10                            # Stability indices above it are given by their logarithm.
 MEANINGS = {                            # of labels
@@ -15,10 +16,6 @@ MEANINGS = {                            # of labels
 }
 
 
-def type_text(state):
-    return ("(%s)/%d" if len(state.p) > 1 else "%s/%d") % (", ".join(map(str, state.p)), state.q)
-
-
 def header(state):
     """The lines that are the same for all states of a report."""
     potential = state.potential
@@ -26,7 +23,7 @@ def header(state):
             "Potential : %s\nV(%s) : %s\n"
             "Type : %s, rotation vector %s\n" % (
                 map_words(potential), "1" if potential.period == 1 else "2 pi", potential.name,
-                potential.letters[0], potential.formula, type_text(state),
+                potential.letters[0], potential.formula, state.type_text,
                 _numbers(state.rotation)))
 
 

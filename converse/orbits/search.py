@@ -78,8 +78,8 @@ def search(potential: Source, p: Numerators, q: int, eps: float = 1.0, searches:
     of_type = _TypeSearch(guess, searches, time.monotonic() + seconds, rng, {}, progress)
     of_type.run()
     if of_type.best is None:
-        raise ConverseError("no orbit of type (%s)/%d found at eps %r: none of %d searches ended"
-                            % (", ".join(map(str, guess.p)), guess.q, eps, of_type.begun))
+        raise ConverseError("no orbit of type %s found at eps %r: none of %d searches ended"
+                            % (guess.type_text, eps, of_type.begun))
     return replace(of_type.best, searches=of_type.ended)
 
 

@@ -111,8 +111,18 @@ class Family:
         """Reads the states that PeriodicOrbit.save, Family.save or converse-orbits find --points
         wrote, to the last bit.
 
-        potential -- that of the states, unless it is one with a name here (trig, standard, ...)
-        ConverseError: the file cannot be read, is not such a file, or names another potential."""
+        Parameters
+        ----------
+        path
+            The file.
+        potential
+            That of the states, unless it is one with a name here (trig, standard, ...).
+
+        Raises
+        ------
+        ConverseError
+            The file cannot be read, is not such a file, or names another potential.
+        """
         from .points import load
         return load(path, potential)
 
@@ -194,8 +204,8 @@ def follow(potential: Source, p: Numerators, q: int, eps: Union[float, Sequence[
     if start is not None:
         expected(start)
         if (start.p, start.q) != (state.p, state.q) or start.potential != potential:
-            raise ValueError("the start is %r, and no state of the potential %s and type (%s)/%d"
-                             % (start, potential.name, ", ".join(map(str, state.p)), state.q))
+            raise ValueError("the start is %r, and no state of the potential %s and type %s"
+                             % (start, potential.name, state.type_text))
         state = start
     states: List[PeriodicOrbit] = []
     targets, longest = reached(potential, eps, state.eps), step_of(potential)

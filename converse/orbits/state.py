@@ -136,6 +136,11 @@ def type_of(potential, p, q):
     return numbers, int(q)
 
 
+def vector_words(p, q):
+    """As the thesis writes it, (1432, 1897)/2513; of one angle 8/21."""
+    return ("(%s)/%d" if len(p) > 1 else "%s/%d") % (", ".join(map(str, p)), q)
+
+
 @dataclass(frozen=True, eq=False)
 class PeriodicOrbit:
     """A state of type (p, q): q points x_j = origin + (j p mod q)/q + u_j, continued by
@@ -192,8 +197,13 @@ class PeriodicOrbit:
                                self.searches)
 
     def __repr__(self) -> str:
-        return "<PeriodicOrbit %s, type (%s)/%d, eps %r, %s>" % (
-            self.potential.name, ", ".join(map(str, self.p)), self.q, self.eps, self.label)
+        return "<PeriodicOrbit %s, type %s, eps %r, %s>" % (
+            self.potential.name, self.type_text, self.eps, self.label)
+
+    @property
+    def type_text(self) -> str:
+        """The type in words, "(5, 7)/9" or "8/21"."""
+        return vector_words(self.p, self.q)
 
     # ---- points
 
@@ -487,8 +497,8 @@ class PeriodicOrbit:
         code, how, u = descended(self, eps, tol, whole("max_steps", max_steps, 0))
         if code != lib.CV_OK:
             raise ConverseError(
-                "no orbit of type (%s)/%d found at eps %r: the gradient is still %.1e after %d "
-                "steps" % (", ".join(map(str, self.p)), self.q, eps, how.largest, how.steps))
+                "no orbit of type %s found at eps %r: the gradient is still %.1e after %d steps"
+                % (self.type_text, eps, how.largest, how.steps))
         return replace(self, eps=eps, u=u, searches=0)
 
 

@@ -241,28 +241,25 @@ def _sweep(task, columns, potential, vectors, eps, executor, file, progress):
     except TypeError:
         raise ValueError("the rotation vectors are a list of pairs (p, q), not %r"
                          % (vectors,)) from None
-    texts = [_text([columns])]
-    with interruptible():
-        if file is None:
-            return _table("".join(_grown(task, vectors, executor, texts, [], progress)))
-        files.check_writable(file, regular=True)
-        with files.Lock(file):
+    texts, tell = [_text([columns])], progress or (lambda *_: None)
+    with contextlib.ExitStack() as closed:
+        closed.enter_context(interruptible())
+        out = None
+        if file is not None:
+            files.check_writable(file, regular=True)
+            closed.enter_context(files.Lock(file))
             texts += _finished(file, texts[0], potential, vectors, eps)
-            with contextlib.closing(files.AppendedFile(file, "".join(texts))) as out:
-                return _table("".join(_grown(task, vectors, executor, texts, out, progress)))
-
-
-def _grown(task, vectors, executor, texts, out, progress):
-    """The texts of the header and of all vectors, given the first of them; the others are appended
-    to out as well."""
-    tell = progress or (lambda *_: None)
-    tell(len(texts) - 1, len(vectors))
-    with contextlib.closing(_in_order(task, vectors[len(texts) - 1:], executor)) as results:
+            out = closed.enter_context(
+                contextlib.closing(files.AppendedFile(file, "".join(texts))))
+        tell(len(texts) - 1, len(vectors))
+        results = closed.enter_context(
+            contextlib.closing(_in_order(task, vectors[len(texts) - 1:], executor)))
         for text in results:
             texts.append(text)
-            out.append(texts[-1])
+            if out is not None:
+                out.append(text)
             tell(len(texts) - 1, len(vectors))
-    return texts
+        return _table("".join(texts))
 
 
 def _vector(potential, vector):

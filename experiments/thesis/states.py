@@ -4,8 +4,9 @@ import numpy as np
 
 from converse.draw.plot import BLUE, DARK, GREY, VERMILLION
 from converse.orbits import pictures
-from converse.orbits.pictures import LOST, Shown, vector_words
+from converse.orbits.pictures import LOST, Shown
 from converse.orbits.potential import ff, poly, trig
+from converse.orbits.state import vector_words
 
 from . import shared
 from .filaments import clumps, filaments

@@ -3,8 +3,9 @@
 import numpy as np
 
 from converse.draw.plot import BLUE, DARK, VERMILLION
-from converse.orbits.pictures import exponents_words, kind, quality, vector_words
+from converse.orbits.pictures import exponents_words, kind, quality
 from converse.orbits.potential import standard
+from converse.orbits.state import vector_words
 
 KICKS = 0.5, 0.97, 2.0                  # k; the thesis: small, the middle, more than 4/3
 ON_CYLINDER = 0.38, 0.62                # momenta at x = 0 of the orbits on the cylinder

@@ -25,6 +25,7 @@ from matplotlib.text import Text  # noqa: E402
 from thesis import appendix, hedlund, shared, states, twist_maps  # noqa: E402
 
 from converse.orbits import pictures  # noqa: E402
+from converse.orbits.state import vector_words  # noqa: E402
 
 REAL = states.ORBITS
 SPIRAL, TENTH = ((28, 37), 49), ((11, 68), 110)
@@ -221,7 +222,7 @@ def test_exponents(drawn, families):
         family = families.resolved(potential, vector)
         count += len(family)
         assert left.get_title() == "%s, %s" % (shared.NAMES[potential.name],
-                                               pictures.vector_words(*vector))
+                                               vector_words(*vector))
         assert right.get_yscale() == "log" and right.get_xlim()[1] < left.get_xlim()[1]
         said = re.fullmatch(r"above 1/q from ε = (\S+) and (\S+) on", right.get_title())
         for k, name in enumerate(("first", "second")):
@@ -298,7 +299,7 @@ def test_deviations(drawn, families):
                 assert line.get_ydata() == pytest.approx(
                     [getattr(state.deviation, means) for state in family])
         leaps += hedlund.jumps(family)                  # of ff, the last
-        assert panel.get_title() == pictures.vector_words(*vector)
+        assert panel.get_title() == vector_words(*vector)
         assert panel.get_lines()[-1].get_ydata()[0] == pytest.approx(math.sqrt(0.5))
     for number in (max(state.deviation.from_start for state in found),
                    max(state.deviation.from_point for state in found),
@@ -337,7 +338,7 @@ def test_sequence(drawn, families):
     for number, q in enumerate(hedlund.SEQUENCE):
         left, right = figure.axes[2 * number:2 * number + 2]
         state = families.at(orbits.poly, (mediants[q], q), 0.02)
-        assert pictures.vector_words(mediants[q], q) in title(left) and state.label in title(left)
+        assert vector_words(mediants[q], q) in title(left) and state.label in title(left)
         assert np.array_equal(data(left), state.x) and np.array_equal(data(right), state.momenta)
     assert len(figure.axes) == 8 and len({panel.get_xlim() for panel in figure.axes[1::2]}) == 1
     assert "ε = 0.02" in words and "chosen here" in words
