@@ -176,7 +176,7 @@ class Portrait:
         of = "phase space" if self.strip else "the successors in them, on average"
         lines = ["THEOREM, for the proved prisms", *map_lines(self.problem),
                  *ended([*indented(["has no rotational invariant circle through the points "
-                                    "(y, y' - y) of these prisms that lie in no undecided prism,",
+                                    "(y, y' - y) of these prisms that lie in no undecided prism",
                                     *conditions(self.problem)])]), ""]
         lines += ["Columns : %d of %d%s%s" % (
             len(self.found), len(self.stars), "" if self.even is None else
