@@ -67,7 +67,6 @@ SUCCESSOR = ("4.9578", "0.0982"), ("0.003", "0.006")
 POINTS = (2, 3, 4)                      # of the orbit, x* being number 0
 SAMPLES = 2000
 
-HEIGHTS = {"wall": 5.4}                 # of a chart with two parts, in inches
 COLOURS = {"1989": DARK, "thesis": BLUE, "loewner": ORANGE}
 SMALL = {"textcoords": "offset points", "fontsize": 8, "color": "0.3"}
 
@@ -291,21 +290,18 @@ def draw_width(figure, rows):
 
 
 def draw_wall(figure, rows):
-    upper, lower = figure.subplots(2, 1, sharex=True, gridspec_kw={"hspace": 0.08})
-    for axes, column, what in ((upper, 2, "prisms proved"), (lower, 3, "deepest cut")):
-        for name, marker, label in (("thesis", "s", "the thesis's method, 20 digits"),
-                                    ("loewner", "o", "method loewner")):
-            good, bad = ([(float(row[1]), row[column]) for row in rows
-                          if row[0] == name and row[4] == word] for word in ("yes", "no"))
-            axes.plot([x for x, _ in good], [y for _, y in good], marker + "-",
-                      color=COLOURS[name], label=label)
-            axes.plot([x for x, _ in bad], [y for _, y in bad], marker, color=COLOURS[name],
-                      markerfacecolor="white")
-        axes.set_ylabel(what)
-    upper.set(yscale="log", title="Where the methods fail")
-    lower.set(ylim=(-2, None),
-              xlabel="ε, a single value (a = b = c/2)")
-    upper.legend(loc="upper center", bbox_to_anchor=(0.55, 1))
+    axes = figure.subplots()
+    for name, marker, label in (("thesis", "s", "the thesis's method, 20 digits"),
+                                ("loewner", "o", "the sharper method")):
+        good, bad = ([(float(row[1]), row[2]) for row in rows
+                      if row[0] == name and row[4] == word] for word in ("yes", "no"))
+        axes.plot([x for x, _ in good], [y for _, y in good], marker + "-",
+                  color=COLOURS[name], label=label)
+        axes.plot([x for x, _ in bad], [y for _, y in bad], marker, color=COLOURS[name],
+                  markerfacecolor="white")
+    axes.set(yscale="log", title="Where the methods fail", ylabel="prisms proved",
+             xlabel="ε, a single value (a = b = c/2)")
+    axes.legend(loc="upper center", bbox_to_anchor=(0.55, 1))
     return "on all cores" + (
         "; open: given up, or not finished in %g seconds; the prisms proved until then"
         % WALL_SECONDS
@@ -335,7 +331,7 @@ def chart(name, rows, kind, caption=True):
     from matplotlib import style
     from matplotlib.figure import Figure
 
-    height = HEIGHTS.get(name, 4.3)
+    height = 4.3                        # inches
     with style.context(["default", plot.CHART]):
         figure = Figure(figsize=(7.2, height))
         words = CHARTS[name][2](figure, rows) + "\n" + machine().replace("$", "")

@@ -1,13 +1,14 @@
 """Speed against accuracy of the three ways to find an orbit (thesis, Appendix A).
 
-    python experiments/finders.py [DIRECTORY]
+    python experiments/finders.py [--draw] [DIRECTORY]
 
 trig, (1432, 1897)/2513, from the minimum at 0.96 eps: gradient flow, Newton's method as it is, and
 damped.  Each is told to stop at ever smaller gradients; the time, the shadow there, and the
 distance to the proved orbit that damped Newton leads to from there.  Writes orbit-finders.svg and
-.csv into DIRECTORY (build).  A minute.
+.csv into DIRECTORY (build).  A minute.  The picture shows the first eps.
 """
 
+import argparse
 import csv
 import os
 import sys
@@ -22,6 +23,7 @@ from converse.orbits.solver import newton
 
 TYPE = (1432, 1897), 2513
 EPS = 0.0125, 0.02
+DRAWN = EPS[0]
 GUESS = 0.96                # of eps
 TOLERANCES = [10.0 ** -k for k in range(3, 14)]
 FLOW_SECONDS = 10.0
@@ -102,39 +104,45 @@ def draw(rows):
     from matplotlib import style
     from matplotlib.figure import Figure
 
-    with style.context(["default", plot.STYLE]):
-        figure = Figure(figsize=(8, 4.2))
-        for axes, eps in zip(figure.subplots(1, 2, sharey=True), EPS):
-            for name, (marker, colour) in STYLES.items():
-                mine = [row for row in rows if row[:2] == (eps, name)]
-                seconds, shadow, far = ([row[k] for row in mine] for k in (3, 4, 5))
-                axes.plot(seconds, far, marker + "-", color=colour, markersize=4, linewidth=0.9,
-                          label=name)
-                axes.plot(seconds, shadow, marker + ":", color=colour, markersize=4, linewidth=0.9,
-                          markerfacecolor="white")
-            axes.set(xscale="log", yscale="log", ylim=(1e-17, 30), xlabel="time (seconds)",
-                     title="ε = %g" % eps)
-            axes.grid(color="0.93", linewidth=0.6)
-            if any(row[1] == "Newton" and row[5] > 1 for row in rows if row[0] == eps):
-                axes.text(0.45, 0.93, "Newton's method diverges", color="0.35",
-                          transform=axes.transAxes)
-        figure.axes[0].set_ylabel("filled: distance to the proved orbit\nopen: shadow")
-        figure.legend(*figure.axes[0].get_legend_handles_labels(), loc="upper center", ncol=3)
-        figure.subplots_adjust(wspace=0.06, top=0.82)
+    with style.context(["default", plot.CHART]):
+        figure = Figure(figsize=(6, 4))
+        axes = figure.subplots()
+        for name, (marker, colour) in STYLES.items():
+            seconds, shadow, far = zip(*(row[3:6] for row in rows if row[:2] == (DRAWN, name)))
+            axes.plot(seconds, far, marker + "-", color=colour, label=name)
+            axes.plot(seconds, shadow, marker + ":", color=colour, markerfacecolor="white")
+        axes.set(xscale="log", yscale="log", ylim=(1e-17, 30), xlabel="time (seconds)",
+                 ylabel="filled: distance to the proved orbit; open: gradient",
+                 title="Three ways to an orbit, ε = %g" % DRAWN)
+        axes.legend(loc="lower center")
         return plot.encode(figure, "svg")
 
 
-def main(directory="build"):
-    os.makedirs(directory, exist_ok=True)
-    rows = [row for eps in EPS for row in measure(eps)]
-    with open(os.path.join(directory, "orbit-finders.svg"), "wb") as file:
+def read(path):
+    """The rows of a table."""
+    with open(path, encoding="ascii", newline="") as file:
+        _, *rows = csv.reader(file)
+    return [(float(eps), name, *map(float, numbers), label)
+            for eps, name, *numbers, label in rows]
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
+    parser.add_argument("directory", nargs="?", default="build")
+    parser.add_argument("--draw", action="store_true",
+                        help="draw orbit-finders.csv, which is there")
+    options = parser.parse_args()
+    os.makedirs(options.directory, exist_ok=True)
+    name = os.path.join(options.directory, "orbit-finders")
+    rows = read(name + ".csv") if options.draw else [row for eps in EPS for row in measure(eps)]
+    with open(name + ".svg", "wb") as file:
         file.write(draw(rows))
-    with open(os.path.join(directory, "orbit-finders.csv"), "w", encoding="ascii",
-              newline="") as file:
-        table = csv.writer(file, lineterminator="\n")
-        table.writerow(("eps", "method", "tolerance", "seconds", "shadow", "distance", "label"))
-        table.writerows(rows)
+    if not options.draw:
+        with open(name + ".csv", "w", encoding="ascii", newline="") as file:
+            table = csv.writer(file, lineterminator="\n")
+            table.writerow(("eps", "method", "tolerance", "seconds", "shadow", "distance", "label"))
+            table.writerows(rows)
 
 
 if __name__ == "__main__":
-    main(*sys.argv[1:])
+    main()

@@ -107,7 +107,7 @@ def draw(types, long, begins, file):
     proved = [(e, types.short[e].low - types.long[e].high) for e in sorted(types.long)]
     none = [e for e in sorted(types.long) if types.long[e].copies % types.times == 0]
     with style.context(["default", plot.STYLE]):
-        figure = Figure(figsize=(9.2, 3.0))
+        figure = Figure(figsize=(9.2, 3.0))     # three panels of the same height
         axes, *planes = figure.subplots(1, 3, gridspec_kw={"wspace": 0.3,
                                                            "width_ratios": (1.5, 1, 1)})
         axes.axhline(0, color="0.8", linewidth=0.8)
@@ -119,6 +119,7 @@ def draw(types, long, begins, file):
         axes.set(xlabel="ε", ylabel=r"$10^6$ times the gain per point",
                  title="%s has less action than %s" % types.names()[::-1])
         axes.legend()
+        axes.set_box_aspect(1 / 1.5)
         x = (np.arange(100) + 0.5) / 100
         grid = np.stack(np.meshgrid(x, x, indexing="ij"), -1).reshape(-1, 2)
         value = orbits.trig.evaluate(grid)[0].reshape(100, 100).T

@@ -23,7 +23,7 @@ from converse import Problem, prove, tori
 from converse.commands.common import Parser, ended
 from converse.draw import plot
 from converse.model.exact import decimal_text
-from converse.model.problem import LINE
+from converse.model.map import LINE
 from converse.prover import tree
 from converse.storage import files
 

@@ -103,13 +103,13 @@ def new(width, height, fill, layout=None):
     return figure
 
 
-def written(width, height, kind, fill, layout=None):
-    """What new() makes, as the bytes of a file of that kind."""
+def written(width, height, kind, fill, layout=None, dpi=200):
+    """What new() makes, as the bytes of a file of that kind; dpi is that of its rasters."""
     figure = new(width, height, fill, layout)
     from matplotlib import style
 
     with style.context(["default", STYLE]):
-        return encode(figure, kind, dpi=200, pad_inches=0.1)
+        return encode(figure, kind, dpi=dpi, pad_inches=0.1)
 
 
 def page(proof, caption=True):

@@ -18,14 +18,16 @@ ORBITS, STEPS = 80, 800                # of the map, that are drawn
 CURVE = 4000                            # points of a circle that is proved
 TURN = 2 * math.pi
 COLOUR = 0.50, 0.66, 0.83               # where no circle passes: the less is undecided, the fuller
+SHADES = 8                              # of COLOUR, so that a file is small
+DPI = 130                               # of the orbits and circles in a file of vectors
 
 
 def draw(portrait, path, tori=()):
     """Draws a Portrait in a file, with orbits of its map and, in colour, the circles of tori that
     are proved (ProvedTorus).  ConverseError: it cannot be drawn."""
     kind = plot.check_file(path)
-    files.write(path, plot.written(*SIZE, kind, lambda figure: fill(figure.subplots(), portrait,
-                                                                    tori)))
+    files.write(path, plot.written(*SIZE, kind, lambda figure: fill(
+        figure.subplots(), portrait, tori), dpi=200 if kind == "png" else DPI))
 
 
 def page(portrait, ax=None, tori=()):
@@ -41,9 +43,9 @@ def fill(axes, portrait, tori=()):
     """Draws it into axes: y across and y' - y upwards."""
     image, left, right = shares(portrait)
     colours = np.empty((*image.shape, 4))
-    colours[..., :3], colours[..., 3] = COLOUR, 1 - np.minimum(image, 1)
+    colours[..., :3], colours[..., 3] = COLOUR, 1 - np.ceil(SHADES * image) / SHADES
     axes.imshow(colours, origin="lower", extent=(left, right, -math.pi, math.pi), aspect="auto",
-                interpolation="nearest", zorder=0)
+                interpolation="none", zorder=0)
     y, w = orbits(portrait.problem, left, right)
     axes.plot(y, w, ",", color=plot.DARK, rasterized=True, zorder=1)
     for torus, colour in zip(tori, (plot.VERMILLION, plot.GREEN, plot.PURPLE, plot.ORANGE) * 9):
