@@ -11,7 +11,6 @@ distance to the proved orbit that damped Newton leads to from there.  Writes orb
 import argparse
 import csv
 import os
-import sys
 import time
 from dataclasses import replace
 
