@@ -1,1 +1,1 @@
-"""What is to be proved: potentials, patches of parameters, and the files that describe them."""
+"""Problems and their parts: potentials, patches of parameters, and the files that describe them."""

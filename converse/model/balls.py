@@ -20,8 +20,8 @@ os.register_at_fork(after_in_child=_fresh)      # the thread that held the lock 
 
 @contextmanager
 def precision(bits: int = 53) -> Iterator[None]:
-    """A context in which balls have midpoints of so many bits, and no other thread of the program
-    computes with balls.  Afterwards the precision is what it was before.
+    """A context in which balls have midpoints of `bits` bits, and no other thread of the program
+    computes with balls.  At its end the earlier precision is restored.
 
     Balls are right at any precision, but with fewer bits they are wider: what is proved must not
     depend on what other threads prove, nor on what the user has set.  The context may be entered

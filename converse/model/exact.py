@@ -1,9 +1,9 @@
 """Exact numbers: rationals that are read and written without error, and enclosures of those that
 are irrational.
 
-Every exact number of the package is a Fraction.  It is read by exact(), from whatever a user may
-give, and written by decimal_text() if it is a finite decimal, by short_text() otherwise, and by
-rounded_text() and ball_text(), rounded outwards, where it is a bound.
+Every exact number of the package is a Fraction.  exact() reads it from whatever a user may give.
+decimal_text() writes a finite decimal, and short_text() any other number.  rounded_text() and
+ball_text() write bounds, rounded outwards.
 """
 
 import math
@@ -13,9 +13,9 @@ from fractions import Fraction
 from functools import lru_cache
 from typing import NamedTuple, Tuple, Union
 
-MAX_EXPONENT = 300
-SHOWN = 20                              # digits of an interval, at most
-FEWEST, MOST = 6, 10000                 # digits of short_text
+MAX_EXPONENT = 300                      # A number is 0 or from 10^-300 to 10^300 in size.
+SHOWN = 20                              # An Interval is printed with 20 digits at most.
+FEWEST, MOST = 6, 10000                 # short_text() tries 6, 12, 24, ... digits.
 SHORT = 3                               # Intervals of numbers up to 10^SHORT need no exponent.
 DECIMAL = re.compile(r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]{1,9})?")
 RATIO = re.compile(r"[+-]?[0-9]+/[0-9]*[1-9][0-9]*")
@@ -94,7 +94,7 @@ def is_decimal(x: Fraction) -> bool:
 
 def decimal_text(x: Union[int, Decimal, Fraction], places: int = -1) -> str:
     """The rational number x, which must be a finite decimal, exactly; with places >= 0 without an
-    exponent and with at least so many digits after the point."""
+    exponent and with at least `places` digits after the point."""
     x = Fraction(x)
     rest, needed = _odd_part(x.denominator)
     if rest != 1:
@@ -137,19 +137,19 @@ def range_text(low: Fraction, high: Fraction) -> str:
 # ---- rounding in a direction
 
 def rounded(x: Fraction, places: int, up: bool) -> Fraction:
-    """x rounded down or up to so many digits after the point."""
+    """x rounded down or up to `places` digits after the point."""
     scaled = x * 10 ** places
     return Fraction(math.ceil(scaled) if up else math.floor(scaled), 10 ** places)
 
 
 def outward(low: Fraction, high: Fraction, places: int) -> Ends:
-    """The interval with both ends rounded outwards, but for those that are finite decimals."""
+    """The interval with its ends rounded outwards, except ends that are finite decimals."""
     return (low if is_decimal(low) else rounded(low, places, up=False),
             high if is_decimal(high) else rounded(high, places, up=True))
 
 
 def rounded_text(x: Fraction, digits: int, up: bool) -> str:
-    """x >= 0 rounded down or up to so many significant digits, such as 1.3e-21."""
+    """x >= 0 rounded down or up to `digits` significant digits, such as 1.3e-21."""
     if not x:
         return "0"
     order = _order(x)
@@ -201,8 +201,8 @@ def _order(x):
 def pi_bounds(digits: int) -> Ends:
     """pi to 10^-digits, by Machin's formula, 16 arctan 1/5 - 4 arctan 1/239, in integers.
 
-    Each term of a series is cut by less than one unit of 10^-(digits + 10); the terms decrease and
-    alternate, so that those behind the last that is not 0 add up to less than one unit."""
+    Each term of a series is cut by less than one unit of 10^-(digits + 10).  The terms decrease and
+    alternate, so that the terms after the last nonzero one add up to less than one unit."""
     unit = 10 ** (digits + 10)
 
     def arctan(n):
@@ -230,7 +230,7 @@ def sine_bounds(turns: Fraction, digits: int) -> Ends:
     Taylor's series in integers, in units of 10^-(digits + 10), at an angle from 0 to pi/2 that is
     off by less than 2.  Each term is off by less than 2, since the division adds less than 1 and
     multiplies what the term before is off by with (pi/2)^2/6 < 0.42 at most.  The terms decrease
-    and alternate, so that those behind a term which is found to be 0 add up to less than 2, too."""
+    and alternate, so that the terms after one that is found to be 0 also add up to less than 2."""
     t = Fraction(turns) % 2
     sign, t = (-1, t - 1) if t >= 1 else (1, t)
     t = min(t, 1 - t)

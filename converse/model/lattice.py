@@ -6,11 +6,22 @@ Row = Tuple
 
 
 def echelon(rows: Sequence[Sequence], columns: int) -> Tuple[List[Optional[Row]], List[Row]]:
-    """Rows that generate the same group, by Euclid's algorithm: for each of the first columns the
-    one row that is not 0 there but is 0 in those before, or None; and the rows that are 0 in all
-    of these columns.
+    """Rows that generate the same group as the given rows, by Euclid's algorithm.
 
-    rows -- of integers or Fractions; columns further on are carried along"""
+    Parameters
+    ----------
+    rows
+        Rows of integers or Fractions.
+    columns
+        The number of columns that are brought to echelon form; further ones are carried along.
+
+    Returns
+    -------
+    list
+        For each column its pivot row, which is 0 in the columns before, or None.
+    list
+        The rows that are 0 in all of these columns.
+    """
     rest = [tuple(row) for row in rows]
     pivots: List[Optional[Row]] = []
     for i in range(columns):

@@ -24,7 +24,7 @@ from .exact import Ends, pi_bounds, sine_bounds
 
 Wave = Tuple[int, int, Fraction]        # k0, k1 and the phase in units of pi
 Term = Tuple[Tuple[int, int], Ends, Ends]
-QUARTER = Fraction(1, 2)                # of a turn: sin(t + pi/2) = cos t
+QUARTER = Fraction(1, 2)                # A quarter turn in units of pi: sin(t + pi/2) = cos t.
 
 
 class FourierSum(NamedTuple):
@@ -37,10 +37,10 @@ class FourierSum(NamedTuple):
     dimension: int
 
     def terms(self, digits: int) -> Iterator[Term]:
-        """V as a sum of c cos k.y + d sin k.y: ((k0, k1), (ends of c), (ends of d)), to 10^-digits.
+        """Yields the terms c cos k.y + d sin k.y of V: ((k0, k1), (ends of c), (ends of d)).
 
-        Waves whose c and d are rational are exact, and one term for each k; each other wave is a
-        term of its own."""
+        Waves with rational c and d are exact, and added up for each k.  Each other wave is a
+        separate term, whose ends are within 10^-digits of the truth."""
         rational: Dict[Tuple[int, int], Tuple[Fraction, Fraction]] = {}
         for (k0, k1, phase), p in zip(self.waves, self.amplitude):
             if (2 * phase).denominator == 1:

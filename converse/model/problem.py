@@ -90,7 +90,7 @@ class Problem:
 
     @classmethod
     def of(cls, source: "Union[SymplecticMap, Problem]") -> "Problem":
-        """A problem as it is, or that of a map and all of the torus."""
+        """The problem, or the problem of a map and all of the torus."""
         return source if isinstance(source, Problem) else cls(source)
 
     def part(self, region: Tuple[Ends, Ends], shifts: Shifts = ()) -> "Problem":
@@ -164,12 +164,12 @@ class Problem:
 
     @property
     def amplitude(self) -> Numbers:
-        """Of each wave, in the middle of the patch of parameters."""
+        """The amplitude of each wave, in the middle of the patch of parameters."""
         return self.map.enclosed[0]
 
     @property
     def parts(self) -> Tuple[Numbers, ...]:
-        """Of each parameter t[m] in [-1, 1], what it adds to each amplitude at its upper end."""
+        """For each parameter t[m] in [-1, 1] its contribution to each amplitude at t[m] = 1."""
         return self.map.enclosed[1]
 
     @property
@@ -215,9 +215,9 @@ class Problem:
                 in zip(self.waves, self.amplitude, *self.parts) if p or any(parts)]
 
     def _best_frame(self):
-        """If all waves feel the same q.y alone, and q no coordinate, v0 moves along what none
-        feels, and so need not be cut.  Only a region that is the whole torus has no axes
-        already."""
+        """The frame where none is given.  If all waves depend on one q.y, which is not a
+        coordinate, v0 moves along lines of constant q.y, and need not be cut.  The region of such a
+        frame must be the whole torus."""
         directions = {(k0 // gcd(k0, k1), k1 // gcd(k0, k1)) for (k0, k1), _ in self._present()}
         q = max(directions, default=(0, 0))
         if not directions <= {q, (-q[0], -q[1])} or 0 in q or not self.full_torus:
@@ -228,16 +228,16 @@ class Problem:
     @cached_property
     def factor(self) -> Optional[int]:
         """The coordinate that is examined alone, without the waves that depend on the other one;
-        None: neither.
+        None: both are examined.
 
-        If no wave depends on both, the map is a product of two, and so are the second variations:
-        that of test vectors (n, 0) is the second variation of the first map by itself."""
+        If no wave depends on both, the map is a product of two maps.  The second variation of test
+        vectors (n, 0) is then the second variation of the first map."""
         if self.alone is None:
             return self._best_alone()
         return self.alone if isinstance(self.alone, int) else None
 
     def _best_alone(self):
-        """The one that bends more, or None where neither can be left out."""
+        """The coordinate with the larger V'', or None where a wave depends on both."""
         bends = [sum(p * k[i] ** 2 for k, p in self._present()) for i in range(2)]
         felt = {tuple(map(bool, k)) for k, _ in self._present()}
         return int(bends[1] > bends[0]) if felt == {(True, False), (False, True)} else None
@@ -250,12 +250,11 @@ class Problem:
 
     @cached_property
     def odd(self) -> Optional[Ends]:
-        """A point s, in units of pi, about which V is odd: k.s + phase is an integer for every
-        wave.
-        None: there is no such point.
+        """A point s, in units of pi, about which V is odd; None: V is not odd about any point.
 
-        Sums and differences of such conditions are such conditions, so Euclid's algorithm makes of
-        them one for s1 alone, one more that has s0, and those that s has no part in."""
+        For every wave k.s + phase is an integer.  Sums and differences of such conditions are such
+        conditions.  So Euclid's algorithm replaces them by one for s1 alone, one with s0, and
+        conditions on the phases alone."""
         pivots, rest = echelon([(Fraction(k0), Fraction(k1), phase)
                                 for k0, k1, phase in self.waves], 2)
         s = [Fraction(0), Fraction(0)]
@@ -268,7 +267,7 @@ class Problem:
 
     @property
     def is_flat(self) -> bool:
-        """Do those waves that the search needs feel one combination of the angles alone?"""
+        """Do the waves that the search needs depend on one combination of the angles?"""
         k = [wave for wave, _ in self._present()]
         return self.factor is not None or all(a * d == b * c for a, b in k for c, d in k)
 
@@ -311,7 +310,7 @@ def bezout(a: int, b: int) -> Tuple[int, int]:
 
 
 def exact_shifts(shifts: Sequence[Sequence[Number]]) -> Shifts:
-    """Exact pairs, () if all of them are 0.  TypeError, ValueError: they are no shifts."""
+    """Exact pairs, () if all of them are 0.  TypeError, ValueError: these are not shifts."""
     try:
         given = [tuple(pair) for pair in shifts]
     except TypeError:
@@ -324,7 +323,7 @@ def exact_shifts(shifts: Sequence[Sequence[Number]]) -> Shifts:
         s0, s1 = (exact_of("a shift", x) for x in pair)
         for x in s0, s1:
             if not is_decimal(x):
-                raise ValueError("a shift: %s is no finite decimal" % x)
+                raise ValueError("a shift: %s is not a finite decimal" % x)
         pairs.append((s0, s1))
     return tuple(pairs) if any(map(any, pairs)) else ()
 

@@ -205,8 +205,8 @@ class ParameterMap:
             self.region, *map(self.count, (PROVED, AT_ONCE, OPEN)))
 
     def save(self, path: Union[str, "os.PathLike[str]"]) -> str:
-        """Writes the file, compressed when the name ends in .gz; returns the SHA-256 (that
-        of the uncompressed file)."""
+        """Writes the file, compressed when the name ends in .gz; returns the SHA-256 of the
+        uncompressed file.  ConverseError: it cannot be written."""
         faces = []
         for directions, tree, estimate in zip(self.directions, self.roots, self.estimate):
             nodes = list(tree.nodes())
@@ -228,8 +228,8 @@ class ParameterMap:
 
     @classmethod
     def load(cls, path: Union[str, "os.PathLike[str]"]) -> "ParameterMap":
-        """Reads a map; ConverseError says in one line what is wrong with it.  What it says is
-        proved is believed: converse-check does not believe it."""
+        """Reads a map.  Its proofs are believed; verify() and converse-check do not believe them.
+        ConverseError: the file cannot be read or is damaged."""
         damaged = ": is not a map, or truncated"
         text = files.read_text(path, "map", damaged)
         try:

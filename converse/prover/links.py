@@ -17,10 +17,10 @@ from ..model.problem import Problem, Shifts
 from . import tree
 from .proof import Tree
 
-PIECES = 8                              # of the segment, with a bound K of its own each
-DIGITS = 30                             # to which what is irrational is known
-COARSE = 10 ** 12                       # bounds are in units of 1/COARSE
-SPARE = Fraction(1, 10 ** 6)            # of widths, left to those who bound more loosely
+PIECES = 8                              # The segment is cut into pieces, each with one bound K.
+DIGITS = 30                             # Irrational numbers are known to 30 decimals.
+COARSE = 10 ** 12                       # Bounds are rounded to multiples of 1/COARSE.
+SPARE = Fraction(1, 10 ** 6)            # A link leaves this width to checkers with looser bounds.
 PI = pi_bounds(DIGITS)
 LEAST_GAP, MOST_CLUSTERS = Fraction(1, 256), 8      # as a part of a region's sides
 
@@ -110,8 +110,9 @@ def crests(problem: Problem) -> List[Fraction]:
 
 
 def _largest(ends, index, cuts):
-    """Of what is convex in each parameter, a bound in a slice of them: what lies between its values
-    at their ends.  The checker bounds B in the same way, and no worse: so its l is not less."""
+    """A bound of a function that is convex in each parameter, in a slice of the parameters: the
+    largest of its interpolated values at the corners.  ends: its values at the patch's corners.
+    The checker's bound of B is the same or better, so its l is not less."""
     found = []
     for corner in product((0, 1), repeat=len(ends).bit_length() - 1):
         values = ends
@@ -211,8 +212,8 @@ def clusters(problem: Problem, text: str) -> List[List[Cell]]:
 
 
 def _joined(cells: Sequence[Cell], sizes: Sequence[Fraction]) -> List[List[Cell]]:
-    """The cells in clusters, when the region is covered by a grid with squares of which so many
-    belong to a side: those of the same square, and of two that touch, belong together."""
+    """The cells in clusters.  A grid of squares covers the region; cells in one square or in two
+    squares that touch belong together.  sizes: how many squares a side of the region has."""
     squares: Dict[Tuple[int, ...], List[Cell]] = {}
     for cell in cells:
         ranges = [range(int(size * i / (1 << k)), int(size * (i + 1) / (1 << k)) + 1)
@@ -307,9 +308,9 @@ def wrong_letter(problem: Problem, largest: Fraction, xstar: Tuple[str, str], te
 
 def linked_tree(problem: Problem, text: str, steps: List[int],
                 targets: List[Target]) -> Tuple[str, List[int]]:
-    """The tree with a letter in the place of each node above undecided cells all of whose box is
-    linked to a part, as high up as may be; and the steps of the nodes that are left.  Cells that
-    are linked to no part stay undecided."""
+    """The tree with links, and the steps of its nodes.  A node above undecided cells becomes a
+    letter if its whole box is linked to that part; nodes near the root are tried first.  Cells
+    that cannot be linked stay undecided."""
     size = len(text)
     end, open_ = [0] * size, [False] * size     # of each node: where the next begins; anything U
     for i in range(size - 1, -1, -1):

@@ -115,7 +115,7 @@ class Task:
 
 @dataclass(frozen=True)
 class Begun:
-    """What is known before the first prism is tried, and what there is of the tree.
+    """The state of a search before the first prism is tried.
 
     A cell here is (index, cuts, hint), the hint being what the C core learnt from its parent."""
 
@@ -128,7 +128,7 @@ class Begun:
 
 @dataclass
 class Grown:
-    """What a worker grew: the text, the cells that are to follow it, the orbits' lengths."""
+    """The result of a worker: the text, the cells that follow it, the lengths of orbits."""
 
     text: str
     steps: List[int]                    # of each node; empty if nobody wants them
@@ -171,7 +171,7 @@ def _nearly(phase):
 
 
 def _handle(stop):
-    """What the C core takes for a Stop or None."""
+    """The argument of the C core for a Stop or None."""
     return ffi.NULL if stop is None else stop.handle
 
 
@@ -207,8 +207,8 @@ class Search:
                      bool(lib.cv_at_once(self.handle)), *self._state())
 
     def grow(self, cells, seconds, max_leaves, stop, want_steps, max_points=math.inf):
-        """Decides cells, and those they are cut into, for about so long or up to so many leaves, or
-        points of orbits."""
+        """Decides cells, and the cells that they are cut into, until about `seconds` passed or
+        there are max_leaves leaves or max_points points of orbits."""
         check(lib.cv_restart(self.handle, len(cells), cells))
         check(lib.cv_step(self.handle, max_leaves, max_points, seconds, _handle(stop)))
         size = ffi.new("size_t *")
@@ -270,7 +270,7 @@ def chosen_start(task):
 
 
 def begin(task, tree, stop):
-    """What a worker does first, with the tree as far as it is known: Begun, or None if stopped."""
+    """Sets up a search and takes up a tree.  Called by a worker; None if stopped."""
     search = _search(task, stop)
     if search is None:
         return None
@@ -280,7 +280,7 @@ def begin(task, tree, stop):
 
 
 def grow(task, cells, seconds, max_leaves, want_steps, stop=None):
-    """What a worker does: Grown, or None if it was stopped before it could begin."""
+    """Grows cells.  Called by a worker; None if it was stopped before it could begin."""
     try:
         search = _search(task, stop)
         return search and search.grow(cells, seconds, max_leaves, stop, want_steps)
@@ -290,8 +290,8 @@ def grow(task, cells, seconds, max_leaves, want_steps, stop=None):
 
 
 def survey(task, leaves, points, stop=None):
-    """Grows a tree from its root, to so many leaves at most and until its orbits had about so many
-    points: Grown, or None if it was stopped before that."""
+    """Grows a tree from its root.  The search ends with `leaves` leaves or when its orbits had
+    about `points` points.  None if it was stopped before that."""
     search = Search(task)
     if not search.prepare(stop):
         return None

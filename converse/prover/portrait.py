@@ -70,12 +70,12 @@ class Region:
 
 @dataclass(eq=False, repr=False)
 class Portrait:
-    """What is proved of the phase space of a map of one angle.
+    """The proved part of the phase space of a map of one angle.
 
     problem -- the map, whose amplitudes may have one parameter, or up to three without strips
     strip -- half the width of a column, in radians; 0: the columns are lines
-    even -- a point, in units of pi, about which V is even: each column stands for its mirror image,
-        too; None: there is none
+    even -- a point, in units of pi, about which V is even: then each column also stands for its
+        mirror image; None: there is none
     depth -- the most cuts above a prism
     columns -- how many columns the circle was to have
     found -- by x*, the regions of the columns that are done
@@ -298,8 +298,8 @@ def portray(source: Union[SymplecticMap, Problem, None] = None, *, path: Optiona
         The map, or a Problem of it.  It may have a range of parameters: what is proved holds for
         all of them.
     path
-        Of the file that keeps what is found: new, or with resume that of the portrait to continue.
-        None: there is none.
+        The file that keeps the columns: a new one or, with resume, the file of the portrait to
+        continue.  None: there is none.
     columns
         How many columns the circle has.
     depth
@@ -311,7 +311,7 @@ def portray(source: Union[SymplecticMap, Problem, None] = None, *, path: Optiona
     jobs, executor
         Columns at a time, by default one per core; whose workers they are, by default threads.
     time_limit
-        After about so many seconds the portrait is left as it is.
+        The search ends after about this number of seconds.
     progress
         progress(columns done, portrait) is called a few times a second.
 
@@ -336,7 +336,7 @@ def portray(source: Union[SymplecticMap, Problem, None] = None, *, path: Optiona
             with WorkerPool(executor, jobs, stop) as pool:
                 todo = [x for x in portrait.stars if x not in portrait.found][::-1]
                 while (todo or pool.running) and time.monotonic() < end:
-                    while todo and len(pool.running) <= pool.size:  # one waits, to follow at once
+                    while todo and len(pool.running) <= pool.size:  # one more waits
                         pool.give(todo[-1], column, portrait.patch, portrait.strip,
                                   portrait.depth, todo.pop())
                     for xstar, regions in pool.take(LOOK_SECONDS):
@@ -412,11 +412,13 @@ def regions_of(patch: Problem, strip: Fraction, depth: int,
 
 def slopes(patch: Problem, strip: Fraction, star: Tuple[str, str], centre: float,
            turned: float) -> List[Tuple[Fraction, float]]:
-    """Where pieces of half a turn of successors begin, as shares of it, and d x_1/d x_0 - 1 for
-    each.  Of all lines through a point of phase space, the line of this slope separates least, over
-    STEPS points to either side.  Circles have such slopes, and strips along them need fewer cuts.
-    A piece has the midrange of the slopes of its samples, which differ by `turned` at most.  In
-    doubles: any slope would be right."""
+    """Divides half a turn of successors into pieces, each with its beginning, as a share of the
+    half turn, and its slope d x_1/d x_0 - 1.
+
+    The line of this slope through a point separates less than all other lines, over STEPS points to
+    either side.  Circles have such slopes, and strips along them need fewer cuts.  The slope of a
+    piece is the midrange of its samples, which differ by `turned` at most.  Doubles are enough,
+    since any slope is right."""
     k, _, phase = patch.waves[0]
     bend = float(patch.parts[1][1] / strip)         # p k
 

@@ -48,8 +48,8 @@ class Tree:
 class Proof:
     """A search and its result, finished or not: true if it proves that there are no invariant tori.
 
-    What it proves rests on its tree, which prove() grew; a Proof that was loaded, or made by hand,
-    is believed.  verify() believes nothing.
+    The theorem rests on the tree, which prove() grew.  A Proof that was loaded, or made by hand, is
+    believed; verify() believes nothing.
 
     trees: over the starting point of the problem and then, a, b, c, ..., over those to which prisms
     of trees before them are linked.
@@ -142,9 +142,9 @@ class Proof:
 
     @property
     def conclusion(self) -> str:
-        """What the search came to: "theorem", that there are no invariant tori; "region", that none
-        goes through the successors of x* which the problem names, only a part of the torus;
-        "undecided"; or "as printed", decided as the listing of 1989 would, which is no proof."""
+        """The result of the search.  "theorem": there are no invariant tori.  "region": none goes
+        through the successors of x* in the problem's region, a part of the torus.  "undecided".
+        "as printed": decided as by the listing of 1989, which is not a proof."""
         if not self.all_decided:
             return UNDECIDED
         if self.as_printed:
@@ -175,36 +175,85 @@ class Proof:
         return report(self)
 
     def plot(self, ax: Any = None, caption: bool = True) -> Any:
-        """Draws the prisms.
+        """Draws the prisms, the angles in units of pi.
 
-        ax: Axes of matplotlib, which are drawn into and returned: only the prisms and x*, their
-        labels ready for ax.legend().  With None a Figure is returned, which a notebook shows.
-        caption: whether the lines above a Figure state what is proved and by what.
-        ConverseError: matplotlib is missing."""
+        Parameters
+        ----------
+        ax
+            Axes of matplotlib, which are drawn into and returned: only the prisms and x*, with
+            labels for ax.legend().  With None a Figure is returned, which a notebook shows.
+        caption
+            Whether the lines above a Figure state what is proved and by what.
+
+        Raises
+        ------
+        ConverseError
+            matplotlib is missing.
+        """
         from ..draw import plot
         return plot.page(self, caption) if ax is None else plot.draw(self, ax)
 
     def verify(self, jobs: int = 1) -> "check.Result":
         """Verifies the proof anew by the code of converse-check, which believes nothing of it and
-        shares nothing with the program that found it; jobs: processes.
+        shares nothing with the program that found it.
 
-        The Result is true if the theorem is verified; its text is the checker's report.
-        check.Rejected, check.NotConfirmed, check.Unusable: it is not, and why.
+        Parameters
+        ----------
+        jobs
+            The number of processes.
+
+        Returns
+        -------
+        check.Result
+            True if the theorem is verified; its text is the checker's report.
+
+        Raises
+        ------
+        check.Rejected, check.NotConfirmed, check.Unusable
+            The theorem is not verified; the text says why.
         """
         return files.verified(self, jobs)
 
     def save(self, path: Union[str, "os.PathLike[str]"]) -> str:
-        """Writes the proof file, compressed when the name ends in .gz; returns its SHA-256 (that
-        of the uncompressed file).  A finished search gives the same file however it was
-        interrupted and continued, and whoever did the work.  The file of an unfinished one also
-        holds the seconds that the search took, which differ from run to run."""
+        """Writes the proof file.
+
+        A finished search gives the same file, however it was interrupted and continued.  The file
+        of an unfinished search also holds the seconds that it took.
+
+        Parameters
+        ----------
+        path
+            The file; the text is compressed if the name ends in .gz.
+
+        Returns
+        -------
+        str
+            The SHA-256 of the uncompressed text.
+
+        Raises
+        ------
+        ConverseError
+            The file cannot be written.
+        """
         from .proof_file import save
         return save(self, path)
 
     @classmethod
     def load(cls, path: Union[str, "os.PathLike[str]"]) -> "Proof":
-        """Reads a proof file; ConverseError says in one line what is wrong with it.  Its leaves and
-        links are believed, though prove(resume=...) shows the links anew: verify() and
-        converse-check believe neither."""
+        """Reads a proof file.
+
+        The leaves and links are believed; prove(resume=...) shows the links anew.  verify() and
+        converse-check believe neither.
+
+        Parameters
+        ----------
+        path
+            A file that save() or a backup wrote, compressed or not.
+
+        Raises
+        ------
+        ConverseError
+            The file cannot be read or is damaged; the text names the line.
+        """
         from .proof_file import load
         return load(path)

@@ -180,7 +180,7 @@ def _point(text):
 
 
 def _divided(hints, text):
-    """The hints of a tree, if any of them is known, and those of the trees after it."""
+    """The hints of a tree, if any of them is known, and the hints of the trees after it."""
     mine, rest = hints[:_untried(text)], hints[_untried(text):]
     return mine if any(mine) else (), rest
 
@@ -238,7 +238,7 @@ def _ends(values, name):
 
 
 def _moving(values, name, parameters):
-    """The ends of a range of a part, and its shifts by so many parameters."""
+    """The ends of a range of a part, and its shift by each parameter."""
     words = values[name].split()
     if len(words) == 2:
         return _ends(values, name), [Fraction(0)] * parameters
@@ -250,7 +250,7 @@ def _moving(values, name, parameters):
 
 
 def _number(text):
-    """The text, which must be that of a decimal number."""
+    """The text, which must be a decimal number."""
     if not DECIMAL.fullmatch(text):
         raise ValueError("'%.40s' is not a decimal number" % text)
     return text

@@ -12,8 +12,8 @@ from .tree_search import KINDS, kinds_of
 
 
 def _as_before(problem, proof, differs):
-    """The problem, which must be the one of the proof but for its comments, with the region, the
-    frame and the coordinate that were chosen then, unless it names others."""
+    """The problem with the region, the frame and the coordinate of the proof, unless it names
+    others.  Except for comments it must be the problem of the proof."""
     before = proof.problem
     if proof.method == "loewner" and problem.full_torus and proof.symmetries_used is not None:
         problem = replace(problem, v0=before.v0, v1=before.v1)
@@ -37,9 +37,9 @@ def _as_before(problem, proof, differs):
 def continued(proof, name, problem=None, given=None, xstar=None):
     """The proof with the settings to continue it with.
 
-    problem, given (some of the fields of Settings by name), xstar: None, or what must agree with
-    the proof; but the depth may be greater, and `stubborn` another.
-    ConverseError: something does not agree; name is that of the proof in the message."""
+    problem, given (some of the fields of Settings by name), xstar: None, or values that must equal
+    the proof's, except that the depth may be greater and `stubborn` may change.
+    ConverseError: something does not agree; the message calls the proof by `name`."""
     given = given or {}
     proof = _without_unused(proof, name)
     settings = replace(proof.settings, **{key: value for key, value in given.items()

@@ -122,8 +122,8 @@ def prove(source: Union[SymplecticMap, Problem, None] = None, *, method: Optiona
 
 
 def ready(before: Proof) -> Proof:
-    """What a search begins with: the problem as the method takes it and, unless it has begun
-    already, with the sharper method the region that it is to search, for which x* is chosen.
+    """Prepares a search.  The problem becomes as the method takes it.  With the sharper method, x*
+    and the region are chosen, unless the search has begun or the problem names axes.
     ConverseError: the problem is not for this program; ValueError: not for this method."""
     problem, xstar = before.settings.accept(before.problem), before.xstar
     if before.method == "loewner" and not before.tree and problem.full_torus and \
@@ -204,8 +204,8 @@ class _Run:
     # ---- one tree
 
     def _grow(self):
-        """Grows one of the trees; False if time is up first.  It is left as it is, too, when it
-        turns out to be so hard that other starting points are to be looked for."""
+        """Grows one of the trees; False if time is up first.  Growing also ends when the tree turns
+        out to be so hard that other starting points are to be looked for."""
         problem, text = self._tree.problem, self._tree.text
         task = Task(problem, self.proof.settings, self._tree.xstar)
         with TreeSearch(task, self.options.jobs, self.options.executor,
@@ -244,9 +244,8 @@ class _Run:
     # ---- other starting points
 
     def _is_hard(self):
-        """Did the tree over the first starting point need so long an orbit that others are to be
-        looked for before it is known what becomes of it?  That this is so of some prism does not
-        depend on when it is seen."""
+        """Did a prism of the first tree need LONG points?  Then other starting points are looked
+        for before the tree is finished.  The answer depends on prisms and not on time."""
         counts = self.proof.counts if self.search is None else self.search.counts
         return counts.max_NTsteps >= LONG and self._may_link() and self.number == 0
 

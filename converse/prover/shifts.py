@@ -1,21 +1,20 @@
 """How a part's region is to move with the parameters.
 
-What a starting point leaves undecided longest is near orbits that stay close to an ordered set for
-long, and where these start depends smoothly on the parameters t.  A prism that does not move along
-must be so narrow in t that it keeps its place among them.  So the region gets shifts, the s for
-which the orbits through v + s t stay together longest: of all s those that move the ends of short
-orbits through the hardest prisms least, by least squares.  Doubles will do, as nothing rests on
-them."""
+The hardest prisms are near orbits that stay close to an ordered set for long.  The starting points
+of these orbits depend smoothly on the parameters t.  A prism that does not move along must be
+narrow in t.  So the region gets shifts s, for which the orbits through v + s t stay together
+longest.  They are found by least squares: the ends of short orbits through the hardest prisms move
+least.  Doubles are enough, since no bound depends on the shifts."""
 
 import math
 from fractions import Fraction
 
 from . import tree
 
-STEPS = 16                              # of the orbits, either way
-MOST_ORBITS, FEWER = 64, 2              # FEWER: cuts than the most
-PLACES = 8                              # of the shifts
-LEAST = 1e-10                           # of the sums of squares: directions that orbits do not feel
+STEPS = 16                              # An orbit has 16 points to either side.
+MOST_ORBITS, FEWER = 64, 2              # A hard prism has at most FEWER cuts less than the deepest.
+PLACES = 8                              # Shifts are rounded to 8 decimals.
+LEAST = 1e-10                           # The normal equations are regularized by this ratio.
 
 
 def best_shifts(problem, amplitude, xstar, text):

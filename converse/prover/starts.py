@@ -26,12 +26,13 @@ LOOK_DEPTH, LOOK_LEAVES = 24, 200000    # of the tree whose undecided prisms are
 # docs/explanation/method.md the crossed one with s = 0.58 needs the most points: 17 million, and
 # 0.9 million in the trees of less than LOOK_DEPTH cuts.
 LOOK_POINTS, SHRINK_POINTS = 50_000_000, 5_000_000
-FEW_LEAVES = 50000                      # where regions move, and larger ones will do
-DEEPER = 4                              # cuts, as long as they halve what the clusters cover,
-SMALL = Fraction(1, 10000)              # and this is more, in units of pi squared
-SHRINKS = 0.7                           # what so many cuts leave of what was undecided before
-TRY_DEPTH, TRY_LEAVES = 16, 10000       # of those by which starting points are compared
-ALL_LEAVES = 40000                      # of a proof that is tried to the end
+FEW_LEAVES = 50000                      # Where regions move, larger clusters are good enough.
+# The look goes DEEPER cuts deeper as long as that halves the area of the clusters, and the area is
+# more than SMALL, in units of pi squared.
+DEEPER, SMALL = 4, Fraction(1, 10000)
+SHRINKS = 0.7                           # DEEPER cuts must leave less than this of the volume.
+TRY_DEPTH, TRY_LEAVES = 16, 10000       # Starting points are compared by trees of this size.
+ALL_LEAVES = 40000                      # A tree that is tried to the end has at most these.
 FINE_STEPS, NEAR_STEPS, FAR_STEPS = (   # between points, in radians
     [Fraction(x, 1000) for x in steps] for steps in ((4, 8), (16, 32, 64), (128, 256, 512)))
 MOST_PARTS = 26
@@ -39,7 +40,7 @@ MOST_PARTS = 26
 
 @dataclass
 class Plan:
-    """What becomes of the tree over a starting point: its text, the lengths of its nodes' orbits,
+    """The tree over a starting point with its links: the text, the lengths of its nodes' orbits,
     the statistics of the search, and the new parts."""
 
     tree: str
@@ -50,10 +51,10 @@ class Plan:
 
 def plan(problem, depth, xstar, undecided, largest, before, pool, seconds_left):
     """A Plan for a region over xstar; None: none was found, or seconds_left() fell to 0 before.
-    Prisms for which there is no better point become untried.
+    Prisms without a better point become untried.
 
-    undecided: is it known that x* alone will not do; before: how many further parts there are
-    already; largest: B; pool: of this process."""
+    undecided: whether the tree over x* alone is known to be undecided; before: the number of
+    further parts so far; largest: B; pool: of this process."""
     grown, found = _look(problem, depth, xstar, pool, seconds_left)
     if not found or before + len(found) > MOST_PARTS:
         return None
@@ -79,9 +80,9 @@ def plan(problem, depth, xstar, undecided, largest, before, pool, seconds_left):
 
 
 def _look(problem, depth, xstar, pool, seconds_left):
-    """What was grown over xstar, and the clusters of its undecided prisms: to LOOK_DEPTH cuts, and
-    deeper as long as they are large and shrink.  (None, []) if there is too much of it, or time was
-    up."""
+    """Grows a tree over xstar and returns it with the clusters of its undecided prisms.  The depth
+    is LOOK_DEPTH, and greater as long as the clusters are large and shrink.  (None, []) if the tree
+    is too large, or time was up."""
     best, covered, cuts = (None, []), inf, LOOK_DEPTH
     enough = FEW_LEAVES if _has_width(problem) else LOOK_LEAVES
     while cuts <= depth and (best[0] or _shrinks(problem, xstar, pool, seconds_left)):
@@ -121,7 +122,7 @@ def _task(problem, xstar, depth):
 
 
 def _surveys(pool, seconds_left, tasks, leaves, points=inf):
-    """What was grown of each task, up to so many leaves or points; [] if time was up before."""
+    """The trees of the tasks, of `leaves` leaves or `points` points each; [] if time was up."""
     for key, task in enumerate(tasks):
         pool.give(key, native.survey, task, leaves, points, here=True)
     found = {}
@@ -150,7 +151,7 @@ class _Image:
         return region_around(self.box, link)
 
     def grow(self, points, settings, most):
-        """What is grown over each of the points; [] if time was up."""
+        """The trees over the points, of `most` leaves each; [] if time was up."""
         return _surveys(self.pool, self.seconds_left, [
             native.Task(self.weakest.part(self.region(point)), settings, _text(point))
             for point in points], most)
@@ -177,7 +178,7 @@ def _best_start(image, others):
     known = {}          # scores
 
     def look(points):
-        """The best of these points; None if there was no time."""
+        """The best of these points; None if time was up."""
         new = [point for point in dict.fromkeys(points) if point not in known]
         most = min([TRY_LEAVES, *(2 * leaves for _, leaves in sorted(known.values())[:1])])
         grown = image.grow(new, Settings("loewner", TRY_DEPTH, stubborn=True), most)
@@ -208,9 +209,9 @@ def _ways(problem):
 
 
 def _candidates(look, known, start, ways):
-    """Yields points over which few prisms resist, good ones first, as long as look() has time: of
-    those near start, and of those that smaller steps lead to from the best one; and then of those
-    farther away."""
+    """Yields points over which few prisms resist, good ones first, as long as look() has time.
+    First come points near start and points that smaller steps from the best one lead to, then
+    points farther away."""
     best = look([start])
     for steps in NEAR_STEPS, FAR_STEPS:
         rings = [look([_moved(start, step, way) for way in ways]) for step in steps]

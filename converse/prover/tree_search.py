@@ -1,6 +1,6 @@
 """The search for a tree, divided between threads of this process or workers anywhere.
 
-What becomes of a prism depends on itself and on the hint from its parent, which goes with it.  So
+The verdict on a prism depends on the prism and on the hint from its parent, which goes with it.  So
 the tree, its counts and the theorem are the same however the work is divided.
 """
 
@@ -13,10 +13,10 @@ from . import native, tree
 from .native import Counts
 from .workers import LOOK_SECONDS, WorkerPool
 
-MANY = 2 ** 30                      # leaves: more than a task can grow
-ALONE_SECONDS = 0.03                # of work in one thread before it is divided
-TASK_SECONDS = 0.25                 # of a task, when the search has gone on for ten times as long
-OLD = -1                            # in place of the orbit's length: decided in an earlier run
+MANY = 2 ** 30                      # No task grows 2^30 leaves.
+ALONE_SECONDS = 0.03                # One thread works for this time before the work is divided.
+TASK_SECONDS = 0.25                 # A task takes at most this, and a tenth of the time so far.
+OLD = -1                            # The orbit's length of a node of an earlier run.
 
 
 class Part:
@@ -51,8 +51,8 @@ def kinds_of(text):
 class TreeSearch(Resource):
     """A search under way: the parts of its tree in preorder, some of them being worked on.
 
-    The C core always works in other threads than this one, or elsewhere, so that this one can watch
-    the clock and Ctrl-C; the threads of this process can be stopped in the middle of a prism."""
+    The C core works in other threads or processes, so that this thread can watch the clock and
+    Ctrl-C.  The threads of this process can be stopped in the middle of a prism."""
 
     def __init__(self, task, jobs, executor=None, want_steps=False):
         """executor: whose workers are used once the work is worth dividing, or None; jobs: parts at
@@ -88,8 +88,8 @@ class TreeSearch(Resource):
         if begun is None:
             return None
         self.task = native.Task(self.task.problem, self.task.settings, begun.xstar)
-        # Each worker sets up a search of its own, which takes as long as this one: a search that
-        # is over sooner is not divided.
+        # Each worker sets up its search anew, which takes as long as here.  So the search is not
+        # divided before that time has passed.
         self.began = time.monotonic()
         self.alone_until = self.began + max(ALONE_SECONDS, 10 * (self.began - began))
         seen = begun.counts
@@ -205,8 +205,8 @@ class TreeSearch(Resource):
         return queue
 
     def work(self, seconds):
-        """Hands parts to workers and takes what comes back, for so many seconds at most; returns
-        when something came back and no part waits any more."""
+        """Hands parts to workers and takes their results.  Returns after `seconds`, or when a
+        result came back and no part waits."""
         end = time.monotonic() + seconds
         alone = self.alone_until - time.monotonic()
         here = alone > 0 or (self.executor is None and self.pool.size == 1)

@@ -1,8 +1,7 @@
 """Tasks for threads of this process, or for the workers of somebody else's executor.
 
-concurrent.futures hands out calls, and this adds what a run of hours needs: a task whose worker
-dies is given to another, workers may join and leave (Dask), a signal strikes none of the locks, and
-one class serves proofs, maps and sweeps."""
+concurrent.futures hands out calls.  This module adds what runs of hours need: a task whose worker
+dies is given to another, workers may join and leave (Dask), and no signal strikes in a lock."""
 
 import concurrent.futures
 import contextlib
@@ -74,11 +73,11 @@ class WorkerPool(Resource):
 
     def give(self, key, call, *arguments, here=False):
         """Hands out a task: call(*arguments) is to be computed, here: by this process.
-        WorkersGone: nobody takes it; MemoryError: there is no memory for another thread."""
+        WorkersGone: nobody takes it; MemoryError: memory is missing for another thread."""
         self._submit(_Task(key, call, arguments, here or self.executor is None))
 
     def take(self, seconds):
-        """Yields (key, result) of tasks that are done, as soon as one is, after so many seconds or
+        """Yields (key, result) of tasks that are done, as soon as one is; waits for `seconds` or
         LOOK_SECONDS at most.  A task whose worker died is handed out again.  WorkersGone: they die
         again and again; an exception of this program, missing memory, and whatever a thread of this
         process raised is passed on."""
@@ -96,8 +95,8 @@ class WorkerPool(Resource):
                 yield task.key, result
 
     def settle(self, seconds):
-        """Ends the work: yields (key, result) of the tasks that are done within so many seconds,
-        and cancels the others."""
+        """Ends the work: yields (key, result) of the tasks that are done within `seconds`, and
+        cancels the others."""
         self._stop()
         for future in self._wait(seconds if self.alive else 0, concurrent.futures.ALL_COMPLETED):
             task = self.running.pop(future)
@@ -155,8 +154,8 @@ class WorkerPool(Resource):
 
     @property
     def size(self):
-        """How many tasks to have under way; 0 while there is no worker yet, of which a
-        RuntimeWarning tells.  WorkersGone: there will be none."""
+        """How many tasks to have under way; 0, with a RuntimeWarning, while a cluster lacks
+        workers.  WorkersGone: there will be none."""
         if self.client is None:
             return self.jobs or count_workers(self.executor)
         if time.monotonic() >= self.due:

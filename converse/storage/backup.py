@@ -7,16 +7,16 @@ from . import files
 from .files import ConverseError, NotSaved
 from .signals import Resource
 
-SECONDS = 1.0                       # between two writes, at least
-SHARE = 20                          # times as long as the last write took, at least
+SECONDS = 1.0                       # Between two writes is at least one second,
+SHARE = 20                          # and at least 20 times the duration of the last write.
 
 
 class Backup(Resource):
-    """Keeps the file path up to date; None: there is no file.
+    """A context that keeps the file `path` up to date; with None it keeps nothing.
 
-    The file must be new, or empty, or `resumed`, that of the run which is continued: nothing else
-    is overwritten.  ConverseError: it is another file, or cannot be written, or another run writes
-    it."""
+    The file must be new, or empty, or `resumed`, the file of the run that is continued.  Others
+    are not overwritten.  ConverseError: it is another file, or cannot be written, or another run
+    writes it."""
 
     def __init__(self, path, resumed=None):
         self.path, self.resumed = path, resumed

@@ -14,7 +14,7 @@ class ConverseError(RuntimeError):
 
 
 class NotSaved(RuntimeWarning):
-    """What a run found last is not in its file; the text says since when, and why."""
+    """The last results of a run are not in its file; the text says since when, and why."""
 
 
 def plain(text):
@@ -90,9 +90,10 @@ MADE = {                                # by the ending of its name, how a file 
 
 
 def check_output(path, what, endings, others=()):
-    """ConverseError, before the work starts, if a figure or a table (`what`) may not be written:
-    its name must have one of the endings, it must not be one of the other files of the run, and if
-    it exists it must be empty or made by this program."""
+    """Checks, before the work starts, that a figure or a table (`what`) may be written.
+
+    ConverseError: its name has none of the endings, or it is one of the other files of the run, or
+    it exists and is neither empty nor made by this program."""
     if any(other is not None and same(path, other) for other in others):
         raise ConverseError("'%s': the %s would overwrite it; name another file" % (path, what))
     ending = os.path.splitext(path)[1][1:].lower()
