@@ -1,12 +1,12 @@
-/* patch.c - a problem is read, and asked of what kind it is. */
+/* patch.c - reads a problem and answers questions about its kind. */
 #include <stdlib.h>
 
 #include "arith/special.h"
 #include "model/patch.h"
 
-enum { MOST = 300 };                    /* no number of a problem is beyond 10^MOST */
-enum { MOST_K = 100 };                  /* of a wave, and of the frame */
-enum { PHASE_PLACES = 50 };             /* of pi, for phases */
+enum { MOST = 300 };                    /* The numbers of a problem are 10^MOST at most. */
+enum { MOST_K = 100 };                  /* The integers of waves and frames are MOST_K at most. */
+enum { PHASE_PLACES = 50 };             /* Phases use pi to 50 decimals. */
 
 static void for_each(patch *p, void (*what)(apm_t))
 {
@@ -31,7 +31,7 @@ void patch_clear(patch *p) { for_each(p, apm_clear); }
 
 /* ---- reading */
 
-/* A number of the problem. */
+/* Reads a number of the problem. */
 static int read_number(apm_t x, const char *text)
 {
     apm_t size, most;
@@ -50,7 +50,7 @@ static int read_number(apm_t x, const char *text)
     return status;
 }
 
-/* A phase in units of pi becomes one in radians, without whole turns. */
+/* Converts a phase from units of pi to radians, without whole turns. */
 static void reduce(apm_t phase)
 {
     apm_t t;
@@ -153,8 +153,8 @@ int thesis_parameters(const patch *p)
     return good;
 }
 
-/* Does the exchange of the coordinates leave these amplitudes, one of each wave, alone?  All that
-   waves of one kind add up to is what counts. */
+/* Does the exchange of the coordinates keep these amplitudes, one of each wave?  Amplitudes of
+   waves with equal k and phase are added up first. */
 static int exchangeable(const patch *p, const apm_struct *const amplitude[MOST_WAVES])
 {
     int good = 1;
@@ -177,7 +177,8 @@ static int exchangeable(const patch *p, const apm_struct *const amplitude[MOST_W
     return good;
 }
 
-/* If each wave has a parameter of its own, the first two of these change places; else none does. */
+/* In the thesis's patch, whose waves have one parameter each, a and b change places.  Otherwise
+   each parameter keeps its place. */
 int patch_symmetric(const patch *p)
 {
     const apm_struct *vector[MOST_WAVES];

@@ -4,7 +4,7 @@
 #define CONVERSE_PATCH_H
 
 #include "arith/apm.h"
-#include "converse.h"                   /* which cffi reads, so it has no guard: only here */
+#include "converse.h"                   /* without a guard, as cffi reads it: only here */
 
 enum { MOST_WAVES = 16, PARAMETERS = 3 };
 
@@ -19,7 +19,8 @@ typedef struct {
 void patch_init(patch *p);
 void patch_clear(patch *p);
 
-/* Takes what Python gives, but for x*.  CV_OK; CV_ENUMBER or CV_EARGUMENT if it is no problem. */
+/* Reads the problem that Python gives; x* is set elsewhere.  CV_OK; CV_ENUMBER or CV_EARGUMENT if
+   it is not a problem. */
 int patch_read(patch *p, const cv_problem *given);
 
 int is_identity(const int frame[4]);
@@ -30,23 +31,23 @@ int thesis_parameters(const patch *p);
 /* Does the region of x_1 move with the parameters? */
 int has_shifts(const patch *p);
 
-/* Does the exchange of the coordinates map the patch and the region of x_1 to themselves?  Of a
-   region that moves nobody asks: 0. */
+/* Does the exchange of the coordinates map the patch and the region of x_1 to themselves?  0 for a
+   region that moves. */
 int patch_symmetric(const patch *p);
 
 /* The amplitudes in doubles, in the middle or, at_end, where the parameters are 1. */
 void patch_amplitudes(const patch *p, int at_end, double to[MOST_WAVES]);
 
-/* region.c: centre +- half, in units of pi, becomes an interval in radians that encloses it.
-   pi: cut off after dp places, to which the results are rounded. */
+/* region.c.  Converts centre +- half from units of pi to radians; the result encloses the interval.
+   pi is truncated after dp places, to which the results are rounded. */
 void to_radians(apm_t centre, apm_t half, const apm_t pi, long dp);
 
-/* The same of a shift, which is multiplied by t, |t| <= 1: what it is off is added to half, which
-   is in radians already. */
+/* Converts a shift, which is multiplied by t, |t| <= 1.  Its error is added to half, which is in
+   radians already. */
 void shift_to_radians(apm_t shift, apm_t half, const apm_t pi, long dp);
 
-/* Both, of the patch.  Not only the region is enclosed: a prism of it, as the radians have it,
-   holds the prism that is meant if its sides are moved outwards by off. */
+/* Converts the region and its shifts.  The result encloses the region; and each prism of it,
+   computed in radians and widened by off[j] on both sides of axis j, contains the exact prism. */
 void region_to_radians(patch *p, const apm_t pi, long dp);
 
 #endif

@@ -1,7 +1,7 @@
 /* region.c - the region of successors in radians. */
 #include "model/patch.h"
 
-/* x pi, cut off after dp places as pi is.  off: a bound of what that is off. */
+/* x becomes x pi, truncated after dp places as pi is.  off becomes a bound of its error. */
 static void times_pi(apm_t x, apm_t off, const apm_t pi, const apm_t ulp, long dp)
 {
     apm_t exact;
@@ -16,10 +16,10 @@ static void times_pi(apm_t x, apm_t off, const apm_t pi, const apm_t ulp, long d
     apm_clear(exact);
 }
 
-/* An enclosure of the region meant, with pi cut off.  The search takes a pi that is cut off well
-   before the errors of sines begin.  So the centres of prisms lie a little below the multiples of
-   pi they stand for, by more than the errors of their sines, and what depends on the sign of such
-   a sine (the column rotor) is no accident.  The pi of 1989 was short, too. */
+/* The search takes a pi that is truncated by much more than the errors of sines.  So the centres
+   of prisms lie below the exact multiples of pi by more than these errors, and the sign of such a
+   sine, on which the column rotor depends, does not depend on rounding.  The pi of 1989 was also
+   short. */
 void to_radians(apm_t centre, apm_t half, const apm_t pi, long dp)
 {
     apm_t ulp, off, above;
@@ -51,9 +51,10 @@ void shift_to_radians(apm_t shift, apm_t half, const apm_t pi, long dp)
     apm_clear(off);
 }
 
-/* Where c, s and h are centre, shifts and half-width, c + sum of s t + h u is off by what c and s
-   are, and by what h is, as |t| <= 1 and |u| <= 1.  h is longer than the one meant by what c and s
-   are off, or more; and pi is cut off.  So twice what it is longer than with that pi will do. */
+/* Let c, s and h be centre, shifts and half-width.  A side c + sum of s t + h u, |t| <= 1, |u| <=
+   1, has the errors of c, s and h.  Let err = h - (exact half) (truncated pi).  The errors of c
+   and s together are at most err, as they are part of h, and the error of h is at most err.  So
+   off = 2 err is enough. */
 void region_to_radians(patch *p, const apm_t pi, long dp)
 {
     apm_t least;

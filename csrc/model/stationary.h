@@ -1,5 +1,5 @@
 /* stationary.h - stationary points of functions on the torus, by Newton's method in plain double
-   precision.  Searches are begun there: any starting point is allowed, and no bound depends on
+   precision.  Searches begin there; any starting point is allowed, and no bound depends on
    it. */
 #ifndef CONVERSE_STATIONARY_H
 #define CONVERSE_STATIONARY_H

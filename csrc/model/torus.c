@@ -8,27 +8,31 @@
        p sin(y + t) <= p (sin y + t cos y) + |p| t^2/2.
 
    The right side is convex in t; W grows with these coefficients in the Loewner order, and trace
-   and largest eigenvalue are convex and grow with W.  So over a rectangle about v what they say of
-   W is largest at a corner.  docs/proofs/argument.md, section 4. */
+   and largest eigenvalue are convex and grow with W.  So over a rectangle about v their bounds are
+   largest at a corner.  docs/proofs/argument.md, section 4. */
 #include "model/patch.h"
 #include "model/torus.h"
 
-enum { CELLS = 20000, DEPTH = 100 };
-static const double NEAR = 5e-7, CLOSER = 1e-3, PI = 0x1.921fb54442d19p+1; /* not less than pi */
+enum { CELLS = 20000, DEPTH = 100 };    /* cells that are halved, and how often one is */
+static const double NEAR = 5e-7;        /* The last pass bounds the maximum to this. */
+static const double CLOSER = 1e-3;      /* Each pass looks more closely by this factor. */
+static const double PI = 0x1.921fb54442d19p+1;          /* not less than pi */
 
-/* A wave as cells see it: their coordinates are combinations of the angles of which it feels so
-   much; trace, and the difference of the diagonal and twice the corner, of k k'; size >= |p|. */
+/* A wave in the coordinates of the cells.  slope[j]: the derivative of k.v by coordinate j.
+   trace: of k k'.  entry: the difference of its diagonal elements, and twice the other one.  size
+   >= |p|. */
 typedef struct {
-    double feels[2], trace, does[2], size;
+    double slope[2], trace, entry[2], size;
     interval phase, p;
 } wave;
 
-/* What is bounded, over rectangles about 0 of these sides.  reach: how much, about, the square of
-   a side moves the waves. */
+/* The function that is bounded, over the rectangle about 0 with half-sides `side`.  curvature[j]
+   times the square of a side estimates by how much the waves change along it.  scale: about the
+   size of W. */
 typedef struct {
     int n, which;
     wave waves[MOST_WAVES];
-    double side[2], reach[2], all;      /* all: a size that W has, about */
+    double side[2], curvature[2], scale;
 } surface;
 
 typedef struct {
@@ -37,7 +41,8 @@ typedef struct {
 } cell;
 
 /* >= trace or largest eigenvalue of M = sum of z[i] k k': the latter is half of
-   trace + sqrt((M00 - M11)^2 + (2 M01)^2).  What is squared is scaled, lest it overflow. */
+   trace + sqrt((M00 - M11)^2 + (2 M01)^2).  Both terms are scaled before they are squared, so that
+   they do not overflow. */
 static double trace_or_eigenvalue(const surface *q, const double z[])
 {
     double trace = 0.0, size[2];
@@ -49,8 +54,8 @@ static double trace_or_eigenvalue(const surface *q, const double z[])
     for (int j = 0; j < 2; j++) {
         interval sum = { 0.0, 0.0 };
         for (int i = 0; i < q->n; i++)
-            if (q->waves[i].does[j] != 0.0)
-                sum = interval_add(sum, interval_scale(q->waves[i].does[j], interval_of(z[i])));
+            if (q->waves[i].entry[j] != 0.0)
+                sum = interval_add(sum, interval_scale(q->waves[i].entry[j], interval_of(z[i])));
         size[j] = interval_size(sum);
     }
     const double scale = larger(larger(size[0], size[1]), 0x1p-900);
@@ -61,12 +66,12 @@ static double trace_or_eigenvalue(const surface *q, const double z[])
 
 static interval along(const wave *w, const double x[2])
 {
-    return interval_add(interval_scale(w->feels[0], interval_of(x[0])),
-                        interval_scale(w->feels[1], interval_of(x[1])));
+    return interval_add(interval_scale(w->slope[0], interval_of(x[0])),
+                        interval_scale(w->slope[1], interval_of(x[1])));
 }
 
-/* >= trace or largest eigenvalue of W over the rectangle.  *middle: the value at its centre,
-   about.  On either diagonal the corners are at the displacements t and -t. */
+/* >= trace or largest eigenvalue of W over the rectangle.  *middle becomes about the value at its
+   centre.  On either diagonal the corners are at the displacements t and -t. */
 static double over(const surface *q, const double low[2], const double high[2], double *middle)
 {
     interval s[MOST_WAVES], c[MOST_WAVES];
@@ -97,13 +102,13 @@ static double over(const surface *q, const double low[2], const double high[2], 
     return top;
 }
 
-/* One pass over the torus: *best becomes the largest value seen at any centre, if larger than
-   before; the result is >= every value on the torus, and at most *best + tolerance unless depth or
-   patience ran out, when it is looser, and still a bound.  cells: how many were halved so far.
+/* One pass over the torus.  *best becomes the largest value seen at any centre, if larger than
+   before.  The result is >= every value on the torus.  It is at most *best + tolerance, unless
+   DEPTH or CELLS was reached.  *cells counts the cells that were halved.
 
-   A cell is done when its bound is at most *best + tolerance; otherwise it is halved along the side
-   whose square moves the waves most, since it is at their maxima, where they are parabolas, that
-   cells have to be small.  Both halves have the same end, so nothing is between them. */
+   A cell is done when its bound is at most *best + tolerance.  Otherwise it is halved along the
+   side with the larger curvature times square, since near a maximum the bound's excess is
+   quadratic in the sides.  Both halves have the same end, so that they leave no gap. */
 static double pass(const surface *q, double *best, double tolerance, long *cells)
 {
     cell stack[DEPTH + 2] = { { { -q->side[0], -q->side[1] }, { q->side[0], q->side[1] }, 0 } };
@@ -121,7 +126,7 @@ static double pass(const surface *q, double *best, double tolerance, long *cells
             top--;
         } else {
             const double x = k->high[0] - k->low[0], y = k->high[1] - k->low[1];
-            const int j = x * x * q->reach[0] < y * y * q->reach[1];
+            const int j = x * x * q->curvature[0] < y * y * q->curvature[1];
             k->depth++;
             *other = *k;
             k->high[j] = other->low[j] = 0.5 * k->low[j] + 0.5 * k->high[j];
@@ -131,20 +136,20 @@ static double pass(const surface *q, double *best, double tolerance, long *cells
     return most;
 }
 
-/* >= trace or largest eigenvalue of W over the torus.  Each pass looks more closely than the last,
-   whose best value spares it all but the neighbourhood of the maximum.  Cells run out where the
-   maximum is a ridge, or there are many; then the result is the best bound so far.  Nothing is
-   above what W would be with all waves at their crests, which ridges nearly reach. */
+/* >= trace or largest eigenvalue of W over the torus.  Each pass has a smaller tolerance than the
+   last, whose best value confines it to the neighbourhood of the maximum.  CELLS is reached where
+   the maximum is a ridge, or there are many maxima; then the result is the best bound so far.  It
+   is at most the value with all waves at their maxima, which ridges nearly reach. */
 static double largest(const surface *q)
 {
-    const double last = NEAR + 1e-12 * q->all;
-    double best = 0.0, most, crests[MOST_WAVES];        /* best: the mean is above */
+    const double last = NEAR + 1e-12 * q->scale;
+    double best = 0.0, most, crests[MOST_WAVES]; /* best: the mean is above */
     long cells = 0;
 
     for (int i = 0; i < q->n; i++)
         crests[i] = q->waves[i].size;
     most = trace_or_eigenvalue(q, crests);
-    for (double tolerance = 0.5 * q->all;; tolerance *= CLOSER) {
+    for (double tolerance = 0.5 * q->scale;; tolerance *= CLOSER) {
         const int done = !(tolerance > 2.0 * last);
         const double found = pass(q, &best, done ? last : tolerance, &cells);
         most = found < most ? found : most;
@@ -153,8 +158,8 @@ static double largest(const surface *q)
     }
 }
 
-/* The surface of those waves that `chosen` names.  direction: what they all feel is a multiple of
-   it, which is not zero at `main`, so that one coordinate is enough; or NULL. */
+/* The surface of the chosen waves.  direction: NULL, or a vector, not zero at `main`, of which
+   each k is a multiple, so that one coordinate is enough. */
 static surface surface_of(int n, const torus_wave waves[], const int chosen[], int which,
                           const double *direction, int main)
 {
@@ -166,23 +171,23 @@ static surface surface_of(int n, const torus_wave waves[], const int chosen[], i
         if (!chosen[i])
             continue;
         q.n++;
-        w->feels[0] = direction == NULL ? k[0] : k[main] / direction[main];
-        w->feels[1] = direction == NULL ? k[1] : 0.0;
+        w->slope[0] = direction == NULL ? k[0] : k[main] / direction[main];
+        w->slope[1] = direction == NULL ? k[1] : 0.0;
         w->trace = k[0] * k[0] + k[1] * k[1];
-        w->does[0] = k[0] * k[0] - k[1] * k[1];
-        w->does[1] = 2.0 * k[0] * k[1];
+        w->entry[0] = k[0] * k[0] - k[1] * k[1];
+        w->entry[1] = 2.0 * k[0] * k[1];
         w->phase = waves[i].phase;
         w->p = waves[i].p;
         w->size = interval_size(w->p);
         for (int j = 0; j < 2; j++)
-            q.reach[j] += w->size * sum * sum * w->feels[j] * w->feels[j];
-        q.all += w->size;
+            q.curvature[j] += w->size * sum * sum * w->slope[j] * w->slope[j];
+        q.scale += w->size;
     }
     return q;
 }
 
-/* Where all waves feel one and the same combination of the angles, or none feels both, cells in
-   one dimension are enough; those of the whole torus would crowd along ridges. */
+/* Where all waves depend on one combination of the angles, or each on one angle, cells in one
+   dimension are enough; cells of the whole torus would crowd along ridges. */
 double torus_largest(int n, const torus_wave waves[], int which)
 {
     const double flat = which == TORUS_TRACE ? 4.0 : 2.0;
@@ -215,7 +220,7 @@ double torus_largest(int n, const torus_wave waves[], int which)
         q = surface_of(n, waves, there, which, NULL, 0);
         return just_above(flat + largest(&q));
     }
-    for (int j = 0; j < 2; j++) {       /* W is diagonal, and each entry has its own angle */
+    for (int j = 0; j < 2; j++) { /* W is diagonal, and each entry has its own angle */
         direction[j] = 1.0;
         direction[1 - j] = 0.0;
         q = surface_of(n, waves, feels[j], which, direction, j);

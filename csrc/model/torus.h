@@ -16,9 +16,9 @@ static inline double divisor(double a, double b)
 }
 
 enum { TORUS_TRACE, TORUS_EIGENVALUE };
-enum { TORUS_PLACES = 12 };             /* decimals to which it makes sense to round them */
+enum { TORUS_PLACES = 12 };             /* More decimals would be below the bounds' excess. */
 
-/* A wave of beta = 2I - sum of p sin(k.v + phase) k k': k are small integers, phase and p any
+/* A wave of beta = 2I - sum of p sin(k.v + phase) k k'.  k are small integers; phase and p are any
    numbers of their intervals. */
 typedef struct {
     double k[2];
@@ -27,7 +27,7 @@ typedef struct {
 
 /* A bound from above of the largest trace, or eigenvalue, of beta over the torus and all amplitudes
    and phases of at most MOST_WAVES waves; infinite where doubles end.  It is within
-   5e-7 + 10^-12 (1 + sum of |p|) of the truth, but on ridges: see torus.c. */
+   5e-7 + 10^-12 (1 + sum of |p|) of the truth, except on ridges: see torus.c. */
 double torus_largest(int n, const torus_wave waves[], int which);
 
 #endif

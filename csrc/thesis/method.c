@@ -49,7 +49,7 @@ static void free_bench(void *work, int numbers_lost)
     free(w);
 }
 
-/* All of the problem as a prism: its parameters are those of the waves. */
+/* All of the problem as a prism; its parameters are the amplitudes of the waves. */
 static void set_root(box *root, const patch *p)
 {
     for (int j = 0; j < 3; j++) {

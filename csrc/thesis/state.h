@@ -69,7 +69,7 @@ struct R(unit) {
 
 typedef struct R(unit) state;
 
-/* To how many places quotients, roots, sines and roundings are taken from now on. */
+/* Sets the number of places to which quotients, roots, sines and roundings are taken. */
 static void set_precision(state *s, long precision)
 {
     s->precision = precision;
@@ -145,7 +145,7 @@ static void num_sincos(state *s, num_t sine, num_t cosine, const num_t x)
     (void)s;
     if (fabs(y) < SINE_LIMIT) {
         double_sincos(sine, cosine, y);
-    } else {                            /* nothing that far is more than a filter's guess */
+    } else {                            /* such an angle is for the filter only */
         sine[0] = sin(y);
         cosine[0] = cos(y);
     }
@@ -170,8 +170,8 @@ static void num_round(state *s, num_t r, const num_t x, apm_round_t dir)
     apm_round(r, x, s->precision, dir);
 }
 
-/* r >= x with W_DIGITS or one more significant digits: widths may only grow, and short ones keep
-   the matrices short. */
+/* r >= x with W_DIGITS or one more significant digits.  Widths may only grow, and short numbers
+   keep the matrices short. */
 static void num_round_width(num_t r, const num_t x)
 {
     apm_round(r, x, W_DIGITS - apm_order(x), APM_UP);

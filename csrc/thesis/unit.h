@@ -15,8 +15,8 @@ typedef struct {
     typedef struct R##unit R##unit;                                                                \
     R##unit *R##unit_new(long dp, int as_printed);              /* NULL: no memory */              \
     void R##unit_free(R##unit *u);                                                                 \
-    /* Sets the constants, to those given or, where NULL, by itself, and the first block of    \
-       the second variation.  herman_start is used as printed only.  CV_OK or an error. */   \
+    /* Sets the constants, to the given ones or, with NULL, to computed ones, and the first    \
+       block of the second variation.  herman_start serves as_printed.  CV_OK or an error. */   \
     int R##prepare_trial(R##unit *u, const box *root, const double herman_start[2],                \
                          apm_t constants[N_CONSTANTS]);                                            \
     int R##unit_constants(R##unit *u, apm_t constants[N_CONSTANTS]);    /* CV_OK or an error */    \
