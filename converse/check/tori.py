@@ -440,20 +440,9 @@ def inverse_of_mean(torus, ring, f, error):
     origin = ring.box.centre * step
     mean = small.series(n, n, [tuple([x and x[origin:origin + step] for x in entry])
                                for entry in f.entries])
-    size = power_of_two(2 * step) if step > 1 else 1
-    grids = [transform_all([complex(*[in_double(x[j], ring.bits) if j < step else 0.0
-                                      for x in entry]) for j in range(size)], [size], 1)
-             for entry in [(re, im or [0] * step) for re, im in mean.entries]]
-    try:
-        grids = list(map(list, zip(*map(inverse_in_doubles, zip(*grids)))))
-        entries = []
-        for values in grids:
-            values = transform_all(values, [size], -1)[:step]
-            entries.append(([round(math.ldexp(x.real, ring.bits)) // size for x in values],
-                            [round(math.ldexp(x.imag, ring.bits)) // size for x in values]))
-    except (ZeroDivisionError, OverflowError, ValueError):
+    guess = approximate_inverse(torus, small, mean, 0)
+    if guess is None:
         return None
-    guess = small.series(n, n, entries)
     bound = Fraction(small.norm(guess), unit)
     defect = small.norm(small.more(small.multiply(mean, guess), -1))
     rest = 1 - Fraction(defect, unit) - bound * error
