@@ -2,7 +2,7 @@
 multiples come.  Rational arithmetic; steps (T2) and (T3) of docs/proofs/checker.md.
 
 A polynomial is the tuple of its coefficients, the constant one first; an element of the field of
-its root t is that of its coordinates in 1, t, t^2.  An interval is a pair of rationals.
+its root t is the tuple of its coordinates in 1, t, t^2.  An interval is a pair of rationals.
 """
 
 import itertools
@@ -15,10 +15,10 @@ from .limits import MAX_DIVISORS
 PRIMES = [p for p in range(2, 2000) if all(p % d for d in range(2, math.isqrt(p) + 1))]
 PI_LOW, PI_HIGH = Fraction(314159265358979, 10 ** 14), Fraction(314159265358980, 10 ** 14)
 E_LOW = Fraction(271828182845904, 10 ** 14)
-SHARES = 64                             # of an edge of the unit ball
-BITS = 256                              # of the root, to begin with
-TURN_BITS = 192                         # of k.omega modulo 1
-SHY = 16                                # times the tail's bound: no larger divisors are looked at
+SHARES = 64                             # An edge of the unit ball is cut into so many parts.
+BITS = 256                              # The root is computed to these bits to begin with.
+TURN_BITS = 192                         # k.omega modulo 1 is computed to these bits.
+SHY = 16                                # Divisors above SHY times the tail's bound do not count.
 
 
 def rounded_up(x, bits=80):
@@ -29,7 +29,7 @@ def rounded_up(x, bits=80):
 
 
 def rounded_down(x, bits=80):
-    """A dyadic rational not above x >= 0, likewise."""
+    """A dyadic rational not above x >= 0, and below it by less than 2^(1-bits) of it."""
     shift = bits - x.numerator.bit_length() + x.denominator.bit_length()
     scaled = (x.numerator << max(shift, 0)) // (x.denominator << max(-shift, 0))
     return Fraction(scaled << max(-shift, 0), 1 << max(shift, 0))
@@ -64,8 +64,8 @@ def evaluate(polynomial, x):
 
 
 def is_irreducible(polynomial):
-    """Of degree 2 or 3: is there a prime modulo which it keeps its degree and has no root?  Then it
-    is irreducible.  (If it is, there are such primes: a third of all, or more.)"""
+    """Of degree 2 or 3: is there a prime modulo which it keeps its degree and has no root?
+    Then it is irreducible.  (If it is, there are such primes: a third of all, or more.)"""
     return any(polynomial[-1] % p and all(evaluate(polynomial, x) % p for x in range(p))
                for p in PRIMES)
 
@@ -202,8 +202,9 @@ def combination(numbers, vectors):
 
 
 class Norm:
-    """The norm |k| of a mode k, a sum of alpha_i |l_i.k| with integer alpha_i and l_i, the rows of
-    the frame; on a lattice, with coordinates m in which the ball is about as wide as high."""
+    """The norm |k| of a mode k, a sum of alpha_i |l_i.k| with integer alpha_i; the l_i are the rows
+    of the frame.  k is in a lattice, with coordinates m in which the ball is about as wide as high.
+    """
 
     def __init__(self, frame, alpha, basis):
         self.frame, self.alpha, self.dimension = frame, alpha, len(alpha)
@@ -369,9 +370,9 @@ class Divisors:
         return rounded_up(found)
 
     def _look(self, radius):
-        """Finds the records, (|k|, lower bound) of those 0 < |k| <= radius whose divisor is smaller
-        than SHY times the tail's bound and than those of all smaller |k|: of these k no other makes
-        a supremum larger."""
+        """Finds the records: (|k|, lower bound) of each 0 < |k| <= radius whose divisor is smaller
+        than SHY times the tail's bound, and smaller than all divisors of smaller |k|.  No other k
+        in the ball makes a supremum larger."""
         n, bits = self.power, TURN_BITS
         steps = [self.field.in_units(element, bits) for element in self.elements]
         reach = [math.floor(w * radius) for w in self.norm.widths()]

@@ -2,9 +2,9 @@
 docs/proofs/checker.md.
 
 A series is a function of n angles and perhaps of a parameter s, with values in matrices: a
-polynomial with the modes e^(i k.theta) s^j of a box, and a radius.  All is measured in the norm
-that is the sum of |F_kj| sigma^|k|, |.| being the spectral norm of a matrix: so is how far the
-function is from the polynomial, which is at most the radius.
+polynomial with the modes e^(i k.theta) s^j of a box, and a radius.  The norm is the sum of |F_kj|
+sigma^|k|, |.| being the spectral norm of a matrix.  In this norm the distance of the function from
+the polynomial is at most the radius.
 """
 
 import decimal
@@ -18,7 +18,7 @@ from .failures import NotConfirmed
 from .limits import MAX_DIGITS, MAX_TERMS
 
 FINE = 64                               # bits that norms have beyond the coefficients
-TEXTS = 1 << 14                         # numbers that are written as text at a time
+TEXTS = 1 << 14                         # Numbers that are written as text at a time.
 PARTS = 32                              # Products are computed up to a multiple of limit/PARTS.
 EXACT = decimal.Context(prec=decimal.MAX_PREC, Emax=decimal.MAX_EMAX, Emin=decimal.MIN_EMIN,
                         traps=[decimal.Inexact, decimal.Rounded, decimal.InvalidOperation])
@@ -63,8 +63,8 @@ class Box:
     @functools.cached_property
     def places(self):
         """(size, powers, turns): of each mode a power of X, below size, and a number of times that
-        X^size is taken off.  No two powers are the same, and with both (k, j) belongs to X^(at
-        steps + j), where steps = degree + 1 and `at` is a linear function of k, 1 at k = b_0."""
+        X^size is taken off.  No two powers are the same.  Both together make (k, j) belong to
+        X^(at steps + j), where steps = degree + 1 and `at` is a linear function of k, 1 at b_0."""
         steps = self.degree + 1
         for period, stride in self._periods():
             pairs = [divmod(first + stride * b + a, period)
@@ -77,7 +77,7 @@ class Box:
 
     def _periods(self):
         """(period, stride), such that a + stride b seems to be different for all k = (a, b) of the
-        box modulo the period, for a small period; then those of the smallest rectangle.
+        box modulo the period, for a small period; then the pair of the smallest rectangle.
 
         They are different if no k != 0 with a + stride b = 0 has |k| <= 2 limit.  These k are a
         lattice: vectors (x, y + 1) and (-z, y) of it are tried that are just longer.
@@ -138,8 +138,9 @@ class Series:
 class Packing:
     """How products are made of large numbers: series over a box are polynomials in X = 10^digits
     modulo X^size + 1, as (k, j) belongs to the power of X that `places` says.  With real
-    coefficients `size` is that of the places, and with complex ones twice as large: X^(size / 2) is
-    the imaginary unit.  A coefficient of a product must be below X/2 in absolute value.
+    coefficients `size` is the places' size.  With complex ones it is twice as large, and
+    X^(size / 2) is the imaginary unit.  A coefficient of a product must be below X/2 in absolute
+    value.
     """
 
     def __init__(self, box, digits, is_real):
@@ -212,8 +213,8 @@ class Ring:
 
     @functools.cached_property
     def _aside(self):
-        """What a pair of modes that is left out is at most where it comes to lie, of the product of
-        their norms, in units of 2^-FINE."""
+        """A bound, in units of 2^-FINE, for a pair of modes that is left out: where it comes to
+        lie, over the product of their norms."""
         norm, box = self.box.norm, self.box
         return self.powers[min(norm(norm.basis[0]), box.limit)] if box.degree else 1 << FINE
 
@@ -252,7 +253,7 @@ class Ring:
         return (x * y >> self.bits + FINE) + 1
 
     def rounding(self, f):
-        """What it is at most in norm, if each part of each entry is off by less than a unit."""
+        """A bound of the error's norm, if each part of each entry is off by less than a unit."""
         return (1 + len(f.entries)) * self.ones
 
     # ---- sums and products
@@ -265,7 +266,7 @@ class Ring:
         return self.more(self.series(rows, rows, [([0] * self.box.count, None)] * rows ** 2), 1)
 
     def more(self, f, number):
-        """f and so many unit matrices."""
+        """The sum of f and of a number times the unit matrix."""
         entries, at = list(f.entries), self.box.centre * (self.box.degree + 1)
         for place in range(0, len(entries), f.rows + 1):
             re, im = entries[place]
@@ -276,8 +277,8 @@ class Ring:
         """The product.  Of two modes with |k + k'| > limit it is left out, and may come to lie on
         one within: neither is more than the product of their norms.  If |k + k'| <= limit, but
         j + j' > degree, it comes to k + k' + b_0: that is at most sigma^|b_0| times as much.
-        The limit is that of the box, or a smaller one, if what is lost by it is at most 2^spared
-        times what roundings lose.
+        The limit is the box's, or a smaller one, if it loses at most 2^spared times as much as
+        roundings lose.
         """
         part, radius = self._planned(f, g, spared)
         return self.series(f.rows, g.columns, self.convolved(f, g, part), radius)

@@ -26,11 +26,11 @@ from .words import decimal_text
 
 SHARES_OF_LOSS = [Fraction(x, 20) for x in (1, 2, 4, 8, 16)]        # s of the theorem
 CHANGES = [Fraction(x, 1000) for x in (1, 2, 5, 10, 20, 40, 70, 100, 150)]     # t l0 m0 a0
-ROUGH_BITS = 64                         # of the series for the constants
-STEPS = 3                               # of the iteration, one by one, if it must be
+ROUGH_BITS = 64                         # The series for the constants have these bits.
+STEPS = 3                               # So many steps are followed one by one, if they must be.
 FEW_MODES = 1 << 14                     # Any torus may need so many. They take seconds.
-INVERSE_MODES = 64                      # of L^-1 per mode of u: sparse tori were seen to need 17
-TRIES = 6                               # of numbers of modes, for each width of the strip
+INVERSE_MODES = 64                      # Modes of L^-1 per mode of u. Sparse tori needed 17.
+TRIES = 6                               # The number of modes is raised at most so often.
 POWERS = "", "t", "t^2", "t^3"
 FAR = "the torus is too far from the straight one"
 
@@ -120,8 +120,8 @@ def allowed(constants, waves, rho, kappa, divisors, steps=0, shares=SHARES_OF_LO
                     + derivative(2 * x) + third * step * c.l ** 3 / 2)))
 
             def moved(e):
-                """What the torus moves by, in all, if the residual is e; None, if it may be more
-                than t, or the iteration need not converge."""
+                """Bounds how far the torus moves in all, if the residual is e.  None, if it may be
+                more than t, or the iteration need not converge."""
                 total = slope = Fraction(0)
                 for at, (x, move, growth) in enumerate(zip(deltas, moves, growths)):
                     last = at == steps
@@ -164,7 +164,7 @@ def roots_of_one(size, sign):
 
 
 def transform_all(values, shape, sign):
-    """Along each axis of an array of that shape, the last axis being the fastest."""
+    """Transforms an array of that shape along each axis, the last axis being the fastest."""
     step = 1
     for size in reversed(shape):
         if size > 1:
@@ -344,12 +344,12 @@ def find_constants(torus, sigma, powers):
 
 
 def constants_with(torus, ring, near, beyond):
-    """(m, eta, a, b, p) by an approximate inverse of L with modes |k| <= near; None, if it is
-    no inverse at all."""
+    """(m, eta, a, b, p) by an approximate inverse of L with modes |k| <= near; None, if L times it
+    is too far from 1."""
     n, box, step = torus.n, ring.box, torus.degree + 1
     unit, u = 1 << ring.bits + FINE, torus.series(ring, near)
     vectors = [combination(m, torus.norm.basis) for m in box.modes()]
-    # L = 1 + i u k^T, but for roundings of u, and modes beyond.
+    # L = 1 + i u k^T, except for roundings of u, and modes beyond.
     entries = []
     for i, j in itertools.product(range(n), repeat=2):
         factors = [k[j] for k in vectors for _ in range(step)]
@@ -564,17 +564,17 @@ class Residual:
 
 @dataclass(frozen=True)
 class Verified:
-    """What was found of a piece: the facts of which the report is made."""
+    """The facts of which the report of a piece is made."""
 
-    residual: Fraction                  # ||E(u)|| is at most this,
-    needed: Fraction                    # and at most this would have done
-    distance: Fraction                  # of the torus from that of the file, at real angles
-    rho: Fraction                       # the width of the strip, of |k| with integer weights
+    residual: Fraction                  # ||E(u)|| is at most this.
+    needed: Fraction                    # The theorem admits this.
+    distance: Fraction                  # The torus is within this of the file's, at real angles.
+    rho: Fraction                       # The width of the strip, for |k| with integer weights.
     constants: Constants
-    modes: int                          # of the series, whose coefficients have so many bits
-    bits: int
-    gamma: Fraction                     # |1 - e^(i k.w)| >= gamma |k|^-n for k != 0
-    basis: tuple                        # of the group of these k
+    modes: int                          # The series of the residual have these modes
+    bits: int                           # and these bits.
+    gamma: Fraction                     # |1 - e^(i k.w)| >= gamma |k|^-n for k != 0.
+    basis: tuple                        # These k are its integer combinations.
 
 
 class Setting:
@@ -666,7 +666,7 @@ def verify_width(torus, width, tell):
     needed, _ = allowed(whole, waves, rho, norm.kappa, torus.divisors)
     if needed < Fraction(1, 1 << MAX_BITS // 8):
         raise NotConfirmed("the constants are too large")
-    # What is cut off u changes E by at most so many times its norm.
+    # A part that is cut off u changes E by at most `factor` times its norm.
     factor = 4 + sum([p * k * k * g for p, k, g in waves])
     near, far = torus.extent(powers, needed / 64 / factor * unit)
     # Sums of two modes of the torus are about what products and exponentials have.
@@ -681,7 +681,7 @@ def verify_width(torus, width, tell):
         tell("the residual, with %d modes of %d bits" % (box.groups, bits))
         found = Residual(torus, ring, min(near, far))
         residual = found.polynomial + found.radius
-        # The constants are those of the whole torus; its L differs by no more than this.
+        # `whole` is about the torus before it was cut; its L differs by at most this.
         beyond = torus.derivative_outside(powers, min(near, far)) \
             + Fraction(ring.rounding(found.u), 1 << bits + FINE) * rounded_up(norm.kappa * far)
         constants = whole.after(rounded_up(beyond))
@@ -706,7 +706,7 @@ def verify_width(torus, width, tell):
 def verify_torus(claim, tell=lambda text: None, jobs=1):
     """(the report in lines, of each piece what was Verified); else a Failure is raised.
 
-    tell is told what is being done.  jobs: so many pieces are verified at a time, in processes.
+    tell is told what is being done.  jobs pieces are verified at a time, in processes.
     """
     setting, numbers = Setting(claim), range(len(claim.pieces))
     if min(jobs, len(numbers)) == 1:

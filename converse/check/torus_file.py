@@ -12,7 +12,7 @@ from .failures import NotConfirmed, Rejected
 from .limits import MAX_ALPHA, MAX_BITS, MAX_K, MAX_LINE, MAX_MODE, MAX_MODES, MAX_PIECES
 from .proof_file import parse_waves, sealed
 
-TORUS_MAGIC = b"converse torus "        # the first line, before the version
+TORUS_MAGIC = b"converse torus "        # The first line begins with this; the version follows.
 TORUS_FIELDS = ("program", "dimension", "wave", "polynomial", "root", "rotation", "frame", "alpha",
                 "rho", "pieces")
 INTEGER = re.compile("0|-?[1-9][0-9]*", re.ASCII)
@@ -35,19 +35,19 @@ class Piece:
 
 @dataclass(frozen=True)
 class TorusClaim:
-    """What a certificate of existence says: the claim, and in what norms it is to be verified."""
+    """The claim of a certificate of existence, and the norms in which it is to be verified."""
 
     dimension: int
-    waves: tuple                        # those that are present, of at most one part
+    waves: tuple                        # They are affine in at most one parameter, and not 0.
     polynomial: tuple
-    root: tuple                         # low, high
-    rotation: tuple                     # of each component its coordinates in 1, t, t^2
-    frame: tuple                        # rows
+    root: tuple                         # (low, high)
+    rotation: tuple                     # Each component is its coordinates in 1, t, t^2.
+    frame: tuple                        # It is the tuple of its rows.
     alpha: tuple
-    rho: tuple                          # of each piece the width of the strip
+    rho: tuple                          # Each piece has a width of the strip.
     pieces: tuple
-    hints: dict                         # lines of the header by name, believed by nobody
-    sha256: str                         # of the file, uncompressed
+    hints: dict                         # Lines of the header by name, which nothing rests on.
+    sha256: str                         # It is of the file, uncompressed.
 
     @property
     def has_parameter(self):

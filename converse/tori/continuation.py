@@ -2,9 +2,9 @@
 numbers, from a map where it is known: without potential, every torus is there.
 
 The number of modes follows the decay of the coefficients, in two directions at different rates.
-On the way it is no larger than the next step asks for; at its end it is as large as doubles can
-tell. Small divisors magnify the rounding errors of high modes, so an error below the noise of its
-own computation counts as zero.
+On the way the number is as large as the next step needs; at the end it is as large as doubles can
+tell. Small divisors magnify the rounding errors of high modes. So an error below the noise of its
+computation counts as zero.
 """
 
 from math import inf, isfinite, log
@@ -18,26 +18,27 @@ from .newton import EPSILON, Frame, Mesh
 from .rotation import Rotation
 from .torus import Torus, decay
 
-ROOM = 0.4                  # of a mesh's box of modes is used: products fit, too
-FLAT = 5.0                  # a decay rate; what falls faster has one or two modes
-POINTS = 1 << 21            # of a mesh, at most
-FIRST_STEP, SMALL_STEP, LEAST_STEP = 0.25, 0.01, 1e-5   # of the way to the amplitudes asked for
-SPARE = 1.25                # of the log of the smallest coefficient: amplitudes ahead need more
-ENOUGH = 1e-9               # the least coefficients that count on the way
-ASPECTS = 1.0, 0.25, 0.4, 0.6, 1.6, 2.5, 4.0, 6.0   # of rates of decay in two directions
-ITERATIONS = 9              # of Newton's method
-USEFUL, STALLED = 1e-7, 1e-12   # errors where the method stops: more modes are needed, or not
-ENLARGED = 8                # numbers of modes that are tried
-HISTORY = 4                 # tori from which the next one is extrapolated
+ROOM = 0.4                  # This part of a mesh's box of modes is used, so that products fit.
+FLAT = 5.0                  # Series that decay at this rate or faster have one or two modes.
+POINTS = 1 << 21            # A mesh has at most these points.
+# Steps are parts of the way to the amplitudes asked for.
+FIRST_STEP, SMALL_STEP, LEAST_STEP = 0.25, 0.01, 1e-5
+SPARE = 1.25                # Factor of the log of the least coefficient: the next step needs more.
+ENOUGH = 1e-9               # Smaller coefficients do not count on the way.
+ASPECTS = 1.0, 0.25, 0.4, 0.6, 1.6, 2.5, 4.0, 6.0   # Ratios of two rates of decay that are tried.
+ITERATIONS = 9              # Newton's method takes at most these steps.
+USEFUL, STALLED = 1e-7, 1e-12   # Newton's method may end at the first; at the second no mode lacks.
+ENLARGED = 8                # This often the number of modes is raised.
+HISTORY = 4                 # The next torus is extrapolated from the last HISTORY ones.
 TOO_LARGE = "too large"
 
 
 class NotFound(Exception):
     """No torus was found; the text says why, and what was reached.
 
-    reached -- the part of the way from the start to the amplitudes asked for, in [0, 1]; of a
-        range of amplitudes, the part from its lower end
-    amplitude -- there, of each wave"""
+    reached -- The last torus is at this part of the way to the amplitudes, in [0, 1].  The way
+        through a range begins at its lower end.
+    amplitude -- there, of each wave."""
 
     def __init__(self, text: str, reached: float, amplitude: Sequence[float]) -> None:
         super().__init__(text)
@@ -45,12 +46,12 @@ class NotFound(Exception):
 
 
 class Found(NamedTuple):
-    """part -- of the way
-    amplitude -- of each wave there
-    mesh, u -- the torus, as coefficients on a mesh, of the modes `keep`
-    seen -- the modes whose coefficients are above the noise
-    rates -- at which they decay in each mode number
-    reach -- log of the largest coefficient over the least that count, with some to spare
+    """part -- of the way.
+    amplitude -- of each wave there.
+    mesh, u -- The torus: coefficients on a mesh, of the modes `keep`.
+    seen -- the modes whose coefficients are above the noise.
+    rates -- These coefficients decay so in each mode number.
+    reach -- log of the largest coefficient over the least that count, with some to spare.
     """
 
     part: float
@@ -82,8 +83,8 @@ class Way:
         return Mesh.holding(self.potential, self.rotation, self.frame, np.array(box) / ROOM / 2)
 
     def follow(self, start: Optional[Found] = None) -> Found:
-        """The torus at the end of the way; `start` is that at its beginning, by default that of the
-        map without potential."""
+        """The torus at the end of the way.  `start` is the torus at its beginning, by default the
+        straight one of the map without potential."""
         known = [self._straight() if start is None else start._replace(part=0.0)]
         step = FIRST_STEP if start is None else 1.0
         while known[-1].part < 1:
@@ -148,7 +149,7 @@ class Way:
         return None
 
     def check_cost(self, points: int, layers: int = 0) -> None:
-        """NotFound: to refine a torus on a grid of so many points takes too much memory."""
+        """NotFound: to refine a torus on a grid of these points takes too much memory."""
         free = free_memory() * 3 // 4 if self.memory is None else self.memory
         memory = points * (REFINING_BYTES + LAYER_BYTES * layers)
         if memory > free:

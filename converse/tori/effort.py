@@ -6,9 +6,9 @@ import os
 
 # Seconds for each point of a grid: Newton's method in doubles, and an error with many digits.
 SOLVING, BALLS = 4e-6, 1.0e-5
-SHORT, LONGER = 128, 1.6    # bits of balls up to which these are the times; how much longer it is
-# The number of errors with many digits that take as long as refining a torus, and as refining one
-# that is a polynomial in the parameter.
+SHORT, LONGER = 128, 1.6    # Balls of more than SHORT bits take LONGER times as long.
+# Refining a torus takes as long as SINGLE errors with many digits.  If it is a polynomial in the
+# parameter, each point of sigma takes REFINING.
 SINGLE, REFINING = 2.5, 2
 # Bytes for each point of a grid while a torus is refined, and more for each point of sigma.
 REFINING_BYTES, LAYER_BYTES = 1300, 100

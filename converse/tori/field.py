@@ -16,8 +16,8 @@ Polynomial = Tuple[int, ...]            # ascending coefficients, the last not 0
 
 
 class Field(field.Field):
-    """polynomial -- irreducible, of degree 2 or 3; ascending integer coefficients
-    root -- two rational numbers between which t is its only real root"""
+    """polynomial -- irreducible, of degree 2 or 3; ascending integer coefficients.
+    root -- two rational numbers between which t is its only real root."""
 
     def __init__(self, polynomial: Polynomial, root: Ends) -> None:
         super().__init__(polynomial, *root)

@@ -21,15 +21,16 @@ from .torus import Torus, decay, family
 
 __all__ = ["NotFound", "find"]
 
-ROUNDS = 3                  # numbers of modes that are tried
-LACKING, SURE = 4.0, 0.05   # of the margin may lack so much, if the error is so small a part
-DEGREE, MOST_DEGREE = 20, 24            # in sigma
-LEAST_DEGREE = 4
-LAYERS = 32                 # points of the circle of sigma, half of which are computed
-LARGEST = 1 << 23           # points of the mesh times degree, where degrees may be chosen
-NARROWEST = 1e-5            # piece, of s
-ALL = 0.93                  # of what is left of a range: then a piece takes the rest, too
-MOST_MARGIN = 1e100         # coefficients times 2^bits are doubles on their way to integers
+ROUNDS = 3                  # This often the number of modes is chosen.
+# An error of LACKING/margin of the admissible one will do, if it is at most SURE of it.
+LACKING, SURE = 4.0, 0.05
+# The lengths of pieces are chosen for DEGREE in sigma; they have LEAST_DEGREE to MOST_DEGREE.
+LEAST_DEGREE, DEGREE, MOST_DEGREE = 4, 20, 24
+LAYERS = 32                 # Points of the circle of sigma; tori are computed at half of these.
+LARGEST = 1 << 23           # Points of the mesh times the degree are at most about this.
+NARROWEST = 1e-5            # A piece of s is at least about this long.
+ALL = 0.93                  # A piece that could cover this part of the rest takes all of it.
+MOST_MARGIN = 1e100         # Coefficients times 2^bits are doubles on their way to integers.
 
 
 def find(source: Union[SymplecticMap, Problem], rotation: Union[Rotation, str], *,
@@ -125,8 +126,7 @@ def _single(found, way, margin):
         way.check_cost(mesh.points)
         modes = Modes(mesh, aim.keep(mesh))
         bits = aim.bits(modes.k, 0, margin)
-        # With those below the noise: they belong to the errors of the others, and E does not feel
-        # both together.
+        # Modes below the noise stay: they belong to the errors of the others, and cancel in E.
         numbers = numbers_of(modes.picked(found.mesh.moved(found.u, mesh))[None], bits) \
             if torus is None else taken(modes, bits, torus)
         way.tell("refining a torus of %d modes%s" % (
@@ -192,7 +192,7 @@ class _Pieces:
                                "piece of the range, however short, at %s" % ", ".join(
                                    "%.6g" % float(p) for p in self.amplitude((low + high) / 2)),
                                float(low + 1) / 2, [float(p) for p in self.amplitude(low)])
-            else:                       # by less, if it is known now where the tori end
+            else:                       # Less is cut, if the end of the tori is known better now.
                 longest = (high - low) * (Fraction(1, 2) if self.end == guess else Fraction(7, 8))
         return tori
 
@@ -201,7 +201,7 @@ class _Pieces:
         return self._placed(begin, end, lambda way: way.follow(found))
 
     def _placed(self, begin, end, call):
-        """What a call does with the way from s = begin to s = end."""
+        """Calls a function with the way from s = begin to s = end."""
         try:
             return call(self.way(self.amplitude(begin), self.amplitude(end)))
         except NotFound as error:
@@ -209,9 +209,9 @@ class _Pieces:
             raise NotFound(str(error), (s + 1) / 2, error.amplitude) from None
 
     def _length(self, low: Fraction, found: Found, last: Found) -> Fraction:
-        """Of the piece from `low` on, whose torus is found; `last` is that at s = 1.  Between both,
-        what the theorem needs and the points of the mesh are taken for powers of the distance from
-        the end."""
+        """The length of the piece that begins at `low`, where the torus is found; `last` is the
+        torus at s = 1.  Between both, the admissible error and the points of the mesh are taken for
+        powers of the distance from the end."""
         ends = []
         for each in (found, last):
             aim = plan(each, self.margin, alpha=self.alpha)

@@ -1,8 +1,8 @@
 """Newton's method for invariant tori on a grid of angles, by fast Fourier transforms.
 
-One step is that of the theorem's proof (docs/proofs/existence.md), after Levi and Moser, and de la
-Llave, Gonzalez, Jorba and Villanueva: with L = I + Du and A = L(. - w)^T L, the correction v = L z
-of the error E solves two equations of the form g(. + w) - g = f, each a division of Fourier
+One step is the step of the theorem's proof (docs/proofs/existence.md), after Levi and Moser, and de
+la Llave, Gonzalez, Jorba and Villanueva.  With L = I + Du and A = L(. - w)^T L, the correction
+v = L z of the error E solves two equations of the form g(. + w) - g = f, each a division of Fourier
 coefficients by e^{i k.w} - 1, and leaves an error of the order of E^2.  It costs some Fourier
 transforms; no system of linear equations is solved.
 
@@ -84,8 +84,8 @@ class Mesh:
     """A grid of angles and the modes that it tells apart.
 
     The modes are the group K of the waves' k_j, with basis b: k = sum of a_i b_i.  The grid has
-    sizes[i] points in the direction dual to b_i, powers of two.  Of all k that it does not tell
-    apart it takes the one whose mode numbers m = F k are smallest: with the basis triangular, the
+    sizes[i] points in the direction dual to b_i, powers of two.  Among all k that it does not tell
+    apart it takes the one whose mode numbers m = F k are smallest.  With the basis triangular, the
     k of the grid fill a box of m, and nothing is spent on the k of Z^n that are not in K.
 
     Arrays of coefficients have the shape (components, *shape), those of values the shape
@@ -267,8 +267,8 @@ class Mesh:
         return L, _product(before.swapaxes(0, 1), L), du
 
     def correction(self, u: np.ndarray, error: np.ndarray) -> np.ndarray:
-        """The coefficients of v, in doubles, so that u + v solves the equation to second order;
-        v has no average."""
+        """The coefficients of v, in doubles, so that u + v solves the equation to second order.
+        The average of v is 0."""
         zero: tuple = (0,) * len(self.sizes)
         scale = float(abs(error).max()) or 1.0
         error = error / scale

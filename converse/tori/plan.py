@@ -29,10 +29,10 @@ Weights = Tuple[int, ...]
 
 
 class Plan(NamedTuple):
-    """frame, alpha -- of the norm |k| = sum of alpha_i |frame_i.k|
-    size -- of the largest k that matters
-    rho, needed -- the width of the strip, and about the largest ||E||_rho that the theorem takes
-    rate -- at which coefficients decay with |k|"""
+    """frame, alpha -- of the norm |k| = sum of alpha_i |frame_i.k|.
+    size -- of the largest k that matters.
+    rho, needed -- the width of the strip, and about the largest ||E||_rho that the theorem takes.
+    rate -- Coefficients decay so with |k|."""
 
     frame: Frame
     alpha: Weights
@@ -81,11 +81,11 @@ class Plan(NamedTuple):
 
 def plan(found: Found, margin: float = MARGIN, more: float = 1.0,
          alpha: Optional[Weights] = None) -> Plan:
-    """How many modes the theorem needs, and the width of the strip: the fewest for which the
-    coefficients beyond them, by their decay, are `margin` times smaller than the theorem needs;
-    then `more` times as many in each direction.
+    """How many modes the theorem needs, and the width of the strip.  They are the fewest for which
+    the coefficients beyond them, by their decay, are `margin` times smaller than the theorem needs.
+    Then they are made `more` times as many in each direction.
 
-    alpha -- weights of the norm; by default those with which the modes are the fewest"""
+    alpha -- weights of the norm; by default chosen so that the modes are the fewest."""
     theorem = _Needed(found)
     if alpha is not None or found.mesh.potential.dimension == 1:
         return theorem.plan(alpha or (1,), margin, more)

@@ -29,7 +29,7 @@ class NotProved(ConverseError):
     """The checker did not confirm the certificate of the torus; the text says why.
 
     residual, needed -- the norm of E(u) that was reached, and the largest for which the theorem
-    would hold; infinity and 0 if they are not known"""
+    would hold; infinity and 0 if they are not known."""
 
     def __init__(self, text: str, residual: float = math.inf, needed: float = 0.0) -> None:
         super().__init__(text)
@@ -41,13 +41,13 @@ class Piece(check.Verified):
     """The facts that the checker verified of one torus, of one potential or of a piece of a range.
     The numbers are rational and on the safe side.
 
-    residual -- ||E(u)||_rho <= residual; the theorem would admit `needed`
-    distance -- a bound of |u - u0| at real angles, u0 being the u of the certificate
-    rho -- the width of the strip
-    constants -- the constants l0, m0, a0, b0 and p0 of the page, as attributes l, m, a, b and p
-    modes, bits -- of the series that the checker computed with
+    residual -- ||E(u)||_rho <= residual; the theorem would admit `needed`.
+    distance -- a bound of |u - u0| at real angles, u0 being the u of the certificate.
+    rho -- the width of the strip.
+    constants -- the constants l0, m0, a0, b0 and p0 of the page, as attributes l, m, a, b and p.
+    modes, bits -- of the checker's series.
     gamma, basis -- |1 - e^{i k.w}| >= gamma |k|^-n for all k != 0 of the group with this basis,
-        the alpha of |k| being made integers by their common denominator
+        the alpha of |k| being made integers by their common denominator.
     """
 
     torus: Torus
@@ -60,9 +60,9 @@ class Piece(check.Verified):
 
 @dataclass(frozen=True)
 class ProvedTorus:
-    """A theorem, which the checker has verified: for every s of the range (for the potential, if
-    nothing varies) the map has a real analytic invariant graph, conjugate to the rotation, within
-    the pieces' distances of their tori.
+    """A theorem, which the checker has verified.  For every s of the range (for the potential, if
+    nothing varies) the map has a real analytic invariant graph, conjugate to the rotation.  Each
+    graph is within its piece's distance of the piece's torus.
 
     certificate -- the text that was verified
     seconds -- of processor time, that the checker took"""

@@ -21,9 +21,9 @@ from .plan import Plan
 from .precise import errors
 from .torus import Torus
 
-TURNS = 5                   # in which the error is computed with many digits, at most
-STEPS = 8                   # of Newton's method in each of them
-SPARE_BITS = 8              # of the digits of the error, beyond those of the coefficients
+TURNS = 5                   # The error is computed with many digits at most TURNS times.
+STEPS = 8                   # Newton's method then takes at most these steps.
+SPARE_BITS = 8              # The error has these bits more than the coefficients.
 
 
 class Modes:
@@ -52,8 +52,8 @@ class Modes:
     # the conjugate of the coefficient that -k has at sigma.  So half of the circle will do.
 
     def on_circle(self, c: np.ndarray, layers: int) -> Iterator[np.ndarray]:
-        """The sums of c_j sigma^j, c of shape (degree + 1, n, modes), on the mesh, at
-        sigma = e^{2 pi i l/layers} for l = 0, ..., layers/2; of degree 0 on a real mesh."""
+        """The sums of c_j sigma^j on the mesh, at sigma = e^{2 pi i l/layers} for l = 0, ...,
+        layers/2.  c has the shape (degree + 1, n, modes); on a real mesh the degree is 0."""
         if self.mesh.real:
             yield self.mesh.spread(self.k, c[0])
             return
@@ -136,9 +136,9 @@ def refined(torus: Torus, modes: Modes, plan: Plan, margin: float) -> Tuple[Toru
 
 
 class _Left(NamedTuple):
-    """v -- a correction of u, None for none
-    size -- about the norm of E(u + v), of which `rest` is of modes and powers of sigma that the
-        torus cannot have"""
+    """v -- a correction of u, None for none.
+    size -- about the norm of E(u + v).
+    rest -- its part in modes and powers of sigma that the torus cannot have."""
 
     v: Optional[np.ndarray]
     size: float
@@ -146,9 +146,9 @@ class _Left(NamedTuple):
 
 
 def _corrected(torus, modes, error, weights, amplitudes, layers, enough):
-    """What several steps of Newton's method lead to, given E(u) as `errors` gives it: the
-    correction is so small that doubles will do.  In norms modes are counted with their weights,
-    e^{rho |k|}; of the circle the largest norm is taken."""
+    """Takes several steps of Newton's method, given E(u) as `errors` gives it.  The correction is
+    so small that doubles will do.  In norms modes are counted with their weights e^{rho |k|}; on
+    the circle the largest norm is taken."""
     mesh, u, best = modes.mesh, torus.doubles, _Left(None, inf, 0.0)
     weights = weights * (2 if mesh.real else 1)         # which has one of k and -k, about
     rest = weights * ~modes.keep

@@ -1,7 +1,7 @@
 """Rotation vectors as exact values: elements of a real quadratic or a cubic number field.
 
 The rotation number of a torus of one angle is an element omega of Q(t), t a real root of an
-irreducible integer polynomial of degree 2; the rotation vector of a torus of two angles has two
+irreducible integer polynomial of degree 2.  The rotation vector of a torus of two angles has two
 elements of Q(t), t of degree 3, that are independent with 1 over the rationals.  Then no
 combination k.omega, k != 0, is an integer, and how near to integers they come has a lower bound
 that can be computed: converse/check/field.py.
@@ -18,17 +18,17 @@ from ..check.field import is_irreducible, roots_between
 from ..model.exact import Ends, exact
 from .field import Element, Field, Polynomial, determinant, primitive, real_roots
 
-LONGEST = 2000                          # characters of a rotation vector that is given as a text
+LONGEST = 2000                          # A text of a rotation vector has at most these characters.
 
 
 @dataclass(frozen=True)
 class Rotation:
     """A rotation vector, in turns: w = 2 pi omega.
 
-    name -- for reports; "" if it has none
-    polynomial -- ascending integer coefficients, irreducible, of degree 2 (one angle) or 3 (two)
-    root -- rationals, low < t < high, between which t is its only real root
-    vector -- of each omega_j the rational coefficients of 1, t, (t^2)
+    name -- for reports; "" for none.
+    polynomial -- ascending integer coefficients, irreducible, of degree 2 (one angle) or 3 (two).
+    root -- rationals, low < t < high, between which t is its only real root.
+    vector -- of each omega_j the rational coefficients of 1, t, (t^2).
 
     ValueError: the polynomial is reducible, the interval does not isolate a real root, or 1 and
     the omega_j are linearly dependent over the rationals.
@@ -143,7 +143,7 @@ def read_rotation(text: str, dimension: Optional[int] = None) -> Rotation:
     real root.  An element is a sum of terms such as 3/4 t^2, or a quotient of two sums in
     parentheses.
 
-    ValueError, in one line: it is none, or not of so many angles as `dimension` says.
+    ValueError, in one line: it is not a rotation vector, or not of `dimension` angles.
     """
     if len(text) > LONGEST:
         raise ValueError("the rotation vector has %d characters; %d at most" % (len(text), LONGEST))
@@ -157,7 +157,7 @@ def read_rotation(text: str, dimension: Optional[int] = None) -> Rotation:
 
 
 def rotation_of(given: Union[Rotation, str]) -> Rotation:
-    """A rotation vector as it is, or that of a text."""
+    """A rotation vector as it is, or the one that a text describes."""
     if not isinstance(given, (Rotation, str)):
         raise TypeError("the rotation vector is a Rotation, or a text such as 'golden', not %r"
                         % (given,))

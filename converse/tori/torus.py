@@ -5,10 +5,11 @@
 which invariant tori are proved to lie near.  It is on its own no claim that there is one.
 
 The map has the potential V(y) = - sum of p[j] sin(k[j].y + pi phase[j]) of converse/model, and
-angles and actions of period 2 pi.  With w = 2 pi omega for a rotation vector omega in turns, an
-invariant torus solves
+angles and actions of period 2 pi.  An invariant torus solves the equation
 
-    x(theta + w) - 2 x(theta) + x(theta - w) + grad V(x(theta)) = 0,   J = x(theta) - x(theta - w).
+    x(theta + w) - 2 x(theta) + x(theta - w) + grad V(x(theta)) = 0.
+
+Here w is 2 pi omega for a rotation vector omega in turns, and J = x(theta) - x(theta - w).
 
 For a range of parameters the amplitudes are p + s part with s in [-1, 1].  A torus covers a piece
 (low, high) of these s by polynomials in sigma = (2 s - low - high)/(high - low).
@@ -32,12 +33,12 @@ if TYPE_CHECKING:
 
 Part = Optional[Tuple[Fraction, ...]]
 NO_RANGE = Fraction(0), Fraction(0)
-ENTRIES = 10 ** 6           # of the matrix of modes and angles that is evaluated at a time
+ENTRIES = 10 ** 6           # A matrix of modes and angles has at most about these entries.
 
 
 def family(source: Union[SymplecticMap, Problem]) -> Tuple[FourierSum, Part]:
-    """The potential in the middle of the patch of a map, of the waves that are anywhere in it, and
-    what the parameter s adds to each amplitude at s = 1; None if there is no parameter.
+    """The potential in the middle of the patch of a map, and what the parameter s adds to each
+    amplitude at s = 1, None without a parameter.  Waves that are 0 in the whole patch are left out.
 
     Its dimension is 1 if all these waves have k1 = 0, else 2.
     TypeError: it is not a map, nor the problem of one.  ValueError: there is more than one
@@ -60,8 +61,8 @@ def family(source: Union[SymplecticMap, Problem]) -> Tuple[FourierSum, Part]:
 class Strip(NamedTuple):
     """In what norm the theorem is to be verified: a choice of the proof, no part of the claim.
 
-    frame, alpha -- |k| = sum of alpha[i] |frame[i].k|: n rows of n integers, n positive numbers
-    rho -- the width of the strip: ||f||_rho is the sum of |f_k| e^{rho |k|}
+    frame, alpha -- |k| = sum of alpha[i] |frame[i].k|: n rows of n integers, n positive numbers.
+    rho -- the width of the strip: ||f||_rho is the sum of |f_k| e^{rho |k|}.
     """
 
     frame: Tuple[Tuple[int, ...], ...]
@@ -71,16 +72,16 @@ class Strip(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Torus:
-    """potential -- of dimension n; its amplitudes are those at s = 0
-    part -- what s adds to them at s = 1, or None
-    rotation -- omega
-    bits -- coefficients are integers times 2^-bits
+    """potential -- of dimension n, with the amplitudes at s = 0.
+    part -- what s adds to them at s = 1, or None.
+    rotation -- omega.
+    bits -- Coefficients are integers times 2^-bits.
     k -- the modes, integers of shape (modes, n) in lexicographic order: of k and -k the one that is
-        lexicographically positive
+        lexicographically positive.
     numbers -- Python integers of shape (2, degree + 1, n, modes): the real and imaginary parts of
-        the coefficient of sigma^j in each component of u_k, times 2^bits
-    strip -- in which there is a proof, presumably; None if nothing is known of one
-    piece -- (low, high), the s that are covered; (0, 0) if there is no parameter
+        the coefficient of sigma^j in each component of u_k, times 2^bits.
+    strip -- in which there is a proof, presumably; None if nothing is known of one.
+    piece -- (low, high), the s that are covered; (0, 0) without a parameter.
     """
 
     potential: FourierSum
@@ -169,16 +170,16 @@ class Torus:
     def decay(self, direction: Optional[np.ndarray] = None, s: Optional[float] = None) -> float:
         """The rate r at which the coefficients of u fall, |u_k| < C e^{-r d(k)} about.
 
-        direction -- d(k) of each of `k`, for instance a norm; by default sum of |k_i|
-        s -- the parameter, by default that in the middle of the piece
+        direction -- d(k) of each of `k`, for instance a norm; by default sum of |k_i|.
+        s -- the parameter, by default the middle of the piece.
         It is the slope, over the outer half of the modes, of the upper concave envelope of
-        log|u_k| over d(k); infinity if there are fewer than two modes.  No bound: an estimate."""
+        log|u_k| over d(k); infinity if there are fewer than two modes.  This is an estimate."""
         far = np.abs(self.k).sum(1) if direction is None else np.asarray(direction)
         coefficients = self.doubles[0].T if s is None else self.coefficients(s)
         return decay(far, np.abs(coefficients).max(1, initial=0))
 
     def report(self) -> str:
-        """What is known of it, in a line or two: it is not proved."""
+        """A line or two about the torus, which is not proved."""
         return "%r\nCoefficients fall about as e^(-%.3g |k|), |k| the sum of |k_i|.  Nothing is " \
             "proved: tori.prove(torus) does.\n" % (self, self.decay())
 
@@ -191,7 +192,7 @@ class Torus:
 
     def save(self, path: Union[str, "os.PathLike[str]"]) -> str:
         """Writes a certificate (docs/reference/torus-certificate.md) that nothing has verified;
-        returns its SHA-256.  ValueError: the torus has no strip."""
+        returns its SHA-256.  ValueError: its strip is None."""
         from . import certificate
         return certificate.save([self], path)
 
@@ -210,7 +211,7 @@ def decay(far: np.ndarray, size: np.ndarray) -> float:
         return np.inf
     order = np.argsort(far[keep], kind="stable")
     far, height = far[keep][order].astype(float), np.log(size[keep][order].astype(float))
-    height = np.maximum.accumulate(height[::-1])[::-1]      # the largest from there on
+    height = np.maximum.accumulate(height[::-1])[::-1]      # the largest farther out
     hull: List[Tuple[float, float]] = []                    # corners of the envelope
     for point in zip(far, height):
         while len(hull) > 1 and (hull[-1][1] - hull[-2][1]) * (point[0] - hull[-2][0]) <= \
