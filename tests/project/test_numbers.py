@@ -166,6 +166,34 @@ def test_another_xstar():
     assert not sharper(POINTS["Froeschlé, B = 0.3"][1]("0.62"), xstar=("0.31", "3.04")).linked
 
 
+def test_single_points_of_planes():
+    table = re.findall(r"^\| \((.*?)\) \| [0-9.]+ \| ([0-9.]+) \| \((.*?)\) \| ([0-9,]+) \|$",
+                       PAGES["map.md"], re.MULTILINE)
+    assert len(table) == 2
+    for direction, point, xstar, prisms in table:
+        abc = [Fraction(point) * Fraction(d) for d in direction.split(", ")]
+        counts = sharper(Problem(MuldoonMap(*abc)), tuple(xstar.split(", ")))
+        assert counts.proved == number(prisms), direction
+    corner = [sharper(Problem(MuldoonMap(a, 0, "0.51"))).proved for a in ("0", "0.0005")]
+    assert corner == [*said("map.md", "at c = 0.51 the proof takes ([0-9,]+) prisms"),
+                      *said("map.md", "at a = 0.0005 the proof takes ([0-9]+)")]
+
+
+@pytest.mark.slow
+def test_the_torus_of_the_tutorial(tmp_path):
+    """Residuals differ between machines, by a factor of two."""
+    from converse import tori
+
+    text = re.search(r"```json\n(.*?)```", PAGES["first-map.md"], re.DOTALL)[1]
+    (tmp_path / "mine.json").write_text(text.replace('["0.5", "2"]', '["0.1", "0.1"]'))
+    proof = tori.prove(tori.find(read_input(tmp_path / "mine.json").map, "spiral"))
+    residual, needed, distance = map(float, re.search(
+        r"with an error of\s+about (\S+)\. .*? about (\S+), so there is a torus within (\S+) of",
+        PAGES["first-map.md"], re.DOTALL).groups())
+    assert residual / 2 < proof.residual < 2 * residual
+    assert needed / 2 < proof.needed < 2 * needed and distance / 3 < proof.distance < distance
+
+
 def test_the_thesis_method():
     for name, *_, prisms in rows("speed.md", "")[2:]:
         assert prove(given(name + ".in"), method="thesis").counts.proved == number(prisms)
