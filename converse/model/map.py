@@ -103,8 +103,8 @@ class SymplecticMap(Dynamics):
 
     @classmethod
     def read(cls, source: Any) -> "SymplecticMap":
-        """The map of an input file (docs/format.md): the five lines of 1989, or JSON of harmonics.
-        InputError: the file is neither."""
+        """The map of an input file (docs/reference/inputs.md): the five lines of 1989, or JSON.
+        Parameters and errors as of converse.read_input."""
         from .inputs import read_input
         return read_input(source).map
 
@@ -155,8 +155,18 @@ class SymplecticMap(Dynamics):
     # ---- other maps
 
     def at(self, **values: Number) -> "SymplecticMap":
-        """The map, or smaller family, at these values of parameters, which may lie outside of their
-        ranges.  ValueError: a parameter has another name."""
+        """The map, or smaller family, at values of some parameters.
+
+        Parameters
+        ----------
+        values
+            Exact numbers by the names of parameters; they may lie outside of the ranges.
+
+        Raises
+        ------
+        TypeError, ValueError
+            A parameter has another name, or a value is not an exact number.
+        """
         for name in values:
             if name not in self.names:
                 raise ValueError("there is no parameter %.40s: the parameters are %s"
@@ -166,7 +176,8 @@ class SymplecticMap(Dynamics):
             ) if values else self
 
     def scaled(self, factor: Number) -> "SymplecticMap":
-        """The map whose amplitudes are this number times as large."""
+        """The map whose amplitudes are multiplied by an exact number.  TypeError, ValueError: it is
+        not an exact number."""
         times = exact(factor)
         return replace(
             self, amplitude=tuple(times * p for p in self.amplitude),

@@ -4,7 +4,7 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
 from math import gcd
-from typing import TYPE_CHECKING, Optional, Sequence, Tuple, Union
+from typing import TYPE_CHECKING, List, Optional, Sequence, Tuple, Union
 
 from .exact import Ends, Number, decimal_text, exact, is_decimal, outward, range_text
 from .lattice import echelon
@@ -105,7 +105,23 @@ class Problem:
     @classmethod
     def around(cls, centre: Sequence[Number], half: Sequence[Number],
                comments: Union[str, Sequence[str]] = (), together: bool = False) -> "Problem":
-        """From the centres and the half-widths of a, b, c, v0 and v1, as in an input file."""
+        """The problem of an input file of 1989.
+
+        Parameters
+        ----------
+        centre, half
+            Five exact numbers each: centres and half-widths of a, b, c, v0 and v1, the latter two
+            in units of pi.
+        comments
+            For the report and the proof file.
+        together
+            Whether a, b and c move together, as in MuldoonMap.
+
+        Raises
+        ------
+        TypeError, ValueError
+            A number is not exact, a half-width is negative, or there are not five of each.
+        """
         if not len(centre) == len(half) == len(NAMES):
             raise ValueError("there are %d centres and %d half-widths where five belong: of a, b, "
                              "c, v0 and v1" % (len(centre), len(half)))
@@ -209,8 +225,9 @@ class Problem:
         """x_1 = (f[0] v0 + f[1] v1, f[2] v0 + f[3] v1)."""
         return self._best_frame() if self.axes is None else self.axes
 
-    def _present(self):
-        """The waves that are anywhere in the patch: their (k0, k1), and their amplitudes' size."""
+    @cached_property
+    def present(self) -> List[Tuple[Tuple[int, int], Fraction]]:
+        """The waves that are nonzero somewhere in the patch: (k0, k1), and |p| in its middle."""
         return [((k0, k1), abs(p)) for (k0, k1, _), p, *parts
                 in zip(self.waves, self.amplitude, *self.parts) if p or any(parts)]
 
@@ -218,7 +235,7 @@ class Problem:
         """The frame where none is given.  If all waves depend on one q.y, which is not a
         coordinate, v0 moves along lines of constant q.y, and need not be cut.  The region of such a
         frame must be the whole torus."""
-        directions = {(k0 // gcd(k0, k1), k1 // gcd(k0, k1)) for (k0, k1), _ in self._present()}
+        directions = {(k0 // gcd(k0, k1), k1 // gcd(k0, k1)) for (k0, k1), _ in self.present}
         q = max(directions, default=(0, 0))
         if not directions <= {q, (-q[0], -q[1])} or 0 in q or not self.full_torus:
             return IDENTITY
@@ -238,8 +255,8 @@ class Problem:
 
     def _best_alone(self):
         """The coordinate with the larger V'', or None where a wave depends on both."""
-        bends = [sum(p * k[i] ** 2 for k, p in self._present()) for i in range(2)]
-        felt = {tuple(map(bool, k)) for k, _ in self._present()}
+        bends = [sum(p * k[i] ** 2 for k, p in self.present) for i in range(2)]
+        felt = {tuple(map(bool, k)) for k, _ in self.present}
         return int(bends[1] > bends[0]) if felt == {(True, False), (False, True)} else None
 
     @property
@@ -268,7 +285,7 @@ class Problem:
     @property
     def is_flat(self) -> bool:
         """Do the waves that the search needs depend on one combination of the angles?"""
-        k = [wave for wave, _ in self._present()]
+        k = [wave for wave, _ in self.present]
         return self.factor is not None or all(a * d == b * c for a, b in k for c, d in k)
 
     # ---- ranges

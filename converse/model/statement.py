@@ -165,10 +165,9 @@ def _epsilon(problem, at_once):
 
 
 def one_angle(problem):
-    """The only angle that a wave depends on; None: both are, or none."""
-    felt = {(bool(k0), bool(k1)) for (k0, k1, _), p, *parts
-            in zip(problem.waves, problem.amplitude, *problem.parts) if p or any(parts)}
-    return {((True, False),): 0, ((False, True),): 1}.get(tuple(felt))
+    """The only angle that the waves depend on; None: they depend on both or on none."""
+    return {((True, False),): 0, ((False, True),): 1}.get(
+        tuple({(bool(k0), bool(k1)) for (k0, k1), _ in problem.present}))
 
 
 def number_text(x):

@@ -191,8 +191,21 @@ class ParameterMap:
 
     def plot(self, ax: Any = None,
              tori: Iterable[Tuple[Fraction, Fraction, Fraction]] = ()) -> Any:
-        """Draws the map into Axes of matplotlib, which are returned; with None as a Figure, which a
-        notebook shows.  tori: the (a, b, c) of proved tori (parameters.tori.proved_points)."""
+        """Draws the map in its plane of a, b and c.
+
+        Parameters
+        ----------
+        ax
+            Axes of matplotlib, which are drawn into and returned.  With None a Figure is returned,
+            which a notebook shows.
+        tori
+            The (a, b, c) of proved tori (parameters.tori.proved_points).
+
+        Raises
+        ------
+        ConverseError
+            matplotlib is missing, or the frontier is not estimated yet.
+        """
         from ..draw import map_figure
         return map_figure.page(self, ax, list(tori))
 

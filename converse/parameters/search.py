@@ -182,17 +182,37 @@ def explore(name: Optional[str] = None, down_to: Optional[Number] = None, *, pat
             resume: bool = False, jobs: Optional[int] = None,
             executor: Optional[concurrent.futures.Executor] = None, time_limit: float = math.inf,
             progress: Optional[Callable[[float, ParameterMap], None]] = None) -> ParameterMap:
-    """Proves what can be proved of a region, and returns the ParameterMap, which is kept in a file.
+    """Proves for as many (a, b, c) of a region as possible that there are no invariant tori.
 
-    name: "b=0", "a=b" or "c=0".  down_to: how near to the estimated frontier to come, as
-    a ratio above 1 (1.05).
-    path: of the new file or, with resume, of the map to continue.
-    jobs: cells at a time, by default one per core; executor: whose workers they are, by default
-    threads of this process.
-    time_limit: after about this number of seconds the map is left as it is.
-    progress(share, map) is called a few times a second; share: of the area that is to be proved.
+    Parameters
+    ----------
+    name
+        The region: "b=0", "a=b" or "c=0".  With resume it may be left out.
+    down_to
+        How near to the estimated frontier to come, as a ratio from 1 to 100; by default 1.05.
+    path
+        The file that keeps the map: a new one or, with resume, the map to continue.
+    resume
+        Whether the map of the file is continued.
+    jobs, executor
+        The number of cells at a time, by default one per core; the executor that works on them, by
+        default threads of this process.
+    time_limit
+        The search ends after about this number of seconds.
+    progress
+        progress(share, map) is called a few times a second, with the proved share of the area that
+        is to be proved.
 
-    ConverseError, MemoryError: what was found is in the file.  ValueError: an argument is wrong.
+    Returns
+    -------
+    ParameterMap
+
+    Raises
+    ------
+    ValueError
+        An argument is wrong.
+    ConverseError, MemoryError
+        The run ended; the cells that are proved are in the file.
     """
     ratio = None if down_to is None else exact(down_to)
     if ratio is not None and not 1 < ratio <= 100:

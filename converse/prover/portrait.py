@@ -95,7 +95,8 @@ class Portrait:
     @classmethod
     def new(cls, source: Union[SymplecticMap, Problem], columns: int = 600, depth: int = 15,
             strips: bool = True) -> "Portrait":
-        """ValueError: the numbers or the map do not suit."""
+        """An empty portrait of a map, for which portray() finds the columns.  Parameters and errors
+        as of portray()."""
         problem = _of_circle(Problem.of(source))
         for name, value, most in (("columns", columns, MOST_COLUMNS), ("depth", depth, 1000)):
             if isinstance(value, bool) or not isinstance(value, int) or not 1 <= value <= most:
@@ -198,9 +199,21 @@ class Portrait:
             self.problem.map, len(self.found), self.columns, 100 * self.undecided)
 
     def plot(self, ax: Any = None, tori: Sequence[Any] = ()) -> Any:
-        """Draws the portrait into Axes of matplotlib, which are returned; with None as a Figure,
-        which a notebook shows.  tori: proved circles (ProvedTorus), which are drawn
-        in colour."""
+        """Draws the portrait: y to the right, y' - y upwards, in radians.
+
+        Parameters
+        ----------
+        ax
+            Axes of matplotlib, which are drawn into and returned.  With None a Figure is returned,
+            which a notebook shows.
+        tori
+            Proved circles (ProvedTorus), which are drawn in colour.
+
+        Raises
+        ------
+        ConverseError
+            matplotlib is missing.
+        """
         from ..draw import portrait_figure
         return portrait_figure.page(self, ax, tori)
 

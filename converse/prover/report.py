@@ -15,14 +15,7 @@ from .report_1989 import deeper, quoted
 from .settings import REGION, THEOREM
 
 TINY = 1e-10                            # half-width of an angle, in units of pi
-REASONS = (                             # in the order of csrc/converse.h
-    "the orbit of the centre contradicts nothing",
-    "the prism was too large",
-    "the orbit grew too long",
-    "a matrix could not be inverted",
-    "the arithmetic failed",
-    "only the double-precision try succeeded",
-)
+REASONS = (report_1989.REASONS[0], "the prism was too large", *report_1989.REASONS[2:])
 
 
 def header(proof):

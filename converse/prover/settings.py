@@ -13,16 +13,26 @@ THEOREM, REGION, UNDECIDED, AS_PRINTED = "theorem", "region", "undecided", "as p
 
 @dataclass(frozen=True)
 class Settings:
-    """All that the tree of a search depends on beside the problem and x*.
+    """The settings on which the tree of a search depends, beside the problem and x*.
 
-    method: "thesis", the criterion of 1989 in exact decimals, or "loewner", the sharper one in
-    doubles with proved rounding.
-    depth: the most cuts of a prism (None: 30, or 120 with the sharper method).
-    digits: decimal places of the thesis's rigorous arithmetic.
-    stubborn: go on after a prism that cannot be decided.
-    as_printed: follow the thesis's listing to the letter, which proves nothing.
+    Parameters
+    ----------
+    method
+        "thesis", the criterion of 1989 in exact decimals, or "loewner", the sharper criterion in
+        doubles with proved rounding.
+    depth
+        The most cuts of a prism; None: 30, or 120 with the sharper method.
+    digits
+        Decimal places of the thesis's rigorous arithmetic.
+    stubborn
+        Whether the search goes on after a prism that cannot be decided.
+    as_printed
+        Whether the thesis's listing is followed to the letter, which proves nothing.
 
-    ValueError: a value makes no sense, or two exclude each other.
+    Raises
+    ------
+    ValueError
+        A value is out of range, or two exclude each other.
     """
 
     method: str = "thesis"
@@ -49,8 +59,8 @@ class Settings:
                              "does not go with loewner")
 
     def accept(self, problem: Problem) -> Problem:
-        """The problem as this method takes it: the thesis's knows of no frames, and does not look
-        at one coordinate alone.  ValueError: the method cannot treat the problem."""
+        """The problem as this method takes it: the thesis's method has neither frames nor a
+        coordinate that is examined alone.  ValueError: the method cannot treat the problem."""
         if problem.shifts:
             raise ValueError("only the region of a further starting point moves with the "
                              "parameters, not that of a whole proof: give no shifts")

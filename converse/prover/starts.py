@@ -197,13 +197,12 @@ def _best_start(image, others):
 
 
 def _ways(problem):
-    """Along the axes of the frame and across, each of length 1; only those that the waves feel
-    where they feel one combination of the angles."""
+    """Directions of length 1: along the axes of the frame and across.  Where the waves depend on
+    one combination of the angles, only along its gradient."""
     columns = [problem.frame[i::2] for i in range(2)]
     ways = [*columns, *([a + sign * b for a, b in zip(*columns)] for sign in (1, -1))]
     if problem.is_flat:
-        ways = [next((k0, k1) for (k0, k1, _), p, *parts in zip(
-            problem.waves, problem.amplitude, *problem.parts) if p or any(parts))]
+        ways = [problem.present[0][0]]
     return [tuple(Fraction(sign * x, max(map(abs, way))) for x in way)
             for way in ways if any(way) for sign in (1, -1)]
 
