@@ -39,7 +39,8 @@ SUN = ("0.0278", 500.0), ("0.0276", 759.0), ("0.0274", 2698.0)
 # Their boxes, of half-width 0.00125 in a: what each proves, and the centre.
 BOXES = (("0.0278", "0.313"), ("0.02763", "0.311"), ("0.0274", "0.3085"), ("0.0272", "0.306"))
 
-# Every epsilon from there to TOP is proved to have no torus; and the last proof, not repeated:
+# For every epsilon from the proof's to TOP the absence of tori is proved.  The last proof is not
+# repeated:
 # epsilon, CPU seconds, release.
 BOUNDS = ("0.0272", "0.0250", "0.0220", "0.0200", "0.0180", "0.0160", "0.0152", "0.0148", "0.0144",
           "0.0142", "0.0141", "0.0140", "0.01391", "0.0139")
@@ -178,7 +179,7 @@ def width(quick):
 
 
 def taylor_width(kernels, extents):
-    """The same for the sharper method's Taylor models, several prisms at once, sines included."""
+    """The same for the sharper method's Taylor models, several prisms together, sines included."""
     (p, dp), (v, dv) = PARAMETERS, SUCCESSOR
     for n in POINTS:
         values = [*p, *v, *dp, *dv, *XSTAR, 0, n, 20000]

@@ -3,11 +3,11 @@
     python experiments/diagonal.py [--quick]
 
 The diagonal is invariant, and the map on it is area-preserving.  Where that map has an invariant
-circle that runs round, an orbit on the circle starts from every x* of the diagonal; within the
-diagonal its second variation is positive, and if it is across, too, no proof can succeed from
-there.  This prints the onsets (orbits.onset) of that map's orbits of noble rotation numbers, the
-last first; whether the successors that resist longest lie on the diagonal; and how many points
-to either side contradict all sampled successors on the diagonal of one x*.
+circle that runs round, an orbit on the circle starts from every x* of the diagonal.  Within the
+diagonal its second variation is positive.  If it is also positive across the diagonal, no proof can
+succeed from such an x*.  This prints the onsets (orbits.onset) of that map's orbits of noble
+rotation numbers, the last first; whether the successors that resist longest lie on the diagonal;
+and how many points to either side contradict all sampled successors on the diagonal of one x*.
 
 All that is found here is seen, not proved.  A few minutes.
 """

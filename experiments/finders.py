@@ -48,7 +48,7 @@ def flow(state, eps=None, grad_size=1e-6, max_steps=10000, dt=0.5):
 
 
 def timed(function):
-    """What it returns, and the least of REPEAT times."""
+    """The result of a call, and the least time of REPEAT calls, in seconds."""
     seconds = []
     for _ in range(REPEAT):
         begun = time.perf_counter()

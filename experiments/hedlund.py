@@ -70,7 +70,7 @@ def gains(types, eps, long):
 
 
 def beginning(types, long):
-    """The eps where both are alike, by bisection, if it is between FROM and TO."""
+    """The eps where both have the same action, by bisection, if it is between FROM and TO."""
     low, high = FROM, TO
     while high - low > 1e-12:
         middle = (low + high) / 2
@@ -154,7 +154,7 @@ def main(arguments=None):
         if not options.eps and types.least(TO).low > types.long[TO].high:
             unit = 10.0 ** -DIGITS
             below, above = (round(unit * round(begins / unit + k), DIGITS) for k in (-1, 1))
-            print("They are alike at eps %.10f: seen." % begins)
+            print("Both have the same action at eps %.10f: seen." % begins)
             at(types, below)
             at(types, above)
             pieces = everywhere(types, long, above, TO)

@@ -2,11 +2,11 @@
 
     python experiments/rays.py MAP DIRECTORY [--points N] [--named]
 
-On some rays of the map (converse-map) rotation vectors are looked for whose tori last long
-(vectors.py), and written to DIRECTORY/vectors.txt.  With --named there is no search: a few vectors
-are tried that suit the line a = b = c/2.  On all rays the one seen to last longest is proved, for
-amplitudes as large as a search on a grid of N points reaches, and its certificate written into the
-directory.  What is there, the list or a certificate, is not made again.
+On some rays of the map (converse-map) a search (vectors.py) looks for rotation vectors whose tori
+last long, and writes them to DIRECTORY/vectors.txt.  With --named a few vectors that suit the line
+a = b = c/2 are tried instead of a search.  On each ray the torus that is seen to last longest is
+proved, for amplitudes as large as a search on a grid of N points reaches.  Its certificate is
+written into the directory.  A list or a certificate that exists is not made again.
 `converse-map --tori DIRECTORY -g FILE MAP` draws the tori.
 """
 
@@ -26,12 +26,13 @@ from converse.parameters.tori import ENDING
 from converse.storage import files
 from converse.tori.torus import family
 
-FINEST = 8                              # intervals of a face between the rays, at most
-SEARCHED = 2                            # intervals of a face between the rays of a search, at most
+FINEST = 8                              # The rays cut a face into at most this many intervals.
+SEARCHED = 2                            # The rays of a search cut it into at most this many.
 POINTS = 1 << 18
 NAMED = {1: ("golden",), 2: ("T49", "V1", "seven")}     # by the number of angles
-UNIT = Fraction(1, 10 ** 5)             # radii are multiples of it
-REACH = 0.6                             # of where a torus is seen to end: where a proof is tried
+UNIT = Fraction(1, 10 ** 5)             # Radii are multiples of it.
+REACH = 0.6                             # A proof is tried at this part of the radius where a torus
+                                        # is seen to end.
 
 
 def potential(d, radius):
@@ -54,7 +55,7 @@ def rays(found):
 
 
 def prove_tori(found, directory, rotations, points):
-    """Proves a torus on each ray of a map that has no certificate in the directory, and writes its
+    """Proves a torus on each ray of a map that lacks a certificate in the directory, and writes its
     certificate there, named by the face and the place of the ray.
 
     rotations(d, estimate) -- the rotation vectors that are tried along the direction d, where the
@@ -76,7 +77,7 @@ def prove_tori(found, directory, rotations, points):
 
 
 def problem(d, radius):
-    exact = max(1, round(radius / UNIT)) * UNIT         # not 0, where there is no wave
+    exact = max(1, round(radius / UNIT)) * UNIT         # at 0 the map has no waves
     return Problem(SymplecticMap(THESIS, [exact * x for x in d]))
 
 

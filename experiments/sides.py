@@ -1,4 +1,4 @@
-"""What a proof costs near break-up, on both sides of it and for two maps.
+"""The cost of proofs near break-up, on both sides of it and for two maps.
 
     python experiments/sides.py [DIRECTORY] [--quick] [--draw]
 

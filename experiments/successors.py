@@ -88,7 +88,7 @@ def image(proof):
 def plane(proof):
     """The shares undecided at PIXELS x PIXELS successors x_1 - x* from -pi to pi.  Shifts, the
     reversal of time and the exchange of the angles bring all of them into the region
-    (docs/proofs/argument.md, section 2), whose frame is that of the diagonals."""
+    (docs/proofs/argument.md, section 2), whose frame consists of the diagonals."""
     (low0, high0), (low1, high1) = (map(float, ends) for ends in (proof.problem.v0,
                                                                   proof.problem.v1))
     assert proof.problem.frame == (1, 1, 1, -1) and (low1, high1) == (0, 1)

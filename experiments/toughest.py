@@ -41,7 +41,7 @@ SPREAD = 0.7548776662466927, 0.5698402909980532
 # Invariant tori were seen by Fourier series near this vector up to TORI.
 NEAR = 0.295401276 + 0.003327283, 0.295401276 - 0.003327283
 TORI = 0.0121
-NO_TORI = 0.01389, 0.0272               # proved from there on by this program, and in 1989
+NO_TORI = 0.01389, 0.0272               # for every larger eps: by this program, and in 1989
 TORUS_UP_TO = 0.008                     # a torus is proved for every eps from 0 (tori.md)
 TORUS_AT = 0.010, 0.011, 0.0115, 0.0120     # and for these
 TOP = 0.0335                            # of the picture

@@ -4,8 +4,8 @@
     family = orbits.follow(orbits.trig, (1432, 1897), 2513, [0.0025, 0.005, 0.0075, 0.01])
     print(family[-1].label, family[-1].exponents)
 
-The states of a SymplecticMap have its units, angles of period 2 pi; those of the potentials with
-names have angles of period 1, as in the thesis.
+The states of a SymplecticMap have its units, angles of period 2 pi.  The potentials with names have
+states with angles of period 1, as in the thesis.
 """
 
 try:
@@ -16,7 +16,7 @@ try:
     from .solver import Family, follow, straight
     from .state import PeriodicOrbit
     from .sweep import Onset, onset, onsets, read_csv, sweep
-except ImportError as _error:           # said when something is asked for: the command needs a line
+except ImportError as _error:           # raised when a name is used: the command needs a line
     _MISSING = ("converse.orbits needs numpy and the C core (%s); pip install "
                 "'converse-kam[orbits]'" % _error)
 

@@ -72,7 +72,7 @@ def unit(n, x=1):
 
 
 def norm(x):
-    """Not below the norm of any matrix in a ball: the sum of all entries' sizes."""
+    """An upper bound of the norm of every matrix in a ball: the sum of all entries' sizes."""
     return sum(map(abs, x.entries()), arb(0)).upper()
 
 
@@ -82,7 +82,7 @@ def square(v):
 
 
 def points(start, stop, step=1):
-    """A range; a thread that shall end does so here."""
+    """A range.  A thread that was told to end does so here."""
     for i, j in enumerate(range(start, stop, step)):
         if i % POINTS_PER_POLL == 0:
             look_up()
@@ -207,22 +207,23 @@ class Enclosure:
             self.tell(places, self.rounds)
 
     def noise(self):
-        """About the least that can be asked of the gradient."""
+        """About the smallest gradient that these places can show."""
         radii = sum((square(force - force.mid()) for force in self.force), arb(0))
         return upper(radii.upper().sqrt() + 4 * self.ulp * arb(2 * self.q).sqrt())
 
     def displacements(self):
         return tuple(tuple(_fraction(i) for i in u.entries()) for u in self.u)
 
-    # ---- eliminations, of midpoints: what they find serves as a guess, which is then checked
+    # ---- eliminations, of midpoints: their results are guesses, which are checked later
 
     def _eliminate(self, shift, links=None, force=None):
         """The points 1, 2, ..., q - 1 of the chain from point 0 once round to point 0 again are
         eliminated, with beta + shift for beta.  Returns E, which that adds to the block of the
         first point, F, where -F couples it to the last, and G, the block of the last.  None: a
         pivot is not positive definite.
-        links: a list that receives each point's inverse pivot, what couples it to the first point,
-        and its right-hand side, -force and what is eliminated; of the last point that alone."""
+        links: a list that receives for each point its inverse pivot, its coupling to the first
+        point, and its right-hand side, which is -force and the eliminated terms; for the last point
+        the right-hand side alone."""
         self.begin(self.places)
         zero, shift = unit(self.n, 0), unit(self.n, shift)
         before, E, F, side = zero, zero, unit(self.n), arb_mat(self.n, 1)
@@ -323,7 +324,7 @@ class Enclosure:
                 return None
             following = self.beta[j % self.q] + shift - turned
             s.append(following.mid())
-            radii += following - s[-1]                      # all of them: more than any
+            radii += following - s[-1]      # The sum of the radii bounds each.
         return s if norm(radii) <= self.margin else None
 
     def below(self, m):

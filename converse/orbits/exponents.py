@@ -98,7 +98,8 @@ def _of_cone(matrices):
     |y| <= kappa x was found that the whole round takes into itself.  The first guess is twice what
     becomes of the direction alone."""
     def carried(kappa):
-        """Into which cone this one is taken, and between what x grows in it.  None: x may vanish.
+        """The cone into which this one is taken, and bounds of the growth of x in it.  None: x may
+        vanish.
         (kappa has all digits: a radius has nine, and the cone may shrink by less.)"""
         low = high = arb(1)
         for j in points(0, len(matrices)):

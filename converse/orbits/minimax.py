@@ -4,7 +4,7 @@ A minimum x of type (p, q) has copies of the same action, x_{j+r} less whole tur
 displaced by the vectors r p/q + m of a lattice.  On the way to one of them, through sequences of
 points of the same type, the action rises at least to the action of a pass.  A pass is also an
 orbit: a saddle with one direction down.  With one angle it is the minimax orbit of the Birkhoff
-pair, and the difference of action is the flux through the gap of the (p, q) cantorus approximant
+pair.  The difference of action is then the flux through the gap of the (p, q) cantorus approximant
 (MacKay, Meiss and Percival, Physica D 13, 1984).
 
 The coordinate in which the two differ most is held, and the action minimized over all others, from

@@ -15,7 +15,7 @@ FEW = 300                               # points that are drawn larger
 MOST_STATES = 40                        # in a picture
 WIDTH, HEIGHT = 6.2, 3.25               # of the picture of a state, in inches
 LOST = 1e-13                            # distances below are rounding
-PLOTTED = {                             # what Family.plot draws: the name of its axis
+PLOTTED = {                             # The columns of Family.plot, with the names of their axes.
     "action": "action per point less $|p/q|^2/2$",
     "exponents": "Lyapunov exponents",
     "residue": "Greene's residue",
@@ -25,7 +25,8 @@ PLOTTED = {                             # what Family.plot draws: the name of it
     "grad_size": r"root mean square of $|\partial L/\partial x_j|$",
     "undetermined": "near-null directions",
 }
-PARTS = {"exponents": ("first", "second"),      # of what is more than one number
+# The names of the parts of columns that have several numbers.
+PARTS = {"exponents": ("first", "second"),
          "deviation": ("from the line through $x_0$", "from the line at $\\varepsilon = 0$",
                        "from the best line")}
 SCALES = {"shadow": {"value": "log"}, "grad_size": {"value": "log"},
@@ -163,8 +164,8 @@ def square(state):
 # ---- several states
 
 def rows(page, shown, more=None):
-    """A row of panels for each of some Shown, with what is known of it; returns what is to be said
-    of all of them.  more(state) adds words to the title of each."""
+    """Draws a row of panels for each of some Shown, with its kind and measures in the title, and
+    returns a caption for all of them.  more(state) adds words to the title of each."""
     grid = page.subplots(len(shown), shown[0].state.potential.n, squeeze=False,
                          gridspec_kw={"hspace": 0.42})
     lost = []
@@ -199,8 +200,8 @@ def rows(page, shown, more=None):
 
 
 def states_picture(states, kind="svg", caption=True):
-    """States of a potential, or what prove() made of them, as the bytes of a file of that kind:
-    their angles and momenta; with a caption or without."""
+    """The angles and momenta of states of a potential, or of proved orbits, as the bytes of a file
+    of that kind; with a caption or without."""
     if kind not in plot.FORMATS:
         raise ValueError("figures are %s, not %s" % (", ".join(plot.FORMATS), kind))
     shown = [Shown.of(one) for one in states]

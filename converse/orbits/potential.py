@@ -153,7 +153,7 @@ class Potential(Dynamics):
         raise TypeError("the potential %s cannot be sent to another process" % self.name)
 
     def _key(self) -> tuple:
-        """All that makes the potential what it is: two with the same key are equal."""
+        """The values that define the potential: two with the same key are equal."""
         return self.name, self.n, self.start, self.formula, self.curvature, self.lipschitz
 
     def __eq__(self, other: object) -> bool:
@@ -181,7 +181,7 @@ class Potential(Dynamics):
 class Fourier(Potential):
     """A finite Fourier sum, V(x) = scale * sum of cosine cos(2 pi k.x) + sine sin(2 pi k.x).
 
-    terms -- {k: (cosine, sine)}, k a tuple of n integers; floats are taken as what they are exactly
+    terms -- {k: (cosine, sine)}, k a tuple of n integers; floats stand for their exact values
     start -- a maximum of V; by default one is looked for
 
     The scale is 1.  Fourier.of takes the potential of a map, whose scale is 1/(4 pi^2).
@@ -369,7 +369,8 @@ def cv_python_potential(handle, m, x, value, gradient, hessian):
     return lib.CV_OK
 
 
-_mine = threading.local()   # error: what stopped this thread's C; stop: an Event, set to end it
+# Of each thread: `error`, the exception that ended its C; `stop`, an Event that ends the thread.
+_mine = threading.local()
 
 
 def look_up():

@@ -1,8 +1,7 @@
-"""Proved orbits: that a true orbit lies beside a state, what it is, its action and its exponents.
+"""Proofs that a true orbit lies beside a state, with bounds of its action and its exponents.
 
-docs/proofs/proved-orbits.md has the theorems and their proofs; enclosure.py and exponents.py bound
-in balls all that has as many terms as the orbit has points; here the few numbers that remain are
-put together, as exact rationals.
+docs/proofs/proved-orbits.md has the theorems and their proofs.  enclosure.py and exponents.py bound
+all sums over the points of the orbit, in balls.  This module combines them as exact rationals.
 """
 
 import math
@@ -28,7 +27,7 @@ EXACT_NULL = Fraction(NULL_EIGENVALUE)
 
 
 class NotProved(ConverseError):
-    """No theorem; the text says why.  Nothing is said against the orbit."""
+    """The orbit is not proved, for the reason in the text.  It may exist all the same."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -226,7 +225,7 @@ def _attempt(state, exact, growth, places, wanted):
     displacements = exact.displacements()
     steps = [abs(float(new - Fraction(old)))
              for row, olds in zip(displacements, state.u.tolist()) for new, old in zip(row, olds)]
-    # A double that is at least what docs/proofs/proved-orbits.md says, taken as what it is.
+    # lipschitz is a double above the K of docs/proofs/proved-orbits.md; here its exact value.
     bend = abs(exact.eps) * Fraction(state.potential.lipschitz)
     least = _least(state, exact, floor, float(bend) * math.hypot(*steps))
     shown = places + GUARD_PLACES
@@ -258,9 +257,9 @@ def _refine(state, exact, places, floor):
     """Newton's method until the gradient is as small as this number of places allows.
 
     Where the Hessian is not positive, by less than doubles see, the step is made with Hessian +
-    shift.  A long way along a soft direction bends into the others: steps with a
-    shift that stops the soft ones bring these back.  What raises the action is taken back.  A
-    saddle where the gradient vanishes is left by a nudge."""
+    shift.  A long step along a soft direction raises the gradient of the others.  Steps with a
+    shift that stops the soft directions lower it again.  A step that raises the action is undone.
+    A nudge leaves a saddle where the gradient vanishes."""
     exact.evaluate(places)
     noise, shift = 4 * exact.noise(), Fraction(0)
     for _ in range(MAX_PROOF_STEPS):
@@ -355,7 +354,7 @@ def map_words(potential):
 
 
 def action_words(potential):
-    """What a line of a report is, which shows an action."""
+    """The label of an action in a report."""
     return "Action per point less |%sp/q|^2/2" % ("" if potential.period == 1 else "2 pi ")
 
 

@@ -1,9 +1,9 @@
 """Proved pairs: that a true pass lies beside one that was found, and how much more action it has
 than the proved minimum.  docs/proofs/proved-orbits.md, section 6, has the theorem and its proof.
 
-The pass is a saddle.  One coordinate of one point is made stiffer by sigma, H = P - sigma e e^T, so
-that P is positive definite, which the same pivots certify as for minima, and what is said of H
-follows by the formula of Sherman and Morrison.
+The pass is a saddle.  One coordinate of one point is made stiffer by sigma: H = P - sigma e e^T,
+where P is positive definite.  The pivots certify this as they do for minima.  Bounds of H follow
+from bounds of P by the formula of Sherman and Morrison.
 """
 
 from dataclasses import dataclass
@@ -39,7 +39,7 @@ class ProvedPair:
     barrier -- its action less the minimum's, of all q points together, in the units of the map
     residue -- its residue, which is positive; None for n = 2
     between -- is it proved that each of its points lies between the points of the minimum and of
-               its neighbour (n = 1)?  If not, nothing is said
+               its neighbour (n = 1)?  False means undecided
     """
 
     pair: Pair
@@ -131,7 +131,7 @@ class _Pass:
                   for j in range(exact.q)]
 
     def halfway(self):
-        """Begins half-way between the proved minimum and its neighbour: where doubles see no
+        """Begins half-way between the proved minimum and its neighbour.  Where doubles do not see a
         saddle, W is a sine wave."""
         q, own = self.exact.q, self.minimum.displacements
         r = self.pair.turn
@@ -202,7 +202,7 @@ class _Pass:
         if not lost < 0:
             raise _Undecided("it is not decided whether there is a direction down")
         inverse = upper(1 / ball(m) + sigma * size * size / abs(lost))
-        # A double that is at least what docs/proofs/proved-orbits.md says, taken as what it is.
+        # lipschitz is a double above the K of docs/proofs/proved-orbits.md; here its exact value.
         bend = abs(exact.eps) * Fraction(state.potential.lipschitz)
         shown = self.places + GUARD_PLACES
         radius = rounded(2 * inverse * exact.gradient + Fraction(1, 10 ** self.places), shown,

@@ -132,8 +132,8 @@ class Family:
                                           % (first.potential.name, self.eps[0], self.eps[-1]))
 
     def save(self, path: Union[str, "os.PathLike[str]"]) -> None:
-        """Writes all states to a file as PeriodicOrbit.save does one.  ValueError: there are
-        no states, or they are not of one potential and type."""
+        """Writes all states to a file as PeriodicOrbit.save does one.  ValueError: the family is
+        empty, or its states are not of one potential and type."""
         from .points import save
         save(self.states, path)
 
@@ -237,7 +237,7 @@ def follow(potential: Source, p: Numerators, q: int, eps: Union[float, Sequence[
 
 def newton(state: PeriodicOrbit, eps: Optional[float] = None, tol: float = 1e-13,
            max_steps: int = 50) -> Tuple[PeriodicOrbit, int]:
-    """Newton's method without damping (thesis, Appendix A): it finds whatever is stationary, a
+    """Newton's method without damping (thesis, Appendix A): it finds any stationary state, a
     minimum or a saddle, or nothing.  Returns the last state, "not stationary" perhaps, and the
     number of steps."""
     state = replace(state, eps=state.eps if eps is None else eps, searches=0)

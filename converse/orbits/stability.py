@@ -2,11 +2,11 @@
 
 DF^q has eigenvalues l and 1/l in n pairs; rho = l + 1/l are the stability indices (Broucke 1969;
 Howard and MacKay 1987), and (2 - rho)/4 is Greene's residue (Greene 1979).  The product of all
-rho - 2 is the determinant of the Hessian of the action (MacKay and Meiss 1983), whose pivots lose
-nothing where the orbit is nearly parabolic, nor the smaller index in the larger one's rounding.
-For n = 2 the sum of the two is trace DF^q - 4.
+rho - 2 is the determinant of the Hessian of the action (MacKay and Meiss 1983).  Its pivots lose no
+digits where the orbit is nearly parabolic, and keep the smaller index apart from the rounding of
+the larger one.  For n = 2 the sum of the two rho - 2 is trace DF^q - 4.
 
-What may exceed all doubles is kept as a logarithm, complex where it is not positive.
+A quantity that may exceed all doubles is kept as a logarithm, complex where it is not positive.
 """
 
 from typing import NamedTuple
@@ -51,7 +51,7 @@ def log_excesses(monodromy, log_det):
     log = log_of(np.trace(monodromy.matrix)) + monodromy.log
     if log.real < MAX_LOG_EXCESS:
         log = log_of(np.exp(log).real - 4)
-    scale = max(log.real, log_det.real / 2)         # what follows is in units of e^scale
+    scale = max(log.real, log_det.real / 2)         # The sums below are in units of e^scale.
     if scale == -np.inf:
         return np.array([log, log])
     half = np.exp(log - scale).real / 2

@@ -1,8 +1,8 @@
 """Sweeps over many rotation vectors: their families, and the onsets of their orbits.
 
-The rows of a sweep follow its vectors in the order given, whatever worker computes them: the same
-sweep always gives the same bytes.  Its file is at any time the beginning of the table, and an
-interrupted sweep continues after what it holds.
+The rows of a sweep follow its vectors in the order given, whichever worker computes them.  So the
+same sweep always gives the same bytes.  Its file is at any time the beginning of the table, and an
+interrupted sweep continues after the rows of the file.
 """
 
 import concurrent.futures
@@ -81,8 +81,8 @@ def onset(potential: Source, p: Numerators, q: int, exponent: Optional[float] = 
 
     Notes
     -----
-    When a torus breaks up, the stretching along the orbits beside it neither vanishes with growing
-    q, as it does on a smooth torus, nor grows, as it does on what is left.  For the golden torus of
+    With growing q the stretching along the orbits beside a smooth torus vanishes, and beside the
+    remnants of a torus it grows.  At break-up it does neither.  For the golden torus of
     the standard map (Greene: residue -1/4) it is e^0.96.  So the onsets of approximants tend to
     where the torus breaks up: there they are within 3e-4 for q >= 233.  An exponent that is the
     same for all q is early for small and late for large ones.  Onsets are evidence, not proof, that
@@ -151,7 +151,7 @@ def sweep(potential: Source, vectors: Sequence[Type], eps: Union[float, Sequence
     Where continuation loses a branch the rest of its rows has the label "lost" and no numbers."""
     values = finite("eps", eps)
     potential = known(potential)
-    if potential.curvature is not None:      # else the workers find out, whose it may be
+    if potential.curvature is not None:      # Otherwise the workers check.
         reached(potential, values)
     if not values:
         raise ValueError("eps is a list of finite numbers, one at least, not %r" % (eps,))
@@ -232,7 +232,7 @@ def _onset(potential, how, vector):
 
 
 def _sweep(task, columns, potential, vectors, eps, executor, file, progress):
-    """Does all tasks.  eps: of each row of a vector, what follows its type there."""
+    """Does all tasks.  eps: for each row of a vector, the cells that follow its type."""
     told(progress)
     if executor is not None and not hasattr(executor, "submit"):
         raise TypeError("the executor is a concurrent.futures.Executor, not %r" % (executor,))

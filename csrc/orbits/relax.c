@@ -6,13 +6,13 @@
 #include "orbits/potential.h"
 
 /* The period is 1, and the eigenvalues of the Hessian are of about 1. */
-static const double MAX_STEP = 0.1;     /* no coordinate moves further in one step */
-static const double NULL_EIGENVALUE = 1e-11;    /* rounding decides the sign of smaller ones */
-static const double MAX_DAMPING = 1e9; /* with a larger mu a step is below 1e-9 of the gradient */
-static const double HELD_ENTRY = 1e100; /* the Hessian's diagonal entry of a held coordinate */
-enum { MAX_ESCAPES = 50 }; /* from saddles */
-enum { WALKING_STEPS = 1000 }; /* later steps have to lower the action or the gradient */
-enum { POINTS_PER_POLL = 1 << 18 }; /* points dealt with between two looks for Ctrl-C */
+static const double MAX_STEP = 0.1;     /* No coordinate moves further in one step. */
+static const double NULL_EIGENVALUE = 1e-11;    /* Rounding decides the sign of smaller ones. */
+static const double MAX_DAMPING = 1e9; /* With a larger mu a step is below 1e-9 of the gradient. */
+static const double HELD_ENTRY = 1e100; /* A held coordinate has this diagonal entry. */
+enum { MAX_ESCAPES = 50 }; /* At most so many saddles are left. */
+enum { WALKING_STEPS = 1000 }; /* Later steps have to lower the action or the gradient. */
+enum { POINTS_PER_POLL = 1 << 18 }; /* After so many points Python is asked about Ctrl-C. */
 
 typedef double point[2];
 typedef double block[3];
@@ -22,7 +22,7 @@ typedef struct {
     long q;
     double eps;
     const point *base;
-    int held; /* as cv_relax says */
+    int held; /* see cv_relax */
     point *x; /* base + u, scratch */
     double *value; /* scratch */
     double *work; /* of cv_solve */
@@ -33,10 +33,11 @@ typedef struct {
     point *u, *gradient;
     block *beta;
     double action, largest, mean_square;
-    double noise, doubt; /* of the rounding of actions; and where V, not its slope, cancels */
+    double noise; /* About the rounding of the action's sum. */
+    double doubt; /* About its rounding where values of V cancel, but not their slopes. */
 } place;
 
-/* Does Python want an end?  Asked after each round through all points. */
+/* Is the calculation to end?  Asked after each round through all points. */
 static int stopped(action_of *of)
 {
     of->points += of->q;
@@ -82,7 +83,7 @@ static int evaluate(const action_of *of, place *at)
             slopes += fabs(of->eps * at->gradient[j][i]);
             at->gradient[j][i] = g;
         }
-        total = sum + term; /* and what its rounding loses, which adds up over long orbits */
+        total = sum + term; /* Its rounding is kept: it adds up over long orbits. */
         lost += (sum - (total - (total - sum))) + (term - (total - sum));
         sum = total;
         size += fabs(of->eps * of->value[j]);
@@ -96,7 +97,7 @@ static int evaluate(const action_of *of, place *at)
     at->action = sum + lost;
     at->noise = 1e-15 * size;
     at->doubt = at->noise + 1e-15 * slopes;
-    at->largest = squares < HUGE_VAL ? largest : HUGE_VAL; /* NaN: nowhere near */
+    at->largest = squares < HUGE_VAL ? largest : HUGE_VAL; /* infinite if NaN */
     at->mean_square = squares / (double)q;
     return CV_OK;
 }
@@ -214,9 +215,9 @@ static void swap(place *a, place *b)
     *b = c;
 }
 
-/* Does b lie lower than a?  Along soft directions the action changes by less than rounding; then b
-   is as good if its gradient is smaller, or, while the state may walk, if the mean of both
-   gradients points from a to b and that of b is not much larger. */
+/* Does b lie lower than a?  Along soft directions the action changes by less than rounding.  Then b
+   is accepted if its gradient is smaller.  While the state may walk, b is also accepted if the mean
+   of both gradients points from a to b and the gradient of b is not much larger. */
 static int lower(long q, const place *b, const place *a, int may_walk)
 {
     const double difference = b->action - a->action;
@@ -232,8 +233,8 @@ static int lower(long q, const place *b, const place *a, int may_walk)
     return may_walk && along < 0.0 && b->largest < 2.0 * a->largest;
 }
 
-/* Steps off a saddle, to the lower one of both sides, as far as that is lower than here.  Returns
-   whether there is such a step, or an error. */
+/* Steps off a saddle, to the lower one of both sides, by the longest of some steps that lowers the
+   action.  Returns 1, 0 if none of them does, or an error. */
 static long escape(action_of *of, place *at, place *other, point *along)
 {
     long status = downhill(of, (const block *)at->beta, along);

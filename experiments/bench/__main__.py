@@ -4,8 +4,9 @@
 
 Prints figures and judges nothing.  Machines differ and are shared: a time is the least of N runs
 (3), and ratios within one run say more than seconds.  So --older has the sharper method timed in
-turn with that of another commit, built in place in DIRECTORY.  --whole has the checker verify all
-proof files whole, which takes hours, and not only those of a minute or less.
+turn with that of another commit, built in place in DIRECTORY.  With --whole
+the checker verifies all proof files whole, which takes hours; without it, the files that take a
+minute or less.
 """
 
 import argparse

@@ -67,7 +67,7 @@ def _least_eigenvalue(matrix, guess):
         lower = np.linalg.cholesky(shifted)
     except np.linalg.LinAlgError:
         return -inf
-    # the eigenvalues of lower lower^T are not negative, those of the rest at most its rows' sums
+    # lower lower^T has no negative eigenvalue; rows' sums bound the eigenvalues of the rest
     sizes, sums = np.abs(lower), np.zeros(size)
     for rows in (slice(k, k + ROWS_PER_POLL) for k in range(0, size, ROWS_PER_POLL)):
         rest = np.abs(shifted[rows] - np.einsum("ik,jk->ij", lower[rows], lower))
@@ -155,8 +155,8 @@ class _Search:
     def settled(self, low, high):
         """_Settled, if the action is convex in the corridor and its least value there known.
 
-        With mu <= all eigenvalues and g the gradient at z, the action elsewhere exceeds that at z
-        by at least g.t + mu |t|^2/2."""
+        Let mu be at most every eigenvalue, and g the gradient at z.  At z + t the action is at
+        least the action at z plus g.t + mu |t|^2/2."""
         room = (high - low) / 8             # so that a least state on the edge is inside
         mu = self.convexity(low - room, high + room)
         if not mu > 0:

@@ -1,6 +1,6 @@
 """Compiles minplus.c, with the potentials of the core and with its flags, into build/.
 
-The cffi module includes that of the core, so that both have the same types.
+The cffi module includes the core's module, so that both have the same types.
 """
 
 import os

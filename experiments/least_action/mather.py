@@ -124,7 +124,7 @@ def mather_beta(potential: Source, eps: float, rotation: Union[float, Sequence[f
     rotation : float or sequence of float, shape (n,)
         In turns, as doubles have it.
     grid : int
-        Nodes along an axis, 8 to 2048.  What the grid loses falls as 1/grid^2.
+        Nodes along an axis, 8 to 2048.  The loss falls as 1/grid^2.
 
     Returns
     -------

@@ -7,8 +7,8 @@
    that the mean of y_j is x_j.  Then a coordinate of y_j has a variance of e_j^2/4 at most, that of
    |y_{j+1} - y_j|^2/2 is on the average what it was and half of both variances more, and
    -eps V(y_j) is at most -eps V(x_j) and |eps| K2/2 times the variance more, K2 >= |V''|.  So on
-   the average, and hence for some choice of corners, the action of the y_j exceeds that of the x_j
-   by at most
+   the average, and hence for some choice of corners, the action of the y_j exceeds the action of
+   the x_j by at most
 
        sum over j and coordinates i of (2 + |eps| K2) e_ji^2/8.                               (1)
 

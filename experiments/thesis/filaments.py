@@ -65,8 +65,8 @@ def filaments(x):
 
 
 def clumps(x, link):
-    """How many components the points x (q, 2), of period 1, form when those at most so far apart
-    are linked."""
+    """How many components the points x (q, 2), of period 1, form when points at a distance of at
+    most `link` are linked."""
     edges, _ = _spanning_tree(np.array(x, dtype=float) % 1.0)
     return 1 + sum(length > link for length, _, _ in edges)
 
@@ -146,7 +146,7 @@ def _range_of_r(part, loops, begin, end):
             break
         if part[one] == part[other]:
             c, d, _ = first.setdefault(int(part[one]), (a, b, length))
-            if a * d != b * c:                          # from here on it is a surface
+            if a * d != b * c:                          # with longer links it is a surface
                 end = length
                 break
     types = {_type(a, b) for a, b, _ in first.values()}

@@ -46,7 +46,7 @@ def hedlund_geodesic(i, j, k):
     tunnel lead on.
 
     Length counts as TUNNEL = c times the Euclidean one along the lines (t, 0, 0), (0, t, 1/2) and
-    (1/2, 1/2, t) and their translates by whole numbers: the tunnels, which have no width here.
+    (1/2, 1/2, t) and their translates by whole numbers.  These are the tunnels, of width 0 here.
     Why no curve of type m is shorter:
 
     A curve that meets at most one family of tunnels moves by two components of m outside of them:

@@ -89,7 +89,7 @@ def labels(states):
 
 
 def chosen(first_known=False):
-    """Says that eps was chosen here, but for the first one if the thesis names it."""
+    """Says that eps was chosen here, except the first one if the thesis names it."""
     if first_known:
         return "The first ε is the thesis's; it says no other, what follows was chosen here."
     return "The thesis does not say the ε; these were chosen here."

@@ -89,7 +89,7 @@ def orbits_pairs(figure, families, name):
 
 
 def steepest(state):
-    """The largest |dp|/|dx| of the closest pairs, but for those that doubles cannot tell apart."""
+    """The largest |dp|/|dx| of the closest pairs, except pairs that doubles cannot tell apart."""
     pairs = state.pairs(PAIRS)
     apart = pairs.distance > LOST
     return (pairs.momentum[apart] / pairs.distance[apart]).max()
