@@ -78,10 +78,11 @@ def tori_of(claim: check.TorusClaim) -> Tuple[Torus, ...]:
 
 
 def text(tori: Sequence[Torus]) -> str:
-    """The certificate of tori that cover a range, or of one torus."""
+    """The certificate of tori that cover a range, or of one torus.  ValueError: a strip is None."""
     first = tori[0]
     potential, rotation, strip = first.potential, first.rotation, first.strip
-    assert strip is not None
+    if strip is None or any(torus.strip is None for torus in tori):
+        raise ValueError("the torus does not say in what strip it is to be verified")
     parts = [()] * len(potential.waves) if first.part is None else [(p,) for p in first.part]
     lines = [FIRST_LINE, "program: converse " + __version__, "dimension: %d" % first.dimension]
     lines += ["wave: %d %d %s" % wave + "".join(" " + decimal_text(x) for x in (p, *part))
@@ -101,8 +102,6 @@ def text(tori: Sequence[Torus]) -> str:
 
 def save(tori: Sequence[Torus], path: Path) -> str:
     """Writes their certificate, compressed if the name ends in .gz, and returns its SHA-256."""
-    if any(torus.strip is None for torus in tori):
-        raise ValueError("the torus does not say in what strip it is to be verified")
     return files.write_text(path, text(tori))
 
 

@@ -275,7 +275,7 @@ class _Pieces:
         Modes.series gives them)."""
         mesh = Mesh(self.potential, self.rotation, worst.mesh.frame, worst.mesh.sizes, real=False)
         keep = ellipse(mesh, worst.rates, worst.reach)
-        low, middle, high = (self._complex(found, mesh) for found in ends)
+        low, middle, high = (found.mesh.moved(found.u, mesh) for found in ends)
         source = Modes(mesh, keep & (abs(mesh.k).max(0) > 0))
         half = (ends[-1].amplitude - ends[0].amplitude) / 2
         half_circle = range(LAYERS // 2 + 1)
@@ -290,13 +290,6 @@ class _Pieces:
                 return None
             circle.append(solved[0])
         return source, source.series(iter(circle), LAYERS)
-
-    def _complex(self, found, mesh):
-        """On a complex mesh."""
-        source = found.mesh
-        place = source.inside & (abs(found.u).max(0) > 0)
-        k, u = source.k[:, place], found.u[:, place]
-        return mesh.spread(k, u)
 
 
 def series_rate(sizes: np.ndarray) -> float:

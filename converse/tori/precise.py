@@ -7,6 +7,7 @@ values, are in memory at a time.  Where sigma is real so are the functions of th
 components are transformed as the parts of one complex function.
 """
 
+import operator
 from fractions import Fraction
 from typing import Dict, Iterator, List, Sequence, Tuple
 
@@ -32,7 +33,7 @@ def errors(mesh: Mesh, torus: Torus, layers: int, wanted: np.ndarray, bits: int
         task = _Task(mesh, torus, wanted, bits)
     for l in range(layers // 2 + 1):
         with precision(bits):
-            sigma = _root(Fraction(2 * l, layers)) if layers > 1 else ZERO
+            sigma = (acb(2 * l) / layers).exp_pi_i() if layers > 1 else ZERO
             found = task.error(sigma, 2 * l % layers == 0)
         yield found
 
@@ -53,7 +54,8 @@ class _Task:
         kept = self._places(mesh.k[:, wanted])[1]
         self.kept = np.unique([kept, -kept % self.shape[1]]).tolist()
         omega = [_ball((low + high) / 2) for low, high in torus.rotation.turns(bits // 3 + 20)]
-        self.turns = [4 * _dot(k, omega).sin_pi() ** 2 for k in torus.k.tolist()]
+        self.turns = [4 * sum(map(operator.mul, k, omega), arb(0)).sin_pi() ** 2
+                      for k in torus.k.tolist()]
         unit = arb((1, -torus.bits))
         re, im = torus.numbers.reshape(2, torus.degree + 1, -1).transpose(0, 2, 1).tolist()
         self.series = [[acb(a, b) * unit for a, b in zip(*each)] for each in zip(re, im)]
@@ -174,16 +176,6 @@ class _Task:
 
 def _ball(x: Fraction) -> arb:
     return arb(fmpq(x.numerator, x.denominator))
-
-
-def _root(half_turns: Fraction) -> acb:
-    """e^{pi i half_turns}."""
-    x = fmpq(half_turns.numerator, half_turns.denominator)
-    return acb(arb.cos_pi_fmpq(x), arb.sin_pi_fmpq(x))
-
-
-def _dot(k, omega):
-    return sum((number * each for number, each in zip(k, omega)), arb(0))
 
 
 def _combined(k, line):
