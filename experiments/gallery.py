@@ -8,6 +8,7 @@ standard-63-64 -- how small the prisms of a proof are, along the only angle that
 NAME.svg is written into the DIRECTORY (build).  Each takes seconds.
 """
 
+import argparse
 import os
 import sys
 from pathlib import Path
@@ -15,7 +16,7 @@ from pathlib import Path
 import numpy as np
 
 import converse
-from converse import orbits
+from converse import ConverseError, orbits
 from converse.draw import plot
 from converse.prover import tree
 
@@ -76,14 +77,19 @@ PICTURES = {                            # width and height in inches, and what d
     "portraits": (7.2, 2.9, portraits), "standard-63-64": (6.0, 2.6, standard)}
 
 
-def main(name, directory="build"):
-    if name not in PICTURES:
-        sys.exit("gallery.py: there is no picture %s; there are %s" % (name, ", ".join(PICTURES)))
-    os.makedirs(directory, exist_ok=True)
-    width, height, fill = PICTURES[name]
-    Path(directory, name + ".svg").write_bytes(plot.written(
-        width, height, "svg", lambda figure: fill(figure)))
+def main(arguments=None):
+    parser = argparse.ArgumentParser(description="Draws a picture of the pages.")
+    parser.add_argument("name", choices=PICTURES)
+    parser.add_argument("directory", nargs="?", default="build", help="of NAME.svg (build)")
+    options = parser.parse_args(arguments)
+    width, height, fill = PICTURES[options.name]
+    try:
+        os.makedirs(options.directory, exist_ok=True)
+        Path(options.directory, options.name + ".svg").write_bytes(plot.written(
+            width, height, "svg", lambda figure: fill(figure)))
+    except (ConverseError, OSError) as error:
+        sys.exit("gallery.py: %s" % error)
 
 
 if __name__ == "__main__":
-    main(*sys.argv[1:])
+    main()

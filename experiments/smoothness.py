@@ -5,10 +5,11 @@
 For the 800 closest pairs of points of an orbit, L = |dp|/|dx|.  Where orbits have contracted into
 filaments the thesis saw the largest L at the smallest |dx|, with slope -1 and in "two populations",
 and suspected noise.  Writes smoothness.svg and smoothness.csv into DIRECTORY (build).  All pairs
-but those at eps 0.0075 are of proved orbits, whose points are known to 10^-20 or better: no noise
-is left.  A few seconds.
+except those at eps 0.0075 belong to proved orbits, whose points are known to 10^-20 or better.  So
+the rise is not noise.  A few seconds.
 """
 
+import argparse
 import csv
 import math
 import os
@@ -18,16 +19,16 @@ from fractions import Fraction
 
 import numpy as np
 
-from converse import orbits
+from converse import ConverseError, orbits
 from converse.draw import plot
 
 SPIRAL, LONGER = ((1432, 1897), 2513), ((2513, 3329), 4410)
 # type, eps, digits of the proved orbit; None: the phases are not determined, doubles must do
 STATES = [(SPIRAL, 0.0075, None), (SPIRAL, 0.0125, 20), (LONGER, 0.0125, 20), (SPIRAL, 0.02, 20),
           (SPIRAL, 0.03, 60)]
-COUNT = 800
-CANDIDATES = 4000           # pairs, closest in doubles, among which are the closest
-STEEP = 40                  # pairs of largest L, whose distances along the orbit are listed
+COUNT = 800                 # The pairs of each state that are drawn.
+CANDIDATES = 4000           # The closest pairs are among this many that are closest in doubles.
+STEEP = 40                  # The pairs of largest L whose distances along the orbit are listed.
 
 
 def exact_pairs(proved):
@@ -132,8 +133,18 @@ def draw_one(axes, state, i, j, distance, momentum):
     axes.legend(title="pairs with $|i - j|$ =", loc="lower left", markerscale=2, labelspacing=0.2)
 
 
-def main(directory="build"):
-    os.makedirs(directory, exist_ok=True)
+def main(arguments=None):
+    parser = argparse.ArgumentParser(description=__doc__.partition("\n\n")[0])
+    parser.add_argument("directory", nargs="?", default="build", help="of both files (build)")
+    directory = parser.parse_args(arguments).directory
+    try:
+        os.makedirs(directory, exist_ok=True)
+        write(directory)
+    except (ConverseError, OSError) as error:
+        sys.exit("smoothness.py: %s" % error)
+
+
+def write(directory):
     measured = [measure(*state) for state in STATES]
     with open(os.path.join(directory, "smoothness.svg"), "wb") as file:
         file.write(draw(measured))
@@ -146,4 +157,4 @@ def main(directory="build"):
 
 
 if __name__ == "__main__":
-    main(*sys.argv[1:])
+    main()
