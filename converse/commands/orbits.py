@@ -28,7 +28,7 @@ SISTERS = ("converse-tori      proves that a torus exists\n"
 FIND = ending(
     "converse-orbits find standard 89/233 0.9 0.97 --minimax --prove -g ghost.svg", SISTERS, (
         (0, "all was found that was asked for"),
-        (1, "an orbit was not found, is no minimum, or is not proved although --prove was given"),
+        (1, "an orbit was not found, is not a minimum, or is not proved with --prove"),
         (2, "bad usage, input or file"), SIGNALS))
 SWEEP = ending("converse-orbits sweep standard onsets.csv --farey 0.618 --sizes 10:300", SISTERS, (
     (0, "all was found that was asked for"), (1, "an orbit was lost"),
@@ -63,7 +63,7 @@ def _vector(text):
     """'1432,1897/2513': ((1432, 1897), 2513)."""
     match = re.fullmatch(r"\(?(-?\d{1,9})(?:, *(-?\d{1,9}))?\)?/(\d{1,9})", text.strip(), re.ASCII)
     if not match or not int(match[3]):
-        raise argparse.ArgumentTypeError("'%s' is no type: write p0,p1/q, or p/q for one "
+        raise argparse.ArgumentTypeError("'%s' is not a type: write p0,p1/q, or p/q for one "
                                          "angle, whole numbers of at most 9 digits" % text)
     return tuple(int(p) for p in match.groups()[:2] if p is not None), int(match[3])
 
@@ -71,7 +71,7 @@ def _vector(text):
 def _sizes(text):
     match = re.fullmatch(r"(\d{1,9}):(\d{1,9})", text, re.ASCII)
     if not match or not 1 <= int(match[1]) <= int(match[2]):
-        raise argparse.ArgumentTypeError("'%s' is no range LOW:HIGH of whole numbers above 0"
+        raise argparse.ArgumentTypeError("'%s' is not a range LOW:HIGH of whole numbers above 0"
                                          % text)
     return int(match[1]), int(match[2])
 
@@ -107,7 +107,7 @@ def _value(text):
     try:
         return name.strip(), exact(number.strip())
     except ValueError:
-        raise argparse.ArgumentTypeError("'%s' is no value of a parameter: write NAME=NUMBER"
+        raise argparse.ArgumentTypeError("'%s' is not a value of a parameter: write NAME=NUMBER"
                                          % text) from None
 
 
@@ -120,8 +120,8 @@ def read_potential(source, at=()):
             raise ConverseError("%s has no parameters; leave out --at" % source)
         return getattr(orbits, source)
     if not os.path.exists(source):
-        raise ConverseError("'%s' is no potential and no file; there are %s, or a JSON file of "
-                            "harmonics (manual: reference/inputs)" % (
+        raise ConverseError("'%s' is neither a potential nor a file; there are %s, or a JSON file "
+                            "of harmonics (manual: reference/inputs)" % (
                                 source, ", ".join(POTENTIALS)))
     try:
         return orbits.potential.known(SymplecticMap.read(source).at(**dict(at)))

@@ -251,9 +251,9 @@ class ParameterMap:
             raise ConverseError("%s%s; use an intact copy or start anew"
                                 % (path, damaged)) from None
         if isinstance(data, dict) and "harmonics" in data:
-            raise ConverseError("%s: is an input, and no map; maps are of the thesis's three waves "
-                                "(a, b, c) alone: prove a patch of another potential with converse "
-                                "--method loewner" % path)
+            raise ConverseError("%s: is an input and not a map; maps are of the thesis's three "
+                                "waves (a, b, c) alone: prove a patch of another potential with "
+                                "converse --method loewner" % path)
         try:
             digest = data.pop("sha256")
             if digest != _digest(data):

@@ -74,7 +74,7 @@ def continued(proof, name, problem=None, given=None, xstar=None):
 
 def _without_unused(proof, name):
     """The proof without the parts that nothing is linked to, as when an undecided prism before
-    those that were ended the search.  ConverseError: a letter is of no later part."""
+    them ended the search.  ConverseError: a letter does not name a later part."""
     try:
         tree.check_letters([each.text for each in proof.trees])
     except tree.TreeError as error:

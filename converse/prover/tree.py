@@ -133,7 +133,7 @@ def check_letters(texts):
     for n, text in enumerate(texts):
         wrong = set(text) & set(LETTERS) - set(LETTERS[n:len(texts) - 1])
         if wrong:
-            raise TreeError("a leaf of %s is linked to %s, which is no later part" % (
+            raise TreeError("a leaf of %s is linked to %s, which is not a later part" % (
                 "part " + LETTERS[n - 1] if n else "the tree", min(wrong)))
 
 

@@ -252,7 +252,8 @@ class Lock(Resource):
                                 % self.path) from None
         if os.fstat(handle).st_size:
             os.close(handle)
-            raise ConverseError("%s: exists and is no lock of this program; rename it" % self.name)
+            raise ConverseError("%s: exists and is not a lock of this program; rename it"
+                                % self.name)
         if self._is_there(handle):
             return handle
         os.close(handle)

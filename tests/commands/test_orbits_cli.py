@@ -281,7 +281,7 @@ def test_help_and_version(run):
     (["find", "trig", SMALL, "0.01", "--what"], "--what"),
     (["find", "trig", "1/2", "0.01"], "two angles"),
     (["find", "standard", SMALL, "0.5"], "one angle"),
-    *[(["find", "trig", bad, "0.01"], "is no type") for bad in (
+    *[(["find", "trig", bad, "0.01"], "is not a type") for bad in (
         "1,2/0", "1,2,3/4", "1,2", "1.5,2/3", "a,b/c", "1,2/-3", "", "1" * 10 + ",2/3",
         "1,2/3\n4")],
     *[(["find", "trig", SMALL, bad], "is neither a number below 10^9") for bad in (
@@ -293,7 +293,7 @@ def test_help_and_version(run):
     (["find", "trig", "5,7/999999999", "0.01"], "from 1 to 10000000"),
     *[(["find", "trig", SMALL, bad], "range of no values") for bad in (
         "1:2:0", "2:1:0.1", "0:1:1e-9")],
-    (["find", "none", SMALL, "0.01"], "no potential and no file"),
+    (["find", "none", SMALL, "0.01"], "neither a potential nor a file"),
     (["find", "DIR", SMALL, "0.01"], "cannot be read"),
     (["find", "trig", SMALL, "0.01", "--search", "0"], "whole number"),
     (["find", "trig", SMALL, "0.01", "--csv", "DIR"], "ends in .csv"),
@@ -320,7 +320,7 @@ def test_help_and_version(run):
         "x,y", "0,0.5", "0.5,1.5", "0.1,0.2,0.3", "1/0,0.5")],
     (["sweep", "trig", "DIR/x.csv", "--farey", "0.51,0.52", "--sizes", "5000:5001"], "no rotation"),
     (["sweep", "trig", "DIR/x.csv", "--vectors", "DIR/none"], "cannot be read"),
-    (["sweep", "trig", "DIR/x.csv", "--vectors", "DIR/terms"], "line 1: '1 0 0 1' is no type"),
+    (["sweep", "trig", "DIR/x.csv", "--vectors", "DIR/terms"], "line 1: '1 0 0 1' is not a type"),
     (["sweep", "trig", "DIR/x.csv", "--vectors", "DIR/one"], "line 2: the potential trig has two"),
     (["sweep", "trig", "DIR/x.csv", "--vectors", "DIR/empty"], "no rotation vectors"),
     (["sweep", "trig", "DIR/two", "--vectors", "DIR/two"], "overwrite"),
@@ -345,7 +345,7 @@ def test_bad_usage(run, tmp_path, arguments, words):
 
 @pytest.mark.parametrize("text, words", [
     (b"", "line 1: the input is empty"), (b"1 0 x 1\n", "line 1: 'x' is not a decimal"),
-    (b"{", "no JSON"), (b"\xff\xfe\n", "line 1: '\xff\xfe' is not a decimal number"),
+    (b"{", "not valid JSON"), (b"\xff\xfe\n", "line 1: '\xff\xfe' is not a decimal number"),
     (b'{"harmonics": [{"k": [1, 0]}]}', "harmonic 1: amplitude is missing"),
     (b'{"harmonics": [{"k": [1, 0], "amplitude": [1, 2]}]}',
      "an amplitude goes from 1 to 2; give one number"),

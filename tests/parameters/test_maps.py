@@ -390,7 +390,7 @@ def test_an_input_is_no_map(root, capsys, name):
     """Of a potential of one's own there is none, and the line says what there is instead."""
     assert cli.main([str(root / "inputs" / name)]) == 2
     err = capsys.readouterr().err
-    assert "is an input, and no map" in err and "--method loewner" in err and err.count("\n") == 1
+    assert "is an input and not a map" in err and "--method loewner" in err and err.count("\n") == 1
 
 
 def test_the_report(made, capsys):
