@@ -6,8 +6,8 @@ import signal
 
 
 def _command(name):
-    """The entry point of a command.  Until the command has handlers of its own, Ctrl-C ends the
-    process without a traceback."""
+    """The entry point of a command.  Until the command sets its handlers, Ctrl-C ends the process
+    without a traceback."""
     def start():
         if signal.getsignal(signal.SIGINT) is signal.default_int_handler:
             signal.signal(signal.SIGINT, signal.SIG_DFL)

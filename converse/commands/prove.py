@@ -136,7 +136,7 @@ class Progress:
 
 
 def _read_problem(options):
-    """The problem of the input; None: without an input, that of the restored proof."""
+    """The problem of the input; None: the problem of the restored proof."""
     if options.restore is not None and options.input is None:
         return None
     problem = read_problem(options.input)

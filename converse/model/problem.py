@@ -49,7 +49,7 @@ class Problem:
         has it.
     shifts
         For each parameter, the distances by which it moves v0 and v1 at its upper end, in units of
-        pi: at t the region is that of v0 and v1, moved by sum of t[m] shifts[m].  Only the regions
+        pi.  At t the region is moved by sum of t[m] shifts[m].  Only the regions
         of further starting points move (`part`).
 
     Raises

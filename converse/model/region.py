@@ -1,9 +1,9 @@
 """Which regions of the successors of x* stand for the whole torus, and the one that is searched.
 
 A region is a rectangle of v, x_1 = F v with the integers F of the frame.  Two x_1 that differ by
-multiples of 2 pi are one point of the torus: in units of pi, v may be moved by (0, P1), and by
-(P0, a number), P0 = 2 g/|det F| and P1 = 2/g with g the divisor of F's second column.  Reversal of
-time takes v0 to 2 c0 - v0, and the exchange of the angles v1 to -v1: docs/proofs/argument.md,
+multiples of 2 pi are one point of the torus.  So, in units of pi, v may be moved by (0, P1) and by
+(P0, a number).  P0 = 2 g/|det F| and P1 = 2/g, with g the divisor of F's second column.  Reversal
+of time takes v0 to 2 c0 - v0, and the exchange of the angles v1 to -v1: docs/proofs/argument.md,
 section 2.
 """
 
@@ -79,9 +79,9 @@ def _sums(waves):
 
 
 def reversal_centre(problem: Problem, xstar: Point) -> Ends:
-    """Bounds of c0 in units of pi for all parameters, where pi c0 is the first component of
-    F^-1 (x* - V'(x*)/2): of r.x* + sum of (r.k) p cos(k.x* + phase)/2, r the first row of F^-1,
-    over the waves that are examined.  It is affine in the parameters, whose shifts of v0 are
+    """Bounds of c0 in units of pi for all parameters.  pi c0 is the first component of
+    F^-1 (x* - V'(x*)/2), that is r.x* + sum of (r.k) p cos(k.x* + phase)/2 over the waves that are
+    examined, r the first row of F^-1.  It is affine in the parameters, whose shifts of v0 are
     subtracted."""
     f00, f01, f10, f11 = problem.frame
     det = f00 * f11 - f01 * f10
