@@ -100,11 +100,6 @@ def text(tori: Sequence[Torus]) -> str:
     return body + "checksum: sha256 %s\nend\n" % files.sha256(body)
 
 
-def save(tori: Sequence[Torus], path: Path) -> str:
-    """Writes their certificate, compressed if the name ends in .gz, and returns its SHA-256."""
-    return files.write_text(path, text(tori))
-
-
 def _words(numbers):
     return " ".join(map(str, numbers))
 

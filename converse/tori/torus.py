@@ -27,6 +27,7 @@ from ..model.exact import Ends
 from ..model.map import SymplecticMap
 from ..model.potential import FourierSum
 from ..model.problem import Problem
+from ..storage import files
 
 if TYPE_CHECKING:
     from .rotation import Rotation
@@ -191,10 +192,10 @@ class Torus:
         return torus_figure.page([self]) if ax is None else torus_figure.into(ax, [self])
 
     def save(self, path: Union[str, "os.PathLike[str]"]) -> str:
-        """Writes a certificate (docs/reference/torus-certificate.md) that nothing has verified;
-        returns its SHA-256.  ValueError: its strip is None."""
+        """Writes a certificate (docs/reference/torus-certificate.md) that nothing has verified,
+        compressed if the name ends in .gz; returns its SHA-256.  ValueError: the strip is None."""
         from . import certificate
-        return certificate.save([self], path)
+        return files.write_text(path, certificate.text([self]))
 
     @classmethod
     def load(cls, path: Union[str, "os.PathLike[str]"]) -> "Torus":
