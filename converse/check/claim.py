@@ -59,6 +59,7 @@ class Claim:
     where: str = ""                     # of a part, or a cell of a map: which it is
     parts: tuple = ()                   # of a proof file: a, b, ..., each a Claim
     shifts: tuple = ()                  # of a part: what each parameter adds to v0 and v1, or none
+    names: tuple = ()                   # of each parameter: name, value at t = -1 and at 1; or none
 
     @property
     def parameters(self):

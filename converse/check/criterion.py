@@ -8,11 +8,12 @@ from fractions import Fraction
 from .arith import SINE_ERROR, fixed_of, in_units, stiffness, upper_sqrt
 from .exact import Prism, PrismWave, attempt
 from .failures import NotConfirmed, Rejected
-from .limits import CAUTION, LAG, MAX_BITS, MAX_HALVINGS, MAX_PIECES
+from .limits import (HALVINGS_APART_MAX, MATTERS_MIN, MAX_BITS, MAX_HALVINGS, MAX_PIECES,
+                     SITE_PENALTIES)
 from .torus import is_at_once, torus_bound
 from .tree import changed, trees
 
-BOUND_BITS = 256        # of the bound B, which the thousands of bits of narrow cells do not improve
+BOUND_BITS = 256        # of the bound B; the thousands of bits of narrow cells do not improve it
 
 
 class Criterion:
@@ -33,9 +34,9 @@ class Criterion:
         one, waves = self.fixed.one, claim.examined
         self.waves = in_units(self.fixed, waves)
         if max([abs(x) for wave in waves for x in (wave.middle, *wave.parts)] + [0]) >= one:
-            raise NotConfirmed("the parameters are too large for this checker")     # l has no digit
+            raise NotConfirmed("the parameters are too large for this checker")     # l rounds to 0
         self.take(claim)
-        # The ends of the parameters: a cell's B is no larger than what lies between B there.  An
+        # The ends of the parameters: B of a cell is at most the interpolation of B at the ends.  An
         # end is off by less than a unit for each wave, and the eigenvalue by less than stiffness.
         if bound is not None:
             self.B_at = [math.ceil(bound * one)]
@@ -50,8 +51,7 @@ class Criterion:
             self.B_at = [found[ends] for ends in apart]
         self.B = max(self.B_at)
         if self.B <= 2 * one:
-            # The tails of step 2 must be square-summable, l < 1, which needs B > 2.  (The mean of
-            # beta over the torus is 2I, so this would say that there are no parameters.)
+            # The tails of step (C2) must be square-summable, l < 1, which needs B > 2.
             raise NotConfirmed("beta has no eigenvalue above 2: the criterion does not apply")
         self.l_of = {}                      # by the cell's slices of the parameters
         self.fast = None                    # a Lockstep, where there is one
@@ -91,8 +91,7 @@ class Criterion:
             B = max(B, 2 * one + 1)
             l = 2 * one ** 2 // (B + upper_sqrt(B * B - (2 * one) ** 2))
             if l <= 0:
-                # Harmless, since a lesser l only makes (C3) harder; but the witness needs 1/l, and
-                # no theorem is wanted from numbers that have lost all their digits.
+                # A lesser l only makes (C3) harder, but the witness needs 1/l.
                 raise NotConfirmed("the parameters are too large for this checker")
             self.l_of[key] = l
         return self.l_of[key]
@@ -106,8 +105,8 @@ class Criterion:
 
         Its middle and half-widths are exact; amplitudes are rounded down by less than a unit, as
         are their parts, and so are their products with sines and cosines, which are within
-        SINE_ERROR units.  x[1] is within 2 units, as angle() says, but for turns: orbits that
-        differ by 2 pi in x[1] differ by 2 pi j in x[j], and nothing else changes.  A column is off
+        SINE_ERROR units.  x[1] is within 2 units, as angle() says, modulo turns: orbits that differ
+        by 2 pi in x[1] differ by 2 pi j in x[j], and nothing else changes.  A column is off
         by 2 units for pi as often as it has it, and by one more; it is exact if it is zero.
         """
         (_, cuts), fixed, one, waves = cell, self.fixed, self.fixed.one, []
@@ -126,14 +125,13 @@ class Criterion:
             error.append(2 + sum([2 * math.ceil(abs(side)) + 1 for side in sides if side]))
         return Prism(fixed, waves, self.xstar, (x, columns, error), len(self.axes))
 
-    def attempt(self, l, cell, caution):
+    def attempt(self, l, cell, penalties):
         """Is (C3) true of the whole cell?  None if so, or else why not, and for each of its axes
         how much it matters."""
         try:
-            return attempt(self.prism(cell), l, caution)
+            return attempt(self.prism(cell), l, penalties)
         except (OverflowError, ValueError, ZeroDivisionError):
-            # A number too large, a singular matrix, a NaN: no bound was established, and an
-            # attempt that establishes none excludes nothing.
+            # A number too large, a singular matrix, a NaN: without a bound nothing is excluded.
             moves = self.claim.moves
             return "the arithmetic failed", [float(any(moves[axis])) for axis in self.axes]
 
@@ -144,19 +142,16 @@ class Criterion:
             piece = todo.pop()
             halved = [k - begun for k, begun in zip(piece[1], cell[1])]
             pieces += 1
-            failed = self.attempt(l, piece, CAUTION[sum(halved) % len(CAUTION)])
+            failed = self.attempt(l, piece, SITE_PENALTIES[sum(halved) % len(SITE_PENALTIES)])
             if not failed:
                 continue
             why, blame = failed
             if sum(halved) >= MAX_HALVINGS or pieces + len(todo) >= MAX_PIECES:
                 return "%s (piece %d, halved %d times)" % (why, pieces, sum(halved)), pieces
-            # Along what matters most, but no axis that matters is left behind for long.
-            most = max(blame)
-            worst = self.axes[blame.index(most)]
-            last = min([axis for axis, x in zip(self.axes, blame) if x > most * 2.0 ** -30 or
-                        axis == worst], key=halved.__getitem__)
-            if halved[worst] - halved[last] > LAG:
-                worst = last
+            # The axis that matters most, of those that were not halved far more often than another.
+            matter = [(x, a) for x, a in zip(blame, self.axes) if x >= max(blame) * MATTERS_MIN]
+            often = min([halved[a] for _, a in matter]) + HALVINGS_APART_MAX
+            worst = max([(x, a) for x, a in matter if halved[a] <= often], key=lambda m: m[0])[1]
             index, cuts = piece
             todo += [(changed(index, worst, 2 * index[worst] + upper),
                       changed(cuts, worst, cuts[worst] + 1)) for upper in (0, 1)]

@@ -1,11 +1,10 @@
 """The left side of (C3) over a prism, bounded in integers: steps (C4) to (C8) of
 docs/proofs/checker.md.
 
-Centres, columns, matrices, multipliers and vectors are chosen; the floating-point numbers that
-choose some of them are rounded to integers first, and whatever these integers are, the bound
-holds.  Sums and products of them are exact.  Only sines, amplitudes and quotients are rounded:
-that is counted in units, for each wave once, in its `error`.  Sizes of what is not known exactly
-are rounded upwards.
+Centres, columns, matrices, multipliers and vectors are chosen, and floating-point choices are
+rounded to integers first; the bound holds for any choice.  Sums and products are exact.  Only
+sines, amplitudes and quotients are rounded.  These errors are counted in units, once for each wave,
+in its `error`.  Bounds of errors are rounded upwards.
 """
 
 import collections
@@ -13,7 +12,7 @@ import itertools
 import math
 
 from .arith import turn_of, turned
-from .limits import FIRST_TRY, MAX_SITES
+from .limits import FIRST_TRY_SITES, MAX_SITES
 from .torus import least
 
 VECTOR_BITS = 28                        # of the vectors; the multipliers have twice as many
@@ -34,7 +33,7 @@ Site = collections.namedtuple("Site", "waves E beta reach")
 
 class Prism:
     """A prism: its waves, x[0] and x[1] as (centre, columns, error), each for two coordinates, and
-    the number of its symbols: of parameters, which may move x[1], too, and two of its own."""
+    the number of its symbols: those of the parameters, which may also move x[1], and two more."""
 
     def __init__(self, fixed, waves, xstar, x1, symbols):
         self.fixed, self.waves, self.symbols = fixed, waves, symbols
@@ -45,17 +44,13 @@ class Prism:
         self.sizes = [(k0, k1, (abs(amplitude) + sum([abs(x) for _, x in parts])) / fixed.one)
                       for k0, k1, _, amplitude, parts, _ in waves]
 
-    def cautious(self, site, caution):
-        """beta at a site, and something for what the bound will add there."""
+    def penalized(self, site, penalties):
+        """beta at a site plus a penalty for the reach there, which makes the bound larger."""
         p, q, r = site.beta
         for (k0, k1, size), reach in zip(self.sizes, site.reach):
-            more = size * (caution[0] + caution[1] * reach) * reach
+            more = size * (penalties[0] + penalties[1] * reach) * reach
             p, q, r = p + k0 * k0 * more, q + k0 * k1 * more, r + k1 * k1 * more
         return p, q, r
-
-    def strengths(self, wave):
-        """How strongly a wave moves the two coordinates of the frame of the errors."""
-        return tuple(map(abs, turned(self.turn, (wave.k0, wave.k1))))
 
 
 class Lane:
@@ -68,11 +63,12 @@ class Lane:
         self.T0 = self.T = [[0] * len(prism.pairs)] * 2         # of pairs, as form in advance()
         a, b = map(abs, prism.turn)         # of the frame of the errors
         self.r0, self.r = [(a * u + b * v, b * u + a * v) for u, v in (self.r0, self.r)]
-        self.strengths = [prism.strengths(wave) for wave in prism.waves]
+        # How strongly each wave moves the two coordinates of the frame of the errors.
+        self.strengths = [tuple(map(abs, turned(prism.turn, wave[:2]))) for wave in prism.waves]
         self.d = self.f = None              # of step (C5); d in half units
 
     def follow(self, most):
-        """Follows the lane up to so many sites, or until a wave reaches too far."""
+        """Follows the lane up to most sites, or until a wave reaches too far."""
         while not self.ended and len(self.sites) < most:
             self.ended = not self.advance()
 
@@ -102,8 +98,7 @@ class Lane:
             sine, cosine = amplitude * s >> bits, amplitude * c >> bits
             push0, push1 = push0 + k0 * cosine, push1 + k1 * cosine
             p, q, r = p + k0 * k0 * sine, q + k0 * k1 * sine, r + k1 * k1 * sine
-            # What the model lacks of p' cos(y + z): (iii) of step (C6), for the matrix without
-            # rounding; what is rounded down to units is off by less than one each.
+            # The error of p' cos(y + z) in the model: (iii) of step (C6); a unit for each floor.
             square, far = (reach * reach >> bits) + 1, (rest * (reach + size) >> bits) + 1
             cube, fourth = (square * reach >> bits) + 1, (square * square >> bits) + 1
             bent = ((abs(cosine) * (12 * far + fourth) + 4 * abs(sine) * cube) // 24 >> bits) \
@@ -189,10 +184,6 @@ def matrix_times(d, n):
     return d[0] * n[0] + d[1] * n[1], d[1] * n[0] + d[2] * n[1]
 
 
-def is_definite(d):
-    return d[0] > 0 and d[0] * d[2] > d[1] * d[1]
-
-
 def recursion(blocks, middle, tail):
     """The recursion of step (C3) from the first of these matrices on: d of each, and where what it
     rests on begins, as it begins anew behind a place where d is not positive, and in the middle,
@@ -203,13 +194,14 @@ def recursion(blocks, middle, tail):
             begin, inv = k, tail
         d = [x - y for x, y in zip(block, inv)]
         found.append((d, begin))
-        begin, inv = (begin, inverse(d)) if is_definite(d) else (k + 1, tail)
+        definite = d[0] > 0 and d[0] * d[2] > d[1] * d[1]
+        begin, inv = (begin, inverse(d)) if definite else (k + 1, tail)
     return found
 
 
 def test_vectors(ahead, back, l):
-    """Vectors n for the sites of both lanes, which have these matrices; in double precision, as
-    nothing rests on it.
+    """Vectors n for the sites of both lanes, which have these matrices; in double precision, since
+    any vectors give a bound.
 
     At each site the recursions from both ends of the orbit are compared, the one from the lane's
     own end only where it has not failed.  Of each part of the orbit that they cover without
@@ -254,7 +246,7 @@ class SecondVariation:
 
     def add_lane(self, sites, vectors):
         """Adds the sites of a lane; returns the multipliers of the first, and G of step (C7) there
-        but for the multipliers of the other lane."""
+        without the multipliers of the other lane."""
         mu0, mu1, beyond0, beyond1 = [[0] * (1 + len(self.symbols))] * 4
         v0 = v1 = 0
         for site, (n0, n1) in zip(reversed(sites), reversed(vectors)):
@@ -331,8 +323,8 @@ class SecondVariation:
         return [B, *slopes]
 
     def add_ends(self, n, ahead, back):
-        """Adds what x[1] and x[0] have, where the lanes meet: n of each lane, and of each what
-        add_lane has returned."""
+        """Adds the terms of x[1] and x[0], where the lanes meet; n and the results of add_lane for
+        each lane."""
         (n0, *_), (n1, *_) = [vectors or [(0, 0)] for vectors in n]
         self.value -= 2 * (n0[0] * n1[0] + n0[1] * n1[1]) << UNIT_BITS
         orbit = [*reversed(n[1]), *n[0]]
@@ -363,8 +355,8 @@ class SecondVariation:
         return form
 
     def bound(self):
-        """An upper bound of the left side of (C3), what each symbol adds to it, about, and what is
-        not known of it: of degree 4, six times."""
+        """An upper bound of the left side of (C3), its value in the middle, about how much each
+        symbol adds, and the error: of degree 4, six times."""
         form = self.form()
         value, error = 6 * self.value << 2 * UNIT_BITS, (self.error << 2 * UNIT_BITS) // 20 + 1
         moved = [sum([abs(x) for key, x in form.items() if k in key]) for k in self.symbols]
@@ -372,8 +364,8 @@ class SecondVariation:
 
 
 def cube_bound(form):
-    """At most so large is, over the cube, the polynomial with these integer coefficients: of e[i],
-    of e[i] e[j] and of e[i] e[j] e[k] by (i,), (i, j) and (i, j, k), i <= j <= k; and no constant.
+    """An upper bound over the cube [-1, 1]^m of the polynomial with these integer coefficients: of
+    e[i], e[i] e[j] and e[i] e[j] e[k] by (i,), (i, j) and (i, j, k), i <= j <= k, no constant.
 
     x e^2 with x < 0 is at most x (2 t e - t^2) for any t, here for about the one where, of it and
     what is linear in e, the largest value is.  x e^2 with x > 0 is x - x (1 - e^2), and e[i]^2
@@ -408,20 +400,16 @@ def cube_bound(form):
     return -(-max(highest) - constant >> 2 * TRY_BITS)
 
 
-def attempt(prism, l, caution):
+def attempt(prism, l, penalties):
     """Is (C3) true of all orbits of the prism?  None if so, or else why not, and how much each
-    symbol matters.
-
-    The lanes are followed until a wave reaches too far, and (C3) is tried then and wherever they
-    may be long enough.
-    """
-    one, most, why, moved = prism.fixed.one, FIRST_TRY, None, None
+    symbol matters.  It is tried where a wave reaches too far, and before at lengths that double."""
+    one, most, why, moved = prism.fixed.one, FIRST_TRY_SITES, None, None
     value = error = 0
     while True:
         for lane in prism.lanes:
             lane.follow(min(most, MAX_SITES))
         sites = [lane.sites for lane in prism.lanes]
-        vectors = test_vectors(*[[prism.cautious(site, caution) for site in lane]
+        vectors = test_vectors(*[[prism.penalized(site, penalties) for site in lane]
                                  for lane in sites], l / one)
         n = [trimmed([(round(u * 2 ** VECTOR_BITS), round(v * 2 ** VECTOR_BITS)) for u, v in lane])
              for lane in vectors]
@@ -440,7 +428,7 @@ def attempt(prism, l, caution):
     why = why or "the orbit of its centre contradicts nothing over %d points, %s" % (
         length, "the most that are followed" if max(map(len, sites)) >= MAX_SITES else
         "beyond which it is too uncertain")
-    # What moves the ends matters, if little: when it is halved, the orbit may go on.
+    # Symbols that move the ends count a little: when they are halved, the orbit may go on.
     ends = [sum([lane.moved(i) for lane in prism.lanes]) / one for i in range(prism.symbols)]
     share = [x / (sum(ends) or 1) for x in ends]
     if moved is None or value >= 0:

@@ -10,8 +10,8 @@ import math
 from fractions import Fraction
 
 from .failures import NotConfirmed, Rejected
-from .limits import MAX_DIVISORS
 
+MAX_DIVISORS = 1 << 21                  # of a rotation, computed one by one
 PRIMES = [p for p in range(2, 2000) if all(p % d for d in range(2, math.isqrt(p) + 1))]
 PI_LOW, PI_HIGH = Fraction(314159265358979, 10 ** 14), Fraction(314159265358980, 10 ** 14)
 E_LOW = Fraction(271828182845904, 10 ** 14)

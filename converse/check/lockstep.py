@@ -1,9 +1,9 @@
 """The fast path: a thousand prisms in lockstep, in doubles.
 
 The same bound as in exact.py, steps (C4) to (C8) of docs/proofs/checker.md, where rounding errors
-are bounded by steps (C9) to (C20).  What is not bounded below zero here is left to the integers.
-All that is done to one prism is done to all of them, as arrays of numpy, whose operations round to
-nearest (import_numpy_if_sound looks).
+are bounded by steps (C9) to (C20).  A leaf that is not excluded here is left to the integers.
+Each operation is done to all prisms together, as arrays of numpy, whose operations round to nearest
+(import_numpy_if_sound tests this).
 """
 
 import collections
@@ -16,30 +16,36 @@ from fractions import Fraction
 from .arith import fixed_of, turn_of, turned
 from .claim import IDENTITY
 from .failures import complain
-from .limits import CAUTION, FIRST_TRY, LAG, MAX_CUTS, MAX_HALVINGS, MAX_PIECES, MAX_SITES
+from .limits import (FIRST_TRY_SITES, HALVINGS_APART_MAX, MATTERS_MIN, MAX_CUTS, MAX_HALVINGS,
+                     MAX_PIECES, MAX_SITES, SITE_PENALTIES)
 
 np = None                               # numpy, once the fast path is wanted
-UNIT = 2.0 ** -53
-TWO_PI = 2 * math.pi                    # off by 0.35 u of itself
+UNIT = 2.0 ** -53                       # the unit roundoff u of doubles
+TWO_PI = 2 * math.pi                    # within 0.35 u of 2 pi, relatively
 SINES = [(-1) ** k / math.factorial(2 * k + 1) for k in range(8, 0, -1)]
 COSINES = [(-1) ** k / math.factorial(2 * k) for k in range(8, 1, -1)]
-SINE, MORE, HUGE = 24 * UNIT, 1 + 2.0 ** -40, 2.0 ** 900
-XSTAR_REST = 2.0 ** -51                 # of x*, in radians; see Lockstep
-TINY = 2.0 ** -200
-FAST_SIZE = 2.0 ** 10                   # of amplitudes, x*, regions and frames
-FAST_CUTS = 52                          # of an axis
-BATCH, SMALLEST_BATCH = 1024, 16
-ROOM = 1 << 19                          # sites of all lanes at a time
-FARTHEST = 1.0                          # reach of a wave that is there
-# A lane is tried early if its reach grew by less than this factor while its length doubled.  With 4
-# a standard map at k = 1.2 takes ten times as long; with 16 the one at k = 0.972 a tenth longer.
-SLOW_GROWTH = 8
+
+# Of the bound; docs/proofs/checker.md needs these values.
+SINE_ROUNDING = 24 * UNIT               # error of a sine or cosine, divided by |k0| + |k1|: (C12)
+SUM_ROUNDING = 1 + 2.0 ** -40           # factor for the roundings of a sum of positive terms: (C16)
+MASS_MAX = 2.0 ** 900                   # of the mass, so that sums do not overflow: (C20)
+XSTAR_ERROR = 2.0 ** -51                # of x*, in radians; see Lockstep
+UNDERFLOW_MARGIN = 2.0 ** -200          # added to sizes and divisors that may underflow
+FAST_SIZE_MAX = 2.0 ** 10               # of amplitudes, x*, regions (in turns) and frames
+FAST_CUTS_MAX = 52                      # cuts of an axis, so that cells are exact in doubles
+REACH_MAX = 1.0                         # of a wave at a site, in radians: (C19)
+DETERMINANT_MIN = 2.0 ** -60            # of d; smaller ones end a lane: (C15)
+
+# Of the effort, on which no theorem rests; chosen by the table in docs/proofs/checker.md.
+BATCH, BATCH_MIN = 1024, 16             # prisms in lockstep, at first and where orbits are long
+SITES_MAX = 1 << 19                     # sites of all lanes of a batch, for the memory: 1 GB
+EARLY_TRY_GROWTH = 8                    # of a reach while the length of its lane doubles
 
 
 @functools.lru_cache(maxsize=1)
 def sums_and_products():
-    """Numbers x and y, among them the smallest, and x + y, x - y, x y, x / y and x - 1, each
-    rounded to nearest by Fraction."""
+    """Numbers x and y, including the smallest; and x + y, x - y, x y, x / y and x - 1, each rounded
+    to nearest by Fraction."""
     draw = random.Random(1)
     x, y = ([draw.uniform(-1, 1) * 2.0 ** draw.randint(-500, 500) for _ in range(200)]
             + [2.0 ** -1022, 1 + 2.0 ** -30, 2.0 ** -530 / 3, 0.7, -1.1] for _ in range(2))
@@ -49,7 +55,7 @@ def sums_and_products():
 
 
 def import_numpy_if_sound():
-    """Imports numpy.  Does it round to nearest, below 2^-1022, too, and are its halves even?"""
+    """Imports numpy.  Does it round to nearest, also below 2^-1022, and halves to even?"""
     global np
     import numpy as np
     *operands, exact = sums_and_products()
@@ -64,10 +70,10 @@ def import_numpy_if_sound():
 def lockstep_sincos(turns):
     """Sines and cosines of 2 pi turns, |turns| <= 1/2: each within 4 u.
 
-    turns - n/4 is exact (Sterbenz) and at most 1/8; the angle is off by 1.4 u of itself.  Taylor's
-    polynomials are off by less than u/50.  sine: 0.8 u for the angle, 0.6 u for what is added to
-    it, at most 0.081, 0.8 u for the sum; cosine: 0.8 u, 0.4 u for the square's half, 0.1 u for the
-    rest, 0.4 u and u for the sums.
+    turns - n/4 is exact (Sterbenz) and at most 1/8; the angle has a relative error of 1.4 u.
+    Taylor's polynomials are off by less than u/50.  sine: 0.8 u for the angle, 0.6 u for the number
+    added to it, at most 0.081, 0.8 u for the sum; cosine: 0.8 u, 0.4 u for the square's half,
+    0.1 u for the rest, 0.4 u and u for the sums.
     """
     n = np.rint(4 * turns)
     angle = (turns - 0.25 * n) * TWO_PI
@@ -103,13 +109,13 @@ def combined(table, waves):
 
 
 class Shape:
-    """What the waves of the fast path are but for their amplitudes: their k and phases, the first
-    two those of the coordinates; and which of them are present anywhere, and have which symbols."""
+    """The waves of the fast path without their amplitudes: their k and phases, after (1, 0) and
+    (0, 1); which of them are present in a lane, and which symbols move their amplitudes."""
 
     def __init__(self, waves, moving=(), parameters=0):
-        """waves: (k, phase) of those that are present; moving: pairs of the number of such a wave
-        and of a symbol that moves its amplitude; parameters: so many symbols at least, some of
-        which may move x[1] alone."""
+        """waves: (k, phase) of each wave that is present; moving: pairs (number of such a wave,
+        symbol that moves its amplitude); parameters: the least number of symbols, of which some
+        may move x[1] alone."""
         self.known = [((1, 0), 0), ((0, 1), 0)]
         self.known += [wave for wave in waves if wave not in self.known]
         at = self.at = [self.known.index(wave) for wave in waves]   # their numbers here
@@ -140,7 +146,7 @@ class Shape:
         return [[(i, x) for i, x in enumerate(row) if x] for row in columns]
 
     def in_frame(self, turn):
-        """Of that frame of the errors: V' from waves, and k.x of x, but for signs."""
+        """In that frame of the errors: the absolute values of V' from waves, and of k.x from x."""
         k = np.array([turned(turn, k) for k, _ in self.known], float)
         return self.table(*abs(k.T)), self.rows(abs(k) / (turn[0] ** 2 + turn[1] ** 2))
 
@@ -191,7 +197,7 @@ def least_of(d):
 
 
 def quadratic(pairs, xi, bend, parts):
-    """Step (C6): what p' cos(y + z) has of second order in the symbols, but for the sign, as the
+    """Step (C6): the part of -p' cos(y + z) that is of second order in the symbols, as the
     coefficients of e[i] e[j] for these pairs, i <= j, and its mean; from the columns xi of k.L,
     P cos y, and pairs (symbol, h sin y)."""
     form, mean = bend * products(xi), 0
@@ -215,8 +221,8 @@ def bending(P, H, W, s, c, size, rest, reach):
 
 
 def remainder(P, H, W, A0, alpha, B0, beta, weight, size, rest, reach):
-    """What the polynomial of step (C8) leaves of a wave, if alpha and beta bound these linear
-    parts, and weight |m| + omega."""
+    """Bounds the difference between a wave and the polynomial of step (C8), if alpha and beta bound
+    these linear parts, and weight |m| + omega."""
     second = reach * reach / 2
     third, fourth = second * reach / 3, second * second / 6
     far = rest * (reach + size) / 2 + fourth
@@ -229,8 +235,8 @@ def remainder(P, H, W, A0, alpha, B0, beta, weight, size, rest, reach):
 
 
 def summit(form):
-    """At most so large is, over the cube, the polynomial with these coefficients: of e[i], of
-    e[i] e[j] and of e[i] e[j] e[k] by (i,), (i, j) and (i, j, k), i <= j <= k; and no constant.
+    """An upper bound over the cube [-1, 1]^m of the polynomial with these coefficients: of e[i], of
+    e[i] e[j] and of e[i] e[j] e[k] by (i,), (i, j) and (i, j, k), i <= j <= k, without a constant.
 
     x e^2 with x < 0 is at most x (2 t e - t^2) for any t, here for the one where, of it and what
     is linear in e, the largest value is.  x e^2 with x > 0 is x - x (1 - e^2), and e[i]^2 e[k],
@@ -247,7 +253,7 @@ def summit(form):
             twist[i] = twist[i] + np.abs(x)
     for i in symbols:
         up, down = np.maximum(form[i, i], 0), np.maximum(-form[i, i], 0)
-        t = np.clip(linear[i] / (2 * down + TINY), -1, 1)
+        t = np.clip(linear[i] / (2 * down + UNDERFLOW_MARGIN), -1, 1)
         linear[i] = linear[i] - 2 * down * t
         constant = constant + up + down * t * t + np.maximum(twist[i] - up, 0)
     corners = [(1, *signs) for signs in itertools.product((1, -1), repeat=len(symbols) - 1)]
@@ -263,15 +269,15 @@ def summit(form):
     return (np.abs(odd) + even).max(axis=0) + constant
 
 
-# A site of all lanes, in the words of docs/proofs/checker.md: which of them have it; s, c, k.L as
+# A site of all lanes, in the words of docs/proofs/checker.md: the lanes that have it; s, c, k.L as
 # columns of the symbols, size, rest and reach of each wave; beta; and E of step (C7).
 Sites = collections.namedtuple("Sites", "alive s c columns size rest reach beta E")
 
 
 def next_rest(d, f, r, r0, err, along, beside):
     """Steps (C5) and (C15): f of a site q, with M and the determinant of d, from d and f of the
-    site before it, the rests r of q and r0 of that site, the error err of the step from q, and
-    what of r (along) and of its other coordinate (beside) the roundings of beta add."""
+    site before it, the rests r of q and r0 of that site, and the error err of the step from q.
+    The roundings of beta multiply r by along, and its other coordinate by beside."""
     diagonal, square = d[0] * d[2], d[1] * d[1]
     det = diagonal - square
     inv = 1 / det
@@ -285,11 +291,11 @@ def next_rest(d, f, r, r0, err, along, beside):
 
 
 class Sums:
-    """What the sites of each lane add up to: the value at X and P, the polynomial of step (C8) in
-    the symbols, and, not below zero, what these leave (error) and the mass of step (C19)."""
+    """Sums over the sites of each lane: the value at X and P, the polynomial of step (C8) in the
+    symbols, a bound of the rest (error), and the mass of step (C19)."""
 
     def __init__(self, known, angles, lanes):
-        """known: symbols, of which the first so many (angles) are those of the parameters."""
+        """known: the number of symbols; angles: the number of the parameters, which come first."""
         self.known, self.angles = known, angles
         self.pairs = [(i, j) for i in range(known) for j in range(i, known)]
         self.value, self.mass, self.error = np.zeros(lanes), np.zeros(lanes), np.zeros(lanes)
@@ -300,8 +306,8 @@ class Sums:
         self.ends = None                                # of e[i] and the columns of x[1]
 
     def add_waves(self, shape, P, h, columns, A, B):
-        """Adds the polynomial of step (C8) of all waves, but for P (A0 + alpha), of which with the
-        multipliers of (C7) only mu.E is left; returns for each wave its factor of D in G."""
+        """Adds the polynomial of step (C8) of all waves, except P (A0 + alpha), which the
+        multipliers of (C7) cancel up to mu.E; returns for each wave its factor of D in G."""
         A0, B0, alpha, beta = A[:, 0], B[:, 0], A[:, 1:], B[:, 1:]
         slopes, PA = P[:, None] * B, P * A0
         slopes[:, 1:] -= PA[:, None] * columns
@@ -355,17 +361,16 @@ class Prisms:
     """Prisms followed and bounded in lockstep; all arrays end with the axis of lanes, those ahead
     before those back."""
 
-    def __init__(self, box, shape, xstar, l, caution=CAUTION[0]):
+    def __init__(self, box, shape, xstar, l, penalties=SITE_PENALTIES[0]):
         """The box: P, h (by wave and symbol) and W of the waves, X[1] in turns, its columns (by
-        coordinate and symbol, the last two those of the parallelogram) and what x[1] may be off,
-        in radians; the Shape; x* in turns; l; and how much the choice of n shies at sites that are
-        not well known, by their reach and by its square."""
+        coordinate and symbol, of which the last two span the parallelogram) and the error of x[1],
+        in radians; the Shape; x* in turns; l; and penalties (see SITE_PENALTIES)."""
         P, h, W, x, columns, off = box
         self.size, self.shape = x.shape[1], shape
         self.P, self.h, self.W = self.both(P, P), self.both(h, h), self.both(W, W)
-        self.H = np.abs(self.h).sum(axis=1) * MORE
+        self.H = np.abs(self.h).sum(axis=1) * SUM_ROUNDING
         self.magnitude, self.l = np.abs(self.P), self.both(l, l)
-        self.caution = [self.both(x + 0 * l, x + 0 * l) for x in caution]
+        self.penalties = [self.both(x + 0 * l, x + 0 * l) for x in penalties]
         absent = (self.magnitude == 0) & (self.H == 0) & (self.W == 0)  # in these lanes
         self.absent = {w: absent[w] for w in shape.present if absent[w].any()}
         stiff = combined(shape.stiff, self.magnitude)
@@ -378,14 +383,14 @@ class Prisms:
         self.pairs = list(itertools.combinations_with_replacement(range(self.known), 2))
         self.halves = np.array([[0.5 if i == j else 1] for i, j in self.pairs])
         start, none = xstar + 0 * x, np.zeros_like(x)
-        blank, rounding = np.zeros_like(columns), np.full_like(x, XSTAR_REST)
+        blank, rounding = np.zeros_like(columns), np.full_like(x, XSTAR_ERROR)
         self.ends, self.rounding = self.both(columns, blank), self.both(off, rounding)
         a, b = map(abs, self.turn)
         off, rounding = [np.stack((a * u + b * v, b * u + a * v))
                          for u, v in (off + none, rounding)]
         self.before = self.both(start, x), self.both(blank, columns), self.both(rounding, off)
         self.first = self.both(x, start), self.both(columns, blank), self.both(off, rounding)
-        self.sites, self.excluded = [], np.zeros(self.size, bool)  # the latter go no farther
+        self.sites, self.excluded = [], np.zeros(self.size, bool)  # which are not followed further
 
     @staticmethod
     def both(ahead, back):
@@ -398,7 +403,7 @@ class Prisms:
         return lanes[..., :self.size] + lanes[..., self.size:]
 
     def moved(self, columns):
-        """How far each symbol moves a site, the waves that a lane has taken together."""
+        """How far each symbol moves a site: the sum over the waves of a lane."""
         total = 0
         for w in self.shape.present:
             x = np.abs(columns[w])
@@ -406,16 +411,17 @@ class Prisms:
         return total
 
     def follow(self):
-        """Follows all lanes until each reaches too far, and yields True then and where (C3) is to
-        be tried before; False if there is no room for more.
+        """Follows all lanes until each reaches too far.  Yields True at the end and where (C3) is
+        to be tried earlier; False if the memory is full.
 
-        A lane that has come to its end stays as zeros, alive no more, and nothing is said of it.
-        An early try costs as much as the try at the end.  So there is one only if most lanes reach
-        hardly farther than at half their length, as near elliptic orbits, where the end is far.
+        A lane that has ended is set to zero, and is not alive.  An early try costs as much as the
+        try at the end.  So there is one only if, for the majority of the lanes, the reach grew by
+        less than EARLY_TRY_GROWTH while the length doubled, as near elliptic orbits, which end
+        late.
         """
         P, h, H, W, F, F01, shape = self.P, self.h, self.H, self.W, self.F, self.F01, self.shape
         slope, n = P / TWO_PI, len(P)
-        slack, from_H = SINE * shape.K[:, None], shape.grain * combined(shape.strong, H)
+        slack, from_H = SINE_ROUNDING * shape.K[:, None], shape.grain * combined(shape.strong, H)
         q0, q1 = self.turn                                  # of rests
         along, beside = (F[0] + F[1],) * 2 if q1 else (F, F01)      # of that frame's beta
         strengths, sizes = shape.in_frame(self.turn)
@@ -423,32 +429,32 @@ class Prisms:
         (X0, L0, r0), (X, L, r) = self.before, self.first
         T = T0 = np.zeros((2, len(self.pairs), P.shape[1]))
         near0 = np.abs(L0).sum(axis=1)
-        alive, d, f, due, reached = np.ones(X.shape[1], bool), None, None, FIRST_TRY, 0
+        alive, d, f, due, reached = np.ones(X.shape[1], bool), None, None, FIRST_TRY_SITES, 0
         while True:
             columns = shape.along(L)
-            size = np.abs(columns).sum(axis=1) * MORE
+            size = np.abs(columns).sum(axis=1) * SUM_ROUNDING
             curve = (self.halves * np.abs(shape.along(T))).sum(axis=1)
-            rest, near = curve + combined(sizes, r), size[:2] + curve[:2] * MORE
+            rest, near = curve + combined(sizes, r), size[:2] + curve[:2] * SUM_ROUNDING
             if shape.mixed:
                 rest[2:] += 3 * UNIT * combined(shape.sizes[2:], near)
-            rest *= MORE
-            reach = (size + rest) * MORE
+            rest *= SUM_ROUNDING
+            reach = (size + rest) * SUM_ROUNDING
             if not self.sites:                      # how far each symbol moves a lane's last site
                 self.last = self.moved(columns)
             for w in shape.present:
-                known = reach[w] <= FARTHEST
+                known = reach[w] <= REACH_MAX
                 alive = alive & (known | self.absent[w] if w in self.absent else known)
             if self.sites and (not alive.any() or len(self.sites) == MAX_SITES):
                 yield True
                 return
-            if len(self.sites) * alive.size >= ROOM and self.size > SMALLEST_BATCH:
+            if len(self.sites) * alive.size >= SITES_MAX and self.size > BATCH_MIN:
                 yield False
                 return
             if 2 * len(self.sites) == due:
                 reached = reach[shape.present].max(axis=0)
             if len(self.sites) == due:
                 farthest = reach[shape.present].max(axis=0)
-                slow = alive & (farthest < SLOW_GROWTH * reached)
+                slow = alive & (farthest < EARLY_TRY_GROWTH * reached)
                 if 2 * slow.sum() > alive.sum():
                     yield True
                     alive = alive & ~self.both(self.excluded, self.excluded)
@@ -487,14 +493,15 @@ class Prisms:
                 f, d = r0 + err + along * r + beside * r[::-1], block
             else:
                 f, M, det = next_rest(d, f, r, r0, err, along, beside)
-                alive, d = alive & (np.abs(det) > 2.0 ** -60), block - M
-            f = f * MORE
-            r, r0 = (applied(np.abs(d), r) + f) * MORE, r
+                alive, d = alive & (np.abs(det) > DETERMINANT_MIN), block - M
+            f = f * SUM_ROUNDING
+            r, r0 = (applied(np.abs(d), r) + f) * SUM_ROUNDING, r
             L, L0, T, T0, near0 = new, L, bow, T, near
 
     @staticmethod
     def keep_plainest(over, best, place, forms):
-        """Empties part 1 where it is over, and puts it in the place of part 2 if it is plainer."""
+        """Where a segment (1) ends, keeps it as the best (2) if its eigenvalue is lower, and resets
+        it."""
         plainer = over & (best[1] > best[2]) & (best[1] < math.inf)
         for array in best, place, forms:
             np.copyto(array[2], array[1], where=plainer)
@@ -502,19 +509,19 @@ class Prisms:
 
     def test_vectors(self):
         """Vectors n for each site, and how many tails begin there: one where a lane ends, one where
-        n begins amid a lane.  Nothing rests on which vectors these are, if only n is zero beyond.
+        n begins amid a lane.  Any vectors give a bound, if n is zero beyond.
 
-        At each site the recursions from both ends of the orbit are compared, as by test_vectors,
-        to beta and something for what the bound will add to a site.  A recursion that fails begins
-        anew behind that site.  Of each part of the orbit that they cover without beginning anew,
-        where both together have a negative eigenvalue that is nearest to zero, and n as a rule is
-        largest, is its eigenvector; n follows outwards by the recursions.  The part is taken where
-        this eigenvalue is lowest: others may contradict next to nothing, however small the prism.
+        At each site the recursions from both ends of the orbit are compared, as by test_vectors in
+        exact.py, to beta plus a penalty for the reach of the site.  A recursion that fails begins
+        anew after that site.  They cut the orbit into segments.  In each, n is an eigenvector at
+        the site where both recursions together have the negative eigenvalue nearest to zero, and
+        follows outwards by the recursions.  The segment with the lowest such eigenvalue is taken:
+        others may contradict by a tiny amount, however small the prism.
         """
         sites, none, shape = self.sites, np.zeros_like(self.l), self.shape
         blocks, tail = [], np.stack((self.l, none, self.l))
         for site in sites:
-            more = (self.caution[0] + self.caution[1] * site.reach) * site.reach
+            more = (self.penalties[0] + self.penalties[1] * site.reach) * site.reach
             blocks.append(site.beta + combined(shape.forms, (self.magnitude + self.H) * more))
         outer, back, whole = [], [], []             # the recursion from the end
         inverse, beyond, good = tail, none > 0, none == 0
@@ -579,8 +586,8 @@ class Prisms:
         return n, tails
 
     def expand(self):
-        """The left side of (C3): its value at X and P, a polynomial, as summit takes it, and what
-        it may be more than both; infinite where it cannot be said."""
+        """The left side of (C3): its value at X and P, a polynomial, as summit takes it, and a
+        bound of its difference from both, infinite where there is none."""
         N, l, F, shape = len(self.sites), self.l, self.F, self.shape
         n, tails = self.test_vectors()
         P, H, W, magnitude, grain = self.P, self.H, self.W, self.magnitude, shape.grain
@@ -628,37 +635,37 @@ class Prisms:
         form = sums.form()
         added = sum([np.abs(x) for x in form.values()])
         mass = UNIT * (((len(P) + 2) * N + 256) * sums.mass + 64 * added)
-        error = (sums.error + mass) * (MORE + 64 * UNIT * N)
-        return sums.value, form, np.where(mass < UNIT * HUGE, error, math.inf)
+        error = (sums.error + mass) * (SUM_ROUNDING + 64 * UNIT * N)
+        return sums.value, form, np.where(mass < UNIT * MASS_MAX, error, math.inf)
 
     def bound(self):
-        """An upper bound of the left side of (C3) for each prism; and what each symbol adds to it,
-        about, which says where to cut."""
+        """An upper bound of the left side of (C3) for each prism; and about how much each symbol
+        adds to it, which decides where to cut."""
         value, form, error = self.expand()
-        share = self.joined(self.last) + TINY
+        share = self.joined(self.last) + UNDERFLOW_MARGIN
         share = share / share.sum(axis=0)
         moved = np.stack([sum([np.abs(x) for key, x in form.items() if k in key])
                           for k in range(self.known)])
-        more = error + moved.sum(axis=0) / 64       # what moves the ends matters, if little
+        more = error + moved.sum(axis=0) / 64       # so that symbols that move the ends count
         return value + (summit(form) + error), np.where(value < 0, moved + more * share, share)
 
 
 class Lockstep:
-    """The fast path of some claims; a prism is of one of them."""
+    """The fast path of some claims; each prism belongs to one of them."""
 
     def __init__(self, claims):
-        """What all prisms share, and what those of each claim; ValueError if one has numbers that
-        it is not made for.
+        """Converts the claims to doubles; ValueError if one has numbers that are too large, or no
+        wave.
 
         x* in turns is off by 2^-54 of its rounding and by 2^-80 of the integers, less than
-        XSTAR_REST / 2 pi.
+        XSTAR_ERROR / 2 pi.
         """
         waves = list(dict.fromkeys((wave.k, wave.phase % 2) for claim in claims
                                    for wave in claim.examined))
         if not all(claim.examined for claim in claims):
             raise ValueError("no wave: orbits without end")
         self.axes = sorted({2 + m for claim in claims for wave in claim.examined
-                            for m, part in enumerate(wave.parts) if float(part)}    # or TINY
+                            for m, part in enumerate(wave.parts) if float(part)}    # or underflow
                            | {2 + m for claim in claims for m, shift in enumerate(claim.shifts)
                               if any(shift)})
         shape = (len(waves), len(claims))
@@ -687,7 +694,7 @@ class Lockstep:
             for x in claim.xstar] for claim in claims]).T
         sizes = self.scale, self.half, self.shifts, self.frame, *[
             [max(map(abs, x)) for x in xs] for xs in zip(*[(c.xstar, c.centre) for c in claims])]
-        if max([np.max(np.array(x, float), initial=0) for x in map(np.abs, sizes)]) > FAST_SIZE:
+        if max([np.max(np.array(x, float), initial=0) for x in map(np.abs, sizes)]) > FAST_SIZE_MAX:
             raise ValueError("too large for the fast path")
         self.batch = BATCH
 
@@ -695,12 +702,12 @@ class Lockstep:
         """Boxes that cover these cells of the claims with these numbers, as Prisms takes them.
 
         at and part are exact.  The doubles near middles and parts are off by u of them, the
-        products and sums by u of theirs, of four at most: all in all by less than 8 u of their
-        sum, of which scale is the double.  Centres and half-widths of the angles alike, and at most
-        three shifts, in at most four sums: 6 u of the centre, 7 u of the half-widths, 6 u of the
-        shifts and 3 u more of these for their columns, all of which the sides are longer for.  In a
-        frame other than the identity x[1] has the roundings of two products and a sum, in turns,
-        and so have its columns.
+        products and sums by u of theirs, of four at most: in total by less than 8 u of their sum,
+        of which scale is the double.  The same holds for centres and half-widths of the angles and
+        at most three shifts, in at most four sums: 6 u of the centre, 7 u of the half-widths, 6 u
+        of the shifts, and 3 u more of the shifts for their columns.  The sides are lengthened by
+        all this.  In a frame other than the identity x[1] has the roundings of two products and a
+        sum, in turns, and so have its columns.
         """
         part = np.ldexp(1.0, -cuts.astype(np.intc))
         at = (2 * index + 1 - (1 << cuts)) * part
@@ -713,7 +720,7 @@ class Lockstep:
                 P[w] += parts[number] * at[axis]
                 h[w, m] = parts[number] * part[axis]
         for w, scale in zip(self.shape.at, self.scale):
-            W[w] = np.where(scale[number] > 0, 8 * UNIT * scale[number] + TINY, 0)
+            W[w] = np.where(scale[number] > 0, 8 * UNIT * scale[number] + UNDERFLOW_MARGIN, 0)
         V = self.centre[:, number] + self.half[:, number] * at[:2]
         moves, moved = np.zeros((2, len(self.axes), number.size)), 0
         for m, axis in enumerate(self.axes[:-2]):
@@ -722,8 +729,8 @@ class Lockstep:
             moves[:, m] = TWO_PI * shifts * part[axis]
             moved = moved + np.abs(shifts)
         V -= np.rint(V)
-        moves[(0, 1), (-2, -1)] = TWO_PI * MORE * (self.half[:, number] * part[:2] + (
-            8 * UNIT * ((self.centre + self.half)[:, number] + 2 * moved) + TINY))
+        moves[(0, 1), (-2, -1)] = TWO_PI * SUM_ROUNDING * (self.half[:, number] * part[:2] + (
+            8 * UNIT * ((self.centre + self.half)[:, number] + 2 * moved) + UNDERFLOW_MARGIN))
         frame = self.frame[:, number]
         X, columns, sizes = [np.stack((f[0] * v[0] + f[1] * v[1], f[2] * v[0] + f[3] * v[1]))
                              for f, v in ((frame, V), (frame, moves),
@@ -732,15 +739,16 @@ class Lockstep:
         off[:, (frame.T == IDENTITY).all(axis=1)] = 0
         return P, h, W, X - np.rint(X), columns, off
 
-    def attempt(self, index, cuts, number, l, caution, halved=None):
-        """Is (C3) true of all orbits of these cells?  For each, and the axis to cut it along, -1 if
-        that seems vain; None if their orbits are too long for so many at a time.
+    def attempt(self, index, cuts, number, l, penalties, halved=None):
+        """Is (C3) true of all orbits of these cells?  Returns an answer for each, and the axis
+        along which to cut it, or -1 if cuts will not help; None if their orbits are too long for a
+        batch of this size.
 
-        It is the axis that matters most, but for one that matters and was halved far less often.
+        It is the axis that matters most, or one that matters and was halved far less often.
         """
         with np.errstate(all="ignore"):
             prisms = Prisms(self.box(index, cuts, number), self.shape, self.xstar[:, number], l,
-                            caution)
+                            penalties)
             for ready in prisms.follow():
                 if not ready:
                     return None
@@ -753,23 +761,23 @@ class Lockstep:
         axis = blame.argmax(axis=0)
         if halved is not None:
             halved, at = halved[self.axes], np.arange(axis.size)
-            last = np.where(blame > blame[axis, at] * 2.0 ** -30, halved, MAX_CUTS).argmin(axis=0)
-            axis = np.where(halved[axis, at] - halved[last, at] > LAG, last, axis)
+            last = np.where(blame > blame[axis, at] * MATTERS_MIN, halved, MAX_CUTS).argmin(axis=0)
+            axis = np.where(halved[axis, at] - halved[last, at] > HALVINGS_APART_MAX, last, axis)
         return excluded, np.where(vain, -1, np.array(self.axes)[axis])
 
     def settle(self, cells, least, exactly):
         """Decides on cells, pairs of a claim's number and a cell, with these l: (number of the
         first that is not excluded, why not) or None, and how many pieces each took.
 
-        Those that fail are halved and tried again, up to the checker's limits and with n chosen
-        boldly and cautiously in turn (n spreads over few sites if their reach counts, over many if
-        its square does); what fails then, exactly(number) -> (None or why not,
-        pieces) decides on.
+        Cells that fail are halved and tried again, up to the checker's limits and with each of
+        SITE_PENALTIES in turn (n spreads over few sites if their reach is penalized, over many if
+        its square is).  Cells that fail then are decided by exactly(number) -> (None or why not,
+        pieces).
         """
         begun = np.array([cuts for _, (_, cuts) in cells]).T
         pieces, refused = np.zeros(len(cells), int), None
-        fine = [n for n, (_, (_, cuts)) in enumerate(cells) if max(cuts) > FAST_CUTS]
-        rest = [n for n, (_, (_, cuts)) in enumerate(cells) if max(cuts) <= FAST_CUTS][::-1]
+        fine = [n for n, (_, (_, cuts)) in enumerate(cells) if max(cuts) > FAST_CUTS_MAX]
+        rest = [n for n, (_, (_, cuts)) in enumerate(cells) if max(cuts) <= FAST_CUTS_MAX][::-1]
         index, cuts = [np.array([cells[n][1][part] for n in rest], np.int64).reshape(-1, 5).T
                        for part in (0, 1)]
         todo = [index, cuts, np.array([cells[n][0] for n in rest], int),
@@ -788,7 +796,7 @@ class Lockstep:
             halved = cuts - begun[:, number]
             halvings = halved.sum(axis=0)
             tried = self.attempt(index, cuts, claim, l,
-                                 np.array(CAUTION)[halvings % len(CAUTION)].T, halved)
+                                 np.array(SITE_PENALTIES)[halvings % len(SITE_PENALTIES)].T, halved)
             if tried is None:
                 self.batch //= 2
                 continue
@@ -797,7 +805,7 @@ class Lockstep:
             excluded, axis = tried
             lost = ~excluded & ((axis < 0) | (halvings >= MAX_HALVINGS)
                                 | (pieces[number] >= MAX_PIECES)
-                                | (cuts[axis, np.arange(axis.size)] >= FAST_CUTS))
+                                | (cuts[axis, np.arange(axis.size)] >= FAST_CUTS_MAX))
             fine = sorted(set(number[lost].tolist()))
             index, cuts, claim, l, number, axis = [
                 x[..., ~excluded].repeat(2, axis=-1)
@@ -811,8 +819,8 @@ class Lockstep:
 
 
 def make_lockstep(claims):
-    """The fast path, or None: it is not made for the claims' numbers, or, as a line then says, it
-    has not the machine it needs."""
+    """The fast path, or None: the claims' numbers are too large for it, or the machine lacks what
+    it needs; then a line on stderr says so."""
     try:
         if import_numpy_if_sound():
             return Lockstep(claims)

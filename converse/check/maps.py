@@ -18,7 +18,6 @@ from .arith import fixed_of, stiffness
 from .claim import ANGLES, THESIS, Claim, Wave, check_alone, check_frame, number, present
 from .cover import is_whole
 from .failures import NotConfirmed, Rejected, Unusable, named
-from .limits import MAX_ITEMS
 from .torus import is_at_once, torus_bound
 from .tree import check_mirror_images, leaves, tree_counts
 from .words import GRAPH, SYSTEM, TRIG, decimal_text
@@ -26,6 +25,7 @@ from .words import GRAPH, SYSTEM, TRIG, decimal_text
 REGIONS = {"b=0": (((1, 0, 0), (0, 0, 1)), ((0, 0, 1), (1, 0, 0))),
            "a=b": (((1, 1, 0), (0, 0, 1)), ((0, 0, 1), (1, 1, 0))),
            "c=0": (((1, 0, 0), (0, 1, 0)),)}
+MAX_ITEMS = 1 << 22                     # of the JSON text, and of the trees, of a map
 MAP_FORMAT = "converse map 2"
 MAP_AXES, MAP_KINDS = "01", "PAO"       # of the tree of a face: cuts of r and s; leaves
 GRID, MAP_CELLS = 16, 2000              # slices of s; cells of the torus for B

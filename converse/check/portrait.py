@@ -9,12 +9,13 @@ from .arith import fixed_of
 from .claim import IDENTITY, NUMBER, RATIO, Claim, Wave, number, present
 from .cover import CENTRE_BITS, reversal_centre
 from .failures import NotConfirmed, Rejected, named
-from .limits import MAX_COLUMNS, MAX_STRIP
 from .proof_file import header_fields, parse_waves, sealed
 from .tree import leaves
 from .words import decimal_text
 
 FIRST_LINE = b"converse portrait 1"
+MAX_COLUMNS = 1 << 16                   # of a portrait
+MAX_STRIP = 0.5                         # of k times half the width of a column, in radians
 PORTRAIT_FIELDS = {"wave", "strip", "even about", "undecided", "program", "depth", "columns"}
 STRIP_AXIS = 3                          # of cells: that of t2, along which a strip is cut
 PLACES = 6                              # of the share that the header says

@@ -6,9 +6,10 @@ import re
 from dataclasses import replace
 from fractions import Fraction
 
-from .claim import ANGLES, LETTERS, NUMBER, RATIO, Claim, Wave, check_alone, check_frame, number
+from .claim import (ANGLES, DECIMAL, LETTERS, NUMBER, RATIO, Claim, Wave, check_alone, check_frame,
+                    number)
 from .failures import NotConfirmed, Rejected, Unusable
-from .limits import MAX_K, MAX_LINE, MAX_WAVES
+from .limits import MAX_CHARACTERS, MAX_K, MAX_LINE, MAX_WAVES
 
 COUNTS = ("depth", "cuts", "proved", "symmetric", "linked", "undecided", "most_cuts")
 IGNORED = ("program", "method", "digits", "stubborn", "quick_tries", "tries", "Rtries", "reasons",
@@ -70,8 +71,8 @@ def header_fields(head, known):
             raise Rejected("line %d, in the header, is of unknown meaning" % at)
         if name in header and name not in REPEATED:
             raise Rejected("the header gives %s twice" % name)
-        if name == "wave":
-            header[name].append(value)
+        if name in REPEATED:
+            header.setdefault(name, []).append(value)
         else:
             header[name] = value
     return header
@@ -89,7 +90,7 @@ def parse_header(head):
 
 
 def pair(value, name, form=NUMBER, count=0):
-    """Two numbers, or with so many more."""
+    """Two numbers, or count more."""
     words = value.split(" ", 9)
     if len(words) not in (2, 2 + count) or not all(map(form.fullmatch, words)):
         raise Rejected("%s is not two%s decimal numbers" % (
@@ -98,7 +99,7 @@ def pair(value, name, form=NUMBER, count=0):
 
 
 def place(xstar, v0, v1, name, count=0):
-    """x*, centres and half-widths of v0 and v1, and their shifts by so many parameters, if any."""
+    """x*, centres and half-widths of v0 and v1, and their shifts by count parameters, if any."""
     ranges = [pair(v0, name + "v0", count=count), pair(v1, name + "v1", count=count)]
     if wrong := [angle for angle, (_, half, *_) in zip(ANGLES, ranges) if half < 0]:
         raise Rejected("%s%s: the half-width is negative" % (name, wrong[0]))
@@ -141,7 +142,7 @@ def parse(head, tree, sha256):
         pair(header["odd about"], "the header's odd about", RATIO)
     claim = Claim(waves, centre, half, frame, alone, xstar,
                   {name: int(header[name]) for name in COUNTS}, at_once, tree.replace("\n", ""),
-                  sha256)
+                  sha256, names=parameter_names(header.get("parameter", ()), len(waves[0].parts)))
     check_odd(claim, odd)
     if len(parts) > len(LETTERS):
         raise Rejected("there are more parts than letters")
@@ -149,6 +150,14 @@ def parse(head, tree, sha256):
         raise Rejected("a coordinate is alone, and there are parts: links are of whole graphs")
     return replace(claim, parts=tuple([parse_part(text, letter, claim)
                                        for text, letter in zip(parts, LETTERS)]))
+
+
+def parameter_names(lines, count):
+    """(name, value at t = -1, value at t = 1) of each parameter; () unless the lines name all."""
+    found = [re.fullmatch("([A-Za-z][A-Za-z0-9_]{0,39}) (%s) (%s)" % (DECIMAL, DECIMAL), line)
+             for line in lines if len(line) <= MAX_CHARACTERS]
+    return tuple([(name, Fraction(low), Fraction(high)) for name, low, high in map(
+        re.Match.groups, found)]) if len(lines) == len(found) == count and all(found) else ()
 
 
 def check_odd(claim, odd):

@@ -15,8 +15,9 @@ import operator
 from dataclasses import dataclass, replace
 
 from .failures import NotConfirmed
-from .limits import MAX_DIGITS, MAX_TERMS
 
+MAX_TERMS = 1 << 24                     # of a series
+MAX_DIGITS = 1 << 29                    # bits of all coefficients of a series
 FINE = 64                               # bits that norms have beyond the coefficients
 TEXTS = 1 << 14                         # Numbers that are written as text at a time.
 PARTS = 32                              # Products are computed up to a multiple of limit/PARTS.

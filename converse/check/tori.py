@@ -17,13 +17,16 @@ from .arith import GUARD, fixed_of
 from .failures import NotConfirmed, Rejected, Unusable, named
 from .field import (E_LOW, Divisors, Field, Norm, combination, exponential_above, identity,
                     rounded_down, rounded_up, upper_root)
-from .limits import MAX_BITS, MAX_GRID, MAX_LENGTH, MAX_WIDTH
+from .limits import MAX_BITS
 from .processes import ProcessDied, in_order
 from .series import FINE, Box, Ring, conjugate, greatest, opposite, powers_of, turn
 from .signals import undisturbed
 from .version import __version__
 from .words import decimal_text
 
+MAX_LENGTH = 1 << 21                    # of a mode, with the weights alpha
+MAX_WIDTH = 200                         # of the strip of a torus, times its longest mode
+MAX_GRID = 1 << 20                      # points at which L is inverted in doubles
 SHARES_OF_LOSS = [Fraction(x, 20) for x in (1, 2, 4, 8, 16)]        # s of the theorem
 CHANGES = [Fraction(x, 1000) for x in (1, 2, 5, 10, 20, 40, 70, 100, 150)]     # t l0 m0 a0
 ROUGH_BITS = 64                         # The series for the constants have these bits.

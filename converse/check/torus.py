@@ -9,8 +9,8 @@ import operator
 from fractions import Fraction
 
 from .arith import SINE_ERROR, angle_of, forms, in_units, largest, stiffness
-from .limits import MAX_CELLS
 
+MAX_CELLS = 1 << 15                     # of the torus, about, when B is bounded
 EIGENVECTOR_BITS = 20                   # of an eigenvector
 
 
@@ -22,8 +22,7 @@ def cell_bound(fixed, waves, amplitudes, sides, y, w):
     Taylor: with x = k.D, of |x| <= X = w sum of |k.side|, m is at most m(y) - p cos(k.y + phase) x
     and a rest, the lesser of |p| x^2 / 2 and -m(y) x^2 / 2 + |p x^3| / 6.  The part affine in d has
     a convex largest eigenvalue, so its maximum lies at a corner of the cell.  The rests add at most
-    the largest eigenvalue of the sum of k k' times a bound of the rest over |x| <= X.  Around the
-    maximum of beta m(y) is usually above 0, and that bound of third order in w.
+    the largest eigenvalue of the sum of k k' times a bound of the rest over |x| <= X.
     """
     bits, one = fixed.bits, fixed.one
     along = [[k0 * u + k1 * v for u, v in sides] for k0, k1, _ in waves]

@@ -9,9 +9,12 @@ from fractions import Fraction
 
 from .claim import RATIO, number, present
 from .failures import NotConfirmed, Rejected
-from .limits import MAX_ALPHA, MAX_BITS, MAX_K, MAX_LINE, MAX_MODE, MAX_MODES, MAX_PIECES
+from .limits import MAX_BITS, MAX_K, MAX_LINE, MAX_PIECES
 from .proof_file import parse_waves, sealed
 
+MAX_MODES = 1 << 21                     # of a torus
+MAX_MODE = 1 << 21                      # |k0| and |k1| of a mode
+MAX_ALPHA = 1000                        # of the weights of modes
 TORUS_MAGIC = b"converse torus "        # The first line begins with this; the version follows.
 TORUS_FIELDS = ("program", "dimension", "wave", "polynomial", "root", "rotation", "frame", "alpha",
                 "rho", "pieces")

@@ -44,13 +44,13 @@ def leaves(tree, axes=AXES, kinds="PSU"):
 
 
 def trees(claim):
-    """A proof file's own claim, with x*, region and tree, and those of its parts a, b, ...: with
-    the letters of the parts that their leaves may be linked to."""
+    """The claims of a proof file and of its parts a, b, ..., each with the letters of the parts
+    that its leaves may be linked to."""
     return [(part, LETTERS[n:len(claim.parts)]) for n, part in enumerate((claim, *claim.parts))]
 
 
 def tree_counts(claim, letters=""):
-    """What the tree has, counted; Rejected, if it is not whole and decided."""
+    """Counts the nodes of the tree; Rejected, if it is not whole and decided."""
     total = most_cuts = deepest = 0
     if set(AXES[2 + claim.parameters:]) & set(claim.tree):
         raise Rejected("the tree cuts a parameter that there is not")
@@ -177,7 +177,7 @@ def check_mirror_images(claim):
 
 
 def leaf_text(claim, kind, ordinal, cell):
-    """Names a leaf by its part, its number among those of its kind, its depth and where it lies."""
+    """Names a leaf by its part, its number among leaves of its kind, its depth and its place."""
 
     def sides(ends):
         return " x ".join(["[%.9g, %.9g]" % (x - h, x + h) for x, h in ends])

@@ -45,6 +45,12 @@ def sum_text(coefficients, names):
     return text or "0"
 
 
+def affine_text(middle, parts):
+    """middle + the sum of factor name over the pairs (factor, name)."""
+    return " ".join([decimal_text(middle), *["%s %s %s" % ("-" if g < 0 else "+", decimal_text(
+        abs(g)), name) for g, name in parts if g]])
+
+
 def is_boxed(claim):
     """Is it of the thesis's potential, with one parameter, or one for each of a, b, c or none?"""
     return tuple(wave.k for wave in claim.waves) == THESIS \
@@ -77,11 +83,12 @@ def claimed(claim):
     else:
         names = ["t%d" % (m + 1) for m in range(claim.parameters)]
         lines += ["-1 <= %s <= 1" % ", ".join(names)] * bool(names)
+        lines += ["where the input's %s is %s, from %s to %s" % (name, affine_text(
+            (low + high) / 2, [((high - low) / 2, t)]), decimal_text(low), decimal_text(high))
+            for (name, low, high), t in zip(claim.names, names)]
         for wave in claim.waves:
-            terms = ["%s %s %s" % ("-" if g < 0 else "+", decimal_text(abs(g)), name)
-                     for g, name in zip(wave.parts, names) if g]
             lines += ["k = (%d, %d), phase = %s pi, A = %s" % (
-                *wave.k, wave.phase, " ".join([decimal_text(wave.middle), *terms]))]
+                *wave.k, wave.phase, affine_text(wave.middle, zip(wave.parts, names)))]
     if claim.at_once != "no":
         upper = "these amplitudes at t1 = 1" if not boxed else (
             "the upper ends of these ranges" if claim.parameters == 1 and rising
@@ -133,5 +140,5 @@ def report(claims, theorem, criterion, confirmed, pieces, doubles):
         proved + skipped + linked + undecided, proved,
         ", %d linked to other parts" % linked * (linked > 0),
         ", %d undecided" % undecided * (undecided > 0), skipped),
-        "Proved leaves checked : %d, in %d pieces" % (confirmed, pieces)]
+        "Proved leaves checked : %d, in %d piece%s" % (confirmed, pieces, "s" * (pieces != 1))]
     return VERIFIED if whole else PART, lines

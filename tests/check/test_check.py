@@ -28,7 +28,7 @@ from fractions import Fraction
 import mpmath
 import pytest
 
-from converse import Problem
+from converse import Problem, StandardMap
 from converse import check as package
 from converse import prove, read_input
 from converse.check import lockstep
@@ -193,7 +193,7 @@ def built(a, half, depth, text):
         if above(cell):
             tree.append("S")
         elif sum(cell[1]) == depth or not (failed := criterion.attempt(
-                criterion.least_pivot(cell), cell, check.CAUTION[0])):
+                criterion.least_pivot(cell), cell, check.SITE_PENALTIES[0])):
             tree.append("P")
         else:
             tree.append("0" if failed[1][-2] > failed[1][-1] else "1")
@@ -302,6 +302,18 @@ def test_halves_angles_that_only_a_longer_orbit_feels(texts, run):
     for options in ((), ("--exact",)):
         status, out, err = run(text, *options)
         assert status == 3 and 3 <= int(re.search("in ([0-9]+) pieces", out).group(1)) < 100, err
+
+
+def test_parameters_have_the_names_of_the_input(run, tmp_path):
+    """Where the file names them; nothing else of that field reaches a terminal."""
+    prove(StandardMap(("2.5", "3"))).save(tmp_path / "proof")
+    text = (tmp_path / "proof").read_text(encoding="utf-8")
+    named = "\nwhere the input's k is 2.75 + 0.25 t1, from 2.5 to 3\n"
+    assert "\n-1 <= t1 <= 1" + named in run(text)[1]
+    for line in "parameter: \033k 2.5 3", "parameter: k 2.5 nan", "parameter: k 2.5":
+        status, out, _ = run(sealed(text.replace("parameter: k 2.5 3", line)))
+        assert status == 0 and "the input's" not in out and "\033" not in out
+    assert run(part_of(text))[1].count(" in 1 piece\n") == 1
 
 
 def test_same_output_for_any_jobs(deep, run):
@@ -1807,7 +1819,7 @@ def test_one_bound_in_two_arithmetics(np, texts, generator, monkeypatch):
     """Doubles and integers choose the same vectors, and lead to the same value, error and bound,
     but for their roundings."""
     monkeypatch.setattr(check, "MAX_SITES", 60)
-    monkeypatch.setattr(check, "FIRST_TRY", 60)
+    monkeypatch.setattr(check, "FIRST_TRY_SITES", 60)
     cases = 0
     for _ in range(20 * TORTURE):
         criterion, cell, prism = random_prism(generator, texts, 9)
@@ -1822,7 +1834,7 @@ def test_one_bound_in_two_arithmetics(np, texts, generator, monkeypatch):
         with pytest.MonkeyPatch.context() as patch:
             patch.setattr(check.SecondVariation, "bound",
                           lambda self: bounds.append(found(self)) or bounds[-1])
-            check.attempt(prism, l, check.CAUTION[0])
+            check.attempt(prism, l, check.SITE_PENALTIES[0])
         if not bounds or not error[0] < 10:
             continue
         exact = [x / (6 << 4 * check.UNIT_BITS) for x in (
@@ -1955,8 +1967,8 @@ def test_lockstep_sincos(np, generator):
                     value = mp.mpf(float(value[w, n]))
                     assert abs(value - function(angle)) <= 4 * unit
                     assert abs(value - function(angle_at((wave[0], Fraction(wave[1])), y))) \
-                        <= (check.SINE * shape.K[w] if w > 1 else 4 * unit)
-    assert check.SINE == 24 * 2.0 ** -53
+                        <= (check.SINE_ROUNDING * shape.K[w] if w > 1 else 4 * unit)
+    assert check.SINE_ROUNDING == 24 * 2.0 ** -53
 
 
 def test_lockstep_orbits(np, generator, monkeypatch):
@@ -2038,7 +2050,7 @@ def worst_bending(functions, generator, count):
             + mean[0] + sum(float(x[0]) * mp.mpf(z) for x, z in zip(form, pairs_of(eta)))
         bound = functions.bending(P, H, W, abs(math.sin(y)), abs(math.cos(y)), size, rest,
                                   size + rest)
-        worst = max(worst, abs(true) / (bound * check.MORE + mp.mpf(10) ** -15))
+        worst = max(worst, abs(true) / (bound * check.SUM_ROUNDING + mp.mpf(10) ** -15))
         if worst > 1:
             break
     return worst
@@ -2061,7 +2073,7 @@ def worst_remainder(functions, generator, count):
         bound = functions.remainder(
             P, H, W, float(A0), m1 * abs(float(c)), float(B0), m1 * abs(float(s)),
             abs(m0) + m1 + omega, size, rest, size + rest)
-        worst = max(worst, true / (bound * check.MORE + mp.mpf(10) ** -14))
+        worst = max(worst, true / (bound * check.SUM_ROUNDING + mp.mpf(10) ** -14))
         if worst > 1:
             break
     return worst
@@ -2203,7 +2215,7 @@ def test_a_leaf_of_long_orbits(np, texts, generator, monkeypatch):
     cell = (96814, 858, 5, 0, 0), (17, 12, 10, 0, 0)
     criterion, fast = check.Criterion(claim), check.Lockstep([claim])
     l = criterion.least_in_double(cell)
-    assert criterion.attempt(criterion.least_pivot(cell), cell, check.CAUTION[0]) is None
+    assert criterion.attempt(criterion.least_pivot(cell), cell, check.SITE_PENALTIES[0]) is None
     with np.errstate(all="ignore"):
         prisms = check.Prisms(fast.box(*cells_of([cell]), np.array([0])), fast.shape,
                               fast.xstar, np.array([l]))
@@ -2319,7 +2331,7 @@ def test_lockstep_xstar(np, texts, generator):
         fast = check.Lockstep([claim])
         for x, turns in zip(claim.xstar, fast.xstar[:, 0]):
             off = (real(x) - 2 * mp.pi * mp.mpf(float(turns)) + mp.pi) % (2 * mp.pi) - mp.pi
-            assert abs(off) <= check.XSTAR_REST and abs(turns) <= 0.5
+            assert abs(off) <= check.XSTAR_ERROR and abs(turns) <= 0.5
 
 
 def contradicts(abc, x0, x1, steps):
@@ -2353,7 +2365,7 @@ def test_nothing_that_minimizes_is_excluded(np, texts, generator):
             cells.append(tuple(zip(*slices)))
         l = np.array([criterion.least_in_double(cell) for cell in cells])
         proved, _ = fast.attempt(*cells_of(cells), np.zeros(len(cells), int), l,
-                                  check.CAUTION[0])
+                                  check.SITE_PENALTIES[0])
         for cell, good in zip(cells, proved):
             cases += 1
             excluded += bool(good)
@@ -2471,7 +2483,7 @@ def test_the_fast_path_looks_at_the_machine(np, monkeypatch):
 def test_long_orbits_are_followed_fewer_at_a_time(np, root, tmp_path, monkeypatch):
     prove(read_input(root / "inputs" / "standard-63-64.in"), method="loewner").save(tmp_path / "a")
     claim = check.read(tmp_path / "a")
-    monkeypatch.setattr(check, "ROOM", 1000)
+    monkeypatch.setattr(check, "SITES_MAX", 1000)
     criterion = check.Criterion(claim)
     fast = check.Lockstep([claim])
     cells = [(0, cell) for at, cell in check.leaves(claim.tree) if claim.tree[at] == "P"]

@@ -336,7 +336,7 @@ def test_bounds_of_the_exact_path(name):
     ("errors", "b * b * p - 2 * a", "b * b * p + 2 * a"),
     ("errors", "b * b * r) // length", "b * b * r)"),
     ("errors", "(r0 + r1 >> bits) + 1 if b", "0 if b"),
-    ("step", "turned(self.turn, (wave.k0, wave.k1))", "(wave.k0, wave.k1)"),
+    ("step", "turned(prism.turn, wave[:2])", "(wave.k0, wave.k1)"),
     ("step", "[(a * u + b * v, b * u + a * v) for", "[(u, v) for"),
     ("step", "old0 + error0, old1 + error1", "error0, error1"),
     ("step", "* 2, (1, 1)", "* 2, (0, 0)"),
@@ -427,7 +427,7 @@ def test_an_attempt_adds_the_sites_of_its_vectors(bound):
     lanes = [types.SimpleNamespace(sites=sites, ended=True, follow=lambda most: None,
                                    moved=lambda symbol: 1) for sites in ("abc", "xyz")]
     prism = types.SimpleNamespace(fixed=types.SimpleNamespace(bits=64, one=1 << 64), lanes=lanes,
-                                  symbols=2, cautious=lambda site, caution: site)
+                                  symbols=2, penalized=lambda site, penalties: site)
     assert (names["attempt"](prism, 1, (0, 0)) is None) == (bound < 0)
     one = 1 << exact.VECTOR_BITS
     ahead, back = [(0, 0), (one // 2, one)], [(2 * one, 0)]

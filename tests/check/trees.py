@@ -27,7 +27,7 @@ def found_tree(claim, most):
         batch, todo = todo[-256:], todo[:-256]
         l = np.array([criterion.least_in_double(cell) for cell in batch])
         excluded, axis = fast.attempt(*cells_of(batch), np.zeros(len(batch), int), l,
-                                      check.CAUTION[0])
+                                      check.SITE_PENALTIES[0])
         for cell, good, at in zip(batch, excluded.tolist(), axis.tolist()):
             nodes[cell] = "P" if good else check.AXES[at]
             todo += [] if good else halves(cell, at)
