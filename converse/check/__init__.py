@@ -1,5 +1,5 @@
-"""The checker: it verifies the theorem of a proof file, all those of a map, or that of a portrait
-or a certificate of existence, independently of the program that wrote them.
+"""The checker: it verifies the theorems of proof files, maps, portraits and certificates of
+existence, independently of the program that wrote them.
 
 It shares no mathematics with the prover and imports nothing of the rest of converse, which uses of
 it how calls run in processes (processes.py).  It needs nothing but Python, and takes numpy for

@@ -33,7 +33,7 @@ Site = collections.namedtuple("Site", "waves E beta reach")
 
 class Prism:
     """A prism: its waves, x[0] and x[1] as (centre, columns, error), each for two coordinates, and
-    the number of its symbols: those of the parameters, which may also move x[1], and two more."""
+    the number of its symbols: one for each parameter, which may also move x[1], and two more."""
 
     def __init__(self, fixed, waves, xstar, x1, symbols):
         self.fixed, self.waves, self.symbols = fixed, waves, symbols
@@ -231,7 +231,7 @@ class SecondVariation:
     """The left side of (C3): value, polynomial and error of step (C8), summed over the sites.
 
     All that is taken from a site is rounded to units of 2^-UNIT_BITS, in which omega and the
-    multipliers are, too.  A product of so many numbers is of that degree here.
+    multipliers are, too.  A product of n such numbers has degree n.
     """
 
     def __init__(self, prism, l):

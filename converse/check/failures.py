@@ -17,7 +17,7 @@ class Rejected(Failure):
 
 
 class NotConfirmed(Failure):
-    """The checker has reached a limit of its own: what the file claims may be true or false.
+    """The checker has reached a limit: the claim of the file may be true or false.
 
     residual, needed: of a torus, if it is not accurate enough.
     """

@@ -67,7 +67,7 @@ class Face:
 
 @dataclass(frozen=True)
 class ParameterMap:
-    """What a map says."""
+    """The content of a map."""
 
     region: str
     faces: tuple
@@ -79,8 +79,8 @@ class ParameterMap:
 
 
 def fields_of(value, name, *ignored, **kinds):
-    """The values of an object that must have just these fields, of these types, but for some that
-    may be there and are ignored."""
+    """The values of an object that must have exactly these fields, of these types; the ignored
+    fields may be there."""
     if type(value) is not dict or value.keys() - set(ignored) != {key.replace("_", " ")
                                                                  for key in kinds}:
         raise Rejected("%s is not an object with the fields %s, and no other"
@@ -135,7 +135,7 @@ def strict_json(data):
 
 
 def read_map(data):
-    """The map; every patch of its own is whole, and nothing in it is of unknown meaning."""
+    """The map; each patch in it is whole, and every field is known."""
     content = strict_json(data)
     if not isinstance(content, dict) or content.get("format") != MAP_FORMAT:
         raise Unusable("is not a map of the version that this checker knows, " + MAP_FORMAT)
@@ -215,7 +215,7 @@ def read_cell(proof, waves, name, sha256):
 
 
 def check_map(file):
-    """NotConfirmed, if a cell is not at once; else for each proved cell an upper bound of B.
+    """NotConfirmed, if a cell A is not excluded by B > 10/3; else for each cell P a bound of B.
 
     B - 2 is convex and homogeneous of degree 1 in the amplitudes.  So it is r times its value at
     d(s), which lies below what is linear between points of a grid of s; and over a cell this, or
@@ -267,13 +267,13 @@ def sign_changes():
 
 
 def proved_from(cells, radius):
-    """The least r from which on, up to the radius, every direction of these cells is proved (None
-    if not even at the radius), and whether every direction is proved from somewhere on for ever.
+    """The least r such that every direction of these cells is proved between r and the radius (None
+    if there is none), and whether every direction is proved for all large r.
 
-    A cell at once is proved from its least r on.  Directions in which some cell is finer are
-    looked at in halves; where all cells are as wide as the directions, the unproved ones are
-    those not above the first that is at once.  NotConfirmed, if there are too many halves: wide
-    cells above many narrow ones are looked at once for each of these.
+    A cell A is proved for all r above its least r.  Directions in which some cell is finer are
+    examined in halves.  Where all cells are as wide as the directions, the unproved cells are
+    those not above the first cell A.  NotConfirmed, if there are too many halves: a wide cell
+    above many narrow ones is examined for each of these.
     """
     worst, forever, seen = Fraction(0), True, 0
     todo = [(0, 0, cells)]
@@ -299,7 +299,7 @@ def proved_from(cells, radius):
 
 
 def mapped(file):
-    """What a map claims, in lines."""
+    """The claim of a map, in lines."""
     signs = len(sign_changes())
     lines = [SYSTEM, TRIG + ", " + GRAPH[0], *GRAPH[1:]]
     lines[-1] += " for any (a, b, c)"

@@ -23,7 +23,7 @@ PLACES = 6                              # of the share that the header says
 
 @dataclass(frozen=True)
 class Portrait:
-    """What a portrait says; exact."""
+    """The content of a portrait; exact."""
 
     waves: tuple
     strip: Fraction                     # half the width of a column, in radians; 0: lines
@@ -49,7 +49,7 @@ class Portrait:
 
     @property
     def undecided(self):
-        """At most this share of phase space, or of lines, has no proof, rounded up."""
+        """The largest share of phase space, or of lines, that may lack a proof, rounded up."""
         shares = [share(column, self.strip) for column in self.columns]
         if self.strip:
             total = 1 - 2 * self.strip * sum([1 - x for x in shares]) / self.length[1]
@@ -76,7 +76,7 @@ def patch_of_strip(wave, strip):
 
 
 def share(column, strip):
-    """At most this share of a column has no proof.
+    """The largest share of a column that may lack a proof.
 
     Its regions hold half a turn of successors for each x[0] of the strip, and the reversal of time
     has the other half.  A leaf U is there for those s of the strip whose t2 is in its slice of t2:
@@ -90,7 +90,7 @@ def share(column, strip):
 
 
 def read_portrait(data):
-    """The portrait, if it is whole and all its regions are what they must be."""
+    """The portrait; Rejected, unless it is whole and all its regions are valid."""
     head, body, sha256 = sealed(data, FIRST_LINE, "portrait", b"columns:\n", "are no columns")
     header = header_fields(bytes(head), PORTRAIT_FIELDS | {"comment"})
     if PORTRAIT_FIELDS - header.keys():
@@ -200,7 +200,7 @@ def check_column(column, strip):
 
 
 def portrayed(portrait):
-    """What a portrait claims, in lines."""
+    """The claim of a portrait, in lines."""
     count, ranges = len(portrait.columns), any(map(any, [wave.parts for wave in portrait.waves]))
     lines = ["THEOREM.  The map y' = y + J', J' = J - V'(y) of one angle y (modulo 2 pi),",
              "V(y) = - the sum of A sin(k y + phase) over the waves below, has no rotational",

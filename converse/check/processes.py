@@ -1,7 +1,7 @@
-"""Calls in processes of their own.
+"""Calls in separate processes.
 
-Each process has a pipe of its own to its parent: none shares a lock or a queue with another, so
-the death of one is seen at once and disturbs nobody.  Processes are ended by SIGKILL, which always
+Each process has a separate pipe to its parent and shares no lock or queue with another one, so its
+death is seen immediately and disturbs nobody.  Processes are ended by SIGKILL, which always
 ends them; they leave nothing behind.  (A ProcessPoolExecutor hangs if a process dies while a queue
 is full, or if its processes ignore SIGTERM.)
 """
@@ -12,7 +12,7 @@ import threading
 
 from .signals import SIGNALS
 
-LOOK_SECONDS = 0.1                      # a signal waits so long at most
+LOOK_SECONDS = 0.1                      # between two looks for a signal
 AHEAD = 4                               # results of each process that wait for an earlier one
 
 
@@ -24,7 +24,7 @@ class Worker:
     """A process that applies a function to what it is sent."""
 
     def __init__(self, call):
-        import multiprocessing  # where there are no processes, one job still works
+        import multiprocessing  # here, so that one job works on systems without processes
         self.pipe, end = multiprocessing.Pipe()
         self.process = multiprocessing.Process(target=work, args=(call, end), daemon=True)
         self.process.start()
@@ -50,7 +50,7 @@ class Worker:
 
 
 def work(call, pipe):
-    """What a process does.  Signals that a terminal sends to all are for the parent to notice."""
+    """The loop of a process.  Signals that a terminal sends to all are left to the parent."""
     for number in SIGNALS:
         signal.signal(number, signal.SIG_DFL if number == signal.SIGTERM else signal.SIG_IGN)
     if hasattr(signal, "pthread_sigmask"):

@@ -41,7 +41,7 @@ def own_digest():
 
 
 def state_of(path, sha256, total, shard):
-    """The State of a proof file or map with so many leaves P.
+    """The State of a proof file or map with total leaves P.
 
     shard: (i, n), whose state is the file PATH.i-of-n; or ("all", n), the sum of the states of n
     shards, each of which must be complete; or None."""
@@ -68,9 +68,9 @@ class State:
     """The number of leaves that are confirmed, in their order, of their pieces, and of the leaves
     that were tried in doubles; and, if a path is given, a small file with these numbers.
 
-    The leaves are all leaves P of a proof file or map, or those of a shard (i, n): each n-th, from
-    the i-th on.  The file belongs to one proof file or map, one shard and this very checker.  It is
-    believed: its checksum guards against accidents, not against forgers.
+    The leaves are all leaves P of a proof file or map, or of a shard (i, n): each n-th, beginning
+    with the i-th.  The file belongs to one proof file or map, one shard and this very checker.  It
+    is believed: its checksum guards against accidents, not against forgers.
     """
 
     def __init__(self, path, sha256, total, shard=(1, 1)):

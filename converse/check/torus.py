@@ -60,8 +60,8 @@ def torus_bound(fixed, waves, corners, most=None):
 
     beta(x) is affine in the parameters and its largest eigenvalue convex: for each x the maximum
     is at one of the corners.  At each, branch and bound over cells that cover the torus,
-    until the worst cell is within 2^-20 (relative to the parameters) of a value taken, or there
-    have been so many cells (most) that the bound may be a little less sharp.
+    until the worst cell is within 2^-20 (relative to the parameters) of a value taken, or the
+    number of cells reaches most, which makes the bound a little less sharp.
 
     If all k are multiples of q, a primitive vector, then beta depends on q.y alone, and has all its
     values on a piece of an axis, |y| <= pi/|q0| or pi/|q1|.

@@ -13,8 +13,8 @@ from .tree import leaves
 
 
 class Problems:
-    """The claims of a file: its own and those of its parts, or those of a map's cells or of a
-    portrait's columns with a bound of B for each; the fast path of all, if there is one."""
+    """The claims of a file: of a proof and its parts, of a map's cells with a bound of B for each,
+    or of a portrait's columns; and their fast path, if there is one."""
 
     def __init__(self, claims, bounds=None):
         self.claims, self.bounds, self.fast, self.known = claims, bounds, None, {}

@@ -1077,7 +1077,7 @@ print(flush=True)
 sys.exit(main())
 """
     for n in range(60):
-        most = seen[-1] + 800 if n % 2 else math.inf    # every other time it is to get on first
+        most = seen[-1] + 400 if n % 2 else math.inf    # every other time it is to get on first
         process = subprocess.Popen(
             [sys.executable, "-I", "-c", code, os.path.dirname(FOLDER), str(most), path, "--jobs",
              jobs, "--state", state, "--exact"],
@@ -1969,6 +1969,21 @@ def test_lockstep_sincos(np, generator):
                     assert abs(value - function(angle_at((wave[0], Fraction(wave[1])), y))) \
                         <= (check.SINE_ROUNDING * shape.K[w] if w > 1 else 4 * unit)
     assert check.SINE_ROUNDING == 24 * 2.0 ** -53
+
+
+@pytest.mark.parametrize("c, factor", [("0", 1), ("2e-9", 2)])
+def test_roundings_of_each_step_are_counted(np, texts, c, factor):
+    """Where columns are 0 and matrices nearly constant, N steps add up to N^2 / 2 times the error
+    of one, in the frame of the angles; in the diagonal one each has both coordinates' errors."""
+    text = with_parameters(with_tree(texts["trig278"], "P"), ("1e-9", "0"), ("1e-9", "0"), (c, "0"))
+    for name in "v0", "v1":
+        text = with_field(text, name, "1 0")
+    fast, cell = check.Lockstep([claim_of(text)]), np.zeros((5, 1), np.int64)
+    number = np.zeros(1, int)
+    prisms = check.Prisms(fast.box(cell, cell, number), fast.shape, fast.xstar[:, number],
+                          np.array([0.9]))
+    assert all(prisms.follow())
+    assert (prisms.sites[100].rest[:2] > 0.95 * factor * prisms.shape.grain * 100 ** 2 / 2).all()
 
 
 def test_lockstep_orbits(np, generator, monkeypatch):

@@ -130,6 +130,12 @@ def test_round_trip(tmp_path, made_up, name):
     assert [path.name for path in tmp_path.iterdir()] == [name]
 
 
+def test_a_region_without_width_is_loaded(tmp_path, made_up):
+    proof = made_up("P", v=("1", "1", "0", "0.5"))
+    proof.save(tmp_path / "proof")
+    assert Proof.load(tmp_path / "proof").problem == proof.problem
+
+
 def test_file_says_what_it_is(tmp_path, made_up):
     made_up("0PS").save(tmp_path / "sound")
     made_up("0PS", as_printed=True).save(tmp_path / "printed")

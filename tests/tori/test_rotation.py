@@ -38,6 +38,7 @@ def test_what_is_written_is_read(name):
 def test_the_root_is_the_largest_or_the_one_that_is_named():
     assert read_rotation("t^2-2: t").floats == pytest.approx([sqrt(2)])
     assert read_rotation("t^2-2 near -0.1: t").floats == pytest.approx([-sqrt(2)])
+    assert read_rotation("t^2-2 near -0.1: t").text().partition(":")[0].endswith(" near -1.4")
     for place, index in (("1.2", 1), ("-1/2", 2), ("-2", 3)):
         rotation = read_rotation("t^3+t^2-2t-1 near %s: t, t^2" % place)
         assert rotation.floats[0] == pytest.approx(2 * cos(2 * pi * index / 7))
