@@ -87,9 +87,10 @@ typedef struct {
    (0, 1) and (1, 1) in this order, without phases.  Its method takes only these, each with a
    separate parameter, in the identity frame and without shifts.
    xstar: the two coordinates of the starting point, or NULL to have one chosen.
+   longest: the most points of an orbit, or 0 for as many as the method can follow.
    On success *s must be freed with cv_search_free.  It begins with the root as its only prism. */
 int cv_search_new(cv_search **s, const cv_problem *problem, const char *const xstar[2], int method,
-                  int dp, int depth, int stubborn, int as_printed);
+                  int dp, int depth, int stubborn, int as_printed, int longest);
 void cv_search_free(cv_search *s);
 
 /* Sets up what every step needs, the bounds over the torus first of all.  CV_RUNNING: it was

@@ -24,7 +24,6 @@ from pycparser import c_ast
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 from ctext import CTextError, constant, defined, execute, function, run  # noqa: E402
-from gappa import half_pi  # noqa: E402
 from polynomial import Polynomial, symbol  # noqa: E402
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -179,14 +178,15 @@ class Model:
         self.columns, self.pairs = columns, columns * (columns + 1) // 2
         thesis = waves is None
         self.texts = {name: read(name) for name in
-                      ("arith/sine.h", "loewner/prism.h", "loewner/orbit.c", "loewner/bound.c",
-                       "loewner/problem.c", "loewner/waves.h")}
+                      ("arith/sine.h", "arith/turns.h", "loewner/prism.h", "loewner/orbit.c",
+                       "loewner/bound.c", "loewner/problem.c", "loewner/waves.h")}
         self.first, self.slots = 2, 5 if thesis else 2 + waves
         present = range(self.first, self.slots)
         self.part = [[exact("g%d_%d" % (i, k)) if k > 1 and i in present else 0.0
                       for k in range(columns)] for i in range(self.slots)]
         h = [total(map(rounded, row)) for row in self.part]
-        p = [exact("p%d" % i) if i in present else 0.0 for i in range(self.slots)]
+        p = [Rounded(symbol("p%d" % i), symbol("p%d" % i) * (3 * UNIT)) if i in present else 0.0
+             for i in range(self.slots)]        # set_amplitudes
         k = [[1.0, 0.0], [0.0, 1.0]] + (
             [[1.0, 0.0], [0.0, 1.0], [1.0, 1.0]] if thesis else
             [[exact("k%d_%d" % (i, j)) for j in range(2)] for i in range(2, self.slots)])
@@ -203,22 +203,24 @@ class Model:
             turn=[self.quotient(1) for _ in range(4)])
         self.w = SimpleNamespace(
             problem=problem, p=p, h=h, part=self.part, err_amp=[0.0] * self.slots,
-            size=[Rounded(rounded(x).size + y.size) for x, y in zip(p, h)])
+            size=[Rounded(rounded(x).size + y.size) for x, y in zip(p, h)],
+            residual=[exact("residual0"), exact("residual1")])
         self.names = {
             "SLOTS": self.slots, "FIRST": self.first, "COLUMNS": columns,
             "PAIRS": self.pairs, "mag": lambda x: x, "fabs": lambda x: x, "every": lambda x: x,
             "memset": clear, "double_sincos": self.double_sincos, "larger": self.larger,
-            "dot_k": self.dot_k}
-        for name in ("waves_of", "k_of", "dot_abs_k", "sum_k", "sum_abs_k", "propagate",
+            "dot_k": self.dot_k, "none": lambda: 0, "wave_at": self.wave_at}
+        for name in ("waves_of", "k_of", "grain_of", "dot_abs_k", "sum_k", "sum_abs_k", "propagate",
                      "propagate_err"):
             self.names[name] = self.function(name)
         self.names["add_moves"] = function(self.texts["loewner/prism.h"],
                                            "add_moves").bound(self.names)
         self.sine_error = Fraction(defined(self.texts["arith/sine.h"], "SINE_ERROR"))
+        self.turns_error = Fraction(defined(self.texts["arith/turns.h"], "TURNS_ERROR"))
         self.slipping = "LT"            # of these k.L, k.T are meant, not what doubles make of them
         self.slip = Fraction(1)         # of its slip so many times what is off along a wave
         self.slip = self.measured_slips()
-        self.q, self.o, self.angles = self.point("L", "T", "x"), self.point("O", "U", "o"), {}
+        self.q, self.o, self.angles = self.point("L", "T"), self.point("O", "U"), {}
         self.function("evaluate")(self.w, self.q)
 
     def function(self, name, names=None):
@@ -234,11 +236,10 @@ class Model:
         """near() puts it 8 u off, and it may be 10^-40 off before."""
         return Rounded(symbol("f%d" % i), symbol("f%d" % i) * (8 * UNIT) + Fraction(1, 10 ** 39))
 
-    def point(self, lin, quad, x):
+    def point(self, lin, quad):
         """A point as doubles have it.  Its rad is at least what lin and quad add up to."""
         q = SimpleNamespace(
-            x=[exact("%s%d" % (x, i)) for i in range(2)],
-            windings=[exact("windings%d" % i) for i in range(2)], residual=[None] * 2,
+            push=[0, 0],
             lin=[[exact("%s%d_%d" % (lin, i, k)) for k in range(self.columns)]
                     for i in range(2)],
             quad=[[exact("%s%d_%d" % (quad, i, k)) for k in range(self.pairs)] for i in range(2)],
@@ -267,15 +268,21 @@ class Model:
 
     def measured_slips(self):
         """How many times what k.L and k.T lose bound_err_dot has."""
-        dot_k, q = self.function("dot_k"), self.point("L", "T", "x")
+        dot_k, q = self.function("dot_k"), self.point("L", "T")
         self.function("bound_err_dot")(self.w, q)
         found = (left("err_dot", sum((dot_k(self.w, j, x, y).off for rows in (q.lin, q.quad)
                                       for x, y in zip(*rows)), ZERO), q.err_dot[j].least())
                  for j in range(2, self.slots))
         return min(filter(None, found))         # along k = (1, 0) nothing is lost
 
+    def wave_at(self, _, q, wave):
+        """The sines of turns.h as doubles: rounded once more.  The phase is off by a unit of 2^-64
+        turns, less than 2^-61."""
+        off = self.turns_error + Fraction(1, 2 ** 61)
+        q.sine[wave] = q.cosine[wave] = Rounded(1, off + UNIT * (1 + off))
+
     def double_sincos(self, sine, cosine, angle):
-        """An angle is D u off at most, with far = D + N + 1: see larger."""
+        """Of loewner_at_once.  An angle is D u off at most, with far = D + N + 1: see larger."""
         self.angles[len(self.angles)] = angle.off
         off = symbol("D") * (UNIT * (1 + Fraction(1, 2 ** 30))) + self.sine_error
         for place in (sine, cosine):
@@ -312,56 +319,6 @@ def turned(model):
     model.function("along_axes")(model.w, made, model.q.beta)
     there = model.q.err_beta.least() * 2
     return min(left("axes", x.off + (x.size + x.off) * UNIT, there) for x in made)
-
-
-class Turn(Rounded):
-    """2 pi, and the double below it.  What is divided by it says how many turns are taken off; any
-    integer will do."""
-
-    def __rtruediv__(self, _):
-        return Rounded(1)
-
-
-class Turns(list):
-    """The turns that a step takes off, whatever the text makes of them."""
-
-    def __setitem__(self, i, _):
-        super().__setitem__(i, exact("following%d" % i))
-
-
-def residual(model):
-    """The step of the centre misses what it should be by less than `missed`, modulo 2 pi.
-
-    Two sums are known to be less than their terms: before = o - turns 2 pi, next = x - turns' 2 pi.
-    As turns' is next to x/(2 pi), or zero, |next| <= 1.01 |x|.  So |turns| 2 pi <= |o| + |before|
-    and |turns'| 2 pi <= 2.01 |x|."""
-    text = model.texts["loewner/orbit.c"]
-    low, high = (4 * end for end in half_pi())
-    two_pi = Turn(high, high - Fraction(constant(text, "TWO_PI")))
-    q, o, following = model.q, model.o, SimpleNamespace(x=[None] * 2, windings=Turns([None] * 2))
-    for i in range(2):
-        Rounded.known[_sum(o.x[i], q.windings[i] * two_pi)] = symbol("before")
-        Rounded.known[_sum(exact("x"), exact("following%d" % i) * two_pi)] = symbol("next")
-
-    def noted(name, value):
-        """before and x are doubles with names; what they are off stays."""
-        return Rounded(symbol(name), value.off) if name in ("before", "x") else value
-
-    statements = function(text, "step").statements
-    loops = [node for node in statements if isinstance(node, c_ast.For)][:2]
-    begin = [node for node in statements[:statements.index(loops[0])] if node.name == "SHIFT"]
-    room = {**{name: [0.0] * model.slots for name in ("g", "wave_err", "lost")}, "TWO_PI": two_pi,
-            **{name: lambda *_: 0.0 for name in ("wave_remainder", "propagate_err", "bending_err")}}
-    run(begin + loops, {**model.names, **room, "w": model.w, "q": q, "o": o, "next": following},
-        noted)
-    worst = []
-    for i in range(2):
-        x = symbol("x") * Fraction(201, 100)
-        values = {"windings%d" % i: (o.x[i].size + symbol("before")) * (1 / low),
-                  "following%d" % i: x * (1 / low), "next": symbol("x") * Fraction(101, 100)}
-        off = squared(substituted(following.x[i].off, values))
-        worst.append(left("residual", off, q.residual[i].least()))
-    return min(worst)
 
 
 def propagated(model):
@@ -409,7 +366,7 @@ def propagated(model):
 def sines(model):
     """wave_remainder counts sines and cosines as more than they may be."""
     text = function(model.texts["loewner/orbit.c"], "wave_remainder")
-    off = execute(text.initial("off"), {"q": model.q})
+    off = rounded(execute(text.initial("off"), {}))
     return min(left("sines in wave_remainder", x.off, off.least())
                for x in (model.q.sine + model.q.cosine)[model.first:] if x is not None)
 
@@ -458,11 +415,11 @@ def widen(model):
             ("lin_bound", "quad_bound", "nonlin_bound", "rad", "err_dot", "p", "h", "err_amp",
              "size", "weight",
              "cosine", "sine")}
-    pair = {name: Kept(name, 2) for name in ("rem", "force", "residual")}
+    pair = {name: Kept(name, 2) for name in ("rem", "force")}
     q = SimpleNamespace(lin=model.q.lin, quad=model.q.quad, **wave, **pair,
-                        err_angle=exact("err_angle"), err_beta=exact("err_beta"), d=Kept("d", 3),
+                        err_beta=exact("err_beta"), d=Kept("d", 3),
                         rad_max=None)
-    w = SimpleNamespace(problem=model.w.problem, **wave)
+    w = SimpleNamespace(problem=model.w.problem, residual=model.w.residual, **wave)
     o = SimpleNamespace(rad=Kept("before", model.slots), force=Kept("push", 2),
                         rem=Kept("last", 2))
     slips, model.slipping = model.slipping, ""      # see propagated
@@ -472,7 +429,7 @@ def widen(model):
     loops = [node for node in function(text, "step").statements if isinstance(node, c_ast.For)]
     scope = {**names, "w": w, "q": q, "o": o, "is_first": 0, "inverse": Kept("inverse", 3),
              "rounded": exact("rounded"), "rem_sum": exact("rem_sum")}
-    scope.update({name: [0.0] * model.slots for name in ("g", "wave_err", "lost")},
+    scope.update({name: [0.0] * model.slots for name in ("wave_err", "lost")},
                  err=[0.0, 0.0])
     scope["next"] = SimpleNamespace(rem=Kept("rem", 2), lin_bound=q.lin_bound,
                                     quad_bound=q.quad_bound)
@@ -504,7 +461,7 @@ def at_once(model):
     given = SimpleNamespace(
         waves=model.slots, k=problem.k, phase=problem.phase, square_k=problem.square_k,
         n_parameters=3,
-        seen=[[0.0] * 2] * 2, err_amp=w.err_amp, amplitude=[off_by(x, 10) for x in w.p],
+        seen=[[0.0] * 2] * 2, err_amplitude=w.err_amp, amplitude=[off_by(x, 10) for x in w.p],
         part=[[off_by(exact("g%d_%d" % (i, m)), 10) if i >= model.first else 0.0 for m in range(3)]
               for i in range(model.slots)])
     worst = []
@@ -538,8 +495,7 @@ def proved(read, columns=COLUMNS):
     result = {}
     for waves in (None, 1, 3, MOST_WAVES):
         model = Model(read, waves, columns if waves != MOST_WAVES else 2)
-        found = {"err_beta": err_beta(model), "axes": turned(model),
-                 "residual": residual(model), **propagated(model),
+        found = {"err_beta": err_beta(model), "axes": turned(model), **propagated(model),
                  "sines in wave_remainder": sines(model), "err_dot": model.slip,
                  "widen": widen(model)}
         found.update({"left": multipliers(model)} if waves is None else {"at once": at_once(model)})

@@ -24,7 +24,7 @@ int main(int argc, char **argv)
         for (int m = 0; m < problem.n_parameters; m++)
             waves[k].part[m] = together || m == k ? argv[4 + k] : "0";
     }
-    if (cv_search_new(&s, &problem, NULL, CV_LOEWNER, 35, 120, 0, 0) != CV_OK ||
+    if (cv_search_new(&s, &problem, NULL, CV_LOEWNER, 35, 120, 0, 0, 0) != CV_OK ||
         cv_prepare(s, NULL) != CV_OK)
         return 1;
     while (cv_step(s, 1L << 40, 1e300, 1e9, NULL) == CV_RUNNING)

@@ -19,6 +19,7 @@ from ..version import __version__
 from . import native, tree
 from .links import wrong_letter
 from .native import Counts, Task
+from .orbit_length import longest
 from .proof import Proof, Tree
 from .resume import continued, counted
 from .settings import Settings
@@ -180,6 +181,7 @@ class _Run:
         self.number, self.search = 0, None      # of that tree, and its search
         self.counts = before.counts             # when that began
         self.tried = False                      # were other starting points looked for?
+        self.longest = None                     # the most points of an orbit, when that is known
 
     def run(self):
         try:
@@ -207,7 +209,7 @@ class _Run:
         """Grows one of the trees; False if time is up first.  Growing also ends when the tree turns
         out to be so hard that other starting points are to be looked for."""
         problem, text = self._tree.problem, self._tree.text
-        task = Task(problem, self.proof.settings, self._tree.xstar)
+        task = Task(problem, self.proof.settings, self._tree.xstar, self._longest())
         with TreeSearch(task, self.options.jobs, self.options.executor,
                         want_steps=self.options.on_leaf is not None) as search:
             counts = self.counts = self.proof.counts
@@ -236,6 +238,15 @@ class _Run:
             self.proof, self.search = self._snapshot(), None
             return ended
 
+    def _longest(self):
+        """The most points of an orbit: the first tree tells it for all."""
+        if self.proof.settings.method != "loewner" or self._seconds_left() <= 0:
+            return native.ORDINARY
+        if self.longest is None:
+            first = self.proof.trees[0]
+            self.longest = longest(first.problem, first.xstar)
+        return self.longest
+
     @property
     def _tree(self):
         """The tree that is grown."""
@@ -245,9 +256,11 @@ class _Run:
 
     def _is_hard(self):
         """Did a prism of the first tree need LONG points?  Then other starting points are looked
-        for before the tree is finished.  The answer depends on prisms and not on time."""
+        for before the tree is finished.  The answer depends on prisms and not on time.  For a
+        single map of one angle, all orbits are long near the last circle."""
         counts = self.proof.counts if self.search is None else self.search.counts
-        return counts.max_NTsteps >= LONG and self._may_link() and self.number == 0
+        return counts.max_NTsteps >= LONG and self._may_link() and self.number == 0 and \
+            not (self._tree.problem.is_flat and not self._tree.problem.parts)
 
     def _may_link(self):
         """May the tree be linked?  Other points are looked for once, since a second look would try

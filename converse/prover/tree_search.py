@@ -87,7 +87,7 @@ class TreeSearch(Resource):
         (_, begun), = done
         if begun is None:
             return None
-        self.task = native.Task(self.task.problem, self.task.settings, begun.xstar)
+        self.task = replace(self.task, xstar=begun.xstar)
         # Each worker sets up its search anew, which takes as long as here.  So the search is not
         # divided before that time has passed.
         self.began = time.monotonic()

@@ -25,6 +25,7 @@
        |p| (|A| (a |r| + (pA > 0 ? rho^4/24 : b^2/2)) + |B| (b (3a^2 + 3ab + b^2)/6 + rho^5/120))
        + h (|A| (b (2a + b)/2 + rho^4/24) + |B| (|r| + rho^3/6))
        + err_amp (|A| + |B| rho).                                                         (5) */
+#include "arith/sum2.h"
 #include "prism.h"
 
 /* The sites that are summed over in the lanes that are active. */
@@ -49,33 +50,49 @@ INLINE vec steepness(const batch *w, const point *q, int i)
    the sites 0 and 1. */
 static void set_multipliers(batch *w, mask active)
 {
-    const int begin = begin_of(w, active), end = end_of(w, active), ends[] = { begin - 1, end };
-    point *const q = w->orbit;
+    const int begin = begin_of(w, active), end = end_of(w, active);
+    point *const ends[] = { site_of(w, begin - 1), site_of(w, begin), site_of(w, end),
+                            site_of(w, end + 1) };
 
     for (int j = 0; j < 4; j++)
         for (int i = 0; i < 2; i++)
-            q[ends[j / 2] + j % 2].mu[i] = pick(active, every(0.0), q[ends[j / 2] + j % 2].mu[i]);
+            ends[j]->mu[i] = pick(active, every(0.0), ends[j]->mu[i]);
     for (int j = end; j > ORIGIN + 1; j--) {
         const mask now = within(w, j);
+        point *const q = site_of(w, j);
         for (int i = 0; i < 2; i++) {
-            const vec mu = pick(now, steepness(w, q + j, i) - q[j + 1].mu[i], every(0.0));
-            q[j - 1].mu[i] = pick(active, mu, q[j - 1].mu[i]);
+            const vec mu = pick(now, steepness(w, q, i) - q[1].mu[i], every(0.0));
+            q[-1].mu[i] = pick(active, mu, q[-1].mu[i]);
         }
     }
     for (int j = begin; j < ORIGIN; j++) {
         const mask now = within(w, j);
+        point *const q = site_of(w, j);
         for (int i = 0; i < 2; i++) {
-            const vec mu = pick(now, steepness(w, q + j, i) - q[j - 1].mu[i], every(0.0));
-            q[j + 1].mu[i] = pick(active, mu, q[j + 1].mu[i]);
+            const vec mu = pick(now, steepness(w, q, i) - q[-1].mu[i], every(0.0));
+            q[1].mu[i] = pick(active, mu, q[1].mu[i]);
         }
     }
 }
 
-/* What a pass over the orbit sums. */
+/* What a pass over the orbit sums: vectors only, see add_block. */
 typedef struct {
-    vec centre, mass, rest, cubes, rounding, err_angle;
+    vec centre, mass, rest, cubes, rounding, left;
     vec along[SLOTS], slope[COLUMNS], square[PAIRS];
 } sums;
+
+/* Sites are summed in blocks of so many, and then the blocks: so the roundings of a sum over N
+   sites grow with BLOCK and N/BLOCK and not with N. */
+enum { BLOCK = 64 };
+
+/* Adds a block's sums, so many vectors, and begins them anew. */
+static void add_block(vec total[], vec block[], size_t vectors)
+{
+    for (size_t k = 0; k < vectors; k++) {
+        total[k] += block[k];
+        block[k] = every(0.0);
+    }
+}
 
 /* What the prisms make of site q alone, for each wave: (5) is |A| rest_A[pA > 0] + |B| rest_B, the
    cubic part of (4) without its signs |A| cube_A + |B| cube_B, and `load` is for the mass, below.
@@ -90,8 +107,8 @@ static void weigh(const batch *w, point *q)
         const vec fourth = half_square * half_square * (1.0 / 6.0);
         const vec either = p * (a * r) + h * (b * (a + 0.5 * b) + fourth) + err_amp;
 
-        q->rest_A[i][0] = either + p * (0.5 * b * b);
-        q->rest_A[i][1] = either + p * fourth;
+        q->rest_A[0][i] = either + p * (0.5 * b * b);
+        q->rest_A[1][i] = either + p * fourth;
         q->rest_B[i] = p * (b * (0.5 * a * (a + b) + b * b * (1.0 / 6.0)) + 0.2 * rho * fourth) +
                        h * (r + rho * half_square * (1.0 / 3.0)) + err_amp * rho;
         q->cube_A[i] = p * (a * quad) + h * (0.5 * a * a);
@@ -113,7 +130,7 @@ INLINE void trig_coefficients(const batch *w, const point *q, int i, mask own, v
 /* (5), of one wave. */
 INLINE vec remainder_of(const batch *w, const point *q, int i, vec A, vec B)
 {
-    return mag(A) * pick(TRUTH(w->p[i] * A > 0.0), q->rest_A[i][1], q->rest_A[i][0]) +
+    return mag(A) * pick(TRUTH(w->p[i] * A > 0.0), q->rest_A[1][i], q->rest_A[0][i]) +
            mag(B) * q->rest_B[i];
 }
 
@@ -124,13 +141,14 @@ static void sum_up(batch *w, sums *result, mask active)
 {
     const int columns = w->problem->columns, begin = begin_of(w, active), end = end_of(w, active);
     vec tails = every(0.0);
-    sums t;
+    sums t, total;
 
     memset(&t, 0, sizeof t);
+    memset(&total, 0, sizeof total);
     for (int j = begin; j <= end; j++) {
         const uint64_t site = (uint64_t)j;
         const mask inside = TRUTH(w->since < site) & TRUTH(site < w->until), own = within(w, j);
-        point *const q = w->orbit + j;
+        const point *const q = site_of(w, j);
         const vec n0 = q->n[0], n1 = q->n[1];
         const vec tiny = pick(own, every(TINY), every(0.0)), *const next = q[1].n;
         const mask linked = TRUTH(site < w->to);
@@ -148,7 +166,6 @@ static void sum_up(batch *w, sums *result, mask active)
         t.centre -= 2.0 * (link0 + link1);
         t.mass += 2.0 * (mag(link0) + mag(link1));
         t.mass += weights * q->load;
-        t.err_angle = larger(t.err_angle, pick(own, q->err_angle, every(0.0)));
         FOR_WAVES(w, i) {
             const vec s = q->sine[i], co = q->cosine[i], p = w->p[i];
             const vec A = m[i] * co - omega[i] * s, B = -omega[i] * co - m[i] * s;
@@ -184,25 +201,102 @@ static void sum_up(batch *w, sums *result, mask active)
                 for (int k = 0; k < columns && j > ORIGIN; k++)
                     t.slope[k] += steep * q->lin[i][k];
             }
-            t.rounding += left * q->rad[i];
-            t.rounding += pick(inside, mag(q->mu[i]) * q->residual[i], every(0.0));
+            if (j == ORIGIN || j == ORIGIN + 1)
+                t.rounding += left * q->rad[i];
+            else
+                t.left += left * q->rad[i];
+            t.rounding += pick(inside, mag(q->mu[i]) * w->residual[i], every(0.0));
         }
+        if (j % BLOCK == 0 || j == end)
+            add_block((vec *)&total, (vec *)&t, sizeof t / sizeof(vec));
     }
     FOR_WAVES(w, i)
-        add_moves(w, i, t.along[i], t.slope);
+        add_moves(w, i, total.along[i], total.slope);
     for (int k = 0; k < LANES; k++)
         if (holds(&active, k)) {
-            const point *const first = w->orbit + number(&w->from, k);
-            const point *const last = w->orbit + number(&w->to, k);
+            const point *const first = site_of(w, number(&w->from, k));
+            const point *const last = site_of(w, number(&w->to, k));
             double sum = 0.0;
             for (int i = 0; i < 2; i++)
                 sum += at(&first->n[i], k) * at(&first->n[i], k) +
                        at(&last->n[i], k) * at(&last->n[i], k);
             put_at(&tails, k, sum);
         }
-    t.centre -= w->l * tails;
-    t.mass += w->l * tails;
-    *result = t;
+    total.centre -= w->l * tails;
+    total.mass += w->l * tails;
+    *result = total;
+}
+
+/* p sin of a wave at a site, as a sum of two doubles: off by 2^-59 |p|, for the sine, its phase
+   (wave_at) and the roundings. */
+INLINE sum2 exact_pull(const batch *w, const point *q, int wave)
+{
+    mask s, c;
+    sum2 sine;
+
+    turns_sincos(&s, &c, angle_of(w, q, wave));
+    sine.high = sine_in_two(s, &sine.low);
+    return sum2_times((sum2){ w->p[wave], w->p_low[wave] }, sine);
+}
+
+/* Where roundings alone keep the bound from being negative: what (2) leaves at the sites but 0 and
+   1, G, is computed with twice the digits of a double, and belongs to the slopes with its sign,
+
+       G.D = G.L e + G.(T + r),  G = g + beta mu - mu[j-1] - mu[j+1],
+       beta = 2 - sum of p sin k k'.
+
+   So instead of roundings of beta that are added up over the orbit by their absolute values there
+   are those of mu, with signs.  g is a double as before, and off by (10 + N') u S of |k|^2 |n|^2;
+   p sin by 2^-59 |p|, so that what is multiplied by mu is off by 2^-59 S |k| |mu|, and all other
+   roundings, of at most 200 operations on sums of two, by 2^-90 of the absolute values.  `left` has
+   4 (14 + N') u (1 + S) and 2^-56 (1 + S) of these, and 2^-80 of the neighbours' mu. */
+static void leave_exactly(batch *w, sums *total, mask active)
+{
+    const int columns = w->problem->columns, begin = begin_of(w, active), end = end_of(w, active);
+    const vec nothing[2] = { every(0.0), every(0.0) };
+    sums t;
+
+    memset(&t, 0, sizeof t);
+    total->left = pick(active, every(0.0), total->left);
+    for (int j = begin; j <= end; j++) {
+        const point *const q = site_of(w, j);
+        const mask own = active & within(w, j);
+        vec omega[SLOTS];
+        sum2 pull[SLOTS], m[SLOTS];
+
+        if (j == ORIGIN || j == ORIGIN + 1)
+            continue;
+        for (int i = 0; i < 2; i++)
+            omega[i] = square(q->n[i]);
+        FOR_WAVES(w, i) {
+            pull[i] = exact_pull(w, q, i);
+            m[i] = sum2_plus(sum2_of_product(every(k_of(w, i)[0]), q->mu[0]),
+                             sum2_of_product(every(k_of(w, i)[1]), q->mu[1]));
+        }
+        const vec of_n = weights_of(w, omega, nothing) + TINY;
+        const vec of_mu = weights_of(w, nothing, q->mu) + TINY;
+        const vec sizes = q->err_beta * (1.0 / grain_of(w));
+        for (int i = 0; i < 2; i++) {
+            const vec before = q[-1].mu[i], after = q[1].mu[i];
+            sum2 G = sum2_plus(sum2_of_sum(2.0 * q->mu[i], -before), (sum2){ -after, every(0.0) });
+            FOR_WAVES(w, wave) {
+                const sum2 x = sum2_times(pull[wave], m[wave]);
+                const vec k = every(-k_of(w, wave)[i]);
+                G = sum2_plus(G, sum2_times((sum2){ k, every(0.0) }, x));
+            }
+            const vec leaves = pick(own, G.high - gradient(w, q, i), every(0.0));
+            const vec left = 4.0 * q->err_beta * of_n + 0x1p-56 * sizes * of_mu +
+                             0x1p-80 * (mag(before) + mag(after)) + 0x1p-51 * mag(leaves);
+            t.left += pick(own, left * q->rad[i], every(0.0));
+            t.mass += mag(leaves) * q->rad[i];
+            t.rest += mag(leaves) * q->nonlin_bound[i];
+            for (int k = 0; k < columns; k++)
+                t.slope[k] += leaves * q->lin[i][k];
+        }
+        if (j % BLOCK == 0 || j == end)
+            add_block((vec *)total, (vec *)&t, sizeof t / sizeof(vec));
+    }
+    add_block((vec *)total, (vec *)&t, sizeof t / sizeof(vec));
 }
 
 /* The cubic part of (4): cubic[m] at pair(k, l) is a coefficient of e_m e_k e_l, one of those that
@@ -210,9 +304,11 @@ static void sum_up(batch *w, sums *result, mask active)
 static void sum_cubic(batch *w, mask active)
 {
     const int columns = w->problem->columns, begin = begin_of(w, active), end = end_of(w, active);
+    vec block[COLUMNS][PAIRS];
 
+    memset(block, 0, sizeof block);
     for (int j = begin; j <= end; j++) {
-        const point *q = w->orbit + j;
+        const point *q = site_of(w, j);
         const mask now = active & within(w, j);
         vec form[SLOTS][PAIRS];
         FOR_WAVES(w, i) {
@@ -228,7 +324,7 @@ static void sum_cubic(batch *w, mask active)
                     form[i][kl] = -pA * quad - third * cc;
                     for (int m = 2; m < columns; m++)
                         if (w->problem->moves[i][m])
-                            w->cubic[m][kl] +=
+                            block[m][kl] +=
                                 pick(now, w->part[i][m] * (B * quad - A * cc), every(0.0));
                 }
             }
@@ -241,9 +337,11 @@ static void sum_cubic(batch *w, mask active)
                 vec sum = every(0.0);
                 FOR_WAVES(w, i)
                     sum += c[i] * form[i][kl];
-                w->cubic[m][kl] += pick(now, sum, every(0.0));
+                block[m][kl] += pick(now, sum, every(0.0));
             }
         }
+        if (j % BLOCK == 0 || j == end)
+            add_block(w->cubic[0], block[0], COLUMNS * PAIRS);
     }
 }
 
@@ -300,43 +398,52 @@ static vec summit(const batch *w, int with_cubic)
    are multiplied by anywhere, with omega + |m| in their place: with rho = a + b that is at most |p|
    (e^rho - 1 - rho) + h e^rho + err_amp (1 + rho) to the fifth order in rho, of which (size rho^2 +
    h + err_amp)(1 + rho)^3 is more.  (`load` is that of all waves, and the weights are at least each
-   omega + |m|.)  A and B are off by (12 + err_angle) u of the weights, products of them by 12 u
-   more.  At each of N sites at most 22 numbers, of 16 waves, are added to a sum, and each addition
-   rounds by u of the partial sums; summit and the last sums make 45 of them.  So all is off by (22
-   N + 57) u and (12 + err_angle) u of the mass, where `each` is 64 (N + 1) u and 2^-49 (1 +
-   err_angle) is 16 (1 + err_angle) u, with err_angle >= 2.  Positive sums are off by (22 N + 30) u
-   of themselves, which `each` covers, too.  (2) leaves at most (13 + err_angle) u (1 + S) of the
-   weights and 2 u of the neighbours' mu; `left` has 64 (1 + S)(1 + err_angle) and 8. */
+   omega + |m|.)  Sines are off by 1.01 u, omega and m by 5 u, and two products and a sum make A and
+   B off by 10 u of the weights; products of them, p among these, by 15 u more.  At each site at
+   most 22 numbers, of 16 waves, are added to a sum, and each addition rounds by u of the partial
+   sums of its block, of n = min(N, BLOCK) sites; the blocks are N/BLOCK + 2 at most, and summit and
+   the last sums make 45 additions.  So all is off by (22 n + N/64 + 72) u of the mass, where `each`
+   is (32 n + N/32 + 128) u.  Positive sums are off by (22 n + N/64 + 32) u of themselves, which
+   `each` covers, too.  (2) leaves at most (10 + N') u (1 + S) of the weights, N' waves, and 2 u of
+   the neighbours' mu; `left` has 4 (14 + N')(1 + S) and 8. */
 static void bound_with(batch *w, mask active, int signs)
 {
     const int columns = w->problem->columns;
     vec each = every(0.0), least, more, bound, rounding;
-    mask refine;
+    mask refine, again;
     sums t;
 
-    for (int k = 0; k < LANES; k++)
-        put_at(&each, k, 0x1p-47 * (double)(number(&w->until, k) - number(&w->since, k) + 2));
+    for (int k = 0; k < LANES; k++) {
+        const int sites = number(&w->until, k) - number(&w->since, k) + 1;
+        const double block = sites < BLOCK ? sites : BLOCK;
+        put_at(&each, k, 0x1p-53 * (32.0 * block + (double)sites / 32.0 + 128.0));
+    }
     sum_up(w, &t, active);
-    for (int k = 0; k < columns; k++)
-        w->slope[k] = pick(active, t.slope[k], w->slope[k]);
-    for (int kl = 0; kl < columns * (columns + 1) / 2; kl++) {
-        w->square[kl] = pick(active, t.square[kl], w->square[kl]);
-        for (int m = 0; m < columns; m++)
-            w->cubic[m][kl] = pick(active, every(0.0), w->cubic[m][kl]);
+    for (int pass = 0; any(active) && pass < 2; pass++) {
+        for (int k = 0; k < columns; k++)
+            w->slope[k] = pick(active, t.slope[k], w->slope[k]);
+        for (int kl = 0; kl < columns * (columns + 1) / 2; kl++) {
+            w->square[kl] = pick(active, t.square[kl], w->square[kl]);
+            for (int m = 0; m < columns; m++)
+                w->cubic[m][kl] = pick(active, every(0.0), w->cubic[m][kl]);
+        }
+        rounding = (t.rounding + t.left + t.mass * each) * (1.0 + each);
+        more = t.centre + (t.rest + rounding) * (1.0 + each);
+        least = more + summit(w, 0);
+        bound = least + t.cubes * (1.0 + each);
+        refine = active & (signs ? active : TRUTH(least < 0.0) & TRUTH(bound >= 0.0));
+        if (any(refine)) {
+            sum_cubic(w, refine);
+            bound = pick(refine, more + summit(w, 1), bound);
+        }
+        bound = pick(TRUTH(t.mass >= 1.0), bound, every(HUGE_VAL));
+        w->bound = pick(active, bound, w->bound);
+        w->rounding = pick(active, rounding, w->rounding);
+        again = active & TRUTH(bound >= 0.0) & TRUTH(bound - 2.0 * t.left < 0.0);
+        active = again;
+        if (pass == 0 && any(active))
+            leave_exactly(w, &t, active);
     }
-    t.rounding += t.mass * (each + 0x1p-49 * (1.0 + t.err_angle));
-    rounding = t.rounding * (1.0 + each);
-    more = t.centre + (t.rest + rounding) * (1.0 + each);
-    least = more + summit(w, 0);
-    bound = least + t.cubes * (1.0 + each);
-    refine = active & (signs ? active : TRUTH(least < 0.0) & TRUTH(bound >= 0.0));
-    if (any(refine)) {
-        sum_cubic(w, refine);
-        bound = pick(refine, more + summit(w, 1), bound);
-    }
-    bound = pick(TRUTH(t.mass >= 1.0), bound, every(HUGE_VAL));
-    w->bound = pick(active, bound, w->bound);
-    w->rounding = pick(active, rounding, w->rounding);
 }
 
 /* w->bound >= (1) over the whole prism, whatever n is, in the lanes that are active, which need a
@@ -345,9 +452,9 @@ static void bound_with(batch *w, mask active, int signs)
 static void bound_second_variation(batch *w, mask active, int signs)
 {
     while (w->weighed_last < w->known_last)
-        weigh(w, w->orbit + ++w->weighed_last);
+        weigh(w, site_of(w, ++w->weighed_last));
     while (w->weighed_first > w->known_first)
-        weigh(w, w->orbit + --w->weighed_first);
+        weigh(w, site_of(w, --w->weighed_first));
     set_multipliers(w, active);
     bound_with(w, active, signs);
 }
@@ -375,7 +482,7 @@ static void bound_shares(batch *w, mask active)
             }
         }
     for (int j = begin; j <= end; j++) {
-        const point *q = w->orbit + j;
+        const point *q = site_of(w, j);
         const mask now = active & within(w, j);
         FOR_WAVES(w, i) {
             const mask some = now & TRUTH(q->rad[i] > 0.0);

@@ -5,6 +5,7 @@
 #endif
 #include "waves.h"
 
+#include "room.c"
 #include "orbit.c"
 #include "witness.c"
 #include "bound.c"

@@ -3,6 +3,7 @@
 #define CONVERSE_LOEWNER_H
 
 #include <stddef.h>
+#include <stdint.h>
 
 #include "search/method.h"
 
@@ -10,9 +11,13 @@ typedef struct loewner loewner;
 
 enum { SLOTS = MOST_WAVES + 2 };
 
-/* For a problem with its angles in radians, too, and x* chosen.  with_bounds: those over the torus,
-   without which nothing can be proved.  NULL: no memory. */
-loewner *loewner_new(const patch *problem, int with_bounds);
+/* The most points of an orbit.  The standard map needs 19,808 for k = 0.9717. */
+enum { MAX_POINTS = 1 << 15 };
+
+/* For a problem with its angles in radians, too, and x* chosen.  longest: the most points of an
+   orbit, at most MAX_POINTS.  with_bounds: those over the torus, without which nothing can be
+   proved.  NULL: no memory. */
+loewner *loewner_new(const patch *problem, int longest, int with_bounds);
 void loewner_free(loewner *w);
 
 /* How many cells are best tried at once, and at most: MOST_LANES or fewer. */
@@ -21,8 +26,8 @@ int loewner_lanes(const loewner *w);
 /* method.h: try.  For an axis of -1 the cell is too fine for doubles already.  outcome.hint: fewer
    points of the orbit than that will hardly do.  cell->hint decides at which lengths the orbit is
    tried, not whether a try that succeeds is right.  Reason CV_REASON_ARITHMETIC: it is the doubles
-   that failed. */
-void loewner_try(loewner *w, int n, const cv_cell *const cells[], outcome *const out[]);
+   that failed.  CV_OK, or CV_ENOMEM: nothing is known of the cells. */
+int loewner_try(loewner *w, int n, const cv_cell *const cells[], outcome *const out[]);
 
 /* Is the least eigenvalue of beta below 2/3 at x, for all parameters or, at_end, where they are all
    1?  Then, if V is odd, no multiple s >= 1 of these amplitudes allows a torus. */
@@ -31,11 +36,16 @@ int loewner_at_once(const loewner *w, const double x[2], int at_end);
 /* The upper bound of the largest eigenvalue over the torus that belongs to the whole root. */
 double loewner_largest(const loewner *w);
 
-/* The prism of a cell as doubles have it: v + width e + shift e, with the symbols e of v0, v1 and
-   of the parameters.  0: it is too thin for them, or its parameters are too large. */
+/* The prism of a cell.  x_1 = x1 + frame (width e + shift e), with the symbols e of v0, v1 and of
+   the parameters.  The amplitude of a wave is that of its centre, force 2^(coarse - 64) turns, and
+   part e, to within err_amp; p is the centre's to within 3 u of itself, and
+   p + p_low to within 2^-100.  0: it is too thin for
+   doubles, or its parameters are too large. */
 typedef struct {
-    double v[2], width[2], shift[2][PARAMETERS];
-    double p[SLOTS], part[SLOTS][PARAMETERS], err_amp[SLOTS], l;
+    uint64_t x1[2];                     /* turns.h */
+    int64_t force[SLOTS];
+    double width[2], shift[2][PARAMETERS];
+    double p[SLOTS], p_low[SLOTS], part[SLOTS][PARAMETERS], err_amp[SLOTS], l;
 } loewner_cell;
 int loewner_prism(const loewner *w, const cv_cell *cell, loewner_cell *c);
 

@@ -18,7 +18,7 @@ static waves potential_of(const patch *p, int at_end, numbers *room)
 static int loewner_accepts(const patch *p, const precision *how)
 {
     (void)p;
-    return how->as_printed ? CV_EARGUMENT : CV_OK;
+    return how->as_printed || how->longest > MAX_POINTS ? CV_EARGUMENT : CV_OK;
 }
 
 static void loewner_choose_start(const patch *p, int symmetric, double x[2])
@@ -46,9 +46,8 @@ static int find_at_once(const loewner *w, const patch *p)
 static int loewner_prepare(void **work, const patch *p, const precision *how,
                            apm_t constants[N_CONSTANTS], int *at_once)
 {
-    loewner *const w = *work = loewner_new(p, 1);
+    loewner *const w = *work = loewner_new(p, how->longest > 0 ? how->longest : MAX_POINTS, 1);
 
-    (void)how;
     if (w == NULL)
         return CV_ENOMEM;
     if (apm_set_d(constants[C_B], loewner_largest(w)) != APM_OK)
@@ -68,11 +67,13 @@ static void free_loewner(void *work, int numbers_lost)
 static int loewner_axes(const patch *p) { return 2 + p->n_parameters; }
 static int lanes_of(const void *work) { return loewner_lanes(work); }
 
-static void try_cells(void *work, int n, const cv_cell *const cells[], outcome *const out[])
+static int try_cells(void *work, int n, const cv_cell *const cells[], outcome *const out[])
 {
-    loewner_try(work, n, cells, out);
+    const int status = loewner_try(work, n, cells, out);
+
     for (int k = 0; k < n; k++)
         out[k]->tries = 1;
+    return status;
 }
 
 const method method_loewner = {

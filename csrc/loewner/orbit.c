@@ -17,9 +17,7 @@
 #include "arith/sym2.h"
 #include "prism.h"
 
-static const double TWO_PI = 0x1.921fb54442d18p+2;      /* less than 2^-51 below it */
-static const double FAR = 1e5;          /* periods in one step before which orbits end */
-static const double WIDEN = 1.0 + 0x1p-43;
+static const double WIDEN = 1.0 + 0x1p-46;      /* of sums of positive terms: 128 u */
 
 /* Bounds of |L e| and |T[e, e]| along each wave: sums of at most 15 positive terms. */
 static void measure(const batch *w, point *q)
@@ -55,12 +53,12 @@ static void bound_displacement(const batch *w, point *q)
 static void forget(const batch *w, point *q)
 {
     /* clang-format off */
-    vec *const parts[] = { q->x, q->windings, q->lin[0], q->lin[1], q->quad[0], q->quad[1],
+    vec *const parts[] = { q->lin[0], q->lin[1], q->quad[0], q->quad[1],
                            q->rem, q->lin_bound, q->quad_bound, q->nonlin_bound, q->rad };
     /* clang-format on */
     const int columns = w->problem->columns, pairs = columns * (columns + 1) / 2;
     const int waves = waves_of(w);
-    const int sizes[] = { 2, 2, columns, columns, pairs, pairs, 2, waves, waves, waves, waves };
+    const int sizes[] = { columns, columns, pairs, pairs, 2, waves, waves, waves, waves };
 
     for (size_t j = 0; j < sizeof parts / sizeof *parts; j++)
         for (int k = 0; k < sizes[j]; k++)
@@ -80,12 +78,12 @@ static void finish(const batch *w, point *q)
    off it, |c.e| <= a, |z - c.e| <= b, |z| <= rho, |w| <= err_amp:
        |p| (|cos y| (b (2a + b)/2 + rho^4/24) + |sin y| rho^3/6)
        + h (|cos y| rho^2/2 + |sin y| (b + rho^3/6)) + err_amp.
-   Sines are off by (4 + err_angle) u, and the dozen roundings are relative: 2^-40 is a thousand
-   times as much as either needs. */
+   Sines are off by 1.01 u, where 2 u are added; the roundings are relative to the sum, and WIDEN
+   covers them (step: force). */
 static vec wave_remainder(const batch *w, const point *q, int wave)
 {
     const vec a = q->lin_bound[wave], b = q->nonlin_bound[wave], rho = q->rad[wave];
-    const vec off = 0x1p-40 * (1.0 + q->err_angle);
+    const double off = 0x1p-52;
     const vec c = mag(q->cosine[wave]) + off, s = mag(q->sine[wave]) + off;
     const vec half_square = 0.5 * rho * rho, cube = rho * half_square * (1.0 / 3.0);
 
@@ -93,57 +91,47 @@ static vec wave_remainder(const batch *w, const point *q, int wave)
            w->h[wave] * (c * half_square + s * (b + cube)) + w->err_amp[wave];
 }
 
-/* What roundings make of the quadratic form that a wave adds to T: (16 + err_angle) u
-   (|p| a^2/2 + h a). */
+/* What roundings make of the quadratic form that a wave adds to T: (11 + N) u (|p| a^2/2 + h a), N
+   waves.  A column along the wave is what doubles make of it, and so is a. */
 static vec bending_err(const batch *w, const point *q, int wave)
 {
-    const vec rho = q->rad[wave], unit = 0x1p-40 * (1.0 + q->err_angle);
+    const vec a = q->lin_bound[wave];
 
-    return unit * w->size[wave] * rho * (1.0 + rho);
+    return grain_of(w) * (mag(w->p[wave]) * a * a + 2.0 * w->h[wave] * a);
 }
 
 /* next = the point after q, seen from o before it; time may run either way.  The factor begins with
    d = beta, and f then holds r(o), which is zero or the rounding of x*.  Where the factor cannot go
    on, or next would be of no use, it is not reached.
 
-   The coordinates are kept modulo 2 pi: windings times that are taken off, integers, since adding
-   SHIFT rounds to an integer what is below 2^51.  The step of the centre is off, with every
-   rounding, by 2 u |q| + 1.4 u |o| + 3.4 u |before| + 4.7 u |x| and what its waves are off:
-   residual has 8 u of each, and err_beta.  The remainder obeys r' = beta r - r(o) + e, where e is
-   what wave_remainder bounds along each wave, and in each coordinate the residual and the roundings
-   of lin and quad, 2 u of them, propagate_err and bending_err.  Writing r' = d r + f and, from the
-   last step, r(o) = (r - f(o))/d(o), gives f = f(o)/d(o) + e + (beta - 1/d(o) - d) r.
+   The centre is a whole number of 2^-64 turns, and so is what the waves add: only the forces of
+   the waves are rounded (residual: set_lane).  The remainder obeys r' = beta r - r(o) + e, where e
+   is what wave_remainder bounds along each wave, and in each coordinate the residual and the
+   roundings of lin and quad, 2 u of them, propagate_err and bending_err.  Writing r' = d r + f and,
+   from the last step, r(o) = (r - f(o))/d(o), gives f = f(o)/d(o) + e + (beta - 1/d(o) - d) r.
 
    rem, force and d are those of R r, R f and R d R'/|k|^2, R as in set_axes, for which the same
    holds with R e, and with R beta R'/|k|^2 for beta.  The last bracket is rounding.  Of what is off
-   in an entry of beta, u (3 + (9 + err_angle) S), an entry has twice as much there, as (|k0| +
-   |k1|)^2 is 2 |k|^2 at most; along_axes loses 4 u of sums below 2 (2 + S), and the difference u of
-   that: u (26 + (28 + 2 err_angle) S) in all, below 2/3 err_beta, where there are 2 err_beta.  The
-   inverse, whose determinant is off by 1 + condition units, is off by 4 + condition units of its
-   trace with the difference, where `rounded` has 8 (1 + condition).
+   in an entry of beta, u (3 + (7 + N) S), an entry has twice as much there, as (|k0| + |k1|)^2 is 2
+   |k|^2 at most; along_axes loses 4 u of sums below 2 (2 + S), and the difference u of that: in
+   all u (26 + (24 + 2 N) S), where 2 err_beta are (28 + 2 N) u (1 + S). The inverse, whose
+   determinant is off by 1 + condition units, is off by 4 + condition units of its trace with the
+   difference, where `rounded` has 8 (1 + condition).
 
    All of a step is one function, however long, as formal/roundings.py reads its loops in turn. */
 static void step(const batch *w, point *next, point *q, const point *o, int is_first)
 {
-    static const double SHIFT = 0x1.8p52, USELESS = 0x1p10;
+    static const double USELESS = 0x1p10;
     vec inverse[3] = { every(0.0), every(0.0), every(0.0) }, rounded = every(0.0);
-    vec g[SLOTS], wave_err[SLOTS], lost[SLOTS], err[2], turned[3];
+    vec wave_err[SLOTS], lost[SLOTS], err[2], turned[3];
 
     FOR_WAVES(w, j) {
-        g[j] = w->p[j] * q->cosine[j];
         wave_err[j] = wave_remainder(w, q, j);
         lost[j] = propagate_err(w, q, j) + bending_err(w, q, j);
     }
-    for (int i = 0; i < 2; i++) {
-        const vec before = o->x[i] - q->windings[i] * TWO_PI;
-        const vec x = (2.0 * q->x[i] - before) + sum_k(w, i, g);
-        next->windings[i] = (x * (1.0 / TWO_PI) + SHIFT) - SHIFT;
-        next->x[i] = x - next->windings[i] * TWO_PI;
-        q->residual[i] =
-            0x1p-50 * (mag(q->x[i]) + mag(o->x[i]) + mag(before) + mag(x)) + q->err_beta;
-    }
-    next->winding_sum = mag(next->windings[0]) + mag(next->windings[1]);
-    next->reached = TRUTH(next->winding_sum <= FAR);
+    for (int i = 0; i < 2; i++)
+        next->x[i] = q->x[i] + q->x[i] - o->x[i] + q->push[i];
+    next->reached = ~none();
     propagate(w, next, q, o);
     measure(w, next);
     if (!is_first) {
@@ -156,7 +144,7 @@ static void step(const batch *w, point *next, point *q, const point *o, int is_f
         rounded = 0x1p-50 * (inverse[0] + inverse[2]) * (1.0 + condition);
     }
     for (int i = 0; i < 2; i++)
-        err[i] = sum_abs_k(w, i, lost) + q->residual[i] +
+        err[i] = sum_abs_k(w, i, lost) + w->residual[i] +
                  0x1p-50 * (next->lin_bound[i] + next->quad_bound[i] + o->rad[i]);
     for (int i = 0; i < 2; i++) {
         const vec i0 = mag(inverse[i]) + rounded, i1 = mag(inverse[i + 1]) + rounded;
@@ -179,19 +167,23 @@ static void step(const batch *w, point *next, point *q, const point *o, int is_f
     finish(w, next);
 }
 
-/* The two points that the prisms give.  What their roundings lose is in the widths: set_angles. */
-static void begin(batch *w)
+/* The two points that the prisms give.  What their roundings lose is in the widths: set_region.  0:
+   there is no memory. */
+static int begin(batch *w)
 {
-    point *const origin = w->orbit + ORIGIN;
     const double *const off = w->problem->xstar_err;
     const vec star_err[2] = { every(off[0]), every(off[1]) };
 
-    memset(origin, 0, 2 * sizeof *origin);
+    if (!make_room(w, ORIGIN) || !make_room(w, ORIGIN + 1))
+        return 0;
+    point *const origin = site_of(w, ORIGIN);
+    clear(w, origin);
+    clear(w, origin + 1);
     for (int i = 0; i < 2; i++) {
-        origin->x[i] = every(w->problem->xstar[i]);
+        origin->x[i] = w->problem->turns.xstar[i] - none();
         origin->rem[i] = onto_axis(w, i, star_err) * WIDEN;
         const double *const frame = w->problem->frame[i];
-        origin[1].x[i] = frame[0] * w->v[0] + frame[1] * w->v[1];
+        origin[1].x[i] = w->x1[i];
         for (int k = 0; k < 2; k++)
             origin[1].lin[i][k] = frame[k] * w->width[k];
         for (int k = 2; k < w->problem->columns; k++)
@@ -210,19 +202,23 @@ static void begin(batch *w)
         w->first[k] = ORIGIN;
         w->last[k] = ORIGIN - 1;        /* none of them is in use yet */
     }
+    return 1;
 }
 
-/* The points from `to` on, or up to it, are known. */
-static void follow(batch *w, int to)
+/* The points from `to` on, or up to it, are known.  0: there is no memory. */
+static int follow(batch *w, int to)
 {
-    point *const q = w->orbit;
-
-    for (; w->known_last < to; w->known_last++)
-        step(w, q + w->known_last + 1, q + w->known_last, q + w->known_last - 1,
-             w->known_last == ORIGIN + 1);
-    for (; w->known_first > to; w->known_first--)
-        step(w, q + w->known_first - 1, q + w->known_first, q + w->known_first + 1,
-             w->known_first == ORIGIN);
+    if (!make_room(w, to))
+        return 0;
+    for (; w->known_last < to; w->known_last++) {
+        point *const q = site_of(w, w->known_last);
+        step(w, q + 1, q, q - 1, w->known_last == ORIGIN + 1);
+    }
+    for (; w->known_first > to; w->known_first--) {
+        point *const q = site_of(w, w->known_first);
+        step(w, q - 1, q, q + 1, w->known_first == ORIGIN);
+    }
+    return 1;
 }
 
 /* One more point for lane k, at the end that is better known, or if the orbit cannot go on there at
@@ -230,7 +226,6 @@ static void follow(batch *w, int to)
 static int lengthen(batch *w, int k, int *why)
 {
     static const double LONGEST_REACH = 0.6;
-    const point *const q = w->orbit;
 
     *why = CV_REASON_TOO_BIG;
     for (;;) {
@@ -241,19 +236,19 @@ static int lengthen(batch *w, int k, int *why)
 
         if (!inner && !(w->end_rad[k][ahead] <= LONGEST_REACH))
             return 0;
-        if (w->last[k] - w->first[k] + 1 == MAX_POINTS) {
+        if (w->last[k] - w->first[k] + 1 == w->problem->longest || !follow(w, next)) {
             *why = CV_REASON_TOO_LONG;
             return 0;
         }
-        follow(w, next);
-        if (holds(&q[next].reached, k)) {
+        const point *const q = site_of(w, next);
+        if (holds(&q->reached, k)) {
             *end = next;
-            w->end_rad[k][ahead] = at(&q[next].rad_max, k);
+            w->end_rad[k][ahead] = at(&q->rad_max, k);
             if (next == ORIGIN)
                 w->end_rad[k][0] = w->end_rad[k][1];
             return 1;
         }
-        *why = at(&q[next].winding_sum, k) <= FAR ? CV_REASON_SINGULAR : CV_REASON_TOO_LONG;
+        *why = CV_REASON_SINGULAR;
         w->end_rad[k][ahead] = HUGE_VAL;
     }
 }

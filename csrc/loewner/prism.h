@@ -24,49 +24,55 @@
    positive terms, widened in the end by more than their roundings, and the few sums with signs,
    whose roundings are bounded by the sums of absolute values.  These margins are relative, but a
    product below 2^-1022 loses up to 2^-1075 whatever its size.  So what a bound rests on is never
-   that small: each step misses 2^-49 or more, weights count TINY more than they are, determinants
+   that small: each step misses 2^-59 or more, weights count TINY more than they are, determinants
    are above TINY, and a bound of (1) counts only if the terms it sums have a mass of 1 or more. */
 #ifndef CONVERSE_PRISM_H
 #define CONVERSE_PRISM_H
 
+#include <stddef.h>
+#include <stdlib.h>
+
 #include "arith/lanes.h"
 #include "problem.h"
 
-enum { FIRST = 2 };                     /* the first slot that is a wave: see waves.h */
 #define FOR_WAVES(w, j) for (int j = FIRST; j < waves_of(w); j++)
-enum { MAX_POINTS = 4000, ORIGIN = MAX_POINTS };
+enum { ORIGIN = 2 * MAX_POINTS };       /* the site of x*: those of all points are positive */
+
+enum { FIRST_ROOM = 64, DOUBLINGS = 16 };       /* 2^6 2^16 points are 16 MAX_POINTS */
 
 /* One point of the orbits of the prisms' centres, and all that is known of its neighbours. */
 typedef struct {
-    vec x[2], windings[2];              /* x modulo 2 pi; how often that was taken off */
-    vec winding_sum;                    /* |windings| of both */
-    vec residual[2];                    /* of the step from here: a bound of |E| at the centre */
-    vec lin[2][COLUMNS];                /* L: columns of v0, v1, then the parameters that move */
-    vec quad[2][PAIRS];                 /* T: the coefficients of e_k e_l, at pair(k, l) */
+    /* As many as there are columns, pairs of them and slots: room.c lays them out. */
+    vec *lin[2];                        /* L: columns of v0, v1, then the parameters that move */
+    vec *quad[2];                       /* T: the coefficients of e_k e_l, at pair(k, l) */
+    vec *sine, *cosine;
+    vec *lin_bound, *quad_bound;        /* of D along a wave: |L e| and |T[e, e]| */
+    vec *nonlin_bound, *rad;            /* |D - L e| and |D| */
+    vec *err_dot;                       /* what L e and T[e, e] lose along a wave, from 2 on */
+    vec *rest_A[2], *rest_B, *cube_A, *cube_B;      /* see weigh */
+    mask x[2], push[2];                 /* in 2^-64 turns: the point, and what its waves add */
     vec rem[2], force[2];               /* bounds of r and f along the axes of the problem */
     vec d[3];                           /* the factor in these axes: d00, d01, d11 */
-    vec sine[SLOTS], cosine[SLOTS];
-    vec lin_bound[SLOTS], quad_bound[SLOTS];    /* of D along a wave: |L e| and |T[e, e]| */
-    vec nonlin_bound[SLOTS], rad[SLOTS];        /* |D - L e| and |D| */
-    vec err_dot[SLOTS];                 /* what L e and T[e, e] lose along a wave, from 2 on */
     vec rad_max;                        /* the largest rad of a wave, by their weights */
     vec beta[3];                        /* beta00, beta01, beta11 */
     vec least;                          /* eigenvalue of beta, about */
-    vec err_angle;                      /* how far angles may be off, in units u */
     vec err_beta;                       /* how far p sin, p cos and entries of beta may be off */
-    vec n[2], mu[2];
-    vec rest_A[SLOTS][2], rest_B[SLOTS], cube_A[SLOTS], cube_B[SLOTS], load;    /* see weigh */
+    vec n[2], mu[2], load;              /* load: see weigh */
     vec left[3], right[3];              /* the blocks of the recursion from either end */
     mask reached;                       /* can the orbit go on to here? */
 } point;
 
 typedef struct {
     const loewner *problem;
+    vec p_low[SLOTS];                   /* what p lacks of the centre's amplitude */
     vec p[SLOTS], part[SLOTS][COLUMNS];     /* part[k] moves with the column k of a parameter */
     vec h[SLOTS], err_amp[SLOTS];               /* h: the sum of |part|; err_amp: rounding */
     vec weight[SLOTS];                  /* of the rad along a wave: see weigh_waves */
     vec size[SLOTS];                            /* |p| + h + err_amp */
-    vec v[2], width[2], shift[2][COLUMNS], l;   /* shift[i][k]: of v_i with column k, from 2 on */
+    mask force[SLOTS], backward[SLOTS]; /* |p| in 2^(coarse - 65) turns; is p negative? */
+    vec residual[2];                    /* of any step of the centre: a bound of |E| */
+    mask x1[2];                         /* in 2^-64 turns */
+    vec width[2], shift[2][COLUMNS], l; /* shift[i][k]: of v_i with column k, from 2 on */
     /* what bound.c finds */
     vec slope[COLUMNS], square[PAIRS], cubic[COLUMNS][PAIRS];           /* Q's part with signs */
     vec bound, rounding, share[COLUMNS];
@@ -75,8 +81,13 @@ typedef struct {
     int first[LANES], last[LANES];      /* those of the orbits */
     double end_rad[LANES][2];           /* how widely these are known: first, last */
     mask from, to, since, until;        /* n is zero before from and after to; all: see witness */
-    point orbit[2 * MAX_POINTS + 1];
+    point *points;                      /* of the sites lowest, lowest + 1, ..., room of them */
+    int lowest, room, doublings;
+    char *memory, *vectors[DOUBLINGS];  /* what they lie in: room.c */
+    int out_of_memory;
 } batch;
+
+INLINE point *site_of(const batch *w, int site) { return w->points + (site - w->lowest); }
 
 static const double TINY = 0x1p-800;
 

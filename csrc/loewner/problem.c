@@ -5,12 +5,14 @@
 #include <string.h>
 
 #include "arith/sine.h"
+#include "arith/special.h"
 #include "arith/sym2.h"
 #include "problem.h"
 #include "model/torus.h"
 
-enum { ALIGNMENT = 64 };
-enum { MAX_CUTS = 46 };                 /* cuts along one axis: then doubles run out */
+enum { MAX_CUTS = 46 };                 /* cuts along one axis: see times_middle */
+enum { DIGITS = 60, BITS = 80, ORDER = 24 };    /* 10^24 < 2^80: see times_middle */
+static const double MOST_SIZE = 0x1p60; /* of amplitudes: see wave_at */
 
 /* ---- one prism */
 
@@ -38,49 +40,103 @@ static double cell_largest(const loewner *w, const double low[3], const double h
     return largest * (1.0 + 0x1p-46);
 }
 
+/* x times the place of a cell's middle along an axis, (2 index + 1) 2^-cuts - 1, less a number in
+   [0, 1).  |x| < 2^BITS, so nothing overflows. */
+static int128 times_middle(int128 x, const cv_cell *cell, int axis)
+{
+    const int64_t cells = INT64_C(1) << cell->cuts[axis];
+
+    return (x * (2 * (int64_t)cell->index[axis] + 1 - cells)) >> cell->cuts[axis];
+}
+
+/* The region: centre, shifts and widths of a cell's slice.  The centre is off by 1 unit of 2^-64
+   turns for that of the root, by 1 for its half and 1 for what times_middle cuts off, and by 2 for
+   each shift, by 9 at most: err_v.  The doubles near half and the shifts are off by 8 u of
+   themselves (near), products with powers of two by nothing.  The columns frame width and frame
+   shift round by 3 u of their absolute values at most, but for the identity: `off` has 8, and what
+   it makes of v by the inverse of the frame is added to the widths, too. */
+static void set_region(const loewner *w, const cv_cell *cell, const double part[], loewner_cell *c)
+{
+    const double det = fabs(w->frame[0][0] * w->frame[1][1] - w->frame[0][1] * w->frame[1][0]);
+    double off[2] = { 0.0, 0.0 }, size[2];
+    uint64_t v[2];
+
+    for (int i = 0; i < 2; i++) {
+        v[i] = (uint64_t)w->turns.centre[i] + (uint64_t)times_middle(w->turns.half[i], cell, i);
+        size[i] = w->half[i] * part[i];
+        for (int m = 0; m < w->n_parameters; m++) {
+            v[i] += (uint64_t)times_middle(w->turns.shift[i][m], cell, 2 + m);
+            c->shift[i][m] = w->shift[i][m] * part[2 + m];
+            size[i] += fabs(c->shift[i][m]);
+        }
+        c->width[i] = w->half[i] * part[i] + w->err_v[i] + 0x1p-49 * size[i];
+        size[i] += w->err_v[i];
+    }
+    for (int i = 0; i < 2; i++) {
+        c->x1[i] = w->turns.frame[i][0] * v[0] + w->turns.frame[i][1] * v[1];
+        for (int k = 0; k < 2 && !w->identity; k++)
+            off[i] += 0x1p-50 * fabs(w->frame[i][k]) * size[k];
+    }
+    for (int i = 0; i < 2 && !w->identity; i++)             /* |frame^-1| off */
+        c->width[i] +=
+            (fabs(w->frame[1 - i][1 - i]) * off[i] + fabs(w->frame[i][1 - i]) * off[1 - i]) / det;
+}
+
+/* The waves.  A cell's amplitude is off by 7 units at most, as its centre is above, which err_amp
+   has; its parts are off by 10 u of themselves (near, straighten), and the double p by 3 u of its
+   own. */
+static void set_amplitudes(const loewner *w, const cv_cell *cell, const double part[],
+                           loewner_cell *c)
+{
+    const double unit = ldexp(TURN_UNIT, w->coarse);
+
+    for (int i = FIRST; i < w->waves; i++) {
+        int128 force = w->turns.amplitude[i];
+        double size = 0.0;
+        for (int m = 0; m < w->n_parameters; m++) {
+            force += times_middle(w->turns.part[i][m], cell, 2 + m);
+            c->part[i][m] = w->part[i][m] * part[2 + m];
+            size += fabs(c->part[i][m]);
+        }
+        c->force[i] = (int64_t)force;
+        const double high = (double)c->force[i], low = (double)(c->force[i] - (int64_t)high);
+        c->p[i] = high * unit;
+        c->p_low[i] =
+            fma(high, unit, -c->p[i]) + (low * unit + high * ldexp(TURN_UNIT_LOW, w->coarse));
+        c->err_amp[i] = w->err_amp + 0x1p-49 * size;
+    }
+}
+
 int loewner_prism(const loewner *w, const cv_cell *cell, loewner_cell *c)
 {
-    double at_axis[COLUMNS], part[COLUMNS], low[3], high[3], B;
+    double part[COLUMNS], low[3], high[3], B;
 
     memset(c, 0, sizeof *c);
+    if (!w->usable)
+        return 0;
     for (int k = 0; k < COLUMNS; k++) {
         if (cell->cuts[k] > MAX_CUTS)
             return 0;
         part[k] = ldexp(1.0, -cell->cuts[k]);
-        at_axis[k] = (2.0 * (double)cell->index[k] + 1.0) * part[k] - 1.0;      /* exact */
     }
-    for (int i = 0; i < 2; i++) {
-        c->v[i] = w->centre[i] + w->half[i] * at_axis[i];
-        c->width[i] = w->half[i] * part[i] + w->err_v[i];
-        for (int m = 0; m < w->n_parameters; m++) {
-            c->v[i] += w->shift[i][m] * at_axis[2 + m];
-            c->shift[i][m] = w->shift[i][m] * part[2 + m];
-        }
-    }
-    for (int m = 0; m < w->n_parameters; m++) {
-        low[m] = 0.5 * (1.0 + at_axis[2 + m] - part[2 + m]);
-        high[m] = 0.5 * (1.0 + at_axis[2 + m] + part[2 + m]);
-    }
-    for (int i = 0; i < w->waves; i++) {
-        c->p[i] = w->amplitude[i];
-        for (int m = 0; m < w->n_parameters; m++) {
-            c->p[i] += w->part[i][m] * at_axis[2 + m];
-            c->part[i][m] = w->part[i][m] * part[2 + m];
-        }
-        c->err_amp[i] = w->err_amp[i];
+    set_region(w, cell, part, c);
+    set_amplitudes(w, cell, part, c);
+    for (int m = 0; m < w->n_parameters; m++) {             /* exact */
+        low[m] = (double)cell->index[2 + m] * part[2 + m];
+        high[m] = low[m] + part[2 + m];
     }
     B = cell_largest(w, low, high);
     c->l = 2.0 / (B + sqrt((B - 2.0) * (B + 2.0))) * (1.0 - 0x1p-46);   /* off by 5 u before */
     return c->l > 0.0;
 }
 
-/* Not where the rounding of doubles makes four fifths of its width or more. */
+/* Not where what is off makes four fifths of its width or more. */
 int cut_helps(const loewner *w, const cv_cell *cell, int axis)
 {
     int wide = axis < 2 && ldexp(w->half[axis], 2 - cell->cuts[axis]) > w->err_v[axis];
 
     for (int i = 0; i < w->waves && axis >= 2; i++)
-        wide = wide || ldexp(fabs(w->part[i][axis - 2]), 2 - cell->cuts[axis]) > w->err_amp[i];
+        wide = wide || ldexp(fabs(w->part[i][axis - 2]), 2 - cell->cuts[axis]) > w->err_amp;
     for (int i = 0; i < 2 && axis >= 2; i++)
         wide = wide || ldexp(fabs(w->shift[i][axis - 2]), 2 - cell->cuts[axis]) > w->err_v[i];
     return wide && cell->cuts[axis] < MAX_CUTS;
@@ -133,45 +189,84 @@ static double above(const apm_t x)
     return apm_sgn(x) == 0 ? 0.0 : apm_nearest_d(x) * (1.0 + 0x1p-50) + 0x1p-1070;
 }
 
-/* The angles, and x*.  With S the sum of |shift|, in units u: centre, half and shifts are off by 8
-   of themselves (near), products with shares of a cell, |at_axis| + part <= 1, by 1, those with
-   part by nothing, and the at most 4 sums by 1 each of (|centre| + half + S).  So v and width and
-   shifts of a cell are off by 13 of that, width by 1 more of itself and err_v, where err_v has 32.
-   x_1 = frame v, and the columns frame width and frame shift, are off by less than 2 |frame| v, 1
-   |frame| half and 2 |frame| S, of which off has 8 of (|centre| + half + S), but for the identity,
-   which is exact; v and width take in that, too, and what the radians are off, for other points'
-   links end at a prism's sides. */
-static void set_angles(loewner *w, const patch *problem)
-{
-    const int *const f = problem->frame;
-    const double det = abs(f[0] * f[3] - f[1] * f[2]);
-    double off[2] = { 0.0, 0.0 }, size[2];
+/* ---- numbers in turns */
 
-    w->n_parameters = problem->n_parameters;
-    for (int i = 0; i < 2; i++) {
-        w->centre[i] = near(problem->angle[i]);
-        w->half[i] = near(problem->half[i]);
-        size[i] = fabs(w->centre[i]) + w->half[i];
-        for (int m = 0; m < w->n_parameters; m++) {
-            w->shift[i][m] = near(problem->shift[i][m]);
-            size[i] += fabs(w->shift[i][m]);
-        }
-        w->err_v[i] = 0x1p-48 * size[i] + above(problem->off[i]);
-        w->xstar[i] = near(problem->xstar[i]);
-        w->xstar_err[i] = 0x1p-49 * fabs(w->xstar[i]);
-        for (int k = 0; k < 2; k++)
-            w->frame[i][k] = f[2 * i + k];
-    }
-    w->seen[0][0] = w->seen[1][1] = 1.0;
-    for (int i = 0; i < 2 && !is_identity(f); i++)
-        for (int k = 0; k < 2; k++)
-            off[i] += 0x1p-50 * fabs(w->frame[i][k]) * size[k];
-    for (int i = 0; i < 2; i++)         /* |frame^-1| off */
-        w->err_v[i] +=
-            (fabs(w->frame[1 - i][1 - i]) * off[i] + fabs(w->frame[i][1 - i]) * off[1 - i]) / det;
+/* How many units of 2^-64 turns a radian has, 2^63/pi < 10^19, to DIGITS places: so what is below
+   2^BITS units is off by less than 10^-30 of them. */
+static void units_of_radian(apm_t scale)
+{
+    apm_t pi;
+
+    apm_init(pi);
+    apm_pi(pi, DIGITS + 20);
+    apm_set_d(scale, 0x1p63);
+    apm_div(scale, scale, pi, DIGITS, APM_DOWN);
+    apm_clear(pi);
 }
 
-/* One more wave, if it is there at all. */
+/* The whole number next to x scale 2^-coarse, which is off by less than 1.  If it is 2^BITS or
+   more the problem is not usable. */
+static int128 whole(loewner *w, const apm_t x, const apm_t scale, int coarse)
+{
+    uint64_t words[2] = { 0, 0 };
+    apm_t number, power;
+    mpz_t z;
+
+    apm_init(number);
+    apm_init(power);
+    mpz_init(z);
+    apm_set_d(power, ldexp(1.0, -coarse));
+    apm_mul(number, x, scale);
+    apm_mul(number, number, power);
+    apm_set_d(power, 0.5);
+    apm_add(number, number, power);
+    apm_floor(number, number);
+    if (apm_order(number) <= ORDER) {
+        mpz_ui_pow_ui(z, 10, (unsigned long)number->exp);
+        mpz_mul(z, z, number->mant);
+        mpz_export(words, NULL, -1, sizeof *words, 0, 0, z);
+    } else {
+        w->usable = 0;
+    }
+    const int negative = mpz_sgn(z) < 0;
+    const int128 r = (int128)words[1] << 64 | words[0];
+    apm_clear(number);
+    apm_clear(power);
+    mpz_clear(z);
+    return negative ? -r : r;
+}
+
+/* An integer as a factor of turns. */
+static uint64_t factor_of(double k) { return (uint64_t)(int64_t)k; }
+
+/* The angles, and x*.  err_v: the 9 units of set_region, and what the radians are off, for other
+   points' links end at a prism's sides. */
+static void set_angles(loewner *w, const patch *problem, const apm_t scale)
+{
+    w->n_parameters = problem->n_parameters;
+    w->identity = is_identity(problem->frame);
+    for (int i = 0; i < 2; i++) {
+        w->turns.centre[i] = whole(w, problem->angle[i], scale, 0);
+        w->turns.half[i] = whole(w, problem->half[i], scale, 0);
+        w->half[i] = near(problem->half[i]);
+        for (int m = 0; m < w->n_parameters; m++) {
+            w->turns.shift[i][m] = whole(w, problem->shift[i][m], scale, 0);
+            w->shift[i][m] = near(problem->shift[i][m]);
+        }
+        w->err_v[i] = 16.0 * TURN_UNIT + above(problem->off[i]);
+        w->turns.xstar[i] = (uint64_t)whole(w, problem->xstar[i], scale, 0);
+        w->xstar_err[i] = 2.0 * TURN_UNIT;
+        for (int k = 0; k < 2; k++) {
+            w->frame[i][k] = problem->frame[2 * i + k];
+            w->turns.frame[i][k] = factor_of(w->frame[i][k]);
+        }
+    }
+    w->seen[0][0] = w->seen[1][1] = 1.0;
+}
+
+/* One more wave, if it is there at all.  Amplitude and parts are off by 8 u of themselves (near),
+   by two more if they are straightened, and their sum at a corner by 3 u: 13 u of their sizes,
+   where err_amplitude has 32. */
 static void add_wave(loewner *w, const patch *problem, int given)
 {
     const int i = w->waves, *const k = problem->k[given];
@@ -184,7 +279,8 @@ static void add_wave(loewner *w, const patch *problem, int given)
         size += fabs(w->part[i][m]);
     }
     w->phase[i] = near(problem->phase[given]);
-    w->err_amp[i] = 0x1p-48 * size;
+    w->err_amplitude[i] = 0x1p-48 * size;
+    w->given[i] = given;
     w->present[i] = size != 0.0;
     for (int j = 0; j < 2; j++)
         w->k[i][j] = k[j];
@@ -217,31 +313,35 @@ static void set_wave_slots(loewner *w, const patch *problem)
 /* Where all waves are m q, q primitive, s = q.x moves by itself: s' = 2s - s(o) + |q|^2 sum m p cos
    y, and vectors n = q nu make of Q |q|^2 times what it is for waves (m, 0) of amplitude |q|^2 p at
    s.  So these may be taken for them, if the frame tells s apart: then s_1 is a multiple of v1,
-   with what shifts it, and v0 is not felt.  s* = q.x* and the products with |q|^2 are rounded by u
-   or two more. */
+   with what shifts it, and v0 is not felt.  The products with |q|^2 are rounded by u or two. */
 static void straighten(loewner *w)
 {
     const double *const k = w->k[2], common = divisor(fabs(k[0]), fabs(k[1]));
     const double q[2] = { k[0] / common, k[1] / common }, scale = q[0] * q[0] + q[1] * q[1];
-    const double s[2] = { q[0] * w->xstar[0], q[1] * w->xstar[1] };
     int good = w->waves > 2 && q[0] * w->frame[0][0] + q[1] * w->frame[1][0] == 0.0;
 
     for (int i = 2; i < w->waves; i++)
         good = good && w->k[i][0] * q[1] == w->k[i][1] * q[0];
     if (!good)
         return;
-    w->xstar[0] = s[0] + s[1];
-    w->xstar_err[0] = 0x1p-49 * (fabs(s[0]) + fabs(s[1]));
-    w->xstar[1] = w->xstar_err[1] = 0.0;
+    w->turns.xstar[0] = factor_of(q[0]) * w->turns.xstar[0] + factor_of(q[1]) * w->turns.xstar[1];
+    w->xstar_err[0] *= fabs(q[0]) + fabs(q[1]);
+    w->turns.xstar[1] = 0;
+    w->xstar_err[1] = 0.0;
+    w->length = (int)scale;
     w->frame[0][1] = q[0] * w->frame[0][1] + q[1] * w->frame[1][1];
     w->frame[1][0] = 1.0;
     w->frame[0][0] = w->frame[1][1] = 0.0;
+    for (int i = 0; i < 2; i++)
+        for (int k = 0; k < 2; k++)
+            w->turns.frame[i][k] = factor_of(w->frame[i][k]);
+    w->identity = 0;
     w->most_k = 1.0;
     for (int i = 2; i < w->waves; i++) {
         w->amplitude[i] *= scale;
         for (int m = 0; m < w->n_parameters; m++)
             w->part[i][m] *= scale;
-        w->err_amp[i] *= scale;
+        w->err_amplitude[i] *= scale;
         w->k[i][0] = (w->k[i][0] * q[0] + w->k[i][1] * q[1]) / scale;
         w->k[i][1] = 0.0;
         w->square_k[i] = square(w->k[i][0]);
@@ -290,8 +390,8 @@ static void set_axes(loewner *w)
 }
 
 /* B at the corners of the parameters' cube; infinity if it is not to be bounded.  An amplitude
-   there is off by less than its err_amp, and a phase by 2^-50 of itself (near) and what it was off
-   before, less than 10^-39 (converse.h). */
+   there is off by less than its err_amplitude, and a phase by 2^-50 of itself (near) and what it
+   was off before, less than 10^-39 (converse.h). */
 static void set_corners(loewner *w, int with_bounds)
 {
     torus_wave waves[MOST_WAVES];
@@ -307,21 +407,60 @@ static void set_corners(loewner *w, int with_bounds)
             waves[n++] =
                 (torus_wave){ { w->k[i][0], w->k[i][1] },
                               interval_about(w->phase[i], 0x1p-49 * fabs(w->phase[i]) + 0x1p-129),
-                              interval_about(p, w->err_amp[i]) };
+                              interval_about(p, w->err_amplitude[i]) };
         }
         w->corner[corner] = with_bounds ? torus_largest(n, waves, TORUS_EIGENVALUE) : HUGE_VAL;
     }
 }
 
-loewner *loewner_new(const patch *problem, int with_bounds)
+/* The waves in turns, when they are straightened: phases, k, and amplitudes in units of 2^coarse,
+   so large that none has as many as 2^62 of them. */
+static void set_turns(loewner *w, const patch *problem, const apm_t scale)
+{
+    double most = 0.0;
+    apm_t longer;
+
+    for (int i = FIRST; i < w->waves; i++) {
+        double size = fabs(w->amplitude[i]) + w->err_amplitude[i];
+        for (int m = 0; m < w->n_parameters; m++)
+            size += fabs(w->part[i][m]);
+        most = larger(most, size);
+    }
+    if (!(most < MOST_SIZE) || w->waves == FIRST)
+        w->usable = 0;
+    for (w->coarse = 0; w->usable && ldexp(1.0, w->coarse) < most;)
+        w->coarse++;
+    w->err_amp = ldexp(8.0 * TURN_UNIT, w->coarse);
+    apm_init(longer);
+    apm_mul_si(longer, scale, w->length);
+    for (int i = FIRST; i < w->waves && w->usable; i++) {
+        const int given = w->given[i];
+        w->turns.amplitude[i] = whole(w, problem->amplitude[given], longer, w->coarse);
+        for (int m = 0; m < w->n_parameters; m++)
+            w->turns.part[i][m] = whole(w, problem->part[given][m], longer, w->coarse);
+        w->turns.phase[i] = (uint64_t)whole(w, problem->phase[given], scale, 0);
+        for (int j = 0; j < 2; j++)
+            w->turns.k[i][j] = factor_of(w->k[i][j]);
+    }
+    apm_clear(longer);
+}
+
+loewner *loewner_new(const patch *problem, int longest, int with_bounds)
 {
     loewner *w = calloc(1, sizeof *w);
+    apm_t scale;
 
     if (w == NULL)
         return NULL;
-    set_angles(w, problem);
+    w->usable = w->length = 1;
+    w->longest = longest;
+    apm_init(scale);
+    units_of_radian(scale);
+    set_angles(w, problem, scale);
     set_wave_slots(w, problem);
     straighten(w);
+    set_turns(w, problem, scale);
+    apm_clear(scale);
     set_axes(w);
     set_corners(w, with_bounds);
     w->engine = fastest_engine();
@@ -336,16 +475,18 @@ loewner *loewner_new(const patch *problem, int with_bounds)
 
 void loewner_free(loewner *w)
 {
-    if (w != NULL)
+    if (w != NULL) {
+        w->engine->free(w->work);
         free(w->memory);
+    }
     free(w);
 }
 
 int loewner_lanes(const loewner *w) { return w->engine->lanes; }
 
-void loewner_try(loewner *w, int n, const cv_cell *const cells[], outcome *const out[])
+int loewner_try(loewner *w, int n, const cv_cell *const cells[], outcome *const out[])
 {
-    w->engine->try(w->work, w, n, cells, out);
+    return w->engine->try(w->work, w, n, cells, out);
 }
 
 double loewner_largest(const loewner *w)
@@ -383,7 +524,7 @@ int loewner_at_once(const loewner *w, const double at[2], int at_end)
     const double length = square(n[0]) + square(n[1]);
     sum = mass = 4.0 / 3.0 * length;    /* 2 |n|^2 less 2/3 |n|^2 */
     for (int i = 0; i < w->waves; i++) {
-        double size = fabs(w->amplitude[i]) + w->err_amp[i];
+        double size = fabs(w->amplitude[i]) + w->err_amplitude[i];
         pull[i] *= square(w->k[i][0] * n[0] + w->k[i][1] * n[1]);
         sum -= p[i] * pull[i];
         for (int m = 0; m < w->n_parameters; m++)

@@ -20,11 +20,17 @@ static void weigh_waves(batch *w, int k)
     }
 }
 
-/* The prism of lane k. */
+/* The prism of lane k.  The residual is what wave_at says, of each wave. */
 static void set_lane(batch *w, int k, const loewner_cell *c)
 {
+    double residual[2] = { 0.0, 0.0 };
+
     for (int i = 0; i < waves_of(w); i++) {
+        put_truth(&w->backward[i], k, c->force[i] < 0);
+        ((uint64_t *)&w->force[i])[k] =
+            2 * (uint64_t)(c->force[i] < 0 ? -c->force[i] : c->force[i]);
         put_at(&w->p[i], k, c->p[i]);
+        put_at(&w->p_low[i], k, c->p_low[i]);
         put_at(&w->err_amp[i], k, c->err_amp[i]);
         double h = 0.0;
         for (int column = 2; column < w->problem->columns; column++) {
@@ -34,9 +40,13 @@ static void set_lane(batch *w, int k, const loewner_cell *c)
         }
         put_at(&w->h[i], k, h);
         put_at(&w->size[i], k, fabs(c->p[i]) + h + c->err_amp[i]);
+        for (int j = 0; j < 2 && i >= FIRST; j++)
+            residual[j] +=
+                fabs(k_of(w, i)[j]) * (0x1p-59 * (fabs(c->p[i]) + ldexp(1.0, w->problem->coarse)));
     }
     for (int i = 0; i < 2; i++) {
-        put_at(&w->v[i], k, c->v[i]);
+        ((uint64_t *)&w->x1[i])[k] = c->x1[i];
+        put_at(&w->residual[i], k, residual[i]);
         put_at(&w->width[i], k, c->width[i]);
         for (int column = 2; column < w->problem->columns; column++)
             put_at(&w->shift[i][column], k, c->shift[i][w->problem->axis[column] - 2]);
@@ -104,7 +114,7 @@ static int widest_at_ends(const batch *w, int k)
 
     for (int c = 0; c < w->problem->columns; c++) {
         width[c] =
-            reach_of(w, w->orbit + w->first[k], c, k) + reach_of(w, w->orbit + w->last[k], c, k);
+            reach_of(w, site_of(w, w->first[k]), c, k) + reach_of(w, site_of(w, w->last[k]), c, k);
         if (width[c] > width[widest])
             widest = c;
     }
@@ -139,7 +149,9 @@ static void blame(const batch *w, int k, const progress *s, const cv_cell *cell,
         worst = widest;
     if (!s->contradicted)
         out->v.reason = s->why;
-    if (cut_helps(problem, cell, problem->axis[worst]))
+    if (s->why == CV_REASON_TOO_LONG && points_of(w, k) == problem->longest && !s->contradicted)
+        worst = -1;                     /* as halves' orbits stay near, they are hopeless, too */
+    if (worst >= 0 && cut_helps(problem, cell, problem->axis[worst]))
         out->axis = problem->axis[worst];
     else if (out->v.reason == CV_REASON_TOO_BIG)
         out->v.reason = CV_REASON_ARITHMETIC;
@@ -175,8 +187,8 @@ static void follow_and_attempt(batch *w, mask going, int n, const cv_cell *const
     }
 }
 
-static void try_prisms(void *work, const loewner *problem, int n, const cv_cell *const cells[],
-                       outcome *const out[])
+static int try_prisms(void *work, const loewner *problem, int n, const cv_cell *const cells[],
+                      outcome *const out[])
 {
     batch *const w = work;
     progress s[LANES] = { { 0 } };
@@ -184,10 +196,12 @@ static void try_prisms(void *work, const loewner *problem, int n, const cv_cell 
     mask going = none(), blamed = none();
 
     w->problem = problem;
+    w->out_of_memory = 0;
     for (int k = 0; k < n; k++) {
         s[k].least = HUGE_VAL;
         memset(out[k], 0, sizeof *out[k]);
-        out[k]->v.reason = CV_REASON_ARITHMETIC;
+        out[k]->v.reason =              /* without waves nothing contradicts anything */
+            problem->waves == FIRST ? CV_REASON_CENTRE : CV_REASON_ARITHMETIC;
         out[k]->axis = -1;
         if (!loewner_prism(problem, cells[k], &c))
             continue;
@@ -198,8 +212,11 @@ static void try_prisms(void *work, const loewner *problem, int n, const cv_cell 
     for (int k = 0; k < LANES; k++)
         if (!holds(&going, k))
             set_lane(w, k, &filler);
-    begin(w);
+    if (!begin(w))
+        return CV_ENOMEM;
     follow_and_attempt(w, going, n, cells, s, out);
+    if (w->out_of_memory)
+        return CV_ENOMEM;
     for (int k = 0; k < n; k++)
         put_truth(&blamed, k, holds(&going, k) && !out[k]->v.no_tori && s[k].contradicted);
     if (any(blamed))
@@ -207,6 +224,7 @@ static void try_prisms(void *work, const loewner *problem, int n, const cv_cell 
     for (int k = 0; k < n; k++)
         if (holds(&going, k) && !out[k]->v.no_tori)
             blame(w, k, &s[k], cells[k], out[k]);
+    return CV_OK;
 }
 
-const engine ENGINE = { LANES, sizeof(batch), try_prisms };
+const engine ENGINE = { LANES, sizeof(batch), try_prisms, free_room };

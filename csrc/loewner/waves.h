@@ -7,14 +7,11 @@
    counts where coordinates cancel, is the wave's err_dot, and belongs to the remainder along it.
    Where bounds of coordinates are put together |k| stands for k.
 
-   err_angle bounds the rounding of all angles, and sums over the waves, in units u: products k x
-   lose u |k x|, their sum u of itself, the phase, which `near` made a double, 8 u of itself, and
-   the last sum u of what it adds.  That is 3 u (|k0 x0| + |k1 x1|) + 9 u |phase| at most; err_angle
-   has one |phase| more, for the 10^-40 that it may be off before, and the number of waves. */
+   Angles are integers (turns.h): k.x + phase rounds nothing.  Phases are off by 1 unit of 2^-64
+   turns. */
 #ifndef CONVERSE_WAVES_H
 #define CONVERSE_WAVES_H
 
-#include "arith/sine.h"
 #include "prism.h"
 
 INLINE int waves_of(const batch *w) { return w->problem->waves; }
@@ -99,33 +96,60 @@ INLINE void bound_err_dot(const batch *w, point *q)
         q->err_dot[j] = 0x1p-51 * dot_abs_k(w, j, size0, size1);
 }
 
-/* Sines and cosines of the waves at q->x, beta, and their errors.
+/* How many u the waves make of a number that is rounded twelve times at most for each of them, and
+   once as it is added to those of the others. */
+INLINE double grain_of(const batch *w) { return 0x1p-53 * (double)(12 + waves_of(w)); }
+
+/* The angle of a wave at q->x. */
+INLINE mask angle_of(const batch *w, const point *q, int wave)
+{
+    const uint64_t *const k = w->problem->turns.k[wave];
+
+    return k[0] * q->x[0] + k[1] * q->x[1] + w->problem->turns.phase[wave];
+}
+
+/* Sine and cosine of a wave at q->x, and what it adds to the step from there.
+
+   The sines are off by u of themselves and TURNS_ERROR, less than 1.01 u.  What is added is p cos
+   in units of 2^(coarse - 64) turns, off by less than 2 (high_of), and a cosine is off by 3 units
+   of 2^-62, and as the phase is off by 2 pi/4 more: by 2 + 4.6 |force| 2^-62 units in all, which is
+   2^-59 (|p| + 2^coarse) radians or less: see set_lane. */
+INLINE void wave_at(const batch *w, point *q, int wave)
+{
+    mask s, c;
+
+    turns_sincos(&s, &c, angle_of(w, q, wave));
+    q->sine[wave] = sine_of(s);
+    q->cosine[wave] = sine_of(c);
+    const mask negative = sign_of(c), size = high_of(w->force[wave], with_sign(c, negative) << 1);
+    const mask force = with_sign(size, negative ^ w->backward[wave]) << w->problem->coarse;
+    for (int i = 0; i < 2; i++)
+        q->push[i] += w->problem->turns.k[wave][i] * force;
+}
+
+/* The waves at q->x, beta, and its errors.
 
    Let N be the number of waves, S the sum of (|k0| + |k1|)^2 times their sizes.  p sin and p cos
-   are off by (5 + err_angle - N) u |p|; in beta such a product is multiplied by k k', rounded twice
-   more, and N are added, and taken from an integer: beta is off by u (3 + (9 + err_angle) S) at
-   most, where err_beta is 16 u (1 + S)(1 + err_angle), err_angle >= 1. */
+   are off by 5.1 u |p|; in beta such a product is multiplied by k k', rounded once more, and N are
+   added, and taken from an integer: beta is off by u (3 + (7 + N) S) at most, where err_beta is
+   (14 + N) u (1 + S). */
 INLINE void evaluate(const batch *w, point *q)
 {
-    vec pull[3] = { every(0.0), every(0.0), every(0.0) }, farthest = every(0.0);
-    vec sizes = every(1.0);
+    vec pull[3] = { every(0.0), every(0.0), every(0.0) }, sizes = every(1.0);
 
+    q->push[0] = q->push[1] = none();
     FOR_WAVES(w, j) {
-        const double k0 = k_of(w, j)[0], k1 = k_of(w, j)[1], phase = w->problem->phase[j];
-        const vec y = dot_k(w, j, q->x[0], q->x[1]) + phase;
-        const vec angle = dot_abs_k(w, j, mag(q->x[0]), mag(q->x[1])) * 3.0 + 10.0 * fabs(phase);
-        double_sincos(&q->sine[j], &q->cosine[j], y);
-        farthest = larger(farthest, angle);
+        const double k0 = k_of(w, j)[0], k1 = k_of(w, j)[1];
+        wave_at(w, q, j);
         const vec s = w->p[j] * q->sine[j];
         pull[0] += k0 * k0 * s;
         pull[1] += k0 * k1 * s;
         pull[2] += k1 * k1 * s;
         sizes += w->problem->square_k[j] * w->size[j];
     }
-    q->err_angle = farthest + (double)(waves_of(w) - FIRST + 1);
     for (int i = 0; i < 3; i++)
         q->beta[i] = (i == 1 ? 0.0 : 2.0) - pull[i];
-    q->err_beta = 0x1p-49 * sizes * (1.0 + q->err_angle);
+    q->err_beta = grain_of(w) * sizes;
 }
 
 /* lin and quad of next, the point after q, seen from o before it: 2L - L(o), the same of T, and
@@ -170,11 +194,11 @@ static void propagate(const batch *w, point *next, const point *q, const point *
 }
 
 /* What that loses of a wave to roundings: p sin, its products with c and T, with k, and sums over
-   the waves (10 + err_angle) u |p| of their sizes, h cos y (8 + err_angle) u h; and p times
-   err_dot, as the map has k.L where propagate has c. */
+   the N waves (8 + N) u |p| of their sizes, h cos y (4 + N) u h; and p times err_dot, as the map
+   has k.L where propagate has c. */
 INLINE vec propagate_err(const batch *w, const point *q, int wave)
 {
-    const vec p = mag(w->p[wave]), unit = 0x1p-49 * (1.0 + q->err_angle);
+    const vec p = mag(w->p[wave]), unit = every(grain_of(w));
     const vec lost = unit * (p * (q->lin_bound[wave] + q->quad_bound[wave]) + w->h[wave]);
 
     return wave < 2 ? lost : lost + p * q->err_dot[wave];

@@ -34,7 +34,7 @@ INLINE recursion recursion_of(const batch *w, int way, mask active, mask begin, 
 INLINE int advance(batch *w, recursion *r, int way)
 {
     const uint64_t site = (uint64_t)r->site;
-    point *const q = w->orbit + r->site;
+    point *const q = site_of(w, r->site);
     vec *const blocks = way > 0 ? q->left : q->right, next[3];
     mask now, falls;
 
@@ -65,7 +65,6 @@ INLINE int advance(batch *w, recursion *r, int way)
    need be. */
 static mask witness(batch *w, mask active)
 {
-    point *const q = w->orbit;
     vec form[3] = { every(0.0), every(0.0), every(0.0) }, n[2] = { every(0.0), every(0.0) };
     vec value = every(HUGE_VAL), top[2];
     mask first = none(), last = none(), fall, from, to, since, until, site, alone, other;
@@ -109,11 +108,12 @@ static mask witness(batch *w, mask active)
     site = from;
     for (int j = extreme(active, from, -1); j <= extreme(active, fall, 1); j++) {
         const uint64_t here = (uint64_t)j;
-        const mask better = TRUTH(from <= here) & TRUTH(here <= fall) & TRUTH(q[j].least < value);
-        value = pick(better, q[j].least, value);
+        const point *const q = site_of(w, j);
+        const mask better = TRUTH(from <= here) & TRUTH(here <= fall) & TRUTH(q->least < value);
+        value = pick(better, q->least, value);
         site = choose(better, here - none(), site);
         for (int k = 0; k < 3; k++)
-            form[k] = pick(better, q[j].left[k] + q[j].right[k] - q[j].beta[k], form[k]);
+            form[k] = pick(better, q->left[k] + q->right[k] - q->beta[k], form[k]);
     }
     least_eigenvector(form, top);
     w->from = choose(active, first, w->from);
@@ -123,25 +123,27 @@ static mask witness(batch *w, mask active)
     const int start = extreme(active, w->since, -1), end = extreme(active, w->until, 1);
     for (int j = extreme(active, site, 1); j >= start; j--) {
         const uint64_t here = (uint64_t)j;
+        point *const q = site_of(w, j);
         const mask in = TRUTH(here <= site) & TRUTH(here >= w->from);
         vec next[2];
-        sym2_solve(next, q[j].left, n);
+        sym2_solve(next, q->left, n);
         for (int i = 0; i < 2; i++) {
             n[i] = pick(in, pick(TRUTH(here == site), top[i], next[i]), every(0.0));
-            q[j].n[i] = pick(active, n[i], q[j].n[i]);
+            q->n[i] = pick(active, n[i], q->n[i]);
         }
     }
     for (int i = 0; i < 2; i++)
         n[i] = every(0.0);
     for (int j = extreme(active, site, -1); j <= end; j++) {
         const uint64_t here = (uint64_t)j;
+        point *const q = site_of(w, j);
         const mask in = active & TRUTH(here > site);
         vec next[2];
-        sym2_solve(next, q[j].right, n);
+        sym2_solve(next, q->right, n);
         for (int i = 0; i < 2; i++) {
             n[i] = pick(TRUTH(here == site), top[i],
                         pick(in & TRUTH(here <= w->to), next[i], every(0.0)));
-            q[j].n[i] = pick(in, n[i], q[j].n[i]);
+            q->n[i] = pick(in, n[i], q->n[i]);
         }
     }
     return active;

@@ -52,13 +52,13 @@ static int list_unknown(cv_search *s, int id, int list[], int *n, int most)
 }
 
 /* Tries the first prisms in line, as many as the method takes together.  The note of a try that is
-   broken off is as if the try had not begun. */
-static void look_ahead(cv_search *s)
+   broken off is as if the try had not begun.  CV_OK or CV_ENOMEM. */
+static int look_ahead(cv_search *s)
 {
     const int lanes = s->method->lanes(s->work);
     const cv_cell *cells[MOST_LANES];
     outcome *out[MOST_LANES];
-    int list[MOST_LANES], n = 0;
+    int list[MOST_LANES], n = 0, status = CV_OK;
 
     for (int j = s->pending - 1; j >= 0 && n < lanes; j--) {
         if (s->noted[j] < 0)
@@ -70,8 +70,8 @@ static void look_ahead(cv_search *s)
         out[k] = &s->notes[list[k]].outcome;
     }
     if (n > 0)
-        s->method->try(s->work, n, cells, out);
-    for (int k = 0; k < n; k++) {
+        status = s->method->try(s->work, n, cells, out);
+    for (int k = 0; k < n && status == CV_OK; k++) {
         note *const p = &s->notes[list[k]];
         const int axis = p->outcome.axis;
         p->known = 1;
@@ -83,14 +83,15 @@ static void look_ahead(cv_search *s)
             p->halves[1] = new_note(s, &upper);
         }
     }
+    return status;
 }
 
 const note *note_on_top(cv_search *s)
 {
     const int top = s->pending - 1;
 
-    if (s->noted[top] < 0 || !s->notes[s->noted[top]].known)
-        look_ahead(s);
+    if ((s->noted[top] < 0 || !s->notes[s->noted[top]].known) && look_ahead(s) != CV_OK)
+        return NULL;
     return &s->notes[s->noted[top]];
 }
 

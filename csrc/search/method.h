@@ -29,7 +29,8 @@ typedef struct {
     int steps, ll_used[3];              /* of the thesis's try in doubles */
 } outcome;
 
-typedef struct { int digits, as_printed; } precision;
+/* longest: the most points of an orbit, or 0 for as many as the method can follow. */
+typedef struct { int digits, as_printed, longest; } precision;
 
 typedef struct {
     /* Can problems of this kind be proved, in this way?  CV_OK or CV_EARGUMENT. */
@@ -56,8 +57,8 @@ typedef struct {
 
     /* Is it impossible that a minimizing orbit leads from x* to these cells?  The outcome of a cell
        depends on the cell and its hint, and on no other cell.  If a stop is asked for in the
-       middle, no outcome is known. */
-    void (*try)(void *work, int n, const cv_cell *const cells[], outcome *const out[]);
+       middle, or if this is CV_ENOMEM and not CV_OK, no outcome is known. */
+    int (*try)(void *work, int n, const cv_cell *const cells[], outcome *const out[]);
 } method;
 
 extern const method method_thesis, method_loewner;

@@ -130,14 +130,14 @@ int cv_prepare(cv_search *s, const cv_stop *stop)
 }
 
 int cv_search_new(cv_search **result, const cv_problem *problem, const char *const xstar[2],
-                  int method, int dp, int depth, int stubborn, int as_printed)
+                  int method, int dp, int depth, int stubborn, int as_printed, int longest)
 {
     cv_search *s;
     given g = { NULL, problem, xstar, CV_OK };
     int status;
 
     *result = NULL;
-    if (dp < 1 || dp > MAX_DP || depth < 0 || depth > MAX_DEPTH ||
+    if (dp < 1 || dp > MAX_DP || depth < 0 || depth > MAX_DEPTH || longest < 0 ||
         (method != CV_THESIS && method != CV_LOEWNER))
         return CV_EARGUMENT;
     s = calloc(1, sizeof *s);
@@ -147,7 +147,7 @@ int cv_search_new(cv_search **result, const cv_problem *problem, const char *con
     for (int j = 0; j < N_CONSTANTS; j++)
         apm_init(s->constants[j]);
     s->method = method == CV_THESIS ? &method_thesis : &method_loewner;
-    s->precision = (precision){ dp, as_printed };
+    s->precision = (precision){ dp, as_printed, longest };
     s->depth = depth;
     s->stubborn = stubborn;
     g.s = s;

@@ -146,12 +146,15 @@ static void conclude(cv_search *s, const outcome *out)
     leaf(s, 'P');
 }
 
-/* One prism of the list: skip it, prove it, cut it or give it up.  Thesis: main. */
-static void decide(cv_search *s)
+/* One prism of the list: skip it, prove it, cut it or give it up.  Thesis: main.  CV_OK or
+   CV_ENOMEM. */
+static int decide(cv_search *s)
 {
     const int top = s->pending - 1;
     const note *const n = note_on_top(s);
 
+    if (n == NULL)
+        return CV_ENOMEM;
     s->last_steps = 0;
     if (n->skipped)
         leaf(s, 'S');
@@ -162,6 +165,7 @@ static void decide(cv_search *s)
         s->noted[top] = n->halves[1];
     }
     forget_note(s, n);
+    return CV_OK;
 }
 
 static double now(void)
@@ -191,12 +195,11 @@ static void take_step(void *data)
 
     while (s->status == CV_RUNNING && s->pending > 0 && decided_leaves(s) < how->enough &&
            s->points < how->points) {
-        if (make_room(s) != CV_OK) {
+        s->before = s->counts;
+        if (make_room(s) != CV_OK || decide(s) != CV_OK) {
             s->status = CV_ENOMEM;
             break;
         }
-        s->before = s->counts;
-        decide(s);
         if (now() >= how->end || cv_stop_get(how->stop))
             break;
     }

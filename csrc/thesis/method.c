@@ -143,10 +143,11 @@ static void try_cell(bench *w, const cv_cell *c, outcome *out)
     }
 }
 
-static void thesis_try(void *work, int n, const cv_cell *const cells[], outcome *const out[])
+static int thesis_try(void *work, int n, const cv_cell *const cells[], outcome *const out[])
 {
     for (int k = 0; k < n; k++)
         try_cell(work, cells[k], out[k]);
+    return CV_OK;
 }
 
 const method method_thesis = {

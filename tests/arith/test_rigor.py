@@ -178,9 +178,9 @@ problems = [native_problem(converse.Problem.around(
     tuple(map(Fraction, ("0.00125", "0.00125", "0.0025", "1", "1"))), (), together), keep)
     for together in (False, True)]
 handle = ffi.new("cv_search **")
-assert lib.cv_search_new(handle, problems[0], ffi.NULL, 0, 0, 30, 0, 0) == lib.CV_EARGUMENT
+assert lib.cv_search_new(handle, problems[0], ffi.NULL, 0, 0, 30, 0, 0, 0) == lib.CV_EARGUMENT
 def new(dp=35, method=0, depth=30):
-    code = lib.cv_search_new(handle, problems[method], ffi.NULL, method, dp, depth, 0, 0)
+    code = lib.cv_search_new(handle, problems[method], ffi.NULL, method, dp, depth, 0, 0, 0)
     if code == 0:
         code = lib.cv_prepare(handle[0], ffi.NULL)
         if code:

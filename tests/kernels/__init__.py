@@ -80,6 +80,12 @@ def call(name: str, values: Sequence[Number], nout: int, dp: int, arithmetic: st
     return [Fraction(Decimal(text)) for text in texts]
 
 
+def turns(upper: Number, lower: Number) -> Fraction:
+    """An angle of csrc/arith/turns.h as a part of a turn, from -1/2 to 1/2."""
+    part = Fraction(int(upper) << 32 | int(lower), 1 << 64)
+    return part - (part > Fraction(1, 2))
+
+
 def pi(dp: int, **options: Any) -> Fraction:
     """pi to dp decimal places."""
     return call("pi", [], 1, dp, **options)[0]

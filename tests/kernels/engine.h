@@ -4,13 +4,22 @@
 #include "hooks.h"
 
 /* What other prisms may have left there is not to matter: it is made as strange as can be. */
-static void poison(void *work, int s, int t)
+static void poison(void *work, const loewner *problem, int s, int t)
 {
     batch *const w = work;
 
-    for (int j = ORIGIN + s - 2; j <= ORIGIN + t + 2; j++)
-        for (size_t k = 0; k < sizeof *w->orbit / sizeof(vec); k++)
-            ((vec *)&w->orbit[j])[k] = every((k + (size_t)j) % 3 == 0 ? -0x1p300 : 1e3);
+    w->problem = problem;
+    if (!make_room(w, ORIGIN + s - 2) || !make_room(w, ORIGIN + t + 2))
+        return;
+    for (int j = ORIGIN + s - 2; j <= ORIGIN + t + 2; j++) {
+        point *const q = site_of(w, j);
+        vec *const parts[] = { q->lin[0], (vec *)q->x };
+        const size_t sizes[] = { vectors_of(problem),
+                                 (sizeof *q - offsetof(point, x)) / sizeof(vec) };
+        for (int i = 0; i < 2; i++)
+            for (size_t k = 0; k < sizes[i]; k++)
+                parts[i][k] = every((k + (size_t)j) % 3 == 0 ? -0x1p300 : 1e3);
+    }
 }
 
 static int follow_root(void *work, const loewner *problem, int s, int t)
@@ -21,19 +30,36 @@ static int follow_root(void *work, const loewner *problem, int s, int t)
     int good = 1;
 
     w->problem = problem;
-    loewner_prism(problem, &whole, &c);
+    if (!loewner_prism(problem, &whole, &c))
+        return 0;
     for (int k = 0; k < LANES; k++)
         set_lane(w, k, &c);
-    begin(w);
-    follow(w, ORIGIN + s);
-    follow(w, ORIGIN + t);
+    if (!begin(w) || !follow(w, ORIGIN + s) || !follow(w, ORIGIN + t))
+        return 0;
     for (int k = 0; k < LANES; k++) {
         w->first[k] = ORIGIN + s;
         w->last[k] = ORIGIN + (t > 1 ? t : 1);
     }
     for (int j = s; j <= t; j++)
-        good = good && holds(&w->orbit[ORIGIN + j].reached, LANES - 1);
+        good = good && holds(&site_of(w, ORIGIN + j)->reached, LANES - 1);
     return good;
+}
+
+/* The bound where the multipliers are not what (2) says: with what it leaves, and what roundings
+   make of that, but no other roundings. */
+static void disturb(batch *w, mask active)
+{
+    sums t;
+
+    for (int j = begin_of(w, active) + 1; j < end_of(w, active); j++)
+        for (int i = 0; i < 2; i++)
+            site_of(w, j)->mu[i] *= 1.0 + 0x1p-20 * (double)(j % 3 - 1);
+    sum_up(w, &t, active);
+    leave_exactly(w, &t, active);
+    memcpy(w->slope, t.slope, sizeof t.slope);
+    memcpy(w->square, t.square, sizeof t.square);
+    w->bound = t.centre + t.rest + t.cubes + summit(w, 0);
+    w->rounding = t.left;
 }
 
 static int bound_root(void *work, int signs, double *bound, double *l, double *rounding, int *first,
@@ -47,13 +73,15 @@ static int bound_root(void *work, int signs, double *bound, double *l, double *r
     *l = at(&w->l, K);
     if (!holds(&active, K) || to - from >= most)
         return 0;
-    bound_second_variation(w, active, signs);
+    bound_second_variation(w, active, signs == 1);
+    if (signs == 2)
+        disturb(w, active);
     *bound = at(&w->bound, K);
     *rounding = at(&w->rounding, K);
     *first = from - ORIGIN;
     for (int j = from; j <= to; j++)
         for (int i = 0; i < 2; i++)
-            n[j - from][i] = at(&w->orbit[j].n[i], K);
+            n[j - from][i] = at(&site_of(w, j)->n[i], K);
     return to - from + 1;
 }
 
@@ -66,11 +94,15 @@ static void copy(double *to, const vec *from, int count)
 static void look_root(const void *work, int n, known_point *p)
 {
     const batch *const w = work;
-    const point *const q = w->orbit + ORIGIN + n;
+    const point *const q = site_of(w, ORIGIN + n);
     const int columns = w->problem->columns, *const axis = w->problem->axis;
 
     memset(p, 0, sizeof *p);
-    copy(p->x, q->x, 2);
+    for (int i = 0; i < 2; i++) {
+        const uint64_t x = ((const uint64_t *)&q->x[i])[LANES - 1];
+        p->x[i] = (double)(x >> 32);
+        p->x_low[i] = (double)(x & UINT32_MAX);
+    }
     for (int i = 0; i < 2; i++)
         for (int k = 0, kl = 0; k < columns; k++) {
             copy(&p->lin[i][axis[k]], &q->lin[i][k], 1);
@@ -82,7 +114,7 @@ static void look_root(const void *work, int n, known_point *p)
     copy(p->quad_bound, q->quad_bound, waves_of(w));
     copy(p->nonlin_bound, q->nonlin_bound, waves_of(w));
     copy(p->rad, q->rad, waves_of(w));
-    copy(p->residual, q->residual, 2);
+    copy(p->residual, w->residual, 2);
     copy(p->force, q->force, 2);
     copy(p->beta, q->beta, 3);
     copy(p->d, q->d, 3);
@@ -90,7 +122,20 @@ static void look_root(const void *work, int n, known_point *p)
     copy(p->mu, q->mu, 2);
 }
 
+static void sincos_of(uint64_t turns, int64_t *sine, int64_t *cosine, double *next, double *lacks)
+{
+    mask s, c;
+    vec rest;
+
+    turns_sincos(&s, &c, turns - none());
+    const vec first = sine_in_two(s, &rest), simply = sine_of(s);
+    *sine = ((const int64_t *)&s)[LANES - 1];
+    *cosine = ((const int64_t *)&c)[LANES - 1];
+    *next = at(&first, LANES - 1) == at(&simply, LANES - 1) ? at(&first, LANES - 1) : NAN;
+    *lacks = at(&rest, LANES - 1);
+}
+
 #define HOOKS_OF(engine) hooks_##engine
 #define HOOKS(engine) HOOKS_OF(engine)
-const hooks HOOKS(ENGINE) = { poison, follow_root, bound_root, look_root };
+const hooks HOOKS(ENGINE) = { poison, follow_root, bound_root, look_root, sincos_of };
 #endif

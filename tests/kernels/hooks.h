@@ -4,16 +4,17 @@
 
 #include "loewner/problem.h"
 
-/* What is known of a point.  The columns: x0's five, then x1's. */
+/* What is known of a point.  x: the upper halves of its angles, in 2^-32 turns; x_low: the lower
+   ones, in 2^-64.  The columns: x0's five, then x1's. */
 typedef struct {
-    double x[2], lin[2][COLUMNS], quad[2][PAIRS], rem[2];
+    double x[2], x_low[2], lin[2][COLUMNS], quad[2][PAIRS], rem[2];
     double lin_bound[SLOTS], quad_bound[SLOTS], nonlin_bound[SLOTS], rad[SLOTS];
     double residual[2], force[2], beta[3], d[3], err_beta, mu[2];
 } known_point;
 
 typedef struct {
     /* Leaves there, about the points s to t, what no prism would. */
-    void (*poison)(void *work, int s, int t);
+    void (*poison)(void *work, const loewner *problem, int s, int t);
 
     /* Follows the root's prism from point s <= 0 to point t >= 0.  0: it cannot be done. */
     int (*follow)(void *work, const loewner *problem, int s, int t);
@@ -26,6 +27,9 @@ typedef struct {
 
     /* What is known of point n of this orbit.  mu: after bound, and only where it is not zero. */
     void (*look)(const void *work, int n, known_point *p);
+
+    /* turns_sincos: sine and cosine in 2^-62, the double next to the sine, and what that lacks. */
+    void (*sincos)(uint64_t turns, int64_t *sine, int64_t *cosine, double *next, double *lacks);
 } hooks;
 
 #ifdef __x86_64__

@@ -14,8 +14,8 @@
 
 enum { BOX = 13, WAVE = 7, MOST_SHOWN = 4 };        /* numbers of a wave; waves of a problem */
 enum { SITES = 60 };                                    /* no point of an orbit is further */
-enum { POINT = 64, SITE = 77, SHOWN = 13, ANY_SITE = 81, ANY_SHOWN = 11 };
-enum { MOST_MORE = 10, MOST_OUT = 1001 };
+enum { SITE = 79, SHOWN = 13, ANY_SITE = 83, ANY_SHOWN = 11 };
+enum { MOST_MORE = 10, MOST_OUT = SITE * SHOWN };
 
 /* What a routine is asked: the numbers after those of the problem. */
 typedef struct {
@@ -75,6 +75,7 @@ static double *show(double *y, const known_point *p, int slots)
         { p->d, 3 },
         { &p->err_beta, 1 },
         { p->mu, 2 },
+        { p->x_low, 2 },
     };
 
     for (size_t j = 0; j < sizeof parts / sizeof *parts; j++) {
@@ -120,21 +121,32 @@ static cv_cell cell_of(const request *r)
     return cell;
 }
 
-/* Index and cuts of five axes -> centres and widths of v0, v1; p, h and err_amp of a, b, c; l; B
-   at the corners of the parameters (together: at two), the lower end of a first. */
+/* Halves of the angles of x_1: upper ones in 2^-32 turns, lower ones in 2^-64. */
+static void show_x1(const loewner_cell *prism, double upper[2], double lower[2])
+{
+    for (int i = 0; i < 2; i++) {
+        upper[i] = (double)(prism->x1[i] >> 32);
+        lower[i] = (double)(prism->x1[i] & UINT32_MAX);
+    }
+}
+
+/* Index and cuts of five axes -> upper halves of the centre and widths of v0, v1; p, h and err_amp
+   of a, b, c; l; B at the corners of the parameters (together: at two), the lower end of a first;
+   lower halves of the centre, p_low. */
 static int k_cell(const request *r, double y[])
 {
     const cv_cell cell = cell_of(r);
     loewner_cell prism;
     const int good = loewner_prism(r->w, &cell, &prism);
 
-    memcpy(y, prism.v, sizeof prism.v);
+    show_x1(&prism, y, y + 22);
     memcpy(y + 2, prism.width, sizeof prism.width);
     for (int j = 0; j < 3; j++) {
         const int slot = slot_of(r->w, j);
         if (slot < 0)
             continue;
         y[4 + j] = prism.p[slot];
+        y[24 + j] = prism.p_low[slot];
         y[7 + j] = prism.part[slot][r->together ? 0 : j];
         y[10 + j] = prism.err_amp[slot];
     }
@@ -143,15 +155,15 @@ static int k_cell(const request *r, double y[])
     return good;
 }
 
-/* Index and cuts of five axes -> centres and widths of v0, v1, three shifts of each, of how many
-   columns the prisms are, and would a cut of each axis help? */
+/* Index and cuts of five axes -> upper halves of x_1, widths of v0, v1, three shifts of each, how
+   many columns the prisms have, would a cut of each axis help, and the lower halves. */
 static int k_shifted(const request *r, double y[])
 {
     const cv_cell cell = cell_of(r);
     loewner_cell prism;
     const int good = loewner_prism(r->w, &cell, &prism);
 
-    memcpy(y, prism.v, sizeof prism.v);
+    show_x1(&prism, y, y + 16);
     memcpy(y + 2, prism.width, sizeof prism.width);
     memcpy(y + 4, prism.shift, sizeof prism.shift);
     y[10] = r->w->columns;
@@ -160,8 +172,7 @@ static int k_shifted(const request *r, double y[])
     return good;
 }
 
-/* n -> 2 coordinates, 2 rows of 5 columns, 2 bows of 15, 2 rests of point n, and for the
-   coordinates and 3 waves the reach of columns, bows, all but the columns, and all. */
+/* n -> what k_sites tells of point n. */
 static int k_orbit(const request *r, double y[])
 {
     known_point p;
@@ -206,15 +217,18 @@ static int bound_orbit(const request *r, int signs, double y[])
     return 1;
 }
 
-/* s, t, signs -> the same.  signs: those of cubic terms count. */
-static int k_bound(const request *r, double y[]) { return bound_orbit(r, r->more[2] != 0.0, y); }
+/* s, t, signs -> the same.  signs: 1: those of cubic terms count; 2: the sums of bound.c without
+   roundings, with multipliers that are off. */
+static int k_bound(const request *r, double y[]) { return bound_orbit(r, (int)r->more[2], y); }
 
 /* s, t -> of each point of that orbit, at most 13 (11 for any waves, with the reaches along the
-   coordinates and 4 waves), what k_orbit tells, and missed, force, beta, d, err_beta and mu. */
+   coordinates and 4 waves): upper halves of 2 coordinates, 2 rows of 5 columns, 2 bows of 15, 2
+   rests, for the coordinates and 3 waves the reach of columns, bows, all but the columns, and all;
+   residual, force, beta, d, err_beta, mu, and the lower halves of the coordinates. */
 static int k_sites(const request *r, double y[])
 {
     double unused[5 + 2 * SITES] = { 0 }, *end = y;
-    const int good = bound_orbit(r, 1, unused);
+    const int good = bound_orbit(r, r->any ? 1 : (int)r->more[2], unused);
 
     for (int j = 0; j < (r->any ? ANY_SHOWN : SHOWN); j++) {
         known_point p;
@@ -224,6 +238,20 @@ static int k_sites(const request *r, double y[])
         end = show(end, &p, r->any ? 2 + MOST_SHOWN : 5);
     }
     return good;
+}
+
+/* Upper and lower half of an angle -> the same of sine and cosine in 2^-62, the double next to the
+   sine, and what that lacks. */
+static int k_sincos(const request *r, double y[])
+{
+    int64_t s, c;
+
+    hooks_of(r->w)->sincos((uint64_t)r->more[0] << 32 | (uint64_t)r->more[1], &s, &c, &y[4], &y[5]);
+    y[0] = (double)(s >> 32);
+    y[1] = (double)(s & UINT32_MAX);
+    y[2] = (double)(c >> 32);
+    y[3] = (double)(c & UINT32_MAX);
+    return 1;
 }
 
 static int k_largest(const request *r, double y[])      /* B */
@@ -243,14 +271,15 @@ typedef struct {
 } row;
 
 static const row kernels[] = {
-    { "loewner_cell", 10, 22, 0, 1, 0x1p60, 0x1p60, k_cell },
-    { "loewner_orbit", 1, POINT, 0, 0, SITES, SITES, k_orbit },
+    { "loewner_cell", 10, 27, 0, 1, 0x1p60, 0x1p60, k_cell },
+    { "loewner_orbit", 1, SITE, 0, 0, SITES, SITES, k_orbit },
     { "loewner_step", 2, 4, 0, 0, SITES, 1e9, k_step },
     { "loewner_bound", 3, 5 + 2 * SITES, 0, 0, SITES, SITES, k_bound },
-    { "loewner_sites", 2, SITE * SHOWN, 0, 0, SITES, SITES, k_sites },
+    { "loewner_sites", 3, SITE * SHOWN, 0, 0, SITES, SITES, k_sites },
     { "waves_bound", 3, 5 + 2 * SITES, 1, 0, SITES, SITES, k_bound },
     { "waves_sites", 2, ANY_SITE * ANY_SHOWN, 1, 0, SITES, SITES, k_sites },
-    { "waves_cell", 10, 16, 1, 0, 0x1p60, 0x1p60, k_shifted },
+    { "waves_cell", 10, 18, 1, 0, 0x1p60, 0x1p60, k_shifted },
+    { "loewner_sincos", 2, 6, 0, 0, 0x1p33, 0x1p33, k_sincos },
     { "waves_largest", 0, 1, 1, 1, SITES, SITES, k_largest },
 };
 
@@ -338,12 +367,12 @@ static int run(const row *kernel, request *r, const patch *problem, const questi
     double y[MOST_OUT] = { 0 };
     int good;
 
-    r->w = loewner_new(problem, kernel->bounds);
+    r->w = loewner_new(problem, MAX_POINTS, kernel->bounds);
     if (r->w == NULL)
         return CV_ENOMEM;
     if (!kernel->bounds)
         any_largest(r->w);
-    hooks_of(r->w)->poison(r->w->work, -SITES, SITES);
+    hooks_of(r->w)->poison(r->w->work, r->w, -SITES, SITES);
     good = kernel->run(r, y);
     loewner_free(r->w);
     for (int j = 0; j < q->nout && good; j++)

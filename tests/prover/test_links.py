@@ -377,7 +377,7 @@ def test_undecided_stays_undecided(easily):
 
 
 @pytest.mark.parametrize("problem,x,grown", [
-    (Problem(SymplecticMap([(1, 0)], ["0"])), "0.534071", [12]),
+    (Problem(SymplecticMap([(1, 0)], ["0"])), "0.534071", [12, 16]),
     (Problem(MuldoonMap("0.5", 0, 0)), "1.570796", [12, 16]), (line("0.005"), "0.858028", [12, 16]),
     (line("0.0139"), "0.858028", [12, 16, 20, 24]),
     (Problem(SymplecticMap([

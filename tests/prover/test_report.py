@@ -156,8 +156,8 @@ def test_where_x_star_may_be_the_cause(monkeypatch):
         wide, method="loewner", xstar=("1.856", "0")).report()
     assert prove(problem, method="loewner", xstar=("1.836", "0")).no_tori
     assert "x* (" not in prove(problem, method="loewner", xstar=("1.856", "0"), depth=5).report()
-    point = prove(Problem(SymplecticMap(waves, ["0.6", "0.2"]), v0=c), method="loewner", depth=0,
-                  xstar=("1.856", "0"))
+    point = prove(Problem(SymplecticMap(waves, ["0.06", "0.02"]), v0=Fraction(9, 8)),
+                  method="loewner", depth=0, xstar=("1.856", "0"))
     assert re.search("the first of them: v0 = 1.1[0-9]* pi", point.report())
 
 

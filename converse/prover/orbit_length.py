@@ -1,0 +1,69 @@
+"""How long the orbits of a search may become.
+
+Close above the parameter where the last circle breaks, proofs need orbits of many thousand points.
+Close below it, and at any parameter with a circle, such orbits take a minute and prove nothing.
+So before the search a few of the thinnest prisms are tried with the longest orbits.  If one of them
+is not proved, no search can prove the prisms around it, and the search follows short orbits only.
+
+No theorem rests on this choice: it decides how much is tried."""
+
+from itertools import product
+from math import inf
+from typing import List, Sequence, Tuple
+
+from . import native
+from .settings import Settings
+
+CUTS = 46                               # of the thinnest prisms: MAX_CUTS of csrc/loewner/problem.c
+# Prisms are tried at each 2^-6 of the region, and then at each 2^-9, 2^-12, ... around those that
+# took the longest orbits: around three, as the longest one need not be near the longest of all.
+FIRST, FINER, AROUND = 6, 3, 3
+
+
+def longest(problem, xstar) -> int:
+    """The most points of an orbit in a search over x*, or 0 for as many as the core can follow.
+
+    No proof is known to need more than native.ORDINARY where waves depend on two combinations of
+    the angles."""
+    ends = list(product((0, (1 << CUTS) - 1), repeat=len(problem.parts)))
+    if not problem.is_flat or not all(_all_proved(problem, xstar, end) for end in ends):
+        return native.ORDINARY
+    return 0
+
+
+def _all_proved(problem, xstar, end: Sequence[int]) -> bool:
+    """Are the thinnest prisms proved, as far as they are tried, at this corner of the parameters'
+    ranges?"""
+    settings = Settings("loewner", CUTS * (1 + len(end)), stubborn=True)
+    search = native.Search(native.Task(problem, settings, xstar, 0))
+    search.prepare(None)
+    axis, level, places = _axis(problem), FIRST, list(range(1 << FIRST))
+    while True:
+        grown = search.grow([_thinnest(axis, level, place, end) for place in places], inf,
+                            len(places), None, True)
+        if "U" in grown.text:
+            return False
+        if level == CUTS:
+            return True
+        best = sorted(zip(grown.steps, places), reverse=True)[:AROUND]
+        finer = min(level + FINER, CUTS)
+        places = [(place << finer - level) + j for _, place in best
+                  for j in range(1 << finer - level)]
+        level = finer
+
+
+def _axis(problem) -> int:
+    """The coordinate of v that the waves depend on."""
+    f00, _, f10, _ = problem.frame
+    return 0 if any(k0 * f00 + k1 * f10 for j, (k0, k1, _) in enumerate(problem.waves)
+                    if j in problem.searched) else 1
+
+
+def _thinnest(axis, level, place, end) -> Tuple[List[int], List[int], int]:
+    """The middle one of the thinnest prisms in a part, of 2^level, of the region."""
+    index, cuts = [0] * 5, [0] * 5
+    index[axis] = place if level == CUTS else (2 * place + 1) << (CUTS - level - 1)
+    for m, last in enumerate(end):
+        index[2 + m], cuts[2 + m] = last, CUTS
+    cuts[axis] = CUTS
+    return index, cuts, 0

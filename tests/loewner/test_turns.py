@@ -1,0 +1,84 @@
+"""Angles in turns: sines against an independent truth, and how long orbits may be."""
+
+from fractions import Fraction
+
+import mpmath
+import pytest
+from test_waves import many_digits  # noqa: F401
+
+from converse import ConverseError, Problem, prove
+from converse.model.map import MuldoonMap
+from converse.prover import native, orbit_length
+from converse.prover.proof import Proof, Tree
+from converse.prover.run import ready
+from converse.prover.settings import Settings
+
+import kernels
+from truth import mp, rng_for
+
+UNITS = mp(2) ** 62
+
+
+def angles(rng):
+    """Anywhere, and close to where quarter turns begin and end."""
+    yield from (rng.randrange(1 << 64) for _ in range(1500))
+    yield from ((n << 61) + j & (1 << 64) - 1 for n in range(8) for j in (-2, -1, 0, 1, 2))
+    for _ in range(1500):
+        near = rng.choice([-1, 1]) * rng.getrandbits(rng.randrange(1, 61))
+        yield (rng.randrange(8) << 61) + near & (1 << 64) - 1
+
+
+@pytest.mark.parametrize("lanes", ["2", "4", "8"])
+def test_sines(lanes, monkeypatch):
+    """They are within the 3 units of 2^-62 that turns.h promises, a third of which are needed; the
+    double next to a sine and what that lacks are the sine."""
+    monkeypatch.setenv("CONVERSE_LANES", lanes)
+    worst, prism = [0, 0], [Fraction(x) for x in (1, 0, 0, *[0] * 10)]
+    for turns in angles(rng_for("turns")):
+        s1, s0, c1, c0, double, lacks = kernels.call(
+            "loewner_sincos", [*prism, turns >> 32, turns & 0xffffffff], 6, 20)
+        s, c = int(s1) << 32 | int(s0), int(c1) << 32 | int(c0)
+        y = 2 * mpmath.pi * mp(turns) / 2 ** 64
+        for i, (found, true) in enumerate([(s, mpmath.sin(y)), (c, mpmath.cos(y))]):
+            assert abs(found) <= 2 ** 62
+            worst[i] = max(worst[i], abs(found - true * UNITS))
+        assert (double + lacks) * 2 ** 62 == s and double == Fraction(s / 2 ** 62)
+    assert 1 < min(worst) and max(worst) < 3, worst
+
+
+@pytest.mark.parametrize("k, longest", [("0.9716", 4000), ("0.9", 4000), ("0.9717", 0), ("2", 0)])
+def test_orbits_are_long_only_where_that_helps(k, longest):
+    """Where a circle exists, thin prisms close to it are not proved."""
+    problem = Problem(MuldoonMap(k, 0, 0))
+    assert orbit_length.longest(problem, None) == longest
+
+
+@pytest.mark.parametrize("b", ["0", "1"])
+def test_orbits_of_two_angles_are_not_long(b):
+    """That of the other angle of a product does not count."""
+    problem = Problem(MuldoonMap("2", b, 0))
+    assert orbit_length.longest(problem, None) == 0
+    assert orbit_length.longest(Problem(MuldoonMap("2", b, "0.1")), None) == native.ORDINARY
+
+
+def test_the_longest_orbits():
+    """A prism as thin as can be beside a circle takes as many points as it may, and is given up."""
+    proof = Proof((Tree(Problem(MuldoonMap("0.9", 0, 0)), None),), Settings(method="loewner"))
+    problem, xstar = ready(proof).problem, ready(proof).xstar
+    for longest, points in ((0, 1 << 15), (1 << 15, 1 << 15), (native.ORDINARY, native.ORDINARY)):
+        task = native.Task(problem, Settings("loewner", 46, stubborn=True), xstar, longest)
+        search = native.Search(task)
+        search.prepare(None)
+        cell = orbit_length._thinnest(0, 6, 51, ())
+        grown = search.grow([cell], 1e300, 10, None, True)
+        assert grown.text == "U" and grown.steps == [points]
+    with pytest.raises(ConverseError):
+        native.Search(native.Task(problem, Settings("loewner"), xstar, (1 << 15) + 1))
+
+
+def test_orbits_of_a_proof_are_as_long_as_they_must():
+    """k = 0.9718 needs 7,712 points, and margins that are as small as they are."""
+    proof = prove(Problem(MuldoonMap("0.9718", 0, 0)), jobs=1)
+    assert proof.no_tori and 4000 < proof.counts.max_NTsteps < 10000
+    undecided = prove(Problem(MuldoonMap("0.9", 0, 0)), jobs=1)
+    assert not undecided.no_tori and undecided.counts.max_NTsteps <= native.ORDINARY
