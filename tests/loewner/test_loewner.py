@@ -907,18 +907,19 @@ def test_no_company_matters(problem, star, monkeypatch):
         whole = search.grow([cell for cell, _ in found], math.inf, MANY, None, True)
         assert whole.text == text and whole.steps == steps
 
-@pytest.mark.parametrize("a, half", [("1e12", "0"), ("1e7", "0"), ("1e7", "1e-5")])
+
+@pytest.mark.parametrize("a, half", [("1e12", "1e6"), ("1e7", "1e4")])
 def test_an_orbit_ends_where_it_cannot_go_on(a, half):
-    """Too many turns in the next step, or images too wide, both ways: two points are all there
-    is."""
+    """The images are too wide both ways: two points are all there is."""
     for way in (1, -1):                     # of a alone, of b alone
         problem = Problem.around((*(Fraction(a), 0)[::way], 0, *(Fraction("-0.4"), 0)[::way]),
-                                 (0, 0, 0, Fraction(half), Fraction(half)))
+                                 (*(Fraction(half), 0)[::way], 0, 0, 0))
         search = Search(Task(problem, Settings("loewner", 0, stubborn=True), ("-1", "0")[::way]))
         assert search.prepare(None)
         grown = search.grow([(*ROOT, 0)], math.inf, MANY, None, True)
         assert (grown.text, grown.steps) == ("U", [2])
-        assert grown.counts.reasons == (0, 0, 1, 0, 0, 0)
+        assert grown.counts.reasons == (0, 0, 0, 1, 0, 0)
+
 
 def test_a_search_that_was_busy_takes_up_a_tree():
     """What it knew of other prisms is forgotten."""
@@ -995,14 +996,11 @@ def test_the_finest_cell():
     for cuts in (45, 46, 47):
         index = [int(2 ** cuts * ((1 / math.pi + x) % 1)) for x in (0.5698402909, 0.7548776662)]
         grown = grow(task, ((*index, 0, 0, 0), (cuts, cuts, 0, 0, 0), 0), 1)
-        if cuts == 45:
-            assert grown.text[0] in "01" and sum(grown.counts.reasons[1:3]) > 0
-        else:
-            assert grown.text == "U" and sum(grown.counts.reasons) == 1
-            assert grown.counts.reasons[2 if cuts == 46 else 4] == 1
+        assert grown.text == "U" and sum(grown.counts.reasons) == 1
+        assert grown.counts.reasons[2 if cuts <= 46 else 4] == 1
     for cuts in (46, 47):
         with pytest.raises(ArithmeticError) if cuts > 46 else nullcontext():
-            kernels.call("loewner_cell", [1] * 13 + [0] * 5 + [cuts] * 5, 22, 20)
+            kernels.call("loewner_cell", [1] * 13 + [0] * 5 + [cuts] * 5, 27, 1080)
 
 
 def test_other_parameters():
@@ -1021,7 +1019,7 @@ def test_other_parameters():
 
 
 def test_huge_and_tiny_numbers():
-    huge = Problem.around((Fraction(10) ** 100,) * 3 + (Fraction(1),) * 2,
+    huge = Problem.around((Fraction(10) ** 18,) * 3 + (Fraction(1),) * 2,
                    (Fraction(0),) * 3 + (Fraction(1),) * 2)
     far = line("0.0200", "0.0200")
     far = Problem.around(far.centre[:3] + (Fraction(10) ** 12,) * 2,
@@ -1030,5 +1028,5 @@ def test_huge_and_tiny_numbers():
     assert prove(far, depth=10, method="loewner", stubborn=True).undecided
     with pytest.raises(ArithmeticError):
         kernels.call("product", [10 ** 160] * 4, 2, 15, "double")
-    beyond = Problem.around((Fraction(10) ** 250,) * 3 + (Fraction(1),) * 2, huge.half)
+    beyond = Problem.around((Fraction(2) ** 60,) * 3 + (Fraction(1),) * 2, huge.half)
     assert prove(beyond, depth=10, method="loewner", stubborn=True).undecided
