@@ -2535,6 +2535,17 @@ def test_bound_over_a_cell(generator):
         assert abs(eigenvalue(real_ones, [t / one for t in y], waves) - value) < 1e-14 * scale
 
 
+def test_bound_over_a_cell_where_slopes_cancel():
+    """beta - 2 is sin 2x / 2 - sin x, of third order at 0: the rest of third order bounds it."""
+    fixed, one = FIXED[96], FIXED[96].one
+    waves = ((1, 0), ZERO), ((2, 0), ZERO)
+    for w in (1 / 4, 1 / 16, 1 / 256):
+        bound, value = (x / one - 2 for x in check.cell_bound(
+            fixed, in_units(fixed, waves), [one, -one // 8], [(1, 0)], [0, 0], int(w * one)))
+        assert abs(value) < 1e-15
+        assert abs(eigenvalue([1, -1 / 8], [-w, 0], waves) - 2) < bound < 0.9 * w ** 3
+
+
 def highest(amplitudes, waves=TRIG, points=48, starts=4):
     """The largest eigenvalue over the torus, in doubles: on a grid, and on from its best points."""
     step = 2 * mpmath.fp.pi / points
