@@ -23,7 +23,7 @@ from converse import Problem, prove, tori
 from converse.commands.common import Parser, ended
 from converse.draw import plot
 from converse.model.exact import decimal_text
-from converse.model.map import LINE
+from converse.model.map import LINE, MuldoonMap, SymplecticMap
 from converse.prover import tree
 from converse.storage import files
 
@@ -40,13 +40,13 @@ SIDE, PIXELS = 1 << 10, 500             # of the region as an image, and of the 
 
 def line(value):
     a = LINE * Fraction(value)
-    return Problem.patch([a, a, 2 * a])
+    return Problem(MuldoonMap(a, a, 2 * a))
 
 
 def froeschle(value):
     """Of coupling COUPLING, in the variables of docs/reference/inputs.md."""
-    return Problem.patch([Fraction(value)] * 2 + [COUPLING],
-                         waves=[(1, 0, "-1/2"), (0, 1, "-1/2"), (1, 1, "-1/2")])
+    return Problem(SymplecticMap([(1, 0, "-1/2"), (0, 1, "-1/2"), (1, 1, "-1/2")],
+                                 [Fraction(value)] * 2 + [COUPLING]))
 
 
 MAPS = {"line": (line, LINE_VALUES), "froeschle": (froeschle, FROESCHLE_VALUES)}
