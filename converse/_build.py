@@ -30,9 +30,7 @@ for name in HEADERS:
     with open("csrc/" + name) as header:
         ffi.cdef(header.read())
 # What C calls, and converse/orbits/potential.py defines.
-ffi.cdef("""extern "Python+C" int cv_python_potential(
-    void *self, long m, const double *x, double *value, double *gradient, double *hessian);
-extern "Python+C" int cv_python_interrupts(void);""")
+ffi.cdef('extern "Python+C" int cv_python_interrupts(void);')
 ffi.set_source("converse._native", "".join(map('#include "%s"\n'.__mod__, HEADERS)),
                sources=SOURCES,
                include_dirs=["csrc"], libraries=["gmp"], extra_compile_args=FLAGS,

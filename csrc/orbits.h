@@ -9,7 +9,7 @@
    These functions work in doubles and promise nothing.  converse/orbits/enclosure.py proves orbits
    in balls. */
 
-enum { CV_FOURIER, CV_POLY, CV_FF, CV_PYTHON };         /* kinds of potentials */
+enum { CV_FOURIER, CV_POLY, CV_FF };                    /* kinds of potentials */
 
 typedef struct {
     int kind, n;
@@ -18,18 +18,11 @@ typedef struct {
     int terms;
     const int *k;
     const double *cosine, *sine;
-    void *self;                             /* CV_PYTHON: handed to cv_python_potential */
 } cv_potential;
 
-/* V, its gradient and Hessian at m points.  value, gradient or hessian may be NULL.
-   CV_EARGUMENT: the Python callback raised. */
-int cv_evaluate(const cv_potential *v, long m, const double (*x)[2], double *value,
-                double (*gradient)[2], double (*hessian)[3]);
-
-/* The action minus the straight orbit's, sum |u_{j+1} - u_j|^2/2 - eps V(x_j), and its
-   gradient. */
-int cv_action(const cv_potential *v, long q, double eps, const double (*base)[2],
-              const double (*u)[2], double *action, double (*gradient)[2]);
+/* V, its gradient and Hessian at m points.  value, gradient or hessian may be NULL. */
+void cv_evaluate(const cv_potential *v, long m, const double (*x)[2], double *value,
+                 double (*gradient)[2], double (*hessian)[3]);
 
 /* u = (Hessian of the action + mu)^-1 b.  blocks: beta_j = 2 - eps V''(x_j).  Returns how many
    eigenvalues of Hessian + mu are negative (then u need not descend).  work: CV_WORK doubles for
@@ -46,6 +39,8 @@ typedef struct {
     long steps;                             /* tried, accepted or not */
     int escapes;                            /* from saddles */
     double largest;                         /* coordinate of the gradient */
+    double action;                          /* minus the straight orbit's: the sum over j of
+                                               |u_{j+1} - u_j|^2/2 - eps V(x_j) */
 } cv_relaxed;
 
 /* Damped Newton: lowers the action until the largest coordinate of its gradient is at most tol, or

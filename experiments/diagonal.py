@@ -22,6 +22,7 @@ import numpy as np
 from converse import orbits
 from converse.commands.common import ended
 from converse.model.map import LINE as THESIS_LINE
+from converse.model.potential import from_terms
 
 SIZES = {"full": {"heads": (3, 7), "least": 1000, "cells": 1000, "most": 400,
                   "eps": (0.0144, 0.0142, 0.0141, 0.0140, 0.01395, 0.0139),
@@ -40,7 +41,8 @@ def diagonal():
     """The potential of the map on x_0 = x_1, for converse.orbits: half of trig's there, since both
     coordinates move."""
     half = Fraction(-orbits.trig.scale) / 2
-    return orbits.potential.Fourier({(1,): (0, half), (2,): (0, half)}, "diagonal")
+    return orbits.potential.Fourier.of(from_terms({(1,): (0, half), (2,): (0, half)}), "diagonal",
+                                       factor="1")
 
 
 # ---- noble rotation numbers

@@ -10,7 +10,7 @@ states with angles of period 1, as in the thesis.
 
 try:
     from .minimax import Pair
-    from .potential import FromPython, Potential, ff, froeschle, parameters, poly, standard, trig
+    from .potential import Potential, ff, froeschle, poly, standard, trig
     from .proved import NotProved, ProvedOrbit, prove
     from .search import search
     from .solver import Family, follow, straight
@@ -27,6 +27,6 @@ except ImportError as _error:           # raised when a name is used: the comman
         from ..prover import native  # noqa: F401, which says more if it is the core that is missing
         raise ConverseError(_MISSING)
 
-__all__ = ["Family", "FromPython", "NotProved", "Onset", "Pair", "PeriodicOrbit", "Potential",
-           "ProvedOrbit", "ff", "follow", "froeschle", "onset", "onsets", "parameters", "poly",
-           "prove", "read_csv", "search", "standard", "straight", "sweep", "trig"]
+__all__ = ["Family", "NotProved", "Onset", "Pair", "PeriodicOrbit", "Potential", "ProvedOrbit",
+           "ff", "follow", "froeschle", "onset", "onsets", "poly", "prove", "read_csv", "search",
+           "standard", "straight", "sweep", "trig"]

@@ -166,7 +166,7 @@ class Enclosure:
 
     def __init__(self, state, eps, tell=None):
         self.tell, self.rounds = tell, 0        # tell(places, rounds through all points)
-        self.law = LAWS[state.potential.native.kind]
+        self.law = LAWS[state.potential.kind]
         self.potential, self.q, self.n = state.potential, state.q, state.potential.n
         self.eps, self.places = eps, None
         self.base = [[fmpq(*x.as_integer_ratio()) + fmpq(j * p % self.q, self.q)

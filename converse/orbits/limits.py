@@ -69,9 +69,3 @@ EXPONENT_PLACES = 45            # Places of an exponent.
 GUARD_BITS = 64                 # Bits of midpoints beyond the decimal places.
 MAX_CONES = 40                  # Cones that are tried for one exponent.
 POINTS_PER_POLL = 256           # Points between two looks for Ctrl-C.
-
-# ---- potentials from Python
-
-COMPARED_POINTS = 7             # Points where derivatives are compared with differences.
-DIFFERENCE_STEP = 1e-5          # The differences reach this far to either side.
-MAX_DISAGREEMENT = 1e-3         # As a part of the largest entry there.

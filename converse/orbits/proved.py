@@ -13,7 +13,6 @@ from typing import Any, Callable, Optional, Tuple
 
 import numpy as np
 
-from .._native import lib
 from ..model.exact import Interval, rounded, rounded_text
 from ..model.potential import per_period, product
 from ..storage.files import ConverseError
@@ -167,10 +166,6 @@ def prove(state: PeriodicOrbit, digits: Optional[int] = None, descend: bool = Fa
     if state.eps == 0:
         raise NotProved("without a perturbation, at eps 0, no orbit is isolated")
     precision, Enclosure, growth = balls()
-    potential = state.potential
-    if potential.native.kind == lib.CV_PYTHON:
-        raise ValueError("nothing can be proved of the potential %s: only Fourier sums, poly "
-                         "and ff have exact values" % potential.name)
     with np.errstate(all="ignore"):
         shadow = state._shadow
     if not shadow < MAX_SHADOW:

@@ -39,14 +39,9 @@ def straight(potential: Source, p: Numerators, q: int,
 
 def step_of(potential):
     """The step of eps in follow: about STEP_TIMES_CURVATURE over the curvature, rounded to 1, 2.5
-    or 5 times a power of ten.  The curvature is estimated on a grid if it is not known.  The map of
-    1000 V and eps/1000 thus has the same orbits as that of V and eps."""
-    bend = potential.curvature
-    if bend is None:
-        axis = (np.arange(32) + 0.5) / 32
-        grid = np.stack(np.meshgrid(*[axis] * potential.n), -1).reshape(-1, potential.n)
-        bend = float(np.abs(np.linalg.eigvalsh(potential.evaluate(grid)[2])).max())
-    bend = max(bend, 1e-300)
+    or 5 times a power of ten.  The map of 1000 V and eps/1000 thus has the same orbits as that of V
+    and eps."""
+    bend = max(potential.curvature, 1e-300)
     order = math.floor(math.log10(STEP_TIMES_CURVATURE / bend))
     return min((float("%se%d" % (digits, order)) for digits in ("1", "2.5", "5", "10")),
                key=lambda step: abs(math.log(step * bend / STEP_TIMES_CURVATURE)))

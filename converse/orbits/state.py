@@ -148,7 +148,7 @@ class PeriodicOrbit:
 
     Units: p, q, u, origin and base are in turns, as doubles have them exactly.  All that is
     computed has the units of the map, whose angles have the period `potential.period`: 2 pi for a
-    SymplecticMap, 1 for trig, poly, ff, froeschle, orbits.standard and user-defined potentials.
+    SymplecticMap, 1 for trig, poly, ff, froeschle and orbits.standard.
 
     p        -- n integers; p/q need not be in lowest terms
     eps      -- the size of the perturbation
@@ -512,7 +512,7 @@ def descended(state, eps, tol, max_steps, held=None):
     how = ffi.new("cv_relaxed *")
     look_up()
     code = done(lib.cv_relax(state.potential.native, q, eps, address(base), address(u), axis, tol,
-                             max_steps, how), state.potential)
+                             max_steps, how))
     return code, how, np.roll(u[:, :n], first, 0)
 
 

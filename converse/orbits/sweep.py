@@ -89,13 +89,9 @@ def onset(potential: Source, p: Numerators, q: int, exponent: Optional[float] = 
     a torus is near an orbit, or that none is.
     """
     potential = known(potential)
-    given = (step, width, top)
-    if None in given and not potential.curvature:
-        raise ValueError("the potential %s has no known curvature: give step, width and top"
-                         % potential.name)
     step, width, top = finite("step, width and top", [
         float("%.0e" % (x / (potential.curvature or 1))) if y is None else y
-        for x, y in zip(ONSET_TIMES_CURVATURE, given)])
+        for x, y in zip(ONSET_TIMES_CURVATURE, (step, width, top))])
     if not (0 < width <= step and 0 < top <= MAX_EPS_STEPS * step):
         raise ValueError("step, width and top are positive, the width at most the step, and the "
                          "top at most %d steps, not %r, %r, %r"
@@ -151,8 +147,7 @@ def sweep(potential: Source, vectors: Sequence[Type], eps: Union[float, Sequence
     Where continuation loses a branch the rest of its rows has the label "lost" and no numbers."""
     values = finite("eps", eps)
     potential = known(potential)
-    if potential.curvature is not None:      # Otherwise the workers check.
-        reached(potential, values)
+    reached(potential, values)
     if not values:
         raise ValueError("eps is a list of finite numbers, one at least, not %r" % (eps,))
     return _sweep(functools.partial(_family, potential, values), COLUMNS, potential, vectors,

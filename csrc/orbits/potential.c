@@ -2,7 +2,7 @@
 #include <math.h>
 
 #include "arith/sine.h"
-#include "orbits/potential.h"
+#include "orbits.h"
 
 #define TWO_PI 0x1.921fb54442d18p2
 
@@ -77,12 +77,9 @@ static void fast_froeschle(const double x[2], double *value, double gradient[2],
     hessian[2] = -0.25 * c1.second - 0.5 * c2.second;
 }
 
-int cv_evaluate(const cv_potential *v, long m, const double (*x)[2], double *value,
-                double (*gradient)[2], double (*hessian)[3])
+void cv_evaluate(const cv_potential *v, long m, const double (*x)[2], double *value,
+                 double (*gradient)[2], double (*hessian)[3])
 {
-    if (v->kind == CV_PYTHON)
-        return cv_python_potential(v->self, m, x[0], value, gradient ? gradient[0] : NULL,
-                                   hessian ? hessian[0] : NULL);
     for (long j = 0; j < m; j++) {
         double here, slope[2], bend[3];
         if (v->kind == CV_FOURIER)
@@ -98,5 +95,4 @@ int cv_evaluate(const cv_potential *v, long m, const double (*x)[2], double *val
         for (int i = 0; hessian && i < 3; i++)
             hessian[j][i] = bend[i];
     }
-    return CV_OK;
 }

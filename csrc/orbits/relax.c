@@ -3,7 +3,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "orbits/potential.h"
+#include "converse.h"
+#include "orbits.h"
+
+/* Does Python want an end?  Python defines this function, which looks for signals.  Every loop that
+   may last calls it now and then, but not so often that the calls take time. */
+int cv_python_interrupts(void);
 
 /* The period is 1, and the eigenvalues of the Hessian are of about 1. */
 static const double MAX_STEP = 0.1;     /* No coordinate moves further in one step. */
@@ -54,19 +59,16 @@ static long solve(action_of *of, const block *beta, double mu, const point *b, p
                        : cv_solve(of->v->n, of->q, beta, mu, b, u, b ? of->work : NULL);
 }
 
-/* Evaluates action, gradient and, unless it is NULL, the Hessian's blocks at at->u. */
-static int evaluate(const action_of *of, place *at)
+/* Evaluates action, gradient and the Hessian's blocks at at->u. */
+static void evaluate(const action_of *of, place *at)
 {
     const long q = of->q;
     double sum = 0.0, lost = 0.0, size = 0.0, slopes = 0.0, squares = 0.0, largest = 0.0;
-    int status;
 
     for (long j = 0; j < q; j++)
         for (int i = 0; i < 2; i++)
             of->x[j][i] = of->base[j][i] + at->u[j][i];
-    status = cv_evaluate(of->v, q, (const point *)of->x, of->value, at->gradient, at->beta);
-    if (status != CV_OK)
-        return status;
+    cv_evaluate(of->v, q, (const point *)of->x, of->value, at->gradient, at->beta);
     for (long j = 0; j < q; j++) {
         const double *const before = at->u[j > 0 ? j - 1 : q - 1], *const here = at->u[j],
                             *const after = at->u[j < q - 1 ? j + 1 : 0];
@@ -87,10 +89,10 @@ static int evaluate(const action_of *of, place *at)
         lost += (sum - (total - (total - sum))) + (term - (total - sum));
         sum = total;
         size += fabs(of->eps * of->value[j]);
-        for (int i = 0; at->beta && i < 3; i++)
+        for (int i = 0; i < 3; i++)
             at->beta[j][i] = (i == 1 ? 0.0 : 2.0) - of->eps * at->beta[j][i];
     }
-    if (at->beta && of->held >= 0) {
+    if (of->held >= 0) {
         at->beta[0][2 * of->held] = HELD_ENTRY;
         at->beta[0][1] = 0.0;
     }
@@ -99,60 +101,6 @@ static int evaluate(const action_of *of, place *at)
     at->doubt = at->noise + 1e-15 * slopes;
     at->largest = squares < HUGE_VAL ? largest : HUGE_VAL; /* infinite if NaN */
     at->mean_square = squares / (double)q;
-    return CV_OK;
-}
-
-/* Makes room for a state and its derivatives; 0: memory is missing. */
-static int make_place(place *at, long q)
-{
-    const size_t size = (size_t)q;
-
-    *at = (place){ .u = malloc(size * sizeof *at->u),
-                   .gradient = malloc(size * sizeof *at->gradient),
-                   .beta = malloc(size * sizeof *at->beta) };
-    return at->u && at->gradient && at->beta;
-}
-
-static void free_place(place *at)
-{
-    free(at->u);
-    free(at->gradient);
-    free(at->beta);
-}
-
-/* Makes room for scratch; 0: memory is missing. */
-static int make_scratch(action_of *of)
-{
-    const size_t size = (size_t)of->q;
-
-    of->x = malloc(size * sizeof *of->x);
-    of->value = malloc(size * sizeof *of->value);
-    of->work = malloc(size * CV_WORK * sizeof *of->work);
-    return of->x && of->value && of->work;
-}
-
-static void free_scratch(action_of *of)
-{
-    free(of->x);
-    free(of->value);
-    free(of->work);
-}
-
-int cv_action(const cv_potential *v, long q, double eps, const double (*base)[2],
-              const double (*u)[2], double *action, double (*gradient)[2])
-{
-    action_of of = { .v = v, .q = q, .eps = eps, .base = base, .held = -1 };
-    place at = { .u = malloc((size_t)q * sizeof *u), .gradient = gradient };
-    int status = CV_ENOMEM;
-
-    if (make_scratch(&of) && at.u) {
-        memcpy(at.u, u, (size_t)q * sizeof *u);
-        status = evaluate(&of, &at);
-        *action = at.action;
-    }
-    free(at.u);
-    free_scratch(&of);
-    return status;
 }
 
 /* to = from + t along. */
@@ -241,9 +189,9 @@ static long escape(action_of *of, place *at, place *other, point *along)
     double best = at->action - at->noise, chosen = 0.0;
 
     for (double t = 0.5 * MAX_STEP; t > 1e-7 && chosen == 0.0 && status == CV_OK; t *= 0.25)
-        for (int sign = -1; sign <= 1 && status == CV_OK; sign += 2) {
+        for (int sign = -1; sign <= 1; sign += 2) {
             move(of->q, other, at, sign * t, (const point *)along);
-            status = evaluate(of, other);
+            evaluate(of, other);
             if (other->action < best) {
                 best = other->action;
                 chosen = sign * t;
@@ -252,9 +200,9 @@ static long escape(action_of *of, place *at, place *other, point *along)
     if (status != CV_OK || chosen == 0.0)
         return status;
     move(of->q, other, at, chosen, (const point *)along);
-    status = evaluate(of, other);
+    evaluate(of, other);
     swap(at, other);
-    return status < 0 ? status : 1;
+    return 1;
 }
 
 static int descend(action_of *of, place *at, place *other, point *along, double tol, long max_steps,
@@ -262,12 +210,12 @@ static int descend(action_of *of, place *at, place *other, point *along, double 
 {
     const long q = of->q;
     double mu = 0.0;
-    int status = evaluate(of, at);
 
-    while (status == CV_OK) {
+    for (evaluate(of, at);;) {
         const double slope = sqrt(at->mean_square);
         long negative;
         how->largest = at->largest;
+        how->action = at->action;
         /* Before break-up a gradient along directions that cost nothing may be all that rounding
            leaves, and no step lowers what it hides. */
         if (at->largest <= tol || (mu > MAX_DAMPING && at->largest <= 100.0 * tol)) {
@@ -292,34 +240,40 @@ static int descend(action_of *of, place *at, place *other, point *along, double 
             return (int)negative;
         move(q, other, at, -fmin(1.0, MAX_STEP / widest(q, (const point *)along)),
              (const point *)along);
-        status = evaluate(of, other);
-        if (status == CV_OK && lower(q, other, at, how->steps < WALKING_STEPS)) {
+        evaluate(of, other);
+        if (lower(q, other, at, how->steps < WALKING_STEPS)) {
             swap(at, other);
             mu = mu > 1e-14 ? 0.1 * mu : 0.0;
         } else {
             mu = fmax(4.0 * mu, fmax(0.1 * slope, 1e-15));
         }
     }
-    return status;
 }
 
 int cv_relax(const cv_potential *v, long q, double eps, const double (*base)[2], double (*u)[2],
              int held, double tol, long max_steps, cv_relaxed *how)
 {
-    const size_t size = (size_t)q * sizeof *u;
+    const size_t size = (size_t)q;
+    point *const points = malloc(6 * size * sizeof *points);
+    block *const blocks = malloc(2 * size * sizeof *blocks);
+    double *const work = malloc((1 + CV_WORK) * size * sizeof *work);
     action_of of = { .v = v, .q = q, .eps = eps, .base = base, .held = held };
-    place at, other;
-    point *const along = malloc(size);
     int status = CV_ENOMEM;
 
-    if (make_place(&at, q) & make_place(&other, q) & make_scratch(&of) && along) {
-        memcpy(at.u, u, size);
-        status = descend(&of, &at, &other, along, tol, max_steps, how);
-        memcpy(u, at.u, size);
+    if (points && blocks && work) {
+        place at = { .u = points, .gradient = points + size, .beta = blocks };
+        place other = { .u = points + 2 * size,
+                        .gradient = points + 3 * size,
+                        .beta = blocks + size };
+        of.x = points + 4 * size;
+        of.value = work + CV_WORK * size;
+        of.work = work;
+        memcpy(at.u, u, size * sizeof *u);
+        status = descend(&of, &at, &other, points + 5 * size, tol, max_steps, how);
+        memcpy(u, at.u, size * sizeof *u);
     }
-    free_place(&at);
-    free_place(&other);
-    free_scratch(&of);
-    free(along);
+    free(points);
+    free(blocks);
+    free(work);
     return status;
 }

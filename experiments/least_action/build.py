@@ -24,17 +24,10 @@ TARGET = ROOT / "build" / "least_action" / (NAME + sysconfig.get_config_var("EXT
 SOURCES = [HOME / "minplus.c",
            *(ROOT / "csrc" / name for name in ("orbits/potential.c", "arith/machine.c"))]
 
-# potential.c refers to this function of Python.  cv_errors refuses a potential of Python.
 SOURCE = """
 #include "converse.h"
 #include "orbits.h"
 #include "minplus.h"
-int cv_python_potential(void *self, long m, const double *x, double *value, double *gradient,
-                        double *hessian)
-{
-    (void)self, (void)m, (void)x, (void)value, (void)gradient, (void)hessian;
-    return -3;                          /* CV_EARGUMENT */
-}
 """
 
 

@@ -25,7 +25,8 @@
 
 #include "arith/lanes.h"
 #include "arith/machine.h"
-#include "orbits/potential.h"
+#include "converse.h"
+#include "orbits.h"
 #include "minplus.h"
 
 enum { MAX_NODES = 1025 };              /* along an axis of a corridor */
@@ -204,9 +205,8 @@ static int lay_grid(rectangle *r, const cv_potential *v, double eps, double curv
         x[i][0] = base[0] + r->at[0][i / (size_t)r->nodes[1]];
         x[i][1] = base[1] + r->at[1][i % (size_t)r->nodes[1]];
     }
-    status = cv_evaluate(v, (long)r->size, (const double (*)[2])x, r->W, NULL, NULL);
-    if (status == CV_OK)
-        status = cv_errors(v, reach, errors);
+    cv_evaluate(v, (long)r->size, (const double (*)[2])x, r->W, NULL, NULL);
+    status = cv_errors(v, reach, errors);
     for (size_t i = 0; status == CV_OK && i < r->size; i++) {
         r->W[i] *= -eps;
         largest = larger(largest, fabs(r->W[i]));

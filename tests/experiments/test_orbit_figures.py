@@ -22,6 +22,7 @@ pytest.importorskip("matplotlib")
 import thesis as figures  # noqa: E402
 from matplotlib.figure import Figure  # noqa: E402
 from matplotlib.text import Text  # noqa: E402
+from sums import fourier
 from thesis import appendix, hedlund, shared, states, twist_maps  # noqa: E402
 
 from converse.orbits import pictures  # noqa: E402
@@ -420,7 +421,7 @@ def test_every_caption_is_inside(families):
         root = ET.fromstring(figures.draw(name, families=families))
         assert float(root.get("width")[:-2]) > 72 * figures.FIGURES[name][0] * 0.8
         assert float(root.get("height")[:-2]) > 72 * figures.FIGURES[name][1] * 0.8
-    strange = orbits.potential.Fourier({(1, 0): (1, 0), (0, 1): (1, 0)}, "$x^{")
+    strange = fourier({(1, 0): (1, 0), (0, 1): (1, 0)}, "$x^{")
     assert pictures.states_picture(orbits.follow(strange, (2, 3), 7, [0.001])).startswith(b"<?xml")
 
 

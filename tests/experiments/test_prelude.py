@@ -28,8 +28,9 @@ def test_prelude_is_the_other_method_s_first_step():
     V'' by the same number."""
     bound = prelude(orbits.trig).graphs
     for eps, proved in ((1.004 * bound, True), (0.9996 * bound, False)):
-        a, b, c = (repr(x) for x in orbits.parameters(eps))
-        proof = converse.prove(Problem(MuldoonMap(a, b, c)), method="loewner", depth=0)
+        a = 2 * np.pi ** 2 * orbits.trig.scale * eps
+        proof = converse.prove(Problem(MuldoonMap(*map(repr, (a, a, 2 * a)))), method="loewner",
+                               depth=0)
         assert proof.no_tori == proved
         largest = 2 - eps * np.linalg.eigvalsh(orbits.trig.evaluate(
             np.full((1, 2), 1 - 0.131738))[2])[0, 0]

@@ -117,11 +117,8 @@ def wrapper(path):
 
 
 def stand_ins():
-    """For those functions of Python that the core calls, and nothing here does."""
-    return ("int cv_python_potential(void *s, long m, const double *x, double *v, double *g, "
-            "double *h)\n"
-            "{ (void)s; (void)m; (void)x; (void)v; (void)g; (void)h; return 0; }\n"
-            "int cv_python_interrupts(void) { return 0; }\n")
+    """For the function of Python that the core calls, and nothing here does."""
+    return "int cv_python_interrupts(void) { return 0; }\n"
 
 
 def path():

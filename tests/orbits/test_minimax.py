@@ -6,6 +6,7 @@ from dataclasses import replace
 import mpmath
 import numpy as np
 import pytest
+from sums import fourier
 
 from converse import ConverseError, orbits
 from converse.orbits import minimax
@@ -167,7 +168,7 @@ def test_potentials_without_symmetry():
     and near it."""
     rng, compared = np.random.default_rng(3), 0
     for k in range(8):
-        potential = orbits.potential.Fourier({(i,): tuple(rng.normal(size=2) / 40 / i ** 2.5)
+        potential = fourier({(i,): tuple(rng.normal(size=2) / 40 / i ** 2.5)
                                     for i in range(1, 5)}, "own %d" % k)
         state = orbits.search(potential, ((2,), (5,))[k % 2], (5, 8)[k % 2],
                               float(rng.choice([0.8, 2, 6])), 60)
@@ -227,7 +228,7 @@ def test_what_has_no_pass():
 def test_a_state_that_is_not_the_least():
     """Of a potential with two maxima the orbit at the lower one is a minimum; beyond a pass there
     is less action."""
-    potential = orbits.potential.Fourier({(1,): (0.01, 0), (2,): (0.05, 0)}, "two")
+    potential = fourier({(1,): (0.01, 0), (2,): (0.05, 0)}, "two")
     upper = orbits.PeriodicOrbit(potential, (0,), 1, 1.0, [[0.0]], (0.5,)).relax()
     assert upper.label == "minimum"
     with pytest.raises(ConverseError, match="search"):
@@ -264,7 +265,7 @@ def test_gaps():
 
 def test_no_pass_where_a_higher_one_may_have_been_missed(monkeypatch):
     """Two hills on the way: the lower one is not the pass when the other is not found."""
-    potential = orbits.potential.Fourier({(1,): (1, 0), (2,): (0.4, 0.05)}, "two hills")
+    potential = fourier({(1,): (1, 0), (2,): (0.4, 0.05)}, "two hills")
     state = orbits.search(potential, (0,), 1, 0.02, 10, seed=1)
     between, found = minimax._Way.between, []
 

@@ -12,6 +12,7 @@ import mpmath
 import numpy as np
 import pytest
 from conftest import ROOT
+from sums import fourier
 
 import converse
 from converse import orbits
@@ -144,25 +145,19 @@ def test_a_minimum_whose_copies_are_none():
     assert lower.label == "minimum" and lower.action < state.action - 1e-4
 
 
-def test_soft_directions_that_turn(monkeypatch):
+def test_soft_directions_that_turn():
     """Why: three blocks soft along directions 60 degrees apart.  Once round, what came along the
     soft direction returns with its sign changed, as period 3 forbids and period 6 allows."""
-    class Blocks:
+    class Blocks(orbits.Potential):
         """V with gradient zero and the Hessian that makes beta_j at (j/3, j/3)."""
-        def value(self, x):
-            return np.zeros(len(x))
-
-        def gradient(self, x):
-            return np.zeros((len(x), 2))
-
-        def hessian(self, x):
+        def evaluate(self, x):
             angle = np.pi / 3 * np.rint(3 * x[:, 0])
             e = np.stack([np.cos(angle), np.sin(angle)], 1)
-            return (2 - stiff) * np.eye(2) + (stiff - soft) * e[:, :, None] * e[:, None, :]
+            return np.zeros(len(x)), np.zeros((len(x), 2)), (
+                (2 - stiff) * np.eye(2) + (stiff - soft) * e[:, :, None] * e[:, None, :])
 
     for soft, stiff, label in ((0.85, 10, "saddle"), (1.6, 10, "minimum"), (1.6, 30, "minimum")):
-        monkeypatch.setattr(orbits.FromPython, "_compare", lambda self: None)
-        potential = orbits.FromPython(Blocks(), 2)
+        potential = Blocks("blocks", (0.0, 0.0), lib.CV_FF)
         state = orbits.PeriodicOrbit(potential, (1, 1), 3, 1.0, np.zeros((3, 2)), (0.0, 0.0))
         assert state.below(0) == 0 and state.label == label
         assert (state.repeat(2).least < 0) == (label == "saddle")
@@ -189,7 +184,7 @@ def test_continuation_loses_the_minimum():
 def test_it_leaves_a_saddle_for_the_lower_side():
     """From the least V of a skew potential both sides lead down, to the same maximum."""
     for skew in (0.3, -0.3):
-        potential = orbits.potential.Fourier({(1,): (1, 0), (2,): (0, skew)}, "skew")
+        potential = fourier({(1,): (1, 0), (2,): (0, skew)}, "skew")
         axis = np.arange(10 ** 6)[:, None] / 10 ** 6
         low = axis[np.argmin(potential.evaluate(axis)[0])]
         saddle = newton(orbits.PeriodicOrbit(potential, (0,), 1, 0.01, [[0.0]], tuple(low)))[0]
@@ -372,62 +367,6 @@ def test_pairs_at_the_same_place():
 
 # ---- potentials from Python that misbehave, Ctrl-C
 
-class Source:
-    """ff, but for one method."""
-
-    def __init__(self, method="", instead=None):
-        self.method, self.instead = method, instead
-
-    def ask(self, k, x):
-        answer = orbits.ff.evaluate(x)[k]
-        asked = ("value", "gradient", "hessian")[k]
-        return answer if asked != self.method else self.instead(answer)
-
-    def value(self, x):
-        return self.ask(0, x)
-
-    def gradient(self, x):
-        return self.ask(1, x)
-
-    def hessian(self, x):
-        return self.ask(2, x)
-
-
-def raising(error):
-    def instead(answer):
-        raise error
-    return instead
-
-
-@pytest.mark.parametrize("method", ["value", "gradient", "hessian"])
-@pytest.mark.parametrize("instead, error, word", [
-    (raising(KeyError("mine")), KeyError, "mine"),
-    (raising(KeyboardInterrupt()), KeyboardInterrupt, "^$"),
-    (lambda answer: answer[:1], ValueError, "not an array"),
-    (lambda answer: 0.0, ValueError, "finite"),
-    (lambda answer: answer[0], ValueError, "potential mine"), (lambda answer: "x", ValueError, "x"),
-    (lambda answer: answer * np.nan, ValueError, "finite numbers"),
-    (lambda answer: answer / 0.0, ValueError, "finite numbers"),
-], ids=["raises", "interrupt", "one", "scalar", "first", "text", "nan", "infinite"])
-@pytest.mark.filterwarnings("ignore:divide", "ignore:invalid")
-def test_bad_potentials(method, instead, error, word):
-    """What they raise is handed on, what makes no sense is named, wherever it comes up."""
-    with pytest.raises(error, match=word):
-        orbits.FromPython(Source(method, instead), 2, "mine")
-    source = Source()
-    bad = orbits.FromPython(source, 2, "mine", orbits.ff.start)
-    source.method, source.instead = method, instead
-    state = orbits.straight(bad, (5, 7), 9)
-    for ask in (lambda: bad.evaluate([[0.1, 0.2], [0.3, 0.4]]), lambda: state.relax(0.01),
-                lambda: state.action, lambda: orbits.follow(bad, (5, 7), 9, [0.01]),
-                lambda: newton(state, 0.01), lambda: flow(state, 0.01)):
-        with pytest.raises(error, match=word) as raised:
-            ask()
-        assert "\n" not in str(raised.value)
-    again = orbits.FromPython(Source(), 2, "mine", orbits.ff.start)     # nothing is left of it
-    assert orbits.straight(again, (5, 7), 9).relax(0.01).label == "minimum"
-
-
 def test_ctrl_c_ends_a_long_search():
     """A thread that shall end does so in the C core, which asks between rounds of 2^18 points."""
     rng = np.random.default_rng(7)
@@ -471,14 +410,14 @@ def test_the_action_of_a_long_orbit_keeps_its_digits():
     state = orbits.PeriodicOrbit(orbits.trig, (57031, 75550), q, 0.025,
                                  rng.uniform(-0.1, 0.1, (q, 2)),
                          orbits.trig.start)
-    action, gradient, u = ffi.new("double *"), np.zeros((q, 2)), state.u.copy()
-    assert lib.cv_action(orbits.trig.native, q, 0.025, address(state.base), address(u), action,
-                         address(gradient)) == lib.CV_OK
+    how, u = ffi.new("cv_relaxed *"), state.u.copy()
+    assert lib.cv_relax(orbits.trig.native, q, 0.025, address(state.base), address(u), -1, 1e-13,
+                        0, how) == lib.CV_RUNNING
     step = np.roll(u, -1, 0) - u
     terms = [*(0.5 * step ** 2).ravel().tolist(),
              *(-0.025 * orbits.trig.evaluate(state.base + u)[0]).tolist()]
-    assert action[0] == pytest.approx(math.fsum(terms), rel=0, abs=1e-12)
-    assert np.abs(gradient - state.gradient).max() < 1e-15
+    assert how.action == pytest.approx(math.fsum(terms), rel=0, abs=1e-12)
+    assert how.largest == pytest.approx(np.abs(state.gradient).max(), rel=0, abs=1e-15)
 
 
 @pytest.mark.skipif(TORTURE == 1, reason="a hundred thousand points")

@@ -15,6 +15,7 @@ pytest.importorskip("matplotlib")
 
 from matplotlib.figure import Figure  # noqa: E402
 from matplotlib.text import Text  # noqa: E402
+from sums import fourier
 
 from converse.orbits import pictures  # noqa: E402
 
@@ -95,7 +96,7 @@ def test_files(plane, line, saddle):
             pictures.states_picture([saddle] * number)
     with pytest.raises(ValueError, match="svg, png, pdf, not gif"):
         pictures.states_picture([saddle], "gif")
-    strange = orbits.potential.Fourier({(1, 0): (1, 0), (0, 1): (1, 0)}, "$x^{")
+    strange = fourier({(1, 0): (1, 0), (0, 1): (1, 0)}, "$x^{")
     picture = pictures.states_picture(orbits.follow(strange, (2, 3), 7, [0.001]))
     assert picture.startswith(b"<?xml")
 

@@ -18,6 +18,7 @@ import mpmath
 import numpy as np
 import pytest
 from flint import arb, arb_mat, ctx, fmpq
+from sums import fourier
 
 from converse import ConverseError, orbits
 from converse.model.balls import precision
@@ -107,12 +108,11 @@ def three(f):
     return lambda: [(-quarter, f, (1, 0)), (-quarter, f, (0, 1)), (-2 * quarter, f, (1, 1))]
 
 
-ODD = orbits.potential.Fourier({(1, 0): (Fraction(1, 3), Fraction(-1, 7)),
-                                (0, 1): (0, Fraction(2, 7)),
-                      (2, -1): (Fraction(1, 11), Fraction(1, 9))}, "odd")
+ODD = fourier({(1, 0): (Fraction(1, 3), Fraction(-1, 7)), (0, 1): (0, Fraction(2, 7)),
+               (2, -1): (Fraction(1, 11), Fraction(1, 9))}, "odd")
 # Short waves, whose amplitudes hardly matter and whose errors do.
-NOISY = orbits.potential.Fourier({(k,): (Fraction(-1, 40 if k == 1 else 10**6), Fraction(k, 10**7))
-                        for k in (1, 7, 8, 9, 10, 11, 12)}, "noisy")
+NOISY = fourier({(k,): (Fraction(-1, 40 if k == 1 else 10**6), Fraction(k, 10**7))
+                 for k in (1, 7, 8, 9, 10, 11, 12)}, "noisy")
 OWN = {"odd": ODD, "noisy": NOISY}
 
 
@@ -124,12 +124,12 @@ V = {"trig": waves(trig_parts), "froeschle": waves(three(cosine)), "ff": waves(t
      "poly": poly, "standard": waves(lambda: [(-1 / (4 * mpmath.pi**2), cosine, (1,))])}
 
 
-def sum_of(terms):
-    return waves(lambda: [(mp(w), f, k) for k, both in terms.items()
-                          for w, f in zip(both, (cosine, sine))])
+def sum_of(source):
+    return waves(lambda: [(mp(w), f, k[:source.dimension]) for k, *both in source.terms(0)
+                          for (w, _), f in zip(both, (cosine, sine))])
 
 
-V.update({name: sum_of(potential.terms) for name, potential in OWN.items()})
+V.update({name: sum_of(potential.sum) for name, potential in OWN.items()})
 
 # ---- orbits, anew
 
@@ -441,21 +441,13 @@ def test_perturbed_states():
             prove(state.moved(np.vstack([state.u[:4] + u, state.u[4:]])))
 
 
-def test_flat_and_foreign():
+def test_flat():
     state = orbits.straight(orbits.standard, (1,), 3)
     with pytest.raises(NotProved, match="eps 0"):
         prove(state)
-    flat = orbits.potential.Fourier({(1, 0): (1, 0)}, "flat")           # V does not depend on x_1
+    flat = fourier({(1, 0): (1, 0)}, "flat")           # V does not depend on x_1
     with pytest.raises(NotProved, match="too flat"):
         prove(orbits.straight(flat, (1, 1), 2).relax(0.01), digits=1)
-
-    class Cosine:
-        value = staticmethod(lambda x: np.cos(2 * np.pi * x[:, 0]))
-        gradient = staticmethod(lambda x: -2 * np.pi * np.sin(2 * np.pi * x))
-        hessian = staticmethod(lambda x: -4 * np.pi**2 * np.cos(2 * np.pi * x)[:, :, None])
-    mine = orbits.FromPython(Cosine, 1, start=(0.0,), curvature=40.0)
-    with pytest.raises(ValueError, match="nothing can be proved of the potential python"):
-        prove(orbits.straight(mine, (1,), 3).relax(0.01))
     for digits in (0, -1, 10**9):
         with pytest.raises(ValueError, match="digits is a number"):
             prove(state, digits)

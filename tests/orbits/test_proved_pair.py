@@ -8,7 +8,6 @@ import mpmath
 import numpy as np
 import pytest
 from test_minimax import golden, least, truth
-from test_points import Sine
 
 from converse import orbits
 from converse.model.balls import precision
@@ -115,11 +114,7 @@ def test_a_minimum_or_nothing_in_the_place_of_the_pass():
         Pair(pair.minimum, away, pair.step, pair.turn).prove()
 
 
-def test_a_potential_of_which_nothing_can_be_proved():
-    pair = orbits.straight(orbits.FromPython(Sine(), 1, "sine"), (1,), 3).relax(0.5).minimax()
-    assert pair.minimax.label == "saddle"
-    with pytest.raises(ValueError, match="nothing can be proved"):
-        pair.prove()
+def test_bad_digits():
     for digits in (0, 1.5, "a", 10 ** 6):
         with pytest.raises(ValueError, match="digits"):
             golden(4, 0.5).minimax().prove(digits)

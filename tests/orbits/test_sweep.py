@@ -5,7 +5,6 @@ import concurrent.futures
 import importlib.util
 import io
 import math
-import multiprocessing
 import os
 import signal
 import subprocess
@@ -14,8 +13,10 @@ import threading
 
 import numpy as np
 import pytest
+from sums import fourier
 
 from converse import orbits
+from converse._native import lib
 from converse.model.potential import from_terms
 from converse.orbits import potential
 from converse.orbits.sweep import LOST, ONSET_COLUMNS
@@ -107,28 +108,6 @@ def test_onset_refuses(how, words):
         orbits.onset(orbits.trig, (1, 1), 3, **how)
 
 
-class Cosine:
-    """The standard map's potential, as a user writes it."""
-
-    def value(self, x):
-        return -np.cos(2 * np.pi * x[:, 0]) / (4 * np.pi ** 2)
-
-    def gradient(self, x):
-        return np.sin(2 * np.pi * x) / (2 * np.pi)
-
-    def hessian(self, x):
-        return np.cos(2 * np.pi * x)[:, :, None]
-
-
-def test_a_potential_from_python():
-    potential = orbits.FromPython(Cosine(), 1, "mine", (0.5,))
-    with pytest.raises(ValueError, match="no known curvature"):
-        orbits.onset(potential, (13,), 34)
-    how = {"step": 0.05, "width": 0.001, "top": 2}
-    mine, theirs = (orbits.onset(v, (21,), 55, **how) for v in (potential, orbits.standard))
-    assert mine.above.eps == theirs.above.eps
-
-
 # ---- sweeps
 
 def test_a_sweep_is_its_families(whole):
@@ -173,10 +152,9 @@ def test_whoever_works_the_bytes_are_the_same(whole, path, kind, workers):
 
 def test_users_potentials_go_to_other_processes():
     terms = {(1, 0): (0, -0.5), (0, 1): (0, -0.5), (1, 1): (0, -1)}
-    for potential, vectors in ((orbits.potential.Fourier(terms, "mine"), VECTORS[:2]),
+    for potential, vectors in ((fourier(terms, "mine"), VECTORS[:2]),
                                (orbits.potential.Fourier.of(from_terms(terms), "mine"),
-                                VECTORS[:2]),
-                               (orbits.FromPython(Cosine(), 1, "mine", (0.5,)), [((1,), 3)])):
+                                VECTORS[:2])):
         with concurrent.futures.ProcessPoolExecutor(1) as executor:
             there = orbits.sweep(potential, vectors, EPS, executor)
         assert same(there, orbits.sweep(potential, vectors, EPS))
@@ -386,36 +364,30 @@ def test_the_solver_fails_and_smaller_steps_help(monkeypatch):
     assert min(tried) < 0.0025 / 64
 
 
-class Deadly(Cosine):
-    def gradient(self, x):
-        if multiprocessing.parent_process() is not None:
-            os._exit(1)
-        return super().gradient(x)
+class Deadly(orbits.Potential):
+    """Ends every process that is sent this potential."""
 
-
-class Broken(Cosine):
-    broken = False
-
-    def gradient(self, x):
-        if self.broken:
-            raise LookupError("mine")
-        return super().gradient(x)
+    def __reduce__(self):
+        return os._exit, (1,)
 
 
 def test_a_worker_dies(path):
-    potential = orbits.FromPython(Deadly(), 1, "deadly", (0.5,))
+    potential = Deadly("deadly", (0.5, 0.5), lib.CV_FF)
     with concurrent.futures.ProcessPoolExecutor(1) as executor, \
             pytest.raises(ConverseError, match="workers are gone .*try again"):
-        orbits.sweep(potential, [((1,), 3)], EPS, executor, path)
+        orbits.sweep(potential, [((1, 1), 3)], EPS, executor, path)
     assert path.read_text().count("\n") == 1        # the header: it can be continued
 
 
-def test_what_a_users_potential_raises_comes_through():
-    source = Broken()
-    potential = orbits.FromPython(source, 1, "broken", (0.5,))
-    source.broken = True
-    with pytest.raises(LookupError, match="mine"):
-        orbits.sweep(potential, [((1,), 3)], EPS)
+def test_what_goes_wrong_in_a_worker_comes_through(monkeypatch):
+    def broken(state, *arguments):
+        raise LookupError("mine")
+
+    monkeypatch.setattr(orbits.PeriodicOrbit, "relax", broken)
+    with concurrent.futures.ThreadPoolExecutor(1) as executor:
+        for workers in None, executor:
+            with pytest.raises(LookupError, match="mine"):
+                orbits.sweep(orbits.trig, VECTORS, EPS, workers)
 
 
 @pytest.mark.parametrize("arguments, words", [
