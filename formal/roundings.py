@@ -20,8 +20,6 @@ from fractions import Fraction
 from pathlib import Path
 from types import SimpleNamespace
 
-from pycparser import c_ast
-
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 from ctext import CTextError, constant, defined, execute, function, run  # noqa: E402
 from polynomial import Polynomial, symbol  # noqa: E402
@@ -380,7 +378,7 @@ def multipliers(model):
     names["gradient"] = model.function("gradient", names)
     omega = [x * x for x in (model.dot_k(w, i, *q.n) for i in range(2))]
     names["weights"] = model.function("weights_of")(w, omega, q.mu)
-    there = execute(function(text, "sum_up").initial("left"), names).least()
+    there = execute(function(text, "sum_left").initial("left"), names).least()
     worst = []
     for i in range(2):
         steep = function(text, "steepness").bound(names)(w, q, i)
@@ -426,16 +424,12 @@ def widen(model):
     function(text, "measure").bound(names)(w, q)
     model.slipping = slips
     function(text, "bound_displacement").bound(names)(w, q)
-    loops = [node for node in function(text, "step").statements if isinstance(node, c_ast.For)]
-    scope = {**names, "w": w, "q": q, "o": o, "is_first": 0, "inverse": Kept("inverse", 3),
-             "rounded": exact("rounded"), "rem_sum": exact("rem_sum")}
-    scope.update({name: [0.0] * model.slots for name in ("wave_err", "lost")},
-                 err=[0.0, 0.0])
-    scope["next"] = SimpleNamespace(rem=Kept("rem", 2), lin_bound=q.lin_bound,
-                                    quad_bound=q.quad_bound)
-    run([loops[0], loops[2], loops[3], loops[5]], scope)
+    following = SimpleNamespace(rem=Kept("rem", 2), lin_bound=q.lin_bound, quad_bound=q.quad_bound)
+    function(text, "set_force").bound(names)(w, following, q, o, Kept("inverse", 3),
+                                             exact("rounded"), 0)
+    function(text, "set_remainder").bound(names)(following, q)
     made = [kept.made for kept in
-            (q.lin_bound, q.quad_bound, q.nonlin_bound, q.rad, q.force, scope["next"].rem)]
+            (q.lin_bound, q.quad_bound, q.nonlin_bound, q.rad, q.force, following.rem)]
     if not all(made):
         raise NotCovered("widen: orbit.c no longer makes one of those sums where it did")
     worst = []

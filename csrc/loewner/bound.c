@@ -117,14 +117,21 @@ static void weigh(const batch *w, point *q)
     }
 }
 
-/* What Q makes of cos z and sin z, in the lanes' own sites. */
-INLINE void trig_coefficients(const batch *w, const point *q, int i, mask own, vec *A, vec *B)
+/* omega and m of all slots at a site. */
+INLINE void weights_along(const batch *w, const point *q, vec omega[], vec m[])
 {
-    const vec n = dot_k(w, i, q->n[0], q->n[1]), omega = pick(own, n * n, every(0.0));
-    const vec m = pick(own, dot_k(w, i, q->mu[0], q->mu[1]), every(0.0));
+    for (int i = 0; i < waves_of(w); i++) {
+        omega[i] = square(dot_k(w, i, q->n[0], q->n[1]));
+        m[i] = dot_k(w, i, q->mu[0], q->mu[1]);
+    }
+}
 
-    *A = m * q->cosine[i] - omega * q->sine[i];
-    *B = -omega * q->cosine[i] - m * q->sine[i];
+/* A and B of one wave. */
+INLINE void trig_coefficients(const point *q, int i, const vec omega[], const vec m[], vec *A,
+                              vec *B)
+{
+    *A = m[i] * q->cosine[i] - omega[i] * q->sine[i];
+    *B = -omega[i] * q->cosine[i] - m[i] * q->sine[i];
 }
 
 /* (5), of one wave. */
@@ -134,84 +141,75 @@ INLINE vec remainder_of(const batch *w, const point *q, int i, vec A, vec B)
            mag(B) * q->rest_B[i];
 }
 
-/* Constant, linear and quadratic part, and what is bounded by absolute values; `cubes` is the cubic
-   part if it is, too.  Outside of a lane's own sites n and mu are zero, and all else is finite.
-   (One pass over the orbit makes all sums, and is long for that.) */
-static void sum_up(batch *w, sums *result, mask active)
+/* Adds the terms of (1) at a site except those of the waves: 2|n|^2, and -2 n.n' to the next site
+   where there is a link. */
+INLINE void sum_links(sums *t, const point *q, mask linked, const vec omega[])
 {
-    const int columns = w->problem->columns, begin = begin_of(w, active), end = end_of(w, active);
-    vec tails = every(0.0);
-    sums t, total;
+    const vec *const next = q[1].n, squares = 2.0 * (omega[0] + omega[1]);
+    const vec link0 = pick(linked, q->n[0] * next[0], every(0.0));
+    const vec link1 = pick(linked, q->n[1] * next[1], every(0.0));
 
-    memset(&t, 0, sizeof t);
-    memset(&total, 0, sizeof total);
-    for (int j = begin; j <= end; j++) {
-        const uint64_t site = (uint64_t)j;
-        const mask inside = TRUTH(w->since < site) & TRUTH(site < w->until), own = within(w, j);
-        const point *const q = site_of(w, j);
-        const vec n0 = q->n[0], n1 = q->n[1];
-        const vec tiny = pick(own, every(TINY), every(0.0)), *const next = q[1].n;
-        const mask linked = TRUTH(site < w->to);
-        const vec link0 = pick(linked, n0 * next[0], every(0.0));
-        const vec link1 = pick(linked, n1 * next[1], every(0.0));
-        vec omega[SLOTS], m[SLOTS];
+    t->centre += squares;
+    t->mass += squares;
+    t->centre -= 2.0 * (link0 + link1);
+    t->mass += 2.0 * (mag(link0) + mag(link1));
+}
 
-        for (int i = 0; i < waves_of(w); i++) {
-            omega[i] = square(dot_k(w, i, n0, n1));
-            m[i] = dot_k(w, i, q->mu[0], q->mu[1]);
-        }
-        const vec weights = weights_of(w, omega, m) + tiny;
-        t.centre += 2.0 * (omega[0] + omega[1]);
-        t.mass += 2.0 * (omega[0] + omega[1]);
-        t.centre -= 2.0 * (link0 + link1);
-        t.mass += 2.0 * (mag(link0) + mag(link1));
-        t.mass += weights * q->load;
-        FOR_WAVES(w, i) {
-            const vec s = q->sine[i], co = q->cosine[i], p = w->p[i];
-            const vec A = m[i] * co - omega[i] * s, B = -omega[i] * co - m[i] * s;
-            vec c[COLUMNS], f[COLUMNS];
+/* Adds what a wave makes of the prism at a site, except its cubic part with signs. */
+INLINE void sum_wave(const batch *w, sums *t, const point *q, int i, const vec omega[],
+                     const vec m[])
+{
+    const int columns = w->problem->columns;
+    const vec p = w->p[i];
+    vec A, B, c[COLUMNS], f[COLUMNS];
 
-            if (!w->problem->present[i])
-                continue;
-            t.centre -= omega[i] * p * s;
-            t.mass += omega[i] * mag(p);
-            t.rest += remainder_of(w, q, i, A, B);
-            t.cubes += mag(A) * q->cube_A[i] + mag(B) * q->cube_B[i];
-            t.along[i] += A;
-            for (int k = 0; k < columns; k++) {
-                c[k] = dot_k(w, i, q->lin[0][k], q->lin[1][k]);
-                f[k] = -0.5 * p * A * c[k];
-            }
-            add_moves(w, i, B, f);
-            for (int k = 0, kl = 0; k < columns; k++) {         /* (c.e) (f.e) */
-                t.square[kl++] += c[k] * f[k];
-                for (int l = k + 1; l < columns; l++)
-                    t.square[kl++] += c[k] * f[l] + c[l] * f[k];
-            }
-        }
-        /* what (2) leaves, and what the centre's steps missed */
-        for (int i = 0; i < 2; i++) {
-            const vec before = q[-1].mu[i], after = q[1].mu[i];
-            const vec left = 4.0 * q->err_beta * weights + 0x1p-50 * (mag(before) + mag(after));
-            if (j == ORIGIN || j == ORIGIN + 1) {
-                const vec steep = steepness(w, q, i) - before - after;
-                t.mass += mag(steep) * q->rad[i];
-                if (j == ORIGIN)
-                    t.rest += mag(steep) * q->rad[i];
-                for (int k = 0; k < columns && j > ORIGIN; k++)
-                    t.slope[k] += steep * q->lin[i][k];
-            }
-            if (j == ORIGIN || j == ORIGIN + 1)
-                t.rounding += left * q->rad[i];
-            else
-                t.left += left * q->rad[i];
-            t.rounding += pick(inside, mag(q->mu[i]) * w->residual[i], every(0.0));
-        }
-        if (j % BLOCK == 0 || j == end)
-            add_block((vec *)&total, (vec *)&t, sizeof t / sizeof(vec));
+    trig_coefficients(q, i, omega, m, &A, &B);
+    t->centre -= omega[i] * p * q->sine[i];
+    t->mass += omega[i] * mag(p);
+    t->rest += remainder_of(w, q, i, A, B);
+    t->cubes += mag(A) * q->cube_A[i] + mag(B) * q->cube_B[i];
+    t->along[i] += A;
+    for (int k = 0; k < columns; k++) {
+        c[k] = dot_k(w, i, q->lin[0][k], q->lin[1][k]);
+        f[k] = -0.5 * p * A * c[k];
     }
-    FOR_WAVES(w, i)
-        add_moves(w, i, total.along[i], total.slope);
+    add_moves(w, i, B, f);
+    for (int k = 0, kl = 0; k < columns; k++) {                 /* (c.e) (f.e) */
+        t->square[kl++] += c[k] * f[k];
+        for (int l = k + 1; l < columns; l++)
+            t->square[kl++] += c[k] * f[l] + c[l] * f[k];
+    }
+}
+
+/* Adds what (2) leaves at site j, and what the centre's step missed there. */
+INLINE void sum_left(const batch *w, sums *t, const point *q, int j, vec weights)
+{
+    const uint64_t site = (uint64_t)j;
+    const mask inside = TRUTH(w->since < site) & TRUTH(site < w->until);
+
+    for (int i = 0; i < 2; i++) {
+        const vec before = q[-1].mu[i], after = q[1].mu[i];
+        const vec left = 4.0 * q->err_beta * weights + 0x1p-50 * (mag(before) + mag(after));
+        if (j == ORIGIN || j == ORIGIN + 1) {
+            const vec steep = steepness(w, q, i) - before - after;
+            t->mass += mag(steep) * q->rad[i];
+            if (j == ORIGIN)
+                t->rest += mag(steep) * q->rad[i];
+            for (int k = 0; k < w->problem->columns && j > ORIGIN; k++)
+                t->slope[k] += steep * q->lin[i][k];
+            t->rounding += left * q->rad[i];
+        } else {
+            t->left += left * q->rad[i];
+        }
+        t->rounding += pick(inside, mag(q->mu[i]) * w->residual[i], every(0.0));
+    }
+}
+
+/* |n|^2 at both ends of the lanes that are active, which the tails begin with. */
+static vec ends_of(const batch *w, mask active)
+{
+    vec squares = every(0.0);
+
     for (int k = 0; k < LANES; k++)
         if (holds(&active, k)) {
             const point *const first = site_of(w, number(&w->from, k));
@@ -220,11 +218,41 @@ static void sum_up(batch *w, sums *result, mask active)
             for (int i = 0; i < 2; i++)
                 sum += at(&first->n[i], k) * at(&first->n[i], k) +
                        at(&last->n[i], k) * at(&last->n[i], k);
-            put_at(&tails, k, sum);
+            put_at(&squares, k, sum);
         }
-    total.centre -= w->l * tails;
-    total.mass += w->l * tails;
-    *result = total;
+    return squares;
+}
+
+/* Sums the constant, linear and quadratic part, and what is bounded by absolute values; `cubes` is
+   the cubic part if it is, too.  Outside of a lane's own sites n and mu are zero, and all else is
+   finite. */
+static void sum_up(batch *w, sums *total, mask active)
+{
+    const int begin = begin_of(w, active), end = end_of(w, active);
+    sums t;
+
+    memset(&t, 0, sizeof t);
+    memset(total, 0, sizeof *total);
+    for (int j = begin; j <= end; j++) {
+        const point *const q = site_of(w, j);
+        vec omega[SLOTS], m[SLOTS];
+
+        weights_along(w, q, omega, m);
+        const vec tiny = pick(within(w, j), every(TINY), every(0.0));
+        const vec weights = weights_of(w, omega, m) + tiny;
+        sum_links(&t, q, TRUTH((uint64_t)j < w->to), omega);
+        t.mass += weights * q->load;
+        FOR_WAVES(w, i)
+            sum_wave(w, &t, q, i, omega, m);
+        sum_left(w, &t, q, j, weights);
+        if (j % BLOCK == 0 || j == end)
+            add_block((vec *)total, (vec *)&t, sizeof t / sizeof(vec));
+    }
+    FOR_WAVES(w, i)
+        add_moves(w, i, total->along[i], total->slope);
+    const vec tails = w->l * ends_of(w, active);
+    total->centre -= tails;
+    total->mass += tails;
 }
 
 /* p sin of a wave at a site, as a sum of two doubles: off by 2^-59 |p|, for the sine, its phase
@@ -299,7 +327,7 @@ static void leave_exactly(batch *w, sums *total, mask active)
     add_block((vec *)total, (vec *)&t, sizeof t / sizeof(vec));
 }
 
-/* The cubic part of (4): cubic[m] at pair(k, l) is a coefficient of e_m e_k e_l, one of those that
+/* The cubic part of (4): cubic[n] at pair(k, l) is a coefficient of e_n e_k e_l, one of those that
    make it up. */
 static void sum_cubic(batch *w, mask active)
 {
@@ -310,10 +338,11 @@ static void sum_cubic(batch *w, mask active)
     for (int j = begin; j <= end; j++) {
         const point *q = site_of(w, j);
         const mask now = active & within(w, j);
-        vec form[SLOTS][PAIRS];
+        vec form[SLOTS][PAIRS], omega[SLOTS], m[SLOTS];
+        weights_along(w, q, omega, m);
         FOR_WAVES(w, i) {
             vec A, B;
-            trig_coefficients(w, q, i, now, &A, &B);
+            trig_coefficients(q, i, omega, m, &A, &B);
             const vec pA = w->p[i] * A, third = w->p[i] * B * (1.0 / 3.0);
             for (int k = 0, kl = 0; k < columns; k++) {
                 const vec c = dot_k(w, i, q->lin[0][k], q->lin[1][k]);
@@ -322,22 +351,22 @@ static void sum_cubic(batch *w, mask active)
                     const vec cc = half * c * dot_k(w, i, q->lin[0][l], q->lin[1][l]);
                     const vec quad = dot_k(w, i, q->quad[0][kl], q->quad[1][kl]);
                     form[i][kl] = -pA * quad - third * cc;
-                    for (int m = 2; m < columns; m++)
-                        if (w->problem->moves[i][m])
-                            block[m][kl] +=
-                                pick(now, w->part[i][m] * (B * quad - A * cc), every(0.0));
+                    for (int n = 2; n < columns; n++)
+                        if (w->problem->moves[i][n])
+                            block[n][kl] +=
+                                pick(now, w->part[i][n] * (B * quad - A * cc), every(0.0));
                 }
             }
         }
-        for (int m = 0; m < columns; m++) {                     /* (c.e) form[e, e] */
+        for (int n = 0; n < columns; n++) {                     /* (c.e) form[e, e] */
             vec c[SLOTS];
             FOR_WAVES(w, i)
-                c[i] = dot_k(w, i, q->lin[0][m], q->lin[1][m]);
+                c[i] = dot_k(w, i, q->lin[0][n], q->lin[1][n]);
             for (int kl = 0; kl < columns * (columns + 1) / 2; kl++) {
                 vec sum = every(0.0);
                 FOR_WAVES(w, i)
                     sum += c[i] * form[i][kl];
-                block[m][kl] += pick(now, sum, every(0.0));
+                block[n][kl] += pick(now, sum, every(0.0));
             }
         }
         if (j % BLOCK == 0 || j == end)
@@ -484,12 +513,14 @@ static void bound_shares(batch *w, mask active)
     for (int j = begin; j <= end; j++) {
         const point *q = site_of(w, j);
         const mask now = active & within(w, j);
+        vec omega[SLOTS], m[SLOTS];
+        weights_along(w, q, omega, m);
         FOR_WAVES(w, i) {
             const mask some = now & TRUTH(q->rad[i] > 0.0);
             vec A, B;
-            trig_coefficients(w, q, i, now, &A, &B);
+            trig_coefficients(q, i, omega, m, &A, &B);
             const vec part = 4.0 * remainder_of(w, q, i, A, B) / q->rad[i];
-            for (int k = 0; k < columns && w->problem->present[i]; k++) {
+            for (int k = 0; k < columns; k++) {
                 const vec more = part * mag(dot_k(w, i, q->lin[0][k], q->lin[1][k]));
                 w->share[k] += pick(some, more, every(0.0));
             }

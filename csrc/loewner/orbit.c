@@ -44,7 +44,7 @@ static void bound_displacement(const batch *w, point *q)
     for (int i = 0; i < waves_of(w); i++) {
         q->nonlin_bound[i] = (q->quad_bound[i] + rem_along(w, q, i)) * WIDEN;
         q->rad[i] = (q->lin_bound[i] + q->nonlin_bound[i]) * WIDEN;
-        if (w->problem->present[i])
+        if (i >= FIRST)
             q->rad_max = larger(q->rad_max, w->weight[i] * q->rad[i]);
     }
 }
@@ -100,48 +100,32 @@ static vec bending_err(const batch *w, const point *q, int wave)
     return grain_of(w) * (mag(w->p[wave]) * a * a + 2.0 * w->h[wave] * a);
 }
 
-/* next = the point after q, seen from o before it; time may run either way.  The factor begins with
-   d = beta, and f then holds r(o), which is zero or the rounding of x*.  Where the factor cannot go
-   on, or next would be of no use, it is not reached.
-
-   The centre is a whole number of 2^-64 turns, and so is what the waves add: only the forces of
-   the waves are rounded (residual: set_lane).  The remainder obeys r' = beta r - r(o) + e, where e
-   is what wave_remainder bounds along each wave, and in each coordinate the residual and the
-   roundings of lin and quad, 2 u of them, propagate_err and bending_err.  Writing r' = d r + f and,
-   from the last step, r(o) = (r - f(o))/d(o), gives f = f(o)/d(o) + e + (beta - 1/d(o) - d) r.
-
-   rem, force and d are those of R r, R f and R d R'/|k|^2, R as in set_axes, for which the same
-   holds with R e, and with R beta R'/|k|^2 for beta.  The last bracket is rounding.  Of what is off
-   in an entry of beta, u (3 + (7 + N) S), an entry has twice as much there, as (|k0| + |k1|)^2 is 2
-   |k|^2 at most; along_axes loses 4 u of sums below 2 (2 + S), and the difference u of that: in
-   all u (26 + (24 + 2 N) S), where 2 err_beta are (28 + 2 N) u (1 + S). The inverse, whose
-   determinant is off by 1 + condition units, is off by 4 + condition units of its trace with the
-   difference, where `rounded` has 8 (1 + condition).
-
-   All of a step is one function, however long, as formal/roundings.py reads its loops in turn. */
-static void step(const batch *w, point *next, point *q, const point *o, int is_first)
+/* inverse = 1/d, and a bound of its roundings: the determinant is off by 1 + condition units, so the
+   inverse is off by 4 + condition units of its trace, where `rounded` has 8 (1 + condition).
+   Returns where the inverse is of use. */
+INLINE mask invert_factor(const vec d[3], vec inverse[3], vec *rounded)
 {
-    static const double USELESS = 0x1p10;
-    vec inverse[3] = { every(0.0), every(0.0), every(0.0) }, rounded = every(0.0);
-    vec wave_err[SLOTS], lost[SLOTS], err[2], turned[3];
+    const vec det = d[0] * d[2] - d[1] * d[1], one = 1.0 / det;
+    const vec condition = (mag(d[0] * d[2]) + d[1] * d[1]) * one;
+
+    inverse[0] = d[2] * one;
+    inverse[1] = -d[1] * one;
+    inverse[2] = d[0] * one;
+    *rounded = 0x1p-50 * (inverse[0] + inverse[2]) * (1.0 + condition);
+    return TRUTH(d[0] > 0.0) & TRUTH(det > TINY) & TRUTH(condition < 0x1p20);
+}
+
+/* q->force, a bound of R f.  f begins as r(o), which is zero or the rounding of x*.  e is what
+   wave_remainder bounds along each wave, and in each coordinate the residual and the roundings of
+   lin and quad: 2 u of them, propagate_err and bending_err. */
+INLINE void set_force(const batch *w, const point *next, point *q, const point *o,
+                      const vec inverse[3], vec rounded, int is_first)
+{
+    vec wave_err[SLOTS], lost[SLOTS], err[2];
 
     FOR_WAVES(w, j) {
         wave_err[j] = wave_remainder(w, q, j);
         lost[j] = propagate_err(w, q, j) + bending_err(w, q, j);
-    }
-    for (int i = 0; i < 2; i++)
-        next->x[i] = q->x[i] + q->x[i] - o->x[i] + q->push[i];
-    next->reached = ~none();
-    propagate(w, next, q, o);
-    measure(w, next);
-    if (!is_first) {
-        const vec *d = o->d, det = d[0] * d[2] - d[1] * d[1];
-        const vec one = 1.0 / det, condition = (mag(d[0] * d[2]) + d[1] * d[1]) * one;
-        next->reached &= TRUTH(d[0] > 0.0) & TRUTH(det > TINY) & TRUTH(condition < 0x1p20);
-        inverse[0] = d[2] * one;
-        inverse[1] = -d[1] * one;
-        inverse[2] = d[0] * one;
-        rounded = 0x1p-50 * (inverse[0] + inverse[2]) * (1.0 + condition);
     }
     for (int i = 0; i < 2; i++)
         err[i] = sum_abs_k(w, i, lost) + w->residual[i] +
@@ -154,12 +138,44 @@ static void step(const batch *w, point *next, point *q, const point *o, int is_f
         e += (2.0 * q->err_beta + rounded) * (q->rem[0] + q->rem[1]);
         q->force[i] = e * WIDEN;
     }
-    along_axes(w, turned, q->beta);
-    for (int j = 0; j < 3; j++)
-        q->d[j] = turned[j] - inverse[j];
+}
+
+/* next->rem, a bound of R r, by the factor and the force of q. */
+INLINE void set_remainder(point *next, const point *q)
+{
     for (int i = 0; i < 2; i++)
         next->rem[i] =
             (mag(q->d[i]) * q->rem[0] + mag(q->d[i + 1]) * q->rem[1] + q->force[i]) * WIDEN;
+}
+
+/* next = the point after q, seen from o before it; time may run either way.  The factor begins with
+   d = beta.  Where the factor cannot go on, or next would be of no use, next is not reached.
+
+   The centre is a whole number of 2^-64 turns, and so is what the waves add: only the forces of
+   the waves are rounded (residual: set_lane).  The remainder obeys r' = beta r - r(o) + e.  Writing
+   r' = d r + f and, from the last step, r(o) = (r - f(o))/d(o), gives
+   f = f(o)/d(o) + e + (beta - 1/d(o) - d) r.
+
+   rem, force and d are those of R r, R f and R d R'/|k|^2, R as in set_axes, for which the same
+   holds with R e, and with R beta R'/|k|^2 for beta.  The last bracket is rounding.  Of what is off
+   in an entry of beta, u (3 + (7 + N) S), an entry has twice as much there, as (|k0| + |k1|)^2 is 2
+   |k|^2 at most; along_axes loses 4 u of sums below 2 (2 + S), and the difference u of that: in
+   all u (26 + (24 + 2 N) S), where 2 err_beta are (28 + 2 N) u (1 + S). */
+static void step(const batch *w, point *next, point *q, const point *o, int is_first)
+{
+    static const double USELESS = 0x1p10;
+    vec inverse[3] = { every(0.0), every(0.0), every(0.0) }, rounded = every(0.0), turned[3];
+
+    for (int i = 0; i < 2; i++)
+        next->x[i] = q->x[i] + q->x[i] - o->x[i] + q->push[i];
+    propagate(w, next, q, o);
+    measure(w, next);
+    next->reached = is_first ? ~none() : invert_factor(o->d, inverse, &rounded);
+    set_force(w, next, q, o, inverse, rounded, is_first);
+    along_axes(w, turned, q->beta);
+    for (int j = 0; j < 3; j++)
+        q->d[j] = turned[j] - inverse[j];
+    set_remainder(next, q);
     bound_displacement(w, next);
     next->reached &= TRUTH(next->rad_max <= USELESS);
     if (any(~next->reached))

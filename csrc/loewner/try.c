@@ -98,10 +98,9 @@ static double reach_of(const batch *w, const point *q, int column, int k)
 {
     double most = 0.0;
 
-    for (int i = 0; i < waves_of(w); i++) {
+    FOR_WAVES(w, i) {
         const vec along = dot_k(w, i, q->lin[0][column], q->lin[1][column]);
-        if (w->problem->present[i])
-            most = fmax(most, at(&w->weight[i], k) * fabs(at(&along, k)));
+        most = fmax(most, at(&w->weight[i], k) * fabs(at(&along, k)));
     }
     return most;
 }

@@ -12,22 +12,19 @@ static const double PLAINLY = 0.75; /* of l: blocks must fall below it while the
 /* The recursion from the left, way 1, or from the right, -1, in the lanes that are active: from
    their sites `begin` to `end`, or to where it falls below l. */
 typedef struct {
-    int way, site, last;
+    int site, last;
     mask begin, end, going, fell, fall; /* fall: where it fell, in the lanes that fell */
     vec d[3];
 } recursion;
 
 INLINE recursion recursion_of(const batch *w, int way, mask active, mask begin, mask end)
 {
-    return (recursion){ way,
-                        extreme(active, begin, -way),
-                        extreme(active, end, way),
-                        begin,
-                        end,
-                        active,
-                        none(),
-                        none(),
-                        { 1.0 / w->l, every(0.0), 1.0 / w->l } };
+    return (recursion){ .site = extreme(active, begin, -way),
+                        .last = extreme(active, end, way),
+                        .begin = begin,
+                        .end = end,
+                        .going = active,
+                        .d = { 1.0 / w->l, every(0.0), 1.0 / w->l } };
 }
 
 /* One site further.  0: there is none. */
@@ -54,97 +51,113 @@ INLINE int advance(batch *w, recursion *r, int way)
     return 1;
 }
 
-/* Chooses from, to and n on the orbits so that (1) is negative at the centre, in the lanes that are
-   active; returns where that can be.  (Long, as all its parts work on the same dozen of masks.)
-
-   Between the places where the recursions from both ends fall all blocks are positive.  There n is,
-   at the site of the least beta, the eigenvector of the quadratic form that is left there when all
-   others are eliminated; outwards n = n / d.  Where the recursions fall before they meet, either
-   place will do by itself, and the plainer one is taken: the other may be next to nothing, however
-   small the prism.  The sites that are summed over, since..until, hold 0 and 1, with n = 0 where
-   need be. */
-static mask witness(batch *w, mask active)
+/* Follows a recursion as far as it goes. */
+INLINE recursion followed(batch *w, int way, mask active, mask begin, mask end)
 {
-    vec form[3] = { every(0.0), every(0.0), every(0.0) }, n[2] = { every(0.0), every(0.0) };
-    vec value = every(HUGE_VAL), top[2];
-    mask first = none(), last = none(), fall, from, to, since, until, site, alone, other;
-    recursion left, right;
+    recursion r = recursion_of(w, way, active, begin, end);
+
+    while (advance(w, &r, way))
+        continue;
+    return r;
+}
+
+/* Chooses from and to, between which (1) is negative at the centre, in the lanes that are active.
+   Returns where that can be.  low and high: the sites where the recursions from the right and from
+   the left fall; all blocks between them are positive.
+
+   Where the recursions fall before they meet, either place will do without the other.  The one with
+   the smaller eigenvalue is taken: the other may be next to nothing, however small the prism.
+   since and until, the ends of what is summed, enclose the sites 0 and 1. */
+static mask choose_ends(batch *w, mask active, mask *low, mask *high)
+{
+    mask first = none(), last = none();
 
     for (int k = 0; k < LANES; k++) {
         put_number(&first, k, w->first[k]);
         put_number(&last, k, w->last[k]);
     }
-    left = recursion_of(w, 1, active, first, last);
-    right = recursion_of(w, -1, active, last, first);
+    recursion left = recursion_of(w, 1, active, first, last);
+    recursion right = recursion_of(w, -1, active, last, first);
     while (advance(w, &left, 1) | advance(w, &right, -1))       /* side by side: that is faster */
         continue;
     active = left.fell;
-    if (!any(active))
-        return active;
-    fall = left.fall;
-    from = right.fall;
-    to = last;
-    alone = active & (~right.fell | TRUTH(from > fall));          /* two places apart */
-    other =
-        alone & right.fell & TRUTH(sym2_least_eigenvalue(right.d) < sym2_least_eigenvalue(left.d));
-    alone &= ~other;
-    if (any(alone)) {                   /* the left one */
-        to = choose(alone, fall, to);
-        right = recursion_of(w, -1, alone, to, first);
-        while (advance(w, &right, -1))
-            continue;
-        from = choose(alone, choose(right.fell, right.fall, fall), from); /* else by a rounding */
+    *high = left.fall;
+    *low = right.fall;
+    const mask apart = active & (~right.fell | TRUTH(right.fall > left.fall));
+    const mask at_right = apart & right.fell &
+                          TRUTH(sym2_least_eigenvalue(right.d) < sym2_least_eigenvalue(left.d));
+    const mask at_left = apart & ~at_right;
+    if (any(at_left)) {
+        last = choose(at_left, *high, last);
+        right = followed(w, -1, at_left, last, first);
+        *low = choose(at_left, choose(right.fell, right.fall, *high), *low); /* else by a rounding */
     }
-    if (any(other)) {                   /* the right one */
-        first = choose(other, from, first);
-        left = recursion_of(w, 1, other, first, last);
-        while (advance(w, &left, 1))
-            continue;
-        fall = choose(other, choose(left.fell, left.fall, from), fall);
+    if (any(at_right)) {
+        first = choose(at_right, *low, first);
+        left = followed(w, 1, at_right, first, last);
+        *high = choose(at_right, choose(left.fell, left.fall, *low), *high);
     }
-    since = choose(TRUTH(first < ORIGIN - none()), first, ORIGIN - none());
-    until = choose(TRUTH(to > ORIGIN), to, ORIGIN + 1 - none());
+    w->from = choose(active, first, w->from);
+    w->to = choose(active, last, w->to);
+    w->since = choose(active, choose(TRUTH(first < ORIGIN - none()), first, ORIGIN - none()),
+                      w->since);
+    w->until = choose(active, choose(TRUTH(last > ORIGIN), last, ORIGIN + 1 - none()), w->until);
+    return active;
+}
 
-    site = from;
-    for (int j = extreme(active, from, -1); j <= extreme(active, fall, 1); j++) {
+/* The site of the least beta between low and high.  n becomes the eigenvector of the quadratic form
+   that is left there when all other sites are eliminated. */
+static mask site_of_least(const batch *w, mask active, mask low, mask high, vec n[2])
+{
+    vec form[3] = { every(0.0), every(0.0), every(0.0) }, value = every(HUGE_VAL);
+    mask site = low;
+
+    for (int j = extreme(active, low, -1); j <= extreme(active, high, 1); j++) {
         const uint64_t here = (uint64_t)j;
         const point *const q = site_of(w, j);
-        const mask better = TRUTH(from <= here) & TRUTH(here <= fall) & TRUTH(q->least < value);
+        const mask better = TRUTH(low <= here) & TRUTH(here <= high) & TRUTH(q->least < value);
         value = pick(better, q->least, value);
         site = choose(better, here - none(), site);
         for (int k = 0; k < 3; k++)
             form[k] = pick(better, q->left[k] + q->right[k] - q->beta[k], form[k]);
     }
-    least_eigenvector(form, top);
-    w->from = choose(active, first, w->from);
-    w->to = choose(active, to, w->to);
-    w->since = choose(active, since, w->since);
-    w->until = choose(active, until, w->until);
-    const int start = extreme(active, w->since, -1), end = extreme(active, w->until, 1);
-    for (int j = extreme(active, site, 1); j >= start; j--) {
+    least_eigenvector(form, n);
+    return site;
+}
+
+/* Sets n from that site to `to`, way 1, or to `from`, -1: n = n / d outwards, and zero beyond. */
+static void spread(batch *w, int way, mask active, mask site, const vec top[2])
+{
+    const int last = extreme(active, way > 0 ? w->until : w->since, way);
+    vec n[2] = { every(0.0), every(0.0) };
+
+    for (int j = extreme(active, site, -way); j != last + way; j += way) {
         const uint64_t here = (uint64_t)j;
         point *const q = site_of(w, j);
-        const mask in = TRUTH(here <= site) & TRUTH(here >= w->from);
+        const mask start = TRUTH(here == site);
+        const mask beyond = way > 0 ? TRUTH(here > site) : TRUTH(here < site);
+        const mask own = way > 0 ? TRUTH(here <= w->to) : TRUTH(here >= w->from);
         vec next[2];
-        sym2_solve(next, q->left, n);
+        sym2_solve(next, way > 0 ? q->right : q->left, n);
         for (int i = 0; i < 2; i++) {
-            n[i] = pick(in, pick(TRUTH(here == site), top[i], next[i]), every(0.0));
-            q->n[i] = pick(active, n[i], q->n[i]);
+            n[i] = pick(start, top[i], pick(beyond & own, next[i], every(0.0)));
+            q->n[i] = pick(active & (start | beyond), n[i], q->n[i]);
         }
     }
-    for (int i = 0; i < 2; i++)
-        n[i] = every(0.0);
-    for (int j = extreme(active, site, -1); j <= end; j++) {
-        const uint64_t here = (uint64_t)j;
-        point *const q = site_of(w, j);
-        const mask in = active & TRUTH(here > site);
-        vec next[2];
-        sym2_solve(next, q->right, n);
-        for (int i = 0; i < 2; i++) {
-            n[i] = pick(TRUTH(here == site), top[i],
-                        pick(in & TRUTH(here <= w->to), next[i], every(0.0)));
-            q->n[i] = pick(in, n[i], q->n[i]);
-        }
-    }
+}
+
+/* Chooses from, to and n on the orbits so that (1) is negative at the centre, in the lanes that are
+   active; returns where that can be.  n is zero where since..until reaches beyond from..to. */
+static mask witness(batch *w, mask active)
+{
+    mask low, high;
+    vec top[2];
+
+    active = choose_ends(w, active, &low, &high);
+    if (!any(active))
+        return active;
+    const mask site = site_of_least(w, active, low, high, top);
+    spread(w, -1, active, site, top);
+    spread(w, 1, active, site, top);
     return active;
 }
