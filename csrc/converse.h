@@ -29,19 +29,23 @@ enum {
 
 enum { CV_BY_MAXBLAM, CV_BY_MINBLAM, CV_BY_TRACE };   /* index of ll_used[] */
 
+/* The constants of the theorem: T, Tr_-, Tr_+, B, lambda_-min, lambda_-max (thesis, section 3.3.4).
+   The method Loewner has B alone. */
+enum { CV_T, CV_TRACE_MIN, CV_TRACE_MAX, CV_B, CV_LAM_MIN, CV_LAM_MAX, CV_N_CONSTANTS };
+
 /* The statistics of the report; names from the thesis, follow.inc. */
 typedef struct {
     long quick_tries, tries, Rtries;
-    long cuts, proved, symmetric, undecided;          /* nodes of the tree by kind */
-    long HermSuccess, LLSuccess;                      /* proved by the trace, by the eigenvalue */
-    long ll_used[3];         /* which criterion gave each bound of the tries */
-    long reasons[6];         /* tries that ended without a proof, by reason */
-    long most_cuts;          /* depth of the deepest proved prism */
-    long max_steps;          /* longest orbit of the double-precision tries */
-    long max_NTsteps;        /* longest orbit of the successful rigorous tries */
+    long cuts, proved, symmetric, undecided; /* nodes of the tree by kind */
+    long HermSuccess, LLSuccess; /* proved by the trace, by the eigenvalue */
+    long ll_used[3]; /* which criterion gave each bound of the tries */
+    long reasons[6]; /* tries that ended without a proof, by reason */
+    long most_cuts; /* depth of the deepest proved prism */
+    long max_steps; /* longest orbit of the double-precision tries */
+    long max_NTsteps; /* longest orbit of the successful rigorous tries */
 } cv_counts;
 
-enum { CV_THESIS, CV_LOEWNER };                       /* methods */
+enum { CV_THESIS, CV_LOEWNER }; /* methods */
 
 /* A prism of the tree: along axis k it is slice index[k] of the 2^cuts[k] equal slices of the
    root.  Axes: 0, 1 the angles v0, v1, less what the parameters shift them; 2, 3, 4 the parameters
@@ -49,15 +53,18 @@ enum { CV_THESIS, CV_LOEWNER };                       /* methods */
 typedef struct {
     unsigned long long index[5];
     int cuts[5];
-    int hint;                /* learnt from the prism it was cut from; 0 for the root */
+    int hint; /* learnt from the prism it was cut from; 0 for the root */
 } cv_cell;
+
+/* The sharper method tries no prism that was cut more often along one axis. */
+enum { CV_MAX_CUTS = 46 };
 
 typedef struct cv_search cv_search;
 
 /* A request to stop.  It may be made by another thread, while a call that was given it is under
    way and will then return soon.  Calls that may be given NULL cannot be stopped. */
 typedef struct cv_stop cv_stop;
-cv_stop *cv_stop_new(void);                                /* NULL: no memory */
+cv_stop *cv_stop_new(void); /* NULL: no memory */
 void cv_stop_free(cv_stop *stop);
 void cv_stop_set(cv_stop *stop);
 int cv_stop_get(const cv_stop *stop);
@@ -66,7 +73,7 @@ int cv_stop_get(const cv_stop *stop);
    in [-1, 1]: p = amplitude + t_1 part[0] + t_2 part[1] + t_3 part[2]. */
 typedef struct {
     int k[2];
-    const char *phase;       /* in units of pi; it may be off by 10^-40 */
+    const char *phase; /* in units of pi; it may be off by 10^-40 */
     const char *amplitude;
     const char *part[3];
 } cv_wave;
@@ -75,12 +82,12 @@ typedef struct {
    frame[2] v0 + frame[3] v1), whose determinant is not 0.  The region may move with the parameters:
    v_i lies within half[i] of angle[i] + t_1 shift[i][0] + t_2 shift[i][1] + t_3 shift[i][2]. */
 typedef struct {
-    int n_waves, n_parameters;          /* 1 to 16, and 0 to 3 */
+    int n_waves, n_parameters; /* 1 to 16, and 0 to 3 */
     const cv_wave *waves;
-    const char *angle[2], *half[2];     /* centre and half-width of v0, v1 in units of pi */
-    const char *shift[2][3];            /* likewise; NULL: none */
+    const char *angle[2], *half[2]; /* centre and half-width of v0, v1 in units of pi */
+    const char *shift[2][3]; /* likewise; NULL: none */
     int frame[4];
-    int odd;                            /* is V odd about some point?  Else nothing is at once */
+    int odd; /* is V odd about some point?  Else nothing is at once */
 } cv_problem;
 
 /* A new search; it covers an enclosure of the problem's region.  The thesis's waves are (1, 0),
@@ -116,16 +123,15 @@ int cv_step(cv_search *s, long max_leaves, double max_points, double max_seconds
 /* The prisms yet to be decided, the next one first: how many, and, unless cells is NULL, which. */
 int cv_pending(const cv_search *s, cv_cell *cells);
 
-const char *cv_tree(const cv_search *s, size_t *length);   /* nodes so far, in preorder */
+const char *cv_tree(const cv_search *s, size_t *length); /* nodes so far, in preorder */
 const cv_counts *cv_get_counts(const cv_search *s);
-const int *cv_steps(const cv_search *s);                   /* of each node: its orbit's length */
+const int *cv_steps(const cv_search *s); /* of each node: its orbit's length */
 /* Mather's criterion, for the method Loewner and odd V.  1: B > 10/3 on the whole patch; 2: there
    is one parameter, and B > 10/3 at its upper end t_1 = 1; 0: neither.  With 1 or 2 the theorem
    also holds for every multiple s >= 1 of these amplitudes. */
 int cv_at_once(const cv_search *s);
-/* Numbers of the search as exact decimals; the caller frees.  which: 0, 1 the starting point;
-   2 T, 3 Tr_-, 4 Tr_+, 5 B, 6 lambda_-min, 7 lambda_-max (thesis, section 3.3.4; 5 alone with the
-   method Loewner); 8 centre and 9 half-width of v0, 10 and 11 of v1, in radians.  Before
-   cv_prepare only 0 and 1 are known.  NULL: no memory. */
+/* A coordinate, 0 or 1, of the starting point, and after cv_prepare a constant of the theorem,
+   CV_T, ...: as exact decimals, which the caller frees.  NULL: no memory. */
+char *cv_xstar(const cv_search *s, int coordinate);
 char *cv_constant(const cv_search *s, int which);
 void cv_free(char *text);

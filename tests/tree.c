@@ -29,7 +29,7 @@ int main(int argc, char **argv)
         return 1;
     while (cv_step(s, 1L << 40, 1e300, 1e9, NULL) == CV_RUNNING)
         continue;
-    fprintf(stderr, "%d prisms at a time\n", loewner_lanes(s->sharp));
+    fprintf(stderr, "%d prisms at a time\n", s->method->lanes(s->work));
     const char *const tree = cv_tree(s, &length);
     fwrite(tree, 1, length, stdout);
     cv_search_free(s);

@@ -39,8 +39,9 @@ except ImportError as error:            # not built, or for another Python, or w
 
 METHODS = {"thesis": lib.CV_THESIS, "loewner": lib.CV_LOEWNER}
 CONSTANTS = {                       # by method, the numbers of the theorem that are recorded
-    "thesis": {"T": 2, "Tr-": 3, "Tr+": 4, "B": 5, "lambda-min": 6, "lambda-max": 7},
-    "loewner": {"B": 5},
+    "thesis": {"T": lib.CV_T, "Tr-": lib.CV_TRACE_MIN, "Tr+": lib.CV_TRACE_MAX, "B": lib.CV_B,
+               "lambda-min": lib.CV_LAM_MIN, "lambda-max": lib.CV_LAM_MAX},
+    "loewner": {"B": lib.CV_B},
 }
 MESSAGES = {
     lib.CV_ENUMBER: "a number is malformed or out of range",
@@ -208,8 +209,8 @@ class Search:
         if code == lib.CV_EARGUMENT:
             raise WrongTree()
         check(code)
-        return Begun((self.constant(0), self.constant(1)),
-                     {name: self.constant(which) for name, which
+        return Begun(self.xstar(),
+                     {name: _decimal(lib.cv_constant(self.handle, which)) for name, which
                       in CONSTANTS[self.task.settings.method].items()},
                      bool(lib.cv_at_once(self.handle)), *self._state())
 
@@ -233,12 +234,16 @@ class Search:
                 Counts(**{name: value if isinstance(value, int) else tuple(value)
                           for name, value in values.items()}))
 
-    def constant(self, which):
-        text = lib.cv_constant(self.handle, which)
-        if not text:
-            raise MemoryError("there is not enough memory")
-        text = ffi.gc(text, lib.cv_free)
-        return str(Decimal(ffi.string(text).decode("ascii")))
+    def xstar(self):
+        return tuple(_decimal(lib.cv_xstar(self.handle, i)) for i in range(2))
+
+
+def _decimal(text):
+    """A number that the core hands over."""
+    if not text:
+        raise MemoryError("there is not enough memory")
+    text = ffi.gc(text, lib.cv_free)
+    return str(Decimal(ffi.string(text).decode("ascii")))
 
 
 _mine = threading.local()               # each thread's last search: making one takes time
@@ -273,7 +278,7 @@ class Stop:
 def chosen_start(task):
     """The x* that a search would choose."""
     search = Search(task)
-    return search.constant(0), search.constant(1)
+    return search.xstar()
 
 
 def begin(task, tree, stop):

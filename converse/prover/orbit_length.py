@@ -14,7 +14,7 @@ from typing import List, Sequence, Tuple
 from . import native
 from .settings import Settings
 
-CUTS = 46                               # of the thinnest prisms: MAX_CUTS of csrc/loewner/problem.c
+CUTS = native.lib.CV_MAX_CUTS           # of the thinnest prisms
 # Prisms are tried at each 2^-6 of the region, and then at each 2^-9, 2^-12, ... around those that
 # took the longest orbits: around three, as the longest one need not be near the longest of all.
 FIRST, FINER, AROUND = 6, 3, 3

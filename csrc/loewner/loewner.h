@@ -15,19 +15,13 @@ enum { SLOTS = MOST_WAVES + 2 };
 enum { MAX_POINTS = 1 << 15 };
 
 /* For a problem with its angles in radians, too, and x* chosen.  longest: the most points of an
-   orbit, at most MAX_POINTS.  with_bounds: those over the torus, without which nothing can be
-   proved.  NULL: no memory. */
-loewner *loewner_new(const patch *problem, int longest, int with_bounds);
+   orbit, at most MAX_POINTS.  NULL: no memory. */
+loewner *loewner_new(const patch *problem, int longest);
 void loewner_free(loewner *w);
 
-/* How many cells are best tried at once, and at most: MOST_LANES or fewer. */
-int loewner_lanes(const loewner *w);
-
-/* method.h: try.  For an axis of -1 the cell is too fine for doubles already.  outcome.hint: fewer
-   points of the orbit than that will hardly do.  cell->hint decides at which lengths the orbit is
-   tried, not whether a try that succeeds is right.  Reason CV_REASON_ARITHMETIC: it is the doubles
-   that failed.  CV_OK, or CV_ENOMEM: nothing is known of the cells. */
-int loewner_try(loewner *w, int n, const cv_cell *const cells[], outcome *const out[]);
+/* Bounds B over the torus, for all parameters.  Before this call B is infinite, and no prism can be
+   proved. */
+void loewner_bound_torus(loewner *w);
 
 /* Is the least eigenvalue of beta below 2/3 at x, for all parameters or, at_end, where they are all
    1?  Then, if V is odd, no multiple s >= 1 of these amplitudes allows a torus. */

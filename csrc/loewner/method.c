@@ -1,6 +1,6 @@
 /* method.c - the sharper method as a search sees it. */
-#include "loewner.h"
 #include "model/torus.h"
+#include "problem.h"
 #include "start.h"
 
 /* The potential in doubles. */
@@ -44,15 +44,16 @@ static int find_at_once(const loewner *w, const patch *p)
 }
 
 static int loewner_prepare(void **work, const patch *p, const precision *how,
-                           apm_t constants[N_CONSTANTS], int *at_once)
+                           apm_t constants[CV_N_CONSTANTS], int *at_once)
 {
-    loewner *const w = *work = loewner_new(p, how->longest > 0 ? how->longest : MAX_POINTS, 1);
+    loewner *const w = *work = loewner_new(p, how->longest > 0 ? how->longest : MAX_POINTS);
 
     if (w == NULL)
         return CV_ENOMEM;
-    if (apm_set_d(constants[C_B], loewner_largest(w)) != APM_OK)
+    loewner_bound_torus(w);
+    if (apm_set_d(constants[CV_B], loewner_largest(w)) != APM_OK)
         return CV_EARITHMETIC;
-    apm_round(constants[C_B], constants[C_B], TORUS_PLACES, APM_UP);
+    apm_round(constants[CV_B], constants[CV_B], TORUS_PLACES, APM_UP);
     *at_once = find_at_once(w, p);
     return CV_OK;
 }
@@ -65,15 +66,13 @@ static void free_loewner(void *work, int numbers_lost)
 }
 
 static int loewner_axes(const patch *p) { return 2 + p->n_parameters; }
-static int lanes_of(const void *work) { return loewner_lanes(work); }
+static int loewner_lanes(const void *work) { return ((const loewner *)work)->engine->lanes; }
 
-static int try_cells(void *work, int n, const cv_cell *const cells[], outcome *const out[])
+static int loewner_try(void *work, int n, const cv_cell *const cells[], outcome *const out[])
 {
-    const int status = loewner_try(work, n, cells, out);
+    const loewner *const w = work;
 
-    for (int k = 0; k < n; k++)
-        out[k]->tries = 1;
-    return status;
+    return w->engine->try(w->work, w, n, cells, out);
 }
 
 const method method_loewner = {
@@ -84,6 +83,6 @@ const method method_loewner = {
     .prepare = loewner_prepare,
     .free = free_loewner,
     .axes = loewner_axes,
-    .lanes = lanes_of,
-    .try = try_cells,
+    .lanes = loewner_lanes,
+    .try = loewner_try,
 };

@@ -100,8 +100,8 @@ static vec bending_err(const batch *w, const point *q, int wave)
     return grain_of(w) * (mag(w->p[wave]) * a * a + 2.0 * w->h[wave] * a);
 }
 
-/* inverse = 1/d, and a bound of its roundings: the determinant is off by 1 + condition units, so the
-   inverse is off by 4 + condition units of its trace, where `rounded` has 8 (1 + condition).
+/* inverse = 1/d, and a bound of its roundings: the determinant is off by 1 + condition units, so
+   the inverse is off by 4 + condition units of its trace, where `rounded` has 8 (1 + condition).
    Returns where the inverse is of use. */
 INLINE mask invert_factor(const vec d[3], vec inverse[3], vec *rounded)
 {

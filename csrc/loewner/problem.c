@@ -10,7 +10,6 @@
 #include "problem.h"
 #include "model/torus.h"
 
-enum { MAX_CUTS = 46 };                 /* cuts along one axis: see times_middle */
 enum { DIGITS = 60, BITS = 80, ORDER = 24 };    /* 10^24 < 2^80: see times_middle */
 static const double MOST_SIZE = 0x1p60; /* of amplitudes: see wave_at */
 
@@ -41,7 +40,7 @@ static double cell_largest(const loewner *w, const double low[3], const double h
 }
 
 /* x times the place of a cell's middle along an axis, (2 index + 1) 2^-cuts - 1, less a number in
-   [0, 1).  |x| < 2^BITS, so nothing overflows. */
+   [0, 1).  |x| < 2^BITS and cuts <= CV_MAX_CUTS, so the product has 126 bits at most. */
 static int128 times_middle(int128 x, const cv_cell *cell, int axis)
 {
     const int64_t cells = INT64_C(1) << cell->cuts[axis];
@@ -115,7 +114,7 @@ int loewner_prism(const loewner *w, const cv_cell *cell, loewner_cell *c)
     if (!w->usable)
         return 0;
     for (int k = 0; k < COLUMNS; k++) {
-        if (cell->cuts[k] > MAX_CUTS)
+        if (cell->cuts[k] > CV_MAX_CUTS)
             return 0;
         part[k] = ldexp(1.0, -cell->cuts[k]);
     }
@@ -139,7 +138,7 @@ int cut_helps(const loewner *w, const cv_cell *cell, int axis)
         wide = wide || ldexp(fabs(w->part[i][axis - 2]), 2 - cell->cuts[axis]) > w->err_amp;
     for (int i = 0; i < 2 && axis >= 2; i++)
         wide = wide || ldexp(fabs(w->shift[i][axis - 2]), 2 - cell->cuts[axis]) > w->err_v[i];
-    return wide && cell->cuts[axis] < MAX_CUTS;
+    return wide && cell->cuts[axis] < CV_MAX_CUTS;
 }
 
 /* ---- the problem */
@@ -264,50 +263,58 @@ static void set_angles(loewner *w, const patch *problem, const apm_t scale)
     w->seen[0][0] = w->seen[1][1] = 1.0;
 }
 
-/* One more wave, if it is there at all.  Amplitude and parts are off by 8 u of themselves (near),
-   by two more if they are straightened, and their sum at a corner by 3 u: 13 u of their sizes,
-   where err_amplitude has 32. */
-static void add_wave(loewner *w, const patch *problem, int given)
+/* The numbers of one wave: amplitude, parts, phase and k.  Amplitude and parts are off by 8 u of
+   themselves (near), by two more if they are straightened, and their sum at a corner by 3 u: 13 u
+   of their sizes, where err_amplitude has 32.  Returns the sum of the sizes. */
+static double read_wave(loewner *w, const patch *problem, int given, int i)
 {
-    const int i = w->waves, *const k = problem->k[given];
     double size;
 
+    w->given[i] = given;
     w->amplitude[i] = near(problem->amplitude[given]);
     size = fabs(w->amplitude[i]);
     for (int m = 0; m < w->n_parameters; m++) {
         w->part[i][m] = near(problem->part[given][m]);
         size += fabs(w->part[i][m]);
     }
-    w->phase[i] = near(problem->phase[given]);
     w->err_amplitude[i] = 0x1p-48 * size;
-    w->given[i] = given;
-    w->present[i] = size != 0.0;
+    w->phase[i] = near(problem->phase[given]);
     for (int j = 0; j < 2; j++)
-        w->k[i][j] = k[j];
+        w->k[i][j] = problem->k[given][j];
     w->square_k[i] = square(fabs(w->k[i][0]) + fabs(w->k[i][1]));
-    w->most_k = larger(w->most_k, fabs(w->k[i][0]) + fabs(w->k[i][1]));
-    w->waves += w->present[i];
+    return size;
 }
 
-/* The waves, and the columns of the parameters that move them or the region. */
-static void set_wave_slots(loewner *w, const patch *problem)
+/* The columns of the parameters that move a wave or the region: the others need no symbol. */
+static void set_columns(loewner *w)
 {
     w->columns = 2;
     w->axis[1] = 1;
-    w->most_k = 1.0;
-    w->k[0][0] = w->k[1][1] = 1.0;
-    w->waves = 2;
-    for (int i = 0; i < problem->n_waves; i++)
-        add_wave(w, problem, i);
-    for (int m = 0; m < w->n_parameters; m++) {         /* what does not move needs no symbol */
+    for (int m = 0; m < w->n_parameters; m++) {
         int counts = w->shift[0][m] != 0.0 || w->shift[1][m] != 0.0;
-        for (int i = 0; i < w->waves; i++) {
+        for (int i = FIRST; i < w->waves; i++) {
             w->moves[i][w->columns] = w->part[i][m] != 0.0;
             counts |= w->moves[i][w->columns];
         }
         if (counts)
             w->axis[w->columns++] = 2 + m;
     }
+}
+
+/* The slots of the coordinates, and of the waves whose amplitude is not 0 for all parameters. */
+static void set_wave_slots(loewner *w, const patch *problem)
+{
+    w->most_k = 1.0;
+    w->k[0][0] = w->k[1][1] = 1.0;
+    w->waves = FIRST;
+    for (int given = 0; given < problem->n_waves; given++) {
+        const int i = w->waves;
+        if (read_wave(w, problem, given, i) != 0.0) {
+            w->most_k = larger(w->most_k, fabs(w->k[i][0]) + fabs(w->k[i][1]));
+            w->waves++;
+        }
+    }
+    set_columns(w);
 }
 
 /* Where all waves are m q, q primitive, s = q.x moves by itself: s' = 2s - s(o) + |q|^2 sum m p cos
@@ -361,12 +368,12 @@ static void set_axes(loewner *w)
 {
     double k[2] = { 1.0, 0.0 }, most = -1.0, common, square_k;
 
-    for (int i = 0; i < w->waves; i++) {
+    for (int i = FIRST; i < w->waves; i++) {
         double bends = fabs(w->amplitude[i]);
         for (int m = 0; m < w->n_parameters; m++)
             bends += fabs(w->part[i][m]);
         bends *= square(w->k[i][0]) + square(w->k[i][1]);
-        if (w->present[i] && bends > most) {
+        if (bends > most) {
             most = bends;
             memcpy(k, w->k[i], sizeof k);
         }
@@ -389,18 +396,16 @@ static void set_axes(loewner *w)
         }
 }
 
-/* B at the corners of the parameters' cube; infinity if it is not to be bounded.  An amplitude
-   there is off by less than its err_amplitude, and a phase by 2^-50 of itself (near) and what it
-   was off before, less than 10^-39 (converse.h). */
-static void set_corners(loewner *w, int with_bounds)
+/* B at the corners of the parameters' cube.  An amplitude there is off by less than its
+   err_amplitude, and a phase by 2^-50 of itself (near) and what it was off before, less than 10^-39
+   (converse.h). */
+void loewner_bound_torus(loewner *w)
 {
     torus_wave waves[MOST_WAVES];
 
     for (int corner = 0; corner < 1 << w->n_parameters; corner++) {
         int n = 0;
-        for (int i = 0; i < w->waves; i++) {
-            if (!w->present[i])
-                continue;
+        for (int i = FIRST; i < w->waves; i++) {
             double p = w->amplitude[i];
             for (int m = 0; m < w->n_parameters; m++)
                 p += (corner >> m & 1 ? 1.0 : -1.0) * w->part[i][m];
@@ -409,7 +414,7 @@ static void set_corners(loewner *w, int with_bounds)
                               interval_about(w->phase[i], 0x1p-49 * fabs(w->phase[i]) + 0x1p-129),
                               interval_about(p, w->err_amplitude[i]) };
         }
-        w->corner[corner] = with_bounds ? torus_largest(n, waves, TORUS_EIGENVALUE) : HUGE_VAL;
+        w->corner[corner] = torus_largest(n, waves, TORUS_EIGENVALUE);
     }
 }
 
@@ -445,7 +450,7 @@ static void set_turns(loewner *w, const patch *problem, const apm_t scale)
     apm_clear(longer);
 }
 
-loewner *loewner_new(const patch *problem, int longest, int with_bounds)
+loewner *loewner_new(const patch *problem, int longest)
 {
     loewner *w = calloc(1, sizeof *w);
     apm_t scale;
@@ -462,7 +467,8 @@ loewner *loewner_new(const patch *problem, int longest, int with_bounds)
     set_turns(w, problem, scale);
     apm_clear(scale);
     set_axes(w);
-    set_corners(w, with_bounds);
+    for (int corner = 0; corner < 1 << PARAMETERS; corner++)
+        w->corner[corner] = HUGE_VAL;
     w->engine = fastest_engine();
     w->memory = calloc(1, w->engine->size + ALIGNMENT);
     if (w->memory == NULL) {
@@ -480,13 +486,6 @@ void loewner_free(loewner *w)
         free(w->memory);
     }
     free(w);
-}
-
-int loewner_lanes(const loewner *w) { return w->engine->lanes; }
-
-int loewner_try(loewner *w, int n, const cv_cell *const cells[], outcome *const out[])
-{
-    return w->engine->try(w->work, w, n, cells, out);
 }
 
 double loewner_largest(const loewner *w)

@@ -198,10 +198,9 @@ static int try_prisms(void *work, const loewner *problem, int n, const cv_cell *
     w->out_of_memory = 0;
     for (int k = 0; k < n; k++) {
         s[k].least = HUGE_VAL;
-        memset(out[k], 0, sizeof *out[k]);
+        *out[k] = (outcome){ .axis = -1, .tries = 1 };
         out[k]->v.reason =              /* without waves nothing contradicts anything */
             problem->waves == FIRST ? CV_REASON_CENTRE : CV_REASON_ARITHMETIC;
-        out[k]->axis = -1;
         if (!loewner_prism(problem, cells[k], &c))
             continue;
         put_truth(&going, k, 1);

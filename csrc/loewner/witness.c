@@ -84,13 +84,14 @@ static mask choose_ends(batch *w, mask active, mask *low, mask *high)
     *high = left.fall;
     *low = right.fall;
     const mask apart = active & (~right.fell | TRUTH(right.fall > left.fall));
-    const mask at_right = apart & right.fell &
-                          TRUTH(sym2_least_eigenvalue(right.d) < sym2_least_eigenvalue(left.d));
+    const mask at_right =
+        apart & right.fell & TRUTH(sym2_least_eigenvalue(right.d) < sym2_least_eigenvalue(left.d));
     const mask at_left = apart & ~at_right;
     if (any(at_left)) {
         last = choose(at_left, *high, last);
         right = followed(w, -1, at_left, last, first);
-        *low = choose(at_left, choose(right.fell, right.fall, *high), *low); /* else by a rounding */
+        *low =
+            choose(at_left, choose(right.fell, right.fall, *high), *low); /* else by a rounding */
     }
     if (any(at_right)) {
         first = choose(at_right, *low, first);
@@ -99,8 +100,8 @@ static mask choose_ends(batch *w, mask active, mask *low, mask *high)
     }
     w->from = choose(active, first, w->from);
     w->to = choose(active, last, w->to);
-    w->since = choose(active, choose(TRUTH(first < ORIGIN - none()), first, ORIGIN - none()),
-                      w->since);
+    w->since =
+        choose(active, choose(TRUTH(first < ORIGIN - none()), first, ORIGIN - none()), w->since);
     w->until = choose(active, choose(TRUTH(last > ORIGIN), last, ORIGIN + 1 - none()), w->until);
     return active;
 }

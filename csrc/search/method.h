@@ -8,9 +8,6 @@
 enum { AXES = 5, V0 = 0, V1 = 1 };      /* of a cell: converse.h */
 enum { MOST_LANES = 8 };
 
-/* The constants of the theorem: T, Tr_-, Tr_+, B, lambda_-min, lambda_-max. */
-enum { C_T, C_TRACE_MIN, C_TRACE_MAX, C_B, C_LAM_MIN, C_LAM_MAX, N_CONSTANTS };
-
 /* The outcome of one try of a prism. */
 typedef struct {
     int no_tori;                        /* proved (by this arithmetic) */
@@ -46,8 +43,8 @@ typedef struct {
     /* Sets up the tables of all tries, for a problem with angles in radians and x*.  *work receives
        the workspace, even on failure if something must be freed.  Sets the constants that the
        method has, and at_once (cv_at_once).  CV_OK or an error. */
-    int (*prepare)(void **work, const patch *p, const precision *how, apm_t constants[N_CONSTANTS],
-                   int *at_once);
+    int (*prepare)(void **work, const patch *p, const precision *how,
+                   apm_t constants[CV_N_CONSTANTS], int *at_once);
     /* Frees work, which may be NULL.  If numbers_lost, GMP's numbers in it may be broken (guard.c):
        these are abandoned, and all other memory is freed. */
     void (*free)(void *work, int numbers_lost);

@@ -33,7 +33,7 @@ struct cv_search {
     size_t length, capacity;
     cv_counts counts, before;           /* before: as it was when the node at hand was begun */
     double points;                      /* of all orbits that were followed since cv_restart */
-    apm_t constants[N_CONSTANTS];
+    apm_t constants[CV_N_CONSTANTS];
     int depth, stubborn, symmetric, at_once, last_steps, status;
     enum { READ, PREPARED, SPOILT } stage;      /* SPOILT: cv_prepare was broken off */
     int numbers_lost;                   /* memory ran out inside GMP: guard.c */

@@ -17,7 +17,7 @@ void cv_search_free(cv_search *s)
     s->method->free(s->work, s->numbers_lost);
     if (!s->numbers_lost) {
         patch_clear(&s->problem);
-        for (int j = 0; j < N_CONSTANTS; j++)
+        for (int j = 0; j < CV_N_CONSTANTS; j++)
             apm_clear(s->constants[j]);
     }
     free(s->stack);
@@ -144,7 +144,7 @@ int cv_search_new(cv_search **result, const cv_problem *problem, const char *con
     if (s == NULL)
         return CV_ENOMEM;
     patch_init(&s->problem);
-    for (int j = 0; j < N_CONSTANTS; j++)
+    for (int j = 0; j < CV_N_CONSTANTS; j++)
         apm_init(s->constants[j]);
     s->method = method == CV_THESIS ? &method_thesis : &method_loewner;
     s->precision = (precision){ dp, as_printed, longest };

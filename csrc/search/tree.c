@@ -322,12 +322,9 @@ const int *cv_steps(const cv_search *s) { return s->steps; }
 int cv_at_once(const cv_search *s) { return s->at_once; }
 void cv_free(char *text) { free(text); }
 
-char *cv_constant(const cv_search *s, int which)
+char *cv_xstar(const cv_search *s, int coordinate)
 {
-    if (which < 0 || which >= 12 || (which >= 2 && s->stage != PREPARED))
-        return NULL;
-    return apm_get_str(which < 2        ? s->problem.xstar[which]
-                       : which < 8      ? s->constants[which - 2]
-                       : which % 2 == 0 ? s->problem.angle[(which - 8) / 2]
-                                        : s->problem.half[(which - 8) / 2]);
+    return apm_get_str(s->problem.xstar[coordinate]);
 }
+
+char *cv_constant(const cv_search *s, int which) { return apm_get_str(s->constants[which]); }

@@ -64,7 +64,7 @@ static void set_root(box *root, const patch *p)
 }
 
 static int thesis_prepare(void **work, const patch *p, const precision *how,
-                          apm_t constants[N_CONSTANTS], int *at_once)
+                          apm_t constants[CV_N_CONSTANTS], int *at_once)
 {
     bench *const w = *work = calloc(1, sizeof *w);
     double abc[MOST_WAVES], herman_start[2];

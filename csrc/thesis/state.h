@@ -38,7 +38,7 @@ typedef struct {
     num_t ulp;                          /* 10^-precision: what a rounding can cost */
     num_t theta_cos, theta_sin, small_sinsq;            /* of the column rotor's angle */
     num_t max_sum;
-    num_t constants[N_CONSTANTS];
+    num_t constants[CV_N_CONSTANTS];
     num_t first_slope, first_least_lam;
 
     bdd a, b, c, sin[3], cos[3], a_sin, b_sin, c_sin;   /* over a prism: global_bounds */

@@ -18,8 +18,8 @@ typedef struct {
     /* Sets the constants, to the given ones or, with NULL, to computed ones, and the first    \
        block of the second variation.  herman_start serves as_printed.  CV_OK or an error. */   \
     int R##prepare_trial(R##unit *u, const box *root, const double herman_start[2],                \
-                         apm_t constants[N_CONSTANTS]);                                            \
-    int R##unit_constants(R##unit *u, apm_t constants[N_CONSTANTS]);    /* CV_OK or an error */    \
+                         apm_t constants[CV_N_CONSTANTS]);                                         \
+    int R##unit_constants(R##unit *u, apm_t constants[CV_N_CONSTANTS]);    /* CV_OK or an error */ \
     void R##try_prism(R##unit *u, const box *b, verdict *v);
 
 DECLARE_UNIT(R)

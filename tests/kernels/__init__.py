@@ -187,6 +187,12 @@ def lanes(search: Any) -> int:
     return lib.search_lanes(ffi.cast("void *", int(native.ffi.cast("intptr_t", search))))
 
 
+def half_width(search: Any, axis: int) -> Fraction:
+    """Half of the width of v0 or v1, in radians, once it is prepared."""
+    text = lib.search_half(ffi.cast("void *", int(native.ffi.cast("intptr_t", search))), axis)
+    return Fraction(ffi.string(ffi.gc(text, lib.cv_free)).decode("ascii"))
+
+
 def symmetric(search: Any) -> bool:
     """Does it skip mirror images?"""
     return bool(lib.search_symmetric(ffi.cast("void *", int(native.ffi.cast("intptr_t", search)))))

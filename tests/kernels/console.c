@@ -69,4 +69,10 @@ int search_lanes(const void *search)
     return s->method->lanes(s->work);
 }
 
+/* Half of the width of v0 or v1 in radians, as a decimal that the caller frees. */
+char *search_half(const void *search, int axis)
+{
+    return apm_get_str(((const cv_search *)search)->problem.half[axis]);
+}
+
 int search_symmetric(const void *search) { return ((const cv_search *)search)->symmetric; }

@@ -197,8 +197,8 @@ static int k_step(const request *r, double y[])
     look_at_thesis(r->w, n, &p);
     memcpy(y, p.rad, 2 * sizeof *y);
     y[2] = 1e9 * (double)(clock() - begin) / CLOCKS_PER_SEC / fmax(repeat, 1.0) /
-           fmax(fabs(n), 1.0) / loewner_lanes(r->w);
-    y[3] = loewner_lanes(r->w);
+           fmax(fabs(n), 1.0) / r->w->engine->lanes;
+    y[3] = r->w->engine->lanes;
     return good;
 }
 
@@ -367,11 +367,10 @@ static int run(const row *kernel, request *r, const patch *problem, const questi
     double y[MOST_OUT] = { 0 };
     int good;
 
-    r->w = loewner_new(problem, MAX_POINTS, kernel->bounds);
+    r->w = loewner_new(problem, MAX_POINTS);
     if (r->w == NULL)
         return CV_ENOMEM;
-    if (!kernel->bounds)
-        any_largest(r->w);
+    (kernel->bounds ? loewner_bound_torus : any_largest)(r->w);
     hooks_of(r->w)->poison(r->w->work, r->w, -SITES, SITES);
     good = kernel->run(r, y);
     loewner_free(r->w);

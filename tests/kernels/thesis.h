@@ -160,7 +160,7 @@ static int k_least_lambda(state *s, apm_t in[], apm_t out[])
     bd_Blams(s, &n->minBlam, &n->maxBlam, &n->b_trace);
     num_set_apm(n->slope, in[PRISM_SIZE]);
     num_set_apm(n->least_lam, in[PRISM_SIZE + 1]);
-    num_set_apm(n->constants[C_LAM_MIN], in[PRISM_SIZE + 2]);
+    num_set_apm(n->constants[CV_LAM_MIN], in[PRISM_SIZE + 2]);
     least_lambda(s, n->slope, n->least_lam, &used);
     put(s, out[0], n->slope);
     put(s, out[1], n->least_lam);
@@ -223,8 +223,8 @@ static int k_constants(state *s, apm_t in[], apm_t out[])
     status = R(prepare_trial)(s, &root, herman_start, NULL);
     if (status == CV_OK)
         status = R(unit_constants)(s, out);
-    put(s, out[N_CONSTANTS], s->n.first_slope);
-    put(s, out[N_CONSTANTS + 1], s->n.first_least_lam);
+    put(s, out[CV_N_CONSTANTS], s->n.first_slope);
+    put(s, out[CV_N_CONSTANTS + 1], s->n.first_least_lam);
     return status;
 }
 

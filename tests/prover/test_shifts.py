@@ -19,6 +19,7 @@ from converse.prover.proof_file import load, save
 from converse.prover.run import ready
 from converse.storage import files
 
+import kernels
 from truth import rng_for
 
 HERE, THERE = ("0.858", "0.858"), ("0.842", "0.85")
@@ -373,7 +374,7 @@ def test_shifts_in_radians(digits):
         problem = line("0.0150", "0.0151").part(((0, 1), (0, 1)), shifts)
         search = native.Search(native.Task(problem, Settings("loewner", digits=digits), HERE))
         assert search.prepare(None)
-        halves.append([Fraction(search.constant(which)) for which in (9, 11)])
+        halves.append([kernels.half_width(search.handle, axis) for axis in range(2)])
     places = max(digits, 35) - 5
     for i, shift in enumerate(shifts[0]):
         scale = 10 ** places
