@@ -341,8 +341,8 @@ def test_the_margins():
     assert [len(proved) + len(more) - 1] == said("trust.md",
                                                  "For ([0-9]+) others `formal/roundings.py`")
     assert [len(by_hand), by_hand.count("")] == said(
-        "trust.md", "remaining ([0-9]+) are bounded by hand, and tests hold all but ([0-9]+) of "
-                    "these")
+        "trust.md", "remaining ([0-9]+) are bounded by hand, and tests compare all but "
+                    "([0-9]+) of these")
 
 
 @pytest.fixture(scope="module")
