@@ -127,9 +127,9 @@ def test_the_share_of_vectors_before_their_onset():
               for row in table("toughest") if row["set"] == "sweep"]
     text = words("questions-of-1989.md")
     assert len(onsets) == 1000 and "a thousand rotation vectors were followed" in text
-    said = re.search(r"At eps (0\.006) (\d+) % of them are before their onset, at (0\.008) (\d+) "
-                     r"%, at (0\.010) (\d+) %, and at (0\.0125) none", text).groups()
-    for eps, share in zip(said[::2], (*said[1::2], "0")):
+    said = re.search(r"their onset is (\d+) % at eps (0\.006), (\d+) % at (0\.008), (\d+) % at "
+                     r"(0\.010), and (0) at (0\.0125)", text).groups()
+    for share, eps in zip(said[::2], said[1::2]):
         assert round(sum(onset > float(eps) for onset in onsets) / 10) == int(share), eps
     latest = max((row for row in table("toughest") if row["set"] == "search"),
                  key=lambda row: float(row["eps_below"]))
