@@ -64,13 +64,15 @@ exit status:
     p.add_argument("--sample", type=positive_int, metavar="K",
                    help="only a spot check, of K leaves chosen by chance; not a verification")
     p.add_argument("--state", metavar="FILE", help=(
-        "remember in FILE what was confirmed, and go on from there if it exists; it is believed"))
+        "remember in FILE what was confirmed, and resume from FILE if it exists; what FILE "
+        "records is not checked again"))
     p.add_argument("--shard", type=shard, metavar="I/N", help=(
         "check only the proved leaves I, I + N, I + 2N, ...; keep the result in FILE.I-of-N, where "
-        "FILE is that of --state; all/N: put the N results together"))
+        "FILE is that of --state; all/N: combine the N results"))
     p.add_argument("--exact", action="store_true", help=(
         "bound all leaves in integers, not first in doubles by numpy: dozens of times slower"))
-    p.add_argument("--quiet", action="store_true", help="no report of status 0, no progress")
+    p.add_argument("--quiet", action="store_true", help=(
+        "print no progress, and no report if the status is 0"))
     p.add_argument("--version", action="version", version="converse-check " + __version__)
     return p
 

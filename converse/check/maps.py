@@ -138,7 +138,8 @@ def read_map(data):
     """The map; each patch in it is whole, and every field is known."""
     content = strict_json(data)
     if not isinstance(content, dict) or content.get("format") != MAP_FORMAT:
-        raise Unusable("is not a map of the version that this checker knows, " + MAP_FORMAT)
+        raise Unusable("is JSON, but not a map of the version that this checker knows, "
+                       + MAP_FORMAT)
     _, _, region, down_to, faces, sha256 = fields_of(
         content, "the map", "seconds", format=str, program=str, region=str, down_to=str, faces=list,
         sha256=str)

@@ -54,7 +54,7 @@ def load(path):
             stream = gzip.GzipFile(fileobj=file) if packed else file
             data = bytearray(stream.read(len(MAGIC)))
             if data not in (MAGIC, TORUS_MAGIC, PORTRAIT_MAGIC) and not data.startswith(b"{"):
-                raise Unusable("is not a proof file")
+                raise Unusable("is not a proof file, a map, a portrait or a certificate")
             while (more := stream.read(1 << 20)) and len(data) <= MAX_BYTES:
                 data += more
     except (EOFError, zlib.error, gzip.BadGzipFile):

@@ -118,9 +118,9 @@ def parse_torus(header, body, line, sha256):
     parameter = bool(waves[0].parts)
     waves = present(waves)
     if n == 1 and any(wave.k[1] for wave in waves):
-        raise Rejected("the dimension is 1, but a wave feels the second angle")
+        raise Rejected("the dimension is 1, but a wave depends on the second angle")
     if n == 2 and not any(wave.k[1] for wave in waves):
-        raise Rejected("the dimension is 2, but no wave feels the second angle")
+        raise Rejected("the dimension is 2, but no wave depends on the second angle")
     polynomial = integers(header["polynomial"], n + 2, "the header's polynomial", 10 ** 60)
     if not polynomial[-1]:
         raise Rejected("the header's polynomial has not the degree %d" % (n + 1))

@@ -47,15 +47,15 @@ def parser():
                    "its name ends in .gz")
     p.add_argument("--plane", choices=[*REGIONS], help="all directions of a plane, a, b, c >= 0")
     p.add_argument("--down-to", type=_ratio, metavar="RATIO", help=(
-        "how near to the estimated frontier to come (%s times it)" % DOWN_TO))
-    p.add_argument("-r", "--restore", action="store_true", help="continue MAP, as it was asked for "
-                   "then, though perhaps with another --down-to")
+        "prove down to RATIO times the estimated frontier (default %s)" % DOWN_TO))
+    p.add_argument("-r", "--restore", action="store_true", help=(
+        "continue MAP in its plane; --down-to may have another value"))
     p.add_argument("-g", "--graphics", metavar="FILE", help="draw the map: SVG, PNG or PDF by name")
-    p.add_argument("--tori", metavar="DIRECTORY", help="tell, and draw with -g, at which points "
-                   "DIRECTORY has certificates of tori")
+    p.add_argument("--tori", metavar="DIRECTORY", help="list the points at which DIRECTORY has "
+                   "certificates of tori; with -g, draw them")
     add_worker_options(p, "cells")
     p.add_argument("--time-limit", type=seconds, default=math.inf, metavar="SECONDS",
-                   help="stop after about so long; -r goes on")
+                   help="stop after about this time; -r continues")
     p.add_argument("--version", action="version", version="%s %s" % (COMMAND, __version__))
     return p
 

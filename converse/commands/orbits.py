@@ -35,7 +35,7 @@ SWEEP = ending("converse-orbits sweep standard onsets.csv --farey 0.618 --sizes 
     (2, "bad usage, input or file"), SIGNALS))
 POTENTIAL = ("trig, poly, ff, froeschle, standard, or an input file: JSON of the harmonics of V "
              "(manual: reference/inputs)")
-AT = "the value of a parameter of the file's; any number of times"
+AT = "the value of a parameter of the file; may be given again"
 NO_MINIMUM = "saddle", "stationary", "not stationary"
 
 
@@ -192,30 +192,31 @@ def parser():
 def _find_parser(commands):
     find = commands.add_parser(
         "find", epilog=FIND, help="find the orbits of one type",
-        description="Finds the states of one type, and says what is known of them.")
+        description="Finds the states of one type, and prints their properties.")
     find.add_argument("potential", metavar="POTENTIAL", help=POTENTIAL)
     find.add_argument("type", metavar="TYPE", type=_vector, help="p0,p1/q, such as 1432,1897/2513; "
                       "p/q for one angle")
-    find.add_argument("eps", metavar="EPS", type=_eps, nargs="+", help="a number, or "
-                      "LOW:HIGH:STEP; states are followed from one to the next")
+    find.add_argument("eps", metavar="EPS", type=_eps, nargs="+", help="the factor of the "
+                      "potential (1: the map of an input file), or LOW:HIGH:STEP; states are "
+                      "followed from one value to the next")
     find.add_argument("--at", type=_value, metavar="NAME=VALUE", action="append", default=[],
                       help=AT)
     find.add_argument("--search", type=whole_number(1), metavar="N", help="look for less action "
                       "than continuation finds, N times")
-    find.add_argument("--prove", action="store_true", help="prove that an orbit is beside each "
-                      "state, that it is a minimum, its action and its exponents")
+    find.add_argument("--prove", action="store_true", help="prove that an orbit is near each "
+                      "state and is a minimum; enclose its action and its exponents")
     find.add_argument("--minimax", action="store_true", help="find the pass to the neighbouring "
                       "minimum, and the flux; with --prove, prove both")
     find.add_argument("--csv", metavar="FILE", help="write a row for each state")
     find.add_argument("--points", metavar="FILE", help="write the points and momenta of the "
                       "states, as NPZ")
-    find.add_argument("--from", dest="start", metavar="FILE", help="begin at that of the "
-                      "states in a file of --points which is nearest in eps, not at eps 0")
+    find.add_argument("--from", dest="start", metavar="FILE", help="begin at the state "
+                      "of FILE, written by --points, that is nearest in eps, and not at eps 0")
     find.add_argument("-g", "--graphics", metavar="FILE", help="draw the angles and the momenta of "
                       "the states: SVG, PNG or PDF by the name")
-    find.add_argument("--no-caption", action="store_true", help="leave out the figure's caption")
+    find.add_argument("--no-caption", action="store_true", help="draw no caption")
     find.add_argument("--seed", type=whole_number(0), default=0, metavar="N",
-                      help="of the search (0)")
+                      help="seed of --search (default 0)")
     find.set_defaults(run=find_states)
     return find
 
@@ -229,8 +230,8 @@ def _sweep_parser(commands):
     sweep.add_argument("potential", metavar="POTENTIAL", help=POTENTIAL)
     sweep.add_argument("csv", metavar="FILE", help="the table; if it exists, the beginning of this "
                        "same sweep")
-    sweep.add_argument("eps", metavar="EPS", type=_eps, nargs="*", help="a number, or "
-                       "LOW:HIGH:STEP")
+    sweep.add_argument("eps", metavar="EPS", type=_eps, nargs="*", help="the factor of the "
+                       "potential, or LOW:HIGH:STEP")
     sweep.add_argument("--at", type=_value, metavar="NAME=VALUE", action="append", default=[],
                        help=AT)
     which = sweep.add_mutually_exclusive_group(required=True)

@@ -29,18 +29,19 @@ def parser():
         "for all parameters of a range.  The file of the portrait is verified "
         "by converse-check."))
     p.add_argument("input", nargs="?", metavar="INPUT", help="input file, the thesis's or JSON; "
-                   "by default, and as -, standard input; not needed with -r")
+                   "standard input if it is - or left out; not needed with -r")
     p.add_argument("-b", "--backup", metavar="FILE",
-                   help="keep the portrait in FILE, a new one; compressed, if it ends in .gz")
-    p.add_argument("-r", "--restore", metavar="FILE", help="continue the portrait FILE: its "
-                   "columns are kept; one that is finished is described, and drawn with -g")
+                   help="keep the portrait in the new file FILE; compressed if it ends in .gz")
+    p.add_argument("-r", "--restore", metavar="FILE", help="continue the portrait FILE and "
+                   "keep its columns; a finished portrait is described, and drawn with -g")
     p.add_argument("--columns", type=whole_number(1, MOST), metavar="N",
-                   help="columns of the turn of x_0 (default %d)" % COLUMNS)
+                   help="divide the turn of x_0 into N columns (default %d)" % COLUMNS)
     p.add_argument("--depth", type=whole_number(1, DEEPEST), metavar="N",
-                   help="most cuts of a prism (default %d): each one more takes twice as long, or "
-                   "longer, and leaves less undecided" % DEPTH)
-    p.add_argument("--lines", action="store_true", help="columns are vertical lines, between which "
-                   "nothing is proved, and not strips; for any potential of one angle")
+                   help="most cuts of a prism (default %d): each further cut at least doubles the "
+                   "time, and leaves less undecided" % DEPTH)
+    p.add_argument("--lines", action="store_true", help=(
+        "take vertical lines instead of strips, for any potential of one angle; nothing is proved "
+        "between the lines"))
     p.add_argument("-g", "--graphics", metavar="FILE",
                    help="draw the portrait, with orbits of the map: SVG, PNG or PDF by name")
     p.add_argument("--rotation", metavar="ROTATION", action="append", default=[], help=(
@@ -48,7 +49,7 @@ def parser():
         "and draw it; may be given again"))
     add_worker_options(p, "columns")
     p.add_argument("--time-limit", type=seconds, default=math.inf, metavar="SECONDS",
-                   help="stop after about so long; -r goes on")
+                   help="stop after about this time; -r continues")
     p.add_argument("--version", action="version", version="%s %s" % (COMMAND, __version__))
     return p
 

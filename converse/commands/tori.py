@@ -76,15 +76,15 @@ def _prove_parser(commands):
                    help="start the search from the torus of the certificate FILE, which also gives "
                         "the rotation vector, and not from the map without potential")
     p.add_argument("--margin", type=_positive, metavar="X", help="find a torus whose residual is X "
-                   "times smaller than the admissible residual, about (default 100)")
+                   "times smaller than the admissible residual (about; default 100)")
     p.add_argument("--points", type=whole_number(16, MOST_POINTS), metavar="N",
-                   help="most points of the grid on which the torus is looked for in "
+                   help="most points of the grid of the search in "
                         "floating-point numbers (default 2097152); the grid of the refinement "
                         "is limited by memory alone")
     p.add_argument("--jobs", type=whole_number(1), metavar="N",
                    help="verify N pieces of a range at a time, in processes (default 1)")
     p.add_argument("--memory", type=_positive, metavar="GB", help="the most memory that "
-                   "refining the torus takes, in GB (default: three quarters of what is free)")
+                   "refining the torus takes, in GB (default: three quarters of the free memory)")
     return p
 
 

@@ -145,7 +145,8 @@ class Problem:
             if self.alone not in (0, 1, "no") or isinstance(self.alone, bool):
                 raise ValueError("alone is 0, 1 or 'no', not %r" % (self.alone,))
             if self.alone != "no" and self._best_alone() is None:
-                raise ValueError("no coordinate stands alone: a wave feels both, or all feel one")
+                raise ValueError("no coordinate stands alone: a wave depends on both, or all "
+                                 "depend on one")
 
     def _check_shifts(self):
         """Checks that there is a pair for each parameter, or none."""

@@ -36,7 +36,7 @@ def proved_points(directory: Path) -> List[Tuple[Point, str]]:
         amplitude: Dict[tuple, Fraction] = dict(zip(torus.potential.waves,
                                                     torus.potential.amplitude))
         if torus.part is not None or not set(amplitude) <= {(*k, Fraction(0)) for k in THESIS}:
-            raise ConverseError("%s: is no torus at one (a, b, c); remove it" % path)
+            raise ConverseError("%s: is not a torus at one (a, b, c); remove it" % path)
         a, b, c = (amplitude.get((*k, Fraction(0)), Fraction(0)) for k in THESIS)
         points.append(((a, b, c), torus.rotation.name))
     return points

@@ -279,7 +279,7 @@ def _of_circle(problem):
             if p or any(parts)]
     if any(problem.waves[j][1] for j in seen):
         raise ValueError("a portrait is of a map of one angle; this potential has a wave that "
-                         "feels a second one")
+                         "depends on a second angle")
     if not seen:
         raise ValueError("the potential is zero: every orbit of the map lies on a circle")
     parts = [[part[j] for j in seen] for part in problem.parts if any(part[j] for j in seen)]

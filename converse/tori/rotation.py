@@ -168,8 +168,8 @@ def _read(text, name):
     text = re.sub(r"\s*([-+*/^()t,:])\s*", r"\1", text.strip())
     left, colon, right = text.partition(":")
     if not colon:
-        raise ValueError("%.60r is no rotation vector: give a name (%s) or POLYNOMIAL: ELEMENTS, "
-                         "such as 't^2+t-1: t'" % (text, ", ".join(NAMES)))
+        raise ValueError("%.60r is not a rotation vector: give a name (%s) or POLYNOMIAL: "
+                         "ELEMENTS, such as 't^2+t-1: t'" % (text, ", ".join(NAMES)))
     left, near, place = left.partition("near")
     polynomial = _minimal(_sum(left.strip()))
     roots = real_roots(polynomial)
@@ -220,7 +220,7 @@ def _element(text, field):
     """The element that is a sum, or a quotient of sums in parentheses."""
     match = QUOTIENT.fullmatch(text)
     if not match:
-        raise ValueError("%.60r is no sum of terms, nor a quotient of two sums in parentheses"
+        raise ValueError("%.60r is not a sum of terms, nor a quotient of two sums in parentheses"
                          % text)
     try:
         found = field.element(_sum(match[2]))

@@ -48,7 +48,7 @@ def test_portrait_is_kept_continued_and_drawn(run, inputs, tmp_path):
     ("standard", ["--columns", 3], "give at least 8"),
     ("standard", ["--depth", 0], "--depth: '0' is not a whole number from 1"),
     ("standard", ["--rotation", "golden"], "name one with -g"),
-    ("standard", ["--rotation", "silly", "-g", "x.png"], "--rotation: 'silly' is no rotation"),
+    ("standard", ["--rotation", "silly", "-g", "x.png"], "--rotation: 'silly' is not a rotation"),
     ("standard", ["-g", "x.gif"], "ends in .svg or .png or .pdf"),
     ("standard", ["-b", "there", "--columns", 20], "there: exists"),
     ("standard", ["-r", "there"], "leave out the input"),
