@@ -152,7 +152,8 @@ def read_rotation(text: str, dimension: Optional[int] = None) -> Rotation:
     if dimension not in (None, rotation.dimension):
         raise ValueError("%s has %s, but the map has %s" % (
             rotation, ("one component", "two components")[rotation.dimension - 1],
-            ("one angle", "two angles")[(dimension or 1) - 1]))
+            ("one angle; name another, such as golden",
+             "two angles; name another, such as spiral")[(dimension or 1) - 1]))
     return rotation
 
 
