@@ -131,7 +131,7 @@ def test_beyond_the_last_torus_there_is_no_theorem(run, tmp_path, numbers, rotat
     (["prove", K09], "which torus?"), (["prove", TRIG, "--rotation", "golden"], "two angles"),
     (["prove", K09, "--rotation", "T49"], "one angle"),
     (["prove", K09, "--rotation", "t^2-1: t"], "reducible"),
-    (["prove", K09, "--rotation", "0.618"], "no rotation vector"),
+    (["prove", K09, "--rotation", "0.618"], "not a rotation vector"),
     (["prove", K09, "--rotation", "golden", "--memory", "x"], "'x'"),
     (["prove", RANGE, "--rotation", "T49"], "--together"),
     (["prove", "two.json", "--rotation", "golden"], "2 parameters"),
