@@ -30,7 +30,10 @@ STANDARD = Path(__file__).resolve().parent.parent / "inputs" / "standard-63-64.i
 
 
 def portraits(figure):
+    """The thesis's figure, with the angle and the momentum as these pages call them."""
     twist_maps.std_demo(figure, shared.Families())
+    for axes in figure.axes:
+        axes.set(xlabel=r"$y/2\pi$", ylabel=r"$J/2\pi$" if axes is figure.axes[0] else "")
 
 
 def cantorus(figure):

@@ -109,12 +109,12 @@ def draw_all(axes, measured):
 
 
 def star(axes, distance, momentum, ratio):
-    """Marks the steepest pair."""
+    """Marks the steepest pair, in the colour of its orbit in the left panel."""
     at = np.argmax(momentum / distance)
     y = (momentum / distance if ratio else momentum)[at]
-    axes.plot(distance[at], y, "*", color=plot.VERMILLION, markersize=8)
-    axes.annotate("L = %.0f" % (momentum[at] / distance[at]), (distance[at], y), (7, 0),
-                  textcoords="offset points", va="center", color=plot.VERMILLION)
+    axes.plot(distance[at], y, "*", color=plot.DARK, markersize=10)
+    axes.annotate("L = %.0f" % (momentum[at] / distance[at]), (distance[at], y), (8, 0),
+                  textcoords="offset points", va="center", color=plot.DARK)
 
 
 def draw_one(axes, state, i, j, distance, momentum):

@@ -12,6 +12,7 @@ from fractions import Fraction as F
 
 import pytest
 from matplotlib.text import Text
+from test_reports import explained, labels
 
 import converse
 from converse import check, parameters
@@ -123,6 +124,7 @@ def test_the_checker_confirms_it(made):
     found, path = made
     result = check.verify(path)
     assert result and result.status == check.VERIFIED
+    assert {"Region", "Face"} <= labels(result.text) and labels(result.text) <= explained()
     assert "%d" % found.count(PROVED) in result.text
 
 
@@ -398,6 +400,7 @@ def test_the_report(made, capsys):
     out = capsys.readouterr().out
     assert out == ParameterMap.load(made[1]).report()
     assert "all r >= " in out and "SHA-256 : " + made[0].sha256 in out
+    assert {"Cells", "Prisms", "Reached"} <= labels(out) and labels(out) <= explained()
 
 
 def test_without_the_core_a_map_is_described_and_drawn(made, tmp_path):

@@ -50,6 +50,19 @@ def test_a_picture_is_of_its_release_and_table(name):
     assert text.endswith(FIGURES["seal"](row["data"]) if row["data"] else "</svg>\n")
 
 
+def test_every_release_of_a_picture_is_in_the_changelog():
+    """By a section of its own, or in the one of the first releases, "1.0.0 to 1.12.0"."""
+    def order(release):
+        return [*map(int, release.split("."))]
+
+    sections = [title.split(" to ") for title in re.findall(
+        "^## ([0-9. to]+)$", (ROOT / "CHANGELOG.md").read_text("utf-8"), re.MULTILINE)]
+    assert ["1.0.0", "1.12.0"] in sections
+    for name, row in ROWS.items():
+        assert any(order(ends[0]) <= order(row["release"]) <= order(ends[-1])
+                   for ends in sections), name
+
+
 @pytest.mark.parametrize("name", SHOWN)
 def test_the_values_that_are_proved(name):
     text = text_of(name)

@@ -105,22 +105,6 @@ def test_the_tutorial_of_a_map(tmp_path):
         counts.proved, counts.max_NTsteps]
 
 
-def test_every_line_of_a_report_is_explained(tmp_path):
-    """The labels of the golden outputs, of a checked proof and of a checked torus."""
-    page = PAGES["reports.md"]
-    known = set(re.findall(r"`([^`]+)`", "\n".join(re.findall(r"(?m)^\| (`.*?) \| ", page))))
-    texts = [path.read_text("utf-8") for path in sorted((ROOT / "golden_outputs").glob("*/*.out"))]
-    labels = {re.sub(" [a-z]$", " a", label) for text in texts for label in re.findall(
-        r"(?m)^([A-Z][A-Za-z]+(?:-[0-9]+)?(?: [a-z])?) {2,}", text)}
-    assert {"Verify", "Searched", "Part a"} <= labels <= known, labels - known
-    proof = prove(given("standard-63-64.in"))
-    proof.save(tmp_path / "none.proof")
-    checked = [check.verify(path).text for path in (
-        tmp_path / "none.proof", ROOT / "golden_outputs" / "tori" / "standard-0.9.torus")]
-    labels = set().union(*(re.findall(r"(?m)^([A-Zx][a-z* ]*) : ", text) for text in checked))
-    assert "Leaves" in labels and labels <= known, labels - known
-
-
 def patch(waves, *amplitudes):
     return Problem(SymplecticMap(waves, [Fraction(p) for p in amplitudes]))
 

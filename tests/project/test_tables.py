@@ -88,8 +88,39 @@ def test_one_proof_has_one_number_of_prisms():
     linked, = [row[4] for row in rows("inputs.md", "file") if row[0] == "`trig139.in`"]
     found = re.search(r"Search +(\S+) prisms", golden("loewner/trig139"))[1]
     assert linked.startswith(found + ",")
+    assert "Now the proof down to 0.0139 takes %s prisms" % found in words("speed.md")
     alone, = [leaves for epsilon, leaves, *_ in rows("trust.md", "epsilon") if epsilon == "0.0139"]
     assert "0.0139 alone takes %s prisms" % alone in words("method.md")
+
+
+def test_the_links_of_the_standard_map():
+    """Of the range whose prisms test_numbers.py compares with its golden output."""
+    proved, linked = re.search(r"Search +([0-9,]+) prisms proved, ([0-9,]+) linked",
+                               golden("loewner/standard-972-up")).groups()
+    assert re.search("It proves %s prisms in [0-9]+ CPU seconds, and links %s more" % (
+        proved, linked), words("method.md"))
+    row, = [row[4] for row in rows("inputs.md", "file") if row[0] == "`standard-972-up.in`"]
+    assert row.startswith(proved)
+
+
+def test_leaves_are_what_is_proved_and_what_is_linked():
+    """Of the files that converse-verified has read: coq.md counts both, trust.md and method.md what
+    is proved."""
+    proved = [number(row[1]) for row in rows("trust.md", "epsilon")]
+    page = PAGES["coq.md"]
+    linked = re.findall(r"^\| epsilon (?:=|>=) 0.*?\| ([0-9,]+) \| ([0-9]+) \|", page, re.MULTILINE)
+    assert len(linked) == 3
+    for leaves, links in linked:
+        assert number(leaves) - int(links) in proved, leaves
+    leaves, links = re.search(r"^\| 0\.5, 0\.08 \| ([0-9,]+) \| ([0-9]+) \|", page,
+                              re.MULTILINE).groups()
+    froeschle, = [row for row in rows("method.md", "map") if row[0] == "Froeschlé, B = 0.5"]
+    assert froeschle[5].startswith("0.08;")
+    assert number(froeschle[6].split(";")[0]) == number(leaves) - int(links)
+
+
+def number(text):
+    return int(text.replace(",", ""))
 
 
 def test_tori_of_the_frontier_are_rows_of_the_tori():

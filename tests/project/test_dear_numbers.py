@@ -1,0 +1,116 @@
+"""Numbers of the pages that take from seconds to minutes each, computed anew by `make torture`; and
+the two cheapest of them, always.
+
+The numbers of test_numbers.py are cheap.  Seconds are those of the machine and the day that a page
+names, and are not looked at."""
+
+import re
+from fractions import Fraction
+
+import chart
+import pytest
+from test_numbers import POINTS, number, rows, said, sharper
+
+from converse import Problem, StandardMap, portray, tori
+from converse.model.map import MuldoonMap
+from converse.parameters.map import PROVED
+from converse.parameters.search import explore
+
+from truth import TORTURE
+
+dear = pytest.mark.skipif(TORTURE == 1, reason="minutes; make torture has it")
+
+
+def linked_points():
+    """(map, value, prisms) of the table of other maps, and of the text below it."""
+    for name, *cells in rows("method.md", "map")[1:]:
+        name = name.partition(":")[0]
+        values = re.findall(r"0\.\d+", cells[4])
+        prisms = [cell.strip() for cell in cells[5].split(";")] if cells[5] else []
+        assert len(values) == len(prisms), name
+        yield from ((name, value, number(count)) for value, count in zip(values, prisms))
+    yield ("Froeschlé, B = 0.3", "0.62",
+           *said("method.md", r"another point, far off \(([0-9,]+) prisms in 6 seconds"))
+
+
+CHEAP = "two harmonics, K2 = 0.4", "0.6"
+
+
+@pytest.mark.parametrize("name, value, prisms", [
+    pytest.param(*row, marks=() if row[:2] == CHEAP else dear) for row in linked_points()])
+def test_linked_points_of_other_maps(name, value, prisms):
+    counts = sharper(POINTS[name][1](value))
+    assert counts.linked and counts.proved == prisms
+
+
+@dear
+def test_the_longest_orbits_of_the_standard_map():
+    counts = sharper(Problem(MuldoonMap("0.9717", 0, 0)))
+    assert [counts.proved, counts.max_NTsteps] == said(
+        "method.md", "([0-9,]+) prisms, and orbits of up to ([0-9,]+) points. It follows")
+
+
+# The rows of portrait.md whose maps are drawn: k, columns, depth, and how they are asked for.
+PORTRAITS = {
+    "strips, 15": lambda k: portray(StandardMap(k), depth=15),
+    "strips, 16": lambda k: portray(StandardMap(k), depth=16),
+    "lines, 17": lambda k: portray(StandardMap(k), depth=17, strips=False),
+    "300 strips, 14": lambda k: portray(Problem.around(
+        ("0.9005", 0, 0, 1, 1), ("0.0005", 0, 0, 1, 1)), columns=300, depth=14),
+}
+
+
+@dear
+@pytest.mark.parametrize("k, kind, share", [
+    (row[0], ", ".join(row[1:3]), row[3]) for row in rows("portrait.md", "k")[1:]])
+def test_shares_of_portraits(k, kind, share):
+    """Rounded up to the places of the table."""
+    digits, exact = share.split()[0], 100 * PORTRAITS[kind](k).undecided
+    assert 0 <= Fraction(digits) - exact <= Fraction(1, 10 ** len(digits.partition(".")[2]))
+
+
+@dear
+@pytest.mark.parametrize("plane, ratio, cells, prisms", rows("map.md", "plane")[1:])
+def test_maps_of_planes(plane, ratio, cells, prisms, tmp_path):
+    """What is down to the ratio is what the picture was asked for."""
+    found = explore(plane.replace(" ", ""), str(Fraction(ratio)), path=tmp_path / "plane.json")
+    assert found.complete and found.count(PROVED) == number(cells)
+    assert number(re.search(r"Prisms : ([0-9,]+)", found.report())[1]) == number(prisms)
+
+
+def rows_of_tori():
+    """(map, parameter, rotation, modes or pieces, residual, needed) of those of a minute or less,
+    of today's release."""
+    map_ = rotation = ""
+    for name, vector, size, residual, needed, seconds, day in rows("tori.md", "map")[1:]:
+        map_ = "standard" if "standard" in name else "line" if "thesis" in name else map_
+        rotation = vector.strip("`") or rotation
+        value = re.findall(r"0\.\d+", name)
+        ends = ("0", *value)[-2:] if "every" in name else value[:1]
+        if day.startswith("20") and float(seconds) < 60:
+            yield (map_ if "every k" not in name else "standard", ends, rotation, size, residual,
+                   needed)
+
+
+@dear
+@pytest.mark.parametrize("name, ends, rotation, size, residual, needed", rows_of_tori())
+def test_tori(name, ends, rotation, size, residual, needed):
+    """Modes differ by a few per cent between machines, and residuals by a factor of two."""
+    def end(value):
+        return MuldoonMap(value, 0, 0) if name == "standard" else chart.on_line(value).map
+
+    if len(ends) == 1:
+        problem = end(ends[0])
+    elif name == "standard":
+        low, high = map(Fraction, ends)
+        problem = Problem.around(((low + high) / 2, 0, 0, 1, 1), ((high - low) / 2, 0, 0, 1, 1))
+    else:
+        problem = chart.on_line(*ends, together=True)
+    found = tori.find(problem, rotation)
+    proof = tori.prove(found)
+    assert float(residual) / 2 < proof.residual < 2 * float(residual)
+    assert float(needed) / 2 < proof.needed < 2 * float(needed)
+    if "piece" in size:
+        assert len(found) == int(size.split()[0])
+    else:
+        assert abs(found.modes / number(size) - 1) < 0.05
