@@ -994,13 +994,9 @@ def test_the_format_names_what_the_checker_knows(root, texts, monkeypatch):
 
 @pytest.fixture(scope="module")
 def long(moving, tmp_path_factory):
-    """A proof file whose check takes some seconds, and the pieces that it takes."""
+    """A proof file whose check takes a second or two, and the pieces that it takes."""
     path = tmp_path_factory.mktemp("long") / "proof"
-    tree, depth = tree_of(moving["segment"]), 1
-    for _ in range(depth):
-        tree = "2" + tree + tree
-    path.write_text(sealed(with_tree(with_field(moving["segment"], "depth", 99), tree)),
-                    encoding="utf-8")
+    path.write_text(moving["segment"], encoding="utf-8")
     return path, re.search("in [0-9]+ pieces", check.verify(path, exact=True).text).group()
 
 
@@ -1077,7 +1073,7 @@ print(flush=True)
 sys.exit(main())
 """
     for n in range(60):
-        most = seen[-1] + 400 if n % 2 else math.inf    # every other time it is to get on first
+        most = seen[-1] + 200 if n % 2 else math.inf    # every other time it is to get on first
         process = subprocess.Popen(
             [sys.executable, "-I", "-c", code, os.path.dirname(FOLDER), str(most), path, "--jobs",
              jobs, "--state", state, "--exact"],

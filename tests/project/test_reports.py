@@ -25,8 +25,9 @@ def explained():
 
 
 def labels(text):
-    """Of a report, with "a" for the letter of a part."""
-    return {re.sub("^(Part|x\\* of) [a-z]$", r"\1 a", label) for label in re.findall(LABEL, text)}
+    """Of a report, with "a" for the letter of a part, and without the numbers of a face."""
+    return {re.sub("^Face .*", "Face", re.sub("^(Part|x\\* of) [a-z]$", r"\1 a", label))
+            for label in re.findall(LABEL, text)}
 
 
 def test_the_labels_of_the_golden_outputs():
