@@ -13,6 +13,7 @@ import pytest
 
 import converse
 
+from kernels import build
 from moments import PATIENCE
 
 ROOT = Path(__file__).resolve().parent.parent.parent
@@ -122,23 +123,23 @@ else:
                     if os.path.exists("/proc/cpuinfo")
                     else True, reason="needs a processor with fused operations")
 @pytest.mark.skipif("libasan" in os.environ.get("LD_PRELOAD", ""), reason="another build")
-def test_a_core_that_fuses_is_refused(tmp_path):
-    """Built by flags that contract products and sums it compiles, and proves nothing.  (What
-    notices is machine.c; the rest is compiled without optimization, which is quick.)"""
-    code = "exec(open('converse/_build.py').read()); ffi.emit_c_code(%r); print(*SOURCES)"
-    sources = subprocess.run([sys.executable, "-c", code % str(tmp_path / "native.c")], cwd=ROOT,
-                             check=True, capture_output=True, text=True).stdout.split()
-    sources = [word for word in sources if word.startswith("csrc/")]
-    package = tmp_path / "converse"
+def test_a_core_that_fuses_is_refused(tmp_path, monkeypatch):
+    """Built by flags that contract products and sums it is linked, and proves nothing.  (What
+    notices is machine.c; the other objects are those of the console.)"""
+    monkeypatch.delenv("CONVERSE_CONSOLE", raising=False)       # a mutant has no objects of its own
+    native, package = tmp_path / "native.c", tmp_path / "converse"
+    build.product()["ffi"].emit_c_code(str(native))
     shutil.copytree(Path(converse.__file__).parent, package,
                     ignore=shutil.ignore_patterns("*.so", "__pycache__"))
-    machine, gcc = "csrc/arith/machine.c", ["gcc", "-std=c11", "-fPIC", "-Icsrc"]
-    sources.remove(machine)
-    subprocess.run([*gcc, "-O2", "-mfma", "-ffp-contract=fast", "-c", machine,
-                    "-o", str(tmp_path / "machine.o")], cwd=ROOT, check=True)
-    subprocess.run([*gcc, "-O0", "-shared", "-I", sysconfig.get_paths()["include"],
-                    str(tmp_path / "native.c"), *sources, str(tmp_path / "machine.o"),
-                    "-lgmp", "-lm", "-o", str(package / "_native.abi3.so")], cwd=ROOT, check=True)
+    gcc = ["gcc", "-std=c11", "-fPIC", "-I", str(ROOT / "csrc"), "-c"]
+    for source, flags in ((ROOT / "csrc/arith/machine.c", ["-O2", "-mfma", "-ffp-contract=fast"]),
+                          (native, ["-O0", "-I", sysconfig.get_paths()["include"]])):
+        subprocess.run([*gcc, *flags, str(source)], cwd=tmp_path, check=True)
+    objects = {path.stem: path for path in build.path().parent.glob("*.o")}
+    for name in ("module", "stand-ins", "arith-machine"):
+        del objects[name]
+    build.link([*objects.values(), tmp_path / "machine.o", tmp_path / "native.o"],
+               package / "_native.abi3.so")
     subprocess.run([sys.executable, "-c", CONTRACTED], cwd=tmp_path, check=True, timeout=PATIENCE,
                    env=dict(os.environ, PYTHONPATH=str(tmp_path)))
 
