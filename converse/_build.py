@@ -8,7 +8,7 @@ from cffi import FFI
 
 SOURCES = ["arith/apm", "arith/special", "arith/guard", "arith/machine",
            "thesis/start", "thesis/rigorous", "thesis/double", "thesis/method",
-           "loewner/problem", "loewner/start", "loewner/method",
+           "loewner/problem", "loewner/start", "loewner/score", "loewner/method",
            "loewner/engine", "loewner/engine_avx2", "loewner/engine_avx512",
            "model/patch", "model/region", "model/stationary", "model/torus",
            "search/setup", "search/tree", "search/lookahead",

@@ -1,18 +1,31 @@
 /* method.c - the sharper method as a search sees it. */
+#include <math.h>
+#include <string.h>
+
 #include "model/torus.h"
 #include "problem.h"
 #include "start.h"
 
 /* The potential in doubles. */
-typedef struct { double phase[MOST_WAVES], p[MOST_WAVES]; } numbers;
+typedef struct {
+    int k[MOST_WAVES][2];
+    double phase[MOST_WAVES], p[MOST_WAVES];
+} numbers;
 
-/* In the middle, or at_end where the parameters are 1. */
-static waves potential_of(const patch *p, int at_end, numbers *room)
+/* Where each parameter is t, without the waves that are zero there. */
+static waves potential_of(const patch *p, double t, numbers *room)
 {
+    waves v = { 0, (const int (*)[2])room->k, room->phase, room->p };
+    double amplitude[MOST_WAVES];
+
+    patch_amplitudes(p, t, amplitude);
     for (int i = 0; i < p->n_waves; i++)
-        room->phase[i] = apm_get_d(p->phase[i]);
-    patch_amplitudes(p, at_end, room->p);
-    return (waves){ p->n_waves, p->k, room->phase, room->p };
+        if (amplitude[i] != 0.0) {
+            memcpy(room->k[v.n], p->k[i], sizeof p->k[i]);
+            room->phase[v.n] = apm_get_d(p->phase[i]);
+            room->p[v.n++] = amplitude[i];
+        }
+    return v;
 }
 
 static int loewner_accepts(const patch *p, const precision *how)
@@ -21,12 +34,24 @@ static int loewner_accepts(const patch *p, const precision *how)
     return how->as_printed || how->longest > MAX_POINTS ? CV_EARGUMENT : CV_OK;
 }
 
+/* How much the waves bend at most, if all k have the same direction. */
+static double bend_of(const waves *v)
+{
+    double sum = 0.0;
+
+    for (int i = 0; i < v->n; i++)
+        sum += fabs(v->p[i]) * (double)(v->k[i][0] * v->k[i][0] + v->k[i][1] * v->k[i][1]);
+    return sum;
+}
+
 static void loewner_choose_start(const patch *p, int symmetric, double x[2])
 {
-    numbers room;
-    const waves v = potential_of(p, 0, &room);
+    numbers numbers_of[3];
+    const waves middle = potential_of(p, 0.0, &numbers_of[0]);
+    const waves low = potential_of(p, -1.0, &numbers_of[1]);
+    const waves high = potential_of(p, 1.0, &numbers_of[2]);
 
-    loewner_start(&v, symmetric, x);
+    loewner_start(&middle, bend_of(&low) <= bend_of(&high) ? &low : &high, symmetric, x);
 }
 
 /* Does the theorem hold at once, and for which parameters?  See converse.h. */
@@ -34,7 +59,7 @@ static int find_at_once(const loewner *w, const patch *p)
 {
     const int one = p->n_parameters == 1;
     numbers room;
-    const waves v = potential_of(p, one, &room);
+    const waves v = potential_of(p, one ? 1.0 : 0.0, &room);
     double x[2];
 
     if (!p->odd)

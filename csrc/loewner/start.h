@@ -5,9 +5,10 @@
 
 #include "model/stationary.h"
 
-/* x = a point from which the proof is short.  On the diagonal if V is symmetric about it, so that
-   mirror images can be skipped, unless another point is plainly better. */
-void loewner_start(const waves *v, int on_diagonal, double x[2]);
+/* x = a point from which the proof is short, for waves in the middle of their parameters and the
+   weakest waves.  On the diagonal if V is symmetric about it, so that mirror images can be skipped,
+   unless longer orbits judge another point to be better. */
+void loewner_start(const waves *middle, const waves *weakest, int on_diagonal, double x[2]);
 
 /* x = where the least eigenvalue of beta is least. */
 void loewner_lowest(const waves *v, double x[2]);

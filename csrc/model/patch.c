@@ -198,11 +198,11 @@ int patch_symmetric(const patch *p)
     return good;
 }
 
-void patch_amplitudes(const patch *p, int at_end, double to[MOST_WAVES])
+void patch_amplitudes(const patch *p, double t, double to[MOST_WAVES])
 {
     for (int i = 0; i < p->n_waves; i++) {
         to[i] = apm_get_d(p->amplitude[i]);
-        for (int m = 0; m < p->n_parameters && at_end; m++)
-            to[i] += apm_get_d(p->part[i][m]);
+        for (int m = 0; m < p->n_parameters; m++)
+            to[i] += t * apm_get_d(p->part[i][m]);
     }
 }

@@ -35,8 +35,8 @@ int has_shifts(const patch *p);
    region that moves. */
 int patch_symmetric(const patch *p);
 
-/* The amplitudes in doubles, in the middle or, at_end, where the parameters are 1. */
-void patch_amplitudes(const patch *p, int at_end, double to[MOST_WAVES]);
+/* The amplitudes in doubles, where each parameter is t. */
+void patch_amplitudes(const patch *p, double t, double to[MOST_WAVES]);
 
 /* region.c.  Converts centre +- half from units of pi to radians; the result encloses the interval.
    pi is truncated after dp places, to which the results are rounded. */

@@ -21,7 +21,7 @@ static void thesis_choose_start(const patch *p, int symmetric, double x[2])
 {
     double abc[MOST_WAVES];
 
-    patch_amplitudes(p, 0, abc);
+    patch_amplitudes(p, 0.0, abc);
     set_LL_start(x, abc, symmetric);
 }
 
@@ -81,7 +81,7 @@ static int thesis_prepare(void **work, const patch *p, const precision *how,
         return CV_ENOMEM;
     set_root(&w->root, p);
     set_root(&w->prism, p);
-    patch_amplitudes(p, 0, abc);
+    patch_amplitudes(p, 0.0, abc);
     set_Herm_start(herman_start, abc, 1);
     status = Rprepare_trial(w->exact, &w->root, herman_start, NULL);
     if (status == CV_OK)

@@ -37,7 +37,8 @@ PATIENCE = 900                          # seconds, for the tests of one file
 PYTHON = {"orbits": ("enclosure", "exponents"),
           "check": ("field", "series", "tori", "torus_file"),
           "tori": ("certificate", "field", "proved")}
-GUESSES = ("thesis/start.c", "loewner/start.c", "model/stationary.c")
+GUESSES = ("thesis/start.c", "loewner/start.c", "loewner/score.c",
+           "model/stationary.c")
 
 # The tests that may notice, by what a file's name begins with; the likely one first.
 NUMBERS = ["test_apm.py", "test_special.py", "test_bounding.py", "test_bd_trig.py",
