@@ -10,8 +10,10 @@
 #include "problem.h"
 #include "model/torus.h"
 
-enum { DIGITS = 60, BITS = 80, ORDER = 24 };    /* 10^24 < 2^80: see times_middle */
-static const double MOST_SIZE = 0x1p60; /* of amplitudes: see wave_at */
+/* Numbers of turns are less than 10^ORDER < 2^BITS units of 2^-64 turns: see times_middle. */
+enum { ORDER = 24, BITS = 80 };
+enum { SCALE_DIGITS = 60 }; /* decimal places of units per radian: see units_of_radian */
+static const double MAX_AMPLITUDE = 0x1p60; /* of a wave: see wave_at */
 
 /* ---- one prism */
 
@@ -29,7 +31,7 @@ static double cell_largest(const loewner *w, const double low[3], const double h
         for (int root = 0; root < 1 << axes; root++) {
             double part = w->corner[root];
             for (int k = 0; k < axes; k++) {
-                const double share = corner >> k & 1 ? high[k] : low[k];       /* 0 .. 1 */
+                const double share = corner >> k & 1 ? high[k] : low[k]; /* 0 .. 1 */
                 part *= root >> k & 1 ? share : 1.0 - share;
             }
             sum += part;
@@ -76,7 +78,7 @@ static void set_region(const loewner *w, const cv_cell *cell, const double part[
         for (int k = 0; k < 2 && !w->identity; k++)
             off[i] += 0x1p-50 * fabs(w->frame[i][k]) * size[k];
     }
-    for (int i = 0; i < 2 && !w->identity; i++)             /* |frame^-1| off */
+    for (int i = 0; i < 2 && !w->identity; i++) /* |frame^-1| off */
         c->width[i] +=
             (fabs(w->frame[1 - i][1 - i]) * off[i] + fabs(w->frame[i][1 - i]) * off[1 - i]) / det;
 }
@@ -120,12 +122,12 @@ int loewner_prism(const loewner *w, const cv_cell *cell, loewner_cell *c)
     }
     set_region(w, cell, part, c);
     set_amplitudes(w, cell, part, c);
-    for (int m = 0; m < w->n_parameters; m++) {             /* exact */
+    for (int m = 0; m < w->n_parameters; m++) { /* exact */
         low[m] = (double)cell->index[2 + m] * part[2 + m];
         high[m] = low[m] + part[2 + m];
     }
     B = cell_largest(w, low, high);
-    c->l = 2.0 / (B + sqrt((B - 2.0) * (B + 2.0))) * (1.0 - 0x1p-46);   /* off by 5 u before */
+    c->l = 2.0 / (B + sqrt((B - 2.0) * (B + 2.0))) * (1.0 - 0x1p-46); /* off by 5 u before */
     return c->l > 0.0;
 }
 
@@ -190,16 +192,16 @@ static double above(const apm_t x)
 
 /* ---- numbers in turns */
 
-/* How many units of 2^-64 turns a radian has, 2^63/pi < 10^19, to DIGITS places: so what is below
-   2^BITS units is off by less than 10^-30 of them. */
+/* How many units of 2^-64 turns a radian has, 2^63/pi < 10^19, to SCALE_DIGITS places.
+   So a number below 2^BITS units is off by less than 10^-30 of them. */
 static void units_of_radian(apm_t scale)
 {
     apm_t pi;
 
     apm_init(pi);
-    apm_pi(pi, DIGITS + 20);
+    apm_pi(pi, SCALE_DIGITS + 20);
     apm_set_d(scale, 0x1p63);
-    apm_div(scale, scale, pi, DIGITS, APM_DOWN);
+    apm_div(scale, scale, pi, SCALE_DIGITS, APM_DOWN);
     apm_clear(pi);
 }
 
@@ -263,26 +265,30 @@ static void set_angles(loewner *w, const patch *problem, const apm_t scale)
     w->seen[0][0] = w->seen[1][1] = 1.0;
 }
 
+/* |amplitude| + sum of |part|: no amplitude of the wave is larger in size. */
+static double size_of(const loewner *w, int i)
+{
+    double size = fabs(w->amplitude[i]);
+
+    for (int m = 0; m < w->n_parameters; m++)
+        size += fabs(w->part[i][m]);
+    return size;
+}
+
 /* The numbers of one wave: amplitude, parts, phase and k.  Amplitude and parts are off by 8 u of
    themselves (near), by two more if they are straightened, and their sum at a corner by 3 u: 13 u
-   of their sizes, where err_amplitude has 32.  Returns the sum of the sizes. */
-static double read_wave(loewner *w, const patch *problem, int given, int i)
+   of their sizes, where err_amplitude has 32. */
+static void read_wave(loewner *w, const patch *problem, int given, int i)
 {
-    double size;
-
     w->given[i] = given;
     w->amplitude[i] = near(problem->amplitude[given]);
-    size = fabs(w->amplitude[i]);
-    for (int m = 0; m < w->n_parameters; m++) {
+    for (int m = 0; m < w->n_parameters; m++)
         w->part[i][m] = near(problem->part[given][m]);
-        size += fabs(w->part[i][m]);
-    }
-    w->err_amplitude[i] = 0x1p-48 * size;
+    w->err_amplitude[i] = 0x1p-48 * size_of(w, i);
     w->phase[i] = near(problem->phase[given]);
     for (int j = 0; j < 2; j++)
         w->k[i][j] = problem->k[given][j];
     w->square_k[i] = square(fabs(w->k[i][0]) + fabs(w->k[i][1]));
-    return size;
 }
 
 /* The columns of the parameters that move a wave or the region: the others need no symbol. */
@@ -309,7 +315,8 @@ static void set_wave_slots(loewner *w, const patch *problem)
     w->waves = FIRST;
     for (int given = 0; given < problem->n_waves; given++) {
         const int i = w->waves;
-        if (read_wave(w, problem, given, i) != 0.0) {
+        read_wave(w, problem, given, i);
+        if (size_of(w, i) != 0.0) {
             w->most_k = larger(w->most_k, fabs(w->k[i][0]) + fabs(w->k[i][1]));
             w->waves++;
         }
@@ -369,10 +376,7 @@ static void set_axes(loewner *w)
     double k[2] = { 1.0, 0.0 }, most = -1.0, common, square_k;
 
     for (int i = FIRST; i < w->waves; i++) {
-        double bends = fabs(w->amplitude[i]);
-        for (int m = 0; m < w->n_parameters; m++)
-            bends += fabs(w->part[i][m]);
-        bends *= square(w->k[i][0]) + square(w->k[i][1]);
+        const double bends = size_of(w, i) * (square(w->k[i][0]) + square(w->k[i][1]));
         if (bends > most) {
             most = bends;
             memcpy(k, w->k[i], sizeof k);
@@ -396,25 +400,39 @@ static void set_axes(loewner *w)
         }
 }
 
-/* B at the corners of the parameters' cube.  An amplitude there is off by less than its
+/* The waves at a corner of the parameters' cube.  An amplitude there is off by less than its
    err_amplitude, and a phase by 2^-50 of itself (near) and what it was off before, less than 10^-39
    (converse.h). */
+static int waves_at_corner(const loewner *w, int corner, torus_wave waves[MOST_WAVES])
+{
+    int n = 0;
+
+    for (int i = FIRST; i < w->waves; i++) {
+        double p = w->amplitude[i];
+        for (int m = 0; m < w->n_parameters; m++)
+            p += (corner >> m & 1 ? 1.0 : -1.0) * w->part[i][m];
+        waves[n++] =
+            (torus_wave){ { w->k[i][0], w->k[i][1] },
+                          interval_about(w->phase[i], 0x1p-49 * fabs(w->phase[i]) + 0x1p-129),
+                          interval_about(p, w->err_amplitude[i]) };
+    }
+    return n;
+}
+
+/* Sets B at the corners.  Corners that differ by parameters that move no wave have the same waves,
+   and so the same B. */
 void loewner_bound_torus(loewner *w)
 {
     torus_wave waves[MOST_WAVES];
+    int moving = 0; /* the parameters that move a wave, as bits */
 
+    for (int i = FIRST; i < w->waves; i++)
+        for (int m = 0; m < w->n_parameters; m++)
+            moving |= (w->part[i][m] != 0.0) << m;
     for (int corner = 0; corner < 1 << w->n_parameters; corner++) {
-        int n = 0;
-        for (int i = FIRST; i < w->waves; i++) {
-            double p = w->amplitude[i];
-            for (int m = 0; m < w->n_parameters; m++)
-                p += (corner >> m & 1 ? 1.0 : -1.0) * w->part[i][m];
-            waves[n++] =
-                (torus_wave){ { w->k[i][0], w->k[i][1] },
-                              interval_about(w->phase[i], 0x1p-49 * fabs(w->phase[i]) + 0x1p-129),
-                              interval_about(p, w->err_amplitude[i]) };
-        }
-        w->corner[corner] = torus_largest(n, waves, TORUS_EIGENVALUE);
+        const int n = waves_at_corner(w, corner, waves), same = corner & moving;
+        w->corner[corner] =
+            same < corner ? w->corner[same] : torus_largest(n, waves, TORUS_EIGENVALUE);
     }
 }
 
@@ -425,13 +443,9 @@ static void set_turns(loewner *w, const patch *problem, const apm_t scale)
     double most = 0.0;
     apm_t longer;
 
-    for (int i = FIRST; i < w->waves; i++) {
-        double size = fabs(w->amplitude[i]) + w->err_amplitude[i];
-        for (int m = 0; m < w->n_parameters; m++)
-            size += fabs(w->part[i][m]);
-        most = larger(most, size);
-    }
-    if (!(most < MOST_SIZE) || w->waves == FIRST)
+    for (int i = FIRST; i < w->waves; i++)
+        most = larger(most, size_of(w, i) + w->err_amplitude[i]);
+    if (!(most < MAX_AMPLITUDE) || w->waves == FIRST)
         w->usable = 0;
     for (w->coarse = 0; w->usable && ldexp(1.0, w->coarse) < most;)
         w->coarse++;
@@ -521,14 +535,11 @@ int loewner_at_once(const loewner *w, const double at[2], int at_end)
     }
     least_eigenvector(d, n);
     const double length = square(n[0]) + square(n[1]);
-    sum = mass = 4.0 / 3.0 * length;    /* 2 |n|^2 less 2/3 |n|^2 */
+    sum = mass = 4.0 / 3.0 * length; /* 2 |n|^2 less 2/3 |n|^2 */
     for (int i = 0; i < w->waves; i++) {
-        double size = fabs(w->amplitude[i]) + w->err_amplitude[i];
         pull[i] *= square(w->k[i][0] * n[0] + w->k[i][1] * n[1]);
         sum -= p[i] * pull[i];
-        for (int m = 0; m < w->n_parameters; m++)
-            size += fabs(w->part[i][m]);
-        mass += size * w->square_k[i] * length;
+        mass += (size_of(w, i) + w->err_amplitude[i]) * w->square_k[i] * length;
     }
     for (int m = 0; m < w->n_parameters && !at_end; m++) {
         double swing = 0.0;
