@@ -196,9 +196,11 @@ def _problem(value, name):
     for j, harmonic in enumerate(value["harmonics"], 1):
         _check_fields("harmonic %d" % j, harmonic, ["k", "amplitude"], ["phase"])
         where, k, phase = "harmonic %d, k" % j, harmonic["k"], harmonic.get("phase", "sin")
-        if not isinstance(k, list) or len(k) not in (1, 2) or not all(
+        if not isinstance(k, list) or not all(
                 isinstance(n, _Number) and INTEGER.fullmatch(n) for n in k):
             _fail(where, "this is not a list of integers", "give [k] or [k0, k1]")
+        if len(k) not in (1, 2):
+            _fail(where, "maps have one angle or two, not %d" % len(k), "give [k] or [k0, k1]")
         if len(k) != len(value["harmonics"][0]["k"]):
             _fail(where, "the number of angles is not that of harmonic 1", "give [k] or [k0, k1] "
                   "in all harmonics")

@@ -15,6 +15,7 @@ from .report_1989 import deeper, quoted
 from .settings import REGION, THEOREM
 
 TINY = 1e-10                            # half-width of an angle, in units of pi
+HUGE = 2 ** 60                          # MAX_AMPLITUDE of csrc/loewner/problem.c
 REASONS = (report_1989.REASONS[0], "the prism was too large", *report_1989.REASONS[2:])
 
 
@@ -97,6 +98,9 @@ def _undecided(proof):
 def _advice(proof, undecided, stuck, flat):
     if flat:
         return "amplitudes that are not all 0: the map without potential has invariant tori"
+    if any(abs(p) + sum(map(abs, parts)) >= HUGE
+           for p, *parts in zip(proof.problem.amplitude, *proof.problem.parts)):
+        return "amplitudes below 2^60, near 10^18: larger ones do not fit into its numbers"
     if not undecided:
         return "more time, from a backup (-b FILE, then -r FILE)"
     return ("another x* (--xstar X0 X1), or " * stuck

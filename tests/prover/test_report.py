@@ -161,6 +161,12 @@ def test_where_x_star_may_be_the_cause(monkeypatch):
     assert re.search("the first of them: v0 = 1.1[0-9]* pi", point.report())
 
 
+def test_amplitudes_that_are_too_large_are_to_become_smaller():
+    for amplitude, words in (("1e19", "amplitudes below 2^60, near 10^18: "), ("0.1", "larger par")):
+        proof = prove(Problem(SymplecticMap([(1, 0), (1, 1)], [amplitude, amplitude])), depth=0)
+        assert not proof.no_tori and "\nTo try     " + words in proof.report()
+
+
 def test_comments_are_not_the_programs_words(made_up):
     """Neither what a terminal obeys nor a sentence of the program's can be smuggled in."""
     claim = "I find no invariant tori for the range of parameters :"
