@@ -7,6 +7,7 @@ is left is linked (links.py) to regions over others.  Nothing rests on how those
 
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from functools import partial
 from itertools import chain, compress, product
 from math import inf
 from typing import List, Tuple
@@ -21,21 +22,21 @@ from .settings import Settings
 from .shifts import best_shifts
 from .workers import LOOK_SECONDS
 
-LOOK_DEPTH, LOOK_LEAVES = 24, 200000    # of the tree whose undecided prisms are clustered
+LOOK_DEPTH = 24                         # cuts of the first tree whose undecided prisms are clustered
+DEEPER = 4                              # cuts, by which the next such tree is deeper
+MAX_LOOK_LEAVES = 200000                # of such a tree
+MAX_MOVING_LEAVES = 50000               # Larger clusters are good enough where regions move.
 # Where there are tori, the orbits of the tree are long, and no other x* helps.  Of all maps in
-# docs/explanation/method.md the crossed one with s = 0.58 needs the most points: 17 million, and
-# 0.9 million in the trees of less than LOOK_DEPTH cuts.
-LOOK_POINTS, SHRINK_POINTS = 50_000_000, 5_000_000
-FEW_LEAVES = 50000                      # Where regions move, larger clusters are good enough.
-# The look goes DEEPER cuts deeper as long as that halves the area of the clusters, and the area is
-# more than SMALL, in units of pi squared.
-DEEPER, SMALL = 4, Fraction(1, 10000)
-SHRINKS = 0.7                           # DEEPER cuts must leave less than this of the volume.
-TRY_DEPTH, TRY_LEAVES = 16, 10000       # Starting points are compared by trees of this size.
-ALL_LEAVES = 40000                      # A tree that is tried to the end has at most these.
+# docs/explanation/method.md the crossed one with s = 0.58 needs the most points of orbits: 17
+# million, and 0.9 million in the trees of less than LOOK_DEPTH cuts.
+MAX_LOOK_POINTS, MAX_SHRINK_POINTS = 50_000_000, 5_000_000
+SMALL_AREA = Fraction(1, 10000)         # of all clusters, in pi squared: no deeper tree is grown
+MAX_SHRINK_RATIO = 0.7                  # of the undecided volume, from a tree to one DEEPER
+TRY_DEPTH, MAX_TRY_LEAVES = 16, 10000   # of trees that compare starting points
+MAX_PROOF_LEAVES = 40000                # of a tree that is tried to the end
 FINE_STEPS, NEAR_STEPS, FAR_STEPS = (   # between points, in radians
     [Fraction(x, 1000) for x in steps] for steps in ((4, 8), (16, 32, 64), (128, 256, 512)))
-MOST_PARTS = 26
+MAX_PARTS = 26                          # a letter each
 
 
 @dataclass
@@ -55,13 +56,14 @@ def plan(problem, depth, xstar, undecided, largest, before, pool, seconds_left):
 
     undecided: whether the tree over x* alone is known to be undecided; before: the number of
     further parts so far; largest: B; pool: of this process."""
-    grown, found = _look(problem, depth, xstar, pool, seconds_left)
-    if not found or before + len(found) > MOST_PARTS:
+    survey = partial(_surveys, pool, seconds_left)
+    grown, found = _look(problem, depth, xstar, survey)
+    if not found or before + len(found) > MAX_PARTS:
         return None
     targets, parts = [], []
     points = [] if undecided else [tuple(Fraction(x) for x in xstar)]   # x* itself may do
     for cells in found:
-        image = _Image(problem, depth, xstar, largest, cells, pool, seconds_left)
+        image = _Image(problem, depth, xstar, largest, cells, survey)
         best = _best_start(image, points)
         shifts = () if best is None else image.shifts(best)
         if seconds_left() <= 0:
@@ -79,46 +81,47 @@ def plan(problem, depth, xstar, undecided, largest, before, pool, seconds_left):
     return Plan(text, steps, grown.counts, list(compress(parts, used))) if any(used) else None
 
 
-def _look(problem, depth, xstar, pool, seconds_left):
+def _look(problem, depth, xstar, survey):
     """Grows a tree over xstar and returns it with the clusters of its undecided prisms.  The depth
-    is LOOK_DEPTH, and greater as long as the clusters are large and shrink.  (None, []) if the tree
-    is too large, or time was up."""
+    is LOOK_DEPTH, and greater as long as the area of the clusters is large and is halved.
+    (None, []) if the tree is too large, or time was up."""
     best, covered, cuts = (None, []), inf, LOOK_DEPTH
-    enough = FEW_LEAVES if _has_width(problem) else LOOK_LEAVES
-    while cuts <= depth and (best[0] or _shrinks(problem, xstar, pool, seconds_left)):
-        grown = _surveys(pool, seconds_left, [_task(problem, xstar, cuts)], LOOK_LEAVES,
-                         LOOK_POINTS)
-        if not grown or grown[0].cells:
+    enough = MAX_MOVING_LEAVES if _has_width(problem) else MAX_LOOK_LEAVES
+    while cuts <= depth and (best[0] or _shrinks(problem, xstar, survey)):
+        grown = _whole(problem, xstar, cuts, survey, MAX_LOOK_POINTS)
+        if grown is None:
             break
-        found = clusters(problem, grown[0].text)
+        found = clusters(problem, grown.text)
         area = sum((b - a) * (d - c) for (a, b), (c, d)
                    in (hull_of(problem, cells) for cells in found))
         if best[1] and 2 * area > covered:
             break
-        best, covered, cuts = (grown[0], found), area, cuts + DEEPER
-        if area < SMALL or 3 * len(grown[0].text) > 2 * enough:
+        best, covered, cuts = (grown, found), area, cuts + DEEPER
+        if area < SMALL_AREA or 3 * len(grown.text) > 2 * enough:
             break
     return best
 
 
-def _shrinks(problem, xstar, pool, seconds_left):
+def _shrinks(problem, xstar, survey):
     """Does what is undecided become less with each DEEPER cuts?  If there are tori it does not:
     each has a successor of any x*, and cuts around these to LOOK_DEPTH may take minutes."""
     volume = inf
     for cuts in range(max(DEEPER, LOOK_DEPTH - 3 * DEEPER), LOOK_DEPTH, DEEPER):
-        grown = _surveys(pool, seconds_left, [_task(problem, xstar, cuts)], LOOK_LEAVES,
-                         SHRINK_POINTS)
-        if not grown or grown[0].cells:
-            return False
-        left = sum(0.5 ** sum(cell[1]) for kind, cell in tree.cells(grown[0].text) if kind == "U")
-        if left > SHRINKS * volume:
+        grown = _whole(problem, xstar, cuts, survey, MAX_SHRINK_POINTS)
+        left = inf if grown is None else sum(
+            0.5 ** sum(cell[1]) for kind, cell in tree.cells(grown.text) if kind == "U")
+        if grown is None or left > MAX_SHRINK_RATIO * volume:
             return False
         volume = left
     return True
 
 
-def _task(problem, xstar, depth):
-    return native.Task(problem, Settings("loewner", depth, stubborn=True), xstar)
+def _whole(problem, xstar, cuts, survey, points):
+    """The tree of so many cuts; None if it has more than MAX_LOOK_LEAVES leaves or `points` points
+    of orbits, or if time was up."""
+    grown = survey([native.Task(problem, Settings("loewner", cuts, stubborn=True), xstar)],
+                   MAX_LOOK_LEAVES, points)
+    return grown[0] if grown and not grown[0].cells else None
 
 
 def _surveys(pool, seconds_left, tasks, leaves, points=inf):
@@ -138,13 +141,13 @@ class _Image:
     """The image of a box over other starting points, where the waves bend least: there most prisms
     resist, and cuts of parameters do not hide how many."""
 
-    def __init__(self, problem, depth, xstar, largest, cells, pool, seconds_left):
+    def __init__(self, problem, depth, xstar, largest, cells, survey):
         """cells: whose hull is the box, those that there are for the weakest waves."""
         signs, self.weakest = _weakest(problem)
         cells = [cell for cell in cells if _reaches(cell, signs)] or cells
         self.problem, self.depth, self.xstar = problem, depth, xstar
         self.largest, self.box = min(largest, *crests(self.weakest)), hull_of(problem, cells)
-        self.pool, self.seconds_left = pool, seconds_left
+        self.survey = survey
 
     def region(self, point):
         link = Link.between(self.weakest, self.largest, self.xstar, _text(point))
@@ -152,13 +155,13 @@ class _Image:
 
     def grow(self, points, settings, most):
         """The trees over the points, of `most` leaves each; [] if time was up."""
-        return _surveys(self.pool, self.seconds_left, [
+        return self.survey([
             native.Task(self.weakest.part(self.region(point)), settings, _text(point))
             for point in points], most)
 
     def proof(self, point):
         """A tree over the point, tried to the end; None if time was up."""
-        grown = self.grow([point], Settings("loewner", self.depth), ALL_LEAVES)
+        grown = self.grow([point], Settings("loewner", self.depth), MAX_PROOF_LEAVES)
         return grown[0] if grown else None
 
     def shifts(self, point):
@@ -180,7 +183,7 @@ def _best_start(image, others):
     def look(points):
         """The best of these points; None if time was up."""
         new = [point for point in dict.fromkeys(points) if point not in known]
-        most = min([TRY_LEAVES, *(2 * leaves for _, leaves in sorted(known.values())[:1])])
+        most = min([MAX_TRY_LEAVES, *(2 * leaves for _, leaves in sorted(known.values())[:1])])
         grown = image.grow(new, Settings("loewner", TRY_DEPTH, stubborn=True), most)
         known.update(zip(new, map(_score, grown)))
         return min(points, key=known.__getitem__) if len(grown) == len(new) else None
@@ -193,7 +196,7 @@ def _best_start(image, others):
                 return point
         tried.add(point)
     best = min(known, key=known.__getitem__, default=start)
-    return None if best == start or known[best][0] == inf or image.seconds_left() <= 0 else best
+    return None if best == start or known[best][0] == inf else best
 
 
 def _ways(problem):

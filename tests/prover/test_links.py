@@ -37,9 +37,9 @@ def line(low, high=None):
 def _easily(monkeypatch):
     monkeypatch.setattr(run, "LONG", 15)
     monkeypatch.setattr(starts, "LOOK_DEPTH", 8)
-    monkeypatch.setattr(starts, "SMALL", 1)
+    monkeypatch.setattr(starts, "SMALL_AREA", 1)
     monkeypatch.setattr(starts, "TRY_DEPTH", 6)
-    monkeypatch.setattr(starts, "ALL_LEAVES", 5)
+    monkeypatch.setattr(starts, "MAX_PROOF_LEAVES", 5)
     for name, steps in ("FINE", []), ("NEAR", [Fraction("0.032")]), ("FAR", []):
         monkeypatch.setattr(starts, name + "_STEPS", steps)
 
@@ -384,23 +384,21 @@ def test_undecided_stays_undecided(easily):
         (1, 0, Fraction(-1, 2)), (0, 1, Fraction(-1, 2)), (1, 1, Fraction(-1, 2))],
                            ["0.02", "0.02", "0.5"])),
      "1.579997", [12, 16, 20, 24])])
-def test_where_there_are_tori_no_starting_points_are_looked_for(problem, x, grown, monkeypatch):
+def test_where_there_are_tori_no_starting_points_are_looked_for(problem, x, grown):
     """What is undecided does not shrink there, or takes too many points of orbits: the tree is not
     grown to the depth of clusters."""
-    depths, points, surveys = [], [], starts._surveys
-
-    def noted(pool, seconds_left, tasks, *most):
-        depths.extend(task.settings.depth for task in tasks)
-        found = surveys(pool, seconds_left, tasks, *most)
-        points.extend(sum(tree.steps) for tree in found)
-        return found
-
-    monkeypatch.setattr(starts, "_surveys", noted)
+    depths, points = [], []
     with WorkerPool(None, 1, Stop()) as pool:
-        left = starts._look(problem, 24, (x, x), pool, lambda: 60.0)[1]
+        def noted(tasks, *most):
+            depths.extend(task.settings.depth for task in tasks)
+            found = starts._surveys(pool, lambda: 60.0, tasks, *most)
+            points.extend(sum(tree.steps) for tree in found)
+            return found
+
+        left = starts._look(problem, 24, (x, x), noted)[1]
     assert depths == grown and bool(left) == (24 in grown)
     # A survey ends with the orbit that reaches the bound; none has more than 10,000 points.
-    assert max(points) < starts.SHRINK_POINTS + 10_000
+    assert max(points) < starts.MAX_SHRINK_POINTS + 10_000
 
 
 def test_progress_goes_on_while_starting_points_are_looked_for(easily, monkeypatch):
