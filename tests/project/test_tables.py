@@ -142,15 +142,28 @@ def test_tori_of_the_frontier_are_rows_of_the_tori():
 def test_the_other_maps_of_the_frontier():
     """Each value without tori is in the table of the method, or in the text below it."""
     text = PAGES["frontier.md"][PAGES["frontier.md"].index("## Other maps"):]
-    least = re.findall(r"^\| ([a-zFé, K0-9.=B]+) \| (?:K|K1|s) \|.*\| (.*?) \|$", text,
-                       re.MULTILINE)
+    least = re.findall(r"^\| ([a-zFé, K0-9.=B]+) \| (?:K|K1|s) \|.*\| (.*?) \| [0-9.]* ?\|$",
+                       text, re.MULTILINE)
     points = {row[0].partition(":")[0]: row for row in rows("method.md", "map")}
     assert len(least) == 6
-    for name, value in least[1:]:
+    assert "also proves k = %s," % dict(least).pop("standard map") in words("method.md")
+    for name, value in least:
+        if name == "standard map":
+            continue
         known = " ".join(points[name][3:6]) + re.search(
             r"B = 0.5, K = ([0-9., and]+) need no links", words("method.md"))[1]
         for at in re.findall(r"0\.\d+", value):
             assert at in known, (name, at)
+
+
+def test_the_ratios_of_the_two_sides():
+    """That of the values beside it, rounded to the digits that are given."""
+    found = [row for row in re.findall(
+        r"^\| [^|]+ \| (?:K|K1|s|epsilon) \| ([0-9.]+),[^|]* \|[^|]*\| ([0-9.]+)[^|]* \| (.*?) \|$",
+        PAGES["frontier.md"], re.MULTILINE)]
+    assert len(found) == 6
+    for torus, none, ratio in found:
+        assert float(ratio) == round(float(none) / float(torus), len(ratio.partition(".")[2]))
 
 
 def test_the_share_of_vectors_before_their_onset():
