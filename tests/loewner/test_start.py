@@ -29,6 +29,22 @@ def decide(parameters, xstar=None, most=20000):
     return tuple(map(float, begun.xstar)), tries, not cells and not undecided
 
 
+def largest(*ranges):
+    """B of three ranges."""
+    search = native.Search(native.Task(Problem(MuldoonMap(*ranges)), Settings(method="loewner")))
+    assert search.prepare(None)
+    return float(search.begin("").constants["B"])
+
+
+@pytest.mark.parametrize("axis", [0, 1, 2])
+def test_parameters_without_width_share_the_bounds_of_the_others(axis):
+    """B of a range of one parameter is the larger B of its ends."""
+    point = ["0.3", "0.2", "0.5"]
+    at = [largest(*point[:axis], end, *point[axis + 1:]) for end in ("0.31", "0.37")]
+    ends = largest(*point[:axis], ("0.31", "0.37"), *point[axis + 1:])
+    assert at[0] < at[1] - 0.01 and ends == pytest.approx(at[1], abs=1e-9)
+
+
 def chosen(*parameters):
     return decide(parameters, most=0)[0]
 
@@ -37,6 +53,17 @@ def chosen(*parameters):
 def test_on_the_thesis_line_it_stays(epsilon):
     a = "%.9f" % (4 * math.pi * epsilon)
     assert chosen(a, a, "%.9f" % (8 * math.pi * epsilon)) == (0.858028, 0.858028)
+
+
+def test_a_range_is_easy_only_if_its_weakest_end_is():
+    """In the middle nine points contradict every orbit through the first choice; at the weak end
+    a better place is looked for."""
+    waves = [(1, 0), (0, 1), (1, 1), (1, -1)]
+    wide = Problem(SymplecticMap(waves, ["0.55", "0.55", "0.4125", "0.1375"],
+                                 [["0.25", "0.25", "0.1875", "0.0625"]]))
+    middle = Problem(SymplecticMap(waves, wide.amplitude))
+    assert decide(middle, most=0)[0] == (1.018997, 0.879503)
+    assert decide(wide, most=0)[0] == (1.325359, 0.589049)
 
 
 @pytest.mark.parametrize("a, b", [("0.972", "0"), ("0.98", "0.98"), ("0.99", "0.5"), ("1.4", "0")])
