@@ -481,7 +481,7 @@ loewner *loewner_new(const patch *problem, int longest)
     set_turns(w, problem, scale);
     apm_clear(scale);
     set_axes(w);
-    for (int corner = 0; corner < 1 << PARAMETERS; corner++)
+    for (int corner = 0; corner < 1 << w->n_parameters; corner++)
         w->corner[corner] = HUGE_VAL;
     w->engine = fastest_engine();
     w->memory = calloc(1, w->engine->size + ALIGNMENT);
