@@ -22,7 +22,7 @@ from .settings import Settings
 from .shifts import best_shifts
 from .workers import LOOK_SECONDS
 
-LOOK_DEPTH = 24                         # cuts of the first tree whose undecided prisms are clustered
+LOOK_DEPTH = 24                         # cuts of the first tree that is clustered
 DEEPER = 4                              # cuts, by which the next such tree is deeper
 MAX_LOOK_LEAVES = 200000                # of such a tree
 MAX_MOVING_LEAVES = 50000               # Larger clusters are good enough where regions move.

@@ -158,9 +158,9 @@ def test_the_other_maps_of_the_frontier():
 
 def test_the_ratios_of_the_two_sides():
     """That of the values beside it, rounded to the digits that are given."""
-    found = [row for row in re.findall(
+    found = re.findall(
         r"^\| [^|]+ \| (?:K|K1|s|epsilon) \| ([0-9.]+),[^|]* \|[^|]*\| ([0-9.]+)[^|]* \| (.*?) \|$",
-        PAGES["frontier.md"], re.MULTILINE)]
+        PAGES["frontier.md"], re.MULTILINE)
     assert len(found) == 6
     for torus, none, ratio in found:
         assert float(ratio) == round(float(none) / float(torus), len(ratio.partition(".")[2]))

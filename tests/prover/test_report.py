@@ -162,7 +162,7 @@ def test_where_x_star_may_be_the_cause(monkeypatch):
 
 
 def test_amplitudes_that_are_too_large_are_to_become_smaller():
-    for amplitude, words in (("1e19", "amplitudes below 2^60, near 10^18: "), ("0.1", "larger par")):
+    for amplitude, words in (("1e19", "amplitudes below 2^60, near 10^18: "), ("0.1", "larger")):
         proof = prove(Problem(SymplecticMap([(1, 0), (1, 1)], [amplitude, amplitude])), depth=0)
         assert not proof.no_tori and "\nTo try     " + words in proof.report()
 
