@@ -1,3 +1,3 @@
-"""The program's version, in the one place where it stands, but for check/version.py."""
+"""The program's version.  Only check/version.py repeats it."""
 
 __version__ = "3.0.0"

@@ -15,9 +15,9 @@ MAX_DIVISORS = 1 << 21                  # of a rotation, computed one by one
 PRIMES = [p for p in range(2, 2000) if all(p % d for d in range(2, math.isqrt(p) + 1))]
 PI_LOW, PI_HIGH = Fraction(314159265358979, 10 ** 14), Fraction(314159265358980, 10 ** 14)
 E_LOW = Fraction(271828182845904, 10 ** 14)
-SHARES = 64                             # An edge of the unit ball is cut into so many parts.
-BITS = 256                              # The root is computed to these bits to begin with.
-TURN_BITS = 192                         # k.omega modulo 1 is computed to these bits.
+SHARES = 64                             # An edge of the unit ball is cut into this number of parts.
+BITS = 256                              # The root is first computed to this number of bits.
+TURN_BITS = 192                         # k.omega modulo 1 is computed to this number of bits.
 SHY = 16                                # Divisors above SHY times the tail's bound do not count.
 
 

@@ -72,11 +72,11 @@ def end_with_parent():
 
 
 def in_order(call, items, jobs, undisturbed):
-    """Yields call(item) of all items in their order, of which so many processes compute as many at
-    a time; few items and results are in memory.
+    """Yields call(item) of all items in their order.  `jobs` processes compute one item each at a
+    time; few items and results are in memory.
 
-    What a call raises is raised here; ProcessDied: a process died.  undisturbed() is a context in
-    which no signal raises an exception.
+    An exception of a call is raised here; ProcessDied: a process died.  undisturbed() is a context
+    in which no signal raises an exception.
     """
     import multiprocessing.connection
     items, workers, idle = iter(items), [], []

@@ -67,8 +67,8 @@ def load(path):
 
 
 def read(path):
-    """Reads a proof file, a map, a portrait or a certificate of existence; nothing in it is
-    believed but what the claim is."""
+    """Reads a proof file, a map, a portrait or a certificate of existence; of its
+    contents only the claim is believed."""
     data = load(path)
     if data.startswith(TORUS_MAGIC):
         return read_torus(data)
@@ -134,8 +134,8 @@ def verify(path, jobs=1, sample=None, state=None, bar=False, exact=False, shard=
 
 
 def problems_of(file):
-    """The Problems of a proof file, a map or a portrait, of which all has been checked but the
-    leaves."""
+    """The Problems of a proof file, a map or a portrait.  Everything except the leaves has been
+    checked."""
     if isinstance(file, ParameterMap):
         return Problems(file.claims, check_map(file))
     if isinstance(file, Portrait):
@@ -159,7 +159,7 @@ def check_leaves(problems, chosen, done, jobs, bar):
     if problems.fast:
         fewest, most = FAST_CHUNK
         size = min(max(len(chosen) // (CHUNKS * jobs), fewest), most)
-    jobs = max(min(jobs, -(-len(chosen) // size)), 1)       # a process for one chunk is a waste
+    jobs = max(min(jobs, -(-len(chosen) // size)), 1)       # no more processes than chunks
     chunks = iter(lambda: list(itertools.islice(queue, size)), [])
     try:
         with Bar(work() if bar else (), len(chosen)) as progress, \

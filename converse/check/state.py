@@ -115,7 +115,7 @@ class State:
         return text + "checksum: sha256 %s\n" % hashlib.sha256(text.encode()).hexdigest()
 
     def _write(self):
-        """The file is whole at any time, the older one or the newer.
+        """Replaces the file.  At any time either the older or the newer file is there, whole.
 
         A signal waits meanwhile: if KeyboardInterrupt struck inside file.write on a full disk, the
         OSError of the close() that follows would take its place, and the check would go on."""
@@ -146,7 +146,8 @@ class State:
             self.save()
 
     def save(self):
-        """A failure does not end a check of hours: it is said, and there will be another time."""
+        """Saves the state.  A failure does not end a check of hours: it is reported, and the next
+        save tries again."""
         if self.path:
             try:
                 self._write()

@@ -25,7 +25,7 @@ REFRESH_SECONDS = 0.25                  # between two texts of a ProgressLine
 # ---- arguments
 
 class _Formatter(argparse.HelpFormatter):
-    """A text with line ends is shown as it is written, any other is filled."""
+    """A text with line ends is shown unchanged, and any other text is filled."""
 
     def _fill_text(self, text, width, indent):
         return text if "\n" in text else super()._fill_text(text, width, indent)
@@ -74,7 +74,7 @@ def whole_number(least, most=LIMIT):
 
 
 def seconds(text):
-    """The type of an argument that is a duration, perhaps infinite."""
+    """The type of an argument that is a duration in seconds, perhaps infinite."""
     try:
         number = float(text)
     except ValueError:
@@ -190,8 +190,8 @@ def read_problem(name, command="converse"):
 
 @contextlib.contextmanager
 def _warnings_in_lines(command, unsaved):
-    """Meanwhile a RuntimeWarning is told in one line, except NotSaved: its text is appended to the
-    list `unsaved`, to be part of the command's last line."""
+    """A context that prints each RuntimeWarning as one line.  The text of NotSaved is appended to
+    the list `unsaved` instead, and becomes a part of the command's last line."""
     def show(message, category, *_):
         if issubclass(category, NotSaved):
             unsaved.append(str(message))
@@ -205,14 +205,14 @@ def _warnings_in_lines(command, unsaved):
 
 
 def _make_stderr():
-    """Opens the standard error that is closed: its number must not become a backup's."""
+    """Opens a closed standard error, so that no backup gets its number."""
     os.dup2(os.open(os.devnull, os.O_WRONLY), 2)
     sys.stderr = open(2, "w", encoding="utf-8", closefd=False)
 
 
 def ended(command, run, interrupted):
     """The exit status of run(); every failure is one line on stderr, headed by the command's name.
-    interrupted() says what Ctrl-C leaves behind."""
+    interrupted() returns a text about what Ctrl-C leaves behind."""
     heard, unsaved = [], []
     try:
         if sys.stderr is None:

@@ -104,7 +104,7 @@ def new(width, height, fill, layout=None):
 
 
 def written(width, height, kind, fill, layout=None, dpi=200):
-    """What new() makes, as the bytes of a file of that kind; dpi is that of its rasters."""
+    """The figure of new() as the bytes of a file of this kind; dpi: the resolution of rasters."""
     figure = new(width, height, fill, layout)
     from matplotlib import style
 

@@ -116,8 +116,8 @@ class TreeSearch(Resource):
 
     @property
     def counts(self):
-        """The statistics.  The nodes counted are those of the tree as it is, but the tries include
-        those of parts that were dropped, since an undecided prism before them ended the search."""
+        """The statistics.  Nodes are counted in the tree as it is.  Tries also count in parts that
+        were dropped because an undecided prism before them ended the search."""
         kinds = map(sum, zip(*(part.kinds for part in self._relevant()), (0,) * len(KINDS)))
         return replace(self.statistics, **dict(zip(KINDS, kinds)))
 

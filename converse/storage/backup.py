@@ -1,4 +1,4 @@
-"""The backup: a file that is kept up to date with a proof, or a map, while it is searched for."""
+"""The backup: a file that is kept up to date with a proof or a map during the search."""
 
 import time
 import warnings
@@ -14,9 +14,9 @@ SHARE = 20                          # and at least 20 times the duration of the 
 class Backup(Resource):
     """A context that keeps the file `path` up to date; with None it keeps nothing.
 
-    The file must be new, or empty, or `resumed`, the file of the run that is continued.  Others
-    are not overwritten.  ConverseError: it is another file, or cannot be written, or another run
-    writes it."""
+    The file must be new, or empty, or `resumed`, the file of the run that is continued.  Other
+    files are not overwritten.  ConverseError: the file is another one, cannot be written, or is
+    written by another run."""
 
     def __init__(self, path, resumed=None):
         self.path, self.resumed = path, resumed
@@ -35,8 +35,10 @@ class Backup(Resource):
             self.lock.release()
 
     def update(self, snapshot):
-        """Writes what snapshot() returns, if a write is due.  If that fails a warning is given,
-        once, and the next write is tried when it is due; the first failure of all is raised."""
+        """Writes the result of snapshot(), if a write is due.
+
+        A failure of the first write is raised.  The first later failure is a warning, and the
+        next write is tried when it is due."""
         if self.path is None or time.monotonic() < self.due:
             return
         now = time.monotonic()
@@ -54,7 +56,7 @@ class Backup(Resource):
 
     def finish(self, proof):
         """Writes the result of a run; returns the SHA-256 of the file, "" if there is none.
-        NotSaved: a warning that it could not be written."""
+        NotSaved: a warning that the file could not be written."""
         if self.path is None:
             return ""
         try:

@@ -24,7 +24,7 @@ def plain(text):
 
 
 def verified(value, jobs):
-    """What converse-check's code says of a value that has save(): a check.Result."""
+    """The check.Result of converse-check's code for a value that has save()."""
     from .. import check
 
     with tempfile.TemporaryDirectory() as directory:
@@ -34,7 +34,7 @@ def verified(value, jobs):
 
 
 def check_new(path, resumed=None):
-    """ConverseError if a backup would overwrite a file, unless it is empty or the one continued."""
+    """ConverseError if a backup would overwrite a file that is neither empty nor `resumed`."""
     if os.path.exists(path) and os.path.getsize(path) and not (
             resumed is not None and same(path, resumed)):
         raise ConverseError("%s: exists; to continue it, name it with -r (resume=), or else name "
@@ -47,7 +47,7 @@ def reason(error):
 
 
 def same(path, other):
-    """Are both paths of one file, whether it exists or not?  other may be a file descriptor."""
+    """Do both paths name one file, which need not exist?  other may be a file descriptor."""
     try:
         return os.path.samefile(path, other)
     except OSError:
@@ -60,7 +60,7 @@ def _beside(path):
 
 
 def check_writable(path, regular=False):
-    """ConverseError if a file cannot be written: found out before the work starts."""
+    """ConverseError if a file cannot be written.  Called before the work starts."""
     if not os.fspath(path):
         raise ConverseError("the name of a file is empty; give one")
     if os.path.isdir(path):
@@ -117,11 +117,11 @@ def check_output(path, what, endings, others=()):
 
 
 def write(path, data):
-    """Writes bytes to a file, all or none: to a new file beside it, which then takes its name.
-    ConverseError: it cannot be written; the older file is as it was.
+    """Writes bytes to a file, all or none: to a new file beside it, which is then renamed.
+    ConverseError: the file cannot be written; the older file is unchanged.
 
-    A signal waits meanwhile: if KeyboardInterrupt struck inside file.write on a full disk, the
-    OSError of the close() that follows would take its place, and nobody would stop."""
+    A signal waits meanwhile.  If KeyboardInterrupt struck inside file.write on a full disk, the
+    OSError of the close() that follows would replace it, and the run would not stop."""
     with postponed():
         _write(path, data)
 
@@ -170,8 +170,8 @@ def write_text(path, text):
 
 
 def read_text(path, what, damaged):
-    """The text of a file, compressed or not.  ConverseError: it cannot be read, and another `what`
-    should be named; or it is truncated, or no text, which the words `damaged` say."""
+    """The text of a file, compressed or not.  ConverseError: the file cannot be read, and
+    the message asks for another `what`; or it is truncated or not text, as `damaged` says."""
     try:
         with open(path, "rb") as file:
             data = file.read()
@@ -187,8 +187,8 @@ def read_text(path, what, damaged):
 
 
 class AppendedFile:
-    """A file that begins with a text, whatever it held before, and grows by whole texts.  Only the
-    last of them can be torn, where the program is killed or the disk is full."""
+    """A file that begins with a text, which replaces its older contents, and grows by whole texts.
+    Only the last text can be incomplete, if the program is killed or the disk is full."""
 
     def __init__(self, path, text):
         self.path = path
@@ -198,7 +198,7 @@ class AppendedFile:
         self.append(text)
 
     def append(self, text):
-        """ConverseError: it cannot be written."""
+        """ConverseError: the file cannot be written."""
         data = text.encode("utf-8")
         with self._failures_told():
             while data:                 # a disk that is almost full takes a part
@@ -260,7 +260,7 @@ class Lock(Resource):
         return None
 
     def _is_there(self, handle):
-        """Is it still this file that has the name?"""
+        """Does the name still belong to the file of this handle?"""
         with contextlib.suppress(OSError):
             return os.path.samestat(os.fstat(handle), os.stat(self.name))
         return False

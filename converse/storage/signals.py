@@ -18,8 +18,8 @@ ENDING = [getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP")
 
 _depth = 0                              # of postponed(), in the main thread
 _heard: List[int] = []                  # numbers of the signals since interruptible() began
-_due = False                            # the first of them is yet to be raised
-_hook = sys.unraisablehook              # that of others
+_due = False                            # must the first of them still be raised?
+_hook = sys.unraisablehook              # the hook before interruptible()
 
 
 def _interrupt(number, frame):
@@ -36,8 +36,8 @@ def _interrupt(number, frame):
 
 
 def _not_passed_on(unraisable):
-    """The hook for what Python cannot pass on, as it was raised in a weakref's callback or a
-    __del__: if that is the signal, it is yet to be raised."""
+    """The hook for exceptions that Python cannot pass on, since a weakref's callback or a __del__
+    raised them.  If the exception is the signal, it must still be raised."""
     global _due
     if _heard and unraisable.exc_type is KeyboardInterrupt:
         _due = True
@@ -83,8 +83,9 @@ class Resource:
 
 class interruptible(Resource):
     """A context in which these signals raise KeyboardInterrupt, unless they are ignored or have a
-    handler other than Python's own; only the first of all counts.  Inside another interruptible()
-    it changes nothing, nor in another thread than the main one, which alone receives signals.
+    handler other than Python's own.  Only the first signal of all counts.  The context changes
+    nothing inside another interruptible(), and nothing outside the main thread, which alone
+    receives signals.
 
     heard: the numbers of the signals that came.
     at_end: the process ends after this: once a signal came, the others are ignored for good."""
@@ -113,8 +114,7 @@ class interruptible(Resource):
 
 
 class postponed(Resource):
-    """A context, which should be short, at whose end a signal of interruptible() is raised that
-    came meanwhile."""
+    """A context, which should be short, that delays signals of interruptible() to its end."""
 
     counted = False
 
