@@ -163,7 +163,7 @@ def draw(proof, axes):
 
 
 def _axis(problem, axes, k):
-    """Makes an axis ready for the angle k; returns where it begins, and its length.  A single value
+    """Prepares an axis for the angle k; returns its beginning and its length.  A single value
     is drawn as a strip; in a narrow range, which doubles may not resolve, the centre is at 0."""
     centre, half = problem.centre[k - 2], problem.half[k - 2]
     single = half < SINGLE

@@ -135,7 +135,7 @@ def _surface(figure, ax, torus, i):
 
 
 def _at_end(torus):
-    """Of which parameter a panel is, if there is one."""
+    """The words for the parameter that a panel shows, if there is one."""
     return "" if torus.part is None else ", s = %.3g" % torus.piece[1]
 
 

@@ -262,7 +262,7 @@ class _Search:
         return time.monotonic() >= self.end
 
     def _work(self, next_task, take):
-        """Hands out tasks (key, call, *arguments) and calls take(key, result) for what comes back,
+        """Hands out tasks (key, call, *arguments) and calls take(key, result) for each result,
         until no task or no time is left."""
         task, running = next_task(), self.pool.running
         while (task or running) and not self.late:
@@ -323,7 +323,7 @@ class _Search:
                    for k in axes)
 
     def _push(self, node):
-        """Puts an open cell in the queue, cut where it is too large; drops what is not wanted."""
+        """Queues an open cell, cut if it is too large; drops the parts that are not wanted."""
         cell = node.cell
         if not self.map.wanted(cell):
             return
@@ -344,7 +344,7 @@ class _Search:
         return (float(self.map.down_to) - 1) * low / GRAIN
 
     def _take(self, node, budget, outcome):
-        """Enters the outcome of a try at a cell, and sees to what of it is still open."""
+        """Records the outcome of a try at a cell, and queues the parts that are still open."""
         cell = node.cell
         node.decide(outcome.kind, outcome.proof)
         if outcome.kind != OPEN:

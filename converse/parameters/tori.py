@@ -1,6 +1,6 @@
 """Tori that are proved at points of a plane: the frontier of its map from the other side.
 
-A torus is one of its amplitudes (a, b, c), and its certificate does not speak of smaller ones.
+A certificate proves a torus at its own amplitudes (a, b, c), and nothing at smaller amplitudes.
 """
 
 import os
@@ -19,8 +19,8 @@ Point = Tuple[Fraction, Fraction, Fraction]
 def proved_points(directory: Path) -> List[Tuple[Point, str]]:
     """The (a, b, c) of the certificates in a directory, and the rotation vectors' names.
 
-    They are read, not checked: converse-check does that.  ConverseError: the directory or a
-    certificate cannot be read, or is of other waves, or of a range."""
+    The certificates are read and not checked: converse-check checks them.  ConverseError: the
+    directory or a certificate cannot be read, or has other waves, or a range."""
     from ..tori.certificate import read
 
     try:
