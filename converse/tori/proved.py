@@ -107,31 +107,78 @@ class ProvedTorus:
         return verdict(self)
 
     def plot(self, ax: Any = None) -> Any:
-        """Draws the tori into Axes of matplotlib, which are returned: one with one angle, a pair
-        with two.  With None a Figure is returned, which a notebook shows: also the Fourier
-        coefficients and, for a range, the error of the invariance equation."""
+        """Draws the tori.
+
+        Parameters
+        ----------
+        ax
+            Axes of matplotlib, which are drawn into and returned: one with one angle, a pair with
+            two.  With None a Figure is returned, which also shows the Fourier coefficients and, for
+            a range, the residual.
+        """
         from ..draw import torus_figure
         tori = [piece.torus for piece in self.pieces]
         return torus_figure.page(tori, self.pieces) if ax is None else torus_figure.into(ax, tori)
 
     def verify(self, jobs: int = 1) -> check.Result:
-        """Verifies the certificate anew, as Proof.verify does."""
+        """Verifies the certificate anew by the code of converse-check.
+
+        Parameters
+        ----------
+        jobs
+            How many pieces of a range are verified at a time, in processes.
+
+        Returns
+        -------
+        check.Result
+            True if the theorem is verified; its text is the checker's report.
+
+        Raises
+        ------
+        check.Rejected, check.NotConfirmed, check.Unusable
+            The theorem is not verified; the text says why.
+        """
         return files.verified(self, jobs)
 
     @classmethod
     def load(cls, path: Union[str, "os.PathLike[str]"], jobs: int = 1) -> "ProvedTorus":
         """Reads a certificate and lets the checker verify it: the result is a theorem again.
 
-        jobs -- how many pieces of a range are verified at a time, in processes
-        ConverseError: the file cannot be read, or is not a certificate.  NotProved: the checker
-        does not confirm it."""
+        Parameters
+        ----------
+        path
+            The file, compressed or not.
+        jobs
+            As of verify().
+
+        Raises
+        ------
+        ConverseError
+            The file cannot be read, or is not a certificate.
+        NotProved
+            The checker does not confirm the torus.
+        """
         return _verified(certificate.read(path).tori, jobs, lambda text: None)
 
     def save(self, path: Union[str, "os.PathLike[str]"]) -> str:
-        """Writes the certificate (docs/reference/torus-certificate.md), compressed if the name ends
-        in .gz, and returns its SHA-256 (of the uncompressed file).  As with Proof.save() a file
-        that is there is replaced; the command converse-tori refuses to.  ConverseError: it cannot
-        be written; the older file, if any, is intact."""
+        """Writes the certificate (docs/reference/torus-certificate.md).
+
+        Parameters
+        ----------
+        path
+            The file, which is replaced if it exists; the text is compressed if the name ends in
+            .gz.
+
+        Returns
+        -------
+        str
+            The SHA-256 of the uncompressed text.
+
+        Raises
+        ------
+        ConverseError
+            The file cannot be written; an older file is intact.
+        """
         return files.write_text(path, self.certificate)
 
 

@@ -25,13 +25,22 @@ LONGEST = 2000                          # A text of a rotation vector has at mos
 class Rotation:
     """A rotation vector, in turns: w = 2 pi omega.
 
-    name -- for reports; "" for none.
-    polynomial -- ascending integer coefficients, irreducible, of degree 2 (one angle) or 3 (two).
-    root -- rationals, low < t < high, between which t is its only real root.
-    vector -- of each omega_j the rational coefficients of 1, t, (t^2).
+    Parameters
+    ----------
+    name
+        For reports; "" for none.
+    polynomial
+        Ascending integer coefficients, irreducible, of degree 2 (one angle) or 3 (two).
+    root
+        Rationals, low < t < high, between which t is its only real root.
+    vector
+        Of each omega_j the rational coefficients of 1, t, (t^2).
 
-    ValueError: the polynomial is reducible, the interval does not isolate a real root, or 1 and
-    the omega_j are linearly dependent over the rationals.
+    Raises
+    ------
+    ValueError
+        The polynomial is reducible, the interval does not isolate a real root, or 1 and the omega_j
+        are linearly dependent over the rationals.
     """
 
     name: str
@@ -75,7 +84,18 @@ class Rotation:
         return Field(self.polynomial, self.root)
 
     def turns(self, digits: int) -> Tuple[Ends, ...]:
-        """Of each omega_j a lower and an upper bound that differ by 10^-digits at most."""
+        """Bounds of the components.
+
+        Parameters
+        ----------
+        digits
+            A lower and an upper bound differ by 10^-digits at most.
+
+        Returns
+        -------
+        tuple of (Fraction, Fraction)
+            Of each omega_j both bounds.
+        """
         return tuple(self.field.bounds(element, digits) for element in self.vector)
 
     @cached_property
@@ -143,7 +163,21 @@ def read_rotation(text: str, dimension: Optional[int] = None) -> Rotation:
     real root.  An element is a sum of terms such as 3/4 t^2, or a quotient of two sums in
     parentheses.
 
-    ValueError, in one line: it is not a rotation vector, or not of `dimension` angles.
+    Parameters
+    ----------
+    text
+        In one of these forms.
+    dimension
+        How many angles the map has; by default any number.
+
+    Returns
+    -------
+    Rotation
+
+    Raises
+    ------
+    ValueError
+        The text is not a rotation vector, or not of `dimension` angles.
     """
     if len(text) > LONGEST:
         raise ValueError("the rotation vector has %d characters; %d at most" % (len(text), LONGEST))

@@ -117,7 +117,18 @@ class Torus:
                      for p, d in zip(self.potential.amplitude, part))
 
     def sigma(self, s: float = 0) -> float:
-        """The variable of the piece, in [-1, 1], for a parameter s; ValueError: s is outside."""
+        """The variable of the piece, in [-1, 1].
+
+        Parameters
+        ----------
+        s
+            The parameter; 0 without one.
+
+        Raises
+        ------
+        ValueError
+            s is outside of the piece.
+        """
         low, high = map(float, self.piece)
         if not low <= s <= high:
             raise ValueError("s = %r is outside of the piece from %r to %r" % (s, low, high))
@@ -133,7 +144,18 @@ class Torus:
         return re + 1j * im
 
     def coefficients(self, s: float = 0) -> np.ndarray:
-        """The u_k at a parameter s, in doubles, in the order of `k`: shape (modes, n)."""
+        """The coefficients u_k in doubles.
+
+        Parameters
+        ----------
+        s
+            As of sigma().
+
+        Returns
+        -------
+        array (modes, n)
+            In the order of `k`.
+        """
         return np.tensordot(self.sigma(s) ** np.arange(self.degree + 1), self.doubles, 1).T
 
     def _sum(self, theta, coefficients):
@@ -148,13 +170,36 @@ class Torus:
         return found.reshape(theta.shape)
 
     def x(self, theta: Any, s: float = 0) -> np.ndarray:
-        """The points of angles theta, in radians and doubles: an array of shape (..., n), or of any
-        shape if n = 1.  They are not taken modulo 2 pi."""
+        """The points of the torus, as angles that are not taken modulo 2 pi.
+
+        Parameters
+        ----------
+        theta
+            Angles in radians: an array (..., n), or of any shape if n = 1.
+        s
+            As of sigma().
+
+        Returns
+        -------
+        array
+            Of the shape of theta.
+        """
         theta = self._angles(theta)
         return theta + self._sum(theta, self.coefficients(s))
 
     def J(self, theta: Any, s: float = 0) -> np.ndarray:
-        """The actions J = x(theta) - x(theta - w) there: w + u(theta) - u(theta - w)."""
+        """The actions J = x(theta) - x(theta - w) of the torus: w + u(theta) - u(theta - w).
+
+        Parameters
+        ----------
+        theta, s
+            As of x().
+
+        Returns
+        -------
+        array
+            Of the shape of theta.
+        """
         theta = self._angles(theta)
         turns = self.k @ np.array(self.rotation.floats, dtype=float)
         back = -np.expm1(-2j * np.pi * (turns - np.round(turns)))[:, None]
@@ -169,12 +214,21 @@ class Torus:
         return theta
 
     def decay(self, direction: Optional[np.ndarray] = None, s: Optional[float] = None) -> float:
-        """The rate r at which the coefficients of u fall, |u_k| < C e^{-r d(k)} about.
+        """Estimates the rate r at which the coefficients of u fall, about |u_k| < C e^{-r d(k)}.
 
-        direction -- d(k) of each of `k`, for instance a norm; by default sum of |k_i|.
-        s -- the parameter, by default the middle of the piece.
-        It is the slope, over the outer half of the modes, of the upper concave envelope of
-        log|u_k| over d(k); infinity if there are fewer than two modes.  This is an estimate."""
+        Parameters
+        ----------
+        direction
+            d(k) of each of `k`, for instance a norm; by default the sum of |k_i|.
+        s
+            As of sigma(); by default the middle of the piece.
+
+        Returns
+        -------
+        float
+            The slope, over the outer half of the modes, of the upper concave envelope of log|u_k|
+            over d(k); infinity if there are fewer than two modes.
+        """
         far = np.abs(self.k).sum(1) if direction is None else np.asarray(direction)
         coefficients = self.doubles[0].T if s is None else self.coefficients(s)
         return decay(far, np.abs(coefficients).max(1, initial=0))
@@ -185,22 +239,54 @@ class Torus:
             "proved: tori.prove(torus) does.\n" % (self, self.decay())
 
     def plot(self, ax: Any = None) -> Any:
-        """Draws the torus into Axes of matplotlib, which are returned: one with one angle, a pair
-        with two.  With None a Figure is returned, which a notebook shows: also the Fourier
-        coefficients."""
+        """Draws the torus.
+
+        Parameters
+        ----------
+        ax
+            Axes of matplotlib, which are drawn into and returned: one with one angle, a pair with
+            two.  With None a Figure is returned, which also shows the Fourier coefficients.
+        """
         from ..draw import torus_figure
         return torus_figure.page([self]) if ax is None else torus_figure.into(ax, [self])
 
     def save(self, path: Union[str, "os.PathLike[str]"]) -> str:
-        """Writes a certificate (docs/reference/torus-certificate.md) that nothing has verified,
-        compressed if the name ends in .gz; returns its SHA-256.  ValueError: the strip is None."""
+        """Writes a certificate (docs/reference/torus-certificate.md) that nothing has verified.
+
+        Parameters
+        ----------
+        path
+            The file; the text is compressed if the name ends in .gz.
+
+        Returns
+        -------
+        str
+            The SHA-256 of the uncompressed text.
+
+        Raises
+        ------
+        ValueError
+            The strip is None.
+        ConverseError
+            The file cannot be written.
+        """
         from . import certificate
         return files.write_text(path, certificate.text([self]))
 
     @classmethod
     def load(cls, path: Union[str, "os.PathLike[str]"]) -> "Torus":
-        """Reads the torus of a certificate, the first if there are several.  ConverseError: the
-        file cannot be read, or is not a certificate."""
+        """Reads the torus of a certificate, the first if there are several.
+
+        Parameters
+        ----------
+        path
+            The file, compressed or not.
+
+        Raises
+        ------
+        ConverseError
+            The file cannot be read, or is not a certificate.
+        """
         from . import certificate
         return certificate.read(path).tori[0]
 
