@@ -7,6 +7,7 @@ import time
 from .failures import complain
 
 BAR_SECONDS, LINE_SECONDS = 0.2, 30     # of the progress: on a terminal, elsewhere
+QUIET_SECONDS = 2                       # Elsewhere no step of a shorter check is told.
 
 
 def cost(cell):
@@ -41,10 +42,8 @@ class Bar:
                 duration((now - self.began) * (self.cost / self.spent - 1))))
 
     def tell(self, text):
-        """Shows what is being done."""
-        now = time.monotonic()
-        if self.on and now > self.drawn + self.pause:
-            self.drawn = now
+        """Shows the step that begins; it can take minutes."""
+        if self.on and (self.terminal or time.monotonic() > self.began + QUIET_SECONDS):
             self.draw(text)
 
     def draw(self, text):

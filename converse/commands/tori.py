@@ -5,12 +5,13 @@ import contextlib
 import os
 import re
 import sys
+import time
 
 from ..model.exact import exact
 from ..storage import files
 from ..storage.files import ConverseError, plain
 from ..version import __version__
-from .common import (MAP, SIGNALS, Parser, ProgressLine, ended, ending, read_problem, say,
+from .common import (MAP, SIGNALS, Parser, ProgressLine, ended, ending, read_problem, say, tell,
                      whole_number)
 
 COMMAND = "converse-tori"
@@ -25,6 +26,7 @@ ENDING = ending(
         (2, "bad usage, input or file; or the certificate could not be saved"), SIGNALS))
 GIGABYTE = 10 ** 9
 MOST_POINTS = 1 << 26
+QUIET_SECONDS = 2.0         # A run of less time writes no step to a stderr that is not a terminal.
 
 
 # ---- what is read
@@ -89,6 +91,17 @@ def _prove_parser(commands):
 
 
 # ---- the command
+
+class _Steps(ProgressLine):
+    """Tells each step when it begins, since one step can take minutes: on a terminal in its line,
+    elsewhere on a line of its own."""
+
+    def __call__(self, step):
+        self.due = 0.0
+        super().__call__(lambda: step)
+        if not self.shown and time.monotonic() > self.began + QUIET_SECONDS:
+            tell(step, COMMAND)
+
 
 def _read_problem(options):
     problem = read_problem(options.input, COMMAND)
@@ -159,11 +172,9 @@ def _prove_torus(options):
         ("memory", options.memory and int(options.memory * GIGABYTE)),
         ("jobs", options.jobs)) if value is not None}
     began = processor_time()
-    with ProgressLine() as line, numpy.errstate(all="ignore"):
-        def progress(words):
-            line(lambda: words)
+    with _Steps() as line, numpy.errstate(all="ignore"):
         try:
-            proof = tori.prove(problem, rotation, progress=progress, **choices)
+            proof = tori.prove(problem, rotation, progress=line, **choices)
         except (tori.NotFound, tori.NotProved) as reason:
             line.clear()
             say(report.undecided(problem, rotation, reason, _by_hand(options)))

@@ -63,8 +63,11 @@ def changed(old, new, count=1):
 
 
 @pytest.fixture
-def run(tmp_path, capsys):
-    """Checks a text or bytes: (status, stdout, stderr)."""
+def run(tmp_path, capsys, monkeypatch):
+    """Checks a text or bytes: (status, stdout, stderr).  No steps are told, which would depend on
+    the clock."""
+    monkeypatch.setattr(check, "QUIET_SECONDS", math.inf)
+
     def run(data, *options):
         path = tmp_path / "some.torus"
         path.write_bytes(data if isinstance(data, bytes) else data.encode("utf-8"))
@@ -84,8 +87,18 @@ def test_the_golden_circle_is_verified(run):
     assert run(gzip.compress(sealed(BODY).encode()))[:2] == (0, out)
 
 
-def test_quiet_says_nothing(run):
+def test_quiet_says_nothing(run, monkeypatch):
+    monkeypatch.setattr(check, "QUIET_SECONDS", -1)
     assert run(sealed(BODY), "--quiet") == (0, "", "")
+
+
+def test_each_step_of_a_long_check_is_told(run, monkeypatch):
+    monkeypatch.setattr(check, "QUIET_SECONDS", -1)
+    status, _, err = run(sealed(BODY))
+    assert status == 0
+    constants, residual = err.splitlines()
+    assert constants == "converse-check: the constants"
+    assert residual.startswith("converse-check: the residual, with ")
 
 
 @pytest.mark.parametrize("hints", [

@@ -1,6 +1,7 @@
 """The command converse-tori: what it says is what the API finds, and every failure is a line."""
 
 import dataclasses
+import math
 import re
 import signal
 import subprocess
@@ -24,8 +25,11 @@ JSON = '{"parameters": {"K": [0.3, 0.4], "L": [0, 1]}, "harmonics": [' \
 
 
 @pytest.fixture
-def run(capfd):
-    """Runs the command in this process: (exit status, stdout, stderr)."""
+def run(capfd, monkeypatch):
+    """Runs the command in this process: (exit status, stdout, stderr).  No steps are told, which
+    would depend on the clock."""
+    monkeypatch.setattr(cli, "QUIET_SECONDS", math.inf)
+
     def run(*arguments):
         status = cli.main([str(argument) for argument in arguments])
         return (status, *capfd.readouterr())
@@ -172,6 +176,16 @@ def test_flags_that_may_be_the_reason_are_named(run, monkeypatch):
     assert "\nNot proved it lacks\nRotation   golden, " in out
 
 
+def test_each_step_of_a_long_run_is_told(run, monkeypatch):
+    monkeypatch.setattr(cli, "QUIET_SECONDS", -1)
+    status, _, err = run("prove", K09, "--rotation", "golden")
+    assert status == 0 and all(map(one_line, err.splitlines(keepends=True)))
+    steps = iter(err.splitlines())      # in this order
+    for words in ("looking for the torus at 0.9, on ", "refining a torus of ",
+                  "verifying the torus", "verifying: the constants", "verifying: the residual"):
+        assert any(step.startswith("converse-tori: " + words) for step in steps)
+
+
 def test_an_interrupt_leaves_nothing(run, tmp_path, monkeypatch):
     def strike(*_, **__):
         raise KeyboardInterrupt
@@ -205,7 +219,8 @@ def test_a_signal_ends_all_processes(tmp_path, number):
     run.send_signal(number)
     out, err = run.communicate(timeout=300)     # the pipes are closed, so the processes have ended
     assert run.returncode == 128 + number
-    assert err == "converse-tori: interrupted; nothing is proved\n" and "THEOREM" not in out
+    assert err.splitlines()[-1] == "converse-tori: interrupted; nothing is proved"
+    assert all(map(one_line, err.splitlines(keepends=True))) and "THEOREM" not in out
     assert [each.name for each in tmp_path.iterdir()] == ["range.in"]
 
 
