@@ -17,7 +17,7 @@ from .newton import Frame, Mesh, default_frame
 from .plan import MARGIN, Weights, plan
 from .refinement import SPARE_BITS, Modes, layers_for, numbers_of, refined, taken
 from .rotation import Rotation, rotation_of
-from .torus import Torus, decay, family
+from .torus import Torus, family
 
 __all__ = ["NotFound", "find"]
 
@@ -245,11 +245,12 @@ class _Pieces:
             return None
         source, c = series
         sizes = np.sqrt((abs(c) ** 2).sum(1)) @ np.exp(aim.rho * aim.length(source.k))
-        rate, (low, high) = series_rate(sizes), map(float, piece)
-        side = -1 if self.end < 0 else 1
+        least, (low, high) = aim.needed / (10 * self.margin), map(float, piece)
+        enough, side = series_degree(sizes, least), -1 if self.end < 0 else 1
+        rate = min(log(sizes.max() / least) / enough, 50) if enough else 50.0
         self.end = side * max(1 + NARROWEST, side * (low + high) / 2
-                              + (high - low) / 2 * exp(min(rate, 50)))
-        degree = max(LEAST_DEGREE, ceil(log(sizes.max() * 10 * self.margin / aim.needed) / rate))
+                              + (high - low) / 2 * exp(rate))
+        degree = max(LEAST_DEGREE, ceil(enough))
         mesh = aim.mesh(worst.mesh, real=False)
         if degree > max(LEAST_DEGREE, min(MOST_DEGREE, LARGEST // mesh.points)):
             return None
@@ -292,8 +293,16 @@ class _Pieces:
         return source, source.series(iter(circle), LAYERS)
 
 
-def series_rate(sizes: np.ndarray) -> float:
-    """The rate at which the sizes of a series' coefficients decay with the power, as far as they
-    are above the noise: the second half of them, those of negative powers, is nothing else."""
+def series_degree(sizes: np.ndarray, least: float) -> float:
+    """About the power at which the coefficients of a series fall to the size `least`.
+
+    Sizes above the noise are known; the second half of them, of negative powers, is nothing else.
+    They fall more slowly with each power, so their last slope leads on from the last of them."""
     powers, noise = np.split(sizes, 2)
-    return decay(np.arange(len(powers)), np.where(powers > 10 * noise.max(), powers, 0))
+    last = int(np.flatnonzero(powers > 10 * noise.max())[-1:].sum())
+    height = np.log(np.maximum.accumulate(powers[last::-1])[::-1])  # the largest farther on
+    if len(below := np.flatnonzero(height <= log(least))):
+        return float(below[0])
+    before = max(last - max(2, last // 3), 0)
+    fall = (height[before] - height[last]) / max(last - before, 1)
+    return last + (height[last] - log(least)) / fall if fall > 0 else 0.0

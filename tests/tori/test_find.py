@@ -13,7 +13,7 @@ from converse.model.map import LINE, MuldoonMap, SymplecticMap
 from converse.model.problem import Problem
 from converse.tori import continuation, refinement
 from converse.tori.continuation import Way
-from converse.tori.find import MOST_DEGREE, NotFound, _Pieces, find, series_rate
+from converse.tori.find import MOST_DEGREE, NotFound, _Pieces, find, series_degree
 from converse.tori.newton import Mesh, default_frame, triangular
 from converse.tori.plan import Plan, _divisors, _loss
 from converse.tori.refinement import Modes, layers_for, numbers_of, pruned, taken
@@ -408,11 +408,20 @@ def test_what_is_going_on_is_told():
     assert re.fullmatch(r"refining the tori of -1 <= s <= 1, \d+ modes of degree \d+", words[-1])
 
 
-def test_noise_does_not_decay():
-    """A short piece has few powers above the noise, and a small degree."""
-    noise = 1e-9 * np.random.default_rng(5).uniform(0.1, 1, 32)
-    sizes = noise + np.concatenate([np.exp(-4.0 * np.arange(16)), np.zeros(16)])
-    assert series_rate(sizes) == pytest.approx(4, rel=0.1)
+# Logs of the sizes of the powers of sigma, 0.97 <= k <= 0.9703, from a torus of 107 bits.
+SIZES = [-1.2, -7.8, -11.7, -14.8, -17.6, -20.2, -22.8, -25.3, -27.8, -30.2, -32.6, -35.0, -37.4,
+         -39.8]
+
+
+@pytest.mark.parametrize("heights, least, degree", [
+    (-4.0 * np.arange(14), 1e-20, 11.5),                    # Few powers are above the noise.
+    (-4.0 * np.arange(14), 1e-6, 4),
+    (np.where(np.arange(14) % 2, -3.0 * np.arange(14), -np.inf), 1e-16, 12.3),  # odd powers alone
+    ([-1.0] + [-np.inf] * 13, 1e-16, 0), (SIZES, np.exp(-39.8), 12)])
+def test_the_degree_follows_from_the_powers_above_the_noise(heights, least, degree):
+    noise = 1e-10 * np.random.default_rng(5).uniform(0.1, 1, 32)
+    sizes = noise + np.concatenate([np.exp(heights), np.zeros(18)])
+    assert series_degree(sizes, least) == pytest.approx(degree, abs=0.9)
 
 
 @pytest.mark.parametrize("name, frame, alpha", [
