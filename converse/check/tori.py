@@ -90,62 +90,74 @@ def logarithm_below(x):
     return rounded_down(2 * sum([y ** j / j for j in range(1, 12, 2)]))
 
 
-def allowed(constants, waves, rho, kappa, divisors, steps=0, shares=SHARES_OF_LOSS,
-            changes=CHANGES):
+def allowed(constants, waves, rho, kappa, divisors, steps=0):
     """(e, v): if ||E|| <= e there is a torus, at most v ||E|| from the approximate one, in the norm
     of a hundredth of the strip.
 
     waves: (|p|, |k|, bound of ||e^(i k.x)||).  steps: of the iteration that are followed one by
     one, with the small divisors that are met in each.
     """
-    n, best = divisors.power, (Fraction(0), Fraction(0))
-    scale = constants.l * constants.m * constants.a
-    slow, fast = 1 - Fraction(2, 4 ** n), 1 - Fraction(1, 4 ** n)
-
-    def derivative(width):
-        return rounded_up(kappa / (E_LOW * width))
-
-    for share in shares:
+    best, scale = (Fraction(0), Fraction(0)), constants.l * constants.m * constants.a
+    for share in SHARES_OF_LOSS:
         delta = rounded_down((rho - rho / 100) / (4 + 2 * share))
         deltas = [delta / 2 ** at for at in range(steps + 1)]
         losses = [divisors.loss_at(x) for x in deltas[:-1]] + [divisors.loss(deltas[-1])]
-        for change in changes:
+        for change in CHANGES:
             t = rounded_down(change / scale)
             if (c := constants.after(t)) is None:
                 continue
-            third = sum([p * k ** 3 * g * exponential_above(k * t) for p, k, g in waves])
-            moves, growths = [], []
-            for x, loss in zip(deltas, losses):
-                step = rounded_up(c.a * (1 + c.b * c.p) * loss ** 2)
-                moves.append(rounded_up(step * c.l ** 2))
-                growths.append(rounded_up(step * c.l * (
-                    (2 * c.m * c.l * derivative(x) if n > 1 else 0)
-                    + derivative(2 * x) + third * step * c.l ** 3 / 2)))
-
-            def moved(e):
-                """Bounds how far the torus moves in all, if the residual is e.  None, if it may be
-                more than t, or the iteration need not converge."""
-                total = slope = Fraction(0)
-                for at, (x, move, growth) in enumerate(zip(deltas, moves, growths)):
-                    last = at == steps
-                    total += move * e / (fast if last else 1)
-                    slope += derivative(share * x) * move * e / (slow if last else 1)
-                    if last and 2 ** (4 * n) * growth * e > 1 or max(total, slope) > t:
-                        return None
-                    e = rounded_up(growth * e * e)
-                return total
-
-            if steps:
-                e = rounded_down(1 / growths[0])
-                while e > best[0] and moved(e) is None:
-                    e = rounded_down(e * 7 / 10)
-            else:
-                e = rounded_down(min(1 / (2 ** (4 * n) * growths[0]),
-                                     t * slow / (moves[0] * derivative(share * delta)),
-                                     t * fast / moves[0]))
+            iteration = Iteration(c, t, waves, kappa, divisors.power, [
+                (x, share * x, loss) for x, loss in zip(deltas, losses)])
+            e = iteration.largest(best[0])
             if e > best[0]:
-                best = e, rounded_up(moved(e) / e)
+                best = e, rounded_up(iteration.moved(e) / e)
     return best
+
+
+class Iteration:
+    """The iteration of the theorem in a strip where L differs by at most t from that of the
+    approximate torus, so that the constants are at most c.
+
+    widths: (delta, s delta, loss) of the steps that are followed one by one and, last, of all
+    others together.
+    """
+
+    def __init__(self, c, t, waves, kappa, n, widths):
+        def derivative(width):
+            return rounded_up(kappa / (E_LOW * width))
+
+        self.t, self.most = t, 2 ** (4 * n)
+        self.slow, self.fast = 1 - Fraction(2, 4 ** n), 1 - Fraction(1, 4 ** n)
+        third = sum([p * k ** 3 * g * exponential_above(k * t) for p, k, g in waves])
+        self.steps = []                 # Of each (move, slope, growth), per e, e and e^2.
+        for delta, narrow, loss in widths:
+            step = rounded_up(c.a * (1 + c.b * c.p) * loss ** 2)
+            move = rounded_up(step * c.l ** 2)
+            self.steps.append((move, derivative(narrow) * move, rounded_up(step * c.l * (
+                (2 * c.m * c.l * derivative(delta) if n > 1 else 0)
+                + derivative(2 * delta) + third * step * c.l ** 3 / 2))))
+
+    def moved(self, e):
+        """Bounds how far the torus moves in all, if the residual is e.  None, if it may be more
+        than t, or the iteration need not converge."""
+        *single, (move, slope, growth) = self.steps
+        total = sloped = Fraction(0)
+        for one_move, one_slope, one_growth in single:
+            total, sloped = total + one_move * e, sloped + one_slope * e
+            e = rounded_up(one_growth * e * e)
+        total, sloped = total + move * e / self.fast, sloped + slope * e / self.slow
+        return None if self.most * growth * e > 1 or max(total, sloped) > self.t else total
+
+    def largest(self, least):
+        """About the largest residual with a bound; if it is not above `least`, any such number."""
+        move, slope, growth = self.steps[0]
+        if len(self.steps) == 1:
+            return rounded_down(min(1 / (self.most * growth), self.t * self.slow / slope,
+                                    self.t * self.fast / move))
+        e = rounded_down(1 / growth)
+        while e > least and self.moved(e) is None:
+            e = rounded_down(e * 7 / 10)
+        return e
 
 
 # ---- discrete Fourier transforms in doubles
@@ -329,6 +341,8 @@ def shifted(x, bits):
 def find_constants(torus, sigma, powers):
     """Constants of the whole torus; or NotConfirmed is raised."""
     l0 = rounded_up(1 + torus.derivative_outside(powers, 0))
+    if l0 > 1000:
+        raise NotConfirmed(FAR)
     near, found = 1, None
     while torus.derivative_outside(powers, near) > Fraction(1, 1000):
         near = near * 9 // 8 + 1
@@ -463,7 +477,7 @@ class Residual:
     """
 
     def __init__(self, torus, ring, near):
-        self.torus, self.ring = torus, ring
+        self.torus, self.ring, self.near = torus, ring, near
         self.u = torus.series(ring, near)
         self.known = {}
         zero = [0] * ring.box.count
@@ -653,57 +667,72 @@ def bounds_of_waves(torus, sigma, rho, powers):
 
 def verify_width(torus, width, tell):
     """Verified, with a strip of about this width; or NotConfirmed is raised."""
-    norm, unit = torus.norm, 1 << torus.bits + FINE
+    norm, divisors = torus.norm, torus.divisors
     if width * torus.farthest > MAX_WIDTH:
         raise NotConfirmed("the strip is too wide for the longest mode")
-    width = float(width)
     sigma = 1 + Fraction(max(round(math.expm1(width) * 2 ** 24), 1), 2 ** 24)
-    rho = logarithm_below(sigma)
+    rho, powers = logarithm_below(sigma), powers_of(sigma, torus.farthest)
     tell("the constants")
-    powers = powers_of(sigma, torus.farthest)
-    l0 = rounded_up(1 + torus.derivative_outside(powers, 0))
-    if l0 > 1000:
-        raise NotConfirmed(FAR)
     whole = find_constants(torus, sigma, powers)
     waves = bounds_of_waves(torus, sigma, rho, powers)
-    needed, _ = allowed(whole, waves, rho, norm.kappa, torus.divisors)
+    needed, _ = allowed(whole, waves, rho, norm.kappa, divisors)
     if needed < Fraction(1, 1 << MAX_BITS // 8):
         raise NotConfirmed("the constants are too large")
     # A part that is cut off u changes E by at most `factor` times its norm.
     factor = 4 + sum([p * k * k * g for p, k, g in waves])
-    near, far = torus.extent(powers, needed / 64 / factor * unit)
+    near, far = torus.extent(powers, needed / 64 / factor * (1 << torus.bits + FINE))
     # Sums of two modes of the torus are about what products and exponentials have.
     spread = max([abs(x) for k, *_ in torus.waves for x in norm.place(k)], default=1)
     refuse_too_many(torus, far, (2 * len(torus.modes) + 1) ** 2 * spread ** torus.n)
-    spare, reach = 12, max([norm(k) for k, *_ in torus.waves], default=0)
+    spare = 12
     for _ in range(TRIES):
-        box = Box(norm, far, torus.degree)
-        bits = spare + math.ceil(reach * width * math.log2(math.e) + math.log2(
-            (box.degree + 1) * sum([math.exp(width * x) for x in box.lengths]) / float(needed)))
-        ring = Ring(box, sigma, bits)
-        tell("the residual, with %d modes of %d bits" % (box.groups, bits))
-        found = Residual(torus, ring, min(near, far))
+        ring = ring_for(torus, sigma, far, needed, spare)
+        tell("the residual, with %d modes of %d bits" % (ring.box.groups, ring.bits))
+        found = Residual(torus, ring, near)
         residual = found.polynomial + found.radius
-        # `whole` is about the torus before it was cut; its L differs by at most this.
-        beyond = torus.derivative_outside(powers, min(near, far)) \
-            + Fraction(ring.rounding(found.u), 1 << bits + FINE) * rounded_up(norm.kappa * far)
-        constants = whole.after(rounded_up(beyond))
-        if constants is None:
-            raise NotConfirmed("too much of the torus was cut off")
-        needed, v = allowed(constants, found.bounds, rho, norm.kappa, torus.divisors)
+        constants = constants_of_cut(found, whole, powers)
+        needed, v = allowed(constants, found.bounds, rho, norm.kappa, divisors)
         if residual > needed:
-            torus.divisors.look(math.ceil(40 * 2 ** STEPS / rho))
-            needed, v = allowed(constants, found.bounds, rho, norm.kappa, torus.divisors, STEPS)
+            divisors.look(math.ceil(40 * 2 ** STEPS / rho))
+            needed, v = allowed(constants, found.bounds, rho, norm.kappa, divisors, STEPS)
         if residual <= needed:
-            rounding = Fraction(4 * torus.n * len(torus.modes) * (torus.degree + 1), 1 << bits)
-            cut = Fraction(torus.outside(powers, min(near, far)), unit)
-            distance = rounded_up(v * residual + cut + rounding + torus.dropped)
-            return Verified(residual, needed, distance, rho, constants, box.groups, bits,
-                            torus.divisors.least, tuple(norm.basis))
+            distance = rounded_up(v * residual + shift_of_cut(found, powers))
+            return Verified(residual, needed, distance, rho, constants, ring.box.groups, ring.bits,
+                            divisors.least, tuple(norm.basis))
         if found.polynomial > needed:
             break
         far, spare = far * 9 // 8 + 1, spare + 6
     raise too_large(residual, needed)
+
+
+def ring_for(torus, sigma, far, needed, spare):
+    """Series with |k| <= far; roundings of the residual make up about 2^-spare of what is needed.
+    """
+    box, width = Box(torus.norm, far, torus.degree), math.log(sigma)
+    reach = max([torus.norm(k) for k, *_ in torus.waves], default=0)
+    return Ring(box, sigma, spare + math.ceil(reach * width * math.log2(math.e) + math.log2(
+        (box.degree + 1) * sum([math.exp(width * x) for x in box.lengths]) / float(needed))))
+
+
+def constants_of_cut(found, whole, powers):
+    """Those of the torus that was cut and rounded for the residual, from those of the whole."""
+    ring, norm = found.ring, found.torus.norm
+    beyond = found.torus.derivative_outside(powers, found.near) \
+        + Fraction(ring.rounding(found.u), 1 << ring.bits + FINE) * rounded_up(
+            norm.kappa * ring.box.limit)
+    constants = whole.after(rounded_up(beyond))
+    if constants is None:
+        raise NotConfirmed("too much of the torus was cut off")
+    return constants
+
+
+def shift_of_cut(found, powers):
+    """A bound of the distance, at real angles, of the file's torus from the one that was cut and
+    rounded for the residual."""
+    torus, bits = found.torus, found.ring.bits
+    rounding = Fraction(4 * torus.n * len(torus.modes) * (torus.degree + 1), 1 << bits)
+    return rounding + torus.dropped + Fraction(torus.outside(powers, found.near),
+                                               1 << torus.bits + FINE)
 
 
 def verify_torus(claim, tell=lambda text: None, jobs=1):

@@ -128,15 +128,7 @@ def parse_torus(header, body, line, sha256):
         raise Rejected("the header has not %d lines of the rotation" % n)
     rotation = tuple([rationals(text, n + 1, "the header's rotation")
                       for text in header["rotation"]])
-    numbers = integers(header["frame"], n * n, "the header's frame", MAX_K)
-    frame = tuple([numbers[at:at + n] for at in range(0, n * n, n)])
-    if numbers[0] * numbers[-1] == (numbers[1] * numbers[2] if n == 2 else 0):
-        raise Rejected("the header's frame has the determinant 0")
-    alpha = rationals(header["alpha"], n, "the header's alpha")
-    if min(alpha) <= 0:
-        raise Rejected("the header's alpha is not positive")
-    if max(x.denominator for x in alpha) > MAX_ALPHA or max(alpha) > MAX_ALPHA:
-        raise NotConfirmed("the header's alpha is beyond the checker's limit, %d" % MAX_ALPHA)
+    frame, alpha = parse_norm(header, n)
     if not COUNT.fullmatch(header["pieces"]) or header["pieces"] == "0":
         raise Rejected("the header's pieces are not a count")
     if int(header["pieces"]) > MAX_PIECES:
@@ -154,6 +146,20 @@ def parse_torus(header, body, line, sha256):
     return TorusClaim(n, waves, polynomial, rationals(header["root"], 2, "the header's root"),
                       rotation, frame, alpha, rho, tuple(pieces),
                       {name: header[name] for name in header if name.startswith("hint-")}, sha256)
+
+
+def parse_norm(header, n):
+    """(frame, alpha) of a header."""
+    numbers = integers(header["frame"], n * n, "the header's frame", MAX_K)
+    frame = tuple([numbers[at:at + n] for at in range(0, n * n, n)])
+    if numbers[0] * numbers[-1] == (numbers[1] * numbers[2] if n == 2 else 0):
+        raise Rejected("the header's frame has the determinant 0")
+    alpha = rationals(header["alpha"], n, "the header's alpha")
+    if min(alpha) <= 0:
+        raise Rejected("the header's alpha is not positive")
+    if max(x.denominator for x in alpha) > MAX_ALPHA or max(alpha) > MAX_ALPHA:
+        raise NotConfirmed("the header's alpha is beyond the checker's limit, %d" % MAX_ALPHA)
+    return frame, alpha
 
 
 def read_piece(lines, n, parameter, before):

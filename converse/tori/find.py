@@ -15,17 +15,15 @@ from .continuation import POINTS, Found, NotFound, Way, ellipse, newton
 from .effort import BALLS, REFINING, SINGLE, SOLVING, balls, some
 from .newton import Frame, Mesh, default_frame
 from .plan import MARGIN, Weights, plan
-from .refinement import SPARE_BITS, Modes, layers_for, numbers_of, refined, taken
+from .refinement import SPARE_BITS, Modes, accepted, layers_for, numbers_of, refined, taken
 from .rotation import Rotation, rotation_of
 from .torus import Torus, family
 
 __all__ = ["NotFound", "find"]
 
 ROUNDS = 3                  # This often the number of modes is chosen.
-# An error of LACKING/margin of the admissible one will do, if it is at most SURE of it.
-LACKING, SURE = 4.0, 0.05
 # The lengths of pieces are chosen for DEGREE in sigma; they have LEAST_DEGREE to MOST_DEGREE.
-LEAST_DEGREE, DEGREE, MOST_DEGREE = 4, 20, 24
+LEAST_DEGREE, DEGREE, MOST_DEGREE = 4, 21, 26
 LAYERS = 32                 # Points of the circle of sigma; tori are computed at half of these.
 LARGEST = 1 << 23           # Points of the mesh times the degree are at most about this.
 NARROWEST = 1e-5            # A piece of s is at least about this long.
@@ -133,7 +131,7 @@ def _single(found, way, margin):
             len(modes.at), some(SINGLE * balls(mesh.points, bits + SPARE_BITS))))
         torus, ratio = refined(Torus(way.potential, None, way.rotation, bits, modes.k.T, numbers,
                                      aim.strip), modes, aim, margin)
-        if ratio <= max(1 / margin, min(LACKING / margin, SURE)):
+        if ratio <= accepted(margin):
             break
         more *= 1.05 + log(ratio * margin) / ((aim.rate - aim.rho) * aim.size)
     return torus

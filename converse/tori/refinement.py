@@ -24,6 +24,8 @@ from .torus import Torus
 TURNS = 5                   # The error is computed with many digits at most TURNS times.
 STEPS = 8                   # Newton's method then takes at most these steps.
 SPARE_BITS = 8              # The error has these bits more than the coefficients.
+# An error of LACKING/margin of the admissible one will do, if it is at most SURE of it.
+LACKING, SURE = 4.0, 0.05
 
 
 class Modes:
@@ -112,6 +114,11 @@ def pruned(torus: Torus, plan: Plan, most: float) -> Tuple[Torus, float]:
         float(total[count - 1]) if count else 0.0
 
 
+def accepted(margin: float) -> float:
+    """The part of the admissible error that the error of a torus may be."""
+    return max(1 / margin, min(LACKING / margin, SURE))
+
+
 def refined(torus: Torus, modes: Modes, plan: Plan, margin: float) -> Tuple[Torus, float]:
     """The torus after as many corrections as help; about ||E||_rho over what the theorem needs."""
     mesh, before = modes.mesh, inf
@@ -128,7 +135,8 @@ def refined(torus: Torus, modes: Modes, plan: Plan, margin: float) -> Tuple[Toru
         v, size, rest = _corrected(torus, modes, error, weights, amplitudes, layers, enough)
         if v is not None:
             torus = replace(torus, numbers=torus.numbers + numbers_of(v, torus.bits))
-        if size - rest <= enough or not size < before / 4:
+        if size - rest <= enough or size <= accepted(margin) * plan.needed \
+                or not size < before / 4:
             break
         before = size
     torus, more = pruned(torus, plan, enough / 4)

@@ -888,7 +888,7 @@ def conditions(c, waves, rho, kappa, divisors, steps, share, change, e):
 @pytest.mark.parametrize("name", ["golden", "T49"])
 @pytest.mark.parametrize("steps", [0, 3])
 @pytest.mark.parametrize("waves", [[(0.5, 1, 2)], [(40, 2, 300)], [(1e-9, 1, 2)]])
-def test_the_largest_residual_meets_the_conditions(name, steps, waves):
+def test_the_largest_residual_meets_the_conditions(name, steps, waves, monkeypatch):
     polynomial, root, omega, frame, alpha, basis, *_ = VECTORS[name]
     found = divisors_of(polynomial, root, [tuple(map(Fraction, x)) for x in omega], frame, alpha,
                         basis)
@@ -897,7 +897,10 @@ def test_the_largest_residual_meets_the_conditions(name, steps, waves):
     rho, kappa = Fraction(1, 10), found.norm.kappa
     for share in tori.SHARES_OF_LOSS:
         for change in tori.CHANGES[::4]:
-            e, v = tori.allowed(c, waves, rho, kappa, found, steps, [share], [change])
+            with monkeypatch.context() as alone:
+                alone.setattr(tori, "SHARES_OF_LOSS", [share])
+                alone.setattr(tori, "CHANGES", [change])
+                e, v = tori.allowed(c, waves, rho, kappa, found, steps)
             q, sloped, moved, distance = conditions(c, waves, rho, kappa, found, steps, share,
                                                     change, e)
             assert e > 0 and max(q, sloped, moved) <= 1 + 1e-9

@@ -287,7 +287,7 @@ def test_a_torus_that_is_accurate_enough_is_not_corrected(monkeypatch):
 
 def test_a_grid_that_memory_does_not_hold_is_refused(monkeypatch):
     monkeypatch.setattr(continuation, "free_memory", lambda: 10 ** 5)
-    with pytest.raises(NotFound, match="takes a grid of 1024 points and 0.00133 GB of memory"):
+    with pytest.raises(NotFound, match="takes a grid of 768 points and 0.000998 GB of memory"):
         find(Problem(MuldoonMap("0.9", 0, 0)), GOLDEN)
     with pytest.raises(NotFound, match="takes a grid of .* points and") as caught:
         find(Problem(MuldoonMap(("0.1", "0.5"), 0, 0)), GOLDEN)
