@@ -207,7 +207,7 @@ def test_a_signal_ends_all_processes(tmp_path, number):
             sys.stdout.write("verifying\\n")
             sys.stdout.flush()
             time.sleep(600)
-        tori.verify_width = verify
+        tori.verify_width, cli.QUIET_SECONDS = verify, 1e9
         sys.exit(cli.main(sys.argv[1:]))
         """
     problem, file = tmp_path / "range.in", tmp_path / "range.torus"
@@ -219,8 +219,7 @@ def test_a_signal_ends_all_processes(tmp_path, number):
     run.send_signal(number)
     out, err = run.communicate(timeout=300)     # the pipes are closed, so the processes have ended
     assert run.returncode == 128 + number
-    assert err.splitlines()[-1] == "converse-tori: interrupted; nothing is proved"
-    assert all(map(one_line, err.splitlines(keepends=True))) and "THEOREM" not in out
+    assert err == "converse-tori: interrupted; nothing is proved\n" and "THEOREM" not in out
     assert [each.name for each in tmp_path.iterdir()] == ["range.in"]
 
 
@@ -235,7 +234,7 @@ def test_a_process_that_dies_is_told(tmp_path):
                 open("one", "w").close()
                 time.sleep(600)
             os.kill(os.getpid(), signal.SIGKILL)
-        tori.verify_width = verify
+        tori.verify_width, cli.QUIET_SECONDS = verify, 1e9
         sys.exit(cli.main(sys.argv[1:]))
         """
     problem = tmp_path / "range.in"
