@@ -22,8 +22,9 @@ from .limits import (FIRST_TRY_SITES, HALVINGS_APART_MAX, MATTERS_MIN, MAX_CUTS,
 np = None                               # numpy, once the fast path is wanted
 UNIT = 2.0 ** -53                       # the unit roundoff u of doubles
 TWO_PI = 2 * math.pi                    # within 0.35 u of 2 pi, relatively
-SINES = [(-1) ** k / math.factorial(2 * k + 1) for k in range(8, 0, -1)]
-COSINES = [(-1) ** k / math.factorial(2 * k) for k in range(8, 1, -1)]
+# Pairs of Taylor's coefficients: of the sine from x^17 to x^3, of the cosine from x^16 to x^6.
+TAYLOR = list(zip([(-1) ** k / math.factorial(2 * k + 1) for k in range(8, 0, -1)],
+                  [0, 0, *((-1) ** k / math.factorial(2 * k) for k in range(8, 2, -1))]))
 
 # Of the bound; docs/proofs/checker.md needs these values.
 SINE_ROUNDING = 24 * UNIT               # error of a sine or cosine, divided by |k0| + |k1|: (C12)
@@ -38,7 +39,9 @@ DETERMINANT_MIN = 2.0 ** -60            # of d; smaller ones end a lane: (C15)
 
 # Of the effort, on which no theorem rests; chosen by the table in docs/proofs/checker.md.
 BATCH, BATCH_MIN = 1024, 16             # prisms in lockstep, at first and where orbits are long
-SITES_MAX = 1 << 19                     # sites of all lanes of a batch, for the memory: 1 GB
+MEMORY_MAX = 1 << 30                    # bytes of the sites of a batch
+LENGTH_MARGIN = 1.5                     # by which orbits of a batch may be longer than the last's
+BLOCK = 1 << 13                         # sites times lanes that are added up together
 EARLY_TRY_GROWTH = 8                    # of a reach while the length of its lane doubles
 
 
@@ -78,16 +81,15 @@ def lockstep_sincos(turns):
     n = np.rint(4 * turns)
     angle = (turns - 0.25 * n) * TWO_PI
     square = angle * angle
-    sine, cosine = SINES[0] * square, COSINES[0] * square
-    for a in SINES[1:]:
-        sine += a
-        sine *= square
-    for a in COSINES[1:-1]:
-        cosine += a
-        cosine *= square
+    first, *more = np.array(TAYLOR).reshape(len(TAYLOR), 2, *[1] * turns.ndim)
+    terms = first * square
+    for pair in more:
+        terms += pair
+        terms *= square
+    sine, cosine = terms
     sine *= angle
     sine += angle
-    cosine = 1 - (0.5 * square - square * square * (cosine + COSINES[-1]))
+    cosine = 1 - (0.5 * square - square * square * (cosine + 1 / 24))
     quadrant = n.astype(np.int64)
     odd = (quadrant & 1) == 1
     return (np.where(odd, cosine, sine) * (1 - (quadrant & 2)),
@@ -135,6 +137,9 @@ class Shape:
         self.strong = self.table(abs(p) * self.K, abs(q) * self.K)
         self.forms = self.table(p * p, p * q, q * q)
         self.mixed = self.rows(k[2:])               # k.x of x
+        # Of a site of a lane: s, c, columns, rest, E; the inverses of both recursions, n, scores,
+        # and five numbers of a byte.
+        self.site_bytes = 8 * (len(k) * (5 + self.parameters) + 2 + 6 + 2 + 2) + 5
         self.sizes = self.rows(abs(k))
 
     def table(self, *rows):
@@ -152,10 +157,11 @@ class Shape:
 
     def along(self, v):
         """k.v for all waves."""
+        if not self.mixed:
+            return v
         found = np.empty((len(self.known), *v.shape[1:]))
         found[:2] = v
-        if self.mixed:
-            found[2:] = combined(self.mixed, v)
+        found[2:] = combined(self.mixed, v)
         return found
 
     def turns(self, X):
@@ -170,30 +176,36 @@ class Shape:
         return found
 
 
-def inverses(d):
-    inv = 1 / (d[0] * d[2] - d[1] * d[1])
-    return np.stack((d[2] * inv, -d[1] * inv, d[0] * inv))
+def inverted(d):
+    """The inverses of symmetric matrices, as far as there are any, and which are definite."""
+    det = d[0] * d[2] - d[1] * d[1]
+    inverse = d[::-1] * (1 / det)
+    np.negative(inverse[1], out=inverse[1])
+    return inverse, (d[0] > 0) & (det > 0)
 
 
 def applied(d, v):
-    return np.stack((d[0] * v[0] + d[1] * v[1], d[1] * v[0] + d[2] * v[1]))
+    return d[:2] * v[0] + d[1:] * v[1]
 
 
 def products(rows):
     """The products of rows i <= j, in order."""
-    found, at = np.empty((len(rows) * (len(rows) + 1) // 2, rows.shape[1])), 0
+    found, at = np.empty((len(rows) * (len(rows) + 1) // 2, *rows.shape[1:])), 0
     for i, row in enumerate(rows):
         np.multiply(row, rows[i:], out=found[at:at + len(rows) - i])
         at += len(rows) - i
     return found
 
 
-def are_definite(d):
-    return (d[0] > 0) & (d[0] * d[2] > d[1] * d[1])
-
-
-def least_of(d):
+def least_eigenvalue(d):
     return (d[0] + d[2] - np.sqrt((d[0] - d[2]) ** 2 + 4 * d[1] * d[1])) / 2
+
+
+def least_eigenvector(d):
+    (p, q, r), low = d, least_eigenvalue(d)
+    v = np.where(p > r, np.stack((q, low - p)), np.stack((low - r, q)))
+    length = np.sqrt(v[0] * v[0] + v[1] * v[1])
+    return np.where(length > 0, v / np.where(length > 0, length, 1), np.stack((p <= r, p > r)))
 
 
 def quadratic(pairs, xi, bend, parts):
@@ -269,9 +281,27 @@ def summit(form):
     return (np.abs(odd) + even).max(axis=0) + constant
 
 
-# A site of all lanes, in the words of docs/proofs/checker.md: the lanes that have it; s, c, k.L as
-# columns of the symbols, size, rest and reach of each wave; beta; and E of step (C7).
-Sites = collections.namedtuple("Sites", "alive s c columns size rest reach beta E")
+class Sites(collections.namedtuple("Sites", "alive s c columns rest E")):
+    """A site of all lanes, in the words of docs/proofs/checker.md: the lanes that have it; s, c,
+    k.L as columns of the symbols and the rest of each wave; E of step (C7).  Or a block of sites,
+    in arrays whose last axes are the sites and the lanes."""
+
+    @classmethod
+    def block(cls, sites):
+        return cls(*[stacked(values) for values in zip(*sites)])
+
+    @property
+    def size(self):
+        return np.abs(self.columns).sum(axis=1) * SUM_ROUNDING
+
+    @property
+    def reach(self):
+        return (self.size + self.rest) * SUM_ROUNDING
+
+
+def stacked(values):
+    """Arrays of a block's sites as one array."""
+    return np.stack(values, axis=-2)
 
 
 def next_rest(d, f, r, r0, err, along, beside):
@@ -281,12 +311,13 @@ def next_rest(d, f, r, r0, err, along, beside):
     diagonal, square = d[0] * d[2], d[1] * d[1]
     det = diagonal - square
     inv = 1 / det
-    M = np.stack((d[2] * inv, -d[1] * inv, d[0] * inv))
-    m, inv = np.abs(M), np.abs(inv)
+    M = d[::-1] * inv
+    np.negative(M[1], out=M[1])
+    m, inv, sizes = np.abs(M), np.abs(inv), np.abs(d)
     f = applied(m, f) + err \
         + (along + 2 * UNIT * m[::2]) * r + (beside + 2 * UNIT * m[1]) * r[::-1] \
-        + 8 * UNIT * inv * ((np.abs(diagonal) + square) * r0 + np.abs(d[1])
-                            * (np.abs(d[0]) + np.abs(d[2])) * r0[::-1])
+        + 8 * UNIT * inv * ((np.abs(diagonal) + square) * r0
+                            + sizes[1] * (sizes[0] + sizes[2]) * r0[::-1])
     return f, M, det
 
 
@@ -306,26 +337,22 @@ class Sums:
         self.ends = None                                # of e[i] and the columns of x[1]
 
     def add_waves(self, shape, P, h, columns, A, B):
-        """Adds the polynomial of step (C8) of all waves, except P (A0 + alpha), which the
-        multipliers of (C7) cancel up to mu.E; returns for each wave its factor of D in G."""
-        A0, B0, alpha, beta = A[:, 0], B[:, 0], A[:, 1:], B[:, 1:]
-        slopes, PA = P[:, None] * B, P * A0
-        slopes[:, 1:] -= PA[:, None] * columns
+        """Adds the polynomial of step (C8) of all waves of a block of sites, except P (A0 + alpha),
+        which the multipliers of (C7) cancel up to mu.E."""
         for w in shape.present:
-            xi = columns[w]
-            first = (P[w] / -2) * alpha[w] - (P[w] * B0[w] / 6) * xi    # what stands with xi^2
+            xi, A0, alpha = columns[w], A[w, 0], A[w, 1:]
+            # What stands with xi^2.
+            first = (P[w] / -2) * alpha - (P[w] * B[w, 0] / 6) * xi
             for symbol in shape.moving[w]:
                 part = h[w, symbol]
-                part_A = part * A0[w]
+                part_A = part * A0
                 first[symbol] -= part_A / 2
-                self.linear[symbol] += part_A
-                self.mixed[symbol] += part * alpha[w]
-                self.skew[symbol] += (part * beta[w])[:, None] * xi
-                slopes[w, 1 + symbol] += part * B0[w]
+                self.linear[symbol] += part_A.sum(axis=-2)
+                self.mixed[symbol] += (part * alpha).sum(axis=-2)
+                self.skew[symbol] += ((part * B[w, 1:])[:, None] * xi).sum(axis=-2)
             xi = products(xi)
-            self.square += (PA[w] / 2) * xi
-            self.cubic += first[:, None] * xi
-        return slopes
+            self.square += (P[w] * A0 / 2 * xi).sum(axis=-2)
+            self.cubic += (first[:, None] * xi).sum(axis=-2)
 
     def join(self, joined):
         """Puts the lanes of each prism together."""
@@ -371,17 +398,12 @@ class Prisms:
         self.H = np.abs(self.h).sum(axis=1) * SUM_ROUNDING
         self.magnitude, self.l = np.abs(self.P), self.both(l, l)
         self.penalties = [self.both(x + 0 * l, x + 0 * l) for x in penalties]
-        absent = (self.magnitude == 0) & (self.H == 0) & (self.W == 0)  # in these lanes
-        self.absent = {w: absent[w] for w in shape.present if absent[w].any()}
-        stiff = combined(shape.stiff, self.magnitude)
-        self.turn = turn_of([(k, x) for (k, _), x in zip(shape.known,
-                                                         self.magnitude.mean(axis=1))])
-        self.F = shape.grain * (1 + stiff[::2])
-        self.F01 = shape.grain * stiff[1]
-        self.angles = shape.parameters                          # their first symbol
-        self.known = self.angles + 2
+        self.absent = (self.magnitude == 0) & (self.H == 0) & (self.W == 0)     # in these lanes
+        self.reach_max = np.where(self.absent, math.inf, REACH_MAX)[shape.present]
+        self.known, self.angles = shape.parameters + 2, shape.parameters
         self.pairs = list(itertools.combinations_with_replacement(range(self.known), 2))
         self.halves = np.array([[0.5 if i == j else 1] for i, j in self.pairs])
+        self.bound_roundings()
         start, none = xstar + 0 * x, np.zeros_like(x)
         blank, rounding = np.zeros_like(columns), np.full_like(x, XSTAR_ERROR)
         self.ends, self.rounding = self.both(columns, blank), self.both(off, rounding)
@@ -391,6 +413,21 @@ class Prisms:
         self.before = self.both(start, x), self.both(blank, columns), self.both(rounding, off)
         self.first = self.both(x, start), self.both(columns, blank), self.both(off, rounding)
         self.sites, self.excluded = [], np.zeros(self.size, bool)  # which are not followed further
+        self.sites_max = MEMORY_MAX // (2 * self.size * shape.site_bytes)
+        self.begin()
+
+    def bound_roundings(self):
+        """The frame of the rests, and what the roundings of a step are multiplied by: (C12) to
+        (C14)."""
+        shape = self.shape
+        self.turn = q0, q1 = turn_of([(k, x) for (k, _), x in zip(shape.known,
+                                                                  self.magnitude.mean(axis=1))])
+        self.strengths, self.sizes = shape.in_frame(self.turn)
+        stiff = combined(shape.stiff, self.magnitude)
+        self.F, self.F01 = shape.grain * (1 + stiff[::2]), shape.grain * stiff[1]
+        self.from_H = shape.grain * combined(shape.strong, self.H)
+        # Of beta in that frame.
+        self.along, self.beside = (self.F[0] + self.F[1],) * 2 if q1 else (self.F, self.F01)
 
     @staticmethod
     def both(ahead, back):
@@ -402,110 +439,136 @@ class Prisms:
     def joined(self, lanes):
         return lanes[..., :self.size] + lanes[..., self.size:]
 
+    def begin(self):
+        """The lanes at their first sites.  LT: L, then T, as columns; near: a bound of L e + T(e)
+        in each coordinate; a 0 stands for the site before."""
+        (self.X0, L0, self.r0), (self.X, L, self.r) = self.before, self.first
+        none = np.zeros((2, len(self.pairs), L.shape[-1]))
+        self.LT0, self.LT = [np.concatenate((x, none), axis=1) for x in (L0, L)]
+        self.near0, self.d, self.f = np.abs(L0).sum(axis=1), None, None
+        self.alive = self.regular = np.ones(L.shape[-1], bool)
+        self.measure()
+        self.last = self.moved(self.columns)        # how far each symbol moves a lane's last site
+
     def moved(self, columns):
         """How far each symbol moves a site: the sum over the waves of a lane."""
-        total = 0
-        for w in self.shape.present:
-            x = np.abs(columns[w])
-            total = total + (np.where(self.absent[w], 0, x) if w in self.absent else x)
-        return total
+        return np.where(self.absent[:, None], 0, np.abs(columns))[self.shape.present].sum(axis=0)
 
     def follow(self):
         """Follows all lanes until each reaches too far.  Yields True at the end and where (C3) is
         to be tried earlier; False if the memory is full.
 
-        A lane that has ended is set to zero, and is not alive.  An early try costs as much as the
-        try at the end.  So there is one only if, for the majority of the lanes, the reach grew by
-        less than EARLY_TRY_GROWTH while the length doubled, as near elliptic orbits, which end
-        late.
+        An early try costs as much as the try at the end.  So there is one only if, for the majority
+        of the lanes, the reach grew by less than EARLY_TRY_GROWTH while the length doubled, as near
+        elliptic orbits, which end late.
         """
-        P, h, H, W, F, F01, shape = self.P, self.h, self.H, self.W, self.F, self.F01, self.shape
-        slope, n = P / TWO_PI, len(P)
-        slack, from_H = SINE_ROUNDING * shape.K[:, None], shape.grain * combined(shape.strong, H)
-        q0, q1 = self.turn                                  # of rests
-        along, beside = (F[0] + F[1],) * 2 if q1 else (F, F01)      # of that frame's beta
-        strengths, sizes = shape.in_frame(self.turn)
-        flat, skew, steep = [x / (q0 * q0 + q1 * q1) for x in (q0 * q0, q0 * q1, q1 * q1)]
-        (X0, L0, r0), (X, L, r) = self.before, self.first
-        T = T0 = np.zeros((2, len(self.pairs), P.shape[1]))
-        near0 = np.abs(L0).sum(axis=1)
-        alive, d, f, due, reached = np.ones(X.shape[1], bool), None, None, FIRST_TRY_SITES, 0
+        due, reached = FIRST_TRY_SITES, 0
         while True:
-            columns = shape.along(L)
-            size = np.abs(columns).sum(axis=1) * SUM_ROUNDING
-            curve = (self.halves * np.abs(shape.along(T))).sum(axis=1)
-            rest, near = curve + combined(sizes, r), size[:2] + curve[:2] * SUM_ROUNDING
-            if shape.mixed:
-                rest[2:] += 3 * UNIT * combined(shape.sizes[2:], near)
-            rest *= SUM_ROUNDING
-            reach = (size + rest) * SUM_ROUNDING
-            if not self.sites:                      # how far each symbol moves a lane's last site
-                self.last = self.moved(columns)
-            for w in shape.present:
-                known = reach[w] <= REACH_MAX
-                alive = alive & (known | self.absent[w] if w in self.absent else known)
-            if self.sites and (not alive.any() or len(self.sites) == MAX_SITES):
+            near = (self.reach[self.shape.present] <= self.reach_max).all(axis=0)
+            self.end(self.alive & ~(self.regular & near))
+            count = len(self.sites)
+            if count and (not self.alive.any() or count == MAX_SITES):
                 yield True
                 return
-            if len(self.sites) * alive.size >= SITES_MAX and self.size > BATCH_MIN:
+            if count >= self.sites_max and self.size > BATCH_MIN:
                 yield False
                 return
-            if 2 * len(self.sites) == due:
-                reached = reach[shape.present].max(axis=0)
-            if len(self.sites) == due:
-                farthest = reach[shape.present].max(axis=0)
-                slow = alive & (farthest < EARLY_TRY_GROWTH * reached)
-                if 2 * slow.sum() > alive.sum():
+            farthest = self.reach[self.shape.present].max(axis=0)
+            if 2 * count == due:
+                reached = farthest
+            if count == due:
+                slow = self.alive & (farthest < EARLY_TRY_GROWTH * reached)
+                if 2 * slow.sum() > self.alive.sum():
                     yield True
-                    alive = alive & ~self.both(self.excluded, self.excluded)
+                    self.end(self.alive & self.both(self.excluded, self.excluded))
                 reached, due = farthest, 2 * due
-            for array in (L, T, r, columns, size, rest, reach, near):
-                np.copyto(array, 0, where=~alive)
-            np.copyto(self.last, self.moved(columns), where=alive)
-            s, c = lockstep_sincos(shape.turns(X))
-            beta = combined(shape.forms, P * -s)
-            beta[::2] += 2
-            new, bow, mean = applied(beta[:, None], L) - L0, applied(beta[:, None], T) - T0, 0 * s
-            for w in shape.present:
-                symbols = shape.moving[w]
-                form, mean[w] = quadratic(self.pairs, columns[w], P[w] * c[w],
-                                          [(m, h[w, m] * s[w]) for m in symbols])
-                forces = [(m, h[w, m] * c[w]) for m in symbols]
-                for i, k in enumerate(shape.known[w][0]):
-                    if k:
-                        bow[i] -= form if k == 1 else k * form
-                        for m, wave in forces:
-                            new[i, m] += wave if k == 1 else k * wave
-            self.sites.append(Sites(alive, s, c, columns, size, rest, reach, beta,
-                                   combined(shape.forces, mean)))
+            self.step()
 
-            wave = slope * c - mean / TWO_PI
-            X, X0 = 2 * X - X0 + combined(shape.forces, wave), X
-            X -= np.rint(X)
-            bent = bending(P, H, W, np.abs(s) + slack, np.abs(c) + slack, size, rest, reach)
-            err = F * (1 + near) + F01 * near[::-1] + (4 + n) * UNIT * near0 + from_H
-            err, block = combined(strengths, bent) + abs(q0) * err + abs(q1) * err[::-1], beta
-            if q1:
-                block = np.stack((flat * beta[0] + 2 * skew * beta[1] + steep * beta[2],
-                                  skew * (beta[2] - beta[0]) + (flat - steep) * beta[1],
-                                  steep * beta[0] - 2 * skew * beta[1] + flat * beta[2]))
-            if d is None:                           # d[q] = beta, f = err - r[o] + roundings
-                f, d = r0 + err + along * r + beside * r[::-1], block
-            else:
-                f, M, det = next_rest(d, f, r, r0, err, along, beside)
-                alive, d = alive & (np.abs(det) > DETERMINANT_MIN), block - M
-            f = f * SUM_ROUNDING
-            r, r0 = (applied(np.abs(d), r) + f) * SUM_ROUNDING, r
-            L, L0, T, T0, near0 = new, L, bow, T, near
+    def measure(self):
+        """How far the waves reach at this site, and (near) the coordinates without r."""
+        shape, known = self.shape, self.known
+        waves = shape.along(self.LT)
+        self.columns, far = waves[:, :known].copy(), np.abs(waves)
+        size = far[:, :known].sum(axis=1) * SUM_ROUNDING
+        curve = (self.halves * far[:, known:]).sum(axis=1)
+        rest, self.near = curve + combined(self.sizes, self.r), size[:2] + curve[:2] * SUM_ROUNDING
+        if shape.mixed:
+            rest[2:] += 3 * UNIT * combined(shape.sizes[2:], self.near)
+        self.size_, self.rest = size, rest * SUM_ROUNDING
+        self.reach = (size + self.rest) * SUM_ROUNDING
 
-    @staticmethod
-    def keep_plainest(over, best, place, forms):
-        """Where a segment (1) ends, keeps it as the best (2) if its eigenvalue is lower, and resets
-        it."""
-        plainer = over & (best[1] > best[2]) & (best[1] < math.inf)
-        for array in best, place, forms:
-            np.copyto(array[2], array[1], where=plainer)
-        np.copyto(best[1], math.inf, where=over)
+    def end(self, lanes):
+        """Ends these lanes: they are zero from this site on."""
+        if lanes.any():
+            if self.sites:
+                np.copyto(self.last, self.moved(self.sites[-1].columns), where=lanes)
+            self.alive = self.alive & ~lanes
+            self.clear()
+            self.measure()
+
+    def clear(self):
+        """Sets lanes that have ended to zero."""
+        if not self.alive.all():
+            for array in self.LT, self.r:
+                np.copyto(array, 0, where=~self.alive)
+
+    def step(self):
+        """Adds this site to the lanes and goes on to the next: steps (C4) to (C6)."""
+        P, shape = self.P, self.shape
+        s, c = lockstep_sincos(shape.turns(self.X))
+        beta = combined(shape.forms, P * -s)
+        beta[::2] += 2
+        LT = applied(beta[:, None], self.LT) - self.LT0
+        mean = self.add_forces(LT, s, c)
+        self.sites.append(Sites(self.alive, s, c, self.columns, self.rest,
+                                combined(shape.forces, mean)))
+        wave = P / TWO_PI * c - mean / TWO_PI
+        X = 2 * self.X - self.X0 + combined(shape.forces, wave)
+        self.X, self.X0 = X - np.rint(X), self.X
+        r = self.next_rests(beta, np.abs(s), np.abs(c))
+        self.LT, self.LT0, self.r, self.r0, self.near0 = LT, self.LT, r, self.r, self.near
+        self.clear()
+        self.measure()
+
+    def add_forces(self, LT, s, c):
+        """Adds to the next L and T what the parameters' forces and the quadratic parts of the waves
+        do; returns the mean of (C6) of each wave."""
+        h, known, mean = self.h, self.known, np.zeros_like(s)
+        for w in self.shape.present:
+            symbols = self.shape.moving[w]
+            form, mean[w] = quadratic(self.pairs, self.columns[w], self.P[w] * c[w],
+                                      [(m, h[w, m] * s[w]) for m in symbols])
+            forces = [(m, h[w, m] * c[w]) for m in symbols]
+            for i, k in enumerate(self.shape.known[w][0]):
+                if k:
+                    LT[i, known:] -= form if k == 1 else k * form
+                    for m, wave in forces:
+                        LT[i, m] += wave if k == 1 else k * wave
+        return mean
+
+    def next_rests(self, beta, s, c):
+        """The rests of the next site, steps (C5), (C6) and (C13) to (C15), from beta and the
+        absolute values of sines and cosines."""
+        shape, F, (q0, q1), r = self.shape, self.F, self.turn, self.r
+        slack, near = SINE_ROUNDING * shape.K[:, None], self.near
+        bent = bending(self.P, self.H, self.W, s + slack, c + slack, self.size_, self.rest,
+                       self.reach)
+        err = F * (1 + near) + self.F01 * near[::-1] + self.from_H \
+            + (4 + len(s)) * UNIT * self.near0
+        err = combined(self.strengths, bent) + abs(q0) * err + abs(q1) * err[::-1]
+        block = beta
+        if q1:
+            flat, skew, steep = [x / (q0 * q0 + q1 * q1) for x in (q0 * q0, q0 * q1, q1 * q1)]
+            block = np.stack((flat * beta[0] + 2 * skew * beta[1] + steep * beta[2],
+                              skew * (beta[2] - beta[0]) + (flat - steep) * beta[1],
+                              steep * beta[0] - 2 * skew * beta[1] + flat * beta[2]))
+        if self.d is None:                      # d[q] = beta, f = err - r[o] + roundings
+            f, d = self.r0 + err + self.along * r + self.beside * r[::-1], block
+        else:
+            f, M, det = next_rest(self.d, self.f, r, self.r0, err, self.along, self.beside)
+            self.regular, d = np.abs(det) > DETERMINANT_MIN, block - M
+        self.d, self.f = d, f * SUM_ROUNDING
+        return (applied(np.abs(d), r) + self.f) * SUM_ROUNDING
 
     def test_vectors(self):
         """Vectors n for each site, and how many tails begin there: one where a lane ends, one where
@@ -518,131 +581,196 @@ class Prisms:
         follows outwards by the recursions.  The segment with the lowest such eigenvalue is taken:
         others may contradict by a tiny amount, however small the prism.
         """
-        sites, none, shape = self.sites, np.zeros_like(self.l), self.shape
-        blocks, tail = [], np.stack((self.l, none, self.l))
-        for site in sites:
-            more = (self.penalties[0] + self.penalties[1] * site.reach) * site.reach
-            blocks.append(site.beta + combined(shape.forms, (self.magnitude + self.H) * more))
-        outer, back, whole = [], [], []             # the recursion from the end
-        inverse, beyond, good = tail, none > 0, none == 0
-        for site, block in zip(sites[::-1], blocks[::-1]):
-            whole.append(good)
-            outer.append(block - np.where(beyond, inverse, tail))
-            good = good & (are_definite(outer[-1]) | ~site.alive)
-            inverse, beyond = inverses(outer[-1]), site.alive
-            back.append(inverse)
-        outer, back, whole = outer[::-1], back[::-1], whole[::-1]
-        begins, ahead = [], []                      # the recursion from the other lane
-        good, inverse = self.other(good & beyond), self.other(inverse)
-        spans = good                                # from that lane's end, along the whole orbit
-        best, place = np.full((3, none.size), math.inf), np.full((3, none.size), -1)
-        forms = np.zeros((3, 3, none.size))         # of the whole, of a part, of the plainest part
-        best[2] = 0
-        for k, (site, block) in enumerate(zip(sites, blocks)):
-            begins.append(~good)
-            self.keep_plainest(begins[-1], best, place, forms)
-            spans = spans & good
-            inner = block - np.where(good, inverse, tail)
-            joint = outer[k] + inner - block
-            low = least_of(joint)
-            score = np.where(site.alive & whole[k] & (low < 0), -low, math.inf)
-            for part, where in enumerate((spans, ~spans)):
-                better = where & (score < best[part])
-                np.copyto(best[part], score, where=better)
-                np.copyto(place[part], k, where=better)
-                np.copyto(forms[part], joint, where=better)
-            good, inverse = are_definite(inner), inverses(inner)
-            ahead.append(inverse)
-        self.keep_plainest(none == 0, best, place, forms)
-        nearer = self.both(best[0, :self.size] <= best[0, self.size:],
-                           best[0, self.size:] < best[0, :self.size])
-        best[1] = np.where(nearer, best[0], math.inf)
-        place[1], forms[1] = place[0], forms[0]
-        self.keep_plainest(none == 0, best, place, forms)
-        best, place, form = best[2], place[2], forms[2]
-        first = self.both(best[:self.size] >= best[self.size:], best[self.size:] > best[:self.size])
-        place = np.where(first, place, -1)          # of the two lanes one
-        low = least_of(form)
-        p, q, r = form
-        v = np.where(p > r, np.stack((q, low - p)), np.stack((low - r, q)))
-        length = np.sqrt(v[0] * v[0] + v[1] * v[1])
-        v = np.where(length > 0, v / np.where(length > 0, length, 1), np.stack((p <= r, p > r)))
+        ends = [*[site.alive for site in self.sites[1:]], np.zeros_like(self.alive)]
+        back, whole, blocks = self.recursion_inwards(ends)
+        ahead, begins, scores = self.recursion_outwards(ends, back, whole, blocks)
+        place = self.plainest(begins, scores)
+        before = (begins & (np.arange(len(ends))[:, None] <= place))[::-1]
+        begin = np.where(before.any(axis=0), len(ends) - 1 - before.argmax(axis=0), -1)
+        v = least_eigenvector(self.joint_form(place, ends, ahead, back))
         n, x = [], np.zeros_like(v)
-        for k in range(len(sites) - 1, -1, -1):
-            inward = (place > k) & ~begins[min(k + 1, len(sites) - 1)]
+        for k in range(len(ends) - 1, -1, -1):
+            inward = (begin <= k) & (k < place)
             x = np.where(place == k, v, np.where(inward, applied(ahead[k], x), 0))
             n.append(x)
         n.reverse()
-        across = self.other((place >= 0) & ~begins[0]) & sites[0].alive
+        across = self.other((place >= 0) & (begin < 0)) & self.sites[0].alive
         n[0] = np.where(across, applied(back[0], self.other(n[0])), n[0])
-        tails = []
-        for k, site in enumerate(sites):
+        for k, site in enumerate(self.sites):
             if k:
                 outward = (place < k) & ((place >= 0) | across)
                 n[k] = np.where(outward, applied(back[k], n[k - 1]), n[k])
             n[k] = np.where(site.alive, n[k], 0)
-            ends = site.alive & ~sites[k + 1].alive if k + 1 < len(sites) else site.alive
-            tails.append(ends * 1.0 + (begins[k] & (place >= k)))
+        tails = [np.add(site.alive & ~end, begin == k, dtype=np.int8)
+                 for k, (site, end) in enumerate(zip(self.sites, ends))]
         return n, tails
+
+    def penalized(self, site):
+        """beta at a site plus a penalty for the reach there, which makes the bound larger."""
+        reach = site.reach
+        more = (self.penalties[0] + self.penalties[1] * reach) * reach
+        block = combined(self.shape.forms, (self.magnitude + self.H) * more - self.P * site.s)
+        block[::2] += 2
+        return block
+
+    def tail(self):
+        return np.stack((self.l, 0 * self.l, self.l))
+
+    def recursion_inwards(self, ends):
+        """The recursion from each lane's end: the inverses, from which site of each lane on it has
+        not failed, and the blocks."""
+        back, blocks, tail = [], [], self.tail()
+        good, whole = np.ones_like(self.alive), np.full(self.l.shape, len(ends) - 1)
+        inverse = tail
+        for k in range(len(ends) - 1, -1, -1):
+            blocks.append(self.penalized(self.sites[k]))
+            inverse, definite = inverted(blocks[-1] - np.where(ends[k], inverse, tail))
+            back.append(inverse)
+            good = good & (definite | ~self.sites[k].alive)
+            whole[good] = k - 1
+        return back[::-1], whole, blocks[::-1]
+
+    def recursion_outwards(self, ends, back, whole, blocks):
+        """The recursion from the other lane: the inverses; where it begins anew; and at each site
+        minus the lowest eigenvalue of both recursions together, infinite where that is not negative
+        or the recursion from the lane's end has failed."""
+        tail, (N, lanes) = self.tail(), (len(ends), self.l.size)
+        begins, scores = np.empty((N, lanes), bool), np.empty((N, lanes))
+        good, inverse = self.other((whole < 0) & self.sites[0].alive), self.other(back[0])
+        span = max(1, BLOCK // lanes)
+        ahead = blocks
+        for start in range(0, N, span):
+            joints = []
+            for k in range(start, min(start + span, N)):
+                np.logical_not(good, out=begins[k])
+                inner = blocks[k] - np.where(good, inverse, tail)
+                beyond = back[k + 1] if k + 1 < N else tail
+                joints.append(inner - np.where(ends[k], beyond, tail))
+                inverse, good = inverted(inner)
+                ahead[k] = inverse
+            low = least_eigenvalue(stacked(joints))
+            at = np.arange(start, start + len(joints))[:, None]
+            counts = stacked([site.alive for site in self.sites[start:start + span]]) \
+                & (at >= whole) & (low < 0)
+            scores[start:start + span] = np.where(counts, -low, math.inf)
+        return ahead, begins, scores
+
+    def plainest(self, begins, scores):
+        """The site of each lane where n is an eigenvector, or -1."""
+        N, lanes = scores.shape
+        scores, starts = np.ascontiguousarray(scores.T), begins.T.copy()
+        starts[:, 0] = True
+        starts = np.flatnonzero(starts)
+        best = np.minimum.reduceat(scores.ravel(), starts)
+        first = np.searchsorted(starts, np.arange(lanes) * N)       # segment of each lane
+        # A segment that spans both lanes is one.
+        spans = ~begins[0] & ~self.other(begins[0])
+        near = best[first]
+        farther = (near > self.other(near)) | (near == self.other(near)) \
+            & (np.arange(lanes) >= self.size)
+        best[first[spans & farther]] = math.inf
+        best[best == math.inf] = 0
+        best = np.maximum.reduceat(best, first)
+        mine, others = best, self.other(best)
+        chosen = (mine > 0) & ((mine > others) | (mine == others)
+                               & (np.arange(lanes) < self.size))
+        return np.where(chosen, (scores == best[:, None]).argmax(axis=1), -1)
+
+    def joint_form(self, place, ends, ahead, back):
+        """Both recursions together at these sites."""
+        def at(arrays, places):
+            return np.stack([arrays[k][:, lane] for lane, k in enumerate(places)], axis=-1)
+
+        N, tail = len(ends), self.tail()
+        beyond = np.where(np.stack(ends)[place, np.arange(place.size)],
+                          at(back, np.minimum(place + 1, N - 1)), tail)
+        return inverted(at(ahead, place))[0] - beyond
 
     def expand(self):
         """The left side of (C3): its value at X and P, a polynomial, as summit takes it, and a
         bound of its difference from both, infinite where there is none."""
-        N, l, F, shape = len(self.sites), self.l, self.F, self.shape
+        N, shape = len(self.sites), self.shape
         n, tails = self.test_vectors()
-        P, H, W, magnitude, grain = self.P, self.H, self.W, self.magnitude, shape.grain
-        K, square_K = shape.K[:, None], (shape.K * shape.square)[:, None]
-        sums = Sums(self.known, self.angles, l.size)
-        mu = mu1 = np.zeros((2, 1 + self.known, l.size))    # of this site, and of the one beyond
-        n1 = np.zeros((2, l.size))
-        for k in range(N - 1, -1, -1):
-            _, s, c, columns, size, rest, reach, _, E = self.sites[k]
-            n0 = n[k]
+        sums = Sums(self.known, self.angles, self.l.size)
+        mu = mu1 = np.zeros((2, 1 + self.known, self.l.size))   # of this site, and the one beyond
+        terms, span = 0 * mu[:, 0], max(1, BLOCK // self.l.size)
+        for start in reversed(range(0, N if any(x.any() for x in n) else 0, span)):
+            sites, n0 = self.sites[start:start + span], stacked(n[start:start + span])
+            n1 = stacked([*n[start + 1:start + span + 1], 0 * n[0]][:len(sites)])
             omega = shape.along(n0) ** 2
-            long = omega[0] + omega[1]
-            sums.value += 2 * long - (P * omega * s).sum(axis=0) - l * tails[k] * long \
-                - 2 * (n0[0] * n1[0] + n0[1] * n1[1]) + (mu[0, 0] * E[0] + mu[1, 0] * E[1])
-            sums.linear += mu[0, 1:] * E[0] + mu[1, 1:] * E[1]
-            m = shape.along(mu)
-            A, B = m * c[:, None], -m * s[:, None]
-            A[:, 0] -= omega * s
-            B[:, 0] -= omega * c
-            slopes = sums.add_waves(shape, P, self.h, columns, A, B)
-            most = np.abs(mu).sum(axis=1)
-            weight = K * combined(shape.sizes, most) + square_K * long
-            sums.error += remainder(
-                P, H, W, A[:, 0], np.abs(A[:, 1:]).sum(axis=1), B[:, 0],
-                np.abs(B[:, 1:]).sum(axis=1), weight, size, rest, reach).sum(axis=0)
-            sums.mass += 2 * long \
-                + (weight * (magnitude * (1 + reach * reach) + 3 * H)).sum(axis=0)
-
-            G = 2 * mu - mu1 + combined(shape.forces, slopes)
-            terms = combined(shape.strengths, weight * (magnitude * (1 + size) + H)) \
-                + 2 * most + np.abs(mu1).sum(axis=1)        # of G: step (C18)
-            if k:
-                small = most * F + grain * terms * reach[:2]
-                mu, mu1, n1 = G, mu, n0
-            else:
-                across = self.other(mu)
-                G, terms = G - across, terms + np.abs(across).sum(axis=1)
-                small = most * F + np.abs(G).sum(axis=1) * self.rounding \
-                    + grain * terms * (np.abs(self.ends).sum(axis=1) + self.rounding)
-                sums.ends = np.stack([G[0] * x + G[1] * y for x, y in zip(*self.ends)])
-            sums.error += small[0] + small[1]
+            mus, A, B, mu, mu1 = self.multipliers(sites, omega, mu, mu1)
+            terms = self.add_sites(sums, Sites.block(sites), n0, n1, omega,
+                                   stacked(tails[start:start + span]), mus, A, B)
+        self.add_ends(sums, mu, mu1, terms)
         sums.join(self.joined)
         sums.value -= 2 * (n[0][0, :self.size] * n[0][0, self.size:]
                            + n[0][1, :self.size] * n[0][1, self.size:])
         form = sums.form()
         added = sum([np.abs(x) for x in form.values()])
-        mass = UNIT * (((len(P) + 2) * N + 256) * sums.mass + 64 * added)
+        mass = UNIT * (((len(self.P) + 2) * N + 256) * sums.mass + 64 * added)
         error = (sums.error + mass) * (SUM_ROUNDING + 64 * UNIT * N)
         return sums.value, form, np.where(mass < UNIT * MASS_MAX, error, math.inf)
+
+    def multipliers(self, sites, omega, mu, mu1):
+        """Step (C7), from the last of these sites inwards: mu of each and of the one beyond, A and
+        B; and mu of the next two."""
+        shape, P, h, found = self.shape, self.P, self.h, []
+        moving = [(w, m) for w in shape.present for m in shape.moving[w]]
+        for site, squares in zip(sites[::-1], np.moveaxis(omega, -2, 0)[::-1]):
+            m = shape.along(mu)
+            A, B = m * site.c[:, None], -m * site.s[:, None]
+            A[:, 0] -= squares * site.s
+            B[:, 0] -= squares * site.c
+            found.append((mu, mu1, A, B))
+            slopes = P[:, None] * B
+            slopes[:, 1:] -= (P * A[:, 0])[:, None] * site.columns
+            for w, symbol in moving:
+                slopes[w, 1 + symbol] += h[w, symbol] * B[w, 0]
+            mu, mu1 = 2 * mu - mu1 + combined(shape.forces, slopes), mu
+        before, beyond, A, B = map(stacked, zip(*found[::-1]))
+        return (before, beyond), A, B, mu, mu1
+
+    def add_sites(self, sums, site, n0, n1, omega, tails, mus, A, B):
+        """Adds a block of sites, with the vectors n0 there and n1 beyond each; returns the sum of
+        the sizes of the terms of G at the first: step (C18)."""
+        shape, P, H, W = self.shape, *[x[:, None] for x in (self.P, self.H, self.W)]
+        (E0, E1), size, reach = site.E, site.size, site.reach
+        magnitude, long, (mu, mu1) = np.abs(P), n0[0] ** 2 + n0[1] ** 2, mus
+        sums.value += (2 * long - (P * omega * site.s).sum(axis=0) - self.l * tails * long
+                       - 2 * (n0[0] * n1[0] + n0[1] * n1[1])
+                       + (mu[0, 0] * E0 + mu[1, 0] * E1)).sum(axis=0)
+        sums.linear += (mu[0, 1:] * E0 + mu[1, 1:] * E1).sum(axis=1)
+        sums.add_waves(shape, P, self.h, site.columns, A, B)
+        most = np.abs(mu).sum(axis=1)
+        weight = shape.K[:, None, None] * (combined(shape.sizes, most)
+                                           + shape.square[:, None, None] * long)
+        left = remainder(P, H, W, A[:, 0], np.abs(A[:, 1:]).sum(axis=1), B[:, 0],
+                         np.abs(B[:, 1:]).sum(axis=1), weight, size, site.rest, reach)
+        sums.error += left.sum(axis=(0, 1))
+        sums.mass += (2 * long + (weight * (magnitude * (1 + reach * reach) + 3 * H)).sum(
+            axis=0)).sum(axis=0)
+        terms = combined(shape.strengths, weight * (magnitude * (1 + size) + H)) \
+            + 2 * most + np.abs(mu1).sum(axis=1)
+        small = most * self.F[:, None] + shape.grain * terms * reach[:2]
+        sums.error += small.sum(axis=(0, 1))
+        return terms[:, 0]
+
+    def add_ends(self, sums, G, mu, terms):
+        """Adds the terms of x[1] and x[0], where the lanes meet: G and mu there, and the sum of the
+        sizes of the terms of G, without mu of the other lane."""
+        across = self.other(mu)
+        G, terms = G - across, terms + np.abs(across).sum(axis=1)
+        small = np.abs(G).sum(axis=1) * self.rounding \
+            + self.shape.grain * terms * (np.abs(self.ends).sum(axis=1) + self.rounding)
+        sums.error += small[0] + small[1]
+        sums.ends = np.stack([G[0] * x + G[1] * y for x, y in zip(*self.ends)])
 
     def bound(self):
         """An upper bound of the left side of (C3) for each prism; and about how much each symbol
         adds to it, which decides where to cut."""
         value, form, error = self.expand()
-        share = self.joined(self.last) + UNDERFLOW_MARGIN
+        last = np.where(self.alive, self.moved(self.sites[-1].columns), self.last)
+        share = self.joined(last) + UNDERFLOW_MARGIN
         share = share / share.sum(axis=0)
         moved = np.stack([sum([np.abs(x) for key, x in form.items() if k in key])
                           for k in range(self.known)])
@@ -655,33 +783,47 @@ class Lockstep:
 
     def __init__(self, claims):
         """Converts the claims to doubles; ValueError if one has numbers that are too large, or no
-        wave.
-
-        x* in turns is off by 2^-54 of its rounding and by 2^-80 of the integers, less than
-        XSTAR_ERROR / 2 pi.
-        """
-        waves = list(dict.fromkeys((wave.k, wave.phase % 2) for claim in claims
-                                   for wave in claim.examined))
+        wave."""
         if not all(claim.examined for claim in claims):
             raise ValueError("no wave: orbits without end")
+        self.batch = BATCH
+        # The axes of the symbols: of the parameters that move anything in doubles, and of v0, v1.
         self.axes = sorted({2 + m for claim in claims for wave in claim.examined
                             for m, part in enumerate(wave.parts) if float(part)}    # or underflow
                            | {2 + m for claim in claims for m, shift in enumerate(claim.shifts)
-                              if any(shift)})
-        shape = (len(waves), len(claims))
+                              if any(shift)}) + [0, 1]
+        self.take_waves(claims)
+        self.take_regions(claims)
+        sizes = self.scale, self.half, self.shifts, self.frame, *[
+            [float(x) for x in (*claim.xstar, *claim.centre)] for claim in claims]
+        if max([np.max(np.abs(x), initial=0) for x in sizes]) > FAST_SIZE_MAX:
+            raise ValueError("too large for the fast path")
+
+    def take_waves(self, claims):
+        """The waves of all claims, and by wave and claim their amplitudes: the middle, the parts of
+        each axis, and twice the sum of the absolute values of both (scale)."""
+        waves = list(dict.fromkeys((wave.k, wave.phase % 2) for claim in claims
+                                   for wave in claim.examined))
+        shape = len(waves), len(claims)
         self.middle, self.scale = np.zeros(shape), np.zeros(shape)
-        self.parts = np.zeros((len(self.axes), *shape))
+        self.parts = np.zeros((len(self.axes) - 2, *shape))
         for q, claim in enumerate(claims):
             for wave in claim.examined:
                 w = waves.index((wave.k, wave.phase % 2))
                 parts = [wave.parts[axis - 2] if axis - 2 < len(wave.parts) else 0
-                         for axis in self.axes]
+                         for axis in self.axes[:-2]]
                 self.middle[w, q] += float(wave.middle)
                 self.parts[:, w, q] += [float(part) for part in parts]
                 self.scale[w, q] += 2 * float(abs(wave.middle) + sum(map(abs, parts)))
         self.shape = Shape(waves, [(w, m) for m, w in zip(*self.parts.any(axis=2).nonzero())],
-                           len(self.axes))
-        self.axes += [0, 1]                         # of the symbols
+                           len(self.axes) - 2)
+
+    def take_regions(self, claims):
+        """The regions of all claims, and x*, in turns.
+
+        x* is off by 2^-54 of its rounding and by 2^-80 of the integers, less than XSTAR_ERROR /
+        2 pi.
+        """
         self.centre = np.array([[float(v / 2 % 1) for v in claim.centre] for claim in claims]).T
         self.half = np.array([[float(v / 2) for v in claim.half] for claim in claims]).T
         self.shifts = np.array([[[float(claim.moves[axis][i] / 2) for claim in claims]
@@ -692,35 +834,44 @@ class Lockstep:
         self.xstar = np.array([[float(
             (Fraction(math.floor(x * fixed.one), 2 * fixed.pi) + half_turn) % 1 - half_turn)
             for x in claim.xstar] for claim in claims]).T
-        sizes = self.scale, self.half, self.shifts, self.frame, *[
-            [max(map(abs, x)) for x in xs] for xs in zip(*[(c.xstar, c.centre) for c in claims])]
-        if max([np.max(np.array(x, float), initial=0) for x in map(np.abs, sizes)]) > FAST_SIZE_MAX:
-            raise ValueError("too large for the fast path")
-        self.batch = BATCH
 
     def box(self, index, cuts, number):
         """Boxes that cover these cells of the claims with these numbers, as Prisms takes them.
 
-        at and part are exact.  The doubles near middles and parts are off by u of them, the
-        products and sums by u of theirs, of four at most: in total by less than 8 u of their sum,
-        of which scale is the double.  The same holds for centres and half-widths of the angles and
-        at most three shifts, in at most four sums: 6 u of the centre, 7 u of the half-widths, 6 u
-        of the shifts, and 3 u more of the shifts for their columns.  The sides are lengthened by
-        all this.  In a frame other than the identity x[1] has the roundings of two products and a
-        sum, in turns, and so have its columns.
+        at, the middle of a cell, and part, its half-width, both for the half-width 1 of the claim,
+        are exact.
         """
         part = np.ldexp(1.0, -cuts.astype(np.intc))
         at = (2 * index + 1 - (1 << cuts)) * part
+        return *self.amplitudes(at, part, number), *self.successors(at, part, number)
+
+    def amplitudes(self, at, part, number):
+        """P, h and W of the waves of these cells.
+
+        The doubles near middles and parts are off by u of them, the products and sums by u of
+        theirs, of four at most: in total by less than 8 u of their sum, of which scale is the
+        double.
+        """
         P = np.zeros((len(self.shape.known), number.size))
         W, h = np.zeros_like(P), np.zeros((len(P), self.shape.parameters, number.size))
-        for w, middle in zip(self.shape.at, self.middle):
+        for w, middle, scale in zip(self.shape.at, self.middle, self.scale):
             P[w] = middle[number]
+            W[w] = np.where(scale[number] > 0, 8 * UNIT * scale[number] + UNDERFLOW_MARGIN, 0)
         for m, axis in enumerate(self.axes[:-2]):
             for w, parts in zip(self.shape.at, self.parts[m]):
                 P[w] += parts[number] * at[axis]
                 h[w, m] = parts[number] * part[axis]
-        for w, scale in zip(self.shape.at, self.scale):
-            W[w] = np.where(scale[number] > 0, 8 * UNIT * scale[number] + UNDERFLOW_MARGIN, 0)
+        return P, h, W
+
+    def successors(self, at, part, number):
+        """X[1] of these cells, its columns, and the error of x[1].
+
+        What amplitudes() counts holds for centres and half-widths of the angles and at most three
+        shifts, in at most four sums: 6 u of the centre, 7 u of the half-widths, 6 u of the shifts,
+        and 3 u more of the shifts for their columns.  The sides are lengthened by all this.  In a
+        frame other than the identity x[1] has the roundings of two products and a sum, in turns,
+        and so have its columns.
+        """
         V = self.centre[:, number] + self.half[:, number] * at[:2]
         moves, moved = np.zeros((2, len(self.axes), number.size)), 0
         for m, axis in enumerate(self.axes[:-2]):
@@ -737,15 +888,12 @@ class Lockstep:
                                           (np.abs(frame), np.abs(moves)))]
         off = UNIT * (8 * np.abs(frame.reshape(2, 2, -1)).sum(axis=1) + 4 * sizes.sum(axis=1))
         off[:, (frame.T == IDENTITY).all(axis=1)] = 0
-        return P, h, W, X - np.rint(X), columns, off
+        return X - np.rint(X), columns, off
 
     def attempt(self, index, cuts, number, l, penalties, halved=None):
         """Is (C3) true of all orbits of these cells?  Returns an answer for each, and the axis
         along which to cut it, or -1 if cuts will not help; None if their orbits are too long for a
-        batch of this size.
-
-        It is the axis that matters most, or one that matters and was halved far less often.
-        """
+        batch of this size.  halved: how often each cell was halved along each axis."""
         with np.errstate(all="ignore"):
             prisms = Prisms(self.box(index, cuts, number), self.shape, self.xstar[:, number], l,
                             penalties)
@@ -756,14 +904,19 @@ class Lockstep:
                 prisms.excluded |= bound < 0
                 if prisms.excluded.all():
                     break
-        excluded = prisms.excluded
+        most = prisms.sites_max * prisms.size / (LENGTH_MARGIN * len(prisms.sites))
+        self.batch = min(max(int(most), BATCH_MIN), BATCH)
         vain = prisms.joined(prisms.sites[-1].alive) & (len(prisms.sites) == MAX_SITES)
+        return prisms.excluded, np.where(vain, -1, self.worst_axis(blame, halved))
+
+    def worst_axis(self, blame, halved):
+        """The axis that matters most, or one that matters and was halved far less often."""
         axis = blame.argmax(axis=0)
         if halved is not None:
             halved, at = halved[self.axes], np.arange(axis.size)
             last = np.where(blame > blame[axis, at] * MATTERS_MIN, halved, MAX_CUTS).argmin(axis=0)
             axis = np.where(halved[axis, at] - halved[last, at] > HALVINGS_APART_MAX, last, axis)
-        return excluded, np.where(vain, -1, np.array(self.axes)[axis])
+        return np.array(self.axes)[axis]
 
     def settle(self, cells, least, exactly):
         """Decides on cells, pairs of a claim's number and a cell, with these l: (number of the
@@ -771,51 +924,60 @@ class Lockstep:
 
         Cells that fail are halved and tried again, up to the checker's limits and with each of
         SITE_PENALTIES in turn (n spreads over few sites if their reach is penalized, over many if
-        its square is).  Cells that fail then are decided by exactly(number) -> (None or why not,
-        pieces).
+        its square is).  Cells with the fewest cuts come first, as orbits of one length go well
+        together.  Cells that fail then are decided by exactly(number) -> (None or why not, pieces).
         """
         begun = np.array([cuts for _, (_, cuts) in cells]).T
-        pieces, refused = np.zeros(len(cells), int), None
-        fine = [n for n, (_, (_, cuts)) in enumerate(cells) if max(cuts) > FAST_CUTS_MAX]
-        rest = [n for n, (_, (_, cuts)) in enumerate(cells) if max(cuts) <= FAST_CUTS_MAX][::-1]
-        index, cuts = [np.array([cells[n][1][part] for n in rest], np.int64).reshape(-1, 5).T
-                       for part in (0, 1)]
-        todo = [index, cuts, np.array([cells[n][0] for n in rest], int),
-                np.array([least[n] for n in rest]), np.array(rest, int)]
-        while fine or todo[-1].size:
+        pieces, refused, todo = np.zeros(len(cells), int), None, self.pieces_of(cells, least)
+        fine = sorted(set(range(len(cells))) - set(todo[-1].tolist()))
+        while True:
             for n in fine:
                 if refused is None or n < refused[0]:
                     why, tried = exactly(n)
                     pieces[n] += tried
                     refused = (n, why) if why else refused
             keep = ~np.isin(todo[-1], fine) & (todo[-1] < (refused[0] if refused else len(cells)))
-            todo, fine = [x[..., keep] for x in todo], []
             if not keep.any():
-                break
-            index, cuts, claim, l, number = [x[..., -self.batch:] for x in todo]
+                return refused, pieces.tolist()
+            todo = [x[..., keep] for x in todo]
+            batch, later = [[x[..., part] for x in todo] for part in (
+                slice(self.batch), slice(self.batch, None))]
+            index, cuts, claim, l, number = batch
             halved = cuts - begun[:, number]
             halvings = halved.sum(axis=0)
             tried = self.attempt(index, cuts, claim, l,
                                  np.array(SITE_PENALTIES)[halvings % len(SITE_PENALTIES)].T, halved)
             if tried is None:
-                self.batch //= 2
+                self.batch, fine = self.batch // 2, []
                 continue
-            todo = [x[..., :-self.batch] for x in todo]
             pieces += np.bincount(number, minlength=len(cells))
             excluded, axis = tried
             lost = ~excluded & ((axis < 0) | (halvings >= MAX_HALVINGS)
                                 | (pieces[number] >= MAX_PIECES)
                                 | (cuts[axis, np.arange(axis.size)] >= FAST_CUTS_MAX))
             fine = sorted(set(number[lost].tolist()))
-            index, cuts, claim, l, number, axis = [
-                x[..., ~excluded].repeat(2, axis=-1)
-                for x in (index, cuts, claim, l, number, axis)]
-            at = np.arange(axis.size)
-            index[axis, at] = 2 * index[axis, at] + at % 2
-            cuts[axis, at] += 1
-            todo = [np.concatenate(both, axis=-1)
-                    for both in zip(todo, (index, cuts, claim, l, number))]
-        return refused, pieces.tolist()
+            todo = [np.concatenate(both, axis=-1) for both in zip(
+                halves([x[..., ~excluded] for x in batch], axis[~excluded]), later)]
+
+    @staticmethod
+    def pieces_of(cells, least):
+        """The cells whose numbers are exact in doubles, those with the fewest cuts first: as arrays
+        of index, cuts, the claim's number, l and the cell's number."""
+        some = sorted([n for n, (_, (_, cuts)) in enumerate(cells) if max(cuts) <= FAST_CUTS_MAX],
+                      key=lambda n: sum(cells[n][1][1]))
+        index, cuts = [np.array([cells[n][1][part] for n in some], np.int64).reshape(-1, 5).T
+                       for part in (0, 1)]
+        return [index, cuts, np.array([cells[n][0] for n in some], int),
+                np.array([least[n] for n in some]), np.array(some, int)]
+
+
+def halves(pieces, axis):
+    """The halves of these pieces along these axes."""
+    index, cuts, *others = [x.repeat(2, axis=-1) for x in pieces]
+    axis, at = axis.repeat(2), np.arange(2 * axis.size)
+    index[axis, at] = 2 * index[axis, at] + at % 2
+    cuts[axis, at] += 1
+    return index, cuts, *others
 
 
 def make_lockstep(claims):

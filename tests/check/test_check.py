@@ -1986,12 +1986,14 @@ def test_roundings_of_each_step_are_counted(np, texts, c, factor):
 def test_lockstep_orbits(np, generator, monkeypatch):
     """True orbits of a prism are where the models say, within their rests, rounded as they are."""
     cases = tight = others = 0
-    turns, along, centres, bows = check.Shape.turns, check.Shape.along, [], []
-    monkeypatch.setattr(check.Shape, "turns",
-                        lambda self, x: centres.append(x.copy()) or turns(self, x))
-    # k.x of centres, of columns and of the quadratic parts, site by site
-    monkeypatch.setattr(check.Shape, "along", lambda self, x: bows.append(along(self, x))
-                        or bows[-1].copy())
+    step, centres, bows = check.Prisms.step, [], []     # bows: k.T of each site
+
+    def records(self):
+        centres.append(self.X.copy())
+        bows.append(self.shape.along(self.LT[:, self.known:]).copy())
+        step(self)
+
+    monkeypatch.setattr(check.Prisms, "step", records)
     for _ in range(16 * TORTURE):
         prisms = random_prisms(np, generator)
         known = [(k, Fraction(phase)) for k, phase in prisms.shape.known]
@@ -2005,9 +2007,8 @@ def test_lockstep_orbits(np, generator, monkeypatch):
                     for k in (lane, lane + prisms.size)]
             orbits = true_orbit(known, amplitudes, angles, min(max(ends), 20))
             for orbit, k, end in zip(orbits, (lane, lane + prisms.size), ends):
-                for site, centre, bow, x in list(zip(prisms.sites[:end], centres, bows[1::3],
-                                                     orbit)):
-                    _, _, _, columns, size, rest, reach, _, _ = site
+                for site, centre, bow, x in list(zip(prisms.sites[:end], centres, bows, orbit)):
+                    columns, size, rest, reach = site.columns, site.size, site.rest, site.reach
                     centre = [Fraction(float(turns[k])) for turns in centre]
                     for w in prisms.shape.present:
                         (k0, k1), _ = known[w]
@@ -2495,7 +2496,7 @@ def test_the_fast_path_looks_at_the_machine(np, monkeypatch):
 def test_long_orbits_are_followed_fewer_at_a_time(np, root, tmp_path, monkeypatch):
     prove(read_input(root / "inputs" / "standard-63-64.in"), method="loewner").save(tmp_path / "a")
     claim = check.read(tmp_path / "a")
-    monkeypatch.setattr(check, "SITES_MAX", 1000)
+    monkeypatch.setattr(check, "MEMORY_MAX", 200000)
     criterion = check.Criterion(claim)
     fast = check.Lockstep([claim])
     cells = [(0, cell) for at, cell in check.leaves(claim.tree) if claim.tree[at] == "P"]
