@@ -30,7 +30,9 @@ TAYLOR = list(zip([(-1) ** k / math.factorial(2 * k + 1) for k in range(8, 0, -1
 SINE_ROUNDING = 24 * UNIT               # error of a sine or cosine, divided by |k0| + |k1|: (C12)
 SUM_ROUNDING = 1 + 2.0 ** -40           # factor for the roundings of a sum of positive terms: (C16)
 MASS_MAX = 2.0 ** 900                   # of the mass, so that sums do not overflow: (C20)
-XSTAR_ERROR = 2.0 ** -51                # of x*, in radians; see Lockstep
+XSTAR_ERROR = 2.0 ** -51                # of x*, in radians; see Lockstep.take_regions
+WHOLE_ERROR = 2.0 ** -61                # radians in 2^-64 turns, and more
+FORCE_ROUNDING = 8 * UNIT               # of a wave's force, divided by its amplitude: (C13)
 UNDERFLOW_MARGIN = 2.0 ** -200          # added to sizes and divisors that may underflow
 FAST_SIZE_MAX = 2.0 ** 10               # of amplitudes, x*, regions (in turns) and frames
 FAST_CUTS_MAX = 52                      # cuts of an axis, so that cells are exact in doubles
@@ -70,18 +72,24 @@ def import_numpy_if_sound():
             and np.rint(np.array([0.5, 1.5, -2.5, 0.49, 7.0])).tolist() == [0, 2, -2, 0, 7]
 
 
-def lockstep_sincos(turns):
-    """Sines and cosines of 2 pi turns, |turns| <= 1/2: each within 4 u.
+def whole(turns):
+    """The turns in units of 2^-64 turns, modulo one turn, each off by less than a unit."""
+    turns = turns - np.rint(turns)
+    return np.ldexp(np.where(turns < 0.5, turns, turns - 1), 64).astype(np.int64)
 
-    turns - n/4 is exact (Sterbenz) and at most 1/8; the angle has a relative error of 1.4 u.
-    Taylor's polynomials are off by less than u/50.  sine: 0.8 u for the angle, 0.6 u for the number
-    added to it, at most 0.081, 0.8 u for the sum; cosine: 0.8 u, 0.4 u for the square's half,
-    0.1 u for the rest, 0.4 u and u for the sums.
+
+def lockstep_sincos(angles):
+    """Sines and cosines of angles in units of 2^-64 turns: each within 4 u.
+
+    The angle less n quarter turns is at most 1/8; in radians it has a relative error of 2.4 u.
+    Taylor's polynomials are off by less than u/50.  sine: 1.9 u for the angle, 0.6 u for the number
+    added to it, at most 0.081, 0.8 u for the sum; cosine: 1.4 u, 0.4 u for the square's half, 0.1 u
+    for the rest, 0.4 u and u for the sums.
     """
-    n = np.rint(4 * turns)
-    angle = (turns - 0.25 * n) * TWO_PI
+    quadrant = (angles + (1 << 61)) >> 62
+    angle = (angles - (quadrant << 62)) * (TWO_PI / 2.0 ** 64)
     square = angle * angle
-    first, *more = np.array(TAYLOR).reshape(len(TAYLOR), 2, *[1] * turns.ndim)
+    first, *more = np.array(TAYLOR).reshape(len(TAYLOR), 2, *[1] * angles.ndim)
     terms = first * square
     for pair in more:
         terms += pair
@@ -90,7 +98,6 @@ def lockstep_sincos(turns):
     sine *= angle
     sine += angle
     cosine = 1 - (0.5 * square - square * square * (cosine + 1 / 24))
-    quadrant = n.astype(np.int64)
     odd = (quadrant & 1) == 1
     return (np.where(odd, cosine, sine) * (1 - (quadrant & 2)),
             np.where(odd, sine, cosine) * (1 - (quadrant + 1 & 2)))
@@ -128,7 +135,9 @@ class Shape:
         self.K = abs(k).sum(axis=1)
         self.square = (k * k).sum(axis=1)
         self.grain = (64 + 16 * len(k)) * UNIT
-        self.phases = [float(phase / 2 % 1) for _, phase in self.known]
+        self.k = k.astype(np.int64)
+        self.phases = np.array([[(round(phase * (1 << 63)) + (1 << 63)) % (1 << 64) - (1 << 63)]
+                                for _, phase in self.known], np.int64)
         p, q = k.T
         self.forces = self.table(p, q)              # V' from waves
         self.strengths = self.table(abs(p), abs(q))
@@ -164,16 +173,9 @@ class Shape:
         found[2:] = combined(self.mixed, v)
         return found
 
-    def turns(self, X):
-        """The angles of the waves, in turns, at most 1/2."""
-        found = self.along(X)
-        for w, phase in enumerate(self.phases):
-            if w > 1:
-                found[w] -= np.rint(found[w])
-                if phase:
-                    found[w] += phase
-                    found[w] -= np.rint(found[w])
-        return found
+    def angles(self, X):
+        """The angles of the waves, of X in units of 2^-64 turns, as X modulo one turn."""
+        return self.k @ X + self.phases
 
 
 def inverted(d):
@@ -426,6 +428,10 @@ class Prisms:
         stiff = combined(shape.stiff, self.magnitude)
         self.F, self.F01 = shape.grain * (1 + stiff[::2]), shape.grain * stiff[1]
         self.from_H = shape.grain * combined(shape.strong, self.H)
+        # Of the step of the centre, and of the first centres in that frame.
+        self.push = FORCE_ROUNDING * combined(shape.strengths, self.magnitude) \
+            + WHOLE_ERROR * abs(shape.k).sum()
+        self.start_error = WHOLE_ERROR * (abs(q0) + abs(q1))
         # Of beta in that frame.
         self.along, self.beside = (self.F[0] + self.F[1],) * 2 if q1 else (self.F, self.F01)
 
@@ -442,7 +448,9 @@ class Prisms:
     def begin(self):
         """The lanes at their first sites.  LT: L, then T, as columns; near: a bound of L e + T(e)
         in each coordinate; a 0 stands for the site before."""
-        (self.X0, L0, self.r0), (self.X, L, self.r) = self.before, self.first
+        (X0, L0, r0), (X, L, r) = self.before, self.first
+        self.X0, self.X = whole(X0), whole(X)
+        self.r0, self.r = [x + self.start_error + 0 * (X + X0) for x in (r0, r)]    # NaN if any is
         none = np.zeros((2, len(self.pairs), L.shape[-1]))
         self.LT0, self.LT = [np.concatenate((x, none), axis=1) for x in (L0, L)]
         self.near0, self.d, self.f = np.abs(L0).sum(axis=1), None, None
@@ -515,16 +523,15 @@ class Prisms:
     def step(self):
         """Adds this site to the lanes and goes on to the next: steps (C4) to (C6)."""
         P, shape = self.P, self.shape
-        s, c = lockstep_sincos(shape.turns(self.X))
+        s, c = lockstep_sincos(shape.angles(self.X))
         beta = combined(shape.forms, P * -s)
         beta[::2] += 2
         LT = applied(beta[:, None], self.LT) - self.LT0
         mean = self.add_forces(LT, s, c)
         self.sites.append(Sites(self.alive, s, c, self.columns, self.rest,
                                 combined(shape.forces, mean)))
-        wave = P / TWO_PI * c - mean / TWO_PI
-        X = 2 * self.X - self.X0 + combined(shape.forces, wave)
-        self.X, self.X0 = X - np.rint(X), self.X
+        forces = whole(P / TWO_PI * c - mean / TWO_PI)
+        self.X, self.X0 = 2 * self.X - self.X0 + shape.k.T @ forces, self.X
         r = self.next_rests(beta, np.abs(s), np.abs(c))
         self.LT, self.LT0, self.r, self.r0, self.near0 = LT, self.LT, r, self.r, self.near
         self.clear()
@@ -553,7 +560,7 @@ class Prisms:
         slack, near = SINE_ROUNDING * shape.K[:, None], self.near
         bent = bending(self.P, self.H, self.W, s + slack, c + slack, self.size_, self.rest,
                        self.reach)
-        err = F * (1 + near) + self.F01 * near[::-1] + self.from_H \
+        err = self.push + F * near + self.F01 * near[::-1] + self.from_H \
             + (4 + len(s)) * UNIT * self.near0
         err = combined(self.strengths, bent) + abs(q0) * err + abs(q1) * err[::-1]
         block = beta
@@ -707,7 +714,8 @@ class Prisms:
                            + n[0][1, :self.size] * n[0][1, self.size:])
         form = sums.form()
         added = sum([np.abs(x) for x in form.values()])
-        mass = UNIT * (((len(self.P) + 2) * N + 256) * sums.mass + 64 * added)
+        chain = (len(self.P) + 2) * (span + -(-N // span))  # terms one after the other: (C19)
+        mass = UNIT * ((chain + 256) * sums.mass + 64 * added)
         error = (sums.error + mass) * (SUM_ROUNDING + 64 * UNIT * N)
         return sums.value, form, np.where(mass < UNIT * MASS_MAX, error, math.inf)
 
@@ -727,13 +735,13 @@ class Prisms:
             for w, symbol in moving:
                 slopes[w, 1 + symbol] += h[w, symbol] * B[w, 0]
             mu, mu1 = 2 * mu - mu1 + combined(shape.forces, slopes), mu
-        before, beyond, A, B = map(stacked, zip(*found[::-1]))
+        before, beyond, A, B = [stacked([x[i] for x in found[::-1]]) for i in range(4)]
         return (before, beyond), A, B, mu, mu1
 
     def add_sites(self, sums, site, n0, n1, omega, tails, mus, A, B):
         """Adds a block of sites, with the vectors n0 there and n1 beyond each; returns the sum of
         the sizes of the terms of G at the first: step (C18)."""
-        shape, P, H, W = self.shape, *[x[:, None] for x in (self.P, self.H, self.W)]
+        shape, P, H, W = self.shape, self.P[:, None], self.H[:, None], self.W[:, None]
         (E0, E1), size, reach = site.E, site.size, site.reach
         magnitude, long, (mu, mu1) = np.abs(P), n0[0] ** 2 + n0[1] ** 2, mus
         sums.value += (2 * long - (P * omega * site.s).sum(axis=0) - self.l * tails * long
@@ -751,7 +759,9 @@ class Prisms:
             axis=0)).sum(axis=0)
         terms = combined(shape.strengths, weight * (magnitude * (1 + size) + H)) \
             + 2 * most + np.abs(mu1).sum(axis=1)
-        small = most * self.F[:, None] + shape.grain * terms * reach[:2]
+        # The last but one: what E is off by, (C18).
+        off = self.push[:, None] + self.F[:, None] * reach[:2] + self.F01 * reach[1::-1]
+        small = most * off + shape.grain * terms * reach[:2]
         sums.error += small.sum(axis=(0, 1))
         return terms[:, 0]
 
@@ -760,8 +770,9 @@ class Prisms:
         sizes of the terms of G, without mu of the other lane."""
         across = self.other(mu)
         G, terms = G - across, terms + np.abs(across).sum(axis=1)
-        small = np.abs(G).sum(axis=1) * self.rounding \
-            + self.shape.grain * terms * (np.abs(self.ends).sum(axis=1) + self.rounding)
+        rounding = self.rounding + WHOLE_ERROR
+        small = np.abs(G).sum(axis=1) * rounding \
+            + self.shape.grain * terms * (np.abs(self.ends).sum(axis=1) + rounding)
         sums.error += small[0] + small[1]
         sums.ends = np.stack([G[0] * x + G[1] * y for x, y in zip(*self.ends)])
 

@@ -1951,21 +1951,30 @@ def test_lockstep_sincos(np, generator):
     turns += [k / 8 + d for k in range(-4, 5) for d in (-2.0 ** -40, 2.0 ** -40) if abs(k) < 4]
     for waves in (TRIG, OTHERS, (((100, -99), Fraction(1, 3)), ((-100, 100), Fraction(199, 100)))):
         shape = check.Shape(waves)
-        X = np.array([turns, turns[::-1]])
-        found = shape.turns(X)
+        X = check.whole(np.array([turns, turns[::-1]]))
+        found = shape.angles(X)
         sines, cosines = check.lockstep_sincos(found)
         unit = mp.mpf(2) ** -53
         for n in range(0, X.shape[1], 1 if waves is TRIG else 7):
-            y = [2 * mp.pi * mp.mpf(float(x)) for x in X[:, n]]
+            y = [2 * mp.pi * mp.mpf(int(x)) / 2 ** 64 for x in X[:, n]]
             for w, wave in enumerate(shape.known):
-                angle = 2 * mp.pi * mp.mpf(float(found[w, n]))
-                assert abs(found[w, n]) <= 0.5
+                angle = 2 * mp.pi * mp.mpf(int(found[w, n])) / 2 ** 64
                 for value, function in ((sines, mp.sin), (cosines, mp.cos)):
                     value = mp.mpf(float(value[w, n]))
                     assert abs(value - function(angle)) <= 4 * unit
                     assert abs(value - function(angle_at((wave[0], Fraction(wave[1])), y))) \
-                        <= (check.SINE_ROUNDING * shape.K[w] if w > 1 else 4 * unit)
+                        <= 4.1 * unit
     assert check.SINE_ROUNDING == 24 * 2.0 ** -53
+
+
+def test_whole_turns(np, generator):
+    """They are off by less than a unit of 2^-64 turns, at the ends of a turn, too."""
+    turns = [generator.uniform(-1, 1) * 2.0 ** generator.randint(-80, 12) for _ in range(3000)]
+    turns += [k / 2 + d for k in range(-3, 4) for d in (-2.0 ** -54, -2.0 ** -66, 0, 2.0 ** -54)]
+    turns += [0.5 - 2.0 ** -54, 2.0 ** -54 - 0.5, 1.5 + 2.0 ** -52]
+    for x, found in zip(turns, check.whole(np.array(turns)).tolist()):
+        off = (Fraction(x) * 2 ** 64 - found + 2 ** 63) % 2 ** 64 - 2 ** 63
+        assert abs(off) < 1 and -2 ** 63 <= found < 2 ** 63
 
 
 @pytest.mark.parametrize("c, factor", [("0", 1), ("2e-9", 2)])
@@ -1976,11 +1985,16 @@ def test_roundings_of_each_step_are_counted(np, texts, c, factor):
     for name in "v0", "v1":
         text = with_field(text, name, "1 0")
     fast, cell = check.Lockstep([claim_of(text)]), np.zeros((5, 1), np.int64)
-    number = np.zeros(1, int)
-    prisms = check.Prisms(fast.box(cell, cell, number), fast.shape, fast.xstar[:, number],
-                          np.array([0.9]))
-    assert all(prisms.follow())
-    assert (prisms.sites[100].rest[:2] > 0.95 * factor * prisms.shape.grain * 100 ** 2 / 2).all()
+    number, rests = np.zeros(1, int), []
+    for counted in (1, 0):
+        prisms = check.Prisms(fast.box(cell, cell, number), fast.shape, fast.xstar[:, number],
+                              np.array([0.9]))
+        push = prisms.push.copy()
+        prisms.push *= counted
+        assert all(prisms.follow())
+        rests.append(prisms.sites[100].rest[:2])
+    assert (push >= 2.0 ** -50 * 1e-9).all()
+    assert (rests[0] - rests[1] > 0.95 * factor * push * 100 ** 2 / 2).all()
 
 
 def test_lockstep_orbits(np, generator, monkeypatch):
@@ -2009,7 +2023,7 @@ def test_lockstep_orbits(np, generator, monkeypatch):
             for orbit, k, end in zip(orbits, (lane, lane + prisms.size), ends):
                 for site, centre, bow, x in list(zip(prisms.sites[:end], centres, bows, orbit)):
                     columns, size, rest, reach = site.columns, site.size, site.rest, site.reach
-                    centre = [Fraction(float(turns[k])) for turns in centre]
+                    centre = [Fraction(int(turns[k]), 1 << 64) for turns in centre]
                     for w in prisms.shape.present:
                         (k0, k1), _ = known[w]
                         model = sum(mp.mpf(float(a)) * real(e) for a, e in zip(columns[w, :, k],
