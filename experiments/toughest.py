@@ -16,7 +16,6 @@ torus near the vector up to there, and proves none.
 """
 
 import argparse
-import concurrent.futures
 import csv
 import io
 import math
@@ -284,22 +283,21 @@ def main():
     def path(name):
         return os.path.join(options.directory, name)
 
-    with concurrent.futures.ThreadPoolExecutor(options.jobs) as executor:
-        def find(name, potential, vectors, **how):
-            table = orbits.onsets(potential, list(vectors), executor, path(name), **how)
-            print("%s: %d types, %d lost" % (name, len(table), (table["label"] == "lost").sum()),
-                  flush=True)
-            return table
+    def find(name, potential, vectors, **how):
+        table = orbits.onsets(potential, list(vectors), file=path(name), jobs=options.jobs, **how)
+        print("%s: %d types, %d lost" % (name, len(table), (table["label"] == "lost").sum()),
+              flush=True)
+        return table
 
-        table = find("sweep.csv", orbits.trig, spread(sizes["vectors"], sizes["q"]), **TRIG)
-        best = search(table, sizes, find)
-        chapter = find("chapter.csv", orbits.trig, CHAPTER, **TRIG)
-        near, gold = approximants(NEAR, sizes["near"]), list(golden(sizes["golden"]))
-        sequences = [find("%s%s.csv" % (name, end), potential, vectors, **how, **criterion)
-                     for name, potential, vectors, how in (
-                         ("near", orbits.trig, near, TRIG),
-                         ("golden", orbits.standard, gold, STANDARD))
-                     for end, criterion in (("", {}), ("-fixed", {"exponent": FIXED}))]
+    table = find("sweep.csv", orbits.trig, spread(sizes["vectors"], sizes["q"]), **TRIG)
+    best = search(table, sizes, find)
+    chapter = find("chapter.csv", orbits.trig, CHAPTER, **TRIG)
+    near, gold = approximants(NEAR, sizes["near"]), list(golden(sizes["golden"]))
+    sequences = [find("%s%s.csv" % (name, end), potential, vectors, **how, **criterion)
+                 for name, potential, vectors, how in (
+                     ("near", orbits.trig, near, TRIG),
+                     ("golden", orbits.standard, gold, STANDARD))
+                 for end, criterion in (("", {}), ("-fixed", {"exponent": FIXED}))]
     for eps in (0.004, 0.006, 0.008, 0.010, 0.011, 0.012):
         print("before their onset at %.3f: %4.1f %%" % (eps, 100 * (middle(table) > eps).mean()))
     print("the toughest:")

@@ -1,7 +1,6 @@
 """The command: converse-orbits find | sweep."""
 
 import argparse
-import concurrent.futures
 import io
 import math
 import os
@@ -96,9 +95,10 @@ def _lines(path):
                 if words:
                     yield number, words
     except OSError as error:
-        raise ConverseError("%s: cannot be read (%s)" % (path, files.reason(error))) from None
+        raise ConverseError("%s: cannot be read (%s); name a readable file"
+                            % (path, files.reason(error))) from None
     except UnicodeDecodeError:
-        raise ConverseError("%s: is not a text file" % path) from None
+        raise ConverseError("%s: is not a text file; name a list of types" % path) from None
 
 
 def _value(text):
@@ -230,8 +230,8 @@ def _sweep_parser(commands):
     sweep.add_argument("potential", metavar="POTENTIAL", help=POTENTIAL)
     sweep.add_argument("csv", metavar="FILE", help="the table; if it exists, the beginning of this "
                        "same sweep")
-    sweep.add_argument("eps", metavar="EPS", type=_eps, nargs="*", help="the factor of the "
-                       "potential, or LOW:HIGH:STEP")
+    sweep.add_argument("eps", metavar="EPS", type=_eps, nargs="*", default=[],
+                       help="the factor of the potential, or LOW:HIGH:STEP")
     sweep.add_argument("--at", type=_value, metavar="NAME=VALUE", action="append", default=[],
                        help=AT)
     which = sweep.add_mutually_exclusive_group(required=True)
@@ -331,8 +331,8 @@ class _Finding:
             Family(tuple(self.states)).write_csv(table)
             files.write(options.csv, table.getvalue().encode("utf-8"))
         if options.points is not None and self.states:
-            from ..orbits.points import encoded
-            files.write(options.points, encoded(self.states))
+            from ..orbits.points import save
+            save(self.states, options.points)
         if options.graphics is not None and self.states:
             from ..orbits.pictures import states_picture
             files.write(options.graphics, states_picture(
@@ -388,12 +388,10 @@ def sweep_types(options):
             raise ConverseError("the table would overwrite '%s'; name another file" % path)
 
     from ..orbits.sweep import LOST, onsets, sweep
-    from ..prover.workers import count_workers
 
     eps = [x for each in options.eps for x in each]
-    with ProgressLine() as line, concurrent.futures.ThreadPoolExecutor(
-            options.jobs or count_workers()) as executor:
-        common = {"executor": executor, "file": options.csv,
+    with ProgressLine() as line:
+        common = {"jobs": options.jobs, "file": options.csv,
                   "progress": lambda *done: line(lambda: "%d of %d types" % done)}
         table = sweep(potential, vectors, eps, **common) if eps else \
             onsets(potential, vectors, **common)

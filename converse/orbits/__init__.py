@@ -15,7 +15,7 @@ try:
     from .search import search
     from .solver import Family, follow, straight
     from .state import PeriodicOrbit
-    from .sweep import Onset, onset, onsets, read_csv, sweep
+    from .sweep import Onset, onset, onsets, sweep
 except ImportError as _error:           # raised when a name is used: the command needs a line
     _MISSING = ("converse.orbits needs numpy and the C core (%s); pip install "
                 "'converse-kam[orbits]'" % _error)
@@ -28,5 +28,5 @@ except ImportError as _error:           # raised when a name is used: the comman
         raise ConverseError(_MISSING)
 
 __all__ = ["Family", "NotProved", "Onset", "Pair", "PeriodicOrbit", "Potential", "ProvedOrbit",
-           "ff", "follow", "froeschle", "onset", "onsets", "poly", "prove", "read_csv", "search",
-           "standard", "straight", "sweep", "trig"]
+           "ff", "follow", "froeschle", "onset", "onsets", "poly", "prove", "search", "standard",
+           "straight", "sweep", "trig"]

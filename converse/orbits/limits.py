@@ -5,6 +5,8 @@ about its distance from an orbit.  Where no reason stands, the value is a choice
 nothing that is proved rests on it.
 """
 
+from fractions import Fraction
+
 # ---- states
 
 MAX_Q = 10 ** 7                 # The period q of a state is at most this.
@@ -13,6 +15,11 @@ MAX_DISPLACEMENT = 1000         # Displacements and origins are smaller: doubles
 MAX_SHADOW = 1e-9               # A state whose shadow is smaller is an orbit.
 EIGENVALUE_ROUNDING = 1e-12     # The rounding of an eigenvalue is smaller.
 SHADOW_REACH = 1e-3             # Over this distance an eigenvalue is taken to be constant.
+EIGENVALUE_STEP = 1e-15         # An eigenvalue is bisected to this, or to a relative 1e-5.
+ACTION_ROUNDING = 1e-15         # The rounding of an action, for each point, where eps is at most 1.
+ANGLE_ROUNDING = 1e-15          # A number whose argument has a smaller sine is real.
+MIN_STEP_RATIO = 1e-9           # Newton's step to a maximum of V ignores flatter directions: a part
+                                # of the largest singular value.
 NULL_EIGENVALUE = 1e-8          # An eigenvalue below this in size leaves the phase undetermined.
 MAX_PIVOTS = 200000             # The pivots pass at most this, or five times round the orbit.
 MAX_LOG_EXCESS = 40.0           # Beyond e^40 a double does not notice 4.
@@ -20,6 +27,8 @@ MAX_LOG_EXCESS = 40.0           # Beyond e^40 a double does not notice 4.
 # ---- continuation and onsets
 
 STEP_TIMES_CURVATURE = 0.2      # The step of eps to the next guess, times the curvature.
+MIN_CURVATURE = 1e-300          # A flatter potential is followed as if it had this curvature.
+NEWTON_GRADIENT = 1e-13         # newton() ends where no coordinate of the gradient is larger.
 MAX_STEP_DIVISOR = 64           # The step is divided by at most this where the solver fails.
 MAX_EPS_STEPS = 10000           # From one eps to the next there are no more steps.
 MAX_ONSET_GRADIENT = 1e-12      # Before break-up rounding hides smaller gradients.
@@ -35,7 +44,6 @@ MAX_TURNS_TRIED = 50            # Turns of the best state that are tried before 
 MAX_JOINTS_TRIED = 12           # Joints of two shorter states that are tried before random changes.
 SHORT_WORK = 10000              # Points times searches for a shorter type, but two for each joint.
 MAX_SHORT_SEARCHES = 100        # Searches for a shorter type.
-MAX_SHORT_SHARE = 0.6           # The part of the seconds left that a shorter type may take.
 JOINT_SAMPLE = 1000             # Points of a state that are compared with another's for a joint.
 PIECE_SPACING = 60              # The mean distance, in points, of pieces that are moved together.
 PIECE_LENGTH = 10               # The mean length of a piece, in points.
@@ -55,7 +63,6 @@ MAX_POLISH_STEPS = 12           # Newton steps at a pass.
 MIN_JUMP = 1e-4                 # States that are nearer did not jump.
 MAX_NESTED_JUMPS = 3            # Jumps inside of jumps.
 MAX_HELD = 4                    # Coordinates that are held, one after the other.
-LEAVING_SHARE = 0.05            # The part of the way to the neighbour by which a pass is left.
 
 # ---- proofs, in decimal places and bits
 
@@ -63,6 +70,10 @@ DEFAULT_DIGITS = 20             # The radius is at most 10^-DEFAULT_DIGITS by de
 MAX_PLACES = 1000               # No orbit is tried with more decimal places.
 MAX_MORE_PLACES = 100           # Places that are added in vain.
 MAX_PROOF_STEPS = 60            # Newton steps.
+MIN_LEAST_GUESS = Fraction(1, 10 ** 11)     # The least eigenvalue is first tried at this or more,
+LEAST_SHARE = Fraction(49, 50)  # at this part of what doubles see: their rounding is below a
+LEAST_RATIO = Fraction(21, 20)  # fiftieth there.  The bound is raised until within this ratio.
+MAX_STIFFNESS = 1e6             # A coordinate of a pass is made stiffer by at most this and 1.
 GUARD_PLACES = 10               # A quantity counts if it exceeds rounding by 10^GUARD_PLACES.
 SHOWN_PLACES = 20               # Places of an interval in a report.
 EXPONENT_PLACES = 45            # Places of an exponent.

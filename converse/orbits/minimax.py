@@ -14,17 +14,14 @@ largest of these minima; where they depend on it continuously, the state there i
 
 import math
 from dataclasses import dataclass
-from functools import cached_property
 from typing import TYPE_CHECKING, Callable, Optional, Tuple
 
 import numpy as np
 
-from .._native import lib
 from ..storage.files import ConverseError
-from .limits import (EIGENVALUE_ROUNDING, HELD_STEPS, LEAVING_SHARE, MAX_HELD, MAX_HELD_GRADIENT,
+from .limits import (ACTION_ROUNDING, EIGENVALUE_ROUNDING, HELD_STEPS, MAX_HELD, MAX_HELD_GRADIENT,
                      MAX_NESTED_JUMPS, MAX_PASS_SHADOW, MAX_POLISH_STEPS, MAX_SHADOW, MIN_JUMP,
                      MIN_SLOPE, ORDER_TOLERANCE, PASS_BISECTIONS, PASS_STOPS)
-from .potential import address, done
 from .proved import balls
 from .solver import newton
 from .state import PeriodicOrbit, descended, expected, vector_words
@@ -33,16 +30,21 @@ if TYPE_CHECKING:
     from .proved_pair import ProvedPair
 
 
-
 @dataclass(frozen=True, eq=False)
 class Pair:
     """A minimum and a pass on the way to one of its neighbours.
 
-    minimum -- the state that was given
-    minimax -- the pass: a saddle with exactly one direction of less action among the states of its
-               type, unless its label says that rounding hides it
-    step    -- by how much that neighbour is displaced: n whole numbers over q
-    turn    -- the neighbour begins at this point of the minimum
+    Parameters
+    ----------
+    minimum : PeriodicOrbit
+        The state that was given.
+    minimax : PeriodicOrbit
+        The pass: a saddle with exactly one direction of less action among the states of its type,
+        unless its label says that rounding hides it.
+    step : tuple of int, shape (n,)
+        By how much that neighbour is displaced, in turns over q.
+    turn : int
+        The neighbour begins at this point of the minimum.
     """
 
     minimum: PeriodicOrbit
@@ -87,32 +89,22 @@ class Pair:
             raise ValueError("the flux is of maps with one angle; with two there is the difference "
                              "of action, .barrier")
 
-    @cached_property
-    def ends(self) -> Tuple[PeriodicOrbit, PeriodicOrbit]:
-        """Where descents from the pass to either side end.  With one angle these are the minimum
-        and its neighbour, or others between them; with two they may be any minima.  ConverseError:
-        rounding hides which way is down."""
-        saddle, n, q = self.minimax, self.minimax.potential.n, self.minimax.q
-        if saddle.label != "saddle":
-            raise ConverseError("the pass is too flat: rounding hides which way is down")
-        v, work = np.random.default_rng(0).normal(size=(q, 2)), np.zeros((q, lib.CV_WORK))
-        for _ in range(4):                      # of inverse iteration
-            v[:, n:], along = 0, np.zeros((q, 2))
-            done(lib.cv_solve(n, q, address(saddle.blocks, "double(*)[3]"), -1.001 * saddle.least,
-                              address(v), address(along), address(work, "double *")))
-            v = along / np.abs(along).max()
-        widest = np.abs(_gap(self.minimum, *_neighbour(self.minimum, 0))).max()
-        away = LEAVING_SHARE * widest * v[:, :n]
-        first, second = (saddle.moved(saddle.u + side * away).relax() for side in (-1, 1))
-        return first, second
-
     def prove(self, digits: Optional[int] = None,
               progress: Optional[Callable[[int, int], object]] = None) -> "ProvedPair":
-        """Proves both orbits, and encloses the difference of their actions to ten digits at least:
-        a ProvedPair.  NotProved, with a reason.
+        """Proves both orbits, and encloses the difference of their actions to ten digits at least.
 
-        digits   -- both orbits are known to 10^-digits at least, by default 10^-20
-        progress -- as of orbits.prove"""
+        Parameters
+        ----------
+        digits : int, optional
+            Both orbits are known to 10^-digits at least, by default 10^-20.
+        progress : callable, optional
+            As of orbits.prove.
+
+        Raises
+        ------
+        NotProved
+            With a reason.
+        """
         balls()
         from .proved_pair import prove_pair
         return prove_pair(self, digits, progress)
@@ -191,7 +183,7 @@ class _Way:
         self.first, self.gap, self.jumps = first, last.u - first.u, jumps
         order = np.argsort(-np.abs(self.gap), axis=None, kind="stable")
         self.held = tuple(map(int, np.unravel_index(order[rank], self.gap.shape)))
-        self.noise = 1e-15 * first.q * max(1.0, abs(first.eps))
+        self.noise = ACTION_ROUNDING * first.q * max(1.0, abs(first.eps))
 
     def at(self, t, near):
         """The state of least action near one at another t; its action above the first one's; and

@@ -1,15 +1,12 @@
 """Pictures of states, proved orbits and families.  They need matplotlib (the extra "plot"), whose
 settings stay as they are."""
 
-from typing import NamedTuple, Optional
-
 import numpy as np
 
 from ..draw import plot
 from ..draw.plot import BLUE, DARK, VERMILLION
 from .limits import MAX_PIVOTS
 from .proved import ProvedOrbit, distances
-from .state import PeriodicOrbit
 
 FEW = 300                               # points that are drawn larger
 MOST_STATES = 40                        # in a picture
@@ -21,39 +18,16 @@ PLOTTED = {                             # The columns of Family.plot, with the n
     "residue": "Greene's residue",
     "deviation": "largest displacement",
     "least": "least eigenvalue of the Hessian",
-    "shadow": r"largest $|\partial L/\partial x_j|$",
-    "grad_size": r"root mean square of $|\partial L/\partial x_j|$",
-    "undetermined": "near-null directions",
 }
 # The names of the parts of columns that have several numbers.
 PARTS = {"exponents": ("first", "second"),
-         "deviation": ("from the line through $x_0$", "from the line at $\\varepsilon = 0$",
-                       "from the best line")}
-SCALES = {"shadow": {"value": "log"}, "grad_size": {"value": "log"},
-          "residue": {"value": "symlog", "linthresh": 1.0}}
+         "deviation": ("from the line through $x_0$", "from the line at $\\varepsilon = 0$")}
+SCALES = {"residue": {"value": "symlog", "linthresh": 1.0}}
 
 LABELS = ("Minimum: a local one, as far as doubles show; nothing is proved, and there may be "
           "states of less action.")
 PROVED = ("Proved: a true orbit is so near to the points drawn, before these were rounded to "
           "doubles, and a local minimum of the action; there may be states of less.")
-
-
-class Shown(NamedTuple):
-    """A state or a proved orbit as a picture shows it: its points and their kind."""
-
-    state: PeriodicOrbit
-    proof: Optional[ProvedOrbit]
-
-    @classmethod
-    def of(cls, one):
-        return cls(one.nearest, one) if isinstance(one, ProvedOrbit) else cls(one, None)
-
-    @property
-    def kind(self):
-        """The kind of the points: proved, or as far as doubles show."""
-        if self.proof is not None:
-            return "proved within %s, at most %s from the state found" % distances(self.proof)
-        return kind(self.state)
 
 
 # ---- words
@@ -63,9 +37,16 @@ def quality(state):
     return "gradient at most %.0e, root mean square %.0e" % (state.shadow, state.grad_size)
 
 
-def kind(state):
-    """The kind of a state, as far as doubles show."""
-    words = state.label
+def drawn(one):
+    """The points of a state, or those nearest to a proved orbit."""
+    return one.nearest if isinstance(one, ProvedOrbit) else one
+
+
+def kind(one):
+    """The kind of a state, as far as doubles show, or of a proved orbit."""
+    if isinstance(one, ProvedOrbit):
+        return "proved within %s, at most %s from the state found" % distances(one)
+    state, words = one, one.label
     if state.undetermined:
         words += ", %d near-null direction%s (phase arbitrary)" % (
             state.undetermined, "s" * (state.undetermined > 1))
@@ -100,10 +81,10 @@ def coinciding(state):
 
 def figure(one, ax=None):
     """A state, or the state nearest to a proved orbit: as a Figure, or drawn into ax."""
-    shown = Shown.of(one)
-    n = shown.state.potential.n
+    state = drawn(one)
+    n = state.potential.n
     if ax is None:
-        return plot.new(WIDTH, HEIGHT, lambda page: _uncaptioned(page, [shown]))
+        return plot.new(WIDTH, HEIGHT, lambda page: rows(page, [one]) and None)
     plot.check()
     axes = np.ravel(ax)
     if not 1 <= len(axes) <= n:
@@ -111,11 +92,11 @@ def figure(one, ax=None):
             *(("two angles", "Axes, or into a pair of Axes") if n == 2 else
               ("one angle", "Axes")), len(axes)))
     if n == 1:
-        plane(axes[0], shown.state)
+        plane(axes[0], state)
     else:
-        angles(axes[0], shown.state)
+        angles(axes[0], state)
         if len(axes) == 2:
-            momenta(axes[1], shown.state, *square(shown.state))
+            momenta(axes[1], state, *square(state))
     return ax
 
 
@@ -123,10 +104,6 @@ def dots(state):
     """How the points of a state are drawn."""
     return {"linestyle": "none", "marker": "o", "markersize": 3 if state.q < FEW else 1.3,
             "markeredgewidth": 0, "rasterized": True, "color": DARK}
-
-
-def _uncaptioned(page, shown):
-    rows(page, shown)
 
 
 def plane(ax, state):
@@ -164,22 +141,22 @@ def square(state):
 # ---- several states
 
 def rows(page, shown, more=None):
-    """Draws a row of panels for each of some Shown, with its kind and measures in the title, and
-    returns a caption for all of them.  more(state) adds words to the title of each."""
-    grid = page.subplots(len(shown), shown[0].state.potential.n, squeeze=False,
-                         gridspec_kw={"hspace": 0.42})
-    lost = []
+    """Draws a row of panels for each of some states or proved orbits, with its kind and measures in
+    the title, and returns a caption for all of them.  more(state) adds words to the title of
+    each."""
+    potential, lost = drawn(shown[0]).potential, []
+    grid = page.subplots(len(shown), potential.n, squeeze=False, gridspec_kw={"hspace": 0.42})
     for number, (panels, one) in enumerate(zip(grid, shown)):
-        state = one.state
+        state = drawn(one)
         letter = "abcdefghijklmnopqrstuvwxyz"[number % 26] * (1 + number // 26)
-        lines = ["ε = %r, %s: %s" % (state.eps, state.type_text, one.kind),
+        lines = ["ε = %r, %s: %s" % (state.eps, state.type_text, kind(one)),
                  "%s; %s" % (exponents_words(state), quality(state))]
-        if state.potential.n == 1:
+        if potential.n == 1:
             plane(panels[0], state)
         else:
             angles(panels[0], state)
             momenta(panels[1], state, *square(state))
-            centre = state.potential.period * state.rotation
+            centre = potential.period * state.rotation
             away = np.sqrt(((state.momenta - centre) ** 2).sum(1)).max()
             if len(shown) > 1:
                 lines[0] = "(%s)  %s" % (letter, lines[0])
@@ -189,10 +166,10 @@ def rows(page, shown, more=None):
             if count:
                 lost.append("%d points" % count + " of (%s)" % letter * (len(shown) > 1))
         panels[0].set_title("\n".join(lines), loc="left")
-    if shown[0].state.potential.n == 1:
+    if potential.n == 1:
         return ""
     words = "Left the angles, right the momenta, the cross at the rotation vector%s." % (
-        "" if shown[0].state.potential.period == 1 else " times 2 pi")
+        "" if potential.period == 1 else " times 2 pi")
     if lost:
         words += "  Doubles cannot tell %s from another one (nearer than %g)." % (
             " and ".join(lost), LOST)
@@ -204,18 +181,17 @@ def states_picture(states, kind="svg", caption=True):
     of that kind; with a caption or without."""
     if kind not in plot.FORMATS:
         raise ValueError("figures are %s, not %s" % (", ".join(plot.FORMATS), kind))
-    shown = [Shown.of(one) for one in states]
-    if not 0 < len(shown) <= MOST_STATES:
+    if not 0 < len(states) <= MOST_STATES:
         raise ValueError("a picture shows 1 to %d states, not %d; choose fewer eps"
-                         % (MOST_STATES, len(shown)))
+                         % (MOST_STATES, len(states)))
 
     def fill(page):
-        proved = {one.proof is not None for one in shown}
-        said = ["The potential %s." % shown[0].state.potential.name,
-                *[LABELS] * (False in proved), *[PROVED] * (True in proved), rows(page, shown)]
+        proved = {isinstance(one, ProvedOrbit) for one in states}
+        said = ["The potential %s." % drawn(states[0]).potential.name,
+                *[LABELS] * (False in proved), *[PROVED] * (True in proved), rows(page, states)]
         return "  ".join(filter(None, said)) if caption else None
 
-    return plot.written(WIDTH, HEIGHT * len(shown), kind, fill)
+    return plot.written(WIDTH, HEIGHT * len(states), kind, fill)
 
 
 # ---- families

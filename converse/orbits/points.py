@@ -22,14 +22,9 @@ FORMAT = "states 2"
 
 
 def save(states, path):
-    """See PeriodicOrbit.save."""
+    """See PeriodicOrbit.save.  ValueError: there are no states, or they are of several types."""
     path = os.fspath(path)
     files.check_output(path, "file of points", ENDINGS)
-    files.write(path, encoded(states))
-
-
-def encoded(states):
-    """The bytes of a file of states of one type.  ValueError: they are none, or of several."""
     if len({(state.potential.name, state.p, state.q) for state in states}) != 1:
         raise ValueError("a file holds states of one potential and one type, at least one")
     data, first = io.BytesIO(), states[0]
@@ -37,7 +32,7 @@ def encoded(states):
              eps=[state.eps for state in states], searches=[state.searches for state in states],
              x=[state.x for state in states], momentum=[state.momenta for state in states],
              u=[state.u for state in states], origin=[state.origin for state in states])
-    return data.getvalue()
+    files.write(path, data.getvalue())
 
 
 def load(path, potential=None):

@@ -20,6 +20,7 @@ from ..model.map import SymplecticMap
 from ..model.potential import FourierSum, from_terms, per_period, product
 from ..prover.native import check
 from ..storage.files import plain
+from .limits import MIN_STEP_RATIO
 
 Source = Union[SymplecticMap, "Potential"]
 Numerators = Union[int, Sequence[int]]      # the p of a type (p, q)
@@ -262,7 +263,7 @@ class Fourier(Potential):
         for _ in range(20):
             value, gradient, hessian = self.evaluate(best)
             with np.errstate(all="ignore"):
-                step = np.linalg.lstsq(hessian[0], gradient[0], rcond=1e-9)[0]
+                step = np.linalg.lstsq(hessian[0], gradient[0], rcond=MIN_STEP_RATIO)[0]
             better = best - step
             if not self.evaluate(better)[0][0] > value[0]:
                 break
@@ -274,29 +275,16 @@ class Fourier(Potential):
 _mine = threading.local()
 
 
+def obey(stop):
+    """This thread ends its work soon after the Event stop is set."""
+    _mine.stop = stop
+
+
 def look_up():
     """Ends the work of a thread that was told to end, as Ctrl-C ends the main thread's."""
     stop = getattr(_mine, "stop", None)
     if stop is not None and stop.is_set():
         raise KeyboardInterrupt
-
-
-class Stoppable:
-    """A task for the threads of an executor, all of which end soon after stop is set.  It can be
-    sent to other processes; there only signals end it."""
-
-    def __init__(self, task):
-        self.task, self.stop = task, threading.Event()
-
-    def __reduce__(self):
-        return Stoppable, (self.task,)
-
-    def __call__(self, *arguments):
-        _mine.stop = self.stop
-        try:
-            return self.task(*arguments)
-        finally:
-            _mine.stop = None
 
 
 def _interrupted(kind, error, trace):

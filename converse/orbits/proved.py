@@ -17,8 +17,8 @@ from ..model.exact import Interval, rounded, rounded_text
 from ..model.potential import per_period, product
 from ..storage.files import ConverseError
 from .limits import (DEFAULT_DIGITS, EIGENVALUE_ROUNDING, EXPONENT_PLACES, GUARD_PLACES,
-                     MAX_MORE_PLACES, MAX_PLACES, MAX_PROOF_STEPS, MAX_SHADOW, NULL_EIGENVALUE,
-                     SHOWN_PLACES)
+                     LEAST_RATIO, LEAST_SHARE, MAX_MORE_PLACES, MAX_PLACES, MAX_PROOF_STEPS,
+                     MAX_SHADOW, MIN_LEAST_GUESS, NULL_EIGENVALUE, SHOWN_PLACES)
 from .potential import told
 from .state import PeriodicOrbit, expected
 
@@ -33,19 +33,28 @@ class NotProved(ConverseError):
 class ProvedOrbit:
     """A theorem about the true orbit beside a state.
 
-    state     -- the state that was given
-    digits    -- decimal places the proof was computed with
-    radius    -- there is exactly one true orbit of the state's type whose displacements are within
-                 radius of `displacements`, in the Euclidean norm of all coordinates together; both
-                 are exact numbers of turns
-    least     -- no eigenvalue of the second variation of its action is below this positive number,
-                 however often the orbit is run through
-    action    -- its action per point less the straight orbit's, in the units of the map
-    exponents -- its n positive Lyapunov exponents, larger first
-    sign      -- 1 or -1: its multipliers are real and have this sign; 0: they are complex, or this
-                 is undecided
-    moved     -- the distance of the points from the state's: the largest coordinate, on the torus,
-                 in turns
+    Attributes
+    ----------
+    state : PeriodicOrbit
+        The state that was given.
+    digits : int
+        The decimal places the proof was computed with.
+    radius : Fraction
+        There is exactly one true orbit of the state's type whose displacements are within radius of
+        `displacements`, in the Euclidean norm of all coordinates together; both are exact numbers
+        of turns.
+    least : Fraction
+        No eigenvalue of the second variation of its action is below this positive number, however
+        often the orbit is run through.
+    action : Interval
+        Its action per point less the straight orbit's, in the units of the map.
+    exponents : tuple of Interval, shape (n,)
+        Its positive Lyapunov exponents, larger first.
+    sign : int
+        1 or -1: its multipliers are real and have this sign; 0: they are complex, or this is
+        undecided.
+    moved : float
+        The distance of the points from the state's: the largest coordinate, on the torus, in turns.
     """
 
     state: PeriodicOrbit
@@ -103,7 +112,13 @@ class ProvedOrbit:
         return Interval((2 - high) / 4, (2 - low) / 4)
 
     def plot(self, ax: Any = None) -> Any:
-        """The state nearest to it, as PeriodicOrbit.plot."""
+        """The state nearest to it.
+
+        Parameters
+        ----------
+        ax
+            As of PeriodicOrbit.plot.
+        """
         from .pictures import figure
         return figure(self, ax)
 
@@ -187,7 +202,7 @@ def prove(state: PeriodicOrbit, digits: Optional[int] = None, descend: bool = Fa
                 orbit = _attempt(state, exact, growth, places, wanted)
                 if all(high - low <= high / 10 ** GUARD_PLACES for low, high in orbit.exponents):
                     return orbit
-            except _TooFewPlaces as error:
+            except TooFewPlaces as error:
                 reason = error
             if places == most:
                 break
@@ -209,7 +224,7 @@ def balls():
     return precision, Enclosure, growth
 
 
-class _TooFewPlaces(Exception):
+class TooFewPlaces(Exception):
     """The reason why a proof fails; more decimal places may help."""
 
 
@@ -227,17 +242,10 @@ def _attempt(state, exact, growth, places, wanted):
     radius = rounded(exact.gradient / least * Fraction(9, 8) + ulp, shown, up=True)
     left = rounded(least - bend * radius, shown, up=False)
     if not exact.gradient < radius * left or left < least / 2:
-        raise _TooFewPlaces("the gradient is too large for so flat a minimum")
+        raise TooFewPlaces("the gradient is too large for so flat a minimum")
     if radius > Fraction(1, 10 ** wanted):
-        raise _TooFewPlaces("the orbit is known to %.1e only" % radius)
-    away = bend * radius + ulp
-    strict = max(4 * away, ulp * 10 ** GUARD_PLACES)
-    if strict > least / 2:
-        raise _TooFewPlaces("the minimum is too flat")
-    grown = growth(exact, strict, away)
-    if grown is None:
-        raise _TooFewPlaces("the pivots could not be enclosed")
-    exponents, sign = grown
+        raise TooFewPlaces("the orbit is known to %.1e only" % radius)
+    exponents, sign = grown(exact, growth, least, bend * radius)
     exponents = tuple(Interval(rounded(max(low, 0) / state.q, EXPONENT_PLACES, up=False),
                                rounded(high / state.q, EXPONENT_PLACES, up=True))
                       for low, high in exponents)
@@ -246,6 +254,20 @@ def _attempt(state, exact, growth, places, wanted):
     moved = max(abs(step - round(step)) for step in steps)
     return ProvedOrbit(state, places, radius, left, action, exponents, sign,
                        moved, displacements)
+
+
+def grown(exact, growth, least, away):
+    """The result of growth() for every orbit whose blocks are within `away` of these; least: a
+    lower bound of the eigenvalues.  TooFewPlaces: there is none."""
+    ulp = Fraction(1, 10 ** exact.places)
+    away += ulp
+    strict = max(4 * away, ulp * 10 ** GUARD_PLACES)
+    if strict > least / 2:
+        raise TooFewPlaces("the chain is too flat")
+    found = growth(exact, strict, away)
+    if found is None:
+        raise TooFewPlaces("the pivots could not be enclosed")
+    return found
 
 
 def _refine(state, exact, places, floor):
@@ -261,7 +283,7 @@ def _refine(state, exact, places, floor):
         gradient, action = exact.gradient, exact.action
         if not exact.bends(shift or -floor):
             if not shift and exact.bends(floor):
-                raise _TooFewPlaces("the minimum is too flat, if it is one")
+                raise TooFewPlaces("the minimum is too flat, if it is one")
             if not exact.bends(EXACT_NULL):
                 raise NotProved("the state is a saddle")
             shift = _boundary(max(shift, floor), EXACT_NULL, exact.bends, 16)[1]
@@ -288,14 +310,13 @@ def _refine(state, exact, places, floor):
             shift *= min(Fraction(1, 64), (exact.gradient / gradient) ** 2)
             if shift < floor:
                 shift = Fraction(0)
-    raise _TooFewPlaces("Newton's method did not converge")
+    raise TooFewPlaces("Newton's method did not converge")
 
 
 def _least(state, exact, floor, change):
     """A lower bound of the eigenvalues of any copy's Hessian, within a few per cent of the best.
     change: a bound of the eigenvalues' change from the state's points to these."""
-    guess = max(Fraction(state.least), Fraction(1, 10 ** 11)) * Fraction(49, 50)
-    more = Fraction(21, 20)
+    guess, more = max(Fraction(state.least), MIN_LEAST_GUESS) * LEAST_SHARE, LEAST_RATIO
     if exact.least(guess):
         if change + EIGENVALUE_ROUNDING < state.least / 100 or not exact.least(guess * more):
             return guess
@@ -307,7 +328,7 @@ def _least(state, exact, floor, change):
         if exact.bends(-floor * 10 ** GUARD_PLACES):
             raise NotProved("the orbit is no minimum of the action when it is run through several "
                             "times")
-        raise _TooFewPlaces("the minimum is too flat")
+        raise TooFewPlaces("the minimum is too flat")
     return _boundary(floor, guess, lambda m: not exact.least(m), more)[0]
 
 

@@ -13,33 +13,43 @@ from typing import Optional, Tuple
 import numpy as np
 from flint import arb, arb_mat
 
-from .._native import lib
 from ..model.balls import precision
 from ..model.exact import Interval, rounded
 from .enclosure import Enclosure, ball, lower, points, square, upper
 from .exponents import growth
 from .limits import (DEFAULT_DIGITS, GUARD_PLACES, MAX_MORE_PLACES, MAX_PLACES, MAX_PROOF_STEPS,
-                     SHOWN_PLACES)
+                     MAX_STIFFNESS, SHOWN_PLACES)
 from .minimax import Pair, gap_of
-from .potential import address, told, whole
-from .proved import NotProved, ProvedOrbit, _eps, distance_words, in_units, prove
+from .potential import told, whole
+from .proved import (NotProved, ProvedOrbit, TooFewPlaces, _eps, distance_words, grown, in_units,
+                     prove)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class ProvedPair:
     """A theorem about a minimum and a pass.
 
-    pair    -- the states that were given
-    minimum -- the proved minimum
-    digits  -- decimal places the proof of the pass was computed with
-    radius  -- there is exactly one true orbit of the type whose displacements are within radius of
-               `displacements`, in the Euclidean norm of all coordinates together, both in turns;
-               the Hessian of its action has exactly one negative eigenvalue, and none is zero
-    action  -- its action per point less the straight orbit's, in the units of the map
-    barrier -- its action less the minimum's, of all q points together, in the units of the map
-    residue -- its residue, which is positive; None for n = 2
-    between -- is it proved that each of its points lies between the points of the minimum and of
-               its neighbour (n = 1)?  False means undecided
+    Attributes
+    ----------
+    pair : Pair
+        The states that were given.
+    minimum : ProvedOrbit
+        The proved minimum.
+    digits : int
+        The decimal places the proof of the pass was computed with.
+    radius : Fraction
+        There is exactly one true orbit of the type whose displacements are within radius of
+        `displacements`, in the Euclidean norm of all coordinates together, both in turns.  The
+        Hessian of its action has exactly one negative eigenvalue, and none is zero.
+    action : Interval
+        Its action per point less the straight orbit's, in the units of the map.
+    barrier : Interval
+        Its action less the minimum's, of all q points together, in the units of the map.
+    residue : Interval or None
+        Its residue, which is positive; None for n = 2.
+    between : bool
+        Is it proved that each of its points lies between the points of the minimum and of its
+        neighbour (n = 1)?  False means undecided.
     """
 
     pair: Pair
@@ -98,7 +108,7 @@ def prove_pair(pair, digits=None, progress=None):
             exact = Enclosure(pair.minimax, Fraction(_eps(pair.minimax)), progress)
             try:
                 found = _Pass(pair, minimum, exact, digits, places).proved()
-            except _Undecided as error:
+            except TooFewPlaces as error:
                 reason = str(error)
                 continue
         width, most = found.barrier[1] - found.barrier[0], found.barrier[1] / 10 ** GUARD_PLACES
@@ -108,10 +118,6 @@ def prove_pair(pair, digits=None, progress=None):
         if 2 * pair.minimum.q * (minimum.action[1] - minimum.action[0]) > most:
             minimum = prove(pair.minimum, min(places, most_digits), progress=progress)
     raise NotProved("of the pass, with %d decimal places: %s" % (places, reason))
-
-
-class _Undecided(Exception):
-    """The reason why a proof fails; more decimal places may help."""
 
 
 class _Pass:
@@ -142,13 +148,10 @@ class _Pass:
 
     def stiffness(self, state):
         """sigma: 1 - 2 S, S < 0 the Schur complement of that coordinate in H."""
-        b, v, work = np.zeros((state.q, 2)), np.zeros((state.q, 2)), np.zeros((state.q,
-                                                                               lib.CV_WORK))
+        b = np.zeros_like(state.u)
         b[self.j, self.i] = 1
-        lib.cv_solve(state.potential.n, state.q, address(state.blocks, "double(*)[3]"), 0.0,
-                     address(b), address(v), address(work, "double *"))
-        inside = v[self.j, self.i]
-        return 1 + Fraction(min(2 / abs(inside), 1e6) if inside < 0 else 0.0)
+        inside = state.solved(b)[self.j, self.i]
+        return 1 + Fraction(min(2 / abs(inside), MAX_STIFFNESS) if inside < 0 else 0.0)
 
     def evaluate(self):
         """Gradient, action, and P for the Hessian."""
@@ -162,7 +165,7 @@ class _Pass:
         """About P^-1 e."""
         found = self.exact.solution([-e for e in self.e], 0)
         if found is None:
-            raise _Undecided("with one coordinate held it is no minimum")
+            raise TooFewPlaces("with one coordinate held it is no minimum")
         return found
 
     def at(self, v):
@@ -180,7 +183,7 @@ class _Pass:
             exact.move([a + b * along for a, b in zip(v, w)])
             if not all(abs(x) < 1000 for u in exact.u for x in u.entries()):
                 break
-        raise _Undecided("Newton's method did not converge")
+        raise TooFewPlaces("Newton's method did not converge")
 
     def proved(self):
         exact, state, sigma = self.exact, self.pair.minimax, ball(self.sigma)
@@ -189,7 +192,7 @@ class _Pass:
         while not exact.least(m):
             m /= 4
             if m < Fraction(1, 10 ** (self.places - GUARD_PLACES)):
-                raise _Undecided("with one coordinate held it is too flat")
+                raise TooFewPlaces("with one coordinate held it is too flat")
         w = self.column()
         left, size = arb(0), arb(0)             # of |P w - e|^2 and |w|^2
         for j in points(0, exact.q):
@@ -200,7 +203,7 @@ class _Pass:
         inside = self.at(w) + arb(0, 1) * off.upper()   # e.P^-1 e
         lost = 1 - sigma * inside
         if not lost < 0:
-            raise _Undecided("it is not decided whether there is a direction down")
+            raise TooFewPlaces("it is not decided whether there is a direction down")
         inverse = upper(1 / ball(m) + sigma * size * size / abs(lost))
         # lipschitz is a double above the K of docs/proofs/proved-orbits.md; here its exact value.
         bend = abs(exact.eps) * Fraction(state.potential.lipschitz)
@@ -209,9 +212,9 @@ class _Pass:
                          up=True)
         if not (inverse * (exact.gradient + bend * radius ** 2 / 2) <= radius
                 and inverse * bend * radius < 1):
-            raise _Undecided("the pass is too flat")
+            raise TooFewPlaces("the pass is too flat")
         if radius > Fraction(1, 10 ** self.digits):
-            raise _Undecided("the pass is known to %.1e only" % radius)
+            raise TooFewPlaces("the pass is known to %.1e only" % radius)
         reach = (4 + abs(exact.eps) * Fraction(state.potential.curvature)) * radius ** 2 / 2
         action = in_units(state.potential, (exact.action[0] - reach / exact.q,
                                             exact.action[1] + reach / exact.q), shown)
@@ -228,21 +231,14 @@ class _Pass:
     def residue(self, m, away, size, inside, shown):
         """Of every orbit whose blocks are within `away` of these: -det P (1 - sigma e.P^-1 e)/4,
         where det P is l + 1/l - 2 of the chain of P."""
-        ulp = Fraction(1, 10 ** self.places)
-        away += ulp
-        strict = max(4 * away, ulp * 10 ** GUARD_PLACES)
-        if strict > m / 2:
-            raise _Undecided("with one coordinate held it is too flat")
-        grown = growth(self.exact, strict, away)
-        if grown is None:
-            raise _Undecided("the pivots could not be enclosed")
-        (low, high), = grown[0]
+        ((low, high),), _ = grown(self.exact, growth, m, away)
+        away += Fraction(1, 10 ** self.places)
         det = 2 * (ball(low).union(ball(high))).cosh() - 2
         far = ball(away) * size * size / (1 - ball(away / m))
         lost = 1 - ball(self.sigma) * (inside + arb(0, 1) * far.upper())
         found = -det * lost / 4
         if not found > 0:
-            raise _Undecided("the sign of the residue is not decided")
+            raise TooFewPlaces("the sign of the residue is not decided")
         return Interval(rounded(lower(found), shown, up=False),
                         rounded(upper(found), shown, up=True))
 

@@ -41,8 +41,8 @@ def report(state):
         ("Residue : %.10g" % state.residue if state.potential.n == 1 else
          "Stability indices : " + ", ".join(map(_index_text, state.indices))),
         "Gradient : largest %.2g, root mean square %.2g" % (state.shadow, state.grad_size),
-        "Deviation : " + ", ".join("%.10g from the %s" % each for each in zip(state.deviation, (
-            "line through x_0", "line at eps 0", "best line"))),
+        "Deviation : %.10g from the line through x_0, %.10g from the line at eps 0"
+        % state.deviation,
         "Near-null directions : " + ("%d, along which the points can be moved at almost no cost"
                                      % state.undetermined if state.undetermined else "none")]
     return "\n".join(lines) + "\n"

@@ -10,7 +10,6 @@ are too many; but the action is a sum along the orbit, and so
 """
 
 import math
-import time
 from dataclasses import replace
 from typing import Callable, Optional
 
@@ -18,15 +17,15 @@ import numpy as np
 
 from ..storage.files import ConverseError
 from .limits import (JOINT_RELIEF, JOINT_SAMPLE, MAX_JOINTS_TRIED, MAX_SEARCH_STEPS,
-                     MAX_SHORT_SEARCHES, MAX_SHORT_SHARE, MAX_TURNS_TRIED, MOVE_SIZES, PIECE_LENGTH,
-                     PIECE_SPACING, SHORT_WORK)
-from .potential import Numerators, Source, told
+                     MAX_SHORT_SEARCHES, MAX_TURNS_TRIED, MOVE_SIZES, PIECE_LENGTH, PIECE_SPACING,
+                     SHORT_WORK)
+from .potential import Numerators, Source, told, whole
 from .solver import follow, straight
 from .state import PeriodicOrbit
 
 
 def search(potential: Source, p: Numerators, q: int, eps: float = 1.0, searches: int = 200,
-           seconds: float = math.inf, seed: int = 0,
+           seed: int = 0,
            progress: Optional[Callable[[int, PeriodicOrbit], object]] = None) -> PeriodicOrbit:
     """The state of type (p, q) of least action that many searches find.
 
@@ -41,8 +40,6 @@ def search(potential: Source, p: Numerators, q: int, eps: float = 1.0, searches:
     eps : float
     searches : int
         How many at most.
-    seconds : float
-        For about how long; without it the result depends on `seed` only.
     seed : int
         Of numpy's random numbers.  Searches with several seeds, in any executor, are independent of
         each other.
@@ -65,17 +62,14 @@ def search(potential: Source, p: Numerators, q: int, eps: float = 1.0, searches:
     of shorter types, whose own searches are not counted; turns of the best state so far; pieces of
     it moved; and straight orbits elsewhere, some relaxed at a larger eps first.
     """
-    if isinstance(searches, bool) or not isinstance(searches, int) or searches < 1:
-        raise ValueError("searches is a whole number, 1 or more, not %r" % (searches,))
+    searches = whole("searches", searches, 1)
     told(progress)
-    if isinstance(seconds, bool) or not isinstance(seconds, (int, float)) or not seconds > 0:
-        raise ValueError("seconds is a number above 0, not %r" % (seconds,))
     try:
         rng = np.random.default_rng(seed)
     except (TypeError, ValueError):
         raise ValueError("the seed is a whole number, 0 or more, not %r" % (seed,)) from None
     guess = replace(straight(potential, p, q), eps=eps)
-    of_type = _TypeSearch(guess, searches, time.monotonic() + seconds, rng, {}, progress)
+    of_type = _TypeSearch(guess, searches, rng, {}, progress)
     of_type.run()
     if of_type.best is None:
         raise ConverseError("no orbit of type %s found at eps %r: none of %d searches ended"
@@ -86,15 +80,15 @@ def search(potential: Source, p: Numerators, q: int, eps: float = 1.0, searches:
 class _TypeSearch:
     """The search for one type, which a guess has: the straight orbit at its eps."""
 
-    def __init__(self, guess, searches, end, rng, known, progress=None):
-        self.guess, self.searches, self.end, self.rng = guess, searches, end, rng
+    def __init__(self, guess, searches, rng, known, progress=None):
+        self.guess, self.searches, self.rng = guess, searches, rng
         self.known, self.progress = known, progress         # known: the best of shorter types
         self.best, self.begun, self.ended = None, 0, 0
         self.turns, self.shifts = _turns(guess.p, guess.q, 0.0)
 
     @property
-    def has_time(self):
-        return self.begun < self.searches and time.monotonic() < self.end
+    def goes_on(self):
+        return self.begun < self.searches
 
     def run(self):
         guess = self.guess
@@ -108,7 +102,7 @@ class _TypeSearch:
             self.joint(joints)
         for r in self.turns[1:1 + MAX_TURNS_TRIED]:
             self.turn(r)
-        while self.has_time:
+        while self.goes_on:
             move = self.rng.integers(4) if self.best is not None else 3
             if move == 0:
                 self.joint(joints)
@@ -121,7 +115,7 @@ class _TypeSearch:
 
     def descend(self, guess):
         """One search, from a guess: the state where it ends, or None."""
-        if not self.has_time:
+        if not self.goes_on:
             return None
         self.begun += 1
         try:
@@ -151,7 +145,7 @@ class _TypeSearch:
                 self.descend(self.best.moved(u))
 
     def turn(self, r):
-        if self.has_time and self.best is not None:
+        if self.goes_on and self.best is not None:
             self.recombine(self.best, r, self.shifts[r])
 
     def move_pieces(self):
@@ -187,7 +181,7 @@ class _TypeSearch:
             self.recombine(other, r, shifts[r])
 
     def joint(self, joints):
-        if self.has_time:
+        if self.goes_on:
             for guess in joints:
                 self.descend(guess)
                 break
@@ -212,15 +206,12 @@ class _TypeSearch:
 
     def shorter(self, p, q):
         """The best state of a shorter type, by a shorter search; None if none is found."""
-        key, now = (tuple(p), q), time.monotonic()
+        key = tuple(p), q
         if key not in self.known:
-            if now > self.end:
-                return None
             guess = replace(self.guess, p=p, q=q, u=np.zeros((q, len(p))))
             searches = min(self.searches, MAX_SHORT_SEARCHES,
                            max(2 * MAX_JOINTS_TRIED, SHORT_WORK // q))
-            inner = _TypeSearch(guess, searches, now + MAX_SHORT_SHARE * (self.end - now), self.rng,
-                                self.known)
+            inner = _TypeSearch(guess, searches, self.rng, self.known)
             inner.run()
             self.known[key] = inner.best
         return self.known[key]

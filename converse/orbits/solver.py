@@ -4,14 +4,14 @@ import csv
 import math
 import os
 from dataclasses import dataclass, replace
-from typing import Any, Callable, Iterator, List, Optional, Sequence, TextIO, Tuple, Union, overload
+from typing import Any, Callable, Iterator, List, Optional, Sequence, TextIO, Tuple, Union
 
 import numpy as np
 
-from .._native import lib
 from ..storage.files import ConverseError
-from .limits import MAX_DISPLACEMENT, MAX_EPS_STEPS, MAX_STEP_DIVISOR, STEP_TIMES_CURVATURE
-from .potential import Numerators, Source, address, done, finite, known, told
+from .limits import (MAX_DISPLACEMENT, MAX_EPS_STEPS, MAX_STEP_DIVISOR, MIN_CURVATURE,
+                     NEWTON_GRADIENT, STEP_TIMES_CURVATURE)
+from .potential import Numerators, Source, finite, known, told
 from .state import PeriodicOrbit, expected, type_of
 
 
@@ -41,7 +41,7 @@ def step_of(potential):
     """The step of eps in follow: about STEP_TIMES_CURVATURE over the curvature, rounded to 1, 2.5
     or 5 times a power of ten.  The map of 1000 V and eps/1000 thus has the same orbits as that of V
     and eps."""
-    bend = max(potential.curvature, 1e-300)
+    bend = max(potential.curvature, MIN_CURVATURE)
     order = math.floor(math.log10(STEP_TIMES_CURVATURE / bend))
     return min((float("%se%d" % (digits, order)) for digits in ("1", "2.5", "5", "10")),
                key=lambda step: abs(math.log(step * bend / STEP_TIMES_CURVATURE)))
@@ -49,21 +49,20 @@ def step_of(potential):
 
 @dataclass(frozen=True, eq=False)
 class Family:
-    """States of one type, in the order in which eps was asked for."""
+    """States of one type, in the order in which eps was asked for.
+
+    Parameters
+    ----------
+    states : tuple of PeriodicOrbit
+    """
 
     states: Tuple[PeriodicOrbit, ...]
 
     def __len__(self) -> int:
         return len(self.states)
 
-    @overload
-    def __getitem__(self, k: int) -> PeriodicOrbit: ...
-
-    @overload
-    def __getitem__(self, k: slice) -> "Family": ...
-
-    def __getitem__(self, k):
-        return Family(self.states[k]) if isinstance(k, slice) else self.states[k]
+    def __getitem__(self, k: int) -> PeriodicOrbit:
+        return self.states[k]
 
     def __iter__(self) -> Iterator[PeriodicOrbit]:
         return iter(self.states)
@@ -86,16 +85,31 @@ class Family:
         """A measure of its states against eps, as a Figure of matplotlib, which a notebook shows.
         Hollow points are of states in which doubles see no minimum.
 
-        column -- "exponents", "action", "residue" (of one angle), "deviation", "least", "shadow",
-            "grad_size" or "undetermined", as PeriodicOrbit has them
-        ax -- Axes to draw into, which are returned
+        Parameters
+        ----------
+        ax : Axes, optional
+            Where to draw; they are returned.
+        column : str
+            "exponents", "action", "residue" (of one angle), "deviation" or "least", as
+            PeriodicOrbit has them.
 
-        ValueError: the column or the states are missing.  ConverseError: so is matplotlib."""
+        Raises
+        ------
+        ValueError
+            The column or the states are missing.
+        ConverseError
+            matplotlib is missing.
+        """
         from .pictures import family_plot
         return family_plot(self, column, ax)
 
     def write_csv(self, file: TextIO) -> None:
-        """A row for each state, with its measures."""
+        """Writes a row for each state, with its measures.
+
+        Parameters
+        ----------
+        file : file open for text
+        """
         rows = csv.writer(file, lineterminator="\n")
         rows.writerow(COLUMNS)
         rows.writerows(map(row, self.states))
@@ -108,9 +122,9 @@ class Family:
 
         Parameters
         ----------
-        path
+        path : str or path
             The file.
-        potential
+        potential : SymplecticMap or Potential, optional
             That of the states, unless it is one with a name here (trig, standard, ...).
 
         Raises
@@ -127,14 +141,25 @@ class Family:
                                           % (first.potential.name, self.eps[0], self.eps[-1]))
 
     def save(self, path: Union[str, "os.PathLike[str]"]) -> None:
-        """Writes all states to a file as PeriodicOrbit.save does one.  ValueError: the family is
-        empty, or its states are not of one potential and type."""
+        """Writes all states to a file as PeriodicOrbit.save does one.
+
+        Parameters
+        ----------
+        path : str or path
+
+        Raises
+        ------
+        ValueError
+            The family is empty, or its states are not of one potential and type.
+        ConverseError
+            As of PeriodicOrbit.save.
+        """
         from .points import save
         save(self.states, path)
 
 
 COLUMNS = ("potential", "p", "q", "eps", "label", "action", "shadow", "grad_size", "exponent_1",
-           "exponent_2", "deviation_point", "deviation_start", "deviation_best", "undetermined")
+           "exponent_2", "deviation_point", "deviation_start", "undetermined")
 
 
 def row(state):
@@ -230,21 +255,16 @@ def follow(potential: Source, p: Numerators, q: int, eps: Union[float, Sequence[
     return Family(tuple(states))
 
 
-def newton(state: PeriodicOrbit, eps: Optional[float] = None, tol: float = 1e-13,
+def newton(state: PeriodicOrbit, eps: Optional[float] = None,
            max_steps: int = 50) -> Tuple[PeriodicOrbit, int]:
     """Newton's method without damping (thesis, Appendix A): it finds any stationary state, a
     minimum or a saddle, or nothing.  Returns the last state, "not stationary" perhaps, and the
     number of steps."""
     state = replace(state, eps=state.eps if eps is None else eps, searches=0)
-    n = state.potential.n
     for steps in range(max_steps + 1):
-        if steps == max_steps or np.abs(state._gradient).max() <= tol:
+        if steps == max_steps or np.abs(state._gradient).max() <= NEWTON_GRADIENT:
             break
-        gradient, step, work = (np.zeros((state.q, k)) for k in (2, 2, lib.CV_WORK))
-        gradient[:, :n] = state._gradient
-        done(lib.cv_solve(n, state.q, address(state.blocks, "double(*)[3]"), 0.0,
-                          address(gradient), address(step), address(work, "double *")))
-        u = state.u - step[:, :n]
+        u = state.u - state.solved(state._gradient)
         if not (np.abs(u) < MAX_DISPLACEMENT).all():
             break
         state = state.moved(u)

@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .limits import MAX_LOG_EXCESS
+from .limits import ANGLE_ROUNDING, MAX_LOG_EXCESS
 
 
 class Monodromy(NamedTuple):
@@ -72,7 +72,7 @@ def beyond(log):
     """e^log, real where it is: infinite where it is beyond doubles."""
     with np.errstate(over="ignore"):
         size = np.exp(log.real)
-    turned = [(-1.0) ** round(y / np.pi) if abs(np.sin(y)) < 1e-15 else np.exp(1j * y)
+    turned = [(-1.0) ** round(y / np.pi) if abs(np.sin(y)) < ANGLE_ROUNDING else np.exp(1j * y)
               for y in log.imag]
     with np.errstate(invalid="ignore"):
         values = np.array([x * y for x, y in zip(size, turned)])

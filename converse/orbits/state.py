@@ -3,8 +3,7 @@
 import os
 from dataclasses import dataclass, replace
 from functools import cached_property
-from itertools import combinations
-from math import asinh, isfinite, sinh, sqrt
+from math import asinh, sinh, sqrt
 from typing import TYPE_CHECKING, Any, NamedTuple, Optional, Tuple, Union
 
 import numpy as np
@@ -12,8 +11,8 @@ import numpy as np
 from .._native import ffi, lib
 from ..model.dynamics import jacobians
 from ..storage.files import ConverseError
-from .limits import (EIGENVALUE_ROUNDING, MAX_DISPLACEMENT, MAX_PIVOTS, MAX_Q, MAX_SHADOW,
-                     NULL_EIGENVALUE, SHADOW_REACH)
+from .limits import (EIGENVALUE_ROUNDING, EIGENVALUE_STEP, MAX_DISPLACEMENT, MAX_PIVOTS, MAX_Q,
+                     MAX_SHADOW, NULL_EIGENVALUE, SHADOW_REACH)
 from .potential import Potential, address, done, finite, known, look_up, whole
 from .stability import Monodromy, beyond, log_excesses, log_multipliers, product
 
@@ -21,47 +20,15 @@ if TYPE_CHECKING:
     from .minimax import Pair
 
 
-
 class Deviation(NamedTuple):
     """The largest distance |u_j - c| of a point from its place on a straight orbit, in the units of
     the map.
 
     from_point -- the straight orbit through x_0: c = u_0
-    from_start -- the straight orbit where continuation began: c = 0
-    from_best  -- the straight orbit whose distance is least: the radius of the smallest circle
-        around all displacements.  It is never larger than the other two."""
+    from_start -- the straight orbit where continuation began: c = 0"""
 
     from_point: float
     from_start: float
-    from_best: float
-
-
-def middle(points):
-    """The centre of the smallest circle around points, an array (q, n), n one or two.
-
-    The method keeps the two or three points on the circle.  The point farthest from the centre
-    joins them, and the smallest circle around these few is found, until no point is outside.  The
-    radius grows in each step, so the method ends; it also ends where rounding stops the growth."""
-    def circles(few):
-        """Those with two of them as a diameter, or through three: (centre, radius)."""
-        for a, b in combinations(few, 2):
-            yield (a + b) / 2, float(np.linalg.norm(a - b)) / 2
-        for a, b, c in combinations(few, 3):
-            sides = np.array([b - a, c - a])
-            if points.shape[1] == 2 and abs(np.linalg.det(sides)) > 0:
-                step = np.linalg.solve(sides, (sides ** 2).sum(1) / 2)
-                yield a + step, float(np.linalg.norm(step))
-
-    rim, centre, radius = [points[0]], points[0], 0.0
-    while True:
-        away = np.linalg.norm(points - centre, axis=1)
-        few = rim + [points[int(away.argmax())]]
-        larger = [(r, *c) for c, r in circles(few)
-                  if r > radius and all(np.linalg.norm(x - c) <= r * (1 + 1e-12) for x in few)]
-        if not away.max() > radius * (1 + 1e-12) or not larger:
-            return centre
-        radius, *centre = min(larger)
-        rim = [x for x in few if np.linalg.norm(x - centre) >= radius * (1 - 1e-9)][:3]
 
 
 def _fixed(array):
@@ -130,8 +97,8 @@ def type_of(potential, p, q):
     except (TypeError, ValueError, OverflowError):
         valid = False
     if not valid or len(numbers) != n or max(map(abs, numbers)) >= 2 ** 31:
-        raise ValueError("a type is %d whole number%s p below 2^31 in size, as a tuple, and a "
-                         "whole number q from 1 to %d, not %.200r and %.200r"
+        raise ValueError("a type is %d whole number%s p below 2^31 in size and a whole number q "
+                         "from 1 to %d, not %.200r and %.200r"
                          % (n, "s" * (n > 1), MAX_Q, p, q))
     return numbers, int(q)
 
@@ -150,14 +117,30 @@ class PeriodicOrbit:
     computed has the units of the map, whose angles have the period `potential.period`: 2 pi for a
     SymplecticMap, 1 for trig, poly, ff, froeschle and orbits.standard.
 
-    p        -- n integers; p/q need not be in lowest terms
-    eps      -- the size of the perturbation
-    u        -- array (q, n), in turns: the displacements from the straight orbit
-    origin   -- n numbers, in turns: the point of the straight orbit with j = 0
-    searches -- the number of searches among whose results this has the least action; 0: there was
-        no search
+    Parameters
+    ----------
+    potential : SymplecticMap or Potential
+    p : int or sequence of int, shape (n,)
+        p/q need not be in lowest terms.
+    q : int
+    eps : float
+        The size of the perturbation.
+    u : array of float, shape (q, n)
+        The displacements from the straight orbit, in turns.
+    origin : sequence of float, shape (n,)
+        The point of the straight orbit with j = 0, in turns.
+    searches : int
+        The number of searches among whose results this has the least action; 0: there was no
+        search.
 
-    A state cannot be changed.  ValueError: the arguments make no state.
+    Raises
+    ------
+    ValueError
+        The arguments make no state.
+
+    Notes
+    -----
+    A state cannot be changed.
     """
 
     potential: Potential
@@ -179,15 +162,10 @@ class PeriodicOrbit:
         if u.shape != (q, n) or not (np.abs(u) < MAX_DISPLACEMENT).all():
             raise ValueError("displacements are %d rows of %d finite numbers below %d in size"
                              % (q, n, MAX_DISPLACEMENT))
-        try:
-            origin, eps = tuple(float(x) for x in self.origin), float(self.eps)
-            valid = len(origin) == n and isfinite(eps) and all(
-                abs(x) < MAX_DISPLACEMENT for x in origin)
-        except (TypeError, ValueError, OverflowError):
-            valid = False
-        if not valid:
-            raise ValueError("origin and eps are finite numbers, %d below %d in size and one, not "
-                             "%r and %r" % (n, MAX_DISPLACEMENT, self.origin, self.eps))
+        origin, (eps,) = tuple(finite("origin", self.origin)), finite("eps", [self.eps])
+        if np.shape(self.origin) != (n,) or not max(map(abs, origin)) < MAX_DISPLACEMENT:
+            raise ValueError("the origin is %d numbers below %d in size, not %r"
+                             % (n, MAX_DISPLACEMENT, self.origin))
         for name, value in (("p", p), ("q", q), ("u", _fixed(u)), ("origin", origin),
                             ("eps", eps), ("searches", whole("searches", self.searches, 0))):
             object.__setattr__(self, name, value)
@@ -290,21 +268,45 @@ class PeriodicOrbit:
         return _fixed(blocks)
 
     def below(self, shift: float) -> int:
-        """How many eigenvalues of the Hessian are below shift."""
+        """How many eigenvalues of the Hessian are below a number.
+
+        Parameters
+        ----------
+        shift : float
+        """
         shift, = finite("shift", [shift])
         return done(lib.cv_solve(self.potential.n, self.q, address(self.blocks, "double(*)[3]"),
                                  -shift, ffi.NULL, ffi.NULL, ffi.NULL))
+
+    def solved(self, b: np.ndarray, shift: float = 0.0) -> np.ndarray:
+        """(Hessian + shift)^-1 b.  No promise where the matrix is nearly singular.
+
+        Parameters
+        ----------
+        b : array of float, shape (q, n)
+        shift : float
+
+        Returns
+        -------
+        array of float, shape (q, n)
+        """
+        n, right, found = self.potential.n, np.zeros((self.q, 2)), np.zeros((self.q, 2))
+        right[:, :n], work = b, np.empty((self.q, lib.CV_WORK))
+        done(lib.cv_solve(n, self.q, address(self.blocks, "double(*)[3]"), shift, address(right),
+                          address(found), address(work, "double *")))
+        return found[:, :n]
 
     @cached_property
     def least(self) -> float:
         """The least eigenvalue of the Hessian, by bisection, to a relative 1e-5 or an absolute
         1e-15.  The rounding of the Hessian adds about 1e-15."""
-        high = asinh(1e15 * (2 * float(np.abs(self.blocks).max()) + 2))
+        high = asinh((2 * float(np.abs(self.blocks).max()) + 2) / EIGENVALUE_STEP)
         low = -high
         for _ in range(24):
             middle = (low + high) / 2
-            low, high = (low, middle) if self.below(1e-15 * sinh(middle)) else (middle, high)
-        return 1e-15 * sinh((low + high) / 2)
+            some = self.below(EIGENVALUE_STEP * sinh(middle))
+            low, high = (low, middle) if some else (middle, high)
+        return EIGENVALUE_STEP * sinh((low + high) / 2)
 
     # ---- what kind of state it is
 
@@ -403,24 +405,37 @@ class PeriodicOrbit:
 
     @property
     def deviation(self) -> Deviation:
-        """The largest displacements from three straight orbits."""
-        def away(centre):
-            return self.potential.period * sqrt(float(((self.u - centre) ** 2).sum(1).max()))
-
-        from_point, from_start = away(self.u[0]), away(0.0)
-        return Deviation(from_point, from_start,
-                         min(from_point, from_start, away(middle(self.u))))
+        """The largest displacements from two straight orbits."""
+        return Deviation(*(self.potential.period * sqrt(float(((self.u - c) ** 2).sum(1).max()))
+                           for c in (self.u[0], 0.0)))
 
     def pairs(self, count: int = 800) -> Pairs:
-        """The `count` pairs of points with the closest angles on the torus."""
+        """The pairs of points with the closest angles on the torus.
+
+        Parameters
+        ----------
+        count : int
+            How many at most.
+        """
         count = min(whole("count", count, 0), self.q * (self.q - 1) // 2)
         i, j, distance = closest_pairs(self.turns, count)
         momentum = np.sqrt(((self.momenta[i] - self.momenta[j]) ** 2).sum(1))
         return Pairs(i, j, self.potential.period * distance, momentum)
 
     def gaps(self, count: Optional[int] = None) -> Gaps:
-        """The gaps between neighbouring points on the circle, all q or the `count` widest, widest
-        first; gaps of one width in the order of x.  ValueError for n = 2."""
+        """The gaps between neighbouring points on the circle, widest first; gaps of one width in
+        the order of x.
+
+        Parameters
+        ----------
+        count : int, optional
+            How many of the widest; by default all q.
+
+        Raises
+        ------
+        ValueError
+            There are two angles.
+        """
         if self.potential.n != 1:
             raise ValueError("gaps are those of an orbit on a circle; with two angles nothing lies "
                              "between two points: see state.pairs() and the figure")
@@ -434,20 +449,38 @@ class PeriodicOrbit:
         return Gaps(i[order], j[order], width[order], x[i[order]])
 
     def minimax(self, step: int = 0) -> "Pair":
-        """The pass from this minimum to one of its neighbours, itself begun at another point: a
-        Pair, with the difference of action, which for one angle is the flux through the gap.
+        """The pass from this minimum to one of its neighbours, itself begun at another point, with
+        the difference of action, which for one angle is the flux through the gap.
 
-        step -- with two angles, which neighbour: 0 the nearest; 1, 2 the others around a cell
+        Parameters
+        ----------
+        step : int
+            With two angles, which neighbour: 0 the nearest; 1, 2 the others around a cell.
 
-        ValueError: the type is not in lowest terms.  ConverseError: the state is not a minimum, or
-        certainly not the least; or no pass is found."""
+        Raises
+        ------
+        ValueError
+            The type is not in lowest terms.
+        ConverseError
+            The state is not a minimum, or certainly not the least; or no pass is found.
+        """
         from .minimax import minimax
         return minimax(self, step)
 
     def save(self, path: Union[str, "os.PathLike[str]"]) -> None:
-        """Writes points, momenta and all else of the state to a file, NAME.npz, from which
-        Family.load reads it to the last bit.  ConverseError: it cannot be written, or exists and is
-        no such file."""
+        """Writes points, momenta and all else of the state to a file, from which load() reads the
+        state to the last bit.
+
+        Parameters
+        ----------
+        path : str or path
+            The file; its name ends in .npz.
+
+        Raises
+        ------
+        ConverseError
+            The file cannot be written, or exists and is of another kind.
+        """
         from .points import save
         save([self], path)
 
@@ -461,38 +494,74 @@ class PeriodicOrbit:
     def plot(self, ax: Any = None) -> Any:
         """Its angles and momenta, as a Figure of matplotlib, which a notebook shows.
 
-        ax -- Axes to draw into, which are returned: with one angle one; with two a pair, for the
-            angles and for the momenta, or one, for the angles
+        Parameters
+        ----------
+        ax : Axes or pair of Axes, optional
+            Where to draw; it is returned.  With one angle one Axes; with two a pair, for the angles
+            and for the momenta, or one, for the angles.
 
-        ValueError: ax are too many.  ConverseError: matplotlib is missing."""
+        Raises
+        ------
+        ValueError
+            There are too many Axes.
+        ConverseError
+            matplotlib is missing.
+        """
         from .pictures import figure
         return figure(self, ax)
 
     @classmethod
     def load(cls, path: Union[str, "os.PathLike[str]"], potential: Any = None) -> "PeriodicOrbit":
-        """Reads the orbit of a file, the first if there are several: see Family.load."""
+        """Reads the orbit of a file, the first if there are several.
+
+        Parameters
+        ----------
+        path, potential
+            As of Family.load.
+        """
         from .points import load
         return load(path, potential)[0]
 
     # ---- other states
 
     def moved(self, u: np.ndarray) -> "PeriodicOrbit":
-        """The state with other displacements u, array (q, n)."""
+        """The state with other displacements.
+
+        Parameters
+        ----------
+        u : array of float, shape (q, n)
+            In turns.
+        """
         return replace(self, u=u, searches=0)
 
     def repeat(self, n: int) -> "PeriodicOrbit":
-        """The orbit run through n times: a state of type (n p, n q)."""
+        """The orbit run through several times: a state of type (n p, n q).
+
+        Parameters
+        ----------
+        n : int
+        """
         n = whole("how often an orbit is run through", n, 1, MAX_Q // self.q)
         return replace(self, p=tuple(n * i for i in self.p), q=n * self.q,
                        u=np.tile(self.u, (n, 1)), searches=0)
 
     def relax(self, eps: Optional[float] = None, tol: float = 1e-13,
               max_steps: int = 10000) -> "PeriodicOrbit":
-        """A nearby minimum of the action, at this or another eps, by Newton's method with damping.
+        """A nearby minimum of the action, by Newton's method with damping.
 
-        tol -- the largest coordinate of its gradient, in turns; 100 tol where rounding prevents
-            less
-        ConverseError: max_steps steps do not reach it."""
+        Parameters
+        ----------
+        eps : float, optional
+            By default that of the state.
+        tol : float
+            The largest coordinate of its gradient, in turns; 100 tol where rounding prevents less.
+        max_steps : int
+
+        Raises
+        ------
+        ConverseError
+            The steps do not reach a minimum.
+        """
         eps, tol = finite("eps and tol", [self.eps if eps is None else eps, tol])
         code, how, u = descended(self, eps, tol, whole("max_steps", max_steps, 0))
         if code != lib.CV_OK:

@@ -12,6 +12,7 @@ import functools
 import io
 import math
 import os
+import threading
 from typing import Any, Callable, NamedTuple, Optional, Sequence, Tuple, Union
 
 import numpy as np
@@ -22,9 +23,9 @@ from ..storage.files import ConverseError
 from ..storage.signals import interruptible
 from .limits import (MAX_EPS_STEPS, MAX_ONSET_GRADIENT, MAX_ONSET_HALVINGS, MAX_ONSET_STEPS,
                      MAX_PIVOTS, ONSET_TIMES_CURVATURE, TASKS_PER_WORKER)
-from .potential import Numerators, Source, Stoppable, finite, known, told
+from .potential import Numerators, Source, finite, known, obey, told
 from .solver import COLUMNS, follow, reached, row, straight
-from .state import PeriodicOrbit
+from .state import PeriodicOrbit, type_of
 
 LOST = "lost"                           # in place of a label: continuation has lost the branch
 
@@ -135,51 +136,74 @@ def _further(state, eps, halvings=MAX_ONSET_HALVINGS):
 def sweep(potential: Source, vectors: Sequence[Type], eps: Union[float, Sequence[float]],
           executor: Optional[concurrent.futures.Executor] = None,
           file: Union[str, "os.PathLike[str]", None] = None,
-          progress: Optional[Callable[[int, int], object]] = None) -> np.ndarray:
-    """The families of many rotation vectors, (p, q) each, at each eps: a table as of read_csv.
+          progress: Optional[Callable[[int, int], object]] = None,
+          jobs: Optional[int] = None) -> np.ndarray:
+    """The families of many rotation vectors.
 
-    executor -- a concurrent.futures.Executor, of threads, processes or others; by default this
-        thread does all
-    file -- a CSV file that grows with every vector.  If it is there already its rows must be of
-        these vectors and eps, and the sweep continues after them.
-    progress(done, of) -- is told how many vectors are finished
+    Parameters
+    ----------
+    potential : SymplecticMap or Potential
+    vectors : sequence of (p, q)
+    eps : float or sequence of float
+        For each vector the states at these.
+    executor : concurrent.futures.Executor, optional
+        By default threads of this process work.
+    file : str or path, optional
+        A CSV file that grows with every vector.  If the file exists, its rows must be of these
+        vectors and eps, and the sweep continues after them.
+    progress : callable, optional
+        progress(done, of) is called with the number of vectors that are finished.
+    jobs : int, optional
+        How many threads work, by default one for each core.
 
-    Where continuation loses a branch the rest of its rows has the label "lost" and no numbers."""
+    Returns
+    -------
+    structured array
+        A row for each vector and eps, whose fields have the names of the columns.  Where
+        continuation loses a branch, the rest of its rows has the label "lost" and no numbers.
+
+    Raises
+    ------
+    ConverseError
+        The file cannot be written, or is not the beginning of this sweep.
+    """
     values = finite("eps", eps)
     potential = known(potential)
     reached(potential, values)
     if not values:
         raise ValueError("eps is a list of finite numbers, one at least, not %r" % (eps,))
     return _sweep(functools.partial(_family, potential, values), COLUMNS, potential, vectors,
-                  [[repr(x)] for x in values], executor, file, progress)
+                  [[repr(x)] for x in values], executor, file, progress, jobs)
 
 
 def onsets(potential: Source, vectors: Sequence[Type],
            executor: Optional[concurrent.futures.Executor] = None,
            file: Union[str, "os.PathLike[str]", None] = None,
-           progress: Optional[Callable[[int, int], object]] = None, **how: Any) -> np.ndarray:
-    """onset() of many rotation vectors; how is handed to it, all else is as in sweep().
+           progress: Optional[Callable[[int, int], object]] = None,
+           jobs: Optional[int] = None, **how: Any) -> np.ndarray:
+    """The onsets of many rotation vectors.
 
-    The columns eps_below and eps_above enclose each onset; eps_above is inf where there is none.
-    The exponents are the first ones there, and the label is the upper state's."""
+    Parameters
+    ----------
+    potential, vectors, executor, file, progress, jobs
+        As of sweep().
+    how
+        As of onset(): exponent, step, width and top.
+
+    Returns
+    -------
+    structured array
+        A row for each vector.  eps_below and eps_above enclose the onset; eps_above is inf where
+        there is none.  The exponents are the first ones there, and the label is the upper state's.
+    """
     potential = known(potential)
     return _sweep(functools.partial(_onset, potential, how), ONSET_COLUMNS, potential, vectors,
-                  [[]], executor, file, progress)
-
-
-def read_csv(file: Union[str, "os.PathLike[str]"]) -> np.ndarray:
-    """The table in a CSV file of this module or of Family.write_csv: an array with the columns'
-    names as its fields, p an array of integers; a number that is missing is NaN."""
-    try:
-        with open(os.fspath(file), encoding="utf-8", newline="") as stream:
-            return _table(stream.read())
-    except OSError as error:
-        raise ConverseError("%s: cannot be read (%s)" % (file, files.reason(error))) from None
-    except TABLELESS:
-        raise ConverseError("%s: is no table of states or of onsets" % file) from None
+                  [[]], executor, file, progress, jobs)
 
 
 def _table(text):
+    """The table of a text: an array with the columns' names as its fields, p an array of integers;
+    a number that is missing is NaN.  An exception of TABLELESS: the text is another."""
     header, *rows = csv.reader(io.StringIO(text))
     if tuple(header) not in (COLUMNS, ONSET_COLUMNS) or any(len(row) != len(header)
                                                             for row in rows):
@@ -226,7 +250,7 @@ def _onset(potential, how, vector):
     return _text([[*_type(potential, vector), *found]])
 
 
-def _sweep(task, columns, potential, vectors, eps, executor, file, progress):
+def _sweep(task, columns, potential, vectors, eps, executor, file, progress, jobs):
     """Does all tasks.  eps: for each row of a vector, the cells that follow its type."""
     told(progress)
     if executor is not None and not hasattr(executor, "submit"):
@@ -248,7 +272,7 @@ def _sweep(task, columns, potential, vectors, eps, executor, file, progress):
                 contextlib.closing(files.AppendedFile(file, "".join(texts))))
         tell(len(texts) - 1, len(vectors))
         results = closed.enter_context(
-            contextlib.closing(_in_order(task, vectors[len(texts) - 1:], executor)))
+            contextlib.closing(_in_order(task, vectors[len(texts) - 1:], executor, jobs)))
         for text in results:
             texts.append(text)
             if out is not None:
@@ -262,23 +286,19 @@ def _vector(potential, vector):
         p, q = vector
     except (TypeError, ValueError):
         raise ValueError("a rotation vector is a pair (p, q), not %r" % (vector,)) from None
-    state = straight(potential, p, q)
-    return state.p, state.q
+    return type_of(potential, p, q)
 
 
-def _in_order(task, vectors, executor):
-    """The results, in the order of the vectors; tasks are given ahead to keep the executor busy."""
-    if executor is None:
-        yield from map(task, vectors)
-        return
-    task, given, results = Stoppable(functools.partial(_caught, task)), 0, {}
+def _in_order(task, vectors, executor, jobs):
+    """The results, in the order of the vectors; tasks are given ahead to keep the workers busy."""
+    given, results = 0, {}
     try:
-        with WorkerPool(executor, stop=task.stop) as pool:
+        with WorkerPool(executor, jobs, threading.Event()) as pool:
             for wanted in range(len(vectors)):
                 while wanted not in results:
                     room = TASKS_PER_WORKER * pool.size - len(pool.running) - len(results)
                     for key in range(given, min(given + room, len(vectors))):
-                        pool.give(key, task, vectors[key])
+                        pool.give(key, _caught, task, vectors[key])
                         given = key + 1
                     results.update(pool.take(LOOK_SECONDS))
                 result = results.pop(wanted)
@@ -289,9 +309,10 @@ def _in_order(task, vectors, executor):
         raise WorkersGone("%s; what was finished is kept, try again" % error) from None
 
 
-def _caught(task, vector):
+def _caught(task, vector, stop=None):
     """The result of the task or the exception that it raises: such a failure would happen again,
-    unlike the death of a worker."""
+    unlike the death of a worker.  stop: of the threads of this process."""
+    obey(stop)
     try:
         return task(vector)
     except Exception as error:

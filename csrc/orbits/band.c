@@ -43,10 +43,14 @@ typedef struct {
 } row;     /* of work: CV_WORK doubles */
 _Static_assert(sizeof(row) == CV_WORK * sizeof(double), "CV_WORK");
 
-/* Makes a pivot invertible: an exactly singular one is moved by about 1e-15 of its size. */
+static const double PIVOT_ROUNDING = 1e-15; /* The rounding of a pivot is about this part of it. */
+static const double SETTLED = 1e-13; /* Pivots that change by a smaller part of them repeat. */
+
+/* Makes a pivot invertible: an exactly singular one is moved by about its rounding. */
 static void regularize(double d[3])
 {
-    for (double t = 1e-15 * (fabs(d[0]) + fabs(d[2])) + 1e-20; sym2_det(d) == 0.0; t *= 2.0) {
+    for (double t = PIVOT_ROUNDING * (fabs(d[0]) + fabs(d[2]) + 1e-5); sym2_det(d) == 0.0;
+         t *= 2.0) {
         d[0] += t;
         d[2] += t;
     }
@@ -61,7 +65,7 @@ static long eliminate(int n, long q, const double (*beta)[3], double mu, row *ro
                       double *log_det)
 {
     const mat corner = { { -1.0, 0.0 }, { 0.0, n == 2 ? -1.0 : 0.0 } };
-    const double idle = n == 2 ? mu : 0.0;      /* an idle coordinate keeps its positive pivots */
+    const double idle = n == 2 ? mu : 0.0; /* an idle coordinate keeps its positive pivots */
     row here = { { 0.0, 0.0, 0.0 }, { { 0.0 } } };
     mat next;
     double total = 0.0;
@@ -116,7 +120,7 @@ long cv_solve(int n, long q, const double (*beta)[3], double mu, const double (*
 
     if (!rows)
         return negative;
-    for (long j = 0; j < q - 1; j++) {              /* right-hand sides; u_j = d_j^-1 of them */
+    for (long j = 0; j < q - 1; j++) { /* right-hand sides; u_j = d_j^-1 of them */
         double r[2] = { b[j][0], b[j][1] };
         for (int i = 0; j > 0 && i < 2; i++)
             r[i] += u[j - 1][i];
@@ -162,7 +166,7 @@ long cv_pivots(int n, long q, const double (*beta)[3], long max_rounds, double (
             memcpy(here, next, sizeof here);
             memcpy(d[j], next, sizeof next);
         }
-        if (round > 1 && moved < 1e-13)
+        if (round > 1 && moved < SETTLED)
             return round;
     }
     return 0;

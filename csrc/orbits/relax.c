@@ -14,6 +14,10 @@ int cv_python_interrupts(void);
 static const double MAX_STEP = 0.1;     /* No coordinate moves further in one step. */
 static const double NULL_EIGENVALUE = 1e-11;    /* Rounding decides the sign of smaller ones. */
 static const double MAX_DAMPING = 1e9; /* With a larger mu a step is below 1e-9 of the gradient. */
+static const double MIN_DAMPING = 1e-15; /* Of eigenvalues of about 1 it is the rounding. */
+static const double ROUNDING = 1e-15; /* The rounding of a sum, as a part of the sum of sizes. */
+static const double MIN_ESCAPE = 1e-7; /* Shorter steps off a saddle change the action by less
+                                          than its rounding. */
 static const double HELD_ENTRY = 1e100; /* A held coordinate has this diagonal entry. */
 enum { MAX_ESCAPES = 50 }; /* At most so many saddles are left. */
 enum { WALKING_STEPS = 1000 }; /* Later steps have to lower the action or the gradient. */
@@ -97,8 +101,8 @@ static void evaluate(const action_of *of, place *at)
         at->beta[0][1] = 0.0;
     }
     at->action = sum + lost;
-    at->noise = 1e-15 * size;
-    at->doubt = at->noise + 1e-15 * slopes;
+    at->noise = ROUNDING * size;
+    at->doubt = at->noise + ROUNDING * slopes;
     at->largest = squares < HUGE_VAL ? largest : HUGE_VAL; /* infinite if NaN */
     at->mean_square = squares / (double)q;
 }
@@ -188,7 +192,7 @@ static long escape(action_of *of, place *at, place *other, point *along)
     long status = downhill(of, (const block *)at->beta, along);
     double best = at->action - at->noise, chosen = 0.0;
 
-    for (double t = 0.5 * MAX_STEP; t > 1e-7 && chosen == 0.0 && status == CV_OK; t *= 0.25)
+    for (double t = 0.5 * MAX_STEP; t > MIN_ESCAPE && chosen == 0.0 && status == CV_OK; t *= 0.25)
         for (int sign = -1; sign <= 1; sign += 2) {
             move(of->q, other, at, sign * t, (const point *)along);
             evaluate(of, other);
@@ -235,7 +239,7 @@ static int descend(action_of *of, place *at, place *other, point *along, double 
         while ((negative = solve(of, (const block *)at->beta, mu, (const point *)at->gradient,
                                  along)) > 0 &&
                mu < MAX_DAMPING)
-            mu = fmax(4.0 * mu, fmax(0.01 * slope, 1e-15));
+            mu = fmax(4.0 * mu, fmax(0.01 * slope, MIN_DAMPING));
         if (negative < 0)
             return (int)negative;
         move(q, other, at, -fmin(1.0, MAX_STEP / widest(q, (const point *)along)),
@@ -243,9 +247,9 @@ static int descend(action_of *of, place *at, place *other, point *along, double 
         evaluate(of, other);
         if (lower(q, other, at, how->steps < WALKING_STEPS)) {
             swap(at, other);
-            mu = mu > 1e-14 ? 0.1 * mu : 0.0;
+            mu = mu > 10.0 * MIN_DAMPING ? 0.1 * mu : 0.0;
         } else {
-            mu = fmax(4.0 * mu, fmax(0.1 * slope, 1e-15));
+            mu = fmax(4.0 * mu, fmax(0.1 * slope, MIN_DAMPING));
         }
     }
 }

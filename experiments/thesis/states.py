@@ -4,7 +4,7 @@ import numpy as np
 
 from converse.draw.plot import BLUE, DARK, GREY, VERMILLION
 from converse.orbits import pictures
-from converse.orbits.pictures import LOST, Shown
+from converse.orbits.pictures import LOST
 from converse.orbits.potential import ff, poly, trig
 from converse.orbits.state import vector_words
 
@@ -74,7 +74,7 @@ def orbits_pairs(figure, families, name):
     """The states of one of the figures ORBITS: angles and momenta, a row for each eps."""
     potential, vector, sizes, first_known = ORBITS[name]
     states = [families.at(potential, vector, eps) for eps in sizes]
-    words = pictures.rows(figure, [Shown.of(state) for state in states], shape)
+    words = pictures.rows(figure, states, shape)
     said = [shared.chosen(first_known), TEXT.get(name)]
     if name == SMOOTH_SURFACE:
         said.append("Of the %d closest pairs of points |Δp|/|Δx| is at most %.2g in (a), where the "

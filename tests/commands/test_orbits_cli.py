@@ -34,6 +34,11 @@ def run(capfd):
     return run
 
 
+def read(path):
+    """The table in a file."""
+    return sys.modules[orbits.sweep.__module__]._table(path.read_text("utf-8"))
+
+
 def one_line(err):
     return err.startswith("converse-orbits: ") and err.endswith("\n") and err.count("\n") == 1
 
@@ -156,14 +161,14 @@ def test_the_picture_of_what_is_proved(run, tmp_path, monkeypatch):
     assert status == 0 and out.count("THEOREM, proved with") == 2
     proofs = [orbits.prove(s) for s in orbits.follow(orbits.standard, (1,), 3, [0.5, 0.9])]
     for proof, one in zip(proofs, shown):
-        assert np.array_equal(one.state.x, proof.nearest.x)
-        assert one.kind.startswith("proved within ")
-        near, away = re.findall(r"\d\S*e\S*\d", one.kind)        # rounded up, as the report
+        assert np.array_equal(one.nearest.x, proof.nearest.x)
+        assert pictures.kind(one).startswith("proved within ")
+        near, away = re.findall(r"\d\S*e\S*\d", pictures.kind(one))  # rounded up, as the report
         assert Fraction(near) >= proof.radius and Fraction(away) >= proof.moved
         assert "within %s of the points" % near in out and "within %s of those" % away in out
     assert "nothing is proved" not in said[0] and "Proved: a true orbit" in said[0]
     assert run("find", "standard", "1/3", "0", "0.5", "--prove", "-g", tmp_path / "x.svg")[0] == 1
-    assert [one.kind.startswith("proved") for one in shown[2:]] == [False, True]
+    assert [pictures.kind(one).startswith("proved") for one in shown[2:]] == [False, True]
     assert "nothing is proved" in said[1] and "Proved: a true orbit" in said[1]
     run("find", "standard", "1/3", "0.5", "-g", tmp_path / "x.svg")
     assert "nothing is proved" in said[2] and "Proved: a true orbit" not in said[2]
@@ -192,7 +197,7 @@ def test_a_potential_in_a_file(run, root, tmp_path):
     table = tmp_path / "table.csv"
     assert run("sweep", path, table, "0.5", "--at", "K=1", "--random", "2", "--sizes",
                "5:9")[0] == 0
-    assert set(orbits.read_csv(table)["potential"]) == {"standard, K = 1"}
+    assert set(read(table)["potential"]) == {"standard, K = 1"}
 
 
 @pytest.mark.parametrize("text", ["1 0 0 -1/2\n0 1 0 -0.5\n", "2 0.25 -1\n"])
@@ -229,7 +234,7 @@ def test_sweeps(run, tmp_path):
         status, out, err = run("sweep", "trig", path, "0.01", *which)
         assert (status, err) == (0, "")
         assert out == "written: %s, %d types, %d rows\n" % (path, len(expected), len(expected))
-        table = orbits.read_csv(path)
+        table = read(path)
         assert repr(table.tolist()) == repr(orbits.sweep(orbits.trig, expected, [0.01]).tolist())
     assert len(mediants) > 3
     paths = [tmp_path / name for name in "abc"]
@@ -237,7 +242,7 @@ def test_sweeps(run, tmp_path):
         assert run("sweep", "standard", path, "--random", "4", "--sizes=20:40", "--seed", seed,
                    "--jobs", jobs)[0] == 0
     assert paths[0].read_bytes() == paths[1].read_bytes() != paths[2].read_bytes()
-    table = orbits.read_csv(paths[0])
+    table = read(paths[0])
     assert table.dtype.names == ONSET_COLUMNS and len(table) == 4
     assert ((20 <= table["q"]) & (table["q"] <= 40)).all()
     assert (np.gcd(table["p"][:, 0], table["q"]) == 1).all()
@@ -262,7 +267,7 @@ def test_lost_types_end_with_status_1(run, tmp_path, monkeypatch):
     monkeypatch.setattr(sys.modules[orbits.sweep.__module__], "onset", loses)
     status, out, err = run("sweep", "trig", tmp_path / "x.csv", "--random", "2", "--sizes", "9:9")
     assert (status, err) == (1, "") and out.endswith("2 types, 2 rows, 2 of them lost\n")
-    assert (orbits.read_csv(tmp_path / "x.csv")["label"] == LOST).all()
+    assert (read(tmp_path / "x.csv")["label"] == LOST).all()
 
 
 # ---- help
@@ -320,7 +325,9 @@ def test_help_and_version(run):
     *[(["sweep", "trig", "DIR/x.csv", "--farey", bad], "between 0 and 1") for bad in (
         "x,y", "0,0.5", "0.5,1.5", "0.1,0.2,0.3", "1/0,0.5")],
     (["sweep", "trig", "DIR/x.csv", "--farey", "0.51,0.52", "--sizes", "5000:5001"], "no rotation"),
-    (["sweep", "trig", "DIR/x.csv", "--vectors", "DIR/none"], "cannot be read"),
+    (["sweep", "trig", "DIR/x.csv", "--vectors", "DIR/none"], "; name a readable file"),
+    (["sweep"], "required: POTENTIAL, FILE; see"),
+    (["find", "trig", "5,7/999999999", "0.01"], "whole number q from 1 to 10000000, not"),
     (["sweep", "trig", "DIR/x.csv", "--vectors", "DIR/terms"], "line 1: '1 0 0 1' is not a type"),
     (["sweep", "trig", "DIR/x.csv", "--vectors", "DIR/one"], "line 2: the potential trig has two"),
     (["sweep", "trig", "DIR/x.csv", "--vectors", "DIR/empty"], "no rotation vectors"),

@@ -135,6 +135,17 @@ def test_above_break_up_the_flux_tends_to_that_of_the_cantorus():
     assert 2 * second - first == pytest.approx(3.0117, abs=0.003)
 
 
+def ends(pair):
+    """Where descents from the pass to either side end."""
+    saddle = pair.minimax
+    v = np.random.default_rng(0).normal(size=saddle.u.shape)
+    for _ in range(4):                          # of inverse iteration
+        v = saddle.solved(v, -1.001 * saddle.least)
+        v /= np.abs(v).max()
+    away = 0.05 * np.abs(minimax.gap_of(pair)).max() * v
+    return [saddle.moved(saddle.u + side * away).relax() for side in (-1, 1)]
+
+
 @pytest.mark.parametrize("eps", [1.2, 2.0, 5.0, 30.0, 100.0])
 @pytest.mark.parametrize("p, q", [(8, 21), (987, 2584), (1, 3000)])
 def test_strong_coupling_and_long_orbits(p, q, eps):
@@ -148,9 +159,10 @@ def test_strong_coupling_and_long_orbits(p, q, eps):
     gap = np.roll(state.u, -r, 0) - state.u + 1 / q
     inside = pair.minimax.u - state.u
     assert (-1e-9 < inside).all() and (inside < gap + 1e-9).all()
-    for end in pair.ends:
+    both = ends(pair)
+    for end in both:
         assert difference(state, end) == pytest.approx(0, abs=1e-12)
-    moved = sorted(float((end.u - state.u).mean()) * q for end in pair.ends)
+    moved = sorted(float((end.u - state.u).mean()) * q for end in both)
     assert moved == pytest.approx([0, 1], abs=1e-6)
 
 
@@ -158,8 +170,6 @@ def test_weak_coupling_is_flat():
     """Where doubles cannot tell the two apart the flux is rounding, and no saddle is claimed."""
     pair = golden(12, 0.5).minimax()
     assert abs(pair.flux) < 1e-14 and pair.minimax.label != "saddle"
-    with pytest.raises(ConverseError, match="too flat"):
-        pair.ends
 
 
 @pytest.mark.slow
@@ -196,7 +206,7 @@ def test_passes_of_two_angles(name, p, q, eps, step):
     state = least(getattr(orbits, name), p, q, eps)
     pair = state.minimax(step)
     assert pair.minimax.label == "saddle" and pair.minimax.below(0) == 1 and pair.barrier > 0
-    for end in pair.ends:
+    for end in ends(pair):
         assert end.label == "minimum" and difference(end, pair.minimax) > 0
     vectors = [state.minimax(k).step for k in range(3)]
     sizes = [math.hypot(*vector) for vector in vectors]

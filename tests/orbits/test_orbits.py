@@ -498,37 +498,6 @@ def test_labels():
     assert flat.label == "minimum" and flat.undetermined == 2
 
 
-@pytest.mark.parametrize("n, numbers", [(1, 50), (2, 1), (2, 2), (2, 3), (2, 50), (2, 3000)])
-def test_the_best_line(n, numbers):
-    """No line is nearer; that through any point, and that of the start, are no exceptions; what
-    counts is not the box, whose half diagonal may be twice that of the start's."""
-    potential, rng = orbits.trig if n == 2 else orbits.standard, np.random.default_rng(numbers)
-    for scale in 1e-9, 1.0, 30.0:
-        u = scale * rng.normal(size=(numbers, n))
-        deviation = orbits.PeriodicOrbit(potential, (0,) * n, numbers, 0.0, u, (0.0,) * n).deviation
-        def away(line):
-            return np.sqrt(((u - line) ** 2).sum(1)).max()
-
-        at = u[0]                                       # a step towards the farthest, ever smaller
-        for k in range(1, 3000):
-            at = at + (u[((u - at) ** 2).sum(1).argmax()] - at) / (k + 1)
-        assert deviation.from_best <= min(away(at), deviation.from_start, deviation.from_point)
-        assert deviation.from_best == pytest.approx(away(at), rel=5e-3)
-
-
-def test_the_best_line_of_known_points():
-    corners = [[0, 0], [1, 0], [0, 1], [1, 1], [0.5, 0.5], [1, 0]]
-    for u, radius in ((corners, 0.5 ** 0.5), ([[0, 0], [4, 0], [2, 1]], 2.0), ([[3, 4]] * 5, 0.0),
-                      ([[1, 0], [-0.6, 0.8], [-0.6, -0.8], [0.2, 0.3]], 1.0),
-                      ([[k / 9, k / 9] for k in range(10)], 0.5 ** 0.5)):
-        state = orbits.PeriodicOrbit(orbits.trig, (0, 0), len(u), 0.0, u, (0.0, 0.0))
-        assert state.deviation.from_best == pytest.approx(radius, abs=1e-12)
-    # An orbit of which half the extent, by both coordinates, is more than its displacements are.
-    state = orbits.follow(orbits.poly, (28, 37), 49, [0.02])[0]
-    low, high = state.u.min(0), state.u.max(0)
-    assert state.deviation.from_best < np.hypot(*(high - low)) / 2
-
-
 def test_continuation_knows_no_unit_of_eps():
     """1000 V and eps/1000 are the same map: the same minima, found in as many steps."""
     terms = {(1, 0): (0, -0.3), (0, 1): (0, -0.3), (1, 1): (0, -0.6)}
@@ -564,9 +533,9 @@ def test_states_are_values(tmp_path):
     assert double.action == pytest.approx(state.action, abs=1e-15)
     assert np.allclose(double.exponents, state.exponents, atol=1e-12)
     lengths = [np.hypot(*(state.u - line).T).max() for line in (state.u[0], 0)]
-    assert state.deviation[:2] == pytest.approx(lengths, abs=1e-15)
+    assert state.deviation == pytest.approx(lengths, abs=1e-15)
     family = orbits.follow(orbits.trig, (5, 7), 9, [0.01, 0.02])
-    assert list(family[1:].eps) == [0.02] and family[1:].states == family.states[1:]
+    assert family[1].eps == 0.02 and [state.eps for state in family] == family.eps.tolist()
     text = io.StringIO()
     family.write_csv(text)
     lines = text.getvalue().splitlines()

@@ -47,15 +47,11 @@ def data(axes, number=0):
     return np.array(axes.get_lines()[number].get_data()).T
 
 
-def shown(*states):
-    return [pictures.Shown.of(state) for state in states]
-
-
 # ---- states
 
 def test_a_row_for_each_state(plane, line):
     figure = Figure()
-    pictures.rows(figure, shown(*plane))
+    pictures.rows(figure, plane)
     for number, state in enumerate(plane):
         left, right = figure.axes[2 * number:2 * number + 2]
         assert np.array_equal(data(left), state.x) and np.array_equal(data(right), state.momenta)
@@ -63,7 +59,7 @@ def test_a_row_for_each_state(plane, line):
             "(%s)  ε = %r, (28, 37)/49: minimum" % ("ab"[number], state.eps))
     assert plane[0].plot().axes[0].get_title(loc="left").startswith("ε = 0.005, (28, 37)/49")
     figure = Figure()
-    assert pictures.rows(figure, shown(*line)) == ""
+    assert pictures.rows(figure, line) == ""
     for panel, state in zip(figure.axes, line):
         assert np.array_equal(data(panel), np.column_stack([state.x, state.momenta]))
         assert panel.get_title(loc="left").startswith("ε = %r, 3/8: minimum" % state.eps)
@@ -80,7 +76,7 @@ def test_points_that_doubles_cannot_tell_apart(plane):
     u[3] += (1e-14, 0.3) - state.x[3]
     assert pictures.coinciding(state.moved(u)) == 4
     figure = Figure()
-    words = pictures.rows(figure, shown(state, state.repeat(2), state.moved(u)))
+    words = pictures.rows(figure, [state, state.repeat(2), state.moved(u)])
     assert "98 points of (b) and 4 points of (c)" in words
     assert "not stationary" in figure.axes[4].get_title(loc="left")
 

@@ -483,12 +483,13 @@ def test_ctrl_c_is_noticed_everywhere(name, p, q, monkeypatch):
 
 def test_a_thread_ends_when_it_is_told():
     state = orbits.follow(orbits.standard, (317,), 512, [1.5])[0]
-    begun, task = threading.Event(), potential.Stoppable(lambda: begun.set() or prove(state, 900))
-    ended = []
+    begun, stop, ended = threading.Event(), threading.Event(), []
 
     def run():
+        potential.obey(stop)
+        begun.set()
         try:
-            task()
+            prove(state, 900)
         except KeyboardInterrupt:
             ended.append(True)
 
@@ -496,7 +497,7 @@ def test_a_thread_ends_when_it_is_told():
         thread = threading.Thread(target=run)
         thread.start()
         begun.wait()
-        task.stop.set()
+        stop.set()
     thread.join()
     assert ended == [True] and prove(state).label == "proved"
 

@@ -13,7 +13,7 @@ from converse import orbits
 from converse.model.balls import precision
 from converse.orbits import NotProved, Pair
 from converse.orbits.enclosure import Enclosure
-from converse.orbits.proved_pair import _Pass, _Undecided
+from converse.orbits.proved_pair import TooFewPlaces, _Pass
 
 from truth import mp
 
@@ -104,7 +104,7 @@ def test_a_minimum_or_nothing_in_the_place_of_the_pass():
         def refine(self):
             self.evaluate()
 
-    with pytest.raises(_Undecided, match="direction down"), precision():
+    with pytest.raises(TooFewPlaces, match="direction down"), precision():
         Held(pair, pair.minimum, Enclosure(pair.minimum, Fraction("1.5")), 5, 40).proved()
     swapped = Pair(pair.minimax, pair.minimax, pair.step, pair.turn)
     with pytest.raises(NotProved, match="saddle"):
