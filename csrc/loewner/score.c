@@ -76,16 +76,6 @@ INLINE double score_of(const orbits *o, int points, vec beta[SIDES][FAR_REACH][3
     return at(&least, 0);
 }
 
-/* 1 on one side, -1 on the other. */
-INLINE vec sign_of(int side)
-{
-    vec sign = every(side ? -1.0 : 1.0);
-
-    if (LANES == 2)
-        put_at(&sign, LANES - 1, -1.0);
-    return sign;
-}
-
 /* The score of the orbit with this offset; if it does not exceed floor, any number that does
    not. */
 static double score_at(const orbits *o, const double offset[2], double floor)
@@ -96,7 +86,8 @@ static double score_at(const orbits *o, const double offset[2], double floor)
     for (int side = 0; side < SIDES; side++)
         for (int i = 0; i < 2; i++) {
             before[side][i] = every(o->xstar[i]);
-            x[side][i] = o->middle[i] + sign_of(side) * offset[i];
+            for (int k = 0; k < LANES; k++)
+                put_at(&x[side][i], k, o->middle[i] + (side + k ? -offset[i] : offset[i]));
         }
     for (int points = 0; points < o->reach; points++) {
         for (int side = 0; side < SIDES; side++) {
