@@ -5,12 +5,15 @@ from dataclasses import replace
 from fractions import Fraction
 
 import pytest
+from test_links import make_links_easy
 
 from converse import Problem, prove
 from converse.model.map import LINE, MuldoonMap, SymplecticMap
 from converse.prover import native, starts
 from converse.prover.settings import Settings
 from converse.prover.shifts import STEPS, best_shifts
+
+from truth import TORTURE
 
 HERE = "0.858028", "0.858028"
 REGION = (Fraction("0.6807"), Fraction("0.6851")), (Fraction(0), Fraction("0.006"))
@@ -110,8 +113,18 @@ def test_where_the_waves_bend_least():
     assert not starts._reaches(((5, 3, 1, 3, 0), (3, 2, 4, 2, 0)), signs)
 
 
+def test_a_range_is_linked_to_a_region_that_moves(monkeypatch):
+    """Where links are made of short orbits already."""
+    make_links_easy(monkeypatch)
+    proof = prove(line("0.0145", "0.0146", axes=None), method="loewner")
+    (part,) = proof.parts
+    assert proof.no_tori and proof.counts.linked and proof.counts.proved < 2000
+    assert any(any(shift) for shift in part.problem.shifts)
+
+
 @pytest.mark.slow
-def test_a_range_is_linked_to_regions_that_move():
+@pytest.mark.skipif(TORTURE == 1, reason="minutes; make torture has it")
+def test_a_range_takes_fewer_prisms_over_regions_that_move():
     """With regions that stay where they are it takes 61,058 prisms."""
     proof = prove(line("0.01397", "0.014", axes=None), method="loewner")
     assert proof.no_tori and all(part.problem.shifts for part in proof.parts)

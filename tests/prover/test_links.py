@@ -34,7 +34,7 @@ def line(low, high=None):
     return Problem(MuldoonMap(ends, ends, tuple(2 * x for x in ends), together=True))
 
 
-def _easily(monkeypatch):
+def make_links_easy(monkeypatch):
     monkeypatch.setattr(run, "LONG", 15)
     monkeypatch.setattr(starts, "LOOK_DEPTH", 8)
     monkeypatch.setattr(starts, "SMALL_AREA", 1)
@@ -47,13 +47,13 @@ def _easily(monkeypatch):
 @pytest.fixture
 def easily(monkeypatch):
     """Links are made of short orbits already, where one starting point would do."""
-    _easily(monkeypatch)
+    make_links_easy(monkeypatch)
 
 
 @pytest.fixture(scope="module")
 def linked():
     with pytest.MonkeyPatch.context() as monkeypatch:
-        _easily(monkeypatch)
+        make_links_easy(monkeypatch)
         return prove(line("0.015"), method="loewner")
 
 
