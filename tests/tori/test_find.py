@@ -14,9 +14,9 @@ from converse.model.problem import Problem
 from converse.tori import continuation, refinement
 from converse.tori.continuation import Way
 from converse.tori.find import MOST_DEGREE, NotFound, _Pieces, find, series_degree
-from converse.tori.newton import Mesh, default_frame, triangular
+from converse.tori.newton import Mesh, default_frame, sizes_holding, triangular
 from converse.tori.plan import Plan, _divisors, _loss
-from converse.tori.refinement import Modes, layers_for, numbers_of, pruned, taken
+from converse.tori.refinement import Modes, accepted, layers_for, numbers_of, pruned, taken
 from converse.tori.rotation import read_rotation
 from converse.tori.torus import Torus, family
 
@@ -283,6 +283,20 @@ def test_a_torus_that_is_accurate_enough_is_not_corrected(monkeypatch):
         refinement._corrected(torus, modes, error, np.ones(mesh.k.shape[1:]), [np.array([0.8])], 1,
                               enough)
         assert bool(calls) == needed
+
+
+def test_a_grid_is_not_much_larger_than_its_box():
+    potential, _ = family(Problem(MuldoonMap("0.9", 0, 0)))
+    for reach in (1, 4, 5.9, 6, 6.1, 8, 8.1, 487, 531, 768.5, 16384):
+        size, = sizes_holding(potential, ((1,),), (reach,))
+        assert size % 2 == 0 and max(2 * reach, 8) <= size < 1.5 * max(2 * reach, 8)
+    frame = ((1, 1), (1, -1))           # the second mode number goes in steps of 2
+    assert sizes_holding(family(line("0.004"))[0], frame, (531, 266)) == [1536, 384]
+
+
+@pytest.mark.parametrize("margin, part", [(1, 1), (10, 0.1), (100, 0.04), (1e6, 4e-6)])
+def test_what_error_of_a_torus_will_do(margin, part):
+    assert accepted(margin) == part
 
 
 def test_a_grid_that_memory_does_not_hold_is_refused(monkeypatch):

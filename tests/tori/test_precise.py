@@ -24,7 +24,7 @@ MIXED = FourierSum(((1, -1, Q(1, 7)), (2, 2, Q(-3, 4)), (0, 2, Q(1))),
 LINE = FourierSum(((2, -1, Q(2, 5)), (-4, 2, Q(0))), (Q("0.1"), Q("0.03")), 2)
 CROSS, PLAIN = ((1, 1), (1, -1)), ((1, 0), (0, 1))
 CASES = {"circle": (CIRCLE, ((1,),), (64,)), "thesis": (THESIS, CROSS, (64, 16)),
-         "mixed": (MIXED, PLAIN, (32, 32)), "line": (LINE, PLAIN, (32,))}
+         "mixed": (MIXED, PLAIN, (48, 24)), "line": (LINE, PLAIN, (32,))}
 every_case = pytest.mark.parametrize("case", CASES.values(), ids=CASES)
 
 
