@@ -14,7 +14,7 @@ import numpy as np
 
 from ..model.potential import FourierSum
 from .effort import LAYER_BYTES, REFINING_BYTES, SOLVING, free_memory, some
-from .newton import EPSILON, Frame, Mesh
+from .newton import EPSILON, Mesh, default_frame
 from .rotation import Rotation
 from .torus import Torus, decay
 
@@ -67,11 +67,11 @@ class Found(NamedTuple):
 class Way:
     """From amplitudes for which a torus is known to those asked for, one for each wave."""
 
-    def __init__(self, potential: FourierSum, rotation: Rotation, frame: Frame, points: int,
+    def __init__(self, potential: FourierSum, rotation: Rotation, points: int,
                  first: np.ndarray, last: np.ndarray,
                  tell: Callable[[str], None] = lambda words: None,
                  memory: Optional[int] = None) -> None:
-        self.potential, self.rotation, self.frame = potential, rotation, frame
+        self.potential, self.rotation, self.frame = potential, rotation, default_frame(potential)
         self.points, self.first, self.last = points, first, last
         self.tell, self.memory = tell, memory
 

@@ -13,7 +13,7 @@ from ..model.potential import FourierSum
 from ..model.problem import Problem
 from .continuation import POINTS, Found, NotFound, Way, ellipse, newton
 from .effort import BALLS, REFINING, SINGLE, SOLVING, balls, some
-from .newton import Frame, Mesh, default_frame
+from .newton import Mesh
 from .plan import MARGIN, Weights, plan
 from .refinement import SPARE_BITS, Modes, accepted, layers_for, numbers_of, refined, taken
 from .rotation import Rotation, rotation_of
@@ -32,8 +32,7 @@ MOST_MARGIN = 1e100         # Coefficients times 2^bits are doubles on their way
 
 
 def find(source: Union[SymplecticMap, Problem], rotation: Union[Rotation, str], *,
-         start: Optional[Torus] = None,
-         frame: Optional[Frame] = None, margin: float = MARGIN,
+         start: Optional[Torus] = None, margin: float = MARGIN,
          points: int = POINTS, memory: Optional[int] = None,
          progress: Optional[Callable[[str], None]] = None) -> Union[Torus, List[Torus]]:
     """Finds an invariant torus in floating-point numbers; nothing is proved.
@@ -47,8 +46,6 @@ def find(source: Union[SymplecticMap, Problem], rotation: Union[Rotation, str], 
     start : Torus, optional
         A torus of the same rotation vector, of other amplitudes, from which to continue; by default
         the map without potential.
-    frame : tuple of tuples of int, optional
-        Rows of the mode numbers, in whose directions rates of decay may differ.
     margin : float
         By which factor the error of the torus should be smaller than the theorem needs.
     points : int
@@ -82,8 +79,7 @@ def find(source: Union[SymplecticMap, Problem], rotation: Union[Rotation, str], 
     begin = {} if start is None else _amplitudes(potential, rotation, start)
 
     def way(first: np.ndarray, last: np.ndarray) -> Way:
-        return Way(potential, rotation, frame or default_frame(potential), points, first, last,
-                   tell, memory)
+        return Way(potential, rotation, points, first, last, tell, memory)
 
     middle = _doubles(potential.amplitude)
     first = way(np.array([begin.get(wave, 0.0) for wave in potential.waves]),

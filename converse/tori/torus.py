@@ -213,13 +213,11 @@ class Torus:
                              % (theta.shape, self.dimension))
         return theta
 
-    def decay(self, direction: Optional[np.ndarray] = None, s: Optional[float] = None) -> float:
-        """Estimates the rate r at which the coefficients of u fall, about |u_k| < C e^{-r d(k)}.
+    def decay(self, s: Optional[float] = None) -> float:
+        """Estimates the rate r at which the coefficients of u fall, about |u_k| < C e^{-r |k|}.
 
         Parameters
         ----------
-        direction
-            d(k) of each of `k`, for instance a norm; by default the sum of |k_i|.
         s
             As of sigma(); by default the middle of the piece.
 
@@ -227,11 +225,10 @@ class Torus:
         -------
         float
             The slope, over the outer half of the modes, of the upper concave envelope of log|u_k|
-            over d(k); infinity if there are fewer than two modes.
+            over |k|, the sum of |k_i|; infinity if there are fewer than two modes.
         """
-        far = np.abs(self.k).sum(1) if direction is None else np.asarray(direction)
         coefficients = self.doubles[0].T if s is None else self.coefficients(s)
-        return decay(far, np.abs(coefficients).max(1, initial=0))
+        return decay(np.abs(self.k).sum(1), np.abs(coefficients).max(1, initial=0))
 
     def report(self) -> str:
         """A line or two about the torus, which is not proved."""
