@@ -88,7 +88,7 @@ def test_one_proof_has_one_number_of_prisms():
     linked, = [row[4] for row in rows("inputs.md", "file") if row[0] == "`trig139.in`"]
     found = re.search(r"Search +(\S+) prisms", golden("loewner/trig139"))[1]
     assert linked.startswith(found + ",")
-    assert "Now the proof down to 0.0139 takes %s prisms" % found in words("speed.md")
+    assert "the proof down to 0.0139 takes %s prisms" % found in words("speed.md")
     alone, = [leaves for epsilon, leaves, *_ in rows("trust.md", "epsilon") if epsilon == "0.0139"]
     assert "0.0139 alone takes %s prisms" % alone in words("method.md")
 
