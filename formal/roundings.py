@@ -208,7 +208,7 @@ class Model:
             "PAIRS": self.pairs, "mag": lambda x: x, "fabs": lambda x: x, "every": lambda x: x,
             "memset": clear, "double_sincos": self.double_sincos, "larger": self.larger,
             "dot_k": self.dot_k, "none": lambda: 0, "wave_at": self.wave_at}
-        for name in ("waves_of", "k_of", "grain_of", "dot_abs_k", "sum_k", "sum_abs_k", "propagate",
+        for name in ("waves_of", "k_of", "grain_of", "dot_abs_k", "sum_abs_k", "propagate",
                      "propagate_err"):
             self.names[name] = self.function(name)
         self.names["add_moves"] = function(self.texts["loewner/prism.h"],

@@ -5,6 +5,7 @@
 #include <ctype.h>
 #include <limits.h>
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -108,22 +109,17 @@ void apm_set_si(apm_t r, long n, long exp)
     r->exp = exp;
 }
 
+/* The text is looked at first, so that a number is either read whole or not at all. */
 int apm_set_str(apm_t r, const char *text)
 {
-    const char *s = text;
-    const int negative = *s == '-';
+    const char *s = text + (*text == '+' || *text == '-');
     long digits = 0, places = 0, exp = 0;
-    unsigned long word = 0;
-    int seen_point = 0, length = 0;         /* of the digits gathered in word */
     mpz_t mant;
 
-    /* Look first, so that a number is either read whole or not at all. */
-    s += *s == '+' || *s == '-';
-    for (const char *const start = s; isdigit((unsigned char)*s) || (*s == '.' && !seen_point);
-         s++) {
+    for (int seen_point = 0; isdigit((unsigned char)*s) || (*s == '.' && !seen_point); s++) {
         seen_point |= *s == '.';
         places += seen_point && *s != '.';
-        digits = s - start + 1 - seen_point;
+        digits += *s != '.';
     }
     const char *const end_of_digits = s;
     if (digits > 0 && (*s == 'e' || *s == 'E')) {
@@ -140,20 +136,12 @@ int apm_set_str(apm_t r, const char *text)
         return APM_ERANGE;
 
     mpz_init(mant);
-    for (s = text; s < end_of_digits; s++) {
-        if (!isdigit((unsigned char)*s))
-            continue;
-        word = 10 * word + (unsigned long)(*s - '0');
-        if (++length == WORD_DIGITS - 1) {
-            mpz_mul_ui(mant, mant, power10[length]);
-            mpz_add_ui(mant, mant, word);
-            word = 0;
-            length = 0;
+    for (s = text; s < end_of_digits; s++)
+        if (isdigit((unsigned char)*s)) {
+            mpz_mul_ui(mant, mant, 10UL);
+            mpz_add_ui(mant, mant, (unsigned long)(*s - '0'));
         }
-    }
-    mpz_mul_ui(mant, mant, power10[length]);
-    mpz_add_ui(mant, mant, word);
-    if (negative)
+    if (*text == '-')
         mpz_neg(mant, mant);
     mpz_swap(r->mant, mant);
     mpz_clear(mant);
@@ -189,55 +177,41 @@ int apm_set_d(apm_t r, double x)
     return APM_OK;
 }
 
+/* m = x 2^shift is cut off to 130 bits, or exact with fewer.  The double below |m| and what m has
+   more are added, so there is one rounding, and a second one where the result is below 2^-1022. */
 double apm_get_d(const apm_t x)
 {
-    /* Bring the integer near 17 digits first, so that neither factor can overflow. */
-    const long excess = (long)mpz_sizeinbase(x->mant, 10) - 20;
-    double result;
-    mpz_t m;
+    long shift = 0, excess;
+    double high;
+    mpz_t m, power;
 
-    if (mpz_sgn(x->mant) == 0)
-        return 0.0;
-    mpz_init(m);
-    if (excess > 0)
-        shift_down(m, x->mant, excess, APM_TRUNC);
-    else
-        mpz_set(m, x->mant);
-    const long exp = x->exp + (excess > 0 ? excess : 0);
-    /* A decimal string and strtod would round correctly and cost ten times as much. */
-    if (exp < -330)
-        result = 0.0;
-    else if (exp > 310)
-        result = mpz_sgn(m) * HUGE_VAL;
-    else if (exp < -22)
-        result = mpz_get_d(m) / pow(10.0, 22) * pow(10.0, (double)(exp + 22));
-    else
-        result = exp < 0 ? mpz_get_d(m) / pow(10.0, (double)-exp)
-                         : mpz_get_d(m) * pow(10.0, (double)exp);
-    mpz_clear(m);
-    return result;
-}
-
-double apm_nearest_d(const apm_t x)
-{
-    const double d = apm_get_d(x);
-    apm_t rest;
-    double result;
-
-    if (!isfinite(d))
-        return d;
-    apm_init(rest);
-    apm_set_d(rest, d);
-    apm_sub(rest, x, rest);
-    result = d + apm_get_d(rest);
-    apm_clear(rest);
-    return result;
+    mpz_inits(m, power, NULL);
+    mpz_ui_pow_ui(power, 10UL, (unsigned long)labs(x->exp));
+    if (x->exp >= 0) {
+        mpz_mul(m, x->mant, power);
+    } else {
+        shift = 128 + (long)mpz_sizeinbase(power, 2) - (long)mpz_sizeinbase(x->mant, 2);
+        shift = shift > 0 ? shift : 0;
+        mpz_mul_2exp(m, x->mant, (mp_bitcnt_t)shift);
+        mpz_tdiv_q(m, m, power);
+    }
+    excess = (long)mpz_sizeinbase(m, 2) - 130;
+    if (excess > 0) {
+        mpz_tdiv_q_2exp(m, m, (mp_bitcnt_t)excess);
+        shift -= excess;
+    }
+    high = mpz_get_d(m);
+    mpz_set_d(power, high);
+    mpz_sub(m, m, power);
+    high += mpz_get_d(m);
+    mpz_clears(m, power, NULL);
+    return ldexp(high, (int)-shift);
 }
 
 double apm_bound_d(const apm_t x, apm_round_t dir)
 {
     const double end = dir == APM_UP ? HUGE_VAL : -HUGE_VAL;
-    double d = apm_nearest_d(x);
+    double d = apm_get_d(x);
     apm_t found;
 
     apm_init(found);
@@ -272,7 +246,6 @@ char *apm_get_str(const apm_t x)
     const size_t digits = mpz_sizeinbase(x->mant, 10);
     char *text = malloc(digits + 32);
     printed p = { text, x->mant };
-    size_t n;
 
     if (text == NULL)
         return NULL;
@@ -280,23 +253,8 @@ char *apm_get_str(const apm_t x)
         free(text);
         return NULL;
     }
-    n = strlen(text);
-    if (x->exp != 0 && mpz_sgn(x->mant) != 0) {
-        long e = x->exp;
-        char buf[24];
-        size_t k = sizeof buf;
-        unsigned long u = e < 0 ? 0UL - (unsigned long)e : (unsigned long)e;
-        while (u > 0) {
-            buf[--k] = (char)('0' + u % 10);
-            u /= 10;
-        }
-        text[n++] = 'e';
-        if (e < 0)
-            text[n++] = '-';
-        memcpy(text + n, buf + k, sizeof buf - k);
-        n += sizeof buf - k;
-        text[n] = '\0';
-    }
+    if (x->exp != 0 && mpz_sgn(x->mant) != 0)
+        snprintf(text + strlen(text), 24, "e%ld", x->exp);
     return text;
 }
 
@@ -436,8 +394,7 @@ int apm_sqrt(apm_t r, const apm_t x, long dp, apm_round_t dir)
 
     if (mpz_sgn(x->mant) < 0)
         return APM_ENEGATIVE;
-    mpz_init(t);
-    mpz_init(rest);
+    mpz_inits(t, rest, NULL);
     if (shift >= 0) {
         shift_up(t, x->mant, shift);
     } else {
@@ -449,8 +406,7 @@ int apm_sqrt(apm_t r, const apm_t x, long dp, apm_round_t dir)
     if (dir == APM_UP && (!exact || mpz_sgn(rest) != 0))
         mpz_add_ui(r->mant, r->mant, 1UL);
     r->exp = -dp;
-    mpz_clear(t);
-    mpz_clear(rest);
+    mpz_clears(t, rest, NULL);
     return APM_OK;
 }
 

@@ -21,8 +21,7 @@
 static void add_arctan(mpz_t r, unsigned long n, long scale, mp_bitcnt_t w)
 {
     mpz_t power, term;
-    mpz_init(power);
-    mpz_init(term);
+    mpz_inits(power, term, NULL);
     mpz_set_si(power, scale);
     mpz_mul_2exp(power, power, w);
     mpz_tdiv_q_ui(power, power, n);
@@ -35,8 +34,7 @@ static void add_arctan(mpz_t r, unsigned long n, long scale, mp_bitcnt_t w)
             mpz_sub(r, r, term);
         mpz_tdiv_q_ui(power, power, n * n);
     }
-    mpz_clear(power);
-    mpz_clear(term);
+    mpz_clears(power, term, NULL);
 }
 
 /* r - 1 < pi 2^bits < r + 2, by Machin's formula pi = 16 arctan(1/5) - 4 arctan(1/239).  The sum
@@ -58,9 +56,7 @@ void apm_pi(apm_t r, long dp)
 
     if (dp < 0)
         dp = 0;
-    mpz_init(lower);
-    mpz_init(upper);
-    mpz_init(scale);
+    mpz_inits(lower, upper, scale, NULL);
     mpz_ui_pow_ui(scale, 10UL, (unsigned long)dp);
     while (!settled) {                      /* until both ends have the same dp decimals */
         bits += 32;
@@ -75,9 +71,7 @@ void apm_pi(apm_t r, long dp)
     }
     mpz_swap(r->mant, lower);
     r->exp = -dp;
-    mpz_clear(lower);
-    mpz_clear(upper);
-    mpz_clear(scale);
+    mpz_clears(lower, upper, scale, NULL);
 }
 
 /* How often an angle is halved, h >= 2, and how many terms of the series are then needed.  The
@@ -111,13 +105,7 @@ void trig_init(trig_t *trig, long dp)
     trig->turn_bits = 0;
     trig->turn_exp = 0;
     plan(trig);
-    mpz_init(trig->half_pi);
-    mpz_init(trig->turn);
-    mpz_init(trig->one);
-    mpz_init(trig->half);
-    mpz_init(trig->t);
-    mpz_init(trig->v);
-    mpz_init(trig->term);
+    mpz_inits(trig->half_pi, trig->turn, trig->one, trig->half, trig->t, trig->v, trig->term, NULL);
     for (unsigned long j = 0; j <= TRIG_ROW; j++)
         mpz_init(trig->power[j]);
     mpz_ui_pow_ui(trig->one, 10UL, (unsigned long)dp);
@@ -126,13 +114,8 @@ void trig_init(trig_t *trig, long dp)
 
 void trig_clear(trig_t *trig)
 {
-    mpz_clear(trig->half_pi);
-    mpz_clear(trig->turn);
-    mpz_clear(trig->one);
-    mpz_clear(trig->half);
-    mpz_clear(trig->t);
-    mpz_clear(trig->v);
-    mpz_clear(trig->term);
+    mpz_clears(trig->half_pi, trig->turn, trig->one, trig->half, trig->t, trig->v, trig->term,
+               NULL);
     for (unsigned long j = 0; j <= TRIG_ROW; j++)
         mpz_clear(trig->power[j]);
 }

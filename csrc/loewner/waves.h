@@ -29,16 +29,7 @@ INLINE vec dot_abs_k(const batch *w, int wave, vec x0, vec x1)
     return fabs(k_of(w, wave)[0]) * x0 + fabs(k_of(w, wave)[1]) * x1;
 }
 
-/* Coordinate i of the sum of k f over the waves, and a bound of it from bounds of f. */
-INLINE vec sum_k(const batch *w, int i, const vec f[])
-{
-    vec sum = every(0.0);
-
-    FOR_WAVES(w, j)
-        sum += k_of(w, j)[i] * f[j];
-    return sum;
-}
-
+/* A bound of coordinate i of the sum of k f over the waves, from bounds of f. */
 INLINE vec sum_abs_k(const batch *w, int i, const vec f[])
 {
     vec sum = every(0.0);

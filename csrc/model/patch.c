@@ -4,7 +4,7 @@
 #include "arith/special.h"
 #include "model/patch.h"
 
-enum { MOST = 300 };                    /* The numbers of a problem are 10^MOST at most. */
+enum { MOST_POWER = 300 };              /* Sizes of a problem's numbers are 10^300 at most. */
 enum { MOST_K = 100 };                  /* The integers of waves and frames are MOST_K at most. */
 enum { PHASE_PLACES = 50 };             /* Phases use pi to 50 decimals. */
 
@@ -31,23 +31,23 @@ void patch_clear(patch *p) { for_each(p, apm_clear); }
 
 /* ---- reading */
 
-/* Reads a number of the problem. */
-static int read_number(apm_t x, const char *text)
+/* Reads a number of the problem, if *status is CV_OK. */
+static void read_number(apm_t x, const char *text, int *status)
 {
     apm_t size, most;
-    int status = CV_OK;
 
+    if (*status != CV_OK)
+        return;
     apm_init(size);
     apm_init(most);
-    apm_set_si(most, 1, MOST);
+    apm_set_si(most, 1, MOST_POWER);
     if (apm_set_str(x, text) != APM_OK)
-        status = CV_ENUMBER;
+        *status = CV_ENUMBER;
     apm_abs(size, x);
     if (apm_cmp(size, most) > 0)
-        status = CV_ENUMBER;
+        *status = CV_ENUMBER;
     apm_clear(size);
     apm_clear(most);
-    return status;
 }
 
 /* Converts a phase from units of pi to radians, without whole turns. */
@@ -66,90 +66,84 @@ static void reduce(apm_t phase)
     apm_clear(t);
 }
 
-static int read_wave(patch *p, int i, const cv_wave *wave)
+static void read_wave(patch *p, int i, const cv_wave *wave, int *status)
 {
-    int status = read_number(p->phase[i], wave->phase);
-
     for (int j = 0; j < 2; j++)
         p->k[i][j] = wave->k[j];
     if (abs(wave->k[0]) > MOST_K || abs(wave->k[1]) > MOST_K || (!wave->k[0] && !wave->k[1]))
-        status = CV_EARGUMENT;
-    if (status == CV_OK)
-        status = read_number(p->amplitude[i], wave->amplitude);
-    for (int m = 0; m < p->n_parameters && status == CV_OK; m++)
-        status = read_number(p->part[i][m], wave->part[m]);
-    if (status == CV_OK)
+        *status = CV_EARGUMENT;
+    read_number(p->phase[i], wave->phase, status);
+    read_number(p->amplitude[i], wave->amplitude, status);
+    for (int m = 0; m < p->n_parameters; m++)
+        read_number(p->part[i][m], wave->part[m], status);
+    if (*status == CV_OK)
         reduce(p->phase[i]);
-    return status;
+}
+
+static void read_region(patch *p, const cv_problem *given, int *status)
+{
+    const int *const f = given->frame;
+
+    for (int j = 0; j < 4; j++) {
+        p->frame[j] = f[j];
+        if (f[j] < -MOST_K || f[j] > MOST_K)
+            *status = CV_EARGUMENT;
+    }
+    if (*status == CV_OK && f[0] * f[3] == f[1] * f[2])
+        *status = CV_EARGUMENT;
+    for (int j = 0; j < 2; j++) {
+        read_number(p->angle[j], given->angle[j], status);
+        read_number(p->half[j], given->half[j], status);
+        if (apm_sgn(p->half[j]) < 0)
+            *status = CV_EARGUMENT;
+        for (int m = 0; m < p->n_parameters; m++)
+            if (given->shift[j][m] != NULL)
+                read_number(p->shift[j][m], given->shift[j][m], status);
+    }
 }
 
 int patch_read(patch *p, const cv_problem *given)
 {
-    const int *const f = given->frame;
     int status = CV_OK;
 
     if (given->n_waves < 1 || given->n_waves > MOST_WAVES || given->n_parameters < 0 ||
         given->n_parameters > PARAMETERS)
         return CV_EARGUMENT;
-    for (int j = 0; j < 4; j++) {
-        if (f[j] < -MOST_K || f[j] > MOST_K)
-            return CV_EARGUMENT;
-        p->frame[j] = f[j];
-    }
-    if (f[0] * f[3] == f[1] * f[2])
-        return CV_EARGUMENT;
     p->n_waves = given->n_waves;
     p->n_parameters = given->n_parameters;
     p->odd = given->odd;
-    for (int i = 0; i < p->n_waves && status == CV_OK; i++)
-        status = read_wave(p, i, &given->waves[i]);
-    for (int j = 0; j < 2 && status == CV_OK; j++) {
-        status = read_number(p->angle[j], given->angle[j]);
-        if (status == CV_OK)
-            status = read_number(p->half[j], given->half[j]);
-        if (status == CV_OK && apm_sgn(p->half[j]) < 0)
-            status = CV_EARGUMENT;
-        for (int m = 0; m < p->n_parameters && status == CV_OK; m++)
-            if (given->shift[j][m] != NULL)
-                status = read_number(p->shift[j][m], given->shift[j][m]);
-    }
+    for (int i = 0; i < p->n_waves; i++)
+        read_wave(p, i, &given->waves[i], &status);
+    read_region(p, given, &status);
     return status;
 }
 
 /* ---- what it is */
-
-int has_shifts(const patch *p)
-{
-    int some = 0;
-
-    for (int i = 0; i < 2; i++)
-        for (int m = 0; m < p->n_parameters; m++)
-            some = some || apm_sgn(p->shift[i][m]) != 0;
-    return some;
-}
 
 int is_identity(const int frame[4])
 {
     return frame[0] == 1 && frame[1] == 0 && frame[2] == 0 && frame[3] == 1;
 }
 
-/* Are these the thesis's waves, in its order and without phases? */
-static int thesis_waves(const patch *p)
+int has_plain_region(const patch *p)
 {
-    int same = p->n_waves == 3;
+    int plain = is_identity(p->frame);
 
-    for (int i = 0; i < 3 && same; i++)
-        same = p->k[i][0] == (i != 1) && p->k[i][1] == (i != 0) && apm_sgn(p->phase[i]) == 0;
-    return same;
+    for (int i = 0; i < 2; i++)
+        for (int m = 0; m < p->n_parameters; m++)
+            plain = plain && apm_sgn(p->shift[i][m]) == 0;
+    return plain;
 }
 
 int thesis_parameters(const patch *p)
 {
-    int good = thesis_waves(p) && p->n_parameters == 3;
+    int good = p->n_waves == 3 && p->n_parameters == 3;
 
-    for (int i = 0; i < 3 && good; i++)
+    for (int i = 0; i < 3 && good; i++) {
+        good = p->k[i][0] == (i != 1) && p->k[i][1] == (i != 0) && apm_sgn(p->phase[i]) == 0;
         for (int m = 0; m < 3; m++)
             good = good && (m == i ? apm_sgn(p->part[i][m]) >= 0 : apm_sgn(p->part[i][m]) == 0);
+    }
     return good;
 }
 
@@ -182,7 +176,7 @@ static int exchangeable(const patch *p, const apm_struct *const amplitude[MOST_W
 int patch_symmetric(const patch *p)
 {
     const apm_struct *vector[MOST_WAVES];
-    int good = is_identity(p->frame) && !has_shifts(p) && apm_cmp(p->angle[0], p->angle[1]) == 0 &&
+    int good = has_plain_region(p) && apm_cmp(p->angle[0], p->angle[1]) == 0 &&
                apm_cmp(p->half[0], p->half[1]) == 0;
 
     for (int i = 0; i < p->n_waves; i++)

@@ -28,8 +28,8 @@ int is_identity(const int frame[4]);
 /* Are these the thesis's waves, in its order and without phases, each with its own parameter? */
 int thesis_parameters(const patch *p);
 
-/* Does the region of x_1 move with the parameters? */
-int has_shifts(const patch *p);
+/* Is the frame the identity, and does the region of x_1 not move with the parameters? */
+int has_plain_region(const patch *p);
 
 /* Does the exchange of the coordinates map the patch and the region of x_1 to themselves?  0 for a
    region that moves. */
@@ -42,8 +42,8 @@ void patch_amplitudes(const patch *p, double t, double to[MOST_WAVES]);
    pi is truncated after dp places, to which the results are rounded. */
 void to_radians(apm_t centre, apm_t half, const apm_t pi, long dp);
 
-/* Converts a shift, which is multiplied by t, |t| <= 1.  Its error is added to half, which is in
-   radians already. */
+/* Converts a shift, which is multiplied by t, |t| <= 1.  A bound of its error is added to half,
+   which is in radians already. */
 void shift_to_radians(apm_t shift, apm_t half, const apm_t pi, long dp);
 
 /* Converts the region and its shifts.  The result encloses the region; and each prism of it,

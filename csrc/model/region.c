@@ -1,19 +1,25 @@
 /* region.c - the region of successors in radians. */
 #include "model/patch.h"
 
-/* x becomes x pi, truncated after dp places as pi is.  off becomes a bound of its error. */
-static void times_pi(apm_t x, apm_t off, const apm_t pi, const apm_t ulp, long dp)
+/* x becomes x pi, truncated after dp places as pi is.  A bound of its error is added to half. */
+void shift_to_radians(apm_t x, apm_t half, const apm_t pi, long dp)
 {
-    apm_t exact;
+    apm_t exact, ulp, off;
 
     apm_init(exact);
+    apm_init(ulp);
+    apm_init(off);
+    apm_set_si(ulp, 1, -dp);
     apm_abs(off, x);
     apm_mul(off, off, ulp);                             /* pi < pi cut off + ulp */
+    apm_add(half, half, off);
     apm_mul(exact, x, pi);
     apm_round(x, exact, dp, APM_TRUNC);
     if (apm_cmp(x, exact) != 0)
-        apm_add(off, off, ulp);
+        apm_add(half, half, ulp);
     apm_clear(exact);
+    apm_clear(ulp);
+    apm_clear(off);
 }
 
 /* The search takes a pi that is truncated by much more than the errors of sines.  So the centres
@@ -22,33 +28,15 @@ static void times_pi(apm_t x, apm_t off, const apm_t pi, const apm_t ulp, long d
    short. */
 void to_radians(apm_t centre, apm_t half, const apm_t pi, long dp)
 {
-    apm_t ulp, off, above;
+    apm_t above;
 
-    apm_init(ulp);
-    apm_init(off);
     apm_init(above);
-    apm_set_si(ulp, 1, -dp);
-    times_pi(centre, off, pi, ulp, dp);
-    apm_add(above, pi, ulp);
+    apm_set_si(above, 1, -dp);
+    apm_add(above, above, pi);
     apm_mul(half, half, above);
-    apm_add(half, half, off);
+    shift_to_radians(centre, half, pi, dp);
     apm_round(half, half, dp, APM_UP);
-    apm_clear(ulp);
-    apm_clear(off);
     apm_clear(above);
-}
-
-void shift_to_radians(apm_t shift, apm_t half, const apm_t pi, long dp)
-{
-    apm_t ulp, off;
-
-    apm_init(ulp);
-    apm_init(off);
-    apm_set_si(ulp, 1, -dp);
-    times_pi(shift, off, pi, ulp, dp);
-    apm_add(half, half, off);
-    apm_clear(ulp);
-    apm_clear(off);
 }
 
 /* Let c, s and h be centre, shifts and half-width.  A side c + sum of s t + h u, |t| <= 1, |u| <=

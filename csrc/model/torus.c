@@ -13,10 +13,11 @@
 #include "model/patch.h"
 #include "model/torus.h"
 
-enum { CELLS = 20000, DEPTH = 100 };    /* cells that are halved, and how often one is */
-static const double NEAR = 5e-7;        /* The last pass bounds the maximum to this. */
-static const double CLOSER = 1e-3;      /* Each pass looks more closely by this factor. */
-static const double PI = 0x1.921fb54442d19p+1;          /* not less than pi */
+enum { MAX_CELLS = 20000 };             /* At most 20,000 cells are halved. */
+enum { MAX_DEPTH = 100 };               /* A cell is halved at most 100 times. */
+static const double EXCESS_MAX = 5e-7;  /* The last pass bounds the maximum to within this. */
+static const double TOLERANCE_RATIO = 1e-3; /* Each pass has this part of the last tolerance. */
+static const double PI = 0x1.921fb54442d19p+1; /* not less than pi */
 
 /* A wave in the coordinates of the cells.  slope[j]: the derivative of k.v by coordinate j.
    trace: of k k'.  entry: the difference of its diagonal elements, and twice the other one.  size
@@ -104,14 +105,14 @@ static double over(const surface *q, const double low[2], const double high[2], 
 
 /* One pass over the torus.  *best becomes the largest value seen at any centre, if larger than
    before.  The result is >= every value on the torus.  It is at most *best + tolerance, unless
-   DEPTH or CELLS was reached.  *cells counts the cells that were halved.
+   MAX_DEPTH or MAX_CELLS was reached.  *cells counts the cells that were halved.
 
    A cell is done when its bound is at most *best + tolerance.  Otherwise it is halved along the
    side with the larger curvature times square, since near a maximum the bound's excess is
    quadratic in the sides.  Both halves have the same end, so that they leave no gap. */
 static double pass(const surface *q, double *best, double tolerance, long *cells)
 {
-    cell stack[DEPTH + 2] = { { { -q->side[0], -q->side[1] }, { q->side[0], q->side[1] }, 0 } };
+    cell stack[MAX_DEPTH + 2] = { { { -q->side[0], -q->side[1] }, { q->side[0], q->side[1] }, 0 } };
     double most = *best, middle;
     int top = 0;
 
@@ -121,7 +122,7 @@ static double pass(const surface *q, double *best, double tolerance, long *cells
         if (!(bound < HUGE_VAL))
             return HUGE_VAL;
         *best = larger(*best, middle);
-        if (bound <= *best + tolerance || k->depth == DEPTH || ++*cells > CELLS) {
+        if (bound <= *best + tolerance || k->depth == MAX_DEPTH || ++*cells > MAX_CELLS) {
             most = larger(most, bound);
             top--;
         } else {
@@ -137,32 +138,33 @@ static double pass(const surface *q, double *best, double tolerance, long *cells
 }
 
 /* >= trace or largest eigenvalue of W over the torus.  Each pass has a smaller tolerance than the
-   last, whose best value confines it to the neighbourhood of the maximum.  CELLS is reached where
+   last, whose best value confines it to the neighbourhood of the maximum.  MAX_CELLS is reached where
    the maximum is a ridge, or there are many maxima; then the result is the best bound so far.  It
    is at most the value with all waves at their maxima, which ridges nearly reach. */
 static double largest(const surface *q)
 {
-    const double last = NEAR + 1e-12 * q->scale;
+    const double last = EXCESS_MAX + 1e-12 * q->scale;
     double best = 0.0, most, crests[MOST_WAVES]; /* best: the mean is above */
     long cells = 0;
 
     for (int i = 0; i < q->n; i++)
         crests[i] = q->waves[i].size;
     most = trace_or_eigenvalue(q, crests);
-    for (double tolerance = 0.5 * q->scale;; tolerance *= CLOSER) {
+    for (double tolerance = 0.5 * q->scale;; tolerance *= TOLERANCE_RATIO) {
         const int done = !(tolerance > 2.0 * last);
         const double found = pass(q, &best, done ? last : tolerance, &cells);
         most = found < most ? found : most;
-        if (done || cells > CELLS || !(most < HUGE_VAL))
+        if (done || cells > MAX_CELLS || !(most < HUGE_VAL))
             return most;
     }
 }
 
-/* The surface of the chosen waves.  direction: NULL, or a vector, not zero at `main`, of which
-   each k is a multiple, so that one coordinate is enough. */
+/* The surface of the chosen waves.  direction: NULL, or a vector of which each k is a multiple, so
+   that one coordinate is enough. */
 static surface surface_of(int n, const torus_wave waves[], const int chosen[], int which,
-                          const double *direction, int main)
+                          const double *direction)
 {
+    const int main = direction != NULL && direction[0] == 0.0;
     surface q = { .which = which, .side = { PI, direction == NULL ? PI : 0.0 } };
 
     for (int i = 0; i < n; i++) {
@@ -186,46 +188,45 @@ static surface surface_of(int n, const torus_wave waves[], const int chosen[], i
     return q;
 }
 
+/* W is diagonal, and each entry has its own angle. */
+static double largest_apart(int n, const torus_wave waves[], int which)
+{
+    double top[2];
+
+    for (int j = 0; j < 2; j++) {
+        const double axis[2] = { 1.0 - j, j };
+        int chosen[MOST_WAVES];
+        for (int i = 0; i < n; i++)
+            chosen[i] = waves[i].k[j] != 0.0 && interval_size(waves[i].p) != 0.0;
+        const surface q = surface_of(n, waves, chosen, which, axis);
+        top[j] = largest(&q);
+    }
+    return which == TORUS_TRACE ? just_above(top[0] + top[1]) : larger(top[0], top[1]);
+}
+
 /* Where all waves depend on one combination of the angles, or each on one angle, cells in one
    dimension are enough; cells of the whole torus would crowd along ridges. */
 double torus_largest(int n, const torus_wave waves[], int which)
 {
     const double flat = which == TORUS_TRACE ? 4.0 : 2.0;
-    int there[MOST_WAVES], feels[2][MOST_WAVES], parallel = 1, apart = 1;
-    double direction[2] = { 0.0, 0.0 }, top[2];
-    const double *first = NULL;
-    surface q;
+    const double *first = NULL; /* k of the first wave that is there */
+    int there[MOST_WAVES], parallel = 1, apart = 1;
 
     for (int i = 0; i < n; i++) {
         const double *const k = waves[i].k;
-        there[i] = !(interval_size(waves[i].p) == 0.0);
-        for (int j = 0; j < 2; j++)
-            feels[j][i] = there[i] && k[j] != 0.0;
+        there[i] = interval_size(waves[i].p) != 0.0;
         if (!there[i])
             continue;
         first = first == NULL ? k : first;
         parallel = parallel && k[0] * first[1] == k[1] * first[0];
-        apart = apart && !(feels[0][i] && feels[1][i]);
+        apart = apart && (k[0] == 0.0 || k[1] == 0.0);
     }
     if (first == NULL)
         return flat;
-    if (parallel) {
-        const double common = divisor(fabs(first[0]), fabs(first[1]));
-        direction[0] = first[0] / common;
-        direction[1] = first[1] / common;
-        q = surface_of(n, waves, there, which, direction, direction[0] == 0.0);
-        return just_above(flat + largest(&q));
-    }
-    if (!apart) {
-        q = surface_of(n, waves, there, which, NULL, 0);
-        return just_above(flat + largest(&q));
-    }
-    for (int j = 0; j < 2; j++) { /* W is diagonal, and each entry has its own angle */
-        direction[j] = 1.0;
-        direction[1 - j] = 0.0;
-        q = surface_of(n, waves, feels[j], which, direction, j);
-        top[j] = largest(&q);
-    }
-    return just_above(
-        flat + (which == TORUS_TRACE ? just_above(top[0] + top[1]) : larger(top[0], top[1])));
+    if (apart && !parallel)
+        return just_above(flat + largest_apart(n, waves, which));
+    const double common = divisor(fabs(first[0]), fabs(first[1]));
+    const double direction[2] = { first[0] / common, first[1] / common };
+    const surface q = surface_of(n, waves, there, which, parallel ? direction : NULL);
+    return just_above(flat + largest(&q));
 }

@@ -61,9 +61,9 @@ static int look_ahead(cv_search *s)
     int list[MOST_LANES], n = 0, status = CV_OK;
 
     for (int j = s->pending - 1; j >= 0 && n < lanes; j--) {
-        if (s->noted[j] < 0)
-            s->noted[j] = new_note(s, &s->stack[j]);
-        list_unknown(s, s->noted[j], list, &n, lanes);
+        if (s->stack[j].note < 0)
+            s->stack[j].note = new_note(s, &s->stack[j].cell);
+        list_unknown(s, s->stack[j].note, list, &n, lanes);
     }
     for (int k = 0; k < n; k++) {
         cells[k] = &s->notes[list[k]].cell;
@@ -88,11 +88,11 @@ static int look_ahead(cv_search *s)
 
 const note *note_on_top(cv_search *s)
 {
-    const int top = s->pending - 1;
+    const int *const id = &s->stack[s->pending - 1].note;
 
-    if ((s->noted[top] < 0 || !s->notes[s->noted[top]].known) && look_ahead(s) != CV_OK)
+    if ((*id < 0 || !s->notes[*id].known) && look_ahead(s) != CV_OK)
         return NULL;
-    return &s->notes[s->noted[top]];
+    return &s->notes[*id];
 }
 
 void forget_note(cv_search *s, const note *n)

@@ -18,14 +18,19 @@ typedef struct {
     int halves[2];                      /* of notes, lower and upper; -1: none */
 } note;
 
+/* A prism that is to be decided, and its note, or -1. */
+typedef struct {
+    cv_cell cell;
+    int note;
+} untested;
+
 struct cv_search {
     const method *method;
     void *work;                         /* the method's */
     precision precision;
     patch problem;
-    cv_cell *stack;
-    int *noted;                         /* of each cell on the stack: its note, or -1 */
-    int pending, allocated;             /* cells on the stack; room for */
+    untested *stack;
+    int pending, allocated;             /* prisms on the stack; room for */
     note *notes;                        /* those in use and those that are free, in a list */
     int n_notes, allocated_notes, free_note;
     char *tree;

@@ -21,7 +21,6 @@ void cv_search_free(cv_search *s)
             apm_clear(s->constants[j]);
     }
     free(s->stack);
-    free(s->noted);
     free(s->notes);
     free(s->tree);
     free(s->steps);
@@ -101,8 +100,6 @@ static void set_up_method(void *data)
 
 int cv_prepare(cv_search *s, const cv_stop *stop)
 {
-    int ended;
-
     if (s->stage == PREPARED)
         return CV_OK;
     if (s->stage == SPOILT || s->status != CV_RUNNING)
@@ -110,23 +107,21 @@ int cv_prepare(cv_search *s, const cv_stop *stop)
     if (!machine_is_sound())
         return CV_EMACHINE;
     s->stage = SPOILT;                  /* until it is done */
-    ended = guard_run(set_up_method, s, stop);
-    if (ended == GUARD_STOP) {
-        s->status = CV_EARGUMENT;       /* half prepared, it is good for nothing */
-        return CV_RUNNING;
-    }
-    if (ended == GUARD_MEMORY) {
+    switch (guard_run(set_up_method, s, stop)) {
+    case GUARD_STOP: s->status = CV_EARGUMENT; return CV_RUNNING;
+    case GUARD_MEMORY:
         s->numbers_lost = 1;
         s->status = CV_ENOMEM;
+        break;
+    default:
+        if (s->status == CV_OK && !machine_is_sound())
+            s->status = CV_EMACHINE;
     }
-    if (s->status == CV_OK && !machine_is_sound())
-        s->status = CV_EMACHINE;
-    if (s->status == CV_OK) {
-        s->stage = PREPARED;
-        s->status = CV_RUNNING;
-        return CV_OK;
-    }
-    return s->status;
+    if (s->status != CV_OK)
+        return s->status;
+    s->stage = PREPARED;
+    s->status = CV_RUNNING;
+    return CV_OK;
 }
 
 int cv_search_new(cv_search **result, const cv_problem *problem, const char *const xstar[2],

@@ -18,19 +18,20 @@ static const cv_cell whole = { { 0, 0, 0, 0, 0 }, { 0, 0, 0, 0, 0 }, 0 };
 
 static int room_on_stack(cv_search *s, int allocated)
 {
-    cv_cell *const stack = realloc(s->stack, (size_t)allocated * sizeof *stack);
+    untested *const stack = realloc(s->stack, (size_t)allocated * sizeof *stack);
     if (stack == NULL)
         return CV_ENOMEM;
     s->stack = stack;
-    int *const noted = realloc(s->noted, (size_t)allocated * sizeof *noted);
-    if (noted == NULL)
-        return CV_ENOMEM;
-    s->noted = noted;
     s->allocated = allocated;
     return CV_OK;
 }
 
-/* Adds one node to the tree; room is made in advance so that a node is never half decided. */
+static void push(cv_search *s, const cv_cell *cell)
+{
+    s->stack[s->pending++] = (untested){ *cell, -1 };
+}
+
+/* Makes room for one more node and its halves in advance, so that a node is never half decided. */
 static int make_room(cv_search *s)
 {
     if (s->length == s->capacity) {
@@ -68,7 +69,7 @@ static void leaf(cv_search *s, char kind)
 {
     s->tree[s->length] = kind;
     s->steps[s->length++] = s->last_steps;
-    count_leaf(s, kind, all_cuts(&s->stack[--s->pending]));
+    count_leaf(s, kind, all_cuts(&s->stack[--s->pending].cell));
     if (s->pending == 0 || (kind == 'U' && !s->stubborn))
         s->status = CV_OK;              /* the search has ended: nothing is left, or no theorem */
 }
@@ -81,19 +82,20 @@ int may_halve(const cv_search *s, const cv_cell *c, int axis)
 /* Cuts the cell on top of the stack in half, the lower half to come first. */
 static void halve(cv_search *s, int axis)
 {
-    cv_cell *upper = &s->stack[s->pending - 1], *lower = upper + 1;
+    untested *const upper = &s->stack[s->pending - 1];
+    cv_cell lower;
 
     s->counts.cuts++;
-    split_cell(upper, axis, lower);
-    s->noted[s->pending - 1] = s->noted[s->pending] = -1;
-    s->pending++;
+    split_cell(&upper->cell, axis, &lower);
+    upper->note = -1;
+    push(s, &lower);
 }
 
 /* The cell is cut across axis, or given up if it has been cut too often or, axis < 0, if that would
    not help.  Thesis: refinePrism. */
 static void cut(cv_search *s, int axis)
 {
-    if (axis < 0 || !may_halve(s, &s->stack[s->pending - 1], axis)) {
+    if (axis < 0 || !may_halve(s, &s->stack[s->pending - 1].cell, axis)) {
         leaf(s, 'U');
         return;
     }
@@ -129,7 +131,7 @@ static void conclude(cv_search *s, const outcome *out)
         counts->ll_used[j] += out->ll_used[j];
     if (out->steps > counts->max_steps)
         counts->max_steps = out->steps;
-    s->stack[s->pending - 1].hint = out->hint;
+    s->stack[s->pending - 1].cell.hint = out->hint;
     s->last_steps = v->nsteps;
     s->points += v->nsteps;
     if (!v->no_tori) {
@@ -161,8 +163,8 @@ static int decide(cv_search *s)
     else
         conclude(s, &n->outcome);
     if (s->pending > top + 1) {
-        s->noted[top + 1] = n->halves[0];
-        s->noted[top] = n->halves[1];
+        s->stack[top + 1].note = n->halves[0];
+        s->stack[top].note = n->halves[1];
     }
     forget_note(s, n);
     return CV_OK;
@@ -235,12 +237,10 @@ int cv_restart(cv_search *s, int n, const cv_cell *cells)
         return CV_EARGUMENT;
     if (n + 1 > s->allocated && room_on_stack(s, n + 1) != CV_OK)
         return CV_ENOMEM;
-    for (int j = 0; j < n; j++) {
-        s->stack[j] = cells[n - 1 - j];
-        s->noted[j] = -1;
-    }
+    s->pending = 0;
+    while (s->pending < n)
+        push(s, &cells[n - 1 - s->pending]);
     forget_all_notes(s);
-    s->pending = n;
     s->length = 0;
     s->points = 0;
     memset(&s->counts, 0, sizeof s->counts);
@@ -248,31 +248,24 @@ int cv_restart(cv_search *s, int n, const cv_cell *cells)
     return CV_OK;
 }
 
-/* The nodes of a tree that was grown before are counted, and leave their untried prisms. */
-static int take_up(cv_search *s, const char *tree, size_t length, cv_cell **untried, int *n)
+/* Counts the nodes of a tree that was grown before.  Puts its untried prisms, n of them, into an
+   array with room for all of them. */
+static int take_up(cv_search *s, const char *tree, size_t length, cv_cell untried[], int *n)
 {
     const int axes = s->method->axes(&s->problem);
-    int allocated = 0;
 
     for (size_t j = 0; j < length; j++) {
         const int axis = tree[j] - '0';
         if (s->pending == 0 || make_room(s) != CV_OK)
             return s->pending == 0 ? CV_EARGUMENT : CV_ENOMEM;
-        cv_cell *const c = &s->stack[s->pending - 1];
+        const cv_cell *const c = &s->stack[s->pending - 1].cell;
         if (axis >= 0 && axis < axes && may_halve(s, c, axis)) {
             halve(s, axis);
             continue;
         }
         s->pending--;
         if (tree[j] == '?') {
-            if (*n == allocated) {
-                allocated = 2 * allocated + 64;
-                cv_cell *const more = realloc(*untried, (size_t)allocated * sizeof *more);
-                if (more == NULL)
-                    return CV_ENOMEM;
-                *untried = more;
-            }
-            (*untried)[(*n)++] = *c;
+            untried[(*n)++] = *c;
         } else if (tree[j] == 'P' || tree[j] == 'U' || (tree[j] == 'S' && may_skip(s, c))) {
             count_leaf(s, tree[j], all_cuts(c));
         } else {
@@ -284,18 +277,19 @@ static int take_up(cv_search *s, const char *tree, size_t length, cv_cell **untr
 
 int cv_resume(cv_search *s, const char *tree, size_t length)
 {
-    cv_cell *untried = NULL;
-    int n = 0, status = cv_restart(s, 1, &whole);
+    size_t most = 1;
+    int n = 0;
 
+    for (size_t j = 0; j < length; j++)
+        most += tree[j] == '?';
+    cv_cell *const untried = malloc(most * sizeof *untried);
+    int status = untried == NULL ? CV_ENOMEM : cv_restart(s, 1, &whole);
     if (status == CV_OK)
-        status = take_up(s, tree, length, &untried, &n);
-    while (status == CV_OK && n > 0) {              /* they come before those that are missing */
-        if (make_room(s) != CV_OK) {
-            status = CV_ENOMEM;
-        } else {
-            s->noted[s->pending] = -1;
-            s->stack[s->pending++] = untried[--n];
-        }
+        status = take_up(s, tree, length, untried, &n);
+    for (; status == CV_OK && n > 0; n--) {         /* they come before those that are missing */
+        status = make_room(s);
+        if (status == CV_OK)
+            push(s, &untried[n - 1]);
     }
     free(untried);
     if (status != CV_OK)
@@ -307,7 +301,7 @@ int cv_resume(cv_search *s, const char *tree, size_t length)
 int cv_pending(const cv_search *s, cv_cell *cells)
 {
     for (int j = 0; cells != NULL && j < s->pending; j++)
-        cells[j] = s->stack[s->pending - 1 - j];
+        cells[j] = s->stack[s->pending - 1 - j].cell;
     return s->pending;
 }
 

@@ -14,7 +14,7 @@ typedef struct {
 static int thesis_accepts(const patch *p, const precision *how)
 {
     (void)how;
-    return thesis_parameters(p) && is_identity(p->frame) && !has_shifts(p) ? CV_OK : CV_EARGUMENT;
+    return thesis_parameters(p) && has_plain_region(p) ? CV_OK : CV_EARGUMENT;
 }
 
 static void thesis_choose_start(const patch *p, int symmetric, double x[2])

@@ -35,7 +35,6 @@ static inline int num_set_d(num_t r, double x)
     return isfinite(x) ? APM_OK : APM_ERANGE;
 }
 
-static inline double num_get_d(const num_t x) { return x[0]; }
 static inline int num_get_apm(apm_t r, const num_t x) { return apm_set_d(r, x[0]); }
 static inline void num_neg(num_t r, const num_t x) { r[0] = -x[0]; }
 static inline void num_abs(num_t r, const num_t x) { r[0] = fabs(x[0]); }
@@ -65,7 +64,6 @@ typedef apm_t num_t;
 #define num_set_si apm_set_si
 #define num_set_apm apm_set
 #define num_set_d apm_set_d
-#define num_get_d apm_get_d
 #define num_neg apm_neg
 #define num_abs apm_abs
 #define num_add apm_add
