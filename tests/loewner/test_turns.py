@@ -76,6 +76,19 @@ def test_the_longest_orbits():
         native.Search(native.Task(problem, Settings("loewner"), xstar, (1 << 15) + 1))
 
 
+def test_prisms_with_the_longest_orbits_are_not_cut():
+    """Such a prism beside a circle is thicker than the thinnest ones, but orbits of its halves would
+    contradict no more."""
+    proof = Proof((Tree(Problem(MuldoonMap("0.9", 0, 0)), None),), Settings(method="loewner"))
+    problem, xstar = ready(proof).problem, ready(proof).xstar
+    search = native.Search(native.Task(problem, Settings("loewner", 46, stubborn=True), xstar, 100))
+    search.prepare(None)
+    cuts = orbit_length.CUTS - 6
+    cell = [103 << cuts - 7, 0, 0, 0, 0], [cuts, 0, 0, 0, 0], 0
+    grown = search.grow([cell], 1e300, 10, None, True)
+    assert grown.text == "U" and grown.steps == [100]
+
+
 def test_orbits_of_a_proof_are_as_long_as_they_must():
     """k = 0.9718 needs 7,712 points, and margins that are as small as they are."""
     proof = prove(Problem(MuldoonMap("0.9718", 0, 0)), jobs=1)
