@@ -85,9 +85,9 @@ typedef struct {
     int n_waves, n_parameters; /* 1 to 16, and 0 to 3 */
     const cv_wave *waves;
     const char *angle[2], *half[2]; /* centre and half-width of v0, v1 in units of pi */
-    const char *shift[2][3]; /* likewise; NULL: none */
+    const char *shift[2][3];            /* in units of pi; NULL: none */
     int frame[4];
-    int odd; /* is V odd about some point?  Else nothing is at once */
+    int odd;                            /* is V odd about some point?  See cv_at_once */
 } cv_problem;
 
 /* A new search; it covers an enclosure of the problem's region.  The thesis's waves are (1, 0),
@@ -115,8 +115,8 @@ int cv_resume(cv_search *s, const char *tree, size_t length);
 /* Decides at most max_leaves further prisms, or follows orbits of about max_points in all, or works
    for about max_seconds; stopped, it forgets the prism at hand.  CV_RUNNING: there is more to do.
    CV_OK: all prisms are decided, or an undecided one ended a search that is not stubborn.
-   CV_ENOMEM: the tree so far is good.  CV_EMACHINE: the arithmetic breaks the rules, before the
-   step or after it: nothing that the search did since cv_restart may be used. */
+   CV_ENOMEM: the tree is good as far as it was grown.  CV_EMACHINE: the arithmetic breaks the
+   rules, before the step or after it: nothing that the search did since cv_restart may be used. */
 int cv_step(cv_search *s, long max_leaves, double max_points, double max_seconds,
             const cv_stop *stop);
 

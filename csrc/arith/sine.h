@@ -12,7 +12,7 @@
 
 /* |s - sin x| <= SINE_ERROR and |c - cos x| <= SINE_ERROR for |x| <= SINE_LIMIT.
 
-   n = the integer next to 2x/pi, r = x - n pi/2 with |r| < 0.7854 (u = 2^-53 from here on).
+   n = the integer next to 2x/pi, r = x - n pi/2 with |r| < 0.7854; u = 2^-53.
    pi/2 is the sum of three doubles to within 1e-31, the first two of 33 bits, so n times either is
    exact (|n| < 2^20) and so is the first difference (Sterbenz); the other two are rounded:
    |r| is off by less than 1.6 u.

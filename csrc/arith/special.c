@@ -121,8 +121,8 @@ void trig_clear(trig_t *trig)
 }
 
 /* turn = 10^exp in quarter turns, in units of 2^-turn_bits, turn_bits >= bits.  It is off by less
-   than one unit, as the quotient is cut off, and by less than 1.3 2^-half_pi_bits of itself: what
-   pi/2 2^half_pi_bits is lies between half_pi - 1 and half_pi + 2. */
+   than one unit, as the quotient is cut off, and by a relative error below 1.3 2^-half_pi_bits:
+   pi/2 2^half_pi_bits lies between half_pi - 1 and half_pi + 2. */
 static void set_turn(trig_t *trig, long exp, mp_bitcnt_t bits)
 {
     mpz_t scale;
@@ -148,8 +148,8 @@ static void set_turn(trig_t *trig, long exp, mp_bitcnt_t bits)
    j + r >= halvings.  Promise: off by less than 5 units, and not negative.
 
    With z = y^2 this is z/2! - z^2/4! + ..., by Smith's method: powers up to z^row are taken once,
-   so many terms are then words times powers, and one product with z^row leads to the next so
-   many.  When step k begins, v/c is the sum of +-z^(i-l) (2k)!/(2i)! over i > k, first +, where
+   `row` terms are then words times powers, and one product with z^row leads to the next `row`
+   terms.  When step k begins, v/c is the sum of +-z^(i-l) (2k)!/(2i)! over i > k, first +, where
    l is the multiple of row that began the terms after k: less than z, and z < 4^-2.
 
    A power is a truncated product of two: if these are short by less than 2 units, it is short by

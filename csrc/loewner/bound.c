@@ -6,14 +6,14 @@
 
        mu[j-1] = gradient of n[j].beta(x[j])n[j] + beta(x[j])mu[j] - mu[j+1]  from the future,  (2)
 
-   and likewise from the past, all terms linear in the D[j] cancel, except those in D[0] and D[1],
-   which are the prism itself.  (2) is an identity in exact arithmetic; in doubles what is left of
-   it is multiplied by |D[j]| and added.  What is left of each wave, of weight omega = (n.u)^2 and
-   with m = mu.u, A = m cos y - omega sin y, B = -omega cos y - m sin y, z = u.D, is
+   and the same from the past, all terms linear in the D[j] cancel, except the terms in D[0] and
+   D[1], which are the prism itself.  (2) is an identity in exact arithmetic; in doubles its
+   residual is multiplied by |D[j]| and added.  With omega = (n.u)^2, m = mu.u, z = u.D,
+   A = m cos y - omega sin y and B = -omega cos y - m sin y, each wave leaves
 
        p (A (cos z - 1) + B (sin z - z)) + (p' - p)(A cos z + B sin z),   p' = p + h e + w.      (3)
 
-   Of that, with z = c.e + T + r and Taylor's series, there is in the symbols
+   With z = c.e + T + r and Taylor's series, (3) has in the symbols
 
        linear     h e A
        quadratic  -pA (c.e)^2/2 + h e B (c.e)
@@ -39,8 +39,7 @@ static mask within(const batch *w, int j)
     return TRUTH(w->since <= site) & TRUTH(site <= w->until);
 }
 
-/* The gradient of n.beta n at a site, and what it and the multiplier there make of a neighbour's.
-   */
+/* The gradient of n.beta n plus beta mu at a site: by (2), the sum of mu at both neighbours. */
 INLINE vec steepness(const batch *w, const point *q, int i)
 {
     return q->beta[i] * q->mu[0] + q->beta[i + 1] * q->mu[1] - gradient(w, q, i);
@@ -75,7 +74,7 @@ static void set_multipliers(batch *w, mask active)
     }
 }
 
-/* What a pass over the orbit sums: vectors only, see add_block. */
+/* The sums of a pass over the orbit: vectors only, see add_block. */
 typedef struct {
     vec centre, mass, rest, cubes, rounding, left;
     vec along[SLOTS], slope[COLUMNS], square[PAIRS];
@@ -85,7 +84,7 @@ typedef struct {
    sites grow with BLOCK and N/BLOCK and not with N. */
 enum { BLOCK = 64 };
 
-/* Adds a block's sums, so many vectors, and begins them anew. */
+/* Adds the vectors of a block's sums to the total, and begins the block anew. */
 static void add_block(vec total[], vec block[], size_t vectors)
 {
     for (size_t k = 0; k < vectors; k++) {
@@ -94,9 +93,9 @@ static void add_block(vec total[], vec block[], size_t vectors)
     }
 }
 
-/* What the prisms make of site q alone, for each wave: (5) is |A| rest_A[pA > 0] + |B| rest_B, the
-   cubic part of (4) without its signs |A| cube_A + |B| cube_B, and `load` is for the mass, below.
-   */
+/* Sets the numbers of site q for each wave that depend on the prisms alone: (5) is
+   |A| rest_A[pA > 0] + |B| rest_B, the cubic part of (4) without its signs |A| cube_A + |B| cube_B,
+   and `load` is for the mass, below. */
 static void weigh(const batch *w, point *q)
 {
     q->load = every(0.0);
@@ -141,7 +140,7 @@ INLINE vec remainder_of(const batch *w, const point *q, int i, vec A, vec B)
            mag(B) * q->rest_B[i];
 }
 
-/* Adds the terms of (1) at a site except those of the waves: 2|n|^2, and -2 n.n' to the next site
+/* Adds the terms of (1) at a site that have no wave in them: 2|n|^2, and -2 n.n' to the next site
    where there is a link. */
 INLINE void sum_links(sums *t, const point *q, mask linked, const vec omega[])
 {
@@ -224,8 +223,8 @@ static vec ends_of(const batch *w, mask active)
 }
 
 /* Sums the constant, linear and quadratic part, and what is bounded by absolute values; `cubes` is
-   the cubic part if it is, too.  Outside of a lane's own sites n and mu are zero, and all else is
-   finite. */
+   the cubic part, bounded in the same way.  Outside of a lane's own sites n and mu are zero, and
+   all else is finite. */
 static void sum_up(batch *w, sums *total, mask active)
 {
     const int begin = begin_of(w, active), end = end_of(w, active);
@@ -376,9 +375,9 @@ static void sum_cubic(batch *w, mask active)
 
 /* At least the largest value over the cube of the part with signs; without its cubic terms if they
    are not summed.  e_k^2 lies between 0 and 1: half of its coefficient counts, and half of the
-   coefficient's size; that of e_k^2 e_l likewise with e_l, and of that of
-   e_k^3 = 3/4 e_k + (4 e_k^3 - 3 e_k)/4 three quarters, and a quarter.  What remains is linear in
-   each symbol and largest at a corner, where it is even + odd or even - odd. */
+   coefficient's size.  The same holds for e_k^2 e_l with e_l, and for
+   e_k^3 = 3/4 e_k + (4 e_k^3 - 3 e_k)/4 with three quarters and a quarter.  The rest is linear in
+   each symbol and largest at a corner, where the rest is even + odd or even - odd. */
 static vec summit(const batch *w, int with_cubic)
 {
     const int columns = w->problem->columns;

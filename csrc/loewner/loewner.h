@@ -14,8 +14,8 @@ enum { SLOTS = MOST_WAVES + 2 };
 /* The most points of an orbit.  The standard map needs 19,808 for k = 0.9717. */
 enum { MAX_POINTS = 1 << 15 };
 
-/* For a problem with its angles in radians, too, and x* chosen.  longest: the most points of an
-   orbit, at most MAX_POINTS.  NULL: no memory. */
+/* For a problem whose angles are also in radians, and whose x* is chosen.  longest: the most points
+   of an orbit, at most MAX_POINTS.  NULL: no memory. */
 loewner *loewner_new(const patch *problem, int longest);
 void loewner_free(loewner *w);
 
@@ -31,10 +31,9 @@ int loewner_at_once(const loewner *w, const double x[2], int at_end);
 double loewner_largest(const loewner *w);
 
 /* The prism of a cell.  x_1 = x1 + frame (width e + shift e), with the symbols e of v0, v1 and of
-   the parameters.  The amplitude of a wave is that of its centre, force 2^(coarse - 64) turns, and
-   part e, to within err_amp; p is the centre's to within 3 u of itself, and
-   p + p_low to within 2^-100.  0: it is too thin for
-   doubles, or its parameters are too large. */
+   the parameters.  The amplitude of a wave is force 2^(coarse - 64) turns at the centre, and
+   part e, to within err_amp.  p is the amplitude at the centre with a relative error of 3 u, and
+   p + p_low of 2^-100.  0: it is too thin for doubles, or its parameters are too large. */
 typedef struct {
     uint64_t x1[2];                     /* turns.h */
     int64_t force[SLOTS];

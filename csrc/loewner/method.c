@@ -54,7 +54,7 @@ static void loewner_choose_start(const patch *p, int symmetric, double x[2])
     loewner_start(&middle, bend_of(&low) <= bend_of(&high) ? &low : &high, symmetric, x);
 }
 
-/* Does the theorem hold at once, and for which parameters?  See converse.h. */
+/* cv_at_once of converse.h. */
 static int find_at_once(const loewner *w, const patch *p)
 {
     const int one = p->n_parameters == 1;

@@ -49,7 +49,7 @@ static void bound_displacement(const batch *w, point *q)
     }
 }
 
-/* A point that a lane has no use for is zero there, so that all that follows is finite. */
+/* Sets a point to zero in the lanes that cannot use it, so that all that follows is finite. */
 static void forget(const batch *w, point *q)
 {
     /* clang-format off */
@@ -92,7 +92,7 @@ static vec wave_remainder(const batch *w, const point *q, int wave)
 }
 
 /* What roundings make of the quadratic form that a wave adds to T: (11 + N) u (|p| a^2/2 + h a), N
-   waves.  A column along the wave is what doubles make of it, and so is a. */
+   waves.  The columns along the wave, and so a, are those of the doubles. */
 static vec bending_err(const batch *w, const point *q, int wave)
 {
     const vec a = q->lin_bound[wave];
@@ -115,8 +115,8 @@ INLINE mask invert_factor(const vec d[3], vec inverse[3], vec *rounded)
     return TRUTH(d[0] > 0.0) & TRUTH(det > TINY) & TRUTH(condition < 0x1p20);
 }
 
-/* q->force, a bound of R f.  f begins as r(o), which is zero or the rounding of x*.  e is what
-   wave_remainder bounds along each wave, and in each coordinate the residual and the roundings of
+/* q->force, a bound of R f.  f begins as r(o), which is zero or the rounding of x*.  e has the
+   bound of wave_remainder along each wave, and in each coordinate the residual and the roundings of
    lin and quad: 2 u of them, propagate_err and bending_err. */
 INLINE void set_force(const batch *w, const point *next, point *q, const point *o,
                       const vec inverse[3], vec rounded, int is_first)
@@ -151,7 +151,7 @@ INLINE void set_remainder(point *next, const point *q)
 /* next = the point after q, seen from o before it; time may run either way.  The factor begins with
    d = beta.  Where the factor cannot go on, or next would be of no use, next is not reached.
 
-   The centre is a whole number of 2^-64 turns, and so is what the waves add: only the forces of
+   The centre and the steps that the waves add are whole numbers of 2^-64 turns: only the forces of
    the waves are rounded (residual: set_lane).  The remainder obeys r' = beta r - r(o) + e.  Writing
    r' = d r + f and, from the last step, r(o) = (r - f(o))/d(o), gives
    f = f(o)/d(o) + e + (beta - 1/d(o) - d) r.
@@ -163,7 +163,7 @@ INLINE void set_remainder(point *next, const point *q)
    all u (26 + (24 + 2 N) S), where 2 err_beta are (28 + 2 N) u (1 + S). */
 static void step(const batch *w, point *next, point *q, const point *o, int is_first)
 {
-    static const double USELESS = 0x1p10;
+    static const double RAD_MAX = 0x1p10;       /* A point with a rad above 1,024 is of no use. */
     vec inverse[3] = { every(0.0), every(0.0), every(0.0) }, rounded = every(0.0), turned[3];
 
     for (int i = 0; i < 2; i++)
@@ -177,14 +177,14 @@ static void step(const batch *w, point *next, point *q, const point *o, int is_f
         q->d[j] = turned[j] - inverse[j];
     set_remainder(next, q);
     bound_displacement(w, next);
-    next->reached &= TRUTH(next->rad_max <= USELESS);
+    next->reached &= TRUTH(next->rad_max <= RAD_MAX);
     if (any(~next->reached))
         forget(w, next);
     finish(w, next);
 }
 
-/* The two points that the prisms give.  What their roundings lose is in the widths: set_region.  0:
-   there is no memory. */
+/* Sets the two points that the prisms give.  Their roundings are in the widths: set_region.  0: out
+   of memory. */
 static int begin(batch *w)
 {
     const double *const off = w->problem->xstar_err;
@@ -216,12 +216,12 @@ static int begin(batch *w)
     w->weighed_last = ORIGIN - 1;
     for (int k = 0; k < LANES; k++) {
         w->first[k] = ORIGIN;
-        w->last[k] = ORIGIN - 1;        /* none of them is in use yet */
+        w->last[k] = ORIGIN - 1;        /* not in use yet */
     }
     return 1;
 }
 
-/* The points from `to` on, or up to it, are known.  0: there is no memory. */
+/* Computes the points between the known ones and `to`.  0: out of memory. */
 static int follow(batch *w, int to)
 {
     if (!make_room(w, to))
@@ -237,11 +237,12 @@ static int follow(batch *w, int to)
     return 1;
 }
 
-/* One more point for lane k, at the end that is better known, or if the orbit cannot go on there at
-   the other.  0: that is known too badly, or the orbit is too long; why says which. */
+/* Adds a point to the orbit of lane k at the end that is better known, or at the other end if the
+   orbit cannot go on there.  0: the end is known too badly, or the orbit is too long; why says
+   which. */
 static int lengthen(batch *w, int k, int *why)
 {
-    static const double LONGEST_REACH = 0.6;
+    static const double END_RAD_MAX = 0.6;      /* A rad above 0.6 radians ends an orbit. */
 
     *why = CV_REASON_TOO_BIG;
     for (;;) {
@@ -250,7 +251,7 @@ static int lengthen(batch *w, int k, int *why)
         int *const end = ahead ? &w->last[k] : &w->first[k]; /* hard to foretell: no branches */
         const int next = *end + 2 * ahead - 1;
 
-        if (!inner && !(w->end_rad[k][ahead] <= LONGEST_REACH))
+        if (!inner && !(w->end_rad[k][ahead] <= END_RAD_MAX))
             return 0;
         if (w->last[k] - w->first[k] + 1 == w->problem->longest || !follow(w, next)) {
             *why = CV_REASON_TOO_LONG;

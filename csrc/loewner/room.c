@@ -40,7 +40,7 @@ static void clear(const batch *w, point *q)
     memset(q->x, 0, sizeof *q - offsetof(point, x));
 }
 
-/* Twice as much room, downwards or upwards.  0: there is no memory. */
+/* Twice as much room, downwards or upwards.  0: out of memory. */
 static int double_room(batch *w, int down)
 {
     const int added = w->room == 0 ? FIRST_ROOM : w->room, room = w->room + added;
@@ -49,7 +49,7 @@ static int double_room(batch *w, int down)
     char *const memory = calloc(1, (size_t)room * sizeof(point) + ALIGNMENT);
     char *const vectors = calloc(1, (size_t)added * count * sizeof(vec) + ALIGNMENT);
 
-    if (memory == NULL || vectors == NULL || w->doublings == DOUBLINGS) {
+    if (memory == NULL || vectors == NULL || w->doublings == MAX_DOUBLINGS) {
         free(memory);
         free(vectors);
         return 0;
@@ -68,7 +68,7 @@ static int double_room(batch *w, int down)
     return 1;
 }
 
-/* Room for the site and its neighbours; pointers to points do not outlive this.  0: there is no
+/* Room for the site and its neighbours; pointers to points do not outlive this.  0: out of
    memory. */
 static int make_room(batch *w, int site)
 {

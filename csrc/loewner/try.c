@@ -1,10 +1,11 @@
 /* try.c - prisms from beginning to end. */
 #include "prism.h"
 
-enum { LAG = 4 };                       /* cuts that an axis may be behind */
-enum { PATIENCE = 8 };                  /* tries follow each other by an eighth of the orbit */
-static const double SMALL = 4.0;        /* waves of a fourth of the largest count as it does */
-static const double HOPELESS = 2.0;     /* times the least bound yet: longer orbits will not do */
+/* No proof rests on these thresholds: they decide how much is tried, and what is cut. */
+enum { CUTS_BEHIND_MAX = 4 };           /* An axis may have 4 cuts fewer than the worst one. */
+enum { TRIES_PER_LENGTH = 8 };          /* An orbit is tried again when it is an eighth longer. */
+static const double SIZE_RATIO_MIN = 0.25;  /* Smaller parts of the largest wave count less. */
+static const double BOUND_RATIO_MAX = 2.0; /* A bound above twice the least one ends the tries. */
 
 /* How much the rad along each wave counts when it is asked how far an orbit is known: a wave that
    is small beside the largest bends orbits little, however large the rad. */
@@ -15,12 +16,12 @@ static void weigh_waves(batch *w, int k)
     for (int i = 0; i < waves_of(w); i++)
         most = fmax(most, at(&w->size[i], k));
     for (int i = 0; i < waves_of(w); i++) {
-        const double part = SMALL * at(&w->size[i], k) / most;
+        const double part = at(&w->size[i], k) / (SIZE_RATIO_MIN * most);
         put_at(&w->weight[i], k, part < 1.0 ? sqrt(sqrt(part)) : 1.0);
     }
 }
 
-/* The prism of lane k.  The residual is what wave_at says, of each wave. */
+/* Sets the prism of lane k.  The residual is the sum over the waves of the error in wave_at. */
 static void set_lane(batch *w, int k, const loewner_cell *c)
 {
     double residual[2] = { 0.0, 0.0 };
@@ -55,12 +56,12 @@ static void set_lane(batch *w, int k, const loewner_cell *c)
     weigh_waves(w, k);
 }
 
-/* What is known of a lane while its prism is tried. */
+/* The state of a lane while its prism is tried. */
 typedef struct {
-    double least;                       /* bound yet */
-    int contradicted;                   /* the points with which the centre first did, or 0 */
-    int tried;                          /* the points of the last attempt */
-    int ended, why;                     /* the orbit goes no further */
+    double least; /* bound yet */
+    int contradicted; /* the points with which the centre first did, or 0 */
+    int tried; /* the points of the last attempt */
+    int ended, why; /* the orbit goes no further */
 } progress;
 
 static int points_of(const batch *w, int k) { return w->last[k] - w->first[k] + 1; }
@@ -84,7 +85,7 @@ static void attempt(batch *w, mask active, progress s[], outcome *const out[], m
             v->reason = bound - 2.0 * rounding < 0.0 ? CV_REASON_ARITHMETIC : CV_REASON_TOO_BIG;
             if (!s[k].contradicted)
                 s[k].contradicted = s[k].tried;
-            if (v->no_tori || bound > HOPELESS * s[k].least)
+            if (v->no_tori || bound > BOUND_RATIO_MAX * s[k].least)
                 put_truth(going, k, 0);
             s[k].least = bound < s[k].least ? bound : s[k].least;
         }
@@ -137,19 +138,20 @@ static int worst_of(const batch *w, int k)
    (1) is zero on some surface of the prism's points, and near it the bound stays positive however
    often this column is cut, while a longer orbit would make (1) plainly negative.  That orbit was
    not followed as another column made its end too wide; so if the cuts of that one lag behind by
-   more than LAG, it is cut instead. */
+   more than CUTS_BEHIND_MAX, it is cut instead. */
 static void blame(const batch *w, int k, const progress *s, const cv_cell *cell, outcome *out)
 {
     const loewner *const problem = w->problem;
     const int widest = widest_at_ends(w, k);
     int worst = s->contradicted ? worst_of(w, k) : widest;
 
-    if (s->ended && cell->cuts[problem->axis[widest]] + LAG < cell->cuts[problem->axis[worst]])
+    if (s->ended &&
+        cell->cuts[problem->axis[widest]] + CUTS_BEHIND_MAX < cell->cuts[problem->axis[worst]])
         worst = widest;
     if (!s->contradicted)
         out->v.reason = s->why;
     if (s->why == CV_REASON_TOO_LONG && points_of(w, k) == problem->longest && !s->contradicted)
-        worst = -1;                     /* as halves' orbits stay near, they are hopeless, too */
+        worst = -1; /* as halves' orbits stay near, they are hopeless, too */
     if (worst >= 0 && cut_helps(problem, cell, problem->axis[worst]))
         out->axis = problem->axis[worst];
     else if (out->v.reason == CV_REASON_TOO_BIG)
@@ -181,7 +183,7 @@ static void follow_and_attempt(batch *w, mask going, int n, const cv_cell *const
         if (points >= next || !growing) {
             if (any(active))
                 attempt(w, active, s, out, &going);
-            next = points + 2 + points / PATIENCE;
+            next = points + 2 + points / TRIES_PER_LENGTH;
         }
     }
 }
@@ -199,7 +201,7 @@ static int try_prisms(void *work, const loewner *problem, int n, const cv_cell *
     for (int k = 0; k < n; k++) {
         s[k].least = HUGE_VAL;
         *out[k] = (outcome){ .axis = -1, .tries = 1 };
-        out[k]->v.reason =              /* without waves nothing contradicts anything */
+        out[k]->v.reason = /* without waves nothing contradicts anything */
             problem->waves == FIRST ? CV_REASON_CENTRE : CV_REASON_ARITHMETIC;
         if (!loewner_prism(problem, cells[k], &c))
             continue;

@@ -3,8 +3,8 @@
    The slots 0 and 1 are the coordinates themselves, whether there are such waves or not: FIRST is
    the first slot with an amplitude.
 
-   Along a wave, lin and quad are what doubles make of k.L and k.T.  What they lose there, which
-   counts where coordinates cancel, is the wave's err_dot, and belongs to the remainder along it.
+   Along a wave, lin and quad are k.L and k.T as doubles compute them.  Their roundings, which count
+   where coordinates cancel, are the wave's err_dot, and belong to the remainder along the wave.
    Where bounds of coordinates are put together |k| stands for k.
 
    Angles are integers (turns.h): k.x + phase rounds nothing.  Phases are off by 1 unit of 2^-64
@@ -39,8 +39,8 @@ INLINE vec sum_abs_k(const batch *w, int i, const vec f[])
     return sum;
 }
 
-/* A bound of axis i of the sum of k f over the waves, |R_i.k| |f|, and of that of a vector, from
-   bounds of its coordinates. */
+/* Bounds of a coordinate along axis i: for the sum of k f over the waves, |R_i.k| |f|, and for a
+   vector, from bounds of its coordinates. */
 INLINE vec sum_onto(const batch *w, int i, const vec f[])
 {
     vec sum = every(0.0);
@@ -76,8 +76,8 @@ INLINE vec rem_along(const batch *w, const point *q, int wave)
     return wave < 2 ? rem : rem + q->err_dot[wave];
 }
 
-/* k.L and k.T lose u to each product and u to the sum: 2 u of the absolute values.  Of these, the
-   coordinates' lin_bound and quad_bound are bounds. */
+/* k.L and k.T lose u to each product and u to the sum: 2 u of the absolute values, which the
+   coordinates' lin_bound and quad_bound bound. */
 INLINE void bound_err_dot(const batch *w, point *q)
 {
     const vec size0 = q->lin_bound[0] + q->quad_bound[0];
@@ -88,7 +88,7 @@ INLINE void bound_err_dot(const batch *w, point *q)
 }
 
 /* How many u the waves make of a number that is rounded twelve times at most for each of them, and
-   once as it is added to those of the others. */
+   once in each addition. */
 INLINE double grain_of(const batch *w) { return 0x1p-53 * (double)(12 + waves_of(w)); }
 
 /* The angle of a wave at q->x. */
@@ -101,8 +101,8 @@ INLINE mask angle_of(const batch *w, const point *q, int wave)
 
 /* Sine and cosine of a wave at q->x, and what it adds to the step from there.
 
-   The sines are off by u of themselves and TURNS_ERROR, less than 1.01 u.  What is added is p cos
-   in units of 2^(coarse - 64) turns, off by less than 2 (high_of), and a cosine is off by 3 units
+   The sines are off by u of themselves and TURNS_ERROR, less than 1.01 u.  The step gets p cos in
+   units of 2^(coarse - 64) turns, off by less than 2 (high_of), and a cosine is off by 3 units
    of 2^-62, and as the phase is off by 2 pi/4 more: by 2 + 4.6 |force| 2^-62 units in all, which is
    2^-59 (|p| + 2^coarse) radians or less: see set_lane. */
 INLINE void wave_at(const batch *w, point *q, int wave)
@@ -146,8 +146,8 @@ INLINE void evaluate(const batch *w, point *q)
 /* lin and quad of next, the point after q, seen from o before it: 2L - L(o), the same of T, and
    what the waves make of them and add,
        -p (c.e) sin y + h e cos y  and  -p T sin y - p (c.e)^2/2 cos y - h e (c.e) sin y.
-   Where k.L = 0 for all waves, next->lin = 2L - L(o) but for one rounding, which a product with
-   beta would not give. */
+   Where k.L = 0 for all waves, next->lin = 2L - L(o) except for one rounding, which a product
+   with beta would not give. */
 static void propagate(const batch *w, point *next, const point *q, const point *o)
 {
     const int columns = w->problem->columns, pairs = columns * (columns + 1) / 2;

@@ -1,13 +1,14 @@
 /* witness.c - the vector n on which the second variation is most plainly negative.
 
    Some n makes (1) negative for one orbit if and only if the recursion d[s] = beta - l, d[j+1] =
-   beta - 1/d[j] of the Loewner bounds leads to a d[j] that is not above l; past and future are used
-   alike.  n is chosen for the orbit of the prism's centre and then kept.  Nothing rigorous rests on
-   it. */
+   beta - 1/d[j] of the Loewner bounds leads to a d[j] that is not above l.  Past and future have
+   the same recursion.  n is chosen for the orbit of the prism's centre and then kept.  Nothing
+   rigorous rests on it. */
 #include "arith/sym2.h"
 #include "prism.h"
 
-static const double PLAINLY = 0.75; /* of l: blocks must fall below it while the orbit goes on */
+/* Before the end of an orbit a block falls only below 0.75 l, so that (1) is not next to zero. */
+static const double FALL_RATIO = 0.75;
 
 /* The recursion from the left, way 1, or from the right, -1, in the lanes that are active: from
    their sites `begin` to `end`, or to where it falls below l. */
@@ -43,7 +44,7 @@ INLINE int advance(batch *w, recursion *r, int way)
         r->d[k] = pick(now, next[k], r->d[k]);
         blocks[k] = pick(now, next[k], blocks[k]);
     }
-    falls = now & ~sym2_is_above(r->d, pick(TRUTH(r->end == site), w->l, PLAINLY * w->l));
+    falls = now & ~sym2_is_above(r->d, pick(TRUTH(r->end == site), w->l, FALL_RATIO * w->l));
     r->fall = choose(falls, site - none(), r->fall);
     r->fell |= falls;
     r->going &= ~falls & ~TRUTH(r->end == site);

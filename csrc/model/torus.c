@@ -138,9 +138,9 @@ static double pass(const surface *q, double *best, double tolerance, long *cells
 }
 
 /* >= trace or largest eigenvalue of W over the torus.  Each pass has a smaller tolerance than the
-   last, whose best value confines it to the neighbourhood of the maximum.  MAX_CELLS is reached where
-   the maximum is a ridge, or there are many maxima; then the result is the best bound so far.  It
-   is at most the value with all waves at their maxima, which ridges nearly reach. */
+   last, whose best value confines it to the neighbourhood of the maximum.  MAX_CELLS is reached
+   where the maximum is a ridge, or there are many maxima; then the result is the best bound so
+   far.  It is at most the value with all waves at their maxima, which ridges nearly reach. */
 static double largest(const surface *q)
 {
     const double last = EXCESS_MAX + 1e-12 * q->scale;

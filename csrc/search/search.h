@@ -64,7 +64,7 @@ int may_halve(const cv_search *s, const cv_cell *c, int axis);
 int may_skip(const cv_search *s, const cv_cell *c);
 
 /* lookahead.c: room for the notes of a step, or CV_ENOMEM; what is known of the cell on top of the
-   stack, which is tried if need be, or NULL if there is no memory for it; and when it had its turn
+   stack, which is tried if need be, or NULL if memory is short; and when it had its turn
    the note is no longer needed. */
 int make_room_for_notes(cv_search *s);
 const note *note_on_top(cv_search *s);

@@ -6,8 +6,8 @@
 #include "arith/special.h"
 #include "search/search.h"
 
-enum { MAX_DP = 100000, MAX_DEPTH = 100000 };
-enum { PI_SHORT = 5 };                  /* see region.c */
+enum { MAX_DP = 100000, MAX_DEPTH = 100000 };   /* Larger arguments are refused. */
+enum { PI_SHORT = 5 };                  /* Pi has 5 places less than sines: see region.c. */
 
 /* GMP's numbers are abandoned, not freed, if memory ran out inside GMP: see guard.c. */
 void cv_search_free(cv_search *s)
