@@ -81,11 +81,13 @@ memcheck: $(VENV)/installed
 
 # The rooms whose tests call the core in ways of their own.  The other rooms ask nothing else of it, and
 # sanitizers find nothing in Python, figures, reports, tables or the texts of roundings.  Linked proofs
-# are many ordinary searches, and so are the tasks of a Dask cluster, a sweep and the experiments.
+# are many ordinary searches, and so are the tasks of a Dask cluster and a sweep.  Of the experiments one
+# has C code.
 SANITIZED_TESTS = $(addprefix tests/, arith loewner orbits prover search thesis) \
+    tests/experiments/test_least_action.py \
     $(addprefix --ignore=tests/, loewner/test_margins.py prover/test_best_shifts.py \
     $(addprefix orbits/test_, farey.py pictures.py points.py sweep.py) \
-    $(addprefix prover/test_, links.py report.py)) -k 'not dask and not experiment and not long_call'
+    $(addprefix prover/test_, links.py report.py)) -k 'not dask and not long_call'
 
 # Safe path: the clone, where this starts, holds a core without sanitizers.
 sanitize: export CFLAGS = $(SANITIZE)
@@ -95,13 +97,14 @@ sanitize: $(SANITIZED)/installed
 	PYTHONSAFEPATH=1 LD_PRELOAD="$$(gcc -print-file-name=libasan.so) $$(gcc -print-file-name=libstdc++.so.6)" ASAN_OPTIONS=detect_leaks=0 \
 	UBSAN_OPTIONS=halt_on_error=1:print_stacktrace=1 $(SANITIZED)/bin/pytest $(TWO) $(SANITIZED_TESTS)
 
+# The core's translation units.
+UNITS = $(shell $(VENV)/bin/python -c 'exec(open("converse/_build.py").read()); print(*SOURCES)')
+
 # The same tree on another kind of machine, emulated: needs gcc-aarch64-linux-gnu, qemu-user and
 # libgmp-dev:arm64.
 TREE_FLAGS = -std=c11 -O2 -ffp-contract=off -fno-math-errno -Icsrc
-TREE_CORE = $(wildcard csrc/arith/*.c) $(addprefix csrc/thesis/, start.c rigorous.c double.c method.c) \
-    $(addprefix csrc/loewner/, problem.c start.c method.c engine.c engine_avx2.c engine_avx512.c) \
-    $(wildcard csrc/model/*.c) $(wildcard csrc/search/*.c)
-arm: tests/tree.c
+TREE_CORE = $(filter-out csrc/orbits/%, $(UNITS))
+arm: tests/tree.c $(VENV)/installed
 	@mkdir -p build
 	gcc $(TREE_FLAGS) tests/tree.c $(TREE_CORE) -lgmp -lm -o build/tree
 	aarch64-linux-gnu-gcc $(TREE_FLAGS) tests/tree.c $(TREE_CORE) -lgmp -lm -o build/tree-arm
@@ -178,10 +181,9 @@ checker:
 	$(PYTHON) -m zipapp -c -p '/usr/bin/env python3' -o build/converse-check.pyz build/checker
 	@echo 'build/converse-check.pyz is the checker: python3 build/converse-check.pyz FILE'
 
-# Every translation unit that converse/_build.py lists, with all warnings as errors.
+# Every translation unit that converse/_build.py lists, and the experiment's, with all warnings as errors.
 warnings: $(VENV)/installed
-	$(VENV)/bin/python -c 'exec(open("converse/_build.py").read()); print(*SOURCES, sep="\n")' \
-	| while read source; do \
+	for source in $(UNITS) experiments/least_action/minplus.c; do \
 	    echo $$source; \
 	    gcc -std=c11 -O2 -ffp-contract=off -Wall -Wextra -Wpedantic -Wconversion -Werror -Icsrc \
 	        -c $$source -o /dev/null || exit 1; \

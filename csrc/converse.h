@@ -29,8 +29,8 @@ enum {
 
 enum { CV_BY_MAXBLAM, CV_BY_MINBLAM, CV_BY_TRACE };   /* index of ll_used[] */
 
-/* The constants of the theorem: T, Tr_-, Tr_+, B, lambda_-min, lambda_-max (thesis, section 3.3.4).
-   The method Loewner has B alone. */
+/* The constants of the theorem: T, Tr_-, Tr_+, B, lambda_-min, lambda_-max, as in section 3.3.4 of
+   the thesis.  The method Loewner has B alone. */
 enum { CV_T, CV_TRACE_MIN, CV_TRACE_MAX, CV_B, CV_LAM_MIN, CV_LAM_MAX, CV_N_CONSTANTS };
 
 /* The statistics of the report; names from the thesis, follow.inc. */

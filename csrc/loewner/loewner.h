@@ -14,13 +14,13 @@ enum { SLOTS = MOST_WAVES + 2 };
 /* The most points of an orbit.  The standard map needs 19,808 for k = 0.9717. */
 enum { MAX_POINTS = 1 << 15 };
 
-/* For a problem whose angles are also in radians, and whose x* is chosen.  longest: the most points
-   of an orbit, at most MAX_POINTS.  NULL: no memory. */
+/* For a problem whose angles are also in radians, and whose x* is chosen.  longest: the most
+   points of an orbit, at most MAX_POINTS.  NULL: no memory. */
 loewner *loewner_new(const patch *problem, int longest);
 void loewner_free(loewner *w);
 
-/* Bounds B over the torus, for all parameters.  Before this call B is infinite, and no prism can be
-   proved. */
+/* Bounds B over the torus, for all parameters.  Before this call B is infinite, and no prism can
+   be proved. */
 void loewner_bound_torus(loewner *w);
 
 /* Is the least eigenvalue of beta below 2/3 at x, for all parameters or, at_end, where they are all

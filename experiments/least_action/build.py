@@ -3,6 +3,7 @@
 The cffi module includes the core's module, so that both have the same types.
 """
 
+import hashlib
 import os
 import runpy
 import subprocess
@@ -20,7 +21,9 @@ from converse import ConverseError
 HOME = Path(__file__).resolve().parent
 ROOT = HOME.parent.parent
 NAME = "_minplus"
-TARGET = ROOT / "build" / "least_action" / (NAME + sysconfig.get_config_var("EXT_SUFFIX"))
+# A module that was compiled with other flags, those of sanitizers, is another file.
+FLAGS = hashlib.sha256(os.environ.get("CFLAGS", "").encode()).hexdigest()[:8]
+TARGET = ROOT / "build" / "least_action" / FLAGS / (NAME + sysconfig.get_config_var("EXT_SUFFIX"))
 SOURCES = [HOME / "minplus.c",
            *(ROOT / "csrc" / name for name in ("orbits/potential.c", "arith/machine.c"))]
 
