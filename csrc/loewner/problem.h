@@ -16,8 +16,8 @@ typedef struct {
     int lanes;
     size_t size;                        /* of what it works in, which begins as zeros */
     /* method.h: try.  For an axis of -1 the cell is too fine for doubles already.
-       outcome.hint: orbits of fewer points do not prove the halves as a rule.  cell->hint decides at
-       which lengths the orbit is tried, not whether a try that succeeds is right.  Reason
+       outcome.hint: orbits of fewer points do not prove the halves as a rule.  cell->hint decides
+       at which lengths the orbit is tried, not whether a try that succeeds is right.  Reason
        CV_REASON_ARITHMETIC: the doubles failed. */
     int (*try)(void *work, const loewner *w, int n, const cv_cell *const cells[],
                outcome *const out[]);

@@ -77,8 +77,8 @@ def test_the_longest_orbits():
 
 
 def test_prisms_with_the_longest_orbits_are_not_cut():
-    """Such a prism beside a circle is thicker than the thinnest ones, but orbits of its halves would
-    contradict no more."""
+    """Such a prism beside a circle is thicker than the thinnest ones, but orbits of its halves
+    would contradict no more."""
     proof = Proof((Tree(Problem(MuldoonMap("0.9", 0, 0)), None),), Settings(method="loewner"))
     problem, xstar = ready(proof).problem, ready(proof).xstar
     search = native.Search(native.Task(problem, Settings("loewner", 46, stubborn=True), xstar, 100))
