@@ -81,12 +81,12 @@ def _undecided(proof):
         lines += labelled("", "the first of them: " + ", ".join(
             _between("v%d" % i, c - h, c + h, h / 100)
             for i, (c, h) in enumerate(zip(leaf.centre, leaf.half)) if i < problem.map.dimension))
-    if not all(tree.complete(each.text) for each in proof.trees):
-        lines += labelled("", "the search ended before the whole region was examined")
     stuck = any(leaf.depth < proof.depth and min(leaf.half) < TINY for leaf in undecided)
     if stuck:
         lines += labelled("", "one of them is as small as doubles can tell: the orbit from x* "
                            "to it may minimize")
+    if not all(tree.complete(each.text) for each in proof.trees):
+        lines += labelled("Ended", "before the whole region was examined")
     if sum(proof.counts.reasons):
         lines += labelled("Tries", "%s without a proof: %s" % (
             _count(sum(proof.counts.reasons)), ", ".join(

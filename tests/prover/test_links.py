@@ -445,7 +445,7 @@ def test_an_undecided_part_is_no_proof(linked):
     for text in part.text.replace("P", "U", 1), part.text[:-1]:
         proof = linked.with_tree(2, text=text)
         assert not proof and proof.report().startswith("UNDECIDED: ")
-        assert ("ended before the whole region" in proof.report()) == ("U" not in text)
+        assert ("\nEnded      before the whole region" in proof.report()) == ("U" not in text)
     assert len(linked.with_tree(2, text=part.text.replace("P", "U", 1)).undecided) == 1
 
 
