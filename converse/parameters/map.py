@@ -2,19 +2,16 @@
 
 import json
 import math
-import os
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import TYPE_CHECKING, Any, Dict, Iterable, Iterator, List, Optional, Tuple, Union
+from typing import Any, Dict, Iterable, Iterator, List, Optional, Tuple
 
 from ..model.exact import decimal_text, exact
 from ..storage import files
-from ..storage.files import ConverseError
+from ..storage.files import ConverseError, Path
+from ..storage.kept import Kept
 from ..version import __version__
 from .region import RADIUS, REGIONS, Cell, root
-
-if TYPE_CHECKING:
-    from .. import check
 
 FORMAT = "converse map 2"
 PROVED, AT_ONCE, OPEN = "PAO"
@@ -58,7 +55,7 @@ class Node:
 
 
 @dataclass(eq=False, repr=False)
-class ParameterMap:
+class ParameterMap(Kept):
     """The proofs over a region of parameter space, and the estimate that led the search.
 
     region: "b=0", "a=b" or "c=0", with a, b, c >= 0.
@@ -209,17 +206,11 @@ class ParameterMap:
         from ..draw import map_figure
         return map_figure.page(self, ax, list(tori))
 
-    def verify(self, jobs: int = 1) -> "check.Result":
-        """Verifies anew what is proved, as Proof.verify does."""
-        return files.verified(self, jobs)
-
     def __repr__(self):
         return "<ParameterMap of %s: %d cells proved, %d at once, %d open>" % (
             self.region, *map(self.count, (PROVED, AT_ONCE, OPEN)))
 
-    def save(self, path: Union[str, "os.PathLike[str]"]) -> str:
-        """Writes the file, compressed when the name ends in .gz; returns the SHA-256 of the
-        uncompressed file.  ConverseError: it cannot be written."""
+    def _text(self) -> str:
         faces = []
         for directions, tree, estimate in zip(self.directions, self.roots, self.estimate):
             nodes = list(tree.nodes())
@@ -237,20 +228,19 @@ class ParameterMap:
                 "down to": decimal_text(self.down_to), "seconds": round(self.seconds, 2),
                 "faces": faces}
         data["sha256"] = _digest(data)
-        return files.write_text(path, json.dumps(data, indent=1) + "\n")
+        return json.dumps(data, indent=1) + "\n"
 
     @classmethod
-    def load(cls, path: Union[str, "os.PathLike[str]"]) -> "ParameterMap":
-        """Reads a map.  Its proofs are believed; verify() and converse-check do not believe them.
-        ConverseError: the file cannot be read or is damaged."""
+    def _read(cls, path: Path) -> "ParameterMap":
         damaged = ": is not a map, or truncated"
         text = files.read_text(path, "map", damaged)
         try:
             data = json.loads(text)
         except (ValueError, RecursionError):
-            raise ConverseError("%s%s; use an intact copy or start anew"
-                                % (path, damaged)) from None
-        if isinstance(data, dict) and "harmonics" in data:
+            data = None
+        if not isinstance(data, dict):
+            raise ConverseError("%s%s; use an intact copy or start anew" % (path, damaged))
+        if "harmonics" in data:
             raise ConverseError("%s: is an input and not a map; maps are of the thesis's three "
                                 "waves (a, b, c) alone: prove a patch of another potential with "
                                 "converse --method loewner" % path)

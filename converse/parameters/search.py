@@ -4,7 +4,6 @@ import concurrent.futures
 import heapq
 import itertools
 import math
-import time
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Callable, Optional
@@ -14,12 +13,11 @@ from ..model.map import THESIS, SymplecticMap
 from ..model.problem import IDENTITY, Problem
 from ..model.region import DIAGONALS, exchangeable, reduced
 from ..prover import native
-from ..prover.run import Path
 from ..prover.settings import Settings
-from ..prover.workers import LOOK_SECONDS, WorkerPool
+from ..prover.workers import LOOK_SECONDS, Filling, WorkerPool
 from ..storage.backup import Backup
-from ..storage.files import ConverseError
-from ..storage.signals import interruptible, postponed
+from ..storage.files import ConverseError, Path
+from ..storage.signals import interruptible
 from ..version import __version__
 from . import region
 from .map import AT_ONCE, OPEN, PROVED, ParameterMap
@@ -231,54 +229,28 @@ def explore(name: Optional[str] = None, down_to: Optional[Number] = None, *, pat
             region_map.down_to = ratio or region_map.down_to
         else:
             region_map = ParameterMap.new(str(name), ratio or Fraction(21, 20))
-        return _Search(region_map, backup, jobs, executor, time_limit, progress).run()
+        search = _Search(region_map, progress)
+        with Filling(region_map, backup, WorkerPool(executor, jobs, native.Stop()), time_limit,
+                     search.look) as filling:
+            search.estimate(filling)
+            if region_map.estimated_all:
+                search.explore(filling)
+    return region_map
 
 
 class _Search:
     """One run, which adds to a map."""
 
-    def __init__(self, region_map, backup, jobs, executor, time_limit, progress):
-        self.map, self.backup, self.progress = region_map, backup, progress
-        self.pool = WorkerPool(executor, jobs, native.Stop())
-        self.began = time.monotonic() - region_map.seconds
-        self.end = time.monotonic() + time_limit
+    def __init__(self, region_map, progress):
+        self.map, self.progress = region_map, progress
         self.queue, self.order = [], itertools.count()
         self.decided, self.share = 0.0, 0.0    # area, and as a share of all
 
-    def run(self):
-        try:
-            with self.pool:
-                self._estimate()
-                if not self.late:
-                    self._explore()
-        finally:
-            self.map.seconds = time.monotonic() - self.began
-            with postponed():           # a signal must not cost the last write
-                self.map.sha256 = self.backup.finish(self.map)
-        return self.map
+    def look(self):
+        if self.progress:
+            self.progress(self.share, self.map)
 
-    @property
-    def late(self):
-        return time.monotonic() >= self.end
-
-    def _work(self, next_task, take):
-        """Hands out tasks (key, call, *arguments) and calls take(key, result) for each result,
-        until no task or no time is left."""
-        task, running = next_task(), self.pool.running
-        while (task or running) and not self.late:
-            size = self.pool.size
-            while task and size and len(running) <= size:       # one task waits for the next worker
-                self.pool.give(*task)
-                task = next_task()
-            for key, result in self.pool.take(LOOK_SECONDS):
-                take(key, result)
-            self.map.seconds = time.monotonic() - self.began
-            self.backup.update(lambda: self.map)
-            if self.progress:
-                self.progress(self.share, self.map)
-            task = task or next_task()
-
-    def _estimate(self):
+    def estimate(self, filling):
         """Estimates the frontier where it is not yet known."""
         def take(key, radius):
             face, s = key
@@ -288,9 +260,9 @@ class _Search:
         tasks = (((face, s), estimate_frontier, directions, s)
                  for face, directions in enumerate(self.map.directions)
                  for s in self.map.places() if s not in known[face])
-        self._work(lambda: next(tasks, None), take)
+        filling.work(lambda: next(tasks, None), take)
 
-    def _explore(self):
+    def explore(self, filling):
         """Tries cells; first those that would add most area for the work."""
         def count():
             self.share = min(1.0, self.decided / total) if total else 1.0
@@ -314,7 +286,7 @@ class _Search:
             self._take(*key, outcome)
             count()
 
-        self._work(next_task, take)
+        filling.work(next_task, take)
 
     def _widest(self, cell, axes=(0, 1)):
         """The axis along which a cell is widest in parameter space, and how wide; the directions d

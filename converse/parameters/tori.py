@@ -5,14 +5,13 @@ A certificate proves a torus at its own amplitudes (a, b, c), and nothing at sma
 
 import os
 from fractions import Fraction
-from typing import Dict, List, Tuple, Union
+from typing import Dict, List, Tuple
 
 from ..model.map import THESIS
-from ..storage.files import ConverseError
+from ..storage.files import ConverseError, Path
 
 ENDING = ".torus"                       # of the name of a certificate
 
-Path = Union[str, "os.PathLike[str]"]
 Point = Tuple[Fraction, Fraction, Fraction]
 
 

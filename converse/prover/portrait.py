@@ -8,32 +8,26 @@ certain depth, and whatever is undecided then stays so.
 
 import concurrent.futures
 import math
-import os
 import re
-import time
 from collections import Counter
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cached_property
-from typing import (TYPE_CHECKING, Any, Callable, Dict, Iterable, List, Optional, Sequence, Tuple,
-                    Union)
+from typing import Any, Callable, Dict, Iterable, List, Optional, Sequence, Tuple, Union
 
 from ..model.exact import decimal_text, exact, pi_bounds, rounded
 from ..model.map import SymplecticMap
 from ..model.problem import Problem
 from ..model.region import MARGIN, PLACES, reversal_centre
 from ..model.statement import conditions, ended, indented, map_lines
-from ..storage import files
 from ..storage.backup import Backup
-from ..storage.files import ConverseError
-from ..storage.signals import interruptible, postponed
+from ..storage.files import ConverseError, Path
+from ..storage.kept import Kept, sealed, unsealed
+from ..storage.signals import interruptible
 from ..version import __version__
 from . import native, tree
 from .settings import Settings
-from .workers import LOOK_SECONDS, WorkerPool
-
-if TYPE_CHECKING:
-    from .. import check
+from .workers import Filling, WorkerPool
 
 FIRST_LINE = "converse portrait 1"
 FIELDS = "program", "strip", "even about", "depth", "columns", "undecided"
@@ -47,8 +41,6 @@ MOST_COLUMNS = 1 << 16                  # a limit of the checker
 # units of the height of the smallest prisms.
 SAMPLES, STEPS, SEPARATED, TURNED, MOVED = 64, 12, 96.0, 0.1, 5.0
 BARREN = re.compile("[0-4]UU")          # a cut that separates nothing proved
-
-Path = Union[str, "os.PathLike[str]"]
 
 
 @dataclass(frozen=True)
@@ -69,7 +61,7 @@ class Region:
 
 
 @dataclass(eq=False, repr=False)
-class Portrait:
+class Portrait(Kept):
     """The proved part of the phase space of a map of one angle.
 
     problem -- the map, whose amplitudes may have one parameter, or up to three without strips
@@ -217,38 +209,23 @@ class Portrait:
         from ..draw import portrait_figure
         return portrait_figure.page(self, ax, tori)
 
-    def verify(self, jobs: int = 1) -> "check.Result":
-        """Verifies anew what is proved, as Proof.verify does."""
-        return files.verified(self, jobs)
-
-    def save(self, path: Path) -> str:
-        """Writes it to a file, compressed by gzip if its name ends in .gz; returns the SHA-256 of
-        the text.  ConverseError: it cannot be written."""
-        text = "\n".join([
+    def _text(self) -> str:
+        problem, shown = self.problem, decimal_text
+        return sealed([
             FIRST_LINE, "program: converse " + __version__,
-            *["wave: " + " ".join([str(k0), str(k1), str(phase), *map(decimal_text, numbers)])
-              for (k0, k1, phase), *numbers in zip(self.problem.waves, self.problem.amplitude,
-                                                   *self.problem.parts)],
-            "strip: " + decimal_text(self.strip),
+            *["wave: " + " ".join([str(k0), str(k1), str(phase), *map(shown, numbers)])
+              for (k0, k1, phase), *numbers in zip(problem.waves, problem.amplitude,
+                                                   *problem.parts)],
+            "strip: " + shown(self.strip),
             "even about: " + ("no" if self.even is None else str(self.even)),
             "depth: %d" % self.depth, "columns: %d" % self.columns,
-            "undecided: " + decimal_text(self.undecided), "columns:",
-            *[" ".join([*map(decimal_text, (x, region.centre, region.half, region.shift)),
-                        region.tree]) for x in sorted(self.found) for region in self.found[x]],
-            ""])
-        return files.write_text(path, text + "checksum: sha256 %s\nend\n" % files.sha256(text))
+            "undecided: " + shown(self.undecided), "columns:",
+            *[" ".join([*map(shown, (x, region.centre, region.half, region.shift)), region.tree])
+              for x in sorted(self.found) for region in self.found[x]]])
 
     @classmethod
-    def load(cls, path: Path) -> "Portrait":
-        """Reads a file.  ConverseError: it is not a portrait, or damaged."""
-        text = files.read_text(path, "portrait", ": the file is truncated or not a portrait")
-        body, end = text[:text.rfind("checksum: ")], text[text.rfind("checksum: "):]
-        lines = body.split("\n")
-        if lines[0] != FIRST_LINE:
-            raise ConverseError("%s: is not a portrait of this release" % path)
-        if end != "checksum: sha256 %s\nend\n" % files.sha256(body):
-            raise ConverseError("%s: the file was changed or damaged (wrong checksum); use an "
-                                "intact copy or start anew" % path)
+    def _read(cls, path: Path) -> "Portrait":
+        lines, sha256 = unsealed(path, FIRST_LINE, "portrait")
         try:
             start = lines.index("columns:")
             pairs = [line.split(": ", 1) for line in lines[1:start]]
@@ -261,8 +238,8 @@ class Portrait:
             even = values["even about"]
             portrait = cls(problem, exact(values["strip"]),
                            None if even == "no" else Fraction(even), int(values["depth"]),
-                           int(values["columns"]), sha256=files.sha256(text))
-            for line in lines[start + 1:-1]:
+                           int(values["columns"]), sha256=sha256)
+            for line in lines[start + 1:]:
                 x, centre, half, shift, nodes = line.split(" ")
                 portrait.found[exact(x)] = portrait.found.get(exact(x), ()) + (
                     Region(exact(centre), exact(half), exact(shift), nodes),)
@@ -343,25 +320,20 @@ def portray(source: Union[SymplecticMap, Problem, None] = None, *, path: Optiona
             portrait = asked
         else:
             raise TypeError("there must be a map, or the file of a portrait to continue")
-        began, stop = time.monotonic() - portrait.seconds, native.Stop()
-        end = time.monotonic() + time_limit
-        try:
-            with WorkerPool(executor, jobs, stop) as pool:
-                todo = [x for x in portrait.stars if x not in portrait.found][::-1]
-                while (todo or pool.running) and time.monotonic() < end:
-                    while todo and len(pool.running) <= pool.size:  # one more waits
-                        pool.give(todo[-1], column, portrait.patch, portrait.strip,
-                                  portrait.depth, todo.pop())
-                    for xstar, regions in pool.take(LOOK_SECONDS):
-                        if regions is not None:
-                            portrait.found[xstar] = regions
-                    portrait.seconds = time.monotonic() - began
-                    backup.update(lambda: portrait)
-                    if progress:
-                        progress(len(portrait.found), portrait)
-        finally:
-            with postponed():           # a signal must not cost the last write
-                portrait.sha256 = backup.finish(portrait)
+
+        def take(xstar, regions):
+            if regions is not None:
+                portrait.found[xstar] = regions
+
+        def look():
+            if progress:
+                progress(len(portrait.found), portrait)
+
+        tasks = ((x, column, portrait.patch, portrait.strip, portrait.depth, x)
+                 for x in portrait.stars if x not in portrait.found)
+        with Filling(portrait, backup, WorkerPool(executor, jobs, native.Stop()), time_limit,
+                     look) as filling:
+            filling.work(lambda: next(tasks, None), take)
     return portrait
 
 

@@ -1,24 +1,20 @@
 """The value Proof: the tree of prisms with what was asked and the statistics of the search.
 
-The methods that report, draw, verify, save and load are conveniences: what they call knows Proof
-and is imported when it is called for, since matplotlib, or the checker, takes a while."""
+The methods that report, draw, save and load are conveniences: what they call knows Proof and is
+imported when it is called for, since matplotlib takes a while."""
 
-import os
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, Dict, List, Optional, Tuple, Union
+from typing import Any, Dict, List, Optional, Tuple
 
 from ..model.problem import Problem
 from ..model.region import symmetries_used
-from ..storage import files
+from ..storage.kept import Kept
 from ..version import __version__
 from . import tree
 from .native import Counts
 from .settings import AS_PRINTED, REGION, THEOREM, UNDECIDED, Settings
 from .tree import Leaf
-
-if TYPE_CHECKING:
-    from .. import check
 
 
 @dataclass(frozen=True)
@@ -45,11 +41,13 @@ class Tree:
 
 
 @dataclass(frozen=True, repr=False)
-class Proof:
+class Proof(Kept):
     """A search and its result, finished or not: true if it proves that there are no invariant tori.
 
     The theorem rests on the tree, which prove() grew.  A Proof that was loaded, or made by hand, is
-    believed; verify() believes nothing.
+    believed, except that prove(resume=...) shows its links anew; verify() believes nothing.  A
+    finished search gives the same file, however it was interrupted and continued.  The file of an
+    unfinished search also holds the seconds that it took.
 
     trees: over the starting point of the problem and then, a, b, c, ..., over those to which prisms
     of trees before them are linked.
@@ -193,67 +191,11 @@ class Proof:
         from ..draw import plot
         return plot.page(self, caption) if ax is None else plot.draw(self, ax)
 
-    def verify(self, jobs: int = 1) -> "check.Result":
-        """Verifies the proof anew by the code of converse-check, which believes nothing of it and
-        shares nothing with the program that found it.
-
-        Parameters
-        ----------
-        jobs
-            The number of processes.
-
-        Returns
-        -------
-        check.Result
-            True if the theorem is verified; its text is the checker's report.
-
-        Raises
-        ------
-        check.Rejected, check.NotConfirmed, check.Unusable
-            The theorem is not verified; the text says why.
-        """
-        return files.verified(self, jobs)
-
-    def save(self, path: Union[str, "os.PathLike[str]"]) -> str:
-        """Writes the proof file.
-
-        A finished search gives the same file, however it was interrupted and continued.  The file
-        of an unfinished search also holds the seconds that it took.
-
-        Parameters
-        ----------
-        path
-            The file; the text is compressed if the name ends in .gz.
-
-        Returns
-        -------
-        str
-            The SHA-256 of the uncompressed text.
-
-        Raises
-        ------
-        ConverseError
-            The file cannot be written.
-        """
-        from .proof_file import save
-        return save(self, path)
+    def _text(self):
+        from .proof_file import text_of
+        return text_of(self)
 
     @classmethod
-    def load(cls, path: Union[str, "os.PathLike[str]"]) -> "Proof":
-        """Reads a proof file.
-
-        The leaves and links are believed; prove(resume=...) shows the links anew.  verify() and
-        converse-check believe neither.
-
-        Parameters
-        ----------
-        path
-            A file that save() or a backup wrote, compressed or not.
-
-        Raises
-        ------
-        ConverseError
-            The file cannot be read or is damaged; the text names the line.
-        """
+    def _read(cls, path):
         from .proof_file import load
         return load(path)

@@ -1,75 +1,40 @@
 """The proof file (docs/reference/proof-file.md), of a proof that is finished or not."""
 
+import dataclasses
 import re
-from dataclasses import asdict, fields
+from collections import defaultdict
 from fractions import Fraction
 
 from ..model.exact import DECIMAL, decimal_text, exact
 from ..model.map import from_patch
 from ..model.problem import NAMES, Problem
-from ..storage import files
-from ..storage.files import ConverseError
+from ..storage.kept import damaged, sealed, unsealed
 from . import tree
 from .native import CONSTANTS, Counts
 from .proof import Proof, Tree
 from .settings import Settings
 
-MAGIC, VERSION = "converse proof ", "6"
-FIRST_LINE = MAGIC + VERSION
+FIRST_LINE = "converse proof 6"
 PROGRAM = re.compile(r"converse ([0-9A-Za-z.+-]{1,40})")
 CLAIMS = {False: "sound", True: "as printed, not a proof"}       # by as_printed
 LINE_WIDTH = 78                              # of the tree's lines
 
 
-def save(proof, path):
-    """Proof.save()."""
-    return files.write_text(path, _text(proof))
-
-
 def load(path):
     """Proof.load()."""
-    text = files.read_text(path, "proof file",
-                           ", line 1: the file is truncated or not a proof file of this program")
-    lines = text.split("\n")
-
-    def fail(number, wrong):
-        raise ConverseError("%s, line %d: %s; use an intact copy or start anew"
-                            % (path, number, wrong))
-
-    if lines[0].startswith(MAGIC) and lines[0].endswith("\r"):
-        fail(1, "the lines end in CR LF, so the file was altered on its way")
-    if re.fullmatch(MAGIC + "[0-9]+", lines[0]) and lines[0] != FIRST_LINE:
-        raise ConverseError("%s: is a proof file of another format; this release reads format %s, "
-                            "so continue it with the release that wrote it" % (path, VERSION))
-    if lines[0] != FIRST_LINE:
-        fail(1, "this is not a proof file of this program")
-    if lines[-2:] != ["end", ""]:
-        fail(len(lines), "something follows the end" if "end" in lines else "the file is truncated")
-    body = text[:text.rfind("\n", 0, len(text) - len("\nend\n")) + 1]
-    if lines[-3] != "checksum: sha256 " + files.sha256(body):
-        fail(len(lines) - 2, "the file was changed or damaged (wrong checksum)")
-
-    starts = [number for number, line in enumerate(lines) if line == "tree:"]
-    if not starts:
-        fail(len(lines), "there is no tree")
-    values, comments, waves, parameters = {}, [], [], []
-    for number, line in enumerate(lines[1:starts[0]], 2):
+    lines, sha256 = unsealed(path, FIRST_LINE, "proof file")
+    if "tree:" not in lines:
+        raise damaged(path, len(lines) + 3, "there is no tree")
+    start, values = lines.index("tree:"), defaultdict(list)
+    for number, line in enumerate(lines[1:start], 2):
         key, colon, value = line.partition(": ")
         if not colon:
-            fail(number, "'%s' is not 'name: value'" % line)
-        elif key == "comment":
-            comments.append(value)
-        elif key == "wave":
-            waves.append(value.split())
-        elif key == "parameter":
-            parameters.append(value.split(" "))
-        else:
-            values[key] = value
+            raise damaged(path, number, "'%s' is not 'name: value'" % line)
+        values[key].append(value)
     try:
-        return _proof(values, _problem(values, waves, comments, parameters),
-                      _trees(lines[starts[0]:-3]), files.sha256(text), len(waves[0]) - 4)
+        return _proof(values, _trees(lines[start:]), sha256)
     except (KeyError, IndexError, TypeError, ValueError) as error:
-        fail(starts[0] + 1, "the header or a tree makes no sense (%s)" % error)
+        raise damaged(path, start + 1, "the header or a tree makes no sense (%s)" % error) from None
 
 
 def _trees(lines):
@@ -91,7 +56,8 @@ def _trees(lines):
     return [(fields, "".join(text)) for fields, text in trees]
 
 
-def _text(proof):
+def text_of(proof):
+    """The content of the file."""
     problem, at_once = proof.problem, _yes(proof.at_once)
     if proof.at_once and len(problem.parts) == 1:
         at_once = "upper end"
@@ -109,7 +75,7 @@ def _text(proof):
         pending += (0,) * (before - len(pending)) + each.pending
         before += _untried(each.text)
     lines += ["pending: " + " ".join(map(str, pending))]
-    for name, value in asdict(proof.counts).items():
+    for name, value in dataclasses.asdict(proof.counts).items():
         values = value if isinstance(value, tuple) else (value,)
         lines.append("%s: %s" % (name, " ".join(map(str, values))))
     lines += ["%s: %s" % item for item in proof.constants.items()]
@@ -122,8 +88,7 @@ def _text(proof):
                   _ends_line("v0", part.problem.v0, [s0 for s0, _ in part.problem.shifts]),
                   _ends_line("v1", part.problem.v1, [s1 for _, s1 in part.problem.shifts]),
                   *_tree_lines(part.text)]
-    text = "\n".join(lines) + "\n"
-    return text + "checksum: sha256 %s\nend\n" % files.sha256(text)
+    return sealed(lines)
 
 
 def _tree_lines(text):
@@ -139,11 +104,13 @@ def _untried(text):
     return cuts + 1 - (len(text) - cuts - text.count(tree.UNTRIED))
 
 
-def _proof(values, problem, trees, sha256, parameters):
-    """The Proof of the header's fields, their values by name, and what _trees returns; parameters:
-    how many its waves have, of which a Problem may make more."""
+def _proof(fields, trees, sha256):
+    """The Proof of the header's fields, all their values by name, and what _trees returns."""
+    values = {name: texts[-1] for name, texts in fields.items()}
+    problem = _problem(values, [text.split() for text in fields["wave"]], fields["comment"],
+                       [text.split(" ") for text in fields["parameter"]])
     counts = {}
-    for item in fields(Counts):
+    for item in dataclasses.fields(Counts):
         numbers = tuple(int(word) for word in values[item.name].split())
         counts[item.name] = numbers if isinstance(item.default, tuple) else numbers[0]
     xstar = _point(values["xstar"]) if "xstar" in values else None
@@ -155,13 +122,15 @@ def _proof(values, problem, trees, sha256, parameters):
                         {kind: printed for printed, kind in CLAIMS.items()}[values["kind"]])
     constants = {name: _number(values[name]) for name in CONSTANTS[settings.method]
                  if name in values}
+    # A Problem may make parameters of numbers: how many there are is counted in the file.
+    parameters = len(fields["wave"][0].split()) - 4
     hints, grown = tuple(map(int, values["pending"].split())), []
     for named, text in trees:
         tree.complete(text)             # TreeError, a ValueError: it is not a tree
         mine, hints = _divided(hints, text) if len(trees) > 1 else (hints, ())
         at, star = problem, xstar
         if grown:
-            (v0, s0), (v1, s1) = (_moving(named, name, parameters) for name in NAMES[3:])
+            (v0, s0), (v1, s1) = (_ends(named, name, parameters) for name in NAMES[3:])
             at, star = problem.part((v0, v1), tuple(zip(s0, s1))), _point(named["xstar"])
         if at.shifts and "S" in text:
             raise ValueError("a prism of a part is skipped (S), though the part's region moves")
@@ -209,7 +178,7 @@ def _problem(values, waves, comments, parameters):
     alone = values["alone"]
     if "odd about" not in values:
         raise KeyError("odd about")
-    v0, v1 = (_ends(values, name) for name in NAMES[3:])
+    v0, v1 = (_ends(values, name)[0] for name in NAMES[3:])
     harmonics = [(*map(int, words[:2]), words[2]) for words in waves]
     named = [(name, exact(_number(low)), exact(_number(high))) for name, low, high in parameters]
     return Problem(from_patch(harmonics, amplitude, parts, named), v0, v1, comments,
@@ -227,26 +196,16 @@ def _at_once(values, problem):
     return True
 
 
-def _ends(values, name):
+def _ends(values, name, parameters=0):
+    """The ends of a range, and its shift by each parameter."""
     words = values[name].split()
-    if len(words) != 2:
-        raise ValueError("%s has %d numbers, not 2" % (name, len(words)))
-    centre, half = (exact(_number(word)) for word in words)
+    if len(words) not in (2, 2 + parameters):
+        raise ValueError("%s has %d numbers, not %s" % (
+            name, len(words), "2 or %d" % (2 + parameters) if parameters else 2))
+    centre, half, *shifts = (exact(_number(word)) for word in words)
     if half < 0:
         raise ValueError("the half-width of %s is negative" % name)
-    return centre - half, centre + half
-
-
-def _moving(values, name, parameters):
-    """The ends of a range of a part, and its shift by each parameter."""
-    words = values[name].split()
-    if len(words) == 2:
-        return _ends(values, name), [Fraction(0)] * parameters
-    if len(words) != 2 + parameters:
-        raise ValueError("%s of a part has %d numbers, not %s" % (
-            name, len(words), "2 or %d" % (2 + parameters) if parameters else 2))
-    return (_ends({name: " ".join(words[:2])}, name),
-            [exact(_number(word)) for word in words[2:]])
+    return (centre - half, centre + half), shifts or [Fraction(0)] * parameters
 
 
 def _number(text):

@@ -13,8 +13,8 @@ from ..model.map import SymplecticMap
 from ..model.problem import Problem
 from ..model.region import reduced, skips
 from ..storage.backup import Backup
-from ..storage.files import ConverseError
-from ..storage.signals import interruptible, postponed
+from ..storage.files import ConverseError, Path
+from ..storage.signals import interruptible
 from ..version import __version__
 from . import native, tree
 from .links import wrong_letter
@@ -26,8 +26,6 @@ from .settings import Settings
 from .starts import plan
 from .tree_search import KINDS, OLD, TreeSearch, kinds_of
 from .workers import LOOK_SECONDS, WorkerPool
-
-Path = Union[str, "os.PathLike[str]"]
 
 LONG = 400                              # points: of a proved prism's orbit
 
@@ -347,5 +345,4 @@ class _Run:
             self.backup.leave()
 
     def _finished(self, proof):
-        with postponed():               # a signal must not cost the last write
-            return replace(proof, sha256=self.backup.finish(proof))
+        return replace(proof, sha256=self.backup.finish(proof))

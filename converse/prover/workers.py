@@ -223,3 +223,46 @@ class WorkerPool(Resource):
         if what and what != self.waiting:
             warnings.warn(what + "; waiting", RuntimeWarning, stacklevel=3)
         self.waiting = what
+
+
+class Filling(Resource):
+    """A run that adds to a result by many tasks: a context, at whose end the result is saved.
+
+    result: with seconds, sha256 and save(); backup: of it; pool: a WorkerPool; time_limit: in
+    seconds; look() is called a few times a second."""
+
+    def __init__(self, result, backup, pool, time_limit, look):
+        self.result, self.backup, self.pool, self.look = result, backup, pool, look
+        self.began, self.end = (time.monotonic() + x for x in (-result.seconds, time_limit))
+
+    @property
+    def late(self):
+        """Is the time up?"""
+        return time.monotonic() >= self.end
+
+    def acquire(self):
+        self.pool.acquire()
+
+    def release(self):
+        self.pool.release()
+        self._count()
+        self.result.sha256 = self.backup.finish(self.result)
+
+    def _count(self):
+        self.result.seconds = time.monotonic() - self.began
+
+    def work(self, next_task, take):
+        """Hands out what next_task() returns, (key, call, *arguments), and calls take(key, result)
+        for what comes back, until no task or no time is left."""
+        task, pool = next_task(), self.pool
+        while (task or pool.running) and not self.late:
+            size = pool.size
+            while task and size and len(pool.running) <= size:  # one task waits for a worker
+                pool.give(*task)
+                task = next_task()
+            for key, result in pool.take(LOOK_SECONDS):
+                take(key, result)
+            self._count()
+            self.backup.update(lambda: self.result)
+            self.look()
+            task = task or next_task()

@@ -5,7 +5,7 @@ import warnings
 
 from . import files
 from .files import ConverseError, NotSaved
-from .signals import Resource
+from .signals import Resource, postponed
 
 SECONDS = 1.0                       # Between two writes is at least one second,
 SHARE = 20                          # and at least 20 times the duration of the last write.
@@ -59,12 +59,13 @@ class Backup(Resource):
         NotSaved: a warning that the file could not be written."""
         if self.path is None:
             return ""
-        try:
-            return self._write(proof)
-        except (ConverseError, MemoryError) as error:
-            self.failure = _words(error)
-            self.leave()
-            return ""
+        with postponed():               # a signal must not cost the last write
+            try:
+                return self._write(proof)
+            except (ConverseError, MemoryError) as error:
+                self.failure = _words(error)
+                self.leave()
+                return ""
 
     def leave(self):
         """Leaves the file as it is.  NotSaved: a warning that the last write failed."""

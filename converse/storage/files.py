@@ -5,8 +5,11 @@ import fcntl
 import os
 import tempfile
 import zlib
+from typing import Union
 
 from .signals import Resource, postponed
+
+Path = Union[str, "os.PathLike[str]"]
 
 
 class ConverseError(RuntimeError):

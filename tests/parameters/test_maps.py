@@ -154,7 +154,7 @@ def test_one_whole_run_or_several(coarse, tmp_path):
         with pytest.MonkeyPatch.context() as patch:     # it is late when some tasks are handed out
             patch.setattr(WorkerPool, "give", lambda self, *task: (handed_out.append(task),
                                                              give(self, *task)))
-            patch.setattr(search._Search, "late", property(lambda self: len(handed_out) > 8 * runs))
+            patch.setattr(search.Filling, "late", property(lambda self: len(handed_out) > 8 * runs))
             handed_out, runs = [], runs + 1
             found = parameters.explore(path=path, resume=True, jobs=1)
     known = ParameterMap.load(path)
