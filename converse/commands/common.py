@@ -10,8 +10,8 @@ import sys
 import time
 import warnings
 
+from ..model.exact import exact
 from ..model.inputs import read_input
-from ..model.problem import InputError
 from ..prover.settings import LIMIT
 from ..prover.workers import WorkersGone
 from ..storage import files
@@ -73,6 +73,14 @@ def whole_number(least, most=LIMIT):
     return convert
 
 
+def number(text):
+    """The type of an argument that is an exact number."""
+    try:
+        return exact(text)
+    except ValueError as error:
+        raise argparse.ArgumentTypeError(str(error)) from None
+
+
 def seconds(text):
     """The type of an argument that is a duration in seconds, perhaps infinite."""
     try:
@@ -89,6 +97,17 @@ def add_worker_options(p, what):
     p.add_argument("--jobs", type=whole_number(1), metavar="N",
                    help="work on N %s at a time (default: one per core)" % what)
     p.add_argument("--dask", metavar="ADDRESS", help="let the Dask cluster at ADDRESS work")
+
+
+TOGETHER = "a, b and c move together along the segment from all lower to all upper ends"
+
+
+def check_figure(options, *others, prisms=False):
+    """Refuses a figure of -g that cannot be drawn, or would overwrite one of the other files;
+    prisms: whether it is one of the prisms of a proof."""
+    if options.graphics is not None:
+        from ..draw import plot  # it takes a while
+        plot.check_file(options.graphics, others, plot.PRISM_FORMATS if prisms else plot.FORMATS)
 
 
 # ---- output
@@ -174,8 +193,9 @@ def executor_of(options):
 
 # ---- the input
 
-def read_problem(name, command="converse"):
-    """The Problem in an input file, or in standard input if the name is None or -."""
+def read_problem(name, command="converse", together=False):
+    """The Problem in an input file, or in standard input if the name is None or -.  together: a, b
+    and c move together."""
     source = name
     if source in (None, "-"):
         source = sys.stdin
@@ -183,7 +203,13 @@ def read_problem(name, command="converse"):
             raise ConverseError("standard input is closed; name an input file")
         if source.isatty():
             tell("reading the problem from standard input; end it with Ctrl-D", command)
-    return read_input(source)
+    problem = read_input(source)
+    if not together:
+        return problem
+    if not problem.by_ranges:
+        raise ConverseError("--together is for ranges of a, b and c; name a parameter in the input "
+                            "instead")
+    return problem.tied()
 
 
 # ---- the end of a command
@@ -231,7 +257,7 @@ def ended(command, run, interrupted):
         if not unsaved:
             return status
         message = ""
-    except (ConverseError, InputError, MemoryError) as error:
+    except (ConverseError, ValueError, MemoryError) as error:   # ValueErrors tell bad arguments
         message, status = str(error) or "there is not enough memory", BAD
         if isinstance(error, WorkersGone) and not unsaved:
             message += "; " + interrupted()
@@ -251,3 +277,14 @@ def ended(command, run, interrupted):
         message, status = "; ".join(filter(None, [message, *unsaved])), BAD
     tell(message, command)
     return status
+
+
+def command(name, parser, run, interrupted, /, **options):
+    """The function main() of a command.  interrupted(options) says what Ctrl-C leaves behind;
+    options: those that it needs before the arguments are read."""
+    def main(argv=None):
+        """Runs the command and returns its exit status."""
+        given = argparse.Namespace(**options)
+        return ended(name, lambda: run(parser().parse_args(argv, given)),
+                     lambda: interrupted(given))
+    return main

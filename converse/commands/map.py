@@ -5,14 +5,13 @@ import math
 import os
 import sys
 
-from ..draw import plot
-from ..model.exact import decimal_text, exact
+from ..model.exact import decimal_text
 from ..parameters.map import PROVED, ParameterMap
 from ..parameters.region import REGIONS
 from ..storage.files import ConverseError, plain
 from ..version import __version__
-from .common import (SIGNALS, Parser, ProgressLine, add_worker_options, ended, ending, executor_of,
-                     say, seconds)
+from .common import (SIGNALS, Parser, ProgressLine, add_worker_options, check_figure, command,
+                     ending, executor_of, number, say, seconds)
 
 COMMAND = "converse-map"
 DOWN_TO = "1.05"
@@ -28,12 +27,9 @@ ENDING = ending(
 
 
 def _ratio(text):
-    try:
-        ratio = exact(text)
-    except ValueError:
-        ratio = 0
+    ratio = number(text)
     if not 1 < ratio <= 100:
-        raise argparse.ArgumentTypeError("'%.40s' is not a number above 1, as 1.05 is" % text)
+        raise argparse.ArgumentTypeError("'%.40s' is not a number from 1 to 100, as 1.05 is" % text)
     return ratio
 
 
@@ -71,16 +67,13 @@ def progress_text(share, found):
 
 
 def run(options):
-    graphics = options.graphics
-    if graphics is not None:
-        plot.check_file(graphics, [options.map])
+    check_figure(options, options.map)
     if not options.plane and not options.restore:
         if options.down_to is not None:
             raise ConverseError("--down-to needs --plane or -r")
         found = ParameterMap.load(options.map)
     else:
-        from ..parameters.search import \
-            explore  # it needs the C core, and says so where it is missing
+        from ..parameters.search import explore  # it needs the C core
 
         with ProgressLine() as line, executor_of(options) as executor:
             found = explore(
@@ -95,23 +88,18 @@ def run(options):
         points = [point for point, _ in proved_points(options.tori)]
         say("Tori : %d proved, with a certificate each in %s\n" % (
             len(points), plain(options.tori)))
-    if graphics is not None:
+    if options.graphics is not None:
         from ..draw import map_figure
-
-        map_figure.draw(found, graphics, points)
+        map_figure.draw(found, options.graphics, points)
     return 0 if found.complete else 1
 
 
-def main(argv=None):
-    """Runs the command and returns its exit status."""
-    options = argparse.Namespace(map=None)
+def interrupted(options):
+    return ("continue with -r " + options.map if options.map and os.path.exists(options.map)
+            else "nothing was found yet")
 
-    def interrupted():
-        return ("continue with -r " + options.map if options.map and os.path.exists(options.map)
-                else "nothing was found yet")
 
-    return ended(COMMAND, lambda: run(parser().parse_args(argv, options)), interrupted)
-
+main = command(COMMAND, parser, run, interrupted, map=None)
 
 if __name__ == "__main__":
     sys.exit(main())

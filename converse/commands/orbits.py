@@ -8,14 +8,12 @@ import random
 import re
 import sys
 
-from ..draw import plot
 from ..model.exact import exact
 from ..model.map import SymplecticMap
-from ..model.problem import InputError
 from ..storage import files
 from ..storage.files import ConverseError, plain
 from ..version import __version__
-from .common import SIGNALS, Parser, ProgressLine, ended, ending, say, whole_number
+from .common import SIGNALS, Parser, ProgressLine, check_figure, command, ending, say, whole_number
 
 COMMAND = "converse-orbits"
 POTENTIALS = "trig", "poly", "ff", "froeschle", "standard"
@@ -123,10 +121,9 @@ def read_potential(source, at=()):
         raise ConverseError("'%s' is neither a potential nor a file; there are %s, or a JSON file "
                             "of harmonics (manual: reference/inputs)" % (
                                 source, ", ".join(POTENTIALS)))
+    found = SymplecticMap.read(source)
     try:
-        return orbits.potential.known(SymplecticMap.read(source).at(**dict(at)))
-    except InputError:
-        raise
+        return orbits.potential.known(found.at(**dict(at)))
     except ValueError as error:
         raise ConverseError("%s: %s" % (source, error)) from None
 
@@ -259,9 +256,9 @@ def _check_outputs(options, potential_file):
     if options.points is not None:
         from ..orbits.points import ENDINGS
         files.check_output(options.points, "file of points", ENDINGS, [*others, options.csv])
+    check_figure(options, *others)
     if options.graphics is not None:
         from ..orbits.pictures import MOST_STATES
-        plot.check_file(options.graphics, others)
         if sum(map(len, options.eps)) > MOST_STATES:
             raise ConverseError("a figure shows %d states at most; choose fewer eps, or no figure"
                                 % MOST_STATES)
@@ -336,7 +333,7 @@ class _Finding:
         if options.graphics is not None and self.states:
             from ..orbits.pictures import states_picture
             files.write(options.graphics, states_picture(
-                self.drawn, plot.check_file(options.graphics), caption=not options.no_caption))
+                self.drawn, files.ending(options.graphics), caption=not options.no_caption))
 
 
 def find_states(options):
@@ -405,22 +402,15 @@ def run(options):
     from converse import orbits
 
     orbits.PeriodicOrbit                        # or a line that says what is missing
-    try:
-        return options.run(options)
-    except ValueError as error:         # what only the library can know to be bad
-        raise ConverseError(str(error)) from error
+    return options.run(options)
 
 
-def main(argv=None):
-    """Runs the command and returns its exit status."""
-    options = argparse.Namespace(run=None)
+def interrupted(options):
+    return {find_states: "no table, points or figure is written",
+            sweep_types: "the same command continues it"}.get(options.run, "nothing was begun")
 
-    def interrupted():
-        return {find_states: "no table, points or figure is written",
-                sweep_types: "the same command continues it"}.get(options.run, "nothing was begun")
 
-    return ended(COMMAND, lambda: run(parser().parse_args(argv, options)), interrupted)
-
+main = command(COMMAND, parser, run, interrupted, run=None)
 
 if __name__ == "__main__":
     sys.exit(main())

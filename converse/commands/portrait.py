@@ -1,13 +1,12 @@
 """The command: converse-portrait [INPUT] [-b FILE] [-g FILE]."""
 
-import argparse
 import math
 import sys
 
 from ..storage.files import ConverseError
 from ..version import __version__
-from .common import (SIGNALS, Parser, ProgressLine, add_worker_options, ended, ending, executor_of,
-                     read_problem, say, seconds, whole_number)
+from .common import (SIGNALS, Parser, ProgressLine, add_worker_options, check_figure, command,
+                     ending, executor_of, read_problem, say, seconds, whole_number)
 
 COMMAND = "converse-portrait"
 COLUMNS, DEPTH, DEEPEST, MOST = 600, 15, 1000, 1 << 16
@@ -59,33 +58,28 @@ def progress_text(done, portrait):
 
 
 def run(options):
-    graphics, path = options.graphics, options.restore or options.backup
-    if options.rotation and graphics is None:
+    path = options.restore or options.backup
+    if options.rotation and options.graphics is None:
         raise ConverseError("--rotation is for the figure; name one with -g")
     if options.restore and (options.backup or options.input or options.columns or options.depth
                             or options.lines):
         raise ConverseError("-r continues a portrait as it was asked for; leave out the input, -b, "
                             "--columns, --depth and --lines")
-    if graphics is not None:
-        from ..draw import plot, portrait_figure
-
-        plot.check_file(graphics, [path, options.input])
+    check_figure(options, path, options.input)
     from ..prover.portrait import portray  # it needs the C core, and says so where it is missing
 
     problem = None if options.restore else read_problem(options.input, COMMAND)
     rotations = _rotations(options.rotation)
-    try:
-        with ProgressLine() as line, executor_of(options) as executor:
-            found = portray(problem, path=path, columns=options.columns or COLUMNS,
-                            depth=options.depth or DEPTH, strips=not options.lines,
-                            resume=options.restore is not None, jobs=options.jobs,
-                            executor=executor, time_limit=options.time_limit,
-                            progress=lambda *done: line(lambda: progress_text(*done)))
-    except ValueError as error:
-        raise ConverseError(str(error)) from None
+    with ProgressLine() as line, executor_of(options) as executor:
+        found = portray(problem, path=path, columns=options.columns or COLUMNS,
+                        depth=options.depth or DEPTH, strips=not options.lines,
+                        resume=options.restore is not None, jobs=options.jobs,
+                        executor=executor, time_limit=options.time_limit,
+                        progress=lambda *done: line(lambda: progress_text(*done)))
     say(found.report())
-    if graphics is not None:
-        portrait_figure.draw(found, graphics, _tori(rotations, found.problem))
+    if options.graphics is not None:
+        from ..draw import portrait_figure
+        portrait_figure.draw(found, options.graphics, _tori(rotations, found.problem))
     return 0 if found.complete and found.undecided < 1 else 1
 
 
@@ -102,10 +96,10 @@ def _rotations(texts):
 
 def _tori(rotations, problem):
     """The circles that are proved; what is not is told."""
+    from .. import tori
+
     proved = []
     for rotation in rotations:
-        from .. import tori
-
         try:
             proved.append(tori.prove(problem, rotation))
             words = "proved, within %.0e" % proved[-1].distance
@@ -115,16 +109,12 @@ def _tori(rotations, problem):
     return proved
 
 
-def main(argv=None):
-    """Runs the command and returns its exit status."""
-    options = argparse.Namespace(restore=None, backup=None)
+def interrupted(options):
+    path = options.restore or options.backup
+    return "continue with -r " + path if path else "nothing was saved; name a file with -b"
 
-    def interrupted():
-        path = options.restore or options.backup
-        return "continue with -r " + path if path else "nothing was saved; name a file with -b"
 
-    return ended(COMMAND, lambda: run(parser().parse_args(argv, options)), interrupted)
-
+main = command(COMMAND, parser, run, interrupted, restore=None, backup=None)
 
 if __name__ == "__main__":
     sys.exit(main())

@@ -7,15 +7,14 @@ import os
 import sys
 import time
 
-from ..model.exact import decimal_text, exact
-from ..model.problem import InputError
 from ..prover.report import header, verdict
 from ..prover.settings import AS_PRINTED, METHODS, REGION, THEOREM, UNDECIDED, Settings
 from ..storage import files
 from ..storage.files import ConverseError
 from ..version import __version__
-from .common import (MAP, REFRESH_SECONDS, SIGNALS, Parser, ProgressLine, add_worker_options, ended,
-                     ending, executor_of, read_problem, say, seconds, tell, whole_number)
+from .common import (MAP, REFRESH_SECONDS, SIGNALS, TOGETHER, Parser, ProgressLine,
+                     add_worker_options, check_figure, command, ending, executor_of, number,
+                     read_problem, say, seconds, tell, whole_number)
 
 STATUS = {THEOREM: 0, UNDECIDED: 1, REGION: 3, AS_PRINTED: 4}
 ENDING = ending(
@@ -42,13 +41,6 @@ class ListInputs(argparse.Action):
         directory = os.path.join(package, "inputs")
         say("".join(os.path.join(directory, name) + "\n" for name in sorted(os.listdir(directory))))
         parser.exit()
-
-
-def _decimal(text):
-    try:
-        return decimal_text(exact(text))
-    except ValueError as error:
-        raise argparse.ArgumentTypeError(str(error)) from None
 
 
 def parser():
@@ -81,9 +73,8 @@ def parser():
                    help="the thesis's criterion (default), or the sharper one, in rigorous double "
                    "precision")
     p.add_argument("--together", action="store_true",
-                   help="a, b and c move together along the segment from all lower to all upper "
-                   "ends (loewner)")
-    p.add_argument("--xstar", nargs=2, type=_decimal, metavar=("X0", "X1"),
+                   help=TOGETHER + " (loewner)")
+    p.add_argument("--xstar", nargs=2, type=number, metavar=("X0", "X1"),
                    help="the starting point x*, angles in radians (default: the program chooses)")
     add_worker_options(p, "parts")
     p.add_argument("--time-limit", type=seconds, default=math.inf, metavar="SECONDS",
@@ -135,83 +126,55 @@ class Progress:
             ", %d undecided" % counts.undecided if counts.undecided else "")
 
 
-def _read_problem(options):
-    """The problem of the input; None: the problem of the restored proof."""
-    if options.restore is not None and options.input is None:
-        return None
-    problem = read_problem(options.input)
-    if not options.together:
-        return problem
-    if not problem.by_ranges:
-        raise ConverseError("--together is for ranges of a, b and c; name a parameter in the input "
-                            "instead")
-    return problem.tied()
-
-
-def _check_graphics(options):
-    """Refuses a figure that cannot be written or would overwrite something else."""
-    from ..draw import plot  # it takes a while
-
-    others = [options.input, options.backup, options.restore]
-    with contextlib.suppress(AttributeError, OSError, ValueError):
-        others.append(sys.stdin.fileno())
-    plot.check_file(options.graphics, others, plot.PRISM_FORMATS)
-
-
 def run(options):
     from ..prover.run import prove  # it needs the C core, and says so where it is missing
 
     if options.graphics == "off":
         options.graphics = None
-    if options.graphics is not None:
-        _check_graphics(options)
+    with contextlib.suppress(AttributeError, OSError, ValueError):
+        options.stdin = sys.stdin.fileno()
+    check_figure(options, options.input, options.backup, options.restore, options.stdin,
+                 prisms=True)
     given = {name: value for name, value in vars(options).items() if value is not None and
              name in ("method", "depth", "digits", "stubborn", "as_printed")}
     if options.method == "loewner" and options.digits is not None:
         raise ConverseError("-p is of the thesis's arithmetic, and --method loewner works in "
                             "doubles; leave one of them out")
     if options.backup is not None:
+        files.check_writable(options.backup, regular=True)
         files.check_new(options.backup, options.restore)
 
     def on_leaf(leaf, points):
         say(_leaf_line(leaf, points) + "\n")
 
-    try:
-        method = Settings(**given).method
-        problem = _read_problem(options)
-        with ProgressLine(not options.verbose) as line, executor_of(options) as executor:
-            progress = Progress(options, line)
-            proof = prove(problem, xstar=options.xstar, jobs=options.jobs, executor=executor,
-                          backup=options.backup, resume=options.restore,
-                          time_limit=options.time_limit, on_begin=progress.begin,
-                          progress=progress, on_leaf=on_leaf if options.verbose else None,
-                          **(given if options.restore is not None else {**given, "method": method}))
-            if not options.begun:           # the time limit came before the search
-                progress(0.0, proof.counts)
-    except InputError:
-        raise
-    except ValueError as error:             # arguments exclude each other
-        raise ConverseError(str(error)) from None
+    method = Settings(**given).method
+    problem = None if options.restore is not None and options.input is None else \
+        read_problem(options.input, together=options.together)      # None: that of the proof
+    with ProgressLine(not options.verbose) as line, executor_of(options) as executor:
+        progress = Progress(options, line)
+        proof = prove(problem, xstar=options.xstar, jobs=options.jobs, executor=executor,
+                      backup=options.backup, resume=options.restore,
+                      time_limit=options.time_limit, on_begin=progress.begin,
+                      progress=progress, on_leaf=on_leaf if options.verbose else None,
+                      **(given if options.restore is not None else {**given, "method": method}))
+        if not options.begun:           # the time limit came before the search
+            progress(0.0, proof.counts)
     say(verdict(proof, options.backup or options.restore))
     if options.graphics is not None:
         from ..draw import plot
-
         plot.write(proof, options.graphics)
     return STATUS[proof.conclusion]
 
 
-def main(argv=None):
-    """Runs the command and returns its exit status."""
-    options = argparse.Namespace(backup=None, restore=None, begun=False)
+def interrupted(options):
+    file = options.backup or options.restore
+    if file is None:
+        return "without -b nothing is kept"
+    return "continue with -r " + file if options.begun else "nothing was found yet"
 
-    def interrupted():
-        file = options.backup or options.restore
-        if file is None:
-            return "without -b nothing is kept"
-        return "continue with -r " + file if options.begun else "nothing was found yet"
 
-    return ended("converse", lambda: run(parser().parse_args(argv, options)), interrupted)
-
+main = command("converse", parser, run, interrupted, backup=None, restore=None, begun=False,
+               stdin=None)
 
 if __name__ == "__main__":
     sys.exit(main())

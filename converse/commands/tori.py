@@ -7,12 +7,11 @@ import re
 import sys
 import time
 
-from ..model.exact import exact
 from ..storage import files
 from ..storage.files import ConverseError, plain
 from ..version import __version__
-from .common import (MAP, SIGNALS, Parser, ProgressLine, ended, ending, read_problem, say, tell,
-                     whole_number)
+from .common import (MAP, SIGNALS, TOGETHER, Parser, ProgressLine, check_figure, command, ending,
+                     number, read_problem, say, tell, whole_number)
 
 COMMAND = "converse-tori"
 ENDING = ending(
@@ -31,18 +30,11 @@ QUIET_SECONDS = 2.0         # A run of less time writes no step to a stderr that
 
 # ---- what is read
 
-def _number(text):
-    try:
-        return exact(text)
-    except ValueError as error:
-        raise argparse.ArgumentTypeError(str(error)) from None
-
-
 def _positive(text):
-    number = _number(text)
-    if not number > 0:
+    found = number(text)
+    if not found > 0:
         raise argparse.ArgumentTypeError("'%s' is not above 0" % text)
-    return number
+    return found
 
 
 def parser():
@@ -68,8 +60,7 @@ def _prove_parser(commands):
         "the rotation vector in turns: golden, silver, spiral, seven, T49, V1, V2, or a polynomial "
         "and elements of the field of its largest real root t, such as 't^2+t-1: t'"))
     p.add_argument("--together", action="store_true",
-                   help="a, b and c move together along the segment from all lower to all upper "
-                   "ends")
+                   help=TOGETHER)
     p.add_argument("-b", "--backup", metavar="FILE",
                    help="write the certificate to the new file FILE; compressed if it ends in .gz")
     p.add_argument("-g", "--graphics", metavar="FILE",
@@ -104,13 +95,8 @@ class _Steps(ProgressLine):
 
 
 def _read_problem(options):
-    problem = read_problem(options.input, COMMAND)
-    if options.together:
-        if not problem.by_ranges:
-            raise ConverseError("--together is for ranges of a, b and c; name a parameter in the "
-                                "input instead")
-        return problem.tied()
-    if problem.by_ranges and sum(map(any, problem.parts)) > 1:
+    problem = read_problem(options.input, COMMAND, options.together)
+    if not options.together and problem.by_ranges and sum(map(any, problem.parts)) > 1:
         raise ConverseError("a, b and c have ranges of their own; let them move together "
                             "(--together), or make all but one single numbers")
     return problem
@@ -127,10 +113,7 @@ def _check_outputs(options, locks):
         locks.enter_context(files.Lock(options.backup))
         if os.path.exists(options.backup) and os.path.getsize(options.backup):
             raise ConverseError("%s: exists; name another file or remove it" % options.backup)
-    if options.graphics is not None:
-        from ..draw import plot, torus_figure  # noqa: F401, which would be missed too late
-
-        plot.check_file(options.graphics, [options.input, options.backup, options.restore])
+    check_figure(options, options.input, options.backup, options.restore)
 
 
 def _rotation(options, potential, start):
@@ -212,21 +195,14 @@ def run(options):
     from converse import tori
 
     tori.Rotation                       # or a line that says what is missing
-    try:
-        return options.run(options)
-    except ValueError as error:         # what only the library can know to be bad
-        raise ConverseError(str(error)) from error
+    return options.run(options)
 
 
-def main(argv=None):
-    """Runs the command and returns its exit status."""
-    options = argparse.Namespace(proved=False)
+def interrupted(options):
+    return "the figure is not drawn" if options.proved else "nothing is proved"
 
-    def interrupted():
-        return "the figure is not drawn" if options.proved else "nothing is proved"
 
-    return ended(COMMAND, lambda: run(parser().parse_args(argv, options)), interrupted)
-
+main = command(COMMAND, parser, run, interrupted, proved=False)
 
 if __name__ == "__main__":
     sys.exit(main())

@@ -52,6 +52,8 @@ def _read(source):
     is_path = isinstance(source, (str, os.PathLike))
     name = os.fspath(source) if is_path else getattr(source, "name", None)
     name = name if isinstance(name, str) else "<stdin>"
+    if not name:
+        raise InputError("the name of the input file is empty; give one")
     try:
         if is_path:
             with open(source, "rb") as file:

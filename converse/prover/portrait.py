@@ -103,8 +103,9 @@ class Portrait(Kept):
         length = pi_bounds(2 * DIGITS)[0] * (1 if even is not None else 2)
         strip = rounded(length / (2 * count) - Fraction(1, 10 ** DIGITS), DIGITS, up=False)
         if abs(problem.waves[0][0]) * strip > WIDEST:
-            raise ValueError("%d columns are too few for strips; give at least %d" % (
-                columns, math.ceil(2 * math.pi * abs(problem.waves[0][0]) / (2 * WIDEST)) + 1))
+            least = math.ceil(2 * math.pi * abs(problem.waves[0][0]) / (2 * WIDEST)) + 1
+            raise ValueError("%d is too small a number of columns for strips; give at least %d"
+                             % (columns, least))
         return cls(problem, strip, even, depth, columns)
 
     @property
@@ -258,7 +259,8 @@ def _of_circle(problem):
         raise ValueError("a portrait is of a map of one angle; this potential has a wave that "
                          "depends on a second angle")
     if not seen:
-        raise ValueError("the potential is zero: every orbit of the map lies on a circle")
+        raise ValueError("the potential is zero: every orbit of the map lies on a circle; give "
+                         "amplitudes that are not all 0")
     parts = [[part[j] for j in seen] for part in problem.parts if any(part[j] for j in seen)]
     return Problem(SymplecticMap([problem.waves[j] for j in seen],
                                  [problem.amplitude[j] for j in seen], parts))

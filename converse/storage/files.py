@@ -62,10 +62,20 @@ def _beside(path):
     return os.path.join(os.path.dirname(path), ".converse-" + os.urandom(8).hex())
 
 
-def check_writable(path, regular=False):
-    """ConverseError if a file cannot be written.  Called before the work starts."""
+def check_name(path):
+    """ConverseError if the name of a file is empty."""
     if not os.fspath(path):
         raise ConverseError("the name of a file is empty; give one")
+
+
+def ending(path):
+    """The ending of a file's name, in small letters."""
+    return os.path.splitext(path)[1][1:].lower()
+
+
+def check_writable(path, regular=False):
+    """ConverseError if a file cannot be written.  Called before the work starts."""
+    check_name(path)
     if os.path.isdir(path):
         raise ConverseError("'%s': is a directory; name a file" % path)
     if os.path.exists(path) and not os.path.isfile(path):
@@ -99,8 +109,8 @@ def check_output(path, what, endings, others=()):
     it exists and is neither empty nor made by this program."""
     if any(other is not None and same(path, other) for other in others):
         raise ConverseError("'%s': the %s would overwrite it; name another file" % (path, what))
-    ending = os.path.splitext(path)[1][1:].lower()
-    if ending not in endings:
+    kind = ending(path)
+    if kind not in endings:
         raise ConverseError("'%s': the name of the %s ends in %s; give it such a name"
                             % (path, what, " or ".join("." + each for each in endings)))
     check_writable(path)
@@ -112,10 +122,10 @@ def check_output(path, what, endings, others=()):
     except OSError as error:
         raise ConverseError("%s: cannot be read (%s); name another file"
                             % (path, reason(error))) from None
-    head, mark = MADE.get(ending, (b"", b""))
+    head, mark = MADE.get(kind, (b"", b""))
     if data and not (mark and data.startswith(head) and mark in data):
         raise ConverseError("'%s': exists and is %s; remove it or name another file"
-                            % (path, "a table" if ending == "csv" else
+                            % (path, "a table" if kind == "csv" else
                                "not a %s of this program" % what))
 
 
@@ -175,6 +185,7 @@ def write_text(path, text):
 def read_text(path, what, damaged):
     """The text of a file, compressed or not.  ConverseError: the file cannot be read, and
     the message asks for another `what`; or it is truncated or not text, as `damaged` says."""
+    check_name(path)
     try:
         with open(path, "rb") as file:
             data = file.read()

@@ -209,7 +209,9 @@ def test_the_sharper_method(command, root, tmp_path):
     (["-d", "x"], "'x'"), (["-dx"], "'x'"), (["-d", "-1"], "-1"), (["-d", "1.5"], "1.5"),
     (["-d", "9" * 30], "9999"), (["-d"], "-d"), (["-z"], "-z"), (["--dept", "3"], "--dept"),
     (["--unknown"], "--unknown"), (["-b"], "-b"), (["one", "two"], "two"),
-    (["-b", ""], "the name of a file is empty"), (["-d", "\u0663"], "is not a whole number"),
+    (["-b", ""], "the name of a file is empty"), ([""], "the name of the input file is empty"),
+    (["-r", ""], "the name of a file is empty"), (["-b", "."], "is a directory"),
+    (["-d", "\u0663"], "is not a whole number"),
     (["-p", "40", "--method", "loewner"], "-p is of the thesis's arithmetic"),
     (["/missing/file.in"], "/missing/file.in"), (["/"], "/"),
 ])

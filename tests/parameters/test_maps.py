@@ -349,6 +349,7 @@ def test_a_damaged_file_is_refused_in_a_line(made, tmp_path):
         with pytest.raises(ConverseError) as error:
             ParameterMap.load(path)
         assert "\n" not in str(error.value) and str(path) in str(error.value)
+        assert "object" not in str(error.value)         # words of Python's
     with pytest.raises(ConverseError, match="cannot be read"):
         ParameterMap.load(tmp_path / "none.json")
 
