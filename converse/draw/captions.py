@@ -69,8 +69,7 @@ def nodes(proof):
 def counts(proof):
     """The number of prisms of each kind that occurs."""
     found = {kind: nodes(proof).count(kind) for kind in KIND_NAMES}
-    cuts = sum(map(proof.tree.count, tree.CUTS))
-    found["?"] += 1 + cuts - sum(found.values())        # those that are missing at the end
+    found["?"] = tree.untried(proof.tree)
     return {kind: count for kind, count in found.items() if count}
 
 

@@ -37,25 +37,14 @@ def largest(p):
     return ((p0 + p1) / 2 + both + np.hypot((p0 - p1) / 2, both)).max((-1, -2))
 
 
-def draw(region_map, path, tori=()):
-    """Draws a map in a file, with the points (a, b, c) at which tori are proved.
+def draw(region_map, path=None, tori=(), ax=None):
+    """Draws a map, with the points (a, b, c) at which tori are proved, as plot.single() does.
 
     ConverseError: it cannot be drawn, or is not estimated yet."""
-    kind = plot.check_file(path)
-    files.write(path, plot.written(
-        *SIZE, kind, lambda figure: _draw(region_map, figure.add_subplot(), tori)))
+    return plot.single(SIZE, lambda axes: _fill(region_map, axes, tori), path, ax)
 
 
-def page(region_map, ax=None, tori=()):
-    """The map drawn into Axes, which are returned, or as a Figure that a notebook shows."""
-    if ax is None:
-        return plot.new(*SIZE, lambda figure: _draw(region_map, figure.add_subplot(), tori))
-    plot.check()
-    _draw(region_map, ax, tori)
-    return ax
-
-
-def _draw(region_map, axes, tori):
+def _fill(region_map, axes, tori):
     if not all(region_map.estimate):
         raise files.ConverseError("the map has nothing to draw yet: it was left while the frontier "
                                   "was estimated; continue it with -r")

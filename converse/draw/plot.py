@@ -5,7 +5,6 @@ Every picture is drawn by matplotlib (the extra "plot"), whose backend and setti
 
 import io
 import math
-import os
 import re
 import textwrap
 from fractions import Fraction
@@ -53,12 +52,7 @@ def check_file(path, others=(), formats=FORMATS):
     figure of this program, or matplotlib is missing."""
     files.check_output(path, "figure", formats, others)
     check()
-    return format_of(path)
-
-
-def format_of(path):
-    """The ending of a file's name, in small letters."""
-    return os.path.splitext(path)[1][1:].lower()
+    return files.ending(path)
 
 
 def write(proof, path, caption=True):
@@ -70,7 +64,7 @@ def write(proof, path, caption=True):
     from matplotlib import style
 
     with style.context(["default", SALT]):
-        files.write(path, encode(page(proof, caption), format_of(path), dpi=DPI))
+        files.write(path, encode(page(proof, caption), files.ending(path), dpi=DPI))
 
 
 def encode(figure, kind, **options):
@@ -110,6 +104,25 @@ def written(width, height, kind, fill, layout=None, dpi=200):
 
     with style.context(["default", STYLE]):
         return encode(figure, kind, dpi=dpi, pad_inches=0.1)
+
+
+def single(size, fill, path=None, ax=None, dpi=200):
+    """A picture in one pair of Axes, which fill(axes) draws: in a file, or into the given Axes, or
+    as a Figure that is returned.  dpi: of the rasters in a file of vectors.
+
+    ConverseError: the picture cannot be drawn."""
+    def draw(figure):
+        fill(figure.subplots())
+
+    if path is not None:
+        kind = check_file(path)
+        files.write(path, written(*size, kind, draw, dpi=200 if kind == "png" else dpi))
+    elif ax is None:
+        return new(*size, draw)
+    else:
+        check()
+        fill(ax)
+    return ax
 
 
 def page(proof, caption=True):

@@ -9,7 +9,6 @@ except ImportError:                     # matplotlib brings it, and plot.check()
 
 from ..model.exact import short_text
 from ..prover import tree
-from ..storage import files
 from . import plot
 
 ROWS, FINER = 720, 16                   # of the image; its cells are summed up over finer ones
@@ -22,21 +21,10 @@ SHADES = 8                              # of COLOUR, so that a file is small
 DPI = 130                               # of the orbits and circles in a file of vectors
 
 
-def draw(portrait, path, tori=()):
-    """Draws a Portrait in a file, with orbits of its map and, in colour, the circles of tori that
-    are proved (ProvedTorus).  ConverseError: it cannot be drawn."""
-    kind = plot.check_file(path)
-    files.write(path, plot.written(*SIZE, kind, lambda figure: fill(
-        figure.subplots(), portrait, tori), dpi=200 if kind == "png" else DPI))
-
-
-def page(portrait, ax=None, tori=()):
-    """The portrait drawn into Axes, which are returned, or as a Figure that a notebook shows."""
-    plot.check()
-    if ax is None:
-        return plot.new(*SIZE, lambda figure: fill(figure.subplots(), portrait, tori))
-    fill(ax, portrait, tori)
-    return ax
+def draw(portrait, path=None, tori=(), ax=None):
+    """Draws a Portrait, with orbits of its map and, in colour, the circles of tori that are proved
+    (ProvedTorus), as plot.single() does.  ConverseError: it cannot be drawn."""
+    return plot.single(SIZE, lambda axes: fill(axes, portrait, tori), path, ax, DPI)
 
 
 def fill(axes, portrait, tori=()):

@@ -99,11 +99,11 @@ def product(x: Ends, y: Ends) -> Ends:
     return min(products), max(products)
 
 
-def sum_text(parts) -> str:
+def sum_text(parts, number_text=str) -> str:
     """The sum of products of a rational number and what follows it, in words."""
     text = ""
     for c, what in parts:
         if c:
             text += " - " if c < 0 else " + "
-            text += what if abs(c) == 1 and what else ("%s %s" % (abs(c), what)).strip()
+            text += what if abs(c) == 1 and what else (number_text(abs(c)) + " " + what).strip()
     return ("-" if text.startswith(" -") else "") + text[3:] or "0"

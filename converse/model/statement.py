@@ -71,7 +71,7 @@ def potential_text(problem):
                 "" if abs(x) == 1 and name else number_text(abs(x)), name)))
             factor = "" if factor == "1" else factor + " "
         else:
-            factor = "(%s) " % _linear(terms)
+            factor = "(%s) " % sum_text(terms, number_text)
         text += " %s %s%s" % ("-" if sign < 0 else "+", factor,
                               function + (" " + angle if angle in letters else "(%s)" % angle))
     return ("-" + text[3:] if text.startswith(" -") else text[3:]) or "0"
@@ -90,14 +90,6 @@ def _forms(problem):
                 form[""] -= part * (low + high) / (high - low)
         forms.append(form)
     return forms
-
-
-def _linear(terms):
-    text = ""
-    for x, name in terms:
-        text += " - " if x < 0 else " + "
-        text += name if abs(x) == 1 and name else (number_text(abs(x)) + " " + name).strip()
-    return "-" + text[3:] if text.startswith(" - ") else text[3:]
 
 
 def parameters(problem):

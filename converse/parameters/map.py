@@ -204,7 +204,7 @@ class ParameterMap(Kept):
             matplotlib is missing, or the frontier is not estimated yet.
         """
         from ..draw import map_figure
-        return map_figure.page(self, ax, list(tori))
+        return map_figure.draw(self, None, list(tori), ax)
 
     def __repr__(self):
         return "<ParameterMap of %s: %d cells proved, %d at once, %d open>" % (

@@ -4,7 +4,6 @@ import concurrent.futures
 import heapq
 import itertools
 import math
-from dataclasses import dataclass
 from fractions import Fraction
 from typing import Callable, Optional
 
@@ -14,7 +13,7 @@ from ..model.problem import IDENTITY, Problem
 from ..model.region import DIAGONALS, exchangeable, reduced
 from ..prover import native
 from ..prover.settings import Settings
-from ..prover.workers import LOOK_SECONDS, Filling, WorkerPool
+from ..prover.workers import LOOK_SECONDS, Filling, WorkerPool, check_options
 from ..storage.backup import Backup
 from ..storage.files import ConverseError, Path
 from ..storage.signals import interruptible
@@ -47,14 +46,6 @@ TOO_LONG = native.lib.CV_REASON_TOO_LONG    # of a failed try: more cuts will no
 
 def _problem(amplitude, parts=()):
     return Problem(SymplecticMap(THESIS, amplitude, parts))
-
-
-@dataclass(frozen=True)
-class Outcome:
-    """The result of a try at a cell: its kind and, if it is proved, the proof as plain data."""
-
-    kind: str
-    proof: Optional[dict] = None
 
 
 def _prove_within(problem, xstar, budget, stop):
@@ -110,12 +101,13 @@ def _way(directions, cell, stop):
 
 
 def attempt(directions, cell, budget, stop=None):
-    """The Outcome of a try to prove a cell with a limited number of leaves; None if stopped."""
+    """Tries to prove a cell with a limited number of leaves: its kind and, if it is proved, the
+    proof as plain data; None if stopped."""
     stop = stop or native.Stop()
     middle, parts = region.patch(directions, cell)
     if cell.high[0] == region.RADIUS:           # it must hold for all larger radii, too
         begun = native.begin(native.Task(_problem(middle, parts), SETTINGS), "", stop)
-        return begun and Outcome(AT_ONCE if begun.at_once else OPEN)
+        return begun and (AT_ONCE if begun.at_once else OPEN, None)
     way = _way(directions, cell, stop)
     if way is None:
         return None
@@ -125,19 +117,13 @@ def attempt(directions, cell, budget, stop=None):
     if found is None:
         return None
     tree, leaves, begun = found
-    if begun.at_once:
-        return Outcome(AT_ONCE)
-    if tree is None:
-        return Outcome(OPEN)
-    return Outcome(PROVED, {"xstar": list(begun.xstar), "frame": list(problem.frame),
-                            "alone": "no" if problem.factor is None else str(problem.factor),
-                            **_region_text(problem), "tree": tree})
-
-
-def _region_text(problem):
-    """Centres and half-widths of v0 and v1."""
-    return {name: [decimal_text((low + high) / 2), decimal_text((high - low) / 2)]
-            for name, (low, high) in (("v0", problem.v0), ("v1", problem.v1))}
+    if begun.at_once or tree is None:
+        return AT_ONCE if begun.at_once else OPEN, None
+    region_text = {name: [decimal_text((low + high) / 2), decimal_text((high - low) / 2)]
+                   for name, (low, high) in (("v0", problem.v0), ("v1", problem.v1))}
+    return PROVED, {"xstar": list(begun.xstar), "frame": list(problem.frame),
+                    "alone": "no" if problem.factor is None else str(problem.factor),
+                    **region_text, "tree": tree}
 
 
 def estimate_frontier(directions, s, stop=None):
@@ -212,6 +198,7 @@ def explore(name: Optional[str] = None, down_to: Optional[Number] = None, *, pat
     ConverseError, MemoryError
         The run ended; the cells that are proved are in the file.
     """
+    check_options(jobs, executor, time_limit)
     ratio = None if down_to is None else exact(down_to)
     if ratio is not None and not 1 < ratio <= 100:
         raise ValueError("down_to is a ratio above 1, not %s" % (down_to,))
@@ -318,8 +305,8 @@ class _Search:
     def _take(self, node, budget, outcome):
         """Records the outcome of a try at a cell, and queues the parts that are still open."""
         cell = node.cell
-        node.decide(outcome.kind, outcome.proof)
-        if outcome.kind != OPEN:
+        node.decide(*outcome)
+        if node.kind != OPEN:
             self.decided += self.map.area(cell)
             return
         width, axis = self._widest(cell)

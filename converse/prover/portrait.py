@@ -27,7 +27,7 @@ from ..storage.signals import interruptible
 from ..version import __version__
 from . import native, tree
 from .settings import Settings
-from .workers import Filling, WorkerPool
+from .workers import Filling, WorkerPool, check_options
 
 FIRST_LINE = "converse portrait 1"
 FIELDS = "program", "strip", "even about", "depth", "columns", "undecided"
@@ -208,7 +208,7 @@ class Portrait(Kept):
             matplotlib is missing.
         """
         from ..draw import portrait_figure
-        return portrait_figure.page(self, ax, tori)
+        return portrait_figure.draw(self, None, tori, ax)
 
     def _text(self) -> str:
         problem, shown = self.problem, decimal_text
@@ -314,6 +314,7 @@ def portray(source: Union[SymplecticMap, Problem, None] = None, *, path: Optiona
     ConverseError
         The file cannot be used; what was found is in it.
     """
+    check_options(jobs, executor, time_limit)
     asked = None if source is None else Portrait.new(Problem.of(source), columns, depth, strips)
     with interruptible(), Backup(path, resumed=path if resume else None) as backup:
         if path is not None and resume:

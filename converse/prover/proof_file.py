@@ -98,10 +98,7 @@ def _tree_lines(text):
 def _untried(text):
     """How many prisms of a search that is not stubborn are yet to be tried: those with a `?` and
     those that are missing at the end, unless an undecided one has ended it."""
-    if "U" in text:
-        return text.count(tree.UNTRIED)
-    cuts = sum(map(text.count, tree.CUTS))
-    return cuts + 1 - (len(text) - cuts - text.count(tree.UNTRIED))
+    return text.count(tree.UNTRIED) if "U" in text else tree.untried(text)
 
 
 def _proof(fields, trees, sha256):

@@ -8,7 +8,6 @@ from ..model.problem import NAMES
 from ..storage.files import ConverseError
 from ..version import __version__
 from . import tree
-from .tree_search import KINDS, kinds_of
 
 
 def _as_before(problem, proof, differs):
@@ -93,7 +92,7 @@ def _without_unused(proof, name):
 def counted(proof):
     """The statistics, nodes being counted in all trees."""
     texts = [each.text for each in proof.trees]
-    return replace(proof.counts, **dict(zip(KINDS, map(sum, zip(*map(kinds_of, texts))))),
+    return replace(proof.counts, **dict(zip(tree.NODES, map(sum, zip(*map(tree.count, texts))))),
                    most_cuts=max(map(tree.most_cuts, texts)))
 
 

@@ -4,7 +4,7 @@ import concurrent.futures
 import math
 import os
 import time
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from fractions import Fraction
 from typing import Any, Callable, Dict, Optional, Tuple, Union
 
@@ -24,8 +24,8 @@ from .proof import Proof, Tree
 from .resume import continued, counted
 from .settings import Settings
 from .starts import plan
-from .tree_search import KINDS, OLD, TreeSearch, kinds_of
-from .workers import LOOK_SECONDS, WorkerPool
+from .tree_search import OLD, TreeSearch
+from .workers import LOOK_SECONDS, WorkerPool, check_options
 
 LONG = 400                              # points: of a proved prism's orbit
 
@@ -98,7 +98,7 @@ def prove(source: Union[SymplecticMap, Problem, None] = None, *, method: Optiona
     if source is None and resume is None:
         raise TypeError("there must be a map or a problem, or a proof to resume")
     problem = None if source is None else Problem.of(source)
-    options = _Options(jobs, executor, time_limit, progress, on_leaf)
+    check_options(jobs, executor, time_limit)
     star = None if xstar is None else _point(xstar)
     file = None if resume is None or isinstance(resume, Proof) else resume
     name = "the proof to resume" if file is None else os.fspath(file)
@@ -114,7 +114,7 @@ def prove(source: Union[SymplecticMap, Problem, None] = None, *, method: Optiona
         if on_begin is not None:
             on_begin(before)
         try:
-            return _Run(before, backup_file, options).run()
+            return _Run(before, backup_file, jobs, executor, time_limit, progress, on_leaf).run()
         except native.WrongTree as error:
             raise ConverseError("%s: %s; use an intact copy or start anew"
                                 % (name, error)) from None
@@ -142,39 +142,17 @@ def _point(xstar):
         raise type(error)("xstar: %s" % error) from None
 
 
-@dataclass(frozen=True)
-class _Options:
-    """The arguments of prove() on which the tree does not depend; TypeError, ValueError: one of
-    them is wrong."""
-
-    jobs: Optional[int] = None
-    executor: Optional[concurrent.futures.Executor] = None
-    time_limit: float = math.inf
-    progress: Optional[Callable] = None
-    on_leaf: Optional[Callable] = None
-
-    def __post_init__(self):
-        if isinstance(self.time_limit, bool) or not isinstance(self.time_limit, (int, float)) or \
-                not self.time_limit >= 0:
-            raise ValueError("time_limit is a number of seconds, not %r" % (self.time_limit,))
-        if self.jobs is not None and (
-                isinstance(self.jobs, bool) or not isinstance(self.jobs, int) or self.jobs < 1):
-            raise ValueError("jobs must be a whole number, 1 or more, not %r" % (self.jobs,))
-        if self.executor is not None and not hasattr(self.executor, "submit"):
-            raise TypeError("the executor is a concurrent.futures.Executor, not %r"
-                            % (self.executor,))
-
-
 class _Run:
     """One run of a search, from what was known before it to a Proof.
 
     The trees are grown one after the other.  Where a tree leaves prisms undecided, further ones are
     added to the list."""
 
-    def __init__(self, before, backup, options):
-        self.proof, self.backup, self.options = before, backup, options
+    def __init__(self, before, backup, jobs, executor, time_limit, progress, on_leaf):
+        self.proof, self.backup, self.jobs, self.executor = before, backup, jobs, executor
+        self.progress, self.on_leaf = progress, on_leaf
         self.began, self.seconds_before = time.monotonic(), before.seconds
-        self.end = self.began + options.time_limit
+        self.end = self.began + time_limit
         self.examined = self.share = 0.0    # before the tree that is grown now; of all, told last
         self.number, self.search = 0, None      # of that tree, and its search
         self.counts = before.counts             # when that began
@@ -208,11 +186,10 @@ class _Run:
         out to be so hard that other starting points are to be looked for."""
         problem, text = self._tree.problem, self._tree.text
         task = Task(problem, self.proof.settings, self._tree.xstar, self._longest())
-        with TreeSearch(task, self.options.jobs, self.options.executor,
-                        want_steps=self.options.on_leaf is not None) as search:
+        with TreeSearch(task, self.jobs, self.executor, self.on_leaf is not None) as search:
             counts = self.counts = self.proof.counts
             if self.proof.parts:
-                counts = replace(counts, **dict(zip(KINDS, kinds_of(text))))
+                counts = replace(counts, **dict(zip(tree.NODES, tree.count(text))))
             begun = search.begin(text, self._tree.pending, counts, self._seconds_left)
             if begun is None:               # no time even to set it up
                 return False
@@ -282,8 +259,8 @@ class _Run:
             self._show(self.share, self.proof.counts)
             return self._seconds_left()
 
-        with WorkerPool(self.options.executor) as workers, \
-                WorkerPool(None, self.options.jobs, native.Stop()) as pool:
+        with WorkerPool(self.executor) as workers, \
+                WorkerPool(None, self.jobs, native.Stop()) as pool:
             found = plan(problem, self.proof.depth, self._tree.xstar, undecided,
                          Fraction(self.proof.constants["B"]), len(self.proof.parts), pool,
                          seconds_left)
@@ -303,16 +280,16 @@ class _Run:
         return self.end - time.monotonic()
 
     def _show(self, share, counts):
-        if self.options.progress:
-            self.options.progress(share, counts)
+        if self.progress:
+            self.progress(share, counts)
 
     def _look(self):
         """Tells whoever wants to know how far things are."""
-        if self.options.on_leaf:
+        if self.on_leaf:
             text, steps = self.search.beginning(self.seen)
             self.seen += len(text)
             self._tell(text, steps)
-        if self.options.progress:
+        if self.progress:
             left = len(self.proof.trees) - self.number
             self.share = max(self.share, self.examined
                              + (1 - self.examined) * self.search.examined / left)
@@ -320,11 +297,11 @@ class _Run:
         self.backup.update(self._snapshot)
 
     def _tell(self, text, steps):
-        for node, points in zip(text if self.options.on_leaf else "", steps):
+        for node, points in zip(text if self.on_leaf else "", steps):
             for kind, cell in self.walk.feed(node):
                 if points != OLD:
                     leaf = tree.Leaf(kind, *self.prism(cell), sum(cell[1]))
-                    self.options.on_leaf(leaf, points)
+                    self.on_leaf(leaf, points)
 
     def _snapshot(self):
         """The proof as it stands."""

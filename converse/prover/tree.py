@@ -19,6 +19,7 @@ LETTERS = ascii_lowercase
 KINDS = "PSU" + UNTRIED + LETTERS
 UNDECIDED_OR_UNTRIED = re.compile("[U?]")
 ROOT = (0,) * 5, (0,) * 5
+NODES = "cuts", "proved", "symmetric", "undecided", "linked"    # as native.Counts calls them
 
 # centre and half: (v0, v1), in units of pi, as of prisms()
 Leaf = namedtuple("Leaf", "kind centre half depth")
@@ -124,6 +125,17 @@ def complete(text):
 def count_linked(text):
     """How many leaves are linked to other starting points."""
     return len(text) - len(text.translate(dict.fromkeys(map(ord, LETTERS))))
+
+
+def count(text):
+    """The numbers of nodes of the kinds NODES."""
+    return (sum(map(text.count, CUTS)), *map(text.count, "PSU"), count_linked(text))
+
+
+def untried(text):
+    """How many prisms have a `?`, or are missing at the end."""
+    cuts, *leaves = count(text)
+    return cuts + 1 - sum(leaves)
 
 
 def check_letters(texts):

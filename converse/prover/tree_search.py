@@ -26,7 +26,7 @@ class Part:
     def __init__(self, cells, text=""):
         self.cells, self.pieces = list(cells), [text]
         self.steps = [OLD] * len(text)      # orbit lengths, by node of the text, if wanted
-        self.kinds = kinds_of(text)
+        self.kinds = tree.count(text)
 
     @property
     def stopped(self):
@@ -39,13 +39,7 @@ class Part:
         self.kinds = tuple(map(int.__add__, self.kinds, kinds))
 
 
-KINDS = "cuts", "proved", "symmetric", "undecided", "linked"
 LINKED_AS_PROVED = dict.fromkeys(map(ord, tree.LETTERS), "P")   # the core knows of no links
-
-
-def kinds_of(text):
-    """The numbers of nodes of each of these kinds."""
-    return (sum(map(text.count, tree.CUTS)), *map(text.count, "PSU"), tree.count_linked(text))
 
 
 class TreeSearch(Resource):
@@ -118,8 +112,8 @@ class TreeSearch(Resource):
     def counts(self):
         """The statistics.  Nodes are counted in the tree as it is.  Tries also count in parts that
         were dropped because an undecided prism before them ended the search."""
-        kinds = map(sum, zip(*(part.kinds for part in self._relevant()), (0,) * len(KINDS)))
-        return replace(self.statistics, **dict(zip(KINDS, kinds)))
+        kinds = map(sum, zip(*(part.kinds for part in self._relevant()), (0,) * len(tree.NODES)))
+        return replace(self.statistics, **dict(zip(tree.NODES, kinds)))
 
     @property
     def finished(self):
@@ -144,11 +138,9 @@ class TreeSearch(Resource):
 
     def _check(self, text):
         """AssertionError if the text lacks a prism or has one too many, so that it is not saved."""
-        kinds = cuts, *leaves = kinds_of(text)
-        missing = cuts + 1 - sum(leaves) - text.count(tree.UNTRIED)
-        counts = self.counts
-        if (missing < 0 if counts.undecided and not self.stubborn else missing != 0) or kinds != (
-                tuple(getattr(counts, name) for name in KINDS)):
+        missing, counts = tree.untried(text) - text.count(tree.UNTRIED), self.counts
+        if (missing < 0 if counts.undecided and not self.stubborn else missing != 0) or (
+                tree.count(text) != tuple(getattr(counts, name) for name in tree.NODES)):
             raise AssertionError("the tree is not whole")
 
     @contextlib.contextmanager
@@ -180,7 +172,7 @@ class TreeSearch(Resource):
         if grown is None:                   # stopped before it could begin
             return
         with self._change():
-            part.append([grown.text], grown.steps, kinds_of(grown.text))
+            part.append([grown.text], grown.steps, tree.count(grown.text))
             part.cells = grown.cells
             self.statistics += grown.counts
 
@@ -241,7 +233,7 @@ class TreeSearch(Resource):
             for part in self.parts:
                 if parts and not parts[-1].cells and (self.stubborn or not parts[-1].stopped):
                     parts[-1].append(part.pieces, part.steps, part.kinds)
-                    part.pieces, part.steps, part.kinds = [], [], kinds_of("")
+                    part.pieces, part.steps, part.kinds = [], [], tree.count("")
                     if not part.cells:
                         continue
                 parts.append(part)

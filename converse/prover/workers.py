@@ -37,6 +37,17 @@ def count_workers(executor=None):
         return os.cpu_count() or 1
 
 
+def check_options(jobs, executor, time_limit):
+    """TypeError, ValueError: one of these arguments of prove(), portray() or explore() is wrong."""
+    if isinstance(time_limit, bool) or not isinstance(time_limit, (int, float)) or \
+            not time_limit >= 0:
+        raise ValueError("time_limit is a number of seconds, not %r" % (time_limit,))
+    if jobs is not None and (isinstance(jobs, bool) or not isinstance(jobs, int) or jobs < 1):
+        raise ValueError("jobs must be a whole number, 1 or more, not %r" % (jobs,))
+    if executor is not None and not hasattr(executor, "submit"):
+        raise TypeError("the executor is a concurrent.futures.Executor, not %r" % (executor,))
+
+
 @dataclass(frozen=True)
 class _Task:
     key: Any                            # of who gave it, to recognise the result
@@ -83,29 +94,22 @@ class WorkerPool(Resource):
         process raised is passed on."""
         if not self.running:
             time.sleep(min(seconds, LOOK_SECONDS))
-        for future in self._wait(min(seconds, LOOK_SECONDS), concurrent.futures.FIRST_COMPLETED):
-            task = self.running.pop(future)
-            try:
-                with postponed():
-                    result = future.result()
-            except Exception as error:
+        for task, result, error in self._done(min(seconds, LOOK_SECONDS),
+                                              concurrent.futures.FIRST_COMPLETED):
+            if error is None:
+                yield task.key, result
+            else:
                 self._failed(error, task)
                 self._submit(replace(task, attempts=task.attempts - 1))
-            else:
-                yield task.key, result
 
     def settle(self, seconds):
         """Ends the work: yields (key, result) of the tasks that are done within `seconds`, and
         cancels the others."""
         self._stop()
-        for future in self._wait(seconds if self.alive else 0, concurrent.futures.ALL_COMPLETED):
-            task = self.running.pop(future)
-            try:
-                with postponed():
-                    result = future.result()
-            except Exception:
-                continue
-            yield task.key, result
+        for task, result, error in self._done(seconds if self.alive else 0,
+                                              concurrent.futures.ALL_COMPLETED):
+            if error is None:
+                yield task.key, result
         self.cancel()
 
     def cancel(self):
@@ -136,9 +140,18 @@ class WorkerPool(Resource):
                 raise MemoryError("there is not enough memory for another thread") from None
             raise
 
-    def _wait(self, seconds, until):
+    def _done(self, seconds, until):
+        """Yields (task, result, error) of the tasks that are done; an error or None."""
         with postponed():
-            return concurrent.futures.wait(self.running, seconds, until)[0]
+            done = concurrent.futures.wait(self.running, seconds, until)[0]
+        for future in done:
+            task, result, error = self.running.pop(future), None, None
+            try:
+                with postponed():
+                    result = future.result()
+            except Exception as failure:
+                error = failure
+            yield task, result, error
 
     # ---- workers
 
